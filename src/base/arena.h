@@ -1,0 +1,16 @@
+// Arena: objects that live and die together (one load, one frame). Blocks never move.
+#pragma once
+#include <stdarg.h>
+#include <stddef.h>
+#include "base/error.h"
+
+typedef struct arena_block arena_block;
+typedef struct arena {
+    arena_block *block; // newest block first; zero-initialised is an empty arena
+} arena;
+
+void *arena_alloc(arena *a, size_t size); // zeroed, aligned to 16
+char *arena_string(arena *a, const char *text);
+char *arena_format(arena *a, const char *format, ...) PRINTF_LIKE(2, 3);
+void *arena_copy(arena *a, const void *data, size_t size);
+void arena_free(arena *a); // frees all; the arena is empty again

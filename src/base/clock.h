@@ -1,0 +1,3 @@
+// Monotonic time.
+#pragma once
+double clock_seconds(void); // since an arbitrary start, nanosecond steps

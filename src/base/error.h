@@ -1,0 +1,23 @@
+// Errors caused by input: one message per thread, set where the fault is seen.
+//
+// Three kinds of error are never mixed. A bug: assert. Bad input: a function returns false or NULL
+// and leaves a message here that names file, line and object, and says what is accepted. Host out
+// of memory: one line on stderr, exit.
+#pragma once
+#include <stdbool.h>
+#include <stddef.h>
+
+#define PRINTF_LIKE(format, first) __attribute__((format(printf, format, first)))
+
+// Sets the thread's message. Always returns false, so that `return err_set(...)` is one line.
+bool err_set(const char *format, ...) PRINTF_LIKE(1, 2);
+
+// Puts text before the current message ("while loading x: " + message). Always returns false.
+bool err_prefix(const char *format, ...) PRINTF_LIKE(1, 2);
+
+// The thread's message; "" when there is none. Valid until the next err_ call of the thread.
+const char *err_get(void);
+void err_clear(void);
+
+// One line on stderr, exit status 1.
+_Noreturn void err_out_of_memory(size_t size);

@@ -1,0 +1,44 @@
+// Files and paths. Paths are UTF-8, '/'-separated, at most PATH_CAP - 1 bytes.
+#pragma once
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { PATH_CAP = 4096 };
+
+// Reads a whole regular file of at most `max` bytes. `*data` gets a terminating NUL that `*size`
+// does not count; free it with mem_free.
+bool file_read(const char *path, size_t max, void **data, size_t *size);
+
+// Writes to a temporary name beside `path`, flushes, then renames: readers see all or nothing.
+// A full disk or an unwritable folder is an error; the temporary file is removed.
+bool file_write(const char *path, const void *data, size_t size);
+
+bool file_exists(const char *path);
+bool file_is_folder(const char *path);
+bool file_make_folders(const char *path);        // like mkdir -p
+bool file_make_parent_folders(const char *path); // folders above the last component
+int64_t file_modified_ns(const char *path);      // 0 when it does not exist
+
+// Sorted matches of a glob pattern (*, ?, [..]), names compared as bytes. False only on errors; no
+// match gives count 0.
+typedef struct file_list {
+    char **paths;
+    size_t count;
+} file_list;
+bool file_glob(const char *pattern, file_list *out);
+void file_list_free(file_list *list);
+
+bool path_join(char out[PATH_CAP], const char *folder, const char *name); // absolute name wins
+void path_folder(char out[PATH_CAP], const char *path); // "a/b.c" -> "a", "b.c" -> "."
+const char *path_name(const char *path);                // "a/b.c" -> "b.c"
+const char *path_extension(const char *path);           // "a/b.tar.gz" -> "gz", "" if none
+
+// Joins `name` to `root` and requires the result, symbolic links followed, to lie inside `root`.
+// The file itself need not exist; a wildcard in the last component is allowed.
+bool path_confine(char out[PATH_CAP], const char *root, const char *name);
+
+// Folder of the running program; and a per-user cache folder for `name`, created on demand
+// ($ROIL_CACHE_DIR, else $XDG_CACHE_HOME/roil, else ~/.cache/roil).
+bool path_program_folder(char out[PATH_CAP]);
+bool path_cache_folder(char out[PATH_CAP], const char *name);

@@ -1,0 +1,24 @@
+// Growing text, and help with misspelt names.
+#pragma once
+#include <stdbool.h>
+#include <stddef.h>
+#include "base/error.h"
+
+typedef struct strbuf {
+    char *text; // NUL-terminated once anything was added; NULL when empty
+    size_t length, capacity;
+} strbuf;
+
+void strbuf_add(strbuf *s, const char *format, ...) PRINTF_LIKE(2, 3);
+void strbuf_append(strbuf *s, const char *bytes, size_t length);
+void strbuf_free(strbuf *s);
+const char *strbuf_text(const strbuf *s); // "" when empty
+
+// The candidate nearest to `word` by edit distance (transpositions count one), or NULL when none
+// is near enough to be a likely typing error.
+const char *str_nearest(const char *word, const char *const *candidates, size_t count);
+
+bool str_ends_with(const char *text, const char *ending);
+bool str_is_identifier(const char *text); // [A-Za-z_][A-Za-z0-9_]*
+// Copies with truncation; always terminated. False when `text` did not fit.
+bool str_copy(char *out, size_t capacity, const char *text);

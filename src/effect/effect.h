@@ -1,0 +1,94 @@
+// One loaded effect: parameters, fields' objects, passes, timeline, outputs. The script layer fills
+// it; everything else (program, tests, an engine) drives it. Needs no Lua.
+//
+// Life: effect_create, declarations, effect_set (command line), effect_build, effect_render...
+#pragma once
+#include "pass/pass.h"
+
+typedef struct effect effect;
+
+typedef enum effect_param_type {
+    EFFECT_FLOAT, EFFECT_INT, EFFECT_BOOL, EFFECT_ENUM, EFFECT_VEC3, EFFECT_COLOR,
+} effect_param_type;
+
+typedef struct effect_param {
+    const char *name;
+    effect_param_type type;
+    float value[4];      // current; bool 0/1; enum: index
+    float initial[4];    // default
+    float min, max;      // of each component; -INFINITY, INFINITY when not given
+    const char *unit, *help, *group;
+    const char *const *words; // enumerations
+    size_t word_count;
+    bool log_scale;
+} effect_param;
+
+typedef struct effect_desc {
+    gpu *device;             // NULL: check only
+    const char *file;        // the effect's .lua file
+    const char *shader_root; // the program's shaders
+    const char *cache_dir;   // NULL: no caches
+    bool counters;
+} effect_desc;
+
+effect *effect_create(const effect_desc *desc);
+void effect_destroy(effect *e);
+
+// ---- declaring (script) -----------------------------------------------------------------------
+
+arena *effect_memory(effect *e);       // lives as long as the effect
+const char *effect_root(const effect *e); // folder of its file
+const char *effect_file(const effect *e);
+scene *effect_scene(effect *e);
+pass_host *effect_pass_host(effect *e);
+
+void effect_set_name(effect *e, const char *name);
+bool effect_set_timeline(effect *e, double fps, uint32_t frames, uint32_t first); // > 0
+void effect_set_seed(effect *e, uint32_t seed);
+
+// Checks name, range, default. Returns its index, or -1.
+int effect_add_param(effect *e, const effect_param *param);
+pass *effect_add_pass(effect *e, const char *type, const char *shader, const char *label); // label NULL: type's name, numbered
+void effect_add_grid(effect *e, field_grid *grid); // owned by the effect from now on
+scene_mesh *effect_add_mesh(effect *e, const char *file); // confined to the effect's folder
+// A field baked to a grid each frame (pass type "bake"); returns the grid.
+field_grid *effect_add_bake(effect *e, const field *node, const uint32_t size[3], box3 box);
+bool effect_set_output(effect *e, graph_image image); // the picture, display-referred
+bool effect_set_linear(effect *e, graph_image image); // scene-linear, for EXR
+bool effect_set_depth(effect *e, graph_image image);  // linear depth in metres, for EXR
+
+typedef struct effect_hooks { // calls back into the script
+    bool (*call)(void *user, int function, double time, float out[4]); // function of time
+    bool (*update)(void *user, double time, double dt); // `update(t, dt)` of the effect, or NULL
+    void (*destroy)(void *user);
+    void *user;
+} effect_hooks;
+void effect_set_hooks(effect *e, const effect_hooks *hooks);
+void effect_add_file(effect *e, const char *path); // a file a reload should watch
+
+// ---- driving ----------------------------------------------------------------------------------
+
+const char *effect_name(const effect *e);
+double effect_fps(const effect *e);
+uint32_t effect_frames(const effect *e);
+uint32_t effect_first_frame(const effect *e);
+size_t effect_param_count(const effect *e);
+const effect_param *effect_get_param(const effect *e, size_t index);
+size_t effect_pass_count(const effect *e);
+pass *effect_get_pass(effect *e, size_t index);
+graph *effect_graph(effect *e);
+
+// Sets a parameter ("density"), a uniform or option of a pass ("march.steps", "march.mode"), or a
+// pass's resolution ("march.resolution"). `text`: a number, "1,2,3", "#ff8800", a word, true or
+// false. Options must be set before effect_build. Names not known get a suggestion.
+bool effect_set(effect *e, const char *name, const char *text);
+bool effect_set_value(effect *e, size_t param, const float value[4]);
+
+bool effect_build(effect *e, uint32_t width, uint32_t height);   // compile, allocate
+// Records and submits one frame. Frame numbers start at effect_first_frame; time = (frame -
+// first) / fps. Histories start anew when `frame` is not the one after the last. Returns the
+// GPU's frame number, 0 on error.
+uint64_t effect_render(effect *e, double frame);
+
+typedef enum effect_picture { EFFECT_OUTPUT, EFFECT_LINEAR, EFFECT_DEPTH } effect_picture;
+graph_image effect_get_picture(const effect *e, effect_picture which); // zero when there is none

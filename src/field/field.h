@@ -1,0 +1,116 @@
+// Fields: what fills space. An immutable expression tree over a point p (metres) and the time.
+//
+// One table of kinds (field_kinds) says for every kind of node its arguments with defaults, ranges,
+// units and help, the GLSL function that computes it and its twin in C. The generator, the
+// evaluator, the Lua vocabulary and `roil info fields` all read that table.
+//
+// A value that does not vary in space (a constant, a parameter, a curve, a Lua function of time,
+// and arithmetic on these) is a field too: uniforms of passes are such fields.
+#pragma once
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include "base/arena.h"
+#include "base/maths.h"
+#include "base/str.h"
+#include "field/curve.h"
+#include "field/grid.h"
+#include "field/palette.h"
+
+enum { FIELD_MAX_ARGS = 16, FIELD_MAX_OPTIONS = 4 };
+
+typedef struct field field;
+typedef struct field_kind field_kind;
+
+typedef struct field_arg {
+    const char *name;
+    int components;      // 1, 3, 4; 0: any
+    bool required;
+    bool uniform;        // must not vary in space
+    float value[4];      // default
+    float min, max;      // of each component, checked for constants; both 0: any finite number
+    const char *unit;    // "" when none
+    const char *help;
+} field_arg;
+
+typedef struct field_option {
+    const char *name;
+    const char *words[6]; // the first is the default; NULL ends
+    const char *help;
+} field_option;
+
+typedef struct field_context { // what values depend on besides space
+    double time;               // seconds
+    const float (*params)[4];  // of the effect, by index
+    size_t param_count;
+    bool (*call)(void *user, int function, double time, float out[4]); // Lua functions of time
+    void *user;
+} field_context;
+
+struct field_kind {
+    const char *name;    // as Lua names it: "worley"
+    const char *group;   // "value", "source", "noise", "shape", "operator"
+    const char *summary; // with its source (paper, section)
+    int components;      // of the result: 1, 3, 4; 0: the widest argument's
+    field_arg args[FIELD_MAX_ARGS];      // a NULL name ends
+    field_option options[FIELD_MAX_OPTIONS];
+    // GLSL: result = function(p, args..., options...) from the include file; p only if `spatial`.
+    const char *include;  // "lib/noise.glsl" or NULL
+    const char *function; // NULL: the generator has a case of its own for this kind
+    bool spatial;         // depends on p by itself
+    float cost;           // rough arithmetic operations: cheap factors of a product come first
+    void (*eval)(const field *node, const field_context *context, float3 p,
+                 const float (*args)[4], float out[4]);
+    box3 (*bounds)(const field *node, const field_context *context, const box3 *args);
+};
+
+extern const field_kind field_kinds[]; // ends with a NULL name
+const field_kind *field_kind_find(const char *name); // NULL with a message that suggests
+
+struct field {
+    const field_kind *kind;
+    int components;
+    bool uniform;        // does not vary in space
+    const field *args[FIELD_MAX_ARGS]; // all filled in: defaults became constants
+    uint8_t options[FIELD_MAX_OPTIONS]; // index of the word
+    float value[4];      // kind "constant"
+    int index;           // kind "param": index; "call": function; "grid": first channel
+    const void *object;  // kind "curve": curve; "palette": palette; "grid": field_grid; "glsl": field_glsl
+    float bound;         // kind "glsl": see field_glsl
+};
+
+typedef struct field_glsl { // a user's function: `float name(vec3 p, arg...)`
+    const char *file;       // include name, found in the effect's folder
+    const char *function;
+    int components;         // of the result
+    int arg_count;          // of the arguments after p, each 1, 3 or 4 components as given
+} field_glsl;
+
+// ---- building; all nodes live in `memory` ------------------------------------------------------
+
+field *field_constant(arena *memory, int components, const float value[4]);
+field *field_param(arena *memory, int components, int index);
+field *field_curve(arena *memory, const curve *c);
+field *field_call(arena *memory, int components, int function);
+field *field_time(arena *memory);
+field *field_grid_channel(arena *memory, const field_grid *grid, int channel, int components);
+field *field_palette(arena *memory, const palette *p, const field *at); // 4 components: rgba
+field *field_user(arena *memory, const field_glsl *glsl, const field *const *args);
+// Any kind with a row that has `function` or operator semantics. `args` in the row's order, NULL:
+// default; `options` NULL: defaults. NULL with a message: wrong component count, constant out of
+// range, required argument missing, a `uniform` argument that varies in space. Single components
+// widen to the others' count in operators ("add", "mul", "mix", ...).
+field *field_make(arena *memory, const char *kind, const field *const *args,
+                  const uint8_t *options);
+field *field_swizzle(arena *memory, const field *a, const char *components); // "x", "rgb", ...
+
+// ---- asking -----------------------------------------------------------------------------------
+
+// Value at a point, by the kinds' C twins. Grids are sampled trilinearly on the host where they
+// keep host data, else this fails. False when a Lua function failed.
+bool field_eval(const field *node, const field_context *context, float3 p, float out[4]);
+// Box outside of which the field is zero; infinite when unknown.
+bool field_bounds(const field *node, const field_context *context, box3 *out);
+// Every grid the tree samples, each once; returns the count (writes at most `capacity`).
+size_t field_grids(const field *node, const field_grid **out, size_t capacity);
+void field_print(const field *node, strbuf *out); // one line, for messages and `roil info graph`

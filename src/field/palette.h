@@ -1,0 +1,48 @@
+// Palette: a transfer function from a number to colour and alpha, which may itself move in time.
+#pragma once
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include "base/arena.h"
+
+enum { PALETTE_SIZE = 512, PALETTE_MAX_STOPS = 64, PALETTE_MAX_KEYS = 64 };
+
+typedef enum palette_space { PALETTE_LINEAR, PALETTE_OKLAB } palette_space; // where stops are mixed
+
+typedef struct palette_stop {
+    float at;       // position, in the palette's range
+    float color[4]; // linear Rec.709, any brightness; alpha
+} palette_stop;
+
+typedef struct palette_key { // one state of a palette that is keyed over time
+    float time;              // seconds
+    const palette_stop *stops; // at least two, rising; equal positions make a hard edge
+    size_t count;
+} palette_key;
+
+typedef struct palette_desc {
+    palette_space space;
+    float min, max; // value range that the texture covers; both 0: the range of the stops
+    const palette_key *keys; // between keys, baked colours are mixed linearly
+    size_t key_count;
+    // Or, with key_count 0, blackbody radiation: positions are kelvin, from min to max. Colour of
+    // Planck's law (CIE 1931), times the radiance relative to `reference` kelvin to the power 4 if
+    // `physical`, else of luminance 1.
+    bool blackbody;
+    bool physical;
+    float reference; // kelvin; 0: 1500
+} palette_desc;
+
+typedef struct palette palette;
+// Checks and copies. False message names the stop or key at fault.
+const palette *palette_create(arena *memory, const palette_desc *desc);
+void palette_range(const palette *p, float *min, float *max);
+bool palette_is_animated(const palette *p);
+// PALETTE_SIZE half-float RGBA texels for a time; texel i stands for position (i + 0.5) / size.
+void palette_bake(const palette *p, double time, uint16_t out[PALETTE_SIZE * 4]);
+void palette_eval(const palette *p, double time, float at, float out[4]); // as the texture gives it
+
+// "#rgb", "#rrggbb", "#rrggbbaa" in sRGB to linear Rec.709. False with a message.
+bool palette_parse_color(const char *text, float out[4]);
+// Linear Rec.709 colour of a black body of luminance 1, 500..20000 K (clamped).
+void palette_blackbody(float kelvin, float out[3]);

@@ -1,0 +1,46 @@
+// Sequences of volume files played back as a grid: OpenVDB files or one raw file of many frames.
+#pragma once
+#include "field/grid.h"
+#include "base/arena.h"
+
+typedef enum sequence_loop { SEQUENCE_CLIP, SEQUENCE_EXTEND, SEQUENCE_REPEAT, SEQUENCE_PING_PONG } sequence_loop;
+const char *sequence_loop_name(sequence_loop loop); // "clip", "extend", "repeat", "ping_pong"
+
+typedef struct sequence_desc {
+    const char *pattern; // absolute path or glob of .vdb files, or a .raw file
+    double fps;          // frames of the sequence a second of effect time; 0: 24
+    double start;        // effect time (s) at which the first frame is shown
+    double speed;        // 0: 1
+    sequence_loop loop;  // clip: nothing outside the range; extend: holds the first and last frame
+    bool blend;          // mix neighbouring frames at times between them
+    bool y_up;           // files have Y up: rotated to our Z up
+    float scale;         // metres a world unit of the file; 0: 1
+    float3 offset;       // metres, added after scaling
+    // Memory limits, checked before anything is read.
+    uint64_t max_frame_bytes; // 0: 512 MiB
+    // Raw files only:
+    struct {
+        const char *type;          // "u8", "u16", "f16", "f32"
+        uint32_t size[3];          // voxels; x varies fastest
+        uint32_t frames;           // 0: as many as the file holds
+        uint64_t offset, stride;   // bytes to the first frame; from frame to frame (0: tight)
+        float voxel_size;          // metres; 0: 1 / size[0]
+        float value_scale;         // multiplies values; u8 and u16 are first normalised to 0..1; 0: 1
+        const char *channel;       // name of its only channel; NULL: "density"
+    } raw;
+} sequence_desc;
+
+typedef struct sequence sequence;
+
+// Reads names, boxes and grid names of every file (metadata only, no voxels) and encloses them in
+// one box, so that the volume does not jump from frame to frame. Files are sorted by name.
+sequence *sequence_create(arena *memory, const sequence_desc *desc);
+// Asks for a channel by canonical name or alias (conventions: "density" also finds "smoke").
+// Returns its first channel index in the grid, and 1 or 3 components; -1 with a message that lists
+// the grids there are. Only channels asked for are decoded and uploaded.
+int sequence_channel(sequence *s, const char *name, int *components);
+field_grid *sequence_grid(sequence *s); // valid until its destroy is called
+uint32_t sequence_frame_count(const sequence *s);
+double sequence_duration(const sequence *s); // seconds at speed 1
+// Every file it reads, for a reload to watch; returns the count.
+size_t sequence_files(const sequence *s, const char *const **out);

@@ -1,0 +1,242 @@
+// A small GPU interface over Vulkan 1.3: the only layer that knows Vulkan, and no Vulkan type
+// leaves it.
+//
+// One `gpu` is one device with one queue. Work is recorded into the open frame in program order;
+// barriers follow from what each dispatch or draw binds (gpu/hazard.c), so callers never write one.
+// Destroyed objects die when the last frame that used them has finished. A `gpu` belongs to one
+// thread at a time; gpu_pipeline_* may also be called from other threads.
+//
+// Errors (bad input, missing device, no device memory) are NULL or false plus err_get().
+#pragma once
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct gpu gpu;
+typedef struct gpu_image gpu_image;
+typedef struct gpu_buffer gpu_buffer;
+typedef struct gpu_pipeline gpu_pipeline;
+
+// ---- device -----------------------------------------------------------------------------------
+
+typedef enum gpu_kind { GPU_DISCRETE, GPU_INTEGRATED, GPU_VIRTUAL, GPU_CPU, GPU_OTHER } gpu_kind;
+
+typedef struct gpu_info {
+    char name[256];
+    char driver[256];        // driver name and version, as the driver words it
+    gpu_kind kind;
+    uint64_t memory;         // bytes of the largest device-local heap
+    uint64_t max_storage_range; // bytes of one storage buffer binding
+    uint32_t api_major, api_minor;
+    uint32_t subgroup_size;
+    float timestamp_period;  // nanoseconds a tick; 0: no timestamps
+    bool usable;             // has all that roil needs
+    char missing[256];       // what it lacks, when not usable
+} gpu_info;
+
+typedef struct gpu_desc {
+    const char *device;    // part of a name (any case) or an index as `gpu_list` counts; NULL: best
+    const char *cache_dir; // folder of the pipeline cache; NULL: no cache
+    bool validate;         // Khronos validation with synchronization validation; also $ROIL_VALIDATE=1
+} gpu_desc;
+
+// Devices the loader offers, real GPUs before software ones, at most `capacity` written.
+// Returns the count, or -1 with a message when there is no Vulkan loader or driver.
+int gpu_list(gpu_info *out, int capacity);
+
+gpu *gpu_create(const gpu_desc *desc);
+void gpu_destroy(gpu *g); // waits for the device; saves the pipeline cache
+const gpu_info *gpu_get_info(const gpu *g);
+// Messages of severity warning or error that the validation layers gave so far.
+uint64_t gpu_validation_messages(const gpu *g);
+bool gpu_validation_enabled(const gpu *g); // false too when the layer is not installed
+
+typedef struct gpu_memory_use {
+    uint64_t used, reserved; // bytes handed out, bytes taken from the driver
+    uint32_t blocks;
+} gpu_memory_use;
+gpu_memory_use gpu_get_memory_use(const gpu *g);
+
+// ---- resources --------------------------------------------------------------------------------
+
+typedef enum gpu_format {
+    GPU_FORMAT_NONE,
+    GPU_R8,
+    GPU_RGBA8,
+    GPU_RGBA8_SRGB, // sampled only
+    GPU_R16F,
+    GPU_RG16F,
+    GPU_RGBA16F,
+    GPU_R32F,
+    GPU_RG32F,
+    GPU_RGBA32F,
+    GPU_R32U,
+    GPU_D32F, // depth target
+    GPU_FORMAT_COUNT
+} gpu_format;
+
+uint32_t gpu_format_size(gpu_format format);          // bytes a texel
+const char *gpu_format_name(gpu_format format);       // "rgba16f", as GLSL writes it
+gpu_format gpu_format_from_name(const char *name);    // GPU_FORMAT_NONE when unknown
+uint32_t gpu_format_channels(gpu_format format);
+
+typedef enum gpu_image_use {
+    GPU_USE_SAMPLED = 1, // read with a sampler
+    GPU_USE_STORAGE = 2, // read or written by image load and store
+    GPU_USE_TARGET = 4,  // drawn to (colour or depth)
+} gpu_image_use;
+
+typedef struct gpu_image_desc {
+    const char *label;             // for messages and debuggers; copied
+    gpu_format format;
+    uint32_t width, height, depth; // texels; depth 0: 2D image, 1 or more: 3D image
+    uint32_t mips;                 // 0 means 1
+    uint32_t use;                  // gpu_image_use bits
+} gpu_image_desc;
+
+gpu_image *gpu_image_create(gpu *g, const gpu_image_desc *desc); // contents undefined
+void gpu_image_destroy(gpu *g, gpu_image *image);                // NULL is fine
+const gpu_image_desc *gpu_image_get_desc(const gpu_image *image);
+
+// Replaces mip level `mip`; `data` is tightly packed and copied before the call returns. Later
+// dispatches see it. May be called with or without an open frame.
+bool gpu_image_write(gpu *g, gpu_image *image, uint32_t mip, const void *data, size_t size);
+// Reads mip 0 back, waiting for all submitted work. Not inside a frame.
+bool gpu_image_read(gpu *g, gpu_image *image, void *out, size_t size);
+
+typedef enum gpu_buffer_kind {
+    GPU_BUFFER_DEVICE,   // storage buffer in device memory
+    GPU_BUFFER_READBACK, // host-visible, cached: the target of copies, read by the host
+} gpu_buffer_kind;
+
+typedef struct gpu_buffer_desc {
+    const char *label;
+    uint64_t size; // bytes
+    gpu_buffer_kind kind;
+} gpu_buffer_desc;
+
+gpu_buffer *gpu_buffer_create(gpu *g, const gpu_buffer_desc *desc);
+void gpu_buffer_destroy(gpu *g, gpu_buffer *buffer);
+uint64_t gpu_buffer_size(const gpu_buffer *buffer);
+bool gpu_buffer_write(gpu *g, gpu_buffer *buffer, uint64_t offset, const void *data, size_t size);
+bool gpu_buffer_read(gpu *g, gpu_buffer *buffer, uint64_t offset, void *out, size_t size); // waits
+// Host address of a readback buffer; valid data once the frame that copied into it has finished.
+const void *gpu_buffer_map(gpu_buffer *buffer);
+
+// ---- pipelines --------------------------------------------------------------------------------
+
+typedef enum gpu_slot_kind {
+    GPU_SLOT_UNIFORM,        // uniform block
+    GPU_SLOT_STORAGE_BUFFER,
+    GPU_SLOT_SAMPLED_IMAGE,  // sampler2D, sampler3D
+    GPU_SLOT_STORAGE_IMAGE,
+} gpu_slot_kind;
+
+enum { GPU_MAX_SLOTS = 32 };
+
+typedef struct gpu_slot { // one binding of descriptor set 0, as reflection found it
+    uint32_t binding;
+    gpu_slot_kind kind;
+    bool reads, writes;   // of storage slots; uniform and sampled slots read
+} gpu_slot;
+
+typedef struct gpu_compute_desc {
+    const char *label;
+    const uint32_t *code; // SPIR-V
+    size_t code_size;     // bytes
+    const gpu_slot *slots;
+    size_t slot_count;
+    uint32_t local_size[3]; // of the shader, so that dispatches count threads
+} gpu_compute_desc;
+
+typedef enum gpu_cull { GPU_CULL_NONE, GPU_CULL_BACK } gpu_cull;
+
+typedef struct gpu_graphics_desc { // vertices are pulled from storage buffers: no vertex input state
+    const char *label;
+    const uint32_t *vertex_code, *fragment_code;
+    size_t vertex_size, fragment_size;
+    const gpu_slot *slots; // union of both stages
+    size_t slot_count;
+    gpu_format colors[4];  // of the targets; GPU_FORMAT_NONE ends the list
+    gpu_format depth;      // GPU_FORMAT_NONE: no depth test; else test less-equal and write
+    gpu_cull cull;         // front faces are counter-clockwise seen in the picture
+} gpu_graphics_desc;
+
+gpu_pipeline *gpu_pipeline_create_compute(gpu *g, const gpu_compute_desc *desc);
+gpu_pipeline *gpu_pipeline_create_graphics(gpu *g, const gpu_graphics_desc *desc);
+void gpu_pipeline_destroy(gpu *g, gpu_pipeline *pipeline);
+
+// ---- frames -----------------------------------------------------------------------------------
+
+enum { GPU_FRAMES_IN_FLIGHT = 2, GPU_MAX_PASSES = 256 };
+
+// Opens a frame, waiting for the one GPU_FRAMES_IN_FLIGHT before it. Returns its number (from 1),
+// or 0 when the device is lost.
+uint64_t gpu_frame_begin(gpu *g);
+bool gpu_frame_end(gpu *g);                 // submits
+bool gpu_frame_wait(gpu *g, uint64_t frame); // until that frame has finished
+bool gpu_idle(gpu *g);                      // until all has finished
+
+// Brackets the work of one pass: its GPU time is measured and debuggers see the label.
+void gpu_pass_begin(gpu *g, const char *label);
+void gpu_pass_end(gpu *g);
+
+typedef struct gpu_pass_time {
+    char label[64];
+    double milliseconds;
+} gpu_pass_time;
+// Times of a frame in order of recording, at most `capacity`. Waits for the frame; only the last
+// GPU_FRAMES_IN_FLIGHT frames are kept (count 0 for older ones).
+size_t gpu_frame_times(gpu *g, uint64_t frame, gpu_pass_time *out, size_t capacity);
+
+typedef enum gpu_sampler {
+    GPU_LINEAR_CLAMP,
+    GPU_NEAREST_CLAMP,
+    GPU_LINEAR_REPEAT,
+    GPU_LINEAR_ZERO, // outside the image: 0 (transparent black border)
+    GPU_SAMPLER_COUNT
+} gpu_sampler;
+
+typedef struct gpu_binding {
+    uint32_t binding;
+    gpu_image *image;     // image slots
+    uint32_t mip;         // storage images, and sampled ones when one_mip
+    bool one_mip;         // sampled: bind only `mip` (false: all levels)
+    gpu_sampler sampler;  // sampled images
+    gpu_buffer *buffer;   // storage buffer slots, whole buffer
+    const void *uniform;  // uniform slots: copied at once
+    size_t uniform_size;  // bytes
+} gpu_binding;
+
+typedef struct gpu_dispatch_desc {
+    gpu_pipeline *pipeline;
+    const gpu_binding *bindings;
+    size_t binding_count;  // every slot of the pipeline must be bound
+    uint32_t threads[3];   // invocations wanted; 0 means 1
+} gpu_dispatch_desc;
+bool gpu_dispatch(gpu *g, const gpu_dispatch_desc *desc);
+
+typedef struct gpu_draw { // one draw call inside a gpu_draw_desc
+    const gpu_binding *bindings;
+    size_t binding_count;
+    uint32_t vertices;     // how many times the vertex shader runs
+    uint32_t instances;    // 0 means 1
+} gpu_draw;
+
+typedef struct gpu_draw_desc {
+    gpu_pipeline *pipeline;
+    gpu_image *colors[4]; // targets, mip 0; NULL ends the list
+    gpu_image *depth;
+    bool clear;           // clear before drawing: colours to clear_color[i], depth to clear_depth
+    float clear_color[4][4];
+    float clear_depth;
+    const gpu_draw *draws;
+    size_t draw_count;    // 0 just clears
+} gpu_draw_desc;
+bool gpu_draw_all(gpu *g, const gpu_draw_desc *desc);
+
+void gpu_image_clear(gpu *g, gpu_image *image, const float color[4]); // inside a frame, all mips
+void gpu_buffer_fill(gpu *g, gpu_buffer *buffer, uint32_t word);      // inside a frame
+// Copies mip 0, tightly packed, to `offset` of the buffer.
+bool gpu_image_copy_to_buffer(gpu *g, gpu_image *image, gpu_buffer *buffer, uint64_t offset);
+bool gpu_image_copy(gpu *g, gpu_image *from, gpu_image *to); // same size and format, mip 0

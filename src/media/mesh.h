@@ -1,0 +1,40 @@
+// Meshes from OBJ and glTF files, by assimp. Right-handed; Z up (glTF's Y up is rotated).
+#pragma once
+#include <stdbool.h>
+#include <stdint.h>
+#include "base/arena.h"
+#include "base/maths.h"
+
+typedef struct mesh_vertex { // as the vertex shader reads it: 32 bytes
+    float position[3], u;
+    float normal[3], v;
+} mesh_vertex;
+
+typedef struct mesh_texture { // RGBA, 8 bits, sRGB
+    uint32_t width, height;
+    const uint8_t *pixels;
+} mesh_texture;
+
+typedef struct mesh_part { // a run of indices with one material
+    uint32_t first, count; // indices
+    float color[4];        // base colour, linear
+    int texture;           // index, -1: none
+} mesh_part;
+
+typedef struct mesh_data {
+    const mesh_vertex *vertices;
+    uint32_t vertex_count;
+    const uint32_t *indices; // triangles, counter-clockwise
+    uint32_t index_count;
+    const mesh_part *parts;
+    uint32_t part_count;
+    const mesh_texture *textures;
+    uint32_t texture_count;
+    box3 box;
+    const char *const *files; // all files read
+    size_t file_count;
+} mesh_data;
+
+// `root` confines textures and buffers that the file names. Limits: 64 MiB file, 8 million
+// vertices. Node transforms are applied. Fails on a mesh without faces and on non-finite positions.
+bool mesh_load(const char *path, const char *root, arena *memory, mesh_data *out);

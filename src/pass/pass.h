@@ -1,0 +1,65 @@
+// Passes: work on the GPU. A pass is an instance of a shader file, built in or a user's own: what
+// it takes, gives and can be tuned by is declared in the shader (shader/shader.h). A few built-in
+// types add hooks in C: more than one dispatch, meshes, boxes computed on the host.
+//
+// Life: pass_create, any number of pass_set_*, pass_declare (into the graph), pass_build (shader
+// and pipeline), then per frame the graph records it.
+#pragma once
+#include "field/field.h"
+#include "graph/graph.h"
+#include "scene/scene.h"
+#include "shader/shader.h"
+
+typedef struct pass pass;
+
+typedef struct pass_host { // what all passes of one effect share
+    gpu *device;           // NULL: declare only (check without a device)
+    shader_library *library;
+    graph *graph;
+    arena *memory;
+    const field_context *context;     // of the frame being recorded
+    const struct frame_block *frame;  // of the frame being recorded
+    bool counters;         // compile counters in and read them
+} pass_host;
+
+typedef struct pass_type {
+    const char *name;      // "march"
+    const char *shader;    // "pass/march.comp"
+    const char *returns;   // what a call returns in Lua, for the reference
+    // Optional hooks.
+    bool (*declare)(pass *p);                 // instead of one image per output
+    bool (*build)(pass *p);                   // more pipelines
+    bool (*fill)(pass *p, void *uniforms);    // uniforms the host computes, by pass_uniform_offset
+    bool (*record)(pass *p);                  // instead of one dispatch over the first output
+    void (*destroy)(pass *p);
+} pass_type;
+
+const pass_type *pass_types(size_t *count);
+const pass_type *pass_type_find(const char *name); // NULL with a message that suggests
+
+// An instance of a built-in type, or of a shader file in the effect's folder (type NULL). `label`
+// must be unique in the effect.
+pass *pass_create(pass_host *host, const pass_type *type, const char *shader, const char *label);
+void pass_destroy(pass *p);
+const char *pass_label(const pass *p);
+const shader_interface *pass_interface(const pass *p);
+
+// False with a message that names the pass and suggests the nearest right name.
+bool pass_set_uniform(pass *p, const char *name, const field *value); // must not vary in space
+bool pass_set_option(pass *p, const char *name, const char *word);
+bool pass_set_field(pass *p, const char *name, const field *value);
+bool pass_set_image(pass *p, const char *name, graph_image image);
+bool pass_set_scale(pass *p, float scale);  // of its outputs, relative to the effect's output; (0, 1]
+bool pass_set_format(pass *p, const char *output, gpu_format format);
+bool pass_add_mesh(pass *p, scene_mesh *mesh); // geometry only
+// What `name` may be set as, for the generic setter of Lua and --set.
+typedef enum pass_key { PASS_UNKNOWN, PASS_UNIFORM, PASS_OPTION, PASS_FIELD, PASS_IMAGE } pass_key;
+pass_key pass_find_key(const pass *p, const char *name, size_t *index);
+
+bool pass_declare(pass *p);      // checks that what is required is there; adds images and passes
+bool pass_build(pass *p);        // needs a device
+graph_image pass_output(const pass *p, const char *name); // after pass_declare; zero when unknown
+const field *pass_get_uniform(const pass *p, size_t index);
+float pass_get_scale(const pass *p);
+// Counter totals of a frame, after it finished: one value per counter of the interface.
+bool pass_read_counters(pass *p, uint64_t *out);

@@ -1,0 +1,56 @@
+// What stands around the volume: camera, sun, sky and meshes. Every number is a field that does
+// not vary in space, so that it can be a constant, a parameter, a curve or a Lua function.
+#pragma once
+#include "field/field.h"
+#include "media/mesh.h"
+#include "shared.h"
+
+typedef struct scene_camera {
+    const field *eye;       // vec3, metres; NULL: orbits the target
+    const field *target;    // vec3, metres
+    const field *distance;  // metres from the target, when orbiting
+    const field *yaw;       // degrees about +Z; 0 looks along +Y
+    const field *pitch;     // degrees above the horizon of the eye as seen from the target
+    const field *fov;       // vertical field of view, degrees
+    const field *near, *far; // metres
+} scene_camera;
+
+typedef struct scene_sun {
+    const field *azimuth;   // degrees about +Z from +X towards the sun
+    const field *elevation; // degrees above the horizon
+    const field *color;     // vec3
+    const field *strength;  // irradiance at normal incidence
+} scene_sun;
+
+typedef struct scene_sky {
+    const field *zenith, *horizon; // vec3, radiance
+    const field *strength;
+} scene_sky;
+
+typedef struct scene_mesh {
+    const char *name;
+    mesh_data data;
+    const field *position;  // vec3, metres
+    const field *rotation;  // vec3, degrees, XYZ Euler
+    const field *scale;     // factor
+    const field *color;     // vec3, multiplies the material's
+    gpu_buffer *vertices, *indices; // made on first use
+    gpu_image **textures;   // per mesh_data texture
+} scene_mesh;
+
+typedef struct scene {
+    scene_camera camera;
+    scene_sun sun;
+    scene_sky sky;
+} scene;
+
+// A scene with the defaults of the documentation, made of constants in `memory`.
+void scene_init(scene *s, arena *memory);
+// Evaluates camera, sun and sky into the block that shaders read (time and size of the block are
+// the caller's). `aspect`: width over height. False when a Lua function failed.
+bool scene_fill_frame(const scene *s, const field_context *context, float aspect,
+                      struct frame_block *out);
+
+bool scene_mesh_upload(scene_mesh *mesh, gpu *g);
+void scene_mesh_destroy(scene_mesh *mesh, gpu *g);
+bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, mat4 out);
