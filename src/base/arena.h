@@ -1,8 +1,8 @@
 // Arena: objects that live and die together (one load, one frame). Blocks never move.
 #pragma once
+#include "base/error.h"
 #include <stdarg.h>
 #include <stddef.h>
-#include "base/error.h"
 
 typedef struct arena_block arena_block;
 typedef struct arena {

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define PRINTF_LIKE(format, first) __attribute__((format(printf, format, first)))
+#define PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
 
 // Sets the thread's message. Always returns false, so that `return err_set(...)` is one line.
 bool err_set(const char *format, ...) PRINTF_LIKE(1, 2);

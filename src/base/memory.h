@@ -2,9 +2,9 @@
 #pragma once
 #include <stddef.h>
 
-void *mem_alloc(size_t size); // zeroed; size 0 gives a unique pointer
+void *mem_alloc(size_t size);               // zeroed; size 0 gives a unique pointer
 void *mem_resize(void *block, size_t size); // new bytes are not zeroed
-void mem_free(void *block);   // NULL is fine
+void mem_free(void *block);                 // NULL is fine
 void *mem_copy(const void *data, size_t size);
 
 // Grows `array` so that it holds at least `count` elements; `capacity` is updated. Amortised O(1).

@@ -1,8 +1,8 @@
 // Growing text, and help with misspelt names.
 #pragma once
+#include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>
-#include "base/error.h"
 
 typedef struct strbuf {
     char *text; // NUL-terminated once anything was added; NULL when empty

@@ -1,0 +1,45 @@
+#include "base/error.h"
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MESSAGE_CAP = 8192 };
+
+static _Thread_local char message[MESSAGE_CAP];
+
+bool err_set(const char *format, ...) {
+    char text[MESSAGE_CAP]; // arguments may point into the current message
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    memcpy(message, text, strlen(text) + 1);
+    return false;
+}
+
+bool err_prefix(const char *format, ...) {
+    char text[2 * MESSAGE_CAP];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, MESSAGE_CAP, format, args);
+    va_end(args);
+    size_t length = strlen(text);
+    memcpy(text + length, message, strlen(message) + 1);
+    text[MESSAGE_CAP - 1] = '\0';
+    memcpy(message, text, strlen(text) + 1);
+    return false;
+}
+
+const char *err_get(void) {
+    return message;
+}
+
+void err_clear(void) {
+    message[0] = '\0';
+}
+
+void err_out_of_memory(size_t size) {
+    fprintf(stderr, "roil: out of memory (%zu bytes wanted)\n", size);
+    exit(1);
+}

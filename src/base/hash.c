@@ -1,0 +1,21 @@
+#include "base/hash.h"
+#include <stdio.h>
+#include <xxhash.h>
+
+hash128 hash_bytes(const void *data, size_t size) {
+    XXH128_hash_t h = XXH3_128bits(data, size);
+    return (hash128){h.low64, h.high64};
+}
+
+hash128 hash_combine(hash128 a, hash128 b) {
+    hash128 pair[2] = {a, b};
+    return hash_bytes(pair, sizeof pair);
+}
+
+void hash_to_hex(hash128 h, char out[33]) {
+    snprintf(out, 33, "%016llx%016llx", (unsigned long long)h.high, (unsigned long long)h.low);
+}
+
+uint64_t hash64(const void *data, size_t size) {
+    return XXH3_64bits(data, size);
+}

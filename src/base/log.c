@@ -1,0 +1,37 @@
+#include "base/log.h"
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const names[] = {"debug", "info", "warning", "error"};
+static atomic_int threshold = -1; // -1: not read from the environment yet
+
+static int least_level(void) {
+    int level = atomic_load(&threshold);
+    if (level >= 0) return level;
+    level = LOG_INFO;
+    const char *wanted = getenv("ROIL_LOG");
+    for (int i = 0; wanted && i < 4; i++)
+        if (strcmp(wanted, names[i]) == 0) level = i;
+    atomic_store(&threshold, level);
+    return level;
+}
+
+void log_set_level(log_level least) {
+    atomic_store(&threshold, (int)least);
+}
+
+void log_write(log_level level, const char *format, ...) {
+    if ((int)level < least_level()) return;
+    char text[4096];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    if (level == LOG_INFO)
+        fprintf(stderr, "%s\n", text);
+    else
+        fprintf(stderr, "%s: %s\n", names[level], text);
+}

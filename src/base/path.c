@@ -1,0 +1,95 @@
+// Paths: text only, but for path_confine, which asks the file system where links lead.
+#include "base/error.h"
+#include "base/file.h"
+#include "base/str.h"
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+bool path_join(char out[PATH_CAP], const char *folder, const char *name) {
+    int length = name[0] == '/' || !folder[0] ? snprintf(out, PATH_CAP, "%s", name)
+                                              : snprintf(out, PATH_CAP, "%s/%s", folder, name);
+    return length < PATH_CAP || err_set("%s: path too long", name);
+}
+
+void path_folder(char out[PATH_CAP], const char *path) {
+    const char *slash = strrchr(path, '/');
+    size_t length = slash ? (size_t)(slash - path) : 1;
+    if (slash == path) length = 1;
+    if (length >= PATH_CAP) length = PATH_CAP - 1;
+    memcpy(out, slash ? path : ".", length);
+    out[length] = '\0';
+}
+
+const char *path_name(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+const char *path_extension(const char *path) {
+    const char *name = path_name(path), *dot = strrchr(name, '.');
+    return dot && dot != name ? dot + 1 : "";
+}
+
+// realpath of the longest existing part of `path`; the rest, which holds no "..", is kept as it is.
+static bool resolve(char out[PATH_CAP], const char *path) {
+    char head[PATH_CAP], real[PATH_MAX];
+    if (!str_copy(head, sizeof head, path)) return err_set("%s: path too long", path);
+    const char *rest = "";
+    while (!realpath(head, real)) {
+        if (errno != ENOENT && errno != ENOTDIR) return err_set("%s: %s", path, strerror(errno));
+        char *slash = strrchr(head, '/');
+        if (!slash || slash == head) return err_set("%s: no such folder", path);
+        *slash = '\0';
+        rest = path + (slash - head);
+    }
+    if (snprintf(out, PATH_CAP, "%s%s", real, rest) >= PATH_CAP)
+        return err_set("%s: path too long", path);
+    return true;
+}
+
+bool path_confine(char out[PATH_CAP], const char *root, const char *name) {
+    char real_root[PATH_MAX], joined[PATH_CAP];
+    if (!name[0]) return err_set("empty file name");
+    if (!realpath(root, real_root)) return err_set("%s: %s", root, strerror(errno));
+    if (name[0] == '/') return err_set("%s: must be relative to %s", name, root);
+    for (const char *part = name; part; part = strchr(part, '/')) {
+        if (*part == '/') part++;
+        if (strncmp(part, "..", 2) == 0 && (part[2] == '/' || !part[2]))
+            return err_set("%s: leaves %s", name, root);
+    }
+    if (!path_join(joined, real_root, name) || !resolve(out, joined)) return false;
+    size_t length = strlen(real_root);
+    if (strncmp(out, real_root, length) != 0 || (out[length] != '/' && out[length] != '\0'))
+        return err_set("%s: leads out of %s", name, root);
+    return true;
+}
+
+bool path_program_folder(char out[PATH_CAP]) {
+    char program[PATH_CAP];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length < 0) return err_set("/proc/self/exe: %s", strerror(errno));
+    program[length] = '\0';
+    path_folder(out, program);
+    return true;
+}
+
+bool path_cache_folder(char out[PATH_CAP], const char *name) {
+    const char *own = getenv("ROIL_CACHE_DIR"), *xdg = getenv("XDG_CACHE_HOME");
+    const char *home = getenv("HOME");
+    char base[PATH_CAP];
+    int length;
+    if (own && own[0])
+        length = snprintf(base, sizeof base, "%s", own);
+    else if (xdg && xdg[0] == '/')
+        length = snprintf(base, sizeof base, "%s/roil", xdg);
+    else if (home && home[0])
+        length = snprintf(base, sizeof base, "%s/.cache/roil", home);
+    else
+        return err_set("no cache folder: none of ROIL_CACHE_DIR, XDG_CACHE_HOME, HOME is set");
+    if (length >= (int)sizeof base) return err_set("cache folder: path too long");
+    return path_join(out, base, name) && file_make_folders(out);
+}

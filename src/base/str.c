@@ -1,0 +1,105 @@
+#include "base/str.h"
+#include "base/memory.h"
+#include <ctype.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static void reserve(strbuf *s, size_t more) {
+    s->text = mem_reserve(s->text, 1, s->length + more + 1, &s->capacity);
+}
+
+void strbuf_append(strbuf *s, const char *bytes, size_t length) {
+    reserve(s, length);
+    if (length) memcpy(s->text + s->length, bytes, length);
+    s->length += length;
+    s->text[s->length] = '\0';
+}
+
+void strbuf_add(strbuf *s, const char *format, ...) {
+    va_list args, again;
+    va_start(args, format);
+    va_copy(again, args);
+    int length = vsnprintf(NULL, 0, format, args);
+    va_end(args);
+    reserve(s, (size_t)length);
+    vsnprintf(s->text + s->length, (size_t)length + 1, format, again);
+    va_end(again);
+    s->length += (size_t)length;
+}
+
+void strbuf_free(strbuf *s) {
+    mem_free(s->text);
+    *s = (strbuf){0};
+}
+
+const char *strbuf_text(const strbuf *s) {
+    return s->text ? s->text : "";
+}
+
+// Optimal string alignment distance, letters compared without case, at most WORD_CAP letters.
+enum { WORD_CAP = 64 };
+
+static size_t smallest(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+static size_t distance(const char *a, const char *b) {
+    size_t n = strlen(a), m = strlen(b);
+    if (n > WORD_CAP || m > WORD_CAP) return n + m;
+    size_t rows[3][WORD_CAP + 1];
+    size_t *before = rows[0], *above = rows[1], *row = rows[2];
+    for (size_t j = 0; j <= m; j++) above[j] = j;
+    for (size_t i = 1; i <= n; i++) {
+        row[0] = i;
+        for (size_t j = 1; j <= m; j++) {
+            int ca = tolower((unsigned char)a[i - 1]), cb = tolower((unsigned char)b[j - 1]);
+            size_t best = smallest(above[j - 1] + (ca != cb), smallest(above[j], row[j - 1]) + 1);
+            bool swapped = i > 1 && j > 1 && tolower((unsigned char)a[i - 2]) == cb &&
+                           tolower((unsigned char)b[j - 2]) == ca;
+            if (swapped) best = smallest(best, before[j - 2] + 1);
+            row[j] = best;
+        }
+        size_t *recycled = before;
+        before = above;
+        above = row;
+        row = recycled;
+    }
+    return above[m];
+}
+
+const char *str_nearest(const char *word, const char *const *candidates, size_t count) {
+    const char *nearest = NULL;
+    size_t length = strlen(word), best = length / 3 + 1; // further away is another word
+    if (best > 3) best = 3;
+    for (size_t i = 0; i < count; i++) {
+        size_t d = distance(word, candidates[i]);
+        if (d < best || (d == best && !nearest)) {
+            if (d >= strlen(candidates[i])) continue;
+            nearest = candidates[i];
+            best = d;
+        }
+    }
+    return nearest;
+}
+
+bool str_ends_with(const char *text, const char *ending) {
+    size_t n = strlen(text), m = strlen(ending);
+    return n >= m && memcmp(text + n - m, ending, m) == 0;
+}
+
+bool str_is_identifier(const char *text) {
+    if (!isalpha((unsigned char)text[0]) && text[0] != '_') return false;
+    for (; *text; text++)
+        if (!isalnum((unsigned char)*text) && *text != '_') return false;
+    return true;
+}
+
+bool str_copy(char *out, size_t capacity, const char *text) {
+    size_t length = strlen(text);
+    bool fits = length < capacity;
+    if (!fits) length = capacity - 1;
+    memcpy(out, text, length);
+    out[length] = '\0';
+    return fits;
+}
