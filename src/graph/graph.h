@@ -5,33 +5,35 @@
 // not, on the way to an output of the graph is never recorded. Declaring and compiling need no
 // device. Barriers are the gpu layer's business: each pass binds what it uses.
 #pragma once
+#include "base/str.h"
+#include "gpu/gpu.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include "base/str.h"
-#include "gpu/gpu.h"
 
 typedef struct graph graph;
-typedef struct graph_image { uint32_t id; } graph_image; // zero: none
+typedef struct graph_image {
+    uint32_t id;
+} graph_image; // zero: none
 
 enum { GRAPH_ALL_MIPS = 0xffff };
 
 typedef struct graph_image_desc {
-    const char *name;      // unique in the graph; copied
+    const char *name; // unique in the graph; copied
     gpu_format format;
-    float scale;           // size relative to the output, rounded up; 0: fixed size below
+    float scale;                   // size relative to the output, rounded up; 0: fixed size below
     uint32_t width, height, depth; // fixed size in texels; depth 0: 2D
-    uint32_t mips;         // 0 means 1; GRAPH_ALL_MIPS: down to 1x1
-    bool target;           // drawn to by a graphics pipeline
+    uint32_t mips;                 // 0 means 1; GRAPH_ALL_MIPS: down to 1x1; at most that many
+    bool target;                   // drawn to by a graphics pipeline
 } graph_image_desc;
 
 typedef struct graph_pass_desc {
-    const char *name;      // label of its GPU time; unique in the graph; copied
+    const char *name;         // label of its GPU time; unique in the graph; copied
     const graph_image *reads; // zero handles are passed over
     size_t read_count;
     const graph_image *writes;
     size_t write_count;
-    bool keep;             // has an effect besides its images: never culled
+    bool keep; // has an effect besides its images: never culled
     bool (*record)(void *user, graph *g, gpu *device); // between gpu_pass_begin and _end
     void *user;
 } graph_pass_desc;
@@ -40,7 +42,8 @@ graph *graph_create(void);
 void graph_destroy(graph *g, gpu *device); // device may be NULL when nothing was allocated
 
 graph_image graph_add_image(graph *g, const graph_image_desc *desc);
-// Last frame's content of `image`: all zero in the first frame and after a change of size.
+// Last frame's content of `image`: all zero in the first frame and after a change of size. It is
+// named "<image> history"; asking again gives the same handle.
 graph_image graph_add_history(graph *g, graph_image image);
 bool graph_add_pass(graph *g, const graph_pass_desc *desc);
 bool graph_add_output(graph *g, graph_image image); // wanted after execution
@@ -50,7 +53,8 @@ bool graph_add_output(graph *g, graph_image image); // wanted after execution
 // image that is read and never written, an image with two writers, a size beyond 16384.
 bool graph_compile(graph *g, uint32_t width, uint32_t height);
 bool graph_allocate(graph *g, gpu *device); // after compile; frees what an earlier compile had
-// Takes over the contents of `from`'s history images whose name, format and size match.
+// Takes over the contents of `from`'s history images whose name, format and size match. Both are
+// compiled for the same device; `from` must be allocated again before it may execute again.
 void graph_adopt(graph *g, graph *from);
 
 bool graph_execute(graph *g, gpu *device); // inside an open frame; swaps histories afterwards
@@ -58,9 +62,10 @@ bool graph_execute(graph *g, gpu *device); // inside an open frame; swaps histor
 // at the start of graph_execute.
 
 gpu_image *graph_get_image(const graph *g, graph_image image); // NULL when culled
+// As declared, except that after compiling `mips` is the true number of levels.
 const graph_image_desc *graph_get_desc(const graph *g, graph_image image);
 void graph_get_size(const graph *g, graph_image image, uint32_t size[3]); // texels, depth >= 1
-graph_image graph_find_image(const graph *g, const char *name); // zero when unknown
+graph_image graph_find_image(const graph *g, const char *name);           // zero when unknown
 size_t graph_images(const graph *g, graph_image *out, size_t capacity);
 // Names of the passes that run, in order; returns the count.
 size_t graph_order(const graph *g, const char **out, size_t capacity);

@@ -1,0 +1,34 @@
+// Running a compiled graph: histories change places, then the passes record in order.
+//
+// The two images behind an image with history swap before the first pass, so that between two
+// executions the handles show the frame that was just made and the one before it.
+#include "graph/internal.h"
+#include <assert.h>
+
+static void turn_history(graph *g, gpu *device, const graph_node_image *image) {
+    static const float zero[4] = {0};
+    graph_slot *now = &g->slots.at[image->slot];
+    graph_slot *past = &g->slots.at[g->images[image->history].slot];
+    gpu_image *memory = now->memory;
+    now->memory = past->memory;
+    past->memory = memory;
+    if (!now->fresh && !past->fresh) return;
+    gpu_image_clear(device, now->memory, zero);
+    gpu_image_clear(device, past->memory, zero);
+    now->fresh = past->fresh = false;
+}
+
+bool graph_execute(graph *g, gpu *device) {
+    assert(g->compiled && g->allocated);
+    for (size_t i = 0; i < g->image_count; i++)
+        if (g->images[i].history_used) turn_history(g, device, &g->images[i]);
+    for (size_t i = 0; i < g->order_count; i++) {
+        const graph_node_pass *pass = &g->passes[g->order[i]];
+        assert(pass->record);
+        gpu_pass_begin(device, pass->name);
+        bool done = pass->record(pass->user, g, device);
+        gpu_pass_end(device);
+        if (!done) return err_prefix("pass '%s': ", pass->name);
+    }
+    return true;
+}
