@@ -1,0 +1,83 @@
+"""Includes go downward, and each foreign library has one home."""
+import re
+import sys
+
+sys.dont_write_bytecode = True
+from lib import house
+
+LEVELS = [["base"], ["gpu"], ["media", "shader"], ["graph"], ["field"], ["scene"],
+          ["pass", "sim"], ["effect"], ["script"], ["roil"], ["app"]]
+LEVEL = {layer: level for level, layers in enumerate(LEVELS) for layer in layers}
+
+# Foreign header -> where it may be included: a layer (all its files) or a file.
+HOMES = [
+    (r"vulkan/|vk_|volk\.h|vulkan", "gpu/"),
+    (r"glslang/|SPIRV/|spirv_cross|spirv-cross|spirv", "shader/"),
+    (r"(lua|lauxlib|lualib|luaconf)\.h(pp)?$|lua5\.4/", "script/"),
+    (r"openvdb/|nanovdb/|tbb/", "media/vdb.cpp"),
+    (r"assimp/|png\.h|OpenEXR/|openexr|libav|libsw|Imf", "media/"),
+    (r"GLFW/|imgui|popt\.h", "app/"),
+    (r"xxhash\.h", "base/"),
+]
+CPP = ["src/media/vdb.cpp", "src/app/panel.cpp"]
+INCLUDE = re.compile(r'^\s*#\s*(?:include|import)\b\s*(?:"([^"]*)"|<([^>]*)>|(.*))')
+
+
+def layer_of(path):  # relative to src
+    folder, slash, _ = path.partition("/")
+    return folder if slash else "roil"
+
+
+def judge_own(path, target):
+    """A quoted include; `path` and `target` are relative to src."""
+    mine = layer_of(path)
+    if target == "shared.h":
+        return None  # shaders/shared.h: constants that C and GLSL share
+    theirs = layer_of(target)
+    if "/" not in target and target != "roil.h" or theirs not in LEVEL:
+        return f'"{target}": write "layer/file.h", relative to src'
+    if theirs == mine or LEVEL[theirs] < LEVEL[mine]:
+        return None
+    return f'"{target}": {mine} may not include {theirs}'
+
+
+def judge_foreign(path, target):
+    for pattern, home in HOMES:
+        if re.match(pattern, target) and not path.startswith(home):
+            return f"<{target}> belongs to src/{home} alone"
+    return None
+
+
+def judge(path, number, line):
+    match = INCLUDE.match(line)
+    if not match:
+        return None
+    quoted, angled, other = match.groups()
+    if other is not None:
+        why = f"include of a macro: {other}"
+    elif quoted is not None:
+        why = judge_own(path, quoted) or judge_foreign(path, quoted)
+    else:
+        why = judge_foreign(path, angled)
+    return why and f"src/{path}:{number}: {why}"
+
+
+def main():
+    top = house.root()
+    offences = []
+    paths = house.files(top, "src", house.CODE)
+    for path in paths:
+        inside = path[len("src/"):]
+        if layer_of(inside) not in LEVEL:
+            offences.append(f"{path}: '{layer_of(inside)}' is not a layer")
+            continue
+        if path.endswith(".cpp") and path not in CPP:
+            offences.append(f"{path}: C++ lives in {' and '.join(CPP)} alone")
+        for number, line in enumerate(house.lines(top, path), 1):
+            offence = judge(inside, number, line)
+            if offence:
+                offences.append(offence)
+    house.finish("layers", len(paths), offences)
+
+
+main()
