@@ -1,0 +1,191 @@
+// PNG through libpng. A picture is compressed into memory and then handed to file_write, so a
+// reader never sees half a file; a picture is read from memory, so a hostile file can only ask for
+// what the limits below allow. libpng reports errors by longjmp: everything that must survive one
+// lives in `session`, which the caller of setjmp owns and never keeps in a register.
+#include "media/png.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include <assert.h>
+#include <setjmp.h>
+#include <string.h>
+
+// libpng has types of the same names as ours.
+#define png_image libpng_image
+#define png_text libpng_text
+#include <png.h>
+#undef png_image
+#undef png_text
+
+enum { SIDE_MAX = 16384, CHUNK_BYTES_MAX = 8 << 20, CHUNKS_MAX = 128, KEY_MAX = 79 };
+static const size_t FILE_BYTES_MAX = (size_t)1 << 30;
+
+typedef struct session {
+    const char *name; // for messages
+    png_structp png;
+    png_infop info;
+    const uint8_t *input; // reading
+    size_t size, at;
+    strbuf output; // writing
+    char fault[160];
+} session;
+
+static void fail(png_structp png, const char *message) {
+    session *s = png_get_error_ptr(png);
+    str_copy(s->fault, sizeof s->fault, message);
+    png_longjmp(png, 1);
+}
+
+static void warn(png_structp png, const char *message) {
+    session *s = png_get_error_ptr(png);
+    log_write(LOG_DEBUG, "%s: %s", s->name, message);
+}
+
+static void put(png_structp png, png_bytep bytes, size_t count) {
+    session *s = png_get_io_ptr(png);
+    strbuf_append(&s->output, (const char *)bytes, count);
+}
+
+static void flush(png_structp png) {
+    (void)png;
+}
+
+static void get(png_structp png, png_bytep bytes, size_t count) {
+    session *s = png_get_io_ptr(png);
+    if (count > s->size - s->at) png_error(png, "the file ends too early");
+    memcpy(bytes, s->input + s->at, count);
+    s->at += count;
+}
+
+static bool is_ascii(const char *text) {
+    for (; *text; text++)
+        if ((unsigned char)*text > 126) return false;
+    return true;
+}
+
+// Plain text where that can hold the value, else UTF-8 text (iTXt).
+static void add_texts(session *s, const png_text *texts, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        char key[KEY_MAX + 1], language[1] = "";
+        str_copy(key, sizeof key, texts[i].key);
+        libpng_text text = {.key = key, .text = (char *)texts[i].value};
+        text.lang = language;
+        text.lang_key = language;
+        if (is_ascii(texts[i].value)) {
+            text.compression = PNG_TEXT_COMPRESSION_NONE;
+            text.text_length = strlen(texts[i].value);
+        } else {
+            text.compression = PNG_ITXT_COMPRESSION_NONE;
+            text.itxt_length = strlen(texts[i].value);
+        }
+        png_set_text(s->png, s->info, &text, 1);
+    }
+}
+
+static bool encode(session *s, const png_image *image, const png_text *texts, size_t text_count) {
+    if (setjmp(png_jmpbuf(s->png))) return false;
+    png_set_write_fn(s->png, s, put, flush);
+    png_set_user_limits(s->png, SIDE_MAX, SIDE_MAX);
+    // Render sequences are written often and looked at once: speed before the last tenth of size.
+    png_set_compression_level(s->png, 4);
+    png_set_filter(s->png, 0, PNG_FAST_FILTERS);
+    int type = image->channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB;
+    png_set_IHDR(s->png, s->info, image->width, image->height, image->bits, type,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(s->png, s->info, PNG_sRGB_INTENT_PERCEPTUAL);
+    add_texts(s, texts, text_count);
+    png_write_info(s->png, s->info);
+#if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+    if (image->bits == 16) png_set_swap(s->png);
+#endif
+    size_t pitch = (size_t)image->width * (size_t)image->channels * (size_t)(image->bits / 8);
+    for (uint32_t y = 0; y < image->height; y++)
+        png_write_row(s->png, (png_const_bytep)image->pixels + y * pitch);
+    png_write_end(s->png, s->info);
+    return true;
+}
+
+bool png_write(const char *path, const png_image *image, const png_text *texts, size_t text_count) {
+    assert(image->channels == 3 || image->channels == 4);
+    assert(image->bits == 8 || image->bits == 16);
+    if (image->width == 0 || image->height == 0 || image->width > SIDE_MAX ||
+        image->height > SIDE_MAX)
+        return err_set("%s: cannot write a picture of %ux%u; 1x1 to %dx%d is accepted", path,
+                       image->width, image->height, SIDE_MAX, SIDE_MAX);
+    session s = {.name = path};
+    s.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &s, fail, warn);
+    s.info = s.png ? png_create_info_struct(s.png) : NULL;
+    if (!s.info) err_out_of_memory(sizeof s);
+    bool done = encode(&s, image, texts, texts ? text_count : 0);
+    png_destroy_write_struct(&s.png, &s.info);
+    if (done)
+        done = file_write(path, s.output.text, s.output.length);
+    else
+        err_set("%s: cannot be encoded: %s", path, s.fault);
+    strbuf_free(&s.output);
+    return done;
+}
+
+// Asks libpng to turn every colour type into RGBA of 8 or 16 bits.
+static void ask_for_rgba(session *s) {
+    int type = png_get_color_type(s->png, s->info);
+    int bits = png_get_bit_depth(s->png, s->info);
+    png_set_expand(s->png);
+    if (type == PNG_COLOR_TYPE_GRAY || type == PNG_COLOR_TYPE_GRAY_ALPHA)
+        png_set_gray_to_rgb(s->png);
+    png_set_add_alpha(s->png, bits == 16 ? 0xffff : 0xff, PNG_FILLER_AFTER);
+#if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+    if (bits == 16) png_set_swap(s->png);
+#endif
+    png_set_interlace_handling(s->png);
+    png_read_update_info(s->png, s->info);
+}
+
+static bool decode(session *s, arena *memory, png_image *out) {
+    if (setjmp(png_jmpbuf(s->png))) return false;
+    png_set_read_fn(s->png, s, get);
+    png_set_user_limits(s->png, SIDE_MAX, SIDE_MAX);
+    png_set_chunk_malloc_max(s->png, CHUNK_BYTES_MAX);
+    png_set_chunk_cache_max(s->png, CHUNKS_MAX);
+    png_read_info(s->png, s->info);
+    ask_for_rgba(s);
+    out->width = png_get_image_width(s->png, s->info);
+    out->height = png_get_image_height(s->png, s->info);
+    out->bits = png_get_bit_depth(s->png, s->info);
+    out->channels = 4;
+    size_t pitch = (size_t)out->width * 4 * (size_t)(out->bits / 8);
+    if (png_get_rowbytes(s->png, s->info) != pitch) png_error(s->png, "unknown pixel layout");
+    uint8_t *pixels = arena_alloc(memory, pitch * out->height);
+    png_bytepp rows = arena_alloc(memory, out->height * sizeof *rows);
+    for (uint32_t y = 0; y < out->height; y++) rows[y] = pixels + y * pitch;
+    out->pixels = pixels;
+    png_read_image(s->png, rows);
+    png_read_end(s->png, NULL);
+    return true;
+}
+
+bool png_read_memory(const void *data, size_t size, const char *name, arena *memory,
+                     png_image *out) {
+    if (size < 8 || png_sig_cmp(data, 0, 8) != 0) return err_set("%s: is not a PNG file", name);
+    session s = {.name = name, .input = data, .size = size};
+    s.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &s, fail, warn);
+    s.info = s.png ? png_create_info_struct(s.png) : NULL;
+    if (!s.info) err_out_of_memory(sizeof s);
+    bool done = decode(&s, memory, out);
+    png_destroy_read_struct(&s.png, &s.info, NULL);
+    if (done) return true;
+    *out = (png_image){0};
+    return err_set("%s: cannot be read as PNG (at most %dx%d): %s", name, SIDE_MAX, SIDE_MAX,
+                   s.fault);
+}
+
+bool png_read(const char *path, arena *memory, png_image *out) {
+    void *data;
+    size_t size;
+    if (!file_read(path, FILE_BYTES_MAX, &data, &size)) return false;
+    bool done = png_read_memory(data, size, path, memory, out);
+    mem_free(data);
+    return done;
+}
