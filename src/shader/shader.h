@@ -19,26 +19,32 @@
 // std140 block "Uniforms"; bindings are assigned by the compiler. A trailing underscore, needed
 // where a name is a GLSL keyword, is not part of the public name ("input").
 #pragma once
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include "base/arena.h"
 #include "base/hash.h"
 #include "gpu/gpu.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 // ---- interface: what the annotations say ------------------------------------------------------
 
 typedef enum shader_type {
-    SHADER_FLOAT, SHADER_VEC2, SHADER_VEC3, SHADER_VEC4, SHADER_INT, SHADER_BOOL, SHADER_ENUM,
+    SHADER_FLOAT,
+    SHADER_VEC2,
+    SHADER_VEC3,
+    SHADER_VEC4,
+    SHADER_INT,
+    SHADER_BOOL,
+    SHADER_ENUM,
     SHADER_MAT4, // set by the program only (no annotation)
 } shader_type;
 
 typedef struct shader_uniform {
-    const char *name;     // public name
+    const char *name; // public name
     shader_type type;
-    float value[4];       // default, as floats (bool 0/1, enum its index)
-    float min, max;       // -INFINITY, INFINITY when not given; applies to each component
-    const char *unit;     // "" when none
+    float value[4];   // default, as floats (bool 0/1, enum its index)
+    float min, max;   // -INFINITY, INFINITY when not given; applies to each component
+    const char *unit; // "" when none
     const char *help;
     const char *const *words; // enumerations: their words, in order of value
     size_t word_count;
@@ -58,18 +64,18 @@ typedef struct shader_field { // GLSL may call `float field_heat(vec3 p)`
     const char *glsl_type; // "float", "vec3" or "vec4"
     int components;
     bool required;
-    float value[4];        // used when the effect gives none, if not required
-    const char *after;     // "" or the name of a field: see field_program_desc in field/field.h
+    float value[4];    // used when the effect gives none, if not required
+    const char *after; // "" or the name of a field: see field_program_desc in field/field.h
     const char *help;
 } shader_field;
 
 typedef struct shader_image {
-    const char *name;      // public name
+    const char *name; // public name
     const char *glsl_name;
     bool output, optional, volume; // volume: sampler3D, image3D
-    bool history;          // an input that defaults to last frame's content of output `history_of`
+    bool history; // an input that defaults to last frame's content of output `history_of`
     const char *history_of;
-    gpu_format format;     // outputs
+    gpu_format format; // outputs
     const char *help;
 } shader_image;
 
@@ -98,9 +104,9 @@ typedef struct shader_interface {
 typedef struct shader_library shader_library;
 
 typedef struct shader_library_desc {
-    const char *shader_root;  // folder of the program's shaders
-    const char *effect_root;  // folder of the effect: user shaders and their includes; NULL: none
-    const char *cache_dir;    // compiled SPIR-V by content hash; NULL: none
+    const char *shader_root; // folder of the program's shaders
+    const char *effect_root; // folder of the effect: user shaders and their includes; NULL: none
+    const char *cache_dir;   // compiled SPIR-V by content hash; NULL: none
 } shader_library_desc;
 
 shader_library *shader_library_create(const shader_library_desc *desc);
@@ -119,8 +125,12 @@ const shader_interface *shader_interface_load(shader_library *library, arena *me
 
 typedef enum shader_stage { SHADER_COMPUTE, SHADER_VERTEX, SHADER_FRAGMENT } shader_stage;
 
-typedef struct shader_define { const char *name, *value; } shader_define;
-typedef struct shader_text { const char *name, *text; } shader_text; // #include "name" finds it
+typedef struct shader_define {
+    const char *name, *value;
+} shader_define;
+typedef struct shader_text {
+    const char *name, *text;
+} shader_text; // #include "name" finds it
 
 typedef struct shader_compile_desc {
     const char *name; // file, as for shader_interface_load
@@ -129,27 +139,27 @@ typedef struct shader_compile_desc {
     size_t define_count;
     const shader_text *texts; // generated include files
     size_t text_count;
-    const size_t *options;    // one value per option of the interface, in order; NULL: defaults
-    bool counters;            // compile the counters in
+    const size_t *options; // one value per option of the interface, in order; NULL: defaults
+    bool counters;         // compile the counters in
 } shader_compile_desc;
 
 typedef struct shader_member { // of the block "Uniforms"
-    const char *name;      // public name
-    uint32_t offset, size; // bytes
-    shader_type type;      // SHADER_INT for enums, bools and ints alike; SHADER_MAT4 too
-    uint32_t array;        // elements, 0: not an array
+    const char *name;          // public name
+    uint32_t offset, size;     // bytes
+    shader_type type;          // SHADER_INT for enums, bools and ints alike; SHADER_MAT4 too
+    uint32_t array;            // elements, 0: not an array
 } shader_member;
 
 typedef struct shader_slot {
-    const char *name;      // GLSL name: of a block its block name, else the variable's
+    const char *name; // GLSL name: of a block its block name, else the variable's
     gpu_slot slot;
-    uint32_t size;         // uniform blocks: bytes
-    bool volume;           // image is 3D
+    uint32_t size; // uniform blocks: bytes
+    bool volume;   // image is 3D
 } shader_slot;
 
 typedef struct shader_binary {
     const uint32_t *code;
-    size_t size;           // bytes
+    size_t size; // bytes
     const shader_slot *slots;
     size_t slot_count;
     const shader_member *members; // of "Uniforms", if that block exists

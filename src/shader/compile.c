@@ -1,0 +1,95 @@
+// From a shader file to a binary: flatten, read annotations, put the prelude in front, then take
+// the code from the cache or from glslang, and reflect. Nothing is shared between two compiles
+// but the library's constant paths and its counter, so threads need no lock.
+#include "base/memory.h"
+#include "shader/unit.h"
+#include <string.h>
+
+enum { SALT = 1 }; // raise when the same text shall give other code
+
+typedef struct job {
+    shader_library *library;
+    const shader_compile_desc *desc;
+    shader_unit unit;
+    arena scratch;
+    unit_inserts inserts;
+    strbuf source; // what glslang reads
+} job;
+
+static void add_text(job *j) {
+    const strbuf *text = &j->unit.text;
+    size_t done = 0;
+    for (size_t i = 0; i < j->inserts.count; i++) {
+        const unit_insert *insert = &j->inserts.items[i];
+        strbuf_append(&j->source, text->text + done, insert->offset - done);
+        strbuf_append(&j->source, insert->text, strlen(insert->text));
+        done = insert->offset;
+    }
+    strbuf_append(&j->source, text->text + done, text->length - done);
+}
+
+static hash128 key_of(const job *j) {
+    uint32_t salt[] = {SALT, glsl_version(), (uint32_t)j->desc->stage};
+    hash128 text = hash_bytes(j->source.text, j->source.length);
+    return hash_combine(hash_bytes(salt, sizeof salt), text);
+}
+
+static bool reflect(job *j, spirv *code, arena *memory, shader_binary *out) {
+    if (!spirv_reflect(code, j->desc->stage, memory, out))
+        return err_prefix("%s: ", j->unit.files[0].where.label);
+    out->size = code->count * sizeof *code->words;
+    out->code = arena_copy(memory, code->words, out->size);
+    return true;
+}
+
+static bool translate(job *j, arena *memory, shader_binary *out) {
+    hash128 key = key_of(j);
+    spirv code;
+    if (cache_load(j->library, key, &code)) {
+        bool done = reflect(j, &code, memory, out);
+        mem_free(code.words);
+        if (done) return true;
+    }
+    atomic_fetch_add(&j->library->compiles, 1);
+    if (!glsl_compile(&j->unit, j->source.text, j->desc->stage, &code)) return false;
+    spirv raw = {.words = mem_copy(code.words, code.count * sizeof *code.words),
+                 .count = code.count}; // reflecting edits the code
+    bool done = reflect(j, &code, memory, out);
+    if (done) cache_store(j->library, key, &raw);
+    mem_free(raw.words);
+    mem_free(code.words);
+    return done;
+}
+
+static void list_files(const shader_unit *unit, arena *memory, shader_binary *out) {
+    const char **files = arena_alloc(memory, unit->file_count * sizeof *files);
+    size_t count = 0;
+    for (size_t i = 0; i < unit->file_count; i++)
+        if (unit->files[i].where.path)
+            files[count++] = arena_string(memory, unit->files[i].where.path);
+    out->files = files;
+    out->file_count = count;
+}
+
+static bool compile(job *j, arena *memory, shader_binary *out) {
+    const shader_interface *interface = unit_annotations(&j->unit, &j->scratch, &j->inserts);
+    if (!interface || !unit_prelude(&j->unit, interface, j->desc, &j->source)) return false;
+    add_text(j);
+    if (!translate(j, memory, out)) return false;
+    list_files(&j->unit, memory, out);
+    return true;
+}
+
+bool shader_compile(shader_library *library, arena *memory, const shader_compile_desc *desc,
+                    shader_binary *out) {
+    *out = (shader_binary){0};
+    job j = {.library = library, .desc = desc};
+    unit_desc unit = {.name = desc->name, .texts = desc->texts, .text_count = desc->text_count};
+    if (!unit_load(library, &unit, &j.unit)) return false;
+    bool done = compile(&j, memory, out);
+    strbuf_free(&j.source);
+    mem_free(j.inserts.items);
+    arena_free(&j.scratch);
+    unit_free(&j.unit);
+    return done;
+}

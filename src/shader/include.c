@@ -1,0 +1,252 @@
+// The include resolver.
+//
+// A file is copied line by line; `#include "x"` is replaced by the file it names, between `#line`
+// directives, so that every message of the compiler carries the true file (as a number) and line.
+// Where x is looked for, in this order: the generated texts, beside the includer, the effect's
+// folder, the program's folder. Files of the program never see the effect's folder, so nothing a
+// user names can replace a part of a built-in shader.
+//
+// Invariants: a file is in a unit at most once; every file's block comments are closed, so text
+// never runs from one file into the next; conditions are not evaluated, an #include in a branch
+// that is not taken is read all the same.
+#include "base/file.h"
+#include "base/memory.h"
+#include "shader/unit.h"
+#include <ctype.h>
+#include <string.h>
+
+typedef struct loader {
+    const shader_library *library;
+    const unit_desc *desc;
+    shader_unit *unit;
+    strbuf code; // scratch of scan_line
+} loader;
+
+typedef struct place { // of an #include; file -1: the unit itself
+    int file, line;
+} place;
+
+static bool fail(const loader *l, place at, const char *message) {
+    if (at.file < 0) return err_set("%s: %s", l->desc->name, message);
+    return err_set("%s:%d: %s", l->unit->files[at.file].where.label, at.line, message);
+}
+
+// ---- finding ----------------------------------------------------------------------------------
+
+static const shader_text *find_text(const loader *l, const char *name) {
+    for (size_t i = 0; i < l->desc->text_count; i++)
+        if (strcmp(l->desc->texts[i].name, name) == 0) return &l->desc->texts[i];
+    return NULL;
+}
+
+// Looks for `name` in the folders. 1: found; 0: missing; -1: error set.
+static int find_file(const loader *l, place at, const char *name, library_file *out) {
+    const unit_file *from = at.file < 0 ? NULL : &l->unit->files[at.file];
+    library_root home = from ? from->where.root : ROOT_NONE;
+    arena *memory = &l->unit->memory;
+    int escaped = 0;
+    if (home != ROOT_NONE) {
+        char folder[PATH_CAP];
+        path_folder(folder, from->where.name);
+        int found = library_find(l->library, home, folder, name, memory, out);
+        if (found > 0) return found;
+        if (found < 0) escaped = found;
+    }
+    for (library_root root = ROOT_EFFECT; root < ROOT_COUNT && !escaped; root++) {
+        if (root == ROOT_EFFECT && home == ROOT_PROGRAM) continue;
+        int found = library_find(l->library, root, "", name, memory, out);
+        if (found) return found;
+    }
+    return escaped;
+}
+
+static bool fail_missing(const loader *l, place at, const char *name) {
+    strbuf message = {0};
+    strbuf_add(&message, at.file < 0 ? "no such shader" : "include file \"%s\" not found", name);
+    library_root home = at.file < 0 ? ROOT_NONE : l->unit->files[at.file].where.root;
+    const char *joint = "; looked in ";
+    for (library_root root = ROOT_EFFECT; root < ROOT_COUNT; root++) {
+        if (!l->library->roots[root] || (root == ROOT_EFFECT && home == ROOT_PROGRAM)) continue;
+        strbuf_add(&message, "%s%s", joint, l->library->roots[root]);
+        joint = " and ";
+    }
+    fail(l, at, message.text);
+    strbuf_free(&message);
+    return false;
+}
+
+// ---- adding -----------------------------------------------------------------------------------
+
+static void chain(const shader_unit *unit, int file, strbuf *out) {
+    if (unit->files[file].includer >= 0) {
+        chain(unit, unit->files[file].includer, out);
+        strbuf_add(out, " -> ");
+    }
+    strbuf_add(out, "%s", unit->files[file].where.label);
+}
+
+static bool fail_cycle(const loader *l, place at, int target) {
+    strbuf message = {0};
+    strbuf_add(&message, "include cycle: ");
+    chain(l->unit, at.file, &message);
+    strbuf_add(&message, " -> %s", l->unit->files[target].where.label);
+    fail(l, at, message.text);
+    strbuf_free(&message);
+    return false;
+}
+
+// Index of a file already in the unit, or -1. Generated texts have no path, only a name.
+static int find_known(const shader_unit *unit, const library_file *where) {
+    for (size_t i = 0; i < unit->file_count; i++) {
+        const library_file *known = &unit->files[i].where;
+        bool same = where->path ? known->path && strcmp(known->path, where->path) == 0
+                                : !known->path && strcmp(known->name, where->name) == 0;
+        if (same) return (int)i;
+    }
+    return -1;
+}
+
+static bool read_text(loader *l, place at, const char *path, unit_file *out) {
+    void *data;
+    if (!file_read(path, UNIT_MAX_SIZE, &data, &out->size)) return fail(l, at, err_get());
+    out->text = arena_copy(&l->unit->memory, data, out->size + 1);
+    mem_free(data);
+    if (memchr(out->text, '\0', out->size)) {
+        err_set("%s: holds a zero byte, so it is not a text", out->where.label);
+        return fail(l, at, err_get());
+    }
+    return true;
+}
+
+static bool add_file(loader *l, int file, int depth);
+
+static bool add_name(loader *l, place at, const char *name, int depth) {
+    const shader_text *text = find_text(l, name);
+    unit_file file = {.includer = at.file};
+    if (text) {
+        char *copy = arena_string(&l->unit->memory, text->name);
+        file.where = (library_file){.root = ROOT_NONE, .name = copy, .label = copy};
+        file.text = text->text;
+        file.size = strlen(text->text);
+    } else {
+        int found = find_file(l, at, name, &file.where);
+        if (found < 0) return fail(l, at, err_get());
+        if (!found && l->desc->without_fields && strcmp(name, UNIT_FIELDS) == 0) return true;
+        if (!found) return fail_missing(l, at, name);
+    }
+    int known = find_known(l->unit, &file.where);
+    if (known >= 0) return !l->unit->files[known].open || fail_cycle(l, at, known);
+    if (depth > UNIT_MAX_DEPTH) return fail(l, at, "includes are nested more than 32 deep");
+    if (l->unit->file_count == UNIT_MAX_FILES) return fail(l, at, "more than 1000 files included");
+    if (!text && !read_text(l, at, file.where.path, &file)) return false;
+    MEM_RESERVE(l->unit->files, l->unit->file_count + 1, l->unit->file_capacity);
+    l->unit->files[l->unit->file_count++] = file;
+    return add_file(l, (int)l->unit->file_count - 1, depth);
+}
+
+// ---- directives -------------------------------------------------------------------------------
+
+// The name after `#word`, or NULL when the code is not that directive.
+static const char *directive(const char *code, const char *word) {
+    size_t length = strlen(word);
+    code += strspn(code, " \t");
+    if (*code != '#') return NULL;
+    code++;
+    code += strspn(code, " \t");
+    if (strncmp(code, word, length) != 0) return NULL;
+    code += length;
+    if (isalnum((unsigned char)*code) || *code == '_') return NULL;
+    return code + strspn(code, " \t");
+}
+
+static bool include(loader *l, place at, const char *code, int depth) {
+    const char *end = *code == '"' ? strchr(code + 1, '"') : NULL;
+    if (!end || end == code + 1 || end[1 + strspn(end + 1, " \t")])
+        return fail(l, at, "malformed #include; accepted is #include \"file\"");
+    if (end - code >= PATH_CAP) return fail(l, at, "the name of the include file is too long");
+    char name[PATH_CAP];
+    memcpy(name, code + 1, (size_t)(end - code - 1));
+    name[end - code - 1] = '\0';
+    if (!add_name(l, at, name, depth + 1)) return false;
+    strbuf_add(&l->unit->text, "#line %d %d\n", at.line + 1, at.file + 1);
+    return true;
+}
+
+static void add_line(shader_unit *unit, place at, const char *line, size_t length) {
+    MEM_RESERVE(unit->lines, unit->line_count + 1, unit->line_capacity);
+    unit->lines[unit->line_count++] = (unit_line){
+        .file = at.file, .number = at.line, .start = unit->text.length, .length = length};
+    strbuf_append(&unit->text, line, length);
+    strbuf_append(&unit->text, "\n", 1);
+}
+
+static bool add_source_line(loader *l, place at, const char *line, size_t length, bool *in_comment,
+                            int depth) {
+    bool was_comment = *in_comment;
+    scan_line(&l->code, line, length, in_comment);
+    const char *code = l->code.text;
+    if (strstr(code, "local_size_")) l->unit->has_local_size = true;
+    const char *name = was_comment ? NULL : directive(code, "include");
+    // <x> belongs to C, in files that C and GLSL share; the compiler refuses it where it counts.
+    if (name && *name != '<') {
+        char *copy = arena_string(&l->unit->memory, name); // `code` is reused by the included file
+        if (*in_comment) return fail(l, at, "a comment begins on a line with #include");
+        return include(l, at, copy, depth);
+    }
+    bool version = !was_comment && directive(code, "version");
+    add_line(l->unit, at, line, version && !*in_comment ? 0 : length);
+    if (l->unit->text.length > UNIT_MAX_SIZE)
+        return fail(l, at, "the shader with its includes is larger than 4 MiB");
+    return true;
+}
+
+static bool add_file(loader *l, int file, int depth) {
+    const char *text = l->unit->files[file].text, *end = text + l->unit->files[file].size;
+    bool in_comment = false;
+    place at = {.file = file, .line = 0};
+    l->unit->files[file].open = true;
+    strbuf_add(&l->unit->text, "#line 1 %d\n", file + 1);
+    while (text < end) {
+        const char *newline = memchr(text, '\n', (size_t)(end - text));
+        size_t length = (size_t)((newline ? newline : end) - text);
+        size_t shown = length && text[length - 1] == '\r' ? length - 1 : length;
+        at.line++;
+        if (!add_source_line(l, at, text, shown, &in_comment, depth)) return false;
+        text += length + 1;
+    }
+    if (in_comment) return fail(l, at, "a comment is not closed: */ is missing");
+    l->unit->files[file].open = false;
+    return true;
+}
+
+// ---- public -----------------------------------------------------------------------------------
+
+bool unit_load(const shader_library *library, const unit_desc *desc, shader_unit *out) {
+    *out = (shader_unit){0};
+    loader l = {.library = library, .desc = desc, .unit = out};
+    bool done = add_name(&l, (place){.file = -1}, desc->name, 0);
+    strbuf_free(&l.code);
+    if (!done) unit_free(out);
+    return done;
+}
+
+void unit_free(shader_unit *unit) {
+    mem_free(unit->files);
+    mem_free(unit->lines);
+    strbuf_free(&unit->text);
+    arena_free(&unit->memory);
+    *unit = (shader_unit){0};
+}
+
+void unit_source_line(const shader_unit *unit, int file, int number, char *out, size_t capacity) {
+    const char *text = unit->files[file].text, *end = text + unit->files[file].size;
+    for (int i = 1; i < number && text < end; i++) {
+        const char *newline = memchr(text, '\n', (size_t)(end - text));
+        text = newline ? newline + 1 : end;
+    }
+    while (text < end && (*text == ' ' || *text == '\t')) text++;
+    size_t length = 0;
+    for (; text < end && *text != '\n' && *text != '\r' && length + 1 < capacity; text++)
+        out[length++] = iscntrl((unsigned char)*text) ? ' ' : *text;
+    out[length] = '\0';
+}

@@ -1,0 +1,123 @@
+// A shader unit: one shader file with everything it includes, flattened to one text.
+// Private to src/shader.
+#pragma once
+#include "base/str.h"
+#include "shader/shader.h"
+#include <stdatomic.h>
+
+// ---- library ----------------------------------------------------------------------------------
+
+typedef enum library_root { ROOT_EFFECT, ROOT_PROGRAM, ROOT_COUNT, ROOT_NONE } library_root;
+
+struct shader_library {
+    arena memory;
+    const char *roots[ROOT_COUNT]; // NULL: none
+    const char *cache_dir;         // NULL: none
+    atomic_uint_fast64_t compiles;
+};
+
+typedef struct library_file { // where a name led
+    library_root root;
+    const char *name;  // inside the root, without "." and ".."
+    const char *path;  // absolute, symbolic links followed
+    const char *label; // for messages: the root as it was given, then the name
+} library_file;
+
+// Finds `name` in a root. 1: found; 0: no such file; -1: refused, with a message that has no
+// position. `folder` is put before the name ("" for none).
+int library_find(const shader_library *library, library_root root, const char *folder,
+                 const char *name, arena *memory, library_file *out);
+
+// ---- scanning ---------------------------------------------------------------------------------
+
+// Copies a line to `code` (emptied first) with its comments turned to spaces. Returns where its
+// `//` comment begins, or `length`. `in_comment` carries over from line to line.
+size_t scan_line(strbuf *code, const char *line, size_t length, bool *in_comment);
+
+// ---- unit -------------------------------------------------------------------------------------
+
+enum {
+    UNIT_MAX_SIZE = 4 << 20, // bytes, of one file and of the whole
+    UNIT_MAX_DEPTH = 32,     // nested includes
+    UNIT_MAX_FILES = 1000,
+};
+
+// The text of a pass's fields. It exists only once an effect is built, so reading an interface
+// goes on without.
+#define UNIT_FIELDS "fields.glsl"
+
+typedef struct unit_file {
+    library_file where; // `path` NULL: a generated text
+    const char *text;
+    size_t size;
+    int includer; // the file that first included this one; -1: the unit's main file
+    bool open;    // being included right now
+} unit_file;
+
+typedef struct unit_line { // a line of the text that came from a file
+    int file, number;
+    size_t start, length; // in `text`, without the newline
+} unit_line;
+
+typedef struct shader_unit {
+    arena memory;
+    unit_file *files; // the first is the main file; GLSL knows file i as source string i + 1
+    size_t file_count, file_capacity;
+    unit_line *lines;
+    size_t line_count, line_capacity;
+    strbuf text;
+    bool has_local_size;
+} shader_unit;
+
+typedef struct unit_desc {
+    const char *name;
+    const shader_text *texts; // searched before folders; the name itself may be one of them
+    size_t text_count;
+    bool without_fields; // a missing UNIT_FIELDS is an empty file
+} unit_desc;
+
+bool unit_load(const shader_library *library, const unit_desc *desc, shader_unit *out);
+void unit_free(shader_unit *unit);
+// Line `number` of file `file` without indentation, at most `capacity` - 1 bytes of it.
+void unit_source_line(const shader_unit *unit, int file, int number, char *out, size_t capacity);
+
+// ---- annotations ------------------------------------------------------------------------------
+
+typedef struct unit_insert { // text to put into the unit's text at `offset`
+    size_t offset;
+    const char *text;
+} unit_insert;
+
+typedef struct unit_inserts {
+    unit_insert *items; // in order of offset; free with mem_free
+    size_t count, capacity;
+} unit_inserts;
+
+// Reads the annotations of a unit. `inserts` gets the layouts that images need; may be NULL.
+const shader_interface *unit_annotations(const shader_unit *unit, arena *memory,
+                                         unit_inserts *inserts);
+// "mode_2" -> "MODE_2", appended.
+void unit_add_upper(strbuf *out, const char *name);
+
+// ---- from text to SPIR-V ----------------------------------------------------------------------
+
+// What stands before the unit's text: version, extensions, macros, counters.
+bool unit_prelude(const shader_unit *unit, const shader_interface *interface,
+                  const shader_compile_desc *desc, strbuf *out);
+
+typedef struct spirv {
+    uint32_t *words; // free with mem_free
+    size_t count;
+} spirv;
+
+bool glsl_compile(const shader_unit *unit, const char *source, shader_stage stage, spirv *out);
+uint32_t glsl_version(void); // of the compiler, for cache keys
+
+// Assigns bindings in place, removes what is not used, and describes the rest.
+bool spirv_reflect(spirv *code, shader_stage stage, arena *memory, shader_binary *out);
+// Turns LocalSizeId into LocalSize, which needs no device feature, and drops `dead` variables.
+void spirv_clean(spirv *code, const uint32_t local_size[3], const uint32_t *live,
+                 size_t live_count);
+
+bool cache_load(const shader_library *library, hash128 key, spirv *out);
+void cache_store(const shader_library *library, hash128 key, const spirv *code);
