@@ -15,6 +15,7 @@ GOOD = {
     "src/roil.h": '#pragma once\n#include "base/error.h"\n',
     "src/app/main.c": '#include "roil.h"\n#include <GLFW/glfw3.h>\n',
     "shaders/shared.h": "#define SHARED 1\n",
+    "scripts/build": "#!/bin/sh\necho built\n",
 }
 TOO_LONG = "int a;\n" * 801
 BROKEN = [  # rule, file, text
@@ -44,6 +45,7 @@ BROKEN = [  # rule, file, text
     ("headers", "src/roil.h", "#pragma once\nint delete(int class);\n"),
     ("headers", "src/base/error.h", "#pragma once\nint err_clear();\n"),
     ("words", "src/base/error.c", "// TO" "DO: later\n"),
+    ("shell", "scripts/build", "#!/bin/sh\ncd $1\n"),
     ("words", "scripts/build", "# FIX" "ME\n"),
     ("words", "effects/explosion.lua", "-- XX" "X\n"),
 ]
@@ -92,7 +94,8 @@ def try_subject(subject):
 
 def main():
     wrong, skipped, count = [], set(), 0
-    cases = [(rule, None, "", 0) for rule in ("layers", "format", "sizes", "headers", "words")]
+    cases = [(rule, None, "", 0) for rule in ("layers", "format", "sizes", "headers", "shell",
+                                                "words")]
     cases += [(rule, path, text, 1) for rule, path, text in BROKEN]
     for rule, path, text, expected in cases:
         got = try_tree(rule, path, text)
