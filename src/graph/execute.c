@@ -18,6 +18,16 @@ static void turn_history(graph *g, gpu *device, const graph_node_image *image) {
     now->fresh = past->fresh = false;
 }
 
+static void make_fresh(slot_list *slots) {
+    for (size_t i = 0; i < slots->count; i++)
+        if (slots->at[i].paired) slots->at[i].fresh = true;
+}
+
+void graph_reset_history(graph *g) {
+    make_fresh(&g->slots);
+    make_fresh(&g->kept);
+}
+
 bool graph_execute(graph *g, gpu *device) {
     assert(g->compiled && g->allocated);
     for (size_t i = 0; i < g->image_count; i++)

@@ -56,6 +56,8 @@ bool graph_allocate(graph *g, gpu *device); // after compile; frees what an earl
 // Takes over the contents of `from`'s history images whose name, format and size match. Both are
 // compiled for the same device; `from` must be allocated again before it may execute again.
 void graph_adopt(graph *g, graph *from);
+// Makes every history zero again, as before the first frame.
+void graph_reset_history(graph *g);
 
 bool graph_execute(graph *g, gpu *device); // inside an open frame; swaps histories afterwards
 // After graph_execute the images keep their content until the next one: history images are swapped

@@ -360,6 +360,28 @@ static void a_resize_clears_histories_and_keeps_fixed_images(void **state) {
     end(f.g, &device);
 }
 
+static void a_reset_clears_histories_once_more(void **state) {
+    (void)state;
+    feedback f = feedback_create(NULL);
+    gpu device = {0};
+    allocate(f.g, &device);
+    assert_true(graph_execute(f.g, &device));
+    graph_reset_history(f.g);
+    strbuf_free(&device.log);
+    assert_true(graph_execute(f.g, &device));
+    assert_non_null(strstr(strbuf_text(&device.log), "clear sum"));
+    strbuf_free(&device.log);
+    assert_true(graph_execute(f.g, &device));
+    assert_log(&device, "begin add;end;begin show;end;");
+
+    graph_reset_history(f.g); // is not forgotten by compiling
+    compile(f.g);
+    allocate(f.g, &device);
+    assert_true(graph_execute(f.g, &device));
+    assert_non_null(strstr(strbuf_text(&device.log), "clear sum"));
+    end(f.g, &device);
+}
+
 static void memory_of_a_plain_image_never_becomes_a_past(void **state) {
     (void)state;
     graph *g = graph_create();
@@ -488,6 +510,7 @@ int main(void) {
         cmocka_unit_test(a_history_is_cleared_once_and_then_swapped),
         cmocka_unit_test(compiling_again_at_the_same_size_keeps_all_memory),
         cmocka_unit_test(a_resize_clears_histories_and_keeps_fixed_images),
+        cmocka_unit_test(a_reset_clears_histories_once_more),
         cmocka_unit_test(memory_of_a_plain_image_never_becomes_a_past),
         cmocka_unit_test(a_new_graph_adopts_the_past_of_an_old_one),
         cmocka_unit_test(a_past_of_another_size_is_not_adopted),
