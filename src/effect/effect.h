@@ -8,20 +8,29 @@
 typedef struct effect effect;
 
 typedef enum effect_param_type {
-    EFFECT_FLOAT, EFFECT_INT, EFFECT_BOOL, EFFECT_ENUM, EFFECT_VEC3, EFFECT_COLOR,
+    EFFECT_FLOAT,
+    EFFECT_INT,
+    EFFECT_BOOL,
+    EFFECT_ENUM,
+    EFFECT_VEC3,
+    EFFECT_COLOR,
 } effect_param_type;
 
 typedef struct effect_param {
     const char *name;
     effect_param_type type;
-    float value[4];      // current; bool 0/1; enum: index
-    float initial[4];    // default
-    float min, max;      // of each component; -INFINITY, INFINITY when not given
+    float value[4];   // current; bool 0/1; enum: index
+    float initial[4]; // default
+    float min, max;   // of each component; -INFINITY, INFINITY when not given
     const char *unit, *help, *group;
     const char *const *words; // enumerations
     size_t word_count;
     bool log_scale;
 } effect_param;
+
+typedef struct effect_setting { // see effect_set
+    const char *name, *text;
+} effect_setting;
 
 typedef struct effect_desc {
     gpu *device;             // NULL: check only
@@ -29,6 +38,8 @@ typedef struct effect_desc {
     const char *shader_root; // the program's shaders
     const char *cache_dir;   // NULL: no caches
     bool counters;
+    const effect_setting *settings; // applied as what they name is declared
+    size_t setting_count;
 } effect_desc;
 
 effect *effect_create(const effect_desc *desc);
@@ -36,7 +47,7 @@ void effect_destroy(effect *e);
 
 // ---- declaring (script) -----------------------------------------------------------------------
 
-arena *effect_memory(effect *e);       // lives as long as the effect
+arena *effect_memory(effect *e);          // lives as long as the effect
 const char *effect_root(const effect *e); // folder of its file
 const char *effect_file(const effect *e);
 scene *effect_scene(effect *e);
@@ -48,8 +59,9 @@ void effect_set_seed(effect *e, uint32_t seed);
 
 // Checks name, range, default. Returns its index, or -1.
 int effect_add_param(effect *e, const effect_param *param);
-pass *effect_add_pass(effect *e, const char *type, const char *shader, const char *label); // label NULL: type's name, numbered
-void effect_add_grid(effect *e, field_grid *grid); // owned by the effect from now on
+pass *effect_add_pass(effect *e, const char *type, const char *shader,
+                      const char *label);                 // label NULL: type's name, numbered
+void effect_add_grid(effect *e, field_grid *grid);        // owned by the effect from now on
 scene_mesh *effect_add_mesh(effect *e, const char *file); // confined to the effect's folder
 // A field baked to a grid each frame (pass type "bake"); returns the grid.
 field_grid *effect_add_bake(effect *e, const field *node, const uint32_t size[3], box3 box);
@@ -57,7 +69,7 @@ bool effect_set_output(effect *e, graph_image image); // the picture, display-re
 bool effect_set_linear(effect *e, graph_image image); // scene-linear, for EXR
 bool effect_set_depth(effect *e, graph_image image);  // linear depth in metres, for EXR
 
-typedef struct effect_hooks { // calls back into the script
+typedef struct effect_hooks {                                          // calls back into the script
     bool (*call)(void *user, int function, double time, float out[4]); // function of time
     bool (*update)(void *user, double time, double dt); // `update(t, dt)` of the effect, or NULL
     void (*destroy)(void *user);
@@ -77,14 +89,20 @@ const effect_param *effect_get_param(const effect *e, size_t index);
 size_t effect_pass_count(const effect *e);
 pass *effect_get_pass(effect *e, size_t index);
 graph *effect_graph(effect *e);
+shader_library *effect_library(effect *e);
 
-// Sets a parameter ("density"), a uniform or option of a pass ("march.steps", "march.mode"), or a
-// pass's resolution ("march.resolution"). `text`: a number, "1,2,3", "#ff8800", a word, true or
-// false. Options must be set before effect_build. Names not known get a suggestion.
+// Sets a parameter ("density") or a uniform of a pass ("march.steps"). `text`: a number, "1,2,3",
+// "#ff8800", a word, true or false. What is structure, an option ("march.mode") or the resolution
+// of a pass ("march.resolution"), can be set by effect_desc.settings only. Names not known get a
+// suggestion.
 bool effect_set(effect *e, const char *name, const char *text);
 bool effect_set_value(effect *e, size_t param, const float value[4]);
 
-bool effect_build(effect *e, uint32_t width, uint32_t height);   // compile, allocate
+// False when a setting of effect_desc names nothing that the script declared.
+bool effect_check_settings(effect *e);
+// What effect_build can find wrong without a device: shaders, fields, the graph.
+bool effect_check(effect *e);
+bool effect_build(effect *e, uint32_t width, uint32_t height); // compile, allocate
 // Records and submits one frame. Frame numbers start at effect_first_frame; time = (frame -
 // first) / fps. Histories start anew when `frame` is not the one after the last. Returns the
 // GPU's frame number, 0 on error.

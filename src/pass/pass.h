@@ -12,25 +12,40 @@
 
 typedef struct pass pass;
 
+typedef struct pass_grid { // a grid that a pass of the graph fills
+    const field_grid *grid;
+    graph_image image;
+} pass_grid;
+
 typedef struct pass_host { // what all passes of one effect share
     gpu *device;           // NULL: declare only (check without a device)
     shader_library *library;
     graph *graph;
     arena *memory;
-    const field_context *context;     // of the frame being recorded
-    const struct frame_block *frame;  // of the frame being recorded
-    bool counters;         // compile counters in and read them
+    const field_context *context;                // of the frame being recorded
+    const struct frame_block *frame;             // of the frame being recorded
+    bool counters;                               // compile counters in and read them
+    bool (*before_declare)(void *user, pass *p); // last chance to change a pass; may be NULL
+    void *user;
+    pass_grid *grid_images; // owned: freed by pass_host_free
+    size_t grid_image_count, grid_image_capacity;
 } pass_host;
 
+// Passes whose fields sample `grid` run after the pass that writes `image`.
+void pass_host_add_grid_image(pass_host *host, const field_grid *grid, graph_image image);
+void pass_host_free(pass_host *host);
+
 typedef struct pass_type {
-    const char *name;      // "march"
-    const char *shader;    // "pass/march.comp"
-    const char *returns;   // what a call returns in Lua, for the reference
+    const char *name;    // "march"
+    const char *shader;  // "pass/march.comp"
+    const char *returns; // what a call returns in Lua, for the reference
     // Optional hooks.
-    bool (*declare)(pass *p);                 // instead of one image per output
-    bool (*build)(pass *p);                   // more pipelines
-    bool (*fill)(pass *p, void *uniforms);    // uniforms the host computes, by pass_uniform_offset
-    bool (*record)(pass *p);                  // instead of one dispatch over the first output
+    bool (*declare)(pass *p); // instead of one image per output
+    bool (*check)(pass *p);   // compile all that build would, without a device
+    bool (*build)(pass *p);   // instead of one pipeline
+    // Uniforms that the host computes, written into a block of `binary`'s layout.
+    bool (*fill)(pass *p, const shader_binary *binary, unsigned char *block);
+    bool (*record)(pass *p); // instead of one dispatch over the first output
     void (*destroy)(pass *p);
 } pass_type;
 
@@ -49,15 +64,18 @@ bool pass_set_uniform(pass *p, const char *name, const field *value); // must no
 bool pass_set_option(pass *p, const char *name, const char *word);
 bool pass_set_field(pass *p, const char *name, const field *value);
 bool pass_set_image(pass *p, const char *name, graph_image image);
-bool pass_set_scale(pass *p, float scale);  // of its outputs, relative to the effect's output; (0, 1]
+bool pass_set_scale(pass *p,
+                    float scale); // of its outputs, relative to the effect's output; (0, 1]
 bool pass_set_format(pass *p, const char *output, gpu_format format);
-bool pass_add_mesh(pass *p, scene_mesh *mesh); // geometry only
+bool pass_add_mesh(pass *p, scene_mesh *mesh);       // geometry only
+void pass_set_bake(pass *p, const field_grid *grid); // bake only: the grid it fills
 // What `name` may be set as, for the generic setter of Lua and --set.
 typedef enum pass_key { PASS_UNKNOWN, PASS_UNIFORM, PASS_OPTION, PASS_FIELD, PASS_IMAGE } pass_key;
 pass_key pass_find_key(const pass *p, const char *name, size_t *index);
 
-bool pass_declare(pass *p);      // checks that what is required is there; adds images and passes
-bool pass_build(pass *p);        // needs a device
+bool pass_declare(pass *p); // checks that what is required is there; adds images and passes
+bool pass_check(pass *p);   // compiles the shaders; needs no device
+bool pass_build(pass *p);   // needs a device
 graph_image pass_output(const pass *p, const char *name); // after pass_declare; zero when unknown
 const field *pass_get_uniform(const pass *p, size_t index);
 float pass_get_scale(const pass *p);

@@ -6,12 +6,12 @@
 #include "shared.h"
 
 typedef struct scene_camera {
-    const field *eye;       // vec3, metres; NULL: orbits the target
-    const field *target;    // vec3, metres
-    const field *distance;  // metres from the target, when orbiting
-    const field *yaw;       // degrees about +Z; 0 looks along +Y
-    const field *pitch;     // degrees above the horizon of the eye as seen from the target
-    const field *fov;       // vertical field of view, degrees
+    const field *eye;        // vec3, metres; NULL: orbits the target
+    const field *target;     // vec3, metres
+    const field *distance;   // metres from the target, when orbiting
+    const field *yaw;        // degrees about +Z; 0 looks along +Y
+    const field *pitch;      // degrees above the horizon of the eye as seen from the target
+    const field *fov;        // vertical field of view, degrees
     const field *near, *far; // metres
 } scene_camera;
 
@@ -30,12 +30,12 @@ typedef struct scene_sky {
 typedef struct scene_mesh {
     const char *name;
     mesh_data data;
-    const field *position;  // vec3, metres
-    const field *rotation;  // vec3, degrees, XYZ Euler
-    const field *scale;     // factor
-    const field *color;     // vec3, multiplies the material's
+    const field *position;          // vec3, metres
+    const field *rotation;          // vec3, degrees, XYZ Euler
+    const field *scale;             // factor
+    const field *color;             // vec3, multiplies the material's
     gpu_buffer *vertices, *indices; // made on first use
-    gpu_image **textures;   // per mesh_data texture
+    gpu_image **textures;           // per mesh_data texture
 } scene_mesh;
 
 typedef struct scene {

@@ -1,0 +1,45 @@
+// Spreads the bright picture: halved level by level, then added back up (document 0 section 3.8).
+//
+// In mode normal every level weighs what `radius` says and the weights sum to one: the bloom has
+// the energy of the bright picture. In mode paper C_i += alpha U(C_{i+1}), which adds energy with
+// every level.
+//@ option mode = normal {normal, paper} : normal keeps the energy; paper as published
+uniform sampler2D source;      //= input : the bright picture
+uniform float radius;          //= 0.7 [0, 1] : how much of the light goes to the wider levels
+uniform float alpha;           //= 0.8 [0, 4] : weight of each wider level in mode paper
+uniform int levels;            //= 0 [0, 16] : how many halvings; 0: down to one pixel
+uniform image2D color;         //= output rgba16f : the bloom
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 size = imageSize(color);
+    if (any(greaterThanEqual(pixel, size))) return;
+    vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
+    vec2 texel = 1.0 / vec2(textureSize(source, 0));
+#if DIRECTION_UP
+    // A 3x3 tent over the wider level by four bilinear taps: weights 1 2 1 in each direction.
+    vec3 wide = vec3(0.0);
+    for (int i = 0; i < 4; i++) {
+        vec2 corner = vec2(i & 1, i >> 1) - 0.5;
+        wide += textureLod(source, uv + corner * texel, 0.0).rgb;
+    }
+    wide *= 0.25;
+    vec3 own = imageLoad(color, pixel).rgb;
+#if MODE == MODE_PAPER
+    vec3 sum = own + alpha * textureLod(source, uv, 0.0).rgb;
+#else
+    vec3 sum = mix(own, wide, radius);
+#endif
+    imageStore(color, pixel, vec4(sum, 1.0));
+#else
+    bool copy = size == textureSize(source, 0);
+    vec3 sum = vec3(0.0);
+    if (copy) {
+        sum = texelFetch(source, pixel, 0).rgb;
+    } else {
+        // The mean of the four texels beneath; at odd sizes the filter covers the odd row as well.
+        sum = textureLod(source, uv, 0.0).rgb;
+    }
+    imageStore(color, pixel, vec4(sum, 1.0));
+#endif
+}

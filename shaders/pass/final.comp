@@ -1,0 +1,35 @@
+// The last pass: adds the bloom, exposes, tone maps.
+#include "lib/color.glsl"
+#include "lib/tonemap.glsl"
+//@ option tonemap = agx {agx, aces, reinhard, exponential, none} : how scene light becomes display light
+uniform sampler2D source;         //= input : the picture, scene-linear
+uniform sampler2D bloom;          //= input optional : added to it
+uniform float bloom_intensity;    //= 0.8 [0, 10] : factor of the bloom
+uniform float exposure_ev;        //= 0 [-20, 20] EV : stops of exposure
+uniform float saturation;         //= 1 [0, 4] : 0: grey, 1: as it is
+writeonly uniform image2D color;  //= output rgba16f : display-linear, alpha kept
+writeonly uniform image2D linear; //= output rgba16f : scene-linear with the bloom, alpha kept
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 size = imageSize(color);
+    if (any(greaterThanEqual(pixel, size))) return;
+    vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
+    vec4 c = textureLod(source, uv, 0.0);
+#if HAS_BLOOM
+    c.rgb += bloom_intensity * textureLod(bloom, uv, 0.0).rgb;
+#endif
+    imageStore(linear, pixel, c);
+    vec3 exposed = max(c.rgb * exp2(exposure_ev), 0.0);
+    exposed = max(mix(vec3(luminance(exposed)), exposed, saturation), 0.0);
+#if TONEMAP == TONEMAP_AGX
+    exposed = tonemap_agx(exposed);
+#elif TONEMAP == TONEMAP_ACES
+    exposed = tonemap_aces(exposed);
+#elif TONEMAP == TONEMAP_REINHARD
+    exposed = tonemap_reinhard(exposed);
+#elif TONEMAP == TONEMAP_EXPONENTIAL
+    exposed = tonemap_exponential(exposed);
+#endif
+    imageStore(color, pixel, vec4(clamp(exposed, 0.0, 1.0), c.a));
+}

@@ -1,0 +1,263 @@
+// An effect while it is declared: what the script says is checked here and kept.
+#include "effect/effect.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "effect/effect_impl.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+effect *effect_create(const effect_desc *desc) {
+    effect *e = mem_alloc(sizeof *e);
+    char folder[PATH_CAP], shader_cache[PATH_CAP];
+    path_folder(folder, desc->file);
+    e->device = desc->device;
+    e->file = arena_string(&e->memory, desc->file);
+    e->root = arena_string(&e->memory, folder);
+    e->name = arena_string(&e->memory, path_name(desc->file));
+    e->fps = 24;
+    e->frames = 1;
+    e->first = 1;
+    scene_init(&e->scene, &e->memory);
+    bool cached = desc->cache_dir && path_join(shader_cache, desc->cache_dir, "spirv");
+    e->library = shader_library_create(&(shader_library_desc){
+        .shader_root = desc->shader_root,
+        .effect_root = e->root,
+        .cache_dir = cached ? shader_cache : NULL,
+    });
+    if (!e->library) {
+        effect_destroy(e);
+        return NULL;
+    }
+    e->graph = graph_create();
+    e->host = (pass_host){
+        .device = e->device,
+        .library = e->library,
+        .graph = e->graph,
+        .memory = &e->memory,
+        .context = &e->context,
+        .frame = &e->frame,
+        .counters = desc->counters,
+        .before_declare = effect_apply_settings,
+        .user = e,
+    };
+    effect_copy_settings(e, desc->settings, desc->setting_count);
+    effect_add_file(e, desc->file);
+    return e;
+}
+
+void effect_destroy(effect *e) {
+    if (!e) return;
+    if (e->device) gpu_idle(e->device);
+    for (size_t i = 0; i < e->pass_count; i++) pass_destroy(e->passes[i]);
+    for (size_t i = 0; i < e->grid_count; i++) e->grids[i]->destroy(e->grids[i], e->device);
+    for (size_t i = 0; i < e->mesh_count; i++) scene_mesh_destroy(e->meshes[i], e->device);
+    if (e->graph) graph_destroy(e->graph, e->device);
+    if (e->hooks.destroy) e->hooks.destroy(e->hooks.user);
+    if (e->library) shader_library_destroy(e->library);
+    pass_host_free(&e->host);
+    mem_free(e->params);
+    mem_free(e->values);
+    mem_free(e->passes);
+    mem_free(e->grids);
+    mem_free(e->meshes);
+    mem_free(e->files);
+    arena_free(&e->memory);
+    mem_free(e);
+}
+
+arena *effect_memory(effect *e) {
+    return &e->memory;
+}
+const char *effect_root(const effect *e) {
+    return e->root;
+}
+const char *effect_file(const effect *e) {
+    return e->file;
+}
+scene *effect_scene(effect *e) {
+    return &e->scene;
+}
+pass_host *effect_pass_host(effect *e) {
+    return &e->host;
+}
+const char *effect_name(const effect *e) {
+    return e->name;
+}
+double effect_fps(const effect *e) {
+    return e->fps;
+}
+uint32_t effect_frames(const effect *e) {
+    return e->frames;
+}
+uint32_t effect_first_frame(const effect *e) {
+    return e->first;
+}
+size_t effect_pass_count(const effect *e) {
+    return e->pass_count;
+}
+pass *effect_get_pass(effect *e, size_t index) {
+    return e->passes[index];
+}
+graph *effect_graph(effect *e) {
+    return e->graph;
+}
+shader_library *effect_library(effect *e) {
+    return e->library;
+}
+
+void effect_set_name(effect *e, const char *name) {
+    e->name = arena_string(&e->memory, name);
+}
+void effect_set_seed(effect *e, uint32_t seed) {
+    e->seed = seed;
+}
+
+bool effect_set_timeline(effect *e, double fps, uint32_t frames, uint32_t first) {
+    if (!(fps > 0 && fps <= 1000)) return err_set("fps is %g; accepted: above 0, up to 1000", fps);
+    if (frames < 1 || frames > 1000000)
+        return err_set("frames is %u; accepted: 1 to 1000000", frames);
+    e->fps = fps;
+    e->frames = frames;
+    e->first = first;
+    return true;
+}
+
+void effect_set_hooks(effect *e, const effect_hooks *hooks) {
+    e->hooks = *hooks;
+    e->context.call = hooks->call;
+    e->context.user = hooks->user;
+}
+
+void effect_add_file(effect *e, const char *path) {
+    for (size_t i = 0; i < e->file_count; i++)
+        if (strcmp(e->files[i], path) == 0) return;
+    MEM_RESERVE(e->files, e->file_count + 1, e->file_capacity);
+    e->files[e->file_count++] = arena_string(&e->memory, path);
+}
+
+// ---- passes -----------------------------------------------------------------------------------
+
+static bool label_taken(const effect *e, const char *label) {
+    for (size_t i = 0; i < e->pass_count; i++)
+        if (strcmp(pass_label(e->passes[i]), label) == 0) return true;
+    return false;
+}
+
+// "march", then "march_2", ...; of a shader file its name without the extension.
+static const char *make_label(effect *e, const char *stem) {
+    int length = (int)strcspn(stem, ".");
+    const char *label = arena_format(&e->memory, "%.*s", length, stem);
+    for (int i = 2; label_taken(e, label); i++)
+        label = arena_format(&e->memory, "%.*s_%d", length, stem, i);
+    return label;
+}
+
+pass *effect_add_pass(effect *e, const char *type, const char *shader, const char *label) {
+    const pass_type *known = type ? pass_type_find(type) : NULL;
+    if (type && !known) return NULL;
+    if (label && (!str_is_identifier(label) || label_taken(e, label))) {
+        err_set("pass name '%s' %s", label,
+                label_taken(e, label) ? "is taken" : "is not a name (letters, digits and _)");
+        return NULL;
+    }
+    if (!label) label = make_label(e, type ? type : path_name(shader));
+    pass *p = pass_create(&e->host, known, shader, label);
+    if (!p) return NULL;
+    MEM_RESERVE(e->passes, e->pass_count + 1, e->pass_capacity);
+    e->passes[e->pass_count++] = p;
+    return p;
+}
+
+void effect_add_grid(effect *e, field_grid *grid) {
+    MEM_RESERVE(e->grids, e->grid_count + 1, e->grid_capacity);
+    e->grids[e->grid_count++] = grid;
+}
+
+// ---- baked fields -----------------------------------------------------------------------------
+
+static bool update_baked(field_grid *grid, gpu *g, double time) {
+    (void)g;
+    (void)time;
+    grid->state.active = grid->box;
+    return true;
+}
+
+static void destroy_baked(field_grid *grid,
+                          gpu *g) { // memory is the effect's, the image the graph's
+    (void)grid;
+    (void)g;
+}
+
+field_grid *effect_add_bake(effect *e, const field *node, const uint32_t size[3], box3 box) {
+    uint64_t voxels = (uint64_t)size[0] * size[1] * size[2];
+    for (int i = 0; i < 3; i++) {
+        if (size[i] >= 1 && size[i] <= 1024) continue;
+        err_set("bake: size is %u x %u x %u; accepted: 1 to 1024 each", size[0], size[1], size[2]);
+        return NULL;
+    }
+    if (voxels > 1u << 27) {
+        err_set("bake: %llu voxels; at most %u", (unsigned long long)voxels, 1u << 27);
+        return NULL;
+    }
+    if (box3_is_empty(box) || !box3_is_finite(box)) {
+        err_set("bake: the field has no finite bounds; give box = { min, max }");
+        return NULL;
+    }
+    pass *p = effect_add_pass(e, "bake", NULL, NULL);
+    if (!p || !pass_set_field(p, "value", node)) return NULL;
+    effect_baked *baked = arena_alloc(&e->memory, sizeof *baked);
+    *baked = (effect_baked){
+        .grid = {.name = pass_label(p),
+                 .box = box,
+                 .size = {size[0], size[1], size[2]},
+                 .channel_count = 4,
+                 .state = {.active = box},
+                 .update = update_baked,
+                 .destroy = destroy_baked},
+        .pass = p,
+    };
+    pass_set_bake(p, &baked->grid);
+    effect_add_grid(e, &baked->grid);
+    if (!pass_declare(p)) return NULL;
+    return &baked->grid;
+}
+
+// ---- scene and outputs ------------------------------------------------------------------------
+
+scene_mesh *effect_add_mesh(effect *e, const char *file) {
+    char path[PATH_CAP];
+    if (!path_confine(path, e->root, file)) return NULL;
+    arena *memory = &e->memory;
+    scene_mesh *mesh = arena_alloc(memory, sizeof *mesh);
+    if (!mesh_load(path, e->root, memory, &mesh->data)) return NULL;
+    for (size_t i = 0; i < mesh->data.file_count; i++) effect_add_file(e, mesh->data.files[i]);
+    mesh->name = arena_string(memory, file);
+    mesh->position = field_constant(memory, 3, (float[4]){0});
+    mesh->rotation = field_constant(memory, 3, (float[4]){0});
+    mesh->scale = field_constant(memory, 1, (float[4]){1});
+    mesh->color = field_constant(memory, 3, (float[4]){1, 1, 1});
+    MEM_RESERVE(e->meshes, e->mesh_count + 1, e->mesh_capacity);
+    e->meshes[e->mesh_count++] = mesh;
+    return mesh;
+}
+
+static bool set_picture(effect *e, effect_picture which, graph_image image) {
+    if (graph_get_desc(e->graph, image)->depth) return err_set("the picture of an effect is 2D");
+    e->pictures[which] = image;
+    return true;
+}
+
+bool effect_set_output(effect *e, graph_image image) {
+    return set_picture(e, EFFECT_OUTPUT, image);
+}
+bool effect_set_linear(effect *e, graph_image image) {
+    return set_picture(e, EFFECT_LINEAR, image);
+}
+bool effect_set_depth(effect *e, graph_image image) {
+    return set_picture(e, EFFECT_DEPTH, image);
+}
+graph_image effect_get_picture(const effect *e, effect_picture which) {
+    return e->pictures[which];
+}

@@ -1,0 +1,207 @@
+// From a pass to a pipeline: fields become GLSL, the shader is compiled with the pass's options,
+// and what the host must keep (uniform blocks, palette textures, counters) is made.
+#include "base/error.h"
+#include "base/memory.h"
+#include "pass/pass_impl.h"
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+// A field that was not given is its default, as a constant.
+static field_program *generate(pass *p) {
+    const shader_interface *face = p->face;
+    arena *memory = p->host->memory;
+    field_root *roots = arena_alloc(memory, face->field_count * sizeof *roots);
+    for (size_t i = 0; i < face->field_count; i++) {
+        const shader_field *slot = &face->fields[i];
+        const field *node = p->fields[i];
+        if (!node) node = field_constant(memory, slot->components, slot->value);
+        roots[i] = (field_root){slot->name, node, slot->components, slot->after};
+    }
+    return field_program_create(memory, roots, face->field_count);
+}
+
+bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_define *defines,
+                  size_t define_count, shader_binary *out) {
+    const shader_interface *face = p->face;
+    arena *memory = p->host->memory;
+    size_t count = 0;
+    shader_define *all =
+        arena_alloc(memory, (define_count + face->image_count + face->field_count) * sizeof *all);
+    for (size_t i = 0; i < define_count; i++) all[count++] = defines[i];
+    for (size_t i = 0; i < face->image_count; i++) {
+        if (face->images[i].output) continue;
+        char *name = arena_format(memory, "HAS_%s", face->images[i].name);
+        for (char *c = name; *c; c++) *c = (char)toupper((unsigned char)*c);
+        all[count++] = (shader_define){name, p->images[i].id ? "1" : "0"};
+    }
+    for (size_t i = 0; i < face->field_count; i++) {
+        char *name = arena_format(memory, "HAS_%s", face->fields[i].name);
+        for (char *c = name; *c; c++) *c = (char)toupper((unsigned char)*c);
+        all[count++] = (shader_define){name, p->fields[i] ? "1" : "0"};
+    }
+    shader_text fields = {"fields.glsl", p->program ? field_program_text(p->program) : ""};
+    bool done = shader_compile(p->host->library, memory,
+                               &(shader_compile_desc){
+                                   .name = shader,
+                                   .stage = stage,
+                                   .defines = all,
+                                   .define_count = count,
+                                   .texts = &fields,
+                                   .text_count = 1,
+                                   .options = p->options,
+                                   .counters = p->host->counters,
+                               },
+                               out);
+    return done || err_prefix("%s: ", p->label);
+}
+
+gpu_pipeline *pass_create_compute(pass *p, const shader_binary *binary) {
+    gpu_slot slots[GPU_MAX_SLOTS];
+    if (binary->slot_count > GPU_MAX_SLOTS) {
+        err_set("%s: %zu bindings; at most %d are possible", p->label, binary->slot_count,
+                GPU_MAX_SLOTS);
+        return NULL;
+    }
+    for (size_t i = 0; i < binary->slot_count; i++) slots[i] = binary->slots[i].slot;
+    gpu_compute_desc desc = {
+        .label = p->label,
+        .code = binary->code,
+        .code_size = binary->size,
+        .slots = slots,
+        .slot_count = binary->slot_count,
+    };
+    memcpy(desc.local_size, binary->local_size, sizeof desc.local_size);
+    return gpu_pipeline_create_compute(p->host->device, &desc);
+}
+
+gpu_pipeline *pass_create_fullscreen(pass *p, const shader_binary *fragment,
+                                     const gpu_format *formats, size_t count) {
+    shader_binary vertex;
+    if (!shader_compile(
+            p->host->library, p->host->memory,
+            &(shader_compile_desc){.name = "lib/fullscreen.vert", .stage = SHADER_VERTEX}, &vertex))
+        return NULL;
+    gpu_slot slots[GPU_MAX_SLOTS];
+    if (fragment->slot_count > GPU_MAX_SLOTS || count > 4) {
+        err_set("%s: too many bindings or outputs", p->label);
+        return NULL;
+    }
+    for (size_t i = 0; i < fragment->slot_count; i++) slots[i] = fragment->slots[i].slot;
+    gpu_graphics_desc desc = {
+        .label = p->label,
+        .vertex_code = vertex.code,
+        .vertex_size = vertex.size,
+        .fragment_code = fragment->code,
+        .fragment_size = fragment->size,
+        .slots = slots,
+        .slot_count = fragment->slot_count,
+    };
+    for (size_t i = 0; i < count; i++) desc.colors[i] = formats[i];
+    return gpu_pipeline_create_graphics(p->host->device, &desc);
+}
+
+static bool make_palettes(pass *p) {
+    const field_texture *textures;
+    size_t count = field_program_textures(p->program, &textures);
+    p->palettes = arena_alloc(p->host->memory, count * sizeof *p->palettes);
+    for (size_t i = 0; i < count; i++) {
+        if (!textures[i].palette) continue;
+        pass_palette *slot = &p->palettes[p->palette_count++];
+        slot->source = textures[i].palette;
+        slot->time = (double)NAN;
+        slot->image = gpu_image_create(p->host->device, &(gpu_image_desc){
+                                                            .label = "palette",
+                                                            .format = GPU_RGBA16F,
+                                                            .width = PALETTE_SIZE,
+                                                            .height = 1,
+                                                            .use = GPU_USE_SAMPLED,
+                                                        });
+        if (!slot->image) return false;
+    }
+    return true;
+}
+
+// Missing optional inputs are bound to one black, transparent texel.
+static bool make_blanks(pass *p) {
+    for (int i = 0; i < 2; i++) {
+        p->blank[i] = gpu_image_create(p->host->device, &(gpu_image_desc){
+                                                            .label = "blank",
+                                                            .format = GPU_RGBA16F,
+                                                            .width = 1,
+                                                            .height = 1,
+                                                            .depth = (uint32_t)i,
+                                                            .use = GPU_USE_SAMPLED,
+                                                        });
+        const uint16_t texel[4] = {0};
+        if (!p->blank[i] || !gpu_image_write(p->host->device, p->blank[i], 0, texel, sizeof texel))
+            return false;
+    }
+    return true;
+}
+
+static bool make_counters(pass *p) {
+    if (!p->host->counters || !p->face->counter_count) return true;
+    p->counters = gpu_buffer_create(p->host->device, &(gpu_buffer_desc){
+                                                         .label = "counters",
+                                                         .size = p->face->counter_count * 8,
+                                                         .kind = GPU_BUFFER_DEVICE,
+                                                     });
+    return p->counters != NULL;
+}
+
+static bool make_pipeline(pass *p) {
+    bool drawn = str_ends_with(p->shader, ".frag");
+    shader_stage stage = drawn ? SHADER_FRAGMENT : SHADER_COMPUTE;
+    if (!pass_compile(p, p->shader, stage, NULL, 0, &p->binary)) return false;
+    if (drawn) {
+        gpu_format formats[4];
+        size_t count = 0;
+        for (size_t i = 0; i < p->face->image_count && count < 4; i++)
+            if (p->face->images[i].output) formats[count++] = p->formats[i];
+        p->pipeline = pass_create_fullscreen(p, &p->binary, formats, count);
+    } else {
+        p->pipeline = pass_create_compute(p, &p->binary);
+    }
+    return p->pipeline != NULL;
+}
+
+bool pass_build(pass *p) {
+    p->program = generate(p);
+    if (!p->program) return err_prefix("%s: ", p->label);
+    if (p->type && p->type->build) {
+        if (!p->type->build(p)) return false;
+    } else if (!make_pipeline(p)) {
+        return false;
+    }
+    p->block = arena_alloc(p->host->memory, pass_block_size(&p->binary) + 16);
+    p->numbers = arena_alloc(p->host->memory, field_program_block_size(p->program) + 16);
+    return make_palettes(p) && make_blanks(p) && make_counters(p);
+}
+
+// What pass_build can find wrong without a device.
+bool pass_check(pass *p) {
+    p->program = generate(p);
+    if (!p->program) return err_prefix("%s: ", p->label);
+    if (p->type && p->type->check) return p->type->check(p);
+    shader_stage stage = str_ends_with(p->shader, ".frag") ? SHADER_FRAGMENT : SHADER_COMPUTE;
+    return pass_compile(p, p->shader, stage, NULL, 0, &p->binary);
+}
+
+void pass_destroy(pass *p) {
+    gpu *device = p->host->device;
+    if (p->type && p->type->destroy) p->type->destroy(p);
+    for (size_t i = 0; i < p->palette_count; i++) gpu_image_destroy(device, p->palettes[i].image);
+    for (int i = 0; i < 2; i++)
+        if (p->blank[i]) gpu_image_destroy(device, p->blank[i]);
+    if (p->counters) gpu_buffer_destroy(device, p->counters);
+    if (p->pipeline) gpu_pipeline_destroy(device, p->pipeline);
+    mem_free(p->meshes);
+    *p = (pass){0};
+}
+
+void pass_host_free(pass_host *host) {
+    mem_free(host->grid_images);
+    host->grid_images = NULL;
+    host->grid_image_count = host->grid_image_capacity = 0;
+}

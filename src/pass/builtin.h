@@ -1,0 +1,21 @@
+// Hooks of the built-in pass types (pass.h says when each is called).
+#pragma once
+#include "pass/pass.h"
+
+bool geometry_declare(pass *p);
+bool geometry_check(pass *p);
+bool geometry_build(pass *p);
+bool geometry_record(pass *p);
+void geometry_destroy(pass *p);
+
+bool march_declare(pass *p);
+bool march_fill(pass *p, const shader_binary *binary, unsigned char *block);
+
+bool bloom_declare(pass *p);
+bool bloom_check(pass *p);
+bool bloom_build(pass *p);
+bool bloom_record(pass *p);
+void bloom_destroy(pass *p);
+
+bool bake_declare(pass *p);
+bool bake_fill(pass *p, const shader_binary *binary, unsigned char *block);

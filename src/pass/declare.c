@@ -1,0 +1,109 @@
+// From a pass to the graph: its outputs become images, what it reads becomes edges.
+#include "base/error.h"
+#include "base/memory.h"
+#include "pass/pass_impl.h"
+#include <string.h>
+
+static bool declare_output(pass *p, size_t index) {
+    const shader_image *image = &p->face->images[index];
+    bool drawn = str_ends_with(p->shader, ".frag");
+    p->images[index] = graph_add_image(
+        p->host->graph, &(graph_image_desc){
+                            .name = arena_format(p->host->memory, "%s.%s", p->label, image->name),
+                            .format = p->formats[index],
+                            .scale = p->scale,
+                            .target = drawn,
+                        });
+    return p->images[index].id != 0;
+}
+
+bool pass_declare_images(pass *p) {
+    const shader_interface *face = p->face;
+    for (size_t i = 0; i < face->image_count; i++)
+        if (face->images[i].output && !p->images[i].id && !declare_output(p, i)) return false;
+    for (size_t i = 0; i < face->image_count; i++) {
+        const shader_image *image = &face->images[i];
+        if (image->output || p->images[i].id) continue;
+        if (image->history) {
+            int output = pass_find_image(p, image->history_of);
+            if (output < 0 || !face->images[output].output)
+                return err_set("%s: input '%s' is the history of '%s', which is no output",
+                               face->path, image->name, image->history_of);
+            p->images[i] = graph_add_history(p->host->graph, p->images[output]);
+        } else if (!image->optional) {
+            return err_set("%s: input '%s' is missing (%s)", p->label, image->name, image->help);
+        }
+    }
+    return true;
+}
+
+static bool record(void *user, graph *g, gpu *device) {
+    (void)g;
+    (void)device;
+    pass *p = user;
+    return p->type && p->type->record ? p->type->record(p) : pass_record(p);
+}
+
+bool pass_add_to_graph(pass *p) {
+    return pass_add_to_graph_with(p, NULL, 0);
+}
+
+bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count) {
+    const shader_interface *face = p->face;
+    size_t read_count = 0, write_count = 0, capacity = 0;
+    graph_image *reads = NULL;
+    graph_image *writes = mem_alloc((face->image_count + more_count) * sizeof *writes);
+    for (size_t i = 0; i < more_count; i++) writes[write_count++] = more[i];
+    for (size_t i = 0; i < face->image_count; i++) {
+        if (face->images[i].output) {
+            writes[write_count++] = p->images[i];
+        } else {
+            MEM_RESERVE(reads, read_count + 1, capacity);
+            reads[read_count++] = p->images[i];
+        }
+    }
+    for (size_t i = 0; i < face->field_count; i++) {
+        const field_grid *grids[64];
+        size_t count = p->fields[i] ? field_grids(p->fields[i], grids, COUNT_OF(grids)) : 0;
+        for (size_t g = 0; g < count && g < COUNT_OF(grids); g++) {
+            graph_image image = pass_grid_image(p->host, grids[g]);
+            if (!image.id) continue;
+            MEM_RESERVE(reads, read_count + 1, capacity);
+            reads[read_count++] = image;
+        }
+    }
+    bool done = graph_add_pass(p->host->graph, &(graph_pass_desc){
+                                                   .name = p->label,
+                                                   .reads = reads,
+                                                   .read_count = read_count,
+                                                   .writes = writes,
+                                                   .write_count = write_count,
+                                                   .record = record,
+                                                   .user = p,
+                                               });
+    mem_free(reads);
+    mem_free(writes);
+    return done;
+}
+
+bool pass_declare(pass *p) {
+    const shader_interface *face = p->face;
+    if (p->host->before_declare && !p->host->before_declare(p->host->user, p)) return false;
+    for (size_t i = 0; i < face->field_count; i++)
+        if (face->fields[i].required && !p->fields[i])
+            return err_set("%s: field '%s' is missing (%s)", p->label, face->fields[i].name,
+                           face->fields[i].help);
+    if (p->type && p->type->declare) return p->type->declare(p);
+    return pass_declare_images(p) && pass_add_to_graph(p);
+}
+
+void pass_host_add_grid_image(pass_host *host, const field_grid *grid, graph_image image) {
+    MEM_RESERVE(host->grid_images, host->grid_image_count + 1, host->grid_image_capacity);
+    host->grid_images[host->grid_image_count++] = (pass_grid){grid, image};
+}
+
+graph_image pass_grid_image(const pass_host *host, const field_grid *grid) {
+    for (size_t i = 0; i < host->grid_image_count; i++)
+        if (host->grid_images[i].grid == grid) return host->grid_images[i].image;
+    return (graph_image){0};
+}

@@ -1,0 +1,200 @@
+// Making a pass and setting what it takes: every name is looked up in the shader's own
+// declarations, so that built-in passes and a user's shader behave alike.
+#include "base/error.h"
+#include "base/memory.h"
+#include "pass/pass_impl.h"
+#include <math.h>
+#include <string.h>
+
+pass *pass_create(pass_host *host, const pass_type *type, const char *shader, const char *label) {
+    const char *file = type ? type->shader : shader;
+    const shader_interface *face = shader_interface_load(host->library, host->memory, file);
+    if (!face) return NULL;
+    arena *memory = host->memory;
+    pass *p = arena_alloc(memory, sizeof *p);
+    *p = (pass){
+        .host = host,
+        .type = type,
+        .label = arena_string(memory, label),
+        .shader = arena_string(memory, file),
+        .face = face,
+        .uniforms = arena_alloc(memory, face->uniform_count * sizeof *p->uniforms),
+        .options = arena_alloc(memory, face->option_count * sizeof *p->options),
+        .fields = arena_alloc(memory, face->field_count * sizeof *p->fields),
+        .images = arena_alloc(memory, face->image_count * sizeof *p->images),
+        .formats = arena_alloc(memory, face->image_count * sizeof *p->formats),
+        .scale = 1,
+    };
+    for (size_t i = 0; i < face->option_count; i++) p->options[i] = face->options[i].value;
+    for (size_t i = 0; i < face->image_count; i++) p->formats[i] = face->images[i].format;
+    return p;
+}
+
+const char *pass_label(const pass *p) {
+    return p->label;
+}
+const shader_interface *pass_interface(const pass *p) {
+    return p->face;
+}
+float pass_get_scale(const pass *p) {
+    return p->scale;
+}
+
+const field *pass_get_uniform(const pass *p, size_t index) {
+    return p->uniforms[index];
+}
+
+// ---- names ------------------------------------------------------------------------------------
+
+pass_key pass_find_key(const pass *p, const char *name, size_t *index) {
+    const shader_interface *face = p->face;
+    for (*index = 0; *index < face->uniform_count; ++*index)
+        if (strcmp(face->uniforms[*index].name, name) == 0) return PASS_UNIFORM;
+    for (*index = 0; *index < face->option_count; ++*index)
+        if (strcmp(face->options[*index].name, name) == 0) return PASS_OPTION;
+    for (*index = 0; *index < face->field_count; ++*index)
+        if (strcmp(face->fields[*index].name, name) == 0) return PASS_FIELD;
+    for (*index = 0; *index < face->image_count; ++*index)
+        if (!face->images[*index].output && strcmp(face->images[*index].name, name) == 0)
+            return PASS_IMAGE;
+    return PASS_UNKNOWN;
+}
+
+// "march: unknown uniform 'stepz'; did you mean 'steps'?" over all names of the pass.
+static bool unknown(const pass *p, const char *what, const char *name) {
+    const shader_interface *face = p->face;
+    size_t count = 0;
+    size_t total = face->uniform_count + face->option_count + face->field_count + face->image_count;
+    const char **names = mem_alloc((total + 1) * sizeof *names);
+    for (size_t i = 0; i < face->uniform_count; i++) names[count++] = face->uniforms[i].name;
+    for (size_t i = 0; i < face->option_count; i++) names[count++] = face->options[i].name;
+    for (size_t i = 0; i < face->field_count; i++) names[count++] = face->fields[i].name;
+    for (size_t i = 0; i < face->image_count; i++)
+        if (!face->images[i].output) names[count++] = face->images[i].name;
+    names[count++] = "resolution";
+    const char *near = str_nearest(name, names, count);
+    if (near) {
+        err_set("%s: unknown %s '%s'; did you mean '%s'?", p->label, what, name, near);
+    } else {
+        strbuf list = {0};
+        for (size_t i = 0; i < count; i++) strbuf_add(&list, "%s%s", i ? ", " : "", names[i]);
+        err_set("%s: unknown %s '%s'; accepted: %s", p->label, what, name, strbuf_text(&list));
+        strbuf_free(&list);
+    }
+    mem_free(names);
+    return false;
+}
+
+// ---- setting ----------------------------------------------------------------------------------
+
+static int uniform_components(shader_type type) {
+    switch (type) {
+    case SHADER_VEC2:
+        return 2;
+    case SHADER_VEC3:
+        return 3;
+    case SHADER_VEC4:
+        return 4;
+    default:
+        return 1;
+    }
+}
+
+bool pass_set_uniform(pass *p, const char *name, const field *value) {
+    size_t index;
+    if (pass_find_key(p, name, &index) != PASS_UNIFORM) return unknown(p, "uniform", name);
+    const shader_uniform *uniform = &p->face->uniforms[index];
+    if (!value->uniform) return err_set("%s: uniform '%s' must not vary in space", p->label, name);
+    int wanted = uniform_components(uniform->type);
+    bool fits = value->components == wanted || value->components == 1 ||
+                (wanted == 3 && value->components == 4) || (wanted == 2 && value->components == 3);
+    if (!fits)
+        return err_set("%s: uniform '%s' takes %d component%s, not %d", p->label, name, wanted,
+                       wanted == 1 ? "" : "s", value->components);
+    if (strcmp(value->kind->name, "constant") == 0) {
+        for (int i = 0; i < value->components && i < wanted; i++) {
+            float v = value->value[i];
+            if (!isfinite(v) || v < uniform->min || v > uniform->max)
+                return err_set("%s: uniform '%s' is %g; accepted: %g to %g%s%s", p->label, name,
+                               (double)v, (double)uniform->min, (double)uniform->max,
+                               uniform->unit[0] ? " " : "", uniform->unit);
+        }
+    }
+    p->uniforms[index] = value;
+    return true;
+}
+
+bool pass_set_option(pass *p, const char *name, const char *word) {
+    size_t index;
+    if (pass_find_key(p, name, &index) != PASS_OPTION) return unknown(p, "option", name);
+    const shader_option *option = &p->face->options[index];
+    for (size_t i = 0; i < option->word_count; i++) {
+        if (strcmp(option->words[i], word) != 0) continue;
+        p->options[index] = i;
+        return true;
+    }
+    strbuf list = {0};
+    for (size_t i = 0; i < option->word_count; i++)
+        strbuf_add(&list, "%s%s", i ? ", " : "", option->words[i]);
+    err_set("%s: option '%s' cannot be '%s'; accepted: %s", p->label, name, word,
+            strbuf_text(&list));
+    strbuf_free(&list);
+    return false;
+}
+
+bool pass_set_field(pass *p, const char *name, const field *value) {
+    size_t index;
+    if (pass_find_key(p, name, &index) != PASS_FIELD) return unknown(p, "field", name);
+    const shader_field *slot = &p->face->fields[index];
+    bool fits = value->components == slot->components || value->components == 1 ||
+                (slot->components == 3 && value->components == 4);
+    if (!fits)
+        return err_set("%s: field '%s' has %d components, not %d", p->label, name, slot->components,
+                       value->components);
+    p->fields[index] = value;
+    return true;
+}
+
+bool pass_set_image(pass *p, const char *name, graph_image image) {
+    size_t index;
+    if (pass_find_key(p, name, &index) != PASS_IMAGE) return unknown(p, "input", name);
+    bool volume = graph_get_desc(p->host->graph, image)->depth > 0;
+    if (volume != p->face->images[index].volume)
+        return err_set("%s: input '%s' takes a %dD image", p->label, name, volume ? 2 : 3);
+    p->images[index] = image;
+    return true;
+}
+
+bool pass_set_scale(pass *p, float scale) {
+    if (!(scale > 0 && scale <= 1))
+        return err_set("%s: resolution is %g; accepted: above 0, up to 1", p->label, (double)scale);
+    p->scale = scale;
+    return true;
+}
+
+int pass_find_image(const pass *p, const char *name) {
+    for (size_t i = 0; i < p->face->image_count; i++)
+        if (strcmp(p->face->images[i].name, name) == 0) return (int)i;
+    return -1;
+}
+
+bool pass_set_format(pass *p, const char *output, gpu_format format) {
+    int index = pass_find_image(p, output);
+    if (index < 0 || !p->face->images[index].output)
+        return err_set("%s: no output '%s'", p->label, output);
+    p->formats[index] = format;
+    return true;
+}
+
+bool pass_add_mesh(pass *p, scene_mesh *mesh) {
+    if (!p->type || strcmp(p->type->name, "geometry") != 0)
+        return err_set("%s: takes no meshes; pass them to geometry", p->label);
+    MEM_RESERVE(p->meshes, p->mesh_count + 1, p->mesh_capacity);
+    p->meshes[p->mesh_count++] = mesh;
+    return true;
+}
+
+graph_image pass_output(const pass *p, const char *name) {
+    int index = pass_find_image(p, name);
+    return index >= 0 && p->face->images[index].output ? p->images[index] : (graph_image){0};
+}

@@ -1,0 +1,78 @@
+// The inside of a pass, for the files of this layer only.
+#pragma once
+#include "field/program.h"
+#include "pass/pass.h"
+
+typedef struct pass_palette { // a palette's texture, one per pass that uses it
+    const palette *source;
+    gpu_image *image;
+    double time; // of its content; NAN: none yet
+} pass_palette;
+
+struct pass {
+    pass_host *host;
+    const pass_type *type; // NULL: a user's shader
+    const char *label, *shader;
+    const shader_interface *face;
+
+    // As set; one per entry of `face`.
+    const field **uniforms; // NULL: the default
+    size_t *options;
+    const field **fields; // NULL: the default
+    graph_image *images;  // inputs, and outputs once declared
+    gpu_format *formats;  // outputs
+    float scale;
+    scene_mesh **meshes;
+    size_t mesh_count, mesh_capacity;
+
+    // After pass_build.
+    field_program *program;
+    shader_binary binary;
+    gpu_pipeline *pipeline;
+    unsigned char *block, *numbers; // host copies of "Uniforms" and "FieldNumbers"
+    pass_palette *palettes;
+    size_t palette_count;
+    gpu_buffer *counters;
+    gpu_image *blank[2];     // what missing optional inputs read: 2D, 3D
+    const field_grid *baked; // bake only: the grid it fills
+    void *state;             // of the type's hooks
+};
+
+// ---- help for hooks ---------------------------------------------------------------------------
+
+// Compiles `shader` with the pass's options, fields and the given defines.
+bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_define *defines,
+                  size_t define_count, shader_binary *out);
+gpu_pipeline *pass_create_compute(pass *p, const shader_binary *binary);
+// A full-screen triangle drawn with a fragment shader to targets of these formats.
+gpu_pipeline *pass_create_fullscreen(pass *p, const shader_binary *fragment,
+                                     const gpu_format *formats, size_t count);
+
+// Where a uniform lies in a block; false when the compiler dropped it as unused.
+bool pass_find_member(const shader_binary *binary, const char *name, shader_member *out);
+void pass_write_member(const shader_binary *binary, unsigned char *block, const char *name,
+                       const void *data, size_t size);
+// Evaluates all uniforms of the pass into `block` (laid out by `binary`) and calls the fill hook.
+bool pass_fill_block(pass *p, const shader_binary *binary, unsigned char *block);
+uint32_t pass_block_size(const shader_binary *binary);
+
+// Binds every slot by its name: blocks, fields' textures, images of the interface. `overrides`
+// (may be NULL) are matched first, by slot name.
+typedef struct pass_override {
+    const char *name;
+    gpu_binding binding; // its `binding` number is filled in
+} pass_override;
+bool pass_bind(pass *p, const shader_binary *binary, const unsigned char *block,
+               const pass_override *overrides, size_t override_count,
+               gpu_binding out[GPU_MAX_SLOTS], size_t *count);
+
+bool pass_prepare(pass *p); // uniforms, field numbers, palettes and counters of this frame
+bool pass_record(pass *p);  // one dispatch or full-screen draw over the first output
+graph_image pass_grid_image(const pass_host *host,
+                            const field_grid *grid);  // zero: not of the graph
+int pass_find_image(const pass *p, const char *name); // index in face->images, -1: none
+bool pass_declare_images(pass *p);                    // histories and outputs at the pass's scale
+// The same, with images of its own that it writes besides.
+bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count);
+bool pass_add_to_graph(pass *p);                   // reads and writes by its images and fields
+float pass_evaluate(pass *p, const char *uniform); // current value of a scalar uniform

@@ -1,0 +1,214 @@
+// A pass in a frame: uniforms evaluated into their block, every slot bound by its name, work
+// dispatched.
+#include "base/error.h"
+#include "base/memory.h"
+#include "pass/pass_impl.h"
+#include <math.h>
+#include <string.h>
+
+// ---- uniforms ---------------------------------------------------------------------------------
+
+uint32_t pass_block_size(const shader_binary *binary) {
+    for (size_t i = 0; i < binary->slot_count; i++)
+        if (strcmp(binary->slots[i].name, "Uniforms") == 0) return binary->slots[i].size;
+    return 0;
+}
+
+bool pass_find_member(const shader_binary *binary, const char *name, shader_member *out) {
+    for (size_t i = 0; i < binary->member_count; i++) {
+        if (strcmp(binary->members[i].name, name) != 0) continue;
+        *out = binary->members[i];
+        return true;
+    }
+    return false;
+}
+
+void pass_write_member(const shader_binary *binary, unsigned char *block, const char *name,
+                       const void *data, size_t size) {
+    shader_member member;
+    if (!pass_find_member(binary, name, &member)) return;
+    memcpy(block + member.offset, data, size < member.size ? size : member.size);
+}
+
+// Current value of a uniform, kept within its declared range.
+static bool evaluate(const pass *p, size_t index, float out[4]) {
+    const shader_uniform *uniform = &p->face->uniforms[index];
+    const field *node = p->uniforms[index];
+    memcpy(out, uniform->value, 4 * sizeof *out);
+    if (!node) return true;
+    float value[4] = {0};
+    if (!field_eval(node, p->host->context, (float3){0, 0, 0}, value))
+        return err_prefix("%s.%s: ", p->label, uniform->name);
+    for (int i = 0; i < 4; i++) {
+        float v = node->components == 1 ? value[0] : value[i];
+        out[i] = isfinite(v) ? clampf(v, uniform->min, uniform->max) : uniform->value[i];
+    }
+    return true;
+}
+
+float pass_evaluate(pass *p, const char *name) {
+    size_t index;
+    float value[4] = {0};
+    if (pass_find_key(p, name, &index) == PASS_UNIFORM) evaluate(p, index, value);
+    return value[0];
+}
+
+bool pass_fill_block(pass *p, const shader_binary *binary, unsigned char *block) {
+    for (size_t i = 0; i < p->face->uniform_count; i++) {
+        shader_member member;
+        float value[4];
+        if (!pass_find_member(binary, p->face->uniforms[i].name, &member)) continue;
+        if (!evaluate(p, i, value)) return false;
+        if (member.type == SHADER_INT || member.type == SHADER_BOOL || member.type == SHADER_ENUM) {
+            int32_t whole = (int32_t)lrintf(value[0]);
+            memcpy(block + member.offset, &whole, sizeof whole);
+        } else {
+            memcpy(block + member.offset, value, member.size < 16 ? member.size : 16);
+        }
+    }
+    return !p->type || !p->type->fill || p->type->fill(p, binary, block);
+}
+
+// ---- bindings ---------------------------------------------------------------------------------
+
+static bool update_palettes(pass *p) {
+    double time = p->host->context->time;
+    for (size_t i = 0; i < p->palette_count; i++) {
+        pass_palette *slot = &p->palettes[i];
+        if (slot->time == time || (!isnan(slot->time) && !palette_is_animated(slot->source)))
+            continue;
+        uint16_t texels[PALETTE_SIZE * 4];
+        palette_bake(slot->source, time, texels);
+        if (!gpu_image_write(p->host->device, slot->image, 0, texels, sizeof texels)) return false;
+        slot->time = time;
+    }
+    return true;
+}
+
+static gpu_image *palette_image(const pass *p, const palette *source) {
+    for (size_t i = 0; i < p->palette_count; i++)
+        if (p->palettes[i].source == source) return p->palettes[i].image;
+    return NULL;
+}
+
+// A texture of the fields. A grid's second set is absent when it is not blended just now.
+static bool bind_field_texture(pass *p, const char *name, gpu_binding *out) {
+    const field_texture *textures;
+    size_t count = field_program_textures(p->program, &textures);
+    for (size_t i = 0; i < count; i++) {
+        const field_texture *t = &textures[i];
+        if (strcmp(t->glsl_name, name) != 0) continue;
+        if (t->palette) {
+            out->image = palette_image(p, t->palette);
+            out->sampler = GPU_LINEAR_CLAMP;
+            return true;
+        }
+        out->image = t->grid->state.images[t->set][t->image];
+        if (!out->image) out->image = t->grid->state.images[0][t->image];
+        graph_image made = pass_grid_image(p->host, t->grid);
+        if (made.id) out->image = graph_get_image(p->host->graph, made);
+        if (!out->image) out->image = p->blank[1];
+        out->sampler = GPU_LINEAR_CLAMP;
+        return true;
+    }
+    return false;
+}
+
+static bool bind_image(pass *p, const char *glsl_name, gpu_binding *out) {
+    for (size_t i = 0; i < p->face->image_count; i++) {
+        const shader_image *image = &p->face->images[i];
+        if (strcmp(image->glsl_name, glsl_name) != 0) continue;
+        out->image = p->images[i].id ? graph_get_image(p->host->graph, p->images[i])
+                                     : p->blank[image->volume];
+        out->sampler = GPU_LINEAR_CLAMP;
+        return true;
+    }
+    return false;
+}
+
+static bool bind_slot(pass *p, const shader_binary *binary, const shader_slot *slot,
+                      const unsigned char *block, gpu_binding *out) {
+    if (slot->slot.kind == GPU_SLOT_UNIFORM) {
+        if (strcmp(slot->name, "Uniforms") == 0) {
+            out->uniform = block;
+            out->uniform_size = pass_block_size(binary);
+        } else if (strcmp(slot->name, "Frame") == 0) {
+            out->uniform = p->host->frame;
+            out->uniform_size = sizeof *p->host->frame;
+        } else if (strcmp(slot->name, "FieldNumbers") == 0) {
+            out->uniform = p->numbers;
+            out->uniform_size = field_program_block_size(p->program);
+        } else {
+            return err_set("%s: uniform block '%s' is not known; declare loose uniforms instead",
+                           p->label, slot->name);
+        }
+        return true;
+    }
+    if (slot->slot.kind == GPU_SLOT_STORAGE_BUFFER) {
+        out->buffer = strcmp(slot->name, "Counters") == 0 ? p->counters : NULL;
+        return out->buffer || err_set("%s: storage buffer '%s' is not known", p->label, slot->name);
+    }
+    return bind_field_texture(p, slot->name, out) || bind_image(p, slot->name, out) ||
+           err_set("%s: image '%s' has no annotation (//= input or //= output)", p->label,
+                   slot->name);
+}
+
+bool pass_bind(pass *p, const shader_binary *binary, const unsigned char *block,
+               const pass_override *overrides, size_t override_count,
+               gpu_binding out[GPU_MAX_SLOTS], size_t *count) {
+    *count = 0;
+    for (size_t i = 0; i < binary->slot_count; i++) {
+        const shader_slot *slot = &binary->slots[i];
+        gpu_binding *binding = &out[(*count)++];
+        *binding = (gpu_binding){0};
+        bool found = false;
+        for (size_t o = 0; o < override_count && !found; o++) {
+            found = strcmp(overrides[o].name, slot->name) == 0;
+            if (found) *binding = overrides[o].binding;
+        }
+        if (!found && !bind_slot(p, binary, slot, block, binding)) return false;
+        binding->binding = slot->slot.binding;
+    }
+    return true;
+}
+
+// ---- recording --------------------------------------------------------------------------------
+
+bool pass_prepare(pass *p) {
+    if (p->counters) gpu_buffer_fill(p->host->device, p->counters, 0);
+    return update_palettes(p) &&
+           (field_program_fill(p->program, p->host->context, p->numbers) ||
+            err_prefix("%s: ", p->label)) &&
+           pass_fill_block(p, &p->binary, p->block);
+}
+
+static bool draw_fullscreen(pass *p, const gpu_binding *bindings, size_t count) {
+    gpu_draw draw = {.bindings = bindings, .binding_count = count, .vertices = 3};
+    gpu_draw_desc desc = {.pipeline = p->pipeline, .draws = &draw, .draw_count = 1};
+    size_t targets = 0;
+    for (size_t i = 0; i < p->face->image_count && targets < 4; i++)
+        if (p->face->images[i].output)
+            desc.colors[targets++] = graph_get_image(p->host->graph, p->images[i]);
+    return gpu_draw_all(p->host->device, &desc);
+}
+
+bool pass_record(pass *p) {
+    gpu_binding bindings[GPU_MAX_SLOTS];
+    size_t count;
+    if (!pass_prepare(p) || !pass_bind(p, &p->binary, p->block, NULL, 0, bindings, &count))
+        return false;
+    if (str_ends_with(p->shader, ".frag")) return draw_fullscreen(p, bindings, count);
+    gpu_dispatch_desc dispatch = {p->pipeline, bindings, count, {1, 1, 1}};
+    for (size_t i = 0; i < p->face->image_count; i++) {
+        if (!p->face->images[i].output) continue;
+        graph_get_size(p->host->graph, p->images[i], dispatch.threads);
+        break;
+    }
+    return gpu_dispatch(p->host->device, &dispatch);
+}
+
+bool pass_read_counters(pass *p, uint64_t *out) {
+    memset(out, 0, p->face->counter_count * sizeof *out);
+    if (!p->counters) return true;
+    return gpu_buffer_read(p->host->device, p->counters, 0, out, p->face->counter_count * 8);
+}

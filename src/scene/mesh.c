@@ -1,0 +1,73 @@
+// Meshes on the device: vertices and indices as storage buffers (vertices are pulled by the vertex
+// shader), textures as sRGB images.
+#include "base/memory.h"
+#include "scene/scene.h"
+#include <string.h>
+
+static gpu_buffer *upload(gpu *g, const char *label, const void *data, size_t size) {
+    gpu_buffer *buffer = gpu_buffer_create(
+        g, &(gpu_buffer_desc){.label = label, .size = size, .kind = GPU_BUFFER_DEVICE});
+    if (buffer && !gpu_buffer_write(g, buffer, 0, data, size)) {
+        gpu_buffer_destroy(g, buffer);
+        buffer = NULL;
+    }
+    return buffer;
+}
+
+static gpu_image *upload_texture(gpu *g, const char *label, const mesh_texture *texture) {
+    gpu_image *image = gpu_image_create(g, &(gpu_image_desc){
+                                               .label = label,
+                                               .format = GPU_RGBA8_SRGB,
+                                               .width = texture->width,
+                                               .height = texture->height,
+                                               .use = GPU_USE_SAMPLED,
+                                           });
+    size_t size = (size_t)texture->width * texture->height * 4;
+    if (image && !gpu_image_write(g, image, 0, texture->pixels, size)) {
+        gpu_image_destroy(g, image);
+        image = NULL;
+    }
+    return image;
+}
+
+bool scene_mesh_upload(scene_mesh *mesh, gpu *g) {
+    if (mesh->vertices) return true;
+    const mesh_data *data = &mesh->data;
+    mesh->textures = mem_alloc(data->texture_count * sizeof *mesh->textures);
+    mesh->vertices =
+        upload(g, mesh->name, data->vertices, data->vertex_count * sizeof *data->vertices);
+    mesh->indices = upload(g, mesh->name, data->indices, data->index_count * sizeof *data->indices);
+    bool done = mesh->vertices && mesh->indices;
+    for (uint32_t i = 0; done && i < data->texture_count; i++) {
+        mesh->textures[i] = upload_texture(g, mesh->name, &data->textures[i]);
+        done = mesh->textures[i] != NULL;
+    }
+    if (!done) scene_mesh_destroy(mesh, g);
+    return done;
+}
+
+void scene_mesh_destroy(scene_mesh *mesh, gpu *g) {
+    if (!mesh->textures) return; // never uploaded
+    for (uint32_t i = 0; i < mesh->data.texture_count; i++) gpu_image_destroy(g, mesh->textures[i]);
+    gpu_buffer_destroy(g, mesh->vertices);
+    gpu_buffer_destroy(g, mesh->indices);
+    mem_free(mesh->textures);
+    mesh->textures = NULL;
+    mesh->vertices = mesh->indices = NULL;
+}
+
+bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, mat4 out) {
+    float position[4], rotation[4], scale[4];
+    float3 origin = {0, 0, 0};
+    if (!field_eval(mesh->position, context, origin, position) ||
+        !field_eval(mesh->rotation, context, origin, rotation) ||
+        !field_eval(mesh->scale, context, origin, scale))
+        return false;
+    vec3 angles = {glm_rad(rotation[0]), glm_rad(rotation[1]), glm_rad(rotation[2])};
+    mat4 turn;
+    glm_euler_xyz(angles, turn);
+    glm_translate_make(out, position);
+    glm_mat4_mul(out, turn, out);
+    glm_scale_uni(out, scale[0]);
+    return true;
+}

@@ -1,0 +1,135 @@
+// Camera, sun and sky, evaluated once a frame into the block that every shader reads. Z is up.
+#include "scene/scene.h"
+#include <cglm/clipspace/persp_rh_zo.h>
+#include <string.h>
+
+static const field *scalar(arena *memory, float value) {
+    return field_constant(memory, 1, (float[4]){value});
+}
+
+static const field *vector(arena *memory, float x, float y, float z) {
+    return field_constant(memory, 3, (float[4]){x, y, z});
+}
+
+void scene_init(scene *s, arena *memory) {
+    s->camera = (scene_camera){
+        .target = vector(memory, 0, 0, 1),
+        .distance = scalar(memory, 6),
+        .yaw = scalar(memory, 0),
+        .pitch = scalar(memory, 10),
+        .fov = scalar(memory, 40),
+        .near = scalar(memory, 0.1f),
+        .far = scalar(memory, 1000),
+    };
+    s->sun = (scene_sun){
+        .azimuth = scalar(memory, 240),
+        .elevation = scalar(memory, 44),
+        .color = vector(memory, 1, 1, 1),
+        .strength = scalar(memory, 2.5f),
+    };
+    s->sky = (scene_sky){
+        .zenith = vector(memory, 0.22f, 0.32f, 0.48f),
+        .horizon = vector(memory, 0.22f, 0.32f, 0.48f),
+        .strength = scalar(memory, 0.6f),
+    };
+}
+
+// Evaluates a field that does not vary in space.
+static bool value_of(const field *node, const field_context *context, float out[4]) {
+    return field_eval(node, context, (float3){0, 0, 0}, out);
+}
+
+static bool scalar_of(const field *node, const field_context *context, float *out) {
+    float value[4];
+    if (!value_of(node, context, value)) return false;
+    *out = value[0];
+    return true;
+}
+
+static void direction(float azimuth, float elevation, vec3 out) {
+    float a = glm_rad(azimuth), e = glm_rad(elevation);
+    out[0] = cosf(e) * cosf(a);
+    out[1] = cosf(e) * sinf(a);
+    out[2] = sinf(e);
+}
+
+static bool camera_eye(const scene_camera *c, const field_context *context, vec3 eye, vec3 target) {
+    float value[4], distance, yaw, pitch;
+    if (!value_of(c->target, context, value)) return false;
+    glm_vec3_copy(value, target);
+    if (c->eye) {
+        if (!value_of(c->eye, context, value)) return false;
+        glm_vec3_copy(value, eye);
+        return true;
+    }
+    if (!scalar_of(c->distance, context, &distance) || !scalar_of(c->yaw, context, &yaw) ||
+        !scalar_of(c->pitch, context, &pitch))
+        return false;
+    vec3 back; // from the target to the eye: at yaw 0 the camera looks along +Y
+    direction(yaw - 90, clampf(pitch, -89.9f, 89.9f), back);
+    glm_vec3_scale(back, distance, back);
+    glm_vec3_add(target, back, eye);
+    return true;
+}
+
+static bool fill_camera(const scene_camera *c, const field_context *context, float aspect,
+                        struct frame_block *out) {
+    vec3 eye, target, forward, up = {0, 0, 1};
+    float fov, near, far;
+    if (!camera_eye(c, context, eye, target) || !scalar_of(c->fov, context, &fov) ||
+        !scalar_of(c->near, context, &near) || !scalar_of(c->far, context, &far))
+        return false;
+    fov = clampf(fov, 1, 170);
+    near = fmaxf(near, 1e-4f);
+    far = fmaxf(far, near * 2);
+    glm_vec3_sub(target, eye, forward);
+    if (glm_vec3_norm(forward) < 1e-6f) glm_vec3_copy((vec3){0, 1, 0}, forward);
+    glm_vec3_normalize(forward);
+    if (fabsf(forward[2]) > 0.999f) glm_vec3_copy((vec3){0, 1, 0}, up);
+
+    mat4 view, projection, inverse;
+    glm_look(eye, forward, up, view);
+    glm_perspective_rh_zo(glm_rad(fov), aspect, near, far, projection);
+    projection[1][1] = -projection[1][1]; // Vulkan's y points down
+    glm_mat4_inv(view, inverse);
+    memcpy(out->view.m, view, sizeof view);
+    memcpy(out->projection.m, projection, sizeof projection);
+    memcpy(out->view_inverse.m, inverse, sizeof inverse);
+    float half = tanf(glm_rad(fov) * 0.5f);
+    out->eye = (shared_vec4){{eye[0], eye[1], eye[2], 0}};
+    out->lens = (shared_vec4){{half * aspect, half, near, far}};
+    return true;
+}
+
+static bool fill_sun(const scene_sun *sun, const field_context *context, struct frame_block *out) {
+    float azimuth, elevation, strength, color[4];
+    if (!scalar_of(sun->azimuth, context, &azimuth) ||
+        !scalar_of(sun->elevation, context, &elevation) || !value_of(sun->color, context, color) ||
+        !scalar_of(sun->strength, context, &strength))
+        return false;
+    vec3 towards;
+    direction(azimuth, elevation, towards);
+    out->sun_direction = (shared_vec4){{towards[0], towards[1], towards[2], 0}};
+    float radiance = strength / GLM_PIf;
+    out->sun_radiance =
+        (shared_vec4){{color[0] * radiance, color[1] * radiance, color[2] * radiance, 0}};
+    return true;
+}
+
+static bool fill_sky(const scene_sky *sky, const field_context *context, struct frame_block *out) {
+    float zenith[4], horizon[4], strength;
+    if (!value_of(sky->zenith, context, zenith) || !value_of(sky->horizon, context, horizon) ||
+        !scalar_of(sky->strength, context, &strength))
+        return false;
+    for (int i = 0; i < 3; i++) {
+        out->sky_zenith.v[i] = zenith[i] * strength;
+        out->sky_horizon.v[i] = horizon[i] * strength;
+    }
+    return true;
+}
+
+bool scene_fill_frame(const scene *s, const field_context *context, float aspect,
+                      struct frame_block *out) {
+    return fill_camera(&s->camera, context, aspect, out) && fill_sun(&s->sun, context, out) &&
+           fill_sky(&s->sky, context, out);
+}
