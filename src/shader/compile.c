@@ -1,15 +1,25 @@
 // From a shader file to a binary: flatten, read annotations, put the prelude in front, then take
 // the code from the cache or from glslang, and reflect. Nothing is shared between two compiles
 // but the library's constant paths and its counter, so threads need no lock.
+//
+// glslang and SPIRV-Cross recurse over expressions and calls. A shader is a stranger's text, so
+// they run on a stack of their own that is large enough for all that glsl.c lets through.
 #include "base/memory.h"
 #include "shader/unit.h"
+#include <pthread.h>
 #include <string.h>
 
 enum { SALT = 1 }; // raise when the same text shall give other code
 
+static const size_t stack_size = (size_t)256 << 20; // address space; only what is used costs
+
 typedef struct job {
     shader_library *library;
     const shader_compile_desc *desc;
+    arena *memory; // of the results
+    shader_binary *out;
+    bool done;
+    char *message; // why not
     shader_unit unit;
     arena scratch;
     unit_inserts inserts;
@@ -17,7 +27,7 @@ typedef struct job {
 } job;
 
 static void add_text(job *j) {
-    const strbuf *text = &j->unit.text;
+    const strbuf *text = &j->unit.code;
     size_t done = 0;
     for (size_t i = 0; i < j->inserts.count; i++) {
         const unit_insert *insert = &j->inserts.items[i];
@@ -71,22 +81,41 @@ static void list_files(const shader_unit *unit, arena *memory, shader_binary *ou
     out->file_count = count;
 }
 
-static bool compile(job *j, arena *memory, shader_binary *out) {
+static bool compile(job *j) {
     const shader_interface *interface = unit_annotations(&j->unit, &j->scratch, &j->inserts);
     if (!interface || !unit_prelude(&j->unit, interface, j->desc, &j->source)) return false;
     add_text(j);
-    if (!translate(j, memory, out)) return false;
-    list_files(&j->unit, memory, out);
+    if (!translate(j, j->memory, j->out)) return false;
+    list_files(&j->unit, j->memory, j->out);
     return true;
+}
+
+static void *run(void *user) {
+    job *j = user;
+    j->done = compile(j);
+    if (!j->done) j->message = arena_string(&j->scratch, err_get()); // messages are per thread
+    return NULL;
+}
+
+static bool run_on_large_stack(job *j) {
+    pthread_t thread;
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    bool started = pthread_attr_setstacksize(&attributes, stack_size) == 0 &&
+                   pthread_create(&thread, &attributes, run, j) == 0;
+    pthread_attr_destroy(&attributes);
+    if (!started) return err_set("%s: no thread to compile on: too little memory", j->desc->name);
+    pthread_join(thread, NULL);
+    return j->done || err_set("%s", j->message);
 }
 
 bool shader_compile(shader_library *library, arena *memory, const shader_compile_desc *desc,
                     shader_binary *out) {
     *out = (shader_binary){0};
-    job j = {.library = library, .desc = desc};
+    job j = {.library = library, .desc = desc, .memory = memory, .out = out};
     unit_desc unit = {.name = desc->name, .texts = desc->texts, .text_count = desc->text_count};
     if (!unit_load(library, &unit, &j.unit)) return false;
-    bool done = compile(&j, memory, out);
+    bool done = run_on_large_stack(&j);
     strbuf_free(&j.source);
     mem_free(j.inserts.items);
     arena_free(&j.scratch);

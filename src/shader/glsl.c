@@ -2,7 +2,8 @@
 //
 // Vulkan's rules are relaxed, so that glslang itself gathers loose uniforms into one block, in
 // order of declaration. Its log is reduced to the first error, with the true file, line and the
-// source line beneath.
+// source line beneath. Once macros are expanded, statements of absurd length are refused: each
+// operator is one more level of glslang's recursion.
 #include "base/memory.h"
 #include "shader/unit.h"
 #include <ctype.h>
@@ -15,6 +16,7 @@
 #include <string.h>
 
 enum {
+    MAX_OPERATORS = 20000, // of one statement; a table of 5000 negative numbers has 10000
     MESSAGES = GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT,
     OPTIONS = GLSLANG_SHADER_AUTO_MAP_BINDINGS | GLSLANG_SHADER_AUTO_MAP_LOCATIONS |
               GLSLANG_SHADER_VULKAN_RULES_RELAXED,
@@ -69,10 +71,26 @@ static bool fail_log(const shader_unit *unit, const char *log, const char *mark)
 
 // ---- stages of a compile ----------------------------------------------------------------------
 
+// Operators between one `;` or brace and the next, at most. Dots of numbers do not count.
+static size_t longest_statement(const char *code) {
+    size_t longest = 0, count = 0;
+    for (; *code; code++) {
+        bool end = *code == ';' || *code == '{' || *code == '}';
+        bool member = *code == '.' && (isalpha((unsigned char)code[1]) || code[1] == '_');
+        count = end ? 0 : count + (member || strchr("+-*/%<>=!&|^?:,[~", *code) != NULL);
+        if (count > longest) longest = count;
+    }
+    return longest;
+}
+
 static bool parse(const shader_unit *unit, glslang_shader_t *shader, const glslang_input_t *input) {
     static const char initialiser[] = "Ignoring initializer for uniform";
     glslang_shader_set_options(shader, OPTIONS);
-    bool done = glslang_shader_preprocess(shader, input) && glslang_shader_parse(shader, input);
+    bool done = glslang_shader_preprocess(shader, input);
+    if (done && longest_statement(glslang_shader_get_preprocessed_code(shader)) > MAX_OPERATORS)
+        return err_set("%s: a statement has more than %d operators", unit->files[0].where.label,
+                       MAX_OPERATORS);
+    done = done && glslang_shader_parse(shader, input);
     const char *log = glslang_shader_get_info_log(shader);
     if (!done) return fail_log(unit, log, "ERROR: ");
     const char *ignored = strstr(log, initialiser);

@@ -8,12 +8,17 @@
 //
 // Invariants: a file is in a unit at most once; every file's block comments are closed, so text
 // never runs from one file into the next; conditions are not evaluated, an #include in a branch
-// that is not taken is read all the same.
+// that is not taken is read all the same. The compiler has an include resolver of its own, which
+// knows no folders to stay in: it must never see an #include. So it gets no comments, no lone
+// carriage returns, and no directive whose name is not complete on its line.
 #include "base/file.h"
 #include "base/memory.h"
 #include "shader/unit.h"
 #include <ctype.h>
+#include <stdio.h>
 #include <string.h>
+
+#define BLANKS " \t\v\f"
 
 typedef struct loader {
     const shader_library *library;
@@ -95,6 +100,17 @@ static bool fail_cycle(const loader *l, place at, int target) {
     return false;
 }
 
+// Every way to end a line becomes a newline.
+static size_t unify_newlines(char *text, size_t size) {
+    size_t kept = 0;
+    for (size_t i = 0; i < size; i++) {
+        bool pair = text[i] == '\r' && i + 1 < size && text[i + 1] == '\n';
+        if (!pair) text[kept++] = text[i] == '\r' ? '\n' : text[i];
+    }
+    text[kept] = '\0';
+    return kept;
+}
+
 // Index of a file already in the unit, or -1. Generated texts have no path, only a name.
 static int find_known(const shader_unit *unit, const library_file *where) {
     for (size_t i = 0; i < unit->file_count; i++) {
@@ -108,13 +124,16 @@ static int find_known(const shader_unit *unit, const library_file *where) {
 
 static bool read_text(loader *l, place at, const char *path, unit_file *out) {
     void *data;
-    if (!file_read(path, UNIT_MAX_SIZE, &data, &out->size)) return fail(l, at, err_get());
-    out->text = arena_copy(&l->unit->memory, data, out->size + 1);
+    size_t size;
+    if (!file_read(path, UNIT_MAX_SIZE, &data, &size)) return fail(l, at, err_get());
+    char *text = arena_copy(&l->unit->memory, data, size + 1);
     mem_free(data);
-    if (memchr(out->text, '\0', out->size)) {
+    if (memchr(text, '\0', size)) {
         err_set("%s: holds a zero byte, so it is not a text", out->where.label);
         return fail(l, at, err_get());
     }
+    out->size = unify_newlines(text, size);
+    out->text = text;
     return true;
 }
 
@@ -126,8 +145,9 @@ static bool add_name(loader *l, place at, const char *name, int depth) {
     if (text) {
         char *copy = arena_string(&l->unit->memory, text->name);
         file.where = (library_file){.root = ROOT_NONE, .name = copy, .label = copy};
-        file.text = text->text;
-        file.size = strlen(text->text);
+        char *lines = arena_string(&l->unit->memory, text->text);
+        file.size = unify_newlines(lines, strlen(lines));
+        file.text = lines;
     } else {
         int found = find_file(l, at, name, &file.where);
         if (found < 0) return fail(l, at, err_get());
@@ -146,55 +166,80 @@ static bool add_name(loader *l, place at, const char *name, int depth) {
 
 // ---- directives -------------------------------------------------------------------------------
 
-// The name after `#word`, or NULL when the code is not that directive.
-static const char *directive(const char *code, const char *word) {
-    size_t length = strlen(word);
-    code += strspn(code, " \t");
-    if (*code != '#') return NULL;
-    code++;
-    code += strspn(code, " \t");
-    if (strncmp(code, word, length) != 0) return NULL;
-    code += length;
-    if (isalnum((unsigned char)*code) || *code == '_') return NULL;
-    return code + strspn(code, " \t");
+// Tells the compiler that line `line` of `file` comes next.
+static void add_position(shader_unit *unit, int line, int file) {
+    size_t begin = unit->text.length;
+    strbuf_add(&unit->text, "#line %d %d\n", line, file + 1);
+    strbuf_append(&unit->code, unit->text.text + begin, unit->text.length - begin);
 }
 
 static bool include(loader *l, place at, const char *code, int depth) {
     const char *end = *code == '"' ? strchr(code + 1, '"') : NULL;
-    if (!end || end == code + 1 || end[1 + strspn(end + 1, " \t")])
+    if (!end || end == code + 1 || end[1 + strspn(end + 1, BLANKS)])
         return fail(l, at, "malformed #include; accepted is #include \"file\"");
     if (end - code >= PATH_CAP) return fail(l, at, "the name of the include file is too long");
-    char name[PATH_CAP];
+    char name[PATH_CAP]; // a copy: the included file reuses `code`
     memcpy(name, code + 1, (size_t)(end - code - 1));
     name[end - code - 1] = '\0';
     if (!add_name(l, at, name, depth + 1)) return false;
-    strbuf_add(&l->unit->text, "#line %d %d\n", at.line + 1, at.file + 1);
+    add_position(l->unit, at.line + 1, at.file);
     return true;
 }
 
-static void add_line(shader_unit *unit, place at, const char *line, size_t length) {
+static void add_line(shader_unit *unit, place at, const char *line, const char *code, size_t length,
+                     size_t comment) {
     MEM_RESERVE(unit->lines, unit->line_count + 1, unit->line_capacity);
-    unit->lines[unit->line_count++] = (unit_line){
-        .file = at.file, .number = at.line, .start = unit->text.length, .length = length};
+    unit->lines[unit->line_count++] = (unit_line){.file = at.file,
+                                                  .number = at.line,
+                                                  .start = unit->text.length,
+                                                  .length = length,
+                                                  .comment = comment};
     strbuf_append(&unit->text, line, length);
     strbuf_append(&unit->text, "\n", 1);
+    strbuf_append(&unit->code, code, length);
+    strbuf_append(&unit->code, "\n", 1);
+}
+
+// The directive's name, copied; "" for a lone #; NULL when the code is no directive.
+static const char *directive(const char *code, char out[16]) {
+    code += strspn(code, BLANKS);
+    if (*code != '#') return NULL;
+    code++;
+    code += strspn(code, BLANKS);
+    size_t length = 0;
+    while (isalnum((unsigned char)code[length]) || code[length] == '_') length++;
+    snprintf(out, 16, "%.*s", (int)(length < 16 ? length : 0), code);
+    return code + length;
+}
+
+static bool is_known(const char *name, const char *rest) {
+    static const char *const known[] = {"define", "undef",   "if",       "ifdef", "ifndef",
+                                        "else",   "elif",    "endif",    "error", "pragma",
+                                        "line",   "version", "extension"};
+    for (size_t i = 0; i < COUNT_OF(known); i++)
+        if (strcmp(name, known[i]) == 0) return true;
+    return !name[0] && !rest[strspn(rest, BLANKS)]; // a lone # means nothing
 }
 
 static bool add_source_line(loader *l, place at, const char *line, size_t length, bool *in_comment,
                             int depth) {
-    bool was_comment = *in_comment;
-    scan_line(&l->code, line, length, in_comment);
-    const char *code = l->code.text;
+    char name[16] = "";
+    size_t comment = scan_line(&l->code, line, length, in_comment);
+    char *code = l->code.text;
+    const char *rest = directive(code, name);
     if (strstr(code, "local_size_")) l->unit->has_local_size = true;
-    const char *name = was_comment ? NULL : directive(code, "include");
-    // <x> belongs to C, in files that C and GLSL share; the compiler refuses it where it counts.
-    if (name && *name != '<') {
-        char *copy = arena_string(&l->unit->memory, name); // `code` is reused by the included file
+    if (rest && strcmp(name, "include") == 0 && rest[strspn(rest, BLANKS)] != '<') {
         if (*in_comment) return fail(l, at, "a comment begins on a line with #include");
-        return include(l, at, copy, depth);
+        return include(l, at, rest + strspn(rest, BLANKS), depth);
     }
-    bool version = !was_comment && directive(code, "version");
-    add_line(l->unit, at, line, version && !*in_comment ? 0 : length);
+    // <x> belongs to C, in the branch of a shared file that GLSL does not take.
+    if (rest && strcmp(name, "include") == 0)
+        memset(code, ' ', length);
+    else if (rest && !is_known(name, rest))
+        return fail(l, at, "unknown directive");
+    // The prelude has the version and `#line` would spoil the positions in messages.
+    if (strcmp(name, "version") == 0 || strcmp(name, "line") == 0) memset(code, ' ', length);
+    add_line(l->unit, at, line, code, length, comment);
     if (l->unit->text.length > UNIT_MAX_SIZE)
         return fail(l, at, "the shader with its includes is larger than 4 MiB");
     return true;
@@ -205,13 +250,12 @@ static bool add_file(loader *l, int file, int depth) {
     bool in_comment = false;
     place at = {.file = file, .line = 0};
     l->unit->files[file].open = true;
-    strbuf_add(&l->unit->text, "#line 1 %d\n", file + 1);
+    add_position(l->unit, 1, file);
     while (text < end) {
         const char *newline = memchr(text, '\n', (size_t)(end - text));
         size_t length = (size_t)((newline ? newline : end) - text);
-        size_t shown = length && text[length - 1] == '\r' ? length - 1 : length;
         at.line++;
-        if (!add_source_line(l, at, text, shown, &in_comment, depth)) return false;
+        if (!add_source_line(l, at, text, length, &in_comment, depth)) return false;
         text += length + 1;
     }
     if (in_comment) return fail(l, at, "a comment is not closed: */ is missing");
@@ -234,6 +278,7 @@ void unit_free(shader_unit *unit) {
     mem_free(unit->files);
     mem_free(unit->lines);
     strbuf_free(&unit->text);
+    strbuf_free(&unit->code);
     arena_free(&unit->memory);
     *unit = (shader_unit){0};
 }
@@ -246,7 +291,7 @@ void unit_source_line(const shader_unit *unit, int file, int number, char *out, 
     }
     while (text < end && (*text == ' ' || *text == '\t')) text++;
     size_t length = 0;
-    for (; text < end && *text != '\n' && *text != '\r' && length + 1 < capacity; text++)
+    for (; text < end && *text != '\n' && length + 1 < capacity; text++)
         out[length++] = iscntrl((unsigned char)*text) ? ' ' : *text;
     out[length] = '\0';
 }

@@ -140,9 +140,9 @@ static bool add_declared(reader *r, cursor *c, const char *code, size_t offset) 
     return add_uniform(r, c, &d);
 }
 
-static bool read_line(reader *r, const unit_line *line, const char *code, size_t comment) {
+static bool read_line(reader *r, const unit_line *line) {
     const char *text = r->unit->text.text + line->start;
-    size_t length = line->length - comment;
+    size_t comment = line->comment, length = line->length - comment;
     bool marked = length >= 4 && (text[comment + 2] == '@' || text[comment + 2] == '=') &&
                   (text[comment + 3] == ' ' || text[comment + 3] == '\t');
     if (!marked) return true;
@@ -151,6 +151,8 @@ static bool read_line(reader *r, const unit_line *line, const char *code, size_t
                 .label = r->unit->files[line->file].where.label,
                 .line = line->number,
                 .memory = r->memory};
+    const char *code =
+        arena_format(r->memory, "%.*s", (int)comment, r->unit->code.text + line->start);
     size_t blank = strspn(code, " \t");
     if (text[comment + 2] == '=') return add_declared(r, &c, code, line->start + blank);
     if (code[blank]) return cursor_fail(&c, "//@ must stand on a line of its own");
@@ -197,16 +199,11 @@ static bool check_history(const reader *r) {
 }
 
 static bool read_lines(reader *r) {
-    strbuf code = {0};
-    bool in_comment = false, done = true;
-    for (size_t i = 0; i < r->unit->line_count && done; i++) {
+    for (size_t i = 0; i < r->unit->line_count; i++) {
         const unit_line *line = &r->unit->lines[i];
-        size_t comment =
-            scan_line(&code, r->unit->text.text + line->start, line->length, &in_comment);
-        if (comment < line->length) done = read_line(r, line, code.text, comment);
+        if (line->comment < line->length && !read_line(r, line)) return false;
     }
-    strbuf_free(&code);
-    return done;
+    return true;
 }
 
 const shader_interface *unit_annotations(const shader_unit *unit, arena *memory,

@@ -1,6 +1,6 @@
 // What a SPIR-V module binds, by SPIRV-Cross.
 //
-// Only resources that the entry point uses count. They are numbered in order of declaration, so
+// Only resources that the entry point uses count. They are numbered in order of first use, so
 // that one module has no two resources at one binding whatever its text said; fragment shaders
 // count from 16, so that a vertex and a fragment shader never collide. Unused resources are then
 // removed from the code: what remains is exactly what `slots` lists.
@@ -55,7 +55,7 @@ static bool collect(reflector *r, spvc_resources resources, spvc_resource_type k
     return true;
 }
 
-static int by_declaration(const void *a, const void *b) {
+static int by_id(const void *a, const void *b) {
     spvc_variable_id x = ((const resource *)a)->spvc->id, y = ((const resource *)b)->spvc->id;
     return (x > y) - (x < y);
 }
@@ -75,7 +75,7 @@ static bool collect_all(reflector *r) {
         return fail(r);
     for (size_t i = 0; i < COUNT_OF(kinds); i++)
         if (!collect(r, resources, kinds[i])) return false;
-    qsort(r->found, r->count, sizeof *r->found, by_declaration);
+    qsort(r->found, r->count, sizeof *r->found, by_id);
     return true;
 }
 

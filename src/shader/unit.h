@@ -56,7 +56,8 @@ typedef struct unit_file {
 
 typedef struct unit_line { // a line of the text that came from a file
     int file, number;
-    size_t start, length; // in `text`, without the newline
+    size_t start, length; // in `text` and `code`, without the newline
+    size_t comment;       // where its `//` begins; `length` if nowhere
 } unit_line;
 
 typedef struct shader_unit {
@@ -65,7 +66,8 @@ typedef struct shader_unit {
     size_t file_count, file_capacity;
     unit_line *lines;
     size_t line_count, line_capacity;
-    strbuf text;
+    strbuf text; // as written
+    strbuf code; // byte for byte beside `text`, comments turned to spaces: what is compiled
     bool has_local_size;
 } shader_unit;
 
@@ -83,7 +85,7 @@ void unit_source_line(const shader_unit *unit, int file, int number, char *out, 
 
 // ---- annotations ------------------------------------------------------------------------------
 
-typedef struct unit_insert { // text to put into the unit's text at `offset`
+typedef struct unit_insert { // text to put into the unit's code at `offset`
     size_t offset;
     const char *text;
 } unit_insert;
