@@ -23,21 +23,21 @@ typedef enum gpu_kind { GPU_DISCRETE, GPU_INTEGRATED, GPU_VIRTUAL, GPU_CPU, GPU_
 
 typedef struct gpu_info {
     char name[256];
-    char driver[256];        // driver name and version, as the driver words it
+    char driver[256]; // driver name and version, as the driver words it
     gpu_kind kind;
-    uint64_t memory;         // bytes of the largest device-local heap
+    uint64_t memory;            // bytes of the largest device-local heap
     uint64_t max_storage_range; // bytes of one storage buffer binding
     uint32_t api_major, api_minor;
     uint32_t subgroup_size;
-    float timestamp_period;  // nanoseconds a tick; 0: no timestamps
-    bool usable;             // has all that roil needs
-    char missing[256];       // what it lacks, when not usable
+    float timestamp_period; // nanoseconds a tick; 0: no timestamps
+    bool usable;            // has all that roil needs
+    char missing[256];      // what it lacks, when not usable
 } gpu_info;
 
 typedef struct gpu_desc {
     const char *device;    // part of a name (any case) or an index as `gpu_list` counts; NULL: best
     const char *cache_dir; // folder of the pipeline cache; NULL: no cache
-    bool validate;         // Khronos validation with synchronization validation; also $ROIL_VALIDATE=1
+    bool validate; // Khronos validation with synchronization validation; also $ROIL_VALIDATE=1
 } gpu_desc;
 
 // Devices the loader offers, real GPUs before software ones, at most `capacity` written.
@@ -75,9 +75,9 @@ typedef enum gpu_format {
     GPU_FORMAT_COUNT
 } gpu_format;
 
-uint32_t gpu_format_size(gpu_format format);          // bytes a texel
-const char *gpu_format_name(gpu_format format);       // "rgba16f", as GLSL writes it
-gpu_format gpu_format_from_name(const char *name);    // GPU_FORMAT_NONE when unknown
+uint32_t gpu_format_size(gpu_format format);       // bytes a texel
+const char *gpu_format_name(gpu_format format);    // "rgba16f", as GLSL writes it
+gpu_format gpu_format_from_name(const char *name); // GPU_FORMAT_NONE when unknown
 uint32_t gpu_format_channels(gpu_format format);
 
 typedef enum gpu_image_use {
@@ -87,7 +87,7 @@ typedef enum gpu_image_use {
 } gpu_image_use;
 
 typedef struct gpu_image_desc {
-    const char *label;             // for messages and debuggers; copied
+    const char *label; // for messages and debuggers; copied
     gpu_format format;
     uint32_t width, height, depth; // texels; depth 0: 2D image, 1 or more: 3D image
     uint32_t mips;                 // 0 means 1
@@ -126,9 +126,9 @@ const void *gpu_buffer_map(gpu_buffer *buffer);
 // ---- pipelines --------------------------------------------------------------------------------
 
 typedef enum gpu_slot_kind {
-    GPU_SLOT_UNIFORM,        // uniform block
+    GPU_SLOT_UNIFORM, // uniform block
     GPU_SLOT_STORAGE_BUFFER,
-    GPU_SLOT_SAMPLED_IMAGE,  // sampler2D, sampler3D
+    GPU_SLOT_SAMPLED_IMAGE, // sampler2D, sampler3D
     GPU_SLOT_STORAGE_IMAGE,
 } gpu_slot_kind;
 
@@ -137,7 +137,7 @@ enum { GPU_MAX_SLOTS = 32 };
 typedef struct gpu_slot { // one binding of descriptor set 0, as reflection found it
     uint32_t binding;
     gpu_slot_kind kind;
-    bool reads, writes;   // of storage slots; uniform and sampled slots read
+    bool reads, writes; // of storage slots; uniform and sampled slots read
 } gpu_slot;
 
 typedef struct gpu_compute_desc {
@@ -151,15 +151,16 @@ typedef struct gpu_compute_desc {
 
 typedef enum gpu_cull { GPU_CULL_NONE, GPU_CULL_BACK } gpu_cull;
 
-typedef struct gpu_graphics_desc { // vertices are pulled from storage buffers: no vertex input state
+typedef struct gpu_graphics_desc { // vertices are pulled from storage buffers: no vertex input
+                                   // state
     const char *label;
     const uint32_t *vertex_code, *fragment_code;
     size_t vertex_size, fragment_size;
     const gpu_slot *slots; // union of both stages
     size_t slot_count;
-    gpu_format colors[4];  // of the targets; GPU_FORMAT_NONE ends the list
-    gpu_format depth;      // GPU_FORMAT_NONE: no depth test; else test less-equal and write
-    gpu_cull cull;         // front faces are counter-clockwise seen in the picture
+    gpu_format colors[4]; // of the targets; GPU_FORMAT_NONE ends the list
+    gpu_format depth;     // GPU_FORMAT_NONE: no depth test; else test less-equal and write
+    gpu_cull cull;        // front faces are counter-clockwise seen in the picture
 } gpu_graphics_desc;
 
 gpu_pipeline *gpu_pipeline_create_compute(gpu *g, const gpu_compute_desc *desc);
@@ -173,9 +174,9 @@ enum { GPU_FRAMES_IN_FLIGHT = 2, GPU_MAX_PASSES = 256 };
 // Opens a frame, waiting for the one GPU_FRAMES_IN_FLIGHT before it. Returns its number (from 1),
 // or 0 when the device is lost.
 uint64_t gpu_frame_begin(gpu *g);
-bool gpu_frame_end(gpu *g);                 // submits
+bool gpu_frame_end(gpu *g);                  // submits
 bool gpu_frame_wait(gpu *g, uint64_t frame); // until that frame has finished
-bool gpu_idle(gpu *g);                      // until all has finished
+bool gpu_idle(gpu *g);                       // until all has finished
 
 // Brackets the work of one pass: its GPU time is measured and debuggers see the label.
 void gpu_pass_begin(gpu *g, const char *label);
@@ -199,39 +200,39 @@ typedef enum gpu_sampler {
 
 typedef struct gpu_binding {
     uint32_t binding;
-    gpu_image *image;     // image slots
-    uint32_t mip;         // storage images, and sampled ones when one_mip
-    bool one_mip;         // sampled: bind only `mip` (false: all levels)
-    gpu_sampler sampler;  // sampled images
-    gpu_buffer *buffer;   // storage buffer slots, whole buffer
-    const void *uniform;  // uniform slots: copied at once
-    size_t uniform_size;  // bytes
+    gpu_image *image;    // image slots
+    uint32_t mip;        // storage images, and sampled ones when one_mip
+    bool one_mip;        // sampled: bind only `mip` (false: all levels)
+    gpu_sampler sampler; // sampled images
+    gpu_buffer *buffer;  // storage buffer slots, whole buffer
+    const void *uniform; // uniform slots: copied at once
+    size_t uniform_size; // bytes
 } gpu_binding;
 
 typedef struct gpu_dispatch_desc {
     gpu_pipeline *pipeline;
     const gpu_binding *bindings;
-    size_t binding_count;  // every slot of the pipeline must be bound
-    uint32_t threads[3];   // invocations wanted; 0 means 1
+    size_t binding_count; // every slot of the pipeline must be bound
+    uint32_t threads[3];  // invocations wanted; 0 means 1
 } gpu_dispatch_desc;
 bool gpu_dispatch(gpu *g, const gpu_dispatch_desc *desc);
 
 typedef struct gpu_draw { // one draw call inside a gpu_draw_desc
     const gpu_binding *bindings;
     size_t binding_count;
-    uint32_t vertices;     // how many times the vertex shader runs
-    uint32_t instances;    // 0 means 1
+    uint32_t vertices;  // how many times the vertex shader runs
+    uint32_t instances; // 0 means 1
 } gpu_draw;
 
 typedef struct gpu_draw_desc {
     gpu_pipeline *pipeline;
     gpu_image *colors[4]; // targets, mip 0; NULL ends the list
     gpu_image *depth;
-    bool clear;           // clear before drawing: colours to clear_color[i], depth to clear_depth
+    bool clear; // clear before drawing: colours to clear_color[i], depth to clear_depth
     float clear_color[4][4];
     float clear_depth;
     const gpu_draw *draws;
-    size_t draw_count;    // 0 just clears
+    size_t draw_count; // 0 just clears
 } gpu_draw_desc;
 bool gpu_draw_all(gpu *g, const gpu_draw_desc *desc);
 

@@ -1,0 +1,187 @@
+// Bindings of a dispatch or draw: checked against the slots that reflection found, translated to
+// accesses for the hazard tracker, pushed as descriptors.
+#include "gpu/vk.h"
+#include <inttypes.h>
+
+static const char *const slot_names[] = {[GPU_SLOT_UNIFORM] = "a uniform block",
+                                         [GPU_SLOT_STORAGE_BUFFER] = "a storage buffer",
+                                         [GPU_SLOT_SAMPLED_IMAGE] = "a sampled image",
+                                         [GPU_SLOT_STORAGE_IMAGE] = "a storage image"};
+
+static const gpu_binding *find(const gpu_binding *list, size_t count, uint32_t binding) {
+    for (size_t i = 0; i < count; i++) {
+        if (list[i].binding == binding) return &list[i];
+    }
+    return NULL;
+}
+
+// ---- check ------------------------------------------------------------------------------------
+
+static bool check_image(gpu *g, const gpu_pipeline *pipeline, const gpu_slot *slot,
+                        const gpu_binding *b) {
+    bool sampled = slot->kind == GPU_SLOT_SAMPLED_IMAGE;
+    const gpu_image_desc *d = &b->image->desc;
+    gpu_image_use use = sampled ? GPU_USE_SAMPLED : GPU_USE_STORAGE;
+    if (!(d->use & use)) {
+        return err_set("pipeline '%s', binding %u: image '%s' was not created for use as %s",
+                       pipeline->label, b->binding, d->label, slot_names[slot->kind]);
+    }
+    if ((!sampled || b->one_mip) && b->mip >= d->mips) {
+        return err_set("pipeline '%s', binding %u: image '%s' has no level %u, only %u levels",
+                       pipeline->label, b->binding, d->label, b->mip, d->mips);
+    }
+    if (!sampled) return true;
+    if (b->sampler >= GPU_SAMPLER_COUNT) {
+        return err_set("pipeline '%s', binding %u: there is no sampler %d", pipeline->label,
+                       b->binding, (int)b->sampler);
+    }
+    if (b->sampler != GPU_NEAREST_CLAMP &&
+        !(g->format_features[d->format] & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT)) {
+        return err_set("pipeline '%s', binding %u: image '%s' of format %s cannot be filtered; "
+                       "the nearest sampler is accepted",
+                       pipeline->label, b->binding, d->label, gpu_format_name(d->format));
+    }
+    return true;
+}
+
+static bool check_buffer(const gpu_pipeline *pipeline, const gpu_binding *b) {
+    if (b->buffer->kind == GPU_BUFFER_DEVICE) return true;
+    return err_set("pipeline '%s', binding %u: buffer '%s' is for reading back; a device buffer is "
+                   "needed",
+                   pipeline->label, b->binding, b->buffer->label);
+}
+
+static bool check_slot(gpu *g, const gpu_pipeline *pipeline, const gpu_slot *slot,
+                       const gpu_binding *b) {
+    bool given = false;
+    if (b) {
+        switch (slot->kind) {
+        case GPU_SLOT_UNIFORM:
+            given = b->uniform && b->uniform_size > 0;
+            break;
+        case GPU_SLOT_STORAGE_BUFFER:
+            given = b->buffer != NULL;
+            break;
+        case GPU_SLOT_SAMPLED_IMAGE:
+        case GPU_SLOT_STORAGE_IMAGE:
+            given = b->image != NULL;
+            break;
+        }
+    }
+    if (!given) {
+        const char *other = !b           ? "nothing"
+                            : b->image   ? "an image"
+                            : b->buffer  ? "a buffer"
+                            : b->uniform ? "uniform data"
+                                         : "nothing";
+        return err_set("pipeline '%s', binding %u: %s is needed, %s is bound", pipeline->label,
+                       slot->binding, slot_names[slot->kind], other);
+    }
+    if (slot->kind == GPU_SLOT_UNIFORM) return true;
+    if (slot->kind == GPU_SLOT_STORAGE_BUFFER) return check_buffer(pipeline, b);
+    return check_image(g, pipeline, slot, b);
+}
+
+bool vk_bindings_check(gpu *g, const gpu_pipeline *pipeline, const gpu_binding *list,
+                       size_t count) {
+    for (uint32_t i = 0; i < pipeline->slot_count; i++) {
+        const gpu_slot *slot = &pipeline->slots[i];
+        if (!check_slot(g, pipeline, slot, find(list, count, slot->binding))) return false;
+    }
+    return true;
+}
+
+// ---- use --------------------------------------------------------------------------------------
+
+static hazard_access access_of(const gpu_pipeline *pipeline, const gpu_slot *slot) {
+    hazard_access a = {.stages = pipeline->bind_point == VK_PIPELINE_BIND_POINT_COMPUTE
+                                     ? VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT
+                                     : VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |
+                                           VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT};
+    if (slot->kind == GPU_SLOT_SAMPLED_IMAGE) {
+        a.reads = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+        a.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        return a;
+    }
+    if (slot->kind == GPU_SLOT_STORAGE_IMAGE) a.layout = VK_IMAGE_LAYOUT_GENERAL;
+    if (slot->writes) a.writes = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+    // A slot that does neither (only its size is asked) still needs the layout.
+    if (slot->reads || !slot->writes) a.reads = VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
+    return a;
+}
+
+bool vk_bindings_use(gpu *g, const gpu_pipeline *pipeline, const gpu_binding *list, size_t count) {
+    for (uint32_t i = 0; i < pipeline->slot_count; i++) {
+        const gpu_slot *slot = &pipeline->slots[i];
+        const gpu_binding *b = find(list, count, slot->binding);
+        hazard_access access = access_of(pipeline, slot);
+        bool ok = true;
+        if (slot->kind == GPU_SLOT_STORAGE_BUFFER) {
+            ok = vk_use_buffer(g, b->buffer, access);
+        } else if (slot->kind == GPU_SLOT_STORAGE_IMAGE || b->one_mip) {
+            if (slot->kind != GPU_SLOT_UNIFORM) ok = vk_use_image(g, b->image, b->mip, 1, access);
+        } else if (slot->kind == GPU_SLOT_SAMPLED_IMAGE) {
+            ok = vk_use_image(g, b->image, 0, b->image->desc.mips, access);
+        }
+        if (!ok) return err_prefix("pipeline '%s', binding %u: ", pipeline->label, slot->binding);
+    }
+    return true;
+}
+
+// ---- push -------------------------------------------------------------------------------------
+
+static VkDescriptorImageInfo image_info(gpu *g, const gpu_slot *slot, const gpu_binding *b) {
+    bool sampled = slot->kind == GPU_SLOT_SAMPLED_IMAGE;
+    bool one = !sampled || b->one_mip;
+    // An image that is sampled and loaded from at once is in the general layout (hazard_merge).
+    const vk_tracked *tracked = &b->image->tracked[one ? b->mip : 0];
+    return (VkDescriptorImageInfo){.sampler = sampled ? g->samplers[b->sampler] : VK_NULL_HANDLE,
+                                   .imageView = one ? b->image->mips[b->mip] : b->image->all,
+                                   .imageLayout = tracked->state.layout};
+}
+
+static bool buffer_info(gpu *g, const gpu_pipeline *pipeline, const gpu_slot *slot,
+                        const gpu_binding *b, VkDescriptorBufferInfo *out) {
+    if (slot->kind == GPU_SLOT_STORAGE_BUFFER) {
+        *out = (VkDescriptorBufferInfo){.buffer = b->buffer->handle, .range = VK_WHOLE_SIZE};
+        return true;
+    }
+    return vk_uniforms_add(g, b->uniform, b->uniform_size, out) ||
+           err_prefix("pipeline '%s', binding %u: ", pipeline->label, b->binding);
+}
+
+VkDescriptorType vk_descriptor_type(gpu_slot_kind kind) {
+    static const VkDescriptorType types[] = {
+        [GPU_SLOT_UNIFORM] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+        [GPU_SLOT_STORAGE_BUFFER] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+        [GPU_SLOT_SAMPLED_IMAGE] = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+        [GPU_SLOT_STORAGE_IMAGE] = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};
+    return types[kind];
+}
+
+bool vk_bindings_push(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipeline,
+                      const gpu_binding *list, size_t count) {
+    VkWriteDescriptorSet writes[GPU_MAX_SLOTS];
+    VkDescriptorImageInfo images[GPU_MAX_SLOTS];
+    VkDescriptorBufferInfo buffers[GPU_MAX_SLOTS];
+    for (uint32_t i = 0; i < pipeline->slot_count; i++) {
+        const gpu_slot *slot = &pipeline->slots[i];
+        const gpu_binding *b = find(list, count, slot->binding);
+        writes[i] = (VkWriteDescriptorSet){.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                           .dstBinding = slot->binding,
+                                           .descriptorCount = 1,
+                                           .descriptorType = vk_descriptor_type(slot->kind)};
+        if (slot->kind == GPU_SLOT_SAMPLED_IMAGE || slot->kind == GPU_SLOT_STORAGE_IMAGE) {
+            images[i] = image_info(g, slot, b);
+            writes[i].pImageInfo = &images[i];
+        } else {
+            if (!buffer_info(g, pipeline, slot, b, &buffers[i])) return false;
+            writes[i].pBufferInfo = &buffers[i];
+        }
+    }
+    if (pipeline->slot_count > 0) {
+        g->push_descriptors(commands, pipeline->bind_point, pipeline->layout, 0,
+                            pipeline->slot_count, writes);
+    }
+    return true;
+}

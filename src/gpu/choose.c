@@ -1,0 +1,208 @@
+// Which devices there are, what they can do, and which one is meant.
+#include "base/memory.h"
+#include "base/str.h"
+#include "gpu/vk.h"
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static gpu_kind kind_of(VkPhysicalDeviceType type) {
+    switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+        return GPU_DISCRETE;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+        return GPU_INTEGRATED;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+        return GPU_VIRTUAL;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+        return GPU_CPU;
+    default:
+        return GPU_OTHER;
+    }
+}
+
+int vk_queue_family_find(VkPhysicalDevice physical) {
+    VkQueueFamilyProperties list[16];
+    uint32_t count = COUNT_OF(list);
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, list);
+    for (uint32_t i = 0; i < count; i++) {
+        VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+        if ((list[i].queueFlags & wanted) == wanted) return (int)i;
+    }
+    return -1;
+}
+
+static bool has_extension(VkPhysicalDevice physical, const char *name) {
+    uint32_t count = 0;
+    if (vkEnumerateDeviceExtensionProperties(physical, NULL, &count, NULL) != VK_SUCCESS) {
+        return false;
+    }
+    VkExtensionProperties *list = mem_alloc(count * sizeof *list);
+    bool found = false;
+    VkResult result = vkEnumerateDeviceExtensionProperties(physical, NULL, &count, list);
+    for (uint32_t i = 0; result == VK_SUCCESS && i < count && !found; i++) {
+        found = strcmp(list[i].extensionName, name) == 0;
+    }
+    mem_free(list);
+    return found;
+}
+
+static void lacks(gpu_info *info, const char *what) {
+    size_t length = strlen(info->missing);
+    snprintf(info->missing + length, sizeof info->missing - length, "%s%s", length ? ", " : "",
+             what);
+    info->usable = false;
+}
+
+// A device older than 1.3 does not know the feature structs, so nothing more is asked of it.
+static void list_missing(VkPhysicalDevice physical, uint32_t version, gpu_info *info) {
+    info->usable = true;
+    if (version < VK_API_VERSION_1_3) {
+        lacks(info, "Vulkan 1.3");
+        return;
+    }
+    vk_features f;
+    vk_features_read(physical, &f);
+    if (vk_queue_family_find(physical) < 0) lacks(info, "a graphics and compute queue");
+    if (!has_extension(physical, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) {
+        lacks(info, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
+    }
+    if (!f.v13.dynamicRendering) lacks(info, "dynamicRendering");
+    if (!f.v13.synchronization2) lacks(info, "synchronization2");
+    if (!f.v13.maintenance4) lacks(info, "maintenance4");
+    if (!f.v12.timelineSemaphore) lacks(info, "timelineSemaphore");
+    if (!f.v12.scalarBlockLayout) lacks(info, "scalarBlockLayout");
+    if (!f.core.features.shaderStorageImageExtendedFormats) {
+        lacks(info, "shaderStorageImageExtendedFormats");
+    }
+}
+
+static void describe(VkPhysicalDevice physical, gpu_info *info) {
+    VkPhysicalDeviceVulkan11Properties v11 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
+    VkPhysicalDeviceDriverProperties driver = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES, .pNext = &v11};
+    VkPhysicalDeviceProperties2 two = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    vkGetPhysicalDeviceProperties2(physical, &two);
+    const VkPhysicalDeviceProperties *p = &two.properties;
+    if (p->apiVersion >= VK_API_VERSION_1_2) {
+        two.pNext = &driver;
+        vkGetPhysicalDeviceProperties2(physical, &two);
+    }
+
+    memset(info, 0, sizeof *info);
+    str_copy(info->name, sizeof info->name, p->deviceName);
+    snprintf(info->driver, sizeof info->driver, "%.120s %.120s", driver.driverName,
+             driver.driverInfo);
+    info->kind = kind_of(p->deviceType);
+    info->max_storage_range = p->limits.maxStorageBufferRange;
+    info->api_major = VK_API_VERSION_MAJOR(p->apiVersion);
+    info->api_minor = VK_API_VERSION_MINOR(p->apiVersion);
+    info->subgroup_size = v11.subgroupSize;
+    VkPhysicalDeviceMemoryProperties memory;
+    vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+    for (uint32_t i = 0; i < memory.memoryHeapCount; i++) {
+        const VkMemoryHeap *heap = &memory.memoryHeaps[i];
+        if ((heap->flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) && heap->size > info->memory) {
+            info->memory = heap->size;
+        }
+    }
+    int family = vk_queue_family_find(physical);
+    if (family >= 0) {
+        VkQueueFamilyProperties list[16];
+        uint32_t count = COUNT_OF(list);
+        vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, list);
+        if (list[family].timestampValidBits > 0) {
+            info->timestamp_period = p->limits.timestampPeriod;
+        }
+    }
+    list_missing(physical, p->apiVersion, info);
+}
+
+static int rank(gpu_kind kind) {
+    static const int ranks[] = {[GPU_DISCRETE] = 0,
+                                [GPU_INTEGRATED] = 1,
+                                [GPU_VIRTUAL] = 2,
+                                [GPU_OTHER] = 3,
+                                [GPU_CPU] = 4};
+    return ranks[kind];
+}
+
+int vk_choices_find(VkInstance instance, vk_choice *out) {
+    VkPhysicalDevice list[VK_MAX_DEVICES];
+    uint32_t count = VK_MAX_DEVICES;
+    VkResult result = vkEnumeratePhysicalDevices(instance, &count, list);
+    if ((result != VK_SUCCESS && result != VK_INCOMPLETE) || count == 0) {
+        err_set("no Vulkan device was found; install the driver of your GPU, or Mesa's software "
+                "driver (Debian: mesa-vulkan-drivers)");
+        return -1;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        vk_choice choice = {.physical = list[i]};
+        describe(list[i], &choice.info);
+        uint32_t at = i;
+        for (; at > 0 && rank(out[at - 1].info.kind) > rank(choice.info.kind); at--) {
+            out[at] = out[at - 1];
+        }
+        out[at] = choice;
+    }
+    return (int)count;
+}
+
+int gpu_list(gpu_info *out, int capacity) {
+    vk_instance instance;
+    if (!vk_instance_create(&instance, false, NULL)) return -1;
+    vk_choice choices[VK_MAX_DEVICES];
+    int count = vk_choices_find(instance.handle, choices);
+    for (int i = 0; i < count && i < capacity; i++) out[i] = choices[i].info;
+    vk_instance_destroy(&instance);
+    return count;
+}
+
+static bool contains(const char *text, const char *part) {
+    size_t length = strlen(part);
+    for (; *text; text++) {
+        size_t i = 0;
+        while (i < length && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i]))
+            i++;
+        if (i == length) return true;
+    }
+    return false;
+}
+
+static bool is_index(const char *text, int count, int *out) {
+    if (*text == '\0' || strspn(text, "0123456789") != strlen(text)) return false;
+    long value = strtol(text, NULL, 10);
+    if (value < 0 || value >= count) return false; // "4090" is part of a name
+    *out = (int)value;
+    return true;
+}
+
+static const vk_choice *usable(const vk_choice *choice) {
+    if (choice->info.usable) return choice;
+    err_set("device '%s' cannot run roil: it lacks %s", choice->info.name, choice->info.missing);
+    return NULL;
+}
+
+const vk_choice *vk_choice_pick(const vk_choice *choices, int count, const char *device) {
+    int index;
+    if (!device || !*device) {
+        for (int i = 0; i < count; i++) {
+            if (choices[i].info.usable) return &choices[i];
+        }
+        return usable(&choices[0]);
+    }
+    if (is_index(device, count, &index)) return usable(&choices[index]);
+    for (int i = 0; i < count; i++) {
+        if (contains(choices[i].info.name, device)) return usable(&choices[i]);
+    }
+    strbuf names = {0};
+    for (int i = 0; i < count; i++) {
+        strbuf_add(&names, "%s%d: %s", i ? ", " : "", i, choices[i].info.name);
+    }
+    err_set("no device is called '%s'; there are: %s (an index or a part of a name is accepted)",
+            device, strbuf_text(&names));
+    strbuf_free(&names);
+    return NULL;
+}

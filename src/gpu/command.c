@@ -1,0 +1,137 @@
+// Command buffers and the timeline.
+//
+// Every submission signals the next serial on one timeline semaphore, so "has it finished" is one
+// comparison. A submission that fails leaves the tracked layouts wrong: the device counts as lost.
+#include "gpu/vk.h"
+#include <string.h>
+
+bool vk_batch_create(gpu *g, vk_batch *out) {
+    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                    .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+                                    .queueFamilyIndex = g->family};
+    if (!vk_check(g, vkCreateCommandPool(g->device, &pool, NULL, &out->pool),
+                  "creating a command pool")) {
+        return false;
+    }
+    VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                        .commandPool = out->pool,
+                                        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                        .commandBufferCount = 1};
+    return vk_check(g, vkAllocateCommandBuffers(g->device, &info, &out->commands),
+                    "creating a command buffer");
+}
+
+void vk_batch_destroy(gpu *g, vk_batch *batch) {
+    vkDestroyCommandPool(g->device, batch->pool, NULL);
+    memset(batch, 0, sizeof *batch);
+}
+
+bool vk_batch_begin(gpu *g, vk_batch *batch) {
+    if (!vk_wait(g, batch->serial)) return false;
+    if (!vk_check(g, vkResetCommandPool(g->device, batch->pool, 0), "resetting a command pool")) {
+        return false;
+    }
+    VkCommandBufferBeginInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                     .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+    if (!vk_check(g, vkBeginCommandBuffer(batch->commands, &info), "opening a command buffer")) {
+        return false;
+    }
+    atomic_store(&g->open_serial, g->submitted + 1);
+    g->host_reads = false;
+    return true;
+}
+
+// Waiting on the semaphore orders execution; only this makes the bytes visible to the host.
+static void publish_to_host(VkCommandBuffer commands) {
+    VkMemoryBarrier2 barrier = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
+                                .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
+    VkDependencyInfo info = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                             .memoryBarrierCount = 1,
+                             .pMemoryBarriers = &barrier};
+    vkCmdPipelineBarrier2(commands, &info);
+}
+
+static VkResult end_and_submit(gpu *g, vk_batch *batch) {
+    VkResult result = vkEndCommandBuffer(batch->commands);
+    if (result != VK_SUCCESS) return result;
+    VkCommandBufferSubmitInfo commands = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                          .commandBuffer = batch->commands};
+    VkSemaphoreSubmitInfo signal = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                    .semaphore = g->timeline,
+                                    .value = g->submitted + 1,
+                                    .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
+    VkSubmitInfo2 info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+                          .commandBufferInfoCount = 1,
+                          .pCommandBufferInfos = &commands,
+                          .signalSemaphoreInfoCount = 1,
+                          .pSignalSemaphoreInfos = &signal};
+    return vkQueueSubmit2(g->queue, 1, &info, VK_NULL_HANDLE);
+}
+
+bool vk_batch_submit(gpu *g, vk_batch *batch) {
+    if (g->host_reads) publish_to_host(batch->commands);
+    VkResult result = end_and_submit(g, batch);
+    if (!vk_check(g, result, "submitting work to '%s'", g->info.name)) {
+        atomic_store(&g->lost, true);
+        return false;
+    }
+    batch->serial = ++g->submitted;
+    vk_ring_mark(g);
+    return true;
+}
+
+VkCommandBuffer vk_commands(gpu *g) {
+    if (!vk_alive(g)) return VK_NULL_HANDLE;
+    if (g->frame) return g->frame->batch.commands;
+    if (!g->batch) {
+        vk_batch *batch = &g->batches[g->batch_next];
+        if (!vk_batch_begin(g, batch)) return VK_NULL_HANDLE;
+        g->batch_next = (g->batch_next + 1) % VK_BATCHES;
+        g->batch = batch;
+    }
+    return g->batch->commands;
+}
+
+bool vk_flush(gpu *g) {
+    if (!vk_alive(g)) return false;
+    if (!g->batch) return true;
+    vk_batch *batch = g->batch;
+    g->batch = NULL;
+    return vk_batch_submit(g, batch);
+}
+
+bool vk_wait(gpu *g, uint64_t serial) {
+    if (!vk_alive(g)) return false;
+    if (serial <= g->completed) return true;
+    VkSemaphoreWaitInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                .semaphoreCount = 1,
+                                .pSemaphores = &g->timeline,
+                                .pValues = &serial};
+    if (!vk_check(g, vkWaitSemaphores(g->device, &info, UINT64_MAX), "waiting for '%s'",
+                  g->info.name)) {
+        return false;
+    }
+    if (serial > g->completed) g->completed = serial;
+    return true;
+}
+
+uint64_t vk_completed(gpu *g) {
+    uint64_t value = 0;
+    VkResult result = vkGetSemaphoreCounterValue(g->device, g->timeline, &value);
+    // A lost device may report any value; nothing beyond what was submitted can have finished.
+    if (vk_check(g, result, "asking '%s' for progress", g->info.name) && value > g->completed &&
+        value <= g->submitted) {
+        g->completed = value;
+    }
+    return g->completed;
+}
+
+bool gpu_idle(gpu *g) {
+    if (!g->frame && !vk_flush(g)) return false;
+    if (!vk_wait(g, g->submitted)) return false;
+    vk_collect(g);
+    return true;
+}

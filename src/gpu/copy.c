@@ -1,0 +1,168 @@
+// Clearing, copying and reading back.
+#include "gpu/vk.h"
+#include <inttypes.h>
+#include <string.h>
+
+static const hazard_access image_from = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                         .reads = VK_ACCESS_2_TRANSFER_READ_BIT,
+                                         .layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
+static const hazard_access image_to = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                       .writes = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                       .layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
+static const hazard_access buffer_from = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                          .reads = VK_ACCESS_2_TRANSFER_READ_BIT};
+static const hazard_access buffer_to = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                        .writes = VK_ACCESS_2_TRANSFER_WRITE_BIT};
+
+void gpu_image_clear(gpu *g, gpu_image *image, const float color[4]) {
+    VkCommandBuffer commands = vk_commands(g);
+    if (!commands) return;
+    vk_uses_begin(g);
+    vk_use_image(g, image, 0, image->desc.mips, image_to);
+    vk_uses_flush(g, commands);
+    VkImageSubresourceRange range = {
+        .aspectMask = image->aspect, .levelCount = image->desc.mips, .layerCount = 1};
+    if (image->desc.format == GPU_D32F) {
+        float depth = color[0] < 0.0f ? 0.0f : color[0] > 1.0f ? 1.0f : color[0];
+        VkClearDepthStencilValue value = {.depth = depth};
+        vkCmdClearDepthStencilImage(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                    &value, 1, &range);
+        return;
+    }
+    VkClearColorValue value;
+    for (int i = 0; i < 4; i++) {
+        if (image->desc.format == GPU_R32U) {
+            value.uint32[i] = color[i] > 0.0f ? (uint32_t)color[i] : 0;
+        } else {
+            value.float32[i] = color[i];
+        }
+    }
+    vkCmdClearColorImage(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1,
+                         &range);
+}
+
+void gpu_buffer_fill(gpu *g, gpu_buffer *buffer, uint32_t word) {
+    VkCommandBuffer commands = vk_commands(g);
+    if (!commands) return;
+    vk_uses_begin(g);
+    vk_use_buffer(g, buffer, buffer_to);
+    vk_uses_flush(g, commands);
+    vkCmdFillBuffer(commands, buffer->handle, 0, VK_WHOLE_SIZE, word);
+}
+
+bool gpu_image_copy_to_buffer(gpu *g, gpu_image *image, gpu_buffer *buffer, uint64_t offset) {
+    VkExtent3D extent;
+    uint64_t bytes;
+    vk_image_extent(image, 0, &extent, &bytes);
+    if (offset > buffer->size || bytes > buffer->size - offset) {
+        return err_set("image '%s' needs %" PRIu64 " bytes at %" PRIu64
+                       " of buffer '%s', which has %" PRIu64,
+                       image->desc.label, bytes, offset, buffer->label, buffer->size);
+    }
+    uint32_t texel = gpu_format_size(image->desc.format);
+    if (offset % texel != 0) {
+        return err_set("image '%s' cannot be copied to byte %" PRIu64
+                       " of buffer '%s'; a multiple of %u is accepted",
+                       image->desc.label, offset, buffer->label, texel);
+    }
+    VkCommandBuffer commands = vk_commands(g);
+    if (!commands) return false;
+    vk_uses_begin(g);
+    vk_use_image(g, image, 0, 1, image_from);
+    vk_use_buffer(g, buffer, buffer_to);
+    vk_uses_flush(g, commands);
+    VkBufferImageCopy region = {.bufferOffset = offset,
+                                .imageSubresource = {.aspectMask = image->aspect, .layerCount = 1},
+                                .imageExtent = extent};
+    vkCmdCopyImageToBuffer(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                           buffer->handle, 1, &region);
+    return true;
+}
+
+bool gpu_image_copy(gpu *g, gpu_image *from, gpu_image *to) {
+    const gpu_image_desc *a = &from->desc, *b = &to->desc;
+    if (a->width != b->width || a->height != b->height || a->depth != b->depth ||
+        a->format != b->format || from == to) {
+        return err_set("image '%s' (%ux%ux%u %s) cannot be copied to '%s' (%ux%ux%u %s); another "
+                       "image of the same size and format is accepted",
+                       a->label, a->width, a->height, a->depth, gpu_format_name(a->format),
+                       b->label, b->width, b->height, b->depth, gpu_format_name(b->format));
+    }
+    VkCommandBuffer commands = vk_commands(g);
+    if (!commands) return false;
+    vk_uses_begin(g);
+    vk_use_image(g, from, 0, 1, image_from);
+    vk_use_image(g, to, 0, 1, image_to);
+    vk_uses_flush(g, commands);
+    VkExtent3D extent;
+    uint64_t bytes;
+    vk_image_extent(from, 0, &extent, &bytes);
+    VkImageCopy region = {.srcSubresource = {.aspectMask = from->aspect, .layerCount = 1},
+                          .dstSubresource = {.aspectMask = to->aspect, .layerCount = 1},
+                          .extent = extent};
+    vkCmdCopyImage(commands, from->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to->handle,
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+    return true;
+}
+
+// ---- reading back -----------------------------------------------------------------------------
+
+static bool between_frames(gpu *g, const char *label) {
+    if (!vk_alive(g)) return false;
+    if (g->frame) return err_set("'%s' cannot be read while a frame is open", label);
+    return true;
+}
+
+static gpu_buffer *target_create(gpu *g, uint64_t size, const char *label) {
+    gpu_buffer_desc desc = {.label = label, .size = size, .kind = GPU_BUFFER_READBACK};
+    return gpu_buffer_create(g, &desc);
+}
+
+bool gpu_image_read(gpu *g, gpu_image *image, void *out, size_t size) {
+    if (!between_frames(g, image->desc.label)) return false;
+    VkExtent3D extent;
+    uint64_t bytes;
+    vk_image_extent(image, 0, &extent, &bytes);
+    if (size != bytes) {
+        return err_set("image '%s' has %" PRIu64 " bytes; room for %zu was given",
+                       image->desc.label, bytes, size);
+    }
+    gpu_buffer *target = target_create(g, bytes, image->desc.label);
+    if (!target) return false;
+    bool ok = gpu_image_copy_to_buffer(g, image, target, 0) && gpu_idle(g);
+    if (ok) memcpy(out, gpu_buffer_map(target), size);
+    gpu_buffer_destroy(g, target);
+    return ok;
+}
+
+static bool copy_out(gpu *g, gpu_buffer *buffer, uint64_t offset, gpu_buffer *target) {
+    VkCommandBuffer commands = vk_commands(g);
+    if (!commands) return false;
+    vk_uses_begin(g);
+    vk_use_buffer(g, buffer, buffer_from);
+    vk_use_buffer(g, target, buffer_to);
+    vk_uses_flush(g, commands);
+    VkBufferCopy region = {.srcOffset = offset, .size = target->size};
+    vkCmdCopyBuffer(commands, buffer->handle, target->handle, 1, &region);
+    return gpu_idle(g);
+}
+
+bool gpu_buffer_read(gpu *g, gpu_buffer *buffer, uint64_t offset, void *out, size_t size) {
+    if (!between_frames(g, buffer->label)) return false;
+    if (offset > buffer->size || size > buffer->size - offset) {
+        return err_set("buffer '%s': bytes %" PRIu64 " to %" PRIu64 " of %" PRIu64, buffer->label,
+                       offset, offset + size, buffer->size);
+    }
+    if (size == 0) return true;
+    if (buffer->kind == GPU_BUFFER_READBACK) {
+        if (!gpu_idle(g)) return false;
+        memcpy(out, (const char *)gpu_buffer_map(buffer) + offset, size);
+        return true;
+    }
+    gpu_buffer *target = target_create(g, size, buffer->label);
+    if (!target) return false;
+    bool ok = copy_out(g, buffer, offset, target);
+    if (ok) memcpy(out, gpu_buffer_map(target), size);
+    gpu_buffer_destroy(g, target);
+    return ok;
+}

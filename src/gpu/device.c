@@ -1,0 +1,253 @@
+// Life of a device: features, creation, loss, destruction.
+#include "base/log.h"
+#include "base/memory.h"
+#include "gpu/vk.h"
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void chain(vk_features *f) {
+    f->core.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    f->v11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
+    f->v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    f->v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+    f->core.pNext = &f->v11;
+    f->v11.pNext = &f->v12;
+    f->v12.pNext = &f->v13;
+}
+
+void vk_features_read(VkPhysicalDevice physical, vk_features *out) {
+    memset(out, 0, sizeof *out);
+    chain(out);
+    vkGetPhysicalDeviceFeatures2(physical, &out->core);
+}
+
+VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family) {
+    vk_features has, want = {0};
+    vk_features_read(physical, &has);
+    chain(&want);
+    want.v13.dynamicRendering = VK_TRUE;
+    want.v13.synchronization2 = VK_TRUE;
+    want.v13.maintenance4 = VK_TRUE;
+    want.v12.timelineSemaphore = VK_TRUE;
+    want.v12.scalarBlockLayout = VK_TRUE;
+    want.core.features.shaderStorageImageExtendedFormats = VK_TRUE;
+    // Shaders are written by strangers: an index out of bounds must stay inside its own binding.
+    want.core.features.robustBufferAccess = has.core.features.robustBufferAccess;
+    want.v13.robustImageAccess = has.v13.robustImageAccess;
+    // Conveniences that shaders may lean on where they exist.
+    want.core.features.shaderStorageImageReadWithoutFormat =
+        has.core.features.shaderStorageImageReadWithoutFormat;
+    want.core.features.shaderStorageImageWriteWithoutFormat =
+        has.core.features.shaderStorageImageWriteWithoutFormat;
+    want.core.features.vertexPipelineStoresAndAtomics =
+        has.core.features.vertexPipelineStoresAndAtomics;
+    want.core.features.fragmentStoresAndAtomics = has.core.features.fragmentStoresAndAtomics;
+    want.v11.storageBuffer16BitAccess = has.v11.storageBuffer16BitAccess;
+    want.v11.uniformAndStorageBuffer16BitAccess = has.v11.uniformAndStorageBuffer16BitAccess;
+
+    static const char *const extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+    float priority = 1.0f;
+    VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                     .queueFamilyIndex = family,
+                                     .queueCount = 1,
+                                     .pQueuePriorities = &priority};
+    VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                               .pNext = &want.core,
+                               .queueCreateInfoCount = 1,
+                               .pQueueCreateInfos = &queue,
+                               .enabledExtensionCount = COUNT_OF(extensions),
+                               .ppEnabledExtensionNames = extensions};
+    VkDevice device = VK_NULL_HANDLE;
+    VkResult result = vkCreateDevice(physical, &info, NULL, &device);
+    if (result != VK_SUCCESS) {
+        err_set("the device does not start: vkCreateDevice gives error %d", (int)result);
+    }
+    return device;
+}
+
+static const char *result_text(VkResult result) {
+    switch (result) {
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+        return "the driver has no host memory left";
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+        return "the device has no memory left";
+    case VK_ERROR_DEVICE_LOST:
+        return "the device was lost (a shader that ran too long, or a driver fault)";
+    case VK_ERROR_TOO_MANY_OBJECTS:
+        return "the driver allows no more objects of this kind";
+    case VK_ERROR_FORMAT_NOT_SUPPORTED:
+        return "the device does not support the format";
+    default:
+        return "the driver refuses";
+    }
+}
+
+bool vk_check(gpu *g, VkResult result, const char *what, ...) {
+    if (result == VK_SUCCESS) return true;
+    if (result == VK_ERROR_DEVICE_LOST) atomic_store(&g->lost, true);
+    char text[512];
+    va_list args;
+    va_start(args, what);
+    vsnprintf(text, sizeof text, what, args);
+    va_end(args);
+    return err_set("%s: %s (Vulkan result %d)", text, result_text(result), (int)result);
+}
+
+bool vk_alive(gpu *g) {
+    if (!atomic_load(&g->lost)) return true;
+    return err_set("the device '%s' was lost; it must be created anew", g->info.name);
+}
+
+void vk_name(gpu *g, VkObjectType type, uint64_t handle, const char *label) {
+    if (!g->set_name || !label) return;
+    VkDebugUtilsObjectNameInfoEXT info = {.sType =
+                                              VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+                                          .objectType = type,
+                                          .objectHandle = handle,
+                                          .pObjectName = label};
+    g->set_name(g->device, &info);
+}
+
+static void load_limits(gpu *g) {
+    VkPhysicalDeviceVulkan13Properties v13 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES};
+    VkPhysicalDeviceVulkan11Properties v11 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES, .pNext = &v13};
+    VkPhysicalDeviceProperties2 properties = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &v11};
+    vkGetPhysicalDeviceProperties2(g->physical, &properties);
+    g->limits = properties.properties.limits;
+    g->max_allocation = v11.maxMemoryAllocationSize;
+    g->max_buffer = v13.maxBufferSize;
+    vkGetPhysicalDeviceMemoryProperties(g->physical, &g->heaps);
+    for (int i = 1; i < GPU_FORMAT_COUNT; i++) {
+        VkFormatProperties p;
+        vkGetPhysicalDeviceFormatProperties(g->physical, vk_format_get((gpu_format)i)->format, &p);
+        g->format_features[i] = p.optimalTilingFeatures;
+    }
+    VkQueueFamilyProperties families[16];
+    uint32_t count = COUNT_OF(families);
+    vkGetPhysicalDeviceQueueFamilyProperties(g->physical, &count, families);
+    g->timestamp_bits = families[g->family].timestampValidBits;
+}
+
+static void load_calls(gpu *g) {
+    VkDevice d = g->device;
+    g->push_descriptors =
+        (PFN_vkCmdPushDescriptorSetKHR)vkGetDeviceProcAddr(d, "vkCmdPushDescriptorSetKHR");
+    if (!g->instance.labels) return;
+    g->begin_label =
+        (PFN_vkCmdBeginDebugUtilsLabelEXT)vkGetDeviceProcAddr(d, "vkCmdBeginDebugUtilsLabelEXT");
+    g->end_label =
+        (PFN_vkCmdEndDebugUtilsLabelEXT)vkGetDeviceProcAddr(d, "vkCmdEndDebugUtilsLabelEXT");
+    g->set_name =
+        (PFN_vkSetDebugUtilsObjectNameEXT)vkGetDeviceProcAddr(d, "vkSetDebugUtilsObjectNameEXT");
+}
+
+static bool open_device(gpu *g, const char *name) {
+    vk_choice choices[VK_MAX_DEVICES];
+    int count = vk_choices_find(g->instance.handle, choices);
+    const vk_choice *choice = count > 0 ? vk_choice_pick(choices, count, name) : NULL;
+    if (!choice) return false;
+    g->info = choice->info;
+    g->physical = choice->physical;
+    g->family = (uint32_t)vk_queue_family_find(g->physical);
+    g->device = vk_device_create(g->physical, g->family);
+    if (!g->device) return false;
+    vkGetDeviceQueue(g->device, g->family, 0, &g->queue);
+    load_limits(g);
+    load_calls(g);
+    return true;
+}
+
+static bool open_timeline(gpu *g) {
+    VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
+                                      .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
+    VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
+    return vk_check(g, vkCreateSemaphore(g->device, &info, NULL, &g->timeline),
+                    "creating the timeline semaphore");
+}
+
+static bool open_commands(gpu *g) {
+    if (!open_timeline(g)) return false;
+    for (int i = 0; i < VK_BATCHES; i++) {
+        if (!vk_batch_create(g, &g->batches[i])) return false;
+    }
+    for (int i = 0; i < GPU_FRAMES_IN_FLIGHT; i++) {
+        if (!vk_batch_create(g, &g->frames[i].batch)) return false;
+        if (!vk_timer_create(g, &g->frames[i].timer)) return false;
+    }
+    return true;
+}
+
+static bool validation_wanted(const gpu_desc *desc) {
+    const char *set = getenv("ROIL_VALIDATE");
+    return desc->validate || (set && strcmp(set, "1") == 0);
+}
+
+gpu *gpu_create(const gpu_desc *desc) {
+    static const gpu_desc defaults = {0};
+    if (!desc) desc = &defaults;
+    gpu *g = mem_alloc(sizeof *g);
+    pthread_mutex_init(&g->retire_lock, NULL);
+    if (!vk_instance_create(&g->instance, validation_wanted(desc), &g->messages) ||
+        !open_device(g, desc->device) || !open_commands(g) || !vk_samplers_create(g) ||
+        !vk_cache_create(g, desc->cache_dir)) {
+        gpu_destroy(g);
+        return NULL;
+    }
+    log_write(LOG_DEBUG, "device: %s, %s%s", g->info.name, g->info.driver,
+              g->instance.validating ? ", with validation" : "");
+    return g;
+}
+
+static void close_frame(gpu *g, vk_frame *frame) {
+    for (size_t i = 0; i < frame->uniforms.count; i++) {
+        gpu_buffer_destroy(g, frame->uniforms.chunks[i]);
+    }
+    mem_free(frame->uniforms.chunks);
+    vkDestroyQueryPool(g->device, frame->timer.queries, NULL);
+    vk_batch_destroy(g, &frame->batch);
+}
+
+static void close_device(gpu *g) {
+    vkDeviceWaitIdle(g->device); // fails on a lost device, which has nothing to wait for
+    for (int i = 0; i < GPU_FRAMES_IN_FLIGHT; i++) close_frame(g, &g->frames[i]);
+    for (int i = 0; i < VK_BATCHES; i++) vk_batch_destroy(g, &g->batches[i]);
+    gpu_buffer_destroy(g, g->ring.buffer);
+    vk_collect_all(g);
+    for (int i = 0; i < GPU_SAMPLER_COUNT; i++) {
+        vkDestroySampler(g->device, g->samplers[i], NULL);
+    }
+    vk_cache_destroy(g);
+    vkDestroySemaphore(g->device, g->timeline, NULL);
+    vk_pool_deinit(g);
+    vkDestroyDevice(g->device, NULL);
+}
+
+void gpu_destroy(gpu *g) {
+    if (!g) return;
+    if (g->device) close_device(g);
+    vk_instance_destroy(&g->instance);
+    pthread_mutex_destroy(&g->retire_lock);
+    mem_free(g->retired);
+    mem_free(g->uses.list);
+    mem_free(g->uses.images);
+    mem_free(g->uses.buffers);
+    mem_free(g->cache_path);
+    mem_free(g);
+}
+
+const gpu_info *gpu_get_info(const gpu *g) {
+    return &g->info;
+}
+
+uint64_t gpu_validation_messages(const gpu *g) {
+    return atomic_load(&g->messages);
+}
+
+bool gpu_validation_enabled(const gpu *g) {
+    return g->instance.validating;
+}

@@ -1,0 +1,158 @@
+// Draws into targets. All barriers come before rendering begins, so the draws of one call are
+// unordered among each other but for what the targets order.
+#include "gpu/vk.h"
+
+static uint32_t color_count(const gpu_draw_desc *desc) {
+    uint32_t count = 0;
+    while (count < VK_MAX_TARGETS && desc->colors[count]) count++;
+    return count;
+}
+
+static bool check_target(const gpu_draw_desc *desc, const gpu_image *image, bool depth) {
+    const gpu_image *first = desc->colors[0] ? desc->colors[0] : desc->depth;
+    const gpu_image_desc *d = &image->desc;
+    if (!(d->use & GPU_USE_TARGET)) {
+        return err_set("image '%s' was not created for use as a target", d->label);
+    }
+    if ((d->format == GPU_D32F) != depth) {
+        return err_set("image '%s' of format %s cannot be a %s target", d->label,
+                       gpu_format_name(d->format), depth ? "depth" : "colour");
+    }
+    if (d->width != first->desc.width || d->height != first->desc.height) {
+        return err_set("targets '%s' and '%s' differ in size: %ux%u and %ux%u", first->desc.label,
+                       d->label, first->desc.width, first->desc.height, d->width, d->height);
+    }
+    return true;
+}
+
+static bool check_pipeline(const gpu_draw_desc *desc, uint32_t colors) {
+    const gpu_pipeline *p = desc->pipeline;
+    if (!p) return err_set("draws need a pipeline");
+    if (p->bind_point != VK_PIPELINE_BIND_POINT_GRAPHICS) {
+        return err_set("pipeline '%s' is a compute pipeline and cannot draw", p->label);
+    }
+    if (p->color_count != colors || (p->depth != GPU_FORMAT_NONE) != (desc->depth != NULL)) {
+        return err_set("pipeline '%s' draws to %u colour targets%s; %u%s are given", p->label,
+                       p->color_count, p->depth ? " and depth" : "", colors,
+                       desc->depth ? " and depth" : "");
+    }
+    for (uint32_t i = 0; i < colors; i++) {
+        if (p->colors[i] != desc->colors[i]->desc.format) {
+            return err_set("pipeline '%s' draws to format %s; target '%s' has %s", p->label,
+                           gpu_format_name(p->colors[i]), desc->colors[i]->desc.label,
+                           gpu_format_name(desc->colors[i]->desc.format));
+        }
+    }
+    return true;
+}
+
+static bool check(gpu *g, const gpu_draw_desc *desc) {
+    if (!vk_alive(g)) return false;
+    if (!g->frame) return err_set("drawing: no frame is open");
+    uint32_t colors = color_count(desc);
+    if (colors == 0 && !desc->depth) return err_set("drawing needs a target");
+    for (uint32_t i = 0; i < colors; i++) {
+        if (!check_target(desc, desc->colors[i], false)) return false;
+    }
+    if (desc->depth && !check_target(desc, desc->depth, true)) return false;
+    if (desc->draw_count == 0) return true;
+    if (!check_pipeline(desc, colors)) return false;
+    for (size_t i = 0; i < desc->draw_count; i++) {
+        const gpu_draw *draw = &desc->draws[i];
+        if (!vk_bindings_check(g, desc->pipeline, draw->bindings, draw->binding_count)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool use_all(gpu *g, const gpu_draw_desc *desc) {
+    static const hazard_access color = {.stages = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                        .reads = VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT,
+                                        .writes = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+                                        .layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    static const hazard_access depth = {.stages = VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT |
+                                                  VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                                        .reads = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
+                                        .writes = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                                        .layout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL};
+    uint32_t colors = color_count(desc);
+    for (uint32_t i = 0; i < colors; i++) {
+        if (!vk_use_image(g, desc->colors[i], 0, 1, color)) return false;
+    }
+    if (desc->depth && !vk_use_image(g, desc->depth, 0, 1, depth)) return false;
+    for (size_t i = 0; i < desc->draw_count; i++) {
+        const gpu_draw *draw = &desc->draws[i];
+        if (!vk_bindings_use(g, desc->pipeline, draw->bindings, draw->binding_count)) return false;
+    }
+    return true;
+}
+
+static VkRenderingAttachmentInfo attachment(const gpu_image *image, bool clear,
+                                            VkClearValue value) {
+    return (VkRenderingAttachmentInfo){.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                       .imageView = image->mips[0],
+                                       .imageLayout = image->tracked[0].state.layout,
+                                       .loadOp = clear ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                                                       : VK_ATTACHMENT_LOAD_OP_LOAD,
+                                       .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
+                                       .clearValue = value};
+}
+
+static VkClearColorValue clear_value(const gpu_image *image, const float color[4]) {
+    VkClearColorValue value;
+    for (int i = 0; i < 4; i++) {
+        if (image->desc.format == GPU_R32U) {
+            value.uint32[i] = color[i] > 0.0f ? (uint32_t)color[i] : 0;
+        } else {
+            value.float32[i] = color[i];
+        }
+    }
+    return value;
+}
+
+static void begin(VkCommandBuffer commands, const gpu_draw_desc *desc) {
+    VkRenderingAttachmentInfo colors[VK_MAX_TARGETS], depth;
+    const gpu_image *first = desc->colors[0] ? desc->colors[0] : desc->depth;
+    VkExtent2D size = {first->desc.width, first->desc.height};
+    VkRenderingInfo info = {.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                            .renderArea = {.extent = size},
+                            .layerCount = 1,
+                            .colorAttachmentCount = color_count(desc),
+                            .pColorAttachments = colors};
+    for (uint32_t i = 0; i < info.colorAttachmentCount; i++) {
+        VkClearValue value = {.color = clear_value(desc->colors[i], desc->clear_color[i])};
+        colors[i] = attachment(desc->colors[i], desc->clear, value);
+    }
+    if (desc->depth) {
+        VkClearValue value = {.depthStencil = {.depth = desc->clear_depth}};
+        depth = attachment(desc->depth, desc->clear, value);
+        info.pDepthAttachment = &depth;
+    }
+    vkCmdBeginRendering(commands, &info);
+    VkViewport viewport = {
+        .width = (float)size.width, .height = (float)size.height, .maxDepth = 1.0f};
+    VkRect2D scissor = {.extent = size};
+    vkCmdSetViewport(commands, 0, 1, &viewport);
+    vkCmdSetScissor(commands, 0, 1, &scissor);
+}
+
+bool gpu_draw_all(gpu *g, const gpu_draw_desc *desc) {
+    if (!check(g, desc)) return false;
+    VkCommandBuffer commands = g->frame->batch.commands;
+    vk_uses_begin(g);
+    if (!use_all(g, desc)) return false;
+    vk_uses_flush(g, commands);
+    begin(commands, desc);
+    bool ok = true;
+    if (desc->draw_count > 0) {
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, desc->pipeline->handle);
+    }
+    for (size_t i = 0; i < desc->draw_count && ok; i++) {
+        const gpu_draw *draw = &desc->draws[i];
+        ok = vk_bindings_push(g, commands, desc->pipeline, draw->bindings, draw->binding_count);
+        if (ok) vkCmdDraw(commands, draw->vertices, draw->instances ? draw->instances : 1, 0, 0);
+    }
+    vkCmdEndRendering(commands);
+    return ok;
+}

@@ -1,0 +1,266 @@
+// Pipelines. Descriptors are pushed (set 0), vertices pulled from buffers, rendering is dynamic: a
+// pipeline is its shaders, its slots and its target formats.
+//
+// May be called from any thread: creation touches only its own objects and the pipeline cache,
+// which the driver locks; destruction goes through the locked queue of destroy.c.
+#include "base/memory.h"
+#include "gpu/vk.h"
+#include <string.h>
+
+static void pipeline_free(gpu *g, void *object) {
+    gpu_pipeline *pipeline = object;
+    vkDestroyPipeline(g->device, pipeline->handle, NULL);
+    vkDestroyPipelineLayout(g->device, pipeline->layout, NULL);
+    vkDestroyDescriptorSetLayout(g->device, pipeline->set_layout, NULL);
+    mem_free(pipeline->label);
+    mem_free(pipeline);
+}
+
+static bool create_layout(gpu *g, gpu_pipeline *pipeline, VkShaderStageFlags stages) {
+    VkDescriptorSetLayoutBinding bindings[GPU_MAX_SLOTS];
+    for (uint32_t i = 0; i < pipeline->slot_count; i++) {
+        bindings[i] = (VkDescriptorSetLayoutBinding){
+            .binding = pipeline->slots[i].binding,
+            .descriptorType = vk_descriptor_type(pipeline->slots[i].kind),
+            .descriptorCount = 1,
+            .stageFlags = stages};
+    }
+    VkDescriptorSetLayoutCreateInfo set = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR,
+        .bindingCount = pipeline->slot_count,
+        .pBindings = bindings};
+    if (!vk_check(g, vkCreateDescriptorSetLayout(g->device, &set, NULL, &pipeline->set_layout),
+                  "creating the slots of pipeline '%s'", pipeline->label)) {
+        return false;
+    }
+    VkPipelineLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                       .setLayoutCount = 1,
+                                       .pSetLayouts = &pipeline->set_layout};
+    return vk_check(g, vkCreatePipelineLayout(g->device, &info, NULL, &pipeline->layout),
+                    "creating the layout of pipeline '%s'", pipeline->label);
+}
+
+static bool check_slots(gpu *g, const char *label, const gpu_slot *slots, size_t count) {
+    if (count > GPU_MAX_SLOTS) {
+        return err_set("pipeline '%s' has %zu bindings; at most %d are accepted", label, count,
+                       GPU_MAX_SLOTS);
+    }
+    uint32_t kinds[4] = {0};
+    for (size_t i = 0; i < count; i++) {
+        for (size_t j = 0; j < i; j++) {
+            if (slots[i].binding == slots[j].binding) {
+                return err_set("pipeline '%s' has binding %u twice", label, slots[i].binding);
+            }
+        }
+        kinds[slots[i].kind]++;
+    }
+    const uint32_t most[4] = {
+        [GPU_SLOT_UNIFORM] = g->limits.maxPerStageDescriptorUniformBuffers,
+        [GPU_SLOT_STORAGE_BUFFER] = g->limits.maxPerStageDescriptorStorageBuffers,
+        [GPU_SLOT_SAMPLED_IMAGE] = g->limits.maxPerStageDescriptorSampledImages,
+        [GPU_SLOT_STORAGE_IMAGE] = g->limits.maxPerStageDescriptorStorageImages};
+    static const char *const names[4] = {[GPU_SLOT_UNIFORM] = "uniform blocks",
+                                         [GPU_SLOT_STORAGE_BUFFER] = "storage buffers",
+                                         [GPU_SLOT_SAMPLED_IMAGE] = "sampled images",
+                                         [GPU_SLOT_STORAGE_IMAGE] = "storage images"};
+    for (int i = 0; i < 4; i++) {
+        if (kinds[i] > most[i]) {
+            return err_set("pipeline '%s' has %u %s; the device allows %u", label, kinds[i],
+                           names[i], most[i]);
+        }
+    }
+    return true;
+}
+
+static gpu_pipeline *pipeline_new(const char *label, const gpu_slot *slots, size_t count) {
+    gpu_pipeline *pipeline = mem_alloc(sizeof *pipeline);
+    pipeline->label = mem_copy(label, strlen(label) + 1);
+    if (count > 0) memcpy(pipeline->slots, slots, count * sizeof *slots);
+    pipeline->slot_count = (uint32_t)count;
+    return pipeline;
+}
+
+static bool create_module(gpu *g, const char *label, const uint32_t *code, size_t size,
+                          VkShaderModule *out) {
+    static const uint32_t magic = 0x07230203;
+    if (!code || size < 20 || size % 4 != 0 || code[0] != magic) {
+        return err_set("pipeline '%s': the shader code is not SPIR-V", label);
+    }
+    VkShaderModuleCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = code};
+    return vk_check(g, vkCreateShaderModule(g->device, &info, NULL, out),
+                    "loading the shader of pipeline '%s'", label);
+}
+
+// ---- compute ----------------------------------------------------------------------------------
+
+static bool check_local_size(gpu *g, const char *label, const uint32_t size[3]) {
+    const uint32_t *most = g->limits.maxComputeWorkGroupSize;
+    uint32_t total = g->limits.maxComputeWorkGroupInvocations;
+    bool fits = true;
+    for (int i = 0; i < 3; i++) fits = fits && size[i] > 0 && size[i] <= most[i];
+    if (fits && (uint64_t)size[0] * size[1] * size[2] <= total) return true;
+    return err_set(
+        "pipeline '%s' has groups of %ux%ux%u threads; the device allows %ux%ux%u and %u "
+        "in all",
+        label, size[0], size[1], size[2], most[0], most[1], most[2], total);
+}
+
+static bool build_compute(gpu *g, gpu_pipeline *pipeline, const gpu_compute_desc *desc) {
+    VkShaderModule module;
+    if (!create_layout(g, pipeline, VK_SHADER_STAGE_COMPUTE_BIT)) return false;
+    if (!create_module(g, pipeline->label, desc->code, desc->code_size, &module)) return false;
+    VkComputePipelineCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                  .module = module,
+                  .pName = "main"},
+        .layout = pipeline->layout};
+    VkResult result =
+        vkCreateComputePipelines(g->device, g->cache, 1, &info, NULL, &pipeline->handle);
+    vkDestroyShaderModule(g->device, module, NULL);
+    return vk_check(g, result, "creating pipeline '%s'", pipeline->label);
+}
+
+gpu_pipeline *gpu_pipeline_create_compute(gpu *g, const gpu_compute_desc *desc) {
+    const char *label = desc->label ? desc->label : "compute";
+    if (!vk_alive(g) || !check_slots(g, label, desc->slots, desc->slot_count) ||
+        !check_local_size(g, label, desc->local_size)) {
+        return NULL;
+    }
+    gpu_pipeline *pipeline = pipeline_new(label, desc->slots, desc->slot_count);
+    pipeline->bind_point = VK_PIPELINE_BIND_POINT_COMPUTE;
+    memcpy(pipeline->local_size, desc->local_size, sizeof pipeline->local_size);
+    if (!build_compute(g, pipeline, desc)) {
+        pipeline_free(g, pipeline);
+        return NULL;
+    }
+    vk_name(g, VK_OBJECT_TYPE_PIPELINE, VK_HANDLE(pipeline->handle), label);
+    return pipeline;
+}
+
+// ---- graphics ---------------------------------------------------------------------------------
+
+static VkResult create_graphics(gpu *g, gpu_pipeline *pipeline, gpu_cull cull,
+                                const VkPipelineShaderStageCreateInfo stages[2]) {
+    VkFormat formats[VK_MAX_TARGETS];
+    VkPipelineColorBlendAttachmentState blends[VK_MAX_TARGETS];
+    for (uint32_t i = 0; i < pipeline->color_count; i++) {
+        formats[i] = vk_format_get(pipeline->colors[i])->format;
+        blends[i] = (VkPipelineColorBlendAttachmentState){.colorWriteMask = 0xf};
+    }
+    bool depth = pipeline->depth != GPU_FORMAT_NONE;
+    VkPipelineRenderingCreateInfo rendering = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+        .colorAttachmentCount = pipeline->color_count,
+        .pColorAttachmentFormats = formats,
+        .depthAttachmentFormat = vk_format_get(pipeline->depth)->format};
+    VkPipelineVertexInputStateCreateInfo vertices = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+    VkPipelineInputAssemblyStateCreateInfo assembly = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+    VkPipelineViewportStateCreateInfo viewport = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+        .viewportCount = 1,
+        .scissorCount = 1};
+    VkPipelineRasterizationStateCreateInfo raster = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+        .cullMode = cull == GPU_CULL_BACK ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE,
+        .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
+        .lineWidth = 1.0f};
+    VkPipelineMultisampleStateCreateInfo samples = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+        .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+    VkPipelineDepthStencilStateCreateInfo test = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+        .depthTestEnable = depth,
+        .depthWriteEnable = depth,
+        .depthCompareOp = VK_COMPARE_OP_LESS_OR_EQUAL};
+    VkPipelineColorBlendStateCreateInfo blend = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+        .attachmentCount = pipeline->color_count,
+        .pAttachments = blends};
+    static const VkDynamicState dynamic_states[] = {VK_DYNAMIC_STATE_VIEWPORT,
+                                                    VK_DYNAMIC_STATE_SCISSOR};
+    VkPipelineDynamicStateCreateInfo dynamic = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+        .dynamicStateCount = COUNT_OF(dynamic_states),
+        .pDynamicStates = dynamic_states};
+    VkGraphicsPipelineCreateInfo info = {.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                                         .pNext = &rendering,
+                                         .stageCount = 2,
+                                         .pStages = stages,
+                                         .pVertexInputState = &vertices,
+                                         .pInputAssemblyState = &assembly,
+                                         .pViewportState = &viewport,
+                                         .pRasterizationState = &raster,
+                                         .pMultisampleState = &samples,
+                                         .pDepthStencilState = &test,
+                                         .pColorBlendState = &blend,
+                                         .pDynamicState = &dynamic,
+                                         .layout = pipeline->layout};
+    return vkCreateGraphicsPipelines(g->device, g->cache, 1, &info, NULL, &pipeline->handle);
+}
+
+static bool build_graphics(gpu *g, gpu_pipeline *pipeline, const gpu_graphics_desc *desc) {
+    VkShaderStageFlags both = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    VkPipelineShaderStageCreateInfo stages[2] = {
+        {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+         .stage = VK_SHADER_STAGE_VERTEX_BIT,
+         .pName = "main"},
+        {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+         .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
+         .pName = "main"}};
+    bool ok = create_layout(g, pipeline, both) &&
+              create_module(g, pipeline->label, desc->vertex_code, desc->vertex_size,
+                            &stages[0].module) &&
+              create_module(g, pipeline->label, desc->fragment_code, desc->fragment_size,
+                            &stages[1].module) &&
+              vk_check(g, create_graphics(g, pipeline, desc->cull, stages),
+                       "creating pipeline '%s'", pipeline->label);
+    vkDestroyShaderModule(g->device, stages[0].module, NULL);
+    vkDestroyShaderModule(g->device, stages[1].module, NULL);
+    return ok;
+}
+
+static bool check_targets(gpu *g, const char *label, const gpu_graphics_desc *desc) {
+    for (int i = 0; i < VK_MAX_TARGETS && desc->colors[i]; i++) {
+        if (desc->colors[i] >= GPU_FORMAT_COUNT ||
+            !(g->format_features[desc->colors[i]] & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT)) {
+            return err_set("pipeline '%s': colour target %d has a format that cannot be drawn to",
+                           label, i);
+        }
+    }
+    if (desc->depth != GPU_FORMAT_NONE && desc->depth != GPU_D32F) {
+        return err_set("pipeline '%s': the depth target must have format d32f", label);
+    }
+    return true;
+}
+
+gpu_pipeline *gpu_pipeline_create_graphics(gpu *g, const gpu_graphics_desc *desc) {
+    const char *label = desc->label ? desc->label : "graphics";
+    if (!vk_alive(g) || !check_slots(g, label, desc->slots, desc->slot_count) ||
+        !check_targets(g, label, desc)) {
+        return NULL;
+    }
+    gpu_pipeline *pipeline = pipeline_new(label, desc->slots, desc->slot_count);
+    pipeline->bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    pipeline->depth = desc->depth;
+    for (int i = 0; i < VK_MAX_TARGETS && desc->colors[i]; i++) {
+        pipeline->colors[pipeline->color_count++] = desc->colors[i];
+    }
+    if (!build_graphics(g, pipeline, desc)) {
+        pipeline_free(g, pipeline);
+        return NULL;
+    }
+    vk_name(g, VK_OBJECT_TYPE_PIPELINE, VK_HANDLE(pipeline->handle), label);
+    return pipeline;
+}
+
+void gpu_pipeline_destroy(gpu *g, gpu_pipeline *pipeline) {
+    if (!pipeline) return;
+    vk_retire(g, pipeline_free, pipeline);
+}

@@ -1,0 +1,87 @@
+// GPU time of each pass: two timestamps, taken when all earlier work has finished.
+//
+// lavapipe at times misses the first timestamp after it was idle and leaves 0 there, so a
+// difference is believed only within what the host clock allows: no pass is shorter than nothing or
+// longer than the time from the opening of its frame to the moment its results were first asked
+// for.
+#include "base/clock.h"
+#include "base/str.h"
+#include "gpu/vk.h"
+#include <assert.h>
+
+bool vk_timer_create(gpu *g, vk_timer *out) {
+    if (g->info.timestamp_period <= 0.0f) return true;
+    VkQueryPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                  .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                  .queryCount = 2 * GPU_MAX_PASSES};
+    return vk_check(g, vkCreateQueryPool(g->device, &info, NULL, &out->queries),
+                    "creating timestamp queries");
+}
+
+void vk_timer_begin(gpu *g, vk_timer *timer, VkCommandBuffer commands) {
+    (void)g;
+    timer->count = 0;
+    timer->longest = 0.0;
+    timer->began = clock_seconds();
+    if (timer->queries) vkCmdResetQueryPool(commands, timer->queries, 0, 2 * GPU_MAX_PASSES);
+}
+
+static void stamp(gpu *g, uint32_t query) {
+    if (!g->frame->timer.queries) return;
+    vkCmdWriteTimestamp2(g->frame->batch.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                         g->frame->timer.queries, query);
+}
+
+void gpu_pass_begin(gpu *g, const char *label) {
+    assert(g->frame && !g->in_pass);
+    if (!g->frame || atomic_load(&g->lost)) return;
+    g->in_pass = true;
+    if (g->begin_label) {
+        VkDebugUtilsLabelEXT info = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
+                                     .pLabelName = label};
+        g->begin_label(g->frame->batch.commands, &info);
+    }
+    vk_timer *timer = &g->frame->timer;
+    if (timer->count >= GPU_MAX_PASSES) return; // recorded all the same, but not timed
+    str_copy(timer->labels[timer->count], sizeof timer->labels[0], label);
+    stamp(g, 2 * timer->count);
+}
+
+void gpu_pass_end(gpu *g) {
+    if (!g->frame || !g->in_pass) return;
+    g->in_pass = false;
+    vk_timer *timer = &g->frame->timer;
+    if (timer->count < GPU_MAX_PASSES) stamp(g, 2 * timer->count++ + 1);
+    if (g->end_label) g->end_label(g->frame->batch.commands);
+}
+
+static double milliseconds(const gpu *g, const vk_timer *timer, uint64_t begin, uint64_t end) {
+    uint64_t mask = g->timestamp_bits >= 64 ? UINT64_MAX : (UINT64_C(1) << g->timestamp_bits) - 1;
+    if (begin == 0 || end == 0) return 0.0;
+    uint64_t ticks = (end - begin) & mask;
+    double value = (double)ticks * (double)g->info.timestamp_period * 1e-6;
+    if (ticks > mask / 2) return 0.0; // negative
+    return value < timer->longest ? value : timer->longest;
+}
+
+size_t gpu_frame_times(gpu *g, uint64_t frame, gpu_pass_time *out, size_t capacity) {
+    vk_frame *slot = &g->frames[frame % GPU_FRAMES_IN_FLIGHT];
+    if (frame == 0 || slot->number != frame || slot == g->frame) return 0;
+    vk_timer *timer = &slot->timer;
+    if (timer->count == 0 || !gpu_frame_wait(g, frame)) return 0;
+    if (timer->longest <= 0.0) timer->longest = (clock_seconds() - timer->began) * 1e3;
+
+    uint64_t ticks[2 * GPU_MAX_PASSES] = {0};
+    if (timer->queries) {
+        VkResult result =
+            vkGetQueryPoolResults(g->device, timer->queries, 0, 2 * timer->count, sizeof ticks,
+                                  ticks, sizeof *ticks, VK_QUERY_RESULT_64_BIT);
+        if (result != VK_NOT_READY && !vk_check(g, result, "reading timestamps")) return 0;
+    }
+    size_t count = timer->count < capacity ? timer->count : capacity;
+    for (size_t i = 0; i < count; i++) {
+        str_copy(out[i].label, sizeof out[i].label, timer->labels[i]);
+        out[i].milliseconds = milliseconds(g, timer, ticks[2 * i], ticks[2 * i + 1]);
+    }
+    return count;
+}

@@ -1,0 +1,292 @@
+// Private to src/gpu: the structs behind gpu.h and the calls between its files.
+//
+// A `serial` counts submissions to the queue, from 1; the timeline semaphore holds the serial of
+// the last finished one. At most one command buffer is open at a time: that of the open frame, or a
+// batch of work recorded between frames, which is submitted before the next frame or read.
+#pragma once
+#include "base/error.h"
+#include "gpu/allocator.h"
+#include "gpu/gpu.h"
+#include "gpu/hazard.h"
+#include <pthread.h>
+#include <stdatomic.h>
+#include <vulkan/vulkan.h>
+
+enum { VK_MAX_MIPS = 16, VK_MAX_DEVICES = 16, VK_MAX_TARGETS = 4, VK_BATCHES = 4 };
+
+// ---- instance and device ----------------------------------------------------------------------
+
+typedef struct vk_instance {
+    VkInstance handle;
+    VkDebugUtilsMessengerEXT messenger;
+    bool validating, labels;
+} vk_instance;
+
+// Counts messages in `*messages`, which must outlive the instance; may be NULL without validation.
+bool vk_instance_create(vk_instance *out, bool validate, _Atomic uint64_t *messages);
+void vk_instance_destroy(vk_instance *instance);
+
+typedef struct vk_choice { // a device as found; real GPUs first
+    VkPhysicalDevice physical;
+    gpu_info info;
+} vk_choice;
+// At most VK_MAX_DEVICES; -1 with a message when there is none.
+int vk_choices_find(VkInstance instance, vk_choice *out);
+const vk_choice *vk_choice_pick(const vk_choice *choices, int count, const char *device);
+int vk_queue_family_find(VkPhysicalDevice physical); // graphics and compute; -1: none
+
+// Features that roil requires and those it takes when they are there (device.c lists them).
+typedef struct vk_features {
+    VkPhysicalDeviceFeatures2 core;
+    VkPhysicalDeviceVulkan11Features v11;
+    VkPhysicalDeviceVulkan12Features v12;
+    VkPhysicalDeviceVulkan13Features v13;
+} vk_features;
+void vk_features_read(VkPhysicalDevice physical, vk_features *out);
+VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family);
+
+// True for VK_SUCCESS; else false with "what: why", and notes a lost device.
+bool vk_check(gpu *g, VkResult result, const char *what, ...) PRINTF_LIKE(3, 4);
+bool vk_alive(gpu *g); // false with a message once the device is lost
+void vk_name(gpu *g, VkObjectType type, uint64_t handle, const char *label);
+// Handles are pointers or integers, by platform.
+#define VK_HANDLE(handle) ((uint64_t)(uintptr_t)(handle))
+
+// ---- memory -----------------------------------------------------------------------------------
+
+typedef enum vk_memory_kind {
+    VK_MEMORY_DEVICE,
+    VK_MEMORY_UPLOAD,   // the host writes, the device reads once
+    VK_MEMORY_UNIFORM,  // the host writes, the device reads many times
+    VK_MEMORY_READBACK, // the device writes, the host reads
+} vk_memory_kind;
+
+typedef struct vk_block {
+    VkDeviceMemory memory;
+    allocator spans;
+    uint8_t *map; // NULL: not host-visible
+    uint32_t type;
+    bool image;  // holds images, else buffers
+    bool single; // made for one large object
+} vk_block;
+
+typedef struct vk_memory {
+    vk_block *block; // NULL: none
+    allocator_place place;
+    uint64_t size;
+} vk_memory;
+
+typedef struct vk_pool {
+    vk_block **blocks;
+    size_t count, capacity;
+    uint64_t used, reserved;
+} vk_pool;
+
+// `label` is for the message.
+bool vk_memory_alloc(gpu *g, const VkMemoryRequirements *needs, vk_memory_kind kind, bool image,
+                     const char *label, vk_memory *out);
+void vk_memory_free(gpu *g, vk_memory *memory);
+void *vk_memory_map(const vk_memory *memory);
+void vk_pool_deinit(gpu *g);
+
+// ---- resources --------------------------------------------------------------------------------
+
+typedef struct vk_tracked {
+    hazard_state state;
+    hazard_access wanted; // by the command with that stamp
+    uint64_t stamp;
+} vk_tracked;
+
+struct gpu_image {
+    gpu_image_desc desc; // label owned
+    VkImage handle;
+    VkImageView all;               // every level
+    VkImageView mips[VK_MAX_MIPS]; // one level each
+    VkImageAspectFlags aspect;
+    vk_memory memory;
+    vk_tracked tracked[VK_MAX_MIPS];
+};
+
+struct gpu_buffer {
+    char *label;
+    uint64_t size;
+    gpu_buffer_kind kind;
+    VkBuffer handle;
+    vk_memory memory;
+    vk_tracked tracked;
+};
+
+struct gpu_pipeline {
+    char *label;
+    VkPipeline handle;
+    VkPipelineLayout layout;
+    VkDescriptorSetLayout set_layout;
+    VkPipelineBindPoint bind_point;
+    gpu_slot slots[GPU_MAX_SLOTS];
+    uint32_t slot_count;
+    uint32_t local_size[3];
+    gpu_format colors[VK_MAX_TARGETS], depth;
+    uint32_t color_count;
+};
+
+typedef struct vk_format {
+    const char *name;
+    VkFormat format;
+    uint32_t size, channels;
+} vk_format;
+const vk_format *vk_format_get(gpu_format format);
+
+gpu_buffer *vk_buffer_create(gpu *g, uint64_t size, VkBufferUsageFlags usage, vk_memory_kind kind,
+                             const char *label);
+uint32_t vk_mip_size(uint32_t size, uint32_t mip);
+// Texels and bytes of one level.
+void vk_image_extent(const gpu_image *image, uint32_t mip, VkExtent3D *extent, uint64_t *bytes);
+bool vk_samplers_create(gpu *g);
+
+// ---- destruction ------------------------------------------------------------------------------
+
+typedef struct vk_retired {
+    uint64_t serial; // dies when this submission has finished
+    void (*destroy)(gpu *g, void *object);
+    void *object;
+} vk_retired;
+
+void vk_retire(gpu *g, void (*destroy)(gpu *g, void *object), void *object); // from any thread
+void vk_collect(gpu *g);     // destroys what no unfinished submission can use
+void vk_collect_all(gpu *g); // the device is idle
+
+// ---- commands ---------------------------------------------------------------------------------
+
+typedef struct vk_batch {
+    VkCommandPool pool;
+    VkCommandBuffer commands;
+    uint64_t serial; // of its last submission
+} vk_batch;
+
+bool vk_batch_create(gpu *g, vk_batch *out);
+void vk_batch_destroy(gpu *g, vk_batch *batch);
+bool vk_batch_begin(gpu *g, vk_batch *batch); // waits until it is free
+bool vk_batch_submit(gpu *g, vk_batch *batch);
+// The open command buffer; opens a batch when no frame is open. NULL when the device is lost.
+VkCommandBuffer vk_commands(gpu *g);
+bool vk_flush(gpu *g); // submits the batch between frames, if one is open
+bool vk_wait(gpu *g, uint64_t serial);
+uint64_t vk_completed(gpu *g);
+
+// What one command touches: begin, use, ..., then flush records the barriers it needs.
+void vk_uses_begin(gpu *g);
+bool vk_use_image(gpu *g, gpu_image *image, uint32_t mip, uint32_t count, hazard_access access);
+bool vk_use_buffer(gpu *g, gpu_buffer *buffer, hazard_access access);
+void vk_uses_flush(gpu *g, VkCommandBuffer commands);
+
+typedef struct vk_use {
+    gpu_image *image; // or
+    gpu_buffer *buffer;
+    uint32_t mip;
+} vk_use;
+
+typedef struct vk_uses {
+    vk_use *list;
+    VkImageMemoryBarrier2 *images;
+    VkBufferMemoryBarrier2 *buffers;
+    size_t count, capacity, image_capacity, buffer_capacity;
+    uint64_t stamp;
+} vk_uses;
+
+VkDescriptorType vk_descriptor_type(gpu_slot_kind kind);
+// Validates bindings against the slots of a pipeline; then notes what they touch; then binds them.
+bool vk_bindings_check(gpu *g, const gpu_pipeline *pipeline, const gpu_binding *list, size_t count);
+bool vk_bindings_use(gpu *g, const gpu_pipeline *pipeline, const gpu_binding *list, size_t count);
+bool vk_bindings_push(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipeline,
+                      const gpu_binding *list, size_t count);
+
+typedef struct vk_ring { // staging: positions only grow, the offset is the position modulo size
+    gpu_buffer *buffer;
+    uint64_t size, head, tail;
+    struct {
+        uint64_t head, serial;
+    } marks[16]; // up to `head` is free once `serial` has finished
+    uint32_t mark_count;
+} vk_ring;
+
+void vk_ring_mark(gpu *g); // after each submission
+
+typedef struct vk_uniforms { // of one frame
+    gpu_buffer **chunks;
+    size_t count, capacity;
+    size_t chunk;    // in use
+    uint64_t offset; // in it
+} vk_uniforms;
+
+bool vk_uniforms_add(gpu *g, const void *data, size_t size, VkDescriptorBufferInfo *out);
+
+typedef struct vk_timer { // of one frame
+    VkQueryPool queries;
+    uint32_t count;
+    char labels[GPU_MAX_PASSES][64];
+    double began, longest; // host clock; milliseconds no pass can exceed, 0: not known yet
+} vk_timer;
+
+bool vk_timer_create(gpu *g, vk_timer *out);
+void vk_timer_begin(gpu *g, vk_timer *timer, VkCommandBuffer commands);
+
+typedef struct vk_frame {
+    vk_batch batch;
+    uint64_t number;
+    vk_uniforms uniforms;
+    vk_timer timer;
+} vk_frame;
+
+// ---- the device -------------------------------------------------------------------------------
+
+struct gpu {
+    gpu_info info;
+    vk_instance instance;
+    _Atomic uint64_t messages;
+    atomic_bool lost;
+
+    VkPhysicalDevice physical;
+    VkDevice device;
+    VkQueue queue;
+    uint32_t family;
+    uint32_t timestamp_bits;
+    VkPhysicalDeviceLimits limits;
+    uint64_t max_allocation, max_buffer;
+    VkPhysicalDeviceMemoryProperties heaps;
+    VkFormatFeatureFlags format_features[GPU_FORMAT_COUNT];
+    PFN_vkCmdPushDescriptorSetKHR push_descriptors;
+    PFN_vkCmdBeginDebugUtilsLabelEXT begin_label;
+    PFN_vkCmdEndDebugUtilsLabelEXT end_label;
+    PFN_vkSetDebugUtilsObjectNameEXT set_name;
+
+    vk_pool pool;
+    VkSampler samplers[GPU_SAMPLER_COUNT];
+
+    VkPipelineCache cache;
+    char *cache_path;
+    uint64_t cache_hash; // of what the file holds
+
+    VkSemaphore timeline;
+    uint64_t submitted, completed; // serials
+    _Atomic uint64_t open_serial;  // of the open command buffer, else the last submitted
+    vk_frame frames[GPU_FRAMES_IN_FLIGHT];
+    uint64_t frame_number; // of the last frame begun
+    vk_frame *frame;       // open, or NULL
+    vk_batch batches[VK_BATCHES];
+    uint32_t batch_next;
+    vk_batch *batch; // open between frames, or NULL
+    bool host_reads; // the open command buffer writes memory that the host will read
+    bool in_pass;
+    vk_uses uses;
+    vk_ring ring;
+
+    pthread_mutex_t retire_lock;
+    vk_retired *retired; // queue, oldest first
+    size_t retired_first, retired_count, retired_capacity;
+};
+
+bool vk_cache_create(gpu *g, const char *dir);
+void vk_cache_destroy(gpu *g); // saves it
+bool vk_cache_pack(const void *data, size_t size, void **out, size_t *out_size);
+const void *vk_cache_unpack(const void *file, size_t size, const VkPhysicalDeviceProperties *device,
+                            size_t *out_size);
