@@ -1,8 +1,8 @@
 // OpenEXR pictures: scanline, ZIP, named channels.
 #pragma once
+#include "base/arena.h"
 #include <stdbool.h>
 #include <stdint.h>
-#include "base/arena.h"
 
 typedef struct exr_channel {
     const char *name;    // "R", "G", "B", "A", "Z", ...

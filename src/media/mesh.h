@@ -1,9 +1,9 @@
 // Meshes from OBJ and glTF files, by assimp. Right-handed; Z up (glTF's Y up is rotated).
 #pragma once
-#include <stdbool.h>
-#include <stdint.h>
 #include "base/arena.h"
 #include "base/maths.h"
+#include <stdbool.h>
+#include <stdint.h>
 
 typedef struct mesh_vertex { // as the vertex shader reads it: 32 bytes
     float position[3], u;

@@ -1,20 +1,23 @@
 // PNG pictures, 8 or 16 bits a channel.
 #pragma once
+#include "base/arena.h"
 #include <stdbool.h>
 #include <stdint.h>
-#include "base/arena.h"
 
 typedef struct png_image {
     uint32_t width, height;
-    int channels;        // 3 or 4
-    int bits;            // 8 or 16 (16: native-endian uint16_t)
-    const void *pixels;  // rows from the top, tightly packed
+    int channels;       // 3 or 4
+    int bits;           // 8 or 16 (16: native-endian uint16_t)
+    const void *pixels; // rows from the top, tightly packed
 } png_image;
 
-typedef struct png_text { const char *key, *value; } png_text; // tEXt / iTXt metadata
+typedef struct png_text {
+    const char *key, *value;
+} png_text; // tEXt / iTXt metadata
 
 // Atomic (base/file.h). `texts` may be NULL.
 bool png_write(const char *path, const png_image *image, const png_text *texts, size_t text_count);
 // Any PNG becomes RGBA at 8 bits (or 16 when the file has 16). At most 16384 x 16384.
 bool png_read(const char *path, arena *memory, png_image *out);
-bool png_read_memory(const void *data, size_t size, const char *name, arena *memory, png_image *out);
+bool png_read_memory(const void *data, size_t size, const char *name, arena *memory,
+                     png_image *out);

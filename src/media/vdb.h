@@ -1,26 +1,26 @@
 // OpenVDB files, behind a C interface. All functions are thread-safe.
 #pragma once
+#include "base/arena.h"
+#include "base/maths.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include "base/arena.h"
-#include "base/maths.h"
 
 typedef enum vdb_class { VDB_UNKNOWN, VDB_FOG, VDB_LEVEL_SET, VDB_STAGGERED } vdb_class;
 
 typedef struct vdb_grid_info {
     const char *name;
-    const char *type;     // "float", "half", "double", "vec3s", ... as the file says
-    int components;       // 1 or 3; 0: a type we cannot read
+    const char *type; // "float", "half", "double", "vec3s", ... as the file says
+    int components;   // 1 or 3; 0: a type we cannot read
     vdb_class grid_class;
-    float voxel_size[3];  // metres in file units
+    float voxel_size[3];                // metres in file units
     int32_t index_min[3], index_max[3]; // active box in index space, inclusive; empty: min > max
     uint64_t active_voxels;             // 0 when the file does not say
-    box3 box;             // world box of the active voxels, half-voxel border included
+    box3 box; // world box of the active voxels, half-voxel border included
     float background[3];
     bool saved_half;
-    bool linear;          // the transform is affine
-    bool axis_aligned;    // and without rotation or shear
+    bool linear;       // the transform is affine
+    bool axis_aligned; // and without rotation or shear
 } vdb_grid_info;
 
 typedef struct vdb_info {
@@ -34,11 +34,11 @@ bool vdb_read_info(const char *path, arena *memory, vdb_info *out);
 
 typedef struct vdb_sample_desc {
     const char *path;
-    const char *grid;     // exact name
-    box3 box;             // world box to fill, in file units; voxel centres half a voxel inside
+    const char *grid; // exact name
+    box3 box;         // world box to fill, in file units; voxel centres half a voxel inside
     uint32_t size[3];
-    int components;       // 1 or 3
-    float *out;           // size[0] * size[1] * size[2] * components, x fastest
+    int components; // 1 or 3
+    float *out;     // size[0] * size[1] * size[2] * components, x fastest
 } vdb_sample_desc;
 
 // Resamples (trilinearly; exactly where the lattices coincide) one grid into a dense box. Level
@@ -49,11 +49,11 @@ bool vdb_sample(const vdb_sample_desc *desc, uint64_t *bad);
 typedef struct vdb_write_grid { // for tests and export
     const char *name;
     uint32_t size[3];
-    const float *values;  // x fastest
+    const float *values; // x fastest
     int components;
     float voxel_size;
-    float3 origin;        // world position of the centre of voxel 0
-    float background;     // values equal to it become inactive
+    float3 origin;    // world position of the centre of voxel 0
+    float background; // values equal to it become inactive
     bool half;
     vdb_class grid_class;
 } vdb_write_grid;

@@ -8,5 +8,5 @@ typedef struct video video;
 // Odd sizes are padded by one row or column. The file appears under its name only on success.
 video *video_create(const char *path, uint32_t width, uint32_t height, double fps);
 bool video_add(video *v, const uint8_t *rgba); // width * height * 4, sRGB; alpha is ignored
-bool video_finish(video *v);  // flushes, renames, destroys
-void video_abandon(video *v); // destroys, leaves no file; NULL is fine
+bool video_finish(video *v);                   // flushes, renames, destroys
+void video_abandon(video *v);                  // destroys, leaves no file; NULL is fine
