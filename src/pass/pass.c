@@ -36,6 +36,9 @@ const char *pass_label(const pass *p) {
 const shader_interface *pass_interface(const pass *p) {
     return p->face;
 }
+size_t pass_get_option(const pass *p, size_t index) {
+    return p->options[index];
+}
 float pass_get_scale(const pass *p) {
     return p->scale;
 }

@@ -78,6 +78,7 @@ bool pass_check(pass *p);   // compiles the shaders; needs no device
 bool pass_build(pass *p);   // needs a device
 graph_image pass_output(const pass *p, const char *name); // after pass_declare; zero when unknown
 const field *pass_get_uniform(const pass *p, size_t index);
+size_t pass_get_option(const pass *p, size_t index); // index of the chosen word
 float pass_get_scale(const pass *p);
 // Counter totals of a frame, after it finished: one value per counter of the interface.
 bool pass_read_counters(pass *p, uint64_t *out);

@@ -1,0 +1,56 @@
+// The program `roil`: a command each, all of it through roil.h.
+#pragma once
+#include "roil.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { APP_DONE = 0, APP_BAD_INPUT = 1, APP_BAD_USAGE = 2 };
+
+int cmd_render(int argc, const char **argv);
+int cmd_check(int argc, const char **argv);
+int cmd_info(int argc, const char **argv);
+
+// One line "roil: message" on stderr; returns the status.
+int app_fail(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
+int app_fail_input(void); // with roil_error()
+
+// ---- frames -----------------------------------------------------------------------------------
+
+typedef struct app_frames {
+    double *numbers;
+    size_t count;
+    double step; // between the first two; 1 for one frame
+} app_frames;
+// "30", "10,30,50", "0-99", "0-99:2", or a list of such. False with a message when it is none.
+bool app_parse_frames(const char *text, app_frames *out);
+void app_free_frames(app_frames *frames);
+
+bool app_parse_size(const char *text, uint32_t *width, uint32_t *height); // "960x540"
+
+// "out/%04d.png" with a frame number; a pattern without a % stays as it is. Patterns are checked by
+// app_check_pattern first: at most one %, of the form %d or %04d.
+bool app_check_pattern(const char *pattern);
+bool app_has_number(const char *pattern);
+void app_format_pattern(const char *pattern, double frame, char *out, size_t capacity);
+
+// ---- progress ---------------------------------------------------------------------------------
+
+typedef struct app_progress {
+    double start, printed;
+    size_t total;
+    bool terminal;
+} app_progress;
+void app_progress_begin(app_progress *p, size_t total);
+void app_progress_step(app_progress *p, size_t done); // shows time left
+void app_progress_end(app_progress *p);
+
+// ---- statistics -------------------------------------------------------------------------------
+
+typedef struct app_stats app_stats;
+app_stats *app_stats_create(void);
+void app_stats_add(app_stats *s, roil_effect *e, double frame, double seconds); // of the CPU clock
+bool app_stats_save(const app_stats *s, const char *file, const roil *r, const char *effect,
+                    uint32_t width, uint32_t height, const roil_setting *settings, size_t count);
+void app_stats_print(const app_stats *s); // a table on stdout: median and 95th percentile by pass
+void app_stats_destroy(app_stats *s);

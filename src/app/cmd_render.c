@@ -1,0 +1,262 @@
+// roil render EFFECT.lua ...: frames to PNG, EXR or MP4.
+#include "app/app.h"
+#include "base/arena.h"
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include <popt.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct output {
+    const char *pattern; // file or pattern
+    const char *image;   // --dump-pass: which image; NULL: the picture
+    roil_video *video;
+} output;
+
+typedef struct job {
+    const char *file, *stats, *device;
+    output *outputs;
+    size_t output_count, output_capacity;
+    roil_setting *settings;
+    size_t setting_count, setting_capacity;
+    app_frames frames;
+    const char *frames_text;
+    uint32_t width, height;
+    int alpha, sixteen, full, validate, no_cache;
+    double fps;
+    char default_output[PATH_CAP];
+} job;
+
+// ---- options ----------------------------------------------------------------------------------
+
+enum { OPTION_OUTPUT = 1, OPTION_SIZE, OPTION_SET, OPTION_DUMP };
+
+static bool add_output(job *j, const char *pattern, const char *image) {
+    const char *extension = path_extension(pattern);
+    bool video = strcmp(extension, "mp4") == 0;
+    if (strcmp(extension, "png") != 0 && strcmp(extension, "exr") != 0 && (!video || image))
+        return err_set("output '%s'; accepted: .png, .exr%s", pattern, image ? "" : ", .mp4");
+    if (!app_check_pattern(pattern)) return false;
+    MEM_RESERVE(j->outputs, j->output_count + 1, j->output_capacity);
+    j->outputs[j->output_count++] = (output){pattern, image, NULL};
+    return true;
+}
+
+static bool add_setting(job *j, char *text) {
+    char *equals = strchr(text, '=');
+    if (!equals || equals == text) return err_set("--set '%s'; accepted: NAME=VALUE", text);
+    *equals = '\0';
+    MEM_RESERVE(j->settings, j->setting_count + 1, j->setting_capacity);
+    j->settings[j->setting_count++] = (roil_setting){text, equals + 1};
+    return true;
+}
+
+// Handles one option of the table below; poptGetOptArg's text lives until the program ends.
+static bool take_option(job *j, poptContext context, int option) {
+    char *text = poptGetOptArg(context);
+    switch (option) {
+    case OPTION_OUTPUT:
+        return add_output(j, text, NULL);
+    case OPTION_SIZE:
+        return app_parse_size(text, &j->width, &j->height);
+    case OPTION_SET:
+        return add_setting(j, text);
+    case OPTION_DUMP: { // NAME and FILE, joined by join_dump
+        char *file = strchr(text, '\n');
+        if (!file) return err_set("--dump-pass wants NAME FILE");
+        *file = '\0';
+        return add_output(j, file + 1, text);
+    }
+    }
+    return true;
+}
+
+// popt knows options with one argument only: "--dump-pass NAME FILE" becomes one text with a line
+// break between the two.
+static const char **join_dump(int *argc, const char **argv, arena *memory) {
+    const char **joined = arena_alloc(memory, ((size_t)*argc + 1) * sizeof *joined);
+    int count = 0;
+    for (int i = 0; i < *argc; i++) {
+        joined[count++] = argv[i];
+        if (strcmp(argv[i], "--dump-pass") != 0 || i + 2 >= *argc) continue;
+        joined[count++] = arena_format(memory, "%s\n%s", argv[i + 1], argv[i + 2]);
+        i += 2;
+    }
+    *argc = count;
+    return joined;
+}
+
+static bool parse(job *j, int argc, const char **argv, poptContext *context) {
+    const struct poptOption options[] = {
+        {"output", 'o', POPT_ARG_STRING, NULL, OPTION_OUTPUT,
+         "PNG or EXR file or pattern, or MP4; may be given several times (default: "
+         "out/NAME/%04d.png)",
+         "FILE"},
+        {"frames", 'f', POPT_ARG_STRING, &j->frames_text, 0,
+         "30, or 10,30,50, or 0-99, or 0-99:2 (default: all)", "FRAMES"},
+        {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE, "size of the picture (default: 960x540)",
+         "WxH"},
+        {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET,
+         "a parameter, or a uniform or option of a pass (march.steps=64)", "NAME=VALUE"},
+        {"device", 'd', POPT_ARG_STRING, &j->device, 0, "part of a device's name, or its number",
+         "DEVICE"},
+        {"stats", '\0', POPT_ARG_STRING, &j->stats, 0,
+         "write GPU milliseconds by pass, samples taken and the device as JSON", "FILE.json"},
+        {"dump-pass", '\0', POPT_ARG_STRING, NULL, OPTION_DUMP,
+         "save an image of the graph as well: a pass, or march.edge", "NAME FILE"},
+        {"fps", '\0', POPT_ARG_DOUBLE, &j->fps, 0, "of the video (default: the effect's)", "FPS"},
+        {"alpha", '\0', POPT_ARG_NONE, &j->alpha, 0, "keep alpha in PNG files", NULL},
+        {"16", '\0', POPT_ARG_NONE, &j->sixteen, 0, "16 bits a channel in PNG files", NULL},
+        {"float", '\0', POPT_ARG_NONE, &j->full, 0, "32-bit float in EXR files (default: half)",
+         NULL},
+        {"validate", '\0', POPT_ARG_NONE, &j->validate, 0, "with the Vulkan validation layers",
+         NULL},
+        {"no-cache", '\0', POPT_ARG_NONE, &j->no_cache, 0,
+         "neither read nor write compiled shaders on disk", NULL},
+        POPT_AUTOHELP POPT_TABLEEND};
+    *context = poptGetContext("roil render", argc, argv, options, 0);
+    poptSetOtherOptionHelp(*context, "EFFECT.lua [options]");
+    int option;
+    while ((option = poptGetNextOpt(*context)) > 0)
+        if (!take_option(j, *context, option)) return false;
+    if (option < -1) return err_set("%s: %s", poptBadOption(*context, 0), poptStrerror(option));
+    j->file = poptGetArg(*context);
+    if (!j->file) return err_set("which effect? usage: roil render EFFECT.lua [options]");
+    const char *more = poptGetArg(*context);
+    if (more) return err_set("'%s': one effect at a time", more);
+    return !j->frames_text || app_parse_frames(j->frames_text, &j->frames);
+}
+
+// ---- work -------------------------------------------------------------------------------------
+
+// What the effect itself decides: all of its frames, and where they go by default.
+static bool complete(job *j, roil_effect *e) {
+    roil_effect_info info = roil_get_info(e);
+    char range[64];
+    snprintf(range, sizeof range, "%u-%u", info.first_frame, info.first_frame + info.frames - 1);
+    if (!j->frames.count && !app_parse_frames(range, &j->frames)) return false;
+    if (!(j->fps > 0)) j->fps = info.fps / j->frames.step;
+    bool picture = false;
+    for (size_t i = 0; i < j->output_count; i++) picture = picture || !j->outputs[i].image;
+    if (!picture) {
+        const char *name = path_name(j->file);
+        snprintf(j->default_output, sizeof j->default_output, "out/%.*s/%%04d.png",
+                 (int)(strlen(name) - (str_ends_with(name, ".lua") ? 4 : 0)), name);
+        add_output(j, j->default_output, NULL);
+    }
+    for (size_t i = 0; i < j->output_count; i++) {
+        const output *o = &j->outputs[i];
+        bool one_file = !app_has_number(o->pattern) && !str_ends_with(o->pattern, ".mp4");
+        if (one_file && j->frames.count > 1)
+            return err_set("output '%s' would be overwritten by each of %zu frames; name it like "
+                           "out/%%04d.png",
+                           o->pattern, j->frames.count);
+    }
+    return true;
+}
+
+static bool open_outputs(job *j, roil_effect *e) {
+    for (size_t i = 0; i < j->output_count; i++) {
+        output *o = &j->outputs[i];
+        if (o->image && !roil_keep(e, o->image)) return false;
+    }
+    if (!roil_prepare(e, j->width, j->height)) return false;
+    for (size_t i = 0; i < j->output_count; i++) {
+        output *o = &j->outputs[i];
+        if (!str_ends_with(o->pattern, ".mp4")) continue;
+        o->video = roil_video_create(e, o->pattern, j->fps);
+        if (!o->video) return false;
+    }
+    return true;
+}
+
+static bool save_frame(job *j, roil_effect *e, double frame) {
+    for (size_t i = 0; i < j->output_count; i++) {
+        output *o = &j->outputs[i];
+        char file[PATH_CAP];
+        app_format_pattern(o->pattern, frame, file, sizeof file);
+        roil_save_options options = {o->image, j->alpha, j->sixteen, j->full};
+        if (o->video ? !roil_video_add(o->video) : !roil_save(e, file, &options)) return false;
+    }
+    return true;
+}
+
+static bool render_frames(job *j, roil_effect *e, app_stats *stats) {
+    app_progress progress;
+    app_progress_begin(&progress, j->frames.count);
+    bool done = true;
+    for (size_t i = 0; done && i < j->frames.count; i++) {
+        double frame = j->frames.numbers[i], start = clock_seconds();
+        done = roil_render(e, frame) && save_frame(j, e, frame);
+        if (!done) break;
+        app_stats_add(stats, e, frame, clock_seconds() - start);
+        app_progress_step(&progress, i + 1);
+    }
+    app_progress_end(&progress);
+    return done;
+}
+
+static bool close_outputs(job *j, bool done) {
+    for (size_t i = 0; i < j->output_count; i++) {
+        output *o = &j->outputs[i];
+        if (!o->video) continue;
+        if (done)
+            done = roil_video_finish(o->video);
+        else
+            roil_video_abandon(o->video);
+        o->video = NULL;
+    }
+    return done;
+}
+
+static int run(job *j) {
+    roil *r = roil_create(&(roil_desc){
+        .device = j->device,
+        .validate = j->validate,
+        .no_cache = j->no_cache,
+        .counters = j->stats != NULL,
+    });
+    roil_effect *e = r ? roil_load(r, j->file, j->settings, j->setting_count) : NULL;
+    app_stats *stats = app_stats_create();
+    int status = APP_DONE;
+    if (!e) {
+        status = app_fail_input();
+    } else if (!complete(j, e)) {
+        status = app_fail(APP_BAD_USAGE, "render: %s", roil_error());
+    } else {
+        bool done = open_outputs(j, e) && render_frames(j, e, stats);
+        if (!done) status = app_fail_input(); // before closing changes the message
+        if (!close_outputs(j, done) && done) status = app_fail_input();
+    }
+    if (status == APP_DONE) {
+        printf("%s on %s\n", j->file, roil_device_name(r));
+        app_stats_print(stats);
+        for (size_t i = 0; i < j->output_count; i++) printf("wrote %s\n", j->outputs[i].pattern);
+        if (j->stats && !app_stats_save(stats, j->stats, r, j->file, j->width, j->height,
+                                        j->settings, j->setting_count))
+            status = app_fail_input();
+    }
+    app_stats_destroy(stats);
+    roil_unload(e);
+    roil_destroy(r);
+    return status;
+}
+
+int cmd_render(int argc, const char **argv) {
+    job j = {.width = 960, .height = 540};
+    arena memory = {0};
+    poptContext context;
+    argv = join_dump(&argc, argv, &memory);
+    int status = parse(&j, argc, argv, &context)
+                     ? run(&j)
+                     : app_fail(APP_BAD_USAGE, "render: %s", roil_error());
+    poptFreeContext(context);
+    app_free_frames(&j.frames);
+    mem_free(j.outputs);
+    mem_free(j.settings);
+    arena_free(&memory);
+    return status;
+}

@@ -1,0 +1,64 @@
+// roil COMMAND ...: finds the command and calls it.
+#include "app/app.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct {
+    const char *name;
+    int (*run)(int argc, const char **argv);
+    const char *help;
+} commands[] = {
+    {"render", cmd_render, "render frames of an effect to PNG, EXR or MP4"},
+    {"check", cmd_check, "load, compile and validate effects; render nothing"},
+    {"info", cmd_info, "tell about devices, passes, fields, an effect or a VDB file"},
+};
+
+int app_fail(int status, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    fputs("roil: ", stderr);
+    vfprintf(stderr, format, args);
+    fputc('\n', stderr);
+    va_end(args);
+    return status;
+}
+
+int app_fail_input(void) {
+    return app_fail(APP_BAD_INPUT, "%s", roil_error());
+}
+
+static void print_help(FILE *out) {
+    fprintf(out, "usage: roil COMMAND ...\n\n");
+    for (size_t i = 0; i < COUNT_OF(commands); i++)
+        fprintf(out, "  roil %-8s %s\n", commands[i].name, commands[i].help);
+    fprintf(out, "\n`roil COMMAND --help` lists the options of a command.\n");
+}
+
+int main(int argc, char **argv) {
+    if (argc < 2) {
+        print_help(stderr);
+        return APP_BAD_USAGE;
+    }
+    const char *wanted = argv[1];
+    if (strcmp(wanted, "--help") == 0 || strcmp(wanted, "-h") == 0 || strcmp(wanted, "help") == 0) {
+        print_help(stdout);
+        return APP_DONE;
+    }
+    if (strcmp(wanted, "--version") == 0) {
+        printf("roil %s\n", roil_version());
+        return APP_DONE;
+    }
+    const char *names[COUNT_OF(commands)];
+    for (size_t i = 0; i < COUNT_OF(commands); i++) {
+        if (strcmp(commands[i].name, wanted) == 0)
+            return commands[i].run(argc - 1, (const char **)argv + 1);
+        names[i] = commands[i].name;
+    }
+    const char *near = str_nearest(wanted, names, COUNT_OF(names));
+    if (near)
+        return app_fail(APP_BAD_USAGE, "unknown command '%s'; did you mean '%s'?", wanted, near);
+    return app_fail(APP_BAD_USAGE, "unknown command '%s'; accepted: render, check, info", wanted);
+}

@@ -1,0 +1,99 @@
+// Frames, sizes and file patterns, as they stand on the command line.
+#include "app/app.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_FRAMES = 1000000 };
+
+static bool parse_number(const char **text, double *out) {
+    char *end;
+    if (!isdigit((unsigned char)**text)) return false;
+    *out = strtod(*text, &end);
+    *text = end;
+    return isfinite(*out);
+}
+
+static bool add_range(app_frames *frames, size_t *capacity, double first, double last,
+                      double step) {
+    if (!(step > 0) || last < first || (last - first) / step > MAX_FRAMES) return false;
+    size_t count = (size_t)floor((last - first) / step + 1e-9) + 1;
+    if (frames->count + count > MAX_FRAMES) return false;
+    MEM_RESERVE(frames->numbers, frames->count + count, *capacity);
+    for (size_t i = 0; i < count; i++) frames->numbers[frames->count++] = first + (double)i * step;
+    return true;
+}
+
+bool app_parse_frames(const char *text, app_frames *out) {
+    *out = (app_frames){.step = 1};
+    size_t capacity = 0;
+    const char *at = text;
+    for (;;) {
+        double first, last, step = 1;
+        bool done = parse_number(&at, &first);
+        last = first;
+        if (done && *at == '-') {
+            at++;
+            done = parse_number(&at, &last);
+        }
+        if (done && *at == ':') {
+            at++;
+            done = parse_number(&at, &step);
+        }
+        if (!done || !add_range(out, &capacity, first, last, step) || (*at && *at != ',')) {
+            app_free_frames(out);
+            return err_set("frames '%s'; accepted: 30, or 10,30,50, or 0-99, or 0-99:2", text);
+        }
+        if (!*at) break;
+        at++;
+    }
+    if (out->count > 1) out->step = out->numbers[1] - out->numbers[0];
+    if (!(out->step > 0)) out->step = 1;
+    return true;
+}
+
+void app_free_frames(app_frames *frames) {
+    mem_free(frames->numbers);
+    *frames = (app_frames){.step = 1};
+}
+
+bool app_parse_size(const char *text, uint32_t *width, uint32_t *height) {
+    char rest;
+    if (isdigit((unsigned char)text[0]) && sscanf(text, "%5ux%5u%c", width, height, &rest) == 2 &&
+        *width >= 1 && *height >= 1 && *width <= 16384 && *height <= 16384)
+        return true;
+    return err_set("size '%s'; accepted: WIDTHxHEIGHT, as 960x540, up to 16384", text);
+}
+
+// ---- file patterns ----------------------------------------------------------------------------
+
+bool app_has_number(const char *pattern) {
+    return strchr(pattern, '%') != NULL;
+}
+
+bool app_check_pattern(const char *pattern) {
+    const char *mark = strchr(pattern, '%');
+    if (!mark) return true;
+    const char *at = mark + 1;
+    while (isdigit((unsigned char)*at) && at - mark < 4) at++;
+    if (*at == 'd' && !strchr(at, '%')) return true;
+    return err_set("output '%s'; accepted: one number in it, as out/%%04d.png", pattern);
+}
+
+void app_format_pattern(const char *pattern, double frame, char *out, size_t capacity) {
+    const char *mark = strchr(pattern, '%');
+    if (!mark) {
+        str_copy(out, capacity, pattern);
+        return;
+    }
+    bool zeros = mark[1] == '0';
+    char *end;
+    int width = (int)strtol(mark + 1, &end, 10);
+    snprintf(out, capacity, zeros ? "%.*s%0*ld%s" : "%.*s%*ld%s", (int)(mark - pattern), pattern,
+             width, lrint(frame), end + 1);
+}

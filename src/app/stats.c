@@ -1,0 +1,141 @@
+// Statistics of a render: GPU time by pass and frame, counters, the machine.
+#include "app/app.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_PASSES = 256, MAX_COUNTERS = 64 };
+
+typedef struct frame_stats {
+    double number, seconds;
+    roil_time *times;
+    size_t time_count;
+    roil_counter *counters;
+    size_t counter_count;
+} frame_stats;
+
+struct app_stats {
+    frame_stats *frames;
+    size_t count, capacity;
+};
+
+app_stats *app_stats_create(void) {
+    return mem_alloc(sizeof(app_stats));
+}
+
+void app_stats_add(app_stats *s, roil_effect *e, double frame, double seconds) {
+    roil_time times[MAX_PASSES];
+    roil_counter counters[MAX_COUNTERS];
+    frame_stats f = {.number = frame, .seconds = seconds};
+    f.time_count = roil_times(e, times, MAX_PASSES);
+    f.counter_count = roil_counters(e, counters, MAX_COUNTERS);
+    if (f.time_count > MAX_PASSES) f.time_count = MAX_PASSES;
+    if (f.counter_count > MAX_COUNTERS) f.counter_count = MAX_COUNTERS;
+    f.times = mem_copy(times, f.time_count * sizeof *times);
+    f.counters = mem_copy(counters, f.counter_count * sizeof *counters);
+    MEM_RESERVE(s->frames, s->count + 1, s->capacity);
+    s->frames[s->count++] = f;
+}
+
+void app_stats_destroy(app_stats *s) {
+    for (size_t i = 0; i < s->count; i++) {
+        mem_free(s->frames[i].times);
+        mem_free(s->frames[i].counters);
+    }
+    mem_free(s->frames);
+    mem_free(s);
+}
+
+// ---- summary ----------------------------------------------------------------------------------
+
+static int compare(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+typedef struct summary {
+    double median, high; // 95th percentile
+} summary;
+
+static summary summarise(double *values, size_t count) {
+    qsort(values, count, sizeof *values, compare);
+    double median =
+        count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+    size_t high = (count * 95 + 99) / 100;
+    return (summary){median, values[high ? high - 1 : 0]};
+}
+
+// Every frame runs the same passes: the first names them.
+static summary pass_summary(const app_stats *s, size_t pass, double *values) {
+    for (size_t i = 0; i < s->count; i++)
+        values[i] = pass < s->frames[i].time_count ? s->frames[i].times[pass].milliseconds : 0;
+    return summarise(values, s->count);
+}
+
+static summary total_summary(const app_stats *s, double *values) {
+    for (size_t i = 0; i < s->count; i++) {
+        values[i] = 0;
+        for (size_t k = 0; k < s->frames[i].time_count; k++)
+            values[i] += s->frames[i].times[k].milliseconds;
+    }
+    return summarise(values, s->count);
+}
+
+void app_stats_print(const app_stats *s) {
+    if (!s->count) return;
+    double *values = mem_alloc(s->count * sizeof *values);
+    printf("%-20s %10s %10s   GPU ms over %zu frame%s\n", "pass", "median", "95 %", s->count,
+           s->count == 1 ? "" : "s");
+    for (size_t i = 0; i < s->frames[0].time_count; i++) {
+        summary m = pass_summary(s, i, values);
+        printf("%-20s %10.3f %10.3f\n", s->frames[0].times[i].pass, m.median, m.high);
+    }
+    summary total = total_summary(s, values);
+    printf("%-20s %10.3f %10.3f\n", "all", total.median, total.high);
+    mem_free(values);
+}
+
+// ---- file -------------------------------------------------------------------------------------
+
+static json_t *frame_json(const frame_stats *f) {
+    json_t *passes = json_object(), *counters = json_object();
+    for (size_t i = 0; i < f->time_count; i++)
+        json_object_set_new(passes, f->times[i].pass, json_real(f->times[i].milliseconds));
+    for (size_t i = 0; i < f->counter_count; i++) {
+        char name[160];
+        snprintf(name, sizeof name, "%s.%s", f->counters[i].pass, f->counters[i].name);
+        json_object_set_new(counters, name, json_integer((json_int_t)f->counters[i].value));
+    }
+    return json_pack("{s:f, s:f, s:o, s:o}", "frame", f->number, "cpu_ms", f->seconds * 1000,
+                     "gpu_ms", passes, "counters", counters);
+}
+
+bool app_stats_save(const app_stats *s, const char *file, const roil *r, const char *effect,
+                    uint32_t width, uint32_t height, const roil_setting *settings, size_t count) {
+    json_t *root = json_pack("{s:s, s:s, s:s, s:s, s:i, s:i}", "roil", roil_version(), "effect",
+                             effect, "device", roil_device_name(r), "driver", roil_device_driver(r),
+                             "width", (int)width, "height", (int)height);
+    json_t *set = json_object(), *frames = json_array(), *median = json_object();
+    for (size_t i = 0; i < count; i++)
+        json_object_set_new(set, settings[i].name, json_string(settings[i].value));
+    for (size_t i = 0; i < s->count; i++) json_array_append_new(frames, frame_json(&s->frames[i]));
+    double *values = mem_alloc(s->count * sizeof *values);
+    for (size_t i = 0; s->count && i < s->frames[0].time_count; i++)
+        json_object_set_new(median, s->frames[0].times[i].pass,
+                            json_real(pass_summary(s, i, values).median));
+    if (s->count) json_object_set_new(median, "all", json_real(total_summary(s, values).median));
+    mem_free(values);
+    json_object_set_new(root, "set", set);
+    json_object_set_new(root, "median_gpu_ms", median);
+    json_object_set_new(root, "frames", frames);
+    char *text = json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(6));
+    json_decref(root);
+    if (!text) return err_set("%s: the statistics cannot be written as JSON", file);
+    bool done = file_make_parent_folders(file) && file_write(file, text, strlen(text));
+    free(text);
+    return done;
+}

@@ -1,0 +1,210 @@
+// libroil: the layers below, as one small interface.
+#include "roil.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "roil_impl.h"
+#include "script/script.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *roil_version(void) {
+    return ROIL_VERSION;
+}
+const char *roil_error(void) {
+    return err_get();
+}
+void roil_free(void *text) {
+    mem_free(text);
+}
+
+// ---- device -----------------------------------------------------------------------------------
+
+static bool is_home(const char *folder) {
+    char path[PATH_CAP];
+    return path_join(path, folder, "scripts/prelude.lua") && file_exists(path) &&
+           path_join(path, folder, "shaders/shared.h") && file_exists(path);
+}
+
+// The program may lie in a build folder, in the home itself, or in bin/ of an installation.
+static bool find_home(char out[PATH_CAP], const char *wanted) {
+    if (!wanted) wanted = getenv("ROIL_HOME");
+    if (wanted && wanted[0]) {
+        if (is_home(wanted)) return path_join(out, "", wanted);
+        return err_set("%s: holds no shaders/ and scripts/ of roil", wanted);
+    }
+    char program[PATH_CAP];
+    if (!path_program_folder(program)) return false;
+    static const char *const places[] = {"..", ".", "../share/roil", "../.."};
+    for (size_t i = 0; i < COUNT_OF(places); i++)
+        if (path_join(out, program, places[i]) && is_home(out)) return true;
+    return err_set("shaders/ and scripts/ of roil are not near %s; set ROIL_HOME", program);
+}
+
+static char *joined(const char *folder, const char *name) {
+    char path[PATH_CAP];
+    if (!path_join(path, folder, name)) return NULL;
+    return mem_copy(path, strlen(path) + 1);
+}
+
+roil *roil_create(const roil_desc *desc) {
+    char home[PATH_CAP], cache[PATH_CAP];
+    if (!find_home(home, desc->home)) return NULL;
+    shader_warm_up();
+    roil *r = mem_alloc(sizeof *r);
+    r->home = mem_copy(home, strlen(home) + 1);
+    r->shaders = joined(home, "shaders");
+    r->scripts = joined(home, "scripts");
+    r->counters = desc->counters;
+    // Without a place for it (no home folder, a read-only one) roil works, only slower.
+    if (!desc->no_cache && path_cache_folder(cache, "")) r->cache = joined(cache, "");
+    if (desc->no_device) return r;
+    r->device = gpu_create(
+        &(gpu_desc){.device = desc->device, .cache_dir = r->cache, .validate = desc->validate});
+    if (r->device) return r;
+    roil_destroy(r);
+    return NULL;
+}
+
+void roil_destroy(roil *r) {
+    if (!r) return;
+    if (r->device) gpu_destroy(r->device);
+    mem_free(r->home);
+    mem_free(r->shaders);
+    mem_free(r->scripts);
+    mem_free(r->cache);
+    mem_free(r);
+}
+
+const char *roil_device_name(const roil *r) {
+    return r->device ? gpu_get_info(r->device)->name : "none";
+}
+
+const char *roil_device_driver(const roil *r) {
+    return r->device ? gpu_get_info(r->device)->driver : "";
+}
+
+uint64_t roil_validation_messages(const roil *r) {
+    return r->device ? gpu_validation_messages(r->device) : 0;
+}
+
+// ---- effects ----------------------------------------------------------------------------------
+
+roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, size_t count) {
+    effect_setting *own = mem_alloc(count * sizeof *own);
+    for (size_t i = 0; i < count; i++)
+        own[i] = (effect_setting){settings[i].name, settings[i].value};
+    roil_effect *e = mem_alloc(sizeof *e);
+    e->owner = r;
+    e->effect = effect_create(&(effect_desc){
+        .device = r->device,
+        .file = file,
+        .shader_root = r->shaders,
+        .cache_dir = r->cache,
+        .counters = r->counters,
+        .settings = own,
+        .setting_count = count,
+    });
+    mem_free(own);
+    if (e->effect && script_load(e->effect, r->scripts) && effect_check_settings(e->effect))
+        return e;
+    roil_unload(e);
+    return NULL;
+}
+
+void roil_unload(roil_effect *e) {
+    if (!e) return;
+    effect_destroy(e->effect);
+    mem_free(e);
+}
+
+bool roil_check(roil_effect *e) {
+    return effect_check(e->effect);
+}
+
+roil_effect_info roil_get_info(const roil_effect *e) {
+    return (roil_effect_info){
+        .name = effect_name(e->effect),
+        .fps = effect_fps(e->effect),
+        .first_frame = effect_first_frame(e->effect),
+        .frames = effect_frames(e->effect),
+    };
+}
+
+bool roil_set(roil_effect *e, const char *name, const char *value) {
+    return effect_set(e->effect, name, value);
+}
+
+// "march.color", or the label of a pass for its first output.
+graph_image roil_find_image(roil_effect *e, const char *name) {
+    graph *g = effect_graph(e->effect);
+    graph_image found = graph_find_image(g, name);
+    for (size_t i = 0; !found.id && i < effect_pass_count(e->effect); i++) {
+        pass *p = effect_get_pass(e->effect, i);
+        if (strcmp(pass_label(p), name) != 0) continue;
+        const shader_interface *face = pass_interface(p);
+        for (size_t k = 0; !found.id && k < face->image_count; k++)
+            if (face->images[k].output) found = pass_output(p, face->images[k].name);
+    }
+    if (found.id) return found;
+    graph_image images[256];
+    const char *names[256];
+    size_t count = graph_images(g, images, 256);
+    if (count > 256) count = 256;
+    for (size_t i = 0; i < count; i++) names[i] = graph_get_desc(g, images[i])->name;
+    const char *near = str_nearest(name, names, count);
+    if (near)
+        err_set("no image '%s'; did you mean '%s'?", name, near);
+    else
+        err_set("no image '%s'; `roil info graph` shows them", name);
+    return found;
+}
+
+bool roil_keep(roil_effect *e, const char *image) {
+    graph_image found = roil_find_image(e, image);
+    return found.id && graph_add_output(effect_graph(e->effect), found);
+}
+
+bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height) {
+    if (width < 1 || height < 1 || width > 16384 || height > 16384)
+        return err_set("picture size %u x %u; accepted: 1 to 16384 each", width, height);
+    if (!e->owner->device) return err_set("no device: this effect can only be checked");
+    e->width = width;
+    e->height = height;
+    return effect_build(e->effect, width, height);
+}
+
+bool roil_render(roil_effect *e, double frame) {
+    e->frame = effect_render(e->effect, frame);
+    return e->frame != 0;
+}
+
+size_t roil_times(roil_effect *e, roil_time *out, size_t capacity) {
+    gpu_pass_time *times = mem_alloc(GPU_MAX_PASSES * sizeof *times);
+    size_t count = gpu_frame_times(e->owner->device, e->frame, times, GPU_MAX_PASSES);
+    for (size_t i = 0; i < count && i < capacity; i++) {
+        str_copy(out[i].pass, sizeof out[i].pass, times[i].label);
+        out[i].milliseconds = times[i].milliseconds;
+    }
+    mem_free(times);
+    return count;
+}
+
+size_t roil_counters(roil_effect *e, roil_counter *out, size_t capacity) {
+    size_t count = 0;
+    for (size_t i = 0; i < effect_pass_count(e->effect); i++) {
+        pass *p = effect_get_pass(e->effect, i);
+        const shader_interface *face = pass_interface(p);
+        uint64_t values[64];
+        if (!face->counter_count || face->counter_count > 64 || !pass_read_counters(p, values))
+            continue;
+        for (size_t k = 0; k < face->counter_count; k++, count++) {
+            if (count >= capacity) continue;
+            str_copy(out[count].pass, sizeof out->pass, pass_label(p));
+            str_copy(out[count].name, sizeof out->name, face->counters[k].name);
+            out[count].value = values[k];
+        }
+    }
+    return count;
+}

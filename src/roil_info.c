@@ -1,0 +1,336 @@
+// The reference, as text, from the tables that the program itself uses.
+#include "base/error.h"
+#include "base/memory.h"
+#include "media/vdb.h"
+#include "roil_impl.h"
+#include <math.h>
+#include <string.h>
+
+static char *finish(strbuf *text) {
+    if (!text->text) strbuf_append(text, "", 0);
+    return text->text;
+}
+
+// Prints "name" padded, then help broken at words so that lines stay within 100 columns.
+enum { HELP_COLUMN = 34, LINE_WIDTH = 100 };
+
+static void entry(strbuf *out, const char *name, const char *help) {
+    strbuf_add(out, "  %-*s", HELP_COLUMN - 2, name);
+    if (strlen(name) > HELP_COLUMN - 3) strbuf_add(out, "\n%*s", HELP_COLUMN, "");
+    size_t column = HELP_COLUMN;
+    while (*help) {
+        size_t word = strcspn(help, " ");
+        if (column + word > LINE_WIDTH && column > HELP_COLUMN) {
+            strbuf_add(out, "\n%*s", HELP_COLUMN, "");
+            column = HELP_COLUMN;
+        }
+        strbuf_append(out, help, word);
+        column += word + 1;
+        help += word;
+        if (*help == ' ') {
+            strbuf_append(out, " ", 1);
+            help++;
+        }
+    }
+    strbuf_append(out, "\n", 1);
+}
+
+static void add_words(strbuf *out, const char *const *words, size_t count, size_t chosen) {
+    for (size_t i = 0; i < count; i++)
+        strbuf_add(out, "%s%s%s", i ? " | " : "", words[i], i == chosen ? "*" : "");
+}
+
+static void add_numbers(strbuf *out, const float *value, int count) {
+    for (int i = 0; i < count; i++) strbuf_add(out, "%s%g", i ? ", " : "", (double)value[i]);
+}
+
+static void add_range(strbuf *out, float min, float max, const char *unit) {
+    if (isfinite(min) || isfinite(max)) {
+        if (min != max) strbuf_add(out, " [%g, %g]", (double)min, (double)max);
+    }
+    if (unit[0]) strbuf_add(out, " %s", unit);
+}
+
+// ---- devices ----------------------------------------------------------------------------------
+
+static const char *kind_name(gpu_kind kind) {
+    static const char *const names[] = {"discrete GPU", "integrated GPU", "virtual GPU", "software",
+                                        "other"};
+    return names[kind];
+}
+
+char *roil_info_devices(void) {
+    gpu_info infos[16];
+    int count = gpu_list(infos, COUNT_OF(infos));
+    if (count < 0) return NULL;
+    strbuf out = {0};
+    for (int i = 0; i < count && i < (int)COUNT_OF(infos); i++) {
+        const gpu_info *d = &infos[i];
+        strbuf_add(&out, "%d  %s (%s)\n", i, d->name, kind_name(d->kind));
+        strbuf_add(&out, "   driver %s, Vulkan %u.%u, %.1f GiB, subgroups of %u\n", d->driver,
+                   d->api_major, d->api_minor, (double)d->memory / (1 << 30), d->subgroup_size);
+        if (!d->usable) strbuf_add(&out, "   cannot be used: %s\n", d->missing);
+    }
+    if (!count) strbuf_add(&out, "no Vulkan device\n");
+    return finish(&out);
+}
+
+// ---- passes -----------------------------------------------------------------------------------
+
+static int components(shader_type type) {
+    return type == SHADER_VEC2 ? 2 : type == SHADER_VEC3 ? 3 : type == SHADER_VEC4 ? 4 : 1;
+}
+
+static void print_uniform(strbuf *out, const shader_uniform *u) {
+    strbuf name = {0};
+    strbuf_add(&name, "%s = ", u->name);
+    if (u->word_count)
+        add_words(&name, u->words, u->word_count, (size_t)u->value[0]);
+    else if (u->type == SHADER_BOOL)
+        strbuf_add(&name, "%s", u->value[0] != 0 ? "true" : "false");
+    else
+        add_numbers(&name, u->value, components(u->type));
+    if (!u->word_count && u->type != SHADER_BOOL) add_range(&name, u->min, u->max, u->unit);
+    entry(out, strbuf_text(&name), u->help);
+    strbuf_free(&name);
+}
+
+static void print_field(strbuf *out, const shader_field *f) {
+    strbuf name = {0};
+    strbuf_add(&name, "%s %s", f->glsl_type, f->name);
+    if (!f->required) {
+        strbuf_add(&name, " = ");
+        add_numbers(&name, f->value, f->components);
+    }
+    entry(out, strbuf_text(&name), f->help);
+    strbuf_free(&name);
+}
+
+static void print_interface(strbuf *out, const shader_interface *face) {
+    strbuf_add(out, "\n%s\n", face->summary);
+    bool titled = false;
+    for (size_t i = 0; i < face->image_count; i++) {
+        if (face->images[i].output) continue;
+        if (!titled) strbuf_add(out, "\ninputs (images)\n");
+        titled = true;
+        strbuf name = {0};
+        strbuf_add(&name, "%s%s", face->images[i].name,
+                   face->images[i].optional ? " (optional)" : "");
+        entry(out, strbuf_text(&name), face->images[i].help);
+        strbuf_free(&name);
+    }
+    if (face->field_count) strbuf_add(out, "\nfields\n");
+    for (size_t i = 0; i < face->field_count; i++) print_field(out, &face->fields[i]);
+    if (face->option_count) strbuf_add(out, "\noptions (structure; * is the default)\n");
+    for (size_t i = 0; i < face->option_count; i++) {
+        const shader_option *o = &face->options[i];
+        strbuf name = {0};
+        strbuf_add(&name, "%s = ", o->name);
+        add_words(&name, o->words, o->word_count, o->value);
+        entry(out, strbuf_text(&name), o->help);
+        strbuf_free(&name);
+    }
+    strbuf_add(out, "\nuniforms (numbers; constants, parameters, curves or functions of time)\n");
+    for (size_t i = 0; i < face->uniform_count; i++) print_uniform(out, &face->uniforms[i]);
+    entry(out, "resolution = 1 (0, 1]", "size of its outputs relative to the picture");
+    strbuf_add(out, "\noutputs\n");
+    for (size_t i = 0; i < face->image_count; i++) {
+        if (!face->images[i].output) continue;
+        strbuf name = {0};
+        strbuf_add(&name, "%s %s", face->images[i].name, gpu_format_name(face->images[i].format));
+        entry(out, strbuf_text(&name), face->images[i].help);
+        strbuf_free(&name);
+    }
+    for (size_t i = 0; i < face->counter_count; i++) {
+        if (i == 0) strbuf_add(out, "\ncounters (render --stats)\n");
+        entry(out, face->counters[i].name, face->counters[i].help);
+    }
+}
+
+static bool print_pass(strbuf *out, shader_library *library, const pass_type *type, bool whole) {
+    arena memory = {0};
+    const shader_interface *face = shader_interface_load(library, &memory, type->shader);
+    if (face && whole) {
+        strbuf_add(out, "%s\n", type->name);
+        print_interface(out, face);
+    } else if (face) { // the first sentence of the summary
+        char *summary = arena_string(&memory, face->summary);
+        char *end = strstr(summary, ". ");
+        if (!end) end = strchr(summary, '\n');
+        if (end) *end = '\0';
+        entry(out, type->name, summary);
+    }
+    arena_free(&memory);
+    return face != NULL;
+}
+
+char *roil_info_passes(roil *r, const char *name) {
+    const pass_type *one = name ? pass_type_find(name) : NULL;
+    if (name && !one) return NULL;
+    shader_library *library =
+        shader_library_create(&(shader_library_desc){.shader_root = r->shaders});
+    if (!library) return NULL;
+    strbuf out = {0};
+    bool done = true;
+    if (one) {
+        done = print_pass(&out, library, one, true);
+    } else {
+        size_t count;
+        const pass_type *types = pass_types(&count);
+        for (size_t i = 0; done && i < count; i++)
+            done = print_pass(&out, library, &types[i], false);
+        if (done)
+            strbuf_add(&out,
+                       "\n`roil info passes NAME` tells all about one. A GLSL file of your own "
+                       "is a pass too:\nshader { \"file.comp\", ... }\n");
+    }
+    shader_library_destroy(library);
+    if (done) return finish(&out);
+    strbuf_free(&out);
+    return NULL;
+}
+
+// ---- fields -----------------------------------------------------------------------------------
+
+static void print_kind(strbuf *out, const field_kind *kind) {
+    strbuf_add(out, "%s (%s)\n\n%s\n", kind->name, kind->group, kind->summary);
+    if (kind->args[0].name) strbuf_add(out, "\narguments\n");
+    for (int i = 0; i < FIELD_MAX_ARGS && kind->args[i].name; i++) {
+        const field_arg *a = &kind->args[i];
+        strbuf name = {0};
+        strbuf_add(&name, "%s", a->name);
+        if (!a->required) {
+            strbuf_add(&name, " = ");
+            add_numbers(&name, a->value, a->components ? a->components : 1);
+        }
+        add_range(&name, a->min, a->max, a->unit);
+        entry(out, strbuf_text(&name), a->help);
+        strbuf_free(&name);
+    }
+    for (int i = 0; i < FIELD_MAX_OPTIONS && kind->options[i].name; i++) {
+        const field_option *o = &kind->options[i];
+        if (i == 0) strbuf_add(out, "\noptions (structure; * is the default)\n");
+        size_t count = 0;
+        while (count < COUNT_OF(o->words) && o->words[count]) count++;
+        strbuf name = {0};
+        strbuf_add(&name, "%s = ", o->name);
+        add_words(&name, o->words, count, 0);
+        entry(out, strbuf_text(&name), o->help);
+        strbuf_free(&name);
+    }
+}
+
+char *roil_info_fields(const char *name) {
+    strbuf out = {0};
+    if (name) {
+        const field_kind *kind = field_kind_find(name);
+        if (!kind) return NULL;
+        print_kind(&out, kind);
+        return finish(&out);
+    }
+    static const char *const groups[] = {"value", "source", "noise", "shape", "operator"};
+    for (size_t g = 0; g < COUNT_OF(groups); g++) {
+        strbuf_add(&out, "%s%s\n", g ? "\n" : "", groups[g]);
+        for (const field_kind *kind = field_kinds; kind->name; kind++) {
+            if (strcmp(kind->group, groups[g]) != 0) continue;
+            strbuf first = {0};
+            const char *end = strstr(kind->summary, ". ");
+            strbuf_append(&first, kind->summary,
+                          end ? (size_t)(end - kind->summary) : strlen(kind->summary));
+            entry(&out, kind->name, strbuf_text(&first));
+            strbuf_free(&first);
+        }
+    }
+    strbuf_add(&out, "\n`roil info fields NAME` tells all about one.\n");
+    return finish(&out);
+}
+
+// ---- one effect -------------------------------------------------------------------------------
+
+static void print_param(strbuf *out, const effect_param *p) {
+    strbuf name = {0};
+    strbuf_add(&name, "%s = ", p->name);
+    if (p->type == EFFECT_ENUM)
+        add_words(&name, p->words, p->word_count, (size_t)p->value[0]);
+    else if (p->type == EFFECT_BOOL)
+        strbuf_add(&name, "%s", p->value[0] != 0 ? "true" : "false");
+    else
+        add_numbers(&name, p->value, p->type == EFFECT_VEC3 || p->type == EFFECT_COLOR ? 3 : 1);
+    if (p->type != EFFECT_ENUM && p->type != EFFECT_BOOL) add_range(&name, p->min, p->max, p->unit);
+    entry(out, strbuf_text(&name), p->help);
+    strbuf_free(&name);
+}
+
+char *roil_info_params(roil_effect *e) {
+    strbuf out = {0};
+    effect *fx = e->effect;
+    strbuf_add(&out, "%s: %u frames from %u at %g a second\n", effect_name(fx), effect_frames(fx),
+               effect_first_frame(fx), effect_fps(fx));
+    if (effect_param_count(fx)) strbuf_add(&out, "\nparameters\n");
+    for (size_t i = 0; i < effect_param_count(fx); i++) print_param(&out, effect_get_param(fx, i));
+    for (size_t i = 0; i < effect_pass_count(fx); i++) {
+        pass *p = effect_get_pass(fx, i);
+        const shader_interface *face = pass_interface(p);
+        strbuf_add(&out, "\n%s.*\n", pass_label(p));
+        for (size_t k = 0; k < face->option_count; k++) {
+            strbuf name = {0};
+            strbuf_add(&name, "%s = ", face->options[k].name);
+            add_words(&name, face->options[k].words, face->options[k].word_count,
+                      pass_get_option(p, k));
+            entry(&out, strbuf_text(&name), face->options[k].help);
+            strbuf_free(&name);
+        }
+        for (size_t k = 0; k < face->uniform_count; k++) {
+            shader_uniform u = face->uniforms[k];
+            const field *value = pass_get_uniform(p, k);
+            if (value && strcmp(value->kind->name, "constant") == 0)
+                memcpy(u.value, value->value, sizeof u.value);
+            print_uniform(&out, &u);
+        }
+        strbuf scale = {0};
+        strbuf_add(&scale, "resolution = %g (0, 1]", (double)pass_get_scale(p));
+        entry(&out, strbuf_text(&scale), "size of its outputs relative to the picture");
+        strbuf_free(&scale);
+    }
+    return finish(&out);
+}
+
+char *roil_info_graph(roil_effect *e) {
+    strbuf out = {0};
+    graph_print_dot(effect_graph(e->effect), effect_name(e->effect), &out);
+    return finish(&out);
+}
+
+// ---- OpenVDB ----------------------------------------------------------------------------------
+
+char *roil_info_vdb(const char *file) {
+    static const char *const classes[] = {"unknown", "fog volume", "level set", "staggered"};
+    arena memory = {0};
+    vdb_info info;
+    if (!vdb_read_info(file, &memory, &info)) {
+        arena_free(&memory);
+        return NULL;
+    }
+    strbuf out = {0};
+    for (size_t i = 0; i < info.count; i++) {
+        const vdb_grid_info *g = &info.grids[i];
+        strbuf_add(&out, "%s: %s%s, %s, voxel %g x %g x %g m\n", g->name, g->type,
+                   g->saved_half ? " (saved as half)" : "", classes[g->grid_class],
+                   (double)g->voxel_size[0], (double)g->voxel_size[1], (double)g->voxel_size[2]);
+        if (box3_is_empty(g->box))
+            strbuf_add(&out, "  empty\n");
+        else
+            strbuf_add(
+                &out, "  index (%d, %d, %d) to (%d, %d, %d), box (%g, %g, %g) to (%g, %g, %g) m\n",
+                g->index_min[0], g->index_min[1], g->index_min[2], g->index_max[0], g->index_max[1],
+                g->index_max[2], (double)g->box.min.x, (double)g->box.min.y, (double)g->box.min.z,
+                (double)g->box.max.x, (double)g->box.max.y, (double)g->box.max.z);
+        if (g->active_voxels)
+            strbuf_add(&out, "  %llu active voxels\n", (unsigned long long)g->active_voxels);
+        strbuf_add(&out, "  background %g%s\n", (double)g->background[0],
+                   g->components ? "" : "; a type that roil cannot read");
+    }
+    if (info.metadata[0]) strbuf_add(&out, "%s", info.metadata);
+    arena_free(&memory);
+    return finish(&out);
+}
