@@ -132,10 +132,12 @@ static bool read_image_words(cursor *c, const declaration *d, shader_image *out)
                          out->output ? "optional or \": help\""
                                      : "optional, history or \": help\""))
             return false;
-        bool history = strcmp(word, "history") == 0 && !out->output;
-        if (history ? !read_history(c, out) : strcmp(word, "optional") != 0)
+        if (strcmp(word, "optional") == 0)
+            out->optional = true;
+        else if (strcmp(word, "history") != 0 || out->output)
             return cursor_fail(c, "%s: unknown word \"%s\"", d->name, word);
-        if (!history) out->optional = true;
+        else if (!read_history(c, out))
+            return false;
     }
     c->at--; // cursor_help takes the colon
     return true;
