@@ -1,0 +1,22 @@
+// Effect files: Lua 5.4 in a sandbox. The only layer that knows Lua.
+//
+// A script may compute, declare and be asked for values of a time; nothing else. It reads no files
+// but modules and data inside the effect's folder and the program's library, cannot reach the
+// system, and is stopped when it takes too much memory or time.
+#pragma once
+#include "effect/effect.h"
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct script_limits {
+    size_t memory;  // bytes of the whole script state; 0: 256 MiB
+    uint64_t load;  // instructions while the file runs; 0: 200 million
+    uint64_t frame; // instructions of one function of time or `update`; 0: 20 million
+} script_limits;
+
+// Runs effect_file(e) and fills the effect. `prelude_folder`: the program's scripts, with
+// prelude.lua and lib/. The effect owns the script state from then on (effect_set_hooks). False
+// with "file:line: message" and a traceback on the lines below; the effect is then only good for
+// effect_destroy.
+bool script_load(effect *e, const char *prelude_folder);
+bool script_load_limited(effect *e, const char *prelude_folder, const script_limits *limits);

@@ -1,0 +1,399 @@
+// The Lua state and its two limits.
+//
+// Memory: Lua's allocator counts bytes and refuses growth beyond the limit; objects that bindings
+// make elsewhere are counted by vm_charge_memory. Time: a count hook adds up instructions; C
+// functions whose work depends on their arguments add theirs by vm_charge, and allocations count
+// too, so that few instructions cannot do much work. Since one long string comparison is a single
+// instruction, processor time is checked as well, with a limit far above what the instructions
+// take.
+//
+// Invariant: once a limit was hit (`stop`), the hook fails at every instruction, so no pcall of
+// the script can go on; it ends when the outermost vm_call returns.
+#include "script/vm.h"
+#include "base/arena.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include <ctype.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum {
+    TICK = 1000,                // instructions between two calls of the hook
+    STOPPED_MARGIN = 1 << 20,   // bytes beyond the limit for the message of a stopped script
+    STOPPED_BLOCK = 1 << 16,    // largest block that a stopped script still gets
+    SCRIPT_MAX_BYTES = 4 << 20, // of one file
+    MESSAGE_MAX = 4000,
+    BYTES_PER_INSTRUCTION = 256, // allocating so many costs as much as an instruction
+};
+
+typedef enum vm_stop { STOP_NONE, STOP_MEMORY, STOP_INSTRUCTIONS } vm_stop;
+
+struct vm {
+    lua_State *lua;
+    vm_desc desc;
+    arena memory; // strings of `desc`
+    size_t used;
+    int refusals; // growth requests refused in a row: Lua collects garbage after the first
+    vm_stop stop;
+    uint64_t spent, budget;
+    double deadline; // processor seconds of the thread
+    int depth;       // vm_calls that are running
+    char where[96];  // "file:line: " of the last tick, or where `stop` was set
+    uint64_t random;
+    const char *prelude; // chunk name
+};
+
+// ---- limits -----------------------------------------------------------------------------------
+
+static double processor_seconds(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+static void tick(lua_State *L, lua_Debug *ar);
+
+static bool is_prelude(const vm *v, const lua_Debug *ar) {
+    return v->prelude && strcmp(ar->source, v->prelude) == 0;
+}
+
+// The innermost line that a person wrote: not in C, not in the prelude.
+static void locate(lua_State *L, char *out, size_t size) {
+    const vm *v = vm_of(L);
+    lua_Debug ar;
+    out[0] = 0;
+    for (int level = 0; lua_getstack(L, level, &ar); level++) {
+        lua_getinfo(L, "Sl", &ar);
+        if (ar.currentline <= 0 || is_prelude(v, &ar)) continue;
+        snprintf(out, size, "%s:%d: ", ar.short_src, ar.currentline);
+        return;
+    }
+}
+
+static void stop(vm *v, vm_stop reason) {
+    if (!v->stop) v->stop = reason;
+    lua_sethook(v->lua, tick, LUA_MASKCOUNT, 1);
+}
+
+static void stop_message(const vm *v, char *out, size_t size) {
+    if (v->stop == STOP_MEMORY)
+        snprintf(out, size, "%smemory limit of %zu MiB exceeded", v->where, v->desc.memory >> 20);
+    else
+        snprintf(out, size, "%sinstruction limit of %llu exceeded: endless loop?", v->where,
+                 (unsigned long long)v->budget);
+}
+
+static void raise_stop(lua_State *L) {
+    char text[256];
+    stop_message(vm_of(L), text, sizeof text);
+    lua_pushstring(L, text);
+    lua_error(L);
+}
+
+static void tick(lua_State *L, lua_Debug *ar) {
+    (void)ar;
+    vm *v = vm_of(L);
+    if (!v->stop) {
+        locate(L, v->where, sizeof v->where);
+        v->spent += TICK;
+        if (v->spent > v->budget || processor_seconds() > v->deadline) stop(v, STOP_INSTRUCTIONS);
+    }
+    if (v->stop) raise_stop(L);
+}
+
+static bool may_grow(vm *v, size_t size, size_t grow) {
+    if (v->stop) return size <= STOPPED_BLOCK && v->used + grow <= v->desc.memory + STOPPED_MARGIN;
+    if (v->used > v->desc.memory || grow > v->desc.memory - v->used) return false;
+    v->spent += grow / BYTES_PER_INSTRUCTION;
+    if (v->depth == 0 || v->spent <= v->budget) return true;
+    stop(v, STOP_INSTRUCTIONS);
+    return false;
+}
+
+static void *allocate(void *user, void *block, size_t old, size_t size) {
+    vm *v = user;
+    size_t held = block ? old : 0;
+    if (size == 0) {
+        free(block);
+        v->used -= held;
+        return NULL;
+    }
+    if (size > held && !may_grow(v, size, size - held)) {
+        // A new object (its type is in `old`): the stack is in order and can say where we are.
+        if (!block && old != 0 && v->lua && v->refusals == 0)
+            locate(v->lua, v->where, sizeof v->where);
+        if (++v->refusals >= 2 && v->depth > 0) stop(v, STOP_MEMORY);
+        return NULL;
+    }
+    void *result = realloc(block, size);
+    if (!result) return NULL;
+    if (size > held) v->refusals = 0;
+    v->used = v->used - held + size;
+    return result;
+}
+
+void vm_charge(lua_State *L, uint64_t instructions) {
+    vm *v = vm_of(L);
+    if (instructions > UINT64_MAX / 2) instructions = UINT64_MAX / 2;
+    v->spent += instructions;
+    if (v->stop || v->spent > v->budget) {
+        if (!v->stop) locate(L, v->where, sizeof v->where);
+        stop(v, STOP_INSTRUCTIONS);
+        raise_stop(L);
+    }
+}
+
+void vm_charge_memory(lua_State *L, size_t bytes) {
+    vm *v = vm_of(L);
+    if (v->stop || v->used > v->desc.memory || bytes > v->desc.memory - v->used) {
+        if (!v->stop) locate(L, v->where, sizeof v->where);
+        stop(v, STOP_MEMORY);
+        raise_stop(L);
+    }
+    v->used += bytes;
+}
+
+// ---- errors -----------------------------------------------------------------------------------
+
+void vm_error(lua_State *L, const char *format, ...) {
+    char where[96], text[MESSAGE_MAX];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    locate(L, where, sizeof where);
+    lua_pushfstring(L, "%s%s", where, text);
+    lua_error(L);
+    abort();
+}
+
+// "name:12: ..."
+static bool has_position(const char *text) {
+    size_t n = strcspn(text, ":\n");
+    if (n == 0 || text[n] != ':') return false;
+    size_t digits = strspn(text + n + 1, "0123456789");
+    return digits > 0 && text[n + 1 + digits] == ':';
+}
+
+// Message handler: turns whatever was thrown into text with a traceback below.
+static int describe_error(lua_State *L) {
+    const char *message = lua_tostring(L, 1);
+    if (!message) {
+        if (luaL_callmeta(L, 1, "__tostring") && lua_type(L, -1) == LUA_TSTRING)
+            message = lua_tostring(L, -1);
+        else
+            message = lua_pushfstring(L, "(error object is a %s value)", luaL_typename(L, 1));
+    }
+    char where[96] = "", text[MESSAGE_MAX];
+    if (!has_position(message)) locate(L, where, sizeof where);
+    snprintf(text, sizeof text, "%s%s", where, message);
+    luaL_traceback(L, L, text, 1);
+    return 1;
+}
+
+// Scripts come from strangers and terminals obey control characters.
+static void set_error(const char *text) {
+    char clean[MESSAGE_MAX];
+    size_t n = 0;
+    for (; text[n] && n < sizeof clean - 1; n++) {
+        unsigned char c = (unsigned char)text[n];
+        clean[n] = iscntrl(c) && c != '\n' && c != '\t' ? '?' : (char)c;
+    }
+    clean[n] = 0;
+    err_set("%s", clean);
+}
+
+static void report(vm *v, int status) {
+    lua_State *L = v->lua;
+    const char *text = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;
+    if (v->stop) {
+        char message[MESSAGE_MAX];
+        stop_message(v, message, 256);
+        const char *trace = text ? strstr(text, "\nstack traceback:") : NULL;
+        if (trace) {
+            size_t n = strlen(message);
+            snprintf(message + n, sizeof message - n, "%s", trace);
+        }
+        set_error(message);
+    } else if (status == LUA_ERRMEM) {
+        err_set("memory limit of %zu MiB exceeded", v->desc.memory >> 20);
+    } else {
+        set_error(text ? text : "(error without a message)");
+    }
+    lua_pop(L, 1);
+}
+
+// ---- calling ----------------------------------------------------------------------------------
+
+bool vm_call(vm *v, int args, int results, uint64_t instructions) {
+    lua_State *L = v->lua;
+    if (!lua_checkstack(L, results + 8)) {
+        lua_pop(L, args + 1);
+        return err_set("memory limit of %zu MiB exceeded", v->desc.memory >> 20);
+    }
+    if (v->depth == 0) {
+        v->stop = STOP_NONE;
+        v->refusals = 0;
+        v->spent = 0;
+        v->budget = instructions;
+        v->where[0] = 0;
+        // A common machine runs 100 million a second; 2 million a second is not a slow machine but
+        // instructions that each do too much.
+        v->deadline = processor_seconds() + (double)instructions * 5e-7;
+        lua_sethook(L, tick, LUA_MASKCOUNT, TICK);
+    }
+    int function = lua_gettop(L) - args;
+    lua_pushcfunction(L, describe_error);
+    lua_insert(L, function);
+    v->depth++;
+    int status = lua_pcall(L, args, results, function);
+    v->depth--;
+    lua_remove(L, function);
+    if (status != LUA_OK) {
+        report(v, status);
+        return false;
+    }
+    return true;
+}
+
+bool vm_protect(vm *v, lua_CFunction function, void *argument, uint64_t instructions) {
+    if (!lua_checkstack(v->lua, 8)) return err_set("the script's stack is full");
+    lua_pushcfunction(v->lua, function);
+    lua_pushlightuserdata(v->lua, argument);
+    return vm_call(v, 1, 0, instructions);
+}
+
+// ---- chunks -----------------------------------------------------------------------------------
+
+// Lua cuts chunk names at LUA_IDSIZE: a long path loses its folders instead of its line number.
+static void chunk_name(const char *shown, char out[LUA_IDSIZE]) {
+    size_t length = strlen(shown), most = LUA_IDSIZE - 2;
+    const char *text = shown;
+    if (length > most) text = path_name(shown);
+    snprintf(out, LUA_IDSIZE, "@%s", text);
+}
+
+void vm_load_chunk(lua_State *L, const char *path, const char *shown) {
+    const vm *v = vm_of(L);
+    void *data = NULL;
+    size_t size = 0;
+    if (!file_read(path, SCRIPT_MAX_BYTES, &data, &size)) vm_error(L, "%s", err_get());
+    if (v->desc.on_file) v->desc.on_file(v->desc.user, path);
+    const char *text = data;
+    size_t length = size;
+    if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) {
+        text += 3;
+        length -= 3;
+    }
+    char name[LUA_IDSIZE];
+    chunk_name(shown, name);
+    int status = luaL_loadbufferx(L, text, length, name, "t");
+    mem_free(data);
+    if (status == LUA_ERRMEM) luaL_error(L, "not enough memory");
+    if (status != LUA_OK) lua_error(L);
+}
+
+typedef struct run_request {
+    const char *path, *shown;
+} run_request;
+
+static int run_chunk(lua_State *L) {
+    const run_request *r = lua_touserdata(L, 1);
+    vm_load_chunk(L, r->path, r->shown);
+    lua_call(L, 0, 0);
+    return 0;
+}
+
+bool vm_run_file(vm *v, const char *path, const char *shown, uint64_t instructions, bool prelude) {
+    if (prelude) {
+        char name[LUA_IDSIZE];
+        chunk_name(shown, name);
+        v->prelude = arena_string(&v->memory, name);
+    }
+    run_request request = {path, shown};
+    return vm_protect(v, run_chunk, &request, instructions);
+}
+
+// ---- random numbers ---------------------------------------------------------------------------
+
+void vm_set_seed(lua_State *L, uint64_t seed) {
+    vm_of(L)->random = seed;
+}
+
+// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
+uint64_t vm_random(lua_State *L) {
+    uint64_t z = vm_of(L)->random += UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
+    return z ^ (z >> 31);
+}
+
+// ---- life -------------------------------------------------------------------------------------
+
+static int open_sandbox(lua_State *L) {
+    sandbox_open(L);
+    pattern_open(L);
+    module_open(L);
+    return 0;
+}
+
+static int panic(lua_State *L) {
+    log_write(LOG_ERROR, "script error outside of a call: %s", lua_tostring(L, -1));
+    return 0; // Lua aborts
+}
+
+vm *vm_create(const vm_desc *desc) {
+    vm *v = mem_alloc(sizeof *v);
+    v->desc = *desc;
+    v->desc.root = arena_string(&v->memory, desc->root);
+    v->desc.library = desc->library ? arena_string(&v->memory, desc->library) : NULL;
+    v->desc.shown = arena_string(&v->memory, desc->shown ? desc->shown : "");
+    v->random = desc->seed;
+    lua_State *L = lua_newstate(allocate, v);
+    if (!L) {
+        vm_destroy(v);
+        err_set("a memory limit of %zu bytes is too small for a script", desc->memory);
+        return NULL;
+    }
+    v->lua = L;
+    memcpy(lua_getextraspace(L), &v, sizeof v);
+    lua_atpanic(L, panic);
+    if (!vm_protect(v, open_sandbox, NULL, 1000000)) {
+        vm_destroy(v);
+        return NULL;
+    }
+    return v;
+}
+
+void vm_destroy(vm *v) {
+    if (!v) return;
+    if (v->lua) {
+        lua_sethook(v->lua, NULL, 0, 0);
+        v->stop = STOP_NONE;
+        lua_close(v->lua);
+    }
+    arena_free(&v->memory);
+    mem_free(v);
+}
+
+lua_State *vm_lua(vm *v) {
+    return v->lua;
+}
+
+vm *vm_of(lua_State *L) {
+    vm *v;
+    memcpy(&v, lua_getextraspace(L), sizeof v);
+    return v;
+}
+
+void *vm_user(lua_State *L) {
+    return vm_of(L)->desc.user;
+}
+
+const vm_desc *vm_get_desc(lua_State *L) {
+    return &vm_of(L)->desc;
+}

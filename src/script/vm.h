@@ -1,0 +1,54 @@
+// The Lua state of one effect, with its sandbox and limits. Knows no effect.
+#pragma once
+#include "base/error.h"
+#include <lauxlib.h>
+#include <lua.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct vm vm;
+
+typedef struct vm_desc {
+    const char *root;    // folder that `require` searches first and does not leave
+    const char *library; // folder that it searches next; NULL: none
+    const char *shown;   // how messages name `root`: "" or "effects/"; NULL: ""
+    size_t memory;       // bytes
+    uint64_t seed;       // of math.random
+    void (*on_file)(void *user, const char *path); // every file that was read; may be NULL
+    void *user;                                    // for vm_user
+} vm_desc;
+
+vm *vm_create(const vm_desc *desc); // NULL with a message when `memory` is too small
+void vm_destroy(vm *v);             // NULL is fine
+lua_State *vm_lua(vm *v);
+vm *vm_of(lua_State *L);
+void *vm_user(lua_State *L);
+
+// Reads and runs a file in the sandbox. False with "file:line: message" and a traceback.
+// `prelude`: errors that its functions raise with vm_error name their caller's line instead.
+bool vm_run_file(vm *v, const char *path, const char *shown, uint64_t instructions, bool prelude);
+
+// Calls what lies on the stack below `args` arguments. False: message set, nothing is pushed.
+// A call made while another one runs spends the budget of the outer one.
+bool vm_call(vm *v, int args, int results, uint64_t instructions);
+// Calls a C function in protected mode with `argument` as its only, light, argument.
+bool vm_protect(vm *v, lua_CFunction function, void *argument, uint64_t instructions);
+
+// ---- for C functions that scripts call; these raise Lua errors --------------------------------
+
+// Raises an error at the line of the script that called.
+_Noreturn void vm_error(lua_State *L, const char *format, ...) PRINTF_LIKE(2, 3);
+void vm_charge(lua_State *L, uint64_t instructions); // work that no instruction accounts for
+void vm_charge_memory(lua_State *L, size_t bytes);   // memory outside of Lua's, kept until the end
+void vm_set_seed(lua_State *L, uint64_t seed);
+uint64_t vm_random(lua_State *L);
+
+// Loads a text chunk and leaves it as a function on the stack. `path` must be confined already.
+void vm_load_chunk(lua_State *L, const char *path, const char *shown);
+const vm_desc *vm_get_desc(lua_State *L);
+
+// The parts of the sandbox; each leaves the stack as it was.
+void sandbox_open(lua_State *L); // libraries and strict globals
+void pattern_open(lua_State *L); // string.find, match, gmatch, gsub
+void module_open(lua_State *L);  // require
