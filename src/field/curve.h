@@ -1,12 +1,16 @@
 // Keys over time with an interpolation between them: how a number, vector or colour moves.
 #pragma once
+#include "base/arena.h"
 #include <stdbool.h>
 #include <stddef.h>
-#include "base/arena.h"
 
 typedef enum curve_shape {
-    CURVE_STEP, CURVE_LINEAR, CURVE_CUBIC, // cubic: monotone Hermite (Fritsch and Carlson 1980)
-    CURVE_EASE_IN, CURVE_EASE_OUT, CURVE_EASE_IN_OUT, // cubic easing between neighbouring keys
+    CURVE_STEP,
+    CURVE_LINEAR,
+    CURVE_CUBIC, // cubic: monotone Hermite (Fritsch and Carlson 1980)
+    CURVE_EASE_IN,
+    CURVE_EASE_OUT,
+    CURVE_EASE_IN_OUT, // cubic easing between neighbouring keys
     CURVE_SHAPE_COUNT
 } curve_shape;
 
@@ -17,7 +21,7 @@ typedef struct curve_key {
 
 typedef struct curve {
     curve_shape shape;
-    int components; // 1..4
+    int components;        // 1..4
     const curve_key *keys; // strictly rising in time
     size_t count;
     float period; // seconds after which it starts again; 0: holds its first and last value

@@ -7,29 +7,35 @@
 // A value that does not vary in space (a constant, a parameter, a curve, a Lua function of time,
 // and arithmetic on these) is a field too: uniforms of passes are such fields.
 #pragma once
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include "base/arena.h"
 #include "base/maths.h"
 #include "base/str.h"
 #include "field/curve.h"
 #include "field/grid.h"
 #include "field/palette.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
-enum { FIELD_MAX_ARGS = 16, FIELD_MAX_OPTIONS = 4 };
+enum {
+    FIELD_MAX_ARGS = 16,
+    FIELD_MAX_OPTIONS = 4,
+    FIELD_MAX_DEPTH = 256,  // nodes on a path: building a deeper expression fails
+    FIELD_MAX_NODES = 4096, // distinct nodes under the fields of one program
+};
 
 typedef struct field field;
 typedef struct field_kind field_kind;
 
 typedef struct field_arg {
     const char *name;
-    int components;      // 1, 3, 4; 0: any
+    int components; // 1, 3, 4; 0: any
     bool required;
-    bool uniform;        // must not vary in space
-    float value[4];      // default
-    float min, max;      // of each component, checked for constants; both 0: any finite number
-    const char *unit;    // "" when none
+    bool uniform;     // must not vary in space
+    bool rate;        // given per second: the node's argument is it times the time
+    float value[4];   // default
+    float min, max;   // of each component, checked for constants; both 0: any finite number
+    const char *unit; // "" when none
     const char *help;
 } field_arg;
 
@@ -48,42 +54,46 @@ typedef struct field_context { // what values depend on besides space
 } field_context;
 
 struct field_kind {
-    const char *name;    // as Lua names it: "worley"
-    const char *group;   // "value", "source", "noise", "shape", "operator"
-    const char *summary; // with its source (paper, section)
-    int components;      // of the result: 1, 3, 4; 0: the widest argument's
-    field_arg args[FIELD_MAX_ARGS];      // a NULL name ends
+    const char *name;               // as Lua names it: "worley"
+    const char *group;              // "value", "source", "noise", "shape", "operator"
+    const char *summary;            // with its source (paper, section)
+    int components;                 // of the result: 1, 3, 4; 0: the widest argument's
+    field_arg args[FIELD_MAX_ARGS]; // a NULL name ends
     field_option options[FIELD_MAX_OPTIONS];
     // GLSL: result = function(p, args..., options...) from the include file; p only if `spatial`.
     const char *include;  // "lib/noise.glsl" or NULL
-    const char *function; // NULL: the generator has a case of its own for this kind
+    const char *function; // NULL: the generator and the evaluator have a case of their own
     bool spatial;         // depends on p by itself
     float cost;           // rough arithmetic operations: cheap factors of a product come first
-    void (*eval)(const field *node, const field_context *context, float3 p,
-                 const float (*args)[4], float out[4]);
+    void (*eval)(const field *node, const field_context *context, float3 p, const float (*args)[4],
+                 float out[4]);
+    // Box outside of which the result is zero, from the arguments' boxes. NULL: by what the kind
+    // makes of zeros.
     box3 (*bounds)(const field *node, const field_context *context, const box3 *args);
 };
 
-extern const field_kind field_kinds[]; // ends with a NULL name
+extern const field_kind field_kinds[];               // ends with a NULL name
 const field_kind *field_kind_find(const char *name); // NULL with a message that suggests
 
 struct field {
     const field_kind *kind;
     int components;
-    bool uniform;        // does not vary in space
-    const field *args[FIELD_MAX_ARGS]; // all filled in: defaults became constants
+    bool uniform;                       // does not vary in space
+    uint16_t depth;                     // nodes on the longest path down from here
+    uint32_t size;                      // nodes if written out as a tree, at most UINT32_MAX
+    const field *args[FIELD_MAX_ARGS];  // all filled in: defaults became constants
     uint8_t options[FIELD_MAX_OPTIONS]; // index of the word
-    float value[4];      // kind "constant"
-    int index;           // kind "param": index; "call": function; "grid": first channel
-    const void *object;  // kind "curve": curve; "palette": palette; "grid": field_grid; "glsl": field_glsl
-    float bound;         // kind "glsl": see field_glsl
+    float value[4];                     // kind "constant"
+    int index; // "param": index; "call": function; "grid": first channel; "swizzle": 2 bits each
+    const void
+        *object; // "curve": curve; "palette": palette; "grid": field_grid; "glsl": field_glsl
 };
 
 typedef struct field_glsl { // a user's function: `float name(vec3 p, arg...)`
     const char *file;       // include name, found in the effect's folder
     const char *function;
-    int components;         // of the result
-    int arg_count;          // of the arguments after p, each 1, 3 or 4 components as given
+    int components; // of the result
+    int arg_count;  // of the arguments after p, each 1, 3 or 4 components as given
 } field_glsl;
 
 // ---- building; all nodes live in `memory` ------------------------------------------------------

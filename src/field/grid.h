@@ -2,27 +2,27 @@
 // half-float channels each. What fills it (a VDB or raw sequence, a bake, a solver) implements
 // `update`; fields and the generator see only this.
 #pragma once
-#include <stdbool.h>
-#include <stddef.h>
 #include "base/maths.h"
 #include "gpu/gpu.h"
+#include <stdbool.h>
+#include <stddef.h>
 
 enum { FIELD_GRID_IMAGES = 4 };
 
 typedef struct field_grid field_grid;
 
-typedef struct field_grid_state { // at one time
+typedef struct field_grid_state {            // at one time
     gpu_image *images[2][FIELD_GRID_IMAGES]; // two neighbouring frames; the second set may be NULL
-    float blend;  // 0: first set only, 1: second
-    box3 active;  // outside of it every channel is background (0)
+    float blend;                             // 0: first set only, 1: second
+    box3 active;                             // outside of it every channel is background (0)
 } field_grid_state;
 
 struct field_grid {
-    const char *name;     // for messages and dumps
-    box3 box;             // world box of the texture: texel centres lie half a voxel inside (metres)
-    uint32_t size[3];     // texels
-    int channel_count;    // channel c lies in image c / 4, component c % 4
-    bool blends;          // may ever have blend > 0: the shader then samples both sets
+    const char *name;  // for messages and dumps
+    box3 box;          // world box of the texture: texel centres lie half a voxel inside (metres)
+    uint32_t size[3];  // texels
+    int channel_count; // channel c lies in image c / 4, component c % 4
+    bool blends;       // may ever have blend > 0: the shader then samples both sets
     field_grid_state state; // current; set by update
     // Brings `state` to a time, uploading what is needed. Waits for data that is not decoded yet.
     bool (*update)(field_grid *grid, gpu *g, double time);

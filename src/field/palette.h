@@ -1,9 +1,9 @@
 // Palette: a transfer function from a number to colour and alpha, which may itself move in time.
 #pragma once
+#include "base/arena.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include "base/arena.h"
 
 enum { PALETTE_SIZE = 512, PALETTE_MAX_STOPS = 64, PALETTE_MAX_KEYS = 64 };
 
@@ -14,15 +14,15 @@ typedef struct palette_stop {
     float color[4]; // linear Rec.709, any brightness; alpha
 } palette_stop;
 
-typedef struct palette_key { // one state of a palette that is keyed over time
-    float time;              // seconds
+typedef struct palette_key {   // one state of a palette that is keyed over time
+    float time;                // seconds
     const palette_stop *stops; // at least two, rising; equal positions make a hard edge
     size_t count;
 } palette_key;
 
 typedef struct palette_desc {
     palette_space space;
-    float min, max; // value range that the texture covers; both 0: the range of the stops
+    float min, max;          // value range that the texture covers; both 0: the range of the stops
     const palette_key *keys; // between keys, baked colours are mixed linearly
     size_t key_count;
     // Or, with key_count 0, blackbody radiation: positions are kelvin, from min to max. Colour of

@@ -5,10 +5,10 @@
 #include "field/field.h"
 
 typedef struct field_root {
-    const char *name;   // the text defines `T field_NAME(vec3 p)`
+    const char *name; // the text defines `T field_NAME(vec3 p)`
     const field *node;
-    int components;     // T: float, vec3, vec4; the node has as many, or one (widened); a node of
-                        // four under a root of three drops its alpha
+    int components; // T: float, vec3, vec4; the node has as many, or one (widened); a node of
+                    // four under a root of three drops its alpha
     // Name of an earlier root, or "": this root is only called right after that one, at the same
     // point, and only when that one was not zero. It then reuses what that one computed.
     const char *after;
@@ -26,9 +26,9 @@ bool field_program_fill(const field_program *p, const field_context *context, vo
 
 typedef struct field_texture { // one sampler of the text
     const char *glsl_name;
-    const field_grid *grid;    // with `image` and `set`: grid->state.images[set][image]
+    const field_grid *grid; // with `image` and `set`: grid->state.images[set][image]
     int image, set;
-    const palette *palette;    // or a palette's texture (2D, PALETTE_SIZE x 1)
+    const palette *palette; // or a palette's texture (2D, PALETTE_SIZE x 1)
 } field_texture;
 size_t field_program_textures(const field_program *p, const field_texture **out);
 // User files included by the text, for a reload to watch, are reported by shader_compile.

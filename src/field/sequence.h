@@ -1,9 +1,14 @@
 // Sequences of volume files played back as a grid: OpenVDB files or one raw file of many frames.
 #pragma once
-#include "field/grid.h"
 #include "base/arena.h"
+#include "field/grid.h"
 
-typedef enum sequence_loop { SEQUENCE_CLIP, SEQUENCE_EXTEND, SEQUENCE_REPEAT, SEQUENCE_PING_PONG } sequence_loop;
+typedef enum sequence_loop {
+    SEQUENCE_CLIP,
+    SEQUENCE_EXTEND,
+    SEQUENCE_REPEAT,
+    SEQUENCE_PING_PONG
+} sequence_loop;
 const char *sequence_loop_name(sequence_loop loop); // "clip", "extend", "repeat", "ping_pong"
 
 typedef struct sequence_desc {
@@ -20,13 +25,13 @@ typedef struct sequence_desc {
     uint64_t max_frame_bytes; // 0: 512 MiB
     // Raw files only:
     struct {
-        const char *type;          // "u8", "u16", "f16", "f32"
-        uint32_t size[3];          // voxels; x varies fastest
-        uint32_t frames;           // 0: as many as the file holds
-        uint64_t offset, stride;   // bytes to the first frame; from frame to frame (0: tight)
-        float voxel_size;          // metres; 0: 1 / size[0]
-        float value_scale;         // multiplies values; u8 and u16 are first normalised to 0..1; 0: 1
-        const char *channel;       // name of its only channel; NULL: "density"
+        const char *type;        // "u8", "u16", "f16", "f32"
+        uint32_t size[3];        // voxels; x varies fastest
+        uint32_t frames;         // 0: as many as the file holds
+        uint64_t offset, stride; // bytes to the first frame; from frame to frame (0: tight)
+        float voxel_size;        // metres; 0: 1 / size[0]
+        float value_scale;       // multiplies values; u8 and u16 are first normalised to 0..1; 0: 1
+        const char *channel;     // name of its only channel; NULL: "density"
     } raw;
 } sequence_desc;
 

@@ -1,0 +1,243 @@
+// The table of kinds. Rows that other files treat as cases of their own come first, in the order of
+// the enumeration in kinds.h.
+#include "field/kinds.h"
+
+#define ANY .components = 0, .required = true, .unit = ""
+#define SAME .components = 0, .unit = ""
+#define SCALAR(UNIT) .components = 1, .unit = UNIT
+#define VECTOR(UNIT) .components = 3, .unit = UNIT
+#define SPACELESS .uniform = true
+
+#define BUILTIN(NAME) .group = "operator", .function = NAME, .cost = 1
+#define LIBRARY(NAME)                                                                              \
+    .group = "operator", .include = "lib/operator.glsl", .function = NAME, .cost = 4
+#define SHAPE(NAME)                                                                                \
+    .group = "shape", .components = 1, .include = "lib/shape.glsl", .function = NAME,              \
+    .spatial = true, .cost = 12
+#define NOISE(NAME) .group = "noise", .include = "lib/noise.glsl", .function = NAME, .spatial = true
+
+#define UNARY                                                                                      \
+    {                                                                                              \
+        { "value", ANY, .help = "what it works on" }                                               \
+    }
+#define BINARY                                                                                     \
+    {                                                                                              \
+        {"a", ANY, .help = "first"}, {                                                             \
+            "b", ANY, .help = "second"                                                             \
+        }                                                                                          \
+    }
+
+#define OCTAVE_ARGS(OCTAVES)                                                                       \
+    {"frequency",                                                                                  \
+     SCALAR("1/m"),                                                                                \
+     SPACELESS,                                                                                    \
+     .value = {1},                                                                                 \
+     .min = 1e-6f,                                                                                 \
+     .max = 1e6f,                                                                                  \
+     .help = "lattice cells a metre, of the first octave"},                                        \
+        {"octaves",                                                                                \
+         SCALAR(""),                                                                               \
+         SPACELESS,                                                                                \
+         .value = {OCTAVES},                                                                       \
+         .min = 1,                                                                                 \
+         .max = 12,                                                                                \
+         .help = "layers of rising frequency, exactly so many"},                                   \
+        {"persistence",                                                                            \
+         SCALAR(""),                                                                               \
+         SPACELESS,                                                                                \
+         .value = {0.5f},                                                                          \
+         .min = 0,                                                                                 \
+         .max = 1,                                                                                 \
+         .help = "weight of an octave relative to the one before (gain)"},                         \
+        {"lacunarity",                                                                             \
+         SCALAR(""),                                                                               \
+         SPACELESS,                                                                                \
+         .value = {2},                                                                             \
+         .min = 1,                                                                                 \
+         .max = 8,                                                                                 \
+         .help = "frequency of an octave relative to the one before"},                             \
+    {                                                                                              \
+        "seed", SCALAR(""), SPACELESS, .value = {0}, .min = 0, .max = 16777215,                    \
+                                       .help = "whole number; another one gives another pattern"   \
+    }
+#define MOTION_ARGS                                                                                \
+    {"drift", VECTOR("m/s"), SPACELESS, .rate = true,                                              \
+     .help = "the noise is taken at p + drift * time"},                                            \
+    {                                                                                              \
+        "speed", SCALAR("1/s"), SPACELESS,                                                         \
+            .rate = true,                                                                          \
+            .help = "rate of the fourth coordinate, in cells: the pattern boils (dimensions = 4)"  \
+    }
+#define AMPLITUDE_ARG                                                                              \
+    { "amplitude", SCALAR(""), .value = {1}, .help = "factor of the result" }
+#define PERIOD_ARG                                                                                 \
+    {                                                                                              \
+        "period", SCALAR("cells"), SPACELESS,                                                      \
+            .min = 0, .max = 65536,                                                                \
+            .help =                                                                                \
+                "repeats after so many cells of the first octave, in every dimension; 0: never"    \
+    }
+#define FRACTAL_OPTION                                                                             \
+    {                                                                                              \
+        "fractal", {"fbm", "ridged", "billow"},                                                    \
+            "fbm: mean of octaves; ridged, billow: folded at the middle"                           \
+    }
+#define DIMENSIONS_OPTION                                                                          \
+    { "dimensions", {"3", "4"}, "4: the fourth coordinate is time * speed" }
+#define LATTICE_NOISE(NAME, COST)                                                                  \
+    NOISE(NAME), .components = 1, .cost = COST,                                                    \
+                 .args = {OCTAVE_ARGS(3), AMPLITUDE_ARG, MOTION_ARGS, PERIOD_ARG},                 \
+                 .options = {FRACTAL_OPTION, DIMENSIONS_OPTION}
+
+// clang-format off
+const field_kind field_kinds[] = {
+    // ---- values
+    [KIND_CONSTANT] = {"constant", .group = "value", .summary = "a number, vector or colour",
+        .eval = eval_constant},
+    [KIND_PARAM] = {"param", .group = "value", .summary = "a declared parameter of the effect"},
+    [KIND_CURVE] = {"curve", .group = "value", .summary = "keys over time"},
+    [KIND_CALL] = {"call", .group = "value", .summary = "a Lua function of the time"},
+    [KIND_TIME] = {"time", .group = "value", .summary = "seconds since the effect began",
+        .components = 1},
+
+    // ---- sources
+    [KIND_GRID] = {"grid", .group = "source", .spatial = true, .cost = 30,
+        .summary = "a channel of a sequence, bake or solver; 0 outside its box"},
+    [KIND_PALETTE] = {"palette", .group = "source", .components = 4, .cost = 20,
+        .summary = "colour and alpha of a palette at a number",
+        .args = {{"at", SCALAR(""), .required = true, .help = "position, in the palette's range"}},
+        .eval = eval_palette},
+    [KIND_GLSL] = {"glsl", .group = "source", .spatial = true, .cost = 50,
+        .summary = "a user's GLSL function of the point"},
+
+    // ---- operators
+    [KIND_SWIZZLE] = {"swizzle", .group = "operator",
+        .summary = "some components of a vector or colour, in any order", .eval = eval_swizzle},
+    [KIND_WARP] = {"warp", .group = "operator",
+        .summary = "takes a field at p + amount * by(p)",
+        .args = {{"value", ANY, .help = "the field to bend"},
+                 {"by", VECTOR(""), .required = true, .help = "offset"},
+                 {"amount", SCALAR(""), .value = {1}, .help = "factor of the offset"}},
+        .bounds = bounds_warp},
+    [KIND_TRANSFORM] = {"transform", .group = "operator",
+        .summary = "scales, then rotates (about X, then Y, then Z), then moves a field",
+        .args = {{"value", ANY, .help = "the field to place"},
+                 {"translate", VECTOR("m"), SPACELESS, .help = "where its origin goes"},
+                 {"rotate", VECTOR("degrees"), SPACELESS, .help = "Euler angles"},
+                 {"scale", VECTOR(""), SPACELESS, .value = {1, 1, 1}, .min = 1e-6f, .max = 1e6f,
+                  .help = "factor of its size"}},
+        .bounds = bounds_transform},
+    [KIND_POSITION] = {"position", .group = "operator", .components = 3, .spatial = true,
+        .summary = "the point itself, in metres", .eval = eval_position},
+    [KIND_ADD] = {"add", .group = "operator", .cost = 1, .summary = "a + b", .args = BINARY,
+        .eval = eval_add},
+    [KIND_SUB] = {"sub", .group = "operator", .cost = 1, .summary = "a - b", .args = BINARY,
+        .eval = eval_sub},
+    [KIND_MUL] = {"mul", .group = "operator", .cost = 1, .args = BINARY,
+        .summary = "a * b; dear factors are only computed where the cheap ones are not zero",
+        .eval = eval_mul, .bounds = bounds_mul},
+    [KIND_NEGATE] = {"negate", .group = "operator", .cost = 1, .summary = "-value", .args = UNARY,
+        .eval = eval_negate},
+    {"div", LIBRARY("operator_div"), .summary = "a / b; 0 where b is 0", .args = BINARY,
+        .eval = eval_div, .bounds = bounds_div},
+    {"min", BUILTIN("min"), .summary = "the smaller", .args = BINARY, .eval = eval_min,
+        .bounds = bounds_min},
+    {"max", BUILTIN("max"), .summary = "the greater", .args = BINARY, .eval = eval_max},
+    {"mix", BUILTIN("mix"), .summary = "a + (b - a) * t",
+        .args = {{"a", ANY, .help = "result at t = 0"}, {"b", ANY, .help = "result at t = 1"},
+                 {"t", SAME, .value = {0.5f}, .help = "share of b"}},
+        .eval = eval_mix, .bounds = bounds_mix},
+    {"clamp", BUILTIN("clamp"), .summary = "limits a value to a range",
+        .args = {{"value", ANY, .help = "what it limits"},
+                 {"low", SAME, .help = "least result"},
+                 {"high", SAME, .value = {1}, .help = "greatest result"}},
+        .eval = eval_clamp},
+    {"remap", LIBRARY("operator_remap"), .summary = "one range to another, linearly, unlimited",
+        .args = {{"value", ANY, .help = "what it maps"},
+                 {"in_min", SAME, .help = "becomes out_min"},
+                 {"in_max", SAME, .value = {1}, .help = "becomes out_max"},
+                 {"out_min", SAME, .help = "result at in_min"},
+                 {"out_max", SAME, .value = {1}, .help = "result at in_max"}},
+        .eval = eval_remap},
+    {"smoothstep", LIBRARY("operator_smoothstep"),
+        .summary = "0 up to low, 1 from high, t * t * (3 - 2 * t) between",
+        .args = {{"value", ANY, .help = "what it maps"},
+                 {"low", SAME, .help = "end of 0"},
+                 {"high", SAME, .value = {1}, .help = "start of 1"}},
+        .eval = eval_smoothstep},
+    {"step", LIBRARY("operator_step"), .summary = "1 from the edge on, 0 below",
+        .args = {{"value", ANY, .help = "what it tests"},
+                 {"edge", SAME, .value = {0.5f}, .help = "least value that gives 1"}},
+        .eval = eval_step},
+    {"pow", LIBRARY("operator_pow"), .summary = "a ^ b; 0 where a is negative", .args = BINARY,
+        .eval = eval_pow},
+    {"abs", BUILTIN("abs"), .summary = "without its sign", .args = UNARY, .eval = eval_abs},
+    {"sqrt", LIBRARY("operator_sqrt"), .summary = "square root; 0 of negative values",
+        .args = UNARY, .eval = eval_sqrt},
+    {"exp", LIBRARY("operator_exp"), .summary = "e ^ value; values above 80 count as 80",
+        .args = UNARY, .eval = eval_exp},
+    {"sin", BUILTIN("sin"), .summary = "sine of radians", .args = UNARY, .eval = eval_sin},
+    {"length", BUILTIN("length"), .components = 1, .summary = "length of a vector", .args = UNARY,
+        .eval = eval_length},
+    {"dot", BUILTIN("dot"), .components = 1, .summary = "scalar product", .args = BINARY,
+        .eval = eval_dot, .bounds = bounds_dot},
+    {"vec", BUILTIN("vec3"), .components = 3, .summary = "a vector of three numbers",
+        .args = {{"x", SCALAR(""), .help = "first"}, {"y", SCALAR(""), .help = "second"},
+                 {"z", SCALAR(""), .help = "third"}},
+        .eval = eval_vec},
+
+    // ---- shapes
+    {"sphere", SHAPE("shape_sphere"), .summary = "a ball; 0 outside, 1 from `falloff` below the surface",
+        .args = {{"position", VECTOR("m"), .help = "centre"},
+                 {"radius", SCALAR("m"), .value = {1}, .min = 0, .max = 1e6f, .help = "to the surface"},
+                 {"falloff", SCALAR("m"), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge"}},
+        .eval = eval_sphere, .bounds = bounds_sphere},
+    {"box", SHAPE("shape_box"), .summary = "a box along the axes; 0 outside, 1 from `falloff` below the surface",
+        .args = {{"position", VECTOR("m"), .help = "centre"},
+                 {"size", VECTOR("m"), .value = {1, 1, 1}, .min = 0, .max = 1e6f, .help = "edge lengths"},
+                 {"falloff", SCALAR("m"), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge"}},
+        .eval = eval_box, .bounds = bounds_box},
+    {"capsule", SHAPE("shape_capsule"), .summary = "a line with round ends; 0 outside, 1 from `falloff` below the surface",
+        .args = {{"from", VECTOR("m"), .help = "centre of one end"},
+                 {"to", VECTOR("m"), .value = {0, 0, 1}, .help = "centre of the other end"},
+                 {"radius", SCALAR("m"), .value = {0.5f}, .min = 0, .max = 1e6f, .help = "around the line"},
+                 {"falloff", SCALAR("m"), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge"}},
+        .eval = eval_capsule, .bounds = bounds_capsule},
+    {"torus", SHAPE("shape_torus"), .summary = "a ring about Z; 0 outside, 1 from `falloff` below the surface",
+        .args = {{"position", VECTOR("m"), .help = "centre"},
+                 {"radius", SCALAR("m"), .value = {1}, .min = 0, .max = 1e6f, .help = "from the centre to the middle of the tube"},
+                 {"thickness", SCALAR("m"), .value = {0.25f}, .min = 0, .max = 1e6f, .help = "radius of the tube"},
+                 {"falloff", SCALAR("m"), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge"}},
+        .eval = eval_torus, .bounds = bounds_torus},
+
+    // ---- noise; arguments and options in the order of the GLSL functions
+    {"perlin", LATTICE_NOISE("noise_perlin", 200), .eval = eval_perlin,
+        .summary = "gradient noise, 0..1, mean 0.5 (Perlin 2002; an integer hash instead of his table)"},
+    {"value", LATTICE_NOISE("noise_value", 120), .eval = eval_value,
+        .summary = "smoothly joined random values, 0..1, mean 0.5"},
+    {"simplex", NOISE("noise_simplex"), .components = 1, .cost = 180,
+        .args = {OCTAVE_ARGS(3), AMPLITUDE_ARG, MOTION_ARGS},
+        .options = {FRACTAL_OPTION, DIMENSIONS_OPTION}, .eval = eval_simplex,
+        .summary = "gradient noise on simplices, 0..1, mean 0.5; cannot repeat (Perlin 2001, Gustavson 2005)"},
+    {"worley", NOISE("noise_worley"), .components = 1, .cost = 500,
+        .args = {OCTAVE_ARGS(1), AMPLITUDE_ARG, MOTION_ARGS, PERIOD_ARG,
+                 {"power", SCALAR(""), SPACELESS, .value = {1}, .min = 0.01f, .max = 16,
+                  .help = "exponent of the distance: below 1 softer, above 1 sharper"}},
+        .options = {FRACTAL_OPTION, DIMENSIONS_OPTION,
+                    {"distance", {"f1", "f2", "f2_f1"}, "to the nearest feature point, the second, or their difference"},
+                    {"mode", {"default", "paper"}, "paper: the fract hash of Raseta et al., section 3.7.2"}},
+        .eval = eval_worley,
+        .summary = "cells, 0..1, high near feature points: 1 - distance^power, for f2_f1 distance^power (Worley 1996)"},
+    {"curl", NOISE("noise_curl"), .components = 3, .cost = 300,
+        .args = {OCTAVE_ARGS(1),
+                 {"amount", SCALAR(""), .value = {1}, .help = "factor of the result"}, MOTION_ARGS, PERIOD_ARG,
+                 {"step", SCALAR("m"), SPACELESS, .value = {0.01f}, .min = 1e-6f, .max = 1e3f,
+                  .help = "half distance of the paper's differences"}},
+        .options = {{"mode", {"default", "paper"},
+                     "default: exact curl, free of divergence; paper: its differences of one scalar, section 3.7.3"},
+                    DIMENSIONS_OPTION},
+        .eval = eval_curl,
+        .summary = "swirling vectors: the curl of three Perlin noises, a unit of length a cell (Bridson 2007)"},
+    {NULL},
+};
+// clang-format on

@@ -1,0 +1,53 @@
+// Kinds that building, evaluation, bounds and the generator treat as cases of their own, by their
+// place in field_kinds; and the functions that the table's rows name.
+#pragma once
+#include "field/field.h"
+
+enum {
+    KIND_CONSTANT,
+    KIND_PARAM,
+    KIND_CURVE,
+    KIND_CALL,
+    KIND_TIME,
+    KIND_GRID,
+    KIND_PALETTE,
+    KIND_GLSL,
+    KIND_SWIZZLE,
+    KIND_WARP,
+    KIND_TRANSFORM,
+    KIND_POSITION,
+    KIND_ADD,
+    KIND_SUB,
+    KIND_MUL,
+    KIND_NEGATE,
+    KIND_SPECIAL_COUNT
+};
+
+static inline int kind_of(const field *node) {
+    return (int)(node->kind - field_kinds);
+}
+
+typedef void kind_eval(const field *node, const field_context *context, float3 p,
+                       const float (*args)[4], float out[4]);
+typedef box3 kind_bounds(const field *node, const field_context *context, const box3 *args);
+
+kind_eval eval_constant, eval_palette, eval_swizzle, eval_position, eval_add, eval_sub, eval_mul,
+    eval_negate, eval_div, eval_min, eval_max, eval_mix, eval_clamp, eval_remap, eval_smoothstep,
+    eval_step, eval_pow, eval_abs, eval_sqrt, eval_exp, eval_sin, eval_length, eval_dot, eval_vec;
+kind_eval eval_sphere, eval_box, eval_capsule, eval_torus;
+kind_eval eval_perlin, eval_simplex, eval_value, eval_worley, eval_curl;
+
+kind_bounds bounds_mul, bounds_div, bounds_mix, bounds_min, bounds_dot, bounds_grid, bounds_warp,
+    bounds_transform, bounds_sphere, bounds_box, bounds_capsule, bounds_torus;
+
+// Components an argument's value is widened to before the kind computes with it.
+int kind_arg_width(const field *node, size_t arg);
+size_t kind_arg_count(const field *node);
+
+// Value of an argument that does not vary in space; false when it does, or a Lua function failed.
+bool kind_uniform_arg(const field *node, size_t arg, const field_context *context, float out[4]);
+
+// Rows of the 3x4 matrix that takes a point to where a "transform" samples its field; and the
+// matrix back.
+void kind_transform_matrix(const float translate[4], const float rotate[4], const float scale[4],
+                           float rows[3][4], float back[3][4]);

@@ -1,0 +1,122 @@
+// Operators: the twin of shaders/lib/operator.glsl and of GLSL's own functions. Arguments come
+// widened to four components, so that every component can be computed alike.
+#include "field/kinds.h"
+#include <math.h>
+#include <string.h>
+
+static const double degree = 3.14159265358979323846 / 180;
+
+#define EACH(NAME, EXPRESSION)                                                                     \
+    void eval_##NAME(const field *node, const field_context *context, float3 p,                    \
+                     const float(*args)[4], float out[4]) {                                        \
+        (void)node, (void)context, (void)p;                                                        \
+        for (int i = 0; i < 4; i++) out[i] = EXPRESSION;                                           \
+    }
+#define A args[0][i]
+#define B args[1][i]
+#define C args[2][i]
+
+static float divide(float a, float b) {
+    return b == 0 ? 0 : a / b;
+}
+
+static float power(float a, float b) {
+    return a <= 0 ? (b == 0 ? 1.0f : 0.0f) : powf(a, b);
+}
+
+static float smooth(float v, float low, float high) {
+    if (low == high) return v >= low ? 1 : 0;
+    float t = clampf((v - low) / (high - low), 0, 1);
+    return t * t * (3 - 2 * t);
+}
+
+EACH(add, A + B)
+EACH(sub, A - B)
+EACH(mul, A *B)
+EACH(negate, -A)
+EACH(div, divide(A, B))
+EACH(min, fminf(A, B))
+EACH(max, fmaxf(A, B))
+EACH(mix, mixf(A, B, C))
+EACH(clamp, fminf(fmaxf(A, B), C))
+EACH(smoothstep, smooth(A, B, C))
+EACH(step, A >= B ? 1 : 0)
+EACH(pow, power(A, B))
+EACH(abs, fabsf(A))
+EACH(sqrt, sqrtf(fmaxf(A, 0)))
+EACH(exp, expf(fminf(A, 80)))
+EACH(sin, sinf(A))
+EACH(remap, args[3][i] + divide(A - B, C - B) * (args[4][i] - args[3][i]))
+
+void eval_constant(const field *node, const field_context *context, float3 p,
+                   const float (*args)[4], float out[4]) {
+    (void)context, (void)p, (void)args;
+    memcpy(out, node->value, sizeof node->value);
+}
+
+void eval_palette(const field *node, const field_context *context, float3 p, const float (*args)[4],
+                  float out[4]) {
+    (void)p;
+    palette_eval(node->object, context->time, args[0][0], out);
+}
+
+void eval_swizzle(const field *node, const field_context *context, float3 p, const float (*args)[4],
+                  float out[4]) {
+    (void)context, (void)p;
+    for (int i = 0; i < node->components; i++) out[i] = args[0][node->index >> 2 * i & 3];
+}
+
+void eval_position(const field *node, const field_context *context, float3 p,
+                   const float (*args)[4], float out[4]) {
+    (void)node, (void)context, (void)args;
+    out[0] = p.x;
+    out[1] = p.y;
+    out[2] = p.z;
+}
+
+void eval_length(const field *node, const field_context *context, float3 p, const float (*args)[4],
+                 float out[4]) {
+    (void)context, (void)p;
+    float square = 0;
+    for (int i = 0; i < kind_arg_width(node, 0); i++) square += A * A;
+    out[0] = sqrtf(square);
+}
+
+void eval_dot(const field *node, const field_context *context, float3 p, const float (*args)[4],
+              float out[4]) {
+    (void)context, (void)p;
+    out[0] = 0;
+    for (int i = 0; i < kind_arg_width(node, 0); i++) out[0] += A * B;
+}
+
+void eval_vec(const field *node, const field_context *context, float3 p, const float (*args)[4],
+              float out[4]) {
+    (void)node, (void)context, (void)p;
+    for (int i = 0; i < 3; i++) out[i] = args[i][0];
+}
+
+// Rotation Z * Y * X times the scale, and its inverse, around the translation.
+void kind_transform_matrix(const float translate[4], const float rotate[4], const float scale[4],
+                           float rows[3][4], float back[3][4]) {
+    double c[3], s[3];
+    for (int i = 0; i < 3; i++) {
+        c[i] = cos((double)rotate[i] * degree);
+        s[i] = sin((double)rotate[i] * degree);
+    }
+    double r[3][3] = {
+        {c[2] * c[1], c[2] * s[1] * s[0] - s[2] * c[0], c[2] * s[1] * c[0] + s[2] * s[0]},
+        {s[2] * c[1], s[2] * s[1] * s[0] + c[2] * c[0], s[2] * s[1] * c[0] - c[2] * s[0]},
+        {-s[1], c[1] * s[0], c[1] * c[0]},
+    };
+    for (int i = 0; i < 3; i++) {
+        double size = fabs((double)scale[i]) < 1e-6 ? 1e-6 : (double)scale[i], offset = 0;
+        for (int k = 0; k < 3; k++) {
+            rows[i][k] = (float)(r[k][i] / size);
+            offset += r[k][i] / size * (double)translate[k];
+            double other = fabs((double)scale[k]) < 1e-6 ? 1e-6 : (double)scale[k];
+            back[i][k] = (float)(r[i][k] * other);
+        }
+        rows[i][3] = (float)-offset;
+        back[i][3] = translate[i];
+    }
+}

@@ -1,0 +1,21 @@
+// Map from (pointer, number) to a number, for walks over expression graphs that must visit shared
+// nodes once. Zero-initialised is empty; free with map_free.
+#pragma once
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct map_entry {
+    const void *key;
+    uint32_t sub, value;
+} map_entry;
+
+typedef struct map {
+    map_entry *entries; // open addressing; key NULL: free
+    size_t count, capacity;
+} map;
+
+// The value stored for a key, which is never NULL; NULL when there is none. Valid until map_set.
+uint32_t *map_find(const map *m, const void *key, uint32_t sub);
+void map_set(map *m, const void *key, uint32_t sub, uint32_t value); // the key must be new
+void map_free(map *m);
