@@ -34,8 +34,10 @@ def judge_own(path, target):
     if target == "shared.h":
         return None  # shaders/shared.h: constants that C and GLSL share
     theirs = layer_of(target)
-    if "/" not in target and target != "roil.h" or theirs not in LEVEL:
+    if "/" not in target and not re.match(r"roil\w*\.h$", target) or theirs not in LEVEL:
         return f'"{target}": write "layer/file.h", relative to src'
+    if theirs == "roil" != mine and target != "roil.h":
+        return f'"{target}" is private to the library; use roil.h'
     if theirs == mine or LEVEL[theirs] < LEVEL[mine]:
         return None
     return f'"{target}": {mine} may not include {theirs}'
