@@ -1,0 +1,102 @@
+// A small world for tests of passes: a graph, a camera at (0, -5, 0) that looks along +Y, no sun
+// and no sky unless the test says so.
+#pragma once
+#include "effect/effect.h"
+#include "gpu_test.h"
+#include "pass/pass.h"
+#include <math.h>
+#include <string.h>
+
+typedef struct pass_world {
+    arena memory;
+    pass_host host;
+    scene scene;
+    field_context context;
+    struct frame_block frame;
+    pass *passes[16];
+    size_t count;
+} pass_world;
+
+static inline const field *number(pass_world *w, float value) {
+    return field_constant(&w->memory, 1, (float[4]){value});
+}
+
+static inline const field *triple(pass_world *w, float x, float y, float z) {
+    return field_constant(&w->memory, 3, (float[4]){x, y, z});
+}
+
+// A hard-edged box of half-size `half` around the origin, times `value`.
+static inline const field *block(pass_world *w, float half, float value) {
+    const field *args[FIELD_MAX_ARGS] = {triple(w, 0, 0, 0),
+                                         triple(w, 2 * half, 2 * half, 2 * half), number(w, 0)};
+    const field *shape = field_make(&w->memory, "box", args, NULL);
+    gpu_test_ok(shape);
+    const field *factors[FIELD_MAX_ARGS] = {shape, number(w, value)};
+    const field *product = field_make(&w->memory, "mul", factors, NULL);
+    gpu_test_ok(product);
+    return product;
+}
+
+static inline void world_open(pass_world *w, gpu *device) {
+    *w = (pass_world){0};
+    char shaders[4096], data[4096];
+    snprintf(shaders, sizeof shaders, "%s/shaders", getenv("ROIL_SOURCE_DIR"));
+    snprintf(data, sizeof data, "%s/tests/gpu/data", getenv("ROIL_SOURCE_DIR"));
+    w->host = (pass_host){
+        .device = device,
+        .library = shader_library_create(
+            &(shader_library_desc){.shader_root = shaders, .effect_root = data}),
+        .graph = graph_create(),
+        .memory = &w->memory,
+        .context = &w->context,
+        .frame = &w->frame,
+    };
+    gpu_test_ok(w->host.library);
+    scene_init(&w->scene, &w->memory);
+    w->scene.camera.eye = triple(w, 0, -5, 0);
+    w->scene.camera.target = triple(w, 0, 0, 0);
+    w->scene.sun.strength = number(w, 0);
+    w->scene.sky.strength = number(w, 0);
+}
+
+static inline pass *world_add(pass_world *w, const char *type, const char *shader,
+                              const char *label) {
+    pass *p = pass_create(&w->host, type ? pass_type_find(type) : NULL, shader, label);
+    gpu_test_ok(p);
+    w->passes[w->count++] = p;
+    return p;
+}
+
+static inline void world_render(pass_world *w, uint32_t width, uint32_t height,
+                                graph_image output) {
+    gpu_test_ok(graph_add_output(w->host.graph, output));
+    gpu_test_ok(graph_compile(w->host.graph, width, height));
+    for (size_t i = 0; i < w->count; i++) gpu_test_ok(pass_build(w->passes[i]));
+    gpu_test_ok(graph_allocate(w->host.graph, w->host.device));
+    gpu_test_ok(scene_fill_frame(&w->scene, &w->context, (float)width / (float)height, &w->frame));
+    w->frame.size = (shared_uvec4){{width, height, 1, 0}};
+    gpu_test_ok(gpu_frame_begin(w->host.device));
+    gpu_test_ok(graph_execute(w->host.graph, w->host.device));
+    gpu_test_ok(gpu_frame_end(w->host.device));
+}
+
+// RGBA floats of a half-float image; free with mem_free.
+static inline float *world_read(pass_world *w, graph_image image) {
+    gpu_image *source = graph_get_image(w->host.graph, image);
+    const gpu_image_desc *desc = gpu_image_get_desc(source);
+    size_t count = (size_t)desc->width * desc->height * 4;
+    uint16_t *halves = mem_alloc(count * 2);
+    gpu_test_ok(gpu_image_read(w->host.device, source, halves, count * 2));
+    float *out = mem_alloc(count * sizeof *out);
+    for (size_t i = 0; i < count; i++) out[i] = half_to_float(halves[i]);
+    mem_free(halves);
+    return out;
+}
+
+static inline void world_close(pass_world *w) {
+    for (size_t i = 0; i < w->count; i++) pass_destroy(w->passes[i]);
+    graph_destroy(w->host.graph, w->host.device);
+    pass_host_free(&w->host);
+    shader_library_destroy(w->host.library);
+    arena_free(&w->memory);
+}
