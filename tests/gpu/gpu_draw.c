@@ -1,0 +1,190 @@
+// Drawing: coverage, depth test, culling, clearing, loading, and errors.
+#include "gpu_shaders.h"
+#include "gpu_test.h"
+#include <string.h>
+
+enum { N = 16 };
+
+typedef struct stage {
+    gpu *g;
+    gpu_pipeline *pipeline;
+    gpu_image *color, *depth;
+    gpu_buffer *points;
+} stage;
+
+static const float white[4] = {1, 1, 1, 1}, red[4] = {1, 0, 0, 1}, green[4] = {0, 1, 0, 1};
+
+// Three triangles: the whole picture at depth 0.5, clockwise in the picture; its left half at 0.25
+// and its upper half at 0.75, counter-clockwise.
+static const float corners[9][4] = {
+    {-1, -1, 0.5f, 1},  {3, -1, 0.5f, 1},  {-1, 3, 0.5f, 1}, //
+    {-1, -3, 0.25f, 1}, {-1, 3, 0.25f, 1}, {0, 0, 0.25f, 1}, //
+    {-3, 0, 0.75f, 1},  {3, 0, 0.75f, 1},  {0, -9, 0.75f, 1},
+};
+
+static gpu_pipeline *make_pipeline(gpu *g, gpu_cull cull) {
+    const gpu_slot slots[] = {{.binding = 0, .kind = GPU_SLOT_STORAGE_BUFFER, .reads = true},
+                              {.binding = 1, .kind = GPU_SLOT_UNIFORM}};
+    gpu_pipeline *pipeline = gpu_pipeline_create_graphics(
+        g, &(gpu_graphics_desc){.label = "triangle",
+                                .vertex_code = triangle_vert_code,
+                                .vertex_size = sizeof triangle_vert_code,
+                                .fragment_code = triangle_frag_code,
+                                .fragment_size = sizeof triangle_frag_code,
+                                .slots = slots,
+                                .slot_count = COUNT_OF(slots),
+                                .colors = {GPU_RGBA32F},
+                                .depth = GPU_D32F,
+                                .cull = cull});
+    gpu_test_ok(pipeline);
+    return pipeline;
+}
+
+static stage stage_open(gpu *g, gpu_cull cull) {
+    stage s = {.g = g, .pipeline = make_pipeline(g, cull)};
+    s.color = gpu_image_create(g, &(gpu_image_desc){.label = "color",
+                                                    .format = GPU_RGBA32F,
+                                                    .width = N,
+                                                    .height = N,
+                                                    .use = GPU_USE_TARGET | GPU_USE_SAMPLED});
+    s.depth = gpu_image_create(g, &(gpu_image_desc){.label = "depth",
+                                                    .format = GPU_D32F,
+                                                    .width = N,
+                                                    .height = N,
+                                                    .use = GPU_USE_TARGET | GPU_USE_SAMPLED});
+    s.points =
+        gpu_buffer_create(g, &(gpu_buffer_desc){.label = "points", .size = 3 * 4 * sizeof(float)});
+    gpu_test_ok(s.color && s.depth && s.points);
+    return s;
+}
+
+static void stage_close(stage *s) {
+    gpu_pipeline_destroy(s->g, s->pipeline);
+    gpu_image_destroy(s->g, s->color);
+    gpu_image_destroy(s->g, s->depth);
+    gpu_buffer_destroy(s->g, s->points);
+}
+
+static void draw(stage *s, int triangle, const float tint[4], bool clear) {
+    gpu_test_ok(gpu_buffer_write(s->g, s->points, 0, corners[3 * triangle], 3 * sizeof *corners));
+    const gpu_binding bindings[] = {{.binding = 0, .buffer = s->points},
+                                    {.binding = 1, .uniform = tint, .uniform_size = 16}};
+    gpu_draw one = {.bindings = bindings, .binding_count = COUNT_OF(bindings), .vertices = 3};
+    gpu_test_ok(gpu_draw_all(s->g, &(gpu_draw_desc){.pipeline = s->pipeline,
+                                                    .colors = {s->color},
+                                                    .depth = s->depth,
+                                                    .clear = clear,
+                                                    .clear_color = {{0, 0, 1, 0}},
+                                                    .clear_depth = 1.0f,
+                                                    .draws = &one,
+                                                    .draw_count = 1}));
+}
+
+static void expect_texel(float texels[N][N][4], int x, int y, const float wanted[4]) {
+    if (memcmp(texels[y][x], wanted, 16) == 0) return;
+    fail_msg("texel %d,%d is %g %g %g %g", x, y, (double)texels[y][x][0], (double)texels[y][x][1],
+             (double)texels[y][x][2], (double)texels[y][x][3]);
+}
+
+static void nearer_triangle_wins_in_any_order(void **state) {
+    static float texels[N][N][4], depths[N][N];
+    static const float blue[4] = {0, 0, 1, 0};
+    stage s = stage_open(*state, GPU_CULL_NONE);
+    for (int order = 0; order < 2; order++) {
+        gpu_test_ok(gpu_frame_begin(s.g));
+        draw(&s, order ? 1 : 0, order ? red : white, true);
+        draw(&s, order ? 0 : 1, order ? white : red, false);
+        draw(&s, 2, green, false); // behind the white one everywhere
+        gpu_test_ok(gpu_frame_end(s.g));
+        gpu_test_ok(gpu_image_read(s.g, s.color, texels, sizeof texels));
+        gpu_test_ok(gpu_image_read(s.g, s.depth, depths, sizeof depths));
+        expect_texel(texels, 1, N / 2, red);
+        expect_texel(texels, N - 2, N / 2, white);
+        expect_texel(texels, N - 2, 1, white);
+        assert_true(depths[N / 2][1] == 0.25f && depths[1][N - 2] == 0.5f);
+    }
+    gpu_test_ok(gpu_frame_begin(s.g));
+    draw(&s, 2, green, true);
+    gpu_test_ok(gpu_frame_end(s.g));
+    gpu_test_ok(gpu_image_read(s.g, s.color, texels, sizeof texels));
+    expect_texel(texels, N / 2, 2, green); // y = -1 of clip space is the top of the picture
+    expect_texel(texels, N / 2, N - 2, blue);
+    stage_close(&s);
+}
+
+static void clockwise_triangles_are_culled(void **state) {
+    static float texels[N][N][4];
+    static const float blue[4] = {0, 0, 1, 0};
+    stage s = stage_open(*state, GPU_CULL_BACK);
+    gpu_test_ok(gpu_frame_begin(s.g));
+    draw(&s, 0, white, true);
+    draw(&s, 1, red, false);
+    gpu_test_ok(gpu_frame_end(s.g));
+    gpu_test_ok(gpu_image_read(s.g, s.color, texels, sizeof texels));
+    expect_texel(texels, 1, N / 2, red);
+    expect_texel(texels, N - 2, N / 2, blue);
+    stage_close(&s);
+}
+
+static void no_draws_just_clears(void **state) {
+    static float texels[N][N][4];
+    stage s = stage_open(*state, GPU_CULL_NONE);
+    gpu_test_ok(gpu_frame_begin(s.g));
+    gpu_test_ok(gpu_draw_all(s.g, &(gpu_draw_desc){.colors = {s.color},
+                                                   .clear = true,
+                                                   .clear_color = {{0.25f, 0.5f, 0.75f, 1.0f}}}));
+    gpu_image_clear(s.g, s.depth, (const float[4]){0.125f, 0, 0, 0});
+    gpu_test_ok(gpu_frame_end(s.g));
+    gpu_test_ok(gpu_image_read(s.g, s.color, texels, sizeof texels));
+    expect_texel(texels, 3, 5, (const float[4]){0.25f, 0.5f, 0.75f, 1.0f});
+    static float depths[N][N];
+    gpu_test_ok(gpu_image_read(s.g, s.depth, depths, sizeof depths));
+    assert_true(depths[N - 1][N - 1] == 0.125f);
+    stage_close(&s);
+}
+
+static void expect_error(bool result, const char *part) {
+    assert_false(result);
+    if (!strstr(err_get(), part)) fail_msg("'%s' does not say '%s'", err_get(), part);
+}
+
+static void wrong_targets_are_named(void **state) {
+    stage s = stage_open(*state, GPU_CULL_NONE);
+    gpu_image *small = gpu_image_create(s.g, &(gpu_image_desc){.label = "small",
+                                                               .format = GPU_RGBA16F,
+                                                               .width = N / 2,
+                                                               .height = N,
+                                                               .use = GPU_USE_TARGET});
+    gpu_image *plain = gpu_image_create(
+        s.g,
+        &(gpu_image_desc){.label = "plain", .format = GPU_R8, .width = N, .height = N, .use = 1});
+    gpu_test_ok(small && plain);
+    gpu_draw one = {.vertices = 3};
+    gpu_draw_desc d = {.pipeline = s.pipeline, .draws = &one, .draw_count = 1};
+    gpu_test_ok(gpu_frame_begin(s.g));
+    expect_error(gpu_draw_all(s.g, &d), "needs a target");
+    d.colors[0] = small;
+    d.depth = s.depth;
+    expect_error(gpu_draw_all(s.g, &d), "differ in size");
+    d.depth = NULL;
+    expect_error(gpu_draw_all(s.g, &d), "1 colour targets and depth; 1 are given");
+    d.colors[0] = plain;
+    expect_error(gpu_draw_all(s.g, &d), "'plain' was not created for use as a target");
+    d.colors[0] = s.color;
+    d.depth = s.depth;
+    expect_error(gpu_draw_all(s.g, &d), "'triangle', binding 0: a storage buffer is needed");
+    gpu_test_ok(gpu_frame_end(s.g));
+    gpu_image_destroy(s.g, small);
+    gpu_image_destroy(s.g, plain);
+    stage_close(&s);
+}
+
+int main(void) {
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nearer_triangle_wins_in_any_order),
+        cmocka_unit_test(clockwise_triangles_are_culled),
+        cmocka_unit_test(no_draws_just_clears),
+        cmocka_unit_test(wrong_targets_are_named),
+    };
+    return gpu_test_run(tests, COUNT_OF(tests));
+}
