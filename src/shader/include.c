@@ -15,7 +15,6 @@
 #include "base/memory.h"
 #include "shader/unit.h"
 #include <ctype.h>
-#include <stdio.h>
 #include <string.h>
 
 #define BLANKS " \t\v\f"
@@ -208,7 +207,8 @@ static const char *directive(const char *code, char out[16]) {
     code += strspn(code, BLANKS);
     size_t length = 0;
     while (isalnum((unsigned char)code[length]) || code[length] == '_') length++;
-    snprintf(out, 16, "%.*s", (int)(length < 16 ? length : 0), code);
+    str_copy(out, 16, code);
+    if (length < 15) out[length] = '\0'; // longer ones stay longer than any that is known
     return code + length;
 }
 

@@ -12,12 +12,15 @@
 //   uniform bool invert;                //= false : a toggle
 //   uniform sampler2D input_;           //= input : the picture
 //   uniform sampler2D mask;             //= input optional : where to bend (missing: everywhere)
+//   uniform sampler2D last;             //= input history color : what `color` held last frame
 //   writeonly uniform image2D color;    //= output rgba16f : the bent picture
 //   void main() { ... }
 //
 // The grammar of an annotation is in src/shader/README.md. Loose uniforms are gathered into one
 // std140 block "Uniforms"; bindings are assigned by the compiler. A trailing underscore, needed
-// where a name is a GLSL keyword, is not part of the public name ("input").
+// where a name is a GLSL keyword, is not part of the public name ("input"). Options and
+// enumerations are macros in GLSL (MODE, MODE_FINE, KIND_SOFT), and so are the formats of outputs
+// (FORMAT_COLOR, which a define of the same name overrides).
 #pragma once
 #include "base/arena.h"
 #include "base/hash.h"
@@ -104,7 +107,7 @@ typedef struct shader_interface {
 typedef struct shader_library shader_library;
 
 typedef struct shader_library_desc {
-    const char *shader_root; // folder of the program's shaders
+    const char *shader_root; // folder of the program's shaders; NULL: none
     const char *effect_root; // folder of the effect: user shaders and their includes; NULL: none
     const char *cache_dir;   // compiled SPIR-V by content hash; NULL: none
 } shader_library_desc;
@@ -150,6 +153,8 @@ typedef struct shader_member { // of the block "Uniforms"
     uint32_t array;            // elements, 0: not an array
 } shader_member;
 
+// Only what the entry point uses has a slot. Bindings of fragment shaders begin at
+// GPU_MAX_SLOTS / 2, so that those of a vertex shader beside it differ.
 typedef struct shader_slot {
     const char *name; // GLSL name: of a block its block name, else the variable's
     gpu_slot slot;

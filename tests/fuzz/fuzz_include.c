@@ -11,12 +11,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 enum { MAX_TEXTS = 8 };
 
-static shader_library *open_library(void) {
-    char folder[] = "/tmp/roil-fuzz-XXXXXX";
-    if (!mkdtemp(folder)) abort();
-    shader_library *library = shader_library_create(&(shader_library_desc){.shader_root = folder});
+static char folder[] = "/tmp/roil-fuzz-XXXXXX";
+
+static void remove_folder(void) {
     rmdir(folder);
-    return library;
+}
+
+static shader_library *open_library(void) {
+    if (!mkdtemp(folder)) abort();
+    atexit(remove_folder);
+    return shader_library_create(&(shader_library_desc){.shader_root = folder});
 }
 
 // The compiler must see no directive that reads files.
@@ -41,8 +45,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     shader_text texts[MAX_TEXTS];
     size_t count = 0;
     if (size) memcpy(copy, data, size);
-    for (; count < MAX_TEXTS && at <= copy + size; at += strlen(at) + 1)
-        texts[count] = (shader_text){names[count], at}, count++;
+    for (; count < MAX_TEXTS && at <= copy + size; at += strlen(at) + 1) {
+        texts[count] = (shader_text){names[count], at};
+        count++;
+    }
     shader_unit unit;
     unit_desc desc = {.name = "a", .texts = texts, .text_count = count, .without_fields = true};
     if (unit_load(library, &desc, &unit)) {
