@@ -10,6 +10,24 @@ uniform float alpha;           //= 0.8 [0, 4] : weight of each wider level in mo
 uniform int levels;            //= 0 [0, 16] : how many halvings; 0: down to one pixel
 uniform image2D color;         //= output rgba16f : the bloom
 
+// Halving an odd size n = 2 m + 1: three texels by their share of the texel that they make, so that
+// the mean of the picture stays what it was.
+vec3 odd_weights(int i, int n) {
+    if (n == 1) return vec3(1.0, 0.0, 0.0);
+    if ((n & 1) == 0) return vec3(0.5, 0.5, 0.0);
+    int m = n / 2;
+    return vec3(m - i, m, i + 1) / float(n);
+}
+
+vec3 halve_odd(ivec2 pixel, ivec2 from) {
+    vec3 wx = odd_weights(pixel.x, from.x), wy = odd_weights(pixel.y, from.y);
+    vec3 sum = vec3(0.0);
+    for (int y = 0; y < 3; y++)
+        for (int x = 0; x < 3; x++)
+            sum += wx[x] * wy[y] * texelFetch(source, min(2 * pixel + ivec2(x, y), from - 1), 0).rgb;
+    return sum;
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = imageSize(color);
@@ -32,14 +50,14 @@ void main() {
 #endif
     imageStore(color, pixel, vec4(sum, 1.0));
 #else
-    bool copy = size == textureSize(source, 0);
-    vec3 sum = vec3(0.0);
-    if (copy) {
+    ivec2 from = textureSize(source, 0);
+    vec3 sum;
+    if (size == from)
         sum = texelFetch(source, pixel, 0).rgb;
-    } else {
-        // The mean of the four texels beneath; at odd sizes the filter covers the odd row as well.
-        sum = textureLod(source, uv, 0.0).rgb;
-    }
+    else if (((from.x | from.y) & 1) == 0)
+        sum = textureLod(source, uv, 0.0).rgb; // the mean of the four texels beneath
+    else
+        sum = halve_odd(pixel, from);
     imageStore(color, pixel, vec4(sum, 1.0));
 #endif
 }

@@ -20,4 +20,4 @@ const char *err_get(void);
 void err_clear(void);
 
 // One line on stderr, exit status 1.
-_Noreturn void err_out_of_memory(size_t size);
+__attribute__((noreturn)) void err_out_of_memory(size_t size);
