@@ -7,6 +7,17 @@
 #include <assert.h>
 #include <string.h>
 
+const hazard_access vk_image_from = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                     .reads = VK_ACCESS_2_TRANSFER_READ_BIT,
+                                     .layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
+const hazard_access vk_image_to = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                   .writes = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                   .layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
+const hazard_access vk_buffer_from = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                      .reads = VK_ACCESS_2_TRANSFER_READ_BIT};
+const hazard_access vk_buffer_to = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                    .writes = VK_ACCESS_2_TRANSFER_WRITE_BIT};
+
 void vk_uses_begin(gpu *g) {
     g->uses.count = 0;
     g->uses.stamp++;

@@ -3,22 +3,11 @@
 #include <inttypes.h>
 #include <string.h>
 
-static const hazard_access image_from = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                         .reads = VK_ACCESS_2_TRANSFER_READ_BIT,
-                                         .layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
-static const hazard_access image_to = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                       .writes = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                       .layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
-static const hazard_access buffer_from = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                          .reads = VK_ACCESS_2_TRANSFER_READ_BIT};
-static const hazard_access buffer_to = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                        .writes = VK_ACCESS_2_TRANSFER_WRITE_BIT};
-
 void gpu_image_clear(gpu *g, gpu_image *image, const float color[4]) {
     VkCommandBuffer commands = vk_commands(g);
     if (!commands) return;
     vk_uses_begin(g);
-    vk_use_image(g, image, 0, image->desc.mips, image_to);
+    vk_use_image(g, image, 0, image->desc.mips, vk_image_to);
     vk_uses_flush(g, commands);
     VkImageSubresourceRange range = {
         .aspectMask = image->aspect, .levelCount = image->desc.mips, .layerCount = 1};
@@ -29,14 +18,7 @@ void gpu_image_clear(gpu *g, gpu_image *image, const float color[4]) {
                                     &value, 1, &range);
         return;
     }
-    VkClearColorValue value;
-    for (int i = 0; i < 4; i++) {
-        if (image->desc.format == GPU_R32U) {
-            value.uint32[i] = color[i] > 0.0f ? (uint32_t)color[i] : 0;
-        } else {
-            value.float32[i] = color[i];
-        }
-    }
+    VkClearColorValue value = vk_clear_color(image, color);
     vkCmdClearColorImage(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1,
                          &range);
 }
@@ -45,7 +27,7 @@ void gpu_buffer_fill(gpu *g, gpu_buffer *buffer, uint32_t word) {
     VkCommandBuffer commands = vk_commands(g);
     if (!commands) return;
     vk_uses_begin(g);
-    vk_use_buffer(g, buffer, buffer_to);
+    vk_use_buffer(g, buffer, vk_buffer_to);
     vk_uses_flush(g, commands);
     vkCmdFillBuffer(commands, buffer->handle, 0, VK_WHOLE_SIZE, word);
 }
@@ -68,8 +50,8 @@ bool gpu_image_copy_to_buffer(gpu *g, gpu_image *image, gpu_buffer *buffer, uint
     VkCommandBuffer commands = vk_commands(g);
     if (!commands) return false;
     vk_uses_begin(g);
-    vk_use_image(g, image, 0, 1, image_from);
-    vk_use_buffer(g, buffer, buffer_to);
+    vk_use_image(g, image, 0, 1, vk_image_from);
+    vk_use_buffer(g, buffer, vk_buffer_to);
     vk_uses_flush(g, commands);
     VkBufferImageCopy region = {.bufferOffset = offset,
                                 .imageSubresource = {.aspectMask = image->aspect, .layerCount = 1},
@@ -91,8 +73,8 @@ bool gpu_image_copy(gpu *g, gpu_image *from, gpu_image *to) {
     VkCommandBuffer commands = vk_commands(g);
     if (!commands) return false;
     vk_uses_begin(g);
-    vk_use_image(g, from, 0, 1, image_from);
-    vk_use_image(g, to, 0, 1, image_to);
+    vk_use_image(g, from, 0, 1, vk_image_from);
+    vk_use_image(g, to, 0, 1, vk_image_to);
     vk_uses_flush(g, commands);
     VkExtent3D extent;
     uint64_t bytes;
@@ -139,8 +121,8 @@ static bool copy_out(gpu *g, gpu_buffer *buffer, uint64_t offset, gpu_buffer *ta
     VkCommandBuffer commands = vk_commands(g);
     if (!commands) return false;
     vk_uses_begin(g);
-    vk_use_buffer(g, buffer, buffer_from);
-    vk_use_buffer(g, target, buffer_to);
+    vk_use_buffer(g, buffer, vk_buffer_from);
+    vk_use_buffer(g, target, vk_buffer_to);
     vk_uses_flush(g, commands);
     VkBufferCopy region = {.srcOffset = offset, .size = target->size};
     vkCmdCopyBuffer(commands, buffer->handle, target->handle, 1, &region);

@@ -99,18 +99,6 @@ static VkRenderingAttachmentInfo attachment(const gpu_image *image, bool clear,
                                        .clearValue = value};
 }
 
-static VkClearColorValue clear_value(const gpu_image *image, const float color[4]) {
-    VkClearColorValue value;
-    for (int i = 0; i < 4; i++) {
-        if (image->desc.format == GPU_R32U) {
-            value.uint32[i] = color[i] > 0.0f ? (uint32_t)color[i] : 0;
-        } else {
-            value.float32[i] = color[i];
-        }
-    }
-    return value;
-}
-
 static void begin(VkCommandBuffer commands, const gpu_draw_desc *desc) {
     VkRenderingAttachmentInfo colors[VK_MAX_TARGETS], depth;
     const gpu_image *first = desc->colors[0] ? desc->colors[0] : desc->depth;
@@ -121,7 +109,7 @@ static void begin(VkCommandBuffer commands, const gpu_draw_desc *desc) {
                             .colorAttachmentCount = color_count(desc),
                             .pColorAttachments = colors};
     for (uint32_t i = 0; i < info.colorAttachmentCount; i++) {
-        VkClearValue value = {.color = clear_value(desc->colors[i], desc->clear_color[i])};
+        VkClearValue value = {.color = vk_clear_color(desc->colors[i], desc->clear_color[i])};
         colors[i] = attachment(desc->colors[i], desc->clear, value);
     }
     if (desc->depth) {

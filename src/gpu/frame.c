@@ -26,6 +26,7 @@ uint64_t gpu_frame_begin(gpu *g) {
     if (!vk_batch_begin(g, &frame->batch)) return 0;
     g->frame_number = number;
     g->frame = frame;
+    g->in_pass = false;
     frame->number = number;
     frame->uniforms.chunk = 0;
     frame->uniforms.offset = 0;

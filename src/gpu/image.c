@@ -17,6 +17,21 @@ void vk_image_extent(const gpu_image *image, uint32_t mip, VkExtent3D *extent, u
     *bytes = (uint64_t)extent->width * extent->height * extent->depth * gpu_format_size(d->format);
 }
 
+VkClearColorValue vk_clear_color(const gpu_image *image, const float color[4]) {
+    VkClearColorValue value;
+    for (int i = 0; i < 4; i++) {
+        if (image->desc.format == GPU_R32U) {
+            // Beyond the range the conversion would be undefined.
+            value.uint32[i] = !(color[i] > 0.0f)    ? 0
+                              : color[i] >= 0x1p32f ? UINT32_MAX
+                                                    : (uint32_t)color[i];
+        } else {
+            value.float32[i] = color[i];
+        }
+    }
+    return value;
+}
+
 static uint32_t max_mips(const gpu_image_desc *d) {
     uint32_t size = d->width > d->height ? d->width : d->height;
     if (d->depth > size) size = d->depth;

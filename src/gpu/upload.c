@@ -81,12 +81,6 @@ static void piece_drop(gpu *g, piece *p) {
     if (p->own) gpu_buffer_destroy(g, p->buffer);
 }
 
-static const hazard_access image_write = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                          .writes = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                          .layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
-static const hazard_access buffer_write = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                           .writes = VK_ACCESS_2_TRANSFER_WRITE_BIT};
-
 static bool copy_rows(gpu *g, gpu_image *image, uint32_t mip, const VkOffset3D *at,
                       const VkExtent3D *extent, const void *data, uint64_t size) {
     piece p;
@@ -125,7 +119,7 @@ bool gpu_image_write(gpu *g, gpu_image *image, uint32_t mip, const void *data, s
     VkCommandBuffer commands = vk_commands(g);
     if (!commands) return false;
     vk_uses_begin(g);
-    vk_use_image(g, image, mip, 1, image_write);
+    vk_use_image(g, image, mip, 1, vk_image_to);
     vk_uses_flush(g, commands);
 
     uint64_t row = bytes / extent.height / extent.depth, slice = row * extent.height;
@@ -169,7 +163,7 @@ bool gpu_buffer_write(gpu *g, gpu_buffer *buffer, uint64_t offset, const void *d
     VkCommandBuffer commands = vk_commands(g);
     if (!commands) return false;
     vk_uses_begin(g);
-    vk_use_buffer(g, buffer, buffer_write);
+    vk_use_buffer(g, buffer, vk_buffer_to);
     vk_uses_flush(g, commands);
     for (uint64_t done = 0; done < size;) {
         uint64_t part = size - done < PIECE_SIZE ? size - done : PIECE_SIZE;

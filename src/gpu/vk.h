@@ -141,6 +141,7 @@ gpu_buffer *vk_buffer_create(gpu *g, uint64_t size, VkBufferUsageFlags usage, vk
 uint32_t vk_mip_size(uint32_t size, uint32_t mip);
 // Texels and bytes of one level.
 void vk_image_extent(const gpu_image *image, uint32_t mip, VkExtent3D *extent, uint64_t *bytes);
+VkClearColorValue vk_clear_color(const gpu_image *image, const float color[4]);
 bool vk_samplers_create(gpu *g);
 
 // ---- destruction ------------------------------------------------------------------------------
@@ -178,6 +179,8 @@ void vk_uses_begin(gpu *g);
 bool vk_use_image(gpu *g, gpu_image *image, uint32_t mip, uint32_t count, hazard_access access);
 bool vk_use_buffer(gpu *g, gpu_buffer *buffer, hazard_access access);
 void vk_uses_flush(gpu *g, VkCommandBuffer commands);
+// What copies, clears and fills do to their source and destination.
+extern const hazard_access vk_image_from, vk_image_to, vk_buffer_from, vk_buffer_to;
 
 typedef struct vk_use {
     gpu_image *image; // or
