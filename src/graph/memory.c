@@ -197,8 +197,10 @@ static void take_over_by_kind(graph *g) {
 }
 
 static gpu_image *create_memory(gpu *device, const graph_slot *slot) {
-    uint32_t use =
-        slot->key.target ? GPU_USE_SAMPLED | GPU_USE_TARGET : GPU_USE_SAMPLED | GPU_USE_STORAGE;
+    uint32_t use = GPU_USE_SAMPLED;
+    if (slot->key.target) use |= GPU_USE_TARGET;
+    if (slot->key.format != GPU_D32F)
+        use |= GPU_USE_STORAGE; // a target may be finished by a dispatch
     return gpu_image_create(device, &(gpu_image_desc){.label = slot->name,
                                                       .format = (gpu_format)slot->key.format,
                                                       .width = slot->key.width,
