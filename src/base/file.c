@@ -1,9 +1,11 @@
 #include "base/file.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/str.h"
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <glob.h>
+#include <fnmatch.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -74,7 +76,7 @@ bool file_write(const char *path, const void *data, size_t size) {
     }
     char temporary[PATH_CAP];
     int length = snprintf(temporary, sizeof temporary, "%s.XXXXXX", path);
-    if (length >= (int)sizeof temporary) return err_set("%s: path too long", path);
+    if (length >= (int)sizeof temporary) return path_too_long(path);
     int fd = mkostemp(temporary, O_CLOEXEC);
     if (fd < 0) return err_set("%s: cannot be written: %s", path, strerror(errno));
     mode_t mask = umask(0);
@@ -111,8 +113,8 @@ int64_t file_modified_ns(const char *path) {
 
 bool file_make_folders(const char *path) {
     char partial[PATH_CAP];
-    if (strlen(path) >= sizeof partial) return err_set("%s: path too long", path);
-    strcpy(partial, path);
+    if (!path[0]) return err_set("empty folder name");
+    if (!str_copy(partial, sizeof partial, path)) return path_too_long(path);
     for (char *end = partial + 1;; end++) {
         if (*end != '/' && *end != '\0') continue;
         char kept = *end;
@@ -132,23 +134,48 @@ bool file_make_parent_folders(const char *path) {
     return file_make_folders(folder);
 }
 
+static void list_add(file_list *list, size_t *capacity, const char *folder, size_t folder_length,
+                     const char *name) {
+    size_t length = strlen(name);
+    char *path = mem_alloc(folder_length + length + 1);
+    memcpy(path, folder, folder_length);
+    memcpy(path + folder_length, name, length);
+    MEM_RESERVE(list->paths, list->count + 1, *capacity);
+    list->paths[list->count++] = path;
+}
+
+static int by_bytes(const void *a, const void *b) {
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+// Not glob(): folders are taken literally, so that an effect works below "[drafts]" as well.
 bool file_glob(const char *pattern, file_list *out) {
     *out = (file_list){0};
-    glob_t found;
-    int status = glob(pattern, GLOB_NOSORT, NULL, &found);
-    if (status == GLOB_NOMATCH) return true;
-    if (status != 0) return err_set("%s: cannot be listed", pattern);
-    out->paths = mem_alloc(found.gl_pathc * sizeof *out->paths);
-    out->count = found.gl_pathc;
-    for (size_t i = 0; i < found.gl_pathc; i++)
-        out->paths[i] = mem_copy(found.gl_pathv[i], strlen(found.gl_pathv[i]) + 1);
-    globfree(&found);
-    for (size_t i = 1; i < out->count; i++) { // glob's order is nearly sorted: insertion is cheap
-        char *path = out->paths[i];
-        size_t j = i;
-        for (; j > 0 && strcmp(out->paths[j - 1], path) > 0; j--) out->paths[j] = out->paths[j - 1];
-        out->paths[j] = path;
+    size_t capacity = 0;
+    if (file_exists(pattern)) {
+        list_add(out, &capacity, "", 0, pattern);
+        return true;
     }
+    char folder[PATH_CAP];
+    path_folder(folder, pattern);
+    const char *wanted = path_name(pattern);
+    DIR *listed = opendir(folder);
+    if (!listed && (errno == ENOENT || errno == ENOTDIR)) {
+        if (!strpbrk(folder, "*?")) return true;
+        return err_set("%s: wildcards are accepted in the last component only", pattern);
+    }
+    if (!listed) return err_set("%s: cannot be listed: %s", folder, strerror(errno));
+    errno = 0;
+    for (struct dirent *entry; (entry = readdir(listed)) != NULL; errno = 0)
+        if (fnmatch(wanted, entry->d_name, FNM_PERIOD | FNM_NOESCAPE) == 0)
+            list_add(out, &capacity, pattern, (size_t)(wanted - pattern), entry->d_name);
+    int reason = errno;
+    closedir(listed);
+    if (reason) {
+        file_list_free(out);
+        return err_set("%s: cannot be listed: %s", folder, strerror(reason));
+    }
+    if (out->count) qsort(out->paths, out->count, sizeof *out->paths, by_bytes);
     return true;
 }
 

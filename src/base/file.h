@@ -20,8 +20,9 @@ bool file_make_folders(const char *path);        // like mkdir -p
 bool file_make_parent_folders(const char *path); // folders above the last component
 int64_t file_modified_ns(const char *path);      // 0 when it does not exist
 
-// Sorted matches of a glob pattern (*, ?, [..]), names compared as bytes. False only on errors; no
-// match gives count 0.
+// Sorted matches of a pattern with wildcards (*, ?, [..]) in its last component, names compared as
+// bytes. A file of exactly that name is the only match. False only on errors; no match gives count
+// 0. Matches may be symbolic links: path_confine those that must stay inside a folder.
 typedef struct file_list {
     char **paths;
     size_t count;
@@ -29,6 +30,7 @@ typedef struct file_list {
 bool file_glob(const char *pattern, file_list *out);
 void file_list_free(file_list *list);
 
+bool path_too_long(const char *path); // an error that shows the beginning of `path`
 bool path_join(char out[PATH_CAP], const char *folder, const char *name); // absolute name wins
 void path_folder(char out[PATH_CAP], const char *path); // "a/b.c" -> "a", "b.c" -> "."
 const char *path_name(const char *path);                // "a/b.c" -> "b.c"

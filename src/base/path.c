@@ -7,12 +7,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+bool path_too_long(const char *path) {
+    return err_set("%.100s...: path too long; accepted: up to %d bytes", path, PATH_CAP - 1);
+}
 
 bool path_join(char out[PATH_CAP], const char *folder, const char *name) {
     int length = name[0] == '/' || !folder[0] ? snprintf(out, PATH_CAP, "%s", name)
                                               : snprintf(out, PATH_CAP, "%s/%s", folder, name);
-    return length < PATH_CAP || err_set("%s: path too long", name);
+    return length < PATH_CAP || path_too_long(name);
 }
 
 void path_folder(char out[PATH_CAP], const char *path) {
@@ -35,19 +40,21 @@ const char *path_extension(const char *path) {
 }
 
 // realpath of the longest existing part of `path`; the rest, which holds no "..", is kept as it is.
+// A broken link is refused: nobody can say where it will lead once its target exists.
 static bool resolve(char out[PATH_CAP], const char *path) {
     char head[PATH_CAP], real[PATH_MAX];
-    if (!str_copy(head, sizeof head, path)) return err_set("%s: path too long", path);
+    if (!str_copy(head, sizeof head, path)) return path_too_long(path);
     const char *rest = "";
     while (!realpath(head, real)) {
         if (errno != ENOENT && errno != ENOTDIR) return err_set("%s: %s", path, strerror(errno));
+        struct stat link;
+        if (errno == ENOENT && lstat(head, &link) == 0) return err_set("%s: broken link", path);
         char *slash = strrchr(head, '/');
         if (!slash || slash == head) return err_set("%s: no such folder", path);
         *slash = '\0';
         rest = path + (slash - head);
     }
-    if (snprintf(out, PATH_CAP, "%s%s", real, rest) >= PATH_CAP)
-        return err_set("%s: path too long", path);
+    if (snprintf(out, PATH_CAP, "%s%s", real, rest) >= PATH_CAP) return path_too_long(path);
     return true;
 }
 
@@ -62,7 +69,7 @@ bool path_confine(char out[PATH_CAP], const char *root, const char *name) {
             return err_set("%s: leaves %s", name, root);
     }
     if (!path_join(joined, real_root, name) || !resolve(out, joined)) return false;
-    size_t length = strlen(real_root);
+    size_t length = strcmp(real_root, "/") == 0 ? 0 : strlen(real_root);
     if (strncmp(out, real_root, length) != 0 || (out[length] != '/' && out[length] != '\0'))
         return err_set("%s: leads out of %s", name, root);
     return true;
