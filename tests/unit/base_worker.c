@@ -1,0 +1,159 @@
+// Workers: every job once, in order, and nothing left running after a wait.
+#include "base_test.h"
+
+#include "base/worker.h"
+#include <pthread.h>
+#include <stdatomic.h>
+
+enum { JOBS = 1000 };
+
+typedef struct gate { // holds jobs back until the test opens it
+    pthread_mutex_t mutex;
+    pthread_cond_t changed;
+    bool open;
+    int waiting;
+} gate;
+
+static gate *gate_create(void) {
+    gate *g = calloc(1, sizeof *g);
+    pthread_mutex_init(&g->mutex, NULL);
+    pthread_cond_init(&g->changed, NULL);
+    return g;
+}
+
+static void gate_pass(void *user) {
+    gate *g = user;
+    pthread_mutex_lock(&g->mutex);
+    g->waiting++;
+    pthread_cond_broadcast(&g->changed);
+    while (!g->open) pthread_cond_wait(&g->changed, &g->mutex);
+    pthread_mutex_unlock(&g->mutex);
+}
+
+static void gate_await(gate *g, int waiting) {
+    pthread_mutex_lock(&g->mutex);
+    while (g->waiting < waiting) pthread_cond_wait(&g->changed, &g->mutex);
+    pthread_mutex_unlock(&g->mutex);
+}
+
+static void gate_open(gate *g) {
+    pthread_mutex_lock(&g->mutex);
+    g->open = true;
+    pthread_cond_broadcast(&g->changed);
+    pthread_mutex_unlock(&g->mutex);
+}
+
+static void gate_destroy(gate *g) {
+    pthread_cond_destroy(&g->changed);
+    pthread_mutex_destroy(&g->mutex);
+    free(g);
+}
+
+typedef struct record {
+    int number, *order;
+    atomic_int *done;
+} record;
+
+static void run_record(void *user) {
+    record *r = user;
+    r->order[atomic_fetch_add(r->done, 1)] = r->number;
+}
+
+// The queue is filled while the only thread is held back, so the ring grows and wraps.
+static void one_thread_keeps_the_order(void **state) {
+    (void)state;
+    static record records[JOBS];
+    static int order[JOBS];
+    atomic_int done = 0;
+    gate *g = gate_create();
+    worker *w = worker_create(1);
+    worker_submit(w, (worker_job){gate_pass, g});
+    gate_await(g, 1);
+    for (int i = 0; i < JOBS; i++) {
+        records[i] = (record){i, order, &done};
+        worker_submit(w, (worker_job){run_record, &records[i]});
+    }
+    assert_int_equal(atomic_load(&done), 0);
+    gate_open(g);
+    worker_wait(w);
+    assert_int_equal(atomic_load(&done), JOBS);
+    for (int i = 0; i < JOBS; i++) assert_int_equal(order[i], i);
+    worker_destroy(w);
+    gate_destroy(g);
+}
+
+static void add_one(void *user) {
+    atomic_fetch_add((atomic_int *)user, 1);
+}
+
+static void wait_sees_every_job_ended(void **state) {
+    (void)state;
+    atomic_int done = 0;
+    worker *w = worker_create(4);
+    worker_wait(w); // nothing to wait for
+    for (int round = 1; round <= 50; round++) {
+        for (int i = 0; i < 20; i++) worker_submit(w, (worker_job){add_one, &done});
+        worker_wait(w);
+        assert_int_equal(atomic_load(&done), round * 20);
+    }
+    worker_destroy(w);
+}
+
+// Three jobs that wait for one another could not end on fewer than three threads.
+static void threads_run_side_by_side(void **state) {
+    (void)state;
+    gate *g = gate_create();
+    worker *w = worker_create(3);
+    for (int i = 0; i < 3; i++) worker_submit(w, (worker_job){gate_pass, g});
+    gate_await(g, 3);
+    gate_open(g);
+    worker_wait(w);
+    worker_destroy(w);
+    gate_destroy(g);
+}
+
+static void destroying_runs_what_is_queued(void **state) {
+    (void)state;
+    atomic_int done = 0;
+    gate *g = gate_create();
+    worker *w = worker_create(1);
+    worker_submit(w, (worker_job){gate_pass, g});
+    for (int i = 0; i < 100; i++) worker_submit(w, (worker_job){add_one, &done});
+    gate_await(g, 1);
+    gate_open(g);
+    worker_destroy(w);
+    assert_int_equal(atomic_load(&done), 100);
+    gate_destroy(g);
+    worker_destroy(NULL);
+    worker_destroy(worker_create(2)); // never used
+}
+
+typedef struct chain {
+    worker *owner;
+    atomic_int left;
+} chain;
+
+static void run_chain(void *user) {
+    chain *c = user;
+    if (atomic_fetch_sub(&c->left, 1) > 1) worker_submit(c->owner, (worker_job){run_chain, c});
+}
+
+static void job_may_submit_the_next(void **state) {
+    (void)state;
+    chain c = {.owner = worker_create(2), .left = 100};
+    worker_submit(c.owner, (worker_job){run_chain, &c});
+    worker_wait(c.owner);
+    assert_int_equal(atomic_load(&c.left), 0);
+    worker_destroy(c.owner);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_thread_keeps_the_order),
+        cmocka_unit_test(wait_sees_every_job_ended),
+        cmocka_unit_test(threads_run_side_by_side),
+        cmocka_unit_test(destroying_runs_what_is_queued),
+        cmocka_unit_test(job_may_submit_the_next),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
