@@ -1,0 +1,105 @@
+// What the files l_<object>.c share: the state behind a script and readers of its values. All raise
+// Lua errors at the script's line, so callers hold nothing that would need freeing.
+#pragma once
+#include "effect/effect.h"
+#include "script/script.h"
+#include "script/vm.h"
+
+typedef struct script {
+    effect *effect;
+    vm *vm;
+    script_limits limits;
+    bool loading;        // things are declared only while the file runs
+    const char *unsound; // what was left half made by an error that the script caught; or NULL
+    bool declared;       // effect { } was called
+    int update;          // registry reference of fx.update, or LUA_NOREF
+} script;
+
+script *script_of(lua_State *L);
+arena *script_memory(lua_State *L);
+// Raises unless the file is being loaded; `what` is the constructor's name.
+void script_require_loading(lua_State *L, const char *what);
+// Raises the current error message.
+_Noreturn void script_raise(lua_State *L);
+// A function of time, as effect_hooks and field_context call it. `user` is the script.
+bool script_call(void *user, int function, double time, float out[4]);
+field_context script_context(lua_State *L); // of time 0, with the parameters' current values
+
+// ---- objects ----------------------------------------------------------------------------------
+
+// Metatables, by name: "field", "palette", "image", "pass result", "sequence", ...
+void object_type(lua_State *L, const char *name, const luaL_Reg *methods);
+void *object_new(lua_State *L, const char *name, size_t size);
+void *object_test(lua_State *L, int index, const char *name); // NULL when it is something else
+
+typedef struct field_object {
+    const field *node;
+    int param; // index in the effect, or -1
+} field_object;
+void field_push(lua_State *L, const field *node); // NULL: raises the current error
+void field_push_param(lua_State *L, const field *node, int param);
+const effect_param *field_param_of(lua_State *L, int index); // NULL when it is no parameter
+
+void image_push(lua_State *L, graph_image image);
+
+typedef struct camera_object {
+    scene_camera camera;
+} camera_object; // NULL: the default
+typedef struct sun_object {
+    scene_sun sun;
+} sun_object;
+typedef struct sky_object {
+    scene_sky sky;
+} sky_object;
+typedef struct mesh_object {
+    scene_mesh *mesh;
+} mesh_object;
+
+// ---- values -----------------------------------------------------------------------------------
+
+// A number, {x, y, z}, "#rrggbb", a field, a parameter, a curve, a function of time. `components`:
+// wanted, 0: any. `who` and `key` name the value in messages.
+const field *value_field(lua_State *L, int index, const char *who, const char *key, int components);
+// As above, and it must not vary in space.
+const field *value_uniform(lua_State *L, int index, const char *who, const char *key,
+                           int components);
+// Numbers and colours only. Returns the count of components, 0 for anything else.
+int value_numbers(lua_State *L, int index, float out[4]);
+bool value_image(lua_State *L, int index, graph_image *out);
+bool value_is_plain_table(lua_State *L, int index); // no object
+bool value_has_names(lua_State *L, int index);      // has a key that is a string
+
+// Keys of a table that are strings, sorted. The array is kept alive by a value that is pushed.
+const char **value_names(lua_State *L, int table, const char *who, size_t *count);
+// Raises on a key that is not among `keys`, with the nearest one that is.
+void value_check_keys(lua_State *L, int table, const char *who, const char *const *keys,
+                      size_t count);
+_Noreturn void value_unknown(lua_State *L, const char *who, const char *what, const char *name,
+                             const char *const *known, size_t count);
+
+// Fields of a table; absent ones give `otherwise`.
+double value_get_number(lua_State *L, int table, const char *who, const char *key,
+                        double otherwise);
+uint32_t value_get_count(lua_State *L, int table, const char *who, const char *key,
+                         uint32_t otherwise);
+bool value_get_bool(lua_State *L, int table, const char *who, const char *key, bool otherwise);
+// In the effect's memory. NULL when absent.
+const char *value_get_string(lua_State *L, int table, const char *who, const char *key);
+bool value_get_vector(lua_State *L, int table, const char *who, const char *key, float out[3]);
+int value_word(lua_State *L, int index, const char *who, const char *key, const char *const *words,
+               size_t count);
+int value_get_word(lua_State *L, int table, const char *who, const char *key,
+                   const char *const *words, size_t count, int otherwise);
+const field *value_get_uniform(lua_State *L, int table, const char *who, const char *key,
+                               int components, const field *otherwise);
+
+// ---- the objects' globals ---------------------------------------------------------------------
+
+void l_effect_open(lua_State *L);
+void l_param_open(lua_State *L);
+void l_field_open(lua_State *L);
+void l_curve_open(lua_State *L);
+void l_palette_open(lua_State *L);
+void l_grid_open(lua_State *L);
+void l_scene_open(lua_State *L);
+void l_pass_open(lua_State *L);

@@ -1,0 +1,133 @@
+// effect { name = "explosion", fps = 24, frames = 100 } gives the effect's object. Assigned to it:
+// output, linear, depth (images), camera, sun, sky, and update, a function(t, dt).
+#include "base/memory.h"
+#include "script/binding.h"
+#include <string.h>
+
+static const char who[] = "effect";
+
+static int l_effect(lua_State *L) {
+    static const char *const keys[] = {"name", "fps", "frames", "first", "seed"};
+    script *s = script_of(L);
+    script_require_loading(L, who);
+    value_check_keys(L, 1, who, keys, COUNT_OF(keys));
+    if (s->declared) vm_error(L, "effect { } is called twice; a file holds one effect");
+    const char *name = value_get_string(L, 1, who, "name");
+    double fps = value_get_number(L, 1, who, "fps", effect_fps(s->effect));
+    uint32_t frames = value_get_count(L, 1, who, "frames", effect_frames(s->effect));
+    uint32_t first = value_get_count(L, 1, who, "first", effect_first_frame(s->effect));
+    uint32_t seed = value_get_count(L, 1, who, "seed", 0);
+    if (name) effect_set_name(s->effect, name);
+    if (!effect_set_timeline(s->effect, fps, frames, first)) script_raise(L);
+    effect_set_seed(s->effect, seed);
+    vm_set_seed(L, seed);
+    s->declared = true;
+    object_new(L, who, sizeof(char));
+    lua_newtable(L); // what was assigned
+    lua_setiuservalue(L, -2, 1);
+    return 1;
+}
+
+// ---- assignments ------------------------------------------------------------------------------
+
+static void set_picture(lua_State *L, const char *key, bool (*set)(effect *, graph_image)) {
+    graph_image image;
+    if (!value_image(L, 3, &image))
+        vm_error(L, "effect: '%s' takes an image, such as the result of a pass; got a %s", key,
+                 luaL_typename(L, 3));
+    if (!set(script_of(L)->effect, image)) script_raise(L);
+}
+
+// Copies the fields that are set: the rest keeps its default. `count` pointers each.
+static void merge(const field **to, const field *const *from, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (from[i]) to[i] = from[i];
+}
+
+static void set_scene(lua_State *L, const char *key) {
+    scene *s = effect_scene(script_of(L)->effect);
+    void *value = object_test(L, 3, key);
+    if (!value)
+        vm_error(L, "effect: '%s' takes %s; got a %s", key,
+                 strcmp(key, "camera") == 0 ? "orbit { } or camera { }"
+                                            : lua_pushfstring(L, "%s { }", key),
+                 luaL_typename(L, 3));
+    if (strcmp(key, "camera") == 0) {
+        s->camera.eye = NULL; // an orbit has none
+        merge((const field **)&s->camera, (const field *const *)value,
+              sizeof s->camera / sizeof(field *));
+    } else if (strcmp(key, "sun") == 0) {
+        merge((const field **)&s->sun, (const field *const *)value,
+              sizeof s->sun / sizeof(field *));
+    } else {
+        merge((const field **)&s->sky, (const field *const *)value,
+              sizeof s->sky / sizeof(field *));
+    }
+}
+
+static void set_update(lua_State *L) {
+    script *s = script_of(L);
+    if (lua_type(L, 3) != LUA_TFUNCTION)
+        vm_error(L, "effect: 'update' takes a function(t, dt); got a %s", luaL_typename(L, 3));
+    luaL_unref(L, LUA_REGISTRYINDEX, s->update);
+    lua_pushvalue(L, 3);
+    s->update = luaL_ref(L, LUA_REGISTRYINDEX);
+}
+
+static const char *const assignable[] = {"output", "linear", "depth", "camera",
+                                         "sun",    "sky",    "update"};
+
+static int l_newindex(lua_State *L) {
+    luaL_checkudata(L, 1, who);
+    const char *key = luaL_checkstring(L, 2);
+    script_require_loading(L, "assigning to the effect");
+    if (strcmp(key, "output") == 0)
+        set_picture(L, key, effect_set_output);
+    else if (strcmp(key, "linear") == 0)
+        set_picture(L, key, effect_set_linear);
+    else if (strcmp(key, "depth") == 0)
+        set_picture(L, key, effect_set_depth);
+    else if (strcmp(key, "camera") == 0 || strcmp(key, "sun") == 0 || strcmp(key, "sky") == 0)
+        set_scene(L, key);
+    else if (strcmp(key, "update") == 0)
+        set_update(L);
+    else
+        value_unknown(L, who, "field", key, assignable, COUNT_OF(assignable));
+    lua_settop(L, 3);
+    lua_getiuservalue(L, 1, 1);
+    lua_insert(L, 2);
+    lua_rawset(L, 2);
+    return 0;
+}
+
+static int l_index(lua_State *L) {
+    static const char *const readable[] = {"name",  "fps",    "frames", "first", "output", "linear",
+                                           "depth", "camera", "sun",    "sky",   "update"};
+    luaL_checkudata(L, 1, who);
+    const char *key = luaL_checkstring(L, 2);
+    const effect *e = script_of(L)->effect;
+    if (strcmp(key, "name") == 0) {
+        lua_pushstring(L, effect_name(e));
+    } else if (strcmp(key, "fps") == 0) {
+        lua_pushnumber(L, effect_fps(e));
+    } else if (strcmp(key, "frames") == 0) {
+        lua_pushinteger(L, effect_frames(e));
+    } else if (strcmp(key, "first") == 0) {
+        lua_pushinteger(L, effect_first_frame(e));
+    } else {
+        size_t i = 0;
+        while (i < COUNT_OF(readable) && strcmp(readable[i], key) != 0) i++;
+        if (i == COUNT_OF(readable))
+            value_unknown(L, who, "field", key, readable, COUNT_OF(readable));
+        lua_getiuservalue(L, 1, 1);
+        lua_getfield(L, -1, key);
+    }
+    return 1;
+}
+
+void l_effect_open(lua_State *L) {
+    static const luaL_Reg methods[] = {
+        {"__index", l_index}, {"__newindex", l_newindex}, {NULL, NULL}};
+    object_type(L, who, methods);
+    lua_register(L, who, l_effect);
+}

@@ -1,0 +1,333 @@
+// Fields: one object over the expression trees of the field layer. Constructors, functions and
+// methods all come from the table of kinds, so a new kind is there by itself.
+#include "base/memory.h"
+#include "base/str.h"
+#include "script/binding.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---- objects ----------------------------------------------------------------------------------
+
+void field_push_param(lua_State *L, const field *node, int param) {
+    if (!node) script_raise(L);
+    script_require_loading(L, "a field");
+    vm_charge_memory(L, sizeof(field));
+    field_object *object = object_new(L, "field", sizeof *object);
+    *object = (field_object){node, param};
+}
+
+void field_push(lua_State *L, const field *node) {
+    field_push_param(L, node, -1);
+}
+
+const effect_param *field_param_of(lua_State *L, int index) {
+    const field_object *object = object_test(L, index, "field");
+    if (!object || object->param < 0) return NULL;
+    return effect_get_param(script_of(L)->effect, (size_t)object->param);
+}
+
+static const field_object *self(lua_State *L) {
+    const field_object *object = object_test(L, 1, "field");
+    if (!object) vm_error(L, "a method of fields needs a field, as in f:warp(...): mind the ':'");
+    return object;
+}
+
+// ---- calling a kind ---------------------------------------------------------------------------
+
+typedef struct kind_call {
+    const field_kind *kind;
+    const field *args[FIELD_MAX_ARGS];
+    uint8_t options[FIELD_MAX_OPTIONS];
+    size_t arg_count; // of the kind
+    size_t next;      // argument that the next positional value is for
+} kind_call;
+
+static void take_arg(lua_State *L, kind_call *call, size_t i, int index) {
+    const field_kind *kind = call->kind;
+    if (i >= call->arg_count)
+        vm_error(L, "%s takes at most %d arguments", kind->name, (int)call->arg_count);
+    if (lua_isnil(L, index)) return;
+    const field_arg *arg = &kind->args[i];
+    if (call->args[i]) vm_error(L, "%s: '%s' is given twice", kind->name, arg->name);
+    call->args[i] = value_field(L, index, kind->name, arg->name, arg->components);
+}
+
+static size_t word_count(const field_option *option) {
+    size_t n = 0;
+    while (n < COUNT_OF(option->words) && option->words[n]) n++;
+    return n;
+}
+
+static void take_named(lua_State *L, kind_call *call, const char *name) {
+    const field_kind *kind = call->kind;
+    for (size_t i = 0; i < call->arg_count; i++)
+        if (strcmp(kind->args[i].name, name) == 0) {
+            take_arg(L, call, i, lua_gettop(L));
+            return;
+        }
+    const char *known[FIELD_MAX_ARGS + FIELD_MAX_OPTIONS];
+    size_t count = 0;
+    for (size_t i = 0; i < call->arg_count; i++) known[count++] = kind->args[i].name;
+    for (size_t i = 0; i < FIELD_MAX_OPTIONS && kind->options[i].name; i++) {
+        const field_option *option = &kind->options[i];
+        known[count++] = option->name;
+        if (strcmp(option->name, name) != 0) continue;
+        if (lua_type(L, -1) == LUA_TNUMBER) lua_tostring(L, -1); // dimensions = 4
+        call->options[i] =
+            (uint8_t)value_word(L, -1, kind->name, name, option->words, word_count(option));
+        return;
+    }
+    value_unknown(L, kind->name, "key", name, known, count);
+}
+
+static void take_table(lua_State *L, kind_call *call, int table) {
+    lua_Integer length = (lua_Integer)lua_rawlen(L, table);
+    for (lua_Integer i = 1; i <= length; i++) {
+        lua_rawgeti(L, table, i);
+        take_arg(L, call, call->next++, lua_gettop(L));
+        lua_pop(L, 1);
+    }
+    size_t count;
+    const char **names = value_names(L, table, call->kind->name, &count);
+    for (size_t i = 0; i < count; i++) {
+        lua_getfield(L, table, names[i]);
+        take_named(L, call, names[i]);
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+}
+
+// Functions of numbers give numbers, so that functions of time can use them every frame.
+static bool push_number(lua_State *L, const field_kind *kind, int count) {
+    if (strcmp(kind->group, "operator") != 0 || kind->spatial || count == 0) return false;
+    for (int i = 1; i <= count; i++)
+        if (lua_type(L, i) != LUA_TNUMBER) return false;
+    if (count > FIELD_MAX_ARGS || kind->components > 1 || !kind->args[count - 1].name) return false;
+    arena scratch = {0};
+    field_context context = script_context(L);
+    const field *args[FIELD_MAX_ARGS] = {0};
+    float value[4];
+    for (int i = 0; i < count; i++) {
+        value[0] = (float)lua_tonumber(L, i + 1);
+        args[i] = field_constant(&scratch, 1, value);
+    }
+    const field *node = field_make(&scratch, kind->name, args, NULL);
+    bool done = node && field_eval(node, &context, (float3){0}, value);
+    arena_free(&scratch);
+    if (!done) script_raise(L);
+    lua_pushnumber(L, (double)value[0]);
+    return true;
+}
+
+// Upvalue: the kind. A last table with names holds arguments and options by name.
+static int l_kind(lua_State *L) {
+    const field_kind *kind = lua_touserdata(L, lua_upvalueindex(1));
+    kind_call call = {.kind = kind};
+    while (call.arg_count < FIELD_MAX_ARGS && kind->args[call.arg_count].name) call.arg_count++;
+    int n = lua_gettop(L);
+    if (push_number(L, kind, n)) return 1;
+    script_require_loading(L, kind->name);
+    bool is_operator = strcmp(kind->group, "operator") == 0;
+    bool table = n > 0 && value_is_plain_table(L, n);
+    bool named =
+        table && ((n == 1 && (!is_operator || call.arg_count > 1)) || value_has_names(L, n));
+    for (int i = 1; i <= n - named; i++) take_arg(L, &call, call.next++, i);
+    if (named) take_table(L, &call, n);
+    field_push(L, field_make(script_memory(L), kind->name, call.args, call.options));
+    return 1;
+}
+
+// ---- arithmetic -------------------------------------------------------------------------------
+
+static int combine(lua_State *L, const char *kind, const char *sign, int count) {
+    const field *args[FIELD_MAX_ARGS] = {0};
+    script_require_loading(L, "arithmetic on a field or parameter");
+    for (int i = 0; i < count; i++)
+        args[i] = value_field(L, i + 1, sign, i == 0 ? "left side" : "right side", 0);
+    field_push(L, field_make(script_memory(L), kind, args, NULL));
+    return 1;
+}
+
+static int l_add(lua_State *L) {
+    return combine(L, "add", "+", 2);
+}
+static int l_sub(lua_State *L) {
+    return combine(L, "sub", "-", 2);
+}
+static int l_mul(lua_State *L) {
+    return combine(L, "mul", "*", 2);
+}
+static int l_div(lua_State *L) {
+    return combine(L, "div", "/", 2);
+}
+static int l_pow(lua_State *L) {
+    return combine(L, "pow", "^", 2);
+}
+static int l_unm(lua_State *L) {
+    return combine(L, "negate", "-", 1);
+}
+
+static int l_compare(lua_State *L) {
+    vm_error(L, "fields and parameters cannot be compared: their values are not known while the "
+                "file loads; use step, smoothstep, min or max");
+}
+
+static int l_tostring(lua_State *L) {
+    strbuf text = {0};
+    field_print(self(L)->node, &text);
+    lua_pushlstring(L, strbuf_text(&text), text.length < 1000 ? text.length : 1000);
+    strbuf_free(&text);
+    return 1;
+}
+
+// ---- methods ----------------------------------------------------------------------------------
+
+// Value now: while the file loads its value at time 0, later what it is set to. Parameters of words
+// give the word.
+static int l_get(lua_State *L) {
+    const field_object *object = self(L);
+    const effect_param *param = field_param_of(L, 1);
+    if (param && param->type == EFFECT_ENUM) {
+        size_t word = (size_t)param->value[0];
+        lua_pushstring(L, param->words[word < param->word_count ? word : 0]);
+        return 1;
+    }
+    if (param && param->type == EFFECT_BOOL) {
+        lua_pushboolean(L, param->value[0] != 0);
+        return 1;
+    }
+    if (!param && !object->node->uniform)
+        vm_error(L, "get: this field varies in space; it has no single value");
+    field_context context = script_context(L);
+    float value[4] = {0};
+    if (!field_eval(object->node, &context, (float3){0}, value)) script_raise(L);
+    if (object->node->components == 1) {
+        lua_pushnumber(L, (double)value[0]);
+        return 1;
+    }
+    lua_createtable(L, object->node->components, 0);
+    for (int i = 0; i < object->node->components; i++) {
+        lua_pushnumber(L, (double)value[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    return 1;
+}
+
+// p:set(value): for `update`.
+static int l_set(lua_State *L) {
+    const field_object *object = self(L);
+    const effect_param *param = field_param_of(L, 1);
+    if (!param) vm_error(L, "set: only a parameter can be set");
+    float value[4] = {0};
+    if (param->type == EFFECT_ENUM && lua_type(L, 2) == LUA_TSTRING) {
+        value[0] = (float)value_word(L, 2, param->name, "value", param->words, param->word_count);
+    } else {
+        int wanted = object->node->components, count = value_numbers(L, 2, value);
+        if (count != wanted)
+            vm_error(L, "set: '%s' takes %d number%s", param->name, wanted, wanted > 1 ? "s" : "");
+    }
+    if (!effect_set_value(script_of(L)->effect, (size_t)object->param, value)) script_raise(L);
+    return 0;
+}
+
+// Upvalue: methods by name. Else letters choose components: f.x, f.rgb.
+static int l_index(lua_State *L) {
+    const field_object *object = self(L);
+    if (lua_type(L, 2) != LUA_TSTRING)
+        vm_error(L, "a field has no element [%s]", luaL_typename(L, 2));
+    const char *name = lua_tostring(L, 2);
+    lua_pushvalue(L, 2);
+    if (lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL) return 1;
+    if (name[0] && strlen(name) <= 4 && strspn(name, "xyzwrgba") == strlen(name)) {
+        script_require_loading(L, "a component of a field");
+        field_push(L, field_swizzle(script_memory(L), object->node, name));
+        return 1;
+    }
+    size_t count;
+    const char **names = value_names(L, lua_upvalueindex(1), "field", &count);
+    value_unknown(L, "field", "method", name, names, count);
+}
+
+// ---- a user's GLSL function -------------------------------------------------------------------
+
+// glsl { "swirl.glsl", "swirl", argument, ..., components = 1 }
+static int l_glsl(lua_State *L) {
+    static const char *const keys[] = {"components"};
+    script_require_loading(L, "glsl");
+    value_check_keys(L, 1, "glsl", keys, COUNT_OF(keys));
+    const char *names[2];
+    for (int i = 0; i < 2; i++) {
+        if (lua_rawgeti(L, 1, i + 1) != LUA_TSTRING)
+            vm_error(L, "glsl: wanted are a file and a function, as in glsl { \"swirl.glsl\", "
+                        "\"swirl\" }");
+        names[i] = lua_tostring(L, -1); // kept alive by the table
+        lua_pop(L, 1);
+    }
+    field_glsl glsl = {.file = names[0],
+                       .function = names[1],
+                       .components = (int)value_get_number(L, 1, "glsl", "components", 1)};
+    lua_Unsigned length = lua_rawlen(L, 1);
+    if (length - 2 > FIELD_MAX_ARGS)
+        vm_error(L, "glsl: at most %d arguments are accepted", FIELD_MAX_ARGS);
+    glsl.arg_count = (int)length - 2;
+    const field *args[FIELD_MAX_ARGS] = {0};
+    for (int i = 0; i < glsl.arg_count; i++) {
+        lua_rawgeti(L, 1, i + 3);
+        args[i] = value_field(L, -1, "glsl", "argument", 0);
+        lua_pop(L, 1);
+    }
+    vm_charge_memory(L, strlen(names[0]) + strlen(names[1]) + sizeof glsl);
+    field_push(L, field_user(script_memory(L), &glsl, args));
+    return 1;
+}
+
+// ---- globals ----------------------------------------------------------------------------------
+
+// Kinds that have constructors of their own, or none.
+static bool is_special(const char *name) {
+    static const char *const names[] = {"constant", "param",   "curve", "call",
+                                        "grid",     "palette", "glsl",  "swizzle"};
+    for (size_t i = 0; i < COUNT_OF(names); i++)
+        if (strcmp(names[i], name) == 0) return true;
+    return false;
+}
+
+// A function for each kind, a value for kinds without arguments; methods for operators.
+static void open_kinds(lua_State *L, int methods) {
+    for (const field_kind *kind = field_kinds; kind->name; kind++) {
+        if (is_special(kind->name)) continue;
+        if (!kind->args[0].name) {
+            field_push(L, field_make(script_memory(L), kind->name, NULL, NULL));
+            lua_setglobal(L, kind->name);
+            continue;
+        }
+        lua_pushlightuserdata(L, (void *)(uintptr_t)kind);
+        lua_pushcclosure(L, l_kind, 1);
+        if (strcmp(kind->group, "operator") == 0) {
+            lua_pushvalue(L, -1);
+            lua_setfield(L, methods, kind->name);
+        }
+        lua_setglobal(L, kind->name);
+    }
+}
+
+void l_field_open(lua_State *L) {
+    static const luaL_Reg operators[] = {
+        {"__add", l_add},           {"__sub", l_sub}, {"__mul", l_mul},    {"__div", l_div},
+        {"__pow", l_pow},           {"__unm", l_unm}, {"__lt", l_compare}, {"__le", l_compare},
+        {"__tostring", l_tostring}, {NULL, NULL},
+    };
+    static const luaL_Reg own[] = {{"get", l_get}, {"set", l_set}, {NULL, NULL}};
+    object_type(L, "field", operators);
+    lua_newtable(L);
+    int methods = lua_gettop(L);
+    luaL_setfuncs(L, own, 0);
+    open_kinds(L, methods);
+    luaL_getmetatable(L, "field");
+    lua_pushvalue(L, methods);
+    lua_pushcclosure(L, l_index, 1);
+    lua_setfield(L, -2, "__index");
+    lua_pop(L, 2);
+    lua_register(L, "glsl", l_glsl);
+}

@@ -1,0 +1,201 @@
+// Volumes: vdb { "data/x/*.vdb" } and raw { "data/x.raw", ... } give a sequence, whose grids are
+// fields by name (burst.density). bake(field, { size = 128 }) computes a field once a frame.
+#include "base/file.h"
+#include "base/memory.h"
+#include "field/sequence.h"
+#include "script/binding.h"
+#include <math.h>
+#include <string.h>
+
+enum { SEQUENCE_COST = 64 << 10 }; // bytes of host memory charged for one
+
+typedef struct sequence_object {
+    sequence *sequence;
+} sequence_object;
+
+// ---- sequences --------------------------------------------------------------------------------
+
+static const char *read_pattern(lua_State *L, const char *who) {
+    if (lua_rawlen(L, 1) != 1 || lua_rawgeti(L, 1, 1) != LUA_TSTRING)
+        vm_error(L, "%s: its files come first, as in %s { \"data/name.%s\" }", who, who, who);
+    char path[PATH_CAP];
+    size_t length;
+    const char *name = lua_tolstring(L, -1, &length);
+    if (strlen(name) != length) vm_error(L, "%s: the file name contains a zero byte", who);
+    if (!path_confine(path, effect_root(script_of(L)->effect), name)) script_raise(L);
+    vm_charge_memory(L, SEQUENCE_COST);
+    lua_pop(L, 1);
+    return arena_string(script_memory(L), path);
+}
+
+static void read_playback(lua_State *L, const char *who, sequence_desc *desc) {
+    static const char *const loops[] = {"clip", "extend", "repeat", "ping_pong"};
+    desc->pattern = read_pattern(L, who);
+    desc->fps = value_get_number(L, 1, who, "fps", 0);
+    desc->start = value_get_number(L, 1, who, "start", 0);
+    desc->speed = value_get_number(L, 1, who, "speed", 0);
+    desc->loop =
+        (sequence_loop)value_get_word(L, 1, who, "loop", loops, COUNT_OF(loops), SEQUENCE_CLIP);
+    desc->blend = value_get_bool(L, 1, who, "blend", false);
+    desc->y_up = value_get_bool(L, 1, who, "y_up", false);
+    desc->scale = (float)value_get_number(L, 1, who, "scale", 0);
+    float offset[3] = {0};
+    value_get_vector(L, 1, who, "offset", offset);
+    desc->offset = (float3){offset[0], offset[1], offset[2]};
+}
+
+static int push_sequence(lua_State *L, const sequence_desc *desc) {
+    sequence_object *object = object_new(L, "sequence", sizeof *object);
+    object->sequence = sequence_create(script_memory(L), desc);
+    if (!object->sequence) script_raise(L);
+    effect *e = script_of(L)->effect;
+    effect_add_grid(e, sequence_grid(object->sequence));
+    const char *const *files;
+    size_t count = sequence_files(object->sequence, &files);
+    for (size_t i = 0; i < count; i++) effect_add_file(e, files[i]);
+    return 1;
+}
+
+#define PLAYBACK_KEYS "fps", "start", "speed", "loop", "blend", "y_up", "scale", "offset"
+
+static int l_vdb(lua_State *L) {
+    static const char *const keys[] = {PLAYBACK_KEYS};
+    script_require_loading(L, "vdb");
+    value_check_keys(L, 1, "vdb", keys, COUNT_OF(keys));
+    sequence_desc desc = {0};
+    read_playback(L, "vdb", &desc);
+    return push_sequence(L, &desc);
+}
+
+static uint64_t bytes_of(lua_State *L, const char *key) {
+    double value = value_get_number(L, 1, "raw", key, 0);
+    if (!(value >= 0 && value <= 0x1p53 && value == floor(value)))
+        vm_error(L, "raw: '%s' is %g; a whole number of bytes is accepted", key, value);
+    return (uint64_t)value;
+}
+
+static int l_raw(lua_State *L) {
+    static const char *const keys[] = {PLAYBACK_KEYS, "type",       "size",        "frames", "skip",
+                                       "stride",      "voxel_size", "value_scale", "channel"};
+    static const char *const types[] = {"u8", "u16", "f16", "f32"};
+    script_require_loading(L, "raw");
+    value_check_keys(L, 1, "raw", keys, COUNT_OF(keys));
+    sequence_desc desc = {0};
+    read_playback(L, "raw", &desc);
+    float size[3] = {0};
+    if (!value_get_vector(L, 1, "raw", "size", size))
+        vm_error(L, "raw: 'size' is missing: the voxels of a frame, as in {32, 32, 32}");
+    for (int i = 0; i < 3; i++) {
+        if (!(size[i] >= 1 && size[i] <= 4096 && size[i] == floorf(size[i])))
+            vm_error(L, "raw: 'size' has %g; whole numbers from 1 to 4096 are accepted",
+                     (double)size[i]);
+        desc.raw.size[i] = (uint32_t)size[i];
+    }
+    desc.raw.type = types[value_get_word(L, 1, "raw", "type", types, COUNT_OF(types), 0)];
+    desc.raw.frames = value_get_count(L, 1, "raw", "frames", 0);
+    desc.raw.offset = bytes_of(L, "skip");
+    desc.raw.stride = bytes_of(L, "stride");
+    desc.raw.voxel_size = (float)value_get_number(L, 1, "raw", "voxel_size", 0);
+    desc.raw.value_scale = (float)value_get_number(L, 1, "raw", "value_scale", 0);
+    desc.raw.channel = value_get_string(L, 1, "raw", "channel");
+    return push_sequence(L, &desc);
+}
+
+// ---- what a sequence has ----------------------------------------------------------------------
+
+static void push_vector(lua_State *L, float3 v) {
+    const float values[] = {v.x, v.y, v.z};
+    lua_createtable(L, 3, 0);
+    for (int i = 0; i < 3; i++) {
+        lua_pushnumber(L, (double)values[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+}
+
+static void push_box(lua_State *L, box3 box) {
+    lua_createtable(L, 0, 2);
+    push_vector(L, box.min);
+    lua_setfield(L, -2, "min");
+    push_vector(L, box.max);
+    lua_setfield(L, -2, "max");
+}
+
+// burst.box, burst.frames, burst.duration; every other name is a grid's.
+static int l_sequence_index(lua_State *L) {
+    const sequence_object *object = luaL_checkudata(L, 1, "sequence");
+    const char *name = luaL_checkstring(L, 2);
+    if (strcmp(name, "box") == 0) {
+        push_box(L, sequence_grid(object->sequence)->box);
+    } else if (strcmp(name, "frames") == 0) {
+        lua_pushinteger(L, sequence_frame_count(object->sequence));
+    } else if (strcmp(name, "duration") == 0) {
+        lua_pushnumber(L, sequence_duration(object->sequence));
+    } else {
+        script_require_loading(L, "a grid of a sequence");
+        int components, channel = sequence_channel(object->sequence, name, &components);
+        if (channel < 0) script_raise(L);
+        field_push(L, field_grid_channel(script_memory(L), sequence_grid(object->sequence), channel,
+                                         components));
+    }
+    return 1;
+}
+
+// ---- bake -------------------------------------------------------------------------------------
+
+static float3 corner(lua_State *L, const char *key) {
+    float v[3];
+    if (!value_get_vector(L, -1, "bake", key, v))
+        vm_error(L, "bake: 'box' must be { min = {x, y, z}, max = {x, y, z} }");
+    return (float3){v[0], v[1], v[2]};
+}
+
+static box3 read_box(lua_State *L, const field *node) {
+    box3 box;
+    if (lua_getfield(L, 2, "box") == LUA_TNIL) {
+        field_context context = script_context(L);
+        if (!field_bounds(node, &context, &box)) script_raise(L);
+    } else {
+        static const char *const keys[] = {"min", "max"};
+        value_check_keys(L, -1, "bake: box", keys, COUNT_OF(keys));
+        box = (box3){corner(L, "min"), corner(L, "max")};
+    }
+    lua_pop(L, 1);
+    return box;
+}
+
+static int l_bake(lua_State *L) {
+    static const char *const keys[] = {"size", "box"};
+    script_require_loading(L, "bake");
+    lua_settop(L, 2);
+    const field *node = value_field(L, 1, "bake", "field", 0);
+    if (lua_isnil(L, 2)) {
+        lua_newtable(L);
+        lua_replace(L, 2);
+    }
+    value_check_keys(L, 2, "bake", keys, COUNT_OF(keys));
+    float size[3] = {64, 64, 64};
+    value_get_vector(L, 2, "bake", "size", size);
+    uint32_t voxels[3];
+    for (int i = 0; i < 3; i++) {
+        if (!(size[i] >= 1 && size[i] <= 1024))
+            vm_error(L, "bake: 'size' is %g; 1 to 1024 voxels are accepted", (double)size[i]);
+        voxels[i] = (uint32_t)size[i];
+    }
+    box3 box = read_box(L, node);
+    vm_charge_memory(L, SEQUENCE_COST);
+    script *s = script_of(L);
+    s->unsound = "bake";
+    field_grid *grid = effect_add_bake(s->effect, node, voxels, box);
+    if (!grid) script_raise(L);
+    s->unsound = NULL;
+    field_push(L, field_grid_channel(script_memory(L), grid, 0, node->components));
+    return 1;
+}
+
+void l_grid_open(lua_State *L) {
+    static const luaL_Reg methods[] = {{"__index", l_sequence_index}, {NULL, NULL}};
+    object_type(L, "sequence", methods);
+    lua_register(L, "vdb", l_vdb);
+    lua_register(L, "raw", l_raw);
+    lua_register(L, "bake", l_bake);
+}

@@ -1,0 +1,328 @@
+// Passes: one function per built-in type, and shader { "file.comp", ... } for a user's own. What a
+// call may set is read from the shader's declarations, so nothing here knows any pass.
+//
+// The result stands for the pass's first output where an image is wanted; result.name is the output
+// of that name. history(image) is its content in the last frame.
+#include "base/memory.h"
+#include "script/binding.h"
+#include <string.h>
+
+enum { PASS_COST = 64 << 10 }; // bytes of host memory charged for one
+
+typedef struct image_object {
+    graph_image image;
+} image_object;
+
+typedef struct result_object {
+    const pass *pass;
+} result_object;
+
+typedef struct pass_call {
+    pass *pass;
+    const shader_interface *face;
+    const char *who;   // type or file, for messages
+    size_t next_input; // image that the next positional value is for
+    bool *taken;       // of the interface's images
+} pass_call;
+
+// ---- images -----------------------------------------------------------------------------------
+
+void image_push(lua_State *L, graph_image image) {
+    image_object *object = object_new(L, "image", sizeof *object);
+    object->image = image;
+}
+
+static const shader_image *first_output(const shader_interface *face) {
+    for (size_t i = 0; i < face->image_count; i++)
+        if (face->images[i].output) return &face->images[i];
+    return NULL;
+}
+
+bool value_image(lua_State *L, int index, graph_image *out) {
+    const image_object *image = object_test(L, index, "image");
+    if (image) {
+        *out = image->image;
+        return true;
+    }
+    const result_object *result = object_test(L, index, "pass result");
+    if (!result) return false;
+    const shader_image *output = first_output(pass_interface(result->pass));
+    if (output) *out = pass_output(result->pass, output->name);
+    return output && out->id;
+}
+
+static int l_result_index(lua_State *L) {
+    const result_object *result = luaL_checkudata(L, 1, "pass result");
+    const char *name = luaL_checkstring(L, 2);
+    const shader_interface *face = pass_interface(result->pass);
+    const char **names = lua_newuserdatauv(L, (face->image_count + 1) * sizeof *names, 0);
+    size_t count = 0;
+    for (size_t i = 0; i < face->image_count; i++)
+        if (face->images[i].output) names[count++] = face->images[i].name;
+    graph_image image = pass_output(result->pass, name);
+    if (!image.id) value_unknown(L, pass_label(result->pass), "output", name, names, count);
+    image_push(L, image);
+    return 1;
+}
+
+static int l_history(lua_State *L) {
+    graph_image image;
+    script_require_loading(L, "history");
+    if (!value_image(L, 1, &image))
+        vm_error(L, "history takes an image, as in history(volume.color); got a %s",
+                 luaL_typename(L, 1));
+    image = graph_add_history(effect_graph(script_of(L)->effect), image);
+    if (!image.id) script_raise(L);
+    image_push(L, image);
+    return 1;
+}
+
+// ---- setting what a pass takes ----------------------------------------------------------------
+
+static void set_image(lua_State *L, pass_call *call, size_t index, int value) {
+    const shader_image *slot = &call->face->images[index];
+    graph_image image;
+    if (!value_image(L, value, &image))
+        vm_error(L, "%s: input '%s' takes an image, such as the result of a pass; got a %s",
+                 call->who, slot->name, luaL_typename(L, value));
+    if (call->taken[index]) vm_error(L, "%s: input '%s' is given twice", call->who, slot->name);
+    call->taken[index] = true;
+    if (!pass_set_image(call->pass, slot->name, image)) script_raise(L);
+}
+
+static bool is_input(const shader_image *image) {
+    return !image->output && !image->history;
+}
+
+// The next positional image: inputs in the order in which the shader declares them.
+static void add_image(lua_State *L, pass_call *call, int value) {
+    const shader_interface *face = call->face;
+    size_t i = call->next_input;
+    while (i < face->image_count && !is_input(&face->images[i])) i++;
+    if (i == face->image_count)
+        vm_error(L, "%s: too many images; it takes %d without a name", call->who,
+                 (int)call->next_input);
+    call->next_input = i + 1;
+    set_image(L, call, i, value);
+}
+
+static void add_positional(lua_State *L, pass_call *call, int value) {
+    const mesh_object *mesh = object_test(L, value, "mesh");
+    graph_image image;
+    if (mesh) {
+        vm_charge_memory(L, sizeof mesh);
+        if (!pass_add_mesh(call->pass, mesh->mesh)) script_raise(L);
+    } else if (value_image(L, value, &image)) {
+        add_image(L, call, value);
+    } else {
+        vm_error(L, "%s: values without a name are images, or meshes for geometry; got a %s",
+                 call->who, luaL_typename(L, value));
+    }
+}
+
+static void set_uniform(lua_State *L, pass_call *call, size_t index, int value) {
+    const shader_uniform *uniform = &call->face->uniforms[index];
+    const char *name = uniform->name;
+    const effect_param *param = field_param_of(L, value);
+    const field *node;
+    if (uniform->type == SHADER_ENUM && lua_type(L, value) == LUA_TSTRING) {
+        int word = value_word(L, value, call->who, name, uniform->words, uniform->word_count);
+        vm_charge_memory(L, sizeof(field));
+        node = field_constant(script_memory(L), 1, (float[4]){(float)word});
+    } else {
+        if (uniform->type == SHADER_ENUM && param && param->word_count != uniform->word_count)
+            vm_error(L, "%s: '%s' has %d words, but parameter '%s' has %d", call->who, name,
+                     (int)uniform->word_count, param->name, (int)param->word_count);
+        node = value_uniform(L, value, call->who, name, 0);
+    }
+    if (!pass_set_uniform(call->pass, name, node)) script_raise(L);
+}
+
+// An option is structure: a parameter gives the word that it has while the file loads.
+static void set_option(lua_State *L, pass_call *call, size_t index, int value) {
+    const char *name = call->face->options[index].name;
+    const effect_param *param = field_param_of(L, value);
+    const char *word;
+    if (param && param->type == EFFECT_ENUM)
+        word = param->words[(size_t)param->value[0]];
+    else if (lua_type(L, value) == LUA_TSTRING)
+        word = lua_tostring(L, value);
+    else
+        vm_error(L, "%s: option '%s' takes a word in quotes, or a parameter with words; got a %s",
+                 call->who, name, luaL_typename(L, value));
+    if (!pass_set_option(call->pass, name, word)) script_raise(L);
+}
+
+static void unknown_key(lua_State *L, const pass_call *call, const char *key) {
+    const shader_interface *face = call->face;
+    size_t total =
+        face->uniform_count + face->option_count + face->field_count + face->image_count + 3;
+    const char **known = lua_newuserdatauv(L, total * sizeof *known, 0);
+    size_t count = 0;
+    for (size_t i = 0; i < face->uniform_count; i++) known[count++] = face->uniforms[i].name;
+    for (size_t i = 0; i < face->option_count; i++) known[count++] = face->options[i].name;
+    for (size_t i = 0; i < face->field_count; i++) known[count++] = face->fields[i].name;
+    for (size_t i = 0; i < face->image_count; i++)
+        if (!face->images[i].output) known[count++] = face->images[i].name;
+    known[count++] = "name";
+    known[count++] = "resolution";
+    known[count++] = "format";
+    value_unknown(L, call->who, "key", key, known, count);
+}
+
+static void set_key(lua_State *L, pass_call *call, const char *key) {
+    size_t index;
+    int value = lua_gettop(L);
+    switch (pass_find_key(call->pass, key, &index)) {
+    case PASS_UNIFORM:
+        set_uniform(L, call, index, value);
+        break;
+    case PASS_OPTION:
+        set_option(L, call, index, value);
+        break;
+    case PASS_FIELD: {
+        const field *node =
+            value_field(L, value, call->who, key, call->face->fields[index].components);
+        if (!pass_set_field(call->pass, key, node)) script_raise(L);
+        break;
+    }
+    case PASS_IMAGE:
+        set_image(L, call, index, value);
+        break;
+    case PASS_UNKNOWN:
+        if (strcmp(key, "input") == 0 && call->next_input == 0)
+            add_image(L, call, value);
+        else
+            unknown_key(L, call, key);
+    }
+}
+
+// ---- reserved keys ----------------------------------------------------------------------------
+
+static gpu_format read_format(lua_State *L, const pass_call *call) {
+    const char *name = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "";
+    gpu_format format = gpu_format_from_name(name);
+    if (format == GPU_FORMAT_NONE)
+        vm_error(L, "%s: '%s' is no format; rgba16f, r32f, rgba8 and the like are accepted",
+                 call->who, name);
+    return format;
+}
+
+// format = "rgba32f" for the first output, or { color = "rgba32f", ... }.
+static void set_formats(lua_State *L, pass_call *call, int table) {
+    if (lua_getfield(L, table, "format") == LUA_TSTRING) {
+        const shader_image *output = first_output(call->face);
+        if (!output) vm_error(L, "%s: it has no output to give a format", call->who);
+        if (!pass_set_format(call->pass, output->name, read_format(L, call))) script_raise(L);
+    } else if (value_is_plain_table(L, -1)) {
+        size_t count;
+        int formats = lua_gettop(L);
+        const char **names = value_names(L, formats, call->who, &count);
+        for (size_t i = 0; i < count; i++) {
+            lua_getfield(L, formats, names[i]);
+            if (!pass_set_format(call->pass, names[i], read_format(L, call))) script_raise(L);
+            lua_pop(L, 1);
+        }
+        lua_pop(L, 1);
+    } else if (!lua_isnil(L, -1)) {
+        vm_error(L, "%s: 'format' takes a name, or a table of names by output", call->who);
+    }
+    lua_pop(L, 1);
+}
+
+static bool is_reserved(const char *key) {
+    return strcmp(key, "name") == 0 || strcmp(key, "resolution") == 0 || strcmp(key, "format") == 0;
+}
+
+static void read_table(lua_State *L, pass_call *call, int table, lua_Integer first) {
+    lua_Integer length = (lua_Integer)lua_rawlen(L, table);
+    for (lua_Integer i = first; i <= length; i++) {
+        lua_rawgeti(L, table, i);
+        add_positional(L, call, lua_gettop(L));
+        lua_pop(L, 1);
+    }
+    double scale = value_get_number(L, table, call->who, "resolution", 1);
+    if (scale != 1 && !pass_set_scale(call->pass, (float)scale)) script_raise(L);
+    set_formats(L, call, table);
+    size_t count;
+    const char **names = value_names(L, table, call->who, &count);
+    for (size_t i = 0; i < count; i++) {
+        if (is_reserved(names[i])) continue;
+        lua_getfield(L, table, names[i]);
+        set_key(L, call, names[i]);
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+}
+
+// ---- calling ----------------------------------------------------------------------------------
+
+// The arguments: images, then at most one table of settings. Returns the table's index or 0.
+static int settings_table(lua_State *L) {
+    int n = lua_gettop(L);
+    return n > 0 && value_is_plain_table(L, n) ? n : 0;
+}
+
+static int make_pass(lua_State *L, const char *type, const char *file, int first_positional,
+                     lua_Integer first_element) {
+    script *s = script_of(L);
+    int n = lua_gettop(L), table = settings_table(L);
+    pass_call call = {.who = type ? type : file};
+    const char *label = table ? value_get_string(L, table, call.who, "name") : NULL;
+    vm_charge_memory(L, PASS_COST);
+    s->unsound = call.who;
+    call.pass = effect_add_pass(s->effect, type, file, label);
+    if (!call.pass) script_raise(L);
+    call.face = pass_interface(call.pass);
+    call.taken = lua_newuserdatauv(L, call.face->image_count + 1, 0);
+    memset(call.taken, 0, call.face->image_count + 1);
+    for (int i = first_positional; i <= n - (table != 0); i++) add_positional(L, &call, i);
+    if (table) read_table(L, &call, table, first_element);
+    if (!pass_declare(call.pass)) script_raise(L);
+    s->unsound = NULL;
+    result_object *result = object_new(L, "pass result", sizeof *result);
+    result->pass = call.pass;
+    return 1;
+}
+
+// Upvalue: name of the type.
+static int l_pass(lua_State *L) {
+    const char *type = lua_tostring(L, lua_upvalueindex(1));
+    script_require_loading(L, type);
+    return make_pass(L, type, NULL, 1, 1);
+}
+
+// shader { "haze.comp", image, strength = 0.2 } or shader("haze.comp", image, { strength = 0.2 }).
+static int l_shader(lua_State *L) {
+    script_require_loading(L, "shader");
+    bool direct = lua_type(L, 1) == LUA_TSTRING;
+    if (direct)
+        lua_pushvalue(L, 1);
+    else if (!value_is_plain_table(L, 1) || lua_gettop(L) != 1 ||
+             lua_rawgeti(L, 1, 1) != LUA_TSTRING)
+        vm_error(L, "shader: its file comes first, as in shader { \"haze.comp\", image }");
+    size_t length;
+    const char *text = lua_tolstring(L, -1, &length);
+    if (strlen(text) != length) vm_error(L, "shader: the file name contains a zero byte");
+    vm_charge_memory(L, length + 1);
+    const char *file = arena_string(script_memory(L), text);
+    lua_pop(L, 1);
+    return make_pass(L, NULL, file, direct ? 2 : 1, direct ? 1 : 2);
+}
+
+void l_pass_open(lua_State *L) {
+    static const luaL_Reg none[] = {{NULL, NULL}};
+    static const luaL_Reg result[] = {{"__index", l_result_index}, {NULL, NULL}};
+    object_type(L, "image", none);
+    object_type(L, "pass result", result);
+    size_t count;
+    const pass_type *types = pass_types(&count);
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(types[i].name, "bake") == 0) continue; // bake(field) makes it
+        lua_pushstring(L, types[i].name);
+        lua_pushcclosure(L, l_pass, 1);
+        lua_setglobal(L, types[i].name);
+    }
+    lua_register(L, "shader", l_shader);
+    lua_register(L, "history", l_history);
+}

@@ -1,0 +1,167 @@
+// Loading an effect file, and calling back into it frame by frame.
+#include "script/script.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "script/binding.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    MEMORY_LIMIT = 256 << 20,
+    LOAD_LIMIT = 200000000,
+    FRAME_LIMIT = 20000000,
+};
+
+script *script_of(lua_State *L) {
+    return vm_user(L);
+}
+
+arena *script_memory(lua_State *L) {
+    return effect_memory(script_of(L)->effect);
+}
+
+void script_require_loading(lua_State *L, const char *what) {
+    if (!script_of(L)->loading)
+        vm_error(L,
+                 "%s: can be made only while the file loads; functions of time compute with "
+                 "numbers, and p:get() gives a parameter's",
+                 what);
+}
+
+void script_raise(lua_State *L) {
+    vm_error(L, "%s", err_get());
+}
+
+// ---- calls from the effect --------------------------------------------------------------------
+
+static bool read_result(lua_State *L, double time, float out[4]) {
+    int count = value_numbers(L, -1, out);
+    const char *type = luaL_typename(L, -1);
+    lua_pop(L, 1);
+    if (count == 0)
+        return err_set("a function of time returned a %s at %g s; a number, {x, y, z} or a colour "
+                       "is accepted",
+                       type, time);
+    for (int i = 0; i < count; i++)
+        if (!isfinite(out[i]))
+            return err_set("a function of time returned %g at %g s", (double)out[i], time);
+    if (count == 1) out[1] = out[2] = out[3] = out[0];
+    return true;
+}
+
+bool script_call(void *user, int function, double time, float out[4]) {
+    script *s = user;
+    lua_State *L = vm_lua(s->vm);
+    if (!lua_checkstack(L, 8)) return err_set("the script's stack is full");
+    lua_rawgeti(L, LUA_REGISTRYINDEX, function);
+    lua_pushnumber(L, time);
+    return vm_call(s->vm, 1, 1, s->limits.frame) && read_result(L, time, out);
+}
+
+static bool update(void *user, double time, double dt) {
+    script *s = user;
+    lua_State *L = vm_lua(s->vm);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, s->update);
+    lua_pushnumber(L, time);
+    lua_pushnumber(L, dt);
+    return vm_call(s->vm, 2, 0, s->limits.frame);
+}
+
+static void destroy(void *user) {
+    script *s = user;
+    vm_destroy(s->vm);
+    mem_free(s);
+}
+
+field_context script_context(lua_State *L) {
+    script *s = script_of(L);
+    field_context context = *effect_pass_host(s->effect)->context;
+    context.call = script_call;
+    context.user = s;
+    return context;
+}
+
+// ---- loading ----------------------------------------------------------------------------------
+
+static void add_file(void *user, const char *path) {
+    script *s = user;
+    effect_add_file(s->effect, path);
+}
+
+static int open_bindings(lua_State *L) {
+    l_field_open(L);
+    l_effect_open(L);
+    l_param_open(L);
+    l_curve_open(L);
+    l_palette_open(L);
+    l_grid_open(L);
+    l_scene_open(L);
+    l_pass_open(L);
+    return 0;
+}
+
+// Folder of the effect as its user wrote it, with a '/' at the end; "" for the current one.
+static void shown_folder(const char *file, char out[PATH_CAP]) {
+    size_t length = (size_t)(path_name(file) - file);
+    snprintf(out, PATH_CAP, "%.*s", (int)length, file);
+}
+
+static bool run(script *s, const char *prelude_folder) {
+    char prelude[PATH_CAP];
+    const char *file = effect_file(s->effect);
+    return vm_protect(s->vm, open_bindings, NULL, s->limits.load) &&
+           path_join(prelude, prelude_folder, "prelude.lua") &&
+           vm_run_file(s->vm, prelude, "prelude.lua", s->limits.load, true) &&
+           vm_run_file(s->vm, file, file, s->limits.load, false);
+}
+
+static bool is_complete(const script *s) {
+    const char *file = effect_file(s->effect);
+    if (!s->declared)
+        return err_set("%s: no effect is declared; begin with local fx = effect { name = ... }",
+                       file);
+    if (s->unsound)
+        return err_set("%s: %s failed, and the file went on; an effect needs all its passes", file,
+                       s->unsound);
+    if (!effect_get_picture(s->effect, EFFECT_OUTPUT).id)
+        return err_set("%s: the effect has no picture; assign an image to its field 'output'",
+                       file);
+    return true;
+}
+
+bool script_load_limited(effect *e, const char *prelude_folder, const script_limits *limits) {
+    char shown[PATH_CAP], library[PATH_CAP];
+    shown_folder(effect_file(e), shown);
+    if (!path_join(library, prelude_folder, "lib")) return false;
+    script *s = mem_alloc(sizeof *s);
+    *s = (script){.effect = e, .loading = true, .update = LUA_NOREF};
+    if (limits) s->limits = *limits;
+    if (!s->limits.memory) s->limits.memory = MEMORY_LIMIT;
+    if (!s->limits.load) s->limits.load = LOAD_LIMIT;
+    if (!s->limits.frame) s->limits.frame = FRAME_LIMIT;
+    s->vm = vm_create(&(vm_desc){
+        .root = effect_root(e),
+        .library = library,
+        .shown = shown,
+        .memory = s->limits.memory,
+        .on_file = add_file,
+        .user = s,
+    });
+    if (!s->vm || !run(s, prelude_folder) || !is_complete(s)) {
+        destroy(s);
+        return false;
+    }
+    s->loading = false;
+    effect_set_hooks(e, &(effect_hooks){
+                            .call = script_call,
+                            .update = s->update == LUA_NOREF ? NULL : update,
+                            .destroy = destroy,
+                            .user = s,
+                        });
+    return true;
+}
+
+bool script_load(effect *e, const char *prelude_folder) {
+    return script_load_limited(e, prelude_folder, NULL);
+}

@@ -1,0 +1,338 @@
+// Reading what a script passes: every table is checked key by key, every value against what is
+// accepted, and the message says which.
+#include "base/memory.h"
+#include "base/str.h"
+#include "script/binding.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---- objects ----------------------------------------------------------------------------------
+
+void object_type(lua_State *L, const char *name, const luaL_Reg *methods) {
+    luaL_newmetatable(L, name);
+    luaL_setfuncs(L, methods, 0);
+    lua_pushboolean(L, false);
+    lua_setfield(L, -2, "__metatable");
+    lua_pop(L, 1);
+}
+
+void *object_new(lua_State *L, const char *name, size_t size) {
+    void *object = lua_newuserdatauv(L, size, 1);
+    memset(object, 0, size);
+    luaL_setmetatable(L, name);
+    return object;
+}
+
+void *object_test(lua_State *L, int index, const char *name) {
+    return luaL_testudata(L, index, name);
+}
+
+bool value_is_plain_table(lua_State *L, int index) {
+    return lua_type(L, index) == LUA_TTABLE;
+}
+
+bool value_has_names(lua_State *L, int index) {
+    index = lua_absindex(L, index);
+    for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1))
+        if (lua_type(L, -2) == LUA_TSTRING) {
+            lua_pop(L, 2);
+            return true;
+        }
+    return false;
+}
+
+// ---- keys -------------------------------------------------------------------------------------
+
+void value_unknown(lua_State *L, const char *who, const char *what, const char *name,
+                   const char *const *known, size_t count) {
+    const char *nearest = str_nearest(name, known, count);
+    if (nearest)
+        vm_error(L, "%s: unknown %s '%.64s'; did you mean '%s'?", who, what, name, nearest);
+    luaL_Buffer list;
+    luaL_buffinit(L, &list);
+    for (size_t i = 0; i < count; i++) {
+        if (i > 0) luaL_addstring(&list, ", ");
+        luaL_addstring(&list, known[i]);
+    }
+    luaL_pushresult(&list);
+    vm_error(L, "%s: unknown %s '%.64s'; accepted: %s", who, what, name, lua_tostring(L, -1));
+}
+
+static int by_name(const void *a, const void *b) {
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+const char **value_names(lua_State *L, int table, const char *who, size_t *count) {
+    table = lua_absindex(L, table);
+    lua_Unsigned length = lua_rawlen(L, table);
+    size_t n = 0;
+    for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
+        int type = lua_type(L, -2);
+        bool in_array = lua_isinteger(L, -2) && lua_tointeger(L, -2) >= 1 &&
+                        (lua_Unsigned)lua_tointeger(L, -2) <= length;
+        if (type != LUA_TSTRING && !in_array)
+            vm_error(L, "%s: a key is a %s; keys are names, or 1, 2, 3 ... without gaps", who,
+                     luaL_typename(L, -2));
+        n += type == LUA_TSTRING;
+    }
+    const char **names = lua_newuserdatauv(L, (n + 1) * sizeof *names, 0);
+    *count = 0;
+    for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1))
+        if (lua_type(L, -2) == LUA_TSTRING) names[(*count)++] = lua_tostring(L, -2);
+    qsort(names, *count, sizeof *names, by_name);
+    return names;
+}
+
+void value_check_keys(lua_State *L, int table, const char *who, const char *const *keys,
+                      size_t count) {
+    if (!value_is_plain_table(L, table))
+        vm_error(L, "%s takes a table, as in %s { ... }; got a %s", who, who,
+                 luaL_typename(L, table));
+    size_t n;
+    const char **names = value_names(L, table, who, &n);
+    for (size_t i = 0; i < n; i++) {
+        size_t k = 0;
+        while (k < count && strcmp(keys[k], names[i]) != 0) k++;
+        if (k == count) value_unknown(L, who, "key", names[i], keys, count);
+    }
+    lua_pop(L, 1);
+}
+
+// ---- simple values ----------------------------------------------------------------------------
+
+_Noreturn static void wrong(lua_State *L, int index, const char *who, const char *key,
+                            const char *accepted) {
+    const char *got = luaL_typename(L, index);
+    if (field_param_of(L, index)) got = "parameter";
+    if (luaL_getmetafield(L, index, "__name") == LUA_TSTRING) got = lua_tostring(L, -1);
+    vm_error(L, "%s: '%s' must be %s; got a %s", who, key, accepted, got);
+}
+
+// Number of a constant; fields that move are no numbers.
+static bool plain_number(lua_State *L, int index, double *out) {
+    if (lua_type(L, index) == LUA_TNUMBER) {
+        *out = lua_tonumber(L, index);
+        return true;
+    }
+    const field_object *object = object_test(L, index, "field");
+    if (!object || object->node->components != 1 || strcmp(object->node->kind->name, "constant"))
+        return false;
+    *out = (double)object->node->value[0];
+    return true;
+}
+
+double value_get_number(lua_State *L, int table, const char *who, const char *key,
+                        double otherwise) {
+    double value = otherwise;
+    if (lua_getfield(L, table, key) != LUA_TNIL) {
+        if (!plain_number(L, -1, &value)) wrong(L, -1, who, key, "a plain number");
+        if (!isfinite(value)) vm_error(L, "%s: '%s' must be a finite number", who, key);
+    }
+    lua_pop(L, 1);
+    return value;
+}
+
+uint32_t value_get_count(lua_State *L, int table, const char *who, const char *key,
+                         uint32_t otherwise) {
+    double value = value_get_number(L, table, who, key, otherwise);
+    if (!(value >= 0 && value <= UINT32_MAX && value == floor(value)))
+        vm_error(L, "%s: '%s' is %g; a whole number from 0 is accepted", who, key, value);
+    return (uint32_t)value;
+}
+
+bool value_get_bool(lua_State *L, int table, const char *who, const char *key, bool otherwise) {
+    bool value = otherwise;
+    int type = lua_getfield(L, table, key);
+    if (type == LUA_TBOOLEAN)
+        value = lua_toboolean(L, -1);
+    else if (type != LUA_TNIL)
+        wrong(L, -1, who, key, "true or false");
+    lua_pop(L, 1);
+    return value;
+}
+
+const char *value_get_string(lua_State *L, int table, const char *who, const char *key) {
+    const char *value = NULL;
+    int type = lua_getfield(L, table, key);
+    if (type == LUA_TSTRING) {
+        size_t length;
+        const char *text = lua_tolstring(L, -1, &length);
+        if (strlen(text) != length) vm_error(L, "%s: '%s' contains a zero byte", who, key);
+        vm_charge_memory(L, length + 1);
+        value = arena_string(script_memory(L), text);
+    } else if (type != LUA_TNIL) {
+        wrong(L, -1, who, key, "a string");
+    }
+    lua_pop(L, 1);
+    return value;
+}
+
+bool value_get_vector(lua_State *L, int table, const char *who, const char *key, float out[3]) {
+    if (lua_getfield(L, table, key) == LUA_TNIL) {
+        lua_pop(L, 1);
+        return false;
+    }
+    float value[4];
+    int count = value_numbers(L, -1, value);
+    if (count == 1) value[1] = value[2] = value[0];
+    if (count != 1 && count != 3) wrong(L, -1, who, key, "three plain numbers {x, y, z}");
+    memcpy(out, value, 3 * sizeof *out);
+    lua_pop(L, 1);
+    return true;
+}
+
+int value_word(lua_State *L, int index, const char *who, const char *key, const char *const *words,
+               size_t count) {
+    if (lua_type(L, index) != LUA_TSTRING) wrong(L, index, who, key, "a word in quotes");
+    const char *word = lua_tostring(L, index);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(words[i], word) == 0) return (int)i;
+    const char *what = lua_pushfstring(L, "value of '%s'", key);
+    value_unknown(L, who, what, word, words, count);
+}
+
+int value_get_word(lua_State *L, int table, const char *who, const char *key,
+                   const char *const *words, size_t count, int otherwise) {
+    int value = otherwise;
+    if (lua_getfield(L, table, key) != LUA_TNIL) value = value_word(L, -1, who, key, words, count);
+    lua_pop(L, 1);
+    return value;
+}
+
+// ---- numbers, vectors, colours ----------------------------------------------------------------
+
+// Neither raises nor allocates: the result of a function of time is read outside of any call.
+int value_numbers(lua_State *L, int index, float out[4]) {
+    index = lua_absindex(L, index);
+    memset(out, 0, 4 * sizeof *out);
+    double number;
+    switch (lua_type(L, index)) {
+    case LUA_TBOOLEAN:
+        out[0] = lua_toboolean(L, index) ? 1 : 0;
+        return 1;
+    case LUA_TSTRING: {
+        const char *text = lua_tostring(L, index);
+        if (text[0] != '#' || !palette_parse_color(text, out)) return 0;
+        size_t length = strlen(text);
+        return length == 5 || length == 9 ? 4 : 3;
+    }
+    case LUA_TTABLE: {
+        lua_Unsigned count = lua_rawlen(L, index);
+        if (count < 1 || count > 4) return 0;
+        for (int i = 0; i < (int)count; i++) {
+            lua_rawgeti(L, index, i + 1);
+            bool right = lua_type(L, -1) == LUA_TNUMBER;
+            out[i] = (float)lua_tonumber(L, -1);
+            lua_pop(L, 1);
+            if (!right) return 0;
+        }
+        return (int)count;
+    }
+    default:
+        if (!plain_number(L, index, &number)) return 0;
+        out[0] = (float)number;
+        return 1;
+    }
+}
+
+static const char accepted_values[] = "a number, {x, y, z}, a colour \"#rrggbb\", a field, a "
+                                      "parameter, a curve or a function of time";
+
+static const field *constant(lua_State *L, const char *who, const char *key, int count,
+                             float value[4]) {
+    for (int i = 0; i < count; i++)
+        if (!isfinite(value[i])) vm_error(L, "%s: '%s' must be finite", who, key);
+    vm_charge_memory(L, sizeof(field));
+    return field_constant(script_memory(L), count == 2 ? 3 : count, value);
+}
+
+// The function is called once, for time 0, to learn how many components it gives.
+static const field *function_of_time(lua_State *L, int index, const char *who, const char *key) {
+    script_require_loading(L, "a function of time");
+    lua_pushvalue(L, index);
+    lua_pushnumber(L, 0);
+    lua_call(L, 1, 1);
+    float value[4];
+    int count = value_numbers(L, -1, value);
+    if (count == 0)
+        vm_error(L,
+                 "%s: the function for '%s' must return a number, {x, y, z} or a colour; it "
+                 "returned a %s for time 0",
+                 who, key, luaL_typename(L, -1));
+    for (int i = 0; i < count; i++)
+        if (!isfinite(value[i]))
+            vm_error(L, "%s: the function for '%s' returned %g for time 0", who, key,
+                     (double)value[i]);
+    lua_pop(L, 1);
+    lua_pushvalue(L, index);
+    int reference = luaL_ref(L, LUA_REGISTRYINDEX);
+    vm_charge_memory(L, sizeof(field));
+    return field_call(script_memory(L), count == 2 ? 3 : count, reference);
+}
+
+// {x, y, z} of which some are fields.
+static const field *mixed_vector(lua_State *L, int index, const char *who, const char *key) {
+    const field *parts[FIELD_MAX_ARGS] = {0};
+    if (lua_rawlen(L, index) != 3 || value_has_names(L, index))
+        wrong(L, index, who, key, accepted_values);
+    for (int i = 0; i < 3; i++) {
+        lua_rawgeti(L, index, i + 1);
+        if (value_is_plain_table(L, -1)) wrong(L, index, who, key, accepted_values);
+        parts[i] = value_field(L, lua_absindex(L, -1), who, key, 1);
+        lua_pop(L, 1);
+    }
+    vm_charge_memory(L, sizeof(field));
+    const field *node = field_make(script_memory(L), "vec", parts, NULL);
+    if (!node) script_raise(L);
+    return node;
+}
+
+const field *value_field(lua_State *L, int index, const char *who, const char *key,
+                         int components) {
+    index = lua_absindex(L, index);
+    luaL_checkstack(L, 8, "value");
+    const field_object *object = object_test(L, index, "field");
+    const field *node;
+    float value[4];
+    int count;
+    if (object)
+        node = object->node;
+    else if (lua_type(L, index) == LUA_TFUNCTION)
+        node = function_of_time(L, index, who, key);
+    else if ((count = value_numbers(L, index, value)) > 0)
+        node = constant(L, who, key, count, value);
+    else if (lua_type(L, index) == LUA_TTABLE)
+        node = mixed_vector(L, index, who, key);
+    else if (object_test(L, index, "sequence"))
+        vm_error(L, "%s: '%s' is a whole sequence; name one of its grids, as in burst.density", who,
+                 key);
+    else
+        wrong(L, index, who, key, accepted_values);
+    bool fits = components == 0 || node->components == 1 || node->components == components ||
+                (components == 3 && node->components == 4) ||
+                (components == 2 && node->components == 3);
+    if (!fits)
+        vm_error(L, "%s: '%s' takes %d component%s; this has %d", who, key, components,
+                 components == 1 ? "" : "s", node->components);
+    return node;
+}
+
+const field *value_uniform(lua_State *L, int index, const char *who, const char *key,
+                           int components) {
+    const field *node = value_field(L, index, who, key, components);
+    if (!node->uniform)
+        vm_error(L,
+                 "%s: '%s' varies in space; a number, a parameter, a curve or a function of time "
+                 "is accepted",
+                 who, key);
+    return node;
+}
+
+const field *value_get_uniform(lua_State *L, int table, const char *who, const char *key,
+                               int components, const field *otherwise) {
+    const field *node = otherwise;
+    if (lua_getfield(L, table, key) != LUA_TNIL) node = value_uniform(L, -1, who, key, components);
+    lua_pop(L, 1);
+    return node;
+}
