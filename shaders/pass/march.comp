@@ -69,35 +69,43 @@ void add_physical(inout ray_state ray, vec3 p, vec3 direction, float d, float le
     vec3 lit = ambient * sky;
     if (shadow_steps > 0)
         lit += frame.sun_radiance.rgb * (0.25 * phase(cosine, anisotropy) * sunlight(p));
-    float through = exp(-d * length);
-    vec3 gained = (1.0 - through) * (own + albedo * lit) + given * ((1.0 - through) / d);
+    float x = d * length;
+    float through = exp(-x);
+    float opaque = x > 1e-2 ? 1.0 - through : x - 0.5 * x * x; // 1 - exp(-x) without cancellation
+    vec3 gained = opaque * (own + albedo * lit) + given * (opaque / d);
     ray.light += ray.transmittance * gained;
     ray.transmittance *= through;
 }
 
 void add_paper(inout ray_state ray, vec3 p, float d) {
-    float part = d * opacity / float(steps);
+    float part = min(d * opacity / float(steps), 1.0);
     ray.light += ray.transmittance * part * field_radiance(p);
     ray.transmittance *= 1.0 - part;
 }
 
-ray_state march(vec3 origin, vec3 direction, vec2 range, float offset) {
+// `last`: how far samples may lie. In mode paper it weighs samples and leaves the steps as they are
+// (section 3.6); otherwise the ray ends there, so that the sum has a sharp end at a surface.
+ray_state march(vec3 origin, vec3 direction, vec2 range, float last, float offset) {
     ray_state ray = ray_state(vec3(0.0), 1.0);
+#if MODE != MODE_PAPER
+    range.y = min(range.y, last);
+#endif
     float span = range.y - range.x;
     if (span <= 0.0) return ray;
     int count = steps;
     float length = span / float(steps);
     if (step_size > 0.0) {
-        count = int(ceil(span / step_size));
-        length = step_size;
+        length = max(step_size, span / 4096.0);
+        count = int(ceil(span / length));
     }
-    count = min(count, 4096);
     int taken = 0;
     for (int i = 0; i < count; i++) {
         // The last step of a fixed length ends at the exit.
         float from = range.x + float(i) * length;
         float part = min(length, range.y - from);
-        vec3 p = origin + (from + offset * part) * direction;
+        float at = from + offset * part;
+        if (at > last) break;
+        vec3 p = origin + at * direction;
         float d = field_density(p);
         taken++;
         if (d <= 0.0) continue;
@@ -121,11 +129,10 @@ void main() {
     float metres = length(along); // along the ray for each metre of depth
     vec3 direction = along / metres;
     vec2 range = box_range(frame.eye.xyz, direction, box_min, box_max);
-    float stop = 1e9;
+    float stop = 1e9, last = 1e30;
 #if HAS_DEPTH
     stop = texelFetch(depth, ivec2(uv * vec2(textureSize(depth, 0))), 0).r;
-    // The sum has a sharp end at the surface: what lies behind it is never sampled.
-    range.y = min(range.y, stop * metres + depth_bias);
+    last = stop * metres + depth_bias;
 #endif
     if (!inside) range = vec2(0.0);
     float offset = 0.5;
@@ -137,9 +144,9 @@ void main() {
     vec4 result;
 #if VIEW == VIEW_NOISE
     vec3 front = frame.eye.xyz + range.x * direction;
-    result = range.y > range.x ? vec4(vec3(field_noise(front)), 1.0) : vec4(0.0);
+    result = min(range.y, last) > range.x ? vec4(vec3(field_noise(front)), 1.0) : vec4(0.0);
 #else
-    ray_state ray = march(frame.eye.xyz, direction, range, clamp(offset, 0.0, 1.0));
+    ray_state ray = march(frame.eye.xyz, direction, range, last, clamp(offset, 0.0, 1.0));
     result = vec4(ray.light, 1.0 - ray.transmittance);
 #endif
     if (!inside) return;
