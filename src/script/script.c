@@ -74,12 +74,18 @@ static void destroy(void *user) {
     mem_free(s);
 }
 
+static void set_hooks(script *s) {
+    effect_set_hooks(s->effect, &(effect_hooks){
+                                    .call = script_call,
+                                    .update = s->update == LUA_NOREF ? NULL : update,
+                                    .destroy = destroy,
+                                    .user = s,
+                                });
+}
+
 field_context script_context(lua_State *L) {
     script *s = script_of(L);
-    field_context context = *effect_pass_host(s->effect)->context;
-    context.call = script_call;
-    context.user = s;
-    return context;
+    return *effect_pass_host(s->effect)->context;
 }
 
 // ---- loading ----------------------------------------------------------------------------------
@@ -148,18 +154,15 @@ bool script_load_limited(effect *e, const char *prelude_folder, const script_lim
         .on_file = add_file,
         .user = s,
     });
-    if (!s->vm || !run(s, prelude_folder) || !is_complete(s)) {
+    if (!s->vm) {
         destroy(s);
         return false;
     }
+    set_hooks(s); // before the file runs: declaring a pass may ask for values
+    bool done = run(s, prelude_folder) && is_complete(s);
     s->loading = false;
-    effect_set_hooks(e, &(effect_hooks){
-                            .call = script_call,
-                            .update = s->update == LUA_NOREF ? NULL : update,
-                            .destroy = destroy,
-                            .user = s,
-                        });
-    return true;
+    if (done) set_hooks(s);
+    return done;
 }
 
 bool script_load(effect *e, const char *prelude_folder) {

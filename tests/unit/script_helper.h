@@ -1,0 +1,74 @@
+// Effects from text, without a device.
+#pragma once
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/file.h"
+#include "base/log.h"
+#include "script/script.h"
+
+static char helper_folder[PATH_CAP];
+
+static inline void helper_source(char out[PATH_CAP], const char *name) {
+    const char *root = getenv("ROIL_SOURCE_DIR");
+    assert_true(path_join(out, root ? root : "..", name));
+}
+
+// Writes a file beside the effect.
+static inline void helper_put(const char *name, const char *text) {
+    char path[PATH_CAP];
+    assert_true(path_join(path, helper_folder, name));
+    assert_true(file_make_parent_folders(path));
+    assert_true(file_write(path, text, strlen(text)));
+}
+
+static inline effect *helper_create(const char *file, const effect_setting *settings,
+                                    size_t count) {
+    char shaders[PATH_CAP];
+    helper_source(shaders, "shaders");
+    effect *e = effect_create(&(effect_desc){
+        .file = file, .shader_root = shaders, .settings = settings, .setting_count = count});
+    if (!e) fail_msg("%s", err_get());
+    return e;
+}
+
+// Loads `text` as an effect. NULL with a message.
+static inline effect *helper_load_with(const char *text, const script_limits *limits,
+                                       const effect_setting *settings, size_t count) {
+    char scripts[PATH_CAP], path[PATH_CAP];
+    helper_source(scripts, "scripts");
+    helper_put("e.lua", text);
+    assert_true(path_join(path, helper_folder, "e.lua"));
+    effect *e = helper_create(path, settings, count);
+    err_clear();
+    if (script_load_limited(e, scripts, limits)) return e;
+    assert_string_not_equal(err_get(), "");
+    effect_destroy(e);
+    return NULL;
+}
+
+static inline effect *helper_load(const char *text) {
+    return helper_load_with(text, NULL, NULL, 0);
+}
+
+static inline int helper_setup(void **state) {
+    (void)state;
+    log_set_level(LOG_WARNING);
+    const char *temporary = getenv("TMPDIR");
+    snprintf(helper_folder, sizeof helper_folder, "%s/roil-script-XXXXXX",
+             temporary ? temporary : "/tmp");
+    return mkdtemp(helper_folder) ? 0 : 1;
+}
+
+static inline int helper_teardown(void **state) {
+    (void)state;
+    char command[PATH_CAP + 20];
+    snprintf(command, sizeof command, "rm -rf '%s'", helper_folder);
+    return system(command);
+}

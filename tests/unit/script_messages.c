@@ -1,0 +1,193 @@
+// What a script's author reads after a mistake: the line, the name at fault, what is accepted.
+#include "script_helper.h"
+
+// Every case begins with these lines, so its own first line is line 3.
+#define START "local fx = effect { name = 'test' }\nlocal img = geometry {}\n"
+
+typedef struct mistake {
+    const char *text;    // follows START
+    const char *message; // how the error goes on after "e.lua:3: "
+} mistake;
+
+static void check(const mistake *cases, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        char text[2000], expected[PATH_CAP];
+        snprintf(text, sizeof text, START "%s\nfx.output = img", cases[i].text);
+        effect *e = helper_load(text);
+        if (e) fail_msg("no error in: %s", cases[i].text);
+        snprintf(expected, sizeof expected, "e.lua:3: %s", cases[i].message);
+        const char *got = strstr(err_get(), "e.lua:");
+        if (!got || strncmp(got, expected, strlen(expected)) != 0)
+            fail_msg("in: %s\n got: %s\n wanted: %s", cases[i].text, err_get(), expected);
+    }
+}
+
+#define CHECK(CASES) check(CASES, sizeof CASES / sizeof *CASES)
+
+static void misspelt_names_get_the_nearest_right_one(void **state) {
+    (void)state;
+    static const mistake cases[] = {
+        {"local a = wrley { }", "unknown name 'wrley'; did you mean 'worley'?"},
+        {"local a = worley { freqency = 2 }",
+         "worley: unknown key 'freqency'; did you mean 'frequency'?"},
+        {"local a = worley { fractal = 'rigded' }",
+         "worley: unknown value of 'fractal' 'rigded'; did you mean 'ridged'?"},
+        {"local a = worley { }:wrap(curl { })",
+         "field: unknown method 'wrap'; did you mean 'warp'?"},
+        {"fx.ouptut = img", "effect: unknown field 'ouptut'; did you mean 'output'?"},
+        {"local a = fx.nmae", "effect: unknown field 'nmae'; did you mean 'name'?"},
+        {"param { 'x', 1, mni = 0 }", "param: unknown key 'mni'; did you mean 'min'?"},
+        {"curve { {0, 1}, shpae = 'step' }", "curve: unknown key 'shpae'; did you mean 'shape'?"},
+        {"palette { {0, '#000'}, {1, '#fff'}, spcae = 'oklab' }",
+         "palette: unknown key 'spcae'; did you mean 'space'?"},
+        {"vdb { 'x.vdb', fsp = 3 }", "vdb: unknown key 'fsp'; did you mean 'fps'?"},
+        {"orbit { ptich = 3 }", "orbit: unknown key 'ptich'; did you mean 'pitch'?"},
+        {"mesh { 'x.obj', roation = 3 }", "mesh: unknown key 'roation'; did you mean 'rotation'?"},
+        {"march { densty = 1 }", "march: unknown key 'densty'; did you mean 'density'?"},
+        {"march { density = 1, mode = 'papre' }", "march: option 'mode' cannot be 'papre'"},
+        {"local a = img.colour", "geometry: unknown output 'colour'; did you mean 'color'?"},
+        {"bake(sphere { }, { szie = 3 })", "bake: unknown key 'szie'; did you mean 'size'?"},
+        {"effect { fsp = 3 }", "effect: unknown key 'fsp'; did you mean 'fps'?"},
+    };
+    CHECK(cases);
+}
+
+static void values_of_the_wrong_kind_are_named(void **state) {
+    (void)state;
+    static const mistake cases[] = {
+        {"worley(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18)", "worley"},
+        {"worley { frequency = 'high' }", "worley: 'frequency' must be a number, {x, y, z}"},
+        {"worley { frequency = {} }", "worley: 'frequency' must be a number, {x, y, z}"},
+        {"worley { frequency = print }", "worley: the function for 'frequency' must return"},
+        {"worley { frequency = function() return 0 / 0 end }",
+         "worley: the function for 'frequency'"},
+        {"worley { frequency = worley { } }", "worley: 'frequency' varies in space"},
+        {"worley { frequency = 0 / 0 }", "worley: 'frequency' must be finite"},
+        {"worley { 1, frequency = 2 }", "worley: 'frequency' is given twice"},
+        {"worley { [2.5] = 2 }", "worley: a key is a number"},
+        {"local a = worley { } < 1", "fields and parameters cannot be compared"},
+        {"local a = worley { } .. 'x'", "attempt to concatenate"},
+        {"local a = worley { } + {}", "+: 'right side' must be"},
+        {"local a = (worley { }).q", "field: unknown method 'q'"},
+        {"local a = (worley { }).y", "'y' does not choose"},
+        {"local a = (worley { }):get()", "get: this field varies in space"},
+        {"local a = (worley { } * 1):set(3)", "set: only a parameter"},
+        {"worley { }.warp(1)", "warp"},
+        {"march(3)", "march: values without a name are images"},
+        {"march { density = img }", "march: 'density' must be"},
+        {"march { density = 1, steps = worley { } }", "march: 'steps' varies in space"},
+        {"march { density = 1, steps = 1e9 }",
+         "march: uniform 'steps' is 1e+09; accepted: 1 to 4096"},
+        {"march { density = 1, depth = 3 }", "march: input 'depth' takes an image"},
+        {"march { density = 1, mode = 3 }", "march: option 'mode' takes a word"},
+        {"march { density = 1, resolution = 2 }", "march: resolution is 2; accepted"},
+        {"march { density = 1, resolution = param { 'r', 1 } }",
+         "march: 'resolution' must be a plain"},
+        {"march { density = 1, name = 'a b' }", "pass name 'a b' is not a name"},
+        {"march { density = 1, format = 'rgb' }", "march: 'rgb' is no format"},
+        {"march { density = 1, format = {colr = 'r32f'} }", "march: no output 'colr'"},
+        {"march { }", "march: field 'density' is missing"},
+        {"over(img)", "over: input 'source' is missing"},
+        {"over { img, img, img, img, img, img }", "over: too many images"},
+        {"over { img, volume = img }", "over: input 'volume' is given twice"},
+        {"bloom { mesh { 'none.obj' } }", ""},
+        {"history(3)", "history takes an image"},
+        {"fx.output = 3", "effect: 'output' takes an image"},
+        {"fx.camera = sun { }", "effect: 'camera' takes orbit { } or camera { }"},
+        {"fx.update = 3", "effect: 'update' takes a function"},
+        {"camera { target = 3 }", "camera: 'eye' is missing"},
+        {"orbit { 3 }", "orbit takes only named values"},
+        {"orbit(3)", "orbit takes a table"},
+        {"effect { }", "effect { } is called twice"},
+        {"shader { }", "shader: its file comes first"},
+        {"shader { 'none.comp' }", ""},
+        {"shader { '../../etc/passwd' }", ""},
+        {"glsl { }", "glsl: wanted are a file and a function"},
+        {"setmetatable(img, {})", "bad argument #1 to 'setmetatable'"},
+        {"img.x = 3", "attempt to index a pass result value"},
+    };
+    CHECK(cases);
+}
+
+static void declarations_are_checked(void **state) {
+    (void)state;
+    static const mistake cases[] = {
+        {"param { }", "param: its name comes first"},
+        {"param { 'x' }", "param 'x': the default must be"},
+        {"param { 'x', {1, 2} }", "param 'x': the default must be"},
+        {"param { 'x', 1.5, integer = true }", "param 'x': integer = true needs a whole number"},
+        {"param { 'x', 5, max = 3 }", "parameter 'x' is 5; accepted: -inf to 3"},
+        {"param { 'x', 'c', words = {'a', 'b'} }", "x: unknown value of 'default' 'c'"},
+        {"param { 'x', 1, log = true }", "param 'x': log = true needs min above 0"},
+        {"param { 'a b', 1 }", "parameter name 'a b'"},
+        {"param { 'x', 1 } param { 'x', 2 }", "parameter 'x' is declared twice"},
+        {"param { 'x', 1, min = 'low' }", "param: 'min' must be a plain number"},
+        {"curve { }", "curve: 1 to 4096 keys"},
+        {"curve { {0, 1}, {1, {1, 2, 3}} }", "curve: key 2 has 3 components"},
+        {"curve { {0, 1}, 3 }", "curve: key 2 must be {time, value}"},
+        {"palette { }", "palette"},
+        {"palette { {0, '#000'} }", "palette"},
+        {"palette { {0, '#000'}, {1, 'red'} }", "palette: the colour of stop 2"},
+        {"palette { blackbody = 3 }", "palette: 'blackbody' must be a range"},
+        {"palette { {0, '#000'}, {1, '#fff'}, blackbody = {500, 3000} }", "palette: stops, 'keys'"},
+        {"palette { blackbody = {500, 3000} }(curl { })", "palette: 'position' takes 1 component"},
+        {"effect { fps = 0 }", "effect { } is called twice"},
+        {"vdb { }", "vdb: its files come first"},
+        {"vdb { '../*.vdb' }", ""},
+        {"raw { 'x.raw' }", "raw: 'size' is missing"},
+        {"raw { 'x.raw', size = {1, 2, 0} }", "raw: 'size' has 0"},
+        {"raw { 'x.raw', size = 8, type = 'u32' }", "raw: unknown value of 'type' 'u32'"},
+        {"mesh { }", "mesh: its file comes first"},
+        {"mesh { '/etc/passwd' }", ""},
+        {"bake(sphere { }, { size = 1e9 })", "bake: 'size' is 1e+09"},
+        {"bake(perlin { })", "bake: the field has no finite bounds"},
+    };
+    CHECK(cases);
+}
+
+static void a_file_must_be_a_whole_effect(void **state) {
+    (void)state;
+    assert_null(helper_load(""));
+    assert_non_null(strstr(err_get(), "no effect is declared"));
+    assert_null(helper_load("effect { }"));
+    assert_non_null(strstr(err_get(), "has no picture"));
+    assert_null(helper_load("local fx = effect { } local img = geometry { }\n"
+                            "pcall(march, { density = 1, depht = 2 }) fx.output = img"));
+    assert_non_null(strstr(err_get(), "march failed, and the file went on"));
+    assert_null(helper_load("effect { fps = 0 }"));
+    assert_non_null(strstr(err_get(), "e.lua:1: fps is 0"));
+}
+
+static void endless_expressions_are_limited(void **state) {
+    (void)state;
+    assert_null(helper_load("local f = perlin { } while true do f = f + 1 end"));
+    assert_non_null(strstr(err_get(), "nested deeper"));
+    script_limits limits = {.memory = 8 << 20};
+    assert_null(helper_load_with("while true do local f = perlin { } end", &limits, NULL, 0));
+    assert_non_null(strstr(err_get(), "memory limit of 8 MiB exceeded"));
+    assert_null(helper_load_with("for i = 1, 1e6 do param { 'p' .. i, 1 } end", &limits, NULL, 0));
+    assert_non_null(strstr(err_get(), "memory limit of 8 MiB exceeded"));
+    assert_null(helper_load_with("while true do geometry { } end", &limits, NULL, 0));
+    assert_non_null(strstr(err_get(), "memory limit of 8 MiB exceeded"));
+    assert_null(
+        helper_load_with("while true do local c = curve { {0, 1}, {1, 2} } end", &limits, NULL, 0));
+    assert_non_null(strstr(err_get(), "memory limit of 8 MiB exceeded"));
+}
+
+static void the_prelude_is_never_blamed(void **state) {
+    (void)state;
+    assert_null(helper_load("effect { }\nlocal x = smoothstep('a', 2, 3)"));
+    assert_non_null(strstr(err_get(), "e.lua:2: smoothstep: 'low' must be"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(misspelt_names_get_the_nearest_right_one),
+        cmocka_unit_test(values_of_the_wrong_kind_are_named),
+        cmocka_unit_test(declarations_are_checked),
+        cmocka_unit_test(a_file_must_be_a_whole_effect),
+        cmocka_unit_test(endless_expressions_are_limited),
+        cmocka_unit_test(the_prelude_is_never_blamed),
+    };
+    return cmocka_run_group_tests(tests, helper_setup, helper_teardown);
+}
