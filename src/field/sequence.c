@@ -1,0 +1,386 @@
+// Sequences: which files, which channels, which frame at which time.
+//
+// All frames share one box: the union of the active voxels of every readable grid of every file,
+// moved outward to the lattice of the first grid that is not empty, so that frames on this lattice
+// are copied voxel by voxel, plus one voxel of background on each side, into which linear filtering
+// fades. Raw files have the box that their description gives them.
+#include "field/sequence.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include "field/sequence_parts.h"
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+static const char *const loop_names[] = {"clip", "extend", "repeat", "ping_pong"};
+
+const char *sequence_loop_name(sequence_loop loop) {
+    return (unsigned)loop < COUNT_OF(loop_names) ? loop_names[loop] : "?";
+}
+
+// ---- names of channels ------------------------------------------------------------------------
+
+enum { MAX_ALIASES = 6 };
+
+static const char *const aliases[][MAX_ALIASES] = {
+    // the first is the canonical name
+    {"density", "smoke", "Density"},
+    {"temperature", "temp", "heat"},
+    {"flame", "flames", "burn", "fire"},
+    {"velocity", "vel", "v"},
+    {"color", "Cd"},
+    {"surface", "sdf"},
+};
+
+static const char *const *find_aliases(const char *name) { // NULL: it has none
+    for (size_t i = 0; i < COUNT_OF(aliases); i++)
+        for (size_t k = 0; k < MAX_ALIASES && aliases[i][k]; k++)
+            if (strcmp(aliases[i][k], name) == 0) return aliases[i];
+    return NULL;
+}
+
+static const vdb_grid_info *find_exact(const vdb_info *info, const char *name, int part) {
+    for (size_t i = 0; i < info->count; i++) {
+        const vdb_grid_info *grid = &info->grids[i];
+        size_t length = strlen(name);
+        if (grid->components == 0 || !grid->linear || strncmp(grid->name, name, length) != 0)
+            continue;
+        const char *rest = grid->name + length;
+        if (rest[0] == '\0' && part == 0) return grid;
+        if (rest[0] == '.' && rest[1] == 'x' + part && rest[2] == '\0') return grid;
+    }
+    return NULL;
+}
+
+const vdb_grid_info *sequence_find_grid(const vdb_info *info, const char *channel, int part) {
+    const vdb_grid_info *grid = find_exact(info, channel, part);
+    const char *const *row = find_aliases(channel);
+    for (size_t k = 0; !grid && row && k < MAX_ALIASES && row[k]; k++)
+        grid = find_exact(info, row[k], part);
+    return grid;
+}
+
+static bool is_velocity(const char *channel) {
+    const char *const *row = find_aliases(channel);
+    return row && strcmp(row[0], "velocity") == 0;
+}
+
+// ---- files and box ----------------------------------------------------------------------------
+
+static bool list_files(sequence *s) {
+    const char *pattern = s->desc.pattern;
+    file_list list = {0};
+    if (file_exists(pattern)) {
+        const char **one = arena_alloc(s->memory, sizeof *one);
+        one[0] = arena_string(s->memory, pattern);
+        s->files = one;
+        s->file_count = 1;
+        return true;
+    }
+    if (!file_glob(pattern, &list)) return false;
+    bool ok = list.count > 0 && list.count <= SEQUENCE_MAX_FRAMES;
+    if (list.count == 0)
+        err_set("%s: no file has such a name", pattern);
+    else if (!ok)
+        err_set("%s: %zu files; at most %d are accepted", pattern, list.count, SEQUENCE_MAX_FRAMES);
+    const char **files = arena_alloc(s->memory, (list.count + 1) * sizeof *files);
+    for (size_t i = 0; ok && i < list.count; i++) files[i] = arena_string(s->memory, list.paths[i]);
+    s->files = files;
+    s->file_count = list.count;
+    file_list_free(&list);
+    return ok;
+}
+
+static bool usable(const vdb_grid_info *grid) {
+    return grid->components > 0 && grid->linear && grid->index_min[0] <= grid->index_max[0];
+}
+
+typedef struct lattice { // of voxel borders, along one axis
+    double origin, voxel;
+} lattice;
+
+static bool snap(sequence *s, const box3 *all, const vdb_grid_info *first) {
+    const float low[3] = {all->min.x, all->min.y, all->min.z};
+    const float high[3] = {all->max.x, all->max.y, all->max.z};
+    const float base[3] = {first->box.min.x, first->box.min.y, first->box.min.z};
+    float min[3], max[3];
+    uint64_t voxels = 1;
+    for (int i = 0; i < 3; i++) {
+        lattice l = {(double)base[i], (double)first->voxel_size[i]};
+        const double slack = 1e-3; // of a voxel: rounding of the boxes
+        double from = floor(((double)low[i] - l.origin) / l.voxel + slack) - 1;
+        double to = ceil(((double)high[i] - l.origin) / l.voxel - slack) + 1;
+        if (!(to - from >= 1 && to - from <= 1e6))
+            return err_set("%s: the sequence spans %g m in voxels of %g m", s->desc.pattern,
+                           (double)high[i] - (double)low[i], l.voxel);
+        s->file_size[i] = (uint32_t)(to - from);
+        voxels *= s->file_size[i]; // at most 1e18
+        min[i] = (float)(l.origin + from * l.voxel);
+        max[i] = (float)(l.origin + to * l.voxel);
+    }
+    s->file_box = (box3){{min[0], min[1], min[2]}, {max[0], max[1], max[2]}};
+    if (voxels * sizeof(uint16_t) > s->desc.max_frame_bytes)
+        return err_set("%s: the box of the whole sequence has %u x %u x %u voxels, more than the "
+                       "limit of %llu bytes a frame",
+                       s->desc.pattern, s->file_size[0], s->file_size[1], s->file_size[2],
+                       (unsigned long long)s->desc.max_frame_bytes);
+    return true;
+}
+
+static bool open_vdb(sequence *s) {
+    vdb_info *infos = arena_alloc(s->memory, s->file_count * sizeof *infos);
+    const vdb_grid_info *first = NULL;
+    box3 all = box3_empty();
+    size_t readable = 0;
+    for (size_t i = 0; i < s->file_count; i++) {
+        if (!vdb_read_info(s->files[i], s->memory, &infos[i])) return false;
+        for (size_t k = 0; k < infos[i].count; k++) {
+            const vdb_grid_info *grid = &infos[i].grids[k];
+            if (grid->components > 0 && grid->linear) readable++;
+            if (!usable(grid)) continue;
+            if (!first) first = grid;
+            all = box3_union(all, grid->box);
+        }
+    }
+    s->infos = infos;
+    s->frame_count = (uint32_t)s->file_count;
+    if (readable == 0)
+        return err_set("%s: no grid of numbers or vectors in %s", s->desc.pattern,
+                       s->file_count > 1 ? "these files" : "this file");
+    if (!first) { // nothing but empty grids: a voxel of nothing
+        s->file_box = (box3){{0, 0, 0}, {1, 1, 1}};
+        for (int i = 0; i < 3; i++) s->file_size[i] = 1;
+        return true;
+    }
+    return snap(s, &all, first);
+}
+
+static void place(sequence *s) { // the grid's box and size, from the file's
+    box3 b = s->file_box;
+    const uint32_t *size = s->file_size;
+    float k = s->desc.scale;
+    float3 o = s->desc.offset;
+    field_grid *grid = &s->grid;
+    memcpy(grid->size, size, sizeof grid->size);
+    if (s->desc.y_up) {
+        grid->size[1] = size[2];
+        grid->size[2] = size[1];
+        b = (box3){{b.min.x, -b.max.z, b.min.y}, {b.max.x, -b.min.z, b.max.y}};
+    }
+    grid->box = (box3){{b.min.x * k + o.x, b.min.y * k + o.y, b.min.z * k + o.z},
+                       {b.max.x * k + o.x, b.max.y * k + o.y, b.max.z * k + o.z}};
+}
+
+// ---- playback ---------------------------------------------------------------------------------
+
+static uint32_t fold(const sequence *s, int64_t frame) { // into the range, as the loop says
+    int64_t count = s->frame_count;
+    switch (s->desc.loop) {
+    case SEQUENCE_REPEAT:
+        return (uint32_t)(((frame % count) + count) % count);
+    case SEQUENCE_PING_PONG: {
+        int64_t round = count > 1 ? 2 * count - 2 : 1, at = ((frame % round) + round) % round;
+        return (uint32_t)(at < count ? at : round - at);
+    }
+    default:
+        return (uint32_t)(frame < 0 ? 0 : frame >= count ? count - 1 : frame);
+    }
+}
+
+static double position_at(const sequence *s, double time) { // in frames, not folded
+    double at = (time - s->desc.start) * s->desc.fps * s->desc.speed;
+    if (!(fabs(at) < 1e15)) at = 0;
+    return at;
+}
+
+// Times are mostly frame / fps: without the slack, rounding would show the frame before.
+static int64_t whole_frame(double position) {
+    return (int64_t)floor(position + 1e-6);
+}
+
+bool sequence_frames_at(const sequence *s, double time, uint32_t frames[2], float *blend) {
+    double at = position_at(s, time);
+    int64_t frame = whole_frame(at);
+    frames[0] = fold(s, frame);
+    frames[1] = s->desc.blend ? fold(s, frame + 1) : frames[0];
+    *blend = frames[1] != frames[0] ? clampf((float)(at - (double)frame), 0, 1) : 0;
+    if (*blend < 1e-5f) *blend = 0;
+    return s->desc.loop != SEQUENCE_CLIP || (frame >= 0 && frame < (int64_t)s->frame_count);
+}
+
+static void decode_ahead(sequence *s, double position) {
+    double step = position - s->last_position;
+    s->last_position = position;
+    // After a jump: playback at the rate of the files is as good a guess as any.
+    if (!(fabs(step) > 1e-3 && fabs(step) < 8)) step = 1;
+    uint32_t frames[SEQUENCE_MAX_JOBS];
+    size_t count = 0;
+    for (int i = 1; count + 1 < SEQUENCE_MAX_JOBS && i < SEQUENCE_MAX_JOBS; i++) {
+        int64_t frame = whole_frame(position + step * i);
+        if (s->desc.loop == SEQUENCE_CLIP && (frame < 0 || frame >= (int64_t)s->frame_count)) break;
+        frames[count++] = fold(s, frame + (s->desc.blend && step > 0));
+    }
+    sequence_cache_ahead(s, frames, count);
+}
+
+static bool show(sequence *s, gpu *g, const uint32_t frames[2], float blend) {
+    field_grid_state *state = &s->grid.state;
+    sequence_slot *now = sequence_cache_get(s, g, frames[0]);
+    if (!now) return false;
+    sequence_slot *next = blend > 0 ? sequence_cache_get(s, g, frames[1]) : now;
+    if (!next) return false;
+    memcpy(state->images[0], now->images, sizeof now->images);
+    memcpy(state->images[1], next->images, sizeof next->images);
+    state->active = box3_union(now->active, next->active);
+    return true;
+}
+
+static bool update(field_grid *grid, gpu *g, double time) {
+    sequence *s = (sequence *)grid;
+    uint32_t frames[2];
+    float blend;
+    bool inside = sequence_frames_at(s, time, frames, &blend);
+    s->sealed = true;
+    if (g) {
+        if (!show(s, g, frames, blend)) return false;
+        decode_ahead(s, position_at(s, time));
+    } else {
+        grid->state.active = grid->box;
+    }
+    grid->state.blend = blend;
+    if (!inside) grid->state.active = box3_empty();
+    return true;
+}
+
+static void destroy(field_grid *grid, gpu *g) {
+    sequence_cache_free((sequence *)grid, g);
+}
+
+// ---- public -----------------------------------------------------------------------------------
+
+static bool check(sequence *s) {
+    sequence_desc *d = &s->desc;
+    if (d->fps == 0) d->fps = 24;
+    if (d->speed == 0) d->speed = 1;
+    if (d->scale == 0) d->scale = 1;
+    if (d->max_frame_bytes == 0) d->max_frame_bytes = (uint64_t)512 << 20;
+    if (d->raw.value_scale == 0) d->raw.value_scale = 1;
+    if (!d->raw.channel) d->raw.channel = "density";
+    if (!isfinite(d->fps) || d->fps < 0)
+        return err_set("%s: %g frames a second; more than 0 are accepted", d->pattern, d->fps);
+    if (!isfinite(d->speed) || !isfinite(d->start))
+        return err_set("%s: start and speed must be finite", d->pattern);
+    if (!isfinite(d->scale) || d->scale < 1e-9f || d->scale > 1e9f)
+        return err_set("%s: scale %g; more than 0 is accepted", d->pattern, (double)d->scale);
+    if (!isfinite(d->offset.x) || !isfinite(d->offset.y) || !isfinite(d->offset.z))
+        return err_set("%s: the offset is not finite", d->pattern);
+    if ((unsigned)d->loop >= COUNT_OF(loop_names))
+        return err_set("%s: unknown loop mode %d", d->pattern, (int)d->loop);
+    return true;
+}
+
+sequence *sequence_create(arena *memory, const sequence_desc *desc) {
+    sequence *s = arena_alloc(memory, sizeof *s);
+    s->memory = memory;
+    s->desc = *desc;
+    s->desc.pattern = arena_string(memory, desc->pattern);
+    s->raw = strcmp(path_extension(desc->pattern), "raw") == 0 || desc->raw.type;
+    if (!check(s) || !list_files(s)) return NULL;
+    if (s->raw) {
+        s->desc.raw.channel = arena_string(memory, s->desc.raw.channel);
+        if (s->desc.raw.type) s->desc.raw.type = arena_string(memory, s->desc.raw.type);
+        if (s->file_count > 1) {
+            err_set("%s: one raw file holds all frames, but %zu have such a name", desc->pattern,
+                    s->file_count);
+            return NULL;
+        }
+    }
+    if (s->raw ? !sequence_raw_open(s) : !open_vdb(s)) return NULL;
+    place(s);
+    s->grid.name = arena_string(memory, path_name(desc->pattern));
+    s->grid.blends = s->desc.blend && s->frame_count > 1;
+    s->grid.state.active = box3_empty();
+    s->grid.update = update;
+    s->grid.destroy = destroy;
+    return s;
+}
+
+static int components_of(const sequence *s, const char *name) { // 0: there is no such channel
+    if (s->raw) return strcmp(name, s->desc.raw.channel) == 0 ? 1 : 0;
+    int components = 0;
+    for (size_t i = 0; i < s->file_count; i++) {
+        const vdb_grid_info *grid = sequence_find_grid(&s->infos[i], name, 0);
+        if (!grid) continue;
+        bool split = grid->components == 1 && sequence_find_grid(&s->infos[i], name, 1) &&
+                     sequence_find_grid(&s->infos[i], name, 2);
+        int here = split ? 3 : grid->components;
+        if (here > components) components = here;
+    }
+    return components;
+}
+
+static void add_name(strbuf *out, const char *name) {
+    char quoted[256];
+    str_copy(quoted, sizeof quoted, name);
+    if (out->length > 2000) return;
+    strbuf_add(out, "%s%s", out->length > 0 ? ", " : "", quoted);
+}
+
+static int no_channel(const sequence *s, const char *name) {
+    strbuf names = {0};
+    if (s->raw) add_name(&names, s->desc.raw.channel);
+    for (size_t i = 0; !s->raw && i < s->file_count && names.length == 0; i++)
+        for (size_t k = 0; k < s->infos[i].count; k++) add_name(&names, s->infos[i].grids[k].name);
+    err_set("%s: no grid is named '%.64s'; there are: %s", s->desc.pattern, name,
+            strbuf_text(&names));
+    strbuf_free(&names);
+    return -1;
+}
+
+int sequence_channel(sequence *s, const char *name, int *components) {
+    for (size_t i = 0; i < s->channel_count; i++) {
+        if (strcmp(s->channels[i].name, name) != 0) continue;
+        *components = s->channels[i].components;
+        return s->channels[i].first;
+    }
+    int count = components_of(s, name);
+    if (count == 0) return no_channel(s, name);
+    // A vector lies in one texture.
+    int first = s->grid.channel_count, end;
+    if (first % 4 + count > 4) first += 4 - first % 4;
+    end = first + count;
+    uint64_t bytes = (uint64_t)s->file_size[0] * s->file_size[1] * s->file_size[2] *
+                     (uint64_t)((end + 3) / 4 * 4) * sizeof(uint16_t);
+    if (end > 4 * FIELD_GRID_IMAGES || s->sealed ||
+        (s->channel_count > 0 && bytes > s->desc.max_frame_bytes)) {
+        err_set("%s: '%.64s' cannot be added: %s", s->desc.pattern, name,
+                s->sealed                     ? "the sequence is playing already"
+                : end > 4 * FIELD_GRID_IMAGES ? "a sequence has at most 16 channels"
+                                              : "a frame would exceed its limit of memory");
+        return -1;
+    }
+    s->channels[s->channel_count++] = (sequence_channel_info){
+        arena_string(s->memory, name), first, count, is_velocity(name) ? s->desc.scale : 1};
+    s->grid.channel_count = end;
+    *components = count;
+    return first;
+}
+
+field_grid *sequence_grid(sequence *s) {
+    return &s->grid;
+}
+
+uint32_t sequence_frame_count(const sequence *s) {
+    return s->frame_count;
+}
+
+double sequence_duration(const sequence *s) {
+    return (double)s->frame_count / s->desc.fps;
+}
+
+size_t sequence_files(const sequence *s, const char *const **out) {
+    *out = s->files;
+    return s->file_count;
+}

@@ -1,0 +1,137 @@
+// Raw files: frames of one channel, one after another, little-endian. The numbers that describe
+// them come from strangers: every product is checked before it is formed.
+#include "base/error.h"
+#include "base/memory.h"
+#include "field/sequence_parts.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MAX_SIDE = 4096 };
+
+static uint32_t type_size(const char *type) {
+    if (strcmp(type, "u8") == 0) return 1;
+    if (strcmp(type, "u16") == 0 || strcmp(type, "f16") == 0) return 2;
+    return strcmp(type, "f32") == 0 ? 4 : 0;
+}
+
+static bool check_numbers(const sequence *s) {
+    const char *path = s->files[0];
+    const uint32_t *size = s->desc.raw.size;
+    if (!s->desc.raw.type || type_size(s->desc.raw.type) == 0)
+        return err_set("%s: raw type '%.16s'; u8, u16, f16 and f32 are accepted", path,
+                       s->desc.raw.type ? s->desc.raw.type : "");
+    for (int i = 0; i < 3; i++)
+        if (size[i] < 1 || size[i] > MAX_SIDE)
+            return err_set("%s: raw size %u x %u x %u; 1 to %d voxels a side are accepted", path,
+                           size[0], size[1], size[2], MAX_SIDE);
+    if (!isfinite(s->desc.raw.value_scale))
+        return err_set("%s: the raw value scale is not finite", path);
+    float voxel = s->desc.raw.voxel_size;
+    if (!isfinite(voxel) || voxel < 0 || voxel > 1e6f)
+        return err_set("%s: raw voxel size %g m; more than 0 and at most 1e6 is accepted", path,
+                       (double)voxel);
+    return true;
+}
+
+static bool check_length(sequence *s, uint64_t length) {
+    const char *path = s->files[0];
+    sequence_raw_layout *l = &s->layout;
+    const uint32_t *size = s->desc.raw.size;
+    uint64_t voxels = (uint64_t)size[0] * size[1] * size[2]; // at most 2^36
+    l->texel = type_size(s->desc.raw.type);
+    l->frame_bytes = voxels * l->texel;
+    l->offset = s->desc.raw.offset;
+    l->stride = s->desc.raw.stride ? s->desc.raw.stride : l->frame_bytes;
+    if (voxels * sizeof(uint16_t) > s->desc.max_frame_bytes)
+        return err_set("%s: a frame of %u x %u x %u voxels is larger than the limit of %llu bytes",
+                       path, size[0], size[1], size[2],
+                       (unsigned long long)s->desc.max_frame_bytes);
+    if (l->stride < l->frame_bytes)
+        return err_set("%s: frames of %llu bytes cannot lie %llu bytes apart", path,
+                       (unsigned long long)l->frame_bytes, (unsigned long long)l->stride);
+    if (l->offset > length || length - l->offset < l->frame_bytes)
+        return err_set("%s: it holds %llu bytes; its first frame needs %llu from byte %llu on",
+                       path, (unsigned long long)length, (unsigned long long)l->frame_bytes,
+                       (unsigned long long)l->offset);
+    uint64_t whole = (length - l->offset - l->frame_bytes) / l->stride + 1;
+    if (s->desc.raw.frames > whole)
+        return err_set("%s: %u frames are wanted, but it holds only %llu", path, s->desc.raw.frames,
+                       (unsigned long long)whole);
+    uint64_t frames = s->desc.raw.frames ? s->desc.raw.frames : whole;
+    if (frames > SEQUENCE_MAX_FRAMES)
+        return err_set("%s: %llu frames; at most %d are accepted", path, (unsigned long long)frames,
+                       SEQUENCE_MAX_FRAMES);
+    l->frames = (uint32_t)frames;
+    return true;
+}
+
+bool sequence_raw_open(sequence *s) {
+    struct stat info;
+    if (stat(s->files[0], &info) != 0) return err_set("%s: %s", s->files[0], strerror(errno));
+    if (!S_ISREG(info.st_mode)) return err_set("%s: not a regular file", s->files[0]);
+    if (!check_numbers(s) || !check_length(s, (uint64_t)info.st_size)) return false;
+    s->frame_count = s->layout.frames;
+    memcpy(s->file_size, s->desc.raw.size, sizeof s->file_size);
+    float voxel = s->desc.raw.voxel_size;
+    if (voxel == 0) voxel = 1.0f / (float)s->file_size[0];
+    s->file_box = (box3){{0, 0, 0},
+                         {voxel * (float)s->file_size[0], voxel * (float)s->file_size[1],
+                          voxel * (float)s->file_size[2]}};
+    return true;
+}
+
+static float convert(const sequence *s, const uint8_t *at) {
+    uint16_t word = (uint16_t)(at[0] | (s->layout.texel > 1 ? at[1] << 8 : 0));
+    switch (s->desc.raw.type[0]) {
+    case 'u':
+        return s->layout.texel == 1 ? (float)word / 255.0f : (float)word / 65535.0f;
+    default:
+        break;
+    }
+    if (s->layout.texel == 2) return half_to_float(word);
+    uint32_t bits = (uint32_t)word | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static bool read_at(const char *path, uint64_t offset, uint8_t *out, size_t size) {
+    int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0) return err_set("%s: %s", path, strerror(errno));
+    size_t done = 0;
+    while (done < size) {
+        ssize_t got = pread(file, out + done, size - done, (off_t)(offset + done));
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) {
+            bool ended = got == 0;
+            err_set("%s: %s", path,
+                    ended ? "it became shorter while it was read" : strerror(errno));
+            close(file);
+            return false;
+        }
+        done += (size_t)got;
+    }
+    close(file);
+    return true;
+}
+
+bool sequence_raw_read(const sequence *s, uint32_t frame, float *out, uint64_t *bad) {
+    size_t size = (size_t)s->layout.frame_bytes, count = size / s->layout.texel;
+    uint8_t *bytes = mem_alloc(size);
+    // No overflow: the frame lies inside the file.
+    bool ok = read_at(s->files[0], s->layout.offset + frame * s->layout.stride, bytes, size);
+    for (size_t i = 0; ok && i < count; i++) {
+        float v = convert(s, bytes + i * s->layout.texel) * s->desc.raw.value_scale;
+        if (!isfinite(v)) {
+            v = 0;
+            ++*bad;
+        }
+        out[i] = v;
+    }
+    mem_free(bytes);
+    return ok;
+}
