@@ -1,0 +1,395 @@
+// Sequences without a device: files, boxes, channels, frames by time, and what decoding makes.
+#include "field_build.h"
+
+#include "base/file.h"
+#include "field/sequence_parts.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+static char folder[64];
+
+static const char *in_folder(const char *name) {
+    return arena_format(build_memory(), "%s/%s", folder, name);
+}
+
+enum { SIDE = 4 };
+
+// A block of SIDE^3 voxels of 0.5 m whose lowest voxel has index `at` on every axis; voxel i holds
+// base + i.
+static void write_block(const char *file, const char *grid, int at, float base) {
+    float values[SIDE * SIDE * SIDE];
+    for (int i = 0; i < SIDE * SIDE * SIDE; i++) values[i] = base + (float)i;
+    float origin = 0.5f * (float)at;
+    vdb_write_grid desc = {.name = grid,
+                           .size = {SIDE, SIDE, SIDE},
+                           .values = values,
+                           .components = 1,
+                           .voxel_size = 0.5f,
+                           .origin = {origin, origin, origin},
+                           .grid_class = VDB_FOG};
+    if (!vdb_write(in_folder(file), &desc, 1)) fail_msg("%s", err_get());
+}
+
+static sequence *open_or_fail(sequence_desc desc) {
+    desc.pattern = in_folder(desc.pattern);
+    sequence *s = sequence_create(build_memory(), &desc);
+    if (!s) fail_msg("%s", err_get());
+    return s;
+}
+
+static void refuses(sequence_desc desc, const char *part) {
+    desc.pattern = in_folder(desc.pattern);
+    err_clear();
+    assert_null(sequence_create(build_memory(), &desc));
+    assert_error(part);
+}
+
+static float texel(const sequence *s, const sequence_texels *t, int x, int y, int z, int channel) {
+    int count = sequence_image_channels(s, channel / 4), width = count == 3 ? 4 : count;
+    size_t at = ((size_t)z * s->grid.size[1] + (size_t)y) * s->grid.size[0] + (size_t)x;
+    return half_to_float(t->images[channel / 4][at * (size_t)width + (size_t)(channel % 4)]);
+}
+
+static void one_box_encloses_all_frames(void **state) {
+    (void)state;
+    write_block("a1.vdb", "density", 0, 1);
+    write_block("a2.vdb", "density", 3, 100);
+    sequence *s = open_or_fail((sequence_desc){.pattern = "a*.vdb"});
+    assert_int_equal(sequence_frame_count(s), 2);
+    // Voxels 0..6, borders half a voxel outside, and a voxel of nothing around.
+    const field_grid *grid = sequence_grid(s);
+    for (int i = 0; i < 3; i++) assert_int_equal(grid->size[i], 9);
+    assert_true(fabsf(grid->box.min.x + 0.75f) < 1e-6f);
+    assert_true(fabsf(grid->box.max.z - 3.75f) < 1e-6f);
+    assert_true(fabs(sequence_duration(s) - 2.0 / 24) < 1e-9);
+    const char *const *files;
+    assert_int_equal(sequence_files(s, &files), 2);
+    assert_string_equal(path_name(files[1]), "a2.vdb");
+}
+
+static void voxels_on_the_lattice_are_copied_exactly(void **state) {
+    (void)state;
+    sequence *s = open_or_fail((sequence_desc){.pattern = "a*.vdb"});
+    int components;
+    assert_int_equal(sequence_channel(s, "density", &components), 0);
+    assert_int_equal(components, 1);
+    for (uint32_t frame = 0; frame < 2; frame++) {
+        sequence_texels t;
+        assert_true(sequence_decode(s, frame, &t));
+        int at = frame == 0 ? 1 : 4;
+        float base = frame == 0 ? 1 : 100;
+        for (int i = 0; i < SIDE * SIDE * SIDE; i++) {
+            int x = i % SIDE, y = i / SIDE % SIDE, z = i / SIDE / SIDE;
+            float got = texel(s, &t, at + x, at + y, at + z, 0);
+            assert_true(got == half_to_float(half_from_float(base + (float)i)));
+        }
+        assert_true(texel(s, &t, 0, 0, 0, 0) == 0);
+        // From half a voxel before the first border to half a voxel after the last.
+        float low = frame == 0 ? -0.5f : 1;
+        assert_true(fabsf(t.active.min.x - low) < 1e-5f);
+        assert_true(fabsf(t.active.max.y - (low + 2.5f)) < 1e-5f);
+        sequence_texels_free(&t);
+    }
+}
+
+static void a_frame_without_the_grid_is_empty(void **state) {
+    (void)state;
+    write_block("m1.vdb", "density", 0, 1);
+    write_block("m2.vdb", "flame", 0, 1);
+    sequence *s = open_or_fail((sequence_desc){.pattern = "m*.vdb"});
+    int components;
+    assert_int_equal(sequence_channel(s, "density", &components), 0);
+    sequence_texels t;
+    assert_true(sequence_decode(s, 1, &t));
+    assert_true(box3_is_empty(t.active));
+    assert_true(texel(s, &t, 2, 2, 2, 0) == 0);
+    sequence_texels_free(&t);
+}
+
+static void channels_are_found_by_alias(void **state) {
+    (void)state;
+    write_block("alias.vdb", "smoke", 0, 1);
+    sequence *s = open_or_fail((sequence_desc){.pattern = "alias.vdb"});
+    int components;
+    assert_int_equal(sequence_channel(s, "density", &components), 0);
+    assert_int_equal(sequence_channel(s, "density", &components), 0); // the same again
+    assert_int_equal(sequence_channel(s, "smoke", &components), 1);
+    assert_int_equal(sequence_channel(s, "heat", &components), -1);
+    assert_error("'heat'");
+    assert_error("smoke");
+}
+
+static void three_scalar_grids_make_a_vector(void **state) {
+    (void)state;
+    float values[3][8];
+    vdb_write_grid grids[3];
+    static const char *const names[] = {"vel.x", "vel.y", "vel.z"};
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 8; k++) values[i][k] = (float)(10 * (i + 1) + k);
+        grids[i] = (vdb_write_grid){.name = names[i],
+                                    .size = {2, 2, 2},
+                                    .values = values[i],
+                                    .components = 1,
+                                    .voxel_size = 1};
+    }
+    assert_true(vdb_write(in_folder("split.vdb"), grids, 3));
+    sequence *s = open_or_fail((sequence_desc){.pattern = "split.vdb", .y_up = true, .scale = 2});
+    int components;
+    assert_int_equal(sequence_channel(s, "velocity", &components), 0);
+    assert_int_equal(components, 3);
+    sequence_texels t;
+    assert_true(sequence_decode(s, 0, &t));
+    // The file's voxel (1, 0, 0) is value 1; Y up turned to Z up: y = -z, z = y; metres a second.
+    assert_true(texel(s, &t, 2, 2, 1, 0) == 2 * 11);
+    assert_true(texel(s, &t, 2, 2, 1, 1) == 2 * -31);
+    assert_true(texel(s, &t, 2, 2, 1, 2) == 2 * 21);
+    sequence_texels_free(&t);
+}
+
+static void y_up_turns_box_and_voxels(void **state) {
+    (void)state;
+    float values[2 * 3 * 4];
+    for (int i = 0; i < 24; i++) values[i] = (float)(i + 1);
+    vdb_write_grid grid = {.name = "density",
+                           .size = {2, 3, 4},
+                           .values = values,
+                           .components = 1,
+                           .voxel_size = 1,
+                           .origin = {10, 20, 30}};
+    assert_true(vdb_write(in_folder("up.vdb"), &grid, 1));
+    sequence *s = open_or_fail(
+        (sequence_desc){.pattern = "up.vdb", .y_up = true, .scale = 0.5f, .offset = {1, 2, 3}});
+    int components;
+    sequence_channel(s, "density", &components);
+    const field_grid *g = sequence_grid(s);
+    assert_int_equal(g->size[0], 4);
+    assert_int_equal(g->size[1], 6);
+    assert_int_equal(g->size[2], 5);
+    assert_true(fabsf(g->box.min.x - (8.5f * 0.5f + 1)) < 1e-5f);
+    assert_true(fabsf(g->box.min.y - (-34.5f * 0.5f + 2)) < 1e-5f);
+    assert_true(fabsf(g->box.max.z - (23.5f * 0.5f + 3)) < 1e-5f);
+    sequence_texels t;
+    assert_true(sequence_decode(s, 0, &t));
+    for (int i = 0; i < 24; i++) {
+        int x = i % 2, y = i / 2 % 3, z = i / 6;
+        assert_true(texel(s, &t, 1 + x, 4 - z, 1 + y, 0) == (float)(i + 1));
+    }
+    sequence_texels_free(&t);
+}
+
+static void values_that_are_not_finite_count_as_zero(void **state) {
+    (void)state;
+    float values[8] = {1, INFINITY, 2, 3, -INFINITY, 4, 5, 6};
+    vdb_write_grid grid = {
+        .name = "density", .size = {2, 2, 2}, .values = values, .components = 1, .voxel_size = 1};
+    assert_true(vdb_write(in_folder("nan.vdb"), &grid, 1));
+    sequence *s = open_or_fail((sequence_desc){.pattern = "nan.vdb"});
+    int components;
+    sequence_channel(s, "density", &components);
+    sequence_texels t;
+    assert_true(sequence_decode(s, 0, &t));
+    assert_int_equal(t.bad, 2);
+    assert_true(texel(s, &t, 2, 1, 1, 0) == 0 && texel(s, &t, 1, 1, 2, 0) == 0);
+    assert_true(texel(s, &t, 1, 2, 1, 0) == 2);
+    sequence_texels_free(&t);
+}
+
+static void loops_fold_time(void **state) {
+    (void)state;
+    for (int i = 1; i <= 3; i++)
+        write_block(arena_format(build_memory(), "loop%d.vdb", i), "density", 0, (float)i);
+    static const struct {
+        sequence_loop loop;
+        int frame; // of playback
+        uint32_t shown;
+        bool visible;
+    } cases[] = {
+        {SEQUENCE_CLIP, -1, 0, false},     {SEQUENCE_CLIP, 0, 0, true},
+        {SEQUENCE_CLIP, 2, 2, true},       {SEQUENCE_CLIP, 3, 2, false},
+        {SEQUENCE_EXTEND, -5, 0, true},    {SEQUENCE_EXTEND, 9, 2, true},
+        {SEQUENCE_REPEAT, 3, 0, true},     {SEQUENCE_REPEAT, 7, 1, true},
+        {SEQUENCE_REPEAT, -1, 2, true},    {SEQUENCE_PING_PONG, 3, 1, true},
+        {SEQUENCE_PING_PONG, 4, 0, true},  {SEQUENCE_PING_PONG, 5, 1, true},
+        {SEQUENCE_PING_PONG, -1, 1, true},
+    };
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        sequence *s = open_or_fail(
+            (sequence_desc){.pattern = "loop*.vdb", .fps = 30, .start = 2, .loop = cases[i].loop});
+        uint32_t frames[2];
+        float blend;
+        bool visible = sequence_frames_at(s, 2 + cases[i].frame / 30.0, frames, &blend);
+        assert_int_equal(frames[0], cases[i].shown);
+        assert_int_equal(visible, cases[i].visible);
+        assert_true(blend == 0);
+    }
+    assert_string_equal(sequence_loop_name(SEQUENCE_PING_PONG), "ping_pong");
+}
+
+// 1/24 is no binary fraction: the product of a frame's time and the rate may fall below the frame.
+static void frames_are_hit_in_spite_of_rounding(void **state) {
+    (void)state;
+    float zeros[100] = {0};
+    assert_true(file_write(in_folder("many.raw"), zeros, sizeof zeros));
+    sequence *s = open_or_fail(
+        (sequence_desc){.pattern = "many.raw", .raw = {.type = "u8", .size = {1, 1, 1}}});
+    assert_int_equal(sequence_frame_count(s), 400);
+    for (uint32_t i = 0; i < 400; i++) {
+        uint32_t frames[2];
+        float blend;
+        sequence_frames_at(s, i / 24.0, frames, &blend);
+        assert_int_equal(frames[0], i);
+    }
+}
+
+static void times_between_frames_blend(void **state) {
+    (void)state;
+    sequence *s = open_or_fail((sequence_desc){
+        .pattern = "loop*.vdb", .fps = 10, .speed = 2, .blend = true, .loop = SEQUENCE_EXTEND});
+    assert_true(sequence_grid(s)->blends);
+    uint32_t frames[2];
+    float blend;
+    sequence_frames_at(s, 0.0625, frames, &blend); // frame 1.25
+    assert_int_equal(frames[0], 1);
+    assert_int_equal(frames[1], 2);
+    assert_true(fabsf(blend - 0.25f) < 1e-5f);
+    sequence_frames_at(s, 0.13, frames, &blend); // the last holds
+    assert_int_equal(frames[0], 2);
+    assert_true(blend == 0);
+}
+
+static void missing_and_damaged_files_are_named(void **state) {
+    (void)state;
+    refuses((sequence_desc){.pattern = "nothing*.vdb"}, "nothing*.vdb: no file has such a name");
+    assert_true(file_write(in_folder("bad.vdb"), "not a vdb file", 14));
+    refuses((sequence_desc){.pattern = "bad.vdb"}, "bad.vdb");
+    refuses((sequence_desc){.pattern = "a1.vdb", .fps = -1}, "frames a second");
+    refuses((sequence_desc){.pattern = "a*.vdb", .max_frame_bytes = 1000}, "9 x 9 x 9 voxels");
+}
+
+static void far_apart_frames_do_not_ask_for_all_memory(void **state) {
+    (void)state;
+    write_block("far1.vdb", "density", 0, 1);
+    write_block("far2.vdb", "density", 2000000, 1);
+    refuses((sequence_desc){.pattern = "far*.vdb"}, "spans");
+    write_block("far2.vdb", "density", 100000, 1);
+    refuses((sequence_desc){.pattern = "far*.vdb"}, "limit of");
+}
+
+// ---- raw --------------------------------------------------------------------------------------
+
+static void raw_types_are_normalised(void **state) {
+    (void)state;
+    static const struct {
+        const char *type;
+        uint8_t bytes[4];
+        float value;
+    } cases[] = {
+        {"u8", {255}, 1},
+        {"u16", {0xff, 0x7f}, 32767.0f / 65535},
+        {"f16", {0x00, 0x40}, 2},
+        {"f32", {0x00, 0x00, 0x40, 0x40}, 3},
+    };
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        assert_true(file_write(in_folder("type.raw"), cases[i].bytes, 4));
+        sequence *s = open_or_fail((sequence_desc){
+            .pattern = "type.raw",
+            .raw = {.type = cases[i].type, .size = {1, 1, 1}, .frames = 1, .value_scale = 10}});
+        float value;
+        uint64_t bad = 0;
+        assert_true(sequence_raw_read(s, 0, &value, &bad));
+        assert_true(fabsf(value - 10 * cases[i].value) < 1e-5f);
+    }
+}
+
+static void raw_frames_lie_at_their_stride(void **state) {
+    (void)state;
+    uint8_t bytes[64];
+    for (int i = 0; i < 64; i++) bytes[i] = (uint8_t)i;
+    assert_true(file_write(in_folder("stride.raw"), bytes, sizeof bytes));
+    sequence *s = open_or_fail((sequence_desc){
+        .pattern = "stride.raw",
+        .raw = {.type = "u8", .size = {2, 2, 2}, .offset = 4, .stride = 20, .value_scale = 255}});
+    assert_int_equal(sequence_frame_count(s), 3); // the last without the gap after it
+    int components;
+    assert_int_equal(sequence_channel(s, "density", &components), 0);
+    assert_int_equal(sequence_channel(s, "smoke", &components), -1);
+    sequence_texels t;
+    assert_true(sequence_decode(s, 2, &t));
+    for (int i = 0; i < 8; i++)
+        assert_true(texel(s, &t, i % 2, i / 2 % 2, i / 4, 0) == (float)(44 + i));
+    assert_true(fabsf(sequence_grid(s)->box.max.y - 1) < 1e-6f); // 2 voxels of 1/2 m
+    sequence_texels_free(&t);
+}
+
+static void raw_descriptions_are_checked(void **state) {
+    (void)state;
+#define RAW(...)                                                                                   \
+    (sequence_desc) {                                                                              \
+        .pattern = "stride.raw", .raw = { __VA_ARGS__ }                                            \
+    }
+    refuses(RAW(.type = "u32", .size = {2, 2, 2}), "'u32'");
+    refuses(RAW(.size = {2, 2, 2}), "u8, u16, f16 and f32");
+    refuses(RAW(.type = "u8", .size = {2, 0, 2}), "2 x 0 x 2");
+    refuses(RAW(.type = "u8", .size = {5000, 1, 1}), "4096");
+    refuses(RAW(.type = "f32", .size = {4, 4, 4}), "its first frame needs 256");
+    refuses(RAW(.type = "u8", .size = {2, 2, 2}, .frames = 9), "9 frames");
+    refuses(RAW(.type = "u8", .size = {2, 2, 2}, .stride = 7), "7 bytes apart");
+    refuses(RAW(.type = "u8", .size = {2, 2, 2}, .offset = 57), "from byte 57");
+    refuses(RAW(.type = "u8", .size = {2, 2, 2}, .offset = UINT64_MAX), "holds 64 bytes");
+    refuses(RAW(.type = "u8", .size = {2, 2, 2}, .stride = UINT64_MAX, .frames = 2), "2 frames");
+    refuses(RAW(.type = "u8", .size = {2, 2, 2}, .voxel_size = -1), "voxel size");
+    refuses(RAW(.type = "f32", .size = {4096, 4096, 4096}), "limit of");
+}
+
+static void a_raw_file_that_shrinks_is_an_error(void **state) {
+    (void)state;
+    uint8_t bytes[16] = {1};
+    assert_true(file_write(in_folder("shrink.raw"), bytes, sizeof bytes));
+    sequence *s = open_or_fail(
+        (sequence_desc){.pattern = "shrink.raw", .raw = {.type = "u8", .size = {2, 2, 2}}});
+    assert_int_equal(truncate(in_folder("shrink.raw"), 12), 0);
+    int components;
+    sequence_channel(s, "density", &components);
+    sequence_texels t;
+    assert_false(sequence_decode(s, 1, &t));
+    assert_error("became shorter");
+}
+
+static int make_folder(void **state) {
+    (void)state;
+    strcpy(folder, "/tmp/roil-sequence-XXXXXX");
+    return mkdtemp(folder) ? 0 : 1;
+}
+
+static int remove_folder(void **state) {
+    (void)state;
+    file_list list;
+    if (file_glob(in_folder("*"), &list))
+        for (size_t i = 0; i < list.count; i++) remove(list.paths[i]);
+    file_list_free(&list);
+    arena_free(build_memory());
+    return rmdir(folder);
+}
+
+int main(void) {
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_box_encloses_all_frames),
+        cmocka_unit_test(voxels_on_the_lattice_are_copied_exactly),
+        cmocka_unit_test(a_frame_without_the_grid_is_empty),
+        cmocka_unit_test(channels_are_found_by_alias),
+        cmocka_unit_test(three_scalar_grids_make_a_vector),
+        cmocka_unit_test(y_up_turns_box_and_voxels),
+        cmocka_unit_test(values_that_are_not_finite_count_as_zero),
+        cmocka_unit_test(loops_fold_time),
+        cmocka_unit_test(frames_are_hit_in_spite_of_rounding),
+        cmocka_unit_test(times_between_frames_blend),
+        cmocka_unit_test(missing_and_damaged_files_are_named),
+        cmocka_unit_test(far_apart_frames_do_not_ask_for_all_memory),
+        cmocka_unit_test(raw_types_are_normalised),
+        cmocka_unit_test(raw_frames_lie_at_their_stride),
+        cmocka_unit_test(raw_descriptions_are_checked),
+        cmocka_unit_test(a_raw_file_that_shrinks_is_an_error),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
