@@ -1,135 +1,103 @@
-// Meshes through assimp's C API. Assimp sees the file system only through mesh_files. It returns
-// triangles with node transforms applied and normals filled in; what is left here is to check,
-// turn glTF's Y up into Z up, and lay everything out as one vertex and one index array.
-// Texture coordinates run from the top left, as Vulkan samples.
+// Assimp reads the file in a child process (mesh_import); this side trusts nothing that comes back:
+// it checks every length, index and number, and reads the textures.
 #include "media/mesh.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "base/str.h"
+#include "base/memory.h"
+#include "media/isolate.h"
 #include "media/mesh_files.h"
+#include "media/mesh_import.h"
 #include "media/png.h"
-#include <assimp/cimport.h>
-#include <assimp/config.h>
-#include <assimp/material.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <math.h>
-#include <pthread.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-enum { VERTICES_MAX = 8 << 20, INDICES_MAX = 64 << 20, TEXTURES_MAX = 256, TEXEL_SIDE_MAX = 16384 };
-static const float SMOOTH_ANGLE = 60.0f; // degrees: sharper edges stay hard
+enum { TEXEL_SIDE_MAX = 16384 };
+// Beyond this, areas and dot products overflow.
+static const float POSITION_MAX = 1e18f;
 
 typedef struct loader {
     const char *path;
     mesh_files files;
     arena *memory;
-    const struct aiScene *scene;
-    bool y_up;
-    const char *texture_names[TEXTURES_MAX];
-    mesh_texture *textures;
-    uint32_t texture_count;
+    const uint8_t *bytes; // of the blob
+    size_t size, at;
 } loader;
 
-static const struct aiScene *import(loader *l) {
-    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; // assimp has one error text for all
-    struct aiPropertyStore *options = aiCreatePropertyStore();
-    aiSetImportPropertyInteger(options, AI_CONFIG_PP_SBP_REMOVE,
-                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    aiSetImportPropertyFloat(options, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, SMOOTH_ANGLE);
-    unsigned flags = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_GenSmoothNormals |
-                     aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices |
-                     aiProcess_ValidateDataStructure | aiProcess_FlipUVs;
-    pthread_mutex_lock(&lock);
-    const struct aiScene *scene =
-        aiImportFileExWithProperties(l->files.first, flags, &l->files.io, options);
-    if (!scene) err_set("%s: cannot be read as a mesh: %s", l->path, aiGetErrorString());
-    pthread_mutex_unlock(&lock);
-    aiReleasePropertyStore(options);
-    return scene;
+static const void *take(loader *l, size_t count) {
+    if (count > l->size - l->at) return NULL;
+    const void *p = l->bytes + l->at;
+    l->at += count;
+    return p;
 }
 
-static bool count(const loader *l, mesh_data *out) {
-    uint64_t vertices = 0, faces = 0;
-    for (unsigned m = 0; m < l->scene->mNumMeshes; m++) {
-        vertices += l->scene->mMeshes[m]->mNumVertices;
-        faces += l->scene->mMeshes[m]->mNumFaces;
-    }
-    if (faces == 0) return err_set("%s: the mesh has no faces", l->path);
-    if (vertices > VERTICES_MAX || faces * 3 > INDICES_MAX)
-        return err_set("%s: %llu vertices and %llu triangles; at most %d and %d are accepted",
-                       l->path, (unsigned long long)vertices, (unsigned long long)faces,
-                       VERTICES_MAX, INDICES_MAX / 3);
-    out->vertex_count = (uint32_t)vertices;
-    out->index_count = (uint32_t)faces * 3;
-    out->part_count = l->scene->mNumMeshes;
-    return true;
+static bool broken(const loader *l) {
+    return err_set("%s: damaged: its reader returned nonsense", l->path);
+}
+
+// A copy in the arena of the next `count` elements.
+static void *take_array(loader *l, size_t count, size_t element) {
+    const void *p = take(l, count * element);
+    return p ? arena_copy(l->memory, p, count * element) : NULL;
 }
 
 static float finite_or(float value, float other) {
     return isfinite(value) ? value : other;
 }
 
-static void set_normal(const loader *l, const struct aiMesh *mesh, unsigned i, mesh_vertex *v) {
-    struct aiVector3D n = mesh->mNormals ? mesh->mNormals[i] : (struct aiVector3D){0, 0, 0};
-    float length = sqrtf(n.x * n.x + n.y * n.y + n.z * n.z);
-    if (!isfinite(length) || length < 1e-12f) { // of a triangle without area
-        v->normal[2] = 1.0f;
-        return;
-    }
-    v->normal[0] = n.x / length;
-    v->normal[1] = (l->y_up ? -n.z : n.y) / length;
-    v->normal[2] = (l->y_up ? n.y : n.z) / length;
+static void normalize(float n[3]) {
+    float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    bool usable = isfinite(length) && length > 1e-12f; // else: of a triangle without area
+    for (int i = 0; i < 3; i++) n[i] = usable ? n[i] / length : i == 2 ? 1.0f : 0.0f;
 }
 
-static bool add_vertices(const loader *l, const struct aiMesh *mesh, mesh_vertex *out, box3 *box) {
-    for (unsigned i = 0; i < mesh->mNumVertices; i++) {
-        struct aiVector3D p = mesh->mVertices[i];
-        mesh_vertex *v = &out[i];
-        v->position[0] = p.x;
-        v->position[1] = l->y_up ? -p.z : p.y;
-        v->position[2] = l->y_up ? p.y : p.z;
-        float3 at = {v->position[0], v->position[1], v->position[2]};
-        // Beyond 1e18 areas and dot products overflow.
-        if (!(fabsf(at.x) < 1e18f && fabsf(at.y) < 1e18f && fabsf(at.z) < 1e18f))
-            return err_set("%s: a vertex position is not finite, or beyond 1e18", l->path);
-        box->min =
-            (float3){fminf(box->min.x, at.x), fminf(box->min.y, at.y), fminf(box->min.z, at.z)};
-        box->max =
-            (float3){fmaxf(box->max.x, at.x), fmaxf(box->max.y, at.y), fmaxf(box->max.z, at.z)};
-        set_normal(l, mesh, i, v);
-        const struct aiVector3D *uv = mesh->mTextureCoords[0];
-        v->u = uv ? finite_or(uv[i].x, 0.0f) : 0.0f;
-        v->v = uv ? finite_or(uv[i].y, 0.0f) : 0.0f;
-    }
-    return true;
-}
-
-static bool add_indices(const loader *l, const struct aiMesh *mesh, uint32_t base, uint32_t *out) {
-    for (unsigned f = 0; f < mesh->mNumFaces; f++) {
-        const struct aiFace *face = &mesh->mFaces[f];
-        if (face->mNumIndices != 3) return err_set("%s: a face is no triangle", l->path);
+static bool check_vertices(const loader *l, mesh_vertex *vertices, uint32_t count, box3 *box) {
+    float min[3] = {INFINITY, INFINITY, INFINITY}, max[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t v = 0; v < count; v++) {
         for (int i = 0; i < 3; i++) {
-            if (face->mIndices[i] >= mesh->mNumVertices)
-                return err_set("%s: a face names a vertex that is not there", l->path);
-            *out++ = base + face->mIndices[i];
+            float p = vertices[v].position[i];
+            if (!(fabsf(p) < POSITION_MAX)) // so that NaN fails too
+                return err_set("%s: a vertex position is not finite, or beyond %g", l->path,
+                               (double)POSITION_MAX);
+            min[i] = fminf(min[i], p);
+            max[i] = fmaxf(max[i], p);
         }
+        normalize(vertices[v].normal);
+        vertices[v].u = finite_or(vertices[v].u, 0.0f);
+        vertices[v].v = finite_or(vertices[v].v, 0.0f);
     }
+    *box = (box3){{min[0], min[1], min[2]}, {max[0], max[1], max[2]}};
     return true;
 }
 
-static bool decode_texels(loader *l, const struct aiTexture *source, mesh_texture *out) {
-    if (source->mWidth > TEXEL_SIDE_MAX || source->mHeight > TEXEL_SIDE_MAX) return false;
-    size_t texels = (size_t)source->mWidth * source->mHeight;
-    uint8_t *pixels = arena_alloc(l->memory, texels * 4);
-    for (size_t i = 0; i < texels; i++) {
-        const struct aiTexel *t = &source->pcData[i];
-        const uint8_t rgba[4] = {t->r, t->g, t->b, t->a};
-        memcpy(pixels + 4 * i, rgba, sizeof rgba);
+static bool check_parts(const loader *l, mesh_part *parts, const mesh_blob *head) {
+    uint32_t index = 0;
+    for (uint32_t i = 0; i < head->part_count; i++) {
+        if (parts[i].first != index || parts[i].count > head->index_count - index) return broken(l);
+        if (parts[i].texture < -1 || parts[i].texture >= (int)head->texture_count) return broken(l);
+        for (int c = 0; c < 4; c++)
+            parts[i].color[c] = clampf(finite_or(parts[i].color[c], 1.0f), 0.0f, 1.0f);
+        index += parts[i].count;
     }
-    *out = (mesh_texture){source->mWidth, source->mHeight, pixels};
+    return index == head->index_count || broken(l);
+}
+
+static bool take_geometry(loader *l, const mesh_blob *head, mesh_part **parts, mesh_data *out) {
+    mesh_part *p = take_array(l, head->part_count, sizeof *p);
+    mesh_vertex *vertices = take_array(l, head->vertex_count, sizeof *vertices);
+    uint32_t *indices = take_array(l, head->index_count, sizeof *indices);
+    if (!p || !vertices || !indices) return broken(l);
+    for (uint32_t i = 0; i < head->index_count; i++)
+        if (indices[i] >= head->vertex_count) return broken(l);
+    if (!check_parts(l, p, head) || !check_vertices(l, vertices, head->vertex_count, &out->box))
+        return false;
+    *parts = p;
+    out->vertices = vertices;
+    out->vertex_count = head->vertex_count;
+    out->indices = indices;
+    out->index_count = head->index_count;
+    out->parts = p;
+    out->part_count = head->part_count;
     return true;
 }
 
@@ -143,24 +111,24 @@ static mesh_texture texture_from_png(loader *l, const png_image *image) {
     return (mesh_texture){image->width, image->height, pixels};
 }
 
-static bool load_texture(loader *l, const char *name, mesh_texture *out) {
+static bool load_texture(loader *l, const mesh_blob_texture *t, const void *bytes,
+                         mesh_texture *out) {
     png_image image;
-    const struct aiTexture *embedded = NULL;
-    if (name[0] == '*') {
-        long index = strtol(name + 1, NULL, 10);
-        if (index < 0 || index >= (long)l->scene->mNumTextures)
-            return err_set("texture %s is not in the file", name);
-        embedded = l->scene->mTextures[index];
+    if (t->kind == MESH_TEXTURE_TEXELS) {
+        if (t->width > TEXEL_SIDE_MAX || t->height > TEXEL_SIDE_MAX || t->width == 0 ||
+            t->size != (uint64_t)t->width * t->height * 4)
+            return err_set("embedded texture: %ux%u texels", t->width, t->height);
+        *out = (mesh_texture){t->width, t->height, arena_copy(l->memory, bytes, t->size)};
+        return true;
     }
-    if (embedded && embedded->mHeight > 0) return decode_texels(l, embedded, out);
-    if (embedded) {
-        if (!png_read_memory(embedded->pcData, embedded->mWidth, name, l->memory, &image))
-            return false;
+    if (t->kind == MESH_TEXTURE_FILE) {
+        if (!png_read_memory(bytes, t->size, "embedded texture", l->memory, &image)) return false;
     } else {
-        char file[PATH_CAP];
+        char *name = arena_alloc(l->memory, (size_t)t->size + 1), file[PATH_CAP];
+        memcpy(name, bytes, t->size);
         if (!mesh_files_resolve_beside(&l->files, name, file)) return false;
         if (strcasecmp(path_extension(file), "png") != 0)
-            return err_set("%s: is not a PNG file", file);
+            return err_set("%s: is not a PNG file", name);
         if (!png_read(file, l->memory, &image)) return false;
         mesh_files_note(&l->files, file);
     }
@@ -168,93 +136,74 @@ static bool load_texture(loader *l, const char *name, mesh_texture *out) {
     return true;
 }
 
-// Index of the texture named by a material, or -1 with a warning.
-static int find_texture(loader *l, const char *name) {
-    for (uint32_t i = 0; i < l->texture_count; i++)
-        if (strcmp(l->texture_names[i], name) == 0) return (int)i;
-    mesh_texture texture;
-    if (l->texture_count == TEXTURES_MAX)
-        err_set("more than %d textures", TEXTURES_MAX);
-    else if (load_texture(l, name, &texture)) {
-        l->textures[l->texture_count] = texture;
-        l->texture_names[l->texture_count] = arena_string(l->memory, name);
-        return (int)l->texture_count++;
+// Textures that cannot be read are left out, with a warning; one outside the root is an error.
+static bool take_textures(loader *l, const mesh_blob *head, mesh_part *parts, mesh_data *out) {
+    mesh_texture *textures = arena_alloc(l->memory, head->texture_count * sizeof *textures);
+    int *place = arena_alloc(l->memory, head->texture_count * sizeof *place);
+    for (uint32_t i = 0; i < head->texture_count; i++) {
+        mesh_blob_texture t;
+        const void *p = take(l, sizeof t);
+        if (p) memcpy(&t, p, sizeof t);
+        if (!p || !(p = take(l, t.size))) return broken(l);
+        place[i] = -1;
+        if (load_texture(l, &t, p, &textures[out->texture_count]))
+            place[i] = (int)out->texture_count++;
+        else if (l->files.refused[0])
+            return err_set("%s: names a file that it may not read: %s", l->path, l->files.refused);
+        else
+            log_write(LOG_WARNING, "%s: drawn without a texture: %s", l->path, err_get());
     }
-    if (!l->files.refused[0])
-        log_write(LOG_WARNING, "%s: drawn without its texture: %s", l->path, err_get());
-    return -1;
-}
-
-static void set_material(loader *l, unsigned index, mesh_part *part) {
-    static const float WHITE[4] = {1.0f, 1.0f, 1.0f, 1.0f};
-    memcpy(part->color, WHITE, sizeof WHITE);
-    part->texture = -1;
-    if (index >= l->scene->mNumMaterials) return;
-    const struct aiMaterial *material = l->scene->mMaterials[index];
-    struct aiColor4D c;
-    if (aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &c) == aiReturn_SUCCESS ||
-        aiGetMaterialColor(material, AI_MATKEY_COLOR_DIFFUSE, &c) == aiReturn_SUCCESS) {
-        const float values[4] = {c.r, c.g, c.b, c.a};
-        for (int i = 0; i < 4; i++) part->color[i] = clampf(finite_or(values[i], 1.0f), 0.0f, 1.0f);
-    }
-    static const enum aiTextureType TYPES[] = {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE};
-    for (size_t i = 0; i < sizeof TYPES / sizeof *TYPES; i++) {
-        struct aiString name;
-        if (aiGetMaterialTexture(material, TYPES[i], 0, &name, NULL, NULL, NULL, NULL, NULL,
-                                 NULL) != aiReturn_SUCCESS)
-            continue;
-        part->texture = find_texture(l, name.data);
-        return;
-    }
-}
-
-static bool convert(loader *l, mesh_data *out) {
-    mesh_data d = {0};
-    if (!count(l, &d)) return false;
-    mesh_vertex *vertices = arena_alloc(l->memory, d.vertex_count * sizeof *vertices);
-    uint32_t *indices = arena_alloc(l->memory, d.index_count * sizeof *indices);
-    mesh_part *parts = arena_alloc(l->memory, d.part_count * sizeof *parts);
-    l->textures = arena_alloc(l->memory, TEXTURES_MAX * sizeof *l->textures);
-    d.box = (box3){{1e30f, 1e30f, 1e30f}, {-1e30f, -1e30f, -1e30f}};
-    uint32_t vertex = 0, index = 0;
-    for (unsigned m = 0; m < d.part_count; m++) {
-        const struct aiMesh *mesh = l->scene->mMeshes[m];
-        parts[m].first = index;
-        parts[m].count = mesh->mNumFaces * 3;
-        if (!add_vertices(l, mesh, vertices + vertex, &d.box)) return false;
-        if (!add_indices(l, mesh, vertex, indices + index)) return false;
-        set_material(l, mesh->mMaterialIndex, &parts[m]);
-        vertex += mesh->mNumVertices;
-        index += mesh->mNumFaces * 3;
-    }
-    if (l->files.refused[0])
-        return err_set("%s: names a file that it may not read: %s", l->path, l->files.refused);
-    d.vertices = vertices;
-    d.indices = indices;
-    d.parts = parts;
-    d.textures = l->textures;
-    d.texture_count = l->texture_count;
-    d.file_count = l->files.opened_count;
-    d.files = arena_copy(l->memory, l->files.opened, d.file_count * sizeof *d.files);
-    *out = d;
+    for (uint32_t i = 0; i < head->part_count; i++)
+        if (parts[i].texture >= 0) parts[i].texture = place[parts[i].texture];
+    out->textures = textures;
     return true;
 }
 
-bool mesh_load(const char *path, const char *root, arena *memory, mesh_data *out) {
-    const char *extension = path_extension(path);
-    bool gltf = strcasecmp(extension, "gltf") == 0 || strcasecmp(extension, "glb") == 0;
-    if (!gltf && strcasecmp(extension, "obj") != 0)
-        return err_set("%s: not a mesh that is read; .obj, .gltf and .glb are", path);
-    loader *l = arena_alloc(memory, sizeof *l);
-    *l = (loader){.path = path, .memory = memory, .y_up = gltf};
-    if (!mesh_files_open(&l->files, path, root, memory)) return false;
-    l->scene = import(l);
-    if (!l->scene) {
-        if (l->files.refused[0])
-            err_set("%s: names a file that it may not read: %s", path, l->files.refused);
-        return false;
+static bool take_files(loader *l, const mesh_blob *head, mesh_data *out) {
+    for (uint32_t i = 0; i < head->file_count; i++) {
+        uint32_t length;
+        const void *p = take(l, sizeof length);
+        if (p) memcpy(&length, p, sizeof length);
+        if (!p || length >= PATH_CAP || !(p = take(l, length))) return broken(l);
+        char name[PATH_CAP] = "";
+        memcpy(name, p, length);
+        mesh_files_note(&l->files, name);
     }
-    bool done = convert(l, out);
-    aiReleaseImport(l->scene);
+    out->file_count = l->files.opened_count;
+    out->files = arena_copy(l->memory, l->files.opened, out->file_count * sizeof *out->files);
+    return true;
+}
+
+static bool take_mesh(loader *l, mesh_data *out) {
+    mesh_blob head;
+    const void *p = take(l, sizeof head);
+    if (!p) return broken(l);
+    memcpy(&head, p, sizeof head);
+    if (head.vertex_count > MESH_VERTICES_MAX || head.index_count > MESH_INDICES_MAX ||
+        head.texture_count > MESH_TEXTURES_MAX)
+        return broken(l);
+    mesh_part *parts;
+    return take_geometry(l, &head, &parts, out) && take_textures(l, &head, parts, out) &&
+           take_files(l, &head, out);
+}
+
+bool mesh_load(const char *path, const char *root, arena *memory, mesh_data *out) {
+    static const char *const KINDS[] = {"obj", "gltf", "glb"};
+    bool known = false;
+    for (size_t i = 0; i < COUNT_OF(KINDS); i++)
+        known = known || strcasecmp(path_extension(path), KINDS[i]) == 0;
+    if (!known) return err_set("%s: not a mesh that is read; .obj, .gltf and .glb are", path);
+    loader *l = arena_alloc(memory, sizeof *l);
+    l->path = path;
+    l->memory = memory;
+    if (!mesh_files_open(&l->files, path, root, memory)) return false;
+    void *data;
+    mesh_import_job job = {path, root};
+    if (!isolate_run(&(isolate_job){path, mesh_import, &job}, &data, &l->size)) return false;
+    l->bytes = data;
+    *out = (mesh_data){0};
+    bool done = take_mesh(l, out);
+    mem_free(data);
+    if (!done) *out = (mesh_data){0};
     return done;
 }

@@ -143,10 +143,6 @@ openvdb::MetaMap read_metadata(const vdb_layout &l, size_t start, size_t end) {
 // When a compressed block is broken OpenVDB throws with nodes half set up, whose destructor would
 // free pointers that were never set. Such a tree is left behind for good, knowingly.
 GridBase::Ptr read_tree(const vdb_layout &l, const vdb_layout_grid &g) {
-    auto kept = new GridBase::Ptr(GridBase::createGrid(g.tree_type));
-    (*kept)->setSaveFloatAsHalf(g.half);
-    input in(l, g.start, g.end);
-    openvdb::io::GridDescriptor descriptor(g.unique, g.tree_type, g.half);
     struct leak_scope {
         leak_scope() {
             if (__lsan_disable) __lsan_disable();
@@ -154,11 +150,12 @@ GridBase::Ptr read_tree(const vdb_layout &l, const vdb_layout_grid &g) {
         ~leak_scope() {
             if (__lsan_enable) __lsan_enable();
         }
-    };
-    {
-        leak_scope scope;
-        archive::readGrid(*kept, descriptor, in.stream);
-    }
+    } scope;
+    auto kept = new GridBase::Ptr(GridBase::createGrid(g.tree_type));
+    (*kept)->setSaveFloatAsHalf(g.half);
+    input in(l, g.start, g.end);
+    openvdb::io::GridDescriptor descriptor(g.unique, g.tree_type, g.half);
+    archive::readGrid(*kept, descriptor, in.stream);
     GridBase::Ptr grid = *kept;
     delete kept;
     return grid;

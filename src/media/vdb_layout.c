@@ -90,16 +90,25 @@ static const named_size *find(const named_size *list, size_t count, const uint8_
     return NULL;
 }
 
-static bool skip_metadata(cursor *c) {
-    uint32_t count, length, size;
+// `half` becomes what the metadata say about 16-bit storage: that is what OpenVDB goes by.
+static bool skip_metadata(cursor *c, bool *half) {
+    static const char HALF[] = "is_saved_as_half_float";
+    uint32_t count, name_length, length, size;
+    *half = false;
     if (!take_u32(c, &count)) return false;
     for (uint32_t i = 0; i < count; i++) {
-        if (!take_u32(c, &length) || !take(c, length)) return false; // name
-        if (!take_u32(c, &length)) return false;
+        if (!take_u32(c, &name_length)) return false;
+        const uint8_t *name = take(c, name_length);
+        if (!name || !take_u32(c, &length)) return false;
         const uint8_t *type = take(c, length);
         if (!type || !take_u32(c, &size)) return false;
         const named_size *known = find(METADATA, COUNT_OF(METADATA), type, length);
-        if ((known && size != known->size) || !take(c, size)) return false;
+        if (known && size != known->size) return false;
+        const uint8_t *value = take(c, size);
+        if (!value) return false;
+        if (name_length != strlen(HALF) || memcmp(name, HALF, name_length) != 0) continue;
+        if (!known || strcmp(known->name, "bool") != 0) return false;
+        *half = *value != 0;
     }
     return true;
 }
@@ -177,7 +186,8 @@ static bool read_grid_head(const vdb_layout *l, vdb_layout_grid *g) {
     cursor c = {l->bytes, g->end, g->start};
     bool good = take_u32(&c, &g->compression);
     g->metadata = c.at;
-    good = good && skip_metadata(&c);
+    bool half = false;
+    good = good && skip_metadata(&c, &half);
     g->transform = c.at;
     uint32_t length;
     const uint8_t *name = NULL;
@@ -185,6 +195,8 @@ static bool read_grid_head(const vdb_layout *l, vdb_layout_grid *g) {
     if (!name)
         return err_set("%s: damaged VDB file: the metadata of grid '%s' break off at byte %zu",
                        l->path, g->name, c.at);
+    if (half != g->half)
+        return err_set("%s: damaged VDB file: grid '%s' is half and is not", l->path, g->name);
     const named_size *map = find(MAPS, COUNT_OF(MAPS), name, length);
     if (!map) return true;
     if (!take(&c, map->size))
@@ -221,7 +233,8 @@ bool vdb_layout_read(const char *path, const void *bytes, size_t size, arena *me
     if (!read_header(&l, &c)) return false;
     l.metadata = c.at;
     uint32_t count;
-    if (!skip_metadata(&c) || !take_u32(&c, &count))
+    bool half;
+    if (!skip_metadata(&c, &half) || !take_u32(&c, &count))
         return err_set("%s: damaged VDB file: the metadata break off at byte %zu", path, c.at);
     if (count > GRIDS_MAX)
         return err_set("%s: VDB file with %u grids; at most %d are read", path, count, GRIDS_MAX);

@@ -1,0 +1,28 @@
+// Assimp's part of reading a mesh. It runs in a child process (isolate.h): assimp 5.2 crashes on
+// many damaged files. The result goes over as bytes, in this order:
+//   mesh_blob, mesh_part[part_count], mesh_vertex[vertex_count], uint32_t[index_count],
+//   texture_count times mesh_blob_texture and its bytes, file_count times uint32_t and a name.
+#pragma once
+#include "media/mesh.h"
+
+typedef struct mesh_blob {
+    uint32_t part_count, vertex_count, index_count, texture_count, file_count;
+} mesh_blob; // a part's texture is an index into the textures that follow, or -1
+
+typedef enum mesh_texture_kind {
+    MESH_TEXTURE_NAME,   // a file, named relative to the mesh
+    MESH_TEXTURE_FILE,   // a whole file that was embedded
+    MESH_TEXTURE_TEXELS, // RGBA
+} mesh_texture_kind;
+
+typedef struct mesh_blob_texture {
+    uint32_t kind, width, height, size; // bytes that follow
+} mesh_blob_texture;
+
+enum { MESH_VERTICES_MAX = 8 << 20, MESH_INDICES_MAX = 64 << 20, MESH_TEXTURES_MAX = 256 };
+
+typedef struct mesh_import_job {
+    const char *path, *root;
+} mesh_import_job;
+
+bool mesh_import(void *job, int out); // for isolate_run
