@@ -180,7 +180,9 @@ void effect_add_grid(effect *e, field_grid *grid) {
 static bool update_baked(field_grid *grid, gpu *g, double time) {
     (void)g;
     (void)time;
-    grid->state.active = grid->box;
+    const effect_baked *baked = (const effect_baked *)grid;
+    float longest = field_longest(baked->node, &baked->owner->context);
+    grid->longest = isfinite(longest) ? longest : 0;
     return true;
 }
 
@@ -205,8 +207,10 @@ field_grid *effect_add_bake(effect *e, const field *node, const uint32_t size[3]
         err_set("bake: the field has no finite bounds; give box = { min, max }");
         return NULL;
     }
+    // The grid has four channels: of three components the first is written once more.
+    const field *value = node->components == 3 ? field_swizzle(&e->memory, node, "rgbr") : node;
     pass *p = effect_add_pass(e, "bake", NULL, NULL);
-    if (!p || !pass_set_field(p, "value", node)) return NULL;
+    if (!p || !pass_set_field(p, "value", value)) return NULL;
     effect_baked *baked = arena_alloc(&e->memory, sizeof *baked);
     *baked = (effect_baked){
         .grid = {.name = pass_label(p),
@@ -216,10 +220,12 @@ field_grid *effect_add_bake(effect *e, const field *node, const uint32_t size[3]
                  .state = {.active = box},
                  .update = update_baked,
                  .destroy = destroy_baked},
-        .pass = p,
+        .owner = e,
+        .node = node,
     };
     pass_set_bake(p, &baked->grid);
     effect_add_grid(e, &baked->grid);
+    update_baked(&baked->grid, e->device, 0); // its bounds are asked for before the first frame
     if (!pass_declare(p)) return NULL;
     return &baked->grid;
 }

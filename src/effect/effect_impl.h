@@ -8,7 +8,8 @@ bool effect_apply_settings(void *user, pass *p);
 
 typedef struct effect_baked { // grid first: a field_grid that a pass fills
     field_grid grid;
-    pass *pass;
+    effect *owner;
+    const field *node;
 } effect_baked;
 
 struct effect {

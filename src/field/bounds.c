@@ -138,6 +138,10 @@ static float longest(const field *node, const field_context *context, int depth)
         return a + b;
     case KIND_NEGATE:
         return longest(node->args[0], context, depth - 1);
+    case KIND_GRID: {
+        const field_grid *grid = node->object;
+        return grid->longest > 0 ? grid->longest : INFINITY;
+    }
     default:
         break;
     }
@@ -151,6 +155,10 @@ static float longest(const field *node, const field_context *context, int depth)
     }
     if (strcmp(node->kind->group, "noise") == 0) return longest(node->args[5], context, depth - 1);
     return INFINITY;
+}
+
+float field_longest(const field *node, const field_context *context) {
+    return longest(node, context, 8);
 }
 
 box3 bounds_warp(const field *node, const field_context *context, const box3 *args) {

@@ -22,6 +22,7 @@ struct field_grid {
     box3 box;          // world box of the texture: texel centres lie half a voxel inside (metres)
     uint32_t size[3];  // texels
     int channel_count; // channel c lies in image c / 4, component c % 4
+    float longest;     // greatest length of a vector of its channels, where known; 0: unknown
     bool blends;       // may ever have blend > 0: the shader then samples both sets
     field_grid_state state; // current; set by update
     // Brings `state` to a time, uploading what is needed. Waits for data that is not decoded yet.

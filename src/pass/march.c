@@ -9,13 +9,16 @@ static const field *density_of(const pass *p) {
     return pass_find_key(p, "density", &index) == PASS_FIELD ? p->fields[index] : NULL;
 }
 
+static bool bounded(const pass *p, box3 *box) {
+    if (!field_bounds(density_of(p), p->host->context, box)) return err_prefix("%s: ", p->label);
+    if (box3_is_finite(*box) || box3_is_empty(*box)) return true;
+    return err_set("%s: field 'density' fills all of space; multiply it by a grid or a shape",
+                   p->label);
+}
+
 bool march_declare(pass *p) {
     box3 box;
-    if (!field_bounds(density_of(p), p->host->context, &box)) return err_prefix("%s: ", p->label);
-    if (!box3_is_finite(box) && !box3_is_empty(box))
-        return err_set("%s: field 'density' fills all of space; multiply it by a grid or a shape",
-                       p->label);
-    return pass_declare_images(p) && pass_add_to_graph(p);
+    return bounded(p, &box) && pass_declare_images(p) && pass_add_to_graph(p);
 }
 
 static bool paper_mode(const pass *p) {
@@ -35,7 +38,7 @@ static bool march_box(const pass *p, box3 *box) {
         for (size_t i = 0; i < count && i < 16; i++) *box = box3_union(*box, grids[i]->box);
         return true;
     }
-    return field_bounds(density, p->host->context, box);
+    return bounded(p, box);
 }
 
 bool march_fill(pass *p, const shader_binary *binary, unsigned char *block) {
