@@ -65,7 +65,7 @@ bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, 
         return false;
     vec3 angles = {glm_rad(rotation[0]), glm_rad(rotation[1]), glm_rad(rotation[2])};
     mat4 turn;
-    glm_euler_xyz(angles, turn);
+    glm_euler_zyx(angles, turn); // about X first, as fields are turned
     glm_translate_make(out, position);
     glm_mat4_mul(out, turn, out);
     glm_scale_uni(out, scale[0]);

@@ -85,7 +85,9 @@ static bool fill_camera(const scene_camera *c, const field_context *context, flo
     glm_vec3_sub(target, eye, forward);
     if (glm_vec3_norm(forward) < 1e-6f) glm_vec3_copy((vec3){0, 1, 0}, forward);
     glm_vec3_normalize(forward);
-    if (fabsf(forward[2]) > 0.999f) glm_vec3_copy((vec3){0, 1, 0}, up);
+    // Straight up or down has no up of its own; an orbit, which ends at 89.9 degrees, keeps its
+    // yaw.
+    if (hypotf(forward[0], forward[1]) < 1e-4f) glm_vec3_copy((vec3){0, 1, 0}, up);
 
     mat4 view, projection, inverse;
     glm_look(eye, forward, up, view);

@@ -31,7 +31,7 @@ typedef struct scene_mesh {
     const char *name;
     mesh_data data;
     const field *position;          // vec3, metres
-    const field *rotation;          // vec3, degrees, XYZ Euler
+    const field *rotation;          // vec3, degrees about X, then Y, then Z
     const field *scale;             // factor
     const field *color;             // vec3, multiplies the material's
     gpu_buffer *vertices, *indices; // made on first use
