@@ -37,6 +37,48 @@ static inline const field *block(pass_world *w, float half, float value) {
     return product;
 }
 
+// A kind's row with arguments and options by name:
+// row(w, "worley", SET("power", number(w, 2)), WORD("mode", "paper"))
+typedef struct pass_named {
+    const char *name;
+    const field *value;
+    const char *word;
+} pass_named;
+
+#define SET(NAME, VALUE)                                                                           \
+    { NAME, VALUE, NULL }
+#define WORD(NAME, CHOICE)                                                                         \
+    { NAME, NULL, CHOICE }
+#define row(w, kind, ...)                                                                          \
+    pass_row(&(w)->memory, kind, (const pass_named[]){__VA_ARGS__},                                \
+             sizeof((const pass_named[]){__VA_ARGS__}) / sizeof(pass_named))
+
+static inline const field *pass_row(arena *memory, const char *name, const pass_named *settings,
+                                    size_t count) {
+    const field_kind *kind = field_kind_find(name);
+    gpu_test_ok(kind);
+    const field *args[FIELD_MAX_ARGS] = {NULL};
+    uint8_t options[FIELD_MAX_OPTIONS] = {0};
+    for (size_t s = 0; s < count; s++) {
+        bool found = false;
+        for (size_t i = 0; settings[s].value && i < FIELD_MAX_ARGS && kind->args[i].name; i++) {
+            if (strcmp(kind->args[i].name, settings[s].name) != 0) continue;
+            args[i] = settings[s].value;
+            found = true;
+        }
+        for (size_t i = 0; settings[s].word && i < FIELD_MAX_OPTIONS; i++) {
+            const field_option *option = &kind->options[i];
+            if (!option->name || strcmp(option->name, settings[s].name) != 0) continue;
+            for (uint8_t w = 0; w < COUNT_OF(option->words) && option->words[w]; w++)
+                if (strcmp(option->words[w], settings[s].word) == 0) options[i] = w, found = true;
+        }
+        if (!found) fail_msg("%s has no '%s'", name, settings[s].name);
+    }
+    const field *made = field_make(memory, name, args, options);
+    gpu_test_ok(made);
+    return made;
+}
+
 static inline void world_open(pass_world *w, gpu *device) {
     *w = (pass_world){0};
     char shaders[4096], data[4096];
@@ -67,17 +109,22 @@ static inline pass *world_add(pass_world *w, const char *type, const char *shade
     return p;
 }
 
+// One more frame of what world_render built.
+static inline void world_frame(pass_world *w, uint32_t width, uint32_t height, uint32_t frame) {
+    gpu_test_ok(scene_fill_frame(&w->scene, &w->context, (float)width / (float)height, &w->frame));
+    w->frame.size = (shared_uvec4){{width, height, frame, 0}};
+    gpu_test_ok(gpu_frame_begin(w->host.device));
+    gpu_test_ok(graph_execute(w->host.graph, w->host.device));
+    gpu_test_ok(gpu_frame_end(w->host.device));
+}
+
 static inline void world_render(pass_world *w, uint32_t width, uint32_t height,
                                 graph_image output) {
     gpu_test_ok(graph_add_output(w->host.graph, output));
     gpu_test_ok(graph_compile(w->host.graph, width, height));
     for (size_t i = 0; i < w->count; i++) gpu_test_ok(pass_build(w->passes[i]));
     gpu_test_ok(graph_allocate(w->host.graph, w->host.device));
-    gpu_test_ok(scene_fill_frame(&w->scene, &w->context, (float)width / (float)height, &w->frame));
-    w->frame.size = (shared_uvec4){{width, height, 1, 0}};
-    gpu_test_ok(gpu_frame_begin(w->host.device));
-    gpu_test_ok(graph_execute(w->host.graph, w->host.device));
-    gpu_test_ok(gpu_frame_end(w->host.device));
+    world_frame(w, width, height, 1);
 }
 
 // RGBA floats of a half-float image; free with mem_free.
@@ -90,6 +137,16 @@ static inline float *world_read(pass_world *w, graph_image image) {
     float *out = mem_alloc(count * sizeof *out);
     for (size_t i = 0; i < count; i++) out[i] = half_to_float(halves[i]);
     mem_free(halves);
+    return out;
+}
+
+// Texels of an r32f image; free with mem_free.
+static inline float *world_read_depth(pass_world *w, graph_image image) {
+    gpu_image *source = graph_get_image(w->host.graph, image);
+    const gpu_image_desc *desc = gpu_image_get_desc(source);
+    size_t size = (size_t)desc->width * desc->height * sizeof(float);
+    float *out = mem_alloc(size);
+    gpu_test_ok(gpu_image_read(w->host.device, source, out, size));
     return out;
 }
 
