@@ -15,6 +15,8 @@ typedef struct pass_world {
     struct frame_block frame;
     pass *passes[16];
     size_t count;
+    scene_mesh meshes[4];
+    size_t mesh_count;
 } pass_world;
 
 static inline const field *number(pass_world *w, float value) {
@@ -109,6 +111,21 @@ static inline pass *world_add(pass_world *w, const char *type, const char *shade
     return p;
 }
 
+// A file of tests/gpu/data, unmoved and white.
+static inline scene_mesh *world_mesh(pass_world *w, const char *file) {
+    char root[4096], path[4200];
+    snprintf(root, sizeof root, "%s/tests/gpu/data", getenv("ROIL_SOURCE_DIR"));
+    snprintf(path, sizeof path, "%s/%s", root, file);
+    scene_mesh *mesh = &w->meshes[w->mesh_count++];
+    *mesh = (scene_mesh){.name = file,
+                         .position = triple(w, 0, 0, 0),
+                         .rotation = triple(w, 0, 0, 0),
+                         .scale = number(w, 1),
+                         .color = triple(w, 1, 1, 1)};
+    gpu_test_ok(mesh_load(path, root, &w->memory, &mesh->data));
+    return mesh;
+}
+
 // One more frame of what world_render built.
 static inline void world_frame(pass_world *w, uint32_t width, uint32_t height, uint32_t frame) {
     gpu_test_ok(scene_fill_frame(&w->scene, &w->context, (float)width / (float)height, &w->frame));
@@ -152,6 +169,7 @@ static inline float *world_read_depth(pass_world *w, graph_image image) {
 
 static inline void world_close(pass_world *w) {
     for (size_t i = 0; i < w->count; i++) pass_destroy(w->passes[i]);
+    for (size_t i = 0; i < w->mesh_count; i++) scene_mesh_destroy(&w->meshes[i], w->host.device);
     graph_destroy(w->host.graph, w->host.device);
     pass_host_free(&w->host);
     shader_library_destroy(w->host.library);

@@ -1,0 +1,296 @@
+// What is solid: its depth, what hides what, and how a volume ends at it.
+#include "pass_test.h"
+
+enum { WIDTH = 32, HEIGHT = 32, PIXELS = WIDTH * HEIGHT };
+
+typedef struct vector {
+    double x, y, z;
+} vector;
+
+// Through the middle of a pixel, one metre deep, for the world's camera: it looks along +Y.
+static vector pixel_ray(const pass_world *w, uint32_t x, uint32_t y) {
+    double u = (x + 0.5) / WIDTH, v = (y + 0.5) / HEIGHT;
+    return (vector){(2 * u - 1) * (double)w->frame.lens.v[0], 1,
+                    (1 - 2 * v) * (double)w->frame.lens.v[1]};
+}
+
+static double length(vector v) {
+    return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+// Depths at which a ray from (0, -5, 0) enters and leaves a cube around the origin.
+static bool hit_cube(vector ray, double half, double *near, double *far) {
+    const double origin[3] = {0, -5, 0}, along[3] = {ray.x, ray.y, ray.z};
+    *near = 0;
+    *far = 1e9;
+    for (int i = 0; i < 3; i++) {
+        double a = (-half - origin[i]) / along[i], b = (half - origin[i]) / along[i];
+        *near = fmax(*near, fmin(a, b));
+        *far = fmin(*far, fmax(a, b));
+    }
+    return *near < *far;
+}
+
+static pass *add_geometry(pass_world *w, scene_mesh *const *meshes, size_t count) {
+    pass *p = world_add(w, "geometry", NULL, "geometry");
+    for (size_t i = 0; i < count; i++) gpu_test_ok(pass_add_mesh(p, meshes[i]));
+    gpu_test_ok(pass_declare(p));
+    return p;
+}
+
+// ---- depth ------------------------------------------------------------------------------------
+
+static void depth_is_the_distance_along_the_view(void **state) {
+    pass_world w;
+    world_open(&w, *state);
+    scene_mesh *plane = world_mesh(&w, "plane.obj");
+    plane->position = triple(&w, 0.5f, 2, -0.25f);
+    plane->rotation = triple(&w, 30, 0, 0);
+    plane->scale = number(&w, 20);
+    pass *p = add_geometry(&w, &plane, 1);
+    gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "depth")));
+    world_render(&w, WIDTH, HEIGHT, pass_output(p, "color"));
+    float *depth = world_read_depth(&w, pass_output(p, "depth"));
+    // The plane faced -Y; turned by 30 degrees about X its normal is (0, -cos, -sin).
+    double c = cos(GLM_PI / 6), s = sin(GLM_PI / 6);
+    double least = 1e9, greatest = 0;
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        vector ray = pixel_ray(&w, i % WIDTH, i / WIDTH);
+        double want = (c * (2 + 5) + s * -0.25) / (c * ray.y + s * ray.z);
+        if (!(fabs((double)depth[i] - want) < 1e-4 * want))
+            fail_msg("pixel (%u, %u): %.7f, not %.7f", i % WIDTH, i / WIDTH, (double)depth[i],
+                     want);
+        least = fmin(least, want);
+        greatest = fmax(greatest, want);
+    }
+    assert_true(greatest > 1.3 * least);
+    mem_free(depth);
+    world_close(&w);
+}
+
+static void sky_is_where_nothing_is(void **state) {
+    for (int with_mesh = 0; with_mesh < 2; with_mesh++) {
+        pass_world w;
+        world_open(&w, *state);
+        w.scene.sky.strength = number(&w, 1);
+        w.scene.sky.zenith = triple(&w, 0, 0.25f, 1);
+        w.scene.sky.horizon = triple(&w, 1, 0.5f, 0);
+        scene_mesh *crate = world_mesh(&w, "crate.obj");
+        pass *p = add_geometry(&w, &crate, (size_t)with_mesh);
+        gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "depth")));
+        world_render(&w, WIDTH, HEIGHT, pass_output(p, "color"));
+        float *color = world_read(&w, pass_output(p, "color"));
+        float *depth = world_read_depth(&w, pass_output(p, "depth"));
+        size_t covered = 0;
+        for (uint32_t i = 0; i < PIXELS; i++) {
+            vector ray = pixel_ray(&w, i % WIDTH, i / WIDTH);
+            double near, far;
+            assert_true(color[4 * i + 3] == 1);
+            if (with_mesh && hit_cube(ray, 1, &near, &far)) {
+                assert_true(fabs((double)depth[i] - near) < 1e-4 * near);
+                covered++;
+                continue;
+            }
+            double up = sqrt(fmax(ray.z / length(ray), 0));
+            assert_true(depth[i] == 1e9f);
+            assert_true(fabs((double)color[4 * i] - (1 - up)) < 0.002);
+            assert_true(fabs((double)color[4 * i + 2] - up) < 0.002);
+        }
+        assert_true(with_mesh ? covered > PIXELS / 8 && covered < PIXELS : covered == 0);
+        mem_free(color);
+        mem_free(depth);
+        world_close(&w);
+    }
+}
+
+static void sky_alpha_0_leaves_the_sky_clear(void **state) {
+    pass_world w;
+    world_open(&w, *state);
+    w.scene.sky.strength = number(&w, 1);
+    scene_mesh *crate = world_mesh(&w, "crate.obj");
+    pass *p = world_add(&w, "geometry", NULL, "geometry");
+    gpu_test_ok(pass_add_mesh(p, crate));
+    gpu_test_ok(pass_set_uniform(p, "sky_alpha", number(&w, 0)));
+    gpu_test_ok(pass_declare(p));
+    world_render(&w, WIDTH, HEIGHT, pass_output(p, "color"));
+    float *color = world_read(&w, pass_output(p, "color"));
+    const float *corner = color, *centre = color + 4 * (HEIGHT / 2 * WIDTH + WIDTH / 2);
+    assert_true(corner[0] == 0 && corner[1] == 0 && corner[2] == 0 && corner[3] == 0);
+    assert_true(centre[3] == 1 && centre[2] > 0);
+    mem_free(color);
+    world_close(&w);
+}
+
+// ---- what hides what --------------------------------------------------------------------------
+
+static void nearer_mesh_hides_the_farther_in_either_order(void **state) {
+    for (int order = 0; order < 2; order++) {
+        pass_world w;
+        world_open(&w, *state);
+        w.scene.sky.strength = number(&w, 1);
+        w.scene.sky.zenith = w.scene.sky.horizon = triple(&w, 1, 1, 1);
+        scene_mesh *near = world_mesh(&w, "plane.obj"), *far = world_mesh(&w, "plane.obj");
+        near->position = triple(&w, -1, 0, 0);
+        near->color = triple(&w, 1, 0, 0);
+        far->position = triple(&w, 0, 1, 0);
+        far->color = triple(&w, 0, 1, 0);
+        far->scale = number(&w, 3);
+        scene_mesh *both[] = {order ? far : near, order ? near : far};
+        pass *p = add_geometry(&w, both, 2);
+        gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "depth")));
+        world_render(&w, WIDTH, HEIGHT, pass_output(p, "color"));
+        float *color = world_read(&w, pass_output(p, "color"));
+        float *depth = world_read_depth(&w, pass_output(p, "depth"));
+        for (uint32_t x = 0; x < WIDTH; x++) {
+            uint32_t i = HEIGHT / 2 * WIDTH + x;
+            bool left = pixel_ray(&w, x, HEIGHT / 2).x < 0;
+            assert_true(fabsf(depth[i] - (left ? 5 : 6)) < 1e-3f);
+            const float *seen = color + 4 * i;
+            assert_true(left ? seen[0] > 0 && seen[1] == 0 : seen[0] == 0 && seen[1] > 0);
+        }
+        mem_free(color);
+        mem_free(depth);
+        world_close(&w);
+    }
+}
+
+static void surface_is_lit_by_the_cosine_of_the_sun(void **state) {
+    pass_world w;
+    world_open(&w, *state);
+    w.scene.sun.strength = number(&w, GLM_PIf);
+    w.scene.sun.azimuth = number(&w, -90); // where the camera is
+    w.scene.sun.elevation = number(&w, 60);
+    scene_mesh *plane = world_mesh(&w, "plane.obj");
+    plane->color = triple(&w, 1, 0.5f, 0.25f);
+    pass *p = add_geometry(&w, &plane, 1);
+    world_render(&w, WIDTH, HEIGHT, pass_output(p, "color"));
+    float *color = world_read(&w, pass_output(p, "color"));
+    const float *centre = color + 4 * (HEIGHT / 2 * WIDTH + WIDTH / 2);
+    const float tint[] = {1, 0.5f, 0.25f};
+    for (int c = 0; c < 3; c++) { // cos 60 degrees
+        float want = 0.5f * tint[c] * plane->data.parts[0].color[c];
+        assert_true(want > 0 && fabsf(centre[c] - want) < 0.001f);
+    }
+    mem_free(color);
+    world_close(&w);
+}
+
+// ---- a volume around something solid ------------------------------------------------------------
+
+enum { STEPS = 64 };
+
+// Opacity of smoke of density 0.4 in a cube of half-size 1 before a crate of half-size 0.25.
+static double smoke(const pass_world *w, uint32_t i, bool paper, bool *solid) {
+    vector ray = pixel_ray(w, i % WIDTH, i / WIDTH);
+    double near, far, front, back;
+    *solid = hit_cube(ray, 0.25, &front, &back);
+    if (!hit_cube(ray, 1, &near, &far)) return 0;
+    double seen = *solid ? front - near : far - near;
+    if (!paper) return 1 - exp(-0.4 * seen * length(ray));
+    // As many of the N samples, which begin at the entry, as lie before the crate.
+    double count = fmin(floor(seen / (far - near) * STEPS) + 1, STEPS);
+    return 1 - pow(1 - 0.4 * 4 / STEPS, count);
+}
+
+static void crate_in_smoke(gpu *device, const char *mode) {
+    pass_world w;
+    world_open(&w, device);
+    scene_mesh *crate = world_mesh(&w, "crate.obj");
+    crate->scale = number(&w, 0.25f);
+    pass *solid = add_geometry(&w, &crate, 1), *p = world_add(&w, "march", NULL, "march");
+    gpu_test_ok(pass_set_option(p, "mode", mode));
+    gpu_test_ok(pass_set_field(p, "density", block(&w, 1, 0.4f)));
+    gpu_test_ok(pass_set_image(p, "depth", pass_output(solid, "depth")));
+    gpu_test_ok(pass_set_uniform(p, "steps", number(&w, STEPS)));
+    gpu_test_ok(pass_set_uniform(p, "opacity", number(&w, 4)));
+    gpu_test_ok(pass_set_uniform(p, "depth_bias", number(&w, 0)));
+    gpu_test_ok(pass_set_uniform(p, "early_exit", number(&w, 0)));
+    gpu_test_ok(pass_declare(p));
+    world_render(&w, WIDTH, HEIGHT, pass_output(p, "color"));
+    float *pixels = world_read(&w, pass_output(p, "color"));
+    size_t before = 0;
+    bool paper = strcmp(mode, "paper") == 0;
+    // One sample more or less, where a sample lies on the surface.
+    double tolerance = paper ? 1.1 * 0.4 * 4 / STEPS : 0.002;
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        bool hidden;
+        double want = smoke(&w, i, paper, &hidden), got = (double)pixels[4 * i + 3];
+        if (!(fabs(got - want) <= tolerance))
+            fail_msg("%s, pixel (%u, %u)%s: opacity %.5f, not %.5f", mode, i % WIDTH, i / WIDTH,
+                     hidden ? " before the crate" : "", got, want);
+        before += hidden;
+    }
+    assert_true(before > 8);
+    mem_free(pixels);
+    world_close(&w);
+}
+
+static void smoke_ends_at_the_crate_in_it(void **state) {
+    crate_in_smoke(*state, "physical");
+}
+
+static void smoke_ends_at_the_crate_in_mode_paper_too(void **state) {
+    crate_in_smoke(*state, "paper");
+}
+
+// Greatest difference of the smoke's light from that of a full-resolution march, on pixels of the
+// crate. The smoke glows and all else is black, so that light is opacity.
+static double halo(gpu *device, bool with_edge, float scale) {
+    pass_world w;
+    world_open(&w, device);
+    scene_mesh *crate = world_mesh(&w, "crate.obj");
+    crate->scale = number(&w, 0.5f);
+    pass *solid = add_geometry(&w, &crate, 1);
+    pass *volume = world_add(&w, "march", NULL, "march");
+    gpu_test_ok(pass_set_field(volume, "density", block(&w, 1, 1.2f)));
+    gpu_test_ok(pass_set_field(volume, "radiance", triple(&w, 1, 1, 1)));
+    gpu_test_ok(pass_set_image(volume, "depth", pass_output(solid, "depth")));
+    gpu_test_ok(pass_set_uniform(volume, "depth_bias", number(&w, 0)));
+    gpu_test_ok(pass_set_uniform(volume, "early_exit", number(&w, 0)));
+    gpu_test_ok(pass_set_scale(volume, scale));
+    gpu_test_ok(pass_declare(volume));
+    pass *over = world_add(&w, "over", NULL, "over");
+    gpu_test_ok(pass_set_image(over, "volume", pass_output(volume, "color")));
+    gpu_test_ok(pass_set_image(over, "source", pass_output(solid, "color")));
+    if (with_edge) {
+        gpu_test_ok(pass_set_image(over, "depth", pass_output(solid, "depth")));
+        gpu_test_ok(pass_set_image(over, "edge", pass_output(volume, "edge")));
+    }
+    gpu_test_ok(pass_declare(over));
+    world_render(&w, WIDTH, HEIGHT, pass_output(over, "color"));
+    float *pixels = world_read(&w, pass_output(over, "color"));
+    double worst = 0;
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        vector ray = pixel_ray(&w, i % WIDTH, i / WIDTH);
+        double near, far, front, back;
+        if (!hit_cube(ray, 0.5, &front, &back) || front > 4.5001) continue;
+        assert_true(hit_cube(ray, 1, &near, &far));
+        double want = 1 - exp(-1.2 * (front - near) * length(ray));
+        worst = fmax(worst, fabs((double)pixels[4 * i] - want));
+    }
+    mem_free(pixels);
+    world_close(&w);
+    return worst;
+}
+
+static void quarter_resolution_has_no_halo_around_the_crate(void **state) {
+    double full = halo(*state, true, 1), quarter = halo(*state, true, 0.25f);
+    double careless = halo(*state, false, 0.25f);
+    if (full > 0.002) fail_msg("full resolution is off by %g", full);
+    if (quarter > 0.01) fail_msg("quarter resolution is off by %g", quarter);
+    assert_true(careless > 0.1); // what the edges are for
+}
+
+int main(void) {
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(depth_is_the_distance_along_the_view),
+        cmocka_unit_test(sky_is_where_nothing_is),
+        cmocka_unit_test(sky_alpha_0_leaves_the_sky_clear),
+        cmocka_unit_test(nearer_mesh_hides_the_farther_in_either_order),
+        cmocka_unit_test(surface_is_lit_by_the_cosine_of_the_sun),
+        cmocka_unit_test(smoke_ends_at_the_crate_in_it),
+        cmocka_unit_test(smoke_ends_at_the_crate_in_mode_paper_too),
+        cmocka_unit_test(quarter_resolution_has_no_halo_around_the_crate),
+    };
+    return gpu_test_run(tests, COUNT_OF(tests));
+}
