@@ -243,7 +243,7 @@ bool vm_call(vm *v, int args, int results, uint64_t instructions) {
         v->where[0] = 0;
         // A common machine runs 100 million a second; 2 million a second is not a slow machine but
         // instructions that each do too much.
-        v->deadline = processor_seconds() + (double)instructions * 5e-7;
+        v->deadline = processor_seconds() + 1 + (double)instructions * 5e-7;
         lua_sethook(L, tick, LUA_MASKCOUNT, TICK);
     }
     int function = lua_gettop(L) - args;

@@ -1,5 +1,5 @@
 -- The whole chain from a field to a picture.
--- expect passes: 8
+-- expect passes: 9
 local fx = effect { name = "pictures", fps = 30, frames = 10 }
 fx.camera = orbit { target = { 0, 0, 1 }, distance = 8, yaw = curve { { 0, 0 }, { 4, 360 } }, pitch = 10 }
 fx.sun = sun { azimuth = 120, elevation = 40, color = "#fff0e0", strength = 2 }
@@ -7,9 +7,10 @@ fx.sky = sky { zenith = { 0.1, 0.2, 0.4 }, horizon = { 0.5, 0.5, 0.6 } }
 
 local ground = geometry { haze = 0.01 }
 local baked = bake(sphere { radius = 1, falloff = 1 } * perlin {}, { size = { 32, 32, 16 } })
+local flow = bake(curl {}, { size = 16, box = { min = { -1, -1, -1 }, max = { 1, 1, 1 } } })
 local volume = march {
   name = "fireball",
-  density = baked * 4,
+  density = baked:warp(flow) * sphere {} * 4,
   depth = ground.depth,
   mode = "physical",
   steps = 32,

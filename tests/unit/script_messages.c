@@ -88,7 +88,7 @@ static void values_of_the_wrong_kind_are_named(void **state) {
         {"march { density = 1, format = {colr = 'r32f'} }", "march: no output 'colr'"},
         {"march { }", "march: field 'density' is missing"},
         {"over(img)", "over: input 'source' is missing"},
-        {"over { img, img, img, img, img, img }", "over: too many images"},
+        {"bright { img, img }", "bright: too many images; it takes 1 without a name"},
         {"over { img, volume = img }", "over: input 'volume' is given twice"},
         {"bloom { mesh { 'none.obj' } }", ""},
         {"history(3)", "history takes an image"},
