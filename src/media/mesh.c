@@ -182,7 +182,7 @@ static bool take_mesh(loader *l, mesh_data *out) {
     if (head.vertex_count > MESH_VERTICES_MAX || head.index_count > MESH_INDICES_MAX ||
         head.texture_count > MESH_TEXTURES_MAX)
         return broken(l);
-    mesh_part *parts;
+    mesh_part *parts = NULL;
     return take_geometry(l, &head, &parts, out) && take_textures(l, &head, parts, out) &&
            take_files(l, &head, out);
 }

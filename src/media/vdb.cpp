@@ -552,6 +552,12 @@ GridBase::Ptr dense_to_grid(const vdb_write_grid &w, typename Grid::ValueType ba
     auto values = reinterpret_cast<value *>(const_cast<float *>(w.values));
     openvdb::tools::Dense<value, openvdb::tools::LayoutXYZ> dense(box, values);
     openvdb::tools::copyFromDense(dense, *grid, value(0.0f));
+    // OpenVDB finds NaN equal to the background.
+    auto access = grid->getAccessor();
+    for (auto it = box.begin(); it; ++it) {
+        value v = dense.getValue(*it);
+        if (!openvdb::math::isFinite(v)) access.setValueOn(*it, v);
+    }
     return grid;
 }
 

@@ -24,8 +24,8 @@ static void sample(const char *path, const vdb_grid_info *grid) {
     float step = grid->voxel_size[0] * SIDE;
     for (int exact = 0; exact < 2; exact++) { // scaled to the box; then voxel by voxel
         if (exact)
-            desc.box.max = (float3){desc.box.min.x + step, desc.box.min.y + step,
-                                    desc.box.min.z + step};
+            desc.box.max =
+                (float3){desc.box.min.x + step, desc.box.min.y + step, desc.box.min.z + step};
         if (!vdb_sample(&desc, NULL)) continue;
         for (size_t i = 0; i < count; i++)
             if (!isfinite(out[i])) __builtin_trap();
