@@ -27,6 +27,7 @@ uniform vec3 box_min;
 uniform vec3 box_max;
 uniform sampler2D depth;           //= input optional : depth of the scene (m)
 writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity
+writeonly uniform image2D shadow;  //= output r16f : part of the sunlight that reaches the scene at the pixel
 writeonly uniform image2D edge;    //= output r32f : depth of the scene that the ray saw (m)
 
 #include "lib/frame.glsl"
@@ -54,6 +55,19 @@ float sunlight(vec3 p) {
     }
     count_samples(shadow_steps);
     return exp(-depth_sum);
+}
+
+// The shadow of the volume on a point outside of it: the same number of steps from where the ray to
+// the sun enters the box to where it leaves.
+float shadow_on(vec3 p) {
+    vec2 range = box_range(p, frame.sun_direction.xyz, box_min, box_max);
+    if (range.y <= range.x) return 1.0;
+    int count = 2 * shadow_steps;
+    float length = (range.y - range.x) / float(count), sum = 0.0;
+    for (int i = 0; i < count; i++)
+        sum += field_density(p + (range.x + (float(i) + 0.5) * length) * frame.sun_direction.xyz);
+    count_samples(count);
+    return exp(-sum * length);
 }
 
 struct ray_state {
@@ -149,7 +163,12 @@ void main() {
     ray_state ray = march(frame.eye.xyz, direction, range, last, clamp(offset, 0.0, 1.0));
     result = vec4(ray.light, 1.0 - ray.transmittance);
 #endif
+    float lit = 1.0;
+#if HAS_DEPTH && MODE == MODE_PHYSICAL
+    if (inside && shadow_steps > 0 && stop < 1e8) lit = shadow_on(frame.eye.xyz + stop * along);
+#endif
     if (!inside) return;
     imageStore(color, pixel, result);
+    imageStore(shadow, pixel, vec4(lit));
     imageStore(edge, pixel, vec4(stop));
 }

@@ -183,6 +183,9 @@ static bool update_baked(field_grid *grid, gpu *g, double time) {
     const effect_baked *baked = (const effect_baked *)grid;
     float longest = field_longest(baked->node, &baked->owner->context);
     grid->longest = isfinite(longest) ? longest : 0;
+    box3 active;
+    if (!field_bounds(baked->node, &baked->owner->context, &active)) return false;
+    grid->state.active = box3_intersect(active, grid->box);
     return true;
 }
 

@@ -51,7 +51,11 @@ uint64_t effect_render(effect *e, double frame) {
     if (!number) return 0;
     bool done = evaluate(e, frame) && graph_execute(e->graph, e->device);
     if (!gpu_frame_end(e->device)) done = false;
+    if (!done) { // what it may have left in a history is of no frame
+        graph_reset_history(e->graph);
+        return 0;
+    }
     e->counter++;
     e->last_frame = frame;
-    return done ? number : 0;
+    return number;
 }

@@ -44,8 +44,8 @@ bool geometry_declare(pass *p) {
                                             .scale = p->scale,
                                             .target = true,
                                         });
-    return s->z.id && add_target(p, "color") && add_target(p, "depth") && pass_declare_images(p) &&
-           pass_add_to_graph_with(p, &s->z, 1);
+    return s->z.id && add_target(p, "color") && add_target(p, "sun") && add_target(p, "depth") &&
+           pass_declare_images(p) && pass_add_to_graph_with(p, &s->z, 1);
 }
 
 static bool compile_mesh(pass *p, geometry_state *s) {
@@ -93,6 +93,7 @@ bool geometry_build(pass *p) {
                              .slots = slots,
                              .slot_count = slot_count,
                              .colors = {p->formats[pass_find_image(p, "color")],
+                                        p->formats[pass_find_image(p, "sun")],
                                         p->formats[pass_find_image(p, "depth")]},
                              .depth = GPU_D32F,
                          });
@@ -161,11 +162,13 @@ bool geometry_record(pass *p) {
     geometry_state *s = p->state;
     graph *g = p->host->graph;
     graph_image color = p->images[pass_find_image(p, "color")];
+    graph_image sun = p->images[pass_find_image(p, "sun")];
     graph_image depth = p->images[pass_find_image(p, "depth")];
     if (s->meshes) {
         gpu_draw_desc target = {
             .pipeline = s->meshes,
-            .colors = {graph_get_image(g, color), graph_get_image(g, depth)},
+            .colors = {graph_get_image(g, color), graph_get_image(g, sun),
+                       graph_get_image(g, depth)},
             .depth = graph_get_image(g, s->z),
             .clear = true,
             .clear_depth = 1,

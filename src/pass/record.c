@@ -38,7 +38,7 @@ static bool evaluate(const pass *p, size_t index, float out[4]) {
     if (!node) return true;
     float value[4] = {0};
     if (!field_eval(node, p->host->context, (float3){0, 0, 0}, value))
-        return err_prefix("%s.%s: ", p->label, uniform->name);
+        return err_prefix("uniform '%s': ", uniform->name);
     for (int i = 0; i < 4; i++) {
         float v = node->components == 1 ? value[0] : value[i];
         out[i] = isfinite(v) ? clampf(v, uniform->min, uniform->max) : uniform->value[i];
@@ -176,9 +176,7 @@ bool pass_bind(pass *p, const shader_binary *binary, const unsigned char *block,
 
 bool pass_prepare(pass *p) {
     if (p->counters) gpu_buffer_fill(p->host->device, p->counters, 0);
-    return update_palettes(p) &&
-           (field_program_fill(p->program, p->host->context, p->numbers) ||
-            err_prefix("%s: ", p->label)) &&
+    return update_palettes(p) && field_program_fill(p->program, p->host->context, p->numbers) &&
            pass_fill_block(p, &p->binary, p->block);
 }
 

@@ -9,7 +9,8 @@ static const pass_type types[] = {
     {
         .name = "geometry",
         .shader = "pass/geometry.comp",
-        .returns = "color: what is solid, and the sky; depth: distance along the view axis (m)",
+        .returns = "color: what is solid, and the sky; sun: the sun's part of it; depth: distance "
+                   "along the view axis (m)",
         .declare = geometry_declare,
         .check = geometry_check,
         .build = geometry_build,
@@ -19,8 +20,8 @@ static const pass_type types[] = {
     {
         .name = "march",
         .shader = "pass/march.comp",
-        .returns =
-            "color: premultiplied radiance and opacity; edge: where each ray was stopped (m)",
+        .returns = "color: premultiplied radiance and opacity; shadow: how much sun reaches the "
+                   "scene; edge: where each ray was stopped (m)",
         .declare = march_declare,
         .fill = march_fill,
     },
