@@ -70,7 +70,7 @@ static size_t distance(const char *a, const char *b) {
 
 const char *str_nearest(const char *word, const char *const *candidates, size_t count) {
     const char *nearest = NULL;
-    size_t length = strlen(word), best = length / 3 + 1; // further away is another word
+    size_t length = strlen(word), best = (length + 2) / 3; // further away is another word
     if (best > 3) best = 3;
     for (size_t i = 0; i < count; i++) {
         size_t d = distance(word, candidates[i]);

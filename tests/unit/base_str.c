@@ -47,6 +47,8 @@ static void nearest_name_does_not_guess_wildly(void **state) {
     assert_null(nearest(""));
     assert_null(nearest("colour"));
     assert_null(nearest("absorption"));
+    const char *const add = "add";
+    assert_null(str_nearest("vdb", &add, 1)); // one letter of three is no likeness
     assert_null(str_nearest("density", NULL, 0));
     char longest[300];
     memset(longest, 'a', sizeof longest - 1);
