@@ -1,0 +1,209 @@
+"""What is written: pictures, video, statistics; and what happens when it cannot be."""
+import json
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import unittest
+
+from lib.pictures import Exr, Png
+from lib.program import PUFF, SMALL, VOLUME, Case, main
+
+BALL = VOLUME % "sphere { position = {1, 1, 1}, radius = 1 } * 10"
+
+
+class Pictures(Case):
+    def png(self, name="out.png"):
+        return Png(self.read(name))
+
+    def test_png_is_opaque_unless_asked(self):
+        self.render(BALL)
+        picture = self.png()
+        self.assertEqual((picture.width, picture.height), (96, 54))
+        self.assertEqual((picture.channels, picture.bits), (3, 8))
+        self.assertEqual(picture.rows[0][:3], (0, 0, 0))
+        self.assertGreater(max(picture.channel(0)), 20)
+
+    def test_png_keeps_alpha(self):
+        self.render(BALL, "--alpha")
+        picture = self.png()
+        alpha = picture.channel(3)
+        self.assertEqual(picture.channels, 4)
+        self.assertEqual(alpha[0], 0)
+        self.assertGreater(alpha[27 * 96 + 48], 250)
+        self.assertTrue(any(20 < a < 235 for a in alpha))
+
+    def test_png_of_sixteen_bits(self):
+        self.render(BALL)
+        rough = self.png().channel(1)
+        self.render(BALL, "--16", "--alpha")
+        picture = self.png()
+        self.assertEqual((picture.channels, picture.bits), (4, 16))
+        self.assertGreater(len(set(picture.channel(1))), len(set(rough)))
+        self.render(BALL, "--16")
+        fine = self.png().channel(1)
+        self.assertTrue(all(abs(f / 257 - r) <= 1 for f, r in zip(fine, rough)))
+
+    def test_exr_is_linear_with_alpha_and_depth(self):
+        self.render(PUFF, output="out.exr")
+        picture = Exr(self.read("out.exr"))
+        self.assertEqual((picture.width, picture.height), (96, 54))
+        self.assertEqual(picture.types, {"A": 1, "B": 1, "G": 1, "R": 1, "Z": 2})
+        depth = picture.channels["Z"]
+        self.assertLess(depth[53 * 96 + 48], 20)  # the ground before the camera
+        self.assertGreater(depth[48], depth[53 * 96 + 48])  # the sky is further
+        self.assertEqual(min(picture.channels["A"]), 1)
+        self.render(PUFF, "--float", output="out.exr")
+        full = Exr(self.read("out.exr"))
+        self.assertEqual(set(full.types.values()), {2})
+        close = [abs(a - b) <= 0.001 * abs(b) + 1e-6
+                 for a, b in zip(picture.channels["R"], full.channels["R"])]
+        self.assertTrue(all(close))
+
+    def test_exr_without_depth(self):
+        self.render(BALL, output="out.exr")
+        picture = Exr(self.read("out.exr"))
+        self.assertEqual(sorted(picture.types), ["A", "B", "G", "R"])
+        self.assertEqual(picture.channels["A"][0], 0)
+        self.assertGreater(max(picture.channels["A"]), 0.95)
+
+    def test_frames_are_numbered(self):
+        self.render(PUFF, "--frames", "1-5:2,9", output="deep/folder/f%03d.png")
+        self.assertEqual(sorted(os.listdir(self.path("deep/folder"))),
+                         ["f001.png", "f003.png", "f005.png", "f009.png"])
+
+    def test_default_output_is_named_after_the_effect(self):
+        self.write("puff.lua", PUFF)
+        self.assertIn("wrote out/puff/%04d.png",
+                      self.succeeds("render", "puff.lua", "--frames", "2", *SMALL))
+        self.assertTrue(os.path.exists(self.path("out/puff/0002.png")))
+
+    def test_all_frames_are_the_default(self):
+        self.write("effect.lua", 'local fx = effect { name = "four", frames = 4, first = 7 }\n'
+                   "fx.output = geometry {}\n")
+        self.succeeds("render", "effect.lua", "-o", "%d.png", *SMALL)
+        self.assertEqual(sorted(n for n in os.listdir(self.folder) if n.endswith(".png")),
+                         ["10.png", "7.png", "8.png", "9.png"])
+
+    def test_same_frame_is_the_same_bit_for_bit(self):
+        self.render(PUFF, output="a.png")
+        self.render(PUFF, output="b.png")
+        self.assertEqual(self.read("a.png"), self.read("b.png"))
+        self.render(PUFF, "--frames", "3,2,1", "--no-cache", output="c%d.png")
+        self.assertEqual(self.read("c1.png"), self.read("a.png"))  # whatever came before
+
+    def test_odd_sizes(self):
+        self.write("effect.lua", PUFF)
+        for size in ("1x1", "7x3", "3x100"):
+            with self.subTest(size):
+                self.succeeds("render", "effect.lua", "--frames", "1", "-o", "out.png", "--size", size)
+                picture = self.png()
+                self.assertEqual(f"{picture.width}x{picture.height}", size)
+
+    def test_image_of_a_pass_is_dumped(self):
+        self.render(PUFF, "--dump-pass", "march", "march.exr", "--dump-pass", "geometry.depth",
+                    "depth.exr")
+        march, depth = Exr(self.read("march.exr")), Exr(self.read("depth.exr"))
+        self.assertGreater(max(march.channels["A"]), 0.5)
+        self.assertLess(min(march.channels["A"]), 0.01)
+        self.assertGreater(min(depth.channels["R"]), 1)
+        self.assertTrue(os.path.exists(self.path("out.png")))
+        self.fails(1, ["no image 'marsh'", "roil info graph"], "render", "effect.lua", "--frames", "1",
+                   "--dump-pass", "marsh", "a.exr")
+        self.fails(1, ["march.colour", "march.color"], "render", "effect.lua", "--frames", "1",
+                   "--dump-pass", "march.colour", "a.exr")
+
+
+class Video(Case):
+    def test_video_has_every_frame(self):
+        self.render(PUFF, "--frames", "1-7", output="out.mp4")
+        if not shutil.which("ffprobe"):
+            self.skipTest("ffprobe is not installed")
+        told = subprocess.run(
+            ["ffprobe", "-v", "error", "-count_frames", "-show_entries",
+             "stream=nb_read_frames,width,height,r_frame_rate", "-of", "json", self.path("out.mp4")],
+            stdout=subprocess.PIPE, check=True)
+        self.assertEqual(json.loads(told.stdout)["streams"],
+                         [{"width": 96, "height": 54, "r_frame_rate": "24/1", "nb_read_frames": "7"}])
+
+    def test_unfinished_video_is_removed(self):
+        effect = PUFF.replace("return fx", """
+fx.update = function(t) if t > 0.1 then error("too late") end end
+return fx""")
+        self.write("effect.lua", effect)
+        self.fails(1, "too late", "render", "effect.lua", "-o", "out.mp4", *SMALL)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["effect.lua", "ground.obj"])
+
+
+class Statistics(Case):
+    def test_statistics_hold_times_samples_and_the_machine(self):
+        printed = self.render(PUFF, "--frames", "1-3", "--stats", "s/stats.json", "--set", "steps=9",
+                              output="%d.png")
+        stats = json.loads(self.read("s/stats.json"))
+        for key in ("roil", "effect", "device", "driver"):
+            self.assertTrue(stats[key], key)
+        self.assertEqual((stats["width"], stats["height"], stats["set"]), (96, 54, {"steps": "9"}))
+        self.assertEqual([f["frame"] for f in stats["frames"]], [1, 2, 3])
+        for frame in stats["frames"]:
+            self.assertEqual(set(frame["gpu_ms"]), {"geometry", "march", "over", "final"})
+            self.assertTrue(all(ms >= 0 for ms in frame["gpu_ms"].values()))
+            self.assertGreater(frame["gpu_ms"]["march"], 0)
+            self.assertGreater(frame["counters"]["march.samples"], 1000)
+        self.assertEqual(set(stats["median_gpu_ms"]), {"geometry", "march", "over", "final", "all"})
+        for name in ("geometry", "march", "over", "final"):
+            self.assertIn(name, printed)
+
+    def test_more_steps_take_more_samples(self):
+        samples = []
+        for steps in ("8", "32"):
+            self.render(PUFF, "--stats", "stats.json", "--set", f"steps={steps}")
+            samples.append(json.loads(self.read("stats.json"))["frames"][0]["counters"]["march.samples"])
+        self.assertGreater(samples[1], 2 * samples[0])
+
+
+def small_disk():
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writing fails instead, as on a full disk
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024))
+
+
+class Trouble(Case):
+    def test_unwritable_folder(self):
+        self.write("effect.lua", PUFF)
+        self.write("file", "")
+        for output in ("file/out.png", "/proc/roil/out.png"):
+            self.fails(1, os.path.dirname(output), "render", "effect.lua", "--frames", "1", "-o", output,
+                       *SMALL)
+        os.makedirs(self.path("taken.png"))
+        self.fails(1, "taken.png: is a folder", "render", "effect.lua", "--frames", "1", "-o",
+                   "taken.png", *SMALL)
+        self.fails(1, "file", "render", "effect.lua", "-o", "file/out.mp4", *SMALL)
+        self.fails(1, "file", "render", "effect.lua", "--frames", "1", "-o", "out.png", *SMALL, "--stats",
+                   "file/s.json")
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
+    def test_forbidden_folder(self):
+        self.write("effect.lua", PUFF)
+        os.makedirs(self.path("closed"), mode=0o500)
+        self.fails(1, ["closed", "Permission denied"], "render", "effect.lua", "--frames", "1", "-o",
+                   "closed/out.png", *SMALL)
+
+    def test_full_disk(self):
+        self.render(PUFF, output="old.png")  # also compiles: the compiler needs room of its own
+        before = sorted(os.listdir(self.folder))
+        for output in ("out.png", "out.exr", "out.mp4"):
+            with self.subTest(output):
+                self.fails(1, [output, "File too large"], "render", "effect.lua", "--frames", "1",
+                           "-o", output, *SMALL, before=small_disk)
+                self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+    def test_full_disk_does_not_spoil_the_cache(self):
+        cache = {"ROIL_CACHE_DIR": self.path("cache")}
+        self.write("effect.lua", PUFF)
+        self.run_program("render", "effect.lua", "--frames", "1", "-o", "out.png", *SMALL,
+                         environment=cache, before=small_disk)
+        self.render(PUFF, environment=cache)
+
+
+if __name__ == "__main__":
+    main()
