@@ -9,7 +9,7 @@ local fx = effect { name = "explosion", fps = 24, frames = 100 }
 
 -- Everything you may want to turn, with its range: --set density=30
 local density    = param { "density", 20, min = 0, max = 200, unit = "1/m", help = "extinction where the grid's density is 1" }
-local brightness = param { "brightness", 3, min = 0, max = 50, help = "factor of the fire's light" }
+local brightness = param { "brightness", 5, min = 0, max = 50, help = "factor of the fire's light" }
 local kelvin     = param { "kelvin", 1250, min = 500, max = 3000, unit = "K", help = "temperature where the grid says 1" }
 local noise      = param { "noise", "worley_curl", words = {"worley_curl", "worley", "perlin", "simplex", "none"}, help = "what the detail is made of" }
 local detail     = param { "detail", 1.1, min = 0, max = 3, help = "how much the noise eats from the smoke's edges" }
@@ -20,8 +20,8 @@ local steps      = param { "steps", 128, min = 8, max = 1024, integer = true, he
 local burst = vdb { "data/explosion-32/*.vdb", fps = 24, blend = true }
 
 -- A divergence-free flow tears at the grid. It is smooth, so a small baked grid of it will do.
-local flow = bake(curl { frequency = 0.8, dimensions = "4", speed = 0.4, seed = 3 },
-                  { size = {40, 40, 40}, box = burst.box })
+local flow = bake(curl { frequency = 0.7, octaves = 2, persistence = 0.6, dimensions = "4", speed = 0.4, seed = 3 },
+                  { size = {48, 48, 48}, box = burst.box })
 
 -- The torn grids, interpolated smoothly once a voxel, so that the march needs one fetch a sample.
 local torn = bake(vec(burst.density, burst.temperature, burst.flame):warp(flow, turbulence),
@@ -30,7 +30,7 @@ local smoke, heat, flame = torn.x, torn.y, torn.z
 
 -- The detail: lumps at three scales that rise with the smoke. Which noise it is, is structure: it is
 -- chosen when the effect loads.
-local shape = { frequency = 1.5, octaves = 3, persistence = 0.5, lacunarity = 2.2, drift = {0, 0, -0.5}, seed = 11 }
+local shape = { frequency = 1.4, octaves = 4, persistence = 0.55, lacunarity = 2.1, drift = {0, 0, -0.5}, seed = 11 }
 local kinds = {
   worley_curl = function() return worley(shape):warp(flow, 0.25) end,
   worley      = function() return worley(shape) end,
@@ -41,14 +41,15 @@ local kinds = {
 local lumps = kinds[noise:get()]()
 
 -- Lumps stand out where the smoke is thin; the thick core is left alone.
-local cover = clamp(smoke * 4, 0, 1)
-local body  = smoke * smoothstep(0, 0.35, cover - detail * (1 - lumps) * (1 - 0.6 * cover))
+local cover = clamp(smoke * 3, 0, 1)
+local crust = smoothstep(0, 0.15, cover - detail * (1 - lumps) * (1 - 0.7 * cover))
+local body  = crust * (smoke + 0.15 * cover)
 
 -- A black body's light grows with the fourth power of its temperature.
 local fire = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
 
 fx.camera = camera { eye = {4, -12, 3.36}, target = {4, 4, 3.36}, fov = 31.89, near = 0.1, far = 500 }
-fx.sun    = sun { azimuth = 239, elevation = 44, strength = 2.5 }
+fx.sun    = sun { azimuth = 239, elevation = 44, strength = 3.2 }
 fx.sky    = sky { zenith = {0.14, 0.25, 0.46}, horizon = {0.34, 0.38, 0.42}, strength = 0.6 }
 
 local scene = geometry {
@@ -59,7 +60,7 @@ local scene = geometry {
 
 local volume = march {
   density    = body * density,
-  emission   = fire(heat * (0.75 + 0.35 * lumps) * kelvin) * flame * brightness,
+  emission   = fire(heat * (0.45 + 0.85 * lumps) * kelvin) * flame * brightness,
   albedo     = {0.45, 0.43, 0.41},
   anisotropy = 0.2,
   ambient    = 0.6,

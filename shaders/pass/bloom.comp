@@ -1,4 +1,4 @@
-// Spreads the bright picture: halved level by level, then added back up (document 0 section 3.8).
+// Spreads the bright picture: halved level by level, then added back up (Raseta et al. 2025, section 3.8).
 //
 // In mode normal every level weighs what `radius` says and the weights sum to one: the bloom has
 // the energy of the bright picture. In mode paper C_i += alpha U(C_{i+1}), which adds energy with

@@ -1,4 +1,4 @@
-// Keeps what is brighter than a threshold (bright pass, document 0 section 3.8.1).
+// Keeps what is brighter than a threshold (bright pass, Raseta et al. 2025, section 3.8.1).
 #include "lib/color.glsl"
 //@ option mode = soft {soft, paper} : soft: a knee and no hard edge; paper: all or nothing by luminance
 uniform sampler2D source;           //= input : the picture, scene-linear

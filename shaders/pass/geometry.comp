@@ -1,4 +1,4 @@
-// Draws what is solid, lit by sun and sky, before the sky itself (document 0 section 3.3).
+// Draws what is solid, lit by sun and sky, before the sky itself (Raseta et al. 2025, section 3.3).
 //
 // This file declares the pass; meshes are rasterised by geometry.vert and geometry.frag, and this
 // dispatch then fills the pixels that no mesh covers.

@@ -2,10 +2,10 @@
 //
 // Mode physical integrates emission and absorption (Max 1995) and single scattering of sun and sky
 // exactly over each step, so that the picture converges as steps grow: over a step of length d with
-// extinction s, opacity is 1 - exp(-s d). Mode paper is document 0, section 3.5, as published, but
+// extinction s, opacity is 1 - exp(-s d). Mode paper is Raseta, Lesar and Bohak 2025, section 3.5, as published, but
 // for its order of the two sums (colour first, as Max has it).
 //@ option mode = physical {physical, paper} : how samples add up; paper: opacity / steps, as published
-//@ option sampling = quasi_cubic {linear, quasi_cubic, cubic} : interpolation of grids: quasi_cubic by a smoothstep-warped coordinate (section 3.5, listing 1), cubic by a B-spline of eight taps
+//@ option sampling = quasi_cubic {linear, quasi_cubic, cubic} : interpolation of grids: quasi_cubic by a smoothstep-warped coordinate (Raseta et al., listing 1), cubic by a B-spline of eight taps
 //@ option view = beauty {beauty, noise} : noise shows the field `noise` on the faces of the volume's box
 //@ field float density : extinction (1/m); in mode paper density in 0..1
 //@ field vec3 radiance after density = {0, 0, 0} : light of the medium itself where it is opaque (in mode paper: its colour)

@@ -21,6 +21,14 @@ static field_program *generate(pass *p) {
     return field_program_create(memory, roots, face->field_count);
 }
 
+// PREFIX_NAME, in capitals.
+static shader_define define(arena *memory, const char *prefix, const char *name,
+                            const char *value) {
+    char *whole = arena_format(memory, "%s_%s", prefix, name);
+    for (char *c = whole; *c; c++) *c = (char)toupper((unsigned char)*c);
+    return (shader_define){whole, value};
+}
+
 bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_define *defines,
                   size_t define_count, shader_binary *out) {
     const shader_interface *face = p->face;
@@ -30,16 +38,14 @@ bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_
         arena_alloc(memory, (define_count + face->image_count + face->field_count) * sizeof *all);
     for (size_t i = 0; i < define_count; i++) all[count++] = defines[i];
     for (size_t i = 0; i < face->image_count; i++) {
-        if (face->images[i].output) continue;
-        char *name = arena_format(memory, "HAS_%s", face->images[i].name);
-        for (char *c = name; *c; c++) *c = (char)toupper((unsigned char)*c);
-        all[count++] = (shader_define){name, p->images[i].id ? "1" : "0"};
+        const shader_image *image = &face->images[i];
+        if (!image->output)
+            all[count++] = define(memory, "HAS", image->name, p->images[i].id ? "1" : "0");
+        else if (p->formats[i] != image->format)
+            all[count++] = define(memory, "FORMAT", image->name, gpu_format_name(p->formats[i]));
     }
-    for (size_t i = 0; i < face->field_count; i++) {
-        char *name = arena_format(memory, "HAS_%s", face->fields[i].name);
-        for (char *c = name; *c; c++) *c = (char)toupper((unsigned char)*c);
-        all[count++] = (shader_define){name, p->fields[i] ? "1" : "0"};
-    }
+    for (size_t i = 0; i < face->field_count; i++)
+        all[count++] = define(memory, "HAS", face->fields[i].name, p->fields[i] ? "1" : "0");
     shader_text fields = {"fields.glsl", p->program ? field_program_text(p->program) : ""};
     bool done = shader_compile(p->host->library, memory,
                                &(shader_compile_desc){
