@@ -9,7 +9,7 @@ typedef struct script {
     effect *effect;
     vm *vm;
     script_limits limits;
-    bool loading;        // things are declared only while the file runs
+    bool loading;        // things are declared only while the file runs, not in functions of time
     const char *unsound; // what was left half made by an error that the script caught; or NULL
     bool declared;       // effect { } was called
     int update;          // registry reference of fx.update, or LUA_NOREF
@@ -69,6 +69,8 @@ bool value_image(lua_State *L, int index, graph_image *out);
 bool value_is_plain_table(lua_State *L, int index); // no object
 bool value_has_names(lua_State *L, int index);      // has a key that is a string
 
+// Pushes table[key] and returns its type. Never runs code of the script, as metamethods would.
+int value_get(lua_State *L, int table, const char *key);
 // Keys of a table that are strings, sorted. The array is kept alive by a value that is pushed.
 const char **value_names(lua_State *L, int table, const char *who, size_t *count);
 // Raises on a key that is not among `keys`, with the nearest one that is.

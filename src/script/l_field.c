@@ -91,7 +91,7 @@ static void take_table(lua_State *L, kind_call *call, int table) {
     size_t count;
     const char **names = value_names(L, table, call->kind->name, &count);
     for (size_t i = 0; i < count; i++) {
-        lua_getfield(L, table, names[i]);
+        value_get(L, table, names[i]);
         take_named(L, call, names[i]);
         lua_pop(L, 1);
     }
@@ -261,8 +261,7 @@ static int l_glsl(lua_State *L) {
         if (lua_rawgeti(L, 1, i + 1) != LUA_TSTRING)
             vm_error(L, "glsl: wanted are a file and a function, as in glsl { \"swirl.glsl\", "
                         "\"swirl\" }");
-        names[i] = lua_tostring(L, -1); // kept alive by the table
-        lua_pop(L, 1);
+        names[i] = lua_tostring(L, -1); // stays on the stack
     }
     field_glsl glsl = {.file = names[0],
                        .function = names[1],

@@ -151,7 +151,7 @@ static float3 corner(lua_State *L, const char *key) {
 
 static box3 read_box(lua_State *L, const field *node) {
     box3 box;
-    if (lua_getfield(L, 2, "box") == LUA_TNIL) {
+    if (value_get(L, 2, "box") == LUA_TNIL) {
         field_context context = script_context(L);
         if (!field_bounds(node, &context, &box)) script_raise(L);
     } else {
@@ -184,10 +184,11 @@ static int l_bake(lua_State *L) {
     box3 box = read_box(L, node);
     vm_charge_memory(L, SEQUENCE_COST);
     script *s = script_of(L);
+    const char *unsound = s->unsound;
     s->unsound = "bake";
     field_grid *grid = effect_add_bake(s->effect, node, voxels, box);
     if (!grid) script_raise(L);
-    s->unsound = NULL;
+    s->unsound = unsound;
     field_push(L, field_grid_channel(script_memory(L), grid, 0, node->components));
     return 1;
 }

@@ -75,7 +75,7 @@ static void read_keys(lua_State *L, palette_key keys[PALETTE_MAX_KEYS], size_t *
 }
 
 static bool read_blackbody(lua_State *L, palette_desc *desc) {
-    if (lua_getfield(L, 1, "blackbody") == LUA_TNIL) {
+    if (value_get(L, 1, "blackbody") == LUA_TNIL) {
         lua_pop(L, 1);
         return false;
     }
@@ -106,7 +106,7 @@ static int l_palette(lua_State *L) {
         .reference = (float)value_get_number(L, 1, who, "reference", 0),
     };
     bool blackbody = read_blackbody(L, &desc);
-    bool keyed = lua_getfield(L, 1, "keys") != LUA_TNIL;
+    bool keyed = value_get(L, 1, "keys") != LUA_TNIL;
     if (keyed) read_keys(L, keys, &desc.key_count);
     lua_pop(L, 1);
     if ((blackbody || keyed) && (lua_rawlen(L, 1) > 0 || (blackbody && keyed)))

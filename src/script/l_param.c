@@ -9,7 +9,7 @@
 static const char who[] = "param";
 
 static void read_words(lua_State *L, effect_param *param) {
-    if (lua_getfield(L, 1, "words") == LUA_TNIL) {
+    if (value_get(L, 1, "words") == LUA_TNIL) {
         lua_pop(L, 1);
         return;
     }

@@ -210,7 +210,7 @@ static gpu_format read_format(lua_State *L, const pass_call *call) {
 
 // format = "rgba32f" for the first output, or { color = "rgba32f", ... }.
 static void set_formats(lua_State *L, pass_call *call, int table) {
-    if (lua_getfield(L, table, "format") == LUA_TSTRING) {
+    if (value_get(L, table, "format") == LUA_TSTRING) {
         const shader_image *output = first_output(call->face);
         if (!output) vm_error(L, "%s: it has no output to give a format", call->who);
         if (!pass_set_format(call->pass, output->name, read_format(L, call))) script_raise(L);
@@ -219,7 +219,7 @@ static void set_formats(lua_State *L, pass_call *call, int table) {
         int formats = lua_gettop(L);
         const char **names = value_names(L, formats, call->who, &count);
         for (size_t i = 0; i < count; i++) {
-            lua_getfield(L, formats, names[i]);
+            value_get(L, formats, names[i]);
             if (!pass_set_format(call->pass, names[i], read_format(L, call))) script_raise(L);
             lua_pop(L, 1);
         }
@@ -248,7 +248,7 @@ static void read_table(lua_State *L, pass_call *call, int table, lua_Integer fir
     const char **names = value_names(L, table, call->who, &count);
     for (size_t i = 0; i < count; i++) {
         if (is_reserved(names[i])) continue;
-        lua_getfield(L, table, names[i]);
+        value_get(L, table, names[i]);
         set_key(L, call, names[i]);
         lua_pop(L, 1);
     }
@@ -270,6 +270,7 @@ static int make_pass(lua_State *L, const char *type, const char *file, int first
     pass_call call = {.who = type ? type : file};
     const char *label = table ? value_get_string(L, table, call.who, "name") : NULL;
     vm_charge_memory(L, PASS_COST);
+    const char *unsound = s->unsound;
     s->unsound = call.who;
     call.pass = effect_add_pass(s->effect, type, file, label);
     if (!call.pass) script_raise(L);
@@ -279,7 +280,7 @@ static int make_pass(lua_State *L, const char *type, const char *file, int first
     for (int i = first_positional; i <= n - (table != 0); i++) add_positional(L, &call, i);
     if (table) read_table(L, &call, table, first_element);
     if (!pass_declare(call.pass)) script_raise(L);
-    s->unsound = NULL;
+    s->unsound = unsound;
     result_object *result = object_new(L, "pass result", sizeof *result);
     result->pass = call.pass;
     return 1;

@@ -56,7 +56,11 @@ bool script_call(void *user, int function, double time, float out[4]) {
     if (!lua_checkstack(L, 8)) return err_set("the script's stack is full");
     lua_rawgeti(L, LUA_REGISTRYINDEX, function);
     lua_pushnumber(L, time);
-    return vm_call(s->vm, 1, 1, s->limits.frame) && read_result(L, time, out);
+    bool loading = s->loading;
+    s->loading = false;
+    bool done = vm_call(s->vm, 1, 1, s->limits.frame);
+    s->loading = loading;
+    return done && read_result(L, time, out);
 }
 
 static bool update(void *user, double time, double dt) {

@@ -63,6 +63,12 @@ static int by_name(const void *a, const void *b) {
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
+int value_get(lua_State *L, int table, const char *key) {
+    table = lua_absindex(L, table);
+    lua_pushstring(L, key);
+    return lua_rawget(L, table);
+}
+
 const char **value_names(lua_State *L, int table, const char *who, size_t *count) {
     table = lua_absindex(L, table);
     lua_Unsigned length = lua_rawlen(L, table);
@@ -76,10 +82,16 @@ const char **value_names(lua_State *L, int table, const char *who, size_t *count
                      luaL_typename(L, -2));
         n += type == LUA_TSTRING;
     }
-    const char **names = lua_newuserdatauv(L, (n + 1) * sizeof *names, 0);
+    const char **names = lua_newuserdatauv(L, (n + 1) * sizeof *names, 1);
+    lua_newtable(L); // keeps the names when a function of time empties the script's table
     *count = 0;
-    for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1))
-        if (lua_type(L, -2) == LUA_TSTRING) names[(*count)++] = lua_tostring(L, -2);
+    for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
+        if (lua_type(L, -2) != LUA_TSTRING) continue;
+        names[(*count)++] = lua_tostring(L, -2);
+        lua_pushvalue(L, -2);
+        lua_rawseti(L, -4, (lua_Integer)*count);
+    }
+    lua_setiuservalue(L, -2, 1);
     qsort(names, *count, sizeof *names, by_name);
     return names;
 }
@@ -125,7 +137,7 @@ static bool plain_number(lua_State *L, int index, double *out) {
 double value_get_number(lua_State *L, int table, const char *who, const char *key,
                         double otherwise) {
     double value = otherwise;
-    if (lua_getfield(L, table, key) != LUA_TNIL) {
+    if (value_get(L, table, key) != LUA_TNIL) {
         if (!plain_number(L, -1, &value)) wrong(L, -1, who, key, "a plain number");
         if (!isfinite(value)) vm_error(L, "%s: '%s' must be a finite number", who, key);
     }
@@ -143,7 +155,7 @@ uint32_t value_get_count(lua_State *L, int table, const char *who, const char *k
 
 bool value_get_bool(lua_State *L, int table, const char *who, const char *key, bool otherwise) {
     bool value = otherwise;
-    int type = lua_getfield(L, table, key);
+    int type = value_get(L, table, key);
     if (type == LUA_TBOOLEAN)
         value = lua_toboolean(L, -1);
     else if (type != LUA_TNIL)
@@ -154,7 +166,7 @@ bool value_get_bool(lua_State *L, int table, const char *who, const char *key, b
 
 const char *value_get_string(lua_State *L, int table, const char *who, const char *key) {
     const char *value = NULL;
-    int type = lua_getfield(L, table, key);
+    int type = value_get(L, table, key);
     if (type == LUA_TSTRING) {
         size_t length;
         const char *text = lua_tolstring(L, -1, &length);
@@ -169,7 +181,7 @@ const char *value_get_string(lua_State *L, int table, const char *who, const cha
 }
 
 bool value_get_vector(lua_State *L, int table, const char *who, const char *key, float out[3]) {
-    if (lua_getfield(L, table, key) == LUA_TNIL) {
+    if (value_get(L, table, key) == LUA_TNIL) {
         lua_pop(L, 1);
         return false;
     }
@@ -195,7 +207,7 @@ int value_word(lua_State *L, int index, const char *who, const char *key, const 
 int value_get_word(lua_State *L, int table, const char *who, const char *key,
                    const char *const *words, size_t count, int otherwise) {
     int value = otherwise;
-    if (lua_getfield(L, table, key) != LUA_TNIL) value = value_word(L, -1, who, key, words, count);
+    if (value_get(L, table, key) != LUA_TNIL) value = value_word(L, -1, who, key, words, count);
     lua_pop(L, 1);
     return value;
 }
@@ -250,9 +262,13 @@ static const field *constant(lua_State *L, const char *who, const char *key, int
 // The function is called once, for time 0, to learn how many components it gives.
 static const field *function_of_time(lua_State *L, int index, const char *who, const char *key) {
     script_require_loading(L, "a function of time");
+    script *s = script_of(L);
     lua_pushvalue(L, index);
     lua_pushnumber(L, 0);
-    lua_call(L, 1, 1);
+    s->loading = false;
+    int status = lua_pcall(L, 1, 1, 0);
+    s->loading = true;
+    if (status != LUA_OK) lua_error(L);
     float value[4];
     int count = value_numbers(L, -1, value);
     if (count == 0)
@@ -332,7 +348,7 @@ const field *value_uniform(lua_State *L, int index, const char *who, const char 
 const field *value_get_uniform(lua_State *L, int table, const char *who, const char *key,
                                int components, const field *otherwise) {
     const field *node = otherwise;
-    if (lua_getfield(L, table, key) != LUA_TNIL) node = value_uniform(L, -1, who, key, components);
+    if (value_get(L, table, key) != LUA_TNIL) node = value_uniform(L, -1, who, key, components);
     lua_pop(L, 1);
     return node;
 }
