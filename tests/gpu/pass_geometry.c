@@ -175,6 +175,47 @@ static void surface_is_lit_by_the_cosine_of_the_sun(void **state) {
     world_close(&w);
 }
 
+static void texture_is_decoded_from_srgb_and_multiplied(void **state) {
+    static const uint8_t texels[] = {188, 0, 255, 255, 0, 188, 255, 0}; // the right half is a hole
+    static const mesh_texture texture = {2, 1, texels};
+    static const mesh_vertex corners[] = {{{-9, 0, -9}, 0, {0, -1, 0}, 0},
+                                          {{9, 0, -9}, 1, {0, -1, 0}, 0},
+                                          {{9, 0, 9}, 1, {0, -1, 0}, 1},
+                                          {{-9, 0, 9}, 0, {0, -1, 0}, 1}};
+    static const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
+    static const mesh_part part = {0, 6, {1, 1, 0.5f, 1}, 0};
+    pass_world w;
+    world_open(&w, *state);
+    w.scene.sky.strength = number(&w, 1);
+    w.scene.sky.zenith = w.scene.sky.horizon = triple(&w, 1, 1, 1);
+    scene_mesh *mesh = world_mesh(&w, "plane.obj");
+    mesh->data = (mesh_data){.vertices = corners,
+                             .vertex_count = 4,
+                             .indices = indices,
+                             .index_count = 6,
+                             .parts = &part,
+                             .part_count = 1,
+                             .textures = &texture,
+                             .texture_count = 1};
+    pass *p = add_geometry(&w, &mesh, 1);
+    gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "depth")));
+    world_render(&w, WIDTH, HEIGHT, pass_output(p, "color"));
+    float *color = world_read(&w, pass_output(p, "color"));
+    float *depth = world_read_depth(&w, pass_output(p, "depth"));
+    // 4 m of 18 are seen; the texel's middle is at a quarter, so that all is blended near the
+    // middle.
+    for (uint32_t y = 0; y < HEIGHT; y += 7) {
+        uint32_t left = y * WIDTH, right = left + WIDTH - 1;
+        assert_true(fabsf(depth[left] - 5) < 1e-3f && depth[right] == 1e9f);
+        double x = pixel_ray(&w, 0, y).x * 5 / 18, share = 0.5 - 2 * x;      // of the left texel
+        assert_true(fabs((double)color[4 * left] - share * 0.5029) < 0.005); // 188 / 255 in sRGB
+        assert_true(fabs((double)color[4 * left + 2] - 0.5) < 0.005);
+    }
+    mem_free(color);
+    mem_free(depth);
+    world_close(&w);
+}
+
 // ---- a volume around something solid ------------------------------------------------------------
 
 enum { STEPS = 64 };
@@ -288,6 +329,7 @@ int main(void) {
         cmocka_unit_test(sky_alpha_0_leaves_the_sky_clear),
         cmocka_unit_test(nearer_mesh_hides_the_farther_in_either_order),
         cmocka_unit_test(surface_is_lit_by_the_cosine_of_the_sun),
+        cmocka_unit_test(texture_is_decoded_from_srgb_and_multiplied),
         cmocka_unit_test(smoke_ends_at_the_crate_in_it),
         cmocka_unit_test(smoke_ends_at_the_crate_in_mode_paper_too),
         cmocka_unit_test(quarter_resolution_has_no_halo_around_the_crate),
