@@ -6,10 +6,10 @@ from lib.program import BINARY, Case, main
 
 
 class Compare(Case):
-    def compare(self, actual, width=40, height=20):
+    def compare(self, actual, width=80, height=40):
         def ramp(x, y):
-            return (x * 4, y * 4, 100)
-        write_png(self.path("expected.png"), 40, 20, ramp)
+            return (x * 2, y * 4, 100)
+        write_png(self.path("expected.png"), 80, 40, ramp)
         write_png(self.path("actual.png"), width, height, lambda x, y: actual(x, y, ramp(x, y)))
         return self.run_program("expected.png", "actual.png", "difference.png",
                                 program=os.path.join(BINARY, "golden_compare"))
@@ -41,19 +41,19 @@ class Compare(Case):
         self.fails(lambda x, y, c: tuple(v + 60 for v in c) if 8 <= x < 14 and 8 <= y < 14 else c)
 
     def test_the_last_block_counts(self):
-        self.fails(lambda x, y, c: (255, 255, 255) if x >= 34 and y >= 16 else c)
+        self.fails(lambda x, y, c: (255, 255, 255) if x >= 74 and y >= 36 else c)
 
     def test_difference_is_shown_beside_the_pictures(self):
         shown = self.fails(lambda x, y, c: tuple(v + 5 for v in c))
-        self.assertEqual((shown.width, shown.height), (120, 20))
+        self.assertEqual((shown.width, shown.height), (240, 40))
         self.assertEqual(shown.rows[3][:3], (0, 12, 100))
-        self.assertEqual(shown.rows[3][120:123], (5, 17, 105))
-        self.assertEqual(shown.rows[3][240:243], (40, 40, 40))
+        self.assertEqual(shown.rows[3][240:243], (5, 17, 105))
+        self.assertEqual(shown.rows[3][480:483], (40, 40, 40))
 
     def test_another_size_fails(self):
-        done = self.compare(lambda x, y, c: c, width=39)
+        done = self.compare(lambda x, y, c: c, width=79)
         self.assertEqual(done.returncode, 1)
-        self.assertIn("39 x 20", done.stderr)
+        self.assertIn("79 x 40", done.stderr)
 
     def test_a_missing_picture_fails(self):
         done = self.run_program("a.png", "b.png", "c.png", program=os.path.join(BINARY, "golden_compare"))
