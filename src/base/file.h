@@ -40,6 +40,9 @@ const char *path_extension(const char *path);           // "a/b.tar.gz" -> "gz",
 // The file itself need not exist; a wildcard in the last component is allowed.
 bool path_confine(char out[PATH_CAP], const char *root, const char *name);
 
+// False, with a message, unless the existing file `path`, symbolic links followed, lies in `root`.
+bool path_require_inside(const char *root, const char *path);
+
 // Folder of the running program; and a per-user cache folder for `name`, created on demand
 // ($ROIL_CACHE_DIR, else $XDG_CACHE_HOME/roil, else ~/.cache/roil).
 bool path_program_folder(char out[PATH_CAP]);

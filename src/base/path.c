@@ -58,10 +58,19 @@ static bool resolve(char out[PATH_CAP], const char *path) {
     return true;
 }
 
+static bool real_folder(char out[PATH_MAX], const char *root) {
+    return realpath(root, out) || err_set("%s: %s", root, strerror(errno));
+}
+
+static bool lies_inside(const char *real_root, const char *real) {
+    size_t length = strcmp(real_root, "/") == 0 ? 0 : strlen(real_root);
+    return strncmp(real, real_root, length) == 0 && (real[length] == '/' || real[length] == '\0');
+}
+
 bool path_confine(char out[PATH_CAP], const char *root, const char *name) {
     char real_root[PATH_MAX], joined[PATH_CAP];
     if (!name[0]) return err_set("empty file name");
-    if (!realpath(root, real_root)) return err_set("%s: %s", root, strerror(errno));
+    if (!real_folder(real_root, root)) return false;
     if (name[0] == '/') return err_set("%s: must be relative to %s", name, root);
     for (const char *part = name; part; part = strchr(part, '/')) {
         if (*part == '/') part++;
@@ -69,10 +78,14 @@ bool path_confine(char out[PATH_CAP], const char *root, const char *name) {
             return err_set("%s: leaves %s", name, root);
     }
     if (!path_join(joined, real_root, name) || !resolve(out, joined)) return false;
-    size_t length = strcmp(real_root, "/") == 0 ? 0 : strlen(real_root);
-    if (strncmp(out, real_root, length) != 0 || (out[length] != '/' && out[length] != '\0'))
-        return err_set("%s: leads out of %s", name, root);
-    return true;
+    return lies_inside(real_root, out) || err_set("%s: leads out of %s", name, root);
+}
+
+bool path_require_inside(const char *root, const char *path) {
+    char real_root[PATH_MAX], real[PATH_MAX];
+    if (!real_folder(real_root, root)) return false;
+    if (!realpath(path, real)) return err_set("%s: %s", path, strerror(errno));
+    return lies_inside(real_root, real) || err_set("%s: leads out of %s", path, root);
 }
 
 bool path_program_folder(char out[PATH_CAP]) {

@@ -95,6 +95,24 @@ static void links_are_followed(void **state) {
     leaves(root.text, "sibling/secret", "leads out"); // "root" is only the beginning of "root2"
 }
 
+static void existing_files_are_told_inside_from_outside(void **state) {
+    path_text root = in(*state, "root");
+    put(*state, "root/data/a", "");
+    put(*state, "root2/a", "");
+    assert_int_equal(symlink("data/a", in(root.text, "inner").text), 0);
+    assert_int_equal(symlink("../root2/a", in(root.text, "outer").text), 0);
+    assert_int_equal(symlink("outer", in(root.text, "twice").text), 0);
+    assert_true(path_require_inside(root.text, in(root.text, "data/a").text));
+    assert_true(path_require_inside(root.text, in(root.text, "data/../inner").text));
+    assert_true(path_require_inside("/", in(root.text, "outer").text));
+    assert_false(path_require_inside(root.text, in(root.text, "outer").text));
+    assert_message("leads out");
+    assert_false(path_require_inside(root.text, in(root.text, "twice").text));
+    assert_false(path_require_inside(root.text, in(*state, "root2/a").text));
+    assert_false(path_require_inside(root.text, in(root.text, "none").text));
+    assert_message("No such file");
+}
+
 static void broken_links_are_refused(void **state) {
     put(*state, "root/a", "");
     path_text root = in(*state, "root");
@@ -165,6 +183,7 @@ int main(void) {
         SCRATCH_TEST(names_inside_are_accepted),
         SCRATCH_TEST(names_outside_are_refused),
         SCRATCH_TEST(links_are_followed),
+        SCRATCH_TEST(existing_files_are_told_inside_from_outside),
         SCRATCH_TEST(broken_links_are_refused),
         SCRATCH_TEST(loops_of_links_are_refused),
         SCRATCH_TEST(root_may_be_a_link_or_the_top),
