@@ -1,17 +1,13 @@
 // From a shader file to a binary: flatten, read annotations, put the prelude in front, then take
-// the code from the cache or from glslang, and reflect. Nothing is shared between two compiles
-// but the library's constant paths and its counter, so threads need no lock.
-//
-// glslang and SPIRV-Cross recurse over expressions and calls. A shader is a stranger's text, so
-// they run on a stack of their own that is large enough for all that glsl.c lets through.
+// the code from the cache or from glslang, which runs in a process of its own, and reflect. Nothing
+// is shared between two compiles but the library's constant paths and its counter, so threads need
+// no lock.
 #include "base/memory.h"
+#include "shader/isolate.h"
 #include "shader/unit.h"
-#include <pthread.h>
 #include <string.h>
 
 enum { SALT = 1 }; // raise when the same text shall give other code
-
-static const size_t stack_size = (size_t)256 << 20; // address space; only what is used costs
 
 typedef struct job {
     shader_library *library;
@@ -52,6 +48,18 @@ static bool reflect(job *j, spirv *code, arena *memory, shader_binary *out) {
     return true;
 }
 
+static bool run_compiler(job *j, spirv *out) {
+    glsl_answer answer;
+    if (!isolate_compile(j->source.text, j->desc->stage, &answer))
+        return err_prefix("%s: ", j->unit.files[0].where.label);
+    bool done = glsl_explain(&j->unit, &answer);
+    if (done)
+        *out = (spirv){.words = answer.data, .count = answer.size / sizeof *out->words};
+    else
+        mem_free(answer.data);
+    return done;
+}
+
 static bool translate(job *j, arena *memory, shader_binary *out) {
     hash128 key = key_of(j);
     spirv code;
@@ -61,7 +69,7 @@ static bool translate(job *j, arena *memory, shader_binary *out) {
         if (done) return true;
     }
     atomic_fetch_add(&j->library->compiles, 1);
-    if (!glsl_compile(&j->unit, j->source.text, j->desc->stage, &code)) return false;
+    if (!run_compiler(j, &code)) return false;
     spirv raw = {.words = mem_copy(code.words, code.count * sizeof *code.words),
                  .count = code.count}; // reflecting edits the code
     bool done = reflect(j, &code, memory, out);
@@ -97,25 +105,14 @@ static void *run(void *user) {
     return NULL;
 }
 
-static bool run_on_large_stack(job *j) {
-    pthread_t thread;
-    pthread_attr_t attributes;
-    pthread_attr_init(&attributes);
-    bool started = pthread_attr_setstacksize(&attributes, stack_size) == 0 &&
-                   pthread_create(&thread, &attributes, run, j) == 0;
-    pthread_attr_destroy(&attributes);
-    if (!started) return err_set("%s: no thread to compile on: too little memory", j->desc->name);
-    pthread_join(thread, NULL);
-    return j->done || err_set("%s", j->message);
-}
-
 bool shader_compile(shader_library *library, arena *memory, const shader_compile_desc *desc,
                     shader_binary *out) {
     *out = (shader_binary){0};
     job j = {.library = library, .desc = desc, .memory = memory, .out = out};
     unit_desc unit = {.name = desc->name, .texts = desc->texts, .text_count = desc->text_count};
     if (!unit_load(library, &unit, &j.unit)) return false;
-    bool done = run_on_large_stack(&j);
+    bool done = run_on_large_stack(run, &j) ? j.done || err_set("%s", j.message)
+                                            : err_prefix("%s: ", desc->name);
     strbuf_free(&j.source);
     mem_free(j.inserts.items);
     arena_free(&j.scratch);

@@ -5,7 +5,19 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "shader/unit.h"
+#include <errno.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+// Code from the cache goes to the driver as it is, so nobody else may put files there.
+static bool is_private(const char *folder) {
+    struct stat info;
+    if (stat(folder, &info) != 0) return err_set("%s: %s", folder, strerror(errno));
+    bool mine = info.st_uid == geteuid() || geteuid() == 0;
+    if (mine && !(info.st_mode & S_IWOTH)) return true;
+    return err_set("%s: others can write to this folder", folder);
+}
 
 shader_library *shader_library_create(const shader_library_desc *desc) {
     const char *roots[ROOT_COUNT] = {
@@ -20,7 +32,7 @@ shader_library *shader_library_create(const shader_library_desc *desc) {
     for (int i = 0; i < ROOT_COUNT; i++)
         library->roots[i] = roots[i] ? arena_string(&library->memory, roots[i]) : NULL;
     if (desc->cache_dir) {
-        if (file_make_folders(desc->cache_dir))
+        if (file_make_folders(desc->cache_dir) && is_private(desc->cache_dir))
             library->cache_dir = arena_string(&library->memory, desc->cache_dir);
         else
             log_write(LOG_WARNING, "shaders are not cached: %s", err_get());

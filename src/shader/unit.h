@@ -112,9 +112,38 @@ typedef struct spirv {
     size_t count;
 } spirv;
 
-bool glsl_compile(const shader_unit *unit, const char *source, shader_stage stage, spirv *out);
+enum {
+    GLSL_MAX_OPERATORS = 20000,   // of a statement; a table of 5000 negative numbers has 10000
+    SPIRV_MAX_SIZE = 16 << 20,    // bytes
+    SPIRV_MAX_EXPANDED = 4 << 20, // words, every call inlined
+};
+
+typedef enum glsl_outcome {
+    GLSL_DONE,
+    GLSL_REFUSED,        // the log says why
+    GLSL_INITIALISER,    // a uniform has one; the log begins with the warning
+    GLSL_LONG_STATEMENT, // of more than GLSL_MAX_OPERATORS
+    GLSL_LARGE,          // more than SPIRV_MAX_SIZE
+    GLSL_NO_CODE,
+} glsl_outcome;
+
+typedef struct glsl_answer {
+    glsl_outcome outcome;
+    void *data; // SPIR-V when done, else the log, NUL-terminated
+    size_t size;
+} glsl_answer;
+
+typedef void glsl_receiver(void *user, const glsl_answer *answer); // which lives for the call
+
+// Runs glslang here and now: the text of a stranger can make it hang or crash. See isolate.h.
+void glsl_run(const char *source, shader_stage stage, glsl_receiver *receive, void *user);
+// True when done, else an error with the true file and line and the source line beneath.
+bool glsl_explain(const shader_unit *unit, const glsl_answer *answer);
 uint32_t glsl_version(void); // of the compiler, for cache keys
 
+// False when the code is no module, or too large once calls are inlined; the message has no
+// position, nor has that of spirv_reflect, which asks this first.
+bool spirv_can_expand(const spirv *code);
 // Assigns bindings in place, removes what is not used, and describes the rest.
 bool spirv_reflect(spirv *code, shader_stage stage, arena *memory, shader_binary *out);
 // Turns LocalSizeId into LocalSize, which needs no device feature, and drops `dead` variables.
@@ -123,3 +152,6 @@ void spirv_clean(spirv *code, const uint32_t local_size[3], const uint32_t *live
 
 bool cache_load(const shader_library *library, hash128 key, spirv *out);
 void cache_store(const shader_library *library, hash128 key, const spirv *code);
+
+// Calls `run` on a thread with room for deep recursion, and waits for it.
+bool run_on_large_stack(void *(*run)(void *), void *user);

@@ -1,6 +1,7 @@
 // The cache on disk: what hits, what misses, and that damage only costs time.
 #include "base/memory.h"
 #include "shader_helper.h"
+#include <sys/stat.h>
 
 static const char shader[] = "//@ option mode = a {a, b} : x\n"
                              "writeonly uniform image2D color; //= output rgba16f : x\n"
@@ -154,6 +155,17 @@ static void an_unwritable_cache_is_no_error(void **state) {
     assert_int_equal(compiles(p), 2);
 }
 
+static void a_cache_that_others_can_write_to_is_not_used(void **state) {
+    place *p = *state;
+    place_write(p, "program/a.comp", shader);
+    assert_true(file_make_folders(p->cache));
+    assert_int_equal(chmod(p->cache, 0777), 0);
+    reopen(p);
+    compile(p, one);
+    compile(p, one);
+    assert_int_equal(compiles(p), 2);
+}
+
 static void failures_are_not_cached(void **state) {
     place *p = *state;
     place_write(p, "program/a.comp", "void main() { x }\n");
@@ -186,6 +198,7 @@ int main(void) {
         PLACE_TEST(damage_is_found_and_repaired),
         PLACE_TEST(an_entry_under_a_wrong_name_is_not_used),
         PLACE_TEST(an_unwritable_cache_is_no_error),
+        PLACE_TEST(a_cache_that_others_can_write_to_is_not_used),
         PLACE_TEST(failures_are_not_cached),
         PLACE_TEST(a_missing_folder_of_shaders_is_an_error),
     };
