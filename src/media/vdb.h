@@ -43,7 +43,8 @@ typedef struct vdb_sample_desc {
 
 // Resamples (trilinearly; exactly where the lattices coincide) one grid into a dense box. Level
 // sets become fog: 1 inside, falling to 0 across the narrow band's outer half. NaN and infinity
-// become 0 and are counted in `*bad` (may be NULL). Background is honoured.
+// become 0 and are counted in `*bad` (may be NULL). Background is honoured. Staggered vectors are
+// moved to the voxels' centres. Frustum transforms are refused, as are types with 0 components.
 bool vdb_sample(const vdb_sample_desc *desc, uint64_t *bad);
 
 typedef struct vdb_write_grid { // for tests and export

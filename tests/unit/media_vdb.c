@@ -175,6 +175,11 @@ static void what_is_not_finite_becomes_zero_and_is_counted(void **state) {
     assert_float_equal(out[0], 0.0f, 0);
     assert_float_equal(out[1], 2.0f, 0);
     assert_float_equal(out[7], 0.0f, 0);
+    desc.box.max = vec(31.5f, 31.5f, 31.5f);
+    desc.size[0] = desc.size[1] = desc.size[2] = 32;
+    assert_true(vdb_sample(&desc, &bad));
+    assert_int_equal(bad, 3);
+    assert_float_equal(out[8], 0.0f, 0);
 }
 
 static void equal_values_become_tiles_and_come_back(void **state) {
