@@ -6,72 +6,28 @@
 // it. Dear operations wanted again become
 //   - global, where the block has surely run: in a root `after` this one, which is called only if
 //     the product of this one was not zero, so that every block of that product was entered;
-//   - lazy, elsewhere: a global with a flag beside it that says whether it was computed.
+//   - lazy, elsewhere: a function of their own that remembers its result until the next point;
+//   - hoisted, where lazy functions would nest deeper than LEVELS (compilers unfold every call):
+//     computed at the beginning of every root.
 // Whether an operation is wanted again is known at the end, so the functions are written again with
 // the flags found until no flag is new. Flags only grow, hence this ends.
 //
-// Invariant: cheap operations, which are written again instead, have fewer than DEAR nodes below
-// them; products are only unfolded where nobody else uses them. So the text grows linearly.
-#include "field/emit.h"
+// Invariant: a dear operation is computed in one place of a root and what comes after it; cheap
+// ones have fewer than `dear` nodes below them; products are only unfolded where nobody else uses
+// them. So the text grows linearly.
 #include "base/error.h"
 #include "base/memory.h"
-#include "field/kinds.h"
+#include "field/emitter.h"
 #include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { MAX_FACTORS = 32, EXPR = 96, MAX_INDENT = 40 };
-static const float dear = 16; // cost from which an operation is worth a branch
+enum { MAX_INDENT = 40, LEVELS = 3 };
 
-typedef enum op_type { OP_NODE, OP_FETCH, OP_POINT } op_type;
-
-typedef struct op {
-    op_type type;
-    uint32_t id, point; // node, 4 * grid + image or point; where it is taken
-    int components;
-    float cost;
-    bool global, lazy;
-    // As last written:
-    uint32_t round, scope;
-    size_t owner; // root that computes it first
-    bool sure;    // and does so whenever it is not zero
-} op;
-
-typedef struct point {                 // index 0: the argument of the root
-    uint32_t parent, node, by, amount; // by, amount: NONE for a "transform"
-    uint32_t matrix;
-} point;
-
-typedef struct scope {
-    uint32_t parent;
-    bool open, sure;
-} scope;
-
-typedef struct emitter {
-    field_program *p;
-    strbuf body;
-    uint32_t *uses; // of nodes, by others
-    op *ops;
-    size_t op_count, op_capacity;
-    map op_places;
-    point *points;
-    size_t point_count, point_capacity;
-    scope *scopes;
-    size_t scope_count, scope_capacity;
-    uint32_t current; // scope
-    int indent;
-    uint32_t round;
-    size_t root;
-    uint32_t top; // operation whose blocks are sure, or NONE
-    bool again, failed;
-} emitter;
-
-static void emit_node(emitter *e, uint32_t node, uint32_t at, char out[EXPR]);
-
-static void line(emitter *e, const char *format, ...) PRINTF_LIKE(2, 3);
-static void line(emitter *e, const char *format, ...) {
-    char text[1024];
+void emit_line(emitter *e, const char *format, ...) {
+    char text[1200];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
@@ -80,40 +36,39 @@ static void line(emitter *e, const char *format, ...) {
     strbuf_add(&e->body, "%*s%s\n", 4 * indent, "", text);
 }
 
-static void open_scope(emitter *e, bool sure) {
+void emit_open(emitter *e, bool sure) {
     MEM_RESERVE(e->scopes, e->scope_count + 1, e->scope_capacity);
-    e->scopes[e->scope_count] = (scope){e->current, true, sure};
+    e->scopes[e->scope_count] = (scope){e->current, e->unit, true, sure};
     e->current = (uint32_t)e->scope_count++;
     e->indent++;
 }
 
-static void close_scope(emitter *e) {
+void emit_close(emitter *e) {
     e->scopes[e->current].open = false;
     e->current = e->scopes[e->current].parent;
     e->indent--;
-    line(e, "}");
+    emit_line(e, "}");
 }
 
 // ---- operations and points --------------------------------------------------------------------
 
-static uint32_t find_op(emitter *e, op_type type, uint32_t id, uint32_t at, int components,
-                        float cost) {
+uint32_t emit_find_op(emitter *e, op_type type, uint32_t id, uint32_t at, int components,
+                      float cost) {
     const void *key = (const void *)(uintptr_t)((uint64_t)(type + 1) << 32 | id);
     const uint32_t *known = map_find(&e->op_places, key, at);
     if (known) return *known;
-    uint32_t index = (uint32_t)e->op_count;
-    if (index >= FIELD_MAX_NODES) { // writes on, bounded, and fails at the end
+    if (e->op_count >= FIELD_MAX_NODES) { // emit_op writes nothing from here on
         e->failed = true;
-        index = 0;
-        return index;
+        return 0;
     }
+    uint32_t index = (uint32_t)e->op_count;
     MEM_RESERVE(e->ops, e->op_count + 1, e->op_capacity);
     e->ops[e->op_count++] = (op){type, id, at, components, cost, .round = 0};
     map_set(&e->op_places, key, at, index);
     return index;
 }
 
-static uint32_t find_point(emitter *e, uint32_t node, uint32_t parent) {
+uint32_t emit_find_point(emitter *e, uint32_t node, uint32_t parent) {
     const program_node *n = &e->p->nodes[node];
     bool warp = kind_of(n->node) == KIND_WARP;
     for (uint32_t i = 1; i < e->point_count; i++) {
@@ -134,9 +89,18 @@ static uint32_t find_point(emitter *e, uint32_t node, uint32_t parent) {
     return (uint32_t)e->point_count++;
 }
 
-static void op_name(const emitter *e, uint32_t index, char out[EXPR]) {
+void emit_op_name(const emitter *e, uint32_t index, char out[EXPR]) {
     const op *o = &e->ops[index];
-    snprintf(out, EXPR, "%sv%u", o->global || o->lazy ? "fields_" : "", index);
+    snprintf(out, EXPR, "%sv%u", o->global || o->lazy || o->hoisted ? "fields_" : "", index);
+}
+
+bool emit_is_visible(const emitter *e, uint32_t index) {
+    const op *o = &e->ops[index];
+    return o->round == e->round && e->scopes[o->scope].open && e->scopes[o->scope].unit == e->unit;
+}
+
+static bool is_root(const emitter *e, uint32_t unit) {
+    return unit < e->p->root_count;
 }
 
 static bool comes_after(const emitter *e, size_t root, size_t earlier) {
@@ -148,377 +112,183 @@ static bool comes_after(const emitter *e, size_t root, size_t earlier) {
     return true;
 }
 
-static void declare(emitter *e, uint32_t index, const char *format, ...) PRINTF_LIKE(3, 4);
-static void declare(emitter *e, uint32_t index, const char *format, ...) {
-    char name[EXPR], value[900];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(value, sizeof value, format, args);
-    va_end(args);
-    op_name(e, index, name);
-    const op *o = &e->ops[index];
-    bool declared = o->global || o->lazy;
-    line(e, "%s%s%s = %s;", declared ? "" : program_type(o->components), declared ? "" : " ", name,
-         value);
-}
+// ---- where an operation is computed -----------------------------------------------------------
 
-// ---- values -----------------------------------------------------------------------------------
-
-static void write_number(uint32_t at, int components, char out[EXPR]) {
-    if (components == 1)
-        snprintf(out, EXPR, "field_numbers[%u].%c", at / 4, "xyzw"[at % 4]);
-    else
-        snprintf(out, EXPR, "field_numbers[%u]%s", at / 4, components == 3 ? ".xyz" : "");
-}
-
-static void widen(char text[EXPR], int from, int to) {
-    if (from == to) return;
-    char wide[EXPR];
-    if (from == 1)
-        snprintf(wide, EXPR, "%s(%.80s)", program_type(to), text);
-    else
-        snprintf(wide, EXPR, "%.80s.rgb", text);
-    memcpy(text, wide, EXPR);
-}
-
-static void emit_arg(emitter *e, uint32_t node, size_t i, uint32_t at, char out[EXPR]) {
-    const program_node *n = &e->p->nodes[node];
-    emit_node(e, n->args[i], at, out);
-    widen(out, n->node->args[i]->components, kind_arg_width(n->node, i));
-}
-
-static void emit_op(emitter *e, uint32_t index, char out[EXPR]);
-
-static void emit_point(emitter *e, uint32_t at, char out[EXPR]) {
-    if (at == 0) {
-        snprintf(out, EXPR, "p");
-        return;
-    }
-    const point *q = &e->points[at];
-    float cost = q->by == NONE ? 6 : e->p->nodes[q->by].cost + e->p->nodes[q->amount].cost + 2;
-    emit_op(e, find_op(e, OP_POINT, at, q->parent, 3, cost), out);
-}
-
-static void compute_point(emitter *e, uint32_t index) {
-    point q = e->points[e->ops[index].id];
-    char from[EXPR], by[EXPR], amount[EXPR];
-    emit_point(e, q.parent, from);
-    if (q.by == NONE) {
-        unsigned m = q.matrix;
-        declare(e, index,
-                "vec3(dot(field_numbers[%u].xyz, %s) + field_numbers[%u].w, "
-                "dot(field_numbers[%u].xyz, %s) + field_numbers[%u].w, "
-                "dot(field_numbers[%u].xyz, %s) + field_numbers[%u].w)",
-                m, from, m, m + 1, from, m + 1, m + 2, from, m + 2);
-        return;
-    }
-    emit_arg(e, q.node, 1, q.parent, by);
-    emit_arg(e, q.node, 2, q.parent, amount);
-    declare(e, index, "%s + %s * %s", from, amount, by);
-}
-
-static void emit_fetch(emitter *e, size_t grid, int image, uint32_t at, char out[EXPR]) {
-    uint32_t id = 4 * (uint32_t)grid + (uint32_t)image;
-    e->p->grids[grid].used[image] = true;
-    emit_op(e, find_op(e, OP_FETCH, id, at, 4, 30), out);
-}
-
-static void emit_grid(emitter *e, const field *node, uint32_t at, char out[EXPR]) {
-    size_t grid;
-    program_use_grid(e->p, node->object, &grid);
-    int first = node->index, last = first + node->components - 1;
-    char a[EXPR], b[EXPR];
-    emit_fetch(e, grid, first / 4, at, a);
-    if (first / 4 == last / 4) {
-        snprintf(out, EXPR, "%.80s.%.*s", a, node->components, "xyzw" + first % 4);
-        return;
-    }
-    emit_fetch(e, grid, last / 4, at, b); // channels in two images
-    int split = 4 - first % 4;
-    snprintf(out, EXPR, "%s(%.30s.%.*s, %.30s.%.*s)", program_type(node->components), a, split,
-             "xyzw" + first % 4, b, node->components - split, "xyzw");
-}
-
-static void emit_swizzle(emitter *e, uint32_t node, uint32_t at, char out[EXPR]) {
-    const program_node *n = &e->p->nodes[node];
-    int count = n->node->components, from = n->node->args[0]->components;
-    emit_node(e, n->args[0], at, out);
-    if (from == 1) {
-        widen(out, 1, count);
-        return;
-    }
-    size_t length = strlen(out);
-    assert(length + 6 < EXPR);
-    out[length++] = '.';
-    for (int i = 0; i < count; i++) out[length++] = "xyzw"[n->node->index >> 2 * i & 3];
-    out[length] = '\0';
-}
-
-// ---- products ---------------------------------------------------------------------------------
-
-typedef struct factor {
-    uint32_t node;
-    float cost;
-} factor;
-
-static float remaining_cost(emitter *e, uint32_t node, uint32_t at) { // nothing if visible
-    const program_node *n = &e->p->nodes[node];
-    if (n->node->uniform) return 0;
-    const void *key = (const void *)(uintptr_t)((uint64_t)(OP_NODE + 1) << 32 | node);
-    const uint32_t *known = map_find(&e->op_places, key, at);
-    bool written = known && e->ops[*known].round == e->round;
-    return written && e->scopes[e->ops[*known].scope].open ? 0 : n->cost;
-}
-
-static void collect_factors(emitter *e, uint32_t node, uint32_t at, factor out[MAX_FACTORS],
-                            size_t *count) {
-    for (size_t i = 0; i < 2; i++) {
-        uint32_t arg = e->p->nodes[node].args[i];
-        const field *a = e->p->nodes[arg].node;
-        bool unfold = kind_of(a) == KIND_MUL && !a->uniform && e->uses[arg] == 1;
-        if (unfold && *count + 4 < MAX_FACTORS) {
-            collect_factors(e, arg, at, out, count);
-            continue;
-        }
-        factor f = {arg, remaining_cost(e, arg, at)};
-        size_t place = (*count)++;
-        for (; place > 0 && out[place - 1].cost > f.cost; place--) out[place] = out[place - 1];
-        out[place] = f;
-    }
-}
-
-static void compute_product(emitter *e, uint32_t index) {
-    uint32_t at = e->ops[index].point;
-    int components = e->ops[index].components;
-    bool sure = e->top == index && e->scopes[e->current].sure;
-    factor factors[MAX_FACTORS];
-    size_t count = 0, opened = 0;
-    collect_factors(e, e->ops[index].id, at, factors, &count);
-    char name[EXPR], value[EXPR];
-    for (size_t i = 0; i < count; i++) {
-        if (i > 0 && factors[i].cost >= dear) {
-            op_name(e, index, name);
-            if (components == 1)
-                line(e, "if (%s != 0.0) {", name);
-            else
-                line(e, "if (%s != %s(0.0)) {", name, program_type(components));
-            open_scope(e, sure);
-            opened++;
-        }
-        emit_node(e, factors[i].node, at, value);
-        if (i == 0) {
-            widen(value, e->p->nodes[factors[i].node].node->components, components);
-            declare(e, index, "%s", value);
-        } else {
-            op_name(e, index, name);
-            line(e, "%s *= %s;", name, value);
-        }
-    }
-    while (opened-- > 0) close_scope(e);
-}
-
-// ---- nodes ------------------------------------------------------------------------------------
-
-static void compute_call(emitter *e, uint32_t index) {
-    op o = e->ops[index];
-    const field *node = e->p->nodes[o.id].node;
-    bool user = kind_of(node) == KIND_GLSL;
-    strbuf call = {0};
-    char text[EXPR];
-    const char *comma = "";
-    if (user || node->kind->spatial) {
-        emit_point(e, o.point, text);
-        strbuf_add(&call, "%s", text);
-        comma = ", ";
-    }
-    for (size_t i = 0; i < kind_arg_count(node); i++, comma = ", ") {
-        emit_arg(e, o.id, i, o.point, text);
-        strbuf_add(&call, "%s%s", comma, text);
-    }
-    for (size_t i = 0; !user && i < FIELD_MAX_OPTIONS && node->kind->options[i].name; i++)
-        strbuf_add(&call, ", %d", node->options[i]);
-    const char *function = node->kind->function;
-    if (user) function = ((const field_glsl *)node->object)->function;
-    declare(e, index, "%s(%s)", function, strbuf_text(&call));
-    strbuf_free(&call);
-}
-
-static void compute_node(emitter *e, uint32_t index) {
-    op o = e->ops[index];
-    const field *node = e->p->nodes[o.id].node;
-    char a[EXPR], b[EXPR];
-    size_t table;
-    switch (kind_of(node)) {
-    case KIND_MUL:
-        compute_product(e, index);
-        return;
-    case KIND_ADD:
-    case KIND_SUB:
-        emit_arg(e, o.id, 0, o.point, a);
-        emit_arg(e, o.id, 1, o.point, b);
-        declare(e, index, "%s %c %s", a, kind_of(node) == KIND_ADD ? '+' : '-', b);
-        return;
-    case KIND_NEGATE:
-        emit_arg(e, o.id, 0, o.point, a);
-        declare(e, index, "-%s", a);
-        return;
-    case KIND_PALETTE: {
-        emit_arg(e, o.id, 0, o.point, a);
-        unsigned at = program_use_palette(e->p, node->object, &table)->at;
-        declare(e, index,
-                "textureLod(field_palette_%zu, vec2((%s - field_numbers[%u].x) * "
-                "field_numbers[%u].y, 0.5), 0.0)",
-                table, a, at, at);
-        return;
-    }
-    default:
-        compute_call(e, index);
-        return;
-    }
-}
-
-static void compute(emitter *e, uint32_t index) {
-    op o = e->ops[index];
-    char from[EXPR];
-    switch (o.type) {
-    case OP_NODE:
-        compute_node(e, index);
-        break;
-    case OP_POINT:
-        compute_point(e, index);
-        break;
-    case OP_FETCH:
-        emit_point(e, o.point, from);
-        declare(e, index, "field_fetch_%u_%u(%s)", o.id / 4, o.id % 4, from);
-        break;
-    }
-}
-
-// True when the operation's value can be read as it stands.
+// True when the operation's value can be read as it stands, or will be once this round's new flags
+// are heeded.
 static bool reuse(emitter *e, uint32_t index) {
     op *o = &e->ops[index];
-    if (o->round != e->round) return false;
-    if (e->scopes[o->scope].open) return true;
-    if (o->cost < dear || !comes_after(e, e->root, o->owner)) {
-        o->round = 0;
-        return false;
-    }
-    if (o->lazy) return false;
-    if (o->owner != e->root && o->sure) {
-        if (!o->global) e->again = true;
-        o->global = true;
-        return true;
+    if (emit_is_visible(e, index)) return true;
+    if (o->round != e->round || o->lazy || o->cost < dear) return false;
+    if (is_root(e, o->unit) && is_root(e, e->unit) && o->unit != e->unit) {
+        if (!comes_after(e, e->unit, o->unit)) return false; // functions that share nothing
+        if (o->sure) {
+            e->again = e->again || !o->global;
+            o->global = true;
+            return true;
+        }
     }
     o->lazy = e->again = true;
-    return false;
+    return true;
 }
 
-static void emit_op(emitter *e, uint32_t index, char out[EXPR]) {
+static void compute_here(emitter *e, uint32_t index) {
+    uint32_t unit = e->unit;
+    bool sure = e->scopes[e->current].sure;
+    emit_compute(e, index);
+    op *o = &e->ops[index];
+    o->unit = unit;
+    o->sure = sure;
+    o->round = e->round;
+    o->scope = e->current;
+    if (o->finished == 0) o->finished = ++e->finished;
+}
+
+// Writes the function of a lazy operation, beside the function being written.
+static void write_lazy(emitter *e, uint32_t index) {
+    emitter outer = *e;
+    e->ops[index].function_round = e->round;
+    memset(&e->body, 0, sizeof e->body);
+    e->unit = e->units++;
+    e->current = 0;
+    e->indent = e->level = 0;
+    emit_line(e, "void fields_lazy%u(vec3 p) {", index);
+    emit_open(e, false);
+    emit_line(e, "if (fields_done%u != fields_turn) {", index);
+    emit_open(e, false);
+    compute_here(e, index);
+    emit_line(e, "fields_done%u = fields_turn;", index);
+    emit_close(e);
+    emit_close(e);
+    strbuf_append(&e->functions, strbuf_text(&e->body), e->body.length);
+    strbuf_free(&e->body);
+    op *o = &e->ops[index];
+    o->level = e->level + 1;
+    if (o->level > LEVELS) {
+        o->hoisted = e->again = true;
+        o->lazy = false;
+    }
+    e->body = outer.body;
+    e->unit = outer.unit;
+    e->current = outer.current;
+    e->indent = outer.indent;
+    e->level = outer.level;
+}
+
+void emit_op(emitter *e, uint32_t index, char out[EXPR]) {
     if (e->failed) {
         snprintf(out, EXPR, "0");
         return;
     }
-    if (!reuse(e, index)) {
-        bool lazy = e->ops[index].lazy, first = e->ops[index].round != e->round;
-        if (first) {
-            e->ops[index].owner = e->root;
-            e->ops[index].sure = e->scopes[e->current].sure;
+    // Hoisted operations come in order of need, so that here all but the one at hand are known.
+    if (!e->ops[index].hoisted && !reuse(e, index)) {
+        if (e->ops[index].lazy) {
+            if (e->ops[index].function_round != e->round) write_lazy(e, index);
+            if (e->ops[index].level > e->level) e->level = e->ops[index].level;
+            emit_line(e, "fields_lazy%u(p);", index);
+            e->ops[index].round = e->round;
+            e->ops[index].scope = e->current;
+        } else {
+            compute_here(e, index);
         }
-        if (lazy) {
-            line(e, "if (!fields_done%u) {", index);
-            open_scope(e, false);
-            line(e, "fields_done%u = true;", index);
-        }
-        compute(e, index);
-        if (lazy) close_scope(e);
-        e->ops[index].round = e->round;
-        e->ops[index].scope = e->current;
     }
-    op_name(e, index, out);
-}
-
-static void emit_node(emitter *e, uint32_t node, uint32_t at, char out[EXPR]) {
-    const program_node *n = &e->p->nodes[node];
-    if (n->node->uniform) {
-        write_number(program_number(e->p, node), n->node->components, out);
-        return;
-    }
-    switch (kind_of(n->node)) {
-    case KIND_GRID:
-        emit_grid(e, n->node, at, out);
-        return;
-    case KIND_SWIZZLE:
-        emit_swizzle(e, node, at, out);
-        return;
-    case KIND_POSITION:
-        emit_point(e, at, out);
-        return;
-    case KIND_WARP:
-    case KIND_TRANSFORM:
-        emit_node(e, n->args[0], find_point(e, node, at), out);
-        return;
-    default:
-        emit_op(e, find_op(e, OP_NODE, node, at, n->node->components, n->cost), out);
-        return;
-    }
+    emit_op_name(e, index, out);
 }
 
 // ---- functions --------------------------------------------------------------------------------
 
-static void emit_root(emitter *e, size_t index) {
-    const field_root *root = &e->p->roots[index];
-    uint32_t node = e->p->root_nodes[index], inner = node, at = 0;
-    char value[EXPR];
-    e->root = index;
-    e->current = 0;
-    e->top = NONE;
-    while (kind_of(e->p->nodes[inner].node) == KIND_WARP ||
-           kind_of(e->p->nodes[inner].node) == KIND_TRANSFORM) {
-        if (e->p->nodes[inner].node->uniform) break;
-        at = find_point(e, inner, at);
-        inner = e->p->nodes[inner].args[0];
-    }
-    const program_node *n = &e->p->nodes[inner];
-    if (kind_of(n->node) == KIND_MUL && !n->node->uniform)
-        e->top = find_op(e, OP_NODE, inner, at, n->node->components, n->cost);
-    line(e, "%s field_%s(vec3 p) {", program_type(root->components), root->name);
-    open_scope(e, true);
-    size_t start = e->body.length;
-    emit_node(e, node, 0, value);
-    widen(value, e->p->nodes[node].node->components, root->components);
-    line(e, "return %s;", value);
-    strbuf resets = {0}; // what is lazy here has not been computed at this point yet
-    for (uint32_t i = 0; i < e->op_count; i++)
-        if (e->ops[i].lazy && e->ops[i].round == e->round && e->ops[i].owner == index)
-            strbuf_add(&resets, "    fields_done%u = false;\n", i);
-    strbuf tail = {0};
-    strbuf_append(&tail, strbuf_text(&e->body) + start, e->body.length - start);
-    e->body.length = start;
-    strbuf_append(&e->body, strbuf_text(&resets), resets.length);
-    strbuf_append(&e->body, strbuf_text(&tail), tail.length);
-    strbuf_free(&resets);
-    strbuf_free(&tail);
-    close_scope(e);
+typedef struct hoist {
+    uint32_t index, finished;
+} hoist;
+
+static int by_finish(const void *a, const void *b) {
+    const hoist *x = a, *y = b;
+    return x->finished < y->finished ? -1 : x->finished > y->finished;
 }
 
-static void emit_round(emitter *e) {
+static void write_hoisted(emitter *e) {
+    hoist *list = NULL;
+    size_t count = 0, capacity = 0;
+    for (uint32_t i = 0; i < e->op_count; i++) {
+        if (!e->ops[i].hoisted) continue;
+        MEM_RESERVE(list, count + 1, capacity);
+        list[count++] = (hoist){i, e->ops[i].finished};
+    }
+    if (count > 1) qsort(list, count, sizeof *list, by_finish);
+    for (size_t i = 0; i < count && !e->failed; i++) compute_here(e, list[i].index);
+    mem_free(list);
+}
+
+// A product at the heart of a root: its blocks have run when the root is not zero.
+static uint32_t find_top(emitter *e, uint32_t node) {
+    uint32_t at = 0;
+    const program_node *n = &e->p->nodes[node];
+    while (!n->node->uniform &&
+           (kind_of(n->node) == KIND_WARP || kind_of(n->node) == KIND_TRANSFORM)) {
+        at = emit_find_point(e, node, at);
+        node = n->args[0];
+        n = &e->p->nodes[node];
+    }
+    if (kind_of(n->node) != KIND_MUL || n->node->uniform) return NONE;
+    return emit_find_op(e, OP_NODE, node, at, n->node->components, n->cost);
+}
+
+static void write_root(emitter *e, uint32_t index) {
+    const field_root *root = &e->p->roots[index];
+    uint32_t node = e->p->root_nodes[index];
+    char value[EXPR];
+    e->unit = index;
+    e->current = 0;
+    e->indent = e->level = 0;
+    e->top = find_top(e, node);
+    emit_line(e, "%s field_%s(vec3 p) {", program_type(root->components), root->name);
+    emit_open(e, true);
+    if (!root->after || !root->after[0]) { // another point
+        if (e->turns) emit_line(e, "fields_turn++;");
+        write_hoisted(e);
+    }
+    emit_node(e, node, 0, value);
+    emit_widen(value, e->p->nodes[node].node->components, root->components);
+    emit_line(e, "return %s;", value);
+    emit_close(e);
+    strbuf_append(&e->functions, strbuf_text(&e->body), e->body.length);
+    strbuf_free(&e->body);
+}
+
+// A root, then what comes after it: between them nobody else computes the same operations.
+static void write_family(emitter *e, uint32_t index) {
+    if (e->failed) return;
+    write_root(e, index);
+    for (uint32_t i = index + 1; i < e->p->root_count; i++) {
+        const char *after = e->p->roots[i].after;
+        if (after && strcmp(after, e->p->roots[index].name) == 0) write_family(e, i);
+    }
+}
+
+static void write_all(emitter *e) {
     e->again = false;
     e->round++;
     e->scope_count = 0;
-    e->indent = 0;
-    strbuf_free(&e->body);
+    e->units = (uint32_t)e->p->root_count;
+    strbuf_free(&e->functions);
     MEM_RESERVE(e->scopes, 1, e->scope_capacity);
-    e->scopes[e->scope_count++] = (scope){0, false, false};
-    for (size_t i = 0; i < e->p->root_count && !e->failed; i++) emit_root(e, i);
+    e->scopes[e->scope_count++] = (scope){0, NONE, false, false};
+    e->turns = false;
+    for (size_t i = 0; i < e->op_count; i++) e->turns = e->turns || e->ops[i].lazy;
+    for (uint32_t i = 0; i < e->p->root_count; i++) {
+        const char *after = e->p->roots[i].after;
+        if (!after || !after[0]) write_family(e, i);
+    }
 }
 
 static void add_globals(const emitter *e, strbuf *out) {
     for (uint32_t i = 0; i < e->op_count; i++) {
         const op *o = &e->ops[i];
-        if (!o->global && !o->lazy) continue;
+        if (!o->global && !o->lazy && !o->hoisted) continue;
         strbuf_add(out, "%s fields_v%u;\n", program_type(o->components), i);
-        if (o->lazy) strbuf_add(out, "bool fields_done%u;\n", i);
+        if (o->lazy) strbuf_add(out, "uint fields_done%u = 0u;\n", i);
     }
+    if (e->turns) strbuf_add(out, "uint fields_turn = 0u;\n");
 }
 
 static void count_uses(emitter *e) {
@@ -534,16 +304,17 @@ bool program_emit(field_program *p, strbuf *out) {
     MEM_RESERVE(e.points, 1, e.point_capacity);
     e.points[e.point_count++] = (point){0, NONE, NONE, NONE, NONE};
     count_uses(&e);
-    do emit_round(&e);
+    do write_all(&e);
     while (e.again && !e.failed);
     if (e.failed) err_set("the fields have more than %d operations", FIELD_MAX_NODES);
     add_globals(&e, out);
-    strbuf_append(out, strbuf_text(&e.body), e.body.length);
+    strbuf_append(out, strbuf_text(&e.functions), e.functions.length);
     mem_free(e.uses);
     mem_free(e.ops);
     mem_free(e.points);
     mem_free(e.scopes);
     map_free(&e.op_places);
     strbuf_free(&e.body);
+    strbuf_free(&e.functions);
     return !e.failed;
 }

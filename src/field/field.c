@@ -117,10 +117,12 @@ field *field_user(arena *memory, const field_glsl *glsl, const field *const *arg
                 glsl->function, glsl->components, glsl->arg_count, FIELD_MAX_ARGS);
         return NULL;
     }
-    if (!str_is_identifier(glsl->function) || strncmp(glsl->function, "field_", 6) == 0) {
-        err_set("glsl: '%.64s' cannot name a function; a GLSL identifier that does not begin with "
-                "'field_' is accepted",
-                glsl->function);
+    if (!str_is_identifier(glsl->function) || strlen(glsl->function) > 100 ||
+        strncmp(glsl->function, "field", 5) == 0) {
+        err_set(
+            "glsl: '%.64s' cannot name a function; a GLSL identifier of at most 100 letters that "
+            "does not begin with 'field' is accepted",
+            glsl->function);
         return NULL;
     }
     for (const char *c = glsl->file; *c; c++)
@@ -251,6 +253,13 @@ field *field_swizzle(arena *memory, const field *a, const char *components) {
             "are accepted",
             components, a->components, a->components, "xyzw");
         return NULL;
+    }
+    if (kind_of(a) == KIND_SWIZZLE) { // of a swizzle: one does it
+        int inner = 0;
+        for (size_t i = 0; i < count; i++)
+            inner |= (a->index >> 2 * (index >> 2 * i & 3) & 3) << 2 * i;
+        index = inner;
+        a = a->args[0];
     }
     field *node = new_node(memory, KIND_SWIZZLE, (int)count);
     node->index = index;

@@ -243,6 +243,9 @@ static bool check_root(const field_root *roots, size_t i) {
     if (have != want && have != 1 && !(have == 4 && want == 3))
         return err_set("field '%s' has %d components; %d %s accepted", root->name, have, want,
                        want == 1 ? "is" : "or a single one are");
+    for (size_t k = 0; k < i; k++)
+        if (strcmp(roots[k].name, root->name) == 0)
+            return err_set("two fields are named '%s'", root->name);
     if (!root->after || !root->after[0]) return true;
     for (size_t k = 0; k < i; k++)
         if (strcmp(roots[k].name, root->after) == 0) return true;
