@@ -39,11 +39,15 @@ local kinds = {
   none        = function() return 0.5 end,
 }
 local lumps = kinds[noise:get()]()
+shape.octaves = 2 -- shadows are soft: the coarse lumps will do for them
+local coarse = kinds[noise:get()]()
 
 -- Lumps stand out where the smoke is thin; the thick core is left alone.
 local cover = clamp(smoke * 3, 0, 1)
-local crust = smoothstep(0, 0.15, cover - detail * (1 - lumps) * (1 - 0.7 * cover))
-local body  = crust * (smoke + 0.15 * cover)
+local function body(n)
+  local crust = smoothstep(0, 0.15, cover - detail * (1 - n) * (1 - 0.7 * cover))
+  return cover * crust * (smoke + 0.15) * density
+end
 
 -- A black body's light grows with the fourth power of its temperature.
 local fire = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
@@ -59,7 +63,8 @@ local scene = geometry {
 }
 
 local volume = march {
-  density    = body * density,
+  density    = body(lumps),
+  shadow_density = body(coarse),
   emission   = fire(heat * (0.45 + 0.85 * lumps) * kelvin) * flame * brightness,
   albedo     = {0.45, 0.43, 0.41},
   anisotropy = 0.2,

@@ -10,6 +10,7 @@
 //@ field float density : extinction (1/m); in mode paper density in 0..1
 //@ field vec3 radiance after density = {0, 0, 0} : light of the medium itself where it is opaque (in mode paper: its colour)
 //@ field vec3 emission after density = {0, 0, 0} : light given off per metre, whatever the extinction
+//@ field float shadow_density = 0 : extinction that shadows are made of, if it is to be cheaper than `density` (1/m); else that
 //@ field float noise = 0 : what view = noise shows, 0..1
 //@ counter samples : points at which the density was evaluated
 uniform int steps;                 //= 128 [1, 4096] : steps along each ray, from entry to exit
@@ -42,6 +43,14 @@ float phase(float cosine, float g) {
     return (1.0 - g * g) / pow(1.0 + g * g - 2.0 * g * cosine, 1.5);
 }
 
+float shadowing(vec3 p) {
+#if HAS_SHADOW_DENSITY
+    return field_shadow_density(p);
+#else
+    return field_density(p);
+#endif
+}
+
 // Transmittance from p towards the sun; steps grow with distance, where detail matters less.
 float sunlight(vec3 p) {
     float far = box_exit(p, frame.sun_direction.xyz, box_min, box_max);
@@ -50,7 +59,7 @@ float sunlight(vec3 p) {
     for (int i = 0; i < shadow_steps; i++) {
         float part = float(i + 1) / float(shadow_steps);
         float to = far * part * part;
-        depth_sum += field_density(p + 0.5 * (from + to) * frame.sun_direction.xyz) * (to - from);
+        depth_sum += shadowing(p + 0.5 * (from + to) * frame.sun_direction.xyz) * (to - from);
         from = to;
     }
     count_samples(shadow_steps);
@@ -65,7 +74,7 @@ float shadow_on(vec3 p) {
     int count = 2 * shadow_steps;
     float length = (range.y - range.x) / float(count), sum = 0.0;
     for (int i = 0; i < count; i++)
-        sum += field_density(p + (range.x + (float(i) + 0.5) * length) * frame.sun_direction.xyz);
+        sum += shadowing(p + (range.x + (float(i) + 0.5) * length) * frame.sun_direction.xyz);
     count_samples(count);
     return exp(-sum * length);
 }
