@@ -42,10 +42,12 @@ local lumps = kinds[noise:get()]()
 shape.octaves = 2 -- shadows are soft: the coarse lumps will do for them
 local coarse = kinds[noise:get()]()
 
--- Lumps stand out where the smoke is thin; the thick core is left alone.
+-- Lumps stand out where the smoke is thin; the thick core is left alone. When the smoke thins out
+-- as a whole, at the end, it fades instead of falling to pieces.
+local eaten = detail * curve { {0, 1}, {1.8, 1}, {4.1, 0.25}, shape = "ease_in_out" }
 local cover = clamp(smoke * 3, 0, 1)
 local function body(n)
-  local crust = smoothstep(0, 0.15, cover - detail * (1 - n) * (1 - 0.7 * cover))
+  local crust = smoothstep(0, 0.15, cover - eaten * (1 - n) * (1 - 0.7 * cover))
   return cover * crust * (smoke + 0.15) * density
 end
 
