@@ -86,7 +86,10 @@ static bool list_files(sequence *s) {
     else if (!ok)
         err_set("%s: %zu files; at most %d are accepted", pattern, list.count, SEQUENCE_MAX_FRAMES);
     const char **files = arena_alloc(s->memory, (list.count + 1) * sizeof *files);
-    for (size_t i = 0; ok && i < list.count; i++) files[i] = arena_string(s->memory, list.paths[i]);
+    for (size_t i = 0; ok && i < list.count; i++) {
+        files[i] = arena_string(s->memory, list.paths[i]);
+        ok = !s->desc.root || path_require_inside(s->desc.root, files[i]);
+    }
     s->files = files;
     s->file_count = list.count;
     file_list_free(&list);

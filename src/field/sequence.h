@@ -13,6 +13,7 @@ const char *sequence_loop_name(sequence_loop loop); // "clip", "extend", "repeat
 
 typedef struct sequence_desc {
     const char *pattern; // absolute path or glob of .vdb files, or a .raw file
+    const char *root;    // matches of a glob must lie in this folder; NULL: anywhere
     double fps;          // frames of the sequence a second of effect time; 0: 24
     double start;        // effect time (s) at which the first frame is shown
     double speed;        // 0: 1

@@ -31,6 +31,7 @@ static const char *read_pattern(lua_State *L, const char *who) {
 static void read_playback(lua_State *L, const char *who, sequence_desc *desc) {
     static const char *const loops[] = {"clip", "extend", "repeat", "ping_pong"};
     desc->pattern = read_pattern(L, who);
+    desc->root = effect_root(script_of(L)->effect);
     desc->fps = value_get_number(L, 1, who, "fps", 0);
     desc->start = value_get_number(L, 1, who, "start", 0);
     desc->speed = value_get_number(L, 1, who, "speed", 0);

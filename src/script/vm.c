@@ -289,6 +289,10 @@ void vm_load_chunk(lua_State *L, const char *path, const char *shown) {
         text += 3;
         length -= 3;
     }
+    if (length && text[0] == LUA_SIGNATURE[0]) {
+        mem_free(data);
+        vm_error(L, "%s: compiled Lua; only its text is accepted", shown);
+    }
     char name[LUA_IDSIZE];
     chunk_name(shown, name);
     int status = luaL_loadbufferx(L, text, length, name, "t");

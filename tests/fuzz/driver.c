@@ -157,6 +157,7 @@ static size_t remove_range(uint8_t *data, size_t size) {
 
 static size_t insert_range(uint8_t *data, size_t size, const uint8_t *from, size_t length) {
     size_t at = below(size + 1);
+    if (at > size) return size; // never: gcc cannot see what below() promises
     if (length > INPUT_CAP - size) length = INPUT_CAP - size;
     memmove(data + at + length, data + at, size - at);
     if (from)
