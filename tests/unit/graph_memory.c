@@ -258,7 +258,7 @@ static void images_are_created_for_what_passes_do_with_them(void **state) {
     assert_int_equal(d->depth, 0);
     assert_int_equal(d->mips, 10);
     d = gpu_image_get_desc(graph_get_image(g, drawn));
-    assert_int_equal(d->use, GPU_USE_SAMPLED | GPU_USE_TARGET);
+    assert_int_equal(d->use, GPU_USE_SAMPLED | GPU_USE_TARGET | GPU_USE_STORAGE);
     d = gpu_image_get_desc(graph_get_image(g, depth));
     assert_int_equal(d->use, GPU_USE_SAMPLED | GPU_USE_TARGET);
     assert_int_equal(d->format, GPU_D32F);
