@@ -136,6 +136,23 @@ bool roil_set(roil_effect *e, const char *name, const char *value) {
     return effect_set(e->effect, name, value);
 }
 
+static void suggest_image(roil_effect *e, const char *name) {
+    graph *g = effect_graph(e->effect);
+    size_t passes = effect_pass_count(e->effect), images = graph_images(g, NULL, 0);
+    graph_image *handles = mem_alloc(images * sizeof *handles);
+    const char **names = mem_alloc((passes + images) * sizeof *names);
+    graph_images(g, handles, images);
+    for (size_t i = 0; i < passes; i++) names[i] = pass_label(effect_get_pass(e->effect, i));
+    for (size_t i = 0; i < images; i++) names[passes + i] = graph_get_desc(g, handles[i])->name;
+    const char *near = str_nearest(name, names, passes + images);
+    if (near)
+        err_set("no image '%s'; did you mean '%s'?", name, near);
+    else
+        err_set("no image '%s'; `roil info graph` shows them", name);
+    mem_free(handles);
+    mem_free(names);
+}
+
 // "march.color", or the label of a pass for its first output.
 graph_image roil_find_image(roil_effect *e, const char *name) {
     graph *g = effect_graph(e->effect);
@@ -147,17 +164,7 @@ graph_image roil_find_image(roil_effect *e, const char *name) {
         for (size_t k = 0; !found.id && k < face->image_count; k++)
             if (face->images[k].output) found = pass_output(p, face->images[k].name);
     }
-    if (found.id) return found;
-    graph_image images[256];
-    const char *names[256];
-    size_t count = graph_images(g, images, 256);
-    if (count > 256) count = 256;
-    for (size_t i = 0; i < count; i++) names[i] = graph_get_desc(g, images[i])->name;
-    const char *near = str_nearest(name, names, count);
-    if (near)
-        err_set("no image '%s'; did you mean '%s'?", name, near);
-    else
-        err_set("no image '%s'; `roil info graph` shows them", name);
+    if (!found.id) suggest_image(e, name);
     return found;
 }
 
