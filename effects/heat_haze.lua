@@ -7,7 +7,7 @@ local fx = effect { name = "heat_haze", fps = 24, frames = 48 }
 
 -- A fire made of shapes and noise alone: no file is needed.
 local tongue = capsule { from = {0, 0, 0.2}, to = {0, 0, 1.9}, radius = 0.75, falloff = 0.75 }
-local flicker = perlin { frequency = 1.1, octaves = 3, drift = {0, 0, -2.4}, dimensions = "4", speed = 0.8, seed = 5 }
+local flicker = perlin { frequency = 1.1, octaves = 3, drift = {0, 0, -2.4}, speed = 0.8, seed = 5 }
 local sway    = curl { frequency = 0.7, drift = {0, 0, -1.5}, seed = 2 }
 local body    = (tongue * smoothstep(0.38, 0.62, flicker)):warp(sway, 0.10)
 
@@ -23,7 +23,7 @@ fx.camera = orbit { target = {0, 0, 1.1}, distance = 7, pitch = 6, yaw = curve {
 fx.sky    = sky { zenith = {0.02, 0.03, 0.07}, horizon = {0.10, 0.08, 0.09}, strength = 1 }
 fx.sun    = sun { strength = 0.25, elevation = 12, azimuth = 200 }
 
-local scene  = geometry { mesh { "data/ground.obj" } }
+local scene  = geometry { mesh { "data/ground.obj" }, haze = 0.01 }
 local volume = march {
   density = body * 3, radiance = colors(body * 1.5) * 3, albedo = {0.3, 0.3, 0.3},
   depth = scene.depth, steps = 96, resolution = 0.5,

@@ -162,7 +162,7 @@ void main() {
 #if MODE == MODE_PAPER
     offset = 0.0;
 #endif
-    offset += jitter * (random_pixel(uvec2(pixel), frame.size.z ^ frame.size.w) - 0.5);
+    offset += jitter * (random_pixel(uvec2(pixel), frame.size.z ^ random_hash(frame.size.w)) - 0.5);
 
     vec4 result;
 #if VIEW == VIEW_NOISE
