@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include <inttypes.h>
 #include <popt.h>
 #include <stdio.h>
 #include <string.h>
@@ -241,6 +242,10 @@ static int run(job *j) {
     }
     app_stats_destroy(stats);
     roil_unload(e);
+    uint64_t complaints = r ? roil_validation_messages(r) : 0;
+    if (status == APP_DONE && complaints)
+        status =
+            app_fail(APP_BAD_INPUT, "%" PRIu64 " messages of the validation layers", complaints);
     roil_destroy(r);
     return status;
 }

@@ -36,9 +36,8 @@ void pass_host_add_grid_image(pass_host *host, const field_grid *grid, graph_ima
 void pass_host_free(pass_host *host);
 
 typedef struct pass_type {
-    const char *name;    // "march"
-    const char *shader;  // "pass/march.comp"
-    const char *returns; // what a call returns in Lua, for the reference
+    const char *name;   // "march"
+    const char *shader; // "pass/march.comp"
     // Optional hooks.
     bool (*declare)(pass *p); // instead of one image per output
     bool (*check)(pass *p);   // compile all that build would, without a device

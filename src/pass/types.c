@@ -9,8 +9,6 @@ static const pass_type types[] = {
     {
         .name = "geometry",
         .shader = "pass/geometry.comp",
-        .returns = "color: what is solid, and the sky; sun: the sun's part of it; depth: distance "
-                   "along the view axis (m)",
         .declare = geometry_declare,
         .check = geometry_check,
         .build = geometry_build,
@@ -20,25 +18,20 @@ static const pass_type types[] = {
     {
         .name = "march",
         .shader = "pass/march.comp",
-        .returns = "color: premultiplied radiance and opacity; shadow: how much sun reaches the "
-                   "scene; edge: where each ray was stopped (m)",
         .declare = march_declare,
         .fill = march_fill,
     },
     {
         .name = "over",
         .shader = "pass/over.comp",
-        .returns = "color: the volume over the scene",
     },
     {
         .name = "bright",
         .shader = "pass/bright.comp",
-        .returns = "color: what is brighter than the threshold",
     },
     {
         .name = "bloom",
         .shader = "pass/bloom.comp",
-        .returns = "color: the bright picture, spread",
         .declare = bloom_declare,
         .check = bloom_check,
         .build = bloom_build,
@@ -48,13 +41,10 @@ static const pass_type types[] = {
     {
         .name = "final",
         .shader = "pass/final.comp",
-        .returns = "color: the picture for a display, linear Rec.709 in 0..1; linear: the same "
-                   "before exposure and tone mapping",
     },
     {
         .name = "bake",
         .shader = "pass/bake.comp",
-        .returns = "a grid: see the field `grid`",
         .declare = bake_declare,
         .fill = bake_fill,
     },
