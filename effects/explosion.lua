@@ -20,7 +20,7 @@ local steps      = param { "steps", 128, min = 8, max = 1024, integer = true, he
 local burst = vdb { "data/explosion-32/*.vdb", fps = 24, blend = true }
 
 -- A divergence-free flow tears at the grid. It is smooth, so a small baked grid of it will do.
-local flow = bake(curl { frequency = 0.7, octaves = 2, persistence = 0.6, dimensions = "4", speed = 0.4, seed = 3 },
+local flow = bake(curl { frequency = 0.7, octaves = 2, persistence = 0.6, speed = 0.4, seed = 3 },
                   { size = {48, 48, 48}, box = burst.box })
 
 -- The torn grids, interpolated smoothly once a voxel, so that the march needs one fetch a sample.

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "media/vdb.h"
 #include "roil_impl.h"
+#include "script/reference.h"
 #include <math.h>
 #include <string.h>
 
@@ -11,28 +12,32 @@ static char *finish(strbuf *text) {
     return text->text;
 }
 
-// Prints "name" padded, then help broken at words so that lines stay within 100 columns.
 enum { HELP_COLUMN = 34, LINE_WIDTH = 100 };
+
+// Adds text that begins at `column` and a newline; lines break at words and go on at `indent`.
+static void add_flowing(strbuf *out, size_t indent, size_t column, const char *text) {
+    bool first = true;
+    while (*text) {
+        size_t word = strcspn(text, " ");
+        if (!first && column + 1 + word > LINE_WIDTH) {
+            strbuf_add(out, "\n%*s", (int)indent, "");
+            column = indent;
+        } else if (!first) {
+            strbuf_append(out, " ", 1);
+            column++;
+        }
+        strbuf_append(out, text, word);
+        column += word;
+        first = false;
+        text += word + (text[word] == ' ');
+    }
+    strbuf_append(out, "\n", 1);
+}
 
 static void entry(strbuf *out, const char *name, const char *help) {
     strbuf_add(out, "  %-*s", HELP_COLUMN - 2, name);
     if (strlen(name) > HELP_COLUMN - 3) strbuf_add(out, "\n%*s", HELP_COLUMN, "");
-    size_t column = HELP_COLUMN;
-    while (*help) {
-        size_t word = strcspn(help, " ");
-        if (column + word > LINE_WIDTH && column > HELP_COLUMN) {
-            strbuf_add(out, "\n%*s", HELP_COLUMN, "");
-            column = HELP_COLUMN;
-        }
-        strbuf_append(out, help, word);
-        column += word + 1;
-        help += word;
-        if (*help == ' ') {
-            strbuf_append(out, " ", 1);
-            help++;
-        }
-    }
-    strbuf_append(out, "\n", 1);
+    add_flowing(out, HELP_COLUMN, HELP_COLUMN, help);
 }
 
 static void add_words(strbuf *out, const char *const *words, size_t count, size_t chosen) {
@@ -49,6 +54,39 @@ static void add_range(strbuf *out, float min, float max, const char *unit) {
         if (min != max) strbuf_add(out, " [%g, %g]", (double)min, (double)max);
     }
     if (unit[0]) strbuf_add(out, " %s", unit);
+}
+
+static void add_first_sentence(strbuf *out, const char *text) {
+    const char *end = strstr(text, ". ");
+    strbuf_append(out, text, end ? (size_t)(end - text) : strlen(text));
+}
+
+static void print_key(strbuf *out, const script_key *key) {
+    strbuf name = {0};
+    strbuf_add(&name, "%s", key->name);
+    if (key->words[0]) {
+        size_t count = 0, chosen = 0;
+        for (; count < COUNT_OF(key->words) && key->words[count]; count++)
+            if (strcmp(key->words[count], key->value) == 0) chosen = count;
+        strbuf_add(&name, " = ");
+        add_words(&name, key->words, count, chosen);
+    } else if (key->value) {
+        strbuf_add(&name, " = %s", key->value);
+    }
+    entry(out, strbuf_text(&name), key->help);
+    strbuf_free(&name);
+}
+
+static void print_keys(strbuf *out, const char *title, const script_key *keys) {
+    if (!keys) return;
+    bool choice = false;
+    for (const script_key *key = keys; key->name; key++) choice |= key->words[0] != NULL;
+    strbuf_add(out, "\n%s%s\n", title, choice ? " (* is the default)" : "");
+    for (; keys->name; keys++) print_key(out, keys);
+}
+
+static const script_key *pass_keys(void) { // that every pass has
+    return script_object_find("shader")->keys;
 }
 
 // ---- devices ----------------------------------------------------------------------------------
@@ -107,11 +145,12 @@ static void print_field(strbuf *out, const shader_field *f) {
 }
 
 static void print_interface(strbuf *out, const shader_interface *face) {
-    strbuf_add(out, "\n%s\n", face->summary);
+    strbuf_append(out, "\n", 1);
+    add_flowing(out, 0, 0, face->summary);
     bool titled = false;
     for (size_t i = 0; i < face->image_count; i++) {
         if (face->images[i].output) continue;
-        if (!titled) strbuf_add(out, "\ninputs (images)\n");
+        if (!titled) strbuf_add(out, "\ninputs (images, by place or by name)\n");
         titled = true;
         strbuf name = {0};
         strbuf_add(&name, "%s%s", face->images[i].name,
@@ -132,7 +171,7 @@ static void print_interface(strbuf *out, const shader_interface *face) {
     }
     strbuf_add(out, "\nuniforms (numbers; constants, parameters, curves or functions of time)\n");
     for (size_t i = 0; i < face->uniform_count; i++) print_uniform(out, &face->uniforms[i]);
-    entry(out, "resolution = 1 (0, 1]", "size of its outputs relative to the picture");
+    print_keys(out, "keys of every pass", pass_keys());
     strbuf_add(out, "\noutputs\n");
     for (size_t i = 0; i < face->image_count; i++) {
         if (!face->images[i].output) continue;
@@ -182,7 +221,7 @@ char *roil_info_passes(roil *r, const char *name) {
         if (done)
             strbuf_add(&out,
                        "\n`roil info passes NAME` tells all about one. A GLSL file of your own "
-                       "is a pass too:\nshader { \"file.comp\", ... }\n");
+                       "is a pass too:\n`roil info fields shader`.\n");
     }
     shader_library_destroy(library);
     if (done) return finish(&out);
@@ -193,7 +232,8 @@ char *roil_info_passes(roil *r, const char *name) {
 // ---- fields -----------------------------------------------------------------------------------
 
 static void print_kind(strbuf *out, const field_kind *kind) {
-    strbuf_add(out, "%s (%s)\n\n%s\n", kind->name, kind->group, kind->summary);
+    strbuf_add(out, "%s (%s)\n\n", kind->name, kind->group);
+    add_flowing(out, 0, 0, kind->summary);
     if (kind->args[0].name) strbuf_add(out, "\narguments\n");
     for (int i = 0; i < FIELD_MAX_ARGS && kind->args[i].name; i++) {
         const field_arg *a = &kind->args[i];
@@ -220,28 +260,75 @@ static void print_kind(strbuf *out, const field_kind *kind) {
     }
 }
 
+static void print_object(strbuf *out, const script_object *object) {
+    strbuf_add(out, "%s (%s)\n\n", object->name, object->group);
+    add_flowing(out, 0, 0, object->summary);
+    strbuf_add(out, "\n  %s\n", object->form);
+    print_keys(out, "arguments (by place)", object->args);
+    print_keys(out, "keys", object->keys);
+    print_keys(out, "members", object->members);
+}
+
+static const field_kind *find_kind(const char *name) {
+    for (const field_kind *kind = field_kinds; kind->name; kind++)
+        if (script_has_kind(kind) && strcmp(kind->name, name) == 0) return kind;
+    return NULL;
+}
+
+static char *refuse_field(const char *name) {
+    const char *names[256];
+    size_t count = 0, object_count;
+    const script_object *objects = script_objects(&object_count);
+    for (size_t i = 0; i < object_count; i++) names[count++] = objects[i].name;
+    for (const field_kind *kind = field_kinds; kind->name && count < COUNT_OF(names); kind++)
+        if (script_has_kind(kind)) names[count++] = kind->name;
+    const char *near = str_nearest(name, names, count);
+    if (near)
+        err_set("unknown field '%.64s'; did you mean '%s'?", name, near);
+    else
+        err_set("unknown field '%.64s'; `roil info fields` lists them", name);
+    return NULL;
+}
+
+static void print_line(strbuf *out, const char *name, const char *summary) {
+    strbuf first = {0};
+    add_first_sentence(&first, summary);
+    entry(out, name, strbuf_text(&first));
+    strbuf_free(&first);
+}
+
+static void print_group(strbuf *out, const char *group) {
+    size_t count;
+    const script_object *objects = script_objects(&count);
+    strbuf_add(out, "%s%s\n", out->length ? "\n" : "", group);
+    for (const field_kind *kind = field_kinds; kind->name; kind++)
+        if (script_has_kind(kind) && strcmp(kind->group, group) == 0)
+            print_line(out, kind->name, kind->summary);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(objects[i].group, group) == 0)
+            print_line(out, objects[i].name, objects[i].summary);
+}
+
 char *roil_info_fields(const char *name) {
+    static const char *const groups[] = {"value",    "source", "noise", "shape",
+                                         "operator", "scene",  "effect"};
     strbuf out = {0};
     if (name) {
-        const field_kind *kind = field_kind_find(name);
-        if (!kind) return NULL;
-        print_kind(&out, kind);
+        const field_kind *kind = find_kind(name);
+        const script_object *object = script_object_find(name);
+        if (!kind && !object) return refuse_field(name);
+        if (kind)
+            print_kind(&out, kind);
+        else
+            print_object(&out, object);
         return finish(&out);
     }
-    static const char *const groups[] = {"value", "source", "noise", "shape", "operator"};
-    for (size_t g = 0; g < COUNT_OF(groups); g++) {
-        strbuf_add(&out, "%s%s\n", g ? "\n" : "", groups[g]);
-        for (const field_kind *kind = field_kinds; kind->name; kind++) {
-            if (strcmp(kind->group, groups[g]) != 0) continue;
-            strbuf first = {0};
-            const char *end = strstr(kind->summary, ". ");
-            strbuf_append(&first, kind->summary,
-                          end ? (size_t)(end - kind->summary) : strlen(kind->summary));
-            entry(&out, kind->name, strbuf_text(&first));
-            strbuf_free(&first);
-        }
-    }
-    strbuf_add(&out, "\n`roil info fields NAME` tells all about one.\n");
+    for (size_t i = 0; i < COUNT_OF(groups); i++) print_group(&out, groups[i]);
+    strbuf_add(&out, "\n`roil info fields NAME` tells all about one. Arguments go by place or by "
+                     "name.\nOperators are methods too: f:warp(by, 0.2); + - * / ^ work on fields; "
+                     "f.x and f.rgb are components.\nAs in GLSL, the value is the last argument of "
+                     "the functions smoothstep(low, high, value) and\nstep(edge, value); it is the "
+                     "first of their methods, as of every other operator.\n");
     return finish(&out);
 }
 
@@ -289,7 +376,7 @@ char *roil_info_params(roil_effect *e) {
         }
         strbuf scale = {0};
         strbuf_add(&scale, "resolution = %g (0, 1]", (double)pass_get_scale(p));
-        entry(&out, strbuf_text(&scale), "size of its outputs relative to the picture");
+        entry(&out, strbuf_text(&scale), script_key_find(pass_keys(), "resolution")->help);
         strbuf_free(&scale);
     }
     return finish(&out);

@@ -66,7 +66,8 @@
     {                                                                                              \
         "speed", SCALAR("1/s"), SPACELESS,                                                         \
             .rate = true,                                                                          \
-            .help = "rate of the fourth coordinate, in cells: the pattern boils (dimensions = 4)"  \
+            .help = "rate of the fourth coordinate, in cells: the pattern boils; giving it "       \
+                    "chooses dimensions = 4"                                                       \
     }
 #define AMPLITUDE_ARG                                                                              \
     { "amplitude", SCALAR(""), .value = {1}, .help = "factor of the result" }
@@ -160,12 +161,15 @@ const field_kind field_kinds[] = {
                  {"out_max", SAME, .value = {1}, .help = "result at in_max"}},
         .eval = eval_remap},
     {"smoothstep", LIBRARY("operator_smoothstep"),
-        .summary = "0 up to low, 1 from high, t * t * (3 - 2 * t) between",
+        .summary = "0 up to low, 1 from high, t * t * (3 - 2 * t) between. The method takes the "
+                   "arguments in this order, f:smoothstep(low, high); the function in GLSL's, "
+                   "smoothstep(low, high, value)",
         .args = {{"value", ANY, .help = "what it maps"},
                  {"low", SAME, .help = "end of 0"},
                  {"high", SAME, .value = {1}, .help = "start of 1"}},
         .eval = eval_smoothstep},
-    {"step", LIBRARY("operator_step"), .summary = "1 from the edge on, 0 below",
+    {"step", LIBRARY("operator_step"), .summary = "1 from the edge on, 0 below. The method takes the arguments in this order, "
+                   "f:step(edge); the function in GLSL's, step(edge, value)",
         .args = {{"value", ANY, .help = "what it tests"},
                  {"edge", SAME, .value = {0.5f}, .help = "least value that gives 1"}},
         .eval = eval_step},

@@ -2,6 +2,7 @@
 // Lua errors at the script's line, so callers hold nothing that would need freeing.
 #pragma once
 #include "effect/effect.h"
+#include "script/reference.h"
 #include "script/script.h"
 #include "script/vm.h"
 
@@ -74,8 +75,9 @@ int value_get(lua_State *L, int table, const char *key);
 // Keys of a table that are strings, sorted. The array is kept alive by a value that is pushed.
 const char **value_names(lua_State *L, int table, const char *who, size_t *count);
 // Raises on a key that is not among `keys`, with the nearest one that is.
-void value_check_keys(lua_State *L, int table, const char *who, const char *const *keys,
-                      size_t count);
+void value_check_keys(lua_State *L, int table, const char *who, const script_key *keys);
+// The row of a constructor, whose keys those of the table must be among.
+const script_object *value_check_object(lua_State *L, int table, const char *name);
 _Noreturn void value_unknown(lua_State *L, const char *who, const char *what, const char *name,
                              const char *const *known, size_t count);
 
@@ -90,8 +92,8 @@ const char *value_get_string(lua_State *L, int table, const char *who, const cha
 bool value_get_vector(lua_State *L, int table, const char *who, const char *key, float out[3]);
 int value_word(lua_State *L, int index, const char *who, const char *key, const char *const *words,
                size_t count);
-int value_get_word(lua_State *L, int table, const char *who, const char *key,
-                   const char *const *words, size_t count, int otherwise);
+// Index among the words of the object's key; that of its default when absent.
+int value_get_choice(lua_State *L, int table, const script_object *object, const char *key);
 const field *value_get_uniform(lua_State *L, int table, const char *who, const char *key,
                                int components, const field *otherwise);
 

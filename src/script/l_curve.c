@@ -17,18 +17,14 @@ static int read_value(lua_State *L, int i, float out[4]) {
 }
 
 static int l_curve(lua_State *L) {
-    static const char *const keys[] = {"shape", "period"};
-    const char *shapes[CURVE_SHAPE_COUNT];
-    for (int i = 0; i < CURVE_SHAPE_COUNT; i++) shapes[i] = curve_shape_name((curve_shape)i);
     script_require_loading(L, who);
-    value_check_keys(L, 1, who, keys, COUNT_OF(keys));
+    const script_object *row = value_check_object(L, 1, who);
     lua_Unsigned count = lua_rawlen(L, 1);
     if (count < 1 || count > KEYS_MAX)
         vm_error(L, "curve: 1 to %d keys are accepted, as in curve { {0, 1}, {0.5, 3} }", KEYS_MAX);
     curve_key *list = lua_newuserdatauv(L, (size_t)count * sizeof *list, 0);
     curve desc = {
-        .shape =
-            (curve_shape)value_get_word(L, 1, who, "shape", shapes, COUNT_OF(shapes), CURVE_LINEAR),
+        .shape = (curve_shape)value_get_choice(L, 1, row, "shape"),
         .period = (float)value_get_number(L, 1, who, "period", 0),
         .keys = list,
         .count = (size_t)count,

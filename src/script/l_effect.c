@@ -7,10 +7,9 @@
 static const char who[] = "effect";
 
 static int l_effect(lua_State *L) {
-    static const char *const keys[] = {"name", "fps", "frames", "first", "seed"};
     script *s = script_of(L);
     script_require_loading(L, who);
-    value_check_keys(L, 1, who, keys, COUNT_OF(keys));
+    value_check_object(L, 1, who);
     if (s->declared) vm_error(L, "effect { } is called twice; a file holds one effect");
     const char *name = value_get_string(L, 1, who, "name");
     double fps = value_get_number(L, 1, who, "fps", effect_fps(s->effect));
@@ -23,7 +22,17 @@ static int l_effect(lua_State *L) {
     vm_set_seed(L, seed);
     s->declared = true;
     object_new(L, who, sizeof(char));
-    lua_newtable(L); // what was assigned
+    lua_newtable(L); // what can be read: this, and what was assigned
+    lua_pushstring(L, effect_name(s->effect));
+    lua_setfield(L, -2, "name");
+    lua_pushnumber(L, fps);
+    lua_setfield(L, -2, "fps");
+    lua_pushinteger(L, frames);
+    lua_setfield(L, -2, "frames");
+    lua_pushinteger(L, first);
+    lua_setfield(L, -2, "first");
+    lua_pushinteger(L, seed);
+    lua_setfield(L, -2, "seed");
     lua_setiuservalue(L, -2, 1);
     return 1;
 }
@@ -74,8 +83,15 @@ static void set_update(lua_State *L) {
     s->update = luaL_ref(L, LUA_REGISTRYINDEX);
 }
 
-static const char *const assignable[] = {"output", "linear", "depth", "camera",
-                                         "sun",    "sky",    "update"};
+// Keys: of the call too, which can be read only.
+_Noreturn static void refuse_member(lua_State *L, const char *name, bool keys) {
+    const script_object *row = script_object_find(who);
+    const char *known[32];
+    size_t count = 0;
+    for (const script_key *k = row->members; k->name; k++) known[count++] = k->name;
+    for (const script_key *k = row->keys; keys && k->name; k++) known[count++] = k->name;
+    value_unknown(L, who, "field", name, known, count);
+}
 
 static int l_newindex(lua_State *L) {
     luaL_checkudata(L, 1, who);
@@ -92,7 +108,7 @@ static int l_newindex(lua_State *L) {
     else if (strcmp(key, "update") == 0)
         set_update(L);
     else
-        value_unknown(L, who, "field", key, assignable, COUNT_OF(assignable));
+        refuse_member(L, key, false);
     lua_settop(L, 3);
     lua_getiuservalue(L, 1, 1);
     lua_insert(L, 2);
@@ -101,27 +117,12 @@ static int l_newindex(lua_State *L) {
 }
 
 static int l_index(lua_State *L) {
-    static const char *const readable[] = {"name",  "fps",    "frames", "first", "output", "linear",
-                                           "depth", "camera", "sun",    "sky",   "update"};
     luaL_checkudata(L, 1, who);
     const char *key = luaL_checkstring(L, 2);
-    const effect *e = script_of(L)->effect;
-    if (strcmp(key, "name") == 0) {
-        lua_pushstring(L, effect_name(e));
-    } else if (strcmp(key, "fps") == 0) {
-        lua_pushnumber(L, effect_fps(e));
-    } else if (strcmp(key, "frames") == 0) {
-        lua_pushinteger(L, effect_frames(e));
-    } else if (strcmp(key, "first") == 0) {
-        lua_pushinteger(L, effect_first_frame(e));
-    } else {
-        size_t i = 0;
-        while (i < COUNT_OF(readable) && strcmp(readable[i], key) != 0) i++;
-        if (i == COUNT_OF(readable))
-            value_unknown(L, who, "field", key, readable, COUNT_OF(readable));
-        lua_getiuservalue(L, 1, 1);
-        lua_getfield(L, -1, key);
-    }
+    lua_getiuservalue(L, 1, 1);
+    if (value_get(L, -1, key) == LUA_TNIL &&
+        !script_key_find(script_object_find(who)->members, key))
+        refuse_member(L, key, true);
     return 1;
 }
 

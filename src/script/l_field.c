@@ -39,8 +39,9 @@ typedef struct kind_call {
     const field_kind *kind;
     const field *args[FIELD_MAX_ARGS];
     uint8_t options[FIELD_MAX_OPTIONS];
-    size_t arg_count; // of the kind
-    size_t next;      // argument that the next positional value is for
+    bool chosen[FIELD_MAX_OPTIONS]; // the script gave the option
+    size_t arg_count;               // of the kind
+    size_t next;                    // argument that the next positional value is for
 } kind_call;
 
 static void take_arg(lua_State *L, kind_call *call, size_t i, int index) {
@@ -74,6 +75,7 @@ static void take_named(lua_State *L, kind_call *call, const char *name) {
         known[count++] = option->name;
         if (strcmp(option->name, name) != 0) continue;
         if (lua_type(L, -1) == LUA_TNUMBER) lua_tostring(L, -1); // dimensions = 4
+        call->chosen[i] = true;
         call->options[i] =
             (uint8_t)value_word(L, -1, kind->name, name, option->words, word_count(option));
         return;
@@ -96,6 +98,16 @@ static void take_table(lua_State *L, kind_call *call, int table) {
         lua_pop(L, 1);
     }
     lua_pop(L, 1);
+}
+
+// `speed` moves through a fourth dimension, so it asks for one.
+static void imply_dimensions(kind_call *call) {
+    for (size_t a = 0; a < call->arg_count; a++) {
+        if (!call->args[a] || strcmp(call->kind->args[a].name, "speed") != 0) continue;
+        for (size_t i = 0; i < FIELD_MAX_OPTIONS && call->kind->options[i].name; i++)
+            if (!call->chosen[i] && strcmp(call->kind->options[i].name, "dimensions") == 0)
+                call->options[i] = 1; // the word "4"
+    }
 }
 
 // Functions of numbers give numbers, so that functions of time can use them every frame.
@@ -134,6 +146,7 @@ static int l_kind(lua_State *L) {
         table && ((n == 1 && (!is_operator || call.arg_count > 1)) || value_has_names(L, n));
     for (int i = 1; i <= n - named; i++) take_arg(L, &call, call.next++, i);
     if (named) take_table(L, &call, n);
+    imply_dimensions(&call);
     field_push(L, field_make(script_memory(L), kind->name, call.args, call.options));
     return 1;
 }
@@ -253,9 +266,8 @@ static int l_index(lua_State *L) {
 
 // glsl { "swirl.glsl", "swirl", argument, ..., components = 1 }
 static int l_glsl(lua_State *L) {
-    static const char *const keys[] = {"components"};
     script_require_loading(L, "glsl");
-    value_check_keys(L, 1, "glsl", keys, COUNT_OF(keys));
+    value_check_object(L, 1, "glsl");
     const char *names[2];
     for (int i = 0; i < 2; i++) {
         if (lua_rawgeti(L, 1, i + 1) != LUA_TSTRING)
@@ -283,19 +295,10 @@ static int l_glsl(lua_State *L) {
 
 // ---- globals ----------------------------------------------------------------------------------
 
-// Kinds that have constructors of their own, or none.
-static bool is_special(const char *name) {
-    static const char *const names[] = {"constant", "param",   "curve", "call",
-                                        "grid",     "palette", "glsl",  "swizzle"};
-    for (size_t i = 0; i < COUNT_OF(names); i++)
-        if (strcmp(names[i], name) == 0) return true;
-    return false;
-}
-
 // A function for each kind, a value for kinds without arguments; methods for operators.
 static void open_kinds(lua_State *L, int methods) {
     for (const field_kind *kind = field_kinds; kind->name; kind++) {
-        if (is_special(kind->name)) continue;
+        if (!script_has_kind(kind)) continue;
         if (!kind->args[0].name) {
             field_push(L, field_make(script_memory(L), kind->name, NULL, NULL));
             lua_setglobal(L, kind->name);

@@ -28,15 +28,14 @@ static const char *read_pattern(lua_State *L, const char *who) {
     return arena_string(script_memory(L), path);
 }
 
-static void read_playback(lua_State *L, const char *who, sequence_desc *desc) {
-    static const char *const loops[] = {"clip", "extend", "repeat", "ping_pong"};
+static void read_playback(lua_State *L, const script_object *row, sequence_desc *desc) {
+    const char *who = row->name;
     desc->pattern = read_pattern(L, who);
     desc->root = effect_root(script_of(L)->effect);
     desc->fps = value_get_number(L, 1, who, "fps", 0);
     desc->start = value_get_number(L, 1, who, "start", 0);
     desc->speed = value_get_number(L, 1, who, "speed", 0);
-    desc->loop =
-        (sequence_loop)value_get_word(L, 1, who, "loop", loops, COUNT_OF(loops), SEQUENCE_CLIP);
+    desc->loop = (sequence_loop)value_get_choice(L, 1, row, "loop");
     desc->blend = value_get_bool(L, 1, who, "blend", false);
     desc->y_up = value_get_bool(L, 1, who, "y_up", false);
     desc->scale = (float)value_get_number(L, 1, who, "scale", 0);
@@ -57,14 +56,10 @@ static int push_sequence(lua_State *L, const sequence_desc *desc) {
     return 1;
 }
 
-#define PLAYBACK_KEYS "fps", "start", "speed", "loop", "blend", "y_up", "scale", "offset"
-
 static int l_vdb(lua_State *L) {
-    static const char *const keys[] = {PLAYBACK_KEYS};
     script_require_loading(L, "vdb");
-    value_check_keys(L, 1, "vdb", keys, COUNT_OF(keys));
     sequence_desc desc = {0};
-    read_playback(L, "vdb", &desc);
+    read_playback(L, value_check_object(L, 1, "vdb"), &desc);
     return push_sequence(L, &desc);
 }
 
@@ -76,13 +71,10 @@ static uint64_t bytes_of(lua_State *L, const char *key) {
 }
 
 static int l_raw(lua_State *L) {
-    static const char *const keys[] = {PLAYBACK_KEYS, "type",       "size",        "frames", "skip",
-                                       "stride",      "voxel_size", "value_scale", "channel"};
-    static const char *const types[] = {"u8", "u16", "f16", "f32"};
     script_require_loading(L, "raw");
-    value_check_keys(L, 1, "raw", keys, COUNT_OF(keys));
+    const script_object *row = value_check_object(L, 1, "raw");
     sequence_desc desc = {0};
-    read_playback(L, "raw", &desc);
+    read_playback(L, row, &desc);
     float size[3] = {0};
     if (!value_get_vector(L, 1, "raw", "size", size))
         vm_error(L, "raw: 'size' is missing: the voxels of a frame, as in {32, 32, 32}");
@@ -92,7 +84,7 @@ static int l_raw(lua_State *L) {
                      (double)size[i]);
         desc.raw.size[i] = (uint32_t)size[i];
     }
-    desc.raw.type = types[value_get_word(L, 1, "raw", "type", types, COUNT_OF(types), 0)];
+    desc.raw.type = script_key_find(row->keys, "type")->words[value_get_choice(L, 1, row, "type")];
     desc.raw.frames = value_get_count(L, 1, "raw", "frames", 0);
     desc.raw.offset = bytes_of(L, "skip");
     desc.raw.stride = bytes_of(L, "stride");
@@ -156,8 +148,8 @@ static box3 read_box(lua_State *L, const field *node) {
         field_context context = script_context(L);
         if (!field_bounds(node, &context, &box)) script_raise(L);
     } else {
-        static const char *const keys[] = {"min", "max"};
-        value_check_keys(L, -1, "bake: box", keys, COUNT_OF(keys));
+        static const script_key corners[] = {{.name = "min"}, {.name = "max"}, {.name = NULL}};
+        value_check_keys(L, -1, "bake: box", corners);
         box = (box3){corner(L, "min"), corner(L, "max")};
     }
     lua_pop(L, 1);
@@ -165,7 +157,6 @@ static box3 read_box(lua_State *L, const field *node) {
 }
 
 static int l_bake(lua_State *L) {
-    static const char *const keys[] = {"size", "box"};
     script_require_loading(L, "bake");
     lua_settop(L, 2);
     const field *node = value_field(L, 1, "bake", "field", 0);
@@ -173,7 +164,7 @@ static int l_bake(lua_State *L) {
         lua_newtable(L);
         lua_replace(L, 2);
     }
-    value_check_keys(L, 2, "bake", keys, COUNT_OF(keys));
+    value_check_object(L, 2, "bake");
     float size[3] = {64, 64, 64};
     value_get_vector(L, 2, "bake", "size", size);
     uint32_t voxels[3];

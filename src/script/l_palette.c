@@ -90,15 +90,11 @@ static bool read_blackbody(lua_State *L, palette_desc *desc) {
 }
 
 static int l_palette(lua_State *L) {
-    static const char *const names[] = {"space",     "min",      "max",      "keys",
-                                        "blackbody", "physical", "reference"};
-    static const char *const spaces[] = {"linear", "oklab"};
     script_require_loading(L, who);
-    value_check_keys(L, 1, who, names, COUNT_OF(names));
+    const script_object *row = value_check_object(L, 1, who);
     palette_key keys[PALETTE_MAX_KEYS] = {0};
     palette_desc desc = {
-        .space = (palette_space)value_get_word(L, 1, who, "space", spaces, COUNT_OF(spaces),
-                                               PALETTE_LINEAR),
+        .space = (palette_space)value_get_choice(L, 1, row, "space"),
         .min = (float)value_get_number(L, 1, who, "min", 0),
         .max = (float)value_get_number(L, 1, who, "max", 0),
         .keys = keys,

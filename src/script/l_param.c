@@ -59,10 +59,8 @@ static void read_default(lua_State *L, effect_param *param) {
 }
 
 static int l_param(lua_State *L) {
-    static const char *const keys[] = {"min",   "max", "unit",    "help",
-                                       "group", "log", "integer", "words"};
     script_require_loading(L, who);
-    value_check_keys(L, 1, who, keys, COUNT_OF(keys));
+    value_check_object(L, 1, who);
     lua_settop(L, 1);
     arena *memory = script_memory(L);
     if (lua_rawgeti(L, 1, 1) != LUA_TSTRING)

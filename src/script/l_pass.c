@@ -153,10 +153,15 @@ static void set_option(lua_State *L, pass_call *call, size_t index, int value) {
     if (!pass_set_option(call->pass, name, word)) script_raise(L);
 }
 
+// The keys that every pass has stand in the row of `shader`.
+static const script_key *reserved_keys(void) {
+    return script_object_find("shader")->keys;
+}
+
 static void unknown_key(lua_State *L, const pass_call *call, const char *key) {
     const shader_interface *face = call->face;
-    size_t total =
-        face->uniform_count + face->option_count + face->field_count + face->image_count + 3;
+    size_t total = face->uniform_count + face->option_count + face->field_count + face->image_count;
+    for (const script_key *k = reserved_keys(); k->name; k++) total++;
     const char **known = lua_newuserdatauv(L, total * sizeof *known, 0);
     size_t count = 0;
     for (size_t i = 0; i < face->uniform_count; i++) known[count++] = face->uniforms[i].name;
@@ -164,9 +169,7 @@ static void unknown_key(lua_State *L, const pass_call *call, const char *key) {
     for (size_t i = 0; i < face->field_count; i++) known[count++] = face->fields[i].name;
     for (size_t i = 0; i < face->image_count; i++)
         if (!face->images[i].output) known[count++] = face->images[i].name;
-    known[count++] = "name";
-    known[count++] = "resolution";
-    known[count++] = "format";
+    for (const script_key *k = reserved_keys(); k->name; k++) known[count++] = k->name;
     value_unknown(L, call->who, "key", key, known, count);
 }
 
@@ -230,10 +233,6 @@ static void set_formats(lua_State *L, pass_call *call, int table) {
     lua_pop(L, 1);
 }
 
-static bool is_reserved(const char *key) {
-    return strcmp(key, "name") == 0 || strcmp(key, "resolution") == 0 || strcmp(key, "format") == 0;
-}
-
 static void read_table(lua_State *L, pass_call *call, int table, lua_Integer first) {
     lua_Integer length = (lua_Integer)lua_rawlen(L, table);
     for (lua_Integer i = first; i <= length; i++) {
@@ -247,7 +246,7 @@ static void read_table(lua_State *L, pass_call *call, int table, lua_Integer fir
     size_t count;
     const char **names = value_names(L, table, call->who, &count);
     for (size_t i = 0; i < count; i++) {
-        if (is_reserved(names[i])) continue;
+        if (script_key_find(reserved_keys(), names[i])) continue;
         value_get(L, table, names[i]);
         set_key(L, call, names[i]);
         lua_pop(L, 1);

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/str.h"
 #include "script/binding.h"
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -96,19 +97,29 @@ const char **value_names(lua_State *L, int table, const char *who, size_t *count
     return names;
 }
 
-void value_check_keys(lua_State *L, int table, const char *who, const char *const *keys,
-                      size_t count) {
+static void refuse_key(lua_State *L, const char *who, const char *name, const script_key *keys) {
+    const char *known[64];
+    size_t count = 0;
+    for (; count < COUNT_OF(known) && keys[count].name; count++) known[count] = keys[count].name;
+    value_unknown(L, who, "key", name, known, count);
+}
+
+void value_check_keys(lua_State *L, int table, const char *who, const script_key *keys) {
     if (!value_is_plain_table(L, table))
         vm_error(L, "%s takes a table, as in %s { ... }; got a %s", who, who,
                  luaL_typename(L, table));
     size_t n;
     const char **names = value_names(L, table, who, &n);
-    for (size_t i = 0; i < n; i++) {
-        size_t k = 0;
-        while (k < count && strcmp(keys[k], names[i]) != 0) k++;
-        if (k == count) value_unknown(L, who, "key", names[i], keys, count);
-    }
+    for (size_t i = 0; i < n; i++)
+        if (!script_key_find(keys, names[i])) refuse_key(L, who, names[i], keys);
     lua_pop(L, 1);
+}
+
+const script_object *value_check_object(lua_State *L, int table, const char *name) {
+    const script_object *object = script_object_find(name);
+    assert(object && object->keys);
+    value_check_keys(L, table, name, object->keys);
+    return object;
 }
 
 // ---- simple values ----------------------------------------------------------------------------
@@ -204,10 +215,15 @@ int value_word(lua_State *L, int index, const char *who, const char *key, const 
     value_unknown(L, who, what, word, words, count);
 }
 
-int value_get_word(lua_State *L, int table, const char *who, const char *key,
-                   const char *const *words, size_t count, int otherwise) {
-    int value = otherwise;
-    if (value_get(L, table, key) != LUA_TNIL) value = value_word(L, -1, who, key, words, count);
+int value_get_choice(lua_State *L, int table, const script_object *object, const char *key) {
+    const script_key *row = script_key_find(object->keys, key);
+    assert(row && row->words[0]);
+    size_t count = 0;
+    int value = 0;
+    for (; count < COUNT_OF(row->words) && row->words[count]; count++)
+        if (strcmp(row->words[count], row->value) == 0) value = (int)count;
+    if (value_get(L, table, key) != LUA_TNIL)
+        value = value_word(L, -1, object->name, key, row->words, count);
     lua_pop(L, 1);
     return value;
 }

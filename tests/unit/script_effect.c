@@ -1,6 +1,8 @@
 // A loaded effect: what the script said arrives, and its functions answer frame by frame.
 #include "script_helper.h"
 
+#include "pass/pass_impl.h"
+
 #include <math.h>
 
 #define END " fx.output = geometry { }"
@@ -79,6 +81,31 @@ static void values_move(void **state) {
     assert_float_equal(uniform(e, 2, "opacity", 1), 5, 1e-6);
     assert_float_equal(uniform(e, 3, "opacity", 7), 6, 1e-6);
     assert_float_equal(uniform(e, 4, "opacity", 2), 3, 1e-6);
+    effect_destroy(e);
+}
+
+// Whether the noise that is the density of pass `index` has four dimensions.
+static bool is_four(effect *e, size_t index) {
+    const pass *p = effect_get_pass(e, index);
+    size_t slot;
+    assert_int_equal(pass_find_key(p, "density", &slot), PASS_FIELD);
+    const field *noise = p->fields[slot]->args[1];
+    for (size_t i = 0; i < FIELD_MAX_OPTIONS && noise->kind->options[i].name; i++)
+        if (strcmp(noise->kind->options[i].name, "dimensions") == 0) return noise->options[i] == 1;
+    fail_msg("%s has no dimensions", noise->kind->name);
+    return false;
+}
+
+static void speed_asks_for_four_dimensions(void **state) {
+    (void)state;
+    effect *e = load("local fx = effect { } local ball = sphere { }\n"
+                     "march { density = ball * perlin { } }\n"
+                     "march { density = ball * perlin { speed = 0.5 } }\n"
+                     "march { density = ball * worley { speed = 0.5, dimensions = 3 } }\n"
+                     "march { density = ball * simplex { dimensions = 4 } }\n"
+                     "march { density = ball * value { dimensions = '4' } }" END);
+    static const bool four[] = {false, true, false, true, true};
+    for (size_t i = 0; i < 5; i++) assert_int_equal(is_four(e, i), four[i]);
     effect_destroy(e);
 }
 
@@ -224,6 +251,7 @@ int main(void) {
         cmocka_unit_test(declarations_arrive),
         cmocka_unit_test(parameters_take_their_type_from_the_default),
         cmocka_unit_test(values_move),
+        cmocka_unit_test(speed_asks_for_four_dimensions),
         cmocka_unit_test(functions_of_time_do_not_gather_memory),
         cmocka_unit_test(faults_in_functions_of_time_are_reported),
         cmocka_unit_test(settings_reach_the_script),

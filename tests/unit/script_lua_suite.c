@@ -1,6 +1,6 @@
-// Runs every tests/lua/*.lua as an effect. A file asserts what it can say itself; comments say the
-// rest, one a line:
-//   -- expect error: TEXT    loading fails, and the message contains TEXT
+// Runs every tests/lua/*.lua as an effect, and compiles its shaders. A file asserts what it can say
+// itself; comments say the rest, one a line:
+//   -- expect error: TEXT    loading or compiling fails, and the message contains TEXT
 //   -- expect passes: N      the effect has N passes
 //   -- expect params: N      and N parameters
 //   -- set: NAME=VALUE       as given by --set
@@ -56,7 +56,7 @@ static bool run(const char *path) {
     char scripts[PATH_CAP];
     helper_source(scripts, "scripts");
     effect *e = helper_create(path, x.pairs, x.setting_count);
-    bool ok = script_load(e, scripts);
+    bool ok = script_load(e, scripts) && effect_check(e);
     const char *fault = NULL;
     if (x.error[0]) {
         if (ok || !strstr(err_get(), x.error)) fault = "another error was expected";

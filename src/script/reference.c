@@ -1,0 +1,212 @@
+// The table of constructors. What a kind's row can say stands in field/kinds.c.
+#include "script/reference.h"
+#include "base/memory.h"
+#include "scene/scene.h"
+#include <string.h>
+
+// clang-format off
+#define KEYS(...) (const script_key[]){__VA_ARGS__, {.name = NULL}}
+#define KEY(NAME, VALUE, HELP) {.name = NAME, .value = VALUE, .help = HELP}
+#define CHOICE(NAME, VALUE, HELP, ...)                                                             \
+    {.name = NAME, .value = VALUE, .help = HELP, .words = {__VA_ARGS__}}
+#define SLOT(TYPE, NAME, COMPONENTS, VALUE, HELP)                                                  \
+    {.name = #NAME, .value = VALUE, .help = HELP, .components = COMPONENTS,                        \
+     .offset = offsetof(TYPE, NAME)}
+
+#define PLAYBACK                                                                                   \
+    KEY("fps", "24 frames/s", "frames of the files a second of effect time"),                      \
+    KEY("start", "0 s", "effect time at which the first frame is shown"),                          \
+    KEY("speed", "1", "factor of the playing speed; negative: backwards"),                         \
+    CHOICE("loop", "clip", "outside the range clip shows nothing, extend the nearest frame",       \
+           "clip", "extend", "repeat", "ping_pong"),                                               \
+    KEY("blend", "false", "mixes neighbouring frames at times between them"),                      \
+    KEY("y_up", "false", "the files have Y up: turns them to Z up"),                               \
+    KEY("scale", "1 m", "metres a unit of the file"),                                              \
+    KEY("offset", "0, 0, 0 m", "added after scaling")
+#define SEQUENCE_MEMBERS KEYS(                                                                     \
+    KEY("NAME", "field", "the grid of that name: density, temperature, flame, velocity ..."),      \
+    KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "encloses all frames"),                   \
+    KEY("frames", "number", "how many there are"),                                                 \
+    KEY("duration", "number s", "of all frames at speed 1"))
+
+static const script_object objects[] = {
+    // ---- values
+    {"param", "value", "param { \"density\", 20, min = 0, max = 100, unit = \"1/m\" }",
+     "declares a parameter, which --set and `update` change. Its type is that of its default",
+     .args = KEYS(
+        KEY("name", "\"density\"", "letters, digits and _"),
+        KEY("default", "20", "a number, true or false, \"#rrggbb\", {x, y, z} or a word")),
+     .keys = KEYS(
+        KEY("min", "number", "least value of each component; without: any"),
+        KEY("max", "number", "greatest value of each component; without: any"),
+        KEY("unit", "\"1/m\"", "shown with it"),
+        KEY("help", "\"...\"", "shown with it"),
+        KEY("group", "\"...\"", "shown with it"),
+        KEY("log", "false", "moves by factors; needs min above 0"),
+        KEY("integer", "false", "whole numbers only"),
+        KEY("words", "{\"one\", \"two\"}", "makes it a choice of 1 to 64 words")),
+     .members = KEYS(
+        KEY("get()", NULL, "its value now; of any field that does not vary in space"),
+        KEY("set(value)", NULL, "for `update`"))},
+    {"curve", "value", "curve { {0, 1}, {0.5, 3}, shape = \"cubic\" }",
+     "keys over time: a number, vector or colour that moves",
+     .args = KEYS(KEY("key ...", "{time, value}", "1 to 4096, of rising time (s)")),
+     .keys = KEYS(
+        CHOICE("shape", "linear", "between keys; cubic never overshoots (Fritsch and Carlson 1980)",
+               "step", "linear", "cubic", "ease_in", "ease_out", "ease_in_out"),
+        KEY("period", "0 s", "starts again after so long; 0: holds its first and last value"))},
+    {"rgb", "value", "rgb(255, 128, 0)", "a colour from sRGB bytes, as picture editors show them",
+     .args = KEYS(KEY("red", "[0, 255]", "sRGB"), KEY("green", "[0, 255]", "sRGB"),
+                  KEY("blue", "[0, 255]", "sRGB"))},
+
+    // ---- sources
+    {"vdb", "source", "local burst = vdb { \"data/burst_*.vdb\", fps = 24 }",
+     "a sequence of OpenVDB files; burst.density is a field, 0 outside the box",
+     .args = KEYS(KEY("files", "\"data/burst_*.vdb\"", "one file, or many by *; sorted by name")),
+     .keys = KEYS(PLAYBACK), .members = SEQUENCE_MEMBERS},
+    {"raw", "source", "local burst = raw { \"data/burst.raw\", size = {32, 32, 32} }",
+     "a sequence of plain voxels in one file, little-endian, x fastest; burst.density is a field",
+     .args = KEYS(KEY("file", "\"data/burst.raw\"", "all frames, one after another")),
+     .keys = KEYS(
+        KEY("size", "{x, y, z} voxels [1, 4096]", "of a frame; required"),
+        CHOICE("type", "u8", "of a voxel; u8 and u16 become 0..1", "u8", "u16", "f16", "f32"),
+        KEY("frames", "0", "how many there are; 0: as many as the file holds"),
+        KEY("skip", "0 bytes", "before the first frame"),
+        KEY("stride", "0 bytes", "from frame to frame; 0: without gaps"),
+        KEY("voxel_size", "1 / size.x m", "edge of a voxel"),
+        KEY("value_scale", "1", "factor of the values"),
+        KEY("channel", "\"density\"", "name of its grid"),
+        PLAYBACK),
+     .members = SEQUENCE_MEMBERS},
+    {"bake", "source", "bake(worley { 4 } * sphere { }, { size = 128 })",
+     "computes a field once a frame into voxels; gives a field that is cheap to sample",
+     .args = KEYS(KEY("field", NULL, "what it computes")),
+     .keys = KEYS(
+        KEY("size", "64, 64, 64 voxels [1, 1024]", "a number, or one for each side"),
+        KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m",
+         "what the voxels cover; without: where the field is not zero, if that is known"))},
+    {"palette", "source", "palette { {0, \"#000\"}, {0.5, {1, 0.4, 0}}, {1, \"#fff3b0\", 0.5} }",
+     "a number to colour and alpha. Called with a field it gives a field of colours: "
+     "fire(burst.temperature). Instead of stops it takes `keys` or `blackbody`",
+     .args = KEYS(KEY("stop ...", "{position, colour, alpha}",
+                   "2 to 64 of rising position; \"#rrggbb\" is sRGB, {r, g, b} linear; alpha is 1 "
+                   "if not given")),
+     .keys = KEYS(
+        CHOICE("space", "linear", "in which stops are mixed", "linear", "oklab"),
+        KEY("min", "number", "position of its lower end; without: the first stop's"),
+        KEY("max", "number", "position of its upper end; without: the last stop's"),
+        KEY("keys", "{ {time, {stops}}, ... }", "1 to 64 palettes over time (s), mixed between"),
+        KEY("blackbody", "{500, 3000} K", "glow of these temperatures; the position is in kelvin"),
+        KEY("physical", "false", "of blackbody: brightness grows with the fourth power"),
+        KEY("reference", "1500 K", "of physical: where the luminance is 1"))},
+    {"glsl", "source", "glsl { \"swirl.glsl\", \"swirl\", 3, components = 1 }",
+     "a GLSL function of yours as a field: float swirl(vec3 p, float turns)",
+     .args = KEYS(
+        KEY("file", "\"swirl.glsl\"", "in the effect's folder"),
+        KEY("function", "\"swirl\"", "takes the point p (m), then the arguments"),
+        KEY("argument ...", "field", "float, vec3 or vec4 as given; at most 16")),
+     .keys = KEYS(KEY("components", "1", "of the result: 1, 3 or 4"))},
+
+    // ---- operators
+    {"lerp", "operator", "lerp(a, b, 0.5)", "another name of mix",
+     .args = KEYS(KEY("a", NULL, "result at t = 0"), KEY("b", NULL, "result at t = 1"),
+                  KEY("t", "0.5", "share of b"))},
+    {"saturate", "operator", "saturate(value)", "limits a value to 0..1",
+     .args = KEYS(KEY("value", NULL, "what it limits"))},
+
+    // ---- the scene
+    {"mesh", "scene", "geometry { mesh { \"data/ground.obj\" } }",
+     "something solid, for geometry",
+     .args = KEYS(KEY("file", "\"data/ground.obj\"", ".obj, .gltf or .glb")),
+     .keys = KEYS(
+        SLOT(scene_mesh, position, 3, "0, 0, 0 m", "where its origin goes"),
+        SLOT(scene_mesh, rotation, 3, "0, 0, 0 degrees", "about X, then Y, then Z"),
+        SLOT(scene_mesh, scale, 1, "1", "factor of its size"),
+        SLOT(scene_mesh, color, 3, "1, 1, 1", "multiplies the material's"))},
+    {"camera", "scene", "fx.camera = camera { eye = {0, -6, 2} }",
+     "a camera that stands somewhere and looks at a target",
+     .keys = KEYS(
+        SLOT(scene_camera, eye, 3, "{x, y, z} m", "where it stands; required"),
+        SLOT(scene_camera, target, 3, "0, 0, 1 m", "what it looks at"),
+        SLOT(scene_camera, fov, 1, "40 degrees", "vertical field of view"),
+        SLOT(scene_camera, near, 1, "0.1 m", "nothing nearer is seen"),
+        SLOT(scene_camera, far, 1, "1000 m", "nothing solid farther away is seen"))},
+    {"orbit", "scene", "fx.camera = orbit { target = {0, 0, 1}, distance = 6, yaw = 30 }",
+     "a camera that circles a target",
+     .keys = KEYS(
+        SLOT(scene_camera, target, 3, "0, 0, 1 m", "what it looks at"),
+        SLOT(scene_camera, distance, 1, "6 m", "from the target"),
+        SLOT(scene_camera, yaw, 1, "0 degrees", "about +Z; 0 looks along +Y"),
+        SLOT(scene_camera, pitch, 1, "10 degrees", "height of the eye above the target's horizon"),
+        SLOT(scene_camera, fov, 1, "40 degrees", "vertical field of view"),
+        SLOT(scene_camera, near, 1, "0.1 m", "nothing nearer is seen"),
+        SLOT(scene_camera, far, 1, "1000 m", "nothing solid farther away is seen"))},
+    {"sun", "scene", "fx.sun = sun { azimuth = 120, elevation = 30 }", "the sun's light",
+     .keys = KEYS(
+        SLOT(scene_sun, azimuth, 1, "240 degrees", "where it stands: about +Z, from +X"),
+        SLOT(scene_sun, elevation, 1, "44 degrees", "above the horizon"),
+        SLOT(scene_sun, color, 3, "1, 1, 1", "multiplies the strength"),
+        SLOT(scene_sun, strength, 1, "2.5", "irradiance of what faces it"))},
+    {"sky", "scene", "fx.sky = sky { zenith = \"#4060a0\", strength = 0.5 }",
+     "the light of the sky, and what is seen of it",
+     .keys = KEYS(
+        SLOT(scene_sky, zenith, 3, "0.22, 0.32, 0.48", "radiance straight up"),
+        SLOT(scene_sky, horizon, 3, "0.22, 0.32, 0.48", "radiance at the horizon and below"),
+        SLOT(scene_sky, strength, 1, "0.6", "factor of both"))},
+
+    // ---- the effect
+    {"effect", "effect", "local fx = effect { name = \"explosion\", fps = 24, frames = 100 }",
+     "declares the effect, once in a file. What it shows is assigned to its members",
+     .keys = KEYS(
+        KEY("name", "the file's", "shown in reports"),
+        KEY("fps", "24 (0, 1000] frames/s", "frames a second"),
+        KEY("frames", "1 [1, 1000000]", "length"),
+        KEY("first", "1", "number of the first frame, whose time is 0"),
+        KEY("seed", "0", "of math.random; shaders read it too")),
+     .members = KEYS(
+        KEY("output", "image", "the picture for a display; required"),
+        KEY("linear", "image", "the picture for EXR: scene-linear"),
+        KEY("depth", "image", "distance along the view axis (m), for EXR"),
+        KEY("camera", "orbit { } or camera { }", "see there"),
+        KEY("sun", "sun { }", "see there"),
+        KEY("sky", "sky { }", "see there"),
+        KEY("update", "function(t, dt)", "runs before each frame, to set parameters"))},
+    {"shader", "effect", "shader { \"haze.comp\", image, strength = 0.2 }",
+     "a GLSL file of yours as a pass. Passes give images: the pass itself is its first output, "
+     "result.NAME any. The keys below are every pass's; others are what the file declares",
+     .args = KEYS(
+        KEY("file", "\"haze.comp\"", "in the effect's folder"),
+        KEY("image ...", NULL, "its inputs, in the order in which it declares them")),
+     .keys = KEYS(
+        KEY("name", "the type's", "for --set NAME.key=value and statistics; numbered when taken"),
+        KEY("resolution", "1 (0, 1]", "size of its outputs relative to the picture"),
+        KEY("format", "\"rgba16f\"", "of the first output; { NAME = \"r32f\", ... } of any"))},
+    {"history", "effect", "history(volume.color)",
+     "an image as it was in the last frame; zero in the first",
+     .args = KEYS(KEY("image", NULL, "a pass or one of its outputs"))},
+};
+// clang-format on
+
+const script_object *script_objects(size_t *count) {
+    *count = COUNT_OF(objects);
+    return objects;
+}
+
+const script_object *script_object_find(const char *name) {
+    for (size_t i = 0; i < COUNT_OF(objects); i++)
+        if (strcmp(objects[i].name, name) == 0) return &objects[i];
+    return NULL;
+}
+
+const script_key *script_key_find(const script_key *keys, const char *name) {
+    for (; keys && keys->name; keys++)
+        if (strcmp(keys->name, name) == 0) return keys;
+    return NULL;
+}
+
+bool script_has_kind(const field_kind *kind) {
+    static const char *const nameless[] = {"constant", "call", "grid", "swizzle"};
+    for (size_t i = 0; i < COUNT_OF(nameless); i++)
+        if (strcmp(nameless[i], kind->name) == 0) return false;
+    return !script_object_find(kind->name);
+}
