@@ -109,7 +109,7 @@ class Pictures(Case):
         self.assertLess(min(march.channels["A"]), 0.01)
         self.assertGreater(min(depth.channels["R"]), 1)
         self.assertTrue(os.path.exists(self.path("out.png")))
-        self.fails(1, ["no image 'marsh'", "roil info graph"], "render", "effect.lua", "--frames", "1",
+        self.fails(1, "no image 'marsh'; did you mean 'march'?", "render", "effect.lua", "--frames", "1",
                    "--dump-pass", "marsh", "a.exr")
         self.fails(1, ["march.colour", "march.color"], "render", "effect.lua", "--frames", "1",
                    "--dump-pass", "march.colour", "a.exr")
