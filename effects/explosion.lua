@@ -9,8 +9,8 @@ local fx = effect { name = "explosion", fps = 24, frames = 100 }
 
 -- Everything you may want to turn, with its range: --set density=30
 local density    = param { "density", 20, min = 0, max = 200, unit = "1/m", help = "extinction where the grid's density is 1" }
-local brightness = param { "brightness", 5, min = 0, max = 50, help = "factor of the fire's light" }
-local kelvin     = param { "kelvin", 1250, min = 500, max = 3000, unit = "K", help = "temperature where the grid says 1" }
+local brightness = param { "brightness", 3.5, min = 0, max = 50, help = "factor of the fire's light" }
+local kelvin     = param { "kelvin", 1400, min = 500, max = 3000, unit = "K", help = "temperature where the grid says 1" }
 local noise      = param { "noise", "worley_curl", words = {"worley_curl", "worley", "perlin", "simplex", "none"}, help = "what the detail is made of" }
 local detail     = param { "detail", 1.1, min = 0, max = 3, help = "how much the noise eats from the smoke's edges" }
 local turbulence = param { "turbulence", 0.12, min = 0, max = 2, unit = "m", help = "how far the flow displaces the grid" }
@@ -70,7 +70,7 @@ local volume = march {
   emission   = fire(heat * (0.45 + 0.85 * lumps) * kelvin) * flame * brightness,
   albedo     = {0.45, 0.43, 0.41},
   anisotropy = 0.2,
-  ambient    = 0.6,
+  ambient    = 0.5,
   sampling   = "linear",
   steps      = steps,
   depth      = scene.depth,
