@@ -105,6 +105,18 @@ bool roil_video_add(roil_video *v);     // the last frame of its effect
 bool roil_video_finish(roil_video *v);  // writes the file; frees
 void roil_video_abandon(roil_video *v); // frees, leaves no file; NULL is fine
 
+// ---- export -----------------------------------------------------------------------------------
+
+typedef struct roil_export {
+    const char *pattern; // .vdb file, or a glob of a sequence
+    const char *grid;    // exact name of a grid of numbers; NULL: "density"
+    const char *type;    // "u8", "u16" (0 to the greatest value), "f16", "f32"; NULL: "u8"
+    const char *file;    // one file of all frames, x fastest, little-endian
+} roil_export;
+// Resamples every frame into the box that encloses the sequence. Returns a text that says how Lua
+// reads the file back (free with roil_free), or NULL.
+char *roil_export_raw(const roil_export *desc);
+
 // ---- reference --------------------------------------------------------------------------------
 // Text for people, made from the tables that the program itself uses. Free with roil_free.
 

@@ -10,6 +10,7 @@ enum { APP_DONE = 0, APP_BAD_INPUT = 1, APP_BAD_USAGE = 2 };
 int cmd_render(int argc, const char **argv);
 int cmd_check(int argc, const char **argv);
 int cmd_info(int argc, const char **argv);
+int cmd_export(int argc, const char **argv);
 
 // One line "roil: message" on stderr; returns the status.
 int app_fail(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -1,0 +1,43 @@
+// roil export raw 'FILES*.vdb' -o FILE.raw: a VDB sequence as plain voxels.
+#include "app/app.h"
+#include <popt.h>
+#include <stdio.h>
+#include <string.h>
+
+static int usage(const char *message) {
+    return app_fail(APP_BAD_USAGE, "export: %s; usage: roil export raw 'FILES*.vdb' -o FILE.raw",
+                    message);
+}
+
+int cmd_export(int argc, const char **argv) {
+    roil_export job = {0};
+    const struct poptOption options[] = {
+        {"output", 'o', POPT_ARG_STRING, &job.file, 0, "one file of all frames", "FILE.raw"},
+        {"grid", 'g', POPT_ARG_STRING, &job.grid, 0, "which grid (default: density)", "NAME"},
+        {"type", 't', POPT_ARG_STRING, &job.type, 0, "u8, u16, f16 or f32 (default: u8)", "TYPE"},
+        POPT_AUTOHELP POPT_TABLEEND};
+    poptContext context = poptGetContext("roil export", argc, argv, options, 0);
+    poptSetOtherOptionHelp(context, "raw 'FILES*.vdb' -o FILE.raw");
+    int code = poptGetNextOpt(context), status = APP_DONE;
+    const char *format = poptGetArg(context);
+    job.pattern = poptGetArg(context);
+    if (code < -1) {
+        status = app_fail(APP_BAD_USAGE, "export: %s: %s", poptBadOption(context, 0),
+                          poptStrerror(code));
+    } else if (!format || strcmp(format, "raw") != 0) {
+        status = usage(format ? "the format is raw" : "which format?");
+    } else if (!job.pattern || poptPeekArg(context)) {
+        status = usage(job.pattern ? "quote the pattern of the files" : "which files?");
+    } else if (!job.file) {
+        status = usage("-o is missing");
+    } else {
+        char *text = roil_export_raw(&job);
+        if (text)
+            fputs(text, stdout);
+        else
+            status = app_fail_input();
+        roil_free(text);
+    }
+    poptFreeContext(context);
+    return status;
+}

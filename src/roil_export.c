@@ -1,0 +1,153 @@
+// Exports: an OpenVDB sequence as one raw file, every frame resampled into the box that encloses
+// all of them (Raseta, Lesar and Bohak 2025, section 3.2), for engines that read plain voxels.
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "field/sequence.h"
+#include "media/vdb.h"
+#include "roil_impl.h"
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct voxel_type {
+    const char *name;
+    size_t size;
+} voxel_type;
+
+static const voxel_type types[] = {{"u8", 1}, {"u16", 2}, {"f16", 2}, {"f32", 4}};
+
+static const voxel_type *find_type(const char *name) {
+    for (size_t i = 0; i < COUNT_OF(types); i++)
+        if (strcmp(types[i].name, name) == 0) return &types[i];
+    err_set("type '%s'; accepted: u8, u16, f16, f32", name);
+    return NULL;
+}
+
+// Whole numbers stand for 0 to `scale`; halves and floats for themselves.
+static void encode(const voxel_type *type, const float *values, size_t count, float scale,
+                   unsigned char *out) {
+    for (size_t i = 0; i < count; i++) {
+        float part = clampf(values[i] / scale, 0, 1);
+        uint16_t word =
+            type->name[0] == 'f' ? half_from_float(values[i]) : (uint16_t)lrintf(part * 65535);
+        if (type->size == 1)
+            out[i] = (unsigned char)lrintf(part * 255);
+        else if (type->size == 2)
+            memcpy(out + i * 2, &word, 2);
+        else
+            memcpy(out + i * 4, &values[i], 4);
+    }
+}
+
+typedef struct exporter {
+    const field_grid *grid; // for its box and size
+    const char *const *files;
+    size_t file_count, voxels;
+    const char *name;
+    float *values;
+} exporter;
+
+// One frame; a file without the grid is a frame of zeros. `*present` is left alone then.
+static bool sample_frame(exporter *x, size_t frame, bool *present) {
+    arena memory = {0};
+    vdb_info info;
+    bool done = vdb_read_info(x->files[frame], &memory, &info), found = false;
+    for (size_t i = 0; done && i < info.count; i++)
+        found =
+            found || (strcmp(info.grids[i].name, x->name) == 0 && info.grids[i].components == 1);
+    arena_free(&memory);
+    memset(x->values, 0, x->voxels * sizeof *x->values);
+    if (!done || !found) return done;
+    *present = true;
+    vdb_sample_desc desc = {.path = x->files[frame],
+                            .grid = x->name,
+                            .box = x->grid->box,
+                            .components = 1,
+                            .out = x->values};
+    memcpy(desc.size, x->grid->size, sizeof desc.size);
+    return vdb_sample(&desc, NULL);
+}
+
+// The greatest value of all frames, so that whole numbers use their range.
+static bool find_scale(exporter *x, float *scale) {
+    bool present = false;
+    *scale = 0;
+    for (size_t frame = 0; frame < x->file_count; frame++) {
+        if (!sample_frame(x, frame, &present)) return false;
+        for (size_t i = 0; i < x->voxels; i++) *scale = fmaxf(*scale, x->values[i]);
+    }
+    if (!present) return err_set("no file has a grid '%s' of numbers", x->name);
+    if (!(*scale > 0)) *scale = 1;
+    return true;
+}
+
+static bool write_frames(exporter *x, const voxel_type *type, float scale, FILE *out) {
+    unsigned char *bytes = mem_alloc(x->voxels * type->size);
+    bool done = true, present;
+    for (size_t frame = 0; done && frame < x->file_count; frame++) {
+        done = sample_frame(x, frame, &present);
+        if (!done) break;
+        encode(type, x->values, x->voxels, scale, bytes);
+        done = fwrite(bytes, type->size, x->voxels, out) == x->voxels;
+        if (!done) err_set("cannot be written: %s", strerror(errno));
+    }
+    mem_free(bytes);
+    return done;
+}
+
+// Under a name of its own until it is whole.
+static bool write_file(exporter *x, const voxel_type *type, float scale, const char *file) {
+    char part[PATH_CAP];
+    if (snprintf(part, sizeof part, "%s.part", file) >= (int)sizeof part)
+        return err_set("%s: path too long", file);
+    if (!file_make_parent_folders(file)) return false;
+    FILE *out = fopen(part, "wb");
+    if (!out) return err_set("%s: cannot be written: %s", file, strerror(errno));
+    bool done = write_frames(x, type, scale, out) || err_prefix("%s: ", file);
+    if (fclose(out) != 0 && done)
+        done = err_set("%s: cannot be written: %s", file, strerror(errno));
+    if (done && rename(part, file) != 0)
+        done = err_set("%s: cannot be written: %s", file, strerror(errno));
+    if (!done) remove(part);
+    return done;
+}
+
+static char *describe(const exporter *x, const voxel_type *type, float scale, const char *file) {
+    const field_grid *g = x->grid;
+    strbuf text = {0};
+    strbuf_add(&text, "%s: %zu frames of %u x %u x %u voxels, %s\n", file, x->file_count,
+               g->size[0], g->size[1], g->size[2], type->name);
+    strbuf_add(
+        &text,
+        "raw { \"%s\", type = \"%s\", size = {%u, %u, %u}, voxel_size = %g, value_scale = %g, "
+        "channel = \"%s\", offset = {%g, %g, %g} }\n",
+        file, type->name, g->size[0], g->size[1], g->size[2],
+        (double)((g->box.max.x - g->box.min.x) / (float)g->size[0]),
+        type->name[0] == 'u' ? (double)scale : 1.0, x->name, (double)g->box.min.x,
+        (double)g->box.min.y, (double)g->box.min.z);
+    return text.text;
+}
+
+char *roil_export_raw(const roil_export *desc) {
+    const voxel_type *type = find_type(desc->type ? desc->type : "u8");
+    arena memory = {0};
+    sequence *s =
+        type ? sequence_create(&memory, &(sequence_desc){.pattern = desc->pattern}) : NULL;
+    char *text = NULL;
+    if (s) {
+        field_grid *grid = sequence_grid(s);
+        exporter x = {.grid = grid, .name = desc->grid ? desc->grid : "density"};
+        x.file_count = sequence_files(s, &x.files);
+        x.voxels = (size_t)grid->size[0] * grid->size[1] * grid->size[2];
+        x.values = mem_alloc(x.voxels * sizeof *x.values);
+        float scale;
+        if (find_scale(&x, &scale) && write_file(&x, type, scale, desc->file))
+            text = describe(&x, type, scale, desc->file);
+        mem_free(x.values);
+        grid->destroy(grid, NULL);
+    }
+    arena_free(&memory);
+    return text;
+}
