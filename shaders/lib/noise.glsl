@@ -114,44 +114,60 @@ float noise_perlin4(vec4 q, uint seed, float period) {
 // ---- simplex ----------------------------------------------------------------------------------
 // Perlin's simplex noise ("Noise hardware", 2001) as Gustavson explains it, with the kernel
 // radius^2 of 1/2, which is continuous across simplices. The factors bring the extremes to 1.
+//
+// Periods: with a skew of 1/3 the lattice falls on itself when moved by a multiple of 3 along an
+// axis, by whole steps of its own. In three dimensions that is the skew; in four it is near to it,
+// so a repeating noise takes it, with the lower simplices' radius^2 of 9/19 and a factor for that.
 
-const float NOISE_SIMPLEX3 = 76.8, NOISE_SIMPLEX4 = 62.7;
+const float NOISE_SIMPLEX3 = 76.8, NOISE_SIMPLEX4 = 62.7, NOISE_SIMPLEX4_CLOSED = 80.0;
 
 float noise_kernel(uint h, vec3 d) {
     float t = max(0.5 - dot(d, d), 0.0);
     return t * t * t * t * noise_edge(noise_hash(h), d);
 }
 
-float noise_kernel(uint h, vec4 d) {
-    float t = max(0.5 - dot(d, d), 0.0);
+float noise_kernel(uint h, vec4 d, float reach) {
+    float t = max(reach - dot(d, d), 0.0);
     return t * t * t * t * noise_edge(noise_hash(h), d);
 }
 
-uint noise_corner(vec3 cell, uint seed) {
+uint noise_corner(vec3 cell, uint seed, float period) {
+    if (period > 0.0) { // six times the corner's place is whole
+        vec3 turns = floor((6.0 * cell - (cell.x + cell.y + cell.z) + 0.5) / (6.0 * period));
+        cell -= turns * period + (turns.x + turns.y + turns.z) * (period / 3.0);
+    }
     uvec3 h = noise_lattice(cell, 0.0);
     return h.x + h.y + h.z + seed;
 }
 
-uint noise_corner(vec4 cell, uint seed) {
+uint noise_corner(vec4 cell, uint seed, float period) {
+    if (period > 0.0) { // and seven times it here
+        float cells = cell.x + cell.y + cell.z + cell.w;
+        vec4 turns = floor((7.0 * cell - cells + 0.5) / (7.0 * period));
+        cell -= turns * period + (turns.x + turns.y + turns.z + turns.w) * (period / 3.0);
+    }
     uvec4 h = noise_lattice(cell, 0.0);
     return h.x + h.y + h.z + h.w + seed;
 }
 
-float noise_simplex3(vec3 q, uint seed) {
+float noise_simplex3(vec3 q, uint seed, float period) {
     const float skew = 1.0 / 3.0, back = 1.0 / 6.0;
     vec3 cell = floor(q + (q.x + q.y + q.z) * skew);
     vec3 d = q - (cell - (cell.x + cell.y + cell.z) * back);
     vec3 g = step(d.yzx, d), l = 1.0 - g; // which coordinates come first
     vec3 one = min(g, l.zxy), two = max(g, l.zxy);
-    return (noise_kernel(noise_corner(cell, seed), d) +
-            noise_kernel(noise_corner(cell + one, seed), d - one + back) +
-            noise_kernel(noise_corner(cell + two, seed), d - two + 2.0 * back) +
-            noise_kernel(noise_corner(cell + 1.0, seed), d - 1.0 + 3.0 * back)) *
+    return (noise_kernel(noise_corner(cell, seed, period), d) +
+            noise_kernel(noise_corner(cell + one, seed, period), d - one + back) +
+            noise_kernel(noise_corner(cell + two, seed, period), d - two + 2.0 * back) +
+            noise_kernel(noise_corner(cell + 1.0, seed, period), d - 1.0 + 3.0 * back)) *
            NOISE_SIMPLEX3;
 }
 
-float noise_simplex4(vec4 q, uint seed) {
-    const float skew = 0.309016994, back = 0.138196601; // (sqrt(5) - 1) / 4, (5 - sqrt(5)) / 20
+float noise_simplex4(vec4 q, uint seed, float period) {
+    bool closed = period > 0.0;
+    float skew = closed ? 1.0 / 3.0 : 0.309016994; // (sqrt(5) - 1) / 4
+    float back = closed ? 1.0 / 7.0 : 0.138196601; // (5 - sqrt(5)) / 20
+    float reach = closed ? 9.0 / 19.0 : 0.5;
     vec4 cell = floor(q + (q.x + q.y + q.z + q.w) * skew);
     vec4 d = q - (cell - (cell.x + cell.y + cell.z + cell.w) * back);
     vec3 x = step(d.yzw, d.xxx), y = step(d.zww, d.yyz);
@@ -162,12 +178,12 @@ float noise_simplex4(vec4 q, uint seed) {
     rank.w += 1.0 - y.z;
     vec4 one = clamp(rank - 2.0, 0.0, 1.0), two = clamp(rank - 1.0, 0.0, 1.0);
     vec4 three = clamp(rank, 0.0, 1.0);
-    return (noise_kernel(noise_corner(cell, seed), d) +
-            noise_kernel(noise_corner(cell + one, seed), d - one + back) +
-            noise_kernel(noise_corner(cell + two, seed), d - two + 2.0 * back) +
-            noise_kernel(noise_corner(cell + three, seed), d - three + 3.0 * back) +
-            noise_kernel(noise_corner(cell + 1.0, seed), d - 1.0 + 4.0 * back)) *
-           NOISE_SIMPLEX4;
+    return (noise_kernel(noise_corner(cell, seed, period), d, reach) +
+            noise_kernel(noise_corner(cell + one, seed, period), d - one + back, reach) +
+            noise_kernel(noise_corner(cell + two, seed, period), d - two + 2.0 * back, reach) +
+            noise_kernel(noise_corner(cell + three, seed, period), d - three + 3.0 * back, reach) +
+            noise_kernel(noise_corner(cell + 1.0, seed, period), d - 1.0 + 4.0 * back, reach)) *
+           (closed ? NOISE_SIMPLEX4_CLOSED : NOISE_SIMPLEX4);
 }
 
 // ---- value ------------------------------------------------------------------------------------
@@ -329,10 +345,10 @@ float noise_value(vec3 p, float frequency, float octaves, float persistence, flo
 }
 
 float noise_simplex(vec3 p, float frequency, float octaves, float persistence, float lacunarity,
-                    float seed, float amplitude, vec3 drift, float phase, int fractal,
+                    float seed, float amplitude, vec3 drift, float phase, float period, int fractal,
                     int dimensions) {
-    const float period = 0.0;
-    NOISE_SUM(noise_simplex3(o.q.xyz, o.seed), noise_simplex4(o.q, o.seed));
+    period = period >= 0.5 ? 3.0 * max(floor(period / 3.0 + 0.5), 1.0) : 0.0;
+    NOISE_SUM(noise_simplex3(o.q.xyz, o.seed, o.period), noise_simplex4(o.q, o.seed, o.period));
 }
 
 float noise_worley(vec3 p, float frequency, float octaves, float persistence, float lacunarity,

@@ -1,6 +1,7 @@
 // Evaluators of the noise kinds: from a row's arguments and options to a noise_desc.
 #include "field/kinds.h"
 #include "field/noise.h"
+#include <math.h>
 
 static noise_desc describe(const float (*args)[4]) { // what all rows begin with
     return (noise_desc){
@@ -42,6 +43,8 @@ void eval_simplex(const field *node, const field_context *context, float3 p, con
                   float out[4]) {
     (void)context;
     noise_desc desc = describe_scalar(node, args);
+    float period = args[8][0]; // its lattice repeats after multiples of three
+    desc.period = period >= 0.5f ? 3 * fmaxf(floorf(period / 3 + 0.5f), 1) : 0;
     out[0] = noise_eval(NOISE_SIMPLEX, &desc, p);
 }
 

@@ -11,6 +11,7 @@ static const uint32_t primes[4] = {0x8da6b343u, 0xd8163841u, 0xcb1ab31fu, 0x1656
 static const uint32_t next_seed = 0x9e3779b9u;
 static const float perlin3_factor = 0.964921415f, perlin4_factor = 0.655895233f;
 static const float simplex3_factor = 76.8f, simplex4_factor = 62.7f;
+static const float simplex4_closed_factor = 80;
 
 static uint32_t hash(uint32_t h) {
     h ^= h >> 16;
@@ -102,29 +103,54 @@ static float lattice_noise(noise_base base, const float q[4], uint32_t seed, flo
 
 // ---- simplex ----------------------------------------------------------------------------------
 
-static float kernel(const float at[4], const float d[4], uint32_t seed, int dimensions) {
+// Periods are explained in shaders/lib/noise.glsl.
+typedef struct simplex_grid {
+    int dimensions;
+    float skew, back, reach, period;
+} simplex_grid;
+
+static simplex_grid find_grid(bool four, float period) {
+    if (!four) return (simplex_grid){3, 1.0f / 3, 1.0f / 6, 0.5f, period};
+    if (period > 0) return (simplex_grid){4, 1.0f / 3, 1.0f / 7, 9.0f / 19, period};
+    return (simplex_grid){4, 0.309016994f, 0.138196601f, 0.5f, 0};
+}
+
+// A corner moved by whole periods to where the first one of its kind lies.
+static void wrap_corner(const simplex_grid *g, float at[4]) {
+    float whole_part = g->dimensions == 4 ? 7 : 6, cells = 0, turns[4], all = 0;
+    for (int i = 0; i < g->dimensions; i++) cells += at[i];
+    for (int i = 0; i < g->dimensions; i++) {
+        turns[i] = floorf((whole_part * at[i] - cells + 0.5f) / (whole_part * g->period));
+        all += turns[i];
+    }
+    for (int i = 0; i < g->dimensions; i++) at[i] -= turns[i] * g->period + all * (g->period / 3);
+}
+
+static float kernel(const simplex_grid *g, float at[4], const float d[4], uint32_t seed) {
+    int dimensions = g->dimensions;
     float square = 0;
+    if (g->period > 0) wrap_corner(g, at);
     uint32_t h = seed;
     for (int i = 0; i < dimensions; i++) {
         square += d[i] * d[i];
         h += lattice(at[i], 0, i);
     }
-    float t = fmaxf(0.5f - square, 0);
+    float t = fmaxf(g->reach - square, 0);
     return t * t * t * t * (dimensions == 4 ? edge4(hash(h), d) : edge3(hash(h), d));
 }
 
 // From the corner at the base of the simplex to the opposite one, coordinates advance in falling
 // order of the position inside the cell.
-static float simplex_noise(const float q[4], uint32_t seed, bool four) {
-    int dimensions = four ? 4 : 3;
-    float skew = four ? 0.309016994f : 1.0f / 3.0f, back = four ? 0.138196601f : 1.0f / 6.0f;
+static float simplex_noise(const float q[4], uint32_t seed, float period, bool four) {
+    simplex_grid g = find_grid(four, period);
+    int dimensions = g.dimensions;
     float sum = 0, cells = 0, at[4], d[4], result = 0;
     for (int i = 0; i < dimensions; i++) sum += q[i];
     for (int i = 0; i < dimensions; i++) {
-        at[i] = floorf(q[i] + sum * skew);
+        at[i] = floorf(q[i] + sum * g.skew);
         cells += at[i];
     }
-    for (int i = 0; i < dimensions; i++) d[i] = q[i] - (at[i] - cells * back);
+    for (int i = 0; i < dimensions; i++) d[i] = q[i] - (at[i] - cells * g.back);
     int rank[4] = {0, 0, 0, 0}; // how many coordinates it is ahead of
     for (int i = 0; i < dimensions; i++)
         for (int k = i + 1; k < dimensions; k++) rank[d[i] >= d[k] ? i : k]++;
@@ -133,11 +159,12 @@ static float simplex_noise(const float q[4], uint32_t seed, bool four) {
         for (int i = 0; i < dimensions; i++) {
             float ahead = rank[i] >= dimensions - step ? 1 : 0;
             corner[i] = at[i] + ahead;
-            r[i] = d[i] - ahead + (float)step * back;
+            r[i] = d[i] - ahead + (float)step * g.back;
         }
-        result += kernel(corner, r, seed, dimensions);
+        result += kernel(&g, corner, r, seed);
     }
-    return result * (four ? simplex4_factor : simplex3_factor);
+    if (!four) return result * simplex3_factor;
+    return result * (period > 0 ? simplex4_closed_factor : simplex4_factor);
 }
 
 // ---- Worley -----------------------------------------------------------------------------------
@@ -250,7 +277,7 @@ static float fold(float n, noise_fractal fractal) {
 static float base_noise(noise_base base, const noise_desc *desc, const octave *o) {
     switch (base) {
     case NOISE_SIMPLEX:
-        return simplex_noise(o->q, o->seed, desc->four);
+        return simplex_noise(o->q, o->seed, o->period, desc->four);
     case NOISE_WORLEY:
         return worley_noise(desc, o->q, o->seed, o->period, desc->paper ? o->shift : -1);
     default:

@@ -57,6 +57,8 @@ static void simplex_agrees(void **state) {
     agree(state, row("simplex", MOTION), 1e-4f);
     agree(state, row("simplex", MOTION, WORD("dimensions", "4")), 1e-4f);
     agree(state, row("simplex", MOTION, WORD("fractal", "ridged")), 1e-4f);
+    agree(state, row("simplex", MOTION, SET("period", number(6))), 1e-4f);
+    agree(state, row("simplex", MOTION, SET("period", number(6)), WORD("dimensions", "4")), 1e-4f);
 }
 
 static void worley_agrees(void **state) {

@@ -125,6 +125,35 @@ static void periods_tile_in_every_direction_and_in_time(void **state) {
         }
 }
 
+static void simplex_tiles_after_multiples_of_three(void **state) {
+    (void)state;
+    static const char *const dimensions[] = {"3", "4"};
+    for (int four = 0; four < 2; four++) {
+        field *n = row("simplex", SET("period", number(6.4f)), SET("frequency", number(2)),
+                       SET("octaves", number(2)), SET("speed", number(four ? 8.0f : 0.0f)),
+                       WORD("dimensions", dimensions[four]));
+        uint32_t seed = 9;
+        float most = 0, least = 1;
+        for (int i = 0; i < 2000; i++) {
+            float3 p = random_point(&seed, 3);
+            float v = value_at(n, 0.125, p);
+            const float moved[] = {value_at(n, 0.125, (float3){p.x + 3, p.y, p.z}),
+                                   value_at(n, 0.125, (float3){p.x, p.y - 6, p.z}),
+                                   value_at(n, 0.125, (float3){p.x, p.y, p.z + 9}),
+                                   value_at(n, 0.875, p)}; // 6 cells at 8 a second
+            for (int k = 0; k < 4; k++)                    // the sums of coordinates are rounded
+                if (fabsf(v - moved[k]) > 1e-4f)
+                    fail_msg("%g, moved %g", (double)v, (double)moved[k]);
+            float half = value_at(n, 0.125, (float3){p.x + 1.5f, p.y, p.z});
+            most = fmaxf(most, fabsf(v - half));
+            least = fminf(least, v);
+            float near = value_at(n, 0.125, (float3){p.x + 1e-4f, p.y, p.z});
+            assert_true(fabsf(v - near) < 0.01f); // continuous across simplices
+        }
+        assert_true(most > 0.2f && least < 0.35f); // and it is not flat
+    }
+}
+
 static void drift_moves_the_domain(void **state) {
     (void)state;
     field *still = row("perlin", SET("seed", number(1)));
@@ -328,6 +357,7 @@ int main(void) {
         cmocka_unit_test(octaves_are_exactly_as_many_as_asked_for),
         cmocka_unit_test(one_octave_has_the_frequency_asked_for),
         cmocka_unit_test(periods_tile_in_every_direction_and_in_time),
+        cmocka_unit_test(simplex_tiles_after_multiples_of_three),
         cmocka_unit_test(drift_moves_the_domain),
         cmocka_unit_test(the_fourth_dimension_boils),
         cmocka_unit_test(seeds_give_other_patterns),
