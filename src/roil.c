@@ -94,7 +94,7 @@ uint64_t roil_validation_messages(const roil *r) {
 roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, size_t count) {
     effect_setting *own = mem_alloc(count * sizeof *own);
     for (size_t i = 0; i < count; i++)
-        own[i] = (effect_setting){settings[i].name, settings[i].value};
+        own[i] = (effect_setting){.name = settings[i].name, .text = settings[i].value};
     roil_effect *e = mem_alloc(sizeof *e);
     e->owner = r;
     e->effect = effect_create(&(effect_desc){
@@ -183,7 +183,12 @@ bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height) {
 }
 
 bool roil_render(roil_effect *e, double frame) {
-    e->frame = effect_render(e->effect, frame);
+    e->frame = effect_render(e->effect, frame, false);
+    return e->frame != 0;
+}
+
+bool roil_advance(roil_effect *e, double frame) {
+    e->frame = effect_render(e->effect, frame, true);
     return e->frame != 0;
 }
 

@@ -26,6 +26,14 @@ const char *roil_error(void); // of the calling thread; "" when there was none
 
 // ---- device -----------------------------------------------------------------------------------
 
+typedef struct roil_window_desc {  // a window to show effects in, whichever library made it
+    const char *const *extensions; // of the Vulkan instance, that its surface needs
+    uint32_t extension_count;
+    // Makes the VkSurfaceKHR `*surface` for the VkInstance `instance`; false when it cannot.
+    bool (*create_surface)(void *user, void *instance, void *surface);
+    void *user;
+} roil_window_desc;
+
 typedef struct roil_desc {
     const char *device; // part of a device's name, or its number; NULL: a real GPU before software
     const char *home; // folder that holds shaders/ and scripts/; NULL: $ROIL_HOME, else found from
@@ -34,6 +42,9 @@ typedef struct roil_desc {
     bool no_cache;    // neither read nor write compiled shaders on disk
     bool validate;    // Vulkan validation layers; also by $ROIL_VALIDATE=1
     bool counters;    // count samples (see roil_counters); costs a little time
+    double timeout; // seconds that a frame may take on the device before it counts as lost; 0: 30,
+                    // 300 on a software device
+    const roil_window_desc *window; // NULL: nothing is shown
 } roil_desc;
 
 roil *roil_create(const roil_desc *desc);
@@ -41,6 +52,12 @@ void roil_destroy(roil *r); // after its effects; NULL is fine
 const char *roil_device_name(const roil *r);
 const char *roil_device_driver(const roil *r);
 uint64_t roil_validation_messages(const roil *r);
+bool roil_is_lost(const roil *r); // the device hangs or is gone: only roil_destroy is left to do
+
+typedef struct roil_memory {
+    uint64_t device, reserved; // bytes in use on the device, and taken from the driver
+} roil_memory;
+roil_memory roil_get_memory(const roil *r);
 
 // ---- effects ----------------------------------------------------------------------------------
 
@@ -62,16 +79,23 @@ typedef struct roil_effect_info {
 } roil_effect_info;
 roil_effect_info roil_get_info(const roil_effect *e);
 
-// Sets a parameter or a uniform of a pass; takes effect with the next frame.
+// Sets a control (below); takes effect with the next frame. What is structure ("march.mode") can
+// only be set when the effect is loaded.
 bool roil_set(roil_effect *e, const char *name, const char *value);
+bool roil_reset(roil_effect *e, const char *name); // to what the script says
 
-// Keeps an image of the graph ("march.color", or "march" for its first) so that it can be saved.
-// Before the first roil_prepare.
+// Keeps an image of the graph ("march.color", or "march" for its first) so that it can be saved or
+// inspected. Takes effect with the next roil_prepare.
 bool roil_keep(roil_effect *e, const char *image);
+void roil_keep_only(roil_effect *e, const char *image); // no others any more; NULL: none at all
 // Compiles and allocates for a picture size, 1 to 16384 each; again for a new size.
 bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height);
-// Renders one frame; returns when it is submitted.
+// Renders one frame; returns when it is submitted. Histories (what passes keep from frame to frame)
+// start anew unless `frame` is the one after the last.
 bool roil_render(roil_effect *e, double frame);
+// The same for a player, whose steps are uneven: histories go on; `frame` may be the last one
+// again.
+bool roil_advance(roil_effect *e, double frame);
 
 typedef struct roil_time { // GPU time of a pass in the last frame
     char pass[64];
@@ -96,14 +120,214 @@ typedef struct roil_save_options {
     bool sixteen;      // PNG: 16 bits a channel
     bool full;         // EXR: 32-bit float; else half
 } roil_save_options;
+// PNG files hold a recipe (below) of how they were made.
 // .png: display-referred sRGB; .exr: scene-linear with A, and depth as Z where the effect gives it.
 bool roil_save(roil_effect *e, const char *file, const roil_save_options *options);
+
+typedef struct roil_recipe { // what made a picture
+    const char *effect;      // its file, as it was given
+    double frame;
+    uint32_t width, height;
+    const roil_setting *settings; // all that differs from the script
+    size_t setting_count;
+} roil_recipe;
+roil_recipe *roil_read_recipe(const char *png); // NULL when the file holds none
+void roil_free_recipe(roil_recipe *recipe);
 
 typedef struct roil_video roil_video;
 roil_video *roil_video_create(roil_effect *e, const char *file, double fps); // .mp4
 bool roil_video_add(roil_video *v);     // the last frame of its effect
 bool roil_video_finish(roil_video *v);  // writes the file; frees
 void roil_video_abandon(roil_video *v); // frees, leaves no file; NULL is fine
+
+// ---- controls: all of an effect that can be turned --------------------------------------------
+
+typedef enum roil_type {
+    ROIL_FLOAT,
+    ROIL_INT,
+    ROIL_BOOL,
+    ROIL_ENUM,
+    ROIL_VECTOR, // 2 to 4 components
+    ROIL_COLOR,  // linear Rec.709
+    ROIL_PALETTE,
+    ROIL_CURVE,
+} roil_type;
+
+typedef struct roil_control { // strings live as long as the effect
+    const char *name;  // as roil_set takes it: "density", "march.steps", "sun.azimuth", "fire"
+    const char *label; // the part after the dot
+    const char *group; // of a parameter: as declared, "" for none; else the part before the dot
+    bool parameter;    // declared by the script, for its users
+    roil_type type;
+    int components;
+    float value[4];   // now: of bool 0 or 1, of enum its index; of palette and curve nothing
+    float initial[4]; // by the script
+    float min, max;   // of each component; -INFINITY, INFINITY when not given
+    const char *unit, *help;
+    const char *const *words; // of an enum
+    size_t word_count;
+    bool log_scale;
+    bool structural; // a change loads the effect anew (roil_live does)
+    bool driven; // the script moves it, by a curve, a function or a parameter; setting it ends that
+    bool moved;  // differs from the script, by a setting
+} roil_control;
+
+// Parameters in order of declaration, palettes and curves of the script, then camera, sun and sky,
+// then uniforms and options pass by pass.
+size_t roil_control_count(const roil_effect *e);
+void roil_get_control(roil_effect *e, size_t index, roil_control *out);
+bool roil_find_control(roil_effect *e, const char *name, size_t *index); // false with a message
+// As roil_set takes it; and as Lua to be pasted into the effect. Free with roil_free.
+char *roil_control_text(roil_effect *e, const char *name);
+char *roil_control_lua(roil_effect *e, const char *name);
+
+enum { ROIL_MAX_STOPS = 64 };
+typedef struct roil_stop {
+    float at;       // position, in the palette's range
+    float color[4]; // linear Rec.709, any brightness; alpha
+} roil_stop;
+typedef struct roil_palette {
+    roil_stop stops[ROIL_MAX_STOPS]; // rising; of a keyed palette those of its first key
+    size_t count;                    // 0: blackbody
+    float min, max;                  // the range that it covers
+    bool keyed;                      // moves in time
+} roil_palette;
+typedef struct roil_key {
+    float time; // seconds
+    float value[4];
+} roil_key;
+typedef struct roil_curve {
+    roil_key keys[ROIL_MAX_STOPS]; // strictly rising in time
+    size_t count;
+    int components;
+    const char *shape; // "step", "linear", "cubic", "ease_in", "ease_out", "ease_in_out"
+    float period;      // seconds; 0: does not repeat
+} roil_curve;
+bool roil_get_palette(roil_effect *e, const char *name, roil_palette *out);
+bool roil_get_curve(roil_effect *e, const char *name, roil_curve *out);
+// `count` colours across its range at a time, and values of a curve at `count` times.
+bool roil_sample_palette(roil_effect *e, const char *name, double time, float (*out)[4],
+                         size_t count);
+bool roil_sample_curve(roil_effect *e, const char *name, const double *times, float (*out)[4],
+                       size_t count);
+// The text that roil_set takes: "0 #000000; 0.5 #7a1500 0.5; 1 4,2,0.5" (position, colour as sRGB
+// or three linear numbers, alpha), and "cubic 0 1; 2.5 0,1,0" (shape, then time and value of each
+// key).
+char *roil_palette_text(const roil_palette *palette);
+char *roil_curve_text(const roil_curve *curve);
+
+// Camera of the last frame, metres; "camera.eye", "camera.target", "camera.fov" are its controls.
+typedef struct roil_camera {
+    float eye[3], target[3];
+    float fov; // vertical, degrees
+} roil_camera;
+bool roil_get_camera(roil_effect *e, roil_camera *out);
+bool roil_get_bounds(roil_effect *e, float low[3], float high[3]); // of its volumes; false: none
+
+// ---- presets: named values in a small Lua file, "explosion.presets/NAME.lua" beside the effect --
+
+typedef struct roil_preset { // what a preset sets; free with roil_free_preset
+    roil_setting *settings;
+    size_t count;
+} roil_preset;
+// `preset`: a name, or a path to a .lua file.
+roil_preset *roil_read_preset(roil *r, const char *effect_file, const char *preset);
+void roil_free_preset(roil_preset *preset);
+bool roil_write_preset(roil_effect *e, const char *name); // all that is moved, and not the camera
+size_t roil_presets(const char *effect_file, char (*names)[64],
+                    size_t capacity); // sorted; the count
+
+// ---- live: an effect that follows its files ---------------------------------------------------
+
+typedef struct roil_live roil_live;
+
+typedef struct roil_live_desc {
+    const char *file;
+    const roil_setting *settings;
+    size_t setting_count;
+    void (*wake)(void *user); // from another thread: roil_live_update has something to do; or NULL
+    void *user;
+} roil_live_desc;
+
+// Watches the effect's files and builds it in the background whenever one changes. What is broken
+// from the start is watched too: NULL only when the file's folder cannot be watched.
+roil_live *roil_live_create(roil *r, const roil_live_desc *desc);
+void roil_live_destroy(roil_live *l);
+// Between frames: takes over what the background has finished, prepared for the size of the last
+// one and with its histories. True when the effect or the message changed. `frame` is the one that
+// will be drawn next: an effect whose `update` or functions fail there is not taken.
+bool roil_live_update(roil_live *l, uint32_t width, uint32_t height, double frame);
+void roil_live_wait(roil_live *l);           // until the background has nothing left to do
+roil_effect *roil_live_effect(roil_live *l); // the last good one; NULL: none yet
+const char *roil_live_message(roil_live *l); // why the newest is not good; NULL when it is
+// Sets a control for this effect and those that follow, until the script's own value changes. What
+// is structural is built in the background.
+bool roil_live_set(roil_live *l, const char *name, const char *value);
+bool roil_live_reset(roil_live *l, const char *name); // NULL: everything
+typedef struct roil_live_count {
+    uint64_t reloads, failures; // builds that were taken over, and that were not
+    double last; // seconds from the event of the file to the take-over of the last build
+} roil_live_count;
+roil_live_count roil_live_counts(const roil_live *l);
+
+// ---- window -----------------------------------------------------------------------------------
+
+typedef struct roil_texture roil_texture; // 8-bit sRGB with alpha
+roil_texture *roil_texture_create(roil *r, uint32_t width, uint32_t height, const uint8_t *rgba);
+void roil_texture_destroy(roil *r, roil_texture *t); // NULL is fine
+
+typedef struct roil_vertex {
+    float x, y;     // pixels from the top left
+    float u, v;     // of the texture, 0 to 1
+    uint32_t color; // sRGB with straight alpha, red in the lowest byte; multiplies the texture
+} roil_vertex;
+typedef struct roil_draw {       // triangles of one texture
+    const roil_texture *texture; // NULL: white
+    uint32_t first, count;       // indices
+    float clip[4];               // left, top, right, bottom in pixels
+} roil_draw;
+typedef struct roil_picture { // what a window shows
+    uint32_t width, height;   // pixels
+    float background[3];      // sRGB
+    roil_effect *effect;      // its last picture; NULL: none
+    float view[4];            // left, top, right, bottom of where it goes; it keeps its aspect
+    const roil_vertex *vertices;
+    const uint32_t *indices;
+    const roil_draw *draws; // in order, over the effect
+    size_t vertex_count, index_count, draw_count;
+} roil_picture;
+// Draws and, when there is a window, shows it; waits for the display's turn.
+bool roil_show(roil *r, const roil_picture *picture);
+// What was shown last: width * height * 4 bytes.
+bool roil_read_shown(roil *r, uint8_t *out);
+
+typedef struct roil_inspection { // how an image of the graph is looked at
+    const char *image;           // must be kept (roil_keep)
+    uint32_t mip;
+    int axis;          // of a volume: 0 x, 1 y, 2 z is the direction of sight
+    float slice;       // of a volume: 0 to 1 along it
+    float exposure;    // stops
+    unsigned channels; // bits: 1 red, 2 green, 4 blue, 8 alpha; one alone is shown in grey
+    bool negative;     // show the sign: positive orange, negative blue
+    float center[2];   // of the view in the image, 0 to 1
+    float zoom;        // pixels of the texture for one of the image
+    float cursor[2];   // pixel of the texture whose value is wanted; negative: none
+} roil_inspection;
+typedef struct roil_texel {
+    bool valid;
+    uint32_t at[3];
+    float value[4];
+} roil_texel;
+typedef struct roil_image_info {
+    char name[96];
+    const char *format;     // "rgba16f"
+    uint32_t size[3], mips; // depth 1: 2D
+    bool volume, culled;
+} roil_image_info;
+size_t roil_images(roil_effect *e, roil_image_info *out, size_t capacity); // after roil_prepare
+// Draws it into `target`. `texel`: under the cursor, of an earlier call whose frame has finished.
+bool roil_inspect(roil_effect *e, const roil_inspection *how, roil_texture *target,
+                  roil_texel *texel);
 
 // ---- export -----------------------------------------------------------------------------------
 

@@ -26,10 +26,14 @@ typedef struct effect_param {
     const char *const *words; // enumerations
     size_t word_count;
     bool log_scale;
+    bool structural; // the script read its value while it ran (p:get()): changing it is a reload
 } effect_param;
 
 typedef struct effect_setting { // see effect_set
     const char *name, *text;
+    // What the script itself must say there (effect_initial_text) for the setting to hold; and it
+    // is no error if nothing has that name. NULL: holds always.
+    const char *initial;
 } effect_setting;
 
 typedef struct effect_desc {
@@ -40,6 +44,7 @@ typedef struct effect_desc {
     bool counters;
     const effect_setting *settings; // applied as what they name is declared
     size_t setting_count;
+    shader_library *library; // shared with other loads of the same file; NULL: one of its own
 } effect_desc;
 
 effect *effect_create(const effect_desc *desc);
@@ -77,8 +82,12 @@ typedef struct effect_hooks {                                          // calls 
 } effect_hooks;
 void effect_set_hooks(effect *e, const effect_hooks *hooks);
 void effect_add_file(effect *e, const char *path); // a file a reload should watch
+// Palettes and curves that can be edited by name. `name` is made unique; returns what it became.
+const char *effect_add_palette(effect *e, palette *p, const char *name);
+const char *effect_add_curve(effect *e, curve *c, const char *name);
+void effect_mark_structural(effect *e, size_t param);
 
-// ---- driving ----------------------------------------------------------------------------------
+// ---- asking -----------------------------------------------------------------------------------
 
 const char *effect_name(const effect *e);
 double effect_fps(const effect *e);
@@ -91,22 +100,62 @@ pass *effect_get_pass(effect *e, size_t index);
 graph *effect_graph(effect *e);
 shader_library *effect_library(effect *e);
 
-// Sets a parameter ("density") or a uniform of a pass ("march.steps"). `text`: a number, "1,2,3",
-// "#ff8800", a word, true or false. What is structure, an option ("march.mode") or the resolution
-// of a pass ("march.resolution"), can be set by effect_desc.settings only. Names not known get a
-// suggestion.
+// ---- controls: all that can be set by name ----------------------------------------------------
+
+typedef enum effect_control_kind {
+    EFFECT_CONTROL_PARAM,
+    EFFECT_CONTROL_PALETTE,
+    EFFECT_CONTROL_CURVE,
+    EFFECT_CONTROL_SCENE,   // "camera.fov", "sun.azimuth", "sky.strength"
+    EFFECT_CONTROL_UNIFORM, // "march.steps"
+    EFFECT_CONTROL_OPTION,  // "march.mode"
+    EFFECT_CONTROL_SCALE,   // "march.resolution"
+} effect_control_kind;
+
+typedef struct effect_control {
+    effect_control_kind kind;
+    const char *name;
+    size_t pass, index;  // of the pass, and of the thing itself
+    const char *initial; // as text, before any setting
+    const char *moved;   // the setting that holds, as text; NULL: the script's own value
+} effect_control;
+size_t effect_control_count(const effect *e);
+const effect_control *effect_get_control(const effect *e, size_t index);
+const effect_control *effect_find_control(const effect *e, const char *name); // NULL: suggests
+
+// Sets a parameter ("density"), a uniform of a pass ("march.steps"), a value of the scene
+// ("camera.fov"), a palette or a curve. `text`: a number, "1,2,3", "#ff8800", a word, true or
+// false; stops and keys as palette_parse and curve_parse take them. What is structure, an option
+// ("march.mode") or the resolution of a pass ("march.resolution"), can be set by
+// effect_desc.settings only. Names not known get a suggestion.
 bool effect_set(effect *e, const char *name, const char *text);
+bool effect_reset(effect *e, const char *name); // to what the script says
 bool effect_set_value(effect *e, size_t param, const float value[4]);
 
 // False when a setting of effect_desc names nothing that the script declared.
 bool effect_check_settings(effect *e);
+
+// ---- driving ----------------------------------------------------------------------------------
+
 // What effect_build can find wrong without a device: shaders, fields, the graph.
 bool effect_check(effect *e);
-bool effect_build(effect *e, uint32_t width, uint32_t height); // compile, allocate
+// Compiles shaders and pipelines. With the graph of another effect in use by other threads: any
+// thread may do this, one at a time for a library.
+bool effect_compile(effect *e);
+bool effect_allocate(effect *e, uint32_t width, uint32_t height); // after compile, or again
+bool effect_build(effect *e, uint32_t width, uint32_t height);    // both
+// Evaluates all that a frame needs (update, functions, curves) and draws nothing. Any thread.
+bool effect_rehearse(effect *e, double frame);
+// `e` takes over what `from` has on the device and `e` would make again: histories that match by
+// name, format and size, decoded grids, meshes. Both compiled, `e` allocated. Exchanges rather than
+// copies: the other way round undoes it.
+void effect_adopt(effect *e, effect *from);
+size_t effect_files(const effect *e, const char *const **out); // all that were read, absolute
+
 // Records and submits one frame. Frame numbers start at effect_first_frame; time = (frame -
-// first) / fps. Histories start anew when `frame` is not the one after the last. Returns the
-// GPU's frame number, 0 on error.
-uint64_t effect_render(effect *e, double frame);
+// first) / fps. Histories start anew when `frame` is not the one after the last and `jump` is not
+// set. Returns the GPU's frame number, 0 on error.
+uint64_t effect_render(effect *e, double frame, bool jump);
 
 typedef enum effect_picture { EFFECT_OUTPUT, EFFECT_LINEAR, EFFECT_DEPTH } effect_picture;
 graph_image effect_get_picture(const effect *e, effect_picture which); // zero when there is none

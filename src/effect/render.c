@@ -45,8 +45,8 @@ static bool evaluate(effect *e, double frame) {
     return true;
 }
 
-uint64_t effect_render(effect *e, double frame) {
-    if (e->counter && frame != e->last_frame + 1) graph_reset_history(e->graph);
+uint64_t effect_render(effect *e, double frame, bool jump) {
+    if (e->counter && !jump && frame != e->last_frame + 1) graph_reset_history(e->graph);
     uint64_t number = gpu_frame_begin(e->device);
     if (!number) return 0;
     bool done = evaluate(e, frame) && graph_execute(e->graph, e->device);

@@ -41,7 +41,7 @@ static bool check(const curve *desc) {
     return true;
 }
 
-const curve *curve_create(arena *memory, const curve *desc) {
+curve *curve_create(arena *memory, const curve *desc) {
     if (!check(desc)) return NULL;
     curve *c = arena_copy(memory, desc, sizeof *desc);
     c->keys = arena_copy(memory, desc->keys, desc->count * sizeof *desc->keys);

@@ -1,6 +1,7 @@
 // Keys over time with an interpolation between them: how a number, vector or colour moves.
 #pragma once
 #include "base/arena.h"
+#include "base/str.h"
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -29,5 +30,11 @@ typedef struct curve {
 
 const char *curve_shape_name(curve_shape shape); // "step", "linear", "cubic", "ease_in", ...
 // Copies and checks the keys: at least one, finite, strictly rising.
-const curve *curve_create(arena *memory, const curve *desc);
+curve *curve_create(arena *memory, const curve *desc);
+enum { CURVE_MAX_KEYS = 64 }; // of a curve made from text
+bool curve_replace(curve *c,
+                   const curve *desc); // makes it another one; memory is taken once at most
+// "cubic 0 1; 2.5 0,1,0": shape, then time and value of each key. `keys` holds CURVE_MAX_KEYS.
+bool curve_parse(const char *text, curve_key *keys, curve *out);
+void curve_print(const curve *c, strbuf *out);
 void curve_eval(const curve *c, double time, float out[4]);

@@ -93,7 +93,7 @@ static void copy_keys(arena *memory, palette *p, const palette_desc *desc) {
     p->key_count = desc->key_count;
 }
 
-const palette *palette_create(arena *memory, const palette_desc *desc) {
+palette *palette_create(arena *memory, const palette_desc *desc) {
     if (!desc->blackbody && desc->key_count == 0) {
         err_set("palette: no stops; at least two, or blackbody, are needed");
         return NULL;

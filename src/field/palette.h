@@ -1,6 +1,7 @@
 // Palette: a transfer function from a number to colour and alpha, which may itself move in time.
 #pragma once
 #include "base/arena.h"
+#include "base/str.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -35,7 +36,14 @@ typedef struct palette_desc {
 
 typedef struct palette palette;
 // Checks and copies. False message names the stop or key at fault.
-const palette *palette_create(arena *memory, const palette_desc *desc);
+palette *palette_create(arena *memory, const palette_desc *desc);
+// Makes it another one: fields keep pointing to it. Memory is taken once at most.
+bool palette_replace(palette *p, const palette_desc *desc);
+const palette_desc *palette_get_desc(const palette *p);
+uint32_t palette_version(const palette *p); // counts replacements
+// "0 #000000; 0.5 #7a1500 0.5; 1 4,2,0.5": position, colour as sRGB or three linear numbers, alpha.
+bool palette_parse(const char *text, palette_stop out[PALETTE_MAX_STOPS], size_t *count);
+void palette_print(const palette_stop *stops, size_t count, strbuf *out);
 void palette_range(const palette *p, float *min, float *max);
 bool palette_is_animated(const palette *p);
 // PALETTE_SIZE half-float RGBA texels for a time; texel i stands for position (i + 0.5) / size.

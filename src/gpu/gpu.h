@@ -34,10 +34,22 @@ typedef struct gpu_info {
     char missing[256];      // what it lacks, when not usable
 } gpu_info;
 
+// A window to show frames in, whichever library made it.
+typedef struct gpu_window {
+    const char *const *extensions; // of the Vulkan instance, that the surface needs
+    uint32_t extension_count;
+    // Makes the VkSurfaceKHR `*surface` of the VkInstance `instance`. False with a message.
+    bool (*create_surface)(void *user, void *instance, void *surface);
+    void *user;
+} gpu_window;
+
 typedef struct gpu_desc {
     const char *device;    // part of a name (any case) or an index as `gpu_list` counts; NULL: best
     const char *cache_dir; // folder of the pipeline cache; NULL: no cache
     bool validate; // Khronos validation with synchronization validation; also $ROIL_VALIDATE=1
+    const gpu_window *window; // NULL: nothing is shown; else the device can present to it
+    double timeout; // seconds that submitted work may take before the device counts as lost; 0: 30,
+                    // 300 on a software device
 } gpu_desc;
 
 // Devices the loader offers, real GPUs before software ones, at most `capacity` written.
@@ -50,6 +62,9 @@ const gpu_info *gpu_get_info(const gpu *g);
 // Messages of severity warning or error that the validation layers gave so far.
 uint64_t gpu_validation_messages(const gpu *g);
 bool gpu_validation_enabled(const gpu *g); // false too when the layer is not installed
+// The device is gone, or did not finish in time; all that can be done is gpu_destroy. The message
+// of the call that found it out names the pass that was running, where that is known.
+bool gpu_is_lost(const gpu *g);
 
 typedef struct gpu_memory_use {
     uint64_t used, reserved; // bytes handed out, bytes taken from the driver
@@ -161,8 +176,11 @@ typedef struct gpu_graphics_desc { // vertices are pulled from storage buffers: 
     gpu_format colors[4]; // of the targets; GPU_FORMAT_NONE ends the list
     gpu_format depth;     // GPU_FORMAT_NONE: no depth test; else test less-equal and write
     gpu_cull cull;        // front faces are counter-clockwise seen in the picture
+    bool blend;           // colours are premultiplied and laid over what is there
 } gpu_graphics_desc;
 
+// Pipelines are shared: a description equal to one that is still alive costs no compile. Each
+// create has its own destroy.
 gpu_pipeline *gpu_pipeline_create_compute(gpu *g, const gpu_compute_desc *desc);
 gpu_pipeline *gpu_pipeline_create_graphics(gpu *g, const gpu_graphics_desc *desc);
 void gpu_pipeline_destroy(gpu *g, gpu_pipeline *pipeline);
@@ -220,8 +238,10 @@ bool gpu_dispatch(gpu *g, const gpu_dispatch_desc *desc);
 typedef struct gpu_draw { // one draw call inside a gpu_draw_desc
     const gpu_binding *bindings;
     size_t binding_count;
-    uint32_t vertices;  // how many times the vertex shader runs
-    uint32_t instances; // 0 means 1
+    uint32_t vertices;     // how many times the vertex shader runs
+    uint32_t first_vertex; // what gl_VertexIndex begins with
+    uint32_t instances;    // 0 means 1
+    uint32_t scissor[4];   // x, y, width, height in pixels; width 0: the whole target
 } gpu_draw;
 
 typedef struct gpu_draw_desc {
@@ -235,6 +255,12 @@ typedef struct gpu_draw_desc {
     size_t draw_count; // 0 just clears
 } gpu_draw_desc;
 bool gpu_draw_all(gpu *g, const gpu_draw_desc *desc);
+
+// Inside a frame, once: shows the image (mip 0, 2D, encoded for display) in the window, scaled to
+// it, when the frame is done. Waits for the display's turn. A window without an area (minimised),
+// and one whose surface is being replaced, is passed over. False when the device or surface is
+// lost.
+bool gpu_present(gpu *g, gpu_image *image);
 
 void gpu_image_clear(gpu *g, gpu_image *image, const float color[4]); // inside a frame, all mips
 void gpu_buffer_fill(gpu *g, gpu_buffer *buffer, uint32_t word);      // inside a frame

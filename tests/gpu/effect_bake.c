@@ -35,7 +35,7 @@ static float *march(gpu *device, variant v) {
     pass *p = add_march(e, make(e, "mul", ball, number(e, 2)));
     gpu_test_ok(pass_set_option(p, "sampling", v.sampling));
     finish(e, p, SIZE, SIZE);
-    gpu_test_ok(effect_render(e, v.frame));
+    gpu_test_ok(effect_render(e, v.frame, false));
     float *pixels = read_picture(e);
     effect_destroy(e);
     return pixels;

@@ -93,7 +93,7 @@ static int remove_entry(const char *path, const struct stat *info, int kind, str
 
 static uint64_t compiles_of(gpu *device, numbers n) {
     effect *e = open_ball(device, n);
-    gpu_test_ok(effect_render(e, 1));
+    gpu_test_ok(effect_render(e, 1, false));
     uint64_t count = shader_library_compiles(effect_library(e));
     effect_destroy(e);
     return count;

@@ -66,7 +66,7 @@ static float *jittered(gpu *device, uint32_t seed, double frame) {
     gpu_test_ok(pass_set_uniform(p, "jitter", number(e, 1)));
     gpu_test_ok(pass_set_uniform(p, "steps", number(e, 4)));
     finish(e, p, SIZE, SIZE);
-    gpu_test_ok(effect_render(e, frame));
+    gpu_test_ok(effect_render(e, frame, false));
     float *pixels = read_picture(e);
     effect_destroy(e);
     return pixels;
@@ -136,7 +136,7 @@ static void function_that_fails_stops_the_frame_with_its_line(void **state) {
     effect_set_hooks(e, &(effect_hooks){.call = call_hook});
     finish(e, p, SIZE, SIZE);
     assert_true(fabs((double)middle(e, 1, SIZE, 3) - opacity(0.5)) < 0.002);
-    assert_int_equal(effect_render(e, 2), 0);
+    assert_int_equal(effect_render(e, 2, false), 0);
     assert_string_equal(err_get(), "pass 'march': effect.lua:12: a function that fails");
     assert_true(fabs((double)middle(e, 1, SIZE, 3) - opacity(0.5)) < 0.002);
     effect_destroy(e);
@@ -148,8 +148,8 @@ static void uniforms_function_that_fails_is_named_too(void **state) {
     effect_set_hooks(e, &(effect_hooks){.call = call_hook});
     gpu_test_ok(pass_set_uniform(p, "ambient", called(e)));
     finish(e, p, SIZE, SIZE);
-    gpu_test_ok(effect_render(e, 1));
-    assert_int_equal(effect_render(e, 2), 0);
+    gpu_test_ok(effect_render(e, 1, false));
+    assert_int_equal(effect_render(e, 2, false), 0);
     assert_string_equal(err_get(),
                         "pass 'march': uniform 'ambient': effect.lua:12: a function that fails");
     effect_destroy(e);
@@ -182,9 +182,9 @@ static void update_is_called_once_a_frame_with_its_time(void **state) {
     effect_set_hooks(e,
                      &(effect_hooks){.update = update_hook, .destroy = destroy_hook, .user = &s});
     finish(e, p, SIZE, SIZE);
-    gpu_test_ok(effect_render(e, 4));
+    gpu_test_ok(effect_render(e, 4, false));
     assert_true(s.calls == 1 && fabs(s.time - 0.3) < 1e-9 && s.dt == 0);
-    gpu_test_ok(effect_render(e, 5));
+    gpu_test_ok(effect_render(e, 5, false));
     assert_true(s.calls == 2 && fabs(s.time - 0.4) < 1e-9 && fabs(s.dt - 0.1) < 1e-9);
     effect_destroy(e);
     assert_int_equal(s.destroyed, 1);
@@ -197,7 +197,7 @@ static void update_that_fails_stops_the_frame_with_its_message(void **state) {
     effect_set_hooks(e,
                      &(effect_hooks){.update = update_hook, .destroy = destroy_hook, .user = &s});
     finish(e, p, SIZE, SIZE);
-    assert_int_equal(effect_render(e, 1), 0);
+    assert_int_equal(effect_render(e, 1, false), 0);
     assert_string_equal(err_get(), "effect.lua:3: attempt to index a nil value");
     s.fails = false;
     assert_true(fabs((double)middle(e, 6, SIZE, 3) - opacity(0.5)) < 0.002);
@@ -234,7 +234,7 @@ static void frame_that_failed_leaves_no_history(void **state) {
     effect *e = open_trail(*state, &s);
     assert_true(middle(e, 1, SIZE, 0) == 1 && middle(e, 2, SIZE, 0) == 2);
     s.fails = true;
-    assert_int_equal(effect_render(e, 3), 0);
+    assert_int_equal(effect_render(e, 3, false), 0);
     s.fails = false;
     assert_true(middle(e, 4, SIZE, 0) == 1); // 3 was never made
     assert_true(middle(e, 5, SIZE, 0) == 2);
@@ -259,8 +259,8 @@ static uint64_t samples_taken(gpu *device, bool counters) {
     effect_scene(e)->camera.eye = triple(e, 0, 0, 0); // inside: every ray goes through
     effect_scene(e)->camera.target = triple(e, 0, 1, 0);
     finish(e, p, SIZE, SIZE);
-    gpu_test_ok(effect_render(e, 1));
-    gpu_test_ok(effect_render(e, 2));
+    gpu_test_ok(effect_render(e, 1, false));
+    gpu_test_ok(effect_render(e, 2, false));
     uint64_t counts[8] = {0};
     assert_int_equal(pass_interface(p)->counter_count, 1);
     gpu_test_ok(pass_read_counters(p, counts));

@@ -94,7 +94,7 @@ static inline float *read_picture(effect *e) {
 
 // Renders a frame; channel `channel` of the middle pixel of a picture `size` wide and high.
 static inline float middle(effect *e, double frame, uint32_t size, uint32_t channel) {
-    gpu_test_ok(effect_render(e, frame));
+    gpu_test_ok(effect_render(e, frame, false));
     float *pixels = read_picture(e);
     float value = pixels[4 * (size / 2 * size + size / 2) + channel];
     mem_free(pixels);

@@ -16,10 +16,11 @@ HOMES = [
     (r"(lua|lauxlib|lualib|luaconf)\.h(pp)?$|lua5\.4/", "script/"),
     (r"openvdb/|nanovdb/|tbb/", "media/vdb.cpp"),
     (r"assimp/|png\.h|OpenEXR/|openexr|libav|libsw|Imf", "media/"),
-    (r"GLFW/|imgui|popt\.h", "app/"),
+    (r"imgui", "app/ui.cpp"),
+    (r"GLFW/|fontconfig/|popt\.h", "app/"),
     (r"xxhash\.h", "base/"),
 ]
-CPP = ["src/media/vdb.cpp", "src/app/panel.cpp"]
+CPP = ["src/media/vdb.cpp", "src/app/ui.cpp"]
 INCLUDE = re.compile(r'^\s*#\s*(?:include|import)\b\s*(?:"([^"]*)"|<([^>]*)>|(.*))')
 
 

@@ -1,0 +1,87 @@
+// roil live: what the parts of the window share. cmd_live.c has the loop; each part draws itself.
+#pragma once
+#include "app/app.h"
+#include "app/orbit.h"
+#include "app/timeline.h"
+#include "app/ui.h"
+
+typedef struct live_session { // what is found again at the next start; session.c
+    int x, y, width, height;  // of the window; width 0: none kept yet
+    bool maximized;
+    float panel; // width of the panel, units
+    bool panel_hidden, performance, inspector;
+    char image[96]; // of the inspector
+    int preview;    // of live_previews
+} live_session;
+
+typedef struct performance performance; // performance.c
+typedef struct inspector inspector;     // inspector.c
+typedef struct panel panel;             // panel.c
+
+typedef struct live {
+    roil *r;
+    roil_live *follow;   // the effect and its files
+    roil_effect *effect; // roil_live_effect of this frame; NULL: none is good yet
+    const char *file;
+    timeline time;
+    orbit camera;
+    bool camera_moved; // by hand: `camera` is in force, else the script's
+    bool dirty;        // the picture must be drawn again, though time stands still
+    live_session session;
+    bool help;
+    bool quit, shot;     // asked for by a key
+    char notice[512];    // said at the foot of the window for a while
+    double notice_until; // clock_seconds
+    const char *broken;  // why no frame can be drawn, besides roil_live_message; NULL: it can
+    performance *performance;
+    inspector *inspector;
+    panel *panel;
+    uint32_t width, height; // of the effect's picture, pixels
+    ui_rect view;           // where it is shown
+} live;
+
+// Sets a control by hand, and has the frame drawn again; what goes wrong becomes a notice.
+void live_set(live *l, const char *name, const char *value);
+void live_reset(live *l, const char *name); // NULL: all
+void live_notice(live *l, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// ---- parts, in the order in which they are drawn ----------------------------------------------
+
+void timeline_draw(live *l, ui_rect where); // timeline_bar.c
+
+panel *panel_create(void);
+void panel_destroy(panel *p);
+void panel_draw(live *l, ui_rect where); // parameters, palettes, curves, passes, presets
+// One editor each; true when the value changed. `id` keeps what is selected.
+bool palette_draw(live *l, const char *name);
+bool curve_draw(live *l, const char *name);
+
+performance *performance_create(void);
+void performance_destroy(performance *p);
+// Once a frame of the effect that has been drawn; `cpu` and `interval` in seconds.
+void performance_add(performance *p, roil_effect *e, double cpu, double interval);
+void performance_draw(live *l);
+
+inspector *inspector_create(void);
+void inspector_destroy(inspector *p, roil *r);
+void inspector_update(live *l); // after the frame: draws the image into its texture
+void inspector_draw(live *l);
+
+void overlay_draw(live *l, ui_rect view); // the message of a broken file, and notices
+void help_draw(live *l);                  // F1
+
+// ---- keys ---------------------------------------------------------------------------------------
+
+typedef struct live_key { // keys.c has the table; F1 lists it
+    int key, mods;        // of GLFW
+    const char *name;     // "Ctrl+S"
+    const char *help;
+    void (*run)(live *l);
+} live_key;
+const live_key *live_keys(size_t *count);
+
+// ---- session ------------------------------------------------------------------------------------
+
+void session_load(live_session *s); // defaults where nothing is kept
+void session_save(const live_session *s);
+bool session_file(char *out, size_t capacity, const char *name); // in the user's folder of state
