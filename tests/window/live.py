@@ -1,0 +1,251 @@
+"""`roil live` as its user meets it: the keys, the panel, the files."""
+import os
+import re
+import subprocess
+
+from lib.window import PATIENCE, PROGRAM, PUFF, Case, difference, main, require_tools
+
+VIEW = "view"  # the widget that stands for the picture
+
+
+class Keys(Case):
+    def test_help_panel_and_quit(self):
+        live = self.live()
+        live.expect("live: shown")
+        plain = live.screenshot()
+        live.keys("F1")
+        live.widget("help")
+        self.assertGreater(difference(plain, live.screenshot()), 60)
+        live.keys("Escape")
+        live.wait_until(lambda: "help" not in live.widgets(), "the end of the help")
+        wide = live.widget(VIEW)[2]
+        live.keys("Tab")
+        live.wait_until(lambda: live.widgets().get(VIEW, [0, 0, 0, 0])[2] > wide, "the wide picture")
+        live.keys("Tab")
+        live.wait_until(lambda: live.widgets().get(VIEW, [0, 0, 0, 0])[2] == wide, "the panel")
+        live.quit()
+
+    def test_time(self):
+        live = self.live()
+        live.keys("Right")
+        live.expect(r"live: drew frame 2\b")
+        live.keys("End")
+        live.expect(r"live: drew frame 48\b")
+        live.keys("Home")
+        live.expect(r"live: drew frame 1\b")
+        live.keys("space")
+        for frame in (2, 3):
+            live.expect(r"live: drew frame ")
+        live.keys("space")
+        live.quit()
+
+    def test_scrub(self):
+        live = self.live()
+        left, top, right, bottom = live.widget("timeline")
+        middle = (top + bottom) / 2
+        live.drag((left + 20, middle), ((left + right) / 2, middle))
+        frame = live.wait_until(lambda: 20 < self.frame(live) < 29, "the middle of the time")
+        self.assertTrue(frame)
+        live.quit()
+
+    @staticmethod
+    def frame(live):
+        drawn = [m for m in (re.search(r"live: drew frame (\d+)", line) for line in live.log) if m]
+        return int(drawn[-1].group(1))
+
+    def test_a_shot_can_be_rendered_again(self):
+        live = self.live("--set", "thickness=9")
+        live.expect("live: shown")
+        live.keys("Right", "F12")
+        shot = live.expect(r"live: wrote (\S+\.png)").group(1)
+        live.quit()
+        subprocess.run([PROGRAM, "render", "--from", shot, "-o", "again.png"], cwd=self.folder,
+                       env=self.environment, check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL)
+        compare = os.path.join(os.path.dirname(PROGRAM), "golden_compare")
+        same = subprocess.run([compare, shot, "again.png", "difference.png"], cwd=self.folder,
+                              check=False, stdout=subprocess.PIPE, text=True, timeout=PATIENCE)
+        self.assertEqual(same.returncode, 0, same.stdout)
+
+
+class Camera(Case):
+    def test_orbit_zoom_and_back(self):
+        live = self.live()
+        live.expect("live: shown")
+        first = live.screenshot().crop(*live.widget(VIEW))
+        left, top, right, bottom = live.widget(VIEW)
+        middle = ((left + right) / 2, (top + bottom) / 2)
+        mark = live.mark()
+        live.drag(middle, (middle[0] + 150, middle[1] + 60))
+        live.expect(r"live: set camera\.eye = ", mark)
+        live.click(*middle, button=4)
+        live.expect(r"live: set camera\.eye = ")
+        live.wait_until(lambda: difference(first, live.screenshot().crop(left, top, right, bottom)) > 20,
+                        "another view")
+        live.keys("f")
+        live.expect(r"live: set camera\.eye = ")
+        live.keys("r")
+        live.expect(r"live: reset camera")
+        live.wait_until(lambda: difference(first, live.screenshot().crop(left, top, right, bottom)) < 3,
+                        "the script's view")
+        live.quit()
+
+
+class Panel(Case):
+    def picture(self, live):
+        return live.screenshot().crop(*live.widget(VIEW))
+
+    def changes(self, live, before):
+        live.wait_until(lambda: difference(before, self.picture(live)) > 8, "a change of the picture")
+
+    def test_slider(self):
+        live = self.live()
+        live.expect("live: shown")
+        before = self.picture(live)
+        left, top, right, bottom = live.widget("thickness")
+        middle = (top + bottom) / 2
+        live.drag((left + (right - left) * 0.2, middle), (left + (right - left) * 0.75, middle))
+        value = float(live.wait_until(lambda: self.last_set(live, "thickness"), "a value"))
+        live.wait_until(lambda: 13 < float(self.last_set(live, "thickness")) < 17,
+                        "three quarters of the range")
+        self.assertGreater(value, 0)
+        self.changes(live, before)
+        live.quit()
+
+    @staticmethod
+    def last_set(live, name):
+        found = [m for m in (re.search(rf"live: set {name} = (.*)", line) for line in live.log) if m]
+        return found[-1].group(1) if found else None
+
+    def test_search_leaves_what_matches(self):
+        live = self.live()
+        live.widget("thickness")
+        live.click_on("search")
+        live.type("edge")
+        live.wait_until(lambda: "look" in live.widgets() and "thickness" not in live.widgets(),
+                        "only what matches")
+        live.quit()
+
+    def test_structure_is_built_in_the_background(self):
+        live = self.live()
+        live.expect("live: shown")
+        before = self.picture(live)
+        live.click_on("look")
+        live.keys("Down", "Return")
+        live.expect(r"live: took over")
+        self.changes(live, before)
+        live.quit()
+
+    def test_palette(self):
+        live = self.live()
+        live.expect("live: shown")
+        before = self.picture(live)
+        left, top, right, bottom = live.widget("fire/stops")
+        width, middle = right - left, (top + bottom) / 2
+        live.drag((left + width * 0.4, middle), (left + width * 0.15, middle))
+        live.wait_until(lambda: self.last_set(live, "fire"), "the palette's text")
+        live.wait_until(lambda: abs(float(self.last_set(live, "fire").split(";")[1].split()[0]) - 0.15) < 0.05,
+                        "the stop where it was dropped")
+        self.changes(live, before)
+        live.quit()
+
+    def test_preset(self):
+        live = self.live("--set", "thickness=11")
+        live.click_on("preset name")
+        live.type("thick")
+        live.click_on("preset save")
+        live.wait_until(lambda: os.path.exists(self.path("puff.presets/thick.lua")), "the preset")
+        with open(self.path("puff.presets/thick.lua"), encoding="utf-8") as f:
+            self.assertIn("thickness = 11", f.read())
+        live.quit()
+        again = self.live("--preset", "thick", effect=None)
+        with_preset = again.screenshot().crop(*again.widget(VIEW))
+        again.quit()
+        plain = self.live(effect=None)
+        self.assertGreater(difference(with_preset, plain.screenshot().crop(*plain.widget(VIEW))), 8)
+        plain.quit()
+
+
+class Files(Case):
+    def test_a_number_and_a_broken_file(self):
+        live = self.live()
+        live.expect("live: shown")
+        before = live.screenshot().crop(*live.widget(VIEW))
+        self.write("puff.lua", PUFF.replace('"thickness", 4', '"thickness", 15'))
+        live.expect("live: took over")
+        live.wait_until(lambda: difference(before, live.screenshot().crop(*live.widget(VIEW))) > 8,
+                        "the new number")
+        good = live.screenshot().crop(*live.widget(VIEW))
+        self.write("puff.lua", PUFF.replace("march {", "marsh {"))
+        live.expect(r"live: puff\.lua:\d+: .*marsh")
+        card = live.widget("message")
+        view = live.widget(VIEW)
+        above = [view[0], view[1], view[2], card[1] - 8]
+        self.assertLess(difference(good.crop(0, 0, view[2] - view[0], card[1] - 8 - view[1]),
+                                   live.screenshot().crop(*above)), 3)
+        self.write("puff.lua", PUFF)
+        live.expect("live: took over")
+        live.wait_until(lambda: "message" not in live.widgets(), "the end of the message")
+        live.quit()
+
+    def test_broken_from_the_start(self):
+        self.write("puff.lua", "local x = ")
+        from lib.window import Live
+        live = Live(self, "puff.lua", "--size", "1200x720")
+        self.addCleanup(live.kill)
+        live.expect(r"live: puff\.lua:1: ")
+        live.widget("message")
+        self.write("puff.lua", PUFF)
+        live.expect("live: took over")
+        live.expect("live: drew frame")
+        live.quit()
+
+    def test_an_endless_loop_stops_nothing(self):
+        live = self.live()
+        self.write("puff.lua", PUFF.replace("return fx", "fx.update = function() while true do end end\nreturn fx"))
+        live.expect(r"live: .*instructions")
+        live.keys("Right")
+        live.expect(r"live: drew frame 2\b")
+        live.quit()
+
+
+class Window(Case):
+    def test_sizes(self):
+        live = self.live()
+        live.expect("live: shown")
+        for width, height in ((700, 500), (1, 1), (1500, 900), (300, 5), (1200, 720)):
+            live.tool("windowsize", live.window(), width, height)
+        live.wait_until(lambda: live.widgets().get(VIEW, [0] * 4)[3] > 500, "the size at the end")
+        live.tool("windowunmap", "--sync", live.window())
+        number = live.tool("search", "--name", "roil").split()[0]
+        live.tool("windowmap", "--sync", number)
+        live.expect("live: shown", live.mark())
+        live.quit()
+
+    def test_it_is_found_as_it_was_left(self):
+        live = self.live()
+        live.widget("thickness")
+        live.tool("windowsize", "--sync", live.window(), 1000, 640)
+        live.keys("p")
+        live.widget("performance")
+        live.quit()
+        from lib.window import Live
+        again = Live(self, "puff.lua", "--paused")
+        self.addCleanup(again.kill)
+        again.expect("live: first frame")
+        again.widget("performance")
+        shot = again.screenshot()
+        self.assertEqual((shot.width, shot.height), (1000, 640))
+        again.quit()
+
+    def test_without_a_display(self):
+        self.write("puff.lua", PUFF)
+        environment = {k: v for k, v in self.environment.items() if k != "DISPLAY"}
+        done = subprocess.run([PROGRAM, "live", "puff.lua"], cwd=self.folder, env=environment,
+                              check=False, stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("display", done.stderr)
+        self.assertIn("roil render", done.stderr)
+
+
+require_tools()
+main()
