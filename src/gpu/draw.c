@@ -99,7 +99,8 @@ static VkRenderingAttachmentInfo attachment(const gpu_image *image, bool clear,
                                        .clearValue = value};
 }
 
-static void begin(VkCommandBuffer commands, const gpu_draw_desc *desc) {
+// Returns the size of the targets.
+static VkExtent2D begin(VkCommandBuffer commands, const gpu_draw_desc *desc) {
     VkRenderingAttachmentInfo colors[VK_MAX_TARGETS], depth;
     const gpu_image *first = desc->colors[0] ? desc->colors[0] : desc->depth;
     VkExtent2D size = {first->desc.width, first->desc.height};
@@ -120,9 +121,29 @@ static void begin(VkCommandBuffer commands, const gpu_draw_desc *desc) {
     vkCmdBeginRendering(commands, &info);
     VkViewport viewport = {
         .width = (float)size.width, .height = (float)size.height, .maxDepth = 1.0f};
-    VkRect2D scissor = {.extent = size};
     vkCmdSetViewport(commands, 0, 1, &viewport);
+    return size;
+}
+
+// Clipped to the target. One that lies outside is empty, and nothing is drawn.
+static VkRect2D scissor_of(const gpu_draw *draw, VkExtent2D size) {
+    const uint32_t *s = draw->scissor;
+    if (s[2] == 0) return (VkRect2D){.extent = size};
+    uint32_t x = s[0] < size.width ? s[0] : size.width;
+    uint32_t y = s[1] < size.height ? s[1] : size.height;
+    uint32_t width = s[2] < size.width - x ? s[2] : size.width - x;
+    uint32_t height = s[3] < size.height - y ? s[3] : size.height - y;
+    return (VkRect2D){{(int32_t)x, (int32_t)y}, {width, height}};
+}
+
+static bool record(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipeline,
+                   const gpu_draw *draw, VkExtent2D size) {
+    if (!vk_bindings_push(g, commands, pipeline, draw->bindings, draw->binding_count)) return false;
+    VkRect2D scissor = scissor_of(draw, size);
     vkCmdSetScissor(commands, 0, 1, &scissor);
+    vkCmdDraw(commands, draw->vertices, draw->instances ? draw->instances : 1, draw->first_vertex,
+              0);
+    return true;
 }
 
 bool gpu_draw_all(gpu *g, const gpu_draw_desc *desc) {
@@ -131,15 +152,13 @@ bool gpu_draw_all(gpu *g, const gpu_draw_desc *desc) {
     vk_uses_begin(g);
     if (!use_all(g, desc)) return false;
     vk_uses_flush(g, commands);
-    begin(commands, desc);
+    VkExtent2D size = begin(commands, desc);
     bool ok = true;
     if (desc->draw_count > 0) {
         vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, desc->pipeline->handle);
     }
     for (size_t i = 0; i < desc->draw_count && ok; i++) {
-        const gpu_draw *draw = &desc->draws[i];
-        ok = vk_bindings_push(g, commands, desc->pipeline, draw->bindings, draw->binding_count);
-        if (ok) vkCmdDraw(commands, draw->vertices, draw->instances ? draw->instances : 1, 0, 0);
+        ok = record(g, commands, desc->pipeline, &desc->draws[i], size);
     }
     vkCmdEndRendering(commands);
     return ok;

@@ -143,13 +143,26 @@ gpu_pipeline *gpu_pipeline_create_compute(gpu *g, const gpu_compute_desc *desc) 
 
 // ---- graphics ---------------------------------------------------------------------------------
 
-static VkResult create_graphics(gpu *g, gpu_pipeline *pipeline, gpu_cull cull,
+// Premultiplied colours over what is there: the new colour is c + (1 - a) * old, alpha alike.
+static VkPipelineColorBlendAttachmentState blend_state(bool blend) {
+    return (VkPipelineColorBlendAttachmentState){
+        .blendEnable = blend,
+        .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
+        .dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
+        .colorBlendOp = VK_BLEND_OP_ADD,
+        .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
+        .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
+        .alphaBlendOp = VK_BLEND_OP_ADD,
+        .colorWriteMask = 0xf};
+}
+
+static VkResult create_graphics(gpu *g, gpu_pipeline *pipeline, const gpu_graphics_desc *desc,
                                 const VkPipelineShaderStageCreateInfo stages[2]) {
     VkFormat formats[VK_MAX_TARGETS];
     VkPipelineColorBlendAttachmentState blends[VK_MAX_TARGETS];
     for (uint32_t i = 0; i < pipeline->color_count; i++) {
         formats[i] = vk_format_get(pipeline->colors[i])->format;
-        blends[i] = (VkPipelineColorBlendAttachmentState){.colorWriteMask = 0xf};
+        blends[i] = blend_state(desc->blend);
     }
     bool depth = pipeline->depth != GPU_FORMAT_NONE;
     VkPipelineRenderingCreateInfo rendering = {
@@ -168,7 +181,7 @@ static VkResult create_graphics(gpu *g, gpu_pipeline *pipeline, gpu_cull cull,
         .scissorCount = 1};
     VkPipelineRasterizationStateCreateInfo raster = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
-        .cullMode = cull == GPU_CULL_BACK ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE,
+        .cullMode = desc->cull == GPU_CULL_BACK ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE,
         .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
         .lineWidth = 1.0f};
     VkPipelineMultisampleStateCreateInfo samples = {
@@ -219,8 +232,8 @@ static bool build_graphics(gpu *g, gpu_pipeline *pipeline, const gpu_graphics_de
                             &stages[0].module) &&
               create_module(g, pipeline->label, desc->fragment_code, desc->fragment_size,
                             &stages[1].module) &&
-              vk_check(g, create_graphics(g, pipeline, desc->cull, stages),
-                       "creating pipeline '%s'", pipeline->label);
+              vk_check(g, create_graphics(g, pipeline, desc, stages), "creating pipeline '%s'",
+                       pipeline->label);
     vkDestroyShaderModule(g->device, stages[0].module, NULL);
     vkDestroyShaderModule(g->device, stages[1].module, NULL);
     return ok;
@@ -232,6 +245,11 @@ static bool check_targets(gpu *g, const char *label, const gpu_graphics_desc *de
             !(g->format_features[desc->colors[i]] & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT)) {
             return err_set("pipeline '%s': colour target %d has a format that cannot be drawn to",
                            label, i);
+        }
+        if (desc->blend &&
+            !(g->format_features[desc->colors[i]] & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT)) {
+            return err_set("pipeline '%s': the device cannot blend colour target %d of format %s",
+                           label, i, gpu_format_name(desc->colors[i]));
         }
     }
     if (desc->depth != GPU_FORMAT_NONE && desc->depth != GPU_D32F) {

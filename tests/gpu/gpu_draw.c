@@ -1,4 +1,4 @@
-// Drawing: coverage, depth test, culling, clearing, loading, and errors.
+// Drawing: coverage, depth test, culling, blending, scissors, clearing, loading, and errors.
 #include "gpu_shaders.h"
 #include "gpu_test.h"
 #include <string.h>
@@ -22,10 +22,10 @@ static const float corners[9][4] = {
     {-3, 0, 0.75f, 1},  {3, 0, 0.75f, 1},  {0, -9, 0.75f, 1},
 };
 
-static gpu_pipeline *make_pipeline(gpu *g, gpu_cull cull) {
+static gpu_pipeline *try_pipeline(gpu *g, gpu_format format, gpu_cull cull, bool blend) {
     const gpu_slot slots[] = {{.binding = 0, .kind = GPU_SLOT_STORAGE_BUFFER, .reads = true},
                               {.binding = 1, .kind = GPU_SLOT_UNIFORM}};
-    gpu_pipeline *pipeline = gpu_pipeline_create_graphics(
+    return gpu_pipeline_create_graphics(
         g, &(gpu_graphics_desc){.label = "triangle",
                                 .vertex_code = triangle_vert_code,
                                 .vertex_size = sizeof triangle_vert_code,
@@ -33,15 +33,15 @@ static gpu_pipeline *make_pipeline(gpu *g, gpu_cull cull) {
                                 .fragment_size = sizeof triangle_frag_code,
                                 .slots = slots,
                                 .slot_count = COUNT_OF(slots),
-                                .colors = {GPU_RGBA32F},
+                                .colors = {format},
                                 .depth = GPU_D32F,
-                                .cull = cull});
-    gpu_test_ok(pipeline);
-    return pipeline;
+                                .cull = cull,
+                                .blend = blend});
 }
 
 static stage stage_open(gpu *g, gpu_cull cull) {
-    stage s = {.g = g, .pipeline = make_pipeline(g, cull)};
+    stage s = {.g = g, .pipeline = try_pipeline(g, GPU_RGBA32F, cull, false)};
+    gpu_test_ok(s.pipeline);
     s.color = gpu_image_create(g, &(gpu_image_desc){.label = "color",
                                                     .format = GPU_RGBA32F,
                                                     .width = N,
@@ -126,6 +126,89 @@ static void clockwise_triangles_are_culled(void **state) {
     stage_close(&s);
 }
 
+// What is drawn `over` a colour becomes c + (1 - a) * old in all four channels.
+static void premultiplied_colors_are_laid_over(void **state) {
+    static uint8_t texels[N][N][4];
+    stage s = stage_open(*state, GPU_CULL_NONE);
+    gpu_pipeline *plain = s.pipeline;
+    gpu_image *old_color = s.color;
+    s.pipeline = try_pipeline(s.g, GPU_RGBA8, GPU_CULL_NONE, true);
+    s.color = gpu_image_create(
+        s.g,
+        &(gpu_image_desc){
+            .label = "bytes", .format = GPU_RGBA8, .width = N, .height = N, .use = GPU_USE_TARGET});
+    gpu_test_ok(s.pipeline && s.color);
+    gpu_test_ok(gpu_frame_begin(s.g));
+    draw(&s, 0, (const float[4]){0.2f, 0.4f, 0, 0.6f}, true); // over 0 0 1 0
+    draw(&s, 1, (const float[4]){0.4f, 0, 0, 0}, false);      // the left half: only adds
+    gpu_test_ok(gpu_frame_end(s.g));
+    gpu_test_ok(gpu_image_read(s.g, s.color, texels, sizeof texels));
+    static const int over[4] = {51, 102, 102, 153}, added[4] = {153, 102, 102, 153};
+    for (int c = 0; c < 4; c++) {
+        assert_true(abs(texels[N / 2][N - 2][c] - over[c]) <= 1);
+        assert_true(abs(texels[N / 2][1][c] - added[c]) <= 1);
+    }
+    gpu_pipeline_destroy(s.g, plain);
+    gpu_image_destroy(s.g, old_color);
+    stage_close(&s);
+}
+
+static void integers_cannot_be_blended(void **state) {
+    assert_null(try_pipeline(*state, GPU_R32U, GPU_CULL_NONE, true));
+    assert_non_null(strstr(err_get(), "cannot blend colour target 0 of format r32u"));
+}
+
+// One buffer holds all corners; each draw takes its own triangle and its own part of the target.
+static void draws_begin_at_their_vertex_inside_their_scissor(void **state) {
+    static float texels[N][N][4];
+    static const float blue[4] = {0, 0, 1, 0};
+    stage s = stage_open(*state, GPU_CULL_NONE);
+    gpu_buffer *all =
+        gpu_buffer_create(s.g, &(gpu_buffer_desc){.label = "all", .size = sizeof corners});
+    gpu_test_ok(all);
+    gpu_test_ok(gpu_buffer_write(s.g, all, 0, corners, sizeof corners));
+    const float *tints[5] = {white, red, green, red, red};
+    gpu_draw draws[5] = {
+        {.scissor = {4, 8, 5, 6}},
+        {.first_vertex = 3}, // the left half, and nearer: the scissor before it is forgotten
+        {.first_vertex = 6, .scissor = {10, 2, UINT32_MAX, 3}}, // reaches beyond the target
+        {.scissor = {N, 0, 4, N}},                              // outside
+        {.scissor = {0, 0, N, 0}},                              // empty
+    };
+    gpu_binding bindings[5][2];
+    for (int i = 0; i < 5; i++) {
+        bindings[i][0] = (gpu_binding){.binding = 0, .buffer = all};
+        bindings[i][1] = (gpu_binding){.binding = 1, .uniform = tints[i], .uniform_size = 16};
+        draws[i].bindings = bindings[i];
+        draws[i].binding_count = 2;
+        draws[i].vertices = 3;
+    }
+    gpu_test_ok(gpu_frame_begin(s.g));
+    gpu_test_ok(gpu_draw_all(s.g, &(gpu_draw_desc){.pipeline = s.pipeline,
+                                                   .colors = {s.color},
+                                                   .depth = s.depth,
+                                                   .clear = true,
+                                                   .clear_color = {{0, 0, 1, 0}},
+                                                   .clear_depth = 1.0f,
+                                                   .draws = draws,
+                                                   .draw_count = COUNT_OF(draws)}));
+    gpu_test_ok(gpu_frame_end(s.g));
+    gpu_test_ok(gpu_image_read(s.g, s.color, texels, sizeof texels));
+    expect_texel(texels, 8, 8, white); // corners of the first scissor, right of the red half
+    expect_texel(texels, 8, 13, white);
+    expect_texel(texels, 8, 7, blue);
+    expect_texel(texels, 8, 14, blue);
+    expect_texel(texels, 9, 10, blue);
+    expect_texel(texels, 1, N / 2, red);
+    expect_texel(texels, 10, 2, green);
+    expect_texel(texels, N - 1, 4, green);
+    expect_texel(texels, N - 1, 5, blue);
+    expect_texel(texels, N - 1, 1, blue);
+    expect_texel(texels, 9, 3, blue);
+    gpu_buffer_destroy(s.g, all);
+    stage_close(&s);
+}
+
 static void no_draws_just_clears(void **state) {
     static float texels[N][N][4];
     stage s = stage_open(*state, GPU_CULL_NONE);
@@ -183,6 +266,9 @@ int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(nearer_triangle_wins_in_any_order),
         cmocka_unit_test(clockwise_triangles_are_culled),
+        cmocka_unit_test(premultiplied_colors_are_laid_over),
+        cmocka_unit_test(integers_cannot_be_blended),
+        cmocka_unit_test(draws_begin_at_their_vertex_inside_their_scissor),
         cmocka_unit_test(no_draws_just_clears),
         cmocka_unit_test(wrong_targets_are_named),
     };
