@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void reserve(strbuf *s, size_t more) {
@@ -26,6 +27,15 @@ void strbuf_add(strbuf *s, const char *format, ...) {
     vsnprintf(s->text + s->length, (size_t)length + 1, format, again);
     va_end(again);
     s->length += (size_t)length;
+}
+
+void strbuf_add_float(strbuf *s, float value) {
+    char text[32] = "0"; // of both zeros
+    for (int digits = 6; value != 0 && digits <= 9; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, (double)value);
+        if (strtof(text, NULL) == value) break;
+    }
+    strbuf_append(s, text, strlen(text));
 }
 
 void strbuf_free(strbuf *s) {

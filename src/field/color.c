@@ -93,3 +93,19 @@ bool palette_parse_color(const char *text, float out[4]) {
     out[3] = rgba[3];
     return true;
 }
+
+bool palette_color_hex(const float linear[3], char out[8]) {
+    static const char digits[] = "0123456789abcdef";
+    out[0] = '#';
+    out[7] = '\0';
+    for (int i = 0; i < 3; i++) {
+        float v = linear[i];
+        if (!(v >= 0 && v <= 1)) return false;
+        float encoded = v <= 0.0031308f ? 12.92f * v : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
+        long byte = lrintf(encoded * 255);
+        if (linear_from_srgb((float)byte / 255.0f) != v) return false;
+        out[1 + 2 * i] = digits[byte >> 4];
+        out[2 + 2 * i] = digits[byte & 15];
+    }
+    return true;
+}

@@ -41,11 +41,35 @@ static bool check(const curve *desc) {
     return true;
 }
 
+typedef struct owned_curve { // a curve first: what curve_create makes
+    curve curve;
+    arena *memory;
+    curve_key *room; // what replacements are copied to; NULL until the first
+    size_t most;     // keys that it holds
+} owned_curve;
+
 curve *curve_create(arena *memory, const curve *desc) {
     if (!check(desc)) return NULL;
-    curve *c = arena_copy(memory, desc, sizeof *desc);
-    c->keys = arena_copy(memory, desc->keys, desc->count * sizeof *desc->keys);
-    return c;
+    owned_curve *c = arena_alloc(memory, sizeof *c);
+    *c = (owned_curve){.curve = *desc, .memory = memory};
+    c->curve.keys = arena_copy(memory, desc->keys, desc->count * sizeof *desc->keys);
+    c->most = desc->count > CURVE_MAX_KEYS ? desc->count : CURVE_MAX_KEYS;
+    return &c->curve;
+}
+
+bool curve_replace(curve *c, const curve *desc) {
+    owned_curve *own = (owned_curve *)c;
+    if (!check(desc)) return false;
+    if (desc->components != c->components)
+        return err_set("curve: its values have %d component%s, not %d", c->components,
+                       c->components == 1 ? "" : "s", desc->components);
+    if (desc->count > own->most)
+        return err_set("curve: %zu keys; at most %zu are accepted", desc->count, own->most);
+    if (!own->room) own->room = arena_alloc(own->memory, own->most * sizeof *own->room);
+    memcpy(own->room, desc->keys, desc->count * sizeof *own->room);
+    *c = *desc;
+    c->keys = own->room;
+    return true;
 }
 
 static float secant(const curve *c, size_t i, int k) { // slope from key i to i + 1

@@ -32,9 +32,12 @@ const char *curve_shape_name(curve_shape shape); // "step", "linear", "cubic", "
 // Copies and checks the keys: at least one, finite, strictly rising.
 curve *curve_create(arena *memory, const curve *desc);
 enum { CURVE_MAX_KEYS = 64 }; // of a curve made from text
-bool curve_replace(curve *c,
-                   const curve *desc); // makes it another one; memory is taken once at most
-// "cubic 0 1; 2.5 0,1,0": shape, then time and value of each key. `keys` holds CURVE_MAX_KEYS.
+// Makes a curve of curve_create another one of as many components. Memory is taken once at most:
+// there may be as many keys as it had when it was made, or CURVE_MAX_KEYS. False leaves it as it
+// was. `desc` must not point to the keys of an earlier curve_replace.
+bool curve_replace(curve *c, const curve *desc);
+// "cubic 0 1; 2.5 0,1,0": shape, then time and value of each key. `keys` holds CURVE_MAX_KEYS; the
+// period is left 0. Checks the form; curve_replace checks the values.
 bool curve_parse(const char *text, curve_key *keys, curve *out);
 void curve_print(const curve *c, strbuf *out);
 void curve_eval(const curve *c, double time, float out[4]);

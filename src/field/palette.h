@@ -37,11 +37,14 @@ typedef struct palette_desc {
 typedef struct palette palette;
 // Checks and copies. False message names the stop or key at fault.
 palette *palette_create(arena *memory, const palette_desc *desc);
-// Makes it another one: fields keep pointing to it. Memory is taken once at most.
+// Makes it another one: fields keep pointing to it. Memory is taken once at most: there may be as
+// many stops as it had when it was made, or PALETTE_MAX_STOPS. False leaves it as it was. `desc`
+// must not point into what an earlier palette_replace made.
 bool palette_replace(palette *p, const palette_desc *desc);
-const palette_desc *palette_get_desc(const palette *p);
-uint32_t palette_version(const palette *p); // counts replacements
+const palette_desc *palette_get_desc(const palette *p); // as it was given, in linear colours
+uint32_t palette_version(const palette *p);             // counts replacements
 // "0 #000000; 0.5 #7a1500 0.5; 1 4,2,0.5": position, colour as sRGB or three linear numbers, alpha.
+// Checks the form; palette_replace checks the values.
 bool palette_parse(const char *text, palette_stop out[PALETTE_MAX_STOPS], size_t *count);
 void palette_print(const palette_stop *stops, size_t count, strbuf *out);
 void palette_range(const palette *p, float *min, float *max);
@@ -52,5 +55,7 @@ void palette_eval(const palette *p, double time, float at, float out[4]); // as 
 
 // "#rgb", "#rrggbb", "#rrggbbaa" in sRGB to linear Rec.709. False with a message.
 bool palette_parse_color(const char *text, float out[4]);
+// The "#rrggbb" that palette_parse_color makes exactly this colour of; false when there is none.
+bool palette_color_hex(const float linear[3], char out[8]);
 // Linear Rec.709 colour of a black body of luminance 1, 500..20000 K (clamped).
 void palette_blackbody(float kelvin, float out[3]);

@@ -6,7 +6,8 @@
 typedef struct pass_palette { // a palette's texture, one per pass that uses it
     const palette *source;
     gpu_image *image;
-    double time; // of its content; NAN: none yet
+    double time;      // of its content; NAN: none yet
+    uint32_t version; // of its content (palette_version)
 } pass_palette;
 
 struct pass {

@@ -75,12 +75,16 @@ static bool update_palettes(pass *p) {
     double time = p->host->context->time;
     for (size_t i = 0; i < p->palette_count; i++) {
         pass_palette *slot = &p->palettes[i];
-        if (slot->time == time || (!isnan(slot->time) && !palette_is_animated(slot->source)))
+        uint32_t version = palette_version(slot->source);
+        bool same = slot->version == version;
+        if (same &&
+            (slot->time == time || (!isnan(slot->time) && !palette_is_animated(slot->source))))
             continue;
         uint16_t texels[PALETTE_SIZE * 4];
         palette_bake(slot->source, time, texels);
         if (!gpu_image_write(p->host->device, slot->image, 0, texels, sizeof texels)) return false;
         slot->time = time;
+        slot->version = version;
     }
     return true;
 }
@@ -174,10 +178,23 @@ bool pass_bind(pass *p, const shader_binary *binary, const unsigned char *block,
 
 // ---- recording --------------------------------------------------------------------------------
 
+static bool fill_numbers(pass *p) {
+    return field_program_fill(p->program, p->host->context, p->numbers) &&
+           pass_fill_block(p, &p->binary, p->block);
+}
+
 bool pass_prepare(pass *p) {
     if (p->counters) gpu_buffer_fill(p->host->device, p->counters, 0);
-    return update_palettes(p) && field_program_fill(p->program, p->host->context, p->numbers) &&
-           pass_fill_block(p, &p->binary, p->block);
+    return update_palettes(p) && fill_numbers(p);
+}
+
+bool pass_rehearse(pass *p) {
+    for (size_t i = 0; i < p->mesh_count; i++) {
+        mat4 transform;
+        float tint[4];
+        if (!scene_mesh_place(p->meshes[i], p->host->context, transform, tint)) return false;
+    }
+    return fill_numbers(p);
 }
 
 static bool draw_fullscreen(pass *p, const gpu_binding *bindings, size_t count) {

@@ -120,6 +120,69 @@ static void bad_keys_are_refused(void **state) {
     assert_string_equal(curve_shape_name(CURVE_EASE_IN_OUT), "ease_in_out");
 }
 
+static void replaced_curve_is_the_new_one_and_can_be_restored(void **state) {
+    (void)state;
+    curve *c = (curve *)(uintptr_t)curve_of(CURVE_LINEAR, 0);
+    const curve original = *c;
+    static const curve_key other[] = {{0, {5}}, {1, {7}}};
+    assert_true(curve_replace(c, &(curve){CURVE_STEP, 1, other, 2, 0}));
+    assert_true(at(c, 0.5) == 5 && at(c, 2) == 7);
+    assert_true(curve_replace(c, &original));
+    assert_true(fabsf(at(c, 3) - 10) < 1e-5f);
+}
+
+static void bad_replacement_changes_nothing(void **state) {
+    (void)state;
+    curve *c = (curve *)(uintptr_t)curve_of(CURVE_LINEAR, 0);
+    static const curve_key pair[] = {{0, {5, 6, 7}}, {1, {7, 8, 9}}},
+                           equal[] = {{1, {0}}, {1, {1}}};
+    err_clear();
+    assert_false(curve_replace(c, &(curve){CURVE_STEP, 3, pair, 2, 0}));
+    assert_error("its values have 1 component, not 3");
+    assert_false(curve_replace(c, &(curve){CURVE_STEP, 1, equal, 2, 0}));
+    assert_error("does not come after");
+    curve_key many[CURVE_MAX_KEYS + 1] = {0};
+    for (int i = 0; i <= CURVE_MAX_KEYS; i++) many[i].time = (float)i;
+    assert_false(curve_replace(c, &(curve){CURVE_STEP, 1, many, CURVE_MAX_KEYS + 1, 0}));
+    assert_error("65 keys; at most 64");
+    assert_true(fabsf(at(c, 3) - 10) < 1e-5f);
+}
+
+static void text_gives_keys_and_back(void **state) {
+    (void)state;
+    static const char *const texts[] = {"cubic 0 1; 2.5 0.1", "ease_in_out -1 0,1,0; 3 4,5,6",
+                                        "step 0 0.3333333,2"};
+    for (size_t i = 0; i < COUNT_OF(texts); i++) {
+        curve_key keys[CURVE_MAX_KEYS];
+        curve c;
+        if (!curve_parse(texts[i], keys, &c)) fail_msg("%s", err_get());
+        strbuf out = {0};
+        curve_print(&c, &out);
+        assert_string_equal(strbuf_text(&out), texts[i]);
+        strbuf_free(&out);
+    }
+}
+
+static void text_that_is_no_curve_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *part;
+    } bad[] = {
+        {"", "'' is no shape"},          {"wavy 0 1", "'wavy' is no shape; accepted: step, linear"},
+        {"0 1; 2 3", "'0' is no shape"}, {"linear 0", "key 1"},
+        {"linear 0 1; 2", "key 2"},      {"linear 0 1; 2 1,2", "key 2"},
+        {"linear 0 1,2,3,4,5", "key 1"}, {"linear 0 nan", "key 1"},
+        {"linear 0 1 2", "key 1"},       {"linear 0 1;;", "key 2"},
+    };
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        curve_key keys[CURVE_MAX_KEYS];
+        curve c;
+        err_clear();
+        if (curve_parse(bad[i].text, keys, &c)) fail_msg("'%s' was taken", bad[i].text);
+        assert_error(bad[i].part);
+    }
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_shape_goes_through_its_keys),
@@ -130,6 +193,10 @@ int main(void) {
         cmocka_unit_test(components_move_together),
         cmocka_unit_test(keys_are_copied),
         cmocka_unit_test(bad_keys_are_refused),
+        cmocka_unit_test(replaced_curve_is_the_new_one_and_can_be_restored),
+        cmocka_unit_test(bad_replacement_changes_nothing),
+        cmocka_unit_test(text_gives_keys_and_back),
+        cmocka_unit_test(text_that_is_no_curve_is_refused),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     arena_free(build_memory());

@@ -225,6 +225,146 @@ static void colours_are_read_as_srgb(void **state) {
     }
 }
 
+// ---- replacing --------------------------------------------------------------------------------
+
+static void replaced_palette_gives_the_new_colors(void **state) {
+    (void)state;
+    for (int space = 0; space < 2; space++) {
+        palette *p = (palette *)(uintptr_t)two_stops((palette_space)space);
+        static const palette_stop stops[] = {
+            {1, {0, 2, 0, 1}}, {2, {0, 2, 0, 1}}, {5, {1, 1, 1, 1}}};
+        const palette_desc desc = {
+            .space = (palette_space)space, .keys = &(palette_key){0, stops, 3}, .key_count = 1};
+        assert_int_equal(palette_version(p), 0);
+        if (!palette_replace(p, &desc)) fail_msg("%s", err_get());
+        assert_int_equal(palette_version(p), 1);
+        float c[4], low, high;
+        palette_range(p, &low, &high);
+        assert_true(low == 1 && high == 5);
+        color_at(p, 0, 1.5f, c);
+        assert_true(c[0] < 2e-3f && fabsf(c[1] - 2) < 5e-3f);
+        const palette_desc *got = palette_get_desc(p);
+        assert_int_equal(got->keys[0].count, 3);
+        assert_memory_equal(got->keys[0].stops, stops, sizeof stops); // linear, as given
+    }
+}
+
+static void palette_is_restored_to_what_it_was_made_of(void **state) {
+    (void)state;
+    palette *body = (palette *)(uintptr_t)palette_of(
+        (palette_desc){.blackbody = true, .min = 500, .max = 3000});
+    const palette_desc original = *palette_get_desc(body);
+    uint16_t before[PALETTE_SIZE * 4], after[PALETTE_SIZE * 4];
+    palette_bake(body, 0, before);
+    static const palette_stop stops[] = {{0, {0, 0, 0, 1}}, {1, {1, 1, 1, 1}}};
+    const palette_desc plain = {.keys = &(palette_key){0, stops, 2}, .key_count = 1};
+    assert_true(palette_replace(body, &plain));
+    palette_bake(body, 0, after);
+    assert_memory_not_equal(before, after, sizeof before);
+    assert_true(palette_replace(body, &original));
+    palette_bake(body, 0, after);
+    assert_memory_equal(before, after, sizeof before);
+}
+
+static void bad_replacement_changes_nothing(void **state) {
+    (void)state;
+    palette *p = (palette *)(uintptr_t)two_stops(PALETTE_LINEAR);
+    static const palette_stop falling[] = {{1, {0, 0, 0, 1}}, {0, {1, 1, 1, 1}}};
+    err_clear();
+    assert_false(
+        palette_replace(p, &(palette_desc){.keys = &(palette_key){0, falling, 2}, .key_count = 1}));
+    assert_error("positions must not fall");
+    static palette_stop many[PALETTE_MAX_STOPS];
+    for (int i = 0; i < PALETTE_MAX_STOPS; i++) many[i] = (palette_stop){(float)i, {0, 0, 0, 1}};
+    const palette_key keys[] = {{0, many, PALETTE_MAX_STOPS}, {1, many, PALETTE_MAX_STOPS}};
+    assert_false(palette_replace(p, &(palette_desc){.keys = keys, .key_count = 2}));
+    assert_error("128 stops; at most 64");
+    assert_int_equal(palette_version(p), 0);
+    assert_int_equal(palette_get_desc(p)->keys[0].count, 2);
+}
+
+static void replacing_again_and_again_takes_memory_once(void **state) {
+    (void)state;
+    arena memory = {0};
+    static const palette_stop stops[] = {{0, {0, 0, 0, 1}}, {1, {1, 1, 1, 1}}};
+    const palette_desc desc = {.keys = &(palette_key){0, stops, 2}, .key_count = 1};
+    palette *p = palette_create(&memory, &desc);
+    assert_true(palette_replace(p, &desc));
+    const void *here = arena_alloc(&memory, 16);
+    for (int i = 0; i < 1000; i++) assert_true(palette_replace(p, &desc));
+    assert_int_equal((const char *)arena_alloc(&memory, 16) - (const char *)here, 16);
+    arena_free(&memory);
+}
+
+// ---- text -------------------------------------------------------------------------------------
+
+static void text_gives_stops_and_back(void **state) {
+    (void)state;
+    static const char text[] = "0 #000000; 0.5 #7a1500 0.5; 0.75 #ffffff 0; 1 4,2,0.1";
+    palette_stop stops[PALETTE_MAX_STOPS];
+    size_t count;
+    if (!palette_parse(text, stops, &count)) fail_msg("%s", err_get());
+    assert_int_equal(count, 4);
+    assert_true(stops[1].at == 0.5f && stops[1].color[3] == 0.5f && stops[0].color[3] == 1);
+    assert_true(stops[3].color[0] == 4 && stops[3].color[2] == 0.1f);
+    strbuf out = {0};
+    palette_print(stops, count, &out);
+    assert_string_equal(strbuf_text(&out), text);
+    strbuf_free(&out);
+    assert_true(palette_parse("  0 #000 ;1 #ffffff80;", stops, &count) && count == 2);
+    assert_true(fabsf(stops[1].color[3] - 128 / 255.0f) < 1e-6f);
+    assert_true(palette_parse("", stops, &count) && count == 0);
+}
+
+static void every_number_survives_the_text(void **state) {
+    (void)state;
+    palette_stop stops[2] = {{-0.1f, {1.0f / 3, 1e-30f, 65504, 0.7f}}, {16777217, {0.5f, 0, 1, 1}}};
+    strbuf out = {0};
+    palette_print(stops, 2, &out);
+    palette_stop again[PALETTE_MAX_STOPS];
+    size_t count;
+    assert_true(palette_parse(strbuf_text(&out), again, &count));
+    assert_int_equal(count, 2);
+    assert_memory_equal(stops, again, sizeof stops);
+    strbuf_free(&out);
+}
+
+static void text_that_is_no_palette_is_refused(void **state) {
+    (void)state;
+    static const char *const bad[] = {
+        "0",        "0 red",     "0 #12345", "0 1,2",       "0 1,2,3,4",          "0 #000 1 2",
+        "nan #000", "0 inf,0,0", "x #000",   "0 #000; ; 1", "0 #000000000000000", "0 #000, 1 #fff",
+    };
+    palette_stop stops[PALETTE_MAX_STOPS];
+    size_t count;
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        err_clear();
+        if (palette_parse(bad[i], stops, &count)) fail_msg("'%s' was taken", bad[i]);
+        assert_error("is wrong; accepted: position, colour and alpha");
+    }
+    strbuf long_text = {0};
+    for (int i = 0; i <= PALETTE_MAX_STOPS; i++) strbuf_add(&long_text, "%d #000;", i);
+    assert_false(palette_parse(strbuf_text(&long_text), stops, &count));
+    assert_error("at most 64 stops");
+    strbuf_free(&long_text);
+}
+
+static void hex_is_given_only_where_it_is_exact(void **state) {
+    (void)state;
+    char hex[8];
+    float color[4];
+    for (int byte = 0; byte < 256; byte++) {
+        char text[8];
+        snprintf(text, sizeof text, "#%02x%02x%02x", byte, 255 - byte, byte / 2);
+        assert_true(palette_parse_color(text, color));
+        assert_true(palette_color_hex(color, hex));
+        assert_string_equal(hex, text);
+    }
+    assert_false(palette_color_hex((float[3]){0.5f, 0, 0}, hex));
+    assert_false(palette_color_hex((float[3]){0, 1.5f, 0}, hex));
+    assert_false(palette_color_hex((float[3]){0, 0, NAN}, hex));
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(ends_are_the_stops_and_hold),
@@ -239,6 +379,14 @@ int main(void) {
         cmocka_unit_test(physical_black_bodies_shine_by_the_fourth_power),
         cmocka_unit_test(bad_stops_are_refused),
         cmocka_unit_test(colours_are_read_as_srgb),
+        cmocka_unit_test(replaced_palette_gives_the_new_colors),
+        cmocka_unit_test(palette_is_restored_to_what_it_was_made_of),
+        cmocka_unit_test(bad_replacement_changes_nothing),
+        cmocka_unit_test(replacing_again_and_again_takes_memory_once),
+        cmocka_unit_test(text_gives_stops_and_back),
+        cmocka_unit_test(every_number_survives_the_text),
+        cmocka_unit_test(text_that_is_no_palette_is_refused),
+        cmocka_unit_test(hex_is_given_only_where_it_is_exact),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     arena_free(build_memory());
