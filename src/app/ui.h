@@ -2,8 +2,12 @@
 //
 // Between ui_begin and ui_end the window's contents are said anew each frame; what a user did comes
 // back as return values. There is one window, so there is one state, and it is of one thread.
-// Lengths are in units of the style: multiply your own by ui_scale(). Positions are window pixels.
+// Positions and lengths are window pixels; think of lengths in units of the style and multiply them
+// by ui_scale().
 // Labels follow ImGui: what stands behind "##" is not shown but tells equal labels apart.
+// A label that is shown stands left of its choice, input, number or colour, in a column of 2/5 of
+// the width, so that those below each other align; a toggle's does so when ui_width was called for
+// it, and else stands behind it.
 #pragma once
 #include "roil.h"
 #include <stdbool.h>
@@ -60,8 +64,8 @@ void ui_same_line(void);
 void ui_align_right(float width); // the next widget, of that width, ends at the right edge
 void ui_gap(float height);
 void ui_separator(void);
-void ui_width(
-    float width); // of the next widget; 0: the rest of the line; negative: leave that much
+// Of the next widget, with its label; 0: the rest of the line; negative: leave that much.
+void ui_width(float width);
 void ui_push(const char *id); // tells widgets of equal labels apart, with ui_pop
 void ui_pop(void);
 void ui_disable_begin(bool disabled);
@@ -105,8 +109,8 @@ bool ui_color_edit(const char *label, float *linear, int components); // linear 
 bool ui_active(void);   // the last widget is being used
 bool ui_released(void); // its use has just ended with a change
 bool ui_hovered(void);  // the last widget
-bool ui_menu_begin(
-    const char *id); // on a right click of the last widget; then ui_item, ui_menu_end
+// On a right click of the last widget; when true: ui_item, then ui_menu_end.
+bool ui_menu_begin(const char *id);
 void ui_menu_end(void);
 bool ui_item(const char *label);
 
@@ -136,8 +140,14 @@ typedef struct ui_canvas {
     float wheel;
     bool shift, control;
 } ui_canvas;
-ui_canvas ui_canvas_begin(const char *id, float width, float height); // width 0: rest of the line
+// Width 0: the rest of the line. In a window that moves, the wheel is the canvas's own; in a panel
+// it scrolls the panel too.
+ui_canvas ui_canvas_begin(const char *id, float width, float height);
 void ui_canvas_end(void);
+// What a user does in a part of the window that no panel covers. Outside of panels.
+ui_canvas ui_bare(ui_rect area);
+// An upright bar between panels, `position` is its middle; true while it is dragged.
+bool ui_splitter(ui_rect area, float *position);
 
 uint32_t ui_rgba(ui_color color, float alpha);
 uint32_t ui_pack(const float rgb[3], float alpha); // linear Rec.709, clamped
@@ -147,6 +157,7 @@ void ui_fill(ui_rect area, uint32_t color, float rounding);
 void ui_frame(ui_rect area, uint32_t color, float rounding, float width);
 void ui_gradient(ui_rect area, uint32_t left, uint32_t right);
 void ui_checkers(ui_rect area, float size); // what is seen through transparency
+void ui_triangle(float x0, float y0, float x1, float y1, float x2, float y2, uint32_t color);
 void ui_disc(float x, float y, float radius, uint32_t color);
 void ui_ring(float x, float y, float radius, uint32_t color, float width);
 void ui_label(float x, float y, uint32_t color, const char *text);

@@ -1,0 +1,76 @@
+// Numbers in sliders: where they stand on the bar, how round they are, how they are written.
+#include "app/ui_parts.h"
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+// A logarithmic bar over a range that reaches zero is linear below this share of it.
+static const double LINEAR_SHARE = 1e-3;
+static const double DRAG_SHARE = 0.01; // of an unbounded value, a pixel
+
+bool number_is_bounded(const number_range *r) {
+    return isfinite(r->min) && isfinite(r->max) && r->max > r->min;
+}
+
+static double clamped(const number_range *r, double value) {
+    if (value < r->min) return r->min;
+    return value > r->max ? r->max : value;
+}
+
+double number_to_share(const number_range *r, double value) {
+    double v = clamped(r, value), span = r->max - r->min;
+    if (!r->log_scale) return (v - r->min) / span;
+    if (r->min > 0) return log(v / r->min) / log(r->max / r->min);
+    return log1p((v - r->min) / (span * LINEAR_SHARE)) / log1p(1 / LINEAR_SHARE);
+}
+
+double number_from_share(const number_range *r, double share) {
+    double s = share < 0 ? 0 : share > 1 ? 1 : share, span = r->max - r->min;
+    if (!r->log_scale) return r->min + s * span;
+    if (r->min > 0) return r->min * pow(r->max / r->min, s);
+    return r->min + span * LINEAR_SHARE * expm1(s * log1p(1 / LINEAR_SHARE));
+}
+
+// Digits behind the point: a 500th of the range can be seen; of a logarithmic or an unbounded one,
+// three digits of the value.
+static int decimals(const number_range *r, double value) {
+    if (r->whole) return 0;
+    bool linear = number_is_bounded(r) && !r->log_scale;
+    double size = linear ? (r->max - r->min) / 500 : fabs(value) / 200;
+    if (!linear && !(size > 1e-5)) size = 5e-3;
+    int digits = (int)ceil(-log10(size) - 1e-9);
+    return digits < 0 ? 0 : digits > 7 ? 7 : digits;
+}
+
+double number_round(const number_range *r, double value) {
+    double scale = pow(10, decimals(r, value));
+    return clamped(r, round(value * scale) / scale);
+}
+
+double number_drag(const number_range *r, double value, double pixels, double width) {
+    if (number_is_bounded(r))
+        return number_from_share(r, number_to_share(r, value) + pixels / fmax(width, 1));
+    double least = r->whole ? 20 : 0.5; // so that zero can be left
+    return clamped(r, value + pixels * DRAG_SHARE * fmax(fabs(value), least));
+}
+
+// Those that were typed may be finer than what dragging gives; they are shown in full.
+void number_text(const number_range *r, double value, char *out, size_t capacity) {
+    int digits = decimals(r, value);
+    double scale = pow(10, digits), seen = round(value * scale) / scale;
+    if (fabs(seen - value) <= 1e-5 * fabs(value) || fabs(value) < 1e-7)
+        snprintf(out, capacity, "%.*f", digits, seen == 0 ? 0.0 : seen);
+    else
+        snprintf(out, capacity, "%.5g", value);
+}
+
+bool number_parse(const number_range *r, const char *text, double *out) {
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || !isfinite(value)) return false;
+    while (isspace((unsigned char)*end)) end++;
+    if (*end) return false;
+    *out = clamped(r, r->whole ? round(value) : value);
+    return true;
+}
