@@ -180,7 +180,7 @@ bool vk_bindings_push(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipe
         }
     }
     if (pipeline->slot_count > 0) {
-        g->push_descriptors(commands, pipeline->bind_point, pipeline->layout, 0,
+        g->push_descriptors(commands, pipeline->bind_point, pipeline->built->layout, 0,
                             pipeline->slot_count, writes);
     }
     return true;

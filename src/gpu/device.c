@@ -192,6 +192,7 @@ gpu *gpu_create(const gpu_desc *desc) {
     if (!desc) desc = &defaults;
     gpu *g = mem_alloc(sizeof *g);
     pthread_mutex_init(&g->retire_lock, NULL);
+    pthread_mutex_init(&g->built_lock, NULL);
     if (!vk_instance_create(&g->instance, validation_wanted(desc), &g->messages) ||
         !open_device(g, desc->device) || !open_commands(g) || !vk_samplers_create(g) ||
         !vk_cache_create(g, desc->cache_dir)) {
@@ -232,6 +233,7 @@ void gpu_destroy(gpu *g) {
     if (g->device) close_device(g);
     vk_instance_destroy(&g->instance);
     pthread_mutex_destroy(&g->retire_lock);
+    pthread_mutex_destroy(&g->built_lock);
     mem_free(g->retired);
     mem_free(g->uses.list);
     mem_free(g->uses.images);

@@ -33,7 +33,7 @@ bool gpu_dispatch(gpu *g, const gpu_dispatch_desc *desc) {
     vk_uses_begin(g);
     if (!vk_bindings_use(g, pipeline, desc->bindings, desc->binding_count)) return false;
     vk_uses_flush(g, commands);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline->handle);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline->built->handle);
     if (!vk_bindings_push(g, commands, pipeline, desc->bindings, desc->binding_count)) return false;
     vkCmdDispatch(commands, groups[0], groups[1], groups[2]);
     return true;

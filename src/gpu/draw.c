@@ -155,7 +155,7 @@ bool gpu_draw_all(gpu *g, const gpu_draw_desc *desc) {
     VkExtent2D size = begin(commands, desc);
     bool ok = true;
     if (desc->draw_count > 0) {
-        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, desc->pipeline->handle);
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, desc->pipeline->built->handle);
     }
     for (size_t i = 0; i < desc->draw_count && ok; i++) {
         ok = record(g, commands, desc->pipeline, &desc->draws[i], size);

@@ -1,22 +1,16 @@
 // Pipelines. Descriptors are pushed (set 0), vertices pulled from buffers, rendering is dynamic: a
-// pipeline is its shaders, its slots and its target formats.
+// pipeline is its shaders, its slots and its target formats. What the driver makes of them is
+// shared (share.c); label and slots, which messages and barriers want, are each pipeline's own.
 //
-// May be called from any thread: creation touches only its own objects and the pipeline cache,
-// which the driver locks; destruction goes through the locked queue of destroy.c.
+// May be called from any thread: creation touches only its own objects, the locked table of share.c
+// and the pipeline cache, which the driver locks; destruction goes through the locked queue of
+// destroy.c.
 #include "base/memory.h"
 #include "gpu/vk.h"
 #include <string.h>
 
-static void pipeline_free(gpu *g, void *object) {
-    gpu_pipeline *pipeline = object;
-    vkDestroyPipeline(g->device, pipeline->handle, NULL);
-    vkDestroyPipelineLayout(g->device, pipeline->layout, NULL);
-    vkDestroyDescriptorSetLayout(g->device, pipeline->set_layout, NULL);
-    mem_free(pipeline->label);
-    mem_free(pipeline);
-}
-
-static bool create_layout(gpu *g, gpu_pipeline *pipeline, VkShaderStageFlags stages) {
+static bool create_layout(gpu *g, const gpu_pipeline *pipeline, VkShaderStageFlags stages,
+                          vk_built *out) {
     VkDescriptorSetLayoutBinding bindings[GPU_MAX_SLOTS];
     for (uint32_t i = 0; i < pipeline->slot_count; i++) {
         bindings[i] = (VkDescriptorSetLayoutBinding){
@@ -30,14 +24,14 @@ static bool create_layout(gpu *g, gpu_pipeline *pipeline, VkShaderStageFlags sta
         .flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR,
         .bindingCount = pipeline->slot_count,
         .pBindings = bindings};
-    if (!vk_check(g, vkCreateDescriptorSetLayout(g->device, &set, NULL, &pipeline->set_layout),
+    if (!vk_check(g, vkCreateDescriptorSetLayout(g->device, &set, NULL, &out->set_layout),
                   "creating the slots of pipeline '%s'", pipeline->label)) {
         return false;
     }
     VkPipelineLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                        .setLayoutCount = 1,
-                                       .pSetLayouts = &pipeline->set_layout};
-    return vk_check(g, vkCreatePipelineLayout(g->device, &info, NULL, &pipeline->layout),
+                                       .pSetLayouts = &out->set_layout};
+    return vk_check(g, vkCreatePipelineLayout(g->device, &info, NULL, &out->layout),
                     "creating the layout of pipeline '%s'", pipeline->label);
 }
 
@@ -81,16 +75,37 @@ static gpu_pipeline *pipeline_new(const char *label, const gpu_slot *slots, size
     return pipeline;
 }
 
+static void pipeline_free(gpu_pipeline *pipeline) {
+    mem_free(pipeline->label);
+    mem_free(pipeline);
+}
+
+static bool check_code(const char *label, const uint32_t *code, size_t size) {
+    static const uint32_t magic = 0x07230203;
+    if (code && size >= 20 && size % 4 == 0 && code[0] == magic) return true;
+    return err_set("pipeline '%s': the shader code is not SPIR-V", label);
+}
+
 static bool create_module(gpu *g, const char *label, const uint32_t *code, size_t size,
                           VkShaderModule *out) {
-    static const uint32_t magic = 0x07230203;
-    if (!code || size < 20 || size % 4 != 0 || code[0] != magic) {
-        return err_set("pipeline '%s': the shader code is not SPIR-V", label);
-    }
     VkShaderModuleCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = code};
     return vk_check(g, vkCreateShaderModule(g->device, &info, NULL, out),
                     "loading the shader of pipeline '%s'", label);
+}
+
+// Of all but the shaders and the rasteriser's settings: what slots read and write does not matter
+// to the driver.
+static hash128 hash_interface(const gpu_pipeline *pipeline) {
+    uint32_t words[2 + VK_MAX_TARGETS + 2 * GPU_MAX_SLOTS] = {pipeline->bind_point,
+                                                              pipeline->depth};
+    uint32_t count = 2;
+    for (uint32_t i = 0; i < VK_MAX_TARGETS; i++) words[count++] = pipeline->colors[i];
+    for (uint32_t i = 0; i < pipeline->slot_count; i++) {
+        words[count++] = pipeline->slots[i].binding;
+        words[count++] = pipeline->slots[i].kind;
+    }
+    return hash_bytes(words, count * sizeof *words);
 }
 
 // ---- compute ----------------------------------------------------------------------------------
@@ -107,9 +122,10 @@ static bool check_local_size(gpu *g, const char *label, const uint32_t size[3]) 
         label, size[0], size[1], size[2], most[0], most[1], most[2], total);
 }
 
-static bool build_compute(gpu *g, gpu_pipeline *pipeline, const gpu_compute_desc *desc) {
+static bool build_compute(gpu *g, const gpu_pipeline *pipeline, const gpu_compute_desc *desc,
+                          vk_built *out) {
     VkShaderModule module;
-    if (!create_layout(g, pipeline, VK_SHADER_STAGE_COMPUTE_BIT)) return false;
+    if (!create_layout(g, pipeline, VK_SHADER_STAGE_COMPUTE_BIT, out)) return false;
     if (!create_module(g, pipeline->label, desc->code, desc->code_size, &module)) return false;
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
@@ -117,28 +133,41 @@ static bool build_compute(gpu *g, gpu_pipeline *pipeline, const gpu_compute_desc
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                   .module = module,
                   .pName = "main"},
-        .layout = pipeline->layout};
-    VkResult result =
-        vkCreateComputePipelines(g->device, g->cache, 1, &info, NULL, &pipeline->handle);
+        .layout = out->layout};
+    VkResult result = vkCreateComputePipelines(g->device, g->cache, 1, &info, NULL, &out->handle);
     vkDestroyShaderModule(g->device, module, NULL);
     return vk_check(g, result, "creating pipeline '%s'", pipeline->label);
+}
+
+static vk_built *obtain_compute(gpu *g, const gpu_pipeline *pipeline,
+                                const gpu_compute_desc *desc) {
+    hash128 key = hash_combine(hash_bytes(desc->code, desc->code_size), hash_interface(pipeline));
+    vk_built *built = vk_built_find(g, key);
+    if (built) return built;
+    built = mem_alloc(sizeof *built);
+    built->key = key;
+    if (!build_compute(g, pipeline, desc, built)) {
+        vk_built_free(g, built);
+        return NULL;
+    }
+    vk_name(g, VK_OBJECT_TYPE_PIPELINE, VK_HANDLE(built->handle), pipeline->label);
+    return vk_built_add(g, built);
 }
 
 gpu_pipeline *gpu_pipeline_create_compute(gpu *g, const gpu_compute_desc *desc) {
     const char *label = desc->label ? desc->label : "compute";
     if (!vk_alive(g) || !check_slots(g, label, desc->slots, desc->slot_count) ||
-        !check_local_size(g, label, desc->local_size)) {
+        !check_local_size(g, label, desc->local_size) ||
+        !check_code(label, desc->code, desc->code_size)) {
         return NULL;
     }
     gpu_pipeline *pipeline = pipeline_new(label, desc->slots, desc->slot_count);
     pipeline->bind_point = VK_PIPELINE_BIND_POINT_COMPUTE;
     memcpy(pipeline->local_size, desc->local_size, sizeof pipeline->local_size);
-    if (!build_compute(g, pipeline, desc)) {
-        pipeline_free(g, pipeline);
-        return NULL;
-    }
-    vk_name(g, VK_OBJECT_TYPE_PIPELINE, VK_HANDLE(pipeline->handle), label);
-    return pipeline;
+    pipeline->built = obtain_compute(g, pipeline, desc);
+    if (pipeline->built) return pipeline;
+    pipeline_free(pipeline);
+    return NULL;
 }
 
 // ---- graphics ---------------------------------------------------------------------------------
@@ -156,8 +185,8 @@ static VkPipelineColorBlendAttachmentState blend_state(bool blend) {
         .colorWriteMask = 0xf};
 }
 
-static VkResult create_graphics(gpu *g, gpu_pipeline *pipeline, const gpu_graphics_desc *desc,
-                                const VkPipelineShaderStageCreateInfo stages[2]) {
+static VkResult create_graphics(gpu *g, const gpu_pipeline *pipeline, const gpu_graphics_desc *desc,
+                                const VkPipelineShaderStageCreateInfo stages[2], vk_built *out) {
     VkFormat formats[VK_MAX_TARGETS];
     VkPipelineColorBlendAttachmentState blends[VK_MAX_TARGETS];
     for (uint32_t i = 0; i < pipeline->color_count; i++) {
@@ -214,11 +243,12 @@ static VkResult create_graphics(gpu *g, gpu_pipeline *pipeline, const gpu_graphi
                                          .pDepthStencilState = &test,
                                          .pColorBlendState = &blend,
                                          .pDynamicState = &dynamic,
-                                         .layout = pipeline->layout};
-    return vkCreateGraphicsPipelines(g->device, g->cache, 1, &info, NULL, &pipeline->handle);
+                                         .layout = out->layout};
+    return vkCreateGraphicsPipelines(g->device, g->cache, 1, &info, NULL, &out->handle);
 }
 
-static bool build_graphics(gpu *g, gpu_pipeline *pipeline, const gpu_graphics_desc *desc) {
+static bool build_graphics(gpu *g, const gpu_pipeline *pipeline, const gpu_graphics_desc *desc,
+                           vk_built *out) {
     VkShaderStageFlags both = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     VkPipelineShaderStageCreateInfo stages[2] = {
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -227,12 +257,12 @@ static bool build_graphics(gpu *g, gpu_pipeline *pipeline, const gpu_graphics_de
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
          .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
          .pName = "main"}};
-    bool ok = create_layout(g, pipeline, both) &&
+    bool ok = create_layout(g, pipeline, both, out) &&
               create_module(g, pipeline->label, desc->vertex_code, desc->vertex_size,
                             &stages[0].module) &&
               create_module(g, pipeline->label, desc->fragment_code, desc->fragment_size,
                             &stages[1].module) &&
-              vk_check(g, create_graphics(g, pipeline, desc, stages), "creating pipeline '%s'",
+              vk_check(g, create_graphics(g, pipeline, desc, stages, out), "creating pipeline '%s'",
                        pipeline->label);
     vkDestroyShaderModule(g->device, stages[0].module, NULL);
     vkDestroyShaderModule(g->device, stages[1].module, NULL);
@@ -258,10 +288,31 @@ static bool check_targets(gpu *g, const char *label, const gpu_graphics_desc *de
     return true;
 }
 
+static vk_built *obtain_graphics(gpu *g, const gpu_pipeline *pipeline,
+                                 const gpu_graphics_desc *desc) {
+    const uint32_t raster[2] = {desc->cull, desc->blend};
+    hash128 key = hash_combine(hash_bytes(desc->vertex_code, desc->vertex_size),
+                               hash_bytes(desc->fragment_code, desc->fragment_size));
+    key = hash_combine(key, hash_bytes(raster, sizeof raster));
+    key = hash_combine(key, hash_interface(pipeline));
+    vk_built *built = vk_built_find(g, key);
+    if (built) return built;
+    built = mem_alloc(sizeof *built);
+    built->key = key;
+    if (!build_graphics(g, pipeline, desc, built)) {
+        vk_built_free(g, built);
+        return NULL;
+    }
+    vk_name(g, VK_OBJECT_TYPE_PIPELINE, VK_HANDLE(built->handle), pipeline->label);
+    return vk_built_add(g, built);
+}
+
 gpu_pipeline *gpu_pipeline_create_graphics(gpu *g, const gpu_graphics_desc *desc) {
     const char *label = desc->label ? desc->label : "graphics";
     if (!vk_alive(g) || !check_slots(g, label, desc->slots, desc->slot_count) ||
-        !check_targets(g, label, desc)) {
+        !check_targets(g, label, desc) ||
+        !check_code(label, desc->vertex_code, desc->vertex_size) ||
+        !check_code(label, desc->fragment_code, desc->fragment_size)) {
         return NULL;
     }
     gpu_pipeline *pipeline = pipeline_new(label, desc->slots, desc->slot_count);
@@ -270,15 +321,14 @@ gpu_pipeline *gpu_pipeline_create_graphics(gpu *g, const gpu_graphics_desc *desc
     for (int i = 0; i < VK_MAX_TARGETS && desc->colors[i]; i++) {
         pipeline->colors[pipeline->color_count++] = desc->colors[i];
     }
-    if (!build_graphics(g, pipeline, desc)) {
-        pipeline_free(g, pipeline);
-        return NULL;
-    }
-    vk_name(g, VK_OBJECT_TYPE_PIPELINE, VK_HANDLE(pipeline->handle), label);
-    return pipeline;
+    pipeline->built = obtain_graphics(g, pipeline, desc);
+    if (pipeline->built) return pipeline;
+    pipeline_free(pipeline);
+    return NULL;
 }
 
 void gpu_pipeline_destroy(gpu *g, gpu_pipeline *pipeline) {
     if (!pipeline) return;
-    vk_retire(g, pipeline_free, pipeline);
+    vk_built_release(g, pipeline->built);
+    pipeline_free(pipeline);
 }

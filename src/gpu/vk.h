@@ -5,6 +5,7 @@
 // batch of work recorded between frames, which is submitted before the next frame or read.
 #pragma once
 #include "base/error.h"
+#include "base/hash.h"
 #include "gpu/allocator.h"
 #include "gpu/gpu.h"
 #include "gpu/hazard.h"
@@ -12,7 +13,13 @@
 #include <stdatomic.h>
 #include <vulkan/vulkan.h>
 
-enum { VK_MAX_MIPS = 16, VK_MAX_DEVICES = 16, VK_MAX_TARGETS = 4, VK_BATCHES = 4 };
+enum {
+    VK_MAX_MIPS = 16,
+    VK_MAX_DEVICES = 16,
+    VK_MAX_TARGETS = 4,
+    VK_BATCHES = 4,
+    VK_BUILT_ROWS = 64
+};
 
 // ---- instance and device ----------------------------------------------------------------------
 
@@ -116,11 +123,19 @@ struct gpu_buffer {
     vk_tracked tracked;
 };
 
-struct gpu_pipeline {
-    char *label;
+// What the driver made of a pipeline's description: one for all pipelines of equal descriptions.
+typedef struct vk_built {
     VkPipeline handle;
     VkPipelineLayout layout;
     VkDescriptorSetLayout set_layout;
+    hash128 key; // of the description, without its label
+    uint32_t references;
+    struct vk_built *next; // in its row of the table
+} vk_built;
+
+struct gpu_pipeline {
+    char *label;
+    vk_built *built;
     VkPipelineBindPoint bind_point;
     gpu_slot slots[GPU_MAX_SLOTS];
     uint32_t slot_count;
@@ -135,6 +150,14 @@ typedef struct vk_format {
     uint32_t size, channels;
 } vk_format;
 const vk_format *vk_format_get(gpu_format format);
+
+// From any thread. One more reference to what was built of that description, or NULL.
+vk_built *vk_built_find(gpu *g, hash128 key);
+// Takes over a new one. Returns the one to use: an equal one that another thread has just added, if
+// there is one.
+vk_built *vk_built_add(gpu *g, vk_built *built);
+void vk_built_release(gpu *g, vk_built *built);
+void vk_built_free(gpu *g, void *built); // at once: no submission may use it
 
 gpu_buffer *vk_buffer_create(gpu *g, uint64_t size, VkBufferUsageFlags usage, vk_memory_kind kind,
                              const char *label);
@@ -264,6 +287,9 @@ struct gpu {
 
     vk_pool pool;
     VkSampler samplers[GPU_SAMPLER_COUNT];
+
+    pthread_mutex_t built_lock;
+    vk_built *built[VK_BUILT_ROWS]; // by hash
 
     VkPipelineCache cache;
     char *cache_path;
