@@ -108,6 +108,11 @@ bool graph_add_output(graph *g, graph_image image) {
     return true;
 }
 
+void graph_remove_output(graph *g, graph_image image) {
+    g->images[index_of(g, image)].output = false;
+    make_stale(g);
+}
+
 // ---- passes -----------------------------------------------------------------------------------
 
 static uint32_t *copy_handles(graph *g, const graph_image *images, size_t *count) {
@@ -187,4 +192,12 @@ size_t graph_order(const graph *g, const char **out, size_t capacity) {
 bool graph_shares_memory(const graph *g, graph_image a, graph_image b) {
     const graph_slot *slot = slot_of(g, a);
     return slot && slot == slot_of(g, b);
+}
+
+bool graph_is_alone(const graph *g, graph_image image) {
+    if (!slot_of(g, image)) return false;
+    uint32_t index = index_of(g, image);
+    for (size_t i = 0; i < g->image_count; i++)
+        if (i != index && g->images[i].slot == g->images[index].slot) return false;
+    return true;
 }

@@ -47,6 +47,7 @@ graph_image graph_add_image(graph *g, const graph_image_desc *desc);
 graph_image graph_add_history(graph *g, graph_image image);
 bool graph_add_pass(graph *g, const graph_pass_desc *desc);
 bool graph_add_output(graph *g, graph_image image); // wanted after execution
+void graph_remove_output(graph *g, graph_image image);
 
 // Orders, culls, computes sizes and lifetimes, and decides which images share memory (same format
 // and size, lifetimes apart, no history, not an output). Errors: a cycle (named pass by pass), an
@@ -72,4 +73,6 @@ size_t graph_images(const graph *g, graph_image *out, size_t capacity);
 // Names of the passes that run, in order; returns the count.
 size_t graph_order(const graph *g, const char **out, size_t capacity);
 bool graph_shares_memory(const graph *g, graph_image a, graph_image b);
+// False: it is culled, or its memory is another image's too, which may have overwritten it.
+bool graph_is_alone(const graph *g, graph_image image);
 void graph_print_dot(const graph *g, const char *title, strbuf *out); // culled passes are grey
