@@ -1,0 +1,138 @@
+// The panel: all that the effect lets one turn, in sections, behind a search.
+#include "app/panel_parts.h"
+#include "base/memory.h"
+#include <stdio.h>
+#include <string.h>
+
+static const float SEARCH = 48; // height of its part, units
+
+panel *panel_create(void) {
+    panel *p = mem_alloc(sizeof *p);
+    p->palette.selected = p->curve.selected = ROIL_MAX_STOPS;
+    return p;
+}
+
+void panel_destroy(panel *p) {
+    if (!p) return;
+    mem_free(p->controls);
+    panel_model_free(&p->model);
+    mem_free(p);
+}
+
+static void gather(panel *p, roil_effect *e) {
+    p->control_count = roil_control_count(e);
+    MEM_RESERVE(p->controls, p->control_count, p->control_capacity);
+    for (size_t i = 0; i < p->control_count; i++) roil_get_control(e, i, &p->controls[i]);
+    panel_model_fill(&p->model, p->controls, p->control_count, p->search);
+}
+
+// ---- sections ---------------------------------------------------------------------------------
+
+static void draw_rows(live *l, const panel_section *s) {
+    const panel *p = l->panel;
+    panel_table_begin(s->title);
+    for (size_t i = 0; i < s->count; i++) panel_row(l, &p->controls[p->model.rows[s->first + i]]);
+    ui_table_end();
+}
+
+static void draw_content(live *l, const panel_section *s) {
+    const roil_control *c = &l->panel->controls[l->panel->model.rows[s->first]];
+    if (s->part != PANEL_SHAPE)
+        draw_rows(l, s);
+    else if (c->type == ROIL_PALETTE)
+        palette_draw(l, c->name);
+    else
+        curve_draw(l, c->name);
+}
+
+// What a run of sections has in common, where it is worth saying.
+static const char *chapter(panel_part part) {
+    switch (part) {
+    case PANEL_SHAPE:
+        return "Palettes and curves";
+    case PANEL_CAMERA:
+    case PANEL_SUN:
+    case PANEL_SKY:
+        return "Scene";
+    case PANEL_PASS:
+        return "Passes";
+    default:
+        return "";
+    }
+}
+
+static void chapter_heading(const char *title) {
+    ui_gap(8 * ui_scale());
+    ui_text_color(UI_DIM, "%s", title);
+}
+
+static bool opens_at_first(panel_part part) {
+    return part == PANEL_PARAMETERS || part == PANEL_GROUP || part == PANEL_SHAPE;
+}
+
+static void draw_section(live *l, const panel_section *s) {
+    char label[256];
+    bool searching = l->panel->search[0] != 0;
+    if (s->moved && s->part != PANEL_SHAPE)
+        snprintf(label, sizeof label, "%s (%zu changed)###section", s->title, s->moved);
+    else
+        snprintf(label, sizeof label, "%s###section", s->title);
+    char id[128];
+    snprintf(id, sizeof id, "%d.%s", (int)s->part, s->title);
+    ui_push(id);
+    if (searching) {
+        ui_gap(4 * ui_scale());
+        ui_text_color(UI_DIM, "%s", s->title);
+        draw_content(l, s);
+    } else if (ui_section(label, opens_at_first(s->part))) {
+        draw_content(l, s);
+    }
+    ui_pop();
+}
+
+static void draw_sections(live *l) {
+    const panel_model *m = &l->panel->model;
+    const char *last = "";
+    for (size_t i = 0; i < m->section_count; i++) {
+        const char *title = chapter(m->sections[i].part);
+        if (strcmp(title, last) != 0 && !l->panel->search[0]) chapter_heading(title);
+        last = title;
+        draw_section(l, &m->sections[i]);
+    }
+}
+
+// ---- search -----------------------------------------------------------------------------------
+
+static void draw_search(panel *p, ui_rect where) {
+    float clear = p->search[0] ? 30 * ui_scale() : 0;
+    ui_panel_begin("search", where);
+    ui_width(-clear);
+    ui_input("##search", "Search", p->search, sizeof p->search);
+    if (clear > 0) {
+        ui_same_line();
+        if (ui_button("\u00d7")) p->search[0] = 0;
+        ui_tooltip("show everything");
+    }
+    ui_panel_end();
+}
+
+void panel_draw(live *l, ui_rect where) {
+    panel *p = l->panel;
+    ui_rect top = where, rest = where;
+    top.bottom = rest.top = where.top + SEARCH * ui_scale();
+    draw_search(p, top);
+    ui_panel_begin("panel", rest);
+    if (l->effect) {
+        gather(p, l->effect);
+        draw_sections(l);
+        if (p->search[0] && !p->model.row_count)
+            ui_text_color(UI_DIM, "Nothing matches \"%s\".", p->search);
+        if (!p->search[0]) {
+            chapter_heading("Presets");
+            presets_draw(l);
+        }
+    } else {
+        ui_text_color(UI_DIM, "No effect is loaded yet.");
+    }
+    ui_panel_end();
+}

@@ -1,0 +1,221 @@
+// One row of the panel: a control's name, what it needs to know, and the widget that turns it.
+#include "app/panel_parts.h"
+#include "base/clock.h"
+#include "base/str.h"
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+static const float MARK = 14, RESET = 22; // units, at the right of the label
+static const double PENDING = 10;         // seconds that a build may take
+
+void panel_table_begin(const char *id) {
+    ui_table_begin(id, 2, (const float[]){2, 3});
+}
+
+// ---- what happens to it -----------------------------------------------------------------------
+
+static void set(live *l, const roil_control *c, const float value[4]) {
+    strbuf text = {0};
+    panel_value_text(c, value, &text);
+    live_set(l, c->name, strbuf_text(&text));
+    strbuf_free(&text);
+}
+
+void panel_copy_lua(live *l, const char *name) {
+    char *text = roil_control_lua(l->effect, name);
+    if (text) {
+        ui_copy(text);
+        live_notice(l, "copied %s as Lua", name);
+    } else {
+        live_notice(l, "%s", roil_error());
+    }
+    roil_free(text);
+}
+
+static void menu(live *l, const roil_control *c, const char *id) {
+    if (!ui_menu_begin(id)) return;
+    if (c->driven && ui_item("Override")) set(l, c, c->value);
+    if (c->moved && ui_item("Reset")) live_reset(l, c->name);
+    if (ui_item("Copy as Lua")) panel_copy_lua(l, c->name);
+    if (ui_item("Copy name")) ui_copy(c->name);
+    ui_menu_end();
+}
+
+static void help(const roil_control *c) {
+    if (!ui_hovered()) return;
+    strbuf text = {0};
+    panel_help_text(c, &text);
+    ui_tooltip(strbuf_text(&text));
+    strbuf_free(&text);
+}
+
+// ---- label ------------------------------------------------------------------------------------
+
+static void shown_label(const char *label, float width, ui_color color) {
+    char words[PANEL_NAME], text[PANEL_NAME];
+    str_copy(words, sizeof words, label);
+    for (char *at = words; *at; at++)
+        if (*at == '_') *at = ' ';
+    panel_shorten(words, width, ui_text_width, text, sizeof text);
+    ui_text_color(color, "%s", text);
+}
+
+static void structural_mark(void) {
+    float scale = ui_scale(), half = 3 * scale;
+    ui_same_line();
+    ui_align_right(MARK * scale);
+    ui_canvas mark = ui_canvas_begin("structural", MARK * scale, ui_line_height());
+    float x = 0.5f * (mark.area.left + mark.area.right);
+    float y = 0.5f * (mark.area.top + mark.area.bottom);
+    ui_frame((ui_rect){x - half, y - half, x + half, y + half}, ui_rgba(UI_DIM, 0.8f), scale,
+             scale);
+    ui_canvas_end();
+    ui_tooltip("read while the effect loads: a change builds it anew");
+}
+
+static void reset_button(live *l, const roil_control *c) {
+    ui_same_line();
+    ui_align_right((RESET + (c->structural ? MARK : 0)) * ui_scale());
+    if (ui_icon_button("reset", UI_ICON_RESET, false, "reset to what the effect file says"))
+        live_reset(l, c->name);
+}
+
+static void label_cell(live *l, const roil_control *c) {
+    ui_rect space = ui_space();
+    float marks = ((c->structural ? MARK : 0) + (c->moved ? RESET : 0)) * ui_scale();
+    shown_label(c->label, space.right - space.left - marks, c->moved ? UI_ACCENT : UI_TEXT);
+    help(c);
+    menu(l, c, "label");
+    if (c->moved) reset_button(l, c);
+    if (c->structural) structural_mark();
+}
+
+void panel_label(const char *label) {
+    ui_table_next();
+    ui_rect space = ui_space();
+    shown_label(label, space.right - space.left, UI_DIM);
+    ui_table_next();
+    ui_width(0);
+}
+
+// ---- value ------------------------------------------------------------------------------------
+
+static int whole(float value) {
+    if (value <= (float)INT_MIN) return INT_MIN;
+    return value >= (float)INT_MAX ? INT_MAX : (int)lrintf(value);
+}
+
+static bool whole_widget(const roil_control *c, float *value) {
+    int number = whole(*value);
+    if (!ui_whole("##value", &number, whole(c->min), whole(c->max), c->unit)) return false;
+    *value = (float)number;
+    return true;
+}
+
+static bool choice_widget(const roil_control *c, float *value) {
+    size_t index = *value > 0 ? (size_t)*value : 0;
+    if (!ui_choice("##value", &index, c->words, c->word_count)) return false;
+    *value = (float)index;
+    return true;
+}
+
+static bool toggle_widget(float *value) {
+    bool on = *value != 0;
+    if (!ui_toggle("##value", &on)) return false;
+    *value = on;
+    return true;
+}
+
+static bool widget(const roil_control *c, float value[4]) {
+    switch (c->type) {
+    case ROIL_FLOAT:
+    case ROIL_VECTOR:
+        return ui_number("##value", value, c->components, c->min, c->max, c->log_scale, c->unit);
+    case ROIL_INT:
+        return whole_widget(c, value);
+    case ROIL_BOOL:
+        return toggle_widget(value);
+    case ROIL_ENUM:
+        return choice_widget(c, value);
+    case ROIL_COLOR:
+        return ui_color_edit("##value", value, c->components);
+    default: // has an editor of its own
+        return false;
+    }
+}
+
+static void keep_pending(panel *p, const roil_control *c, const float value[4]) {
+    str_copy(p->pending.name, sizeof p->pending.name, c->name);
+    memcpy(p->pending.value, value, sizeof p->pending.value);
+    p->pending.until = clock_seconds() + PENDING;
+}
+
+static bool is_pending(const panel *p, const roil_control *c) {
+    return strcmp(p->pending.name, c->name) == 0 && clock_seconds() < p->pending.until &&
+           memcmp(p->pending.value, c->value, sizeof c->value) != 0;
+}
+
+// A build for each step of a drag would be too many: it is built when the widget is let go.
+static void structural_widget(live *l, const roil_control *c) {
+    float value[4];
+    memcpy(value, is_pending(l->panel, c) ? l->panel->pending.value : c->value, sizeof value);
+    bool changed = widget(c, value);
+    if (changed) keep_pending(l->panel, c, value);
+    if (changed ? !ui_active() : ui_released()) set(l, c, value);
+}
+
+static void driven_value(const roil_control *c) {
+    strbuf text = {0};
+    panel_value_shown(c, c->value, &text);
+    ui_text_color(UI_DIM, "~ %s", strbuf_text(&text));
+    strbuf_free(&text);
+}
+
+static void value_cell(live *l, const roil_control *c) {
+    float value[4];
+    memcpy(value, c->value, sizeof value);
+    ui_width(0);
+    if (c->driven)
+        driven_value(c);
+    else if (c->structural)
+        structural_widget(l, c);
+    else if (widget(c, value))
+        set(l, c, value);
+    help(c);
+    menu(l, c, "value");
+}
+
+void panel_row(live *l, const roil_control *c) {
+    ui_push(c->name);
+    ui_table_next();
+    label_cell(l, c);
+    ui_table_next();
+    value_cell(l, c);
+    ui_pop();
+}
+
+// ---- palettes and curves ----------------------------------------------------------------------
+
+shape_state shape_state_take(const shape_state *kept, const char *name) {
+    if (strcmp(kept->name, name) == 0) return *kept;
+    shape_state fresh = {.selected = ROIL_MAX_STOPS};
+    str_copy(fresh.name, sizeof fresh.name, name);
+    return fresh;
+}
+
+void shape_state_give(shape_state *kept, const shape_state *state) {
+    bool mine = strcmp(kept->name, state->name) == 0;
+    if (mine || state->selected != ROIL_MAX_STOPS) *kept = *state;
+}
+
+void panel_shape_buttons(live *l, const char *name) {
+    size_t index;
+    roil_control c = {0};
+    if (roil_find_control(l->effect, name, &index)) roil_get_control(l->effect, index, &c);
+    ui_disable_begin(!c.moved);
+    if (ui_small_button("Reset")) live_reset(l, name);
+    ui_disable_end();
+    ui_same_line();
+    if (ui_small_button("Copy as Lua")) panel_copy_lua(l, name);
+}
