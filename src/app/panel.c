@@ -1,10 +1,11 @@
 // The panel: all that the effect lets one turn, in sections, behind a search.
 #include "app/panel_parts.h"
 #include "base/memory.h"
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static const float SEARCH = 48; // height of its part, units
+static const float SEARCH = 48, PRESETS = 78; // heights of the parts that do not scroll, units
 
 panel *panel_create(void) {
     panel *p = mem_alloc(sizeof *p);
@@ -116,23 +117,33 @@ static void draw_search(panel *p, ui_rect where) {
     ui_panel_end();
 }
 
+static void draw_list(live *l, ui_rect where) {
+    const panel *p = l->panel;
+    ui_panel_begin("panel", where);
+    draw_sections(l);
+    if (!p->control_count)
+        ui_text_color(UI_DIM, "The effect has nothing to turn.");
+    else if (!p->model.row_count)
+        ui_text_color(UI_DIM, "Nothing matches \"%s\".", p->search);
+    ui_panel_end();
+}
+
 void panel_draw(live *l, ui_rect where) {
     panel *p = l->panel;
-    ui_rect top = where, rest = where;
-    top.bottom = rest.top = where.top + SEARCH * ui_scale();
+    ui_rect top = where, middle = where, foot = where;
+    top.bottom = middle.top = where.top + SEARCH * ui_scale();
+    foot.top = middle.bottom = fmaxf(where.bottom - PRESETS * ui_scale(), top.bottom);
     draw_search(p, top);
-    ui_panel_begin("panel", rest);
-    if (l->effect) {
-        gather(p, l->effect);
-        draw_sections(l);
-        if (p->search[0] && !p->model.row_count)
-            ui_text_color(UI_DIM, "Nothing matches \"%s\".", p->search);
-        if (!p->search[0]) {
-            chapter_heading("Presets");
-            presets_draw(l);
-        }
-    } else {
+    if (!l->effect) {
+        middle.bottom = where.bottom;
+        ui_panel_begin("panel", middle);
         ui_text_color(UI_DIM, "No effect is loaded yet.");
+        ui_panel_end();
+        return;
     }
+    gather(p, l->effect);
+    draw_list(l, middle);
+    ui_panel_begin("presets", foot);
+    presets_draw(l);
     ui_panel_end();
 }

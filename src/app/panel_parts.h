@@ -21,6 +21,7 @@ typedef struct preset_list {
     size_t count;
     double next_look; // clock_seconds at which the folder is read again
     char name[64];    // typed
+    char loaded[64];  // or saved last; "" for none
     bool asked;       // whether it may be written over
 } preset_list;
 
@@ -54,7 +55,7 @@ void panel_table_begin(const char *id); // of rows; end with ui_table_end
 
 // ---- presets_panel.c --------------------------------------------------------------------------
 
-void presets_draw(live *l);
+void presets_draw(live *l); // two lines of widgets
 
 // ---- editors ----------------------------------------------------------------------------------
 

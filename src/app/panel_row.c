@@ -4,10 +4,12 @@
 #include "base/str.h"
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-static const float MARK = 14, RESET = 22; // units, at the right of the label
-static const double PENDING = 10;         // seconds that a build may take
+static const float ROW = 24, TEXT = 16;            // units: heights of a widget and of a letter
+static const float MARK = 14, RESET = 24, GAP = 8; // units, at the right of the label
+static const double PENDING = 10;                  // seconds that a build may take
 
 void panel_table_begin(const char *id) {
     ui_table_begin(id, 2, (const float[]){2, 3});
@@ -52,51 +54,57 @@ static void help(const roil_control *c) {
 
 // ---- label ------------------------------------------------------------------------------------
 
-static void shown_label(const char *label, float width, ui_color color) {
+// Text in the middle of a line as high as the widgets beside it; an item that takes clicks.
+static ui_rect text_cell(const char *id, const char *text, ui_color color, float width) {
+    ui_canvas cell = ui_canvas_begin(id, width, ROW * ui_scale());
+    float spare = ROW - TEXT;
+    ui_label(cell.area.left, cell.area.top + 0.5f * spare * ui_scale(), ui_rgba(color, 1), text);
+    ui_canvas_end();
+    return cell.area;
+}
+
+static ui_rect label_text(const char *label, float width, float marks, ui_color color) {
     char words[PANEL_NAME], text[PANEL_NAME];
     str_copy(words, sizeof words, label);
     for (char *at = words; *at; at++)
         if (*at == '_') *at = ' ';
-    panel_shorten(words, width, ui_text_width, text, sizeof text);
-    ui_text_color(color, "%s", text);
+    panel_shorten(words, width - marks, ui_text_width, text, sizeof text);
+    return text_cell("label", text, color, width);
 }
 
-static void structural_mark(void) {
-    float scale = ui_scale(), half = 3 * scale;
-    ui_same_line();
-    ui_align_right(MARK * scale);
-    ui_canvas mark = ui_canvas_begin("structural", MARK * scale, ui_line_height());
-    float x = 0.5f * (mark.area.left + mark.area.right);
-    float y = 0.5f * (mark.area.top + mark.area.bottom);
-    ui_frame((ui_rect){x - half, y - half, x + half, y + half}, ui_rgba(UI_DIM, 0.8f), scale,
+static void structural_mark(ui_rect cell) {
+    float scale = ui_scale(), half = 2.5f * scale;
+    float x = cell.right - 0.5f * MARK * scale, y = 0.5f * (cell.top + cell.bottom);
+    ui_frame((ui_rect){x - half, y - half, x + half, y + half}, ui_rgba(UI_DIM, 0.9f), scale,
              scale);
-    ui_canvas_end();
-    ui_tooltip("read while the effect loads: a change builds it anew");
 }
 
 static void reset_button(live *l, const roil_control *c) {
     ui_same_line();
-    ui_align_right((RESET + (c->structural ? MARK : 0)) * ui_scale());
+    ui_align_right(RESET * ui_scale());
     if (ui_icon_button("reset", UI_ICON_RESET, false, "reset to what the effect file says"))
         live_reset(l, c->name);
 }
 
 static void label_cell(live *l, const roil_control *c) {
     ui_rect space = ui_space();
-    float marks = ((c->structural ? MARK : 0) + (c->moved ? RESET : 0)) * ui_scale();
-    shown_label(c->label, space.right - space.left - marks, c->moved ? UI_ACCENT : UI_TEXT);
+    float width = space.right - space.left - (c->moved ? RESET + GAP : 0) * ui_scale();
+    float mark = (c->structural ? MARK : 0) * ui_scale();
+    ui_rect cell = label_text(c->label, width, mark, c->moved ? UI_ACCENT : UI_TEXT);
     help(c);
-    menu(l, c, "label");
+    menu(l, c, "label menu");
+    if (c->structural) structural_mark(cell);
     if (c->moved) reset_button(l, c);
-    if (c->structural) structural_mark();
 }
 
 void panel_label(const char *label) {
+    ui_push(label);
     ui_table_next();
     ui_rect space = ui_space();
-    shown_label(label, space.right - space.left, UI_DIM);
+    label_text(label, space.right - space.left, 0, UI_DIM);
     ui_table_next();
     ui_width(0);
+    ui_pop();
 }
 
 // ---- value ------------------------------------------------------------------------------------
@@ -168,8 +176,10 @@ static void structural_widget(live *l, const roil_control *c) {
 static void driven_value(const roil_control *c) {
     strbuf text = {0};
     panel_value_shown(c, c->value, &text);
-    ui_text_color(UI_DIM, "~ %s", strbuf_text(&text));
+    char shown[64];
+    snprintf(shown, sizeof shown, "~ %s", strbuf_text(&text));
     strbuf_free(&text);
+    text_cell("driven", shown, UI_DIM, 0);
 }
 
 static void value_cell(live *l, const roil_control *c) {
@@ -183,7 +193,7 @@ static void value_cell(live *l, const roil_control *c) {
     else if (widget(c, value))
         set(l, c, value);
     help(c);
-    menu(l, c, "value");
+    menu(l, c, "value menu");
 }
 
 void panel_row(live *l, const roil_control *c) {

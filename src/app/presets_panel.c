@@ -4,7 +4,8 @@
 #include "base/str.h"
 #include <string.h>
 
-static const double LOOK = 2; // seconds between looks at the folder
+static const double LOOK = 2;    // seconds between looks at the folder
+static const float BUTTON = 104; // units that a button at the right takes
 
 static void look(live *l, preset_list *list) {
     if (clock_seconds() < list->next_look) return;
@@ -55,17 +56,24 @@ static void load(live *l, const char *name) {
     else
         live_notice(l, "%s", roil_error());
     roil_free_preset(preset);
-    str_copy(l->panel->presets.name, sizeof l->panel->presets.name, name);
-    l->panel->presets.asked = false;
+    preset_list *list = &l->panel->presets;
+    str_copy(list->name, sizeof list->name, name);
+    str_copy(list->loaded, sizeof list->loaded, name);
+    list->asked = false;
 }
 
-static void draw_list(live *l, preset_list *list) {
-    if (!list->count) ui_text_color(UI_DIM, "None are saved yet.");
+// The first word stands for none.
+static void draw_choice(live *l, preset_list *list) {
+    const char *words[PANEL_PRESETS + 1] = {list->count ? "Load a preset" : "No presets yet"};
+    size_t index = 0;
     for (size_t i = 0; i < list->count; i++) {
-        if (ui_selectable(list->names[i], strcmp(list->names[i], list->name) == 0))
-            load(l, list->names[i]);
-        ui_tooltip("load; all else returns to what the effect file says");
+        words[i + 1] = list->names[i];
+        if (strcmp(list->names[i], list->loaded) == 0) index = i + 1;
     }
+    ui_width(-BUTTON * ui_scale());
+    if (ui_choice("##presets", &index, words, list->count + 1) && index > 0)
+        load(l, list->names[index - 1]);
+    ui_tooltip("what a preset does not name returns to what the effect file says");
 }
 
 // ---- saving -----------------------------------------------------------------------------------
@@ -83,26 +91,30 @@ static void save(live *l, preset_list *list) {
     }
     list->asked = false;
     list->next_look = 0;
-    if (roil_write_preset(l->effect, list->name))
+    if (roil_write_preset(l->effect, list->name)) {
         live_notice(l, "saved preset %s", list->name);
-    else
+        str_copy(list->loaded, sizeof list->loaded, list->name);
+    } else {
         live_notice(l, "%s", roil_error());
+    }
 }
 
 static void draw_saving(live *l, preset_list *list) {
-    ui_width(-100 * ui_scale());
-    if (ui_input("##name", "Name", list->name, sizeof list->name)) list->asked = false;
+    ui_width(-BUTTON * ui_scale());
+    if (ui_input("##name", "Name of a preset", list->name, sizeof list->name)) list->asked = false;
     ui_same_line();
     ui_disable_begin(!list->name[0]);
     if (ui_button(list->asked ? "Overwrite?###save" : "Save###save")) save(l, list);
     ui_disable_end();
+    ui_tooltip("keeps all that was changed, but not the camera");
 }
 
 void presets_draw(live *l) {
     preset_list *list = &l->panel->presets;
     look(l, list);
-    draw_list(l, list);
-    draw_saving(l, list);
+    draw_choice(l, list);
+    ui_same_line();
     if (ui_button("Reset all")) live_reset(l, NULL);
     ui_tooltip("everything returns to what the effect file says");
+    draw_saving(l, list);
 }
