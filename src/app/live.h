@@ -47,6 +47,7 @@ void live_notice(live *l, const char *format, ...) __attribute__((format(printf,
 
 // ---- parts, in the order in which they are drawn ----------------------------------------------
 
+enum { TIMELINE_HEIGHT = 94 };              // units
 void timeline_draw(live *l, ui_rect where); // timeline_bar.c
 
 panel *panel_create(void);
@@ -61,6 +62,7 @@ void performance_destroy(performance *p);
 // Once a frame of the effect that has been drawn; `cpu` and `interval` in seconds.
 void performance_add(performance *p, roil_effect *e, double cpu, double interval);
 void performance_draw(live *l);
+double performance_rate(const performance *p); // frames per second of late; 0: unknown
 
 inspector *inspector_create(void);
 void inspector_destroy(inspector *p, roil *r);
