@@ -10,6 +10,7 @@ static const float SEARCH = 48, PRESETS = 78; // heights of the parts that do no
 panel *panel_create(void) {
     panel *p = mem_alloc(sizeof *p);
     p->palette.selected = p->curve.selected = ROIL_MAX_STOPS;
+    p->pending.sent = true;
     return p;
 }
 

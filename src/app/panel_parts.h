@@ -25,11 +25,12 @@ typedef struct preset_list {
     bool asked;       // whether it may be written over
 } preset_list;
 
-// A structural value that was set and is not built yet: it is shown meanwhile.
+// A structural value that is shown though the effect does not have it yet.
 typedef struct pending_value {
     char name[PANEL_NAME];
     float value[4];
-    double until; // clock_seconds; it may never be built
+    bool sent;    // being built; else its widget is still held
+    double until; // clock_seconds at which it is given up: it may never be built
 } pending_value;
 
 struct panel {

@@ -153,24 +153,30 @@ static bool widget(const roil_control *c, float value[4]) {
     }
 }
 
-static void keep_pending(panel *p, const roil_control *c, const float value[4]) {
-    str_copy(p->pending.name, sizeof p->pending.name, c->name);
-    memcpy(p->pending.value, value, sizeof p->pending.value);
-    p->pending.until = clock_seconds() + PENDING;
+static bool is_pending(const panel *p, const roil_control *c) {
+    const pending_value *v = &p->pending;
+    return strcmp(v->name, c->name) == 0 &&
+           (!v->sent ||
+            (clock_seconds() < v->until && memcmp(v->value, c->value, sizeof c->value) != 0));
 }
 
-static bool is_pending(const panel *p, const roil_control *c) {
-    return strcmp(p->pending.name, c->name) == 0 && clock_seconds() < p->pending.until &&
-           memcmp(p->pending.value, c->value, sizeof c->value) != 0;
+static void keep_pending(pending_value *v, const char *name, const float value[4]) {
+    str_copy(v->name, sizeof v->name, name);
+    memcpy(v->value, value, sizeof v->value);
+    v->sent = false;
 }
 
 // A build for each step of a drag would be too many: it is built when the widget is let go.
 static void structural_widget(live *l, const roil_control *c) {
+    pending_value *v = &l->panel->pending;
     float value[4];
-    memcpy(value, is_pending(l->panel, c) ? l->panel->pending.value : c->value, sizeof value);
-    bool changed = widget(c, value);
-    if (changed) keep_pending(l->panel, c, value);
-    if (changed ? !ui_active() : ui_released()) set(l, c, value);
+    memcpy(value, is_pending(l->panel, c) ? v->value : c->value, sizeof value);
+    if (widget(c, value)) keep_pending(v, c->name, value);
+    bool at_once = c->type == ROIL_BOOL || c->type == ROIL_ENUM;
+    if (v->sent || strcmp(v->name, c->name) != 0 || (ui_active() && !at_once)) return;
+    v->sent = true;
+    v->until = clock_seconds() + PENDING;
+    set(l, c, v->value);
 }
 
 static void driven_value(const roil_control *c) {
