@@ -48,6 +48,23 @@ static char *joined(const char *folder, const char *name) {
     return mem_copy(path, strlen(path) + 1);
 }
 
+static bool open_device(roil *r, const roil_desc *desc) {
+    const roil_window_desc *window = desc->window;
+    gpu_window shown = {0};
+    if (window)
+        shown = (gpu_window){.extensions = window->extensions,
+                             .extension_count = window->extension_count,
+                             .create_surface = window->create_surface,
+                             .user = window->user};
+    r->window = window != NULL;
+    r->device = gpu_create(&(gpu_desc){.device = desc->device,
+                                       .cache_dir = r->cache,
+                                       .validate = desc->validate,
+                                       .window = window ? &shown : NULL,
+                                       .timeout = desc->timeout});
+    return r->device != NULL;
+}
+
 roil *roil_create(const roil_desc *desc) {
     char home[PATH_CAP], cache[PATH_CAP];
     if (!find_home(home, desc->home)) return NULL;
@@ -59,16 +76,14 @@ roil *roil_create(const roil_desc *desc) {
     r->counters = desc->counters;
     // Without a place for it (no home folder, a read-only one) roil works, only slower.
     if (!desc->no_cache && path_cache_folder(cache, "")) r->cache = joined(cache, "");
-    if (desc->no_device) return r;
-    r->device = gpu_create(
-        &(gpu_desc){.device = desc->device, .cache_dir = r->cache, .validate = desc->validate});
-    if (r->device) return r;
+    if (desc->no_device || open_device(r, desc)) return r;
     roil_destroy(r);
     return NULL;
 }
 
 void roil_destroy(roil *r) {
     if (!r) return;
+    roil_free_view(r);
     if (r->device) gpu_destroy(r->device);
     mem_free(r->home);
     mem_free(r->shaders);
@@ -87,6 +102,16 @@ const char *roil_device_driver(const roil *r) {
 
 uint64_t roil_validation_messages(const roil *r) {
     return r->device ? gpu_validation_messages(r->device) : 0;
+}
+
+bool roil_is_lost(const roil *r) {
+    return r->device && gpu_is_lost(r->device);
+}
+
+roil_memory roil_get_memory(const roil *r) {
+    if (!r->device) return (roil_memory){0};
+    gpu_memory_use use = gpu_get_memory_use(r->device);
+    return (roil_memory){.device = use.used, .reserved = use.reserved};
 }
 
 // ---- effects ----------------------------------------------------------------------------------
@@ -116,6 +141,8 @@ roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, 
 void roil_unload(roil_effect *e) {
     if (!e) return;
     effect_destroy(e->effect);
+    roil_keep_only(e, NULL);
+    mem_free(e->kept);
     mem_free(e);
 }
 
@@ -168,17 +195,14 @@ graph_image roil_find_image(roil_effect *e, const char *name) {
     return found;
 }
 
-bool roil_keep(roil_effect *e, const char *image) {
-    graph_image found = roil_find_image(e, image);
-    return found.id && graph_add_output(effect_graph(e->effect), found);
-}
-
 bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height) {
     if (width < 1 || height < 1 || width > 16384 || height > 16384)
         return err_set("picture size %u x %u; accepted: 1 to 16384 each", width, height);
     if (!e->owner->device) return err_set("no device: this effect can only be checked");
     e->width = width;
     e->height = height;
+    e->frame = 0; // images may be new
+    roil_apply_kept(e);
     return effect_build(e->effect, width, height);
 }
 

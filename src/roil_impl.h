@@ -3,10 +3,13 @@
 #include "effect/effect.h"
 #include "roil.h"
 
+typedef struct view view; // roil_view.h
+
 struct roil {
     gpu *device; // NULL: no_device
     char *home, *shaders, *scripts, *cache;
-    bool counters;
+    bool counters, window;
+    view *view; // NULL until something is shown or inspected
 };
 
 struct roil_effect {
@@ -14,8 +17,18 @@ struct roil_effect {
     effect *effect;
     uint32_t width, height;
     uint64_t frame; // number of the last GPU frame, 0: none
+    char **kept;    // names by roil_keep, for roil_apply_kept
+    size_t kept_count, kept_capacity;
 };
 
 // Reads an image of the graph as RGBA floats, rows from the top; free with mem_free.
 float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height);
 graph_image roil_find_image(roil_effect *e, const char *name); // zero with a message
+// sRGB bytes of linear 0 to 1 by its square root: entry i is that of (i / ROIL_SRGB_STEPS)^2.
+enum { ROIL_SRGB_STEPS = 4096 };
+const uint8_t *roil_srgb_table(void);
+
+void roil_free_view(roil *r);
+// Tells the graph which images are outputs: the effect's pictures, and those of roil_keep that it
+// has. Before it is compiled for a size.
+void roil_apply_kept(roil_effect *e);

@@ -60,22 +60,24 @@ static float srgb_encode(float linear) {        // IEC 61966-2-1
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
 }
 
-enum { TABLE_SIZE = 4096 };
-
 // Linear 0..1 to 8 bits by a table over the square root, which spends its entries where sRGB is
 // steep: within half a code of the formula.
-static uint8_t srgb_byte(float linear) {
-    static uint8_t table[TABLE_SIZE + 1];
+const uint8_t *roil_srgb_table(void) {
+    static uint8_t table[ROIL_SRGB_STEPS + 1];
     static bool filled;
     if (!filled) {
-        for (int i = 0; i <= TABLE_SIZE; i++) {
-            float root = (float)i / TABLE_SIZE;
+        for (int i = 0; i <= ROIL_SRGB_STEPS; i++) {
+            float root = (float)i / ROIL_SRGB_STEPS;
             table[i] = (uint8_t)lrintf(srgb_encode(root * root) * 255);
         }
         filled = true;
     }
+    return table;
+}
+
+static uint8_t srgb_byte(float linear) {
     linear = linear > 0 ? fminf(linear, 1) : 0;
-    return table[lrintf(sqrtf(linear) * TABLE_SIZE)];
+    return roil_srgb_table()[lrintf(sqrtf(linear) * ROIL_SRGB_STEPS)];
 }
 
 // Colours are premultiplied: without alpha they lie on black, with it they are divided by it.

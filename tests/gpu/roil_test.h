@@ -1,0 +1,93 @@
+// What tests of the public interface share: a roil with validation, and effects of one pass whose
+// shader a test writes into a folder of its own.
+#pragma once
+#include "base/memory.h"
+#include "roil.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h> // wants the headers above
+
+#define ok(result)                                                                                 \
+    do {                                                                                           \
+        if (!(result)) fail_msg("%s: %s", #result, roil_error());                                  \
+    } while (0)
+
+static char test_folder[256];
+static uint64_t test_messages;
+
+static inline int test_open(void **state) {
+    const char *temporary = getenv("TMPDIR");
+    snprintf(test_folder, sizeof test_folder, "%s/roil-test-XXXXXX",
+             temporary ? temporary : "/tmp");
+    assert_non_null(mkdtemp(test_folder));
+    roil *r = roil_create(&(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true});
+    ok(r);
+    *state = r;
+    return 0;
+}
+
+static inline int test_close(void **state) {
+    char command[300];
+    test_messages = roil_validation_messages(*state);
+    roil_destroy(*state);
+    snprintf(command, sizeof command, "rm -r '%s'", test_folder);
+    return system(command);
+}
+
+// Writes a file into the test's folder; `path` is where.
+static inline void write_text(const char *name, const char *text, char path[512]) {
+    snprintf(path, 512, "%s/%s", test_folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+static inline roil_effect *load_text(roil *r, const char *name, const char *text) {
+    char path[512];
+    write_text(name, text, path);
+    roil_effect *e = roil_load(r, path, NULL, 0);
+    ok(e);
+    return e;
+}
+
+static inline void expect_error(bool result, const char *part) {
+    assert_false(result);
+    if (!strstr(roil_error(), part)) fail_msg("'%s' does not say '%s'", roil_error(), part);
+}
+
+static inline void expect_pixel(const uint8_t *pixels, uint32_t width, uint32_t x, uint32_t y,
+                                int red, int green, int blue, int slack) {
+    const uint8_t *p = pixels + 4 * (size_t)(y * width + x);
+    if (abs(p[0] - red) <= slack && abs(p[1] - green) <= slack && abs(p[2] - blue) <= slack &&
+        p[3] == 255)
+        return;
+    fail_msg("pixel %u,%u is %d %d %d %d, not %d %d %d", x, y, p[0], p[1], p[2], p[3], red, green,
+             blue);
+}
+
+static inline int srgb(float linear) { // IEC 61966-2-1
+    linear = linear > 0 ? fminf(linear, 1) : 0;
+    float v = linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
+    return (int)lrintf(255 * v);
+}
+
+// The value that main returns; 77 when this machine has no device.
+#define test_run(tests)                                                                            \
+    (test_has_device()                                                                             \
+         ? cmocka_run_group_tests(tests, test_open, test_close) + (test_messages > 0 ? 1 : 0)      \
+         : 77)
+
+static inline bool test_has_device(void) {
+    char *devices = roil_info_devices();
+    roil_free(devices);
+    return devices != NULL;
+}
