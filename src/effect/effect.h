@@ -31,8 +31,8 @@ typedef struct effect_param {
 
 typedef struct effect_setting { // see effect_set
     const char *name, *text;
-    // What the script itself must say there (effect_initial_text) for the setting to hold; and it
-    // is no error if nothing has that name. NULL: holds always.
+    // What the script itself must say there (effect_control.initial) for the setting to hold; then
+    // it is no error if nothing has that name or takes that text. NULL: holds always.
     const char *initial;
 } effect_setting;
 
@@ -82,7 +82,8 @@ typedef struct effect_hooks {                                          // calls 
 } effect_hooks;
 void effect_set_hooks(effect *e, const effect_hooks *hooks);
 void effect_add_file(effect *e, const char *path); // a file a reload should watch
-// Palettes and curves that can be edited by name. `name` is made unique; returns what it became.
+// Palettes and curves that can be edited by name. `name` is made unique; returns what it became, or
+// NULL when a setting of that name is wrong.
 const char *effect_add_palette(effect *e, palette *p, const char *name);
 const char *effect_add_curve(effect *e, curve *c, const char *name);
 void effect_mark_structural(effect *e, size_t param);
@@ -115,24 +116,35 @@ typedef enum effect_control_kind {
 typedef struct effect_control {
     effect_control_kind kind;
     const char *name;
-    size_t pass, index;  // of the pass, and of the thing itself
+    size_t pass, index;  // of the pass, and of the thing itself (of a scene_value; of a uniform)
     const char *initial; // as text, before any setting
     const char *moved;   // the setting that holds, as text; NULL: the script's own value
 } effect_control;
+// Parameters, palettes and curves, the scene, then pass by pass; complete once the script has run.
 size_t effect_control_count(const effect *e);
 const effect_control *effect_get_control(const effect *e, size_t index);
-const effect_control *effect_find_control(const effect *e, const char *name); // NULL: suggests
+const effect_control *effect_find_control(effect *e, const char *name); // NULL: suggests
+// The palette or curve of a control of that kind; what holds a uniform or a value of the scene now
+// and what the script gave (NULL: the default).
+const palette *effect_control_palette(const effect_control *c);
+const curve *effect_control_curve(const effect_control *c);
+const field *effect_control_field(const effect *e, const effect_control *c);
+const field *effect_control_original(const effect_control *c);
+// The value of now, as effect_set takes it; of what the script moves how it does.
+void effect_print_control(const effect *e, const effect_control *c, strbuf *out);
 
 // Sets a parameter ("density"), a uniform of a pass ("march.steps"), a value of the scene
 // ("camera.fov"), a palette or a curve. `text`: a number, "1,2,3", "#ff8800", a word, true or
-// false; stops and keys as palette_parse and curve_parse take them. What is structure, an option
-// ("march.mode") or the resolution of a pass ("march.resolution"), can be set by
-// effect_desc.settings only. Names not known get a suggestion.
+// false; stops and keys as palette_parse and curve_parse take them. The text that the script itself
+// says (effect_control.initial) resets. What is structure, an option ("march.mode") or the
+// resolution of a pass ("march.resolution"), can be set by effect_desc.settings only. Names not
+// known get a suggestion. Repeating it takes no memory.
 bool effect_set(effect *e, const char *name, const char *text);
 bool effect_reset(effect *e, const char *name); // to what the script says
 bool effect_set_value(effect *e, size_t param, const float value[4]);
 
-// False when a setting of effect_desc names nothing that the script declared.
+// To be called when the script has run: sets what the command line says about the scene. False
+// when one of the settings is wrong, or names nothing that the script declared.
 bool effect_check_settings(effect *e);
 
 // ---- driving ----------------------------------------------------------------------------------
@@ -146,10 +158,11 @@ bool effect_allocate(effect *e, uint32_t width, uint32_t height); // after compi
 bool effect_build(effect *e, uint32_t width, uint32_t height);    // both
 // Evaluates all that a frame needs (update, functions, curves) and draws nothing. Any thread.
 bool effect_rehearse(effect *e, double frame);
-// `e` takes over what `from` has on the device and `e` would make again: histories that match by
-// name, format and size, decoded grids, meshes. Both compiled, `e` allocated. Exchanges rather than
-// copies: the other way round undoes it.
-void effect_adopt(effect *e, effect *from);
+// Instead of the first effect_allocate: takes over what `from` has on the device and `e` would make
+// again: images that match by name, format and size, with their contents, so that histories go on;
+// decoded grids; meshes. `from` is then good for effect_destroy only. On failure `from` is as it
+// was.
+bool effect_adopt(effect *e, effect *from, uint32_t width, uint32_t height);
 size_t effect_files(const effect *e, const char *const **out); // all that were read, absolute
 
 // Records and submits one frame. Frame numbers start at effect_first_frame; time = (frame -

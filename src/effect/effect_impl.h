@@ -6,6 +6,66 @@ void effect_copy_settings(effect *e, const effect_setting *settings, size_t coun
 // Applies the settings that name this pass; called before it enters the graph.
 bool effect_apply_settings(void *user, pass *p);
 
+// ---- controls ---------------------------------------------------------------------------------
+
+typedef struct control {
+    effect_control face; // first: effect_get_control gives it out
+    char *text;          // of face.moved
+    size_t text_capacity;
+    // Of a uniform and a value of the scene: what the script gave (NULL: the default), and two
+    // constants that settings take in turn, so that one that is refused changes nothing.
+    const field *original;
+    field *nodes[2];
+    int turn;
+    palette *palette; // its state before any setting beside it
+    palette_desc palette_original;
+    curve *curve;
+    curve curve_original;
+} control;
+
+control *effect_control_of(effect *e, const char *name); // NULL without a message
+// Puts a control behind those of its kind, and notes what the script says.
+control *effect_add_control(effect *e, const control *own);
+// Applies what the command line says about a control that was declared just now.
+bool effect_apply_to(effect *e, control *c);
+bool effect_set_control(effect *e, control *c, const char *text); // structure too
+void effect_reset_control(effect *e, control *c);                 // but for structure
+
+// By kind: param.c, control_pass.c, control_scene.c, control_ramp.c (palettes, curves). `set`
+// changes nothing when it fails; `print` says the value of now as `set` takes it, or how the script
+// moves it.
+bool param_set(effect *e, control *c, const char *text);
+void param_print(const effect *e, const control *c, strbuf *out);
+void pass_control_add_all(effect *e, size_t pass);
+void pass_control_declare(effect *e, control *c); // the script has said all about its pass
+bool pass_control_set(effect *e, control *c, const char *text);
+void pass_control_reset(effect *e, control *c);
+void pass_control_print(const effect *e, const control *c, strbuf *out);
+bool scene_control_add_all(effect *e);
+bool scene_control_unknown(const effect *e, const char *name); // true with a message of its own
+bool scene_control_set(effect *e, control *c, const char *text);
+void scene_control_reset(effect *e, control *c);
+void scene_control_print(const effect *e, const control *c, strbuf *out);
+bool ramp_set(effect *e, control *c, const char *text);
+void ramp_reset(effect *e, control *c);
+void ramp_print(const effect *e, const control *c, strbuf *out);
+bool ramp_rename(effect *e, control *c); // because a parameter takes its name
+
+// The constant that a setting becomes; `c->turn` says which of the two is in force.
+field *control_node(effect *e, control *c, int components, const float value[4]);
+
+// ---- values as text ---------------------------------------------------------------------------
+
+// "1.5", "1,2,3" or "1 2 3". Returns how many numbers, 0 when it is anything else.
+int text_numbers(const char *text, float out[4]);
+bool text_bool(const char *text, float *out);
+int text_word(const char *const *words, size_t count, const char *text); // -1: not among them
+// Messages; they return false.
+bool text_wrong(const char *name, const char *text, const char *accepted);
+bool text_wrong_word(const char *name, const char *text, const char *const *words, size_t count);
+void text_add_numbers(strbuf *out, const float *value, int count);
+void text_add_color(strbuf *out, const float value[3]); // "#rrggbb" where that is exact
+
 typedef struct effect_baked { // grid first: a field_grid that a pass fills
     field_grid grid;
     effect *owner;
@@ -49,4 +109,8 @@ struct effect {
     const effect_setting *settings;
     bool *applied; // one per setting
     size_t setting_count;
+
+    control **controls; // in the order of their list
+    size_t control_count, control_capacity;
+    size_t controlled; // passes that have theirs
 };

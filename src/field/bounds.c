@@ -229,6 +229,10 @@ static void print(const field *node, strbuf *out, size_t limit) {
     case KIND_CALL:
         strbuf_add(out, "function %d", node->index);
         return;
+    case KIND_CURVE:
+        strbuf_add(out, "curve ");
+        curve_print(node->object, out);
+        return;
     case KIND_GRID: {
         const field_grid *grid = node->object;
         strbuf_add(out, "%s[%d]", grid->name ? grid->name : "grid", node->index);

@@ -90,7 +90,7 @@ static bool unknown(const pass *p, const char *what, const char *name) {
 
 // ---- setting ----------------------------------------------------------------------------------
 
-static int uniform_components(shader_type type) {
+int pass_uniform_components(shader_type type) {
     switch (type) {
     case SHADER_VEC2:
         return 2;
@@ -108,7 +108,7 @@ bool pass_set_uniform(pass *p, const char *name, const field *value) {
     if (pass_find_key(p, name, &index) != PASS_UNIFORM) return unknown(p, "uniform", name);
     const shader_uniform *uniform = &p->face->uniforms[index];
     if (!value->uniform) return err_set("%s: uniform '%s' must not vary in space", p->label, name);
-    int wanted = uniform_components(uniform->type);
+    int wanted = pass_uniform_components(uniform->type);
     bool fits = value->components == wanted || value->components == 1 ||
                 (wanted == 3 && value->components == 4) || (wanted == 2 && value->components == 3);
     if (!fits)
@@ -125,6 +125,14 @@ bool pass_set_uniform(pass *p, const char *name, const field *value) {
     }
     p->uniforms[index] = value;
     return true;
+}
+
+void pass_restore_uniform(pass *p, size_t index, const field *value) {
+    p->uniforms[index] = value;
+}
+
+bool pass_refuse_uniform(const pass *p, const char *name) {
+    return unknown(p, "uniform", name);
 }
 
 bool pass_set_option(pass *p, const char *name, const char *word) {

@@ -74,10 +74,17 @@ pass_key pass_find_key(const pass *p, const char *name, size_t *index);
 
 bool pass_declare(pass *p); // checks that what is required is there; adds images and passes
 bool pass_check(pass *p);   // compiles the shaders; needs no device
-bool pass_build(pass *p);   // needs a device
-graph_image pass_output(const pass *p, const char *name); // after pass_declare; zero when unknown
-const field *pass_get_uniform(const pass *p, size_t index);
-size_t pass_get_option(const pass *p, size_t index); // index of the chosen word
+bool pass_build(pass *p);   // shaders and pipelines: needs a device, but any thread may do it
+// After pass_build, on the device's thread: what the pass itself keeps on the device.
+bool pass_allocate(pass *p);
+// After pass_build: evaluates the numbers of a frame as recording it would. Any thread.
+bool pass_rehearse(pass *p);
+graph_image pass_output(const pass *p, const char *name);   // after pass_declare; zero when unknown
+const field *pass_get_uniform(const pass *p, size_t index); // NULL: the default
+void pass_restore_uniform(pass *p, size_t index, const field *value); // one that it had, or NULL
+int pass_uniform_components(shader_type type);
+bool pass_refuse_uniform(const pass *p, const char *name); // the message for a name not known
+size_t pass_get_option(const pass *p, size_t index);       // index of the chosen word
 float pass_get_scale(const pass *p);
 // Counter totals of a frame, after it finished: one value per counter of the interface.
 bool pass_read_counters(pass *p, uint64_t *out);

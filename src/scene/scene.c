@@ -1,6 +1,8 @@
 // Camera, sun and sky, evaluated once a frame into the block that every shader reads. Z is up.
 #include "scene/scene.h"
 #include <cglm/clipspace/persp_rh_zo.h>
+#include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 static const field *scalar(arena *memory, float value) {
@@ -34,6 +36,41 @@ void scene_init(scene *s, arena *memory) {
     };
 }
 
+#define VALUE(PART, NAME, COMPONENTS, MIN, MAX, UNIT, HELP, ...)                                   \
+    {                                                                                              \
+#PART "." #NAME, offsetof(scene, PART.NAME), COMPONENTS,                                   \
+            .min = MIN, .max = MAX, .unit = UNIT, .help = HELP, __VA_ARGS__                        \
+    }
+
+// What they mean is said in the words of script/reference.c.
+static const scene_value values[] = {
+    VALUE(camera, eye, 3, -INFINITY, INFINITY, "m", "where it stands"),
+    VALUE(camera, target, 3, -INFINITY, INFINITY, "m", "what it looks at"),
+    VALUE(camera, distance, 1, 0.001f, INFINITY, "m", "from the target", .orbit = true),
+    VALUE(camera, yaw, 1, -360, 360, "degrees", "about +Z; 0 looks along +Y", .orbit = true),
+    VALUE(camera, pitch, 1, -89.9f, 89.9f, "degrees",
+          "height of the eye above the target's horizon", .orbit = true),
+    VALUE(camera, fov, 1, 1, 170, "degrees", "vertical field of view"),
+    VALUE(camera, near, 1, 0.0001f, INFINITY, "m", "nothing nearer is seen"),
+    VALUE(camera, far, 1, 0.001f, INFINITY, "m", "nothing solid farther away is seen"),
+    VALUE(sun, azimuth, 1, -360, 360, "degrees", "where it stands: about +Z, from +X"),
+    VALUE(sun, elevation, 1, -90, 90, "degrees", "above the horizon"),
+    VALUE(sun, color, 3, 0, INFINITY, "", "multiplies the strength", .color = true),
+    VALUE(sun, strength, 1, 0, INFINITY, "", "irradiance of what faces it"),
+    VALUE(sky, zenith, 3, 0, INFINITY, "", "radiance straight up", .color = true),
+    VALUE(sky, horizon, 3, 0, INFINITY, "", "radiance at the horizon and below", .color = true),
+    VALUE(sky, strength, 1, 0, INFINITY, "", "factor of both"),
+};
+
+const scene_value *scene_values(size_t *count) {
+    *count = sizeof values / sizeof *values;
+    return values;
+}
+
+const field **scene_slot(scene *s, const scene_value *value) {
+    return (const field **)(void *)((char *)s + value->offset);
+}
+
 // Evaluates a field that does not vary in space.
 static bool value_of(const field *node, const field_context *context, float out[4]) {
     return field_eval(node, context, (float3){0, 0, 0}, out);
@@ -53,7 +90,7 @@ static void direction(float azimuth, float elevation, vec3 out) {
     out[2] = sinf(e);
 }
 
-static bool camera_eye(const scene_camera *c, const field_context *context, vec3 eye, vec3 target) {
+bool scene_camera_eye(const scene_camera *c, const field_context *context, vec3 eye, vec3 target) {
     float value[4], distance, yaw, pitch;
     if (!value_of(c->target, context, value)) return false;
     glm_vec3_copy(value, target);
@@ -76,7 +113,7 @@ static bool fill_camera(const scene_camera *c, const field_context *context, flo
                         struct frame_block *out) {
     vec3 eye, target, forward, up = {0, 0, 1};
     float fov, near, far;
-    if (!camera_eye(c, context, eye, target) || !scalar_of(c->fov, context, &fov) ||
+    if (!scene_camera_eye(c, context, eye, target) || !scalar_of(c->fov, context, &fov) ||
         !scalar_of(c->near, context, &near) || !scalar_of(c->far, context, &far))
         return false;
     fov = clampf(fov, 1, 170);

@@ -44,6 +44,17 @@ typedef struct scene {
     scene_sky sky;
 } scene;
 
+typedef struct scene_value { // one value of camera, sun or sky
+    const char *name;        // "camera.fov"
+    size_t offset;           // of its field in the scene
+    int components;
+    bool color, orbit; // orbit: only of a camera that circles its target
+    float min, max;    // of what a user sets; -INFINITY, INFINITY: any
+    const char *unit, *help;
+} scene_value;
+const scene_value *scene_values(size_t *count);
+const field **scene_slot(scene *s, const scene_value *value);
+
 // A scene with the defaults of the documentation, made of constants in `memory`.
 void scene_init(scene *s, arena *memory);
 // Evaluates camera, sun and sky into the block that shaders read (time and size of the block are
@@ -51,6 +62,14 @@ void scene_init(scene *s, arena *memory);
 bool scene_fill_frame(const scene *s, const field_context *context, float aspect,
                       struct frame_block *out);
 
+// Where the camera stands and what it looks at, metres.
+bool scene_camera_eye(const scene_camera *c, const field_context *context, vec3 eye, vec3 target);
+
 bool scene_mesh_upload(scene_mesh *mesh, gpu *g);
+// Exchanges what both have on the device; false when they are not made of the same data.
+bool scene_mesh_exchange(scene_mesh *mesh, scene_mesh *other);
 void scene_mesh_destroy(scene_mesh *mesh, gpu *g);
 bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, mat4 out);
+// The same and its colour; an error names the mesh.
+bool scene_mesh_place(const scene_mesh *mesh, const field_context *context, mat4 transform,
+                      float tint[4]);

@@ -110,14 +110,15 @@ static void only_structure_misses_the_cache(void **state) {
     numbers other = {9, 0.3f, 0.5f, 6, "perlin", NULL, 0, cache}; // and other palette keys
     assert_int_equal(compiles_of(*state, other), 0);
 
-    const effect_setting steps = {"march.steps", "17"}, scale = {"march.resolution", "0.5"};
+    const effect_setting steps = {"march.steps", "17", NULL},
+                         scale = {"march.resolution", "0.5", NULL};
     other.settings = &steps;
     other.setting_count = 1;
     assert_int_equal(compiles_of(*state, other), 0);
     other.settings = &scale;
     assert_int_equal(compiles_of(*state, other), 0);
 
-    const effect_setting mode = {"march.mode", "paper"};
+    const effect_setting mode = {"march.mode", "paper", NULL};
     other.settings = &mode;
     assert_int_equal(compiles_of(*state, other), 1); // an option is structure, of that pass alone
     assert_int_equal(compiles_of(*state, other), 0);

@@ -240,8 +240,12 @@ static void words_and_toggles_of_a_users_shader_are_set_by_word(void **state) {
 static void settings_apply_when_what_they_name_is_declared(void **state) {
     stage *s = *state;
     static const effect_setting settings[] = {
-        {"gain", "1.5"},         {"quality", "low"},           {"march.steps", "77"},
-        {"march.mode", "paper"}, {"march.resolution", "0.25"}, {"march.albedo", "0.5,0,1"},
+        {"gain", "1.5", NULL},
+        {"quality", "low", NULL},
+        {"march.steps", "77", NULL},
+        {"march.mode", "paper", NULL},
+        {"march.resolution", "0.25", NULL},
+        {"march.albedo", "0.5,0,1", NULL},
     };
     open_with(s, settings, COUNT_OF(settings));
     assert_false(effect_check_settings(s->e)); // nothing is declared yet
@@ -265,12 +269,13 @@ static void bad_setting_fails_what_it_names(void **state) {
         effect_setting setting;
         const char *part;
     } cases[] = {
-        {{"march.steps", "0"}, "uniform 'steps' is 0; accepted: 1 to 4096"},
-        {{"march.mode", "papre"}, "option 'mode' cannot be 'papre'; accepted: physical, paper"},
-        {{"march.resolution", "2"}, "resolution is 2; accepted: above 0, up to 1"},
-        {{"march.resolution", "half"}, "accepted: a number, as 0.25"},
-        {{"march.density", "3"}, "march.density is a field"},
-        {{"march.sampling_", "linear"}, "did you mean 'sampling'?"},
+        {{"march.steps", "0", NULL}, "uniform 'steps' is 0; accepted: 1 to 4096"},
+        {{"march.mode", "papre", NULL},
+         "option 'mode' cannot be 'papre'; accepted: physical, paper"},
+        {{"march.resolution", "2", NULL}, "resolution is 2; accepted: above 0, up to 1"},
+        {{"march.resolution", "half", NULL}, "accepted: a number, as 0.25"},
+        {{"march.density", "3", NULL}, "march.density is a field"},
+        {{"march.sampling_", "linear", NULL}, "did you mean 'sampling'?"},
     };
     for (size_t i = 0; i < COUNT_OF(cases); i++) {
         open_with(s, &cases[i].setting, 1);
@@ -278,7 +283,7 @@ static void bad_setting_fails_what_it_names(void **state) {
         if (pass_declare(p)) fail_msg("%s", cases[i].setting.name);
         assert_error(cases[i].part);
     }
-    const effect_setting gain = {"gain", "200"};
+    const effect_setting gain = {"gain", "200", NULL};
     open_with(s, &gain, 1);
     assert_int_equal(effect_add_param(s->e, &examples[0]), -1);
     assert_error("parameter 'gain' is 200; accepted: 0 to 2 1/m");
@@ -286,7 +291,7 @@ static void bad_setting_fails_what_it_names(void **state) {
 
 static void setting_that_names_nothing_is_reported_with_the_nearest(void **state) {
     stage *s = *state;
-    static const effect_setting settings[] = {{"gain", "1"}, {"cuont", "3"}};
+    static const effect_setting settings[] = {{"gain", "1", NULL}, {"cuont", "3", NULL}};
     open_with(s, settings, COUNT_OF(settings));
     add_examples(s);
     assert_false(effect_check_settings(s->e));
@@ -296,7 +301,7 @@ static void setting_that_names_nothing_is_reported_with_the_nearest(void **state
 static void settings_are_copied(void **state) {
     stage *s = *state;
     char name[] = "gain", text[] = "1.75";
-    effect_setting setting = {name, text};
+    effect_setting setting = {name, text, NULL};
     open_with(s, &setting, 1);
     memset(name, 'x', strlen(name));
     memset(text, 'x', strlen(text));

@@ -163,7 +163,7 @@ static void faults_in_functions_of_time_are_reported(void **state) {
 
 static void settings_reach_the_script(void **state) {
     (void)state;
-    static const effect_setting settings[] = {{"look", "paper"}, {"amount", "7"}};
+    static const effect_setting settings[] = {{"look", "paper", NULL}, {"amount", "7", NULL}};
     effect *e = helper_load_with(
         "local fx = effect { } local amount = param { 'amount', 1 }\n"
         "local look = param { 'look', 'physical', words = {'physical', 'paper'} }\n"

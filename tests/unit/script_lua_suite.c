@@ -23,7 +23,7 @@ static void read_setting(expectation *x, const char *text) {
     char *equals = strchr(own, '=');
     assert_non_null(equals);
     *equals = 0;
-    x->pairs[x->setting_count++] = (effect_setting){own, equals + 1};
+    x->pairs[x->setting_count++] = (effect_setting){own, equals + 1, NULL};
 }
 
 static void read_line(expectation *x, const char *line) {

@@ -1,0 +1,287 @@
+// Controls: the list of all that can be set by name, and what sets it.
+#include "base/error.h"
+#include "base/memory.h"
+#include "effect/effect_impl.h"
+#include <ctype.h>
+#include <string.h>
+
+// ---- the list ---------------------------------------------------------------------------------
+
+// Palettes and curves are listed as they are declared, and so are uniforms and options.
+static int rank(effect_control_kind kind) {
+    if (kind == EFFECT_CONTROL_CURVE) return EFFECT_CONTROL_PALETTE;
+    return kind > EFFECT_CONTROL_UNIFORM ? EFFECT_CONTROL_UNIFORM : (int)kind;
+}
+
+static void print(const effect *e, const control *c, strbuf *out) {
+    switch (c->face.kind) {
+    case EFFECT_CONTROL_PARAM:
+        param_print(e, c, out);
+        break;
+    case EFFECT_CONTROL_PALETTE:
+    case EFFECT_CONTROL_CURVE:
+        ramp_print(e, c, out);
+        break;
+    case EFFECT_CONTROL_SCENE:
+        scene_control_print(e, c, out);
+        break;
+    case EFFECT_CONTROL_UNIFORM:
+    case EFFECT_CONTROL_OPTION:
+    case EFFECT_CONTROL_SCALE:
+        pass_control_print(e, c, out);
+        break;
+    }
+}
+
+static void note_initial(effect *e, control *c) {
+    strbuf text = {0};
+    print(e, c, &text);
+    c->face.initial = arena_string(&e->memory, strbuf_text(&text));
+    strbuf_free(&text);
+}
+
+// Lies in the arena, as all that an effect keeps of its controls: there is nothing to free.
+static void grow(effect *e) {
+    if (e->control_count < e->control_capacity) return;
+    e->control_capacity = e->control_capacity ? e->control_capacity * 2 : 64;
+    control **more = arena_alloc(&e->memory, e->control_capacity * sizeof *more);
+    if (e->control_count) memcpy(more, e->controls, e->control_count * sizeof *more);
+    e->controls = more;
+}
+
+control *effect_add_control(effect *e, const control *own) {
+    control *c = arena_copy(&e->memory, own, sizeof *own);
+    grow(e);
+    size_t at = e->control_count++;
+    for (; at > 0 && rank(e->controls[at - 1]->face.kind) > rank(c->face.kind); at--)
+        e->controls[at] = e->controls[at - 1];
+    e->controls[at] = c;
+    note_initial(e, c);
+    return c;
+}
+
+size_t effect_control_count(const effect *e) {
+    return e->control_count;
+}
+
+const effect_control *effect_get_control(const effect *e, size_t index) {
+    return &e->controls[index]->face;
+}
+
+const palette *effect_control_palette(const effect_control *c) {
+    return ((const control *)c)->palette;
+}
+
+const curve *effect_control_curve(const effect_control *c) {
+    return ((const control *)c)->curve;
+}
+
+const field *effect_control_original(const effect_control *c) {
+    return ((const control *)c)->original;
+}
+
+void effect_print_control(const effect *e, const effect_control *c, strbuf *out) {
+    print(e, (const control *)c, out);
+}
+
+// ---- names ------------------------------------------------------------------------------------
+
+static void add_passes(effect *e) {
+    for (; e->controlled < e->pass_count; e->controlled++) pass_control_add_all(e, e->controlled);
+}
+
+control *effect_control_of(effect *e, const char *name) {
+    add_passes(e);
+    for (size_t i = 0; i < e->control_count; i++)
+        if (strcmp(e->controls[i]->face.name, name) == 0) return e->controls[i];
+    return NULL;
+}
+
+// Why a pass has no control of that name.
+static bool unknown_in_pass(pass *p, const char *name) {
+    size_t index;
+    pass_key key = pass_find_key(p, name, &index);
+    if (key == PASS_FIELD || key == PASS_IMAGE)
+        return err_set("%s.%s is %s; only the effect file can set it", pass_label(p), name,
+                       key == PASS_FIELD ? "a field" : "an image");
+    return pass_refuse_uniform(p, name);
+}
+
+static pass *pass_named(const effect *e, const char *name, size_t length) {
+    for (size_t i = 0; i < e->pass_count; i++) {
+        const char *label = pass_label(e->passes[i]);
+        if (strlen(label) == length && strncmp(label, name, length) == 0) return e->passes[i];
+    }
+    return NULL;
+}
+
+static bool unknown(effect *e, const char *name) {
+    const char *dot = strrchr(name, '.');
+    pass *p = dot ? pass_named(e, name, (size_t)(dot - name)) : NULL;
+    if (p) return unknown_in_pass(p, dot + 1);
+    if (scene_control_unknown(e, name)) return false;
+    const char **names = mem_alloc((e->control_count + 1) * sizeof *names);
+    for (size_t i = 0; i < e->control_count; i++) names[i] = e->controls[i]->face.name;
+    const char *near = str_nearest(name, names, e->control_count);
+    mem_free(names);
+    if (near) return err_set("nothing is named '%s'; did you mean '%s'?", name, near);
+    return err_set("nothing is named '%s'; `roil info params` lists what can be set", name);
+}
+
+static control *find(effect *e, const char *name) {
+    control *c = effect_control_of(e, name);
+    if (!c) unknown(e, name);
+    return c;
+}
+
+const effect_control *effect_find_control(effect *e, const char *name) {
+    const control *c = find(e, name);
+    return c ? &c->face : NULL;
+}
+
+// ---- setting ----------------------------------------------------------------------------------
+
+field *control_node(effect *e, control *c, int components, const float value[4]) {
+    field **node = &c->nodes[!c->turn];
+    if (!*node) *node = field_constant(&e->memory, 4, (float[4]){0});
+    (*node)->components = components;
+    memcpy((*node)->value, value, sizeof(*node)->value);
+    return *node;
+}
+
+// Keeps what was set, on one line. The buffer grows with the longest text only.
+static void note_moved(effect *e, control *c, const char *text) {
+    size_t size = strlen(text) + 1;
+    if (size > c->text_capacity) {
+        c->text_capacity = 2 * size > 64 ? 2 * size : 64;
+        c->text = arena_alloc(&e->memory, c->text_capacity);
+    }
+    for (size_t i = 0; i < size; i++)
+        c->text[i] = text[i] && iscntrl((unsigned char)text[i]) ? ' ' : text[i];
+    c->face.moved = c->text;
+}
+
+static bool is_structure(const control *c) {
+    return c->face.kind == EFFECT_CONTROL_OPTION || c->face.kind == EFFECT_CONTROL_SCALE;
+}
+
+static bool set(effect *e, control *c, const char *text) {
+    switch (c->face.kind) {
+    case EFFECT_CONTROL_PARAM:
+        return param_set(e, c, text);
+    case EFFECT_CONTROL_PALETTE:
+    case EFFECT_CONTROL_CURVE:
+        return ramp_set(e, c, text);
+    case EFFECT_CONTROL_SCENE:
+        return scene_control_set(e, c, text);
+    case EFFECT_CONTROL_UNIFORM:
+    case EFFECT_CONTROL_OPTION:
+    case EFFECT_CONTROL_SCALE:
+        return pass_control_set(e, c, text);
+    }
+    return false;
+}
+
+void effect_reset_control(effect *e, control *c) {
+    switch (c->face.kind) {
+    case EFFECT_CONTROL_PARAM:
+        effect_set_value(e, c->face.index, e->params[c->face.index].initial);
+        break;
+    case EFFECT_CONTROL_PALETTE:
+    case EFFECT_CONTROL_CURVE:
+        ramp_reset(e, c);
+        break;
+    case EFFECT_CONTROL_SCENE:
+        scene_control_reset(e, c);
+        break;
+    case EFFECT_CONTROL_UNIFORM:
+    case EFFECT_CONTROL_OPTION:
+    case EFFECT_CONTROL_SCALE:
+        pass_control_reset(e, c);
+        break;
+    }
+    c->face.moved = NULL;
+}
+
+bool effect_set_control(effect *e, control *c, const char *text) {
+    if (strcmp(text, c->face.initial) == 0 && !is_structure(c)) {
+        effect_reset_control(e, c);
+        return true;
+    }
+    if (!set(e, c, text)) return false;
+    note_moved(e, c, text);
+    if (strcmp(text, c->face.initial) == 0) c->face.moved = NULL;
+    return true;
+}
+
+static bool refuse_structure(const char *name) {
+    return err_set("%s is structure; it can only be set when the effect is loaded", name);
+}
+
+bool effect_set(effect *e, const char *name, const char *text) {
+    control *c = find(e, name);
+    if (!c) return false;
+    return is_structure(c) ? refuse_structure(name) : effect_set_control(e, c, text);
+}
+
+bool effect_reset(effect *e, const char *name) {
+    control *c = find(e, name);
+    if (!c) return false;
+    if (is_structure(c)) return refuse_structure(name);
+    effect_reset_control(e, c);
+    return true;
+}
+
+// ---- settings given before the script runs ------------------------------------------------------
+
+void effect_copy_settings(effect *e, const effect_setting *settings, size_t count) {
+    effect_setting *own = arena_alloc(&e->memory, count * sizeof *own);
+    for (size_t i = 0; i < count; i++) {
+        const effect_setting *s = &settings[i];
+        own[i] = (effect_setting){
+            .name = arena_string(&e->memory, s->name),
+            .text = arena_string(&e->memory, s->text),
+            .initial = s->initial ? arena_string(&e->memory, s->initial) : NULL,
+        };
+    }
+    e->settings = own;
+    e->setting_count = count;
+    e->applied = arena_alloc(&e->memory, count * sizeof *e->applied);
+}
+
+bool effect_apply_to(effect *e, control *c) {
+    for (size_t i = 0; i < e->setting_count; i++) {
+        const effect_setting *s = &e->settings[i];
+        if (strcmp(s->name, c->face.name) != 0) continue;
+        e->applied[i] = true;
+        if (s->initial && strcmp(s->initial, c->face.initial) != 0) continue;
+        if (!effect_set_control(e, c, s->text) && !s->initial) return false;
+    }
+    return true;
+}
+
+bool effect_apply_settings(void *user, pass *p) {
+    effect *e = user;
+    size_t length = strlen(pass_label(p));
+    add_passes(e);
+    for (size_t i = 0; i < e->control_count; i++) {
+        control *c = e->controls[i];
+        if (rank(c->face.kind) != EFFECT_CONTROL_UNIFORM || e->passes[c->face.pass] != p) continue;
+        pass_control_declare(e, c);
+        note_initial(e, c);
+        if (!effect_apply_to(e, c)) return false;
+    }
+    for (size_t i = 0; i < e->setting_count; i++) {
+        const effect_setting *s = &e->settings[i];
+        bool meant = strncmp(s->name, pass_label(p), length) == 0 && s->name[length] == '.';
+        if (meant && !e->applied[i] && !s->initial) return unknown(e, s->name);
+    }
+    return true;
+}
+
+bool effect_check_settings(effect *e) {
+    if (!scene_control_add_all(e)) return false;
+    for (size_t i = 0; i < e->setting_count; i++)
+        if (!e->applied[i] && !e->settings[i].initial) return unknown(e, e->settings[i].name);
+    return true;
+}

@@ -1,0 +1,104 @@
+// Controls of palettes and curves, which settings replace in place.
+#include "base/error.h"
+#include "effect/effect_impl.h"
+#include <string.h>
+
+static const char *unique_name(effect *e, const char *stem) {
+    const char *name = arena_string(&e->memory, stem);
+    for (int i = 2; effect_control_of(e, name); i++)
+        name = arena_format(&e->memory, "%s_%d", stem, i);
+    return name;
+}
+
+static const char *add(effect *e, control own, const char *name) {
+    own.face.name = unique_name(e, name);
+    control *c = effect_add_control(e, &own);
+    return effect_apply_to(e, c) ? c->face.name : NULL;
+}
+
+const char *effect_add_palette(effect *e, palette *p, const char *name) {
+    control own = {.face.kind = EFFECT_CONTROL_PALETTE,
+                   .palette = p,
+                   .palette_original = *palette_get_desc(p)};
+    return add(e, own, name);
+}
+
+const char *effect_add_curve(effect *e, curve *c, const char *name) {
+    control own = {.face.kind = EFFECT_CONTROL_CURVE, .curve = c, .curve_original = *c};
+    return add(e, own, name);
+}
+
+bool ramp_rename(effect *e, control *c) {
+    effect_reset_control(e, c);
+    c->face.name = unique_name(e, c->face.name);
+    return effect_apply_to(e, c);
+}
+
+// ---- setting ----------------------------------------------------------------------------------
+
+// One that moves in time, or a black body, becomes one of plain stops over the same range.
+static bool set_palette(control *c, const char *text) {
+    palette_stop stops[PALETTE_MAX_STOPS];
+    palette_key key = {.stops = stops};
+    if (!palette_parse(text, stops, &key.count)) return false;
+    return palette_replace(c->palette, &(palette_desc){.space = c->palette_original.space,
+                                                       .min = c->palette_original.min,
+                                                       .max = c->palette_original.max,
+                                                       .keys = &key,
+                                                       .key_count = 1});
+}
+
+static bool set_curve(control *c, const char *text) {
+    curve_key keys[CURVE_MAX_KEYS];
+    curve desc;
+    if (!curve_parse(text, keys, &desc)) return false;
+    desc.period = c->curve_original.period;
+    return curve_replace(c->curve, &desc);
+}
+
+bool ramp_set(effect *e, control *c, const char *text) {
+    (void)e;
+    bool done = c->palette ? set_palette(c, text) : set_curve(c, text);
+    return done || err_prefix("%s: ", c->face.name);
+}
+
+void ramp_reset(effect *e, control *c) {
+    (void)e;
+    if (!c->face.moved) return;
+    if (c->palette)
+        palette_replace(c->palette, &c->palette_original);
+    else
+        curve_replace(c->curve, &c->curve_original);
+}
+
+// ---- saying -----------------------------------------------------------------------------------
+
+static void print_palette(const palette_desc *desc, strbuf *out) {
+    if (desc->blackbody) {
+        strbuf_add(out, "blackbody ");
+        strbuf_add_float(out, desc->min);
+        strbuf_add(out, " ");
+        strbuf_add_float(out, desc->max);
+        if (!desc->physical) return;
+        strbuf_add(out, " physical ");
+        strbuf_add_float(out, desc->reference);
+        return;
+    }
+    for (size_t i = 0; i < desc->key_count; i++) {
+        const palette_key *key = &desc->keys[i];
+        if (desc->key_count > 1) {
+            strbuf_add(out, i > 0 ? " | " : "");
+            strbuf_add_float(out, key->time);
+            strbuf_add(out, ": ");
+        }
+        palette_print(key->stops, key->count, out);
+    }
+}
+
+void ramp_print(const effect *e, const control *c, strbuf *out) {
+    (void)e;
+    if (c->palette)
+        print_palette(palette_get_desc(c->palette), out);
+    else
+        curve_print(c->curve, out);
+}
