@@ -14,7 +14,6 @@ static struct {
     float linear[3];
     float hsv[3]; // 0 to 1
     float intensity;
-    int part; // that is dragged in
 } chosen = {.linear = {-1, -1, -1}};
 
 static float encode(float v) {
@@ -105,6 +104,7 @@ static bool square(void) {
         ui_gradient(row, of_hsv(chosen.hsv[0], 0, value), of_hsv(chosen.hsv[0], 1, value));
     }
     if (c.held) {
+        part_changed();
         chosen.hsv[1] = share_x(&c);
         chosen.hsv[2] = clampf(1 - (c.y - c.area.top) / height, 0, 1);
     }
@@ -133,7 +133,10 @@ static bool hue_strip(void) {
         ui_gradient(part, of_hsv((float)i / HUE_STEPS, 1, 1),
                     of_hsv((float)(i + 1) / HUE_STEPS, 1, 1));
     }
-    if (c.held) chosen.hsv[0] = fminf(share_x(&c), 0.9999f);
+    if (c.held) {
+        part_changed();
+        chosen.hsv[0] = fminf(share_x(&c), 0.9999f);
+    }
     mark(&c, chosen.hsv[0]);
     ui_canvas_end();
     return c.held;
@@ -146,7 +149,10 @@ static bool alpha_strip(float *alpha) {
     for (int i = 0; i < 3; i++) linear[i] = decode(rgb[i]);
     ui_checkers(c.area, STRIP / 2 * ui_scale());
     ui_gradient(c.area, ui_pack(linear, 0), ui_pack(linear, 1));
-    if (c.held) *alpha = share_x(&c);
+    if (c.held) {
+        part_changed();
+        *alpha = share_x(&c);
+    }
     mark(&c, clampf(*alpha, 0, 1));
     ui_canvas_end();
     return c.held;

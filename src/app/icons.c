@@ -48,7 +48,7 @@ static void sheet(const grid *g, float left, float top) {
              g->color, 1.5f * g->unit, 1.4f * g->unit);
 }
 
-void icon_draw(int icon, ui_rect area, uint32_t color) {
+void draw_icon(int icon, ui_rect area, uint32_t color) {
     float width = area.right - area.left, height = area.bottom - area.top;
     float side = fminf(width, height);
     grid g = {area.left + (width - side) / 2, area.top + (height - side) / 2, side / 16, color};

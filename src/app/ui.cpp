@@ -7,12 +7,10 @@
 #include "base/str.h"
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
-#include <cfloat>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <cstring>
 #include <imgui.h>
+#define IMGUI_DEFINE_MATH_OPERATORS
 #include <imgui_internal.h>
 
 static_assert(sizeof(ImDrawVert) == sizeof(roil_vertex), "vertices are copied as they are");
@@ -31,15 +29,12 @@ struct state {
     char *layout;
     float scale;
     ImFont *fonts[FONT_KIND_COUNT];
-    // of the picture
-    roil_vertex *vertices;
+    roil_vertex *vertices; // of the picture
     uint32_t *indices;
     roil_draw *draws;
     size_t vertex_capacity, index_capacity, draw_capacity;
-    // of the next widget
-    bool has_width;
+    bool has_width; // of the next widget
     float width;
-    // between begin and end
     int depth;               // of panels and windows
     bool panel;              // the outermost is one
     bool tables[MAX_TABLES]; // that are open, and visible
@@ -51,23 +46,16 @@ struct state {
     char typed[64], typed_first[64];
 } ui;
 
-const ImU32 colors[UI_COLOR_COUNT] = {
-    IM_COL32(222, 222, 222, 255), // text
-    IM_COL32(142, 142, 142, 255), // dim
-    IM_COL32(240, 146, 62, 255),  // accent
-    IM_COL32(132, 182, 110, 255), // good
-    IM_COL32(228, 180, 76, 255),  // warning
-    IM_COL32(232, 102, 84, 255),  // error
-    IM_COL32(36, 36, 36, 255),    // panel
-    IM_COL32(24, 24, 24, 255),    // field
-    IM_COL32(58, 58, 58, 255),    // line
-};
-const ImU32 RAISED = IM_COL32(54, 54, 54, 255), RAISED_HOVER = IM_COL32(68, 68, 68, 255),
-            RAISED_ACTIVE = IM_COL32(82, 82, 82, 255), FILLED = IM_COL32(74, 74, 74, 255),
-            FILLED_HOVER = IM_COL32(86, 86, 86, 255), FILLED_ACTIVE = IM_COL32(138, 86, 40, 255);
-
 ImVec4 rgba(ImU32 color) {
     return ImGui::ColorConvertU32ToFloat4(color);
+}
+
+ImVec2 low(ui_rect r) {
+    return ImVec2(r.left, r.top);
+}
+
+ImVec2 high(ui_rect r) {
+    return ImVec2(r.right, r.bottom);
 }
 
 ImDrawList *list() { // outside of panels: behind them
@@ -100,44 +88,36 @@ void set_sizes(ImGuiStyle &s) {
 }
 
 void set_colors(ImVec4 *c) {
-    static const struct {
+    const struct {
         ImGuiCol at;
         ImU32 color;
     } rows[] = {
-        {ImGuiCol_Text, colors[UI_TEXT]},
-        {ImGuiCol_TextDisabled, colors[UI_DIM]},
-        {ImGuiCol_WindowBg, colors[UI_PANEL]},
-        {ImGuiCol_PopupBg, IM_COL32(44, 44, 44, 255)},
-        {ImGuiCol_Border, IM_COL32(14, 14, 14, 255)},
-        {ImGuiCol_FrameBg, RAISED},
-        {ImGuiCol_FrameBgHovered, RAISED_HOVER},
-        {ImGuiCol_FrameBgActive, RAISED_ACTIVE},
-        {ImGuiCol_TitleBg, IM_COL32(44, 44, 44, 255)},
-        {ImGuiCol_TitleBgActive, IM_COL32(50, 50, 50, 255)},
+        {ImGuiCol_Text, ui_rgba(UI_TEXT, 1)},
+        {ImGuiCol_TextDisabled, ui_rgba(UI_DIM, 1)},
+        {ImGuiCol_WindowBg, ui_rgba(UI_PANEL, 1)},
+        {ImGuiCol_PopupBg, draw_grey(GREY_POPUP)},
+        {ImGuiCol_Border, draw_grey(14)},
+        {ImGuiCol_TitleBg, draw_grey(GREY_POPUP)},
+        {ImGuiCol_TitleBgActive, draw_grey(50)},
         {ImGuiCol_ScrollbarBg, IM_COL32(0, 0, 0, 0)},
-        {ImGuiCol_ScrollbarGrab, IM_COL32(66, 66, 66, 255)},
-        {ImGuiCol_ScrollbarGrabHovered, IM_COL32(84, 84, 84, 255)},
-        {ImGuiCol_ScrollbarGrabActive, IM_COL32(104, 104, 104, 255)},
-        {ImGuiCol_CheckMark, colors[UI_ACCENT]},
-        {ImGuiCol_Button, RAISED},
-        {ImGuiCol_ButtonHovered, RAISED_HOVER},
-        {ImGuiCol_ButtonActive, RAISED_ACTIVE},
+        {ImGuiCol_CheckMark, ui_rgba(UI_ACCENT, 1)},
         {ImGuiCol_Header, IM_COL32(240, 146, 62, 52)},
         {ImGuiCol_HeaderHovered, IM_COL32(255, 255, 255, 26)},
         {ImGuiCol_HeaderActive, IM_COL32(255, 255, 255, 40)},
-        {ImGuiCol_Separator, colors[UI_LINE]},
-        {ImGuiCol_ResizeGrip, IM_COL32(255, 255, 255, 20)},
-        {ImGuiCol_ResizeGripHovered, IM_COL32(255, 255, 255, 60)},
-        {ImGuiCol_ResizeGripActive, colors[UI_ACCENT]},
+        {ImGuiCol_Separator, ui_rgba(UI_LINE, 1)},
         {ImGuiCol_Tab, IM_COL32(0, 0, 0, 0)},
-        {ImGuiCol_TabHovered, RAISED_HOVER},
-        {ImGuiCol_TabActive, RAISED},
+        {ImGuiCol_TabHovered, draw_grey(GREY_RAISED_HOVER)},
+        {ImGuiCol_TabActive, draw_grey(GREY_RAISED)},
         {ImGuiCol_TabUnfocused, IM_COL32(0, 0, 0, 0)},
-        {ImGuiCol_TabUnfocusedActive, RAISED},
+        {ImGuiCol_TabUnfocusedActive, draw_grey(GREY_RAISED)},
         {ImGuiCol_TextSelectedBg, IM_COL32(240, 146, 62, 90)},
-        {ImGuiCol_NavHighlight, IM_COL32(0, 0, 0, 0)},
     };
     for (const auto &row : rows) c[row.at] = rgba(row.color);
+    // Each of these is followed by its hovered and its active colour.
+    const int raised[] = {ImGuiCol_FrameBg, ImGuiCol_Button, ImGuiCol_ScrollbarGrab,
+                          ImGuiCol_ResizeGrip};
+    for (int at : raised)
+        for (int i = 0; i < 3; i++) c[at + i] = rgba(draw_grey(GREY_RAISED + i * GREY_STEP));
 }
 
 void load_font(ImFontAtlas *atlas, font_kind kind) {
@@ -304,8 +284,8 @@ static const ImGuiWindowFlags STILL = ImGuiWindowFlags_NoTitleBar | ImGuiWindowF
                                       ImGuiWindowFlags_NoBringToFrontOnFocus;
 
 void ui_panel_begin(const char *name, ui_rect where) {
-    ImGui::SetNextWindowPos(ImVec2(where.left, where.top));
-    ImGui::SetNextWindowSize(ImVec2(where.right - where.left, where.bottom - where.top));
+    ImGui::SetNextWindowPos(low(where));
+    ImGui::SetNextWindowSize(high(where) - low(where));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
@@ -320,10 +300,8 @@ void ui_panel_end(void) {
 }
 
 bool ui_window_begin(const char *title, bool *open, ui_rect where, bool fixed) {
-    ImGui::SetNextWindowPos(ImVec2(where.left, where.top), ImGuiCond_FirstUseEver);
-    if (!fixed)
-        ImGui::SetNextWindowSize(ImVec2(where.right - where.left, where.bottom - where.top),
-                                 ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowPos(low(where), ImGuiCond_FirstUseEver);
+    if (!fixed) ImGui::SetNextWindowSize(high(where) - low(where), ImGuiCond_FirstUseEver);
     ImGui::PushFont(ui.fonts[FONT_STRONG]); // of the title
     bool visible = ImGui::Begin(
         title, open, ImGuiWindowFlags_NoCollapse | (fixed ? ImGuiWindowFlags_AlwaysAutoResize : 0));
@@ -384,27 +362,6 @@ void ui_disable_end(void) {
     ImGui::EndDisabled();
 }
 
-bool ui_section(const char *label, bool open) {
-    bool *is_open = ImGui::GetStateStorage()->GetBoolRef(ImGui::GetID(label), open);
-    float height = ImGui::GetFrameHeight(), s = ui.scale;
-    ImVec2 at = ImGui::GetCursorScreenPos();
-    float width = fmaxf(ImGui::GetContentRegionAvail().x, 1);
-    if (ImGui::InvisibleButton(label, ImVec2(width, height))) *is_open = !*is_open;
-    ImGui::SetItemAllowOverlap(); // buttons may stand at its right end
-    bool hovered = ImGui::IsItemHovered();
-    ui_fill({at.x, at.y, at.x + width, at.y + height},
-            hovered ? IM_COL32(58, 58, 58, 255) : IM_COL32(46, 46, 46, 255), 4 * s);
-    float x = at.x + 13 * s, y = at.y + height / 2, r = 4 * s;
-    if (*is_open)
-        ui_triangle(x - r, y - r / 2, x + r, y - r / 2, x, y + r * 0.6f, colors[UI_DIM]);
-    else
-        ui_triangle(x - r / 2, y - r, x + r * 0.6f, y, x - r / 2, y + r, colors[UI_DIM]);
-    ImFont *font = ui.fonts[FONT_STRONG];
-    list()->AddText(font, font->FontSize, ImVec2(at.x + 26 * s, y - font->FontSize / 2),
-                    ImGui::GetColorU32(ImGuiCol_Text), label, ImGui::FindRenderedTextEnd(label));
-    return *is_open;
-}
-
 bool ui_tabs_begin(const char *id) {
     return ImGui::BeginTabBar(id, ImGuiTabBarFlags_FittingPolicyScroll);
 }
@@ -431,7 +388,10 @@ void ui_table_begin(const char *id, int columns, const float *widths) {
 }
 
 void ui_table_next(void) {
-    if (ui.tables[ui.table_depth - 1]) ImGui::TableNextColumn();
+    ui.has_width = false;
+    if (!ui.tables[ui.table_depth - 1]) return;
+    ImGui::TableNextColumn();
+    ImGui::AlignTextToFramePadding(); // a label beside a widget
 }
 
 void ui_table_end(void) {
@@ -440,24 +400,10 @@ void ui_table_end(void) {
 
 // ---- text -------------------------------------------------------------------------------------
 
-static void text_of(ImU32 color, const char *format, va_list args) {
+void part_text(uint32_t color, const char *text) {
     ImGui::PushStyleColor(ImGuiCol_Text, color);
-    ImGui::TextV(format, args);
+    ImGui::TextUnformatted(text);
     ImGui::PopStyleColor();
-}
-
-void ui_text(const char *format, ...) {
-    va_list args;
-    va_start(args, format);
-    text_of(colors[UI_TEXT], format, args);
-    va_end(args);
-}
-
-void ui_text_color(ui_color color, const char *format, ...) {
-    va_list args;
-    va_start(args, format);
-    text_of(colors[color], format, args);
-    va_end(args);
 }
 
 void ui_text_wrapped(const char *text) {
@@ -468,9 +414,7 @@ void ui_text_wrapped(const char *text) {
 
 void ui_text_mono(ui_color color, const char *text) {
     ImGui::PushFont(ui.fonts[FONT_MONO]);
-    ImGui::PushStyleColor(ImGuiCol_Text, colors[color]);
-    ImGui::TextUnformatted(text);
-    ImGui::PopStyleColor();
+    part_text(ui_rgba(color, 1), text);
     ImGui::PopFont();
 }
 
@@ -501,44 +445,98 @@ float ui_line_height(void) {
 
 // ---- widgets ----------------------------------------------------------------------------------
 
-static ImU32 with_alpha(ImU32 color) { // of what is disabled
+uint32_t draw_enabled(uint32_t color) {
     return ImGui::GetColorU32(rgba(color));
 }
 
-static bool is_shown(const char *label) {
-    return ImGui::FindRenderedTextEnd(label) != label;
+void draw_text(ui_rect area, ui_color color, const char *text, float align) {
+    draw_text_in(area, ui_rgba(color, 1), text, align);
 }
 
-static void put_text(ui_rect area, ImU32 color, const char *text, float align) {
+void draw_text_in(ui_rect area, uint32_t color, const char *text, float align) {
     const char *end = ImGui::FindRenderedTextEnd(text);
     ImVec2 size = ImGui::CalcTextSize(text, end);
     float room = area.right - area.left, x = area.left + fmaxf(room - size.x, 0) * align;
     float y = floorf((area.top + area.bottom - size.y) / 2);
     ImGui::PushStyleColor(ImGuiCol_Text, color);
-    ImGui::RenderTextEllipsis(list(), ImVec2(floorf(x), y), ImVec2(area.right, area.bottom),
-                              area.right, area.right, text, end, &size);
+    ImGui::RenderTextEllipsis(list(), ImVec2(floorf(x), y), high(area), area.right, area.right,
+                              text, end, &size);
     ImGui::PopStyleColor();
 }
 
-// A row is one item to what asks about the last one: the label, if it is shown, and the widget, for
-// which the width is returned.
-static float row_begin(const char *label) {
+void draw_clipped(ui_rect area, ui_rect clip, uint32_t color, float rounding) {
+    list()->PushClipRect(low(clip), high(clip), true);
+    ui_fill(area, color, rounding);
+    list()->PopClipRect();
+}
+
+float part_row_begin(const char *label) {
     float width = take_width();
     ImGui::BeginGroup();
     ImGui::PushID(label);
-    if (!is_shown(label)) return width;
+    if (ImGui::FindRenderedTextEnd(label) == label) return width;
     ImVec2 at = ImGui::GetCursorScreenPos();
     float column = floorf(width * LABEL_SHARE), height = ImGui::GetFrameHeight();
     ImGui::Dummy(ImVec2(column, height));
-    put_text({at.x, at.y, at.x + column - 6 * ui.scale, at.y + height}, with_alpha(colors[UI_TEXT]),
-             label, 0);
+    draw_text({at.x, at.y, at.x + column - 6 * ui.scale, at.y + height}, UI_TEXT, label, 0);
     ImGui::SameLine(0, 0);
     return width - column;
 }
 
-static void row_end(void) {
+void part_row_end(void) {
     ImGui::PopID();
     ImGui::EndGroup();
+}
+
+void part_same_line(float gap) {
+    ImGui::SameLine(0, gap);
+}
+
+bool part_has_width(void) {
+    return ui.has_width;
+}
+
+part_area part_area_begin(const char *id, float width) {
+    ImVec2 at = ImGui::GetCursorScreenPos();
+    float height = ImGui::GetFrameHeight();
+    part_area a = {};
+    if (!(width > 0)) width = height;
+    a.clicked = ImGui::InvisibleButton(id, ImVec2(fmaxf(width, 1), height));
+    ImGui::SetItemAllowOverlap();
+    a.hovered = ImGui::IsItemHovered();
+    a.held = ImGui::IsItemActive();
+    a.area = {at.x, at.y, at.x + width, at.y + height};
+    return a;
+}
+
+void part_changed(void) {
+    ImGui::MarkItemEdited(ImGui::GetItemID());
+}
+
+bool *part_flag(const char *id, bool initial) {
+    return ImGui::GetStateStorage()->GetBoolRef(ImGui::GetID(id), initial);
+}
+
+void part_strong(bool strong) {
+    if (strong)
+        ImGui::PushFont(ui.fonts[FONT_STRONG]);
+    else
+        ImGui::PopFont();
+}
+
+void part_popup_open(const char *id) {
+    ImGui::OpenPopup(id);
+}
+
+bool part_popup_begin(const char *id) {
+    if (!ImGui::BeginPopup(id)) return false;
+    ui.depth++;
+    return true;
+}
+
+void part_popup_end(void) {
+    ui.depth--;
+    ImGui::EndPopup();
 }
 
 bool ui_button(const char *label) {
@@ -553,58 +551,13 @@ bool ui_small_button(const char *label) {
     return pressed;
 }
 
-bool ui_icon_button(const char *id, int icon, bool active, const char *tooltip) {
-    ImVec2 at = ImGui::GetCursorScreenPos();
-    float side = ImGui::GetFrameHeight(), inset = floorf(side * 0.18f);
-    bool pressed = ImGui::InvisibleButton(id, ImVec2(side, side));
-    ui_rect area = {at.x, at.y, at.x + side, at.y + side};
-    bool hovered = ImGui::IsItemHovered();
-    if (hovered) ui_fill(area, ImGui::IsItemActive() ? RAISED_ACTIVE : RAISED_HOVER, 4 * ui.scale);
-    ui_color color = active ? UI_ACCENT : hovered ? UI_TEXT : UI_DIM;
-    icon_draw(icon, {area.left + inset, area.top + inset, area.right - inset, area.bottom - inset},
-              with_alpha(colors[color]));
-    ui_tooltip(tooltip);
-    return pressed;
-}
-
-bool ui_toggle(const char *label, bool *value) {
-    bool column = ui.has_width, shown = is_shown(label);
-    float s = ui.scale, height = ImGui::GetFrameHeight(), track = 30 * s;
-    if (column) {
-        row_begin(label);
-    } else {
-        ImGui::BeginGroup();
-        ImGui::PushID(label);
-    }
-    ImVec2 at = ImGui::GetCursorScreenPos();
-    float text = column || !shown ? 0 : 7 * s + ImGui::CalcTextSize(label, nullptr, true).x;
-    bool changed = ImGui::InvisibleButton("##value", ImVec2(track + text, height));
-    ImGuiID id = ImGui::GetItemID();
-    if (changed) {
-        *value = !*value;
-        ImGui::MarkItemEdited(id);
-    }
-    bool hovered = ImGui::IsItemHovered();
-    float y = at.y + height / 2, r = 8 * s, knob = at.x + (*value ? track - r : r);
-    ImU32 fill = *value ? (hovered ? IM_COL32(250, 160, 80, 255) : colors[UI_ACCENT])
-                        : (hovered ? RAISED_ACTIVE : RAISED_HOVER);
-    ui_fill({at.x, y - r, at.x + track, y + r}, with_alpha(fill), r);
-    ui_disc(knob, y, r - 2.5f * s,
-            with_alpha(*value ? IM_COL32(30, 24, 18, 255) : colors[UI_TEXT]));
-    if (text > 0)
-        put_text({at.x + track + 7 * s, at.y, at.x + track + text + 1, at.y + height},
-                 with_alpha(colors[UI_TEXT]), label, 0);
-    row_end();
-    return changed;
-}
-
 bool ui_selectable(const char *label, bool selected) {
     return ImGui::Selectable(label, selected);
 }
 
 bool ui_choice(const char *label, size_t *index, const char *const *words, size_t count) {
     bool changed = false;
-    float width = row_begin(label), height = ImGui::GetFrameHeight(), s = ui.scale;
+    float width = part_row_begin(label), height = ImGui::GetFrameHeight();
     ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::SetNextItemWidth(width);
     const char *now = *index < count ? words[*index] : "";
@@ -620,16 +573,15 @@ bool ui_choice(const char *label, size_t *index, const char *const *words, size_
         ImGui::PopID();
     }
     if (open) ImGui::EndCombo();
-    float x = at.x + width - 13 * s, y = at.y + height / 2, r = 4 * s;
-    ui_triangle(x - r, y - r / 2, x + r, y - r / 2, x, y + r * 0.6f, with_alpha(colors[UI_DIM]));
-    row_end();
+    draw_chevron(at.x + width - 13 * ui.scale, at.y + height / 2, true);
+    part_row_end();
     return changed;
 }
 
 bool ui_input(const char *label, const char *hint, char *text, size_t capacity) {
-    ImGui::SetNextItemWidth(row_begin(label));
+    ImGui::SetNextItemWidth(part_row_begin(label));
     bool changed = ImGui::InputTextWithHint("##value", hint ? hint : "", text, capacity);
-    row_end();
+    part_row_end();
     return changed;
 }
 
@@ -674,39 +626,8 @@ static bool bar_drag(ImGuiID id, double *value, const number_range *range, float
     return true;
 }
 
-static void bar_draw(ui_rect box, double value, const number_range *range, const char *unit,
-                     bool hovered, bool held) {
-    float s = ui.scale, width = box.right - box.left, round = 4 * s;
-    ui_fill(box, with_alpha(colors[UI_FIELD]), round);
-    if (number_is_bounded(range)) {
-        float x = box.left + width * (float)number_to_share(range, value);
-        list()->PushClipRect(ImVec2(box.left, box.top), ImVec2(x, box.bottom), true);
-        ui_fill(box, with_alpha(held ? FILLED_ACTIVE : hovered ? FILLED_HOVER : FILLED), round);
-        list()->PopClipRect();
-        float edge = fminf(fmaxf(x, box.left + s), box.right - s);
-        ui_fill({edge - s, box.top + 3 * s, edge + s, box.bottom - 3 * s},
-                with_alpha(held || hovered ? colors[UI_ACCENT] : IM_COL32(150, 120, 94, 255)), s);
-    } else if (hovered || held) {
-        ui_frame(box, held ? colors[UI_ACCENT] : RAISED_ACTIVE, round, s);
-    }
-    char text[64];
-    number_text(range, value, text, sizeof text);
-    float digits = ImGui::CalcTextSize(text).x, pad = 8 * s;
-    float behind = unit && unit[0] ? ImGui::CalcTextSize(unit).x + 4 * s : 0;
-    if (digits + behind + 2 * pad > width) {
-        put_text({box.left + 2 * s, box.top, box.right - 2 * s, box.bottom},
-                 with_alpha(colors[UI_TEXT]), text, 0.5f);
-        return;
-    }
-    ui_rect inside = {box.left + pad, box.top, box.right - pad - behind, box.bottom};
-    put_text(inside, with_alpha(colors[UI_TEXT]), text, 1);
-    if (behind > 0)
-        put_text({inside.right + 4 * s, box.top, box.right, box.bottom}, with_alpha(colors[UI_DIM]),
-                 unit, 0);
-}
-
-static bool bar(const char *name, double *value, const number_range *range, const char *unit,
-                float width) {
+bool part_bar(const char *name, double *value, const number_range *range, const char *unit,
+              float width) {
     ImGuiContext &g = *GImGui;
     ImGuiWindow *window = ImGui::GetCurrentWindow();
     ImGuiID id = window->GetID(name);
@@ -726,77 +647,8 @@ static bool bar(const char *name, double *value, const number_range *range, cons
     if (typing) return bar_type(box, id, value, range);
     if (hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     bool changed = bar_drag(id, value, range, width);
-    bar_draw({box.Min.x, box.Min.y, box.Max.x, box.Max.y}, *value, range, unit, hovered,
+    draw_bar({box.Min.x, box.Min.y, box.Max.x, box.Max.y}, *value, range, unit, hovered,
              g.ActiveId == id);
-    return changed;
-}
-
-bool ui_number(const char *label, float *value, int components, float min, float max,
-               bool log_scale, const char *unit) {
-    const number_range range = {(double)min, (double)max, log_scale, false};
-    float width = row_begin(label), gap = 3 * ui.scale, left = width;
-    bool changed = false;
-    for (int i = 0; i < components; i++) {
-        char name[16];
-        snprintf(name, sizeof name, "##%d", i);
-        double v = (double)value[i];
-        float part = floorf((left - gap * (float)(components - 1 - i)) / (float)(components - i));
-        if (i) ImGui::SameLine(0, gap);
-        if (bar(name, &v, &range, unit, fmaxf(part, 1))) {
-            value[i] = (float)v;
-            changed = true;
-        }
-        left -= part + gap;
-    }
-    row_end();
-    return changed;
-}
-
-bool ui_whole(const char *label, int *value, int min, int max, const char *unit) {
-    const number_range range = {(double)min, (double)max, false, true};
-    double v = *value;
-    bool changed = bar("##value", &v, &range, unit, row_begin(label));
-    if (changed) *value = (int)v;
-    row_end();
-    return changed;
-}
-
-// ---- colours ----------------------------------------------------------------------------------
-
-static void swatch(ui_rect box, const float *linear, int components) {
-    float round = 4 * ui.scale, middle = (box.left + box.right) / 2;
-    const float opacity = components == 4 ? linear[3] : 1;
-    if (opacity < 1) {
-        ui_checkers({middle, box.top, box.right, box.bottom}, 6 * ui.scale);
-        ui_fill({middle, box.top, box.right, box.bottom}, ui_pack(linear, opacity), 0);
-        ui_fill({box.left, box.top, middle, box.bottom}, ui_pack(linear, 1), 0);
-    } else {
-        ui_fill(box, ui_pack(linear, 1), round);
-    }
-    ui_frame(box, IM_COL32(255, 255, 255, 30), opacity < 1 ? 0 : round, ui.scale);
-    char text[64];
-    color_text(linear, text, sizeof text);
-    float light = 0.2126f * linear[0] + 0.7152f * linear[1] + 0.0722f * linear[2];
-    bool dark = light * opacity + 0.05f * (1 - opacity) < 0.2f;
-    put_text({box.left + 8 * ui.scale, box.top, box.right - 8 * ui.scale, box.bottom},
-             with_alpha(dark ? IM_COL32(225, 225, 225, 255) : IM_COL32(20, 20, 20, 255)), text, 1);
-}
-
-bool ui_color_edit(const char *label, float *linear, int components) {
-    bool changed = false;
-    float width = row_begin(label);
-    ImVec2 at = ImGui::GetCursorScreenPos(), size(width, ImGui::GetFrameHeight());
-    if (ImGui::InvisibleButton("##swatch", size)) ImGui::OpenPopup("picker");
-    ImGuiID id = ImGui::GetItemID();
-    swatch({at.x, at.y, at.x + size.x, at.y + size.y}, linear, components);
-    if (ImGui::BeginPopup("picker")) {
-        ui.depth++;
-        changed = color_picker(linear, components);
-        ui.depth--;
-        ImGui::EndPopup();
-    }
-    if (changed) ImGui::MarkItemEdited(id);
-    row_end();
     return changed;
 }
 
@@ -870,8 +722,7 @@ void ui_canvas_end(void) {
 
 static ui_canvas bare(ImGuiID id, ui_rect area) {
     const ImGuiIO &io = ImGui::GetIO();
-    bool inside = io.MousePos.x >= area.left && io.MousePos.x < area.right &&
-                  io.MousePos.y >= area.top && io.MousePos.y < area.bottom;
+    bool inside = ImRect(low(area), high(area)).Contains(io.MousePos);
     bool free = !io.WantCaptureMouse && !ui.bare && inside;
     ui_canvas c = canvas_of(area, free);
     if (free && (io.MouseClicked[0] || io.MouseClicked[1] || io.MouseClicked[2])) {
@@ -889,27 +740,12 @@ ui_canvas ui_bare(ui_rect area) {
     return bare(ImHashData(corner, sizeof corner), area);
 }
 
-bool ui_splitter(ui_rect area, float *position) {
-    ui_canvas c = bare(ImHashStr("splitter"), area);
-    if (c.hovered || c.held) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    ui_fill(area, colors[UI_FIELD], 0);
-    if (c.hovered || c.held) ui_fill(area, ui_rgba(UI_ACCENT, c.held ? 1 : 0.6f), 0);
-    if (c.held) *position = c.x;
-    return c.held;
+ui_canvas part_bare(const char *id, ui_rect area) {
+    return bare(ImHashStr(id), area);
 }
 
-uint32_t ui_rgba(ui_color color, float alpha) {
-    return (colors[color] & 0xffffffu) | (uint32_t)(alpha * 255 + 0.5f) << 24;
-}
-
-uint32_t ui_pack(const float rgb[3], float alpha) {
-    uint32_t out = (uint32_t)(fminf(fmaxf(alpha, 0), 1) * 255 + 0.5f) << 24;
-    for (int i = 0; i < 3; i++) {
-        float v = fminf(fmaxf(rgb[i], 0), 1);
-        float encoded = v <= 0.0031308f ? v * 12.92f : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
-        out |= (uint32_t)(encoded * 255 + 0.5f) << (8 * i);
-    }
-    return out;
+void part_cursor_sideways(void) {
+    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
 }
 
 void ui_line(float x0, float y0, float x1, float y1, uint32_t color, float width) {
@@ -922,27 +758,15 @@ void ui_polyline(const float *xy, size_t count, uint32_t color, float width) {
 }
 
 void ui_fill(ui_rect area, uint32_t color, float rounding) {
-    list()->AddRectFilled(ImVec2(area.left, area.top), ImVec2(area.right, area.bottom), color,
-                          rounding);
+    list()->AddRectFilled(low(area), high(area), color, rounding);
 }
 
 void ui_frame(ui_rect area, uint32_t color, float rounding, float width) {
-    list()->AddRect(ImVec2(area.left, area.top), ImVec2(area.right, area.bottom), color, rounding,
-                    0, width);
+    list()->AddRect(low(area), high(area), color, rounding, 0, width);
 }
 
 void ui_gradient(ui_rect area, uint32_t left, uint32_t right) {
-    list()->AddRectFilledMultiColor(ImVec2(area.left, area.top), ImVec2(area.right, area.bottom),
-                                    left, right, right, left);
-}
-
-void ui_checkers(ui_rect area, float size) {
-    ui_fill(area, IM_COL32(92, 92, 92, 255), 0);
-    int row = 0;
-    for (float y = area.top; y < area.bottom; y += size, row ^= 1)
-        for (float x = area.left + (row ? size : 0); x < area.right; x += 2 * size)
-            ui_fill({x, y, fminf(x + size, area.right), fminf(y + size, area.bottom)},
-                    IM_COL32(142, 142, 142, 255), 0);
+    list()->AddRectFilledMultiColor(low(area), high(area), left, right, right, left);
 }
 
 void ui_triangle(float x0, float y0, float x1, float y1, float x2, float y2, uint32_t color) {
@@ -965,11 +789,9 @@ void ui_label(float x, float y, uint32_t color, const char *text) {
 }
 
 void ui_image(ui_rect area, const roil_texture *texture) {
-    list()->AddImage((ImTextureID)texture, ImVec2(area.left, area.top),
-                     ImVec2(area.right, area.bottom));
+    list()->AddImage((ImTextureID)texture, low(area), high(area));
 }
 
 void ui_shade(ui_rect area) {
-    ImGui::GetBackgroundDrawList()->AddRectFilled(
-        ImVec2(area.left, area.top), ImVec2(area.right, area.bottom), IM_COL32(0, 0, 0, 150));
+    ImGui::GetBackgroundDrawList()->AddRectFilled(low(area), high(area), IM_COL32(0, 0, 0, 150));
 }

@@ -35,13 +35,57 @@ void number_text(const number_range *r, double value, char *out, size_t capacity
 // What was typed: a number within the range; false when it is none.
 bool number_parse(const number_range *r, const char *text, double *out);
 
-// ---- icons.c ----------------------------------------------------------------------------------
+// ---- draw.c: what widgets look like ------------------------------------------------------------
 
-void icon_draw(int icon, ui_rect area, uint32_t color);
+enum { // greys of the style, 0 to 255: neutral, so that they tint no one's judgement of colour
+    GREY_RAISED = 54,
+    GREY_STEP = 14, // when hovered, and again when held
+    GREY_RAISED_HOVER = GREY_RAISED + GREY_STEP,
+    GREY_RAISED_ACTIVE = GREY_RAISED_HOVER + GREY_STEP,
+    GREY_POPUP = 44,
+};
+uint32_t draw_grey(int level);
+uint32_t draw_enabled(uint32_t color); // the colour, paler where widgets are disabled; ui.cpp
+// One line within the area, cut with "..."; `align`: 0 left to 1 right. ui.cpp has them.
+void draw_text(ui_rect area, ui_color color, const char *text, float align);
+void draw_text_in(ui_rect area, uint32_t color, const char *text, float align);
+void draw_clipped(ui_rect area, ui_rect clip, uint32_t color, float rounding);
+void draw_heading(ui_rect area, bool open, bool hovered);
+void draw_chevron(float x, float y, bool down);
+void draw_switch(ui_rect area, bool on, bool hovered);
+void draw_bar(ui_rect area, double value, const number_range *range, const char *unit, bool hovered,
+              bool held);
+void draw_swatch(ui_rect area, const float *linear, int components);
+void draw_icon(int icon, ui_rect area, uint32_t color); // icons.c
+
+// ---- ui.cpp: what widgets.c is made of --------------------------------------------------------
+
+// A row is one item to what asks about the last one: its label, if that is shown, and its widget,
+// whose width is returned.
+float part_row_begin(const char *label);
+void part_row_end(void);
+void part_same_line(float gap);
+bool part_has_width(void); // ui_width was called for the next widget
+typedef struct part_area {
+    ui_rect area;
+    bool clicked, hovered, held;
+} part_area;
+part_area part_area_begin(const char *id, float width); // to be clicked, not drawn; 0: a square
+void part_changed(void);                                // the last item's value
+bool *part_flag(const char *id, bool initial);          // that the current panel remembers
+void part_strong(bool strong);                          // text from here on
+bool part_bar(const char *id, double *value, const number_range *range, const char *unit,
+              float width);
+void part_text(uint32_t color, const char *text);
+ui_canvas part_bare(const char *id, ui_rect area); // ui_bare, though the area moves
+void part_cursor_sideways(void);
+void part_popup_open(const char *id);
+bool part_popup_begin(const char *id);
+void part_popup_end(void);
 
 // ---- color_picker.c ---------------------------------------------------------------------------
 
-// "#ff8000", of an HDR colour with its factor behind: "#ff8000 x4".
+// "#ff8000", of an HDR colour with its factor behind: "#ff8000 x 4".
 void color_text(const float linear[3], char *out, size_t capacity);
 bool color_picker(float *linear, int components); // inside of a popup
 

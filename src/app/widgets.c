@@ -1,0 +1,149 @@
+// Widgets that ImGui has not, or not as an artist wants them: headings, icons, toggles, numbers,
+// colours.
+#include "app/ui_parts.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_LABEL = 256, MAX_TEXT = 4096 };
+static const float SWITCH = 30, INSET = 0.18f;
+
+static bool is_shown(const char *label) {
+    return label[0] && strncmp(label, "##", 2) != 0;
+}
+
+// ---- text and layout --------------------------------------------------------------------------
+
+static void text_of(ui_color color, const char *format, va_list args) {
+    char text[MAX_TEXT];
+    vsnprintf(text, sizeof text, format, args);
+    part_text(ui_rgba(color, 1), text);
+}
+
+void ui_text(const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    text_of(UI_TEXT, format, args);
+    va_end(args);
+}
+
+void ui_text_color(ui_color color, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    text_of(color, format, args);
+    va_end(args);
+}
+
+bool ui_splitter(ui_rect area, float *position) {
+    ui_canvas c = part_bare("splitter", area);
+    ui_fill(area, ui_rgba(UI_FIELD, 1), 0);
+    if (c.hovered || c.held) {
+        part_cursor_sideways();
+        ui_fill(area, ui_rgba(UI_ACCENT, c.held ? 1 : 0.6f), 0);
+    }
+    if (c.held) *position = c.x;
+    return c.held;
+}
+
+bool ui_section(const char *label, bool open) {
+    bool *is_open = part_flag(label, open);
+    ui_rect space = ui_space();
+    part_area a = part_area_begin(label, fmaxf(space.right - space.left, 1));
+    if (a.clicked) *is_open = !*is_open;
+    draw_heading(a.area, *is_open, a.hovered);
+    ui_rect text = {a.area.left + 26 * ui_scale(), a.area.top, a.area.right, a.area.bottom};
+    part_strong(true);
+    draw_text(text, UI_TEXT, label, 0);
+    part_strong(false);
+    return *is_open;
+}
+
+// ---- values ------------------------------------------------------------------------------------
+
+bool ui_icon_button(const char *id, int icon, bool active, const char *tooltip) {
+    part_area a = part_area_begin(id, 0);
+    ui_rect inside = a.area;
+    float inset = floorf((a.area.bottom - a.area.top) * INSET);
+    inside.left += inset;
+    inside.top += inset;
+    inside.right -= inset;
+    inside.bottom -= inset;
+    if (a.hovered)
+        ui_fill(a.area, draw_grey(a.held ? GREY_RAISED_ACTIVE : GREY_RAISED_HOVER), 4 * ui_scale());
+    ui_color color = active ? UI_ACCENT : a.hovered ? UI_TEXT : UI_DIM;
+    draw_icon(icon, inside, draw_enabled(ui_rgba(color, 1)));
+    ui_tooltip(tooltip);
+    return a.clicked;
+}
+
+bool ui_toggle(const char *label, bool *value) {
+    float gap = 7 * ui_scale(), track = SWITCH * ui_scale(), text = 0;
+    bool column = part_has_width();
+    char name[MAX_LABEL];
+    if (column || !is_shown(label)) {
+        part_row_begin(label);
+    } else { // its row has no label of its own
+        snprintf(name, sizeof name, "##%s", label);
+        part_row_begin(name);
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(label, "#"), label);
+        text = gap + ui_text_width(name);
+    }
+    part_area a = part_area_begin("##value", track + text);
+    if (a.clicked) {
+        *value = !*value;
+        part_changed();
+    }
+    ui_rect box = a.area;
+    box.right = box.left + track;
+    draw_switch(box, *value, a.hovered);
+    if (text > 0)
+        draw_text((ui_rect){box.right + gap, box.top, a.area.right + 1, box.bottom}, UI_TEXT, name,
+                  0);
+    part_row_end();
+    return a.clicked;
+}
+
+bool ui_number(const char *label, float *value, int components, float min, float max,
+               bool log_scale, const char *unit) {
+    const number_range range = {(double)min, (double)max, log_scale, false};
+    float width = part_row_begin(label), gap = 3 * ui_scale();
+    bool changed = false;
+    for (int i = 0; i < components; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "##%d", i);
+        int left = components - i; // they share what is left, in whole pixels
+        float part = floorf((width - gap * (float)(left - 1)) / (float)left);
+        if (i) part_same_line(gap);
+        double v = (double)value[i];
+        if (part_bar(name, &v, &range, unit, fmaxf(part, 1))) {
+            value[i] = (float)v;
+            changed = true;
+        }
+        width -= part + gap;
+    }
+    part_row_end();
+    return changed;
+}
+
+bool ui_whole(const char *label, int *value, int min, int max, const char *unit) {
+    const number_range range = {min, max, false, true};
+    double v = *value;
+    bool changed = part_bar("##value", &v, &range, unit, part_row_begin(label));
+    if (changed) *value = (int)v;
+    part_row_end();
+    return changed;
+}
+
+bool ui_color_edit(const char *label, float *linear, int components) {
+    bool changed = false;
+    part_area a = part_area_begin("##swatch", part_row_begin(label));
+    draw_swatch(a.area, linear, components);
+    if (a.clicked) part_popup_open("picker");
+    if (part_popup_begin("picker")) {
+        changed = color_picker(linear, components);
+        part_popup_end();
+    }
+    part_row_end();
+    return changed;
+}
