@@ -85,10 +85,11 @@ bool roil_set(roil_effect *e, const char *name, const char *value);
 bool roil_reset(roil_effect *e, const char *name); // to what the script says
 
 // Keeps an image of the graph ("march.color", or "march" for its first) so that it can be saved or
-// inspected. Takes effect with the next roil_prepare.
+// inspected. Takes effect with the next roil_prepare, which keeps histories.
 bool roil_keep(roil_effect *e, const char *image);
 void roil_keep_only(roil_effect *e, const char *image); // no others any more; NULL: none at all
-// Compiles and allocates for a picture size, 1 to 16384 each; again for a new size.
+// Compiles and allocates for a picture size, 1 to 16384 each; again for a new size. What was
+// rendered before cannot be read any more.
 bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height);
 // Renders one frame; returns when it is submitted. Histories (what passes keep from frame to frame)
 // start anew unless `frame` is the one after the last.
@@ -273,6 +274,7 @@ roil_live_count roil_live_counts(const roil_live *l);
 // ---- window -----------------------------------------------------------------------------------
 
 typedef struct roil_texture roil_texture; // 8-bit sRGB with alpha
+// `rgba`: rows from the top; NULL: transparent.
 roil_texture *roil_texture_create(roil *r, uint32_t width, uint32_t height, const uint8_t *rgba);
 void roil_texture_destroy(roil *r, roil_texture *t); // NULL is fine
 
@@ -289,42 +291,47 @@ typedef struct roil_draw {       // triangles of one texture
 typedef struct roil_picture { // what a window shows
     uint32_t width, height;   // pixels
     float background[3];      // sRGB
-    roil_effect *effect;      // its last picture; NULL: none
+    roil_effect *effect;      // its last picture, as roil_read has it without alpha; NULL: none
     float view[4];            // left, top, right, bottom of where it goes; it keeps its aspect
     const roil_vertex *vertices;
     const uint32_t *indices;
     const roil_draw *draws; // in order, over the effect
     size_t vertex_count, index_count, draw_count;
 } roil_picture;
-// Draws and, when there is a window, shows it; waits for the display's turn.
+// Draws and, when there is a window, shows it; waits for the display's turn. A width or height of 0
+// (minimised) shows nothing. False on indices that do not exist, and when the device is lost.
 bool roil_show(roil *r, const roil_picture *picture);
 // What was shown last: width * height * 4 bytes.
 bool roil_read_shown(roil *r, uint8_t *out);
 
+// Volumes are seen as slices with +z upwards, along z with +y. Outside of the image lies a dark
+// field; what is infinite or no number is magenta; behind alpha, with other channels, are checkers.
 typedef struct roil_inspection { // how an image of the graph is looked at
-    const char *image;           // must be kept (roil_keep)
+    const char *image;           // must be kept (roil_keep), unless it shares no memory
     uint32_t mip;
     int axis;          // of a volume: 0 x, 1 y, 2 z is the direction of sight
     float slice;       // of a volume: 0 to 1 along it
     float exposure;    // stops
-    unsigned channels; // bits: 1 red, 2 green, 4 blue, 8 alpha; one alone is shown in grey
-    bool negative;     // show the sign: positive orange, negative blue
-    float center[2];   // of the view in the image, 0 to 1
+    unsigned channels; // bits: 1 red, 2 green, 4 blue, 8 alpha; one alone is shown in grey, also
+                       // when the image has no other
+    bool negative;     // show the sign of the largest channel: positive orange, negative blue
+    float center[2];   // of the view in the image or slice, 0 to 1 from the top left
     float zoom;        // pixels of the texture for one of the image
     float cursor[2];   // pixel of the texture whose value is wanted; negative: none
 } roil_inspection;
 typedef struct roil_texel {
-    bool valid;
-    uint32_t at[3];
-    float value[4];
+    bool valid;     // false: no value yet, or the cursor is beside the image
+    uint32_t at[3]; // texel of the level
+    float value[4]; // as stored; missing channels 0, alpha 1
 } roil_texel;
 typedef struct roil_image_info {
     char name[96];
     const char *format;     // "rgba16f"
     uint32_t size[3], mips; // depth 1: 2D
-    bool volume, culled;
+    bool volume, culled;    // culled: nothing needs it, so it is not drawn
 } roil_image_info;
-size_t roil_images(roil_effect *e, roil_image_info *out, size_t capacity); // after roil_prepare
+// After roil_prepare; returns how many there are, 0 before. At most `capacity` are written.
+size_t roil_images(roil_effect *e, roil_image_info *out, size_t capacity);
 // Draws it into `target`. `texel`: under the cursor, of an earlier call whose frame has finished.
 bool roil_inspect(roil_effect *e, const roil_inspection *how, roil_texture *target,
                   roil_texel *texel);
