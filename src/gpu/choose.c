@@ -22,13 +22,20 @@ static gpu_kind kind_of(VkPhysicalDeviceType type) {
     }
 }
 
-int vk_queue_family_find(VkPhysicalDevice physical) {
+static bool can_present(VkPhysicalDevice physical, uint32_t family, VkSurfaceKHR surface) {
+    VkBool32 can = VK_FALSE;
+    return vkGetPhysicalDeviceSurfaceSupportKHR(physical, family, surface, &can) == VK_SUCCESS &&
+           can;
+}
+
+int vk_queue_family_find(VkPhysicalDevice physical, VkSurfaceKHR surface) {
     VkQueueFamilyProperties list[16];
     uint32_t count = COUNT_OF(list);
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, list);
     for (uint32_t i = 0; i < count; i++) {
         VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-        if ((list[i].queueFlags & wanted) == wanted) return (int)i;
+        if ((list[i].queueFlags & wanted) != wanted) continue;
+        if (!surface || can_present(physical, i, surface)) return (int)i;
     }
     return -1;
 }
@@ -56,7 +63,8 @@ static void lacks(gpu_info *info, const char *what) {
 }
 
 // A device older than 1.3 does not know the feature structs, so nothing more is asked of it.
-static void list_missing(VkPhysicalDevice physical, uint32_t version, gpu_info *info) {
+static void list_missing(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t version,
+                         gpu_info *info) {
     info->usable = true;
     if (version < VK_API_VERSION_1_3) {
         lacks(info, "Vulkan 1.3");
@@ -64,7 +72,14 @@ static void list_missing(VkPhysicalDevice physical, uint32_t version, gpu_info *
     }
     vk_features f;
     vk_features_read(physical, &f);
-    if (vk_queue_family_find(physical) < 0) lacks(info, "a graphics and compute queue");
+    if (vk_queue_family_find(physical, VK_NULL_HANDLE) < 0) {
+        lacks(info, "a graphics and compute queue");
+    } else if (surface && vk_queue_family_find(physical, surface) < 0) {
+        lacks(info, "a queue that can show pictures in the window");
+    }
+    if (surface && !has_extension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) {
+        lacks(info, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    }
     if (!has_extension(physical, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) {
         lacks(info, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
     }
@@ -78,7 +93,7 @@ static void list_missing(VkPhysicalDevice physical, uint32_t version, gpu_info *
     }
 }
 
-static void describe(VkPhysicalDevice physical, gpu_info *info) {
+static void describe(VkPhysicalDevice physical, VkSurfaceKHR surface, gpu_info *info) {
     VkPhysicalDeviceVulkan11Properties v11 = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
     VkPhysicalDeviceDriverProperties driver = {
@@ -108,7 +123,7 @@ static void describe(VkPhysicalDevice physical, gpu_info *info) {
             info->memory = heap->size;
         }
     }
-    int family = vk_queue_family_find(physical);
+    int family = vk_queue_family_find(physical, surface);
     if (family >= 0) {
         VkQueueFamilyProperties list[16];
         uint32_t count = COUNT_OF(list);
@@ -117,7 +132,7 @@ static void describe(VkPhysicalDevice physical, gpu_info *info) {
             info->timestamp_period = p->limits.timestampPeriod;
         }
     }
-    list_missing(physical, p->apiVersion, info);
+    list_missing(physical, surface, p->apiVersion, info);
 }
 
 static int rank(gpu_kind kind) {
@@ -129,7 +144,7 @@ static int rank(gpu_kind kind) {
     return ranks[kind];
 }
 
-int vk_choices_find(VkInstance instance, vk_choice *out) {
+int vk_choices_find(VkInstance instance, VkSurfaceKHR surface, vk_choice *out) {
     VkPhysicalDevice list[VK_MAX_DEVICES];
     uint32_t count = VK_MAX_DEVICES;
     VkResult result = vkEnumeratePhysicalDevices(instance, &count, list);
@@ -140,7 +155,7 @@ int vk_choices_find(VkInstance instance, vk_choice *out) {
     }
     for (uint32_t i = 0; i < count; i++) {
         vk_choice choice = {.physical = list[i]};
-        describe(list[i], &choice.info);
+        describe(list[i], surface, &choice.info);
         uint32_t at = i;
         for (; at > 0 && rank(out[at - 1].info.kind) > rank(choice.info.kind); at--) {
             out[at] = out[at - 1];
@@ -152,9 +167,9 @@ int vk_choices_find(VkInstance instance, vk_choice *out) {
 
 int gpu_list(gpu_info *out, int capacity) {
     vk_instance instance;
-    if (!vk_instance_create(&instance, false, NULL)) return -1;
+    if (!vk_instance_create(&instance, false, NULL, NULL)) return -1;
     vk_choice choices[VK_MAX_DEVICES];
-    int count = vk_choices_find(instance.handle, choices);
+    int count = vk_choices_find(instance.handle, VK_NULL_HANDLE, choices);
     for (int i = 0; i < count && i < capacity; i++) out[i] = choices[i].info;
     vk_instance_destroy(&instance);
     return count;

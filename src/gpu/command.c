@@ -59,21 +59,31 @@ static VkResult end_and_submit(gpu *g, vk_batch *batch) {
     if (result != VK_SUCCESS) return result;
     VkCommandBufferSubmitInfo commands = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                           .commandBuffer = batch->commands};
-    VkSemaphoreSubmitInfo signal = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
-                                    .semaphore = g->timeline,
-                                    .value = g->submitted + 1,
-                                    .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
+    VkSemaphoreSubmitInfo wait = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                  .semaphore = batch->wait,
+                                  .stageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT};
+    VkSemaphoreSubmitInfo signals[2] = {{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                         .semaphore = g->timeline,
+                                         .value = g->submitted + 1,
+                                         .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT},
+                                        {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                         .semaphore = batch->signal,
+                                         .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT}};
     VkSubmitInfo2 info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
                           .commandBufferInfoCount = 1,
                           .pCommandBufferInfos = &commands,
-                          .signalSemaphoreInfoCount = 1,
-                          .pSignalSemaphoreInfos = &signal};
+                          .waitSemaphoreInfoCount = batch->wait ? 1 : 0,
+                          .pWaitSemaphoreInfos = &wait,
+                          .signalSemaphoreInfoCount = batch->signal ? 2 : 1,
+                          .pSignalSemaphoreInfos = signals};
+    batch->wait = batch->signal = VK_NULL_HANDLE;
     return vkQueueSubmit2(g->queue, 1, &info, VK_NULL_HANDLE);
 }
 
 bool vk_batch_submit(gpu *g, vk_batch *batch) {
     if (g->host_reads) publish_to_host(batch->commands);
     VkResult result = end_and_submit(g, batch);
+    if (result == VK_ERROR_DEVICE_LOST) return vk_lose(g, result);
     if (!vk_check(g, result, "submitting work to '%s'", g->info.name)) {
         atomic_store(&g->lost, true);
         return false;
@@ -101,32 +111,6 @@ bool vk_flush(gpu *g) {
     vk_batch *batch = g->batch;
     g->batch = NULL;
     return vk_batch_submit(g, batch);
-}
-
-bool vk_wait(gpu *g, uint64_t serial) {
-    if (!vk_alive(g)) return false;
-    if (serial <= g->completed) return true;
-    VkSemaphoreWaitInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
-                                .semaphoreCount = 1,
-                                .pSemaphores = &g->timeline,
-                                .pValues = &serial};
-    if (!vk_check(g, vkWaitSemaphores(g->device, &info, UINT64_MAX), "waiting for '%s'",
-                  g->info.name)) {
-        return false;
-    }
-    if (serial > g->completed) g->completed = serial;
-    return true;
-}
-
-uint64_t vk_completed(gpu *g) {
-    uint64_t value = 0;
-    VkResult result = vkGetSemaphoreCounterValue(g->device, g->timeline, &value);
-    // A lost device may report any value; nothing beyond what was submitted can have finished.
-    if (vk_check(g, result, "asking '%s' for progress", g->info.name) && value > g->completed &&
-        value <= g->submitted) {
-        g->completed = value;
-    }
-    return g->completed;
 }
 
 bool gpu_idle(gpu *g) {

@@ -1,9 +1,7 @@
-// Life of a device: features, creation, loss, destruction.
+// Life of a device: features, creation, destruction.
 #include "base/log.h"
 #include "base/memory.h"
 #include "gpu/vk.h"
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,7 +21,7 @@ void vk_features_read(VkPhysicalDevice physical, vk_features *out) {
     vkGetPhysicalDeviceFeatures2(physical, &out->core);
 }
 
-VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family) {
+VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, bool presents) {
     vk_features has, want = {0};
     vk_features_read(physical, &has);
     chain(&want);
@@ -47,7 +45,8 @@ VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family) {
     want.v11.storageBuffer16BitAccess = has.v11.storageBuffer16BitAccess;
     want.v11.uniformAndStorageBuffer16BitAccess = has.v11.uniformAndStorageBuffer16BitAccess;
 
-    static const char *const extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+    static const char *const extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME,
+                                             VK_KHR_SWAPCHAIN_EXTENSION_NAME};
     float priority = 1.0f;
     VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                      .queueFamilyIndex = family,
@@ -57,7 +56,7 @@ VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family) {
                                .pNext = &want.core,
                                .queueCreateInfoCount = 1,
                                .pQueueCreateInfos = &queue,
-                               .enabledExtensionCount = COUNT_OF(extensions),
+                               .enabledExtensionCount = presents ? 2 : 1,
                                .ppEnabledExtensionNames = extensions};
     VkDevice device = VK_NULL_HANDLE;
     VkResult result = vkCreateDevice(physical, &info, NULL, &device);
@@ -65,39 +64,6 @@ VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family) {
         err_set("the device does not start: vkCreateDevice gives error %d", (int)result);
     }
     return device;
-}
-
-static const char *result_text(VkResult result) {
-    switch (result) {
-    case VK_ERROR_OUT_OF_HOST_MEMORY:
-        return "the driver has no host memory left";
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-        return "the device has no memory left";
-    case VK_ERROR_DEVICE_LOST:
-        return "the device was lost (a shader that ran too long, or a driver fault)";
-    case VK_ERROR_TOO_MANY_OBJECTS:
-        return "the driver allows no more objects of this kind";
-    case VK_ERROR_FORMAT_NOT_SUPPORTED:
-        return "the device does not support the format";
-    default:
-        return "the driver refuses";
-    }
-}
-
-bool vk_check(gpu *g, VkResult result, const char *what, ...) {
-    if (result == VK_SUCCESS) return true;
-    if (result == VK_ERROR_DEVICE_LOST) atomic_store(&g->lost, true);
-    char text[512];
-    va_list args;
-    va_start(args, what);
-    vsnprintf(text, sizeof text, what, args);
-    va_end(args);
-    return err_set("%s: %s (Vulkan result %d)", text, result_text(result), (int)result);
-}
-
-bool vk_alive(gpu *g) {
-    if (!atomic_load(&g->lost)) return true;
-    return err_set("the device '%s' was lost; it must be created anew", g->info.name);
 }
 
 void vk_name(gpu *g, VkObjectType type, uint64_t handle, const char *label) {
@@ -148,13 +114,13 @@ static void load_calls(gpu *g) {
 
 static bool open_device(gpu *g, const char *name) {
     vk_choice choices[VK_MAX_DEVICES];
-    int count = vk_choices_find(g->instance.handle, choices);
+    int count = vk_choices_find(g->instance.handle, g->window.surface, choices);
     const vk_choice *choice = count > 0 ? vk_choice_pick(choices, count, name) : NULL;
     if (!choice) return false;
     g->info = choice->info;
     g->physical = choice->physical;
-    g->family = (uint32_t)vk_queue_family_find(g->physical);
-    g->device = vk_device_create(g->physical, g->family);
+    g->family = (uint32_t)vk_queue_family_find(g->physical, g->window.surface);
+    g->device = vk_device_create(g->physical, g->family, g->window.surface != VK_NULL_HANDLE);
     if (!g->device) return false;
     vkGetDeviceQueue(g->device, g->family, 0, &g->queue);
     load_limits(g);
@@ -179,12 +145,18 @@ static bool open_commands(gpu *g) {
         if (!vk_batch_create(g, &g->frames[i].batch)) return false;
         if (!vk_timer_create(g, &g->frames[i].timer)) return false;
     }
-    return true;
+    return vk_window_open_frames(g);
 }
 
 static bool validation_wanted(const gpu_desc *desc) {
     const char *set = getenv("ROIL_VALIDATE");
     return desc->validate || (set && strcmp(set, "1") == 0);
+}
+
+// In nanoseconds. Software devices are slow, and nobody else waits for them.
+static uint64_t timeout_of(const gpu *g, double seconds) {
+    if (!(seconds > 0.0)) seconds = g->info.kind == GPU_CPU ? 300.0 : 30.0;
+    return seconds < 1e9 ? (uint64_t)(seconds * 1e9) : UINT64_MAX;
 }
 
 gpu *gpu_create(const gpu_desc *desc) {
@@ -193,12 +165,13 @@ gpu *gpu_create(const gpu_desc *desc) {
     gpu *g = mem_alloc(sizeof *g);
     pthread_mutex_init(&g->retire_lock, NULL);
     pthread_mutex_init(&g->built_lock, NULL);
-    if (!vk_instance_create(&g->instance, validation_wanted(desc), &g->messages) ||
-        !open_device(g, desc->device) || !open_commands(g) || !vk_samplers_create(g) ||
-        !vk_cache_create(g, desc->cache_dir)) {
+    if (!vk_instance_create(&g->instance, validation_wanted(desc), desc->window, &g->messages) ||
+        !vk_window_open(g, desc->window) || !open_device(g, desc->device) || !open_commands(g) ||
+        !vk_samplers_create(g) || !vk_cache_create(g, desc->cache_dir)) {
         gpu_destroy(g);
         return NULL;
     }
+    g->timeout = timeout_of(g, desc->timeout);
     log_write(LOG_DEBUG, "device: %s, %s%s", g->info.name, g->info.driver,
               g->instance.validating ? ", with validation" : "");
     return g;
@@ -209,7 +182,8 @@ static void close_frame(gpu *g, vk_frame *frame) {
         gpu_buffer_destroy(g, frame->uniforms.chunks[i]);
     }
     mem_free(frame->uniforms.chunks);
-    vkDestroyQueryPool(g->device, frame->timer.queries, NULL);
+    vk_timer_destroy(g, &frame->timer);
+    vkDestroySemaphore(g->device, frame->acquired, NULL);
     vk_batch_destroy(g, &frame->batch);
 }
 
@@ -218,6 +192,7 @@ static void close_device(gpu *g) {
     for (int i = 0; i < GPU_FRAMES_IN_FLIGHT; i++) close_frame(g, &g->frames[i]);
     for (int i = 0; i < VK_BATCHES; i++) vk_batch_destroy(g, &g->batches[i]);
     gpu_buffer_destroy(g, g->ring.buffer);
+    vk_window_close(g);
     vk_collect_all(g);
     for (int i = 0; i < GPU_SAMPLER_COUNT; i++) {
         vkDestroySampler(g->device, g->samplers[i], NULL);
@@ -228,9 +203,20 @@ static void close_device(gpu *g) {
     vkDestroyDevice(g->device, NULL);
 }
 
+// Work that hangs never lets go of what it uses, and drivers wait for it without a limit when the
+// device is destroyed. All of such a device, `g` too, is left to the end of the process: the caller
+// must get on, and can have a new device beside it.
+static bool comes_to_rest(gpu *g) {
+    if (!atomic_load(&g->lost)) vk_wait(g, g->submitted);
+    if (g->hung) log_write(LOG_WARNING, "%s; its memory stays in use", g->loss);
+    return !g->hung;
+}
+
 void gpu_destroy(gpu *g) {
     if (!g) return;
+    if (g->device && !comes_to_rest(g)) return;
     if (g->device) close_device(g);
+    if (g->window.surface) vkDestroySurfaceKHR(g->instance.handle, g->window.surface, NULL);
     vk_instance_destroy(&g->instance);
     pthread_mutex_destroy(&g->retire_lock);
     pthread_mutex_destroy(&g->built_lock);

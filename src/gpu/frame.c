@@ -27,6 +27,7 @@ uint64_t gpu_frame_begin(gpu *g) {
     g->frame_number = number;
     g->frame = frame;
     g->in_pass = false;
+    g->window.shows = false;
     frame->number = number;
     frame->uniforms.chunk = 0;
     frame->uniforms.offset = 0;
@@ -43,7 +44,7 @@ bool gpu_frame_end(gpu *g) {
     if (!vk_alive(g)) return false;
     if (!vk_batch_submit(g, &frame->batch)) return false;
     vk_collect(g);
-    return true;
+    return vk_present(g);
 }
 
 bool gpu_frame_wait(gpu *g, uint64_t frame) {

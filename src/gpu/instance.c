@@ -7,6 +7,8 @@
 #include "gpu/vk.h"
 #include <string.h>
 
+enum { MAX_WINDOW_EXTENSIONS = 8 };
+
 static const char validation_layer[] = "VK_LAYER_KHRONOS_validation";
 
 static bool layer_exists(const char *name) {
@@ -59,8 +61,22 @@ static bool version_is_enough(void) {
     return true;
 }
 
-static bool create(vk_instance *out, const VkDebugUtilsMessengerCreateInfoEXT *messenger) {
-    const char *extensions[2], *layers[1];
+static bool window_extensions_exist(const gpu_window *window) {
+    if (window->extension_count > MAX_WINDOW_EXTENSIONS) {
+        return err_set("the window needs %u Vulkan extensions; at most %d are accepted",
+                       window->extension_count, MAX_WINDOW_EXTENSIONS);
+    }
+    for (uint32_t i = 0; i < window->extension_count; i++) {
+        if (extension_exists(NULL, window->extensions[i])) continue;
+        return err_set("no Vulkan driver can show pictures in this window: %s is missing",
+                       window->extensions[i]);
+    }
+    return true;
+}
+
+static bool create(vk_instance *out, const gpu_window *window,
+                   const VkDebugUtilsMessengerCreateInfoEXT *messenger) {
+    const char *extensions[2 + MAX_WINDOW_EXTENSIONS], *layers[1];
     VkInstanceCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
         .pApplicationInfo = &(VkApplicationInfo){.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
@@ -70,6 +86,9 @@ static bool create(vk_instance *out, const VkDebugUtilsMessengerCreateInfoEXT *m
         .ppEnabledExtensionNames = extensions,
         .ppEnabledLayerNames = layers,
     };
+    for (uint32_t i = 0; window && i < window->extension_count; i++) {
+        extensions[info.enabledExtensionCount++] = window->extensions[i];
+    }
     if (out->labels) {
         extensions[info.enabledExtensionCount++] = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
     }
@@ -91,9 +110,11 @@ static bool create(vk_instance *out, const VkDebugUtilsMessengerCreateInfoEXT *m
     return true;
 }
 
-bool vk_instance_create(vk_instance *out, bool validate, _Atomic uint64_t *messages) {
+bool vk_instance_create(vk_instance *out, bool validate, const gpu_window *window,
+                        _Atomic uint64_t *messages) {
     memset(out, 0, sizeof *out);
     if (!version_is_enough()) return false;
+    if (window && !window_extensions_exist(window)) return false;
     out->labels = extension_exists(NULL, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     out->validating = validate && out->labels && layer_exists(validation_layer);
     if (validate && !out->validating) {
@@ -108,7 +129,7 @@ bool vk_instance_create(vk_instance *out, bool validate, _Atomic uint64_t *messa
         .pfnUserCallback = on_message,
         .pUserData = messages,
     };
-    if (!create(out, &messenger)) return false;
+    if (!create(out, window, &messenger)) return false;
     if (!out->validating) return true;
 
     messenger.pNext = NULL;

@@ -1,4 +1,6 @@
-// GPU time of each pass: two timestamps, taken when all earlier work has finished.
+// GPU time of each pass: two timestamps, taken when all earlier work has finished. And an event at
+// its end, which tells at which pass a device hangs: events can be asked for without waiting, while
+// lavapipe waits for all work before it answers about timestamps.
 //
 // lavapipe at times misses the first timestamp after it was idle and leaves 0 there, so a
 // difference is believed only within what the host clock allows: no pass is shorter than nothing or
@@ -18,8 +20,15 @@ bool vk_timer_create(gpu *g, vk_timer *out) {
                     "creating timestamp queries");
 }
 
+void vk_timer_destroy(gpu *g, vk_timer *timer) {
+    vkDestroyQueryPool(g->device, timer->queries, NULL);
+    for (int i = 0; i < GPU_MAX_PASSES; i++) vkDestroyEvent(g->device, timer->ends[i], NULL);
+}
+
 void vk_timer_begin(gpu *g, vk_timer *timer, VkCommandBuffer commands) {
-    (void)g;
+    for (uint32_t i = 0; i < timer->count; i++) {
+        if (timer->ends[i]) vkResetEvent(g->device, timer->ends[i]);
+    }
     timer->count = 0;
     timer->longest = 0.0;
     timer->began = clock_seconds();
@@ -30,6 +39,29 @@ static void stamp(gpu *g, uint32_t query) {
     if (!g->frame->timer.queries) return;
     vkCmdWriteTimestamp2(g->frame->batch.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                          g->frame->timer.queries, query);
+}
+
+// Without memory for the event a hang goes unnamed, and all else works.
+static void mark_end(gpu *g, vk_timer *timer, uint32_t pass) {
+    VkEventCreateInfo info = {.sType = VK_STRUCTURE_TYPE_EVENT_CREATE_INFO};
+    VkEvent *end = &timer->ends[pass];
+    if (!*end && vkCreateEvent(g->device, &info, NULL, end) != VK_SUCCESS) return;
+    VkMemoryBarrier2 all = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                            .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
+    VkDependencyInfo after = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                              .memoryBarrierCount = 1,
+                              .pMemoryBarriers = &all};
+    vkCmdSetEvent2(g->frame->batch.commands, *end, &after);
+}
+
+const char *vk_timer_running(gpu *g, const vk_timer *timer) {
+    for (uint32_t i = 0; i < timer->count; i++) {
+        if (!timer->ends[i]) return NULL;
+        VkResult status = vkGetEventStatus(g->device, timer->ends[i]);
+        if (status == VK_EVENT_RESET) return timer->labels[i];
+        if (status != VK_EVENT_SET) return NULL;
+    }
+    return NULL;
 }
 
 void gpu_pass_begin(gpu *g, const char *label) {
@@ -51,7 +83,10 @@ void gpu_pass_end(gpu *g) {
     if (!g->frame || !g->in_pass) return;
     g->in_pass = false;
     vk_timer *timer = &g->frame->timer;
-    if (timer->count < GPU_MAX_PASSES) stamp(g, 2 * timer->count++ + 1);
+    if (timer->count < GPU_MAX_PASSES) {
+        stamp(g, 2 * timer->count + 1);
+        mark_end(g, timer, timer->count++);
+    }
     if (g->end_label) g->end_label(g->frame->batch.commands);
 }
 
@@ -73,6 +108,7 @@ size_t gpu_frame_times(gpu *g, uint64_t frame, gpu_pass_time *out, size_t capaci
 
     uint64_t ticks[2 * GPU_MAX_PASSES] = {0};
     if (timer->queries) {
+        if (!vk_wait_where_driver_would(g)) return 0;
         VkResult result =
             vkGetQueryPoolResults(g->device, timer->queries, 0, 2 * timer->count, sizeof ticks,
                                   ticks, sizeof *ticks, VK_QUERY_RESULT_64_BIT);

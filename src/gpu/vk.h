@@ -18,7 +18,8 @@ enum {
     VK_MAX_DEVICES = 16,
     VK_MAX_TARGETS = 4,
     VK_BATCHES = 4,
-    VK_BUILT_ROWS = 64
+    VK_BUILT_ROWS = 64,
+    VK_MAX_SHOWN = 16
 };
 
 // ---- instance and device ----------------------------------------------------------------------
@@ -30,17 +31,21 @@ typedef struct vk_instance {
 } vk_instance;
 
 // Counts messages in `*messages`, which must outlive the instance; may be NULL without validation.
-bool vk_instance_create(vk_instance *out, bool validate, _Atomic uint64_t *messages);
+// `window` may be NULL.
+bool vk_instance_create(vk_instance *out, bool validate, const gpu_window *window,
+                        _Atomic uint64_t *messages);
 void vk_instance_destroy(vk_instance *instance);
 
 typedef struct vk_choice { // a device as found; real GPUs first
     VkPhysicalDevice physical;
     gpu_info info;
 } vk_choice;
-// At most VK_MAX_DEVICES; -1 with a message when there is none.
-int vk_choices_find(VkInstance instance, vk_choice *out);
+// At most VK_MAX_DEVICES; -1 with a message when there is none. With a surface, a device that
+// cannot present to it is not usable.
+int vk_choices_find(VkInstance instance, VkSurfaceKHR surface, vk_choice *out);
 const vk_choice *vk_choice_pick(const vk_choice *choices, int count, const char *device);
-int vk_queue_family_find(VkPhysicalDevice physical); // graphics and compute; -1: none
+// Graphics and compute, and presenting when there is a surface. -1: none.
+int vk_queue_family_find(VkPhysicalDevice physical, VkSurfaceKHR surface);
 
 // Features that roil requires and those it takes when they are there (device.c lists them).
 typedef struct vk_features {
@@ -50,11 +55,14 @@ typedef struct vk_features {
     VkPhysicalDeviceVulkan13Features v13;
 } vk_features;
 void vk_features_read(VkPhysicalDevice physical, vk_features *out);
-VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family);
+VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, bool presents);
 
 // True for VK_SUCCESS; else false with "what: why", and notes a lost device.
 bool vk_check(gpu *g, VkResult result, const char *what, ...) PRINTF_LIKE(3, 4);
 bool vk_alive(gpu *g); // false with a message once the device is lost
+// Notes that the device is lost, by the driver's word (VK_ERROR_DEVICE_LOST) or because work did
+// not finish in time (VK_TIMEOUT). False with the message that all later calls will repeat.
+bool vk_lose(gpu *g, VkResult how);
 void vk_name(gpu *g, VkObjectType type, uint64_t handle, const char *label);
 // Handles are pointers or integers, by platform.
 #define VK_HANDLE(handle) ((uint64_t)(uintptr_t)(handle))
@@ -184,7 +192,8 @@ void vk_collect_all(gpu *g); // the device is idle
 typedef struct vk_batch {
     VkCommandPool pool;
     VkCommandBuffer commands;
-    uint64_t serial; // of its last submission
+    uint64_t serial;          // of its last submission
+    VkSemaphore wait, signal; // of the next one, beside the timeline; NULL: none. Transfers wait
 } vk_batch;
 
 bool vk_batch_create(gpu *g, vk_batch *out);
@@ -194,7 +203,11 @@ bool vk_batch_submit(gpu *g, vk_batch *batch);
 // The open command buffer; opens a batch when no frame is open. NULL when the device is lost.
 VkCommandBuffer vk_commands(gpu *g);
 bool vk_flush(gpu *g); // submits the batch between frames, if one is open
+// Loses the device when none of its work was finished in gpu_desc.timeout.
 bool vk_wait(gpu *g, uint64_t serial);
+// Software drivers wait, without a limit, for all that was submitted in calls that should only ask
+// or hand over. Before such a call: the same wait with a limit. Nothing on real devices.
+bool vk_wait_where_driver_would(gpu *g);
 uint64_t vk_completed(gpu *g);
 
 // What one command touches: begin, use, ..., then flush records the barriers it needs.
@@ -250,18 +263,57 @@ typedef struct vk_timer { // of one frame
     VkQueryPool queries;
     uint32_t count;
     char labels[GPU_MAX_PASSES][64];
-    double began, longest; // host clock; milliseconds no pass can exceed, 0: not known yet
+    VkEvent ends[GPU_MAX_PASSES]; // set when the pass has ended; made when first needed
+    double began, longest;        // host clock; milliseconds no pass can exceed, 0: not known yet
 } vk_timer;
 
 bool vk_timer_create(gpu *g, vk_timer *out);
+void vk_timer_destroy(gpu *g, vk_timer *timer);
 void vk_timer_begin(gpu *g, vk_timer *timer, VkCommandBuffer commands);
+// The first pass of an unfinished frame that has not ended, or NULL when that cannot be known.
+const char *vk_timer_running(gpu *g, const vk_timer *timer);
 
 typedef struct vk_frame {
     vk_batch batch;
     uint64_t number;
     vk_uniforms uniforms;
     vk_timer timer;
+    VkSemaphore acquired; // the window's image is ours; NULL without a window
 } vk_frame;
+
+// ---- the window -------------------------------------------------------------------------------
+
+typedef struct vk_swapchain {
+    VkSwapchainKHR handle;
+    VkFormat format;
+    VkExtent2D size;
+    uint32_t count;
+    VkImage images[VK_MAX_SHOWN];
+    VkSemaphore drawn[VK_MAX_SHOWN]; // the frame that fills the image is done
+    bool fitted;                     // the window took an image without complaint
+    bool stale;                      // does not fit the window any more
+} vk_swapchain;
+
+typedef struct vk_window {
+    gpu_window maker; // create_surface NULL: there is no window
+    VkSurfaceKHR surface;
+    VkSurfaceKHR
+        old_surface;         // lost; until the frames that used it have finished no new one is made
+    vk_swapchain *swapchain; // NULL: none yet
+    uint32_t image;          // of the swapchain, that the open frame shows ...
+    bool shows;              // ... if it shows one
+} vk_window;
+
+bool vk_window_open(gpu *g, const gpu_window *window); // makes the surface
+bool vk_window_open_frames(gpu *g); // what each frame needs, once the device is there
+void vk_window_close(gpu *g);       // the device is idle
+// Makes a surface when the old one was lost and has gone. `window.surface` may be NULL after it.
+bool vk_window_revive(gpu *g);
+void vk_window_lose(gpu *g); // the surface is lost
+// Makes a swapchain unless there is one that fits. `size` is taken where the window leaves the
+// choice. VK_NOT_READY: the window has no area.
+VkResult vk_swapchain_fit(gpu *g, VkExtent2D size);
+bool vk_present(gpu *g); // hands the image of the submitted frame to the window, if it shows one
 
 // ---- the device -------------------------------------------------------------------------------
 
@@ -270,7 +322,12 @@ struct gpu {
     vk_instance instance;
     _Atomic uint64_t messages;
     atomic_bool lost;
+    atomic_bool loss_told; // `loss` is written
+    char loss[512];        // how and where the device was lost
+    bool hung;             // work did not finish in time, and may never
+    uint64_t timeout;      // nanoseconds
 
+    vk_window window;
     VkPhysicalDevice physical;
     VkDevice device;
     VkQueue queue;
