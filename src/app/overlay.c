@@ -1,0 +1,98 @@
+// What is laid over the picture: why the newest file is not good, and short notices.
+#include "app/label.h"
+#include "app/live.h"
+#include "app/text_wrap.h"
+#include "base/clock.h"
+#include "base/str.h"
+#include <math.h>
+#include <stdio.h>
+
+// Units; those of the style that a card's size follows from.
+static const float PADDING = 12, SPACING = 6, MONO_SIZE = 0.92f;
+static const float MARGIN = 24, CARD_WIDTH = 900, CARD_SHARE = 0.7f; // of the view's height
+static const float EDGE = 3;
+enum { MAX_TEXT = 4096 };
+
+static const char *message_of(const live *l) {
+    const char *message = l->follow ? roil_live_message(l->follow) : NULL;
+    return message ? message : l->broken;
+}
+
+static float text_size(void) {
+    return ui_line_height() - SPACING * ui_scale();
+}
+
+static bool is_room(ui_rect view) {
+    float s = ui_scale();
+    return view.right - view.left > 160 * s && view.bottom - view.top > 100 * s;
+}
+
+// ---- card ---------------------------------------------------------------------------------------
+
+static ui_rect card_place(const text_message *m, bool hint, ui_rect view) {
+    float s = ui_scale(), line = text_size();
+    float width = fminf(view.right - view.left - 2 * MARGIN * s, CARD_WIDTH * s);
+    float inner = width - 2 * PADDING * s;
+    size_t lines = text_wrap_lines(m->head, m->head_length, inner, ui_text_width);
+    float height = 2 * PADDING * s + (float)lines * line;
+    if (m->rest_lines) height += 2 * SPACING * s + (float)m->rest_lines * ceilf(line * MONO_SIZE);
+    if (hint) height += 2 * SPACING * s + line;
+    height = fminf(ceilf(height), (view.bottom - view.top) * CARD_SHARE);
+    float left = floorf((view.left + view.right - width) / 2);
+    float bottom = floorf(view.bottom - MARGIN * s);
+    return (ui_rect){left, bottom - height, left + width, bottom};
+}
+
+static void draw_card(const char *message, bool hint, ui_rect at) {
+    float s = ui_scale();
+    char head[MAX_TEXT], rest[MAX_TEXT];
+    text_message m = text_split(message);
+    snprintf(head, sizeof head, "%.*s", (int)m.head_length, m.head);
+    snprintf(rest, sizeof rest, "%.*s", (int)m.rest_length, m.rest);
+    ui_panel_begin("message", at);
+    ui_fill((ui_rect){at.left, at.top, at.left + EDGE * s, at.bottom}, ui_rgba(UI_ERROR, 1), 0);
+    ui_text_wrapped(head);
+    if (m.rest_lines) {
+        ui_gap(SPACING * s);
+        ui_text_mono(UI_TEXT, rest);
+    }
+    if (hint) {
+        ui_gap(SPACING * s);
+        ui_text_color(UI_DIM, "The last good effect goes on.");
+    }
+    ui_panel_end();
+}
+
+// ---- notice -------------------------------------------------------------------------------------
+
+static void draw_notice(const char *text, ui_rect view, float bottom) {
+    float s = ui_scale(), height = text_size() + 12 * s;
+    char line[sizeof((live *)NULL)->notice];
+    snprintf(line, sizeof line, "%.*s", (int)text_split(text).head_length, text);
+    float width = fminf(ui_text_width(line) + 32 * s, view.right - view.left - 2 * MARGIN * s);
+    float left = floorf((view.left + view.right - width) / 2), top = floorf(bottom - height);
+    ui_fill((ui_rect){left, top, left + width, bottom}, ui_rgba(UI_PANEL, 0.92f), height / 2);
+    label_within(left + 16 * s, top + 6 * s, width - 32 * s, ui_rgba(UI_TEXT, 1), line);
+}
+
+static void draw_waiting(const live *l, bool broken, ui_rect view) {
+    char text[1024];
+    snprintf(text, sizeof text, broken ? "%s is drawn as soon as it is mended" : "Waiting for %s",
+             l->file);
+    label_center((view.left + view.right) / 2, (view.top + view.bottom) / 2 - text_size(),
+                 ui_rgba(UI_DIM, 1), text);
+}
+
+void overlay_draw(live *l, ui_rect view) {
+    if (!is_room(view)) return;
+    const char *message = message_of(l);
+    float bottom = floorf(view.bottom - MARGIN * ui_scale());
+    if (!l->effect) draw_waiting(l, message, view);
+    if (message) {
+        text_message m = text_split(message);
+        ui_rect card = card_place(&m, l->effect, view);
+        draw_card(message, l->effect, card);
+        bottom = card.top - SPACING * ui_scale();
+    }
+    if (l->notice[0] && clock_seconds() < l->notice_until) draw_notice(l->notice, view, bottom);
+}

@@ -1,0 +1,232 @@
+// Where the time goes: GPU time by pass, as bars and over the last frames; what the host adds.
+#include "app/history.h"
+#include "app/label.h"
+#include "app/live.h"
+#include "base/memory.h"
+#include <math.h>
+#include <stdio.h>
+
+// Units.
+static const float PLOT_HEIGHT = 120, NAME_WIDTH = 124, MS_WIDTH = 74, SHARE_WIDTH = 46, ROW = 22;
+static const float FRAME_MS = 16.7f; // of a display that shows 60 pictures a second
+
+struct performance {
+    history past;
+    roil_time times[HISTORY_PASSES];
+};
+
+performance *performance_create(void) {
+    return mem_alloc(sizeof(performance));
+}
+
+void performance_destroy(performance *p) {
+    mem_free(p);
+}
+
+void performance_add(performance *p, roil_effect *e, double cpu, double interval) {
+    size_t count = roil_times(e, p->times, HISTORY_PASSES);
+    history_add(&p->past, p->times, count, cpu, interval);
+}
+
+double performance_rate(const performance *p) {
+    return history_rate(&p->past);
+}
+
+// Passes keep their place in the history, so they keep their colour.
+static uint32_t pass_color(size_t pass, float alpha) {
+    static const uint8_t colors[][3] = {
+        {232, 126, 60},  {86, 148, 214}, {226, 184, 76}, {74, 170, 132},  {206, 90, 126},
+        {140, 112, 206}, {70, 172, 188}, {164, 176, 80}, {186, 132, 100}, {128, 144, 168}};
+    const uint8_t *c = colors[pass % (sizeof colors / sizeof *colors)];
+    return (uint32_t)c[0] | (uint32_t)c[1] << 8 | (uint32_t)c[2] << 16 |
+           (uint32_t)(alpha * 255) << 24;
+}
+
+// ---- plot over time ---------------------------------------------------------------------------
+
+typedef struct plot {
+    const history *past;
+    ui_rect area;
+    float top;  // milliseconds at its upper edge
+    float step; // pixels for a frame
+} plot;
+
+// 1, 2 or 5 times a power of ten: the scale jumps seldom.
+static float round_up(float ms) {
+    float power = powf(10, floorf(log10f(fmaxf(ms, 0.01f))));
+    if (ms <= power) return power;
+    if (ms <= 2 * power) return 2 * power;
+    return ms <= 5 * power ? 5 * power : 10 * power;
+}
+
+static float plot_y(const plot *p, float ms) {
+    return p->area.bottom - ms / p->top * (p->area.bottom - p->area.top);
+}
+
+static float plot_left(const plot *p, size_t ago) { // of the column of a frame
+    return p->area.right - (float)(ago + 1) * p->step;
+}
+
+// The frame under the pointer; false when there is none.
+static bool plot_frame(const plot *p, const ui_canvas *c, size_t *ago) {
+    if (!c->hovered || c->x < p->area.left || c->x >= p->area.right) return false;
+    *ago = (size_t)((p->area.right - c->x) / p->step);
+    return *ago < history_length(p->past);
+}
+
+// What is thinner than half a pixel is drawn with what follows.
+static void draw_column(const plot *p, size_t ago, float alpha) {
+    size_t list[HISTORY_PASSES], count = history_list(p->past, ago, list);
+    float left = plot_left(p, ago), below = p->area.bottom, sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        sum += history_pass_ms(p->past, list[i], ago);
+        float y = plot_y(p, sum);
+        if (below - y < 0.5f && i + 1 < count) continue;
+        ui_fill((ui_rect){left, y, left + p->step, below}, pass_color(list[i], alpha), 0);
+        below = y;
+    }
+}
+
+static void draw_scale(const plot *p) {
+    float s = ui_scale();
+    char text[32];
+    float y = roundf(plot_y(p, p->top / 2));
+    ui_line(p->area.left, y, p->area.right, y, ui_rgba(UI_LINE, 0.7f), s);
+    snprintf(text, sizeof text, "%g ms", (double)p->top);
+    ui_label(p->area.left + 6 * s, p->area.top + 3 * s, ui_rgba(UI_DIM, 1), text);
+    if (FRAME_MS > p->top) return;
+    y = roundf(plot_y(p, FRAME_MS));
+    ui_line(p->area.left, y, p->area.right, y, ui_rgba(UI_GOOD, 0.7f), s);
+    if (p->area.bottom - y < 20 * s || y - p->area.top < 20 * s) return;
+    label_right(p->area.right - 6 * s, y - 19 * s, ui_rgba(UI_GOOD, 0.9f), "16.7 ms");
+}
+
+// True when the pointer is over a frame, `ago`.
+static bool draw_plot(const history *past, size_t *ago) {
+    float s = ui_scale();
+    ui_canvas c = ui_canvas_begin("history", 0, PLOT_HEIGHT * s);
+    float width = c.area.right - c.area.left;
+    const plot p = {past, c.area, round_up(history_peak(past) * 1.05f), width / HISTORY_FRAMES};
+    bool chosen = plot_frame(&p, &c, ago);
+    ui_fill(c.area, ui_rgba(UI_FIELD, 1), 4 * s);
+    size_t length = history_length(past);
+    for (size_t i = 0; i < length; i++) draw_column(&p, i, chosen && i != *ago ? 0.45f : 0.95f);
+    draw_scale(&p);
+    ui_canvas_end();
+    return chosen;
+}
+
+// ---- passes -----------------------------------------------------------------------------------
+
+typedef struct rows {
+    const history *past;
+    bool chosen; // a frame's numbers, else medians
+    size_t ago;
+    float total, longest; // milliseconds
+} rows;
+
+static float row_ms(const rows *r, size_t pass) {
+    return r->chosen ? history_pass_ms(r->past, pass, r->ago) : history_pass_median(r->past, pass);
+}
+
+static void draw_pass(const rows *r, size_t pass, float ms, ui_rect at) {
+    float s = ui_scale(), line = at.top + 2 * s;
+    ui_rect dot = {at.left, at.top + 7 * s, at.left + 8 * s, at.top + 15 * s};
+    ui_fill(dot, pass_color(pass, 1), 2 * s);
+    label_within(at.left + 16 * s, line, (NAME_WIDTH - 22) * s, ui_rgba(UI_TEXT, 1),
+                 r->past->passes[pass].name);
+    float left = at.left + NAME_WIDTH * s, right = at.right - (MS_WIDTH + SHARE_WIDTH) * s;
+    ui_rect bar = {left, at.top + 6 * s, right, at.top + 16 * s};
+    ui_fill(bar, ui_rgba(UI_FIELD, 1), 3 * s);
+    bar.right = left + (right - left) * (r->longest > 0 ? ms / r->longest : 0);
+    if (bar.right - bar.left >= s) ui_fill(bar, pass_color(pass, 1), 3 * s);
+    char text[32];
+    snprintf(text, sizeof text, ms < 10 ? "%.2f ms" : "%.1f ms", (double)ms);
+    label_right(at.right - SHARE_WIDTH * s, line, ui_rgba(UI_TEXT, 1), text);
+    snprintf(text, sizeof text, "%.0f %%", r->total > 0 ? (double)(100 * ms / r->total) : 0.0);
+    label_right(at.right, line, ui_rgba(UI_DIM, 1), text);
+}
+
+static void draw_passes(const history *past, bool chosen, size_t ago) {
+    size_t list[HISTORY_PASSES], count = history_list(past, chosen ? ago : 0, list);
+    float ms[HISTORY_PASSES], s = ui_scale();
+    rows r = {past, chosen, ago, 0, 0};
+    for (size_t i = 0; i < count; i++) {
+        ms[i] = row_ms(&r, list[i]);
+        r.total += ms[i];
+        r.longest = fmaxf(r.longest, ms[i]);
+    }
+    ui_canvas c = ui_canvas_begin("passes", 0, fmaxf((float)count, 1) * ROW * s);
+    if (count == 0) ui_label(c.area.left, c.area.top, ui_rgba(UI_DIM, 1), "No frame was drawn yet");
+    for (size_t i = 0; i < count; i++) {
+        float top = c.area.top + (float)i * ROW * s;
+        draw_pass(&r, list[i], ms[i], (ui_rect){c.area.left, top, c.area.right, top + ROW * s});
+    }
+    ui_canvas_end();
+}
+
+// ---- numbers ----------------------------------------------------------------------------------
+
+static void draw_heading(const history *past, bool chosen, size_t ago) {
+    bool any = history_length(past) > 0;
+    history_frame f = chosen && any ? *history_get(past, ago) : history_median(past);
+    ui_text("GPU %.2f ms", (double)f.gpu);
+    ui_same_line();
+    ui_text("CPU %.2f ms", (double)f.cpu);
+    ui_same_line();
+    if (f.interval > 0) ui_text("%.1f fps", 1000 / (double)f.interval);
+    char text[48] = "median of 60 frames";
+    if (chosen && ago == 0)
+        snprintf(text, sizeof text, "the last frame");
+    else if (chosen)
+        snprintf(text, sizeof text, "%zu frame%s ago", ago, ago == 1 ? "" : "s");
+    ui_same_line();
+    ui_align_right(ui_text_width(text));
+    ui_text_color(chosen ? UI_ACCENT : UI_DIM, "%s", text);
+}
+
+static void fact(const char *name) {
+    ui_table_next();
+    ui_text_color(UI_DIM, "%s", name);
+    ui_table_next();
+}
+
+static void draw_facts(const live *l) {
+    static const float widths[] = {1, 3};
+    static const double MIB = 1024 * 1024;
+    ui_table_begin("facts", 2, widths);
+    roil_memory memory = roil_get_memory(l->r);
+    fact("memory");
+    ui_text("%.1f MiB used, %.1f MiB reserved", (double)memory.device / MIB,
+            (double)memory.reserved / MIB);
+    roil_live_count count = roil_live_counts(l->follow);
+    fact("reloads");
+    ui_text("%llu", (unsigned long long)count.reloads);
+    ui_same_line();
+    if (count.reloads) ui_text_color(UI_DIM, "the last took %.0f ms", count.last * 1000);
+    if (count.failures) {
+        ui_same_line();
+        ui_text_color(UI_DIM, "%llu failed", (unsigned long long)count.failures);
+    }
+    fact("picture");
+    ui_text("%u \u00d7 %u", l->width, l->height);
+    fact("device");
+    ui_text("%s", roil_device_name(l->r));
+    ui_table_end();
+}
+
+void performance_draw(live *l) {
+    if (!l->session.performance) return;
+    float s = ui_scale(), left = l->view.left + 16 * s, top = l->view.top + 16 * s;
+    const ui_rect where = {left, top, left + 440 * s, top + 460 * s};
+    if (ui_window_begin("Performance", &l->session.performance, where, false)) {
+        const history *past = &l->performance->past;
+        size_t ago = 0;
+        bool chosen = draw_plot(past, &ago);
+        draw_heading(past, chosen, ago);
+        draw_passes(past, chosen, ago);
+        ui_separator();
+        draw_facts(l);
+    }
+    ui_window_end();
+}
