@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SAMPLES = 256, MADE_STOPS = 8 };
+enum { SAMPLES = 256, STRIPS = 128, MADE_STOPS = 8 };
 static const float RAMP = 36, RAIL = 22, HANDLE = 6, REACH = 9; // units
 static const float LEAVE = 40; // units from the canvas at which a dragged stop is let fall
 
@@ -22,15 +22,17 @@ typedef struct editor {
 
 // ---- places -----------------------------------------------------------------------------------
 
+// The ramp shows a range that is held while a stop is dragged: where none is declared, the
+// outermost stops are the range.
 static float to_x(const editor *e, float at) {
-    float span = e->palette.max - e->palette.min;
-    float share = span > 0 ? (at - e->palette.min) / span : 0;
+    plot_range view = e->state->value;
+    float share = view.high > view.low ? (at - view.low) / (view.high - view.low) : 0;
     return mixf(e->ramp.left, e->ramp.right, clampf(share, 0, 1));
 }
 
 static float from_x(const editor *e, float x) {
     float share = (x - e->ramp.left) / fmaxf(e->ramp.right - e->ramp.left, 1);
-    return mixf(e->palette.min, e->palette.max, clampf(share, 0, 1));
+    return mixf(e->state->value.low, e->state->value.high, clampf(share, 0, 1));
 }
 
 static void sample_at(const editor *e, float at, float out[4]) {
@@ -74,7 +76,8 @@ static void draw_brightness(const editor *e) {
     if (most < 1.05f) return;
     for (size_t i = 0; i < SAMPLES; i++) {
         float share = logf(fmaxf(peak(e->samples[i]), 1)) / logf(most);
-        xy[2 * i] = mixf(e->ramp.left, e->ramp.right, (float)i / (SAMPLES - 1));
+        float at = mixf(e->palette.min, e->palette.max, (float)i / (SAMPLES - 1));
+        xy[2 * i] = to_x(e, at);
         xy[2 * i + 1] = e->ramp.bottom - (0.08f + 0.84f * share) * height;
     }
     const float black[3] = {0};
@@ -91,12 +94,14 @@ static void draw_brightness(const editor *e) {
 
 static void draw_ramp(const editor *e) {
     ui_checkers(e->ramp, 6 * ui_scale());
-    float width = (e->ramp.right - e->ramp.left) / (SAMPLES - 1);
-    for (size_t i = 0; i + 1 < SAMPLES; i++) {
-        const float *a = e->samples[i], *b = e->samples[i + 1];
-        float left = e->ramp.left + (float)i * width;
-        ui_gradient((ui_rect){left, e->ramp.top, left + width, e->ramp.bottom},
-                    shown_color(a, a[3]), shown_color(b, b[3]));
+    float width = (e->ramp.right - e->ramp.left) / STRIPS, left[4], right[4];
+    sample_at(e, from_x(e, e->ramp.left), right);
+    for (size_t i = 0; i < STRIPS; i++) {
+        float x = e->ramp.left + (float)i * width;
+        memcpy(left, right, sizeof left);
+        sample_at(e, from_x(e, x + width), right);
+        ui_gradient((ui_rect){x, e->ramp.top, x + width, e->ramp.bottom},
+                    shown_color(left, left[3]), shown_color(right, right[3]));
     }
     draw_brightness(e);
     ui_frame(e->ramp, ui_rgba(UI_LINE, 1), 0, ui_scale());
@@ -222,6 +227,7 @@ static bool send(editor *e) {
 static bool open_canvas(editor *e) {
     float pad = (HANDLE + 2) * ui_scale();
     bool stops = e->palette.count && !e->palette.keyed;
+    if (!e->state->dragging) e->state->value = (plot_range){e->palette.min, e->palette.max};
     e->canvas = ui_canvas_begin("ramp", 0, (RAMP + (stops ? RAIL : 0)) * ui_scale());
     e->ramp = e->canvas.area;
     e->ramp.left += pad;

@@ -13,7 +13,7 @@ typedef struct shape_state { // what is selected in the editor of a palette or a
     bool dragging;
     bool leaving;           // dragged so far away that it goes when it is let go
     float grab_x, grab_y;   // from the pointer to the middle of the handle, pixels
-    plot_range time, value; // of the plot, held while dragging
+    plot_range time, value; // of the plot, held while dragging; of a palette `value` is positions
 } shape_state;
 
 typedef struct preset_list {
