@@ -1,9 +1,9 @@
 // The window's surface and the images that are shown in it.
 //
 // The window changes while frames are under way, so nothing here is final: a swapchain that fits no
-// more is replaced, and the old one dies with the last frame that could use it. Frames and presents
-// go through one queue in order, so then its presents are done too. A lost surface is replaced when
-// the old one has died, for a window bears only one at a time.
+// more is replaced, and the old one dies with the frame in which it was found out. That frame's
+// work is behind the last present in the one queue there is, so no present uses it any more. A lost
+// surface is replaced when the old one has died, for a window bears only one at a time.
 #include "base/memory.h"
 #include "gpu/vk.h"
 
@@ -52,14 +52,16 @@ void vk_window_close(gpu *g) {
     retire_swapchain(g);
 }
 
-void vk_window_lose(gpu *g) {
+static void retire_surface(gpu *g) {
     retire_swapchain(g);
     g->window.old_surface = g->window.surface;
     g->window.surface = VK_NULL_HANDLE;
+    g->window.lost = false;
     vk_retire(g, old_surface_free, NULL);
 }
 
 bool vk_window_revive(gpu *g) {
+    if (g->window.lost) retire_surface(g);
     return g->window.surface || g->window.old_surface || surface_create(g);
 }
 

@@ -297,19 +297,19 @@ typedef struct vk_swapchain {
 typedef struct vk_window {
     gpu_window maker; // create_surface NULL: there is no window
     VkSurfaceKHR surface;
-    VkSurfaceKHR
-        old_surface;         // lost; until the frames that used it have finished no new one is made
-    vk_swapchain *swapchain; // NULL: none yet
-    uint32_t image;          // of the swapchain, that the open frame shows ...
-    bool shows;              // ... if it shows one
+    bool lost;                // the surface
+    VkSurfaceKHR old_surface; // a lost one that may still be in use
+    vk_swapchain *swapchain;  // NULL: none yet
+    uint32_t image;           // of the swapchain, that the open frame shows ...
+    bool shows;               // ... if it shows one
 } vk_window;
 
 bool vk_window_open(gpu *g, const gpu_window *window); // makes the surface
 bool vk_window_open_frames(gpu *g); // what each frame needs, once the device is there
 void vk_window_close(gpu *g);       // the device is idle
-// Makes a surface when the old one was lost and has gone. `window.surface` may be NULL after it.
+// Inside a frame: retires a lost surface, and makes another one when that has gone.
+// `window.surface` is NULL in between.
 bool vk_window_revive(gpu *g);
-void vk_window_lose(gpu *g); // the surface is lost
 // Makes a swapchain unless there is one that fits. `size` is taken where the window leaves the
 // choice. VK_NOT_READY: the window has no area.
 VkResult vk_swapchain_fit(gpu *g, VkExtent2D size);
