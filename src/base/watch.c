@@ -51,7 +51,8 @@ struct watch {
     watch_desc desc;
     int events, stop; // inotify; an eventfd
     pthread_t thread;
-    pthread_mutex_t lock; // guards `list` and `given`
+    pthread_mutex_t reporting; // one thread at a time
+    pthread_mutex_t lock;      // guards `list` and `given`
     watch_list list;
     char **given; // as of the last watch_set
     size_t given_count;
@@ -225,11 +226,13 @@ static void take_all(watch *w) {
 }
 
 // The callbacks run without the lock, so that they may call watch_set.
-static void report(watch *w, double when) {
+static void report(watch *w) {
     arena memory = {0};
     const char **paths = NULL;
     size_t count = 0, capacity = 0;
+    pthread_mutex_lock(&w->reporting);
     pthread_mutex_lock(&w->lock);
+    double when = clock_seconds();
     take_all(w);
     for (size_t i = 0; i < w->list.file_count; i++) {
         watch_file *file = &w->list.files[i];
@@ -241,6 +244,7 @@ static void report(watch *w, double when) {
     pthread_mutex_unlock(&w->lock);
     for (size_t i = 0; i < count; i++) w->desc.changed(w->desc.user, paths[i], when);
     if (count && w->desc.settled) w->desc.settled(w->desc.user);
+    pthread_mutex_unlock(&w->reporting);
     mem_free(paths);
     arena_free(&memory);
 }
@@ -253,7 +257,7 @@ static void *run(void *user) {
         int found = poll(ready, COUNT_OF(ready), -1);
         if (found < 0 && errno == EINTR) continue;
         if (found < 0 || ready[1].revents) return NULL;
-        report(w, clock_seconds());
+        report(w);
     }
 }
 
@@ -269,6 +273,7 @@ watch *watch_create(const watch_desc *desc) {
     }
     watch *w = mem_alloc(sizeof *w);
     *w = (watch){.desc = *desc, .events = events, .stop = stop};
+    pthread_mutex_init(&w->reporting, NULL);
     pthread_mutex_init(&w->lock, NULL);
     if (pthread_create(&w->thread, NULL, run, w) != 0) err_out_of_memory(0);
     return w;
@@ -280,6 +285,7 @@ void watch_destroy(watch *w) {
     pthread_join(w->thread, NULL);
     close(w->events);
     close(w->stop);
+    pthread_mutex_destroy(&w->reporting);
     pthread_mutex_destroy(&w->lock);
     free_list(&w->list);
     for (size_t i = 0; i < w->given_count; i++) mem_free(w->given[i]);
@@ -330,4 +336,8 @@ bool watch_set(watch *w, const char *const *paths, size_t count) {
     }
     pthread_mutex_unlock(&w->lock);
     return done;
+}
+
+void watch_catch_up(watch *w) {
+    report(w);
 }

@@ -231,6 +231,18 @@ static void folder_of_a_thousand_files(void **state) {
     mem_free(files);
 }
 
+static void catching_up_reports_at_once(void **state) {
+    path_text file = in(*state, "a");
+    watch *w = open_watch(&news);
+    follow(w, &file, 1);
+    for (size_t i = 1; i <= 100; i++) {
+        put(*state, "a", "1");
+        watch_catch_up(w);
+        assert_int_equal(news.count, i);
+    }
+    watch_destroy(w);
+}
+
 typedef struct reply { // calls watch_set from `changed`
     seen *news;
     watch *watch;
@@ -271,6 +283,7 @@ int main(void) {
         SCRATCH_TEST(folder_is_found_again),
         SCRATCH_TEST(folders_above_may_be_missing_too),
         SCRATCH_TEST(folder_of_a_thousand_files),
+        SCRATCH_TEST(catching_up_reports_at_once),
         SCRATCH_TEST(list_may_be_set_by_the_callback),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
