@@ -188,7 +188,7 @@ static void print_interface(strbuf *out, const shader_interface *face) {
 
 static bool print_pass(strbuf *out, shader_library *library, const pass_type *type, bool whole) {
     arena memory = {0};
-    const shader_interface *face = shader_interface_load(library, &memory, type->shader);
+    const shader_interface *face = shader_interface_load(library, &memory, type->shader, NULL);
     if (face && whole) {
         strbuf_add(out, "%s\n", type->name);
         print_interface(out, face);

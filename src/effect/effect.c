@@ -7,6 +7,11 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
+
+static void add_read_file(void *user, const char *path) {
+    effect_add_file(user, path);
+}
 
 effect *effect_create(const effect_desc *desc) {
     effect *e = mem_alloc(sizeof *e);
@@ -20,17 +25,21 @@ effect *effect_create(const effect_desc *desc) {
     e->frames = 1;
     e->first = 1;
     scene_init(&e->scene, &e->memory);
-    bool cached = desc->cache_dir && path_join(shader_cache, desc->cache_dir, "spirv");
-    e->library = shader_library_create(&(shader_library_desc){
-        .shader_root = desc->shader_root,
-        .effect_root = e->root,
-        .cache_dir = cached ? shader_cache : NULL,
-    });
+    e->library = desc->library;
+    if (!e->library) {
+        bool cached = desc->cache_dir && path_join(shader_cache, desc->cache_dir, "spirv");
+        e->library = e->own_library = shader_library_create(&(shader_library_desc){
+            .shader_root = desc->shader_root,
+            .effect_root = e->root,
+            .cache_dir = cached ? shader_cache : NULL,
+        });
+    }
     if (!e->library) {
         effect_destroy(e);
         return NULL;
     }
     e->graph = graph_create();
+    e->reader = (shader_reader){add_read_file, e};
     e->host = (pass_host){
         .device = e->device,
         .library = e->library,
@@ -39,6 +48,7 @@ effect *effect_create(const effect_desc *desc) {
         .context = &e->context,
         .frame = &e->frame,
         .counters = desc->counters,
+        .reader = &e->reader,
         .before_declare = effect_apply_settings,
         .user = e,
     };
@@ -49,13 +59,12 @@ effect *effect_create(const effect_desc *desc) {
 
 void effect_destroy(effect *e) {
     if (!e) return;
-    if (e->device) gpu_idle(e->device);
     for (size_t i = 0; i < e->pass_count; i++) pass_destroy(e->passes[i]);
     for (size_t i = 0; i < e->grid_count; i++) e->grids[i]->destroy(e->grids[i], e->device);
     for (size_t i = 0; i < e->mesh_count; i++) scene_mesh_destroy(e->meshes[i], e->device);
     if (e->graph) graph_destroy(e->graph, e->device);
     if (e->hooks.destroy) e->hooks.destroy(e->hooks.user);
-    if (e->library) shader_library_destroy(e->library);
+    shader_library_destroy(e->own_library);
     pass_host_free(&e->host);
     mem_free(e->params);
     mem_free(e->values);
@@ -131,10 +140,17 @@ void effect_set_hooks(effect *e, const effect_hooks *hooks) {
 }
 
 void effect_add_file(effect *e, const char *path) {
+    char here[PATH_CAP], whole[PATH_CAP];
+    if (path[0] != '/' && getcwd(here, sizeof here) && path_join(whole, here, path)) path = whole;
     for (size_t i = 0; i < e->file_count; i++)
         if (strcmp(e->files[i], path) == 0) return;
     MEM_RESERVE(e->files, e->file_count + 1, e->file_capacity);
     e->files[e->file_count++] = arena_string(&e->memory, path);
+}
+
+size_t effect_files(const effect *e, const char *const **out) {
+    *out = e->files;
+    return e->file_count;
 }
 
 // ---- passes -----------------------------------------------------------------------------------
@@ -238,6 +254,7 @@ field_grid *effect_add_bake(effect *e, const field *node, const uint32_t size[3]
 scene_mesh *effect_add_mesh(effect *e, const char *file) {
     char path[PATH_CAP];
     if (!path_confine(path, e->root, file)) return NULL;
+    effect_add_file(e, path); // even if it cannot be read
     arena *memory = &e->memory;
     scene_mesh *mesh = arena_alloc(memory, sizeof *mesh);
     if (!mesh_load(path, e->root, memory, &mesh->data)) return NULL;

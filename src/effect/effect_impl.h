@@ -76,7 +76,7 @@ struct effect {
     arena memory;
     gpu *device;
     const char *file, *root, *name;
-    shader_library *library;
+    shader_library *library, *own_library; // the latter NULL when it is shared
     scene scene;
     graph *graph;
     pass_host host;
@@ -93,7 +93,8 @@ struct effect {
     size_t grid_count, grid_capacity;
     scene_mesh **meshes;
     size_t mesh_count, mesh_capacity;
-    const char **files;
+    shader_reader reader; // adds to `files`
+    const char **files;   // absolute
     size_t file_count, file_capacity;
 
     graph_image pictures[3]; // by effect_picture
@@ -105,7 +106,7 @@ struct effect {
     uint32_t width, height;
     uint32_t counter;  // frames rendered so far
     double last_frame; // number of the frame rendered last
-    bool built;
+    bool compiled, allocated;
     const effect_setting *settings;
     bool *applied; // one per setting
     size_t setting_count;

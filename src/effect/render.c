@@ -3,35 +3,55 @@
 #include "base/memory.h"
 #include "effect/effect_impl.h"
 #include <math.h>
+#include <string.h>
 
-bool effect_check(effect *e) {
+// Outputs are known once the script has run; they decide which passes are needed.
+static bool add_outputs(effect *e) {
     if (!e->pictures[EFFECT_OUTPUT].id)
         return err_set("%s: the effect has no output; set `output` of the effect to an image",
                        e->file);
-    for (size_t i = 0; i < e->pass_count; i++)
-        if (!pass_check(e->passes[i])) return false;
     for (int i = 0; i < 3; i++)
         if (e->pictures[i].id && !graph_add_output(e->graph, e->pictures[i])) return false;
-    return graph_compile(e->graph, 64, 64);
-}
-
-bool effect_build(effect *e, uint32_t width, uint32_t height) {
-    if (!e->pictures[EFFECT_OUTPUT].id)
-        return err_set("%s: the effect has no output; set `output` of the effect to an image",
-                       e->file);
-    for (int i = 0; !e->built && i < 3; i++)
-        if (e->pictures[i].id && !graph_add_output(e->graph, e->pictures[i])) return false;
-    if (!graph_compile(e->graph, width, height)) return false;
-    for (size_t i = 0; !e->built && i < e->pass_count; i++)
-        if (!pass_build(e->passes[i])) return false;
-    if (!graph_allocate(e->graph, e->device)) return false;
-    e->width = width;
-    e->height = height;
-    e->built = true;
     return true;
 }
 
-static bool evaluate(effect *e, double frame) {
+enum { ANY_SIZE = 64 }; // of a picture: finds what is wrong with a graph whatever its size
+
+bool effect_check(effect *e) {
+    if (!add_outputs(e)) return false;
+    for (size_t i = 0; i < e->pass_count; i++)
+        if (!pass_check(e->passes[i])) return false;
+    return graph_compile(e->graph, ANY_SIZE, ANY_SIZE);
+}
+
+bool effect_compile(effect *e) {
+    if (!add_outputs(e) || !graph_compile(e->graph, ANY_SIZE, ANY_SIZE)) return false;
+    for (size_t i = 0; i < e->pass_count; i++)
+        if (!pass_build(e->passes[i])) return false;
+    e->width = e->height = ANY_SIZE;
+    e->compiled = true;
+    return true;
+}
+
+static bool allocate(effect *e) { // the graph is compiled
+    for (size_t i = 0; i < e->pass_count; i++)
+        if (!pass_allocate(e->passes[i])) return false;
+    return graph_allocate(e->graph, e->device);
+}
+
+bool effect_allocate(effect *e, uint32_t width, uint32_t height) {
+    if (!graph_compile(e->graph, width, height) || !allocate(e)) return false;
+    e->width = width;
+    e->height = height;
+    return true;
+}
+
+bool effect_build(effect *e, uint32_t width, uint32_t height) {
+    return (e->compiled || effect_compile(e)) && effect_allocate(e, width, height);
+}
+
+// Without a device grids know their bounds only.
+static bool evaluate(effect *e, double frame, gpu *device) {
     double time = (frame - e->first) / e->fps;
     double dt = e->counter ? (frame - e->last_frame) / e->fps : 0;
     e->context.time = time;
@@ -41,7 +61,24 @@ static bool evaluate(effect *e, double frame) {
     e->frame.time = (shared_vec4){{(float)time, (float)dt, (float)frame, 0}};
     e->frame.size = (shared_uvec4){{e->width, e->height, (uint32_t)llrint(frame), e->seed}};
     for (size_t i = 0; i < e->grid_count; i++)
-        if (!e->grids[i]->update(e->grids[i], e->device, time)) return false;
+        if (!e->grids[i]->update(e->grids[i], device, time)) return false;
+    return true;
+}
+
+static bool runs(const effect *e, const pass *p) {
+    const char *names[GPU_MAX_PASSES];
+    size_t count = graph_order(e->graph, names, COUNT_OF(names));
+    for (size_t i = 0; i < count && i < COUNT_OF(names); i++)
+        if (strcmp(names[i], pass_label(p)) == 0) return true;
+    return false;
+}
+
+bool effect_rehearse(effect *e, double frame) {
+    if (!evaluate(e, frame, NULL)) return false;
+    for (size_t i = 0; i < e->pass_count; i++) {
+        if (!runs(e, e->passes[i]) || pass_rehearse(e->passes[i])) continue;
+        return err_prefix("pass '%s': ", pass_label(e->passes[i]));
+    }
     return true;
 }
 
@@ -49,7 +86,7 @@ uint64_t effect_render(effect *e, double frame, bool jump) {
     if (e->counter && !jump && frame != e->last_frame + 1) graph_reset_history(e->graph);
     uint64_t number = gpu_frame_begin(e->device);
     if (!number) return 0;
-    bool done = evaluate(e, frame) && graph_execute(e->graph, e->device);
+    bool done = evaluate(e, frame, e->device) && graph_execute(e->graph, e->device);
     if (!gpu_frame_end(e->device)) done = false;
     if (!done) { // what it may have left in a history is of no frame
         graph_reset_history(e->graph);
@@ -58,4 +95,52 @@ uint64_t effect_render(effect *e, double frame, bool jump) {
     e->counter++;
     e->last_frame = frame;
     return number;
+}
+
+// ---- taking over from another effect ----------------------------------------------------------
+
+// The k-th of a kind here is exchanged with the k-th there, so that a second time undoes it.
+static void exchange_grids(effect *e, effect *from) {
+    bool *taken = mem_alloc(from->grid_count * sizeof *taken);
+    for (size_t i = 0; i < e->grid_count; i++) {
+        field_grid *grid = e->grids[i];
+        bool done = !grid->exchange;
+        for (size_t k = 0; k < from->grid_count && !done; k++) {
+            if (taken[k] || from->grids[k]->exchange != grid->exchange) continue;
+            done = taken[k] = grid->exchange(grid, from->grids[k]);
+        }
+    }
+    mem_free(taken);
+}
+
+static void exchange_meshes(effect *e, effect *from) {
+    bool *taken = mem_alloc(from->mesh_count * sizeof *taken);
+    for (size_t i = 0; i < e->mesh_count; i++) {
+        bool done = false;
+        for (size_t k = 0; k < from->mesh_count && !done; k++) {
+            if (taken[k]) continue;
+            done = taken[k] = scene_mesh_exchange(e->meshes[i], from->meshes[k]);
+        }
+    }
+    mem_free(taken);
+}
+
+static void exchange(effect *e, effect *from) {
+    graph_adopt(e->graph, from->graph);
+    exchange_grids(e, from);
+    exchange_meshes(e, from);
+}
+
+bool effect_adopt(effect *e, effect *from, uint32_t width, uint32_t height) {
+    if (!graph_compile(e->graph, width, height)) return false;
+    exchange(e, from);
+    if (!allocate(e)) {
+        exchange(e, from);
+        return false;
+    }
+    e->width = width;
+    e->height = height;
+    e->counter = from->counter;
+    e->last_frame = from->last_frame;
+    return true;
 }

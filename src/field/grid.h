@@ -28,6 +28,9 @@ struct field_grid {
     // Brings `state` to a time, uploading what is needed. Waits for data that is not decoded yet.
     bool (*update)(field_grid *grid, gpu *g, double time);
     void (*destroy)(field_grid *grid, gpu *g); // frees all
+    // Gives `other`, a grid with the same hook, all that this one has read and put on the device,
+    // and takes what that one has; false when they do not show the same. NULL: nothing to exchange.
+    bool (*exchange)(field_grid *grid, field_grid *other);
     // Host value of one channel at a point, trilinear; NULL when there is no host data.
     bool (*sample)(const field_grid *grid, float3 p, int channel, float *out);
 };

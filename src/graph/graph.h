@@ -54,8 +54,9 @@ void graph_remove_output(graph *g, graph_image image);
 // image that is read and never written, an image with two writers, a size beyond 16384.
 bool graph_compile(graph *g, uint32_t width, uint32_t height);
 bool graph_allocate(graph *g, gpu *device); // after compile; frees what an earlier compile had
-// Takes over the contents of `from`'s history images whose name, format and size match. Both are
-// compiled for the same device; `from` must be allocated again before it may execute again.
+// Exchanges the images of both that match by name, format and size, so that what `from` has drawn,
+// its histories above all, goes on in `g`; the other way round undoes it. `g` is compiled for the
+// same device. What lacks images after that must be allocated before it executes.
 void graph_adopt(graph *g, graph *from);
 // Makes every history zero again, as before the first frame.
 void graph_reset_history(graph *g);

@@ -153,21 +153,31 @@ static void take_over(graph_slot *to, graph_slot *from) {
     from->memory = NULL;
 }
 
-static void take_over_by_name(graph *g) {
+// Numbers the slots of a list by name; `slots` (mem_free) gives the slot of a number.
+static lookup index_names(const slot_list *list, uint32_t **slots) {
     lookup names = {0};
-    uint32_t *slots = mem_alloc(g->kept.count * sizeof *slots); // of a name
-    for (size_t i = 0; i < g->kept.count; i++) {
-        const char *name = g->kept.at[i].name;
+    *slots = mem_alloc(list->count * sizeof **slots);
+    for (size_t i = 0; i < list->count; i++) {
+        const char *name = list->at[i].name;
         if (lookup_find(&names, name, strlen(name)) == NONE)
-            slots[lookup_add(&names, name, strlen(name))] = (uint32_t)i;
+            (*slots)[lookup_add(&names, name, strlen(name))] = (uint32_t)i;
     }
+    return names;
+}
+
+static bool can_be(const graph_slot *a, const graph_slot *b) {
+    return a->paired == b->paired && is_same_kind(a, b);
+}
+
+static void take_over_by_name(graph *g) {
+    uint32_t *slots;
+    lookup names = index_names(&g->kept, &slots);
     for (size_t i = 0; i < g->slots.count; i++) {
         graph_slot *slot = &g->slots.at[i];
         uint32_t name = lookup_find(&names, slot->name, strlen(slot->name));
         if (slot->memory || name == NONE) continue;
         graph_slot *old = &g->kept.at[slots[name]];
-        if (old->memory && old->paired == slot->paired && is_same_kind(slot, old))
-            take_over(slot, old);
+        if (old->memory && can_be(slot, old)) take_over(slot, old);
     }
     mem_free(slots);
     lookup_free(&names);
@@ -234,19 +244,25 @@ static void swap_memory(graph_slot *a, graph_slot *b) {
     b->fresh = fresh;
 }
 
+static bool has_memory(const graph *g) {
+    for (size_t i = 0; i < g->slots.count; i++)
+        if (!g->slots.at[i].memory) return false;
+    return g->compiled;
+}
+
 void graph_adopt(graph *g, graph *from) {
-    assert(g->compiled && from->compiled);
-    for (size_t i = 0; i < g->image_count; i++) {
-        const graph_node_image *image = &g->images[i];
-        if (!image->history_used) continue;
-        graph_image found = graph_find_image(from, image->desc.name);
-        if (!found.id || !from->images[found.id - 1].history_used) continue;
-        const graph_node_image *old = &from->images[found.id - 1];
-        graph_slot *now = &g->slots.at[image->slot], *then = &from->slots.at[old->slot];
-        if (!then->memory || !is_same_kind(now, then)) continue;
-        swap_memory(now, then);
-        swap_memory(&g->slots.at[g->images[image->history].slot],
-                    &from->slots.at[from->images[old->history].slot]);
-        if (!then->memory) from->allocated = false;
+    assert(g->compiled);
+    uint32_t *slots;
+    lookup names = index_names(&from->slots, &slots);
+    for (size_t i = 0; i < g->slots.count; i++) {
+        graph_slot *slot = &g->slots.at[i];
+        uint32_t name = lookup_find(&names, slot->name, strlen(slot->name));
+        if (name == NONE) continue;
+        graph_slot *old = &from->slots.at[slots[name]];
+        if (can_be(slot, old)) swap_memory(slot, old);
     }
+    mem_free(slots);
+    lookup_free(&names);
+    g->allocated = has_memory(g);
+    from->allocated = has_memory(from);
 }

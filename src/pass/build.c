@@ -57,6 +57,7 @@ bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_
                                    .text_count = 1,
                                    .options = p->options,
                                    .counters = p->host->counters,
+                                   .reader = p->host->reader,
                                },
                                out);
     return done || err_prefix("%s: ", p->label);
@@ -84,9 +85,11 @@ gpu_pipeline *pass_create_compute(pass *p, const shader_binary *binary) {
 gpu_pipeline *pass_create_fullscreen(pass *p, const shader_binary *fragment,
                                      const gpu_format *formats, size_t count) {
     shader_binary vertex;
-    if (!shader_compile(
-            p->host->library, p->host->memory,
-            &(shader_compile_desc){.name = "lib/fullscreen.vert", .stage = SHADER_VERTEX}, &vertex))
+    if (!shader_compile(p->host->library, p->host->memory,
+                        &(shader_compile_desc){.name = "lib/fullscreen.vert",
+                                               .stage = SHADER_VERTEX,
+                                               .reader = p->host->reader},
+                        &vertex))
         return NULL;
     gpu_slot slots[GPU_MAX_SLOTS];
     if (fragment->slot_count > GPU_MAX_SLOTS || count > 4) {
@@ -107,47 +110,56 @@ gpu_pipeline *pass_create_fullscreen(pass *p, const shader_binary *fragment,
     return gpu_pipeline_create_graphics(p->host->device, &desc);
 }
 
-static bool make_palettes(pass *p) {
+static void list_palettes(pass *p) {
     const field_texture *textures;
     size_t count = field_program_textures(p->program, &textures);
     p->palettes = arena_alloc(p->host->memory, count * sizeof *p->palettes);
-    for (size_t i = 0; i < count; i++) {
-        if (!textures[i].palette) continue;
-        pass_palette *slot = &p->palettes[p->palette_count++];
-        slot->source = textures[i].palette;
-        slot->time = (double)NAN;
-        slot->image = gpu_image_create(p->host->device, &(gpu_image_desc){
-                                                            .label = "palette",
-                                                            .format = GPU_RGBA16F,
-                                                            .width = PALETTE_SIZE,
-                                                            .height = 1,
-                                                            .use = GPU_USE_SAMPLED,
-                                                        });
-        if (!slot->image) return false;
+    for (size_t i = 0; i < count; i++)
+        if (textures[i].palette)
+            p->palettes[p->palette_count++] =
+                (pass_palette){.source = textures[i].palette, .time = (double)NAN};
+}
+
+static bool make_palettes(pass *p) {
+    for (size_t i = 0; i < p->palette_count; i++) {
+        if (p->palettes[i].image) continue;
+        p->palettes[i].image = gpu_image_create(p->host->device, &(gpu_image_desc){
+                                                                     .label = "palette",
+                                                                     .format = GPU_RGBA16F,
+                                                                     .width = PALETTE_SIZE,
+                                                                     .height = 1,
+                                                                     .use = GPU_USE_SAMPLED,
+                                                                 });
+        if (!p->palettes[i].image) return false;
     }
     return true;
 }
 
 // Missing optional inputs are bound to one black, transparent texel.
 static bool make_blanks(pass *p) {
+    const uint16_t texel[4] = {0};
     for (int i = 0; i < 2; i++) {
-        p->blank[i] = gpu_image_create(p->host->device, &(gpu_image_desc){
-                                                            .label = "blank",
-                                                            .format = GPU_RGBA16F,
-                                                            .width = 1,
-                                                            .height = 1,
-                                                            .depth = (uint32_t)i,
-                                                            .use = GPU_USE_SAMPLED,
-                                                        });
-        const uint16_t texel[4] = {0};
-        if (!p->blank[i] || !gpu_image_write(p->host->device, p->blank[i], 0, texel, sizeof texel))
+        if (p->blank[i]) continue;
+        gpu_image *image = gpu_image_create(p->host->device, &(gpu_image_desc){
+                                                                 .label = "blank",
+                                                                 .format = GPU_RGBA16F,
+                                                                 .width = 1,
+                                                                 .height = 1,
+                                                                 .depth = (uint32_t)i,
+                                                                 .use = GPU_USE_SAMPLED,
+                                                             });
+        if (!image) return false;
+        if (!gpu_image_write(p->host->device, image, 0, texel, sizeof texel)) {
+            gpu_image_destroy(p->host->device, image);
             return false;
+        }
+        p->blank[i] = image;
     }
     return true;
 }
 
 static bool make_counters(pass *p) {
-    if (!p->host->counters || !p->face->counter_count) return true;
+    if (p->counters || !p->host->counters || !p->face->counter_count) return true;
     p->counters = gpu_buffer_create(p->host->device, &(gpu_buffer_desc){
                                                          .label = "counters",
                                                          .size = p->face->counter_count * 8,
@@ -182,6 +194,13 @@ bool pass_build(pass *p) {
     }
     p->block = arena_alloc(p->host->memory, pass_block_size(&p->binary) + 16);
     p->numbers = arena_alloc(p->host->memory, field_program_block_size(p->program) + 16);
+    list_palettes(p);
+    return true;
+}
+
+bool pass_allocate(pass *p) {
+    for (size_t i = 0; i < p->mesh_count; i++)
+        if (!scene_mesh_upload(p->meshes[i], p->host->device)) return false;
     return make_palettes(p) && make_blanks(p) && make_counters(p);
 }
 
@@ -197,7 +216,8 @@ bool pass_check(pass *p) {
 void pass_destroy(pass *p) {
     gpu *device = p->host->device;
     if (p->type && p->type->destroy) p->type->destroy(p);
-    for (size_t i = 0; i < p->palette_count; i++) gpu_image_destroy(device, p->palettes[i].image);
+    for (size_t i = 0; i < p->palette_count; i++)
+        if (p->palettes[i].image) gpu_image_destroy(device, p->palettes[i].image);
     for (int i = 0; i < 2; i++)
         if (p->blank[i]) gpu_image_destroy(device, p->blank[i]);
     if (p->counters) gpu_buffer_destroy(device, p->counters);

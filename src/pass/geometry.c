@@ -79,8 +79,6 @@ bool geometry_build(pass *p) {
     p->pipeline = pass_create_compute(p, &p->binary);
     if (!p->pipeline) return false;
     if (!p->mesh_count) return true;
-    for (size_t i = 0; i < p->mesh_count; i++)
-        if (!scene_mesh_upload(p->meshes[i], p->host->device)) return false;
     gpu_slot slots[GPU_MAX_SLOTS];
     size_t slot_count = merge_slots(s, slots);
     s->meshes = gpu_pipeline_create_graphics(
@@ -138,9 +136,7 @@ static bool draw_mesh(pass *p, const scene_mesh *mesh, gpu_draw_desc *target) {
     geometry_state *s = p->state;
     mat4 transform;
     float tint[4];
-    if (!scene_mesh_transform(mesh, p->host->context, transform) ||
-        !field_eval(mesh->color, p->host->context, (float3){0, 0, 0}, tint))
-        return err_prefix("%s: ", mesh->name);
+    if (!scene_mesh_place(mesh, p->host->context, transform, tint)) return false;
     for (uint32_t i = 0; i < mesh->data.part_count; i++) {
         const mesh_part *part = &mesh->data.parts[i];
         part_block block = {.range = {part->first, part->texture >= 0, 0, 0}};

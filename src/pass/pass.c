@@ -8,7 +8,7 @@
 
 pass *pass_create(pass_host *host, const pass_type *type, const char *shader, const char *label) {
     const char *file = type ? type->shader : shader;
-    const shader_interface *face = shader_interface_load(host->library, host->memory, file);
+    const shader_interface *face = shader_interface_load(host->library, host->memory, file, host->reader);
     if (!face) return NULL;
     arena *memory = host->memory;
     pass *p = arena_alloc(memory, sizeof *p);

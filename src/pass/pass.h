@@ -3,7 +3,7 @@
 // types add hooks in C: more than one dispatch, meshes, boxes computed on the host.
 //
 // Life: pass_create, any number of pass_set_*, pass_declare (into the graph), pass_build (shader
-// and pipeline), then per frame the graph records it.
+// and pipeline), pass_allocate, then per frame the graph records it.
 #pragma once
 #include "field/field.h"
 #include "graph/graph.h"
@@ -25,6 +25,7 @@ typedef struct pass_host { // what all passes of one effect share
     const field_context *context;                // of the frame being recorded
     const struct frame_block *frame;             // of the frame being recorded
     bool counters;                               // compile counters in and read them
+    const shader_reader *reader;                 // of all files of shaders; may be NULL
     bool (*before_declare)(void *user, pass *p); // last chance to change a pass; may be NULL
     void *user;
     pass_grid *grid_images; // owned: freed by pass_host_free
@@ -41,7 +42,7 @@ typedef struct pass_type {
     // Optional hooks.
     bool (*declare)(pass *p); // instead of one image per output
     bool (*check)(pass *p);   // compile all that build would, without a device
-    bool (*build)(pass *p);   // instead of one pipeline
+    bool (*build)(pass *p);   // instead of one pipeline; see pass_build
     // Uniforms that the host computes, written into a block of `binary`'s layout.
     bool (*fill)(pass *p, const shader_binary *binary, unsigned char *block);
     bool (*record)(pass *p); // instead of one dispatch over the first output

@@ -1,5 +1,6 @@
 // Meshes on the device: vertices and indices as storage buffers (vertices are pulled by the vertex
 // shader), textures as sRGB images.
+#include "base/error.h"
 #include "base/memory.h"
 #include "scene/scene.h"
 #include <string.h>
@@ -56,6 +57,19 @@ void scene_mesh_destroy(scene_mesh *mesh, gpu *g) {
     mesh->vertices = mesh->indices = NULL;
 }
 
+bool scene_mesh_exchange(scene_mesh *mesh, scene_mesh *other) {
+    if (mesh->data.vertices != other->data.vertices) return false; // not shared by a cache
+    gpu_buffer *vertices = mesh->vertices, *indices = mesh->indices;
+    gpu_image **textures = mesh->textures;
+    mesh->vertices = other->vertices;
+    mesh->indices = other->indices;
+    mesh->textures = other->textures;
+    other->vertices = vertices;
+    other->indices = indices;
+    other->textures = textures;
+    return true;
+}
+
 bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, mat4 out) {
     float position[4], rotation[4], scale[4];
     float3 origin = {0, 0, 0};
@@ -70,4 +84,12 @@ bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, 
     glm_mat4_mul(out, turn, out);
     glm_scale_uni(out, scale[0]);
     return true;
+}
+
+bool scene_mesh_place(const scene_mesh *mesh, const field_context *context, mat4 transform,
+                      float tint[4]) {
+    if (scene_mesh_transform(mesh, context, transform) &&
+        field_eval(mesh->color, context, (float3){0, 0, 0}, tint))
+        return true;
+    return err_prefix("%s: ", mesh->name);
 }

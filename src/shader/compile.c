@@ -109,7 +109,10 @@ bool shader_compile(shader_library *library, arena *memory, const shader_compile
                     shader_binary *out) {
     *out = (shader_binary){0};
     job j = {.library = library, .desc = desc, .memory = memory, .out = out};
-    unit_desc unit = {.name = desc->name, .texts = desc->texts, .text_count = desc->text_count};
+    unit_desc unit = {.name = desc->name,
+                      .texts = desc->texts,
+                      .text_count = desc->text_count,
+                      .reader = desc->reader};
     if (!unit_load(library, &unit, &j.unit)) return false;
     bool done = run_on_large_stack(run, &j) ? j.done || err_set("%s", j.message)
                                             : err_prefix("%s: ", desc->name);

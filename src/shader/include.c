@@ -64,7 +64,23 @@ static int find_file(const loader *l, place at, const char *name, library_file *
     return escaped;
 }
 
+static void tell(const loader *l, const char *path) {
+    if (l->desc->reader) l->desc->reader->read(l->desc->reader->user, path);
+}
+
+// Where a user may put what is missing.
+static void tell_missing(const loader *l, place at, const char *name) {
+    const char *top = l->library->roots[ROOT_EFFECT];
+    char folder[PATH_CAP], beside[PATH_CAP], path[PATH_CAP];
+    if (!top) return;
+    if (path_join(path, top, name)) tell(l, path);
+    if (at.file < 0 || l->unit->files[at.file].where.root != ROOT_EFFECT) return;
+    path_folder(folder, l->unit->files[at.file].where.name);
+    if (path_join(beside, folder, name) && path_join(path, top, beside)) tell(l, path);
+}
+
 static bool fail_missing(const loader *l, place at, const char *name) {
+    tell_missing(l, at, name);
     strbuf message = {0};
     strbuf_add(&message, at.file < 0 ? "no such shader" : "include file \"%s\" not found", name);
     library_root home = at.file < 0 ? ROOT_NONE : l->unit->files[at.file].where.root;
@@ -153,6 +169,7 @@ static bool add_name(loader *l, place at, const char *name, int depth) {
         if (!found && l->desc->without_fields && strcmp(name, UNIT_FIELDS) == 0) return true;
         if (!found) return fail_missing(l, at, name);
     }
+    if (file.where.path) tell(l, file.where.path);
     int known = find_known(l->unit, &file.where);
     if (known >= 0) return !l->unit->files[known].open || fail_cycle(l, at, known);
     if (depth > UNIT_MAX_DEPTH) return fail(l, at, "includes are nested more than 32 deep");

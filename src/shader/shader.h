@@ -120,10 +120,18 @@ void shader_warm_up(void);
 // glslang runs since the library was created (cache hits do not count).
 uint64_t shader_library_compiles(const shader_library *library);
 
+// Is told of every file that is read, and of those looked for in vain: what a reload watches. Paths
+// are absolute where the library's folders are.
+typedef struct shader_reader {
+    void (*read)(void *user, const char *path);
+    void *user;
+} shader_reader;
+
 // Reads the annotations of a file and of the files it includes. `name` is looked up in the effect's
 // folder first, then in the program's; it cannot leave either. NULL with "file:line: message".
+// `reader` may be NULL.
 const shader_interface *shader_interface_load(shader_library *library, arena *memory,
-                                              const char *name);
+                                              const char *name, const shader_reader *reader);
 
 // ---- compile ----------------------------------------------------------------------------------
 
@@ -143,8 +151,9 @@ typedef struct shader_compile_desc {
     size_t define_count;
     const shader_text *texts; // generated include files
     size_t text_count;
-    const size_t *options; // one value per option of the interface, in order; NULL: defaults
-    bool counters;         // compile the counters in
+    const size_t *options;       // one value per option of the interface, in order; NULL: defaults
+    bool counters;               // compile the counters in
+    const shader_reader *reader; // may be NULL
 } shader_compile_desc;
 
 typedef struct shader_member { // of the block "Uniforms"
@@ -171,7 +180,7 @@ typedef struct shader_binary {
     const shader_member *members; // of "Uniforms", if that block exists
     size_t member_count;
     uint32_t local_size[3];
-    const char *const *files; // every file read, absolute paths: what a reload watches
+    const char *const *files; // every file that was read
     size_t file_count;
 } shader_binary;
 

@@ -75,7 +75,8 @@ typedef struct unit_desc {
     const char *name;
     const shader_text *texts; // searched before folders; the name itself may be one of them
     size_t text_count;
-    bool without_fields; // a missing UNIT_FIELDS is an empty file
+    bool without_fields;         // a missing UNIT_FIELDS is an empty file
+    const shader_reader *reader; // may be NULL
 } unit_desc;
 
 bool unit_load(const shader_library *library, const unit_desc *desc, shader_unit *out);

@@ -4,7 +4,8 @@
 
 static const shader_interface *load(place *p, const char *text) {
     place_write(p, "program/a.comp", text);
-    const shader_interface *interface = shader_interface_load(p->library, &p->memory, "a.comp");
+    const shader_interface *interface =
+        shader_interface_load(p->library, &p->memory, "a.comp", NULL);
     if (!interface) fail_msg("%s", err_get());
     return interface;
 }
@@ -15,7 +16,8 @@ static void refuses(place *p, const char *line, const char *part) {
     snprintf(text, sizeof text, "// x\n%s\nvoid main() {}\n", line);
     place_write(p, "program/a.comp", text);
     err_clear();
-    if (shader_interface_load(p->library, &p->memory, "a.comp")) fail_msg("accepted: %s", line);
+    if (shader_interface_load(p->library, &p->memory, "a.comp", NULL))
+        fail_msg("accepted: %s", line);
     assert_error("program/a.comp:2: ");
     assert_error(part);
 }
@@ -90,7 +92,7 @@ static void a_fragment_target_is_an_output(void **state) {
     place_write(p, "program/a.frag",
                 "layout(location = 0) out vec4 color; //= output rgba8 : x\n"
                 "void main() { color = vec4(1); }\n");
-    const shader_interface *i = shader_interface_load(p->library, &p->memory, "a.frag");
+    const shader_interface *i = shader_interface_load(p->library, &p->memory, "a.frag", NULL);
     assert_non_null(i);
     assert_int_equal(i->images[0].format, GPU_RGBA8);
     shader_binary binary;
@@ -140,7 +142,7 @@ static void included_files_are_annotated_too(void **state) {
     assert_string_equal(i->uniforms[0].name, "inner");
     assert_int_equal(i->uniforms[0].line, 2);
     place_write(p, "program/lib/b.glsl", "\nuniform float inner; //= x\n");
-    assert_null(shader_interface_load(p->library, &p->memory, "a.comp"));
+    assert_null(shader_interface_load(p->library, &p->memory, "a.comp", NULL));
     assert_error("lib/b.glsl:2: ");
 }
 
@@ -217,7 +219,7 @@ static void malformed_images_are_refused(void **state) {
         refuses(*state, cases[i][0], cases[i][1]);
     place *p = *state;
     place_write(p, "program/a.comp", "uniform sampler2D a; //= input history b : x\n");
-    assert_null(shader_interface_load(p->library, &p->memory, "a.comp"));
+    assert_null(shader_interface_load(p->library, &p->memory, "a.comp", NULL));
     assert_error("no output \"b\"");
 }
 
@@ -258,13 +260,13 @@ static void names_are_used_once(void **state) {
             char text[256];
             snprintf(text, sizeof text, "%s\n%s\n", lines[i], lines[j]);
             place_write(p, "program/a.comp", text);
-            assert_null(shader_interface_load(p->library, &p->memory, "a.comp"));
+            assert_null(shader_interface_load(p->library, &p->memory, "a.comp", NULL));
             assert_error("a.comp:2: ");
             assert_error("same: there is already a");
         }
     }
     place_write(p, "program/a.comp", "//@ counter n : x\n//@ counter n : x\n");
-    assert_null(shader_interface_load(p->library, &p->memory, "a.comp"));
+    assert_null(shader_interface_load(p->library, &p->memory, "a.comp", NULL));
     assert_error("already a counter");
     load(p, "//@ counter n : x\nuniform int n; //= 1 : x\n"); // counters have names of their own
 }

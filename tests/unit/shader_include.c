@@ -152,7 +152,8 @@ static void missing_fields_matter_to_a_compile_only(void **state) {
     place_write(p, "program/a.comp",
                 "//@ field float heat : x\n#include \"fields.glsl\"\nvoid main() { "
                 "field_heat(vec3(0)); }\n");
-    const shader_interface *interface = shader_interface_load(p->library, &p->memory, "a.comp");
+    const shader_interface *interface =
+        shader_interface_load(p->library, &p->memory, "a.comp", NULL);
     assert_non_null(interface);
     assert_int_equal(interface->field_count, 1);
     place_refuses(p, "a.comp", "a.comp:2: include file \"fields.glsl\" not found");
