@@ -1,0 +1,289 @@
+// An effect that follows its files: what the caller's thread does.
+#include "roil_live.h"
+#include "base/clock.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include <stdlib.h>
+#include <string.h>
+
+static char *copy(const char *text) {
+    return mem_copy(text, strlen(text) + 1);
+}
+
+// ---- settings ---------------------------------------------------------------------------------
+
+static live_setting *find_setting(roil_live *l, const char *name) {
+    for (size_t i = 0; i < l->setting_count; i++)
+        if (strcmp(l->settings[i].name, name) == 0) return &l->settings[i];
+    return NULL;
+}
+
+static void remove_setting(roil_live *l, live_setting *s) {
+    mem_free(s->name);
+    mem_free(s->text);
+    mem_free(s->initial);
+    size_t index = (size_t)(s - l->settings);
+    l->setting_count--;
+    memmove(s, s + 1, (l->setting_count - index) * sizeof *s);
+}
+
+static void put_setting(roil_live *l, const char *name, const char *text, const char *initial) {
+    live_setting made = {copy(name), copy(text), initial ? copy(initial) : NULL};
+    pthread_mutex_lock(&l->lock);
+    live_setting *old = find_setting(l, name);
+    if (old) remove_setting(l, old);
+    MEM_RESERVE(l->settings, l->setting_count + 1, l->setting_capacity);
+    l->settings[l->setting_count++] = made;
+    pthread_mutex_unlock(&l->lock);
+}
+
+static void drop_setting(roil_live *l, const char *name) {
+    pthread_mutex_lock(&l->lock);
+    live_setting *old = find_setting(l, name);
+    if (old) remove_setting(l, old);
+    pthread_mutex_unlock(&l->lock);
+}
+
+// An option or a resolution: only a load can set it.
+static bool is_fixed(const effect_control *c) {
+    return c->kind == EFFECT_CONTROL_OPTION || c->kind == EFFECT_CONTROL_SCALE;
+}
+
+static bool is_structural(const effect *e, const effect_control *c) {
+    return is_fixed(c) ||
+           (c->kind == EFFECT_CONTROL_PARAM && effect_get_param(e, c->index)->structural);
+}
+
+// So that what no load can take is refused at once.
+static bool check_fixed(effect *e, const effect_control *c, const char *text) {
+    if (c->kind == EFFECT_CONTROL_SCALE) {
+        char *end;
+        float scale = strtof(text, &end);
+        return (end != text && !*end && scale > 0 && scale <= 1) ||
+               err_set("'%s' cannot be '%s'; accepted: above 0, up to 1", c->name, text);
+    }
+    const shader_option *option = &pass_interface(effect_get_pass(e, c->pass))->options[c->index];
+    strbuf words = {0};
+    for (size_t i = 0; i < option->word_count; i++) {
+        if (strcmp(option->words[i], text) == 0) {
+            strbuf_free(&words);
+            return true;
+        }
+        strbuf_add(&words, "%s%s", i ? ", " : "", option->words[i]);
+    }
+    err_set("'%s' cannot be '%s'; accepted: %s", c->name, text, strbuf_text(&words));
+    strbuf_free(&words);
+    return false;
+}
+
+bool roil_live_set(roil_live *l, const char *name, const char *value) {
+    if (!l->effect) return err_set("'%s' cannot be set: no effect is loaded", name);
+    effect *e = l->effect->effect;
+    const effect_control *c = effect_find_control(e, name);
+    if (!c) return false;
+    bool done = is_fixed(c) ? check_fixed(e, c, value) : effect_set(e, name, value);
+    if (!done) return false;
+    if (strcmp(value, c->initial) == 0)
+        drop_setting(l, name);
+    else
+        put_setting(l, name, value, c->initial);
+    if (is_structural(e, c)) live_want(l, clock_seconds());
+    return true;
+}
+
+bool roil_live_reset(roil_live *l, const char *name) {
+    if (!name) {
+        bool done = true;
+        while (l->setting_count && done) {
+            char *last = copy(l->settings[l->setting_count - 1].name);
+            done = roil_live_reset(l, last);
+            mem_free(last);
+        }
+        return done;
+    }
+    if (!l->effect) return err_set("'%s' cannot be reset: no effect is loaded", name);
+    effect *e = l->effect->effect;
+    const effect_control *c = effect_find_control(e, name);
+    drop_setting(l, name);
+    if (!c) return false;
+    if (is_structural(e, c)) live_want(l, clock_seconds());
+    return is_fixed(c) || effect_reset(e, name);
+}
+
+static bool holds(const live_setting *s, const effect_control *c) {
+    return !s->initial || strcmp(s->initial, c->initial) == 0;
+}
+
+// Brings a new effect to the settings of now, which may be newer than its load.
+static void settle(roil_live *l, effect *e) {
+    for (size_t i = 0; i < effect_control_count(e); i++) {
+        const effect_control *c = effect_get_control(e, i);
+        const live_setting *s = find_setting(l, c->name);
+        if (is_fixed(c)) continue; // another load is on its way then
+        if (s && holds(s, c) && (!c->moved || strcmp(c->moved, s->text) != 0))
+            effect_set(e, c->name, s->text);
+        else if ((!s || !holds(s, c)) && c->moved)
+            effect_reset(e, c->name);
+    }
+}
+
+// Settings by hand whose control is gone, or has another value in the script now.
+static void forget_stale(roil_live *l, effect *e) {
+    pthread_mutex_lock(&l->lock);
+    for (size_t i = l->setting_count; i-- > 0;) {
+        live_setting *s = &l->settings[i];
+        const effect_control *c = effect_find_control(e, s->name);
+        if (s->initial && !(c && holds(s, c))) remove_setting(l, s);
+    }
+    pthread_mutex_unlock(&l->lock);
+}
+
+// ---- taking over ------------------------------------------------------------------------------
+
+static bool prepare(roil_effect *e, const roil_effect *old) {
+    if (!old) return effect_allocate(e->effect, e->width, e->height);
+    for (size_t i = 0; i < old->kept_count; i++) roil_keep(e, old->kept[i]); // if it is there still
+    roil_apply_kept(e);
+    e->frame = old->frame; // its picture is shown until the next one is drawn
+    return effect_adopt(e->effect, old->effect, e->width, e->height);
+}
+
+static bool take_over(roil_live *l, effect *made, uint32_t width, uint32_t height) {
+    roil_effect *e = mem_alloc(sizeof *e);
+    *e = (roil_effect){.owner = l->owner, .effect = made, .width = width, .height = height};
+    if (!prepare(e, l->effect)) {
+        roil_unload(e);
+        return false;
+    }
+    roil_unload(l->effect);
+    l->effect = e;
+    settle(l, made);
+    forget_stale(l, made);
+    return true;
+}
+
+static void set_message(roil_live *l, char *message) {
+    mem_free(l->message);
+    l->message = message;
+}
+
+bool roil_live_update(roil_live *l, uint32_t width, uint32_t height, double frame) {
+    pthread_mutex_lock(&l->lock);
+    l->frame = frame;
+    l->framed = true;
+    live_result result = {0};
+    if (l->ready && (!l->result.effect || (width && height))) {
+        result = l->result;
+        l->result = (live_result){0};
+        l->ready = false;
+    }
+    pthread_mutex_unlock(&l->lock);
+    if (result.effect && take_over(l, result.effect, width, height)) {
+        l->counts.reloads++;
+        l->counts.last = clock_seconds() - result.since;
+        set_message(l, NULL);
+        return true;
+    }
+    if (!result.effect && !result.message) return false;
+    l->counts.failures++;
+    set_message(l, result.message ? result.message : copy(err_get()));
+    return true;
+}
+
+// ---- life -------------------------------------------------------------------------------------
+
+static void on_changed(void *user, const char *path, double when) {
+    (void)path;
+    live_want(user, when);
+}
+
+static bool make_library(roil_live *l) {
+    char folder[PATH_CAP], cache[PATH_CAP];
+    path_folder(folder, l->file);
+    bool cached = l->owner->cache && path_join(cache, l->owner->cache, "spirv");
+    l->library = shader_library_create(&(shader_library_desc){
+        .shader_root = l->owner->shaders,
+        .effect_root = folder,
+        .cache_dir = cached ? cache : NULL,
+    });
+    return l->library != NULL;
+}
+
+static void init_locks(roil_live *l) {
+    pthread_condattr_t monotonic; // as clock_seconds
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    pthread_mutex_init(&l->lock, NULL);
+    pthread_cond_init(&l->news, &monotonic);
+    pthread_cond_init(&l->idle, NULL);
+    pthread_condattr_destroy(&monotonic);
+}
+
+static void free_live(roil_live *l) { // its threads have ended
+    watch_destroy(l->watch);
+    live_free_result(&l->result);
+    roil_unload(l->effect);
+    shader_library_destroy(l->library);
+    while (l->setting_count) remove_setting(l, &l->settings[l->setting_count - 1]);
+    live_free_names(l->good, l->good_count);
+    live_free_names(l->watched, l->watched_count);
+    pthread_cond_destroy(&l->news);
+    pthread_cond_destroy(&l->idle);
+    pthread_mutex_destroy(&l->lock);
+    mem_free(l->settings);
+    mem_free(l->message);
+    mem_free(l->file);
+    mem_free(l);
+}
+
+roil_live *roil_live_create(roil *r, const roil_live_desc *desc) {
+    if (!r->device) {
+        err_set("no device: an effect can only be checked");
+        return NULL;
+    }
+    roil_live *l = mem_alloc(sizeof *l);
+    *l = (roil_live){.owner = r, .file = copy(desc->file), .wake = desc->wake, .user = desc->user};
+    init_locks(l);
+    for (size_t i = 0; i < desc->setting_count; i++)
+        put_setting(l, desc->settings[i].name, desc->settings[i].value, NULL);
+    l->watch =
+        make_library(l) ? watch_create(&(watch_desc){.changed = on_changed, .user = l}) : NULL;
+    const char *file = l->file;
+    if (!l->watch || !watch_set(l->watch, &file, 1)) {
+        free_live(l);
+        return NULL;
+    }
+    l->building = true; // until the builder says otherwise
+    live_want(l, clock_seconds());
+    if (pthread_create(&l->thread, NULL, live_run, l) != 0) err_out_of_memory(0);
+    return l;
+}
+
+void roil_live_destroy(roil_live *l) {
+    if (!l) return;
+    pthread_mutex_lock(&l->lock);
+    l->ending = true;
+    pthread_cond_signal(&l->news);
+    pthread_mutex_unlock(&l->lock);
+    pthread_join(l->thread, NULL);
+    free_live(l);
+}
+
+void roil_live_wait(roil_live *l) {
+    watch_catch_up(l->watch);
+    pthread_mutex_lock(&l->lock);
+    while (l->wanted || l->building) pthread_cond_wait(&l->idle, &l->lock);
+    pthread_mutex_unlock(&l->lock);
+}
+
+roil_effect *roil_live_effect(roil_live *l) {
+    return l->effect;
+}
+
+const char *roil_live_message(roil_live *l) {
+    return l->message;
+}
+
+roil_live_count roil_live_counts(const roil_live *l) {
+    return l->counts;
+}

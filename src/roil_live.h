@@ -1,0 +1,57 @@
+// The inside of roil_live, for src/roil_live*.c only. Three threads: that of the watch notes what
+// changed and wakes the builder; the builder loads and compiles; the caller's takes over.
+#pragma once
+#include "base/watch.h"
+#include "roil_impl.h"
+#include <pthread.h>
+
+typedef struct live_setting { // of a control
+    char *name, *text;
+    char *initial; // what the script said when it was moved; NULL: from the command line
+} live_setting;
+
+typedef struct live_result { // of a build
+    effect *effect;          // NULL: it failed
+    char *message;           // why; NULL: it did not
+    double since;            // clock_seconds of the change that it answers
+} live_result;
+
+struct roil_live {
+    roil *owner;
+    char *file;
+    void (*wake)(void *user);
+    void *user;
+    shader_library *library;
+    watch *watch;
+    pthread_t thread;
+
+    // Of the caller's thread.
+    roil_effect *effect;
+    char *message;
+    roil_live_count counts;
+
+    pthread_mutex_t lock; // guards all below
+    pthread_cond_t news;  // for the builder
+    pthread_cond_t idle;  // the builder has nothing left to do
+    live_setting *settings;
+    size_t setting_count, setting_capacity;
+    double frame;         // that will be drawn next
+    bool framed;          // it is known
+    bool wanted;          // something changed since the last build began
+    double since, latest; // clock_seconds of the first and last change of these
+    bool building, ending;
+    live_result result; // not taken yet
+    bool ready;         // there is one
+
+    // Of the builder: files of the last good build, and those that are watched.
+    char **good, **watched;
+    size_t good_count, watched_count;
+};
+
+void *live_run(void *live);                // the builder's thread
+void live_want(roil_live *l, double when); // a build; not with the lock held
+void live_free_result(live_result *result);
+void live_free_names(char **names, size_t count);
+// "file:line: message" with the source line beneath, and a caret where the column can be told.
+// `scripts`: the folder of the program's own. Free with mem_free.
+char *live_explain(const char *message, const char *scripts);

@@ -1,0 +1,199 @@
+// The builder: loads the effect from scratch whenever something changed, while the old one is still
+// drawn. What is dear is not done again: shaders and all that comes from files is kept, as long as
+// the files are the same, by what all loads share.
+#include "base/clock.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "roil_live.h"
+#include "script/script.h"
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+static const double EMPTY_SECONDS = 0.5; // an empty file is being written, unless it stays so
+
+// ---- files ------------------------------------------------------------------------------------
+
+typedef struct file_set {
+    char **paths; // sorted, each once
+    size_t count, capacity;
+} file_set;
+
+static int by_name(const void *a, const void *b) {
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+static void add_files(file_set *set, const char *const *paths, size_t count) {
+    MEM_RESERVE(set->paths, set->count + count, set->capacity);
+    for (size_t i = 0; i < count; i++)
+        set->paths[set->count++] = mem_copy(paths[i], strlen(paths[i]) + 1);
+    if (set->count) qsort(set->paths, set->count, sizeof *set->paths, by_name);
+    size_t kept = 0;
+    for (size_t i = 0; i < set->count; i++) {
+        if (kept && strcmp(set->paths[i], set->paths[kept - 1]) == 0)
+            mem_free(set->paths[i]);
+        else
+            set->paths[kept++] = set->paths[i];
+    }
+    set->count = kept;
+}
+
+void live_free_names(char **names, size_t count) {
+    for (size_t i = 0; i < count; i++) mem_free(names[i]);
+    mem_free(names);
+}
+
+static bool is_watched(const roil_live *l, char *path) {
+    return l->watched_count &&
+           bsearch(&path, l->watched, l->watched_count, sizeof path, by_name) != NULL;
+}
+
+static bool is_before(const struct timespec *a, const struct timespec *b) {
+    return a->tv_sec != b->tv_sec ? a->tv_sec < b->tv_sec : a->tv_nsec < b->tv_nsec;
+}
+
+// True when a file that was not watched yet may have changed after it was read.
+static bool was_missed(const roil_live *l, const file_set *set, const struct timespec *begin) {
+    for (size_t i = 0; i < set->count; i++) {
+        struct stat info;
+        if (is_watched(l, set->paths[i]) || stat(set->paths[i], &info) != 0) continue;
+        if (!is_before(&info.st_ctim, begin)) return true;
+    }
+    return false;
+}
+
+// Follows the files of this build, and those of the last good one if it failed: to put back what
+// was there mends it. `begin`: when it began, by the clock of the file system.
+static void follow_files(roil_live *l, file_set *set, bool good, const struct timespec *begin) {
+    if (good) {
+        live_free_names(l->good, l->good_count);
+        file_set copy = {0};
+        add_files(&copy, (const char *const *)set->paths, set->count);
+        l->good = copy.paths;
+        l->good_count = copy.count;
+    } else {
+        add_files(set, (const char *const *)l->good, l->good_count);
+    }
+    if (!watch_set(l->watch, (const char *const *)set->paths, set->count))
+        log_write(LOG_WARNING, "%s", err_get());
+    if (was_missed(l, set, begin)) live_want(l, clock_seconds());
+    live_free_names(l->watched, l->watched_count);
+    l->watched = set->paths;
+    l->watched_count = set->count;
+}
+
+// ---- one build --------------------------------------------------------------------------------
+
+typedef struct order { // what a build goes by
+    arena memory;
+    effect_setting *settings;
+    size_t setting_count;
+    double frame, since;
+    bool framed;
+} order;
+
+static order take_order(roil_live *l) { // with the lock held
+    order o = {.frame = l->frame, .since = l->since, .framed = l->framed};
+    o.settings = arena_alloc(&o.memory, l->setting_count * sizeof *o.settings);
+    for (size_t i = 0; i < l->setting_count; i++) {
+        const live_setting *s = &l->settings[i];
+        o.settings[o.setting_count++] = (effect_setting){
+            .name = arena_string(&o.memory, s->name),
+            .text = arena_string(&o.memory, s->text),
+            .initial = s->initial ? arena_string(&o.memory, s->initial) : NULL,
+        };
+    }
+    return o;
+}
+
+static live_result build(roil_live *l, const order *o, file_set *files) {
+    const roil *r = l->owner;
+    const char *const *read;
+    effect *e = effect_create(&(effect_desc){
+        .device = r->device,
+        .file = l->file,
+        .shader_root = r->shaders,
+        .cache_dir = r->cache,
+        .counters = r->counters,
+        .settings = o->settings,
+        .setting_count = o->setting_count,
+        .library = l->library,
+    });
+    bool done = e && script_load(e, r->scripts) && effect_check_settings(e) && effect_compile(e) &&
+                effect_rehearse(e, o->framed ? o->frame : effect_first_frame(e));
+    char *message = done ? NULL : live_explain(err_get(), r->scripts);
+    if (e) add_files(files, read, effect_files(e, &read));
+    if (!done) effect_destroy(e);
+    return (live_result){.effect = done ? e : NULL, .message = message, .since = o->since};
+}
+
+void live_free_result(live_result *result) {
+    effect_destroy(result->effect);
+    mem_free(result->message);
+    *result = (live_result){0};
+}
+
+// ---- the thread -------------------------------------------------------------------------------
+
+void live_want(roil_live *l, double when) {
+    pthread_mutex_lock(&l->lock);
+    if (!l->wanted) l->since = when;
+    l->wanted = true;
+    l->latest = when;
+    pthread_cond_signal(&l->news);
+    pthread_mutex_unlock(&l->lock);
+}
+
+// An editor may be between truncating the file and writing it. True when that was waited for, or
+// more news.
+static bool wait_for_content(roil_live *l) {
+    struct stat info;
+    double end = l->latest + EMPTY_SECONDS;
+    if (clock_seconds() >= end || stat(l->file, &info) != 0 || info.st_size > 0) return false;
+    struct timespec until = {.tv_sec = (time_t)end};
+    until.tv_nsec = (long)((end - (double)until.tv_sec) * 1e9);
+    pthread_cond_timedwait(&l->news, &l->lock, &until);
+    return true;
+}
+
+static void hand_over(roil_live *l, live_result result) {
+    pthread_mutex_lock(&l->lock);
+    live_result old = l->result;
+    l->result = result;
+    l->ready = true;
+    pthread_mutex_unlock(&l->lock);
+    live_free_result(&old); // nobody took it: the newer one wins
+    if (l->wake) l->wake(l->user);
+}
+
+void *live_run(void *live) {
+    roil_live *l = live;
+    pthread_mutex_lock(&l->lock);
+    while (!l->ending) {
+        if (!l->wanted) {
+            l->building = false;
+            pthread_cond_broadcast(&l->idle);
+            pthread_cond_wait(&l->news, &l->lock);
+            continue;
+        }
+        if (wait_for_content(l)) continue;
+        order o = take_order(l);
+        l->wanted = false;
+        l->building = true;
+        pthread_mutex_unlock(&l->lock);
+
+        struct timespec begin;
+        file_set files = {0};
+        clock_gettime(CLOCK_REALTIME_COARSE, &begin); // as file systems do
+        live_result result = build(l, &o, &files);
+        bool good = result.effect != NULL;
+        hand_over(l, result);
+        follow_files(l, &files, good, &begin);
+        arena_free(&o.memory);
+        pthread_mutex_lock(&l->lock);
+    }
+    pthread_mutex_unlock(&l->lock);
+    return NULL;
+}
