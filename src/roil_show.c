@@ -114,8 +114,8 @@ static bool check_triangles(const roil_picture *p) {
     for (size_t i = 0; i < p->draw_count; i++) {
         const roil_draw *d = &p->draws[i];
         if (d->first > p->index_count || d->count > p->index_count - d->first)
-            return err_set("draw %zu has indices %u to %u; there are %zu", i, d->first,
-                           d->first + d->count, p->index_count);
+            return err_set("draw %zu has %u indices from %u on; there are %zu", i, d->count,
+                           d->first, p->index_count);
     }
     for (size_t i = 0; i < p->index_count; i++)
         if (p->indices[i] >= p->vertex_count)

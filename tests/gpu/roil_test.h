@@ -1,19 +1,11 @@
 // What tests of the public interface share: a roil with validation, and effects of one pass whose
 // shader a test writes into a folder of its own.
 #pragma once
-#include "base/memory.h"
+#include "gpu_test.h"
 #include "roil.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h> // wants the headers above
 
 #define ok(result)                                                                                 \
     do {                                                                                           \
@@ -80,14 +72,12 @@ static inline int srgb(float linear) { // IEC 61966-2-1
     return (int)lrintf(255 * v);
 }
 
-// The value that main returns; 77 when this machine has no device.
-#define test_run(tests)                                                                            \
-    (test_has_device()                                                                             \
-         ? cmocka_run_group_tests(tests, test_open, test_close) + (test_messages > 0 ? 1 : 0)      \
-         : 77)
-
-static inline bool test_has_device(void) {
-    char *devices = roil_info_devices();
-    roil_free(devices);
-    return devices != NULL;
+// The value that main returns.
+#define test_run(tests) test_run_group(__FILE__, (tests), COUNT_OF(tests))
+static inline int test_run_group(const char *name, const struct CMUnitTest *tests, size_t count) {
+    gpu_test_keep_driver();
+    gpu_test_need_device();
+    int failed = _cmocka_run_group_tests(name, tests, count, test_open, test_close);
+    if (test_messages > 0) fprintf(stderr, "%s: validation messages were given\n", name);
+    return failed + (test_messages > 0);
 }
