@@ -701,8 +701,9 @@ static ui_canvas canvas_of(ui_rect area, bool hovered) {
 ui_canvas ui_canvas_begin(const char *id, float width, float height) {
     const ImGuiIO &io = ImGui::GetIO();
     ImVec2 at = ImGui::GetCursorScreenPos();
-    float wide = fmaxf(width > 0 ? width : ImGui::GetContentRegionAvail().x, 1);
-    height = fmaxf(height, 1);
+    ImVec2 room = ImGui::GetContentRegionAvail();
+    float wide = fmaxf(width > 0 ? width : room.x, 1);
+    height = fmaxf(height > 0 ? height : room.y, 1);
     ImGui::InvisibleButton(id, ImVec2(wide, height),
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                ImGuiButtonFlags_MouseButtonMiddle);

@@ -140,8 +140,8 @@ typedef struct ui_canvas {
     float wheel;
     bool shift, control;
 } ui_canvas;
-// Width 0: the rest of the line. In a window that moves, the wheel is the canvas's own; in a panel
-// it scrolls the panel too.
+// Width 0: the rest of the line; height 0: the rest of the panel. In a window that moves, the wheel
+// is the canvas's own; in a panel it scrolls the panel too.
 ui_canvas ui_canvas_begin(const char *id, float width, float height);
 void ui_canvas_end(void);
 // What a user does in a part of the window that no panel covers. Outside of panels.

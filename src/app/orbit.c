@@ -1,0 +1,72 @@
+#include "app/orbit.h"
+#include "base/maths.h"
+#include <math.h>
+
+static const float MAX_PITCH = 89, ZOOM_STEP = 0.88f; // share of the distance that a step leaves
+static const float MIN_DISTANCE = 1e-3f, MAX_DISTANCE = 1e6f;
+static const float MARGIN = 1.08f; // around a framed box
+
+// The camera's axes, as the renderer has them: at yaw 0 it looks along +Y, and Z is up.
+typedef struct axes {
+    vec3 right, up, back;
+} axes;
+
+static axes axes_of(const orbit *o) {
+    float yaw = glm_rad(o->yaw - 90), pitch = glm_rad(o->pitch);
+    axes a = {.back = {cosf(pitch) * cosf(yaw), cosf(pitch) * sinf(yaw), sinf(pitch)},
+              .right = {-sinf(yaw), cosf(yaw), 0}};
+    glm_vec3_cross(a.back, a.right, a.up);
+    return a;
+}
+
+void orbit_from(orbit *o, const roil_camera *camera) {
+    vec3 back;
+    glm_vec3_sub((float *)camera->eye, (float *)camera->target, back);
+    float distance = glm_vec3_norm(back);
+    *o = (orbit){.distance = clampf(distance, MIN_DISTANCE, MAX_DISTANCE), .fov = camera->fov};
+    glm_vec3_copy((float *)camera->target, o->target);
+    if (!(distance >= MIN_DISTANCE)) return; // looks nowhere: along +Y, as the renderer has it
+    o->pitch = glm_deg(asinf(clampf(back[2] / distance, -1, 1)));
+    if (hypotf(back[0], back[1]) > 1e-4f * distance)
+        o->yaw = glm_deg(atan2f(back[1], back[0])) + 90;
+}
+
+void orbit_to(const orbit *o, roil_camera *out) {
+    axes a = axes_of(o);
+    *out = (roil_camera){.fov = o->fov};
+    glm_vec3_copy((float *)o->target, out->target);
+    glm_vec3_scale(a.back, o->distance, a.back);
+    glm_vec3_add((float *)o->target, a.back, out->eye);
+}
+
+void orbit_turn(orbit *o, float dx, float dy) {
+    o->yaw = fmodf(o->yaw + dx, 360);
+    o->pitch = clampf(o->pitch + dy, -MAX_PITCH, MAX_PITCH);
+}
+
+void orbit_pan(orbit *o, float dx, float dy) {
+    axes a = axes_of(o);
+    float height = 2 * o->distance * tanf(glm_rad(o->fov) / 2); // of the picture, at the target
+    glm_vec3_muladds(a.right, -dx * height, o->target);
+    glm_vec3_muladds(a.up, dy * height, o->target);
+}
+
+void orbit_zoom(orbit *o, float steps) {
+    o->distance = clampf(o->distance * powf(ZOOM_STEP, steps), MIN_DISTANCE, MAX_DISTANCE);
+}
+
+void orbit_frame(orbit *o, const float low[3], const float high[3], float aspect) {
+    float vertical = tanf(glm_rad(o->fov) / 2), horizontal = vertical * fmaxf(aspect, 1e-3f);
+    axes a = axes_of(o);
+    for (int i = 0; i < 3; i++) o->target[i] = (low[i] + high[i]) / 2;
+    float distance = MIN_DISTANCE;
+    for (int corner = 0; corner < 8; corner++) { // each must lie within the four sides
+        vec3 p;
+        for (int i = 0; i < 3; i++) p[i] = (corner >> i & 1 ? high[i] : low[i]) - o->target[i];
+        float nearer = glm_vec3_dot(p, a.back);
+        float across = fabsf(glm_vec3_dot(p, a.right)) * MARGIN / horizontal;
+        float along = fabsf(glm_vec3_dot(p, a.up)) * MARGIN / vertical;
+        distance = fmaxf(distance, nearer + fmaxf(across, along));
+    }
+    o->distance = clampf(distance, MIN_DISTANCE, MAX_DISTANCE);
+}
