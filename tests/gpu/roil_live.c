@@ -1,0 +1,409 @@
+// An effect that follows its files. Every test writes files as an editor does, waits for the
+// background (no sleeps), takes over, draws, and looks at pixels.
+#include "roil_test.h"
+
+enum { WIDTH = 32, HEIGHT = 18 };
+
+// Red: frames so far / 16. Green: `gain`. Blue: a number of an included file.
+static const char SHADER[] = "// Counts.\n"
+                             "#include \"part.glsl\"\n"
+                             "//@ option mode = plain {plain, double} : how gain is shown\n"
+                             "uniform float gain;                //= 1 [0, 1] : green\n"
+                             "uniform sampler2D before;          //= input history color : past\n"
+                             "writeonly uniform image2D color;   //= output rgba16f : picture\n"
+                             "void main() {\n"
+                             "    ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
+                             "    if (any(greaterThanEqual(p, imageSize(color)))) return;\n"
+                             "    float count = texelFetch(before, p, 0).r + 1.0 / 16.0;\n"
+                             "    float green = MODE == MODE_DOUBLE ? 2.0 * gain : gain;\n"
+                             "    imageStore(color, p, vec4(count, green, part(), 1.0));\n"
+                             "}\n";
+
+static const char SCRIPT[] = "local fx = effect { name = 'test', fps = 24, frames = 100 }\n"
+                             "local more = require 'more'\n"
+                             "local gain = param { 'gain', %s, min = 0, max = 1 }\n"
+                             "local count = shader { 'count.comp', gain = gain * more, %s }\n"
+                             "fx.output = count.color\n"
+                             "%s\n"
+                             "return fx\n";
+
+static char script_path[512];
+
+static void put(const char *name, const char *text) {
+    char path[512];
+    write_text(name, text, path);
+}
+
+static void put_script(const char *gain, const char *pass, const char *end) {
+    char text[2048];
+    snprintf(text, sizeof text, SCRIPT, gain, pass, end);
+    write_text("test.lua", text, script_path);
+}
+
+static void put_part(const char *number) {
+    char text[64];
+    snprintf(text, sizeof text, "float part() { return %s; }\n", number);
+    put("part.glsl", text);
+}
+
+typedef struct session {
+    roil_live *live;
+    double frame; // drawn next
+} session;
+
+// Draws a frame; `pixel` is the linear colour in the middle of the picture, as far as sRGB tells.
+static void draw(session *s, int red, double green, double blue) {
+    roil_effect *e = roil_live_effect(s->live);
+    if (!e) fail_msg("no effect: %s", roil_live_message(s->live));
+    ok(roil_advance(e, s->frame));
+    s->frame++;
+    static uint8_t pixels[WIDTH * HEIGHT * 4];
+    ok(roil_read(e, false, pixels));
+    expect_pixel(pixels, WIDTH, WIDTH / 2, HEIGHT / 2, srgb((float)red / 16), srgb((float)green),
+                 srgb((float)blue), 1);
+}
+
+static bool update(session *s) {
+    roil_live_wait(s->live);
+    return roil_live_update(s->live, WIDTH, HEIGHT, s->frame);
+}
+
+static void expect_good(session *s) {
+    assert_true(update(s));
+    if (roil_live_message(s->live)) fail_msg("%s", roil_live_message(s->live));
+}
+
+static void expect_broken(session *s, const char *part) {
+    assert_true(update(s));
+    const char *message = roil_live_message(s->live);
+    if (!message || !strstr(message, part))
+        fail_msg("'%s' does not say '%s'", message ? message : "(no message)", part);
+}
+
+static void put_all(void) {
+    put("count.comp", SHADER);
+    put("more.lua", "return 1");
+    put_part("0.25");
+    put_script("0.5", "", "");
+}
+
+static session begin_with(roil *r, const roil_setting *settings, size_t count) {
+    put_all();
+    session s = {.frame = 1};
+    s.live = roil_live_create(
+        r, &(roil_live_desc){.file = script_path, .settings = settings, .setting_count = count});
+    ok(s.live);
+    return s;
+}
+
+static session begin(roil *r) {
+    session s = begin_with(r, NULL, 0);
+    expect_good(&s);
+    return s;
+}
+
+static void end(session *s) {
+    roil_live_destroy(s->live);
+}
+
+// ---- edits ------------------------------------------------------------------------------------
+
+static void number_edit_shows_and_the_simulation_goes_on(void **state) {
+    session s = begin(*state);
+    draw(&s, 1, 0.5, 0.25);
+    draw(&s, 2, 0.5, 0.25);
+    put_script("0.75", "", "");
+    expect_good(&s);
+    draw(&s, 3, 0.75, 0.25);
+    assert_false(update(&s)); // nothing new
+    draw(&s, 4, 0.75, 0.25);
+    roil_live_count counts = roil_live_counts(s.live);
+    assert_true(counts.reloads == 2 && counts.failures == 0 && counts.last > 0);
+    end(&s);
+}
+
+static void structural_edit_shows_and_the_simulation_goes_on(void **state) {
+    session s = begin(*state);
+    draw(&s, 1, 0.5, 0.25);
+    put_script("0.25", "mode = 'double'", "");
+    expect_good(&s);
+    draw(&s, 2, 0.5, 0.25);
+    end(&s);
+}
+
+static void module_edit_shows(void **state) {
+    session s = begin(*state);
+    draw(&s, 1, 0.5, 0.25);
+    put("more.lua", "return 0.5");
+    expect_good(&s);
+    draw(&s, 2, 0.25, 0.25);
+    end(&s);
+}
+
+static void edit_of_an_included_shader_shows(void **state) {
+    session s = begin(*state);
+    draw(&s, 1, 0.5, 0.25);
+    put_part("0.75");
+    expect_good(&s);
+    draw(&s, 2, 0.5, 0.75);
+    end(&s);
+}
+
+static const char MESH_SCRIPT[] = "local fx = effect { name = 'test' }\n"
+                                  "fx.camera = camera { eye = {0, -5, 0}, target = {0, 0, 0} }\n"
+                                  "fx.sky = sky { strength = 0 }\n"
+                                  "local g = geometry { mesh { 'quad.obj' } }\n"
+                                  "fx.output = g.color\n"
+                                  "return fx\n";
+
+static void put_quad(int size) {
+    char text[256];
+    snprintf(text, sizeof text,
+             "v -%d 0 -%d\nv %d 0 -%d\nv %d 0 %d\nv -%d 0 %d\nf 1 2 3\nf 1 3 4\n", size, size, size,
+             size, size, size, size, size);
+    put("quad.obj", text);
+}
+
+static void draw_quad(session *s, bool expected) { // lit: the sun shines from the front
+    static uint8_t pixels[WIDTH * HEIGHT * 4];
+    ok(roil_render(roil_live_effect(s->live), s->frame++));
+    ok(roil_read(roil_live_effect(s->live), false, pixels));
+    const uint8_t *corner = pixels + 4 * (2 * WIDTH + WIDTH / 2); // near the upper edge
+    assert_int_equal(corner[0] + corner[1] + corner[2] > 0, expected);
+}
+
+static void mesh_edit_shows(void **state) {
+    session s = {.frame = 1};
+    put_quad(1);
+    write_text("mesh.lua", MESH_SCRIPT, script_path);
+    s.live = roil_live_create(*state, &(roil_live_desc){.file = script_path});
+    ok(s.live);
+    expect_good(&s);
+    draw_quad(&s, false);
+    put_quad(3);
+    expect_good(&s);
+    draw_quad(&s, true);
+    write_text("mesh.lua", MESH_SCRIPT, script_path); // the same again
+    expect_good(&s);
+    draw_quad(&s, true);
+    end(&s);
+}
+
+// ---- what is broken ---------------------------------------------------------------------------
+
+static void broken_file_keeps_the_old_effect(void **state) {
+    session s = begin(*state);
+    draw(&s, 1, 0.5, 0.25);
+    put_script("0.5", "mode = 'tripel'", "");
+    expect_broken(&s, "test.lua:4: ");
+    assert_non_null(strstr(roil_live_message(s.live), "\n    local count = shader {"));
+    draw(&s, 2, 0.5, 0.25);
+    put_script("oops", "", "");
+    expect_broken(&s, "test.lua:3: ");
+    draw(&s, 3, 0.5, 0.25);
+    put_script("0.75", "", "");
+    expect_good(&s);
+    draw(&s, 4, 0.75, 0.25);
+    end(&s);
+}
+
+static void broken_shader_shows_its_line_with_a_caret(void **state) {
+    session s = begin(*state);
+    draw(&s, 1, 0.5, 0.25);
+    put_part("misspelt");
+    expect_broken(&s, "part.glsl:1: 'misspelt'");
+    assert_non_null(strstr(roil_live_message(s.live), "\n    float part() { return misspelt; }\n"
+                                                      "                          ^"));
+    draw(&s, 2, 0.5, 0.25);
+    put_part("0.5");
+    expect_good(&s);
+    draw(&s, 3, 0.5, 0.5);
+    end(&s);
+}
+
+static void file_that_is_missing_is_waited_for(void **state) {
+    session s = begin(*state);
+    draw(&s, 1, 0.5, 0.25);
+    put("count.comp", "#include \"later.glsl\"\n");
+    expect_broken(&s, "later.glsl");
+    put("count.comp", SHADER);
+    expect_good(&s);
+    char text[2048];
+    snprintf(text, sizeof text, "#include \"later.glsl\"\n%s", SHADER);
+    put("count.comp", text);
+    expect_broken(&s, "later.glsl");
+    put("later.glsl", "// no more than a comment\n");
+    expect_good(&s);
+    draw(&s, 2, 0.5, 0.25);
+    end(&s);
+}
+
+static void deleted_file_is_waited_for(void **state) {
+    session s = begin(*state);
+    char shader[512];
+    snprintf(shader, sizeof shader, "%s/count.comp", test_folder);
+    draw(&s, 1, 0.5, 0.25);
+    assert_int_equal(unlink(script_path), 0);
+    expect_broken(&s, "test.lua");
+    draw(&s, 2, 0.5, 0.25);
+    assert_int_equal(unlink(shader), 0);
+    roil_live_wait(s.live);
+    put("count.comp", SHADER);
+    put_script("1", "", "");
+    expect_good(&s);
+    draw(&s, 3, 1, 0.25);
+    end(&s);
+}
+
+static void file_that_is_broken_from_the_start_is_followed(void **state) {
+    put_all();
+    put_script("", "", "");
+    session s = {.frame = 1};
+    s.live = roil_live_create(*state, &(roil_live_desc){.file = script_path});
+    ok(s.live);
+    expect_broken(&s, "test.lua:3: ");
+    assert_null(roil_live_effect(s.live));
+    put_script("1", "", "");
+    expect_good(&s);
+    draw(&s, 1, 1, 0.25);
+    end(&s);
+}
+
+static void empty_file_is_no_news_until_it_stays_so(void **state) {
+    session s = begin(*state);
+    draw(&s, 1, 0.5, 0.25);
+    write_text("test.lua", "", script_path); // an editor between two writes
+    put_script("1", "", "");
+    expect_good(&s);
+    draw(&s, 2, 1, 0.25);
+    assert_int_equal(roil_live_counts(s.live).failures, 0);
+    write_text("test.lua", "", script_path);
+    expect_broken(&s, "no effect is declared");
+    end(&s);
+}
+
+static void endless_update_is_not_taken(void **state) {
+    session s = begin(*state);
+    draw(&s, 1, 0.5, 0.25);
+    put_script("1", "", "fx.update = function(t, dt) while true do end end");
+    expect_broken(&s, "test.lua:");
+    draw(&s, 2, 0.5, 0.25);
+    put_script("1", "", "fx.update = function(t, dt) end");
+    expect_good(&s);
+    draw(&s, 3, 1, 0.25);
+    end(&s);
+}
+
+static void function_that_fails_at_the_frame_is_not_taken(void **state) {
+    session s = begin(*state);
+    draw(&s, 1, 0.5, 0.25);
+    s.frame = 30;
+    update(&s);
+    put_script("1", "gain = function(t) if t > 1 then error('late') end return 1 end", "");
+    expect_broken(&s, "late");
+    s.frame = 2;
+    update(&s);
+    put_script("1", " gain = function(t) if t > 1 then error('late') end return 1 end", "");
+    expect_good(&s);
+    end(&s);
+}
+
+// ---- settings ---------------------------------------------------------------------------------
+
+static void moved_value_survives_an_edit(void **state) {
+    session s = begin(*state);
+    ok(roil_live_set(s.live, "gain", "1"));
+    draw(&s, 1, 1, 0.25);
+    put_script("0.5", "", "-- a comment");
+    expect_good(&s);
+    draw(&s, 2, 1, 0.25);
+    ok(roil_live_reset(s.live, "gain"));
+    draw(&s, 3, 0.5, 0.25);
+    put_script("0.5", "", "");
+    expect_good(&s);
+    draw(&s, 4, 0.5, 0.25);
+    end(&s);
+}
+
+static void moved_value_yields_to_a_changed_default(void **state) {
+    session s = begin(*state);
+    ok(roil_live_set(s.live, "gain", "1"));
+    put_script("0.25", "", "");
+    expect_good(&s);
+    draw(&s, 1, 0.25, 0.25);
+    put_script("0.5", "", ""); // and is forgotten
+    expect_good(&s);
+    draw(&s, 2, 0.5, 0.25);
+    end(&s);
+}
+
+static void setting_during_a_build_is_not_lost(void **state) {
+    session s = begin(*state);
+    put_script("0.5", "", "-- a comment");
+    roil_live_wait(s.live); // built, and not taken yet
+    ok(roil_live_set(s.live, "gain", "1"));
+    expect_good(&s);
+    draw(&s, 1, 1, 0.25);
+    put_script("0.5", "", "");
+    roil_live_wait(s.live);
+    ok(roil_live_reset(s.live, NULL));
+    expect_good(&s);
+    draw(&s, 2, 0.5, 0.25);
+    end(&s);
+}
+
+static void structure_is_set_by_a_build(void **state) {
+    session s = begin(*state);
+    draw(&s, 1, 0.5, 0.25);
+    ok(roil_live_set(s.live, "count.mode", "double"));
+    expect_good(&s);
+    draw(&s, 2, 1, 0.25);
+    put_script("0.25", "", "");
+    expect_good(&s);
+    draw(&s, 3, 0.5, 0.25);
+    assert_false(roil_live_set(s.live, "count.mode", "triple"));
+    assert_non_null(strstr(roil_error(), "plain, double"));
+    assert_false(roil_live_set(s.live, "count.mod", "plain"));
+    ok(roil_live_reset(s.live, "count.mode"));
+    expect_good(&s);
+    draw(&s, 4, 0.25, 0.25);
+    end(&s);
+}
+
+static void setting_of_the_command_line_holds(void **state) {
+    session s = begin_with(*state, (roil_setting[]){{"gain", "1"}}, 1);
+    expect_good(&s);
+    draw(&s, 1, 1, 0.25);
+    put_script("0.25", "", "");
+    expect_good(&s);
+    draw(&s, 2, 1, 0.25);
+    ok(roil_live_set(s.live, "gain", "0.75")); // until it is moved
+    put_script("0.5", "", "");
+    expect_good(&s);
+    draw(&s, 3, 0.5, 0.25);
+    end(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(number_edit_shows_and_the_simulation_goes_on),
+        cmocka_unit_test(structural_edit_shows_and_the_simulation_goes_on),
+        cmocka_unit_test(module_edit_shows),
+        cmocka_unit_test(edit_of_an_included_shader_shows),
+        cmocka_unit_test(mesh_edit_shows),
+        cmocka_unit_test(broken_file_keeps_the_old_effect),
+        cmocka_unit_test(broken_shader_shows_its_line_with_a_caret),
+        cmocka_unit_test(file_that_is_missing_is_waited_for),
+        cmocka_unit_test(deleted_file_is_waited_for),
+        cmocka_unit_test(file_that_is_broken_from_the_start_is_followed),
+        cmocka_unit_test(empty_file_is_no_news_until_it_stays_so),
+        cmocka_unit_test(endless_update_is_not_taken),
+        cmocka_unit_test(function_that_fails_at_the_frame_is_not_taken),
+        cmocka_unit_test(moved_value_survives_an_edit),
+        cmocka_unit_test(moved_value_yields_to_a_changed_default),
+        cmocka_unit_test(setting_during_a_build_is_not_lost),
+        cmocka_unit_test(structure_is_set_by_a_build),
+        cmocka_unit_test(setting_of_the_command_line_holds),
+    };
+    return test_run(tests);
+}
