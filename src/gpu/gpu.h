@@ -34,11 +34,12 @@ typedef struct gpu_info {
     char missing[256];      // what it lacks, when not usable
 } gpu_info;
 
-// A window to show frames in, whichever library made it.
+// A window to show frames in, whichever library made it. It must outlive the device.
 typedef struct gpu_window {
     const char *const *extensions; // of the Vulkan instance, that the surface needs
     uint32_t extension_count;
-    // Makes the VkSurfaceKHR `*surface` of the VkInstance `instance`. False with a message.
+    // Makes the VkSurfaceKHR `*surface` of the VkInstance `instance`; again when it was lost. False
+    // with a message.
     bool (*create_surface)(void *user, void *instance, void *surface);
     void *user;
 } gpu_window;
@@ -57,7 +58,9 @@ typedef struct gpu_desc {
 int gpu_list(gpu_info *out, int capacity);
 
 gpu *gpu_create(const gpu_desc *desc);
-void gpu_destroy(gpu *g); // waits for the device; saves the pipeline cache
+// Waits for the device; saves the pipeline cache. A device whose work does not end is left as it is
+// to the end of the process.
+void gpu_destroy(gpu *g);
 const gpu_info *gpu_get_info(const gpu *g);
 // Messages of severity warning or error that the validation layers gave so far.
 uint64_t gpu_validation_messages(const gpu *g);

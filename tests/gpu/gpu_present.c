@@ -2,6 +2,7 @@
 // nor hiding nor losing the surface is an error or a validation message.
 #define GLFW_INCLUDE_NONE
 #include "gpu/vk.h"
+#include "gpu_shaders.h"
 #include "gpu_test.h"
 #include <GLFW/glfw3.h>
 #include <X11/Xutil.h>
@@ -72,10 +73,14 @@ static gpu_window describe_window(void) {
     return w;
 }
 
-static int open_all(void **state) {
+static void open_window(void) {
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     window = glfwCreateWindow(W, H, "roil test", NULL, NULL);
     assert_non_null(window);
+}
+
+static int open_all(void **state) {
+    open_window();
     gpu_window w = describe_window();
     gpu *g = gpu_create(&(gpu_desc){.validate = true, .window = &w});
     gpu_test_ok(g);
@@ -299,7 +304,66 @@ static void impossible_windows_are_refused(void **state) {
     assert_non_null(strstr(err_get(), "VK_EXT_of_no_driver is missing"));
 }
 
-int main(void) {
+// ---- a hang -----------------------------------------------------------------------------------
+
+// Software drivers wait inside the present call for the work of the frame. In a process of its own,
+// which takes the driver's spinning threads with it when it ends: 0 when all is as it should be.
+static int hang_while_showing(void) {
+    static const gpu_slot slot = {.kind = GPU_SLOT_STORAGE_BUFFER, .reads = true, .writes = true};
+    gpu_window w = describe_window();
+    gpu *g = gpu_create(&(gpu_desc){.window = &w, .timeout = 1.0});
+    gpu_test_ok(g);
+    if (gpu_get_info(g)->kind != GPU_CPU) return 77;
+    gpu_compute_desc desc = {.label = "endless",
+                             .code = endless_comp_code,
+                             .code_size = sizeof endless_comp_code,
+                             .slots = &slot,
+                             .slot_count = 1,
+                             .local_size = {1, 1, 1}};
+    gpu_pipeline *pipeline = gpu_pipeline_create_compute(g, &desc);
+    gpu_binding data = {.buffer =
+                            gpu_buffer_create(g, &(gpu_buffer_desc){.label = "data", .size = 8})};
+    gpu_image *image = make_image(g, GPU_RGBA8, W, H);
+    show(g, image);
+    gpu_test_ok(gpu_frame_begin(g));
+    gpu_pass_begin(g, "spin");
+    gpu_buffer_fill(g, data.buffer, 0);
+    gpu_test_ok(gpu_dispatch(g, &(gpu_dispatch_desc){.pipeline = pipeline,
+                                                     .bindings = &data,
+                                                     .binding_count = 1,
+                                                     .threads = {65535, 65535, 65535}}));
+    gpu_pass_end(g);
+    gpu_test_ok(gpu_present(g, image));
+    bool told = !gpu_frame_end(g) && strstr(err_get(), "was lost in pass 'spin'");
+    told = told && gpu_is_lost(g);
+    gpu_destroy(g);
+    return told ? 0 : 1;
+}
+
+static int main_of_hang(void) {
+    alarm(30); // ends a call that blocks
+    if (!glfwInit()) return 1;
+    open_window();
+    return hang_while_showing();
+}
+
+static void hang_is_noticed_while_showing(void **state) {
+    (void)state;
+    pid_t child = fork();
+    if (child == 0) {
+        execl("/proc/self/exe", "gpu_present", "hang", (char *)NULL);
+        _exit(127);
+    }
+    int status = 0;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    if (WIFSIGNALED(status)) fail_msg("ended by signal %d", WTERMSIG(status));
+    if (WEXITSTATUS(status) == 77) skip();
+    assert_int_equal(WEXITSTATUS(status), 0);
+}
+
+int main(int count, char **arguments) {
+    (void)arguments;
+    if (count > 1) _exit(main_of_hang());
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(pixels_arrive_one_by_one),
         cmocka_unit_test(pictures_follow_each_other),
@@ -309,6 +373,7 @@ int main(void) {
         cmocka_unit_test(lost_surface_is_made_anew),
         cmocka_unit_test(what_cannot_be_shown_is_named),
         cmocka_unit_test(impossible_windows_are_refused),
+        cmocka_unit_test(hang_is_noticed_while_showing),
     };
     gpu_test_keep_driver();
     gpu_test_need_device();
