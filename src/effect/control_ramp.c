@@ -11,6 +11,8 @@ static const char *unique_name(effect *e, const char *stem) {
 }
 
 static const char *add(effect *e, control own, const char *name) {
+    if (e->ramp_count == EFFECT_MAX_RAMPS) return "";
+    e->ramp_count++;
     own.face.name = unique_name(e, name);
     control *c = effect_add_control(e, &own);
     return effect_apply_to(e, c) ? c->face.name : NULL;

@@ -82,8 +82,12 @@ typedef struct effect_hooks {                                          // calls 
 } effect_hooks;
 void effect_set_hooks(effect *e, const effect_hooks *hooks);
 void effect_add_file(effect *e, const char *path); // a file a reload should watch
-// Palettes and curves that can be edited by name. `name` is made unique; returns what it became, or
-// NULL when a setting of that name is wrong.
+enum {
+    EFFECT_MAX_RAMPS = 256,    // palettes and curves that get a name; those after them get none
+    EFFECT_CONTROL_COST = 512, // bytes that a control takes, about
+};
+// Palettes and curves that can be edited by name. `name` is made unique; returns what it became (""
+// when there are too many already), or NULL when a setting of that name is wrong.
 const char *effect_add_palette(effect *e, palette *p, const char *name);
 const char *effect_add_curve(effect *e, curve *c, const char *name);
 void effect_mark_structural(effect *e, size_t param);

@@ -114,4 +114,5 @@ struct effect {
     control **controls; // in the order of their list
     size_t control_count, control_capacity;
     size_t controlled; // passes that have theirs
+    size_t ramp_count; // palettes and curves among them
 };

@@ -89,6 +89,8 @@ uint32_t value_get_count(lua_State *L, int table, const char *who, const char *k
 bool value_get_bool(lua_State *L, int table, const char *who, const char *key, bool otherwise);
 // In the effect's memory. NULL when absent.
 const char *value_get_string(lua_State *L, int table, const char *who, const char *key);
+// The key `name`; without one, the variable that the script assigns the call to; else `who`.
+const char *value_name_or_variable(lua_State *L, int table, const char *who); // naming.c
 bool value_get_vector(lua_State *L, int table, const char *who, const char *key, float out[3]);
 int value_word(lua_State *L, int index, const char *who, const char *key, const char *const *words,
                size_t count);

@@ -4,7 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { KEYS_MAX = 4096 };
+enum {
+    KEYS_MAX = 4096,
+    TEXT_COST = 64, // bytes of a key that is told as text
+};
 
 static const char who[] = "curve";
 
@@ -45,9 +48,10 @@ static int l_curve(lua_State *L) {
         desc.components = components;
         lua_pop(L, 2);
     }
-    vm_charge_memory(L, sizeof desc + desc.count * sizeof *list);
-    const curve *c = curve_create(script_memory(L), &desc);
-    if (!c) script_raise(L);
+    vm_charge_memory(L, EFFECT_CONTROL_COST + desc.count * (sizeof *list + TEXT_COST));
+    curve *c = curve_create(script_memory(L), &desc);
+    const char *name = c ? value_name_or_variable(L, 1, who) : NULL;
+    if (!name || !effect_add_curve(script_of(L)->effect, c, name)) script_raise(L);
     field_push(L, field_curve(script_memory(L), c));
     return 1;
 }

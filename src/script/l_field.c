@@ -196,11 +196,29 @@ static int l_tostring(lua_State *L) {
 
 // ---- methods ----------------------------------------------------------------------------------
 
+enum { WALK_MAX = 4096 }; // nodes; a larger expression is taken to hold every parameter
+
+static void mark_params(effect *e, const field *node) {
+    if (strcmp(node->kind->name, "param") == 0) effect_mark_structural(e, (size_t)node->index);
+    for (size_t i = 0; i < FIELD_MAX_ARGS && node->args[i]; i++) mark_params(e, node->args[i]);
+}
+
+// What the file reads while it loads may decide what it declares.
+static void mark_structural(script *s, const field *node) {
+    if (!s->loading) return;
+    if (node->size <= WALK_MAX)
+        mark_params(s->effect, node);
+    else
+        for (size_t i = 0; i < effect_param_count(s->effect); i++)
+            effect_mark_structural(s->effect, i);
+}
+
 // Value now: while the file loads its value at time 0, later what it is set to. Parameters of words
 // give the word.
 static int l_get(lua_State *L) {
     const field_object *object = self(L);
     const effect_param *param = field_param_of(L, 1);
+    mark_structural(script_of(L), object->node);
     if (param && param->type == EFFECT_ENUM) {
         size_t word = (size_t)param->value[0];
         lua_pushstring(L, param->words[word < param->word_count ? word : 0]);

@@ -6,6 +6,8 @@
 #include "script/binding.h"
 #include <string.h>
 
+enum { TEXT_COST = 64 }; // bytes of a stop that is told as text
+
 static const char who[] = "palette";
 
 typedef struct palette_object {
@@ -52,7 +54,7 @@ static void read_stops(lua_State *L, int index, palette_key *key) {
         stops[i - 1] = read_stop(L, i);
         lua_pop(L, 1);
     }
-    vm_charge_memory(L, (size_t)count * sizeof *stops);
+    vm_charge_memory(L, (size_t)count * (sizeof *stops + TEXT_COST));
     key->stops = arena_copy(script_memory(L), stops, (size_t)count * sizeof *stops);
     key->count = (size_t)count;
     lua_pop(L, 1);
@@ -111,9 +113,10 @@ static int l_palette(lua_State *L) {
         read_stops(L, 1, &keys[0]);
         desc.key_count = 1;
     }
-    vm_charge_memory(L, sizeof desc + sizeof keys);
-    const palette *p = palette_create(script_memory(L), &desc);
-    if (!p) script_raise(L);
+    vm_charge_memory(L, EFFECT_CONTROL_COST + sizeof desc + sizeof keys);
+    palette *p = palette_create(script_memory(L), &desc);
+    const char *name = p ? value_name_or_variable(L, 1, who) : NULL;
+    if (!name || !effect_add_palette(script_of(L)->effect, p, name)) script_raise(L);
     palette_object *object = object_new(L, who, sizeof *object);
     object->palette = p;
     return 1;

@@ -65,7 +65,7 @@ static int l_param(lua_State *L) {
     arena *memory = script_memory(L);
     if (lua_rawgeti(L, 1, 1) != LUA_TSTRING)
         vm_error(L, "param: its name comes first, as in param { \"density\", 20 }");
-    vm_charge_memory(L, sizeof(effect_param) + lua_rawlen(L, -1));
+    vm_charge_memory(L, sizeof(effect_param) + EFFECT_CONTROL_COST + lua_rawlen(L, -1));
     effect_param param = {
         .name = arena_string(memory, lua_tostring(L, -1)),
         .unit = value_get_string(L, 1, who, "unit"),

@@ -274,6 +274,8 @@ static int make_pass(lua_State *L, const char *type, const char *file, int first
     call.pass = effect_add_pass(s->effect, type, file, label);
     if (!call.pass) script_raise(L);
     call.face = pass_interface(call.pass);
+    vm_charge_memory(L, (call.face->uniform_count + call.face->option_count + 1) *
+                            EFFECT_CONTROL_COST);
     call.taken = lua_newuserdatauv(L, call.face->image_count + 1, 0);
     memset(call.taken, 0, call.face->image_count + 1);
     for (int i = first_positional; i <= n - (table != 0); i++) add_positional(L, &call, i);

@@ -54,7 +54,8 @@ static const script_object objects[] = {
      .keys = KEYS(
         CHOICE("shape", "linear", "between keys; cubic never overshoots (Fritsch and Carlson 1980)",
                "step", "linear", "cubic", "ease_in", "ease_out", "ease_in_out"),
-        KEY("period", "0 s", "starts again after so long; 0: holds its first and last value"))},
+        KEY("period", "0 s", "starts again after so long; 0: holds its first and last value"),
+        KEY("name", "the variable's", "for --set and presets; numbered when taken"))},
     {"rgb", "value", "rgb(255, 128, 0)", "a colour from sRGB bytes, as picture editors show them",
      .args = KEYS(KEY("red", "[0, 255]", "sRGB"), KEY("green", "[0, 255]", "sRGB"),
                   KEY("blue", "[0, 255]", "sRGB"))},
@@ -98,7 +99,8 @@ static const script_object objects[] = {
         KEY("keys", "{ {time, {stops}}, ... }", "1 to 64 palettes over time (s), mixed between"),
         KEY("blackbody", "{500, 3000} K", "glow of these temperatures; the position is in kelvin"),
         KEY("physical", "false", "of blackbody: brightness grows with the fourth power"),
-        KEY("reference", "1500 K", "of physical: where the luminance is 1"))},
+        KEY("reference", "1500 K", "of physical: where the luminance is 1"),
+        KEY("name", "the variable's", "for --set and presets; numbered when taken"))},
     {"glsl", "source", "glsl { \"swirl.glsl\", \"swirl\", 3, components = 1 }",
      "a GLSL function of yours as a field: float swirl(vec3 p, float turns)",
      .args = KEYS(

@@ -62,16 +62,19 @@ static bool is_prelude(const vm *v, const lua_Debug *ar) {
 }
 
 // The innermost line that a person wrote: not in C, not in the prelude.
-static void locate(lua_State *L, char *out, size_t size) {
+static bool find_line(lua_State *L, lua_Debug *ar) {
     const vm *v = vm_of(L);
+    for (int level = 0; lua_getstack(L, level, ar); level++) {
+        lua_getinfo(L, "Sl", ar);
+        if (ar->currentline > 0 && !is_prelude(v, ar)) return true;
+    }
+    return false;
+}
+
+static void locate(lua_State *L, char *out, size_t size) {
     lua_Debug ar;
     out[0] = 0;
-    for (int level = 0; lua_getstack(L, level, &ar); level++) {
-        lua_getinfo(L, "Sl", &ar);
-        if (ar.currentline <= 0 || is_prelude(v, &ar)) continue;
-        snprintf(out, size, "%s:%d: ", ar.short_src, ar.currentline);
-        return;
-    }
+    if (find_line(L, &ar)) snprintf(out, size, "%s:%d: ", ar.short_src, ar.currentline);
 }
 
 static void stop(vm *v, vm_stop reason) {
@@ -277,6 +280,37 @@ static void chunk_name(const char *shown, char out[LUA_IDSIZE]) {
     snprintf(out, LUA_IDSIZE, "@%s", text);
 }
 
+static const char sources[] = "roil.sources"; // of the registry: texts by chunk name
+
+typedef struct source {
+    const char *name, *text;
+    size_t length;
+} source;
+
+static int keep_source(lua_State *L) {
+    const source *s = lua_touserdata(L, 1);
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, sources);
+    lua_pushlstring(L, s->text, s->length);
+    lua_setfield(L, -2, s->name);
+    return 0;
+}
+
+const char *vm_caller_source(lua_State *L, size_t *line) {
+    lua_Debug ar;
+    if (!find_line(L, &ar)) return NULL;
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, sources);
+    const char *text = lua_getfield(L, -1, ar.source) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;
+    lua_pop(L, 2); // the table keeps the text
+    const char *at = text;
+    for (int i = 1; at && i < ar.currentline; i++) {
+        at = strchr(at, '\n');
+        if (at) at++;
+    }
+    if (!at) return NULL;
+    *line = (size_t)(at - text);
+    return text;
+}
+
 void vm_load_chunk(lua_State *L, const char *path, const char *shown) {
     const vm *v = vm_of(L);
     void *data = NULL;
@@ -295,7 +329,10 @@ void vm_load_chunk(lua_State *L, const char *path, const char *shown) {
     }
     char name[LUA_IDSIZE];
     chunk_name(shown, name);
-    int status = luaL_loadbufferx(L, text, length, name, "t");
+    lua_pushcfunction(L, keep_source);
+    lua_pushlightuserdata(L, &(source){name, text, length});
+    int status = lua_pcall(L, 1, 0, 0);
+    if (status == LUA_OK) status = luaL_loadbufferx(L, text, length, name, "t");
     mem_free(data);
     if (status == LUA_ERRMEM) luaL_error(L, "not enough memory");
     if (status != LUA_OK) lua_error(L);

@@ -44,6 +44,10 @@ void vm_charge_memory(lua_State *L, size_t bytes);   // memory outside of Lua's,
 void vm_set_seed(lua_State *L, uint64_t seed);
 uint64_t vm_random(lua_State *L);
 
+// Text of the file whose line called, and where in it that line begins. NULL when it is unknown;
+// valid as long as the state.
+const char *vm_caller_source(lua_State *L, size_t *line);
+
 // Loads a text chunk and leaves it as a function on the stack. `path` must be confined already.
 void vm_load_chunk(lua_State *L, const char *path, const char *shown);
 const vm_desc *vm_get_desc(lua_State *L);

@@ -154,6 +154,23 @@ static void defaults_are_those_of_the_scene(void **state) {
     effect_destroy(e);
 }
 
+static void values_of_the_scene_are_those_of_the_objects(void **state) {
+    (void)state;
+    size_t count;
+    const scene_value *values = scene_values(&count);
+    for (size_t i = 0; i < count; i++) {
+        const scene_value *v = &values[i];
+        char object[16];
+        size_t length = strcspn(v->name, ".");
+        snprintf(object, sizeof object, "%.*s", (int)length, v->name);
+        const script_object *row = script_object_find(v->orbit ? "orbit" : object);
+        const script_key *key = script_key_find(row->keys, v->name + length + 1);
+        if (!key) fail_msg("%s is no key", v->name);
+        assert_int_equal(key->components, v->components);
+        assert_memory_equal(key->help, v->help, strlen(v->help));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_global_is_documented),
@@ -163,6 +180,7 @@ int main(void) {
         cmocka_unit_test(one_object_is_told_with_its_keys),
         cmocka_unit_test(words_are_those_of_the_enumerations),
         cmocka_unit_test(defaults_are_those_of_the_scene),
+        cmocka_unit_test(values_of_the_scene_are_those_of_the_objects),
     };
     return cmocka_run_group_tests(tests, helper_setup, helper_teardown);
 }

@@ -1,0 +1,69 @@
+// Names of palettes and curves: what the script calls them. `local fire = palette { ... }` gives
+// "fire", so that it can be set by that name without another word.
+#include "script/binding.h"
+#include <ctype.h>
+#include <string.h>
+
+enum { LINES_ABOVE = 3 }; // a call that is split over lines is found by one of them
+
+static bool is_part(char c) { // of an identifier
+    return isalnum((unsigned char)c) || c == '_';
+}
+
+// The first call of `word` in the line that begins at `line`; NULL when there is none.
+static const char *find_call(const char *text, const char *line, const char *word) {
+    size_t length = strlen(word);
+    const char *end = line + strcspn(line, "\n");
+    for (const char *at = line; (at = strstr(at, word)) && at < end; at++) {
+        if ((at > text && is_part(at[-1])) || is_part(at[length])) continue;
+        const char *next = at + length + strspn(at + length, " \t\r\n");
+        if (*next == '{' || *next == '(') return at;
+    }
+    return NULL;
+}
+
+static const char *skip_back(const char *text, const char *at) {
+    while (at > text && isspace((unsigned char)at[-1])) at--;
+    return at;
+}
+
+// The name that the value of the call at `at` is assigned to.
+static bool read_name(const char *text, const char *at, char *out, size_t capacity) {
+    at = skip_back(text, at);
+    if (at == text || *--at != '=') return false;
+    if (at > text && strchr("=~<>", at[-1])) return false; // a comparison
+    at = skip_back(text, at);
+    if (at > text && at[-1] == '>') { // local fire <const> =
+        while (at > text && *at != '<') at--;
+        at = skip_back(text, at);
+    }
+    const char *end = at;
+    while (at > text && is_part(at[-1])) at--;
+    size_t length = (size_t)(end - at);
+    if (length == 0 || length >= capacity || isdigit((unsigned char)*at)) return false;
+    memcpy(out, at, length);
+    out[length] = '\0';
+    return true;
+}
+
+static bool name_by_source(lua_State *L, const char *who, char *out, size_t capacity) {
+    size_t begin;
+    const char *text = vm_caller_source(L, &begin);
+    const char *line = text ? text + begin : NULL;
+    for (int i = 0; line && i <= LINES_ABOVE; i++) {
+        const char *call = find_call(text, line, who);
+        if (call) return read_name(text, call, out, capacity);
+        if (line == text) break;
+        for (line--; line > text && line[-1] != '\n';) line--;
+    }
+    return false;
+}
+
+const char *value_name_or_variable(lua_State *L, int table, const char *who) {
+    const char *given = value_get_string(L, table, who, "name");
+    if (given && !str_is_identifier(given))
+        vm_error(L, "%s: name '%.64s' is not a name (letters, digits and _)", who, given);
+    char name[64];
+    if (given) return given;
+    return name_by_source(L, who, name, sizeof name) ? arena_string(script_memory(L), name) : who;
+}
