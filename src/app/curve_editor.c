@@ -194,13 +194,14 @@ static bool drag(editor *e) {
     const shape_state *s = e->state;
     if (e->canvas.dx == 0 && e->canvas.dy == 0) return false;
     roil_key *key = &e->curve.keys[s->selected], before = *key;
-    curve_keys_move(&e->curve, s->selected, from_x(e, e->canvas.x + s->grab_x));
-    key->value[s->component] = from_y(e, e->canvas.y + s->grab_y);
+    float time = from_x(e, e->canvas.x + s->grab_x), value = from_y(e, e->canvas.y + s->grab_y);
+    curve_keys_move(&e->curve, s->selected, plot_round(s->time, time));
+    key->value[s->component] = plot_round(s->value, value);
     return memcmp(key, &before, sizeof before) != 0;
 }
 
 static bool add_key(editor *e) {
-    float time = from_x(e, e->canvas.x), value[1][4];
+    float time = plot_round(e->state->time, from_x(e, e->canvas.x)), value[1][4];
     if (!roil_sample_curve(e->l->effect, e->state->name, &(double){(double)time}, value, 1))
         return false;
     size_t index = curve_keys_add(&e->curve, time, value[0]);

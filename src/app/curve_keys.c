@@ -56,3 +56,9 @@ float plot_step(plot_range range, int count) {
     if (2 * power >= least) return 2 * power;
     return 5 * power >= least ? 5 * power : 10 * power;
 }
+
+float plot_round(plot_range range, float value) {
+    double step = pow(10, floor(log10(((double)range.high - (double)range.low) / 400)));
+    float rounded = (float)(round((double)value / step) * step);
+    return isfinite(rounded) ? fminf(fmaxf(rounded, range.low), range.high) : value;
+}

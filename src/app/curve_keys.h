@@ -14,3 +14,5 @@ typedef struct plot_range {
 plot_range plot_range_of(const float *values, size_t count);
 // A step of 1, 2 or 5 times a power of ten that divides the range into at most `count` parts.
 float plot_step(plot_range range, int count);
+// As round as can be told apart in a plot of the range, and within it.
+float plot_round(plot_range range, float value);

@@ -35,6 +35,10 @@ static float from_x(const editor *e, float x) {
     return mixf(e->state->value.low, e->state->value.high, clampf(share, 0, 1));
 }
 
+static float place_under(const editor *e, float x) {
+    return plot_round(e->state->value, from_x(e, x));
+}
+
 static void sample_at(const editor *e, float at, float out[4]) {
     float span = e->palette.max - e->palette.min;
     float place = span > 0 ? clampf((at - e->palette.min) / span, 0, 1) * (SAMPLES - 1) : 0;
@@ -138,7 +142,7 @@ static bool remove_stop(editor *e, size_t index) {
 }
 
 static bool add_stop(editor *e) {
-    float color[4], at = from_x(e, e->canvas.x);
+    float color[4], at = place_under(e, e->canvas.x);
     sample_at(e, at, color);
     size_t index = palette_stops_add(&e->palette, at, color);
     if (index == ROIL_MAX_STOPS) {
@@ -166,7 +170,7 @@ static bool drag(editor *e) {
     s->leaving = fmaxf(over, under) > LEAVE * ui_scale() && e->palette.count > 2;
     if (s->leaving || (e->canvas.dx == 0 && e->canvas.dy == 0)) return false;
     float before = e->palette.stops[s->selected].at;
-    palette_stops_move(&e->palette, s->selected, from_x(e, e->canvas.x + s->grab_x));
+    palette_stops_move(&e->palette, s->selected, place_under(e, e->canvas.x + s->grab_x));
     return e->palette.stops[s->selected].at != before;
 }
 
@@ -194,7 +198,7 @@ static bool handle_pointer(editor *e) {
 static bool edit_stop(editor *e) {
     size_t i = e->state->selected;
     if (i >= e->palette.count) {
-        ui_text_color(UI_DIM, "Click below the ramp to add a stop.");
+        ui_text_color(UI_DIM, "A click below adds a stop, a right click removes one.");
         return false;
     }
     roil_stop *s = &e->palette.stops[i];
@@ -237,21 +241,17 @@ static bool open_canvas(editor *e) {
     return stops;
 }
 
-// A black body has a law instead of stops, and what is keyed has many ramps.
-static bool draw_fixed(editor *e) {
-    if (e->palette.keyed) {
-        ui_text_wrapped("It moves in time: its keys are edited in the effect file.");
-        return false;
-    }
-    char text[96];
-    snprintf(text, sizeof text, "Black body, %.4g to %.4g K.", (double)e->palette.min,
-             (double)e->palette.max);
-    ui_text_color(UI_DIM, "%s", text);
-    if (!ui_small_button("Make stops")) {
-        ui_tooltip("replace the law by stops that can be moved");
-        return false;
-    }
+// A black body has a law instead of stops.
+static bool draw_law(editor *e) {
+    ui_text_color(UI_DIM, "Black body, %.4g to %.4g K.", (double)e->palette.min,
+                  (double)e->palette.max);
+    bool make = ui_small_button("Make stops");
+    ui_tooltip("replace the law by stops that can be moved");
+    ui_same_line();
+    if (!make) return false;
     palette_stops_fit(&e->palette, (const float(*)[4])e->samples, SAMPLES, MADE_STOPS);
+    for (size_t i = 0; i < e->palette.count; i++)
+        e->palette.stops[i].at = plot_round(e->state->value, e->palette.stops[i].at);
     return send(e);
 }
 
@@ -261,7 +261,11 @@ static bool draw(editor *e) {
     draw_ramp(e);
     if (stops) draw_stops(e);
     ui_canvas_end();
-    if (!stops) return draw_fixed(e);
+    if (!e->palette.count) return draw_law(e);
+    if (e->palette.keyed) {
+        ui_text_wrapped("It moves in time: its keys are edited in the effect file.");
+        return false;
+    }
     changed |= edit_stop(e);
     return changed && send(e);
 }

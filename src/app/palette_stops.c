@@ -30,15 +30,15 @@ void palette_stops_move(roil_palette *p, size_t index, float at) {
 
 // ---- fitting ------------------------------------------------------------------------------------
 
-// How far a sample lies from the straight line between two others, relative to its brightness: what
-// is bright may differ by more.
+// How far a sample lies from the straight line between two others, relative to how bright it is:
+// what is bright may differ by more.
 static float bend(const float (*samples)[4], size_t i, size_t from, size_t to) {
+    const float *s = samples[i];
     float t = (float)(i - from) / (float)(to - from), worst = 0;
-    for (int k = 0; k < 4; k++) {
-        float line = mixf(samples[from][k], samples[to][k], t);
-        worst = fmaxf(worst, fabsf(samples[i][k] - line) / (0.1f + fabsf(samples[i][k])));
-    }
-    return worst;
+    float peak = fmaxf(fmaxf(s[0], s[1]), fmaxf(s[2], s[3]));
+    for (int k = 0; k < 4; k++)
+        worst = fmaxf(worst, fabsf(s[k] - mixf(samples[from][k], samples[to][k], t)));
+    return worst / (0.1f + peak);
 }
 
 // The sample that lies farthest from the lines between the chosen ones; 0 when all are chosen.

@@ -75,7 +75,9 @@ static bool opens_at_first(panel_part part) {
 static void draw_section(live *l, const panel_section *s) {
     char label[256];
     bool searching = l->panel->search[0] != 0;
-    if (s->moved && s->part != PANEL_SHAPE)
+    if (s->moved && s->part == PANEL_SHAPE)
+        snprintf(label, sizeof label, "%s (changed)###section", s->title);
+    else if (s->moved)
         snprintf(label, sizeof label, "%s (%zu changed)###section", s->title, s->moved);
     else
         snprintf(label, sizeof label, "%s###section", s->title);

@@ -234,4 +234,5 @@ void panel_shape_buttons(live *l, const char *name) {
     ui_disable_end();
     ui_same_line();
     if (ui_small_button("Copy as Lua")) panel_copy_lua(l, name);
+    ui_gap(10 * ui_scale());
 }

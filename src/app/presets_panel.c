@@ -103,6 +103,7 @@ static void draw_saving(live *l, preset_list *list) {
     ui_width(-BUTTON * ui_scale());
     if (ui_input("##name", "Name of a preset", list->name, sizeof list->name)) list->asked = false;
     ui_same_line();
+    ui_width(0);
     ui_disable_begin(!list->name[0]);
     if (ui_button(list->asked ? "Overwrite?###save" : "Save###save")) save(l, list);
     ui_disable_end();
@@ -114,6 +115,7 @@ void presets_draw(live *l) {
     look(l, list);
     draw_choice(l, list);
     ui_same_line();
+    ui_width(0);
     if (ui_button("Reset all")) live_reset(l, NULL);
     ui_tooltip("everything returns to what the effect file says");
     draw_saving(l, list);

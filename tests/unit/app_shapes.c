@@ -10,6 +10,7 @@
 #include "app/palette_stops.h"
 #include "base/memory.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static void expect_near(float got, double want) {
@@ -169,6 +170,17 @@ static void grids_step_by_round_numbers(void **state) {
     expect_near(plot_step((plot_range){0, 0.07f}, 7), 0.01);
 }
 
+static void dragged_values_are_round(void **state) {
+    (void)state;
+    char text[32];
+    snprintf(text, sizeof text, "%.6g", (double)plot_round((plot_range){0, 1}, 0.54394f));
+    assert_string_equal(text, "0.544");
+    snprintf(text, sizeof text, "%.9g", (double)plot_round((plot_range){500, 4500}, 1234.567f));
+    assert_string_equal(text, "1230");
+    expect_near(plot_round((plot_range){0, 0.9996f}, 0.9999f), 0.9996); // no farther than the end
+    expect_near(plot_round((plot_range){2, 2}, 2), 2);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_stop_is_added_in_its_place),
@@ -182,6 +194,7 @@ int main(void) {
         cmocka_unit_test(a_key_stops_short_of_its_neighbours),
         cmocka_unit_test(plots_have_a_margin),
         cmocka_unit_test(grids_step_by_round_numbers),
+        cmocka_unit_test(dragged_values_are_round),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
