@@ -145,7 +145,7 @@ static bool open_commands(gpu *g) {
         if (!vk_batch_create(g, &g->frames[i].batch)) return false;
         if (!vk_timer_create(g, &g->frames[i].timer)) return false;
     }
-    return vk_window_open_frames(g);
+    return vk_window_prepare(g);
 }
 
 static bool validation_wanted(const gpu_desc *desc) {
@@ -153,7 +153,7 @@ static bool validation_wanted(const gpu_desc *desc) {
     return desc->validate || (set && strcmp(set, "1") == 0);
 }
 
-// In nanoseconds. Software devices are slow, and nobody else waits for them.
+// In nanoseconds. Software devices are slow, and a hang of theirs freezes no desktop.
 static uint64_t timeout_of(const gpu *g, double seconds) {
     if (!(seconds > 0.0)) seconds = g->info.kind == GPU_CPU ? 300.0 : 30.0;
     return seconds < 1e9 ? (uint64_t)(seconds * 1e9) : UINT64_MAX;

@@ -4,7 +4,6 @@
 // its work is taken to hang, and nothing may wait for it any more. What is known of the loss is
 // written down once, by the thread of the gpu, and every later call repeats it.
 #include "gpu/vk.h"
-#include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -20,6 +19,8 @@ static const char *result_text(VkResult result) {
         return "the driver allows no more objects of this kind";
     case VK_ERROR_FORMAT_NOT_SUPPORTED:
         return "the device does not support the format";
+    case VK_ERROR_NATIVE_WINDOW_IN_USE_KHR:
+        return "something else draws to the window";
     default:
         return "the driver refuses";
     }
@@ -46,13 +47,12 @@ bool gpu_is_lost(const gpu *g) {
     return atomic_load(&g->lost);
 }
 
-// Of the submission that the device is at. NULL when that is no frame or cannot be known.
+// Of the submission that the device is at. NULL when that is no frame or cannot be known. What has
+// finished is not asked for again: a lost device may report anything.
 static const char *running_pass(gpu *g) {
-    uint64_t value = g->completed;
-    if (vkGetSemaphoreCounterValue(g->device, g->timeline, &value) != VK_SUCCESS) return NULL;
     for (int i = 0; i < GPU_FRAMES_IN_FLIGHT; i++) {
         const vk_frame *frame = &g->frames[i];
-        if (frame->batch.serial == value + 1) return vk_timer_running(g, &frame->timer);
+        if (frame->batch.serial == g->completed + 1) return vk_timer_running(g, &frame->timer);
     }
     return NULL;
 }

@@ -104,7 +104,10 @@ bool gpu_present(gpu *g, gpu_image *image) {
     if (!g->window.surface) return true;
     VkResult result = obtain(g, (VkExtent2D){image->desc.width, image->desc.height});
     if (result == VK_NOT_READY) return true;
-    if (result == VK_ERROR_SURFACE_LOST_KHR) return g->window.lost = true;
+    if (result == VK_ERROR_SURFACE_LOST_KHR) {
+        g->window.lost = true;
+        return true;
+    }
     if (!vk_check(g, result, "showing image '%s'", image->desc.label)) return false;
     vk_batch *batch = &g->frame->batch;
     copy_scaled(g, batch->commands, image);
@@ -137,7 +140,8 @@ bool vk_present(gpu *g) {
         chain->stale = true;
         return true;
     case VK_ERROR_SURFACE_LOST_KHR:
-        return g->window.lost = true;
+        g->window.lost = true;
+        return true;
     case VK_ERROR_DEVICE_LOST:
         return vk_lose(g, result);
     default:

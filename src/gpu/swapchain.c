@@ -34,9 +34,37 @@ bool vk_window_open(gpu *g, const gpu_window *window) {
     return surface_create(g);
 }
 
-bool vk_window_open_frames(gpu *g) {
+// What is shown is encoded already, so the format must be one that stores what it is given.
+static bool choose_format(gpu *g, VkSurfaceFormatKHR *out) {
+    VkSurfaceFormatKHR list[64];
+    uint32_t count = COUNT_OF(list);
+    VkResult result =
+        vkGetPhysicalDeviceSurfaceFormatsKHR(g->physical, g->window.surface, &count, list);
+    if (result == VK_INCOMPLETE) result = VK_SUCCESS;
+    if (!vk_check(g, result, "asking for the formats of the window")) return false;
+    for (uint32_t i = 0; i < count; i++) {
+        *out = list[i];
+        if (list[i].colorSpace != VK_COLOR_SPACE_SRGB_NONLINEAR_KHR) continue;
+        if (list[i].format == VK_FORMAT_B8G8R8A8_UNORM) return true;
+        if (list[i].format == VK_FORMAT_R8G8B8A8_UNORM) return true;
+    }
+    return err_set("the window takes no pictures of 8 bits a channel from '%s'", g->info.name);
+}
+
+static bool check_usage(gpu *g) {
+    VkSurfaceCapabilitiesKHR caps;
+    VkResult result =
+        vkGetPhysicalDeviceSurfaceCapabilitiesKHR(g->physical, g->window.surface, &caps);
+    if (!vk_check(g, result, "asking what the window can do")) return false;
+    if (caps.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT) return true;
+    return err_set("the window takes no copies of pictures from '%s'", g->info.name);
+}
+
+bool vk_window_prepare(gpu *g) {
+    if (!g->window.surface) return true;
+    if (!choose_format(g, &g->window.format) || !check_usage(g)) return false;
     VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
-    for (int i = 0; i < GPU_FRAMES_IN_FLIGHT && g->window.surface; i++) {
+    for (int i = 0; i < GPU_FRAMES_IN_FLIGHT; i++) {
         VkResult result = vkCreateSemaphore(g->device, &info, NULL, &g->frames[i].acquired);
         if (!vk_check(g, result, "creating a semaphore")) return false;
     }
@@ -67,22 +95,6 @@ bool vk_window_revive(gpu *g) {
 
 // ---- the swapchain ----------------------------------------------------------------------------
 
-// What is shown is encoded already, so the format must be one that stores what it is given.
-static bool choose_format(gpu *g, VkSurfaceFormatKHR *out) {
-    VkSurfaceFormatKHR list[64];
-    uint32_t count = COUNT_OF(list);
-    VkResult result =
-        vkGetPhysicalDeviceSurfaceFormatsKHR(g->physical, g->window.surface, &count, list);
-    if (result != VK_SUCCESS && result != VK_INCOMPLETE) return false;
-    for (uint32_t i = 0; i < count; i++) {
-        *out = list[i];
-        if (list[i].colorSpace != VK_COLOR_SPACE_SRGB_NONLINEAR_KHR) continue;
-        if (list[i].format == VK_FORMAT_B8G8R8A8_UNORM) return true;
-        if (list[i].format == VK_FORMAT_R8G8B8A8_UNORM) return true;
-    }
-    return false;
-}
-
 static VkCompositeAlphaFlagBitsKHR choose_alpha(const VkSurfaceCapabilitiesKHR *caps) {
     VkCompositeAlphaFlagsKHR has = caps->supportedCompositeAlpha;
     if (has & VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR) return VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
@@ -101,19 +113,14 @@ static VkResult get_images(gpu *g, vk_swapchain *chain) {
 }
 
 static VkResult swapchain_create(gpu *g, const VkSurfaceCapabilitiesKHR *caps, VkExtent2D size) {
-    VkSurfaceFormatKHR format;
-    if (!choose_format(g, &format) ||
-        !(caps->supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT)) {
-        return VK_ERROR_FORMAT_NOT_SUPPORTED;
-    }
     uint32_t images = caps->minImageCount + 1;
     if (caps->maxImageCount > 0 && images > caps->maxImageCount) images = caps->maxImageCount;
     vk_swapchain *old = g->window.swapchain;
     VkSwapchainCreateInfoKHR info = {.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR,
                                      .surface = g->window.surface,
                                      .minImageCount = images,
-                                     .imageFormat = format.format,
-                                     .imageColorSpace = format.colorSpace,
+                                     .imageFormat = g->window.format.format,
+                                     .imageColorSpace = g->window.format.colorSpace,
                                      .imageExtent = size,
                                      .imageArrayLayers = 1,
                                      .imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT,
@@ -123,7 +130,6 @@ static VkResult swapchain_create(gpu *g, const VkSurfaceCapabilitiesKHR *caps, V
                                      .clipped = VK_TRUE,
                                      .oldSwapchain = old ? old->handle : VK_NULL_HANDLE};
     vk_swapchain *chain = mem_alloc(sizeof *chain);
-    chain->format = format.format;
     chain->size = size;
     VkResult result = vkCreateSwapchainKHR(g->device, &info, NULL, &chain->handle);
     retire_swapchain(g); // the old one is of no more use, whatever the result

@@ -285,7 +285,6 @@ typedef struct vk_frame {
 
 typedef struct vk_swapchain {
     VkSwapchainKHR handle;
-    VkFormat format;
     VkExtent2D size;
     uint32_t count;
     VkImage images[VK_MAX_SHOWN];
@@ -297,16 +296,17 @@ typedef struct vk_swapchain {
 typedef struct vk_window {
     gpu_window maker; // create_surface NULL: there is no window
     VkSurfaceKHR surface;
-    bool lost;                // the surface
-    VkSurfaceKHR old_surface; // a lost one that may still be in use
-    vk_swapchain *swapchain;  // NULL: none yet
-    uint32_t image;           // of the swapchain, that the open frame shows ...
-    bool shows;               // ... if it shows one
+    VkSurfaceFormatKHR format; // of what is shown
+    bool lost;                 // the surface
+    VkSurfaceKHR old_surface;  // a lost one that may still be in use
+    vk_swapchain *swapchain;   // NULL: none yet
+    uint32_t image;            // of the swapchain, that the open frame shows ...
+    bool shows;                // ... if it shows one
 } vk_window;
 
 bool vk_window_open(gpu *g, const gpu_window *window); // makes the surface
-bool vk_window_open_frames(gpu *g); // what each frame needs, once the device is there
-void vk_window_close(gpu *g);       // the device is idle
+bool vk_window_prepare(gpu *g);                        // once the device is there
+void vk_window_close(gpu *g);                          // the device is idle
 // Inside a frame: retires a lost surface, and makes another one when that has gone.
 // `window.surface` is NULL in between.
 bool vk_window_revive(gpu *g);
