@@ -122,6 +122,7 @@ static void draw_search(panel *p, ui_rect where) {
 
 static void draw_list(live *l, ui_rect where) {
     const panel *p = l->panel;
+    if (where.bottom <= where.top) return; // a very low window
     ui_panel_begin("panel", where);
     draw_sections(l);
     if (!p->control_count)

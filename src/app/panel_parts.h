@@ -49,6 +49,7 @@ struct panel {
 void panel_row(live *l, const roil_control *c);
 // A row of an editor: leaves its second cell to be drawn.
 void panel_label(const char *label);
+void panel_reset(live *l, const char *name); // NULL: all
 void panel_copy_lua(live *l, const char *name);
 // Buttons that reset a palette or a curve, and copy it.
 void panel_shape_buttons(live *l, const char *name);

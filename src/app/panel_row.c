@@ -24,6 +24,11 @@ static void set(live *l, const roil_control *c, const float value[4]) {
     strbuf_free(&text);
 }
 
+void panel_reset(live *l, const char *name) {
+    l->panel->pending = (pending_value){.sent = true};
+    live_reset(l, name);
+}
+
 void panel_copy_lua(live *l, const char *name) {
     char *text = roil_control_lua(l->effect, name);
     if (text) {
@@ -38,7 +43,7 @@ void panel_copy_lua(live *l, const char *name) {
 static void menu(live *l, const roil_control *c, const char *id) {
     if (!ui_menu_begin(id)) return;
     if (c->driven && ui_item("Override")) set(l, c, c->value);
-    if (c->moved && ui_item("Reset")) live_reset(l, c->name);
+    if (c->moved && ui_item("Reset")) panel_reset(l, c->name);
     if (ui_item("Copy as Lua")) panel_copy_lua(l, c->name);
     if (ui_item("Copy name")) ui_copy(c->name);
     ui_menu_end();
@@ -83,7 +88,7 @@ static void reset_button(live *l, const roil_control *c) {
     ui_same_line();
     ui_align_right(RESET * ui_scale());
     if (ui_icon_button("reset", UI_ICON_RESET, false, "reset to what the effect file says"))
-        live_reset(l, c->name);
+        panel_reset(l, c->name);
 }
 
 static void label_cell(live *l, const roil_control *c) {
@@ -153,11 +158,13 @@ static bool widget(const roil_control *c, float value[4]) {
     }
 }
 
-static bool is_pending(const panel *p, const roil_control *c) {
-    const pending_value *v = &p->pending;
-    return strcmp(v->name, c->name) == 0 &&
-           (!v->sent ||
-            (clock_seconds() < v->until && memcmp(v->value, c->value, sizeof c->value) != 0));
+// What the widget shows: what it was set to, until the effect has it or never will.
+static const float *structural_value(pending_value *v, const roil_control *c) {
+    if (strcmp(v->name, c->name) != 0) return c->value;
+    bool over = memcmp(v->value, c->value, sizeof c->value) == 0 || clock_seconds() > v->until;
+    if (!v->sent || !over) return v->value;
+    v->name[0] = 0;
+    return c->value;
 }
 
 static void keep_pending(pending_value *v, const char *name, const float value[4]) {
@@ -170,7 +177,7 @@ static void keep_pending(pending_value *v, const char *name, const float value[4
 static void structural_widget(live *l, const roil_control *c) {
     pending_value *v = &l->panel->pending;
     float value[4];
-    memcpy(value, is_pending(l->panel, c) ? v->value : c->value, sizeof value);
+    memcpy(value, structural_value(v, c), sizeof value);
     if (widget(c, value)) keep_pending(v, c->name, value);
     bool at_once = c->type == ROIL_BOOL || c->type == ROIL_ENUM;
     if (v->sent || strcmp(v->name, c->name) != 0 || (ui_active() && !at_once)) return;
@@ -230,7 +237,7 @@ void panel_shape_buttons(live *l, const char *name) {
     roil_control c = {0};
     if (roil_find_control(l->effect, name, &index)) roil_get_control(l->effect, index, &c);
     ui_disable_begin(!c.moved);
-    if (ui_small_button("Reset")) live_reset(l, name);
+    if (ui_small_button("Reset")) panel_reset(l, name);
     ui_disable_end();
     ui_same_line();
     if (ui_small_button("Copy as Lua")) panel_copy_lua(l, name);

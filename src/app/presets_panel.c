@@ -29,13 +29,14 @@ static void reset_others(live *l, const roil_preset *preset) {
     for (size_t i = 0; i < p->control_count; i++) {
         const roil_control *c = &p->controls[i];
         bool camera = !c->parameter && strcmp(c->group, "camera") == 0;
-        if (c->moved && !camera && !sets(preset, c->name)) live_reset(l, c->name);
+        if (c->moved && !camera && !sets(preset, c->name)) panel_reset(l, c->name);
     }
 }
 
 static void apply(live *l, const roil_preset *preset, const char *name) {
     strbuf unknown = {0};
     size_t index;
+    l->panel->pending = (pending_value){.sent = true};
     reset_others(l, preset);
     for (size_t i = 0; i < preset->count; i++) {
         const roil_setting *s = &preset->settings[i];
@@ -116,7 +117,7 @@ void presets_draw(live *l) {
     draw_choice(l, list);
     ui_same_line();
     ui_width(0);
-    if (ui_button("Reset all")) live_reset(l, NULL);
+    if (ui_button("Reset all")) panel_reset(l, NULL);
     ui_tooltip("everything returns to what the effect file says");
     draw_saving(l, list);
 }
