@@ -159,10 +159,6 @@ roil_effect_info roil_get_info(const roil_effect *e) {
     };
 }
 
-bool roil_set(roil_effect *e, const char *name, const char *value) {
-    return effect_set(e->effect, name, value);
-}
-
 static void suggest_image(roil_effect *e, const char *name) {
     graph *g = effect_graph(e->effect);
     size_t passes = effect_pass_count(e->effect), images = graph_images(g, NULL, 0);

@@ -21,6 +21,8 @@ struct roil_effect {
     size_t kept_count, kept_capacity;
 };
 
+// What a control is worth, as the table or word that Lua reads.
+void roil_add_lua(const roil_effect *e, const effect_control *c, strbuf *out); // roil_lua.c
 // Reads an image of the graph as RGBA floats, rows from the top; free with mem_free.
 float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height);
 graph_image roil_find_image(roil_effect *e, const char *name); // zero with a message

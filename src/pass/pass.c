@@ -8,7 +8,8 @@
 
 pass *pass_create(pass_host *host, const pass_type *type, const char *shader, const char *label) {
     const char *file = type ? type->shader : shader;
-    const shader_interface *face = shader_interface_load(host->library, host->memory, file, host->reader);
+    const shader_interface *face =
+        shader_interface_load(host->library, host->memory, file, host->reader);
     if (!face) return NULL;
     arena *memory = host->memory;
     pass *p = arena_alloc(memory, sizeof *p);
@@ -45,6 +46,10 @@ float pass_get_scale(const pass *p) {
 
 const field *pass_get_uniform(const pass *p, size_t index) {
     return p->uniforms[index];
+}
+
+const field *pass_get_field(const pass *p, size_t index) {
+    return p->fields[index];
 }
 
 // ---- names ------------------------------------------------------------------------------------

@@ -85,6 +85,7 @@ const field *pass_get_uniform(const pass *p, size_t index); // NULL: the default
 void pass_restore_uniform(pass *p, size_t index, const field *value); // one that it had, or NULL
 int pass_uniform_components(shader_type type);
 bool pass_refuse_uniform(const pass *p, const char *name); // the message for a name not known
+const field *pass_get_field(const pass *p, size_t index);  // NULL: not given
 size_t pass_get_option(const pass *p, size_t index);       // index of the chosen word
 float pass_get_scale(const pass *p);
 // Counter totals of a frame, after it finished: one value per counter of the interface.

@@ -1,6 +1,6 @@
 // param { "density", 20, min = 0, max = 100, unit = "1/m", help = "..." }: its type follows from
-// the default: a number (integer = true: a whole one), true or false, "#rrggbb", {x, y, z}; with
-// words = { ... } one of these.
+// the default: a number (integer = true: a whole one), true or false, "#rrggbb", {x, y, z} (color =
+// true: a colour); with words = { ... } one of these.
 #include "base/memory.h"
 #include "script/binding.h"
 #include <math.h>
@@ -41,12 +41,13 @@ static void read_default(lua_State *L, effect_param *param) {
     }
     int count = value_numbers(L, -1, param->initial);
     bool integer = value_get_bool(L, 1, who, "integer", false);
+    bool color = value_get_bool(L, 1, who, "color", false);
     if (type == LUA_TBOOLEAN)
         param->type = EFFECT_BOOL;
     else if (type == LUA_TSTRING && count >= 3)
         param->type = EFFECT_COLOR;
     else if (type == LUA_TTABLE && count == 3)
-        param->type = EFFECT_VEC3;
+        param->type = color ? EFFECT_COLOR : EFFECT_VEC3;
     else if (type == LUA_TNUMBER)
         param->type = integer ? EFFECT_INT : EFFECT_FLOAT;
     else
@@ -54,6 +55,8 @@ static void read_default(lua_State *L, effect_param *param) {
                  "param '%s': the default must be a number, true or false, \"#rrggbb\", {x, y, z}, "
                  "or one of words = { ... }",
                  param->name);
+    if (color && param->type != EFFECT_COLOR)
+        vm_error(L, "param '%s': color = true needs {r, g, b} as default", param->name);
     if (integer && (param->type != EFFECT_INT || param->initial[0] != rintf(param->initial[0])))
         vm_error(L, "param '%s': integer = true needs a whole number as default", param->name);
 }

@@ -143,13 +143,16 @@ static void set_option(lua_State *L, pass_call *call, size_t index, int value) {
     const char *name = call->face->options[index].name;
     const effect_param *param = field_param_of(L, value);
     const char *word;
-    if (param && param->type == EFFECT_ENUM)
+    if (param && param->type == EFFECT_ENUM) {
+        const field_object *object = object_test(L, value, "field");
+        effect_mark_structural(script_of(L)->effect, (size_t)object->param);
         word = param->words[(size_t)param->value[0]];
-    else if (lua_type(L, value) == LUA_TSTRING)
+    } else if (lua_type(L, value) == LUA_TSTRING) {
         word = lua_tostring(L, value);
-    else
+    } else {
         vm_error(L, "%s: option '%s' takes a word in quotes, or a parameter with words; got a %s",
                  call->who, name, luaL_typename(L, value));
+    }
     if (!pass_set_option(call->pass, name, word)) script_raise(L);
 }
 

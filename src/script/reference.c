@@ -44,6 +44,7 @@ static const script_object objects[] = {
         KEY("group", "\"...\"", "shown with it"),
         KEY("log", "false", "moves by factors; needs min above 0"),
         KEY("integer", "false", "whole numbers only"),
+        KEY("color", "false", "{r, g, b} is a linear colour, of any brightness"),
         KEY("words", "{\"one\", \"two\"}", "makes it a choice of 1 to 64 words")),
      .members = KEYS(
         KEY("get()", NULL, "its value now; of any field that does not vary in space"),

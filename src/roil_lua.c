@@ -1,0 +1,185 @@
+// Controls as Lua: what "Copy as Lua" gives, and what presets are written in.
+#include "base/error.h"
+#include "base/memory.h"
+#include "roil_impl.h"
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+static void add_quoted(strbuf *out, const char *text) {
+    strbuf_append(out, "\"", 1);
+    for (; *text; text++) {
+        unsigned char c = (unsigned char)*text;
+        if (c == '"' || c == '\\')
+            strbuf_add(out, "\\%c", c);
+        else if (iscntrl(c))
+            strbuf_add(out, "\\%03d", c);
+        else
+            strbuf_append(out, text, 1);
+    }
+    strbuf_append(out, "\"", 1);
+}
+
+static void add_value(strbuf *out, const float *value, int components, bool color) {
+    char hex[8];
+    if (components == 1) {
+        strbuf_add_float(out, value[0]);
+        return;
+    }
+    if (color && palette_color_hex(value, hex)) {
+        strbuf_add(out, "\"%s\"", hex);
+        return;
+    }
+    for (int i = 0; i < components; i++) {
+        strbuf_add(out, i > 0 ? ", " : "{");
+        strbuf_add_float(out, value[i]);
+    }
+    strbuf_append(out, "}", 1);
+}
+
+// ---- palettes and curves ------------------------------------------------------------------------
+
+static void add_number_key(strbuf *out, const char *key, float value) {
+    strbuf_add(out, ", %s = ", key);
+    strbuf_add_float(out, value);
+}
+
+static void add_stops(strbuf *out, const palette_key *key) {
+    for (size_t i = 0; i < key->count; i++) {
+        const palette_stop *stop = &key->stops[i];
+        strbuf_add(out, i > 0 ? ", {" : "{");
+        strbuf_add_float(out, stop->at);
+        strbuf_add(out, ", ");
+        add_value(out, stop->color, 3, true);
+        if (stop->color[3] != 1) {
+            strbuf_add(out, ", ");
+            strbuf_add_float(out, stop->color[3]);
+        }
+        strbuf_append(out, "}", 1);
+    }
+}
+
+static void add_palette(strbuf *out, const palette_desc *desc) {
+    strbuf_add(out, "{ ");
+    if (desc->blackbody) {
+        strbuf_add(out, "blackbody = ");
+        add_value(out, (float[2]){desc->min, desc->max}, 2, false);
+        if (desc->physical) strbuf_add(out, ", physical = true");
+        if (desc->reference > 0) add_number_key(out, "reference", desc->reference);
+        strbuf_add(out, " }");
+        return;
+    }
+    if (desc->key_count > 1) strbuf_add(out, "keys = { ");
+    for (size_t i = 0; i < desc->key_count; i++) {
+        if (desc->key_count > 1) {
+            strbuf_add(out, i > 0 ? ", {" : "{");
+            strbuf_add_float(out, desc->keys[i].time);
+            strbuf_add(out, ", { ");
+        }
+        add_stops(out, &desc->keys[i]);
+        if (desc->key_count > 1) strbuf_add(out, " }}");
+    }
+    if (desc->key_count > 1) strbuf_add(out, " }");
+    if (desc->space == PALETTE_OKLAB) strbuf_add(out, ", space = \"oklab\"");
+    if (desc->min != 0 || desc->max != 0) {
+        add_number_key(out, "min", desc->min);
+        add_number_key(out, "max", desc->max);
+    }
+    strbuf_add(out, " }");
+}
+
+static void add_curve(strbuf *out, const curve *c) {
+    strbuf_add(out, "{ ");
+    for (size_t i = 0; i < c->count; i++) {
+        strbuf_add(out, i > 0 ? ", {" : "{");
+        strbuf_add_float(out, c->keys[i].time);
+        strbuf_add(out, ", ");
+        add_value(out, c->keys[i].value, c->components, false);
+        strbuf_append(out, "}", 1);
+    }
+    strbuf_add(out, ", shape = \"%s\"", curve_shape_name(c->shape));
+    if (c->period > 0) add_number_key(out, "period", c->period);
+    strbuf_add(out, " }");
+}
+
+// ---- controls -----------------------------------------------------------------------------------
+
+static void add_control_value(strbuf *out, const roil_control *c, const float value[4]) {
+    if (c->type == ROIL_ENUM)
+        add_quoted(out, c->words[(size_t)value[0]]);
+    else if (c->type == ROIL_BOOL)
+        strbuf_add(out, value[0] != 0 ? "true" : "false");
+    else
+        add_value(out, value, c->components, c->type == ROIL_COLOR);
+}
+
+static void get(const roil_effect *e, const char *name, roil_control *out) {
+    size_t index = 0;
+    roil_find_control((roil_effect *)(uintptr_t)e, name, &index);
+    roil_get_control((roil_effect *)(uintptr_t)e, index, out);
+}
+
+void roil_add_lua(const roil_effect *e, const effect_control *c, strbuf *out) {
+    roil_control control;
+    if (c->kind == EFFECT_CONTROL_PALETTE) {
+        add_palette(out, palette_get_desc(effect_control_palette(c)));
+    } else if (c->kind == EFFECT_CONTROL_CURVE) {
+        add_curve(out, effect_control_curve(c));
+    } else {
+        get(e, c->name, &control);
+        add_control_value(out, &control, control.value);
+    }
+}
+
+static void add_text_key(strbuf *out, const char *key, const char *text) {
+    if (!text[0]) return;
+    strbuf_add(out, ", %s = ", key);
+    add_quoted(out, text);
+}
+
+static void add_words(strbuf *out, const roil_control *c) {
+    strbuf_add(out, ", words = {");
+    for (size_t i = 0; i < c->word_count; i++) {
+        if (i > 0) strbuf_add(out, ", ");
+        add_quoted(out, c->words[i]);
+    }
+    strbuf_append(out, "}", 1);
+}
+
+static void add_param(strbuf *out, const roil_control *c) {
+    bool ranged = c->type != ROIL_ENUM && c->type != ROIL_BOOL;
+    char hex[8];
+    strbuf_add(out, "param { \"%s\", ", c->name);
+    add_control_value(out, c, c->value);
+    if (ranged && isfinite(c->min)) add_number_key(out, "min", c->min);
+    if (ranged && isfinite(c->max)) add_number_key(out, "max", c->max);
+    if (c->type == ROIL_INT) strbuf_add(out, ", integer = true");
+    if (c->type == ROIL_COLOR && !palette_color_hex(c->value, hex))
+        strbuf_add(out, ", color = true");
+    if (c->log_scale) strbuf_add(out, ", log = true");
+    if (c->type == ROIL_ENUM) add_words(out, c);
+    add_text_key(out, "unit", c->unit);
+    add_text_key(out, "group", c->group);
+    add_text_key(out, "help", c->help);
+    strbuf_add(out, " }");
+}
+
+char *roil_control_lua(roil_effect *e, const char *name) {
+    const effect_control *c = effect_find_control(e->effect, name);
+    if (!c) return NULL;
+    roil_control control;
+    get(e, name, &control);
+    strbuf out = {0};
+    if (c->kind == EFFECT_CONTROL_PARAM) {
+        add_param(&out, &control);
+        return out.text;
+    }
+    if (c->kind == EFFECT_CONTROL_PALETTE)
+        strbuf_add(&out, "palette ");
+    else if (c->kind == EFFECT_CONTROL_CURVE)
+        strbuf_add(&out, "curve ");
+    else
+        strbuf_add(&out, "%s = ", control.label);
+    roil_add_lua(e, c, &out);
+    return out.text;
+}
