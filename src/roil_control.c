@@ -332,20 +332,17 @@ bool roil_get_camera(roil_effect *e, roil_camera *out) {
 }
 
 bool roil_get_bounds(roil_effect *e, float low[3], float high[3]) {
-    static const char *const fields[] = {"density", "emission"};
     box3 all = box3_empty();
     for (size_t i = 0; i < effect_pass_count(e->effect); i++) {
         const pass *p = effect_get_pass(e->effect, i);
-        for (size_t k = 0; k < COUNT_OF(fields); k++) {
-            size_t index;
-            box3 box;
-            if (pass_find_key(p, fields[k], &index) != PASS_FIELD) continue;
-            const field *node = pass_get_field(p, index);
-            if (node && field_bounds(node, context_of(e), &box) && box3_is_finite(box))
-                all = box3_union(all, box);
-        }
+        size_t index; // of the field that marches are cut to
+        box3 box;
+        if (pass_find_key(p, "density", &index) != PASS_FIELD) continue;
+        const field *node = pass_get_field(p, index);
+        if (node && field_bounds(node, context_of(e), &box) && box3_is_finite(box))
+            all = box3_union(all, box);
     }
-    if (box3_is_empty(all)) return err_set("no volume of this effect has an end");
+    if (box3_is_empty(all)) return err_set("no volume of this effect has bounds just now");
     memcpy(low, &all.min, sizeof all.min);
     memcpy(high, &all.max, sizeof all.max);
     return true;
