@@ -24,16 +24,16 @@ struct inspector {
     const char **words;
     size_t count, image_capacity, label_capacity, word_capacity;
 
-    roil_effect *effect; // that was told to keep `kept`
-    uint64_t reloads;
-    char kept[MAX_NAME];
-    char failure[512]; // why nothing is seen; "": it is
+    char kept[MAX_NAME]; // what the effect was told to keep; "": nothing
+    uint64_t reloads;    // when it was
+    char failure[512];   // why nothing is seen; "": it is
 
     roil_inspection how;
     image_view view;
     bool channels[4];
     roil_texture *texture;
     uint32_t width, height; // of it
+    uint32_t wanted[2];     // the same by now; 0: not drawn yet
     bool pointed;           // at the picture
     roil_texel texel;
 };
@@ -72,11 +72,15 @@ static void list_images(inspector *p, roil_effect *e) {
     }
 }
 
+static const roil_image_info *find_image(const inspector *p, const char *name) {
+    for (size_t i = 0; i < p->count; i++)
+        if (strcmp(p->images[i].name, name) == 0) return &p->images[i];
+    return NULL;
+}
+
 // The one that was chosen, now or in an earlier session; at first the last one that is drawn.
 static const roil_image_info *find_chosen(const inspector *p, live_session *session) {
-    for (size_t i = 0; i < p->count && session->image[0]; i++)
-        if (strcmp(p->images[i].name, session->image) == 0) return &p->images[i];
-    if (session->image[0]) return NULL;
+    if (session->image[0]) return find_image(p, session->image);
     for (size_t i = p->count; i-- > 0;) {
         if (p->images[i].culled) continue;
         str_copy(session->image, sizeof session->image, p->images[i].name);
@@ -104,13 +108,22 @@ static bool prepare_again(live *l) {
 static bool keep(live *l, const char *image) {
     inspector *p = l->inspector;
     uint64_t reloads = roil_live_counts(l->follow).reloads;
-    if (p->effect != l->effect || p->reloads != reloads) p->kept[0] = '\0'; // another effect
-    p->effect = l->effect;
+    if (p->reloads != reloads && !find_image(p, p->kept)) p->kept[0] = '\0'; // else kept on
     p->reloads = reloads;
     if (strcmp(p->kept, image) == 0) return true;
     str_copy(p->kept, sizeof p->kept, image);
     roil_keep_only(l->effect, image[0] ? image : NULL);
     return prepare_again(l) || !str_copy(p->failure, sizeof p->failure, roil_error());
+}
+
+// As large as the place where it was drawn last.
+static bool resize_texture(inspector *p, roil *r) {
+    if (p->texture && p->width == p->wanted[0] && p->height == p->wanted[1]) return true;
+    roil_texture_destroy(r, p->texture);
+    p->width = p->wanted[0];
+    p->height = p->wanted[1];
+    p->texture = roil_texture_create(r, p->width, p->height, NULL);
+    return p->texture || !str_copy(p->failure, sizeof p->failure, roil_error());
 }
 
 void inspector_update(live *l) {
@@ -119,7 +132,8 @@ void inspector_update(live *l) {
     list_images(p, l->effect);
     bool open = l->session.inspector;
     const roil_image_info *image = open ? find_chosen(p, &l->session) : NULL;
-    if (!keep(l, image ? image->name : "") || !image || !p->texture) return;
+    if (!keep(l, image ? image->name : "") || !image) return;
+    if (!p->wanted[0] || !resize_texture(p, l->r)) return;
     p->how.image = p->kept;
     roil_texel texel;
     if (!roil_inspect(l->effect, &p->how, p->texture, &texel)) {
@@ -202,20 +216,9 @@ static void draw_rows(inspector *p, const roil_image_info *image) {
 
 // ---- the picture --------------------------------------------------------------------------------
 
-static bool resize_texture(inspector *p, roil *r, const ui_canvas *c) {
-    uint32_t width = (uint32_t)fmaxf(c->area.right - c->area.left, 1);
-    uint32_t height = (uint32_t)fmaxf(c->area.bottom - c->area.top, 1);
-    if (p->texture && p->width == width && p->height == height) return true;
-    roil_texture_destroy(r, p->texture);
-    p->texture = roil_texture_create(r, width, height, NULL);
-    p->width = width;
-    p->height = height;
-    return p->texture || !str_copy(p->failure, sizeof p->failure, roil_error());
-}
-
 static void look(inspector *p, const roil_image_info *image, const ui_canvas *c) {
     float plane[2];
-    const float size[2] = {(float)p->width, (float)p->height};
+    const float size[2] = {(float)p->wanted[0], (float)p->wanted[1]};
     image_view_plane(image, p->how.mip, p->how.axis, plane);
     float x = c->x - c->area.left, y = c->y - c->area.top;
     if (c->double_clicked) p->view.fit = true;
@@ -239,14 +242,16 @@ static void draw_text_in(const ui_canvas *c, ui_color color, const char *text) {
     label_within(left, y, width, ui_rgba(color, 1), text);
 }
 
-static void draw_picture(live *l, const roil_image_info *image) {
-    inspector *p = l->inspector;
+static void draw_picture(inspector *p, const roil_image_info *image) {
     ui_rect space = ui_space();
     float height = fmaxf(space.bottom - space.top - FOOT * ui_scale(), MIN_CANVAS * ui_scale());
     ui_canvas c = ui_canvas_begin("inspected", 0, floorf(height));
-    if (resize_texture(p, l->r, &c) && image) {
+    p->wanted[0] = (uint32_t)fmaxf(c.area.right - c.area.left, 1);
+    p->wanted[1] = (uint32_t)fmaxf(c.area.bottom - c.area.top, 1);
+    ui_fill(c.area, ui_rgba(UI_FIELD, 1), 0);
+    if (image) {
         look(p, image, &c);
-        ui_image(c.area, p->texture);
+        if (p->texture) ui_image(c.area, p->texture);
     }
     if (p->failure[0]) draw_text_in(&c, UI_ERROR, p->failure);
     ui_canvas_end();
@@ -300,7 +305,7 @@ void inspector_draw(live *l) {
             snprintf(p->failure, sizeof p->failure, "The effect has no image '%s' any more",
                      l->session.image);
         }
-        draw_picture(l, image);
+        draw_picture(p, image);
         if (image) draw_foot(p, image);
     }
     ui_window_end();

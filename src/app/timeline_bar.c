@@ -145,6 +145,14 @@ static void draw_track(live *l) {
 
 // ---- the row below ------------------------------------------------------------------------------
 
+static float text_height(void) {
+    return ui_line_height() - 6 * ui_scale(); // without the space between lines
+}
+
+static float row_height(void) { // as buttons and choices have it
+    return text_height() + 8 * ui_scale();
+}
+
 static void draw_buttons(live *l) {
     timeline *t = &l->time;
     if (ui_icon_button("start", UI_ICON_START, false, "To the start (Home)")) seek(l, t->from);
@@ -166,12 +174,23 @@ static void draw_buttons(live *l) {
         t->loop = !t->loop;
 }
 
+// As wide for every frame, so that what stands beside it stays.
 static void draw_numbers(const timeline *t) {
-    ui_text(t->smooth ? "%.2f" : "%.0f", t->frame);
-    ui_same_line();
-    ui_text_color(UI_DIM, "of %.0f", t->last);
-    ui_same_line();
-    ui_text("%.2f s", timeline_seconds(t));
+    float s = ui_scale(), space = ui_text_width(" ");
+    char frame[32], widest[32], last[32], seconds[32];
+    int decimals = t->smooth ? 2 : 0;
+    snprintf(frame, sizeof frame, "%.*f", decimals, t->frame);
+    snprintf(widest, sizeof widest, "%.*f", decimals, t->last);
+    snprintf(last, sizeof last, "of %.0f", t->last);
+    snprintf(seconds, sizeof seconds, "%.2f s", timeline_seconds(t));
+    float first = ui_text_width(widest) + 6 * s, second = ui_text_width(last);
+    float third = ui_text_width(widest) + ui_text_width("00.00 s");
+    ui_canvas c = ui_canvas_begin("time", first + second + third, row_height());
+    float y = c.area.top + (row_height() - text_height()) / 2;
+    label_right(c.area.left + first, y, ui_rgba(UI_TEXT, 1), frame);
+    ui_label(c.area.left + first + space, y, ui_rgba(UI_DIM, 1), last);
+    label_right(c.area.right - 6 * s, y, ui_rgba(UI_TEXT, 1), seconds);
+    ui_canvas_end();
 }
 
 static void draw_speed(timeline *t) {
@@ -189,10 +208,12 @@ static void draw_speed(timeline *t) {
 
 static void draw_rate(const live *l) {
     double rate = performance_rate(l->performance);
-    char text[32];
-    snprintf(text, sizeof text, rate >= 9.95 ? "%.0f fps" : "%.1f fps", rate);
-    ui_align_right(ui_text_width(text));
-    if (rate > 0) ui_text_color(l->time.playing ? UI_TEXT : UI_DIM, "%s", text);
+    char text[32] = "";
+    if (rate > 0) snprintf(text, sizeof text, rate >= 9.95 ? "%.0f fps" : "%.1f fps", rate);
+    ui_canvas c = ui_canvas_begin("rate", 0, row_height());
+    label_right(c.area.right, c.area.top + (row_height() - text_height()) / 2,
+                ui_rgba(l->time.playing ? UI_TEXT : UI_DIM, 1), text);
+    ui_canvas_end();
 }
 
 static void draw_row(live *l) {
