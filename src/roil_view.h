@@ -2,7 +2,7 @@
 #pragma once
 #include "roil_impl.h"
 
-enum { VIEW_MAX_SLOTS = 8, VIEW_READS = 3 };
+enum { VIEW_MAX_SLOTS = 8, VIEW_READS = GPU_FRAMES_IN_FLIGHT + 1 };
 
 typedef struct view_shader { // a pipeline of shaders/view/, made when it is first used
     gpu_pipeline *pipeline;

@@ -190,7 +190,8 @@ void gpu_pipeline_destroy(gpu *g, gpu_pipeline *pipeline);
 
 // ---- frames -----------------------------------------------------------------------------------
 
-enum { GPU_FRAMES_IN_FLIGHT = 2, GPU_MAX_PASSES = 256 };
+// A window that is drawn takes up to three: the effect, the inspected image, the interface.
+enum { GPU_FRAMES_IN_FLIGHT = 4, GPU_MAX_PASSES = 256 };
 
 // Opens a frame, waiting for the one GPU_FRAMES_IN_FLIGHT before it. Returns its number (from 1),
 // or 0 when the device is lost.

@@ -123,7 +123,7 @@ static void child_waits_for_a_frame(void) {
 static void child_begins_frames(void) {
     stuck s = open_stuck(1.0);
     submit_endless(&s);
-    submit_short(&s);
+    for (int i = 1; i < GPU_FRAMES_IN_FLIGHT; i++) submit_short(&s);
     double began = clock_seconds();
     need(gpu_frame_begin(s.g) == 0);
     need_lost_within(&s, began, 10.0);
