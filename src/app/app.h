@@ -11,6 +11,7 @@ int cmd_render(int argc, const char **argv);
 int cmd_check(int argc, const char **argv);
 int cmd_info(int argc, const char **argv);
 int cmd_export(int argc, const char **argv);
+int cmd_live(int argc, const char **argv);
 
 // One line "roil: message" on stderr; returns the status.
 int app_fail(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));

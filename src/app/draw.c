@@ -49,6 +49,10 @@ void ui_checkers(ui_rect area, float size) {
                     draw_grey(142), 0);
 }
 
+void draw_text(ui_rect area, ui_color color, const char *text, float align) {
+    draw_text_in(area, ui_rgba(color, 1), text, align);
+}
+
 void draw_chevron(float x, float y, bool down) {
     float r = 4 * ui_scale();
     uint32_t color = draw_enabled(ui_rgba(UI_DIM, 1));

@@ -5,13 +5,21 @@
 #include "app/timeline.h"
 #include "app/ui.h"
 
+// Sizes of the picture, as shares of its view.
+enum { LIVE_PREVIEWS = 3 };
+typedef struct live_preview {
+    const char *name; // "half"
+    float scale;
+} live_preview;
+extern const live_preview live_previews[LIVE_PREVIEWS];
+
 typedef struct live_session { // what is found again at the next start; session.c
     int x, y, width, height;  // of the window; width 0: none kept yet
     bool maximized;
     float panel; // width of the panel, units
     bool panel_hidden, performance, inspector;
     char image[96]; // of the inspector
-    int preview;    // of live_previews
+    int preview;    // of live_previews; -1: never chosen
 } live_session;
 
 typedef struct performance performance; // performance.c
@@ -26,12 +34,16 @@ typedef struct live {
     timeline time;
     orbit camera;
     bool camera_moved; // by hand: `camera` is in force, else the script's
+    double start;      // frame to begin with; NAN: the effect's first
     bool dirty;        // the picture must be drawn again, though time stands still
     live_session session;
     bool help;
     bool quit, shot;     // asked for by a key
     char notice[512];    // said at the foot of the window for a while
     double notice_until; // clock_seconds
+    char broken_text[2048];
+    double broken_frame; // at which it broke; another one is tried
+    bool held;           // after a hang: nothing is drawn until a file changes or time is started
     const char *broken;  // why no frame can be drawn, besides roil_live_message; NULL: it can
     performance *performance;
     inspector *inspector;
@@ -44,6 +56,16 @@ typedef struct live {
 void live_set(live *l, const char *name, const char *value);
 void live_reset(live *l, const char *name); // NULL: all
 void live_notice(live *l, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void live_break(live *l, const char *why); // no frame until something changes
+// Draws and shows until the user quits. False with a message when nothing can be shown any more.
+typedef struct window window; // window.h
+bool live_run(live *l, window *w);
+
+// ---- camera_hand.c: the camera in the user's hands ----------------------------------------------
+
+void camera_hand(live *l, const ui_canvas *view); // what the pointer does over the picture
+void camera_frame(live *l);                       // so that the volume fills the picture
+void camera_reset(live *l);                       // to the script's
 
 // ---- parts, in the order in which they are drawn ----------------------------------------------
 
@@ -81,6 +103,7 @@ typedef struct live_key { // keys.c has the table; F1 lists it
     void (*run)(live *l);
 } live_key;
 const live_key *live_keys(size_t *count);
+void live_press(live *l, int key, int mods, bool repeated); // of GLFW
 
 // ---- session ------------------------------------------------------------------------------------
 

@@ -12,6 +12,7 @@ static const struct {
     const char *help;
 } commands[] = {
     {"render", cmd_render, "render frames of an effect to PNG, EXR or MP4"},
+    {"live", cmd_live, "open a window in which an effect is tuned while it runs"},
     {"check", cmd_check, "load, compile and validate effects; render nothing"},
     {"info", cmd_info, "tell about devices, passes, fields, an effect or a VDB file"},
     {"export", cmd_export, "write a VDB sequence as one raw file"},
@@ -61,6 +62,6 @@ int main(int argc, char **argv) {
     const char *near = str_nearest(wanted, names, COUNT_OF(names));
     if (near)
         return app_fail(APP_BAD_USAGE, "unknown command '%s'; did you mean '%s'?", wanted, near);
-    return app_fail(APP_BAD_USAGE, "unknown command '%s'; accepted: render, check, info, export",
-                    wanted);
+    return app_fail(APP_BAD_USAGE,
+                    "unknown command '%s'; accepted: render, live, check, info, export", wanted);
 }

@@ -3,8 +3,10 @@
 // ImGui's GLFW backend, triangles leave as a roil_picture.
 #include "app/ui.h"
 #include "app/ui_parts.h"
+extern "C" {
 #include "base/memory.h"
 #include "base/str.h"
+}
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <cmath>
@@ -14,7 +16,6 @@
 #include <imgui_internal.h>
 
 static_assert(sizeof(ImDrawVert) == sizeof(roil_vertex), "vertices are copied as they are");
-static_assert(offsetof(ImDrawVert, uv) == offsetof(roil_vertex, u), "vertices are copied");
 static_assert(offsetof(ImDrawVert, col) == offsetof(roil_vertex, color), "vertices are copied");
 
 namespace {
@@ -71,19 +72,12 @@ void set_sizes(ImGuiStyle &s) {
     s.ItemInnerSpacing = ImVec2(6, 4);
     s.CellPadding = ImVec2(6, 3);
     s.ScrollbarSize = 10;
-    s.GrabMinSize = 10;
     s.WindowRounding = 6;
     s.PopupRounding = 6;
     s.FrameRounding = 4;
     s.TabRounding = 4;
     s.ScrollbarRounding = 5;
-    s.GrabRounding = 4;
-    s.WindowBorderSize = s.PopupBorderSize = 1;
-    s.FrameBorderSize = s.TabBorderSize = 0;
-    s.WindowTitleAlign = ImVec2(0, 0.5f);
-    s.WindowMenuButtonPosition = ImGuiDir_None;
     s.DisabledAlpha = 0.45f;
-    s.CurveTessellationTol = 0.8f;
     s.CircleTessellationMaxError = 0.2f;
 }
 
@@ -100,7 +94,6 @@ void set_colors(ImVec4 *c) {
         {ImGuiCol_TitleBg, draw_grey(GREY_POPUP)},
         {ImGuiCol_TitleBgActive, draw_grey(50)},
         {ImGuiCol_ScrollbarBg, IM_COL32(0, 0, 0, 0)},
-        {ImGuiCol_CheckMark, ui_rgba(UI_ACCENT, 1)},
         {ImGuiCol_Header, IM_COL32(240, 146, 62, 52)},
         {ImGuiCol_HeaderHovered, IM_COL32(255, 255, 255, 26)},
         {ImGuiCol_HeaderActive, IM_COL32(255, 255, 255, 40)},
@@ -187,6 +180,7 @@ void ui_close(void) {
     mem_free(ui.indices);
     mem_free(ui.draws);
     mem_free(ui.layout);
+    marks_free();
     ui = state();
 }
 
@@ -262,6 +256,7 @@ void ui_end(roil_picture *out) {
     out->vertices = ui.vertices;
     out->indices = ui.indices;
     out->draws = ui.draws;
+    marks_write();
 }
 
 bool ui_wants_mouse(void) {
@@ -290,6 +285,7 @@ void ui_panel_begin(const char *name, ui_rect where) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
     ImGui::Begin(name, nullptr, STILL);
+    ui_mark(name, where);
     ImGui::PopStyleVar(3);
     if (!ui.depth++) ui.panel = true;
 }
@@ -306,6 +302,8 @@ bool ui_window_begin(const char *title, bool *open, ui_rect where, bool fixed) {
     bool visible = ImGui::Begin(
         title, open, ImGuiWindowFlags_NoCollapse | (fixed ? ImGuiWindowFlags_AlwaysAutoResize : 0));
     ImGui::PopFont();
+    ImVec2 at = ImGui::GetWindowPos(), end = at + ImGui::GetWindowSize();
+    ui_mark(title, {at.x, at.y, end.x, end.y});
     if (!ui.depth++) ui.panel = false;
     return visible;
 }
@@ -348,9 +346,11 @@ static float take_width(void) {
 
 void ui_push(const char *id) {
     ImGui::PushID(id);
+    marks_push(id);
 }
 
 void ui_pop(void) {
+    marks_pop();
     ImGui::PopID();
 }
 
@@ -412,12 +412,6 @@ void ui_text_wrapped(const char *text) {
     ImGui::PopTextWrapPos();
 }
 
-void ui_text_mono(ui_color color, const char *text) {
-    ImGui::PushFont(ui.fonts[FONT_MONO]);
-    part_text(ui_rgba(color, 1), text);
-    ImGui::PopFont();
-}
-
 // After the pointer has rested for a moment, so that nothing flickers along its way.
 void ui_tooltip(const char *text) {
     if (!text || !text[0] || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
@@ -447,10 +441,6 @@ float ui_line_height(void) {
 
 uint32_t draw_enabled(uint32_t color) {
     return ImGui::GetColorU32(rgba(color));
-}
-
-void draw_text(ui_rect area, ui_color color, const char *text, float align) {
-    draw_text_in(area, ui_rgba(color, 1), text, align);
 }
 
 void draw_text_in(ui_rect area, uint32_t color, const char *text, float align) {
@@ -483,9 +473,15 @@ float part_row_begin(const char *label) {
     return width - column;
 }
 
-void part_row_end(void) {
+static void mark_last(const char *name) {
+    ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
+    ui_mark(name, {a.x, a.y, b.x, b.y});
+}
+
+void part_row_end(const char *label) {
     ImGui::PopID();
     ImGui::EndGroup();
+    mark_last(label);
 }
 
 void part_same_line(float gap) {
@@ -503,9 +499,12 @@ part_area part_area_begin(const char *id, float width) {
     if (!(width > 0)) width = height;
     a.clicked = ImGui::InvisibleButton(id, ImVec2(fmaxf(width, 1), height));
     ImGui::SetItemAllowOverlap();
+    float &baseline = ImGui::GetCurrentWindow()->DC.PrevLineTextBaseOffset; // of text behind it
+    baseline = fmaxf(baseline, ImGui::GetStyle().FramePadding.y);
     a.hovered = ImGui::IsItemHovered();
     a.held = ImGui::IsItemActive();
     a.area = {at.x, at.y, at.x + width, at.y + height};
+    ui_mark(id, a.area);
     return a;
 }
 
@@ -517,11 +516,12 @@ bool *part_flag(const char *id, bool initial) {
     return ImGui::GetStateStorage()->GetBoolRef(ImGui::GetID(id), initial);
 }
 
-void part_strong(bool strong) {
-    if (strong)
-        ImGui::PushFont(ui.fonts[FONT_STRONG]);
-    else
-        ImGui::PopFont();
+void part_font_begin(font_kind kind) {
+    ImGui::PushFont(ui.fonts[kind]);
+}
+
+void part_font_end(void) {
+    ImGui::PopFont();
 }
 
 void part_popup_open(const char *id) {
@@ -541,7 +541,9 @@ void part_popup_end(void) {
 
 bool ui_button(const char *label) {
     float width = ui.has_width ? take_width() : 0;
-    return ImGui::Button(label, ImVec2(width, 0));
+    bool pressed = ImGui::Button(label, ImVec2(width, 0));
+    mark_last(label);
+    return pressed;
 }
 
 bool ui_small_button(const char *label) {
@@ -574,14 +576,14 @@ bool ui_choice(const char *label, size_t *index, const char *const *words, size_
     }
     if (open) ImGui::EndCombo();
     draw_chevron(at.x + width - 13 * ui.scale, at.y + height / 2, true);
-    part_row_end();
+    part_row_end(label);
     return changed;
 }
 
 bool ui_input(const char *label, const char *hint, char *text, size_t capacity) {
     ImGui::SetNextItemWidth(part_row_begin(label));
     bool changed = ImGui::InputTextWithHint("##value", hint ? hint : "", text, capacity);
-    part_row_end();
+    part_row_end(label);
     return changed;
 }
 
@@ -710,6 +712,7 @@ ui_canvas ui_canvas_begin(const char *id, float width, float height) {
     bool active = ImGui::IsItemActive();
     if (!ui.panel) ImGui::SetItemUsingMouseWheel();
     ui_canvas c = canvas_of({at.x, at.y, at.x + wide, at.y + height}, ImGui::IsItemHovered());
+    ui_mark(id, c.area);
     c.held = active && io.MouseDown[0];
     c.middle_held = active && io.MouseDown[2];
     c.released = (active || ImGui::IsItemDeactivated()) && io.MouseReleased[0];

@@ -146,6 +146,9 @@ ui_canvas ui_canvas_begin(const char *id, float width, float height);
 void ui_canvas_end(void);
 // What a user does in a part of the window that no panel covers. Outside of panels.
 ui_canvas ui_bare(ui_rect area);
+// Tells programs that work the window, as its tests do, where something is that has no id of its
+// own: rectangles of all that can be used go to the file $ROIL_WIDGETS, if that is set.
+void ui_mark(const char *name, ui_rect area);
 // An upright bar between panels, `position` is its middle; true while it is dragged.
 bool ui_splitter(ui_rect area, float *position);
 

@@ -63,7 +63,7 @@ void draw_icon(int icon, ui_rect area, uint32_t color); // icons.c
 // A row is one item to what asks about the last one: its label, if that is shown, and its widget,
 // whose width is returned.
 float part_row_begin(const char *label);
-void part_row_end(void);
+void part_row_end(const char *label);
 void part_same_line(float gap);
 bool part_has_width(void); // ui_width was called for the next widget
 typedef struct part_area {
@@ -73,7 +73,8 @@ typedef struct part_area {
 part_area part_area_begin(const char *id, float width); // to be clicked, not drawn; 0: a square
 void part_changed(void);                                // the last item's value
 bool *part_flag(const char *id, bool initial);          // that the current panel remembers
-void part_strong(bool strong);                          // text from here on
+void part_font_begin(font_kind kind);                   // text from here on
+void part_font_end(void);
 bool part_bar(const char *id, double *value, const number_range *range, const char *unit,
               float width);
 void part_text(uint32_t color, const char *text);
@@ -82,6 +83,13 @@ void part_cursor_sideways(void);
 void part_popup_open(const char *id);
 bool part_popup_begin(const char *id);
 void part_popup_end(void);
+
+// ---- marks.c: $ROIL_WIDGETS, with ui_mark -----------------------------------------------------
+
+void marks_push(const char *id);
+void marks_pop(void);
+void marks_write(void); // at the end of a frame
+void marks_free(void);
 
 // ---- color_picker.c ---------------------------------------------------------------------------
 

@@ -35,6 +35,12 @@ void ui_text_color(ui_color color, const char *format, ...) {
     va_end(args);
 }
 
+void ui_text_mono(ui_color color, const char *text) {
+    part_font_begin(FONT_MONO);
+    part_text(ui_rgba(color, 1), text);
+    part_font_end();
+}
+
 bool ui_splitter(ui_rect area, float *position) {
     ui_canvas c = part_bare("splitter", area);
     ui_fill(area, ui_rgba(UI_FIELD, 1), 0);
@@ -53,9 +59,9 @@ bool ui_section(const char *label, bool open) {
     if (a.clicked) *is_open = !*is_open;
     draw_heading(a.area, *is_open, a.hovered);
     ui_rect text = {a.area.left + 26 * ui_scale(), a.area.top, a.area.right, a.area.bottom};
-    part_strong(true);
+    part_font_begin(FONT_STRONG);
     draw_text(text, UI_TEXT, label, 0);
-    part_strong(false);
+    part_font_end();
     return *is_open;
 }
 
@@ -100,7 +106,7 @@ bool ui_toggle(const char *label, bool *value) {
     if (text > 0)
         draw_text((ui_rect){box.right + gap, box.top, a.area.right + 1, box.bottom}, UI_TEXT, name,
                   0);
-    part_row_end();
+    part_row_end(label);
     return a.clicked;
 }
 
@@ -122,7 +128,7 @@ bool ui_number(const char *label, float *value, int components, float min, float
         }
         width -= part + gap;
     }
-    part_row_end();
+    part_row_end(label);
     return changed;
 }
 
@@ -131,7 +137,7 @@ bool ui_whole(const char *label, int *value, int min, int max, const char *unit)
     double v = *value;
     bool changed = part_bar("##value", &v, &range, unit, part_row_begin(label));
     if (changed) *value = (int)v;
-    part_row_end();
+    part_row_end(label);
     return changed;
 }
 
@@ -144,6 +150,6 @@ bool ui_color_edit(const char *label, float *linear, int components) {
         changed = color_picker(linear, components);
         part_popup_end();
     }
-    part_row_end();
+    part_row_end(label);
     return changed;
 }

@@ -1,0 +1,65 @@
+// The camera in the user's hands: drags and the wheel over the picture become values of the
+// controls camera.eye and camera.target, which outlive a reload like any other.
+#include "app/live.h"
+#include <math.h>
+#include <stdio.h>
+
+static const float TURN = 0.3f; // degrees a unit
+
+// In force is what the hand made last; after a reload or a reset, what the effect was drawn with.
+static bool take_up(live *l) {
+    roil_camera camera;
+    if (l->camera_moved) return true;
+    if (!l->effect || !roil_get_camera(l->effect, &camera)) return false;
+    orbit_from(&l->camera, &camera);
+    return true;
+}
+
+static void set_point(live *l, const char *name, const float p[3]) {
+    char text[128];
+    snprintf(text, sizeof text, "%.6g,%.6g,%.6g", (double)p[0], (double)p[1], (double)p[2]);
+    live_set(l, name, text);
+}
+
+static void put_down(live *l) {
+    roil_camera camera;
+    orbit_to(&l->camera, &camera);
+    set_point(l, "camera.eye", camera.eye);
+    set_point(l, "camera.target", camera.target);
+    l->camera_moved = true;
+}
+
+static float aspect_of(const live *l) {
+    return (l->view.right - l->view.left) / fmaxf(l->view.bottom - l->view.top, 1);
+}
+
+void camera_hand(live *l, const ui_canvas *view) {
+    bool moved = (view->held || view->middle_held) && (view->dx != 0 || view->dy != 0);
+    if (view->double_clicked) camera_frame(l);
+    if ((!moved && view->wheel == 0) || !take_up(l)) return;
+    float height = fmaxf(view->area.bottom - view->area.top, 1);
+    if (view->wheel != 0) orbit_zoom(&l->camera, view->wheel);
+    if (moved && (view->middle_held || view->shift))
+        orbit_pan(&l->camera, view->dx / height, view->dy / height);
+    else if (moved)
+        orbit_turn(&l->camera, -view->dx * TURN / ui_scale(), view->dy * TURN / ui_scale());
+    put_down(l);
+}
+
+void camera_frame(live *l) {
+    float low[3], high[3];
+    if (!take_up(l)) return;
+    if (!roil_get_bounds(l->effect, low, high)) {
+        live_notice(l, "The effect has no volume of finite size to frame.");
+        return;
+    }
+    orbit_frame(&l->camera, low, high, aspect_of(l));
+    put_down(l);
+}
+
+void camera_reset(live *l) {
+    if (!l->effect) return;
+    live_reset(l, "camera.eye");
+    live_reset(l, "camera.target");
+    l->camera_moved = false;
+}

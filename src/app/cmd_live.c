@@ -1,0 +1,258 @@
+// roil live EFFECT.lua ...: a window in which an effect is tuned while it runs.
+#include "app/live.h"
+#include "app/window.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include <GLFW/glfw3.h>
+#include <inttypes.h>
+#include <math.h>
+#include <popt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct job {
+    const char *file, *device, *preview, *after_hang;
+    roil_setting *settings; // a preset has its name as value and no name of its own
+    size_t setting_count, setting_capacity;
+    uint32_t width, height;
+    double frame;
+    int paused, validate, hidden_panel;
+} job;
+
+// ---- options ----------------------------------------------------------------------------------
+
+enum { OPTION_SIZE = 1, OPTION_SET, OPTION_PRESET };
+
+static void add_setting(job *j, const char *name, const char *value) {
+    MEM_RESERVE(j->settings, j->setting_count + 1, j->setting_capacity);
+    j->settings[j->setting_count++] = (roil_setting){name, value};
+}
+
+// Handles one option of the table below; poptGetOptArg's text lives until the program ends.
+static bool take_option(job *j, poptContext context, int option) {
+    char *text = poptGetOptArg(context);
+    if (option == OPTION_SIZE) return app_parse_size(text, &j->width, &j->height);
+    if (option == OPTION_PRESET) {
+        add_setting(j, NULL, text);
+        return true;
+    }
+    char *equals = strchr(text, '=');
+    if (!equals || equals == text) return err_set("--set '%s'; accepted: NAME=VALUE", text);
+    *equals = '\0';
+    add_setting(j, text, equals + 1);
+    return true;
+}
+
+static int preview_of(const char *name) {
+    for (int i = 0; i < LIVE_PREVIEWS; i++)
+        if (strcmp(name, live_previews[i].name) == 0) return i;
+    return -1;
+}
+
+static bool check(const job *j, poptContext context) {
+    if (!j->file) return err_set("which effect? usage: roil live EFFECT.lua [options]");
+    const char *more = poptGetArg(context);
+    if (more) return err_set("'%s': one effect at a time", more);
+    if (j->preview && preview_of(j->preview) < 0)
+        return err_set("--preview '%s'; accepted: full, half, quarter", j->preview);
+    return true;
+}
+
+static bool parse(job *j, int argc, const char **argv, poptContext *context) {
+    const struct poptOption options[] = {
+        {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE,
+         "size of the window (default: as it was left)", "WxH"},
+        {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET,
+         "a parameter, or a uniform or option of a pass (march.steps=64)", "NAME=VALUE"},
+        {"preset", 'p', POPT_ARG_STRING, NULL, OPTION_PRESET,
+         "values saved under a name beside the effect, or in a .lua file", "NAME"},
+        {"device", 'd', POPT_ARG_STRING, &j->device, 0, "part of a device's name, or its number",
+         "DEVICE"},
+        {"frame", 'f', POPT_ARG_DOUBLE, &j->frame, 0, "to begin with (default: the first)",
+         "FRAME"},
+        {"paused", '\0', POPT_ARG_NONE, &j->paused, 0, "do not play at once", NULL},
+        {"preview", '\0', POPT_ARG_STRING, &j->preview, 0,
+         "size of the picture: full, half, quarter (default: as it was left)", "SIZE"},
+        {"hidden-panel", '\0', POPT_ARG_NONE, &j->hidden_panel, 0, "show the picture alone", NULL},
+        {"validate", '\0', POPT_ARG_NONE, &j->validate, 0, "with the Vulkan validation layers",
+         NULL},
+        {"after-hang", '\0', POPT_ARG_STRING | POPT_ARGFLAG_DOC_HIDDEN, &j->after_hang, 0, NULL,
+         NULL},
+        POPT_AUTOHELP POPT_TABLEEND};
+    *context = poptGetContext("roil live", argc, argv, options, 0);
+    poptSetOtherOptionHelp(*context, "EFFECT.lua [options]");
+    int option;
+    while ((option = poptGetNextOpt(*context)) > 0)
+        if (!take_option(j, *context, option)) return false;
+    if (option < -1) return err_set("%s: %s", poptBadOption(*context, 0), poptStrerror(option));
+    j->file = poptGetArg(*context);
+    return check(j, *context);
+}
+
+// ---- following --------------------------------------------------------------------------------
+
+// Presets and settings in the order of the command line: what comes later counts.
+static roil_live *start_following(roil *r, const job *j) {
+    roil_setting *all = NULL;
+    size_t count = 0, capacity = 0, preset_count = 0;
+    roil_preset **presets = mem_alloc(j->setting_count * sizeof *presets);
+    bool done = true;
+    for (size_t i = 0; done && i < j->setting_count; i++) {
+        const roil_setting *setting = &j->settings[i];
+        roil_preset single = {.settings = &j->settings[i], .count = 1}, *given = &single;
+        if (!setting->name) {
+            given = roil_read_preset(r, j->file, setting->value);
+            done = given != NULL;
+            if (done) presets[preset_count++] = given;
+        }
+        for (size_t k = 0; done && k < given->count; k++) {
+            MEM_RESERVE(all, count + 1, capacity);
+            all[count++] = given->settings[k];
+        }
+    }
+    roil_live *l = NULL;
+    const roil_live_desc desc = {
+        .file = j->file, .settings = all, .setting_count = count, .wake = window_wake};
+    if (done) l = roil_live_create(r, &desc);
+    for (size_t i = 0; i < preset_count; i++) roil_free_preset(presets[i]);
+    mem_free(presets);
+    mem_free(all);
+    return l;
+}
+
+// ---- after a hang -----------------------------------------------------------------------------
+
+typedef struct arguments {
+    char **list;
+    size_t count, capacity;
+} arguments;
+
+static void add(arguments *a, const char *text) {
+    MEM_RESERVE(a->list, a->count + 2, a->capacity);
+    a->list[a->count++] = mem_copy(text, strlen(text) + 1);
+    a->list[a->count] = NULL;
+}
+
+static void add_moved(arguments *a, roil_effect *e) {
+    for (size_t i = 0; i < roil_control_count(e); i++) {
+        roil_control c;
+        roil_get_control(e, i, &c);
+        char *text = c.moved ? roil_control_text(e, c.name) : NULL;
+        if (!text) continue;
+        strbuf setting = {0};
+        strbuf_add(&setting, "%s=%s", c.name, text);
+        add(a, "--set");
+        add(a, strbuf_text(&setting));
+        strbuf_free(&setting);
+        roil_free(text);
+    }
+}
+
+// The device is lost, and a thread of its driver may never end: nothing can be freed or joined. The
+// program becomes itself anew, with what the user had set, and holds the effect back.
+static int begin_anew(const job *j, const live *l) {
+    arguments a = {0};
+    char frame[32];
+    snprintf(frame, sizeof frame, "%.9g", l->time.frame);
+    const char *const always[] = {"roil", "live",         l->file,        "--frame",
+                                  frame,  "--after-hang", l->broken_text, "--paused"};
+    for (size_t i = 0; i < COUNT_OF(always); i++) add(&a, always[i]);
+    if (j->device) add(&a, "--device");
+    if (j->device) add(&a, j->device);
+    if (j->validate) add(&a, "--validate");
+    if (l->effect) add_moved(&a, l->effect);
+    log_write(LOG_WARNING, "%s; the program starts anew", l->broken_text);
+    execv("/proc/self/exe", a.list);
+    return app_fail(APP_BAD_INPUT, "%s", l->broken_text);
+}
+
+// ---- work -------------------------------------------------------------------------------------
+
+static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mods) {
+    (void)scancode;
+    live *l = glfwGetWindowUserPointer(handle);
+    if (action != GLFW_RELEASE && !ui_wants_keys()) live_press(l, key, mods, action == GLFW_REPEAT);
+}
+
+static bool is_software(const roil *r) {
+    const char *name = roil_device_name(r);
+    return strstr(name, "llvmpipe") || strstr(name, "SwiftShader");
+}
+
+static void take_session(live *l, const job *j) {
+    if (j->preview) l->session.preview = preview_of(j->preview);
+    if (l->session.preview < 0) l->session.preview = is_software(l->r) ? 1 : 0;
+    if (j->hidden_panel) l->session.panel_hidden = true;
+    if (!j->after_hang) return;
+    l->held = true;
+    live_break(l, j->after_hang);
+}
+
+static int run_window(live *l, window *w, const job *j) {
+    char layout[PATH_CAP];
+    glfwSetWindowUserPointer(w->handle, l);
+    glfwSetKeyCallback(w->handle, on_key); // before the interface, which calls on to it
+    if (!ui_open(w->handle, l->r,
+                 session_file(layout, sizeof layout, "layout.ini") ? layout : NULL))
+        return app_fail_input();
+    l->performance = performance_create();
+    l->inspector = inspector_create();
+    l->panel = panel_create();
+    take_session(l, j);
+    bool done = live_run(l, w);
+    window_keep(w, &l->session);
+    session_save(&l->session);
+    if (roil_is_lost(l->r)) return begin_anew(j, l);
+    int status = done ? APP_DONE : app_fail_input();
+    panel_destroy(l->panel);
+    inspector_destroy(l->inspector, l->r);
+    performance_destroy(l->performance);
+    ui_close();
+    return status;
+}
+
+static int run_device(live *l, window *w, const job *j) {
+    l->r =
+        roil_create(&(roil_desc){.device = j->device, .validate = j->validate, .window = &w->desc});
+    if (!l->r) return app_fail_input();
+    l->follow = start_following(l->r, j);
+    int status = l->follow ? run_window(l, w, j) : app_fail_input();
+    roil_live_destroy(l->follow);
+    uint64_t complaints = roil_validation_messages(l->r);
+    roil_destroy(l->r);
+    if (status == APP_DONE && complaints)
+        return app_fail(APP_BAD_INPUT, "%" PRIu64 " messages of the validation layers", complaints);
+    return status;
+}
+
+static int run(const job *j) {
+    live l = {.file = j->file, .start = j->frame};
+    l.time.frame = isfinite(j->frame) ? j->frame : 1;
+    l.time.playing = !j->paused;
+    session_load(&l.session);
+    strbuf title = {0};
+    strbuf_add(&title, "%s \u2013 roil", path_name(j->file));
+    window w;
+    bool opened = window_open(&w, &l.session, strbuf_text(&title), (int)j->width, (int)j->height);
+    strbuf_free(&title);
+    if (!opened) return app_fail(APP_BAD_INPUT, "live: %s", roil_error());
+    int status = run_device(&l, &w, j);
+    window_close(&w);
+    return status;
+}
+
+int cmd_live(int argc, const char **argv) {
+    job j = {.frame = (double)NAN};
+    poptContext context;
+    int status = parse(&j, argc, argv, &context)
+                     ? run(&j)
+                     : app_fail(APP_BAD_USAGE, "live: %s", roil_error());
+    poptFreeContext(context);
+    mem_free(j.settings);
+    return status;
+}

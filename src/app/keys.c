@@ -1,0 +1,138 @@
+// The keys of the live window: one table that is obeyed, and that F1 shows.
+#include "app/live.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include <GLFW/glfw3.h>
+#include <stdio.h>
+#include <string.h>
+
+// ---- what they do -----------------------------------------------------------------------------
+
+static void play(live *l) {
+    l->time.playing = !l->time.playing;
+    l->dirty = true; // what was broken is tried again
+    l->held = false;
+    l->broken = NULL;
+}
+
+static void seek(live *l, double frame) {
+    timeline_seek(&l->time, frame);
+    l->dirty = true;
+}
+
+static void step_back(live *l) {
+    timeline_step(&l->time, -1);
+    l->dirty = true;
+}
+
+static void step_on(live *l) {
+    timeline_step(&l->time, 1);
+    l->dirty = true;
+}
+
+static void go_first(live *l) {
+    seek(l, l->time.from);
+}
+
+static void go_last(live *l) {
+    seek(l, l->time.to);
+}
+
+static void loop(live *l) {
+    l->time.loop = !l->time.loop;
+    live_notice(l, l->time.loop ? "Starts again at the end" : "Stops at the end");
+}
+
+static void preview(live *l) {
+    l->session.preview = (l->session.preview + 1) % LIVE_PREVIEWS;
+    live_notice(l, "Picture at %s size", live_previews[l->session.preview].name);
+}
+
+static void panels(live *l) {
+    l->session.panel_hidden = !l->session.panel_hidden;
+}
+
+static void inspect(live *l) {
+    l->session.inspector = !l->session.inspector;
+}
+
+static void performance_key(live *l) {
+    l->session.performance = !l->session.performance;
+}
+
+static void help(live *l) {
+    l->help = !l->help;
+}
+
+static void shot(live *l) {
+    l->shot = true;
+}
+
+static void quit(live *l) {
+    l->quit = true;
+}
+
+static void close_top(live *l) {
+    if (l->help)
+        l->help = false;
+    else if (l->session.inspector)
+        l->session.inspector = false;
+    else
+        l->session.performance = false;
+}
+
+// Under the first name of a series that is free: a key cannot ask, and must not overwrite. The
+// panel saves under a name.
+static void save_preset(live *l) {
+    char names[64][64], name[64];
+    if (!l->effect) return;
+    size_t count = roil_presets(l->file, names, COUNT_OF(names)), number = 1;
+    for (bool taken = true; taken; number++) {
+        snprintf(name, sizeof name, "preset-%zu", number);
+        taken = false;
+        for (size_t i = 0; i < count && i < COUNT_OF(names); i++)
+            taken = taken || strcmp(names[i], name) == 0;
+    }
+    if (!roil_write_preset(l->effect, name)) {
+        live_notice(l, "%s", roil_error());
+        return;
+    }
+    log_write(LOG_DEBUG, "live: wrote preset %s", name);
+    live_notice(l, "Saved preset \"%s\"", name);
+}
+
+// ---- table ------------------------------------------------------------------------------------
+
+static const live_key keys[] = {
+    {GLFW_KEY_SPACE, 0, "Space", "play, pause", play},
+    {GLFW_KEY_LEFT, 0, "Left", "one frame back", step_back},
+    {GLFW_KEY_RIGHT, 0, "Right", "one frame on", step_on},
+    {GLFW_KEY_HOME, 0, "Home", "first frame of the range", go_first},
+    {GLFW_KEY_END, 0, "End", "last frame of the range", go_last},
+    {GLFW_KEY_L, 0, "L", "start again at the end, or stop", loop},
+    {GLFW_KEY_F, 0, "F", "frame the volume", camera_frame},
+    {GLFW_KEY_R, 0, "R", "camera of the effect file", camera_reset},
+    {GLFW_KEY_V, 0, "V", "picture at full, half, quarter size", preview},
+    {GLFW_KEY_TAB, 0, "Tab", "show the picture alone", panels},
+    {GLFW_KEY_I, 0, "I", "inspect the images of passes", inspect},
+    {GLFW_KEY_P, 0, "P", "performance", performance_key},
+    {GLFW_KEY_F12, 0, "F12", "save the picture as PNG", shot},
+    {GLFW_KEY_S, GLFW_MOD_CONTROL, "Ctrl+S", "save a preset", save_preset},
+    {GLFW_KEY_F1, 0, "F1", "this help", help},
+    {GLFW_KEY_ESCAPE, 0, "Esc", "close what lies on top", close_top},
+    {GLFW_KEY_Q, GLFW_MOD_CONTROL, "Ctrl+Q", "quit", quit},
+};
+
+const live_key *live_keys(size_t *count) {
+    *count = COUNT_OF(keys);
+    return keys;
+}
+
+void live_press(live *l, int key, int mods, bool repeated) {
+    const int used = GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT | GLFW_MOD_SUPER;
+    for (size_t i = 0; i < COUNT_OF(keys); i++) {
+        if (keys[i].key != key || keys[i].mods != (mods & used)) continue;
+        if (!repeated || keys[i].run == step_back || keys[i].run == step_on) keys[i].run(l);
+        return;
+    }
+}

@@ -1,0 +1,307 @@
+// The loop of the live window: follow the files, move time, draw the effect when anything changed,
+// lay the interface over it, show. It sleeps while nothing moves.
+#include "app/live.h"
+#include "app/window.h"
+#include "base/clock.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/str.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+const live_preview live_previews[LIVE_PREVIEWS] = {{"full", 1}, {"half", 0.5f}, {"quarter", 0.25f}};
+
+static const float BAR = 92, SPLITTER = 5, MIN_PANEL = 240, MIN_VIEW = 200; // units
+static const double NOTICE = 3;    // seconds that it is shown
+static const double SETTLE = 0.7;  // seconds after an input in which widgets may still move
+static const double STEADY = 0.12; // seconds that a size must last before pictures are made for it
+static const double TICK = 1 / 60.0, BLINK = 0.25, LONG = 600;
+enum { MAX_PICTURE = 16384 };
+
+typedef struct loop {
+    window *w;
+    roil_picture picture;
+    double last, drawn_at; // clock_seconds
+    double awake_until;
+    uint32_t wanted[2]; // size of the picture by now, and since when
+    double wanted_since;
+    uint64_t reloads;
+    bool drawn; // the effect has a picture
+    bool told;  // that the first frame was shown
+} loop;
+
+// ---- changes ----------------------------------------------------------------------------------
+
+void live_notice(live *l, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    vsnprintf(l->notice, sizeof l->notice, format, args);
+    va_end(args);
+    l->notice_until = clock_seconds() + NOTICE;
+}
+
+static void changed(live *l) {
+    l->dirty = true;
+    l->broken = NULL; // it may work now
+}
+
+void live_set(live *l, const char *name, const char *value) {
+    log_write(LOG_DEBUG, "live: set %s = %s", name, value);
+    if (!roil_live_set(l->follow, name, value)) live_notice(l, "%s", roil_error());
+    changed(l);
+}
+
+void live_reset(live *l, const char *name) {
+    log_write(LOG_DEBUG, "live: reset %s", name ? name : "everything");
+    if (!roil_live_reset(l->follow, name)) live_notice(l, "%s", roil_error());
+    if (!name) l->camera_moved = false;
+    changed(l);
+}
+
+void live_break(live *l, const char *why) {
+    str_copy(l->broken_text, sizeof l->broken_text, why);
+    l->broken = l->broken_text;
+    l->broken_frame = l->time.frame;
+    l->time.playing = false;
+    l->dirty = false;
+    log_write(LOG_DEBUG, "live: %s", why);
+}
+
+// ---- following the files ----------------------------------------------------------------------
+
+static void take_over(live *l, loop *p) {
+    bool first = !l->effect;
+    l->effect = roil_live_effect(l->follow);
+    roil_effect_info info = roil_get_info(l->effect);
+    if (first) {
+        bool playing = l->time.playing;
+        timeline_init(&l->time, info.fps, info.first_frame, info.frames);
+        l->time.playing = playing;
+        if (isfinite(l->start)) timeline_seek(&l->time, l->start);
+    } else {
+        timeline_set_range(&l->time, info.fps, info.first_frame, info.frames);
+    }
+    l->camera_moved = false; // the hand takes it up anew
+    if (!first) l->held = false;
+    changed(l);
+    p->drawn = p->drawn && !first;
+    log_write(LOG_DEBUG, "live: took over, %.0f ms after the change",
+              roil_live_counts(l->follow).last * 1000);
+}
+
+static void follow(live *l, loop *p) {
+    if (!roil_live_update(l->follow, l->width, l->height, l->time.frame)) return;
+    const char *message = roil_live_message(l->follow);
+    uint64_t reloads = roil_live_counts(l->follow).reloads;
+    if (message) log_write(LOG_DEBUG, "live: %s", message);
+    if (reloads != p->reloads) take_over(l, p);
+    p->reloads = reloads;
+}
+
+// ---- the effect's picture ---------------------------------------------------------------------
+
+static uint32_t picture_size(float view, float scale) {
+    float size = roundf(view * scale);
+    return size < 1 ? 1 : size > MAX_PICTURE ? MAX_PICTURE : (uint32_t)size;
+}
+
+// While a window is being resized its old picture is stretched: making it anew takes time.
+static void resize(live *l, loop *p, double now) {
+    float scale = live_previews[l->session.preview].scale;
+    uint32_t width = picture_size(l->view.right - l->view.left, scale);
+    uint32_t height = picture_size(l->view.bottom - l->view.top, scale);
+    if (width != p->wanted[0] || height != p->wanted[1]) {
+        p->wanted[0] = width;
+        p->wanted[1] = height;
+        p->wanted_since = now;
+    }
+    if (width == l->width && height == l->height) return;
+    if (p->drawn && now - p->wanted_since < STEADY) return;
+    l->width = width;
+    l->height = height;
+    if (!l->effect || l->held) return; // it will be prepared for that size
+    p->drawn = false;
+    if (roil_prepare(l->effect, width, height))
+        changed(l);
+    else
+        live_break(l, roil_error());
+}
+
+static void draw_effect(live *l, loop *p) {
+    double start = clock_seconds();
+    if (!roil_advance(l->effect, l->time.frame)) {
+        live_break(l, roil_error());
+        return;
+    }
+    double end = clock_seconds();
+    log_write(LOG_DEBUG, "live: drew frame %g", l->time.frame);
+    l->dirty = false;
+    p->drawn = true;
+    performance_add(l->performance, l->effect, end - start, start - p->drawn_at);
+    p->drawn_at = start;
+    inspector_update(l);
+}
+
+static bool can_draw(const live *l) {
+    return l->effect && !l->broken && !l->held;
+}
+
+static void advance(live *l, loop *p, double seconds) {
+    if (l->time.playing) l->held = false;
+    bool moved = l->effect && timeline_advance(&l->time, seconds);
+    if (l->broken && l->time.frame != l->broken_frame) l->broken = NULL; // another time may do
+    if (can_draw(l) && (moved || l->dirty)) draw_effect(l, p);
+}
+
+// ---- screenshot -------------------------------------------------------------------------------
+
+static void shot_name(const live *l, int number, char *out, size_t capacity) {
+    const char *name = path_name(l->file);
+    int length = (int)(strlen(name) - (str_ends_with(name, ".lua") ? 4 : 0));
+    char again[16] = "";
+    if (number > 1) snprintf(again, sizeof again, "-%d", number);
+    snprintf(out, capacity, "%.*s-%.6g%s.png", length, name, l->time.frame, again);
+}
+
+static void take_shot(live *l, const loop *p) {
+    l->shot = false;
+    if (!l->effect || !p->drawn) return;
+    char file[PATH_CAP];
+    int number = 1;
+    do shot_name(l, number++, file, sizeof file);
+    while (file_exists(file));
+    if (!roil_save(l->effect, file, NULL)) {
+        live_notice(l, "%s", roil_error());
+        return;
+    }
+    log_write(LOG_DEBUG, "live: wrote %s", file);
+    live_notice(l, "Saved %s", file);
+}
+
+// ---- interface --------------------------------------------------------------------------------
+
+typedef struct layout {
+    ui_rect splitter, panel, bar;
+    bool has_panel;
+} layout;
+
+static layout lay_out(live *l, uint32_t width, uint32_t height) {
+    float s = ui_scale(), w = (float)width, h = (float)height;
+    layout out = {.has_panel = false};
+    l->view = (ui_rect){0, 0, w, h};
+    if (l->session.panel_hidden) return out;
+    float most = w - MIN_VIEW * s;
+    float wide = fminf(fmaxf(l->session.panel, MIN_PANEL) * s, most);
+    float bar = fminf(BAR * s, floorf(h / 2)), split = SPLITTER * s;
+    out.has_panel = wide >= MIN_PANEL * s / 2;
+    float right = out.has_panel ? floorf(w - wide) : w;
+    out.panel = (ui_rect){right, 0, w, h};
+    out.splitter = (ui_rect){right - split, 0, right, h};
+    l->view = (ui_rect){0, 0, out.has_panel ? right - split : w, h - bar};
+    out.bar = (ui_rect){0, h - bar, l->view.right, h};
+    return out;
+}
+
+static void draw_interface(live *l, const layout *at, uint32_t width) {
+    ui_canvas view = ui_bare(l->view);
+    ui_mark("view", l->view);
+    camera_hand(l, &view);
+    if (!l->session.panel_hidden) {
+        timeline_draw(l, at->bar);
+        if (at->has_panel) {
+            float middle;
+            if (ui_splitter(at->splitter, &middle))
+                l->session.panel = ((float)width - middle) / ui_scale();
+            panel_draw(l, at->panel);
+        }
+        inspector_draw(l);
+        performance_draw(l);
+    }
+    overlay_draw(l, l->view);
+    help_draw(l);
+}
+
+// Seconds since the program was started, to a hundredth; 0 when the system does not tell.
+static double age(void) {
+    struct timespec now;
+    long long ticks;
+    FILE *f = fopen("/proc/self/stat", "r");
+    if (!f) return 0;
+    bool known = fscanf(f,
+                        "%*d (%*[^)]) %*c %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s "
+                        "%*s %*s %*s %*s %lld",
+                        &ticks) == 1;
+    fclose(f);
+    if (!known || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return 0;
+    double start = (double)ticks / (double)sysconf(_SC_CLK_TCK);
+    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9 - start;
+}
+
+static bool show(live *l, loop *p, uint32_t width, uint32_t height) {
+    roil_picture *out = &p->picture;
+    out->width = width;
+    out->height = height;
+    for (int i = 0; i < 3; i++) out->background[i] = 0.071f;
+    out->effect = p->drawn ? l->effect : NULL;
+    memcpy(out->view, &l->view, sizeof out->view);
+    if (!roil_show(l->r, out)) return false;
+    log_write(LOG_DEBUG, "live: shown");
+    if (p->drawn && !p->told) log_write(LOG_DEBUG, "live: first frame after %.2f s", age());
+    p->told = p->told || p->drawn;
+    return true;
+}
+
+// ---- loop -------------------------------------------------------------------------------------
+
+static double time_to_sleep(const live *l, const loop *p, double now) {
+    bool drawing = can_draw(l);
+    if (drawing && l->dirty) return 0;
+    double most = LONG;
+    if (drawing && l->time.playing) {
+        double rate = l->time.fps * fabs(l->time.speed);
+        if (l->time.smooth || !(rate > 0)) return 0;
+        most = fmin((1 - fabs(l->time.owed)) / rate, most);
+    }
+    if (p->wanted[0] != l->width || p->wanted[1] != l->height) most = fmin(most, TICK);
+    if (now < p->awake_until || now < l->notice_until) most = fmin(most, TICK);
+    if (ui_wants_keys()) most = fmin(most, BLINK);
+    return fmax(most, 0);
+}
+
+static bool turn(live *l, loop *p) {
+    double asleep = clock_seconds();
+    if (window_wait(time_to_sleep(l, p, asleep))) p->awake_until = clock_seconds() + SETTLE;
+    return !window_closing(p->w) && !l->quit;
+}
+
+bool live_run(live *l, window *w) {
+    loop p = {.w = w, .last = clock_seconds()};
+    bool playing = false;
+    while (turn(l, &p)) {
+        double now = clock_seconds(), passed = playing ? now - p.last : 0;
+        uint32_t width, height;
+        p.last = now;
+        window_pixels(w, &width, &height);
+        if (!width || !height) { // minimised
+            window_wait(LONG);
+            playing = false;
+            continue;
+        }
+        ui_set_scale(window_scale(w));
+        layout at = lay_out(l, width, height);
+        resize(l, &p, now);
+        follow(l, &p);
+        advance(l, &p, passed);
+        playing = l->time.playing;
+        if (l->shot) take_shot(l, &p);
+        ui_begin();
+        draw_interface(l, &at, width);
+        ui_end(&p.picture);
+        if (roil_is_lost(l->r) || !show(l, &p, width, height)) return false;
+    }
+    return true;
+}
