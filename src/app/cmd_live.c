@@ -204,7 +204,7 @@ static int run_window(live *l, window *w, const job *j) {
     l->inspector = inspector_create();
     l->panel = panel_create();
     take_session(l, j);
-    bool done = live_run(l, w);
+    bool done = live_loop(l, w);
     window_keep(w, &l->session);
     session_save(&l->session);
     if (roil_is_lost(l->r)) return begin_anew(j, l);

@@ -278,7 +278,7 @@ static bool turn(live *l, loop *p) {
     return !window_closing(p->w) && !l->quit;
 }
 
-bool live_run(live *l, window *w) {
+bool live_loop(live *l, window *w) {
     loop p = {.w = w, .last = clock_seconds()};
     bool playing = false;
     while (turn(l, &p)) {

@@ -59,7 +59,7 @@ void live_notice(live *l, const char *format, ...) __attribute__((format(printf,
 void live_break(live *l, const char *why); // no frame until something changes
 // Draws and shows until the user quits. False with a message when nothing can be shown any more.
 typedef struct window window; // window.h
-bool live_run(live *l, window *w);
+bool live_loop(live *l, window *w);
 
 // ---- camera_hand.c: the camera in the user's hands ----------------------------------------------
 

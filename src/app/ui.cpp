@@ -15,8 +15,9 @@ extern "C" {
 #define IMGUI_DEFINE_MATH_OPERATORS
 #include <imgui_internal.h>
 
-static_assert(sizeof(ImDrawVert) == sizeof(roil_vertex), "vertices are copied as they are");
-static_assert(offsetof(ImDrawVert, col) == offsetof(roil_vertex, color), "vertices are copied");
+static_assert(sizeof(ImDrawVert) == sizeof(roil_vertex) &&
+                  offsetof(ImDrawVert, col) == offsetof(roil_vertex, color),
+              "vertices are copied as they are");
 
 namespace {
 
