@@ -21,7 +21,8 @@ struct roil_live {
     char *file;
     void (*wake)(void *user);
     void *user;
-    shader_library *library;
+    shader_library *library; // both shared by all loads
+    shelf *shelf;
     watch *watch;
     pthread_t thread;
 

@@ -2,6 +2,7 @@
 // drawn. What is dear is not done again: shaders and all that comes from files is kept, as long as
 // the files are the same, by what all loads share.
 #include "base/clock.h"
+#include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "roil_live.h"
@@ -50,23 +51,17 @@ static bool is_watched(const roil_live *l, char *path) {
            bsearch(&path, l->watched, l->watched_count, sizeof path, by_name) != NULL;
 }
 
-static bool is_before(const struct timespec *a, const struct timespec *b) {
-    return a->tv_sec != b->tv_sec ? a->tv_sec < b->tv_sec : a->tv_nsec < b->tv_nsec;
-}
-
 // True when a file that was not watched yet may have changed after it was read.
-static bool was_missed(const roil_live *l, const file_set *set, const struct timespec *begin) {
+static bool was_missed(const roil_live *l, const file_set *set, int64_t begin) {
     for (size_t i = 0; i < set->count; i++) {
-        struct stat info;
-        if (is_watched(l, set->paths[i]) || stat(set->paths[i], &info) != 0) continue;
-        if (!is_before(&info.st_ctim, begin)) return true;
+        if (!is_watched(l, set->paths[i]) && file_changed_ns(set->paths[i]) >= begin) return true;
     }
     return false;
 }
 
 // Follows the files of this build, and those of the last good one if it failed: to put back what
-// was there mends it. `begin`: when it began, by the clock of the file system.
-static void follow_files(roil_live *l, file_set *set, bool good, const struct timespec *begin) {
+// was there mends it. `begin`: file_clock_ns() when it began.
+static void follow_files(roil_live *l, file_set *set, bool good, int64_t begin) {
     if (good) {
         live_free_names(l->good, l->good_count);
         file_set copy = {0};
@@ -120,6 +115,7 @@ static live_result build(roil_live *l, const order *o, file_set *files) {
         .settings = o->settings,
         .setting_count = o->setting_count,
         .library = l->library,
+        .shelf = l->shelf,
     });
     bool done = e && script_load(e, r->scripts) && effect_check_settings(e) && effect_compile(e) &&
                 effect_rehearse(e, o->framed ? o->frame : effect_first_frame(e));
@@ -184,13 +180,12 @@ void *live_run(void *live) {
         l->building = true;
         pthread_mutex_unlock(&l->lock);
 
-        struct timespec begin;
         file_set files = {0};
-        clock_gettime(CLOCK_REALTIME_COARSE, &begin); // as file systems do
+        int64_t begin = file_clock_ns();
         live_result result = build(l, &o, &files);
         bool good = result.effect != NULL;
         hand_over(l, result);
-        follow_files(l, &files, good, &begin);
+        follow_files(l, &files, good, begin);
         arena_free(&o.memory);
         pthread_mutex_lock(&l->lock);
     }

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 // ---- whole files ------------------------------------------------------------------------------
@@ -132,6 +133,18 @@ bool file_make_parent_folders(const char *path) {
     char folder[PATH_CAP];
     path_folder(folder, path);
     return file_make_folders(folder);
+}
+
+int64_t file_changed_ns(const char *path) {
+    struct stat info;
+    if (stat(path, &info) != 0) return 0;
+    return (int64_t)info.st_ctim.tv_sec * 1000000000 + info.st_ctim.tv_nsec;
+}
+
+int64_t file_clock_ns(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME_COARSE, &now);
+    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
 static void list_add(file_list *list, size_t *capacity, const char *folder, size_t folder_length,

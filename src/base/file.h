@@ -19,6 +19,8 @@ bool file_is_folder(const char *path);
 bool file_make_folders(const char *path);        // like mkdir -p
 bool file_make_parent_folders(const char *path); // folders above the last component
 int64_t file_modified_ns(const char *path);      // 0 when it does not exist
+int64_t file_changed_ns(const char *path);       // the same, renaming and linking included
+int64_t file_clock_ns(void);                     // by which file systems stamp what changes now
 
 // Sorted matches of a pattern with wildcards (*, ?, [..]) in its last component, names compared as
 // bytes. A file of exactly that name is the only match. False only on errors; no match gives count

@@ -25,6 +25,7 @@ effect *effect_create(const effect_desc *desc) {
     e->frames = 1;
     e->first = 1;
     scene_init(&e->scene, &e->memory);
+    e->shelf = desc->shelf ? desc->shelf : (e->own_shelf = shelf_create());
     e->library = desc->library;
     if (!e->library) {
         bool cached = desc->cache_dir && path_join(shader_cache, desc->cache_dir, "spirv");
@@ -70,6 +71,9 @@ void effect_destroy(effect *e) {
     mem_free(e->values);
     mem_free(e->passes);
     mem_free(e->grids);
+    for (size_t i = 0; i < e->held_count; i++) shelf_release(e->shelf, e->held[i]);
+    shelf_destroy(e->own_shelf);
+    mem_free(e->held);
     mem_free(e->meshes);
     mem_free(e->files);
     arena_free(&e->memory);
@@ -111,6 +115,9 @@ pass *effect_get_pass(effect *e, size_t index) {
 }
 graph *effect_graph(effect *e) {
     return e->graph;
+}
+shelf *effect_shelf(effect *e) {
+    return e->shelf;
 }
 shader_library *effect_library(effect *e) {
     return e->library;
@@ -251,13 +258,33 @@ field_grid *effect_add_bake(effect *e, const field *node, const uint32_t size[3]
 
 // ---- scene and outputs ------------------------------------------------------------------------
 
+// The mesh of a file, which loads of the same effect share; NULL with a message.
+static const mesh_data *load_mesh(effect *e, const char *path) {
+    shelf_item *item = shelf_take(e->shelf, path);
+    if (!item) {
+        arena memory = {0};
+        int64_t begin = file_clock_ns();
+        mesh_data *data = arena_alloc(&memory, sizeof *data);
+        if (!mesh_load(path, e->root, &memory, data)) {
+            arena_free(&memory);
+            return NULL;
+        }
+        item = shelf_put(e->shelf, path, data, memory, data->files, data->file_count, begin);
+    }
+    MEM_RESERVE(e->held, e->held_count + 1, e->held_capacity);
+    e->held[e->held_count++] = item;
+    return item->data;
+}
+
 scene_mesh *effect_add_mesh(effect *e, const char *file) {
     char path[PATH_CAP];
     if (!path_confine(path, e->root, file)) return NULL;
     effect_add_file(e, path); // even if it cannot be read
     arena *memory = &e->memory;
     scene_mesh *mesh = arena_alloc(memory, sizeof *mesh);
-    if (!mesh_load(path, e->root, memory, &mesh->data)) return NULL;
+    const mesh_data *data = load_mesh(e, path);
+    if (!data) return NULL;
+    mesh->data = *data;
     for (size_t i = 0; i < mesh->data.file_count; i++) effect_add_file(e, mesh->data.files[i]);
     mesh->name = arena_string(memory, file);
     mesh->position = field_constant(memory, 3, (float[4]){0});

@@ -3,6 +3,7 @@
 //
 // Life: effect_create, declarations, effect_set (command line), effect_build, effect_render...
 #pragma once
+#include "base/shelf.h"
 #include "pass/pass.h"
 
 typedef struct effect effect;
@@ -44,7 +45,9 @@ typedef struct effect_desc {
     bool counters;
     const effect_setting *settings; // applied as what they name is declared
     size_t setting_count;
-    shader_library *library; // shared with other loads of the same file; NULL: one of its own
+    // Shared with other loads of the same file, which then read nothing twice; NULL: its own.
+    shader_library *library;
+    shelf *shelf;
 } effect_desc;
 
 effect *effect_create(const effect_desc *desc);
@@ -104,6 +107,7 @@ size_t effect_pass_count(const effect *e);
 pass *effect_get_pass(effect *e, size_t index);
 graph *effect_graph(effect *e);
 shader_library *effect_library(effect *e);
+shelf *effect_shelf(effect *e);
 
 // ---- controls: all that can be set by name ----------------------------------------------------
 

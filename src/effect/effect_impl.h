@@ -91,6 +91,9 @@ struct effect {
     size_t pass_count, pass_capacity;
     field_grid **grids;
     size_t grid_count, grid_capacity;
+    shelf *shelf, *own_shelf; // as the library
+    shelf_item **held;        // data of meshes
+    size_t held_count, held_capacity;
     scene_mesh **meshes;
     size_t mesh_count, mesh_capacity;
     shader_reader reader; // adds to `files`

@@ -129,8 +129,8 @@ static bool load_texture(loader *l, const mesh_blob_texture *t, const void *byte
         if (!mesh_files_resolve_beside(&l->files, name, file)) return false;
         if (strcasecmp(path_extension(file), "png") != 0)
             return err_set("%s: is not a PNG file", name);
+        mesh_files_note(&l->files, file); // even if it is missing: it may come
         if (!png_read(file, l->memory, &image)) return false;
-        mesh_files_note(&l->files, file);
     }
     *out = texture_from_png(l, &image);
     return true;

@@ -31,7 +31,7 @@ typedef struct mesh_data {
     const mesh_texture *textures;
     uint32_t texture_count;
     box3 box;
-    const char *const *files; // all files read
+    const char *const *files; // all files read, and textures that are missing
     size_t file_count;
 } mesh_data;
 

@@ -26,4 +26,4 @@ bool mesh_files_resolve(mesh_files *f, const char *name, char out[PATH_CAP]);
 
 // As above for a name relative to the mesh's folder, as materials hold them.
 bool mesh_files_resolve_beside(mesh_files *f, const char *name, char out[PATH_CAP]);
-void mesh_files_note(mesh_files *f, const char *path); // was read
+void mesh_files_note(mesh_files *f, const char *path); // was read, or would be
