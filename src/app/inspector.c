@@ -13,7 +13,7 @@
 #include <string.h>
 
 // Units, but for what is said.
-static const float WIDTH = 540, HEIGHT = 620, MIN_CANVAS = 80, FOOT = 52, BUTTONS = 100;
+static const float WIDTH = 540, HEIGHT = 620, MIN_CANVAS = 80, FOOT = 52, BUTTONS = 48;
 static const float MAX_EXPOSURE = 12, ZOOM_STEP = 1.2f; // stops; a factor
 enum { MAX_NAME = sizeof((roil_image_info *)NULL)->name };
 static const char *const channel_names[] = {"r", "g", "b", "a"};
@@ -148,7 +148,7 @@ void inspector_update(live *l) {
 
 static void draw_choice(inspector *p, live_session *session, const roil_image_info *image) {
     size_t index = image ? (size_t)(image - p->images) : p->count;
-    ui_width(-BUTTONS * ui_scale());
+    ui_width(-ui_text_width("Fit1:1") - BUTTONS * ui_scale());
     if (ui_choice("##image", &index, p->words, p->count)) {
         str_copy(session->image, sizeof session->image, p->images[index].name);
         p->texel.valid = false;
@@ -166,16 +166,15 @@ static void draw_choice(inspector *p, live_session *session, const roil_image_in
 
 static void draw_channels(inspector *p, const roil_image_info *image) {
     static const char *const words[] = {"R", "G", "B", "A"};
-    int there = image_channels(image->format);
+    static const float colors[4][3] = {
+        {0.66f, 0.07f, 0.05f}, {0.12f, 0.42f, 0.08f}, {0.07f, 0.22f, 0.8f}, {0.45f, 0.45f, 0.45f}};
     p->how.channels = 0;
-    for (int i = 0; i < 4; i++) {
-        ui_disable_begin(i >= there);
-        ui_toggle(words[i], &p->channels[i]);
-        ui_disable_end();
+    for (int i = 0; i < image_channels(image->format); i++) {
+        label_switch(words[i], &p->channels[i], ui_pack(colors[i], 1));
         ui_same_line();
         if (p->channels[i]) p->how.channels |= 1u << i;
     }
-    ui_toggle("sign", &p->how.negative);
+    label_switch("sign", &p->how.negative, ui_rgba(UI_ACCENT, 1));
     ui_tooltip("What is above zero orange, what is below blue");
 }
 

@@ -18,10 +18,6 @@ static const char *message_of(const live *l) {
     return message ? message : l->broken;
 }
 
-static float text_size(void) {
-    return ui_line_height() - SPACING * ui_scale();
-}
-
 static bool is_room(ui_rect view) {
     float s = ui_scale();
     return view.right - view.left > 160 * s && view.bottom - view.top > 100 * s;
@@ -30,7 +26,7 @@ static bool is_room(ui_rect view) {
 // ---- card ---------------------------------------------------------------------------------------
 
 static ui_rect card_place(const text_message *m, bool hint, ui_rect view) {
-    float s = ui_scale(), line = text_size();
+    float s = ui_scale(), line = label_height();
     float width = fminf(view.right - view.left - 2 * MARGIN * s, CARD_WIDTH * s);
     float inner = width - 2 * PADDING * s;
     size_t lines = text_wrap_lines(m->head, m->head_length, inner, ui_text_width);
@@ -49,8 +45,8 @@ static void draw_card(const char *message, bool hint, ui_rect at) {
     text_message m = text_split(message);
     snprintf(head, sizeof head, "%.*s", (int)m.head_length, m.head);
     snprintf(rest, sizeof rest, "%.*s", (int)m.rest_length, m.rest);
+    ui_fill((ui_rect){at.left - EDGE * s, at.top, at.left, at.bottom}, ui_rgba(UI_ERROR, 1), 0);
     ui_panel_begin("message", at);
-    ui_fill((ui_rect){at.left, at.top, at.left + EDGE * s, at.bottom}, ui_rgba(UI_ERROR, 1), 0);
     ui_text_wrapped(head);
     if (m.rest_lines) {
         ui_gap(SPACING * s);
@@ -66,7 +62,7 @@ static void draw_card(const char *message, bool hint, ui_rect at) {
 // ---- notice -------------------------------------------------------------------------------------
 
 static void draw_notice(const char *text, ui_rect view, float bottom) {
-    float s = ui_scale(), height = text_size() + 12 * s;
+    float s = ui_scale(), height = label_height() + 12 * s;
     char line[sizeof((live *)NULL)->notice];
     snprintf(line, sizeof line, "%.*s", (int)text_split(text).head_length, text);
     float width = fminf(ui_text_width(line) + 32 * s, view.right - view.left - 2 * MARGIN * s);
@@ -79,7 +75,7 @@ static void draw_waiting(const live *l, bool broken, ui_rect view) {
     char text[1024];
     snprintf(text, sizeof text, broken ? "%s is drawn as soon as it is mended" : "Waiting for %s",
              l->file);
-    label_center((view.left + view.right) / 2, (view.top + view.bottom) / 2 - text_size(),
+    label_center((view.left + view.right) / 2, (view.top + view.bottom) / 2 - label_height(),
                  ui_rgba(UI_DIM, 1), text);
 }
 

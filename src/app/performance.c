@@ -3,6 +3,7 @@
 #include "app/label.h"
 #include "app/live.h"
 #include "base/memory.h"
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -94,8 +95,8 @@ static void draw_scale(const plot *p) {
     ui_line(p->area.left, y, p->area.right, y, ui_rgba(UI_LINE, 0.7f), s);
     snprintf(text, sizeof text, "%g ms", (double)p->top);
     ui_label(p->area.left + 6 * s, p->area.top + 3 * s, ui_rgba(UI_DIM, 1), text);
-    if (FRAME_MS > p->top) return;
     y = roundf(plot_y(p, FRAME_MS));
+    if (y < p->area.top || p->area.bottom - y < 4 * s) return; // out of range
     ui_line(p->area.left, y, p->area.right, y, ui_rgba(UI_GOOD, 0.7f), s);
     if (p->area.bottom - y < 20 * s || y - p->area.top < 20 * s) return;
     label_right(p->area.right - 6 * s, y - 19 * s, ui_rgba(UI_GOOD, 0.9f), "16.7 ms");
@@ -167,58 +168,62 @@ static void draw_passes(const history *past, bool chosen, size_t ago) {
 
 // ---- numbers ----------------------------------------------------------------------------------
 
-static void draw_heading(const history *past, bool chosen, size_t ago) {
-    bool any = history_length(past) > 0;
-    history_frame f = chosen && any ? *history_get(past, ago) : history_median(past);
-    ui_text("GPU %.2f ms", (double)f.gpu);
-    ui_same_line();
-    ui_text("CPU %.2f ms", (double)f.cpu);
-    ui_same_line();
-    if (f.interval > 0) ui_text("%.1f fps", 1000 / (double)f.interval);
-    char text[48] = "median of 60 frames";
-    if (chosen && ago == 0)
-        snprintf(text, sizeof text, "the last frame");
-    else if (chosen)
-        snprintf(text, sizeof text, "%zu frame%s ago", ago, ago == 1 ? "" : "s");
-    ui_same_line();
-    ui_align_right(ui_text_width(text));
-    ui_text_color(chosen ? UI_ACCENT : UI_DIM, "%s", text);
+static float heading(float left, float top, const char *name, const char *value) {
+    ui_label(left, top, ui_rgba(UI_DIM, 1), name);
+    left += ui_text_width(name) + 6 * ui_scale();
+    ui_label(left, top, ui_rgba(UI_TEXT, 1), value);
+    return left + ui_text_width(value) + 16 * ui_scale();
 }
 
-static void fact(const char *name) {
-    ui_table_next();
-    ui_text_color(UI_DIM, "%s", name);
-    ui_table_next();
+static void draw_heading(const history *past, bool chosen, size_t ago) {
+    history_frame f = chosen ? *history_get(past, ago) : history_median(past);
+    char gpu[32], cpu[32], rate[32] = "", which[48] = "median of 60 frames";
+    snprintf(gpu, sizeof gpu, f.gpu < 100 ? "%.2f ms" : "%.0f ms", (double)f.gpu);
+    snprintf(cpu, sizeof cpu, f.cpu < 100 ? "%.2f ms" : "%.0f ms", (double)f.cpu);
+    if (f.interval > 0) snprintf(rate, sizeof rate, "%.1f fps", 1000 / (double)f.interval);
+    if (chosen && ago == 0)
+        snprintf(which, sizeof which, "the last frame");
+    else if (chosen)
+        snprintf(which, sizeof which, "%zu frame%s ago", ago, ago == 1 ? "" : "s");
+    ui_canvas c = ui_canvas_begin("heading", 0, ROW * ui_scale());
+    float left = heading(c.area.left, c.area.top, "GPU", gpu);
+    left = heading(left, c.area.top, "CPU", cpu);
+    ui_label(left, c.area.top, ui_rgba(UI_TEXT, 1), rate);
+    label_right(c.area.right, c.area.top, ui_rgba(chosen ? UI_ACCENT : UI_DIM, 1), which);
+    ui_canvas_end();
+}
+
+static void fact(ui_rect *at, const char *name, const char *value) {
+    float s = ui_scale(), left = at->left + NAME_WIDTH * s;
+    ui_label(at->left, at->top + 2 * s, ui_rgba(UI_DIM, 1), name);
+    label_within(left, at->top + 2 * s, at->right - left, ui_rgba(UI_TEXT, 1), value);
+    at->top += ROW * s;
 }
 
 static void draw_facts(const live *l) {
-    static const float widths[] = {1, 3};
+    enum { FACTS = 4 };
     static const double MIB = 1024 * 1024;
-    ui_table_begin("facts", 2, widths);
+    char text[128], failed[32] = "";
+    ui_rect at = ui_canvas_begin("facts", 0, FACTS * ROW * ui_scale()).area;
     roil_memory memory = roil_get_memory(l->r);
-    fact("memory");
-    ui_text("%.1f MiB used, %.1f MiB reserved", (double)memory.device / MIB,
-            (double)memory.reserved / MIB);
+    snprintf(text, sizeof text, "%.1f MiB, of %.0f MiB taken", (double)memory.device / MIB,
+             (double)memory.reserved / MIB);
+    fact(&at, "device memory", text);
     roil_live_count count = roil_live_counts(l->follow);
-    fact("reloads");
-    ui_text("%llu", (unsigned long long)count.reloads);
-    ui_same_line();
-    if (count.reloads) ui_text_color(UI_DIM, "the last took %.0f ms", count.last * 1000);
-    if (count.failures) {
-        ui_same_line();
-        ui_text_color(UI_DIM, "%llu failed", (unsigned long long)count.failures);
-    }
-    fact("picture");
-    ui_text("%u \u00d7 %u", l->width, l->height);
-    fact("device");
-    ui_text("%s", roil_device_name(l->r));
-    ui_table_end();
+    if (count.failures) snprintf(failed, sizeof failed, ", %" PRIu64 " failed", count.failures);
+    snprintf(text, sizeof text, "%" PRIu64 ", the last in %.0f ms%s", count.reloads,
+             count.last * 1000, failed);
+    fact(&at, "reloads", text);
+    snprintf(text, sizeof text, "%u \u00d7 %u", l->width, l->height);
+    fact(&at, "picture", text);
+    fact(&at, "device", roil_device_name(l->r));
+    ui_canvas_end();
 }
 
 void performance_draw(live *l) {
     if (!l->session.performance) return;
     float s = ui_scale(), left = l->view.left + 16 * s, top = l->view.top + 16 * s;
-    const ui_rect where = {left, top, left + 440 * s, top + 460 * s};
+    const ui_rect where = {left, top, left + 440 * s, top + 510 * s};
     if (ui_window_begin("Performance", &l->session.performance, where, false)) {
         const history *past = &l->performance->past;
         size_t ago = 0;

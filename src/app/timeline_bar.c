@@ -145,14 +145,6 @@ static void draw_track(live *l) {
 
 // ---- the row below ------------------------------------------------------------------------------
 
-static float text_height(void) {
-    return ui_line_height() - 6 * ui_scale(); // without the space between lines
-}
-
-static float row_height(void) { // as buttons and choices have it
-    return text_height() + 8 * ui_scale();
-}
-
 static void draw_buttons(live *l) {
     timeline *t = &l->time;
     if (ui_icon_button("start", UI_ICON_START, false, "To the start (Home)")) seek(l, t->from);
@@ -185,8 +177,8 @@ static void draw_numbers(const timeline *t) {
     snprintf(seconds, sizeof seconds, "%.2f s", timeline_seconds(t));
     float first = ui_text_width(widest) + 6 * s, second = ui_text_width(last);
     float third = ui_text_width(widest) + ui_text_width("00.00 s");
-    ui_canvas c = ui_canvas_begin("time", first + second + third, row_height());
-    float y = c.area.top + (row_height() - text_height()) / 2;
+    ui_canvas c = ui_canvas_begin("time", first + second + third, label_row());
+    float y = c.area.top + (label_row() - label_height()) / 2;
     label_right(c.area.left + first, y, ui_rgba(UI_TEXT, 1), frame);
     ui_label(c.area.left + first + space, y, ui_rgba(UI_DIM, 1), last);
     label_right(c.area.right - 6 * s, y, ui_rgba(UI_TEXT, 1), seconds);
@@ -210,8 +202,8 @@ static void draw_rate(const live *l) {
     double rate = performance_rate(l->performance);
     char text[32] = "";
     if (rate > 0) snprintf(text, sizeof text, rate >= 9.95 ? "%.0f fps" : "%.1f fps", rate);
-    ui_canvas c = ui_canvas_begin("rate", 0, row_height());
-    label_right(c.area.right, c.area.top + (row_height() - text_height()) / 2,
+    ui_canvas c = ui_canvas_begin("rate", 0, label_row());
+    label_right(c.area.right, c.area.top + (label_row() - label_height()) / 2,
                 ui_rgba(l->time.playing ? UI_TEXT : UI_DIM, 1), text);
     ui_canvas_end();
 }
@@ -225,13 +217,13 @@ static void draw_row(live *l) {
     draw_numbers(t);
     ui_same_line();
     draw_speed(t);
-    if (units > 800) { // else they would not fit; keys do the same
+    if (units > 700) { // else they would not fit
         ui_same_line();
-        ui_toggle("every frame", &t->every);
+        label_switch("every frame", &t->every, ui_rgba(UI_ACCENT, 1));
         ui_tooltip("Show every frame, however long each takes; else frames are left out to keep "
                    "the time");
         ui_same_line();
-        ui_toggle("smooth", &t->smooth);
+        if (label_switch("smooth", &t->smooth, ui_rgba(UI_ACCENT, 1))) seek(l, t->frame);
         ui_tooltip("Show times between frames, as often as the window is drawn");
     }
     ui_same_line();
