@@ -299,10 +299,8 @@ void ui_panel_end(void) {
 bool ui_window_begin(const char *title, bool *open, ui_rect where, bool fixed) {
     ImGui::SetNextWindowPos(low(where), ImGuiCond_FirstUseEver);
     if (!fixed) ImGui::SetNextWindowSize(high(where) - low(where), ImGuiCond_FirstUseEver);
-    ImGui::PushFont(ui.fonts[FONT_STRONG]); // of the title
     bool visible = ImGui::Begin(
         title, open, ImGuiWindowFlags_NoCollapse | (fixed ? ImGuiWindowFlags_AlwaysAutoResize : 0));
-    ImGui::PopFont();
     ImVec2 at = ImGui::GetWindowPos(), end = at + ImGui::GetWindowSize();
     ui_mark(title, {at.x, at.y, end.x, end.y});
     if (!ui.depth++) ui.panel = false;
