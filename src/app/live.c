@@ -15,8 +15,8 @@
 
 const live_preview live_previews[LIVE_PREVIEWS] = {{"full", 1}, {"half", 0.5f}, {"quarter", 0.25f}};
 
-static const float BAR = 92, SPLITTER = 5, MIN_PANEL = 240, MIN_VIEW = 200; // units
-static const double NOTICE = 3;    // seconds that it is shown
+static const float SPLITTER = 5, MIN_PANEL = 240, MIN_VIEW = 200; // units
+static const double NOTICE = 3;                                   // seconds that it is shown
 static const double SETTLE = 0.7;  // seconds after an input in which widgets may still move
 static const double STEADY = 0.12; // seconds that a size must last before pictures are made for it
 static const double TICK = 1 / 60.0, BLINK = 0.25, LONG = 600;
@@ -143,7 +143,6 @@ static void draw_effect(live *l, loop *p) {
     p->drawn = true;
     performance_add(l->performance, l->effect, end - start, start - p->drawn_at);
     p->drawn_at = start;
-    inspector_update(l);
 }
 
 static bool can_draw(const live *l) {
@@ -155,6 +154,7 @@ static void advance(live *l, loop *p, double seconds) {
     bool moved = l->effect && timeline_advance(&l->time, seconds);
     if (l->broken && l->time.frame != l->broken_frame) l->broken = NULL; // another time may do
     if (can_draw(l) && (moved || l->dirty)) draw_effect(l, p);
+    if (can_draw(l) && p->drawn) inspector_update(l); // also while time stands still
 }
 
 // ---- screenshot -------------------------------------------------------------------------------
@@ -196,7 +196,7 @@ static layout lay_out(live *l, uint32_t width, uint32_t height) {
     if (l->session.panel_hidden) return out;
     float most = w - MIN_VIEW * s;
     float wide = fminf(fmaxf(l->session.panel, MIN_PANEL) * s, most);
-    float bar = fminf(BAR * s, floorf(h / 2)), split = SPLITTER * s;
+    float bar = fminf(TIMELINE_HEIGHT * s, floorf(h / 2)), split = SPLITTER * s;
     out.has_panel = wide >= MIN_PANEL * s / 2;
     float right = out.has_panel ? floorf(w - wide) : w;
     out.panel = (ui_rect){right, 0, w, h};
@@ -297,6 +297,7 @@ bool live_loop(live *l, window *w) {
         follow(l, &p);
         advance(l, &p, passed);
         playing = l->time.playing;
+        if (p.drawn) inspector_update(l);
         if (l->shot) take_shot(l, &p);
         ui_begin();
         draw_interface(l, &at, width);

@@ -69,7 +69,7 @@ void camera_reset(live *l);                       // to the script's
 
 // ---- parts, in the order in which they are drawn ----------------------------------------------
 
-enum { TIMELINE_HEIGHT = 94 };              // units
+enum { TIMELINE_HEIGHT = 92 };              // units
 void timeline_draw(live *l, ui_rect where); // timeline_bar.c
 
 panel *panel_create(void);
@@ -88,7 +88,8 @@ double performance_rate(const performance *p); // frames per second of late; 0: 
 
 inspector *inspector_create(void);
 void inspector_destroy(inspector *p, roil *r);
-void inspector_update(live *l); // after the frame: draws the image into its texture
+// Before the interface is drawn, of an effect that was: draws the image into its texture.
+void inspector_update(live *l);
 void inspector_draw(live *l);
 
 void overlay_draw(live *l, ui_rect view); // the message of a broken file, and notices

@@ -10,6 +10,7 @@
 // Units.
 static const float PLOT_HEIGHT = 120, NAME_WIDTH = 124, MS_WIDTH = 74, SHARE_WIDTH = 46, ROW = 22;
 static const float FRAME_MS = 16.7f; // of a display that shows 60 pictures a second
+static const float IDLE_MS = 3000;   // between pictures: nothing wanted to be drawn
 
 struct performance {
     history past;
@@ -180,7 +181,8 @@ static void draw_heading(const history *past, bool chosen, size_t ago) {
     char gpu[32], cpu[32], rate[32] = "", which[48] = "median of 60 frames";
     snprintf(gpu, sizeof gpu, f.gpu < 100 ? "%.2f ms" : "%.0f ms", (double)f.gpu);
     snprintf(cpu, sizeof cpu, f.cpu < 100 ? "%.2f ms" : "%.0f ms", (double)f.cpu);
-    if (f.interval > 0) snprintf(rate, sizeof rate, "%.1f fps", 1000 / (double)f.interval);
+    if (f.interval > 0 && f.interval < IDLE_MS)
+        snprintf(rate, sizeof rate, "%.1f fps", 1000 / (double)f.interval);
     if (chosen && ago == 0)
         snprintf(which, sizeof which, "the last frame");
     else if (chosen)

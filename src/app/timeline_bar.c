@@ -198,13 +198,15 @@ static void draw_speed(timeline *t) {
     ui_tooltip("Speed of time");
 }
 
+// Pictures drawn while time stands still say nothing about speed.
 static void draw_rate(const live *l) {
     double rate = performance_rate(l->performance);
     char text[32] = "";
-    if (rate > 0) snprintf(text, sizeof text, rate >= 9.95 ? "%.0f fps" : "%.1f fps", rate);
+    if (rate > 0 && l->time.playing)
+        snprintf(text, sizeof text, rate >= 9.95 ? "%.0f fps" : "%.1f fps", rate);
     ui_canvas c = ui_canvas_begin("rate", 0, label_row());
-    label_right(c.area.right, c.area.top + (label_row() - label_height()) / 2,
-                ui_rgba(l->time.playing ? UI_TEXT : UI_DIM, 1), text);
+    label_right(c.area.right, c.area.top + (label_row() - label_height()) / 2, ui_rgba(UI_TEXT, 1),
+                text);
     ui_canvas_end();
 }
 
