@@ -238,6 +238,9 @@ static bool open_canvas(editor *e) {
     e->ramp.right -= pad;
     e->ramp.bottom = e->ramp.top + RAMP * ui_scale();
     e->rail = e->ramp.bottom + 0.5f * RAIL * ui_scale();
+    if (stops)
+        ui_mark("stops",
+                (ui_rect){e->ramp.left, e->ramp.bottom, e->ramp.right, e->canvas.area.bottom});
     return stops;
 }
 

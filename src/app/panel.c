@@ -72,25 +72,29 @@ static bool opens_at_first(panel_part part) {
     return part == PANEL_PARAMETERS || part == PANEL_GROUP || part == PANEL_SHAPE;
 }
 
-static void draw_section(live *l, const panel_section *s) {
-    char label[256];
-    bool searching = l->panel->search[0] != 0;
+// `id` stays the same while what is counted changes.
+static bool section_heading(const panel_section *s, const char *id) {
+    char label[320], changed[32] = "";
     if (s->moved && s->part == PANEL_SHAPE)
-        snprintf(label, sizeof label, "%s (changed)###section", s->title);
+        snprintf(changed, sizeof changed, " (changed)");
     else if (s->moved)
-        snprintf(label, sizeof label, "%s (%zu changed)###section", s->title, s->moved);
-    else
-        snprintf(label, sizeof label, "%s###section", s->title);
-    char id[128];
-    snprintf(id, sizeof id, "%d.%s", (int)s->part, s->title);
-    ui_push(id);
-    if (searching) {
+        snprintf(changed, sizeof changed, " (%zu changed)", s->moved);
+    snprintf(label, sizeof label, "%s%s###%s", s->title, changed, id);
+    return ui_section(label, opens_at_first(s->part));
+}
+
+static void draw_section(live *l, const panel_section *s) {
+    char id[128]; // a pass may have the name of a group
+    snprintf(id, sizeof id, "%s.%d", s->title, (int)s->part);
+    bool open = true;
+    if (l->panel->search[0]) {
         ui_gap(4 * ui_scale());
         ui_text_color(UI_DIM, "%s", s->title);
-        draw_content(l, s);
-    } else if (ui_section(label, opens_at_first(s->part))) {
-        draw_content(l, s);
+    } else {
+        open = section_heading(s, id);
     }
+    ui_push(id);
+    if (open) draw_content(l, s);
     ui_pop();
 }
 

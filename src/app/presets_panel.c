@@ -72,7 +72,7 @@ static void draw_choice(live *l, preset_list *list) {
         if (strcmp(list->names[i], list->loaded) == 0) index = i + 1;
     }
     ui_width(-BUTTON * ui_scale());
-    if (ui_choice("##presets", &index, words, list->count + 1) && index > 0)
+    if (ui_choice("##preset", &index, words, list->count + 1) && index > 0)
         load(l, list->names[index - 1]);
     ui_tooltip("what a preset does not name returns to what the effect file says");
 }
@@ -102,9 +102,13 @@ static void save(live *l, preset_list *list) {
 
 static void draw_saving(live *l, preset_list *list) {
     ui_width(-BUTTON * ui_scale());
-    if (ui_input("##name", "Name of a preset", list->name, sizeof list->name)) list->asked = false;
+    if (ui_input("##preset name", "Name of a preset", list->name, sizeof list->name))
+        list->asked = false;
     ui_same_line();
     ui_width(0);
+    ui_rect button = ui_space();
+    button.bottom = button.top + ui_line_height();
+    ui_mark("preset save", button);
     ui_disable_begin(!list->name[0]);
     if (ui_button(list->asked ? "Overwrite?###save" : "Save###save")) save(l, list);
     ui_disable_end();
