@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include <errno.h>
+#include <fnmatch.h>
 #include <limits.h>
 #include <poll.h>
 #include <pthread.h>
@@ -31,6 +32,7 @@ typedef struct watch_file {
     const char *key;  // "folder/name"
     const char *path; // as given
     size_t folder;
+    bool pattern; // the name has wildcards
     bool changed; // to be reported
 } watch_file;
 
@@ -78,6 +80,7 @@ static void add_file(watch_list *list, const char *where, const char *path) {
         .key = arena_string(&list->memory, key),
         .path = path,
         .folder = add_folder(list, folder),
+        .pattern = strpbrk(path_name(where), "*?[") != NULL,
     };
 }
 
@@ -114,6 +117,15 @@ static void mark(watch_list *list, const char *key) {
     }
     for (; low < list->file_count && strcmp(list->files[low].key, key) == 0; low++)
         list->files[low].changed = true;
+}
+
+static void mark_patterns(watch_list *list, size_t folder, const char *name) {
+    for (size_t i = 0; i < list->file_count; i++) {
+        watch_file *file = &list->files[i];
+        if (file->pattern && file->folder == folder &&
+            fnmatch(path_name(file->key), name, FNM_PERIOD) == 0)
+            file->changed = true;
+    }
 }
 
 static void mark_folder(watch_list *list, size_t folder) { // SIZE_MAX: all
@@ -187,7 +199,9 @@ static void take_name(watch *w, const struct inotify_event *event) {
         if (w->list.folders[i].number != event->wd ||
             !path_join(path, w->list.folders[i].path, event->name))
             continue;
-        if (!(event->mask & IN_CREATE) || is_complete(path)) mark(&w->list, path);
+        if ((event->mask & IN_CREATE) && !is_complete(path)) continue;
+        mark(&w->list, path);
+        mark_patterns(&w->list, i, event->name);
     }
 }
 

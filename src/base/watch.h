@@ -22,8 +22,9 @@ typedef struct watch_desc {
 
 watch *watch_create(const watch_desc *desc); // NULL when the system gives no inotify
 void watch_destroy(watch *w);                // joins its thread; NULL is fine
-// Replaces the list. Any thread. Folders that are gone are passed over, and found again when their
-// parent folder shows them; false when the system's limit of watches is reached.
+// Replaces the list. A path may have wildcards in its last component (fnmatch). Any thread. Folders
+// that are gone are passed over, and found again when their parent folder shows them; false when
+// the system's limit of watches is reached.
 bool watch_set(watch *w, const char *const *paths, size_t count);
 // Reports, from the calling thread, what happened before the call and was not reported yet.
 void watch_catch_up(watch *w);

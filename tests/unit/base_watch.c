@@ -159,6 +159,20 @@ static void target_of_a_link_is_watched_too(void **state) {
     watch_destroy(w);
 }
 
+static void pattern_is_watched(void **state) {
+    path_text pattern = in(*state, "data/*.vdb"), last = in(*state, "last");
+    put(*state, "data/1.vdb", "1");
+    watch *w = open_watch(&news);
+    follow(w, (path_text[]){pattern, last}, 2);
+    put(*state, "data/1.txt", "1");
+    put(*state, "last", "1");
+    expect(&news, last);
+    assert_int_equal(news.count, 1);
+    put(*state, "data/2.vdb", "1");
+    expect(&news, pattern);
+    watch_destroy(w);
+}
+
 static void list_is_replaced(void **state) {
     path_text one = in(*state, "one/a"), two = in(*state, "two/b");
     put(*state, "one/a", "1");
@@ -279,6 +293,7 @@ int main(void) {
         SCRATCH_TEST(file_that_is_created_is_seen_when_it_is_closed),
         SCRATCH_TEST(files_beside_it_are_not_reported),
         SCRATCH_TEST(target_of_a_link_is_watched_too),
+        SCRATCH_TEST(pattern_is_watched),
         SCRATCH_TEST(list_is_replaced),
         SCRATCH_TEST(folder_is_found_again),
         SCRATCH_TEST(folders_above_may_be_missing_too),
