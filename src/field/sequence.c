@@ -69,12 +69,12 @@ static bool is_velocity(const char *channel) {
 
 // ---- files and box ----------------------------------------------------------------------------
 
-static bool list_files(sequence *s) {
+static bool list_files(sequence_data *s) {
     const char *pattern = s->desc.pattern;
     file_list list = {0};
     if (file_exists(pattern)) {
-        const char **one = arena_alloc(s->memory, sizeof *one);
-        one[0] = arena_string(s->memory, pattern);
+        const char **one = arena_alloc(&s->memory, sizeof *one);
+        one[0] = arena_string(&s->memory, pattern);
         s->files = one;
         s->file_count = 1;
         return true;
@@ -85,9 +85,9 @@ static bool list_files(sequence *s) {
         err_set("%s: no file has such a name", pattern);
     else if (!ok)
         err_set("%s: %zu files; at most %d are accepted", pattern, list.count, SEQUENCE_MAX_FRAMES);
-    const char **files = arena_alloc(s->memory, (list.count + 1) * sizeof *files);
+    const char **files = arena_alloc(&s->memory, (list.count + 1) * sizeof *files);
     for (size_t i = 0; ok && i < list.count; i++) {
-        files[i] = arena_string(s->memory, list.paths[i]);
+        files[i] = arena_string(&s->memory, list.paths[i]);
         ok = !s->desc.root || path_require_inside(s->desc.root, files[i]);
     }
     s->files = files;
@@ -104,7 +104,7 @@ typedef struct lattice { // of voxel borders, along one axis
     double origin, voxel;
 } lattice;
 
-static bool snap(sequence *s, const box3 *all, const vdb_grid_info *first) {
+static bool snap(sequence_data *s, const box3 *all, const vdb_grid_info *first) {
     const float low[3] = {all->min.x, all->min.y, all->min.z};
     const float high[3] = {all->max.x, all->max.y, all->max.z};
     const float base[3] = {first->box.min.x, first->box.min.y, first->box.min.z};
@@ -132,13 +132,33 @@ static bool snap(sequence *s, const box3 *all, const vdb_grid_info *first) {
     return true;
 }
 
-static bool open_vdb(sequence *s) {
-    vdb_info *infos = arena_alloc(s->memory, s->file_count * sizeof *infos);
+// What a file says of itself, kept between loads of the same effect.
+static bool read_info(sequence_data *s, const char *file, vdb_info *out) {
+    if (!s->desc.shelf) return vdb_read_info(file, &s->memory, out);
+    shelf_item *item = shelf_take(s->desc.shelf, file);
+    if (!item) {
+        arena memory = {0};
+        int64_t begin = file_clock_ns();
+        vdb_info *info = arena_alloc(&memory, sizeof *info);
+        if (!vdb_read_info(file, &memory, info)) {
+            arena_free(&memory);
+            return false;
+        }
+        item = shelf_put(s->desc.shelf, file, info, memory, &file, 1, begin);
+    }
+    s->held[s->held_count++] = item;
+    *out = *(const vdb_info *)item->data;
+    return true;
+}
+
+static bool open_vdb(sequence_data *s) {
+    vdb_info *infos = arena_alloc(&s->memory, s->file_count * sizeof *infos);
+    s->held = arena_alloc(&s->memory, s->file_count * sizeof *s->held);
     const vdb_grid_info *first = NULL;
     box3 all = box3_empty();
     size_t readable = 0;
     for (size_t i = 0; i < s->file_count; i++) {
-        if (!vdb_read_info(s->files[i], s->memory, &infos[i])) return false;
+        if (!read_info(s, s->files[i], &infos[i])) return false;
         for (size_t k = 0; k < infos[i].count; k++) {
             const vdb_grid_info *grid = &infos[i].grids[k];
             if (grid->components > 0 && grid->linear) readable++;
@@ -160,25 +180,24 @@ static bool open_vdb(sequence *s) {
     return snap(s, &all, first);
 }
 
-static void place(sequence *s) { // the grid's box and size, from the file's
+static void place(sequence_data *s) { // the grid's box and size, from the file's
     box3 b = s->file_box;
     const uint32_t *size = s->file_size;
     float k = s->desc.scale;
     float3 o = s->desc.offset;
-    field_grid *grid = &s->grid;
-    memcpy(grid->size, size, sizeof grid->size);
+    memcpy(s->size, size, sizeof s->size);
     if (s->desc.y_up) {
-        grid->size[1] = size[2];
-        grid->size[2] = size[1];
+        s->size[1] = size[2];
+        s->size[2] = size[1];
         b = (box3){{b.min.x, -b.max.z, b.min.y}, {b.max.x, -b.min.z, b.max.y}};
     }
-    grid->box = (box3){{b.min.x * k + o.x, b.min.y * k + o.y, b.min.z * k + o.z},
-                       {b.max.x * k + o.x, b.max.y * k + o.y, b.max.z * k + o.z}};
+    s->box = (box3){{b.min.x * k + o.x, b.min.y * k + o.y, b.min.z * k + o.z},
+                    {b.max.x * k + o.x, b.max.y * k + o.y, b.max.z * k + o.z}};
 }
 
 // ---- playback ---------------------------------------------------------------------------------
 
-static uint32_t fold(const sequence *s, int64_t frame) { // into the range, as the loop says
+static uint32_t fold(const sequence_data *s, int64_t frame) { // into the range, as the loop says
     int64_t count = s->frame_count;
     switch (s->desc.loop) {
     case SEQUENCE_REPEAT:
@@ -192,7 +211,7 @@ static uint32_t fold(const sequence *s, int64_t frame) { // into the range, as t
     }
 }
 
-static double position_at(const sequence *s, double time) { // in frames, not folded
+static double position_at(const sequence_data *s, double time) { // in frames, not folded
     double at = (time - s->desc.start) * s->desc.fps * s->desc.speed;
     if (!(fabs(at) < 1e15)) at = 0;
     return at;
@@ -203,7 +222,7 @@ static int64_t whole_frame(double position) {
     return (int64_t)floor(position + 1e-6);
 }
 
-bool sequence_frames_at(const sequence *s, double time, uint32_t frames[2], float *blend) {
+bool sequence_frames_at(const sequence_data *s, double time, uint32_t frames[2], float *blend) {
     double at = position_at(s, time);
     int64_t frame = whole_frame(at);
     frames[0] = fold(s, frame);
@@ -213,7 +232,7 @@ bool sequence_frames_at(const sequence *s, double time, uint32_t frames[2], floa
     return s->desc.loop != SEQUENCE_CLIP || (frame >= 0 && frame < (int64_t)s->frame_count);
 }
 
-static void decode_ahead(sequence *s, double position) {
+static void decode_ahead(sequence_data *s, double position) {
     double step = position - s->last_position;
     s->last_position = position;
     // After a jump: playback at the rate of the files is as good a guess as any.
@@ -230,9 +249,9 @@ static void decode_ahead(sequence *s, double position) {
 
 static bool show(sequence *s, gpu *g, const uint32_t frames[2], float blend) {
     field_grid_state *state = &s->grid.state;
-    sequence_slot *now = sequence_cache_get(s, g, frames[0]);
+    sequence_slot *now = sequence_cache_get(s->data, g, frames[0]);
     if (!now) return false;
-    sequence_slot *next = blend > 0 ? sequence_cache_get(s, g, frames[1]) : now;
+    sequence_slot *next = blend > 0 ? sequence_cache_get(s->data, g, frames[1]) : now;
     if (!next) return false;
     memcpy(state->images[0], now->images, sizeof now->images);
     memcpy(state->images[1], next->images, sizeof next->images);
@@ -244,11 +263,11 @@ static bool update(field_grid *grid, gpu *g, double time) {
     sequence *s = (sequence *)grid;
     uint32_t frames[2];
     float blend;
-    bool inside = sequence_frames_at(s, time, frames, &blend);
+    bool inside = sequence_frames_at(s->data, time, frames, &blend);
     s->sealed = true;
     if (g) {
         if (!show(s, g, frames, blend)) return false;
-        decode_ahead(s, position_at(s, time));
+        decode_ahead(s->data, position_at(s->data, time));
     } else {
         grid->state.active = grid->box;
     }
@@ -258,12 +277,12 @@ static bool update(field_grid *grid, gpu *g, double time) {
 }
 
 static void destroy(field_grid *grid, gpu *g) {
-    sequence_cache_free((sequence *)grid, g);
+    sequence_data_free(((sequence *)grid)->data, g);
 }
 
 // ---- public -----------------------------------------------------------------------------------
 
-static bool check(sequence *s) {
+static bool check(sequence_data *s) {
     sequence_desc *d = &s->desc;
     if (d->fps == 0) d->fps = 24;
     if (d->speed == 0) d->speed = 1;
@@ -284,33 +303,44 @@ static bool check(sequence *s) {
     return true;
 }
 
-sequence *sequence_create(arena *memory, const sequence_desc *desc) {
-    sequence *s = arena_alloc(memory, sizeof *s);
-    s->memory = memory;
-    s->desc = *desc;
-    s->desc.pattern = arena_string(memory, desc->pattern);
-    s->raw = strcmp(path_extension(desc->pattern), "raw") == 0 || desc->raw.type;
-    if (!check(s) || !list_files(s)) return NULL;
+static bool open_files(sequence_data *s) {
+    if (!check(s) || !list_files(s)) return false;
     if (s->raw) {
-        s->desc.raw.channel = arena_string(memory, s->desc.raw.channel);
-        if (s->desc.raw.type) s->desc.raw.type = arena_string(memory, s->desc.raw.type);
-        if (s->file_count > 1) {
-            err_set("%s: one raw file holds all frames, but %zu have such a name", desc->pattern,
-                    s->file_count);
-            return NULL;
-        }
+        s->desc.raw.channel = arena_string(&s->memory, s->desc.raw.channel);
+        if (s->desc.raw.type) s->desc.raw.type = arena_string(&s->memory, s->desc.raw.type);
+        if (s->file_count > 1)
+            return err_set("%s: one raw file holds all frames, but %zu have such a name",
+                           s->desc.pattern, s->file_count);
     }
-    if (s->raw ? !sequence_raw_open(s) : !open_vdb(s)) return NULL;
+    if (s->raw ? !sequence_raw_open(s) : !open_vdb(s)) return false;
     place(s);
-    s->grid.name = arena_string(memory, path_name(desc->pattern));
-    s->grid.blends = s->desc.blend && s->frame_count > 1;
-    s->grid.state.active = box3_empty();
-    s->grid.update = update;
-    s->grid.destroy = destroy;
+    return true;
+}
+
+sequence *sequence_create(arena *memory, const sequence_desc *desc) {
+    sequence_data *d = mem_alloc(sizeof *d);
+    d->desc = *desc;
+    d->desc.pattern = arena_string(&d->memory, desc->pattern);
+    d->name = path_name(d->desc.pattern);
+    d->raw = strcmp(path_extension(desc->pattern), "raw") == 0 || desc->raw.type;
+    if (!open_files(d)) {
+        sequence_data_free(d, NULL);
+        return NULL;
+    }
+    sequence *s = arena_alloc(memory, sizeof *s);
+    s->data = d;
+    s->grid = (field_grid){.name = arena_string(memory, d->name),
+                           .box = d->box,
+                           .size = {d->size[0], d->size[1], d->size[2]},
+                           .blends = d->desc.blend && d->frame_count > 1,
+                           .state = {.active = box3_empty()},
+                           .update = update,
+                           .destroy = destroy,
+                           .exchange = sequence_exchange};
     return s;
 }
 
-static int components_of(const sequence *s, const char *name) { // 0: there is no such channel
+static int components_of(const sequence_data *s, const char *name) { // 0: there is no such channel
     if (s->raw) return strcmp(name, s->desc.raw.channel) == 0 ? 1 : 0;
     int components = 0;
     for (size_t i = 0; i < s->file_count; i++) {
@@ -331,7 +361,7 @@ static void add_name(strbuf *out, const char *name) {
     strbuf_add(out, "%s%s", out->length > 0 ? ", " : "", quoted);
 }
 
-static int no_channel(const sequence *s, const char *name) {
+static int no_channel(const sequence_data *s, const char *name) {
     strbuf names = {0};
     if (s->raw) add_name(&names, s->desc.raw.channel);
     for (size_t i = 0; !s->raw && i < s->file_count && names.length == 0; i++)
@@ -343,30 +373,31 @@ static int no_channel(const sequence *s, const char *name) {
 }
 
 int sequence_channel(sequence *s, const char *name, int *components) {
-    for (size_t i = 0; i < s->channel_count; i++) {
-        if (strcmp(s->channels[i].name, name) != 0) continue;
-        *components = s->channels[i].components;
-        return s->channels[i].first;
+    sequence_data *d = s->data;
+    for (size_t i = 0; i < d->channel_count; i++) {
+        if (strcmp(d->channels[i].name, name) != 0) continue;
+        *components = d->channels[i].components;
+        return d->channels[i].first;
     }
-    int count = components_of(s, name);
-    if (count == 0) return no_channel(s, name);
+    int count = components_of(d, name);
+    if (count == 0) return no_channel(d, name);
     // A vector lies in one texture.
-    int first = s->grid.channel_count, end;
+    int first = d->width, end;
     if (first % 4 + count > 4) first += 4 - first % 4;
     end = first + count;
-    uint64_t bytes = (uint64_t)s->file_size[0] * s->file_size[1] * s->file_size[2] *
+    uint64_t bytes = (uint64_t)d->file_size[0] * d->file_size[1] * d->file_size[2] *
                      (uint64_t)((end + 3) / 4 * 4) * sizeof(uint16_t);
     if (end > 4 * FIELD_GRID_IMAGES || s->sealed ||
-        (s->channel_count > 0 && bytes > s->desc.max_frame_bytes)) {
-        err_set("%s: '%.64s' cannot be added: %s", s->desc.pattern, name,
+        (d->channel_count > 0 && bytes > d->desc.max_frame_bytes)) {
+        err_set("%s: '%.64s' cannot be added: %s", d->desc.pattern, name,
                 s->sealed                     ? "the sequence is playing already"
                 : end > 4 * FIELD_GRID_IMAGES ? "a sequence has at most 16 channels"
                                               : "a frame would exceed its limit of memory");
         return -1;
     }
-    s->channels[s->channel_count++] = (sequence_channel_info){
-        arena_string(s->memory, name), first, count, is_velocity(name) ? s->desc.scale : 1};
-    s->grid.channel_count = end;
+    d->channels[d->channel_count++] = (sequence_channel_info){
+        arena_string(&d->memory, name), first, count, is_velocity(name) ? d->desc.scale : 1};
+    d->width = s->grid.channel_count = end;
     *components = count;
     return first;
 }
@@ -376,14 +407,14 @@ field_grid *sequence_grid(sequence *s) {
 }
 
 uint32_t sequence_frame_count(const sequence *s) {
-    return s->frame_count;
+    return s->data->frame_count;
 }
 
 double sequence_duration(const sequence *s) {
-    return (double)s->frame_count / s->desc.fps;
+    return (double)s->data->frame_count / s->data->desc.fps;
 }
 
 size_t sequence_files(const sequence *s, const char *const **out) {
-    *out = s->files;
-    return s->file_count;
+    *out = s->data->files;
+    return s->data->file_count;
 }

@@ -1,6 +1,7 @@
 // Sequences of volume files played back as a grid: OpenVDB files or one raw file of many frames.
 #pragma once
 #include "base/arena.h"
+#include "base/shelf.h"
 #include "field/grid.h"
 
 typedef enum sequence_loop {
@@ -22,6 +23,7 @@ typedef struct sequence_desc {
     bool y_up;           // files have Y up: rotated to our Z up
     float scale;         // metres a world unit of the file; 0: 1
     float3 offset;       // metres, added after scaling
+    shelf *shelf;        // keeps what files say of themselves between loads; NULL: none
     // Memory limits, checked before anything is read.
     uint64_t max_frame_bytes; // 0: 512 MiB
     // Raw files only:
@@ -45,7 +47,7 @@ sequence *sequence_create(arena *memory, const sequence_desc *desc);
 // Returns its first channel index in the grid, and 1 or 3 components; -1 with a message that lists
 // the grids there are. Only channels asked for are decoded and uploaded.
 int sequence_channel(sequence *s, const char *name, int *components);
-field_grid *sequence_grid(sequence *s); // valid until its destroy is called
+field_grid *sequence_grid(sequence *s); // its destroy frees all but `memory`, and must be called
 uint32_t sequence_frame_count(const sequence *s);
 double sequence_duration(const sequence *s); // seconds at speed 1
 // Every file it reads, for a reload to watch; returns the count.

@@ -12,8 +12,8 @@
 
 enum { LEAST_SLOTS = 4, MOST_SLOTS = 4096 };
 
-static uint64_t frame_bytes(const sequence *s) {
-    uint64_t voxels = (uint64_t)s->grid.size[0] * s->grid.size[1] * s->grid.size[2], bytes = 0;
+static uint64_t frame_bytes(const sequence_data *s) {
+    uint64_t voxels = (uint64_t)s->size[0] * s->size[1] * s->size[2], bytes = 0;
     for (int i = 0; i < FIELD_GRID_IMAGES; i++) {
         int count = sequence_image_channels(s, i);
         bytes += voxels * (uint64_t)(count == 3 ? 4 : count) * sizeof(uint16_t);
@@ -21,7 +21,7 @@ static uint64_t frame_bytes(const sequence *s) {
     return bytes;
 }
 
-static void start(sequence *s, gpu *g) {
+static void start(sequence_data *s, gpu *g) {
     sequence_cache *c = &s->cache;
     const uint64_t mebi = 1 << 20;
     uint64_t budget = (gpu_get_info(g)->kind == GPU_CPU ? 192 : 512) * mebi;
@@ -78,7 +78,7 @@ static void drop_job(sequence_cache *c, sequence_job **place) {
 }
 
 // The texels of a frame, from the thread or by decoding here.
-static bool take(sequence *s, uint32_t frame, sequence_texels *out) {
+static bool take(sequence_data *s, uint32_t frame, sequence_texels *out) {
     sequence_cache *c = &s->cache;
     sequence_job **place = find_job(c, frame);
     if (!place) return sequence_decode(s, frame, out);
@@ -103,7 +103,7 @@ static sequence_slot *find_slot(sequence_cache *c, uint32_t frame) {
     return NULL;
 }
 
-void sequence_cache_ahead(sequence *s, const uint32_t *frames, size_t count) {
+void sequence_cache_ahead(sequence_data *s, const uint32_t *frames, size_t count) {
     sequence_cache *c = &s->cache;
     for (size_t i = 0; i < SEQUENCE_MAX_JOBS; i++) {
         bool wanted = false;
@@ -126,44 +126,44 @@ void sequence_cache_ahead(sequence *s, const uint32_t *frames, size_t count) {
 
 // ---- textures ---------------------------------------------------------------------------------
 
-static bool make_images(sequence *s, gpu *g, sequence_slot *slot) {
+static bool make_images(sequence_data *s, gpu *g, sequence_slot *slot) {
     static const gpu_format formats[] = {GPU_FORMAT_NONE, GPU_R16F, GPU_RG16F, GPU_RGBA16F,
                                          GPU_RGBA16F};
     for (int i = 0; i < FIELD_GRID_IMAGES && sequence_image_channels(s, i) > 0; i++) {
         if (slot->images[i]) continue;
         slot->images[i] = gpu_image_create(g, &(gpu_image_desc){
-                                                  .label = s->grid.name,
+                                                  .label = s->name,
                                                   .format = formats[sequence_image_channels(s, i)],
-                                                  .width = s->grid.size[0],
-                                                  .height = s->grid.size[1],
-                                                  .depth = s->grid.size[2],
+                                                  .width = s->size[0],
+                                                  .height = s->size[1],
+                                                  .depth = s->size[2],
                                                   .use = GPU_USE_SAMPLED,
                                               });
-        if (!slot->images[i]) return err_prefix("%s: ", s->grid.name);
+        if (!slot->images[i]) return err_prefix("%s: ", s->name);
     }
     return true;
 }
 
-static bool upload(sequence *s, gpu *g, sequence_slot *slot, const sequence_texels *texels) {
+static bool upload(sequence_data *s, gpu *g, sequence_slot *slot, const sequence_texels *texels) {
     if (!make_images(s, g, slot)) return false;
-    size_t voxels = (size_t)s->grid.size[0] * s->grid.size[1] * s->grid.size[2];
+    size_t voxels = (size_t)s->size[0] * s->size[1] * s->size[2];
     for (int i = 0; i < FIELD_GRID_IMAGES && slot->images[i]; i++) {
         int count = sequence_image_channels(s, i);
         size_t size = voxels * (size_t)(count == 3 ? 4 : count) * sizeof(uint16_t);
         if (!gpu_image_write(g, slot->images[i], 0, texels->images[i], size))
-            return err_prefix("%s: ", s->grid.name);
+            return err_prefix("%s: ", s->name);
     }
     return true;
 }
 
-static void warn(sequence *s, uint32_t frame, uint64_t bad) {
+static void warn(sequence_data *s, uint32_t frame, uint64_t bad) {
     if (bad == 0 || s->cache.warned) return;
     s->cache.warned = true;
-    log_write(LOG_WARNING, "%s: %llu values of frame %u are not finite; they count as 0",
-              s->grid.name, (unsigned long long)bad, frame + 1);
+    log_write(LOG_WARNING, "%s: %llu values of frame %u are not finite; they count as 0", s->name,
+              (unsigned long long)bad, frame + 1);
 }
 
-sequence_slot *sequence_cache_get(sequence *s, gpu *g, uint32_t frame) {
+sequence_slot *sequence_cache_get(sequence_data *s, gpu *g, uint32_t frame) {
     sequence_cache *c = &s->cache;
     if (c->slot_count == 0) start(s, g);
     sequence_slot *slot = find_slot(c, frame);
@@ -188,7 +188,7 @@ sequence_slot *sequence_cache_get(sequence *s, gpu *g, uint32_t frame) {
     return slot;
 }
 
-void sequence_cache_free(sequence *s, gpu *g) {
+void sequence_cache_free(sequence_data *s, gpu *g) {
     sequence_cache *c = &s->cache;
     if (c->slot_count == 0) return;
     for (size_t i = 0; i < SEQUENCE_MAX_JOBS; i++)

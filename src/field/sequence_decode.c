@@ -10,17 +10,17 @@
 static const float half_max = 65504;
 
 typedef struct packing {
-    const sequence *s;
+    const sequence_data *s;
     sequence_texels *out;
     uint32_t low[3], high[3]; // texels that are not zero, in the grid's axes; high exclusive
 } packing;
 
-int sequence_image_channels(const sequence *s, int image) {
-    int count = s->grid.channel_count - 4 * image;
+int sequence_image_channels(const sequence_data *s, int image) {
+    int count = s->width - 4 * image;
     return count < 0 ? 0 : count > 4 ? 4 : count;
 }
 
-static int texel_width(const sequence *s, int image) { // components of the texture
+static int texel_width(const sequence_data *s, int image) { // components of the texture
     int count = sequence_image_channels(s, image);
     return count == 3 ? 4 : count;
 }
@@ -34,10 +34,10 @@ static void grow(packing *p, const uint32_t at[3]) {
 
 // Writes one component of `values` (x fastest, `stride` floats apart) to a channel of the grid.
 static void pack(packing *p, const float *values, int stride, int channel, float gain) {
-    const sequence *s = p->s;
+    const sequence_data *s = p->s;
     int image = channel / 4, width = texel_width(s, image);
     uint16_t *texels = p->out->images[image];
-    const uint32_t *size = s->grid.size;
+    const uint32_t *size = s->size;
     uint32_t at[3];
     for (at[2] = 0; at[2] < size[2]; at[2]++)
         for (at[1] = 0; at[1] < size[1]; at[1]++) {
@@ -64,7 +64,7 @@ static void pack_vector(packing *p, const float *values, int channel, float gain
     pack(p, values + (turned ? 1 : 2), 3, channel + 2, gain);
 }
 
-static bool sample(const sequence *s, uint32_t frame, const vdb_grid_info *grid, float *values,
+static bool sample(const sequence_data *s, uint32_t frame, const vdb_grid_info *grid, float *values,
                    uint64_t *bad) {
     uint64_t some = 0;
     vdb_sample_desc desc = {
@@ -86,7 +86,7 @@ static bool is_empty(const vdb_grid_info *grid) {
 
 static bool decode_channel(packing *p, uint32_t frame, const sequence_channel_info *channel,
                            float *values) {
-    const sequence *s = p->s;
+    const sequence_data *s = p->s;
     const vdb_info *info = &s->infos[frame];
     const vdb_grid_info *grid = sequence_find_grid(info, channel->name, 0);
     float gain = channel->gain;
@@ -110,7 +110,7 @@ static bool decode_channel(packing *p, uint32_t frame, const sequence_channel_in
 
 // World box of the texels that are not zero, as far as linear filtering spreads them.
 static box3 active_box(const packing *p) {
-    const field_grid *grid = &p->s->grid;
+    const sequence_data *grid = p->s;
     if (p->low[0] >= p->high[0]) return box3_empty();
     const float min[3] = {grid->box.min.x, grid->box.min.y, grid->box.min.z};
     const float max[3] = {grid->box.max.x, grid->box.max.y, grid->box.max.z};
@@ -123,7 +123,7 @@ static box3 active_box(const packing *p) {
     return box3_intersect(grid->box, (box3){{low[0], low[1], low[2]}, {high[0], high[1], high[2]}});
 }
 
-bool sequence_decode(const sequence *s, uint32_t frame, sequence_texels *out) {
+bool sequence_decode(const sequence_data *s, uint32_t frame, sequence_texels *out) {
     memset(out, 0, sizeof *out);
     packing p = {s, out, {UINT32_MAX, UINT32_MAX, UINT32_MAX}, {0, 0, 0}};
     size_t voxels = (size_t)s->file_size[0] * s->file_size[1] * s->file_size[2];

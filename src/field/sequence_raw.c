@@ -18,7 +18,7 @@ static uint32_t type_size(const char *type) {
     return strcmp(type, "f32") == 0 ? 4 : 0;
 }
 
-static bool check_numbers(const sequence *s) {
+static bool check_numbers(const sequence_data *s) {
     const char *path = s->files[0];
     const uint32_t *size = s->desc.raw.size;
     if (!s->desc.raw.type || type_size(s->desc.raw.type) == 0)
@@ -37,7 +37,7 @@ static bool check_numbers(const sequence *s) {
     return true;
 }
 
-static bool check_length(sequence *s, uint64_t length) {
+static bool check_length(sequence_data *s, uint64_t length) {
     const char *path = s->files[0];
     sequence_raw_layout *l = &s->layout;
     const uint32_t *size = s->desc.raw.size;
@@ -69,10 +69,11 @@ static bool check_length(sequence *s, uint64_t length) {
     return true;
 }
 
-bool sequence_raw_open(sequence *s) {
+bool sequence_raw_open(sequence_data *s) {
     struct stat info;
     if (stat(s->files[0], &info) != 0) return err_set("%s: %s", s->files[0], strerror(errno));
     if (!S_ISREG(info.st_mode)) return err_set("%s: not a regular file", s->files[0]);
+    s->layout.changed = file_changed_ns(s->files[0]);
     if (!check_numbers(s) || !check_length(s, (uint64_t)info.st_size)) return false;
     s->frame_count = s->layout.frames;
     memcpy(s->file_size, s->desc.raw.size, sizeof s->file_size);
@@ -84,7 +85,7 @@ bool sequence_raw_open(sequence *s) {
     return true;
 }
 
-static float convert(const sequence *s, const uint8_t *at) {
+static float convert(const sequence_data *s, const uint8_t *at) {
     uint16_t word = (uint16_t)(at[0] | (s->layout.texel > 1 ? at[1] << 8 : 0));
     switch (s->desc.raw.type[0]) {
     case 'u':
@@ -119,7 +120,7 @@ static bool read_at(const char *path, uint64_t offset, uint8_t *out, size_t size
     return true;
 }
 
-bool sequence_raw_read(const sequence *s, uint32_t frame, float *out, uint64_t *bad) {
+bool sequence_raw_read(const sequence_data *s, uint32_t frame, float *out, uint64_t *bad) {
     size_t size = (size_t)s->layout.frame_bytes, count = size / s->layout.texel;
     uint8_t *bytes = mem_alloc(size);
     // No overflow: the frame lies inside the file.

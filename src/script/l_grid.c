@@ -32,6 +32,7 @@ static void read_playback(lua_State *L, const script_object *row, sequence_desc 
     const char *who = row->name;
     desc->pattern = read_pattern(L, who);
     desc->root = effect_root(script_of(L)->effect);
+    desc->shelf = effect_shelf(script_of(L)->effect);
     desc->fps = value_get_number(L, 1, who, "fps", 0);
     desc->start = value_get_number(L, 1, who, "start", 0);
     desc->speed = value_get_number(L, 1, who, "speed", 0);
@@ -46,9 +47,10 @@ static void read_playback(lua_State *L, const script_object *row, sequence_desc 
 
 static int push_sequence(lua_State *L, const sequence_desc *desc) {
     sequence_object *object = object_new(L, "sequence", sizeof *object);
+    effect *e = script_of(L)->effect;
+    effect_add_file(e, desc->pattern); // new frames count as a change too
     object->sequence = sequence_create(script_memory(L), desc);
     if (!object->sequence) script_raise(L);
-    effect *e = script_of(L)->effect;
     effect_add_grid(e, sequence_grid(object->sequence));
     const char *const *files;
     size_t count = sequence_files(object->sequence, &files);

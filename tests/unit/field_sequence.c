@@ -31,10 +31,15 @@ static void write_block(const char *file, const char *grid, int at, float base) 
     if (!vdb_write(in_folder(file), &desc, 1)) fail_msg("%s", err_get());
 }
 
+static sequence *opened[64]; // destroyed after the tests
+static size_t opened_count;
+
 static sequence *open_or_fail(sequence_desc desc) {
     desc.pattern = in_folder(desc.pattern);
     sequence *s = sequence_create(build_memory(), &desc);
     if (!s) fail_msg("%s", err_get());
+    assert_true(opened_count < COUNT_OF(opened));
+    opened[opened_count++] = s;
     return s;
 }
 
@@ -46,7 +51,7 @@ static void refuses(sequence_desc desc, const char *part) {
 }
 
 static float texel(const sequence *s, const sequence_texels *t, int x, int y, int z, int channel) {
-    int count = sequence_image_channels(s, channel / 4), width = count == 3 ? 4 : count;
+    int count = sequence_image_channels(s->data, channel / 4), width = count == 3 ? 4 : count;
     size_t at = ((size_t)z * s->grid.size[1] + (size_t)y) * s->grid.size[0] + (size_t)x;
     return half_to_float(t->images[channel / 4][at * (size_t)width + (size_t)(channel % 4)]);
 }
@@ -76,7 +81,7 @@ static void voxels_on_the_lattice_are_copied_exactly(void **state) {
     assert_int_equal(components, 1);
     for (uint32_t frame = 0; frame < 2; frame++) {
         sequence_texels t;
-        assert_true(sequence_decode(s, frame, &t));
+        assert_true(sequence_decode(s->data, frame, &t));
         int at = frame == 0 ? 1 : 4;
         float base = frame == 0 ? 1 : 100;
         for (int i = 0; i < SIDE * SIDE * SIDE; i++) {
@@ -101,7 +106,7 @@ static void a_frame_without_the_grid_is_empty(void **state) {
     int components;
     assert_int_equal(sequence_channel(s, "density", &components), 0);
     sequence_texels t;
-    assert_true(sequence_decode(s, 1, &t));
+    assert_true(sequence_decode(s->data, 1, &t));
     assert_true(box3_is_empty(t.active));
     assert_true(texel(s, &t, 2, 2, 2, 0) == 0);
     sequence_texels_free(&t);
@@ -139,7 +144,7 @@ static void three_scalar_grids_make_a_vector(void **state) {
     assert_int_equal(sequence_channel(s, "velocity", &components), 0);
     assert_int_equal(components, 3);
     sequence_texels t;
-    assert_true(sequence_decode(s, 0, &t));
+    assert_true(sequence_decode(s->data, 0, &t));
     // The file's voxel (1, 0, 0) is value 1; Y up turned to Z up: y = -z, z = y; metres a second.
     assert_true(texel(s, &t, 2, 2, 1, 0) == 2 * 11);
     assert_true(texel(s, &t, 2, 2, 1, 1) == 2 * -31);
@@ -170,7 +175,7 @@ static void y_up_turns_box_and_voxels(void **state) {
     assert_true(fabsf(g->box.min.y - (-34.5f * 0.5f + 2)) < 1e-5f);
     assert_true(fabsf(g->box.max.z - (23.5f * 0.5f + 3)) < 1e-5f);
     sequence_texels t;
-    assert_true(sequence_decode(s, 0, &t));
+    assert_true(sequence_decode(s->data, 0, &t));
     for (int i = 0; i < 24; i++) {
         int x = i % 2, y = i / 2 % 3, z = i / 6;
         assert_true(texel(s, &t, 1 + x, 4 - z, 1 + y, 0) == (float)(i + 1));
@@ -188,7 +193,7 @@ static void values_that_are_not_finite_count_as_zero(void **state) {
     int components;
     sequence_channel(s, "density", &components);
     sequence_texels t;
-    assert_true(sequence_decode(s, 0, &t));
+    assert_true(sequence_decode(s->data, 0, &t));
     assert_int_equal(t.bad, 2);
     assert_true(texel(s, &t, 2, 1, 1, 0) == 0 && texel(s, &t, 1, 1, 2, 0) == 0);
     assert_true(texel(s, &t, 1, 2, 1, 0) == 2);
@@ -218,7 +223,7 @@ static void loops_fold_time(void **state) {
             (sequence_desc){.pattern = "loop*.vdb", .fps = 30, .start = 2, .loop = cases[i].loop});
         uint32_t frames[2];
         float blend;
-        bool visible = sequence_frames_at(s, 2 + cases[i].frame / 30.0, frames, &blend);
+        bool visible = sequence_frames_at(s->data, 2 + cases[i].frame / 30.0, frames, &blend);
         assert_int_equal(frames[0], cases[i].shown);
         assert_int_equal(visible, cases[i].visible);
         assert_true(blend == 0);
@@ -237,7 +242,7 @@ static void frames_are_hit_in_spite_of_rounding(void **state) {
     for (uint32_t i = 0; i < 400; i++) {
         uint32_t frames[2];
         float blend;
-        sequence_frames_at(s, i / 24.0, frames, &blend);
+        sequence_frames_at(s->data, i / 24.0, frames, &blend);
         assert_int_equal(frames[0], i);
     }
 }
@@ -249,11 +254,11 @@ static void times_between_frames_blend(void **state) {
     assert_true(sequence_grid(s)->blends);
     uint32_t frames[2];
     float blend;
-    sequence_frames_at(s, 0.0625, frames, &blend); // frame 1.25
+    sequence_frames_at(s->data, 0.0625, frames, &blend); // frame 1.25
     assert_int_equal(frames[0], 1);
     assert_int_equal(frames[1], 2);
     assert_true(fabsf(blend - 0.25f) < 1e-5f);
-    sequence_frames_at(s, 0.13, frames, &blend); // the last holds
+    sequence_frames_at(s->data, 0.13, frames, &blend); // the last holds
     assert_int_equal(frames[0], 2);
     assert_true(blend == 0);
 }
@@ -297,7 +302,7 @@ static void raw_types_are_normalised(void **state) {
             .raw = {.type = cases[i].type, .size = {1, 1, 1}, .frames = 1, .value_scale = 10}});
         float value;
         uint64_t bad = 0;
-        assert_true(sequence_raw_read(s, 0, &value, &bad));
+        assert_true(sequence_raw_read(s->data, 0, &value, &bad));
         assert_true(fabsf(value - 10 * cases[i].value) < 1e-5f);
     }
 }
@@ -315,7 +320,7 @@ static void raw_frames_lie_at_their_stride(void **state) {
     assert_int_equal(sequence_channel(s, "density", &components), 0);
     assert_int_equal(sequence_channel(s, "smoke", &components), -1);
     sequence_texels t;
-    assert_true(sequence_decode(s, 2, &t));
+    assert_true(sequence_decode(s->data, 2, &t));
     for (int i = 0; i < 8; i++)
         assert_true(texel(s, &t, i % 2, i / 2 % 2, i / 4, 0) == (float)(44 + i));
     assert_true(fabsf(sequence_grid(s)->box.max.y - 1) < 1e-6f); // 2 voxels of 1/2 m
@@ -352,7 +357,7 @@ static void a_raw_file_that_shrinks_is_an_error(void **state) {
     int components;
     sequence_channel(s, "density", &components);
     sequence_texels t;
-    assert_false(sequence_decode(s, 1, &t));
+    assert_false(sequence_decode(s->data, 1, &t));
     assert_error("became shorter");
 }
 
@@ -363,6 +368,10 @@ static int make_folder(void **state) {
 }
 
 static int remove_folder(void **state) {
+    while (opened_count) {
+        field_grid *grid = sequence_grid(opened[--opened_count]);
+        grid->destroy(grid, NULL);
+    }
     (void)state;
     file_list list;
     if (file_glob(in_folder("*"), &list))
