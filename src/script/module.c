@@ -26,6 +26,16 @@ static bool find_in(lua_State *L, const char *folder, const char *file, char out
     return true;
 }
 
+// A reload watches for the file to come.
+static void fail_missing(lua_State *L, const char *name, const char *file) {
+    const vm_desc *desc = vm_get_desc(L);
+    char path[PATH_CAP];
+    if (desc->on_file && desc->root && path_join(path, desc->root, file))
+        desc->on_file(desc->user, path);
+    vm_error(L, "require: no module '%s': there is no %s in the effect's folder or the library",
+             name, file);
+}
+
 // Upvalue: table of modules by name; `false` while one is loading.
 static int l_require(lua_State *L) {
     size_t length;
@@ -52,8 +62,7 @@ static int l_require(lua_State *L) {
     else if (find_in(L, desc->library, file, path))
         snprintf(shown, sizeof shown, "lib/%s", file);
     else
-        vm_error(L, "require: no module '%s': there is no %s in the effect's folder or the library",
-                 name, file);
+        fail_missing(L, name, file);
 
     lua_pushvalue(L, 1);
     lua_pushboolean(L, false);

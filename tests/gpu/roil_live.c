@@ -234,6 +234,10 @@ static void file_that_is_missing_is_waited_for(void **state) {
     expect_broken(&s, "later.glsl");
     put("later.glsl", "// no more than a comment\n");
     expect_good(&s);
+    put("more.lua", "return require 'later'");
+    expect_broken(&s, "no module 'later'");
+    put("later.lua", "return 1");
+    expect_good(&s);
     draw(&s, 2, 0.5, 0.25);
     end(&s);
 }
