@@ -114,8 +114,7 @@ static void look(roil *r, roil_effect *e, const roil_inspection *how, uint8_t ou
     roil_texture_destroy(r, target);
 }
 
-// Asks until the value comes back, which takes as many calls as frames are in flight.
-// After so many calls the value is that of the first.
+// After so many calls, as many as frames are in flight, the value is that of the first.
 enum { LATER = GPU_FRAMES_IN_FLIGHT + 1 };
 
 static roil_texel point_at(roil *r, roil_effect *e, roil_inspection how, float x, float y) {
