@@ -20,8 +20,7 @@ typedef struct preset_list {
     char names[PANEL_PRESETS][64];
     size_t count;
     double next_look; // clock_seconds at which the folder is read again
-    char name[64];    // typed
-    char loaded[64];  // or saved last; "" for none
+    char name[64];    // typed, or loaded last
     bool asked;       // whether it may be written over
 } preset_list;
 

@@ -59,18 +59,14 @@ static void load(live *l, const char *name) {
     roil_free_preset(preset);
     preset_list *list = &l->panel->presets;
     str_copy(list->name, sizeof list->name, name);
-    str_copy(list->loaded, sizeof list->loaded, name);
     list->asked = false;
 }
 
-// The first word stands for none.
+// It goes back to its first word, so that the same one can be loaded again.
 static void draw_choice(live *l, preset_list *list) {
     const char *words[PANEL_PRESETS + 1] = {list->count ? "Load a preset" : "No presets yet"};
     size_t index = 0;
-    for (size_t i = 0; i < list->count; i++) {
-        words[i + 1] = list->names[i];
-        if (strcmp(list->names[i], list->loaded) == 0) index = i + 1;
-    }
+    for (size_t i = 0; i < list->count; i++) words[i + 1] = list->names[i];
     ui_width(-BUTTON * ui_scale());
     if (ui_choice("##preset", &index, words, list->count + 1) && index > 0)
         load(l, list->names[index - 1]);
@@ -92,12 +88,10 @@ static void save(live *l, preset_list *list) {
     }
     list->asked = false;
     list->next_look = 0;
-    if (roil_write_preset(l->effect, list->name)) {
+    if (roil_write_preset(l->effect, list->name))
         live_notice(l, "saved preset %s", list->name);
-        str_copy(list->loaded, sizeof list->loaded, list->name);
-    } else {
+    else
         live_notice(l, "%s", roil_error());
-    }
 }
 
 static void draw_saving(live *l, preset_list *list) {
