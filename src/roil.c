@@ -203,11 +203,13 @@ bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height) {
 }
 
 bool roil_render(roil_effect *e, double frame) {
+    e->shown = frame;
     e->frame = effect_render(e->effect, frame, false);
     return e->frame != 0;
 }
 
 bool roil_advance(roil_effect *e, double frame) {
+    e->shown = frame;
     e->frame = effect_render(e->effect, frame, true);
     return e->frame != 0;
 }

@@ -126,14 +126,15 @@ typedef struct roil_save_options {
 bool roil_save(roil_effect *e, const char *file, const roil_save_options *options);
 
 typedef struct roil_recipe { // what made a picture
-    const char *effect;      // its file, as it was given
+    const char *effect; // its file, as it was given; NULL: outside of the current folder, so that
+                        // a stranger's picture has it opened only by a user who names it
     double frame;
     uint32_t width, height;
     const roil_setting *settings; // all that differs from the script
     size_t setting_count;
 } roil_recipe;
 roil_recipe *roil_read_recipe(const char *png); // NULL when the file holds none
-void roil_free_recipe(roil_recipe *recipe);
+void roil_free_recipe(roil_recipe *r);     // NULL is fine
 
 typedef struct roil_video roil_video;
 roil_video *roil_video_create(roil_effect *e, const char *file, double fps); // .mp4

@@ -17,12 +17,14 @@ struct roil_effect {
     effect *effect;
     uint32_t width, height;
     uint64_t frame; // number of the last GPU frame, 0: none
+    double shown;   // number of the effect's frame that it shows
     char **kept;    // names by roil_keep, for roil_apply_kept
     size_t kept_count, kept_capacity;
 };
 
-// What a control is worth, as the table or word that Lua reads.
-void roil_add_lua(const roil_effect *e, const effect_control *c, strbuf *out); // roil_lua.c
+// What a control is worth, as the table or word that Lua reads. `whole`: of palettes and curves
+// also what no setting changes, such as the period. roil_lua.c
+void roil_add_lua(const roil_effect *e, const effect_control *c, bool whole, strbuf *out);
 // Reads an image of the graph as RGBA floats, rows from the top; free with mem_free.
 float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height);
 graph_image roil_find_image(roil_effect *e, const char *name); // zero with a message

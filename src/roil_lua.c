@@ -59,7 +59,7 @@ static void add_stops(strbuf *out, const palette_key *key) {
     }
 }
 
-static void add_palette(strbuf *out, const palette_desc *desc) {
+static void add_palette(strbuf *out, const palette_desc *desc, bool whole) {
     strbuf_add(out, "{ ");
     if (desc->blackbody) {
         strbuf_add(out, "blackbody = ");
@@ -80,15 +80,15 @@ static void add_palette(strbuf *out, const palette_desc *desc) {
         if (desc->key_count > 1) strbuf_add(out, " }}");
     }
     if (desc->key_count > 1) strbuf_add(out, " }");
-    if (desc->space == PALETTE_OKLAB) strbuf_add(out, ", space = \"oklab\"");
-    if (desc->min != 0 || desc->max != 0) {
+    if (whole && desc->space == PALETTE_OKLAB) strbuf_add(out, ", space = \"oklab\"");
+    if (whole && (desc->min != 0 || desc->max != 0)) {
         add_number_key(out, "min", desc->min);
         add_number_key(out, "max", desc->max);
     }
     strbuf_add(out, " }");
 }
 
-static void add_curve(strbuf *out, const curve *c) {
+static void add_curve(strbuf *out, const curve *c, bool whole) {
     strbuf_add(out, "{ ");
     for (size_t i = 0; i < c->count; i++) {
         strbuf_add(out, i > 0 ? ", {" : "{");
@@ -98,7 +98,7 @@ static void add_curve(strbuf *out, const curve *c) {
         strbuf_append(out, "}", 1);
     }
     strbuf_add(out, ", shape = \"%s\"", curve_shape_name(c->shape));
-    if (c->period > 0) add_number_key(out, "period", c->period);
+    if (whole && c->period > 0) add_number_key(out, "period", c->period);
     strbuf_add(out, " }");
 }
 
@@ -119,12 +119,12 @@ static void get(const roil_effect *e, const char *name, roil_control *out) {
     roil_get_control((roil_effect *)(uintptr_t)e, index, out);
 }
 
-void roil_add_lua(const roil_effect *e, const effect_control *c, strbuf *out) {
+void roil_add_lua(const roil_effect *e, const effect_control *c, bool whole, strbuf *out) {
     roil_control control;
     if (c->kind == EFFECT_CONTROL_PALETTE) {
-        add_palette(out, palette_get_desc(effect_control_palette(c)));
+        add_palette(out, palette_get_desc(effect_control_palette(c)), whole);
     } else if (c->kind == EFFECT_CONTROL_CURVE) {
-        add_curve(out, effect_control_curve(c));
+        add_curve(out, effect_control_curve(c), whole);
     } else {
         get(e, c->name, &control);
         add_control_value(out, &control, control.value);
@@ -180,6 +180,6 @@ char *roil_control_lua(roil_effect *e, const char *name) {
         strbuf_add(&out, "curve ");
     else
         strbuf_add(&out, "%s = ", control.label);
-    roil_add_lua(e, c, &out);
+    roil_add_lua(e, c, true, &out);
     return out.text;
 }

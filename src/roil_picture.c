@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "effect/recipe.h"
 #include "media/exr.h"
 #include "media/png.h"
 #include "media/video.h"
@@ -123,8 +124,8 @@ bool roil_read(roil_effect *e, bool alpha, uint8_t *out) {
 
 // ---- files ------------------------------------------------------------------------------------
 
-static bool save_png(const char *file, const float *pixels, uint32_t width, uint32_t height,
-                     const roil_save_options *options) {
+static bool save_png(const roil_effect *e, const char *file, const float *pixels, uint32_t width,
+                     uint32_t height, const roil_save_options *options) {
     size_t count = (size_t)width * height;
     int channels = options->alpha ? 4 : 3;
     void *encoded = mem_alloc(count * (size_t)channels * (options->sixteen ? 2 : 1));
@@ -132,13 +133,17 @@ static bool save_png(const char *file, const float *pixels, uint32_t width, uint
         encode16(pixels, count, options->alpha, channels, encoded);
     else
         encode8(pixels, count, options->alpha, channels, encoded);
+    arena memory = {0};
+    png_text texts[RECIPE_TEXTS];
+    recipe_write(e->effect, e->shown, e->width, e->height, &memory, texts);
     bool done = png_write(file,
                           &(png_image){.width = width,
                                        .height = height,
                                        .channels = channels,
                                        .bits = options->sixteen ? 16 : 8,
                                        .pixels = encoded},
-                          NULL, 0);
+                          texts, RECIPE_TEXTS);
+    arena_free(&memory);
     mem_free(encoded);
     return done;
 }
@@ -191,7 +196,7 @@ bool roil_save(roil_effect *e, const char *file, const roil_save_options *option
     if (!pixels) return false;
     bool done =
         file_make_parent_folders(file) && (exr ? save_exr(e, file, pixels, width, height, options)
-                                               : save_png(file, pixels, width, height, options));
+                                               : save_png(e, file, pixels, width, height, options));
     mem_free(pixels);
     return done;
 }

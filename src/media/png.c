@@ -19,7 +19,13 @@
 #undef png_image
 #undef png_text
 
-enum { SIDE_MAX = 16384, CHUNK_BYTES_MAX = 8 << 20, CHUNKS_MAX = 128, KEY_MAX = 79 };
+enum {
+    SIDE_MAX = 16384,
+    CHUNK_BYTES_MAX = 8 << 20,
+    CHUNKS_MAX = 128,
+    KEY_MAX = 79,
+    TEXT_BYTES_MAX = 1 << 20
+};
 static const size_t FILE_BYTES_MAX = (size_t)1 << 30;
 
 typedef struct session {
@@ -143,13 +149,17 @@ static void ask_for_rgba(session *s) {
     png_read_update_info(s->png, s->info);
 }
 
-static bool decode(session *s, arena *memory, png_image *out) {
-    if (setjmp(png_jmpbuf(s->png))) return false;
+static void read_header(session *s) { // all that stands before the pixels
     png_set_read_fn(s->png, s, get);
     png_set_user_limits(s->png, SIDE_MAX, SIDE_MAX);
     png_set_chunk_malloc_max(s->png, CHUNK_BYTES_MAX);
     png_set_chunk_cache_max(s->png, CHUNKS_MAX);
     png_read_info(s->png, s->info);
+}
+
+static bool decode(session *s, arena *memory, png_image *out) {
+    if (setjmp(png_jmpbuf(s->png))) return false;
+    read_header(s);
     ask_for_rgba(s);
     out->width = png_get_image_width(s->png, s->info);
     out->height = png_get_image_height(s->png, s->info);
@@ -166,13 +176,19 @@ static bool decode(session *s, arena *memory, png_image *out) {
     return true;
 }
 
+static bool open_input(session *s, const void *data, size_t size, const char *name) {
+    if (size < 8 || png_sig_cmp(data, 0, 8) != 0) return err_set("%s: is not a PNG file", name);
+    *s = (session){.name = name, .input = data, .size = size};
+    s->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, s, fail, warn);
+    s->info = s->png ? png_create_info_struct(s->png) : NULL;
+    if (!s->info) err_out_of_memory(sizeof *s);
+    return true;
+}
+
 bool png_read_memory(const void *data, size_t size, const char *name, arena *memory,
                      png_image *out) {
-    if (size < 8 || png_sig_cmp(data, 0, 8) != 0) return err_set("%s: is not a PNG file", name);
-    session s = {.name = name, .input = data, .size = size};
-    s.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &s, fail, warn);
-    s.info = s.png ? png_create_info_struct(s.png) : NULL;
-    if (!s.info) err_out_of_memory(sizeof s);
+    session s;
+    if (!open_input(&s, data, size, name)) return false;
     bool done = decode(&s, memory, out);
     png_destroy_read_struct(&s.png, &s.info, NULL);
     if (done) return true;
@@ -186,6 +202,44 @@ bool png_read(const char *path, arena *memory, png_image *out) {
     size_t size;
     if (!file_read(path, FILE_BYTES_MAX, &data, &size)) return false;
     bool done = png_read_memory(data, size, path, memory, out);
+    mem_free(data);
+    return done;
+}
+
+// ---- texts ------------------------------------------------------------------------------------
+
+static bool decode_texts(session *s, arena *memory, png_text *out, size_t *count) {
+    if (setjmp(png_jmpbuf(s->png))) return false;
+    read_header(s);
+    libpng_text *texts = NULL;
+    int found = png_get_text(s->png, s->info, &texts, NULL);
+    size_t left = TEXT_BYTES_MAX;
+    for (int i = 0; i < found && *count < PNG_MAX_TEXTS; i++) {
+        if (!texts[i].key || !texts[i].text) continue;
+        size_t size = strlen(texts[i].key) + strlen(texts[i].text);
+        if (size > left) continue;
+        left -= size;
+        out[(*count)++] =
+            (png_text){arena_string(memory, texts[i].key), arena_string(memory, texts[i].text)};
+    }
+    return true;
+}
+
+bool png_read_texts_memory(const void *data, size_t size, const char *name, arena *memory,
+                           png_text out[PNG_MAX_TEXTS], size_t *count) {
+    session s;
+    *count = 0;
+    if (!open_input(&s, data, size, name)) return false;
+    bool done = decode_texts(&s, memory, out, count);
+    png_destroy_read_struct(&s.png, &s.info, NULL);
+    return done || err_set("%s: cannot be read as PNG: %s", name, s.fault);
+}
+
+bool png_read_texts(const char *path, arena *memory, png_text out[PNG_MAX_TEXTS], size_t *count) {
+    void *data;
+    size_t size;
+    if (!file_read(path, FILE_BYTES_MAX, &data, &size)) return false;
+    bool done = png_read_texts_memory(data, size, path, memory, out, count);
     mem_free(data);
     return done;
 }

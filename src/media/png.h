@@ -21,3 +21,9 @@ bool png_write(const char *path, const png_image *image, const png_text *texts, 
 bool png_read(const char *path, arena *memory, png_image *out);
 bool png_read_memory(const void *data, size_t size, const char *name, arena *memory,
                      png_image *out);
+// Texts that stand before the pixels, into `memory`; those beyond PNG_MAX_TEXTS, or beyond 1 MiB
+// together, are left out.
+enum { PNG_MAX_TEXTS = 64 };
+bool png_read_texts(const char *path, arena *memory, png_text out[PNG_MAX_TEXTS], size_t *count);
+bool png_read_texts_memory(const void *data, size_t size, const char *name, arena *memory,
+                           png_text out[PNG_MAX_TEXTS], size_t *count);
