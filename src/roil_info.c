@@ -334,18 +334,58 @@ char *roil_info_fields(const char *name) {
 
 // ---- one effect -------------------------------------------------------------------------------
 
-static void print_param(strbuf *out, const effect_param *p) {
-    strbuf name = {0};
-    strbuf_add(&name, "%s = ", p->name);
-    if (p->type == EFFECT_ENUM)
-        add_words(&name, p->words, p->word_count, (size_t)p->value[0]);
-    else if (p->type == EFFECT_BOOL)
-        strbuf_add(&name, "%s", p->value[0] != 0 ? "true" : "false");
+static void print_range_of(strbuf *out, const roil_control *c) {
+    bool number = c->type == ROIL_FLOAT || c->type == ROIL_INT || c->type == ROIL_VECTOR ||
+                  c->type == ROIL_COLOR;
+    if (number) add_range(out, c->min, c->max, c->unit);
+}
+
+static void print_value(strbuf *out, const roil_control *c, const float *value) {
+    if (c->type == ROIL_BOOL)
+        strbuf_add(out, "%s", value[0] != 0 ? "true" : "false");
+    else if (c->type == ROIL_ENUM)
+        strbuf_add(out, "%s", c->words[(size_t)value[0]]);
     else
-        add_numbers(&name, p->value, p->type == EFFECT_VEC3 || p->type == EFFECT_COLOR ? 3 : 1);
-    if (p->type != EFFECT_ENUM && p->type != EFFECT_BOOL) add_range(&name, p->min, p->max, p->unit);
-    entry(out, strbuf_text(&name), p->help);
+        add_numbers(out, value, c->components);
+}
+
+// "density = 30 [0, 200] 1/m", and in the help's column what there is to know besides.
+static void print_control(roil_effect *e, size_t index, strbuf *out) {
+    roil_control c;
+    roil_get_control(e, index, &c);
+    const effect_control *own = effect_get_control(e->effect, index);
+    bool ramp = c.type == ROIL_PALETTE || c.type == ROIL_CURVE;
+    strbuf name = {0}, help = {0};
+    strbuf_add(&name, "%s = ", c.parameter || ramp ? c.name : c.label);
+    if (ramp)
+        effect_print_control(e->effect, own, &name);
+    else if (c.type == ROIL_ENUM)
+        add_words(&name, c.words, c.word_count, (size_t)c.value[0]);
+    else
+        print_value(&name, &c, c.value);
+    print_range_of(&name, &c);
+    strbuf_add(&help, "%s", c.help);
+    if (c.structural && c.parameter)
+        strbuf_add(&help, "%s(structure: read while the effect loads)", help.length ? " " : "");
+    if (c.driven) strbuf_add(&help, "%s(the script moves it)", help.length ? " " : "");
+    if (c.moved) {
+        strbuf_add(&help, "%s(moved; the script says ", help.length ? " " : "");
+        if (ramp)
+            strbuf_add(&help, "%s", own->initial);
+        else
+            print_value(&help, &c, c.initial);
+        strbuf_add(&help, ")");
+    }
+    entry(out, strbuf_text(&name), strbuf_text(&help));
     strbuf_free(&name);
+    strbuf_free(&help);
+}
+
+static const char *section_of(const effect_control *c, const roil_control *shown) {
+    if (c->kind == EFFECT_CONTROL_PARAM) return "parameters";
+    if (c->kind == EFFECT_CONTROL_PALETTE || c->kind == EFFECT_CONTROL_CURVE)
+        return "palettes and curves";
+    return shown->group;
 }
 
 char *roil_info_params(roil_effect *e) {
@@ -353,31 +393,15 @@ char *roil_info_params(roil_effect *e) {
     effect *fx = e->effect;
     strbuf_add(&out, "%s: %u frames from %u at %g a second\n", effect_name(fx), effect_frames(fx),
                effect_first_frame(fx), effect_fps(fx));
-    if (effect_param_count(fx)) strbuf_add(&out, "\nparameters\n");
-    for (size_t i = 0; i < effect_param_count(fx); i++) print_param(&out, effect_get_param(fx, i));
-    for (size_t i = 0; i < effect_pass_count(fx); i++) {
-        pass *p = effect_get_pass(fx, i);
-        const shader_interface *face = pass_interface(p);
-        strbuf_add(&out, "\n%s.*\n", pass_label(p));
-        for (size_t k = 0; k < face->option_count; k++) {
-            strbuf name = {0};
-            strbuf_add(&name, "%s = ", face->options[k].name);
-            add_words(&name, face->options[k].words, face->options[k].word_count,
-                      pass_get_option(p, k));
-            entry(&out, strbuf_text(&name), face->options[k].help);
-            strbuf_free(&name);
-        }
-        for (size_t k = 0; k < face->uniform_count; k++) {
-            shader_uniform u = face->uniforms[k];
-            const field *value = pass_get_uniform(p, k);
-            if (value && strcmp(value->kind->name, "constant") == 0)
-                memcpy(u.value, value->value, sizeof u.value);
-            print_uniform(&out, &u);
-        }
-        strbuf scale = {0};
-        strbuf_add(&scale, "resolution = %g (0, 1]", (double)pass_get_scale(p));
-        entry(&out, strbuf_text(&scale), script_key_find(pass_keys(), "resolution")->help);
-        strbuf_free(&scale);
+    const char *section = "";
+    for (size_t i = 0; i < roil_control_count(e); i++) {
+        roil_control c;
+        roil_get_control(e, i, &c);
+        const char *own = section_of(effect_get_control(fx, i), &c);
+        bool listed = own != c.group || c.parameter; // by their own names
+        if (strcmp(own, section) != 0) strbuf_add(&out, listed ? "\n%s\n" : "\n%s.*\n", own);
+        section = own;
+        print_control(e, i, &out);
     }
     return finish(&out);
 }

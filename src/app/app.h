@@ -36,6 +36,24 @@ bool app_check_pattern(const char *pattern);
 bool app_has_number(const char *pattern);
 void app_format_pattern(const char *pattern, double frame, char *out, size_t capacity);
 
+// ---- settings ---------------------------------------------------------------------------------
+
+typedef struct app_settings { // --from, then --preset, then --set: what comes later wins
+    const char **presets;
+    size_t preset_count, preset_capacity;
+    roil_setting *sets;
+    size_t set_count, set_capacity;
+    roil_preset **loaded;
+    size_t loaded_count;
+    roil_setting *all; // after app_collect_settings
+    size_t count, capacity;
+} app_settings;
+void app_add_preset(app_settings *s, const char *preset);
+bool app_add_set(app_settings *s, char *text); // "NAME=VALUE", cut at its '='
+// Of an effect; reads the presets. `from` may be NULL, else outlives `s`.
+bool app_collect_settings(app_settings *s, roil *r, const char *effect, const roil_recipe *from);
+void app_free_settings(app_settings *s);
+
 // ---- progress ---------------------------------------------------------------------------------
 
 typedef struct app_progress {

@@ -3,24 +3,13 @@
 #include <popt.h>
 #include <stdio.h>
 
-int cmd_check(int argc, const char **argv) {
-    const struct poptOption options[] = {POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context = poptGetContext("roil check", argc, argv, options, 0);
-    poptSetOtherOptionHelp(context, "EFFECT.lua...");
-    int code = poptGetNextOpt(context);
-    if (code < -1) {
-        app_fail(APP_BAD_USAGE, "check: %s: %s", poptBadOption(context, 0), poptStrerror(code));
-        poptFreeContext(context);
-        return APP_BAD_USAGE;
-    }
-    const char **files = poptGetArgs(context);
-    int status = files && files[0] ? APP_DONE
-                                   : app_fail(APP_BAD_USAGE, "check: which effect? "
-                                                             "usage: roil check EFFECT.lua...");
-    roil *r = status == APP_DONE ? roil_create(&(roil_desc){.no_device = true}) : NULL;
-    if (status == APP_DONE && !r) status = app_fail_input();
-    for (; r && *files; files++) {
-        roil_effect *e = roil_load(r, *files, NULL, 0);
+static int check(const char **files, app_settings *settings) {
+    int status = APP_DONE;
+    roil *r = roil_create(&(roil_desc){.no_device = true});
+    if (!r) return app_fail_input();
+    for (; *files; files++) {
+        bool collected = app_collect_settings(settings, r, *files, NULL);
+        roil_effect *e = collected ? roil_load(r, *files, settings->all, settings->count) : NULL;
         if (e && roil_check(e))
             printf("%s: good\n", *files);
         else
@@ -28,6 +17,29 @@ int cmd_check(int argc, const char **argv) {
         roil_unload(e);
     }
     roil_destroy(r);
+    return status;
+}
+
+int cmd_check(int argc, const char **argv) {
+    enum { OPTION_PRESET = 1 };
+    const struct poptOption options[] = {{"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET,
+                                          "with values kept beside the effect, or in a file",
+                                          "NAME|FILE.lua"},
+                                         POPT_AUTOHELP POPT_TABLEEND};
+    app_settings settings = {0};
+    poptContext context = poptGetContext("roil check", argc, argv, options, 0);
+    poptSetOtherOptionHelp(context, "EFFECT.lua...");
+    int code, status;
+    while ((code = poptGetNextOpt(context)) > 0) app_add_preset(&settings, poptGetOptArg(context));
+    const char **files = poptGetArgs(context);
+    if (code < -1)
+        status =
+            app_fail(APP_BAD_USAGE, "check: %s: %s", poptBadOption(context, 0), poptStrerror(code));
+    else if (!files || !files[0])
+        status = app_fail(APP_BAD_USAGE, "check: which effect? usage: roil check EFFECT.lua...");
+    else
+        status = check(files, &settings);
+    app_free_settings(&settings);
     poptFreeContext(context);
     return status;
 }

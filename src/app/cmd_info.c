@@ -19,10 +19,11 @@ static int info_passes(const char *name) {
     return status;
 }
 
-static int info_effect(const char *what, const char *file) {
+static int info_effect(const char *what, const char *file, app_settings *settings) {
     if (!file) return app_fail(APP_BAD_USAGE, "info %s: of which effect?", what);
     roil *r = roil_create(&(roil_desc){.no_device = true});
-    roil_effect *e = r ? roil_load(r, file, NULL, 0) : NULL;
+    bool collected = r && app_collect_settings(settings, r, file, NULL);
+    roil_effect *e = collected ? roil_load(r, file, settings->all, settings->count) : NULL;
     int status;
     if (!e)
         status = app_fail_input();
@@ -35,12 +36,13 @@ static int info_effect(const char *what, const char *file) {
     return status;
 }
 
-static int info(const char *what, const char *name) {
+static int info(const char *what, const char *name, app_settings *settings) {
     static const char *const topics[] = {"device", "passes", "fields", "params", "graph"};
     if (!what || strcmp(what, "device") == 0) return print(roil_info_devices());
     if (strcmp(what, "passes") == 0) return info_passes(name);
     if (strcmp(what, "fields") == 0) return print(roil_info_fields(name));
-    if (strcmp(what, "params") == 0 || strcmp(what, "graph") == 0) return info_effect(what, name);
+    if (strcmp(what, "params") == 0 || strcmp(what, "graph") == 0)
+        return info_effect(what, name, settings);
     if (str_ends_with(what, ".vdb")) return print(roil_info_vdb(what));
     const char *near = str_nearest(what, topics, 5);
     if (near)
@@ -52,18 +54,36 @@ static int info(const char *what, const char *name) {
 }
 
 int cmd_info(int argc, const char **argv) {
-    const struct poptOption options[] = {POPT_AUTOHELP POPT_TABLEEND};
+    enum { OPTION_PRESET = 1, OPTION_SET };
+    const struct poptOption options[] = {
+        {"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET,
+         "of params, graph: with values kept beside the effect, or in a file", "NAME|FILE.lua"},
+        {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET, "of params, graph: as render takes it",
+         "NAME=VALUE"},
+        POPT_AUTOHELP POPT_TABLEEND};
+    app_settings settings = {0};
     poptContext context = poptGetContext("roil info", argc, argv, options, 0);
     poptSetOtherOptionHelp(context, "[device | passes [NAME] | fields [NAME] | params EFFECT.lua | "
                                     "graph EFFECT.lua | FILE.vdb]");
-    int code = poptGetNextOpt(context), status;
-    if (code < -1) {
+    int code, status;
+    bool right = true;
+    while (right && (code = poptGetNextOpt(context)) > 0) {
+        char *text = poptGetOptArg(context);
+        if (code == OPTION_PRESET)
+            app_add_preset(&settings, text);
+        else
+            right = app_add_set(&settings, text);
+    }
+    if (!right) {
+        status = app_fail(APP_BAD_USAGE, "info: %s", roil_error());
+    } else if (code < -1) {
         status =
             app_fail(APP_BAD_USAGE, "info: %s: %s", poptBadOption(context, 0), poptStrerror(code));
     } else {
         const char *what = poptGetArg(context);
-        status = info(what, poptGetArg(context));
+        status = info(what, poptGetArg(context), &settings);
     }
+    app_free_settings(&settings);
     poptFreeContext(context);
     return status;
 }

@@ -21,8 +21,9 @@ typedef struct job {
     const char *file, *stats, *device;
     output *outputs;
     size_t output_count, output_capacity;
-    roil_setting *settings;
-    size_t setting_count, setting_capacity;
+    const char *from_file;
+    roil_recipe *from; // of that picture
+    app_settings settings;
     app_frames frames;
     const char *frames_text;
     uint32_t width, height;
@@ -33,7 +34,7 @@ typedef struct job {
 
 // ---- options ----------------------------------------------------------------------------------
 
-enum { OPTION_OUTPUT = 1, OPTION_SIZE, OPTION_SET, OPTION_DUMP };
+enum { OPTION_OUTPUT = 1, OPTION_SIZE, OPTION_SET, OPTION_DUMP, OPTION_PRESET };
 
 static bool add_output(job *j, const char *pattern, const char *image) {
     const char *extension = path_extension(pattern);
@@ -46,15 +47,6 @@ static bool add_output(job *j, const char *pattern, const char *image) {
     return true;
 }
 
-static bool add_setting(job *j, char *text) {
-    char *equals = strchr(text, '=');
-    if (!equals || equals == text) return err_set("--set '%s'; accepted: NAME=VALUE", text);
-    *equals = '\0';
-    MEM_RESERVE(j->settings, j->setting_count + 1, j->setting_capacity);
-    j->settings[j->setting_count++] = (roil_setting){text, equals + 1};
-    return true;
-}
-
 // Handles one option of the table below; poptGetOptArg's text lives until the program ends.
 static bool take_option(job *j, poptContext context, int option) {
     char *text = poptGetOptArg(context);
@@ -64,7 +56,10 @@ static bool take_option(job *j, poptContext context, int option) {
     case OPTION_SIZE:
         return app_parse_size(text, &j->width, &j->height);
     case OPTION_SET:
-        return add_setting(j, text);
+        return app_add_set(&j->settings, text);
+    case OPTION_PRESET:
+        app_add_preset(&j->settings, text);
+        return true;
     case OPTION_DUMP: { // NAME and FILE, joined by join_dump
         char *file = strchr(text, '\n');
         if (!file) return err_set("--dump-pass wants NAME FILE");
@@ -102,6 +97,11 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
          "WxH"},
         {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET,
          "a parameter, or a uniform or option of a pass (march.steps=64)", "NAME=VALUE"},
+        {"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET,
+         "values kept beside the effect, or in a file; --set goes before them", "NAME|FILE.lua"},
+        {"from", '\0', POPT_ARG_STRING, &j->from_file, 0,
+         "as this picture was made: its effect, frame, size and settings, where no other are given",
+         "SHOT.png"},
         {"device", 'd', POPT_ARG_STRING, &j->device, 0, "part of a device's name, or its number",
          "DEVICE"},
         {"stats", '\0', POPT_ARG_STRING, &j->stats, 0,
@@ -125,13 +125,36 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
         if (!take_option(j, *context, option)) return false;
     if (option < -1) return err_set("%s: %s", poptBadOption(*context, 0), poptStrerror(option));
     j->file = poptGetArg(*context);
-    if (!j->file) return err_set("which effect? usage: roil render EFFECT.lua [options]");
+    if (!j->file && !j->from_file)
+        return err_set("which effect? usage: roil render EFFECT.lua [options]");
     const char *more = poptGetArg(*context);
     if (more) return err_set("'%s': one effect at a time", more);
     return !j->frames_text || app_parse_frames(j->frames_text, &j->frames);
 }
 
 // ---- work -------------------------------------------------------------------------------------
+
+// What --from decides where the command line does not.
+static bool complete_from(job *j) {
+    if (j->from_file) {
+        j->from = roil_read_recipe(j->from_file);
+        if (!j->from) return false;
+        if (!j->file) j->file = j->from->effect;
+        if (!j->file)
+            return err_set("%s: its effect lies outside of this folder; name it: roil render "
+                           "EFFECT.lua --from %s",
+                           j->from_file, j->from_file);
+    }
+    if (j->from && !j->frames.count) {
+        j->frames.numbers = mem_copy(&j->from->frame, sizeof j->from->frame);
+        j->frames.count = 1;
+    }
+    if (!j->width) {
+        j->width = j->from ? j->from->width : 960;
+        j->height = j->from ? j->from->height : 540;
+    }
+    return true;
+}
 
 // What the effect itself decides: all of its frames, and where they go by default.
 static bool complete(job *j, roil_effect *e) {
@@ -214,13 +237,15 @@ static bool close_outputs(job *j, bool done) {
 }
 
 static int run(job *j) {
+    if (!complete_from(j)) return app_fail_input();
     roil *r = roil_create(&(roil_desc){
         .device = j->device,
         .validate = j->validate,
         .no_cache = j->no_cache,
         .counters = j->stats != NULL,
     });
-    roil_effect *e = r ? roil_load(r, j->file, j->settings, j->setting_count) : NULL;
+    bool collected = r && app_collect_settings(&j->settings, r, j->file, j->from);
+    roil_effect *e = collected ? roil_load(r, j->file, j->settings.all, j->settings.count) : NULL;
     app_stats *stats = app_stats_create();
     int status = APP_DONE;
     if (!e) {
@@ -237,7 +262,7 @@ static int run(job *j) {
         app_stats_print(stats);
         for (size_t i = 0; i < j->output_count; i++) printf("wrote %s\n", j->outputs[i].pattern);
         if (j->stats && !app_stats_save(stats, j->stats, r, j->file, j->width, j->height,
-                                        j->settings, j->setting_count))
+                                        j->settings.all, j->settings.count))
             status = app_fail_input();
     }
     app_stats_destroy(stats);
@@ -251,7 +276,7 @@ static int run(job *j) {
 }
 
 int cmd_render(int argc, const char **argv) {
-    job j = {.width = 960, .height = 540};
+    job j = {.frames.step = 1};
     arena memory = {0};
     poptContext context;
     argv = join_dump(&argc, argv, &memory);
@@ -261,7 +286,8 @@ int cmd_render(int argc, const char **argv) {
     poptFreeContext(context);
     app_free_frames(&j.frames);
     mem_free(j.outputs);
-    mem_free(j.settings);
+    app_free_settings(&j.settings);
+    roil_free_recipe(j.from);
     arena_free(&memory);
     return status;
 }

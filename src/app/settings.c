@@ -1,0 +1,53 @@
+// What the command line says about an effect: a picture's recipe, presets, single values.
+#include "app/app.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include <string.h>
+
+void app_add_preset(app_settings *s, const char *preset) {
+    MEM_RESERVE(s->presets, s->preset_count + 1, s->preset_capacity);
+    s->presets[s->preset_count++] = preset;
+}
+
+bool app_add_set(app_settings *s, char *text) {
+    char *equals = strchr(text, '=');
+    if (!equals || equals == text) return err_set("--set '%s'; accepted: NAME=VALUE", text);
+    *equals = '\0';
+    MEM_RESERVE(s->sets, s->set_count + 1, s->set_capacity);
+    s->sets[s->set_count++] = (roil_setting){text, equals + 1};
+    return true;
+}
+
+static void add_all(app_settings *s, const roil_setting *settings, size_t count) {
+    MEM_RESERVE(s->all, s->count + count, s->capacity);
+    for (size_t i = 0; i < count; i++) s->all[s->count++] = settings[i];
+}
+
+static void drop(app_settings *s) { // what was collected before
+    for (size_t i = 0; i < s->loaded_count; i++) roil_free_preset(s->loaded[i]);
+    mem_free(s->loaded);
+    s->loaded = NULL;
+    s->loaded_count = s->count = 0;
+}
+
+bool app_collect_settings(app_settings *s, roil *r, const char *effect, const roil_recipe *from) {
+    drop(s);
+    s->loaded = mem_alloc(s->preset_count * sizeof *s->loaded);
+    if (from) add_all(s, from->settings, from->setting_count);
+    for (size_t i = 0; i < s->preset_count; i++) {
+        roil_preset *preset = roil_read_preset(r, effect, s->presets[i]);
+        if (!preset) return false;
+        s->loaded[s->loaded_count++] = preset;
+        add_all(s, preset->settings, preset->count);
+    }
+    add_all(s, s->sets, s->set_count);
+    return true;
+}
+
+void app_free_settings(app_settings *s) {
+    drop(s);
+    mem_free(s->presets);
+    mem_free(s->sets);
+    mem_free(s->all);
+    *s = (app_settings){0};
+}
