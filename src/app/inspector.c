@@ -42,7 +42,7 @@ inspector *inspector_create(void) {
     inspector *p = mem_alloc(sizeof *p);
     p->view.fit = true;
     p->view.zoom = 1;
-    p->how.axis = 2;
+    p->how.axis = 1;
     p->how.slice = 0.5f;
     for (int i = 0; i < 4; i++) p->channels[i] = i < 3;
     return p;

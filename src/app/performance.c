@@ -178,14 +178,17 @@ static float heading(float left, float top, const char *name, const char *value)
 
 static void draw_heading(const history *past, bool chosen, size_t ago) {
     history_frame f = chosen ? *history_get(past, ago) : history_median(past);
-    char gpu[32], cpu[32], rate[32] = "", which[48] = "median of 60 frames";
+    char gpu[32], cpu[32], rate[32] = "", which[48];
+    size_t recent = history_length(past) < HISTORY_RECENT ? history_length(past) : HISTORY_RECENT;
     snprintf(gpu, sizeof gpu, f.gpu < 100 ? "%.2f ms" : "%.0f ms", (double)f.gpu);
     snprintf(cpu, sizeof cpu, f.cpu < 100 ? "%.2f ms" : "%.0f ms", (double)f.cpu);
     if (f.interval > 0 && f.interval < IDLE_MS)
         snprintf(rate, sizeof rate, "%.1f fps", 1000 / (double)f.interval);
-    if (chosen && ago == 0)
+    if (!chosen)
+        snprintf(which, sizeof which, "median of %zu frame%s", recent, recent == 1 ? "" : "s");
+    else if (ago == 0)
         snprintf(which, sizeof which, "the last frame");
-    else if (chosen)
+    else
         snprintf(which, sizeof which, "%zu frame%s ago", ago, ago == 1 ? "" : "s");
     ui_canvas c = ui_canvas_begin("heading", 0, ROW * ui_scale());
     float left = heading(c.area.left, c.area.top, "GPU", gpu);
