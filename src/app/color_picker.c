@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum { HUE_STEPS = 6 };
-static const float SIDE = 208, STRIP = 14, MAX_INTENSITY = 64;
+static const float SIDE = 220, STRIP = 14, MAX_INTENSITY = 64;
 
 // Black has no hue and grey none either: what was chosen last stays while the colour is the same.
 static struct {
@@ -188,6 +188,7 @@ bool color_picker(float *linear, int components) {
     if (components == 4) changed = alpha_strip(&linear[3]) || changed;
     changed = hex_input(linear) || changed;
     ui_width(SIDE * ui_scale());
-    changed = ui_number("Linear", linear, 3, 0, INFINITY, false, NULL) || changed;
+    changed = ui_number("##linear", linear, 3, 0, INFINITY, false, NULL) || changed;
+    ui_tooltip("red, green and blue as light: linear, of any brightness");
     return changed;
 }

@@ -104,6 +104,7 @@ void set_colors(ImVec4 *c) {
         {ImGuiCol_TabActive, draw_grey(GREY_RAISED)},
         {ImGuiCol_TabUnfocused, IM_COL32(0, 0, 0, 0)},
         {ImGuiCol_TabUnfocusedActive, draw_grey(GREY_RAISED)},
+        {ImGuiCol_NavHighlight, ui_rgba(UI_ACCENT, 0.7f)},
         {ImGuiCol_TextSelectedBg, IM_COL32(240, 146, 62, 90)},
     };
     for (const auto &row : rows) c[row.at] = rgba(row.color);
@@ -214,6 +215,8 @@ static void use_pixels(ImGuiIO &io) {
 
 void ui_begin(void) {
     ImGuiIO &io = ImGui::GetIO();
+    // Keys choose in what popped up, and there alone: elsewhere they are the program's own.
+    io.ConfigFlags = GImGui->OpenPopupStack.Size ? ImGuiConfigFlags_NavEnableKeyboard : 0;
     // Tab walks through fields only while one is typed in; else it is the program's own.
     io.KeyMap[ImGuiKey_Tab] = io.WantTextInput ? GLFW_KEY_TAB : -1;
     ImGui_ImplGlfw_NewFrame();
@@ -265,7 +268,7 @@ bool ui_wants_mouse(void) {
 }
 
 bool ui_wants_keys(void) {
-    return ImGui::GetIO().WantTextInput;
+    return ImGui::GetIO().WantTextInput || GImGui->OpenPopupStack.Size;
 }
 
 void ui_copy(const char *text) {
@@ -415,17 +418,16 @@ void ui_text_wrapped(const char *text) {
 void ui_tooltip(const char *text) {
     if (!text || !text[0] || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
     ImVec2 at = ImGui::GetItemRectMin();
-    bool same = at.x == ui.tip_at.x && at.y == ui.tip_at.y && !ImGui::IsAnyMouseDown();
+    bool same = at.x == ui.tip_at.x && at.y == ui.tip_at.y && !ImGui::IsAnyMouseDown() &&
+                !ImGui::GetIO().WantTextInput;
     ui.tip_seconds = same ? ui.tip_seconds + ImGui::GetIO().DeltaTime : 0;
     ui.tip_at = at;
     if (ui.tip_seconds < TIP_SECONDS) return;
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(10 * ui.scale, 7 * ui.scale));
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(TIP_WIDTH * ui.scale);
     ImGui::TextUnformatted(text);
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
-    ImGui::PopStyleVar();
 }
 
 float ui_text_width(const char *text) {
@@ -590,13 +592,14 @@ bool ui_input(const char *label, const char *hint, char *text, size_t capacity) 
 
 // The text takes the bar's place until Return or a click elsewhere; Escape leaves the number as it
 // was.
-static bool bar_type(const ImRect &box, ImGuiID id, double *value, const number_range *range) {
+static bool bar_type(const ImRect &box, ImGuiID id, const char *name, double *value,
+                     const number_range *range) {
     if (ui.typing != id) {
         ui.typing = id;
         number_text(range, *value, ui.typed, sizeof ui.typed);
         str_copy(ui.typed_first, sizeof ui.typed_first, ui.typed);
     }
-    ImGui::TempInputText(box, id, "##typed", ui.typed, (int)sizeof ui.typed,
+    ImGui::TempInputText(box, id, name, ui.typed, (int)sizeof ui.typed,
                          ImGuiInputTextFlags_CharsScientific | ImGuiInputTextFlags_AutoSelectAll);
     if (ImGui::TempInputIsActive(id)) return false;
     ui.typing = 0;
@@ -637,7 +640,8 @@ bool part_bar(const char *name, double *value, const number_range *range, const 
     ImGui::ItemSize(size, g.Style.FramePadding.y);
     if (!ImGui::ItemAdd(box, id, nullptr, ImGuiItemFlags_Inputable)) return false;
     bool hovered = ImGui::ItemHoverable(box, id), typing = ImGui::TempInputIsActive(id);
-    bool tabbed = (g.LastItemData.StatusFlags & ImGuiItemStatusFlags_FocusedByTabbing) != 0;
+    bool tabbed = (g.LastItemData.StatusFlags & ImGuiItemStatusFlags_FocusedByTabbing) ||
+                  g.NavActivateInputId == id;
     if (!typing && (tabbed || (hovered && g.IO.MouseClicked[0]))) {
         ImGui::SetActiveID(id, window);
         ImGui::SetFocusID(id, window);
@@ -645,7 +649,7 @@ bool part_bar(const char *name, double *value, const number_range *range, const 
         g.ActiveIdSource = ImGuiInputSource_Mouse;
         typing = tabbed || g.IO.KeyCtrl || g.IO.MouseDoubleClicked[0];
     }
-    if (typing) return bar_type(box, id, value, range);
+    if (typing) return bar_type(box, id, name, value, range);
     if (hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     bool changed = bar_drag(id, value, range, width);
     draw_bar({box.Min.x, box.Min.y, box.Max.x, box.Max.y}, *value, range, unit, hovered,
@@ -743,12 +747,10 @@ ui_canvas ui_bare(ui_rect area) {
     return bare(ImHashData(corner, sizeof corner), area);
 }
 
-ui_canvas part_bare(const char *id, ui_rect area) {
-    return bare(ImHashStr(id), area);
-}
-
-void part_cursor_sideways(void) {
-    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+ui_canvas part_bare_sideways(const char *id, ui_rect area) {
+    ui_canvas c = bare(ImHashStr(id), area);
+    if (c.hovered || c.held) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    return c;
 }
 
 void ui_line(float x0, float y0, float x1, float y1, uint32_t color, float width) {

@@ -78,8 +78,8 @@ void part_font_end(void);
 bool part_bar(const char *id, double *value, const number_range *range, const char *unit,
               float width);
 void part_text(uint32_t color, const char *text);
-ui_canvas part_bare(const char *id, ui_rect area); // ui_bare, though the area moves
-void part_cursor_sideways(void);
+// ui_bare, though the area moves; its pointer says that it can be drawn sideways.
+ui_canvas part_bare_sideways(const char *id, ui_rect area);
 void part_popup_open(const char *id);
 bool part_popup_begin(const char *id);
 void part_popup_end(void);

@@ -42,12 +42,9 @@ void ui_text_mono(ui_color color, const char *text) {
 }
 
 bool ui_splitter(ui_rect area, float *position) {
-    ui_canvas c = part_bare("splitter", area);
+    ui_canvas c = part_bare_sideways("splitter", area);
     ui_fill(area, ui_rgba(UI_FIELD, 1), 0);
-    if (c.hovered || c.held) {
-        part_cursor_sideways();
-        ui_fill(area, ui_rgba(UI_ACCENT, c.held ? 1 : 0.6f), 0);
-    }
+    if (c.hovered || c.held) ui_fill(area, ui_rgba(UI_ACCENT, c.held ? 1 : 0.6f), 0);
     if (c.held) *position = c.x;
     return c.held;
 }
