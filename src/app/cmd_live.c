@@ -176,6 +176,7 @@ static int begin_anew(const job *j, const live *l) {
 static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mods) {
     (void)scancode;
     live *l = glfwGetWindowUserPointer(handle);
+    if (action == GLFW_PRESS) ui_key(key);
     if (action != GLFW_RELEASE && !ui_wants_keys()) live_press(l, key, mods, action == GLFW_REPEAT);
 }
 

@@ -1,9 +1,11 @@
 // Numbers in sliders: where they stand on the bar, how round they are, how they are written.
 #include "app/ui_parts.h"
+#include "base/str.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 // A logarithmic bar over a range that reaches zero is linear below this share of it.
 static const double LINEAR_SHARE = 1e-3;
@@ -72,5 +74,32 @@ bool number_parse(const number_range *r, const char *text, double *out) {
     while (isspace((unsigned char)*end)) end++;
     if (*end) return false;
     *out = clamped(r, r->whole ? round(value) : value);
+    return true;
+}
+
+// ---- typing -----------------------------------------------------------------------------------
+
+void number_type_begin(number_typing *t, uint32_t id, const number_range *r, double value) {
+    if (t->id == id) return;
+    number_type_leave(t);
+    t->id = id;
+    number_text(r, value, t->text, sizeof t->text);
+    str_copy(t->first, sizeof t->first, t->text);
+}
+
+void number_type_leave(number_typing *t) {
+    if (t->id && strcmp(t->text, t->first) != 0) {
+        t->left_id = t->id;
+        str_copy(t->left, sizeof t->left, t->text);
+    }
+    t->id = 0;
+}
+
+bool number_type_take(number_typing *t, uint32_t id, const number_range *r, double *value) {
+    double typed;
+    if (t->left_id != id) return false;
+    t->left_id = 0;
+    if (!number_parse(r, t->left, &typed) || typed == *value) return false;
+    *value = typed;
     return true;
 }

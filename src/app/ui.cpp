@@ -5,7 +5,6 @@
 #include "app/ui_parts.h"
 extern "C" {
 #include "base/memory.h"
-#include "base/str.h"
 }
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -21,8 +20,8 @@ static_assert(sizeof(ImDrawVert) == sizeof(roil_vertex) &&
 
 namespace {
 
-enum { MAX_TABLES = 8 };
-const float LABEL_SHARE = 0.4f, TEXT_SIZE = 16, TIP_SECONDS = 0.45f, TIP_WIDTH = 340;
+enum { MAX_TABLES = 8, MAX_TAPS = 32 };
+const float TEXT_SIZE = 16, TIP_SECONDS = 0.45f, TIP_WIDTH = 340;
 
 struct state {
     GLFWwindow *window;
@@ -31,21 +30,15 @@ struct state {
     char *layout;
     float scale;
     ImFont *fonts[FONT_KIND_COUNT];
-    roil_vertex *vertices; // of the picture
-    uint32_t *indices;
-    roil_draw *draws;
-    size_t vertex_capacity, index_capacity, draw_capacity;
-    bool has_width; // of the next widget
-    float width;
     int depth;               // of panels and windows
     bool panel;              // the outermost is one
     bool tables[MAX_TABLES]; // that are open, and visible
     int table_depth;
     ImVec2 tip_at; // where the pointer rests on a widget
     float tip_seconds;
-    ImGuiID bare;   // area where a button was pressed that no panel covers; 0: none
-    ImGuiID typing; // number in which text is typed
-    char typed[64], typed_first[64];
+    ImGuiID bare; // area where a button was pressed that no panel covers; 0: none
+    number_typing typing;
+    int taps[MAX_TAPS], tap_count; // keys pressed since the last frame, released or not
 } ui;
 
 ImVec4 rgba(ImU32 color) {
@@ -178,9 +171,7 @@ void ui_close(void) {
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
     roil_texture_destroy(ui.r, ui.atlas);
-    mem_free(ui.vertices);
-    mem_free(ui.indices);
-    mem_free(ui.draws);
+    picture_free();
     mem_free(ui.layout);
     marks_free();
     ui = state();
@@ -213,53 +204,42 @@ static void use_pixels(ImGuiIO &io) {
     io.DisplayFramebufferScale = ImVec2(1, 1);
 }
 
+void ui_key(int key) {
+    if (key >= 0 && ui.tap_count < MAX_TAPS) ui.taps[ui.tap_count++] = key;
+}
+
 void ui_begin(void) {
     ImGuiIO &io = ImGui::GetIO();
     // Keys choose in what popped up, and there alone: elsewhere they are the program's own.
     io.ConfigFlags = GImGui->OpenPopupStack.Size ? ImGuiConfigFlags_NavEnableKeyboard : 0;
+    io.KeyMap[ImGuiKey_Space] = GLFW_KEY_ENTER; // that activates; ImGui's own choice is the bar
     // Tab walks through fields only while one is typed in; else it is the program's own.
     io.KeyMap[ImGuiKey_Tab] = io.WantTextInput ? GLFW_KEY_TAB : -1;
     ImGui_ImplGlfw_NewFrame();
     use_pixels(io);
+    for (int i = 0; i < ui.tap_count; i++) io.KeysDown[ui.taps[i]] = true;
     io.DeltaTime = fminf(io.DeltaTime, 0.1f); // the loop may have slept
     ImGui::NewFrame();
+    for (int i = 0; i < ui.tap_count; i++)
+        io.KeysDown[ui.taps[i]] = glfwGetKey(ui.window, ui.taps[i]) == GLFW_PRESS;
+    ui.tap_count = 0;
     if (!ImGui::IsMouseDown(0) && !ImGui::IsMouseDown(1) && !ImGui::IsMouseDown(2)) ui.bare = 0;
-}
-
-static void take_list(const ImDrawList *from, roil_picture *out) {
-    size_t vertices = out->vertex_count, indices = out->index_count, draws = out->draw_count;
-    size_t more = (size_t)from->VtxBuffer.Size, more_indices = (size_t)from->IdxBuffer.Size;
-    ui.vertices = (roil_vertex *)mem_reserve(ui.vertices, sizeof *ui.vertices, vertices + more,
-                                             &ui.vertex_capacity);
-    ui.indices = (uint32_t *)mem_reserve(ui.indices, sizeof *ui.indices, indices + more_indices,
-                                         &ui.index_capacity);
-    ui.draws = (roil_draw *)mem_reserve(ui.draws, sizeof *ui.draws,
-                                        draws + (size_t)from->CmdBuffer.Size, &ui.draw_capacity);
-    if (more)
-        memcpy((void *)(ui.vertices + vertices), from->VtxBuffer.Data, more * sizeof(ImDrawVert));
-    for (const ImDrawCmd &cmd : from->CmdBuffer) {
-        if (!cmd.ElemCount || cmd.UserCallback) continue;
-        roil_draw *draw = &ui.draws[out->draw_count++];
-        draw->texture = (const roil_texture *)cmd.GetTexID();
-        draw->first = (uint32_t)out->index_count;
-        draw->count = cmd.ElemCount;
-        memcpy(draw->clip, &cmd.ClipRect, sizeof draw->clip);
-        const ImDrawIdx *index = from->IdxBuffer.Data + cmd.IdxOffset;
-        uint32_t base = (uint32_t)vertices + cmd.VtxOffset;
-        for (unsigned i = 0; i < cmd.ElemCount; i++)
-            ui.indices[out->index_count++] = base + index[i];
-    }
-    out->vertex_count += more;
 }
 
 void ui_end(roil_picture *out) {
     ImGui::Render();
-    out->vertex_count = out->index_count = out->draw_count = 0;
     const ImDrawData *data = ImGui::GetDrawData();
-    for (int i = 0; i < data->CmdListsCount; i++) take_list(data->CmdLists[i], out);
-    out->vertices = ui.vertices;
-    out->indices = ui.indices;
-    out->draws = ui.draws;
+    picture_begin();
+    for (int i = 0; i < data->CmdListsCount; i++) {
+        const ImDrawList *from = data->CmdLists[i];
+        size_t first = picture_vertices((const roil_vertex *)from->VtxBuffer.Data,
+                                        (size_t)from->VtxBuffer.Size);
+        for (const ImDrawCmd &cmd : from->CmdBuffer)
+            picture_draw((const roil_texture *)cmd.GetTexID(), &cmd.ClipRect.x,
+                         from->IdxBuffer.Data + cmd.IdxOffset, cmd.ElemCount,
+                         first + cmd.VtxOffset);
+    }
+    picture_end(out);
     marks_write();
 }
 
@@ -327,23 +307,8 @@ void ui_align_right(float width) {
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - width);
 }
 
-void ui_gap(float height) {
-    ImGui::Dummy(ImVec2(0, fmaxf(height - ImGui::GetStyle().ItemSpacing.y, 0)));
-}
-
 void ui_separator(void) {
     ImGui::Separator();
-}
-
-void ui_width(float width) {
-    ui.has_width = true;
-    ui.width = width;
-}
-
-static float take_width(void) {
-    float room = ImGui::GetContentRegionAvail().x, wanted = ui.has_width ? ui.width : 0;
-    ui.has_width = false;
-    return floorf(fmaxf(wanted > 0 ? wanted : room + wanted, 1));
 }
 
 void ui_push(const char *id) {
@@ -390,7 +355,7 @@ void ui_table_begin(const char *id, int columns, const float *widths) {
 }
 
 void ui_table_next(void) {
-    ui.has_width = false;
+    part_forget_width();
     if (!ui.tables[ui.table_depth - 1]) return;
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding(); // a label beside a widget
@@ -461,17 +426,13 @@ void draw_clipped(ui_rect area, ui_rect clip, uint32_t color, float rounding) {
     list()->PopClipRect();
 }
 
-float part_row_begin(const char *label) {
-    float width = take_width();
+void part_group_begin(const char *id) {
     ImGui::BeginGroup();
-    ImGui::PushID(label);
-    if (ImGui::FindRenderedTextEnd(label) == label) return width;
-    ImVec2 at = ImGui::GetCursorScreenPos();
-    float column = floorf(width * LABEL_SHARE), height = ImGui::GetFrameHeight();
-    ImGui::Dummy(ImVec2(column, height));
-    draw_text({at.x, at.y, at.x + column - 6 * ui.scale, at.y + height}, UI_TEXT, label, 0);
-    ImGui::SameLine(0, 0);
-    return width - column;
+    ImGui::PushID(id);
+}
+
+void part_space(float width, float height) {
+    ImGui::Dummy(ImVec2(width, height));
 }
 
 static void mark_last(const char *name) {
@@ -479,18 +440,14 @@ static void mark_last(const char *name) {
     ui_mark(name, {a.x, a.y, b.x, b.y});
 }
 
-void part_row_end(const char *label) {
+void part_group_end(const char *id) {
     ImGui::PopID();
     ImGui::EndGroup();
-    mark_last(label);
+    mark_last(id);
 }
 
 void part_same_line(float gap) {
     ImGui::SameLine(0, gap);
-}
-
-bool part_has_width(void) {
-    return ui.has_width;
 }
 
 part_area part_area_begin(const char *id, float width) {
@@ -540,8 +497,7 @@ void part_popup_end(void) {
     ImGui::EndPopup();
 }
 
-bool ui_button(const char *label) {
-    float width = ui.has_width ? take_width() : 0;
+bool part_button(const char *label, float width) {
     bool pressed = ImGui::Button(label, ImVec2(width, 0));
     mark_last(label);
     return pressed;
@@ -592,23 +548,11 @@ bool ui_input(const char *label, const char *hint, char *text, size_t capacity) 
 
 // The text takes the bar's place until Return or a click elsewhere; Escape leaves the number as it
 // was.
-static bool bar_type(const ImRect &box, ImGuiID id, const char *name, double *value,
-                     const number_range *range) {
-    if (ui.typing != id) {
-        ui.typing = id;
-        number_text(range, *value, ui.typed, sizeof ui.typed);
-        str_copy(ui.typed_first, sizeof ui.typed_first, ui.typed);
-    }
-    ImGui::TempInputText(box, id, name, ui.typed, (int)sizeof ui.typed,
+static void bar_type(const ImRect &box, ImGuiID id, const char *name) {
+    number_typing *t = &ui.typing;
+    ImGui::TempInputText(box, id, name, t->text, (int)sizeof t->text,
                          ImGuiInputTextFlags_CharsScientific | ImGuiInputTextFlags_AutoSelectAll);
-    if (ImGui::TempInputIsActive(id)) return false;
-    ui.typing = 0;
-    double typed;
-    if (strcmp(ui.typed, ui.typed_first) == 0 || !number_parse(range, ui.typed, &typed) ||
-        typed == *value)
-        return false;
-    *value = typed;
-    return true;
+    if (!ImGui::TempInputIsActive(id)) number_type_leave(t);
 }
 
 static bool bar_drag(ImGuiID id, double *value, const number_range *range, float width) {
@@ -649,7 +593,13 @@ bool part_bar(const char *name, double *value, const number_range *range, const 
         g.ActiveIdSource = ImGuiInputSource_Mouse;
         typing = tabbed || g.IO.KeyCtrl || g.IO.MouseDoubleClicked[0];
     }
-    if (typing) return bar_type(box, id, name, value, range);
+    if (typing) {
+        number_type_begin(&ui.typing, id, range, *value);
+        bar_type(box, id, name);
+        return number_type_take(&ui.typing, id, range, value);
+    }
+    if (ui.typing.id == id) number_type_leave(&ui.typing); // the pointer went elsewhere
+    if (number_type_take(&ui.typing, id, range, value)) return true;
     if (hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     bool changed = bar_drag(id, value, range, width);
     draw_bar({box.Min.x, box.Min.y, box.Max.x, box.Max.y}, *value, range, unit, hovered,

@@ -44,6 +44,7 @@ bool ui_open(GLFWwindow *window, roil *r, const char *layout);
 void ui_close(void);
 void ui_set_scale(float scale); // pixels a unit, as of a high-DPI display; between frames
 float ui_scale(void);
+void ui_key(int key); // of GLFW, pressed: a tap that ends before the next frame counts too
 void ui_begin(void);
 void ui_end(roil_picture *out); // fills in what is drawn; valid until the next ui_begin
 bool ui_wants_mouse(void);      // the pointer is over a widget, or drags one

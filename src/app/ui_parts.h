@@ -35,6 +35,19 @@ void number_text(const number_range *r, double value, char *out, size_t capacity
 // What was typed: a number within the range; false when it is none.
 bool number_parse(const number_range *r, const char *text, double *out);
 
+// One number at a time is typed in. It may be left for another before its own widget is asked, so
+// what was typed waits until then.
+typedef struct number_typing {
+    uint32_t id; // of the widget; 0: none
+    char text[64], first[64];
+    uint32_t left_id; // of one that was left with a change
+    char left[64];
+} number_typing;
+void number_type_begin(number_typing *t, uint32_t id, const number_range *r, double value);
+void number_type_leave(number_typing *t);
+// True when this widget was left and its value is another now.
+bool number_type_take(number_typing *t, uint32_t id, const number_range *r, double *value);
+
 // ---- draw.c: what widgets look like ------------------------------------------------------------
 
 enum { // greys of the style, 0 to 255: neutral, so that they tint no one's judgement of colour
@@ -60,12 +73,11 @@ void draw_icon(int icon, ui_rect area, uint32_t color); // icons.c
 
 // ---- ui.cpp: what widgets.c is made of --------------------------------------------------------
 
-// A row is one item to what asks about the last one: its label, if that is shown, and its widget,
-// whose width is returned.
-float part_row_begin(const char *label);
-void part_row_end(const char *label);
+void part_group_begin(const char *id); // one item to what asks about the last one
+void part_group_end(const char *id);
+void part_space(float width, float height);
 void part_same_line(float gap);
-bool part_has_width(void); // ui_width was called for the next widget
+bool part_button(const char *label, float width); // 0: as wide as its label
 typedef struct part_area {
     ui_rect area;
     bool clicked, hovered, held;
@@ -83,6 +95,22 @@ ui_canvas part_bare_sideways(const char *id, ui_rect area);
 void part_popup_open(const char *id);
 bool part_popup_begin(const char *id);
 void part_popup_end(void);
+
+// ---- widgets.c --------------------------------------------------------------------------------
+
+// A group of a label, if it is shown, and a widget, whose width is returned.
+float part_row_begin(const char *label);
+void part_row_end(const char *label);
+void part_forget_width(void); // that ui_width has said
+
+// ---- picture.c: triangles of a frame, as roil_show takes them ---------------------------------
+
+void picture_begin(void);
+size_t picture_vertices(const roil_vertex *vertices, size_t count); // where the first one stands
+void picture_draw(const roil_texture *texture, const float clip[4], const uint16_t *indices,
+                  size_t count, size_t first_vertex);
+void picture_end(roil_picture *out); // valid until the next begin
+void picture_free(void);
 
 // ---- marks.c: $ROIL_WIDGETS, with ui_mark -----------------------------------------------------
 

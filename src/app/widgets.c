@@ -7,10 +7,58 @@
 #include <string.h>
 
 enum { MAX_LABEL = 256, MAX_TEXT = 4096 };
-static const float SWITCH = 30, INSET = 0.18f;
+static const float LABEL_SHARE = 0.4f, SWITCH = 30, INSET = 0.18f;
+
+static struct {
+    bool given;
+    float width;
+} next; // of the next widget, as ui_width said
 
 static bool is_shown(const char *label) {
     return label[0] && strncmp(label, "##", 2) != 0;
+}
+
+// ---- rows -------------------------------------------------------------------------------------
+
+void ui_width(float width) {
+    next.given = true;
+    next.width = width;
+}
+
+void part_forget_width(void) {
+    next.given = false;
+}
+
+static float take_width(void) {
+    ui_rect space = ui_space();
+    float room = space.right - space.left, wanted = next.given ? next.width : 0;
+    next.given = false;
+    return floorf(fmaxf(wanted > 0 ? wanted : room + wanted, 1));
+}
+
+float part_row_begin(const char *label) {
+    float width = take_width();
+    part_group_begin(label);
+    if (!is_shown(label)) return width;
+    ui_rect at = ui_space();
+    float column = floorf(width * LABEL_SHARE), height = ui_line_height() + 2 * ui_scale();
+    part_space(column, height);
+    draw_text((ui_rect){at.left, at.top, at.left + column - 6 * ui_scale(), at.top + height},
+              UI_TEXT, label, 0);
+    part_same_line(0);
+    return width - column;
+}
+
+void part_row_end(const char *label) {
+    part_group_end(label);
+}
+
+void ui_gap(float height) { // besides the gap that is between all lines
+    part_space(0, fmaxf(height - 6 * ui_scale(), 0));
+}
+
+bool ui_button(const char *label) {
+    return part_button(label, next.given ? take_width() : 0);
 }
 
 // ---- text and layout --------------------------------------------------------------------------
@@ -82,7 +130,7 @@ bool ui_icon_button(const char *id, int icon, bool active, const char *tooltip) 
 
 bool ui_toggle(const char *label, bool *value) {
     float gap = 7 * ui_scale(), track = SWITCH * ui_scale(), text = 0;
-    bool column = part_has_width();
+    bool column = next.given;
     char name[MAX_LABEL];
     if (column || !is_shown(label)) {
         part_row_begin(label);
