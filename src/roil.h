@@ -134,7 +134,7 @@ typedef struct roil_recipe { // what made a picture
     size_t setting_count;
 } roil_recipe;
 roil_recipe *roil_read_recipe(const char *png); // NULL when the file holds none
-void roil_free_recipe(roil_recipe *r);     // NULL is fine
+void roil_free_recipe(roil_recipe *r);          // NULL is fine
 
 typedef struct roil_video roil_video;
 roil_video *roil_video_create(roil_effect *e, const char *file, double fps); // .mp4

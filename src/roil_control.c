@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "roil_impl.h"
 #include "script/reference.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -124,6 +125,7 @@ static void fill_scene(const roil_effect *e, const effect_control *c, roil_contr
     if (strcmp(v->name, "camera.eye") == 0) {
         camera.eye = effect_control_original(c);
         scene_camera_eye(&camera, context_of(e), eye, target);
+        for (int i = 0; i < 3; i++) eye[i] = roundf(eye[i] * 1e6f) / 1e6f + 0.0f; // no -1e-7
     }
     fill_moving(e, c, eye, out);
 }

@@ -134,6 +134,23 @@ static void threads_have_their_own_message(void **state) {
     assert_string_equal(err_get(), "mine");
 }
 
+static void floats_are_short_and_exact(void **state) {
+    (void)state;
+    static const struct {
+        float value;
+        const char *text;
+    } cases[] = {
+        {0, "0"},        {-0.0f, "0"},           {1, "1"},         {0.1f, "0.1"},
+        {-2.5f, "-2.5"}, {16777216, "16777216"}, {1e-7f, "1e-07"}, {1.0f / 3, "0.33333334"},
+        {3e38f, "3e+38"}};
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        strbuf out = {0};
+        strbuf_add_float(&out, cases[i].value);
+        assert_string_equal(strbuf_text(&out), cases[i].text);
+        strbuf_free(&out);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(buffer_grows),
@@ -145,6 +162,7 @@ int main(void) {
         cmocka_unit_test(message_can_be_built_from_itself),
         cmocka_unit_test(long_messages_are_cut),
         cmocka_unit_test(threads_have_their_own_message),
+        cmocka_unit_test(floats_are_short_and_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
