@@ -105,6 +105,7 @@ bool ui_input(const char *label, const char *hint, char *text, size_t capacity);
 // take a typed value on a double click.
 bool ui_number(const char *label, float *value, int components, float min, float max,
                bool log_scale, const char *unit);
+// INT_MIN and INT_MAX stand for no end.
 bool ui_whole(const char *label, int *value, int min, int max, const char *unit);
 bool ui_color_edit(const char *label, float *linear, int components); // linear Rec.709, HDR
 bool ui_active(void);   // the last widget is being used

@@ -1,6 +1,7 @@
 // Widgets that ImGui has not, or not as an artist wants them: headings, icons, toggles, numbers,
 // colours.
 #include "app/ui_parts.h"
+#include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -178,10 +179,12 @@ bool ui_number(const char *label, float *value, int components, float min, float
 }
 
 bool ui_whole(const char *label, int *value, int min, int max, const char *unit) {
-    const number_range range = {min, max, false, true};
+    number_range range = {min, max, false, true};
+    if (min == INT_MIN) range.min = -INFINITY;
+    if (max == INT_MAX) range.max = INFINITY;
     double v = *value;
     bool changed = part_bar("##value", &v, &range, unit, part_row_begin(label));
-    if (changed) *value = (int)v;
+    if (changed) *value = (int)fmin(fmax(v, INT_MIN), INT_MAX);
     part_row_end(label);
     return changed;
 }
