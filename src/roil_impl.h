@@ -25,6 +25,7 @@ struct roil_effect {
 // What a control is worth, as the table or word that Lua reads. `whole`: of palettes and curves
 // also what no setting changes, such as the period. roil_lua.c
 void roil_add_lua(const roil_effect *e, const effect_control *c, bool whole, strbuf *out);
+void roil_add_lua_key(const char *name, strbuf *out); // "name = ", in brackets where it must be
 // Reads an image of the graph as RGBA floats, rows from the top; free with mem_free.
 float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height);
 graph_image roil_find_image(roil_effect *e, const char *name); // zero with a message

@@ -102,6 +102,17 @@ static void add_curve(strbuf *out, const curve *c, bool whole) {
     strbuf_add(out, " }");
 }
 
+void roil_add_lua_key(const char *name, strbuf *out) {
+    static const char *const words[] = {
+        "and",      "break",  "do",   "else", "elseif", "end",   "false", "for",
+        "function", "goto",   "if",   "in",   "local",  "nil",   "not",   "or",
+        "repeat",   "return", "then", "true", "until",  "while",
+    };
+    bool plain = str_is_identifier(name);
+    for (size_t i = 0; i < COUNT_OF(words); i++) plain = plain && strcmp(words[i], name) != 0;
+    strbuf_add(out, plain ? "%s = " : "[\"%s\"] = ", name);
+}
+
 // ---- controls -----------------------------------------------------------------------------------
 
 static void add_control_value(strbuf *out, const roil_control *c, const float value[4]) {
@@ -179,7 +190,7 @@ char *roil_control_lua(roil_effect *e, const char *name) {
     else if (c->kind == EFFECT_CONTROL_CURVE)
         strbuf_add(&out, "curve ");
     else
-        strbuf_add(&out, "%s = ", control.label);
+        roil_add_lua_key(control.label, &out);
     roil_add_lua(e, c, true, &out);
     return out.text;
 }

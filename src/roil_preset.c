@@ -113,11 +113,13 @@ void roil_free_preset(roil_preset *preset) {
 
 static void print_preset(const roil_effect *e, const char *name, strbuf *out) {
     const char *file = path_name(effect_file(e->effect));
-    strbuf_add(out, "-- Preset of %s: roil render %s --preset %s\nreturn {\n", file, file, name);
+    int length = (int)strcspn(file, "\r\n"); // it stands in a comment
+    strbuf_add(out, "-- Preset of %.*s, for --preset %s.\nreturn {\n", length, file, name);
     for (size_t i = 0; i < effect_control_count(e->effect); i++) {
         const effect_control *c = effect_get_control(e->effect, i);
         if (!c->moved || strncmp(c->name, "camera.", 7) == 0) continue;
-        strbuf_add(out, strchr(c->name, '.') ? "  [\"%s\"] = " : "  %s = ", c->name);
+        strbuf_add(out, "  ");
+        roil_add_lua_key(c->name, out);
         roil_add_lua(e, c, false, out);
         strbuf_add(out, ",\n");
     }

@@ -4,7 +4,7 @@
 static const char script_text[] =
     "local fx = effect { }\n"
     "local density = param { 'density', 20, min = 0, max = 200 }\n"
-    "local on = param { 'on', true }\n"
+    "local on, last = param { 'on', true }, param { 'end', 1 }\n"
     "local look = param { 'look', 'soft', words = { 'soft', 'hard' } }\n"
     "local wind = param { 'wind', {1, 0, 0.5} }\n"
     "local tint = param { 'tint', '#ff8000' }\n"
@@ -16,6 +16,7 @@ static const char script_text[] =
 static const roil_setting moved[] = {
     {"density", "30.5"},
     {"on", "false"},
+    {"end", "2"},
     {"look", "hard"},
     {"wind", "0.1,0,-3"},
     {"tint", "#123456"},
