@@ -194,6 +194,7 @@ static void close_device(gpu *g) {
     gpu_buffer_destroy(g, g->ring.buffer);
     vk_window_close(g);
     vk_collect_all(g);
+    vk_built_close(g);
     for (int i = 0; i < GPU_SAMPLER_COUNT; i++) {
         vkDestroySampler(g->device, g->samplers[i], NULL);
     }

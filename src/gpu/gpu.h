@@ -182,8 +182,8 @@ typedef struct gpu_graphics_desc { // vertices are pulled from storage buffers: 
     bool blend;           // colours are premultiplied and laid over what is there
 } gpu_graphics_desc;
 
-// Pipelines are shared: a description equal to one that is still alive costs no compile. Each
-// create has its own destroy.
+// Pipelines are shared: a description equal to one that is still alive, or was until lately, costs
+// no compile. Each create has its own destroy.
 gpu_pipeline *gpu_pipeline_create_compute(gpu *g, const gpu_compute_desc *desc);
 gpu_pipeline *gpu_pipeline_create_graphics(gpu *g, const gpu_graphics_desc *desc);
 void gpu_pipeline_destroy(gpu *g, gpu_pipeline *pipeline);

@@ -19,6 +19,7 @@ enum {
     VK_MAX_TARGETS = 4,
     VK_BATCHES = 4,
     VK_BUILT_ROWS = 64,
+    VK_BUILT_IDLE = 16,
     VK_MAX_SHOWN = 16
 };
 
@@ -166,6 +167,7 @@ vk_built *vk_built_find(gpu *g, hash128 key);
 vk_built *vk_built_add(gpu *g, vk_built *built);
 void vk_built_release(gpu *g, vk_built *built);
 void vk_built_free(gpu *g, void *built); // at once: no submission may use it
+void vk_built_close(gpu *g);             // the same for all that are idle
 
 gpu_buffer *vk_buffer_create(gpu *g, uint64_t size, VkBufferUsageFlags usage, vk_memory_kind kind,
                              const char *label);
@@ -347,6 +349,8 @@ struct gpu {
 
     pthread_mutex_t built_lock;
     vk_built *built[VK_BUILT_ROWS]; // by hash
+    vk_built *idle[VK_BUILT_IDLE];  // of no pipeline any more; the oldest first
+    uint32_t idle_count;
 
     VkPipelineCache cache;
     char *cache_path;

@@ -27,12 +27,34 @@ static const gpu_graphics_desc triangle_desc = {.label = "triangle",
                                                 .slot_count = COUNT_OF(triangle_slots),
                                                 .colors = {GPU_RGBA8}};
 
-static size_t count_built(gpu *g) {
+static size_t count_built(gpu *g) { // those in use
     size_t count = 0;
     for (int i = 0; i < VK_BUILT_ROWS; i++) {
-        for (const vk_built *built = g->built[i]; built; built = built->next) count++;
+        for (const vk_built *built = g->built[i]; built; built = built->next)
+            count += built->references > 0;
     }
     return count;
+}
+
+static void last_ones_are_kept_for_a_while(void **state) {
+    gpu *g = *state;
+    gpu_pipeline *a = gpu_pipeline_create_compute(g, &step_desc);
+    gpu_test_ok(a);
+    const vk_built *built = a->built;
+    gpu_pipeline_destroy(g, a);
+    a = gpu_pipeline_create_compute(g, &step_desc);
+    assert_ptr_equal(a->built, built);
+    for (uint32_t i = 0; i < 2 * VK_BUILT_IDLE; i++) {
+        gpu_compute_desc other = step_desc;
+        other.local_size[0] = 1 + i;
+        gpu_pipeline *b = gpu_pipeline_create_compute(g, &other);
+        gpu_test_ok(b);
+        gpu_pipeline_destroy(g, b);
+    }
+    assert_int_equal(g->idle_count, VK_BUILT_IDLE);
+    assert_int_equal(count_built(g), 1);
+    gpu_pipeline_destroy(g, a);
+    assert_int_equal(g->idle_count, VK_BUILT_IDLE);
 }
 
 static void equal_descriptions_share_and_keep_their_labels(void **state) {
@@ -160,6 +182,7 @@ static void threads_share_without_losing_count(void **state) {
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(equal_descriptions_share_and_keep_their_labels),
+        cmocka_unit_test(last_ones_are_kept_for_a_while),
         cmocka_unit_test(any_difference_separates),
         cmocka_unit_test(survivor_works_when_the_first_has_gone),
         cmocka_unit_test(broken_code_is_refused_and_leaves_nothing),
