@@ -459,6 +459,27 @@ static void a_past_of_another_size_is_not_adopted(void **state) {
     end(fresh.g, &device);
 }
 
+static void adoption_is_undone_by_the_other_way_round(void **state) {
+    (void)state;
+    gpu device = {0};
+    feedback old = feedback_create(NULL), fresh = feedback_create("blur");
+    allocate(old.g, &device);
+    assert_true(graph_execute(old.g, &device));
+    gpu_image *now = graph_get_image(old.g, old.sum), *past = graph_get_image(old.g, old.past);
+    graph_adopt(fresh.g, old.g);
+    assert_null(graph_get_image(old.g, old.sum));
+    device.fail_at = device.created + 1; // of what only `fresh` has
+    assert_false(graph_allocate(fresh.g, &device));
+    graph_adopt(fresh.g, old.g);
+    graph_destroy(fresh.g, &device);
+    assert_ptr_equal(graph_get_image(old.g, old.sum), now);
+    assert_ptr_equal(graph_get_image(old.g, old.past), past);
+    strbuf_free(&device.log);
+    assert_true(graph_execute(old.g, &device)); // it needs no allocation
+    assert_null(strstr(strbuf_text(&device.log), "clear"));
+    end(old.g, &device);
+}
+
 // ---- failures ---------------------------------------------------------------------------------
 
 static void every_failed_allocation_is_reported_and_leaks_nothing(void **state) {
@@ -514,6 +535,7 @@ int main(void) {
         cmocka_unit_test(memory_of_a_plain_image_never_becomes_a_past),
         cmocka_unit_test(a_new_graph_adopts_the_past_of_an_old_one),
         cmocka_unit_test(a_past_of_another_size_is_not_adopted),
+        cmocka_unit_test(adoption_is_undone_by_the_other_way_round),
         cmocka_unit_test(every_failed_allocation_is_reported_and_leaks_nothing),
         cmocka_unit_test(a_failing_pass_is_named_and_ends_the_execution),
     };
