@@ -44,9 +44,12 @@ static void last_ones_are_kept_for_a_while(void **state) {
     gpu_pipeline_destroy(g, a);
     a = gpu_pipeline_create_compute(g, &step_desc);
     assert_ptr_equal(a->built, built);
-    for (uint32_t i = 0; i < 2 * VK_BUILT_IDLE; i++) {
+    for (uint32_t i = 0; i < VK_BUILT_IDLE + 4; i++) {
         gpu_compute_desc other = step_desc;
-        other.local_size[0] = 1 + i;
+        gpu_slot slots[GPU_MAX_SLOTS];
+        memcpy(slots, step_desc.slots, step_desc.slot_count * sizeof *slots);
+        slots[other.slot_count++] = (gpu_slot){.binding = 8 + i, .kind = GPU_SLOT_UNIFORM};
+        other.slots = slots;
         gpu_pipeline *b = gpu_pipeline_create_compute(g, &other);
         gpu_test_ok(b);
         gpu_pipeline_destroy(g, b);

@@ -139,7 +139,8 @@ static inline void world_render(pass_world *w, uint32_t width, uint32_t height,
                                 graph_image output) {
     gpu_test_ok(graph_add_output(w->host.graph, output));
     gpu_test_ok(graph_compile(w->host.graph, width, height));
-    for (size_t i = 0; i < w->count; i++) gpu_test_ok(pass_build(w->passes[i]) && pass_allocate(w->passes[i]));
+    for (size_t i = 0; i < w->count; i++)
+        gpu_test_ok(pass_build(w->passes[i]) && pass_allocate(w->passes[i]));
     gpu_test_ok(graph_allocate(w->host.graph, w->host.device));
     world_frame(w, width, height, 1);
 }
