@@ -5,6 +5,7 @@
 // Units.
 static const float PADDING = 24, ROW = 26, BETWEEN = 40, GAP = 14, CAP = 14, HEADING = 30,
                    BLOCK_GAP = 12;
+static const float EDGE = 12; // of PADDING, what a card has itself
 
 typedef struct entry {
     const char *name, *help;
@@ -87,11 +88,11 @@ void help_draw(live *l) {
     float left = floorf((l->view.left + l->view.right - width) / 2);
     float top = floorf((l->view.top + l->view.bottom - height) / 2);
     ui_shade(l->view);
-    ui_panel_begin("help", (ui_rect){left, top, left + width, top + height});
-    ui_rect space = ui_space();
-    ui_canvas_begin("keys", 0, space.bottom - space.top);
-    top = draw_block(&keys, left + PADDING * s, top + PADDING * s, column);
-    draw_block(&hands, left + PADDING * s, top + BLOCK_GAP * s, column);
+    ui_card_begin("help", (ui_rect){left, top, left + width, top + height}, 0);
+    ui_canvas c = ui_canvas_begin("keys", width - 2 * EDGE * s, height - 2 * EDGE * s);
+    left = c.area.left + (PADDING - EDGE) * s;
+    top = draw_block(&keys, left, c.area.top + (PADDING - EDGE) * s, column);
+    draw_block(&hands, left, top + BLOCK_GAP * s, column);
     ui_canvas_end();
-    ui_panel_end();
+    ui_card_end();
 }

@@ -207,7 +207,7 @@ static void draw_rows(inspector *p, const roil_image_info *image) {
     float half = (ui_space().right - ui_space().left) / 2 - 4 * ui_scale();
     draw_channels(p, image);
     ui_width(half);
-    ui_number("exposure", &p->how.exposure, 1, -MAX_EXPOSURE, MAX_EXPOSURE, false, "stops");
+    ui_number("exposure", &p->how.exposure, 1, -MAX_EXPOSURE, MAX_EXPOSURE, false, "EV");
     ui_same_line();
     draw_level(p, image);
     if (image->volume) draw_slice(p, image);
@@ -276,21 +276,22 @@ static void draw_foot(const inspector *p, const roil_image_info *image) {
     } else {
         ui_text_color(UI_DIM, "Point at the image to read a value");
     }
+    const uint32_t *size = image->size;
+    int used = snprintf(text, sizeof text, "%u \u00d7 %u", size[0], size[1]);
+    if (image->volume)
+        used += snprintf(text + used, sizeof text - (size_t)used, " \u00d7 %u", size[2]);
     float plane[2];
     image_view_plane(image, p->how.mip, p->how.axis, plane);
-    if (image->volume)
-        snprintf(text, sizeof text, "%u \u00d7 %u \u00d7 %u", image->size[0], image->size[1],
-                 image->size[2]);
-    else
-        snprintf(text, sizeof text, "%u \u00d7 %u", image->size[0], image->size[1]);
+    if (p->how.mip)
+        snprintf(text + used, sizeof text - (size_t)used, ", of this level %.0f \u00d7 %.0f",
+                 (double)plane[0], (double)plane[1]);
     ui_text_color(UI_DIM, "%s   %s   %.0f %%", image->format, text, 100 * (double)p->view.zoom);
 }
 
 void inspector_draw(live *l) {
     if (!l->session.inspector) return;
     inspector *p = l->inspector;
-    float s = ui_scale(), right = l->view.right - 16 * s, top = l->view.top + 16 * s;
-    const ui_rect where = {right - WIDTH * s, top, right, top + HEIGHT * s};
+    const ui_rect where = label_place(l->view, WIDTH, HEIGHT, true);
     if (ui_window_begin("Inspector", &l->session.inspector, where, false)) {
         p->count = 0;
         if (l->effect) list_images(p, l->effect);

@@ -1,9 +1,10 @@
-// Text on a canvas.
+// Text on a canvas, a switch, a place.
 #include "app/label.h"
 #include "app/panel_model.h"
 #include <math.h>
 
 static const float SPACING = 6, PADDING = 4, SWITCH_PADDING = 9; // units
+static const float MARGIN = 16, MIN_WINDOW = 240;
 
 float label_height(void) {
     return ui_line_height() - SPACING * ui_scale();
@@ -39,4 +40,12 @@ bool label_switch(const char *label, bool *on, uint32_t color) {
                  ui_rgba(*on || c.hovered ? UI_TEXT : UI_DIM, 1), label);
     ui_canvas_end();
     return c.pressed;
+}
+
+ui_rect label_place(ui_rect view, float width, float height, bool right) {
+    float s = ui_scale(), least = MIN_WINDOW * s, margin = MARGIN * s;
+    float wide = fminf(width * s, fmaxf(view.right - view.left - 2 * margin, least));
+    float high = fminf(height * s, fmaxf(view.bottom - view.top - 2 * margin, least));
+    float left = right ? fmaxf(view.right - margin - wide, view.left) : view.left + margin;
+    return (ui_rect){left, view.top + margin, left + wide, view.top + margin + high};
 }

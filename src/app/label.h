@@ -1,5 +1,5 @@
-// Text on a canvas that ends, is centred, or has no more room than it is given; and a switch that
-// is its own label.
+// What the views of the live window share: text on a canvas that ends, is centred, or has no more
+// room than it is given; a switch that is its own label; where a window is opened.
 #pragma once
 #include "app/ui.h"
 
@@ -13,3 +13,7 @@ void label_within(float left, float y, float width, uint32_t color, const char *
 
 // True when it was switched. `color`: its own while it is on.
 bool label_switch(const char *label, bool *on, uint32_t color);
+
+// For a window of that size, in units, in the upper left or right corner of the view; smaller when
+// the view is.
+ui_rect label_place(ui_rect view, float width, float height, bool right);

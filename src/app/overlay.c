@@ -10,7 +10,6 @@
 // Units; those of the style that a card's size follows from.
 static const float PADDING = 12, SPACING = 6, MONO_SIZE = 0.92f;
 static const float MARGIN = 24, CARD_WIDTH = 900, CARD_SHARE = 0.7f; // of the view's height
-static const float EDGE = 3;
 enum { MAX_TEXT = 4096 };
 
 static const char *message_of(const live *l) {
@@ -45,8 +44,7 @@ static void draw_card(const char *message, bool hint, ui_rect at) {
     text_message m = text_split(message);
     snprintf(head, sizeof head, "%.*s", (int)m.head_length, m.head);
     snprintf(rest, sizeof rest, "%.*s", (int)m.rest_length, m.rest);
-    ui_fill((ui_rect){at.left - EDGE * s, at.top, at.left, at.bottom}, ui_rgba(UI_ERROR, 1), 0);
-    ui_panel_begin("message", at);
+    ui_card_begin("message", at, ui_rgba(UI_ERROR, 1));
     ui_text_wrapped(head);
     if (m.rest_lines) {
         ui_gap(SPACING * s);
@@ -56,7 +54,7 @@ static void draw_card(const char *message, bool hint, ui_rect at) {
         ui_gap(SPACING * s);
         ui_text_color(UI_DIM, "The last good effect goes on.");
     }
-    ui_panel_end();
+    ui_card_end();
 }
 
 // ---- notice -------------------------------------------------------------------------------------

@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 // Units.
+static const float WIDTH = 440, HEIGHT = 510; // of the window
 static const float PLOT_HEIGHT = 120, NAME_WIDTH = 124, MS_WIDTH = 74, SHARE_WIDTH = 46, ROW = 22;
 static const float FRAME_MS = 16.7f; // of a display that shows 60 pictures a second
 static const float IDLE_MS = 3000;   // between pictures: nothing wanted to be drawn
@@ -89,18 +90,27 @@ static void draw_column(const plot *p, size_t ago, float alpha) {
     }
 }
 
-static void draw_scale(const plot *p) {
+// Readable over what is plotted.
+static void plot_label(float left, float top, ui_color color, const char *text) {
     float s = ui_scale();
+    ui_rect behind = {left - 3 * s, top, left + ui_text_width(text) + 3 * s, top + label_height()};
+    ui_fill(behind, ui_rgba(UI_FIELD, 0.8f), 2 * s);
+    ui_label(left, top, ui_rgba(color, 1), text);
+}
+
+static void draw_scale(const plot *p) {
+    static const char goal[] = "16.7 ms";
+    float s = ui_scale(), height = label_height();
     char text[32];
     float y = roundf(plot_y(p, p->top / 2));
     ui_line(p->area.left, y, p->area.right, y, ui_rgba(UI_LINE, 0.7f), s);
     snprintf(text, sizeof text, "%g ms", (double)p->top);
-    ui_label(p->area.left + 6 * s, p->area.top + 3 * s, ui_rgba(UI_DIM, 1), text);
+    plot_label(p->area.left + 6 * s, p->area.top + 3 * s, UI_DIM, text);
     y = roundf(plot_y(p, FRAME_MS));
     if (y < p->area.top || p->area.bottom - y < 4 * s) return; // out of range
     ui_line(p->area.left, y, p->area.right, y, ui_rgba(UI_GOOD, 0.7f), s);
-    if (p->area.bottom - y < 20 * s || y - p->area.top < 20 * s) return;
-    label_right(p->area.right - 6 * s, y - 19 * s, ui_rgba(UI_GOOD, 0.9f), "16.7 ms");
+    float top = y - height - 2 * s < p->area.top ? y + 2 * s : y - height - 2 * s;
+    plot_label(p->area.right - 6 * s - ui_text_width(goal), top, UI_GOOD, goal);
 }
 
 // True when the pointer is over a frame, `ago`.
@@ -194,7 +204,8 @@ static void draw_heading(const history *past, bool chosen, size_t ago) {
     float left = heading(c.area.left, c.area.top, "GPU", gpu);
     left = heading(left, c.area.top, "CPU", cpu);
     ui_label(left, c.area.top, ui_rgba(UI_TEXT, 1), rate);
-    label_right(c.area.right, c.area.top, ui_rgba(chosen ? UI_ACCENT : UI_DIM, 1), which);
+    if (left + ui_text_width(rate) + ui_text_width(which) < c.area.right)
+        label_right(c.area.right, c.area.top, ui_rgba(chosen ? UI_ACCENT : UI_DIM, 1), which);
     ui_canvas_end();
 }
 
@@ -227,8 +238,7 @@ static void draw_facts(const live *l) {
 
 void performance_draw(live *l) {
     if (!l->session.performance) return;
-    float s = ui_scale(), left = l->view.left + 16 * s, top = l->view.top + 16 * s;
-    const ui_rect where = {left, top, left + 440 * s, top + 510 * s};
+    const ui_rect where = label_place(l->view, WIDTH, HEIGHT, false);
     if (ui_window_begin("Performance", &l->session.performance, where, false)) {
         const history *past = &l->performance->past;
         size_t ago = 0;

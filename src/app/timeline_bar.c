@@ -10,6 +10,7 @@
 
 // Units.
 static const float TRACK_HEIGHT = 38, STRIP = 10, INSET = 8, REACH = 7, LABEL_SPACE = 64;
+static const float SPEED_FROM = 450, SWITCHES_FROM = 640, RATE_FROM = 710; // of the bar's width
 
 typedef enum grab { GRAB_NONE, GRAB_FRAME, GRAB_FROM, GRAB_TO, GRAB_RANGE } grab;
 static struct {
@@ -210,6 +211,17 @@ static void draw_rate(const live *l) {
     ui_canvas_end();
 }
 
+static void draw_switches(live *l) {
+    timeline *t = &l->time;
+    label_switch("every frame", &t->every, ui_rgba(UI_ACCENT, 1));
+    ui_tooltip("Show every frame, however long each takes; else frames are left out to keep the "
+               "time");
+    ui_same_line();
+    if (label_switch("smooth", &t->smooth, ui_rgba(UI_ACCENT, 1))) seek(l, t->frame);
+    ui_tooltip("Show times between frames, as often as the window is drawn");
+}
+
+// What does not fit into a narrow window is left out.
 static void draw_row(live *l) {
     timeline *t = &l->time;
     ui_rect space = ui_space();
@@ -217,19 +229,18 @@ static void draw_row(live *l) {
     draw_buttons(l);
     ui_same_line();
     draw_numbers(t);
-    ui_same_line();
-    draw_speed(t);
-    if (units > 700) { // else they would not fit
+    if (units > SPEED_FROM) {
         ui_same_line();
-        label_switch("every frame", &t->every, ui_rgba(UI_ACCENT, 1));
-        ui_tooltip("Show every frame, however long each takes; else frames are left out to keep "
-                   "the time");
-        ui_same_line();
-        if (label_switch("smooth", &t->smooth, ui_rgba(UI_ACCENT, 1))) seek(l, t->frame);
-        ui_tooltip("Show times between frames, as often as the window is drawn");
+        draw_speed(t);
     }
-    ui_same_line();
-    if (units > 560) draw_rate(l);
+    if (units > SWITCHES_FROM) {
+        ui_same_line();
+        draw_switches(l);
+    }
+    if (units > RATE_FROM) {
+        ui_same_line();
+        draw_rate(l);
+    }
 }
 
 void timeline_draw(live *l, ui_rect where) {

@@ -21,7 +21,7 @@ static_assert(sizeof(ImDrawVert) == sizeof(roil_vertex) &&
 namespace {
 
 enum { MAX_TABLES = 8, MAX_TAPS = 32 };
-const float TEXT_SIZE = 16, TIP_SECONDS = 0.45f, TIP_WIDTH = 340;
+const float TEXT_SIZE = 16, TIP_SECONDS = 0.45f, TIP_WIDTH = 340, CARD_ROUNDING = 6, CARD_EDGE = 4;
 
 struct state {
     GLFWwindow *window;
@@ -262,21 +262,42 @@ static const ImGuiWindowFlags STILL = ImGuiWindowFlags_NoTitleBar | ImGuiWindowF
                                       ImGuiWindowFlags_NoSavedSettings |
                                       ImGuiWindowFlags_NoBringToFrontOnFocus;
 
-void ui_panel_begin(const char *name, ui_rect where) {
+static void panel_begin(const char *name, ui_rect where, ImGuiWindowFlags flags, bool framed) {
     ImGui::SetNextWindowPos(low(where));
     ImGui::SetNextWindowSize(high(where) - low(where));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, framed ? CARD_ROUNDING * ui.scale : 0);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, framed ? ui.scale : 0);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
-    ImGui::Begin(name, nullptr, STILL);
+    ImGui::Begin(name, nullptr, flags);
     ui_mark(name, where);
     ImGui::PopStyleVar(3);
     if (!ui.depth++) ui.panel = true;
 }
 
+void ui_panel_begin(const char *name, ui_rect where) {
+    panel_begin(name, where, STILL, false);
+}
+
 void ui_panel_end(void) {
     ui.depth--;
     ImGui::End();
+}
+
+void ui_card_begin(const char *name, ui_rect where, uint32_t edge) {
+    ImVec2 display = ImGui::GetIO().DisplaySize, size = high(where) - low(where);
+    float left = fmaxf(fminf(where.left, display.x - size.x), 0);
+    float top = fmaxf(fminf(where.top, display.y - size.y), 0);
+    panel_begin(name, {left, top, fminf(left + size.x, display.x), fminf(top + size.y, display.y)},
+                STILL | ImGuiWindowFlags_NoFocusOnAppearing, true);
+    ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
+    list()->PushClipRectFullScreen(); // beyond the padding
+    list()->AddRectFilled(ImVec2(left, top), ImVec2(left + CARD_EDGE * ui.scale, top + size.y),
+                          edge, CARD_ROUNDING * ui.scale, ImDrawFlags_RoundCornersLeft);
+    list()->PopClipRect();
+}
+
+void ui_card_end(void) {
+    ui_panel_end();
 }
 
 bool ui_window_begin(const char *title, bool *open, ui_rect where, bool fixed) {

@@ -56,6 +56,10 @@ void ui_copy(const char *text); // to the clipboard
 // A part of the window that does not move. Content scrolls when it does not fit.
 void ui_panel_begin(const char *name, ui_rect where);
 void ui_panel_end(void);
+// The same for what is said over all the rest: it lies on top, and is moved into the window.
+// `edge`: colour of a line along its left side; 0: none.
+void ui_card_begin(const char *name, ui_rect where, uint32_t edge);
+void ui_card_end(void);
 // A window that the user moves; `*open` becomes false when it is closed. False: nothing to draw,
 // but end it all the same. `where` holds for the first time only. fixed: as large as its content.
 bool ui_window_begin(const char *title, bool *open, ui_rect where, bool fixed);
