@@ -87,7 +87,7 @@ bool roil_live_set(roil_live *l, const char *name, const char *value) {
         drop_setting(l, name);
     else
         put_setting(l, name, value, c->initial);
-    if (is_structural(e, c)) live_want(l, clock_seconds());
+    if (is_structural(e, c)) live_want(l);
     return true;
 }
 
@@ -106,7 +106,7 @@ bool roil_live_reset(roil_live *l, const char *name) {
     const effect_control *c = effect_find_control(e, name);
     drop_setting(l, name);
     if (!c) return false;
-    if (is_structural(e, c)) live_want(l, clock_seconds());
+    if (is_structural(e, c)) live_want(l);
     return is_fixed(c) || effect_reset(e, name);
 }
 
@@ -194,7 +194,11 @@ bool roil_live_update(roil_live *l, uint32_t width, uint32_t height, double fram
 
 static void on_changed(void *user, const char *path, double when) {
     (void)path;
-    live_want(user, when);
+    live_note(user, when);
+}
+
+static void on_settled(void *user) { // files saved together make one build
+    live_wake(user);
 }
 
 static bool make_library(roil_live *l) {
@@ -248,15 +252,14 @@ roil_live *roil_live_create(roil *r, const roil_live_desc *desc) {
     l->shelf = shelf_create();
     for (size_t i = 0; i < desc->setting_count; i++)
         put_setting(l, desc->settings[i].name, desc->settings[i].value, NULL);
-    l->watch =
-        make_library(l) ? watch_create(&(watch_desc){.changed = on_changed, .user = l}) : NULL;
+    l->watch = make_library(l) ? watch_create(&(watch_desc){on_changed, on_settled, l}) : NULL;
     const char *file = l->file;
     if (!l->watch || !watch_set(l->watch, &file, 1)) {
         free_live(l);
         return NULL;
     }
     l->building = true; // until the builder says otherwise
-    live_want(l, clock_seconds());
+    live_want(l);
     if (pthread_create(&l->thread, NULL, live_run, l) != 0) err_out_of_memory(0);
     return l;
 }

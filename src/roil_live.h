@@ -49,8 +49,11 @@ struct roil_live {
     size_t good_count, watched_count;
 };
 
-void *live_run(void *live);                // the builder's thread
-void live_want(roil_live *l, double when); // a build; not with the lock held
+void *live_run(void *live); // the builder's thread
+// None of these with the lock held: asks for a build, in two steps or in one.
+void live_note(roil_live *l, double when);
+void live_wake(roil_live *l);
+void live_want(roil_live *l);
 void live_free_result(live_result *result);
 void live_free_names(char **names, size_t count);
 // "file:line: message" with the source line beneath, and a caret where the column can be told.

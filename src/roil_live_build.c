@@ -73,7 +73,7 @@ static void follow_files(roil_live *l, file_set *set, bool good, int64_t begin) 
     }
     if (!watch_set(l->watch, (const char *const *)set->paths, set->count))
         log_write(LOG_WARNING, "%s", err_get());
-    if (was_missed(l, set, begin)) live_want(l, clock_seconds());
+    if (was_missed(l, set, begin)) live_want(l);
     live_free_names(l->watched, l->watched_count);
     l->watched = set->paths;
     l->watched_count = set->count;
@@ -133,13 +133,23 @@ void live_free_result(live_result *result) {
 
 // ---- the thread -------------------------------------------------------------------------------
 
-void live_want(roil_live *l, double when) {
+void live_note(roil_live *l, double when) {
     pthread_mutex_lock(&l->lock);
     if (!l->wanted) l->since = when;
     l->wanted = true;
     l->latest = when;
+    pthread_mutex_unlock(&l->lock);
+}
+
+void live_wake(roil_live *l) {
+    pthread_mutex_lock(&l->lock);
     pthread_cond_signal(&l->news);
     pthread_mutex_unlock(&l->lock);
+}
+
+void live_want(roil_live *l) {
+    live_note(l, clock_seconds());
+    live_wake(l);
 }
 
 // An editor may be between truncating the file and writing it. True when that was waited for, or
