@@ -17,8 +17,7 @@
 
 typedef struct job {
     const char *file, *device, *preview, *after_hang;
-    roil_setting *settings; // a preset has its name as value and no name of its own
-    size_t setting_count, setting_capacity;
+    app_settings settings;
     uint32_t width, height;
     double frame;
     int paused, validate, hidden_panel;
@@ -28,23 +27,12 @@ typedef struct job {
 
 enum { OPTION_SIZE = 1, OPTION_SET, OPTION_PRESET };
 
-static void add_setting(job *j, const char *name, const char *value) {
-    MEM_RESERVE(j->settings, j->setting_count + 1, j->setting_capacity);
-    j->settings[j->setting_count++] = (roil_setting){name, value};
-}
-
 // Handles one option of the table below; poptGetOptArg's text lives until the program ends.
 static bool take_option(job *j, poptContext context, int option) {
     char *text = poptGetOptArg(context);
     if (option == OPTION_SIZE) return app_parse_size(text, &j->width, &j->height);
-    if (option == OPTION_PRESET) {
-        add_setting(j, NULL, text);
-        return true;
-    }
-    char *equals = strchr(text, '=');
-    if (!equals || equals == text) return err_set("--set '%s'; accepted: NAME=VALUE", text);
-    *equals = '\0';
-    add_setting(j, text, equals + 1);
+    if (option == OPTION_SET) return app_add_set(&j->settings, text);
+    app_add_preset(&j->settings, text);
     return true;
 }
 
@@ -92,37 +80,6 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
     if (option < -1) return err_set("%s: %s", poptBadOption(*context, 0), poptStrerror(option));
     j->file = poptGetArg(*context);
     return check(j, *context);
-}
-
-// ---- following --------------------------------------------------------------------------------
-
-// Presets and settings in the order of the command line: what comes later counts.
-static roil_live *start_following(roil *r, const job *j) {
-    roil_setting *all = NULL;
-    size_t count = 0, capacity = 0, preset_count = 0;
-    roil_preset **presets = mem_alloc(j->setting_count * sizeof *presets);
-    bool done = true;
-    for (size_t i = 0; done && i < j->setting_count; i++) {
-        const roil_setting *setting = &j->settings[i];
-        roil_preset single = {.settings = &j->settings[i], .count = 1}, *given = &single;
-        if (!setting->name) {
-            given = roil_read_preset(r, j->file, setting->value);
-            done = given != NULL;
-            if (done) presets[preset_count++] = given;
-        }
-        for (size_t k = 0; done && k < given->count; k++) {
-            MEM_RESERVE(all, count + 1, capacity);
-            all[count++] = given->settings[k];
-        }
-    }
-    roil_live *l = NULL;
-    const roil_live_desc desc = {
-        .file = j->file, .settings = all, .setting_count = count, .wake = window_wake};
-    if (done) l = roil_live_create(r, &desc);
-    for (size_t i = 0; i < preset_count; i++) roil_free_preset(presets[i]);
-    mem_free(presets);
-    mem_free(all);
-    return l;
 }
 
 // ---- after a hang -----------------------------------------------------------------------------
@@ -217,11 +174,15 @@ static int run_window(live *l, window *w, const job *j) {
     return status;
 }
 
-static int run_device(live *l, window *w, const job *j) {
+static int run_device(live *l, window *w, job *j) {
     l->r =
         roil_create(&(roil_desc){.device = j->device, .validate = j->validate, .window = &w->desc});
     if (!l->r) return app_fail_input();
-    l->follow = start_following(l->r, j);
+    if (app_collect_settings(&j->settings, l->r, j->file, NULL))
+        l->follow = roil_live_create(l->r, &(roil_live_desc){.file = j->file,
+                                                             .settings = j->settings.all,
+                                                             .setting_count = j->settings.count,
+                                                             .wake = window_wake});
     int status = l->follow ? run_window(l, w, j) : app_fail_input();
     roil_live_destroy(l->follow);
     uint64_t complaints = roil_validation_messages(l->r);
@@ -231,7 +192,7 @@ static int run_device(live *l, window *w, const job *j) {
     return status;
 }
 
-static int run(const job *j) {
+static int run(job *j) {
     live l = {.file = j->file, .start = j->frame};
     l.time.frame = isfinite(j->frame) ? j->frame : 1;
     l.time.playing = !j->paused;
@@ -254,6 +215,6 @@ int cmd_live(int argc, const char **argv) {
                      ? run(&j)
                      : app_fail(APP_BAD_USAGE, "live: %s", roil_error());
     poptFreeContext(context);
-    mem_free(j.settings);
+    app_free_settings(&j.settings);
     return status;
 }

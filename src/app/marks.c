@@ -1,10 +1,11 @@
 // Where widgets are, for programs that work the window: a JSON file of rectangles by name. A name
 // is the innermost ui_push and the widget's own id, as far as it is not "##value": "density",
-// "fire/ramp", "search".
+// "fire/ramp", "search"; in lower case.
 #include "app/ui_parts.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include <ctype.h>
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,6 +41,7 @@ void ui_mark(const char *name, ui_rect area) {
     strbuf full = {0};
     strbuf_add(&full, "%s%s%.*s", group, group[0] && !value ? "/" : "",
                value ? 0 : (int)strcspn(own, "#"), own);
+    for (char *at = full.text; at && *at; at++) *at = (char)tolower((unsigned char)*at);
     if (!marks.now) marks.now = json_object();
     json_object_set_new(marks.now, strbuf_text(&full),
                         json_pack("[f,f,f,f]", (double)area.left, (double)area.top,
