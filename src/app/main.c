@@ -62,6 +62,9 @@ int main(int argc, char **argv) {
     const char *near = str_nearest(wanted, names, COUNT_OF(names));
     if (near)
         return app_fail(APP_BAD_USAGE, "unknown command '%s'; did you mean '%s'?", wanted, near);
-    return app_fail(APP_BAD_USAGE,
-                    "unknown command '%s'; accepted: render, live, check, info, export", wanted);
+    strbuf accepted = {0};
+    for (size_t i = 0; i < COUNT_OF(names); i++) strbuf_add(&accepted, i ? ", %s" : "%s", names[i]);
+    app_fail(APP_BAD_USAGE, "unknown command '%s'; accepted: %s", wanted, strbuf_text(&accepted));
+    strbuf_free(&accepted);
+    return APP_BAD_USAGE;
 }

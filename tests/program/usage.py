@@ -21,7 +21,7 @@ class Usage(Case):
 
     def test_unknown_command_gets_a_suggestion(self):
         self.fails(2, ["unknown command 'rendr'", "did you mean 'render'?"], "rendr")
-        self.fails(2, ["unknown command 'bake'", "accepted: render, check, info"], "bake")
+        self.fails(2, ["unknown command 'bake'", "accepted: render, live, check, info"], "bake")
 
     def test_unknown_option_is_named(self):
         self.fails(2, "--sise", "render", "puff.lua", "--sise", "96x54")

@@ -202,7 +202,7 @@ class Files(Case):
     def test_an_endless_loop_stops_nothing(self):
         live = self.live()
         self.write("puff.lua", PUFF.replace("return fx", "fx.update = function() while true do end end\nreturn fx"))
-        live.expect(r"live: .*instructions")
+        live.expect(r"live: .*instruction limit")
         live.keys("Right")
         live.expect(r"live: drew frame 2\b")
         live.quit()
