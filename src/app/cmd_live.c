@@ -134,7 +134,9 @@ static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mo
     (void)scancode;
     live *l = glfwGetWindowUserPointer(handle);
     if (action == GLFW_PRESS) ui_key(key);
-    if (action != GLFW_RELEASE && !ui_wants_keys()) live_press(l, key, mods, action == GLFW_REPEAT);
+    bool types = !(mods & GLFW_MOD_CONTROL) && key < GLFW_KEY_F1; // or moves in what is typed
+    if (action != GLFW_RELEASE && !(types && ui_wants_keys()))
+        live_press(l, key, mods, action == GLFW_REPEAT);
 }
 
 static bool is_software(const roil *r) {

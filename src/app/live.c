@@ -46,7 +46,7 @@ void live_notice(live *l, const char *format, ...) {
 
 static void changed(live *l) {
     l->dirty = true;
-    l->broken = NULL; // it may work now
+    if (!l->held) l->broken = NULL; // it may work now
 }
 
 void live_set(live *l, const char *name, const char *value) {
@@ -85,8 +85,8 @@ static void take_over(live *l, loop *p) {
     } else {
         timeline_set_range(&l->time, info.fps, info.first_frame, info.frames);
     }
-    l->camera_moved = false; // the hand takes it up anew
-    if (!first) l->held = false;
+    l->camera_moved = false;     // the hand takes it up anew
+    if (!first) l->held = false; // a file has changed
     changed(l);
     p->drawn = p->drawn && !first;
     log_write(LOG_DEBUG, "live: took over, %.0f ms after the change",
@@ -150,9 +150,13 @@ static bool can_draw(const live *l) {
 }
 
 static void advance(live *l, loop *p, double seconds) {
-    if (l->time.playing) l->held = false;
+    if (l->held && l->time.playing) {
+        l->held = false;
+        changed(l);
+    }
     bool moved = l->effect && timeline_advance(&l->time, seconds);
-    if (l->broken && l->time.frame != l->broken_frame) l->broken = NULL; // another time may do
+    if (l->broken && !l->held && l->time.frame != l->broken_frame)
+        l->broken = NULL; // another time may do
     if (can_draw(l) && (moved || l->dirty)) draw_effect(l, p);
     if (can_draw(l) && p->drawn) inspector_update(l); // also while time stands still
 }
