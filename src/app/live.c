@@ -32,6 +32,7 @@ typedef struct loop {
     uint64_t reloads;
     bool drawn; // the effect has a picture
     bool told;  // that the first frame was shown
+    bool minimized;
 } loop;
 
 // ---- changes ----------------------------------------------------------------------------------
@@ -119,11 +120,11 @@ static void resize(live *l, loop *p, double now) {
         p->wanted[1] = height;
         p->wanted_since = now;
     }
-    if (width == l->width && height == l->height) return;
+    if ((width == l->width && height == l->height) || (l->effect && l->held)) return;
     if (p->drawn && now - p->wanted_since < STEADY) return;
     l->width = width;
     l->height = height;
-    if (!l->effect || l->held) return; // it will be prepared for that size
+    if (!l->effect) return; // it will be prepared for that size
     p->drawn = false;
     if (roil_prepare(l->effect, width, height))
         changed(l);
@@ -263,6 +264,7 @@ static bool show(live *l, loop *p, uint32_t width, uint32_t height) {
 
 static double time_to_sleep(const live *l, const loop *p, double now) {
     bool drawing = can_draw(l);
+    if (p->minimized) return LONG;
     if (drawing && l->dirty) return 0;
     double most = LONG;
     if (drawing && l->time.playing) {
@@ -270,7 +272,8 @@ static double time_to_sleep(const live *l, const loop *p, double now) {
         if (l->time.smooth || !(rate > 0)) return 0;
         most = fmin((1 - fabs(l->time.owed)) / rate, most);
     }
-    if (p->wanted[0] != l->width || p->wanted[1] != l->height) most = fmin(most, TICK);
+    if (!l->held && (p->wanted[0] != l->width || p->wanted[1] != l->height))
+        most = fmin(most, TICK);
     if (now < p->awake_until || now < l->notice_until) most = fmin(most, TICK);
     if (ui_wants_keys()) most = fmin(most, BLINK);
     return fmax(most, 0);
@@ -290,8 +293,8 @@ bool live_loop(live *l, window *w) {
         uint32_t width, height;
         p.last = now;
         window_pixels(w, &width, &height);
-        if (!width || !height) { // minimised
-            window_wait(LONG);
+        p.minimized = !width || !height;
+        if (p.minimized) {
             playing = false;
             continue;
         }
@@ -306,7 +309,10 @@ bool live_loop(live *l, window *w) {
         ui_begin();
         draw_interface(l, &at, width);
         ui_end(&p.picture);
-        if (roil_is_lost(l->r) || !show(l, &p, width, height)) return false;
+        if (roil_is_lost(l->r) || !show(l, &p, width, height)) {
+            if (!l->broken) live_break(l, roil_error());
+            return false;
+        }
     }
     return true;
 }
