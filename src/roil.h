@@ -245,7 +245,9 @@ typedef struct roil_live roil_live;
 
 typedef struct roil_live_desc {
     const char *file;
-    const roil_setting *settings;
+    const char *const *presets; // as roil_read_preset takes them; read again when they change
+    size_t preset_count;
+    const roil_setting *settings; // win over presets
     size_t setting_count;
     void (*wake)(void *user); // from another thread: roil_live_update has something to do; or NULL
     void *user;

@@ -1,5 +1,6 @@
 // The inside of libroil's objects, for src/roil*.c only.
 #pragma once
+#include "base/file.h"
 #include "effect/effect.h"
 #include "roil.h"
 
@@ -37,3 +38,5 @@ void roil_free_view(roil *r);
 // Tells the graph which images are outputs: the effect's pictures, and those of roil_keep that it
 // has. Before it is compiled for a size.
 void roil_apply_kept(roil_effect *e);
+// Where a preset lies, or would: of a name beside the effect, else the path itself.
+bool roil_preset_path(char out[PATH_CAP], const char *effect_file, const char *preset);

@@ -27,20 +27,38 @@ static void remove_setting(roil_live *l, live_setting *s) {
     memmove(s, s + 1, (l->setting_count - index) * sizeof *s);
 }
 
-static void put_setting(roil_live *l, const char *name, const char *text, const char *initial) {
-    live_setting made = {copy(name), copy(text), initial ? copy(initial) : NULL};
-    pthread_mutex_lock(&l->lock);
-    live_setting *old = find_setting(l, name);
+static void add_setting(roil_live *l, const roil_setting *s, const char *initial, bool preset) {
+    live_setting *old = find_setting(l, s->name);
     if (old) remove_setting(l, old);
     MEM_RESERVE(l->settings, l->setting_count + 1, l->setting_capacity);
-    l->settings[l->setting_count++] = made;
+    l->settings[l->setting_count++] =
+        (live_setting){copy(s->name), copy(s->value), initial ? copy(initial) : NULL, preset};
+}
+
+static void put_setting(roil_live *l, const char *name, const char *text, const char *initial) {
+    pthread_mutex_lock(&l->lock);
+    add_setting(l, &(roil_setting){name, text}, initial, false);
     pthread_mutex_unlock(&l->lock);
 }
 
-static void drop_setting(roil_live *l, const char *name) {
+void live_drop_preset_settings(roil_live *l) {
+    for (size_t i = l->setting_count; i-- > 0;)
+        if (l->settings[i].preset) remove_setting(l, &l->settings[i]);
+}
+
+void live_add_preset_setting(roil_live *l, const roil_setting *s) {
+    const live_setting *there = find_setting(l, s->name);
+    if (!there || there->preset) add_setting(l, s, NULL, true);
+}
+
+// Back to the script's own value `initial`. Where a preset says otherwise, that has to be said.
+static void drop_setting(roil_live *l, const char *name, const char *initial) {
     pthread_mutex_lock(&l->lock);
     live_setting *old = find_setting(l, name);
-    if (old) remove_setting(l, old);
+    if (old && old->preset && initial)
+        add_setting(l, &(roil_setting){name, initial}, initial, false);
+    else if (old)
+        remove_setting(l, old);
     pthread_mutex_unlock(&l->lock);
 }
 
@@ -84,7 +102,7 @@ bool roil_live_set(roil_live *l, const char *name, const char *value) {
     bool done = is_fixed(c) ? check_fixed(e, c, value) : effect_set(e, name, value);
     if (!done) return false;
     if (strcmp(value, c->initial) == 0)
-        drop_setting(l, name);
+        drop_setting(l, name, c->initial);
     else
         put_setting(l, name, value, c->initial);
     if (is_structural(e, c)) live_want(l);
@@ -94,17 +112,18 @@ bool roil_live_set(roil_live *l, const char *name, const char *value) {
 bool roil_live_reset(roil_live *l, const char *name) {
     if (!name) {
         bool done = true;
-        while (l->setting_count && done) {
-            char *last = copy(l->settings[l->setting_count - 1].name);
-            done = roil_live_reset(l, last);
-            mem_free(last);
+        for (size_t i = l->setting_count;
+             i-- > 0 && done;) { // each is removed, or stays as the last
+            char *each = copy(l->settings[i].name);
+            done = roil_live_reset(l, each);
+            mem_free(each);
         }
         return done;
     }
     if (!l->effect) return err_set("'%s' cannot be reset: no effect is loaded", name);
     effect *e = l->effect->effect;
     const effect_control *c = effect_find_control(e, name);
-    drop_setting(l, name);
+    drop_setting(l, name, c ? c->initial : NULL);
     if (!c) return false;
     if (is_structural(e, c)) live_want(l);
     return is_fixed(c) || effect_reset(e, name);
@@ -232,6 +251,7 @@ static void free_live(roil_live *l) { // its threads have ended
     while (l->setting_count) remove_setting(l, &l->settings[l->setting_count - 1]);
     live_free_names(l->good, l->good_count);
     live_free_names(l->watched, l->watched_count);
+    live_free_names(l->presets, l->preset_count);
     pthread_cond_destroy(&l->news);
     pthread_cond_destroy(&l->idle);
     pthread_mutex_destroy(&l->lock);
@@ -250,6 +270,9 @@ roil_live *roil_live_create(roil *r, const roil_live_desc *desc) {
     *l = (roil_live){.owner = r, .file = copy(desc->file), .wake = desc->wake, .user = desc->user};
     init_locks(l);
     l->shelf = shelf_create();
+    l->presets = mem_alloc(desc->preset_count * sizeof *l->presets);
+    for (size_t i = 0; i < desc->preset_count; i++)
+        l->presets[l->preset_count++] = copy(desc->presets[i]);
     for (size_t i = 0; i < desc->setting_count; i++)
         put_setting(l, desc->settings[i].name, desc->settings[i].value, NULL);
     l->watch = make_library(l) ? watch_create(&(watch_desc){on_changed, on_settled, l}) : NULL;

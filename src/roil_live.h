@@ -7,7 +7,8 @@
 
 typedef struct live_setting { // of a control
     char *name, *text;
-    char *initial; // what the script said when it was moved; NULL: from the command line
+    char *initial; // what the script said when it was moved; NULL: given from the start
+    bool preset;   // as a preset says: every build reads it again
 } live_setting;
 
 typedef struct live_result { // of a build
@@ -18,7 +19,8 @@ typedef struct live_result { // of a build
 
 struct roil_live {
     roil *owner;
-    char *file;
+    char *file, **presets;
+    size_t preset_count;
     void (*wake)(void *user);
     void *user;
     shader_library *library; // both shared by all loads
@@ -50,6 +52,9 @@ struct roil_live {
 };
 
 void *live_run(void *live); // the builder's thread
+// With the lock held: settings that come from presets.
+void live_drop_preset_settings(roil_live *l);
+void live_add_preset_setting(roil_live *l, const roil_setting *s); // others win over it
 // None of these with the lock held: asks for a build, in two steps or in one.
 void live_note(roil_live *l, double when);
 void live_wake(roil_live *l);

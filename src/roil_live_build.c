@@ -79,18 +79,49 @@ static void follow_files(roil_live *l, file_set *set, bool good, int64_t begin) 
     l->watched_count = set->count;
 }
 
+// ---- presets ----------------------------------------------------------------------------------
+
+static bool read_presets(const roil_live *l, roil_preset **out, file_set *files) {
+    for (size_t i = 0; i < l->preset_count; i++) {
+        char path[PATH_CAP];
+        const char *file = path;
+        if (!roil_preset_path(path, l->file, l->presets[i])) return false;
+        add_files(files, &file, 1);
+        out[i] = roil_read_preset(l->owner, l->file, l->presets[i]);
+        if (!out[i]) return false;
+    }
+    return true;
+}
+
+// What the presets say takes the place of what they said before, except where a setting of another
+// origin stands.
+static bool apply_presets(roil_live *l, file_set *files) {
+    roil_preset **read = mem_alloc(l->preset_count * sizeof *read);
+    bool done = read_presets(l, read, files);
+    pthread_mutex_lock(&l->lock);
+    if (done) live_drop_preset_settings(l);
+    for (size_t i = 0; done && i < l->preset_count; i++)
+        for (size_t k = 0; k < read[i]->count; k++)
+            live_add_preset_setting(l, &read[i]->settings[k]);
+    pthread_mutex_unlock(&l->lock);
+    for (size_t i = 0; i < l->preset_count; i++) roil_free_preset(read[i]);
+    mem_free(read);
+    return done;
+}
+
 // ---- one build --------------------------------------------------------------------------------
 
 typedef struct order { // what a build goes by
     arena memory;
     effect_setting *settings;
     size_t setting_count;
-    double frame, since;
+    double frame;
     bool framed;
 } order;
 
-static order take_order(roil_live *l) { // with the lock held
-    order o = {.frame = l->frame, .since = l->since, .framed = l->framed};
+static order take_order(roil_live *l) {
+    pthread_mutex_lock(&l->lock);
+    order o = {.frame = l->frame, .framed = l->framed};
     o.settings = arena_alloc(&o.memory, l->setting_count * sizeof *o.settings);
     for (size_t i = 0; i < l->setting_count; i++) {
         const live_setting *s = &l->settings[i];
@@ -100,10 +131,11 @@ static order take_order(roil_live *l) { // with the lock held
             .initial = s->initial ? arena_string(&o.memory, s->initial) : NULL,
         };
     }
+    pthread_mutex_unlock(&l->lock);
     return o;
 }
 
-static live_result build(roil_live *l, const order *o, file_set *files) {
+static effect *load(roil_live *l, const order *o, file_set *files) {
     const roil *r = l->owner;
     const char *const *read;
     effect *e = effect_create(&(effect_desc){
@@ -119,10 +151,21 @@ static live_result build(roil_live *l, const order *o, file_set *files) {
     });
     bool done = e && script_load(e, r->scripts) && effect_check_settings(e) && effect_compile(e) &&
                 effect_rehearse(e, o->framed ? o->frame : effect_first_frame(e));
-    char *message = done ? NULL : live_explain(err_get(), r->scripts);
     if (e) add_files(files, read, effect_files(e, &read));
-    if (!done) effect_destroy(e);
-    return (live_result){.effect = done ? e : NULL, .message = message, .since = o->since};
+    if (done) return e;
+    effect_destroy(e);
+    return NULL;
+}
+
+static live_result build(roil_live *l, double since, file_set *files) {
+    live_result result = {.since = since};
+    if (apply_presets(l, files)) {
+        order o = take_order(l);
+        result.effect = load(l, &o, files);
+        arena_free(&o.memory);
+    }
+    if (!result.effect) result.message = live_explain(err_get(), l->owner->scripts);
+    return result;
 }
 
 void live_free_result(live_result *result) {
@@ -185,18 +228,17 @@ void *live_run(void *live) {
             continue;
         }
         if (wait_for_content(l)) continue;
-        order o = take_order(l);
         l->wanted = false;
         l->building = true;
+        double since = l->since;
         pthread_mutex_unlock(&l->lock);
 
         file_set files = {0};
         int64_t begin = file_clock_ns();
-        live_result result = build(l, &o, &files);
+        live_result result = build(l, since, &files);
         bool good = result.effect != NULL;
         hand_over(l, result);
         follow_files(l, &files, good, begin);
-        arena_free(&o.memory);
         pthread_mutex_lock(&l->lock);
     }
     pthread_mutex_unlock(&l->lock);

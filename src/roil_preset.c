@@ -54,7 +54,7 @@ size_t roil_presets(const char *effect_file, char (*names)[64], size_t capacity)
 
 // ---- reading ------------------------------------------------------------------------------------
 
-static bool refuse(const char *effect_file, const char *name) {
+static void refuse(const char *effect_file, const char *name) {
     enum { MOST = 256 };
     char(*names)[64] = mem_alloc(MOST * sizeof *names);
     const char *known[MOST];
@@ -72,23 +72,25 @@ static bool refuse(const char *effect_file, const char *name) {
         strbuf_free(&list);
     }
     mem_free(names);
-    return false;
 }
 
-static bool find(char out[PATH_CAP], const char *effect_file, const char *preset) {
+bool roil_preset_path(char out[PATH_CAP], const char *effect_file, const char *preset) {
     if (str_ends_with(preset, ".lua"))
         return str_copy(out, PATH_CAP, preset) || path_too_long(preset);
     if (!is_name(preset, strlen(preset)))
         return err_set("preset '%.64s' is not a name (letters, digits, _ and -), nor a .lua file",
                        preset);
-    if (!preset_path(out, effect_file, preset)) return false;
-    return file_exists(out) || refuse(effect_file, preset);
+    return preset_path(out, effect_file, preset);
 }
 
 roil_preset *roil_read_preset(roil *r, const char *effect_file, const char *preset) {
     (void)r;
     char path[PATH_CAP];
-    if (!find(path, effect_file, preset)) return NULL;
+    if (!roil_preset_path(path, effect_file, preset)) return NULL;
+    if (!str_ends_with(preset, ".lua") && !file_exists(path)) {
+        refuse(effect_file, preset);
+        return NULL;
+    }
     owned_preset *own = mem_alloc(sizeof *own);
     effect_setting *settings;
     size_t count;

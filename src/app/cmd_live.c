@@ -180,11 +180,12 @@ static int run_device(live *l, window *w, job *j) {
     l->r =
         roil_create(&(roil_desc){.device = j->device, .validate = j->validate, .window = &w->desc});
     if (!l->r) return app_fail_input();
-    if (app_collect_settings(&j->settings, l->r, j->file, NULL))
-        l->follow = roil_live_create(l->r, &(roil_live_desc){.file = j->file,
-                                                             .settings = j->settings.all,
-                                                             .setting_count = j->settings.count,
-                                                             .wake = window_wake});
+    l->follow = roil_live_create(l->r, &(roil_live_desc){.file = j->file,
+                                                         .presets = j->settings.presets,
+                                                         .preset_count = j->settings.preset_count,
+                                                         .settings = j->settings.sets,
+                                                         .setting_count = j->settings.set_count,
+                                                         .wake = window_wake});
     int status = l->follow ? run_window(l, w, j) : app_fail_input();
     roil_live_destroy(l->follow);
     uint64_t complaints = roil_validation_messages(l->r);

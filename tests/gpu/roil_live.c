@@ -284,8 +284,41 @@ static void setting_of_the_command_line_holds(void **state) {
     end(&s);
 }
 
+// A preset is followed like the script; what is moved or reset by hand wins over it.
+static void preset_is_followed(void **state) {
+    put_all();
+    put("test.presets/half.lua", "return { gain = 0.25 }");
+    session s = {.frame = 1};
+    s.live = roil_live_create(*state, &(roil_live_desc){.file = script_path,
+                                                        .presets = (const char *[]){"half"},
+                                                        .preset_count = 1});
+    ok(s.live);
+    expect_good(&s);
+    draw(&s, 1, 0.25, 0.25);
+    put("test.presets/half.lua", "return { gain = 0.75 }");
+    expect_good(&s);
+    draw(&s, 2, 0.75, 0.25);
+    put("test.presets/half.lua", "return { gian = 0.75 }");
+    expect_broken(&s, "did you mean 'gain'?");
+    put("test.presets/half.lua", "return { gain = ");
+    expect_broken(&s, "half.lua:1: ");
+    draw(&s, 3, 0.75, 0.25);
+    put("test.presets/half.lua", "return {}"); // what it said before is forgotten
+    expect_good(&s);
+    draw(&s, 4, 0.5, 0.25);
+    put("test.presets/half.lua", "return { gain = 1 }");
+    expect_good(&s);
+    ok(roil_live_reset(s.live, NULL));
+    draw(&s, 5, 0.5, 0.25);
+    put_script("0.5", "", "-- a comment");
+    expect_good(&s);
+    draw(&s, 6, 0.5, 0.25);
+    end(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(preset_is_followed),
         cmocka_unit_test(number_edit_shows_and_the_simulation_goes_on),
         cmocka_unit_test(structural_edit_shows_and_the_simulation_goes_on),
         cmocka_unit_test(module_edit_shows),

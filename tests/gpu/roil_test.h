@@ -1,6 +1,7 @@
 // What tests of the public interface share: a roil with validation, and effects of one pass whose
 // shader a test writes into a folder of its own.
 #pragma once
+#include "base/file.h"
 #include "gpu_test.h"
 #include "roil.h"
 #include <math.h>
@@ -37,6 +38,7 @@ static inline int test_close(void **state) {
 // Writes a file into the test's folder; `path` is where.
 static inline void write_text(const char *name, const char *text, char path[512]) {
     snprintf(path, 512, "%s/%s", test_folder, name);
+    assert_true(file_make_parent_folders(path));
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     assert_true(fputs(text, file) >= 0);
