@@ -3,7 +3,6 @@
 #include "app/live.h"
 #include "app/text_wrap.h"
 #include "base/clock.h"
-#include "base/str.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -71,7 +70,7 @@ static void draw_notice(const char *text, ui_rect view, float bottom) {
 
 static void draw_waiting(const live *l, bool broken, ui_rect view) {
     char text[1024];
-    snprintf(text, sizeof text, broken ? "%s is drawn as soon as it is mended" : "Waiting for %s",
+    snprintf(text, sizeof text, broken ? "%s will be drawn once it is mended" : "Waiting for %s",
              l->file);
     label_center((view.left + view.right) / 2, (view.top + view.bottom) / 2 - label_height(),
                  ui_rgba(UI_DIM, 1), text);

@@ -245,7 +245,9 @@ static void draw_row(live *l) {
 
 void timeline_draw(live *l, ui_rect where) {
     ui_panel_begin("time", where);
-    draw_track(l);
-    draw_row(l);
+    if (l->effect) { // else there is no time
+        draw_track(l);
+        draw_row(l);
+    }
     ui_panel_end();
 }
