@@ -19,7 +19,7 @@ typedef struct job {
     const char *file, *device, *preview, *after_hang;
     app_settings settings;
     uint32_t width, height;
-    double frame;
+    double frame, timeout;
     int paused, validate, hidden_panel;
 } job;
 
@@ -46,6 +46,7 @@ static bool check(const job *j, poptContext context) {
     if (!j->file) return err_set("which effect? usage: roil live EFFECT.lua [options]");
     const char *more = poptGetArg(context);
     if (more) return err_set("'%s': one effect at a time", more);
+    if (j->timeout < 0) return err_set("--timeout %g; accepted: 0 or more", j->timeout);
     if (j->preview && preview_of(j->preview) < 0)
         return err_set("--preview '%s'; accepted: full, half, quarter", j->preview);
     return true;
@@ -67,6 +68,9 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
         {"preview", '\0', POPT_ARG_STRING, &j->preview, 0,
          "size of the picture: full, half, quarter (default: as it was left)", "SIZE"},
         {"hidden-panel", '\0', POPT_ARG_NONE, &j->hidden_panel, 0, "show the picture alone", NULL},
+        {"timeout", '\0', POPT_ARG_DOUBLE, &j->timeout, 0,
+         "that a frame may take before the device counts as lost (default: 30, in software 300)",
+         "SECONDS"},
         {"validate", '\0', POPT_ARG_NONE, &j->validate, 0, "with the Vulkan validation layers",
          NULL},
         {"after-hang", '\0', POPT_ARG_STRING | POPT_ARGFLAG_DOC_HIDDEN, &j->after_hang, 0, NULL,
@@ -95,6 +99,12 @@ static void add(arguments *a, const char *text) {
     a->list[a->count] = NULL;
 }
 
+static void add_number(arguments *a, double number) {
+    char text[32];
+    snprintf(text, sizeof text, "%.9g", number);
+    add(a, text);
+}
+
 static void add_moved(arguments *a, roil_effect *e) {
     for (size_t i = 0; i < roil_control_count(e); i++) {
         roil_control c;
@@ -114,14 +124,17 @@ static void add_moved(arguments *a, roil_effect *e) {
 // program becomes itself anew, with what the user had set, and holds the effect back.
 static int begin_anew(const job *j, const live *l) {
     arguments a = {0};
-    char frame[32];
-    snprintf(frame, sizeof frame, "%.9g", l->time.frame);
-    const char *const always[] = {"roil", "live",         l->file,        "--frame",
-                                  frame,  "--after-hang", l->broken_text, "--paused"};
+    const char *const always[] = {"roil",         "live",         l->file,  "--paused",
+                                  "--after-hang", l->broken_text, "--frame"};
     for (size_t i = 0; i < COUNT_OF(always); i++) add(&a, always[i]);
+    add_number(&a, l->time.frame);
     if (j->device) add(&a, "--device");
     if (j->device) add(&a, j->device);
     if (j->validate) add(&a, "--validate");
+    if (j->timeout > 0) {
+        add(&a, "--timeout");
+        add_number(&a, j->timeout);
+    }
     if (l->effect) add_moved(&a, l->effect);
     log_write(LOG_WARNING, "%s; the program starts anew", l->broken_text);
     execv("/proc/self/exe", a.list);
@@ -177,8 +190,8 @@ static int run_window(live *l, window *w, const job *j) {
 }
 
 static int run_device(live *l, window *w, job *j) {
-    l->r =
-        roil_create(&(roil_desc){.device = j->device, .validate = j->validate, .window = &w->desc});
+    l->r = roil_create(&(roil_desc){
+        .device = j->device, .validate = j->validate, .timeout = j->timeout, .window = &w->desc});
     if (!l->r) return app_fail_input();
     l->follow = roil_live_create(l->r, &(roil_live_desc){.file = j->file,
                                                          .presets = j->settings.presets,

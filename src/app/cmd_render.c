@@ -28,7 +28,7 @@ typedef struct job {
     const char *frames_text;
     uint32_t width, height;
     int alpha, sixteen, full, validate, no_cache;
-    double fps;
+    double fps, timeout;
     char default_output[PATH_CAP];
 } job;
 
@@ -113,6 +113,9 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
         {"16", '\0', POPT_ARG_NONE, &j->sixteen, 0, "16 bits a channel in PNG files", NULL},
         {"float", '\0', POPT_ARG_NONE, &j->full, 0, "32-bit float in EXR files (default: half)",
          NULL},
+        {"timeout", '\0', POPT_ARG_DOUBLE, &j->timeout, 0,
+         "that a frame may take before the device counts as lost (default: 30, in software 300)",
+         "SECONDS"},
         {"validate", '\0', POPT_ARG_NONE, &j->validate, 0, "with the Vulkan validation layers",
          NULL},
         {"no-cache", '\0', POPT_ARG_NONE, &j->no_cache, 0,
@@ -243,6 +246,7 @@ static int run(job *j) {
         .validate = j->validate,
         .no_cache = j->no_cache,
         .counters = j->stats != NULL,
+        .timeout = j->timeout,
     });
     bool collected = r && app_collect_settings(&j->settings, r, j->file, j->from);
     roil_effect *e = collected ? roil_load(r, j->file, j->settings.all, j->settings.count) : NULL;

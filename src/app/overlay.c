@@ -23,7 +23,7 @@ static bool is_room(ui_rect view) {
 
 // ---- card ---------------------------------------------------------------------------------------
 
-static ui_rect card_place(const text_message *m, bool hint, ui_rect view) {
+static ui_rect card_place(const text_message *m, const char *hint, ui_rect view) {
     float s = ui_scale(), line = label_height();
     float width = fminf(view.right - view.left - 2 * MARGIN * s, CARD_WIDTH * s);
     float inner = width - 2 * PADDING * s;
@@ -37,7 +37,7 @@ static ui_rect card_place(const text_message *m, bool hint, ui_rect view) {
     return (ui_rect){left, bottom - height, left + width, bottom};
 }
 
-static void draw_card(const char *message, bool hint, ui_rect at) {
+static void draw_card(const char *message, const char *hint, ui_rect at) {
     float s = ui_scale();
     char head[MAX_TEXT], rest[MAX_TEXT];
     text_message m = text_split(message);
@@ -51,7 +51,7 @@ static void draw_card(const char *message, bool hint, ui_rect at) {
     }
     if (hint) {
         ui_gap(SPACING * s);
-        ui_text_color(UI_DIM, "The last good effect goes on.");
+        ui_text_color(UI_DIM, "%s", hint);
     }
     ui_card_end();
 }
@@ -76,6 +76,12 @@ static void draw_waiting(const live *l, bool broken, ui_rect view) {
                  ui_rgba(UI_DIM, 1), text);
 }
 
+// What goes on meanwhile, or how to go on; NULL: there is nothing to say.
+static const char *hint_of(const live *l) {
+    if (l->held) return "Nothing is drawn until a file is saved, or time is played.";
+    return l->effect ? "The last good effect goes on." : NULL;
+}
+
 void overlay_draw(live *l, ui_rect view) {
     if (!is_room(view)) return;
     const char *message = message_of(l);
@@ -83,8 +89,8 @@ void overlay_draw(live *l, ui_rect view) {
     if (!l->effect) draw_waiting(l, message, view);
     if (message) {
         text_message m = text_split(message);
-        ui_rect card = card_place(&m, l->effect, view);
-        draw_card(message, l->effect, card);
+        ui_rect card = card_place(&m, hint_of(l), view);
+        draw_card(message, hint_of(l), card);
         bottom = card.top - SPACING * ui_scale();
     }
     if (l->notice[0] && clock_seconds() < l->notice_until) draw_notice(l->notice, view, bottom);

@@ -208,6 +208,42 @@ class Files(Case):
         live.quit()
 
 
+# Turns without end in every pixel, when it is asked to.
+SPIN = """
+// Draws its source again, late.
+uniform int turns; //= 0 [0, 1000000] : how late
+uniform sampler2D source; //= input : the picture
+writeonly uniform image2D color; //= output rgba16f : it again
+layout(local_size_x = 8, local_size_y = 8) in;
+void main() {
+    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+    vec4 sum = texelFetch(source, p, 0);
+    for (int i = 0; i < turns; i++)
+        for (int k = 0; k < turns; k++) sum = fract(sum * 1.1 + texelFetch(source, p, 0));
+    imageStore(color, p, sum);
+}
+"""
+
+
+class Hang(Case):
+    """A shader that does not end: the program says so, begins anew, and draws what is mended."""
+
+    def test_it_begins_anew(self):
+        self.write("spin.comp", SPIN)
+        spinning = PUFF.replace("final { volume.color }", 'final { shader { "spin.comp", volume.color, turns = %d }.color }')
+        live = self.live("--timeout", "2", effect=spinning % 0)
+        live.keys("Right")
+        live.expect(r"live: drew frame 2\b")
+        self.write("puff.lua", spinning % 60000)
+        live.expect(r"was lost in pass 'spin'.*starts anew")
+        live.expect("live: took over")
+        live.widget("message")
+        self.write("puff.lua", spinning % 0)
+        live.expect(r"live: drew frame 2\b")
+        live.wait_until(lambda: "message" not in live.widgets(), "the end of the message")
+        live.quit()
+
+
 class Window(Case):
     def test_sizes(self):
         live = self.live()
