@@ -20,7 +20,7 @@ BINARY = os.environ.get("ROIL_BINARY_DIR") or os.path.join(SOURCE, "build")
 PROGRAM = os.path.join(BINARY, "roil")
 PATIENCE = 60
 SCREEN = (1600, 1000)
-TOOLS = ["Xvfb", "xdotool", "xwd"]
+TOOLS = ["Xvfb", "xdotool", "xwd", "xprop"]
 
 # A ball of smoke that is quick to draw, and has a control of each kind.
 PUFF = """
@@ -106,16 +106,20 @@ def difference(a, b):
 
 
 class Display:
-    """An X server of our own, for all tests of a file."""
+    """An X server of our own, for all tests of a class; `density` in dots an inch."""
 
-    def __init__(self):
+    def __init__(self, density=96):
         read, write = os.pipe()
         self.server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-screen", "0", "%dx%dx24" % SCREEN, "-nolisten",
+            ["Xvfb", "-noreset", "-displayfd", str(write), "-screen", "0", "%dx%dx24" % SCREEN, "-nolisten",
              "tcp"], pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as number:
             self.name = ":" + number.readline().strip()
+        if density != 96:
+            subprocess.run(["xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set",
+                            "RESOURCE_MANAGER", f"Xft.dpi: {density}"], check=True,
+                           env={**os.environ, "DISPLAY": self.name}, timeout=PATIENCE)
 
     def close(self):
         self.server.terminate()

@@ -1,0 +1,75 @@
+"""What the window looks like, beside golden pictures of it: panel, help, messages, high density.
+ROIL_UPDATE=1 takes new ones; look at them before they are kept."""
+import os
+import shutil
+import subprocess
+
+from lib.window import BINARY, PUFF, SOURCE, Case, Display, main, require_tools
+
+GOLDEN = os.path.join(SOURCE, "tests/window/golden")
+COMPARE = os.path.join(BINARY, "golden_compare")
+
+
+class Pictures(Case):
+    def check(self, live, name):
+        """The window as it is, once it stands still."""
+        actual, expected = self.path(name), os.path.join(GOLDEN, name)
+        last = []
+
+        def steady():
+            now = live.screenshot()
+            last.append(now)
+            return len(last) > 1 and last[-2].rows == now.rows
+        live.wait_until(steady, "a window that stands still")
+        last[-1].save(actual)
+        if os.environ.get("ROIL_UPDATE") == "1":
+            shutil.copy(actual, expected)
+            return
+        difference = os.path.join(BINARY, f"window-{name}")
+        done = subprocess.run([COMPARE, expected, actual, difference], check=False,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+    def start(self, *args, **options):
+        live = self.live("--frame", "20", *args, **options)
+        live.expect("live: shown")
+        live.tool("mousemove", 1, 1)  # over nothing that shows it
+        return live
+
+    def test_panel_message_and_help(self):
+        live = self.start()
+        self.check(live, "panel.png")
+        self.write("puff.lua", PUFF.replace("thickness, emission", "thicknes, emission"))
+        live.widget("message")
+        self.check(live, "message.png")
+        self.write("puff.lua", PUFF)
+        live.wait_until(lambda: "message" not in live.widgets(), "the end of the message")
+        live.keys("F1")
+        live.widget("help")
+        self.check(live, "help.png")
+        live.quit()
+
+    def test_inspector(self):
+        live = self.start()
+        live.keys("i")
+        live.widget("inspector")
+        self.check(live, "inspector.png")
+        live.quit()
+
+
+class HighDensity(Pictures):
+    @classmethod
+    def setUpClass(cls):
+        cls.display = Display(density=192)
+        cls.addClassCleanup(cls.display.close)
+
+    test_panel_message_and_help = test_inspector = None
+
+    def test_panel(self):
+        live = self.start()
+        self.check(live, "dense.png")
+        live.quit()
+
+
+require_tools()
+main()
