@@ -1,0 +1,48 @@
+-- Step 7: real data. A simulation baked to OpenVDB files takes the place of the ball; noise gives back
+-- the detail that its coarse grid lost.
+--
+--   roil render effects/step-07-data.lua --frames 30 -o data.png
+
+local fx = effect { name = "step_07", fps = 24, frames = 100 }
+
+-- What you may want to turn. Each is a slider in `roil live`, and a --set of `roil render`.
+local density = param { "density", 20, min = 0, max = 100, unit = "1/m", help = "how thick the smoke is" }
+local eaten   = param { "eaten", 0.9, min = 0, max = 2, help = "how much the noise eats from the smoke's edges" }
+local tearing = param { "tearing", 0.12, min = 0, max = 2, unit = "m", help = "how far the flow displaces the grid" }
+local glow    = param { "glow", 4, min = 0, max = 100, help = "factor of the fire's light" }
+local kelvin  = param { "kelvin", 1400, min = 500, max = 3000, unit = "K", help = "temperature where the grid says 1" }
+
+-- Z is up and lengths are metres. The camera circles a point above the middle of the ground.
+fx.camera = orbit { target = {0, 0, 3.1}, distance = 16, pitch = 5, fov = 32 }
+fx.sun    = sun { azimuth = 205, elevation = 38, color = {1, 0.94, 0.85}, strength = 6 }
+fx.sky    = sky { zenith = "#3d74b3", horizon = "#c3ced6", strength = 0.5 }
+
+-- A hundred frames of 32 x 32 x 32 voxels, 8 m a side. Each grid in the files is a field.
+local burst = vdb { "data/explosion-32/*.vdb", fps = 24, blend = true, offset = {-4, -4, 0} }
+local flow  = curl { frequency = 0.7, octaves = 2, seed = 3, speed = 0.4 }
+local torn  = vec(burst.density, burst.temperature, burst.flame):warp(flow, tearing)
+local smoke, heat, flame = torn.x, torn.y, torn.z
+
+-- Lumps stand out at the edges, where the smoke is thin; its thick core is left alone.
+local lumps = worley { frequency = 1.4, octaves = 4, persistence = 0.55, seed = 11, drift = {0, 0, -0.5} }:warp(flow, 0.25)
+local cover = clamp(smoke * 3, 0, 1)
+local body  = cover * smoothstep(0, 0.15, cover - eaten * (1 - lumps) * (1 - 0.7 * cover)) * (smoke + 0.15)
+
+-- The glow of hot soot, which grows with the fourth power of its temperature in kelvin.
+local fire  = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
+
+local scene  = geometry {
+  mesh { "data/ground.obj" },
+  mesh { "data/crates.obj", position = {-4, -4, 0} },
+  haze = 0.004,
+}
+local volume = march {
+  density  = body * density,
+  emission = fire(heat * (0.45 + 0.85 * lumps) * kelvin) * flame * glow,
+  albedo   = {0.4, 0.4, 0.4},
+  sampling = "cubic", -- smooth between voxels, at a price
+  depth    = scene.depth,
+}
+
+fx.output = final { over { volume, scene.color }, tonemap = "reinhard" }.color
+return fx
