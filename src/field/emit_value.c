@@ -122,6 +122,12 @@ typedef struct factor {
     float cost;
 } factor;
 
+typedef struct factors { // of a product and of those unfolded into it, cheap ones first
+    factor items[MAX_FACTORS];
+    size_t count;
+    size_t promised; // what `count` will be: every product that is unfolded makes it one more
+} factors;
+
 static float remaining_cost(emitter *e, uint32_t node, uint32_t at) { // nothing if visible
     const program_node *n = &e->p->nodes[node];
     uint32_t index;
@@ -145,20 +151,21 @@ static float remaining_cost(emitter *e, uint32_t node, uint32_t at) { // nothing
     return !e->failed && emit_is_visible(e, index) ? 0 : n->cost;
 }
 
-static void collect_factors(emitter *e, uint32_t node, uint32_t at, factor out[MAX_FACTORS],
-                            size_t *count) {
+static void collect_factors(emitter *e, uint32_t node, uint32_t at, factors *out) {
     for (size_t i = 0; i < 2; i++) {
         uint32_t arg = e->p->nodes[node].args[i];
         const field *a = e->p->nodes[arg].node;
         bool unfold = kind_of(a) == KIND_MUL && !a->uniform && e->uses[arg] == 1;
-        if (unfold && *count + 4 < MAX_FACTORS) {
-            collect_factors(e, arg, at, out, count);
+        if (unfold && out->promised < MAX_FACTORS) {
+            out->promised++;
+            collect_factors(e, arg, at, out);
             continue;
         }
         factor f = {arg, remaining_cost(e, arg, at)};
-        size_t place = (*count)++;
-        for (; place > 0 && out[place - 1].cost > f.cost; place--) out[place] = out[place - 1];
-        out[place] = f;
+        size_t place = out->count++;
+        for (; place > 0 && out->items[place - 1].cost > f.cost; place--)
+            out->items[place] = out->items[place - 1];
+        out->items[place] = f;
     }
 }
 
@@ -167,12 +174,12 @@ static void compute_product(emitter *e, uint32_t index) {
     uint32_t at = e->ops[index].point;
     int components = e->ops[index].components;
     bool sure = e->top == index && e->scopes[e->current].sure;
-    factor factors[MAX_FACTORS];
-    size_t count = 0, opened = 0;
-    collect_factors(e, e->ops[index].id, at, factors, &count);
+    factors all = {.promised = 2};
+    size_t opened = 0;
+    collect_factors(e, e->ops[index].id, at, &all);
     char name[EXPR], value[EXPR];
-    for (size_t i = 0; i < count; i++) {
-        if (i > 0 && factors[i].cost >= dear) {
+    for (size_t i = 0; i < all.count; i++) {
+        if (i > 0 && all.items[i].cost >= dear) {
             emit_op_name(e, index, name);
             if (components == 1)
                 emit_line(e, "if (%s != 0.0) {", name);
@@ -181,9 +188,9 @@ static void compute_product(emitter *e, uint32_t index) {
             emit_open(e, sure);
             opened++;
         }
-        emit_node(e, factors[i].node, at, value);
+        emit_node(e, all.items[i].node, at, value);
         if (i == 0) {
-            emit_widen(value, e->p->nodes[factors[i].node].node->components, components);
+            emit_widen(value, e->p->nodes[all.items[i].node].node->components, components);
             declare(e, index, "%s", value);
         } else {
             emit_op_name(e, index, name);

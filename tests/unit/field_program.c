@@ -258,6 +258,20 @@ static void shared_products_do_not_explode(void **state) {
     assert_true(strlen(text_of(y)) < 100000);
 }
 
+// One chain written to the left, one to the right: each noise is a factor, and none is lost.
+static void products_of_any_length_are_written(void **state) {
+    (void)state;
+    enum { COUNT = 150 };
+    field *left = row("sphere", SET("radius", number(2))), *right = left;
+    for (int i = 0; i < COUNT; i++) {
+        left = make("mul", left, row("perlin", SET("seed", number((float)i))));
+        right = make("mul", row("perlin", SET("seed", number((float)i))), right);
+    }
+    assert_int_equal(occurrences(text_of(left), "noise_perlin("), COUNT);
+    assert_int_equal(occurrences(text_of(right), "noise_perlin("), COUNT);
+    assert_int_equal(occurrences(text_of(make("mul", left, right)), "noise_perlin("), 2 * COUNT);
+}
+
 static void too_large_expressions_are_refused(void **state) {
     (void)state;
     field *sum = number(0), *deep;
@@ -319,6 +333,7 @@ int main(void) {
         cmocka_unit_test(roots_are_widened_or_lose_alpha),
         cmocka_unit_test(user_functions_are_included_once),
         cmocka_unit_test(shared_products_do_not_explode),
+        cmocka_unit_test(products_of_any_length_are_written),
         cmocka_unit_test(too_large_expressions_are_refused),
         cmocka_unit_test(too_many_points_are_refused),
         cmocka_unit_test(lua_errors_end_the_filling),
