@@ -28,18 +28,25 @@ static const char *read_pattern(lua_State *L, const char *who) {
     return arena_string(script_memory(L), path);
 }
 
+// A number that cannot be zero, which a sequence_desc takes for not given.
+static double read_factor(lua_State *L, const char *who, const char *key, double missing) {
+    double value = value_get_number(L, 1, who, key, missing);
+    if (value == 0) vm_error(L, "%s: '%s' is 0; any other number is accepted", who, key);
+    return value;
+}
+
 static void read_playback(lua_State *L, const script_object *row, sequence_desc *desc) {
     const char *who = row->name;
     desc->pattern = read_pattern(L, who);
     desc->root = effect_root(script_of(L)->effect);
     desc->shelf = effect_shelf(script_of(L)->effect);
-    desc->fps = value_get_number(L, 1, who, "fps", 0);
+    desc->fps = read_factor(L, who, "fps", 24);
     desc->start = value_get_number(L, 1, who, "start", 0);
-    desc->speed = value_get_number(L, 1, who, "speed", 0);
+    desc->speed = read_factor(L, who, "speed", 1);
     desc->loop = (sequence_loop)value_get_choice(L, 1, row, "loop");
     desc->blend = value_get_bool(L, 1, who, "blend", false);
     desc->y_up = value_get_bool(L, 1, who, "y_up", false);
-    desc->scale = (float)value_get_number(L, 1, who, "scale", 0);
+    desc->scale = (float)read_factor(L, who, "scale", 1);
     float offset[3] = {0};
     value_get_vector(L, 1, who, "offset", offset);
     desc->offset = (float3){offset[0], offset[1], offset[2]};
@@ -91,7 +98,7 @@ static int l_raw(lua_State *L) {
     desc.raw.offset = bytes_of(L, "skip");
     desc.raw.stride = bytes_of(L, "stride");
     desc.raw.voxel_size = (float)value_get_number(L, 1, "raw", "voxel_size", 0);
-    desc.raw.value_scale = (float)value_get_number(L, 1, "raw", "value_scale", 0);
+    desc.raw.value_scale = (float)read_factor(L, "raw", "value_scale", 1);
     desc.raw.channel = value_get_string(L, 1, "raw", "channel");
     return push_sequence(L, &desc);
 }

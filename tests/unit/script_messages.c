@@ -41,6 +41,8 @@ static void misspelt_names_get_the_nearest_right_one(void **state) {
         {"palette { {0, '#000'}, {1, '#fff'}, spcae = 'oklab' }",
          "palette: unknown key 'spcae'; did you mean 'space'?"},
         {"vdb { 'x.vdb', fsp = 3 }", "vdb: unknown key 'fsp'; did you mean 'fps'?"},
+        {"vdb { 'x.vdb', speed = 0 }", "vdb: 'speed' is 0; any other number is accepted"},
+        {"vdb { 'x.vdb', fps = 0 }", "vdb: 'fps' is 0; any other number is accepted"},
         {"orbit { ptich = 3 }", "orbit: unknown key 'ptich'; did you mean 'pitch'?"},
         {"mesh { 'x.obj', roation = 3 }", "mesh: unknown key 'roation'; did you mean 'rotation'?"},
         {"march { densty = 1 }", "march: unknown key 'densty'; did you mean 'density'?"},
