@@ -44,7 +44,8 @@ local coarse = kinds[noise:get()]()
 
 -- Lumps stand out where the smoke is thin; the thick core is left alone. When the smoke thins out
 -- as a whole, at the end, it fades instead of falling to pieces.
-local eaten = detail * curve { {0, 1}, {1.8, 1}, {4.1, 0.25}, shape = "ease_in_out" }
+local fade  = curve { {0, 1}, {1.8, 1}, {4.1, 0.25}, shape = "ease_in_out" }
+local eaten = detail * fade
 local cover = clamp(smoke * 3, 0, 1)
 local function body(n)
   local crust = smoothstep(0, 0.15, cover - eaten * (1 - n) * (1 - 0.7 * cover))
