@@ -143,13 +143,9 @@ static int begin_anew(const job *j, const live *l) {
 
 // ---- work -------------------------------------------------------------------------------------
 
-static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mods) {
-    (void)scancode;
-    live *l = glfwGetWindowUserPointer(handle);
-    if (action == GLFW_PRESS) ui_key(key);
+static void on_key(void *user, int key, int mods, bool again) {
     bool types = !(mods & GLFW_MOD_CONTROL) && key < GLFW_KEY_F1; // or moves in what is typed
-    if (action != GLFW_RELEASE && !(types && ui_wants_keys()))
-        live_press(l, key, mods, action == GLFW_REPEAT);
+    if (!(types && ui_wants_keys())) live_press(user, key, mods, again);
 }
 
 static bool is_software(const roil *r) {
@@ -168,11 +164,10 @@ static void take_session(live *l, const job *j) {
 
 static int run_window(live *l, window *w, const job *j) {
     char layout[PATH_CAP];
-    glfwSetWindowUserPointer(w->handle, l);
-    glfwSetKeyCallback(w->handle, on_key); // before the interface, which calls on to it
     if (!ui_open(w->handle, l->r,
                  session_file(layout, sizeof layout, "layout.ini") ? layout : NULL))
         return app_fail_input();
+    ui_on_key(on_key, l);
     l->performance = performance_create();
     l->inspector = inspector_create();
     l->panel = panel_create();

@@ -265,7 +265,7 @@ static bool show(live *l, loop *p, uint32_t width, uint32_t height) {
 static double time_to_sleep(const live *l, const loop *p, double now) {
     bool drawing = can_draw(l);
     if (p->minimized) return LONG;
-    if (drawing && l->dirty) return 0;
+    if (ui_pending() || (drawing && l->dirty)) return 0;
     double most = LONG;
     if (drawing && l->time.playing) {
         double rate = l->time.fps * fabs(l->time.speed);

@@ -4,6 +4,7 @@
 #include "app/ui.h"
 #include "app/ui_parts.h"
 extern "C" {
+#include "app/input.h"
 #include "base/memory.h"
 }
 #include <GLFW/glfw3.h>
@@ -20,7 +21,7 @@ static_assert(sizeof(ImDrawVert) == sizeof(roil_vertex) &&
 
 namespace {
 
-enum { MAX_TABLES = 8, MAX_TAPS = 32 };
+enum { MAX_TABLES = 8, BUTTONS = 3 };
 const float TEXT_SIZE = 16, TIP_SECONDS = 0.45f, TIP_WIDTH = 340, CARD_ROUNDING = 6, CARD_EDGE = 4;
 
 struct state {
@@ -38,7 +39,11 @@ struct state {
     float tip_seconds;
     ImGuiID bare; // area where a button was pressed that no panel covers; 0: none
     number_typing typing;
-    int taps[MAX_TAPS], tap_count; // keys pressed since the last frame, released or not
+    input_queue input;
+    ImVec2 pointer; // screen coordinates
+    bool buttons[BUTTONS];
+    void (*key)(void *user, int key, int mods, bool again);
+    void *key_user;
 } ui;
 
 ImVec4 rgba(ImU32 color) {
@@ -147,6 +152,30 @@ bool load_atlas() {
 
 } // namespace
 
+// ---- input ------------------------------------------------------------------------------------
+
+static void apply(const input_event *e) {
+    switch (e->kind) {
+    case INPUT_MOVE:
+        ui.pointer = ImVec2((float)e->x, (float)e->y);
+        break;
+    case INPUT_WHEEL:
+        ImGui_ImplGlfw_ScrollCallback(ui.window, e->x, e->y);
+        break;
+    case INPUT_BUTTON:
+        if (e->code < BUTTONS) ui.buttons[e->code] = e->action == GLFW_PRESS;
+        break;
+    case INPUT_KEY:
+        ImGui_ImplGlfw_KeyCallback(ui.window, e->code, e->scan, e->action, e->mods);
+        if (ui.key && e->action != GLFW_RELEASE)
+            ui.key(ui.key_user, e->code, e->mods, e->action == GLFW_REPEAT);
+        break;
+    case INPUT_CHAR:
+        ImGui_ImplGlfw_CharCallback(ui.window, (unsigned)e->code);
+        break;
+    }
+}
+
 // ---- life -------------------------------------------------------------------------------------
 
 bool ui_open(GLFWwindow *window, roil *r, const char *layout) {
@@ -160,7 +189,10 @@ bool ui_open(GLFWwindow *window, roil *r, const char *layout) {
     io.LogFilename = nullptr;
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
     io.ConfigWindowsMoveFromTitleBarOnly = true;
-    ImGui_ImplGlfw_InitForOther(window, true);
+    ImGui_ImplGlfw_InitForOther(window, false);
+    input_listen(window, &ui.input);
+    glfwSetWindowFocusCallback(window, ImGui_ImplGlfw_WindowFocusCallback);
+    ui.pointer = ImVec2(-FLT_MAX, -FLT_MAX);
     ui_set_scale(1);
     if (ui.atlas) return true;
     ui_close();
@@ -204,8 +236,23 @@ static void use_pixels(ImGuiIO &io) {
     io.DisplayFramebufferScale = ImVec2(1, 1);
 }
 
-void ui_key(int key) {
-    if (key >= 0 && ui.tap_count < MAX_TAPS) ui.taps[ui.tap_count++] = key;
+void ui_on_key(void (*key)(void *user, int key, int mods, bool again), void *user) {
+    ui.key = key;
+    ui.key_user = user;
+}
+
+bool ui_pending(void) {
+    return ui.input.count > 0;
+}
+
+// The backend asks GLFW how things are now; this frame sees them as they were in its turn.
+static void take_input(ImGuiIO &io) {
+    input_frame frame = {};
+    input_event e;
+    while (input_take(&ui.input, &frame, &e)) apply(&e);
+    ImGui_ImplGlfw_NewFrame();
+    io.MousePos = ui.pointer;
+    for (int i = 0; i < BUTTONS; i++) io.MouseDown[i] = ui.buttons[i];
 }
 
 void ui_begin(void) {
@@ -215,14 +262,10 @@ void ui_begin(void) {
     io.KeyMap[ImGuiKey_Space] = GLFW_KEY_ENTER; // that activates; ImGui's own choice is the bar
     // Tab walks through fields only while one is typed in; else it is the program's own.
     io.KeyMap[ImGuiKey_Tab] = io.WantTextInput ? GLFW_KEY_TAB : -1;
-    ImGui_ImplGlfw_NewFrame();
+    take_input(io);
     use_pixels(io);
-    for (int i = 0; i < ui.tap_count; i++) io.KeysDown[ui.taps[i]] = true;
     io.DeltaTime = fminf(io.DeltaTime, 0.1f); // the loop may have slept
     ImGui::NewFrame();
-    for (int i = 0; i < ui.tap_count; i++)
-        io.KeysDown[ui.taps[i]] = glfwGetKey(ui.window, ui.taps[i]) == GLFW_PRESS;
-    ui.tap_count = 0;
     if (!ImGui::IsMouseDown(0) && !ImGui::IsMouseDown(1) && !ImGui::IsMouseDown(2)) ui.bare = 0;
 }
 
@@ -241,10 +284,6 @@ void ui_end(roil_picture *out) {
     }
     picture_end(out);
     marks_write();
-}
-
-bool ui_wants_mouse(void) {
-    return ImGui::GetIO().WantCaptureMouse;
 }
 
 bool ui_wants_keys(void) {
@@ -348,22 +387,6 @@ void ui_disable_begin(bool disabled) {
 
 void ui_disable_end(void) {
     ImGui::EndDisabled();
-}
-
-bool ui_tabs_begin(const char *id) {
-    return ImGui::BeginTabBar(id, ImGuiTabBarFlags_FittingPolicyScroll);
-}
-
-void ui_tabs_end(void) {
-    ImGui::EndTabBar();
-}
-
-bool ui_tab_begin(const char *label) {
-    return ImGui::BeginTabItem(label);
-}
-
-void ui_tab_end(void) {
-    ImGui::EndTabItem();
 }
 
 void ui_table_begin(const char *id, int columns, const float *widths) {
@@ -531,10 +554,6 @@ bool ui_small_button(const char *label) {
     return pressed;
 }
 
-bool ui_selectable(const char *label, bool selected) {
-    return ImGui::Selectable(label, selected);
-}
-
 bool ui_choice(const char *label, size_t *index, const char *const *words, size_t count) {
     bool changed = false;
     float width = part_row_begin(label), height = ImGui::GetFrameHeight();
@@ -632,10 +651,6 @@ bool part_bar(const char *name, double *value, const number_range *range, const 
 
 bool ui_active(void) {
     return ImGui::IsItemActive();
-}
-
-bool ui_released(void) {
-    return ImGui::IsItemDeactivatedAfterEdit();
 }
 
 bool ui_hovered(void) {

@@ -44,10 +44,12 @@ bool ui_open(GLFWwindow *window, roil *r, const char *layout);
 void ui_close(void);
 void ui_set_scale(float scale); // pixels a unit, as of a high-DPI display; between frames
 float ui_scale(void);
-void ui_key(int key); // of GLFW, pressed: a tap that ends before the next frame counts too
+// Calls back, in ui_begin, for each key that went down or repeats, in its turn among all that the
+// user does.
+void ui_on_key(void (*key)(void *user, int key, int mods, bool again), void *user);
+bool ui_pending(void); // more was done than the last frame could tell apart: draw another
 void ui_begin(void);
 void ui_end(roil_picture *out); // fills in what is drawn; valid until the next ui_begin
-bool ui_wants_mouse(void);      // the pointer is over a widget, or drags one
 bool ui_wants_keys(void);       // text is being typed
 void ui_copy(const char *text); // to the clipboard
 
@@ -77,10 +79,6 @@ void ui_disable_begin(bool disabled);
 void ui_disable_end(void);
 // A heading that opens and closes; true while it is open. `open`: at first.
 bool ui_section(const char *label, bool open);
-bool ui_tabs_begin(const char *id);
-void ui_tabs_end(void);
-bool ui_tab_begin(const char *label); // true: draw its content, then ui_tab_end
-void ui_tab_end(void);
 // Rows of `columns` cells of the given relative widths.
 void ui_table_begin(const char *id, int columns, const float *widths);
 void ui_table_next(void); // cell
@@ -102,7 +100,6 @@ bool ui_button(const char *label);
 bool ui_small_button(const char *label);
 bool ui_icon_button(const char *id, int icon, bool active, const char *tooltip); // a ui_icon
 bool ui_toggle(const char *label, bool *value);
-bool ui_selectable(const char *label, bool selected);
 bool ui_choice(const char *label, size_t *index, const char *const *words, size_t count);
 bool ui_input(const char *label, const char *hint, char *text, size_t capacity);
 // `unit` is shown behind the number. A finite range makes a slider, else a field to drag in; both
@@ -112,9 +109,8 @@ bool ui_number(const char *label, float *value, int components, float min, float
 // INT_MIN and INT_MAX stand for no end.
 bool ui_whole(const char *label, int *value, int min, int max, const char *unit);
 bool ui_color_edit(const char *label, float *linear, int components); // linear Rec.709, HDR
-bool ui_active(void);   // the last widget is being used
-bool ui_released(void); // its use has just ended with a change
-bool ui_hovered(void);  // the last widget
+bool ui_active(void);  // the last widget is being used
+bool ui_hovered(void); // the last widget
 // On a right click of the last widget; when true: ui_item, then ui_menu_end.
 bool ui_menu_begin(const char *id);
 void ui_menu_end(void);
