@@ -30,8 +30,9 @@ typedef struct loop {
     uint32_t wanted[2]; // size of the picture by now, and since when
     double wanted_since;
     uint64_t reloads;
-    bool drawn; // the effect has a picture
-    bool told;  // that the first frame was shown
+    bool drawn;   // the effect has a picture
+    double frame; // of it
+    bool told;    // that the first frame was shown
     bool minimized;
 } loop;
 
@@ -133,15 +134,17 @@ static void resize(live *l, loop *p, double now) {
 }
 
 static void draw_effect(live *l, loop *p) {
-    double start = clock_seconds();
-    if (!roil_advance(l->effect, l->time.frame)) {
+    double start = clock_seconds(), frame = l->time.frame;
+    bool back = p->drawn && frame < p->frame; // what passes remember is of later times: begin anew
+    if (!(back ? roil_render : roil_advance)(l->effect, frame)) {
         live_break(l, roil_error());
         return;
     }
     double end = clock_seconds();
-    log_write(LOG_DEBUG, "live: drew frame %g", l->time.frame);
+    log_write(LOG_DEBUG, "live: drew frame %g", frame);
     l->dirty = false;
     p->drawn = true;
+    p->frame = frame;
     performance_add(l->performance, l->effect, end - start, start - p->drawn_at);
     p->drawn_at = start;
 }

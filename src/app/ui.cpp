@@ -480,6 +480,7 @@ void part_space(float width, float height) {
 }
 
 static void mark_last(const char *name) {
+    if (ImGui::GetCurrentWindow()->Hidden) return; // a popup whose place is not known yet
     ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
     ui_mark(name, {a.x, a.y, b.x, b.y});
 }
@@ -568,6 +569,7 @@ bool ui_choice(const char *label, size_t *index, const char *const *words, size_
             *index = i;
             changed = true;
         }
+        mark_last(words[i]);
         if (i == *index) ImGui::SetItemDefaultFocus();
         ImGui::PopID();
     }
@@ -666,7 +668,9 @@ void ui_menu_end(void) {
 }
 
 bool ui_item(const char *label) {
-    return ImGui::MenuItem(label);
+    bool chosen = ImGui::MenuItem(label);
+    mark_last(label);
+    return chosen;
 }
 
 // ---- canvas -----------------------------------------------------------------------------------

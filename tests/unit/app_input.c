@@ -64,8 +64,8 @@ static void a_fast_drag_keeps_its_ends(void **state) {
     button(UP);
     move(9);
     expect_frame("m1 b1"); // pressed where it began
-    expect_frame("m3"); // moved while down
-    expect_frame("b0"); // released where it ended
+    expect_frame("m3");    // moved while down
+    expect_frame("b0");    // released where it ended
     expect_frame("m9");
 }
 

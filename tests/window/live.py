@@ -148,6 +148,38 @@ class Panel(Case):
         self.changes(live, before)
         live.quit()
 
+    def clipboard(self):
+        return subprocess.run(["xclip", "-o", "-selection", "clipboard"], env=self.environment,
+                              check=False, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                              text=True, timeout=PATIENCE).stdout
+
+    def test_a_value_is_copied_as_lua(self):
+        live = self.live("--set", "thickness=7.5")
+        live.click_on("thickness", button=3)
+        live.click_on("thickness/copy as lua")
+        text = live.wait_until(self.clipboard, "what was copied")
+        self.assertTrue(text.startswith('param { "thickness", 7.5, min = 0, max = 20, unit = "1/m"'), text)
+        live.click_on("thickness", button=3)
+        live.click_on("thickness/reset")
+        live.expect("live: reset thickness")
+        live.quit()
+
+    def test_presets_are_loaded_and_overwritten(self):
+        self.write("puff.presets/thick.lua", "return { thickness = 12, gone = 1 }")
+        live = self.live()
+        live.expect("live: shown")
+        before = self.picture(live)
+        live.click_on("preset")
+        live.click_on("thick")
+        live.expect("live: set thickness = 12")
+        self.changes(live, before)
+        live.click_on("preset save")  # asks first
+        self.assertIn("gone", self.read("puff.presets/thick.lua"))
+        live.click_on("preset save")
+        live.wait_until(lambda: "gone" not in self.read("puff.presets/thick.lua"), "the new preset")
+        self.assertIn("thickness = 12", self.read("puff.presets/thick.lua"))
+        live.quit()
+
     def test_preset(self):
         live = self.live("--set", "thickness=11")
         live.click_on("preset name")

@@ -20,7 +20,7 @@ BINARY = os.environ.get("ROIL_BINARY_DIR") or os.path.join(SOURCE, "build")
 PROGRAM = os.path.join(BINARY, "roil")
 PATIENCE = 60
 SCREEN = (1600, 1000)
-TOOLS = ["Xvfb", "xdotool", "xwd", "xprop"]
+TOOLS = ["Xvfb", "xdotool", "xwd", "xprop", "xclip"]
 
 # A ball of smoke that is quick to draw, and has a control of each kind.
 PUFF = """
@@ -282,10 +282,15 @@ class Case(unittest.TestCase):
     def write(self, name, text):
         """As editors do that are careful: to another file, then renamed over the first."""
         path = self.path(name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(path + "~", "w", encoding="utf-8") as f:
             f.write(text)
         os.replace(path + "~", path)
         return path
+
+    def read(self, name):
+        with open(self.path(name), encoding="utf-8") as f:
+            return f.read()
 
     def live(self, *args, effect=PUFF, **options):
         """The window, once it has drawn its first frame."""
