@@ -240,18 +240,19 @@ class Files(Case):
         live.quit()
 
 
-# Turns without end in every pixel, when it is asked to.
+# Takes minutes, when it is asked to. llvmpipe ends every loop after 65535 turns, so each is long.
 SPIN = """
 // Draws its source again, late.
 uniform int turns; //= 0 [0, 1000000] : how late
 uniform sampler2D source; //= input : the picture
 writeonly uniform image2D color; //= output rgba16f : it again
 layout(local_size_x = 8, local_size_y = 8) in;
+#define ONE(k) sum = fract(sum * 1.1 + texelFetch(source, (p + ivec2(i + k, k)) % 64, 0));
+#define EIGHT(k) ONE(k) ONE(k + 1) ONE(k + 2) ONE(k + 3) ONE(k + 4) ONE(k + 5) ONE(k + 6) ONE(k + 7)
 void main() {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
     vec4 sum = texelFetch(source, p, 0);
-    for (int i = 0; i < turns; i++)
-        for (int k = 0; k < turns; k++) sum = fract(sum * 1.1 + texelFetch(source, p, 0));
+    for (int i = 0; i < turns; i++) { EIGHT(0) EIGHT(8) EIGHT(16) EIGHT(24) EIGHT(32) EIGHT(40) }
     imageStore(color, p, sum);
 }
 """
