@@ -1,7 +1,7 @@
 // What the views of the live window share: text on a canvas that ends, is centred, or has no more
 // room than it is given; a switch that is its own label; where a window is opened.
 #pragma once
-#include "app/ui.h"
+#include "ui/ui.h"
 
 float label_height(void); // of a line of text
 float label_row(void);    // of a row of widgets

@@ -3,7 +3,7 @@
 #include "app/app.h"
 #include "app/orbit.h"
 #include "app/timeline.h"
-#include "app/ui.h"
+#include "ui/ui.h"
 
 // Sizes of the picture, as shares of its view.
 enum { LIVE_PREVIEWS = 3 };

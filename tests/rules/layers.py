@@ -6,21 +6,23 @@ sys.dont_write_bytecode = True
 from lib import house
 
 LEVELS = [["base"], ["gpu"], ["media", "shader"], ["graph"], ["field"], ["scene"],
-          ["pass", "sim"], ["effect"], ["script"], ["roil"], ["app"]]
+          ["pass", "sim"], ["effect"], ["script"], ["roil"], ["ui"], ["app"]]
 LEVEL = {layer: level for level, layers in enumerate(LEVELS) for layer in layers}
 
-# Foreign header -> where it may be included: a layer (all its files) or a file.
+# Foreign header -> where it may be included: a layer (all its files), layers, or a file.
 HOMES = [
     (r"vulkan/|vk_|volk\.h|vulkan", "gpu/"),
     (r"glslang/|SPIRV/|spirv_cross|spirv-cross|spirv", "shader/"),
     (r"(lua|lauxlib|lualib|luaconf)\.h(pp)?$|lua5\.4/", "script/"),
     (r"openvdb/|nanovdb/|tbb/", "media/vdb.cpp"),
     (r"assimp/|png\.h|OpenEXR/|openexr|libav|libsw|Imf", "media/"),
-    (r"imgui", "app/ui.cpp"),
-    (r"GLFW/|fontconfig/|popt\.h", "app/"),
+    (r"imgui", "ui/ui.cpp"),
+    (r"GLFW/", ("app/", "ui/")),
+    (r"fontconfig/", "ui/"),
+    (r"popt\.h", "app/"),
     (r"xxhash\.h", "base/"),
 ]
-CPP = ["src/media/vdb.cpp", "src/app/ui.cpp"]
+CPP = ["src/media/vdb.cpp", "src/ui/ui.cpp"]
 INCLUDE = re.compile(r'^\s*#\s*(?:include|import)\b\s*(?:"([^"]*)"|<([^>]*)>|(.*))')
 
 
@@ -47,7 +49,8 @@ def judge_own(path, target):
 def judge_foreign(path, target):
     for pattern, home in HOMES:
         if re.match(pattern, target) and not path.startswith(home):
-            return f"<{target}> belongs to src/{home} alone"
+            homes = home if isinstance(home, str) else " and src/".join(home)
+            return f"<{target}> belongs to src/{homes} alone"
     return None
 
 

@@ -1,5 +1,5 @@
 // What widgets look like: one place for colours, fills and edges.
-#include "app/ui_parts.h"
+#include "ui/parts.h"
 #include <math.h>
 
 typedef struct rgb {

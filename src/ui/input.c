@@ -1,4 +1,4 @@
-#include "app/input.h"
+#include "ui/input.h"
 #include <GLFW/glfw3.h>
 #include <float.h>
 

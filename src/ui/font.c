@@ -1,8 +1,8 @@
 // Fonts of the window, as fontconfig finds them among those installed.
-#include "app/ui_parts.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "ui/parts.h"
 #include <fontconfig/fontconfig.h>
 #include <string.h>
 

@@ -1,8 +1,8 @@
 // Numbers in sliders: from value to bar and back, how they are written, how they are typed.
 #include "base_test.h"
 
-#include "app/ui_parts.h"
 #include "base/memory.h"
+#include "ui/parts.h"
 #include <math.h>
 
 static const number_range linear = {0, 200, false, false}, logarithmic = {0.1, 10, true, false},

@@ -1,6 +1,6 @@
 // Numbers in sliders: where they stand on the bar, how round they are, how they are written.
-#include "app/ui_parts.h"
 #include "base/str.h"
+#include "ui/parts.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,10 +1,10 @@
 // Where widgets are, for programs that work the window: a JSON file of rectangles by name. A name
 // is the innermost ui_push and the widget's own id, as far as it is not "##value": "density",
 // "fire/ramp", "search"; in lower case.
-#include "app/ui_parts.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include "ui/parts.h"
 #include <ctype.h>
 #include <jansson.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 // Widgets that ImGui has not, or not as an artist wants them: headings, icons, toggles, numbers,
 // colours.
-#include "app/ui_parts.h"
+#include "ui/parts.h"
 #include <limits.h>
 #include <math.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 // Icons: a few triangles, bars and arcs each, on a grid of 16 units.
-#include "app/ui_parts.h"
+#include "ui/parts.h"
 #include <math.h>
 
 typedef struct grid {

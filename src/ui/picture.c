@@ -1,6 +1,6 @@
 // Triangles of one frame of the interface, gathered for roil_show.
-#include "app/ui_parts.h"
 #include "base/memory.h"
+#include "ui/parts.h"
 #include <string.h>
 
 static struct {

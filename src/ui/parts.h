@@ -1,7 +1,7 @@
 // What ui.cpp is made of and needs no ImGui: fonts, icons, numbers as text. Private to ui.cpp and
 // its parts.
 #pragma once
-#include "app/ui.h"
+#include "ui/ui.h"
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -1,7 +1,7 @@
 // The popup that chooses a colour. What is stored is linear and of any brightness; what one edits
 // is a colour as displays show it (hue, saturation, value in sRGB) times an intensity.
-#include "app/ui_parts.h"
 #include "base/maths.h"
+#include "ui/parts.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 // ui.h over Dear ImGui. Widgets that an artist looks at all day (bars of numbers, toggles,
 // headings, icons) are drawn here by hand; the rest is ImGui's, restyled. Input comes through
 // ImGui's GLFW backend, triangles leave as a roil_picture.
-#include "app/ui.h"
-#include "app/ui_parts.h"
+#include "ui/ui.h"
+#include "ui/parts.h"
 extern "C" {
-#include "app/input.h"
 #include "base/memory.h"
+#include "ui/input.h"
 }
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>

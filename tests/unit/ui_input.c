@@ -1,8 +1,8 @@
 // Which of the user's doings a frame sees together.
 #include "base_test.h"
 
-#include "app/input.h"
 #include "base/memory.h"
+#include "ui/input.h"
 #include <stdio.h>
 #include <string.h>
 
