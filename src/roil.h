@@ -339,6 +339,25 @@ size_t roil_images(roil_effect *e, roil_image_info *out, size_t capacity);
 bool roil_inspect(roil_effect *e, const roil_inspection *how, roil_texture *target,
                   roil_texel *texel);
 
+// ---- comparison -------------------------------------------------------------------------------
+
+typedef struct roil_comparison {
+    const char *a, *b;        // .png or .exr, of one size
+    float exposure;           // stops, -64 to 64, of what is .exr
+    double pixels_per_degree; // of the observer whom FLIP imitates, 1 to 1000; 0: 67
+    const char *difference; // .png: FLIP at each pixel, from black (0) to pale yellow (1); or NULL
+} roil_comparison;
+typedef struct roil_difference {
+    uint32_t width, height;
+    double psnr; // dB over R, G and B, with a peak of 1; INFINITY: equal
+    double ssim; // of luma, mean; 1: equal
+    double flip; // LDR-FLIP, mean; 0: equal, 1: the greatest
+} roil_difference;
+// Of sRGB as a display gets it: EXR pictures are exposed, clamped to 0 to 1 and encoded, without
+// the tone mapping of an effect; behind the alpha of PNG pictures is black, as it is in EXR. Needs
+// no device.
+bool roil_compare(const roil_comparison *how, roil_difference *out);
+
 // ---- export -----------------------------------------------------------------------------------
 
 typedef struct roil_export {

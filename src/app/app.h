@@ -5,12 +5,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { APP_DONE = 0, APP_BAD_INPUT = 1, APP_BAD_USAGE = 2 };
+enum { APP_DONE = 0, APP_BAD_INPUT = 1, APP_BAD_USAGE = 2, APP_DIFFERS = 3 };
 
 int cmd_render(int argc, const char **argv);
 int cmd_check(int argc, const char **argv);
 int cmd_info(int argc, const char **argv);
 int cmd_export(int argc, const char **argv);
+int cmd_compare(int argc, const char **argv);
 int cmd_live(int argc, const char **argv);
 
 // One line "roil: message" on stderr; returns the status.

@@ -1,0 +1,136 @@
+// Comparison of two picture files, and a picture of where they differ.
+#include "base/arena.h"
+#include "base/file.h"
+#include "base/maths.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include "media/compare.h"
+#include "media/exr.h"
+#include "media/png.h"
+#include "roil.h"
+#include <math.h>
+#include <string.h>
+
+static float encode_srgb(float v) {
+    v = clampf(v, 0, 1);
+    return v <= 0.0031308f ? v * 12.92f : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
+}
+
+static float decode_srgb(float v) {
+    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
+}
+
+// ---- files ------------------------------------------------------------------------------------
+
+static bool read_png(const char *path, arena *memory, compare_picture *out) {
+    png_image image;
+    if (!png_read(path, memory, &image)) return false;
+    size_t count = (size_t)image.width * image.height;
+    float *rgb = arena_alloc(memory, count * 3 * sizeof *rgb);
+    for (size_t i = 0; i < count; i++) {
+        float value[4];
+        for (size_t c = 0; c < 4; c++)
+            value[c] = image.bits == 16 ? (float)((const uint16_t *)image.pixels)[i * 4 + c] / 65535
+                                        : (float)((const uint8_t *)image.pixels)[i * 4 + c] / 255;
+        for (size_t c = 0; c < 3; c++)
+            rgb[i * 3 + c] =
+                value[3] < 1 ? encode_srgb(decode_srgb(value[c]) * value[3]) : value[c];
+    }
+    *out = (compare_picture){image.width, image.height, rgb};
+    return true;
+}
+
+static const float *find_channel(const exr_image *image, const char *name) {
+    for (size_t i = 0; i < image->channel_count; i++)
+        if (strcmp(image->channels[i].name, name) == 0) return image->channels[i].values;
+    return NULL;
+}
+
+static bool read_exr(const char *path, float gain, arena *memory, compare_picture *out) {
+    exr_image image;
+    if (!exr_read(path, memory, &image)) return false;
+    static const char *const names[3] = {"R", "G", "B"};
+    const float *planes[3];
+    for (size_t c = 0; c < 3; c++) {
+        planes[c] = find_channel(&image, names[c]);
+        if (!planes[c])
+            return err_set("%s: no channel '%s'; R, G and B are compared", path, names[c]);
+    }
+    size_t count = (size_t)image.width * image.height;
+    float *rgb = arena_alloc(memory, count * 3 * sizeof *rgb);
+    for (size_t i = 0; i < count; i++)
+        for (size_t c = 0; c < 3; c++) {
+            if (isnan(planes[c][i]))
+                return err_set("%s: pixel %zu, %zu is not a number in channel '%s'", path,
+                               i % image.width, i / image.width, names[c]);
+            rgb[i * 3 + c] = encode_srgb(planes[c][i] * gain);
+        }
+    *out = (compare_picture){image.width, image.height, rgb};
+    return true;
+}
+
+static bool read_picture(const char *path, float gain, arena *memory, compare_picture *out) {
+    if (str_ends_with(path, ".png")) return read_png(path, memory, out);
+    if (str_ends_with(path, ".exr")) return read_exr(path, gain, memory, out);
+    return err_set("%s: cannot be compared; accepted: .png, .exr", path);
+}
+
+// ---- difference picture -----------------------------------------------------------------------
+
+// Colour of an error of 0 to 1: sRGB stops of a ramp whose lightness rises evenly, from black over
+// purple and orange to pale yellow.
+static void ramp(float error, uint8_t out[3]) {
+    static const float stops[][3] = {{0, 0, 4},      {28, 16, 68},    {79, 18, 123},
+                                     {129, 37, 129}, {181, 54, 122},  {229, 80, 100},
+                                     {251, 135, 97}, {254, 194, 135}, {252, 253, 191}};
+    float at = clampf(error, 0, 1) * (float)(COUNT_OF(stops) - 1);
+    size_t low = (size_t)at;
+    if (low > COUNT_OF(stops) - 2) low = COUNT_OF(stops) - 2;
+    for (size_t c = 0; c < 3; c++)
+        out[c] = (uint8_t)lrintf(mixf(stops[low][c], stops[low + 1][c], at - (float)low));
+}
+
+static bool write_difference(const char *path, const compare_picture *shape, const float *map,
+                             arena *memory) {
+    size_t count = (size_t)shape->width * shape->height;
+    uint8_t *pixels = arena_alloc(memory, count * 3);
+    for (size_t i = 0; i < count; i++) ramp(map[i], pixels + i * 3);
+    return file_make_parent_folders(path) &&
+           png_write(path, &(png_image){shape->width, shape->height, 3, 8, pixels}, NULL, 0);
+}
+
+// ---- comparison -------------------------------------------------------------------------------
+
+static bool compare_pictures(const roil_comparison *how, arena *memory, roil_difference *out) {
+    compare_picture a, b;
+    float gain = exp2f(how->exposure);
+    if (!read_picture(how->a, gain, memory, &a) || !read_picture(how->b, gain, memory, &b))
+        return false;
+    if (a.width != b.width || a.height != b.height)
+        return err_set("%s is %ux%u, %s is %ux%u; pictures of one size are compared", how->a,
+                       a.width, a.height, how->b, b.width, b.height);
+    float *map = arena_alloc(memory, (size_t)a.width * a.height * sizeof *map);
+    *out = (roil_difference){
+        .width = a.width,
+        .height = a.height,
+        .psnr = compare_psnr(&a, &b),
+        .ssim = compare_ssim(&a, &b),
+        .flip =
+            compare_flip(&a, &b, how->pixels_per_degree > 0 ? how->pixels_per_degree : 67, map)};
+    return !how->difference || write_difference(how->difference, &a, map, memory);
+}
+
+bool roil_compare(const roil_comparison *how, roil_difference *out) {
+    double ppd = how->pixels_per_degree;
+    *out = (roil_difference){0};
+    if (ppd != 0 && !(ppd >= 1 && ppd <= 1000))
+        return err_set("%g pixels per degree; 1 to 1000 are accepted", ppd);
+    if (!(fabsf(how->exposure) <= 64))
+        return err_set("exposure of %g stops; -64 to 64 are accepted", (double)how->exposure);
+    if (how->difference && !str_ends_with(how->difference, ".png"))
+        return err_set("%s: a difference cannot be written; accepted: .png", how->difference);
+    arena memory = {0};
+    bool done = compare_pictures(how, &memory, out);
+    arena_free(&memory);
+    return done;
+}
