@@ -18,6 +18,7 @@ const live_preview live_previews[LIVE_PREVIEWS] = {{"full", 1}, {"half", 0.5f}, 
 static const float SPLITTER = 5, MIN_PANEL = 240, MIN_VIEW = 200; // units
 static const double NOTICE = 3;                                   // seconds that it is shown
 static const double SETTLE = 0.7;  // seconds after an input in which widgets may still move
+enum { SETTLE_FRAMES = 4 };        // and frames, however long they take: menus close, values follow
 static const double STEADY = 0.12; // seconds that a size must last before pictures are made for it
 static const double TICK = 1 / 60.0, BLINK = 0.25, LONG = 600;
 enum { MAX_PICTURE = 16384 };
@@ -27,6 +28,7 @@ typedef struct loop {
     roil_picture picture;
     double last, drawn_at; // clock_seconds
     double awake_until;
+    int awake_frames;
     uint32_t wanted[2]; // size of the picture by now, and since when
     double wanted_since;
     uint64_t reloads;
@@ -268,7 +270,7 @@ static bool show(live *l, loop *p, uint32_t width, uint32_t height) {
 static double time_to_sleep(const live *l, const loop *p, double now) {
     bool drawing = can_draw(l);
     if (p->minimized) return LONG;
-    if (ui_pending() || (drawing && l->dirty)) return 0;
+    if (ui_pending() || p->awake_frames > 0 || (drawing && l->dirty)) return 0;
     double most = LONG;
     if (drawing && l->time.playing) {
         double rate = l->time.fps * fabs(l->time.speed);
@@ -283,8 +285,14 @@ static double time_to_sleep(const live *l, const loop *p, double now) {
 }
 
 static bool turn(live *l, loop *p) {
-    double asleep = clock_seconds();
-    if (window_wait(time_to_sleep(l, p, asleep))) p->awake_until = clock_seconds() + SETTLE;
+    double most = time_to_sleep(l, p, clock_seconds());
+    bool woken = window_wait(most) && most > 0;
+    if (woken || ui_pending()) {
+        p->awake_until = clock_seconds() + SETTLE;
+        p->awake_frames = SETTLE_FRAMES;
+    } else if (p->awake_frames > 0) {
+        p->awake_frames--;
+    }
     return !window_closing(p->w) && !l->quit;
 }
 
