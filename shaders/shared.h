@@ -3,6 +3,7 @@
 #define SHARED_VEC4 vec4
 #define SHARED_UVEC4 uvec4
 #define SHARED_MAT4 mat4
+#define SHARED_LIGHT light_entry
 #else
 #pragma once
 #include <stdint.h>
@@ -12,6 +13,7 @@ typedef struct shared_mat4 { float m[16]; } shared_mat4; // column-major
 #define SHARED_VEC4 shared_vec4
 #define SHARED_UVEC4 shared_uvec4
 #define SHARED_MAT4 shared_mat4
+#define SHARED_LIGHT struct light_entry
 #endif
 
 // Uniform block "Frame" of every shader that includes lib/frame.glsl.
@@ -19,6 +21,7 @@ struct frame_block {
     SHARED_MAT4 view;           // world to camera; the camera looks along -z
     SHARED_MAT4 projection;     // camera to clip; depth 0 near, 1 far
     SHARED_MAT4 view_inverse;   // camera to world
+    SHARED_MAT4 last;           // world to clip of the frame before; of this one in the first
     SHARED_VEC4 eye;            // xyz: metres; w: 0
     SHARED_VEC4 lens;           // tan(half width), tan(half height), near, far (metres)
     SHARED_VEC4 time;           // seconds, seconds since the last frame, frame number, 0
@@ -27,4 +30,23 @@ struct frame_block {
     SHARED_VEC4 sun_radiance;   // rgb: irradiance at normal incidence over pi
     SHARED_VEC4 sky_zenith;     // rgb: radiance straight up
     SHARED_VEC4 sky_horizon;    // rgb: radiance at the horizon
+};
+
+// Kinds of light, in light_entry.color.w.
+#define LIGHT_SUN 0   // far away: the same direction everywhere
+#define LIGHT_POINT 1 // a glowing sphere where its radius is above 0
+#define LIGHT_SPOT 2  // a point light with a cone
+
+struct light_entry {
+    SHARED_VEC4 position; // xyz: metres; of the sun: unit, towards it; w: radius in metres, of the sun: sine of its angular radius
+    SHARED_VEC4 color;    // rgb: radiant intensity (W/sr); of the sun: irradiance at normal incidence (W/m^2); w: kind
+    SHARED_VEC4 axis;     // of a spot: xyz: unit, where it shines; w: cosine of the half angle at which it ends
+    SHARED_VEC4 spread;   // of a spot: x: cosine of the half angle up to which it is full
+};
+
+// Uniform block "Lights" of every shader that includes lib/light.glsl. The sun is the first.
+#define LIGHT_MAX 64
+struct light_block {
+    SHARED_UVEC4 count; // x: entries in use, at least 1
+    SHARED_LIGHT lights[LIGHT_MAX];
 };

@@ -24,6 +24,10 @@ typedef struct pass_host { // what all passes of one effect share
     arena *memory;
     const field_context *context;                // of the frame being recorded
     const struct frame_block *frame;             // of the frame being recorded
+    const struct light_block *lights;            // of the frame being recorded
+    const scene *scene;                          // for its sky
+    struct scene_bvh *bvh;                       // of all meshes; after pass_allocate
+    gpu_image *blue_noise;                       // texture "BlueNoise" of lib/random.glsl
     bool counters;                               // compile counters in and read them
     const shader_reader *reader;                 // of all files of shaders; may be NULL
     bool (*before_declare)(void *user, pass *p); // last chance to change a pass; may be NULL
@@ -67,7 +71,11 @@ bool pass_set_image(pass *p, const char *name, graph_image image);
 bool pass_set_scale(pass *p,
                     float scale); // of its outputs, relative to the effect's output; (0, 1]
 bool pass_set_format(pass *p, const char *output, gpu_format format);
-bool pass_add_mesh(pass *p, scene_mesh *mesh);       // geometry only
+bool pass_add_mesh(pass *p, scene_mesh *mesh); // geometry only
+// What `p` says nothing about it takes from `source`, a pass declared before, where both have
+// something of that name: images that it reads and `source` writes; fields, options and uniforms,
+// the latter as they are in each frame. Several sources: the first that has it.
+void pass_add_source(pass *p, pass *source);
 void pass_set_bake(pass *p, const field_grid *grid); // bake only: the grid it fills
 // What `name` may be set as, for the generic setter of Lua and --set.
 typedef enum pass_key { PASS_UNKNOWN, PASS_UNIFORM, PASS_OPTION, PASS_FIELD, PASS_IMAGE } pass_key;

@@ -20,12 +20,32 @@ typedef struct scene_sun {
     const field *elevation; // degrees above the horizon
     const field *color;     // vec3
     const field *strength;  // irradiance at normal incidence
+    const field *angle;     // degrees across; 0.53 is ours
 } scene_sun;
 
 typedef struct scene_sky {
     const field *zenith, *horizon; // vec3, radiance
     const field *strength;
+    const field *rotation;         // degrees about +Z, of the image
+    const struct sky_image *image; // instead of the two colours; NULL: none (sky_image.h)
 } scene_sky;
+
+typedef enum scene_light_kind { // as LIGHT_POINT, LIGHT_SPOT of shared.h
+    SCENE_POINT = 1,
+    SCENE_SPOT = 2,
+} scene_light_kind;
+
+typedef struct scene_light {
+    scene_light_kind kind;
+    const field *position; // vec3, metres
+    const field *color;    // vec3
+    const field *power;    // watt, into all directions; a spot's is that of the point light that
+                           // its cone is cut from, as in Blender
+    const field *radius;   // metres; above 0 a glowing sphere
+    const field *target;   // vec3, metres: where a spot shines
+    const field *angle;    // degrees across a spot's cone
+    const field *softness; // 0..1: part of the cone over which it fades
+} scene_light;
 
 typedef struct scene_mesh {
     const char *name;
@@ -42,6 +62,8 @@ typedef struct scene {
     scene_camera camera;
     scene_sun sun;
     scene_sky sky;
+    const scene_light *lights; // besides the sun; the script's memory
+    size_t light_count;        // less than LIGHT_MAX
 } scene;
 
 typedef struct scene_value { // one value of camera, sun or sky
@@ -61,6 +83,9 @@ void scene_init(scene *s, arena *memory);
 // the caller's). `aspect`: width over height. False when a Lua function failed.
 bool scene_fill_frame(const scene *s, const field_context *context, float aspect,
                       struct frame_block *out);
+
+// Evaluates sun and lights; the sun is the first, whatever its strength.
+bool scene_fill_lights(const scene *s, const field_context *context, struct light_block *out);
 
 // Where the camera stands and what it looks at, metres.
 bool scene_camera_eye(const scene_camera *c, const field_context *context, vec3 eye, vec3 target);

@@ -1,0 +1,73 @@
+// The lights of the scene, and what of each would reach a point if nothing stood between.
+//
+// They are the block "Lights" (shared.h), or, where a pass has the input `lights`, what the pass
+// `lighting` made of them: the same and those that stand for the volume's own fire.
+#ifndef LIB_LIGHT_GLSL
+#define LIB_LIGHT_GLSL
+#include "shared.h"
+
+#ifndef HAS_LIGHTS
+#define HAS_LIGHTS 0
+#endif
+
+struct light {
+    vec3 position; // metres; of the sun: unit, towards it
+    float radius;  // metres; of the sun: sine of its angular radius
+    vec3 color;    // W/sr; of the sun: W/m^2 at normal incidence
+    int kind;      // LIGHT_SUN, LIGHT_POINT, LIGHT_SPOT
+    vec3 axis;     // of a spot
+    float outer;   // cosine at which its cone ends
+    float inner;   // cosine up to which it is full
+};
+
+struct light_ray {
+    vec3 direction;  // unit, towards the light's centre
+    float distance;  // metres to the light's centre; 1e9 for the sun
+    vec3 irradiance; // at normal incidence, W/m^2
+};
+
+#if HAS_LIGHTS
+// `lights` has a row for each: texels 0 to 3 are its light_entry (lighting.glsl says what follows).
+int light_count() {
+    return textureSize(lights, 0).y;
+}
+
+light_entry light_entry_of(int index) {
+    return light_entry(texelFetch(lights, ivec2(0, index), 0), texelFetch(lights, ivec2(1, index), 0),
+                       texelFetch(lights, ivec2(2, index), 0), texelFetch(lights, ivec2(3, index), 0));
+}
+#else
+layout(std140) uniform Lights { light_block light_list; };
+
+int light_count() {
+    return int(light_list.count.x);
+}
+
+light_entry light_entry_of(int index) {
+    return light_list.lights[index];
+}
+#endif
+
+light light_get(int index) {
+    light_entry e = light_entry_of(index);
+    return light(e.position.xyz, e.position.w, e.color.rgb, int(e.color.w), e.axis.xyz, e.axis.w,
+                 e.spread.x);
+}
+
+// A sphere's irradiance falls with the square of the distance only outside of it: inside it is that
+// at its surface.
+light_ray light_at(light l, vec3 p) {
+    if (l.kind == LIGHT_SUN) return light_ray(l.position, 1e9, l.color);
+    vec3 to = l.position - p;
+    float distance = max(length(to), 1e-4);
+    vec3 direction = to / distance;
+    float least = max(l.radius, 1e-2);
+    vec3 irradiance = l.color / max(distance * distance, least * least);
+    if (l.kind == LIGHT_SPOT) {
+        float cosine = dot(-direction, l.axis);
+        irradiance *= smoothstep(l.outer, max(l.inner, l.outer + 1e-4), cosine);
+    }
+    return light_ray(direction, distance, irradiance);
+}
+
+#endif
