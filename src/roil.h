@@ -346,6 +346,7 @@ typedef struct roil_comparison {
     float exposure;           // stops, -64 to 64, of what is .exr
     double pixels_per_degree; // of the observer whom FLIP imitates, 1 to 1000; 0: 67
     const char *difference; // .png: FLIP at each pixel, from black (0) to pale yellow (1); or NULL
+    const char *beside;     // .png: a, b and that picture next to each other; or NULL
 } roil_comparison;
 typedef struct roil_difference {
     uint32_t width, height;

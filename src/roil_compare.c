@@ -99,6 +99,26 @@ static bool write_difference(const char *path, const compare_picture *shape, con
            png_write(path, &(png_image){shape->width, shape->height, 3, 8, pixels}, NULL, 0);
 }
 
+// A, B and the errors, next to each other.
+static bool write_beside(const char *path, const compare_picture *a, const compare_picture *b,
+                         const float *map, arena *memory) {
+    uint32_t width = a->width, height = a->height;
+    uint8_t *pixels = arena_alloc(memory, (size_t)width * height * 9);
+    for (size_t y = 0; y < height; y++)
+        for (size_t x = 0; x < width; x++) {
+            size_t from = y * width + x;
+            uint8_t *row = pixels + y * width * 9;
+            for (size_t c = 0; c < 3; c++) {
+                row[x * 3 + c] = (uint8_t)lrintf(clampf(a->rgb[from * 3 + c], 0, 1) * 255);
+                row[(width + x) * 3 + c] =
+                    (uint8_t)lrintf(clampf(b->rgb[from * 3 + c], 0, 1) * 255);
+            }
+            ramp(map[from], row + (2 * width + x) * 3);
+        }
+    return file_make_parent_folders(path) &&
+           png_write(path, &(png_image){width * 3, height, 3, 8, pixels}, NULL, 0);
+}
+
 // ---- comparison -------------------------------------------------------------------------------
 
 static bool compare_pictures(const roil_comparison *how, arena *memory, roil_difference *out) {
@@ -117,7 +137,8 @@ static bool compare_pictures(const roil_comparison *how, arena *memory, roil_dif
         .ssim = compare_ssim(&a, &b),
         .flip =
             compare_flip(&a, &b, how->pixels_per_degree > 0 ? how->pixels_per_degree : 67, map)};
-    return !how->difference || write_difference(how->difference, &a, map, memory);
+    return (!how->difference || write_difference(how->difference, &a, map, memory)) &&
+           (!how->beside || write_beside(how->beside, &a, &b, map, memory));
 }
 
 bool roil_compare(const roil_comparison *how, roil_difference *out) {
@@ -127,8 +148,10 @@ bool roil_compare(const roil_comparison *how, roil_difference *out) {
         return err_set("%g pixels per degree; 1 to 1000 are accepted", ppd);
     if (!(fabsf(how->exposure) <= 64))
         return err_set("exposure of %g stops; -64 to 64 are accepted", (double)how->exposure);
-    if (how->difference && !str_ends_with(how->difference, ".png"))
-        return err_set("%s: a difference cannot be written; accepted: .png", how->difference);
+    const char *const pictures[] = {how->difference, how->beside};
+    for (size_t i = 0; i < COUNT_OF(pictures); i++)
+        if (pictures[i] && !str_ends_with(pictures[i], ".png"))
+            return err_set("%s: a difference cannot be written; accepted: .png", pictures[i]);
     arena memory = {0};
     bool done = compare_pictures(how, &memory, out);
     arena_free(&memory);

@@ -51,6 +51,16 @@ class CompareCommand(Case):
         self.assertEqual(picture.rows[12][:3], (0, 0, 4))
         self.assertGreater(sum(picture.rows[12][-3:]), 150)
 
+    def test_both_and_their_difference_beside_each_other(self):
+        self.succeeds("compare", "a.png", "c.png", "-o", "out.png", "--beside", "beside.png")
+        beside = Png(self.read("beside.png"))
+        self.assertEqual((beside.width, beside.height), (96, 24))
+        parts = [Png(self.read(name)) for name in ("a.png", "c.png", "out.png")]
+        for y in (0, 12, 23):
+            row = [v for part in parts for x in range(32)
+                   for v in part.rows[y][x * part.channels:][:3]]
+            self.assertEqual(list(beside.rows[y]), row)
+
     def test_limits_end_with_status_3(self):
         self.succeeds("compare", "a.png", "b.png", "--max-flip", "0.5", "--min-psnr", "30")
         self.fails(3, ["b.png differs from a.png", "FLIP", "at most 0.001"], "compare", "a.png",
