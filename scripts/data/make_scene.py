@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write effects/data/ground.obj and effects/data/crates.obj: what stands around the explosion.
+"""Write effects/data/ground.obj, crates.obj and yard.obj: what stands around the explosions.
 
   python3 scripts/data/make_scene.py effects/data
 """
@@ -28,6 +28,28 @@ CRATES = (  # position, size, turn (degrees), material
 )
 
 
+def yard():
+    """A freight yard at night: a wall with openings behind, containers, posts and barrels around 4, 4."""
+    for i in range(7):  # the wall: piers, and beams above and below the openings
+        yield (-5.0 + 3.0 * i, 10.5, 0), (0.7, 0.5, 4.2), 0, "wall"
+    yield (4.0, 10.5, 4.2), (18.7, 0.6, 0.6), 0, "wall"
+    yield (4.0, 10.5, 0), (18.7, 0.45, 0.7), 0, "wall"
+    containers = ((-2.6, 5.2, 0, 68, "red"), (-2.3, 5.3, 1.5, 61, "blue"), (10.9, 6.2, 0, -64, "green"),
+                  (10.2, 1.6, 0, 8, "blue"))
+    for x, y, z, turn, material in containers:
+        yield (x, y, z), (4.2, 1.5, 1.46), turn, material
+        c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
+        for k in range(14):  # the ribs of their long sides
+            for side in (-1, 1):
+                dx, dy = -1.95 + 0.3 * k, side * 0.78
+                yield (x + c * dx - s * dy, y + s * dx + c * dy, z + 0.08), (0.12, 0.08, 1.3), turn, material
+    for x, y, height in ((0.6, 0.9, 1.1), (2.4, 0.1, 1.1), (5.6, -0.1, 1.1), (7.5, 0.8, 1.1)):
+        yield (x, y, 0), (0.16, 0.16, height), 20 * x, "steel"
+    for x, y, turn in ((7.9, 3.0, 15), (8.3, 3.5, 60), (0.2, 3.2, 30), (8.05, 4.1, 80)):
+        yield (x, y, 0), (0.46, 0.46, 0.75), turn, "steel"
+        yield (x, y, 0), (0.46, 0.46, 0.75), turn + 45, "steel"
+
+
 def write(path, name, materials, groups):
     with open(path + ".mtl", "w") as out:
         for key, color in materials.items():
@@ -50,3 +72,6 @@ write(folder + "/ground", "ground", {"ground": (0.16, 0.14, 0.12)},
       [("ground", [(-far, -far, 0), (far, -far, 0), (far, far, 0), (-far, far, 0)], [(1, 2, 3, 4)])])
 write(folder + "/crates", "crates", {"crate": (0.22, 0.13, 0.06)},
       [(m, box(p, s, t), FACES) for p, s, t, m in CRATES])
+write(folder + "/yard", "yard", {"wall": (0.30, 0.27, 0.24), "red": (0.35, 0.06, 0.03), "blue": (0.05, 0.12, 0.25),
+                                 "green": (0.06, 0.18, 0.08), "steel": (0.20, 0.20, 0.21)},
+      [(m, box(p, s, t), FACES) for p, s, t, m in yard()])
