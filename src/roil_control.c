@@ -90,8 +90,12 @@ static void clamp_to_range(roil_control *out) { // as passes do
     }
 }
 
-static void fill_uniform(const roil_effect *e, const effect_control *c, const shader_uniform *u,
+static void fill_uniform(const roil_effect *e, const effect_control *c, const pass *p,
                          roil_control *out) {
+    const shader_uniform *u = &pass_interface(p)->uniforms[c->index], *declared;
+    const field *inherited = pass_inherited_uniform(p, c->index, &declared);
+    float otherwise[4];
+    evaluate(e, inherited, declared->value, otherwise);
     out->type = type_of_uniform(u);
     out->components = pass_uniform_components(u->type);
     out->min = u->min;
@@ -104,7 +108,7 @@ static void fill_uniform(const roil_effect *e, const effect_control *c, const sh
         out->min = 0;
         out->max = u->type == SHADER_BOOL ? 1 : (float)u->word_count - 1;
     }
-    fill_moving(e, c, u->value, out);
+    fill_moving(e, c, otherwise, out);
     clamp_to_range(out);
 }
 
@@ -186,7 +190,7 @@ void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
         fill_scene(e, c, out);
         break;
     case EFFECT_CONTROL_UNIFORM:
-        fill_uniform(e, c, &pass_interface(p)->uniforms[c->index], out);
+        fill_uniform(e, c, p, out);
         break;
     case EFFECT_CONTROL_OPTION:
         fill_option(c, p, out);

@@ -81,9 +81,11 @@ bool pass_control_set(effect *e, control *c, const char *text) {
 
 static void print_uniform(const pass *p, size_t index, strbuf *out) {
     const shader_uniform *uniform = &pass_interface(p)->uniforms[index];
+    const shader_uniform *declared = uniform;
     const field *node = pass_get_uniform(p, index);
+    if (!node) node = pass_inherited_uniform(p, index, &declared);
     float value[4];
-    memcpy(value, uniform->value, sizeof value);
+    memcpy(value, declared->value, sizeof value);
     if (node && strcmp(node->kind->name, "constant") != 0) {
         field_print(node, out);
         return;

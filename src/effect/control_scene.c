@@ -15,7 +15,11 @@ static const field **slot_of(effect *e, const control *c) {
 }
 
 const field *effect_control_field(const effect *e, const effect_control *c) {
-    if (c->kind == EFFECT_CONTROL_UNIFORM) return pass_get_uniform(e->passes[c->pass], c->index);
+    if (c->kind == EFFECT_CONTROL_UNIFORM) {
+        const shader_uniform *declared;
+        const field *own = pass_get_uniform(e->passes[c->pass], c->index);
+        return own ? own : pass_inherited_uniform(e->passes[c->pass], c->index, &declared);
+    }
     return *slot_of((effect *)(uintptr_t)e, (const control *)c);
 }
 

@@ -2,6 +2,7 @@
 // and what the host must keep (uniform blocks, palette textures, counters) is made.
 #include "base/error.h"
 #include "base/memory.h"
+#include "pass/blue_noise.h"
 #include "pass/pass_impl.h"
 #include <ctype.h>
 #include <math.h>
@@ -158,6 +159,12 @@ static bool make_blanks(pass *p) {
     return true;
 }
 
+// One texture for all passes of the effect.
+static bool make_blue_noise(pass_host *host) {
+    if (!host->blue_noise) host->blue_noise = blue_noise_create(host->device);
+    return host->blue_noise != NULL;
+}
+
 static bool make_counters(pass *p) {
     if (p->counters || !p->host->counters || !p->face->counter_count) return true;
     p->counters = gpu_buffer_create(p->host->device, &(gpu_buffer_desc){
@@ -201,7 +208,7 @@ bool pass_build(pass *p) {
 bool pass_allocate(pass *p) {
     for (size_t i = 0; i < p->mesh_count; i++)
         if (!scene_mesh_upload(p->meshes[i], p->host->device)) return false;
-    return make_palettes(p) && make_blanks(p) && make_counters(p);
+    return make_palettes(p) && make_blanks(p) && make_blue_noise(p->host) && make_counters(p);
 }
 
 // What pass_build can find wrong without a device.
@@ -223,10 +230,13 @@ void pass_destroy(pass *p) {
     if (p->counters) gpu_buffer_destroy(device, p->counters);
     if (p->pipeline) gpu_pipeline_destroy(device, p->pipeline);
     mem_free(p->meshes);
+    mem_free(p->sources);
     *p = (pass){0};
 }
 
 void pass_host_free(pass_host *host) {
+    if (host->blue_noise) gpu_image_destroy(host->device, host->blue_noise);
+    host->blue_noise = NULL;
     mem_free(host->grid_images);
     host->grid_images = NULL;
     host->grid_image_count = host->grid_image_capacity = 0;

@@ -21,6 +21,7 @@ pass *pass_create(pass_host *host, const pass_type *type, const char *shader, co
         .face = face,
         .uniforms = arena_alloc(memory, face->uniform_count * sizeof *p->uniforms),
         .options = arena_alloc(memory, face->option_count * sizeof *p->options),
+        .chosen = arena_alloc(memory, face->option_count * sizeof *p->chosen),
         .fields = arena_alloc(memory, face->field_count * sizeof *p->fields),
         .images = arena_alloc(memory, face->image_count * sizeof *p->images),
         .formats = arena_alloc(memory, face->image_count * sizeof *p->formats),
@@ -147,6 +148,7 @@ bool pass_set_option(pass *p, const char *name, const char *word) {
     for (size_t i = 0; i < option->word_count; i++) {
         if (strcmp(option->words[i], word) != 0) continue;
         p->options[index] = i;
+        p->chosen[index] = true;
         return true;
     }
     strbuf list = {0};

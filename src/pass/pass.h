@@ -73,8 +73,8 @@ bool pass_set_scale(pass *p,
 bool pass_set_format(pass *p, const char *output, gpu_format format);
 bool pass_add_mesh(pass *p, scene_mesh *mesh); // geometry only
 // What `p` says nothing about it takes from `source`, a pass declared before, where both have
-// something of that name: images that it reads and `source` writes; fields, options and uniforms,
-// the latter as they are in each frame. Several sources: the first that has it.
+// something of that name and type: images that it reads and `source` writes; fields, options and
+// uniforms, the latter as they are in each frame. Several sources: the first that has it.
 void pass_add_source(pass *p, pass *source);
 void pass_set_bake(pass *p, const field_grid *grid); // bake only: the grid it fills
 // What `name` may be set as, for the generic setter of Lua and --set.
@@ -89,7 +89,10 @@ bool pass_allocate(pass *p);
 // After pass_build: evaluates the numbers of a frame as recording it would. Any thread.
 bool pass_rehearse(pass *p);
 graph_image pass_output(const pass *p, const char *name);   // after pass_declare; zero when unknown
-const field *pass_get_uniform(const pass *p, size_t index); // NULL: the default
+const field *pass_get_uniform(const pass *p, size_t index); // NULL: not set
+// What a uniform is while it is not set: as `*declared` of this pass or of a source has it, whose
+// default counts when the result is NULL.
+const field *pass_inherited_uniform(const pass *p, size_t index, const shader_uniform **declared);
 void pass_restore_uniform(pass *p, size_t index, const field *value); // one that it had, or NULL
 int pass_uniform_components(shader_type type);
 bool pass_refuse_uniform(const pass *p, const char *name); // the message for a name not known

@@ -19,12 +19,15 @@ struct pass {
     // As set; one per entry of `face`.
     const field **uniforms; // NULL: the default
     size_t *options;
+    bool *chosen; // options that were set, or taken from a source
     const field **fields; // NULL: the default
     graph_image *images;  // inputs, and outputs once declared
     gpu_format *formats;  // outputs
     float scale;
     scene_mesh **meshes;
     size_t mesh_count, mesh_capacity;
+    pass **sources; // asked, in order, for what this pass says nothing about
+    size_t source_count, source_capacity;
 
     // After pass_build.
     field_program *program;

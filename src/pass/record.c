@@ -32,15 +32,15 @@ void pass_write_member(const shader_binary *binary, unsigned char *block, const 
 
 // Current value of a uniform, kept within its declared range.
 static bool evaluate(const pass *p, size_t index, float out[4]) {
-    const shader_uniform *uniform = &p->face->uniforms[index];
+    const shader_uniform *uniform = &p->face->uniforms[index], *declared = uniform;
     const field *node = p->uniforms[index];
-    memcpy(out, uniform->value, 4 * sizeof *out);
-    if (!node) return true;
-    float value[4] = {0};
-    if (!field_eval(node, p->host->context, (float3){0, 0, 0}, value))
+    if (!node) node = pass_inherited_uniform(p, index, &declared);
+    float value[4];
+    memcpy(value, declared->value, sizeof value);
+    if (node && !field_eval(node, p->host->context, (float3){0, 0, 0}, value))
         return err_prefix("uniform '%s': ", uniform->name);
     for (int i = 0; i < 4; i++) {
-        float v = node->components == 1 ? value[0] : value[i];
+        float v = node && node->components == 1 ? value[0] : value[i];
         out[i] = isfinite(v) ? clampf(v, uniform->min, uniform->max) : uniform->value[i];
     }
     return true;

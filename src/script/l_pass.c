@@ -14,7 +14,7 @@ typedef struct image_object {
 } image_object;
 
 typedef struct result_object {
-    const pass *pass;
+    pass *pass;
 } result_object;
 
 typedef struct pass_call {
@@ -236,6 +236,39 @@ static void set_formats(lua_State *L, pass_call *call, int table) {
     lua_pop(L, 1);
 }
 
+static void add_source(lua_State *L, pass_call *call, int value) {
+    const result_object *source = object_test(L, value, "pass result");
+    if (!source)
+        vm_error(
+            L, "%s: 'from' takes a pass or a list of passes, as in from = {lit, scene}; got %s",
+            call->who,
+            object_test(L, value, "image") ? "an image"
+                                           : lua_pushfstring(L, "a %s", luaL_typename(L, value)));
+    vm_charge_memory(L, 2 * sizeof source);
+    pass_add_source(call->pass, source->pass);
+}
+
+// from = {lit, scene}, or one pass: what this call says nothing about.
+static void add_sources(lua_State *L, pass_call *call, int table) {
+    int type = value_get(L, table, "from");
+    int list = lua_gettop(L);
+    if (type == LUA_TTABLE) {
+        size_t names;
+        value_names(L, list, call->who, &names);
+        if (names) vm_error(L, "%s: 'from' takes a list without names", call->who);
+        lua_pop(L, 1);
+        lua_Integer length = (lua_Integer)lua_rawlen(L, list);
+        for (lua_Integer i = 1; i <= length; i++) {
+            lua_rawgeti(L, list, i);
+            add_source(L, call, lua_gettop(L));
+            lua_pop(L, 1);
+        }
+    } else if (type != LUA_TNIL) {
+        add_source(L, call, list);
+    }
+    lua_pop(L, 1);
+}
+
 static void read_table(lua_State *L, pass_call *call, int table, lua_Integer first) {
     lua_Integer length = (lua_Integer)lua_rawlen(L, table);
     for (lua_Integer i = first; i <= length; i++) {
@@ -246,6 +279,7 @@ static void read_table(lua_State *L, pass_call *call, int table, lua_Integer fir
     double scale = value_get_number(L, table, call->who, "resolution", 1);
     if (scale != 1 && !pass_set_scale(call->pass, (float)scale)) script_raise(L);
     set_formats(L, call, table);
+    add_sources(L, call, table);
     size_t count;
     const char **names = value_names(L, table, call->who, &count);
     for (size_t i = 0; i < count; i++) {

@@ -183,7 +183,11 @@ static const script_object objects[] = {
      .keys = KEYS(
         KEY("name", "the type's", "for --set NAME.key=value and statistics; numbered when taken"),
         KEY("resolution", "1 (0, 1]", "size of its outputs relative to the picture"),
-        KEY("format", "\"rgba16f\"", "of the first output; { NAME = \"r32f\", ... } of any"))},
+        KEY("format", "\"rgba16f\"", "of the first output; { NAME = \"r32f\", ... } of any"),
+        KEY("from", "{lit, scene}",
+            "passes, or one, from which it takes what is not given here: outputs of theirs as the "
+            "inputs of that name; fields, options and numbers of that name, which go on moving. "
+            "The first that has it counts"))},
     {"history", "effect", "history(volume.color)",
      "an image as it was in the last frame; zero in the first",
      .args = KEYS(KEY("image", NULL, "a pass or one of its outputs"))},

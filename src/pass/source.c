@@ -1,0 +1,82 @@
+// What a pass takes from others: `from` in an effect file. What structure is (images, fields,
+// options) is taken once; a uniform is looked up in every frame, so that what moves it there moves
+// it here.
+#include "base/memory.h"
+#include "pass/pass_impl.h"
+#include <string.h>
+
+static void take_images(pass *p, const pass *source) {
+    for (size_t i = 0; i < p->face->image_count; i++) {
+        const shader_image *input = &p->face->images[i];
+        if (input->output || input->history || p->images[i].id) continue;
+        for (size_t k = 0; k < source->face->image_count; k++) {
+            const shader_image *output = &source->face->images[k];
+            if (output->output && output->volume == input->volume &&
+                strcmp(output->name, input->name) == 0)
+                p->images[i] = source->images[k];
+        }
+    }
+}
+
+static void take_fields(pass *p, const pass *source) {
+    for (size_t i = 0; i < p->face->field_count; i++) {
+        const shader_field *own = &p->face->fields[i];
+        for (size_t k = 0; k < source->face->field_count && !p->fields[i]; k++) {
+            const shader_field *other = &source->face->fields[k];
+            if (other->components == own->components && strcmp(other->name, own->name) == 0)
+                p->fields[i] = source->fields[k];
+        }
+    }
+}
+
+// The word of an option there, if it is one here too.
+static bool take_word(pass *p, size_t index, const char *word) {
+    const shader_option *option = &p->face->options[index];
+    for (size_t i = 0; i < option->word_count; i++) {
+        if (strcmp(option->words[i], word) != 0) continue;
+        p->options[index] = i;
+        return true;
+    }
+    return false;
+}
+
+static void take_options(pass *p, const pass *source) {
+    for (size_t i = 0; i < p->face->option_count; i++) {
+        for (size_t k = 0; k < source->face->option_count && !p->chosen[i]; k++) {
+            const shader_option *other = &source->face->options[k];
+            if (strcmp(other->name, p->face->options[i].name) == 0)
+                p->chosen[i] = take_word(p, i, other->words[source->options[k]]);
+        }
+    }
+}
+
+void pass_add_source(pass *p, pass *source) {
+    MEM_RESERVE(p->sources, p->source_count + 1, p->source_capacity);
+    p->sources[p->source_count++] = source;
+    take_images(p, source);
+    take_fields(p, source);
+    take_options(p, source);
+}
+
+// The first source that has a uniform like this one; NULL: none.
+static const pass *find_uniform(const pass *p, const shader_uniform *like, size_t *index) {
+    for (size_t i = 0; i < p->source_count; i++) {
+        const shader_interface *face = p->sources[i]->face;
+        for (*index = 0; *index < face->uniform_count; ++*index) {
+            const shader_uniform *u = &face->uniforms[*index];
+            if (u->type == like->type && u->word_count == like->word_count &&
+                strcmp(u->name, like->name) == 0)
+                return p->sources[i];
+        }
+    }
+    return NULL;
+}
+
+const field *pass_inherited_uniform(const pass *p, size_t index, const shader_uniform **declared) {
+    *declared = &p->face->uniforms[index];
+    while ((p = find_uniform(p, *declared, &index))) {
+        *declared = &p->face->uniforms[index];
+        if (p->uniforms[index]) return p->uniforms[index];
+    }
+    return NULL;
+}
