@@ -138,6 +138,9 @@ static float longest(const field *node, const field_context *context, int depth)
         return a + b;
     case KIND_NEGATE:
         return longest(node->args[0], context, depth - 1);
+    case KIND_WARP:
+    case KIND_TRANSFORM:
+        return longest(node->args[0], context, depth - 1);
     case KIND_GRID: {
         const field_grid *grid = node->object;
         return grid->longest > 0 ? grid->longest : INFINITY;

@@ -210,6 +210,12 @@ static bool set_options(field *node, const uint8_t *options) {
     return true;
 }
 
+field *field_with_args(arena *memory, const field *node, const field *const *args) {
+    field *copy = arena_copy(memory, node, sizeof *node);
+    memcpy(copy->args, args, sizeof copy->args);
+    return finish(copy);
+}
+
 field *field_make(arena *memory, const char *kind, const field *const *args,
                   const uint8_t *options) {
     const field_kind *row = field_kind_find(kind);
@@ -226,7 +232,7 @@ field *field_make(arena *memory, const char *kind, const field *const *args,
     int width;
     if (!find_width(node, &width) || !set_options(node, options)) return NULL;
     if (row->components == 0) node->components = width;
-    return finish(node);
+    return index == KIND_ADVECT ? field_advect(memory, node) : finish(node);
 }
 
 static int component(char letter) {

@@ -20,8 +20,9 @@
 enum {
     FIELD_MAX_ARGS = 16,
     FIELD_MAX_OPTIONS = 4,
-    FIELD_MAX_DEPTH = 256,  // nodes on a path: building a deeper expression fails
-    FIELD_MAX_NODES = 4096, // distinct nodes under the fields of one program
+    FIELD_MAX_DEPTH = 256,   // nodes on a path: building a deeper expression fails
+    FIELD_MAX_NODES = 4096,  // distinct nodes under the fields of one program
+    FIELD_MAX_ADVECTED = 64, // nodes holding noise that "advect" can make anew
 };
 
 typedef struct field field;
@@ -113,6 +114,9 @@ field *field_user(arena *memory, const field_glsl *glsl, const field *const *arg
 field *field_make(arena *memory, const char *kind, const field *const *args,
                   const uint8_t *options);
 field *field_swizzle(arena *memory, const field *a, const char *components); // "x", "rgb", ...
+
+// Bytes of memory that an "advect" may take: its expression is written out for each pattern.
+enum { FIELD_ADVECT_COST = 3 * (FIELD_MAX_ADVECTED + 32) * sizeof(field) };
 
 // ---- asking -----------------------------------------------------------------------------------
 

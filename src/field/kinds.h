@@ -15,6 +15,7 @@ enum {
     KIND_SWIZZLE,
     KIND_WARP,
     KIND_TRANSFORM,
+    KIND_ADVECT,
     KIND_POSITION,
     KIND_ADD,
     KIND_SUB,
@@ -33,12 +34,18 @@ typedef box3 kind_bounds(const field *node, const field_context *context, const 
 
 kind_eval eval_constant, eval_palette, eval_swizzle, eval_position, eval_add, eval_sub, eval_mul,
     eval_negate, eval_div, eval_min, eval_max, eval_mix, eval_clamp, eval_remap, eval_smoothstep,
-    eval_step, eval_pow, eval_abs, eval_sqrt, eval_exp, eval_sin, eval_length, eval_dot, eval_vec;
+    eval_step, eval_pow, eval_abs, eval_sqrt, eval_exp, eval_sin, eval_floor, eval_fract,
+    eval_length, eval_dot, eval_vec;
 kind_eval eval_sphere, eval_box, eval_capsule, eval_torus;
 kind_eval eval_perlin, eval_simplex, eval_value, eval_worley, eval_curl;
 
 kind_bounds bounds_mul, bounds_div, bounds_mix, bounds_min, bounds_dot, bounds_grid, bounds_warp,
     bounds_transform, bounds_sphere, bounds_box, bounds_capsule, bounds_torus;
+
+// What a node "advect" stands for, made of other kinds (advect.c). NULL with a message.
+field *field_advect(arena *memory, const field *node);
+// The same node with other arguments of the same widths. NULL with a message: nested too deeply.
+field *field_with_args(arena *memory, const field *node, const field *const *args);
 
 // Components an argument's value is widened to before the kind computes with it.
 int kind_arg_width(const field *node, size_t arg);

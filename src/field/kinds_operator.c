@@ -46,6 +46,8 @@ EACH(abs, fabsf(A))
 EACH(sqrt, sqrtf(fmaxf(A, 0)))
 EACH(exp, expf(fminf(A, 80)))
 EACH(sin, sinf(A))
+EACH(floor, floorf(A))
+EACH(fract, A - floorf(A))
 EACH(remap, args[3][i] + divide(A - B, C - B) * (args[4][i] - args[3][i]))
 
 void eval_constant(const field *node, const field_context *context, float3 p,

@@ -147,6 +147,7 @@ static int l_kind(lua_State *L) {
     for (int i = 1; i <= n - named; i++) take_arg(L, &call, call.next++, i);
     if (named) take_table(L, &call, n);
     imply_dimensions(&call);
+    if (strcmp(kind->name, "advect") == 0) vm_charge_memory(L, FIELD_ADVECT_COST);
     field_push(L, field_make(script_memory(L), kind->name, call.args, call.options));
     return 1;
 }

@@ -116,7 +116,8 @@ static void shapes_agree(void **state) {
 static void operators_agree(void **state) {
     field *p = make("position", NULL), *x = need_field(field_swizzle(build_memory(), p, "x"));
     field *y = need_field(field_swizzle(build_memory(), p, "y"));
-    static const char *const unary[] = {"negate", "abs", "sqrt", "exp", "sin", "length"};
+    static const char *const unary[] = {"negate", "abs",   "sqrt",  "exp",
+                                        "sin",    "floor", "fract", "length"};
     for (size_t i = 0; i < COUNT_OF(unary); i++) {
         agree(state, make(unary[i], make("mul", x, number(0.2f))), 1e-4f);
         agree(state, make(unary[i], make("mul", p, vector(0.2f, 0.1f, 0.3f))), 1e-4f);
@@ -160,12 +161,24 @@ static void moved_fields_agree(void **state) {
           1e-3f);
 }
 
+static void advected_fields_agree(void **state) {
+    field *cells = row("worley", SET("octaves", number(2)), SET("seed", number(5)));
+    field *swirl = row("curl", SET("octaves", number(2)));
+    agree(state, make("advect", cells, swirl, number(0.7f)), 1e-3f);
+    agree(state,
+          row("advect", SET("value", make("warp", cells, swirl, number(0.1f))),
+              SET("velocity", make("add", swirl, vector(0, 0, 2))), SET("period", number(0.6f)),
+              WORD("phases", "3"), WORD("path", "curved")),
+          1e-3f);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lattice_noises_agree), cmocka_unit_test(simplex_agrees),
-        cmocka_unit_test(worley_agrees),        cmocka_unit_test(the_papers_worley_agrees),
-        cmocka_unit_test(curls_agree),          cmocka_unit_test(shapes_agree),
-        cmocka_unit_test(operators_agree),      cmocka_unit_test(moved_fields_agree),
+        cmocka_unit_test(lattice_noises_agree),  cmocka_unit_test(simplex_agrees),
+        cmocka_unit_test(worley_agrees),         cmocka_unit_test(the_papers_worley_agrees),
+        cmocka_unit_test(curls_agree),           cmocka_unit_test(shapes_agree),
+        cmocka_unit_test(operators_agree),       cmocka_unit_test(moved_fields_agree),
+        cmocka_unit_test(advected_fields_agree),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }

@@ -19,8 +19,9 @@ static void refuses(const field *node, const char *part) {
 static void special_rows_stand_where_the_code_expects_them(void **state) {
     (void)state;
     static const char *const names[KIND_SPECIAL_COUNT] = {
-        "constant", "param", "curve",     "call",     "time", "grid", "palette", "glsl",
-        "swizzle",  "warp",  "transform", "position", "add",  "sub",  "mul",     "negate"};
+        "constant", "param", "curve",   "call", "time",      "grid",
+        "palette",  "glsl",  "swizzle", "warp", "transform", "advect",
+        "position", "add",   "sub",     "mul",  "negate"};
     for (int i = 0; i < KIND_SPECIAL_COUNT; i++) assert_string_equal(field_kinds[i].name, names[i]);
 }
 
