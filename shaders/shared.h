@@ -1,5 +1,7 @@
 // Constants and structures that C and GLSL both read.
 #ifdef GL_core_profile
+#define SHARED_UINT uint
+#define SHARED_VEC3 vec3
 #define SHARED_VEC4 vec4
 #define SHARED_UVEC4 uvec4
 #define SHARED_MAT4 mat4
@@ -7,9 +9,12 @@
 #else
 #pragma once
 #include <stdint.h>
+typedef struct shared_vec3 { float v[3]; } shared_vec3;
 typedef struct shared_vec4 { float v[4]; } shared_vec4;
 typedef struct shared_uvec4 { uint32_t v[4]; } shared_uvec4;
 typedef struct shared_mat4 { float m[16]; } shared_mat4; // column-major
+#define SHARED_UINT uint32_t
+#define SHARED_VEC3 shared_vec3
 #define SHARED_VEC4 shared_vec4
 #define SHARED_UVEC4 shared_uvec4
 #define SHARED_MAT4 shared_mat4
@@ -49,4 +54,28 @@ struct light_entry {
 struct light_block {
     SHARED_UVEC4 count; // x: entries in use, at least 1
     SHARED_LIGHT lights[LIGHT_MAX];
+};
+
+// Storage buffers of lib/bvh.glsl, whose trees src/scene/bvh.c makes. The nodes of a tree lie in
+// the order of a walk that enters both children of each node, so that it needs no stack.
+struct bvh_node {
+    SHARED_VEC3 low;  // of its box
+    SHARED_UINT next; // the node to go on with when this one is done with
+    SHARED_VEC3 high;
+    SHARED_UINT leaf; // how many triangles << 28 | the first of them; 0: its first child follows
+};
+
+struct bvh_triangle {
+    SHARED_VEC4 corner; // xyz: metres, of the mesh itself; w: red of its colour
+    SHARED_VEC4 first;  // xyz: edge to the second corner; w: green
+    SHARED_VEC4 second; // xyz: edge to the third corner; w: blue
+};
+
+struct bvh_instance {
+    SHARED_VEC4 inverse[3]; // rows: world to mesh
+    SHARED_VEC3 low;        // of its box in the world
+    SHARED_UINT root;
+    SHARED_VEC3 high;
+    SHARED_UINT end;   // node behind its tree
+    SHARED_VEC4 color; // rgb: factor of the triangles' colours
 };

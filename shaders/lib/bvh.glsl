@@ -1,17 +1,109 @@
 // Rays against the meshes of the scene (src/scene/bvh.h makes the trees).
 #ifndef LIB_BVH_GLSL
 #define LIB_BVH_GLSL
+#include "shared.h"
+layout(std430) readonly buffer BvhNodes { bvh_node bvh_nodes[]; };
+layout(std430) readonly buffer BvhTriangles { bvh_triangle bvh_triangles[]; };
+layout(std430) readonly buffer BvhInstances { uvec4 bvh_count; bvh_instance bvh_instances[]; };
 
 struct bvh_hit {
     float distance; // metres; negative: nothing was hit
     vec3 normal;    // unit, of the face, towards the ray's origin
-    vec3 albedo;    // material colour times the mesh's, without textures
+    vec3 albedo;    // material colour times the mesh's, of a texture its mean
 };
 
+struct bvh_ray {
+    vec3 origin, direction;
+    vec3 inverse;    // of the direction
+    float near, far; // in lengths of the direction
+};
+
+bvh_ray bvh_make_ray(vec3 origin, vec3 direction, float near, float far) {
+    vec3 divisor = mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
+    return bvh_ray(origin, direction, 1.0 / divisor, near, far);
+}
+
+// Slab test. The exit is moved out by more than its rounding, so that no ray slips through between
+// boxes that touch (Ize, "Robust BVH ray traversal", 2013).
+bool bvh_meets_box(bvh_ray ray, vec3 low, vec3 high) {
+    vec3 a = (low - ray.origin) * ray.inverse, b = (high - ray.origin) * ray.inverse;
+    vec3 near = min(a, b), far = max(a, b) * 1.0000008;
+    return max(max(near.x, near.y), max(near.z, ray.near)) <=
+           min(min(far.x, far.y), min(far.z, ray.far));
+}
+
+// Distance to a triangle, -1 if the ray misses it: Moeller and Trumbore, "Fast, minimum storage
+// ray-triangle intersection", 1997.
+float bvh_meet_triangle(bvh_ray ray, bvh_triangle t) {
+    vec3 across = cross(ray.direction, t.second.xyz), from = ray.origin - t.corner.xyz;
+    float scale = 1.0 / dot(t.first.xyz, across);
+    float u = dot(from, across) * scale;
+    vec3 turned = cross(from, t.first.xyz);
+    float v = dot(ray.direction, turned) * scale;
+    float distance = dot(t.second.xyz, turned) * scale;
+    return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance >= ray.near ? distance : -1.0;
+}
+
+// The triangle of a tree that is hit, -1: none; ray.far becomes its distance. With `any` the first
+// that is met will do.
+int bvh_walk(inout bvh_ray ray, uint node, uint end, bool any) {
+    int found = -1;
+    while (node < end) {
+        bvh_node n = bvh_nodes[node];
+        bool inside = bvh_meets_box(ray, n.low, n.high);
+        node = inside && n.leaf == 0u ? node + 1u : n.next;
+        if (!inside) continue;
+        uint first = n.leaf & 0xfffffffu, last = first + (n.leaf >> 28);
+        for (uint i = first; i < last; i++) {
+            float distance = bvh_meet_triangle(ray, bvh_triangles[i]);
+            if (distance < 0.0 || distance > ray.far) continue;
+            ray.far = distance;
+            found = int(i);
+        }
+        if (any && found >= 0) break;
+    }
+    return found;
+}
+
+// x: the instance that is hit, -1: none; y: the triangle. A ray keeps its distances in the space of
+// a mesh, since its direction is not made a unit vector again there.
+ivec2 bvh_find(inout bvh_ray ray, bool any) {
+    ivec2 hit = ivec2(-1);
+    vec4 from = vec4(ray.origin, 1.0);
+    for (uint i = 0u; i < bvh_count.x; i++) {
+        if (!bvh_meets_box(ray, bvh_instances[i].low, bvh_instances[i].high)) continue;
+        vec4 x = bvh_instances[i].inverse[0], y = bvh_instances[i].inverse[1];
+        vec4 z = bvh_instances[i].inverse[2];
+        vec3 way = vec3(dot(x.xyz, ray.direction), dot(y.xyz, ray.direction), dot(z.xyz, ray.direction));
+        bvh_ray inner = bvh_make_ray(vec3(dot(x, from), dot(y, from), dot(z, from)), way, ray.near, ray.far);
+        int found = bvh_walk(inner, bvh_instances[i].root, bvh_instances[i].end, any);
+        if (found < 0) continue;
+        hit = ivec2(i, found);
+        ray.far = inner.far;
+        if (any) break;
+    }
+    return hit;
+}
+
 // Nearest hit of a ray of unit direction between `near` and `far` metres.
-bvh_hit bvh_trace(vec3 origin, vec3 direction, float near, float far);
+bvh_hit bvh_trace(vec3 origin, vec3 direction, float near, float far) {
+    bvh_ray ray = bvh_make_ray(origin, direction, near, far);
+    ivec2 hit = bvh_find(ray, false);
+    if (hit.x < 0) return bvh_hit(-1.0, vec3(0.0), vec3(0.0));
+    bvh_triangle t = bvh_triangles[hit.y];
+    // A normal is turned by the transpose of what turns points back.
+    vec3 face = normalize(cross(normalize(t.first.xyz), normalize(t.second.xyz)));
+    vec3 normal = normalize(bvh_instances[hit.x].inverse[0].xyz * face.x +
+                            bvh_instances[hit.x].inverse[1].xyz * face.y +
+                            bvh_instances[hit.x].inverse[2].xyz * face.z);
+    vec3 albedo = vec3(t.corner.w, t.first.w, t.second.w) * bvh_instances[hit.x].color.rgb;
+    return bvh_hit(ray.far, dot(normal, direction) > 0.0 ? -normal : normal, albedo);
+}
 
 // Whether anything lies between `near` and `far` metres.
-bool bvh_occluded(vec3 origin, vec3 direction, float near, float far);
+bool bvh_occluded(vec3 origin, vec3 direction, float near, float far) {
+    bvh_ray ray = bvh_make_ray(origin, direction, near, far);
+    return bvh_find(ray, true).x >= 0;
+}
 
 #endif

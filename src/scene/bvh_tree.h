@@ -1,0 +1,19 @@
+// Trees of boxes over the triangles of meshes, one behind the other in two arrays that are as
+// shaders read them (bvh_node, bvh_triangle of shared.h).
+#pragma once
+#include "media/mesh.h"
+#include "shared.h"
+
+typedef struct bvh_forest { // zero: empty
+    struct bvh_node *nodes;
+    size_t node_count, node_capacity;
+    struct bvh_triangle *triangles;
+    size_t triangle_count, triangle_capacity;
+} bvh_forest;
+
+enum { BVH_LEAF_SIZE = 4, BVH_MAX_TRIANGLES = (1 << 28) - 1 };
+
+// Adds a tree of all triangles that have an area and are not clear; none: no nodes. Its nodes are
+// those from the count before to that after. False with a message when they are too many.
+bool bvh_forest_add(bvh_forest *f, const mesh_data *mesh);
+void bvh_forest_free(bvh_forest *f);
