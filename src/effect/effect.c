@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
+#include "scene/bvh.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -48,6 +49,8 @@ effect *effect_create(const effect_desc *desc) {
         .memory = &e->memory,
         .context = &e->context,
         .frame = &e->frame,
+        .lights = &e->lights,
+        .scene = &e->scene,
         .counters = desc->counters,
         .reader = &e->reader,
         .before_declare = effect_apply_settings,
@@ -63,6 +66,7 @@ void effect_destroy(effect *e) {
     for (size_t i = 0; i < e->pass_count; i++) pass_destroy(e->passes[i]);
     for (size_t i = 0; i < e->grid_count; i++) e->grids[i]->destroy(e->grids[i], e->device);
     for (size_t i = 0; i < e->mesh_count; i++) scene_mesh_destroy(e->meshes[i], e->device);
+    scene_bvh_destroy(e->host.bvh, e->device);
     if (e->graph) graph_destroy(e->graph, e->device);
     if (e->hooks.destroy) e->hooks.destroy(e->hooks.user);
     shader_library_destroy(e->own_library);

@@ -106,9 +106,12 @@ struct effect {
     // Of the frame being recorded.
     field_context context;
     struct frame_block frame;
+    struct light_block lights;
     uint32_t width, height;
-    uint32_t counter;  // frames rendered so far
-    double last_frame; // number of the frame rendered last
+    uint32_t counter;            // frames rendered so far
+    double last_frame;           // number of the frame rendered last
+    shared_mat4 clip, last_clip; // world to clip of the frame being recorded, of the one before
+    bool has_last;               // there is one before, of which histories tell
     bool compiled, allocated;
     const effect_setting *settings;
     bool *applied; // one per setting

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
+#include "scene/bvh.h"
 #include <math.h>
 #include <string.h>
 
@@ -15,17 +16,37 @@ static bool add_outputs(effect *e) {
     return true;
 }
 
+// The trees that rays are shot at: of every mesh that a pass draws.
+static bool make_bvh(effect *e) {
+    if (e->host.bvh) return true;
+    scene_mesh **drawn = mem_alloc(e->mesh_count * sizeof *drawn);
+    size_t count = 0;
+    for (size_t i = 0; i < e->mesh_count; i++) {
+        bool found = false;
+        for (size_t k = 0; k < e->pass_count && !found; k++) {
+            scene_mesh *const *meshes;
+            size_t n = pass_meshes(e->passes[k], &meshes);
+            for (size_t m = 0; m < n && !found; m++) found = meshes[m] == e->meshes[i];
+        }
+        if (found) drawn[count++] = e->meshes[i];
+    }
+    e->host.bvh = scene_bvh_create(drawn, count);
+    mem_free(drawn);
+    return e->host.bvh != NULL;
+}
+
 enum { ANY_SIZE = 64 }; // of a picture: finds what is wrong with a graph whatever its size
 
 bool effect_check(effect *e) {
-    if (!add_outputs(e)) return false;
+    if (!add_outputs(e) || !make_bvh(e)) return false;
     for (size_t i = 0; i < e->pass_count; i++)
         if (!pass_check(e->passes[i])) return false;
     return graph_compile(e->graph, ANY_SIZE, ANY_SIZE);
 }
 
 bool effect_compile(effect *e) {
-    if (!add_outputs(e) || !graph_compile(e->graph, ANY_SIZE, ANY_SIZE)) return false;
+    if (!add_outputs(e) || !make_bvh(e) || !graph_compile(e->graph, ANY_SIZE, ANY_SIZE))
+        return false;
     for (size_t i = 0; i < e->pass_count; i++)
         if (!pass_build(e->passes[i])) return false;
     e->width = e->height = ANY_SIZE;
@@ -36,7 +57,7 @@ bool effect_compile(effect *e) {
 static bool allocate(effect *e) { // the graph is compiled
     for (size_t i = 0; i < e->pass_count; i++)
         if (!pass_allocate(e->passes[i])) return false;
-    return graph_allocate(e->graph, e->device);
+    return scene_bvh_allocate(e->host.bvh, e->device) && graph_allocate(e->graph, e->device);
 }
 
 bool effect_allocate(effect *e, uint32_t width, uint32_t height) {
@@ -56,8 +77,11 @@ static bool evaluate(effect *e, double frame, gpu *device) {
     double dt = e->counter ? (frame - e->last_frame) / e->fps : 0;
     e->context.time = time;
     if (e->hooks.update && !e->hooks.update(e->hooks.user, time, dt)) return false;
-    if (!scene_fill_frame(&e->scene, &e->context, (float)e->width / (float)e->height, &e->frame))
+    if (!scene_fill_frame(&e->scene, &e->context, (float)e->width / (float)e->height, &e->frame) ||
+        !scene_fill_lights(&e->scene, &e->context, &e->lights))
         return false;
+    e->clip = e->frame.last;
+    if (e->has_last) e->frame.last = e->last_clip;
     e->frame.time = (shared_vec4){{(float)time, (float)dt, (float)frame, 0}};
     e->frame.size = (shared_uvec4){{e->width, e->height, (uint32_t)llrint(frame), e->seed}};
     for (size_t i = 0; i < e->grid_count; i++)
@@ -82,17 +106,26 @@ bool effect_rehearse(effect *e, double frame) {
     return true;
 }
 
+static void forget(effect *e) { // the frames before
+    graph_reset_history(e->graph);
+    e->has_last = false;
+}
+
 uint64_t effect_render(effect *e, double frame, bool jump) {
-    if (e->counter && !jump && frame != e->last_frame + 1) graph_reset_history(e->graph);
+    if (e->counter && !jump && frame != e->last_frame + 1) forget(e);
     uint64_t number = gpu_frame_begin(e->device);
     if (!number) return 0;
-    bool done = evaluate(e, frame, e->device) && graph_execute(e->graph, e->device);
+    bool done = evaluate(e, frame, e->device) &&
+                scene_bvh_update(e->host.bvh, e->device, &e->context) &&
+                graph_execute(e->graph, e->device);
     if (!gpu_frame_end(e->device)) done = false;
     if (!done) { // what it may have left in a history is of no frame
-        graph_reset_history(e->graph);
+        forget(e);
         return 0;
     }
     e->counter++;
+    e->has_last = true;
+    e->last_clip = e->clip;
     e->last_frame = frame;
     return number;
 }
@@ -142,5 +175,7 @@ bool effect_adopt(effect *e, effect *from, uint32_t width, uint32_t height) {
     e->height = height;
     e->counter = from->counter;
     e->last_frame = from->last_frame;
+    e->has_last = from->has_last;
+    e->last_clip = from->last_clip;
     return true;
 }

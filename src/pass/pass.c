@@ -212,6 +212,11 @@ bool pass_add_mesh(pass *p, scene_mesh *mesh) {
     return true;
 }
 
+size_t pass_meshes(const pass *p, scene_mesh *const **out) {
+    *out = p->meshes;
+    return p->mesh_count;
+}
+
 graph_image pass_output(const pass *p, const char *name) {
     int index = pass_find_image(p, name);
     return index >= 0 && p->face->images[index].output ? p->images[index] : (graph_image){0};

@@ -72,6 +72,7 @@ bool pass_set_scale(pass *p,
                     float scale); // of its outputs, relative to the effect's output; (0, 1]
 bool pass_set_format(pass *p, const char *output, gpu_format format);
 bool pass_add_mesh(pass *p, scene_mesh *mesh); // geometry only
+size_t pass_meshes(const pass *p, scene_mesh *const **out);
 // What `p` says nothing about it takes from `source`, a pass declared before, where both have
 // something of that name and type: images that it reads and `source` writes; fields, options and
 // uniforms, the latter as they are in each frame. Several sources: the first that has it.

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/pass_impl.h"
+#include "scene/bvh.h"
 #include <math.h>
 #include <string.h>
 
@@ -130,29 +131,50 @@ static bool bind_image(pass *p, const char *glsl_name, gpu_binding *out) {
     return false;
 }
 
+static bool bind_block(const pass *p, const shader_binary *binary, const char *name,
+                       const unsigned char *block, gpu_binding *out) {
+    if (strcmp(name, "Uniforms") == 0) {
+        out->uniform = block;
+        out->uniform_size = pass_block_size(binary);
+    } else if (strcmp(name, "Frame") == 0) {
+        out->uniform = p->host->frame;
+        out->uniform_size = sizeof *p->host->frame;
+    } else if (strcmp(name, "Lights") == 0) {
+        out->uniform = p->host->lights;
+        out->uniform_size = sizeof *p->host->lights;
+    } else if (strcmp(name, "FieldNumbers") == 0) {
+        out->uniform = p->numbers;
+        out->uniform_size = field_program_block_size(p->program);
+    } else {
+        return err_set("%s: uniform block '%s' is not known; declare loose uniforms instead",
+                       p->label, name);
+    }
+    return true;
+}
+
+static bool bind_buffer(const pass *p, const char *name, gpu_binding *out) {
+    static const char *const bvh_parts[] = {"BvhNodes", "BvhTriangles", "BvhInstances"};
+    if (strcmp(name, "Counters") == 0) out->buffer = p->counters;
+    for (int i = 0; i < BVH_PARTS; i++)
+        if (strcmp(name, bvh_parts[i]) == 0)
+            out->buffer = scene_bvh_buffer(p->host->bvh, (scene_bvh_part)i);
+    return out->buffer || err_set("%s: storage buffer '%s' is not known", p->label, name);
+}
+
+// Textures that every shader can read by including a file of lib/.
+static bool bind_common_image(const pass *p, const char *name, gpu_binding *out) {
+    if (strcmp(name, "BlueNoise") != 0) return false;
+    out->image = p->host->blue_noise;
+    out->sampler = GPU_NEAREST_CLAMP;
+    return true;
+}
+
 static bool bind_slot(pass *p, const shader_binary *binary, const shader_slot *slot,
                       const unsigned char *block, gpu_binding *out) {
-    if (slot->slot.kind == GPU_SLOT_UNIFORM) {
-        if (strcmp(slot->name, "Uniforms") == 0) {
-            out->uniform = block;
-            out->uniform_size = pass_block_size(binary);
-        } else if (strcmp(slot->name, "Frame") == 0) {
-            out->uniform = p->host->frame;
-            out->uniform_size = sizeof *p->host->frame;
-        } else if (strcmp(slot->name, "FieldNumbers") == 0) {
-            out->uniform = p->numbers;
-            out->uniform_size = field_program_block_size(p->program);
-        } else {
-            return err_set("%s: uniform block '%s' is not known; declare loose uniforms instead",
-                           p->label, slot->name);
-        }
-        return true;
-    }
-    if (slot->slot.kind == GPU_SLOT_STORAGE_BUFFER) {
-        out->buffer = strcmp(slot->name, "Counters") == 0 ? p->counters : NULL;
-        return out->buffer || err_set("%s: storage buffer '%s' is not known", p->label, slot->name);
-    }
+    if (slot->slot.kind == GPU_SLOT_UNIFORM) return bind_block(p, binary, slot->name, block, out);
+    if (slot->slot.kind == GPU_SLOT_STORAGE_BUFFER) return bind_buffer(p, slot->name, out);
     return bind_field_texture(p, slot->name, out) || bind_image(p, slot->name, out) ||
+           bind_common_image(p, slot->name, out) ||
            err_set("%s: image '%s' has no annotation (//= input or //= output)", p->label,
                    slot->name);
 }

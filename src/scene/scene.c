@@ -1,5 +1,5 @@
 // Camera, sun and sky, evaluated once a frame into the block that every shader reads. Z is up.
-#include "scene/scene.h"
+#include "scene/scene_impl.h"
 #include <cglm/clipspace/persp_rh_zo.h>
 #include <math.h>
 #include <stddef.h>
@@ -28,11 +28,13 @@ void scene_init(scene *s, arena *memory) {
         .elevation = scalar(memory, 44),
         .color = vector(memory, 1, 1, 1),
         .strength = scalar(memory, 2.5f),
+        .angle = scalar(memory, 0.53f),
     };
     s->sky = (scene_sky){
         .zenith = vector(memory, 0.22f, 0.32f, 0.48f),
         .horizon = vector(memory, 0.22f, 0.32f, 0.48f),
         .strength = scalar(memory, 0.6f),
+        .rotation = scalar(memory, 0),
     };
 }
 
@@ -57,6 +59,7 @@ static const scene_value values[] = {
     VALUE(sun, elevation, 1, -90, 90, "degrees", "above the horizon"),
     VALUE(sun, color, 3, 0, INFINITY, "", "multiplies the strength", .color = true),
     VALUE(sun, strength, 1, 0, INFINITY, "", "irradiance of what faces it"),
+    VALUE(sun, angle, 1, 0, 180, "degrees", "how wide it looks: softens shadows"),
     VALUE(sky, zenith, 3, 0, INFINITY, "", "radiance straight up", .color = true),
     VALUE(sky, horizon, 3, 0, INFINITY, "", "radiance at the horizon and below", .color = true),
     VALUE(sky, strength, 1, 0, INFINITY, "", "factor of both"),
@@ -71,19 +74,18 @@ const field **scene_slot(scene *s, const scene_value *value) {
     return (const field **)(void *)((char *)s + value->offset);
 }
 
-// Evaluates a field that does not vary in space.
-static bool value_of(const field *node, const field_context *context, float out[4]) {
+bool scene_evaluate(const field *node, const field_context *context, float out[4]) {
     return field_eval(node, context, (float3){0, 0, 0}, out);
 }
 
-static bool scalar_of(const field *node, const field_context *context, float *out) {
+bool scene_evaluate_scalar(const field *node, const field_context *context, float *out) {
     float value[4];
-    if (!value_of(node, context, value)) return false;
+    if (!scene_evaluate(node, context, value)) return false;
     *out = value[0];
     return true;
 }
 
-static void direction(float azimuth, float elevation, vec3 out) {
+void scene_direction(float azimuth, float elevation, vec3 out) {
     float a = glm_rad(azimuth), e = glm_rad(elevation);
     out[0] = cosf(e) * cosf(a);
     out[1] = cosf(e) * sinf(a);
@@ -92,18 +94,19 @@ static void direction(float azimuth, float elevation, vec3 out) {
 
 bool scene_camera_eye(const scene_camera *c, const field_context *context, vec3 eye, vec3 target) {
     float value[4], distance, yaw, pitch;
-    if (!value_of(c->target, context, value)) return false;
+    if (!scene_evaluate(c->target, context, value)) return false;
     glm_vec3_copy(value, target);
     if (c->eye) {
-        if (!value_of(c->eye, context, value)) return false;
+        if (!scene_evaluate(c->eye, context, value)) return false;
         glm_vec3_copy(value, eye);
         return true;
     }
-    if (!scalar_of(c->distance, context, &distance) || !scalar_of(c->yaw, context, &yaw) ||
-        !scalar_of(c->pitch, context, &pitch))
+    if (!scene_evaluate_scalar(c->distance, context, &distance) ||
+        !scene_evaluate_scalar(c->yaw, context, &yaw) ||
+        !scene_evaluate_scalar(c->pitch, context, &pitch))
         return false;
     vec3 back; // from the target to the eye: at yaw 0 the camera looks along +Y
-    direction(yaw - 90, clampf(pitch, -89.9f, 89.9f), back);
+    scene_direction(yaw - 90, clampf(pitch, -89.9f, 89.9f), back);
     glm_vec3_scale(back, distance, back);
     glm_vec3_add(target, back, eye);
     return true;
@@ -113,8 +116,10 @@ static bool fill_camera(const scene_camera *c, const field_context *context, flo
                         struct frame_block *out) {
     vec3 eye, target, forward, up = {0, 0, 1};
     float fov, near, far;
-    if (!scene_camera_eye(c, context, eye, target) || !scalar_of(c->fov, context, &fov) ||
-        !scalar_of(c->near, context, &near) || !scalar_of(c->far, context, &far))
+    if (!scene_camera_eye(c, context, eye, target) ||
+        !scene_evaluate_scalar(c->fov, context, &fov) ||
+        !scene_evaluate_scalar(c->near, context, &near) ||
+        !scene_evaluate_scalar(c->far, context, &far))
         return false;
     fov = clampf(fov, 1, 170);
     near = fmaxf(near, 1e-4f);
@@ -131,6 +136,9 @@ static bool fill_camera(const scene_camera *c, const field_context *context, flo
     glm_perspective_rh_zo(glm_rad(fov), aspect, near, far, projection);
     projection[1][1] = -projection[1][1]; // Vulkan's y points down
     glm_mat4_inv(view, inverse);
+    mat4 last;
+    glm_mat4_mul(projection, view, last);
+    memcpy(out->last.m, last, sizeof last);
     memcpy(out->view.m, view, sizeof view);
     memcpy(out->projection.m, projection, sizeof projection);
     memcpy(out->view_inverse.m, inverse, sizeof inverse);
@@ -142,12 +150,13 @@ static bool fill_camera(const scene_camera *c, const field_context *context, flo
 
 static bool fill_sun(const scene_sun *sun, const field_context *context, struct frame_block *out) {
     float azimuth, elevation, strength, color[4];
-    if (!scalar_of(sun->azimuth, context, &azimuth) ||
-        !scalar_of(sun->elevation, context, &elevation) || !value_of(sun->color, context, color) ||
-        !scalar_of(sun->strength, context, &strength))
+    if (!scene_evaluate_scalar(sun->azimuth, context, &azimuth) ||
+        !scene_evaluate_scalar(sun->elevation, context, &elevation) ||
+        !scene_evaluate(sun->color, context, color) ||
+        !scene_evaluate_scalar(sun->strength, context, &strength))
         return false;
     vec3 towards;
-    direction(azimuth, elevation, towards);
+    scene_direction(azimuth, elevation, towards);
     out->sun_direction = (shared_vec4){{towards[0], towards[1], towards[2], 0}};
     float radiance = strength / GLM_PIf;
     out->sun_radiance =
@@ -157,8 +166,9 @@ static bool fill_sun(const scene_sun *sun, const field_context *context, struct 
 
 static bool fill_sky(const scene_sky *sky, const field_context *context, struct frame_block *out) {
     float zenith[4], horizon[4], strength;
-    if (!value_of(sky->zenith, context, zenith) || !value_of(sky->horizon, context, horizon) ||
-        !scalar_of(sky->strength, context, &strength))
+    if (!scene_evaluate(sky->zenith, context, zenith) ||
+        !scene_evaluate(sky->horizon, context, horizon) ||
+        !scene_evaluate_scalar(sky->strength, context, &strength))
         return false;
     for (int i = 0; i < 3; i++) {
         out->sky_zenith.v[i] = zenith[i] * strength;

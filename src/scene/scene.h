@@ -20,7 +20,7 @@ typedef struct scene_sun {
     const field *elevation; // degrees above the horizon
     const field *color;     // vec3
     const field *strength;  // irradiance at normal incidence
-    const field *angle;     // degrees across; 0.53 is ours
+    const field *angle;     // degrees across
 } scene_sun;
 
 typedef struct scene_sky {
@@ -80,7 +80,8 @@ const field **scene_slot(scene *s, const scene_value *value);
 // A scene with the defaults of the documentation, made of constants in `memory`.
 void scene_init(scene *s, arena *memory);
 // Evaluates camera, sun and sky into the block that shaders read (time and size of the block are
-// the caller's). `aspect`: width over height. False when a Lua function failed.
+// the caller's; `last` is as in a first frame). `aspect`: width over height. False when a Lua
+// function failed.
 bool scene_fill_frame(const scene *s, const field_context *context, float aspect,
                       struct frame_block *out);
 

@@ -149,7 +149,8 @@ static const script_object objects[] = {
         SLOT(scene_sun, azimuth, 1, "240 degrees", "where it stands: about +Z, from +X"),
         SLOT(scene_sun, elevation, 1, "44 degrees", "above the horizon"),
         SLOT(scene_sun, color, 3, "1, 1, 1", "multiplies the strength"),
-        SLOT(scene_sun, strength, 1, "2.5", "irradiance of what faces it"))},
+        SLOT(scene_sun, strength, 1, "2.5 W/m^2", "irradiance of what faces it"),
+        SLOT(scene_sun, angle, 1, "0.53 degrees", "how wide it looks: softens shadows"))},
     {"sky", "scene", "fx.sky = sky { zenith = \"#4060a0\", strength = 0.5 }",
      "the light of the sky, and what is seen of it",
      .keys = KEYS(

@@ -1,0 +1,9 @@
+// Help for the files of this layer only.
+#pragma once
+#include "scene/scene.h"
+
+// Evaluates a field that does not vary in space.
+bool scene_evaluate(const field *node, const field_context *context, float out[4]);
+bool scene_evaluate_scalar(const field *node, const field_context *context, float *out);
+// Unit vector from angles in degrees: about +Z from +X, and above the horizon.
+void scene_direction(float azimuth, float elevation, vec3 out);
