@@ -4,6 +4,7 @@
 #include "effect/effect.h"
 #include "gpu_test.h"
 #include "pass/pass.h"
+#include "scene/bvh.h"
 #include <math.h>
 #include <string.h>
 
@@ -13,6 +14,7 @@ typedef struct pass_world {
     scene scene;
     field_context context;
     struct frame_block frame;
+    struct light_block lights;
     pass *passes[16];
     size_t count;
     scene_mesh meshes[4];
@@ -94,6 +96,8 @@ static inline void world_open(pass_world *w, gpu *device) {
         .memory = &w->memory,
         .context = &w->context,
         .frame = &w->frame,
+        .lights = &w->lights,
+        .scene = &w->scene,
     };
     gpu_test_ok(w->host.library);
     scene_init(&w->scene, &w->memory);
@@ -129,8 +133,10 @@ static inline scene_mesh *world_mesh(pass_world *w, const char *file) {
 // One more frame of what world_render built.
 static inline void world_frame(pass_world *w, uint32_t width, uint32_t height, uint32_t frame) {
     gpu_test_ok(scene_fill_frame(&w->scene, &w->context, (float)width / (float)height, &w->frame));
+    gpu_test_ok(scene_fill_lights(&w->scene, &w->context, &w->lights));
     w->frame.size = (shared_uvec4){{width, height, frame, 0}};
     gpu_test_ok(gpu_frame_begin(w->host.device));
+    gpu_test_ok(scene_bvh_update(w->host.bvh, w->host.device, &w->context));
     gpu_test_ok(graph_execute(w->host.graph, w->host.device));
     gpu_test_ok(gpu_frame_end(w->host.device));
 }
@@ -139,6 +145,10 @@ static inline void world_render(pass_world *w, uint32_t width, uint32_t height,
                                 graph_image output) {
     gpu_test_ok(graph_add_output(w->host.graph, output));
     gpu_test_ok(graph_compile(w->host.graph, width, height));
+    scene_mesh *meshes[COUNT_OF(w->meshes)];
+    for (size_t i = 0; i < w->mesh_count; i++) meshes[i] = &w->meshes[i];
+    w->host.bvh = scene_bvh_create(meshes, w->mesh_count);
+    gpu_test_ok(w->host.bvh && scene_bvh_allocate(w->host.bvh, w->host.device));
     for (size_t i = 0; i < w->count; i++)
         gpu_test_ok(pass_build(w->passes[i]) && pass_allocate(w->passes[i]));
     gpu_test_ok(graph_allocate(w->host.graph, w->host.device));
@@ -171,6 +181,7 @@ static inline float *world_read_depth(pass_world *w, graph_image image) {
 static inline void world_close(pass_world *w) {
     for (size_t i = 0; i < w->count; i++) pass_destroy(w->passes[i]);
     for (size_t i = 0; i < w->mesh_count; i++) scene_mesh_destroy(&w->meshes[i], w->host.device);
+    scene_bvh_destroy(w->host.bvh, w->host.device);
     graph_destroy(w->host.graph, w->host.device);
     pass_host_free(&w->host);
     shader_library_destroy(w->host.library);
