@@ -1,47 +1,56 @@
 // Marches a ray per pixel through the volume, front to back.
 //
-// Mode physical integrates emission and absorption (Max 1995) and single scattering of sun and sky
-// exactly over each step, so that the picture converges as steps grow: over a step of length d with
-// extinction s, opacity is 1 - exp(-s d). Mode paper is Raseta, Lesar and Bohak 2025, section 3.5, as published, but
-// for its order of the two sums (colour first, as Max has it).
+// Mode physical integrates emission and absorption (Max 1995) and the scattering of light once on
+// its way, exactly over each step, so that the picture converges as steps grow: over a step of
+// length d with extinction s, opacity is 1 - exp(-s d). What is scattered more often is in `glow`,
+// or, without it, what the option scattering estimates. Mode paper is Raseta, Lesar and Bohak 2025,
+// section 3.5, as published, but for its order of the two sums (colour first, as Max has it).
 //@ option mode = physical {physical, paper} : how samples add up; paper: opacity / steps, as published
-//@ option sampling = quasi_cubic {linear, quasi_cubic, cubic} : interpolation of grids: quasi_cubic by a smoothstep-warped coordinate (Raseta et al., listing 1), cubic by a B-spline of eight taps
 //@ option view = beauty {beauty, noise} : noise shows the field `noise` on the faces of the volume's box
-//@ field float density : extinction (1/m); in mode paper density in 0..1
-//@ field vec3 radiance after density = {0, 0, 0} : light of the medium itself where it is opaque (in mode paper: its colour)
-//@ field vec3 emission after density = {0, 0, 0} : light given off per metre, whatever the extinction
-//@ field float shadow_density = 0 : extinction that shadows are made of, if it is to be cheaper than `density` (1/m); else that
-//@ field float noise = 0 : what view = noise shows, 0..1
+//@ option scattering = single {single, octaves} : of light that comes straight from the lights: once, or many times by octaves (Wrenninge, Kulla and Lundqvist 2013); with `glow` always once
+//@ option mesh_shadows = off {off, on} : meshes shadow the volume, by a ray from each sample to each light; with `shadow` they do so anyway
 //@ counter samples : points at which the density was evaluated
 uniform int steps;                 //= 128 [1, 4096] : steps along each ray, from entry to exit
 uniform float step_size;           //= 0 [0, 100] m : length of a step instead; 0: use `steps`
+uniform float tolerance;           //= 0 [0, 1] : above 0: steps as long as they may be. A step is taken when two halves of it would change the pixel by no more than this: its opacity, or the medium's own light against 1 + the light before it. Samples are at most four steps of `steps` apart, and at least a sixteenth of one and an eighth of a pixel
 uniform float jitter;              //= 0 [0, 1] : random part of a step by which a ray's samples move
 uniform float early_exit;          //= 0.005 [0, 1] : a ray ends when less than this shines through
 uniform float depth_bias;          //= 0.01 [0, 10] m : how far behind a surface a ray may go
-uniform vec3 albedo;               //= {0.5, 0.5, 0.5} [0, 1] : part of the light that is scattered, by colour
-uniform float anisotropy;          //= 0.2 [-0.95, 0.95] : Henyey-Greenstein g: 0 all directions, above 0 forward
-uniform float ambient;             //= 1 [0, 10] : factor of the light from the sky
-uniform int shadow_steps;          //= 8 [0, 64] : steps towards the sun from each lit point; 0: no sun
-uniform float shadow_distance;     //= 4 [0.01, 1000] m : how far towards the sun shadows reach
+uniform float ambient;             //= 1 [0, 10] : factor of the light from the sky, without `glow`
+uniform int shadow_steps;          //= 8 [0, 64] : steps towards each light from each lit point, without `shadow`; 0: no light
+uniform float shadow_distance;     //= 4 [0.01, 1000] m : how far towards a light shadows reach, without `shadow`
+uniform int octaves;               //= 4 [1, 8] : of scattering
+uniform float octave_extinction;   //= 0.5 [0, 1] : extinction on the way from a light, from octave to octave
+uniform float octave_anisotropy;   //= 0.5 [0, 1] : anisotropy, from octave to octave
+uniform float octave_contribution; //= 0.5 [0, 1] : light, from octave to octave
+uniform float powder;              //= 0 [0, 1] : artistic: darkens what faces a light and is thin (Schneider 2015), as powder looks
 uniform float opacity;             //= 20 [0, 1000] : factor of the density, mode paper only
 uniform vec3 box_min;
 uniform vec3 box_max;
 uniform sampler2D depth;           //= input optional : depth of the scene (m)
 writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity
-writeonly uniform image2D shadow;  //= output r16f : part of the sunlight that reaches the scene at the pixel
 writeonly uniform image2D edge;    //= output r32f : depth of the scene that the ray saw (m)
+writeonly uniform image2D reach;   //= output r32f : distance along the ray at which the opacity lies, on average (m); where there is none, that of the scene
 
 #include "lib/frame.glsl"
 #include "lib/box.glsl"
 #include "lib/random.glsl"
-#include "fields.glsl"
+#include "lib/medium.glsl"
+#include "lib/lighting.glsl"
+//@ field float shadow_density = 0 : extinction that shadows are made of without `shadow`, if it is to be cheaper than `density` (1/m); else that
+//@ field float noise = 0 : what view = noise shows, 0..1
+#if MESH_SHADOWS == MESH_SHADOWS_ON
+#include "lib/bvh.glsl"
+#endif
 
-const float PI = 3.14159265;
+#define GLOWS (HAS_LIGHTS && HAS_GLOW)
 
-// Henyey and Greenstein 1941, times 4 pi: 1 in every direction when g is 0.
-float phase(float cosine, float g) {
-    return (1.0 - g * g) / pow(1.0 + g * g - 2.0 * g * cosine, 1.5);
-}
+const float SHORTEST = 1.0 / 8192.0; // of a ray: the least adaptive step
+
+float greatest(vec3 v) { return max(max(v.x, v.y), v.z); }
+float mean(vec3 v) { return (v.x + v.y + v.z) / 3.0; }
+
+// ---- light ------------------------------------------------------------------------------------
 
 float shadowing(vec3 p) {
 #if HAS_SHADOW_DENSITY
@@ -51,68 +60,205 @@ float shadowing(vec3 p) {
 #endif
 }
 
-// Transmittance from p towards the sun; steps grow with distance, where detail matters less.
-float sunlight(vec3 p) {
-    float far = box_exit(p, frame.sun_direction.xyz, box_min, box_max);
-    far = min(far, shadow_distance);
-    float depth_sum = 0.0, from = 0.0;
-    for (int i = 0; i < shadow_steps; i++) {
-        float part = float(i + 1) / float(shadow_steps);
+// Density times metres along a ray from p; steps grow with distance, where detail matters less.
+float depth_along(vec3 p, vec3 direction, float far, int count) {
+    float sum = 0.0, from = 0.0;
+    for (int i = 0; i < count; i++) {
+        float part = float(i + 1) / float(count);
         float to = far * part * part;
-        depth_sum += shadowing(p + 0.5 * (from + to) * frame.sun_direction.xyz) * (to - from);
+        sum += shadowing(p + 0.5 * (from + to) * direction) * (to - from);
         from = to;
     }
-    count_samples(shadow_steps);
-    return exp(-depth_sum);
-}
-
-// The shadow of the volume on a point outside of it: the same number of steps from where the ray to
-// the sun enters the box to where it leaves.
-float shadow_on(vec3 p) {
-    vec2 range = box_range(p, frame.sun_direction.xyz, box_min, box_max);
-    if (range.y <= range.x) return 1.0;
-    int count = 2 * shadow_steps;
-    float length = (range.y - range.x) / float(count), sum = 0.0;
-    for (int i = 0; i < count; i++)
-        sum += shadowing(p + (range.x + (float(i) + 0.5) * length) * frame.sun_direction.xyz);
     count_samples(count);
-    return exp(-sum * length);
+    return sum;
 }
 
-struct ray_state {
-    vec3 light;          // radiance so far
-    float transmittance; // what still shines through
+struct obstacle {
+    vec3 depth;    // optical, of the volume
+    float visible; // part of the light that no mesh hides
 };
 
-void add_physical(inout ray_state ray, vec3 p, vec3 direction, float d, float length) {
-    vec3 own = field_radiance(p);
-    vec3 given = field_emission(p);
-    float cosine = dot(direction, frame.sun_direction.xyz);
-    vec3 sky = 0.5 * (frame.sky_zenith.rgb + frame.sky_horizon.rgb);
-    vec3 lit = ambient * sky;
-    if (shadow_steps > 0)
-        lit += frame.sun_radiance.rgb * (0.25 * phase(cosine, anisotropy) * sunlight(p));
-    float x = d * length;
-    float through = exp(-x);
-    float opaque = x > 1e-2 ? 1.0 - through : x - 0.5 * x * x; // 1 - exp(-x) without cancellation
-    vec3 gained = opaque * (own + albedo * lit) + given * (opaque / d);
-    ray.light += ray.transmittance * gained;
-    ray.transmittance *= through;
+#if HAS_LIGHTS && HAS_SHADOW
+obstacle before_light(int index, light l, light_ray ray, vec3 p) {
+    vec2 cached = lighting_shadow(index, p);
+    return obstacle(lighting_extinction() * cached.x, cached.y);
+}
+#else
+obstacle before_light(int index, light l, light_ray ray, vec3 p) {
+    float far = max(ray.distance - l.radius, 0.0);
+#if MESH_SHADOWS == MESH_SHADOWS_ON
+    if (bvh_occluded(p, ray.direction, 1e-3, far)) return obstacle(vec3(0.0), 0.0);
+#endif
+    far = min(far, box_exit(p, ray.direction, box_min, box_max));
+    float density = depth_along(p, ray.direction, min(far, shadow_distance), shadow_steps);
+    return obstacle(medium_extinction() * density, shadow_steps > 0 ? 1.0 : 0.0);
+}
+#endif
+
+// Part of a light's irradiance that is scattered into a direction, 1/sr.
+vec3 scattered_part(float cosine, vec3 depth) {
+#if SCATTERING == SCATTERING_OCTAVES && !GLOWS
+    vec3 sum = vec3(0.0);
+    float part = 1.0, through = 1.0, spread = 1.0;
+    for (int i = 0; i < octaves; i++) {
+        sum += part * medium_phase(cosine, spread) * exp(-through * depth);
+        part *= octave_contribution;
+        through *= octave_extinction;
+        spread *= octave_anisotropy;
+    }
+#else
+    vec3 sum = medium_phase(cosine, 1.0) * exp(-depth);
+#endif
+    return sum * mix(vec3(1.0), 1.0 - exp(-2.0 * depth), powder);
 }
 
-void add_paper(inout ray_state ray, vec3 p, float d) {
+// Radiance that a metre of scattering coefficient 1 adds to a ray at p.
+vec3 scattered_light(vec3 p, vec3 direction) {
+#if GLOWS
+    vec3 sum = lighting_scattered(p, -direction, medium_anisotropy());
+    int count = lighting_declared();
+#else
+    vec3 sum = ambient * 0.5 * (frame.sky_zenith.rgb + frame.sky_horizon.rgb);
+    int count = light_count();
+#endif
+    for (int i = 0; i < count; i++) {
+        light l = light_get(i);
+        light_ray ray = light_at(l, p);
+        if (greatest(ray.irradiance) <= 0.0) continue;
+        obstacle before = before_light(i, l, ray, p);
+        if (before.visible <= 0.0) continue;
+        float cosine = dot(direction, ray.direction);
+        sum += ray.irradiance * before.visible * scattered_part(cosine, before.depth);
+    }
+    return sum;
+}
+
+// ---- the sum along a ray ----------------------------------------------------------------------
+
+struct ray_state {
+    vec3 light;         // radiance so far
+    vec3 transmittance; // what still shines through
+    vec2 reach;         // opacities times distances, opacities
+};
+
+struct node { // the medium at a point of the ray
+    float density;
+    vec3 own;        // radiance that it adds in a metre
+    vec3 scattering; // 1/m
+};
+
+node look(vec3 p) {
+    node n = node(field_density(p), vec3(0.0), vec3(0.0));
+    if (n.density > 0.0) {
+        n.own = medium_emission(p, n.density);
+        n.scattering = n.density * medium_scattering(p);
+    }
+    return n;
+}
+
+node halfway(node a, node b) {
+    return node(0.5 * (a.density + b.density), 0.5 * (a.own + b.own),
+                0.5 * (a.scattering + b.scattering));
+}
+
+// The integral of exp(-x s) over s from 0 to 1, without cancellation.
+vec3 held(vec3 x) {
+    return mix((1.0 - exp(-x)) / max(x, 1e-6), 1.0 - x * (0.5 - x / 6.0), lessThan(x, vec3(1e-2)));
+}
+
+// A stretch of `length` metres that is everywhere as `n`, around the point `at` metres along.
+void add_stretch(inout ray_state ray, node n, vec3 lit, float length, float at) {
+    vec3 x = n.density * length * medium_extinction();
+    vec3 whole = held(x);
+    float gained = mean(ray.transmittance * x * whole);
+    ray.light += ray.transmittance * whole * length * (n.own + n.scattering * lit);
+    ray.transmittance *= exp(-x);
+    ray.reach += gained * vec2(at, 1.0);
+}
+
+void add_paper(inout ray_state ray, vec3 p, float d, float at) {
     float part = min(d * opacity / float(steps), 1.0);
+    ray.reach += ray.transmittance.x * part * vec2(at, 1.0);
     ray.light += ray.transmittance * part * field_radiance(p);
     ray.transmittance *= 1.0 - part;
 }
 
-// `last`: how far samples may lie. In mode paper it weighs samples and leaves the steps as they are
-// (section 3.6); otherwise the ray ends there, so that the sum has a sharp end at a surface.
-ray_state march(vec3 origin, vec3 direction, vec2 range, float last, float offset) {
-    ray_state ray = ray_state(vec3(0.0), 1.0);
-#if MODE != MODE_PAPER
-    range.y = min(range.y, last);
-#endif
+// What the pixel would change by if a step of `length` metres were taken as two halves.
+float halving(ray_state ray, node begin, node middle, node end, float length) {
+    vec3 extinction = medium_extinction() * length;
+    vec3 one = 0.5 * (begin.density + end.density) * extinction;
+    vec3 two = 0.5 * (0.5 * (begin.density + end.density) + middle.density) * extinction;
+    vec3 own = 0.25 * length * abs(begin.own + end.own - 2.0 * middle.own) * held(two);
+    return greatest(ray.transmittance * max(abs(exp(-one) - exp(-two)), own / (1.0 + ray.light)));
+}
+
+// `range`: where the ray enters and leaves; `offset`: where in a step its sample lies, in 0..1;
+// `pixel`: width of a pixel at a distance of a metre.
+//
+// Without a tolerance a step has one sample. Else it has one at each end and one in the middle, and
+// is halved until it is good enough: the middle is then the new end. The two halves are added, each
+// with the mean of its ends, and the light at its middle.
+ray_state march(vec3 origin, vec3 direction, vec2 range, float offset, float pixel) {
+    ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
+    float span = range.y - range.x;
+    if (span <= 0.0) return ray;
+    float usual = step_size > 0.0 ? max(step_size, span / 4096.0) : span / float(steps);
+    bool even = tolerance <= 0.0;
+    float from = range.x, length = min(even ? usual : 2.0 * usual * offset, span);
+    float places[3] = float[3](even ? offset : 0.0, 1.0, 0.5);
+    int known = 0, taken = 0, done = 0; // of the step's ends; samples; steps
+    node begin, end;
+    while (length > 1e-6 * span && taken < 65000) {
+        float at = from + places[known] * length, error = 0.0;
+        node n = look(origin + at * direction);
+        taken++;
+        if (!even && known < 2) {
+            if (known++ == 0)
+                begin = n;
+            else
+                end = n;
+            continue;
+        }
+        if (!even) {
+            error = halving(ray, begin, n, end, length);
+            float least = max(max(0.125 * usual, SHORTEST * span), 0.25 * pixel * from);
+            if (error > tolerance && length > least) {
+                length *= 0.5;
+                end = n;
+                continue;
+            }
+        }
+        int parts = even ? 1 : 2;
+        for (int i = 0; i < parts; i++) {
+            node m = n;
+            if (!even) m = halfway(i == 0 ? begin : end, n);
+            if (m.density <= 0.0) continue;
+            float middle = even ? at : from + (0.25 + 0.5 * float(i)) * length;
+            vec3 lit = vec3(0.0);
+            if (greatest(m.scattering) > 0.0)
+                lit = scattered_light(origin + middle * direction, direction);
+            add_stretch(ray, m, lit, length / float(parts), middle);
+        }
+        if (mean(ray.transmittance) < early_exit) break;
+        done++;
+        if (even) {
+            from = range.x + float(done) * usual;
+            length = min(usual, range.y - from);
+        } else {
+            from += length;
+            if (error < 0.25 * tolerance) length = min(2.0 * length, 8.0 * usual);
+            length = min(length, range.y - from);
+            begin = end;
+            known = 1;
+        }
+    }
+    count_samples(taken);
+    return ray;
+}
+
+// Section 3.6: `last`, how far samples may lie, weighs them and leaves the steps as they are.
+ray_state march_paper(vec3 origin, vec3 direction, vec2 range, float last, float offset) {
+    ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
     float span = range.y - range.x;
     if (span <= 0.0) return ray;
     int count = steps;
@@ -123,21 +269,15 @@ ray_state march(vec3 origin, vec3 direction, vec2 range, float last, float offse
     }
     int taken = 0;
     for (int i = 0; i < count; i++) {
-        // The last step of a fixed length ends at the exit.
         float from = range.x + float(i) * length;
-        float part = min(length, range.y - from);
-        float at = from + offset * part;
+        float at = from + offset * min(length, range.y - from);
         if (at > last) break;
         vec3 p = origin + at * direction;
         float d = field_density(p);
         taken++;
         if (d <= 0.0) continue;
-#if MODE == MODE_PAPER
-        add_paper(ray, p, d);
-#else
-        add_physical(ray, p, direction, d, part);
-#endif
-        if (ray.transmittance < early_exit) break;
+        add_paper(ray, p, d, at);
+        if (ray.transmittance.x < early_exit) break;
     }
     count_samples(taken);
     return ray;
@@ -158,26 +298,23 @@ void main() {
     last = stop * metres + depth_bias;
 #endif
     if (!inside) range = vec2(0.0);
-    float offset = 0.5;
-#if MODE == MODE_PAPER
-    offset = 0.0;
-#endif
+    float offset = MODE == MODE_PAPER ? 0.0 : 0.5;
     offset += jitter * (random_pixel(uvec2(pixel), frame.size.z ^ random_hash(frame.size.w)) - 0.5);
+    offset = clamp(offset, 0.0, 1.0);
 
-    vec4 result;
+    ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
 #if VIEW == VIEW_NOISE
     vec3 front = frame.eye.xyz + range.x * direction;
-    result = min(range.y, last) > range.x ? vec4(vec3(field_noise(front)), 1.0) : vec4(0.0);
+    if (min(range.y, last) > range.x) ray = ray_state(vec3(field_noise(front)), vec3(0.0), vec2(range.x, 1.0));
+#elif MODE == MODE_PAPER
+    ray = march_paper(frame.eye.xyz, direction, range, last, offset);
 #else
-    ray_state ray = march(frame.eye.xyz, direction, range, last, clamp(offset, 0.0, 1.0));
-    result = vec4(ray.light, 1.0 - ray.transmittance);
-#endif
-    float lit = 1.0;
-#if HAS_DEPTH && MODE == MODE_PHYSICAL
-    if (inside && shadow_steps > 0 && stop < 1e8) lit = shadow_on(frame.eye.xyz + stop * along);
+    // The ray ends at the surface, so that the sum has a sharp end there.
+    range.y = min(range.y, last);
+    ray = march(frame.eye.xyz, direction, range, offset, 2.0 * frame.lens.y / float(size.y));
 #endif
     if (!inside) return;
-    imageStore(color, pixel, result);
-    imageStore(shadow, pixel, vec4(lit));
+    imageStore(color, pixel, vec4(ray.light, 1.0 - mean(ray.transmittance)));
     imageStore(edge, pixel, vec4(stop));
+    imageStore(reach, pixel, vec4(ray.reach.y > 0.0 ? ray.reach.x / ray.reach.y : stop * metres));
 }
