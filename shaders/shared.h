@@ -41,11 +41,12 @@ struct frame_block {
 #define LIGHT_SUN 0   // far away: the same direction everywhere
 #define LIGHT_POINT 1 // a glowing sphere where its radius is above 0
 #define LIGHT_SPOT 2  // a point light with a cone
+#define LIGHT_FIRE 3  // stands for what burns in the volume: a point light, brighter on one side
 
 struct light_entry {
     SHARED_VEC4 position; // xyz: metres; of the sun: unit, towards it; w: radius in metres, of the sun: sine of its angular radius
     SHARED_VEC4 color;    // rgb: radiant intensity (W/sr); of the sun: irradiance at normal incidence (W/m^2); w: kind
-    SHARED_VEC4 axis;     // of a spot: xyz: unit, where it shines; w: cosine of the half angle at which it ends
+    SHARED_VEC4 axis;     // of a spot: xyz: unit, where it shines; w: cosine of the half angle at which it ends; of fire: xyz: into the direction d its intensity is 1 + dot(axis, d) times the colour
     SHARED_VEC4 spread;   // of a spot: x: cosine of the half angle up to which it is full
 };
 

@@ -14,8 +14,8 @@ struct light {
     vec3 position; // metres; of the sun: unit, towards it
     float radius;  // metres; of the sun: sine of its angular radius
     vec3 color;    // W/sr; of the sun: W/m^2 at normal incidence
-    int kind;      // LIGHT_SUN, LIGHT_POINT, LIGHT_SPOT
-    vec3 axis;     // of a spot
+    int kind;      // LIGHT_SUN, LIGHT_POINT, LIGHT_SPOT, LIGHT_FIRE
+    vec3 axis;     // of a spot, and of fire
     float outer;   // cosine at which its cone ends
     float inner;   // cosine up to which it is full
 };
@@ -67,6 +67,7 @@ light_ray light_at(light l, vec3 p) {
         float cosine = dot(-direction, l.axis);
         irradiance *= smoothstep(l.outer, max(l.inner, l.outer + 1e-4), cosine);
     }
+    if (l.kind == LIGHT_FIRE) irradiance *= max(1.0 - dot(direction, l.axis), 0.0);
     return light_ray(direction, distance, irradiance);
 }
 

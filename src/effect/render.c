@@ -89,11 +89,17 @@ static bool evaluate(effect *e, double frame, gpu *device) {
     return true;
 }
 
+// Whether a pass of the graph is the pass `label` or "label.name", a part of it.
+static bool is_part(const char *name, const char *label) {
+    size_t length = strlen(label);
+    return strncmp(name, label, length) == 0 && (name[length] == '\0' || name[length] == '.');
+}
+
 static bool runs(const effect *e, const pass *p) {
     const char *names[GPU_MAX_PASSES];
     size_t count = graph_order(e->graph, names, COUNT_OF(names));
     for (size_t i = 0; i < count && i < COUNT_OF(names); i++)
-        if (strcmp(names[i], pass_label(p)) == 0) return true;
+        if (is_part(names[i], pass_label(p))) return true;
     return false;
 }
 

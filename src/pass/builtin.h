@@ -8,6 +8,12 @@ bool geometry_build(pass *p);
 bool geometry_record(pass *p);
 void geometry_destroy(pass *p);
 
+bool lighting_declare(pass *p);
+bool lighting_check(pass *p);
+bool lighting_build(pass *p);
+bool lighting_fill(pass *p, const shader_binary *binary, unsigned char *block);
+void lighting_destroy(pass *p);
+
 bool march_declare(pass *p);
 bool march_fill(pass *p, const shader_binary *binary, unsigned char *block);
 

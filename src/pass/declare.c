@@ -44,45 +44,89 @@ static bool record(void *user, graph *g, gpu *device) {
     return p->type && p->type->record ? p->type->record(p) : pass_record(p);
 }
 
+typedef struct image_list {
+    graph_image *at;
+    size_t count, capacity;
+} image_list;
+
+static void list_image(image_list *list, graph_image image) {
+    MEM_RESERVE(list->at, list->count + 1, list->capacity);
+    list->at[list->count++] = image;
+}
+
+// Grids that passes of the graph make and the pass's fields sample.
+static void list_grids(const pass *p, image_list *list) {
+    for (size_t i = 0; i < p->face->field_count; i++) {
+        const field_grid *grids[64];
+        size_t count = p->fields[i] ? field_grids(p->fields[i], grids, COUNT_OF(grids)) : 0;
+        for (size_t g = 0; g < count && g < COUNT_OF(grids); g++) {
+            graph_image image = pass_grid_image(p->host, grids[g]);
+            if (image.id) list_image(list, image);
+        }
+    }
+}
+
 bool pass_add_to_graph(pass *p) {
     return pass_add_to_graph_with(p, NULL, 0);
 }
 
 bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count) {
     const shader_interface *face = p->face;
-    size_t read_count = 0, write_count = 0, capacity = 0;
-    graph_image *reads = NULL;
+    image_list reads = {0};
+    size_t write_count = 0;
     graph_image *writes = mem_alloc((face->image_count + more_count) * sizeof *writes);
     for (size_t i = 0; i < more_count; i++) writes[write_count++] = more[i];
     for (size_t i = 0; i < face->image_count; i++) {
         if (face->images[i].output) {
             writes[write_count++] = p->images[i];
         } else {
-            MEM_RESERVE(reads, read_count + 1, capacity);
-            reads[read_count++] = p->images[i];
+            list_image(&reads, p->images[i]);
         }
     }
-    for (size_t i = 0; i < face->field_count; i++) {
-        const field_grid *grids[64];
-        size_t count = p->fields[i] ? field_grids(p->fields[i], grids, COUNT_OF(grids)) : 0;
-        for (size_t g = 0; g < count && g < COUNT_OF(grids); g++) {
-            graph_image image = pass_grid_image(p->host, grids[g]);
-            if (!image.id) continue;
-            MEM_RESERVE(reads, read_count + 1, capacity);
-            reads[read_count++] = image;
-        }
-    }
+    list_grids(p, &reads);
     bool done = graph_add_pass(p->host->graph, &(graph_pass_desc){
                                                    .name = p->label,
-                                                   .reads = reads,
-                                                   .read_count = read_count,
+                                                   .reads = reads.at,
+                                                   .read_count = reads.count,
                                                    .writes = writes,
                                                    .write_count = write_count,
                                                    .record = record,
                                                    .user = p,
                                                });
-    mem_free(reads);
+    mem_free(reads.at);
     mem_free(writes);
+    return done;
+}
+
+typedef struct part_record {
+    pass *p;
+    bool (*record)(pass *p);
+} part_record;
+
+static bool record_part(void *user, graph *g, gpu *device) {
+    (void)g;
+    (void)device;
+    const part_record *part = user;
+    return part->record(part->p);
+}
+
+bool pass_add_part(pass *p, const pass_part *part) {
+    image_list reads = {0};
+    part_record *user = arena_alloc(p->host->memory, sizeof *user);
+    *user = (part_record){p, part->record};
+    for (size_t i = 0; i < part->read_count; i++) list_image(&reads, part->reads[i]);
+    if (part->fields) list_grids(p, &reads);
+    bool done = graph_add_pass(
+        p->host->graph, &(graph_pass_desc){
+                            .name = arena_format(p->host->memory, "%s.%s", p->label, part->name),
+                            .reads = reads.at,
+                            .read_count = reads.count,
+                            .writes = part->writes,
+                            .write_count = part->write_count,
+                            .record = record_part,
+                            .user = user,
+                        });
+    mem_free(reads.at);
     return done;
 }
 

@@ -79,4 +79,21 @@ bool pass_declare_images(pass *p);                    // histories and outputs a
 // The same, with images of its own that it writes besides.
 bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count);
 bool pass_add_to_graph(pass *p);                   // reads and writes by its images and fields
+
+// One of several passes of the graph that a pass consists of: "label.name".
+typedef struct pass_part {
+    const char *name;
+    const graph_image *reads, *writes;
+    size_t read_count, write_count;
+    bool fields; // it evaluates the pass's fields, and so reads the grids that they sample
+    bool (*record)(pass *p);
+} pass_part;
+bool pass_add_part(pass *p, const pass_part *part);
+
+// The box of a volume: of the pass's field "density" as of now. An error when it has no end.
+const field *pass_density(const pass *p);
+bool pass_density_box(const pass *p, box3 *box);
+// Into the members box_min and box_max of a block; an empty box is a point.
+void pass_write_box(const shader_binary *binary, unsigned char *block, box3 box);
+
 float pass_evaluate(pass *p, const char *uniform); // current value of a scalar uniform

@@ -16,6 +16,15 @@ static const pass_type types[] = {
         .destroy = geometry_destroy,
     },
     {
+        .name = "lighting",
+        .shader = "pass/lighting.comp",
+        .declare = lighting_declare,
+        .check = lighting_check,
+        .build = lighting_build,
+        .fill = lighting_fill,
+        .destroy = lighting_destroy,
+    },
+    {
         .name = "march",
         .shader = "pass/march.comp",
         .declare = march_declare,

@@ -147,7 +147,7 @@ static void set_option(lua_State *L, pass_call *call, size_t index, int value) {
         const field_object *object = object_test(L, value, "field");
         effect_mark_structural(script_of(L)->effect, (size_t)object->param);
         word = param->words[(size_t)param->value[0]];
-    } else if (lua_type(L, value) == LUA_TSTRING) {
+    } else if (lua_isstring(L, value)) { // or a number: words like 64
         word = lua_tostring(L, value);
     } else {
         vm_error(L, "%s: option '%s' takes a word in quotes, or a parameter with words; got a %s",

@@ -1,0 +1,52 @@
+// A light's rays through the volume: each is marched once, away from the light, and what it has
+// passed is kept at every step, so that a texel costs one evaluation of the density.
+//
+// Eight threads share a ray: each sums a part of its own, then adds the parts before it.
+#if defined(STAGE_SHADOW)
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 8) in;
+
+const int PARTS = 8, PART = SHADOW_SIZE / PARTS, RAYS = 32;
+const float MOST = 60000.0; // that a half float can hold
+const float FAR = 1e5;      // metres to where meshes still throw a shadow
+shared float passed[PARTS][RAYS];
+shared float hidden_from[RAYS]; // metres in the box after which a mesh hides the light
+
+// Meshes between the light and the box count as well.
+float find_mesh(shadow_map m, shadow_ray ray) {
+    vec3 enter = ray.origin + ray.range.x * ray.direction;
+    float before = m.kind == SHADOW_MAP_PARALLEL ? FAR : ray.range.x;
+    if (bvh_occluded(enter, -ray.direction, 0.0, before)) return -FAR;
+    bvh_hit hit = bvh_trace(enter, ray.direction, 0.0, ray.range.y - ray.range.x);
+    return hit.distance < 0.0 ? FAR : hit.distance;
+}
+
+void main() {
+    int index = int(gl_WorkGroupID.z), part = int(gl_LocalInvocationID.z);
+    int lane = int(gl_LocalInvocationID.y * 8 + gl_LocalInvocationID.x);
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    shadow_map m = shadow_map_of(lights_made, index);
+    shadow_ray ray = shadow_map_ray(m, texel, SHADOW_SIZE);
+    float slice = max(ray.range.y - ray.range.x, 0.0) / float(SHADOW_SIZE);
+
+    float sum = 0.0, sums[PART];
+    for (int i = 0; i < PART; i++) {
+        float at = ray.range.x + (float(part * PART + i) + 0.5) * slice;
+        if (slice > 0.0) sum += slice * max(field_density(ray.origin + at * ray.direction), 0.0);
+        sums[i] = sum;
+    }
+    count_samples(slice > 0.0 ? PART : 0);
+    passed[part][lane] = sum;
+    if (part == 0) hidden_from[lane] = slice > 0.0 ? find_mesh(m, ray) : FAR;
+    barrier();
+
+    float before = 0.0;
+    for (int i = 0; i < part; i++) before += passed[i][lane];
+    for (int i = 0; i < PART; i++) {
+        int k = part * PART + i;
+        // The edge of a mesh's shadow is as soft as a slice.
+        float steps = slice > 0.0 ? hidden_from[lane] / slice - float(k) - 0.5 : 1.0;
+        vec2 kept = vec2(min(before + sums[i], MOST), clamp(steps, 0.0, 1.0));
+        imageStore(shadow, ivec3(texel, index * SHADOW_SIZE + k), vec4(kept, 0.0, 0.0));
+    }
+}
+#endif

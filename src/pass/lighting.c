@@ -1,0 +1,185 @@
+// Lighting: one pass of the script, several of the graph, so that each part costs only when its
+// output is read, and has its own GPU time: LABEL.lights, LABEL.shadow and so on. All are stages of
+// one shader file.
+#include "base/error.h"
+#include "base/memory.h"
+#include "pass/builtin.h"
+#include "pass/pass_impl.h"
+#include "shared.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    ROW_TEXELS = 11,       // of a light in `lights`: SHADOW_MAP_TEXELS of lib/shadow_map.glsl
+    GREATEST_DEPTH = 2048, // of a 3D image, on any device
+    SHADOW_PARTS = 8,      // of a ray, in lighting/shadow.glsl
+};
+
+typedef enum lighting_stage { STAGE_LIGHTS, STAGE_SHADOW, STAGES } lighting_stage;
+
+static const char *const stage_defines[STAGES] = {"STAGE_LIGHTS", "STAGE_SHADOW"};
+
+typedef struct lighting_state {
+    uint32_t declared; // lights of the scene, its sun among them
+    uint32_t shadow_size, glow_size, fire_count;
+    shader_binary binary[STAGES];
+    gpu_pipeline *pipeline[STAGES];
+    unsigned char *block[STAGES];
+} lighting_state;
+
+// ---- declaring --------------------------------------------------------------------------------
+
+// An option whose words are numbers.
+static uint32_t number_of(const pass *p, const char *option) {
+    size_t index;
+    if (pass_find_key(p, option, &index) != PASS_OPTION) return 0;
+    return (uint32_t)strtoul(p->face->options[index].words[p->options[index]], NULL, 10);
+}
+
+static bool add_image(pass *p, const char *name, const uint32_t size[3]) {
+    int index = pass_find_image(p, name);
+    p->images[index] = graph_add_image(
+        p->host->graph, &(graph_image_desc){
+                            .name = arena_format(p->host->memory, "%s.%s", p->label, name),
+                            .format = p->formats[index],
+                            .width = size[0],
+                            .height = size[1],
+                            .depth = size[2],
+                        });
+    return p->images[index].id != 0;
+}
+
+static graph_image image_of(const pass *p, const char *name) {
+    return p->images[pass_find_image(p, name)];
+}
+
+static bool add_images(pass *p) {
+    const lighting_state *s = p->state;
+    uint32_t n = s->shadow_size, g = s->glow_size;
+    if (n * s->declared > GREATEST_DEPTH)
+        return err_set("%s: shadows of %u lights (the sun is one) do not fit at a "
+                       "shadow_resolution of %u; at most %u is possible with so many",
+                       p->label, s->declared, n, GREATEST_DEPTH / s->declared);
+    return add_image(p, "lights", (uint32_t[3]){ROW_TEXELS, s->declared + s->fire_count, 0}) &&
+           add_image(p, "shadow", (uint32_t[3]){n, n, n * s->declared}) &&
+           add_image(p, "glow", (uint32_t[3]){g, g, 3 * g});
+}
+
+static bool record_lights(pass *p);
+static bool record_shadow(pass *p);
+
+static bool add_parts(pass *p) {
+    graph_image lights = image_of(p, "lights"), shadow = image_of(p, "shadow");
+    const pass_part parts[] = {
+        {.name = "lights", .writes = &lights, .write_count = 1, .record = record_lights},
+        {.name = "shadow",
+         .reads = &lights,
+         .read_count = 1,
+         .writes = &shadow,
+         .write_count = 1,
+         .fields = true,
+         .record = record_shadow},
+    };
+    for (size_t i = 0; i < COUNT_OF(parts); i++)
+        if (!pass_add_part(p, &parts[i])) return false;
+    return true;
+}
+
+bool lighting_declare(pass *p) {
+    const scene *around = p->host->scene;
+    lighting_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
+    box3 box;
+    s->declared = around ? (uint32_t)around->light_count + 1 : 1;
+    s->shadow_size = number_of(p, "shadow_resolution");
+    s->glow_size = number_of(p, "glow_resolution");
+    s->fire_count = number_of(p, "fire_lights");
+    return pass_density_box(p, &box) && add_images(p) && add_parts(p);
+}
+
+// ---- building ---------------------------------------------------------------------------------
+
+static bool compile(pass *p, lighting_stage stage, shader_binary *out) {
+    const lighting_state *s = p->state;
+    arena *memory = p->host->memory;
+    const shader_define defines[] = {
+        {stage_defines[stage], "1"},
+        {"SHADOW_SIZE", arena_format(memory, "%u", s->shadow_size)},
+        {"GLOW_SIZE", arena_format(memory, "%u", s->glow_size)},
+        {"FIRE_COUNT", arena_format(memory, "%u", s->fire_count)},
+    };
+    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines), out);
+}
+
+bool lighting_check(pass *p) {
+    shader_binary binary;
+    for (int i = 0; i < STAGES; i++)
+        if (!compile(p, (lighting_stage)i, &binary)) return false;
+    return true;
+}
+
+bool lighting_build(pass *p) {
+    lighting_state *s = p->state;
+    for (int i = 0; i < STAGES; i++) {
+        if (!compile(p, (lighting_stage)i, &s->binary[i])) return false;
+        s->pipeline[i] = pass_create_compute(p, &s->binary[i]);
+        if (!s->pipeline[i]) return false;
+        s->block[i] = arena_alloc(p->host->memory, pass_block_size(&s->binary[i]) + 16);
+    }
+    p->binary = s->binary[STAGE_LIGHTS];
+    return true;
+}
+
+void lighting_destroy(pass *p) {
+    lighting_state *s = p->state;
+    for (int i = 0; s && i < STAGES; i++)
+        if (s->pipeline[i]) gpu_pipeline_destroy(p->host->device, s->pipeline[i]);
+}
+
+// ---- in a frame -------------------------------------------------------------------------------
+
+bool lighting_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+    const lighting_state *s = p->state;
+    if (p->host->lights->count.v[0] != s->declared)
+        return err_set("%s: made for %u lights (the sun is one), but the effect has %u; set "
+                       "'lights' of the effect before it",
+                       p->label, s->declared, p->host->lights->count.v[0]);
+    box3 box;
+    if (!pass_density_box(p, &box)) return false;
+    pass_write_box(binary, block, box);
+    return true;
+}
+
+// Passes of the graph write these; the shader has a name of its own for reading each.
+static pass_override reading(const pass *p, const char *slot, graph_image image) {
+    return (pass_override){slot,
+                           {.image = graph_get_image(p->host->graph, image),
+                            .sampler = GPU_LINEAR_CLAMP}};
+}
+
+static bool dispatch(pass *p, lighting_stage stage, uint32_t x, uint32_t y, uint32_t z) {
+    const lighting_state *s = p->state;
+    const pass_override overrides[] = {
+        reading(p, "lights_made", image_of(p, "lights")),
+        reading(p, "shadow_made", image_of(p, "shadow")),
+    };
+    gpu_binding bindings[GPU_MAX_SLOTS];
+    size_t count;
+    return pass_bind(p, &s->binary[stage], s->block[stage], overrides, COUNT_OF(overrides),
+                     bindings, &count) &&
+           gpu_dispatch(p->host->device,
+                        &(gpu_dispatch_desc){s->pipeline[stage], bindings, count, {x, y, z}});
+}
+
+// The first of the parts in every frame, since the others read what it writes.
+static bool record_lights(pass *p) {
+    const lighting_state *s = p->state;
+    if (!pass_prepare(p)) return false;
+    for (int i = 0; i < STAGES; i++)
+        if (!pass_fill_block(p, &s->binary[i], s->block[i])) return false;
+    return dispatch(p, STAGE_LIGHTS, s->declared, 1, 1);
+}
+
+static bool record_shadow(pass *p) {
+    const lighting_state *s = p->state;
+    return dispatch(p, STAGE_SHADOW, s->shadow_size, s->shadow_size, SHADOW_PARTS * s->declared);
+}
