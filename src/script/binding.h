@@ -55,6 +55,9 @@ typedef struct sky_object {
 typedef struct mesh_object {
     scene_mesh *mesh;
 } mesh_object;
+typedef struct light_object {
+    scene_light light;
+} light_object;
 
 // ---- values -----------------------------------------------------------------------------------
 
@@ -98,6 +101,12 @@ int value_word(lua_State *L, int index, const char *who, const char *key, const 
 int value_get_choice(lua_State *L, int table, const script_object *object, const char *key);
 const field *value_get_uniform(lua_State *L, int table, const char *who, const char *key,
                                int components, const field *otherwise);
+// Of a scene object's call: sets what the table at 1 holds in the structure at `out`, as its row
+// says where. And raises when the table holds values without a name.
+void value_read_slots(lua_State *L, const char *who, void *out);
+void value_refuse_array(lua_State *L, const char *who);
+// A list of lights, in the effect's memory; returns how many.
+size_t value_lights(lua_State *L, int index, const char *who, const scene_light **out);
 
 // ---- the objects' globals ---------------------------------------------------------------------
 
@@ -108,4 +117,5 @@ void l_curve_open(lua_State *L);
 void l_palette_open(lua_State *L);
 void l_grid_open(lua_State *L);
 void l_scene_open(lua_State *L);
+void l_light_open(lua_State *L);
 void l_pass_open(lua_State *L);

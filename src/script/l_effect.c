@@ -1,5 +1,5 @@
 // effect { name = "explosion", fps = 24, frames = 100 } gives the effect's object. Assigned to it:
-// output, linear, depth (images), camera, sun, sky, and update, a function(t, dt).
+// output, linear, depth (images), camera, sun, sky, lights, and update, a function(t, dt).
 #include "base/memory.h"
 #include "script/binding.h"
 #include <string.h>
@@ -74,6 +74,11 @@ static void set_scene(lua_State *L, const char *key) {
     }
 }
 
+static void set_lights(lua_State *L) {
+    scene *s = effect_scene(script_of(L)->effect);
+    s->light_count = value_lights(L, 3, who, &s->lights);
+}
+
 static void set_update(lua_State *L) {
     script *s = script_of(L);
     if (lua_type(L, 3) != LUA_TFUNCTION)
@@ -105,6 +110,8 @@ static int l_newindex(lua_State *L) {
         set_picture(L, key, effect_set_depth);
     else if (strcmp(key, "camera") == 0 || strcmp(key, "sun") == 0 || strcmp(key, "sky") == 0)
         set_scene(L, key);
+    else if (strcmp(key, "lights") == 0)
+        set_lights(L);
     else if (strcmp(key, "update") == 0)
         set_update(L);
     else

@@ -4,8 +4,7 @@
 #include "script/binding.h"
 #include <string.h>
 
-// Sets what the table at 1 holds in the structure at `out`.
-static void read_slots(lua_State *L, const char *who, void *out) {
+void value_read_slots(lua_State *L, const char *who, void *out) {
     script_require_loading(L, who);
     for (const script_key *key = value_check_object(L, 1, who)->keys; key->name; key++) {
         const field *node = value_get_uniform(L, 1, who, key->name, key->components, NULL);
@@ -13,22 +12,23 @@ static void read_slots(lua_State *L, const char *who, void *out) {
     }
 }
 
-static void refuse_array(lua_State *L, const char *who) {
+void value_refuse_array(lua_State *L, const char *who) {
     if (value_is_plain_table(L, 1) && lua_rawlen(L, 1) > 0)
-        vm_error(L, "%s takes only named values, as in %s { fov = 40 }", who, who);
+        vm_error(L, "%s takes only named values, as in %s { %s = ... }", who, who,
+                 script_object_find(who)->keys->name);
 }
 
 static int l_orbit(lua_State *L) {
-    refuse_array(L, "orbit");
+    value_refuse_array(L, "orbit");
     camera_object *object = object_new(L, "camera", sizeof *object);
-    read_slots(L, "orbit", &object->camera);
+    value_read_slots(L, "orbit", &object->camera);
     return 1;
 }
 
 static int l_camera(lua_State *L) {
-    refuse_array(L, "camera");
+    value_refuse_array(L, "camera");
     camera_object *object = object_new(L, "camera", sizeof *object);
-    read_slots(L, "camera", &object->camera);
+    value_read_slots(L, "camera", &object->camera);
     if (!object->camera.eye)
         vm_error(L, "camera: 'eye' is missing: where it stands, {x, y, z} in metres; orbit { } "
                     "circles a target instead");
@@ -36,22 +36,22 @@ static int l_camera(lua_State *L) {
 }
 
 static int l_sun(lua_State *L) {
-    refuse_array(L, "sun");
+    value_refuse_array(L, "sun");
     sun_object *object = object_new(L, "sun", sizeof *object);
-    read_slots(L, "sun", &object->sun);
+    value_read_slots(L, "sun", &object->sun);
     return 1;
 }
 
 static int l_sky(lua_State *L) {
-    refuse_array(L, "sky");
+    value_refuse_array(L, "sky");
     sky_object *object = object_new(L, "sky", sizeof *object);
-    read_slots(L, "sky", &object->sky);
+    value_read_slots(L, "sky", &object->sky);
     return 1;
 }
 
 static int l_mesh(lua_State *L) {
     scene_mesh values = {0};
-    read_slots(L, "mesh", &values);
+    value_read_slots(L, "mesh", &values);
     if (lua_rawlen(L, 1) != 1 || lua_rawgeti(L, 1, 1) != LUA_TSTRING)
         vm_error(L, "mesh: its file comes first, as in mesh { \"data/ground.obj\" }");
     size_t length;

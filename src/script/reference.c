@@ -23,6 +23,11 @@
     KEY("y_up", "false", "the files have Y up: turns them to Z up"),                               \
     KEY("scale", "1 m", "metres a unit of the file"),                                              \
     KEY("offset", "0, 0, 0 m", "added after scaling")
+#define LIGHT                                                                                      \
+    SLOT(scene_light, position, 3, "{x, y, z} m", "where it stands; required"),                    \
+    SLOT(scene_light, color, 3, "1, 1, 1", "multiplies the power"),                                \
+    SLOT(scene_light, power, 1, "100 W",                                                           \
+         "as light into all directions, of which a spot's cone is cut out")
 #define SEQUENCE_MEMBERS KEYS(                                                                     \
     KEY("NAME", "field", "the grid of that name: density, temperature, flame, velocity ..."),      \
     KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "encloses all frames"),                   \
@@ -157,6 +162,20 @@ static const script_object objects[] = {
         SLOT(scene_sky, zenith, 3, "0.22, 0.32, 0.48", "radiance straight up"),
         SLOT(scene_sky, horizon, 3, "0.22, 0.32, 0.48", "radiance at the horizon and below"),
         SLOT(scene_sky, strength, 1, "0.6", "factor of both"))},
+    {"point_light", "scene", "fx.lights = { point_light { position = {2, 0, 3}, power = 200 } }",
+     "a light that shines from a point into all directions",
+     .keys = KEYS(LIGHT)},
+    {"sphere_light", "scene", "fx.lights = { sphere_light { position = {2, 0, 3}, radius = 0.5 } }",
+     "a glowing sphere: its shadows are soft",
+     .keys = KEYS(LIGHT,
+        SLOT(scene_light, radius, 1, "m", "of the sphere; required"))},
+    {"spot_light", "scene", "fx.lights = { spot_light { position = {0, 0, 5}, angle = 30 } }",
+     "a light that shines into a cone",
+     .keys = KEYS(LIGHT,
+        SLOT(scene_light, target, 3, "0, 0, 0 m", "where it shines"),
+        SLOT(scene_light, angle, 1, "45 degrees", "across the cone"),
+        SLOT(scene_light, softness, 1, "0.15 [0, 1]", "part of the cone over which it fades"),
+        SLOT(scene_light, radius, 1, "0 m", "of the sphere that glows: softens shadows"))},
 
     // ---- the effect
     {"effect", "effect", "local fx = effect { name = \"explosion\", fps = 24, frames = 100 }",
@@ -174,6 +193,7 @@ static const script_object objects[] = {
         KEY("camera", "orbit { } or camera { }", "see there"),
         KEY("sun", "sun { }", "see there"),
         KEY("sky", "sky { }", "see there"),
+        KEY("lights", "{ point_light { }, ... }", "up to 63 besides the sun"),
         KEY("update", "function(t, dt)", "runs before each frame, to set parameters"))},
     {"shader", "effect", "shader { \"haze.comp\", image, strength = 0.2 }",
      "a GLSL file of yours as a pass. Passes give images: the pass itself is its first output, "

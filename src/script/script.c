@@ -107,6 +107,7 @@ static int open_bindings(lua_State *L) {
     l_palette_open(L);
     l_grid_open(L);
     l_scene_open(L);
+    l_light_open(L);
     l_pass_open(L);
     return 0;
 }

@@ -1,0 +1,112 @@
+// Lights as an effect file says them.
+#include "script_helper.h"
+#include <math.h>
+
+#define HEAD "local fx = effect { name = 'lights' }\n"
+#define TAIL "\nfx.output = final { geometry { }.albedo }.color\nreturn fx\n"
+
+static effect *load(const char *text) {
+    effect *e = helper_load(text);
+    if (!e) fail_msg("%s", err_get());
+    return e;
+}
+
+static void refused(const char *text, const char *message) {
+    effect *e = helper_load(text);
+    if (e) fail_msg("accepted: %s", text);
+    if (!strstr(err_get(), message)) fail_msg("\"%s\" is not in: %s", message, err_get());
+}
+
+static float evaluate(effect *e, const field *node, double time, int component) {
+    field_context context = *effect_pass_host(e)->context;
+    context.time = time;
+    float value[4];
+    if (!field_eval(node, &context, (float3){0, 0, 0}, value)) fail_msg("%s", err_get());
+    return value[component];
+}
+
+static void each_kind_can_be_made(void **state) {
+    (void)state;
+    effect *e = load(HEAD "fx.lights = {\n"
+                          "  point_light { position = {1, 2, 3} },\n"
+                          "  sphere_light { position = {0, 0, 1}, radius = 0.5, power = 40 },\n"
+                          "  spot_light { position = {0, 0, 5}, color = '#ff0000', angle = 30 },\n"
+                          "}" TAIL);
+    const scene *s = effect_scene(e);
+    assert_int_equal(s->light_count, 3);
+    assert_int_equal(s->lights[0].kind, SCENE_POINT);
+    assert_int_equal(s->lights[2].kind, SCENE_SPOT);
+    assert_true(evaluate(e, s->lights[0].position, 0, 1) == 2);
+    assert_true(evaluate(e, s->lights[0].power, 0, 0) == 100);
+    assert_true(evaluate(e, s->lights[1].radius, 0, 0) == 0.5f);
+    assert_true(evaluate(e, s->lights[2].color, 0, 0) == 1);
+    assert_true(evaluate(e, s->lights[2].color, 0, 1) == 0);
+    struct light_block block;
+    assert_true(scene_fill_lights(s, effect_pass_host(e)->context, &block));
+    assert_int_equal(block.count.v[0], 4);
+    effect_destroy(e);
+}
+
+static void numbers_are_functions_curves_and_parameters(void **state) {
+    (void)state;
+    effect *e = load(HEAD "local p = param { 'brightness', 7 }\n"
+                          "fx.lights = { spot_light {\n"
+                          "  position = function(t) return {t, 0, 2 * t} end, power = p * 2,\n"
+                          "  angle = curve { {0, 10}, {1, 20} } } }" TAIL);
+    const scene_light *light = effect_scene(e)->lights;
+    assert_true(evaluate(e, light->position, 3, 2) == 6);
+    assert_true(evaluate(e, light->power, 0, 0) == 14);
+    assert_true(fabsf(evaluate(e, light->angle, 0.5, 0) - 15) < 1e-4f);
+    assert_true(effect_set(e, "brightness", "1"));
+    assert_true(evaluate(e, light->power, 0, 0) == 2);
+    effect_destroy(e);
+}
+
+static void last_list_counts(void **state) {
+    (void)state;
+    effect *e = load(HEAD "local a = point_light { position = {0, 0, 0} }\n"
+                          "fx.lights = {a, a}\nassert(#fx.lights == 2)\nfx.lights = {a}" TAIL);
+    assert_int_equal(effect_scene(e)->light_count, 1);
+    effect_destroy(e);
+    e = load(HEAD "fx.lights = {}" TAIL);
+    assert_int_equal(effect_scene(e)->light_count, 0);
+    effect_destroy(e);
+}
+
+static void mistakes_are_named(void **state) {
+    (void)state;
+    refused(HEAD "fx.lights = { point_light { } }" TAIL,
+            "point_light: 'position' is missing: where it stands, {x, y, z} in metres");
+    refused(HEAD "fx.lights = { sphere_light { position = {0, 0, 1} } }" TAIL,
+            "sphere_light: 'radius' is missing");
+    refused(HEAD "fx.lights = { point_light { position = {0, 0, 1}, radius = 1 } }" TAIL,
+            "point_light: unknown key 'radius'");
+    refused(HEAD "fx.lights = { spot_light { position = {0, 0, 1}, softnes = 1 } }" TAIL,
+            "spot_light: unknown key 'softnes'; did you mean 'softness'?");
+    refused(HEAD "fx.lights = { point_light { {0, 0, 1} } }" TAIL,
+            "point_light takes only named values");
+    refused(HEAD "fx.lights = { point_light { position = {0, 0, 1}, power = perlin { } } }" TAIL,
+            "point_light: 'power' varies in space");
+    refused(HEAD "fx.lights = point_light { position = {0, 0, 1} }" TAIL,
+            "effect: 'lights' takes a list, as in { point_light { position = {0, 0, 3} } }; got a "
+            "userdata");
+    refused(HEAD "fx.lights = { key = point_light { position = {0, 0, 1} } }" TAIL,
+            "got a table with names");
+    refused(HEAD "fx.lights = { point_light { position = {0, 0, 1} }, sun { } }" TAIL,
+            "effect: entry 2 of 'lights' is a userdata");
+    refused(HEAD "local a = {}\n"
+                 "for i = 1, 64 do a[i] = point_light { position = {0, 0, i} } end\n"
+                 "fx.lights = a" TAIL,
+            "effect: 64 lights; at most 63 are possible");
+    refused(HEAD "fx.light = {}" TAIL, "effect: unknown field 'light'; did you mean 'lights'?");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_kind_can_be_made),
+        cmocka_unit_test(numbers_are_functions_curves_and_parameters),
+        cmocka_unit_test(last_list_counts),
+        cmocka_unit_test(mistakes_are_named),
+    };
+    return cmocka_run_group_tests(tests, helper_setup, helper_teardown);
+}
