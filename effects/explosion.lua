@@ -62,8 +62,8 @@ fx.sky    = sky { zenith = {0.14, 0.25, 0.46}, horizon = {0.34, 0.38, 0.42}, str
 local scene = geometry {
   mesh { "data/ground.obj" },
   mesh { "data/crates.obj" },
-  haze = 0.002,
 }
+local solid = shade { from = scene, haze = 0.002 }
 
 local volume = march {
   density    = body(lumps),
@@ -78,8 +78,7 @@ local volume = march {
   resolution = 0.5,
 }
 
-local picture = over { volume = volume.color, edge = volume.edge, source = scene.color, depth = scene.depth,
-                       sun = scene.sun, shadow = volume.shadow }
+local picture = over { volume = volume.color, edge = volume.edge, source = solid, depth = scene.depth }
 local glow    = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }
 local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.35, exposure_ev = 0.3, tonemap = "reinhard" }
 

@@ -23,12 +23,13 @@ fx.camera = orbit { target = {0, 0, 1.1}, distance = 7, pitch = 6, yaw = curve {
 fx.sky    = sky { zenith = {0.02, 0.03, 0.07}, horizon = {0.10, 0.08, 0.09}, strength = 1 }
 fx.sun    = sun { strength = 0.25, elevation = 12, azimuth = 200 }
 
-local scene  = geometry { mesh { "data/ground.obj" }, haze = 0.01 }
+local scene  = geometry { mesh { "data/ground.obj" } }
+local solid  = shade { from = scene, haze = 0.01 }
 local volume = march {
   density = body * 3, radiance = colors(body * 1.5) * 3, albedo = {0.3, 0.3, 0.3},
   depth = scene.depth, steps = 96, resolution = 0.5,
 }
-local picture = over { volume = volume.color, edge = volume.edge, source = scene.color, depth = scene.depth }
+local picture = over { volume = volume.color, edge = volume.edge, source = solid, depth = scene.depth }
 local bent    = shader { "heat_haze.comp", input = picture, heat = tongue, strength = 0.012 }
 local shown   = final { source = bent, bloom = bloom { bright { bent } }, bloom_intensity = 0.5, tonemap = "reinhard" }
 

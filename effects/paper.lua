@@ -39,12 +39,13 @@ fx.camera = camera { eye = {4, -12, 3.36}, target = {4, 4, 3.36}, fov = 31.89, n
 fx.sun    = sun { azimuth = 239, elevation = 44, strength = 2.5 }
 
 local scene  = geometry { mesh { "data/ground.obj" }, mesh { "data/crates.obj" } }
+local solid  = shade { from = scene }
 local volume = march {
   mode = "paper", sampling = "quasi_cubic", view = show:get() and "noise" or "beauty",
   density = density, radiance = colors(temperature), noise = detail,
   steps = steps, opacity = opacity, depth = scene.depth, resolution = 0.25,
 }
-local picture = over { volume = volume.color, source = scene.color }
+local picture = over { volume = volume.color, source = solid }
 local glow    = bloom { bright { picture, mode = "paper", threshold = 1.0 }, mode = "paper", alpha = 0.8 }
 local shown   = final { source = picture, bloom = glow, bloom_intensity = 1, tonemap = "none" }
 

@@ -12,8 +12,8 @@ fx.sky    = sky { zenith = "#3d74b3", horizon = "#c3ced6", strength = 0.5 }
 local scene = geometry {
   mesh { "data/ground.obj" },
   mesh { "data/crates.obj", position = {-4, -4, 0} },
-  haze = 0.004,
 }
+local solid = shade { from = scene, haze = 0.004 }
 
-fx.output = final { scene.color }.color
+fx.output = final { solid }.color
 return fx

@@ -16,9 +16,9 @@ local ball = sphere { position = {0, 0, 2.6}, radius = 2.2, falloff = 0.5 }
 local scene  = geometry {
   mesh { "data/ground.obj" },
   mesh { "data/crates.obj", position = {-4, -4, 0} },
-  haze = 0.004,
 }
+local solid  = shade { from = scene, haze = 0.004 }
 local volume = march { density = ball * 4, albedo = {0.8, 0.8, 0.8}, depth = scene.depth }
 
-fx.output = final { over { volume, scene.color } }.color
+fx.output = final { over { volume, solid } }.color
 return fx

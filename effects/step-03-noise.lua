@@ -19,9 +19,9 @@ local smoke = ball * smoothstep(0, 0.15, ball - 0.6 * (1 - lumps))
 local scene  = geometry {
   mesh { "data/ground.obj" },
   mesh { "data/crates.obj", position = {-4, -4, 0} },
-  haze = 0.004,
 }
+local solid  = shade { from = scene, haze = 0.004 }
 local volume = march { density = smoke * 15, albedo = {0.8, 0.8, 0.8}, depth = scene.depth }
 
-fx.output = final { over { volume, scene.color } }.color
+fx.output = final { over { volume, solid } }.color
 return fx

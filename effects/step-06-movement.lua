@@ -31,8 +31,8 @@ local fire = palette { {0, "#000000"}, {0.25, "#300400"}, {0.5, "#c84400"}, {0.7
 local scene  = geometry {
   mesh { "data/ground.obj" },
   mesh { "data/crates.obj", position = {-4, -4, 0} },
-  haze = 0.004,
 }
+local solid  = shade { from = scene, haze = 0.004 }
 local volume = march {
   density  = smoke * density,
   emission = fire(heat) * smoke * glow,
@@ -40,5 +40,5 @@ local volume = march {
   depth    = scene.depth,
 }
 
-fx.output = final { over { volume, scene.color }, tonemap = "reinhard" }.color
+fx.output = final { over { volume, solid }, tonemap = "reinhard" }.color
 return fx

@@ -34,8 +34,8 @@ local fire  = palette { blackbody = {500, 4500}, physical = true, reference = 15
 local scene  = geometry {
   mesh { "data/ground.obj" },
   mesh { "data/crates.obj", position = {-4, -4, 0} },
-  haze = 0.004,
 }
+local solid  = shade { from = scene, haze = 0.004 }
 local volume = march {
   density  = body * density,
   emission = fire(heat * (0.45 + 0.85 * lumps) * kelvin) * flame * glow,
@@ -44,5 +44,5 @@ local volume = march {
   depth    = scene.depth,
 }
 
-fx.output = final { over { volume, scene.color }, tonemap = "reinhard" }.color
+fx.output = final { over { volume, solid }, tonemap = "reinhard" }.color
 return fx

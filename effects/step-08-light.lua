@@ -40,8 +40,8 @@ local fire  = palette { blackbody = {500, 4500}, physical = true, reference = 15
 local scene  = geometry {
   mesh { "data/ground.obj" },
   mesh { "data/crates.obj", position = {-4, -4, 0} },
-  haze = 0.004,
 }
+local solid  = shade { from = scene, haze = 0.004 }
 local volume = march {
   density        = body(fine) * density,
   shadow_density = body(lumps(2)) * density, -- shadows are soft: fewer octaves will do for them
@@ -54,6 +54,6 @@ local volume = march {
   depth          = scene.depth,
 }
 
-local picture = over { volume, scene.color, sun = scene.sun, shadow = volume.shadow }
+local picture = over { volume, solid }
 fx.output = final { picture, tonemap = "reinhard" }.color
 return fx

@@ -41,8 +41,8 @@ local fire  = palette { blackbody = {500, 4500}, physical = true, reference = 15
 local scene  = geometry {
   mesh { "data/ground.obj" },
   mesh { "data/crates.obj", position = {-4, -4, 0} },
-  haze = 0.004,
 }
+local solid  = shade { from = scene, haze = 0.004 }
 local volume = march {
   density        = body(fine) * density,
   shadow_density = body(lumps(2)) * density, -- shadows are soft: fewer octaves will do for them
@@ -57,7 +57,7 @@ local volume = march {
   resolution     = 0.5,      -- a quarter of the rays; `over` scales up along the edges of the scene
 }
 
-local picture = over { volume, scene.color, sun = scene.sun, shadow = volume.shadow, depth = scene.depth, edge = volume.edge }
+local picture = over { volume, solid, depth = scene.depth, edge = volume.edge }
 local halo    = bloom { bright { picture, threshold = 1 }, radius = 0.75 }
 fx.output = final { picture, halo, bloom_intensity = 0.5, exposure_ev = 0.5, tonemap = "reinhard" }.color
 return fx

@@ -40,8 +40,8 @@ local fire  = palette { blackbody = {500, 4500}, physical = true, reference = 15
 local scene  = geometry {
   mesh { "data/ground.obj" },
   mesh { "data/crates.obj", position = {-4, -4, 0} },
-  haze = 0.004,
 }
+local solid  = shade { from = scene, haze = 0.004 }
 local volume = march {
   density        = body(fine) * density,
   shadow_density = body(lumps(2)) * density, -- shadows are soft: fewer octaves will do for them
@@ -56,7 +56,7 @@ local volume = march {
   resolution     = 0.5,      -- a quarter of the rays; `over` scales up along the edges of the scene
 }
 
-local picture = over { volume, scene.color, sun = scene.sun, shadow = volume.shadow, depth = scene.depth, edge = volume.edge }
+local picture = over { volume, solid, depth = scene.depth, edge = volume.edge }
 local blast   = shader {
   "step-10-blast.comp", picture, scene.depth, volume,
   position = function(t) return {0, 0, 1.2 + 0.8 * t} end,

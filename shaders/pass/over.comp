@@ -4,8 +4,6 @@ uniform sampler2D volume;         //= input : premultiplied radiance and opacity
 uniform sampler2D source;         //= input : the scene
 uniform sampler2D depth;          //= input optional : depth of the scene (m)
 uniform sampler2D edge;           //= input optional : depth at which the volume's rays were stopped (m)
-uniform sampler2D sun;            //= input optional : the sun's part of the scene
-uniform sampler2D shadow;         //= input optional : how much of it reaches each point
 uniform float edge_tolerance;     //= 0.05 [0.001, 1] : relative difference in depth that counts as an edge
 writeonly uniform image2D color;  //= output rgba16f : premultiplied radiance and opacity
 
@@ -63,8 +61,5 @@ void main() {
     vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
     vec4 front = upsample(pixel, uv);
     vec4 back = textureLod(source, uv, 0.0);
-#if HAS_SUN && HAS_SHADOW
-    back.rgb -= (1.0 - textureLod(shadow, uv, 0.0).r) * textureLod(sun, uv, 0.0).rgb;
-#endif
     imageStore(color, pixel, front + (1.0 - front.a) * back);
 }

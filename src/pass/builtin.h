@@ -6,7 +6,6 @@ bool geometry_declare(pass *p);
 bool geometry_check(pass *p);
 bool geometry_build(pass *p);
 bool geometry_record(pass *p);
-void geometry_destroy(pass *p);
 
 bool lighting_declare(pass *p);
 bool lighting_check(pass *p);

@@ -1,5 +1,5 @@
-// Geometry: one draw per part of every mesh, then one dispatch for the sky. The linear depth that
-// the volume is tested against is a colour target; the depth buffer proper stays in this pass.
+// Geometry: one draw per part of every mesh. The linear depth that volumes are tested against is a
+// colour target; the depth buffer proper stays in this pass.
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/builtin.h"
@@ -13,26 +13,13 @@ typedef struct part_block { // std140, as shaders/lib/mesh.glsl has it
 } part_block;
 
 typedef struct geometry_state {
-    shader_binary vertex, fragment;
-    gpu_pipeline *meshes; // NULL when there is no mesh
+    shader_binary vertex; // the pass's own is the fragment stage
     graph_image z;
 } geometry_state;
 
 static geometry_state *state_of(pass *p) {
     if (!p->state) p->state = arena_alloc(p->host->memory, sizeof(geometry_state));
     return p->state;
-}
-
-static bool add_target(pass *p, const char *output) {
-    int index = pass_find_image(p, output);
-    p->images[index] = graph_add_image(
-        p->host->graph, &(graph_image_desc){
-                            .name = arena_format(p->host->memory, "%s.%s", p->label, output),
-                            .format = p->formats[index],
-                            .scale = p->scale,
-                            .target = true,
-                        });
-    return p->images[index].id != 0;
 }
 
 bool geometry_declare(pass *p) {
@@ -44,24 +31,18 @@ bool geometry_declare(pass *p) {
                                             .scale = p->scale,
                                             .target = true,
                                         });
-    return s->z.id && add_target(p, "color") && add_target(p, "sun") && add_target(p, "depth") &&
-           pass_declare_images(p) && pass_add_to_graph_with(p, &s->z, 1);
-}
-
-static bool compile_mesh(pass *p, geometry_state *s) {
-    return pass_compile(p, "pass/geometry.vert", SHADER_VERTEX, NULL, 0, &s->vertex) &&
-           pass_compile(p, "pass/geometry.frag", SHADER_FRAGMENT, NULL, 0, &s->fragment);
+    return s->z.id && pass_declare_images(p) && pass_add_to_graph_with(p, &s->z, 1);
 }
 
 bool geometry_check(pass *p) {
-    return compile_mesh(p, state_of(p)) &&
-           pass_compile(p, p->shader, SHADER_COMPUTE, NULL, 0, &p->binary);
+    return pass_compile(p, "pass/geometry.vert", SHADER_VERTEX, NULL, 0, &state_of(p)->vertex) &&
+           pass_compile(p, p->shader, SHADER_FRAGMENT, NULL, 0, &p->binary);
 }
 
 // The two stages share one set: their shaders number the bindings themselves.
-static size_t merge_slots(const geometry_state *s, gpu_slot out[GPU_MAX_SLOTS]) {
+static size_t merge_slots(pass *p, gpu_slot out[GPU_MAX_SLOTS]) {
     size_t count = 0;
-    const shader_binary *stages[] = {&s->vertex, &s->fragment};
+    const shader_binary *stages[] = {&state_of(p)->vertex, &p->binary};
     for (int stage = 0; stage < 2; stage++) {
         for (size_t i = 0; i < stages[stage]->slot_count; i++) {
             const gpu_slot *slot = &stages[stage]->slots[i].slot;
@@ -74,35 +55,31 @@ static size_t merge_slots(const geometry_state *s, gpu_slot out[GPU_MAX_SLOTS]) 
 }
 
 bool geometry_build(pass *p) {
-    geometry_state *s = state_of(p);
     if (!geometry_check(p)) return false;
-    p->pipeline = pass_create_compute(p, &p->binary);
-    if (!p->pipeline) return false;
-    if (!p->mesh_count) return true;
+    const shader_binary *vertex = &state_of(p)->vertex;
     gpu_slot slots[GPU_MAX_SLOTS];
-    size_t slot_count = merge_slots(s, slots);
-    s->meshes = gpu_pipeline_create_graphics(
+    size_t slot_count = merge_slots(p, slots);
+    p->pipeline = gpu_pipeline_create_graphics(
         p->host->device, &(gpu_graphics_desc){
                              .label = p->label,
-                             .vertex_code = s->vertex.code,
-                             .vertex_size = s->vertex.size,
-                             .fragment_code = s->fragment.code,
-                             .fragment_size = s->fragment.size,
+                             .vertex_code = vertex->code,
+                             .vertex_size = vertex->size,
+                             .fragment_code = p->binary.code,
+                             .fragment_size = p->binary.size,
                              .slots = slots,
                              .slot_count = slot_count,
-                             .colors = {p->formats[pass_find_image(p, "color")],
-                                        p->formats[pass_find_image(p, "sun")],
+                             .colors = {p->formats[pass_find_image(p, "albedo")],
+                                        p->formats[pass_find_image(p, "normal")],
                                         p->formats[pass_find_image(p, "depth")]},
                              .depth = GPU_D32F,
                          });
-    return s->meshes != NULL;
+    return p->pipeline != NULL;
 }
 
 // Slots of both stages, by name; the vertex stage first.
-static size_t bind_part(const pass *p, const geometry_state *s, const scene_mesh *mesh,
-                        const mesh_part *part, const part_block *block,
-                        gpu_binding out[GPU_MAX_SLOTS]) {
-    const shader_binary *stages[] = {&s->vertex, &s->fragment};
+static size_t bind_part(pass *p, const scene_mesh *mesh, const mesh_part *part,
+                        const part_block *block, gpu_binding out[GPU_MAX_SLOTS]) {
+    const shader_binary *stages[] = {&state_of(p)->vertex, &p->binary};
     size_t count = 0;
     for (int stage = 0; stage < 2; stage++) {
         for (size_t i = 0; i < stages[stage]->slot_count; i++) {
@@ -133,7 +110,6 @@ static size_t bind_part(const pass *p, const geometry_state *s, const scene_mesh
 }
 
 static bool draw_mesh(pass *p, const scene_mesh *mesh, gpu_draw_desc *target) {
-    geometry_state *s = p->state;
     mat4 transform;
     float tint[4];
     if (!scene_mesh_place(mesh, p->host->context, transform, tint)) return false;
@@ -145,39 +121,30 @@ static bool draw_mesh(pass *p, const scene_mesh *mesh, gpu_draw_desc *target) {
         block.color[3] = part->color[3];
         gpu_binding bindings[GPU_MAX_SLOTS];
         gpu_draw draw = {.bindings = bindings, .vertices = part->count};
-        draw.binding_count = bind_part(p, s, mesh, part, &block, bindings);
+        draw.binding_count = bind_part(p, mesh, part, &block, bindings);
         target->draws = &draw;
         target->draw_count = 1;
         if (!gpu_draw_all(p->host->device, target)) return false;
-        target->clear = false;
     }
     return true;
 }
 
 bool geometry_record(pass *p) {
-    geometry_state *s = p->state;
+    const geometry_state *s = p->state;
     graph *g = p->host->graph;
-    graph_image color = p->images[pass_find_image(p, "color")];
-    graph_image sun = p->images[pass_find_image(p, "sun")];
-    graph_image depth = p->images[pass_find_image(p, "depth")];
-    if (s->meshes) {
-        gpu_draw_desc target = {
-            .pipeline = s->meshes,
-            .colors = {graph_get_image(g, color), graph_get_image(g, sun),
-                       graph_get_image(g, depth)},
-            .depth = graph_get_image(g, s->z),
-            .clear = true,
-            .clear_depth = 1,
-        };
-        for (size_t i = 0; i < p->mesh_count; i++)
-            if (!draw_mesh(p, p->meshes[i], &target)) return false;
-    } else {
-        gpu_image_clear(p->host->device, graph_get_image(g, depth), (float[4]){0});
-    }
-    return pass_record(p);
-}
-
-void geometry_destroy(pass *p) {
-    geometry_state *s = p->state;
-    if (s && s->meshes) gpu_pipeline_destroy(p->host->device, s->meshes);
+    gpu_draw_desc target = {
+        .pipeline = p->pipeline,
+        .colors = {graph_get_image(g, pass_output(p, "albedo")),
+                   graph_get_image(g, pass_output(p, "normal")),
+                   graph_get_image(g, pass_output(p, "depth"))},
+        .depth = graph_get_image(g, s->z),
+        .clear = true,
+        .clear_color = {{0}, {0}, {1e9f}},
+        .clear_depth = 1,
+    };
+    if (!gpu_draw_all(p->host->device, &target)) return false;
+    target.clear = false;
+    for (size_t i = 0; i < p->mesh_count; i++)
+        if (!draw_mesh(p, p->meshes[i], &target)) return false;
+    return true;
 }

@@ -8,12 +8,15 @@
 static const pass_type types[] = {
     {
         .name = "geometry",
-        .shader = "pass/geometry.comp",
+        .shader = "pass/geometry.frag",
         .declare = geometry_declare,
         .check = geometry_check,
         .build = geometry_build,
         .record = geometry_record,
-        .destroy = geometry_destroy,
+    },
+    {
+        .name = "shade",
+        .shader = "pass/shade.comp",
     },
     {
         .name = "lighting",

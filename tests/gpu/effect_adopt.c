@@ -131,7 +131,7 @@ static effect *open_mesh(gpu *device, scene_mesh **mesh) {
     gpu_test_ok(*mesh);
     pass *p = add(e, "geometry", NULL);
     gpu_test_ok(pass_add_mesh(p, *mesh) && pass_declare(p));
-    gpu_test_ok(effect_set_output(e, pass_output(p, "color")));
+    gpu_test_ok(effect_set_output(e, pass_output(p, "albedo")));
     gpu_test_ok(effect_compile(e));
     return e;
 }

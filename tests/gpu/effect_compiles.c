@@ -38,9 +38,11 @@ static effect *open_ball(gpu *device, numbers n) {
         make(e, "mul", make(e, "mul", ball, noise), param(e, "density", n.density, 50));
     const field *color = field_palette(effect_memory(e), make_palette(e, n.brightness), noise);
     gpu_test_ok(color);
-    pass *geometry = add(e, "geometry", NULL);
-    gpu_test_ok(pass_set_uniform(geometry, "sky_alpha", number(e, 0)));
+    pass *geometry = add(e, "geometry", NULL), *shade = add(e, "shade", NULL);
     gpu_test_ok(pass_declare(geometry));
+    pass_add_source(shade, geometry);
+    gpu_test_ok(pass_set_uniform(shade, "sky_alpha", number(e, 0)));
+    gpu_test_ok(pass_declare(shade));
     pass *march = add(e, "march", NULL), *over = add(e, "over", NULL),
          *last = add(e, "final", NULL);
     gpu_test_ok(pass_set_field(march, "density", density));
@@ -48,7 +50,7 @@ static effect *open_ball(gpu *device, numbers n) {
     gpu_test_ok(pass_set_image(march, "depth", pass_output(geometry, "depth")));
     gpu_test_ok(pass_declare(march));
     gpu_test_ok(pass_set_image(over, "volume", pass_output(march, "color")));
-    gpu_test_ok(pass_set_image(over, "source", pass_output(geometry, "color")));
+    gpu_test_ok(pass_set_image(over, "source", pass_output(shade, "color")));
     gpu_test_ok(pass_declare(over));
     gpu_test_ok(pass_set_option(last, "tonemap", "none"));
     gpu_test_ok(pass_set_image(last, "source", pass_output(over, "color")));

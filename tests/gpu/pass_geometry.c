@@ -38,6 +38,13 @@ static pass *add_geometry(pass_world *w, scene_mesh *const *meshes, size_t count
     return p;
 }
 
+static pass *add_shade(pass_world *w, pass *geometry) {
+    pass *p = world_add(w, "shade", NULL, "shade");
+    pass_add_source(p, geometry);
+    gpu_test_ok(pass_declare(p));
+    return p;
+}
+
 // ---- depth ------------------------------------------------------------------------------------
 
 static void depth_is_the_distance_along_the_view(void **state) {
@@ -49,7 +56,7 @@ static void depth_is_the_distance_along_the_view(void **state) {
     plane->scale = number(&w, 20);
     pass *p = add_geometry(&w, &plane, 1);
     gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "depth")));
-    world_render(&w, WIDTH, HEIGHT, pass_output(p, "color"));
+    world_render(&w, WIDTH, HEIGHT, pass_output(p, "albedo"));
     float *depth = world_read_depth(&w, pass_output(p, "depth"));
     // The plane faced -Y; turned by 30 degrees about X its normal is (0, -cos, -sin).
     double c = cos(GLM_PI / 6), s = sin(GLM_PI / 6);
@@ -76,10 +83,10 @@ static void sky_is_where_nothing_is(void **state) {
         w.scene.sky.zenith = triple(&w, 0, 0.25f, 1);
         w.scene.sky.horizon = triple(&w, 1, 0.5f, 0);
         scene_mesh *crate = world_mesh(&w, "crate.obj");
-        pass *p = add_geometry(&w, &crate, (size_t)with_mesh);
+        pass *p = add_geometry(&w, &crate, (size_t)with_mesh), *shade = add_shade(&w, p);
         gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "depth")));
-        world_render(&w, WIDTH, HEIGHT, pass_output(p, "color"));
-        float *color = world_read(&w, pass_output(p, "color"));
+        world_render(&w, WIDTH, HEIGHT, pass_output(shade, "color"));
+        float *color = world_read(&w, pass_output(shade, "color"));
         float *depth = world_read_depth(&w, pass_output(p, "depth"));
         size_t covered = 0;
         for (uint32_t i = 0; i < PIXELS; i++) {
@@ -108,8 +115,8 @@ static void sky_alpha_0_leaves_the_sky_clear(void **state) {
     world_open(&w, *state);
     w.scene.sky.strength = number(&w, 1);
     scene_mesh *crate = world_mesh(&w, "crate.obj");
-    pass *p = world_add(&w, "geometry", NULL, "geometry");
-    gpu_test_ok(pass_add_mesh(p, crate));
+    pass *p = world_add(&w, "shade", NULL, "shade");
+    pass_add_source(p, add_geometry(&w, &crate, 1));
     gpu_test_ok(pass_set_uniform(p, "sky_alpha", number(&w, 0)));
     gpu_test_ok(pass_declare(p));
     world_render(&w, WIDTH, HEIGHT, pass_output(p, "color"));
@@ -127,8 +134,6 @@ static void nearer_mesh_hides_the_farther_in_either_order(void **state) {
     for (int order = 0; order < 2; order++) {
         pass_world w;
         world_open(&w, *state);
-        w.scene.sky.strength = number(&w, 1);
-        w.scene.sky.zenith = w.scene.sky.horizon = triple(&w, 1, 1, 1);
         scene_mesh *near = world_mesh(&w, "plane.obj"), *far = world_mesh(&w, "plane.obj");
         near->position = triple(&w, -1, 0, 0);
         near->color = triple(&w, 1, 0, 0);
@@ -138,8 +143,8 @@ static void nearer_mesh_hides_the_farther_in_either_order(void **state) {
         scene_mesh *both[] = {order ? far : near, order ? near : far};
         pass *p = add_geometry(&w, both, 2);
         gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "depth")));
-        world_render(&w, WIDTH, HEIGHT, pass_output(p, "color"));
-        float *color = world_read(&w, pass_output(p, "color"));
+        world_render(&w, WIDTH, HEIGHT, pass_output(p, "albedo"));
+        float *color = world_read(&w, pass_output(p, "albedo"));
         float *depth = world_read_depth(&w, pass_output(p, "depth"));
         for (uint32_t x = 0; x < WIDTH; x++) {
             uint32_t i = HEIGHT / 2 * WIDTH + x;
@@ -154,25 +159,29 @@ static void nearer_mesh_hides_the_farther_in_either_order(void **state) {
     }
 }
 
-static void surface_is_lit_by_the_cosine_of_the_sun(void **state) {
-    pass_world w;
-    world_open(&w, *state);
-    w.scene.sun.strength = number(&w, GLM_PIf);
-    w.scene.sun.azimuth = number(&w, -90); // where the camera is
-    w.scene.sun.elevation = number(&w, 60);
-    scene_mesh *plane = world_mesh(&w, "plane.obj");
-    plane->color = triple(&w, 1, 0.5f, 0.25f);
-    pass *p = add_geometry(&w, &plane, 1);
-    world_render(&w, WIDTH, HEIGHT, pass_output(p, "color"));
-    float *color = world_read(&w, pass_output(p, "color"));
-    const float *centre = color + 4 * (HEIGHT / 2 * WIDTH + WIDTH / 2);
-    const float tint[] = {1, 0.5f, 0.25f};
-    for (int c = 0; c < 3; c++) { // cos 60 degrees
-        float want = 0.5f * tint[c] * plane->data.parts[0].color[c];
-        assert_true(want > 0 && fabsf(centre[c] - want) < 0.001f);
+static void normal_is_the_surfaces_turned_towards_the_viewer(void **state) {
+    for (int side = 0; side < 2; side++) {
+        pass_world w;
+        world_open(&w, *state);
+        scene_mesh *plane = world_mesh(&w, "plane.obj");
+        plane->rotation = triple(&w, 30, 0, side ? 180 : 0); // seen from behind it is the same
+        plane->scale = number(&w, 20);
+        plane->color = triple(&w, 1, 0.5f, 0.25f);
+        pass *p = add_geometry(&w, &plane, 1);
+        gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "albedo")));
+        world_render(&w, WIDTH, HEIGHT, pass_output(p, "normal"));
+        float *normal = world_read(&w, pass_output(p, "normal"));
+        float *albedo = world_read(&w, pass_output(p, "albedo"));
+        double tilt = GLM_PI / 6, want[] = {0, -cos(tilt), side ? sin(tilt) : -sin(tilt)};
+        for (int c = 0; c < 3; c++) {
+            assert_true(fabs((double)normal[4 * (PIXELS / 2) + (size_t)c] - want[c]) < 0.001);
+            float base = plane->data.parts[0].color[c] * (c == 0 ? 1 : c == 1 ? 0.5f : 0.25f);
+            assert_true(base > 0 && fabsf(albedo[4 * (PIXELS / 2) + c] - base) < 0.001f);
+        }
+        mem_free(normal);
+        mem_free(albedo);
+        world_close(&w);
     }
-    mem_free(color);
-    world_close(&w);
 }
 
 static void texture_is_decoded_from_srgb_and_multiplied(void **state) {
@@ -186,8 +195,6 @@ static void texture_is_decoded_from_srgb_and_multiplied(void **state) {
     static const mesh_part part = {0, 6, {1, 1, 0.5f, 1}, 0};
     pass_world w;
     world_open(&w, *state);
-    w.scene.sky.strength = number(&w, 1);
-    w.scene.sky.zenith = w.scene.sky.horizon = triple(&w, 1, 1, 1);
     scene_mesh *mesh = world_mesh(&w, "plane.obj");
     mesh->data = (mesh_data){.vertices = corners,
                              .vertex_count = 4,
@@ -199,8 +206,8 @@ static void texture_is_decoded_from_srgb_and_multiplied(void **state) {
                              .texture_count = 1};
     pass *p = add_geometry(&w, &mesh, 1);
     gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "depth")));
-    world_render(&w, WIDTH, HEIGHT, pass_output(p, "color"));
-    float *color = world_read(&w, pass_output(p, "color"));
+    world_render(&w, WIDTH, HEIGHT, pass_output(p, "albedo"));
+    float *color = world_read(&w, pass_output(p, "albedo"));
     float *depth = world_read_depth(&w, pass_output(p, "depth"));
     // 4 m of 18 are seen; the texel's middle is at a quarter, so that all is blended near the
     // middle.
@@ -293,7 +300,7 @@ static double halo(gpu *device, bool with_edge, float scale) {
     gpu_test_ok(pass_declare(volume));
     pass *over = world_add(&w, "over", NULL, "over");
     gpu_test_ok(pass_set_image(over, "volume", pass_output(volume, "color")));
-    gpu_test_ok(pass_set_image(over, "source", pass_output(solid, "color")));
+    gpu_test_ok(pass_set_image(over, "source", pass_output(add_shade(&w, solid), "color")));
     if (with_edge) {
         gpu_test_ok(pass_set_image(over, "depth", pass_output(solid, "depth")));
         gpu_test_ok(pass_set_image(over, "edge", pass_output(volume, "edge")));
@@ -329,7 +336,7 @@ int main(void) {
         cmocka_unit_test(sky_is_where_nothing_is),
         cmocka_unit_test(sky_alpha_0_leaves_the_sky_clear),
         cmocka_unit_test(nearer_mesh_hides_the_farther_in_either_order),
-        cmocka_unit_test(surface_is_lit_by_the_cosine_of_the_sun),
+        cmocka_unit_test(normal_is_the_surfaces_turned_towards_the_viewer),
         cmocka_unit_test(texture_is_decoded_from_srgb_and_multiplied),
         cmocka_unit_test(smoke_ends_at_the_crate_in_it),
         cmocka_unit_test(smoke_ends_at_the_crate_in_mode_paper_too),

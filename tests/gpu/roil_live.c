@@ -47,9 +47,8 @@ static void edit_of_an_included_shader_shows(void **state) {
 
 static const char MESH_SCRIPT[] = "local fx = effect { name = 'test' }\n"
                                   "fx.camera = camera { eye = {0, -5, 0}, target = {0, 0, 0} }\n"
-                                  "fx.sky = sky { strength = 0 }\n"
                                   "local g = geometry { mesh { 'quad.obj' } }\n"
-                                  "fx.output = g.color\n"
+                                  "fx.output = g.albedo\n"
                                   "return fx\n";
 
 static void put_quad(int size) {
@@ -60,7 +59,7 @@ static void put_quad(int size) {
     put("quad.obj", text);
 }
 
-static void draw_quad(session *s, bool expected) { // lit: the sun shines from the front
+static void draw_quad(session *s, bool expected) {
     static uint8_t pixels[WIDTH * HEIGHT * 4];
     ok(roil_render(roil_live_effect(s->live), s->frame++));
     ok(roil_read(roil_live_effect(s->live), false, pixels));

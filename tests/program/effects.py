@@ -51,7 +51,7 @@ class Effects(Case):
                      ["effect.lua:2:", "densty", "did you mean 'density'?"])
         self.refuses(PASSES + "local f = sphere { radus = 1 }\n", ["effect.lua:2:", "did you mean 'radius'?"])
         self.refuses(PASSES + "fx.outptu = 1\n", ["effect.lua:2:", "did you mean 'output'?"])
-        self.refuses(PASSES + 'fx.output = final { geometry {}.color, tonemap = "agxx" }.color\n',
+        self.refuses(PASSES + 'fx.output = final { geometry {}.albedo, tonemap = "agxx" }.color\n',
                      ["effect.lua:2:", "agxx", "agx"])
 
     def test_uniform_out_of_range(self):

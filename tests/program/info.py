@@ -21,7 +21,7 @@ class Info(Case):
     def test_every_pass(self):
         listing = self.succeeds("info", "passes")
         passes = names(listing)
-        for name in ("geometry", "march", "over", "bright", "bloom", "final"):
+        for name in ("geometry", "shade", "march", "over", "bright", "bloom", "final"):
             self.assertIn(name, passes)
         for name in passes:
             with self.subTest(name):

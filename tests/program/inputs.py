@@ -141,7 +141,7 @@ void main() {
 
 class Shaders(Case):
     EFFECT = """local fx = effect { name = "shader" }
-fx.output = shader { "dim.comp", geometry {}.color%s }.color
+fx.output = shader { "dim.comp", geometry {}.albedo%s }.color
 """
 
     def setUp(self):

@@ -15,7 +15,7 @@ if look:get() == "lumpy" then body = body * perlin { frequency = 3 } end
 fx.camera = orbit { target = {0, 0, 0}, distance = 4 }
 local g = geometry { }
 local m = march { density = body * density * fade, emission = fire(body).rgb * tint, depth = g.depth, steps = 24 }
-fx.output = final { over { volume = m.color, edge = m.edge, source = g.color, depth = g.depth } }
+fx.output = final { over { volume = m.color, edge = m.edge, source = shade { from = g }, depth = g.depth } }
 """
 SETTINGS = {
     "density": "9", "tint": "1,0.5,2", "look": "lumpy", "fire": "0 #000000; 0.5 0,3,0 0.5; 1 #ffffff",

@@ -16,13 +16,17 @@ static void effect_of_all_built_in_passes_is_sound(void **state) {
     ok(grid);
     pass *geometry = effect_add_pass(e, "geometry", NULL, NULL);
     ok(geometry && pass_declare(geometry));
+    pass *shade = effect_add_pass(e, "shade", NULL, NULL);
+    ok(shade);
+    pass_add_source(shade, geometry);
+    ok(pass_declare(shade));
     pass *march = effect_add_pass(e, "march", NULL, NULL);
     ok(march && pass_set_field(march, "density", field_grid_channel(effect_memory(e), grid, 0, 1)));
     ok(pass_set_image(march, "depth", pass_output(geometry, "depth")));
     ok(pass_declare(march));
     pass *over = effect_add_pass(e, "over", NULL, NULL);
     ok(over && pass_set_image(over, "volume", pass_output(march, "color")));
-    ok(pass_set_image(over, "source", pass_output(geometry, "color")));
+    ok(pass_set_image(over, "source", pass_output(shade, "color")));
     ok(pass_declare(over));
     pass *bright = effect_add_pass(e, "bright", NULL, NULL);
     ok(bright && pass_set_image(bright, "source", pass_output(over, "color")));
@@ -37,7 +41,7 @@ static void effect_of_all_built_in_passes_is_sound(void **state) {
     ok(effect_set_linear(e, pass_output(final, "linear")));
     ok(effect_set_depth(e, pass_output(geometry, "depth")));
     ok(effect_check(e));
-    assert_int_equal(effect_pass_count(e), 7);
+    assert_int_equal(effect_pass_count(e), 8);
 }
 
 static void mistake_in_a_users_shader_is_found_without_a_device(void **state) {

@@ -45,7 +45,7 @@ static void misspelt_names_get_the_nearest_right_one(void **state) {
         {"mesh { 'x.obj', roation = 3 }", "mesh: unknown key 'roation'; did you mean 'rotation'?"},
         {"march { densty = 1 }", "march: unknown key 'densty'; did you mean 'density'?"},
         {"march { density = 1, mode = 'papre' }", "march: option 'mode' cannot be 'papre'"},
-        {"local a = img.colour", "geometry: unknown output 'colour'; did you mean 'color'?"},
+        {"local a = img.deptj", "geometry: unknown output 'deptj'; did you mean 'depth'?"},
         {"bake(sphere { }, { szie = 3 })", "bake: unknown key 'szie'; did you mean 'size'?"},
         {"effect { fsp = 3 }", "effect: unknown key 'fsp'; did you mean 'fps'?"},
     };

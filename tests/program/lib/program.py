@@ -23,10 +23,11 @@ local steps = param { "steps", 8, min = 2, max = 64, integer = true, help = "alo
 local look = param { "look", "soft", words = { "soft", "hard" }, help = "nothing" }
 fx.camera = orbit { target = {0, 0, 1}, distance = 6, pitch = 10 }
 local ground = geometry { mesh { "ground.obj" } }
+local solid = shade { from = ground }
 local ball = sphere { position = {0, 0, 1}, radius = 1, falloff = 0.5 }
 local volume = march { density = ball * perlin { frequency = 2 } * thickness, emission = {0.4, 0.1, 0},
                        depth = ground.depth, steps = steps, shadow_steps = 2 }
-local shown = final { over { volume = volume.color, edge = volume.edge, source = ground.color, depth = ground.depth } }
+local shown = final { over { volume = volume.color, edge = volume.edge, source = solid, depth = ground.depth } }
 fx.output = shown.color
 fx.linear = shown.linear
 fx.depth = ground.depth

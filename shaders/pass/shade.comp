@@ -1,0 +1,111 @@
+// Lights what `geometry` drew as diffuse surfaces: by the sun and every other light, past the meshes
+// and through the volume, and by the sky; shows the sky where nothing is.
+uniform sampler2D albedo;         //= input : base colour of the surface; alpha 0 where nothing is
+uniform sampler2D normal;         //= input : its normal in the world
+uniform sampler2D depth;          //= input : distance along the view axis (m)
+uniform int shadow_samples;       //= 1 [0, 64] : rays to each light: 1 goes to its middle, for hard shadows; more go all over its disc, for soft ones; 0: meshes cast no shadows
+uniform int sky_samples;          //= 0 [0, 64] : rays to the sky, which find what stands before it; 0: all of it is seen
+uniform float haze;               //= 0 [0, 10] 1/m : how fast distance fades to the colour of the horizon
+uniform float sky_alpha;          //= 1 [0, 1] : opacity of the sky; 0 for pictures to be laid over others
+writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultiplied
+#include "lib/frame.glsl"
+#include "lib/random.glsl"
+#include "lib/bvh.glsl"
+#include "lib/lighting.glsl"
+
+const float PI = 3.14159265, GOLDEN_ANGLE = 2.39996323;
+const float NEGLIGIBLE = 1.0 / 4096.0; // of the light on a surface: such a light gets no shadow
+
+vec3 sky_radiance(vec3 direction) {
+    return frame_sky(direction);
+}
+
+vec3 sky_irradiance(vec3 n) {
+    return PI * mix(frame.sky_horizon.rgb, frame.sky_zenith.rgb, 0.5 + 0.5 * n.z);
+}
+
+// Two unit vectors across `n`: Duff et al., "Building an orthonormal basis, revisited", 2017.
+mat2x3 across(vec3 n) {
+    float side = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (side + n.z), b = n.x * n.y * a;
+    return mat2x3(vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x),
+                  vec3(b, side + n.y * n.y * a, -n.y));
+}
+
+// Point k of `count` that are evenly spread over the unit disc, turned by chance (Vogel 1979).
+vec2 disc_point(int k, int count, vec2 chance) {
+    float angle = float(k) * GOLDEN_ANGLE + 2.0 * PI * chance.x;
+    return sqrt((float(k) + chance.y) / float(count)) * vec2(cos(angle), sin(angle));
+}
+
+// Part of the light's disc that no mesh hides.
+float light_seen(light l, light_ray ray, vec3 p, vec2 chance) {
+    if (shadow_samples == 0) return 1.0;
+    float far = ray.distance - (l.kind == LIGHT_SUN ? 0.0 : l.radius);
+    if (far <= 0.0) return 1.0;
+    if (shadow_samples == 1 || l.radius <= 0.0) return bvh_occluded(p, ray.direction, 0.0, far) ? 0.0 : 1.0;
+    mat2x3 disc = across(ray.direction) * (l.kind == LIGHT_SUN ? l.radius : l.radius / ray.distance);
+    int seen = 0;
+    for (int k = 0; k < shadow_samples; k++) {
+        vec3 to = normalize(ray.direction + disc * disc_point(k, shadow_samples, chance));
+        if (!bvh_occluded(p, to, 0.0, far)) seen++;
+    }
+    return float(seen) / float(shadow_samples);
+}
+
+// Irradiance from the sky. A ray that meets a mesh brings what the sky lends to that.
+vec3 sky_light(vec3 p, vec3 n, vec2 chance) {
+    vec3 whole = sky_irradiance(n);
+    if (sky_samples == 0) return whole;
+    mat2x3 disc = across(n);
+    vec3 back = vec3(0.0);
+    int seen = 0;
+    for (int k = 0; k < sky_samples; k++) { // by the cosine: points of the disc, lifted to the sphere
+        vec2 point = disc_point(k, sky_samples, chance);
+        vec3 way = disc * point + sqrt(max(1.0 - dot(point, point), 0.0)) * n;
+        bvh_hit hit = bvh_trace(p, way, 0.0, 1e9);
+        if (hit.distance < 0.0) seen++;
+        else back += hit.albedo * sky_irradiance(hit.normal);
+    }
+    return (float(seen) * whole + back) / float(sky_samples);
+}
+
+// Irradiance at p, on the side of the normal.
+vec3 surface_light(vec3 p, vec3 n, uvec2 pixel) {
+    vec2 chance = vec2(0.5);
+    if (shadow_samples > 1 || sky_samples > 0) chance = random_blue2(pixel, frame.size.z);
+    vec3 sum = sky_light(p, n, chance);
+    int count = light_count();
+    for (int i = 0; i < count; i++) {
+        light l = light_get(i);
+        light_ray ray = light_at(l, p);
+        vec3 given = ray.irradiance * max(dot(n, ray.direction), 0.0);
+        bool matters = any(greaterThan(given, NEGLIGIBLE * sum));
+#if HAS_LIGHTS && HAS_SHADOW
+        if (matters) given *= exp(-lighting_extinction() * lighting_shadow(i, p).x);
+#endif
+        if (matters) given *= light_seen(l, ray, p, chance);
+        sum += given;
+    }
+    return sum;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 size = imageSize(color);
+    if (any(greaterThanEqual(pixel, size))) return;
+    vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
+    ivec2 texel = ivec2(uv * vec2(textureSize(depth, 0)));
+    vec3 along = frame_ray(uv);
+    vec4 base = texelFetch(albedo, texel, 0);
+    if (base.a == 0.0) {
+        imageStore(color, pixel, vec4(sky_radiance(normalize(along)), 1.0) * sky_alpha);
+        return;
+    }
+    float deep = texelFetch(depth, texel, 0).r, distance = deep * length(along);
+    vec3 n = normalize(texelFetch(normal, texel, 0).xyz);
+    // Rays begin as far off the surface as rounding may have moved the point: less than a pixel.
+    vec3 p = frame.eye.xyz + deep * along + (1e-4 + 3e-4 * distance) * n;
+    vec3 lit = base.rgb / PI * surface_light(p, n, uvec2(pixel));
+    imageStore(color, pixel, vec4(mix(frame.sky_horizon.rgb, lit, exp(-haze * distance)), 1.0));
+}
