@@ -5,9 +5,9 @@
 // frequency * lacunarity^i, weight persistence^i and a seed of its own; the weighted mean over the
 // octaves lies in 0..1 and is multiplied by the amplitude.
 //
-// `drift` (metres) and `phase` (cells; the fourth coordinate) are rates that were multiplied by
-// the time already. A period repeats the lattice, the fourth dimension too, after so many cells; it
-// and the lacunarity are then rounded to whole numbers, so that every octave closes.
+// `drift` (metres) and `phase` (cells) are rates that were multiplied by the time already; phase + w
+// is the fourth coordinate. A period repeats the lattice, the fourth dimension too, after so many
+// cells; it and the lacunarity are then rounded to whole numbers, so that every octave closes.
 #ifndef LIB_NOISE_GLSL
 #define LIB_NOISE_GLSL
 
@@ -322,7 +322,7 @@ void noise_next(inout noise_octave o, float persistence) {
 // dimensions as expressions of the octave `o`.
 #define NOISE_SUM(THREE, FOUR)                                                                     \
     noise_octave o =                                                                               \
-        noise_begin(p, frequency, octaves, lacunarity, seed, drift, phase, period);                \
+        noise_begin(p, frequency, octaves, lacunarity, seed, drift, phase + w, period);            \
     float sum = 0.0, total = 0.0;                                                                  \
     for (int i = 0; i < o.count; i++) {                                                            \
         float n = dimensions == NOISE_FOUR ? FOUR : THREE;                                         \
@@ -333,27 +333,27 @@ void noise_next(inout noise_octave o, float persistence) {
     return amplitude * sum / total
 
 float noise_perlin(vec3 p, float frequency, float octaves, float persistence, float lacunarity,
-                   float seed, float amplitude, vec3 drift, float phase, float period, int fractal,
-                   int dimensions) {
+                   float seed, float amplitude, vec3 drift, float phase, float w, float period,
+                   int fractal, int dimensions) {
     NOISE_SUM(noise_perlin3(o.q.xyz, o.seed, o.period), noise_perlin4(o.q, o.seed, o.period));
 }
 
 float noise_value(vec3 p, float frequency, float octaves, float persistence, float lacunarity,
-                  float seed, float amplitude, vec3 drift, float phase, float period, int fractal,
-                  int dimensions) {
+                  float seed, float amplitude, vec3 drift, float phase, float w, float period,
+                  int fractal, int dimensions) {
     NOISE_SUM(noise_value3(o.q.xyz, o.seed, o.period), noise_value4(o.q, o.seed, o.period));
 }
 
 float noise_simplex(vec3 p, float frequency, float octaves, float persistence, float lacunarity,
-                    float seed, float amplitude, vec3 drift, float phase, float period, int fractal,
-                    int dimensions) {
+                    float seed, float amplitude, vec3 drift, float phase, float w, float period,
+                    int fractal, int dimensions) {
     period = period >= 0.5 ? 3.0 * max(floor(period / 3.0 + 0.5), 1.0) : 0.0;
     NOISE_SUM(noise_simplex3(o.q.xyz, o.seed, o.period), noise_simplex4(o.q, o.seed, o.period));
 }
 
 float noise_worley(vec3 p, float frequency, float octaves, float persistence, float lacunarity,
-                   float seed, float amplitude, vec3 drift, float phase, float period, float power,
-                   int fractal, int dimensions, int distance, int mode) {
+                   float seed, float amplitude, vec3 drift, float phase, float w, float period,
+                   float power, int fractal, int dimensions, int distance, int mode) {
     NOISE_SUM(noise_cells(noise_worley3(o.q.xyz, o.seed, o.period,
                                         mode == NOISE_PAPER ? o.shift : -1.0), power, distance),
               noise_cells(noise_worley4(o.q, o.seed, o.period,
@@ -432,20 +432,20 @@ float noise_paper_perlin(vec3 p, float frequency, float octaves, float persisten
 }
 
 vec3 noise_curl(vec3 p, float frequency, float octaves, float persistence, float lacunarity,
-                float seed, float amount, vec3 drift, float phase, float period, float delta,
-                int mode, int dimensions) {
+                float seed, float amount, vec3 drift, float phase, float w, float period,
+                float delta, int mode, int dimensions) {
     if (mode == NOISE_PAPER) { // diagonal differences of one scalar: not free of divergence
         vec3 sum = vec3(0.0);
         for (int i = 0; i < 6; i++) {
             vec3 along = i / 2 == 0 ? vec3(0, 1, 1) : i / 2 == 1 ? vec3(1, 0, 1) : vec3(1, 1, 0);
             float side = i % 2 == 0 ? 1.0 : -1.0;
             float g = noise_paper_perlin(p + side * delta * along, frequency, octaves, persistence,
-                                         lacunarity, seed, drift, phase, period, dimensions);
+                                         lacunarity, seed, drift, phase + w, period, dimensions);
             sum += side * g * (1.0 - along);
         }
         return amount * sum;
     }
-    noise_octave o = noise_begin(p, frequency, octaves, lacunarity, seed, drift, phase, period);
+    noise_octave o = noise_begin(p, frequency, octaves, lacunarity, seed, drift, phase + w, period);
     vec3 sum = vec3(0.0);
     float total = 0.0;
     for (int i = 0; i < o.count; i++) {

@@ -68,6 +68,10 @@
             .rate = true,                                                                          \
             .help = "rate of the fourth coordinate, in cells: the pattern boils; giving it "       \
                     "chooses dimensions = 4"                                                       \
+    },                                                                                             \
+    {                                                                                              \
+        "w", SCALAR("cells"), SPACELESS,                                                           \
+            .help = "added to the fourth coordinate; giving it chooses dimensions = 4"             \
     }
 #define AMPLITUDE_ARG                                                                              \
     { "amplitude", SCALAR(""), .value = {1}, .help = "factor of the result" }
@@ -84,7 +88,7 @@
             "fbm: mean of octaves; ridged, billow: folded at the middle"                           \
     }
 #define DIMENSIONS_OPTION                                                                          \
-    { "dimensions", {"3", "4"}, "4: the fourth coordinate is time * speed" }
+    { "dimensions", {"3", "4"}, "4: the fourth coordinate is time * speed + w" }
 #define LATTICE_NOISE(NAME, COST)                                                                  \
     NOISE(NAME), .components = 1, .cost = COST,                                                    \
                  .args = {OCTAVE_ARGS(3), AMPLITUDE_ARG, MOTION_ARGS, PERIOD_ARG},                 \

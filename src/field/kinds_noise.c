@@ -12,7 +12,7 @@ static noise_desc describe(const float (*args)[4]) { // what all rows begin with
         .seed = args[4][0],
         .amplitude = args[5][0],
         .drift = {args[6][0], args[6][1], args[6][2]},
-        .phase = args[7][0],
+        .phase = args[7][0] + args[8][0],
     };
 }
 
@@ -27,7 +27,7 @@ void eval_perlin(const field *node, const field_context *context, float3 p, cons
                  float out[4]) {
     (void)context;
     noise_desc desc = describe_scalar(node, args);
-    desc.period = args[8][0];
+    desc.period = args[9][0];
     out[0] = noise_eval(NOISE_PERLIN, &desc, p);
 }
 
@@ -35,7 +35,7 @@ void eval_value(const field *node, const field_context *context, float3 p, const
                 float out[4]) {
     (void)context;
     noise_desc desc = describe_scalar(node, args);
-    desc.period = args[8][0];
+    desc.period = args[9][0];
     out[0] = noise_eval(NOISE_VALUE, &desc, p);
 }
 
@@ -43,7 +43,7 @@ void eval_simplex(const field *node, const field_context *context, float3 p, con
                   float out[4]) {
     (void)context;
     noise_desc desc = describe_scalar(node, args);
-    float period = args[8][0]; // its lattice repeats after multiples of three
+    float period = args[9][0]; // its lattice repeats after multiples of three
     desc.period = period >= 0.5f ? 3 * fmaxf(floorf(period / 3 + 0.5f), 1) : 0;
     out[0] = noise_eval(NOISE_SIMPLEX, &desc, p);
 }
@@ -52,8 +52,8 @@ void eval_worley(const field *node, const field_context *context, float3 p, cons
                  float out[4]) {
     (void)context;
     noise_desc desc = describe_scalar(node, args);
-    desc.period = args[8][0];
-    desc.power = args[9][0];
+    desc.period = args[9][0];
+    desc.power = args[10][0];
     desc.distance = (noise_distance)node->options[2];
     desc.paper = node->options[3] == 1;
     out[0] = noise_eval(NOISE_WORLEY, &desc, p);
@@ -63,8 +63,8 @@ void eval_curl(const field *node, const field_context *context, float3 p, const 
                float out[4]) {
     (void)context;
     noise_desc desc = describe(args);
-    desc.period = args[8][0];
-    desc.delta = args[9][0];
+    desc.period = args[9][0];
+    desc.delta = args[10][0];
     desc.paper = node->options[0] == 1;
     desc.four = node->options[1] == 1;
     noise_curl(&desc, p, out);

@@ -100,10 +100,11 @@ static void take_table(lua_State *L, kind_call *call, int table) {
     lua_pop(L, 1);
 }
 
-// `speed` moves through a fourth dimension, so it asks for one.
+// `speed` and `w` move through a fourth dimension, so they ask for one.
 static void imply_dimensions(kind_call *call) {
     for (size_t a = 0; a < call->arg_count; a++) {
-        if (!call->args[a] || strcmp(call->kind->args[a].name, "speed") != 0) continue;
+        const char *name = call->kind->args[a].name;
+        if (!call->args[a] || (strcmp(name, "speed") != 0 && strcmp(name, "w") != 0)) continue;
         for (size_t i = 0; i < FIELD_MAX_OPTIONS && call->kind->options[i].name; i++)
             if (!call->chosen[i] && strcmp(call->kind->options[i].name, "dimensions") == 0)
                 call->options[i] = 1; // the word "4"

@@ -33,7 +33,7 @@ static void agree(void **state, const field *node, float tolerance) {
 #define MOTION                                                                                     \
     SET("drift", vector(0.1f, 0.15f, 0.2f)), SET("speed", number(0.7f)),                           \
         SET("octaves", number(3)), SET("frequency", number(1.3f)), SET("seed", number(7)),         \
-        SET("amplitude", number(0.8f)), SET("lacunarity", number(2))
+        SET("amplitude", number(0.8f)), SET("lacunarity", number(2)), SET("w", number(-2.4f))
 
 static void lattice_noises_agree(void **state) {
     static const char *const kinds[] = {"perlin", "value"};

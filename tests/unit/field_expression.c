@@ -62,7 +62,7 @@ static void a_misspelt_kind_gets_a_suggestion(void **state) {
 static void defaults_fill_what_is_left_out(void **state) {
     (void)state;
     field *n = make("worley", NULL);
-    assert_int_equal(kind_arg_count(n), 10);
+    assert_int_equal(kind_arg_count(n), 11);
     assert_true(n->args[0]->value[0] == 1 && n->args[2]->value[0] == 0.5f);
     assert_int_equal(n->components, 1);
     assert_false(n->uniform);

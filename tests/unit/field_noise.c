@@ -170,6 +170,40 @@ static void the_fourth_dimension_boils(void **state) {
     assert_true(fabsf(value_at(n, 0.1, p) - value_at(n, 0.1001, p)) < 0.01f); // continuously
 }
 
+static void w_is_a_place_in_the_fourth_dimension(void **state) {
+    (void)state;
+    static const char *const kinds[] = {"perlin", "simplex", "value", "worley", "curl"};
+    for (size_t k = 0; k < COUNT_OF(kinds); k++) {
+        field *moving = row(kinds[k], SET("speed", number(0.5f)), WORD("dimensions", "4"));
+        field *placed = row(kinds[k], SET("w", number(1.25f)), WORD("dimensions", "4"));
+        uint32_t seed = 13;
+        float most = 0;
+        for (int i = 0; i < 200; i++) {
+            float3 p = random_point(&seed, 40);
+            assert_true(value_at(placed, 0, p) == value_at(moving, 2.5, p));
+            most = fmaxf(most, fabsf(value_at(placed, 0, p) - value_at(moving, 0, p)));
+        }
+        assert_true(most > 0.2f);
+    }
+}
+
+static void noise_is_continuous_in_w(void **state) {
+    (void)state;
+    static const char *const kinds[] = {"perlin", "simplex", "value", "worley", "curl"};
+    for (size_t k = 0; k < COUNT_OF(kinds); k++) {
+        field *n = row(kinds[k], SET("octaves", number(1)), SET("speed", number(1)),
+                       WORD("dimensions", "4"));
+        float3 p = {0.37f, -2.21f, 5.13f};
+        float most = 0, first = value_at(n, 0, p), away = 0;
+        for (int i = 0; i < SAMPLES / 2; i++) { // through ten cells
+            float a = value_at(n, i * 1e-3, p), b = value_at(n, (i + 1) * 1e-3, p);
+            most = fmaxf(most, fabsf(a - b));
+            away = fmaxf(away, fabsf(a - first));
+        }
+        assert_true(most < 0.02f && away > 0.1f);
+    }
+}
+
 static void seeds_give_other_patterns(void **state) {
     (void)state;
     for (size_t k = 0; k < COUNT_OF(scalar_kinds); k++) {
@@ -360,6 +394,8 @@ int main(void) {
         cmocka_unit_test(simplex_tiles_after_multiples_of_three),
         cmocka_unit_test(drift_moves_the_domain),
         cmocka_unit_test(the_fourth_dimension_boils),
+        cmocka_unit_test(w_is_a_place_in_the_fourth_dimension),
+        cmocka_unit_test(noise_is_continuous_in_w),
         cmocka_unit_test(seeds_give_other_patterns),
         cmocka_unit_test(noise_is_continuous),
         cmocka_unit_test(worley_is_high_near_feature_points),
