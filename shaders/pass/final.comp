@@ -4,6 +4,7 @@
 //@ option tonemap = agx {agx, aces, reinhard, exponential, none} : how scene light becomes display light
 uniform sampler2D source;         //= input : the picture, scene-linear
 uniform sampler2D bloom;          //= input optional : added to it
+uniform sampler2D exposure;       //= input optional : stops of exposure besides `exposure_ev` (of the pass meter)
 uniform float bloom_intensity;    //= 0.8 [0, 10] : factor of the bloom
 uniform float exposure_ev;        //= 0 [-20, 20] EV : stops of exposure
 uniform float saturation;         //= 1 [0, 4] : 0: grey, 1: as it is
@@ -20,7 +21,11 @@ void main() {
     c.rgb += bloom_intensity * textureLod(bloom, uv, 0.0).rgb;
 #endif
     imageStore(linear, pixel, c);
-    vec3 exposed = max(c.rgb * exp2(exposure_ev), 0.0);
+    float stops = exposure_ev;
+#if HAS_EXPOSURE
+    stops += texelFetch(exposure, ivec2(0), 0).r;
+#endif
+    vec3 exposed = max(c.rgb * exp2(stops), 0.0);
     exposed = max(mix(vec3(luminance(exposed)), exposed, saturation), 0.0);
 #if TONEMAP == TONEMAP_AGX
     exposed = tonemap_agx(exposed);

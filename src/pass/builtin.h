@@ -22,5 +22,9 @@ bool bloom_build(pass *p);
 bool bloom_record(pass *p);
 void bloom_destroy(pass *p);
 
+bool accumulate_declare(pass *p);
+
+bool meter_declare(pass *p);
+
 bool bake_declare(pass *p);
 bool bake_fill(pass *p, const shader_binary *binary, unsigned char *block);

@@ -55,6 +55,16 @@ static const pass_type types[] = {
         .shader = "pass/final.comp",
     },
     {
+        .name = "accumulate",
+        .shader = "pass/accumulate.comp",
+        .declare = accumulate_declare,
+    },
+    {
+        .name = "meter",
+        .shader = "pass/meter.comp",
+        .declare = meter_declare,
+    },
+    {
         .name = "bake",
         .shader = "pass/bake.comp",
         .declare = bake_declare,

@@ -1,0 +1,121 @@
+// Averages a volume over frames: what the last frames gathered is fetched where the point that a pixel
+// shows was seen then, kept near what is seen now, and mixed with it.
+//
+// The point is that at the distance `reach`, moved by the camera alone: what moves by itself is kept
+// from leaving trails by variance clipping of the history (Salvi 2016, "An excursion in temporal
+// supersampling") in YCoCg (Karis 2014, "High-quality temporal supersampling") and in opacity. The
+// history is not used where the point was out of the picture, or where something else stood then.
+#include "lib/frame.glsl"
+uniform sampler2D source;          //= input : premultiplied radiance and opacity
+uniform sampler2D reach;           //= input : how far along its ray lies what each pixel shows (m); 0: nothing
+uniform sampler2D depth;           //= input optional : depth of the scene (m)
+uniform sampler2D before;          //= input history color : what was gathered up to the last frame
+uniform sampler2D known;           //= input history state : `state` of the last frame
+uniform float frames;              //= 8 [1, 64] : how many frames are averaged, in effect; 1: none
+uniform float spread;              //= 1 [0, 10] : standard deviations by which the history may differ from what is around the pixel
+uniform float tolerance;           //= 0.1 [0.001, 1] : relative difference in depth that counts as something else
+writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity
+writeonly uniform image2D state;   //= output rgba16f : depth of the volume and of the scene (m; 0: none), frames gathered
+
+const float FAR = 6e4; // metres; what a half-float holds
+
+// YCoCg and opacity.
+vec4 encode(vec4 c) {
+    return vec4(0.25 * (c.r + c.b) + 0.5 * c.g, 0.5 * (c.r - c.b), 0.5 * c.g - 0.25 * (c.r + c.b), c.a);
+}
+
+vec4 decode(vec4 c) {
+    return vec4(c.x + c.y - c.z, c.x + c.z, c.x - c.y - c.z, c.w);
+}
+
+struct surroundings { // of a pixel, 3 x 3
+    vec4 mean, deviation; // encoded
+    float nearest;        // of the volume, metres along the ray; 0: none
+};
+
+surroundings look_around(ivec2 pixel, ivec2 size) {
+    vec4 sum = vec4(0.0), squares = vec4(0.0);
+    float nearest = FAR;
+    for (int i = 0; i < 9; i++) {
+        ivec2 texel = clamp(pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), size - 1);
+        vec4 c = encode(texelFetch(source, texel, 0));
+        sum += c;
+        squares += c * c;
+        float far = texelFetch(reach, texel, 0).r;
+        if (far > 0.0) nearest = min(nearest, far);
+    }
+    vec4 mean = sum / 9.0;
+    return surroundings(mean, sqrt(max(squares / 9.0 - mean * mean, 0.0)), nearest < FAR ? nearest : 0.0);
+}
+
+// The history between its texels by a Catmull-Rom spline: five bilinear taps of sixteen texels, less
+// the corners (Jimenez 2016, "Filmic SMAA").
+vec4 fetch_smooth(vec2 uv) {
+    vec2 size = vec2(textureSize(before, 0));
+    vec2 at = uv * size, centre = floor(at - 0.5) + 0.5, f = at - centre;
+    vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f)), w1 = 1.0 + f * f * (1.5 * f - 2.5);
+    vec2 w2 = f * (0.5 + f * (2.0 - 1.5 * f)), w3 = f * f * (0.5 * f - 0.5);
+    vec2 w12 = w1 + w2;
+    vec2 t0 = (centre - 1.0) / size, t12 = (centre + w2 / w12) / size, t3 = (centre + 2.0) / size;
+    vec4 sum = w12.x * w12.y * textureLod(before, t12, 0.0);
+    sum += w0.x * w12.y * textureLod(before, vec2(t0.x, t12.y), 0.0);
+    sum += w3.x * w12.y * textureLod(before, vec2(t3.x, t12.y), 0.0);
+    sum += w12.x * w0.y * textureLod(before, vec2(t12.x, t0.y), 0.0);
+    sum += w12.x * w3.y * textureLod(before, vec2(t12.x, t3.y), 0.0);
+    float corners = (w0.x + w3.x) * (w0.y + w3.y);
+    return max(sum / (1.0 - corners), 0.0);
+}
+
+// Where a point `metres` deep below a pixel was in the frame before: xy in the picture, z: how deep.
+vec3 look_back(vec3 along, float metres) {
+    vec4 clip = frame.last * vec4(frame.eye.xyz + metres * along, 1.0);
+    return vec3(clip.w > 0.0 ? 0.5 * clip.xy / clip.w + 0.5 : vec2(-1.0), clip.w);
+}
+
+// 1: the history at `uv` is of the same volume before the same scene; 0: of another. The volume's
+// depth counts only where both frames have one. The nearest of 3 x 3 texels counts, so that edges
+// do not flicker.
+float agreement(vec2 uv, float volume, float scene) {
+    ivec2 size = textureSize(known, 0), centre = ivec2(uv * vec2(size));
+    float apart_volume = 1e9, apart_scene = 1e9;
+    for (int i = 0; i < 9; i++) {
+        ivec2 texel = clamp(centre + ivec2(i % 3, i / 3) - 1, ivec2(0), size - 1);
+        vec2 then = texelFetch(known, texel, 0).rg;
+        bool both = volume > 0.0 && then.x > 0.0;
+        apart_volume = min(apart_volume, both ? abs(then.x - volume) / volume : 0.0);
+        apart_scene = min(apart_scene, scene > 0.0 ? abs(then.y - scene) / scene : 0.0);
+    }
+    return 1.0 - smoothstep(tolerance, 2.0 * tolerance, max(apart_volume, apart_scene));
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(color);
+    if (any(greaterThanEqual(pixel, size))) return;
+    vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
+    vec3 along = frame_ray(uv);
+    vec4 now = texelFetch(source, pixel, 0);
+    surroundings here = look_around(pixel, size);
+    float volume = here.nearest / length(along), scene = 0.0, scene_then = 0.0;
+#if HAS_DEPTH
+    scene = min(texelFetch(depth, ivec2(uv * vec2(textureSize(depth, 0))), 0).r, FAR);
+    scene_then = look_back(along, scene).z;
+#endif
+    vec3 then = look_back(along, volume > 0.0 ? volume : FAR);
+
+    float age = 0.0;
+    vec4 result = now;
+    if (all(greaterThanEqual(then.xy, vec2(0.0))) && all(lessThan(then.xy, vec2(1.0)))) {
+        age = texelFetch(known, ivec2(then.xy * vec2(size)), 0).b;
+        age *= agreement(then.xy, volume > 0.0 ? then.z : 0.0, scene_then);
+        vec4 away = encode(fetch_smooth(then.xy)) - here.mean;
+        // Rounding, which must not count, is a thousandth of what the numbers come from.
+        vec4 beyond = abs(away) / (spread * here.deviation + vec4(vec3(1e-3 * here.mean.x), 1e-3) + 1e-6);
+        away /= max(1.0, max(max(beyond.x, beyond.y), max(beyond.z, beyond.w)));
+        // The mean of an exponential average over `frames`; before, that of what there is.
+        float part = max(2.0 / (frames + 1.0), 1.0 / (age + 1.0));
+        result = max(mix(decode(here.mean + away), now, part), 0.0);
+    }
+    if (any(isnan(result))) result = vec4(0.0); // it would stay for ever
+    imageStore(color, pixel, result);
+    imageStore(state, pixel, vec4(volume, scene, min(age + 1.0, 64.0), 0.0));
+}
