@@ -28,3 +28,60 @@ function rgb(red, green, blue)
   end
   return { linear(red), linear(green), linear(blue) }
 end
+
+-- lobes = { {weight, g}, ... } of the passes that scatter light: a blend of lobes.
+local function value_at(value, t)
+  if type(value) == "function" then return value(t) end
+  if type(value) == "userdata" then return value:get() end
+  return value
+end
+
+-- Four numbers; a function of time if any of them moves.
+local function four(values)
+  local moves = false
+  for i = 1, 4 do moves = moves or type(values[i]) ~= "number" end
+  if not moves then return values end
+  return function(t)
+    local now = {}
+    for i = 1, 4 do now[i] = value_at(values[i], t) end
+    return now
+  end
+end
+
+local function expand_lobes(pass, settings)
+  local function wrong(what)
+    error(pass .. ": 'lobes' takes 1 to 4 pairs {weight, g}, as in { {2, 0.8}, {1, -0.3} }; " .. what, 4)
+  end
+  local lobes = settings.lobes
+  if type(lobes) ~= "table" then wrong("got a " .. type(lobes)) end
+  if #lobes < 1 or #lobes > 4 then wrong("got " .. #lobes .. " of them") end
+  local weights, anisotropies = { 0, 0, 0, 0 }, { 0, 0, 0, 0 }
+  local accepted = { number = true, userdata = true, ["function"] = true }
+  for i, lobe in ipairs(lobes) do
+    if type(lobe) ~= "table" or #lobe ~= 2 or not (accepted[type(lobe[1])] and accepted[type(lobe[2])]) then wrong("number " .. i .. " is none") end
+    weights[i], anisotropies[i] = lobe[1], lobe[2]
+  end
+  if settings.lobe_weights or settings.lobe_anisotropies then
+    wrong("'lobe_weights' and 'lobe_anisotropies' say the same, give either")
+  end
+  local expanded = {}
+  for key, value in pairs(settings) do
+    if key ~= "lobes" then expanded[key] = value end
+  end
+  expanded.lobe_weights, expanded.lobe_anisotropies = four(weights), four(anisotropies)
+  return expanded
+end
+
+for _, name in ipairs { "march", "lighting", "reference" } do
+  local make = rawget(_G, name)
+  if make then
+    _G[name] = function(...)
+      local arguments, count = { ... }, select("#", ...)
+      local settings = arguments[count]
+      if type(settings) == "table" and settings.lobes ~= nil then
+        arguments[count] = expand_lobes(name, settings)
+      end
+      return make(table.unpack(arguments, 1, count))
+    end
+  end
+end

@@ -16,7 +16,7 @@ uniform vec3 extinction;           //= {1, 1, 1} [0, 1000] : factor of the densi
 uniform vec3 albedo;               //= {0.5, 0.5, 0.5} [0, 1] : part of the light that is scattered, by colour
 uniform vec3 absorption_color;     //= {0, 0, 0} [0, 1] : what the light that is not scattered is dyed to; black: it is lost
 uniform float anisotropy;          //= 0.2 [-0.95, 0.95] : g of the phase function: 0 all directions, above 0 forward
-uniform vec4 lobe_weights;         //= {0, 0, 0, 0} [0, 1000] : of up to four lobes, of any sum; all 0: one lobe, of `anisotropy`
+uniform vec4 lobe_weights;         //= {0, 0, 0, 0} [0, 1000] : of up to four lobes, of any sum; all 0: one lobe, of `anisotropy`. In Lua, lobes = { {2, 0.8}, {1, -0.3} } sets them and their g
 uniform vec4 lobe_anisotropies;    //= {0, 0, 0, 0} [-0.95, 0.95] : g of each of them
 uniform vec3 blackbody_tint;       //= {1, 1, 1} [0, 100] : factor of a black body's light
 

@@ -9,6 +9,7 @@
 //@ option view = beauty {beauty, noise} : noise shows the field `noise` on the faces of the volume's box
 //@ option scattering = single {single, octaves} : of light that comes straight from the lights: once, or many times by octaves (Wrenninge, Kulla and Lundqvist 2013); with `glow` always once
 //@ option mesh_shadows = off {off, on} : meshes shadow the volume, by a ray from each sample to each light; with `shadow` they do so anyway
+//@ option jitter_noise = blue {white, blue} : what `jitter` is made of: blue has its error where an eye or a mean over frames loses it
 //@ counter samples : points at which the density was evaluated
 uniform int steps;                 //= 128 [1, 4096] : steps along each ray, from entry to exit
 uniform float step_size;           //= 0 [0, 100] m : length of a step instead; 0: use `steps`
@@ -19,6 +20,7 @@ uniform float depth_bias;          //= 0.01 [0, 10] m : how far behind a surface
 uniform float ambient;             //= 1 [0, 10] : factor of the light from the sky, without `glow`
 uniform int shadow_steps;          //= 8 [0, 64] : steps towards each light from each lit point, without `shadow`; 0: no light
 uniform float shadow_distance;     //= 4 [0.01, 1000] m : how far towards a light shadows reach, without `shadow`
+uniform int near_steps;            //= 0 [0, 8] : steps towards each light through what a texel of `shadow` blurs
 uniform int octaves;               //= 4 [1, 8] : of scattering
 uniform float octave_extinction;   //= 0.5 [0, 1] : extinction on the way from a light, from octave to octave
 uniform float octave_anisotropy;   //= 0.5 [0, 1] : anisotropy, from octave to octave
@@ -80,8 +82,15 @@ struct obstacle {
 
 #if HAS_LIGHTS && HAS_SHADOW
 obstacle before_light(int index, light l, light_ray ray, vec3 p) {
-    vec2 cached = lighting_shadow(index, p);
-    return obstacle(lighting_extinction() * cached.x, cached.y);
+    vec3 depth = vec3(0.0), from = p;
+    if (near_steps > 0) {
+        float texel = greatest(box_max - box_min) / float(textureSize(shadow, 0).x);
+        float near = min(texel, max(ray.distance - l.radius, 0.0));
+        depth = medium_extinction() * depth_along(p, ray.direction, near, near_steps);
+        from += near * ray.direction;
+    }
+    vec2 cached = lighting_shadow(index, from);
+    return obstacle(depth + lighting_extinction() * cached.x, cached.y);
 }
 #else
 obstacle before_light(int index, light l, light_ray ray, vec3 p) {
@@ -283,6 +292,15 @@ ray_state march_paper(vec3 origin, vec3 direction, vec2 range, float last, float
     return ray;
 }
 
+float chance(uvec2 pixel) {
+    uint seed = random_hash(frame.size.w);
+#if JITTER_NOISE == JITTER_NOISE_BLUE
+    return random_blue(pixel + uvec2(seed, seed >> 8), frame.size.z);
+#else
+    return random_pixel(pixel, frame.size.z ^ seed);
+#endif
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = imageSize(color);
@@ -299,8 +317,7 @@ void main() {
 #endif
     if (!inside) range = vec2(0.0);
     float offset = MODE == MODE_PAPER ? 0.0 : 0.5;
-    offset += jitter * (random_pixel(uvec2(pixel), frame.size.z ^ random_hash(frame.size.w)) - 0.5);
-    offset = clamp(offset, 0.0, 1.0);
+    offset = clamp(offset + jitter * (chance(uvec2(pixel)) - 0.5), 0.0, 1.0);
 
     ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
 #if VIEW == VIEW_NOISE
