@@ -121,6 +121,7 @@ uint64_t effect_render(effect *e, double frame, bool jump) {
     if (e->counter && !jump && frame != e->last_frame + 1) forget(e);
     uint64_t number = gpu_frame_begin(e->device);
     if (!number) return 0;
+    e->host.fresh = !e->has_last;
     bool done = evaluate(e, frame, e->device) &&
                 scene_bvh_update(e->host.bvh, e->device, &e->context) &&
                 graph_execute(e->graph, e->device);

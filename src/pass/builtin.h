@@ -16,6 +16,13 @@ void lighting_destroy(pass *p);
 bool march_declare(pass *p);
 bool march_fill(pass *p, const shader_binary *binary, unsigned char *block);
 
+bool reference_declare(pass *p);
+bool reference_check(pass *p);
+bool reference_build(pass *p);
+bool reference_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool reference_record(pass *p);
+void reference_destroy(pass *p);
+
 bool bloom_declare(pass *p);
 bool bloom_check(pass *p);
 bool bloom_build(pass *p);

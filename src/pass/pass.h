@@ -28,6 +28,7 @@ typedef struct pass_host { // what all passes of one effect share
     const scene *scene;                          // for its sky
     struct scene_bvh *bvh;                       // of all meshes; after pass_allocate
     gpu_image *blue_noise;                       // texture "BlueNoise" of lib/random.glsl
+    bool fresh;                                  // histories begin with the frame being recorded
     bool counters;                               // compile counters in and read them
     const shader_reader *reader;                 // of all files of shaders; may be NULL
     bool (*before_declare)(void *user, pass *p); // last chance to change a pass; may be NULL
@@ -102,3 +103,5 @@ size_t pass_get_option(const pass *p, size_t index);       // index of the chose
 float pass_get_scale(const pass *p);
 // Counter totals of a frame, after it finished: one value per counter of the interface.
 bool pass_read_counters(pass *p, uint64_t *out);
+// Samples a pixel that the picture of a `reference` holds after its last frame; 0: another type.
+uint32_t pass_samples(const pass *p);

@@ -34,6 +34,16 @@ static const pass_type types[] = {
         .fill = march_fill,
     },
     {
+        .name = "reference",
+        .shader = "pass/reference.comp",
+        .declare = reference_declare,
+        .check = reference_check,
+        .build = reference_build,
+        .fill = reference_fill,
+        .record = reference_record,
+        .destroy = reference_destroy,
+    },
+    {
         .name = "over",
         .shader = "pass/over.comp",
     },

@@ -1,0 +1,244 @@
+// Traces paths of light through volume, meshes and sky: what the picture would be if nothing were
+// approximated. Without bias, but for noise that falls with the square root of the samples; the
+// picture gathers as long as the effect stands still, and replaces the scene behind it.
+//
+// Null-collision transport: tentative collisions are drawn from bounds of the extinction (Woodcock
+// et al. 1965) and weighed, so that a density beyond its bound does no harm (Galtier et al.,
+// "Integral formulation of null-collision Monte Carlo algorithms", 2013), with probabilities by
+// what a path still carries of each colour (Kutz et al., "Spectral and decomposition tracking",
+// 2017). Light towards a source is found by ratio tracking (Novak et al., "Residual ratio tracking",
+// 2014). Sources are drawn by what they would give unshadowed; directions of the sky both ways,
+// weighed by the balance heuristic (Veach 1997). Emission counts at each tentative collision.
+//@ counter samples : points at which the density was evaluated
+uniform int samples;               //= 1 [1, 64] : paths for each pixel and execution
+uniform int bounces;               //= 64 [0, 1024] : how often light may be scattered, by the medium or a surface
+uniform int filter_;               //= box {none, box, blackman_harris} : how samples lie in a pixel: all in its middle, all over it, or under a window of 1.5 pixels as in Cycles
+uniform float sky_alpha;           //= 1 [0, 1] : opacity of the sky; 0 for pictures to be laid over others
+uniform sampler2D depth;           //= input optional : depth of the scene (m), for `edge` only
+uniform sampler2D sum_before;      //= input history sum : all samples so far
+writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity
+writeonly uniform image2D edge;    //= output r32f : depth of the scene at the pixel (m)
+writeonly uniform image2D sum;     //= output rgba32f : all samples, added up
+
+#include "lib/frame.glsl"
+#include "lib/bvh.glsl"
+#include "lib/color.glsl"
+#include "lib/medium.glsl"
+#include "lib/majorant.glsl"
+#include "lib/path.glsl"
+#include "lib/random.glsl"
+
+const int TURNS = 1 << 18;      // of a path; it ends there
+const float THIN = 0.02, THIN_LATE = 0.5; // Russian roulette below this part of the light, at first and after LATE
+const int LATE = 8;             // scatterings
+
+float sky_pdf(vec3 direction) { return 0.25 / PATH_PI; }
+vec3 sky_radiance(vec3 direction) { return frame_sky(direction); }
+vec3 sky_sample(vec2 random, out float pdf) {
+    pdf = sky_pdf(vec3(0.0));
+    float z = 1.0 - 2.0 * random.x;
+    return path_around(vec3(0.0, 0.0, 1.0), z, sqrt(max(1.0 - z * z, 0.0)), random.y);
+}
+
+struct path_state {
+    vec3 weight;          // part of the light here that reaches the eye
+    vec3 light;           // radiance so far
+    float alpha;
+    int bounce;           // scatterings so far
+    majorant_walk walk;   // of the ray that is traced just now
+    bvh_hit hit;          // where it ends, unless it goes to a light
+    bool to_light;        // the ray goes from the last scattering to a light
+    vec3 arriving;        // light that comes this way, if nothing stops it
+    vec3 from, way;       // where the path goes on after that
+    float pdf, sky_share; // density of `way`; part of the choices of a source that fell to the sky
+    bool done;
+};
+
+// Where light is scattered: in the medium, or on a surface (`normal` is not zero).
+struct path_vertex {
+    vec3 p, normal, before;
+};
+
+float brightest(vec3 c) {
+    return max(abs(c.r), max(abs(c.g), abs(c.b)));
+}
+
+// By phase function, or Lambertian; both are the density of the directions drawn, too.
+float scattered(path_vertex v, vec3 way) {
+    if (v.normal == vec3(0.0)) return medium_phase(dot(v.before, way), 1.0);
+    return max(dot(v.normal, way), 0.0) / PATH_PI;
+}
+
+void go(inout path_state s, vec3 from, vec3 way) {
+    s.hit = bvh_trace(from, way, 0.0, 1e9);
+    s.walk = majorant_begin(from, way, s.hit.distance < 0.0 ? 1e9 : s.hit.distance);
+    s.to_light = false;
+}
+
+// What a source may give at a vertex. Not zero where it gives anything: a sphere shines over the
+// horizon, too.
+float importance_of(path_vertex v, light_ray at) {
+    return luminance(at.irradiance) * (0.02 + scattered(v, at.direction));
+}
+
+// One source for the vertex, drawn by importance; -1: the sky. `share`: its part of the choices.
+int choose_source(path_vertex v, float random, out float share, out float sky_share) {
+    int chosen = -1;
+    float sky = luminance(0.5 * (frame.sky_zenith.rgb + frame.sky_horizon.rgb)), picked = sky, total = sky;
+    for (int i = 0; i < light_count(); i++) {
+        float importance = importance_of(v, light_at(light_get(i), v.p));
+        if (importance <= 0.0) continue;
+        total += importance;
+        random *= total;
+        bool take = random < importance;
+        random = take ? random / importance : (random - importance) / (total - importance);
+        if (!take) continue;
+        chosen = i;
+        picked = importance;
+    }
+    share = total > 0.0 ? picked / total : 0.0;
+    sky_share = total > 0.0 ? sky / total : 0.0;
+    return chosen;
+}
+
+// Sends a ray from the vertex to a source.
+void ask_source(inout path_state s, path_vertex v, vec4 random) {
+    float share;
+    int chosen = choose_source(v, random.x, share, s.sky_share);
+    if (share <= 0.0) return;
+    path_light source;
+    if (chosen >= 0) {
+        light l = light_get(chosen);
+        source = path_sample_light(l, light_at(l, v.p), random.yz);
+        source.radiance /= share;
+    } else {
+        float pdf;
+        source.way = sky_sample(random.yz, pdf);
+        source.far = 1e9;
+        source.radiance = sky_radiance(source.way) / (share * pdf + scattered(v, source.way));
+    }
+    s.arriving = s.weight * source.radiance * scattered(v, source.way);
+    if (brightest(s.arriving) <= 0.0 || bvh_occluded(v.p, source.way, 0.0, source.far * 0.9999)) return;
+    s.walk = majorant_begin(v.p, source.way, source.far);
+    s.to_light = true;
+}
+
+void scatter(inout path_state s, path_vertex v, inout path_random random) {
+    s.bounce++;
+    vec4 r = path_next(random);
+    bool solid = v.normal != vec3(0.0);
+    s.from = v.p;
+    s.way = solid ? path_sample_cosine(v.normal, r.xy) : path_sample_phase(v.before, r.xyz);
+    s.pdf = scattered(v, s.way);
+    ask_source(s, v, path_next(random));
+    if (!s.to_light) go(s, s.from, s.way);
+}
+
+// Ends paths that carry little, and makes up for it in those that are left.
+void roulette(inout path_state s, float random) {
+    float thin = s.bounce < LATE ? THIN : THIN_LATE, carried = brightest(s.weight);
+    if (carried >= thin) return;
+    s.done = random * thin >= carried;
+    s.weight *= thin / max(carried, 1e-30);
+}
+
+// A tentative collision of a ray to a light.
+void collide_to_light(inout path_state s, vec3 gone, float bound, float random) {
+    s.arriving *= 1.0 - gone / bound;
+    float thin = 0.1 * brightest(s.weight), carried = brightest(s.arriving);
+    if (carried >= thin) return;
+    if (random * thin >= carried) s.arriving = vec3(0.0);
+    s.arriving *= thin / max(carried, 1e-30);
+}
+
+// A tentative collision of a path where the extinction is `gone`: light is given off, and the path
+// is scattered or goes on.
+void collide(inout path_state s, vec3 p, float d, vec3 gone, float bound, vec2 random, inout path_random more) {
+    s.light += s.weight * medium_emission(p, d) / bound;
+    vec3 back = s.bounce < bounces ? s.weight * d * medium_scattering(p) : vec3(0.0);
+    vec3 on = s.weight * (bound - gone);
+    float some = dot(abs(back), vec3(1.0)), none = dot(abs(on), vec3(1.0)), total = some + none;
+    bool scatters = random.x * total < some;
+    s.weight = scatters ? back * (total / (bound * some)) : on * (total / (bound * max(none, 1e-30)));
+    if (total <= 0.0) s.done = true;
+    else roulette(s, random.y);
+    if (scatters && !s.done) scatter(s, path_vertex(p, vec3(0.0), s.walk.direction), more);
+}
+
+// The ray has left the volume.
+void leave(inout path_state s, inout path_random more) {
+    if (s.to_light) {
+        s.light += s.arriving;
+        go(s, s.from, s.way);
+    } else if (s.hit.distance >= 0.0) {
+        vec3 p = s.walk.origin + s.hit.distance * s.walk.direction;
+        s.weight *= s.hit.albedo;
+        s.done = s.bounce >= bounces || brightest(s.weight) <= 0.0;
+        if (!s.done) roulette(s, path_next(more).x);
+        float lift = 1e-4 * max(1.0, max(s.hit.distance, brightest(p)));
+        if (!s.done) scatter(s, path_vertex(p + lift * s.hit.normal, s.hit.normal, s.walk.direction), more);
+    } else {
+        s.done = true;
+        vec3 sky = s.weight * sky_radiance(s.walk.direction);
+        if (s.bounce == 0) {
+            s.light += sky_alpha * sky;
+            s.alpha -= (1.0 - sky_alpha) * dot(s.weight, vec3(1.0 / 3.0));
+        } else {
+            s.light += sky * (s.pdf / (s.pdf + s.sky_share * sky_pdf(s.walk.direction)));
+        }
+    }
+}
+
+// Radiance and opacity along a way from the eye.
+vec4 trace(vec3 origin, vec3 direction, inout path_random random, inout int taken) {
+    path_state s;
+    s.weight = vec3(1.0);
+    s.light = vec3(0.0);
+    s.alpha = 1.0;
+    s.bounce = 0;
+    s.done = false;
+    go(s, origin, direction);
+    vec3 highest = medium_extinction();
+    // One evaluation of the medium a turn, whatever the ray is for: neighbours stay together.
+    for (int i = 0; i < TURNS && !s.done; i++) {
+        vec4 r = path_next(random);
+        float bound;
+        if (!majorant_go(s.walk, -log(1.0 - r.x), bound)) {
+            leave(s, random);
+            continue;
+        }
+        vec3 p = s.walk.origin + s.walk.at * s.walk.direction;
+        float d = field_density(p);
+        taken++;
+        if (d <= 0.0) continue;
+        if (s.to_light)
+            collide_to_light(s, d * highest, bound, r.y);
+        else
+            collide(s, p, d, d * highest, bound, r.yz, random);
+    }
+    vec4 result = vec4(s.light, s.alpha);
+    return any(isnan(result)) || any(isinf(result)) ? vec4(0.0) : result;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(color);
+    bool inside = all(lessThan(pixel, size));
+    vec4 all_of_it = executed > 0 ? texelFetch(sum_before, pixel, 0) : vec4(0.0);
+    int taken = 0;
+    for (int i = 0; i < samples && inside; i++) {
+        uint seed = random_hash(frame.size.z + random_hash(frame.size.w));
+        path_random random = path_random(uvec3(pixel, uint(executed * samples + i) ^ seed), 0u);
+        vec2 at = vec2(pixel) + 0.5 + path_sample_pixel(filter_, path_next(random).xy);
+        vec3 direction = normalize(frame_ray(at / vec2(size)));
+        all_of_it += trace(frame.eye.xyz, direction, random, taken);
+    }
+    count_samples(taken);
+    if (!inside) return;
+    float stop = 1e9;
+#if HAS_DEPTH
+    stop = texelFetch(depth, ivec2((vec2(pixel) + 0.5) / vec2(size) * vec2(textureSize(depth, 0))), 0).r;
+#endif
+    imageStore(sum, pixel, all_of_it);
+    imageStore(color, pixel, all_of_it / float((executed + 1) * samples));
+    imageStore(edge, pixel, vec4(stop));
+}
