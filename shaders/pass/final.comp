@@ -2,6 +2,7 @@
 #include "lib/color.glsl"
 #include "lib/tonemap.glsl"
 //@ option tonemap = agx {agx, aces, reinhard, exponential, none} : how scene light becomes display light
+//@ option saturate = scene {scene, display} : which light `saturation` changes: before or after the tone map
 uniform sampler2D source;         //= input : the picture, scene-linear
 uniform sampler2D bloom;          //= input optional : added to it
 uniform sampler2D exposure;       //= input optional : stops of exposure besides `exposure_ev` (of the pass meter)
@@ -10,6 +11,8 @@ uniform float exposure_ev;        //= 0 [-20, 20] EV : stops of exposure
 uniform float saturation;         //= 1 [0, 4] : 0: grey, 1: as it is
 writeonly uniform image2D color;  //= output rgba16f : display-linear, alpha kept
 writeonly uniform image2D linear; //= output rgba16f : scene-linear with the bloom, alpha kept
+
+vec3 saturate(vec3 c) { return max(mix(vec3(luminance(c)), c, saturation), 0.0); }
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -26,7 +29,9 @@ void main() {
     stops += texelFetch(exposure, ivec2(0), 0).r;
 #endif
     vec3 exposed = max(c.rgb * exp2(stops), 0.0);
-    exposed = max(mix(vec3(luminance(exposed)), exposed, saturation), 0.0);
+#if SATURATE == SATURATE_SCENE
+    exposed = saturate(exposed);
+#endif
 #if TONEMAP == TONEMAP_AGX
     exposed = tonemap_agx(exposed);
 #elif TONEMAP == TONEMAP_ACES
@@ -35,6 +40,9 @@ void main() {
     exposed = tonemap_reinhard(exposed);
 #elif TONEMAP == TONEMAP_EXPONENTIAL
     exposed = tonemap_exponential(exposed);
+#endif
+#if SATURATE == SATURATE_DISPLAY
+    exposed = saturate(max(exposed, 0.0));
 #endif
     imageStore(color, pixel, vec4(clamp(exposed, 0.0, 1.0), c.a));
 }
