@@ -33,8 +33,8 @@ struct frame_block {
     SHARED_UVEC4 size;          // output width, height, frame counter, seed
     SHARED_VEC4 sun_direction;  // xyz: towards the sun, unit
     SHARED_VEC4 sun_radiance;   // rgb: irradiance at normal incidence over pi
-    SHARED_VEC4 sky_zenith;     // rgb: radiance straight up
-    SHARED_VEC4 sky_horizon;    // rgb: radiance at the horizon
+    SHARED_VEC4 sky_zenith;     // rgb: radiance straight up, about; w: factor of the sky's image, 0: there is none
+    SHARED_VEC4 sky_horizon;    // rgb: radiance at the horizon, about; w: how far the image is turned, radians
 };
 
 // Kinds of light, in light_entry.color.w.

@@ -24,11 +24,16 @@ const field *effect_control_field(const effect *e, const effect_control *c) {
 }
 
 bool scene_control_unknown(const effect *e, const char *name) {
+    static const char *const reasons[] = {
+        [SCENE_ORBIT] = "this camera stands at an eye; only an orbit has it",
+        [SCENE_GRADIENT] = "this sky is an image; only one of two colours has it",
+        [SCENE_IMAGE] = "this sky has no image",
+    };
     size_t count;
     const scene_value *values = scene_values(&count);
-    for (size_t i = 0; i < count && e->scene.camera.eye; i++) {
-        if (!values[i].orbit || strcmp(values[i].name, name) != 0) continue;
-        err_set("%s: this camera stands at an eye; only an orbit has it", name);
+    for (size_t i = 0; i < count; i++) {
+        if (scene_has(&e->scene, values[i].need) || strcmp(values[i].name, name) != 0) continue;
+        err_set("%s: %s", name, reasons[values[i].need]);
         return true;
     }
     return false;
@@ -38,9 +43,9 @@ bool scene_control_add_all(effect *e) {
     size_t count;
     const scene_value *values = scene_values(&count);
     if (effect_control_of(e, values[0].name)) return true;
-    bool orbits = !e->scene.camera.eye;
+    scene s = e->scene; // as the script has it: setting an eye ends an orbit
     for (size_t i = 0; i < count; i++) {
-        if (values[i].orbit && !orbits) continue;
+        if (!scene_has(&s, values[i].need)) continue;
         control *c = effect_add_control(
             e,
             &(control){.face = {.kind = EFFECT_CONTROL_SCENE, .name = values[i].name, .index = i},

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "effect/effect_impl.h"
 #include "scene/bvh.h"
+#include "scene/sky_image.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -67,6 +68,7 @@ void effect_destroy(effect *e) {
     for (size_t i = 0; i < e->grid_count; i++) e->grids[i]->destroy(e->grids[i], e->device);
     for (size_t i = 0; i < e->mesh_count; i++) scene_mesh_destroy(e->meshes[i], e->device);
     scene_bvh_destroy(e->host.bvh, e->device);
+    if (e->sky) sky_image_destroy(e->sky, e->device);
     if (e->graph) graph_destroy(e->graph, e->device);
     if (e->hooks.destroy) e->hooks.destroy(e->hooks.user);
     shader_library_destroy(e->own_library);
@@ -298,6 +300,37 @@ scene_mesh *effect_add_mesh(effect *e, const char *file) {
     MEM_RESERVE(e->meshes, e->mesh_count + 1, e->mesh_capacity);
     e->meshes[e->mesh_count++] = mesh;
     return mesh;
+}
+
+static sky_image *load_sky_image(effect *e, const char *path) {
+    shelf_item *item = shelf_take(e->shelf, path);
+    if (!item) {
+        arena memory = {0};
+        int64_t begin = file_clock_ns();
+        const sky_image *image = sky_image_load(path, e->root, &memory);
+        if (!image) {
+            arena_free(&memory);
+            return NULL;
+        }
+        item = shelf_put(e->shelf, path, image, memory, &path, 1, begin);
+    }
+    MEM_RESERVE(e->held, e->held_count + 1, e->held_capacity);
+    e->held[e->held_count++] = item;
+    return sky_image_share(item->data, &e->memory);
+}
+
+const sky_image *effect_add_sky_image(effect *e, const char *file) {
+    char path[PATH_CAP];
+    if (!path_confine(path, e->root, file)) return NULL;
+    if (e->sky && strcmp(e->sky_file, path) == 0) return e->sky;
+    effect_add_file(e, path); // even if it cannot be read
+    if (e->sky) {
+        err_set("%s: a second image for the sky; an effect has one", file);
+        return NULL;
+    }
+    e->sky = load_sky_image(e, path);
+    e->sky_file = arena_string(&e->memory, path);
+    return e->sky;
 }
 
 static bool set_picture(effect *e, effect_picture which, graph_image image) {

@@ -71,6 +71,8 @@ pass *effect_add_pass(effect *e, const char *type, const char *shader,
                       const char *label);                 // label NULL: type's name, numbered
 void effect_add_grid(effect *e, field_grid *grid);        // owned by the effect from now on
 scene_mesh *effect_add_mesh(effect *e, const char *file); // confined to the effect's folder
+// The panorama of a sky, confined too; an effect has one.
+const struct sky_image *effect_add_sky_image(effect *e, const char *file);
 // A field baked to a grid each frame (pass type "bake"); returns the grid.
 field_grid *effect_add_bake(effect *e, const field *node, const uint32_t size[3], box3 box);
 bool effect_set_output(effect *e, graph_image image); // the picture, display-referred

@@ -96,6 +96,8 @@ struct effect {
     size_t held_count, held_capacity;
     scene_mesh **meshes;
     size_t mesh_count, mesh_capacity;
+    struct sky_image *sky; // of the scene, where it has one
+    const char *sky_file;  // whose it is
     shader_reader reader; // adds to `files`
     const char **files;   // absolute
     size_t file_count, file_capacity;

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "effect/effect_impl.h"
 #include "scene/bvh.h"
+#include "scene/sky_image.h"
 #include <math.h>
 #include <string.h>
 
@@ -57,7 +58,9 @@ bool effect_compile(effect *e) {
 static bool allocate(effect *e) { // the graph is compiled
     for (size_t i = 0; i < e->pass_count; i++)
         if (!pass_allocate(e->passes[i])) return false;
-    return scene_bvh_allocate(e->host.bvh, e->device) && graph_allocate(e->graph, e->device);
+    return scene_bvh_allocate(e->host.bvh, e->device) &&
+           (!e->sky || sky_image_upload(e->sky, e->device)) &&
+           graph_allocate(e->graph, e->device);
 }
 
 bool effect_allocate(effect *e, uint32_t width, uint32_t height) {
@@ -169,6 +172,7 @@ static void exchange(effect *e, effect *from) {
     graph_adopt(e->graph, from->graph);
     exchange_grids(e, from);
     exchange_meshes(e, from);
+    if (e->sky && from->sky) sky_image_exchange(e->sky, from->sky);
 }
 
 bool effect_adopt(effect *e, effect *from, uint32_t width, uint32_t height) {

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "pass/pass_impl.h"
 #include "scene/bvh.h"
+#include "scene/sky_image.h"
 #include <math.h>
 #include <string.h>
 
@@ -163,9 +164,18 @@ static bool bind_buffer(const pass *p, const char *name, gpu_binding *out) {
 
 // Textures that every shader can read by including a file of lib/.
 static bool bind_common_image(const pass *p, const char *name, gpu_binding *out) {
-    if (strcmp(name, "BlueNoise") != 0) return false;
-    out->image = p->host->blue_noise;
+    const sky_image *sky = p->host->scene->sky.image;
     out->sampler = GPU_NEAREST_CLAMP;
+    if (strcmp(name, "BlueNoise") == 0) {
+        out->image = p->host->blue_noise;
+    } else if (strcmp(name, "SkyDistribution") == 0) {
+        out->image = sky ? sky_image_distribution(sky) : p->blank[0];
+    } else if (strcmp(name, "Sky") == 0) {
+        out->image = sky ? sky_image_texture(sky) : p->blank[0];
+        out->sampler = GPU_LINEAR_REPEAT;
+    } else {
+        return false;
+    }
     return true;
 }
 

@@ -1,5 +1,6 @@
 // Camera, sun and sky, evaluated once a frame into the block that every shader reads. Z is up.
 #include "scene/scene_impl.h"
+#include "scene/sky_image.h"
 #include <cglm/clipspace/persp_rh_zo.h>
 #include <math.h>
 #include <stddef.h>
@@ -48,10 +49,10 @@ void scene_init(scene *s, arena *memory) {
 static const scene_value values[] = {
     VALUE(camera, eye, 3, -INFINITY, INFINITY, "m", "where it stands"),
     VALUE(camera, target, 3, -INFINITY, INFINITY, "m", "what it looks at"),
-    VALUE(camera, distance, 1, 0.001f, INFINITY, "m", "from the target", .orbit = true),
-    VALUE(camera, yaw, 1, -360, 360, "degrees", "about +Z; 0 looks along +Y", .orbit = true),
+    VALUE(camera, distance, 1, 0.001f, INFINITY, "m", "from the target", .need = SCENE_ORBIT),
+    VALUE(camera, yaw, 1, -360, 360, "degrees", "about +Z; 0 looks along +Y", .need = SCENE_ORBIT),
     VALUE(camera, pitch, 1, -89.9f, 89.9f, "degrees",
-          "height of the eye above the target's horizon", .orbit = true),
+          "height of the eye above the target's horizon", .need = SCENE_ORBIT),
     VALUE(camera, fov, 1, 1, 170, "degrees", "vertical field of view"),
     VALUE(camera, near, 1, 0.0001f, INFINITY, "m", "nothing nearer is seen"),
     VALUE(camera, far, 1, 0.001f, INFINITY, "m", "nothing solid farther away is seen"),
@@ -60,9 +61,12 @@ static const scene_value values[] = {
     VALUE(sun, color, 3, 0, INFINITY, "", "multiplies the strength", .color = true),
     VALUE(sun, strength, 1, 0, INFINITY, "", "irradiance of what faces it"),
     VALUE(sun, angle, 1, 0, 180, "degrees", "how wide it looks: softens shadows"),
-    VALUE(sky, zenith, 3, 0, INFINITY, "", "radiance straight up", .color = true),
-    VALUE(sky, horizon, 3, 0, INFINITY, "", "radiance at the horizon and below", .color = true),
-    VALUE(sky, strength, 1, 0, INFINITY, "", "factor of both"),
+    VALUE(sky, zenith, 3, 0, INFINITY, "", "radiance straight up", .color = true,
+          .need = SCENE_GRADIENT),
+    VALUE(sky, horizon, 3, 0, INFINITY, "", "radiance at the horizon and below", .color = true,
+          .need = SCENE_GRADIENT),
+    VALUE(sky, strength, 1, 0, INFINITY, "", "factor of its light"),
+    VALUE(sky, rotation, 1, -360, 360, "degrees", "of the image, about +Z", .need = SCENE_IMAGE),
 };
 
 const scene_value *scene_values(size_t *count) {
@@ -72,6 +76,20 @@ const scene_value *scene_values(size_t *count) {
 
 const field **scene_slot(scene *s, const scene_value *value) {
     return (const field **)(void *)((char *)s + value->offset);
+}
+
+bool scene_has(const scene *s, scene_need need) {
+    switch (need) {
+    case SCENE_ALWAYS:
+        return true;
+    case SCENE_ORBIT:
+        return !s->camera.eye;
+    case SCENE_GRADIENT:
+        return !s->sky.image;
+    case SCENE_IMAGE:
+        return s->sky.image;
+    }
+    return false;
 }
 
 bool scene_evaluate(const field *node, const field_context *context, float out[4]) {
@@ -165,11 +183,18 @@ static bool fill_sun(const scene_sun *sun, const field_context *context, struct 
 }
 
 static bool fill_sky(const scene_sky *sky, const field_context *context, struct frame_block *out) {
-    float zenith[4], horizon[4], strength;
+    float zenith[4], horizon[4], strength, rotation;
     if (!scene_evaluate(sky->zenith, context, zenith) ||
         !scene_evaluate(sky->horizon, context, horizon) ||
-        !scene_evaluate_scalar(sky->strength, context, &strength))
+        !scene_evaluate_scalar(sky->strength, context, &strength) ||
+        !scene_evaluate_scalar(sky->rotation, context, &rotation))
         return false;
+    if (sky->image) {
+        sky_image_means(sky->image, zenith, horizon);
+        strength = strength > 0 ? strength : 0;
+        out->sky_zenith.v[3] = strength;
+        out->sky_horizon.v[3] = glm_rad(rotation);
+    }
     for (int i = 0; i < 3; i++) {
         out->sky_zenith.v[i] = zenith[i] * strength;
         out->sky_horizon.v[i] = horizon[i] * strength;

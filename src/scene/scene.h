@@ -66,16 +66,25 @@ typedef struct scene {
     size_t light_count;        // less than LIGHT_MAX
 } scene;
 
+typedef enum scene_need { // where a scene has a value at all
+    SCENE_ALWAYS,
+    SCENE_ORBIT,    // of a camera that circles its target
+    SCENE_GRADIENT, // of a sky without an image
+    SCENE_IMAGE,    // of a sky with one
+} scene_need;
+
 typedef struct scene_value { // one value of camera, sun or sky
     const char *name;        // "camera.fov"
     size_t offset;           // of its field in the scene
     int components;
-    bool color, orbit; // orbit: only of a camera that circles its target
-    float min, max;    // of what a user sets; -INFINITY, INFINITY: any
+    bool color;
+    scene_need need;
+    float min, max; // of what a user sets; -INFINITY, INFINITY: any
     const char *unit, *help;
 } scene_value;
 const scene_value *scene_values(size_t *count);
 const field **scene_slot(scene *s, const scene_value *value);
+bool scene_has(const scene *s, scene_need need);
 
 // A scene with the defaults of the documentation, made of constants in `memory`.
 void scene_init(scene *s, arena *memory);

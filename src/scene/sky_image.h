@@ -6,13 +6,27 @@
 
 typedef struct sky_image sky_image;
 
-enum { SKY_CELLS_X = 64, SKY_CELLS_Y = 32 }; // of the table that directions are drawn from
+enum {
+    SKY_WIDTH_MAX = 8192,
+    SKY_HEIGHT_MAX = 4096,
+    SKY_CELLS_X = 256, // of the table that directions are drawn from
+    SKY_CELLS_Y = 128,
+};
 
-// An EXR file below `root`, at most 8192 x 4096. NULL with a message: no EXR, too large, values
-// that are negative or not finite, all black.
+// An EXR file below `root`; values are kept as half floats, what is brighter than they can be is
+// as bright as they can be. NULL with a message: no EXR, too large, values that are negative or not
+// finite, all black.
 sky_image *sky_image_load(const char *path, const char *root, arena *memory);
-void sky_image_destroy(sky_image *s, gpu *g);          // what it has on the device
-bool sky_image_upload(sky_image *s, gpu *g);           // again: does nothing
-gpu_image *sky_image_texture(const sky_image *s);      // rgba16f with mips, sampler repeats in x
-gpu_image *sky_image_distribution(const sky_image *s); // r32f, SKY_CELLS_X + 1 by SKY_CELLS_Y:
-// cumulative share of each cell in its row's light, and in the last column of each row in all
+// The same picture with nothing on the device, for another effect; `s` must outlive it.
+sky_image *sky_image_share(const sky_image *s, arena *memory);
+void sky_image_destroy(sky_image *s, gpu *g); // what it has on the device
+bool sky_image_upload(sky_image *s, gpu *g);  // again: does nothing
+// Exchanges what both have on the device; false when they are not the same picture.
+bool sky_image_exchange(sky_image *s, sky_image *other);
+gpu_image *sky_image_texture(const sky_image *s); // rgba16f with mips, sampler repeats in x
+// r32f, SKY_CELLS_X + 1 by SKY_CELLS_Y + 1: cumulative share of each cell in its row's light, and
+// in the last column that of each row in all. The last row: nine coefficients of red, green and
+// blue for irradiance (lib/sky.glsl).
+gpu_image *sky_image_distribution(const sky_image *s);
+// Mean radiance around the zenith, and just above the horizon.
+void sky_image_means(const sky_image *s, float zenith[3], float horizon[3]);

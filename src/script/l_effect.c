@@ -70,7 +70,8 @@ static void set_scene(lua_State *L, const char *key) {
               sizeof s->sun / sizeof(field *));
     } else {
         merge((const field **)&s->sky, (const field *const *)value,
-              sizeof s->sky / sizeof(field *));
+              offsetof(scene_sky, image) / sizeof(field *));
+        s->sky.image = ((const sky_object *)value)->sky.image;
     }
 }
 

@@ -7,6 +7,7 @@
 void value_read_slots(lua_State *L, const char *who, void *out) {
     script_require_loading(L, who);
     for (const script_key *key = value_check_object(L, 1, who)->keys; key->name; key++) {
+        if (!key->components) continue; // no number
         const field *node = value_get_uniform(L, 1, who, key->name, key->components, NULL);
         if (node) memcpy((char *)out + key->offset, &node, sizeof node);
     }
@@ -45,7 +46,19 @@ static int l_sun(lua_State *L) {
 static int l_sky(lua_State *L) {
     value_refuse_array(L, "sky");
     sky_object *object = object_new(L, "sky", sizeof *object);
-    value_read_slots(L, "sky", &object->sky);
+    scene_sky *sky = &object->sky;
+    value_read_slots(L, "sky", sky);
+    const char *image = value_get_string(L, 1, "sky", "image");
+    if (!image) return 1;
+    if (sky->zenith || sky->horizon)
+        vm_error(L, "sky: 'image' is given, and '%s' too; an image stands for both colours",
+                 sky->zenith ? "zenith" : "horizon");
+    sky->image = effect_add_sky_image(script_of(L)->effect, image);
+    if (!sky->image) script_raise(L);
+    if (!sky->strength) {
+        vm_charge_memory(L, sizeof(field));
+        sky->strength = field_constant(script_memory(L), 1, (float[4]){1});
+    }
     return 1;
 }
 

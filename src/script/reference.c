@@ -157,11 +157,15 @@ static const script_object objects[] = {
         SLOT(scene_sun, strength, 1, "2.5 W/m^2", "irradiance of what faces it"),
         SLOT(scene_sun, angle, 1, "0.53 degrees", "how wide it looks: softens shadows"))},
     {"sky", "scene", "fx.sky = sky { zenith = \"#4060a0\", strength = 0.5 }",
-     "the light of the sky, and what is seen of it",
+     "the light of the sky, and what is seen of it: two colours, or an image",
      .keys = KEYS(
         SLOT(scene_sky, zenith, 3, "0.22, 0.32, 0.48", "radiance straight up"),
         SLOT(scene_sky, horizon, 3, "0.22, 0.32, 0.48", "radiance at the horizon and below"),
-        SLOT(scene_sky, strength, 1, "0.6", "factor of both"))},
+        KEY("image", "\"data/sky.exr\"",
+            "instead of the colours: an equirectangular .exr of up to 8192x4096, whose middle is "
+            "+Y"),
+        SLOT(scene_sky, rotation, 1, "0 degrees", "of the image, about +Z"),
+        SLOT(scene_sky, strength, 1, "0.6; 1 of an image", "factor of its light"))},
     {"point_light", "scene", "fx.lights = { point_light { position = {2, 0, 3}, power = 200 } }",
      "a light that shines from a point into all directions",
      .keys = KEYS(LIGHT)},
