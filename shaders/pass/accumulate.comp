@@ -1,13 +1,13 @@
-// Averages a volume over frames: what the last frames gathered is fetched where the point that a pixel
-// shows was seen then, kept near what is seen now, and mixed with it.
+// Averages a picture over frames, a volume's above all: what the last frames gathered is fetched where
+// the point that a pixel shows was seen then, kept near what is seen now, and mixed with it.
 //
 // The point is that at the distance `reach`, moved by the camera alone: what moves by itself is kept
 // from leaving trails by variance clipping of the history (Salvi 2016, "An excursion in temporal
 // supersampling") in YCoCg (Karis 2014, "High-quality temporal supersampling") and in opacity. The
 // history is not used where the point was out of the picture, or where something else stood then.
 #include "lib/frame.glsl"
-uniform sampler2D source;          //= input : premultiplied radiance and opacity
-uniform sampler2D reach;           //= input : how far along its ray lies what each pixel shows (m); 0: nothing
+uniform sampler2D source;          //= input : premultiplied radiance and opacity, or the lit scene
+uniform sampler2D reach;           //= input optional : how far along its ray lies what each pixel shows (m; 0: nothing); else that is the scene
 uniform sampler2D depth;           //= input optional : depth of the scene (m)
 uniform sampler2D before;          //= input history color : what was gathered up to the last frame
 uniform sampler2D known;           //= input history state : `state` of the last frame
@@ -41,8 +41,10 @@ surroundings look_around(ivec2 pixel, ivec2 size) {
         vec4 c = encode(texelFetch(source, texel, 0));
         sum += c;
         squares += c * c;
+#if HAS_REACH
         float far = texelFetch(reach, texel, 0).r;
         if (far > 0.0) nearest = min(nearest, far);
+#endif
     }
     vec4 mean = sum / 9.0;
     return surroundings(mean, sqrt(max(squares / 9.0 - mean * mean, 0.0)), nearest < FAR ? nearest : 0.0);
@@ -100,7 +102,7 @@ void main() {
     scene = min(texelFetch(depth, ivec2(uv * vec2(textureSize(depth, 0))), 0).r, FAR);
     scene_then = look_back(along, scene).z;
 #endif
-    vec3 then = look_back(along, volume > 0.0 ? volume : FAR);
+    vec3 then = look_back(along, volume > 0.0 ? volume : scene > 0.0 ? scene : FAR);
 
     float age = 0.0;
     vec4 result = now;

@@ -28,6 +28,7 @@ typedef struct job {
     const char *frames_text;
     uint32_t width, height;
     int alpha, sixteen, full, validate, no_cache;
+    int warmup; // frames
     double fps, timeout;
     char default_output[PATH_CAP];
 } job;
@@ -93,6 +94,10 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
          "FILE"},
         {"frames", 'f', POPT_ARG_STRING, &j->frames_text, 0,
          "30, or 10,30,50, or 0-99, or 0-99:2 (default: all)", "FRAMES"},
+        {"warmup", '\0', POPT_ARG_INT, &j->warmup, 0,
+         "draw N frames before each that does not follow the last, for passes that remember "
+         "(default: 0)",
+         "N"},
         {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE, "size of the picture (default: 960x540)",
          "WxH"},
         {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET,
@@ -132,6 +137,8 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
         return err_set("which effect? usage: roil render EFFECT.lua [options]");
     const char *more = poptGetArg(*context);
     if (more) return err_set("'%s': one effect at a time", more);
+    if (j->warmup < 0 || j->warmup > 1000)
+        return err_set("--warmup %d; accepted: 0 to 1000 frames", j->warmup);
     return !j->frames_text || app_parse_frames(j->frames_text, &j->frames);
 }
 
@@ -211,13 +218,25 @@ static bool save_frame(job *j, roil_effect *e, double frame) {
     return true;
 }
 
+// Draws the frames before number `index` of the job, as many as asked and as there are, unless they
+// were drawn just now.
+static bool warm_up(const job *j, roil_effect *e, size_t index) {
+    const double *frames = j->frames.numbers;
+    if (index > 0 && frames[index] == frames[index - 1] + 1) return true;
+    for (int before = j->warmup; before > 0; before--) {
+        double frame = frames[index] - before;
+        if (frame >= roil_get_info(e).first_frame && !roil_render(e, frame)) return false;
+    }
+    return true;
+}
+
 static bool render_frames(job *j, roil_effect *e, app_stats *stats) {
     app_progress progress;
     app_progress_begin(&progress, j->frames.count);
     bool done = true;
     for (size_t i = 0; done && i < j->frames.count; i++) {
         double frame = j->frames.numbers[i], start = clock_seconds();
-        done = roil_render(e, frame) && save_frame(j, e, frame);
+        done = warm_up(j, e, i) && roil_render(e, frame) && save_frame(j, e, frame);
         if (!done) break;
         app_stats_add(stats, e, frame, clock_seconds() - start);
         app_progress_step(&progress, i + 1);

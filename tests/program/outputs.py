@@ -93,6 +93,21 @@ class Pictures(Case):
         self.render(PUFF, "--frames", "3,2,1", "--no-cache", output="c%d.png")
         self.assertEqual(self.read("c1.png"), self.read("a.png"))  # whatever came before
 
+    def test_frames_before_can_be_drawn_for_what_remembers_them(self):
+        gathered = """
+local fx = effect { name = "gathered", frames = 10 }
+fx.camera = orbit { target = {1, 1, 1}, distance = 6 }
+local volume = march { density = sphere { position = {1, 1, 1}, radius = 1, falloff = 1 } * 3, steps = 4, jitter = 1 }
+fx.output = final { accumulate { from = volume, source = volume.color } }.color
+return fx
+"""
+        self.render(gathered, "--frames", "3-6", output="a%d.png")
+        self.render(gathered, "--frames", "6", output="alone.png")
+        self.render(gathered, "--frames", "1,6", "--warmup", "3", output="b%d.png")
+        self.assertEqual(self.read("a6.png"), self.read("b6.png"))
+        self.assertNotEqual(self.read("a6.png"), self.read("alone.png"))
+        self.fails(2, "--warmup -1", "render", "effect.lua", "--warmup", "-1")
+
     def test_odd_sizes(self):
         self.write("effect.lua", PUFF)
         for size in ("1x1", "7x3", "3x100"):
