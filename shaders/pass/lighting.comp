@@ -2,23 +2,42 @@
 //
 // Readers include lib/lighting.glsl. Each output costs only when something reads it.
 //@ option shadow_resolution = 96 {16, 32, 48, 64, 96, 128, 192, 256} : texels of `shadow` along each edge, for each light
-//@ option glow_resolution = 32 {8, 16, 24, 32, 48} : voxels of `glow` along each edge of the volume's box
+//@ option glow_resolution = 32 {8, 16, 24, 32, 40} : voxels of `glow` along each edge of the volume's box
 //@ option fire_lights = 8 {0, 1, 8} : lights that stand for the volume's fire where it falls on meshes
 //@ counter samples : points at which the density was evaluated
+uniform int bounces;               //= 4 [0, 32] : times that light is scattered within `glow`, before the scattering that a reader adds
+uniform float ambient;             //= 1 [0, 10] : factor of the light from the sky
 uniform vec3 box_min;
 uniform vec3 box_max;
 writeonly uniform image2D lights;  //= output rgba32f : a row for each light: what it is and how its shadow lies in space
 writeonly uniform image3D shadow;  //= output rg16f : N x N x N texels for each light: density times metres that its rays have passed, and the part that no mesh hides
 writeonly uniform image3D glow;    //= output rgba16f : mean and first moment of the radiance from all sides, but straight from the lights; a third for each colour
 
+// What one stage writes (kept) and later ones read (made), besides the outputs.
+uniform sampler2D lights_made;
+uniform sampler3D shadow_made;
+uniform sampler3D medium_made;
+uniform sampler3D scattering_made;
+uniform sampler3D first_made;
+uniform sampler3D source_made;
+uniform sampler3D ways_made;
+layout(rgba16f) writeonly uniform image3D medium_kept;     // emission (W/m^3/sr) and density
+layout(rgba16f) writeonly uniform image3D scattering_kept; // coefficient of density 1
+layout(rgba16f) writeonly uniform image3D first_kept;      // moments of what comes straight from the lights
+layout(rgba16f) writeonly uniform image3D source_kept;     // moments of all light that is scattered
+layout(rgba16f) writeonly uniform image3D ways_kept;       // radiance in each of the directions
+
 #include "lib/medium.glsl"
 #include "lib/light.glsl"
 #include "lib/shadow_map.glsl"
 #include "lib/bvh.glsl"
+#include "lib/sky.glsl"
 
-// What an earlier stage wrote; SHADOW_SIZE, GLOW_SIZE and FIRE_COUNT are the options as numbers.
-uniform sampler2D lights_made;
-uniform sampler3D shadow_made;
+const float HALF_MOST = 6e4; // what a half float holds
+const float PI = 3.14159265;
 
 #include "lighting/lights.glsl"
 #include "lighting/shadow.glsl"
+#include "lighting/medium.glsl"
+#include "lighting/first.glsl"
+#include "lighting/sweep.glsl"

@@ -13,11 +13,35 @@ enum {
     ROW_TEXELS = 11,       // of a light in `lights`: SHADOW_MAP_TEXELS of lib/shadow_map.glsl
     GREATEST_DEPTH = 2048, // of a 3D image, on any device
     SHADOW_PARTS = 8,      // of a ray, in lighting/shadow.glsl
+    WAYS_X = 8,            // directions side by side in the grid WAYS, in lighting/sweep.glsl
+    WAYS_Y = 6,
+    SWEEP_THREADS = 1024, // at most, for a direction
 };
 
-typedef enum lighting_stage { STAGE_LIGHTS, STAGE_SHADOW, STAGES } lighting_stage;
+typedef enum lighting_stage {
+    STAGE_LIGHTS,
+    STAGE_SHADOW,
+    STAGE_MEDIUM,
+    STAGE_FIRST,
+    STAGE_SWEEP,
+    STAGE_REDUCE,
+    STAGES
+} lighting_stage;
 
-static const char *const stage_defines[STAGES] = {"STAGE_LIGHTS", "STAGE_SHADOW"};
+static const char *const stage_defines[STAGES] = {"STAGE_LIGHTS", "STAGE_SHADOW", "STAGE_MEDIUM",
+                                                  "STAGE_FIRST",  "STAGE_SWEEP",  "STAGE_REDUCE"};
+
+// What one stage leaves for others, besides the outputs: the shader writes NAME_kept and reads
+// NAME_made.
+typedef enum lighting_grid { MEDIUM, SCATTERING, FIRST, SOURCE, WAYS, GRIDS } lighting_grid;
+
+static const struct {
+    const char *name, *kept, *made;
+} grids[GRIDS] = {
+    {"medium", "medium_kept", "medium_made"}, {"scattering", "scattering_kept", "scattering_made"},
+    {"first", "first_kept", "first_made"},    {"source", "source_kept", "source_made"},
+    {"ways", "ways_kept", "ways_made"},
+};
 
 typedef struct lighting_state {
     uint32_t declared; // lights of the scene, its sun among them
@@ -25,6 +49,7 @@ typedef struct lighting_state {
     shader_binary binary[STAGES];
     gpu_pipeline *pipeline[STAGES];
     unsigned char *block[STAGES];
+    graph_image grids[GRIDS];
 } lighting_state;
 
 // ---- declaring --------------------------------------------------------------------------------
@@ -53,6 +78,26 @@ static graph_image image_of(const pass *p, const char *name) {
     return p->images[pass_find_image(p, name)];
 }
 
+static bool add_grids(pass *p) {
+    lighting_state *s = p->state;
+    uint32_t n = s->glow_size;
+    const uint32_t sizes[GRIDS][3] = {
+        {n, n, n}, {n, n, n}, {n, n, 3 * n}, {n, n, 3 * n}, {WAYS_X * n, WAYS_Y * n, n}};
+    for (int i = 0; i < GRIDS; i++) {
+        s->grids[i] = graph_add_image(
+            p->host->graph,
+            &(graph_image_desc){
+                .name = arena_format(p->host->memory, "%s.%s", p->label, grids[i].name),
+                .format = GPU_RGBA16F,
+                .width = sizes[i][0],
+                .height = sizes[i][1],
+                .depth = sizes[i][2],
+            });
+        if (!s->grids[i].id) return false;
+    }
+    return true;
+}
+
 static bool add_images(pass *p) {
     const lighting_state *s = p->state;
     uint32_t n = s->shadow_size, g = s->glow_size;
@@ -62,14 +107,19 @@ static bool add_images(pass *p) {
                        p->label, s->declared, n, GREATEST_DEPTH / s->declared);
     return add_image(p, "lights", (uint32_t[3]){ROW_TEXELS, s->declared + s->fire_count, 0}) &&
            add_image(p, "shadow", (uint32_t[3]){n, n, n * s->declared}) &&
-           add_image(p, "glow", (uint32_t[3]){g, g, 3 * g});
+           add_image(p, "glow", (uint32_t[3]){g, g, 3 * g}) && add_grids(p);
 }
 
 static bool record_lights(pass *p);
 static bool record_shadow(pass *p);
+static bool record_medium(pass *p);
+static bool record_glow(pass *p);
 
 static bool add_parts(pass *p) {
+    const graph_image *own = ((const lighting_state *)p->state)->grids;
     graph_image lights = image_of(p, "lights"), shadow = image_of(p, "shadow");
+    const graph_image glow_reads[] = {lights, shadow, own[MEDIUM], own[SCATTERING]};
+    const graph_image glow_writes[] = {image_of(p, "glow"), own[FIRST], own[SOURCE], own[WAYS]};
     const pass_part parts[] = {
         {.name = "lights", .writes = &lights, .write_count = 1, .record = record_lights},
         {.name = "shadow",
@@ -79,6 +129,19 @@ static bool add_parts(pass *p) {
          .write_count = 1,
          .fields = true,
          .record = record_shadow},
+        {.name = "medium",
+         .reads = &lights, // is first in every frame: it prepares
+         .read_count = 1,
+         .writes = &own[MEDIUM], // and the next
+         .write_count = 2,
+         .fields = true,
+         .record = record_medium},
+        {.name = "glow",
+         .reads = glow_reads,
+         .read_count = COUNT_OF(glow_reads),
+         .writes = glow_writes,
+         .write_count = COUNT_OF(glow_writes),
+         .record = record_glow},
     };
     for (size_t i = 0; i < COUNT_OF(parts); i++)
         if (!pass_add_part(p, &parts[i])) return false;
@@ -149,19 +212,21 @@ bool lighting_fill(pass *p, const shader_binary *binary, unsigned char *block) {
     return true;
 }
 
-// Passes of the graph write these; the shader has a name of its own for reading each.
-static pass_override reading(const pass *p, const char *slot, graph_image image) {
-    return (pass_override){slot,
-                           {.image = graph_get_image(p->host->graph, image),
-                            .sampler = GPU_LINEAR_CLAMP}};
+static pass_override slot(const pass *p, const char *name, graph_image image) {
+    return (pass_override){
+        name, {.image = graph_get_image(p->host->graph, image), .sampler = GPU_LINEAR_CLAMP}};
 }
 
 static bool dispatch(pass *p, lighting_stage stage, uint32_t x, uint32_t y, uint32_t z) {
     const lighting_state *s = p->state;
-    const pass_override overrides[] = {
-        reading(p, "lights_made", image_of(p, "lights")),
-        reading(p, "shadow_made", image_of(p, "shadow")),
+    pass_override overrides[2 + 2 * GRIDS] = {
+        slot(p, "lights_made", image_of(p, "lights")),
+        slot(p, "shadow_made", image_of(p, "shadow")),
     };
+    for (int i = 0; i < GRIDS; i++) {
+        overrides[2 + 2 * i] = slot(p, grids[i].kept, s->grids[i]);
+        overrides[3 + 2 * i] = slot(p, grids[i].made, s->grids[i]);
+    }
     gpu_binding bindings[GPU_MAX_SLOTS];
     size_t count;
     return pass_bind(p, &s->binary[stage], s->block[stage], overrides, COUNT_OF(overrides),
@@ -170,16 +235,40 @@ static bool dispatch(pass *p, lighting_stage stage, uint32_t x, uint32_t y, uint
                         &(gpu_dispatch_desc){s->pipeline[stage], bindings, count, {x, y, z}});
 }
 
-// The first of the parts in every frame, since the others read what it writes.
-static bool record_lights(pass *p) {
+// In the first of the parts of a frame.
+static bool prepare(pass *p) {
     const lighting_state *s = p->state;
     if (!pass_prepare(p)) return false;
     for (int i = 0; i < STAGES; i++)
         if (!pass_fill_block(p, &s->binary[i], s->block[i])) return false;
-    return dispatch(p, STAGE_LIGHTS, s->declared, 1, 1);
+    return true;
+}
+
+static bool record_lights(pass *p) {
+    const lighting_state *s = p->state;
+    return prepare(p) && dispatch(p, STAGE_LIGHTS, s->declared, 1, 1);
+}
+
+static bool record_medium(pass *p) {
+    uint32_t n = ((const lighting_state *)p->state)->glow_size;
+    return dispatch(p, STAGE_MEDIUM, n, n, n);
 }
 
 static bool record_shadow(pass *p) {
     const lighting_state *s = p->state;
     return dispatch(p, STAGE_SHADOW, s->shadow_size, s->shadow_size, SHADOW_PARTS * s->declared);
+}
+
+// A sweep begins with what the one before has left to be scattered, the first with what comes
+// straight from the lights.
+static bool record_glow(pass *p) {
+    uint32_t n = ((const lighting_state *)p->state)->glow_size;
+    uint32_t threads = n * n < SWEEP_THREADS ? n * n : SWEEP_THREADS;
+    int sweeps = (int)pass_evaluate(p, "bounces") + 1;
+    if (!dispatch(p, STAGE_FIRST, n, n, n)) return false;
+    for (int i = 0; i < sweeps; i++)
+        if (!dispatch(p, STAGE_SWEEP, WAYS_X * WAYS_Y * threads, 1, 1) ||
+            !dispatch(p, STAGE_REDUCE, n, n, n))
+            return false;
+    return true;
 }

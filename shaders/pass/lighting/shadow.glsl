@@ -6,7 +6,6 @@
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 8) in;
 
 const int PARTS = 8, PART = SHADOW_SIZE / PARTS, RAYS = 32;
-const float MOST = 60000.0; // that a half float can hold
 const float FAR = 1e5;      // metres to where meshes still throw a shadow
 shared float passed[PARTS][RAYS];
 shared float hidden_from[RAYS]; // metres in the box after which a mesh hides the light
@@ -45,7 +44,7 @@ void main() {
         int k = part * PART + i;
         // The edge of a mesh's shadow is as soft as a slice.
         float steps = slice > 0.0 ? hidden_from[lane] / slice - float(k) - 0.5 : 1.0;
-        vec2 kept = vec2(min(before + sums[i], MOST), clamp(steps, 0.0, 1.0));
+        vec2 kept = vec2(min(before + sums[i], HALF_MOST), clamp(steps, 0.0, 1.0));
         imageStore(shadow, ivec3(texel, index * SHADOW_SIZE + k), vec4(kept, 0.0, 0.0));
     }
 }

@@ -1,0 +1,164 @@
+// Light through the volume in a few directions, by the method of discrete ordinates with short
+// characteristics: Kunasz and Auer, "Short characteristic integration of radiative transfer
+// problems", 1988; on grids for pictures: Fattal, "Participating media illumination using light
+// propagation maps", 2009.
+//
+// SWEEP: one workgroup a direction takes slice after slice across it, each from the one before.
+// REDUCE: from all directions the mean and first moment, which the next sweep scatters.
+
+// 48 directions, all images of one under the symmetries of the cube. With equal weights they
+// integrate polynomials of degree 7 exactly, since the mean of x^4 is 1/5 and that of (x y z)^2 is
+// 1/105: the squares are the roots of x^3 - x^2 + x / 5 - 1 / 105.
+const int WAYS = 48;
+vec3 way_of(int index) {
+    vec3 v = vec3(0.26663540, 0.42251865, 0.86624682);
+    int turn = index >> 3;
+    if (turn >= 3) v = v.yxz;
+    if (turn % 3 == 1) v = v.yzx;
+    if (turn % 3 == 2) v = v.zxy;
+    return mix(v, -v, bvec3(index & 1, index & 2, index & 4));
+}
+
+// Where the radiance of a voxel in a direction is kept.
+ivec3 place_of(ivec3 voxel, int index) {
+    return voxel + ivec3(index & 7, index >> 3, 0) * ivec3(GLOW_SIZE, GLOW_SIZE, 0);
+}
+
+#if defined(STAGE_SWEEP)
+const int CELLS = GLOW_SIZE * GLOW_SIZE;
+const int THREADS = min(CELLS, 1024);
+const int MINE = (CELLS + THREADS - 1) / THREADS;
+layout(local_size_x = THREADS) in;
+
+// Of the slice before: light when it leaves the half of a voxel behind its centre; and packed: what
+// is scattered into the direction and what that half has taken.
+shared vec3 leaving[CELLS];
+shared uvec2 scattering[CELLS];
+
+struct cell {
+    vec3 light;     // where it leaves the voxel
+    vec3 scattered; // per part of the light that the medium takes: the source function
+    float taken;    // part of the light that half a voxel takes
+};
+
+struct path { // of a direction through the grid
+    vec3 way;
+    ivec3 axes;   // the one slices follow each other on, and the other two
+    vec2 back;    // cells sideways to where the way comes from, one slice before
+    float metres; // from slice to slice
+    vec3 outside; // light that enters the box
+};
+
+path make_path(vec3 way) {
+    vec3 cells = way * float(GLOW_SIZE) / max(box_max - box_min, vec3(1e-6)), a = abs(cells);
+    int main_axis = a.x >= max(a.y, a.z) ? 0 : a.y >= a.z ? 1 : 2;
+    ivec3 axes = ivec3(main_axis, (main_axis + 1) % 3, (main_axis + 2) % 3);
+    return path(way, axes, -vec2(cells[axes.y], cells[axes.z]) / a[main_axis], 1.0 / a[main_axis],
+                ambient * sky_radiance(-way));
+}
+
+// Light scattered into the way at a voxel, if the medium took light there.
+vec3 source_at(ivec3 voxel, vec3 way) {
+    float g = medium_anisotropy();
+    vec3 sum;
+    for (int c = 0; c < 3; c++) {
+        vec4 moments = texelFetch(source_made, voxel + ivec3(0, 0, c * GLOW_SIZE), 0);
+        sum[c] = moments.x + 3.0 * g * dot(moments.yzw, way);
+    }
+    vec3 part = texelFetch(scattering_made, voxel, 0).rgb / max(medium_extinction(), vec3(1e-9));
+    return part * max(sum, vec3(0.0));
+}
+
+// What comes from the slice before, between four cells of it; cells outside are empty.
+cell before(path on, ivec2 at, vec3 own_source, bool first) {
+    vec2 from = vec2(at) + on.back, low = floor(from);
+    cell sum = cell(vec3(0.0), vec3(0.0), 0.0);
+    for (int i = 0; i < 4; i++) {
+        ivec2 c = ivec2(low) + ivec2(i & 1, i >> 1);
+        vec2 near = 1.0 - abs(from - vec2(c));
+        float weight = near.x * near.y;
+        if (first || any(lessThan(c, ivec2(0))) || any(greaterThanEqual(c, ivec2(GLOW_SIZE)))) {
+            sum.light += weight * on.outside;
+            sum.scattered += weight * own_source;
+        } else {
+            uvec2 packed = scattering[c.y * GLOW_SIZE + c.x];
+            vec2 last = unpackHalf2x16(packed.y);
+            sum.light += weight * leaving[c.y * GLOW_SIZE + c.x];
+            sum.scattered += weight * vec3(unpackHalf2x16(packed.x), last.x);
+            sum.taken += weight * last.y;
+        }
+    }
+    return sum;
+}
+
+// Mean of exp(-t) from 0 to t.
+vec3 mean_through(vec3 t) {
+    return mix((1.0 - exp(-t)) / max(t, vec3(1e-6)), 1.0 - 0.5 * t, lessThan(t, vec3(1e-2)));
+}
+
+// From centre to centre the source changes linearly with what is taken, which keeps the limit of
+// thick voxels, diffusion; emission is constant in each of the halves.
+cell advance(path on, ivec3 voxel, int index, ivec2 at, bool first) {
+    vec4 medium = texelFetch(medium_made, voxel, 0);
+    vec3 own = source_at(voxel, on.way), factor = medium_extinction();
+    cell from = before(on, at, own, first);
+    float grey = max(factor.r, max(factor.g, factor.b));
+    vec3 half_depth = 0.5 * on.metres * medium.a * factor, through = exp(-half_depth);
+    vec3 given = 0.5 * on.metres * medium.rgb * mean_through(half_depth);
+    // Of the half before only the colour that loses most is known; the others are powers of it.
+    vec3 depth = half_depth - log(max(1.0 - from.taken, 1e-6)) * factor / max(grey, 1e-9);
+    vec3 early = mix(mean_through(depth) - exp(-depth), 0.5 * depth, lessThan(depth, vec3(1e-2)));
+    vec3 late = max(1.0 - exp(-depth) - early, vec3(0.0));
+    vec3 light = from.light * through + given + from.scattered * early + own * late;
+    imageStore(ways_kept, place_of(voxel, index), vec4(min(light, vec3(HALF_MOST)), 0.0));
+    return cell(light * through + given, own, 1.0 - exp(-0.5 * on.metres * medium.a * grey));
+}
+
+void main() {
+    int index = int(gl_WorkGroupID.x), thread = int(gl_LocalInvocationIndex);
+    path on = make_path(way_of(index));
+    for (int k = 0; k < GLOW_SIZE; k++) {
+        cell made[MINE];
+        for (int j = 0; j < MINE; j++) {
+            int id = j * THREADS + thread;
+            if (id >= CELLS) break;
+            ivec2 at = ivec2(id % GLOW_SIZE, id / GLOW_SIZE);
+            ivec3 voxel;
+            voxel[on.axes.x] = on.way[on.axes.x] > 0.0 ? k : GLOW_SIZE - 1 - k;
+            voxel[on.axes.y] = at.x;
+            voxel[on.axes.z] = at.y;
+            made[j] = advance(on, voxel, index, at, k == 0);
+        }
+        barrier();
+        for (int j = 0; j < MINE; j++) {
+            int id = j * THREADS + thread;
+            if (id >= CELLS) break;
+            leaving[id] = made[j].light;
+            scattering[id] = uvec2(packHalf2x16(made[j].scattered.xy),
+                                   packHalf2x16(vec2(made[j].scattered.z, made[j].taken)));
+        }
+        barrier();
+    }
+}
+#endif
+
+#if defined(STAGE_REDUCE)
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+
+void main() {
+    ivec3 voxel = ivec3(gl_GlobalInvocationID);
+    if (any(greaterThanEqual(voxel, ivec3(GLOW_SIZE)))) return;
+    vec3 mean = vec3(0.0), flux[3] = vec3[](vec3(0.0), vec3(0.0), vec3(0.0));
+    for (int i = 0; i < WAYS; i++) {
+        vec3 light = texelFetch(ways_made, place_of(voxel, i), 0).rgb / float(WAYS), way = way_of(i);
+        mean += light;
+        for (int c = 0; c < 3; c++) flux[c] += light[c] * way;
+    }
+    for (int c = 0; c < 3; c++) {
+        ivec3 at = voxel + ivec3(0, 0, c * GLOW_SIZE);
+        vec4 moments = vec4(mean[c], flux[c]);
+        imageStore(glow, at, moments);
+        imageStore(source_kept, at, moments + texelFetch(first_made, at, 0));
+    }
+}
+#endif

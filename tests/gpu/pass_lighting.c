@@ -1,0 +1,132 @@
+// What the pass lighting says about light in a volume, against what is known of simple ones.
+#include "pass_test.h"
+
+enum { SIZE = 16 };
+
+typedef struct place {
+    double x, y, z;
+} place;
+
+typedef struct probe { // a square of points, 16 x 16
+    const char *shows;
+    int index;
+    place corner, across, down;
+} probe;
+
+static const field *at(pass_world *w, place p) {
+    return triple(w, (float)p.x, (float)p.y, (float)p.z);
+}
+
+static place point(probe q, int i) {
+    double u = (i % SIZE + 0.5) / SIZE, v = (i / SIZE + 0.5) / SIZE;
+    return (place){q.corner.x + u * q.across.x + v * q.down.x,
+                   q.corner.y + u * q.across.y + v * q.down.y,
+                   q.corner.z + u * q.across.z + v * q.down.z};
+}
+
+static pass *add_lighting(pass_world *w, const field *density) {
+    pass *p = world_add(w, "lighting", NULL, "lighting");
+    gpu_test_ok(pass_set_field(p, "density", density));
+    gpu_test_ok(pass_set_option(p, "fire_lights", "0"));
+    return p;
+}
+
+// Reads the probe's RGBA; free with mem_free.
+static float *look(pass_world *w, pass *lighting, probe q) {
+    gpu_test_ok(pass_declare(lighting));
+    pass *p = world_add(w, NULL, "lit.comp", "lit");
+    pass_add_source(p, lighting);
+    gpu_test_ok(pass_set_option(p, "shows", q.shows));
+    gpu_test_ok(pass_set_uniform(p, "index", number(w, (float)q.index)));
+    gpu_test_ok(pass_set_uniform(p, "corner", at(w, q.corner)));
+    gpu_test_ok(pass_set_uniform(p, "across", at(w, q.across)));
+    gpu_test_ok(pass_set_uniform(p, "down", at(w, q.down)));
+    gpu_test_ok(pass_declare(p));
+    graph_image seen = pass_output(p, "color");
+    world_render(w, SIZE, SIZE, seen);
+    float *out = mem_alloc(SIZE * SIZE * 4 * sizeof *out);
+    gpu_test_ok(gpu_image_read(w->host.device, graph_get_image(w->host.graph, seen), out,
+                               SIZE * SIZE * 4 * sizeof *out));
+    return out;
+}
+
+static void near(double got, double wanted, double tolerance, probe q, int i) {
+    place p = point(q, i);
+    if (!(fabs(got - wanted) <= tolerance))
+        fail_msg("at %.3f %.3f %.3f: %.5f, not %.5f (+- %g)", p.x, p.y, p.z, got, wanted,
+                 tolerance);
+}
+
+// ---- shadows ----------------------------------------------------------------------------------
+
+// Metres in the cube -1..1 of the way from `from` to `to`.
+static double inside(place from, place to) {
+    const double o[] = {from.x, from.y, from.z};
+    const double d[] = {to.x - from.x, to.y - from.y, to.z - from.z};
+    double near = 0, far = 1;
+    for (int i = 0; i < 3; i++) {
+        double slope = fabs(d[i]) < 1e-12 ? 1e-12 : d[i];
+        double a = (-1 - o[i]) / slope, b = (1 - o[i]) / slope;
+        near = fmax(near, fmin(a, b));
+        far = fmin(far, fmax(a, b));
+    }
+    return fmax(far - near, 0) * sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+}
+
+// A cube of density 1.5 lit by a light; the square cuts through it and reaches out of it.
+static const probe cut = {"shadow", 0, {-1.4, 0.3, 1.4}, {2.8, 0, 0}, {0, 0.2, -2.8}};
+
+static void check_cube(pass_world *w, int index, place light, double tolerance) {
+    pass *lighting = add_lighting(w, block(w, 1, 1.5f));
+    probe q = cut;
+    q.index = index;
+    float *seen = look(w, lighting, q);
+    double most = 0;
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        double wanted = 1.5 * inside(point(q, i), light);
+        near((double)seen[4 * i], wanted, tolerance, q, i);
+        assert_true(seen[4 * i + 1] == 1);
+        most = fmax(most, wanted);
+    }
+    assert_true(most > 2);
+    mem_free(seen);
+}
+
+static void sun_has_passed_the_cube_as_far_as_it_has(void **state) {
+    for (float elevation = 20; elevation <= 90; elevation += 35) {
+        pass_world w;
+        world_open(&w, *state);
+        w.scene.sun.strength = number(&w, 1);
+        w.scene.sun.azimuth = number(&w, 30);
+        w.scene.sun.elevation = number(&w, elevation);
+        double a = GLM_PI / 6, e = (double)elevation * GLM_PI / 180;
+        check_cube(&w, 0, (place){1e4 * cos(a) * cos(e), 1e4 * sin(a) * cos(e), 1e4 * sin(e)},
+                   0.06);
+        world_close(&w);
+    }
+}
+
+static void lamp_has_passed_the_cube_wherever_it_is(void **state) {
+    static const place lamps[] = {{4, 3, 5}, {0.2, -1.5, 0.4}, {0.31, 0.15, -0.23}};
+    for (size_t i = 0; i < COUNT_OF(lamps); i++) {
+        pass_world w;
+        world_open(&w, *state);
+        scene_light lamp = {.kind = SCENE_POINT,
+                            .position = at(&w, lamps[i]),
+                            .color = triple(&w, 1, 1, 1),
+                            .power = number(&w, 10),
+                            .radius = number(&w, 0)};
+        w.scene.lights = &lamp;
+        w.scene.light_count = 1;
+        check_cube(&w, 1, lamps[i], i ? 0.12 : 0.06);
+        world_close(&w);
+    }
+}
+
+int main(void) {
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sun_has_passed_the_cube_as_far_as_it_has),
+        cmocka_unit_test(lamp_has_passed_the_cube_wherever_it_is),
+    };
+    return gpu_test_run(tests, COUNT_OF(tests));
+}
