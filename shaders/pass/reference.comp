@@ -27,18 +27,11 @@ writeonly uniform image2D sum;     //= output rgba32f : all samples, added up
 #include "lib/majorant.glsl"
 #include "lib/path.glsl"
 #include "lib/random.glsl"
+#include "lib/sky.glsl"
 
 const int TURNS = 1 << 18;      // of a path; it ends there
 const float THIN = 0.02, THIN_LATE = 0.5; // Russian roulette below this part of the light, at first and after LATE
 const int LATE = 8;             // scatterings
-
-float sky_pdf(vec3 direction) { return 0.25 / PATH_PI; }
-vec3 sky_radiance(vec3 direction) { return frame_sky(direction); }
-vec3 sky_sample(vec2 random, out float pdf) {
-    pdf = sky_pdf(vec3(0.0));
-    float z = 1.0 - 2.0 * random.x;
-    return path_around(vec3(0.0, 0.0, 1.0), z, sqrt(max(1.0 - z * z, 0.0)), random.y);
-}
 
 struct path_state {
     vec3 weight;          // part of the light here that reaches the eye
@@ -50,7 +43,7 @@ struct path_state {
     bool to_light;        // the ray goes from the last scattering to a light
     vec3 arriving;        // light that comes this way, if nothing stops it
     vec3 from, way;       // where the path goes on after that
-    float pdf, sky_share; // density of `way`; part of the choices of a source that fell to the sky
+    float pdf, sky_part;  // density of `way`; part of the choices of a source that fell to the sky
     bool done;
 };
 
@@ -82,9 +75,9 @@ float importance_of(path_vertex v, light_ray at) {
 }
 
 // One source for the vertex, drawn by importance; -1: the sky. `share`: its part of the choices.
-int choose_source(path_vertex v, float random, out float share, out float sky_share) {
+int choose_source(path_vertex v, float random, out float share, out float sky_part) {
     int chosen = -1;
-    float sky = luminance(0.5 * (frame.sky_zenith.rgb + frame.sky_horizon.rgb)), picked = sky, total = sky;
+    float sky = luminance(sky_mean()), picked = sky, total = sky;
     for (int i = 0; i < light_count(); i++) {
         float importance = importance_of(v, light_at(light_get(i), v.p));
         if (importance <= 0.0) continue;
@@ -97,14 +90,14 @@ int choose_source(path_vertex v, float random, out float share, out float sky_sh
         picked = importance;
     }
     share = total > 0.0 ? picked / total : 0.0;
-    sky_share = total > 0.0 ? sky / total : 0.0;
+    sky_part = total > 0.0 ? sky / total : 0.0;
     return chosen;
 }
 
 // Sends a ray from the vertex to a source.
 void ask_source(inout path_state s, path_vertex v, vec4 random) {
     float share;
-    int chosen = choose_source(v, random.x, share, s.sky_share);
+    int chosen = choose_source(v, random.x, share, s.sky_part);
     if (share <= 0.0) return;
     path_light source;
     if (chosen >= 0) {
@@ -147,8 +140,9 @@ void collide_to_light(inout path_state s, vec3 gone, float bound, float random) 
     s.arriving *= 1.0 - gone / bound;
     float thin = 0.1 * brightest(s.weight), carried = brightest(s.arriving);
     if (carried >= thin) return;
-    if (random * thin >= carried) s.arriving = vec3(0.0);
-    s.arriving *= thin / max(carried, 1e-30);
+    bool ends = random * thin >= carried;
+    s.arriving *= ends ? 0.0 : thin / carried;
+    if (ends) s.walk.at = s.walk.end;
 }
 
 // A tentative collision of a path where the extinction is `gone`: light is given off, and the path
@@ -184,7 +178,7 @@ void leave(inout path_state s, inout path_random more) {
             s.light += sky_alpha * sky;
             s.alpha -= (1.0 - sky_alpha) * dot(s.weight, vec3(1.0 / 3.0));
         } else {
-            s.light += sky * (s.pdf / (s.pdf + s.sky_share * sky_pdf(s.walk.direction)));
+            s.light += sky * (s.pdf / (s.pdf + s.sky_part * sky_pdf(s.walk.direction)));
         }
     }
 }

@@ -1,0 +1,265 @@
+// The path tracer against what is known without one.
+#include "pass_test.h"
+
+// Samples of an execution are few: llvmpipe ends all loops of a thread after 65535 turns together.
+enum { SIZE = 16, PIXELS = SIZE * SIZE, SAMPLES = 4 };
+
+typedef struct picture {      // over all pixels and channels
+    double mean[4], error[4]; // the latter is the standard error of the former
+} picture;
+
+static picture measure(pass_world *w, const pass *p) {
+    picture out = {0};
+    float *pixels = world_read(w, pass_output(p, "color"));
+    for (int c = 0; c < 4; c++) {
+        double sum = 0, squares = 0;
+        for (int i = 0; i < PIXELS; i++) sum += (double)pixels[4 * i + c];
+        out.mean[c] = sum / PIXELS;
+        for (int i = 0; i < PIXELS; i++) squares += pow((double)pixels[4 * i + c] - out.mean[c], 2);
+        out.error[c] = sqrt(squares / (PIXELS - 1) / PIXELS);
+    }
+    mem_free(pixels);
+    return out;
+}
+
+// Within four standard errors, which must be small enough to mean something.
+static void near(picture got, int channel, double wanted) {
+    double error = got.error[channel], allowed = 4 * error + 0.001 * wanted + 1e-6;
+    if (error > 0.01 * wanted + 1e-6)
+        fail_msg("channel %d: %.5f +- %.5f is too noisy", channel, got.mean[channel], error);
+    if (fabs(got.mean[channel] - wanted) > allowed)
+        fail_msg("channel %d: %.5f +- %.5f, not %.5f", channel, got.mean[channel], error, wanted);
+}
+
+static void set(pass_world *w, pass *p, const char *name, float value) {
+    gpu_test_ok(pass_set_uniform(p, name, number(w, value)));
+}
+
+static void set3(pass_world *w, pass *p, const char *name, float x, float y, float z) {
+    gpu_test_ok(pass_set_uniform(p, name, triple(w, x, y, z)));
+}
+
+static pass *begin(pass_world *w, gpu *device, const field *(*density)(pass_world *w)) {
+    world_open(w, device);
+    w->scene.camera.fov = number(w, 1); // all pixels see the same
+    pass *p = world_add(w, "reference", NULL, "reference");
+    gpu_test_ok(pass_set_field(p, "density", density(w)));
+    set(w, p, "samples", SAMPLES);
+    set(w, p, "bounces", 1024);
+    set3(w, p, "albedo", 1, 1, 1);
+    return p;
+}
+
+static void white_sky(pass_world *w) {
+    w->scene.sky.zenith = w->scene.sky.horizon = triple(w, 1, 1, 1);
+    w->scene.sky.strength = number(w, 1);
+}
+
+static void sun(pass_world *w, float azimuth, float elevation, float strength) {
+    w->scene.sun.azimuth = number(w, azimuth);
+    w->scene.sun.elevation = number(w, elevation);
+    w->scene.sun.strength = number(w, strength);
+}
+
+// A picture of so many samples a pixel. Closes the world.
+static picture end(pass_world *w, pass *p, int samples) {
+    gpu_test_ok(pass_declare(p));
+    world_render(w, SIZE, SIZE, pass_output(p, "color"));
+    for (int i = SAMPLES; i < samples; i += SAMPLES) world_frame(w, SIZE, SIZE, 1);
+    picture out = measure(w, p);
+    world_close(w);
+    return out;
+}
+
+static const field *slab(pass_world *w) { // of 2 m along the line of sight
+    return block(w, 1, 0.7f);
+}
+
+static const field *thick(pass_world *w) {
+    return block(w, 1, 1.5f);
+}
+
+static const field *soft_ball(pass_world *w) {
+    const field *shape =
+        row(w, "sphere", SET("radius", number(w, 1)), SET("falloff", number(w, 0.8f)));
+    return row(w, "mul", SET("a", shape), SET("b", number(w, 4)));
+}
+
+// ---- furnaces: whatever does not absorb cannot be told from the sky around it
+// ---------------------
+
+typedef struct furnace {
+    float extinction[3], anisotropy, bound;
+    const char *phase;
+    bool lobes;
+} furnace;
+
+static void heat(gpu *device, const field *(*density)(pass_world *w), furnace f) {
+    pass_world w;
+    pass *p = begin(&w, device, density);
+    white_sky(&w);
+    w.scene.camera.fov = number(&w, 15);
+    set3(&w, p, "extinction", f.extinction[0], f.extinction[1], f.extinction[2]);
+    set(&w, p, "anisotropy", f.anisotropy);
+    if (f.bound > 0) set(&w, p, "majorant_scale", f.bound);
+    if (f.phase) gpu_test_ok(pass_set_option(p, "phase", f.phase));
+    if (f.lobes) {
+        const float weights[4] = {3, 0, 1, 0.5f}, g[4] = {0.8f, 0, -0.5f, 0.1f};
+        gpu_test_ok(pass_set_uniform(p, "lobe_weights", field_constant(&w.memory, 4, weights)));
+        gpu_test_ok(pass_set_uniform(p, "lobe_anisotropies", field_constant(&w.memory, 4, g)));
+    }
+    picture got = end(&w, p, 64);
+    for (int c = 0; c < 4; c++) near(got, c, 1);
+}
+
+static void white_furnace_shows_only_the_sky(void **state) {
+    heat(*state, thick, (furnace){.extinction = {1, 1, 1}});
+    heat(*state, soft_ball, (furnace){.extinction = {1, 1, 1}});
+}
+
+static void coloured_extinction_keeps_the_furnace_white(void **state) {
+    heat(*state, soft_ball, (furnace){.extinction = {0.4f, 1, 2}, .anisotropy = 0.3f});
+}
+
+static void sharp_phase_functions_keep_the_furnace_white(void **state) {
+    heat(*state, soft_ball, (furnace){.extinction = {1, 1, 1}, .anisotropy = 0.8f});
+    heat(*state, soft_ball,
+         (furnace){.extinction = {1, 1, 1}, .anisotropy = 0.8f, .phase = "schlick"});
+    heat(*state, soft_ball, (furnace){.extinction = {1, 1, 1}, .lobes = true});
+    heat(*state, soft_ball, (furnace){.extinction = {1, 1, 1}, .lobes = true, .phase = "schlick"});
+}
+
+static void bounds_that_are_too_low_cost_noise_only(void **state) {
+    heat(*state, soft_ball, (furnace){.extinction = {1, 1, 1}, .bound = 0.9f});
+    heat(*state, soft_ball, (furnace){.extinction = {0.3f, 0.3f, 0.3f}, .bound = 0.75f});
+    heat(*state, soft_ball, (furnace){.extinction = {1, 0.5f, 1}, .bound = 4});
+}
+
+static void absorption_takes_light_away(void **state) {
+    double last = 1;
+    for (float albedo = 0.9f; albedo > 0.2f; albedo -= 0.3f) {
+        pass_world w;
+        pass *p = begin(&w, *state, thick);
+        white_sky(&w);
+        set3(&w, p, "albedo", albedo, albedo, albedo);
+        picture got = end(&w, p, 64);
+        assert_true(got.mean[0] < last - 4 * got.error[0]);
+        assert_true(got.mean[0] > exp(-3.0));
+        last = got.mean[0];
+    }
+}
+
+// ---- slabs
+// ----------------------------------------------------------------------------------------
+
+static void sky_behind_a_slab_follows_beer_and_lambert(void **state) {
+    pass_world w;
+    pass *p = begin(&w, *state, slab);
+    white_sky(&w);
+    set3(&w, p, "albedo", 0, 0, 0);
+    set3(&w, p, "extinction", 0.5f, 1, 2);
+    picture got = end(&w, p, 512);
+    near(got, 0, exp(-0.7));
+    near(got, 1, exp(-1.4));
+    near(got, 2, exp(-2.8));
+    near(got, 3, 1);
+}
+
+static void absorption_color_lets_its_colour_through(void **state) {
+    pass_world w;
+    pass *p = begin(&w, *state, slab);
+    white_sky(&w);
+    set3(&w, p, "albedo", 0, 0, 0);
+    set3(&w, p, "absorption_color", 1, 0.25f, 0);
+    picture got = end(&w, p, 256);
+    near(got, 0, 1);
+    near(got, 1, exp(-0.7));
+    near(got, 2, exp(-1.4));
+}
+
+static void clear_sky_leaves_the_opacity_of_the_medium(void **state) {
+    pass_world w;
+    pass *p = begin(&w, *state, slab);
+    white_sky(&w);
+    set3(&w, p, "albedo", 0, 0, 0);
+    set(&w, p, "sky_alpha", 0);
+    picture got = end(&w, p, 128);
+    near(got, 0, 0);
+    near(got, 3, 1 - exp(-1.4));
+}
+
+static void glowing_slab_has_the_light_of_its_depth(void **state) {
+    pass_world w;
+    pass *p = begin(&w, *state, slab);
+    set3(&w, p, "albedo", 0, 0, 0);
+    gpu_test_ok(pass_set_field(p, "emission", triple(&w, 3, 0, 0)));
+    gpu_test_ok(pass_set_field(p, "radiance", triple(&w, 0, 2, 0)));
+    picture got = end(&w, p, 256);
+    near(got, 0, 3 * (1 - exp(-1.4)) / 0.7);
+    near(got, 1, 2 * (1 - exp(-1.4)));
+    near(got, 2, 0);
+}
+
+static double hg(double cosine, double g) {
+    return (1 - g * g) / (4 * 3.14159265358979 * pow(1 + g * g - 2 * g * cosine, 1.5));
+}
+
+static void sunlight_scattered_once_has_its_closed_form(void **state) {
+    const double s = 0.7, g = 0.3, strength = 5;
+    pass_world w;
+    pass *p = begin(&w, *state, slab);
+    sun(&w, -90, 0, (float)strength); // behind the camera
+    set(&w, p, "bounces", 1);
+    set(&w, p, "anisotropy", (float)g);
+    set3(&w, p, "albedo", 1, 0.5f, 0);
+    picture got = end(&w, p, 256);
+    double back = strength * hg(-1, g) * (1 - exp(-4 * s)) / 2;
+    near(got, 0, back);
+    near(got, 1, back / 2);
+    near(got, 2, 0);
+
+    p = begin(&w, *state, slab);
+    sun(&w, 0, 90, (float)strength); // overhead: through 1 m to the line of sight
+    set(&w, p, "bounces", 1);
+    set(&w, p, "anisotropy", (float)g);
+    near(end(&w, p, 256), 0, strength * hg(0, g) * exp(-s) * (1 - exp(-2 * s)));
+}
+
+// ---- surfaces
+// -------------------------------------------------------------------------------------
+
+static const field *nothing(pass_world *w) {
+    return block(w, 0.5f, 0);
+}
+
+static void white_crate_in_a_white_sky_is_white(void **state) {
+    for (int medium = 0; medium < 2; medium++) {
+        pass_world w;
+        pass *p = begin(&w, *state, medium ? soft_ball : nothing);
+        white_sky(&w);
+        w.scene.camera.fov = number(&w, 30);
+        scene_mesh *mesh = world_mesh(&w, "crate.obj");
+        mesh->color = triple(&w, 1 / 0.6f, 1 / 0.6f, 1 / 0.6f); // without a material it is grey
+        mesh->scale = number(&w, 0.7f);
+        mesh->rotation = triple(&w, 30, 20, 40);
+        picture got = end(&w, p, 64);
+        for (int c = 0; c < 4; c++) near(got, c, 1);
+    }
+}
+
+int main(void) {
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(white_furnace_shows_only_the_sky),
+        cmocka_unit_test(coloured_extinction_keeps_the_furnace_white),
+        cmocka_unit_test(sharp_phase_functions_keep_the_furnace_white),
+        cmocka_unit_test(bounds_that_are_too_low_cost_noise_only),
+        cmocka_unit_test(absorption_takes_light_away),
+        cmocka_unit_test(sky_behind_a_slab_follows_beer_and_lambert),
+        cmocka_unit_test(absorption_color_lets_its_colour_through),
+        cmocka_unit_test(clear_sky_leaves_the_opacity_of_the_medium),
+        cmocka_unit_test(glowing_slab_has_the_light_of_its_depth),
+        cmocka_unit_test(sunlight_scattered_once_has_its_closed_form),
+        cmocka_unit_test(white_crate_in_a_white_sky_is_white),
+    };
+    return gpu_test_run(tests, COUNT_OF(tests));
+}
