@@ -10,19 +10,12 @@ uniform float sky_alpha;          //= 1 [0, 1] : opacity of the sky; 0 for pictu
 writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultiplied
 #include "lib/frame.glsl"
 #include "lib/random.glsl"
+#include "lib/sky.glsl"
 #include "lib/bvh.glsl"
 #include "lib/lighting.glsl"
 
 const float PI = 3.14159265, GOLDEN_ANGLE = 2.39996323;
 const float NEGLIGIBLE = 1.0 / 4096.0; // of the light on a surface: such a light gets no shadow
-
-vec3 sky_radiance(vec3 direction) {
-    return frame_sky(direction);
-}
-
-vec3 sky_irradiance(vec3 n) {
-    return PI * mix(frame.sky_horizon.rgb, frame.sky_zenith.rgb, 0.5 + 0.5 * n.z);
-}
 
 // Two unit vectors across `n`: Duff et al., "Building an orthonormal basis, revisited", 2017.
 mat2x3 across(vec3 n) {
@@ -53,7 +46,8 @@ float light_seen(light l, light_ray ray, vec3 p, vec2 chance) {
     return float(seen) / float(shadow_samples);
 }
 
-// Irradiance from the sky. A ray that meets a mesh brings what the sky lends to that.
+// Irradiance from the sky over pi. A ray that meets a mesh brings what the sky lends to that, as
+// far as it faces up: below the horizon it may face anything.
 vec3 sky_light(vec3 p, vec3 n, vec2 chance) {
     vec3 whole = sky_irradiance(n);
     if (sky_samples == 0) return whole;
@@ -65,12 +59,12 @@ vec3 sky_light(vec3 p, vec3 n, vec2 chance) {
         vec3 way = disc * point + sqrt(max(1.0 - dot(point, point), 0.0)) * n;
         bvh_hit hit = bvh_trace(p, way, 0.0, 1e9);
         if (hit.distance < 0.0) seen++;
-        else back += hit.albedo * sky_irradiance(hit.normal);
+        else back += (0.5 + 0.5 * hit.normal.z) * hit.albedo * sky_irradiance(hit.normal);
     }
     return (float(seen) * whole + back) / float(sky_samples);
 }
 
-// Irradiance at p, on the side of the normal.
+// Irradiance at p, on the side of the normal, over pi: what a white surface sends back.
 vec3 surface_light(vec3 p, vec3 n, uvec2 pixel) {
     vec2 chance = vec2(0.5);
     if (shadow_samples > 1 || sky_samples > 0) chance = random_blue2(pixel, frame.size.z);
@@ -79,7 +73,7 @@ vec3 surface_light(vec3 p, vec3 n, uvec2 pixel) {
     for (int i = 0; i < count; i++) {
         light l = light_get(i);
         light_ray ray = light_at(l, p);
-        vec3 given = ray.irradiance * max(dot(n, ray.direction), 0.0);
+        vec3 given = ray.irradiance * (max(dot(n, ray.direction), 0.0) / PI);
         bool matters = any(greaterThan(given, NEGLIGIBLE * sum));
 #if HAS_LIGHTS && HAS_SHADOW
         if (matters) given *= exp(-lighting_extinction() * lighting_shadow(i, p).x);
@@ -106,6 +100,6 @@ void main() {
     vec3 n = normalize(texelFetch(normal, texel, 0).xyz);
     // Rays begin as far off the surface as rounding may have moved the point: less than a pixel.
     vec3 p = frame.eye.xyz + deep * along + (1e-4 + 3e-4 * distance) * n;
-    vec3 lit = base.rgb / PI * surface_light(p, n, uvec2(pixel));
+    vec3 lit = base.rgb * surface_light(p, n, uvec2(pixel));
     imageStore(color, pixel, vec4(mix(frame.sky_horizon.rgb, lit, exp(-haze * distance)), 1.0));
 }

@@ -6,7 +6,7 @@ for _, name in ipairs { "io", "os", "debug", "package", "load", "loadfile", "dof
 end
 assert(string.dump == nil)
 local img = geometry {}
-for _, object in ipairs { img, img.color, perlin {}, fx, "" } do
+for _, object in ipairs { img, img.depth, perlin {}, fx, "" } do
   assert(getmetatable(object) == false)
   assert(not pcall(setmetatable, object, {}))
   assert(not pcall(rawset, object, "x", 1))
