@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write effects/data/ground.obj, crates.obj and yard.obj: what stands around the explosions.
+"""Write effects/data/ground.obj, crates.obj, yard.obj and stack.obj: what stands around fire and smoke.
 
   python3 scripts/data/make_scene.py effects/data
 """
@@ -50,6 +50,28 @@ def yard():
         yield (x, y, 0), (0.46, 0.46, 0.75), turn + 45, "steel"
 
 
+SIDES = 32
+STACK = (  # height and radius of each ring of the chimney, material below it
+    (0.0, 0.62, None), (3.6, 0.52, "concrete"), (4.2, 0.50, "red"), (4.8, 0.48, "white"), (5.4, 0.47, "red"),
+    (6.0, 0.46, "white"), (6.0, 0.34, "concrete"), (5.5, 0.33, "soot"), (5.5, 0.0, "soot"),
+)
+
+
+def stack():
+    """A chimney of 6 m, open at the top."""
+    for (z0, r0, _), (z1, r1, material) in zip(STACK, STACK[1:]):
+        corners = []
+        for z, r in ((z0, r0), (z1, r1)):
+            for i in range(SIDES):
+                a = 2 * math.pi * i / SIDES
+                corners.append((r * math.cos(a), r * math.sin(a), z))
+        faces = []
+        for i in range(1, SIDES + 1):
+            k = i % SIDES + 1
+            faces.append((i, k, SIDES + k, SIDES + i) if r1 > 0 else (i, k, SIDES + 1))
+        yield material, corners, faces
+
+
 def write(path, name, materials, groups):
     with open(path + ".mtl", "w") as out:
         for key, color in materials.items():
@@ -75,3 +97,5 @@ write(folder + "/crates", "crates", {"crate": (0.22, 0.13, 0.06)},
 write(folder + "/yard", "yard", {"wall": (0.30, 0.27, 0.24), "red": (0.35, 0.06, 0.03), "blue": (0.05, 0.12, 0.25),
                                  "green": (0.06, 0.18, 0.08), "steel": (0.20, 0.20, 0.21)},
       [(m, box(p, s, t), FACES) for p, s, t, m in yard()])
+write(folder + "/stack", "stack", {"concrete": (0.38, 0.36, 0.33), "red": (0.42, 0.06, 0.04), "white": (0.62, 0.61, 0.58),
+                                   "soot": (0.02, 0.02, 0.02)}, stack())
