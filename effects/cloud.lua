@@ -25,7 +25,6 @@ local lit = lighting {
   bounces    = 12,
 }
 local scene  = geometry {}
-local solid  = shade { from = scene }
 local sky    = shade { from = {scene, lit} }
 local volume = march { from = {lit, scene}, steps = 160 }
 

@@ -42,7 +42,6 @@ local lit = lighting {
 }
 
 local scene = geometry { mesh { "data/ground.obj" }, mesh { "data/yard.obj" } }
-local solid = shade { from = scene }
 local solid = shade { from = {scene, lit}, shadow_samples = 4 }
 local volume = march { from = {lit, scene}, steps = 128, resolution = 0.5 }
 
