@@ -21,11 +21,13 @@ uniform sampler3D scattering_made;
 uniform sampler3D first_made;
 uniform sampler3D source_made;
 uniform sampler3D ways_made;
+uniform sampler3D fire_made;
 layout(rgba16f) writeonly uniform image3D medium_kept;     // emission (W/m^3/sr) and density
 layout(rgba16f) writeonly uniform image3D scattering_kept; // coefficient of density 1
 layout(rgba16f) writeonly uniform image3D first_kept;      // moments of what comes straight from the lights
 layout(rgba16f) writeonly uniform image3D source_kept;     // moments of all light that is scattered
 layout(rgba16f) writeonly uniform image3D ways_kept;       // radiance in each of the directions
+layout(rgba16f) writeonly uniform image3D fire_kept;       // light that leaves the volume (W/m^3/sr); which way
 
 #include "lib/medium.glsl"
 #include "lib/light.glsl"
@@ -37,6 +39,7 @@ const float HALF_MOST = 6e4; // what a half float holds
 const float PI = 3.14159265;
 
 #include "lighting/lights.glsl"
+#include "lighting/fire.glsl"
 #include "lighting/shadow.glsl"
 #include "lighting/medium.glsl"
 #include "lighting/first.glsl"

@@ -16,10 +16,13 @@ enum {
     WAYS_X = 8,            // directions side by side in the grid WAYS, in lighting/sweep.glsl
     WAYS_Y = 6,
     SWEEP_THREADS = 1024, // at most, for a direction
+    GATHER_THREADS = 512, // for a light, in lighting/fire.glsl
 };
 
 typedef enum lighting_stage {
     STAGE_LIGHTS,
+    STAGE_FIRE,
+    STAGE_GATHER,
     STAGE_SHADOW,
     STAGE_MEDIUM,
     STAGE_FIRST,
@@ -28,19 +31,20 @@ typedef enum lighting_stage {
     STAGES
 } lighting_stage;
 
-static const char *const stage_defines[STAGES] = {"STAGE_LIGHTS", "STAGE_SHADOW", "STAGE_MEDIUM",
-                                                  "STAGE_FIRST",  "STAGE_SWEEP",  "STAGE_REDUCE"};
+static const char *const stage_defines[STAGES] = {"STAGE_LIGHTS", "STAGE_FIRE",   "STAGE_GATHER",
+                                                  "STAGE_SHADOW", "STAGE_MEDIUM", "STAGE_FIRST",
+                                                  "STAGE_SWEEP",  "STAGE_REDUCE"};
 
 // What one stage leaves for others, besides the outputs: the shader writes NAME_kept and reads
 // NAME_made.
-typedef enum lighting_grid { MEDIUM, SCATTERING, FIRST, SOURCE, WAYS, GRIDS } lighting_grid;
+typedef enum lighting_grid { MEDIUM, SCATTERING, FIRST, SOURCE, WAYS, FIRE, GRIDS } lighting_grid;
 
 static const struct {
     const char *name, *kept, *made;
 } grids[GRIDS] = {
     {"medium", "medium_kept", "medium_made"}, {"scattering", "scattering_kept", "scattering_made"},
     {"first", "first_kept", "first_made"},    {"source", "source_kept", "source_made"},
-    {"ways", "ways_kept", "ways_made"},
+    {"ways", "ways_kept", "ways_made"},       {"fire", "fire_kept", "fire_made"},
 };
 
 typedef struct lighting_state {
@@ -82,7 +86,13 @@ static bool add_grids(pass *p) {
     lighting_state *s = p->state;
     uint32_t n = s->glow_size;
     const uint32_t sizes[GRIDS][3] = {
-        {n, n, n}, {n, n, n}, {n, n, 3 * n}, {n, n, 3 * n}, {WAYS_X * n, WAYS_Y * n, n}};
+        [MEDIUM] = {n, n, n},
+        [SCATTERING] = {n, n, n},
+        [FIRST] = {n, n, 3 * n},
+        [SOURCE] = {n, n, 3 * n},
+        [WAYS] = {WAYS_X * n, WAYS_Y * n, n},
+        [FIRE] = {n, n, 2 * n},
+    };
     for (int i = 0; i < GRIDS; i++) {
         s->grids[i] = graph_add_image(
             p->host->graph,
@@ -116,12 +126,19 @@ static bool record_medium(pass *p);
 static bool record_glow(pass *p);
 
 static bool add_parts(pass *p) {
-    const graph_image *own = ((const lighting_state *)p->state)->grids;
+    const lighting_state *s = p->state;
+    const graph_image *own = s->grids;
     graph_image lights = image_of(p, "lights"), shadow = image_of(p, "shadow");
+    const graph_image none = {0}, lights_writes[] = {lights, own[FIRE]};
     const graph_image glow_reads[] = {lights, shadow, own[MEDIUM], own[SCATTERING]};
     const graph_image glow_writes[] = {image_of(p, "glow"), own[FIRST], own[SOURCE], own[WAYS]};
     const pass_part parts[] = {
-        {.name = "lights", .writes = &lights, .write_count = 1, .record = record_lights},
+        {.name = "lights",
+         .reads = s->fire_count ? &own[MEDIUM] : &none,
+         .read_count = 1,
+         .writes = lights_writes,
+         .write_count = COUNT_OF(lights_writes),
+         .record = record_lights},
         {.name = "shadow",
          .reads = &lights,
          .read_count = 1,
@@ -130,7 +147,7 @@ static bool add_parts(pass *p) {
          .fields = true,
          .record = record_shadow},
         {.name = "medium",
-         .reads = &lights, // is first in every frame: it prepares
+         .reads = s->fire_count ? &none : &lights, // of the two, one is the first in a frame
          .read_count = 1,
          .writes = &own[MEDIUM], // and the next
          .write_count = 2,
@@ -173,16 +190,22 @@ static bool compile(pass *p, lighting_stage stage, shader_binary *out) {
     return pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines), out);
 }
 
+static bool is_used(const lighting_state *s, lighting_stage stage) {
+    return s->fire_count || (stage != STAGE_FIRE && stage != STAGE_GATHER);
+}
+
 bool lighting_check(pass *p) {
     shader_binary binary;
     for (int i = 0; i < STAGES; i++)
-        if (!compile(p, (lighting_stage)i, &binary)) return false;
+        if (is_used(p->state, (lighting_stage)i) && !compile(p, (lighting_stage)i, &binary))
+            return false;
     return true;
 }
 
 bool lighting_build(pass *p) {
     lighting_state *s = p->state;
     for (int i = 0; i < STAGES; i++) {
+        if (!is_used(s, (lighting_stage)i)) continue;
         if (!compile(p, (lighting_stage)i, &s->binary[i])) return false;
         s->pipeline[i] = pass_create_compute(p, &s->binary[i]);
         if (!s->pipeline[i]) return false;
@@ -235,23 +258,28 @@ static bool dispatch(pass *p, lighting_stage stage, uint32_t x, uint32_t y, uint
                         &(gpu_dispatch_desc){s->pipeline[stage], bindings, count, {x, y, z}});
 }
 
-// In the first of the parts of a frame.
+// In the first of the parts of a frame: all others read what it writes.
 static bool prepare(pass *p) {
     const lighting_state *s = p->state;
     if (!pass_prepare(p)) return false;
     for (int i = 0; i < STAGES; i++)
-        if (!pass_fill_block(p, &s->binary[i], s->block[i])) return false;
+        if (is_used(s, (lighting_stage)i) && !pass_fill_block(p, &s->binary[i], s->block[i]))
+            return false;
     return true;
 }
 
 static bool record_lights(pass *p) {
     const lighting_state *s = p->state;
-    return prepare(p) && dispatch(p, STAGE_LIGHTS, s->declared, 1, 1);
+    uint32_t n = s->glow_size;
+    if (!s->fire_count) return prepare(p) && dispatch(p, STAGE_LIGHTS, s->declared, 1, 1);
+    return dispatch(p, STAGE_LIGHTS, s->declared, 1, 1) && dispatch(p, STAGE_FIRE, n, n, n) &&
+           dispatch(p, STAGE_GATHER, s->fire_count * GATHER_THREADS, 1, 1);
 }
 
 static bool record_medium(pass *p) {
-    uint32_t n = ((const lighting_state *)p->state)->glow_size;
-    return dispatch(p, STAGE_MEDIUM, n, n, n);
+    const lighting_state *s = p->state;
+    uint32_t n = s->glow_size;
+    return (!s->fire_count || prepare(p)) && dispatch(p, STAGE_MEDIUM, n, n, n);
 }
 
 static bool record_shadow(pass *p) {

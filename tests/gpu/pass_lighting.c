@@ -123,10 +123,67 @@ static void lamp_has_passed_the_cube_wherever_it_is(void **state) {
     }
 }
 
+// ---- fire -------------------------------------------------------------------------------------
+
+// A ball of radius 0.3 that gives off light, hardly any smoke; a square of points below it.
+static void fire_lights_its_surroundings_like_a_lamp(void **state) {
+    static const char *const counts[] = {"1", "8"};
+    for (size_t k = 0; k < COUNT_OF(counts); k++) {
+        pass_world w;
+        world_open(&w, *state);
+        const place centre = {0.4, -0.2, 1};
+        const field *ball = row(&w, "sphere", SET("position", at(&w, centre)),
+                                SET("radius", number(&w, 0.3f)), SET("falloff", number(&w, 0)));
+        const field *factors[FIELD_MAX_ARGS] = {ball, number(&w, 0.01f)};
+        pass *p = add_lighting(&w, field_make(&w.memory, "mul", factors, NULL));
+        gpu_test_ok(pass_set_option(p, "fire_lights", counts[k]));
+        gpu_test_ok(pass_set_field(p, "emission", triple(&w, 7, 3.5f, 0)));
+        probe q = {"irradiance", 0, {-3, -3, -0.5}, {6, 0, 0}, {0, 6, 0}};
+        float *seen = look(&w, p, q);
+        double intensity = 7 * 4 / 3.0 * GLM_PI * 0.027;
+        for (int i = 0; i < SIZE * SIZE; i++) {
+            place to = point(q, i);
+            double x = to.x - centre.x, y = to.y - centre.y, z = to.z - centre.z;
+            double wanted = intensity / (x * x + y * y + z * z);
+            near((double)seen[4 * i], wanted, 0.03 * wanted, q, i);
+            near((double)seen[4 * i + 1], 0.5 * wanted, 0.02 * wanted, q, i);
+            assert_true(seen[4 * i + 2] == 0);
+        }
+        mem_free(seen);
+        world_close(&w);
+    }
+}
+
+// One half of the ball of fire is in thick smoke: it shines to the other side.
+static void fire_shines_where_no_smoke_is_in_its_way(void **state) {
+    pass_world w;
+    world_open(&w, *state);
+    const field *ball =
+        row(&w, "sphere", SET("radius", number(&w, 1)), SET("falloff", number(&w, 0)));
+    const field *smoke = row(&w, "box", SET("position", triple(&w, 0, 0, 0.6f)),
+                             SET("size", triple(&w, 2, 2, 0.8f)), SET("falloff", number(&w, 0)));
+    const field *thick[FIELD_MAX_ARGS] = {smoke, number(&w, 20)},
+                *thin[FIELD_MAX_ARGS] = {ball, number(&w, 0.01f)};
+    const field *both[FIELD_MAX_ARGS] = {field_make(&w.memory, "mul", thick, NULL),
+                                         field_make(&w.memory, "mul", thin, NULL)};
+    pass *p = add_lighting(&w, field_make(&w.memory, "add", both, NULL));
+    gpu_test_ok(pass_set_option(p, "fire_lights", "8"));
+    const field *glowing[FIELD_MAX_ARGS] = {ball, number(&w, 5)};
+    gpu_test_ok(pass_set_field(p, "emission", field_make(&w.memory, "mul", glowing, NULL)));
+    probe q = {"irradiance", 0, {-0.1, -0.1, -6}, {0.2, 0, 0}, {0, 0, 12}};
+    float *seen = look(&w, p, q);
+    const float *below = seen + 4 * 8, *above = seen + 4 * (15 * SIZE + 8);
+    assert_true(below[0] > 4 * above[0] && above[0] >= 0);
+    mem_free(seen);
+    world_close(&w);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(sun_has_passed_the_cube_as_far_as_it_has),
         cmocka_unit_test(lamp_has_passed_the_cube_wherever_it_is),
+        cmocka_unit_test(fire_lights_its_surroundings_like_a_lamp),
+        cmocka_unit_test(fire_shines_where_no_smoke_is_in_its_way),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }

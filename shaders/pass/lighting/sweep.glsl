@@ -6,6 +6,7 @@
 // SWEEP: one workgroup a direction takes slice after slice across it, each from the one before.
 // REDUCE: from all directions the mean and first moment, which the next sweep scatters.
 
+#if defined(STAGE_SWEEP) || defined(STAGE_REDUCE)
 // 48 directions, all images of one under the symmetries of the cube. With equal weights they
 // integrate polynomials of degree 7 exactly, since the mean of x^4 is 1/5 and that of (x y z)^2 is
 // 1/105: the squares are the roots of x^3 - x^2 + x / 5 - 1 / 105.
@@ -161,4 +162,5 @@ void main() {
         imageStore(source_kept, at, moments + texelFetch(first_made, at, 0));
     }
 }
+#endif
 #endif
