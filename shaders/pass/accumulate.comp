@@ -13,7 +13,7 @@ uniform sampler2D before;          //= input history color : what was gathered u
 uniform sampler2D known;           //= input history state : `state` of the last frame
 uniform float frames;              //= 8 [1, 64] : how many frames are averaged, in effect; 1: none
 uniform float spread;              //= 1 [0, 10] : standard deviations by which the history may differ from what is around the pixel
-uniform float tolerance;           //= 0.1 [0.001, 1] : relative difference in depth that counts as something else
+uniform float depth_tolerance;     //= 0.1 [0.001, 1] : relative difference in depth that counts as something else
 writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity
 writeonly uniform image2D state;   //= output rgba16f : depth of the volume and of the scene (m; 0: none), frames gathered
 
@@ -87,7 +87,7 @@ float agreement(vec2 uv, float volume, float scene) {
         apart_volume = min(apart_volume, both ? abs(then.x - volume) / volume : 0.0);
         apart_scene = min(apart_scene, scene > 0.0 ? abs(then.y - scene) / scene : 0.0);
     }
-    return 1.0 - smoothstep(tolerance, 2.0 * tolerance, max(apart_volume, apart_scene));
+    return 1.0 - smoothstep(depth_tolerance, 2.0 * depth_tolerance, max(apart_volume, apart_scene));
 }
 
 void main() {
