@@ -1,5 +1,5 @@
--- Step 8: light. A low sun and a dusky sky, soot that is dark and scatters forward, and the shadow of
--- the smoke on the ground.
+-- Step 8: light. A low sun and a dusky sky, soot that is dark and scatters forward, and light that
+-- finds its way: the smoke's shadow lies on the ground, and its fire lights what stands around.
 --
 --   roil render effects/step-08-light.lua --frames 44 -o light.png
 
@@ -25,14 +25,9 @@ local torn  = vec(burst.density, burst.temperature, burst.flame):warp(flow, tear
 local smoke, heat, flame = torn.x, torn.y, torn.z
 
 -- Lumps stand out at the edges, where the smoke is thin; its thick core is left alone.
+local lumps = worley { frequency = 1.4, octaves = 4, persistence = 0.55, seed = 11, drift = {0, 0, -0.5} }:warp(flow, 0.25)
 local cover = clamp(smoke * 3, 0, 1)
-local function lumps(octaves)
-  return worley { frequency = 1.4, octaves = octaves, persistence = 0.55, seed = 11, drift = {0, 0, -0.5} }:warp(flow, 0.25)
-end
-local fine = lumps(4)
-local function body(noise)
-  return cover * smoothstep(0, 0.15, cover - eaten * (1 - noise) * (1 - 0.7 * cover)) * (smoke + 0.15)
-end
+local body  = cover * smoothstep(0, 0.15, cover - eaten * (1 - lumps) * (1 - 0.7 * cover)) * (smoke + 0.15)
 
 -- The glow of hot soot, which grows with the fourth power of its temperature in kelvin.
 local fire  = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
@@ -41,19 +36,17 @@ local scene  = geometry {
   mesh { "data/ground.obj" },
   mesh { "data/crates.obj", position = {-4, -4, 0} },
 }
-local solid  = shade { from = scene, haze = 0.004 }
-local volume = march {
-  density        = body(fine) * density,
-  shadow_density = body(lumps(2)) * density, -- shadows are soft: fewer octaves will do for them
-  emission       = fire(heat * (0.45 + 0.85 * fine) * kelvin) * flame * glow,
-  albedo         = {0.45, 0.43, 0.41},
-  anisotropy     = 0.3,
-  ambient        = 0.6,
-  shadow_steps   = 12,
-  sampling       = "cubic", -- smooth between voxels, at a price
-  depth          = scene.depth,
-}
 
-local picture = over { volume, solid }
-fx.output = final { picture, tonemap = "reinhard" }.color
+-- What light reaches where, worked out once a frame: through the smoke, past the crates, from the fire.
+local lit    = lighting {
+  density    = body * density,
+  emission   = fire(heat * (0.45 + 0.85 * lumps) * kelvin) * flame * glow,
+  albedo     = {0.45, 0.43, 0.41},
+  anisotropy = 0.3,
+  sampling   = "cubic", -- smooth between voxels, at a price
+}
+local solid  = shade { from = {scene, lit}, haze = 0.004 }
+local volume = march { from = {lit, scene} }
+
+fx.output = final { over { volume, solid }, tonemap = "reinhard" }.color
 return fx

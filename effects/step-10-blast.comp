@@ -1,16 +1,13 @@
-// What a blast throws out: the light of its fire upon the ground, and sparks on curved paths.
+// What a blast throws out: sparks on curved paths.
 uniform sampler2D input_;          //= input : the picture
 uniform sampler2D depth;           //= input : depth of the scene (m)
-uniform sampler2D volume;          //= input : the smoke, which hides the ground behind it
-uniform vec3 position;             //= 0 m : middle of the fire
-uniform float light;               //= 10 [0, 1000] : how much the fire lights the ground, at one metre
-uniform vec3 tint;                 //= {1, 0.5, 0.2} [0, 1] : colour of that light
+uniform vec3 position;             //= 0 m : where they come from
 uniform int count;                 //= 200 [0, 256] : sparks
 uniform float speed;               //= 14 [0, 100] m/s : of the fastest spark
 uniform float width;               //= 0.012 [0, 1] m : of a spark
 uniform float brightness;          //= 16 [0, 1000] : of a spark when it is young
 uniform float shutter;             //= 0.04 [0, 1] s : how long a spark draws its streak
-uniform writeonly image2D color;   //= output rgba16f : the picture with both
+uniform writeonly image2D color;   //= output rgba16f : the picture with them
 #include "lib/frame.glsl"
 #include "lib/random.glsl"
 
@@ -25,7 +22,7 @@ vec3 path(uint spark, float age) {
     float angle = 6.2832 * chance(spark, 0u), up = 0.05 + 0.95 * chance(spark, 1u);
     vec3 way = vec3(sqrt(1.0 - up * up) * vec2(cos(angle), sin(angle)), up);
     float fast = speed * (0.35 + 0.65 * chance(spark, 2u)), drag = 1.6;
-    return vec3(position.xy, 0.5) + way * fast * (1.0 - exp(-drag * age)) / drag - vec3(0.0, 0.0, 3.0 * age * age);
+    return position + way * fast * (1.0 - exp(-drag * age)) / drag - vec3(0.0, 0.0, 3.0 * age * age);
 }
 
 vec2 on_picture(vec3 seen) { return seen.xy / (-2.0 * frame.lens.y * seen.z); }
@@ -58,25 +55,6 @@ vec3 sparks(vec2 p, float deep) {
     return sum;
 }
 
-// The point of the scene in a pixel; far away for a pixel outside the picture.
-vec3 ground(ivec2 pixel, ivec2 size) {
-    if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, size))) return vec3(1e9);
-    return frame.eye.xyz + frame_ray((vec2(pixel) + 0.5) / vec2(size)) * texelFetch(depth, pixel, 0).r;
-}
-
-// To the neighbour on the same surface: of the two that is the nearer one.
-vec3 along(ivec2 pixel, ivec2 side, ivec2 size) {
-    vec3 here = ground(pixel, size), after = ground(pixel + side, size) - here, before = here - ground(pixel - side, size);
-    return dot(after, after) < dot(before, before) ? after : before;
-}
-
-// How much the fire lights the surface in this pixel.
-float lit(ivec2 pixel, ivec2 size) {
-    vec3 to = position - ground(pixel, size);
-    vec3 normal = cross(along(pixel, ivec2(1, 0), size), along(pixel, ivec2(0, -1), size));
-    return light * max(dot(normalize(normal), normalize(to)), 0.0) / max(dot(to, to), 1.0);
-}
-
 void main() {
     throw_spark(gl_LocalInvocationIndex);
     barrier();
@@ -86,7 +64,6 @@ void main() {
     vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
     float deep = texelFetch(depth, pixel, 0).r;
     vec4 c = texelFetch(input_, pixel, 0);
-    if (deep < frame.lens.w) c.rgb *= 1.0 + lit(pixel, size) * tint * (1.0 - textureLod(volume, uv, 0.0).a);
     vec2 p = (uv - 0.5) * vec2(float(size.x) / float(size.y), -1.0);
     imageStore(color, pixel, c + vec4(sparks(p, deep), 0.0));
 }

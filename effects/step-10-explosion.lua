@@ -1,4 +1,4 @@
--- Step 10: a pass of your own. step-10-blast.comp lights the ground by the fire and throws sparks.
+-- Step 10: a pass of your own. step-10-blast.comp throws sparks.
 --
 --   roil render effects/step-10-explosion.lua --frames 20 -o explosion.png
 
@@ -25,14 +25,9 @@ local torn  = bake(vec(burst.density, burst.temperature, burst.flame):warp(flow,
 local smoke, heat, flame = torn.x, torn.y, torn.z
 
 -- Lumps stand out at the edges, where the smoke is thin; its thick core is left alone.
+local lumps = worley { frequency = 1.4, octaves = 4, persistence = 0.55, seed = 11, drift = {0, 0, -0.5} }:warp(flow, 0.25)
 local cover = clamp(smoke * 3, 0, 1)
-local function lumps(octaves)
-  return worley { frequency = 1.4, octaves = octaves, persistence = 0.55, seed = 11, drift = {0, 0, -0.5} }:warp(flow, 0.25)
-end
-local fine = lumps(4)
-local function body(noise)
-  return cover * smoothstep(0, 0.15, cover - eaten * (1 - noise) * (1 - 0.7 * cover)) * (smoke + 0.15)
-end
+local body  = cover * smoothstep(0, 0.15, cover - eaten * (1 - lumps) * (1 - 0.7 * cover)) * (smoke + 0.15)
 
 -- The glow of hot soot, which grows with the fourth power of its temperature in kelvin.
 local fire  = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
@@ -41,26 +36,27 @@ local scene  = geometry {
   mesh { "data/ground.obj" },
   mesh { "data/crates.obj", position = {-4, -4, 0} },
 }
-local solid  = shade { from = scene, haze = 0.004 }
+
+-- What light reaches where, worked out once a frame: through the smoke, past the crates, from the fire.
+local lit    = lighting {
+  density    = body * density,
+  emission   = fire(heat * (0.45 + 0.85 * lumps) * kelvin) * flame * glow,
+  albedo     = {0.45, 0.43, 0.41},
+  anisotropy = 0.3,
+  sampling   = "linear", -- the bake is smooth already
+}
+local solid  = shade { from = {scene, lit}, haze = 0.004 }
 local volume = march {
-  density        = body(fine) * density,
-  shadow_density = body(lumps(2)) * density, -- shadows are soft: fewer octaves will do for them
-  emission       = fire(heat * (0.45 + 0.85 * fine) * kelvin) * flame * glow,
-  albedo         = {0.45, 0.43, 0.41},
-  anisotropy     = 0.3,
-  ambient        = 0.6,
-  shadow_steps   = 12,
-  depth          = scene.depth,
-  sampling       = "linear", -- the bake is smooth already
-  steps          = steps,
-  resolution     = 0.5,      -- a quarter of the rays; `over` scales up along the edges of the scene
+  from       = {lit, scene},
+  steps      = steps,
+  resolution = 0.5, -- a quarter of the rays; `over` scales up along the edges of the scene
 }
 
 local picture = over { volume, solid, depth = scene.depth, edge = volume.edge }
 local blast   = shader {
-  "step-10-blast.comp", picture, scene.depth, volume,
-  position = function(t) return {0, 0, 1.2 + 0.8 * t} end,
-  light    = curve { {0, 0}, {0.1, 150}, {1, 100}, {2.2, 10}, {3, 0}, shape = "cubic" },
+  "step-10-blast.comp", picture, scene.depth,
+  position = {0, 0, 0.5},
+  speed    = 14,
 }
 local halo    = bloom { bright { blast, threshold = 1 }, radius = 0.75 }
 fx.output = final { blast, halo, bloom_intensity = 0.5, exposure_ev = 0.5, tonemap = "reinhard" }.color
