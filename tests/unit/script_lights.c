@@ -1,4 +1,5 @@
-// Lights as an effect file says them.
+// Lights and the sky's image as an effect file says them.
+#include "media/exr.h"
 #include "script_helper.h"
 #include <math.h>
 
@@ -101,12 +102,91 @@ static void mistakes_are_named(void **state) {
     refused(HEAD "fx.light = {}" TAIL, "effect: unknown field 'light'; did you mean 'lights'?");
 }
 
+// ---- the sky's image ----------------------------------------------------------------------------
+
+static void put_sky(const char *name, float value) {
+    char path[PATH_CAP];
+    float values[8] = {value, value, value, value, value, value, value, value};
+    exr_channel channel = {"Y", values, false};
+    assert_true(path_join(path, helper_folder, name));
+    if (!exr_write(path, &(exr_image){4, 2, &channel, 1})) fail_msg("%s", err_get());
+}
+
+static void sky_can_be_an_image(void **state) {
+    (void)state;
+    put_sky("sky.exr", 3);
+    effect *e = load(HEAD "fx.sky = sky { image = 'sky.exr', rotation = 90 }" TAIL);
+    struct frame_block frame;
+    const scene *s = effect_scene(e);
+    assert_non_null(s->sky.image);
+    assert_true(scene_fill_frame(s, effect_pass_host(e)->context, 1, &frame));
+    assert_true(frame.sky_zenith.v[3] == 1); // as bright as the file has it
+    assert_true(fabsf(frame.sky_horizon.v[3] - GLM_PI_2f) < 1e-6f);
+    assert_true(fabsf(frame.sky_zenith.v[0] - 3) < 1e-3f);
+    const char *const *files;
+    bool watched = false;
+    for (size_t i = 0, n = effect_files(e, &files); i < n; i++)
+        watched = watched || strcmp(path_name(files[i]), "sky.exr") == 0;
+    assert_true(watched);
+    effect_destroy(e);
+}
+
+static void controls_are_those_of_the_sky_that_is_there(void **state) {
+    (void)state;
+    put_sky("sky.exr", 3);
+    effect *e = load(HEAD "fx.sky = sky { image = 'sky.exr', strength = 2 }" TAIL);
+    assert_true(effect_check_settings(e));
+    assert_true(effect_set(e, "sky.rotation", "45"));
+    assert_true(effect_set(e, "sun.angle", "2"));
+    assert_false(effect_set(e, "sky.zenith", "1,1,1"));
+    assert_string_equal(err_get(),
+                        "sky.zenith: this sky is an image; only one of two colours has it");
+    effect_destroy(e);
+    e = load(HEAD "fx.sky = sky { image = 'sky.exr' } fx.sky = sky { horizon = 1 }" TAIL);
+    assert_null(effect_scene(e)->sky.image);
+    assert_true(effect_check_settings(e));
+    assert_true(effect_set(e, "sky.zenith", "1,1,1"));
+    assert_false(effect_set(e, "sky.rotation", "45"));
+    assert_string_equal(err_get(), "sky.rotation: this sky has no image");
+    effect_destroy(e);
+}
+
+static void an_effect_has_one_image(void **state) {
+    (void)state;
+    put_sky("sky.exr", 3);
+    effect *e = load(HEAD "fx.sky = sky { image = 'sky.exr' } fx.sky = sky { image = 'sky.exr' }"
+                          "fx.sky = sky { image = './sky.exr' }" TAIL);
+    effect_destroy(e);
+    put_sky("other.exr", 3);
+    refused(HEAD "fx.sky = sky { image = 'sky.exr' } fx.sky = sky { image = 'other.exr' }" TAIL,
+            "other.exr: a second image for the sky; an effect has one");
+}
+
+static void mistakes_in_a_sky_are_named(void **state) {
+    (void)state;
+    put_sky("black.exr", 0);
+    put_sky("below.exr", -1);
+    helper_put("text.exr", "no picture");
+    refused(HEAD "fx.sky = sky { image = 'black.exr' }" TAIL, "the panorama is all black");
+    refused(HEAD "fx.sky = sky { image = 'below.exr' }" TAIL, "the panorama holds -1 at 0, 0");
+    refused(HEAD "fx.sky = sky { image = 'text.exr' }" TAIL, "cannot be read as EXR");
+    refused(HEAD "fx.sky = sky { image = 'none.exr' }" TAIL, "none.exr");
+    refused(HEAD "fx.sky = sky { image = '../sky.exr' }" TAIL, "leaves");
+    refused(HEAD "fx.sky = sky { image = 3 }" TAIL, "sky: 'image' must be a string");
+    refused(HEAD "fx.sky = sky { image = 'black.exr', horizon = 1 }" TAIL,
+            "sky: 'image' is given, and 'horizon' too; an image stands for both colours");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_kind_can_be_made),
         cmocka_unit_test(numbers_are_functions_curves_and_parameters),
         cmocka_unit_test(last_list_counts),
         cmocka_unit_test(mistakes_are_named),
+        cmocka_unit_test(sky_can_be_an_image),
+        cmocka_unit_test(controls_are_those_of_the_sky_that_is_there),
+        cmocka_unit_test(an_effect_has_one_image),
+        cmocka_unit_test(mistakes_in_a_sky_are_named),
     };
     return cmocka_run_group_tests(tests, helper_setup, helper_teardown);
 }
