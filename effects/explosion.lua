@@ -39,18 +39,13 @@ local kinds = {
   none        = function() return 0.5 end,
 }
 local lumps = kinds[noise:get()]()
-shape.octaves = 2 -- shadows are soft: the coarse lumps will do for them
-local coarse = kinds[noise:get()]()
 
 -- Lumps stand out where the smoke is thin; the thick core is left alone. When the smoke thins out
 -- as a whole, at the end, it fades instead of falling to pieces.
 local fade  = curve { {0, 1}, {1.8, 1}, {4.1, 0.25}, shape = "ease_in_out" }
 local eaten = detail * fade
 local cover = clamp(smoke * 3, 0, 1)
-local function body(n)
-  local crust = smoothstep(0, 0.15, cover - eaten * (1 - n) * (1 - 0.7 * cover))
-  return cover * crust * (smoke + 0.15) * density
-end
+local crust = smoothstep(0, 0.15, cover - eaten * (1 - lumps) * (1 - 0.7 * cover))
 
 -- A black body's light grows with the fourth power of its temperature.
 local fire = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
@@ -59,24 +54,21 @@ fx.camera = camera { eye = {4, -12, 3.36}, target = {4, 4, 3.36}, fov = 31.89, n
 fx.sun    = sun { azimuth = 239, elevation = 44, strength = 3.2 }
 fx.sky    = sky { zenith = {0.14, 0.25, 0.46}, horizon = {0.34, 0.38, 0.42}, strength = 0.6 }
 
-local scene = geometry {
-  mesh { "data/ground.obj" },
-  mesh { "data/crates.obj" },
-}
-local solid = shade { from = scene, haze = 0.002 }
-
-local volume = march {
-  density    = body(lumps),
-  shadow_density = body(coarse),
+-- What fills space, and what light reaches where in it: sun and sky through the smoke, the fire on the
+-- smoke around it, and all that is scattered on the way.
+local lit = lighting {
+  density    = cover * crust * (smoke + 0.15) * density,
   emission   = fire(heat * (0.45 + 0.85 * lumps) * kelvin) * flame * brightness,
   albedo     = {0.45, 0.43, 0.41},
   anisotropy = 0.2,
-  ambient    = 0.5,
   sampling   = "linear",
-  steps      = steps,
-  depth      = scene.depth,
-  resolution = 0.5,
 }
+
+-- What is solid, in the same light: the smoke's shadow lies on it, and so does the fire's glow.
+local scene = geometry { mesh { "data/ground.obj" }, mesh { "data/crates.obj" } }
+local solid = shade { from = {scene, lit}, haze = 0.002 }
+
+local volume = march { from = {lit, scene}, steps = steps, resolution = 0.5 }
 
 local picture = over { volume = volume.color, edge = volume.edge, source = solid, depth = scene.depth }
 local glow    = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }
