@@ -74,6 +74,7 @@ roil *roil_create(const roil_desc *desc) {
     r->shaders = joined(home, "shaders");
     r->scripts = joined(home, "scripts");
     r->counters = desc->counters;
+    r->reference = desc->reference;
     // Without a place for it (no home folder, a read-only one) roil works, only slower.
     if (!desc->no_cache && path_cache_folder(cache, "")) r->cache = joined(cache, "");
     if (desc->no_device || open_device(r, desc)) return r;
@@ -128,6 +129,7 @@ roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, 
         .shader_root = r->shaders,
         .cache_dir = r->cache,
         .counters = r->counters,
+        .reference = r->reference,
         .settings = own,
         .setting_count = count,
     });
@@ -212,6 +214,10 @@ bool roil_advance(roil_effect *e, double frame) {
     e->shown = frame;
     e->frame = effect_render(e->effect, frame, true);
     return e->frame != 0;
+}
+
+uint32_t roil_samples(const roil_effect *e) {
+    return effect_samples(e->effect);
 }
 
 size_t roil_times(roil_effect *e, roil_time *out, size_t capacity) {

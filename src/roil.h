@@ -42,6 +42,7 @@ typedef struct roil_desc {
     bool no_cache;    // neither read nor write compiled shaders on disk
     bool validate;    // Vulkan validation layers; also by $ROIL_VALIDATE=1
     bool counters;    // count samples (see roil_counters); costs a little time
+    bool reference;   // passes `march` of effects are traced instead, without approximations
     double timeout; // seconds that a frame may take on the device before it counts as lost; 0: 30,
                     // 300 on a software device
     const roil_window_desc *window; // NULL: nothing is shown
@@ -97,6 +98,10 @@ bool roil_render(roil_effect *e, double frame);
 // The same for a player, whose steps are uneven: histories go on; `frame` may be the last one
 // again.
 bool roil_advance(roil_effect *e, double frame);
+
+// Samples a pixel that the last frame has gathered where it is traced; roil_advance to the same
+// frame adds to them. 0: nothing in the picture is.
+uint32_t roil_samples(const roil_effect *e);
 
 typedef struct roil_time { // GPU time of a pass in the last frame
     char pass[64];

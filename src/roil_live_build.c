@@ -144,6 +144,7 @@ static effect *load(roil_live *l, const order *o, file_set *files) {
         .shader_root = r->shaders,
         .cache_dir = r->cache,
         .counters = r->counters,
+        .reference = r->reference,
         .settings = o->settings,
         .setting_count = o->setting_count,
         .library = l->library,

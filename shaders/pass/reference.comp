@@ -18,6 +18,7 @@ uniform sampler2D depth;           //= input optional : depth of the scene (m), 
 uniform sampler2D sum_before;      //= input history sum : all samples so far
 writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity
 writeonly uniform image2D edge;    //= output r32f : depth of the scene at the pixel (m)
+writeonly uniform image2D reach;   //= output r32f : distance along the ray at which it is first scattered, on average over the samples of this execution (m); of the scene where it is not
 writeonly uniform image2D sum;     //= output rgba32f : all samples, added up
 
 #include "lib/frame.glsl"
@@ -45,6 +46,7 @@ struct path_state {
     vec3 from, way;       // where the path goes on after that
     float pdf, sky_part;  // density of `way`; part of the choices of a source that fell to the sky
     bool done;
+    float first;          // metres to the first scattering
 };
 
 // Where light is scattered: in the medium, or on a surface (`normal` is not zero).
@@ -117,6 +119,7 @@ void ask_source(inout path_state s, path_vertex v, vec4 random) {
 }
 
 void scatter(inout path_state s, path_vertex v, inout path_random random) {
+    if (s.bounce == 0) s.first = distance(v.p, s.walk.origin);
     s.bounce++;
     vec4 r = path_next(random);
     bool solid = v.normal != vec3(0.0);
@@ -184,13 +187,14 @@ void leave(inout path_state s, inout path_random more) {
 }
 
 // Radiance and opacity along a way from the eye.
-vec4 trace(vec3 origin, vec3 direction, inout path_random random, inout int taken) {
+vec4 trace(vec3 origin, vec3 direction, inout path_random random, inout int taken, out float first) {
     path_state s;
     s.weight = vec3(1.0);
     s.light = vec3(0.0);
     s.alpha = 1.0;
     s.bounce = 0;
     s.done = false;
+    s.first = 0.0;
     go(s, origin, direction);
     vec3 highest = medium_extinction();
     // One evaluation of the medium a turn, whatever the ray is for: neighbours stay together.
@@ -210,6 +214,7 @@ vec4 trace(vec3 origin, vec3 direction, inout path_random random, inout int take
         else
             collide(s, p, d, d * highest, bound, r.yz, random);
     }
+    first = s.first;
     vec4 result = vec4(s.light, s.alpha);
     return any(isnan(result)) || any(isinf(result)) ? vec4(0.0) : result;
 }
@@ -219,12 +224,15 @@ void main() {
     bool inside = all(lessThan(pixel, size));
     vec4 all_of_it = executed > 0 ? texelFetch(sum_before, pixel, 0) : vec4(0.0);
     int taken = 0;
+    vec2 firsts = vec2(0.0); // their sum and count
     for (int i = 0; i < samples && inside; i++) {
         uint seed = random_hash(frame.size.z + random_hash(frame.size.w));
         path_random random = path_random(uvec3(pixel, uint(executed * samples + i) ^ seed), 0u);
         vec2 at = vec2(pixel) + 0.5 + path_sample_pixel(filter_, path_next(random).xy);
         vec3 direction = normalize(frame_ray(at / vec2(size)));
-        all_of_it += trace(frame.eye.xyz, direction, random, taken);
+        float first;
+        all_of_it += trace(frame.eye.xyz, direction, random, taken, first);
+        firsts += vec2(first, first > 0.0);
     }
     count_samples(taken);
     if (!inside) return;
@@ -235,4 +243,5 @@ void main() {
     imageStore(sum, pixel, all_of_it);
     imageStore(color, pixel, all_of_it / float((executed + 1) * samples));
     imageStore(edge, pixel, vec4(stop));
+    imageStore(reach, pixel, vec4(firsts.y > 0.0 ? firsts.x / firsts.y : stop));
 }

@@ -60,9 +60,10 @@ void app_free_settings(app_settings *s);
 typedef struct app_progress {
     double start, printed;
     size_t total;
+    const char *unit; // "frames"
     bool terminal;
 } app_progress;
-void app_progress_begin(app_progress *p, size_t total);
+void app_progress_begin(app_progress *p, size_t total, const char *unit);
 void app_progress_step(app_progress *p, size_t done); // shows time left
 void app_progress_end(app_progress *p);
 

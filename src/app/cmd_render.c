@@ -9,6 +9,7 @@
 #include <inttypes.h>
 #include <popt.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct output {
@@ -28,14 +29,15 @@ typedef struct job {
     const char *frames_text;
     uint32_t width, height;
     int alpha, sixteen, full, validate, no_cache;
-    int warmup; // frames
+    int warmup;         // frames
+    uint32_t reference; // samples a pixel; 0: as the effect draws it
     double fps, timeout;
     char default_output[PATH_CAP];
 } job;
 
 // ---- options ----------------------------------------------------------------------------------
 
-enum { OPTION_OUTPUT = 1, OPTION_SIZE, OPTION_SET, OPTION_DUMP, OPTION_PRESET };
+enum { OPTION_OUTPUT = 1, OPTION_SIZE, OPTION_SET, OPTION_DUMP, OPTION_PRESET, OPTION_REFERENCE };
 
 static bool add_output(job *j, const char *pattern, const char *image) {
     const char *extension = path_extension(pattern);
@@ -45,6 +47,15 @@ static bool add_output(job *j, const char *pattern, const char *image) {
     if (!app_check_pattern(pattern)) return false;
     MEM_RESERVE(j->outputs, j->output_count + 1, j->output_capacity);
     j->outputs[j->output_count++] = (output){pattern, image, NULL};
+    return true;
+}
+
+static bool parse_samples(const char *text, uint32_t *out) {
+    char *end;
+    long samples = strtol(text, &end, 10);
+    if (end == text || *end || samples < 1 || samples > 65536)
+        return err_set("--reference '%s'; accepted: 1 to 65536 samples a pixel", text);
+    *out = (uint32_t)samples;
     return true;
 }
 
@@ -58,6 +69,8 @@ static bool take_option(job *j, poptContext context, int option) {
         return app_parse_size(text, &j->width, &j->height);
     case OPTION_SET:
         return app_add_set(&j->settings, text);
+    case OPTION_REFERENCE:
+        return parse_samples(text, &j->reference);
     case OPTION_PRESET:
         app_add_preset(&j->settings, text);
         return true;
@@ -107,6 +120,8 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
         {"from", '\0', POPT_ARG_STRING, &j->from_file, 0,
          "as this picture was made: its effect, frame, size and settings, where no other are given",
          "SHOT.png"},
+        {"reference", '\0', POPT_ARG_STRING, NULL, OPTION_REFERENCE,
+         "trace paths of light instead of each pass march, so many for each pixel", "SPP"},
         {"device", 'd', POPT_ARG_STRING, &j->device, 0, "part of a device's name, or its number",
          "DEVICE"},
         {"stats", '\0', POPT_ARG_STRING, &j->stats, 0,
@@ -230,16 +245,31 @@ static bool warm_up(const job *j, roil_effect *e, size_t index) {
     return true;
 }
 
+// The effect stands still until a reference has its samples.
+static bool render_frame(const job *j, roil_effect *e, size_t index, app_progress *progress) {
+    double frame = j->frames.numbers[index];
+    size_t before = index * j->reference;
+    bool done = roil_render(e, frame);
+    while (done && roil_samples(e) < j->reference) {
+        if (!roil_samples(e))
+            return err_set("%s: its picture does not show what a pass `march` draws", j->file);
+        app_progress_step(progress, before + roil_samples(e));
+        done = roil_advance(e, frame);
+    }
+    return done;
+}
+
 static bool render_frames(job *j, roil_effect *e, app_stats *stats) {
     app_progress progress;
-    app_progress_begin(&progress, j->frames.count);
+    size_t each = j->reference ? j->reference : 1; // steps of the progress
+    app_progress_begin(&progress, each * j->frames.count, j->reference ? "samples" : "frames");
     bool done = true;
     for (size_t i = 0; done && i < j->frames.count; i++) {
         double frame = j->frames.numbers[i], start = clock_seconds();
-        done = warm_up(j, e, i) && roil_render(e, frame) && save_frame(j, e, frame);
+        done = warm_up(j, e, i) && render_frame(j, e, i, &progress) && save_frame(j, e, frame);
         if (!done) break;
         app_stats_add(stats, e, frame, clock_seconds() - start);
-        app_progress_step(&progress, i + 1);
+        app_progress_step(&progress, (i + 1) * each);
     }
     app_progress_end(&progress);
     return done;
@@ -265,6 +295,7 @@ static int run(job *j) {
         .validate = j->validate,
         .no_cache = j->no_cache,
         .counters = j->stats != NULL,
+        .reference = j->reference > 0,
         .timeout = j->timeout,
     });
     bool collected = r && app_collect_settings(&j->settings, r, j->file, j->from);

@@ -7,8 +7,9 @@
 
 static const double TERMINAL_SECONDS = 0.1, FILE_SECONDS = 5;
 
-void app_progress_begin(app_progress *p, size_t total) {
-    *p = (app_progress){.start = clock_seconds(), .total = total, .terminal = isatty(2) == 1};
+void app_progress_begin(app_progress *p, size_t total, const char *unit) {
+    *p = (app_progress){
+        .start = clock_seconds(), .total = total, .unit = unit, .terminal = isatty(2) == 1};
 }
 
 void app_progress_step(app_progress *p, size_t done) {
@@ -18,9 +19,8 @@ void app_progress_step(app_progress *p, size_t done) {
     p->printed = now;
     double each = (now - p->start) / (double)done;
     long left = lround(each * (double)(p->total - done));
-    fprintf(stderr, "%s  %zu of %zu frames, %.2f s each, %ld:%02ld left %s",
-            p->terminal ? "\r" : "", done, p->total, each, left / 60, left % 60,
-            p->terminal ? "   " : "\n");
+    fprintf(stderr, "%s  %zu of %zu %s, %.2f s each, %ld:%02ld left %s", p->terminal ? "\r" : "",
+            done, p->total, p->unit, each, left / 60, left % 60, p->terminal ? "   " : "\n");
 }
 
 void app_progress_end(app_progress *p) {

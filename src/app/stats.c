@@ -12,6 +12,7 @@ enum { MAX_PASSES = 256, MAX_COUNTERS = 64 };
 
 typedef struct frame_stats {
     double number, seconds;
+    uint32_t samples; // of a reference
     roil_time *times;
     size_t time_count;
     roil_counter *counters;
@@ -30,7 +31,7 @@ app_stats *app_stats_create(void) {
 void app_stats_add(app_stats *s, roil_effect *e, double frame, double seconds) {
     roil_time times[MAX_PASSES];
     roil_counter counters[MAX_COUNTERS];
-    frame_stats f = {.number = frame, .seconds = seconds};
+    frame_stats f = {.number = frame, .seconds = seconds, .samples = roil_samples(e)};
     f.time_count = roil_times(e, times, MAX_PASSES);
     f.counter_count = roil_counters(e, counters, MAX_COUNTERS);
     if (f.time_count > MAX_PASSES) f.time_count = MAX_PASSES;
@@ -110,8 +111,10 @@ static json_t *frame_json(const frame_stats *f) {
         snprintf(name, sizeof name, "%s.%s", f->counters[i].pass, f->counters[i].name);
         json_object_set_new(counters, name, json_integer((json_int_t)f->counters[i].value));
     }
-    return json_pack("{s:f, s:f, s:o, s:o}", "frame", f->number, "cpu_ms", f->seconds * 1000,
-                     "gpu_ms", passes, "counters", counters);
+    json_t *all = json_pack("{s:f, s:f, s:o, s:o}", "frame", f->number, "cpu_ms", f->seconds * 1000,
+                            "gpu_ms", passes, "counters", counters);
+    if (f->samples) json_object_set_new(all, "samples", json_integer(f->samples));
+    return all;
 }
 
 bool app_stats_save(const app_stats *s, const char *file, const roil *r, const char *effect,

@@ -274,6 +274,7 @@ bool effect_apply_settings(void *user, pass *p) {
     for (size_t i = 0; i < e->setting_count; i++) {
         const effect_setting *s = &e->settings[i];
         bool meant = strncmp(s->name, pass_label(p), length) == 0 && s->name[length] == '.';
+        if (meant && pass_ignores(p, s->name + length + 1)) e->applied[i] = true;
         if (meant && !e->applied[i] && !s->initial) return unknown(e, s->name);
     }
     return true;

@@ -20,6 +20,7 @@ effect *effect_create(const effect_desc *desc) {
     char folder[PATH_CAP], shader_cache[PATH_CAP];
     path_folder(folder, desc->file);
     e->device = desc->device;
+    e->reference = desc->reference;
     e->file = arena_string(&e->memory, desc->file);
     e->root = arena_string(&e->memory, folder);
     e->name = arena_string(&e->memory, path_name(desc->file));
@@ -184,7 +185,8 @@ static const char *make_label(effect *e, const char *stem) {
 }
 
 pass *effect_add_pass(effect *e, const char *type, const char *shader, const char *label) {
-    const pass_type *known = type ? pass_type_find(type) : NULL;
+    bool traced = e->reference && type && strcmp(type, "march") == 0;
+    const pass_type *known = type ? pass_type_find(traced ? "reference" : type) : NULL;
     if (type && !known) return NULL;
     if (label && (!str_is_identifier(label) || label_taken(e, label))) {
         err_set("pass name '%s' %s", label,
@@ -193,7 +195,7 @@ pass *effect_add_pass(effect *e, const char *type, const char *shader, const cha
     }
     if (!label) label = make_label(e, type ? type : path_name(shader));
     pass *p = pass_create(&e->host, known, shader, label);
-    if (!p) return NULL;
+    if (!p || (traced && !pass_stand_for(p, pass_type_find(type)))) return NULL;
     MEM_RESERVE(e->passes, e->pass_count + 1, e->pass_capacity);
     e->passes[e->pass_count++] = p;
     return p;

@@ -43,6 +43,7 @@ typedef struct effect_desc {
     const char *shader_root; // the program's shaders
     const char *cache_dir;   // NULL: no caches
     bool counters;
+    bool reference;                 // each pass `march` becomes a `reference` in its place
     const effect_setting *settings; // applied as what they name is declared
     size_t setting_count;
     // Shared with other loads of the same file, which then read nothing twice; NULL: its own.
@@ -179,6 +180,10 @@ size_t effect_files(const effect *e, const char *const **out); // all that were 
 // first) / fps. Histories start anew when `frame` is not the one after the last and `jump` is not
 // set. Returns the GPU's frame number, 0 on error.
 uint64_t effect_render(effect *e, double frame, bool jump);
+
+// Samples a pixel of the last frame, of that pass `reference` which has the fewest; 0: the picture
+// needs none.
+uint32_t effect_samples(const effect *e);
 
 typedef enum effect_picture { EFFECT_OUTPUT, EFFECT_LINEAR, EFFECT_DEPTH } effect_picture;
 graph_image effect_get_picture(const effect *e, effect_picture which); // zero when there is none

@@ -98,8 +98,8 @@ struct effect {
     size_t mesh_count, mesh_capacity;
     struct sky_image *sky; // of the scene, where it has one
     const char *sky_file;  // whose it is
-    shader_reader reader; // adds to `files`
-    const char **files;   // absolute
+    shader_reader reader;  // adds to `files`
+    const char **files;    // absolute
     size_t file_count, file_capacity;
 
     graph_image pictures[3]; // by effect_picture
@@ -115,6 +115,7 @@ struct effect {
     shared_mat4 clip, last_clip; // world to clip of the frame being recorded, of the one before
     bool has_last;               // there is one before, of which histories tell
     bool compiled, allocated;
+    bool reference; // effect_desc
     const effect_setting *settings;
     bool *applied; // one per setting
     size_t setting_count;

@@ -17,6 +17,15 @@ static bool add_outputs(effect *e) {
     return true;
 }
 
+static bool check_reference(const effect *e) {
+    uint32_t samples;
+    for (size_t i = 0; e->reference && i < e->pass_count; i++)
+        if (pass_samples(e->passes[i], &samples)) return true;
+    return !e->reference || err_set("%s: a reference is traced instead of passes `march`, and the "
+                                    "effect has none",
+                                    e->file);
+}
+
 // The trees that rays are shot at: of every mesh that a pass draws.
 static bool make_bvh(effect *e) {
     if (e->host.bvh) return true;
@@ -39,14 +48,15 @@ static bool make_bvh(effect *e) {
 enum { ANY_SIZE = 64 }; // of a picture: finds what is wrong with a graph whatever its size
 
 bool effect_check(effect *e) {
-    if (!add_outputs(e) || !make_bvh(e)) return false;
+    if (!check_reference(e) || !add_outputs(e) || !make_bvh(e)) return false;
     for (size_t i = 0; i < e->pass_count; i++)
         if (!pass_check(e->passes[i])) return false;
     return graph_compile(e->graph, ANY_SIZE, ANY_SIZE);
 }
 
 bool effect_compile(effect *e) {
-    if (!add_outputs(e) || !make_bvh(e) || !graph_compile(e->graph, ANY_SIZE, ANY_SIZE))
+    if (!check_reference(e) || !add_outputs(e) || !make_bvh(e) ||
+        !graph_compile(e->graph, ANY_SIZE, ANY_SIZE))
         return false;
     for (size_t i = 0; i < e->pass_count; i++)
         if (!pass_build(e->passes[i])) return false;
@@ -59,8 +69,7 @@ static bool allocate(effect *e) { // the graph is compiled
     for (size_t i = 0; i < e->pass_count; i++)
         if (!pass_allocate(e->passes[i])) return false;
     return scene_bvh_allocate(e->host.bvh, e->device) &&
-           (!e->sky || sky_image_upload(e->sky, e->device)) &&
-           graph_allocate(e->graph, e->device);
+           (!e->sky || sky_image_upload(e->sky, e->device)) && graph_allocate(e->graph, e->device);
 }
 
 bool effect_allocate(effect *e, uint32_t width, uint32_t height) {
@@ -104,6 +113,14 @@ static bool runs(const effect *e, const pass *p) {
     for (size_t i = 0; i < count && i < COUNT_OF(names); i++)
         if (is_part(names[i], pass_label(p))) return true;
     return false;
+}
+
+uint32_t effect_samples(const effect *e) {
+    uint32_t least = 0, samples;
+    for (size_t i = 0; i < e->pass_count; i++)
+        if (pass_samples(e->passes[i], &samples) && runs(e, e->passes[i]))
+            least = least && least < samples ? least : samples;
+    return least;
 }
 
 bool effect_rehearse(effect *e, double frame) {

@@ -186,7 +186,7 @@ bool pass_set_image(pass *p, const char *name, graph_image image) {
 bool pass_set_scale(pass *p, float scale) {
     if (!(scale > 0 && scale <= 1))
         return err_set("%s: resolution is %g; accepted: above 0, up to 1", p->label, (double)scale);
-    p->scale = scale;
+    if (!p->stands_for) p->scale = scale;
     return true;
 }
 

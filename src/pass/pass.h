@@ -60,6 +60,10 @@ const pass_type *pass_type_find(const char *name); // NULL with a message that s
 // An instance of a built-in type, or of a shader file in the effect's folder (type NULL). `label`
 // must be unique in the effect.
 pass *pass_create(pass_host *host, const pass_type *type, const char *shader, const char *label);
+// From now on it stands for a pass of the type `other`: what only that one has may be set and is
+// ignored, and its resolution stays 1.
+bool pass_stand_for(pass *p, const pass_type *other);
+bool pass_ignores(const pass *p, const char *name);
 void pass_destroy(pass *p);
 const char *pass_label(const pass *p);
 const shader_interface *pass_interface(const pass *p);
@@ -103,5 +107,5 @@ size_t pass_get_option(const pass *p, size_t index);       // index of the chose
 float pass_get_scale(const pass *p);
 // Counter totals of a frame, after it finished: one value per counter of the interface.
 bool pass_read_counters(pass *p, uint64_t *out);
-// Samples a pixel that the picture of a `reference` holds after its last frame; 0: another type.
-uint32_t pass_samples(const pass *p);
+// Whether it is a `reference`, and samples a pixel that its picture holds after its last frame.
+bool pass_samples(const pass *p, uint32_t *out);

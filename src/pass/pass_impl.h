@@ -15,11 +15,12 @@ struct pass {
     const pass_type *type; // NULL: a user's shader
     const char *label, *shader;
     const shader_interface *face;
+    const shader_interface *stands_for; // of the type that it does; NULL: none
 
     // As set; one per entry of `face`.
     const field **uniforms; // NULL: the default
     size_t *options;
-    bool *chosen; // options that were set, or taken from a source
+    bool *chosen;         // options that were set, or taken from a source
     const field **fields; // NULL: the default
     graph_image *images;  // inputs, and outputs once declared
     gpu_format *formats;  // outputs
@@ -78,7 +79,7 @@ int pass_find_image(const pass *p, const char *name); // index in face->images, 
 bool pass_declare_images(pass *p);                    // histories and outputs at the pass's scale
 // The same, with images of its own that it writes besides.
 bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count);
-bool pass_add_to_graph(pass *p);                   // reads and writes by its images and fields
+bool pass_add_to_graph(pass *p); // reads and writes by its images and fields
 
 // One of several passes of the graph that a pass consists of: "label.name".
 typedef struct pass_part {

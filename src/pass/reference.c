@@ -120,9 +120,11 @@ bool reference_record(pass *p) {
            dispatch(p, p->pipeline, &p->binary, p->block, "color");
 }
 
-uint32_t pass_samples(const pass *p) {
-    bool gathers = p->type && p->type->record == reference_record;
-    return gathers ? ((const reference_state *)p->state)->samples : 0;
+bool pass_samples(const pass *p, uint32_t *out) {
+    const reference_state *s = p->state;
+    if (!p->type || p->type->record != reference_record) return false;
+    *out = s->samples;
+    return true;
 }
 
 void reference_destroy(pass *p) {

@@ -198,7 +198,7 @@ static void set_key(lua_State *L, pass_call *call, const char *key) {
     case PASS_UNKNOWN:
         if (strcmp(key, "input") == 0 && call->next_input == 0)
             add_image(L, call, value);
-        else
+        else if (!pass_ignores(call->pass, key))
             unknown_key(L, call, key);
     }
 }
