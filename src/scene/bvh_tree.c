@@ -33,9 +33,9 @@ static bounds bounds_empty(void) {
 }
 
 static void bounds_add(bounds *b, const bounds *other) {
-    for (int a = 0; a < 3; a++) {
-        b->low[a] = fminf(b->low[a], other->low[a]);
-        b->high[a] = fmaxf(b->high[a], other->high[a]);
+    for (int a = 0; a < 3; a++) { // fminf would call a function
+        b->low[a] = other->low[a] < b->low[a] ? other->low[a] : b->low[a];
+        b->high[a] = other->high[a] > b->high[a] ? other->high[a] : b->high[a];
     }
 }
 
