@@ -2,10 +2,10 @@
 //
 // Readers include lib/lighting.glsl. Each output costs only when something reads it.
 //@ option shadow_resolution = 96 {16, 32, 48, 64, 96, 128, 192, 256} : texels of `shadow` along each edge, for each light
-//@ option glow_resolution = 32 {8, 16, 24, 32, 40} : voxels of `glow` along each edge of the volume's box
+//@ option glow_resolution = 32 {8, 16, 24, 32} : voxels of `glow` along each edge of the volume's box
 //@ option fire_lights = 8 {0, 1, 8} : lights that stand for the volume's fire where it falls on meshes
 //@ counter samples : points at which the density was evaluated
-uniform int bounces;               //= 4 [0, 32] : times that light is scattered within `glow`, before the scattering that a reader adds
+uniform int bounces;               //= 4 [0, 32] : sweeps of light through `glow`, each of which scatters it once more; coarser grids go ahead with more of them; 0: light that nothing has scattered yet
 uniform float ambient;             //= 1 [0, 10] : factor of the light from the sky
 uniform vec3 box_min;
 uniform vec3 box_max;
@@ -22,12 +22,18 @@ uniform sampler3D first_made;
 uniform sampler3D source_made;
 uniform sampler3D ways_made;
 uniform sampler3D fire_made;
-layout(rgba16f) writeonly uniform image3D medium_kept;     // emission (W/m^3/sr) and density
-layout(rgba16f) writeonly uniform image3D scattering_kept; // coefficient of density 1
-layout(rgba16f) writeonly uniform image3D first_kept;      // moments of what comes straight from the lights
-layout(rgba16f) writeonly uniform image3D source_kept;     // moments of all light that is scattered
-layout(rgba16f) writeonly uniform image3D ways_kept;       // radiance in each of the directions
-layout(rgba16f) writeonly uniform image3D fire_kept;       // light that leaves the volume (W/m^3/sr); which way
+// The same of the next finer and the next coarser level.
+uniform sampler3D medium_fine;
+uniform sampler3D scattering_fine;
+uniform sampler3D first_fine;
+uniform sampler3D first_coarse;
+uniform sampler3D source_coarse;
+layout(rgba32f) writeonly uniform image3D medium_kept;     // emission (W/m^3/sr) and density
+layout(rgba32f) writeonly uniform image3D scattering_kept; // coefficient of density 1
+layout(rgba32f) writeonly uniform image3D first_kept;      // moments of what comes straight from the lights
+layout(rgba32f) writeonly uniform image3D source_kept;     // moments of all light that is scattered
+layout(rgba32f) writeonly uniform image3D ways_kept;       // radiance in each of the directions
+layout(rgba32f) writeonly uniform image3D fire_kept;       // light that leaves the volume (W/m^3/sr); which way
 
 #include "lib/medium.glsl"
 #include "lib/light.glsl"
@@ -43,4 +49,5 @@ const float PI = 3.14159265;
 #include "lighting/shadow.glsl"
 #include "lighting/medium.glsl"
 #include "lighting/first.glsl"
+#include "lighting/level.glsl"
 #include "lighting/sweep.glsl"

@@ -15,7 +15,7 @@ enum {
     SHADOW_PARTS = 8,      // of a ray, in lighting/shadow.glsl
     WAYS_X = 8,            // directions side by side in the grid WAYS, in lighting/sweep.glsl
     WAYS_Y = 6,
-    SWEEP_THREADS = 1024, // at most, for a direction
+    COARSEST = 8,         // voxels across, of the levels of the grids
     GATHER_THREADS = 512, // for a light, in lighting/fire.glsl
 };
 
@@ -26,30 +26,37 @@ typedef enum lighting_stage {
     STAGE_SHADOW,
     STAGE_MEDIUM,
     STAGE_FIRST,
+    STAGE_RESTRICT,
+    STAGE_PROLONG,
     STAGE_SWEEP,
     STAGE_REDUCE,
     STAGES
 } lighting_stage;
 
-static const char *const stage_defines[STAGES] = {"STAGE_LIGHTS", "STAGE_FIRE",   "STAGE_GATHER",
-                                                  "STAGE_SHADOW", "STAGE_MEDIUM", "STAGE_FIRST",
-                                                  "STAGE_SWEEP",  "STAGE_REDUCE"};
+static const char *const stage_defines[STAGES] = {
+    "STAGE_LIGHTS", "STAGE_FIRE",     "STAGE_GATHER",  "STAGE_SHADOW", "STAGE_MEDIUM",
+    "STAGE_FIRST",  "STAGE_RESTRICT", "STAGE_PROLONG", "STAGE_SWEEP",  "STAGE_REDUCE"};
 
 // What one stage leaves for others, besides the outputs: the shader writes NAME_kept and reads
 // NAME_made.
 typedef enum lighting_grid { MEDIUM, SCATTERING, FIRST, SOURCE, WAYS, FIRE, GRIDS } lighting_grid;
 
 static const struct {
-    const char *name, *kept, *made;
+    const char *name, *kept, *made, *fine, *coarse; // and as the shader names it
+    bool levels;                                    // each half as large
 } grids[GRIDS] = {
-    {"medium", "medium_kept", "medium_made"}, {"scattering", "scattering_kept", "scattering_made"},
-    {"first", "first_kept", "first_made"},    {"source", "source_kept", "source_made"},
-    {"ways", "ways_kept", "ways_made"},       {"fire", "fire_kept", "fire_made"},
+    {"medium", "medium_kept", "medium_made", "medium_fine", NULL, true},
+    {"scattering", "scattering_kept", "scattering_made", "scattering_fine", NULL, true},
+    {"first", "first_kept", "first_made", "first_fine", "first_coarse", true},
+    {"source", "source_kept", "source_made", NULL, "source_coarse", true},
+    {"ways", "ways_kept", "ways_made", NULL, NULL, false},
+    {"fire", "fire_kept", "fire_made", NULL, NULL, false},
 };
 
 typedef struct lighting_state {
     uint32_t declared; // lights of the scene, its sun among them
     uint32_t shadow_size, glow_size, fire_count;
+    uint32_t levels; // of the grids
     shader_binary binary[STAGES];
     gpu_pipeline *pipeline[STAGES];
     unsigned char *block[STAGES];
@@ -98,10 +105,11 @@ static bool add_grids(pass *p) {
             p->host->graph,
             &(graph_image_desc){
                 .name = arena_format(p->host->memory, "%s.%s", p->label, grids[i].name),
-                .format = GPU_RGBA16F,
+                .format = GPU_RGBA32F,
                 .width = sizes[i][0],
                 .height = sizes[i][1],
                 .depth = sizes[i][2],
+                .mips = grids[i].levels ? s->levels : 1,
             });
         if (!s->grids[i].id) return false;
     }
@@ -173,6 +181,8 @@ bool lighting_declare(pass *p) {
     s->shadow_size = number_of(p, "shadow_resolution");
     s->glow_size = number_of(p, "glow_resolution");
     s->fire_count = number_of(p, "fire_lights");
+    s->levels = 1;
+    while (s->glow_size >> s->levels >= COARSEST) s->levels++;
     return pass_density_box(p, &box) && add_images(p) && add_parts(p);
 }
 
@@ -235,27 +245,48 @@ bool lighting_fill(pass *p, const shader_binary *binary, unsigned char *block) {
     return true;
 }
 
-static pass_override slot(const pass *p, const char *name, graph_image image) {
-    return (pass_override){
-        name, {.image = graph_get_image(p->host->graph, image), .sampler = GPU_LINEAR_CLAMP}};
+static pass_override slot(const pass *p, const char *name, graph_image image, uint32_t level) {
+    return (pass_override){name,
+                           {.image = graph_get_image(p->host->graph, image),
+                            .mip = level,
+                            .one_mip = true,
+                            .sampler = GPU_LINEAR_CLAMP}};
 }
 
-static bool dispatch(pass *p, lighting_stage stage, uint32_t x, uint32_t y, uint32_t z) {
+// A grid under all of its names, as seen from a level.
+static void add_slots(const pass *p, lighting_grid grid, uint32_t level, pass_override *out,
+                      size_t *count) {
     const lighting_state *s = p->state;
-    pass_override overrides[2 + 2 * GRIDS] = {
-        slot(p, "lights_made", image_of(p, "lights")),
-        slot(p, "shadow_made", image_of(p, "shadow")),
+    graph_image image = s->grids[grid];
+    if (!grids[grid].levels) level = 0;
+    out[(*count)++] = slot(p, grids[grid].kept, image, level);
+    out[(*count)++] = slot(p, grids[grid].made, image, level);
+    if (grids[grid].fine && level > 0)
+        out[(*count)++] = slot(p, grids[grid].fine, image, level - 1);
+    if (grids[grid].coarse && level + 1 < s->levels)
+        out[(*count)++] = slot(p, grids[grid].coarse, image, level + 1);
+}
+
+static bool dispatch(pass *p, lighting_stage stage, uint32_t level, uint32_t x, uint32_t y,
+                     uint32_t z) {
+    const lighting_state *s = p->state;
+    pass_override overrides[2 + 4 * GRIDS] = {
+        slot(p, "lights_made", image_of(p, "lights"), 0),
+        slot(p, "shadow_made", image_of(p, "shadow"), 0),
     };
-    for (int i = 0; i < GRIDS; i++) {
-        overrides[2 + 2 * i] = slot(p, grids[i].kept, s->grids[i]);
-        overrides[3 + 2 * i] = slot(p, grids[i].made, s->grids[i]);
-    }
+    size_t override_count = 2, count;
+    for (int i = 0; i < GRIDS; i++)
+        add_slots(p, (lighting_grid)i, level, overrides, &override_count);
     gpu_binding bindings[GPU_MAX_SLOTS];
-    size_t count;
-    return pass_bind(p, &s->binary[stage], s->block[stage], overrides, COUNT_OF(overrides),
-                     bindings, &count) &&
+    return pass_bind(p, &s->binary[stage], s->block[stage], overrides, override_count, bindings,
+                     &count) &&
            gpu_dispatch(p->host->device,
                         &(gpu_dispatch_desc){s->pipeline[stage], bindings, count, {x, y, z}});
+}
+
+static bool dispatch_voxels(pass *p, lighting_stage stage, uint32_t level) {
+    uint32_t n = ((const lighting_state *)p->state)->glow_size >> level;
+    return dispatch(p, stage, level, n, n, n);
 }
 
 // In the first of the parts of a frame: all others read what it writes.
@@ -270,33 +301,43 @@ static bool prepare(pass *p) {
 
 static bool record_lights(pass *p) {
     const lighting_state *s = p->state;
-    uint32_t n = s->glow_size;
-    if (!s->fire_count) return prepare(p) && dispatch(p, STAGE_LIGHTS, s->declared, 1, 1);
-    return dispatch(p, STAGE_LIGHTS, s->declared, 1, 1) && dispatch(p, STAGE_FIRE, n, n, n) &&
-           dispatch(p, STAGE_GATHER, s->fire_count * GATHER_THREADS, 1, 1);
+    if (!s->fire_count) return prepare(p) && dispatch(p, STAGE_LIGHTS, 0, s->declared, 1, 1);
+    return dispatch(p, STAGE_LIGHTS, 0, s->declared, 1, 1) && dispatch_voxels(p, STAGE_FIRE, 0) &&
+           dispatch(p, STAGE_GATHER, 0, s->fire_count * GATHER_THREADS, 1, 1);
 }
 
 static bool record_medium(pass *p) {
     const lighting_state *s = p->state;
-    uint32_t n = s->glow_size;
-    return (!s->fire_count || prepare(p)) && dispatch(p, STAGE_MEDIUM, n, n, n);
+    return (!s->fire_count || prepare(p)) && dispatch_voxels(p, STAGE_MEDIUM, 0);
 }
 
 static bool record_shadow(pass *p) {
     const lighting_state *s = p->state;
-    return dispatch(p, STAGE_SHADOW, s->shadow_size, s->shadow_size, SHADOW_PARTS * s->declared);
+    uint32_t n = s->shadow_size;
+    return dispatch(p, STAGE_SHADOW, 0, n, n, SHADOW_PARTS * s->declared);
 }
 
-// A sweep begins with what the one before has left to be scattered, the first with what comes
-// straight from the lights.
-static bool record_glow(pass *p) {
+static bool sweep(pass *p, uint32_t level, uint32_t times) {
     uint32_t n = ((const lighting_state *)p->state)->glow_size;
-    uint32_t threads = n * n < SWEEP_THREADS ? n * n : SWEEP_THREADS;
-    int sweeps = (int)pass_evaluate(p, "bounces") + 1;
-    if (!dispatch(p, STAGE_FIRST, n, n, n)) return false;
-    for (int i = 0; i < sweeps; i++)
-        if (!dispatch(p, STAGE_SWEEP, WAYS_X * WAYS_Y * threads, 1, 1) ||
-            !dispatch(p, STAGE_REDUCE, n, n, n))
+    for (uint32_t i = 0; i < times; i++)
+        if (!dispatch(p, STAGE_SWEEP, level, WAYS_X * WAYS_Y * n * n, 1, 1) ||
+            !dispatch_voxels(p, STAGE_REDUCE, level))
             return false;
+    return true;
+}
+
+// From the coarsest level to the finest: a sweep begins with what the one before has left to be
+// scattered, the first of all with what comes straight from the lights.
+static bool record_glow(pass *p) {
+    const lighting_state *s = p->state;
+    uint32_t bounces = (uint32_t)pass_evaluate(p, "bounces");
+    if (!dispatch_voxels(p, STAGE_FIRST, 0)) return false;
+    if (!bounces) return sweep(p, 0, 1);
+    for (uint32_t level = 1; level < s->levels; level++)
+        if (!dispatch_voxels(p, STAGE_RESTRICT, level)) return false;
+    for (uint32_t level = s->levels; level-- > 0;) {
+        if (level + 1 < s->levels && !dispatch_voxels(p, STAGE_PROLONG, level)) return false;
+        if (!sweep(p, level, bounces << level)) return false;
+    }
     return true;
 }

@@ -11,6 +11,8 @@ typedef struct probe { // a square of points, 16 x 16
     const char *shows;
     int index;
     place corner, across, down;
+    place way; // of scattered light
+    double g;
 } probe;
 
 static const field *at(pass_world *w, place p) {
@@ -28,6 +30,7 @@ static pass *add_lighting(pass_world *w, const field *density) {
     pass *p = world_add(w, "lighting", NULL, "lighting");
     gpu_test_ok(pass_set_field(p, "density", density));
     gpu_test_ok(pass_set_option(p, "fire_lights", "0"));
+    gpu_test_ok(pass_set_uniform(p, "bounces", number(w, 0)));
     return p;
 }
 
@@ -41,6 +44,8 @@ static float *look(pass_world *w, pass *lighting, probe q) {
     gpu_test_ok(pass_set_uniform(p, "corner", at(w, q.corner)));
     gpu_test_ok(pass_set_uniform(p, "across", at(w, q.across)));
     gpu_test_ok(pass_set_uniform(p, "down", at(w, q.down)));
+    gpu_test_ok(pass_set_uniform(p, "way", at(w, q.way)));
+    gpu_test_ok(pass_set_uniform(p, "g", number(w, (float)q.g)));
     gpu_test_ok(pass_declare(p));
     graph_image seen = pass_output(p, "color");
     world_render(w, SIZE, SIZE, seen);
@@ -74,7 +79,7 @@ static double inside(place from, place to) {
 }
 
 // A cube of density 1.5 lit by a light; the square cuts through it and reaches out of it.
-static const probe cut = {"shadow", 0, {-1.4, 0.3, 1.4}, {2.8, 0, 0}, {0, 0.2, -2.8}};
+static const probe cut = {"shadow", 0, {-1.4, 0.3, 1.4}, {2.8, 0, 0}, {0, 0.2, -2.8}, {0, 0, 0}, 0};
 
 static void check_cube(pass_world *w, int index, place light, double tolerance) {
     pass *lighting = add_lighting(w, block(w, 1, 1.5f));
@@ -138,7 +143,7 @@ static void fire_lights_its_surroundings_like_a_lamp(void **state) {
         pass *p = add_lighting(&w, field_make(&w.memory, "mul", factors, NULL));
         gpu_test_ok(pass_set_option(p, "fire_lights", counts[k]));
         gpu_test_ok(pass_set_field(p, "emission", triple(&w, 7, 3.5f, 0)));
-        probe q = {"irradiance", 0, {-3, -3, -0.5}, {6, 0, 0}, {0, 6, 0}};
+        probe q = {"irradiance", 0, {-3, -3, -0.5}, {6, 0, 0}, {0, 6, 0}, {0, 0, 0}, 0};
         float *seen = look(&w, p, q);
         double intensity = 7 * 4 / 3.0 * GLM_PI * 0.027;
         for (int i = 0; i < SIZE * SIZE; i++) {
@@ -170,12 +175,41 @@ static void fire_shines_where_no_smoke_is_in_its_way(void **state) {
     gpu_test_ok(pass_set_option(p, "fire_lights", "8"));
     const field *glowing[FIELD_MAX_ARGS] = {ball, number(&w, 5)};
     gpu_test_ok(pass_set_field(p, "emission", field_make(&w.memory, "mul", glowing, NULL)));
-    probe q = {"irradiance", 0, {-0.1, -0.1, -6}, {0.2, 0, 0}, {0, 0, 12}};
+    probe q = {"irradiance", 0, {-0.1, -0.1, -6}, {0.2, 0, 0}, {0, 0, 12}, {0, 0, 0}, 0};
     float *seen = look(&w, p, q);
     const float *below = seen + 4 * 8, *above = seen + 4 * (15 * SIZE + 8);
     assert_true(below[0] > 4 * above[0] && above[0] >= 0);
     mem_free(seen);
     world_close(&w);
+}
+
+// ---- glow -------------------------------------------------------------------------------------
+
+static void set_sky(pass_world *w, float radiance) {
+    w->scene.sky.strength = number(w, 1);
+    w->scene.sky.zenith = w->scene.sky.horizon = triple(w, radiance, radiance, radiance);
+}
+
+// A sphere of smoke with ragged density in a sky of radiance 1 that loses nothing: light is 1
+// everywhere, into every direction.
+static void furnace_is_as_bright_as_its_walls(void **state) {
+    for (float density = 0.3f; density < 10; density *= 5) {
+        pass_world w;
+        world_open(&w, *state);
+        set_sky(&w, 1);
+        const field *ball = row(&w, "sphere", SET("radius", number(&w, 1)));
+        const field *factors[FIELD_MAX_ARGS] = {ball, number(&w, density)};
+        pass *p = add_lighting(&w, field_make(&w.memory, "mul", factors, NULL));
+        gpu_test_ok(pass_set_option(p, "glow_resolution", "16"));
+        gpu_test_ok(pass_set_uniform(p, "albedo", triple(&w, 1, 1, 1)));
+        gpu_test_ok(pass_set_uniform(p, "anisotropy", number(&w, 0.5f)));
+        gpu_test_ok(pass_set_uniform(p, "bounces", number(&w, 4)));
+        probe q = {"scattered", 0, {-0.9, -0.9, 0.1}, {1.8, 0, 0}, {0, 1.8, 0}, {0, 0.6, 0.8}, 0.5};
+        float *seen = look(&w, p, q);
+        for (int i = 0; i < SIZE * SIZE; i++) near((double)seen[4 * i], 1, 0.02, q, i);
+        mem_free(seen);
+        world_close(&w);
+    }
 }
 
 int main(void) {
@@ -184,6 +218,7 @@ int main(void) {
         cmocka_unit_test(lamp_has_passed_the_cube_wherever_it_is),
         cmocka_unit_test(fire_lights_its_surroundings_like_a_lamp),
         cmocka_unit_test(fire_shines_where_no_smoke_is_in_its_way),
+        cmocka_unit_test(furnace_is_as_bright_as_its_walls),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }

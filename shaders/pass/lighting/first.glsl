@@ -42,7 +42,7 @@ void main() {
         for (int c = 0; c < 3; c++) flux[c] -= light[c] * ray.direction;
     }
     for (int c = 0; c < 3; c++) {
-        vec4 moments = clamp(vec4(mean[c], flux[c]), -HALF_MOST, HALF_MOST);
+        vec4 moments = vec4(mean[c], flux[c]);
         imageStore(first_kept, voxel + ivec3(0, 0, c * GLOW_SIZE), moments);
         imageStore(source_kept, voxel + ivec3(0, 0, c * GLOW_SIZE), bounces > 0 ? moments : vec4(0.0));
     }

@@ -17,7 +17,8 @@ void main() {
         dyed += d * medium_scattering(p);
     }
     count_samples(8);
-    imageStore(medium_kept, voxel, min(vec4(glowing, sum) / 8.0, vec4(HALF_MOST)));
-    imageStore(scattering_kept, voxel, vec4(sum > 0.0 ? dyed / sum : vec3(0.0), 0.0));
+    imageStore(medium_kept, voxel, vec4(glowing, sum) / 8.0);
+    // Where nothing is, light is as if a little were: what is between voxels is interpolated.
+    imageStore(scattering_kept, voxel, vec4(sum > 0.0 ? dyed / sum : extinction * albedo, 0.0));
 }
 #endif

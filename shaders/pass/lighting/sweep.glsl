@@ -20,27 +20,25 @@ vec3 way_of(int index) {
     return mix(v, -v, bvec3(index & 1, index & 2, index & 4));
 }
 
+int voxels_across() { // on the level at hand
+    return textureSize(medium_made, 0).x;
+}
+
 // Where the radiance of a voxel in a direction is kept.
 ivec3 place_of(ivec3 voxel, int index) {
-    return voxel + ivec3(index & 7, index >> 3, 0) * ivec3(GLOW_SIZE, GLOW_SIZE, 0);
+    return voxel + ivec3(index & 7, index >> 3, 0) * voxels_across();
 }
 
 #if defined(STAGE_SWEEP)
-const int CELLS = GLOW_SIZE * GLOW_SIZE;
-const int THREADS = min(CELLS, 1024);
-const int MINE = (CELLS + THREADS - 1) / THREADS;
-layout(local_size_x = THREADS) in;
-
-// Of the slice before: light when it leaves the half of a voxel behind its centre; and packed: what
-// is scattered into the direction and what that half has taken.
-shared vec3 leaving[CELLS];
-shared uvec2 scattering[CELLS];
+layout(local_size_x = GLOW_SIZE * GLOW_SIZE) in; // fewer have work on coarser levels
 
 struct cell {
     vec3 light;     // where it leaves the voxel
     vec3 scattered; // per part of the light that the medium takes: the source function
     float taken;    // part of the light that half a voxel takes
 };
+
+shared cell slice[GLOW_SIZE * GLOW_SIZE]; // the one before
 
 struct path { // of a direction through the grid
     vec3 way;
@@ -51,7 +49,7 @@ struct path { // of a direction through the grid
 };
 
 path make_path(vec3 way) {
-    vec3 cells = way * float(GLOW_SIZE) / max(box_max - box_min, vec3(1e-6)), a = abs(cells);
+    vec3 cells = way * float(voxels_across()) / max(box_max - box_min, vec3(1e-6)), a = abs(cells);
     int main_axis = a.x >= max(a.y, a.z) ? 0 : a.y >= a.z ? 1 : 2;
     ivec3 axes = ivec3(main_axis, (main_axis + 1) % 3, (main_axis + 2) % 3);
     return path(way, axes, -vec2(cells[axes.y], cells[axes.z]) / a[main_axis], 1.0 / a[main_axis],
@@ -63,7 +61,7 @@ vec3 source_at(ivec3 voxel, vec3 way) {
     float g = medium_anisotropy();
     vec3 sum;
     for (int c = 0; c < 3; c++) {
-        vec4 moments = texelFetch(source_made, voxel + ivec3(0, 0, c * GLOW_SIZE), 0);
+        vec4 moments = texelFetch(source_made, voxel + ivec3(0, 0, c * voxels_across()), 0);
         sum[c] = moments.x + 3.0 * g * dot(moments.yzw, way);
     }
     vec3 part = texelFetch(scattering_made, voxel, 0).rgb / max(medium_extinction(), vec3(1e-9));
@@ -72,21 +70,21 @@ vec3 source_at(ivec3 voxel, vec3 way) {
 
 // What comes from the slice before, between four cells of it; cells outside are empty.
 cell before(path on, ivec2 at, vec3 own_source, bool first) {
-    vec2 from = vec2(at) + on.back, low = floor(from);
+    vec2 to = vec2(at) + on.back, low = floor(to);
+    int size = voxels_across();
     cell sum = cell(vec3(0.0), vec3(0.0), 0.0);
     for (int i = 0; i < 4; i++) {
         ivec2 c = ivec2(low) + ivec2(i & 1, i >> 1);
-        vec2 near = 1.0 - abs(from - vec2(c));
+        vec2 near = 1.0 - abs(to - vec2(c));
         float weight = near.x * near.y;
-        if (first || any(lessThan(c, ivec2(0))) || any(greaterThanEqual(c, ivec2(GLOW_SIZE)))) {
+        if (first || any(lessThan(c, ivec2(0))) || any(greaterThanEqual(c, ivec2(size)))) {
             sum.light += weight * on.outside;
             sum.scattered += weight * own_source;
         } else {
-            uvec2 packed = scattering[c.y * GLOW_SIZE + c.x];
-            vec2 last = unpackHalf2x16(packed.y);
-            sum.light += weight * leaving[c.y * GLOW_SIZE + c.x];
-            sum.scattered += weight * vec3(unpackHalf2x16(packed.x), last.x);
-            sum.taken += weight * last.y;
+            cell from = slice[c.y * size + c.x];
+            sum.light += weight * from.light;
+            sum.scattered += weight * from.scattered;
+            sum.taken += weight * from.taken;
         }
     }
     return sum;
@@ -111,33 +109,24 @@ cell advance(path on, ivec3 voxel, int index, ivec2 at, bool first) {
     vec3 early = mix(mean_through(depth) - exp(-depth), 0.5 * depth, lessThan(depth, vec3(1e-2)));
     vec3 late = max(1.0 - exp(-depth) - early, vec3(0.0));
     vec3 light = from.light * through + given + from.scattered * early + own * late;
-    imageStore(ways_kept, place_of(voxel, index), vec4(min(light, vec3(HALF_MOST)), 0.0));
+    imageStore(ways_kept, place_of(voxel, index), vec4(light, 0.0));
     return cell(light * through + given, own, 1.0 - exp(-0.5 * on.metres * medium.a * grey));
 }
 
 void main() {
     int index = int(gl_WorkGroupID.x), thread = int(gl_LocalInvocationIndex);
     path on = make_path(way_of(index));
-    for (int k = 0; k < GLOW_SIZE; k++) {
-        cell made[MINE];
-        for (int j = 0; j < MINE; j++) {
-            int id = j * THREADS + thread;
-            if (id >= CELLS) break;
-            ivec2 at = ivec2(id % GLOW_SIZE, id / GLOW_SIZE);
-            ivec3 voxel;
-            voxel[on.axes.x] = on.way[on.axes.x] > 0.0 ? k : GLOW_SIZE - 1 - k;
-            voxel[on.axes.y] = at.x;
-            voxel[on.axes.z] = at.y;
-            made[j] = advance(on, voxel, index, at, k == 0);
-        }
+    int size = voxels_across();
+    ivec2 at = ivec2(thread % size, thread / size);
+    ivec3 voxel;
+    voxel[on.axes.y] = at.x;
+    voxel[on.axes.z] = at.y;
+    for (int k = 0; k < size; k++) {
+        cell made;
+        voxel[on.axes.x] = on.way[on.axes.x] > 0.0 ? k : size - 1 - k;
+        if (at.y < size) made = advance(on, voxel, index, at, k == 0);
         barrier();
-        for (int j = 0; j < MINE; j++) {
-            int id = j * THREADS + thread;
-            if (id >= CELLS) break;
-            leaving[id] = made[j].light;
-            scattering[id] = uvec2(packHalf2x16(made[j].scattered.xy),
-                                   packHalf2x16(vec2(made[j].scattered.z, made[j].taken)));
-        }
+        if (at.y < size) slice[thread] = made;
         barrier();
     }
 }
@@ -148,7 +137,8 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 void main() {
     ivec3 voxel = ivec3(gl_GlobalInvocationID);
-    if (any(greaterThanEqual(voxel, ivec3(GLOW_SIZE)))) return;
+    int size = voxels_across();
+    if (any(greaterThanEqual(voxel, ivec3(size)))) return;
     vec3 mean = vec3(0.0), flux[3] = vec3[](vec3(0.0), vec3(0.0), vec3(0.0));
     for (int i = 0; i < WAYS; i++) {
         vec3 light = texelFetch(ways_made, place_of(voxel, i), 0).rgb / float(WAYS), way = way_of(i);
@@ -156,9 +146,9 @@ void main() {
         for (int c = 0; c < 3; c++) flux[c] += light[c] * way;
     }
     for (int c = 0; c < 3; c++) {
-        ivec3 at = voxel + ivec3(0, 0, c * GLOW_SIZE);
+        ivec3 at = voxel + ivec3(0, 0, c * size);
         vec4 moments = vec4(mean[c], flux[c]);
-        imageStore(glow, at, moments);
+        if (size == GLOW_SIZE) imageStore(glow, at, clamp(moments, -HALF_MOST, HALF_MOST));
         imageStore(source_kept, at, moments + texelFetch(first_made, at, 0));
     }
 }
