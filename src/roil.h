@@ -179,8 +179,8 @@ typedef struct roil_control { // strings live as long as the effect
     bool moved;  // differs from the script, by a setting
 } roil_control;
 
-// Parameters in order of declaration, palettes and curves of the script, then camera, sun and sky,
-// then uniforms and options pass by pass.
+// Parameters in order of declaration, palettes and curves of the script, then camera, sun, sky and
+// lights, then uniforms and options pass by pass.
 size_t roil_control_count(const roil_effect *e);
 void roil_get_control(roil_effect *e, size_t index, roil_control *out);
 bool roil_find_control(roil_effect *e, const char *name, size_t *index); // false with a message

@@ -114,9 +114,9 @@ static void fill_uniform(const roil_effect *e, const effect_control *c, const pa
 
 static void fill_scene(const roil_effect *e, const effect_control *c, roil_control *out) {
     static const char *const groups[] = {"camera", "sun", "sky"};
-    size_t count;
-    const scene_value *v = &scene_values(&count)[c->index];
-    for (size_t i = 0; i < COUNT_OF(groups); i++)
+    const scene_value *v = effect_control_value(c);
+    if (c->kind == EFFECT_CONTROL_LIGHT) out->group = effect_scene(e->effect)->lights[c->pass].name;
+    for (size_t i = 0; c->kind == EFFECT_CONTROL_SCENE && i < COUNT_OF(groups); i++)
         if (strncmp(v->name, groups[i], strlen(groups[i])) == 0) out->group = groups[i];
     out->type = v->color ? ROIL_COLOR : v->components == 3 ? ROIL_VECTOR : ROIL_FLOAT;
     out->components = v->components;
@@ -187,6 +187,7 @@ void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
         out->help = ramp_help[1];
         break;
     case EFFECT_CONTROL_SCENE:
+    case EFFECT_CONTROL_LIGHT:
         fill_scene(e, c, out);
         break;
     case EFFECT_CONTROL_UNIFORM:

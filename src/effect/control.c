@@ -23,6 +23,7 @@ static void print(const effect *e, const control *c, strbuf *out) {
         ramp_print(e, c, out);
         break;
     case EFFECT_CONTROL_SCENE:
+    case EFFECT_CONTROL_LIGHT:
         scene_control_print(e, c, out);
         break;
     case EFFECT_CONTROL_UNIFORM:
@@ -173,6 +174,7 @@ static bool set(effect *e, control *c, const char *text) {
     case EFFECT_CONTROL_CURVE:
         return ramp_set(e, c, text);
     case EFFECT_CONTROL_SCENE:
+    case EFFECT_CONTROL_LIGHT:
         return scene_control_set(e, c, text);
     case EFFECT_CONTROL_UNIFORM:
     case EFFECT_CONTROL_OPTION:
@@ -192,6 +194,7 @@ void effect_reset_control(effect *e, control *c) {
         ramp_reset(e, c);
         break;
     case EFFECT_CONTROL_SCENE:
+    case EFFECT_CONTROL_LIGHT:
         scene_control_reset(e, c);
         break;
     case EFFECT_CONTROL_UNIFORM:

@@ -1,16 +1,30 @@
-// Controls of camera, sun and sky. A camera is turned by what it was made of: one that circles its
-// target by distance, yaw and pitch, and any by "camera.eye", which makes it stand somewhere.
+// Controls of camera, sun, sky and lights. A camera is turned by what it was made of: one that
+// circles its target by distance, yaw and pitch, and any by "camera.eye", which makes it stand
+// somewhere.
 #include "base/error.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
 #include <string.h>
 
-static const scene_value *value_of(const control *c) {
+const scene_value *effect_control_value(const effect_control *c) {
     size_t count;
-    return &scene_values(&count)[c->face.index];
+    const scene_value *values = c->kind == EFFECT_CONTROL_LIGHT
+                                    ? scene_light_values(SCENE_SPOT, &count)
+                                    : scene_values(&count);
+    return &values[c->index];
+}
+
+static const scene_value *value_of(const control *c) {
+    return effect_control_value(&c->face);
+}
+
+static const field **light_slot(scene_light *light, const scene_value *value) {
+    return (const field **)(void *)((char *)light + value->offset);
 }
 
 static const field **slot_of(effect *e, const control *c) {
+    if (c->face.kind == EFFECT_CONTROL_LIGHT)
+        return light_slot(&e->scene.lights[c->face.pass], value_of(c));
     return scene_slot(&e->scene, value_of(c));
 }
 
@@ -39,6 +53,37 @@ bool scene_control_unknown(const effect *e, const char *name) {
     return false;
 }
 
+// Whether "NAME.something" is said already.
+static bool is_taken(const effect *e, const char *name) {
+    size_t length = strlen(name);
+    for (size_t i = 0; i < e->control_count; i++) {
+        const char *other = e->controls[i]->face.name;
+        if (strncmp(other, name, length) == 0 && other[length] == '.') return true;
+    }
+    return false;
+}
+
+static bool add_light(effect *e, size_t index) {
+    scene_light *light = &e->scene.lights[index];
+    const char *stem = light->name;
+    if (!stem) return true;
+    for (int i = 2; is_taken(e, light->name); i++)
+        light->name = arena_format(&e->memory, "%s_%d", stem, i);
+    size_t count;
+    const scene_value *values = scene_light_values(light->kind, &count);
+    for (size_t i = 0; i < count; i++) {
+        control own = {
+            .face = {.kind = EFFECT_CONTROL_LIGHT,
+                     .name = arena_format(&e->memory, "%s.%s", light->name, values[i].name),
+                     .pass = index,
+                     .index = i},
+            .original = *light_slot(light, &values[i]),
+        };
+        if (!effect_apply_to(e, effect_add_control(e, &own))) return false;
+    }
+    return true;
+}
+
 bool scene_control_add_all(effect *e) {
     size_t count;
     const scene_value *values = scene_values(&count);
@@ -52,6 +97,8 @@ bool scene_control_add_all(effect *e) {
                        .original = *scene_slot(&e->scene, &values[i])});
         if (!effect_apply_to(e, c)) return false;
     }
+    for (size_t i = 0; i < e->scene.light_count; i++)
+        if (!add_light(e, i)) return false;
     return true;
 }
 
@@ -60,17 +107,17 @@ bool scene_control_set(effect *e, control *c, const char *text) {
     float value[4] = {0};
     int count = text_numbers(text, value);
     if (text[0] == '#') {
-        if (!palette_parse_color(text, value)) return err_prefix("%s: ", v->name);
+        if (!palette_parse_color(text, value)) return err_prefix("%s: ", c->face.name);
         count = 3;
     }
     if (count != v->components)
-        return text_wrong(v->name, text,
+        return text_wrong(c->face.name, text,
                           v->components == 1 ? "a number"
                           : v->color         ? "#rrggbb or three numbers, as 1,0.5,0.1"
                                              : "three numbers, as 1,0,2.5");
     for (int i = 0; i < count; i++)
         if (!(value[i] >= v->min && value[i] <= v->max))
-            return err_set("%s is %g; accepted: %g to %g%s%s", v->name, (double)value[i],
+            return err_set("%s is %g; accepted: %g to %g%s%s", c->face.name, (double)value[i],
                            (double)v->min, (double)v->max, v->unit[0] ? " " : "", v->unit);
     *slot_of(e, c) = control_node(e, c, count, value);
     c->turn = !c->turn;

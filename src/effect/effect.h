@@ -119,6 +119,7 @@ typedef enum effect_control_kind {
     EFFECT_CONTROL_PALETTE,
     EFFECT_CONTROL_CURVE,
     EFFECT_CONTROL_SCENE,   // "camera.fov", "sun.azimuth", "sky.strength"
+    EFFECT_CONTROL_LIGHT,   // "lamp.power"
     EFFECT_CONTROL_UNIFORM, // "march.steps"
     EFFECT_CONTROL_OPTION,  // "march.mode"
     EFFECT_CONTROL_SCALE,   // "march.resolution"
@@ -127,7 +128,7 @@ typedef enum effect_control_kind {
 typedef struct effect_control {
     effect_control_kind kind;
     const char *name;
-    size_t pass, index;  // of the pass, and of the thing itself (of a scene_value; of a uniform)
+    size_t pass, index;  // of the pass or light, and of the thing itself (scene_value; uniform)
     const char *initial; // as text, before any setting
     const char *moved;   // the setting that holds, as text; NULL: the script's own value
 } effect_control;
@@ -141,6 +142,7 @@ const palette *effect_control_palette(const effect_control *c);
 const curve *effect_control_curve(const effect_control *c);
 const field *effect_control_field(const effect *e, const effect_control *c);
 const field *effect_control_original(const effect_control *c);
+const scene_value *effect_control_value(const effect_control *c); // of the scene, of a light
 // The value of now, as effect_set takes it; of what the script moves how it does.
 void effect_print_control(const effect *e, const effect_control *c, strbuf *out);
 

@@ -36,6 +36,7 @@ typedef enum scene_light_kind { // as LIGHT_POINT, LIGHT_SPOT of shared.h
 } scene_light_kind;
 
 typedef struct scene_light {
+    const char *name; // that its numbers are set by; NULL: none
     scene_light_kind kind;
     const field *position; // vec3, metres
     const field *color;    // vec3
@@ -62,7 +63,7 @@ typedef struct scene {
     scene_camera camera;
     scene_sun sun;
     scene_sky sky;
-    const scene_light *lights; // besides the sun; the script's memory
+    scene_light *lights; // besides the sun; the script's memory
     size_t light_count;        // less than LIGHT_MAX
 } scene;
 
@@ -73,7 +74,7 @@ typedef enum scene_need { // where a scene has a value at all
     SCENE_IMAGE,    // of a sky with one
 } scene_need;
 
-typedef struct scene_value { // one value of camera, sun or sky
+typedef struct scene_value { // one value of camera, sun, sky or a light
     const char *name;        // "camera.fov"
     size_t offset;           // of its field in the scene
     int components;
@@ -85,6 +86,8 @@ typedef struct scene_value { // one value of camera, sun or sky
 const scene_value *scene_values(size_t *count);
 const field **scene_slot(scene *s, const scene_value *value);
 bool scene_has(const scene *s, scene_need need);
+// Those of a light, whose names are "power" and the like; their offsets are in a scene_light.
+const scene_value *scene_light_values(scene_light_kind kind, size_t *count);
 
 // A scene with the defaults of the documentation, made of constants in `memory`.
 void scene_init(scene *s, arena *memory);

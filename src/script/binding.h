@@ -106,7 +106,7 @@ const field *value_get_uniform(lua_State *L, int table, const char *who, const c
 void value_read_slots(lua_State *L, const char *who, void *out);
 void value_refuse_array(lua_State *L, const char *who);
 // A list of lights, in the effect's memory; returns how many.
-size_t value_lights(lua_State *L, int index, const char *who, const scene_light **out);
+size_t value_lights(lua_State *L, int index, const char *who, scene_light **out);
 
 // ---- the objects' globals ---------------------------------------------------------------------
 

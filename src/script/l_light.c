@@ -21,6 +21,7 @@ static scene_light *make_light(lua_State *L, const char *who, scene_light_kind k
     if (!light->position)
         vm_error(L, "%s: 'position' is missing: where it stands, {x, y, z} in metres", who);
     light->kind = kind;
+    light->name = value_name_or_variable(L, 1, who);
     set_default(&light->color, constant(L, 3, 1, 1, 1));
     set_default(&light->power, constant(L, 1, 100, 0, 0));
     return light;
@@ -48,8 +49,8 @@ static int l_spot_light(lua_State *L) {
     return 1;
 }
 
-size_t value_lights(lua_State *L, int index, const char *who, const scene_light **out) {
-    enum { MOST = LIGHT_MAX - 1 };
+size_t value_lights(lua_State *L, int index, const char *who, scene_light **out) {
+    enum { MOST = LIGHT_MAX - 1, CONTROLS = 7 };
     if (!value_is_plain_table(L, index) || value_has_names(L, index))
         vm_error(
             L, "%s: 'lights' takes a list, as in { point_light { position = {0, 0, 3} } }; got %s",
@@ -59,7 +60,7 @@ size_t value_lights(lua_State *L, int index, const char *who, const scene_light 
     size_t count = lua_rawlen(L, index);
     if (count > MOST)
         vm_error(L, "%s: %d lights; at most %d are possible", who, (int)count, (int)MOST);
-    vm_charge_memory(L, count * sizeof **out);
+    vm_charge_memory(L, count * (sizeof **out + CONTROLS * EFFECT_CONTROL_COST));
     scene_light *lights = arena_alloc(script_memory(L), count * sizeof *lights);
     for (size_t i = 0; i < count; i++) {
         lua_rawgeti(L, index, (lua_Integer)i + 1);

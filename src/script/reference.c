@@ -27,7 +27,8 @@
     SLOT(scene_light, position, 3, "{x, y, z} m", "where it stands; required"),                    \
     SLOT(scene_light, color, 3, "1, 1, 1", "multiplies the power"),                                \
     SLOT(scene_light, power, 1, "100 W",                                                           \
-         "as light into all directions, of which a spot's cone is cut out")
+         "as light into all directions, of which a spot's cone is cut out"),                       \
+    KEY("name", "the variable's", "for --set NAME.power=value and presets; numbered when taken")
 #define SEQUENCE_MEMBERS KEYS(                                                                     \
     KEY("NAME", "field", "the grid of that name: density, temperature, flame, velocity ..."),      \
     KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "encloses all frames"),                   \

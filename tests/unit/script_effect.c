@@ -231,7 +231,7 @@ static void a_users_shader_is_a_pass_like_the_others(void **state) {
     effect *e = load("local fx = effect { } local img = geometry { }\n"
                      "local a = shader { 'tint.comp', img, strength = 0.5, kind = 'hard' }\n"
                      "local b = shader { 'tint.comp', input = a, invert = true, shift = {1, 2} }\n"
-                     "local c = shader('tint.comp', b, img.color, { strength = 1 })\n"
+                     "local c = shader('tint.comp', b, img.albedo, { strength = 1 })\n"
                      "local d = shader('tint.comp', history(c))\n"
                      "fx.output = d fx.linear = c.color fx.depth = img.depth");
     assert_int_equal(effect_pass_count(e), 5);

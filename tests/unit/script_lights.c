@@ -102,6 +102,56 @@ static void mistakes_are_named(void **state) {
     refused(HEAD "fx.light = {}" TAIL, "effect: unknown field 'light'; did you mean 'lights'?");
 }
 
+static const char *text_of(effect *e, const char *name) {
+    static char said[64];
+    const effect_control *c = effect_find_control(e, name);
+    if (!c) fail_msg("%s", err_get());
+    strbuf text = {0};
+    effect_print_control(e, c, &text);
+    snprintf(said, sizeof said, "%s", strbuf_text(&text));
+    strbuf_free(&text);
+    return said;
+}
+
+static const char named[] =
+    HEAD "local lamp = spot_light { position = {0, 0, 5}, power = function(t) return t end }\n"
+         "fx.lights = { lamp, lamp, point_light { position = {0, 0, 1} },\n"
+         "              sphere_light { position = {0, 0, 1}, radius = 1, name = 'sun' } }" TAIL;
+
+static void numbers_are_set_by_name(void **state) {
+    (void)state;
+    const effect_setting settings[] = {{"lamp_2.angle", "20", NULL}};
+    effect *e = helper_load_with(named, NULL, settings, 1);
+    if (!e || !effect_check_settings(e)) fail_msg("%s", err_get());
+    const scene *s = effect_scene(e);
+    assert_true(evaluate(e, s->lights[0].angle, 0, 0) == 45);
+    assert_true(evaluate(e, s->lights[1].angle, 0, 0) == 20);
+    assert_true(effect_set(e, "lamp.power", "50") && effect_set(e, "point_light.color", "#ff0000"));
+    assert_true(effect_set(e, "sun_2.radius", "2")); // the sun itself has the name
+    assert_true(evaluate(e, s->lights[0].power, 7, 0) == 50);
+    assert_true(evaluate(e, s->lights[1].power, 7, 0) == 7);
+    assert_true(evaluate(e, s->lights[3].radius, 0, 0) == 2);
+    assert_string_equal(text_of(e, "point_light.color"), "#ff0000");
+    assert_true(effect_reset(e, "lamp.power"));
+    assert_true(evaluate(e, s->lights[0].power, 7, 0) == 7);
+    effect_destroy(e);
+}
+
+static void wrong_settings_are_named(void **state) {
+    (void)state;
+    effect *e = load(named);
+    assert_true(effect_check_settings(e));
+    assert_false(effect_set(e, "lamp.power", "-1"));
+    assert_string_equal(err_get(), "lamp.power is -1; accepted: 0 to inf W");
+    assert_false(effect_set(e, "lamp.color", "2"));
+    assert_string_equal(err_get(), "'lamp.color' cannot be '2'; accepted: #rrggbb or three "
+                                   "numbers, as 1,0.5,0.1");
+    assert_false(effect_set(e, "lamp.powr", "1"));
+    assert_string_equal(err_get(), "nothing is named 'lamp.powr'; did you mean 'lamp.power'?");
+    assert_false(effect_set(e, "point_light.angle", "1")); // only a spot has one
+    effect_destroy(e);
+}
+
 // ---- the sky's image ----------------------------------------------------------------------------
 
 static void put_sky(const char *name, float value) {
@@ -183,6 +233,8 @@ int main(void) {
         cmocka_unit_test(numbers_are_functions_curves_and_parameters),
         cmocka_unit_test(last_list_counts),
         cmocka_unit_test(mistakes_are_named),
+        cmocka_unit_test(numbers_are_set_by_name),
+        cmocka_unit_test(wrong_settings_are_named),
         cmocka_unit_test(sky_can_be_an_image),
         cmocka_unit_test(controls_are_those_of_the_sky_that_is_there),
         cmocka_unit_test(an_effect_has_one_image),

@@ -79,7 +79,7 @@ static void values_of_the_wrong_kind_are_named(void **state) {
         {"march { density = 1, steps = 1e9 }",
          "march: uniform 'steps' is 1e+09; accepted: 1 to 4096"},
         {"march { density = 1, depth = 3 }", "march: input 'depth' takes an image"},
-        {"march { density = 1, mode = 3 }", "march: option 'mode' takes a word"},
+        {"march { density = 1, mode = {} }", "march: option 'mode' takes a word"},
         {"march { density = 1, resolution = 2 }", "march: resolution is 2; accepted"},
         {"march { density = 1, resolution = param { 'r', 1 } }",
          "march: 'resolution' must be a plain"},
