@@ -18,8 +18,11 @@ uniform sampler2D depth;           //= input optional : depth of the scene (m), 
 uniform sampler2D sum_before;      //= input history sum : all samples so far
 writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity
 writeonly uniform image2D edge;    //= output r32f : depth of the scene at the pixel (m)
-writeonly uniform image2D reach;   //= output r32f : distance along the ray at which it is first scattered, on average over the samples of this execution (m); of the scene where it is not
-writeonly uniform image2D sum;     //= output rgba32f : all samples, added up
+writeonly uniform image2D reach;   //= output r32f : distance along the ray at which it is first scattered, on average over the latest samples (m); of the scene where it is not
+uniform image2D sum;               //= output rgba32f : all samples, added up
+
+uniform int paths; // for each pixel in this dispatch
+uniform int part;  // which dispatch of the execution this is; each has the same number of paths
 
 #include "lib/frame.glsl"
 #include "lib/bvh.glsl"
@@ -30,23 +33,24 @@ writeonly uniform image2D sum;     //= output rgba32f : all samples, added up
 #include "lib/random.glsl"
 #include "lib/sky.glsl"
 
-const int TURNS = 1 << 18;      // of a path; it ends there
-const float THIN = 0.02, THIN_LATE = 0.5; // Russian roulette below this part of the light, at first and after LATE
-const int LATE = 8;             // scatterings
+const int TURNS = 1 << 18;                // of a path; it ends there
+const float THIN = 0.02, THIN_LATE = 0.5; // Russian roulette below this part of the light, at first and later
+const int LATE = 8;                       // scatterings
 
 struct path_state {
-    vec3 weight;          // part of the light here that reaches the eye
-    vec3 light;           // radiance so far
+    path_random random;
+    vec3 weight;         // part of the light here that reaches the eye
+    vec3 light;          // radiance so far
     float alpha;
-    int bounce;           // scatterings so far
-    majorant_walk walk;   // of the ray that is traced just now
-    bvh_hit hit;          // where it ends, unless it goes to a light
-    bool to_light;        // the ray goes from the last scattering to a light
-    vec3 arriving;        // light that comes this way, if nothing stops it
-    vec3 from, way;       // where the path goes on after that
-    float pdf, sky_part;  // density of `way`; part of the choices of a source that fell to the sky
-    bool done;
-    float first;          // metres to the first scattering
+    int bounce, turn;    // scatterings and rounds of the loop so far
+    float first;         // metres to the first scattering
+    vec3 from, way;      // of the next ray of the path
+    bool begins, done;   // that ray begins; the path is at its end
+    majorant_walk walk;  // of the ray that is traced just now
+    bvh_hit hit;         // where it ends, unless it goes to a light
+    bool to_light;       // it goes from the last scattering to a light
+    vec3 arriving;       // light that comes this way, if nothing stops it
+    float pdf, sky_part; // density of `way`; part of the choices of a source that fell to the sky
 };
 
 // Where light is scattered: in the medium, or on a surface (`normal` is not zero).
@@ -62,12 +66,6 @@ float brightest(vec3 c) {
 float scattered(path_vertex v, vec3 way) {
     if (v.normal == vec3(0.0)) return medium_phase(dot(v.before, way), 1.0);
     return max(dot(v.normal, way), 0.0) / PATH_PI;
-}
-
-void go(inout path_state s, vec3 from, vec3 way) {
-    s.hit = bvh_trace(from, way, 0.0, 1e9);
-    s.walk = majorant_begin(from, way, s.hit.distance < 0.0 ? 1e9 : s.hit.distance);
-    s.to_light = false;
 }
 
 // What a source may give at a vertex. Not zero where it gives anything: a sphere shines over the
@@ -116,18 +114,19 @@ void ask_source(inout path_state s, path_vertex v, vec4 random) {
     if (brightest(s.arriving) <= 0.0 || bvh_occluded(v.p, source.way, 0.0, source.far * 0.9999)) return;
     s.walk = majorant_begin(v.p, source.way, source.far);
     s.to_light = true;
+    s.begins = false;
 }
 
-void scatter(inout path_state s, path_vertex v, inout path_random random) {
+void scatter(inout path_state s, path_vertex v) {
     if (s.bounce == 0) s.first = distance(v.p, s.walk.origin);
     s.bounce++;
-    vec4 r = path_next(random);
+    vec4 r = path_next(s.random);
     bool solid = v.normal != vec3(0.0);
     s.from = v.p;
     s.way = solid ? path_sample_cosine(v.normal, r.xy) : path_sample_phase(v.before, r.xyz);
     s.pdf = scattered(v, s.way);
-    ask_source(s, v, path_next(random));
-    if (!s.to_light) go(s, s.from, s.way);
+    s.begins = true;
+    ask_source(s, v, path_next(s.random));
 }
 
 // Ends paths that carry little, and makes up for it in those that are left.
@@ -148,73 +147,94 @@ void collide_to_light(inout path_state s, vec3 gone, float bound, float random) 
     if (ends) s.walk.at = s.walk.end;
 }
 
-// A tentative collision of a path where the extinction is `gone`: light is given off, and the path
-// is scattered or goes on.
-void collide(inout path_state s, vec3 p, float d, vec3 gone, float bound, vec2 random, inout path_random more) {
+// A tentative collision of a path where the extinction is `gone`: light is given off. True: it is
+// scattered, else it goes on.
+bool collide(inout path_state s, vec3 p, float d, vec3 gone, float bound, vec2 random) {
     s.light += s.weight * medium_emission(p, d) / bound;
     vec3 back = s.bounce < bounces ? s.weight * d * medium_scattering(p) : vec3(0.0);
     vec3 on = s.weight * (bound - gone);
     float some = dot(abs(back), vec3(1.0)), none = dot(abs(on), vec3(1.0)), total = some + none;
     bool scatters = random.x * total < some;
     s.weight = scatters ? back * (total / (bound * some)) : on * (total / (bound * max(none, 1e-30)));
-    if (total <= 0.0) s.done = true;
-    else roulette(s, random.y);
-    if (scatters && !s.done) scatter(s, path_vertex(p, vec3(0.0), s.walk.direction), more);
+    roulette(s, random.y);
+    return scatters;
 }
 
-// The ray has left the volume.
-void leave(inout path_state s, inout path_random more) {
-    if (s.to_light) {
-        s.light += s.arriving;
-        go(s, s.from, s.way);
-    } else if (s.hit.distance >= 0.0) {
-        vec3 p = s.walk.origin + s.hit.distance * s.walk.direction;
-        s.weight *= s.hit.albedo;
-        s.done = s.bounce >= bounces || brightest(s.weight) <= 0.0;
-        if (!s.done) roulette(s, path_next(more).x);
-        float lift = 1e-4 * max(1.0, max(s.hit.distance, brightest(p)));
-        if (!s.done) scatter(s, path_vertex(p + lift * s.hit.normal, s.hit.normal, s.walk.direction), more);
+// The path has met a surface. True: it is scattered there.
+bool meet_surface(inout path_state s, out path_vertex v) {
+    vec3 p = s.walk.origin + s.hit.distance * s.walk.direction;
+    float lift = 1e-4 * max(1.0, max(s.hit.distance, brightest(p))); // off the face: rounding
+    v = path_vertex(p + lift * s.hit.normal, s.hit.normal, s.walk.direction);
+    s.weight *= s.hit.albedo;
+    s.done = s.bounce >= bounces;
+    if (!s.done) roulette(s, path_next(s.random).x);
+    return true;
+}
+
+// The path has left everything behind.
+void meet_sky(inout path_state s) {
+    vec3 sky = s.weight * sky_radiance(s.walk.direction);
+    s.done = true;
+    if (s.bounce == 0) {
+        s.light += sky_alpha * sky;
+        s.alpha -= (1.0 - sky_alpha) * dot(s.weight, vec3(1.0 / 3.0));
     } else {
-        s.done = true;
-        vec3 sky = s.weight * sky_radiance(s.walk.direction);
-        if (s.bounce == 0) {
-            s.light += sky_alpha * sky;
-            s.alpha -= (1.0 - sky_alpha) * dot(s.weight, vec3(1.0 / 3.0));
-        } else {
-            s.light += sky * (s.pdf / (s.pdf + s.sky_part * sky_pdf(s.walk.direction)));
-        }
+        s.light += sky * (s.pdf / (s.pdf + s.sky_part * sky_pdf(s.walk.direction)));
     }
 }
 
-// Radiance and opacity along a way from the eye.
-vec4 trace(vec3 origin, vec3 direction, inout path_random random, inout int taken, out float first) {
-    path_state s;
-    s.weight = vec3(1.0);
-    s.light = vec3(0.0);
-    s.alpha = 1.0;
-    s.bounce = 0;
-    s.done = false;
-    s.first = 0.0;
-    go(s, origin, direction);
-    vec3 highest = medium_extinction();
-    // One evaluation of the medium a turn, whatever the ray is for: neighbours stay together.
-    for (int i = 0; i < TURNS && !s.done; i++) {
-        vec4 r = path_next(random);
-        float bound;
-        if (!majorant_go(s.walk, -log(1.0 - r.x), bound)) {
-            leave(s, random);
-            continue;
-        }
+// From one tentative collision to the next, whatever the ray is for: what costs is written once, and
+// neighbours do it together.
+void advance(inout path_state s, vec3 highest, inout int taken) {
+    if (s.begins) {
+        s.hit = bvh_trace(s.from, s.way, 0.0, 1e9);
+        s.walk = majorant_begin(s.from, s.way, s.hit.distance < 0.0 ? 1e9 : s.hit.distance);
+        s.begins = s.to_light = false;
+    }
+    vec4 r = path_next(s.random);
+    path_vertex v;
+    float bound;
+    bool scatters = false;
+    if (majorant_go(s.walk, -log(1.0 - r.x), bound)) {
         vec3 p = s.walk.origin + s.walk.at * s.walk.direction;
         float d = field_density(p);
         taken++;
-        if (d <= 0.0) continue;
-        if (s.to_light)
+        v = path_vertex(p, vec3(0.0), s.walk.direction);
+        if (d > 0.0 && s.to_light)
             collide_to_light(s, d * highest, bound, r.y);
-        else
-            collide(s, p, d, d * highest, bound, r.yz, random);
+        else if (d > 0.0)
+            scatters = collide(s, p, d, d * highest, bound, r.yz);
+    } else if (s.to_light) {
+        s.light += s.arriving;
+        s.begins = true;
+    } else if (s.hit.distance >= 0.0) {
+        scatters = meet_surface(s, v);
+    } else {
+        meet_sky(s);
     }
-    first = s.first;
+    if (++s.turn == TURNS) s.done = true;
+    if (scatters && !s.done) scatter(s, v);
+}
+
+path_state begin(ivec2 pixel, ivec2 size, int number) {
+    uint seed = random_hash(frame.size.z + random_hash(frame.size.w));
+    path_state s;
+    s.random = path_random(uvec3(pixel, uint(number) ^ seed), 0u);
+    vec2 at = vec2(pixel) + 0.5 + path_sample_pixel(filter_, path_next(s.random).xy);
+    s.weight = vec3(1.0);
+    s.light = vec3(0.0);
+    s.alpha = 1.0;
+    s.bounce = s.turn = 0;
+    s.first = 0.0;
+    s.from = frame.eye.xyz;
+    s.way = normalize(frame_ray(at / vec2(size)));
+    s.begins = true;
+    s.done = false;
+    return s;
+}
+
+// Radiance and opacity of a path that is done.
+vec4 result_of(path_state s) {
     vec4 result = vec4(s.light, s.alpha);
     return any(isnan(result)) || any(isinf(result)) ? vec4(0.0) : result;
 }
@@ -222,26 +242,32 @@ vec4 trace(vec3 origin, vec3 direction, inout path_random random, inout int take
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(color);
     bool inside = all(lessThan(pixel, size));
-    vec4 all_of_it = executed > 0 ? texelFetch(sum_before, pixel, 0) : vec4(0.0);
-    int taken = 0;
+    vec3 highest = medium_extinction();
+    vec4 total = vec4(0.0);
     vec2 firsts = vec2(0.0); // their sum and count
-    for (int i = 0; i < samples && inside; i++) {
-        uint seed = random_hash(frame.size.z + random_hash(frame.size.w));
-        path_random random = path_random(uvec3(pixel, uint(executed * samples + i) ^ seed), 0u);
-        vec2 at = vec2(pixel) + 0.5 + path_sample_pixel(filter_, path_next(random).xy);
-        vec3 direction = normalize(frame_ray(at / vec2(size)));
-        float first;
-        all_of_it += trace(frame.eye.xyz, direction, random, taken, first);
-        firsts += vec2(first, first > 0.0);
+    int taken = 0, begun = 0, before = executed * samples + part * paths;
+    path_state s;
+    s.done = true;
+    // A thread begins its next path at once: it does not wait for its neighbours.
+    for (int i = 0; i < paths * TURNS && inside; i++) {
+        if (s.done) {
+            if (begun > 0) total += result_of(s);
+            if (begun > 0 && s.first > 0.0) firsts += vec2(s.first, 1.0);
+            if (begun == paths) break;
+            s = begin(pixel, size, before + begun++);
+        }
+        advance(s, highest, taken);
     }
     count_samples(taken);
     if (!inside) return;
+    if (part > 0) total += imageLoad(sum, pixel);
+    else if (executed > 0) total += texelFetch(sum_before, pixel, 0);
     float stop = 1e9;
 #if HAS_DEPTH
     stop = texelFetch(depth, ivec2((vec2(pixel) + 0.5) / vec2(size) * vec2(textureSize(depth, 0))), 0).r;
 #endif
-    imageStore(sum, pixel, all_of_it);
-    imageStore(color, pixel, all_of_it / float((executed + 1) * samples));
+    imageStore(sum, pixel, total);
+    imageStore(color, pixel, total / float(before + paths));
     imageStore(edge, pixel, vec4(stop));
     imageStore(reach, pixel, vec4(firsts.y > 0.0 ? firsts.x / firsts.y : stop));
 }

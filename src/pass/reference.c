@@ -2,6 +2,7 @@
 // long as nothing changes that the picture depends on.
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/memory.h"
 #include "pass/builtin.h"
 #include "pass/pass_impl.h"
 #include "shared.h"
@@ -13,9 +14,9 @@ typedef struct reference_state {
     shader_binary bounds;
     gpu_pipeline *bounds_pipeline;
     unsigned char *bounds_block;
-    hash128 seen;      // of all that the picture depends on, in the last execution
-    uint32_t executed; // since it changed
-    uint32_t samples;  // a pixel, since then
+    hash128 seen;     // of all that the picture depends on, in the last execution
+    int32_t executed; // times, since it changed
+    uint32_t samples; // a pixel, since then
 } reference_state;
 
 bool reference_declare(pass *p) {
@@ -54,15 +55,20 @@ bool reference_build(pass *p) {
     return s->bounds_pipeline && p->pipeline;
 }
 
-static void write_executed(const shader_binary *binary, unsigned char *block, uint32_t executed) {
-    pass_write_member(binary, block, "executed", &executed, sizeof executed);
+// Members that say how far the picture is.
+static const char *const progress[] = {"executed", "paths", "part"};
+
+static void write_progress(const shader_binary *binary, unsigned char *block,
+                           const int32_t values[COUNT_OF(progress)]) {
+    for (size_t i = 0; i < COUNT_OF(progress); i++)
+        pass_write_member(binary, block, progress[i], &values[i], sizeof values[i]);
 }
 
 bool reference_fill(pass *p, const shader_binary *binary, unsigned char *block) {
     box3 box;
     if (!pass_density_box(p, &box)) return false;
     pass_write_box(binary, block, box);
-    write_executed(binary, block, 0); // until it is known: blocks are compared
+    write_progress(binary, block, (int32_t[COUNT_OF(progress)]){0}); // blocks are compared
     return true;
 }
 
@@ -97,27 +103,38 @@ static void count_execution(pass *p) {
     hash128 seen = hash_inputs(p);
     bool same = !p->host->fresh && seen.low == s->seen.low && seen.high == s->seen.high;
     s->executed = same ? s->executed + 1 : 0;
-    s->samples = (s->executed + 1) * (uint32_t)pass_evaluate(p, "samples");
+    s->samples = (uint32_t)(s->executed + 1) * (uint32_t)pass_evaluate(p, "samples");
     s->seen = seen;
 }
 
 static bool dispatch(pass *p, gpu_pipeline *pipeline, const shader_binary *binary,
                      unsigned char *block, const char *over) {
-    reference_state *s = p->state;
     gpu_binding bindings[GPU_MAX_SLOTS];
     gpu_dispatch_desc desc = {.pipeline = pipeline, .bindings = bindings};
-    write_executed(binary, block, s->executed);
     graph_get_size(p->host->graph, p->images[pass_find_image(p, over)], desc.threads);
     return pass_bind(p, binary, block, NULL, 0, bindings, &desc.binding_count) &&
            gpu_dispatch(p->host->device, &desc);
+}
+
+// A GPU is busy longest with all paths of a pixel in one thread. llvmpipe ends all loops of a
+// thread once they have made 65535 turns together, so that each path gets a thread of its own.
+static bool trace(pass *p) {
+    const reference_state *s = p->state;
+    int32_t samples = (int32_t)pass_evaluate(p, "samples");
+    int32_t paths = gpu_get_info(p->host->device)->kind == GPU_CPU ? 1 : samples;
+    for (int32_t part = 0; part < samples / paths; part++) {
+        write_progress(&p->binary, p->block, (int32_t[]){s->executed, paths, part});
+        if (!dispatch(p, p->pipeline, &p->binary, p->block, "color")) return false;
+    }
+    return true;
 }
 
 bool reference_record(pass *p) {
     reference_state *s = p->state;
     if (!pass_prepare(p) || !pass_fill_block(p, &s->bounds, s->bounds_block)) return false;
     count_execution(p);
-    return dispatch(p, s->bounds_pipeline, &s->bounds, s->bounds_block, "majorants") &&
-           dispatch(p, p->pipeline, &p->binary, p->block, "color");
+    write_progress(&s->bounds, s->bounds_block, (int32_t[COUNT_OF(progress)]){s->executed});
+    return dispatch(p, s->bounds_pipeline, &s->bounds, s->bounds_block, "majorants") && trace(p);
 }
 
 bool pass_samples(const pass *p, uint32_t *out) {
