@@ -63,12 +63,9 @@
 #define MOTION_ARGS                                                                                \
     {"drift", VECTOR("m/s"), SPACELESS, .rate = true,                                              \
      .help = "the noise is taken at p + drift * time"},                                            \
-    {                                                                                              \
-        "speed", SCALAR("1/s"), SPACELESS,                                                         \
-            .rate = true,                                                                          \
-            .help = "rate of the fourth coordinate, in cells: the pattern boils; giving it "       \
-                    "chooses dimensions = 4"                                                       \
-    },                                                                                             \
+        {"speed", SCALAR("1/s"), SPACELESS, .rate = true,                                          \
+         .help = "rate of the fourth coordinate, in cells: the pattern boils; giving it "          \
+                 "chooses dimensions = 4"},                                                        \
     {                                                                                              \
         "w", SCALAR("cells"), SPACELESS,                                                           \
             .help = "added to the fourth coordinate; giving it chooses dimensions = 4"             \

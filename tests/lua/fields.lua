@@ -38,6 +38,10 @@ local shape = sphere { radius = 1, falloff = 0.2 } * cells + box { size = { 1, 2
 local moved = shape:transform { translate = { 0, 0, function(t) return t end }, scale = 2 }
 local field = mix(moved, perlin { seed = 4, drift = { 0, 0, 1 } }, 0.5) * max(0, position.z) * sphere {}
 assert(tostring(field):find("worley", 1, true))
+local carried = (cells + perlin { 2, w = function(t) return t * t end }):advect(flow, { period = 2, phases = "3" })
+field = field + sphere {} * carried * advect { value = cells, velocity = { 0, 0, 1 }, path = "curved" }
+assert(not pcall(advect, cells)) -- needs a velocity
+assert(floor(2.7) == 2 and near(fract(2.7), 0.7) and near(fract(p):get(), 0))
 assert(getmetatable(field) == false)
 
 march { density = field, radiance = field * v, opacity = p }
