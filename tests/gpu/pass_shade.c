@@ -269,9 +269,10 @@ static void sky_is_dimmed_by_what_stands_before_it(void **state) {
 // ---- the volume
 // -----------------------------------------------------------------------------------
 
-static pass *add_lighting(pass_world *w, float density) {
+static pass *add_lighting(pass_world *w, float density, float emission) {
     pass *p = world_add(w, "lighting", NULL, "lighting");
     gpu_test_ok(pass_set_field(p, "density", block(w, 0.5f, density)));
+    gpu_test_ok(pass_set_field(p, "emission", block(w, 0.5f, emission)));
     gpu_test_ok(pass_declare(p));
     return p;
 }
@@ -281,7 +282,7 @@ static void volume_casts_a_shadow(void **state) {
     world_open(&w, *state);
     add_wall(&w)->position = triple(&w, 0, 1, 0);
     shine(&w, -60, 0);
-    pass *lighting = add_lighting(&w, 0.8f);
+    pass *lighting = add_lighting(&w, 0.8f, 0);
     gpu_test_ok(pass_set_uniform(lighting, "albedo", number(&w, 1)));
     float *c = render(&w, add_shade(&w, lighting));
     double slope = tan(GLM_PI / 6), bright = lit(&w, 0, cos(GLM_PI / 6)), x, z;
@@ -300,6 +301,18 @@ static void volume_casts_a_shadow(void **state) {
     world_close(&w);
 }
 
+static void fire_lights_the_wall(void **state) {
+    pass_world w;
+    world_open(&w, *state);
+    add_wall(&w)->position = triple(&w, 0, 2, 0);
+    float *c = render(&w, add_shade(&w, add_lighting(&w, 1e-3f, 3)));
+    size_t middle = PIXELS / 2 + SIZE / 2;
+    double want = lit(&w, 0, 3.0 / 4 / GLM_PI); // 3 W/sr from a cubic metre, 2 m away
+    expect_near(c[4 * middle], want, 0.15 * want, "fire", middle);
+    mem_free(c);
+    world_close(&w);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(sun_and_sky_add_up),
@@ -310,6 +323,7 @@ int main(void) {
         cmocka_unit_test(only_what_stands_before_a_light_hides_it),
         cmocka_unit_test(sky_is_dimmed_by_what_stands_before_it),
         cmocka_unit_test(volume_casts_a_shadow),
+        cmocka_unit_test(fire_lights_the_wall),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }
