@@ -31,9 +31,9 @@ bool effect_apply_to(effect *e, control *c);
 bool effect_set_control(effect *e, control *c, const char *text); // structure too
 void effect_reset_control(effect *e, control *c);                 // but for structure
 
-// By kind: param.c, control_pass.c, control_scene.c (lights too), control_ramp.c (palettes, curves). `set`
-// changes nothing when it fails; `print` says the value of now as `set` takes it, or how the script
-// moves it.
+// By kind: param.c, control_pass.c, control_scene.c (lights too), control_ramp.c (palettes,
+// curves). `set` changes nothing when it fails; `print` says the value of now as `set` takes it, or
+// how the script moves it.
 bool param_set(effect *e, control *c, const char *text);
 void param_print(const effect *e, const control *c, strbuf *out);
 void pass_control_add_all(effect *e, size_t pass);
@@ -41,7 +41,7 @@ void pass_control_declare(effect *e, control *c); // the script has said all abo
 bool pass_control_set(effect *e, control *c, const char *text);
 void pass_control_reset(effect *e, control *c);
 void pass_control_print(const effect *e, const control *c, strbuf *out);
-bool scene_control_add_all(effect *e); // the lights' too
+bool scene_control_add_all(effect *e);                         // the lights' too
 bool scene_control_unknown(const effect *e, const char *name); // true with a message of its own
 bool scene_control_set(effect *e, control *c, const char *text);
 void scene_control_reset(effect *e, control *c);

@@ -64,7 +64,7 @@ typedef struct scene {
     scene_sun sun;
     scene_sky sky;
     scene_light *lights; // besides the sun; the script's memory
-    size_t light_count;        // less than LIGHT_MAX
+    size_t light_count;  // less than LIGHT_MAX
 } scene;
 
 typedef enum scene_need { // where a scene has a value at all

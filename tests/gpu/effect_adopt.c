@@ -2,6 +2,7 @@
 // all as it was.
 #include "effect_test.h"
 #include "field/sequence.h"
+#include "scene/sky_image.h"
 
 enum { SIZE = 17 };
 
@@ -154,6 +155,36 @@ static void mesh_is_imported_and_uploaded_once(void **state) {
     shelf_destroy(kept);
 }
 
+// ---- sky --------------------------------------------------------------------------------------
+
+static effect *open_sky(gpu *device) {
+    effect *e = open_effect(&(effect_desc){.device = device, .shelf = kept});
+    scene *s = effect_scene(e);
+    s->sky.image = effect_add_sky_image(e, "sky.exr");
+    s->sky.strength = number(e, 1);
+    gpu_test_ok(s->sky.image);
+    pass *p = add(e, NULL, "sky_probe.comp");
+    gpu_test_ok(pass_declare(p) && effect_set_output(e, pass_output(p, "color")));
+    gpu_test_ok(effect_compile(e));
+    return e;
+}
+
+static void sky_is_read_and_uploaded_once(void **state) {
+    kept = shelf_create();
+    effect *old = open_sky(*state);
+    gpu_test_ok(effect_allocate(old, SIZE, SIZE));
+    float before = middle(old, 1, SIZE, 0);
+    gpu_image *texture = sky_image_texture(effect_scene(old)->sky.image);
+    effect *next = open_sky(*state);
+    gpu_test_ok(effect_adopt(next, old, SIZE, SIZE));
+    assert_ptr_equal(sky_image_texture(effect_scene(next)->sky.image), texture);
+    assert_null(sky_image_texture(effect_scene(old)->sky.image));
+    effect_destroy(old);
+    assert_true(before > 0 && middle(next, 2, SIZE, 0) == before);
+    effect_destroy(next);
+    shelf_destroy(kept);
+}
+
 // ---- rehearsal --------------------------------------------------------------------------------
 
 static bool call_hook(void *user, int function, double time, float out[4]) {
@@ -184,6 +215,7 @@ int main(void) {
         cmocka_unit_test(decoded_frames_are_handed_on),
         cmocka_unit_test(frames_that_lie_elsewhere_are_not),
         cmocka_unit_test(mesh_is_imported_and_uploaded_once),
+        cmocka_unit_test(sky_is_read_and_uploaded_once),
         cmocka_unit_test(rehearsal_finds_what_a_frame_would),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
