@@ -15,8 +15,8 @@ local steps   = param { "steps", 96, min = 8, max = 512, integer = true, help = 
 -- Z is up and lengths are metres. The camera circles a point above the middle of the ground. The sun
 -- stands low on its left, and the sky is what dusk leaves of it.
 fx.camera = orbit { target = {0, 0, 3.1}, distance = 16, pitch = 5, fov = 32 }
-fx.sun    = sun { azimuth = 195, elevation = 17, color = {1, 0.72, 0.45}, strength = 5 }
-fx.sky    = sky { zenith = "#14418f", horizon = "#a3a2aa", strength = 0.4 }
+fx.sun    = sun { azimuth = 195, elevation = 17, color = {1, 0.72, 0.45}, strength = 3 }
+fx.sky    = sky { zenith = "#14418f", horizon = "#a3a2aa", strength = 0.25 }
 
 -- A hundred frames of 32 x 32 x 32 voxels, 8 m a side. Each grid in the files is a field.
 local burst = vdb { "data/explosion-32/*.vdb", fps = 24, blend = true, offset = {-4, -4, 0} }
