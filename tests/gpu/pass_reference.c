@@ -108,7 +108,7 @@ static void heat(gpu *device, const field *(*density)(pass_world *w), furnace f)
         gpu_test_ok(pass_set_uniform(p, "lobe_weights", field_constant(&w.memory, 4, weights)));
         gpu_test_ok(pass_set_uniform(p, "lobe_anisotropies", field_constant(&w.memory, 4, g)));
     }
-    picture got = end(&w, p, 64);
+    picture got = end(&w, p, 128);
     for (int c = 0; c < 4; c++) near(got, c, 1);
 }
 
@@ -247,6 +247,99 @@ static void white_crate_in_a_white_sky_is_white(void **state) {
     }
 }
 
+// A lamp of 0.5 m before a grey wall: at its middle it is as bright as a point.
+static void glowing_sphere_lights_a_wall_as_a_point_does(void **state) {
+    pass_world w;
+    pass *p = begin(&w, *state, nothing);
+    scene_light lamp = {.kind = SCENE_POINT,
+                        .position = triple(&w, 0, -2, 1),
+                        .color = triple(&w, 1, 1, 1),
+                        .power = number(&w, 100),
+                        .radius = number(&w, 0.5f)};
+    w.scene.lights = &lamp;
+    w.scene.light_count = 1;
+    world_mesh(&w, "plane.obj");
+    double irradiance = 100 / (4 * 3.14159265358979) / 5 * (2 / sqrt(5));
+    near(end(&w, p, 64), 0, 0.6 / 3.14159265358979 * irradiance);
+}
+
+// ---- beside the march
+// -----------------------------------------------------------------------------
+
+static void march_without_approximations_shows_the_same(void **state) {
+    pass_world w;
+    pass *p = begin(&w, *state, soft_ball);
+    sun(&w, 200, 30, 4);
+    set(&w, p, "bounces", 1);
+    set(&w, p, "sky_alpha", 0);
+    picture traced = end(&w, p, 128);
+
+    world_open(&w, *state);
+    w.scene.camera.fov = number(&w, 1);
+    sun(&w, 200, 30, 4);
+    p = world_add(&w, "march", NULL, "march");
+    gpu_test_ok(pass_set_field(p, "density", soft_ball(&w)));
+    set3(&w, p, "albedo", 1, 1, 1);
+    set(&w, p, "ambient", 0);
+    set(&w, p, "early_exit", 0);
+    set(&w, p, "steps", 256);
+    set(&w, p, "shadow_steps", 64);
+    picture marched = end(&w, p, 0);
+    for (int c = 0; c < 4; c++) near(traced, c, marched.mean[c]);
+}
+
+// ---- gathering
+// ------------------------------------------------------------------------------------
+
+static double noise_of(gpu *device, int samples) {
+    pass_world w;
+    pass *p = begin(&w, device, thick);
+    white_sky(&w);
+    return end(&w, p, samples).error[0];
+}
+
+static void noise_falls_with_the_root_of_the_samples(void **state) {
+    double ratio = noise_of(*state, 16) / noise_of(*state, 256);
+    if (fabs(ratio - 4) > 0.8) fail_msg("16 times the samples: noise / %.2f, not / 4", ratio);
+}
+
+static uint32_t samples_of(const pass *p) {
+    uint32_t samples = 0;
+    assert_true(pass_samples(p, &samples));
+    return samples;
+}
+
+static void picture_begins_anew_when_something_changes(void **state) {
+    pass_world w;
+    pass *p = begin(&w, *state, thick);
+    white_sky(&w);
+    gpu_test_ok(pass_declare(p));
+    world_render(&w, SIZE, SIZE, pass_output(p, "color"));
+    float *first = world_read(&w, pass_output(p, "color"));
+    world_frame(&w, SIZE, SIZE, 1);
+    float *more = world_read(&w, pass_output(p, "color"));
+    assert_int_equal(samples_of(p), 2 * SAMPLES);
+    assert_memory_not_equal(first, more, PIXELS * 4 * sizeof *first);
+    mem_free(more);
+
+    w.scene.sky.strength = number(&w, 2);
+    world_frame(&w, SIZE, SIZE, 1);
+    picture twice = measure(&w, p);
+    assert_int_equal(samples_of(p), SAMPLES);
+    assert_true(fabs(twice.mean[0] - 2) < 4 * twice.error[0] && twice.error[0] < 0.1);
+
+    w.scene.sky.strength = number(&w, 1); // as before: the same bits
+    for (int i = 0; i < 2; i++) {
+        w.host.fresh = i == 1;
+        world_frame(&w, SIZE, SIZE, 1);
+        float *again = world_read(&w, pass_output(p, "color"));
+        assert_memory_equal(first, again, PIXELS * 4 * sizeof *first);
+        mem_free(again);
+    }
+    mem_free(first);
+    world_close(&w);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(white_furnace_shows_only_the_sky),
@@ -260,6 +353,10 @@ int main(void) {
         cmocka_unit_test(glowing_slab_has_the_light_of_its_depth),
         cmocka_unit_test(sunlight_scattered_once_has_its_closed_form),
         cmocka_unit_test(white_crate_in_a_white_sky_is_white),
+        cmocka_unit_test(glowing_sphere_lights_a_wall_as_a_point_does),
+        cmocka_unit_test(march_without_approximations_shows_the_same),
+        cmocka_unit_test(noise_falls_with_the_root_of_the_samples),
+        cmocka_unit_test(picture_begins_anew_when_something_changes),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }
