@@ -47,7 +47,8 @@ writeonly uniform image2D reach;   //= output r32f : distance along the ray at w
 
 #define GLOWS (HAS_LIGHTS && HAS_GLOW)
 
-const float SHORTEST = 1.0 / 8192.0; // of a ray: the least adaptive step
+const float SHORTEST = 1.0 / 8192.0; // part of a ray that a step of variable length has at least
+const int MOST_SAMPLES = 65000;
 
 float greatest(vec3 v) { return max(max(v.x, v.y), v.z); }
 float mean(vec3 v) { return (v.x + v.y + v.z) / 3.0; }
@@ -192,74 +193,90 @@ void add_paper(inout ray_state ray, vec3 p, float d, float at) {
     ray.transmittance *= 1.0 - part;
 }
 
+struct step_nodes { // of a step that may be halved
+    int known;      // nodes so far: none, its begin, its end too
+    node begin, end;
+};
+
 // What the pixel would change by if a step of `length` metres were taken as two halves.
-float halving(ray_state ray, node begin, node middle, node end, float length) {
+float halving(ray_state ray, step_nodes s, node middle, float length) {
+    node ends = halfway(s.begin, s.end);
     vec3 extinction = medium_extinction() * length;
-    vec3 one = 0.5 * (begin.density + end.density) * extinction;
-    vec3 two = 0.5 * (0.5 * (begin.density + end.density) + middle.density) * extinction;
-    vec3 own = 0.25 * length * abs(begin.own + end.own - 2.0 * middle.own) * held(two);
+    vec3 one = ends.density * extinction;
+    vec3 two = 0.5 * (ends.density + middle.density) * extinction;
+    vec3 own = 0.5 * length * abs(ends.own - middle.own) * held(two);
     return greatest(ray.transmittance * max(abs(exp(-one) - exp(-two)), own / (1.0 + ray.light)));
+}
+
+// The light where the sample in the middle of a step lies, for the whole of it.
+vec3 light_of_step(step_nodes s, node middle, vec3 p, vec3 direction) {
+    vec3 scattering = middle.scattering;
+    if (s.known == 2) scattering += s.begin.scattering + s.end.scattering;
+    return greatest(scattering) > 0.0 ? scattered_light(p, direction) : vec3(0.0);
+}
+
+// A step whose middle is `at` metres along: as its sample is, or as two halves, each with the mean
+// of its ends.
+void add_step(inout ray_state ray, step_nodes s, node middle, vec3 lit, float length, float at) {
+    if (s.known < 2) {
+        add_stretch(ray, middle, lit, length, at);
+    } else {
+        add_stretch(ray, halfway(s.begin, middle), lit, 0.5 * length, at - 0.25 * length);
+        add_stretch(ray, halfway(middle, s.end), lit, 0.5 * length, at + 0.25 * length);
+    }
 }
 
 // `range`: where the ray enters and leaves; `offset`: where in a step its sample lies, in 0..1;
 // `pixel`: width of a pixel at a distance of a metre.
 //
 // Without a tolerance a step has one sample. Else it has one at each end and one in the middle, and
-// is halved until it is good enough: the middle is then the new end. The two halves are added, each
-// with the mean of its ends, and the light at its middle.
+// is halved until it is good enough: the middle is then the new end. Both ways share a loop, so
+// that fields and lights are in the code once.
 ray_state march(vec3 origin, vec3 direction, vec2 range, float offset, float pixel) {
     ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
     float span = range.y - range.x;
     if (span <= 0.0) return ray;
-    float usual = step_size > 0.0 ? max(step_size, span / 4096.0) : span / float(steps);
     bool even = tolerance <= 0.0;
-    float from = range.x, length = min(even ? usual : 2.0 * usual * offset, span);
-    float places[3] = float[3](even ? offset : 0.0, 1.0, 0.5);
-    int known = 0, taken = 0, done = 0; // of the step's ends; samples; steps
-    node begin, end;
-    while (length > 1e-6 * span && taken < 65000) {
-        float at = from + places[known] * length, error = 0.0;
-        node n = look(origin + at * direction);
+    float usual = step_size > 0.0 ? max(step_size, span / 4096.0) : span / float(steps);
+    float from = range.x, length = min(even ? usual : 2.0 * usual * max(offset, 0.05), span);
+    step_nodes s;
+    s.known = 0;
+    int taken = 0, done = 0;
+    while (length > 1e-6 * span && taken < MOST_SAMPLES) {
+        float at = from + length * (even ? offset : s.known == 2 ? 0.5 : float(s.known));
+        vec3 p = origin + at * direction;
+        node n = look(p);
         taken++;
-        if (!even && known < 2) {
-            if (known++ == 0)
-                begin = n;
-            else
-                end = n;
-            continue;
-        }
+        float change = 0.0;
         if (!even) {
-            error = halving(ray, begin, n, end, length);
+            if (s.known < 2) {
+                if (s.known++ == 0)
+                    s.begin = n;
+                else
+                    s.end = n;
+                continue;
+            }
+            change = halving(ray, s, n, length);
             float least = max(max(0.125 * usual, SHORTEST * span), 0.25 * pixel * from);
-            if (error > tolerance && length > least) {
+            if (change > tolerance && length > least) {
                 length *= 0.5;
-                end = n;
+                s.end = n;
                 continue;
             }
         }
-        int parts = even ? 1 : 2;
-        for (int i = 0; i < parts; i++) {
-            node m = n;
-            if (!even) m = halfway(i == 0 ? begin : end, n);
-            if (m.density <= 0.0) continue;
-            float middle = even ? at : from + (0.25 + 0.5 * float(i)) * length;
-            vec3 lit = vec3(0.0);
-            if (greatest(m.scattering) > 0.0)
-                lit = scattered_light(origin + middle * direction, direction);
-            add_stretch(ray, m, lit, length / float(parts), middle);
-        }
+        add_step(ray, s, n, light_of_step(s, n, p, direction), length, at);
         if (mean(ray.transmittance) < early_exit) break;
         done++;
+        from = even ? range.x + float(done) * usual : from + length;
         if (even) {
-            from = range.x + float(done) * usual;
-            length = min(usual, range.y - from);
+            length = usual;
         } else {
-            from += length;
-            if (error < 0.25 * tolerance) length = min(2.0 * length, 8.0 * usual);
-            length = min(length, range.y - from);
-            begin = end;
-            known = 1;
+            // What halving changes falls with the cube of the length.
+            if (change < 0.0625 * tolerance) length = min(2.0 * length, 8.0 * usual);
+            s.begin = s.end;
+            s.known = 1;
         }
+        length = min(length, range.y - from);
     }
     count_samples(taken);
     return ray;
