@@ -59,7 +59,7 @@ vec3 sky_mean() {
 
 // ---- drawing directions by their light ----------------------------------------------------------
 
-// Cumulative share of cell `at` of the table: of a row (`last` is false) or of the rows.
+// Cumulative share up to cell `at` of a row, or, with `rows`, up to row `at` of the table.
 float sky_share(int at, int row, bool rows) {
     if (at < 0) return 0.0;
     int column = rows ? textureSize(SkyDistribution, 0).x - 1 : at;

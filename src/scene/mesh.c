@@ -2,7 +2,7 @@
 // shader), textures as sRGB images.
 #include "base/error.h"
 #include "base/memory.h"
-#include "scene/scene.h"
+#include "scene/scene_impl.h"
 #include <string.h>
 
 static gpu_buffer *upload(gpu *g, const char *label, const void *data, size_t size) {
@@ -72,10 +72,9 @@ bool scene_mesh_exchange(scene_mesh *mesh, scene_mesh *other) {
 
 bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, mat4 out) {
     float position[4], rotation[4], scale[4];
-    float3 origin = {0, 0, 0};
-    if (!field_eval(mesh->position, context, origin, position) ||
-        !field_eval(mesh->rotation, context, origin, rotation) ||
-        !field_eval(mesh->scale, context, origin, scale))
+    if (!scene_evaluate(mesh->position, context, position) ||
+        !scene_evaluate(mesh->rotation, context, rotation) ||
+        !scene_evaluate(mesh->scale, context, scale))
         return false;
     vec3 angles = {glm_rad(rotation[0]), glm_rad(rotation[1]), glm_rad(rotation[2])};
     mat4 turn;
@@ -89,7 +88,7 @@ bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, 
 bool scene_mesh_place(const scene_mesh *mesh, const field_context *context, mat4 transform,
                       float tint[4]) {
     if (scene_mesh_transform(mesh, context, transform) &&
-        field_eval(mesh->color, context, (float3){0, 0, 0}, tint))
+        scene_evaluate(mesh->color, context, tint))
         return true;
     return err_prefix("%s: ", mesh->name);
 }

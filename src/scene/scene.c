@@ -93,7 +93,9 @@ bool scene_has(const scene *s, scene_need need) {
 }
 
 bool scene_evaluate(const field *node, const field_context *context, float out[4]) {
-    return field_eval(node, context, (float3){0, 0, 0}, out);
+    if (!field_eval(node, context, (float3){0, 0, 0}, out)) return false;
+    for (int i = 1; node->components == 1 && i < 4; i++) out[i] = out[0];
+    return true;
 }
 
 bool scene_evaluate_scalar(const field *node, const field_context *context, float *out) {

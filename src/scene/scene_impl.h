@@ -2,7 +2,7 @@
 #pragma once
 #include "scene/scene.h"
 
-// Evaluates a field that does not vary in space.
+// Evaluates a field that does not vary in space; of one component: all four are that.
 bool scene_evaluate(const field *node, const field_context *context, float out[4]);
 bool scene_evaluate_scalar(const field *node, const field_context *context, float *out);
 // Unit vector from angles in degrees: about +Z from +X, and above the horizon.

@@ -102,6 +102,16 @@ static void power_goes_into_all_directions(void **state) {
     near4(&s->block.lights[1].color, 100 / (4 * pi), 50 / (4 * pi), 0, LIGHT_POINT);
 }
 
+static void one_number_is_a_grey(void **state) {
+    stage *s = *state;
+    scene_light *light = add(s, SCENE_POINT);
+    light->color = number(s, 0.5f);
+    light->position = number(s, 3);
+    fill(s);
+    near4(&s->block.lights[1].position, 3, 3, 3, 0.25);
+    near4(&s->block.lights[1].color, 50 / (4 * pi), 50 / (4 * pi), 50 / (4 * pi), LIGHT_POINT);
+}
+
 static void spot_is_cut_from_a_point_light(void **state) {
     stage *s = *state;
     add(s, SCENE_SPOT);
@@ -166,6 +176,7 @@ int main(void) {
         STAGE_TEST(sun_is_the_first_with_its_irradiance),
         STAGE_TEST(sun_looks_as_wide_as_ours),
         STAGE_TEST(power_goes_into_all_directions),
+        STAGE_TEST(one_number_is_a_grey),
         STAGE_TEST(spot_is_cut_from_a_point_light),
         STAGE_TEST(spot_at_its_target_shines_down),
         STAGE_TEST(every_number_moves),
