@@ -24,11 +24,12 @@ fx.sky    = sky { zenith = {0.02, 0.03, 0.07}, horizon = {0.10, 0.08, 0.09}, str
 fx.sun    = sun { strength = 0.25, elevation = 12, azimuth = 200 }
 
 local scene  = geometry { mesh { "data/ground.obj" } }
-local solid  = shade { from = scene, haze = 0.01 }
-local volume = march {
+local lit    = lighting {
   density = body * 3, radiance = colors(body * 1.5) * 3, albedo = {0.3, 0.3, 0.3},
-  depth = scene.depth, steps = 96, resolution = 0.5,
+  glow_resolution = 16, shadow_resolution = 48,
 }
+local solid  = shade { from = {scene, lit}, haze = 0.01 } -- the fire lights the ground
+local volume = march { from = {lit, scene}, steps = 96, resolution = 0.5 }
 local picture = over { volume = volume.color, edge = volume.edge, source = solid, depth = scene.depth }
 local bent    = shader { "heat_haze.comp", input = picture, heat = tongue, strength = 0.012 }
 local shown   = final { source = bent, bloom = bloom { bright { bent } }, bloom_intensity = 0.5, tonemap = "reinhard" }
