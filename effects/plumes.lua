@@ -45,9 +45,9 @@ local hue    = mix(colors[1], colors[2], both.y / smoke)
 local bulbs, glowing = 0, vec(0, 0, 0)
 local function lamp(color, power, x, y, z, phase)
   local function swing(t) return {x + 0.3 * math.sin(1.3 * t + phase), y + 0.2 * math.cos(1.1 * t + phase), z} end
-  local bulb = sphere { position = swing, radius = 0.1, falloff = 0.06 }
+  local bulb = sphere { position = swing, radius = 0.17, falloff = 0.17 }
   bulbs   = bulbs + bulb
-  glowing = glowing + bulb * lamps * 20 * color
+  glowing = glowing + bulb ^ 3 * lamps * 60 * color
   return point_light { position = swing, color = color, power = power * lamps }
 end
 fx.lights = {
