@@ -1,17 +1,22 @@
 // Averages a picture over frames, a volume's above all: what the last frames gathered is fetched where
 // the point that a pixel shows was seen then, kept near what is seen now, and mixed with it.
 //
-// The point is that at the distance `reach`, moved by the camera alone: what moves by itself is kept
-// from leaving trails by variance clipping of the history (Salvi 2016, "An excursion in temporal
-// supersampling") in YCoCg (Karis 2014, "High-quality temporal supersampling") and in opacity. The
-// history is not used where the point was out of the picture, or where something else stood then.
+// The point is that at the distance `reach`, moved by the camera and by `velocity`. What moves otherwise
+// is kept from leaving trails in two ways. The history is clipped to what is around the pixel by
+// variance (Salvi 2016, "An excursion in temporal supersampling") in YCoCg (Karis 2014, "High-quality
+// temporal supersampling") and in opacity. And what blue noise leaves alone, the blurred picture, need
+// not be averaged: by `response` it is that of now, and only the difference to it is gathered. The history is not used where the point was
+// out of the picture, or where something else stood then.
+//@ field vec3 velocity = {0, 0, 0} : of what is seen (m/s), as far as it is known
 #include "lib/frame.glsl"
+#include "fields.glsl"
 uniform sampler2D source;          //= input : premultiplied radiance and opacity, or the lit scene
 uniform sampler2D reach;           //= input optional : how far along its ray lies what each pixel shows (m; 0: nothing); else that is the scene
 uniform sampler2D depth;           //= input optional : depth of the scene (m)
 uniform sampler2D before;          //= input history color : what was gathered up to the last frame
 uniform sampler2D known;           //= input history state : `state` of the last frame
 uniform float frames;              //= 8 [1, 64] : how many frames are averaged, in effect; 1: none
+uniform float response;            //= 1 [0, 1] : how much of a change of the blurred picture is taken over at once; 1: all, 0: no more than of the rest
 uniform float spread;              //= 1 [0, 10] : standard deviations by which the history may differ from what is around the pixel
 uniform float depth_tolerance;     //= 0.1 [0.001, 1] : relative difference in depth that counts as something else
 writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity
@@ -30,24 +35,26 @@ vec4 decode(vec4 c) {
 
 struct surroundings { // of a pixel, 3 x 3
     vec4 mean, deviation; // encoded
+    vec4 blurred;         // encoded, by weights 1 2 1 in each direction
     float nearest;        // of the volume, metres along the ray; 0: none
 };
 
 surroundings look_around(ivec2 pixel, ivec2 size) {
-    vec4 sum = vec4(0.0), squares = vec4(0.0);
+    vec4 sum = vec4(0.0), squares = vec4(0.0), blurred = vec4(0.0);
     float nearest = FAR;
     for (int i = 0; i < 9; i++) {
         ivec2 texel = clamp(pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), size - 1);
         vec4 c = encode(texelFetch(source, texel, 0));
         sum += c;
         squares += c * c;
+        blurred += c * float((2 - abs(i % 3 - 1)) * (2 - abs(i / 3 - 1))) / 16.0;
 #if HAS_REACH
         float far = texelFetch(reach, texel, 0).r;
         if (far > 0.0) nearest = min(nearest, far);
 #endif
     }
     vec4 mean = sum / 9.0;
-    return surroundings(mean, sqrt(max(squares / 9.0 - mean * mean, 0.0)), nearest < FAR ? nearest : 0.0);
+    return surroundings(mean, sqrt(max(squares / 9.0 - mean * mean, 0.0)), blurred, nearest < FAR ? nearest : 0.0);
 }
 
 // The history between its texels by a Catmull-Rom spline: five bilinear taps of sixteen texels, less
@@ -68,9 +75,18 @@ vec4 fetch_smooth(vec2 uv) {
     return max(sum / (1.0 - corners), 0.0);
 }
 
-// Where a point `metres` deep below a pixel was in the frame before: xy in the picture, z: how deep.
-vec3 look_back(vec3 along, float metres) {
-    vec4 clip = frame.last * vec4(frame.eye.xyz + metres * along, 1.0);
+// The same weights as in look_around.
+vec4 fetch_blurred(vec2 uv) {
+    vec2 half_texel = 0.5 / vec2(textureSize(before, 0));
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 4; i++)
+        sum += textureLod(before, uv + half_texel * (2.0 * vec2(i & 1, i >> 1) - 1.0), 0.0);
+    return 0.25 * sum;
+}
+
+// Where a point was in the frame before: xy in the picture, z: metres deep.
+vec3 look_back(vec3 p) {
+    vec4 clip = frame.last * vec4(p, 1.0);
     return vec3(clip.w > 0.0 ? 0.5 * clip.xy / clip.w + 0.5 : vec2(-1.0), clip.w);
 }
 
@@ -100,21 +116,27 @@ void main() {
     float volume = here.nearest / length(along), scene = 0.0, scene_then = 0.0;
 #if HAS_DEPTH
     scene = min(texelFetch(depth, ivec2(uv * vec2(textureSize(depth, 0))), 0).r, FAR);
-    scene_then = look_back(along, scene).z;
+    scene_then = look_back(frame.eye.xyz + scene * along).z;
 #endif
-    vec3 then = look_back(along, volume > 0.0 ? volume : scene > 0.0 ? scene : FAR);
+    vec3 point = frame.eye.xyz + (volume > 0.0 ? volume : scene > 0.0 ? scene : FAR) * along;
+#if HAS_VELOCITY
+    if (volume > 0.0) point -= frame.time.y * field_velocity(point);
+#endif
+    vec3 then = look_back(point);
 
     float age = 0.0;
     vec4 result = now;
     if (all(greaterThanEqual(then.xy, vec2(0.0))) && all(lessThan(then.xy, vec2(1.0)))) {
         age = texelFetch(known, ivec2(then.xy * vec2(size)), 0).b;
         age *= agreement(then.xy, volume > 0.0 ? then.z : 0.0, scene_then);
+        // The mean of an exponential average over `frames`; before, that of what there is.
+        float part = max(2.0 / (frames + 1.0), 1.0 / (age + 1.0));
+        vec4 turned = here.blurred - encode(fetch_blurred(then.xy));
         vec4 away = encode(fetch_smooth(then.xy)) - here.mean;
+        if (response > part) away += (response - part) / (1.0 - part) * turned;
         // Rounding, which must not count, is a thousandth of what the numbers come from.
         vec4 beyond = abs(away) / (spread * here.deviation + vec4(vec3(1e-3 * here.mean.x), 1e-3) + 1e-6);
         away /= max(1.0, max(max(beyond.x, beyond.y), max(beyond.z, beyond.w)));
-        // The mean of an exponential average over `frames`; before, that of what there is.
-        float part = max(2.0 / (frames + 1.0), 1.0 / (age + 1.0));
         result = max(mix(decode(here.mean + away), now, part), 0.0);
     }
     if (any(isnan(result))) result = vec4(0.0); // it would stay for ever

@@ -4,10 +4,10 @@
 enum { SIZE = 48, PIXELS = SIZE * SIZE };
 
 typedef struct setup {
-    float frames, spread, noise;
+    float frames, spread, noise, response;
     const field *(*eye)(effect *e), *(*light)(effect *e), *(*wall)(effect *e); // NULL: at rest
-    float half_width;                                                          // 0: endless
-    float scale;                                                               // 0: 1
+    float half_width, scale;                                                   // 0: endless; 1
+    float speed, told; // of the print, m/s; the one that accumulate knows
 } setup;
 
 typedef struct stage {
@@ -23,16 +23,18 @@ static stage open_stage(gpu *device, setup s) {
         effect_scene(e)->camera.target =
             make(e, "add", s.eye(e), triple(e, 0, 1, 0)); // always along +Y
     }
-    pass *wall = add(e, NULL, "printed_wall.comp");
+    pass *wall = add(e, NULL, "printed_wall.comp"), *gather = add(e, "accumulate", NULL);
     gpu_test_ok(pass_set_uniform(wall, "noise", number(e, s.noise)));
     if (s.light) gpu_test_ok(pass_set_uniform(wall, "light", s.light(e)));
+    gpu_test_ok(pass_set_uniform(wall, "speed", number(e, s.speed)));
+    if (s.told != 0) gpu_test_ok(pass_set_field(gather, "velocity", triple(e, s.told, 0, 0)));
     if (s.half_width > 0)
         gpu_test_ok(pass_set_uniform(wall, "half_width", number(e, s.half_width)));
     if (s.scale > 0) gpu_test_ok(pass_set_scale(wall, s.scale));
     gpu_test_ok(pass_declare(wall));
-    pass *gather = add(e, "accumulate", NULL);
     gpu_test_ok(pass_set_uniform(gather, "frames", number(e, s.frames)));
     gpu_test_ok(pass_set_uniform(gather, "spread", number(e, s.spread)));
+    gpu_test_ok(pass_set_uniform(gather, "response", number(e, s.response)));
     gpu_test_ok(pass_set_image(gather, "source", pass_output(wall, "color")));
     gpu_test_ok(pass_set_image(gather, "reach", pass_output(wall, "reach")));
     if (s.wall) {
@@ -156,6 +158,34 @@ static void moving_camera_finds_what_it_saw(void **state) {
         fail_msg("%g of %g is left", noisy.after, noisy.before);
 }
 
+static void what_moves_is_found_by_its_velocity(void **state) {
+    setup s = {.frames = 8, .spread = 10, .speed = 1};
+    double lost = measure(*state, s, 40).after;
+    s.told = 1;
+    double found = measure(*state, s, 40).after;
+    if (!(lost > 0.05 && found < 0.002))
+        fail_msg("off by %g, told the velocity by %g", lost, found);
+}
+
+static const field *dims(effect *e) {
+    return step_at(e, 1, 0.5f);
+}
+
+// The print's waves are wide: all of their light is in the blurred picture.
+static void blurred_picture_is_that_of_now(void **state) {
+    setup s = {.frames = 8, .spread = 10, .light = dims};
+    double late = measure(*state, s, 11).after;
+    s.response = 1;
+    double prompt = measure(*state, s, 11).after;
+    if (!(late > 0.1 && prompt < 0.01)) fail_msg("off by %g, with response 1 by %g", late, prompt);
+}
+
+static void noise_of_short_waves_falls_whatever_the_response(void **state) {
+    setup s = {.frames = 8, .spread = 10, .noise = 0.2f, .response = 1};
+    errors e = measure(*state, s, 40);
+    assert_true(e.after < 0.6 * e.before); // white noise: a part of it has long waves
+}
+
 static void light_that_goes_out_leaves_no_trail(void **state) {
     stage t = open_stage(*state, (setup){.frames = 64, .spread = 1, .light = goes_out});
     run(&t, 1, 10);
@@ -228,6 +258,9 @@ int main(void) {
         cmocka_unit_test(noise_falls_with_the_root_of_frames),
         cmocka_unit_test(clipping_lets_most_of_the_noise_go),
         cmocka_unit_test(moving_camera_finds_what_it_saw),
+        cmocka_unit_test(what_moves_is_found_by_its_velocity),
+        cmocka_unit_test(blurred_picture_is_that_of_now),
+        cmocka_unit_test(noise_of_short_waves_falls_whatever_the_response),
         cmocka_unit_test(light_that_goes_out_leaves_no_trail),
         cmocka_unit_test(other_scene_has_no_history),
         cmocka_unit_test(what_comes_into_the_picture_has_no_history),
