@@ -5,10 +5,11 @@
 //@ option glow_resolution = 32 {8, 16, 24, 32} : voxels of `glow` along each edge of the volume's box
 //@ option fire_lights = 8 {0, 1, 8} : lights that stand for the volume's fire where it falls on meshes
 //@ counter samples : points at which the density was evaluated
-uniform int bounces;               //= 4 [0, 32] : sweeps of light through `glow`, each of which scatters it once more; coarser grids go ahead with more of them; 0: light that nothing has scattered yet
+uniform int bounces;               //= 3 [0, 32] : sweeps of light through `glow`, each of which scatters it once more; coarser grids go ahead with more of them; 0: light that nothing has scattered yet
 uniform float ambient;             //= 1 [0, 10] : factor of the light from the sky
 uniform vec3 box_min;
 uniform vec3 box_max;
+uniform int hastened; // sweeps that were hastened before this one; below 0: it is not
 writeonly uniform image2D lights;  //= output rgba32f : a row for each light: what it is and how its shadow lies in space
 writeonly uniform image3D shadow;  //= output rg16f : N x N x N texels for each light: density times metres that its rays have passed, and the part that no mesh hides
 writeonly uniform image3D glow;    //= output rgba16f : mean and first moment of the radiance from all sides, but straight from the lights; a third for each colour
@@ -31,7 +32,8 @@ uniform sampler3D source_coarse;
 layout(rgba32f) writeonly uniform image3D medium_kept;     // emission (W/m^3/sr) and density
 layout(rgba32f) writeonly uniform image3D scattering_kept; // coefficient of density 1
 layout(rgba32f) writeonly uniform image3D first_kept;      // moments of what comes straight from the lights
-layout(rgba32f) writeonly uniform image3D source_kept;     // moments of all light that is scattered
+layout(rgba32f) uniform image3D source_kept;               // moments of all light that is scattered
+layout(rgba32f) uniform image3D last_kept;                 // the same, a sweep earlier
 layout(rgba32f) writeonly uniform image3D ways_kept;       // radiance in each of the directions
 layout(rgba32f) writeonly uniform image3D fire_kept;       // light that leaves the volume (W/m^3/sr); which way
 

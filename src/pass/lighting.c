@@ -15,6 +15,8 @@ enum {
     SHADOW_PARTS = 8,      // of a ray, in lighting/shadow.glsl
     WAYS_X = 8,            // directions side by side in the grid WAYS, in lighting/sweep.glsl
     WAYS_Y = 6,
+    MOST_LEVELS = 3,
+    LEAST_HASTENED = 16,
     COARSEST = 8,         // voxels across, of the levels of the grids
     GATHER_THREADS = 512, // for a light, in lighting/fire.glsl
 };
@@ -28,18 +30,28 @@ typedef enum lighting_stage {
     STAGE_FIRST,
     STAGE_RESTRICT,
     STAGE_PROLONG,
-    STAGE_SWEEP,
     STAGE_REDUCE,
-    STAGES
+    STAGE_SWEEP, // of the finest level; the others have theirs, as many threads as are at work
+    STAGES = STAGE_SWEEP + MOST_LEVELS
 } lighting_stage;
 
-static const char *const stage_defines[STAGES] = {
-    "STAGE_LIGHTS", "STAGE_FIRE",     "STAGE_GATHER",  "STAGE_SHADOW", "STAGE_MEDIUM",
-    "STAGE_FIRST",  "STAGE_RESTRICT", "STAGE_PROLONG", "STAGE_SWEEP",  "STAGE_REDUCE"};
+static const char *const stage_defines[STAGES] = {"STAGE_LIGHTS",   "STAGE_FIRE",    "STAGE_GATHER",
+                                                  "STAGE_SHADOW",   "STAGE_MEDIUM",  "STAGE_FIRST",
+                                                  "STAGE_RESTRICT", "STAGE_PROLONG", "STAGE_REDUCE",
+                                                  "STAGE_SWEEP",    "STAGE_SWEEP",   "STAGE_SWEEP"};
 
 // What one stage leaves for others, besides the outputs: the shader writes NAME_kept and reads
 // NAME_made.
-typedef enum lighting_grid { MEDIUM, SCATTERING, FIRST, SOURCE, WAYS, FIRE, GRIDS } lighting_grid;
+typedef enum lighting_grid {
+    MEDIUM,
+    SCATTERING,
+    FIRST,
+    SOURCE,
+    LAST,
+    WAYS,
+    FIRE,
+    GRIDS
+} lighting_grid;
 
 static const struct {
     const char *name, *kept, *made, *fine, *coarse; // and as the shader names it
@@ -49,6 +61,7 @@ static const struct {
     {"scattering", "scattering_kept", "scattering_made", "scattering_fine", NULL, true},
     {"first", "first_kept", "first_made", "first_fine", "first_coarse", true},
     {"source", "source_kept", "source_made", NULL, "source_coarse", true},
+    {"last", "last_kept", "last_made", NULL, NULL, true},
     {"ways", "ways_kept", "ways_made", NULL, NULL, false},
     {"fire", "fire_kept", "fire_made", NULL, NULL, false},
 };
@@ -93,11 +106,8 @@ static bool add_grids(pass *p) {
     lighting_state *s = p->state;
     uint32_t n = s->glow_size;
     const uint32_t sizes[GRIDS][3] = {
-        [MEDIUM] = {n, n, n},
-        [SCATTERING] = {n, n, n},
-        [FIRST] = {n, n, 3 * n},
-        [SOURCE] = {n, n, 3 * n},
-        [WAYS] = {WAYS_X * n, WAYS_Y * n, n},
+        [MEDIUM] = {n, n, n},     [SCATTERING] = {n, n, n}, [FIRST] = {n, n, 3 * n},
+        [SOURCE] = {n, n, 3 * n}, [LAST] = {n, n, 3 * n},   [WAYS] = {WAYS_X * n, WAYS_Y * n, n},
         [FIRE] = {n, n, 2 * n},
     };
     for (int i = 0; i < GRIDS; i++) {
@@ -139,7 +149,8 @@ static bool add_parts(pass *p) {
     graph_image lights = image_of(p, "lights"), shadow = image_of(p, "shadow");
     const graph_image none = {0}, lights_writes[] = {lights, own[FIRE]};
     const graph_image glow_reads[] = {lights, shadow, own[MEDIUM], own[SCATTERING]};
-    const graph_image glow_writes[] = {image_of(p, "glow"), own[FIRST], own[SOURCE], own[WAYS]};
+    const graph_image glow_writes[] = {image_of(p, "glow"), own[FIRST], own[SOURCE], own[LAST],
+                                       own[WAYS]};
     const pass_part parts[] = {
         {.name = "lights",
          .reads = s->fire_count ? &own[MEDIUM] : &none,
@@ -191,17 +202,20 @@ bool lighting_declare(pass *p) {
 static bool compile(pass *p, lighting_stage stage, shader_binary *out) {
     const lighting_state *s = p->state;
     arena *memory = p->host->memory;
+    int level = stage > STAGE_SWEEP ? stage - STAGE_SWEEP : 0;
     const shader_define defines[] = {
         {stage_defines[stage], "1"},
         {"SHADOW_SIZE", arena_format(memory, "%u", s->shadow_size)},
         {"GLOW_SIZE", arena_format(memory, "%u", s->glow_size)},
         {"FIRE_COUNT", arena_format(memory, "%u", s->fire_count)},
+        {"SWEEP_SIZE", arena_format(memory, "%u", s->glow_size >> level)},
     };
     return pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines), out);
 }
 
 static bool is_used(const lighting_state *s, lighting_stage stage) {
-    return s->fire_count || (stage != STAGE_FIRE && stage != STAGE_GATHER);
+    if (stage == STAGE_FIRE || stage == STAGE_GATHER) return s->fire_count > 0;
+    return stage < STAGE_SWEEP || stage < STAGE_SWEEP + s->levels;
 }
 
 bool lighting_check(pass *p) {
@@ -317,12 +331,21 @@ static bool record_shadow(pass *p) {
     return dispatch(p, STAGE_SHADOW, 0, n, n, SHADOW_PARTS * s->declared);
 }
 
+// On the coarsest level sweeps are hastened (see lighting/sweep.glsl), which takes some to pay.
 static bool sweep(pass *p, uint32_t level, uint32_t times) {
-    uint32_t n = ((const lighting_state *)p->state)->glow_size;
-    for (uint32_t i = 0; i < times; i++)
-        if (!dispatch(p, STAGE_SWEEP, level, WAYS_X * WAYS_Y * n * n, 1, 1) ||
+    lighting_state *s = p->state;
+    uint32_t n = s->glow_size >> level;
+    lighting_stage stage = (lighting_stage)(STAGE_SWEEP + level);
+    bool hasten = level > 0 && level + 1 == s->levels;
+    if (hasten && times < LEAST_HASTENED) times = LEAST_HASTENED;
+    for (uint32_t i = 0; i < times; i++) {
+        int32_t hastened = hasten ? (int32_t)i : -1;
+        pass_write_member(&s->binary[STAGE_REDUCE], s->block[STAGE_REDUCE], "hastened", &hastened,
+                          sizeof hastened);
+        if (!dispatch(p, stage, level, WAYS_X * WAYS_Y * n * n, 1, 1) ||
             !dispatch_voxels(p, STAGE_REDUCE, level))
             return false;
+    }
     return true;
 }
 
@@ -337,7 +360,7 @@ static bool record_glow(pass *p) {
         if (!dispatch_voxels(p, STAGE_RESTRICT, level)) return false;
     for (uint32_t level = s->levels; level-- > 0;) {
         if (level + 1 < s->levels && !dispatch_voxels(p, STAGE_PROLONG, level)) return false;
-        if (!sweep(p, level, bounces << level)) return false;
+        if (!sweep(p, level, bounces)) return false;
     }
     return true;
 }
