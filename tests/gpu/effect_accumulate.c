@@ -8,6 +8,7 @@ typedef struct setup {
     const field *(*eye)(effect *e), *(*light)(effect *e), *(*wall)(effect *e); // NULL: at rest
     float half_width, scale;                                                   // 0: endless; 1
     float speed, told; // of the print, m/s; the one that accumulate knows
+    bool surface;      // its depth instead of `reach`
 } setup;
 
 typedef struct stage {
@@ -36,7 +37,7 @@ static stage open_stage(gpu *device, setup s) {
     gpu_test_ok(pass_set_uniform(gather, "spread", number(e, s.spread)));
     gpu_test_ok(pass_set_uniform(gather, "response", number(e, s.response)));
     gpu_test_ok(pass_set_image(gather, "source", pass_output(wall, "color")));
-    gpu_test_ok(pass_set_image(gather, "reach", pass_output(wall, "reach")));
+    if (!s.surface) gpu_test_ok(pass_set_image(gather, "reach", pass_output(wall, "reach")));
     if (s.wall) {
         pass *behind = add(e, NULL, "wall.comp");
         gpu_test_ok(pass_set_uniform(behind, "distance_to", s.wall(e)));
@@ -158,6 +159,18 @@ static void moving_camera_finds_what_it_saw(void **state) {
         fail_msg("%g of %g is left", noisy.after, noisy.before);
 }
 
+static const field *depth_of_print(effect *e) {
+    return number(e, 5);
+}
+
+static void surface_is_found_by_its_depth(void **state) {
+    setup s = {.frames = 8, .spread = 10, .eye = moving_eye, .surface = true};
+    double lost = measure(*state, s, 40).after; // taken to be infinitely far
+    s.wall = depth_of_print;
+    double found = measure(*state, s, 40).after;
+    if (!(lost > 0.05 && found < 0.002)) fail_msg("off by %g, with depth by %g", lost, found);
+}
+
 static void what_moves_is_found_by_its_velocity(void **state) {
     setup s = {.frames = 8, .spread = 10, .speed = 1};
     double lost = measure(*state, s, 40).after;
@@ -258,6 +271,7 @@ int main(void) {
         cmocka_unit_test(noise_falls_with_the_root_of_frames),
         cmocka_unit_test(clipping_lets_most_of_the_noise_go),
         cmocka_unit_test(moving_camera_finds_what_it_saw),
+        cmocka_unit_test(surface_is_found_by_its_depth),
         cmocka_unit_test(what_moves_is_found_by_its_velocity),
         cmocka_unit_test(blurred_picture_is_that_of_now),
         cmocka_unit_test(noise_of_short_waves_falls_whatever_the_response),
