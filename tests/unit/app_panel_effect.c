@@ -112,7 +112,7 @@ static void every_control_has_one_row(void **state) {
 
 static void a_search_finds_by_help(void **state) {
     stage *s = load(state, "explosion");
-    gather(s, "reach sun"); // "how far towards the sun shadows reach"
+    gather(s, "reach towards a light"); // "how far towards a light shadows reach"
     const panel_section *march = section(s, PANEL_PASS, "march");
     assert_string_equal(row(s, march, 0)->name, "march.shadow_distance");
     gather(s, "no such thing");
