@@ -39,7 +39,6 @@ writeonly uniform image2D reach;   //= output r32f : distance along the ray at w
 #include "lib/random.glsl"
 #include "lib/medium.glsl"
 #include "lib/lighting.glsl"
-//@ field float shadow_density = 0 : extinction that shadows are made of without `shadow`, if it is to be cheaper than `density` (1/m); else that
 //@ field float noise = 0 : what view = noise shows, 0..1
 #if MESH_SHADOWS == MESH_SHADOWS_ON
 #include "lib/bvh.glsl"
@@ -55,21 +54,13 @@ float mean(vec3 v) { return (v.x + v.y + v.z) / 3.0; }
 
 // ---- light ------------------------------------------------------------------------------------
 
-float shadowing(vec3 p) {
-#if HAS_SHADOW_DENSITY
-    return field_shadow_density(p);
-#else
-    return field_density(p);
-#endif
-}
-
 // Density times metres along a ray from p; steps grow with distance, where detail matters less.
 float depth_along(vec3 p, vec3 direction, float far, int count) {
     float sum = 0.0, from = 0.0;
     for (int i = 0; i < count; i++) {
         float part = float(i + 1) / float(count);
         float to = far * part * part;
-        sum += shadowing(p + 0.5 * (from + to) * direction) * (to - from);
+        sum += field_density(p + 0.5 * (from + to) * direction) * (to - from);
         from = to;
     }
     count_samples(count);

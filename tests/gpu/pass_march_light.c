@@ -160,11 +160,11 @@ static void point_light_falls_off_and_is_shadowed(void **state) {
     pass_world w;
     float c[4];
     pass *p = coloured_block(&w, *state, 1);
-    const scene_light lamp = {.kind = SCENE_POINT,
-                              .position = triple(&w, 0, 0, 3),
-                              .color = triple(&w, 1, 1, 1),
-                              .power = number(&w, 100),
-                              .radius = number(&w, 0)};
+    scene_light lamp = {.kind = SCENE_POINT,
+                        .position = triple(&w, 0, 0, 3),
+                        .color = triple(&w, 1, 1, 1),
+                        .power = number(&w, 100),
+                        .radius = number(&w, 0)};
     w.scene.lights = &lamp;
     w.scene.light_count = 1;
     render_middle(&w, p, c);
