@@ -42,7 +42,8 @@ typedef struct roil_desc {
     bool no_cache;    // neither read nor write compiled shaders on disk
     bool validate;    // Vulkan validation layers; also by $ROIL_VALIDATE=1
     bool counters;    // count samples (see roil_counters); costs a little time
-    bool reference;   // passes `march` of effects are traced instead, without approximations
+    uint32_t reference; // above 0: passes `march` of effects are traced instead, without
+                        // approximations, to that many samples a pixel (roil_samples)
     double timeout; // seconds that a frame may take on the device before it counts as lost; 0: 30,
                     // 300 on a software device
     const roil_window_desc *window; // NULL: nothing is shown

@@ -9,7 +9,8 @@ typedef struct view view; // roil_view.h
 struct roil {
     gpu *device; // NULL: no_device
     char *home, *shaders, *scripts, *cache;
-    bool counters, window, reference;
+    bool counters, window;
+    uint32_t reference;
     view *view; // NULL until something is shown or inspected
 };
 

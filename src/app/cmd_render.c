@@ -295,7 +295,7 @@ static int run(job *j) {
         .validate = j->validate,
         .no_cache = j->no_cache,
         .counters = j->stats != NULL,
-        .reference = j->reference > 0,
+        .reference = j->reference,
         .timeout = j->timeout,
     });
     bool collected = r && app_collect_settings(&j->settings, r, j->file, j->from);

@@ -184,9 +184,19 @@ static const char *make_label(effect *e, const char *stem) {
     return label;
 }
 
+// In place of a march. The other passes run with each execution, which is to give several samples
+// therefore, but not so many that one takes long.
+static pass *make_reference(effect *e, const pass_type *march, const char *label) {
+    pass *p = pass_create(&e->host, pass_type_find("reference"), NULL, label);
+    uint32_t samples = 8;
+    while (e->reference % samples != 0) samples--;
+    const field *each = field_constant(&e->memory, 1, (float[4]){(float)samples});
+    return p && pass_stand_for(p, march) && pass_set_uniform(p, "samples", each) ? p : NULL;
+}
+
 pass *effect_add_pass(effect *e, const char *type, const char *shader, const char *label) {
     bool traced = e->reference && type && strcmp(type, "march") == 0;
-    const pass_type *known = type ? pass_type_find(traced ? "reference" : type) : NULL;
+    const pass_type *known = type ? pass_type_find(type) : NULL;
     if (type && !known) return NULL;
     if (label && (!str_is_identifier(label) || label_taken(e, label))) {
         err_set("pass name '%s' %s", label,
@@ -194,8 +204,9 @@ pass *effect_add_pass(effect *e, const char *type, const char *shader, const cha
         return NULL;
     }
     if (!label) label = make_label(e, type ? type : path_name(shader));
-    pass *p = pass_create(&e->host, known, shader, label);
-    if (!p || (traced && !pass_stand_for(p, pass_type_find(type)))) return NULL;
+    pass *p =
+        traced ? make_reference(e, known, label) : pass_create(&e->host, known, shader, label);
+    if (!p) return NULL;
     MEM_RESERVE(e->passes, e->pass_count + 1, e->pass_capacity);
     e->passes[e->pass_count++] = p;
     return p;

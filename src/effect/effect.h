@@ -43,7 +43,9 @@ typedef struct effect_desc {
     const char *shader_root; // the program's shaders
     const char *cache_dir;   // NULL: no caches
     bool counters;
-    bool reference;                 // each pass `march` becomes a `reference` in its place
+    // Above 0: each pass `march` becomes a `reference`, and this is what effect_samples shall come
+    // to.
+    uint32_t reference;
     const effect_setting *settings; // applied as what they name is declared
     size_t setting_count;
     // Shared with other loads of the same file, which then read nothing twice; NULL: its own.

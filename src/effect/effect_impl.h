@@ -115,7 +115,7 @@ struct effect {
     shared_mat4 clip, last_clip; // world to clip of the frame being recorded, of the one before
     bool has_last;               // there is one before, of which histories tell
     bool compiled, allocated;
-    bool reference; // effect_desc
+    uint32_t reference; // effect_desc
     const effect_setting *settings;
     bool *applied; // one per setting
     size_t setting_count;
