@@ -16,7 +16,7 @@ typedef struct stage {
     pass *wall, *gather;
 } stage;
 
-static stage open_stage(gpu *device, setup s) {
+static stage compile_stage(gpu *device, setup s) { // not yet allocated
     effect *e = open_effect(&(effect_desc){.device = device});
     gpu_test_ok(effect_set_timeline(e, 10, 1000, 1));
     if (s.eye) {
@@ -50,8 +50,14 @@ static stage open_stage(gpu *device, setup s) {
         gpu_test_ok(graph_add_output(effect_graph(e), pass_output(wall, kept[i])));
     gpu_test_ok(graph_add_output(effect_graph(e), pass_output(gather, "state")));
     gpu_test_ok(effect_set_output(e, pass_output(gather, "color")));
-    gpu_test_ok(effect_build(e, SIZE, SIZE));
+    gpu_test_ok(effect_compile(e));
     return (stage){e, wall, gather};
+}
+
+static stage open_stage(gpu *device, setup s) {
+    stage t = compile_stage(device, s);
+    gpu_test_ok(effect_allocate(t.e, SIZE, SIZE));
+    return t;
 }
 
 static void run(const stage *s, int first, int last) {
@@ -87,15 +93,20 @@ typedef struct errors {
     double before, after; // of the source and of what was gathered, against the truth
 } errors;
 
-static errors measure(gpu *device, setup s, int frames) {
-    stage t = open_stage(device, s);
-    run(&t, 1, frames);
-    float *source = look(&t, t.wall, "color"), *truth = look(&t, t.wall, "truth");
-    float *gathered = look(&t, t.gather, "color");
+static errors errors_of(const stage *t) {
+    float *source = look(t, t->wall, "color"), *truth = look(t, t->wall, "truth");
+    float *gathered = look(t, t->gather, "color");
     errors e = {error_of(source, truth), error_of(gathered, truth)};
     mem_free(source);
     mem_free(truth);
     mem_free(gathered);
+    return e;
+}
+
+static errors measure(gpu *device, setup s, int frames) {
+    stage t = open_stage(device, s);
+    run(&t, 1, frames);
+    errors e = errors_of(&t);
     effect_destroy(t.e);
     return e;
 }
@@ -243,6 +254,18 @@ static void jump_forgets(void **state) {
     effect_destroy(t.e);
 }
 
+static void next_effect_goes_on_where_the_last_camera_stood(void **state) {
+    setup s = {.frames = 8, .spread = 10, .eye = moving_eye};
+    stage old = open_stage(*state, s), next = compile_stage(*state, s);
+    run(&old, 1, 20);
+    gpu_test_ok(effect_adopt(next.e, old.e, SIZE, SIZE));
+    effect_destroy(old.e);
+    run(&next, 21, 21);
+    assert_true(age_at(&next, 4, SIZE / 2) == 21);
+    assert_true(errors_of(&next).after < 0.002);
+    effect_destroy(next.e);
+}
+
 static void works_at_the_resolution_of_its_source(void **state) {
     stage t = open_stage(*state, (setup){.frames = 8, .spread = 1, .scale = 0.5f});
     run(&t, 1, 2);
@@ -279,6 +302,7 @@ int main(void) {
         cmocka_unit_test(other_scene_has_no_history),
         cmocka_unit_test(what_comes_into_the_picture_has_no_history),
         cmocka_unit_test(jump_forgets),
+        cmocka_unit_test(next_effect_goes_on_where_the_last_camera_stood),
         cmocka_unit_test(works_at_the_resolution_of_its_source),
         cmocka_unit_test(another_resolution_is_refused),
     };
