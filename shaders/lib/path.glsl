@@ -2,6 +2,7 @@
 #ifndef LIB_PATH_GLSL
 #define LIB_PATH_GLSL
 #include "lib/light.glsl"
+#include "lib/medium.glsl"
 
 const float PATH_PI = 3.14159265;
 

@@ -160,15 +160,14 @@ bool collide(inout path_state s, vec3 p, float d, vec3 gone, float bound, vec2 r
     return scatters;
 }
 
-// The path has met a surface. True: it is scattered there.
-bool meet_surface(inout path_state s, out path_vertex v) {
+// The path has met a surface, which scatters what it does not swallow.
+path_vertex meet_surface(inout path_state s) {
     vec3 p = s.walk.origin + s.hit.distance * s.walk.direction;
     float lift = 1e-4 * max(1.0, max(s.hit.distance, brightest(p))); // off the face: rounding
-    v = path_vertex(p + lift * s.hit.normal, s.hit.normal, s.walk.direction);
     s.weight *= s.hit.albedo;
     s.done = s.bounce >= bounces;
     if (!s.done) roulette(s, path_next(s.random).x);
-    return true;
+    return path_vertex(p + lift * s.hit.normal, s.hit.normal, s.walk.direction);
 }
 
 // The path has left everything behind.
@@ -208,7 +207,8 @@ void advance(inout path_state s, vec3 highest, inout int taken) {
         s.light += s.arriving;
         s.begins = true;
     } else if (s.hit.distance >= 0.0) {
-        scatters = meet_surface(s, v);
+        v = meet_surface(s);
+        scatters = true;
     } else {
         meet_sky(s);
     }

@@ -247,6 +247,21 @@ static void white_crate_in_a_white_sky_is_white(void **state) {
     }
 }
 
+// A wall sees half of the sky: of the gradient, whose part of the zenith is the root of the height,
+// the cosine-weighted mean is B(3/4, 3/2) / pi.
+static void gradient_of_the_sky_lights_a_wall(void **state) {
+    pass_world w;
+    pass *p = begin(&w, *state, nothing);
+    w.scene.sky.horizon = triple(&w, 1, 0, 2);
+    w.scene.sky.zenith = triple(&w, 0, 1, 2);
+    w.scene.sky.strength = number(&w, 1);
+    world_mesh(&w, "plane.obj");
+    picture got = end(&w, p, 256);
+    near(got, 0, 0.6 * (1 - 0.305104));
+    near(got, 1, 0.6 * 0.305104);
+    near(got, 2, 0.6 * 2);
+}
+
 // A lamp of 0.5 m before a grey wall: at its middle it is as bright as a point.
 static void glowing_sphere_lights_a_wall_as_a_point_does(void **state) {
     pass_world w;
@@ -353,6 +368,7 @@ int main(void) {
         cmocka_unit_test(glowing_slab_has_the_light_of_its_depth),
         cmocka_unit_test(sunlight_scattered_once_has_its_closed_form),
         cmocka_unit_test(white_crate_in_a_white_sky_is_white),
+        cmocka_unit_test(gradient_of_the_sky_lights_a_wall),
         cmocka_unit_test(glowing_sphere_lights_a_wall_as_a_point_does),
         cmocka_unit_test(march_without_approximations_shows_the_same),
         cmocka_unit_test(noise_falls_with_the_root_of_the_samples),
