@@ -17,7 +17,7 @@ uniform float tolerance;           //= 0 [0, 1] : above 0: steps as long as they
 uniform float jitter;              //= 0 [0, 1] : random part of a step by which a ray's samples move
 uniform float early_exit;          //= 0.005 [0, 1] : a ray ends when less than this shines through
 uniform float depth_bias;          //= 0.01 [0, 10] m : how far behind a surface a ray may go
-uniform float ambient;             //= 1 [0, 10] : factor of the light from the sky, without `glow`
+uniform float ambient;             //= 1 [0, 10] : factor of the light from the sky, which is the same on all sides, without `glow`
 uniform int shadow_steps;          //= 8 [0, 64] : steps towards each light from each lit point, without `shadow`; 0: no light
 uniform float shadow_distance;     //= 4 [0.01, 1000] m : how far towards a light shadows reach, without `shadow`
 uniform int near_steps;            //= 0 [0, 8] : steps towards each light through what a texel of `shadow` blurs
@@ -37,6 +37,7 @@ writeonly uniform image2D reach;   //= output r32f : distance along the ray at w
 #include "lib/frame.glsl"
 #include "lib/box.glsl"
 #include "lib/random.glsl"
+#include "lib/sky.glsl"
 #include "lib/medium.glsl"
 #include "lib/lighting.glsl"
 //@ field float noise = 0 : what view = noise shows, 0..1
@@ -119,7 +120,7 @@ vec3 scattered_light(vec3 p, vec3 direction) {
     vec3 sum = lighting_scattered(p, -direction, medium_anisotropy());
     int count = lighting_declared();
 #else
-    vec3 sum = ambient * 0.5 * (frame.sky_zenith.rgb + frame.sky_horizon.rgb);
+    vec3 sum = ambient * sky_mean();
     int count = light_count();
 #endif
     for (int i = 0; i < count; i++) {
