@@ -22,7 +22,7 @@ local lit = lighting {
   albedo     = {0.995, 0.995, 0.995},
   lobes      = { {0.75, 0.8}, {0.25, -0.15} },
   glow_resolution = "48",
-  bounces    = 12,
+  sweeps     = 12,
 }
 local scene  = geometry {}
 local sky    = shade { from = {scene, lit} }

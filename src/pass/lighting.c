@@ -353,14 +353,14 @@ static bool sweep(pass *p, uint32_t level, uint32_t times) {
 // scattered, the first of all with what comes straight from the lights.
 static bool record_glow(pass *p) {
     const lighting_state *s = p->state;
-    uint32_t bounces = (uint32_t)pass_evaluate(p, "bounces");
+    uint32_t sweeps = (uint32_t)pass_evaluate(p, "sweeps");
     if (!dispatch_voxels(p, STAGE_FIRST, 0)) return false;
-    if (!bounces) return sweep(p, 0, 1);
+    if (!sweeps) return sweep(p, 0, 1);
     for (uint32_t level = 1; level < s->levels; level++)
         if (!dispatch_voxels(p, STAGE_RESTRICT, level)) return false;
     for (uint32_t level = s->levels; level-- > 0;) {
         if (level + 1 < s->levels && !dispatch_voxels(p, STAGE_PROLONG, level)) return false;
-        if (!sweep(p, level, bounces)) return false;
+        if (!sweep(p, level, sweeps)) return false;
     }
     return true;
 }

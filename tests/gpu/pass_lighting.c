@@ -30,7 +30,7 @@ static pass *add_lighting(pass_world *w, const field *density) {
     pass *p = world_add(w, "lighting", NULL, "lighting");
     gpu_test_ok(pass_set_field(p, "density", density));
     gpu_test_ok(pass_set_option(p, "fire_lights", "0"));
-    gpu_test_ok(pass_set_uniform(p, "bounces", number(w, 0)));
+    gpu_test_ok(pass_set_uniform(p, "sweeps", number(w, 0)));
     return p;
 }
 
@@ -203,7 +203,7 @@ static void furnace_is_as_bright_as_its_walls(void **state) {
         gpu_test_ok(pass_set_option(p, "glow_resolution", "32"));
         gpu_test_ok(pass_set_uniform(p, "albedo", triple(&w, 1, 1, 1)));
         gpu_test_ok(pass_set_uniform(p, "anisotropy", number(&w, 0.5f)));
-        gpu_test_ok(pass_set_uniform(p, "bounces", number(&w, 3)));
+        gpu_test_ok(pass_set_uniform(p, "sweeps", number(&w, 3)));
         probe q = {"scattered", 0, {-0.9, -0.9, 0.1}, {1.8, 0, 0}, {0, 1.8, 0}, {0, 0.6, 0.8}, 0.5};
         float *seen = look(&w, p, q);
         for (int i = 0; i < SIZE * SIZE; i++) near((double)seen[4 * i], 1, 0.03, q, i);

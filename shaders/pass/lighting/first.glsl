@@ -44,7 +44,7 @@ void main() {
     for (int c = 0; c < 3; c++) {
         vec4 moments = vec4(mean[c], flux[c]);
         imageStore(first_kept, voxel + ivec3(0, 0, c * GLOW_SIZE), moments);
-        imageStore(source_kept, voxel + ivec3(0, 0, c * GLOW_SIZE), bounces > 0 ? moments : vec4(0.0));
+        imageStore(source_kept, voxel + ivec3(0, 0, c * GLOW_SIZE), sweeps > 0 ? moments : vec4(0.0));
     }
 }
 #endif
