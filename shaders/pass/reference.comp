@@ -13,6 +13,7 @@
 uniform int samples;               //= 1 [1, 64] : paths for each pixel and execution
 uniform int bounces;               //= 64 [0, 1024] : how often light may be scattered, by the medium or a surface
 uniform int filter_;               //= box {none, box, blackman_harris} : how samples lie in a pixel: all in its middle, all over it, or under a window of 1.5 pixels as in Cycles
+uniform float haze;                //= 0 [0, 10] 1/m : as of the pass shade, whose pictures are compared: how fast distance fades surfaces to the colour of the horizon
 uniform float sky_alpha;           //= 1 [0, 1] : opacity of the sky; 0 for pictures to be laid over others
 uniform sampler2D depth;           //= input optional : depth of the scene (m), for `edge` only
 uniform sampler2D sum_before;      //= input history sum : all samples so far
@@ -164,6 +165,11 @@ bool collide(inout path_state s, vec3 p, float d, vec3 gone, float bound, vec2 r
 path_vertex meet_surface(inout path_state s) {
     vec3 p = s.walk.origin + s.hit.distance * s.walk.direction;
     float lift = 1e-4 * max(1.0, max(s.hit.distance, brightest(p))); // off the face: rounding
+    if (s.bounce == 0) {
+        float kept = exp(-haze * s.hit.distance);
+        s.light += s.weight * (1.0 - kept) * frame.sky_horizon.rgb;
+        s.weight *= kept;
+    }
     s.weight *= s.hit.albedo;
     s.done = s.bounce >= bounces;
     if (!s.done) roulette(s, path_next(s.random).x);

@@ -250,16 +250,20 @@ static void white_crate_in_a_white_sky_is_white(void **state) {
 // A wall sees half of the sky: of the gradient, whose part of the zenith is the root of the height,
 // the cosine-weighted mean is B(3/4, 3/2) / pi.
 static void gradient_of_the_sky_lights_a_wall(void **state) {
-    pass_world w;
-    pass *p = begin(&w, *state, nothing);
-    w.scene.sky.horizon = triple(&w, 1, 0, 2);
-    w.scene.sky.zenith = triple(&w, 0, 1, 2);
-    w.scene.sky.strength = number(&w, 1);
-    world_mesh(&w, "plane.obj");
-    picture got = end(&w, p, 256);
-    near(got, 0, 0.6 * (1 - 0.305104));
-    near(got, 1, 0.6 * 0.305104);
-    near(got, 2, 0.6 * 2);
+    for (int hazy = 0; hazy < 2; hazy++) {
+        pass_world w;
+        pass *p = begin(&w, *state, nothing);
+        w.scene.sky.horizon = triple(&w, 1, 0, 2);
+        w.scene.sky.zenith = triple(&w, 0, 1, 2);
+        w.scene.sky.strength = number(&w, 1);
+        set(&w, p, "haze", hazy ? 0.2f : 0); // over 5 m
+        world_mesh(&w, "plane.obj");
+        picture got = end(&w, p, 256);
+        double kept = hazy ? exp(-1) : 1;
+        near(got, 0, kept * 0.6 * (1 - 0.305104) + (1 - kept));
+        near(got, 1, kept * 0.6 * 0.305104);
+        near(got, 2, kept * 0.6 * 2 + (1 - kept) * 2);
+    }
 }
 
 // A lamp of 0.5 m before a grey wall: at its middle it is as bright as a point.
