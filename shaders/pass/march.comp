@@ -30,7 +30,7 @@ uniform float opacity;             //= 20 [0, 1000] : factor of the density, mod
 uniform vec3 box_min;
 uniform vec3 box_max;
 uniform sampler2D depth;           //= input optional : depth of the scene (m)
-writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity
+writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity, the mean of its colours
 writeonly uniform image2D edge;    //= output r32f : depth of the scene that the ray saw (m)
 writeonly uniform image2D reach;   //= output r32f : distance along the ray at which the opacity lies, on average (m); where there is none, that of the scene
 
