@@ -48,12 +48,32 @@ struct path { // of a direction through the grid
     vec3 outside; // light that enters the box
 };
 
-path make_path(vec3 way) {
+// Mean of the sky over the cone that a direction stands for: the sun of a panorama is small.
+vec3 light_from_sky(vec3 way, int thread) {
+    const int LOOKS = 64; // no more than there are threads on any level
+    if (thread < LOOKS) {
+        vec3 side = normalize(cross(way, abs(way.z) < 0.7 ? vec3(0, 0, 1) : vec3(1, 0, 0)));
+        float part = (float(thread) + 0.5) / float(LOOKS), turn = 2.39996323 * float(thread);
+        float cosine = 1.0 - 2.0 * part / float(WAYS), sine = sqrt(1.0 - cosine * cosine);
+        vec3 across = cos(turn) * side + sin(turn) * cross(way, side);
+        slice[thread].light = sky_radiance(-normalize(cosine * way + sine * across));
+    }
+    for (int half_ = LOOKS / 2; half_ > 0; half_ /= 2) {
+        barrier();
+        if (thread < half_) slice[thread].light += slice[thread + half_].light;
+    }
+    barrier();
+    vec3 mean = slice[0].light / float(LOOKS);
+    barrier();
+    return mean;
+}
+
+path make_path(vec3 way, int thread) {
     vec3 cells = way * float(voxels_across()) / max(box_max - box_min, vec3(1e-6)), a = abs(cells);
     int main_axis = a.x >= max(a.y, a.z) ? 0 : a.y >= a.z ? 1 : 2;
     ivec3 axes = ivec3(main_axis, (main_axis + 1) % 3, (main_axis + 2) % 3);
     return path(way, axes, -vec2(cells[axes.y], cells[axes.z]) / a[main_axis], 1.0 / a[main_axis],
-                ambient * sky_radiance(-way));
+                ambient * light_from_sky(way, thread));
 }
 
 // Light scattered into the way at a voxel, if the medium took light there.
@@ -114,7 +134,7 @@ cell advance(path on, ivec3 voxel, int index, ivec2 at, bool first) {
 
 void main() {
     int index = int(gl_WorkGroupID.x), thread = int(gl_LocalInvocationIndex);
-    path on = make_path(way_of(index));
+    path on = make_path(way_of(index), thread);
     ivec2 at = ivec2(thread % SWEEP_SIZE, thread / SWEEP_SIZE);
     ivec3 voxel;
     voxel[on.axes.y] = at.x;
