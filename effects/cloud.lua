@@ -5,23 +5,22 @@
 
 local fx = effect { name = "cloud", fps = 24, frames = 240 }
 
-local density = param { "density", 9, min = 0, max = 200, unit = "1/m", help = "extinction where the grid's density is 1" }
+local density = param { "density", 0.09, min = 0, max = 1, unit = "1/m", help = "extinction where the grid's density is 1" }
 local detail  = param { "detail", 0.55, min = 0, max = 2, help = "how much the noise eats from the edges" }
 
 local cumulus = vdb { "data/cloud.vdb", loop = "extend" }
-local lumps = worley { frequency = 2.2, octaves = 4, persistence = 0.5, lacunarity = 2.2, speed = 0.02, seed = 4 }
+local lumps = worley { frequency = 0.016, octaves = 4, persistence = 0.5, lacunarity = 2.2, speed = 0.02, seed = 4 }
 local body  = clamp(cumulus.density * 1.4, 0, 1)
 local eaten = smoothstep(0, 0.25, body - detail * (1 - lumps) * (1 - 0.8 * body))
 
-fx.camera = camera { eye = {0, -14, 1.2}, target = {0, 0, 2.9}, fov = 34, near = 0.1, far = 2000 }
-fx.sun    = sun { azimuth = 205, elevation = 7, color = {1, 0.52, 0.22}, strength = 5 }
+fx.camera = camera { eye = {0, -1900, 60}, target = {0, 0, 430}, fov = 34, near = 1, far = 1e5 }
+fx.sun    = sun { azimuth = 172, elevation = 9, color = {1, 0.50, 0.20}, strength = 7 }
 fx.sky    = sky { zenith = {0.10, 0.17, 0.36}, horizon = {0.62, 0.36, 0.26} }
 
 local lit = lighting {
   density    = body * eaten * density,
   albedo     = {0.995, 0.995, 0.995},
   lobes      = { {0.75, 0.8}, {0.25, -0.15} },
-  glow_resolution = "48",
   sweeps     = 12,
 }
 local scene  = geometry {}
