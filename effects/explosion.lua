@@ -8,12 +8,12 @@
 local fx = effect { name = "explosion", fps = 24, frames = 100 }
 
 -- Everything you may want to turn, with its range: --set density=30
-local density    = param { "density", 20, min = 0, max = 200, unit = "1/m", help = "extinction where the grid's density is 1" }
+local density    = param { "density", 40, min = 0, max = 200, unit = "1/m", help = "extinction where the grid's density is 1" }
 local brightness = param { "brightness", 3.5, min = 0, max = 50, help = "factor of the fire's light" }
 local kelvin     = param { "kelvin", 1400, min = 500, max = 3000, unit = "K", help = "temperature where the grid says 1" }
 local noise      = param { "noise", "worley_curl", words = {"worley_curl", "worley", "perlin", "simplex", "none"}, help = "what the detail is made of" }
-local detail     = param { "detail", 1.1, min = 0, max = 3, help = "how much the noise eats from the smoke's edges" }
-local turbulence = param { "turbulence", 0.12, min = 0, max = 2, unit = "m", help = "how far the flow displaces the grid" }
+local detail     = param { "detail", 1.6, min = 0, max = 3, help = "how much the noise eats from the smoke's edges" }
+local turbulence = param { "turbulence", 0.27, min = 0, max = 2, unit = "m", help = "how far the flow displaces the grid" }
 local steps      = param { "steps", 128, min = 8, max = 1024, integer = true, help = "samples along each ray" }
 
 -- The grids of the sequence are fields: values in space that arithmetic combines.
@@ -30,7 +30,7 @@ local smoke, heat, flame = torn.x, torn.y, torn.z
 
 -- The detail: lumps at three scales that rise with the smoke. Which noise it is, is structure: it is
 -- chosen when the effect loads.
-local shape = { frequency = 1.4, octaves = 4, persistence = 0.55, lacunarity = 2.1, drift = {0, 0, -0.5}, seed = 11 }
+local shape = { frequency = 1.4, octaves = 5, persistence = 0.66, lacunarity = 2.1, drift = {0, 0, -0.5}, seed = 11 }
 local kinds = {
   worley_curl = function() return worley(shape):warp(flow, 0.25) end,
   worley      = function() return worley(shape) end,
@@ -42,10 +42,10 @@ local lumps = kinds[noise:get()]()
 
 -- Lumps stand out where the smoke is thin; the thick core is left alone. When the smoke thins out
 -- as a whole, at the end, it fades instead of falling to pieces.
-local fade  = curve { {0, 1}, {1.8, 1}, {4.1, 0.25}, shape = "ease_in_out" }
+local fade  = curve { {0, 1}, {1.7, 1}, {3.2, 0.3}, shape = "ease_in_out" }
 local eaten = detail * fade
-local cover = clamp(smoke * 3, 0, 1)
-local crust = smoothstep(0, 0.15, cover - eaten * (1 - lumps) * (1 - 0.7 * cover))
+local cover = clamp(smoke * 2.2, 0, 1)
+local crust = smoothstep(0, 0.15, cover - eaten * (1 - lumps) * (1 - 0.6 * cover))
 
 -- A black body's light grows with the fourth power of its temperature.
 local fire = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
@@ -58,7 +58,7 @@ fx.sky    = sky { zenith = {0.14, 0.25, 0.46}, horizon = {0.34, 0.38, 0.42}, str
 -- smoke around it, and all that is scattered on the way.
 local lit = lighting {
   density    = cover * crust * (smoke + 0.15) * density,
-  emission   = fire(heat * (0.45 + 0.85 * lumps) * kelvin) * flame * brightness,
+  emission   = fire(heat * (0.15 + 1.35 * lumps) * kelvin) * flame * brightness,
   albedo     = {0.45, 0.43, 0.41},
   anisotropy = 0.2,
   sampling   = "linear",
