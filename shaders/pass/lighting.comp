@@ -22,6 +22,7 @@ uniform sampler3D scattering_made;
 uniform sampler3D first_made;
 uniform sampler3D source_made;
 uniform sampler3D ways_made;
+uniform sampler3D around_made;
 uniform sampler3D fire_made;
 // The same of the next finer and the next coarser level.
 uniform sampler3D medium_fine;
@@ -35,6 +36,7 @@ layout(rgba32f) writeonly uniform image3D first_kept;      // moments of what co
 layout(rgba32f) uniform image3D source_kept;               // moments of all light that is scattered
 layout(rgba32f) uniform image3D last_kept;                 // the same, a sweep earlier
 layout(rgba32f) writeonly uniform image3D ways_kept;       // radiance in each of the directions
+layout(rgba32f) writeonly uniform image3D around_kept;     // the same, where it enters the box
 layout(rgba32f) writeonly uniform image3D fire_kept;       // light that leaves the volume (W/m^3/sr); which way
 
 #include "lib/medium.glsl"
@@ -52,4 +54,6 @@ const float PI = 3.14159265;
 #include "lighting/medium.glsl"
 #include "lighting/first.glsl"
 #include "lighting/level.glsl"
+#include "lighting/ways.glsl"
+#include "lighting/around.glsl"
 #include "lighting/sweep.glsl"

@@ -18,6 +18,7 @@ enum {
     MOST_LEVELS = 3,
     LEAST_HASTENED = 16,
     COARSEST = 8,         // voxels across, of the levels of the grids
+    LOOKS = 64,           // into each direction, in lighting/around.glsl
     GATHER_THREADS = 512, // for a light, in lighting/fire.glsl
 };
 
@@ -28,6 +29,7 @@ typedef enum lighting_stage {
     STAGE_SHADOW,
     STAGE_MEDIUM,
     STAGE_FIRST,
+    STAGE_AROUND,
     STAGE_RESTRICT,
     STAGE_PROLONG,
     STAGE_REDUCE,
@@ -35,10 +37,10 @@ typedef enum lighting_stage {
     STAGES = STAGE_SWEEP + MOST_LEVELS
 } lighting_stage;
 
-static const char *const stage_defines[STAGES] = {"STAGE_LIGHTS",   "STAGE_FIRE",    "STAGE_GATHER",
-                                                  "STAGE_SHADOW",   "STAGE_MEDIUM",  "STAGE_FIRST",
-                                                  "STAGE_RESTRICT", "STAGE_PROLONG", "STAGE_REDUCE",
-                                                  "STAGE_SWEEP",    "STAGE_SWEEP",   "STAGE_SWEEP"};
+static const char *const stage_defines[STAGES] = {
+    "STAGE_LIGHTS", "STAGE_FIRE",   "STAGE_GATHER",   "STAGE_SHADOW",  "STAGE_MEDIUM",
+    "STAGE_FIRST",  "STAGE_AROUND", "STAGE_RESTRICT", "STAGE_PROLONG", "STAGE_REDUCE",
+    "STAGE_SWEEP",  "STAGE_SWEEP",  "STAGE_SWEEP"};
 
 // What one stage leaves for others, besides the outputs: the shader writes NAME_kept and reads
 // NAME_made.
@@ -49,6 +51,7 @@ typedef enum lighting_grid {
     SOURCE,
     LAST,
     WAYS,
+    AROUND,
     FIRE,
     GRIDS
 } lighting_grid;
@@ -63,6 +66,7 @@ static const struct {
     {"source", "source_kept", "source_made", NULL, "source_coarse", true},
     {"last", "last_kept", "last_made", NULL, NULL, true},
     {"ways", "ways_kept", "ways_made", NULL, NULL, false},
+    {"around", "around_kept", "around_made", NULL, NULL, false},
     {"fire", "fire_kept", "fire_made", NULL, NULL, false},
 };
 
@@ -106,8 +110,13 @@ static bool add_grids(pass *p) {
     lighting_state *s = p->state;
     uint32_t n = s->glow_size;
     const uint32_t sizes[GRIDS][3] = {
-        [MEDIUM] = {n, n, n},     [SCATTERING] = {n, n, n}, [FIRST] = {n, n, 3 * n},
-        [SOURCE] = {n, n, 3 * n}, [LAST] = {n, n, 3 * n},   [WAYS] = {WAYS_X * n, WAYS_Y * n, n},
+        [MEDIUM] = {n, n, n},
+        [SCATTERING] = {n, n, n},
+        [FIRST] = {n, n, 3 * n},
+        [SOURCE] = {n, n, 3 * n},
+        [LAST] = {n, n, 3 * n},
+        [WAYS] = {WAYS_X * n, WAYS_Y * n, n},
+        [AROUND] = {WAYS_X * WAYS_Y, 1, 1},
         [FIRE] = {n, n, 2 * n},
     };
     for (int i = 0; i < GRIDS; i++) {
@@ -149,8 +158,8 @@ static bool add_parts(pass *p) {
     graph_image lights = image_of(p, "lights"), shadow = image_of(p, "shadow");
     const graph_image none = {0}, lights_writes[] = {lights, own[FIRE]};
     const graph_image glow_reads[] = {lights, shadow, own[MEDIUM], own[SCATTERING]};
-    const graph_image glow_writes[] = {image_of(p, "glow"), own[FIRST], own[SOURCE], own[LAST],
-                                       own[WAYS]};
+    const graph_image glow_writes[] = {image_of(p, "glow"), own[FIRST], own[SOURCE],
+                                       own[LAST],           own[WAYS],  own[AROUND]};
     const pass_part parts[] = {
         {.name = "lights",
          .reads = s->fire_count ? &own[MEDIUM] : &none,
@@ -354,7 +363,9 @@ static bool sweep(pass *p, uint32_t level, uint32_t times) {
 static bool record_glow(pass *p) {
     const lighting_state *s = p->state;
     uint32_t sweeps = (uint32_t)pass_evaluate(p, "sweeps");
-    if (!dispatch_voxels(p, STAGE_FIRST, 0)) return false;
+    if (!dispatch_voxels(p, STAGE_FIRST, 0) ||
+        !dispatch(p, STAGE_AROUND, 0, WAYS_X * WAYS_Y * LOOKS, 1, 1))
+        return false;
     if (!sweeps) return sweep(p, 0, 1);
     for (uint32_t level = 1; level < s->levels; level++)
         if (!dispatch_voxels(p, STAGE_RESTRICT, level)) return false;

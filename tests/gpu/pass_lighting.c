@@ -260,6 +260,30 @@ static void meshes_throw_shadows_into_the_volume(void **state) {
     world_close(&w);
 }
 
+// Hardly any smoke, some of it buried in wide ground that sends back a quarter, under a sky of
+// radiance 1 and a sun in the zenith that gives the ground as much again: from below comes half as
+// much as from above.
+static void ground_sends_back_what_falls_on_it(void **state) {
+    pass_world w;
+    world_open(&w, *state);
+    set_sky(&w, 1);
+    w.scene.sun.strength = number(&w, GLM_PIf);
+    w.scene.sun.elevation = number(&w, 90);
+    scene_mesh *crate = world_mesh(&w, "crate.obj"); // 2 m wide, sends back 0.6
+    crate->scale = number(&w, 1000);
+    crate->position = triple(&w, 0, 0, -1000.5f);
+    crate->color = triple(&w, 0.25f / 0.6f, 0.25f / 0.6f, 0);
+    pass *p = add_lighting(&w, block(&w, 1, 0.005f));
+    probe q = {"scattered", 0, {-0.9, -0.9, 0.1}, {1.8, 0, 0}, {0, 1.8, 0}, {0, 0, 1}, 0};
+    float *seen = look(&w, p, q);
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        near((double)seen[4 * i], 0.75, 0.02, q, i);
+        near((double)seen[4 * i + 2], 0.5, 0.02, q, i);
+    }
+    mem_free(seen);
+    world_close(&w);
+}
+
 static void too_many_shadows_are_refused(void **state) {
     pass_world w;
     world_open(&w, *state);
@@ -281,6 +305,7 @@ int main(void) {
         cmocka_unit_test(furnace_is_as_bright_as_its_walls),
         cmocka_unit_test(emission_is_that_of_a_slab),
         cmocka_unit_test(meshes_throw_shadows_into_the_volume),
+        cmocka_unit_test(ground_sends_back_what_falls_on_it),
         cmocka_unit_test(too_many_shadows_are_refused),
     };
     return gpu_test_run(tests, COUNT_OF(tests));

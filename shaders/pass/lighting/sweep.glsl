@@ -7,19 +7,6 @@
 // REDUCE: from all directions the mean and first moment, which the next sweep scatters.
 
 #if defined(STAGE_SWEEP) || defined(STAGE_REDUCE)
-// 48 directions, all images of one under the symmetries of the cube. With equal weights they
-// integrate polynomials of degree 7 exactly, since the mean of x^4 is 1/5 and that of (x y z)^2 is
-// 1/105: the squares are the roots of x^3 - x^2 + x / 5 - 1 / 105.
-const int WAYS = 48;
-vec3 way_of(int index) {
-    vec3 v = vec3(0.26663540, 0.42251865, 0.86624682);
-    int turn = index >> 3;
-    if (turn >= 3) v = v.yxz;
-    if (turn % 3 == 1) v = v.yzx;
-    if (turn % 3 == 2) v = v.zxy;
-    return mix(v, -v, bvec3(index & 1, index & 2, index & 4));
-}
-
 int voxels_across() { // on the level at hand
     return textureSize(medium_made, 0).x;
 }
@@ -48,32 +35,13 @@ struct path { // of a direction through the grid
     vec3 outside; // light that enters the box
 };
 
-// Mean of the sky over the cone that a direction stands for: the sun of a panorama is small.
-vec3 light_from_sky(vec3 way, int thread) {
-    const int LOOKS = 64; // no more than there are threads on any level
-    if (thread < LOOKS) {
-        vec3 side = normalize(cross(way, abs(way.z) < 0.7 ? vec3(0, 0, 1) : vec3(1, 0, 0)));
-        float part = (float(thread) + 0.5) / float(LOOKS), turn = 2.39996323 * float(thread);
-        float cosine = 1.0 - 2.0 * part / float(WAYS), sine = sqrt(1.0 - cosine * cosine);
-        vec3 across = cos(turn) * side + sin(turn) * cross(way, side);
-        slice[thread].light = sky_radiance(-normalize(cosine * way + sine * across));
-    }
-    for (int half_ = LOOKS / 2; half_ > 0; half_ /= 2) {
-        barrier();
-        if (thread < half_) slice[thread].light += slice[thread + half_].light;
-    }
-    barrier();
-    vec3 mean = slice[0].light / float(LOOKS);
-    barrier();
-    return mean;
-}
-
-path make_path(vec3 way, int thread) {
+path make_path(int index) {
+    vec3 way = way_of(index);
     vec3 cells = way * float(voxels_across()) / max(box_max - box_min, vec3(1e-6)), a = abs(cells);
     int main_axis = a.x >= max(a.y, a.z) ? 0 : a.y >= a.z ? 1 : 2;
     ivec3 axes = ivec3(main_axis, (main_axis + 1) % 3, (main_axis + 2) % 3);
     return path(way, axes, -vec2(cells[axes.y], cells[axes.z]) / a[main_axis], 1.0 / a[main_axis],
-                ambient * light_from_sky(way, thread));
+                texelFetch(around_made, ivec3(index, 0, 0), 0).rgb);
 }
 
 // Light scattered into the way at a voxel, if the medium took light there.
@@ -134,7 +102,7 @@ cell advance(path on, ivec3 voxel, int index, ivec2 at, bool first) {
 
 void main() {
     int index = int(gl_WorkGroupID.x), thread = int(gl_LocalInvocationIndex);
-    path on = make_path(way_of(index), thread);
+    path on = make_path(index);
     ivec2 at = ivec2(thread % SWEEP_SIZE, thread / SWEEP_SIZE);
     ivec3 voxel;
     voxel[on.axes.y] = at.x;
