@@ -28,7 +28,7 @@ uniform vec3 blackbody_tint;       //= {1, 1, 1} [0, 100] : factor of a black bo
 
 // Extinction of density 1, by colour.
 vec3 medium_extinction() {
-    return extinction * (albedo + (1.0 - albedo) * (1.0 - sqrt(absorption_color)));
+    return extinction * (1.0 - (1.0 - albedo) * sqrt(absorption_color));
 }
 
 // What of it is scattering, at a point where the density is not 0.

@@ -30,9 +30,10 @@ uniform float opacity;             //= 20 [0, 1000] : factor of the density, mod
 uniform vec3 box_min;
 uniform vec3 box_max;
 uniform sampler2D depth;           //= input optional : depth of the scene (m)
-writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity, the mean of its colours
+writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity, the mean of its colours: `transmittance` has each
 writeonly uniform image2D edge;    //= output r32f : depth of the scene that the ray saw (m)
 writeonly uniform image2D reach;   //= output r32f : distance along the ray at which the opacity lies, on average (m); where there is none, that of the scene
+writeonly uniform image2D transmittance; //= output rgba16f optional : part of what is behind that shines through, by colour
 
 #include "lib/frame.glsl"
 #include "lib/box.glsl"
@@ -342,5 +343,6 @@ void main() {
     if (!inside) return;
     imageStore(color, pixel, vec4(ray.light, 1.0 - mean(ray.transmittance)));
     imageStore(edge, pixel, vec4(stop));
+    imageStore(transmittance, pixel, vec4(ray.transmittance, 1.0));
     imageStore(reach, pixel, vec4(ray.reach.y > 0.0 ? ray.reach.x / ray.reach.y : stop * metres));
 }

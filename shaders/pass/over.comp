@@ -1,9 +1,12 @@
 // Lays a volume over the scene. A volume of lower resolution is scaled up along the edges of the
 // scene: of the texels around a pixel those count whose ray ended at the pixel's own depth.
+//
+// over { volume, solid, from = {volume, scene} } takes depth, edge and transmittance from there.
 uniform sampler2D volume;         //= input : premultiplied radiance and opacity
 uniform sampler2D source;         //= input : the scene
 uniform sampler2D depth;          //= input optional : depth of the scene (m)
 uniform sampler2D edge;           //= input optional : depth at which the volume's rays were stopped (m)
+uniform sampler2D transmittance;  //= input optional : part of the scene that shines through the volume, by colour; without: that of its opacity, grey
 uniform float edge_tolerance;     //= 0.05 [0.001, 1] : relative difference in depth that counts as an edge
 writeonly uniform image2D color;  //= output rgba16f : premultiplied radiance and opacity
 
@@ -16,21 +19,34 @@ vec4 mitchell(float f) {
     return vec4(far.x, near.yz, far.w);
 }
 
-vec4 upsample(ivec2 pixel, vec2 uv) {
+struct layer {
+    vec4 color;   // premultiplied radiance and opacity
+    vec3 through; // transmittance
+};
+
+layer fetch(ivec2 texel) {
+#if HAS_TRANSMITTANCE
+    return layer(texelFetch(volume, texel, 0), texelFetch(transmittance, texel, 0).rgb);
+#else
+    return layer(texelFetch(volume, texel, 0), vec3(0.0));
+#endif
+}
+
+layer upsample(ivec2 pixel, vec2 uv) {
     ivec2 low = textureSize(volume, 0);
-    if (low == imageSize(color)) return texelFetch(volume, pixel, 0);
+    if (low == imageSize(color)) return fetch(pixel);
     vec2 at = uv * vec2(low) - 0.5;
     ivec2 base = ivec2(floor(at));
     // Four bilinear taps see all sixteen texels: most of the picture has nothing to scale.
     vec4 taps = vec4(vec2(base), vec2(base + 2)) / vec4(low, low);
     float any_alpha = textureLod(volume, taps.xy, 0.0).a + textureLod(volume, taps.zy, 0.0).a +
                       textureLod(volume, taps.xw, 0.0).a + textureLod(volume, taps.zw, 0.0).a;
-    if (any_alpha == 0.0) return vec4(0.0);
+    if (any_alpha == 0.0) return layer(vec4(0.0), vec3(1.0));
     vec4 wx = mitchell(at.x - float(base.x)), wy = mitchell(at.y - float(base.y));
 #if HAS_DEPTH && HAS_EDGE
     float here = texelFetch(depth, pixel, 0).r;
 #endif
-    vec4 sum = vec4(0.0), least = vec4(1e9), most = vec4(0.0);
+    layer sum = layer(vec4(0.0), vec3(0.0)), least = layer(vec4(1e9), vec3(1e9)), most = sum;
     float total = 0.0;
     for (int i = 0; i < 16; i++) {
         ivec2 offset = ivec2(i & 3, i >> 2);
@@ -42,16 +58,30 @@ vec4 upsample(ivec2 pixel, vec2 uv) {
         // Across an edge the negative lobes would ring: only what is positive counts.
         w = mix(max(w, 0.0), w, same);
 #endif
-        vec4 c = texelFetch(volume, texel, 0);
-        sum += w * same * c;
+        layer c = fetch(texel);
+        sum.color += w * same * c.color;
+        sum.through += w * same * c.through;
         total += w * same;
         if (same > 0.5) {
-            least = min(least, c);
-            most = max(most, c);
+            least = layer(min(least.color, c.color), min(least.through, c.through));
+            most = layer(max(most.color, c.color), max(most.through, c.through));
         }
     }
-    vec4 smooth_value = sum / max(total, 1e-9);
-    return most.a >= least.a ? clamp(smooth_value, least, most) : smooth_value;
+    layer smooth_value = layer(sum.color / max(total, 1e-9), sum.through / max(total, 1e-9));
+    if (most.color.a < least.color.a) return smooth_value;
+    return layer(clamp(smooth_value.color, least.color, most.color),
+                 clamp(smooth_value.through, least.through, most.through));
+}
+
+// What the layer lets through. Of a grey one the opacity says it, which holds small numbers to more
+// digits and may be averaged over frames.
+vec4 let_through(layer front) {
+    float mean = 1.0 - front.color.a;
+#if HAS_TRANSMITTANCE
+    vec3 t = front.through;
+    if (t != t.gbr) return vec4(max(t, 0.0), mean);
+#endif
+    return vec4(mean);
 }
 
 void main() {
@@ -59,7 +89,7 @@ void main() {
     ivec2 size = imageSize(color);
     if (any(greaterThanEqual(pixel, size))) return;
     vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
-    vec4 front = upsample(pixel, uv);
+    layer front = upsample(pixel, uv);
     vec4 back = textureLod(source, uv, 0.0);
-    imageStore(color, pixel, front + (1.0 - front.a) * back);
+    imageStore(color, pixel, front.color + let_through(front) * back);
 }

@@ -20,6 +20,7 @@ uniform sampler2D sum_before;      //= input history sum : all samples so far
 writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity
 writeonly uniform image2D edge;    //= output r32f : depth of the scene at the pixel (m)
 writeonly uniform image2D reach;   //= output r32f : distance along the ray at which it is first scattered, on average over the latest samples (m); of the scene where it is not
+writeonly uniform image2D transmittance; //= output rgba16f optional : part of what is behind that shines through, the mean of its colours
 uniform image2D sum;               //= output rgba32f : all samples, added up
 
 uniform int paths; // for each pixel in this dispatch
@@ -273,7 +274,9 @@ void main() {
     stop = texelFetch(depth, ivec2((vec2(pixel) + 0.5) / vec2(size) * vec2(textureSize(depth, 0))), 0).r;
 #endif
     imageStore(sum, pixel, total);
-    imageStore(color, pixel, total / float(before + paths));
+    vec4 mean = total / float(before + paths);
+    imageStore(color, pixel, mean);
+    imageStore(transmittance, pixel, vec4(vec3(1.0 - mean.a), 1.0));
     imageStore(edge, pixel, vec4(stop));
     imageStore(reach, pixel, vec4(firsts.y > 0.0 ? firsts.x / firsts.y : stop));
 }

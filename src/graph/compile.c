@@ -184,14 +184,17 @@ static void mark_pass(graph *g, marking *m, uint32_t pass) {
 }
 
 static void mark_image(graph *g, marking *m, uint32_t image) {
-    if (g->images[image].of != NONE) g->images[g->images[image].of].history_used = true;
+    uint32_t of = g->images[image].of;
+    if (of != NONE) g->images[of].history_used = true;
+    g->images[of != NONE ? of : image].read = true;
     mark_pass(g, m, source(g, image));
 }
 
 void graph_cull(graph *g) {
     marking m = {.stack = mem_alloc(g->pass_count * sizeof *m.stack)};
     for (size_t p = 0; p < g->pass_count; p++) g->passes[p].live = false;
-    for (size_t i = 0; i < g->image_count; i++) g->images[i].history_used = false;
+    for (size_t i = 0; i < g->image_count; i++)
+        g->images[i].read = g->images[i].history_used = false;
 
     for (size_t p = 0; p < g->pass_count; p++)
         if (g->passes[p].keep) mark_pass(g, &m, (uint32_t)p);

@@ -25,6 +25,7 @@ typedef struct graph_image_desc {
     uint32_t width, height, depth; // fixed size in texels; depth 0: 2D
     uint32_t mips;                 // 0 means 1; GRAPH_ALL_MIPS: down to 1x1; at most that many
     bool target;                   // drawn to by a graphics pipeline
+    bool optional;                 // has no memory while nothing reads it, though its writer runs
 } graph_image_desc;
 
 typedef struct graph_pass_desc {
@@ -65,7 +66,8 @@ bool graph_execute(graph *g, gpu *device); // inside an open frame; swaps histor
 // After graph_execute the images keep their content until the next one: history images are swapped
 // at the start of graph_execute.
 
-gpu_image *graph_get_image(const graph *g, graph_image image); // NULL when culled
+// NULL when culled, and when it is optional and nobody reads it
+gpu_image *graph_get_image(const graph *g, graph_image image);
 // As declared, except that after compiling `mips` is the true number of levels.
 const graph_image_desc *graph_get_desc(const graph *g, graph_image image);
 void graph_get_size(const graph *g, graph_image image, uint32_t size[3]); // texels, depth >= 1

@@ -27,6 +27,7 @@ typedef struct graph_node_image {
     uint32_t history;      // index of its history image or NONE
     bool output;
     // from here: results of graph_compile
+    bool read;         // it or its history, by a pass that runs or as an output
     bool history_used; // its history is read by a pass that runs, or is an output
     uint32_t writer;   // index of a pass or NONE
     uint32_t size[3];

@@ -34,6 +34,10 @@ static bool is_exclusive(const graph_node_image *image) {
     return image->output || image->history_used;
 }
 
+static bool needs_memory(const graph_node_image *image) {
+    return image->read || !image->desc.optional;
+}
+
 static void find_lifetimes(const graph *g, planning *p) {
     p->ending = filled(&p->scratch, g->order_count);
     p->next_ending = filled(&p->scratch, g->image_count);
@@ -45,7 +49,7 @@ static void find_lifetimes(const graph *g, planning *p) {
                 i < pass->read_count ? pass->reads[i] : pass->writes[i - pass->read_count];
             if (seen[image] || g->images[image].of != NONE) continue;
             seen[image] = true;
-            if (is_exclusive(&g->images[image])) continue;
+            if (is_exclusive(&g->images[image]) || !needs_memory(&g->images[image])) continue;
             p->next_ending[image] = p->ending[at];
             p->ending[at] = image;
         }
@@ -108,7 +112,7 @@ void graph_plan_memory(graph *g) {
         const graph_node_pass *pass = &g->passes[g->order[at]];
         for (size_t i = 0; i < pass->write_count; i++) {
             graph_node_image *image = &g->images[pass->writes[i]];
-            if (image->slot == NONE) take_slot(g, &p, image);
+            if (image->slot == NONE && needs_memory(image)) take_slot(g, &p, image);
         }
         for (uint32_t i = p.ending[at]; i != NONE; i = p.next_ending[i])
             give_slot(&p, g->images[i].slot);

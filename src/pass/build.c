@@ -159,6 +159,22 @@ static bool make_blanks(pass *p) {
     return true;
 }
 
+// An optional output that nobody reads is one texel.
+static bool make_unread(pass *p) {
+    for (size_t i = 0; i < p->face->image_count; i++) {
+        const shader_image *image = &p->face->images[i];
+        if (!image->output || !image->optional || p->unread[i]) continue;
+        p->unread[i] = gpu_image_create(p->host->device, &(gpu_image_desc){.label = "unread",
+                                                                           .format = p->formats[i],
+                                                                           .width = 1,
+                                                                           .height = 1,
+                                                                           .depth = image->volume,
+                                                                           .use = GPU_USE_STORAGE});
+        if (!p->unread[i]) return false;
+    }
+    return true;
+}
+
 // One texture for all passes of the effect.
 static bool make_blue_noise(pass_host *host) {
     if (!host->blue_noise) host->blue_noise = blue_noise_create(host->device);
@@ -208,7 +224,8 @@ bool pass_build(pass *p) {
 bool pass_allocate(pass *p) {
     for (size_t i = 0; i < p->mesh_count; i++)
         if (!scene_mesh_upload(p->meshes[i], p->host->device)) return false;
-    return make_palettes(p) && make_blanks(p) && make_blue_noise(p->host) && make_counters(p);
+    return make_palettes(p) && make_blanks(p) && make_unread(p) && make_blue_noise(p->host) &&
+           make_counters(p);
 }
 
 // What pass_build can find wrong without a device.
@@ -227,6 +244,8 @@ void pass_destroy(pass *p) {
         if (p->palettes[i].image) gpu_image_destroy(device, p->palettes[i].image);
     for (int i = 0; i < 2; i++)
         if (p->blank[i]) gpu_image_destroy(device, p->blank[i]);
+    for (size_t i = 0; i < p->face->image_count; i++)
+        if (p->unread[i]) gpu_image_destroy(device, p->unread[i]);
     if (p->counters) gpu_buffer_destroy(device, p->counters);
     if (p->pipeline) gpu_pipeline_destroy(device, p->pipeline);
     mem_free(p->meshes);

@@ -13,6 +13,7 @@ static bool declare_output(pass *p, size_t index) {
                             .format = p->formats[index],
                             .scale = p->scale,
                             .target = drawn,
+                            .optional = image->optional && !drawn,
                         });
     return p->images[index].id != 0;
 }

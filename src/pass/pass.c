@@ -25,6 +25,7 @@ pass *pass_create(pass_host *host, const pass_type *type, const char *shader, co
         .fields = arena_alloc(memory, face->field_count * sizeof *p->fields),
         .images = arena_alloc(memory, face->image_count * sizeof *p->images),
         .formats = arena_alloc(memory, face->image_count * sizeof *p->formats),
+        .unread = arena_alloc(memory, face->image_count * sizeof(gpu_image *)),
         .scale = 1,
     };
     for (size_t i = 0; i < face->option_count; i++) p->options[i] = face->options[i].value;

@@ -39,6 +39,7 @@ struct pass {
     size_t palette_count;
     gpu_buffer *counters;
     gpu_image *blank[2];     // what missing optional inputs read: 2D, 3D
+    gpu_image **unread;      // one per entry of `face`: what an optional output is while unread
     const field_grid *baked; // bake only: the grid it fills
     void *state;             // of the type's hooks
 };

@@ -126,6 +126,7 @@ static bool bind_image(pass *p, const char *glsl_name, gpu_binding *out) {
         if (strcmp(image->glsl_name, glsl_name) != 0) continue;
         out->image = p->images[i].id ? graph_get_image(p->host->graph, p->images[i])
                                      : p->blank[image->volume];
+        if (!out->image) out->image = p->unread[i];
         out->sampler = GPU_LINEAR_CLAMP;
         return true;
     }

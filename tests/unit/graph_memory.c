@@ -238,6 +238,39 @@ static void culled_images_have_no_memory(void **state) {
     end(g, &device);
 }
 
+static void optional_image_has_memory_while_it_is_read(void **state) {
+    (void)state;
+    graph *g = graph_create();
+    graph_image a = image(g, "a"), out = image(g, "out");
+    graph_image_desc desc = {.name = "more", .format = GPU_RGBA16F, .scale = 1, .optional = true};
+    graph_image more = graph_add_image(g, &desc), past;
+    step(g, "0", NOTHING, USES(a, more));
+    step(g, "1", USES(a), USES(out));
+    graph_add_output(g, out);
+    compile(g);
+    gpu device = {0};
+    allocate(g, &device);
+    assert_int_equal(device.alive, 2);
+    assert_null(graph_get_image(g, more));
+    assert_false(graph_is_alone(g, more));
+
+    graph_add_output(g, more); // as an output
+    compile(g);
+    allocate(g, &device);
+    assert_non_null(graph_get_image(g, more));
+    graph_remove_output(g, more);
+    compile(g);
+    allocate(g, &device);
+    assert_null(graph_get_image(g, more));
+
+    past = graph_add_history(g, more); // or by a pass, and be it in the next frame
+    pass_keeping(g, "2", USES(past), NOTHING, true);
+    compile(g);
+    assert_true(graph_allocate(g, &device));
+    assert_non_null(graph_get_image(g, more));
+    end(g, &device);
+}
+
 static void images_are_created_for_what_passes_do_with_them(void **state) {
     (void)state;
     graph *g = graph_create();
@@ -527,6 +560,7 @@ int main(void) {
         cmocka_unit_test(an_image_that_nobody_reads_lives_for_its_pass),
         cmocka_unit_test(only_images_of_one_kind_share),
         cmocka_unit_test(culled_images_have_no_memory),
+        cmocka_unit_test(optional_image_has_memory_while_it_is_read),
         cmocka_unit_test(images_are_created_for_what_passes_do_with_them),
         cmocka_unit_test(a_history_is_cleared_once_and_then_swapped),
         cmocka_unit_test(compiling_again_at_the_same_size_keeps_all_memory),

@@ -1,0 +1,112 @@
+// Laying a volume over what shines through it, by colour: a block 2 m wide before an even picture.
+#include "pass_test.h"
+
+enum { WIDTH = 34, HEIGHT = 18, CENTRE = (HEIGHT / 2) * WIDTH + WIDTH / 2 };
+
+typedef struct setup {
+    float extinction[3]; // 1/m
+    float scale;         // of the march
+    bool grey;           // `over` is told the opacity only
+    bool ragged;         // the march has an error of its own in every pixel, and adds light
+} setup;
+
+typedef struct layers {
+    pass *volume, *over;
+} layers;
+
+// Behind it is light of 8, 4 and 2.
+static layers lay(pass_world *w, gpu *device, const setup *how) {
+    const float *s = how->extinction;
+    world_open(w, device);
+    pass *back = world_add(w, NULL, "even.comp", "back"), *p = world_add(w, "march", NULL, "march");
+    gpu_test_ok(pass_set_uniform(back, "tint", triple(w, 8, 4, 2)) && pass_declare(back));
+    gpu_test_ok(pass_set_field(p, "density", block(w, 1, 1)));
+    gpu_test_ok(pass_set_uniform(p, "extinction", triple(w, s[0], s[1], s[2])));
+    gpu_test_ok(pass_set_uniform(p, "albedo", triple(w, 0.45f, 0.43f, 0.41f)));
+    gpu_test_ok(pass_set_uniform(p, "early_exit", number(w, 0)));
+    gpu_test_ok(pass_set_uniform(p, "ambient", number(w, 0)));
+    gpu_test_ok(pass_set_scale(p, how->scale));
+    if (how->ragged) {
+        gpu_test_ok(pass_set_field(p, "emission", triple(w, 1, 0.5f, 0.1f)));
+        gpu_test_ok(pass_set_uniform(p, "steps", number(w, 3)));
+        gpu_test_ok(pass_set_uniform(p, "jitter", number(w, 1)));
+    }
+    gpu_test_ok(pass_declare(p));
+    pass *over = world_add(w, "over", NULL, "over");
+    gpu_test_ok(pass_set_image(over, "volume", pass_output(p, "color")));
+    gpu_test_ok(pass_set_image(over, "source", pass_output(back, "color")));
+    if (!how->grey) pass_add_source(over, p);
+    gpu_test_ok(pass_declare(over));
+    return (layers){p, over};
+}
+
+// Free with mem_free.
+static float *render(gpu *device, const setup *how) {
+    pass_world w;
+    layers l = lay(&w, device, how);
+    world_render(&w, WIDTH, HEIGHT, pass_output(l.over, "color"));
+    float *pixels = world_read(&w, pass_output(l.over, "color"));
+    world_close(&w);
+    return pixels;
+}
+
+static void slab_dyes_what_is_behind(void **state) {
+    static const float scales[] = {1, 0.5f};
+    for (size_t i = 0; i < COUNT_OF(scales); i++) {
+        setup how = {.extinction = {0.1f, 0.7f, 2.5f}, .scale = scales[i]};
+        float *pixels = render(*state, &how);
+        for (int k = 0; k < 3; k++) {
+            double wanted = (8 >> k) * exp(-2 * (double)how.extinction[k]);
+            double got = (double)pixels[4 * CENTRE + k];
+            if (fabs(got - wanted) > 0.01 * wanted) fail_msg("%d: %g, not %g", k, got, wanted);
+            assert_true(pixels[k] == (float)(8 >> k)); // nothing before it there
+        }
+        mem_free(pixels);
+    }
+}
+
+static void grey_is_as_its_opacity_says(void **state) {
+    static const float scales[] = {1, 0.5f};
+    for (size_t i = 0; i < COUNT_OF(scales); i++) {
+        setup how = {.extinction = {0.6f, 0.6f, 0.6f}, .scale = scales[i], .ragged = true};
+        float *dyed = render(*state, &how);
+        how.grey = true;
+        float *grey = render(*state, &how);
+        assert_true(grey[4 * CENTRE] < 7);
+        assert_memory_equal(dyed, grey, 4 * WIDTH * HEIGHT * sizeof *grey);
+        mem_free(dyed);
+        mem_free(grey);
+    }
+}
+
+// Without a reader the image has no memory; it is written as soon as somebody wants it, by the same
+// pipeline.
+static void unread_transmittance_costs_nothing(void **state) {
+    pass_world w;
+    setup how = {.extinction = {0.1f, 0.7f, 2.5f}, .scale = 1, .grey = true};
+    layers l = lay(&w, *state, &how);
+    graph_image through = pass_output(l.volume, "transmittance");
+    world_render(&w, WIDTH, HEIGHT, pass_output(l.over, "color"));
+    assert_null(graph_get_image(w.host.graph, through));
+    gpu_test_ok(graph_add_output(w.host.graph, through));
+    gpu_test_ok(graph_compile(w.host.graph, WIDTH, HEIGHT));
+    gpu_test_ok(graph_allocate(w.host.graph, *state));
+    world_frame(&w, WIDTH, HEIGHT, 2);
+    float *pixels = world_read(&w, through);
+    for (int k = 0; k < 3; k++) {
+        assert_true(fabs((double)pixels[4 * CENTRE + k] - exp(-2 * (double)how.extinction[k])) <
+                    1e-3);
+        assert_true(pixels[k] == 1);
+    }
+    mem_free(pixels);
+    world_close(&w);
+}
+
+int main(void) {
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slab_dyes_what_is_behind),
+        cmocka_unit_test(grey_is_as_its_opacity_says),
+        cmocka_unit_test(unread_transmittance_costs_nothing),
+    };
+    return gpu_test_run(tests, COUNT_OF(tests));
+}
