@@ -4,7 +4,8 @@
 
 local fx = effect { name = "cycles", fps = 24, frames = 1 }
 
-local burst = vdb { "data/frame.vdb", loop = "extend" }
+-- Blender draws a voxel from its index on, where OpenVDB has its middle: half of 0.0625 m.
+local burst = vdb { "data/frame.vdb", loop = "extend", offset = {0.03125, 0.03125, 0.03125} }
 
 fx.camera = camera { eye = {4, -12, 3.36}, target = {4, 4, 3.36}, fov = 31.8908, near = 0.1, far = 500 }
 fx.sun    = sun { azimuth = 239.0, elevation = 44.09, strength = 2.5, angle = 1.146 }
