@@ -27,7 +27,7 @@ local scene  = geometry { mesh { "data/ground.obj", scale = 200, color = {0.5, 0
 local ground = shade { from = {scene, lit}, haze = 0.00006 }
 local volume = march { from = {lit, scene}, steps = 160 }
 
-local picture = over { volume = volume.color, edge = volume.edge, source = ground, depth = scene.depth }
+local picture = over { volume, ground, from = {volume, scene} }
 local shown   = final { source = picture, tonemap = "reinhard", exposure_ev = 0.1, saturation = 1.1 }
 
 fx.output = shown.color

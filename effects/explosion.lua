@@ -70,7 +70,7 @@ local solid = shade { from = {scene, lit}, haze = 0.002 }
 
 local volume = march { from = {lit, scene}, steps = steps, resolution = 0.5 }
 
-local picture = over { volume = volume.color, edge = volume.edge, source = solid, depth = scene.depth }
+local picture = over { volume, solid, from = {volume, scene} }
 local glow    = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }
 local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.35, exposure_ev = 0.3, tonemap = "reinhard" }
 

@@ -30,7 +30,7 @@ local lit    = lighting {
 }
 local solid  = shade { from = {scene, lit}, haze = 0.01 } -- the fire lights the ground
 local volume = march { from = {lit, scene}, steps = 96, resolution = 0.5 }
-local picture = over { volume = volume.color, edge = volume.edge, source = solid, depth = scene.depth }
+local picture = over { volume, solid, from = {volume, scene} }
 local bent    = shader { "heat_haze.comp", input = picture, heat = tongue, strength = 0.012 }
 local shown   = final { source = bent, bloom = bloom { bright { bent } }, bloom_intensity = 0.5, tonemap = "reinhard" }
 

@@ -45,7 +45,7 @@ local scene = geometry { mesh { "data/ground.obj" }, mesh { "data/yard.obj" } }
 local solid = shade { from = {scene, lit}, shadow_samples = 4 }
 local volume = march { from = {lit, scene}, steps = 128, resolution = 0.5 }
 
-local picture = over { volume = volume.color, edge = volume.edge, source = solid, depth = scene.depth }
+local picture = over { volume, solid, from = {volume, scene} }
 local glow    = bloom { bright { picture, threshold = 1.0 }, radius = 0.8 }
 local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.22, exposure_ev = 0.2, tonemap = "reinhard", saturation = 1.1 }
 

@@ -54,7 +54,7 @@ local scene  = geometry { mesh { "data/ground.obj" }, mesh { "data/stack.obj" } 
 local solid  = shade { from = {scene, lit}, haze = 0.003 }
 local volume = march { from = {lit, scene}, steps = 160 }
 
-local picture = over { volume = volume.color, edge = volume.edge, source = solid, depth = scene.depth }
+local picture = over { volume, solid, from = {volume, scene} }
 local shown   = final { source = picture, tonemap = "aces" }
 
 fx.output = shown.color

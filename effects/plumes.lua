@@ -64,7 +64,7 @@ local scene  = geometry { mesh { "data/ground.obj" } }
 local solid  = shade { from = {scene, lit}, haze = 0.004 }
 local volume = march { from = {lit, scene}, steps = 128 }
 
-local picture = over { volume = volume.color, edge = volume.edge, source = solid, depth = scene.depth }
+local picture = over { volume, solid, from = {volume, scene} }
 local glow    = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }
 local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.3, exposure_ev = 0.3, tonemap = "aces" }
 

@@ -53,7 +53,7 @@ local volume = march {
   resolution = 0.5, -- a quarter of the rays; `over` scales up along the edges of the scene
 }
 
-local picture = over { volume, solid, depth = scene.depth, edge = volume.edge }
+local picture = over { volume, solid, from = {volume, scene} }
 local halo    = bloom { bright { picture, threshold = 1 }, radius = 0.75 }
 fx.output = final { picture, halo, bloom_intensity = 0.5, exposure_ev = 0.5, tonemap = "reinhard" }.color
 return fx

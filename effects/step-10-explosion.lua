@@ -52,7 +52,7 @@ local volume = march {
   resolution = 0.5, -- a quarter of the rays; `over` scales up along the edges of the scene
 }
 
-local picture = over { volume, solid, depth = scene.depth, edge = volume.edge }
+local picture = over { volume, solid, from = {volume, scene} }
 local blast   = shader {
   "step-10-blast.comp", picture, scene.depth,
   position = {0, 0, 0.5},

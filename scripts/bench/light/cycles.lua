@@ -22,7 +22,7 @@ local lit = lighting {
 local scene   = geometry { mesh { "data/plane.obj", position = {4, 4, 0.16} } }
 local solid   = shade { from = {scene, lit} }
 local volume  = march { from = {lit, scene}, steps = 256 }
-local picture = over { volume = volume.color, edge = volume.edge, source = solid, depth = scene.depth }
+local picture = over { volume, solid, from = {volume, scene} }
 local shown   = final { source = picture, tonemap = "agx" }
 
 fx.output = shown.color
