@@ -28,18 +28,12 @@ const scene_value *scene_light_values(scene_light_kind kind, size_t *count) {
     return values;
 }
 
-// What a Lua function or a product of parameters makes of a number is kept within what light can
-// be.
-static float limit(float value, float low, float high) {
-    return isfinite(value) ? clampf(value, low, high) : low;
-}
-
-static const float power_max = 1e12f, place_max = 1e9f;
+static const float place_max = 1e9f;
 
 static bool evaluate_place(const field *node, const field_context *context, vec3 out) {
     float value[4];
     if (!scene_evaluate(node, context, value)) return false;
-    for (int i = 0; i < 3; i++) out[i] = limit(value[i], -place_max, place_max);
+    for (int i = 0; i < 3; i++) out[i] = scene_limit(value[i], -place_max, place_max);
     return true;
 }
 
@@ -50,7 +44,7 @@ static bool evaluate_color(const field *color, const field *factor, float scale,
     if (!scene_evaluate(color, context, value) ||
         !scene_evaluate_scalar(factor, context, &strength))
         return false;
-    for (int i = 0; i < 3; i++) out->color.v[i] = limit(value[i] * strength * scale, 0, power_max);
+    for (int i = 0; i < 3; i++) out->color.v[i] = scene_limit_light(value[i] * strength * scale);
     return true;
 }
 
@@ -62,7 +56,7 @@ static bool fill_sun(const scene_sun *sun, const field_context *context, struct 
         !evaluate_color(sun->color, sun->strength, 1, context, out))
         return false;
     scene_direction(azimuth, elevation, out->position.v);
-    out->position.v[3] = sinf(glm_rad(limit(angle, 0, 180)) / 2);
+    out->position.v[3] = sinf(glm_rad(scene_limit(angle, 0, 180)) / 2);
     out->color.v[3] = LIGHT_SUN;
     return true;
 }
@@ -79,10 +73,10 @@ static bool fill_spot(const scene_light *light, const field_context *context,
     glm_vec3_sub(target, out->position.v, axis);
     if (!(glm_vec3_norm(axis) > 1e-6f)) glm_vec3_copy((vec3){0, 0, -1}, axis);
     glm_vec3_normalize(axis);
-    float outer = cosf(glm_rad(limit(angle, 0.1f, 360)) / 2);
+    float outer = cosf(glm_rad(scene_limit(angle, 0.1f, 360)) / 2);
     glm_vec3_copy(axis, out->axis.v);
     out->axis.v[3] = outer;
-    out->spread.v[0] = mixf(outer, 1, limit(softness, 0, 1));
+    out->spread.v[0] = mixf(outer, 1, scene_limit(softness, 0, 1));
     return true;
 }
 
@@ -94,7 +88,7 @@ static bool fill_light(const scene_light *light, const field_context *context,
         !scene_evaluate_scalar(light->radius, context, &radius) ||
         !evaluate_color(light->color, light->power, 1 / sphere, context, out))
         return false;
-    out->position.v[3] = limit(radius, 0, place_max);
+    out->position.v[3] = scene_limit(radius, 0, place_max);
     out->color.v[3] = (float)light->kind;
     return light->kind != SCENE_SPOT || fill_spot(light, context, out);
 }

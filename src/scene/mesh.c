@@ -87,8 +87,9 @@ bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, 
 
 bool scene_mesh_place(const scene_mesh *mesh, const field_context *context, mat4 transform,
                       float tint[4]) {
-    if (scene_mesh_transform(mesh, context, transform) &&
-        scene_evaluate(mesh->color, context, tint))
-        return true;
-    return err_prefix("%s: ", mesh->name);
+    if (!scene_mesh_transform(mesh, context, transform) ||
+        !scene_evaluate(mesh->color, context, tint))
+        return err_prefix("%s: ", mesh->name);
+    for (int i = 0; i < 3; i++) tint[i] = scene_limit_light(tint[i]);
+    return true;
 }

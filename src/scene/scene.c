@@ -105,8 +105,20 @@ bool scene_evaluate_scalar(const field *node, const field_context *context, floa
     return true;
 }
 
+float scene_limit(float value, float low, float high) {
+    return isnan(value) ? low : clampf(value, low, high);
+}
+
+float scene_limit_light(float value) {
+    return scene_limit(value, 0, 1e12f);
+}
+
+static float radians(float degrees) {
+    return isfinite(degrees) ? glm_rad(fmodf(degrees, 360)) : 0;
+}
+
 void scene_direction(float azimuth, float elevation, vec3 out) {
-    float a = glm_rad(azimuth), e = glm_rad(elevation);
+    float a = radians(azimuth), e = radians(elevation);
     out[0] = cosf(e) * cosf(a);
     out[1] = cosf(e) * sinf(a);
     out[2] = sinf(e);
@@ -178,9 +190,9 @@ static bool fill_sun(const scene_sun *sun, const field_context *context, struct 
     vec3 towards;
     scene_direction(azimuth, elevation, towards);
     out->sun_direction = (shared_vec4){{towards[0], towards[1], towards[2], 0}};
-    float radiance = strength / GLM_PIf;
-    out->sun_radiance =
-        (shared_vec4){{color[0] * radiance, color[1] * radiance, color[2] * radiance, 0}};
+    out->sun_radiance = (shared_vec4){0};
+    for (int i = 0; i < 3; i++)
+        out->sun_radiance.v[i] = scene_limit_light(color[i] * strength / GLM_PIf);
     return true;
 }
 
@@ -193,13 +205,13 @@ static bool fill_sky(const scene_sky *sky, const field_context *context, struct 
         return false;
     if (sky->image) {
         sky_image_means(sky->image, zenith, horizon);
-        strength = strength > 0 ? strength : 0;
+        strength = scene_limit_light(strength);
         out->sky_zenith.v[3] = strength;
-        out->sky_horizon.v[3] = glm_rad(rotation);
+        out->sky_horizon.v[3] = radians(rotation);
     }
     for (int i = 0; i < 3; i++) {
-        out->sky_zenith.v[i] = zenith[i] * strength;
-        out->sky_horizon.v[i] = horizon[i] * strength;
+        out->sky_zenith.v[i] = scene_limit_light(zenith[i] * strength);
+        out->sky_horizon.v[i] = scene_limit_light(horizon[i] * strength);
     }
     return true;
 }

@@ -12,7 +12,7 @@
 #include <string.h>
 
 enum { LEVELS_MAX = 14 };
-static const float half_max = 65504;
+static const float half_max = 65504, half_min = 6e-8f;
 
 typedef struct sky_level {
     uint32_t width, height;
@@ -82,7 +82,7 @@ static bool check_values(const char *path, const panorama *image) {
                            "accepted",
                            path, (double)*value, i / 3 % image->width, i / 3 / image->width);
         if (*value > half_max) *value = half_max;
-        light = light || *value > 0;
+        light = light || *value >= half_min;
     }
     return light || err_set("%s: the panorama is all black", path);
 }

@@ -231,6 +231,23 @@ static void sky_colours_are_scaled_by_its_strength(void **state) {
     near3(s->frame.sky_horizon.v, 1.2, 1, 0.6);
 }
 
+static void sun_and_sky_keep_out_what_is_no_light(void **state) {
+    stage *s = *state;
+    s->scene.sun.azimuth = number(s, NAN);
+    s->scene.sun.elevation = number(s, INFINITY);
+    s->scene.sun.strength = number(s, INFINITY);
+    s->scene.sky.zenith = triple(s, 1e30f, 1, 1);
+    s->scene.sky.strength = number(s, 1e30f);
+    s->scene.sky.horizon = triple(s, -1, 0, NAN);
+    fill(s, 1);
+    near3(s->frame.sun_direction.v, 1, 0, 0);
+    for (int i = 0; i < 3; i++) {
+        assert_true(isfinite(s->frame.sun_radiance.v[i]) && s->frame.sun_radiance.v[i] > 1e9f);
+        assert_true(isfinite(s->frame.sky_zenith.v[i]) && s->frame.sky_zenith.v[i] > 1e9f);
+    }
+    near3(s->frame.sky_horizon.v, 0, 0, 0);
+}
+
 // ---- values that move -------------------------------------------------------------------------
 
 static bool fail_call(void *user, int function, double time, float out[4]) {
@@ -324,6 +341,7 @@ int main(void) {
         STAGE_TEST(sun_direction_follows_azimuth_and_elevation),
         STAGE_TEST(sun_radiance_is_irradiance_over_pi),
         STAGE_TEST(sky_colours_are_scaled_by_its_strength),
+        STAGE_TEST(sun_and_sky_keep_out_what_is_no_light),
         STAGE_TEST(yaw_may_be_a_curve),
         STAGE_TEST(failing_function_fails_the_frame),
         STAGE_TEST(mesh_is_scaled_then_turned_then_moved),
