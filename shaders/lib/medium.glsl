@@ -26,6 +26,14 @@ uniform vec3 blackbody_tint;       //= {1, 1, 1} [0, 100] : factor of a black bo
 #include "lib/blackbody.glsl"
 #include "lib/phase.glsl"
 
+const float MEDIUM_MOST = 1e12; // of what a field may say: products of a few stay finite
+
+// The field, where it is a number; below 0 there is nothing.
+float medium_density(vec3 p) {
+    float d = field_density(p);
+    return d > 0.0 ? min(d, MEDIUM_MOST) : 0.0;
+}
+
 // Extinction of density 1, by colour.
 vec3 medium_extinction() {
     return extinction * (1.0 - (1.0 - albedo) * sqrt(absorption_color));
@@ -53,7 +61,7 @@ vec3 medium_emission(vec3 p, float d) {
     float intensity = field_blackbody_intensity(p);
     if (intensity > 0.0) given += intensity * blackbody_tint * blackbody_radiance(field_temperature(p));
 #endif
-    return given;
+    return mix(vec3(0.0), min(given, MEDIUM_MOST), greaterThan(given, vec3(0.0))); // of no number: 0
 }
 
 // Phase function (1/sr) of the cosine between the ways before and after; `spread` in 0..1 is a

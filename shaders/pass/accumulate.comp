@@ -22,7 +22,14 @@ uniform float depth_tolerance;     //= 0.1 [0.001, 1] : relative difference in d
 writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity; a march of coloured extinction has a second, `transmittance`, which takes an `accumulate` of its own, or goes to `over` as it is
 writeonly uniform image2D state;   //= output rgba16f : depth of the volume and of the scene (m; 0: none), frames gathered
 
-const float FAR = 6e4; // metres; what a half-float holds
+const float MOST = 6e4; // what a half-float holds
+const float FAR = MOST; // metres
+
+// What a half-float cannot hold, or is no number, would spread through the history.
+vec4 look(ivec2 texel) {
+    vec4 c = texelFetch(source, texel, 0);
+    return mix(vec4(0.0), min(c, MOST), greaterThan(c, vec4(0.0)));
+}
 
 // YCoCg and opacity.
 vec4 encode(vec4 c) {
@@ -44,7 +51,7 @@ surroundings look_around(ivec2 pixel, ivec2 size) {
     float nearest = FAR;
     for (int i = 0; i < 9; i++) {
         ivec2 texel = clamp(pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), size - 1);
-        vec4 c = encode(texelFetch(source, texel, 0));
+        vec4 c = encode(look(texel));
         sum += c;
         squares += c * c;
         blurred += c * float((2 - abs(i % 3 - 1)) * (2 - abs(i / 3 - 1))) / 16.0;
@@ -111,7 +118,7 @@ void main() {
     if (any(greaterThanEqual(pixel, size))) return;
     vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
     vec3 along = frame_ray(uv);
-    vec4 now = texelFetch(source, pixel, 0);
+    vec4 now = look(pixel);
     surroundings here = look_around(pixel, size);
     float volume = here.nearest / length(along), scene = 0.0, scene_then = 0.0;
 #if HAS_DEPTH

@@ -62,7 +62,7 @@ float depth_along(vec3 p, vec3 direction, float far, int count) {
     for (int i = 0; i < count; i++) {
         float part = float(i + 1) / float(count);
         float to = far * part * part;
-        sum += field_density(p + 0.5 * (from + to) * direction) * (to - from);
+        sum += medium_density(p + 0.5 * (from + to) * direction) * (to - from);
         from = to;
     }
     count_samples(count);
@@ -151,7 +151,7 @@ struct node { // the medium at a point of the ray
 };
 
 node look(vec3 p) {
-    node n = node(field_density(p), vec3(0.0), vec3(0.0));
+    node n = node(medium_density(p), vec3(0.0), vec3(0.0));
     if (n.density > 0.0) {
         n.own = medium_emission(p, n.density);
         n.scattering = n.density * medium_scattering(p);
@@ -292,7 +292,7 @@ ray_state march_paper(vec3 origin, vec3 direction, vec2 range, float last, float
         float at = from + offset * min(length, range.y - from);
         if (at > last) break;
         vec3 p = origin + at * direction;
-        float d = field_density(p);
+        float d = medium_density(p);
         taken++;
         if (d <= 0.0) continue;
         add_paper(ray, p, d, at);

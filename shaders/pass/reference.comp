@@ -203,7 +203,7 @@ void advance(inout path_state s, vec3 highest, inout int taken) {
     bool scatters = false;
     if (majorant_go(s.walk, -log(1.0 - r.x), bound)) {
         vec3 p = s.walk.origin + s.walk.at * s.walk.direction;
-        float d = field_density(p);
+        float d = medium_density(p);
         taken++;
         v = path_vertex(p, vec3(0.0), s.walk.direction);
         if (d > 0.0 && s.to_light)

@@ -20,7 +20,7 @@ void main() {
         vec3 part = vec3(i % side, i / side % side, i / (side * side));
         path_random random = path_random(uvec3(cell), uint(executed * 64 + i));
         vec3 p = box_min + (vec3(cell) - 0.5 + 2.0 * (part + path_next(random).xyz) / float(side)) * size;
-        float d = field_density(p);
+        float d = medium_density(p);
         if (d <= 0.0) continue;
         found = max(found, d * highest);
         if (any(greaterThan(medium_emission(p, d), vec3(0.0)))) found = max(found, glowing);
