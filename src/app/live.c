@@ -21,7 +21,7 @@ static const double SETTLE = 0.7;  // seconds after an input in which widgets ma
 enum { SETTLE_FRAMES = 4 };        // and frames, however long they take: menus close, values follow
 static const double STEADY = 0.12; // seconds that a size must last before pictures are made for it
 static const double TICK = 1 / 60.0, BLINK = 0.25, LONG = 600;
-enum { MAX_PICTURE = 16384 };
+enum { MAX_PICTURE = 16384, MOST_SAMPLES = 65536 };
 
 typedef struct loop {
     window *w;
@@ -135,6 +135,12 @@ static void resize(live *l, loop *p, double now) {
         live_break(l, roil_error());
 }
 
+// Whether the next picture of the same frame has more samples of a reference; not without end.
+static bool gathers(const live *l) {
+    uint32_t samples = roil_samples(l->effect);
+    return samples > 0 && samples < MOST_SAMPLES;
+}
+
 static void draw_effect(live *l, loop *p) {
     double start = clock_seconds(), frame = l->time.frame;
     bool back = p->drawn && frame < p->frame; // what passes remember is of later times: begin anew
@@ -144,7 +150,7 @@ static void draw_effect(live *l, loop *p) {
     }
     double end = clock_seconds();
     log_write(LOG_DEBUG, "live: drew frame %g", frame);
-    l->dirty = false;
+    l->dirty = gathers(l);
     p->drawn = true;
     p->frame = frame;
     performance_add(l->performance, l->effect, end - start, start - p->drawn_at);
