@@ -9,7 +9,7 @@
 #include "shared.h"
 #include "lib/box.glsl"
 
-#define SHADOW_MAP_NONE 0     // nothing stands between: fire
+#define SHADOW_MAP_NONE 0     // nothing stands between: fire, whose colour is what gets out of the smoke
 #define SHADOW_MAP_PARALLEL 1 // rays of the sun, perpendicular to the picture
 #define SHADOW_MAP_FRUSTUM 2  // rays from a point through a window
 #define SHADOW_MAP_SPHERE 3   // rays from a point into all directions, by the octahedral map

@@ -93,7 +93,9 @@ obstacle before_light(int index, light l, light_ray ray, vec3 p) {
     if (bvh_occluded(p, ray.direction, 1e-3, far)) return obstacle(vec3(0.0), 0.0);
 #endif
     far = min(far, box_exit(p, ray.direction, box_min, box_max));
-    float density = depth_along(p, ray.direction, min(far, shadow_distance), shadow_steps);
+    // What the smoke takes of the light of its fire is off that light's colour already.
+    bool taken = l.kind == LIGHT_FIRE;
+    float density = taken ? 0.0 : depth_along(p, ray.direction, min(far, shadow_distance), shadow_steps);
     return obstacle(medium_extinction() * density, shadow_steps > 0 ? 1.0 : 0.0);
 }
 #endif

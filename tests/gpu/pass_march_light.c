@@ -229,6 +229,25 @@ static void mesh_shadows_hide_the_sun(void **state) {
     }
 }
 
+// The lights that stand for the fire have lost what the smoke takes on the way out: a march takes
+// nothing more of it, whether others are shadowed by the cache or by itself.
+static void smoke_takes_nothing_twice_of_its_fire(void **state) {
+    float c[2][4];
+    for (int i = 0; i < 2; i++) {
+        pass_world w;
+        pass *p = coloured_block(&w, *state, 1);
+        pass *lit = world_add(&w, "lighting", NULL, "lighting");
+        gpu_test_ok(pass_set_field(lit, "density", block(&w, 1, 1)));
+        gpu_test_ok(pass_set_field(lit, "emission", triple(&w, 3, 2, 1)));
+        gpu_test_ok(pass_declare(lit));
+        gpu_test_ok(pass_set_image(p, "lights", pass_output(lit, "lights")));
+        if (i) gpu_test_ok(pass_set_image(p, "shadow", pass_output(lit, "shadow")));
+        render_middle(&w, p, c[i]);
+        assert_true(c[i][2] > 0.01f);
+    }
+    for (int k = 0; k < 3; k++) near(c[0][k], c[1][k], 0.01);
+}
+
 // ---- functions --------------------------------------------------------------------------------
 
 typedef float texel[4];
@@ -307,6 +326,7 @@ int main(void) {
         cmocka_unit_test(octaves_are_a_sum_of_dimmer_and_farther_light),
         cmocka_unit_test(powder_darkens_what_is_thin),
         cmocka_unit_test(mesh_shadows_hide_the_sun),
+        cmocka_unit_test(smoke_takes_nothing_twice_of_its_fire),
         cmocka_unit_test(phase_functions_integrate_to_one),
         cmocka_unit_test(blended_lobes_integrate_to_one_around_their_mean),
         cmocka_unit_test(black_body_has_the_colour_of_palettes),
