@@ -67,6 +67,14 @@ class Keys(Case):
         self.assertEqual(same.returncode, 0, same.stdout)
 
 
+class Reference(Case):
+    def test_samples_are_gathered_while_time_stands(self):
+        live = self.live(effect=PUFF.replace("march {", "reference {").replace("steps = steps, shadow_steps = 1", "samples = 1"))
+        for _ in range(4):
+            live.expect(r"live: drew frame 1\b", live.mark())
+        live.quit()
+
+
 class Camera(Case):
     def test_orbit_zoom_and_back(self):
         live = self.live()
