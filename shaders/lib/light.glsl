@@ -65,7 +65,8 @@ light_ray light_at(light l, vec3 p) {
     vec3 irradiance = l.color / max(distance * distance, least * least);
     if (l.kind == LIGHT_SPOT) {
         float cosine = dot(-direction, l.axis);
-        irradiance *= smoothstep(l.outer, max(l.inner, l.outer + 1e-4), cosine);
+        float least = clamp(1e-3 * (1.0 - l.outer), 1.2e-7, 1e-4); // an edge, however narrow the cone
+        irradiance *= smoothstep(l.outer, max(l.inner, l.outer + least), cosine);
     }
     if (l.kind == LIGHT_FIRE) irradiance *= max(1.0 - dot(direction, l.axis), 0.0);
     return light_ray(direction, distance, irradiance);

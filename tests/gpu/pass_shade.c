@@ -105,38 +105,44 @@ static void sun_and_sky_add_up(void **state) {
     }
 }
 
-static void lamps_fall_off_and_have_cones(void **state) {
-    for (int spot = 0; spot < 2; spot++) {
-        pass_world w;
-        world_open(&w, *state);
-        add_wall(&w);
-        const scene_light light = {
-            .kind = spot ? SCENE_SPOT : SCENE_POINT,
-            .position = triple(&w, 0.5f, -1.5f, 0),
-            .color = triple(&w, 1, 1, 1),
-            .power = number(&w, 4 * GLM_PIf * GLM_PIf), // pi W/sr
-            .radius = number(&w, 0),
-            .target = triple(&w, 0.5f, 0, 0),
-            .angle = number(&w, 60),
-            .softness = number(&w, 0),
-        };
-        w.scene.lights = &light;
-        w.scene.light_count = 1;
-        float *c = shade(&w, NULL, 0);
-        size_t outside = 0;
-        for (size_t i = 0; i < PIXELS; i++) {
-            double x, z;
-            wall_point(&w, i, &x, &z);
-            double off = (x - 0.5) * (x - 0.5) + z * z, squared = off + 1.5 * 1.5;
-            double want = lit(&w, 0, 1.5 / sqrt(squared) / squared);
-            if (spot && fabs(sqrt(off) / 1.5 - tan(GLM_PI / 6)) < 0.02) continue; // on its edge
-            if (spot && sqrt(off) > 1.5 * tan(GLM_PI / 6)) want = 0, outside++;
-            expect_near(c[4 * i], want, 0.002 * want + 1e-6, spot ? "spot" : "point", i);
-        }
-        assert_true(spot ? outside > PIXELS / 4 && outside < PIXELS : outside == 0);
-        mem_free(c);
-        world_close(&w);
+// A lamp so far from the wall, with a cone of so many degrees; 0: it shines into all directions.
+static void light_wall_by(gpu *device, float away, float angle) {
+    pass_world w;
+    world_open(&w, device);
+    add_wall(&w);
+    const scene_light light = {
+        .kind = angle > 0 ? SCENE_SPOT : SCENE_POINT,
+        .position = triple(&w, 0.5f, -away, 0),
+        .color = triple(&w, 1, 1, 1),
+        .power = number(&w, away * away * 4 * GLM_PIf * GLM_PIf), // pi W/sr at a metre
+        .radius = number(&w, 0),
+        .target = triple(&w, 0.5f, 0, 0),
+        .angle = number(&w, angle),
+        .softness = number(&w, 0),
+    };
+    w.scene.lights = &light;
+    w.scene.light_count = 1;
+    float *c = shade(&w, NULL, 0);
+    double cone = (double)away * tan((double)angle / 2 * GLM_PI / 180);
+    size_t outside = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        double x, z, d = (double)away;
+        wall_point(&w, i, &x, &z);
+        double off = sqrt((x - 0.5) * (x - 0.5) + z * z), squared = off * off + d * d;
+        double want = lit(&w, 0, d * d * d / sqrt(squared) / squared);
+        if (angle > 0 && fabs(off - cone) < 0.03) continue; // on its edge
+        if (angle > 0 && off > cone) want = 0, outside++;
+        expect_near(c[4 * i], want, 0.002 * want + 1e-6, angle > 0 ? "spot" : "point", i);
     }
+    assert_true(angle > 0 ? outside > PIXELS / 4 && outside < PIXELS : outside == 0);
+    mem_free(c);
+    world_close(&w);
+}
+
+static void lamps_fall_off_and_have_cones(void **state) {
+    light_wall_by(*state, 1.5f, 0);
+    light_wall_by(*state, 1.5f, 60);
+    light_wall_by(*state, 100, 0.8f);
 }
 
 static void haze_fades_to_the_horizon(void **state) {
