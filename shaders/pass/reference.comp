@@ -269,14 +269,15 @@ void main() {
     if (!inside) return;
     if (part > 0) total += imageLoad(sum, pixel);
     else if (executed > 0) total += texelFetch(sum_before, pixel, 0);
+    vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
     float stop = 1e9;
 #if HAS_DEPTH
-    stop = texelFetch(depth, ivec2((vec2(pixel) + 0.5) / vec2(size) * vec2(textureSize(depth, 0))), 0).r;
+    stop = texelFetch(depth, ivec2(uv * vec2(textureSize(depth, 0))), 0).r;
 #endif
     imageStore(sum, pixel, total);
     vec4 mean = total / float(before + paths);
     imageStore(color, pixel, mean);
     imageStore(transmittance, pixel, vec4(vec3(1.0 - mean.a), 1.0));
     imageStore(edge, pixel, vec4(stop));
-    imageStore(reach, pixel, vec4(firsts.y > 0.0 ? firsts.x / firsts.y : stop));
+    imageStore(reach, pixel, vec4(firsts.y > 0.0 ? firsts.x / firsts.y : stop * length(frame_ray(uv))));
 }

@@ -307,6 +307,23 @@ static void march_without_approximations_shows_the_same(void **state) {
     for (int c = 0; c < 4; c++) near(traced, c, marched.mean[c]);
 }
 
+static void reach_beside_the_medium_is_that_of_the_scene(void **state) {
+    pass_world w;
+    pass *p = begin(&w, *state, thick);
+    w.scene.camera.fov = number(&w, 60);
+    pass *wall = world_add(&w, NULL, "wall.comp", "wall");
+    gpu_test_ok(pass_set_uniform(wall, "distance_to", number(&w, 20)));
+    gpu_test_ok(pass_declare(wall));
+    gpu_test_ok(pass_set_image(p, "depth", pass_output(wall, "depth")) && pass_declare(p));
+    world_render(&w, SIZE, SIZE, pass_output(p, "reach"));
+    float *reach = world_read_depth(&w, pass_output(p, "reach"));
+    const float corner = 20 * sqrtf(1 + 2 * powf(w.frame.lens.v[1] * (SIZE - 1) / SIZE, 2));
+    assert_true(fabsf(reach[0] - corner) < 0.01f);
+    assert_true(reach[SIZE / 2 * SIZE + SIZE / 2] < 6); // in the medium
+    mem_free(reach);
+    world_close(&w);
+}
+
 // ---- gathering
 // ------------------------------------------------------------------------------------
 
@@ -375,6 +392,7 @@ int main(void) {
         cmocka_unit_test(gradient_of_the_sky_lights_a_wall),
         cmocka_unit_test(glowing_sphere_lights_a_wall_as_a_point_does),
         cmocka_unit_test(march_without_approximations_shows_the_same),
+        cmocka_unit_test(reach_beside_the_medium_is_that_of_the_scene),
         cmocka_unit_test(noise_falls_with_the_root_of_the_samples),
         cmocka_unit_test(picture_begins_anew_when_something_changes),
     };
