@@ -19,7 +19,7 @@ uniform float frames;              //= 8 [1, 64] : how many frames are averaged,
 uniform float response;            //= 1 [0, 1] : how much of a change of the blurred picture is taken over at once; 1: all, 0: no more than of the rest
 uniform float spread;              //= 1 [0, 10] : standard deviations by which the history may differ from what is around the pixel
 uniform float depth_tolerance;     //= 0.1 [0.001, 1] : relative difference in depth that counts as something else
-writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity; a march of coloured extinction has a second, `transmittance`, which takes an `accumulate` of its own, or goes to `over` as it is
+writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity. The `transmittance` of a march, which counts where the extinction has a colour, can take an `accumulate` of its own
 writeonly uniform image2D state;   //= output rgba16f : depth of the volume and of the scene (m; 0: none), frames gathered
 
 const float MOST = 6e4; // what a half-float holds
