@@ -110,7 +110,7 @@ static void light_wall_by(gpu *device, float away, float angle) {
     pass_world w;
     world_open(&w, device);
     add_wall(&w);
-    const scene_light light = {
+    scene_light light = {
         .kind = angle > 0 ? SCENE_SPOT : SCENE_POINT,
         .position = triple(&w, 0.5f, -away, 0),
         .color = triple(&w, 1, 1, 1),
@@ -230,11 +230,11 @@ static void only_what_stands_before_a_light_hides_it(void **state) {
         world_open(&w, *state);
         add_wall(&w);
         add_crate(&w, 0.05f, 0, inside ? -1.5f : -4, 0);
-        const scene_light light = {.kind = SCENE_POINT,
-                                   .position = triple(&w, 0, -1.5f, 0),
-                                   .color = triple(&w, 1, 1, 1),
-                                   .power = number(&w, 4 * GLM_PIf * GLM_PIf),
-                                   .radius = number(&w, 0.1f)};
+        scene_light light = {.kind = SCENE_POINT,
+                             .position = triple(&w, 0, -1.5f, 0),
+                             .color = triple(&w, 1, 1, 1),
+                             .power = number(&w, 4 * GLM_PIf * GLM_PIf),
+                             .radius = number(&w, 0.1f)};
         w.scene.lights = &light;
         w.scene.light_count = 1;
         float *c = shade(&w, NULL, 0);
