@@ -6,6 +6,7 @@
 #include "pass/builtin.h"
 #include "pass/pass_impl.h"
 #include "shared.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,9 +16,7 @@ enum {
     SHADOW_PARTS = 8,      // of a ray, in lighting/shadow.glsl
     WAYS_X = 8,            // directions side by side in the grid WAYS, in lighting/sweep.glsl
     WAYS_Y = 6,
-    MOST_LEVELS = 3,
-    LEAST_HASTENED = 16,
-    COARSEST = 8,         // voxels across, of the levels of the grids
+    LEVELS = 2,           // of the grids
     LOOKS = 64,           // into each direction, in lighting/around.glsl
     GATHER_THREADS = 512, // for a light, in lighting/fire.glsl
 };
@@ -33,14 +32,14 @@ typedef enum lighting_stage {
     STAGE_RESTRICT,
     STAGE_PROLONG,
     STAGE_REDUCE,
-    STAGE_SWEEP, // of the finest level; the others have theirs, as many threads as are at work
-    STAGES = STAGE_SWEEP + MOST_LEVELS
+    STAGE_SWEEP, // of each level, as many threads as are at work there
+    STAGES = STAGE_SWEEP + LEVELS
 } lighting_stage;
 
-static const char *const stage_defines[STAGES] = {
-    "STAGE_LIGHTS", "STAGE_FIRE",   "STAGE_GATHER",   "STAGE_SHADOW",  "STAGE_MEDIUM",
-    "STAGE_FIRST",  "STAGE_AROUND", "STAGE_RESTRICT", "STAGE_PROLONG", "STAGE_REDUCE",
-    "STAGE_SWEEP",  "STAGE_SWEEP",  "STAGE_SWEEP"};
+static const char *const stage_defines[STAGES] = {"STAGE_LIGHTS", "STAGE_FIRE",     "STAGE_GATHER",
+                                                  "STAGE_SHADOW", "STAGE_MEDIUM",   "STAGE_FIRST",
+                                                  "STAGE_AROUND", "STAGE_RESTRICT", "STAGE_PROLONG",
+                                                  "STAGE_REDUCE", "STAGE_SWEEP",    "STAGE_SWEEP"};
 
 // What one stage leaves for others, besides the outputs: the shader writes NAME_kept and reads
 // NAME_made.
@@ -58,13 +57,13 @@ typedef enum lighting_grid {
 
 static const struct {
     const char *name, *kept, *made, *fine, *coarse; // and as the shader names it
-    bool levels;                                    // each half as large
+    bool levels;                                    // it has a coarser one, half as large
 } grids[GRIDS] = {
     {"medium", "medium_kept", "medium_made", "medium_fine", NULL, true},
     {"scattering", "scattering_kept", "scattering_made", "scattering_fine", NULL, true},
-    {"first", "first_kept", "first_made", "first_fine", "first_coarse", true},
-    {"source", "source_kept", "source_made", NULL, "source_coarse", true},
-    {"last", "last_kept", "last_made", NULL, NULL, true},
+    {"first", "first_kept", "first_made", NULL, "first_coarse", true},
+    {"source", "source_kept", "source_made", "source_fine", "source_coarse", true},
+    {"last", "last_kept", "last_made", "last_fine", NULL, true},
     {"ways", "ways_kept", "ways_made", NULL, NULL, false},
     {"around", "around_kept", "around_made", NULL, NULL, false},
     {"fire", "fire_kept", "fire_made", NULL, NULL, false},
@@ -73,7 +72,6 @@ static const struct {
 typedef struct lighting_state {
     uint32_t declared; // lights of the scene, its sun among them
     uint32_t shadow_size, glow_size, fire_count;
-    uint32_t levels; // of the grids
     shader_binary binary[STAGES];
     gpu_pipeline *pipeline[STAGES];
     unsigned char *block[STAGES];
@@ -128,7 +126,7 @@ static bool add_grids(pass *p) {
                 .width = sizes[i][0],
                 .height = sizes[i][1],
                 .depth = sizes[i][2],
-                .mips = grids[i].levels ? s->levels : 1,
+                .mips = grids[i].levels ? LEVELS : 1,
             });
         if (!s->grids[i].id) return false;
     }
@@ -201,8 +199,6 @@ bool lighting_declare(pass *p) {
     s->shadow_size = number_of(p, "shadow_resolution");
     s->glow_size = number_of(p, "glow_resolution");
     s->fire_count = number_of(p, "fire_lights");
-    s->levels = 1;
-    while (s->glow_size >> s->levels >= COARSEST) s->levels++;
     return pass_density_box(p, &box) && add_images(p) && add_parts(p);
 }
 
@@ -223,8 +219,7 @@ static bool compile(pass *p, lighting_stage stage, shader_binary *out) {
 }
 
 static bool is_used(const lighting_state *s, lighting_stage stage) {
-    if (stage == STAGE_FIRE || stage == STAGE_GATHER) return s->fire_count > 0;
-    return stage < STAGE_SWEEP || stage < STAGE_SWEEP + s->levels;
+    return s->fire_count > 0 || (stage != STAGE_FIRE && stage != STAGE_GATHER);
 }
 
 bool lighting_check(pass *p) {
@@ -286,7 +281,7 @@ static void add_slots(const pass *p, lighting_grid grid, uint32_t level, pass_ov
     out[(*count)++] = slot(p, grids[grid].made, image, level);
     if (grids[grid].fine && level > 0)
         out[(*count)++] = slot(p, grids[grid].fine, image, level - 1);
-    if (grids[grid].coarse && level + 1 < s->levels)
+    if (grids[grid].coarse && level + 1 < LEVELS)
         out[(*count)++] = slot(p, grids[grid].coarse, image, level + 1);
 }
 
@@ -340,15 +335,13 @@ static bool record_shadow(pass *p) {
     return dispatch(p, STAGE_SHADOW, 0, n, n, SHADOW_PARTS * s->declared);
 }
 
-// On the coarsest level sweeps are hastened (see lighting/sweep.glsl), which takes some to pay.
+// On the coarser level sweeps are hastened (see lighting/sweep.glsl).
 static bool sweep(pass *p, uint32_t level, uint32_t times) {
     lighting_state *s = p->state;
     uint32_t n = s->glow_size >> level;
     lighting_stage stage = (lighting_stage)(STAGE_SWEEP + level);
-    bool hasten = level > 0 && level + 1 == s->levels;
-    if (hasten && times < LEAST_HASTENED) times = LEAST_HASTENED;
     for (uint32_t i = 0; i < times; i++) {
-        int32_t hastened = hasten ? (int32_t)i : -1;
+        int32_t hastened = level > 0 ? (int32_t)i : -1;
         pass_write_member(&s->binary[STAGE_REDUCE], s->block[STAGE_REDUCE], "hastened", &hastened,
                           sizeof hastened);
         if (!dispatch(p, stage, level, WAYS_X * WAYS_Y * n * n, 1, 1) ||
@@ -358,20 +351,28 @@ static bool sweep(pass *p, uint32_t level, uint32_t times) {
     return true;
 }
 
-// From the coarsest level to the finest: a sweep begins with what the one before has left to be
-// scattered, the first of all with what comes straight from the lights.
-static bool record_glow(pass *p) {
+// As many as Chebyshev's combination takes to leave a thirtieth of what is wrong, if at most the
+// part `most` of the light is scattered (as in lighting/sweep.glsl).
+static uint32_t coarse_sweeps(const pass *p) {
     const lighting_state *s = p->state;
+    float albedo[3] = {0}, most = 0;
+    shader_member member;
+    if (pass_find_member(&s->binary[STAGE_REDUCE], "albedo", &member))
+        memcpy(albedo, s->block[STAGE_REDUCE] + member.offset, sizeof albedo);
+    for (int i = 0; i < 3; i++) most = fmaxf(most, fminf(albedo[i], 0.98f));
+    return (uint32_t)fmaxf(1.7f / sqrtf(1 - most) + 0.5f, 3);
+}
+
+// After each sweep the coarser level finds what is left to do (lighting/level.glsl).
+static bool record_glow(pass *p) {
     uint32_t sweeps = (uint32_t)pass_evaluate(p, "sweeps");
     if (!dispatch_voxels(p, STAGE_FIRST, 0) ||
         !dispatch(p, STAGE_AROUND, 0, WAYS_X * WAYS_Y * LOOKS, 1, 1))
         return false;
     if (!sweeps) return sweep(p, 0, 1);
-    for (uint32_t level = 1; level < s->levels; level++)
-        if (!dispatch_voxels(p, STAGE_RESTRICT, level)) return false;
-    for (uint32_t level = s->levels; level-- > 0;) {
-        if (level + 1 < s->levels && !dispatch_voxels(p, STAGE_PROLONG, level)) return false;
-        if (!sweep(p, level, sweeps)) return false;
-    }
+    for (uint32_t i = 0; i < sweeps; i++)
+        if (!sweep(p, 0, 1) || !dispatch_voxels(p, STAGE_RESTRICT, 1) ||
+            !sweep(p, 1, coarse_sweeps(p)) || !dispatch_voxels(p, STAGE_PROLONG, 0))
+            return false;
     return true;
 }

@@ -18,6 +18,7 @@ ivec3 place_of(ivec3 voxel, int index) {
 
 #if defined(STAGE_SWEEP)
 layout(local_size_x = SWEEP_SIZE * SWEEP_SIZE) in;
+const bool CORRECTS = SWEEP_SIZE < GLOW_SIZE; // what it sweeps is a difference (lighting/level.glsl)
 
 struct cell {
     vec3 light;     // where it leaves the voxel
@@ -41,7 +42,7 @@ path make_path(int index) {
     int main_axis = a.x >= max(a.y, a.z) ? 0 : a.y >= a.z ? 1 : 2;
     ivec3 axes = ivec3(main_axis, (main_axis + 1) % 3, (main_axis + 2) % 3);
     return path(way, axes, -vec2(cells[axes.y], cells[axes.z]) / a[main_axis], 1.0 / a[main_axis],
-                texelFetch(around_made, ivec3(index, 0, 0), 0).rgb);
+                CORRECTS ? vec3(0.0) : texelFetch(around_made, ivec3(index, 0, 0), 0).rgb);
 }
 
 // Light scattered into the way at a voxel, if the medium took light there.
@@ -53,7 +54,7 @@ vec3 source_at(ivec3 voxel, vec3 way) {
         sum[c] = moments.x + 3.0 * g * dot(moments.yzw, way);
     }
     vec3 part = texelFetch(scattering_made, voxel, 0).rgb / max(medium_extinction(), vec3(1e-9));
-    return part * max(sum, vec3(0.0));
+    return part * (CORRECTS ? sum : max(sum, vec3(0.0)));
 }
 
 // What comes from the slice before, between four cells of it; cells outside are empty.
