@@ -1,6 +1,7 @@
 // Random numbers and directions for paths of light.
 #ifndef LIB_PATH_GLSL
 #define LIB_PATH_GLSL
+#include "lib/across.glsl"
 #include "lib/light.glsl"
 #include "lib/medium.glsl"
 
@@ -26,14 +27,10 @@ vec4 path_next(inout path_random random) {
     return vec4(path_hash(uvec4(random.key, random.turn++)) >> 8u) * (1.0 / 16777216.0);
 }
 
-// A unit vector turned away from the unit vector `axis` by the angle of this cosine and sine. The
-// basis is that of Duff et al., "Building an orthonormal basis, revisited" (JCGT 6(1), 2017).
+// A unit vector turned away from the unit vector `axis` by the angle of this cosine and sine.
 vec3 path_around(vec3 axis, float cosine, float sine, float turn) {
-    float side = axis.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (side + axis.z), b = axis.x * axis.y * a;
-    vec3 u = vec3(1.0 + side * axis.x * axis.x * a, side * b, -side * axis.x);
-    vec3 v = vec3(b, side + axis.y * axis.y * a, -axis.y);
     float angle = 2.0 * PATH_PI * turn;
-    return normalize(cosine * axis + sine * (cos(angle) * u + sin(angle) * v));
+    return normalize(cosine * axis + sine * (across(axis) * vec2(cos(angle), sin(angle))));
 }
 
 // Directions of a Lambertian surface: their density is the cosine over pi.

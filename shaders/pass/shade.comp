@@ -9,6 +9,7 @@ uniform float haze;               //= 0 [0, 10] 1/m : how fast distance fades to
 uniform float sky_alpha;          //= 1 [0, 1] : opacity of the sky; 0 for pictures to be laid over others
 writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultiplied
 #include "lib/frame.glsl"
+#include "lib/across.glsl"
 #include "lib/random.glsl"
 #include "lib/sky.glsl"
 #include "lib/bvh.glsl"
@@ -16,14 +17,6 @@ writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultipl
 
 const float PI = 3.14159265, GOLDEN_ANGLE = 2.39996323;
 const float NEGLIGIBLE = 1.0 / 4096.0; // of the light on a surface: such a light gets no shadow
-
-// Two unit vectors across `n`: Duff et al., "Building an orthonormal basis, revisited", 2017.
-mat2x3 across(vec3 n) {
-    float side = n.z >= 0.0 ? 1.0 : -1.0;
-    float a = -1.0 / (side + n.z), b = n.x * n.y * a;
-    return mat2x3(vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x),
-                  vec3(b, side + n.y * n.y * a, -n.y));
-}
 
 // Point k of `count` that are evenly spread over the unit disc, turned by chance (Vogel 1979).
 vec2 disc_point(int k, int count, vec2 chance) {
