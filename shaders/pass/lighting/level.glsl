@@ -19,7 +19,8 @@ float thin() {
 
 // Light seeps through thick smoke by its gaps, which a mean of densities would close: it would stay
 // in the coarser grid for longer than it does, and corrections would grow without end. The geometric
-// mean is that of a random mixture (Matheron 1967; exact in a plane).
+// mean is that of a random mixture in a plane (Matheron, "Elements pour une theorie des milieux
+// poreux", 1967).
 void main() {
     ivec3 voxel = ivec3(gl_GlobalInvocationID), size = imageSize(medium_kept);
     if (any(greaterThanEqual(voxel, size))) return;
