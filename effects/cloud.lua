@@ -21,7 +21,6 @@ local lit = lighting {
   density    = body * eaten * density,
   albedo     = {0.995, 0.995, 0.995},
   lobes      = { {0.75, 0.8}, {0.25, -0.15} },
-  sweeps     = 12,
 }
 local scene  = geometry { mesh { "data/ground.obj", scale = 200, color = {0.5, 0.6, 0.8} } }
 local ground = shade { from = {scene, lit}, haze = 0.00006 }

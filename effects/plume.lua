@@ -49,7 +49,7 @@ fx.camera = camera { eye = {5.5, -25, 1.7}, target = {5.5, 0, 9.2}, fov = 46, ne
 fx.sun    = sun { azimuth = 205, elevation = 38, color = {1, 0.94, 0.86}, strength = 5 }
 fx.sky    = sky { zenith = {0.10, 0.24, 0.58}, horizon = {0.50, 0.60, 0.72}, strength = 0.8 }
 
-local lit    = lighting { density = whole:warp(eddies, ragged) * density, albedo = {0.97, 0.97, 0.97}, anisotropy = 0.3, sweeps = 8 }
+local lit    = lighting { density = whole:warp(eddies, ragged) * density, albedo = {0.97, 0.97, 0.97}, anisotropy = 0.3 }
 local scene  = geometry { mesh { "data/ground.obj" }, mesh { "data/stack.obj" } }
 local solid  = shade { from = {scene, lit}, haze = 0.003 }
 local volume = march { from = {lit, scene}, steps = 160 }
