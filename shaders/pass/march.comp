@@ -7,7 +7,7 @@
 // section 3.5, as published, but for its order of the two sums (colour first, as Max has it).
 //@ option mode = physical {physical, paper} : how samples add up; paper: opacity / steps, as published
 //@ option view = beauty {beauty, noise} : noise shows the field `noise` on the faces of the volume's box
-//@ option scattering = single {single, octaves} : of light that comes straight from the lights: once, or many times by octaves (Wrenninge, Kulla and Lundqvist 2013); with `glow` always once
+//@ option scattering = glow {glow, single, octaves} : of light that is scattered more than once: what `glow` says, if that is given; nothing; or an estimate by octaves (Wrenninge, Kulla and Lundqvist 2013)
 //@ option mesh_shadows = off {off, on} : meshes shadow the volume, by a ray from each sample to each light; with `shadow` they do so anyway
 //@ option jitter_noise = blue {white, blue} : what `jitter` is made of: blue has its error where an eye or a mean over frames loses it
 //@ counter samples : points at which the density was evaluated
@@ -46,7 +46,7 @@ writeonly uniform image2D transmittance; //= output rgba16f optional : part of w
 #include "lib/bvh.glsl"
 #endif
 
-#define GLOWS (HAS_LIGHTS && HAS_GLOW)
+#define GLOWS (HAS_LIGHTS && HAS_GLOW && SCATTERING == SCATTERING_GLOW)
 
 const float SHORTEST = 1.0 / 8192.0; // part of a ray that a step of variable length has at least
 const int MOST_SAMPLES = 65000;
@@ -102,7 +102,7 @@ obstacle before_light(int index, light l, light_ray ray, vec3 p) {
 
 // Part of a light's irradiance that is scattered into a direction, 1/sr.
 vec3 scattered_part(float cosine, vec3 depth) {
-#if SCATTERING == SCATTERING_OCTAVES && !GLOWS
+#if SCATTERING == SCATTERING_OCTAVES
     vec3 sum = vec3(0.0);
     float part = 1.0, through = 1.0, spread = 1.0;
     for (int i = 0; i < octaves; i++) {

@@ -78,6 +78,7 @@ class Light(Case):
 
     def test_density_beyond_measure(self):
         self.is_finite(density=f"({VALUES['density']}) * x * 1e30")
+        self.is_finite(density=f"({VALUES['density']}) * x * 1e30 * 1e30")
         self.is_finite(density=f"({VALUES['density']}) * 1e30", emission="vec(1e30, -1e30, 1 / p)")
 
     def test_medium_that_is_none(self):

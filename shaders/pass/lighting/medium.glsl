@@ -10,7 +10,7 @@ void main() {
     for (int i = 0; i < 8; i++) {
         vec3 within = vec3(i & 1, (i >> 1) & 1, i >> 2) * 0.5 + 0.25;
         vec3 p = mix(box_min, box_max, (vec3(voxel) + within) / float(GLOW_SIZE));
-        float d = field_density(p);
+        float d = medium_density(p);
         if (d <= 0.0) continue;
         sum += d;
         glowing += medium_emission(p, d);

@@ -30,7 +30,7 @@ void main() {
     float sum = 0.0, sums[PART];
     for (int i = 0; i < PART; i++) {
         float at = ray.range.x + (float(part * PART + i) + 0.5) * slice;
-        if (slice > 0.0) sum += slice * max(field_density(ray.origin + at * ray.direction), 0.0);
+        if (slice > 0.0) sum += slice * medium_density(ray.origin + at * ray.direction);
         sums[i] = sum;
     }
     count_samples(slice > 0.0 ? PART : 0);
