@@ -51,8 +51,8 @@ local crust = smoothstep(0, 0.15, cover - eaten * (1 - lumps) * (1 - 0.6 * cover
 local fire = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
 
 fx.camera = camera { eye = {4, -12, 3.36}, target = {4, 4, 3.36}, fov = 31.89, near = 0.1, far = 500 }
-fx.sun    = sun { azimuth = 239, elevation = 44, strength = 3.2 }
-fx.sky    = sky { zenith = {0.14, 0.25, 0.46}, horizon = {0.34, 0.38, 0.42}, strength = 0.6 }
+fx.sun    = sun { azimuth = 239, elevation = 34, color = {1, 0.93, 0.82}, strength = 4.6 }
+fx.sky    = sky { zenith = {0.10, 0.24, 0.58}, horizon = {0.50, 0.60, 0.72}, strength = 0.6 }
 
 -- What fills space, and what light reaches where in it: sun and sky through the smoke, the fire on the
 -- smoke around it, and all that is scattered on the way.
@@ -72,7 +72,7 @@ local volume = march { from = {lit, scene}, steps = steps, resolution = 0.5 }
 
 local picture = over { volume, solid, from = {volume, scene} }
 local glow    = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }
-local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.35, exposure_ev = 0.3, tonemap = "reinhard" }
+local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.35, exposure_ev = 0.3, tonemap = "aces" }
 
 fx.output = shown.color
 fx.linear = shown.linear
