@@ -7,8 +7,3 @@ vec3 frame_ray(vec2 uv) {
     vec2 screen = vec2(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y) * frame.lens.xy;
     return (frame.view_inverse * vec4(screen, -1.0, 0.0)).xyz;
 }
-
-vec3 frame_sky(vec3 direction) {
-    float height = clamp(direction.z, 0.0, 1.0);
-    return mix(frame.sky_horizon.rgb, frame.sky_zenith.rgb, sqrt(height));
-}
