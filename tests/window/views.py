@@ -50,7 +50,7 @@ class Views(Case):
         left, top, right, bottom = live.widget("image")
         live.click((left + right) / 2, (top + bottom) / 2)
         words = self.comes(live, "inspected", final, "the names of images")
-        live.click((left + right) / 2, bottom + 20 + 3 * 22)  # "bloom.color", the fourth
+        live.click_on("bloom.color")
         self.comes(live, "inspected", words, "an image")
         self.assertGreater(difference(final, self.picture(live, "inspected")), 20, "it is the glow")
         before = self.picture(live, "inspected")
