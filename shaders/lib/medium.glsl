@@ -26,17 +26,18 @@ uniform vec3 blackbody_tint;       //= {1, 1, 1} [0, 100] : factor of a black bo
 #include "lib/blackbody.glsl"
 #include "lib/phase.glsl"
 
+// Extinction of density 1, by colour.
+vec3 medium_extinction() {
+    return extinction * (1.0 - (1.0 - albedo) * sqrt(absorption_color));
+}
+
+#ifndef WITHOUT_FIELDS
 const float MEDIUM_MOST = 1e12; // of what a field may say: products of a few stay finite
 
 // The field, where it is a number; below 0 there is nothing.
 float medium_density(vec3 p) {
     float d = field_density(p);
     return d > 0.0 ? min(d, MEDIUM_MOST) : 0.0;
-}
-
-// Extinction of density 1, by colour.
-vec3 medium_extinction() {
-    return extinction * (1.0 - (1.0 - albedo) * sqrt(absorption_color));
 }
 
 // What of it is scattering, at a point where the density is not 0.
@@ -63,6 +64,7 @@ vec3 medium_emission(vec3 p, float d) {
 #endif
     return mix(vec3(0.0), min(given, MEDIUM_MOST), greaterThan(given, vec3(0.0))); // of no number: 0
 }
+#endif
 
 // Phase function (1/sr) of the cosine between the ways before and after; `spread` in 0..1 is a
 // factor of every g.

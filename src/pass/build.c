@@ -47,7 +47,11 @@ bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_
     }
     for (size_t i = 0; i < face->field_count; i++)
         all[count++] = define(memory, "HAS", face->fields[i].name, p->fields[i] ? "1" : "0");
-    shader_text fields = {"fields.glsl", p->program ? field_program_text(p->program) : ""};
+    bool without = false;
+    for (size_t i = 0; i < define_count; i++)
+        without = without || strcmp(defines[i].name, "WITHOUT_FIELDS") == 0;
+    const char *text = p->program && !without ? field_program_text(p->program) : "";
+    shader_text fields = {"fields.glsl", text};
     bool done = shader_compile(p->host->library, memory,
                                &(shader_compile_desc){
                                    .name = shader,

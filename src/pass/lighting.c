@@ -214,8 +214,10 @@ static bool compile(pass *p, lighting_stage stage, shader_binary *out) {
         {"GLOW_SIZE", arena_format(memory, "%u", s->glow_size)},
         {"FIRE_COUNT", arena_format(memory, "%u", s->fire_count)},
         {"SWEEP_SIZE", arena_format(memory, "%u", s->glow_size >> level)},
+        {"WITHOUT_FIELDS", "1"}, // last: not of these two
     };
-    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines), out);
+    bool fields = stage == STAGE_MEDIUM || stage == STAGE_SHADOW;
+    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines) - fields, out);
 }
 
 static bool is_used(const lighting_state *s, lighting_stage stage) {

@@ -46,7 +46,9 @@ struct pass {
 
 // ---- help for hooks ---------------------------------------------------------------------------
 
-// Compiles `shader` with the pass's options, fields and the given defines.
+// Compiles `shader` with the pass's options, fields and the given defines. Where WITHOUT_FIELDS is
+// among these, the fields' GLSL is left out: then the code is the same whatever they are, and need
+// not be compiled again.
 bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_define *defines,
                   size_t define_count, shader_binary *out);
 gpu_pipeline *pass_create_compute(pass *p, const shader_binary *binary);
