@@ -64,20 +64,45 @@ vec3 path_sample_phase(vec3 before, vec3 random) {
 }
 
 struct path_light {
-    vec3 way;      // unit, towards a point of the light
-    float far;     // metres to it
-    vec3 radiance; // of the light, times the solid angle that it fills
+    vec3 way;          // unit, towards a point of the light
+    float far;         // metres to it
+    vec3 radiance;     // of the light, times the solid angle that it fills
+    float solid_angle; // 0: it is a point, or the vertex lies within it
 };
 
-// A point of a sphere or of the sun's disc, drawn from the solid angle that it fills. `at` is what
-// light_at says of it: the irradiance on a surface that faces the whole light.
+// Sine of half the angle that a light fills; 1 from within a sphere.
+float path_sine(light l, light_ray at) {
+    return l.kind == LIGHT_SUN ? l.radius : min(l.radius / at.distance, 1.0);
+}
+
+float path_solid_angle(float sine) {
+    return sine < 1.0 ? 2.0 * PATH_PI * sine * sine / (1.0 + sqrt(1.0 - sine * sine)) : 0.0;
+}
+
+// Irradiance on a surface across each of the light's rays; `at` is what light_at says of it: that on
+// a surface that faces the whole light.
+vec3 path_irradiance(light_ray at, float sine) {
+    return at.irradiance * (2.0 / (1.0 + sqrt(1.0 - sine * sine)));
+}
+
+// Metres to the light along a ray from the vertex; negative: the ray passes it.
+float path_meet_light(light l, light_ray at, float sine, vec3 way) {
+    vec3 aside = cross(way, at.direction);
+    float off = dot(aside, aside), along = dot(way, at.direction);
+    if (along <= 0.0 || off > sine * sine) return -1.0;
+    if (l.kind == LIGHT_SUN) return 1e9;
+    float room = l.radius * l.radius - at.distance * at.distance * off;
+    return max(at.distance * along - sqrt(max(room, 0.0)), 0.0);
+}
+
+// A point of a sphere or of the sun's disc, drawn from the solid angle that it fills.
 path_light path_sample_light(light l, light_ray at, vec2 random) {
-    float sine = l.kind == LIGHT_SUN ? l.radius : min(l.radius / at.distance, 1.0);
-    float edge = sqrt(1.0 - sine * sine);
+    float sine = path_sine(l, at), edge = sqrt(1.0 - sine * sine);
     float away = random.x * sine * sine / (1.0 + edge); // one minus the cosine
     path_light s;
     s.way = path_around(at.direction, 1.0 - away, sqrt(away * (2.0 - away)), random.y);
-    s.radiance = at.irradiance * (2.0 / (1.0 + edge));
+    s.radiance = path_irradiance(at, sine);
+    s.solid_angle = path_solid_angle(sine);
     s.far = at.distance;
     if (l.kind != LIGHT_SUN && l.radius > 0.0) {
         float middle = at.distance * (1.0 - away);

@@ -7,8 +7,8 @@
 // "Integral formulation of null-collision Monte Carlo algorithms", 2013), with probabilities by
 // what a path still carries of each colour (Kutz et al., "Spectral and decomposition tracking",
 // 2017). Light towards a source is found by ratio tracking (Novak et al., "Residual ratio tracking",
-// 2014). Sources are drawn by what they would give unshadowed; directions of the sky both ways,
-// weighed by the balance heuristic (Veach 1997). Emission counts at each tentative collision.
+// 2014). Sources are drawn by what they would give unshadowed; sky, sun and glowing spheres are met by
+// scattered paths, too, and both ways are weighed by the balance heuristic (Veach 1997). Emission counts at each tentative collision.
 //@ counter samples : points at which the density was evaluated
 uniform int samples;               //= 1 [1, 64] : paths for each pixel and execution
 uniform int bounces;               //= 64 [0, 1024] : how often light may be scattered, by the medium or a surface
@@ -35,6 +35,11 @@ uniform int part;  // which dispatch of the execution this is; each has the same
 #include "lib/random.glsl"
 #include "lib/sky.glsl"
 
+// Where light is scattered: in the medium, or on a surface (`normal` is not zero).
+struct path_vertex {
+    vec3 p, normal, before;
+};
+
 const int TURNS = 1 << 18;                // of a path; it ends there
 const float THIN = 0.02, THIN_LATE = 0.5; // Russian roulette below this part of the light, at first and later
 const int LATE = 8;                       // scatterings
@@ -52,12 +57,10 @@ struct path_state {
     bvh_hit hit;         // where it ends, unless it goes to a light
     bool to_light;       // it goes from the last scattering to a light
     vec3 arriving;       // light that comes this way, if nothing stops it
-    float pdf, sky_part; // density of `way`; part of the choices of a source that fell to the sky
-};
-
-// Where light is scattered: in the medium, or on a surface (`normal` is not zero).
-struct path_vertex {
-    vec3 p, normal, before;
+    path_vertex last;    // where the path was scattered last
+    float pdf, total;    // density of the way from there; importance of all sources there
+    bool passes;         // the ray has a sun or sphere in its way, if nothing stops it before
+    float passed;        // metres of the ray that are looked through for them
 };
 
 float brightest(vec3 c) {
@@ -77,9 +80,10 @@ float importance_of(path_vertex v, light_ray at) {
 }
 
 // One source for the vertex, drawn by importance; -1: the sky. `share`: its part of the choices.
-int choose_source(path_vertex v, float random, out float share, out float sky_part) {
+int choose_source(path_vertex v, float random, out float share, out float total) {
     int chosen = -1;
-    float sky = luminance(sky_mean()), picked = sky, total = sky;
+    float sky = luminance(sky_mean()), picked = sky;
+    total = sky;
     for (int i = 0; i < light_count(); i++) {
         float importance = importance_of(v, light_at(light_get(i), v.p));
         if (importance <= 0.0) continue;
@@ -92,20 +96,19 @@ int choose_source(path_vertex v, float random, out float share, out float sky_pa
         picked = importance;
     }
     share = total > 0.0 ? picked / total : 0.0;
-    sky_part = total > 0.0 ? sky / total : 0.0;
     return chosen;
 }
 
 // Sends a ray from the vertex to a source.
 void ask_source(inout path_state s, path_vertex v, vec4 random) {
     float share;
-    int chosen = choose_source(v, random.x, share, s.sky_part);
+    int chosen = choose_source(v, random.x, share, s.total);
     if (share <= 0.0) return;
     path_light source;
     if (chosen >= 0) {
         light l = light_get(chosen);
         source = path_sample_light(l, light_at(l, v.p), random.yz);
-        source.radiance /= share;
+        source.radiance /= share + source.solid_angle * scattered(v, source.way);
     } else {
         float pdf;
         source.way = sky_sample(random.yz, pdf);
@@ -127,6 +130,7 @@ void scatter(inout path_state s, path_vertex v) {
     s.from = v.p;
     s.way = solid ? path_sample_cosine(v.normal, r.xy) : path_sample_phase(v.before, r.xyz);
     s.pdf = scattered(v, s.way);
+    s.last = v;
     s.begins = true;
     ask_source(s, v, path_next(s.random));
 }
@@ -177,6 +181,27 @@ path_vertex meet_surface(inout path_state s) {
     return path_vertex(p + lift * s.hit.normal, s.hit.normal, s.walk.direction);
 }
 
+// Light of the sun and of spheres that a scattered path meets between `passed` and `far` metres of
+// its ray. They stop nothing. With `look` only: whether there are any.
+bool meet_lights(inout path_state s, float far, bool look) {
+    bool some = false;
+    for (int i = 0; i < light_count(); i++) {
+        light l = light_get(i);
+        if (l.radius <= 0.0) continue;
+        light_ray at = light_at(l, s.last.p);
+        float sine = path_sine(l, at), solid_angle = path_solid_angle(sine);
+        float importance = importance_of(s.last, at);
+        if (solid_angle <= 0.0 || importance <= 0.0) continue;
+        float there = path_meet_light(l, at, sine, s.way);
+        if (there < s.passed || there > far) continue;
+        some = true;
+        if (look) break;
+        float share = importance / s.total;
+        s.light += s.weight * path_irradiance(at, sine) * (s.pdf / (solid_angle * s.pdf + share));
+    }
+    return some;
+}
+
 // The path has left everything behind.
 void meet_sky(inout path_state s) {
     vec3 sky = s.weight * sky_radiance(s.walk.direction);
@@ -185,7 +210,8 @@ void meet_sky(inout path_state s) {
         s.light += sky_alpha * sky;
         s.alpha -= (1.0 - sky_alpha) * dot(s.weight, vec3(1.0 / 3.0));
     } else {
-        s.light += sky * (s.pdf / (s.pdf + s.sky_part * sky_pdf(s.walk.direction)));
+        float share = s.total > 0.0 ? luminance(sky_mean()) / s.total : 0.0;
+        s.light += sky * (s.pdf / (s.pdf + share * sky_pdf(s.walk.direction)));
     }
 }
 
@@ -196,12 +222,19 @@ void advance(inout path_state s, vec3 highest, inout int taken) {
         s.hit = bvh_trace(s.from, s.way, 0.0, 1e9);
         s.walk = majorant_begin(s.from, s.way, s.hit.distance < 0.0 ? 1e9 : s.hit.distance);
         s.begins = s.to_light = false;
+        s.passed = 0.0;
+        s.passes = s.bounce > 0 && meet_lights(s, s.hit.distance < 0.0 ? 1e9 : s.hit.distance, true);
     }
     vec4 r = path_next(s.random);
     path_vertex v;
     float bound;
-    bool scatters = false;
-    if (majorant_go(s.walk, -log(1.0 - r.x), bound)) {
+    bool scatters = false, collides = majorant_go(s.walk, -log(1.0 - r.x), bound);
+    if (s.passes && !s.to_light) {
+        float far = collides ? s.walk.at : s.hit.distance < 0.0 ? 1e9 : s.hit.distance;
+        meet_lights(s, far, false);
+        s.passed = far;
+    }
+    if (collides) {
         vec3 p = s.walk.origin + s.walk.at * s.walk.direction;
         float d = medium_density(p);
         taken++;

@@ -225,6 +225,27 @@ static void sunlight_scattered_once_has_its_closed_form(void **state) {
     near(end(&w, p, 256), 0, strength * hg(0, g) * exp(-s) * (1 - exp(-2 * s)));
 }
 
+// A sun of 60 degrees across, seen through a lobe of 30: its mean over the disc.
+static void wide_sun_is_the_mean_of_its_disc(void **state) {
+    const double s = 0.7, g = 0.8, strength = 5, half = 3.14159265358979 / 6;
+    pass_world w;
+    pass *p = begin(&w, *state, slab);
+    sun(&w, 90, 0, (float)strength); // ahead of the camera, beyond the slab
+    w.scene.sun.angle = number(&w, 60);
+    set(&w, p, "bounces", 1);
+    set(&w, p, "anisotropy", (float)g);
+    set(&w, p, "sky_alpha", 0);
+    // Over the disc: where the way out is longer by the cosine, as the slab is 2 m thick and wide.
+    double sum = 0, count = 0;
+    for (int i = 0; i < 400; i++) {
+        double cosine = 1 - (i + 0.5) / 400 * (1 - cos(half)), on = 1 / cosine - 1;
+        double lost = on > 1e-6 ? (1 - exp(-2 * s * on)) / on : 2 * s;
+        sum += hg(cosine, g) * exp(-2 * s) * lost;
+        count++;
+    }
+    near(end(&w, p, 512), 0, strength * 2 / (1 + cos(half)) * sum / count);
+}
+
 // ---- surfaces
 // -------------------------------------------------------------------------------------
 
@@ -388,6 +409,7 @@ int main(void) {
         cmocka_unit_test(clear_sky_leaves_the_opacity_of_the_medium),
         cmocka_unit_test(glowing_slab_has_the_light_of_its_depth),
         cmocka_unit_test(sunlight_scattered_once_has_its_closed_form),
+        cmocka_unit_test(wide_sun_is_the_mean_of_its_disc),
         cmocka_unit_test(white_crate_in_a_white_sky_is_white),
         cmocka_unit_test(gradient_of_the_sky_lights_a_wall),
         cmocka_unit_test(glowing_sphere_lights_a_wall_as_a_point_does),
