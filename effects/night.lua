@@ -47,7 +47,7 @@ local volume = march { from = {lit, scene}, steps = 128, resolution = 0.5 }
 
 local picture = over { volume, solid, from = {volume, scene} }
 local glow    = bloom { bright { picture, threshold = 1.0 }, radius = 0.8 }
-local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.22, exposure_ev = 0.2, tonemap = "reinhard", saturation = 1.1 }
+local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.22, exposure_ev = 0.7, tonemap = "agx", saturation = 1.3 }
 
 fx.output = shown.color
 fx.linear = shown.linear
