@@ -6,12 +6,9 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include "media/av.h"
 #include <errno.h>
 #include <fcntl.h>
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libavutil/opt.h>
-#include <libswscale/swscale.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -35,7 +32,7 @@ struct video {
 
 static bool fault(const video *v, const char *doing, int code) {
     char text[AV_ERROR_MAX_STRING_SIZE] = "";
-    av_strerror(code, text, sizeof text);
+    av.av_strerror(code, text, sizeof text);
     return err_set("%s: %s: %s", v->path, doing, text);
 }
 
@@ -59,14 +56,14 @@ static bool create_temporary(video *v) {
 }
 
 static bool open_encoder(video *v, double fps) {
-    const AVCodec *codec = avcodec_find_encoder_by_name("libx264");
+    const AVCodec *codec = av.avcodec_find_encoder_by_name("libx264");
     bool h264 = codec != NULL;
-    if (!codec) codec = avcodec_find_encoder(AV_CODEC_ID_MPEG4);
+    if (!codec) codec = av.avcodec_find_encoder(AV_CODEC_ID_MPEG4);
     if (!codec) return err_set("%s: this libavcodec encodes neither H.264 nor MPEG-4", v->path);
-    AVCodecContext *e = v->encoder = avcodec_alloc_context3(codec);
+    AVCodecContext *e = v->encoder = av.avcodec_alloc_context3(codec);
     if (!e) err_out_of_memory(sizeof *e);
-    AVRational rate = av_d2q(fps, TIME_BASE_MAX);
-    if (!h264 && (rate.num > 65535 || rate.den > 65535)) rate = av_d2q(fps, 65535);
+    AVRational rate = av.av_d2q(fps, TIME_BASE_MAX);
+    if (!h264 && (rate.num > 65535 || rate.den > 65535)) rate = av.av_d2q(fps, 65535);
     e->width = (int)v->even_width;
     e->height = (int)v->even_height;
     e->pix_fmt = AV_PIX_FMT_YUV420P;
@@ -80,48 +77,48 @@ static bool open_encoder(video *v, double fps) {
     e->sample_aspect_ratio = (AVRational){1, 1};
     if (v->format->oformat->flags & AVFMT_GLOBALHEADER) e->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     if (h264) {
-        av_opt_set(e->priv_data, "crf", "18", 0);
-        av_opt_set(e->priv_data, "preset", "medium", 0);
+        av.av_opt_set(e->priv_data, "crf", "18", 0);
+        av.av_opt_set(e->priv_data, "preset", "medium", 0);
     } else {
         e->flags |= AV_CODEC_FLAG_QSCALE;
         e->global_quality = MPEG4_QUANTISER * FF_QP2LAMBDA;
     }
-    int code = avcodec_open2(e, codec, NULL);
+    int code = av.avcodec_open2(e, codec, NULL);
     return code >= 0 || fault(v, "the video encoder does not start", code);
 }
 
 static bool open_file(video *v) {
-    v->stream = avformat_new_stream(v->format, NULL);
+    v->stream = av.avformat_new_stream(v->format, NULL);
     if (!v->stream) err_out_of_memory(sizeof *v->stream);
     v->stream->time_base = v->encoder->time_base;
     v->stream->avg_frame_rate = v->encoder->framerate;
-    int code = avcodec_parameters_from_context(v->stream->codecpar, v->encoder);
-    if (code >= 0) code = avio_open(&v->format->pb, v->temporary, AVIO_FLAG_WRITE);
+    int code = av.avcodec_parameters_from_context(v->stream->codecpar, v->encoder);
+    if (code >= 0) code = av.avio_open(&v->format->pb, v->temporary, AVIO_FLAG_WRITE);
     if (code < 0) return fault(v, "cannot be written", code);
     AVDictionary *options = NULL;
-    av_dict_set(&options, "movflags", "+faststart", 0);
-    code = avformat_write_header(v->format, &options);
-    av_dict_free(&options);
+    av.av_dict_set(&options, "movflags", "+faststart", 0);
+    code = av.avformat_write_header(v->format, &options);
+    av.av_dict_free(&options);
     return code >= 0 || fault(v, "cannot be written", code);
 }
 
 static bool open_converter(video *v) {
-    v->frame = av_frame_alloc();
-    v->packet = av_packet_alloc();
+    v->frame = av.av_frame_alloc();
+    v->packet = av.av_packet_alloc();
     int width = (int)v->even_width, height = (int)v->even_height;
     v->scaler =
-        sws_getContext(width, height, AV_PIX_FMT_RGBA, width, height, AV_PIX_FMT_YUV420P,
-                       SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP, NULL, NULL, NULL);
+        av.sws_getContext(width, height, AV_PIX_FMT_RGBA, width, height, AV_PIX_FMT_YUV420P,
+                          SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP, NULL, NULL, NULL);
     if (!v->frame || !v->packet || !v->scaler)
         return err_set("%s: no conversion to video at %dx%d", v->path, width, height);
-    const int *bt709 = sws_getCoefficients(SWS_CS_ITU709);
-    sws_setColorspaceDetails(v->scaler, bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16);
+    const int *bt709 = av.sws_getCoefficients(SWS_CS_ITU709);
+    av.sws_setColorspaceDetails(v->scaler, bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16);
     v->frame->format = AV_PIX_FMT_YUV420P;
     v->frame->width = width;
     v->frame->height = height;
     v->frame->color_range = AVCOL_RANGE_MPEG;
     v->frame->colorspace = AVCOL_SPC_BT709;
-    int code = av_frame_get_buffer(v->frame, 0);
+    int code = av.av_frame_get_buffer(v->frame, 0);
     if (code < 0) return fault(v, "no memory for a frame", code);
     if (v->even_width != v->width || v->even_height != v->height)
         v->padded = mem_alloc((size_t)v->even_width * v->even_height * 4);
@@ -139,14 +136,18 @@ video *video_create(const char *path, uint32_t width, uint32_t height, double fp
                 fps);
         return NULL;
     }
-    av_log_set_level(AV_LOG_QUIET); // our messages, not the encoder's
+    if (!av_load()) {
+        err_prefix("%s: ", path);
+        return NULL;
+    }
+    av.av_log_set_level(AV_LOG_QUIET); // our messages, not the encoder's
     video *v = mem_alloc(sizeof *v);
     *v = (video){.width = width, .height = height};
     v->even_width = width + (width & 1);
     v->even_height = height + (height & 1);
     bool fits = str_copy(v->path, sizeof v->path, path);
     bool done = fits ? create_temporary(v) : err_set("%s: path too long", path);
-    if (done && avformat_alloc_output_context2(&v->format, NULL, "mp4", v->temporary) < 0)
+    if (done && av.avformat_alloc_output_context2(&v->format, NULL, "mp4", v->temporary) < 0)
         done = err_set("%s: this libavformat writes no MP4", path);
     if (done && open_encoder(v, fps) && open_file(v) && open_converter(v)) return v;
     video_abandon(v);
@@ -155,16 +156,16 @@ video *video_create(const char *path, uint32_t width, uint32_t height, double fp
 
 // Takes what the encoder has ready. `frame` NULL ends the film.
 static bool encode(video *v, const AVFrame *frame) {
-    int code = avcodec_send_frame(v->encoder, frame);
+    int code = av.avcodec_send_frame(v->encoder, frame);
     if (code < 0) return fault(v, "cannot be encoded", code);
     for (;;) {
-        code = avcodec_receive_packet(v->encoder, v->packet);
+        code = av.avcodec_receive_packet(v->encoder, v->packet);
         if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) return true;
         if (code < 0) return fault(v, "cannot be encoded", code);
         if (v->packet->duration == 0) v->packet->duration = 1;
-        av_packet_rescale_ts(v->packet, v->encoder->time_base, v->stream->time_base);
+        av.av_packet_rescale_ts(v->packet, v->encoder->time_base, v->stream->time_base);
         v->packet->stream_index = v->stream->index;
-        code = av_interleaved_write_frame(v->format, v->packet);
+        code = av.av_interleaved_write_frame(v->format, v->packet);
         if (code >= 0) code = v->format->pb->error;
         if (code < 0) return fault(v, "cannot be written", code);
     }
@@ -184,20 +185,20 @@ static const uint8_t *pad(video *v, const uint8_t *rgba) {
 }
 
 bool video_add(video *v, const uint8_t *rgba) {
-    int code = av_frame_make_writable(v->frame);
+    int code = av.av_frame_make_writable(v->frame);
     if (code < 0) return fault(v, "no memory for a frame", code);
     const uint8_t *planes[1] = {pad(v, rgba)};
     const int pitches[1] = {(int)v->even_width * 4};
-    sws_scale(v->scaler, planes, pitches, 0, (int)v->even_height, v->frame->data,
-              v->frame->linesize);
+    av.sws_scale(v->scaler, planes, pitches, 0, (int)v->even_height, v->frame->data,
+                 v->frame->linesize);
     v->frame->pts = v->frames++;
     return encode(v, v->frame);
 }
 
 static bool close_file(video *v) {
-    int code = av_write_trailer(v->format);
+    int code = av.av_write_trailer(v->format);
     if (code >= 0) code = v->format->pb->error;
-    int closed = avio_closep(&v->format->pb);
+    int closed = av.avio_closep(&v->format->pb);
     if (code >= 0) code = closed;
     if (code < 0) return fault(v, "cannot be written", code);
     if (rename(v->temporary, v->path) != 0)
@@ -215,12 +216,12 @@ bool video_finish(video *v) {
 
 void video_abandon(video *v) {
     if (!v) return;
-    if (v->format && v->format->pb) avio_closep(&v->format->pb);
-    avformat_free_context(v->format);
-    avcodec_free_context(&v->encoder);
-    av_frame_free(&v->frame);
-    av_packet_free(&v->packet);
-    sws_freeContext(v->scaler);
+    if (v->format && v->format->pb) av.avio_closep(&v->format->pb);
+    av.avformat_free_context(v->format);
+    av.avcodec_free_context(&v->encoder);
+    av.av_frame_free(&v->frame);
+    av.av_packet_free(&v->packet);
+    av.sws_freeContext(v->scaler);
     mem_free(v->padded);
     if (v->temporary[0]) unlink(v->temporary);
     mem_free(v);
