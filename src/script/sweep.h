@@ -1,0 +1,99 @@
+// Sweeps: a Lua file that says what is to be measured, run in a sandbox that knows no effects.
+//
+//   return sweep {
+//     name = "paper", effect = "../../effects/paper.lua", size = {1920, 1080}, frames = "28-34",
+//     set  = { opacity = 20 },
+//     axes = { axis { "steps", 16, 32 }, axis { "march.resolution", 0.25, 0.5, label = "resolution"
+//     } }, reference = { steps = 1024 },
+//   }
+//
+// It is expanded here: what comes out is one row after the other, each complete.
+#pragma once
+#include "base/arena.h"
+#include "base/file.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+    SWEEP_MAX_ROWS = 4096,
+    SWEEP_MAX_AXES = 16,
+    SWEEP_MAX_VALUES = 256,
+    SWEEP_MAX_SETTINGS = 256,
+    SWEEP_MAX_FRAMES = 100000,
+};
+#define SWEEP_NO_REFERENCE SIZE_MAX
+
+typedef struct sweep_pair { // a setting and its text, or an axis and its value
+    const char *name, *text;
+} sweep_pair;
+
+typedef struct sweep_number {
+    const char *name;
+    double value;
+} sweep_number;
+
+typedef struct sweep_axis {
+    const char *name, *label;
+    const char **values;
+    size_t value_count;
+} sweep_axis;
+
+typedef struct sweep_row {
+    const char *label;
+    const char *effect; // path, allowed by the rule below
+    uint32_t width, height;
+    double *frames; // NULL: by `first` and `last`, which are seconds
+    size_t frame_count;
+    double first, last;
+    uint32_t warmup, repeats;
+    double limit; // seconds; 0: none
+    sweep_pair *axes, *settings;
+    size_t axis_count, setting_count;
+    size_t reference; // in sweep.references, or SWEEP_NO_REFERENCE
+    sweep_number *published;
+    size_t published_count;
+    const char **edits; // of measure "reload": the text that is replaced, then by what
+    size_t edit_count;
+    const char *command; // of measure "start": "check", "render"
+    bool empty_cache;
+} sweep_row;
+
+typedef enum sweep_measure { SWEEP_FRAMES, SWEEP_RELOAD, SWEEP_START } sweep_measure;
+
+typedef struct sweep { // lives in the arena
+    const char *name, *title, *file;
+    const char **notes;
+    size_t note_count;
+    sweep_measure measure;
+    bool counters;
+    double settle;
+    uint32_t compared;
+    sweep_axis *axes;
+    size_t axis_count;
+    sweep_row *rows;
+    size_t row_count;
+    uint32_t samples;      // above 0: references are path traced
+    sweep_pair *reference; // what the file says of it
+    size_t reference_setting_count;
+    sweep_row *references; // each once
+    size_t reference_count;
+} sweep;
+
+typedef struct sweep_options { // of the command line, in place of what the file says
+    uint32_t width, height; // 0: the file's. Sizes of an axis are scaled: the largest becomes this
+    const double *frames;   // NULL: the file's. An axis of frames stays
+    size_t frame_count;
+    int warmup, repeats; // below 0: the file's
+    double limit;        // below 0: the file's
+    double settle;       // below 0: the file's
+    // Effect files may lie in the sweep's own folder and below, in the current folder and below,
+    // and in this one (the program's home) and below. NULL: not there.
+    const char *home;
+} sweep_options;
+
+// False with "file:line: message".
+bool sweep_read(const char *file, const sweep_options *options, arena *memory, sweep *out);
+
+// "30", "10,30,50", "0-99", "0-99:2", or a list of such; in `memory`. False with a message.
+bool sweep_parse_frames(const char *text, arena *memory, double **out, size_t *count);
