@@ -1,0 +1,56 @@
+"""scripts/package: a folder that can lie anywhere, and needs nothing of the build."""
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+
+from lib.program import BINARY, PROGRAM, SOURCE, Case, main
+
+HIDE = ["unshare", "--map-root-user", "--mount", "sh", "-c",
+        'for folder in "$1" "$2"; do mount -t tmpfs none "$folder" || exit 99; done; shift 2; exec "$@"', "hide"]
+
+
+class Package(Case):
+    @classmethod
+    def setUpClass(cls):
+        cls.top = tempfile.mkdtemp(prefix="roil-package-")
+        cls.addClassCleanup(shutil.rmtree, cls.top)
+        cls.package = os.path.join(cls.top, "here")
+        subprocess.run([os.path.join(SOURCE, "scripts/package"), "--folder", cls.package], check=True,
+                       env={**os.environ, "ROIL_BINARY_DIR": BINARY})
+
+    def run_hidden(self, *args):
+        """Where mounting is allowed, without the source and the build."""
+        command = [*HIDE, SOURCE, os.path.realpath(BINARY)]
+        may = subprocess.run([*command, "true"], capture_output=True, check=False).returncode == 0
+        plain = {name: value for name, value in os.environ.items() if not name.startswith("ROIL_")}
+        return subprocess.run([*(command if may else []), *args], cwd="/", text=True, check=False,
+                              capture_output=True, env={**plain, "ROIL_CACHE_DIR": self.path("cache")})
+
+    def test_runs_where_it_lies(self):
+        done = self.run_hidden(f"{self.package}/bin/roil", "render", f"{self.package}/share/roil/effects/explosion.lua",
+                               "--frames", "30", "--size", "96x54", "-o", self.path("there.png"),
+                               "-o", self.path("there.mp4"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        subprocess.run([PROGRAM, "render", f"{SOURCE}/effects/explosion.lua", "--frames", "30",
+                        "--size", "96x54", "-o", self.path("here.png")], check=True, capture_output=True)
+        alike = subprocess.run([PROGRAM, "compare", self.path("there.png"), self.path("here.png"),
+                                "--max-flip", "0"], check=False, capture_output=True)
+        self.assertEqual(alike.returncode, 0)
+        self.assertGreater(os.path.getsize(self.path("there.mp4")), 500)
+
+    def test_libraries_are_its_own(self):
+        loaded = self.run_hidden("env", "LD_TRACE_LOADED_OBJECTS=1", f"{self.package}/bin/roil").stdout
+        self.assertNotIn("not found", loaded)
+        for name in ("libopenvdb", "libassimp", "liblua5.4", "libspirv-cross"):
+            path = re.search(rf"{name}\S* => (\S+)", loaded).group(1)
+            self.assertTrue(os.path.realpath(path).startswith(os.path.realpath(self.package)), path)
+        for name in ("libstdc++.so.6", "libvulkan.so.1", "libz.so.1"):  # for a machine that has none
+            self.assertTrue(os.path.exists(f"{self.package}/lib/fallback/{name}"), name)
+        self.assertFalse([name for name in os.listdir(f"{self.package}/lib") if name.startswith("libc.")])
+        self.assertTrue(os.path.getsize(f"{self.package}/licences/libavcodec59"))
+
+
+if __name__ == "__main__":
+    main()
