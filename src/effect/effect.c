@@ -261,7 +261,7 @@ field_grid *effect_add_bake(effect *e, const field *node, const uint32_t size[3]
         .grid = {.name = pass_label(p),
                  .box = box,
                  .size = {size[0], size[1], size[2]},
-                 .channel_count = 4,
+                 .channel_count = node->components == 1 ? 1 : 4,
                  .state = {.active = box},
                  .update = update_baked,
                  .destroy = destroy_baked},

@@ -15,6 +15,7 @@ typedef struct field_grid_state {            // at one time
     gpu_image *images[2][FIELD_GRID_IMAGES]; // two neighbouring frames; the second set may be NULL
     float blend;                             // 0: first set only, 1: second
     box3 active;                             // outside of it every channel is background (0)
+    uint64_t content; // another number whenever the images may hold something else; 0: unknown
 } field_grid_state;
 
 struct field_grid {

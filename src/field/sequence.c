@@ -256,6 +256,7 @@ static bool show(sequence *s, gpu *g, const uint32_t frames[2], float blend) {
     memcpy(state->images[0], now->images, sizeof now->images);
     memcpy(state->images[1], next->images, sizeof next->images);
     state->active = box3_union(now->active, next->active);
+    state->content = 1 + (frames[0] | (uint64_t)frames[blend > 0] << 32);
     return true;
 }
 

@@ -28,6 +28,13 @@ void graph_reset_history(graph *g) {
     make_fresh(&g->kept);
 }
 
+static void settle_kept(graph *g, const graph_node_pass *pass) {
+    for (size_t i = 0; i < pass->write_count; i++) {
+        uint32_t slot = g->images[pass->writes[i]].slot;
+        if (slot != NONE && g->slots.at[slot].kept) g->slots.at[slot].fresh = false;
+    }
+}
+
 bool graph_execute(graph *g, gpu *device) {
     assert(g->compiled && g->allocated);
     for (size_t i = 0; i < g->image_count; i++)
@@ -39,6 +46,7 @@ bool graph_execute(graph *g, gpu *device) {
         bool done = pass->record(pass->user, g, device);
         gpu_pass_end(device);
         if (!done) return err_prefix("pass '%s': ", pass->name);
+        settle_kept(g, pass);
     }
     return true;
 }

@@ -194,6 +194,11 @@ bool graph_shares_memory(const graph *g, graph_image a, graph_image b) {
     return slot && slot == slot_of(g, b);
 }
 
+bool graph_has_content(const graph *g, graph_image image) {
+    uint32_t slot = g->images[index_of(g, image)].slot;
+    return slot != NONE && g->slots.at[slot].kept && !g->slots.at[slot].fresh;
+}
+
 bool graph_is_alone(const graph *g, graph_image image) {
     if (!slot_of(g, image)) return false;
     uint32_t index = index_of(g, image);

@@ -26,6 +26,7 @@ typedef struct graph_image_desc {
     uint32_t mips;                 // 0 means 1; GRAPH_ALL_MIPS: down to 1x1; at most that many
     bool target;                   // drawn to by a graphics pipeline
     bool optional;                 // has no memory while nothing reads it, though its writer runs
+    bool keep; // keeps its content while its writer leaves it alone (graph_has_content)
 } graph_image_desc;
 
 typedef struct graph_pass_desc {
@@ -51,8 +52,8 @@ bool graph_add_output(graph *g, graph_image image); // wanted after execution
 void graph_remove_output(graph *g, graph_image image);
 
 // Orders, culls, computes sizes and lifetimes, and decides which images share memory (same format
-// and size, lifetimes apart, no history, not an output). Errors: a cycle (named pass by pass), an
-// image that is read and never written, an image with two writers, a size beyond 16384.
+// and size, lifetimes apart, no history, not an output, not kept). Errors: a cycle (named pass by
+// pass), an image that is read and never written, an image with two writers, a size beyond 16384.
 bool graph_compile(graph *g, uint32_t width, uint32_t height);
 bool graph_allocate(graph *g, gpu *device); // after compile; frees what an earlier compile had
 // Exchanges the images of both that match by name, format and size, so that what `from` has drawn,
@@ -76,6 +77,8 @@ size_t graph_images(const graph *g, graph_image *out, size_t capacity);
 // Names of the passes that run, in order; returns the count.
 size_t graph_order(const graph *g, const char **out, size_t capacity);
 bool graph_shares_memory(const graph *g, graph_image a, graph_image b);
+// Of an image that is kept, while its writer records: whether it still holds what that wrote last.
+bool graph_has_content(const graph *g, graph_image image);
 // False: it is culled, or its memory is another image's too, which may have overwritten it.
 bool graph_is_alone(const graph *g, graph_image image);
 void graph_print_dot(const graph *g, const char *title, strbuf *out); // culled passes are grey

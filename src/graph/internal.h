@@ -17,7 +17,8 @@ typedef struct graph_slot {
     const char *name;  // of the first image that uses it
     gpu_image *memory; // NULL until allocated
     bool paired;       // half of an image with history: belongs to one image, contents survive
-    bool fresh;        // paired and never cleared nor written
+    bool kept;         // belongs to one image, whose writer need not write it every time
+    bool fresh;        // paired or kept, and never cleared nor written
 } graph_slot;
 
 typedef struct graph_node_image {

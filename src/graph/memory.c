@@ -3,7 +3,8 @@
 // An image lives from the pass that writes it to the last pass that reads it. Walking the order
 // once, a written image takes a slot of its kind (slot_key) that is free, or a new one; after a
 // pass the images that it read last give theirs back. Invariant: two images of one slot never live
-// at the same time. Outputs and images with a history live for ever and never share.
+// at the same time. Outputs, images with a history and kept ones live for ever and never
+// share.
 //
 // Allocation takes over what an earlier plan had: first by name and kind, so that contents
 // survive, then by kind alone.
@@ -31,7 +32,7 @@ static uint32_t *filled(arena *a, size_t count) { // with NONE
 }
 
 static bool is_exclusive(const graph_node_image *image) {
-    return image->output || image->history_used;
+    return image->output || image->history_used || image->desc.keep;
 }
 
 static bool needs_memory(const graph_node_image *image) {
@@ -75,7 +76,12 @@ static uint32_t new_slot(graph *g, const graph_node_image *image, bool paired) {
     slot_list *slots = &g->slots;
     MEM_RESERVE(slots->at, slots->count + 1, slots->capacity);
     slots->at[slots->count] = (graph_slot){
-        .key = key_of(image), .name = image->desc.name, .paired = paired, .fresh = paired};
+        .key = key_of(image),
+        .name = image->desc.name,
+        .paired = paired,
+        .kept = image->desc.keep && !paired,
+        .fresh = paired || image->desc.keep,
+    };
     return (uint32_t)slots->count++;
 }
 
@@ -153,7 +159,7 @@ static bool is_same_kind(const graph_slot *a, const graph_slot *b) {
 
 static void take_over(graph_slot *to, graph_slot *from) {
     to->memory = from->memory;
-    to->fresh = to->paired && from->fresh;
+    to->fresh = (to->paired || to->kept) && from->fresh;
     from->memory = NULL;
 }
 
@@ -170,7 +176,7 @@ static lookup index_names(const slot_list *list, uint32_t **slots) {
 }
 
 static bool can_be(const graph_slot *a, const graph_slot *b) {
-    return a->paired == b->paired && is_same_kind(a, b);
+    return a->paired == b->paired && a->kept == b->kept && is_same_kind(a, b);
 }
 
 static void take_over_by_name(graph *g) {

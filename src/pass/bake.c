@@ -1,22 +1,37 @@
-// Bake: a field evaluated at every voxel centre of a box, once a frame, into a grid that other
-// fields sample. effect/ makes the grid and sets size and box.
+// Bake: a field evaluated at every voxel centre of a box, into a grid that other fields sample.
+// effect/ makes the grid and sets size and box.
+//
+// The image is kept: while all that the values depend on is as it was when they were computed, they
+// are not computed again. That is the numbers (uniforms, FieldNumbers), the content of palettes and
+// of grids; the shader cannot change within the life of a pass. A shader that reads anything else
+// (the block Frame, say, by a user's function) runs every frame.
 #include "base/error.h"
 #include "pass/builtin.h"
 #include "pass/pass_impl.h"
+#include <string.h>
 
-void pass_set_bake(pass *p, const field_grid *grid) {
+typedef struct bake_state {
+    unsigned char *now, *last; // what the values depend on: now, and when they were computed
+    size_t size;
+    bool known; // there is a `last`
+} bake_state;
+
+void pass_set_bake(pass *p, field_grid *grid) {
     p->baked = grid;
 }
 
 bool bake_declare(pass *p) {
-    const field_grid *grid = p->baked;
+    field_grid *grid = p->baked;
     int output = pass_find_image(p, "values");
+    // Three channels take four: there is no image of three.
+    p->formats[output] = grid->channel_count == 1 ? GPU_R16F : GPU_RGBA16F;
     p->images[output] = graph_add_image(p->host->graph, &(graph_image_desc){
                                                             .name = p->label,
-                                                            .format = GPU_RGBA16F,
+                                                            .format = p->formats[output],
                                                             .width = grid->size[0],
                                                             .height = grid->size[1],
                                                             .depth = grid->size[2],
+                                                            .keep = true,
                                                         });
     if (!p->images[output].id) return false;
     pass_host_add_grid_image(p->host, grid, p->images[output]);
@@ -27,5 +42,78 @@ bool bake_fill(pass *p, const shader_binary *binary, unsigned char *block) {
     const field_grid *grid = p->baked;
     pass_write_member(binary, block, "box_min", &grid->box.min, sizeof grid->box.min);
     pass_write_member(binary, block, "box_max", &grid->box.max, sizeof grid->box.max);
+    return true;
+}
+
+// ---- what the values depend on ----------------------------------------------------------------
+
+static const field_texture *find_texture(const pass *p, const char *name) {
+    const field_texture *textures;
+    size_t count = field_program_textures(p->program, &textures);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(textures[i].glsl_name, name) == 0) return &textures[i];
+    return NULL;
+}
+
+// Whether everything that the shader reads can be told to be as it was.
+static bool can_tell(const pass *p) {
+    for (size_t i = 0; i < p->binary.slot_count; i++) {
+        const shader_slot *slot = &p->binary.slots[i];
+        const field_texture *texture = find_texture(p, slot->name);
+        if (texture
+                ? texture->grid && !texture->grid->state.content
+                : strcmp(slot->name, "Uniforms") != 0 && strcmp(slot->name, "FieldNumbers") != 0 &&
+                      strcmp(slot->name, "values") != 0)
+            return false;
+    }
+    return true;
+}
+
+static unsigned char *put(unsigned char *to, const void *data, size_t size) {
+    memcpy(to, data, size);
+    return to + size;
+}
+
+static void list_dependencies(const pass *p, unsigned char *out) {
+    out = put(out, p->block, pass_block_size(&p->binary));
+    out = put(out, p->numbers, field_program_block_size(p->program));
+    for (size_t i = 0; i < p->palette_count; i++) {
+        out = put(out, &p->palettes[i].time, sizeof p->palettes[i].time);
+        out = put(out, &p->palettes[i].version, sizeof p->palettes[i].version);
+    }
+    const field_texture *textures;
+    size_t count = field_program_textures(p->program, &textures);
+    for (size_t i = 0; i < count; i++)
+        if (textures[i].grid) out = put(out, &textures[i].grid->state.content, sizeof(uint64_t));
+}
+
+static bake_state *make_state(pass *p) {
+    const field_texture *textures;
+    bake_state *s = arena_alloc(p->host->memory, sizeof *s);
+    s->size = pass_block_size(&p->binary) + field_program_block_size(p->program) +
+              p->palette_count * (sizeof(double) + sizeof(uint32_t)) +
+              field_program_textures(p->program, &textures) * sizeof(uint64_t);
+    s->now = arena_alloc(p->host->memory, s->size);
+    s->last = arena_alloc(p->host->memory, s->size);
+    return s;
+}
+
+static bool is_done(const pass *p, const bake_state *s) {
+    graph_image values = p->images[pass_find_image(p, "values")];
+    return s->known && can_tell(p) && memcmp(s->now, s->last, s->size) == 0 &&
+           graph_has_content(p->host->graph, values);
+}
+
+bool bake_record(pass *p) {
+    if (!p->state) p->state = make_state(p);
+    bake_state *s = p->state;
+    if (!pass_prepare(p)) return false;
+    list_dependencies(p, s->now);
+    if (is_done(p, s)) return true;
+    s->known = false;
+    if (!pass_run(p)) return false;
+    memcpy(s->last, s->now, s->size);
+    s->known = true;
+    p->baked->state.content++;
     return true;
 }

@@ -5,6 +5,8 @@
 bool geometry_declare(pass *p);
 bool geometry_check(pass *p);
 bool geometry_build(pass *p);
+bool geometry_allocate(pass *p);
+bool geometry_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool geometry_record(pass *p);
 
 bool lighting_declare(pass *p);
@@ -35,3 +37,4 @@ bool meter_declare(pass *p);
 
 bool bake_declare(pass *p);
 bool bake_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool bake_record(pass *p);

@@ -45,9 +45,10 @@ typedef struct pass_type {
     const char *name;   // "march"
     const char *shader; // "pass/march.comp"
     // Optional hooks.
-    bool (*declare)(pass *p); // instead of one image per output
-    bool (*check)(pass *p);   // compile all that build would, without a device
-    bool (*build)(pass *p);   // instead of one pipeline; see pass_build
+    bool (*declare)(pass *p);  // instead of one image per output
+    bool (*check)(pass *p);    // compile all that build would, without a device
+    bool (*build)(pass *p);    // instead of one pipeline; see pass_build
+    bool (*allocate)(pass *p); // besides what every pass needs; see pass_allocate
     // Uniforms that the host computes, written into a block of `binary`'s layout.
     bool (*fill)(pass *p, const shader_binary *binary, unsigned char *block);
     bool (*record)(pass *p); // instead of one dispatch over the first output
@@ -82,7 +83,7 @@ size_t pass_meshes(const pass *p, scene_mesh *const **out);
 // something of that name and type: images that it reads and `source` writes; fields, options and
 // uniforms, the latter as they are in each frame. Several sources: the first that has it.
 void pass_add_source(pass *p, pass *source);
-void pass_set_bake(pass *p, const field_grid *grid); // bake only: the grid it fills
+void pass_set_bake(pass *p, field_grid *grid); // bake only: the grid it fills
 // What `name` may be set as, for the generic setter of Lua and --set.
 typedef enum pass_key { PASS_UNKNOWN, PASS_UNIFORM, PASS_OPTION, PASS_FIELD, PASS_IMAGE } pass_key;
 pass_key pass_find_key(const pass *p, const char *name, size_t *index);

@@ -38,10 +38,10 @@ struct pass {
     pass_palette *palettes;
     size_t palette_count;
     gpu_buffer *counters;
-    gpu_image *blank[2];     // what missing optional inputs read: 2D, 3D
-    gpu_image **unread;      // one per entry of `face`: what an optional output is while unread
-    const field_grid *baked; // bake only: the grid it fills
-    void *state;             // of the type's hooks
+    gpu_image *blank[2]; // what missing optional inputs read: 2D, 3D
+    gpu_image **unread;  // one per entry of `face`: what an optional output is while unread
+    field_grid *baked;   // bake only: the grid it fills
+    void *state;         // of the type's hooks
 };
 
 // ---- help for hooks ---------------------------------------------------------------------------
@@ -75,7 +75,8 @@ bool pass_bind(pass *p, const shader_binary *binary, const unsigned char *block,
                gpu_binding out[GPU_MAX_SLOTS], size_t *count);
 
 bool pass_prepare(pass *p); // uniforms, field numbers, palettes and counters of this frame
-bool pass_record(pass *p);  // one dispatch or full-screen draw over the first output
+bool pass_run(pass *p);     // one dispatch or full-screen draw over the first output
+bool pass_record(pass *p);  // both
 graph_image pass_grid_image(const pass_host *host,
                             const field_grid *grid);  // zero: not of the graph
 int pass_find_image(const pass *p, const char *name); // index in face->images, -1: none

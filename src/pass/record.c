@@ -155,7 +155,9 @@ static bool bind_block(const pass *p, const shader_binary *binary, const char *n
 }
 
 static bool bind_buffer(const pass *p, const char *name, gpu_binding *out) {
-    static const char *const bvh_parts[] = {"BvhNodes", "BvhTriangles", "BvhInstances"};
+    static const char *const bvh_parts[BVH_PARTS] = {"BvhNodes",    "BvhTriangles", "BvhInstances",
+                                                     "BvhSurfaces", "BvhVertices",  "BvhMaterials",
+                                                     "BvhTexels"};
     if (strcmp(name, "Counters") == 0) out->buffer = p->counters;
     for (int i = 0; i < BVH_PARTS; i++)
         if (strcmp(name, bvh_parts[i]) == 0)
@@ -240,11 +242,10 @@ static bool draw_fullscreen(pass *p, const gpu_binding *bindings, size_t count) 
     return gpu_draw_all(p->host->device, &desc);
 }
 
-bool pass_record(pass *p) {
+bool pass_run(pass *p) {
     gpu_binding bindings[GPU_MAX_SLOTS];
     size_t count;
-    if (!pass_prepare(p) || !pass_bind(p, &p->binary, p->block, NULL, 0, bindings, &count))
-        return false;
+    if (!pass_bind(p, &p->binary, p->block, NULL, 0, bindings, &count)) return false;
     if (str_ends_with(p->shader, ".frag")) return draw_fullscreen(p, bindings, count);
     gpu_dispatch_desc dispatch = {p->pipeline, bindings, count, {1, 1, 1}};
     for (size_t i = 0; i < p->face->image_count; i++) {
@@ -253,6 +254,10 @@ bool pass_record(pass *p) {
         break;
     }
     return gpu_dispatch(p->host->device, &dispatch);
+}
+
+bool pass_record(pass *p) {
+    return pass_prepare(p) && pass_run(p);
 }
 
 bool pass_read_counters(pass *p, uint64_t *out) {

@@ -8,10 +8,12 @@
 static const pass_type types[] = {
     {
         .name = "geometry",
-        .shader = "pass/geometry.frag",
+        .shader = "pass/geometry.comp",
         .declare = geometry_declare,
         .check = geometry_check,
         .build = geometry_build,
+        .allocate = geometry_allocate,
+        .fill = geometry_fill,
         .record = geometry_record,
     },
     {
@@ -79,6 +81,7 @@ static const pass_type types[] = {
         .shader = "pass/bake.comp",
         .declare = bake_declare,
         .fill = bake_fill,
+        .record = bake_record,
     },
 };
 

@@ -113,11 +113,62 @@ static void march_runs_after_the_bakes_that_it_reads(void **state) {
     effect_destroy(e);
 }
 
+// Times that the grid was computed.
+static uint64_t computed(const field_grid *grid) {
+    return grid->state.content;
+}
+
+static void what_has_not_changed_is_not_computed_again(void **state) {
+    effect *e = open_effect(&(effect_desc){.device = *state});
+    gpu_test_ok(effect_set_timeline(e, 10, 11, 1));
+    const field *factor = param(e, "factor", 1, 10);
+    const field *ball = make(e, "sphere", triple(e, 0, 0, 0), number(e, 1), number(e, 1));
+    field_grid *still = effect_add_bake(e, make(e, "mul", ball, factor), size32, around);
+    gpu_test_ok(still);
+    const field *inner = field_grid_channel(effect_memory(e), still, 0, 1);
+    field_grid *second = effect_add_bake(e, make(e, "mul", inner, number(e, 2)), size32, around);
+    field_grid *moving = effect_add_bake(e, shrinking_ball(e), size32, around);
+    gpu_test_ok(second && moving);
+    const field *outer = field_grid_channel(effect_memory(e), second, 0, 1);
+    const field *other = field_grid_channel(effect_memory(e), moving, 0, 1);
+    pass *p = add_march(e, make(e, "add", outer, make(e, "mul", other, number(e, 0))));
+    finish(e, p, SIZE, SIZE);
+
+    float once = middle(e, 1, SIZE, 3);
+    assert_true(middle(e, 2, SIZE, 3) == once);
+    assert_int_equal(computed(still), 1);
+    assert_int_equal(computed(second), 1);
+    assert_int_equal(computed(moving), 2);
+
+    assert_true(effect_set(e, "factor", "0.5"));
+    assert_true(middle(e, 3, SIZE, 3) < 0.9f * once);
+    assert_int_equal(computed(still), 2);
+    assert_int_equal(computed(second), 2); // what it samples was made anew
+
+    gpu_test_ok(effect_allocate(e, SIZE + 2, SIZE + 2)); // another size of the picture
+    middle(e, 4, SIZE + 2, 3);
+    middle(e, 9, SIZE + 2, 3); // a jump
+    assert_int_equal(computed(still), 2);
+    effect_destroy(e);
+}
+
+static void one_component_takes_one_channel(void **state) {
+    effect *e = open_effect(&(effect_desc){.device = *state});
+    const field *ball = make(e, "sphere", triple(e, 0, 0, 0), number(e, 1), number(e, 1));
+    field_grid *grid = effect_add_bake(e, ball, size32, around);
+    gpu_test_ok(grid);
+    graph_image image = graph_find_image(effect_graph(e), "bake");
+    assert_int_equal(graph_get_desc(effect_graph(e), image)->format, GPU_R16F);
+    effect_destroy(e);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(baked_field_equals_the_field_itself),
         cmocka_unit_test(four_channels_are_baked_at_once),
         cmocka_unit_test(march_runs_after_the_bakes_that_it_reads),
+        cmocka_unit_test(what_has_not_changed_is_not_computed_again),
+        cmocka_unit_test(one_component_takes_one_channel),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }
