@@ -1,224 +1,21 @@
-// OpenVDB behind vdb.h, the only C++ of the program. The file is read into memory, its structure is
-// proved by vdb_layout.c, and only then does OpenVDB parse the one grid that is wanted.
+// OpenVDB behind vdb.h: what a file says of itself, dense sampling, writing. vdb_blocks.cpp reads
+// grids that are not to be spread out.
 //
 // Sampling: when the voxel centres of the box lie on the grid's own lattice, values are copied node
 // by node (openvdb::tools::copyToDense: tiles, background and leaves); else every centre goes
 // through the inverse of the grid's affine transform and is interpolated between 8 voxels. Index
 // coordinates name voxel centres, so voxel i covers i - 0.5 to i + 0.5. Staggered vectors sit on
 // voxel faces, half a voxel below the centre on their own axis.
-#ifndef NDEBUG
-#define NDEBUG // OpenVDB's asserts are no checks of files, and would end the program
-#endif
-#include <cglm/cglm.h>
-#include <openvdb/io/Archive.h>
-#include <openvdb/io/DelayedLoadMetadata.h>
-#include <openvdb/io/GridDescriptor.h>
-#include <openvdb/io/io.h>
-#include <openvdb/openvdb.h>
+#include "media/vdb_file.hpp"
 #include <openvdb/tools/Dense.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <sstream>
-#define _Noreturn [[noreturn]] // as C++ spells it
-extern "C" {
-#include "base/error.h"
-#include "base/file.h"
-#include "base/memory.h"
-#include "media/vdb.h"
-#include "media/vdb_layout.h"
-// LeakSanitizer's, absent in other builds.
-__attribute__((weak)) void __lsan_disable(void);
-__attribute__((weak)) void __lsan_enable(void);
-}
-#undef _Noreturn
+
+using namespace vdb;
 
 namespace {
-
-using openvdb::Coord;
-using openvdb::CoordBBox;
-using openvdb::GridBase;
-using openvdb::Vec3d;
-using openvdb::Vec3s;
-
-constexpr size_t file_bytes_max = size_t(2) << 30;
-constexpr int coord_max = 1 << 24;
-constexpr double box_voxels_max = 68719476736.0; // 4096^3
-constexpr size_t sample_voxels_max = size_t(1) << 31;
-
-void initialize() {
-    static const bool once = [] {
-        openvdb::initialize();
-        // Compressed side tables for delayed loading, which we do not use: read as plain bytes.
-        openvdb::io::DelayedLoadMetadata::unregisterType();
-        return true;
-    }();
-    (void)once;
-}
-
-// Every entry point runs inside this: no exception reaches C.
-template <class Work> bool guarded(const char *path, Work work) {
-    try {
-        initialize();
-        return work();
-    } catch (const std::bad_alloc &) {
-        return err_set("%s: not enough memory for this VDB file", path);
-    } catch (const std::exception &e) {
-        return err_set("%s: OpenVDB: %s", path, e.what());
-    } catch (...) {
-        return err_set("%s: OpenVDB: unknown fault", path);
-    }
-}
-
-class buffer : public std::streambuf {
-  public:
-    buffer(const uint8_t *bytes, size_t size) {
-        char *p = const_cast<char *>(reinterpret_cast<const char *>(bytes));
-        setg(p, p, p + size);
-    }
-
-  protected:
-    pos_type seekoff(off_type by, std::ios_base::seekdir from, std::ios_base::openmode) override {
-        off_type base = from == std::ios_base::beg   ? 0
-                        : from == std::ios_base::cur ? gptr() - eback()
-                                                     : egptr() - eback();
-        if (base + by < 0 || base + by > egptr() - eback()) return pos_type(off_type(-1));
-        setg(eback(), eback() + base + by, egptr());
-        return pos_type(base + by);
-    }
-    pos_type seekpos(pos_type at, std::ios_base::openmode mode) override {
-        return seekoff(off_type(at), std::ios_base::beg, mode);
-    }
-};
-
-struct archive : openvdb::io::Archive { // opens what the library keeps to its own readers
-    using Archive::readGrid;
-    using Archive::write;
-};
-
-// A VDB file in memory whose structure is known to be sound.
-struct file {
-    arena memory = {};
-    void *bytes = nullptr;
-    vdb_layout layout = {};
-
-    file() = default;
-    file(const file &) = delete;
-    ~file() {
-        arena_free(&memory);
-        mem_free(bytes);
-    }
-    bool open(const char *path) {
-        size_t size;
-        return file_read(path, file_bytes_max, &bytes, &size) &&
-               vdb_layout_read(path, bytes, size, &memory, &layout);
-    }
-    const vdb_layout_grid *find(const char *name) const {
-        for (size_t i = 0; i < layout.count; i++)
-            if (strcmp(layout.grids[i].name, name) == 0) return &layout.grids[i];
-        return nullptr;
-    }
-};
-
-struct input { // a stream over part of a file, as OpenVDB's readers expect it
-    buffer bytes;
-    std::istream stream;
-    input(const vdb_layout &l, size_t start, size_t end) : bytes(l.bytes, end), stream(&bytes) {
-        stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
-        stream.seekg(std::streamoff(start));
-        openvdb::io::setVersion(stream, {l.library_major, l.library_minor}, l.version);
-        openvdb::io::setDataCompression(stream, openvdb::io::COMPRESS_NONE);
-    }
-};
-
-openvdb::MetaMap read_metadata(const vdb_layout &l, size_t start, size_t end) {
-    input in(l, start, end);
-    openvdb::MetaMap map;
-    map.readMeta(in.stream);
-    return map;
-}
-
-// When a compressed block is broken OpenVDB throws with nodes half set up, whose destructor would
-// free pointers that were never set. Such a tree is left behind for good, knowingly.
-GridBase::Ptr read_tree(const vdb_layout &l, const vdb_layout_grid &g) {
-    struct leak_scope {
-        leak_scope() {
-            if (__lsan_disable) __lsan_disable();
-        }
-        ~leak_scope() {
-            if (__lsan_enable) __lsan_enable();
-        }
-    } scope;
-    auto kept = new GridBase::Ptr(GridBase::createGrid(g.tree_type));
-    (*kept)->setSaveFloatAsHalf(g.half);
-    input in(l, g.start, g.end);
-    openvdb::io::GridDescriptor descriptor(g.unique, g.tree_type, g.half);
-    archive::readGrid(*kept, descriptor, in.stream);
-    GridBase::Ptr grid = *kept;
-    delete kept;
-    return grid;
-}
-
-// The grid whose tree holds the voxels of `g`: itself, or the one it shares them with.
-const vdb_layout_grid *tree_owner(const vdb_layout &l, const vdb_layout_grid &g) {
-    if (g.parent[0] == '\0') return &g;
-    for (size_t i = 0; i < l.count; i++)
-        if (strcmp(l.grids[i].unique, g.parent) == 0 && l.grids[i].parent[0] == '\0' &&
-            l.grids[i].value == g.value && l.grids[i].linear)
-            return &l.grids[i];
-    err_set("%s: damaged VDB file: grid '%s' shares the voxels of a grid '%s' that is not there",
-            l.path, g.name, g.parent);
-    return nullptr;
-}
-
-bool load(const vdb_layout &l, const vdb_layout_grid &g, GridBase::Ptr *out) {
-    const vdb_layout_grid *owner = tree_owner(l, g);
-    if (!owner || !vdb_layout_check_tree(&l, owner)) return false;
-    *out = read_tree(l, *owner);
-    return true;
-}
-
-// index = inverse * (world - origin); world = origin + axis * index.
-struct affine {
-    Vec3d origin, axis[3];
-    Vec3d inverse[3]; // rows
-    Vec3d to_world(const Vec3d &i) const {
-        return origin + axis[0] * i[0] + axis[1] * i[1] + axis[2] * i[2];
-    }
-    Vec3d to_index(const Vec3d &world) const {
-        Vec3d p = world - origin;
-        return Vec3d(inverse[0].dot(p), inverse[1].dot(p), inverse[2].dot(p));
-    }
-};
-
-bool read_affine(const vdb_layout &l, const vdb_layout_grid &g, affine *out) {
-    input in(l, g.transform, g.end);
-    openvdb::math::Transform transform;
-    transform.read(in.stream);
-    out->origin = transform.indexToWorld(Vec3d(0.0));
-    for (int i = 0; i < 3; i++) {
-        Vec3d unit(0.0);
-        unit[i] = 1.0;
-        out->axis[i] = transform.indexToWorld(unit) - out->origin;
-    }
-    const Vec3d *a = out->axis;
-    double volume = a[0].dot(a[1].cross(a[2]));
-    double size = a[0].length() * a[1].length() * a[2].length();
-    if (!std::isfinite(volume) || !std::isfinite(out->origin.lengthSqr()) || !(size > 1e-30) ||
-        size > 1e30 || std::fabs(volume) < 1e-9 * size)
-        return err_set("%s: grid '%s': the transform is singular or not finite", l.path, g.name);
-    for (int i = 0; i < 3; i++) out->inverse[i] = a[(i + 1) % 3].cross(a[(i + 2) % 3]) / volume;
-    return true;
-}
-
-bool is_axis_aligned(const affine &t) {
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            if (i != k && std::fabs(t.axis[i][k]) > 1e-9 * t.axis[i].length()) return false;
-    return true;
-}
 
 // World box of an inclusive index box, with the outer halves of its border voxels.
 box3 world_box(const affine &t, const int32_t min[3], const int32_t max[3]) {
@@ -231,22 +28,6 @@ box3 world_box(const affine &t, const int32_t min[3], const int32_t max[3]) {
         hi = openvdb::math::maxComponent(hi, world);
     }
     return {{float(lo[0]), float(lo[1]), float(lo[2])}, {float(hi[0]), float(hi[1]), float(hi[2])}};
-}
-
-vdb_class class_of(const openvdb::MetaMap &map) {
-    std::string text;
-    if (auto value = map.getMetadata<openvdb::StringMetadata>(GridBase::META_GRID_CLASS))
-        text = value->value();
-    switch (GridBase::stringToGridClass(text)) {
-    case openvdb::GRID_FOG_VOLUME:
-        return VDB_FOG;
-    case openvdb::GRID_LEVEL_SET:
-        return VDB_LEVEL_SET;
-    case openvdb::GRID_STAGGERED:
-        return VDB_STAGGERED;
-    default:
-        return VDB_UNKNOWN;
-    }
 }
 
 // The background stands at the front of the tree, after a 32-bit count.
@@ -338,142 +119,43 @@ bool describe(const vdb_layout &l, const vdb_layout_grid &g, arena *memory, vdb_
     return true;
 }
 
-template <class Value> struct sample_type { using type = float; };
-template <class Real> struct sample_type<openvdb::math::Vec3<Real>> { using type = Vec3s; };
-
-template <class Tree> class sampler {
-  public:
-    using value = typename Tree::ValueType;
-    using result = typename sample_type<value>::type;
-
-    sampler(const Tree &tree, const affine &transform, const vdb_sample_desc &desc, bool staggered)
-        : tree_(tree), desc_(desc), staggered_(staggered) {
-        const float3 &lo = desc.box.min, &hi = desc.box.max;
-        Vec3d size(double(hi.x) - lo.x, double(hi.y) - lo.y, double(hi.z) - lo.z);
-        Vec3d step;
-        for (int i = 0; i < 3; i++) step[i] = size[i] / desc.size[i];
-        first_ = transform.to_index(Vec3d(lo.x, lo.y, lo.z) + step * 0.5);
-        for (int i = 0; i < 3; i++) {
-            Vec3d along(0.0);
-            along[i] = step[i];
-            step_[i] = transform.to_index(transform.origin + along);
-        }
+template <class Tree>
+void fill(const Tree &tree, const placing &place, const vdb_sample_desc &desc, bool staggered) {
+    using result = typename sample_type<typename Tree::ValueType>::type;
+    auto out = reinterpret_cast<result *>(desc.out);
+    if (!staggered && place.on_lattice()) {
+        Coord lo = place.origin();
+        Coord hi = lo + Coord(int(desc.size[0]) - 1, int(desc.size[1]) - 1, int(desc.size[2]) - 1);
+        openvdb::tools::Dense<result, openvdb::tools::LayoutXYZ> target(CoordBBox(lo, hi), out);
+        openvdb::tools::copyToDense(tree, target);
+        return;
     }
-
-    // False when the box is so far away that index coordinates would overflow.
-    bool is_near() const {
-        double reach = 0.0;
-        for (int i = 0; i < 3; i++) {
-            reach += std::fabs(first_[i]);
-            for (int k = 0; k < 3; k++) reach += std::fabs(step_[i][k]) * desc_.size[i];
-        }
-        return reach < 1e9; // NaN is not near
-    }
-
-    void run() {
-        if (on_lattice()) {
-            Coord lo(int(std::lround(first_[0])), int(std::lround(first_[1])),
-                     int(std::lround(first_[2])));
-            Coord hi =
-                lo + Coord(int(desc_.size[0]) - 1, int(desc_.size[1]) - 1, int(desc_.size[2]) - 1);
-            using dense = openvdb::tools::Dense<result, openvdb::tools::LayoutXYZ>;
-            dense target(CoordBBox(lo, hi), out());
-            openvdb::tools::copyToDense(tree_, target);
-        } else {
-            tbb::parallel_for(tbb::blocked_range<uint32_t>(0, desc_.size[2]),
-                              [&](const tbb::blocked_range<uint32_t> &z) { interpolate(z); });
-        }
-    }
-
-  private:
-    result *out() const { return reinterpret_cast<result *>(desc_.out); }
-
-    // Centres on voxel centres and one voxel apart, to a hundredth of a voxel over the whole box.
-    bool on_lattice() const {
-        if (staggered_) return false;
-        for (int i = 0; i < 3; i++) {
-            if (std::fabs(first_[i] - std::round(first_[i])) > 0.01) return false;
-            for (int k = 0; k < 3; k++)
-                if (std::fabs(step_[i][k] - (i == k ? 1.0 : 0.0)) * desc_.size[i] > 0.01)
-                    return false;
-        }
-        return true;
-    }
-
-    template <class Access> result at(Access &access, const Vec3d &p) const {
-        Coord cell(int(std::floor(p[0])), int(std::floor(p[1])), int(std::floor(p[2])));
-        float f[3];
-        for (int i = 0; i < 3; i++) f[i] = float(p[i] - cell[i]);
-        result sum(0.0f);
-        for (int corner = 0; corner < 8; corner++) {
-            float weight = 1.0f;
-            for (int i = 0; i < 3; i++) weight *= corner >> i & 1 ? f[i] : 1.0f - f[i];
-            if (weight == 0.0f) continue; // a NaN next door does not count
-            Coord c = cell.offsetBy(corner & 1, corner >> 1 & 1, corner >> 2);
-            sum += result(access.getValue(c)) * weight;
-        }
-        return sum;
-    }
-
-    template <class Access> float face(Access &access, Vec3d p, int axis, float) const {
-        (void)axis;
-        return at(access, p);
-    }
-    template <class Access> Vec3s face(Access &access, Vec3d p, int axis, Vec3s sum) const {
-        p[axis] += 0.5;
-        sum[axis] = at(access, p)[axis];
-        return sum;
-    }
-
-    void interpolate(const tbb::blocked_range<uint32_t> &layers) const {
-        openvdb::tree::ValueAccessor<const Tree> access(tree_);
-        for (uint32_t z = layers.begin(); z != layers.end(); z++)
-            for (uint32_t y = 0; y < desc_.size[1]; y++) {
-                result *row = out() + (size_t(z) * desc_.size[1] + y) * desc_.size[0];
-                Vec3d start = first_ + step_[1] * double(y) + step_[2] * double(z);
-                for (uint32_t x = 0; x < desc_.size[0]; x++) {
-                    Vec3d p = start + step_[0] * double(x);
-                    if (!staggered_) {
-                        row[x] = at(access, p);
-                        continue;
-                    }
-                    result sum(0.0f);
-                    for (int axis = 0; axis < 3; axis++) sum = face(access, p, axis, sum);
-                    row[x] = sum;
-                }
+    auto layers = [&](const tbb::blocked_range<uint32_t> &range) {
+        interpolator<Tree> value(tree, staggered);
+        for (uint32_t z = range.begin(); z != range.end(); z++)
+            for (uint32_t y = 0; y < desc.size[1]; y++) {
+                result *row = out + (size_t(z) * desc.size[1] + y) * desc.size[0];
+                Vec3d start = place.first + place.step[1] * double(y) + place.step[2] * double(z);
+                for (uint32_t x = 0; x < desc.size[0]; x++)
+                    row[x] = value(start + place.step[0] * double(x));
             }
-    }
-
-    const Tree &tree_;
-    const vdb_sample_desc &desc_;
-    bool staggered_;
-    Vec3d first_, step_[3]; // index coordinates of centre 0; from one centre to the next
-};
-
-template <class Value> float first_component(const Value &v) {
-    return float(v);
-}
-template <class Real> float first_component(const openvdb::math::Vec3<Real> &v) {
-    return float(v[0]);
+    };
+    tbb::parallel_for(tbb::blocked_range<uint32_t>(0, desc.size[2]), layers);
 }
 
 template <class Grid>
 bool sample(const GridBase &base, const affine &t, const vdb_sample_desc &desc, vdb_class cls) {
     const Grid &grid = static_cast<const Grid &>(base);
     bool staggered = cls == VDB_STAGGERED && desc.components == 3;
-    sampler<typename Grid::TreeType> s(grid.tree(), t, desc, staggered);
-    if (!s.is_near())
+    placing place(t, desc);
+    if (!place.is_near())
         return err_set("%s: grid '%s': the box to sample is too far away or not finite", desc.path,
                        desc.grid);
-    s.run();
+    fill(grid.tree(), place, desc, staggered);
     if (cls == VDB_LEVEL_SET && desc.components == 1) {
-        float band = std::fabs(first_component(grid.background()));
-        if (!(band > 0.0f)) band = 3.0f * float(t.axis[0].length());
+        fog value(grid, t);
         size_t count = size_t(desc.size[0]) * desc.size[1] * desc.size[2];
-        for (size_t i = 0; i < count; i++) {
-            float d = desc.out[i];
-            desc.out[i] = d <= 0.0f ? 1.0f : d >= band ? 0.0f : 1.0f - d / band;
-        }
+        for (size_t i = 0; i < count; i++) desc.out[i] = value(desc.out[i]);
     }
     return true;
 }
@@ -528,27 +210,7 @@ bool sample_any(const GridBase &grid, vdb_value value, const affine &t, const vd
     return false;
 }
 
-// Names all grids of the file.
-bool no_such_grid(const file &f, const vdb_sample_desc &desc) {
-    std::string names;
-    for (size_t i = 0; i < f.layout.count && names.size() < 400; i++)
-        names += (i ? ", " : "") + std::string(f.layout.grids[i].name);
-    return err_set("%s: no grid named '%s'; the file has: %s", desc.path, desc.grid,
-                   names.empty() ? "none" : names.c_str());
-}
-
-bool can_sample(const vdb_layout_grid &g, const vdb_sample_desc &desc) {
-    if (g.value == VDB_VALUE_OTHER)
-        return err_set("%s: grid '%s' has values of type %s; float, half, double, int32, int64, "
-                       "bool, vec3s, vec3d and vec3i are read",
-                       desc.path, desc.grid, g.type);
-    if (!g.linear)
-        return err_set("%s: grid '%s' has a frustum transform; resample it to boxes of voxels "
-                       "first",
-                       desc.path, desc.grid);
-    if (vdb_value_components(g.value) != desc.components)
-        return err_set("%s: grid '%s' has %d component(s) a voxel, not %d", desc.path, desc.grid,
-                       vdb_value_components(g.value), desc.components);
+bool size_is_fine(const vdb_sample_desc &desc) {
     uint64_t voxels = 1;
     for (int i = 0; i < 3; i++) {
         if (desc.size[i] == 0 || voxels > sample_voxels_max / desc.size[i])
@@ -617,7 +279,7 @@ extern "C" bool vdb_sample(const vdb_sample_desc *desc, uint64_t *bad) {
         if (!f.open(desc->path)) return false;
         const vdb_layout_grid *g = f.find(desc->grid);
         if (!g) return no_such_grid(f, *desc);
-        if (!can_sample(*g, *desc)) return false;
+        if (!can_sample(*g, *desc) || !size_is_fine(*desc)) return false;
         affine transform;
         GridBase::Ptr grid;
         if (!read_affine(f.layout, *g, &transform) || !load(f.layout, *g, &grid)) return false;

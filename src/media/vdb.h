@@ -47,6 +47,20 @@ typedef struct vdb_sample_desc {
 // moved to the voxels' centres. Frustum transforms are refused, as are types with 0 components.
 bool vdb_sample(const vdb_sample_desc *desc, uint64_t *bad);
 
+// One grid of a file, kept as the file has it and read in blocks; values are those of vdb_sample.
+// For one thread at a time.
+enum { VDB_BLOCK = 9 }; // voxels a side: 8, and those that linear filtering needs beyond
+typedef struct vdb_blocks vdb_blocks;
+vdb_blocks *vdb_blocks_open(const vdb_sample_desc *desc); // of any size; `out` is not used
+void vdb_blocks_close(vdb_blocks *b);                     // NULL is fine
+// Names boxes of voxels (inclusive, within the size) outside of which all is background.
+typedef void vdb_block_found(void *user, const int32_t low[3], const int32_t high[3]);
+void vdb_blocks_visit(const vdb_blocks *b, vdb_block_found *found, void *user);
+void vdb_blocks_background(const vdb_blocks *b, float out[3]); // its components
+// VDB_BLOCK^3 voxels from `at` on, x fastest; it may lie outside. Returns how many of its first
+// 8^3 values were not finite and became 0.
+uint64_t vdb_blocks_read(vdb_blocks *b, const int32_t at[3], float *out);
+
 typedef struct vdb_write_grid { // for tests and export
     const char *name;
     uint32_t size[3];
