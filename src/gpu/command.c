@@ -59,9 +59,19 @@ static VkResult end_and_submit(gpu *g, vk_batch *batch) {
     if (result != VK_SUCCESS) return result;
     VkCommandBufferSubmitInfo commands = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                           .commandBuffer = batch->commands};
-    VkSemaphoreSubmitInfo wait = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
-                                  .semaphore = batch->wait,
-                                  .stageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT};
+    VkSemaphoreSubmitInfo waits[2];
+    uint32_t wait_count = 0;
+    if (batch->wait)
+        waits[wait_count++] =
+            (VkSemaphoreSubmitInfo){.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                    .semaphore = batch->wait,
+                                    .stageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT};
+    if (g->copier.wait)
+        waits[wait_count++] =
+            (VkSemaphoreSubmitInfo){.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                    .semaphore = g->copier.timeline,
+                                    .value = g->copier.wait,
+                                    .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
     VkSemaphoreSubmitInfo signals[2] = {{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
                                          .semaphore = g->timeline,
                                          .value = g->submitted + 1,
@@ -72,11 +82,12 @@ static VkResult end_and_submit(gpu *g, vk_batch *batch) {
     VkSubmitInfo2 info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
                           .commandBufferInfoCount = 1,
                           .pCommandBufferInfos = &commands,
-                          .waitSemaphoreInfoCount = batch->wait ? 1 : 0,
-                          .pWaitSemaphoreInfos = &wait,
+                          .waitSemaphoreInfoCount = wait_count,
+                          .pWaitSemaphoreInfos = waits,
                           .signalSemaphoreInfoCount = batch->signal ? 2 : 1,
                           .pSignalSemaphoreInfos = signals};
     batch->wait = batch->signal = VK_NULL_HANDLE;
+    g->copier.wait = 0;
     return vkQueueSubmit2(g->queue, 1, &info, VK_NULL_HANDLE);
 }
 

@@ -21,7 +21,7 @@ void vk_features_read(VkPhysicalDevice physical, vk_features *out) {
     vkGetPhysicalDeviceFeatures2(physical, &out->core);
 }
 
-VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, bool presents) {
+VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, int copies, bool presents) {
     vk_features has, want = {0};
     vk_features_read(physical, &has);
     chain(&want);
@@ -48,14 +48,16 @@ VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, bool prese
     static const char *const extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME,
                                              VK_KHR_SWAPCHAIN_EXTENSION_NAME};
     float priority = 1.0f;
-    VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                     .queueFamilyIndex = family,
-                                     .queueCount = 1,
-                                     .pQueuePriorities = &priority};
+    VkDeviceQueueCreateInfo queues[2] = {{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                          .queueFamilyIndex = family,
+                                          .queueCount = 1,
+                                          .pQueuePriorities = &priority}};
+    queues[1] = queues[0];
+    queues[1].queueFamilyIndex = (uint32_t)copies;
     VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                .pNext = &want.core,
-                               .queueCreateInfoCount = 1,
-                               .pQueueCreateInfos = &queue,
+                               .queueCreateInfoCount = copies < 0 ? 1 : 2,
+                               .pQueueCreateInfos = queues,
                                .enabledExtensionCount = presents ? 2 : 1,
                                .ppEnabledExtensionNames = extensions};
     VkDevice device = VK_NULL_HANDLE;
@@ -120,7 +122,9 @@ static bool open_device(gpu *g, const char *name) {
     g->info = choice->info;
     g->physical = choice->physical;
     g->family = (uint32_t)vk_queue_family_find(g->physical, g->window.surface);
-    g->device = vk_device_create(g->physical, g->family, g->window.surface != VK_NULL_HANDLE);
+    g->copier.family = vk_transfer_family_find(g->physical);
+    g->device = vk_device_create(g->physical, g->family, g->copier.family,
+                                 g->window.surface != VK_NULL_HANDLE);
     if (!g->device) return false;
     vkGetDeviceQueue(g->device, g->family, 0, &g->queue);
     load_limits(g);
@@ -137,7 +141,7 @@ static bool open_timeline(gpu *g) {
 }
 
 static bool open_commands(gpu *g) {
-    if (!open_timeline(g)) return false;
+    if (!open_timeline(g) || !vk_copier_open(g)) return false;
     for (int i = 0; i < VK_BATCHES; i++) {
         if (!vk_batch_create(g, &g->batches[i])) return false;
     }
@@ -200,6 +204,7 @@ static void close_device(gpu *g) {
     }
     vk_cache_destroy(g);
     vkDestroySemaphore(g->device, g->timeline, NULL);
+    vk_copier_close(g);
     vk_pool_deinit(g);
     vkDestroyDevice(g->device, NULL);
 }

@@ -141,6 +141,32 @@ bool gpu_buffer_read(gpu *g, gpu_buffer *buffer, uint64_t offset, void *out, siz
 // Host address of a readback buffer; valid data once the frame that copied into it has finished.
 const void *gpu_buffer_map(gpu_buffer *buffer);
 
+// ---- transfers --------------------------------------------------------------------------------
+
+// Host memory that is copied into images beside the frames, on a queue of its own where the device
+// has one: for what is too large to be written within a frame.
+typedef struct gpu_transfer gpu_transfer;
+
+enum { GPU_TRANSFER_ALIGN = 16 };
+
+typedef struct gpu_transfer_part {
+    gpu_image *image; // 3D: the first `slices` of its mip 0 are replaced, the others lose contents
+    uint64_t offset;  // of its bytes in the transfer, tightly packed; of GPU_TRANSFER_ALIGN
+    uint32_t slices;
+} gpu_transfer_part;
+
+gpu_transfer *gpu_transfer_create(gpu *g, uint64_t size); // bytes
+void gpu_transfer_destroy(gpu *g, gpu_transfer *t);       // waits for its copies; NULL is fine
+uint64_t gpu_transfer_size(const gpu_transfer *t);
+// Any thread may write there, unless copies are under way.
+void *gpu_transfer_map(gpu_transfer *t);
+// Begins the copies, with or without an open frame; a frame that is open must not have used the
+// images. They can be bound again after gpu_transfer_finish.
+bool gpu_transfer_start(gpu *g, gpu_transfer *t, const gpu_transfer_part *parts, size_t count);
+bool gpu_transfer_done(gpu *g, const gpu_transfer *t); // no copies are under way
+// What is recorded from here on sees the images; never waits on the host.
+bool gpu_transfer_finish(gpu *g, gpu_transfer *t);
+
 // ---- pipelines --------------------------------------------------------------------------------
 
 typedef enum gpu_slot_kind {

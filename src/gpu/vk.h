@@ -56,7 +56,8 @@ typedef struct vk_features {
     VkPhysicalDeviceVulkan13Features v13;
 } vk_features;
 void vk_features_read(VkPhysicalDevice physical, vk_features *out);
-VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, bool presents);
+// `copies`: a second family to have a queue of; -1: none.
+VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, int copies, bool presents);
 
 // True for VK_SUCCESS; else false with "what: why", and notes a lost device.
 bool vk_check(gpu *g, VkResult result, const char *what, ...) PRINTF_LIKE(3, 4);
@@ -283,6 +284,20 @@ typedef struct vk_frame {
     VkSemaphore acquired; // the window's image is ours; NULL without a window
 } vk_frame;
 
+// ---- copies beside the frames -----------------------------------------------------------------
+
+typedef struct vk_copier {
+    int family; // -1: the device has no queue for copies alone, and nothing below is used
+    VkQueue queue;
+    VkSemaphore timeline;
+    uint64_t submitted; // on that timeline
+    uint64_t wait;      // the next submission to the other queue waits for this; 0: for nothing
+} vk_copier;
+
+int vk_transfer_family_find(VkPhysicalDevice physical); // -1: none
+bool vk_copier_open(gpu *g);
+void vk_copier_close(gpu *g); // the device is idle
+
 // ---- the window -------------------------------------------------------------------------------
 
 typedef struct vk_swapchain {
@@ -356,6 +371,7 @@ struct gpu {
     char *cache_path;
     uint64_t cache_hash; // of what the file holds
 
+    vk_copier copier;
     VkSemaphore timeline;
     uint64_t submitted, completed; // serials
     _Atomic uint64_t open_serial;  // of the open command buffer, else the last submitted
