@@ -101,6 +101,18 @@ const char *roil_device_driver(const roil *r) {
     return r->device ? gpu_get_info(r->device)->driver : "";
 }
 
+const char *roil_home(const roil *r) {
+    return r->home;
+}
+
+void roil_set_counters(roil *r, bool counters) {
+    r->counters = counters;
+}
+
+void roil_set_reference(roil *r, uint32_t samples) {
+    r->reference = samples;
+}
+
 uint64_t roil_validation_messages(const roil *r) {
     return r->device ? gpu_validation_messages(r->device) : 0;
 }

@@ -54,6 +54,10 @@ void roil_destroy(roil *r); // after its effects; NULL is fine
 const char *roil_device_name(const roil *r);
 const char *roil_device_driver(const roil *r);
 uint64_t roil_validation_messages(const roil *r);
+const char *roil_home(const roil *r); // the folder with shaders/ and scripts/
+// For effects that are loaded from now on: as `counters` and `reference` of roil_desc.
+void roil_set_counters(roil *r, bool counters);
+void roil_set_reference(roil *r, uint32_t samples);
 bool roil_is_lost(const roil *r); // the device hangs or is gone: only roil_destroy is left to do
 
 typedef struct roil_memory {

@@ -1,6 +1,7 @@
 // Frames, sizes and file patterns, as they stand on the command line.
 #include "app/app.h"
 #include "base/error.h"
+#include "base/frames.h"
 #include "base/memory.h"
 #include "base/str.h"
 #include <ctype.h>
@@ -9,49 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_FRAMES = 1000000 };
-
-static bool parse_number(const char **text, double *out) {
-    char *end;
-    if (!isdigit((unsigned char)**text)) return false;
-    *out = strtod(*text, &end);
-    *text = end;
-    return isfinite(*out);
-}
-
-static bool add_range(app_frames *frames, size_t *capacity, double first, double last,
-                      double step) {
-    if (!(step > 0) || last < first || (last - first) / step > MAX_FRAMES) return false;
-    size_t count = (size_t)floor((last - first) / step + 1e-9) + 1;
-    if (frames->count + count > MAX_FRAMES) return false;
-    MEM_RESERVE(frames->numbers, frames->count + count, *capacity);
-    for (size_t i = 0; i < count; i++) frames->numbers[frames->count++] = first + (double)i * step;
-    return true;
-}
-
 bool app_parse_frames(const char *text, app_frames *out) {
     *out = (app_frames){.step = 1};
-    size_t capacity = 0;
-    const char *at = text;
-    for (;;) {
-        double first, last, step = 1;
-        bool done = parse_number(&at, &first);
-        last = first;
-        if (done && *at == '-') {
-            at++;
-            done = parse_number(&at, &last);
-        }
-        if (done && *at == ':') {
-            at++;
-            done = parse_number(&at, &step);
-        }
-        if (!done || !add_range(out, &capacity, first, last, step) || (*at && *at != ',')) {
-            app_free_frames(out);
-            return err_set("frames '%s'; accepted: 30, or 10,30,50, or 0-99, or 0-99:2", text);
-        }
-        if (!*at) break;
-        at++;
-    }
+    if (!frames_parse(text, &out->numbers, &out->count)) return false;
     if (out->count > 1) out->step = out->numbers[1] - out->numbers[0];
     if (!(out->step > 0)) out->step = 1;
     return true;

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/statistics.h"
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,37 +54,20 @@ void app_stats_destroy(app_stats *s) {
 
 // ---- summary ----------------------------------------------------------------------------------
 
-static int compare(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-typedef struct summary {
-    double median, high; // 95th percentile
-} summary;
-
-static summary summarise(double *values, size_t count) {
-    qsort(values, count, sizeof *values, compare);
-    double median =
-        count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
-    size_t high = (count * 95 + 99) / 100;
-    return (summary){median, values[high ? high - 1 : 0]};
-}
-
 // Every frame runs the same passes: the first names them.
-static summary pass_summary(const app_stats *s, size_t pass, double *values) {
+static stats_summary pass_summary(const app_stats *s, size_t pass, double *values) {
     for (size_t i = 0; i < s->count; i++)
         values[i] = pass < s->frames[i].time_count ? s->frames[i].times[pass].milliseconds : 0;
-    return summarise(values, s->count);
+    return stats_summarise(values, s->count);
 }
 
-static summary total_summary(const app_stats *s, double *values) {
+static stats_summary total_summary(const app_stats *s, double *values) {
     for (size_t i = 0; i < s->count; i++) {
         values[i] = 0;
         for (size_t k = 0; k < s->frames[i].time_count; k++)
             values[i] += s->frames[i].times[k].milliseconds;
     }
-    return summarise(values, s->count);
+    return stats_summarise(values, s->count);
 }
 
 void app_stats_print(const app_stats *s) {
@@ -92,11 +76,11 @@ void app_stats_print(const app_stats *s) {
     printf("%-20s %10s %10s   GPU ms over %zu frame%s\n", "pass", "median", "95 %", s->count,
            s->count == 1 ? "" : "s");
     for (size_t i = 0; i < s->frames[0].time_count; i++) {
-        summary m = pass_summary(s, i, values);
-        printf("%-20s %10.3f %10.3f\n", s->frames[0].times[i].pass, m.median, m.high);
+        stats_summary m = pass_summary(s, i, values);
+        printf("%-20s %10.3f %10.3f\n", s->frames[0].times[i].pass, m.median, m.p95);
     }
-    summary total = total_summary(s, values);
-    printf("%-20s %10.3f %10.3f\n", "all", total.median, total.high);
+    stats_summary total = total_summary(s, values);
+    printf("%-20s %10.3f %10.3f\n", "all", total.median, total.p95);
     mem_free(values);
 }
 

@@ -94,6 +94,3 @@ typedef struct sweep_options { // of the command line, in place of what the file
 
 // False with "file:line: message".
 bool sweep_read(const char *file, const sweep_options *options, arena *memory, sweep *out);
-
-// "30", "10,30,50", "0-99", "0-99:2", or a list of such; in `memory`. False with a message.
-bool sweep_parse_frames(const char *text, arena *memory, double **out, size_t *count);

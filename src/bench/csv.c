@@ -1,0 +1,194 @@
+// Results as results.csv (RFC 4180): a line a row, and a column for whatever any row has.
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include "bench/json.h"
+#include "bench/results.h"
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---- names of columns -------------------------------------------------------------------------
+
+typedef struct names { // each once, in the order in which they are met
+    const char **items;
+    size_t count, capacity;
+} names;
+
+static void add_name(names *n, const char *name) {
+    for (size_t i = 0; i < n->count; i++)
+        if (strcmp(n->items[i], name) == 0) return;
+    MEM_RESERVE(n->items, n->count + 1, n->capacity);
+    n->items[n->count++] = name;
+}
+
+// "all" stands behind the passes also where a later row brings another pass.
+static names time_names(const bench_results *r, bench_times (*get)(const bench_row *row)) {
+    names n = {0};
+    bool all = false;
+    for (size_t i = 0; i < r->row_count; i++) {
+        bench_times t = get(&r->rows[i]);
+        for (size_t k = 0; k < t.count; k++) {
+            if (strcmp(t.items[k].name, "all") == 0)
+                all = true;
+            else
+                add_name(&n, t.items[k].name);
+        }
+    }
+    if (all) add_name(&n, "all");
+    return n;
+}
+
+static names number_names(const bench_results *r, bench_numbers (*get)(const bench_row *row)) {
+    names n = {0};
+    for (size_t i = 0; i < r->row_count; i++) {
+        bench_numbers all = get(&r->rows[i]);
+        for (size_t k = 0; k < all.count; k++) add_name(&n, all.items[k].name);
+    }
+    return n;
+}
+
+static bench_times get_gpu(const bench_row *row) {
+    return row->gpu;
+}
+static bench_times get_cpu(const bench_row *row) {
+    return row->cpu;
+}
+static bench_times get_times(const bench_row *row) {
+    return row->times;
+}
+static bench_numbers get_counters(const bench_row *row) {
+    return row->counters;
+}
+static bench_numbers get_published(const bench_row *row) {
+    return row->published;
+}
+
+static const struct {
+    const char *prefix;
+    bench_times (*get)(const bench_row *row);
+} time_columns[] = {{"gpu", get_gpu}, {"cpu", get_cpu}, {"time", get_times}};
+static const struct {
+    const char *prefix;
+    bench_numbers (*get)(const bench_row *row);
+} number_columns[] = {{"counter", get_counters}, {"published", get_published}};
+
+typedef struct columns {
+    names times[COUNT_OF(time_columns)], numbers[COUNT_OF(number_columns)];
+} columns;
+
+// ---- lines ------------------------------------------------------------------------------------
+
+// Quoted where it must be.
+static void add_text(strbuf *out, const char *text) {
+    if (out->length && out->text[out->length - 1] != '\n') strbuf_append(out, ",", 1);
+    bool quoted = text[strcspn(text, ",\"\r\n")] != '\0';
+    if (!quoted) {
+        strbuf_add(out, "%s", text);
+        return;
+    }
+    strbuf_append(out, "\"", 1);
+    for (; *text; text++) strbuf_append(out, *text == '"' ? "\"\"" : text, *text == '"' ? 2 : 1);
+    strbuf_append(out, "\"", 1);
+}
+
+static void add_number(strbuf *out, double value) {
+    strbuf_add(out, isinf(value) ? ",inf" : ",%.8g", value);
+}
+
+static void add_heading(strbuf *out, const char *prefix, const char *name, const char *of) {
+    strbuf text = {0};
+    strbuf_add(&text, "%s.%s%s", prefix, name, of);
+    add_text(out, text.text);
+    strbuf_free(&text);
+}
+
+static void add_headings(const bench_results *r, const columns *c, strbuf *out) {
+    strbuf_add(out, "index,label");
+    for (size_t i = 0; i < r->axis_count; i++) add_heading(out, "axis", r->axes[i].name, "");
+    strbuf_add(out, ",effect,width,height,frames,state,message");
+    for (size_t t = 0; t < COUNT_OF(time_columns); t++)
+        for (size_t i = 0; i < c->times[t].count; i++) {
+            static const char *const of[] = {".median", ".p5", ".p95", ".count"};
+            for (size_t k = 0; k < COUNT_OF(of); k++)
+                add_heading(out, time_columns[t].prefix, c->times[t].items[i], of[k]);
+        }
+    strbuf_add(out, ",memory.device,memory.reserved,memory.host,error.psnr,error.ssim,error.flip");
+    for (size_t n = 0; n < COUNT_OF(number_columns); n++)
+        for (size_t i = 0; i < c->numbers[n].count; i++)
+            add_heading(out, number_columns[n].prefix, c->numbers[n].items[i], "");
+    strbuf_add(out, "\n");
+}
+
+static void add_times(const columns *c, const bench_row *row, strbuf *out) {
+    for (size_t t = 0; t < COUNT_OF(time_columns); t++)
+        for (size_t i = 0; i < c->times[t].count; i++) {
+            bench_times all = time_columns[t].get(row);
+            const bench_figure *f = bench_get_time(&all, c->times[t].items[i]);
+            if (!f) {
+                strbuf_add(out, ",,,,");
+                continue;
+            }
+            add_number(out, f->median);
+            add_number(out, f->p5);
+            add_number(out, f->p95);
+            strbuf_add(out, ",%zu", f->count);
+        }
+}
+
+static void add_numbers(const columns *c, const bench_row *row, strbuf *out) {
+    for (size_t n = 0; n < COUNT_OF(number_columns); n++)
+        for (size_t i = 0; i < c->numbers[n].count; i++) {
+            bench_numbers all = number_columns[n].get(row);
+            size_t k = 0;
+            while (k < all.count && strcmp(all.items[k].name, c->numbers[n].items[i]) != 0) k++;
+            if (k < all.count)
+                add_number(out, all.items[k].value);
+            else
+                strbuf_add(out, ",");
+        }
+}
+
+static void add_row(const bench_results *r, const columns *c, const bench_row *row, strbuf *out) {
+    strbuf_add(out, "%zu", row->index);
+    add_text(out, row->label);
+    for (size_t i = 0; i < r->axis_count; i++) {
+        const char *value = bench_axis_value(row, r->axes[i].name);
+        add_text(out, value ? value : "");
+    }
+    add_text(out, row->effect);
+    strbuf_add(out, ",%" PRIu32 ",%" PRIu32 ",%zu,%s", row->width, row->height, row->frame_count,
+               bench_state_name(row->state));
+    add_text(out, row->message);
+    add_times(c, row, out);
+    strbuf_add(out, ",%" PRIu64 ",%" PRIu64 ",%" PRIu64, row->device_bytes, row->reserved_bytes,
+               row->host_bytes);
+    if (row->compared) {
+        add_number(out, row->psnr);
+        add_number(out, row->ssim);
+        add_number(out, row->flip);
+    } else {
+        strbuf_add(out, ",,,");
+    }
+    add_numbers(c, row, out);
+    strbuf_add(out, "\n");
+}
+
+bool bench_write_csv(const bench_results *r, const char *folder) {
+    char path[PATH_CAP];
+    if (!path_join(path, folder, "results.csv")) return false;
+    columns c;
+    for (size_t t = 0; t < COUNT_OF(time_columns); t++)
+        c.times[t] = time_names(r, time_columns[t].get);
+    for (size_t n = 0; n < COUNT_OF(number_columns); n++)
+        c.numbers[n] = number_names(r, number_columns[n].get);
+    strbuf out = {0};
+    add_headings(r, &c, &out);
+    for (size_t i = 0; i < r->row_count; i++) add_row(r, &c, &r->rows[i], &out);
+    bool done = file_write(path, out.text, out.length);
+    strbuf_free(&out);
+    for (size_t t = 0; t < COUNT_OF(time_columns); t++) mem_free(c.times[t].items);
+    for (size_t n = 0; n < COUNT_OF(number_columns); n++) mem_free(c.numbers[n].items);
+    return done;
+}

@@ -1,0 +1,8 @@
+// The report of a sweep: report.html, one page with tables, plots and pictures that needs no other
+// file, no network and no scripts to be read.
+#pragma once
+#include "bench/results.h"
+
+// Writes `folder`/report.html; thumbnails are taken from `folder`. `home`: the folder that holds
+// scripts/report. False with a message.
+bool bench_report(const bench_results *r, const char *folder, const char *home);
