@@ -1,0 +1,29 @@
+-- The report of a sweep: one page that needs nothing else. It is given results.json as tables.
+local h = require "html"
+local bars, data, front, head = require "bars", require "data", require "front", require "head"
+local lines, pictures, rows, style = require "lines", require "pictures", require "rows", require "style"
+
+return function(results)
+  local sweep = data.read(results)
+  local plots, said = lines(sweep)
+  local cost, sentence = front(sweep)
+  said[#said + 1] = sentence
+  return "<!DOCTYPE html>\n" .. h.render(h.html { lang = "en",
+    h.head {
+      h.meta { charset = "utf-8" },
+      -- Whatever a page's text might try, there is nothing that it could load.
+      h.meta { ["http-equiv"] = "Content-Security-Policy",
+               content = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'" },
+      h.meta { name = "viewport", content = "width=device-width, initial-scale=1" },
+      h.meta { name = "color-scheme", content = "light dark" },
+      h.title(sweep.title .. " · roil bench"),
+      h.style(h.raw(style)) },
+    h.body(h.main {
+      head(sweep, said),
+      cost,
+      plots,
+      bars(sweep),
+      rows(sweep),
+      pictures(sweep),
+      h.footer { "Made by roil ", sweep.roil, " from results.json beside this page." } }) })
+end
