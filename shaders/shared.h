@@ -78,5 +78,16 @@ struct bvh_instance {
     SHARED_UINT root;
     SHARED_VEC3 high;
     SHARED_UINT end;   // node behind its tree
-    SHARED_VEC4 color; // rgb: factor of the triangles' colours
+    SHARED_VEC4 color; // rgb: factor of the triangles' colours; w: number of the mesh
+};
+
+// What lib/surface.glsl tells of a triangle that was hit; src/scene/surfaces.c makes it.
+struct surface_vertex { // as mesh_vertex
+    SHARED_VEC4 position_u;
+    SHARED_VEC4 normal_v;
+};
+
+struct surface_material {
+    SHARED_VEC4 color;    // base colour, linear
+    SHARED_UVEC4 texture; // width (0: none), height, first of its texels, 1 where it has holes
 };

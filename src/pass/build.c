@@ -226,8 +226,7 @@ bool pass_build(pass *p) {
 }
 
 bool pass_allocate(pass *p) {
-    for (size_t i = 0; i < p->mesh_count; i++)
-        if (!scene_mesh_upload(p->meshes[i], p->host->device)) return false;
+    if (p->type && p->type->allocate && !p->type->allocate(p)) return false;
     return make_palettes(p) && make_blanks(p) && make_unread(p) && make_blue_noise(p->host) &&
            make_counters(p);
 }

@@ -1,9 +1,11 @@
-// Geometry: one draw per part of every mesh. The linear depth that volumes are tested against is a
-// colour target; the depth buffer proper stays in this pass.
+// Geometry: by rays in a compute shader, or drawn, one draw per part of every mesh. When drawn, the
+// linear depth that volumes are tested against is a colour target; the depth buffer proper stays in
+// this pass.
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/builtin.h"
 #include "pass/pass_impl.h"
+#include "scene/bvh.h"
 #include <string.h>
 
 typedef struct part_block { // std140, as shaders/lib/mesh.glsl has it
@@ -13,7 +15,8 @@ typedef struct part_block { // std140, as shaders/lib/mesh.glsl has it
 } part_block;
 
 typedef struct geometry_state {
-    shader_binary vertex; // the pass's own is the fragment stage
+    bool rays;
+    shader_binary vertex; // drawn: the pass's own is the fragment stage
     graph_image z;
 } geometry_state;
 
@@ -22,8 +25,41 @@ static geometry_state *state_of(pass *p) {
     return p->state;
 }
 
+static bool surfaces_fit(const pass *p) {
+    for (size_t i = 0; i < p->mesh_count; i++)
+        if (!scene_bvh_surfaces_fit(p->meshes[i], p->host->device)) return false;
+    return true;
+}
+
+// A software device draws triangles many times faster than it traces rays. Of the others, those for
+// computing have few processors that draw, and none was seen to trace slowly.
+static bool choose_rays(const pass *p) {
+    size_t index;
+    pass_find_key(p, "mode", &index);
+    const char *mode = p->face->options[index].words[p->options[index]];
+    if (strcmp(mode, "auto") != 0) return strcmp(mode, "rays") == 0;
+    return p->host->device && gpu_get_info(p->host->device)->kind != GPU_CPU && surfaces_fit(p);
+}
+
+static bool declare_targets(pass *p) {
+    for (size_t i = 0; i < p->face->image_count; i++) {
+        p->images[i] = graph_add_image(
+            p->host->graph,
+            &(graph_image_desc){
+                .name = arena_format(p->host->memory, "%s.%s", p->label, p->face->images[i].name),
+                .format = p->formats[i],
+                .scale = p->scale,
+                .target = true,
+            });
+        if (!p->images[i].id) return false;
+    }
+    return true;
+}
+
 bool geometry_declare(pass *p) {
     geometry_state *s = state_of(p);
+    s->rays = choose_rays(p);
+    if (s->rays) return pass_declare_images(p) && pass_add_to_graph(p);
     s->z =
         graph_add_image(p->host->graph, &(graph_image_desc){
                                             .name = arena_format(p->host->memory, "%s.z", p->label),
@@ -31,12 +67,13 @@ bool geometry_declare(pass *p) {
                                             .scale = p->scale,
                                             .target = true,
                                         });
-    return s->z.id && pass_declare_images(p) && pass_add_to_graph_with(p, &s->z, 1);
+    return s->z.id && declare_targets(p) && pass_add_to_graph_with(p, &s->z, 1);
 }
 
 bool geometry_check(pass *p) {
+    if (state_of(p)->rays) return pass_compile(p, p->shader, SHADER_COMPUTE, NULL, 0, &p->binary);
     return pass_compile(p, "pass/geometry.vert", SHADER_VERTEX, NULL, 0, &state_of(p)->vertex) &&
-           pass_compile(p, p->shader, SHADER_FRAGMENT, NULL, 0, &p->binary);
+           pass_compile(p, "pass/geometry.frag", SHADER_FRAGMENT, NULL, 0, &p->binary);
 }
 
 // The two stages share one set: their shaders number the bindings themselves.
@@ -56,6 +93,10 @@ static size_t merge_slots(pass *p, gpu_slot out[GPU_MAX_SLOTS]) {
 
 bool geometry_build(pass *p) {
     if (!geometry_check(p)) return false;
+    if (state_of(p)->rays) {
+        p->pipeline = pass_create_compute(p, &p->binary);
+        return p->pipeline != NULL;
+    }
     const shader_binary *vertex = &state_of(p)->vertex;
     gpu_slot slots[GPU_MAX_SLOTS];
     size_t slot_count = merge_slots(p, slots);
@@ -74,6 +115,23 @@ bool geometry_build(pass *p) {
                              .depth = GPU_D32F,
                          });
     return p->pipeline != NULL;
+}
+
+bool geometry_allocate(pass *p) {
+    if (state_of(p)->rays) return scene_bvh_allocate_surfaces(p->host->bvh, p->host->device);
+    for (size_t i = 0; i < p->mesh_count; i++)
+        if (!scene_mesh_upload(p->meshes[i], p->host->device)) return false;
+    return true;
+}
+
+bool geometry_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+    uint32_t shown[SCENE_BVH_MAX_MESHES / 32], padded[SCENE_BVH_MAX_MESHES / 32][4] = {0};
+    int32_t holes = scene_bvh_has_holes(p->host->bvh);
+    scene_bvh_choose(p->host->bvh, p->meshes, p->mesh_count, shown);
+    for (size_t i = 0; i < COUNT_OF(shown); i++) padded[i][0] = shown[i]; // std140
+    pass_write_member(binary, block, "shown", padded, sizeof padded);
+    pass_write_member(binary, block, "holes", &holes, sizeof holes);
+    return true;
 }
 
 // Slots of both stages, by name; the vertex stage first.
@@ -131,6 +189,7 @@ static bool draw_mesh(pass *p, const scene_mesh *mesh, gpu_draw_desc *target) {
 
 bool geometry_record(pass *p) {
     const geometry_state *s = p->state;
+    if (s->rays) return pass_record(p);
     graph *g = p->host->graph;
     gpu_draw_desc target = {
         .pipeline = p->pipeline,

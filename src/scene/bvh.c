@@ -3,11 +3,13 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "scene/bvh_tree.h"
+#include "scene/surfaces.h"
 #include <math.h>
 #include <string.h>
 
 typedef struct tree { // nodes of the forest
     uint32_t root, end;
+    size_t triangles; // of the forest, up to those of this tree
 } tree;
 
 typedef struct placement { // the buffer "BvhInstances"
@@ -21,7 +23,7 @@ struct scene_bvh {
     size_t mesh_count;
     bvh_forest forest;
     placement now; // as on the device, once there
-    bool written;
+    bool written, holes;
     gpu_buffer *buffers[BVH_PARTS];
 };
 
@@ -39,6 +41,7 @@ static bool add_tree(scene_bvh *b, size_t index) {
     b->trees[index].root = (uint32_t)b->forest.node_count;
     if (!bvh_forest_add(&b->forest, data)) return err_prefix("%s: ", b->meshes[index]->name);
     b->trees[index].end = (uint32_t)b->forest.node_count;
+    b->trees[index].triangles = b->forest.triangle_count;
     return true;
 }
 
@@ -95,6 +98,41 @@ bool scene_bvh_allocate(scene_bvh *b, gpu *g) {
            make_buffer(b, g, BVH_INSTANCES, "placed meshes", &b->now, sizeof b->now);
 }
 
+bool scene_bvh_surfaces_fit(const scene_mesh *mesh, gpu *g) {
+    return surfaces_largest(&mesh->data) <= gpu_get_info(g)->max_storage_range;
+}
+
+bool scene_bvh_allocate_surfaces(scene_bvh *b, gpu *g) {
+    if (b->buffers[BVH_TEXELS]) return true;
+    surfaces s = {0};
+    for (size_t i = 0; i < b->mesh_count; i++) // a tree of several meshes is done after the first
+        if (b->trees[i].triangles > s.triangle_count)
+            surfaces_add(&s, &b->forest, b->trees[i].triangles, &b->meshes[i]->data);
+    b->holes = s.holes;
+    bool done = make_buffer(b, g, BVH_SURFACES, "surfaces of meshes", s.triangles,
+                            s.triangle_count * sizeof *s.triangles) &&
+                make_buffer(b, g, BVH_VERTICES, "vertices of meshes", s.vertices,
+                            s.vertex_count * sizeof *s.vertices) &&
+                make_buffer(b, g, BVH_MATERIALS, "materials of meshes", s.materials,
+                            s.material_count * sizeof *s.materials) &&
+                make_buffer(b, g, BVH_TEXELS, "textures of meshes", s.texels,
+                            s.texel_count * sizeof *s.texels);
+    surfaces_free(&s);
+    return done;
+}
+
+bool scene_bvh_has_holes(const scene_bvh *b) {
+    return b->holes;
+}
+
+void scene_bvh_choose(const scene_bvh *b, scene_mesh *const *meshes, size_t count,
+                      uint32_t bits[SCENE_BVH_MAX_MESHES / 32]) {
+    memset(bits, 0, SCENE_BVH_MAX_MESHES / 8);
+    for (size_t i = 0; i < b->mesh_count; i++)
+        for (size_t k = 0; k < count; k++)
+            if (b->meshes[i] == meshes[k]) bits[i / 32] |= 1u << i % 32;
+}
+
 gpu_buffer *scene_bvh_buffer(const scene_bvh *b, scene_bvh_part part) {
     return b->buffers[part];
 }
@@ -146,6 +184,7 @@ static bool place(const scene_bvh *b, const field_context *context, placement *o
         if (t->root == t->end || !invert(transform, &made)) continue;
         world_box(&b->forest.nodes[t->root], transform, &made);
         memcpy(made.color.v, tint, 3 * sizeof *tint);
+        made.color.v[3] = (float)i;
         out->instances[out->count.v[0]++] = made;
     }
     return true;

@@ -186,6 +186,8 @@ static size_t split(piece *pieces, size_t count, const bounds *box, int depth) {
 static void add_triangle(builder *b, const piece *p) {
     bvh_forest *f = b->forest;
     MEM_RESERVE(f->triangles, f->triangle_count + 1, f->triangle_capacity);
+    MEM_RESERVE(f->origins, f->triangle_count + 1, f->origin_capacity);
+    f->origins[f->triangle_count] = (bvh_origin){p->first, p->part};
     struct bvh_triangle *t = &f->triangles[f->triangle_count++];
     const float *from = corner(b->mesh, p->first), *color = b->colors[p->part];
     const float *first = corner(b->mesh, p->first + 1), *second = corner(b->mesh, p->first + 2);
@@ -238,5 +240,6 @@ bool bvh_forest_add(bvh_forest *f, const mesh_data *mesh) {
 void bvh_forest_free(bvh_forest *f) {
     mem_free(f->nodes);
     mem_free(f->triangles);
+    mem_free(f->origins);
     *f = (bvh_forest){0};
 }

@@ -4,11 +4,18 @@
 #include "media/mesh.h"
 #include "shared.h"
 
+typedef struct bvh_origin { // of a triangle, in its mesh
+    uint32_t first;         // of its indices
+    uint32_t part;
+} bvh_origin;
+
 typedef struct bvh_forest { // zero: empty
     struct bvh_node *nodes;
     size_t node_count, node_capacity;
     struct bvh_triangle *triangles;
     size_t triangle_count, triangle_capacity;
+    bvh_origin *origins; // of each triangle
+    size_t origin_capacity;
 } bvh_forest;
 
 enum { BVH_LEAF_SIZE = 4, BVH_MAX_TRIANGLES = (1 << 28) - 1 };

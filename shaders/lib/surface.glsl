@@ -1,0 +1,83 @@
+// What a ray from the camera sees of the meshes (src/scene/surfaces.h): unlike lib/bvh.glsl it minds
+// the textures, their holes and the normals of the vertices, and lets no ray through where triangles
+// meet.
+#ifndef LIB_SURFACE_GLSL
+#define LIB_SURFACE_GLSL
+#include "lib/bvh.glsl"
+layout(std430) readonly buffer BvhSurfaces { uvec4 surface_triangles[]; };
+layout(std430) readonly buffer BvhVertices { surface_vertex surface_vertices[]; };
+layout(std430) readonly buffer BvhMaterials { surface_material surface_materials[]; };
+layout(std430) readonly buffer BvhTexels { uvec2 surface_texels[]; };
+
+// Of a material with a texture, which is repeated and linear between texels.
+vec4 surface_color(surface_material m, vec2 uv) {
+    ivec2 size = ivec2(m.texture.xy);
+    vec2 at = fract(uv) * vec2(size) - 0.5, part = at - floor(at);
+    ivec2 low = ivec2(floor(at)), high = low + 1;
+    low += size * ivec2(lessThan(low, ivec2(0)));
+    high -= size * ivec2(greaterThanEqual(high, size));
+    ivec4 row = int(m.texture.z) + ivec4(low.y, low.y, high.y, high.y) * size.x;
+    ivec4 texel = row + ivec4(low.x, high.x, low.x, high.x);
+    vec4 c[4];
+    for (int i = 0; i < 4; i++) {
+        uvec2 packed = surface_texels[texel[i]];
+        c[i] = vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y));
+    }
+    return m.color * mix(mix(c[0], c[1], part.x), mix(c[2], c[3], part.x), part.y);
+}
+
+vec2 surface_uv(uvec4 corners, vec2 where) {
+    vec4 a_position = surface_vertices[corners.x].position_u, a_normal = surface_vertices[corners.x].normal_v;
+    vec4 b_position = surface_vertices[corners.y].position_u, b_normal = surface_vertices[corners.y].normal_v;
+    vec4 c_position = surface_vertices[corners.z].position_u, c_normal = surface_vertices[corners.z].normal_v;
+    vec2 a = vec2(a_position.w, a_normal.w), b = vec2(b_position.w, b_normal.w);
+    vec2 c = vec2(c_position.w, c_normal.w);
+    return a + where.x * (b - a) + where.y * (c - a);
+}
+
+bool surface_has_hole(uint triangle, vec2 where) {
+    uvec4 corners = surface_triangles[triangle];
+    surface_material m = surface_materials[corners.w];
+    return m.texture.w != 0u && surface_color(m, surface_uv(corners, where)).a < 0.5;
+}
+
+// Distance to a triangle, -1 if the ray misses it, as in bvh_meet_triangle, and where it was hit. What
+// rounding can do to the edges belongs to the triangle: the two at an edge overlap a little instead of
+// leaving a gap.
+float surface_meet(bvh_ray ray, bvh_triangle t, out vec2 where) {
+    vec3 from = ray.origin - t.corner.xyz;
+    vec3 across_second = cross(ray.direction, t.second.xyz), across_first = cross(t.first.xyz, ray.direction);
+    float scale = 1.0 / dot(t.first.xyz, across_second);
+    where = vec2(dot(from, across_second), dot(from, across_first)) * scale;
+    vec2 slack = vec2(dot(abs(from), abs(across_second)), dot(abs(from), abs(across_first))) * abs(5e-7 * scale);
+    float distance = dot(from, cross(t.first.xyz, t.second.xyz)) * scale;
+    bool inside = where.x >= -slack.x && where.y >= -slack.y && where.x + where.y <= 1.0 + slack.x + slack.y;
+    return inside && distance >= ray.near ? distance : -1.0;
+}
+
+struct surface_hit {
+    int instance, triangle; // -1: none
+    vec2 where;             // on it: parts of its first and second edge
+    vec3 way;               // of the ray, in the space of the mesh
+};
+
+// The nearest triangle of a tree.
+void surface_walk(inout bvh_ray ray, uint node, uint end, bool holes, inout surface_hit hit) {
+    while (node < end) {
+        bvh_node n = bvh_nodes[node];
+        bool inside = bvh_meets_box(ray, n.low, n.high);
+        node = inside && n.leaf == 0u ? node + 1u : n.next;
+        if (!inside) continue;
+        uint first = n.leaf & 0xfffffffu, last = first + (n.leaf >> 28);
+        for (uint i = first; i < last; i++) {
+            vec2 where;
+            float distance = surface_meet(ray, bvh_triangles[i], where);
+            if (distance < 0.0 || distance > ray.far) continue;
+            if (holes && surface_has_hole(i, where)) continue;
+            ray.far = distance;
+            hit.triangle = int(i);
+            hit.where = where;
+        }
+    }
+}
+#endif

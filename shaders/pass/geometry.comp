@@ -1,0 +1,77 @@
+// Finds what is solid (Raseta et al. 2025, section 3.3) and tells of each pixel what the surface in
+// it is like; `shade` lights it.
+//
+// This is the way by rays. The other draws triangles (geometry.vert, geometry.frag) and gives the
+// same picture.
+//@ option mode = auto {auto, rays, raster} : rays: by rays through the middles of pixels; raster: drawn; auto: drawn where the device is software or a texture does not fit, else rays
+#include "lib/frame.glsl"
+#include "lib/surface.glsl"
+uniform uint shown[8];              // a bit for each mesh
+uniform bool holes;                 // textures may be clear in places
+writeonly uniform image2D albedo;   //= output rgba16f : base colour of the surface; alpha 0 where nothing is
+writeonly uniform image2D normal;   //= output rgba16f : its normal in the world, towards the viewer
+writeonly uniform image2D depth;    //= output r32f : distance along the view axis (m); 1e9 where nothing is
+
+bool is_shown(uint mesh) {
+    return (shown[mesh >> 5] >> (mesh & 31u) & 1u) != 0u;
+}
+
+// Distances of the ray are depths, since its direction is one metre deep.
+surface_hit find(inout bvh_ray ray) {
+    surface_hit hit = surface_hit(-1, -1, vec2(0.0), vec3(0.0));
+    vec4 from = vec4(ray.origin, 1.0);
+    for (uint i = 0u; i < bvh_count.x; i++) {
+        if (!is_shown(uint(bvh_instances[i].color.w))) continue;
+        if (!bvh_meets_box(ray, bvh_instances[i].low, bvh_instances[i].high)) continue;
+        vec4 x = bvh_instances[i].inverse[0], y = bvh_instances[i].inverse[1];
+        vec4 z = bvh_instances[i].inverse[2];
+        vec3 way = vec3(dot(x.xyz, ray.direction), dot(y.xyz, ray.direction), dot(z.xyz, ray.direction));
+        bvh_ray inner = bvh_make_ray(vec3(dot(x, from), dot(y, from), dot(z, from)), way, ray.near, ray.far);
+        int before = hit.triangle;
+        hit.triangle = -1;
+        surface_walk(inner, bvh_instances[i].root, bvh_instances[i].end, holes, hit);
+        if (hit.triangle < 0) {
+            hit.triangle = before;
+            continue;
+        }
+        hit.instance = int(i);
+        hit.way = way;
+        ray.far = inner.far;
+    }
+    return hit;
+}
+
+// In the world, on the side of the triangle that is seen. Its front is where its corners turn to the
+// left, of a mesh that is mirrored, too: the normals of its vertices are mirrored, its corners' turn
+// is not.
+vec3 normal_at(surface_hit hit, uvec4 corners) {
+    vec3 a = surface_vertices[corners.x].normal_v.xyz, b = surface_vertices[corners.y].normal_v.xyz;
+    vec3 c = surface_vertices[corners.z].normal_v.xyz;
+    vec3 n = a + hit.where.x * (b - a) + hit.where.y * (c - a);
+    vec3 x = bvh_instances[hit.instance].inverse[0].xyz, y = bvh_instances[hit.instance].inverse[1].xyz;
+    vec3 z = bvh_instances[hit.instance].inverse[2].xyz;
+    bvh_triangle t = bvh_triangles[hit.triangle];
+    float towards = dot(cross(t.first.xyz, t.second.xyz), hit.way) * dot(x, cross(y, z));
+    vec3 world = normalize(n.x * x + n.y * y + n.z * z);
+    return towards < 0.0 ? world : -world;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 size = imageSize(depth);
+    if (any(greaterThanEqual(pixel, size))) return;
+    vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
+    bvh_ray ray = bvh_make_ray(frame.eye.xyz, frame_ray(uv), frame.lens.z, frame.lens.w);
+    surface_hit hit = find(ray);
+    vec4 color = vec4(0.0), facing = vec4(0.0);
+    if (hit.instance >= 0) {
+        uvec4 corners = surface_triangles[hit.triangle];
+        surface_material m = surface_materials[corners.w];
+        color = m.texture.x == 0u ? m.color : surface_color(m, surface_uv(corners, hit.where));
+        color = vec4(color.rgb * bvh_instances[hit.instance].color.rgb, 1.0);
+        facing.xyz = normal_at(hit, corners);
+    }
+    imageStore(albedo, pixel, color);
+    imageStore(normal, pixel, facing);
+    imageStore(depth, pixel, vec4(hit.instance >= 0 ? ray.far : 1e9));
+}

@@ -1,0 +1,22 @@
+// What the triangles of a forest (bvh_tree.h) look like, as lib/surface.glsl reads it: corners with
+// normals, materials, and the texels of all textures one behind the other.
+#pragma once
+#include "scene/bvh_tree.h"
+
+typedef struct surfaces {    // zero: empty
+    shared_uvec4 *triangles; // of each of the forest: its three vertices and its material
+    size_t triangle_count, triangle_capacity;
+    struct surface_vertex *vertices;
+    size_t vertex_count, vertex_capacity;
+    struct surface_material *materials;
+    size_t material_count, material_capacity;
+    uint16_t (*texels)[4]; // linear, half floats
+    size_t texel_count, texel_capacity;
+    bool holes; // some material has
+} surfaces;
+
+// The triangles of the forest up to `end` that have no surface yet are those of `mesh`.
+void surfaces_add(surfaces *s, const bvh_forest *f, size_t end, const mesh_data *mesh);
+void surfaces_free(surfaces *s);
+// Bytes of the largest array that surfaces of this mesh are made of.
+uint64_t surfaces_largest(const mesh_data *mesh);

@@ -1,0 +1,158 @@
+// The two ways of `geometry`, by rays and drawn: both show the same, and rays leave no gaps.
+#include "pass_test.h"
+
+enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT, RINGS = 24, SECTORS = 48 };
+
+typedef struct seen {
+    float *albedo, *normal, *depth;
+} seen;
+
+static seen look(gpu *device, const char *mode, scene_mesh *(*make)(pass_world *w)) {
+    pass_world w;
+    world_open(&w, device);
+    scene_mesh *mesh = make(&w);
+    pass *p = world_add(&w, "geometry", NULL, "geometry");
+    gpu_test_ok(pass_set_option(p, "mode", mode));
+    gpu_test_ok(pass_add_mesh(p, mesh) && pass_declare(p));
+    gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "depth")));
+    gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "normal")));
+    world_render(&w, WIDTH, HEIGHT, pass_output(p, "albedo"));
+    seen s = {world_read(&w, pass_output(p, "albedo")), world_read(&w, pass_output(p, "normal")),
+              world_read_depth(&w, pass_output(p, "depth"))};
+    world_close(&w);
+    return s;
+}
+
+static void release(seen *s) {
+    mem_free(s->albedo);
+    mem_free(s->normal);
+    mem_free(s->depth);
+}
+
+// ---- a globe with a texture that has holes -----------------------------------------------------
+
+static void add_quad(uint32_t *out, uint32_t first) {
+    const uint32_t corners[6] = {first, first + 1,           first + SECTORS + 2,
+                                 first, first + SECTORS + 2, first + SECTORS + 1};
+    memcpy(out, corners, sizeof corners);
+}
+
+static scene_mesh *make_globe(pass_world *w) {
+    static uint8_t texels[8 * 4 * 4];
+    for (uint32_t i = 0; i < sizeof texels; i++) texels[i] = (uint8_t)(i * 2654435761u >> 24);
+    for (uint32_t i = 3; i < sizeof texels; i += 4) texels[i] = i % 5 ? 255 : 0;
+    static const mesh_texture texture = {8, 4, texels};
+    static mesh_vertex vertices[(RINGS + 1) * (SECTORS + 1)];
+    static uint32_t indices[RINGS * SECTORS * 6];
+    static const mesh_part parts[] = {{0, RINGS * SECTORS * 3, {1, 0.5f, 0.25f, 1}, 0},
+                                      {RINGS * SECTORS * 3, RINGS * SECTORS * 3, {1, 1, 1, 1}, -1}};
+    for (uint32_t r = 0; r <= RINGS; r++) {
+        for (uint32_t s = 0; s <= SECTORS; s++) {
+            double up = GLM_PI * r / RINGS, around = 2 * GLM_PI * s / SECTORS;
+            float n[3] = {(float)(sin(up) * cos(around)), (float)(sin(up) * sin(around)),
+                          (float)cos(up)};
+            mesh_vertex *v = &vertices[r * (SECTORS + 1) + s];
+            *v = (mesh_vertex){.u = 3.0f * (float)s / SECTORS, .v = 2.0f * (float)r / RINGS};
+            for (int c = 0; c < 3; c++) v->position[c] = 1.5f * (v->normal[c] = n[c]);
+            if (r < RINGS && s < SECTORS)
+                add_quad(indices + 6 * (r * SECTORS + s), r * (SECTORS + 1) + s);
+        }
+    }
+    scene_mesh *mesh = world_mesh(w, "plane.obj");
+    mesh->data = (mesh_data){.vertices = vertices,
+                             .vertex_count = COUNT_OF(vertices),
+                             .indices = indices,
+                             .index_count = COUNT_OF(indices),
+                             .parts = parts,
+                             .part_count = 2,
+                             .textures = &texture,
+                             .texture_count = 1};
+    mesh->rotation = triple(w, 20, 30, 40);
+    mesh->color = triple(w, 0.9f, 0.8f, 0.7f);
+    return mesh;
+}
+
+static scene_mesh *make_mirrored(pass_world *w) {
+    scene_mesh *mesh = make_globe(w);
+    mesh->scale = number(w, -0.9f);
+    return mesh;
+}
+
+// Pixels whose middle lies on an edge may differ, and those next to a hole.
+static void assert_same(gpu *device, scene_mesh *(*make)(pass_world *w)) {
+    seen rays = look(device, "rays", make), drawn = look(device, "raster", make);
+    size_t covered = 0, apart = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        covered += rays.depth[i] < 1e8f;
+        bool same = fabsf(rays.depth[i] - drawn.depth[i]) <= 1e-4f * drawn.depth[i];
+        for (size_t c = 0; c < 3; c++) {
+            same = same && fabsf(rays.normal[4 * i + c] - drawn.normal[4 * i + c]) < 0.01f;
+            same = same && fabsf(rays.albedo[4 * i + c] - drawn.albedo[4 * i + c]) < 0.01f;
+        }
+        apart += !same;
+    }
+    assert_true(covered > PIXELS / 4 && covered < PIXELS);
+    if (apart > PIXELS / 500) fail_msg("%zu of %d pixels differ", apart, PIXELS);
+    release(&rays);
+    release(&drawn);
+}
+
+static void rays_show_what_is_drawn(void **state) {
+    assert_same(*state, make_globe);
+}
+
+static void rays_show_what_is_drawn_of_a_mirrored_mesh(void **state) {
+    assert_same(*state, make_mirrored);
+}
+
+// ---- no gaps -----------------------------------------------------------------------------------
+
+enum { CELLS = 256 };
+
+// Far from the origin of the mesh, so that corners are rounded; lines of the grid run through the
+// middles of pixels.
+static scene_mesh *make_sheet(pass_world *w) {
+    uint32_t side = CELLS + 1;
+    mesh_vertex *vertices = arena_alloc(&w->memory, side * side * sizeof *vertices);
+    uint32_t *indices = arena_alloc(&w->memory, CELLS * CELLS * 6 * sizeof *indices), count = 0;
+    for (uint32_t y = 0; y < side; y++) {
+        for (uint32_t x = 0; x < side; x++) {
+            uint32_t at = y * side + x;
+            vertices[at] = (mesh_vertex){
+                .position = {100 + 12 * ((float)x / CELLS - 0.5f), 50, 12 * (float)y / CELLS},
+                .normal = {0, -1, 0}};
+            if (x == CELLS || y == CELLS) continue;
+            const uint32_t corners[6] = {at, at + 1, at + side + 1, at, at + side + 1, at + side};
+            memcpy(indices + count, corners, sizeof corners);
+            count += 6;
+        }
+    }
+    mesh_part *part = arena_alloc(&w->memory, sizeof *part);
+    *part = (mesh_part){0, count, {1, 1, 1, 1}, -1};
+    scene_mesh *mesh = world_mesh(w, "plane.obj");
+    mesh->data = (mesh_data){.vertices = vertices,
+                             .vertex_count = side * side,
+                             .indices = indices,
+                             .index_count = count,
+                             .parts = part,
+                             .part_count = 1};
+    mesh->position = triple(w, -100, -50, -6);
+    return mesh;
+}
+
+static void no_ray_slips_through_between_triangles(void **state) {
+    seen rays = look(*state, "rays", make_sheet);
+    for (size_t i = 0; i < PIXELS; i++)
+        if (!(fabsf(rays.depth[i] - 5) < 1e-3f))
+            fail_msg("pixel (%zu, %zu): %g", i % WIDTH, i / WIDTH, (double)rays.depth[i]);
+    release(&rays);
+}
+
+int main(void) {
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rays_show_what_is_drawn),
+        cmocka_unit_test(rays_show_what_is_drawn_of_a_mirrored_mesh),
+        cmocka_unit_test(no_ray_slips_through_between_triangles),
+    };
+    return gpu_test_run(tests, COUNT_OF(tests));
+}
