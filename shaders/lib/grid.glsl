@@ -12,6 +12,14 @@
 #define SAMPLING_CUBIC -2
 #endif
 
+// Width of what a sample stands for (m), for grids with levels. A shader may set it before it asks
+// for a field; 0: the finest level.
+float grid_width = 0.0;
+
+float grid_level(float texels) { // that a sample is wide
+    return log2(max(texels, 1.0));
+}
+
 vec4 grid_sample(sampler3D grid, vec3 uvw) {
 #if SAMPLING == SAMPLING_QUASI_CUBIC
     // Quilez, "Improved texture interpolation": the coordinate is bent between texel centres by a

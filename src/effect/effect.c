@@ -217,64 +217,6 @@ void effect_add_grid(effect *e, field_grid *grid) {
     e->grids[e->grid_count++] = grid;
 }
 
-// ---- baked fields -----------------------------------------------------------------------------
-
-static bool update_baked(field_grid *grid, gpu *g, double time) {
-    (void)g;
-    (void)time;
-    const effect_baked *baked = (const effect_baked *)grid;
-    float longest = field_longest(baked->node, &baked->owner->context);
-    grid->longest = isfinite(longest) ? longest : 0;
-    box3 active;
-    if (!field_bounds(baked->node, &baked->owner->context, &active)) return false;
-    grid->state.active = box3_intersect(active, grid->box);
-    return true;
-}
-
-static void destroy_baked(field_grid *grid,
-                          gpu *g) { // memory is the effect's, the image the graph's
-    (void)grid;
-    (void)g;
-}
-
-field_grid *effect_add_bake(effect *e, const field *node, const uint32_t size[3], box3 box) {
-    uint64_t voxels = (uint64_t)size[0] * size[1] * size[2];
-    for (int i = 0; i < 3; i++) {
-        if (size[i] >= 1 && size[i] <= 1024) continue;
-        err_set("bake: size is %u x %u x %u; accepted: 1 to 1024 each", size[0], size[1], size[2]);
-        return NULL;
-    }
-    if (voxels > 1u << 27) {
-        err_set("bake: %llu voxels; at most %u", (unsigned long long)voxels, 1u << 27);
-        return NULL;
-    }
-    if (box3_is_empty(box) || !box3_is_finite(box)) {
-        err_set("bake: the field has no finite bounds; give box = { min, max }");
-        return NULL;
-    }
-    // The grid has four channels: of three components the first is written once more.
-    const field *value = node->components == 3 ? field_swizzle(&e->memory, node, "rgbr") : node;
-    pass *p = effect_add_pass(e, "bake", NULL, NULL);
-    if (!p || !pass_set_field(p, "value", value)) return NULL;
-    effect_baked *baked = arena_alloc(&e->memory, sizeof *baked);
-    *baked = (effect_baked){
-        .grid = {.name = pass_label(p),
-                 .box = box,
-                 .size = {size[0], size[1], size[2]},
-                 .channel_count = node->components == 1 ? 1 : 4,
-                 .state = {.active = box},
-                 .update = update_baked,
-                 .destroy = destroy_baked},
-        .owner = e,
-        .node = node,
-    };
-    pass_set_bake(p, &baked->grid);
-    effect_add_grid(e, &baked->grid);
-    update_baked(&baked->grid, e->device, 0); // its bounds are asked for before the first frame
-    if (!pass_declare(p)) return NULL;
-    return &baked->grid;
-}
-
 // ---- scene and outputs ------------------------------------------------------------------------
 
 // The mesh of a file, which loads of the same effect share; NULL with a message.

@@ -76,8 +76,18 @@ void effect_add_grid(effect *e, field_grid *grid);        // owned by the effect
 scene_mesh *effect_add_mesh(effect *e, const char *file); // confined to the effect's folder
 // The panorama of a sky, confined too; an effect has one.
 const struct sky_image *effect_add_sky_image(effect *e, const char *file);
-// A field baked to a grid each frame (pass type "bake"); returns the grid.
-field_grid *effect_add_bake(effect *e, const field *node, const uint32_t size[3], box3 box);
+typedef struct effect_bake_desc {
+    uint32_t size[3]; // voxels
+    box3 box;         // that they cover
+    bool repeats;     // beyond the box the grid goes on as within, in all directions
+    bool levels;      // with mip levels; for a grid that repeats
+} effect_bake_desc;
+// A field baked to a grid (pass type "bake"), again whenever it has changed; returns the grid.
+field_grid *effect_add_bake(effect *e, const field *node, const effect_bake_desc *desc);
+// An expression of noises by samples of a baked tile of size^3 voxels, which repeats it after so
+// many cells (field_tile).
+const field *effect_add_tile(effect *e, const field *noise, uint32_t size, float cells,
+                             bool levels);
 bool effect_set_output(effect *e, graph_image image); // the picture, display-referred
 bool effect_set_linear(effect *e, graph_image image); // scene-linear, for EXR
 bool effect_set_depth(effect *e, graph_image image);  // linear depth in metres, for EXR

@@ -66,12 +66,6 @@ bool text_wrong_word(const char *name, const char *text, const char *const *word
 void text_add_numbers(strbuf *out, const float *value, int count);
 void text_add_color(strbuf *out, const float value[3]); // "#rrggbb" where that is exact
 
-typedef struct effect_baked { // grid first: a field_grid that a pass fills
-    field_grid grid;
-    effect *owner;
-    const field *node;
-} effect_baked;
-
 struct effect {
     arena memory;
     gpu *device;

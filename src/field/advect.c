@@ -55,14 +55,30 @@ typedef struct seeding {
     uint32_t count, copies;
 } seeding;
 
+static bool is_tile(const field *node) {
+    return kind_of(node) == KIND_GRID && ((const field_grid *)node->object)->repeats;
+}
+
+// A tile has the seed that it was baked with: other parts of it do for other patterns.
+static const field *shift(seeding *s, const field *tile) {
+    const field_grid *grid = tile->object;
+    const float turn[4] = {0.7549f, 0.5698f, 0.4302f}; // of the plastic number: far from ratios
+    const float size[4] = {grid->box.max.x - grid->box.min.x, grid->box.max.y - grid->box.min.y,
+                           grid->box.max.z - grid->box.min.z};
+    field *part = combine(s->memory, "mul", s->add, field_constant(s->memory, 3, turn));
+    part = combine(s->memory, "mul", apply(s->memory, "fract", part),
+                   field_constant(s->memory, 3, size));
+    return warp(s->memory, tile, part, number(s->memory, 1));
+}
+
 // The same expression with other seeds; what holds no noise is shared. NULL: too many nodes.
 static const field *reseed(seeding *s, const field *node) {
-    if (!node->args[0]) return node;
+    if (!node->args[0] && !is_tile(node)) return node;
     const uint32_t *place = map_find(&s->places, node, 0);
     if (place) return s->made[*place];
     if (s->count == COUNT_OF(s->made)) return NULL;
     const field *args[FIELD_MAX_ARGS] = {NULL};
-    bool noise = strcmp(node->kind->group, "noise") == 0, changed = noise;
+    bool noise = strcmp(node->kind->group, "noise") == 0, changed = noise || is_tile(node);
     for (size_t i = 0; i < kind_arg_count(node); i++) {
         args[i] = reseed(s, node->args[i]);
         if (!args[i]) return NULL;
@@ -72,7 +88,7 @@ static const field *reseed(seeding *s, const field *node) {
     if (changed) {
         if (s->copies++ == FIELD_MAX_ADVECTED) return NULL;
         if (noise) args[SEED] = combine(s->memory, "add", args[SEED], s->add);
-        result = field_with_args(s->memory, node, args);
+        result = is_tile(node) ? shift(s, node) : field_with_args(s->memory, node, args);
     }
     if (s->count == COUNT_OF(s->made)) return NULL;
     map_set(&s->places, node, 0, s->count);

@@ -76,7 +76,7 @@ bool field_bounds(const field *node, const field_context *context, box3 *out) {
 box3 bounds_grid(const field *node, const field_context *context, const box3 *args) {
     (void)context, (void)args;
     const field_grid *grid = node->object;
-    return box3_intersect(grid->box, grid->state.active);
+    return grid->repeats ? box3_infinite() : box3_intersect(grid->box, grid->state.active);
 }
 
 box3 bounds_mul(const field *node, const field_context *context, const box3 *args) {

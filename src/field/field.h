@@ -115,6 +115,20 @@ field *field_make(arena *memory, const char *kind, const field *const *args,
                   const uint8_t *options);
 field *field_swizzle(arena *memory, const field *a, const char *components); // "x", "rgb", ...
 
+// Noises as a tile: baked once, it stands for them everywhere (tile.c).
+typedef struct field_tile {
+    const field *content; // what it holds: repeats, in all directions, after so many cells
+    float cells;          // the side of the cube to be baked, from 0; a cell is 1 long
+    const field *noise, *frequency, *drift; // the first noise of the expression, and its own
+    bool alone;                             // the expression is that noise
+    int octaves;                            // that are samples of their own
+} field_tile;
+
+// NULL of `content`, with a message: something in `node` does not repeat.
+bool field_tile_create(arena *memory, const field *node, float cells, field_tile *out);
+// The expression, by samples of a grid that holds the tile and repeats.
+field *field_tile_sample(arena *memory, const field_tile *tile, const field *baked);
+
 // Bytes of memory that an "advect" may take: its expression is written out for each pattern.
 enum { FIELD_ADVECT_COST = 3 * (FIELD_MAX_ADVECTED + 32) * sizeof(field) };
 

@@ -24,6 +24,8 @@ struct field_grid {
     uint32_t size[3];  // texels
     int channel_count; // channel c lies in image c / 4, component c % 4
     float longest;     // greatest length of a vector of its channels, where known; 0: unknown
+    bool repeats;      // goes on for ever beyond its box, as it is within, and is sampled linearly
+    bool levels;       // has mip levels: sampled at that of `grid_width` (lib/grid.glsl)
     bool blends;       // may ever have blend > 0: the shader then samples both sets
     field_grid_state state; // current; set by update
     // Brings `state` to a time, uploading what is needed. Waits for data that is not decoded yet.

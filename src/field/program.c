@@ -9,6 +9,7 @@
 #include "field/emit.h"
 #include "field/kinds.h"
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 // ---- interning --------------------------------------------------------------------------------
@@ -171,7 +172,28 @@ static void add_includes(const field_program *p, strbuf *out) {
     }
 }
 
+static void add_repeating_fetch(const program_grid *grid, size_t g, int image, strbuf *out) {
+    unsigned at = grid->at;
+    bool levels = grid->grid->levels;
+    strbuf_add(out,
+               "uniform sampler3D field_grid_%zu_%d;\n"
+               "vec4 field_fetch_%zu_%d(vec3 p%s) {\n"
+               "    vec3 uvw = (p - field_numbers[%u].xyz) * field_numbers[%u].xyz;\n",
+               g, image, g, image, levels ? ", float width" : "", at, at + 1);
+    if (levels)
+        strbuf_add(out,
+                   "    return textureLod(field_grid_%zu_%d, uvw, "
+                   "grid_level(width * field_numbers[%u].w));\n}\n",
+                   g, image, at + 1);
+    else
+        strbuf_add(out, "    return textureLod(field_grid_%zu_%d, uvw, 0.0);\n}\n", g, image);
+}
+
 static void add_fetch(const program_grid *grid, size_t g, int image, strbuf *out) {
+    if (grid->grid->repeats) {
+        add_repeating_fetch(grid, g, image, out);
+        return;
+    }
     unsigned at = grid->at;
     strbuf_add(out, "uniform sampler3D field_grid_%zu_%d;\n", g, image);
     if (grid->grid->blends) strbuf_add(out, "uniform sampler3D field_next_%zu_%d;\n", g, image);
@@ -369,7 +391,10 @@ static void fill_grid(const field_grid *grid, float out[16]) {
     const float size[3] = {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
     memcpy(out, &box.min, sizeof box.min);
     out[3] = grid->state.blend;
-    for (int i = 0; i < 3; i++) out[4 + i] = size[i] > 0 ? 1 / size[i] : 0;
+    for (int i = 0; i < 3; i++) {
+        out[4 + i] = size[i] > 0 ? 1 / size[i] : 0;
+        out[7] = fmaxf(out[7], out[4 + i] * (float)grid->size[i]);
+    }
     if (box3_is_empty(active)) { // no point lies inside
         for (int i = 0; i < 3; i++) out[8 + i] = 1e30f;
         for (int i = 0; i < 3; i++) out[12 + i] = -1e30f;

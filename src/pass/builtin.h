@@ -36,5 +36,8 @@ bool accumulate_declare(pass *p);
 bool meter_declare(pass *p);
 
 bool bake_declare(pass *p);
+bool bake_check(pass *p);
+bool bake_build(pass *p);
 bool bake_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool bake_record(pass *p);
+void bake_destroy(pass *p);

@@ -114,7 +114,7 @@ static bool bind_field_texture(pass *p, const char *name, gpu_binding *out) {
         graph_image made = pass_grid_image(p->host, t->grid);
         if (made.id) out->image = graph_get_image(p->host->graph, made);
         if (!out->image) out->image = p->blank[1];
-        out->sampler = GPU_LINEAR_CLAMP;
+        out->sampler = t->grid->repeats ? GPU_LINEAR_REPEAT : GPU_LINEAR_CLAMP;
         return true;
     }
     return false;

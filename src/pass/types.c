@@ -80,8 +80,11 @@ static const pass_type types[] = {
         .name = "bake",
         .shader = "pass/bake.comp",
         .declare = bake_declare,
+        .check = bake_check,
+        .build = bake_build,
         .fill = bake_fill,
         .record = bake_record,
+        .destroy = bake_destroy,
     },
 };
 

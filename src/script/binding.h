@@ -110,6 +110,9 @@ size_t value_lights(lua_State *L, int index, const char *who, scene_light **out)
 
 // ---- the objects' globals ---------------------------------------------------------------------
 
+int l_bake(lua_State *L); // functions, and methods of fields
+int l_tile(lua_State *L);
+
 void l_effect_open(lua_State *L);
 void l_param_open(lua_State *L);
 void l_field_open(lua_State *L);

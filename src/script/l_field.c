@@ -340,7 +340,8 @@ void l_field_open(lua_State *L) {
         {"__pow", l_pow},           {"__unm", l_unm}, {"__lt", l_compare}, {"__le", l_compare},
         {"__tostring", l_tostring}, {NULL, NULL},
     };
-    static const luaL_Reg own[] = {{"get", l_get}, {"set", l_set}, {NULL, NULL}};
+    static const luaL_Reg own[] = {
+        {"get", l_get}, {"set", l_set}, {"bake", l_bake}, {"tile", l_tile}, {NULL, NULL}};
     object_type(L, "field", operators);
     lua_newtable(L);
     int methods = lua_gettop(L);

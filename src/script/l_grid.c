@@ -1,5 +1,6 @@
 // Volumes: vdb { "data/x/*.vdb" } and raw { "data/x.raw", ... } give a sequence, whose grids are
-// fields by name (burst.density). bake(field, { size = 128 }) computes a field once a frame.
+// fields by name (burst.density). bake(field, { size = 128 }) computes a field once and keeps it in
+// a grid; tile(noise, { resolution = 64 }) does so for noise, which then fills all of space.
 #include "base/file.h"
 #include "base/memory.h"
 #include "field/sequence.h"
@@ -8,6 +9,7 @@
 #include <string.h>
 
 enum { SEQUENCE_COST = 64 << 10 }; // bytes of host memory charged for one
+enum { TILE_RESOLUTION = 64, TILE_CELLS = 8 };
 
 typedef struct sequence_object {
     sequence *sequence;
@@ -165,7 +167,7 @@ static box3 read_box(lua_State *L, const field *node) {
     return box;
 }
 
-static int l_bake(lua_State *L) {
+int l_bake(lua_State *L) {
     script_require_loading(L, "bake");
     lua_settop(L, 2);
     const field *node = value_field(L, 1, "bake", "field", 0);
@@ -174,23 +176,53 @@ static int l_bake(lua_State *L) {
         lua_replace(L, 2);
     }
     value_check_object(L, 2, "bake");
+    effect_bake_desc desc = {
+        .repeats = value_get_bool(L, 2, "bake", "repeats", false),
+        .levels = value_get_bool(L, 2, "bake", "levels", false),
+    };
     float size[3] = {64, 64, 64};
     value_get_vector(L, 2, "bake", "size", size);
-    uint32_t voxels[3];
     for (int i = 0; i < 3; i++) {
         if (!(size[i] >= 1 && size[i] <= 1024))
             vm_error(L, "bake: 'size' is %g; 1 to 1024 voxels are accepted", (double)size[i]);
-        voxels[i] = (uint32_t)size[i];
+        desc.size[i] = (uint32_t)size[i];
     }
-    box3 box = read_box(L, node);
+    desc.box = read_box(L, node);
     vm_charge_memory(L, SEQUENCE_COST);
     script *s = script_of(L);
     const char *unsound = s->unsound;
     s->unsound = "bake";
-    field_grid *grid = effect_add_bake(s->effect, node, voxels, box);
+    field_grid *grid = effect_add_bake(s->effect, node, &desc);
     if (!grid) script_raise(L);
     s->unsound = unsound;
     field_push(L, field_grid_channel(script_memory(L), grid, 0, node->components));
+    return 1;
+}
+
+// tile(noise, { ... }), and as a method noise:tile { ... }.
+int l_tile(lua_State *L) {
+    script_require_loading(L, "tile");
+    lua_settop(L, 2);
+    const field *noise = value_field(L, 1, "tile", "noise", 0);
+    if (lua_isnil(L, 2)) {
+        lua_newtable(L);
+        lua_replace(L, 2);
+    }
+    value_check_object(L, 2, "tile");
+    uint32_t resolution = value_get_count(L, 2, "tile", "resolution", TILE_RESOLUTION);
+    if (resolution < 4 || resolution > 512)
+        vm_error(L, "tile: 'resolution' is %d; 4 to 512 voxels are accepted", (int)resolution);
+    uint32_t cells = value_get_count(L, 2, "tile", "cells", TILE_CELLS);
+    if (cells < 1 || cells > 256)
+        vm_error(L, "tile: 'cells' is %d; 1 to 256 are accepted", (int)cells);
+    bool levels = value_get_bool(L, 2, "tile", "levels", true);
+    vm_charge_memory(L, SEQUENCE_COST);
+    script *s = script_of(L);
+    const char *unsound = s->unsound;
+    s->unsound = "tile";
+    const field *made = effect_add_tile(s->effect, noise, resolution, (float)cells, levels);
+    s->unsound = unsound;
+    field_push(L, made);
     return 1;
 }
 
@@ -200,4 +232,5 @@ void l_grid_open(lua_State *L) {
     lua_register(L, "vdb", l_vdb);
     lua_register(L, "raw", l_raw);
     lua_register(L, "bake", l_bake);
+    lua_register(L, "tile", l_tile);
 }

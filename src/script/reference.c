@@ -87,12 +87,26 @@ static const script_object objects[] = {
         PLAYBACK),
      .members = SEQUENCE_MEMBERS},
     {"bake", "source", "bake(worley { 4 } * sphere { }, { size = 128 })",
-     "computes a field once a frame into voxels; gives a field that is cheap to sample",
+     "computes a field into voxels, again when it has changed; gives a field that is cheap to sample",
      .args = KEYS(KEY("field", NULL, "what it computes")),
      .keys = KEYS(
         KEY("size", "64, 64, 64 voxels [1, 1024]", "a number, or one for each side"),
         KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m",
-         "what the voxels cover; without: where the field is not zero, if that is known"))},
+         "what the voxels cover; without: where the field is not zero, if that is known"),
+        KEY("repeats", "false", "fills all of space with copies of the box"),
+        KEY("levels", "false",
+         "with `repeats`: adds mip levels, for where a pixel is wider than a voxel"))},
+    {"tile", "source", "worley { 1.4, octaves = 5 }:tile { resolution = 64 }",
+     "noise, or an expression of noises, computed once into voxels that repeat: one sample instead "
+     "of the noise. Its drift, frequency, persistence and amplitude may move; what changes its shape "
+     "(speed, w, seed) computes it again. A single noise takes a sample for each octave; all octaves "
+     "of an expression lie in the voxels, at whole lacunarities",
+     .args = KEYS(KEY("noise", NULL, "what it computes")),
+     .keys = KEYS(
+        KEY("resolution", "64 voxels [4, 512]", "along each side"),
+        KEY("cells", "8 [1, 256]", "of the first noise along each side, after which it repeats; "
+         "for simplex a multiple of 3"),
+        KEY("levels", "true", "with mip levels"))},
     {"palette", "source", "palette { {0, \"#000\"}, {0.5, {1, 0.4, 0}}, {1, \"#fff3b0\", 0.5} }",
      "a number to colour and alpha. Called with a field it gives a field of colours: "
      "fire(burst.temperature). Instead of stops it takes `keys` or `blackbody`",

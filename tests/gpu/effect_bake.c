@@ -6,6 +6,11 @@ enum { SIZE = 33, PIXELS = SIZE * SIZE };
 static const uint32_t size32[3] = {32, 32, 32};
 static const box3 around = {{-1.05f, -1.05f, -1.05f}, {1.05f, 1.05f, 1.05f}};
 
+static field_grid *add_bake(effect *e, const field *node, const uint32_t size[3], box3 box) {
+    return effect_add_bake(e, node,
+                           &(effect_bake_desc){.size = {size[0], size[1], size[2]}, .box = box});
+}
+
 typedef struct variant {
     uint32_t voxels; // along each side; 0: the field itself
     const char *sampling;
@@ -28,7 +33,7 @@ static float *march(gpu *device, variant v) {
     const field *ball = shrinking_ball(e);
     if (v.voxels) {
         const uint32_t size[3] = {v.voxels, v.voxels, v.voxels};
-        field_grid *grid = effect_add_bake(e, ball, size, around);
+        field_grid *grid = add_bake(e, ball, size, around);
         gpu_test_ok(grid);
         ball = field_grid_channel(effect_memory(e), grid, 0, 1);
     }
@@ -74,7 +79,7 @@ static void baked_field_equals_the_field_itself(void **state) {
 static void four_channels_are_baked_at_once(void **state) {
     effect *e = open_effect(&(effect_desc){.device = *state});
     const field *node = field_constant(effect_memory(e), 4, (float[4]){0.5f, 0.25f, 2, 1});
-    field_grid *grid = effect_add_bake(e, node, (uint32_t[3]){2, 3, 4}, around);
+    field_grid *grid = add_bake(e, node, (uint32_t[3]){2, 3, 4}, around);
     gpu_test_ok(grid);
     pass *p = add_march(e, field_grid_channel(effect_memory(e), grid, 3, 1));
     gpu_test_ok(pass_set_field(p, "radiance", field_grid_channel(effect_memory(e), grid, 0, 3)));
@@ -95,12 +100,12 @@ static size_t place_of(effect *e, const char *label) { // SIZE_MAX: does not run
 
 static void march_runs_after_the_bakes_that_it_reads(void **state) {
     effect *e = open_effect(&(effect_desc){.device = *state});
-    field_grid *first = effect_add_bake(e, shrinking_ball(e), size32, around);
+    field_grid *first = add_bake(e, shrinking_ball(e), size32, around);
     gpu_test_ok(first);
     // A bake of a bake, and one that nobody reads.
     const field *inner = field_grid_channel(effect_memory(e), first, 0, 1);
-    field_grid *second = effect_add_bake(e, make(e, "mul", inner, number(e, 2)), size32, around);
-    gpu_test_ok(second && effect_add_bake(e, number(e, 1), size32, around));
+    field_grid *second = add_bake(e, make(e, "mul", inner, number(e, 2)), size32, around);
+    gpu_test_ok(second && add_bake(e, number(e, 1), size32, around));
     pass *p = add_march(e, field_grid_channel(effect_memory(e), second, 0, 1));
     finish(e, p, SIZE, SIZE);
     size_t march_place = place_of(e, "march");
@@ -123,11 +128,11 @@ static void what_has_not_changed_is_not_computed_again(void **state) {
     gpu_test_ok(effect_set_timeline(e, 10, 11, 1));
     const field *factor = param(e, "factor", 1, 10);
     const field *ball = make(e, "sphere", triple(e, 0, 0, 0), number(e, 1), number(e, 1));
-    field_grid *still = effect_add_bake(e, make(e, "mul", ball, factor), size32, around);
+    field_grid *still = add_bake(e, make(e, "mul", ball, factor), size32, around);
     gpu_test_ok(still);
     const field *inner = field_grid_channel(effect_memory(e), still, 0, 1);
-    field_grid *second = effect_add_bake(e, make(e, "mul", inner, number(e, 2)), size32, around);
-    field_grid *moving = effect_add_bake(e, shrinking_ball(e), size32, around);
+    field_grid *second = add_bake(e, make(e, "mul", inner, number(e, 2)), size32, around);
+    field_grid *moving = add_bake(e, shrinking_ball(e), size32, around);
     gpu_test_ok(second && moving);
     const field *outer = field_grid_channel(effect_memory(e), second, 0, 1);
     const field *other = field_grid_channel(effect_memory(e), moving, 0, 1);
@@ -155,11 +160,48 @@ static void what_has_not_changed_is_not_computed_again(void **state) {
 static void one_component_takes_one_channel(void **state) {
     effect *e = open_effect(&(effect_desc){.device = *state});
     const field *ball = make(e, "sphere", triple(e, 0, 0, 0), number(e, 1), number(e, 1));
-    field_grid *grid = effect_add_bake(e, ball, size32, around);
+    field_grid *grid = add_bake(e, ball, size32, around);
     gpu_test_ok(grid);
     graph_image image = graph_find_image(effect_graph(e), "bake");
     assert_int_equal(graph_get_desc(effect_graph(e), image)->format, GPU_R16F);
     effect_destroy(e);
+}
+
+// Perlin noise of which 4 cells repeat, on a picture of 3 x 3 m: 6 cells, so one and a half tiles.
+static float *draw_noise(gpu *device, bool tile, float width) {
+    effect *e = open_effect(&(effect_desc){.device = device});
+    const field *args[FIELD_MAX_ARGS] = {number(e, 2), number(e, 1)};
+    args[9] = number(e, 4); // period
+    const field *noise = effect_field(e, "perlin", args);
+    if (tile) noise = effect_add_tile(e, noise, 64, 4, true);
+    gpu_test_ok(noise);
+    pass *p = add(e, NULL, "plane.comp");
+    gpu_test_ok(pass_set_field(p, "value", noise));
+    gpu_test_ok(pass_set_uniform(p, "width", number(e, width)));
+    finish(e, p, SIZE, SIZE);
+    gpu_test_ok(effect_render(e, 1, false));
+    float *pixels = read_picture(e);
+    effect_destroy(e);
+    return pixels;
+}
+
+static void tile_fills_space_and_has_levels(void **state) {
+    float *direct = draw_noise(*state, false, 0), *tile = draw_noise(*state, true, 0);
+    float *wide = draw_noise(*state, true, 1000);
+    double least = 1, most = 0, mean = 0;
+    for (int k = 0; k < PIXELS; k++) {
+        double want = (double)direct[4 * k];
+        if (fabs((double)tile[4 * k] - want) > 0.02)
+            fail_msg("pixel %d: %g instead of %g", k, (double)tile[4 * k], want);
+        least = fmin(least, want);
+        most = fmax(most, want);
+        mean += (double)wide[4 * k] / PIXELS;
+    }
+    assert_true(most - least > 0.3 && fabs(mean - 0.5) < 0.05);
+    for (int k = 0; k < PIXELS; k++) assert_true(fabs((double)wide[4 * k] - mean) < 1e-3);
+    mem_free(direct);
+    mem_free(tile);
+    mem_free(wide);
 }
 
 int main(void) {
@@ -169,6 +211,7 @@ int main(void) {
         cmocka_unit_test(march_runs_after_the_bakes_that_it_reads),
         cmocka_unit_test(what_has_not_changed_is_not_computed_again),
         cmocka_unit_test(one_component_takes_one_channel),
+        cmocka_unit_test(tile_fills_space_and_has_levels),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }

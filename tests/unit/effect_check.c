@@ -8,11 +8,16 @@ static void set_output(stage *s, pass *p) {
 
 // ---- shaders and fields -------------------------------------------------------------------------
 
+static field_grid *add_bake(effect *e, const field *node, const uint32_t size[3], box3 box) {
+    return effect_add_bake(e, node,
+                           &(effect_bake_desc){.size = {size[0], size[1], size[2]}, .box = box});
+}
+
 static void effect_of_all_built_in_passes_is_sound(void **state) {
     stage *s = *state;
     effect *e = s->e;
     field_grid *grid =
-        effect_add_bake(e, ball(s), (uint32_t[3]){8, 8, 8}, (box3){{-1, -1, -1}, {1, 1, 1}});
+        add_bake(e, ball(s), (uint32_t[3]){8, 8, 8}, (box3){{-1, -1, -1}, {1, 1, 1}});
     ok(grid);
     pass *geometry = effect_add_pass(e, "geometry", NULL, NULL);
     ok(geometry && pass_declare(geometry));
@@ -121,7 +126,7 @@ static void effect_without_output_is_refused(void **state) {
 static void volume_is_no_picture(void **state) {
     stage *s = *state;
     field_grid *grid =
-        effect_add_bake(s->e, ball(s), (uint32_t[3]){4, 4, 4}, (box3){{-1, -1, -1}, {1, 1, 1}});
+        add_bake(s->e, ball(s), (uint32_t[3]){4, 4, 4}, (box3){{-1, -1, -1}, {1, 1, 1}});
     ok(grid);
     graph_image volume = pass_output(effect_get_pass(s->e, 0), "values");
     assert_true(volume.id != 0);
@@ -172,16 +177,19 @@ static void bake_has_limits(void **state) {
     const box3 box = {{-1, -1, -1}, {1, 1, 1}};
     const uint32_t sizes[][3] = {{0, 8, 8}, {8, 1025, 8}, {8, 8, UINT32_MAX}};
     for (size_t i = 0; i < COUNT_OF(sizes); i++) {
-        assert_null(effect_add_bake(s->e, ball(s), sizes[i], box));
+        assert_null(add_bake(s->e, ball(s), sizes[i], box));
         assert_error("accepted: 1 to 1024 each");
     }
-    assert_null(effect_add_bake(s->e, ball(s), (uint32_t[3]){1024, 1024, 1024}, box));
+    assert_null(add_bake(s->e, ball(s), (uint32_t[3]){1024, 1024, 1024}, box));
     assert_error("at most 134217728");
     const uint32_t size[3] = {8, 8, 8};
-    assert_null(effect_add_bake(s->e, ball(s), size, box3_infinite()));
+    assert_null(add_bake(s->e, ball(s), size, box3_infinite()));
     assert_error("no finite bounds");
-    assert_null(effect_add_bake(s->e, ball(s), size, box3_empty()));
-    assert_null(effect_add_bake(s->e, ball(s), size, (box3){{0, 0, 0}, {1, 1, NAN}}));
+    assert_null(add_bake(s->e, ball(s), size, box3_empty()));
+    assert_null(add_bake(s->e, ball(s), size, (box3){{0, 0, 0}, {1, 1, NAN}}));
+    const effect_bake_desc levels = {.size = {8, 8, 8}, .box = box, .levels = true};
+    assert_null(effect_add_bake(s->e, ball(s), &levels));
+    assert_error("'levels' is for a grid that repeats");
     assert_int_equal(effect_pass_count(s->e), 0);
 }
 
