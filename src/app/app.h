@@ -12,6 +12,7 @@ int cmd_check(int argc, const char **argv);
 int cmd_info(int argc, const char **argv);
 int cmd_export(int argc, const char **argv);
 int cmd_compare(int argc, const char **argv);
+int cmd_bench(int argc, const char **argv);
 int cmd_live(int argc, const char **argv);
 
 // One line "roil: message" on stderr; returns the status.
@@ -65,6 +66,7 @@ typedef struct app_progress {
 } app_progress;
 void app_progress_begin(app_progress *p, size_t total, const char *unit);
 void app_progress_step(app_progress *p, size_t done); // shows time left
+void app_progress_clear(app_progress *p);             // makes way for a line of output
 void app_progress_end(app_progress *p);
 
 // ---- statistics -------------------------------------------------------------------------------

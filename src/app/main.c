@@ -16,6 +16,7 @@ static const struct {
     {"check", cmd_check, "load, compile and validate effects; render nothing"},
     {"info", cmd_info, "tell about devices, passes, fields, an effect or a VDB file"},
     {"export", cmd_export, "write a VDB sequence as one raw file"},
+    {"bench", cmd_bench, "measure a sweep: time, memory and error over settings of effects"},
     {"compare", cmd_compare, "tell how different two pictures are: PSNR, SSIM, FLIP"},
 };
 

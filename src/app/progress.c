@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
+enum { BAR_WIDTH = 24 };
 static const double TERMINAL_SECONDS = 0.1, FILE_SECONDS = 5;
 
 void app_progress_begin(app_progress *p, size_t total, const char *unit) {
@@ -12,15 +13,32 @@ void app_progress_begin(app_progress *p, size_t total, const char *unit) {
         .start = clock_seconds(), .total = total, .unit = unit, .terminal = isatty(2) == 1};
 }
 
+// "[#####-----] "
+static void print_bar(double part) {
+    char bar[BAR_WIDTH + 1];
+    for (int i = 0; i < BAR_WIDTH; i++) bar[i] = i < part * BAR_WIDTH ? '#' : '-';
+    bar[BAR_WIDTH] = '\0';
+    fprintf(stderr, "\r[%s] ", bar);
+}
+
 void app_progress_step(app_progress *p, size_t done) {
     double now = clock_seconds();
     if (now - p->printed < (p->terminal ? TERMINAL_SECONDS : FILE_SECONDS) && done != p->total)
         return;
     p->printed = now;
-    double each = (now - p->start) / (double)done;
-    long left = lround(each * (double)(p->total - done));
-    fprintf(stderr, "%s  %zu of %zu %s, %.2f s each, %ld:%02ld left %s", p->terminal ? "\r" : "",
-            done, p->total, p->unit, each, left / 60, left % 60, p->terminal ? "   " : "\n");
+    if (p->terminal) print_bar((double)done / (double)p->total);
+    fprintf(stderr, "%zu of %zu %s", done, p->total, p->unit);
+    if (done > 0) {
+        double each = (now - p->start) / (double)done;
+        long left = lround(each * (double)(p->total - done));
+        fprintf(stderr, ", %.2f s each, %ld:%02ld left", each, left / 60, left % 60);
+    }
+    fputs(p->terminal ? "\033[K" : "\n", stderr);
+}
+
+void app_progress_clear(app_progress *p) {
+    if (p->terminal) fputs("\r\033[K", stderr);
+    p->printed = 0;
 }
 
 void app_progress_end(app_progress *p) {

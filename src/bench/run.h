@@ -12,8 +12,8 @@ typedef enum bench_measure {
 
 typedef struct bench_session_desc {
     const char *device; // as roil_desc has it
-    const char *folder; // where thumbnails and references go; NULL: neither is written, and
-                        // references are made anew in every session
+    const char *folder; // where thumbnails and pictures of references go
+    bool keep;          // pictures that lie there are of this sweep; else they are removed
     double settle;      // seconds that a row is drawn before it is timed, so that clocks rise
     bool counters;      // draws one more frame in which samples are counted
     uint32_t compared;  // frames of a row that are compared, spread evenly; 0: the last

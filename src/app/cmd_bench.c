@@ -1,0 +1,271 @@
+// roil bench SWEEP.lua: measures a sweep, row by row.
+#include "app/app.h"
+#include "app/bench_print.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include "bench/sweep.h"
+#include <popt.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { OPTION_SIZE = 1, OPTION_ONLY, OPTION_SHARD };
+
+typedef struct bench_options {
+    bench_order order;
+    app_frames frames;
+    const char *frames_text, *baseline;
+    roil_setting *only;
+    size_t only_count, only_capacity;
+    const char **inputs; // a sweep, or folders to be merged
+    size_t input_count, input_capacity;
+    char folder[PATH_CAP]; // where results go by default
+    double margin;         // percent
+    int resume, list, merge, strict;
+    app_progress progress;
+    int label_width;
+} bench_options;
+
+// ---- options ------------------------------------------------------------------------------------
+
+static bool parse_shard(const char *text, bench_choice *c) {
+    char rest;
+    if (sscanf(text, "%4u/%4u%c", &c->shard, &c->shards, &rest) == 2 && c->shard >= 1 &&
+        c->shard <= c->shards)
+        return true;
+    return err_set("--shard '%s'; accepted: 2/4, the second of four parts", text);
+}
+
+static bool add_only(bench_options *o, char *text) {
+    char *equals = strchr(text, '=');
+    if (!equals || equals == text)
+        return err_set("--only '%s'; accepted: AXIS=VALUE, as noise=perlin", text);
+    *equals = '\0';
+    MEM_RESERVE(o->only, o->only_count + 1, o->only_capacity);
+    o->only[o->only_count++] = (roil_setting){text, equals + 1};
+    return true;
+}
+
+// popt's texts live until the program ends.
+static bool take_option(bench_options *o, poptContext context, int option) {
+    char *text = poptGetOptArg(context);
+    switch (option) {
+    case OPTION_SIZE:
+        return app_parse_size(text, &o->order.options.width, &o->order.options.height);
+    case OPTION_ONLY:
+        return add_only(o, text);
+    case OPTION_SHARD:
+        return parse_shard(text, &o->order.choice);
+    }
+    return true;
+}
+
+static bool take_numbers(bench_options *o) {
+    sweep_options *s = &o->order.options;
+    if (s->warmup > 1000) return err_set("--warmup %d; accepted: 0 to 1000 frames", s->warmup);
+    if (s->repeats == 0 || s->repeats > 100000)
+        return err_set("--repeats %d; accepted: 1 to 100000", s->repeats);
+    if (!(o->margin >= 0 && o->margin <= 1000))
+        return err_set("--margin %g; accepted: 0 to 1000 percent", o->margin);
+    if (!o->frames_text) return true;
+    if (!app_parse_frames(o->frames_text, &o->frames)) return false;
+    if (o->frames.count > SWEEP_MAX_FRAMES)
+        return err_set("--frames: %zu frames; at most %d are accepted", o->frames.count,
+                       SWEEP_MAX_FRAMES);
+    s->frames = o->frames.numbers;
+    s->frame_count = o->frames.count;
+    return true;
+}
+
+static bool take_inputs(bench_options *o, poptContext context) {
+    const char *input;
+    while ((input = poptGetArg(context))) {
+        MEM_RESERVE(o->inputs, o->input_count + 1, o->input_capacity);
+        o->inputs[o->input_count++] = input;
+    }
+    if (o->merge && (!o->input_count || !o->order.folder))
+        return err_set("usage: roil bench --merge DIR... -o DIR");
+    if (o->merge) return true;
+    if (!o->input_count)
+        return err_set(
+            "which sweep? usage: roil bench SWEEP.lua [options]; scripts/bench has some");
+    if (o->input_count > 1) return err_set("'%s': one sweep at a time", o->inputs[1]);
+    o->order.file = o->inputs[0];
+    const char *name = path_name(o->order.file);
+    int length = (int)strlen(name) - (str_ends_with(name, ".lua") ? 4 : 0);
+    snprintf(o->folder, sizeof o->folder, "out/bench/%.*s", length, name);
+    if (!o->order.folder) o->order.folder = o->folder;
+    return true;
+}
+
+static bool parse(bench_options *o, int argc, const char **argv, poptContext *context) {
+    sweep_options *s = &o->order.options;
+    const struct poptOption options[] = {
+        {"output", 'o', POPT_ARG_STRING, &o->order.folder, 0,
+         "where results go (default: out/bench/NAME)", "DIR"},
+        {"list", 0, POPT_ARG_NONE, &o->list, 0, "the rows, and nothing is measured", NULL},
+        {"rows", 0, POPT_ARG_STRING, &o->order.choice.rows, 0,
+         "only rows whose label is like this ('steps 16*')", "PATTERN"},
+        {"only", 0, POPT_ARG_STRING, NULL, OPTION_ONLY,
+         "only rows with this value of an axis; may be given several times", "AXIS=VALUE"},
+        {"shard", 0, POPT_ARG_STRING, NULL, OPTION_SHARD, "only every N-th row, from the I-th",
+         "I/N"},
+        {"merge", 0, POPT_ARG_NONE, &o->merge, 0, "put the results of shards together", NULL},
+        {"resume", 0, POPT_ARG_NONE, &o->resume, 0, "keep the rows that DIR has already", NULL},
+        {"baseline", 0, POPT_ARG_STRING, &o->baseline, 0,
+         "say what became faster or slower than in these results", "FILE.json"},
+        {"margin", 0, POPT_ARG_DOUBLE, &o->margin, 0,
+         "changes up to this are noise, whatever statistics say (default: 3)", "PERCENT"},
+        {"strict", 0, POPT_ARG_NONE, &o->strict, 0,
+         "end with status 3 when a row is slower than its baseline", NULL},
+        {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE,
+         "of pictures, in place of the sweep's; an axis of sizes is scaled to it", "WxH"},
+        {"frames", 'f', POPT_ARG_STRING, &o->frames_text, 0, "in place of the sweep's", "FRAMES"},
+        {"warmup", 0, POPT_ARG_INT, &s->warmup, 0, "frames that are drawn before", "N"},
+        {"repeats", 0, POPT_ARG_INT, &s->repeats, 0, "how often each row is measured", "N"},
+        {"limit", 0, POPT_ARG_DOUBLE, &s->limit, 0, "that a row may take; 0: no limit", "SECONDS"},
+        {"settle", 0, POPT_ARG_DOUBLE, &s->settle, 0,
+         "that a row is drawn before it is timed, so that clocks rise", "SECONDS"},
+        {"device", 'd', POPT_ARG_STRING, &o->order.device, 0,
+         "part of a device's name, or its number", "DEVICE"},
+        POPT_AUTOHELP POPT_TABLEEND};
+    *context = poptGetContext("roil bench", argc, argv, options, 0);
+    poptSetOtherOptionHelp(*context, "SWEEP.lua [options]");
+    int option;
+    while ((option = poptGetNextOpt(*context)) > 0)
+        if (!take_option(o, *context, option)) return false;
+    if (option < -1) return err_set("%s: %s", poptBadOption(*context, 0), poptStrerror(option));
+    o->order.resume = o->resume;
+    o->order.choice.only = o->only;
+    o->order.choice.only_count = o->only_count;
+    return take_numbers(o) && take_inputs(o, *context);
+}
+
+// ---- interrupts ---------------------------------------------------------------------------------
+
+static volatile sig_atomic_t interrupted;
+
+static void on_interrupt(int number) {
+    (void)number;
+    interrupted = 1;
+}
+
+// The row in hand is given up; a second Ctrl-C ends the program at once.
+static void hear_interrupts(void) {
+    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+static bool is_interrupted(void *user) {
+    (void)user;
+    return interrupted;
+}
+
+// ---- progress -----------------------------------------------------------------------------------
+
+static void on_begin(void *user, const sweep *s, size_t total) {
+    bench_options *o = user;
+    printf("%s: %zu of %zu rows\n", s->title, total, s->row_count);
+    app_progress_begin(&o->progress, total, "rows");
+    o->label_width = bench_label_width(s->rows, s->row_count);
+}
+
+static void on_row(void *user, const bench_row *row, size_t done) {
+    bench_options *o = user;
+    app_progress_step(&o->progress, done);
+    if (o->progress.terminal) fprintf(stderr, "  %.40s", row->label);
+}
+
+static void on_result(void *user, const bench_row *row, size_t done) {
+    (void)done;
+    bench_options *o = user;
+    app_progress_clear(&o->progress);
+    bench_print_line(row, o->label_width);
+    fflush(stdout);
+}
+
+// ---- work ---------------------------------------------------------------------------------------
+
+static int list(const bench_options *o) {
+    arena memory = {0};
+    sweep s;
+    bool *chosen = NULL;
+    if (bench_read_sweep(&o->order, &memory, &s)) chosen = bench_choose(&s, &o->order.choice);
+    for (size_t i = 0; chosen && i < s.row_count; i++)
+        if (chosen[i]) printf("%s\n", s.rows[i].label);
+    int status = chosen ? APP_DONE : app_fail_input();
+    mem_free(chosen);
+    arena_free(&memory);
+    return status;
+}
+
+static int compare_with_baseline(const bench_options *o, const bench_results *now) {
+    bench_results before;
+    if (!o->baseline) return APP_DONE;
+    if (!bench_read_file(o->baseline, &before)) return app_fail_input();
+    size_t slower = bench_print_changes(&before, now, o->margin / 100);
+    bench_results_free(&before);
+    if (!slower || !o->strict) return APP_DONE;
+    return app_fail(APP_DIFFERS, "%zu rows are slower than in %s", slower, o->baseline);
+}
+
+static size_t count_failed(const bench_results *r) {
+    size_t count = 0;
+    for (size_t i = 0; i < r->row_count; i++) count += r->rows[i].state == BENCH_FAILED;
+    return count;
+}
+
+static int finish(const bench_options *o, const bench_results *r) {
+    bench_print_table(r);
+    int status = compare_with_baseline(o, r);
+    printf("\nwrote %s/results.json, results.csv\n", o->order.folder);
+    size_t failed = count_failed(r);
+    if (failed) return app_fail(APP_BAD_INPUT, "%zu of %zu rows failed", failed, r->row_count);
+    return status;
+}
+
+static int run(bench_options *o) {
+    bench_results results;
+    o->order.watcher = (bench_watcher){on_begin, on_row, on_result, is_interrupted, o};
+    hear_interrupts();
+    bool done = bench_run(&o->order, &results);
+    if (o->progress.total) app_progress_clear(&o->progress);
+    int status;
+    if (done)
+        status = finish(o, &results);
+    else if (interrupted && results.content)
+        status = app_fail(APP_BAD_INPUT, "interrupted; %s has %zu rows, and --resume goes on",
+                          o->order.folder, results.row_count);
+    else
+        status = app_fail_input();
+    bench_results_free(&results);
+    return status;
+}
+
+static int merge(const bench_options *o) {
+    bench_results results;
+    bool done = bench_merge(o->inputs, o->input_count, o->order.folder, &results);
+    int status = done ? finish(o, &results) : app_fail_input();
+    bench_results_free(&results);
+    return status;
+}
+
+int cmd_bench(int argc, const char **argv) {
+    bench_options o = {.margin = 3};
+    o.order.options = (sweep_options){.warmup = -1, .repeats = -1, .limit = -1, .settle = -1};
+    poptContext context;
+    int status;
+    if (!parse(&o, argc, argv, &context))
+        status = app_fail(APP_BAD_USAGE, "bench: %s", roil_error());
+    else
+        status = o.merge ? merge(&o) : o.list ? list(&o) : run(&o);
+    poptFreeContext(context);
+    app_free_frames(&o.frames);
+    mem_free(o.only);
+    mem_free(o.inputs);
+    return status;
+}

@@ -1,0 +1,214 @@
+// Drawing an effect for a row: time by pass and frame, samples counted, pictures kept.
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "bench/run_parts.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MAX_PASSES = 256, MAX_COUNTERS = 64, MAX_WARMUP = 2000 };
+
+// ---- frames -------------------------------------------------------------------------------------
+
+bool bench_drawing_begin(bench_session *s, const bench_row *row, bench_drawing *out) {
+    *out = (bench_drawing){.session = s, .row = row};
+    out->effect = roil_load(s->r, row->effect, row->settings.items, row->settings.count);
+    return out->effect && roil_prepare(out->effect, row->width, row->height);
+}
+
+void bench_drawing_end(bench_drawing *d) {
+    roil_unload(d->effect);
+    d->effect = NULL;
+}
+
+static bool may_go_on(bench_drawing *d) {
+    d->stopped = d->stopped || bench_is_stopped(d->session);
+    d->expired = d->deadline > 0 && clock_seconds() > d->deadline;
+    return !d->stopped && !d->expired;
+}
+
+bool bench_draw(bench_drawing *d, double frame) {
+    return may_go_on(d) && roil_render(d->effect, frame);
+}
+
+// Waits: what is submitted without end would run long after a limit is over.
+static bool draw_and_wait(bench_drawing *d, double frame) {
+    roil_time times[MAX_PASSES];
+    if (!bench_draw(d, frame)) return false;
+    roil_times(d->effect, times, MAX_PASSES);
+    return true;
+}
+
+bool bench_draw_warmup(bench_drawing *d, double seconds) {
+    double first = d->row->frames[0], begin = roil_get_info(d->effect).first_frame;
+    double end = clock_seconds() + seconds;
+    int drawn = 0;
+    do {
+        int before = drawn;
+        for (double frame = first - d->row->warmup; frame < first; frame++) {
+            if (frame < begin) continue;
+            if (!draw_and_wait(d, frame)) return false;
+            drawn++;
+        }
+        if (drawn == before && seconds > 0) { // nothing comes before it
+            if (!draw_and_wait(d, first)) return false;
+            drawn++;
+        }
+    } while (clock_seconds() < end && drawn < MAX_WARMUP);
+    return true;
+}
+
+bool bench_is_compared(const bench_session *s, const bench_row *row, size_t i) {
+    size_t count = row->frame_count, wanted = s->desc.compared ? s->desc.compared : 1;
+    if (wanted > count) wanted = count;
+    for (size_t k = 0; k < wanted; k++)
+        if ((k + 1) * count / wanted - 1 == i) return true;
+    return false;
+}
+
+// ---- one frame ----------------------------------------------------------------------------------
+
+typedef struct record { // of the whole row
+    bench_collection gpu, cpu;
+    bench_picture *pictures; // of the frames that are compared; the last is that of the last frame
+    size_t picture_count, picture_capacity;
+} record;
+
+static void free_pictures(record *r) {
+    for (size_t i = 0; i < r->picture_count; i++) mem_free(r->pictures[i].pixels);
+    r->picture_count = 0;
+}
+
+static void record_free(record *r) {
+    free_pictures(r);
+    mem_free(r->pictures);
+    bench_collection_free(&r->gpu);
+    bench_collection_free(&r->cpu);
+}
+
+// A pass that is several pieces of work under one name counts as one.
+static void record_passes(record *r, roil_time *times, size_t count) {
+    double all = 0;
+    for (size_t i = 0; i < count; i++) {
+        all += times[i].milliseconds;
+        if (!times[i].pass[0]) continue;
+        for (size_t k = i + 1; k < count; k++)
+            if (strcmp(times[k].pass, times[i].pass) == 0) {
+                times[i].milliseconds += times[k].milliseconds;
+                all += times[k].milliseconds;
+                times[k] = (roil_time){0};
+            }
+        bench_collect(&r->gpu, times[i].pass, times[i].milliseconds);
+    }
+    bench_collect(&r->gpu, "all", all);
+}
+
+static bool record_frame(bench_drawing *d, double frame, record *r) {
+    roil_time times[MAX_PASSES];
+    double start = clock_seconds();
+    if (!bench_draw(d, frame)) return false;
+    double submitted = clock_seconds();
+    size_t count = roil_times(d->effect, times, MAX_PASSES);
+    double drawn = clock_seconds();
+    if (!count) return roil_is_lost(d->session->r) ? err_set("the device is lost") : true;
+    record_passes(r, times, count < MAX_PASSES ? count : MAX_PASSES);
+    bench_collect(&r->cpu, "submit", 1e3 * (submitted - start));
+    bench_collect(&r->cpu, "frame", 1e3 * (drawn - start));
+    return true;
+}
+
+static bool keep_picture(bench_drawing *d, record *r) {
+    bench_picture p;
+    if (!bench_picture_read(d->effect, d->row->width, d->row->height, &p)) return false;
+    MEM_RESERVE(r->pictures, r->picture_count + 1, r->picture_capacity);
+    r->pictures[r->picture_count++] = p;
+    return true;
+}
+
+static bool record_frames(bench_drawing *d, record *r) {
+    const bench_row *row = d->row;
+    bool done = bench_draw_warmup(d, d->session->desc.settle);
+    for (uint32_t repeat = 0; done && repeat < row->repeats; repeat++) {
+        if (repeat > 0) done = bench_draw_warmup(d, 0);
+        free_pictures(r);
+        for (size_t i = 0; done && i < row->frame_count; i++)
+            done = record_frame(d, row->frames[i], r) &&
+                   (!bench_is_compared(d->session, row, i) || keep_picture(d, r));
+    }
+    return done;
+}
+
+// ---- the row ------------------------------------------------------------------------------------
+
+static uint64_t resident_bytes(void) {
+    unsigned long long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "re");
+    if (!file) return 0;
+    if (fscanf(file, "%*u %llu", &pages) != 1) pages = 0;
+    fclose(file);
+    return pages * (uint64_t)sysconf(_SC_PAGESIZE);
+}
+
+static void measure_memory(bench_session *s, bench_row *row) {
+    roil_memory m = roil_get_memory(s->r);
+    row->device_bytes = m.device;
+    row->reserved_bytes = m.reserved;
+    row->host_bytes = resident_bytes();
+}
+
+static bool read_counters(bench_drawing *d, bench_row *row, arena *memory) {
+    roil_time times[1];
+    roil_counter counters[MAX_COUNTERS];
+    if (!bench_draw(d, row->frames[row->frame_count - 1])) return false;
+    roil_times(d->effect, times, 1);
+    size_t count = roil_counters(d->effect, counters, MAX_COUNTERS);
+    if (count > MAX_COUNTERS) count = MAX_COUNTERS;
+    row->counters.items = arena_alloc(memory, count * sizeof *row->counters.items);
+    row->counters.count = count;
+    for (size_t i = 0; i < count; i++)
+        row->counters.items[i] =
+            (bench_number){arena_format(memory, "%s.%s", counters[i].pass, counters[i].name),
+                           (double)counters[i].value};
+    return true;
+}
+
+// Counting takes time, so it is done in a frame of its own.
+static bool count_samples(bench_drawing *timed, bench_row *row, arena *memory) {
+    bench_session *s = timed->session;
+    bench_drawing d;
+    roil_set_counters(s->r, true);
+    bool done = bench_drawing_begin(s, row, &d) && read_counters(&d, row, memory);
+    timed->stopped = timed->stopped || d.stopped;
+    bench_drawing_end(&d);
+    roil_set_counters(s->r, false);
+    return done;
+}
+
+static bool save_thumbnail(bench_session *s, bench_row *row, const bench_picture *p,
+                           arena *memory) {
+    char file[PATH_CAP];
+    const char *name = arena_format(memory, "rows/%04zu.png", row->index);
+    if (!path_join(file, s->folder, name) || !bench_picture_save_small(p, file)) return false;
+    row->thumbnail = name;
+    return true;
+}
+
+bool bench_measure_frames(bench_drawing *d, const bench_job *job, bench_row *row, arena *memory) {
+    record r = {0};
+    bool done = record_frames(d, &r);
+    row->gpu = bench_summarise(&r.gpu, memory);
+    row->cpu = bench_summarise(&r.cpu, memory);
+    measure_memory(d->session, row);
+    if (d->expired && row->gpu.count && !r.picture_count) keep_picture(d, &r);
+    bench_drawing_end(d);
+    if (r.picture_count && (done || d->expired))
+        done = save_thumbnail(d->session, row, &r.pictures[r.picture_count - 1], memory) && done;
+    if (done && d->session->desc.counters) done = count_samples(d, row, memory);
+    if (done && job->reference)
+        done = bench_compare_row(d->session, job, row, r.pictures, r.picture_count);
+    record_free(&r);
+    return done;
+}
