@@ -16,7 +16,11 @@ bool lighting_fill(pass *p, const shader_binary *binary, unsigned char *block);
 void lighting_destroy(pass *p);
 
 bool march_declare(pass *p);
+bool march_check(pass *p);
+bool march_build(pass *p);
 bool march_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool march_record(pass *p);
+void march_destroy(pass *p);
 
 bool reference_declare(pass *p);
 bool reference_check(pass *p);

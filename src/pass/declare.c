@@ -67,16 +67,14 @@ static void list_grids(const pass *p, image_list *list) {
     }
 }
 
-bool pass_add_to_graph(pass *p) {
-    return pass_add_to_graph_with(p, NULL, 0);
-}
-
-bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count) {
+static bool add_to_graph(pass *p, const graph_image *more_reads, size_t more_read_count,
+                         const graph_image *more_writes, size_t more_write_count) {
     const shader_interface *face = p->face;
     image_list reads = {0};
     size_t write_count = 0;
-    graph_image *writes = mem_alloc((face->image_count + more_count) * sizeof *writes);
-    for (size_t i = 0; i < more_count; i++) writes[write_count++] = more[i];
+    graph_image *writes = mem_alloc((face->image_count + more_write_count) * sizeof *writes);
+    for (size_t i = 0; i < more_write_count; i++) writes[write_count++] = more_writes[i];
+    for (size_t i = 0; i < more_read_count; i++) list_image(&reads, more_reads[i]);
     for (size_t i = 0; i < face->image_count; i++) {
         if (face->images[i].output) {
             writes[write_count++] = p->images[i];
@@ -97,6 +95,18 @@ bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count)
     mem_free(reads.at);
     mem_free(writes);
     return done;
+}
+
+bool pass_add_to_graph(pass *p) {
+    return pass_add_to_graph_with(p, NULL, 0);
+}
+
+bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count) {
+    return add_to_graph(p, NULL, 0, more, more_count);
+}
+
+bool pass_add_to_graph_after(pass *p, const graph_image *more, size_t more_count) {
+    return add_to_graph(p, more, more_count, NULL, 0);
 }
 
 typedef struct part_record {

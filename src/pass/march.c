@@ -1,18 +1,93 @@
-// March: the box that rays are cut to is computed on the host, from the bounds of the density.
+// March: the box that rays are cut to is computed on the host, from the bounds of the density;
+// where in it nothing is, bricks tell.
+#include "base/memory.h"
+#include "pass/bricks.h"
 #include "pass/builtin.h"
-#include "pass/pass_impl.h"
+#include <math.h>
 #include <string.h>
 
-bool march_declare(pass *p) {
-    box3 box;
-    return pass_density_box(p, &box) && pass_declare_images(p) && pass_add_to_graph(p);
+enum { GROUP_SIDE = 16, MOST_TEAM = 16 };
+
+// Of a device, beyond which more threads make a ray no faster.
+static const float ENOUGH_THREADS = 1.2e6f;
+
+typedef struct march_state {
+    bool skips;    // by bricks
+    bool adaptive; // has code for a tolerance
+    bool teams;    // has code for several threads a ray
+    int32_t team;  // threads a ray, in this frame
+    bricks bricks;
+} march_state;
+
+static bool has_word(const pass *p, const char *option, const char *word) {
+    size_t index;
+    if (pass_find_key(p, option, &index) != PASS_OPTION) return false;
+    return strcmp(p->face->options[index].words[p->options[index]], word) == 0;
 }
 
-static bool paper_mode(const pass *p) {
-    size_t index;
-    if (pass_find_key(p, "mode", &index) != PASS_OPTION) return false;
-    return strcmp(p->face->options[index].words[p->options[index]], "paper") == 0;
+static bool record_bricks(pass *p) {
+    march_state *s = p->state;
+    return pass_prepare(p) && bricks_record(p, &s->bricks);
 }
+
+bool march_declare(pass *p) {
+    march_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
+    box3 box;
+    s->skips = has_word(p, "skipping", "on");
+    if (!pass_density_box(p, &box) || !pass_declare_images(p)) return false;
+    if (!s->skips) return pass_add_to_graph(p);
+    return bricks_declare(p, &s->bricks, record_bricks) &&
+           pass_add_to_graph_after(p, &s->bricks.image, 1);
+}
+
+// ---- building ---------------------------------------------------------------------------------
+
+// Whether somebody says what it is.
+static bool gives(const pass *p, const char *uniform) {
+    size_t index;
+    const shader_uniform *declared;
+    return pass_find_key(p, uniform, &index) == PASS_UNIFORM &&
+           (p->uniforms[index] || pass_inherited_uniform(p, index, &declared));
+}
+
+// Steps of one length take less code and fewer registers alone: those of variable length are left
+// out as long as nobody gives a tolerance.
+static void choose_code(const pass *p) {
+    march_state *s = p->state;
+    gpu *device = p->host->device;
+    bool software = !device || gpu_get_info(device)->kind == GPU_CPU;
+    s->adaptive = gives(p, "tolerance");
+    s->teams = !has_word(p, "view", "noise") && (!software || gives(p, "threads"));
+}
+
+static bool compile(pass *p, shader_binary *out) {
+    const march_state *s = p->state;
+    const shader_define defines[] = {{"ADAPTIVE", s->adaptive ? "1" : "0"},
+                                     {"TEAMS", s->teams ? "1" : "0"}};
+    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines), out);
+}
+
+bool march_check(pass *p) {
+    const march_state *s = p->state;
+    choose_code(p);
+    return (!s->skips || bricks_check(p)) && compile(p, &p->binary);
+}
+
+bool march_build(pass *p) {
+    march_state *s = p->state;
+    if (s->skips && !bricks_build(p, &s->bricks)) return false;
+    choose_code(p);
+    if (!compile(p, &p->binary)) return false;
+    p->pipeline = pass_create_compute(p, &p->binary);
+    return p->pipeline != NULL;
+}
+
+void march_destroy(pass *p) {
+    march_state *s = p->state;
+    if (s) bricks_destroy(p, &s->bricks);
+}
+
+// ---- in a frame -------------------------------------------------------------------------------
 
 // The paper marches the whole simulation box in every frame (section 3.5); otherwise the box is as
 // tight as what burns just now.
@@ -20,7 +95,7 @@ static bool march_box(const pass *p, box3 *box) {
     const field *density = pass_density(p);
     const field_grid *grids[16];
     size_t count = field_grids(density, grids, 16);
-    if (paper_mode(p) && count) {
+    if (has_word(p, "mode", "paper") && count) {
         *box = box3_empty();
         for (size_t i = 0; i < count && i < 16; i++) *box = box3_union(*box, grids[i]->box);
         return true;
@@ -28,9 +103,68 @@ static bool march_box(const pass *p, box3 *box) {
     return pass_density_box(p, box);
 }
 
+// A power of two; one where there are rays enough.
+static int32_t team_size(pass *p) {
+    const march_state *s = p->state;
+    if (!s->teams || pass_evaluate(p, "tolerance") > 0) return 1;
+    uint32_t size[3];
+    graph_get_size(p->host->graph, pass_output(p, "color"), size);
+    float asked = pass_evaluate(p, "threads"), rays = (float)size[0] * (float)size[1];
+    float most = asked > 0 ? asked : ENOUGH_THREADS / fmaxf(rays, 1);
+    int32_t team = 1;
+    while (team < MOST_TEAM && (float)(2 * team) <= most) team *= 2;
+    return team;
+}
+
 bool march_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+    march_state *s = p->state;
     box3 box;
     if (!march_box(p, &box)) return false;
     pass_write_box(binary, block, box);
+    s->team = team_size(p);
+    pass_write_member(binary, block, "team", &s->team, sizeof s->team);
+    if (s->skips) bricks_fill(p, binary, block, box);
     return true;
+}
+
+// A tolerance or threads that someone moves by hand, where the effect says nothing of them.
+static bool compile_again(pass *p) {
+    shader_binary binary;
+    if (!compile(p, &binary)) return false;
+    gpu_pipeline *pipeline = pass_create_compute(p, &binary);
+    if (!pipeline) return false;
+    gpu_pipeline_destroy(p->host->device, p->pipeline);
+    p->pipeline = pipeline;
+    p->binary = binary;
+    p->block = arena_alloc(p->host->memory, pass_block_size(&binary) + 16);
+    return pass_fill_block(p, &p->binary, p->block);
+}
+
+static bool follow_code(pass *p) {
+    march_state *s = p->state, before = *s;
+    s->adaptive = s->adaptive || pass_evaluate(p, "tolerance") > 0;
+    s->teams = s->teams || (pass_evaluate(p, "threads") > 1 && !has_word(p, "view", "noise"));
+    return (s->adaptive == before.adaptive && s->teams == before.teams) || compile_again(p);
+}
+
+// A group is a square of pixels, or half of one, of 256 threads.
+static void count_threads(const pass *p, uint32_t threads[3]) {
+    const march_state *s = p->state;
+    int bits = 8;
+    for (int32_t i = 1; i < s->team; i *= 2) bits--;
+    const uint32_t tile[2] = {1u << (bits + 1) / 2, 1u << bits / 2};
+    graph_get_size(p->host->graph, pass_output(p, "color"), threads);
+    for (int i = 0; i < 2; i++) threads[i] = (threads[i] + tile[i] - 1) / tile[i] * GROUP_SIDE;
+}
+
+bool march_record(pass *p) {
+    const march_state *s = p->state;
+    if (!s->skips && !pass_prepare(p)) return false;
+    if (!follow_code(p)) return false;
+    pass_override slot = s->skips ? bricks_slot(p, &s->bricks) : (pass_override){"", {0}};
+    gpu_binding bindings[GPU_MAX_SLOTS];
+    gpu_dispatch_desc desc = {.pipeline = p->pipeline, .bindings = bindings};
+    count_threads(p, desc.threads);
+    return pass_bind(p, &p->binary, p->block, &slot, s->skips, bindings, &desc.binding_count) &&
+           gpu_dispatch(p->host->device, &desc);
 }

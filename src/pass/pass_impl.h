@@ -83,6 +83,8 @@ int pass_find_image(const pass *p, const char *name); // index in face->images, 
 bool pass_declare_images(pass *p);                    // histories and outputs at the pass's scale
 // The same, with images of its own that it writes besides.
 bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count);
+// The same, with images of its own that it reads besides.
+bool pass_add_to_graph_after(pass *p, const graph_image *more, size_t more_count);
 bool pass_add_to_graph(pass *p); // reads and writes by its images and fields
 
 // One of several passes of the graph that a pass consists of: "label.name".

@@ -33,7 +33,11 @@ static const pass_type types[] = {
         .name = "march",
         .shader = "pass/march.comp",
         .declare = march_declare,
+        .check = march_check,
+        .build = march_build,
         .fill = march_fill,
+        .record = march_record,
+        .destroy = march_destroy,
     },
     {
         .name = "reference",
