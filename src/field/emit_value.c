@@ -169,6 +169,16 @@ static void collect_factors(emitter *e, uint32_t node, uint32_t at, factors *out
     }
 }
 
+// Whether a factor is worth a branch on the product of those before it. What does not vary in space
+// is seldom zero, and then everywhere: only for what is very dear it is asked.
+static bool is_worth_asking(const emitter *e, const factors *all, size_t i) {
+    if (i == 0) return false;
+    bool varies = false;
+    for (size_t k = 0; k < i; k++)
+        varies = varies || !e->p->nodes[all->items[k].node].node->uniform;
+    return all->items[i].cost >= (varies ? dear : very_dear);
+}
+
 // `name = cheap; if (name != 0) { ...; name *= dear; }`, one block in another.
 static void compute_product(emitter *e, uint32_t index) {
     uint32_t at = e->ops[index].point;
@@ -179,7 +189,7 @@ static void compute_product(emitter *e, uint32_t index) {
     collect_factors(e, e->ops[index].id, at, &all);
     char name[EXPR], value[EXPR];
     for (size_t i = 0; i < all.count; i++) {
-        if (i > 0 && all.items[i].cost >= dear) {
+        if (is_worth_asking(e, &all, i)) {
             emit_op_name(e, index, name);
             if (components == 1)
                 emit_line(e, "if (%s != 0.0) {", name);

@@ -4,8 +4,9 @@
 #include "field/emit.h"
 #include "field/kinds.h"
 
-enum { EXPR = 96 };           // bytes of a written expression
-static const float dear = 16; // cost from which an operation is worth a branch
+enum { EXPR = 96 };                 // bytes of a written expression
+static const float dear = 16;       // cost from which an operation is worth a branch
+static const float very_dear = 100; // and from which a number is worth being tested for zero
 
 typedef enum op_type { OP_NODE, OP_FETCH, OP_POINT } op_type;
 

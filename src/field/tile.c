@@ -211,6 +211,8 @@ field *field_tile_sample(arena *memory, const field_tile *tile, const field *bak
         if (tile->octaves > 1) octave = combine(memory, "mul", weight_of(memory, tile, i), octave);
         sum = i == 0 ? octave : combine(memory, "add", sum, octave);
     }
-    if (tile->alone) sum = combine(memory, "mul", tile->noise->args[AMPLITUDE], sum);
+    const field *amplitude = tile->noise->args[AMPLITUDE];
+    if (tile->alone && !equal(amplitude, number(memory, 1)))
+        sum = combine(memory, "mul", amplitude, sum);
     return sum;
 }
