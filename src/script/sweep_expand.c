@@ -121,7 +121,7 @@ static void push_combination(lua_State *L, const combination *c) {
         else if (v->type == LUA_TBOOLEAN)
             lua_pushboolean(L, v->number != 0);
         else
-            lua_pushstring(L, v->text);
+            lua_pushstring(L, v->said);
         lua_pushvalue(L, -1);
         lua_setfield(L, -3, c->lists[i]->name);
         lua_setfield(L, -2, c->lists[i]->label);
@@ -232,19 +232,52 @@ static combination pick(const sweep_reader *r, size_t at) {
     return c;
 }
 
-// Sizes of all rows are scaled so that the widest gets the width that the user asked for.
-static void scale_sizes(sweep *s, const sweep_options *o) {
-    if (!o->width) return;
-    uint32_t width = 1, height = 1;
-    for (size_t i = 0; i < s->row_count; i++) {
-        if (s->rows[i].width > width) width = s->rows[i].width;
-        if (s->rows[i].height > height) height = s->rows[i].height;
+typedef struct scale {
+    double width, height;
+} scale;
+
+static void grow(uint32_t *most, uint32_t side) {
+    if (side > *most) *most = side;
+}
+
+static void scale_patch(sweep_patch *p, scale by) {
+    if (p->width) p->width = (uint32_t)fmax(1, round(p->width * by.width));
+    if (p->height) p->height = (uint32_t)fmax(1, round(p->height * by.height));
+}
+
+static void scale_value(lua_State *L, const sweep_list *of, sweep_value *v, scale by) {
+    scale_patch(&v->patch, by);
+    if (strcmp(of->name, "size") != 0 || v->named) return;
+    vm_charge_memory(L, LABEL_MAX);
+    v->text = v->label =
+        arena_format(sweep_reader_of(L)->memory, "%ux%u", v->patch.width, v->patch.height);
+}
+
+// All sizes are scaled so that the largest is the one that the user asks for. Functions of the file
+// go on seeing what the file says.
+static void scale_sizes(lua_State *L, sweep_reader *r) {
+    uint32_t width = r->base.width, height = r->base.height;
+    if (!r->options->width) return;
+    for (size_t g = 0; g < r->group_count; g++)
+        for (size_t k = 0; k < r->groups[g].list_count; k++) {
+            const sweep_list *l = r->groups[g].lists[k];
+            for (size_t i = 0; i < l->count; i++) {
+                grow(&width, l->values[i].patch.width);
+                grow(&height, l->values[i].patch.height);
+            }
+        }
+    if (!width) { // none is said
+        r->base.width = r->options->width;
+        r->base.height = r->options->height;
+        return;
     }
-    for (size_t i = 0; i < s->row_count + s->reference_count; i++) {
-        sweep_row *row = i < s->row_count ? &s->rows[i] : &s->references[i - s->row_count];
-        row->width = (uint32_t)fmax(1, round((double)row->width * o->width / width));
-        row->height = (uint32_t)fmax(1, round((double)row->height * o->height / height));
-    }
+    scale by = {(double)r->options->width / width, (double)r->options->height / height};
+    scale_patch(&r->base, by);
+    for (size_t g = 0; g < r->group_count; g++)
+        for (size_t k = 0; k < r->groups[g].list_count; k++) {
+            const sweep_list *l = r->groups[g].lists[k];
+            for (size_t i = 0; i < l->count; i++) scale_value(L, l, &l->values[i], by);
+        }
 }
 
 static void keep_axes(lua_State *L, sweep_reader *r) {
@@ -263,6 +296,7 @@ void sweep_expand(lua_State *L, sweep_reader *r) {
     sweep *s = r->out;
     size_t all = count_combinations(L, r);
     size_t room = all < SWEEP_MAX_ROWS ? all : SWEEP_MAX_ROWS;
+    scale_sizes(L, r);
     keep_axes(L, r);
     s->rows = reserve(L, room, sizeof *s->rows);
     s->references = reserve(L, room, sizeof *s->references);
@@ -281,5 +315,4 @@ void sweep_expand(lua_State *L, sweep_reader *r) {
         s->rows[s->row_count++] = row;
     }
     if (!s->row_count) vm_error(L, "sweep: 'skip' leaves no row");
-    scale_sizes(s, r->options);
 }

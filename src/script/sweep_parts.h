@@ -24,6 +24,8 @@ typedef struct sweep_patch {
 
 typedef struct sweep_value {
     const char *text, *label; // "16", "steps 16"
+    const char *said;         // the text that functions of the file see
+    bool named;               // the text is a name that the file gives
     sweep_patch patch;
     int type; // of Lua: what functions of the file get to see, a number, a boolean, else the text
     double number;

@@ -291,6 +291,7 @@ static void take_named(lua_State *L, const char *who, sweep_value *out) {
                  "= 16 }",
                  who);
     out->label = out->text;
+    out->named = true;
 }
 
 static const char *format(lua_State *L, const char *first, const char *second) {
@@ -343,5 +344,6 @@ void sweep_value_take(lua_State *L, const char *who, const sweep_list *of, sweep
         out->text = out->patch.settings[0].text;
         out->label = label_of(L, of, out);
     }
+    out->said = out->text;
     lua_settop(L, top);
 }
