@@ -8,8 +8,12 @@ uniform sampler2D SkyDistribution;
 
 const float SKY_PI = 3.14159265;
 
+// Known when a pass is compiled: a software device computes both sides of every branch.
+#ifndef SKY_IMAGE
+#define SKY_IMAGE int(frame.sky_zenith.w > 0.0)
+#endif
 bool sky_is_image() {
-    return frame.sky_zenith.w > 0.0;
+    return SKY_IMAGE == 1;
 }
 
 // Azimuth in the panorama, from its middle column to the right.

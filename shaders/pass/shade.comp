@@ -26,23 +26,26 @@ vec2 disc_point(int k, int count, vec2 chance) {
 
 // Part of the light's disc that no mesh hides.
 float light_seen(light l, light_ray ray, vec3 p, vec2 chance) {
-    if (shadow_samples == 0) return 1.0;
     float far = ray.distance - (l.kind == LIGHT_SUN ? 0.0 : l.radius);
-    if (far <= 0.0) return 1.0;
-    if (shadow_samples == 1 || l.radius <= 0.0) return bvh_occluded(p, ray.direction, 0.0, far) ? 0.0 : 1.0;
+    if (shadow_samples == 0 || far <= 0.0) return 1.0;
+#if MANY_RAYS
+    int count = l.radius > 0.0 ? shadow_samples : 1, seen = 0;
     mat2x3 disc = across(ray.direction) * (l.kind == LIGHT_SUN ? l.radius : l.radius / ray.distance);
-    int seen = 0;
-    for (int k = 0; k < shadow_samples; k++) {
-        vec3 to = normalize(ray.direction + disc * disc_point(k, shadow_samples, chance));
-        if (!bvh_occluded(p, to, 0.0, far)) seen++;
+    for (int k = 0; k < count; k++) {
+        vec2 point = count > 1 ? disc_point(k, count, chance) : vec2(0.0);
+        if (!bvh_occluded(p, normalize(ray.direction + disc * point), 0.0, far)) seen++;
     }
-    return float(seen) / float(shadow_samples);
+    return float(seen) / float(count);
+#else
+    return bvh_occluded(p, ray.direction, 0.0, far) ? 0.0 : 1.0;
+#endif
 }
 
 // Irradiance from the sky over pi. A ray that meets a mesh brings what the sky lends to that, as
 // far as it faces up: below the horizon it may face anything.
 vec3 sky_light(vec3 p, vec3 n, vec2 chance) {
     vec3 whole = sky_irradiance(n);
+#if MANY_RAYS
     if (sky_samples == 0) return whole;
     mat2x3 disc = across(n);
     vec3 back = vec3(0.0);
@@ -55,13 +58,23 @@ vec3 sky_light(vec3 p, vec3 n, vec2 chance) {
         else back += (0.5 + 0.5 * hit.normal.z) * hit.albedo * sky_irradiance(hit.normal);
     }
     return (float(seen) * whole + back) / float(sky_samples);
+#else
+    return whole;
+#endif
 }
 
 // Irradiance at p, on the side of the normal, over pi: what a white surface sends back.
 vec3 surface_light(vec3 p, vec3 n, uvec2 pixel) {
-    vec2 chance = vec2(0.5);
-    if (shadow_samples > 1 || sky_samples > 0) chance = random_blue2(pixel, frame.size.z);
+#if MANY_RAYS
+    vec2 chance = random_blue2(pixel, frame.size.z);
+#else
+    const vec2 chance = vec2(0.5);
+#endif
     vec3 sum = sky_light(p, n, chance);
+#if HAS_LIGHTS && HAS_SHADOW
+    vec3 extinction = lighting_extinction();
+    int declared = lighting_declared(); // the others are fire, which no volume hides
+#endif
     int count = light_count();
     for (int i = 0; i < count; i++) {
         light l = light_get(i);
@@ -69,7 +82,7 @@ vec3 surface_light(vec3 p, vec3 n, uvec2 pixel) {
         vec3 given = ray.irradiance * (max(dot(n, ray.direction), 0.0) / PI);
         bool matters = any(greaterThan(given, NEGLIGIBLE * sum));
 #if HAS_LIGHTS && HAS_SHADOW
-        if (matters) given *= exp(-lighting_extinction() * lighting_shadow(i, p).x);
+        if (matters && i < declared) given *= exp(-extinction * lighting_shadow(i, p).x);
 #endif
         if (matters) given *= light_seen(l, ray, p, chance);
         sum += given;

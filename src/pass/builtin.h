@@ -9,6 +9,11 @@ bool geometry_allocate(pass *p);
 bool geometry_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool geometry_record(pass *p);
 
+bool shade_check(pass *p);
+bool shade_build(pass *p);
+bool shade_record(pass *p);
+void shade_destroy(pass *p);
+
 bool lighting_declare(pass *p);
 bool lighting_check(pass *p);
 bool lighting_build(pass *p);

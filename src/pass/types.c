@@ -19,6 +19,10 @@ static const pass_type types[] = {
     {
         .name = "shade",
         .shader = "pass/shade.comp",
+        .check = shade_check,
+        .build = shade_build,
+        .record = shade_record,
+        .destroy = shade_destroy,
     },
     {
         .name = "lighting",
