@@ -8,6 +8,7 @@
 #include <string.h>
 
 enum { DIGITS = 8 };
+static const double EXACT_WHOLE = 9007199254740992; // 2^53
 
 // Names of files and devices need not be UTF-8; JSON must.
 static json_t *text(const char *from) {
@@ -22,7 +23,9 @@ static json_t *text(const char *from) {
     return value;
 }
 
-static json_t *number(double value) { // JSON has no infinity
+// JSON has no infinity. Whole numbers keep all their digits: samples are counted by the million.
+static json_t *number(double value) {
+    if (fabs(value) < EXACT_WHOLE && value == floor(value)) return json_integer((json_int_t)value);
     return isfinite(value) ? json_real(value) : json_null();
 }
 
@@ -138,6 +141,10 @@ json_t *bench_to_tree(const bench_results *r) {
     json_object_set_new(all, "date", text(r->date));
     json_object_set_new(all, "axes", axes_json(r));
     json_object_set_new(all, "reference", reference_json(r));
+    if (r->tuned)
+        json_object_set_new(
+            all, "tuned",
+            json_pack("{s:o, s:o}", "before", whole(r->before), "chosen", whole(r->chosen)));
     for (size_t i = 0; i < r->row_count; i++) json_array_append_new(rows, row_json(&r->rows[i]));
     json_object_set_new(all, "rows", rows);
     return all;
