@@ -78,6 +78,7 @@ function data.read(value)
     name = value.sweep, title = value.title ~= "" and value.title or value.sweep, notes = value.notes,
     file = value.file, device = value.device, driver = value.driver, machine = value.machine, roil = value.roil,
     commit = value.commit, date = value.date, reference = value.reference, rows = {}, axes = {},
+    before = value.tuned and value.tuned.before, chosen = value.tuned and value.tuned.chosen, -- rows of a search
   }
   for i, row in ipairs(value.rows) do sweep.rows[i] = row_of(row) end
   for _, axis in ipairs(value.axes) do

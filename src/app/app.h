@@ -13,6 +13,7 @@ int cmd_info(int argc, const char **argv);
 int cmd_export(int argc, const char **argv);
 int cmd_compare(int argc, const char **argv);
 int cmd_bench(int argc, const char **argv);
+int cmd_tune(int argc, const char **argv);
 int cmd_live(int argc, const char **argv);
 
 // One line "roil: message" on stderr; returns the status.
@@ -37,6 +38,14 @@ bool app_parse_size(const char *text, uint32_t *width, uint32_t *height); // "96
 bool app_check_pattern(const char *pattern);
 bool app_has_number(const char *pattern);
 void app_format_pattern(const char *pattern, double frame, char *out, size_t capacity);
+
+bool app_parse_samples(const char *text, uint32_t *out); // of a reference: 1 to 65536 a pixel
+
+// ---- interrupts -------------------------------------------------------------------------------
+
+// From now on Ctrl-C is only noted, once; a second one ends the program.
+void app_hear_interrupts(void);
+bool app_is_interrupted(void *user); // `user` is for those who want a function of one
 
 // ---- settings ---------------------------------------------------------------------------------
 

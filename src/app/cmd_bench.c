@@ -5,9 +5,9 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include "bench/report.h"
 #include "bench/sweep.h"
 #include <popt.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +18,7 @@ typedef struct bench_options {
     bench_order order;
     app_frames frames;
     const char *frames_text, *baseline;
+    const char *report; // folder of results that only get a new report
     roil_setting *only;
     size_t only_count, only_capacity;
     const char **inputs; // a sweep, or folders to be merged
@@ -88,7 +89,8 @@ static bool take_inputs(bench_options *o, poptContext context) {
     }
     if (o->merge && (!o->input_count || !o->order.folder))
         return err_set("usage: roil bench --merge DIR... -o DIR");
-    if (o->merge) return true;
+    if (o->report && o->input_count) return err_set("'%s': --report takes no sweep", o->inputs[0]);
+    if (o->merge || o->report) return true;
     if (!o->input_count)
         return err_set(
             "which sweep? usage: roil bench SWEEP.lua [options]; scripts/bench has some");
@@ -117,6 +119,8 @@ static bool parse(bench_options *o, int argc, const char **argv, poptContext *co
         {"resume", 0, POPT_ARG_NONE, &o->resume, 0, "keep the rows that DIR has already", NULL},
         {"baseline", 0, POPT_ARG_STRING, &o->baseline, 0,
          "say what became faster or slower than in these results", "FILE.json"},
+        {"report", 0, POPT_ARG_STRING, &o->report, 0,
+         "write the report of these results again, and measure nothing", "DIR"},
         {"margin", 0, POPT_ARG_DOUBLE, &o->margin, 0,
          "changes up to this are noise, whatever statistics say (default: 3)", "PERCENT"},
         {"strict", 0, POPT_ARG_NONE, &o->strict, 0,
@@ -142,27 +146,6 @@ static bool parse(bench_options *o, int argc, const char **argv, poptContext *co
     o->order.choice.only = o->only;
     o->order.choice.only_count = o->only_count;
     return take_numbers(o) && take_inputs(o, *context);
-}
-
-// ---- interrupts ---------------------------------------------------------------------------------
-
-static volatile sig_atomic_t interrupted;
-
-static void on_interrupt(int number) {
-    (void)number;
-    interrupted = 1;
-}
-
-// The row in hand is given up; a second Ctrl-C ends the program at once.
-static void hear_interrupts(void) {
-    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-}
-
-static bool is_interrupted(void *user) {
-    (void)user;
-    return interrupted;
 }
 
 // ---- progress -----------------------------------------------------------------------------------
@@ -219,10 +202,18 @@ static size_t count_failed(const bench_results *r) {
     return count;
 }
 
+static bool write_report(const bench_results *results, const char *folder) {
+    roil *r = roil_create(&(roil_desc){.no_device = true});
+    bool done = r && bench_report(results, folder, roil_home(r));
+    roil_destroy(r);
+    return done;
+}
+
 static int finish(const bench_options *o, const bench_results *r) {
     bench_print_table(r);
     int status = compare_with_baseline(o, r);
-    printf("\nwrote %s/results.json, results.csv\n", o->order.folder);
+    if (!write_report(r, o->order.folder)) return app_fail_input();
+    printf("\nwrote %s/results.json, results.csv, report.html\n", o->order.folder);
     size_t failed = count_failed(r);
     if (failed) return app_fail(APP_BAD_INPUT, "%zu of %zu rows failed", failed, r->row_count);
     return status;
@@ -230,14 +221,14 @@ static int finish(const bench_options *o, const bench_results *r) {
 
 static int run(bench_options *o) {
     bench_results results;
-    o->order.watcher = (bench_watcher){on_begin, on_row, on_result, is_interrupted, o};
-    hear_interrupts();
+    o->order.watcher = (bench_watcher){on_begin, on_row, on_result, app_is_interrupted, o};
+    app_hear_interrupts();
     bool done = bench_run(&o->order, &results);
     if (o->progress.total) app_progress_clear(&o->progress);
     int status;
     if (done)
         status = finish(o, &results);
-    else if (interrupted && results.content)
+    else if (app_is_interrupted(NULL) && results.content)
         status = app_fail(APP_BAD_INPUT, "interrupted; %s has %zu rows, and --resume goes on",
                           o->order.folder, results.row_count);
     else
@@ -254,6 +245,15 @@ static int merge(const bench_options *o) {
     return status;
 }
 
+static int report(const bench_options *o) {
+    bench_results results;
+    if (!bench_read(o->report, &results)) return app_fail_input();
+    int status = write_report(&results, o->report) ? APP_DONE : app_fail_input();
+    bench_results_free(&results);
+    if (status == APP_DONE) printf("wrote %s/report.html\n", o->report);
+    return status;
+}
+
 int cmd_bench(int argc, const char **argv) {
     bench_options o = {.margin = 3};
     o.order.options = (sweep_options){.warmup = -1, .repeats = -1, .limit = -1, .settle = -1};
@@ -262,7 +262,7 @@ int cmd_bench(int argc, const char **argv) {
     if (!parse(&o, argc, argv, &context))
         status = app_fail(APP_BAD_USAGE, "bench: %s", roil_error());
     else
-        status = o.merge ? merge(&o) : o.list ? list(&o) : run(&o);
+        status = o.report ? report(&o) : o.merge ? merge(&o) : o.list ? list(&o) : run(&o);
     poptFreeContext(context);
     app_free_frames(&o.frames);
     mem_free(o.only);

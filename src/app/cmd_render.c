@@ -50,15 +50,6 @@ static bool add_output(job *j, const char *pattern, const char *image) {
     return true;
 }
 
-static bool parse_samples(const char *text, uint32_t *out) {
-    char *end;
-    long samples = strtol(text, &end, 10);
-    if (end == text || *end || samples < 1 || samples > 65536)
-        return err_set("--reference '%s'; accepted: 1 to 65536 samples a pixel", text);
-    *out = (uint32_t)samples;
-    return true;
-}
-
 // Handles one option of the table below; poptGetOptArg's text lives until the program ends.
 static bool take_option(job *j, poptContext context, int option) {
     char *text = poptGetOptArg(context);
@@ -70,7 +61,7 @@ static bool take_option(job *j, poptContext context, int option) {
     case OPTION_SET:
         return app_add_set(&j->settings, text);
     case OPTION_REFERENCE:
-        return parse_samples(text, &j->reference);
+        return app_parse_samples(text, &j->reference);
     case OPTION_PRESET:
         app_add_preset(&j->settings, text);
         return true;

@@ -17,6 +17,7 @@ static const struct {
     {"info", cmd_info, "tell about devices, passes, fields, an effect or a VDB file"},
     {"export", cmd_export, "write a VDB sequence as one raw file"},
     {"bench", cmd_bench, "measure a sweep: time, memory and error over settings of effects"},
+    {"tune", cmd_tune, "find the settings that are cheapest within an error, or best in a time"},
     {"compare", cmd_compare, "tell how different two pictures are: PSNR, SSIM, FLIP"},
 };
 

@@ -303,6 +303,22 @@ static bool read_reference(reader *r, const json_t *root, bench_results *out) {
            get_settings(r, from, "settings", &out->reference.settings);
 }
 
+static bool read_tuned(reader *r, const json_t *root, bench_results *out) {
+    json_t *from;
+    size_t size;
+    uint64_t before, chosen;
+    if (!get_object(r, root, "tuned", &from, &size)) return false;
+    if (!from || json_is_null(from)) return true;
+    go_to(r, "tuned");
+    if (!get_whole(r, from, "before", BENCH_MAX_ROWS - 1, &before) ||
+        !get_whole(r, from, "chosen", BENCH_MAX_ROWS - 1, &chosen))
+        return false;
+    out->tuned = true;
+    out->before = before;
+    out->chosen = chosen;
+    return true;
+}
+
 static bool read_head(reader *r, const json_t *root, bench_results *out) {
     json_t *machine;
     size_t size;
@@ -321,7 +337,7 @@ bool bench_from_json(const json_t *root, const char *file, bench_results *out) {
     reader r = {.file = file, .memory = &out->memory};
     if (!json_is_object(root)) return wrong(&r, "it", "an object, as roil bench writes it");
     return read_head(&r, root, out) && read_axes(&r, root, out) && read_reference(&r, root, out) &&
-           read_rows(&r, root, out);
+           read_tuned(&r, root, out) && read_rows(&r, root, out);
 }
 
 bool bench_read_file(const char *file, bench_results *out) {

@@ -103,7 +103,9 @@ typedef struct bench_results {
     size_t axis_count;
     bool has_reference;
     bench_reference reference;
-    bench_row *rows; // by rising index; only those that were measured
+    bool tuned;            // of a search (tune.h), these are two of its rows:
+    size_t before, chosen; // their indices
+    bench_row *rows;       // by rising index; only those that were measured
     size_t row_count, row_capacity;
 } bench_results;
 

@@ -1,0 +1,257 @@
+// roil tune EFFECT.lua: searches the settings of its quality, and writes what it finds as a preset.
+#include "app/app.h"
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include "bench/tune.h"
+#include <math.h>
+#include <popt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { OPTION_SIZE = 1, OPTION_SET, OPTION_PRESET, OPTION_AXES, OPTION_REFERENCE };
+
+typedef struct tune_options {
+    tune_order order;
+    app_settings settings;
+    app_frames frames;
+    const char *frames_text, *error, *preset;
+    double max_ms, max_error;
+    const char **axes;
+    size_t axis_count, axis_capacity;
+    char folder[PATH_CAP]; // where results go by default
+    int resume, repeats;
+    size_t measured, earlier;
+} tune_options;
+
+// ---- options ------------------------------------------------------------------------------------
+
+static bool add_axes(tune_options *o, char *text) {
+    for (char *at = strtok(text, ","); at; at = strtok(NULL, ",")) {
+        MEM_RESERVE(o->axes, o->axis_count + 1, o->axis_capacity);
+        o->axes[o->axis_count++] = at;
+    }
+    return o->axis_count > 0 || err_set("--axes names no axis");
+}
+
+// popt's texts live until the program ends.
+static bool take_option(tune_options *o, poptContext context, int option) {
+    char *text = poptGetOptArg(context);
+    switch (option) {
+    case OPTION_SIZE:
+        return app_parse_size(text, &o->order.width, &o->order.height);
+    case OPTION_SET:
+        return app_add_set(&o->settings, text);
+    case OPTION_PRESET:
+        app_add_preset(&o->settings, text);
+        return true;
+    case OPTION_AXES:
+        return add_axes(o, text);
+    case OPTION_REFERENCE:
+        return app_parse_samples(text, &o->order.samples);
+    }
+    return true;
+}
+
+static bool take_goal(tune_options *o) {
+    tune_goal *g = &o->order.goal;
+    if (o->error && strcmp(o->error, "psnr") == 0)
+        g->error = TUNE_PSNR;
+    else if (o->error && strcmp(o->error, "flip") != 0)
+        return err_set("--error '%s'; accepted: flip, psnr", o->error);
+    bool time = o->max_ms >= 0, error = o->max_error >= 0;
+    if (time == error)
+        return err_set("what shall be kept? --max-ms MS for the best picture within a time, or "
+                       "--max-error E for the least time within an error");
+    g->by_error = error;
+    g->limit = error ? o->max_error : o->max_ms;
+    if (error && g->error == TUNE_FLIP && g->limit > 1)
+        return err_set("--max-error %g; accepted: 0 to 1, as FLIP is", g->limit);
+    return true;
+}
+
+static bool take_effect(tune_options *o, poptContext context) {
+    tune_order *order = &o->order;
+    order->effect = poptGetArg(context);
+    if (!order->effect)
+        return err_set("which effect? usage: roil tune EFFECT.lua --max-ms MS | --max-error E");
+    const char *more = poptGetArg(context);
+    if (more) return err_set("'%s': one effect at a time", more);
+    const char *name = path_name(order->effect);
+    int length = (int)strlen(name) - (str_ends_with(name, ".lua") ? 4 : 0);
+    snprintf(o->folder, sizeof o->folder, "out/tune/%.*s", length, name);
+    if (!order->folder) order->folder = o->folder;
+    return true;
+}
+
+static bool take_numbers(tune_options *o) {
+    if (o->repeats < 1 || o->repeats > 1000)
+        return err_set("--repeats %d; accepted: 1 to 1000", o->repeats);
+    o->order.repeats = (uint32_t)o->repeats;
+    o->order.resume = o->resume;
+    o->order.axes = o->axes;
+    o->order.axis_count = o->axis_count;
+    o->order.preset = o->preset;
+    if (!o->frames_text) return true;
+    if (!app_parse_frames(o->frames_text, &o->frames)) return false;
+    o->order.frames = o->frames.numbers;
+    o->order.frame_count = o->frames.count;
+    return true;
+}
+
+static bool parse(tune_options *o, int argc, const char **argv, poptContext *context) {
+    const struct poptOption options[] = {
+        {"max-ms", 0, POPT_ARG_DOUBLE, &o->max_ms, 0,
+         "the best picture whose median frame takes no longer on the device", "MS"},
+        {"max-error", 0, POPT_ARG_DOUBLE, &o->max_error, 0,
+         "the least time whose worst frame is no further from the reference", "E"},
+        {"error", 0, POPT_ARG_STRING, &o->error, 0,
+         "what errors are: flip (default), or psnr, in dB, which then is the least", "KIND"},
+        {"axes", 0, POPT_ARG_STRING, NULL, OPTION_AXES,
+         "what is turned: controls, or controls and their values from cheap to dear "
+         "(default: what the effect has of steps, resolutions, octaves, ...)",
+         "NAME[=V:V...],..."},
+        {"reference", 0, POPT_ARG_STRING, NULL, OPTION_REFERENCE,
+         "errors are against paths of light, so many for each pixel (default: the effect with all "
+         "axes at their best)",
+         "SPP"},
+        {"name", 0, POPT_ARG_STRING, &o->preset, 0, "of the preset (default: tuned)", "NAME"},
+        {"output", 'o', POPT_ARG_STRING, &o->order.folder, 0,
+         "where results and report go (default: out/tune/EFFECT)", "DIR"},
+        {"resume", 0, POPT_ARG_NONE, &o->resume, 0,
+         "keep what DIR has measured, for this goal or another", NULL},
+        {"budget", 0, POPT_ARG_DOUBLE, &o->order.budget, 0,
+         "that the search may take; what is best until then counts", "SECONDS"},
+        {"frames", 'f', POPT_ARG_STRING, &o->frames_text, 0,
+         "30, or 10,30,50, or 0-99:20 (default: three places spread over the effect)", "FRAMES"},
+        {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE, "of pictures (default: 960x540)", "WxH"},
+        {"repeats", 0, POPT_ARG_INT, &o->repeats, 0, "how often each row is measured (default: 2)",
+         "N"},
+        {"limit", 0, POPT_ARG_DOUBLE, &o->order.limit, 0, "that a row may take (default: 120)",
+         "SECONDS"},
+        {"set", 0, POPT_ARG_STRING, NULL, OPTION_SET, "for all that is measured", "NAME=VALUE"},
+        {"preset", 0, POPT_ARG_STRING, NULL, OPTION_PRESET, "for all that is measured",
+         "NAME|FILE.lua"},
+        {"device", 'd', POPT_ARG_STRING, &o->order.device, 0,
+         "part of a device's name, or its number", "DEVICE"},
+        POPT_AUTOHELP POPT_TABLEEND};
+    *context = poptGetContext("roil tune", argc, argv, options, 0);
+    poptSetOtherOptionHelp(*context, "EFFECT.lua --max-ms MS | --max-error E [options]");
+    int option;
+    while ((option = poptGetNextOpt(*context)) > 0)
+        if (!take_option(o, *context, option)) return false;
+    if (option < -1) return err_set("%s: %s", poptBadOption(*context, 0), poptStrerror(option));
+    return take_effect(o, *context) && take_goal(o) && take_numbers(o);
+}
+
+// ---- progress -----------------------------------------------------------------------------------
+
+static void print_error(const tune_options *o, const bench_row *row) {
+    double error = tune_row_error(row, o->order.goal.error);
+    if (isnan(error))
+        printf("%s", row->message[0] ? row->message : "not compared");
+    else if (o->order.goal.error == TUNE_FLIP)
+        printf("FLIP %.4f", error);
+    else
+        printf("PSNR %.2f dB", error);
+}
+
+static void on_begin(void *user, const bench_results *r, const tune_axis *axes, size_t count) {
+    (void)user;
+    double all = 1;
+    for (size_t i = 0; i < count; i++) all *= (double)axes[i].count;
+    printf("%s\n%s, %zu axes, %.0f combinations\n", r->title, r->device, count, all);
+    for (size_t i = 0; i < count; i++) {
+        printf("  %s:", axes[i].name);
+        for (size_t k = 0; k < axes[i].count; k++)
+            printf(k == axes[i].start ? " [%s]" : " %s", axes[i].values[k]);
+        printf("\n");
+    }
+    fflush(stdout);
+}
+
+static void on_result(void *user, const bench_row *row, bool earlier) {
+    tune_options *o = user;
+    const bench_time *time = bench_main_time(row);
+    o->measured += !earlier;
+    o->earlier += earlier;
+    printf("%4zu  %s: ", row->index, row->label);
+    if (time) printf("%.4g ms, ", time->ms.median);
+    print_error(o, row);
+    printf("%s\n", earlier ? " (kept)" : "");
+    fflush(stdout);
+}
+
+// ---- result -------------------------------------------------------------------------------------
+
+static int width_of(const tune_result *t) {
+    int width = 8;
+    for (size_t i = 0; i < t->axis_count; i++)
+        if ((int)strlen(t->axes[i].name) > width) width = (int)strlen(t->axes[i].name);
+    return width;
+}
+
+static void print_result(const tune_options *o, const bench_results *r, const tune_result *t) {
+    const bench_row *before = bench_find(r, t->before), *best = bench_find(r, t->best);
+    int width = width_of(t);
+    bool flip = o->order.goal.error == TUNE_FLIP;
+    printf("\n%-*s %12s %12s\n", width, "", "before", "tuned");
+    for (size_t i = 0; i < t->axis_count; i++)
+        printf("%-*s %12s %12s\n", width, t->axes[i].name,
+               bench_axis_value(before, t->axes[i].name), bench_axis_value(best, t->axes[i].name));
+    printf("%-*s %12.4g %12.4g\n", width, "ms", bench_main_time(before)->ms.median,
+           bench_main_time(best)->ms.median);
+    printf("%-*s %12.4f %12.4f\n", width, flip ? "FLIP" : "PSNR dB",
+           tune_row_error(before, o->order.goal.error), tune_row_error(best, o->order.goal.error));
+    printf("\n%zu rows measured%s\n", o->measured,
+           t->complete ? "" : "; the search was ended early, --resume goes on");
+}
+
+static int finish(const tune_options *o, const bench_results *r, const tune_result *t) {
+    print_result(o, r, t);
+    printf("wrote %s/results.json, results.csv, report.html\n", o->order.folder);
+    if (!t->within)
+        return app_fail(APP_DIFFERS, "%s %g cannot be kept with these axes%s; no preset is written",
+                        o->order.goal.by_error ? "--max-error" : "--max-ms", o->order.goal.limit,
+                        t->complete ? "" : ", as far as was searched");
+    printf("wrote the preset: roil render %s --preset %s\n", o->order.effect, o->preset);
+    return APP_DONE;
+}
+
+static int run(tune_options *o) {
+    roil *r = roil_create(&(roil_desc){.no_device = true});
+    if (!r || !app_collect_settings(&o->settings, r, o->order.effect, NULL)) {
+        roil_destroy(r);
+        return app_fail_input();
+    }
+    roil_destroy(r);
+    o->order.settings = o->settings.all;
+    o->order.setting_count = o->settings.count;
+    o->order.watcher = (tune_watcher){on_begin, on_result, app_is_interrupted, o};
+    app_hear_interrupts();
+    bench_results results;
+    tune_result result;
+    int status =
+        bench_tune(&o->order, &results, &result) ? finish(o, &results, &result) : app_fail_input();
+    bench_results_free(&results);
+    return status;
+}
+
+int cmd_tune(int argc, const char **argv) {
+    tune_options o = {.max_ms = -1, .max_error = -1, .preset = "tuned", .repeats = 2};
+    o.order.width = 960;
+    o.order.height = 540;
+    o.order.limit = 120;
+    poptContext context;
+    int status = parse(&o, argc, argv, &context)
+                     ? run(&o)
+                     : app_fail(APP_BAD_USAGE, "tune: %s", roil_error());
+    poptFreeContext(context);
+    app_free_settings(&o.settings);
+    app_free_frames(&o.frames);
+    mem_free(o.axes);
+    return status;
+}

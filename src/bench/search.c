@@ -1,0 +1,273 @@
+// A walk over a lattice of rungs. Cost and error are taken to be nearly monotonous on each axis and
+// nearly additive between axes, which what is measured then corrects:
+//
+// 1. From the start, while the limit is not kept: the step is taken that helps most for what it
+//    spends. 2. Then, as long as the limit is kept: the step that gains most for what it spends.
+//    Both are greedy marginal analysis, evaluated lazily (Minoux, "Accelerated Greedy Algorithms
+//    for Maximizing Submodular Set Functions", 1978): a step's worth hardly grows as the walk goes
+//    on, so that only the one that looks best is measured again.
+// 3. Exchanges around where that ends: up on one axis and down on another, those first whose sum of
+//    known differences promises most. After each that succeeds, 2 again.
+//
+// Every point is measured once.
+#include "bench/search.h"
+#include "base/memory.h"
+#include <math.h>
+#include <string.h>
+
+enum { LONGEST_STEP = 3, MAX_EXCHANGES = 256 };
+static const double SAME_ERROR = 0.005, SLACK = 0.1; // parts; the latter of what is only predicted
+
+typedef struct walk {
+    const search_desc *desc;
+    search_point points[SEARCH_MAX_POINTS];
+    size_t count;
+    bool stopped;
+    search_point at;
+} walk;
+
+typedef struct difference {
+    double cost, error;
+} difference;
+
+// ---- points -------------------------------------------------------------------------------------
+
+static bool same_place(const walk *w, const search_point *a, const search_point *b) {
+    return memcmp(a->rungs, b->rungs, w->desc->axis_count * sizeof *a->rungs) == 0;
+}
+
+// Fills cost and error; false when the search has to end.
+static bool visit(walk *w, search_point *p) {
+    for (size_t i = 0; i < w->count; i++)
+        if (same_place(w, &w->points[i], p)) {
+            *p = w->points[i];
+            return true;
+        }
+    if (w->stopped || w->count == SEARCH_MAX_POINTS || !w->desc->measure(w->desc->user, p)) {
+        w->stopped = true;
+        return false;
+    }
+    w->points[w->count++] = *p;
+    return true;
+}
+
+static bool within(const walk *w, const search_point *p) {
+    return (w->desc->by_error ? p->error : p->cost) <= w->desc->limit;
+}
+
+// The place `by` rungs away; false where there is none.
+static bool step_to(const walk *w, const search_point *from, size_t axis, int by,
+                    search_point *out) {
+    *out = *from;
+    size_t rung = from->rungs[axis];
+    if (by < 0 ? rung < (size_t)-by : rung + (size_t)by >= w->desc->axes[axis].count) return false;
+    out->rungs[axis] = by < 0 ? rung - (size_t)-by : rung + (size_t)by;
+    return true;
+}
+
+// ---- greedy steps -------------------------------------------------------------------------------
+
+// What a step gains for what it spends; 0 when it gains nothing.
+static double worth(const walk *w, const search_point *to, bool up) {
+    double saved = w->at.cost - to->cost, lost = to->error - w->at.error;
+    double gain = up ? -lost : saved, spent = up ? -saved : lost;
+    double least = up ? SAME_ERROR * w->at.error : w->desc->noise * w->at.cost;
+    if (!(gain > least)) return 0;
+    double nothing = 1e-4 * (up ? w->at.cost : w->at.error) + 1e-12;
+    return gain / fmax(spent, nothing);
+}
+
+typedef struct candidate {
+    search_point to;
+    double worth; // as far as it is known; INFINITY: not yet
+    bool fresh;   // measured from where the walk is now
+} candidate;
+
+// A rung that changes nothing may lead to one that does.
+static void look(walk *w, size_t axis, bool up, bool until_within, candidate *c) {
+    c->worth = 0;
+    for (int far = 1; far <= LONGEST_STEP && c->worth <= 0; far++) {
+        if (!step_to(w, &w->at, axis, up ? far : -far, &c->to) || !visit(w, &c->to)) return;
+        if (!until_within && !within(w, &c->to)) return;
+        c->worth = worth(w, &c->to, up);
+    }
+    c->fresh = true;
+}
+
+// Steps in one direction: until the limit is kept, or as long as it is.
+static void go(walk *w, bool up, bool until_within) {
+    candidate all[SEARCH_MAX_AXES];
+    size_t count = w->desc->axis_count;
+    for (size_t i = 0; i < count; i++) all[i] = (candidate){.worth = INFINITY};
+    while (!w->stopped && !(until_within && within(w, &w->at))) {
+        size_t best = 0;
+        for (size_t i = 1; i < count; i++)
+            if (all[i].worth > all[best].worth) best = i;
+        if (all[best].worth <= 0) return;
+        if (!all[best].fresh) {
+            look(w, best, up, until_within, &all[best]);
+            continue;
+        }
+        w->at = all[best].to;
+        for (size_t i = 0; i < count; i++) all[i].fresh = false;
+    }
+}
+
+// ---- exchanges ----------------------------------------------------------------------------------
+
+static bool differ_only(const walk *w, const search_point *a, const search_point *b, size_t axis) {
+    for (size_t i = 0; i < w->desc->axis_count; i++)
+        if (i != axis && a->rungs[i] != b->rungs[i]) return false;
+    return true;
+}
+
+// What a step did where it was measured last.
+static bool known_step(const walk *w, size_t axis, size_t from, size_t to, difference *out) {
+    for (size_t i = w->count; i-- > 0;)
+        for (size_t k = w->count; k-- > 0;) {
+            const search_point *a = &w->points[i], *b = &w->points[k];
+            if (a->rungs[axis] != from || b->rungs[axis] != to || !differ_only(w, a, b, axis))
+                continue;
+            difference d = {b->cost - a->cost, b->error - a->error};
+            if (!isfinite(d.cost) || !isfinite(d.error)) return false;
+            *out = d;
+            return true;
+        }
+    return false;
+}
+
+// The sum of known steps; one that is not known is taken to do what its neighbour does.
+static bool known_steps(const walk *w, size_t axis, int by, difference *out) {
+    size_t from = w->at.rungs[axis];
+    search_point to;
+    if (!step_to(w, &w->at, axis, by, &to)) return false;
+    if (known_step(w, axis, from, to.rungs[axis], out)) return true;
+    int one = by < 0 ? -1 : 1;
+    difference last = {0};
+    *out = last;
+    for (int i = 0; i != by; i += one) {
+        size_t at = (size_t)((int)from + i);
+        if (!known_step(w, axis, at, (size_t)((int)at + one), &last) && i == 0) return false;
+        out->cost += last.cost;
+        out->error += last.error;
+    }
+    return true;
+}
+
+typedef struct exchange {
+    search_point to;
+    double promise; // by how much the part of what is minimised would fall
+} exchange;
+
+static void consider(walk *w, size_t up, int far_up, size_t down, int far_down, exchange *all,
+                     size_t *count) {
+    difference a, b;
+    if (*count == MAX_EXCHANGES || !known_steps(w, up, far_up, &a) ||
+        !known_steps(w, down, -far_down, &b))
+        return;
+    double cost = w->at.cost + a.cost + b.cost, error = w->at.error + a.error + b.error;
+    double limited = w->desc->by_error ? error : cost, aim = w->desc->by_error ? cost : error;
+    double now = w->desc->by_error ? w->at.cost : w->at.error;
+    double least = w->desc->by_error ? w->desc->noise : SAME_ERROR;
+    if (limited > w->desc->limit * (1 + SLACK) || aim > now * (1 - least)) return;
+    exchange *e = &all[(*count)++];
+    e->promise = now - aim;
+    e->to = w->at;
+    e->to.rungs[up] += (size_t)far_up;
+    e->to.rungs[down] -= (size_t)far_down;
+}
+
+static bool improves(const walk *w, const search_point *p) {
+    if (!within(w, p)) return false;
+    return w->desc->by_error ? p->cost < w->at.cost * (1 - w->desc->noise)
+                             : p->error < w->at.error * (1 - SAME_ERROR);
+}
+
+// What lies beside the end of the walk, on the side where it did not come from.
+static void look_around(walk *w) {
+    for (size_t i = 0; i < w->desc->axis_count && !w->stopped; i++) {
+        search_point p;
+        difference d;
+        int by = w->desc->by_error ? 1 : -1;
+        if (!known_steps(w, i, by, &d) && step_to(w, &w->at, i, by, &p)) visit(w, &p);
+    }
+}
+
+// True when one was found.
+static bool take_exchange(walk *w) {
+    exchange all[MAX_EXCHANGES];
+    size_t count = 0, tries = 4 * w->desc->axis_count;
+    look_around(w);
+    for (size_t up = 0; up < w->desc->axis_count; up++)
+        for (size_t down = 0; down < w->desc->axis_count; down++)
+            for (int far = 0; up != down && far < LONGEST_STEP * LONGEST_STEP; far++)
+                consider(w, up, far % LONGEST_STEP + 1, down, far / LONGEST_STEP + 1, all, &count);
+    for (; tries > 0 && count > 0 && !w->stopped; tries--) {
+        size_t best = 0;
+        for (size_t i = 1; i < count; i++)
+            if (all[i].promise > all[best].promise) best = i;
+        if (visit(w, &all[best].to) && improves(w, &all[best].to)) {
+            w->at = all[best].to;
+            return true;
+        }
+        all[best] = all[--count];
+    }
+    return false;
+}
+
+// ---- result -------------------------------------------------------------------------------------
+
+// The best of what was measured; of those that are as good, the one that is better otherwise.
+static search_point choose(const walk *w, bool *kept) {
+    bool by_error = w->desc->by_error;
+    double least = INFINITY;
+    for (size_t i = 0; i < w->count; i++) *kept = *kept || within(w, &w->points[i]);
+    for (size_t i = 0; i < w->count; i++) {
+        const search_point *p = &w->points[i];
+        double aim = by_error == *kept ? p->cost : p->error;
+        if (within(w, p) == *kept) least = fmin(least, aim);
+    }
+    const search_point *best = NULL;
+    for (size_t i = 0; i < w->count; i++) {
+        const search_point *p = &w->points[i];
+        bool cost_counts = by_error == *kept;
+        double aim = cost_counts ? p->cost : p->error, other = cost_counts ? p->error : p->cost;
+        if (within(w, p) != *kept ||
+            aim > least * (1 + (cost_counts ? w->desc->noise : SAME_ERROR)))
+            continue;
+        if (!best || other < (cost_counts ? best->error : best->cost)) best = p;
+    }
+    return best ? *best : w->points[0];
+}
+
+// Steps to where the limit is kept; from the end of all axes when it is not on the way.
+static void reach_limit(walk *w) {
+    bool up = w->desc->by_error;
+    go(w, up, true);
+    if (within(w, &w->at)) return;
+    search_point end = w->at;
+    for (size_t i = 0; i < w->desc->axis_count; i++)
+        end.rungs[i] = up ? w->desc->axes[i].count - 1 : 0;
+    if (visit(w, &end) && within(w, &end)) w->at = end;
+}
+
+bool search_run(const search_desc *desc, search_result *out) {
+    walk *w = mem_alloc(sizeof *w);
+    w->desc = desc;
+    for (size_t i = 0; i < desc->axis_count; i++) w->at.rungs[i] = desc->axes[i].start;
+    bool begun = visit(w, &w->at);
+    *out = (search_result){.start = w->at};
+    if (begun) {
+        reach_limit(w);
+        bool more = within(w, &w->at);
+        while (more) {
+            go(w, !desc->by_error, false);
+            more = take_exchange(w);
+        }
+        out->best = choose(w, &out->within);
+        out->complete = !w->stopped;
+        out->count = w->count;
+    }
+    mem_free(w);
+    return begun;
+}
