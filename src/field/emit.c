@@ -309,6 +309,7 @@ bool program_emit(field_program *p, strbuf *out) {
     if (e.failed) err_set("the fields have more than %d operations", FIELD_MAX_NODES);
     add_globals(&e, out);
     strbuf_append(out, strbuf_text(&e.functions), e.functions.length);
+    if (!e.failed) emit_ranges(&e, out);
     mem_free(e.uses);
     mem_free(e.ops);
     mem_free(e.points);

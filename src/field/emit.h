@@ -17,7 +17,8 @@ typedef struct program_node { // a distinct expression
 
 typedef enum program_slot_kind {
     SLOT_NUMBER,    // value of a node that does not vary in space
-    SLOT_GRID,      // 4 vec4: box min, blend; 1 / box size, texels a metre; active min; active max
+    SLOT_GRID,      // 5 vec4: box min, blend; 1 / box size, texels a metre; active min; active max;
+                    // bricks along each side. w of the last three: texels along each side
     SLOT_PALETTE,   // 1 vec4: min, 1 / (max - min)
     SLOT_TRANSFORM, // 3 vec4: rows of the matrix to where the field is sampled
 } program_slot_kind;
@@ -33,6 +34,7 @@ typedef struct program_grid {
     const field_grid *grid;
     uint32_t at; // slot, in vec4
     bool used[FIELD_GRID_IMAGES];
+    bool ranged[FIELD_GRID_IMAGES]; // its ranges are asked for
 } program_grid;
 
 typedef struct program_palette {

@@ -76,3 +76,7 @@ void emit_op(emitter *e, uint32_t index, char out[EXPR]);
 void emit_node(emitter *e, uint32_t node, uint32_t at, char out[EXPR]);
 void emit_compute(emitter *e, uint32_t index); // writes "name = value;" and what it needs
 void emit_widen(char text[EXPR], int from, int to);
+
+// ---- emit_range.c -----------------------------------------------------------------------------
+
+void emit_ranges(emitter *e, strbuf *out); // after the functions of all values

@@ -71,6 +71,11 @@ struct field_kind {
     // Box outside of which the result is zero, from the arguments' boxes. NULL: by what the kind
     // makes of zeros.
     box3 (*bounds)(const field *node, const field_context *context, const box3 *args);
+    // Least and greatest value in a box (range.h), in C and in GLSL, where it is a function of
+    // ranges in the place of `function`; NULL: the generator has a case of its own.
+    struct intervals (*ranges)(const field *node, const field_context *context,
+                               const struct intervals *at, const struct intervals *args);
+    const char *range_function;
 };
 
 extern const field_kind field_kinds[];               // ends with a NULL name

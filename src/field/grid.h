@@ -1,22 +1,40 @@
 // Grid: values on a regular lattice in a box, as up to FIELD_GRID_IMAGES 3D textures of four
-// half-float channels each. What fills it (a VDB or raw sequence, a bake, a solver) implements
-// `update`; fields and the generator see only this.
+// half-float channels each, whole or in bricks. What fills it (a VDB or raw sequence, a bake, a
+// solver) implements `update`; fields and the generator see only this.
 #pragma once
 #include "base/maths.h"
 #include "gpu/gpu.h"
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { FIELD_GRID_IMAGES = 4 };
+enum {
+    FIELD_GRID_IMAGES = 4,
+    GRID_BRICK =
+        4, // texels a side, of which the range is known; GRID_SPARSE_BRICK of a sparse grid
+    GRID_SPARSE_BRICK = 8,
+};
 
 typedef struct field_grid field_grid;
 
 typedef struct field_grid_state {            // at one time
     gpu_image *images[2][FIELD_GRID_IMAGES]; // two neighbouring frames; the second set may be NULL
+    gpu_image *index[2][FIELD_GRID_IMAGES];  // of a sparse grid: where the bricks of each image lie
     float blend;                             // 0: first set only, 1: second
     box3 active;                             // outside of it every channel is background (0)
     uint64_t content; // another number whenever the images may hold something else; 0: unknown
 } field_grid_state;
+
+typedef struct field_playback { // of data that is read frame by frame, since it was opened
+    uint64_t shown, late;       // frames that came on; updates that another one had to stand in for
+    uint64_t decoded, uploaded, decoded_bytes,
+        uploaded_bytes;      // frames, and their bytes as textures
+    double decode_seconds;   // of all threads together
+    uint32_t threads;        // how many there are
+    uint64_t device_bytes;   // of the textures
+    uint64_t largest_bytes;  // of a frame as it was uploaded
+    uint64_t largest_voxels; // of a frame, that are not 0
+    bool waiting;            // another frame is standing in just now
+} field_playback;
 
 struct field_grid {
     const char *name;  // for messages and dumps
@@ -26,14 +44,18 @@ struct field_grid {
     float longest;     // greatest length of a vector of its channels, where known; 0: unknown
     bool repeats;      // goes on for ever beyond its box, as it is within, and is sampled linearly
     bool levels;       // has mip levels: sampled at that of `grid_width` (lib/grid.glsl)
+    bool sparse;       // images hold bricks where there is something; lib/grid.glsl says how
     bool blends;       // may ever have blend > 0: the shader then samples both sets
+    bool punctual;     // never waits for data: another frame stands in for one that is late
     field_grid_state state; // current; set by update
-    // Brings `state` to a time, uploading what is needed. Waits for data that is not decoded yet.
+    // Brings `state` to a time, uploading what is needed. Waits for data that is not decoded yet,
+    // unless it is punctual and has anything to show.
     bool (*update)(field_grid *grid, gpu *g, double time);
     void (*destroy)(field_grid *grid, gpu *g); // frees all
     // Gives `other`, a grid with the same hook, all that this one has read and put on the device,
     // and takes what that one has; false when they do not show the same. NULL: nothing to exchange.
     bool (*exchange)(field_grid *grid, field_grid *other);
+    const field_playback *(*playback)(const field_grid *grid); // NULL: nothing is played
     // Host value of one channel at a point, trilinear; NULL when there is no host data.
     bool (*sample)(const field_grid *grid, float3 p, int channel, float *out);
 };

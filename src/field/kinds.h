@@ -2,6 +2,7 @@
 // place in field_kinds; and the functions that the table's rows name.
 #pragma once
 #include "field/field.h"
+#include "field/range.h"
 
 enum {
     KIND_CONSTANT,
@@ -39,6 +40,14 @@ kind_eval eval_constant, eval_palette, eval_swizzle, eval_position, eval_add, ev
 kind_eval eval_sphere, eval_box, eval_capsule, eval_torus;
 kind_eval eval_perlin, eval_simplex, eval_value, eval_worley, eval_curl;
 
+kind_ranges ranges_grid, ranges_palette, ranges_unknown, ranges_swizzle, ranges_position,
+    ranges_add, ranges_sub, ranges_mul, ranges_negate, ranges_div, ranges_min, ranges_max,
+    ranges_mix, ranges_clamp, ranges_remap, ranges_smoothstep, ranges_step, ranges_pow, ranges_abs,
+    ranges_sqrt, ranges_exp, ranges_sin, ranges_floor, ranges_fract, ranges_length, ranges_dot,
+    ranges_vec;
+kind_ranges ranges_sphere, ranges_box, ranges_capsule, ranges_torus;
+kind_ranges ranges_perlin, ranges_simplex, ranges_value, ranges_worley, ranges_curl;
+
 kind_bounds bounds_mul, bounds_div, bounds_mix, bounds_min, bounds_dot, bounds_grid, bounds_warp,
     bounds_transform, bounds_sphere, bounds_box, bounds_capsule, bounds_torus;
 
@@ -46,6 +55,10 @@ kind_bounds bounds_mul, bounds_div, bounds_mix, bounds_min, bounds_dot, bounds_g
 field *field_advect(arena *memory, const field *node);
 // The same node with other arguments of the same widths. NULL with a message: nested too deeply.
 field *field_with_args(arena *memory, const field *node, const field *const *args);
+
+// Whether "by" of a "warp" is a field minus the position. Then p + amount * by is a mix of p and
+// the field, whose range is narrower than that of the sum.
+bool kind_is_displacement(const field *by);
 
 // Components an argument's value is widened to before the kind computes with it.
 int kind_arg_width(const field *node, size_t arg);

@@ -1,7 +1,9 @@
-// Evaluators of the noise kinds: from a row's arguments and options to a noise_desc.
+// Evaluators and ranges of the noise kinds: from a row's arguments and options to a noise_desc.
 #include "field/kinds.h"
 #include "field/noise.h"
 #include <math.h>
+
+enum { AMPLITUDE = 5 }; // argument
 
 static noise_desc describe(const float (*args)[4]) { // what all rows begin with
     return (noise_desc){
@@ -10,9 +12,10 @@ static noise_desc describe(const float (*args)[4]) { // what all rows begin with
         .persistence = args[2][0],
         .lacunarity = args[3][0],
         .seed = args[4][0],
-        .amplitude = args[5][0],
+        .amplitude = args[AMPLITUDE][0],
         .drift = {args[6][0], args[6][1], args[6][2]},
         .phase = args[7][0] + args[8][0],
+        .period = args[9][0],
     };
 }
 
@@ -23,49 +26,69 @@ static noise_desc describe_scalar(const field *node, const float (*args)[4]) {
     return desc;
 }
 
-void eval_perlin(const field *node, const field_context *context, float3 p, const float (*args)[4],
-                 float out[4]) {
-    (void)context;
-    noise_desc desc = describe_scalar(node, args);
-    desc.period = args[9][0];
-    out[0] = noise_eval(NOISE_PERLIN, &desc, p);
+static noise_desc describe_simplex(const field *node, const float (*args)[4]) {
+    noise_desc desc = describe_scalar(node, args); // its lattice repeats after multiples of three
+    desc.period = desc.period >= 0.5f ? 3 * fmaxf(floorf(desc.period / 3 + 0.5f), 1) : 0;
+    return desc;
 }
 
-void eval_value(const field *node, const field_context *context, float3 p, const float (*args)[4],
-                float out[4]) {
-    (void)context;
+static noise_desc describe_worley(const field *node, const float (*args)[4]) {
     noise_desc desc = describe_scalar(node, args);
-    desc.period = args[9][0];
-    out[0] = noise_eval(NOISE_VALUE, &desc, p);
-}
-
-void eval_simplex(const field *node, const field_context *context, float3 p, const float (*args)[4],
-                  float out[4]) {
-    (void)context;
-    noise_desc desc = describe_scalar(node, args);
-    float period = args[9][0]; // its lattice repeats after multiples of three
-    desc.period = period >= 0.5f ? 3 * fmaxf(floorf(period / 3 + 0.5f), 1) : 0;
-    out[0] = noise_eval(NOISE_SIMPLEX, &desc, p);
-}
-
-void eval_worley(const field *node, const field_context *context, float3 p, const float (*args)[4],
-                 float out[4]) {
-    (void)context;
-    noise_desc desc = describe_scalar(node, args);
-    desc.period = args[9][0];
     desc.power = args[10][0];
     desc.distance = (noise_distance)node->options[2];
     desc.paper = node->options[3] == 1;
-    out[0] = noise_eval(NOISE_WORLEY, &desc, p);
+    return desc;
 }
+
+static noise_desc describe_curl(const field *node, const float (*args)[4]) {
+    noise_desc desc = describe(args);
+    desc.delta = args[10][0];
+    desc.paper = node->options[0] == 1;
+    desc.four = node->options[1] == 1;
+    return desc;
+}
+
+// Arguments that do not vary in space: all but the amplitude.
+static void numbers(const field *node, const intervals *args, float out[FIELD_MAX_ARGS][4]) {
+    for (size_t i = 0; i < kind_arg_count(node); i++)
+        for (int c = 0; c < 4; c++) out[i][c] = args[i].c[c].low;
+}
+
+#define SCALAR_NOISE(NAME, BASE, DESCRIBE)                                                         \
+    void eval_##NAME(const field *node, const field_context *context, float3 p,                    \
+                     const float(*args)[4], float out[4]) {                                        \
+        (void)context;                                                                             \
+        noise_desc desc = DESCRIBE(node, args);                                                    \
+        out[0] = noise_eval(BASE, &desc, p);                                                       \
+    }                                                                                              \
+    intervals ranges_##NAME(const field *node, const field_context *context, const intervals *at,  \
+                            const intervals *args) {                                               \
+        (void)context;                                                                             \
+        float values[FIELD_MAX_ARGS][4];                                                           \
+        numbers(node, args, values);                                                               \
+        noise_desc desc = DESCRIBE(node, (const float(*)[4])values);                               \
+        return (intervals){{range_mul(args[AMPLITUDE].c[0], noise_range(BASE, &desc, at))}};       \
+    }
+
+SCALAR_NOISE(perlin, NOISE_PERLIN, describe_scalar)
+SCALAR_NOISE(value, NOISE_VALUE, describe_scalar)
+SCALAR_NOISE(simplex, NOISE_SIMPLEX, describe_simplex)
+SCALAR_NOISE(worley, NOISE_WORLEY, describe_worley)
 
 void eval_curl(const field *node, const field_context *context, float3 p, const float (*args)[4],
                float out[4]) {
     (void)context;
-    noise_desc desc = describe(args);
-    desc.period = args[9][0];
-    desc.delta = args[10][0];
-    desc.paper = node->options[0] == 1;
-    desc.four = node->options[1] == 1;
+    noise_desc desc = describe_curl(node, args);
     noise_curl(&desc, p, out);
+}
+
+intervals ranges_curl(const field *node, const field_context *context, const intervals *at,
+                      const intervals *args) {
+    (void)context;
+    float values[FIELD_MAX_ARGS][4];
+    numbers(node, args, values);
+    noise_desc desc = describe_curl(node, (const float(*)[4])values);
+    intervals out = noise_curl_ranges(&desc, at);
+    for (int i = 0; i < 3; i++) out.c[i] = range_mul(args[AMPLITUDE].c[0], out.c[i]);
+    return out;
 }

@@ -1,6 +1,7 @@
 // Procedural noise on the host: the twin of shaders/lib/noise.glsl, which describes it.
 #pragma once
 #include "base/maths.h"
+#include "field/range.h"
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -24,3 +25,6 @@ typedef struct noise_desc {
 
 float noise_eval(noise_base base, const noise_desc *desc, float3 p); // 0..amplitude
 void noise_curl(const noise_desc *desc, float3 p, float out[3]);     // amplitude is the amount
+// In the box `at`, of amplitude 1.
+interval noise_range(noise_base base, const noise_desc *desc, const intervals *at);
+intervals noise_curl_ranges(const noise_desc *desc, const intervals *at);

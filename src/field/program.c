@@ -10,6 +10,7 @@
 #include "field/kinds.h"
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 // ---- interning --------------------------------------------------------------------------------
@@ -129,8 +130,8 @@ program_grid *program_use_grid(field_program *p, const field_grid *grid, size_t 
     for (*index = 0; *index < p->grid_count; ++*index)
         if (p->grids[*index].grid == grid) return &p->grids[*index];
     MEM_RESERVE(p->grids, p->grid_count + 1, p->grid_capacity);
-    uint32_t at = add_slot(p, (program_slot){SLOT_GRID, .object = grid}, 4) / 4;
-    p->grids[p->grid_count++] = (program_grid){grid, at, {false}};
+    uint32_t at = add_slot(p, (program_slot){SLOT_GRID, .object = grid}, 5) / 4;
+    p->grids[p->grid_count++] = (program_grid){.grid = grid, .at = at};
     return &p->grids[*index];
 }
 
@@ -189,29 +190,48 @@ static void add_repeating_fetch(const program_grid *grid, size_t g, int image, s
         strbuf_add(out, "    return textureLod(field_grid_%zu_%d, uvw, 0.0);\n}\n", g, image);
 }
 
+// A sample of one of the two sets of images.
+static void sample_text(const program_grid *grid, size_t g, int image, bool next, char out[240]) {
+    const char *set = next ? "next" : "grid", *place = next ? "index_next" : "index";
+    unsigned at = grid->at;
+    if (grid->grid->sparse)
+        snprintf(out, 240,
+                 "grid_sample_bricks(field_%s_%zu_%d, field_%s_%zu_%d, vec3(field_numbers[%u].w, "
+                 "field_numbers[%u].w, field_numbers[%u].w), uvw)",
+                 set, g, image, place, g, image, at + 2, at + 3, at + 4);
+    else
+        snprintf(out, 240, "grid_sample(field_%s_%zu_%d, uvw)", set, g, image);
+}
+
 static void add_fetch(const program_grid *grid, size_t g, int image, strbuf *out) {
     if (grid->grid->repeats) {
         add_repeating_fetch(grid, g, image, out);
         return;
     }
     unsigned at = grid->at;
+    bool sparse = grid->grid->sparse, blends = grid->grid->blends;
+    char now[240], next[240];
+    sample_text(grid, g, image, false, now);
+    sample_text(grid, g, image, true, next);
     strbuf_add(out, "uniform sampler3D field_grid_%zu_%d;\n", g, image);
-    if (grid->grid->blends) strbuf_add(out, "uniform sampler3D field_next_%zu_%d;\n", g, image);
+    if (blends) strbuf_add(out, "uniform sampler3D field_next_%zu_%d;\n", g, image);
+    if (sparse) strbuf_add(out, "uniform usampler3D field_index_%zu_%d;\n", g, image);
+    if (sparse && blends)
+        strbuf_add(out, "uniform usampler3D field_index_next_%zu_%d;\n", g, image);
     strbuf_add(out,
                "vec4 field_fetch_%zu_%d(vec3 p) {\n"
                "    if (any(lessThan(p, field_numbers[%u].xyz)) || "
                "any(greaterThan(p, field_numbers[%u].xyz))) return vec4(0.0);\n"
                "    vec3 uvw = (p - field_numbers[%u].xyz) * field_numbers[%u].xyz;\n",
                g, image, at + 2, at + 3, at, at + 1);
-    if (grid->grid->blends)
+    if (blends)
         strbuf_add(out,
                    "    float blend = field_numbers[%u].w;\n"
-                   "    vec4 now = grid_sample(field_grid_%zu_%d, uvw);\n"
-                   "    return blend > 0.0 ? mix(now, grid_sample(field_next_%zu_%d, uvw), blend) "
-                   ": now;\n}\n",
-                   at, g, image, g, image);
+                   "    vec4 now = %s;\n"
+                   "    return blend > 0.0 ? mix(now, %s, blend) : now;\n}\n",
+                   at, now, next);
     else
-        strbuf_add(out, "    return grid_sample(field_grid_%zu_%d, uvw);\n}\n", g, image);
+        strbuf_add(out, "    return %s;\n}\n", now);
 }
 
 static void add_textures(field_program *p, strbuf *out) {
@@ -222,21 +242,46 @@ static void add_textures(field_program *p, strbuf *out) {
         strbuf_add(out, "uniform sampler2D field_palette_%zu;\n", i);
 }
 
-static void list_textures(arena *memory, field_program *p) {
-    size_t most = p->palette_count + p->grid_count * FIELD_GRID_IMAGES * 2;
-    p->textures = arena_alloc(memory, (most + 1) * sizeof *p->textures);
-    for (size_t g = 0; g < p->grid_count; g++)
-        for (int image = 0; image < FIELD_GRID_IMAGES; image++)
-            for (int set = 0; set < 1 + p->grids[g].grid->blends; set++) {
-                if (!p->grids[g].used[image]) continue;
+static void list_grid(arena *memory, field_program *p, size_t g) {
+    static const char *const names[2][2] = {{"grid", "next"}, {"ranges", "ranges_next"}};
+    const program_grid *grid = &p->grids[g];
+    for (int image = 0; image < FIELD_GRID_IMAGES; image++)
+        for (int ranges = 0; ranges < 2; ranges++)
+            for (int set = 0; set < 1 + grid->grid->blends; set++) {
+                if (!(ranges ? grid->ranged : grid->used)[image]) continue;
                 p->textures[p->texture_count++] = (field_texture){
                     .glsl_name =
-                        arena_format(memory, "field_%s_%zu_%d", set ? "next" : "grid", g, image),
-                    .grid = p->grids[g].grid,
+                        arena_format(memory, "field_%s_%zu_%d", names[ranges][set], g, image),
+                    .grid = grid->grid,
                     .image = image,
                     .set = set,
+                    .ranges = ranges,
                 };
             }
+}
+
+static void list_index(arena *memory, field_program *p, size_t g) {
+    const field_grid *grid = p->grids[g].grid;
+    for (int image = 0; image < FIELD_GRID_IMAGES; image++)
+        for (int set = 0; set < 1 + grid->blends; set++)
+            if (p->grids[g].used[image] && grid->sparse)
+                p->textures[p->texture_count++] = (field_texture){
+                    .glsl_name =
+                        arena_format(memory, "field_index%s_%zu_%d", set ? "_next" : "", g, image),
+                    .grid = grid,
+                    .image = image,
+                    .set = set,
+                    .index = true,
+                };
+}
+
+static void list_textures(arena *memory, field_program *p) {
+    size_t most = p->palette_count + p->grid_count * FIELD_GRID_IMAGES * 6;
+    p->textures = arena_alloc(memory, (most + 1) * sizeof *p->textures);
+    for (size_t g = 0; g < p->grid_count; g++) {
+        list_grid(memory, p, g);
+        list_index(memory, p, g);
+    }
     for (size_t i = 0; i < p->palette_count; i++)
         p->textures[p->texture_count++] = (field_texture){
             .glsl_name = arena_format(memory, "field_palette_%zu", i),
@@ -386,7 +431,7 @@ static bool fill_values(const field_program *p, const field_context *context) {
     return true;
 }
 
-static void fill_grid(const field_grid *grid, float out[16]) {
+static void fill_grid(const field_grid *grid, float out[20]) {
     box3 box = grid->box, active = box3_intersect(box, grid->state.active);
     const float size[3] = {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
     memcpy(out, &box.min, sizeof box.min);
@@ -394,7 +439,10 @@ static void fill_grid(const field_grid *grid, float out[16]) {
     for (int i = 0; i < 3; i++) {
         out[4 + i] = size[i] > 0 ? 1 / size[i] : 0;
         out[7] = fmaxf(out[7], out[4 + i] * (float)grid->size[i]);
+        out[11 + 4 * i] = (float)grid->size[i];
     }
+    for (int i = 0; i < 3; i++)
+        out[16 + i] = (float)grid->size[i] / (float)(grid->sparse ? GRID_SPARSE_BRICK : GRID_BRICK);
     if (box3_is_empty(active)) { // no point lies inside
         for (int i = 0; i < 3; i++) out[8 + i] = 1e30f;
         for (int i = 0; i < 3; i++) out[12 + i] = -1e30f;

@@ -28,6 +28,8 @@ typedef struct field_texture { // one sampler of the text
     const char *glsl_name;
     const field_grid *grid; // with `image` and `set`: grid->state.images[set][image]
     int image, set;
+    bool ranges;            // instead: least and greatest values of that image (pass/ranges.h)
+    bool index;             // of that image, instead: state.index[set][image]
     const palette *palette; // or a palette's texture (2D, PALETTE_SIZE x 1)
 } field_texture;
 size_t field_program_textures(const field_program *p, const field_texture **out);

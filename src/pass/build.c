@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "pass/blue_noise.h"
 #include "pass/pass_impl.h"
+#include "pass/ranges.h"
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
@@ -77,6 +78,7 @@ gpu_pipeline *pass_create_compute(pass *p, const shader_binary *binary) {
                 GPU_MAX_SLOTS);
         return NULL;
     }
+    if (!pass_ranges_build(p, binary)) return NULL;
     for (size_t i = 0; i < binary->slot_count; i++) slots[i] = binary->slots[i].slot;
     gpu_compute_desc desc = {
         .label = p->label,
@@ -259,6 +261,7 @@ void pass_destroy(pass *p) {
 }
 
 void pass_host_free(pass_host *host) {
+    pass_ranges_free(host);
     if (host->blue_noise) gpu_image_destroy(host->device, host->blue_noise);
     host->blue_noise = NULL;
     mem_free(host->grid_images);

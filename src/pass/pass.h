@@ -27,6 +27,7 @@ typedef struct pass_host { // what all passes of one effect share
     const struct light_block *lights;            // of the frame being recorded
     const scene *scene;                          // for its sky
     struct scene_bvh *bvh;                       // of all meshes; after pass_allocate
+    struct pass_ranges *ranges;                  // owned: of grids (pass/ranges.h)
     gpu_image *blue_noise;                       // texture "BlueNoise" of lib/random.glsl
     bool fresh;                                  // histories begin with the frame being recorded
     bool counters;                               // compile counters in and read them

@@ -74,6 +74,9 @@ bool pass_bind(pass *p, const shader_binary *binary, const unsigned char *block,
                const pass_override *overrides, size_t override_count,
                gpu_binding out[GPU_MAX_SLOTS], size_t *count);
 
+// An image of a grid that fields sample, as it is now; NULL: there is none just now. A second set
+// is the first when it is not blended.
+gpu_image *pass_field_image(const pass *p, const field_texture *texture);
 bool pass_prepare(pass *p); // uniforms, field numbers, palettes and counters of this frame
 bool pass_run(pass *p);     // one dispatch or full-screen draw over the first output
 bool pass_record(pass *p);  // both

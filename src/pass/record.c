@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/pass_impl.h"
+#include "pass/ranges.h"
 #include "scene/bvh.h"
 #include "scene/sky_image.h"
 #include <math.h>
@@ -97,7 +98,14 @@ static gpu_image *palette_image(const pass *p, const palette *source) {
     return NULL;
 }
 
-// A texture of the fields. A grid's second set is absent when it is not blended just now.
+gpu_image *pass_field_image(const pass *p, const field_texture *t) {
+    graph_image made = pass_grid_image(p->host, t->grid);
+    if (made.id) return graph_get_image(p->host->graph, made);
+    gpu_image *image = t->grid->state.images[t->set][t->image];
+    return image ? image : t->grid->state.images[0][t->image];
+}
+
+// A texture of the fields.
 static bool bind_field_texture(pass *p, const char *name, gpu_binding *out) {
     const field_texture *textures;
     size_t count = field_program_textures(p->program, &textures);
@@ -109,10 +117,17 @@ static bool bind_field_texture(pass *p, const char *name, gpu_binding *out) {
             out->sampler = GPU_LINEAR_CLAMP;
             return true;
         }
-        out->image = t->grid->state.images[t->set][t->image];
-        if (!out->image) out->image = t->grid->state.images[0][t->image];
-        graph_image made = pass_grid_image(p->host, t->grid);
-        if (made.id) out->image = graph_get_image(p->host->graph, made);
+        if (t->ranges) { // these are fetched, not filtered
+            out->image = pass_ranges_get(p, t);
+            out->sampler = GPU_NEAREST_CLAMP;
+            return out->image != NULL;
+        }
+        if (t->index) {
+            out->image = t->grid->state.index[t->set][t->image];
+            out->sampler = GPU_NEAREST_CLAMP;
+            return true;
+        }
+        out->image = pass_field_image(p, t);
         if (!out->image) out->image = p->blank[1];
         out->sampler = t->grid->repeats ? GPU_LINEAR_REPEAT : GPU_LINEAR_CLAMP;
         return true;

@@ -37,6 +37,9 @@ static void every_row_is_complete(void **state) {
         assert_ptr_equal(field_kind_find(kind->name), kind); // names are unique
         bool general = kind - field_kinds >= KIND_SPECIAL_COUNT;
         if (general) assert_true(kind->function && kind->eval);
+        if (kind->function) assert_true(kind->ranges && kind->range_function);
+        if (kind->spatial || kind->eval) // all that can vary in space
+            assert_true(kind->ranges || strcmp(kind->name, "constant") == 0);
         for (size_t i = 0; i < FIELD_MAX_ARGS && kind->args[i].name; i++) {
             const field_arg *arg = &kind->args[i];
             assert_true(arg->help && arg->unit);

@@ -152,10 +152,10 @@ static void one_fetch_serves_four_channels(void **state) {
         sum = make("add", sum, field_grid_channel(build_memory(), &grid, c, 1));
     const char *text = text_of(sum);
     assert_int_equal(occurrences(text, "= field_fetch_0_0(p);"), 1);
-    assert_int_equal(occurrences(text, "uniform sampler3D"), 1);
+    assert_int_equal(occurrences(text, "uniform sampler3D field_grid"), 1);
     text = text_of(field_grid_channel(build_memory(), &grid, 3, 3)); // across two images
     need_text(text, ".w, v");
-    assert_int_equal(occurrences(text, "uniform sampler3D"), 2);
+    assert_int_equal(occurrences(text, "uniform sampler3D field_grid"), 2);
 }
 
 static void blending_grids_have_a_second_sampler(void **state) {
@@ -165,12 +165,15 @@ static void blending_grids_have_a_second_sampler(void **state) {
     field_root root = {"density", field_grid_channel(build_memory(), &grid, 5, 1), 1, ""};
     const field_program *p = compile(&root, 1);
     const field_texture *textures;
-    assert_int_equal(field_program_textures(p, &textures), 2);
+    assert_int_equal(field_program_textures(p, &textures), 4);
     assert_string_equal(textures[0].glsl_name, "field_grid_0_1");
     assert_string_equal(textures[1].glsl_name, "field_next_0_1");
     assert_int_equal(textures[1].set, 1);
     assert_int_equal(textures[1].image, 1);
     assert_ptr_equal(textures[1].grid, &grid);
+    assert_string_equal(textures[2].glsl_name, "field_ranges_0_1");
+    assert_string_equal(textures[3].glsl_name, "field_ranges_next_0_1");
+    assert_true(!textures[1].ranges && textures[3].ranges && textures[3].set == 1);
     need_text(field_program_text(p), "blend > 0.0 ?");
 }
 
@@ -203,11 +206,12 @@ static void a_grid_fills_its_box(void **state) {
     field_grid grid = some_grid("a");
     field_root root = {"d", field_grid_channel(build_memory(), &grid, 0, 1), 1, ""};
     const field_program *p = compile(&root, 1);
-    assert_int_equal(field_program_block_size(p), 64);
-    float b[16];
+    assert_int_equal(field_program_block_size(p), 80);
+    float b[20];
     assert_true(field_program_fill(p, &(field_context){0}, b));
     assert_true(b[0] == -1 && b[3] == 0 && b[4] == 0.25f && b[5] == 0.5f);
-    assert_true(b[8] == 0 && b[12] == 1 && b[13] == 1); // active, inside of the box
+    assert_true(b[8] == 0 && b[12] == 1 && b[13] == 1);  // active, inside of the box
+    assert_true(b[16] == 2 && b[17] == 1 && b[18] == 1); // bricks of 4
     grid.state.active = box3_empty();
     assert_true(field_program_fill(p, &(field_context){0}, b));
     assert_true(b[8] > b[12]); // no point is inside

@@ -1,0 +1,64 @@
+// Ranges of grids and palettes, from textures of the least and greatest values.
+//
+// A grid's texture (src/field/grid_range.h) has levels beside each other along x, each of half the
+// size of the one before it, rounded up. At even z are the least values, above them the greatest.
+#ifndef LIB_RANGE_GRID_GLSL
+#define LIB_RANGE_GRID_GLSL
+#include "lib/range.glsl"
+
+// Over a box given in bricks, of which there are `count` along each axis: at the first level where
+// no more than two along an axis cover it (hierarchical min/max; Greene, "Hierarchical Z-buffer
+// visibility", 1993).
+range4 range_bricks(sampler3D ranges, vec3 count, vec3 low, vec3 high) {
+    ivec3 size = ivec3(ceil(count));
+    ivec3 a = ivec3(clamp(floor(low), vec3(0.0), vec3(size - 1)));
+    ivec3 b = ivec3(clamp(floor(high), vec3(0.0), vec3(size - 1)));
+    int x = 0;
+    while (any(greaterThan(b - a, ivec3(1)))) {
+        x += size.x;
+        size.x = (size.x + 1) / 2;
+        a >>= 1;
+        b >>= 1;
+    }
+    vec4 least = vec4(RANGE_END), most = vec4(-RANGE_END);
+    for (int i = 0; i < 8; i++) {
+        ivec3 at = mix(a, b, notEqual(ivec3(i) & ivec3(1, 2, 4), ivec3(0)));
+        least = min(least, texelFetch(ranges, ivec3(x + at.x, at.y, 2 * at.z), 0));
+        most = max(most, texelFetch(ranges, ivec3(x + at.x, at.y, 2 * at.z + 1), 0));
+    }
+    return range_vec(range_make(least.x, most.x), range_make(least.y, most.y),
+                     range_make(least.z, most.z), range_make(least.w, most.w));
+}
+
+// Of a grid whose box begins at `from` and is 1 / scale large: nothing outside of the active box,
+// `least` to `most`.
+range4 range_fetch(sampler3D ranges, range3 p, vec3 from, vec3 scale, vec3 least, vec3 most, vec3 count) {
+    range4 none = range_number(vec4(0.0));
+    if (any(greaterThan(p.low, most)) || any(lessThan(p.high, least)) || any(greaterThan(least, most)))
+        return none;
+    if (count.x == 0.0) return range_unknown4();
+    vec3 low = (max(p.low, least) - from) * scale, high = (min(p.high, most) - from) * scale;
+    range4 inside = range_bricks(ranges, count, low * count, high * count);
+    bool leaves = any(lessThan(p.low, least)) || any(greaterThan(p.high, most));
+    return leaves ? range_union(inside, none) : inside;
+}
+
+// Of one that repeats, and may be taken at any level of detail: of all of it.
+range4 range_tile(sampler3D ranges, range3 p, vec3 from, vec3 scale, vec3 least, vec3 most, vec3 count) {
+    return range_bricks(ranges, count, vec3(0.0), count);
+}
+
+// Of a palette, between two positions in 0..1.
+range4 range_palette(sampler2D texels, range1 at) {
+    float size = float(textureSize(texels, 0).x);
+    int first = int(clamp(floor(at.low * size - 0.51), 0.0, size - 1.0)); // filtered: two texels
+    int last = int(clamp(floor(at.high * size + 0.51), 0.0, size - 1.0));
+    range4 all = range4(vec4(RANGE_END), vec4(-RANGE_END));
+    for (int i = first; i <= last; i++) {
+        vec4 texel = texelFetch(texels, ivec2(i, 0), 0);
+        all = range4(min(all.low, texel), max(all.high, texel));
+    }
+    return range4(all.low * (1.0 - 1e-3), all.high * (1.0 + 1e-3)); // filters are inexact
+}
+
+#endif

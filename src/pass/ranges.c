@@ -1,0 +1,212 @@
+// The texture (layout: shaders/lib/range_grid.glsl) has the format of the grid's, 2 values for each
+// brick and as much again for all levels above: of a dense grid 1/16 of its memory.
+#include "pass/ranges.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include <string.h>
+
+static const char shader[] = "pass/grid_ranges.comp";
+
+typedef struct ranges_kind { // of grids that one shader does for
+    gpu_format format;
+    bool sparse;
+    shader_binary binary;
+    gpu_pipeline *pipeline;
+    unsigned char *block;
+} ranges_kind;
+
+typedef struct ranges_texture { // one for each image of each set of a grid
+    const field_grid *grid;
+    int set, image;
+    gpu_image *made;
+    const gpu_image *of; // what it was computed from
+    uint64_t content;    // of the grid, then
+} ranges_texture;
+
+struct pass_ranges {
+    ranges_kind kinds[6];
+    size_t kind_count;
+    ranges_texture *textures;
+    size_t count, capacity;
+};
+
+// ---- pipelines --------------------------------------------------------------------------------
+
+static gpu_format format_of(const field_texture *t) {
+    int channels = t->grid->channel_count - 4 * t->image;
+    return channels == 1 ? GPU_R16F : channels == 2 ? GPU_RG16F : GPU_RGBA16F;
+}
+
+static ranges_kind *find_kind(struct pass_ranges *r, gpu_format format, bool sparse) {
+    for (size_t i = 0; i < r->kind_count; i++)
+        if (r->kinds[i].format == format && r->kinds[i].sparse == sparse) return &r->kinds[i];
+    return NULL;
+}
+
+static bool build_kind(pass *p, gpu_format format, bool sparse) {
+    struct pass_ranges *r = p->host->ranges;
+    shader_define defines[] = {
+        {"FORMAT", gpu_format_name(format)}, {"BRICK", sparse ? "8" : "4"}, {"SPARSE", ""}};
+    ranges_kind made = {.format = format, .sparse = sparse};
+    if (!shader_compile(p->host->library, p->host->memory,
+                        &(shader_compile_desc){.name = shader,
+                                               .stage = SHADER_COMPUTE,
+                                               .defines = defines,
+                                               .define_count = sparse ? 3 : 2,
+                                               .reader = p->host->reader},
+                        &made.binary))
+        return false;
+    made.pipeline = pass_create_compute(p, &made.binary);
+    made.block = arena_alloc(p->host->memory, pass_block_size(&made.binary) + 16);
+    if (made.pipeline) r->kinds[r->kind_count++] = made;
+    return made.pipeline != NULL;
+}
+
+bool pass_ranges_build(pass *p, const shader_binary *binary) {
+    const field_texture *textures;
+    size_t count = field_program_textures(p->program, &textures);
+    for (size_t i = 0; i < count; i++) {
+        bool read = false;
+        for (size_t k = 0; k < binary->slot_count && textures[i].ranges; k++)
+            read = read || strcmp(binary->slots[k].name, textures[i].glsl_name) == 0;
+        if (!read) continue;
+        if (!p->host->ranges) p->host->ranges = mem_alloc(sizeof *p->host->ranges);
+        gpu_format format = format_of(&textures[i]);
+        bool sparse = textures[i].grid->sparse;
+        if (!find_kind(p->host->ranges, format, sparse) && !build_kind(p, format, sparse))
+            return false;
+    }
+    return true;
+}
+
+// ---- textures ---------------------------------------------------------------------------------
+
+static void count_bricks(const field_grid *grid, uint32_t out[3]) {
+    uint32_t side = grid->sparse ? GRID_SPARSE_BRICK : GRID_BRICK;
+    for (int i = 0; i < 3; i++) out[i] = (grid->size[i] + side - 1) / side;
+}
+
+static bool halve(uint32_t size[3]) { // false: it is a single brick already
+    bool more = size[0] > 1 || size[1] > 1 || size[2] > 1;
+    for (int i = 0; i < 3; i++) size[i] = (size[i] + 1) / 2;
+    return more;
+}
+
+static gpu_image *make_texture(pass *p, const field_grid *grid, gpu_format format) {
+    uint32_t size[3], level[3];
+    count_bricks(grid, size);
+    memcpy(level, size, sizeof level);
+    uint32_t width = size[0];
+    while (halve(level)) width += level[0];
+    gpu_image *made = gpu_image_create(p->host->device,
+                                       &(gpu_image_desc){.label = "ranges",
+                                                         .format = format,
+                                                         .width = width,
+                                                         .height = size[1],
+                                                         .depth = 2 * size[2],
+                                                         .use = GPU_USE_SAMPLED | GPU_USE_STORAGE});
+    if (!made) err_prefix("%s: ranges of '%s': ", p->label, grid->name ? grid->name : "?");
+    return made;
+}
+
+static ranges_texture *find_texture(struct pass_ranges *r, const field_texture *t) {
+    for (size_t i = 0; i < r->count; i++) {
+        ranges_texture *known = &r->textures[i];
+        if (known->grid == t->grid && known->set == t->set && known->image == t->image)
+            return known;
+    }
+    MEM_RESERVE(r->textures, r->count + 1, r->capacity);
+    r->textures[r->count] = (ranges_texture){.grid = t->grid, .set = t->set, .image = t->image};
+    return &r->textures[r->count++];
+}
+
+// ---- computing --------------------------------------------------------------------------------
+
+typedef struct ranges_level {
+    uint32_t count[3], from[3]; // bricks; those of the level before
+    int32_t level, x, from_x;
+} ranges_level;
+
+static void write_size(const ranges_kind *kind, const char *name, const uint32_t size[3]) {
+    const float v[3] = {(float)size[0], (float)size[1], (float)size[2]};
+    pass_write_member(&kind->binary, kind->block, name, v, sizeof v);
+}
+
+static void fill(const ranges_kind *kind, const field_grid *grid, const ranges_level *at) {
+    write_size(kind, "size", grid->size);
+    write_size(kind, "count", at->count);
+    write_size(kind, "from", at->from);
+    pass_write_member(&kind->binary, kind->block, "level", &at->level, sizeof at->level);
+    pass_write_member(&kind->binary, kind->block, "x", &at->x, sizeof at->x);
+    pass_write_member(&kind->binary, kind->block, "from_x", &at->from_x, sizeof at->from_x);
+}
+
+static bool run_level(pass *p, ranges_kind *kind, const field_texture *t, const ranges_texture *to,
+                      const ranges_level *at) {
+    const uint32_t share = at->level == 0 ? 8 : 1; // threads a brick
+    fill(kind, t->grid, at);
+    gpu_binding bindings[8];
+    size_t count = 0;
+    for (size_t i = 0; i < kind->binary.slot_count; i++) {
+        const shader_slot *slot = &kind->binary.slots[i];
+        gpu_binding *b = &bindings[count++];
+        *b = (gpu_binding){.binding = slot->slot.binding, .sampler = GPU_NEAREST_CLAMP};
+        if (slot->slot.kind == GPU_SLOT_UNIFORM) {
+            b->uniform = kind->block;
+            b->uniform_size = pass_block_size(&kind->binary);
+        } else if (strcmp(slot->name, "ranges") == 0) {
+            b->image = to->made;
+        } else if (strcmp(slot->name, "index") == 0) {
+            b->image = t->grid->state.index[t->set][t->image];
+        } else {
+            b->image = pass_field_image(p, t);
+        }
+    }
+    return gpu_dispatch(
+        p->host->device,
+        &(gpu_dispatch_desc){.pipeline = kind->pipeline,
+                             .bindings = bindings,
+                             .binding_count = count,
+                             .threads = {share * at->count[0], at->count[1], at->count[2]}});
+}
+
+static bool compute(pass *p, const field_texture *t, const ranges_texture *to) {
+    ranges_kind *kind = find_kind(p->host->ranges, format_of(t), t->grid->sparse);
+    ranges_level at = {.level = 0};
+    count_bricks(t->grid, at.count);
+    bool more = true;
+    while (more) {
+        if (!run_level(p, kind, t, to, &at)) return false;
+        memcpy(at.from, at.count, sizeof at.from);
+        at.from_x = at.x;
+        at.x += (int32_t)at.count[0];
+        at.level++;
+        more = halve(at.count);
+    }
+    return true;
+}
+
+gpu_image *pass_ranges_get(pass *p, const field_texture *t) {
+    gpu_image *of = pass_field_image(p, t);
+    if (!of) return p->blank[1]; // not shown now: not asked either
+    ranges_texture *r = find_texture(p->host->ranges, t);
+    uint64_t content = t->grid->state.content;
+    if (!r->made) r->made = make_texture(p, t->grid, format_of(t));
+    if (!r->made) return NULL;
+    if (r->of == of && r->content == content && content != 0) return r->made;
+    if (!compute(p, t, r)) return NULL;
+    r->of = of;
+    r->content = content;
+    return r->made;
+}
+
+void pass_ranges_free(pass_host *host) {
+    struct pass_ranges *r = host->ranges;
+    if (!r) return;
+    for (size_t i = 0; i < r->count; i++) gpu_image_destroy(host->device, r->textures[i].made);
+    for (size_t i = 0; i < r->kind_count; i++)
+        gpu_pipeline_destroy(host->device, r->kinds[i].pipeline);
+    mem_free(r->textures);
+    mem_free(r);
+    host->ranges = NULL;
+}

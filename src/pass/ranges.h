@@ -1,0 +1,12 @@
+// Ranges of grids: textures of the least and the greatest values over bricks, for fields that are
+// asked for their range (field/emit_range.c). Computed on the device where a shader reads them,
+// when the grid's content has changed; a grid whose ranges nobody asks for costs nothing.
+#pragma once
+#include "pass/pass_impl.h"
+
+// After compiling: makes what is needed if `binary` reads ranges. Any thread.
+bool pass_ranges_build(pass *p, const shader_binary *binary);
+// The texture for an image of a grid as it is now; records what brings it up to date. NULL with a
+// message.
+gpu_image *pass_ranges_get(pass *p, const field_texture *texture);
+void pass_ranges_free(pass_host *host);

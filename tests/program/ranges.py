@@ -1,0 +1,52 @@
+"""What the shipped effects' densities can be in a box: no value lies outside, and empty space is
+found to be empty."""
+import os
+import shutil
+
+from lib.pictures import Png
+from lib.program import DATA, SOURCE, Case, main
+
+# Where the volume is, and the least part of the boxes without density that must be found.
+EFFECTS = {
+    "explosion": ("{-1, -1, -1}", "{9, 9, 8}", 0.7),
+    "plume": ("{-4, -6, 4}", "{16, 8, 22}", 0.7),
+    "plumes": ("{-5, -3, -1}", "{5, 3, 8}", 0.5),
+    "cloud": ("{-900, -900, 0}", "{900, 900, 1200}", 0.7),
+    "paper": ("{-1, -1, -1}", "{9, 9, 8}", 0.7),
+}
+PASS = """
+fx.output = shader { "ranges.comp", density = %s, low = %s, high = %s }.color
+return fx
+"""
+
+
+class Ranges(Case):
+    def setUp(self):
+        super().setUp()
+        shutil.copytree(os.path.join(SOURCE, "effects", "data"), self.path("data"))
+        shutil.copy(os.path.join(DATA, "ranges.comp"), self.path("ranges.comp"))
+
+    def try_ranges(self, name, density, sampling):
+        low, high, least = EFFECTS[name]
+        with open(os.path.join(SOURCE, "effects", name + ".lua"), encoding="utf-8") as f:
+            text = f.read()
+        end = text.rindex("return fx")
+        options = f', sampling = "{sampling}"'
+        self.write("effect.lua", text[:end] + PASS % (density, low, high + options))
+        self.succeeds("render", "effect.lua", "--frames", "20", "--size", "96x96", "-o", "o.png")
+        picture = Png(self.read("o.png"))
+        pixels = [row[i:i + 3] for row in picture.rows for i in range(0, len(row), picture.channels)]
+        self.assertEqual(sum(p[0] > 0 for p in pixels), 0, f"{name}: values lie outside")
+        empty = [p for p in pixels if p[2] > 0]
+        found = [p for p in empty if p[1] > 0]
+        part = len(found) / len(empty)
+        print(name, sampling, len(empty) / len(pixels), part)
+        self.assertGreater(len(pixels) - len(empty), 100)
+        self.assertGreater(part, least, name)
+
+    def test_explosion(self):
+        self.try_ranges("explosion", "cover * crust * (smoke + 0.15) * density", "linear")
+
+
+if __name__ == "__main__":
+    main()
