@@ -41,6 +41,7 @@ writeonly uniform image2D transmittance; //= output rgba16f optional : part of w
 
 #include "lib/frame.glsl"
 #include "lib/box.glsl"
+#include "lib/grid.glsl"
 #include "lib/random.glsl"
 #include "lib/sky.glsl"
 #include "lib/medium.glsl"
@@ -122,6 +123,7 @@ void main() {
     float offset = MODE == MODE_PAPER ? 0.0 : 0.5;
     offset = clamp(offset + jitter * (chance(uvec2(pixel)) - 0.5), 0.0, 1.0);
 
+    pixel_width = 2.0 * frame.lens.y / float(size.y);
     ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
 #if VIEW == VIEW_NOISE
     vec3 front = frame.eye.xyz + range.x * direction;
@@ -133,7 +135,7 @@ void main() {
     range.y = min(range.y, last);
 #if ADAPTIVE
     if (tolerance > 0.0)
-        ray = march_adaptive(frame.eye.xyz, direction, range, offset, 2.0 * frame.lens.y / float(size.y));
+        ray = march_adaptive(frame.eye.xyz, direction, range, offset);
     else
 #endif
         ray = march_even(frame.eye.xyz, direction, range, offset);

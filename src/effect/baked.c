@@ -73,17 +73,17 @@ field_grid *effect_add_bake(effect *e, const field *node, const effect_bake_desc
     return &baked->grid;
 }
 
-const field *effect_add_tile(effect *e, const field *noise, uint32_t size, float cells,
-                             bool levels) {
+const field *effect_add_tile(effect *e, const field *noise, const effect_tile_desc *desc) {
     field_tile tile;
-    if (!field_tile_create(&e->memory, noise, cells, &tile)) return NULL;
-    effect_bake_desc desc = {
-        .size = {size, size, size},
-        .box = {{0, 0, 0}, {cells, cells, cells}},
+    float side = (float)desc->cells;
+    if (!field_tile_create(&e->memory, noise, side, desc->together, &tile)) return NULL;
+    effect_bake_desc bake = {
+        .size = {desc->size, desc->size, desc->size},
+        .box = {{0, 0, 0}, {side, side, side}},
         .repeats = true,
-        .levels = levels,
+        .levels = desc->levels,
     };
-    field_grid *grid = effect_add_bake(e, tile.content, &desc);
+    field_grid *grid = effect_add_bake(e, tile.content, &bake);
     if (!grid) return NULL;
     const field *baked = field_grid_channel(&e->memory, grid, 0, noise->components);
     return field_tile_sample(&e->memory, &tile, baked);

@@ -84,10 +84,14 @@ typedef struct effect_bake_desc {
 } effect_bake_desc;
 // A field baked to a grid (pass type "bake"), again whenever it has changed; returns the grid.
 field_grid *effect_add_bake(effect *e, const field *node, const effect_bake_desc *desc);
-// An expression of noises by samples of a baked tile of size^3 voxels, which repeats it after so
-// many cells (field_tile).
-const field *effect_add_tile(effect *e, const field *noise, uint32_t size, float cells,
-                             bool levels);
+typedef struct effect_tile_desc {
+    uint32_t size;  // voxels along each side
+    uint32_t cells; // of the noise, along each side
+    bool together;  // all octaves in the tile; else those of a lone noise are samples of one
+    bool levels;    // with mip levels
+} effect_tile_desc;
+// An expression of noises by samples of a baked tile that repeats (field_tile).
+const field *effect_add_tile(effect *e, const field *noise, const effect_tile_desc *desc);
 bool effect_set_output(effect *e, graph_image image); // the picture, display-referred
 bool effect_set_linear(effect *e, graph_image image); // scene-linear, for EXR
 bool effect_set_depth(effect *e, graph_image image);  // linear depth in metres, for EXR

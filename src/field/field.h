@@ -130,7 +130,9 @@ typedef struct field_tile {
 } field_tile;
 
 // NULL of `content`, with a message: something in `node` does not repeat.
-bool field_tile_create(arena *memory, const field *node, float cells, field_tile *out);
+// `together`: all octaves of a lone noise in the tile, at whole lacunarities.
+bool field_tile_create(arena *memory, const field *node, float cells, bool together,
+                       field_tile *out);
 // The expression, by samples of a grid that holds the tile and repeats.
 field *field_tile_sample(arena *memory, const field_tile *tile, const field *baked);
 

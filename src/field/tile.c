@@ -11,7 +11,7 @@
 // octave, and the others are the same tile, scaled, and moved by parts of it that have no simple
 // ratio. A tile with all octaves would need as many texels for a cell of the last one: 2^3 times as
 // many for each octave more. In an expression of several noises, and where the lacunarity is part
-// of the result (steps of paper's curl), all octaves are in the tile.
+// of the result (steps of paper's curl), or where it is asked for, all octaves are in the tile.
 #include "base/error.h"
 #include "field/kinds.h"
 #include "field/map.h"
@@ -157,7 +157,8 @@ static int separate_octaves(const field *noise) {
     return (int)(noise->args[OCTAVES]->value[0] + 0.5f);
 }
 
-bool field_tile_create(arena *memory, const field *node, float cells, field_tile *out) {
+bool field_tile_create(arena *memory, const field *node, float cells, bool together,
+                       field_tile *out) {
     const field *noise = first_noise(node);
     if (!noise) return err_set("tile: there is no noise in it");
     *out = (field_tile){
@@ -166,7 +167,7 @@ bool field_tile_create(arena *memory, const field *node, float cells, field_tile
         .frequency = noise->args[FREQUENCY],
         .drift = noise->args[DRIFT],
         .alone = node == noise,
-        .octaves = node == noise ? separate_octaves(noise) : 1,
+        .octaves = node == noise && !together ? separate_octaves(noise) : 1,
     };
     tiling t = {.memory = memory, .tile = out};
     out->content = close(&t, node);

@@ -97,7 +97,8 @@ static bool march_box(const pass *p, box3 *box) {
     size_t count = field_grids(density, grids, 16);
     if (has_word(p, "mode", "paper") && count) {
         *box = box3_empty();
-        for (size_t i = 0; i < count && i < 16; i++) *box = box3_union(*box, grids[i]->box);
+        for (size_t i = 0; i < count && i < 16; i++)
+            if (!grids[i]->repeats) *box = box3_union(*box, grids[i]->box);
         return true;
     }
     return pass_density_box(p, box);

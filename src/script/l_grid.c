@@ -208,19 +208,22 @@ int l_tile(lua_State *L) {
         lua_newtable(L);
         lua_replace(L, 2);
     }
-    value_check_object(L, 2, "tile");
-    uint32_t resolution = value_get_count(L, 2, "tile", "resolution", TILE_RESOLUTION);
-    if (resolution < 4 || resolution > 512)
-        vm_error(L, "tile: 'resolution' is %d; 4 to 512 voxels are accepted", (int)resolution);
-    uint32_t cells = value_get_count(L, 2, "tile", "cells", TILE_CELLS);
-    if (cells < 1 || cells > 256)
-        vm_error(L, "tile: 'cells' is %d; 1 to 256 are accepted", (int)cells);
-    bool levels = value_get_bool(L, 2, "tile", "levels", true);
+    const script_object *row = value_check_object(L, 2, "tile");
+    effect_tile_desc desc = {
+        .size = value_get_count(L, 2, "tile", "resolution", TILE_RESOLUTION),
+        .cells = value_get_count(L, 2, "tile", "cells", TILE_CELLS),
+        .together = value_get_choice(L, 2, row, "octaves") == 1,
+        .levels = value_get_bool(L, 2, "tile", "levels", true),
+    };
+    if (desc.size < 4 || desc.size > 512)
+        vm_error(L, "tile: 'resolution' is %d; 4 to 512 voxels are accepted", (int)desc.size);
+    if (desc.cells < 1 || desc.cells > 256)
+        vm_error(L, "tile: 'cells' is %d; 1 to 256 are accepted", (int)desc.cells);
     vm_charge_memory(L, SEQUENCE_COST);
     script *s = script_of(L);
     const char *unsound = s->unsound;
     s->unsound = "tile";
-    const field *made = effect_add_tile(s->effect, noise, resolution, (float)cells, levels);
+    const field *made = effect_add_tile(s->effect, noise, &desc);
     s->unsound = unsound;
     field_push(L, made);
     return 1;

@@ -99,13 +99,16 @@ static const script_object objects[] = {
     {"tile", "source", "worley { 1.4, octaves = 5 }:tile { resolution = 64 }",
      "noise, or an expression of noises, computed once into voxels that repeat: one sample instead "
      "of the noise. Its drift, frequency, persistence and amplitude may move; what changes its shape "
-     "(speed, w, seed) computes it again. A single noise takes a sample for each octave; all octaves "
-     "of an expression lie in the voxels, at whole lacunarities",
+     "(speed, w, seed) computes it again",
      .args = KEYS(KEY("noise", NULL, "what it computes")),
      .keys = KEYS(
         KEY("resolution", "64 voxels [4, 512]", "along each side"),
         KEY("cells", "8 [1, 256]", "of the first noise along each side, after which it repeats; "
          "for simplex a multiple of 3"),
+        CHOICE("octaves", "apart",
+               "apart: a sample for each octave of a single noise, all of the same voxels; together: "
+               "all in the voxels, at whole lacunarities, as those of an expression always are",
+               "apart", "together"),
         KEY("levels", "true", "with mip levels"))},
     {"palette", "source", "palette { {0, \"#000\"}, {0.5, {1, 0.4, 0}}, {1, \"#fff3b0\", 0.5} }",
      "a number to colour and alpha. Called with a field it gives a field of colours: "

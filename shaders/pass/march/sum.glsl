@@ -2,6 +2,8 @@
 #if !defined(BRICKS_ONLY)
 #include "team.glsl"
 
+float pixel_width = 0.0; // of the ray, at a distance of a metre
+
 struct ray_state {
     vec3 light;         // radiance so far
     vec3 transmittance; // what still shines through
@@ -14,7 +16,8 @@ struct node { // the medium at a point of the ray
     vec3 scattering; // 1/m
 };
 
-node look(vec3 p) {
+node look(vec3 p, float at) { // metres along the ray
+    grid_width = pixel_width * at;
     node n = node(medium_density(p), vec3(0.0), vec3(0.0));
     if (n.density > 0.0) {
         n.own = medium_emission(p, n.density);
@@ -126,7 +129,7 @@ ray_state march_even(vec3 origin, vec3 direction, vec2 range, float offset) {
         vec3 p = origin + s.at * direction;
         node n = node(0.0, vec3(0.0), vec3(0.0));
         if (s.taken) {
-            n = look(p);
+            n = look(p, s.at);
             taken++;
         }
 #if TEAMS
@@ -160,6 +163,7 @@ ray_state march_paper(vec3 origin, vec3 direction, vec2 range, float last, float
         vec3 p = origin + s.at * direction;
         float part = 0.0;
         if (s.taken) {
+            grid_width = pixel_width * s.at;
             part = min(medium_density(p) * opacity / float(steps), 1.0);
             taken++;
         }
@@ -216,8 +220,8 @@ void add_step(inout ray_state ray, step_nodes s, node middle, vec3 lit, float le
 }
 
 // A step has a sample at each end and one in the middle, and is halved until it is good enough: the
-// middle is then the new end. `pixel`: width of a pixel at a distance of a metre.
-ray_state march_adaptive(vec3 origin, vec3 direction, vec2 range, float offset, float pixel) {
+// middle is then the new end.
+ray_state march_adaptive(vec3 origin, vec3 direction, vec2 range, float offset) {
     ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
     float span = range.y - range.x;
     if (span <= 0.0) return ray;
@@ -232,7 +236,7 @@ ray_state march_adaptive(vec3 origin, vec3 direction, vec2 range, float offset, 
         node n = node(0.0, vec3(0.0), vec3(0.0));
         turns++;
         if (may_hold(p)) {
-            n = look(p);
+            n = look(p, at);
             taken++;
             if (n.density > 0.0) dense++;
         }
@@ -244,7 +248,7 @@ ray_state march_adaptive(vec3 origin, vec3 direction, vec2 range, float offset, 
             continue;
         }
         float change = halving(ray, s, n, length);
-        float least = max(max(0.125 * usual, SHORTEST * span), 0.25 * pixel * from);
+        float least = max(max(0.125 * usual, SHORTEST * span), 0.25 * pixel_width * from);
         if (change > tolerance && length > least) {
             length *= 0.5;
             s.end = n;
