@@ -75,6 +75,7 @@ roil *roil_create(const roil_desc *desc) {
     r->scripts = joined(home, "scripts");
     r->counters = desc->counters;
     r->reference = desc->reference;
+    r->punctual = desc->punctual;
     // Without a place for it (no home folder, a read-only one) roil works, only slower.
     if (!desc->no_cache && path_cache_folder(cache, "")) r->cache = joined(cache, "");
     if (desc->no_device || open_device(r, desc)) return r;
@@ -142,6 +143,7 @@ roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, 
         .cache_dir = r->cache,
         .counters = r->counters,
         .reference = r->reference,
+        .punctual = r->punctual,
         .settings = own,
         .setting_count = count,
     });
@@ -241,6 +243,26 @@ size_t roil_times(roil_effect *e, roil_time *out, size_t capacity) {
     }
     mem_free(times);
     return count;
+}
+
+bool roil_get_playback(const roil_effect *e, roil_playback *out) {
+    field_playback all;
+    bool any = effect_playback(e->effect, &all);
+    *out = (roil_playback){
+        .shown = all.shown,
+        .late = all.late,
+        .decoded = all.decoded,
+        .uploaded = all.uploaded,
+        .decoded_bytes = all.decoded_bytes,
+        .uploaded_bytes = all.uploaded_bytes,
+        .decode_seconds = all.decode_seconds,
+        .threads = all.threads,
+        .device_bytes = all.device_bytes,
+        .frame_bytes = all.largest_bytes,
+        .frame_voxels = all.largest_voxels,
+        .waiting = all.waiting,
+    };
+    return any;
 }
 
 size_t roil_counters(roil_effect *e, roil_counter *out, size_t capacity) {

@@ -47,6 +47,8 @@ typedef struct roil_desc {
     double timeout; // seconds that a frame may take on the device before it counts as lost; 0: 30,
                     // 300 on a software device
     const roil_window_desc *window; // NULL: nothing is shown
+    bool punctual; // no frame waits for a frame of a sequence that is not decoded yet: the nearest
+                   // one that is stands in for it (roil_playback.late)
 } roil_desc;
 
 roil *roil_create(const roil_desc *desc);
@@ -119,6 +121,19 @@ typedef struct roil_counter { // what a pass counted in the last frame, if count
 // Both wait for the frame and return how many there are; at most `capacity` are written.
 size_t roil_times(roil_effect *e, roil_time *out, size_t capacity);
 size_t roil_counters(roil_effect *e, roil_counter *out, size_t capacity);
+
+typedef struct roil_playback {  // of all sequences of an effect, since they were opened
+    uint64_t shown;             // frames of theirs that came on
+    uint64_t late;              // rendered frames that show another one instead (punctual)
+    uint64_t decoded, uploaded; // frames
+    uint64_t decoded_bytes, uploaded_bytes; // as they lie on the device
+    double decode_seconds;                  // of processor time, all threads together
+    uint32_t threads;                       // that decode ahead
+    uint64_t device_bytes;                  // of their textures now
+    uint64_t frame_bytes, frame_voxels;     // of the largest frame: what it takes, what is not 0
+    bool waiting; // the last rendered frame shows another one: render it again
+} roil_playback;
+bool roil_get_playback(const roil_effect *e, roil_playback *out); // false: it has no sequence
 
 // ---- pictures ---------------------------------------------------------------------------------
 

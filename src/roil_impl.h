@@ -9,7 +9,7 @@ typedef struct view view; // roil_view.h
 struct roil {
     gpu *device; // NULL: no_device
     char *home, *shaders, *scripts, *cache;
-    bool counters, window;
+    bool counters, window, punctual;
     uint32_t reference;
     view *view; // NULL until something is shown or inspected
 };

@@ -145,6 +145,7 @@ static effect *load(roil_live *l, const order *o, file_set *files) {
         .cache_dir = r->cache,
         .counters = r->counters,
         .reference = r->reference,
+        .punctual = r->punctual,
         .settings = o->settings,
         .setting_count = o->setting_count,
         .library = l->library,

@@ -185,8 +185,11 @@ static int run_window(live *l, window *w, const job *j) {
 }
 
 static int run_device(live *l, window *w, job *j) {
-    l->r = roil_create(&(roil_desc){
-        .device = j->device, .validate = j->validate, .timeout = j->timeout, .window = &w->desc});
+    l->r = roil_create(&(roil_desc){.device = j->device,
+                                    .validate = j->validate,
+                                    .timeout = j->timeout,
+                                    .window = &w->desc,
+                                    .punctual = true});
     if (!l->r) return app_fail_input();
     l->follow = roil_live_create(l->r, &(roil_live_desc){.file = j->file,
                                                          .presets = j->settings.presets,

@@ -141,6 +141,12 @@ static bool gathers(const live *l) {
     return samples > 0 && samples < MOST_SAMPLES;
 }
 
+// Whether a frame of a sequence came too late for the picture.
+static bool waits(const live *l) {
+    roil_playback playback;
+    return roil_get_playback(l->effect, &playback) && playback.waiting;
+}
+
 static void draw_effect(live *l, loop *p) {
     double start = clock_seconds(), frame = l->time.frame;
     bool back = p->drawn && frame < p->frame; // what passes remember is of later times: begin anew
@@ -150,7 +156,7 @@ static void draw_effect(live *l, loop *p) {
     }
     double end = clock_seconds();
     log_write(LOG_DEBUG, "live: drew frame %g", frame);
-    l->dirty = gathers(l);
+    l->dirty = gathers(l) || waits(l);
     p->drawn = true;
     p->frame = frame;
     performance_add(l->performance, l->effect, end - start, start - p->drawn_at);

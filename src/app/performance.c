@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 // Units.
-static const float WIDTH = 440, HEIGHT = 510; // of the window
+static const float WIDTH = 440, HEIGHT = 532; // of the window
 static const float PLOT_HEIGHT = 120, NAME_WIDTH = 124, MS_WIDTH = 74, SHARE_WIDTH = 46, ROW = 22;
 static const float FRAME_MS = 16.7f; // of a display that shows 60 pictures a second
 static const float IDLE_MS = 3000;   // between pictures: nothing wanted to be drawn
@@ -217,7 +217,7 @@ static void fact(ui_rect *at, const char *name, const char *value) {
 }
 
 static void draw_facts(const live *l) {
-    enum { FACTS = 4 };
+    enum { FACTS = 5 };
     static const double MIB = 1024 * 1024;
     char text[128], failed[32] = "";
     ui_rect at = ui_canvas_begin("facts", 0, FACTS * ROW * ui_scale()).area;
@@ -225,6 +225,12 @@ static void draw_facts(const live *l) {
     snprintf(text, sizeof text, "%.1f MiB, of %.0f MiB taken", (double)memory.device / MIB,
              (double)memory.reserved / MIB);
     fact(&at, "device memory", text);
+    roil_playback played;
+    if (l->effect && roil_get_playback(l->effect, &played)) {
+        snprintf(text, sizeof text, "%" PRIu64 " frames, %" PRIu64 " late, %.1f MiB each",
+                 played.shown, played.late, (double)played.frame_bytes / MIB);
+        fact(&at, "sequences", text);
+    }
     roil_live_count count = roil_live_counts(l->follow);
     if (count.failures) snprintf(failed, sizeof failed, ", %" PRIu64 " failed", count.failures);
     snprintf(text, sizeof text, "%" PRIu64 ", the last in %.0f ms%s", count.reloads,

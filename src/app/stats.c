@@ -1,9 +1,11 @@
 // Statistics of a render: GPU time by pass and frame, counters, the machine.
 #include "app/app.h"
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/statistics.h"
+#include <inttypes.h>
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,6 +25,9 @@ typedef struct frame_stats {
 struct app_stats {
     frame_stats *frames;
     size_t count, capacity;
+    bool plays;                // sequences
+    roil_playback first, last; // after the first frame, whose first data nobody could read ahead
+    double began, ended;       // clock_seconds
 };
 
 app_stats *app_stats_create(void) {
@@ -41,6 +46,11 @@ void app_stats_add(app_stats *s, roil_effect *e, double frame, double seconds) {
     f.counters = mem_copy(counters, f.counter_count * sizeof *counters);
     MEM_RESERVE(s->frames, s->count + 1, s->capacity);
     s->frames[s->count++] = f;
+    s->plays = roil_get_playback(e, &s->last);
+    s->ended = clock_seconds();
+    if (s->count > 1) return;
+    s->first = s->last;
+    s->began = s->ended;
 }
 
 void app_stats_destroy(app_stats *s) {
@@ -70,6 +80,36 @@ static stats_summary total_summary(const app_stats *s, double *values) {
     return stats_summarise(values, s->count);
 }
 
+// What the sequences did since the first frame, by the second.
+typedef struct playback_rate {
+    double shown, decoded, uploaded; // frames, MB, MB
+} playback_rate;
+
+static playback_rate rate_of(const app_stats *s) {
+    double seconds = s->ended - s->began;
+    if (!(seconds > 0)) return (playback_rate){0};
+    return (playback_rate){
+        (double)(s->last.shown - s->first.shown) / seconds,
+        (double)(s->last.decoded_bytes - s->first.decoded_bytes) / seconds * 1e-6,
+        (double)(s->last.uploaded_bytes - s->first.uploaded_bytes) / seconds * 1e-6,
+    };
+}
+
+static double bytes_a_voxel(const roil_playback *p) {
+    return p->frame_voxels ? (double)p->frame_bytes / (double)p->frame_voxels : 0;
+}
+
+static void print_playback(const app_stats *s) {
+    const roil_playback *p = &s->last;
+    playback_rate rate = rate_of(s);
+    if (!s->plays || p->shown == 0) return;
+    printf("sequences: %" PRIu64
+           " frames shown, %.1f a second; decoded %.0f MB/s, uploaded %.0f MB/s\n",
+           p->shown, rate.shown, rate.decoded, rate.uploaded);
+    printf("           a frame takes %.1f MB, %.1f bytes a voxel that is not 0; all take %.1f MB\n",
+           (double)p->frame_bytes * 1e-6, bytes_a_voxel(p), (double)p->device_bytes * 1e-6);
+}
+
 void app_stats_print(const app_stats *s) {
     if (!s->count) return;
     double *values = mem_alloc(s->count * sizeof *values);
@@ -82,6 +122,7 @@ void app_stats_print(const app_stats *s) {
     stats_summary total = total_summary(s, values);
     printf("%-20s %10.3f %10.3f\n", "all", total.median, total.p95);
     mem_free(values);
+    print_playback(s);
 }
 
 // ---- file -------------------------------------------------------------------------------------
@@ -99,6 +140,17 @@ static json_t *frame_json(const frame_stats *f) {
                             "gpu_ms", passes, "counters", counters);
     if (f->samples) json_object_set_new(all, "samples", json_integer(f->samples));
     return all;
+}
+
+static json_t *playback_json(const app_stats *s) {
+    const roil_playback *p = &s->last;
+    playback_rate rate = rate_of(s);
+    return json_pack("{s:I, s:I, s:f, s:f, s:f, s:I, s:I, s:I, s:i}", "shown", (json_int_t)p->shown,
+                     "late", (json_int_t)p->late, "frames_a_second", rate.shown,
+                     "decoded_mb_a_second", rate.decoded, "uploaded_mb_a_second", rate.uploaded,
+                     "device_bytes", (json_int_t)p->device_bytes, "frame_bytes",
+                     (json_int_t)p->frame_bytes, "frame_voxels", (json_int_t)p->frame_voxels,
+                     "threads", (int)p->threads);
 }
 
 bool app_stats_save(const app_stats *s, const char *file, const roil *r, const char *effect,
@@ -119,6 +171,7 @@ bool app_stats_save(const app_stats *s, const char *file, const roil *r, const c
     json_object_set_new(root, "set", set);
     json_object_set_new(root, "median_gpu_ms", median);
     json_object_set_new(root, "frames", frames);
+    if (s->plays) json_object_set_new(root, "sequences", playback_json(s));
     char *text = json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(6));
     json_decref(root);
     if (!text) return err_set("%s: the statistics cannot be written as JSON", file);

@@ -21,6 +21,7 @@ effect *effect_create(const effect_desc *desc) {
     path_folder(folder, desc->file);
     e->device = desc->device;
     e->reference = desc->reference;
+    e->punctual = desc->punctual;
     e->file = arena_string(&e->memory, desc->file);
     e->root = arena_string(&e->memory, folder);
     e->name = arena_string(&e->memory, path_name(desc->file));
@@ -217,6 +218,7 @@ void effect_add_grid(effect *e, field_grid *grid) {
     e->grids[e->grid_count++] = grid;
 }
 
+    grid->punctual = e->punctual;
 // ---- scene and outputs ------------------------------------------------------------------------
 
 // The mesh of a file, which loads of the same effect share; NULL with a message.

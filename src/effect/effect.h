@@ -43,6 +43,7 @@ typedef struct effect_desc {
     const char *shader_root; // the program's shaders
     const char *cache_dir;   // NULL: no caches
     bool counters;
+    bool punctual; // field_grid.punctual, of all grids
     // Above 0: each pass `march` becomes a `reference`, and this is what effect_samples shall come
     // to.
     uint32_t reference;
@@ -71,9 +72,10 @@ void effect_set_seed(effect *e, uint32_t seed);
 // Checks name, range, default. Returns its index, or -1.
 int effect_add_param(effect *e, const effect_param *param);
 pass *effect_add_pass(effect *e, const char *type, const char *shader,
-                      const char *label);                 // label NULL: type's name, numbered
-void effect_add_grid(effect *e, field_grid *grid);        // owned by the effect from now on
-scene_mesh *effect_add_mesh(effect *e, const char *file); // confined to the effect's folder
+                      const char *label);                   // label NULL: type's name, numbered
+void effect_add_grid(effect *e, field_grid *grid);          // owned by the effect from now on
+bool effect_playback(const effect *e, field_playback *out); // false: no grid is played
+scene_mesh *effect_add_mesh(effect *e, const char *file);   // confined to the effect's folder
 // The panorama of a sky, confined too; an effect has one.
 const struct sky_image *effect_add_sky_image(effect *e, const char *file);
 typedef struct effect_bake_desc {

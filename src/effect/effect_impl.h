@@ -110,6 +110,7 @@ struct effect {
     bool has_last;               // there is one before, of which histories tell
     bool compiled, allocated;
     uint32_t reference; // effect_desc
+    bool punctual;      // effect_desc
     const effect_setting *settings;
     bool *applied; // one per setting
     size_t setting_count;

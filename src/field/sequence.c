@@ -16,6 +16,12 @@
 
 static const char *const loop_names[] = {"clip", "extend", "repeat", "ping_pong"};
 
+static const char *const storage_names[] = {"auto", "dense", "sparse"};
+
+const char *sequence_storage_name(sequence_storage storage) {
+    return (unsigned)storage < COUNT_OF(storage_names) ? storage_names[storage] : "?";
+}
+
 const char *sequence_loop_name(sequence_loop loop) {
     return (unsigned)loop < COUNT_OF(loop_names) ? loop_names[loop] : "?";
 }
@@ -104,6 +110,37 @@ typedef struct lattice { // of voxel borders, along one axis
     double origin, voxel;
 } lattice;
 
+// ---- storage ----------------------------------------------------------------------------------
+
+// Of the fullest grid of the fullest frame.
+static uint64_t most_active(const sequence_data *s) {
+    uint64_t most = 0;
+    for (size_t i = 0; i < s->file_count; i++)
+        for (size_t k = 0; k < s->infos[i].count; k++) {
+            const vdb_grid_info *grid = &s->infos[i].grids[k];
+            uint64_t count = grid->active_voxels;
+            if (!usable(grid)) continue;
+            if (count == 0) { // the file does not say: all of its box
+                count = 1;
+                for (int a = 0; a < 3; a++)
+                    count *= (uint64_t)((int64_t)grid->index_max[a] - grid->index_min[a] + 1);
+            }
+            if (count > most) most = count;
+        }
+    return most;
+}
+
+// Small grids are not worth a second fetch a sample. Of large ones, bricks with their borders take
+// up to about three times the bytes of the active voxels; half the dense size must be saved.
+static bool choose_sparse(sequence_data *s, uint64_t voxels) {
+    const uint64_t small = (uint64_t)4 << 20, most_bricks = 1 << 24;
+    uint64_t active = most_active(s), bricks = sequence_brick_count(s);
+    double across = cbrt((double)active / (SEQUENCE_BRICK * SEQUENCE_BRICK * SEQUENCE_BRICK));
+    s->atlas_across = (uint32_t)clampf(ceilf((float)across), 1, 64);
+    if (s->desc.storage != SEQUENCE_AUTO) return s->desc.storage == SEQUENCE_SPARSE;
+    return voxels > small && bricks <= most_bricks && 6 * active + 2 * bricks < voxels;
+}
+
 static bool snap(sequence_data *s, const box3 *all, const vdb_grid_info *first) {
     const float low[3] = {all->min.x, all->min.y, all->min.z};
     const float high[3] = {all->max.x, all->max.y, all->max.z};
@@ -124,7 +161,10 @@ static bool snap(sequence_data *s, const box3 *all, const vdb_grid_info *first) 
         max[i] = (float)(l.origin + to * l.voxel);
     }
     s->file_box = (box3){{min[0], min[1], min[2]}, {max[0], max[1], max[2]}};
-    if (voxels * sizeof(uint16_t) > s->desc.max_frame_bytes)
+    s->sparse = choose_sparse(s, voxels);
+    uint64_t least =
+        s->sparse ? sequence_brick_count(s) * sizeof(uint32_t) : voxels * sizeof(uint16_t);
+    if (least > s->desc.max_frame_bytes)
         return err_set("%s: the box of the whole sequence has %u x %u x %u voxels, more than the "
                        "limit of %llu bytes a frame",
                        s->desc.pattern, s->file_size[0], s->file_size[1], s->file_size[2],
@@ -153,6 +193,7 @@ static bool read_info(sequence_data *s, const char *file, vdb_info *out) {
 
 static bool open_vdb(sequence_data *s) {
     vdb_info *infos = arena_alloc(&s->memory, s->file_count * sizeof *infos);
+    s->infos = infos;
     s->held = arena_alloc(&s->memory, s->file_count * sizeof *s->held);
     const vdb_grid_info *first = NULL;
     box3 all = box3_empty();
@@ -167,7 +208,6 @@ static bool open_vdb(sequence_data *s) {
             all = box3_union(all, grid->box);
         }
     }
-    s->infos = infos;
     s->frame_count = (uint32_t)s->file_count;
     if (readable == 0)
         return err_set("%s: no grid of numbers or vectors in %s", s->desc.pattern,
@@ -232,14 +272,17 @@ bool sequence_frames_at(const sequence_data *s, double time, uint32_t frames[2],
     return s->desc.loop != SEQUENCE_CLIP || (frame >= 0 && frame < (int64_t)s->frame_count);
 }
 
-static void decode_ahead(sequence_data *s, double position) {
+// What is late first, then what comes next.
+static void decode_ahead(sequence_data *s, double position, const uint32_t late[2], size_t count) {
+    uint32_t frames[SEQUENCE_MAX_JOBS], most = s->cache.jobs.threads + 2;
     double step = position - s->last_position;
     s->last_position = position;
-    // After a jump: playback at the rate of the files is as good a guess as any.
+    // After a jump: playback at the rate of the files is as good a guess as any. Less than a frame
+    // at a time shows all of them.
     if (!(fabs(step) > 1e-3 && fabs(step) < 8)) step = 1;
-    uint32_t frames[SEQUENCE_MAX_JOBS];
-    size_t count = 0;
-    for (int i = 1; count + 1 < SEQUENCE_MAX_JOBS && i < SEQUENCE_MAX_JOBS; i++) {
+    if (fabs(step) < 1) step = copysign(1, step);
+    memcpy(frames, late, count * sizeof *late);
+    for (uint32_t i = 1; count < most && count < SEQUENCE_MAX_JOBS && i <= most; i++) {
         int64_t frame = whole_frame(position + step * i);
         if (s->desc.loop == SEQUENCE_CLIP && (frame < 0 || frame >= (int64_t)s->frame_count)) break;
         frames[count++] = fold(s, frame + (s->desc.blend && step > 0));
@@ -247,16 +290,58 @@ static void decode_ahead(sequence_data *s, double position) {
     sequence_cache_ahead(s, frames, count);
 }
 
-static bool show(sequence *s, gpu *g, const uint32_t frames[2], float blend) {
+static void put(sequence *s, const sequence_slot *now, const sequence_slot *next, float blend) {
     field_grid_state *state = &s->grid.state;
-    sequence_slot *now = sequence_cache_get(s->data, g, frames[0]);
-    if (!now) return false;
-    sequence_slot *next = blend > 0 ? sequence_cache_get(s->data, g, frames[1]) : now;
-    if (!next) return false;
     memcpy(state->images[0], now->images, sizeof now->images);
     memcpy(state->images[1], next->images, sizeof next->images);
+    memcpy(state->index[0], now->index, sizeof now->index);
+    memcpy(state->index[1], next->index, sizeof next->index);
     state->active = box3_union(now->active, next->active);
-    state->content = 1 + (frames[0] | (uint64_t)frames[blend > 0] << 32);
+    state->blend = now == next ? 0 : blend;
+    uint64_t content = 1 + (now->frame | (uint64_t)next->frame << 32);
+    s->data->cache.counts.shown += content != state->content;
+    state->content = content;
+}
+
+// Shows the frames of now, as far as they are there. Returns how many are late; SIZE_MAX: an error.
+static size_t show_punctual(sequence *s, gpu *g, const uint32_t frames[2], float blend,
+                            uint32_t late[2]) {
+    sequence_slot *found[2];
+    size_t count = 0, needed = blend > 0 ? 2 : 1;
+    for (size_t i = 0; i < needed; i++) {
+        found[i] = sequence_cache_nearest(s->data, frames[i]);
+        if (found[i] && found[i]->frame == frames[i]) continue;
+        if (sequence_cache_failed(s->data, g, frames[i])) return SIZE_MAX;
+        late[count++] = frames[i];
+    }
+    if (!found[0]) { // the very first
+        found[0] = found[1] = sequence_cache_get(s->data, g, frames[0]);
+        if (!found[0]) return SIZE_MAX;
+    }
+    put(s, found[0], found[needed - 1], blend);
+    s->data->cache.counts.late += count > 0;
+    return count;
+}
+
+static bool show(sequence *s, gpu *g, double position, const uint32_t frames[2], float blend) {
+    uint32_t late[2] = {0};
+    size_t count = 0;
+    sequence_cache_turn(s->data);
+    if (s->grid.punctual) {
+        sequence_cache_pump(s->data, g);
+        count = show_punctual(s, g, frames, blend, late);
+        if (count == SIZE_MAX) return false;
+    } else {
+        sequence_slot *now = sequence_cache_get(s->data, g, frames[0]);
+        if (!now) return false;
+        sequence_slot *next = blend > 0 ? sequence_cache_get(s->data, g, frames[1]) : now;
+        if (!next) return false;
+        put(s, now, next, blend);
+    }
+    s->data->cache.counts.waiting = count > 0;
+    s->data->cache.counts.threads = s->data->cache.jobs.threads;
+    decode_ahead(s->data, position, late, count);
+    if (!s->grid.punctual) sequence_cache_pump(s->data, g);
     return true;
 }
 
@@ -266,15 +351,18 @@ static bool update(field_grid *grid, gpu *g, double time) {
     float blend;
     bool inside = sequence_frames_at(s->data, time, frames, &blend);
     s->sealed = true;
-    if (g) {
-        if (!show(s, g, frames, blend)) return false;
-        decode_ahead(s->data, position_at(s->data, time));
-    } else {
+    if (!g) {
         grid->state.active = grid->box;
+        grid->state.blend = blend;
+    } else if (!show(s, g, position_at(s->data, time), frames, blend)) {
+        return false;
     }
-    grid->state.blend = blend;
     if (!inside) grid->state.active = box3_empty();
     return true;
+}
+
+static const field_playback *playback(const field_grid *grid) {
+    return &((const sequence *)grid)->data->cache.counts;
 }
 
 static void destroy(field_grid *grid, gpu *g) {
@@ -299,6 +387,8 @@ static bool check(sequence_data *s) {
         return err_set("%s: scale %g; more than 0 is accepted", d->pattern, (double)d->scale);
     if (!isfinite(d->offset.x) || !isfinite(d->offset.y) || !isfinite(d->offset.z))
         return err_set("%s: the offset is not finite", d->pattern);
+    if ((unsigned)d->storage >= COUNT_OF(storage_names))
+        return err_set("%s: unknown storage %d", d->pattern, (int)d->storage);
     if ((unsigned)d->loop >= COUNT_OF(loop_names))
         return err_set("%s: unknown loop mode %d", d->pattern, (int)d->loop);
     return true;
@@ -333,11 +423,13 @@ sequence *sequence_create(arena *memory, const sequence_desc *desc) {
     s->grid = (field_grid){.name = arena_string(memory, d->name),
                            .box = d->box,
                            .size = {d->size[0], d->size[1], d->size[2]},
+                           .sparse = d->sparse,
                            .blends = d->desc.blend && d->frame_count > 1,
                            .state = {.active = box3_empty()},
                            .update = update,
                            .destroy = destroy,
-                           .exchange = sequence_exchange};
+                           .exchange = sequence_exchange,
+                           .playback = playback};
     return s;
 }
 
@@ -389,7 +481,7 @@ int sequence_channel(sequence *s, const char *name, int *components) {
     uint64_t bytes = (uint64_t)d->file_size[0] * d->file_size[1] * d->file_size[2] *
                      (uint64_t)((end + 3) / 4 * 4) * sizeof(uint16_t);
     if (end > 4 * FIELD_GRID_IMAGES || s->sealed ||
-        (d->channel_count > 0 && bytes > d->desc.max_frame_bytes)) {
+        (d->channel_count > 0 && !d->sparse && bytes > d->desc.max_frame_bytes)) {
         err_set("%s: '%.64s' cannot be added: %s", d->desc.pattern, name,
                 s->sealed                     ? "the sequence is playing already"
                 : end > 4 * FIELD_GRID_IMAGES ? "a sequence has at most 16 channels"
@@ -405,6 +497,10 @@ int sequence_channel(sequence *s, const char *name, int *components) {
 
 field_grid *sequence_grid(sequence *s) {
     return &s->grid;
+}
+
+bool sequence_is_sparse(const sequence *s) {
+    return s->data->sparse;
 }
 
 uint32_t sequence_frame_count(const sequence *s) {

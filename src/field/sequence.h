@@ -12,18 +12,26 @@ typedef enum sequence_loop {
 } sequence_loop;
 const char *sequence_loop_name(sequence_loop loop); // "clip", "extend", "repeat", "ping_pong"
 
+typedef enum sequence_storage { // of a frame on the device
+    SEQUENCE_AUTO,              // whichever takes less memory, dense where it matters little
+    SEQUENCE_DENSE,             // every voxel of the box
+    SEQUENCE_SPARSE,            // bricks of voxels where there is something
+} sequence_storage;
+const char *sequence_storage_name(sequence_storage storage); // "auto", "dense", "sparse"
+
 typedef struct sequence_desc {
-    const char *pattern; // absolute path or glob of .vdb files, or a .raw file
-    const char *root;    // matches of a glob must lie in this folder; NULL: anywhere
-    double fps;          // frames of the sequence a second of effect time; 0: 24
-    double start;        // effect time (s) at which the first frame is shown
-    double speed;        // 0: 1
-    sequence_loop loop;  // clip: nothing outside the range; extend: holds the first and last frame
-    bool blend;          // mix neighbouring frames at times between them
-    bool y_up;           // files have Y up: rotated to our Z up
-    float scale;         // metres a world unit of the file; 0: 1
-    float3 offset;       // metres, added after scaling
-    shelf *shelf;        // keeps what files say of themselves between loads; NULL: none
+    const char *pattern;      // absolute path or glob of .vdb files, or a .raw file
+    const char *root;         // matches of a glob must lie in this folder; NULL: anywhere
+    double fps;               // frames of the sequence a second of effect time; 0: 24
+    double start;             // effect time (s) at which the first frame is shown
+    double speed;             // 0: 1
+    sequence_storage storage; // of VDB files; raw ones are dense
+    sequence_loop loop; // clip: nothing outside the range; extend: holds the first and last frame
+    bool blend;         // mix neighbouring frames at times between them
+    bool y_up;          // files have Y up: rotated to our Z up
+    float scale;        // metres a world unit of the file; 0: 1
+    float3 offset;      // metres, added after scaling
+    shelf *shelf;       // keeps what files say of themselves between loads; NULL: none
     // Memory limits, checked before anything is read.
     uint64_t max_frame_bytes; // 0: 512 MiB
     // Raw files only:
@@ -48,6 +56,7 @@ sequence *sequence_create(arena *memory, const sequence_desc *desc);
 // the grids there are. Only channels asked for are decoded and uploaded.
 int sequence_channel(sequence *s, const char *name, int *components);
 field_grid *sequence_grid(sequence *s); // its destroy frees all but `memory`, and must be called
+bool sequence_is_sparse(const sequence *s);
 uint32_t sequence_frame_count(const sequence *s);
 double sequence_duration(const sequence *s); // seconds at speed 1
 // Every file it reads, for a reload to watch; returns the count.

@@ -1,159 +1,98 @@
-// Textures of the frames shown lately, and a thread that decodes those to come.
+// Textures of the frames shown lately and of those to come.
 //
-// A frame wanted now is taken from the textures, else from the thread if it has begun, else decoded
-// here. Jobs are owned by the cache until they are cancelled; a cancelled job is freed by the
-// thread when its turn comes. The least recently used texture makes room, within a memory budget.
+// A sequence whose frames all fit into a budget stays on the device once it was shown. Of others a
+// few frames are kept: those on show and those ahead, since a frame that was shown is the last to
+// be wanted again. The least recently used textures make room.
+//
+// A frame that is wanted now is taken from the textures, else from the job that has begun it, else
+// decoded here (sequence_cache_get); or the nearest that is there is shown in its place
+// (sequence_cache_nearest).
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include "field/sequence_parts.h"
 #include <string.h>
 
-enum { LEAST_SLOTS = 4, MOST_SLOTS = 4096 };
-
-static uint64_t frame_bytes(const sequence_data *s) {
-    uint64_t voxels = (uint64_t)s->size[0] * s->size[1] * s->size[2], bytes = 0;
-    for (int i = 0; i < FIELD_GRID_IMAGES; i++) {
-        int count = sequence_image_channels(s, i);
-        bytes += voxels * (uint64_t)(count == 3 ? 4 : count) * sizeof(uint16_t);
-    }
-    return bytes;
-}
+enum {
+    MOST_SLOTS = 4096,
+    SHOWN = 4,        // frames on show, and those that frames in flight may still show
+    UPLOAD_AHEAD = 3, // frames brought to the device before their time
+};
 
 static void start(sequence_data *s, gpu *g) {
     sequence_cache *c = &s->cache;
     const uint64_t mebi = 1 << 20;
-    uint64_t budget = (gpu_get_info(g)->kind == GPU_CPU ? 192 : 512) * mebi;
-    uint64_t count = budget / frame_bytes(s);
-    if (count > s->frame_count) count = s->frame_count;
-    c->slot_count = (size_t)(count < LEAST_SLOTS  ? LEAST_SLOTS
-                             : count > MOST_SLOTS ? MOST_SLOTS
-                                                  : count);
+    c->budget = (gpu_get_info(g)->kind == GPU_CPU ? 192 : 512) * mebi;
+    c->slot_count = s->frame_count < MOST_SLOTS ? s->frame_count : MOST_SLOTS;
+    if (c->slot_count < SHOWN + UPLOAD_AHEAD) c->slot_count = SHOWN + UPLOAD_AHEAD;
     c->slots = mem_alloc(c->slot_count * sizeof *c->slots);
-    pthread_mutex_init(&c->lock, NULL);
-    pthread_cond_init(&c->done, NULL);
-    c->thread = worker_create(1);
+    sequence_jobs_start(s);
 }
 
-// ---- decoding ahead ---------------------------------------------------------------------------
+// ---- slots ------------------------------------------------------------------------------------
 
-static void run_job(void *user) {
-    sequence_job *job = user;
-    sequence_cache *c = (sequence_cache *)&job->owner->cache;
-    pthread_mutex_lock(&c->lock);
-    bool cancelled = job->state == JOB_CANCELLED;
-    if (!cancelled) job->state = JOB_RUNNING;
-    pthread_mutex_unlock(&c->lock);
-    if (cancelled) {
-        mem_free(job);
-        return;
-    }
-    job->ok = sequence_decode(job->owner, job->frame, &job->texels);
-    if (!job->ok) str_copy(job->message, sizeof job->message, err_get());
-    pthread_mutex_lock(&c->lock);
-    job->state = JOB_DONE;
-    pthread_cond_broadcast(&c->done);
-    pthread_mutex_unlock(&c->lock);
-}
-
-static sequence_job **find_job(sequence_cache *c, uint32_t frame) {
-    for (size_t i = 0; i < SEQUENCE_MAX_JOBS; i++)
-        if (c->jobs[i] && c->jobs[i]->frame == frame) return &c->jobs[i];
-    return NULL;
-}
-
-// Gives up a job unless the thread is at it.
-static void drop_job(sequence_cache *c, sequence_job **place) {
-    sequence_job *job = *place;
-    pthread_mutex_lock(&c->lock);
-    int state = job->state;
-    if (state == JOB_QUEUED) job->state = JOB_CANCELLED;
-    pthread_mutex_unlock(&c->lock);
-    if (state == JOB_RUNNING) return;
-    *place = NULL;
-    if (state != JOB_DONE) return;
-    sequence_texels_free(&job->texels);
-    mem_free(job);
-}
-
-// The texels of a frame, from the thread or by decoding here.
-static bool take(sequence_data *s, uint32_t frame, sequence_texels *out) {
-    sequence_cache *c = &s->cache;
-    sequence_job **place = find_job(c, frame);
-    if (!place) return sequence_decode(s, frame, out);
-    sequence_job *job = *place;
-    pthread_mutex_lock(&c->lock);
-    bool waiting = job->state == JOB_QUEUED;
-    if (waiting) job->state = JOB_CANCELLED; // behind other frames: faster here
-    while (!waiting && job->state != JOB_DONE) pthread_cond_wait(&c->done, &c->lock);
-    pthread_mutex_unlock(&c->lock);
-    *place = NULL;
-    if (waiting) return sequence_decode(s, frame, out);
-    bool ok = job->ok;
-    *out = job->texels;
-    if (!ok) err_set("%s", job->message);
-    mem_free(job);
-    return ok;
+static bool is_ready(const sequence_slot *slot) {
+    return slot->used > 0 && !slot->filling;
 }
 
 static sequence_slot *find_slot(sequence_cache *c, uint32_t frame) {
     for (size_t i = 0; i < c->slot_count; i++)
-        if (c->slots[i].used > 0 && c->slots[i].frame == frame) return &c->slots[i];
+        if (is_ready(&c->slots[i]) && c->slots[i].frame == frame) return &c->slots[i];
     return NULL;
 }
 
-void sequence_cache_ahead(sequence_data *s, const uint32_t *frames, size_t count) {
+static void count_bytes(sequence_data *s) {
     sequence_cache *c = &s->cache;
-    for (size_t i = 0; i < SEQUENCE_MAX_JOBS; i++) {
-        bool wanted = false;
-        for (size_t k = 0; c->jobs[i] && k < count; k++)
-            wanted = wanted || c->jobs[i]->frame == frames[k];
-        if (c->jobs[i] && !wanted) drop_job(c, &c->jobs[i]);
-    }
-    for (size_t k = 0; k < count; k++) {
-        size_t place = 0;
-        while (place < SEQUENCE_MAX_JOBS && c->jobs[place]) place++;
-        if (place == SEQUENCE_MAX_JOBS) return;
-        if (find_job(c, frames[k]) || find_slot(c, frames[k])) continue;
-        sequence_job *job = mem_alloc(sizeof *job);
-        job->owner = s;
-        job->frame = frames[k];
-        c->jobs[place] = job;
-        worker_submit(c->thread, (worker_job){run_job, job});
-    }
+    c->counts.device_bytes = 0;
+    for (size_t i = 0; i < c->slot_count; i++) c->counts.device_bytes += c->slots[i].bytes;
 }
 
-// ---- textures ---------------------------------------------------------------------------------
-
-static bool make_images(sequence_data *s, gpu *g, sequence_slot *slot) {
-    static const gpu_format formats[] = {GPU_FORMAT_NONE, GPU_R16F, GPU_RG16F, GPU_RGBA16F,
-                                         GPU_RGBA16F};
-    for (int i = 0; i < FIELD_GRID_IMAGES && sequence_image_channels(s, i) > 0; i++) {
-        if (slot->images[i]) continue;
-        slot->images[i] = gpu_image_create(g, &(gpu_image_desc){
-                                                  .label = s->name,
-                                                  .format = formats[sequence_image_channels(s, i)],
-                                                  .width = s->size[0],
-                                                  .height = s->size[1],
-                                                  .depth = s->size[2],
-                                                  .use = GPU_USE_SAMPLED,
-                                              });
-        if (!slot->images[i]) return err_prefix("%s: ", s->name);
+// A slot for one more frame of so many bytes: an unused one while the budget lasts, else the least
+// recently used that neither this turn shows nor a copy fills.
+static sequence_slot *take_slot(sequence_data *s, uint64_t bytes) {
+    sequence_cache *c = &s->cache;
+    sequence_slot *unused = NULL, *oldest = NULL;
+    size_t used = 0;
+    if (bytes > c->counts.largest_bytes) c->counts.largest_bytes = bytes;
+    for (size_t i = 0; i < c->slot_count; i++) {
+        sequence_slot *slot = &c->slots[i];
+        if (slot->used == 0) {
+            if (!unused) unused = slot;
+            continue;
+        }
+        used++;
+        if (slot->filling || slot->used == c->turn) continue;
+        if (!oldest || slot->used < oldest->used) oldest = slot;
     }
-    return true;
+    bool all_fit = c->counts.largest_bytes * s->frame_count <= c->budget;
+    if (unused && (all_fit || used < SHOWN + UPLOAD_AHEAD || !oldest)) return unused;
+    return oldest;
 }
 
-static bool upload(sequence_data *s, gpu *g, sequence_slot *slot, const sequence_texels *texels) {
-    if (!make_images(s, g, slot)) return false;
-    size_t voxels = (size_t)s->size[0] * s->size[1] * s->size[2];
-    for (int i = 0; i < FIELD_GRID_IMAGES && slot->images[i]; i++) {
-        int count = sequence_image_channels(s, i);
-        size_t size = voxels * (size_t)(count == 3 ? 4 : count) * sizeof(uint16_t);
-        if (!gpu_image_write(g, slot->images[i], 0, texels->images[i], size))
-            return err_prefix("%s: ", s->name);
+// ---- uploads ----------------------------------------------------------------------------------
+
+static gpu_transfer *take_transfer(sequence_data *s, gpu *g, uint64_t size) {
+    sequence_cache *c = &s->cache;
+    for (size_t i = 0; i < SEQUENCE_TRANSFERS; i++) {
+        gpu_transfer *t = c->idle[i];
+        if (!t || !gpu_transfer_done(g, t)) continue;
+        c->idle[i] = NULL;
+        if (gpu_transfer_size(t) >= size) return t;
+        gpu_transfer_destroy(g, t);
     }
-    return true;
+    gpu_transfer *made = gpu_transfer_create(g, size + size / 8);
+    if (!made) err_prefix("%s: ", s->name);
+    return made;
+}
+
+static void give_transfer(sequence_data *s, gpu *g, gpu_transfer *t) {
+    for (size_t i = 0; i < SEQUENCE_TRANSFERS; i++)
+        if (!s->cache.idle[i]) {
+            s->cache.idle[i] = t;
+            return;
+        }
+    gpu_transfer_destroy(g, t);
 }
 
 static void warn(sequence_data *s, uint32_t frame, uint64_t bad) {
@@ -163,43 +102,204 @@ static void warn(sequence_data *s, uint32_t frame, uint64_t bad) {
               (unsigned long long)bad, frame + 1);
 }
 
+static void note_decoded(sequence_data *s, uint32_t frame, const sequence_texels *texels,
+                         double seconds) {
+    field_playback *counts = &s->cache.counts;
+    counts->decoded++;
+    counts->decoded_bytes += sequence_upload_bytes(s, texels);
+    counts->decode_seconds += seconds;
+    if (texels->voxels > counts->largest_voxels) counts->largest_voxels = texels->voxels;
+    warn(s, frame, texels->bad);
+}
+
+// A slot with textures for these texels, and memory to copy from. False with a message.
+static bool prepare(sequence_data *s, gpu *g, const sequence_texels *texels, sequence_slot **slot,
+                    gpu_transfer **transfer) {
+    uint64_t size = sequence_upload_bytes(s, texels);
+    *slot = take_slot(s, size);
+    (*slot)->used = 0; // in case it fails half-way
+    bool ok = sequence_slot_fit(s, g, texels, *slot);
+    count_bytes(s);
+    if (ok) *transfer = take_transfer(s, g, size);
+    return ok && *transfer;
+}
+
+static bool begin_copy(sequence_data *s, gpu *g, const sequence_texels *texels,
+                       const sequence_slot *slot, gpu_transfer *transfer) {
+    gpu_transfer_part parts[2 * FIELD_GRID_IMAGES];
+    size_t count = sequence_upload_parts(s, texels, slot, parts);
+    s->cache.counts.uploaded++;
+    s->cache.counts.uploaded_bytes += sequence_upload_bytes(s, texels);
+    return gpu_transfer_start(g, transfer, parts, count) || err_prefix("%s: ", s->name);
+}
+
+static void fill(sequence_data *s, sequence_slot *slot, uint32_t frame,
+                 const sequence_texels *texels) {
+    slot->frame = frame;
+    slot->active = texels->active;
+    slot->used = s->cache.turn;
+}
+
+// Decoded texels onto the device, at once.
+static sequence_slot *upload(sequence_data *s, gpu *g, uint32_t frame,
+                             const sequence_texels *texels) {
+    sequence_slot *slot;
+    gpu_transfer *t = NULL;
+    if (!prepare(s, g, texels, &slot, &t)) return NULL;
+    sequence_upload_write(s, texels, gpu_transfer_map(t));
+    bool ok = begin_copy(s, g, texels, slot, t) && gpu_transfer_finish(g, t);
+    give_transfer(s, g, t);
+    if (!ok) return NULL;
+    fill(s, slot, frame, texels);
+    return slot;
+}
+
+// ---- jobs -------------------------------------------------------------------------------------
+
+// The next thing to do with a job that no thread has. False with a message.
+static bool move_on(sequence_data *s, gpu *g, sequence_job *job, int state) {
+    if (state == JOB_DECODED) {
+        note_decoded(s, job->frame, &job->texels, job->seconds);
+        if (!prepare(s, g, &job->texels, &job->slot, &job->transfer)) return false;
+        fill(s, job->slot, job->frame, &job->texels);
+        job->slot->filling = true;
+        sequence_job_stage(job);
+        return true;
+    }
+    job->state = JOB_COPYING;
+    return begin_copy(s, g, &job->texels, job->slot, job->transfer);
+}
+
+static void forget(sequence_data *s, gpu *g, sequence_job *job, bool usable) {
+    if (job->slot) job->slot->filling = false;
+    if (job->slot && !usable) job->slot->used = 0;
+    if (job->transfer) give_transfer(s, g, job->transfer);
+    sequence_job_drop(s, job);
+}
+
+// Brings a job to its end, whatever it waits for; NULL with a message.
+static sequence_slot *complete(sequence_data *s, gpu *g, sequence_job *job) {
+    int state = sequence_job_wait(job);
+    bool ok = job->ok || err_set("%s", job->message);
+    while (ok && state != JOB_COPYING) {
+        ok = move_on(s, g, job, state);
+        state = sequence_job_wait(job);
+    }
+    ok = ok && (gpu_transfer_finish(g, job->transfer) || err_prefix("%s: ", s->name));
+    sequence_slot *slot = job->slot;
+    forget(s, g, job, ok);
+    return ok ? slot : NULL;
+}
+
+// The same for what can be done without waiting. Errors wait for the frame to be wanted.
+static void step(sequence_data *s, gpu *g, sequence_job *job, bool *busy) {
+    int state = sequence_job_state(job);
+    if (!job->ok && state == JOB_DECODED) return;
+    if (state == JOB_COPYING) {
+        if (!gpu_transfer_done(g, job->transfer)) return;
+        forget(s, g, job, gpu_transfer_finish(g, job->transfer));
+        return;
+    }
+    if (state != JOB_DECODED && state != JOB_STAGED) return;
+    if (state == JOB_STAGED && *busy) return;
+    *busy = *busy || state == JOB_STAGED;
+    if (move_on(s, g, job, state)) return;
+    log_write(LOG_WARNING, "%s", err_get());
+    job->state = JOB_DECODED;
+    forget(s, g, job, false);
+}
+
+void sequence_cache_pump(sequence_data *s, gpu *g) {
+    sequence_jobs *j = &s->cache.jobs;
+    bool busy = false; // one copy a frame, so that none takes long
+    for (size_t k = 0; k < j->wanted_count; k++) {
+        sequence_job *job = sequence_job_find(s, j->wanted[k]);
+        bool soon = k < UPLOAD_AHEAD || (job && sequence_job_state(job) != JOB_DECODED);
+        if (job && soon) step(s, g, job, &busy);
+    }
+    for (size_t i = 0; i < SEQUENCE_MAX_JOBS; i++) { // late ones may still be the nearest
+        sequence_job *job = j->list[i];
+        bool wanted = false;
+        for (size_t k = 0; job && k < j->wanted_count; k++)
+            wanted = wanted || j->wanted[k] == job->frame;
+        if (job && !wanted) step(s, g, job, &busy);
+    }
+}
+
+void sequence_cache_ahead(sequence_data *s, const uint32_t *frames, size_t count) {
+    sequence_jobs *j = &s->cache.jobs;
+    memcpy(j->wanted, frames, count * sizeof *frames);
+    j->wanted_count = count;
+    for (size_t i = 0; i < SEQUENCE_MAX_JOBS; i++) {
+        sequence_job *job = j->list[i];
+        bool wanted = false;
+        for (size_t k = 0; job && k < count; k++) wanted = wanted || job->frame == frames[k];
+        if (job && !wanted && sequence_job_state(job) == JOB_QUEUED) sequence_job_drop(s, job);
+    }
+    for (size_t k = 0; k < count; k++)
+        if (!sequence_job_find(s, frames[k]) && !find_slot(&s->cache, frames[k]) &&
+            !sequence_job_add(s, frames[k]))
+            return;
+}
+
+// ---- frames -----------------------------------------------------------------------------------
+
+static sequence_slot *show(sequence_data *s, sequence_slot *slot) {
+    if (slot) slot->used = s->cache.turn;
+    return slot;
+}
+
 sequence_slot *sequence_cache_get(sequence_data *s, gpu *g, uint32_t frame) {
     sequence_cache *c = &s->cache;
     if (c->slot_count == 0) start(s, g);
     sequence_slot *slot = find_slot(c, frame);
-    c->turn++;
-    if (slot) {
-        slot->used = c->turn;
-        return slot;
-    }
+    if (slot) return show(s, slot);
+    sequence_job *job = sequence_job_find(s, frame);
+    // One that still waits for a thread is decoded sooner here.
+    bool queued = job && sequence_job_state(job) == JOB_QUEUED && sequence_job_drop(s, job);
+    if (job && !queued) return show(s, complete(s, g, job));
     sequence_texels texels;
-    if (!take(s, frame, &texels)) return NULL;
-    slot = &c->slots[0];
-    for (size_t i = 1; i < c->slot_count; i++)
-        if (c->slots[i].used < slot->used) slot = &c->slots[i];
-    slot->used = 0; // in case the upload fails half-way
-    bool ok = upload(s, g, slot, &texels);
-    warn(s, frame, texels.bad);
+    double begin = clock_seconds();
+    if (!sequence_decode(s, frame, &texels)) return NULL;
+    note_decoded(s, frame, &texels, clock_seconds() - begin);
+    slot = upload(s, g, frame, &texels);
     sequence_texels_free(&texels);
-    if (!ok) return NULL;
-    slot->frame = frame;
-    slot->active = texels.active;
-    slot->used = c->turn;
-    return slot;
+    return show(s, slot);
+}
+
+sequence_slot *sequence_cache_nearest(sequence_data *s, uint32_t frame) {
+    sequence_cache *c = &s->cache;
+    sequence_slot *best = NULL;
+    uint32_t least = UINT32_MAX;
+    for (size_t i = 0; i < c->slot_count; i++) {
+        if (!is_ready(&c->slots[i])) continue;
+        uint32_t at = c->slots[i].frame, far = at > frame ? at - frame : frame - at;
+        if (s->desc.loop == SEQUENCE_REPEAT && s->frame_count - far < far)
+            far = s->frame_count - far;
+        if (far > least || (far == least && at > best->frame)) continue;
+        best = &c->slots[i];
+        least = far;
+    }
+    return show(s, best);
+}
+
+bool sequence_cache_failed(sequence_data *s, gpu *g, uint32_t frame) {
+    sequence_job *job = sequence_job_find(s, frame);
+    if (!job || sequence_job_state(job) != JOB_DECODED || job->ok) return false;
+    complete(s, g, job);
+    return true;
+}
+
+void sequence_cache_turn(sequence_data *s) {
+    s->cache.turn++;
 }
 
 void sequence_cache_free(sequence_data *s, gpu *g) {
     sequence_cache *c = &s->cache;
     if (c->slot_count == 0) return;
-    for (size_t i = 0; i < SEQUENCE_MAX_JOBS; i++)
-        if (c->jobs[i]) drop_job(c, &c->jobs[i]);
-    worker_destroy(c->thread);
-    for (size_t i = 0; i < SEQUENCE_MAX_JOBS; i++) // one may have been running
-        if (c->jobs[i]) drop_job(c, &c->jobs[i]);
-    for (size_t i = 0; i < c->slot_count; i++)
-        for (int k = 0; k < FIELD_GRID_IMAGES; k++) gpu_image_destroy(g, c->slots[i].images[k]);
+    sequence_jobs_end(s, g);
+    for (size_t i = 0; i < SEQUENCE_TRANSFERS; i++) gpu_transfer_destroy(g, c->idle[i]);
+    for (size_t i = 0; i < c->slot_count; i++) sequence_slot_free(&c->slots[i], g);
     mem_free(c->slots);
-    pthread_mutex_destroy(&c->lock);
-    pthread_cond_destroy(&c->done);
     memset(c, 0, sizeof *c);
 }

@@ -7,12 +7,11 @@
 #include <math.h>
 #include <string.h>
 
-static const float half_max = 65504;
-
 typedef struct packing {
     const sequence_data *s;
     sequence_texels *out;
     uint32_t low[3], high[3]; // texels that are not zero, in the grid's axes; high exclusive
+    uint64_t active;          // of the channel at hand
 } packing;
 
 int sequence_image_channels(const sequence_data *s, int image) {
@@ -20,7 +19,7 @@ int sequence_image_channels(const sequence_data *s, int image) {
     return count < 0 ? 0 : count > 4 ? 4 : count;
 }
 
-static int texel_width(const sequence_data *s, int image) { // components of the texture
+int sequence_texel_width(const sequence_data *s, int image) {
     int count = sequence_image_channels(s, image);
     return count == 3 ? 4 : count;
 }
@@ -35,10 +34,11 @@ static void grow(packing *p, const uint32_t at[3]) {
 // Writes one component of `values` (x fastest, `stride` floats apart) to a channel of the grid.
 static void pack(packing *p, const float *values, int stride, int channel, float gain) {
     const sequence_data *s = p->s;
-    int image = channel / 4, width = texel_width(s, image);
+    int image = channel / 4, width = sequence_texel_width(s, image);
     uint16_t *texels = p->out->images[image];
     const uint32_t *size = s->size;
     uint32_t at[3];
+    p->active = 0;
     for (at[2] = 0; at[2] < size[2]; at[2]++)
         for (at[1] = 0; at[1] < size[1]; at[1]++) {
             // With Y up, our Y is the file's -Z and our Z its Y.
@@ -48,13 +48,16 @@ static void pack(packing *p, const float *values, int stride, int channel, float
                 values + (z * s->file_size[1] + y) * s->file_size[0] * (size_t)stride;
             size_t texel = ((size_t)at[2] * size[1] + at[1]) * size[0];
             for (at[0] = 0; at[0] < size[0]; at[0]++) {
-                float v = clampf(row[at[0] * (size_t)stride] * gain, -half_max, half_max);
+                float v = clampf(row[at[0] * (size_t)stride] * gain, -SEQUENCE_HALF_MAX,
+                                 SEQUENCE_HALF_MAX);
                 if (v == 0) continue;
                 texels[(texel + at[0]) * (size_t)width + (size_t)(channel % 4)] =
                     half_from_float(v);
                 grow(p, at);
+                p->active++;
             }
         }
+    if (p->active > p->out->voxels) p->out->voxels = p->active;
 }
 
 static void pack_vector(packing *p, const float *values, int channel, float gain) {
@@ -108,31 +111,28 @@ static bool decode_channel(packing *p, uint32_t frame, const sequence_channel_in
     return true;
 }
 
-// World box of the texels that are not zero, as far as linear filtering spreads them.
-static box3 active_box(const packing *p) {
-    const sequence_data *grid = p->s;
-    if (p->low[0] >= p->high[0]) return box3_empty();
+box3 sequence_active_box(const sequence_data *grid, const uint32_t from[3], const uint32_t to[3]) {
+    if (from[0] >= to[0]) return box3_empty();
     const float min[3] = {grid->box.min.x, grid->box.min.y, grid->box.min.z};
     const float max[3] = {grid->box.max.x, grid->box.max.y, grid->box.max.z};
     float low[3], high[3];
     for (int i = 0; i < 3; i++) {
         float voxel = (max[i] - min[i]) / (float)grid->size[i];
-        low[i] = min[i] + voxel * ((float)p->low[i] - 0.5f);
-        high[i] = min[i] + voxel * ((float)p->high[i] + 0.5f);
+        low[i] = min[i] + voxel * ((float)from[i] - 0.5f);
+        high[i] = min[i] + voxel * ((float)to[i] + 0.5f);
     }
     return box3_intersect(grid->box, (box3){{low[0], low[1], low[2]}, {high[0], high[1], high[2]}});
 }
 
-bool sequence_decode(const sequence_data *s, uint32_t frame, sequence_texels *out) {
-    memset(out, 0, sizeof *out);
-    packing p = {s, out, {UINT32_MAX, UINT32_MAX, UINT32_MAX}, {0, 0, 0}};
+static bool decode_dense(const sequence_data *s, uint32_t frame, sequence_texels *out) {
+    packing p = {s, out, {UINT32_MAX, UINT32_MAX, UINT32_MAX}, {0, 0, 0}, 0};
     size_t voxels = (size_t)s->file_size[0] * s->file_size[1] * s->file_size[2];
     int widest = 1;
     for (size_t i = 0; i < s->channel_count; i++)
         if (s->channels[i].components > widest) widest = s->channels[i].components;
     float *values = mem_alloc(voxels * (size_t)widest * sizeof *values);
     for (int i = 0; i < FIELD_GRID_IMAGES && sequence_image_channels(s, i) > 0; i++)
-        out->images[i] = mem_alloc(voxels * (size_t)texel_width(s, i) * sizeof(uint16_t));
+        out->images[i] = mem_alloc(voxels * (size_t)sequence_texel_width(s, i) * sizeof(uint16_t));
     bool ok = true;
     if (s->raw) {
         ok = sequence_raw_read(s, frame, values, &out->bad);
@@ -142,12 +142,22 @@ bool sequence_decode(const sequence_data *s, uint32_t frame, sequence_texels *ou
             ok = decode_channel(&p, frame, &s->channels[i], values);
     }
     mem_free(values);
-    out->active = active_box(&p);
+    out->active = sequence_active_box(s, p.low, p.high);
+    return ok;
+}
+
+bool sequence_decode(const sequence_data *s, uint32_t frame, sequence_texels *out) {
+    memset(out, 0, sizeof *out);
+    bool ok = s->sparse ? sequence_decode_sparse(s, frame, out) : decode_dense(s, frame, out);
     if (!ok) sequence_texels_free(out);
     return ok;
 }
 
 void sequence_texels_free(sequence_texels *texels) {
-    for (int i = 0; i < FIELD_GRID_IMAGES; i++) mem_free(texels->images[i]);
+    for (int i = 0; i < FIELD_GRID_IMAGES; i++) {
+        mem_free(texels->images[i]);
+        mem_free(texels->bricks[i].index);
+    }
     memset(texels->images, 0, sizeof texels->images);
+    memset(texels->bricks, 0, sizeof texels->bricks);
 }

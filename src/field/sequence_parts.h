@@ -1,6 +1,7 @@
 // Between the parts of a sequence: sequence.c knows its files, channels and timeline,
 // sequence_raw.c the layout of raw files, sequence_decode.c makes texels of a frame on any thread,
-// sequence_cache.c keeps textures and decodes ahead.
+// sequence_sparse.c makes bricks of one, sequence_upload.c brings them to the device,
+// sequence_jobs.c does both ahead of time, sequence_cache.c keeps textures.
 //
 // A sequence is a grid that fields point at, and its data, which another load of the same effect
 // may take over together with the textures and the thread that decodes (field_grid.exchange).
@@ -10,7 +11,13 @@
 #include "media/vdb.h"
 #include <pthread.h>
 
-enum { SEQUENCE_MAX_JOBS = 4, SEQUENCE_MAX_FRAMES = 100000 };
+enum {
+    SEQUENCE_MAX_JOBS = 12,
+    SEQUENCE_TRANSFERS = 4,
+    SEQUENCE_MAX_FRAMES = 100000,
+    SEQUENCE_BRICK = 8, // voxels a side
+};
+#define SEQUENCE_HALF_MAX 65504.0f
 
 typedef struct sequence_channel_info {
     const char *name; // as asked for
@@ -25,36 +32,68 @@ typedef struct sequence_raw_layout { // checked: every frame lies inside the fil
     int64_t changed; // file_changed_ns
 } sequence_raw_layout;
 
-typedef struct sequence_texels {
-    uint16_t *images[FIELD_GRID_IMAGES]; // halves, packed as the textures are; mem_free
-    box3 active;                         // world
-    uint64_t bad;                        // values that were not finite
-} sequence_texels;
+typedef struct sequence_bricks { // of one image
+    uint32_t *index;             // of the box, x fastest: where in the atlas; 0: nothing but zeros
+    uint32_t count;              // bricks stored
+    uint32_t across, layers;     // bricks of the atlas: across * across * layers
+} sequence_bricks;
 
-typedef struct sequence_job { // decoding one frame ahead
-    const struct sequence_data *owner;
-    uint32_t frame;
-    enum { JOB_QUEUED, JOB_RUNNING, JOB_DONE, JOB_CANCELLED } state;
-    bool ok;
-    char message[1024];
-    sequence_texels texels;
-} sequence_job;
+typedef struct sequence_texels {
+    uint16_t *images[FIELD_GRID_IMAGES]; // halves, packed as the textures are; sparse: brick after
+                                         // brick, 9^3 texels each; mem_free
+    sequence_bricks bricks[FIELD_GRID_IMAGES]; // of a sparse sequence
+    box3 active;                               // world
+    uint64_t voxels;                           // that are not 0
+    uint64_t bad;                              // values that were not finite
+} sequence_texels;
 
 typedef struct sequence_slot { // one frame on the GPU
     uint32_t frame;
     uint64_t used; // turn of the last use; 0: holds nothing
-    gpu_image *images[FIELD_GRID_IMAGES];
+    bool filling;  // a job is about to
+    gpu_image *images[FIELD_GRID_IMAGES], *index[FIELD_GRID_IMAGES];
+    uint64_t bytes; // of them all
     box3 active;
 } sequence_slot;
+
+typedef struct sequence_job { // one frame ahead of time
+    const struct sequence_data *owner;
+    uint32_t frame;
+    enum {
+        JOB_QUEUED,   // for decoding
+        JOB_DECODING, // by a thread
+        JOB_DECODED,
+        JOB_STAGING, // a thread has it: writes into memory to copy from
+        JOB_STAGED,
+        JOB_COPYING, // to the device
+        JOB_DROPPED, // freed by the thread that finds it
+    } state;
+    bool ok;
+    char message[1024];
+    double seconds; // of decoding
+    sequence_texels texels;
+    sequence_slot *slot; // that it fills
+    gpu_transfer *transfer;
+} sequence_job;
+
+typedef struct sequence_jobs {
+    worker *pool;
+    uint32_t threads;
+    pthread_mutex_t lock; // guards the states
+    pthread_cond_t done;
+    sequence_job *list[SEQUENCE_MAX_JOBS];
+    uint32_t wanted[SEQUENCE_MAX_JOBS]; // frames, the next one first
+    size_t wanted_count;
+} sequence_jobs;
 
 typedef struct sequence_cache {
     sequence_slot *slots;
     size_t slot_count; // 0 until the first frame
+    uint64_t budget;   // bytes, beyond which only a few frames are kept
     uint64_t turn;
-    worker *thread;
-    pthread_mutex_t lock; // guards the state of jobs
-    pthread_cond_t done;
-    sequence_job *jobs[SEQUENCE_MAX_JOBS];
+    sequence_jobs jobs;
+    gpu_transfer *idle[SEQUENCE_TRANSFERS]; // to be used again
+    field_playback counts;
     bool warned; // of values that are not finite
 } sequence_cache;
 
@@ -75,6 +114,8 @@ typedef struct sequence_data {
     box3 box;              // of the grid
     uint32_t size[3];      // of its textures
     int width;             // channels of its textures, gaps included
+    bool sparse;
+    uint32_t atlas_across; // bricks along a side of the atlas, unless a frame needs more
     sequence_channel_info channels[4 * FIELD_GRID_IMAGES];
     size_t channel_count;
     double last_position;
@@ -100,18 +141,56 @@ const vdb_grid_info *sequence_find_grid(const vdb_info *info, const char *channe
 bool sequence_frames_at(const sequence_data *s, double time, uint32_t frames[2], float *blend);
 
 int sequence_image_channels(const sequence_data *s, int image); // 0..4
+int sequence_texel_width(const sequence_data *s, int image);    // components of the texture
+uint64_t sequence_brick_count(const sequence_data *s);          // of the box
+// On the device, index included.
+uint64_t sequence_image_bytes(const sequence_data *s, const sequence_texels *texels, int image);
+// World box of the voxels that are not zero (low inclusive, high exclusive, in the grid's axes), as
+// far as linear filtering spreads them.
+box3 sequence_active_box(const sequence_data *s, const uint32_t low[3], const uint32_t high[3]);
 
 // Any thread. False with a message; nothing is then left to free.
 bool sequence_decode(const sequence_data *s, uint32_t frame, sequence_texels *out);
+bool sequence_decode_sparse(const sequence_data *s, uint32_t frame, sequence_texels *out);
+// The atlas of an image, as its texture takes it: any thread.
+void sequence_atlas_write(const sequence_data *s, const sequence_texels *texels, int image,
+                          void *out);
 void sequence_texels_free(sequence_texels *texels);
+
+// Gives the slot textures that a frame fits into; false with a message.
+bool sequence_slot_fit(const sequence_data *s, gpu *g, const sequence_texels *texels,
+                       sequence_slot *slot);
+void sequence_slot_free(sequence_slot *slot, gpu *g); // what it holds; `g` may be NULL if nothing
+// The bytes of a frame as they are copied into textures.
+uint64_t sequence_upload_bytes(const sequence_data *s, const sequence_texels *texels);
+void sequence_upload_write(const sequence_data *s, const sequence_texels *texels, void *out);
+size_t sequence_upload_parts(const sequence_data *s, const sequence_texels *texels,
+                             const sequence_slot *slot,
+                             gpu_transfer_part parts[2 * FIELD_GRID_IMAGES]);
 
 // field_grid.exchange of a sequence.
 bool sequence_exchange(field_grid *grid, field_grid *other);
 void sequence_data_free(sequence_data *d, gpu *g); // `g` may be NULL when nothing was shown
 
-// The slot of a frame, decoded and uploaded if need be; NULL with a message. A slot lives until
-// two more turns have passed.
+// On the thread of the device, but for what the threads do.
+void sequence_jobs_start(sequence_data *s);
+void sequence_jobs_end(sequence_data *s, gpu *g);
+sequence_job *sequence_job_find(const sequence_data *s, uint32_t frame);
+bool sequence_job_add(sequence_data *s, uint32_t frame); // false: there are enough
+int sequence_job_state(sequence_job *job);
+int sequence_job_wait(sequence_job *job);                    // until no thread has it; its state
+void sequence_job_stage(sequence_job *job);                  // its transfer is large enough
+bool sequence_job_drop(sequence_data *s, sequence_job *job); // frees it; false: a thread has it
+
+// The slot of a frame, decoded and uploaded if need be; NULL with a message. What is shown in one
+// turn stays until the next.
+void sequence_cache_turn(sequence_data *s);
 sequence_slot *sequence_cache_get(sequence_data *s, gpu *g, uint32_t frame);
-// Starts decoding frames that will be wanted soon; work on others is dropped.
+sequence_slot *sequence_cache_nearest(sequence_data *s, uint32_t frame); // NULL: there is none yet
+// True with a message when it was decoded ahead and that failed.
+bool sequence_cache_failed(sequence_data *s, gpu *g, uint32_t frame);
+// Starts decoding frames that will be wanted soon, the next one first; those that wait for a thread
+// and are not among them are dropped.
 void sequence_cache_ahead(sequence_data *s, const uint32_t *frames, size_t count);
+void sequence_cache_pump(sequence_data *s, gpu *g); // brings them on, without waiting
 void sequence_cache_free(sequence_data *s, gpu *g);

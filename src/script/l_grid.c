@@ -70,7 +70,9 @@ static int push_sequence(lua_State *L, const sequence_desc *desc) {
 static int l_vdb(lua_State *L) {
     script_require_loading(L, "vdb");
     sequence_desc desc = {0};
-    read_playback(L, value_check_object(L, 1, "vdb"), &desc);
+    const script_object *row = value_check_object(L, 1, "vdb");
+    read_playback(L, row, &desc);
+    desc.storage = (sequence_storage)value_get_choice(L, 1, row, "storage");
     return push_sequence(L, &desc);
 }
 

@@ -71,7 +71,13 @@ static const script_object objects[] = {
     {"vdb", "source", "local burst = vdb { \"data/burst_*.vdb\", fps = 24 }",
      "a sequence of OpenVDB files; burst.density is a field, 0 outside the box",
      .args = KEYS(KEY("files", "\"data/burst_*.vdb\"", "one file, or many by *; sorted by name")),
-     .keys = KEYS(PLAYBACK), .members = SEQUENCE_MEMBERS},
+     .keys = KEYS(
+        CHOICE("storage", "auto",
+               "on the device: the whole box, or only bricks of 8^3 voxels where there is something; "
+               "auto takes these for large boxes that are mostly empty. The picture is the same",
+               "auto", "dense", "sparse"),
+        PLAYBACK),
+     .members = SEQUENCE_MEMBERS},
     {"raw", "source", "local burst = raw { \"data/burst.raw\", size = {32, 32, 32} }",
      "a sequence of plain voxels in one file, little-endian, x fastest; burst.density is a field",
      .args = KEYS(KEY("file", "\"data/burst.raw\"", "all frames, one after another")),

@@ -11,6 +11,7 @@ enum { PROBE_TEXTURES = 16 };
 
 static inline gpu_image *probe_texture(gpu *g, const field_texture *texture, double time,
                                        gpu_image **made) {
+    if (texture->index) return texture->grid->state.index[texture->set][texture->image];
     if (texture->grid) return texture->grid->state.images[texture->set][texture->image];
     uint16_t texels[PALETTE_SIZE * 4];
     palette_bake(texture->palette, time, texels);
@@ -88,6 +89,7 @@ static inline void probe_program(gpu *g, const field_program *fields, const char
                 if (strcmp(textures[t].glsl_name, slot->name) == 0)
                     b->image = probe_texture(g, &textures[t], context->time, &made[made_count++]);
             assert_non_null(b->image);
+            if (gpu_image_get_desc(b->image)->format == GPU_R32U) b->sampler = GPU_NEAREST_CLAMP;
         }
     }
     gpu_test_ok(gpu_frame_begin(g));

@@ -131,7 +131,9 @@ static void channels_are_packed_and_found_again(void **state) {
     field_program *program = field_program_create(&memory, &root, 1);
     gpu_test_ok(program);
     const field_texture *textures;
-    assert_int_equal(field_program_textures(program, &textures), 2);
+    size_t count = field_program_textures(program, &textures), sampled = 0;
+    for (size_t i = 0; i < count; i++) sampled += !textures[i].ranges;
+    assert_int_equal(sampled, 2);
     assert_true(fabsf(look(*state, sum, p) - 6) < 1e-2f);
     arena_free(&memory);
     sequence_grid(s)->destroy(sequence_grid(s), *state);
