@@ -228,6 +228,7 @@ static bool make_library(roil_live *l) {
         .shader_root = l->owner->shaders,
         .effect_root = folder,
         .cache_dir = cached ? cache : NULL,
+        .remembers = true,
     });
     return l->library != NULL;
 }

@@ -37,12 +37,14 @@ effect *effect_create(const effect_desc *desc) {
             .shader_root = desc->shader_root,
             .effect_root = e->root,
             .cache_dir = cached ? shader_cache : NULL,
+            .remembers = true,
         });
     }
     if (!e->library) {
         effect_destroy(e);
         return NULL;
     }
+    shader_library_forget(e->library);
     e->graph = graph_create();
     e->reader = (shader_reader){add_read_file, e};
     e->host = (pass_host){
@@ -216,9 +218,9 @@ pass *effect_add_pass(effect *e, const char *type, const char *shader, const cha
 void effect_add_grid(effect *e, field_grid *grid) {
     MEM_RESERVE(e->grids, e->grid_count + 1, e->grid_capacity);
     e->grids[e->grid_count++] = grid;
+    grid->punctual = e->punctual;
 }
 
-    grid->punctual = e->punctual;
 // ---- scene and outputs ------------------------------------------------------------------------
 
 // The mesh of a file, which loads of the same effect share; NULL with a message.

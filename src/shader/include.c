@@ -137,12 +137,20 @@ static int find_known(const shader_unit *unit, const library_file *where) {
     return -1;
 }
 
-static bool read_text(loader *l, place at, const char *path, unit_file *out) {
+static bool read_file(loader *l, const char *path, char **text, size_t *size) {
+    arena *memory = &l->unit->memory;
+    if (l->library->memo) return memo_read(l->library->memo, path, memory, text, size);
     void *data;
-    size_t size;
-    if (!file_read(path, UNIT_MAX_SIZE, &data, &size)) return fail(l, at, err_get());
-    char *text = arena_copy(&l->unit->memory, data, size + 1);
+    if (!file_read(path, UNIT_MAX_SIZE, &data, size)) return false;
+    *text = arena_copy(memory, data, *size + 1);
     mem_free(data);
+    return true;
+}
+
+static bool read_text(loader *l, place at, const char *path, unit_file *out) {
+    char *text;
+    size_t size;
+    if (!read_file(l, path, &text, &size)) return fail(l, at, err_get());
     if (memchr(text, '\0', size)) {
         err_set("%s: holds a zero byte, so it is not a text", out->where.label);
         return fail(l, at, err_get());

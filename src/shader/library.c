@@ -31,6 +31,7 @@ shader_library *shader_library_create(const shader_library_desc *desc) {
     shader_library *library = mem_alloc(sizeof *library);
     for (int i = 0; i < ROOT_COUNT; i++)
         library->roots[i] = roots[i] ? arena_string(&library->memory, roots[i]) : NULL;
+    if (desc->remembers) library->memo = memo_create();
     if (desc->cache_dir) {
         if (file_make_folders(desc->cache_dir) && is_private(desc->cache_dir))
             library->cache_dir = arena_string(&library->memory, desc->cache_dir);
@@ -42,9 +43,14 @@ shader_library *shader_library_create(const shader_library_desc *desc) {
 
 void shader_library_destroy(shader_library *library) {
     if (!library) return;
+    memo_destroy(library->memo);
     arena memory = library->memory;
     mem_free(library);
     arena_free(&memory);
+}
+
+void shader_library_forget(shader_library *library) {
+    if (library->memo) memo_forget(library->memo);
 }
 
 uint64_t shader_library_compiles(const shader_library *library) {
@@ -73,10 +79,23 @@ static bool normalise(char out[PATH_CAP], const char *name) {
     return true;
 }
 
+static int find(const char *top, const char *normal, library_root root, arena *memory,
+                library_file *out) {
+    char path[PATH_CAP], label[PATH_CAP];
+    if (!path_confine(path, top, normal)) return -1;
+    if (!file_exists(path) || file_is_folder(path)) return 0;
+    if (!path_join(label, top, normal)) return -1;
+    *out = (library_file){.root = root,
+                          .name = arena_string(memory, normal),
+                          .path = arena_string(memory, path),
+                          .label = arena_string(memory, label)};
+    return 1;
+}
+
 int library_find(const shader_library *library, library_root root, const char *folder,
                  const char *name, arena *memory, library_file *out) {
     const char *top = library->roots[root];
-    char joined[PATH_CAP], normal[PATH_CAP], path[PATH_CAP], label[PATH_CAP];
+    char joined[PATH_CAP], normal[PATH_CAP];
     if (!top) return 0;
     if (name[0] == '/') {
         err_set("\"%s\" must be relative to the file that includes it or to a folder of shaders",
@@ -89,12 +108,9 @@ int library_find(const shader_library *library, library_root root, const char *f
         return -1;
     }
     if (!normal[0]) return 0;
-    if (!path_confine(path, top, normal)) return -1;
-    if (!file_exists(path) || file_is_folder(path)) return 0;
-    if (!path_join(label, top, normal)) return -1;
-    *out = (library_file){.root = root,
-                          .name = arena_string(memory, normal),
-                          .path = arena_string(memory, path),
-                          .label = arena_string(memory, label)};
-    return 1;
+    int found;
+    if (library->memo && memo_find(library->memo, root, normal, memory, &found, out)) return found;
+    found = find(top, normal, root, memory, out);
+    if (library->memo && found >= 0) memo_keep(library->memo, root, normal, found, out);
+    return found;
 }

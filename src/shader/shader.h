@@ -110,10 +110,12 @@ typedef struct shader_library_desc {
     const char *shader_root; // folder of the program's shaders; NULL: none
     const char *effect_root; // folder of the effect: user shaders and their includes; NULL: none
     const char *cache_dir;   // compiled SPIR-V by content hash; NULL: none
+    bool remembers;          // files are read once, until shader_library_forget
 } shader_library_desc;
 
 shader_library *shader_library_create(const shader_library_desc *desc);
 void shader_library_destroy(shader_library *library);
+void shader_library_forget(shader_library *library); // files may have changed
 // Forks the process that compilers run in, which then readies itself: the first compile costs
 // 100 ms without. Best called first of all, while the calling process is small. See isolate.c.
 void shader_warm_up(void);

@@ -9,8 +9,11 @@
 
 typedef enum library_root { ROOT_EFFECT, ROOT_PROGRAM, ROOT_COUNT, ROOT_NONE } library_root;
 
+typedef struct library_memo library_memo;
+
 struct shader_library {
     arena memory;
+    library_memo *memo;            // NULL: nothing is remembered
     const char *roots[ROOT_COUNT]; // NULL: none
     const char *cache_dir;         // NULL: none
     atomic_uint_fast64_t compiles;
@@ -27,6 +30,18 @@ typedef struct library_file { // where a name led
 // position. `folder` is put before the name ("" for none).
 int library_find(const shader_library *library, library_root root, const char *folder,
                  const char *name, arena *memory, library_file *out);
+
+// What was found (or not: `found` 0) and read since the last memo_forget. Results are copied to
+// `memory`. Any thread. memo_find is false for what is not known; memo_read reads it then, and is
+// false with a message when that fails.
+library_memo *memo_create(void);
+void memo_destroy(library_memo *m); // NULL is fine
+void memo_forget(library_memo *m);
+bool memo_find(library_memo *m, library_root root, const char *name, arena *memory, int *found,
+               library_file *out);
+void memo_keep(library_memo *m, library_root root, const char *name, int found,
+               const library_file *file);
+bool memo_read(library_memo *m, const char *path, arena *memory, char **text, size_t *size);
 
 // ---- scanning ---------------------------------------------------------------------------------
 
