@@ -9,35 +9,22 @@ uniform int sweeps;                //= 3 [0, 32] : of light through `glow`, each
 uniform float ambient;             //= 1 [0, 10] : factor of the light from the sky
 uniform vec3 box_min;
 uniform vec3 box_max;
-uniform int hastened; // sweeps that were hastened before this one; below 0: it is not
+uniform int hastened;    // sweeps that were hastened before this one
+uniform bool last_sweep; // none of the finer level follows
 writeonly uniform image2D lights;  //= output rgba32f : a row for each light: what it is and how its shadow lies in space
 writeonly uniform image3D shadow;  //= output rg16f : N x N x N texels for each light: density times metres that its rays have passed, and the part that no mesh hides
 writeonly uniform image3D glow;    //= output rgba16f : mean and first moment of the radiance from all sides, but straight from the lights; a third for each colour
 
-// What one stage writes (kept) and later ones read (made), besides the outputs.
+
 uniform sampler2D lights_made;
 uniform sampler3D shadow_made;
 uniform sampler3D medium_made;
 uniform sampler3D scattering_made;
-uniform sampler3D first_made;
-uniform sampler3D source_made;
-uniform sampler3D ways_made;
 uniform sampler3D around_made;
 uniform sampler3D fire_made;
-// The same of the finer and of the coarser level.
-uniform sampler3D medium_fine;
-uniform sampler3D scattering_fine;
-uniform sampler3D source_fine;
-uniform sampler3D last_fine;
-uniform sampler3D first_coarse;
-uniform sampler3D source_coarse;
 layout(rgba32f) writeonly uniform image3D medium_kept;     // emission (W/m^3/sr) and density
 layout(rgba32f) writeonly uniform image3D scattering_kept; // coefficient of density 1
-layout(rgba32f) writeonly uniform image3D first_kept;      // moments of what comes straight from the lights
-layout(rgba32f) uniform image3D source_kept;               // moments of all light that is scattered
-layout(rgba32f) uniform image3D last_kept;                 // the same, a sweep earlier
-layout(rgba32f) writeonly uniform image3D ways_kept;       // radiance in each of the directions
-layout(rgba32f) writeonly uniform image3D around_kept;     // the same, where it enters the box
+layout(rgba32f) writeonly uniform image3D around_kept;     // light that enters the box, in each of the directions
 layout(rgba32f) writeonly uniform image3D fire_kept;       // light that leaves the volume (W/m^3/sr); which way
 
 #include "lib/medium.glsl"
@@ -53,8 +40,9 @@ const float PI = 3.14159265;
 #include "lighting/fire.glsl"
 #include "lighting/shadow.glsl"
 #include "lighting/medium.glsl"
-#include "lighting/first.glsl"
-#include "lighting/level.glsl"
 #include "lighting/ways.glsl"
 #include "lighting/around.glsl"
+#include "lighting/state.glsl"
+#include "lighting/first.glsl"
 #include "lighting/sweep.glsl"
+#include "lighting/level.glsl"

@@ -14,9 +14,10 @@ enum {
     ROW_TEXELS = 11,       // of a light in `lights`: SHADOW_MAP_TEXELS of lib/shadow_map.glsl
     GREATEST_DEPTH = 2048, // of a 3D image, on any device
     SHADOW_PARTS = 8,      // of a ray, in lighting/shadow.glsl
-    WAYS_X = 8,            // directions side by side in the grid WAYS, in lighting/sweep.glsl
-    WAYS_Y = 6,
-    LEVELS = 2,           // of the grids
+    WAYS = 48,             // directions that light is swept in, in lighting/ways.glsl
+    AXES = 3,
+    COLORS = 3,
+    LEVELS = 2,           // of the buffers, in lighting/level.glsl
     LOOKS = 64,           // into each direction, in lighting/around.glsl
     GATHER_THREADS = 512, // for a light, in lighting/fire.glsl
 };
@@ -27,46 +28,64 @@ typedef enum lighting_stage {
     STAGE_GATHER,
     STAGE_SHADOW,
     STAGE_MEDIUM,
-    STAGE_FIRST,
     STAGE_AROUND,
+    STAGE_FIRST,
+    STAGE_SWEEP,
     STAGE_RESTRICT,
     STAGE_PROLONG,
-    STAGE_REDUCE,
-    STAGE_SWEEP, // of each level, as many threads as are at work there
-    STAGES = STAGE_SWEEP + LEVELS
+    STAGE_COARSE_SWEEP,
+    STAGE_COARSE_REDUCE,
+    STAGES
 } lighting_stage;
 
-static const char *const stage_defines[STAGES] = {"STAGE_LIGHTS", "STAGE_FIRE",     "STAGE_GATHER",
-                                                  "STAGE_SHADOW", "STAGE_MEDIUM",   "STAGE_FIRST",
-                                                  "STAGE_AROUND", "STAGE_RESTRICT", "STAGE_PROLONG",
-                                                  "STAGE_REDUCE", "STAGE_SWEEP",    "STAGE_SWEEP"};
+static const struct {
+    const char *define;
+    uint32_t level;
+} stages[STAGES] = {
+    [STAGE_LIGHTS] = {"STAGE_LIGHTS", 0},      [STAGE_FIRE] = {"STAGE_FIRE", 0},
+    [STAGE_GATHER] = {"STAGE_GATHER", 0},      [STAGE_SHADOW] = {"STAGE_SHADOW", 0},
+    [STAGE_MEDIUM] = {"STAGE_MEDIUM", 0},      [STAGE_AROUND] = {"STAGE_AROUND", 0},
+    [STAGE_FIRST] = {"STAGE_FIRST", 0},        [STAGE_SWEEP] = {"STAGE_SWEEP", 0},
+    [STAGE_RESTRICT] = {"STAGE_RESTRICT", 0},  [STAGE_PROLONG] = {"STAGE_PROLONG", 0},
+    [STAGE_COARSE_SWEEP] = {"STAGE_SWEEP", 1}, [STAGE_COARSE_REDUCE] = {"STAGE_REDUCE", 1},
+};
 
 // What one stage leaves for others, besides the outputs: the shader writes NAME_kept and reads
 // NAME_made.
-typedef enum lighting_grid {
-    MEDIUM,
-    SCATTERING,
-    FIRST,
-    SOURCE,
-    LAST,
-    WAYS,
-    AROUND,
-    FIRE,
-    GRIDS
-} lighting_grid;
+typedef enum lighting_grid { MEDIUM, SCATTERING, AROUND, FIRE, GRIDS } lighting_grid;
 
 static const struct {
-    const char *name, *kept, *made, *fine, *coarse; // and as the shader names it
-    bool levels;                                    // it has a coarser one, half as large
+    const char *name, *kept, *made; // and as the shader names it
 } grids[GRIDS] = {
-    {"medium", "medium_kept", "medium_made", "medium_fine", NULL, true},
-    {"scattering", "scattering_kept", "scattering_made", "scattering_fine", NULL, true},
-    {"first", "first_kept", "first_made", NULL, "first_coarse", true},
-    {"source", "source_kept", "source_made", "source_fine", "source_coarse", true},
-    {"last", "last_kept", "last_made", "last_fine", NULL, true},
-    {"ways", "ways_kept", "ways_made", NULL, NULL, false},
-    {"around", "around_kept", "around_made", NULL, NULL, false},
-    {"fire", "fire_kept", "fire_made", NULL, NULL, false},
+    {"medium", "medium_kept", "medium_made"},
+    {"scattering", "scattering_kept", "scattering_made"},
+    {"around", "around_kept", "around_made"},
+    {"fire", "fire_kept", "fire_made"},
+};
+
+// What the stages of the glow keep for each voxel of a level (lighting/state.glsl).
+typedef enum lighting_buffer {
+    SLICES_OF_MEDIUM,
+    SLICES_OF_SOURCE,
+    LIGHT_OF_WAYS,
+    FIRST,
+    SCATTERED,
+    LAST,
+    PART,
+    BUFFERS
+} lighting_buffer;
+
+static const struct {
+    const char *name, *coarse; // as the shader names it, and that of the coarser level
+    uint32_t bytes;            // a voxel
+} buffers[BUFFERS] = {
+    {"Medium", "CoarseMedium", AXES *COLORS * 4},
+    {"Source", "CoarseSource", AXES *COLORS * 8},
+    {"Ways", NULL, WAYS *COLORS * 2},
+    {"First", "CoarseFirst", COLORS * 16},
+    {"Scattered", "CoarseScattered", COLORS * 16},
+    {"Last", NULL, COLORS * 16},
+    {"Part", "CoarsePart", COLORS * 4},
 };
 
 typedef struct lighting_state {
@@ -76,6 +95,7 @@ typedef struct lighting_state {
     gpu_pipeline *pipeline[STAGES];
     unsigned char *block[STAGES];
     graph_image grids[GRIDS];
+    gpu_buffer *buffers[LEVELS][BUFFERS];
 } lighting_state;
 
 // ---- declaring --------------------------------------------------------------------------------
@@ -110,11 +130,7 @@ static bool add_grids(pass *p) {
     const uint32_t sizes[GRIDS][3] = {
         [MEDIUM] = {n, n, n},
         [SCATTERING] = {n, n, n},
-        [FIRST] = {n, n, 3 * n},
-        [SOURCE] = {n, n, 3 * n},
-        [LAST] = {n, n, 3 * n},
-        [WAYS] = {WAYS_X * n, WAYS_Y * n, n},
-        [AROUND] = {WAYS_X * WAYS_Y, 1, 1},
+        [AROUND] = {WAYS, 1, 1},
         [FIRE] = {n, n, 2 * n},
     };
     for (int i = 0; i < GRIDS; i++) {
@@ -126,7 +142,6 @@ static bool add_grids(pass *p) {
                 .width = sizes[i][0],
                 .height = sizes[i][1],
                 .depth = sizes[i][2],
-                .mips = grids[i].levels ? LEVELS : 1,
             });
         if (!s->grids[i].id) return false;
     }
@@ -156,8 +171,7 @@ static bool add_parts(pass *p) {
     graph_image lights = image_of(p, "lights"), shadow = image_of(p, "shadow");
     const graph_image none = {0}, lights_writes[] = {lights, own[FIRE]};
     const graph_image glow_reads[] = {lights, shadow, own[MEDIUM], own[SCATTERING]};
-    const graph_image glow_writes[] = {image_of(p, "glow"), own[FIRST], own[SOURCE],
-                                       own[LAST],           own[WAYS],  own[AROUND]};
+    const graph_image glow_writes[] = {image_of(p, "glow"), own[AROUND]};
     const pass_part parts[] = {
         {.name = "lights",
          .reads = s->fire_count ? &own[MEDIUM] : &none,
@@ -207,13 +221,12 @@ bool lighting_declare(pass *p) {
 static bool compile(pass *p, lighting_stage stage, shader_binary *out) {
     const lighting_state *s = p->state;
     arena *memory = p->host->memory;
-    int level = stage > STAGE_SWEEP ? stage - STAGE_SWEEP : 0;
     const shader_define defines[] = {
-        {stage_defines[stage], "1"},
+        {stages[stage].define, "1"},
         {"SHADOW_SIZE", arena_format(memory, "%u", s->shadow_size)},
         {"GLOW_SIZE", arena_format(memory, "%u", s->glow_size)},
         {"FIRE_COUNT", arena_format(memory, "%u", s->fire_count)},
-        {"SWEEP_SIZE", arena_format(memory, "%u", s->glow_size >> level)},
+        {"LEVEL_SIZE", arena_format(memory, "%u", s->glow_size >> stages[stage].level)},
         {"WITHOUT_FIELDS", "1"}, // last: not of these two
     };
     bool fields = stage == STAGE_MEDIUM || stage == STAGE_SHADOW;
@@ -249,6 +262,8 @@ void lighting_destroy(pass *p) {
     lighting_state *s = p->state;
     for (int i = 0; s && i < STAGES; i++)
         if (s->pipeline[i]) gpu_pipeline_destroy(p->host->device, s->pipeline[i]);
+    for (int i = 0; s && i < LEVELS * BUFFERS; i++)
+        gpu_buffer_destroy(p->host->device, s->buffers[i / BUFFERS][i % BUFFERS]);
 }
 
 // ---- in a frame -------------------------------------------------------------------------------
@@ -265,38 +280,37 @@ bool lighting_fill(pass *p, const shader_binary *binary, unsigned char *block) {
     return true;
 }
 
-static pass_override slot(const pass *p, const char *name, graph_image image, uint32_t level) {
+static pass_override slot(const pass *p, const char *name, graph_image image) {
     return (pass_override){name,
                            {.image = graph_get_image(p->host->graph, image),
-                            .mip = level,
                             .one_mip = true,
                             .sampler = GPU_LINEAR_CLAMP}};
 }
 
-// A grid under all of its names, as seen from a level.
-static void add_slots(const pass *p, lighting_grid grid, uint32_t level, pass_override *out,
-                      size_t *count) {
+enum { MOST_OVERRIDES = 2 + 2 * GRIDS + 2 * BUFFERS };
+
+// What the shader may name, as seen from a level.
+static size_t list_slots(const pass *p, uint32_t level, pass_override out[MOST_OVERRIDES]) {
     const lighting_state *s = p->state;
-    graph_image image = s->grids[grid];
-    if (!grids[grid].levels) level = 0;
-    out[(*count)++] = slot(p, grids[grid].kept, image, level);
-    out[(*count)++] = slot(p, grids[grid].made, image, level);
-    if (grids[grid].fine && level > 0)
-        out[(*count)++] = slot(p, grids[grid].fine, image, level - 1);
-    if (grids[grid].coarse && level + 1 < LEVELS)
-        out[(*count)++] = slot(p, grids[grid].coarse, image, level + 1);
+    size_t count = 0;
+    out[count++] = slot(p, "lights_made", image_of(p, "lights"));
+    out[count++] = slot(p, "shadow_made", image_of(p, "shadow"));
+    for (int i = 0; i < GRIDS; i++) {
+        out[count++] = slot(p, grids[i].kept, s->grids[i]);
+        out[count++] = slot(p, grids[i].made, s->grids[i]);
+    }
+    for (int i = 0; i < BUFFERS; i++) {
+        out[count++] = (pass_override){buffers[i].name, {.buffer = s->buffers[level][i]}};
+        if (level + 1 < LEVELS && buffers[i].coarse)
+            out[count++] = (pass_override){buffers[i].coarse, {.buffer = s->buffers[level + 1][i]}};
+    }
+    return count;
 }
 
-static bool dispatch(pass *p, lighting_stage stage, uint32_t level, uint32_t x, uint32_t y,
-                     uint32_t z) {
+static bool dispatch(pass *p, lighting_stage stage, uint32_t x, uint32_t y, uint32_t z) {
     const lighting_state *s = p->state;
-    pass_override overrides[2 + 4 * GRIDS] = {
-        slot(p, "lights_made", image_of(p, "lights"), 0),
-        slot(p, "shadow_made", image_of(p, "shadow"), 0),
-    };
-    size_t override_count = 2, count;
-    for (int i = 0; i < GRIDS; i++)
-        add_slots(p, (lighting_grid)i, level, overrides, &override_count);
+    pass_override overrides[MOST_OVERRIDES];
+    size_t override_count = list_slots(p, stages[stage].level, overrides), count;
     gpu_binding bindings[GPU_MAX_SLOTS];
     return pass_bind(p, &s->binary[stage], s->block[stage], overrides, override_count, bindings,
                      &count) &&
@@ -304,9 +318,21 @@ static bool dispatch(pass *p, lighting_stage stage, uint32_t level, uint32_t x, 
                         &(gpu_dispatch_desc){s->pipeline[stage], bindings, count, {x, y, z}});
 }
 
-static bool dispatch_voxels(pass *p, lighting_stage stage, uint32_t level) {
-    uint32_t n = ((const lighting_state *)p->state)->glow_size >> level;
-    return dispatch(p, stage, level, n, n, n);
+static bool dispatch_voxels(pass *p, lighting_stage stage) {
+    uint32_t n = ((const lighting_state *)p->state)->glow_size;
+    return dispatch(p, stage, n, n, n);
+}
+
+// A thread for each colour.
+static bool dispatch_colors(pass *p, lighting_stage stage) {
+    uint32_t n = ((const lighting_state *)p->state)->glow_size >> stages[stage].level;
+    return dispatch(p, stage, n, n, COLORS * n);
+}
+
+// A thread for two voxels of a slice.
+static bool dispatch_sweep(pass *p, lighting_stage stage) {
+    uint32_t n = ((const lighting_state *)p->state)->glow_size >> stages[stage].level;
+    return dispatch(p, stage, WAYS * COLORS * n * n / 2, 1, 1);
 }
 
 // In the first of the parts of a frame: all others read what it writes.
@@ -321,36 +347,20 @@ static bool prepare(pass *p) {
 
 static bool record_lights(pass *p) {
     const lighting_state *s = p->state;
-    if (!s->fire_count) return prepare(p) && dispatch(p, STAGE_LIGHTS, 0, s->declared, 1, 1);
-    return dispatch(p, STAGE_LIGHTS, 0, s->declared, 1, 1) && dispatch_voxels(p, STAGE_FIRE, 0) &&
-           dispatch(p, STAGE_GATHER, 0, s->fire_count * GATHER_THREADS, 1, 1);
+    if (!s->fire_count) return prepare(p) && dispatch(p, STAGE_LIGHTS, s->declared, 1, 1);
+    return dispatch(p, STAGE_LIGHTS, s->declared, 1, 1) && dispatch_voxels(p, STAGE_FIRE) &&
+           dispatch(p, STAGE_GATHER, s->fire_count * GATHER_THREADS, 1, 1);
 }
 
 static bool record_medium(pass *p) {
     const lighting_state *s = p->state;
-    return (!s->fire_count || prepare(p)) && dispatch_voxels(p, STAGE_MEDIUM, 0);
+    return (!s->fire_count || prepare(p)) && dispatch_voxels(p, STAGE_MEDIUM);
 }
 
 static bool record_shadow(pass *p) {
     const lighting_state *s = p->state;
     uint32_t n = s->shadow_size;
-    return dispatch(p, STAGE_SHADOW, 0, n, n, SHADOW_PARTS * s->declared);
-}
-
-// On the coarser level sweeps are hastened (see lighting/sweep.glsl).
-static bool sweep(pass *p, uint32_t level, uint32_t times) {
-    lighting_state *s = p->state;
-    uint32_t n = s->glow_size >> level;
-    lighting_stage stage = (lighting_stage)(STAGE_SWEEP + level);
-    for (uint32_t i = 0; i < times; i++) {
-        int32_t hastened = level > 0 ? (int32_t)i : -1;
-        pass_write_member(&s->binary[STAGE_REDUCE], s->block[STAGE_REDUCE], "hastened", &hastened,
-                          sizeof hastened);
-        if (!dispatch(p, stage, level, WAYS_X * WAYS_Y * n * n, 1, 1) ||
-            !dispatch_voxels(p, STAGE_REDUCE, level))
-            return false;
-    }
-    return true;
+    return dispatch(p, STAGE_SHADOW, n, n, SHADOW_PARTS * s->declared);
 }
 
 // As many as Chebyshev's combination takes to leave a thirtieth of what is wrong, if at most the
@@ -359,22 +369,52 @@ static uint32_t coarse_sweeps(const pass *p) {
     const lighting_state *s = p->state;
     float albedo[3] = {0}, most = 0;
     shader_member member;
-    if (pass_find_member(&s->binary[STAGE_REDUCE], "albedo", &member))
-        memcpy(albedo, s->block[STAGE_REDUCE] + member.offset, sizeof albedo);
+    if (pass_find_member(&s->binary[STAGE_COARSE_REDUCE], "albedo", &member))
+        memcpy(albedo, s->block[STAGE_COARSE_REDUCE] + member.offset, sizeof albedo);
     for (int i = 0; i < 3; i++) most = fmaxf(most, fminf(albedo[i], 0.98f));
     return (uint32_t)fmaxf(1.7f / sqrtf(1 - most) + 0.5f, 3);
+}
+
+static bool make_buffers(pass *p) {
+    lighting_state *s = p->state;
+    for (uint32_t level = 0; level < LEVELS; level++) {
+        uint64_t n = s->glow_size >> level;
+        for (int i = 0; i < BUFFERS; i++) {
+            if (s->buffers[level][i]) continue;
+            gpu_buffer_desc desc = {.label = buffers[i].name, .size = n * n * n * buffers[i].bytes};
+            s->buffers[level][i] = gpu_buffer_create(p->host->device, &desc);
+            if (!s->buffers[level][i]) return false;
+        }
+    }
+    return true;
+}
+
+static void tell(pass *p, lighting_stage stage, const char *uniform, int32_t value) {
+    lighting_state *s = p->state;
+    pass_write_member(&s->binary[stage], s->block[stage], uniform, &value, sizeof value);
+}
+
+// On the coarser level sweeps are hastened (lighting/level.glsl).
+static bool correct(pass *p) {
+    uint32_t sweeps = coarse_sweeps(p);
+    for (uint32_t i = 0; i < sweeps; i++) {
+        tell(p, STAGE_COARSE_REDUCE, "hastened", (int32_t)i);
+        if (!dispatch_sweep(p, STAGE_COARSE_SWEEP) || !dispatch_colors(p, STAGE_COARSE_REDUCE))
+            return false;
+    }
+    return dispatch_colors(p, STAGE_PROLONG);
 }
 
 // After each sweep the coarser level finds what is left to do (lighting/level.glsl).
 static bool record_glow(pass *p) {
     uint32_t sweeps = (uint32_t)pass_evaluate(p, "sweeps");
-    if (!dispatch_voxels(p, STAGE_FIRST, 0) ||
-        !dispatch(p, STAGE_AROUND, 0, WAYS_X * WAYS_Y * LOOKS, 1, 1))
+    if (!make_buffers(p) || !dispatch_voxels(p, STAGE_FIRST) ||
+        !dispatch(p, STAGE_AROUND, WAYS * LOOKS, 1, 1))
         return false;
-    if (!sweeps) return sweep(p, 0, 1);
-    for (uint32_t i = 0; i < sweeps; i++)
-        if (!sweep(p, 0, 1) || !dispatch_voxels(p, STAGE_RESTRICT, 1) ||
-            !sweep(p, 1, coarse_sweeps(p)) || !dispatch_voxels(p, STAGE_PROLONG, 0))
-            return false;
+    for (uint32_t i = 0; i < sweeps || i == 0; i++) {
+        if (!dispatch_sweep(p, STAGE_SWEEP) || !dispatch_colors(p, STAGE_RESTRICT)) return false;
+        tell(p, STAGE_PROLONG, "last_sweep", i + 1 >= sweeps);
+        if (sweeps && !correct(p)) return false;
+    }
     return true;
 }

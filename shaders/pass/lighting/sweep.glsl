@@ -3,154 +3,143 @@
 // problems", 1988; on grids for pictures: Fattal, "Participating media illumination using light
 // propagation maps", 2009.
 //
-// SWEEP: one workgroup a direction takes slice after slice across it, each from the one before.
-// REDUCE: from all directions the mean and first moment, which the next sweep scatters.
+// SWEEP: one workgroup for a direction and a colour takes slice after slice across it, each from the
+// one before; a thread has two cells beside each other. RESTRICT and REDUCE (lighting/level.glsl)
+// find the mean of all directions and the first moment, which the next sweep scatters.
 
-#if defined(STAGE_SWEEP) || defined(STAGE_REDUCE)
-int voxels_across() { // on the level at hand
-    return textureSize(medium_made, 0).x;
+#if defined(STAGE_SWEEP) || defined(STAGE_RESTRICT) || defined(STAGE_REDUCE)
+// The axis that slices of a direction follow each other on.
+int axis_of(vec3 way) {
+    vec3 a = abs(way) / max(box_max - box_min, vec3(1e-6));
+    return a.x >= max(a.y, a.z) ? 0 : a.y >= a.z ? 1 : 2;
 }
+#endif
 
-// Where the radiance of a voxel in a direction is kept.
-ivec3 place_of(ivec3 voxel, int index) {
-    return voxel + ivec3(index & 7, index >> 3, 0) * voxels_across();
+#if defined(STAGE_RESTRICT) || defined(STAGE_REDUCE)
+layout(std430) readonly buffer Ways { uint ways[]; };
+
+// Of the light from all directions, as the last sweep found it.
+vec4 moments_of(ivec3 voxel, int color) {
+    vec4 moments = vec4(0.0);
+    for (int turn = 0; turn < TURNS; turn++) {
+        int place = place_along(axis_of(turn_of(turn)), voxel);
+        vec4 sums = vec4(0.0);
+        for (int i = 0; i < SIGNS; i++) {
+            int way = turn * SIGNS + i;
+            vec2 two = unpackHalf2x16(ways[((way * 3 + color) * VOXELS + place) / 2]);
+            float light = (place & 1) == 0 ? two.x : two.y;
+            sums += vec4(light, mix(vec3(light), vec3(-light), signs_of(i)));
+        }
+        moments += sums * vec4(1.0, turn_of(turn));
+    }
+    return moments / float(WAYS);
 }
+#endif
 
 #if defined(STAGE_SWEEP)
-layout(local_size_x = SWEEP_SIZE * SWEEP_SIZE) in;
-const bool CORRECTS = SWEEP_SIZE < GLOW_SIZE; // what it sweeps is a difference (lighting/level.glsl)
+const int ACROSS = LEVEL_SIZE / 2, THREADS = ACROSS * LEVEL_SIZE; // pairs of cells
+const bool CORRECTS = LEVEL_SIZE < GLOW_SIZE; // what it sweeps is a difference (lighting/level.glsl)
+layout(local_size_x = THREADS) in;
+layout(std430) readonly buffer Source { uvec4 source_slices[]; };
+layout(std430) readonly buffer Medium { uvec2 medium_slices[]; };
+layout(std430) writeonly buffer Ways { uint ways[]; };
 
-struct cell {
-    vec3 light;     // where it leaves the voxel
-    vec3 scattered; // per part of the light that the medium takes: the source function
-    float taken;    // part of the light that half a voxel takes
-};
-
-shared cell slice[SWEEP_SIZE * SWEEP_SIZE]; // the one before
+// What leaves the cells of the slice before, and of the one at hand; around it a border of nothing.
+const int ROW = ACROSS + 2;
+shared vec2 leaving[2][(LEVEL_SIZE + 2) * ROW];
+shared vec2 scattered[2][(LEVEL_SIZE + 2) * ROW]; // the source function: per part of the light that is taken
+shared vec2 taken[2][(LEVEL_SIZE + 2) * ROW];     // part of the light that half a voxel takes
 
 struct path { // of a direction through the grid
     vec3 way;
-    ivec3 axes;   // the one slices follow each other on, and the other two
-    vec2 back;    // cells sideways to where the way comes from, one slice before
-    float metres; // from slice to slice
-    vec3 outside; // light that enters the box
+    int axis;        // the one slices follow each other on
+    bvec2 side;      // whether the way comes from lower cells, on the other two
+    vec2 weight;     // of the cell there, one slice before
+    float half_step; // from slice to slice: half of it, in widths of a voxel
+    float outside;   // light that enters the box
 };
 
-path make_path(int index) {
+path make_path(int index, int color) {
     vec3 way = way_of(index);
-    vec3 cells = way * float(voxels_across()) / max(box_max - box_min, vec3(1e-6)), a = abs(cells);
-    int main_axis = a.x >= max(a.y, a.z) ? 0 : a.y >= a.z ? 1 : 2;
-    ivec3 axes = ivec3(main_axis, (main_axis + 1) % 3, (main_axis + 2) % 3);
-    return path(way, axes, -vec2(cells[axes.y], cells[axes.z]) / a[main_axis], 1.0 / a[main_axis],
-                CORRECTS ? vec3(0.0) : texelFetch(around_made, ivec3(index, 0, 0), 0).rgb);
+    vec3 cells = way / max(voxel_size(), vec3(1e-6));
+    int axis = axis_of(way);
+    cells = axis == 0 ? cells.yzx : axis == 1 ? cells.zxy : cells;
+    float outside = CORRECTS ? 0.0 : texelFetch(around_made, ivec3(index, 0, 0), 0)[color];
+    return path(way, axis, greaterThan(cells.xy, vec2(0.0)), min(abs(cells.xy / cells.z), vec2(1.0)),
+                0.5 / (abs(cells.z) * voxel_width()), outside);
 }
 
-// Light scattered into the way at a voxel, if the medium took light there.
-vec3 source_at(ivec3 voxel, vec3 way) {
-    float g = medium_anisotropy();
-    vec3 sum;
-    for (int c = 0; c < 3; c++) {
-        vec4 moments = texelFetch(source_made, voxel + ivec3(0, 0, c * voxels_across()), 0);
-        sum[c] = moments.x + 3.0 * g * dot(moments.yzw, way);
-    }
-    vec3 part = texelFetch(scattering_made, voxel, 0).rgb / max(medium_extinction(), vec3(1e-9));
-    return part * (CORRECTS ? sum : max(sum, vec3(0.0)));
+// Mean of exp(-t) from 0 to t, where that is `through` at t.
+vec2 mean_through(vec2 t, vec2 through) {
+    return mix((1.0 - through) / max(t, vec2(1e-6)), 1.0 - 0.5 * t, lessThan(t, vec2(1e-2)));
 }
 
-// What comes from the slice before, between four cells of it; cells outside are empty.
-cell before(path on, ivec2 at, vec3 own_source, bool first) {
-    vec2 to = vec2(at) + on.back, low = floor(to);
-    cell sum = cell(vec3(0.0), vec3(0.0), 0.0);
-    for (int i = 0; i < 4; i++) {
-        ivec2 c = ivec2(low) + ivec2(i & 1, i >> 1);
-        vec2 near = 1.0 - abs(to - vec2(c));
-        float weight = near.x * near.y;
-        if (first || any(lessThan(c, ivec2(0))) || any(greaterThanEqual(c, ivec2(SWEEP_SIZE)))) {
-            sum.light += weight * on.outside;
-            sum.scattered += weight * own_source;
-        } else {
-            cell from = slice[c.y * SWEEP_SIZE + c.x];
-            sum.light += weight * from.light;
-            sum.scattered += weight * from.scattered;
-            sum.taken += weight * from.taken;
-        }
-    }
-    return sum;
-}
-
-// Mean of exp(-t) from 0 to t.
-vec3 mean_through(vec3 t) {
-    return mix((1.0 - exp(-t)) / max(t, vec3(1e-6)), 1.0 - 0.5 * t, lessThan(t, vec3(1e-2)));
-}
-
-// From centre to centre the source changes linearly with what is taken, which keeps the limit of
-// thick voxels, diffusion; emission is constant in each of the halves.
-cell advance(path on, ivec3 voxel, int index, ivec2 at, bool first) {
-    vec4 medium = texelFetch(medium_made, voxel, 0);
-    vec3 own = source_at(voxel, on.way), factor = medium_extinction();
-    cell from = before(on, at, own, first);
-    float grey = max(factor.r, max(factor.g, factor.b));
-    vec3 half_depth = 0.5 * on.metres * medium.a * factor, through = exp(-half_depth);
-    vec3 given = 0.5 * on.metres * medium.rgb * mean_through(half_depth);
-    // Of the half before only the colour that loses most is known; the others are powers of it.
-    vec3 depth = half_depth - log(max(1.0 - from.taken, 1e-6)) * factor / max(grey, 1e-9);
-    vec3 early = mix(mean_through(depth) - exp(-depth), 0.5 * depth, lessThan(depth, vec3(1e-2)));
-    vec3 late = max(1.0 - exp(-depth) - early, vec3(0.0));
-    vec3 light = from.light * through + given + from.scattered * early + own * late;
-    imageStore(ways_kept, place_of(voxel, index), vec4(light, 0.0));
-    return cell(light * through + given, own, 1.0 - exp(-0.5 * on.metres * medium.a * grey));
-}
+// Of a row of the slice before: between each of the cells and the one to its side.
+#define FROM_ROW(of, at)                                                                               \
+    mix(of[before][at],                                                                                \
+        on.side.x ? vec2(of[before][(at) - 1].y, of[before][at].x)                                     \
+                  : vec2(of[before][at].y, of[before][(at) + 1].x),                                    \
+        on.weight.x)
+#define FROM(of) mix(FROM_ROW(of, here), FROM_ROW(of, beside), on.weight.y)
 
 void main() {
-    int index = int(gl_WorkGroupID.x), thread = int(gl_LocalInvocationIndex);
-    path on = make_path(index);
-    ivec2 at = ivec2(thread % SWEEP_SIZE, thread / SWEEP_SIZE);
-    ivec3 voxel;
-    voxel[on.axes.y] = at.x;
-    voxel[on.axes.z] = at.y;
-    for (int k = 0; k < SWEEP_SIZE; k++) {
-        voxel[on.axes.x] = on.way[on.axes.x] > 0.0 ? k : SWEEP_SIZE - 1 - k;
-        cell made = advance(on, voxel, index, at, k == 0);
+    int index = int(gl_WorkGroupID.x) / 3, color = int(gl_WorkGroupID.x) % 3;
+    int thread = int(gl_LocalInvocationIndex);
+    path on = make_path(index, color);
+    bool forward = on.way[on.axis] > 0.0;
+    ivec2 cell = ivec2(thread % ACROSS * 2, thread / ACROSS);
+    int here = (cell.y + 1) * ROW + cell.x / 2 + 1, beside = here + (on.side.y ? -ROW : ROW);
+
+    for (int i = thread; i < ROW * (LEVEL_SIZE + 2); i += THREADS)
+        for (int k = 0; k < 2; k++) leaving[k][i] = scattered[k][i] = taken[k][i] = vec2(0.0);
+
+    // The part of what comes from the slice before that comes from inside of the box.
+    bvec2 in_x = on.side.x ? bvec2(cell.x > 0, true) : bvec2(true, cell.x < LEVEL_SIZE - 2);
+    bool in_y = on.side.y ? cell.y > 0 : cell.y < LEVEL_SIZE - 1;
+    vec2 inside = (1.0 - on.weight.x * vec2(not(in_x))) * (in_y ? 1.0 : 1.0 - on.weight.y);
+
+    vec3 factor = medium_extinction();
+    float grey = max(factor.r, max(factor.g, factor.b)), power = factor[color] / max(grey, 1e-9);
+    vec4 asked = vec4(1.0, on.way); // of the moments
+    int slices = (on.axis * 3 + color) * LEVEL_SIZE, kept = int(gl_WorkGroupID.x) * LEVEL_SIZE;
+    int slice = forward ? 0 : LEVEL_SIZE - 1, before = 0;
+    uvec4 next_source = source_slices[(slices + slice) * THREADS + thread];
+    uvec2 next_medium = medium_slices[(slices + slice) * THREADS + thread];
+    barrier();
+
+    for (int k = 0; k < LEVEL_SIZE; k++) {
+        uvec4 source = next_source;
+        vec2 first = unpackHalf2x16(next_medium.x), second = unpackHalf2x16(next_medium.y);
+        int at = (kept + slice) * THREADS + thread;
+        slice = clamp(slice + (forward ? 1 : -1), 0, LEVEL_SIZE - 1);
+        next_source = source_slices[(slices + slice) * THREADS + thread];
+        next_medium = medium_slices[(slices + slice) * THREADS + thread];
+
+        vec2 own = vec2(dot(asked, vec4(unpackHalf2x16(source.x), unpackHalf2x16(source.y))),
+                        dot(asked, vec4(unpackHalf2x16(source.z), unpackHalf2x16(source.w))));
+        if (!CORRECTS) own = max(own, vec2(0.0));
+        vec2 known = k > 0 ? inside : vec2(0.0);
+        vec2 from_light = FROM(leaving) + (1.0 - known) * on.outside;
+        vec2 from_scattered = FROM(scattered) + (1.0 - known) * own;
+        vec2 from_taken = FROM(taken);
+
+        // From centre to centre the source changes linearly with what is taken, which keeps the limit
+        // of thick voxels, diffusion; emission is constant in each of the halves.
+        vec2 thickness = on.half_step * vec2(first.x, second.x);
+        vec2 half_depth = thickness * factor[color], through = exp(-half_depth);
+        vec2 given = on.half_step * vec2(first.y, second.y) * mean_through(half_depth, through);
+        // Of the half before only the colour that loses most is known; the others are powers of it.
+        vec2 depth = half_depth - log(max(1.0 - from_taken, vec2(1e-6))) * power, left = exp(-depth);
+        vec2 early = mix(mean_through(depth, left) - left, 0.5 * depth, lessThan(depth, vec2(1e-2)));
+        vec2 late = max(1.0 - left - early, vec2(0.0));
+        vec2 made = from_light * through + given + from_scattered * early + own * late;
+        ways[at] = half_pair(made.x, made.y);
+
+        before = 1 - before;
+        leaving[before][here] = made * through + given;
+        scattered[before][here] = own;
+        taken[before][here] = 1.0 - exp(-thickness * grey);
         barrier();
-        slice[thread] = made;
-        barrier();
     }
 }
-#endif
-
-#if defined(STAGE_REDUCE)
-// Light that is scattered on and on converges slowly where little is lost. Chebyshev's combination
-// of successive sweeps (Golub and Varga, "Chebyshev semi-iterative methods", 1961) makes that as
-// fast as is possible for a part of at most `most` that stays in the volume at each scattering.
-vec4 hasten(vec4 swept, vec4 now, vec4 last) {
-    float most = clamp(max(albedo.r, max(albedo.g, albedo.b)), 0.3, 0.98);
-    float spread = most / (2.0 - most), weight = 1.0 / (1.0 - 0.5 * spread * spread);
-    for (int i = 1; i < hastened; i++) weight = 1.0 / (1.0 - 0.25 * spread * spread * weight);
-    vec4 ahead = now + (swept - now) * 2.0 / (2.0 - most);
-    return hastened == 0 ? ahead : mix(last, ahead, weight);
-}
-
-layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-
-void main() {
-    ivec3 voxel = ivec3(gl_GlobalInvocationID);
-    int size = voxels_across();
-    if (any(greaterThanEqual(voxel, ivec3(size)))) return;
-    vec3 mean = vec3(0.0), flux[3] = vec3[](vec3(0.0), vec3(0.0), vec3(0.0));
-    for (int i = 0; i < WAYS; i++) {
-        vec3 light = texelFetch(ways_made, place_of(voxel, i), 0).rgb / float(WAYS), way = way_of(i);
-        mean += light;
-        for (int c = 0; c < 3; c++) flux[c] += light[c] * way;
-    }
-    for (int c = 0; c < 3; c++) {
-        ivec3 at = voxel + ivec3(0, 0, c * size);
-        vec4 moments = vec4(mean[c], flux[c]);
-        if (size == GLOW_SIZE) imageStore(glow, at, clamp(moments, -HALF_MOST, HALF_MOST));
-        vec4 swept = moments + texelFetch(first_made, at, 0), now = imageLoad(source_kept, at);
-        if (hastened >= 0) swept = hasten(swept, now, imageLoad(last_kept, at));
-        imageStore(last_kept, at, now);
-        imageStore(source_kept, at, swept);
-    }
-}
-#endif
 #endif
