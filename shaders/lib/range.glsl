@@ -42,6 +42,14 @@ bool range_is_zero(range1 a) {
     return a.low == 0.0 && a.high == 0.0;
 }
 
+bool range_is_zero(range3 a) {
+    return a.low == vec3(0.0) && a.high == vec3(0.0);
+}
+
+bool range_is_zero(range4 a) {
+    return a.low == vec4(0.0) && a.high == vec4(0.0);
+}
+
 // ---- parts ------------------------------------------------------------------------------------
 
 range1 range_x(range3 a) { return range1(a.low.x, a.high.x); }

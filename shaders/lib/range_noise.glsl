@@ -1,4 +1,4 @@
-// Ranges of noise (lib/noise.glsl). Twins in C: src/field/range_noise.c.
+// Ranges of noise (lib/noise.glsl). Twins in C: src/field/noise_range.c.
 //
 // A base noise cannot change by more than its slope times the way. So an octave lies around its
 // value at the middle of the box, by the slope times half the diagonal (in its cells), and in -1..1;

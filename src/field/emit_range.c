@@ -12,6 +12,47 @@
 
 static void range_node(emitter *e, uint32_t node, uint32_t at, char out[EXPR]);
 
+// ---- uses -------------------------------------------------------------------------------------
+
+// How often each node is used below `node`, by others there; `seen` is all false before and after.
+static void count_below(const emitter *e, uint32_t node, uint32_t *uses, bool *seen) {
+    seen[node] = true;
+    const uint32_t *args = e->p->nodes[node].args;
+    for (size_t i = 0; i < FIELD_MAX_ARGS && args[i] != NONE; i++) {
+        uses[args[i]]++;
+        if (!seen[args[i]]) count_below(e, args[i], uses, seen);
+    }
+}
+
+static uint32_t *count_uses(const emitter *e, uint32_t node) {
+    uint32_t *uses = mem_alloc(e->p->node_count * sizeof *uses);
+    bool *seen = mem_alloc(e->p->node_count * sizeof *seen);
+    count_below(e, node, uses, seen);
+    uses[node]++;
+    mem_free(seen);
+    return uses;
+}
+
+typedef struct factor {
+    const uint32_t *uses; // below it
+    map seen;             // (node, point)
+} factor;
+
+// Computes what of `node`, in the factor, is wanted elsewhere too.
+static void range_shared(emitter *e, uint32_t node, uint32_t at, factor *f) {
+    const program_node *n = &e->p->nodes[node];
+    char unused[EXPR];
+    if (n->node->uniform || e->failed || map_find(&f->seen, n->node, at)) return;
+    map_set(&f->seen, n->node, at, 0);
+    if (f->uses[node] < e->uses[node]) {
+        range_node(e, node, at, unused);
+        return;
+    }
+    bool moves = kind_of(n->node) == KIND_WARP || kind_of(n->node) == KIND_TRANSFORM;
+    for (size_t i = 0; i < FIELD_MAX_ARGS && n->args[i] != NONE; i++)
+        range_shared(e, n->args[i], moves && i == 0 ? emit_find_point(e, node, at) : at, f);
+}
+
 static void name_range(uint32_t index, char out[EXPR]) {
     snprintf(out, EXPR, "r%u", index);
 }
@@ -163,9 +204,35 @@ static void range_palette(emitter *e, uint32_t index) {
                   table, value, at, at);
 }
 
+// The cheaper factor, then the other one where that is not zero.
+static void range_product(emitter *e, uint32_t index) {
+    op o = e->ops[index];
+    const program_node *n = &e->p->nodes[o.id];
+    size_t dearer = e->p->nodes[n->args[1]].cost >= e->p->nodes[n->args[0]].cost;
+    char value[EXPR];
+    range_arg(e, o.id, 1 - dearer, o.point, value);
+    declare_range(e, index, "%s", value);
+    bool branch = e->p->nodes[n->args[dearer]].cost >= dear;
+    if (branch) {
+        uint32_t *uses = count_uses(e, n->args[dearer]);
+        factor f = {.uses = uses};
+        range_shared(e, n->args[dearer], o.point, &f);
+        map_free(&f.seen);
+        mem_free(uses);
+        emit_line(e, "if (!range_is_zero(r%u)) {", index);
+        emit_open(e, false);
+    }
+    range_arg(e, o.id, dearer, o.point, value);
+    emit_line(e, "r%u = range_mul(r%u, %s);", index, index, value);
+    if (branch) emit_close(e);
+}
+
 static void compute_range(emitter *e, uint32_t index) {
     const field *node = e->p->nodes[e->ops[index].id].node;
     switch (kind_of(node)) {
+    case KIND_MUL:
+        range_product(e, index);
+        return;
     case KIND_GRID:
         range_grid(e, index);
         return;
@@ -220,7 +287,9 @@ static void write_root(emitter *e, uint32_t index) {
     emit_line(e, "vec2 field_%s_range(vec3 low, vec3 high) {", e->p->roots[index].name);
     emit_open(e, false);
     emit_line(e, "range3 p = range3(low, high);");
+    e->uses = count_uses(e, e->p->root_nodes[index]);
     range_node(e, e->p->root_nodes[index], 0, value);
+    mem_free(e->uses);
     emit_line(e, "range1 all = %s;", value);
     emit_line(e, "return vec2(all.low, all.high);");
     emit_close(e);
@@ -273,11 +342,13 @@ static void write_unknown(emitter *e) {
 }
 
 void emit_ranges(emitter *e, strbuf *out) {
+    uint32_t *uses = e->uses;
     strbuf_free(&e->body);
     for (uint32_t i = 0; i < e->p->root_count && !e->failed; i++)
         if (e->p->roots[i].components == 1) write_root(e, i);
     if (e->failed) write_unknown(e);
     e->failed = false;
+    e->uses = uses;
     strbuf_add(out, "#ifdef WITH_RANGES\n");
     add_libraries(e->p, out);
     for (size_t g = 0; g < e->p->grid_count; g++)

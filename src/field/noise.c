@@ -1,7 +1,7 @@
 // Bases of procedural noise and their octaves. Every function computes what the function of the
 // same name in shaders/lib/noise.glsl computes, in the same order, so that both agree to rounding;
 // the reasons are given there. Points have four coordinates; the fourth is unused in 3D.
-#include "field/noise.h"
+#include "field/noise_parts.h"
 #include <math.h>
 #include <string.h>
 
@@ -208,19 +208,17 @@ static void feature(const float c[4], uint32_t seed, float period, float shift, 
     if (!four) out[Z] = (float)(h >> 22) / 1024;
 }
 
-// Distances to the nearest and the second nearest feature point.
-static void worley_distances(const noise_desc *desc, const float q[4], uint32_t seed, float period,
-                             float shift, float f[2]) {
-    float at[4], inside[4], best[2] = {1, 1};
+void noise_base_distances(const noise_desc *desc, const noise_octave *octave, float f[2]) {
+    float at[4], inside[4], best[2] = {1, 1}, shift = desc->paper ? octave->shift : -1;
     for (int i = 0; i < 4; i++) {
-        at[i] = floorf(q[i]);
-        inside[i] = q[i] - at[i];
+        at[i] = floorf(octave->q[i]);
+        inside[i] = octave->q[i] - at[i];
     }
     for (int k = 0; k < (desc->four ? 81 : 27); k++) {
         float o[4] = {(float)(k % 3) - 1, (float)(k / 3 % 3) - 1, (float)(k / 9 % 3) - 1,
                       (float)(k / 27) - 1};
         float c[4] = {at[X] + o[X], at[Y] + o[Y], at[Z] + o[Z], at[W] + o[W]}, point[4], square = 0;
-        feature(c, seed, period, shift, desc->four, point);
+        feature(c, octave->seed, octave->period, shift, desc->four, point);
         for (int i = 0; i < (desc->four ? 4 : 3); i++) {
             float r = o[i] + point[i] - inside[i];
             square += r * r;
@@ -232,10 +230,9 @@ static void worley_distances(const noise_desc *desc, const float q[4], uint32_t 
     f[1] = sqrtf(best[1]);
 }
 
-static float worley_noise(const noise_desc *desc, const float q[4], uint32_t seed, float period,
-                          float shift) {
+static float worley_noise(const noise_desc *desc, const noise_octave *octave) {
     float f[2], power = clampf(desc->power, 0.01f, 16);
-    worley_distances(desc, q, seed, period, shift, f);
+    noise_base_distances(desc, octave, f);
     switch (desc->distance) {
     case NOISE_F2:
         return 1 - 2 * powf(f[1], power);
@@ -248,16 +245,10 @@ static float worley_noise(const noise_desc *desc, const float q[4], uint32_t see
 
 // ---- octaves ----------------------------------------------------------------------------------
 
-typedef struct octave {
-    float q[4], lacunarity, period, weight, shift;
-    uint32_t seed;
-    int count;
-} octave;
-
-static octave begin(const noise_desc *desc, float3 p) {
+noise_octave noise_begin(const noise_desc *desc, float3 p) {
     bool closed = desc->period >= 0.5f;
     float octaves = desc->octaves + 0.5f;
-    return (octave){
+    return (noise_octave){
         .q = {(p.x + desc->drift[X]) * desc->frequency, (p.y + desc->drift[Y]) * desc->frequency,
               (p.z + desc->drift[Z]) * desc->frequency, desc->phase},
         .lacunarity = closed ? fmaxf(floorf(desc->lacunarity + 0.5f), 1) : desc->lacunarity,
@@ -269,7 +260,7 @@ static octave begin(const noise_desc *desc, float3 p) {
     };
 }
 
-static void next(octave *o, const noise_desc *desc) {
+void noise_next(noise_octave *o, const noise_desc *desc) {
     for (int i = 0; i < 4; i++) o->q[i] *= o->lacunarity;
     o->period *= o->lacunarity;
     o->weight *= fmaxf(desc->persistence, 0);
@@ -282,24 +273,24 @@ static float fold(float n, noise_fractal fractal) {
     return fractal == NOISE_BILLOW ? fabsf(n) : 0.5f + 0.5f * n;
 }
 
-static float base_noise(noise_base base, const noise_desc *desc, const octave *o) {
+float noise_base_value(noise_base base, const noise_desc *desc, const noise_octave *o) {
     switch (base) {
     case NOISE_SIMPLEX:
         return simplex_noise(o->q, o->seed, o->period, desc->four);
     case NOISE_WORLEY:
-        return worley_noise(desc, o->q, o->seed, o->period, desc->paper ? o->shift : -1);
+        return worley_noise(desc, o);
     default:
         return lattice_noise(base, o->q, o->seed, o->period, desc->four);
     }
 }
 
 float noise_eval(noise_base base, const noise_desc *desc, float3 p) {
-    octave o = begin(desc, p);
+    noise_octave o = noise_begin(desc, p);
     float sum = 0, total = 0;
     for (int i = 0; i < o.count; i++) {
-        sum += o.weight * fold(clampf(base_noise(base, desc, &o), -1, 1), desc->fractal);
+        sum += o.weight * fold(clampf(noise_base_value(base, desc, &o), -1, 1), desc->fractal);
         total += o.weight;
-        next(&o, desc);
+        noise_next(&o, desc);
     }
     return desc->amplitude * sum / total;
 }
@@ -349,11 +340,11 @@ static void curl_corner(const cell *c, int corner, uint32_t seed, bool four, flo
 }
 
 static float paper_perlin(const noise_desc *desc, float3 p) {
-    octave o = begin(desc, p);
+    noise_octave o = noise_begin(desc, p);
     float sum = 0;
     for (int i = 0; i < o.count; i++) {
         sum += o.weight * lattice_noise(NOISE_PERLIN, o.q, o.seed, o.period, desc->four);
-        next(&o, desc);
+        noise_next(&o, desc);
     }
     return sum;
 }
@@ -366,7 +357,7 @@ static void paper_curl(const noise_desc *desc, float3 p, float out[3]) {
         out[i] = desc->amplitude * (paper_perlin(desc, ahead[i]) - paper_perlin(desc, behind[i]));
 }
 
-static void curl_base(const noise_desc *desc, const octave *o, float out[3]) {
+void noise_base_curl(const noise_desc *desc, const noise_octave *o, float out[3]) {
     cell c = find_cell(o->q, o->period);
     float curl[3] = {0}, factor = desc->four ? perlin4_factor : perlin3_factor;
     for (int k = 0; k < (desc->four ? 16 : 8); k++) curl_corner(&c, k, o->seed, desc->four, curl);
@@ -378,127 +369,14 @@ void noise_curl(const noise_desc *desc, float3 p, float out[3]) {
         paper_curl(desc, p, out);
         return;
     }
-    octave o = begin(desc, p);
+    noise_octave o = noise_begin(desc, p);
     float sum[3] = {0}, total = 0;
     for (int i = 0; i < o.count; i++) {
         float curl[3];
-        curl_base(desc, &o, curl);
+        noise_base_curl(desc, &o, curl);
         for (int k = 0; k < 3; k++) sum[k] += o.weight * curl[k];
         total += o.weight;
-        next(&o, desc);
+        noise_next(&o, desc);
     }
     for (int k = 0; k < 3; k++) out[k] = desc->amplitude * sum[k] / total;
-}
-
-// ---- ranges -----------------------------------------------------------------------------------
-
-// Greatest slopes of the bases, in 3 and 4 dimensions; shaders/lib/range_noise.glsl has the
-// reasons.
-static const float perlin_slope[2] = {3.73f, 3.80f}, value_slope[2] = {3.86f, 3.86f};
-static const float simplex_slope[2] = {7.2f, 7.0f}, simplex4_closed_slope = 7.2f;
-static const float most_curl[2] = {7.45f, 7.6f}, curl_slope[2] = {21.7f, 23.9f};
-
-static float slope_of(noise_base base, const noise_desc *desc) {
-    if (base == NOISE_VALUE) return value_slope[desc->four];
-    if (base == NOISE_PERLIN) return perlin_slope[desc->four];
-    return desc->four && desc->period >= 0.5f ? simplex4_closed_slope : simplex_slope[desc->four];
-}
-
-static interval around(float v, float reach) {
-    return (interval){clampf(v - reach, -1, 1), clampf(v + reach, -1, 1)};
-}
-
-static interval cells_range(const noise_desc *desc, const octave *o, float reach) {
-    const float inexact = 1e-4f;
-    float f[2], low[2], high[2], power = clampf(desc->power, 0.01f, 16);
-    worley_distances(desc, o->q, o->seed, o->period, desc->paper ? o->shift : -1, f);
-    for (int i = 0; i < 2; i++) {
-        low[i] = clampf(f[i] - reach, 0, 1);
-        high[i] = clampf(f[i] + reach, 0, 1);
-    }
-    int which = desc->distance == NOISE_F2;
-    float from = low[which], to = high[which];
-    if (desc->distance == NOISE_F2_F1) {
-        from = fmaxf(fmaxf(low[1] - high[0], f[1] - f[0] - 2 * reach), 0);
-        to = fminf(high[1] - low[0], f[1] - f[0] + 2 * reach);
-    }
-    from = fmaxf(powf(from, power) - inexact, 0);
-    to = fminf(powf(to, power) + inexact, 1);
-    if (desc->distance == NOISE_F2_F1) return (interval){2 * from - 1, 2 * to - 1};
-    return (interval){1 - 2 * to, 1 - 2 * from};
-}
-
-static interval base_range(noise_base base, const noise_desc *desc, const octave *o, float reach) {
-    float slope = base == NOISE_WORLEY ? 1 : slope_of(base, desc);
-    if (reach * slope >= (base == NOISE_WORLEY ? 1 : 2)) return (interval){-1, 1};
-    if (base == NOISE_WORLEY) return cells_range(desc, o, reach);
-    return around(base_noise(base, desc, o), reach * slope);
-}
-
-static interval fold_range(interval n, noise_fractal fractal) {
-    float near = fmaxf(fmaxf(n.low, -n.high), 0), far = fmaxf(n.high, -n.low);
-    if (fractal == NOISE_RIDGED) return (interval){(1 - far) * (1 - far), (1 - near) * (1 - near)};
-    if (fractal == NOISE_BILLOW) return (interval){near, far};
-    return (interval){0.5f + 0.5f * n.low, 0.5f + 0.5f * n.high};
-}
-
-static octave begin_range(const noise_desc *desc, const intervals *at, float *reach) {
-    float square = 0, middle[3], rounding = 0;
-    for (int i = 0; i < 3; i++) {
-        float side = at->c[i].high - at->c[i].low;
-        square += side * side;
-        middle[i] = 0.5f * (at->c[i].low + at->c[i].high);
-    }
-    octave o = begin(desc, (float3){middle[X], middle[Y], middle[Z]});
-    for (int i = 0; i < 3; i++) rounding += 1e-6f * fabsf(o.q[i]);
-    *reach = 0.5f * sqrtf(square) * desc->frequency + rounding + 1e-5f;
-    return o;
-}
-
-interval noise_range(noise_base base, const noise_desc *desc, const intervals *at) {
-    float reach, total = 0;
-    octave o = begin_range(desc, at, &reach);
-    interval sum = {0, 0};
-    for (int i = 0; i < o.count; i++) {
-        interval n = fold_range(base_range(base, desc, &o, reach), desc->fractal);
-        sum.low += o.weight * n.low;
-        sum.high += o.weight * n.high;
-        total += o.weight;
-        next(&o, desc);
-        reach *= o.lacunarity;
-    }
-    return range_wide(sum.low / total, sum.high / total);
-}
-
-static intervals paper_curl_range(const noise_desc *desc) {
-    octave o = begin(desc, (float3){0, 0, 0});
-    float way = 2 * sqrtf(2) * fabsf(desc->delta) * desc->frequency + 1e-5f, sum = 0;
-    for (int i = 0; i < o.count; i++) {
-        sum += o.weight * fminf(perlin_slope[desc->four] * way, 2);
-        next(&o, desc);
-        way *= o.lacunarity;
-    }
-    return (intervals){{{-sum, sum}, {-sum, sum}, {-sum, sum}}};
-}
-
-intervals noise_curl_ranges(const noise_desc *desc, const intervals *at) {
-    if (desc->paper) return paper_curl_range(desc);
-    float reach, total = 0, most = most_curl[desc->four];
-    octave o = begin_range(desc, at, &reach);
-    intervals sum = {0};
-    reach *= curl_slope[desc->four];
-    for (int i = 0; i < o.count; i++) {
-        float curl[3] = {0};
-        if (reach < 2 * most) curl_base(desc, &o, curl);
-        for (int k = 0; k < 3; k++) {
-            bool known = reach < 2 * most;
-            sum.c[k].low += o.weight * (known ? fmaxf(curl[k] - reach, -most) : -most);
-            sum.c[k].high += o.weight * (known ? fminf(curl[k] + reach, most) : most);
-        }
-        total += o.weight;
-        next(&o, desc);
-        reach *= o.lacunarity;
-    }
-    for (int k = 0; k < 3; k++) sum.c[k] = range_wide(sum.c[k].low / total, sum.c[k].high / total);
-    return sum;
 }

@@ -1,5 +1,5 @@
-// Ranges of kinds: the twin of shaders/lib/range_operator.glsl, range_shape.glsl and, by noise.c,
-// of range_noise.glsl. The reasons are given there.
+// Ranges of kinds: the twin of shaders/lib/range_operator.glsl, range_shape.glsl and, by
+// noise_range.c, of range_noise.glsl. The reasons are given there.
 #include "field/kinds.h"
 #include "field/noise.h"
 #include <math.h>

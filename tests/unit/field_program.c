@@ -72,6 +72,34 @@ static void noise_is_only_computed_where_the_grid_is_not_zero(void **state) {
     need_text(text, "#include \"lib/noise.glsl\"");
 }
 
+static void ranges_of_noise_are_only_computed_where_the_grid_may_not_be_zero(void **state) {
+    (void)state;
+    field_grid grid = some_grid("a");
+    field *density = field_grid_channel(build_memory(), &grid, 0, 1);
+    field *noise = row("worley", SET("seed", number(1))),
+          *other = row("perlin", SET("seed", number(1)));
+    field *carved = make("sub", density, make("mul", other, make("abs", noise)));
+    const char *text = text_of(make("mul", make("mul", noise, carved), density));
+    text = need_text(text, "vec2 field_density_range(vec3 low, vec3 high) {");
+    const char *fetch = need_text(text, "= field_fetch_range_0_0(p);");
+    const char *shared = need_text(fetch, "range_worley(p"); // wanted in two places
+    need_text(need_text(shared, "if (!range_is_zero("), "range_perlin(p");
+    assert_int_equal(occurrences(text, "range_worley("), 1);
+    assert_int_equal(occurrences(text, "range_perlin("), 1);
+}
+
+static void shared_products_have_short_ranges(void **state) {
+    (void)state;
+    field *x =
+        make("mul", row("sphere", SET("radius", number(1))), row("perlin", SET("seed", number(0))));
+    for (int i = 1; i < 40; i++)
+        x = make("add", make("mul", x, row("perlin", SET("seed", number((float)i)))),
+                 make("mul", make("abs", x), row("value", SET("seed", number((float)i)))));
+    const char *text = need_text(text_of(x), "vec2 field_density_range(");
+    assert_int_equal(occurrences(text, "range_perlin("), 40);
+    assert_int_equal(occurrences(text, "range_value("), 39);
+}
+
 static void cheap_factors_come_first_however_written(void **state) {
     (void)state;
     field *noise = row("perlin", SET("seed", number(1)));
@@ -323,6 +351,8 @@ int main(void) {
         cmocka_unit_test(another_noise_gives_another_text),
         cmocka_unit_test(constants_of_one_value_stay_apart),
         cmocka_unit_test(noise_is_only_computed_where_the_grid_is_not_zero),
+        cmocka_unit_test(ranges_of_noise_are_only_computed_where_the_grid_may_not_be_zero),
+        cmocka_unit_test(shared_products_have_short_ranges),
         cmocka_unit_test(cheap_factors_come_first_however_written),
         cmocka_unit_test(shared_noise_is_computed_once),
         cmocka_unit_test(noise_in_two_products_of_a_sum_is_computed_at_most_once),
