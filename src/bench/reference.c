@@ -71,7 +71,7 @@ static bool trace(bench_drawing *d, double frame, uint32_t samples) {
 
 static bool draw_reference(bench_drawing *d, uint32_t samples, hash128 h) {
     const bench_row *row = d->row;
-    bool done = samples > 0 || bench_draw_warmup(d, 0);
+    bool done = samples > 0 || bench_draw_warmup(d);
     for (size_t i = 0; done && i < row->frame_count; i++) {
         bool wanted = bench_is_compared(d->session, row, i);
         if (samples == 0)

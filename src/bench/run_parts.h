@@ -60,8 +60,7 @@ typedef struct bench_drawing { // an effect that is being drawn
 bool bench_drawing_begin(bench_session *s, const bench_row *row, bench_drawing *out);
 void bench_drawing_end(bench_drawing *d);
 bool bench_draw(bench_drawing *d, double frame); // false also when it must stop
-// Draws what comes before the row's first frame, for at least so long.
-bool bench_draw_warmup(bench_drawing *d, double seconds);
+bool bench_draw_warmup(bench_drawing *d);        // what comes before the row's first frame
 // Frames of a row that are compared: number `i` of it.
 bool bench_is_compared(const bench_session *s, const bench_row *row, size_t i);
 

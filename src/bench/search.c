@@ -217,25 +217,35 @@ static bool take_exchange(walk *w) {
 
 // ---- result -------------------------------------------------------------------------------------
 
-// The best of what was measured; of those that are as good, the one that is better otherwise.
+static size_t changes(const walk *w, const search_point *p) {
+    size_t count = 0;
+    for (size_t i = 0; i < w->desc->axis_count; i++) count += p->rungs[i] != w->desc->axes[i].start;
+    return count;
+}
+
+// Of two that are as good in what is minimised: the one that is better otherwise, else the one that
+// changes less.
+static bool preferred(const walk *w, const search_point *a, const search_point *b, bool by_cost) {
+    double x = by_cost ? a->error : a->cost, y = by_cost ? b->error : b->cost;
+    double same = by_cost ? SAME_ERROR : w->desc->noise;
+    if (fabs(x - y) > same * y) return x < y;
+    return changes(w, a) < changes(w, b);
+}
+
+// The best of what was measured. Where nothing keeps the limit, what comes nearest to it.
 static search_point choose(const walk *w, bool *kept) {
-    bool by_error = w->desc->by_error;
-    double least = INFINITY;
+    double least = (double)INFINITY;
     for (size_t i = 0; i < w->count; i++) *kept = *kept || within(w, &w->points[i]);
-    for (size_t i = 0; i < w->count; i++) {
-        const search_point *p = &w->points[i];
-        double aim = by_error == *kept ? p->cost : p->error;
-        if (within(w, p) == *kept) least = fmin(least, aim);
-    }
+    bool by_cost = w->desc->by_error == *kept;
+    for (size_t i = 0; i < w->count; i++)
+        if (within(w, &w->points[i]) == *kept)
+            least = fmin(least, by_cost ? w->points[i].cost : w->points[i].error);
+    double most = least * (1 + (by_cost ? w->desc->noise : SAME_ERROR));
     const search_point *best = NULL;
     for (size_t i = 0; i < w->count; i++) {
         const search_point *p = &w->points[i];
-        bool cost_counts = by_error == *kept;
-        double aim = cost_counts ? p->cost : p->error, other = cost_counts ? p->error : p->cost;
-        if (within(w, p) != *kept ||
-            aim > least * (1 + (cost_counts ? w->desc->noise : SAME_ERROR)))
-            continue;
-        if (!best || other < (cost_counts ? best->error : best->cost)) best = p;
+        if (within(w, p) != *kept || (by_cost ? p->cost : p->error) > most) continue;
+        if (!best || preferred(w, p, best, by_cost)) best = p;
     }
     return best ? *best : w->points[0];
 }

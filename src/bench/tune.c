@@ -31,7 +31,7 @@ typedef struct tuning {
     size_t frame_count;
     uint32_t compared;
     double start; // by clock_seconds
-    bool out_of_time, failed;
+    bool begun, failed;
 } tuning;
 
 double tune_row_error(const bench_row *row, tune_error error) {
@@ -108,8 +108,8 @@ static const bench_row *find_row(const tuning *t, const size_t *rungs) {
 
 static bool may_go_on(tuning *t) {
     const tune_order *o = t->order;
-    t->out_of_time = o->budget > 0 && clock_seconds() - t->start > o->budget;
-    return !t->out_of_time && !bench_is_stopped(t->session);
+    bool late = t->begun && o->budget > 0 && clock_seconds() - t->start > o->budget;
+    return !late && !bench_is_stopped(t->session);
 }
 
 static bool measure_row(tuning *t, const size_t *rungs) {
@@ -122,28 +122,51 @@ static bool measure_row(tuning *t, const size_t *rungs) {
         bench_add(t->results, &row);
         done = bench_write(t->results, t->order->folder);
     }
-    t->failed = t->failed || !done;
+    t->failed = t->failed || (!done && !bench_is_stopped(t->session));
     arena_free(&memory);
     return done;
+}
+
+// By how much the time of one frame differs from one repeat to the next, for the median of all.
+static double noise_of(const bench_row *row) {
+    const bench_time *time = bench_main_time(row);
+    size_t frames = row->frame_count;
+    if (!time || !time->ms.values || row->repeats < 2 || time->ms.count != frames * row->repeats)
+        return LEAST_NOISE;
+    double sum = 0;
+    for (size_t i = 0; i < frames; i++) {
+        double a = time->ms.values[i], b = time->ms.values[i + frames];
+        sum += fabs(a - b) / fmax(0.5 * (a + b), 1e-9);
+    }
+    double noise = sum / (double)frames / sqrt((double)time->ms.count);
+    return fmin(fmax(noise, LEAST_NOISE), MOST_NOISE);
+}
+
+// The first row tells how noisy times are here, and whether there is anything to search.
+static bool begin(tuning *t, const bench_row *row) {
+    t->begun = row->state == BENCH_DONE && bench_main_time(row) && row->compared;
+    t->search.noise = noise_of(row);
+    if (t->begun) return true;
+    t->failed = true;
+    return err_set("%s", row->message[0] ? row->message : "the device does not tell times");
 }
 
 static bool measure(void *user, search_point *p) {
     tuning *t = user;
     const tune_watcher *w = &t->order->watcher;
+    const tune_error kind = t->order->goal.error;
     const bench_row *row = find_row(t, p->rungs);
     bool earlier = row != NULL;
     if (!row && (!may_go_on(t) || !measure_row(t, p->rungs))) return false;
     if (!row) row = find_row(t, p->rungs);
     const bench_time *time = bench_main_time(row);
-    bool good = row->state == BENCH_DONE && time && row->compared;
-    const tune_error kind = t->order->goal.error;
     p->cost = p->error = (double)INFINITY;
-    if (good) {
+    if (row->state == BENCH_DONE && time && row->compared) {
         p->cost = time->ms.median;
         p->error = error_size(tune_row_error(row, kind), kind);
     }
     if (w->result) w->result(w->user, row, earlier);
-    return true;
+    return t->begun || begin(t, row);
 }
 
 // ---- what is measured ---------------------------------------------------------------------------
@@ -303,33 +326,6 @@ static bool take_earlier(tuning *t) {
 
 // ---- the search ---------------------------------------------------------------------------------
 
-// By how much the time of one frame differs from one repeat to the next, for the median of all.
-static double noise_of(const bench_row *row) {
-    const bench_time *time = bench_main_time(row);
-    size_t frames = row->frame_count;
-    if (!time || !time->ms.values || row->repeats < 2 || time->ms.count != frames * row->repeats)
-        return LEAST_NOISE;
-    double sum = 0;
-    for (size_t i = 0; i < frames; i++) {
-        double a = time->ms.values[i], b = time->ms.values[i + frames];
-        sum += fabs(a - b) / fmax(0.5 * (a + b), 1e-9);
-    }
-    double noise = sum / (double)frames / sqrt((double)time->ms.count);
-    return fmin(fmax(noise, LEAST_NOISE), MOST_NOISE);
-}
-
-// The first row tells how noisy times are here.
-static bool measure_before(tuning *t) {
-    search_point p = {0};
-    for (size_t i = 0; i < t->result->axis_count; i++) p.rungs[i] = t->result->axes[i].start;
-    if (!measure(t, &p)) return t->failed ? false : err_set("interrupted");
-    const bench_row *row = find_row(t, p.rungs);
-    if (row->state != BENCH_DONE) return err_set("%s", row->message);
-    if (isinf(p.cost)) return err_set("the device does not tell times");
-    t->search.noise = noise_of(row);
-    return true;
-}
-
 static bool write_preset(tuning *t, const size_t *rungs) {
     const tune_order *o = t->order;
     if (!o->preset) return true;
@@ -346,9 +342,9 @@ static bool search(tuning *t) {
     const tune_watcher *w = &t->order->watcher;
     tune_result *result = t->result;
     if (w->begin) w->begin(w->user, t->results, result->axes, result->axis_count);
-    if (!measure_before(t)) return false;
     search_result found;
-    if (!search_run(&t->search, &found) || t->failed) return false;
+    if (!search_run(&t->search, &found) || t->failed)
+        return t->failed ? false : err_set("nothing was measured: interrupted, or out of time");
     result->before = find_row(t, found.start.rungs)->index;
     result->best = find_row(t, found.best.rungs)->index;
     result->within = found.within;
