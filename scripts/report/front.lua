@@ -2,6 +2,8 @@
 local data, h, number, plot, scale = require "data", require "html", require "number", require "plot", require "scale"
 local px = plot.px
 
+local RING = 8 -- radius of the mark around rows of a search
+
 -- What errors a row may have: `up`: more is better.
 local ERRORS = { { name = "flip", label = "FLIP" }, { name = "psnr", label = "PSNR, dB", up = true },
                  { name = "ssim", label = "SSIM", up = true } }
@@ -55,6 +57,11 @@ local function extent(points, field)
   return low, high
 end
 
+-- What a row is to the search that these are results of; nil when they are of none.
+local function mark_of(sweep, row)
+  return row.index == sweep.chosen and "tuned" or row.index == sweep.before and "before" or nil
+end
+
 -- Steps, since between two rows nothing was measured.
 local function draw_front(front, x, y)
   local path = {}
@@ -66,11 +73,11 @@ local function draw_front(front, x, y)
 end
 
 -- What labels must not cover: all marks, and the steps of the front.
-local function obstacles(points, front, x, y)
+local function obstacles(sweep, points, front, x, y)
   local out = {}
   for _, p in ipairs(points) do
-    local at, up = x.place(p.x), y.place(p.y)
-    out[#out + 1] = { left = at - 3, right = at + 3, top = up - 3, bottom = up + 3 }
+    local at, up, r = x.place(p.x), y.place(p.y), mark_of(sweep, p.row) and RING + 1 or 3
+    out[#out + 1] = { left = at - r, right = at + r, top = up - r, bottom = up + r }
   end
   for i = 2, #front do
     local x1, y1, x2, y2 = x.place(front[i - 1].x), y.place(front[i - 1].y), x.place(front[i].x), y.place(front[i].y)
@@ -82,9 +89,9 @@ end
 
 -- Labels of the marked rows, then of the front from its ends inwards, while there is room.
 local function draw_labels(sweep, points, front, x, y, box)
-  local taken, out, wanted = obstacles(points, front, x, y), {}, {}
+  local taken, out, wanted = obstacles(sweep, points, front, x, y), {}, {}
   for _, p in ipairs(points) do
-    local mark = p.row.index == sweep.chosen and "tuned" or p.row.index == sweep.before and "before"
+    local mark = mark_of(sweep, p.row)
     if mark then wanted[#wanted + 1] = { p = p, text = mark, class = "label strong" } end
   end
   for i = 1, #front do
@@ -112,8 +119,7 @@ local function draw(sweep, points, front, kind, metric, axis, width, height, cla
   for _, p in ipairs(points) do
     local title = string.format("%s: %s ms, %s %s", p.row.label, number.short(p.x), kind.label, number.short(p.y))
     svg[#svg + 1] = plot.marker(series_of(axis, p.row), x.place(p.x), y.place(p.y), p.front and 4 or 2.8, title)
-    local marked = p.row.index == sweep.chosen or p.row.index == sweep.before
-    svg[#svg + 1] = marked and h.circle { class = "ring", cx = px(x.place(p.x)), cy = px(y.place(p.y)), r = 8 }
+    svg[#svg + 1] = mark_of(sweep, p.row) and h.circle { class = "ring", cx = px(x.place(p.x)), cy = px(y.place(p.y)), r = RING }
   end
   svg[#svg + 1] = draw_labels(sweep, points, front, x, y, box)
   return h.svg(svg)

@@ -122,7 +122,7 @@ return function(sweep, said)
   for _, sentence in ipairs(said) do sentences[#sentences + 1] = sentence end
   local notes = {}
   for i, note in ipairs(sweep.notes) do notes[i] = h.p { class = "note", note } end
-  return { h.header { h.p { class = "eyebrow", "roil bench · ", sweep.name }, h.h1(sweep.title),
+  return { h.header { h.p { class = "eyebrow", sweep.chosen and "roil tune" or "roil bench · " .. sweep.name }, h.h1(sweep.title),
                       h.p { class = "summary", table.concat(sentences, " ") }, notes, facts(sweep) },
            failures(sweep) }
 end

@@ -1,11 +1,16 @@
 -- The report of a sweep: one page that needs nothing else. It is given results.json as tables.
 local h = require "html"
-local bars, data, front, head = require "bars", require "data", require "front", require "head"
+local bars, data, found, front, head = require "bars", require "data", require "found", require "front", require "head"
 local lines, pictures, rows, style = require "lines", require "pictures", require "rows", require "style"
 
 return function(results)
   local sweep = data.read(results)
-  local plots, said = lines(sweep)
+  local plots, said
+  if sweep.chosen then -- a search goes where it is led, not along axes
+    plots, said = found(sweep), {}
+  else
+    plots, said = lines(sweep)
+  end
   local cost, sentence = front(sweep)
   said[#said + 1] = sentence
   return "<!DOCTYPE html>\n" .. h.render(h.html { lang = "en",
@@ -20,8 +25,7 @@ return function(results)
       h.style(h.raw(style)) },
     h.body(h.main {
       head(sweep, said),
-      cost,
-      plots,
+      sweep.chosen and { plots, cost } or { cost, plots },
       bars(sweep),
       rows(sweep),
       pictures(sweep),

@@ -107,7 +107,8 @@ end
 function plot.fit(text, x, y, box, taken)
   local width = plot.text_width(text)
   local tries = { { x + 8, y + 4 }, { x - 8 - width, y + 4 }, { x + 6, y - 8 }, { x - 6 - width, y - 8 },
-                  { x + 6, y + 16 }, { x - 6 - width, y + 16 }, { x - width / 2, y - 12 }, { x - width / 2, y + 20 } }
+                  { x + 6, y + 16 }, { x - 6 - width, y + 16 }, { x - width / 2, y - 14 }, { x - width / 2, y + 21 },
+                  { x + 13, y + 4 }, { x - 13 - width, y + 4 } }
   for _, t in ipairs(tries) do
     local place = { left = t[1] - 2, right = t[1] + width + 2, top = t[2] - 10, bottom = t[2] + 3 }
     local free = place.left >= box.left and place.right <= box.right and place.top >= box.top and place.bottom <= box.bottom

@@ -71,6 +71,7 @@ figcaption { font-size: 12.5px; }
 .stack { display: block; width: 100%; height: 15px; }
 
 .scroll { overflow-x: auto; max-width: 100%; border: 1px solid var(--rule); border-radius: 10px; background: var(--panel); }
+.scroll.narrow { max-width: 560px; margin-top: 14px; }
 .scroll:focus-visible { outline: 2px solid var(--accent); outline-offset: 2px; }
 table { border-collapse: collapse; width: 100%; font-size: 13.5px; overflow-wrap: normal; }
 th, td { padding: 5px 11px; text-align: left; vertical-align: top; border-bottom: 1px solid var(--rule); }

@@ -24,7 +24,8 @@ typedef struct tune_options {
     size_t axis_count, axis_capacity;
     char folder[PATH_CAP]; // where results go by default
     int resume, repeats;
-    size_t measured, earlier;
+    const tune_axis *shown; // columns of what is printed
+    size_t shown_count, measured;
 } tune_options;
 
 // ---- options ------------------------------------------------------------------------------------
@@ -147,67 +148,72 @@ static bool parse(tune_options *o, int argc, const char **argv, poptContext *con
     return take_effect(o, *context) && take_goal(o) && take_numbers(o);
 }
 
-// ---- progress -----------------------------------------------------------------------------------
+// ---- what is said -------------------------------------------------------------------------------
 
-static void print_error(const tune_options *o, const bench_row *row) {
-    double error = tune_row_error(row, o->order.goal.error);
-    if (isnan(error))
-        printf("%s", row->message[0] ? row->message : "not compared");
-    else if (o->order.goal.error == TUNE_FLIP)
-        printf("FLIP %.4f", error);
-    else
-        printf("PSNR %.2f dB", error);
+static const char *short_name(const tune_axis *a) { // "steps" of "march.steps"
+    const char *dot = strrchr(a->name, '.');
+    return dot ? dot + 1 : a->name;
+}
+
+static int width_of(const tune_axis *a) {
+    size_t width = strlen(short_name(a));
+    for (size_t i = 0; i < a->count; i++)
+        if (strlen(a->values[i]) > width) width = strlen(a->values[i]);
+    return (int)width + 2;
 }
 
 static void on_begin(void *user, const bench_results *r, const tune_axis *axes, size_t count) {
-    (void)user;
+    tune_options *o = user;
     double all = 1;
-    for (size_t i = 0; i < count; i++) all *= (double)axes[i].count;
-    printf("%s\n%s, %zu axes, %.0f combinations\n", r->title, r->device, count, all);
+    o->shown = axes;
+    o->shown_count = count;
+    printf("%s\n%s\n", r->title, r->device);
     for (size_t i = 0; i < count; i++) {
         printf("  %s:", axes[i].name);
         for (size_t k = 0; k < axes[i].count; k++)
             printf(k == axes[i].start ? " [%s]" : " %s", axes[i].values[k]);
         printf("\n");
+        all *= (double)axes[i].count;
     }
+    printf("%.0f combinations, of which few are measured:\n\n", all);
+    for (size_t i = 0; i < count; i++) printf("%*s", width_of(&axes[i]), short_name(&axes[i]));
+    printf("%10s %10s\n", "ms", o->order.goal.error == TUNE_FLIP ? "FLIP" : "PSNR dB");
     fflush(stdout);
 }
 
 static void on_result(void *user, const bench_row *row, bool earlier) {
     tune_options *o = user;
     const bench_time *time = bench_main_time(row);
+    double error = tune_row_error(row, o->order.goal.error);
     o->measured += !earlier;
-    o->earlier += earlier;
-    printf("%4zu  %s: ", row->index, row->label);
-    if (time) printf("%.4g ms, ", time->ms.median);
-    print_error(o, row);
-    printf("%s\n", earlier ? " (kept)" : "");
+    for (size_t i = 0; i < o->shown_count; i++)
+        printf("%*s", width_of(&o->shown[i]), bench_axis_value(row, o->shown[i].name));
+    if (row->state == BENCH_DONE && time)
+        printf("%10.4g %10.4f%s\n", time->ms.median, error, earlier ? "  kept" : "");
+    else
+        printf("  %s: %s\n", bench_state_name(row->state), row->message);
     fflush(stdout);
 }
 
-// ---- result -------------------------------------------------------------------------------------
-
-static int width_of(const tune_result *t) {
-    int width = 8;
-    for (size_t i = 0; i < t->axis_count; i++)
-        if ((int)strlen(t->axes[i].name) > width) width = (int)strlen(t->axes[i].name);
-    return width;
+static void print_line(const char *name, int width, double before, double after) {
+    printf("%-*s %12.4g %12.4g\n", width, name, before, after);
 }
 
 static void print_result(const tune_options *o, const bench_results *r, const tune_result *t) {
     const bench_row *before = bench_find(r, t->before), *best = bench_find(r, t->best);
-    int width = width_of(t);
-    bool flip = o->order.goal.error == TUNE_FLIP;
+    const tune_error kind = o->order.goal.error;
+    int width = 8;
+    for (size_t i = 0; i < t->axis_count; i++)
+        if ((int)strlen(t->axes[i].name) > width) width = (int)strlen(t->axes[i].name);
     printf("\n%-*s %12s %12s\n", width, "", "before", "tuned");
     for (size_t i = 0; i < t->axis_count; i++)
         printf("%-*s %12s %12s\n", width, t->axes[i].name,
                bench_axis_value(before, t->axes[i].name), bench_axis_value(best, t->axes[i].name));
-    printf("%-*s %12.4g %12.4g\n", width, "ms", bench_main_time(before)->ms.median,
-           bench_main_time(best)->ms.median);
-    printf("%-*s %12.4f %12.4f\n", width, flip ? "FLIP" : "PSNR dB",
-           tune_row_error(before, o->order.goal.error), tune_row_error(best, o->order.goal.error));
+    print_line("ms", width, bench_main_time(before)->ms.median, bench_main_time(best)->ms.median);
+    print_line(kind == TUNE_FLIP ? "FLIP" : "PSNR dB", width, tune_row_error(before, kind),
+               tune_row_error(best, kind));
     printf("\n%zu rows measured%s\n", o->measured,
-           t->complete ? "" : "; the search was ended early, --resume goes on");
+           t->complete ? "" : "; the search was ended early, and --resume goes on");
 }
 
 static int finish(const tune_options *o, const bench_results *r, const tune_result *t) {
