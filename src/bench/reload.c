@@ -55,12 +55,24 @@ typedef struct reload {
     bench_collection times;
 } reload;
 
-static bool take(reload *m) {
-    const bench_row *row = m->row;
-    bool changed = roil_live_update(m->live, row->width, row->height, m->frame);
+// Takes over what the builder has finished. `changed`: whether that was anything.
+static bool take(reload *m, bool *changed) {
+    *changed = roil_live_update(m->live, m->row->width, m->row->height, m->frame);
     const char *message = roil_live_message(m->live);
-    if (message) return err_set("%s", message);
-    return changed || err_set("an edit changed nothing");
+    return !message || err_set("%s", message);
+}
+
+// A file that was written a moment before it was read is built twice: what is left of an edit must
+// not be taken for the next one. Nothing is being drawn or built then.
+static bool calm_down(reload *m) {
+    bool changed = true;
+    roil_live_wait(m->live);
+    while (changed)
+        if (!take(m, &changed)) return false;
+    pthread_mutex_lock(&m->news.mutex);
+    m->news.ringing = false;
+    pthread_mutex_unlock(&m->news.mutex);
+    return roil_read(roil_live_effect(m->live), false, m->pixels);
 }
 
 // In place, as most editors write.
@@ -73,14 +85,14 @@ static bool write_script(const reload *m, const char *text) {
 }
 
 static bool time_edit(reload *m, const char *text, bool counts) {
-    roil_live_wait(m->live); // nothing is being drawn or built
-    if (!roil_read(roil_live_effect(m->live), false, m->pixels) || !write_script(m, text))
-        return false;
+    bool changed;
+    if (!calm_down(m) || !write_script(m, text)) return false;
     double closed = clock_seconds();
     if (!wait_for_ring(&m->news)) return false;
     double woken = clock_seconds();
-    if (!take(m)) return false;
+    if (!take(m, &changed)) return false;
     double taken = clock_seconds();
+    if (!changed) return err_set("an edit changed nothing");
     if (!roil_advance(roil_live_effect(m->live), m->frame)) return false;
     double submitted = clock_seconds();
     m->frame += 1;
@@ -119,7 +131,8 @@ static bool start(reload *m) {
                                                           .setting_count = row->settings.count,
                                                           .wake = ring,
                                                           .user = &m->news});
-    return m->live && wait_for_ring(&m->news) && take(m) &&
+    bool changed;
+    return m->live && wait_for_ring(&m->news) && take(m, &changed) && changed &&
            roil_advance(roil_live_effect(m->live), m->frame++);
 }
 
