@@ -65,17 +65,21 @@ int bvh_walk(inout bvh_ray ray, uint node, uint end, bool any) {
     return found;
 }
 
-// x: the instance that is hit, -1: none; y: the triangle. A ray keeps its distances in the space of
-// a mesh, since its direction is not made a unit vector again there.
+// A ray in the space of a mesh. It keeps its distances, since its direction is not made a unit
+// vector again there.
+bvh_ray bvh_to_mesh(bvh_ray ray, uint instance) {
+    vec4 from = vec4(ray.origin, 1.0), x = bvh_instances[instance].inverse[0];
+    vec4 y = bvh_instances[instance].inverse[1], z = bvh_instances[instance].inverse[2];
+    vec3 way = vec3(dot(x.xyz, ray.direction), dot(y.xyz, ray.direction), dot(z.xyz, ray.direction));
+    return bvh_make_ray(vec3(dot(x, from), dot(y, from), dot(z, from)), way, ray.near, ray.far);
+}
+
+// x: the instance that is hit, -1: none; y: the triangle.
 ivec2 bvh_find(inout bvh_ray ray, bool any) {
     ivec2 hit = ivec2(-1);
-    vec4 from = vec4(ray.origin, 1.0);
     for (uint i = 0u; i < bvh_count.x; i++) {
         if (!bvh_meets_box(ray, bvh_instances[i].low, bvh_instances[i].high)) continue;
-        vec4 x = bvh_instances[i].inverse[0], y = bvh_instances[i].inverse[1];
-        vec4 z = bvh_instances[i].inverse[2];
-        vec3 way = vec3(dot(x.xyz, ray.direction), dot(y.xyz, ray.direction), dot(z.xyz, ray.direction));
-        bvh_ray inner = bvh_make_ray(vec3(dot(x, from), dot(y, from), dot(z, from)), way, ray.near, ray.far);
+        bvh_ray inner = bvh_to_mesh(ray, i);
         int found = bvh_walk(inner, bvh_instances[i].root, bvh_instances[i].end, any);
         if (found < 0) continue;
         hit = ivec2(i, found);

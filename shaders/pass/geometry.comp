@@ -19,14 +19,10 @@ bool is_shown(uint mesh) {
 // Distances of the ray are depths, since its direction is one metre deep.
 surface_hit find(inout bvh_ray ray) {
     surface_hit hit = surface_hit(-1, -1, vec2(0.0), vec3(0.0));
-    vec4 from = vec4(ray.origin, 1.0);
     for (uint i = 0u; i < bvh_count.x; i++) {
         if (!is_shown(uint(bvh_instances[i].color.w))) continue;
         if (!bvh_meets_box(ray, bvh_instances[i].low, bvh_instances[i].high)) continue;
-        vec4 x = bvh_instances[i].inverse[0], y = bvh_instances[i].inverse[1];
-        vec4 z = bvh_instances[i].inverse[2];
-        vec3 way = vec3(dot(x.xyz, ray.direction), dot(y.xyz, ray.direction), dot(z.xyz, ray.direction));
-        bvh_ray inner = bvh_make_ray(vec3(dot(x, from), dot(y, from), dot(z, from)), way, ray.near, ray.far);
+        bvh_ray inner = bvh_to_mesh(ray, i);
         int before = hit.triangle;
         hit.triangle = -1;
         surface_walk(inner, bvh_instances[i].root, bvh_instances[i].end, holes, hit);
@@ -35,7 +31,7 @@ surface_hit find(inout bvh_ray ray) {
             continue;
         }
         hit.instance = int(i);
-        hit.way = way;
+        hit.way = inner.direction;
         ray.far = inner.far;
     }
     return hit;

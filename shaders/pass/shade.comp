@@ -14,6 +14,9 @@ writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultipl
 #include "lib/sky.glsl"
 #include "lib/bvh.glsl"
 #include "lib/lighting.glsl"
+#include "shade/surface.glsl"
+#include "shade/shafts.glsl"
+#include "shade/shadow.glsl"
 
 const float PI = 3.14159265, GOLDEN_ANGLE = 2.39996323;
 const float NEGLIGIBLE = 1.0 / 4096.0; // of the light on a surface: such a light gets no shadow
@@ -24,20 +27,21 @@ vec2 disc_point(int k, int count, vec2 chance) {
     return sqrt((float(k) + chance.y) / float(count)) * vec2(cos(angle), sin(angle));
 }
 
-// Part of the light's disc that no mesh hides.
-float light_seen(light l, light_ray ray, vec3 p, vec2 chance) {
+// Part of the light's disc that no mesh hides. `index` is the light's.
+float light_seen(light l, int index, light_ray ray, vec3 p, vec2 chance) {
     float far = ray.distance - (l.kind == LIGHT_SUN ? 0.0 : l.radius);
-    if (shadow_samples == 0 || far <= 0.0) return 1.0;
+    uint list = shaft_of(index);
+    if (shadow_samples == 0 || far <= 0.0 || shaft_is_clear(list)) return 1.0;
 #if MANY_RAYS
     int count = l.radius > 0.0 ? shadow_samples : 1, seen = 0;
     mat2x3 disc = across(ray.direction) * (l.kind == LIGHT_SUN ? l.radius : l.radius / ray.distance);
     for (int k = 0; k < count; k++) {
         vec2 point = count > 1 ? disc_point(k, count, chance) : vec2(0.0);
-        if (!bvh_occluded(p, normalize(ray.direction + disc * point), 0.0, far)) seen++;
+        if (!shaft_occluded(list, p, normalize(ray.direction + disc * point), far)) seen++;
     }
     return float(seen) / float(count);
 #else
-    return bvh_occluded(p, ray.direction, 0.0, far) ? 0.0 : 1.0;
+    return shaft_occluded(list, p, ray.direction, far) ? 0.0 : 1.0;
 #endif
 }
 
@@ -84,7 +88,7 @@ vec3 surface_light(vec3 p, vec3 n, uvec2 pixel) {
 #if HAS_LIGHTS && HAS_SHADOW
         if (matters && i < declared) given *= exp(-extinction * lighting_shadow(i, p).x);
 #endif
-        if (matters) given *= light_seen(l, ray, p, chance);
+        if (matters) given *= light_seen(l, i, ray, p, chance);
         sum += given;
     }
     return sum;
@@ -95,17 +99,11 @@ void main() {
     ivec2 size = imageSize(color);
     if (any(greaterThanEqual(pixel, size))) return;
     vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
-    ivec2 texel = ivec2(uv * vec2(textureSize(depth, 0)));
-    vec3 along = frame_ray(uv);
-    vec4 base = texelFetch(albedo, texel, 0);
-    if (base.a == 0.0) {
-        imageStore(color, pixel, vec4(sky_radiance(normalize(along)), 1.0) * sky_alpha);
+    surface_point s = surface_at(uv);
+    if (s.base.a == 0.0) {
+        imageStore(color, pixel, vec4(sky_radiance(normalize(frame_ray(uv))), 1.0) * sky_alpha);
         return;
     }
-    float deep = texelFetch(depth, texel, 0).r, distance = deep * length(along);
-    vec3 n = normalize(texelFetch(normal, texel, 0).xyz);
-    // Rays begin as far off the surface as rounding may have moved the point: less than a pixel.
-    vec3 p = frame.eye.xyz + deep * along + (1e-4 + 3e-4 * distance) * n;
-    vec3 lit = base.rgb * surface_light(p, n, uvec2(pixel));
-    imageStore(color, pixel, vec4(mix(frame.sky_horizon.rgb, lit, exp(-haze * distance)), 1.0));
+    vec3 lit = s.base.rgb * surface_light(s.p, s.normal, uvec2(pixel));
+    imageStore(color, pixel, vec4(mix(frame.sky_horizon.rgb, lit, exp(-haze * s.distance)), 1.0));
 }
