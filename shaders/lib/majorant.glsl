@@ -1,7 +1,7 @@
 // Bounds of the extinction, cell by cell over the box of the density, and rays through them
 // (Amanatides and Woo, "A fast voxel traversal algorithm", 1987). reference_majorants.comp fills
 // them.
-uniform image3D majorants;           //= output r32f : in each cell of the box, the greatest extinction found (1/m)
+uniform image3D majorants;           //= output r32f : in each cell of the box, the extinction that is looked out for (1/m)
 uniform sampler3D majorants_before;  //= input history majorants : the same, as of the execution before
 uniform float majorant_scale;        //= 1.2 [0.01, 100] : factor of the extinction that is looked out for: too low is noisy, too high is slow, neither is wrong
 uniform vec3 box_min;

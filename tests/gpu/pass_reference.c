@@ -188,6 +188,22 @@ static void clear_sky_leaves_the_opacity_of_the_medium(void **state) {
     near(got, 3, 1 - exp(-1.4));
 }
 
+// Of so few points in cells of 6 cm hardly any meets it; its range is met always.
+static const field *foil(pass_world *w) { // a tenth of a millimetre thick, in much thin air
+    const field *sheet = row(w, "box", SET("position", triple(w, 0, 0.0123f, 0)),
+                             SET("size", triple(w, 1.9f, 1e-4f, 1.9f)));
+    return row(w, "add", SET("a", row(w, "mul", SET("a", sheet), SET("b", number(w, 2e3f)))),
+               SET("b", block(w, 1, 1e-5f)));
+}
+
+static void what_no_point_has_met_is_seen_all_the_same(void **state) {
+    pass_world w;
+    pass *p = begin(&w, *state, foil);
+    white_sky(&w);
+    set3(&w, p, "albedo", 0, 0, 0);
+    near(end(&w, p, 128), 0, exp(-0.2));
+}
+
 static void glowing_slab_has_the_light_of_its_depth(void **state) {
     pass_world w;
     pass *p = begin(&w, *state, slab);
@@ -404,6 +420,7 @@ int main(void) {
         cmocka_unit_test(sharp_phase_functions_keep_the_furnace_white),
         cmocka_unit_test(bounds_that_are_too_low_cost_noise_only),
         cmocka_unit_test(absorption_takes_light_away),
+        cmocka_unit_test(what_no_point_has_met_is_seen_all_the_same),
         cmocka_unit_test(sky_behind_a_slab_follows_beer_and_lambert),
         cmocka_unit_test(absorption_color_lets_its_colour_through),
         cmocka_unit_test(clear_sky_leaves_the_opacity_of_the_medium),
