@@ -5,6 +5,7 @@
 #ifndef LIB_RANGE_GRID_GLSL
 #define LIB_RANGE_GRID_GLSL
 #include "lib/range.glsl"
+#include "lib/grid.glsl"
 
 // Over a box given in bricks, of which there are `count` along each axis: at the first level where
 // no more than two along an axis cover it (hierarchical min/max; Greene, "Hierarchical Z-buffer
@@ -30,17 +31,81 @@ range4 range_bricks(sampler3D ranges, vec3 count, vec3 low, vec3 high) {
                      range_make(least.z, most.z), range_make(least.w, most.w));
 }
 
+// Over a box given in texels, by these themselves, where no more than RANGE_TEXELS along an axis take
+// part in what is sampled there: bricks would be coarser than the box is.
+const int RANGE_TEXELS = 6;
+#if SAMPLING == SAMPLING_CUBIC
+const int RANGE_REACH = 1; // beyond the two texels of a linear filter
+#else
+const int RANGE_REACH = 0;
+#endif
+
+bool range_few_texels(vec3 low, vec3 high, ivec3 size, out ivec3 a, out ivec3 b) {
+    const float inexact = 1.0 / 128.0; // filters are
+    a = clamp(ivec3(floor(low - 0.5 - inexact)) - RANGE_REACH, ivec3(0), size - 1);
+    b = clamp(ivec3(floor(high + 0.5 + inexact)) + RANGE_REACH, ivec3(0), size - 1);
+    return all(lessThan(b - a, ivec3(RANGE_TEXELS)));
+}
+
+struct range_sum {
+    vec4 low, high;
+};
+
+void range_add_texel(inout range_sum sum, vec4 v) {
+    bvec4 number = lessThanEqual(abs(v), vec4(65504.0));
+    sum.low = min(sum.low, mix(vec4(-RANGE_END), v, number));
+    sum.high = max(sum.high, mix(vec4(RANGE_END), v, number));
+}
+
+range4 range_summed(range_sum s) {
+    return range_vec(range_make(s.low.x, s.high.x), range_make(s.low.y, s.high.y),
+                     range_make(s.low.z, s.high.z), range_make(s.low.w, s.high.w));
+}
+
+// Of texels from a to b; those of a sparse grid are looked up as grid_brick (lib/grid.glsl) does.
+range4 range_texels(sampler3D values, ivec3 a, ivec3 b) {
+    range_sum sum = range_sum(vec4(RANGE_END), vec4(-RANGE_END));
+    for (int z = a.z; z <= b.z; z++)
+        for (int y = a.y; y <= b.y; y++)
+            for (int x = a.x; x <= b.x; x++) range_add_texel(sum, texelFetch(values, ivec3(x, y, z), 0));
+    return range_summed(sum);
+}
+
+range4 range_texels(sampler3D atlas, usampler3D index, ivec3 a, ivec3 b) {
+    range_sum sum = range_sum(vec4(RANGE_END), vec4(-RANGE_END));
+    for (int z = a.z; z <= b.z; z++)
+        for (int y = a.y; y <= b.y; y++)
+            for (int x = a.x; x <= b.x; x++) {
+                uint place = texelFetch(index, ivec3(x, y, z) >> 3, 0).r;
+                ivec3 corner = ivec3(place & 1023u, (place >> 10) & 1023u, (place >> 20) & 1023u) * 9;
+                range_add_texel(sum, place == 0u ? vec4(0.0) : texelFetch(atlas, corner + (ivec3(x, y, z) & 7), 0));
+            }
+    return range_summed(sum);
+}
+
 // Of a grid whose box begins at `from` and is 1 / scale large: nothing outside of the active box,
-// `least` to `most`.
-range4 range_fetch(sampler3D ranges, range3 p, vec3 from, vec3 scale, vec3 least, vec3 most, vec3 count) {
-    range4 none = range_number(vec4(0.0));
-    if (any(greaterThan(p.low, most)) || any(lessThan(p.high, least)) || any(greaterThan(least, most)))
-        return none;
-    if (count.x == 0.0) return range_unknown4();
-    vec3 low = (max(p.low, least) - from) * scale, high = (min(p.high, most) - from) * scale;
-    range4 inside = range_bricks(ranges, count, low * count, high * count);
-    bool leaves = any(lessThan(p.low, least)) || any(greaterThan(p.high, most));
-    return leaves ? range_union(inside, none) : inside;
+// `least` to `most`. SIZE: in texels; TEXELS: what follows of range_texels.
+#define RANGE_FETCH(SIZE, TEXELS)                                                                  \
+    range4 none = range_number(vec4(0.0));                                                         \
+    if (any(greaterThan(p.low, most)) || any(lessThan(p.high, least)) ||                           \
+        any(greaterThan(least, most)))                                                             \
+        return none;                                                                               \
+    vec3 low = (max(p.low, least) - from) * scale, high = (min(p.high, most) - from) * scale;      \
+    range4 inside = count.x > 0.0 ? range_bricks(ranges, count, low * count, high * count)         \
+                                  : range_unknown4();                                              \
+    ivec3 a, b;                                                                                    \
+    if (inside.low != inside.high && range_few_texels(low * vec3(SIZE), high * vec3(SIZE), SIZE, a, b)) \
+        inside = range_texels TEXELS;                                                              \
+    bool leaves = any(lessThan(p.low, least)) || any(greaterThan(p.high, most));                   \
+    return leaves ? range_union(inside, none) : inside
+
+range4 range_fetch(sampler3D ranges, sampler3D values, range3 p, vec3 from, vec3 scale, vec3 least, vec3 most, vec3 count) {
+    ivec3 size = textureSize(values, 0);
+    RANGE_FETCH(size, (values, a, b));
+}
+
+range4 range_fetch(sampler3D ranges, sampler3D atlas, usampler3D index, ivec3 size, range3 p, vec3 from, vec3 scale, vec3 least, vec3 most, vec3 count) {
+    RANGE_FETCH(size, (atlas, index, a, b));
 }
 
 // Of one that repeats, and may be taken at any level of detail: of all of it.

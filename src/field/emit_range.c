@@ -295,17 +295,26 @@ static void write_root(emitter *e, uint32_t index) {
     emit_close(e);
 }
 
-// Of a grid, by what is known of its bricks.
+// Of a grid, by what is known of its bricks, and in small boxes by its texels.
 static void add_fetch(const program_grid *grid, size_t g, int image, strbuf *out) {
     static const char *const sets[] = {"field_ranges", "field_ranges_next"};
+    static const char *const values[] = {"field_grid", "field_next"};
+    static const char *const indices[] = {"field_index", "field_index_next"};
     const field_grid *made = grid->grid;
+    unsigned at = grid->at;
     strbuf calls[2] = {{0}};
     for (int set = 0; set < 1 + made->blends; set++) {
         strbuf_add(out, "uniform sampler3D %s_%zu_%d;\n", sets[set], g, image);
-        strbuf_add(&calls[set], "%s(%s_%zu_%d, p", made->repeats ? "range_tile" : "range_fetch",
+        strbuf_add(&calls[set], "%s(%s_%zu_%d, ", made->repeats ? "range_tile" : "range_fetch",
                    sets[set], g, image);
-        for (unsigned i = 0; i < 5; i++)
-            strbuf_add(&calls[set], ", field_numbers[%u].xyz", grid->at + i);
+        if (!made->repeats) strbuf_add(&calls[set], "%s_%zu_%d, ", values[set], g, image);
+        if (made->sparse)
+            strbuf_add(&calls[set],
+                       "%s_%zu_%d, ivec3(field_numbers[%u].w, field_numbers[%u].w, "
+                       "field_numbers[%u].w), ",
+                       indices[set], g, image, at + 2, at + 3, at + 4);
+        strbuf_add(&calls[set], "p");
+        for (unsigned i = 0; i < 5; i++) strbuf_add(&calls[set], ", field_numbers[%u].xyz", at + i);
         strbuf_add(&calls[set], ")");
     }
     strbuf_add(out, "range4 field_fetch_range_%zu_%d(range3 p) {\n", g, image);
