@@ -16,7 +16,7 @@ return sweep {
     axis { "steps", 32, 64, 128, 256, 512 },
     axis { "march.resolution", 0.25, 0.5, 1, label = "resolution" },
     axis { "voxels", 32, 64, 128, 256 },
-    axis { "lights", 0, 1, 2, 4, 8 },
+    axis { "lights", 1, 2, 4, 8 },
     axis { "size", {480, 270}, {960, 540}, {1920, 1080}, {3840, 2160} },
   },
   skip = function(row)

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LABEL_MIN = 8, LABEL_MAX = 48 };
+enum { LABEL_MIN = 8, LABEL_MAX = 64 };
 static const char *const MARCH = "march";
 
 static int width_of(size_t longest) {

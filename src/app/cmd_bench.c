@@ -118,7 +118,7 @@ static bool parse(bench_options *o, int argc, const char **argv, poptContext *co
         {"merge", 0, POPT_ARG_NONE, &o->merge, 0, "put the results of shards together", NULL},
         {"resume", 0, POPT_ARG_NONE, &o->resume, 0, "keep the rows that DIR has already", NULL},
         {"baseline", 0, POPT_ARG_STRING, &o->baseline, 0,
-         "say what became faster or slower than in these results", "FILE.json"},
+         "say what became faster or slower than in these results", "DIR|FILE.json"},
         {"report", 0, POPT_ARG_STRING, &o->report, 0,
          "write the report of these results again, and measure nothing", "DIR"},
         {"margin", 0, POPT_ARG_DOUBLE, &o->margin, 0,
@@ -186,14 +186,18 @@ static int list(const bench_options *o) {
     return status;
 }
 
-static int compare_with_baseline(const bench_options *o, const bench_results *now) {
+// `*slower`: how many rows became slower than the baseline, if there is one.
+static bool compare_with_baseline(const bench_options *o, const bench_results *now,
+                                  size_t *slower) {
     bench_results before;
-    if (!o->baseline) return APP_DONE;
-    if (!bench_read_file(o->baseline, &before)) return app_fail_input();
-    size_t slower = bench_print_changes(&before, now, o->margin / 100);
+    *slower = 0;
+    if (!o->baseline) return true;
+    bool folder = file_is_folder(o->baseline);
+    if (!(folder ? bench_read(o->baseline, &before) : bench_read_file(o->baseline, &before)))
+        return false;
+    *slower = bench_print_changes(&before, now, o->margin / 100);
     bench_results_free(&before);
-    if (!slower || !o->strict) return APP_DONE;
-    return app_fail(APP_DIFFERS, "%zu rows are slower than in %s", slower, o->baseline);
+    return true;
 }
 
 static size_t count_failed(const bench_results *r) {
@@ -210,13 +214,15 @@ static bool write_report(const bench_results *results, const char *folder) {
 }
 
 static int finish(const bench_options *o, const bench_results *r) {
+    size_t failed = count_failed(r), slower;
     bench_print_table(r);
-    int status = compare_with_baseline(o, r);
-    if (!write_report(r, o->order.folder)) return app_fail_input();
+    if (!compare_with_baseline(o, r, &slower) || !write_report(r, o->order.folder))
+        return app_fail_input();
     printf("\nwrote %s/results.json, results.csv, report.html\n", o->order.folder);
-    size_t failed = count_failed(r);
     if (failed) return app_fail(APP_BAD_INPUT, "%zu of %zu rows failed", failed, r->row_count);
-    return status;
+    if (slower && o->strict)
+        return app_fail(APP_DIFFERS, "%zu rows are slower than in %s", slower, o->baseline);
+    return APP_DONE;
 }
 
 static int run(bench_options *o) {

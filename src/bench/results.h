@@ -66,8 +66,8 @@ typedef struct bench_row {
     bench_state state;
     const char *message; // of BENCH_FAILED, BENCH_LIMIT; else ""
     bench_times gpu;     // by pass, "all" last
-    bench_times cpu;     // "submit": until a frame is handed over; "frame": until it is drawn
-    bench_times times;   // of other measures: "reload", "take_over", "start"
+    bench_times cpu; // a frame "submit"ted, drawn ("frame"), and processor time for it ("process")
+    bench_times times; // of other measures: "reload", "take_over", "start"
     bench_numbers counters;
     uint64_t device_bytes, reserved_bytes, host_bytes;
     bool compared;           // the three below are there, of the worst frame
@@ -105,6 +105,7 @@ typedef struct bench_results {
     bench_reference reference;
     bool tuned;            // of a search (tune.h), these are two of its rows:
     size_t before, chosen; // their indices
+    bool by_process;       // which went by processor time: the device is the processor
     bench_row *rows;       // by rising index; only those that were measured
     size_t row_count, row_capacity;
 } bench_results;

@@ -108,7 +108,7 @@ class Bench(Case):
         for part in ("1/2", "2/2"):
             self.succeeds("bench", "sweep.lua", "-o", "part-" + part[0], "--shard", part)
         self.assertEqual([row["index"] for row in self.rows("part-2")], [1, 3])
-        said = self.succeeds("bench", "--merge", "part-2", "part-1", "-o", "out", "--baseline", "part-1/results.json",
+        said = self.succeeds("bench", "--merge", "part-2", "part-1", "-o", "out", "--baseline", "part-1",
                              "--strict")
         self.assertIn("0 rows slower, 0 faster", said)
         self.assertEqual(self.rows(), sorted(self.rows("part-1") + self.rows("part-2"), key=lambda row: row["index"]))
