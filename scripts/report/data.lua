@@ -78,7 +78,9 @@ function data.read(value)
     name = value.sweep, title = value.title ~= "" and value.title or value.sweep, notes = value.notes,
     file = value.file, device = value.device, driver = value.driver, machine = value.machine, roil = value.roil,
     commit = value.commit, date = value.date, reference = value.reference, rows = {}, axes = {},
-    before = value.tuned and value.tuned.before, chosen = value.tuned and value.tuned.chosen, -- rows of a search
+    -- Rows of a search; and whether it went by processor time.
+    before = value.tuned and value.tuned.before, chosen = value.tuned and value.tuned.chosen,
+    by_process = value.tuned and value.tuned.by_process,
   }
   for i, row in ipairs(value.rows) do sweep.rows[i] = row_of(row) end
   for _, axis in ipairs(value.axes) do
@@ -126,9 +128,19 @@ local function metric(sweep, field, key, label)
            get = function(row) return row[field][key] end }
 end
 
+-- Processor time by core, for devices that are the processor.
+local function process_metric(sweep)
+  local cores = math.max(sweep.machine.cores, 1)
+  return { label = "processor by core", name = "a frame on all cores", get = function(row)
+    local ms = row.cpu.process
+    return ms and { median = ms.median / cores, p5 = ms.p5 / cores, p95 = ms.p95 / cores }
+  end }
+end
+
 -- The pass that the sweep moves most, then the whole frame; or whatever else was timed.
 function data.metrics(sweep)
   local out, main, moved = {}, nil, -1
+  if sweep.by_process then return { process_metric(sweep) } end
   for _, name in ipairs(data.names(sweep, "times")) do out[#out + 1] = metric(sweep, "times", name, name) end
   if #out > 0 then return out end
   for _, name in ipairs(data.names(sweep, "gpu")) do

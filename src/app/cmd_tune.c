@@ -175,21 +175,23 @@ static void on_begin(void *user, const bench_results *r, const tune_axis *axes, 
         printf("\n");
         all *= (double)axes[i].count;
     }
+    if (r->by_process)
+        printf("times are processor time by core, since the device is the processor\n");
     printf("%.0f combinations, of which few are measured:\n\n", all);
     for (size_t i = 0; i < count; i++) printf("%*s", width_of(&axes[i]), short_name(&axes[i]));
     printf("%10s %10s\n", "ms", o->order.goal.error == TUNE_FLIP ? "FLIP" : "PSNR dB");
     fflush(stdout);
 }
 
-static void on_result(void *user, const bench_row *row, bool earlier) {
+static void on_result(void *user, const bench_results *r, const bench_row *row, bool earlier) {
     tune_options *o = user;
-    const bench_time *time = bench_main_time(row);
+    double ms = tune_row_ms(r, row);
     double error = tune_row_error(row, o->order.goal.error);
     o->measured += !earlier;
     for (size_t i = 0; i < o->shown_count; i++)
         printf("%*s", width_of(&o->shown[i]), bench_axis_value(row, o->shown[i].name));
-    if (row->state == BENCH_DONE && time)
-        printf("%10.4g %10.4f%s\n", time->ms.median, error, earlier ? "  kept" : "");
+    if (!isnan(ms))
+        printf("%10.4g %10.4f%s\n", ms, error, earlier ? "  kept" : "");
     else
         printf("  %s: %s\n", bench_state_name(row->state), row->message);
     fflush(stdout);
@@ -209,7 +211,7 @@ static void print_result(const tune_options *o, const bench_results *r, const tu
     for (size_t i = 0; i < t->axis_count; i++)
         printf("%-*s %12s %12s\n", width, t->axes[i].name,
                bench_axis_value(before, t->axes[i].name), bench_axis_value(best, t->axes[i].name));
-    print_line("ms", width, bench_main_time(before)->ms.median, bench_main_time(best)->ms.median);
+    print_line("ms", width, tune_row_ms(r, before), tune_row_ms(r, best));
     print_line(kind == TUNE_FLIP ? "FLIP" : "PSNR dB", width, tune_row_error(before, kind),
                tune_row_error(best, kind));
     printf("\n%zu rows measured%s\n", o->measured,

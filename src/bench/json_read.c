@@ -316,6 +316,7 @@ static bool read_tuned(reader *r, const json_t *root, bench_results *out) {
     out->tuned = true;
     out->before = before;
     out->chosen = chosen;
+    out->by_process = json_is_true(json_object_get(from, "by_process"));
     return true;
 }
 

@@ -142,9 +142,9 @@ json_t *bench_to_tree(const bench_results *r) {
     json_object_set_new(all, "axes", axes_json(r));
     json_object_set_new(all, "reference", reference_json(r));
     if (r->tuned)
-        json_object_set_new(
-            all, "tuned",
-            json_pack("{s:o, s:o}", "before", whole(r->before), "chosen", whole(r->chosen)));
+        json_object_set_new(all, "tuned",
+                            json_pack("{s:o, s:o, s:b}", "before", whole(r->before), "chosen",
+                                      whole(r->chosen), "by_process", (int)r->by_process));
     for (size_t i = 0; i < r->row_count; i++) json_array_append_new(rows, row_json(&r->rows[i]));
     json_object_set_new(all, "rows", rows);
     return all;

@@ -165,6 +165,10 @@ static void consider(walk *w, size_t up, int far_up, size_t down, int far_down, 
     if (*count == MAX_EXCHANGES || !known_steps(w, up, far_up, &a) ||
         !known_steps(w, down, -far_down, &b))
         return;
+    // An axis that does nothing is no partner.
+    if (w->desc->by_error ? a.error > -SAME_ERROR * w->at.error
+                          : b.cost > -w->desc->noise * w->at.cost)
+        return;
     double cost = w->at.cost + a.cost + b.cost, error = w->at.error + a.error + b.error;
     double limited = w->desc->by_error ? error : cost, aim = w->desc->by_error ? cost : error;
     double now = w->desc->by_error ? w->at.cost : w->at.error;

@@ -15,9 +15,11 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { PLACES = 3, RUN = 2, LONG_RUN = 8, MOST_COMPARED = 8, EFFECT_MAX = 16 << 20 };
+enum { PLACES = 3, RUN = 1, LONG_RUN = 8, MOST_COMPARED = 8, EFFECT_MAX = 16 << 20 };
 // What times may differ by themselves, part of them: measured, but not below and above these.
 static const double LEAST_NOISE = 0.01, MOST_NOISE = 0.2;
+static const double SURE = 2.5;    // two rows are apart by so many times that by chance, rarely
+static const double SETTLE = 0.25; // seconds that a row is drawn before it is timed
 
 typedef struct tuning {
     const tune_order *order;
@@ -31,8 +33,23 @@ typedef struct tuning {
     size_t frame_count;
     uint32_t compared;
     double start; // by clock_seconds
-    bool begun, failed;
+    size_t good;  // rows that were measured
+    double noise; // sum of theirs
+    bool failed;
 } tuning;
+
+// Where the device is the processor, its time a core: what a frame takes when nothing else runs.
+// There the clock tells as much of the neighbours.
+static const bench_figure *figure_of(const bench_results *r, const bench_row *row) {
+    const bench_time *time = bench_main_time(row);
+    return r->by_process ? bench_get_time(&row->cpu, "process") : time ? &time->ms : NULL;
+}
+
+double tune_row_ms(const bench_results *r, const bench_row *row) {
+    const bench_figure *ms = row->state == BENCH_DONE ? figure_of(r, row) : NULL;
+    if (!ms) return (double)NAN;
+    return r->by_process && r->cores ? ms->median / r->cores : ms->median;
+}
 
 double tune_row_error(const bench_row *row, tune_error error) {
     if (!row->compared) return (double)NAN;
@@ -108,7 +125,7 @@ static const bench_row *find_row(const tuning *t, const size_t *rungs) {
 
 static bool may_go_on(tuning *t) {
     const tune_order *o = t->order;
-    bool late = t->begun && o->budget > 0 && clock_seconds() - t->start > o->budget;
+    bool late = t->good && o->budget > 0 && clock_seconds() - t->start > o->budget;
     return !late && !bench_is_stopped(t->session);
 }
 
@@ -127,26 +144,30 @@ static bool measure_row(tuning *t, const size_t *rungs) {
     return done;
 }
 
-// By how much the time of one frame differs from one repeat to the next, for the median of all.
-static double noise_of(const bench_row *row) {
-    const bench_time *time = bench_main_time(row);
+// By how much the time of one frame differs from one repeat to the next, for the median of all;
+// 0: not known.
+static double noise_of(const bench_results *r, const bench_row *row) {
+    const bench_figure *ms = figure_of(r, row);
     size_t frames = row->frame_count;
-    if (!time || !time->ms.values || row->repeats < 2 || time->ms.count != frames * row->repeats)
-        return LEAST_NOISE;
+    if (!ms || !ms->values || row->repeats < 2 || ms->count != frames * row->repeats) return 0;
     double sum = 0;
     for (size_t i = 0; i < frames; i++) {
-        double a = time->ms.values[i], b = time->ms.values[i + frames];
+        double a = ms->values[i], b = ms->values[i + frames];
         sum += fabs(a - b) / fmax(0.5 * (a + b), 1e-9);
     }
-    double noise = sum / (double)frames / sqrt((double)time->ms.count);
-    return fmin(fmax(noise, LEAST_NOISE), MOST_NOISE);
+    return sum / (double)frames / sqrt((double)ms->count);
 }
 
-// The first row tells how noisy times are here, and whether there is anything to search.
-static bool begin(tuning *t, const bench_row *row) {
-    t->begun = row->state == BENCH_DONE && bench_main_time(row) && row->compared;
-    t->search.noise = noise_of(row);
-    if (t->begun) return true;
+// Every row tells how noisy times are here; the first, whether there is anything to search.
+static bool learn(tuning *t, const bench_row *row) {
+    bool good = row->compared && !isnan(tune_row_ms(t->results, row));
+    if (good) {
+        t->noise += noise_of(t->results, row);
+        t->good++;
+        double apart = SURE * t->noise / (double)t->good;
+        t->search.noise = fmin(fmax(apart, LEAST_NOISE), MOST_NOISE);
+    }
+    if (t->good) return true;
     t->failed = true;
     return err_set("%s", row->message[0] ? row->message : "the device does not tell times");
 }
@@ -159,14 +180,14 @@ static bool measure(void *user, search_point *p) {
     bool earlier = row != NULL;
     if (!row && (!may_go_on(t) || !measure_row(t, p->rungs))) return false;
     if (!row) row = find_row(t, p->rungs);
-    const bench_time *time = bench_main_time(row);
+    double ms = tune_row_ms(t->results, row);
     p->cost = p->error = (double)INFINITY;
-    if (row->state == BENCH_DONE && time && row->compared) {
-        p->cost = time->ms.median;
+    if (row->compared && !isnan(ms)) {
+        p->cost = ms;
         p->error = error_size(tune_row_error(row, kind), kind);
     }
-    if (w->result) w->result(w->user, row, earlier);
-    return t->begun || begin(t, row);
+    if (w->result) w->result(w->user, t->results, row, earlier);
+    return learn(t, row);
 }
 
 // ---- what is measured ---------------------------------------------------------------------------
@@ -294,6 +315,7 @@ static void describe(tuning *t) {
     r->content = content_of(t);
     r->device = arena_string(memory, roil_device_name(device));
     r->driver = arena_string(memory, roil_device_driver(device));
+    r->by_process = strstr(r->device, "llvmpipe") != NULL;
     bench_describe_machine(r);
     describe_axes(t);
     r->has_reference = true;
@@ -366,6 +388,7 @@ bool bench_tune(const tune_order *order, bench_results *out, tune_result *result
         t.session = bench_open(&(bench_session_desc){.device = order->device,
                                                      .folder = order->folder,
                                                      .keep = order->resume,
+                                                     .settle = SETTLE,
                                                      .compared = t.compared,
                                                      .stopped = order->watcher.stopped,
                                                      .user = order->watcher.user});

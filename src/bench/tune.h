@@ -28,7 +28,8 @@ typedef struct tune_goal {
 
 typedef struct tune_watcher { // all may be NULL
     void (*begin)(void *user, const bench_results *r, const tune_axis *axes, size_t count);
-    void (*result)(void *user, const bench_row *row, bool earlier); // earlier: it was kept
+    // earlier: it was kept
+    void (*result)(void *user, const bench_results *r, const bench_row *row, bool earlier);
     bool (*stopped)(void *user);
     void *user;
 } tune_watcher;
@@ -61,4 +62,5 @@ typedef struct tune_result {
 // nothing was found.
 bool bench_tune(const tune_order *order, bench_results *out, tune_result *result);
 
-double tune_row_error(const bench_row *row, tune_error error); // FLIP, or dB; NAN: not compared
+double tune_row_ms(const bench_results *r, const bench_row *row); // NAN: it was not measured
+double tune_row_error(const bench_row *row, tune_error error);    // FLIP, or dB; NAN: not compared
