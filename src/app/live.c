@@ -190,6 +190,7 @@ static void shot_name(const live *l, int number, char *out, size_t capacity) {
 }
 
 static void take_shot(live *l, const loop *p) {
+    if (l->effect && p->drawn && waits(l)) return; // for the frame that it is named after
     l->shot = false;
     if (!l->effect || !p->drawn) return;
     char file[PATH_CAP];

@@ -217,16 +217,16 @@ static void fact(ui_rect *at, const char *name, const char *value) {
 }
 
 static void draw_facts(const live *l) {
-    enum { FACTS = 5 };
     static const double MIB = 1024 * 1024;
     char text[128], failed[32] = "";
-    ui_rect at = ui_canvas_begin("facts", 0, FACTS * ROW * ui_scale()).area;
+    roil_playback played;
+    bool plays = l->effect && roil_get_playback(l->effect, &played);
+    ui_rect at = ui_canvas_begin("facts", 0, (plays ? 5 : 4) * ROW * ui_scale()).area;
     roil_memory memory = roil_get_memory(l->r);
     snprintf(text, sizeof text, "%.1f MiB, of %.0f MiB taken", (double)memory.device / MIB,
              (double)memory.reserved / MIB);
     fact(&at, "device memory", text);
-    roil_playback played;
-    if (l->effect && roil_get_playback(l->effect, &played)) {
+    if (plays) {
         snprintf(text, sizeof text, "%" PRIu64 " frames, %" PRIu64 " late, %.1f MiB each",
                  played.shown, played.late, (double)played.frame_bytes / MIB);
         fact(&at, "sequences", text);

@@ -112,29 +112,38 @@ typedef struct lattice { // of voxel borders, along one axis
 
 // ---- storage ----------------------------------------------------------------------------------
 
-// Of the fullest grid of the fullest frame.
-static uint64_t most_active(const sequence_data *s) {
+// Voxels of the fullest grid of a frame.
+static uint64_t active_of(const vdb_info *info) {
     uint64_t most = 0;
-    for (size_t i = 0; i < s->file_count; i++)
-        for (size_t k = 0; k < s->infos[i].count; k++) {
-            const vdb_grid_info *grid = &s->infos[i].grids[k];
-            uint64_t count = grid->active_voxels;
-            if (!usable(grid)) continue;
-            if (count == 0) { // the file does not say: all of its box
-                count = 1;
-                for (int a = 0; a < 3; a++)
-                    count *= (uint64_t)((int64_t)grid->index_max[a] - grid->index_min[a] + 1);
-            }
-            if (count > most) most = count;
+    for (size_t k = 0; k < info->count; k++) {
+        const vdb_grid_info *grid = &info->grids[k];
+        uint64_t count = grid->active_voxels;
+        if (!usable(grid)) continue;
+        if (count == 0) { // the file does not say: all of its box
+            count = 1;
+            for (int a = 0; a < 3; a++)
+                count *= (uint64_t)((int64_t)grid->index_max[a] - grid->index_min[a] + 1);
         }
+        if (count > most) most = count;
+    }
     return most;
+}
+
+float sequence_growth(const sequence_data *s, uint32_t frame) {
+    uint64_t active = s->sparse ? active_of(&s->infos[frame]) : 0;
+    return active > 0 ? (float)s->most_active / (float)active : 1;
 }
 
 // Small grids are not worth a second fetch a sample. Of large ones, bricks with their borders take
 // up to about three times the bytes of the active voxels; half the dense size must be saved.
 static bool choose_sparse(sequence_data *s, uint64_t voxels) {
     const uint64_t small = (uint64_t)4 << 20, most_bricks = 1 << 24;
-    uint64_t active = most_active(s), bricks = sequence_brick_count(s);
+    uint64_t active = 0, bricks = sequence_brick_count(s);
+    for (size_t i = 0; i < s->file_count; i++) {
+        uint64_t here = active_of(&s->infos[i]);
+        if (here > active) active = here;
+    }
+    s->most_active = active;
     double across = cbrt((double)active / (SEQUENCE_BRICK * SEQUENCE_BRICK * SEQUENCE_BRICK));
     s->atlas_across = (uint32_t)clampf(ceilf((float)across), 1, 64);
     if (s->desc.storage != SEQUENCE_AUTO) return s->desc.storage == SEQUENCE_SPARSE;

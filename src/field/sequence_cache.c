@@ -48,6 +48,10 @@ static void count_bytes(sequence_data *s) {
     for (size_t i = 0; i < c->slot_count; i++) c->counts.device_bytes += c->slots[i].bytes;
 }
 
+static bool all_fit(const sequence_data *s) {
+    return s->cache.counts.largest_bytes * s->frame_count <= s->cache.budget;
+}
+
 // A slot for one more frame of so many bytes: an unused one while the budget lasts, else the least
 // recently used that neither this turn shows nor a copy fills.
 static sequence_slot *take_slot(sequence_data *s, uint64_t bytes) {
@@ -65,15 +69,16 @@ static sequence_slot *take_slot(sequence_data *s, uint64_t bytes) {
         if (slot->filling || slot->used == c->turn) continue;
         if (!oldest || slot->used < oldest->used) oldest = slot;
     }
-    bool all_fit = c->counts.largest_bytes * s->frame_count <= c->budget;
-    if (unused && (all_fit || used < SHOWN + UPLOAD_AHEAD || !oldest)) return unused;
+    if (unused && (all_fit(s) || used < SHOWN + UPLOAD_AHEAD || !oldest)) return unused;
     return oldest;
 }
 
 // ---- uploads ----------------------------------------------------------------------------------
 
-static gpu_transfer *take_transfer(sequence_data *s, gpu *g, uint64_t size) {
+// Memory to copy from, which is dear to make: if it must be, for the largest frame to come.
+static gpu_transfer *take_transfer(sequence_data *s, gpu *g, uint32_t frame, uint64_t size) {
     sequence_cache *c = &s->cache;
+    double largest = (double)size * (double)sequence_growth(s, frame);
     for (size_t i = 0; i < SEQUENCE_TRANSFERS; i++) {
         gpu_transfer *t = c->idle[i];
         if (!t || !gpu_transfer_done(g, t)) continue;
@@ -81,7 +86,8 @@ static gpu_transfer *take_transfer(sequence_data *s, gpu *g, uint64_t size) {
         if (gpu_transfer_size(t) >= size) return t;
         gpu_transfer_destroy(g, t);
     }
-    gpu_transfer *made = gpu_transfer_create(g, size + size / 8);
+    if (!all_fit(s) && largest < (double)s->desc.max_frame_bytes) size = (uint64_t)largest;
+    gpu_transfer *made = gpu_transfer_create(g, size);
     if (!made) err_prefix("%s: ", s->name);
     return made;
 }
@@ -113,14 +119,17 @@ static void note_decoded(sequence_data *s, uint32_t frame, const sequence_texels
 }
 
 // A slot with textures for these texels, and memory to copy from. False with a message.
-static bool prepare(sequence_data *s, gpu *g, const sequence_texels *texels, sequence_slot **slot,
-                    gpu_transfer **transfer) {
+static bool prepare(sequence_data *s, gpu *g, uint32_t frame, const sequence_texels *texels,
+                    sequence_slot **slot, gpu_transfer **transfer) {
     uint64_t size = sequence_upload_bytes(s, texels);
     *slot = take_slot(s, size);
     (*slot)->used = 0; // in case it fails half-way
-    bool ok = sequence_slot_fit(s, g, texels, *slot);
+    for (int i = 0; i < FIELD_GRID_IMAGES; i++)
+        if (texels->bricks[i].layers > s->cache.layers[i])
+            s->cache.layers[i] = texels->bricks[i].layers;
+    bool ok = sequence_slot_fit(s, g, texels, !all_fit(s), *slot);
     count_bytes(s);
-    if (ok) *transfer = take_transfer(s, g, size);
+    if (ok) *transfer = take_transfer(s, g, frame, size);
     return ok && *transfer;
 }
 
@@ -145,7 +154,7 @@ static sequence_slot *upload(sequence_data *s, gpu *g, uint32_t frame,
                              const sequence_texels *texels) {
     sequence_slot *slot;
     gpu_transfer *t = NULL;
-    if (!prepare(s, g, texels, &slot, &t)) return NULL;
+    if (!prepare(s, g, frame, texels, &slot, &t)) return NULL;
     sequence_upload_write(s, texels, gpu_transfer_map(t));
     bool ok = begin_copy(s, g, texels, slot, t) && gpu_transfer_finish(g, t);
     give_transfer(s, g, t);
@@ -160,7 +169,7 @@ static sequence_slot *upload(sequence_data *s, gpu *g, uint32_t frame,
 static bool move_on(sequence_data *s, gpu *g, sequence_job *job, int state) {
     if (state == JOB_DECODED) {
         note_decoded(s, job->frame, &job->texels, job->seconds);
-        if (!prepare(s, g, &job->texels, &job->slot, &job->transfer)) return false;
+        if (!prepare(s, g, job->frame, &job->texels, &job->slot, &job->transfer)) return false;
         fill(s, job->slot, job->frame, &job->texels);
         job->slot->filling = true;
         sequence_job_stage(job);

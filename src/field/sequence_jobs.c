@@ -10,12 +10,13 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_THREADS = 6 };
+enum { MOST_THREADS = 12 };
 
 void sequence_jobs_start(sequence_data *s) {
     sequence_jobs *j = &s->cache.jobs;
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    j->threads = cores > MOST_THREADS ? MOST_THREADS : cores > 2 ? (uint32_t)cores - 1 : 1;
+    j->threads = cores > 2 ? (uint32_t)cores - 2 : 1;
+    if (j->threads > MOST_THREADS) j->threads = MOST_THREADS;
     // A dense frame is decoded by way of floats, twice its bytes: not many at once.
     const uint64_t most = (uint64_t)2 << 30,
                    voxels = (uint64_t)s->size[0] * s->size[1] * s->size[2];

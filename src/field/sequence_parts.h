@@ -12,7 +12,7 @@
 #include <pthread.h>
 
 enum {
-    SEQUENCE_MAX_JOBS = 12,
+    SEQUENCE_MAX_JOBS = 16,
     SEQUENCE_TRANSFERS = 4,
     SEQUENCE_MAX_FRAMES = 100000,
     SEQUENCE_BRICK = 8, // voxels a side
@@ -91,6 +91,7 @@ typedef struct sequence_cache {
     size_t slot_count; // 0 until the first frame
     uint64_t budget;   // bytes, beyond which only a few frames are kept
     uint64_t turn;
+    uint32_t layers[FIELD_GRID_IMAGES]; // of the largest atlases so far
     sequence_jobs jobs;
     gpu_transfer *idle[SEQUENCE_TRANSFERS]; // to be used again
     field_playback counts;
@@ -115,6 +116,7 @@ typedef struct sequence_data {
     uint32_t size[3];      // of its textures
     int width;             // channels of its textures, gaps included
     bool sparse;
+    uint64_t most_active;  // voxels of the fullest frame, as its file says
     uint32_t atlas_across; // bricks along a side of the atlas, unless a frame needs more
     sequence_channel_info channels[4 * FIELD_GRID_IMAGES];
     size_t channel_count;
@@ -137,6 +139,8 @@ bool sequence_raw_read(const sequence_data *s, uint32_t frame, float *out, uint6
 // Three scalar grids "vel.x", "vel.y", "vel.z" make a vector: `part` 0..2 asks for one of them.
 const vdb_grid_info *sequence_find_grid(const vdb_info *info, const char *channel, int part);
 
+// How many times as full as this frame the fullest one is.
+float sequence_growth(const sequence_data *s, uint32_t frame);
 // The frames around a time and the share of the second. False when there is nothing to see then.
 bool sequence_frames_at(const sequence_data *s, double time, uint32_t frames[2], float *blend);
 
@@ -157,8 +161,9 @@ void sequence_atlas_write(const sequence_data *s, const sequence_texels *texels,
                           void *out);
 void sequence_texels_free(sequence_texels *texels);
 
-// Gives the slot textures that a frame fits into; false with a message.
-bool sequence_slot_fit(const sequence_data *s, gpu *g, const sequence_texels *texels,
+// Gives the slot textures that a frame fits into, with room for others if these will follow; false
+// with a message.
+bool sequence_slot_fit(const sequence_data *s, gpu *g, const sequence_texels *texels, bool others,
                        sequence_slot *slot);
 void sequence_slot_free(sequence_slot *slot, gpu *g); // what it holds; `g` may be NULL if nothing
 // The bytes of a frame as they are copied into textures.

@@ -34,13 +34,14 @@ typedef struct source {
 typedef struct builder {
     const sequence_data *s;
     sequence_texels *out;
+    vdb_file *file;
     int image, width; // components of a texel
     source sources[4];
     size_t source_count;
     uint32_t across[3]; // bricks of the box
     bool *wanted;       // of bricks: may differ from the background
     map constants;      // value of a texel -> number of a brick
-    size_t capacity;    // of the texels
+    uint32_t room;      // bricks that there may be
     uint32_t low[3], high[3];
     uint64_t active;
 } builder;
@@ -61,7 +62,7 @@ static bool open_source(builder *b, const vdb_grid_info *grid, uint32_t frame, s
                             .box = s->file_box,
                             .size = {s->file_size[0], s->file_size[1], s->file_size[2]},
                             .components = grid->components};
-    made.blocks = vdb_blocks_open(&desc);
+    made.blocks = vdb_blocks_open(&desc, b->file);
     if (!made.blocks) return false;
     made.components = grid->components;
     b->sources[b->source_count++] = made;
@@ -151,51 +152,98 @@ static bool read_background(const builder *b, uint16_t texel[4]) {
 
 // ---- values -----------------------------------------------------------------------------------
 
-// Where, in the block that was read, the voxels of a brick's row lie along x.
-static const float *row_of(const builder *b, const source *from, const float *block, int y, int z) {
-    int row = b->s->desc.y_up ? (SIDE - 1 - y) * SIDE + z : z * SIDE + y;
-    return block + (size_t)row * SIDE * (size_t)from->components;
-}
-
 // Voxels that are not zero, of values before they are rounded to halves: their count, and their
 // box.
-static void note_active(builder *b, const uint32_t low[3], const uint32_t high[3]) {
-    uint64_t count = 1;
+static void note_active(builder *b, const uint32_t low[3], const uint32_t high[3], uint64_t count) {
     for (int i = 0; i < 3; i++) {
         if (low[i] < b->low[i]) b->low[i] = low[i];
         if (high[i] > b->high[i]) b->high[i] = high[i];
-        count *= high[i] - low[i];
     }
     b->active += count;
 }
 
-// The same, of a brick's own voxels inside the box.
-static void note_voxels(builder *b, const uint32_t at[3], const bool *active) {
-    for (uint32_t i = 0; i < VOXELS; i++) {
-        const uint32_t local[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
-        uint32_t low[3], high[3];
-        bool own = active[i];
-        for (int k = 0; k < 3; k++) {
-            low[k] = at[k] + local[k];
-            high[k] = low[k] + 1;
-            own = own && local[k] < SEQUENCE_BRICK && low[k] < b->s->size[k];
-        }
-        if (own) note_active(b, low, high);
+// The same, of a brick's own voxels inside the box: a row is eight bytes, which are 0 or 1.
+static void note_voxels(builder *b, const uint32_t at[3], const uint8_t *active) {
+    uint32_t own[3], low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+        own[i] = b->s->size[i] - at[i] < SEQUENCE_BRICK ? b->s->size[i] - at[i] : SEQUENCE_BRICK;
+        low[i] = UINT32_MAX;
+        high[i] = 0;
     }
+    uint64_t mask = UINT64_MAX >> 8 * (SEQUENCE_BRICK - own[0]), across = 0, count = 0;
+    for (uint32_t z = 0; z < own[2]; z++)
+        for (uint32_t y = 0; y < own[1]; y++) {
+            uint64_t row;
+            memcpy(&row, active + (z * SIDE + y) * SIDE, sizeof row);
+            row &= mask;
+            if (row == 0) continue;
+            across |= row;
+            count += (uint64_t)__builtin_popcountll(row);
+            if (low[2] == UINT32_MAX) low[2] = at[2] + z;
+            high[2] = at[2] + z + 1;
+            if (at[1] + y < low[1]) low[1] = at[1] + y;
+            if (at[1] + y + 1 > high[1]) high[1] = at[1] + y + 1;
+        }
+    if (count == 0) return;
+    low[0] = at[0] + (uint32_t)__builtin_ctzll(across) / 8;
+    high[0] = at[0] + SEQUENCE_BRICK - (uint32_t)__builtin_clzll(across) / 8;
+    note_active(b, low, high, count);
 }
 
 static void note_brick(builder *b, const uint32_t brick[3]) {
     uint32_t low[3], high[3];
+    uint64_t count = 1;
     for (int i = 0; i < 3; i++) {
         low[i] = brick[i] * SEQUENCE_BRICK;
         high[i] = low[i] + SEQUENCE_BRICK;
         if (high[i] > b->s->size[i]) high[i] = b->s->size[i];
+        count *= high[i] - low[i];
     }
-    note_active(b, low, high);
+    note_active(b, low, high, count);
+}
+
+// half_from_float of what is at most SEQUENCE_HALF_MAX, and 0 of -0: without branches, so that the
+// compiler makes vectors of it.
+static inline uint16_t half_of(float value) {
+    uint32_t bits, rounded;
+    memcpy(&bits, &value, sizeof bits);
+    uint32_t sign = bits >> 16 & 0x8000u, magnitude = bits & 0x7fffffffu;
+    float small; // adding 0.5 aligns the mantissa of what will be subnormal
+    memcpy(&small, &magnitude, sizeof small);
+    small += 0.5f;
+    memcpy(&rounded, &small, sizeof rounded);
+    uint32_t normal = (magnitude - 0x38000000u + 0xfffu + (magnitude >> 13 & 1u)) >> 13;
+    uint32_t half = magnitude < 0x38800000u ? rounded - 0x3f000000u : normal;
+    return (uint16_t)(magnitude == 0 ? 0 : sign | half);
+}
+
+// One component of a block, `step` floats apart, to halves `width` apart; notes which are not 0.
+static void convert(const float *restrict values, int step, float gain, uint16_t *restrict out,
+                    int width, uint8_t *restrict active) {
+    uint16_t halves[VOXELS];
+    for (int i = 0; i < VOXELS; i++) {
+        float v = values[i * step] * gain;
+        v = v < -SEQUENCE_HALF_MAX ? -SEQUENCE_HALF_MAX : v;
+        v = v > SEQUENCE_HALF_MAX ? SEQUENCE_HALF_MAX : v;
+        active[i] |= v != 0;
+        halves[i] = half_of(v);
+    }
+    for (int i = 0; i < VOXELS; i++) out[i * width] = halves[i];
+}
+
+// With Y up, the rows of the block that was read lie otherwise along our Y and Z.
+static void turn(float *block, int components) {
+    float turned[VOXELS * 3];
+    size_t row = SIDE * (size_t)components;
+    for (int z = 0; z < SIDE; z++)
+        for (int y = 0; y < SIDE; y++)
+            memcpy(turned + (size_t)(z * SIDE + y) * row,
+                   block + (size_t)((SIDE - 1 - y) * SIDE + z) * row, row * sizeof *block);
+    memcpy(block, turned, VOXELS * (size_t)components * sizeof *block);
 }
 
 static void read_brick(builder *b, const uint32_t at[3], uint16_t *texels) {
-    bool active[VOXELS] = {false}, any = false;
+    uint8_t active[VOXELS] = {0};
     float block[VOXELS * 3];
     const sequence_data *s = b->s;
     int32_t corner[3] = {(int32_t)at[0], (int32_t)at[1], (int32_t)at[2]};
@@ -206,31 +254,20 @@ static void read_brick(builder *b, const uint32_t at[3], uint16_t *texels) {
     for (size_t i = 0; i < b->source_count; i++) {
         const source *from = &b->sources[i];
         b->out->bad += vdb_blocks_read(from->blocks, corner, block);
-        for (int row = 0; row < SIDE * SIDE; row++) {
-            const float *values = row_of(b, from, block, row % SIDE, row / SIDE);
-            for (int x = 0; x < SIDE; x++)
-                for (int c = 0; c < from->components; c++) {
-                    float v = valued(from, c, *values++);
-                    if (v == 0) continue;
-                    int voxel = row * SIDE + x;
-                    texels[voxel * b->width + from->channels[c]] = half_from_float(v);
-                    any = active[voxel] = true;
-                }
-        }
+        if (s->desc.y_up) turn(block, from->components);
+        for (int c = 0; c < from->components; c++)
+            convert(block + c, from->components, from->gains[c], texels + from->channels[c],
+                    b->width, active);
     }
-    if (any) note_voxels(b, at, active);
+    note_voxels(b, at, active);
 }
 
 // ---- bricks -----------------------------------------------------------------------------------
 
+// There is room for one more than b->room, and one that is about to be given back.
 static uint16_t *add_brick(builder *b) {
     sequence_bricks *bricks = &b->out->bricks[b->image];
-    size_t size = VOXELS * (size_t)b->width;
-    uint16_t *texels = b->out->images[b->image];
-    MEM_RESERVE(texels, (bricks->count + 1) * size, b->capacity);
-    b->out->images[b->image] = texels;
-    memset(texels + bricks->count * size, 0, size * sizeof *texels);
-    return texels + bricks->count++ * size;
+    return b->out->images[b->image] + bricks->count++ * VOXELS * (size_t)b->width;
 }
 
 static bool is_constant(const uint16_t *texels, int width) {
@@ -267,15 +304,23 @@ static uint32_t make_brick(builder *b, const uint32_t brick[3]) {
     return find_constant(b, first);
 }
 
-static bool check_size(const builder *b, uint32_t frame) {
+// Memory for all bricks that there may be, within the limit of a frame. What is not written to
+// takes none.
+static void make_room(builder *b) {
     const sequence_data *s = b->s;
-    uint64_t bytes = 0, most = s->desc.max_frame_bytes;
-    for (int i = 0; i <= b->image; i++) bytes += sequence_image_bytes(s, b->out, i);
-    const uint64_t places = (uint64_t)MOST_ACROSS * MOST_ACROSS * MOST_ACROSS;
-    if (b->out->bricks[b->image].count <= places && bytes <= most) return true;
-    return err_set("%s: what is not empty needs %llu MiB; the limit of a frame is %llu MiB",
-                   s->files[frame], (unsigned long long)(bytes >> 20),
-                   (unsigned long long)(most >> 20));
+    uint64_t brick = VOXELS * (uint64_t)b->width * sizeof(uint16_t), taken = 0, wanted = 1;
+    for (int i = 0; i <= b->image; i++) taken += sequence_image_bytes(s, b->out, i);
+    uint64_t most = s->desc.max_frame_bytes > taken ? s->desc.max_frame_bytes - taken : 0;
+    for (uint64_t i = 0; i < sequence_brick_count(s); i++) wanted += b->wanted[i];
+    b->room = MOST_ACROSS * MOST_ACROSS * MOST_ACROSS;
+    if (b->room > wanted) b->room = (uint32_t)wanted;
+    if (b->room > most / brick) b->room = (uint32_t)(most / brick);
+    b->out->images[b->image] = mem_alloc((size_t)((b->room + 2) * brick));
+}
+
+static bool too_large(const builder *b, uint32_t frame) {
+    return err_set("%s: what is not empty needs more than %llu MiB, the limit of a frame",
+                   b->s->files[frame], (unsigned long long)(b->s->desc.max_frame_bytes >> 20));
 }
 
 static bool make_bricks(builder *b, uint32_t frame) {
@@ -289,8 +334,8 @@ static bool make_bricks(builder *b, uint32_t frame) {
                 bool wanted = b->wanted[index - bricks->index];
                 *index = wanted ? make_brick(b, brick) : outside;
                 if (full && !wanted) note_brick(b, brick);
+                if (bricks->count > b->room) return too_large(b, frame);
             }
-            if (!check_size(b, frame)) return false;
         }
     return true;
 }
@@ -318,6 +363,7 @@ static bool build_image(builder *b, uint32_t frame) {
     bool ok = open_sources(b, frame);
     for (size_t i = 0; ok && i < b->source_count; i++)
         vdb_blocks_visit(b->sources[i].blocks, want, b);
+    if (ok) make_room(b);
     ok = ok && make_bricks(b, frame);
     if (ok) place(b, &b->out->bricks[b->image]);
     for (size_t i = 0; i < b->source_count; i++) vdb_blocks_close(b->sources[i].blocks);
@@ -326,11 +372,12 @@ static bool build_image(builder *b, uint32_t frame) {
     return ok;
 }
 
-bool sequence_decode_sparse(const sequence_data *s, uint32_t frame, sequence_texels *out) {
+static bool decode(const sequence_data *s, uint32_t frame, vdb_file *file, sequence_texels *out) {
     uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, high[3] = {0, 0, 0};
     for (int i = 0; i < FIELD_GRID_IMAGES && sequence_image_channels(s, i) > 0; i++) {
         builder b = {.s = s,
                      .out = out,
+                     .file = file,
                      .image = i,
                      .width = sequence_texel_width(s, i),
                      .low = {UINT32_MAX, UINT32_MAX, UINT32_MAX}};
@@ -345,6 +392,13 @@ bool sequence_decode_sparse(const sequence_data *s, uint32_t frame, sequence_tex
     }
     out->active = sequence_active_box(s, low, high);
     return true;
+}
+
+bool sequence_decode_sparse(const sequence_data *s, uint32_t frame, sequence_texels *out) {
+    vdb_file *file = vdb_file_open(s->files[frame]);
+    bool ok = file && decode(s, frame, file, out);
+    vdb_file_close(file);
+    return ok;
 }
 
 // ---- atlas ------------------------------------------------------------------------------------

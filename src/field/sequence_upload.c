@@ -32,11 +32,10 @@ uint64_t sequence_image_bytes(const sequence_data *s, const sequence_texels *tex
 
 // ---- textures ---------------------------------------------------------------------------------
 
-// Depth 0: an atlas of any depth.
-static bool fits(const gpu_image *image, uint32_t width, uint32_t depth) {
+static bool fits(const gpu_image *image, uint32_t width, uint32_t least, uint32_t most) {
     if (!image) return false;
     const gpu_image_desc *d = gpu_image_get_desc(image);
-    return d->width == width && d->depth >= depth && d->depth <= 2 * depth;
+    return d->width == width && d->depth >= least && d->depth <= most;
 }
 
 static gpu_image *create(const sequence_data *s, gpu *g, gpu_format format, uint32_t width,
@@ -51,30 +50,34 @@ static gpu_image *create(const sequence_data *s, gpu *g, gpu_format format, uint
     return image;
 }
 
-// An atlas has room for an eighth more than its frame needs, so that the frames after it, which may
-// be larger, find it large enough; one that is more than twice too large is given back.
+// An atlas for one frame has just its size. One that others will follow in is as large as the
+// largest so far, and an eighth: making textures anew for every frame would cost more than the
+// copy.
 static bool fit_sparse(const sequence_data *s, gpu *g, const sequence_bricks *bricks, int image,
-                       sequence_slot *slot) {
+                       uint32_t largest, sequence_slot *slot) {
     if (!slot->index[image]) {
         uint32_t size[3];
         for (int i = 0; i < 3; i++) size[i] = (s->size[i] + SEQUENCE_BRICK - 1) / SEQUENCE_BRICK;
         slot->index[image] = create(s, g, GPU_R32U, size[0], size[1], size[2]);
         if (!slot->index[image]) return false;
     }
-    uint32_t width = bricks->across * SIDE;
-    if (fits(slot->images[image], width, bricks->layers * SIDE)) return true;
+    uint32_t width = bricks->across * SIDE, least = bricks->layers * SIDE;
+    uint32_t wanted = largest > bricks->layers ? largest * SIDE : least;
+    if (fits(slot->images[image], width, least, wanted + wanted / 2)) return true;
     gpu_image_destroy(g, slot->images[image]);
-    slot->images[image] = create(s, g, formats[sequence_image_channels(s, image)], width, width,
-                                 (bricks->layers + bricks->layers / 8) * SIDE);
+    if (largest > 0) wanted += wanted / SIDE / 8 * SIDE;
+    slot->images[image] =
+        create(s, g, formats[sequence_image_channels(s, image)], width, width, wanted);
     return slot->images[image] != NULL;
 }
 
-bool sequence_slot_fit(const sequence_data *s, gpu *g, const sequence_texels *texels,
+bool sequence_slot_fit(const sequence_data *s, gpu *g, const sequence_texels *texels, bool others,
                        sequence_slot *slot) {
     slot->bytes = 0;
     for (int i = 0; i < FIELD_GRID_IMAGES && sequence_image_channels(s, i) > 0; i++) {
         gpu_format format = formats[sequence_image_channels(s, i)];
-        if (s->sparse && !fit_sparse(s, g, &texels->bricks[i], i, slot)) return false;
+        uint32_t largest = others ? s->cache.layers[i] : 0;
+        if (s->sparse && !fit_sparse(s, g, &texels->bricks[i], i, largest, slot)) return false;
         if (!slot->images[i])
             slot->images[i] = create(s, g, format, s->size[0], s->size[1], s->size[2]);
         if (!slot->images[i]) return false;

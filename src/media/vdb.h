@@ -49,10 +49,14 @@ bool vdb_sample(const vdb_sample_desc *desc, uint64_t *bad);
 
 // One grid of a file, kept as the file has it and read in blocks; values are those of vdb_sample.
 // For one thread at a time.
-enum { VDB_BLOCK = 9 }; // voxels a side: 8, and those that linear filtering needs beyond
+enum { VDB_BLOCK = 9 };           // voxels a side: 8, and those that linear filtering needs beyond
+typedef struct vdb_file vdb_file; // several grids of which are wanted: read once
 typedef struct vdb_blocks vdb_blocks;
-vdb_blocks *vdb_blocks_open(const vdb_sample_desc *desc); // of any size; `out` is not used
-void vdb_blocks_close(vdb_blocks *b);                     // NULL is fine
+vdb_file *vdb_file_open(const char *path);
+void vdb_file_close(vdb_file *f); // NULL is fine
+// `desc` may have any size, and its `out` is not used. `opened` is its file, or NULL.
+vdb_blocks *vdb_blocks_open(const vdb_sample_desc *desc, const vdb_file *opened);
+void vdb_blocks_close(vdb_blocks *b); // NULL is fine
 // Names boxes of voxels (inclusive, within the size) outside of which all is background.
 typedef void vdb_block_found(void *user, const int32_t low[3], const int32_t high[3]);
 void vdb_blocks_visit(const vdb_blocks *b, vdb_block_found *found, void *user);

@@ -148,10 +148,17 @@ template <class Grid> class blocks : public vdb_blocks {
         for (auto it = grid_->tree().cbeginLeaf(); it; ++it) {
             bool same = true;
             for (openvdb::Index i = 0; i < leaf::SIZE && same; i++)
-                same = value(it->getValue(i)) == nothing;
+                same = value_of(*it, i) == nothing;
             if (!same && !report(it->getNodeBoundingBox())) return false;
         }
         return true;
+    }
+
+    static value value_of(const leaf &l, openvdb::Index i) {
+        if constexpr (std::is_same<value, bool>::value)
+            return l.getValue(i);
+        else
+            return l.buffer().data()[i];
     }
 
     // The part of the block from `at` on that lies in the leaf or tile that holds `cell`.
@@ -166,12 +173,10 @@ template <class Grid> class blocks : public vdb_blocks {
                     for (int z = low[2]; z < high[2]; z++) to[z * side * side] = constant;
                     continue;
                 }
-                openvdb::Index from = leaf::coordToOffset(at + Coord(x, y, 0));
-                from &= ~openvdb::Index(leaf_side - 1); // z varies fastest
-                for (int z = low[2]; z < high[2]; z++) {
-                    openvdb::Index i = from + openvdb::Index((at[2] + z) & (leaf_side - 1));
-                    to[z * side * side] = result(value(l->getValue(i)));
-                }
+                // z varies fastest, and no part of a block crosses the end of a leaf.
+                openvdb::Index from = leaf::coordToOffset(at + Coord(x, y, low[2]));
+                for (int z = low[2]; z < high[2]; z++)
+                    to[z * side * side] = result(value_of(*l, from + openvdb::Index(z - low[2])));
             }
     }
 
@@ -265,11 +270,26 @@ vdb_blocks *make_any(GridBase::Ptr grid, vdb_value value, const affine &t,
 
 } // namespace
 
-extern "C" vdb_blocks *vdb_blocks_open(const vdb_sample_desc *desc) {
+struct vdb_file {
+    file contents;
+};
+
+extern "C" vdb_file *vdb_file_open(const char *path) {
+    auto made = std::make_unique<vdb_file>();
+    bool done = guarded(path, [&] { return made->contents.open(path); });
+    return done ? made.release() : nullptr;
+}
+
+extern "C" void vdb_file_close(vdb_file *f) {
+    delete f;
+}
+
+extern "C" vdb_blocks *vdb_blocks_open(const vdb_sample_desc *desc, const vdb_file *opened) {
     vdb_blocks *made = nullptr;
     guarded(desc->path, [&] {
-        file f;
-        if (!f.open(desc->path)) return false;
+        file own;
+        if (!opened && !own.open(desc->path)) return false;
+        const file &f = opened ? opened->contents : own;
         const vdb_layout_grid *g = f.find(desc->grid);
         if (!g) return no_such_grid(f, *desc);
         affine transform;

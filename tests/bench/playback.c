@@ -86,7 +86,8 @@ static void in_time(bench *b) {
     roil_effect_info info = roil_get_info(e);
     double start = clock_seconds(), next = start, counted = start;
     roil_playback before = {0};
-    for (double now = start; now - start < b->seconds + warm; now = clock_seconds()) {
+    for (double now = start; now - start < b->seconds + warm || b->count == 0;
+         now = clock_seconds()) {
         double at = (now - start) * info.fps;
         draw(e, info.first_frame + at);
         if (now - start >= warm) {
