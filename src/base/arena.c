@@ -2,6 +2,7 @@
 // block of their own, put behind the newest so that its free space stays in use.
 #include "base/arena.h"
 #include "base/memory.h"
+#include <sched.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,9 +22,7 @@ static arena_block *block_create(size_t size) {
     return block;
 }
 
-void *arena_alloc(arena *a, size_t size) {
-    if (size > SIZE_MAX / 2) err_out_of_memory(size);
-    size = (size + ALIGN - 1) & ~(size_t)(ALIGN - 1);
+static void *carve(arena *a, size_t size) {
     if (size > BLOCK_SIZE / 4) {
         arena_block *own = block_create(size);
         own->used = size;
@@ -42,6 +41,14 @@ void *arena_alloc(arena *a, size_t size) {
     }
     void *object = a->block->data + a->block->used;
     a->block->used += size;
+    return object;
+}
+
+void *arena_alloc(arena *a, size_t size) {
+    if (size > SIZE_MAX / 2) err_out_of_memory(size);
+    while (__atomic_exchange_n(&a->taken, true, __ATOMIC_ACQUIRE)) sched_yield();
+    void *object = carve(a, (size + ALIGN - 1) & ~(size_t)(ALIGN - 1));
+    __atomic_store_n(&a->taken, false, __ATOMIC_RELEASE);
     return object;
 }
 

@@ -1,12 +1,15 @@
-// Arena: objects that live and die together (one load, one frame). Blocks never move.
+// Arena: objects that live and die together (one load, one frame). Blocks never move. Any thread
+// may allocate; freeing is the owner's.
 #pragma once
 #include "base/error.h"
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct arena_block arena_block;
 typedef struct arena {
     arena_block *block; // newest block first; zero-initialised is an empty arena
+    bool taken;         // by a thread that allocates; it is done sooner than one that sleeps wakes
 } arena;
 
 void *arena_alloc(arena *a, size_t size); // zeroed, aligned to 16

@@ -11,13 +11,18 @@
 #include <string.h>
 #include <unistd.h>
 
+// Shaders of several passes are read side by side.
 static void add_read_file(void *user, const char *path) {
-    effect_add_file(user, path);
+    effect *e = user;
+    pthread_mutex_lock(&e->reading);
+    effect_add_file(e, path);
+    pthread_mutex_unlock(&e->reading);
 }
 
 effect *effect_create(const effect_desc *desc) {
     effect *e = mem_alloc(sizeof *e);
     char folder[PATH_CAP], shader_cache[PATH_CAP];
+    pthread_mutex_init(&e->reading, NULL);
     path_folder(folder, desc->file);
     e->device = desc->device;
     e->reference = desc->reference;
@@ -77,6 +82,7 @@ void effect_destroy(effect *e) {
     if (e->hooks.destroy) e->hooks.destroy(e->hooks.user);
     shader_library_destroy(e->own_library);
     pass_host_free(&e->host);
+    pthread_mutex_destroy(&e->reading);
     mem_free(e->params);
     mem_free(e->values);
     mem_free(e->passes);

@@ -1,6 +1,7 @@
 // The inside of an effect, for the files of this layer only.
 #pragma once
 #include "effect/effect.h"
+#include <pthread.h>
 
 void effect_copy_settings(effect *e, const effect_setting *settings, size_t count);
 // Applies the settings that name this pass; called before it enters the graph.
@@ -90,10 +91,11 @@ struct effect {
     size_t held_count, held_capacity;
     scene_mesh **meshes;
     size_t mesh_count, mesh_capacity;
-    struct sky_image *sky; // of the scene, where it has one
-    const char *sky_file;  // whose it is
-    shader_reader reader;  // adds to `files`
-    const char **files;    // absolute
+    struct sky_image *sky;   // of the scene, where it has one
+    const char *sky_file;    // whose it is
+    shader_reader reader;    // adds to `files`
+    pthread_mutex_t reading; // held by it
+    const char **files;      // absolute
     size_t file_count, file_capacity;
 
     graph_image pictures[3]; // by effect_picture

@@ -1,6 +1,7 @@
 // An effect at work: built once for a size, then one frame after the other.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/worker.h"
 #include "effect/effect_impl.h"
 #include "scene/bvh.h"
 #include "scene/sky_image.h"
@@ -47,19 +48,23 @@ static bool make_bvh(effect *e) {
 
 enum { ANY_SIZE = 64 }; // of a picture: finds what is wrong with a graph whatever its size
 
+static bool check_one(void *user, size_t index) {
+    return pass_check(((effect *)user)->passes[index]);
+}
+
+static bool build_one(void *user, size_t index) {
+    return pass_build(((effect *)user)->passes[index]);
+}
+
 bool effect_check(effect *e) {
-    if (!check_reference(e) || !add_outputs(e) || !make_bvh(e)) return false;
-    for (size_t i = 0; i < e->pass_count; i++)
-        if (!pass_check(e->passes[i])) return false;
-    return graph_compile(e->graph, ANY_SIZE, ANY_SIZE);
+    return check_reference(e) && add_outputs(e) && make_bvh(e) &&
+           worker_each(e->pass_count, check_one, e) && graph_compile(e->graph, ANY_SIZE, ANY_SIZE);
 }
 
 bool effect_compile(effect *e) {
     if (!check_reference(e) || !add_outputs(e) || !make_bvh(e) ||
-        !graph_compile(e->graph, ANY_SIZE, ANY_SIZE))
+        !graph_compile(e->graph, ANY_SIZE, ANY_SIZE) || !worker_each(e->pass_count, build_one, e))
         return false;
-    for (size_t i = 0; i < e->pass_count; i++)
-        if (!pass_build(e->passes[i])) return false;
     e->width = e->height = ANY_SIZE;
     e->compiled = true;
     return true;

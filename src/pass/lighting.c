@@ -3,6 +3,7 @@
 // one shader file.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/worker.h"
 #include "pass/builtin.h"
 #include "pass/pass_impl.h"
 #include "shared.h"
@@ -237,23 +238,30 @@ static bool is_used(const lighting_state *s, lighting_stage stage) {
     return s->fire_count > 0 || (stage != STAGE_FIRE && stage != STAGE_GATHER);
 }
 
-bool lighting_check(pass *p) {
+static bool check_stage(void *user, size_t index) {
+    pass *p = user;
+    lighting_stage stage = (lighting_stage)index;
     shader_binary binary;
-    for (int i = 0; i < STAGES; i++)
-        if (is_used(p->state, (lighting_stage)i) && !compile(p, (lighting_stage)i, &binary))
-            return false;
-    return true;
+    return !is_used(p->state, stage) || compile(p, stage, &binary);
+}
+
+bool lighting_check(pass *p) {
+    return worker_each(STAGES, check_stage, p);
+}
+
+static bool build_stage(void *user, size_t index) {
+    pass *p = user;
+    lighting_state *s = p->state;
+    if (!is_used(s, (lighting_stage)index)) return true;
+    if (!compile(p, (lighting_stage)index, &s->binary[index])) return false;
+    s->pipeline[index] = pass_create_compute(p, &s->binary[index]);
+    s->block[index] = arena_alloc(p->host->memory, pass_block_size(&s->binary[index]) + 16);
+    return s->pipeline[index] != NULL;
 }
 
 bool lighting_build(pass *p) {
     lighting_state *s = p->state;
-    for (int i = 0; i < STAGES; i++) {
-        if (!is_used(s, (lighting_stage)i)) continue;
-        if (!compile(p, (lighting_stage)i, &s->binary[i])) return false;
-        s->pipeline[i] = pass_create_compute(p, &s->binary[i]);
-        if (!s->pipeline[i]) return false;
-        s->block[i] = arena_alloc(p->host->memory, pass_block_size(&s->binary[i]) + 16);
-    }
+    if (!worker_each(STAGES, build_stage, p)) return false;
     p->binary = s->binary[STAGE_LIGHTS];
     return true;
 }

@@ -90,8 +90,10 @@ typedef enum pass_key { PASS_UNKNOWN, PASS_UNIFORM, PASS_OPTION, PASS_FIELD, PAS
 pass_key pass_find_key(const pass *p, const char *name, size_t *index);
 
 bool pass_declare(pass *p); // checks that what is required is there; adds images and passes
-bool pass_check(pass *p);   // compiles the shaders; needs no device
-bool pass_build(pass *p);   // shaders and pipelines: needs a device, but any thread may do it
+// Compiles the shaders; needs no device. Passes of one effect may be checked, or built, side by
+// side.
+bool pass_check(pass *p);
+bool pass_build(pass *p); // shaders and pipelines: needs a device, but any thread may do it
 // After pass_build, on the device's thread: what the pass itself keeps on the device.
 bool pass_allocate(pass *p);
 // After pass_build: evaluates the numbers of a frame as recording it would. Any thread.

@@ -3,6 +3,7 @@
 #include "pass/ranges.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include <pthread.h>
 #include <string.h>
 
 static const char shader[] = "pass/grid_ranges.comp";
@@ -62,6 +63,18 @@ static bool build_kind(pass *p, gpu_format format, bool sparse) {
     return made.pipeline != NULL;
 }
 
+static pthread_mutex_t building = PTHREAD_MUTEX_INITIALIZER; // passes are built side by side
+
+static bool need_kind(pass *p, const field_texture *t) {
+    pthread_mutex_lock(&building);
+    if (!p->host->ranges) p->host->ranges = mem_alloc(sizeof *p->host->ranges);
+    gpu_format format = format_of(t);
+    bool there = find_kind(p->host->ranges, format, t->grid->sparse) ||
+                 build_kind(p, format, t->grid->sparse);
+    pthread_mutex_unlock(&building);
+    return there;
+}
+
 bool pass_ranges_build(pass *p, const shader_binary *binary) {
     const field_texture *textures;
     size_t count = field_program_textures(p->program, &textures);
@@ -69,12 +82,7 @@ bool pass_ranges_build(pass *p, const shader_binary *binary) {
         bool read = false;
         for (size_t k = 0; k < binary->slot_count && textures[i].ranges; k++)
             read = read || strcmp(binary->slots[k].name, textures[i].glsl_name) == 0;
-        if (!read) continue;
-        if (!p->host->ranges) p->host->ranges = mem_alloc(sizeof *p->host->ranges);
-        gpu_format format = format_of(&textures[i]);
-        bool sparse = textures[i].grid->sparse;
-        if (!find_kind(p->host->ranges, format, sparse) && !build_kind(p, format, sparse))
-            return false;
+        if (read && !need_kind(p, &textures[i])) return false;
     }
     return true;
 }

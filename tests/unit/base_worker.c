@@ -147,6 +147,53 @@ static void job_may_submit_the_next(void **state) {
     worker_destroy(c.owner);
 }
 
+// ---- a loop over all cores --------------------------------------------------------------------
+
+static bool count_index(void *user, size_t index) {
+    atomic_int *counts = user;
+    atomic_fetch_add(&counts[index], 1);
+    return true;
+}
+
+static void each_index_is_called_once(void **state) {
+    (void)state;
+    static atomic_int counts[JOBS];
+    for (size_t count = 0; count <= JOBS; count = 2 * count + 1) {
+        memset(counts, 0, sizeof counts);
+        assert_true(worker_each(count, count_index, counts));
+        for (size_t i = 0; i < JOBS; i++) assert_int_equal(counts[i], i < count);
+    }
+}
+
+static bool fail_from_300(void *user, size_t index) {
+    atomic_fetch_add((atomic_int *)user, 1);
+    return index < 300 || err_set("index %zu", index);
+}
+
+static void the_first_failure_is_told(void **state) {
+    (void)state;
+    for (int round = 0; round < 50; round++) {
+        atomic_int calls = 0;
+        err_clear();
+        assert_false(worker_each(JOBS, fail_from_300, &calls));
+        assert_string_equal(err_get(), "index 300");
+        assert_true(calls > 300 && calls < JOBS);
+    }
+}
+
+static bool nest(void *user, size_t index) {
+    (void)index;
+    return worker_each(20, count_index, user);
+}
+
+static void loops_nest(void **state) {
+    (void)state;
+    static atomic_int counts[20];
+    memset(counts, 0, sizeof counts);
+    assert_true(worker_each(10, nest, counts));
+    for (int i = 0; i < 20; i++) assert_int_equal(counts[i], 10);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_thread_keeps_the_order),
@@ -154,6 +201,9 @@ int main(void) {
         cmocka_unit_test(threads_run_side_by_side),
         cmocka_unit_test(destroying_runs_what_is_queued),
         cmocka_unit_test(job_may_submit_the_next),
+        cmocka_unit_test(each_index_is_called_once),
+        cmocka_unit_test(the_first_failure_is_told),
+        cmocka_unit_test(loops_nest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

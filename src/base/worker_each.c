@@ -1,0 +1,63 @@
+// Indices are handed out in order, and none after a failure: every index before the first that
+// fails was handed out, so that which message is kept does not depend on how fast the threads are.
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/worker.h"
+#include <pthread.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MAX_THREADS = 8 };
+
+typedef struct loop {
+    bool (*run)(void *user, size_t index);
+    void *user;
+    size_t count;
+    pthread_mutex_t lock; // guards what follows
+    size_t next, failed;  // failed: the first that was; `count`: none
+    char *message;
+} loop;
+
+static bool take(loop *l, size_t *index) {
+    pthread_mutex_lock(&l->lock);
+    bool more = l->next < l->count && l->failed == l->count;
+    if (more) *index = l->next++;
+    pthread_mutex_unlock(&l->lock);
+    return more;
+}
+
+static void note_failure(loop *l, size_t index) {
+    const char *message = err_get(); // of this thread
+    pthread_mutex_lock(&l->lock);
+    if (index < l->failed) {
+        l->failed = index;
+        mem_free(l->message);
+        l->message = mem_copy(message, strlen(message) + 1);
+    }
+    pthread_mutex_unlock(&l->lock);
+}
+
+static void *go(void *user) {
+    loop *l = user;
+    size_t index;
+    while (take(l, &index))
+        if (!l->run(l->user, index)) note_failure(l, index);
+    return NULL;
+}
+
+bool worker_each(size_t count, bool (*run)(void *user, size_t index), void *user) {
+    loop l = {.run = run, .user = user, .count = count, .failed = count};
+    pthread_mutex_init(&l.lock, NULL);
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    pthread_t threads[MAX_THREADS];
+    size_t started = 0; // fewer than wanted do as well
+    while (started + 1 < count && started < MAX_THREADS && (long)started + 1 < cores &&
+           pthread_create(&threads[started], NULL, go, &l) == 0)
+        started++;
+    go(&l);
+    for (size_t i = 0; i < started; i++) pthread_join(threads[i], NULL);
+    pthread_mutex_destroy(&l.lock);
+    bool done = l.failed == count || err_set("%s", l.message);
+    mem_free(l.message);
+    return done;
+}
