@@ -1,11 +1,23 @@
 // Ranges of grids and palettes, from textures of the least and greatest values.
 //
-// A grid's texture (src/field/grid_range.h) has levels beside each other along x, each of half the
+// A grid's texture (src/pass/ranges.c) has levels beside each other along x, each of half the
 // size of the one before it, rounded up. At even z are the least values, above them the greatest.
 #ifndef LIB_RANGE_GRID_GLSL
 #define LIB_RANGE_GRID_GLSL
 #include "lib/range.glsl"
 #include "lib/grid.glsl"
+
+// Of the bricks at eight corners, of a level that lies at x.
+range4 range_corners(sampler3D ranges, int x, ivec3 a, ivec3 b) {
+    vec4 least = vec4(RANGE_END), most = vec4(-RANGE_END);
+    for (int i = 0; i < 8; i++) {
+        ivec3 at = mix(a, b, notEqual(ivec3(i) & ivec3(1, 2, 4), ivec3(0)));
+        least = min(least, texelFetch(ranges, ivec3(x + at.x, at.y, 2 * at.z), 0));
+        most = max(most, texelFetch(ranges, ivec3(x + at.x, at.y, 2 * at.z + 1), 0));
+    }
+    return range_vec(range_make(least.x, most.x), range_make(least.y, most.y),
+                     range_make(least.z, most.z), range_make(least.w, most.w));
+}
 
 // Over a box given in bricks, of which there are `count` along each axis: at the first level where
 // no more than two along an axis cover it (hierarchical min/max; Greene, "Hierarchical Z-buffer
@@ -21,14 +33,7 @@ range4 range_bricks(sampler3D ranges, vec3 count, vec3 low, vec3 high) {
         a >>= 1;
         b >>= 1;
     }
-    vec4 least = vec4(RANGE_END), most = vec4(-RANGE_END);
-    for (int i = 0; i < 8; i++) {
-        ivec3 at = mix(a, b, notEqual(ivec3(i) & ivec3(1, 2, 4), ivec3(0)));
-        least = min(least, texelFetch(ranges, ivec3(x + at.x, at.y, 2 * at.z), 0));
-        most = max(most, texelFetch(ranges, ivec3(x + at.x, at.y, 2 * at.z + 1), 0));
-    }
-    return range_vec(range_make(least.x, most.x), range_make(least.y, most.y),
-                     range_make(least.z, most.z), range_make(least.w, most.w));
+    return range_corners(ranges, x, a, b);
 }
 
 // Over a box given in texels, by these themselves, where no more than RANGE_TEXELS along an axis take
@@ -108,9 +113,48 @@ range4 range_fetch(sampler3D ranges, sampler3D atlas, usampler3D index, ivec3 si
     RANGE_FETCH(size, (atlas, index, a, b));
 }
 
-// Of one that repeats, and may be taken at any level of detail: of all of it.
-range4 range_tile(sampler3D ranges, range3 p, vec3 from, vec3 scale, vec3 least, vec3 most, vec3 count) {
-    return range_bricks(ranges, count, vec3(0.0), count);
+// Greatest width (m, as grid_width) of the samples that ranges are asked for; a shader may set it.
+// Below 0: they may be of any.
+float range_width = -1.0;
+
+// By bricks of one that repeats; from a to b of them, of `count`. Their levels repeat like the grid
+// while they can be halved.
+range4 range_repeated(sampler3D ranges, vec3 count, vec3 a, vec3 b) {
+    int x = 0;
+    vec3 size = count;
+    while (any(greaterThan(b - a, vec3(1.0)))) {
+        if (any(notEqual(fract(0.5 * size), vec3(0.0)))) return range_bricks(ranges, count, vec3(0.0), count);
+        x += int(size.x);
+        size *= 0.5;
+        a = floor(0.5 * a);
+        b = floor(0.5 * b);
+    }
+    a -= size * floor((a + 0.5) / size);
+    b -= size * floor((b + 0.5) / size);
+    return range_corners(ranges, x, ivec3(a), ivec3(b));
+}
+
+// Of one that repeats, taken at levels where samples are as wide as so many texels: those filter as
+// far as three times the width.
+range4 range_tile(sampler3D ranges, sampler3D values, range3 p, float width, vec3 from, vec3 scale, vec3 count) {
+    vec3 size = vec3(textureSize(values, 0)), low = (p.low - from) * scale, high = (p.high - from) * scale;
+    if (width < 0.0 || any(notEqual(count, floor(count))) || any(greaterThanEqual(high - low, vec3(1.0))) ||
+        any(greaterThan(abs(low), vec3(1e4))))
+        return range_bricks(ranges, count, vec3(0.0), count);
+    const float inexact = 1.0 / 128.0; // filters are
+    vec3 a = floor(low * size - 0.5 - inexact), b = floor(high * size + 0.5 + inexact);
+    if (width > 1.0 || any(greaterThanEqual(b - a, vec3(RANGE_TEXELS)))) {
+        float beside = width > 1.0 ? 0.75 * width : 0.0; // bricks have 4 texels
+        return range_repeated(ranges, count, floor(low * count - beside), floor(high * count + beside));
+    }
+    range_sum sum = range_sum(vec4(RANGE_END), vec4(-RANGE_END));
+    for (float z = a.z; z <= b.z; z++)
+        for (float y = a.y; y <= b.y; y++)
+            for (float x = a.x; x <= b.x; x++) {
+                vec3 at = vec3(x, y, z);
+                range_add_texel(sum, texelFetch(values, ivec3(at - size * floor((at + 0.5) / size)), 0));
+            }
+    return range_summed(sum);
 }
 
 // Of a palette, between two positions in 0..1.

@@ -14,6 +14,7 @@ uniform vec3 size;         // of the grid
 uniform vec3 count;        // of bricks, at the level at hand
 uniform vec3 from;         // and at the one before
 uniform int level;
+uniform bool repeats;      // the grid goes on beyond its sides as it begins at the others
 uniform int x;             // where the level lies
 uniform int from_x;        // and the one before
 
@@ -46,7 +47,8 @@ void from_values(ivec3 at, bool inside) {
     vec4 low = vec4(END), high = vec4(-END);
     for (int k = 0; inside && k < REACH * REACH * REACH; k++) {
         ivec3 texel = corner + ivec3(k % REACH, k / REACH % REACH, k / (REACH * REACH));
-        vec4 v = value(clamp(texel, ivec3(0), ivec3(size) - 1));
+        ivec3 end = ivec3(size);
+        vec4 v = value(repeats ? (texel + 2 * end) % end : clamp(texel, ivec3(0), end - 1));
         bvec4 number = lessThanEqual(abs(v), vec4(65504.0));
         low = min(low, mix(vec4(-END), v, number));
         high = max(high, mix(vec4(END), v, number));

@@ -16,6 +16,7 @@ const float PART = 0.25;   // of the greatest extinction that the range allows
 void main() {
     ivec3 cell = ivec3(gl_GlobalInvocationID), count = imageSize(majorants);
     if (any(greaterThanEqual(cell, count))) return;
+    range_width = 0.0; // of paths: grids as fine as they are
     vec3 size = (box_max - box_min) / vec3(count), most = medium_extinction();
     float highest = max(most.r, max(most.g, most.b));
     float glowing = GLOWING / max(size.x, max(size.y, size.z));

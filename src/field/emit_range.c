@@ -145,14 +145,23 @@ static void range_call(emitter *e, uint32_t index) {
     strbuf_free(&call);
 }
 
+// Of a tile, how wide the samples are, too: those of levels reach farther.
 static void range_fetch(emitter *e, size_t grid, int image, uint32_t at, char out[EXPR]) {
     char from[EXPR];
+    strbuf width = {0};
     uint32_t index = emit_find_op(e, OP_FETCH, 4 * (uint32_t)grid + (uint32_t)image, at, 4, 0);
     name_range(index, out);
     if (e->failed || emit_is_visible(e, index)) return;
     e->p->grids[grid].ranged[image] = true;
     range_point(e, at, from);
-    declare_range(e, index, "field_fetch_range_%zu_%d(%s)", grid, image, from);
+    const field_grid *made = e->p->grids[grid].grid;
+    if (made->levels)
+        emit_width(e, "range_width", at, &width);
+    else if (made->repeats)
+        strbuf_add(&width, ", 0.0");
+    declare_range(e, index, "field_fetch_range_%zu_%d(%s%s)", grid, image, from,
+                  strbuf_text(&width));
+    strbuf_free(&width);
 }
 
 static void range_grid(emitter *e, uint32_t index) {
@@ -295,8 +304,23 @@ static void write_root(emitter *e, uint32_t index) {
     emit_close(e);
 }
 
+static void add_tile_fetch(const program_grid *grid, size_t g, int image, strbuf *out) {
+    unsigned at = grid->at;
+    strbuf_add(out,
+               "uniform sampler3D field_ranges_%zu_%d;\n"
+               "range4 field_fetch_range_%zu_%d(range3 p, float width) {\n"
+               "    return range_tile(field_ranges_%zu_%d, field_grid_%zu_%d, p, "
+               "width * field_numbers[%u].w, field_numbers[%u].xyz, field_numbers[%u].xyz, "
+               "field_numbers[%u].xyz);\n}\n",
+               g, image, g, image, g, image, g, image, at + 1, at, at + 1, at + 4);
+}
+
 // Of a grid, by what is known of its bricks, and in small boxes by its texels.
 static void add_fetch(const program_grid *grid, size_t g, int image, strbuf *out) {
+    if (grid->grid->repeats) {
+        add_tile_fetch(grid, g, image, out);
+        return;
+    }
     static const char *const sets[] = {"field_ranges", "field_ranges_next"};
     static const char *const values[] = {"field_grid", "field_next"};
     static const char *const indices[] = {"field_index", "field_index_next"};
@@ -305,9 +329,8 @@ static void add_fetch(const program_grid *grid, size_t g, int image, strbuf *out
     strbuf calls[2] = {{0}};
     for (int set = 0; set < 1 + made->blends; set++) {
         strbuf_add(out, "uniform sampler3D %s_%zu_%d;\n", sets[set], g, image);
-        strbuf_add(&calls[set], "%s(%s_%zu_%d, ", made->repeats ? "range_tile" : "range_fetch",
-                   sets[set], g, image);
-        if (!made->repeats) strbuf_add(&calls[set], "%s_%zu_%d, ", values[set], g, image);
+        strbuf_add(&calls[set], "range_fetch(%s_%zu_%d, %s_%zu_%d, ", sets[set], g, image,
+                   values[set], g, image);
         if (made->sparse)
             strbuf_add(&calls[set],
                        "%s_%zu_%d, ivec3(field_numbers[%u].w, field_numbers[%u].w, "

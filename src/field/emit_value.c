@@ -271,9 +271,9 @@ static void compute_node(emitter *e, uint32_t index) {
 }
 
 // The width of a sample, in the space of a moved point: as far as transforms, which scale, say it.
-static void write_width(const emitter *e, uint32_t at, strbuf *out) {
+void emit_width(const emitter *e, const char *width, uint32_t at, strbuf *out) {
     const int most = 8;
-    strbuf_add(out, ", grid_width");
+    strbuf_add(out, ", %s", width);
     for (int i = 0; at != 0 && i < most; at = e->points[at].parent, i++)
         if (e->points[at].by == NONE)
             strbuf_add(out, " * length(field_numbers[%u].xyz)", e->points[at].matrix);
@@ -284,7 +284,7 @@ static void compute_fetch(emitter *e, uint32_t index) {
     char from[EXPR];
     strbuf width = {0};
     emit_point(e, o.point, from);
-    if (e->p->grids[o.id / 4].grid->levels) write_width(e, o.point, &width);
+    if (e->p->grids[o.id / 4].grid->levels) emit_width(e, "grid_width", o.point, &width);
     declare(e, index, "field_fetch_%u_%u(%s%s)", o.id / 4, o.id % 4, from, strbuf_text(&width));
     strbuf_free(&width);
 }

@@ -76,6 +76,8 @@ void emit_op(emitter *e, uint32_t index, char out[EXPR]);
 void emit_node(emitter *e, uint32_t node, uint32_t at, char out[EXPR]);
 void emit_compute(emitter *e, uint32_t index); // writes "name = value;" and what it needs
 void emit_widen(char text[EXPR], int from, int to);
+// ", width" in the space of a point, of what a sample stands for at the argument of the function.
+void emit_width(const emitter *e, const char *width, uint32_t at, strbuf *out);
 
 // ---- emit_range.c -----------------------------------------------------------------------------
 

@@ -141,9 +141,11 @@ static void write_size(const ranges_kind *kind, const char *name, const uint32_t
 }
 
 static void fill(const ranges_kind *kind, const field_grid *grid, const ranges_level *at) {
+    const int32_t repeats = grid->repeats;
     write_size(kind, "size", grid->size);
     write_size(kind, "count", at->count);
     write_size(kind, "from", at->from);
+    pass_write_member(&kind->binary, kind->block, "repeats", &repeats, sizeof repeats);
     pass_write_member(&kind->binary, kind->block, "level", &at->level, sizeof at->level);
     pass_write_member(&kind->binary, kind->block, "x", &at->x, sizeof at->x);
     pass_write_member(&kind->binary, kind->block, "from_x", &at->from_x, sizeof at->from_x);

@@ -6,6 +6,7 @@
 uniform vec3 low;                  //= {-10, -10, -10} m : of all boxes
 uniform vec3 high;                 //= {20, 20, 20} m : of all boxes
 uniform float largest;             //= 0.25 [0, 1] : of a box, as a part of all
+uniform float width;               //= 0 [0, 10] m : of samples
 writeonly uniform image2D color;   //= output rgba16f : what was found
 #define WITH_RANGES
 #include "fields.glsl"
@@ -18,6 +19,7 @@ float next() {
 }
 
 void main() {
+    grid_width = range_width = width;
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(color);
     if (any(greaterThanEqual(pixel, size))) return;
     state = uint(pixel.x + 4096 * pixel.y) * 2654435761u;
