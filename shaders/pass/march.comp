@@ -9,7 +9,7 @@
 //@ option view = beauty {beauty, noise} : noise shows the field `noise` on the faces of the volume's box
 //@ option scattering = glow {glow, single, octaves} : of light that is scattered more than once: what `glow` says, if that is given; nothing; or an estimate by octaves (Wrenninge, Kulla and Lundqvist 2013)
 //@ option mesh_shadows = off {off, on} : meshes shadow the volume, by a ray from each sample to each light; with `shadow` they do so anyway
-//@ option skipping = off {off, on} : samples are taken only where the density may be above 0; off: everywhere, which changes nothing but the time
+//@ option skipping = on {off, on} : samples are taken only where the density may be above 0; off: everywhere, which changes nothing but the time
 //@ option jitter_noise = blue {white, blue} : what `jitter` is made of: blue has its error where an eye or a mean over frames loses it
 //@ counter samples : points at which the density was evaluated
 //@ counter dense : of these, along the rays of pixels, where it is above 0
@@ -28,7 +28,7 @@ uniform float octave_extinction;   //= 0.5 [0, 1] : extinction on the way from a
 uniform float octave_anisotropy;   //= 0.5 [0, 1] : anisotropy, from octave to octave
 uniform float octave_contribution; //= 0.5 [0, 1] : light, from octave to octave
 uniform float powder;              //= 0 [0, 1] : artistic: darkens what faces a light and is thin (Schneider 2015), as powder looks
-uniform int bricks;                //= 63 [3, 129] : bricks along the longest side of the volume's box, each of which is skipped where nothing can be in it
+uniform int bricks;                //= 0 [0, 129] : along the longest side of the volume's box: samples are not taken in bricks in which nothing can be; 0: 63, in software 33
 uniform int threads;               //= 0 [0, 16] : that share the samples of a ray: 1, 2, 4, 8 or 16; 0: as many as keep the device busy, in software one
 uniform float opacity;             //= 20 [0, 1000] : factor of the density, mode paper only
 uniform vec3 box_min;

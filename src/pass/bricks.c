@@ -5,7 +5,15 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_BLOCKS = 43, FREE_WIDE = 24, FREE_HIGH = 8, FREE_ROWS = 16, HOLD_THREADS = 32 };
+enum {
+    MOST_BLOCKS = 43,
+    USUAL_BLOCKS = 21,
+    SOFTWARE_BLOCKS = 11, // where threads are few, looking for what is empty costs more
+    FREE_WIDE = 24,
+    FREE_HIGH = 8,
+    FREE_ROWS = 16,
+    HOLD_THREADS = 32
+};
 
 bool bricks_declare(pass *p, bricks *b, bool (*record)(pass *p)) {
     b->image = graph_add_image(p->host->graph,
@@ -50,11 +58,18 @@ void bricks_destroy(pass *p, bricks *b) {
         if (b->pipeline[i]) gpu_pipeline_destroy(p->host->device, b->pipeline[i]);
 }
 
+// Along the longest side.
+static float blocks_along(pass *p) {
+    float asked = pass_evaluate(p, "bricks");
+    if (asked > 0) return fminf(ceilf(asked / 3), MOST_BLOCKS);
+    return gpu_get_info(p->host->device)->kind == GPU_CPU ? SOFTWARE_BLOCKS : USUAL_BLOCKS;
+}
+
 // Bricks are about as long as wide, and three of them are a block.
 void bricks_fill(pass *p, const shader_binary *binary, unsigned char *block, box3 box) {
     const float sides[3] = {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
     float longest = fmaxf(fmaxf(sides[0], sides[1]), sides[2]);
-    float most = fminf(ceilf(pass_evaluate(p, "bricks") / 3), MOST_BLOCKS), blocks[3];
+    float most = blocks_along(p), blocks[3];
     for (int i = 0; i < 3; i++)
         blocks[i] = sides[i] > 0 ? fmaxf(ceilf(most * sides[i] / longest - 0.01f), 1) : 1;
     pass_write_member(binary, block, "brick_blocks", blocks, sizeof blocks);

@@ -51,13 +51,15 @@ static bool gives(const pass *p, const char *uniform) {
 }
 
 // Steps of one length take less code and fewer registers alone: those of variable length are left
-// out as long as nobody gives a tolerance.
+// out as long as nobody gives a tolerance. Likewise rays have one thread where they are as many as
+// the pixels of the output, and where threads are few.
 static void choose_code(const pass *p) {
     march_state *s = p->state;
     gpu *device = p->host->device;
     bool software = !device || gpu_get_info(device)->kind == GPU_CPU;
     s->adaptive = gives(p, "tolerance");
-    s->teams = !has_word(p, "view", "noise") && (!software || gives(p, "threads"));
+    s->teams =
+        !has_word(p, "view", "noise") && ((!software && p->scale < 1) || gives(p, "threads"));
 }
 
 static bool compile(pass *p, shader_binary *out) {
