@@ -4,6 +4,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
+#include <strings.h>
 
 typedef struct list {
     double *numbers;
@@ -12,7 +13,7 @@ typedef struct list {
 
 static bool parse_number(const char **text, double *out) {
     char *end;
-    if (!isdigit((unsigned char)**text)) return false;
+    if (!isdigit((unsigned char)**text) || strncasecmp(*text, "0x", 2) == 0) return false;
     *out = strtod(*text, &end);
     *text = end;
     return isfinite(*out);

@@ -11,6 +11,8 @@
 
 enum { MAX_FRAMES = 100000 };
 
+#define HEX_8 "[0-9a-f][0-9a-f][0-9a-f][0-9a-f][0-9a-f][0-9a-f][0-9a-f][0-9a-f]"
+
 // ---- life ---------------------------------------------------------------------------------------
 
 static bool make_cache(bench_session *s) {
@@ -20,9 +22,11 @@ static bool make_cache(bench_session *s) {
     return setenv("ROIL_CACHE_DIR", path, 1) == 0 || err_set("%s: cannot be used", path);
 }
 
-// Pictures of an earlier run: of other rows, or by another program.
+// Pictures of an earlier run: of other rows, or by another program. The folder is the user's: only
+// names that we give.
 static bool forget_pictures(const bench_session *s) {
-    static const char *const patterns[] = {"rows/[0-9][0-9][0-9][0-9].png", "reference/*.png"};
+    static const char *const patterns[] = {"rows/[0-9][0-9][0-9][0-9].png",
+                                           "reference/" HEX_8 HEX_8 HEX_8 HEX_8 "-*.png"};
     for (size_t i = 0; i < COUNT_OF(patterns); i++) {
         char pattern[PATH_CAP], folder[PATH_CAP];
         file_list files;

@@ -160,6 +160,8 @@ static bool take_earlier(bench_results *r, const char *folder) {
     else if (strcmp(old.device, r->device) != 0 || strcmp(old.driver, r->driver) != 0)
         same = err_set("%s was measured on %s (%s), this is %s (%s)", path, old.device, old.driver,
                        r->device, r->driver);
+    else if (strcmp(old.commit, r->commit) != 0)
+        same = err_set("%s was measured at commit %s, this is %s", path, old.commit, r->commit);
     for (size_t i = 0; same && i < old.row_count; i++) bench_add(r, &old.rows[i]);
     if (same) r->date = keep(r, old.date);
     bench_results_free(&old);
