@@ -8,7 +8,7 @@ import subprocess
 import unittest
 
 from lib.pictures import Exr, Png
-from lib.program import PUFF, SMALL, VOLUME, Case, main
+from lib.program import PUFF, SMALL, SOURCE, VOLUME, Case, main
 
 BALL = VOLUME % "sphere { position = {1, 1, 1}, radius = 1 } * 10"
 
@@ -168,6 +168,18 @@ class Statistics(Case):
         self.assertEqual(set(stats["median_gpu_ms"]), {"geometry", "shade", "march", "over", "final", "all"})
         for name in ("geometry", "shade", "march", "over", "final"):
             self.assertIn(name, printed)
+
+    def test_statistics_tell_how_sequences_play(self):
+        shutil.copytree(os.path.join(SOURCE, "effects", "data", "explosion-32"), self.path("burst"))
+        effect = 'local burst = vdb { "burst/*.vdb", storage = "sparse" }\n' + VOLUME % "burst.density"
+        printed = self.render(effect, "--frames", "1-4", "--stats", "stats.json", output="%d.png")
+        self.assertRegex(printed, r"sequences: 4 frames shown, [\d.]+ a second")
+        played = json.loads(self.read("stats.json"))["sequences"]
+        self.assertEqual((played["shown"], played["late"]), (4, 0))
+        self.assertLess(played["frame_bytes"], 32 ** 3 * 10)
+        self.assertGreater(played["frame_bytes"], 2 * played["frame_voxels"])
+        self.assertGreater(played["frame_voxels"], 0)
+        self.assertGreater(played["device_bytes"], 0)
 
     def test_more_steps_take_more_samples(self):
         samples = []
