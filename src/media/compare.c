@@ -2,6 +2,7 @@
 #include "media/compare.h"
 #include "base/maths.h"
 #include "base/memory.h"
+#include "base/worker.h"
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -9,6 +10,32 @@
 static size_t pixels_of(const compare_picture *p) {
     return (size_t)p->width * p->height;
 }
+
+// ---- over all cores ---------------------------------------------------------------------------
+
+// What is done for rows (or columns, or pixels) `first` up to `end`; each of them by itself, so
+// that the result does not depend on how they are shared out.
+typedef void stretch(void *user, size_t first, size_t end);
+
+typedef struct stretches {
+    stretch *run;
+    void *user;
+    size_t count, each;
+} stretches;
+
+static bool run_stretch(void *user, size_t index) {
+    const stretches *p = user;
+    size_t first = index * p->each, end = first + p->each;
+    p->run(p->user, first, end < p->count ? end : p->count);
+    return true;
+}
+
+static void share_out(size_t count, size_t each, stretch *run, void *user) {
+    stretches p = {run, user, count, each};
+    worker_each((count + each - 1) / each, run_stretch, &p);
+}
+
+enum { ROWS_EACH = 16, COLUMNS_EACH = 64, PIXELS_EACH = 65536 };
 
 // ---- separable filters ------------------------------------------------------------------------
 
@@ -46,16 +73,36 @@ static void filter_line(const kernel *k, const float *line, size_t count, size_t
     }
 }
 
+typedef struct filtering {
+    size_t width, height, margin;
+    const kernel *across, *down;
+    const float *in;
+    float *out;
+} filtering;
+
+static void filter_rows(void *user, size_t first, size_t end) {
+    const filtering *f = user;
+    float *padded = mem_alloc((f->width + f->margin) * sizeof *padded);
+    for (size_t y = first; y < end; y++)
+        filter_line(f->across, f->in + y * f->width, f->width, 1, padded, f->out + y * f->width);
+    mem_free(padded);
+}
+
+static void filter_columns(void *user, size_t first, size_t end) {
+    const filtering *f = user;
+    float *padded = mem_alloc((f->height + f->margin) * sizeof *padded);
+    for (size_t x = first; x < end; x++)
+        filter_line(f->down, f->out + x, f->height, f->width, padded, f->out + x);
+    mem_free(padded);
+}
+
 // `across` along rows, then `down` along columns. `out` may be `in`.
 static void filter(const compare_picture *shape, const kernel *across, const kernel *down,
                    const float *in, float *out) {
-    size_t width = shape->width, height = shape->height;
     size_t margin = 2 * (size_t)(across->radius > down->radius ? across->radius : down->radius);
-    float *padded = mem_alloc(((width > height ? width : height) + margin) * sizeof *padded);
-    for (size_t y = 0; y < height; y++)
-        filter_line(across, in + y * width, width, 1, padded, out + y * width);
-    for (size_t x = 0; x < width; x++) filter_line(down, out + x, height, width, padded, out + x);
-    mem_free(padded);
+    filtering f = {shape->width, shape->height, margin, across, down, in, out};
+    share_out(f.height, ROWS_EACH, filter_rows, &f);
+    share_out(f.width, COLUMNS_EACH, filter_columns, &f);
 }
 
 // ---- PSNR -------------------------------------------------------------------------------------
@@ -214,18 +261,29 @@ static void filter_by_sensitivity(const compare_picture *shape, double ppd, cons
     mem_free(sum);
 }
 
+typedef struct conversion {
+    const float *rgb;
+    float *planes;
+    size_t count;
+} conversion;
+
+static void convert(void *user, size_t first, size_t end) {
+    const conversion *v = user;
+    for (size_t i = first; i < end; i++) {
+        color c = ycxcz(v->rgb + i * 3);
+        v->planes[i] = (float)c.x;
+        v->planes[v->count + i] = (float)c.y;
+        v->planes[2 * v->count + i] = (float)c.z;
+    }
+}
+
 // Three planes of YCxCz as an eye at that distance resolves them.
 static float *make_seen(const compare_picture *p, double ppd) {
     static const double a[3][2] = {{1, 0}, {1, 0}, {34.1, 13.5}};
     static const double b[3][2] = {{0.0047, 1e-5}, {0.0053, 1e-5}, {0.04, 0.025}};
     size_t count = pixels_of(p);
     float *planes = mem_alloc(count * 3 * sizeof *planes);
-    for (size_t i = 0; i < count; i++) {
-        color c = ycxcz(p->rgb + i * 3);
-        planes[i] = (float)c.x;
-        planes[count + i] = (float)c.y;
-        planes[2 * count + i] = (float)c.z;
-    }
+    share_out(count, PIXELS_EACH, convert, &(conversion){p->rgb, planes, count});
     for (size_t c = 0; c < 3; c++) filter_by_sensitivity(p, ppd, a[c], b[c], planes + c * count);
     return planes;
 }
@@ -235,15 +293,27 @@ static color seen_lab(const float *planes, size_t count, size_t i) {
         (color){(double)planes[i], (double)planes[count + i], (double)planes[2 * count + i]}));
 }
 
+typedef struct seen {
+    const float *a, *b; // planes
+    float *map;
+    size_t count;
+    double greatest;
+} seen;
+
+static void compare_seen(void *user, size_t first, size_t end) {
+    const seen *s = user;
+    for (size_t i = first; i < end; i++) {
+        double d = color_distance(seen_lab(s->a, s->count, i), seen_lab(s->b, s->count, i));
+        s->map[i] = (float)redistribute(d, s->greatest);
+    }
+}
+
 static void color_errors(const compare_picture *a, const compare_picture *b, double ppd,
                          float *map) {
     size_t count = pixels_of(a);
     float *seen_a = make_seen(a, ppd), *seen_b = make_seen(b, ppd);
     double greatest = color_distance(hunt_lab((color){0, 1, 0}), hunt_lab((color){0, 0, 1}));
-    for (size_t i = 0; i < count; i++) {
-        double d = color_distance(seen_lab(seen_a, count, i), seen_lab(seen_b, count, i));
-        map[i] = (float)redistribute(d, greatest);
-    }
+    share_out(count, PIXELS_EACH, compare_seen, &(seen){seen_a, seen_b, map, count, greatest});
     mem_free(seen_b);
     mem_free(seen_a);
 }
@@ -283,10 +353,16 @@ static void find_features(const compare_picture *p, const float *plane, double p
     mem_free(smooth.weights);
 }
 
+static void convert_brightness(void *user, size_t first, size_t end) {
+    const conversion *v = user;
+    for (size_t i = first; i < end; i++)
+        v->planes[i] = (float)((ycxcz(v->rgb + i * 3).x + 16) / 116);
+}
+
 static float *make_brightness(const compare_picture *p) {
     size_t count = pixels_of(p);
     float *plane = mem_alloc(count * sizeof *plane);
-    for (size_t i = 0; i < count; i++) plane[i] = (float)((ycxcz(p->rgb + i * 3).x + 16) / 116);
+    share_out(count, PIXELS_EACH, convert_brightness, &(conversion){p->rgb, plane, count});
     return plane;
 }
 
