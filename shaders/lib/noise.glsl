@@ -216,71 +216,7 @@ float noise_value4(vec4 q, uint seed, float period) {
     return mix(mix(n[0], n[1], t.z), mix(n[2], n[3], t.z), t.w);
 }
 
-// ---- Worley -----------------------------------------------------------------------------------
-// Worley, "A cellular texture basis function", 1996: one feature point a cell. Distances are
-// limited to 1 cell, within which the search of the neighbouring cells is exact.
-
-// The hash of Raseta, Lesar and Bohak, section 3.7.2. `precise`, and sums written out, because
-// its fractions magnify every rounding.
-vec3 noise_paper_hash(vec3 cell) {
-    precise vec3 a = fract(cell * vec3(0.1031, 0.1030, 0.0973));
-    precise vec3 b = a.yxz + 33.33;
-    precise float c = a.x * b.x + a.y * b.y + a.z * b.z;
-    precise vec3 e = a + c;
-    precise vec3 f = (e.xxy + e.yxx) * e.zyx;
-    return fract(f);
-}
-
-// Squared distances to the nearest and second nearest feature point. `shift`: seed of the paper's
-// hash; negative: the integer hash.
-vec2 noise_worley3(vec3 q, uint seed, float period, float shift) {
-    vec3 cell = floor(q), d = q - cell;
-    vec2 best = vec2(1.0);
-    for (int z = -1; z <= 1; z++)
-        for (int y = -1; y <= 1; y++)
-            for (int x = -1; x <= 1; x++) {
-                vec3 o = vec3(x, y, z), point;
-                if (shift >= 0.0) {
-                    point = noise_paper_hash(noise_wrap(cell + o, period) + shift);
-                } else {
-                    uvec3 l = noise_lattice(cell + o, period);
-                    uint h = noise_hash(l.x + l.y + l.z + seed);
-                    point = vec3(h & 1023u, (h >> 10u) & 1023u, h >> 22u) * (1.0 / 1024.0);
-                }
-                vec3 r = o + point - d;
-                float s = dot(r, r);
-                best = vec2(min(best.x, s), min(best.y, max(best.x, s)));
-            }
-    return best;
-}
-
-vec2 noise_worley4(vec4 q, uint seed, float period, float shift) {
-    vec4 cell = floor(q), d = q - cell;
-    vec2 best = vec2(1.0);
-    for (int i = 0; i < 81; i++) {
-        vec4 o = vec4(i % 3, (i / 3) % 3, (i / 9) % 3, i / 27) - 1.0, point;
-        if (shift >= 0.0) {
-            vec4 c = noise_wrap(cell + o, period) + shift;
-            point = vec4(noise_paper_hash(c.xyz + 7.0 * c.w), noise_paper_hash(c.wxy).z);
-        } else {
-            uvec4 l = noise_lattice(cell + o, period);
-            uint h = noise_hash(l.x + l.y + l.z + l.w + seed);
-            point = vec4(h & 255u, (h >> 8u) & 255u, (h >> 16u) & 255u, h >> 24u) / 256.0;
-        }
-        vec4 r = o + point - d;
-        float s = dot(r, r);
-        best = vec2(min(best.x, s), min(best.y, max(best.x, s)));
-    }
-    return best;
-}
-
-// High near feature points, for every choice of distance.
-float noise_cells(vec2 squared, float power, int distance) {
-    vec2 f = sqrt(squared);
-    float at = distance == NOISE_F2_F1 ? f.y - f.x : distance == NOISE_F2 ? f.y : f.x;
-    float v = pow(at, clamp(power, 0.01, 16.0));
-    return distance == NOISE_F2_F1 ? 2.0 * v - 1.0 : 1.0 - 2.0 * v;
-}
+#include "lib/noise_worley.glsl"
 
 // ---- octaves ----------------------------------------------------------------------------------
 
@@ -417,16 +353,56 @@ vec3 noise_curl_base(vec4 q, uint seed, float period, int dimensions) {
     return sum * (four ? NOISE_PERLIN4 : NOISE_PERLIN3);
 }
 
-// The paper's G: a plain sum of Perlin octaves.
-float noise_paper_perlin(vec3 p, float frequency, float octaves, float persistence,
-                         float lacunarity, float seed, vec3 drift, float phase, float period,
-                         int dimensions) {
-    noise_octave o = noise_begin(p, frequency, octaves, lacunarity, seed, drift, phase, period);
-    float sum = 0.0;
-    for (int i = 0; i < o.count; i++) {
-        sum += o.weight * (dimensions == NOISE_FOUR ? noise_perlin4(o.q, o.seed, o.period)
-                                                    : noise_perlin3(o.q.xyz, o.seed, o.period));
-        noise_next(o, persistence);
+// The paper's differences, of a plain sum of Perlin octaves. A difference spans a small part of a
+// cell, so its ends are taken by the polynomial of the cell that p lies in, whose corners are hashed
+// once: by how far (e, in cells) an end lies beyond, noise is off by no more than 20 e^3, since
+// the fade has no first and second derivative there.
+const float NOISE_NEAR = 0.025; // cells
+
+struct noise_cell3 {
+    vec3 gradients[8];
+};
+
+noise_cell3 noise_cell_at(vec3 cell, uint seed, float period) {
+    uvec3 a = noise_lattice(cell, period), b = noise_lattice(cell + 1.0, period);
+    noise_cell3 c;
+    [[unroll]] for (int i = 0; i < 8; i++) {
+        uint h = ((i & 1) == 0 ? a.x : b.x) + ((i & 2) == 0 ? a.y : b.y) + ((i & 4) == 0 ? a.z : b.z);
+        c.gradients[i] = noise_gradient3(noise_hash(h + seed) >> 28u).xyz;
+    }
+    return c;
+}
+
+float noise_perlin_in(noise_cell3 c, vec3 d) {
+    vec3 e = d - 1.0, t = noise_fade(d);
+    float n00 = mix(dot(c.gradients[0], d), dot(c.gradients[1], vec3(e.x, d.yz)), t.x);
+    float n10 = mix(dot(c.gradients[2], vec3(d.x, e.y, d.z)), dot(c.gradients[3], vec3(e.xy, d.z)), t.x);
+    float n01 = mix(dot(c.gradients[4], vec3(d.xy, e.z)), dot(c.gradients[5], vec3(e.x, d.y, e.z)), t.x);
+    float n11 = mix(dot(c.gradients[6], vec3(d.x, e.yz)), dot(c.gradients[7], e), t.x);
+    return mix(mix(n00, n10, t.y), mix(n01, n11, t.y), t.z) * NOISE_PERLIN3;
+}
+
+// Differences of one octave along the three diagonals.
+vec3 noise_paper_differences(vec4 q, uint seed, float period, float reach, int dimensions) {
+    const vec3 diagonals[3] = vec3[](vec3(0, 1, 1), vec3(1, 0, 1), vec3(1, 1, 0));
+    vec3 sum = vec3(0.0);
+    if (dimensions == NOISE_FOUR || abs(reach) > NOISE_NEAR) {
+        for (int i = 0; i < 3; i++) {
+            vec3 along = reach * diagonals[i];
+            float way = dimensions == NOISE_FOUR
+                            ? noise_perlin4(q + vec4(along, 0.0), seed, period) -
+                                  noise_perlin4(q - vec4(along, 0.0), seed, period)
+                            : noise_perlin3(q.xyz + along, seed, period) -
+                                  noise_perlin3(q.xyz - along, seed, period);
+            sum += way * (1.0 - diagonals[i]);
+        }
+        return sum;
+    }
+    vec3 cell = floor(q.xyz), d = q.xyz - cell;
+    noise_cell3 c = noise_cell_at(cell, seed, period);
+    [[unroll]] for (int i = 0; i < 3; i++) {
+        vec3 along = reach * diagonals[i];
+        sum += (noise_perlin_in(c, d + along) - noise_perlin_in(c, d - along)) * (1.0 - diagonals[i]);
     }
     return sum;
 }
@@ -434,20 +410,18 @@ float noise_paper_perlin(vec3 p, float frequency, float octaves, float persisten
 vec3 noise_curl(vec3 p, float frequency, float octaves, float persistence, float lacunarity,
                 float seed, float amount, vec3 drift, float phase, float w, float period,
                 float delta, int mode, int dimensions) {
-    if (mode == NOISE_PAPER) { // diagonal differences of one scalar: not free of divergence
-        vec3 sum = vec3(0.0);
-        for (int i = 0; i < 6; i++) {
-            vec3 along = i / 2 == 0 ? vec3(0, 1, 1) : i / 2 == 1 ? vec3(1, 0, 1) : vec3(1, 1, 0);
-            float side = i % 2 == 0 ? 1.0 : -1.0;
-            float g = noise_paper_perlin(p + side * delta * along, frequency, octaves, persistence,
-                                         lacunarity, seed, drift, phase + w, period, dimensions);
-            sum += side * g * (1.0 - along);
-        }
-        return amount * sum;
-    }
     noise_octave o = noise_begin(p, frequency, octaves, lacunarity, seed, drift, phase + w, period);
     vec3 sum = vec3(0.0);
     float total = 0.0;
+    if (mode == NOISE_PAPER) { // diagonal differences of one scalar: not free of divergence
+        float reach = delta * frequency;
+        for (int i = 0; i < o.count; i++) {
+            sum += o.weight * noise_paper_differences(o.q, o.seed, o.period, reach, dimensions);
+            noise_next(o, persistence);
+            reach *= o.lacunarity;
+        }
+        return amount * sum;
+    }
     for (int i = 0; i < o.count; i++) {
         sum += o.weight * noise_curl_base(o.q, o.seed, o.period, dimensions);
         total += o.weight;

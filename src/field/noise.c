@@ -79,26 +79,30 @@ static float interpolate(float n[16], const float t[4], bool four) {
     return n[0];
 }
 
-static float lattice_noise(noise_base base, const float q[4], uint32_t seed, float period,
-                           bool four) {
-    cell c = find_cell(q, period);
+static float cell_noise(noise_base base, const cell *c, uint32_t seed, bool four) {
     float n[16];
     for (int i = 0; i < (four ? 16 : 8); i++) {
         uint32_t h = seed;
         float d[4];
         for (int axis = 0; axis < (four ? 4 : 3); axis++) {
             int far = i >> axis & 1;
-            h += c.hash[far][axis];
-            d[axis] = c.inside[axis] - (float)far;
+            h += c->hash[far][axis];
+            d[axis] = c->inside[axis] - (float)far;
         }
         if (base == NOISE_VALUE)
             n[i] = value(h);
         else
             n[i] = four ? edge4(hash(h), d) : edge3(hash(h), d);
     }
-    float result = interpolate(n, c.fade, four);
+    float result = interpolate(n, c->fade, four);
     if (base == NOISE_VALUE) return result;
     return result * (four ? perlin4_factor : perlin3_factor);
+}
+
+static float lattice_noise(noise_base base, const float q[4], uint32_t seed, float period,
+                           bool four) {
+    cell c = find_cell(q, period);
+    return cell_noise(base, &c, seed, four);
 }
 
 // ---- simplex ----------------------------------------------------------------------------------
@@ -339,22 +343,44 @@ static void curl_corner(const cell *c, int corner, uint32_t seed, bool four, flo
     sum[Z] += rise[X] * potential[Y] - rise[Y] * potential[X] + weight * (g[1][X] - g[0][Y]);
 }
 
-static float paper_perlin(const noise_desc *desc, float3 p) {
-    noise_octave o = noise_begin(desc, p);
-    float sum = 0;
-    for (int i = 0; i < o.count; i++) {
-        sum += o.weight * lattice_noise(NOISE_PERLIN, o.q, o.seed, o.period, desc->four);
-        noise_next(&o, desc);
+// How far in cells the ends of a difference may lie for the polynomial of its middle's cell to do
+// (shaders/lib/noise.glsl).
+static const float paper_near = 0.025f;
+
+// Perlin noise of one octave, `along` further in cells.
+static float paper_perlin(const noise_desc *desc, const noise_octave *o, float reach,
+                          const float along[3]) {
+    float q[4];
+    memcpy(q, o->q, sizeof q);
+    cell c = find_cell(q, o->period);
+    for (int i = 0; i < 3; i++) {
+        q[i] += along[i];
+        c.inside[i] += along[i];
+        c.fade[i] = fade(c.inside[i]);
     }
-    return sum;
+    if (desc->four || fabsf(reach) > paper_near)
+        return lattice_noise(NOISE_PERLIN, q, o->seed, o->period, desc->four);
+    return cell_noise(NOISE_PERLIN, &c, o->seed, false);
 }
 
 static void paper_curl(const noise_desc *desc, float3 p, float out[3]) {
-    float d = desc->delta;
-    float3 ahead[3] = {{p.x, p.y + d, p.z + d}, {p.x + d, p.y, p.z + d}, {p.x + d, p.y + d, p.z}};
-    float3 behind[3] = {{p.x, p.y - d, p.z - d}, {p.x - d, p.y, p.z - d}, {p.x - d, p.y - d, p.z}};
-    for (int i = 0; i < 3; i++)
-        out[i] = desc->amplitude * (paper_perlin(desc, ahead[i]) - paper_perlin(desc, behind[i]));
+    noise_octave o = noise_begin(desc, p);
+    float reach = desc->delta * desc->frequency;
+    memset(out, 0, 3 * sizeof *out);
+    for (int k = 0; k < o.count; k++) {
+        for (int i = 0; i < 3; i++) { // one diagonal, and the other way
+            float ahead[3], behind[3];
+            for (int axis = 0; axis < 3; axis++) {
+                ahead[axis] = axis == i ? 0 : reach;
+                behind[axis] = -ahead[axis];
+            }
+            out[i] +=
+                desc->amplitude * o.weight *
+                (paper_perlin(desc, &o, reach, ahead) - paper_perlin(desc, &o, reach, behind));
+        }
+        noise_next(&o, desc);
+        reach *= o.lacunarity;
+    }
 }
 
 void noise_base_curl(const noise_desc *desc, const noise_octave *o, float out[3]) {
