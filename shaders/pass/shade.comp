@@ -15,8 +15,10 @@ writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultipl
 #include "lib/bvh.glsl"
 #include "lib/lighting.glsl"
 #include "shade/surface.glsl"
+#if MANY_RAYS
 #include "shade/shafts.glsl"
 #include "shade/shadow.glsl"
+#endif
 
 const float PI = 3.14159265, GOLDEN_ANGLE = 2.39996323;
 const float NEGLIGIBLE = 1.0 / 4096.0; // of the light on a surface: such a light gets no shadow
@@ -30,9 +32,10 @@ vec2 disc_point(int k, int count, vec2 chance) {
 // Part of the light's disc that no mesh hides. `index` is the light's.
 float light_seen(light l, int index, light_ray ray, vec3 p, vec2 chance) {
     float far = ray.distance - (l.kind == LIGHT_SUN ? 0.0 : l.radius);
-    uint list = shaft_of(index);
-    if (shadow_samples == 0 || far <= 0.0 || shaft_is_clear(list)) return 1.0;
+    if (shadow_samples == 0 || far <= 0.0) return 1.0;
 #if MANY_RAYS
+    uint list = shaft_of(index);
+    if (shaft_is_clear(list)) return 1.0;
     int count = l.radius > 0.0 ? shadow_samples : 1, seen = 0;
     mat2x3 disc = across(ray.direction) * (l.kind == LIGHT_SUN ? l.radius : l.radius / ray.distance);
     for (int k = 0; k < count; k++) {
@@ -41,7 +44,7 @@ float light_seen(light l, int index, light_ray ray, vec3 p, vec2 chance) {
     }
     return float(seen) / float(count);
 #else
-    return shaft_occluded(list, p, ray.direction, far) ? 0.0 : 1.0;
+    return bvh_occluded(p, ray.direction, 0.0, far) ? 0.0 : 1.0;
 #endif
 }
 

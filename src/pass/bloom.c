@@ -1,20 +1,64 @@
-// Bloom: the bright picture is halved again and again into one image with mip levels, then added
-// back up level by level. One shader, compiled for each direction.
+// Bloom: the bright picture is halved again and again into one image with mip
+// levels, then added back up level by level. One shader, compiled for each kind
+// of step.
+//
+// Level 0 is not written on the way down: the first step halves the picture,
+// the last one adds to it. Where the picture comes from a pass `bright`, both
+// do its work as well, and that pass is left out unless something else reads
+// it.
 #include "base/error.h"
+#include "base/memory.h"
 #include "pass/builtin.h"
 #include "pass/pass_impl.h"
 #include <string.h>
 
+// Levels of so few texels are done in one dispatch; with those below they fit
+// into its shared memory (bloom/tail.glsl).
+enum { TAIL_TEXELS = 2560 };
+
+typedef enum bloom_stage { FIRST, DOWN, TAIL, UP, LAST, STAGES } bloom_stage;
+
+static const char *const stage_names[STAGES] = {"STAGE_FIRST", "STAGE_DOWN", "STAGE_TAIL",
+                                                "STAGE_UP", "STAGE_LAST"};
+
 typedef struct bloom_state {
-    shader_binary binary[2]; // down, up
-    gpu_pipeline *pipeline[2];
-    unsigned char *block;
+    pass *bright;        // whose work is done here; NULL: none
+    graph_image picture; // that is read
+    bool same_size;      // as the bloom
+    shader_binary binary[STAGES];
+    gpu_pipeline *pipeline[STAGES];
+    unsigned char *block[STAGES];
 } bloom_state;
 
-static const shader_define directions[2] = {{"DIRECTION_UP", "0"}, {"DIRECTION_UP", "1"}};
+typedef struct levels { // of the bloom
+    gpu_image *chain;
+    uint32_t size[2];
+    uint32_t last; // the widest that is added
+    uint32_t tail; // the finest that TAIL does; `last`: it does none
+} levels;
+
+// ---- declaring
+// --------------------------------------------------------------------------------
+
+static void find_picture(pass *p) {
+    bloom_state *s = p->state;
+    s->picture = p->images[pass_find_image(p, "source")];
+    pass *writer = pass_writer(p->host, s->picture);
+    bool bright = writer && writer->type && strcmp(writer->type->name, "bright") == 0 &&
+                  writer->scale == p->scale &&
+                  writer->formats[pass_find_image(writer, "color")] == GPU_RGBA16F;
+    if (bright) {
+        s->bright = writer;
+        s->picture = writer->images[pass_find_image(writer, "source")];
+    }
+    const graph_image_desc *desc = graph_get_desc(p->host->graph, s->picture);
+    s->same_size = desc->scale == p->scale;
+}
 
 bool bloom_declare(pass *p) {
-    int output = pass_find_image(p, "color");
+    bloom_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
+    int output = pass_find_image(p, "color"), source = pass_find_image(p, "source");
+    if (p->images[source].id) find_picture(p);
     p->images[output] = graph_add_image(
         p->host->graph, &(graph_image_desc){
                             .name = arena_format(p->host->memory, "%s.color", p->label),
@@ -22,77 +66,154 @@ bool bloom_declare(pass *p) {
                             .scale = p->scale,
                             .mips = GRAPH_ALL_MIPS,
                         });
-    return p->images[output].id && pass_declare_images(p) && pass_add_to_graph(p);
+    if (!p->images[output].id || !pass_declare_images(p)) return false;
+    p->images[source] = s->picture;
+    return pass_add_to_graph(p);
 }
 
-static bool compile_both(pass *p, shader_binary out[2]) {
-    return pass_compile(p, p->shader, SHADER_COMPUTE, &directions[0], 1, &out[0]) &&
-           pass_compile(p, p->shader, SHADER_COMPUTE, &directions[1], 1, &out[1]);
+// ---- building
+// ---------------------------------------------------------------------------------
+
+static const char *word(bool is) {
+    return is ? "1" : "0";
+}
+
+static bool is_paper(const pass *bright) {
+    size_t index;
+    pass_find_key(bright, "mode", &index);
+    return strcmp(bright->face->options[index].words[bright->options[index]], "paper") == 0;
+}
+
+static bool compile(pass *p) {
+    bloom_state *s = p->state;
+    for (int i = 0; i < STAGES; i++) {
+        shader_define defines[STAGES + 3] = {
+            {"FROM_BRIGHT", word(s->bright)},
+            {"BRIGHT_PAPER", word(s->bright && is_paper(s->bright))},
+            {"SAME_SIZE", word(s->same_size)}};
+        for (int k = 0; k < STAGES; k++)
+            defines[3 + k] = (shader_define){stage_names[k], word(i == k)};
+        if (!pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines), &s->binary[i]))
+            return false;
+    }
+    p->binary = s->binary[FIRST];
+    return true;
 }
 
 bool bloom_check(pass *p) {
-    shader_binary binary[2];
-    return compile_both(p, binary);
+    return compile(p);
 }
 
 bool bloom_build(pass *p) {
-    bloom_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    if (!compile_both(p, s->binary)) return false;
-    for (int i = 0; i < 2; i++) {
+    bloom_state *s = p->state;
+    if (!compile(p)) return false;
+    for (int i = 0; i < STAGES; i++) {
         s->pipeline[i] = pass_create_compute(p, &s->binary[i]);
         if (!s->pipeline[i]) return false;
+        s->block[i] = arena_alloc(p->host->memory, pass_block_size(&s->binary[i]) + 16);
     }
-    s->block = arena_alloc(p->host->memory, pass_block_size(&s->binary[1]) + 16);
-    p->binary = s->binary[0];
     return true;
 }
+
+// ---- in a frame
+// -------------------------------------------------------------------------------
 
 static uint32_t mip_size(uint32_t size, uint32_t mip) {
     return size >> mip ? size >> mip : 1;
 }
 
-// Reads level `from` of `source`, writes level `to` of the chain.
-static bool step(pass *p, int direction, gpu_image *source, uint32_t from, gpu_image *chain,
-                 uint32_t to) {
+static void write_int(pass *p, bloom_stage stage, const char *name, uint32_t value) {
     bloom_state *s = p->state;
-    unsigned char *block = direction ? s->block : p->block;
-    const pass_override overrides[] = {
-        {"source", {.image = source, .mip = from, .one_mip = true, .sampler = GPU_LINEAR_CLAMP}},
-        {"color", {.image = chain, .mip = to}},
-    };
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    size_t count;
-    if (!pass_bind(p, &s->binary[direction], block, overrides, 2, bindings, &count)) return false;
-    const gpu_image_desc *desc = gpu_image_get_desc(chain);
-    return gpu_dispatch(p->host->device,
-                        &(gpu_dispatch_desc){
-                            s->pipeline[direction],
-                            bindings,
-                            count,
-                            {mip_size(desc->width, to), mip_size(desc->height, to), 1},
-                        });
+    pass_write_member(&s->binary[stage], s->block[stage], name, &value, sizeof value);
 }
 
-// The first level is the bright picture itself; level i + 1 is level i halved. The way up stops
-// where `levels` says; 0 takes all, as the paper does (section 3.8.2).
-bool bloom_record(pass *p) {
+static bool fill_blocks(pass *p) {
+    static const char *const names[] = {"threshold", "knee", "limit"};
     bloom_state *s = p->state;
-    if (!pass_prepare(p) || !pass_fill_block(p, &s->binary[1], s->block)) return false;
-    gpu_image *chain = graph_get_image(p->host->graph, p->images[pass_find_image(p, "color")]);
-    gpu_image *source = graph_get_image(p->host->graph, p->images[pass_find_image(p, "source")]);
-    uint32_t last = gpu_image_get_desc(chain)->mips - 1;
-    uint32_t wanted = (uint32_t)pass_evaluate(p, "levels");
-    if (wanted && wanted < last) last = wanted;
-    if (!step(p, 0, source, 0, chain, 0)) return false;
-    for (uint32_t mip = 0; mip < last; mip++)
-        if (!step(p, 0, chain, mip, chain, mip + 1)) return false;
-    for (uint32_t mip = last; mip > 0; mip--)
-        if (!step(p, 1, chain, mip, chain, mip - 1)) return false;
+    for (int i = 0; i < STAGES; i++) {
+        if (!pass_fill_block(p, &s->binary[i], s->block[i])) return false;
+        for (size_t k = 0; s->bright && k < COUNT_OF(names); k++) {
+            float value = pass_evaluate(s->bright, names[k]);
+            pass_write_member(&s->binary[i], s->block[i], names[k], &value, sizeof value);
+        }
+    }
     return true;
+}
+
+// Reads level `from` of the chain, or what `picture` is bound to; writes level
+// `to`.
+static bool step(pass *p, bloom_stage stage, const levels *l, uint32_t from, uint32_t to) {
+    bloom_state *s = p->state;
+    gpu_image *picture = graph_get_image(p->host->graph, s->picture);
+    const pass_override overrides[] = {
+        {"source",
+         {.image = l->last ? l->chain : picture,
+          .mip = from,
+          .one_mip = true,
+          .sampler = GPU_LINEAR_CLAMP}},
+        {"picture", {.image = picture, .one_mip = true, .sampler = GPU_LINEAR_CLAMP}},
+        {"color", {.image = l->chain, .mip = to}},
+    };
+    gpu_binding bindings[GPU_MAX_SLOTS];
+    gpu_dispatch_desc desc = {.pipeline = s->pipeline[stage], .bindings = bindings};
+    for (int i = 0; i < 2; i++) desc.threads[i] = mip_size(l->size[i], to);
+    return pass_bind(p, &s->binary[stage], s->block[stage], overrides, COUNT_OF(overrides),
+                     bindings, &desc.binding_count) &&
+           gpu_dispatch(p->host->device, &desc);
+}
+
+static bool halve(pass *p, const levels *l, uint32_t from) {
+    bloom_stage stage = from ? DOWN : FIRST;
+    write_int(p, stage, "width", mip_size(l->size[0], from));
+    write_int(p, stage, "height", mip_size(l->size[1], from));
+    return step(p, stage, l, from, from + 1);
+}
+
+static bool run_tail(pass *p, const levels *l) {
+    const bloom_state *s = p->state;
+    write_int(p, TAIL, "tail_levels", l->last - l->tail);
+    gpu_binding bindings[GPU_MAX_SLOTS];
+    const pass_override color = {"color", {.image = l->chain, .mip = l->tail}};
+    gpu_dispatch_desc desc = {.pipeline = s->pipeline[TAIL], .bindings = bindings};
+    return pass_bind(p, &s->binary[TAIL], s->block[TAIL], &color, 1, bindings,
+                     &desc.binding_count) &&
+           gpu_dispatch(p->host->device, &desc);
+}
+
+// The widest level is the one that `levels` says; 0 takes all, as the paper
+// does (section 3.8.2).
+static levels find_levels(pass *p) {
+    levels l = {.chain = graph_get_image(p->host->graph, p->images[pass_find_image(p, "color")])};
+    const gpu_image_desc *desc = gpu_image_get_desc(l.chain);
+    uint32_t wanted = (uint32_t)pass_evaluate(p, "levels");
+    l.size[0] = desc->width;
+    l.size[1] = desc->height;
+    l.last = desc->mips - 1;
+    if (wanted && wanted < l.last) l.last = wanted;
+    l.tail = l.last < 1 ? l.last : 1;
+    while (l.tail < l.last &&
+           mip_size(l.size[0], l.tail) * mip_size(l.size[1], l.tail) > TAIL_TEXELS)
+        l.tail++;
+    return l;
+}
+
+bool bloom_record(pass *p) {
+    levels l = find_levels(p);
+    if (!pass_prepare(p) || !fill_blocks(p)) return false;
+    if (!l.last) { // one texel: nothing is wider
+        write_int(p, LAST, "radius", 0);
+        write_int(p, LAST, "alpha", 0);
+    }
+    for (uint32_t mip = 0; mip < l.tail; mip++)
+        if (!halve(p, &l, mip)) return false;
+    if (l.tail < l.last && !run_tail(p, &l)) return false;
+    for (uint32_t mip = l.tail; mip > 1; mip--)
+        if (!step(p, UP, &l, mip, mip - 1)) return false;
+    return step(p, LAST, &l, l.last ? 1 : 0, 0);
 }
 
 void bloom_destroy(pass *p) {
     bloom_state *s = p->state;
-    for (int i = 0; s && i < 2; i++)
+    for (int i = 0; s && i < STAGES; i++)
         if (s->pipeline[i]) gpu_pipeline_destroy(p->host->device, s->pipeline[i]);
 }

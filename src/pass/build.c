@@ -264,6 +264,9 @@ void pass_host_free(pass_host *host) {
     pass_ranges_free(host);
     if (host->blue_noise) gpu_image_destroy(host->device, host->blue_noise);
     host->blue_noise = NULL;
+    mem_free(host->declared);
+    host->declared = NULL;
+    host->declared_count = host->declared_capacity = 0;
     mem_free(host->grid_images);
     host->grid_images = NULL;
     host->grid_image_count = host->grid_image_capacity = 0;

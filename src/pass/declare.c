@@ -141,8 +141,20 @@ bool pass_add_part(pass *p, const pass_part *part) {
     return done;
 }
 
+pass *pass_writer(const pass_host *host, graph_image image) {
+    for (size_t i = 0; i < host->declared_count; i++) {
+        pass *p = host->declared[i];
+        for (size_t k = 0; k < p->face->image_count; k++)
+            if (p->face->images[k].output && p->images[k].id == image.id) return p;
+    }
+    return NULL;
+}
+
 bool pass_declare(pass *p) {
     const shader_interface *face = p->face;
+    pass_host *host = p->host;
+    MEM_RESERVE(host->declared, host->declared_count + 1, host->declared_capacity);
+    host->declared[host->declared_count++] = p;
     if (p->host->before_declare && !p->host->before_declare(p->host->user, p)) return false;
     for (size_t i = 0; i < face->field_count; i++)
         if (face->fields[i].required && !p->fields[i])

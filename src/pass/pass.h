@@ -36,6 +36,8 @@ typedef struct pass_host { // what all passes of one effect share
     void *user;
     pass_grid *grid_images; // owned: freed by pass_host_free
     size_t grid_image_count, grid_image_capacity;
+    pass **declared; // owned: freed by pass_host_free
+    size_t declared_count, declared_capacity;
 } pass_host;
 
 // Passes whose fields sample `grid` run after the pass that writes `image`.

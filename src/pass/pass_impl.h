@@ -82,7 +82,8 @@ bool pass_run(pass *p);     // one dispatch or full-screen draw over the first o
 bool pass_record(pass *p);  // both
 graph_image pass_grid_image(const pass_host *host,
                             const field_grid *grid);  // zero: not of the graph
-int pass_find_image(const pass *p, const char *name); // index in face->images, -1: none
+pass *pass_writer(const pass_host *host, graph_image image); // NULL: of no pass declared before
+int pass_find_image(const pass *p, const char *name);        // index in face->images, -1: none
 bool pass_declare_images(pass *p);                    // histories and outputs at the pass's scale
 // The same, with images of its own that it writes besides.
 bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count);

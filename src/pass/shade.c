@@ -1,9 +1,7 @@
-// Shade: first what may stand between each tile of the picture and each light, then the light
-// itself.
-//
-// The latter shader is compiled with and without the loops over many rays. Which of them a frame
+// Shade: one shader, compiled with and without the loops over many rays. Which of them a frame
 // needs its numbers say; a software device computes what it skips, so that loops for nothing cost
-// it three times the rest.
+// it three times the rest. Before many rays it is found out what may stand between each tile of the
+// picture and each light; for single rays that takes longer than it saves.
 #include "base/error.h"
 #include "pass/builtin.h"
 #include "pass/pass_impl.h"
@@ -35,7 +33,7 @@ bool shade_check(pass *p) {
 // The variant of this frame. The other one becomes a pipeline only when a number first asks for it.
 static bool choose(pass *p) {
     shade_state *s = p->state;
-    int many = pass_evaluate(p, "shadow_samples") > 1 || pass_evaluate(p, "sky_samples") > 0;
+    bool many = pass_evaluate(p, "shadow_samples") > 1 || pass_evaluate(p, "sky_samples") > 0;
     if (!s->pipeline[many]) s->pipeline[many] = pass_create_compute(p, &s->binary[many]);
     p->binary = s->binary[many];
     p->pipeline = s->pipeline[many];
@@ -52,7 +50,8 @@ bool shade_build(pass *p) {
 
 // ---- in a frame -------------------------------------------------------------------------------
 
-static uint32_t count_lights(const pass *p) {
+static uint32_t lights_to_list(pass *p) {
+    if (pass_evaluate(p, "shadow_samples") < 2) return 0;
     graph_image lights = p->images[pass_find_image(p, "lights")];
     uint32_t size[3];
     if (!lights.id) return p->host->lights->count.v[0];
@@ -65,11 +64,11 @@ static bool make_lists(pass *p, uint32_t tiles, int32_t *lights) {
     shade_state *s = p->state;
     uint64_t each = (uint64_t)tiles * LIST_WORDS * sizeof(uint32_t);
     uint64_t most = gpu_get_info(p->host->device)->max_storage_range / each, wanted;
-    wanted = count_lights(p);
+    wanted = lights_to_list(p);
     if (wanted > MAX_LISTED) wanted = MAX_LISTED;
     if (wanted > most) wanted = most;
     *lights = (int32_t)wanted;
-    uint64_t size = wanted ? wanted * each : each;
+    uint64_t size = wanted ? wanted * each : LIST_WORDS * sizeof(uint32_t);
     if (s->lists && gpu_buffer_size(s->lists) >= size) return true;
     gpu_buffer_destroy(p->host->device, s->lists);
     s->lists = gpu_buffer_create(
@@ -106,7 +105,6 @@ bool shade_record(pass *p) {
     across = (size[0] + TILE - 1) / TILE;
     down = (size[1] + TILE - 1) / TILE;
     if (!choose(p) || !pass_prepare(p) || !make_lists(p, across * down, &listed)) return false;
-    if (pass_evaluate(p, "shadow_samples") < 1) listed = 0;
     pass_write_member(&p->binary, p->block, "shaft_lights", &listed, sizeof listed);
     pass_write_member(&s->shafts, s->shafts_block, "shaft_lights", &listed, sizeof listed);
     return (!listed || find_shafts(p, size, across, down)) &&

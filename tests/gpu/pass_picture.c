@@ -71,6 +71,44 @@ static void paper_bloom_adds_energy_with_every_level(void **state) {
     if (fabs(gain - wanted) > 0.03 * wanted) fail_msg("gain %g, not %g", gain, wanted);
 }
 
+// What the bloom of a bright picture is like. A bright picture of another format than the bloom's
+// is always made; another one the bloom does without.
+static float *bright_bloom(gpu *device, gpu_format format, const char *mode, size_t *passes) {
+    pass_world w;
+    world_open(&w, device);
+    pass *dot = add_dot(&w), *bright = world_add(&w, "bright", NULL, "bright");
+    pass *bloom = world_add(&w, "bloom", NULL, "bloom");
+    gpu_test_ok(pass_set_option(bright, "mode", mode) && pass_set_option(bloom, "mode", "normal"));
+    gpu_test_ok(pass_set_uniform(bright, "threshold", number(&w, 0.3f)));
+    gpu_test_ok(pass_set_format(bright, "color", format));
+    gpu_test_ok(pass_set_image(bright, "source", pass_output(dot, "color")));
+    gpu_test_ok(pass_declare(bright));
+    gpu_test_ok(pass_set_image(bloom, "source", pass_output(bright, "color")));
+    gpu_test_ok(pass_declare(bloom));
+    world_render(&w, 117, 61, pass_output(bloom, "color"));
+    *passes = graph_order(w.host.graph, NULL, 0);
+    float *c = world_read(&w, pass_output(bloom, "color"));
+    world_close(&w);
+    return c;
+}
+
+static void bloom_does_the_work_of_a_bright_pass(void **state) {
+    static const char *const modes[] = {"soft", "paper"};
+    for (int mode = 0; mode < 2; mode++) {
+        size_t with, without;
+        float *one = bright_bloom(*state, GPU_RGBA32F, modes[mode], &with);
+        float *other = bright_bloom(*state, GPU_RGBA16F, modes[mode], &without);
+        assert_int_equal(with, 3);
+        assert_int_equal(without, 2);
+        double light = sum(one, 117 * 61, 0);
+        assert_true(light > 0);
+        for (size_t i = 0; i < 4 * 117 * 61; i++)
+            assert_true(fabsf(one[i] - other[i]) <= 0.002f * fabsf(one[i]) + 1e-5f);
+        mem_free(one);
+        mem_free(other);
+    }
+}
+
 static void history_holds_the_frame_before(void **state) {
     pass_world w;
     world_open(&w, *state);
@@ -123,6 +161,7 @@ int main(void) {
         cmocka_unit_test(bright_keeps_only_what_is_above_the_threshold),
         cmocka_unit_test(bloom_has_the_energy_of_its_input),
         cmocka_unit_test(paper_bloom_adds_energy_with_every_level),
+        cmocka_unit_test(bloom_does_the_work_of_a_bright_pass),
         cmocka_unit_test(history_holds_the_frame_before),
         cmocka_unit_test(fragment_shader_is_a_pass_too),
         cmocka_unit_test(misspelt_uniform_gets_the_nearest_name),
