@@ -25,7 +25,7 @@ typedef struct bench_options {
     size_t input_count, input_capacity;
     char folder[PATH_CAP]; // where results go by default
     double margin;         // percent
-    int resume, list, merge, strict;
+    int resume, list, merge, strict, no_reference;
     app_progress progress;
     int label_width;
 } bench_options;
@@ -133,6 +133,8 @@ static bool parse(bench_options *o, int argc, const char **argv, poptContext *co
         {"limit", 0, POPT_ARG_DOUBLE, &s->limit, 0, "that a row may take; 0: no limit", "SECONDS"},
         {"settle", 0, POPT_ARG_DOUBLE, &s->settle, 0,
          "that a row is drawn before it is timed, so that clocks rise", "SECONDS"},
+        {"no-reference", 0, POPT_ARG_NONE, &o->no_reference, 0,
+         "draw no references, and compare no pictures", NULL},
         {"device", 'd', POPT_ARG_STRING, &o->order.device, 0,
          "part of a device's name, or its number", "DEVICE"},
         POPT_AUTOHELP POPT_TABLEEND};
@@ -143,6 +145,7 @@ static bool parse(bench_options *o, int argc, const char **argv, poptContext *co
         if (!take_option(o, *context, option)) return false;
     if (option < -1) return err_set("%s: %s", poptBadOption(*context, 0), poptStrerror(option));
     o->order.resume = o->resume;
+    s->no_reference = o->no_reference;
     o->order.choice.only = o->only;
     o->order.choice.only_count = o->only_count;
     return take_numbers(o) && take_inputs(o, *context);

@@ -332,6 +332,10 @@ static int l_sweep(lua_State *L) {
     read_base(L, r);
     size_t axes = read_axes(L, r);
     read_reference(L, r, axes);
+    if (r->options->no_reference) {
+        r->has_reference = false;
+        r->out->samples = 0;
+    }
     r->skip = read_function(L, "skip");
     r->published = read_function(L, "published");
     if (r->out->measure != SWEEP_FRAMES && r->has_reference)

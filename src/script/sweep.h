@@ -87,6 +87,7 @@ typedef struct sweep_options { // of the command line, in place of what the file
     int warmup, repeats; // below 0: the file's
     double limit;        // below 0: the file's
     double settle;       // below 0: the file's
+    bool no_reference;   // pictures are not compared
     // Effect files may lie in the sweep's own folder and below, in the current folder and below,
     // and in this one (the program's home) and below. NULL: not there.
     const char *home;

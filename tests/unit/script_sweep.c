@@ -180,6 +180,10 @@ static void the_command_line_wins(void **state) {
     assert_true(s.settle == 0.5);
     assert_true(read_with(HEAD "axes = { axis { 'a', 1, 2 } } }", &options, &memory, &s));
     assert_true(s.rows[1].width == 100 && s.rows[1].height == 50);
+    options.no_reference = true;
+    assert_true(read_with(HEAD "reference = { samples = 4 } }", &options, &memory, &s));
+    assert_true(s.reference_count == 0 && s.samples == 0);
+    assert_true(s.rows[0].reference == SWEEP_NO_REFERENCE);
     arena_free(&memory);
 }
 
