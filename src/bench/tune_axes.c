@@ -38,7 +38,8 @@ static const rule rules[] = {
     {"octaves", NULL, "lighting", false, TRUTH_NOW, octaves},
     {"jitter", NULL, NULL, false, TRUTH_NOW, amounts},
     {"frames", "accumulate", NULL, false, TRUTH_NOW, powers},
-    {"baked", NULL, NULL, false, TRUTH_NOW, NULL},
+    {"bake", NULL, NULL, false, TRUTH_MORE, NULL},
+    {"baked", NULL, NULL, false, TRUTH_MORE, NULL},
     {"quality", NULL, NULL, false, TRUTH_MORE, NULL},
 };
 
@@ -124,13 +125,19 @@ static void take_words(const roil_control *c, truth t, tune_axis *out) {
     out->reference = t == TRUTH_NOW ? out->start : out->count - 1;
 }
 
-// "baked": what is baked is cheap, so "true" comes first, and the truth is without.
-static void turn(tune_axis *a) {
-    const char *first = a->values[0];
-    a->values[0] = a->values[1];
-    a->values[1] = first;
-    a->start = 1 - a->start;
-    a->reference = 1;
+static void swap(tune_axis *a, size_t i, size_t k) {
+    const char *text = a->values[i];
+    a->values[i] = a->values[k];
+    a->values[k] = text;
+    a->start = a->start == i ? k : a->start == k ? i : a->start;
+}
+
+// Baking is cheaper than not to: the word for that it is not done goes last.
+static void put_exact_last(tune_axis *a) {
+    static const char *const words[] = {"false", "off", "none", "exact"};
+    for (size_t i = 0; i + 1 < a->count; i++)
+        for (size_t k = 0; k < COUNT_OF(words); k++)
+            if (strcmp(a->values[i], words[k]) == 0) swap(a, i, i + 1);
 }
 
 static bool has_words(const roil_control *c) {
@@ -149,7 +156,7 @@ static bool take_values(const roil_control *c, const rule *r, arena *memory, tun
     else if (has_number(c) && (!r || r->values))
         take_numbers(c, r ? r->values : parts, r ? r->factors : true, r ? r->truth : TRUTH_MORE,
                      memory, out);
-    if (c->type == ROIL_BOOL && r && strcmp(r->name, "baked") == 0) turn(out);
+    if (r && begins(r->name, "bake")) put_exact_last(out);
     for (size_t i = 0; i < out->count; i++) out->values[i] = arena_string(memory, out->values[i]);
     return out->count > 1;
 }

@@ -23,7 +23,7 @@ class Readme(Case):
     def test_options_in_it_exist(self):
         options = set(re.findall(r"--[a-z-]+", readme()))
         offered = "".join(self.succeeds(c, "--help")
-                          for c in ("render", "live", "export", "compare", "bench")) + "--help"
+                          for c in ("render", "live", "export", "compare", "bench", "tune")) + "--help"
         for option in options:
             self.assertIn(option, offered)
 
