@@ -16,13 +16,13 @@ class Usage(Case):
         for word in ("--help", "-h", "help"):
             self.assertIn("render", self.succeeds(word))
         self.assertRegex(self.succeeds("--version"), r"^roil \d+\.\d+\.\d+\n$")
-        for command in ("render", "check", "info", "compare"):
+        for command in ("render", "check", "info", "bench", "compare"):
             self.assertIn("Usage:", self.succeeds(command, "--help"))
 
     def test_unknown_command_gets_a_suggestion(self):
         self.fails(2, ["unknown command 'rendr'", "did you mean 'render'?"], "rendr")
         self.fails(2, ["unknown command 'bake'",
-                       "accepted: render, live, check, info, export, compare"], "bake")
+                       "accepted: render, live, check, info, export, bench, tune, compare"], "bake")
 
     def test_unknown_option_is_named(self):
         self.fails(2, "--sise", "render", "puff.lua", "--sise", "96x54")
