@@ -1,12 +1,16 @@
 // Least and greatest values of a grid over bricks of its texels, and of bricks of those, level after
 // level, laid out as lib/range_grid.glsl says. Not a pass of its own: see src/pass/ranges.c.
-#ifndef BRICK // texels a side
+//
+// Cubic interpolation in a brick reaches two texels beyond it. So a brick is made of whole blocks of
+// two by two by two texels, some of which its neighbours need as well: a group finds those of as
+// many bricks as 16 texels a side have, and looks at each texel once.
+#ifndef BRICK // texels a side: 4 or 8
 #define BRICK 4
 #endif
 #ifndef FORMAT
 #define FORMAT rgba16f
 #endif
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 256) in;
 uniform sampler3D values;  //= input : the grid; of a sparse one the atlas of its bricks
 uniform usampler3D index;  //= input optional : of a sparse grid, where the bricks lie
 layout(FORMAT) uniform image3D ranges; //= output rgba16f : the least values at even z, the greatest above them
@@ -19,9 +23,9 @@ uniform int x;             // where the level lies
 uniform int from_x;        // and the one before
 
 #define END uintBitsToFloat(0x7f800000u) // of a value that is no number nothing is known
-const int SHARE = 8, REACH = BRICK / 2 + 2;     // threads a brick; texels along their part of it
+const int BRICKS = 16 / BRICK, BLOCKS = 10, OWN = BRICK / 2, REACH = OWN + 2; // a side
 
-shared vec4 least[64], most[64];
+shared vec4 least[BLOCKS * BLOCKS * BLOCKS], most[BLOCKS * BLOCKS * BLOCKS]; // not packed: that takes longer
 
 #ifdef SPARSE
 vec4 value(ivec3 at) {
@@ -40,14 +44,15 @@ void store(ivec3 at, vec4 low, vec4 high) {
     imageStore(ranges, ivec3(x + at.x, at.y, 2 * at.z + 1), high);
 }
 
-// Cubic interpolation in a brick reaches two texels beyond it. Each thread has an eighth of all.
-void from_values(ivec3 at, bool inside) {
-    uint i = gl_LocalInvocationIndex;
-    ivec3 part = ivec3(i, i >> 1, i >> 2) & 1, corner = BRICK * at - 2 + REACH * part;
+ivec3 place(int i, int side) {
+    return ivec3(i % side, i / side % side, i / (side * side));
+}
+
+void find_block(int i, ivec3 corner) {
+    ivec3 end = ivec3(size);
     vec4 low = vec4(END), high = vec4(-END);
-    for (int k = 0; inside && k < REACH * REACH * REACH; k++) {
-        ivec3 texel = corner + ivec3(k % REACH, k / REACH % REACH, k / (REACH * REACH));
-        ivec3 end = ivec3(size);
+    for (int k = 0; k < 8; k++) {
+        ivec3 texel = corner + 2 * place(i, BLOCKS) + place(k, 2);
         vec4 v = value(repeats ? (texel + 2 * end) % end : clamp(texel, ivec3(0), end - 1));
         bvec4 number = lessThanEqual(abs(v), vec4(65504.0));
         low = min(low, mix(vec4(-END), v, number));
@@ -55,19 +60,33 @@ void from_values(ivec3 at, bool inside) {
     }
     least[i] = low;
     most[i] = high;
+}
+
+void from_values() {
+    int i = int(gl_LocalInvocationIndex);
+    ivec3 corner = 16 * ivec3(gl_WorkGroupID) - 2;
+    for (int k = i; k < BLOCKS * BLOCKS * BLOCKS; k += 256) find_block(k, corner);
     barrier();
-    if (!inside || i % SHARE != 0u) return;
-    for (uint k = i + 1u; k < i + SHARE; k++) {
-        low = min(low, least[k]);
-        high = max(high, most[k]);
+    ivec3 brick = place(i, BRICKS), at = BRICKS * ivec3(gl_WorkGroupID) + brick;
+    if (i >= BRICKS * BRICKS * BRICKS || any(greaterThanEqual(at, ivec3(count)))) return;
+    vec4 low = vec4(END), high = vec4(-END);
+    for (int k = 0; k < REACH * REACH * REACH; k++) {
+        ivec3 block = OWN * brick + place(k, REACH);
+        int b = block.x + BLOCKS * (block.y + BLOCKS * block.z);
+        low = min(low, least[b]);
+        high = max(high, most[b]);
     }
     store(at, low, high);
 }
 
-void from_level(ivec3 at) {
+void from_level() {
+    ivec3 end = ivec3(count);
+    int i = int(gl_GlobalInvocationID.x);
+    if (i >= end.x * end.y * end.z) return;
+    ivec3 at = ivec3(i % end.x, i / end.x % end.y, i / (end.x * end.y));
     vec4 low = vec4(END), high = vec4(-END);
     for (int k = 0; k < 8; k++) {
-        ivec3 part = min(2 * at + (ivec3(k, k >> 1, k >> 2) & 1), ivec3(from) - 1);
+        ivec3 part = min(2 * at + place(k, 2), ivec3(from) - 1);
         low = min(low, imageLoad(ranges, ivec3(from_x + part.x, part.y, 2 * part.z)));
         high = max(high, imageLoad(ranges, ivec3(from_x + part.x, part.y, 2 * part.z + 1)));
     }
@@ -75,11 +94,8 @@ void from_level(ivec3 at) {
 }
 
 void main() {
-    ivec3 at = ivec3(gl_GlobalInvocationID);
-    if (level == 0) at.x /= SHARE;
-    bool inside = all(lessThan(at, ivec3(count)));
     if (level == 0)
-        from_values(at, inside);
-    else if (inside)
-        from_level(at);
+        from_values();
+    else
+        from_level();
 }

@@ -151,9 +151,17 @@ static void fill(const ranges_kind *kind, const field_grid *grid, const ranges_l
     pass_write_member(&kind->binary, kind->block, "from_x", &at->from_x, sizeof at->from_x);
 }
 
+// Groups of 256, for 16^3 texels each; at higher levels a thread for each brick.
+static void count_threads(const field_grid *grid, const ranges_level *at, uint32_t out[3]) {
+    out[0] = at->count[0] * at->count[1] * at->count[2];
+    out[1] = out[2] = 1;
+    if (at->level > 0) return;
+    for (int i = 0; i < 3; i++) out[i] = (grid->size[i] + 15) / 16;
+    out[0] *= 256;
+}
+
 static bool run_level(pass *p, ranges_kind *kind, const field_texture *t, const ranges_texture *to,
                       const ranges_level *at) {
-    const uint32_t share = at->level == 0 ? 8 : 1; // threads a brick
     fill(kind, t->grid, at);
     gpu_binding bindings[8];
     size_t count = 0;
@@ -172,12 +180,10 @@ static bool run_level(pass *p, ranges_kind *kind, const field_texture *t, const 
             b->image = pass_field_image(p, t);
         }
     }
-    return gpu_dispatch(
-        p->host->device,
-        &(gpu_dispatch_desc){.pipeline = kind->pipeline,
-                             .bindings = bindings,
-                             .binding_count = count,
-                             .threads = {share * at->count[0], at->count[1], at->count[2]}});
+    gpu_dispatch_desc desc = {
+        .pipeline = kind->pipeline, .bindings = bindings, .binding_count = count};
+    count_threads(t->grid, at, desc.threads);
+    return gpu_dispatch(p->host->device, &desc);
 }
 
 static bool compute(pass *p, const field_texture *t, const ranges_texture *to) {
