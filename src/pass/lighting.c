@@ -14,13 +14,13 @@
 enum {
     ROW_TEXELS = 11,       // of a light in `lights`: SHADOW_MAP_TEXELS of lib/shadow_map.glsl
     GREATEST_DEPTH = 2048, // of a 3D image, on any device
-    SHADOW_PARTS = 8,      // of a ray, in lighting/shadow.glsl
     WAYS = 48,             // directions that light is swept in, in lighting/ways.glsl
     AXES = 3,
     COLORS = 3,
     LEVELS = 2,           // of the buffers, in lighting/level.glsl
     LOOKS = 64,           // into each direction, in lighting/around.glsl
-    GATHER_THREADS = 512, // for a light, in lighting/fire.glsl
+    FIRE_SLOTS = 16,      // threads for each of 2 x 2 x 2 voxels, in lighting/fire.glsl
+    GATHER_THREADS = 512, // for a light
 };
 
 typedef enum lighting_stage {
@@ -92,6 +92,7 @@ static const struct {
 typedef struct lighting_state {
     uint32_t declared; // lights of the scene, its sun among them
     uint32_t shadow_size, glow_size, fire_count;
+    uint32_t shadow_parts; // threads of a ray, in lighting/shadow.glsl
     shader_binary binary[STAGES];
     gpu_pipeline *pipeline[STAGES];
     unsigned char *block[STAGES];
@@ -206,12 +207,18 @@ static bool add_parts(pass *p) {
     return true;
 }
 
+// A GPU wants many threads, each with little to do; on a processor each thread costs by itself.
+static uint32_t choose_shadow_parts(const gpu *device, uint32_t size) {
+    return device && gpu_get_info(device)->kind == GPU_CPU ? 8 : size / 4;
+}
+
 bool lighting_declare(pass *p) {
     const scene *around = p->host->scene;
     lighting_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     box3 box;
     s->declared = around ? (uint32_t)around->light_count + 1 : 1;
     s->shadow_size = number_of(p, "shadow_resolution");
+    s->shadow_parts = choose_shadow_parts(p->host->device, s->shadow_size);
     s->glow_size = number_of(p, "glow_resolution");
     s->fire_count = number_of(p, "fire_lights");
     return pass_density_box(p, &box) && add_images(p) && add_parts(p);
@@ -225,6 +232,7 @@ static bool compile(pass *p, lighting_stage stage, shader_binary *out) {
     const shader_define defines[] = {
         {stages[stage].define, "1"},
         {"SHADOW_SIZE", arena_format(memory, "%u", s->shadow_size)},
+        {"SHADOW_PARTS", arena_format(memory, "%u", s->shadow_parts)},
         {"GLOW_SIZE", arena_format(memory, "%u", s->glow_size)},
         {"FIRE_COUNT", arena_format(memory, "%u", s->fire_count)},
         {"LEVEL_SIZE", arena_format(memory, "%u", s->glow_size >> stages[stage].level)},
@@ -356,23 +364,26 @@ static bool prepare(pass *p) {
 static bool record_lights(pass *p) {
     const lighting_state *s = p->state;
     if (!s->fire_count) return prepare(p) && dispatch(p, STAGE_LIGHTS, s->declared, 1, 1);
-    return dispatch(p, STAGE_LIGHTS, s->declared, 1, 1) && dispatch_voxels(p, STAGE_FIRE) &&
+    uint32_t blocks = s->glow_size / 2;
+    return dispatch(p, STAGE_LIGHTS, s->declared, 1, 1) &&
+           dispatch(p, STAGE_FIRE, FIRE_SLOTS * blocks, 8 * blocks, blocks) &&
            dispatch(p, STAGE_GATHER, s->fire_count * GATHER_THREADS, 1, 1);
 }
 
 static bool record_medium(pass *p) {
     const lighting_state *s = p->state;
-    return (!s->fire_count || prepare(p)) && dispatch_voxels(p, STAGE_MEDIUM);
+    uint32_t points = 2 * s->glow_size;
+    return (!s->fire_count || prepare(p)) && dispatch(p, STAGE_MEDIUM, points, points, points);
 }
 
 static bool record_shadow(pass *p) {
     const lighting_state *s = p->state;
     uint32_t n = s->shadow_size;
-    return dispatch(p, STAGE_SHADOW, n, n, SHADOW_PARTS * s->declared);
+    return dispatch(p, STAGE_SHADOW, n, n, s->shadow_parts * s->declared);
 }
 
-// As many as Chebyshev's combination takes to leave a thirtieth of what is wrong, if at most the
-// part `most` of the light is scattered (as in lighting/sweep.glsl).
+// About as many as Chebyshev's combination takes to leave a tenth of what is wrong, if at most the
+// part `most` of the light is scattered (as in lighting/level.glsl).
 static uint32_t coarse_sweeps(const pass *p) {
     const lighting_state *s = p->state;
     float albedo[3] = {0}, most = 0;
@@ -380,7 +391,7 @@ static uint32_t coarse_sweeps(const pass *p) {
     if (pass_find_member(&s->binary[STAGE_COARSE_REDUCE], "albedo", &member))
         memcpy(albedo, s->block[STAGE_COARSE_REDUCE] + member.offset, sizeof albedo);
     for (int i = 0; i < 3; i++) most = fmaxf(most, fminf(albedo[i], 0.98f));
-    return (uint32_t)fmaxf(1.7f / sqrtf(1 - most) + 0.5f, 3);
+    return (uint32_t)fmaxf(1.7f / sqrtf(1 - most) - 0.7f, 1);
 }
 
 static bool make_buffers(pass *p) {

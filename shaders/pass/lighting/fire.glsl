@@ -4,7 +4,9 @@
 // FIRE: how much of each voxel's light gets out of the volume, and to which side. GATHER: the sum
 // of all, or of each octant around their centre; one workgroup a light, always in the same order.
 #if defined(STAGE_FIRE)
-layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+const int SLOTS = 16, VOXELS = 8; // threads of a voxel, one for each way and two idle; voxels of a workgroup
+layout(local_size_x = SLOTS, local_size_y = VOXELS) in;
+shared vec3 left[VOXELS][SLOTS];
 
 // Towards faces and corners of a cube; with their weights they integrate polynomials of degree 5
 // exactly (Lebedev, "Quadratures on a sphere", 1976).
@@ -39,17 +41,19 @@ float passed_to_outside(ivec3 voxel, vec3 way) {
 }
 
 void main() {
-    ivec3 voxel = ivec3(gl_GlobalInvocationID);
-    if (any(greaterThanEqual(voxel, ivec3(GLOW_SIZE)))) return;
+    int slot = int(gl_LocalInvocationID.x), own = int(gl_LocalInvocationID.y);
+    ivec3 voxel = 2 * ivec3(gl_WorkGroupID) + ivec3(own & 1, (own >> 1) & 1, own >> 2);
     vec3 given = texelFetch(medium_made, voxel, 0).rgb, mean = vec3(0.0), side = vec3(0.0);
-    if (given.r + given.g + given.b > 0.0) {
-        vec3 taken = smoke_between();
-        for (int i = 0; i < WAYS; i++) {
-            vec4 way = way_out(i);
-            vec3 out_ = way.w * exp(-taken * passed_to_outside(voxel, way.xyz));
-            mean += out_;
-            side += dot(out_, given) * way.xyz;
-        }
+    bool shines = given.r + given.g + given.b > 0.0;
+    if (shines && slot < WAYS) {
+        vec4 way = way_out(slot);
+        left[own][slot] = way.w * exp(-smoke_between() * passed_to_outside(voxel, way.xyz));
+    }
+    barrier();
+    if (slot > 0) return;
+    for (int i = 0; i < WAYS && shines; i++) {
+        mean += left[own][i];
+        side += dot(left[own][i], given) * way_out(i).xyz;
     }
     imageStore(fire_kept, voxel, vec4(given * mean, 0.0));
     imageStore(fire_kept, voxel + ivec3(0, 0, GLOW_SIZE), vec4(side, 0.0));
@@ -57,7 +61,7 @@ void main() {
 #endif
 
 #if defined(STAGE_GATHER)
-const int THREADS = 512, VOXELS = GLOW_SIZE * GLOW_SIZE * GLOW_SIZE;
+const int THREADS = 512, VOXELS = GLOW_SIZE * GLOW_SIZE * GLOW_SIZE, AT_ONCE = 8;
 layout(local_size_x = THREADS) in;
 shared vec4 sums[3][THREADS];
 
@@ -69,26 +73,30 @@ struct heap { // of voxels; weights are their light, all colours added
     vec3 side;
 };
 
-vec3 centre_of(int voxel) {
-    vec3 at = vec3(voxel % GLOW_SIZE, (voxel / GLOW_SIZE) % GLOW_SIZE, voxel / (GLOW_SIZE * GLOW_SIZE));
-    return mix(box_min, box_max, (at + 0.5) / float(GLOW_SIZE));
-}
-
-// Sums the voxels of one octant around `centre`, or all (-1), over the workgroup.
+// Sums the voxels of one octant around `centre`, or all (-1), over the workgroup. Several are read at
+// once: one after the other would be a chain of waiting.
 heap gather(vec3 centre, int octant) {
     int thread = int(gl_LocalInvocationIndex);
     heap own = heap(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0));
-    for (int i = thread; i < VOXELS; i += THREADS) {
-        ivec3 voxel = ivec3(i % GLOW_SIZE, (i / GLOW_SIZE) % GLOW_SIZE, i / (GLOW_SIZE * GLOW_SIZE));
-        vec3 color = texelFetch(fire_made, voxel, 0).rgb, p = centre_of(i) - centre;
-        float weight = color.r + color.g + color.b;
-        int mine = int(p.x > 0.0) + 2 * int(p.y > 0.0) + 4 * int(p.z > 0.0);
-        if (weight <= 0.0 || (octant >= 0 && octant != mine)) continue;
-        own.color += color;
-        own.weight += weight;
-        own.place += weight * p;
-        own.spread += weight * dot(p, p);
-        own.side += texelFetch(fire_made, voxel + ivec3(0, 0, GLOW_SIZE), 0).xyz;
+    for (int i = thread; i < VOXELS; i += THREADS * AT_ONCE) {
+        vec3 color[AT_ONCE], side[AT_ONCE], place[AT_ONCE];
+        for (int k = 0; k < AT_ONCE; k++) {
+            int at = i + k * THREADS;
+            ivec3 voxel = ivec3(at % GLOW_SIZE, (at / GLOW_SIZE) % GLOW_SIZE, at / (GLOW_SIZE * GLOW_SIZE));
+            color[k] = texelFetch(fire_made, min(voxel, GLOW_SIZE - 1), 0).rgb;
+            side[k] = texelFetch(fire_made, min(voxel, GLOW_SIZE - 1) + ivec3(0, 0, GLOW_SIZE), 0).rgb;
+            place[k] = mix(box_min, box_max, (vec3(voxel) + 0.5) / float(GLOW_SIZE)) - centre;
+        }
+        for (int k = 0; k < AT_ONCE && i + k * THREADS < VOXELS; k++) {
+            float weight = color[k].r + color[k].g + color[k].b;
+            ivec3 above = ivec3(greaterThan(place[k], vec3(0.0)));
+            if (octant >= 0 && octant != above.x + 2 * above.y + 4 * above.z) continue;
+            own.color += color[k];
+            own.weight += weight;
+            own.place += weight * place[k];
+            own.spread += weight * dot(place[k], place[k]);
+            own.side += side[k];
+        }
     }
     barrier();
     sums[0][thread] = vec4(own.color, own.spread);

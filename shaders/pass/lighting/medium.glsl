@@ -1,24 +1,36 @@
-// The medium on a grid over its box, each voxel the mean of eight points.
+// The medium on a grid over its box, each voxel the mean of eight points, which have a thread each.
 #if defined(STAGE_MEDIUM)
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+shared vec4 found[4][4][4];  // emission, density
+shared vec3 dyed[4][4][4];   // scattering, times the density
+
+void look(ivec3 within) {
+    vec3 p = mix(box_min, box_max, (vec3(gl_GlobalInvocationID) + 0.5) / float(2 * GLOW_SIZE));
+    float d = medium_density(p);
+    vec3 emission = vec3(0.0), scattering = vec3(0.0);
+    if (d > 0.0) {
+        emission = medium_emission(p, d);
+        scattering = medium_scattering(p);
+    }
+    found[within.z][within.y][within.x] = vec4(emission, d);
+    dyed[within.z][within.y][within.x] = d * scattering;
+    count_samples(1);
+}
 
 void main() {
-    ivec3 voxel = ivec3(gl_GlobalInvocationID);
-    if (any(greaterThanEqual(voxel, ivec3(GLOW_SIZE)))) return;
-    vec3 glowing = vec3(0.0), dyed = vec3(0.0);
-    float sum = 0.0;
+    ivec3 within = ivec3(gl_LocalInvocationID), voxel = ivec3(gl_GlobalInvocationID) / 2;
+    look(within);
+    barrier();
+    if (((within.x | within.y | within.z) & 1) != 0) return;
+    vec4 sum = vec4(0.0);
+    vec3 dye = vec3(0.0);
     for (int i = 0; i < 8; i++) {
-        vec3 within = vec3(i & 1, (i >> 1) & 1, i >> 2) * 0.5 + 0.25;
-        vec3 p = mix(box_min, box_max, (vec3(voxel) + within) / float(GLOW_SIZE));
-        float d = medium_density(p);
-        if (d <= 0.0) continue;
-        sum += d;
-        glowing += medium_emission(p, d);
-        dyed += d * medium_scattering(p);
+        ivec3 at = within + ivec3(i & 1, (i >> 1) & 1, i >> 2);
+        sum += found[at.z][at.y][at.x];
+        dye += dyed[at.z][at.y][at.x];
     }
-    count_samples(8);
-    imageStore(medium_kept, voxel, vec4(glowing, sum) / 8.0);
+    imageStore(medium_kept, voxel, sum / 8.0);
     // Where nothing is, light is as if a little were: what is between voxels is interpolated.
-    imageStore(scattering_kept, voxel, vec4(sum > 0.0 ? dyed / sum : extinction * albedo, 0.0));
+    imageStore(scattering_kept, voxel, vec4(sum.a > 0.0 ? dye / sum.a : extinction * albedo, 0.0));
 }
 #endif

@@ -1,11 +1,12 @@
 // A light's rays through the volume: each is marched once, away from the light, and what it has
 // passed is kept at every step, so that a texel costs one evaluation of the density.
 //
-// Eight threads share a ray: each sums a part of its own, then adds the parts before it.
+// Several threads share a ray: each sums a part of its own, then adds the parts before it.
 #if defined(STAGE_SHADOW)
-layout(local_size_x = 8, local_size_y = 4, local_size_z = 8) in;
+const int PARTS = SHADOW_PARTS, PART = SHADOW_SIZE / PARTS;
+const int RAYS_X = PARTS > 8 ? 4 : 8, RAYS_Y = 4, RAYS = RAYS_X * RAYS_Y;
+layout(local_size_x = RAYS_X, local_size_y = RAYS_Y, local_size_z = PARTS) in;
 
-const int PARTS = 8, PART = SHADOW_SIZE / PARTS, RAYS = 32;
 const float FAR = 1e5;      // metres to where meshes still throw a shadow
 shared float passed[PARTS][RAYS];
 shared float hidden_from[RAYS]; // metres in the box after which a mesh hides the light
@@ -21,7 +22,7 @@ float find_mesh(shadow_map m, shadow_ray ray) {
 
 void main() {
     int index = int(gl_WorkGroupID.z), part = int(gl_LocalInvocationID.z);
-    int lane = int(gl_LocalInvocationID.y * 8 + gl_LocalInvocationID.x);
+    int lane = int(gl_LocalInvocationID.y) * RAYS_X + int(gl_LocalInvocationID.x);
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     shadow_map m = shadow_map_of(lights_made, index);
     shadow_ray ray = shadow_map_ray(m, texel, SHADOW_SIZE);

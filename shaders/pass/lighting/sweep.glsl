@@ -47,8 +47,9 @@ layout(std430) writeonly buffer Ways { uint ways[]; };
 // What leaves the cells of the slice before, and of the one at hand; around it a border of nothing.
 const int ROW = ACROSS + 2;
 shared vec2 leaving[2][(LEVEL_SIZE + 2) * ROW];
-shared vec2 scattered[2][(LEVEL_SIZE + 2) * ROW]; // the source function: per part of the light that is taken
-shared vec2 taken[2][(LEVEL_SIZE + 2) * ROW];     // part of the light that half a voxel takes
+// Of both cells the source function, light per part of the light that is taken, and the part of the
+// light that half a voxel takes; of more than a half that it lets through, below 0.
+shared uvec2 halves[2][(LEVEL_SIZE + 2) * ROW];
 
 struct path { // of a direction through the grid
     vec3 way;
@@ -74,13 +75,30 @@ vec2 mean_through(vec2 t, vec2 through) {
     return mix((1.0 - through) / max(t, vec2(1e-6)), 1.0 - 0.5 * t, lessThan(t, vec2(1e-2)));
 }
 
-// Of a row of the slice before: between each of the cells and the one to its side.
-#define FROM_ROW(of, at)                                                                               \
-    mix(of[before][at],                                                                                \
-        on.side.x ? vec2(of[before][(at) - 1].y, of[before][at].x)                                     \
-                  : vec2(of[before][at].y, of[before][(at) + 1].x),                                    \
-        on.weight.x)
-#define FROM(of) mix(FROM_ROW(of, here), FROM_ROW(of, beside), on.weight.y)
+uvec2 to_halves(vec2 scattered, vec2 passed) {
+    vec2 kept = mix(1.0 - passed, -passed, lessThan(passed, vec2(0.5)));
+    return uvec2(half_pair(scattered.x, kept.x), half_pair(scattered.y, kept.y));
+}
+
+// Scattered and taken, of one cell and the other.
+vec4 from_halves(uvec2 two) {
+    vec4 found = vec4(unpackHalf2x16(two.x), unpackHalf2x16(two.y));
+    found.yw += vec2(lessThan(found.yw, vec2(0.0)));
+    return found;
+}
+
+// Of a row of the slice before: between each of two cells and the one to its side.
+vec2 leaving_of(path on, int before, int at) {
+    vec2 own = leaving[before][at];
+    return mix(own, on.side.x ? vec2(leaving[before][at - 1].y, own.x) : vec2(own.y, leaving[before][at + 1].x),
+               on.weight.x);
+}
+
+vec4 halves_of(path on, int before, int at) {
+    uvec2 own = halves[before][at];
+    uvec2 side = on.side.x ? uvec2(halves[before][at - 1].y, own.x) : uvec2(own.y, halves[before][at + 1].x);
+    return mix(from_halves(own), from_halves(side), on.weight.x);
+}
 
 void main() {
     int index = int(gl_WorkGroupID.x) / 3, color = int(gl_WorkGroupID.x) % 3;
@@ -91,7 +109,10 @@ void main() {
     int here = (cell.y + 1) * ROW + cell.x / 2 + 1, beside = here + (on.side.y ? -ROW : ROW);
 
     for (int i = thread; i < ROW * (LEVEL_SIZE + 2); i += THREADS)
-        for (int k = 0; k < 2; k++) leaving[k][i] = scattered[k][i] = taken[k][i] = vec2(0.0);
+        for (int k = 0; k < 2; k++) {
+            leaving[k][i] = vec2(0.0);
+            halves[k][i] = uvec2(0);
+        }
 
     // The part of what comes from the slice before that comes from inside of the box.
     bvec2 in_x = on.side.x ? bvec2(cell.x > 0, true) : bvec2(true, cell.x < LEVEL_SIZE - 2);
@@ -119,9 +140,10 @@ void main() {
                         dot(asked, vec4(unpackHalf2x16(source.z), unpackHalf2x16(source.w))));
         if (!CORRECTS) own = max(own, vec2(0.0));
         vec2 known = k > 0 ? inside : vec2(0.0);
-        vec2 from_light = FROM(leaving) + (1.0 - known) * on.outside;
-        vec2 from_scattered = FROM(scattered) + (1.0 - known) * own;
-        vec2 from_taken = FROM(taken);
+        vec2 from_light = mix(leaving_of(on, before, here), leaving_of(on, before, beside), on.weight.y);
+        vec4 from = mix(halves_of(on, before, here), halves_of(on, before, beside), on.weight.y);
+        from_light += (1.0 - known) * on.outside;
+        from.xz += (1.0 - known) * own;
 
         // From centre to centre the source changes linearly with what is taken, which keeps the limit
         // of thick voxels, diffusion; emission is constant in each of the halves.
@@ -129,16 +151,15 @@ void main() {
         vec2 half_depth = thickness * factor[color], through = exp(-half_depth);
         vec2 given = on.half_step * vec2(first.y, second.y) * mean_through(half_depth, through);
         // Of the half before only the colour that loses most is known; the others are powers of it.
-        vec2 depth = half_depth - log(max(1.0 - from_taken, vec2(1e-6))) * power, left = exp(-depth);
+        vec2 depth = half_depth - log(max(1.0 - from.yw, vec2(1e-6))) * power, left = exp(-depth);
         vec2 early = mix(mean_through(depth, left) - left, 0.5 * depth, lessThan(depth, vec2(1e-2)));
         vec2 late = max(1.0 - left - early, vec2(0.0));
-        vec2 made = from_light * through + given + from_scattered * early + own * late;
+        vec2 made = from_light * through + given + from.xz * early + own * late;
         ways[at] = half_pair(made.x, made.y);
 
         before = 1 - before;
         leaving[before][here] = made * through + given;
-        scattered[before][here] = own;
-        taken[before][here] = 1.0 - exp(-thickness * grey);
+        halves[before][here] = to_halves(own, exp(-thickness * grey));
         barrier();
     }
 }
