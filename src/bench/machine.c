@@ -62,20 +62,24 @@ static char *find_packed(const char *git, const char *reference) {
     return found;
 }
 
-const char *bench_commit(const char *home, arena *memory) {
+static char *checked_out(const char *home) { // mem_free; NULL: not known
     char git[PATH_CAP];
-    if (!path_join(git, home, ".git")) return "";
+    if (!path_join(git, home, ".git")) return NULL;
     char *head = read_line(git, "HEAD");
-    if (head && strncmp(head, "ref: ", 5) == 0) {
-        char *hash = read_line(git, head + 5);
-        if (!hash) hash = find_packed(git, head + 5);
-        mem_free(head);
-        head = hash;
-    }
-    size_t digits = head ? strspn(head, "0123456789abcdef") : 0;
-    const char *commit =
-        digits >= SHOWN_DIGITS ? arena_format(memory, "%.*s", SHOWN_DIGITS, head) : "";
+    if (!head || strncmp(head, "ref: ", 5) != 0) return head;
+    char *hash = read_line(git, head + 5);
+    if (!hash) hash = find_packed(git, head + 5);
     mem_free(head);
+    return hash;
+}
+
+const char *bench_commit(const char *home, arena *memory) {
+    char *hash = read_line(home, "commit"); // of a package
+    if (!hash) hash = checked_out(home);
+    size_t digits = hash ? strspn(hash, "0123456789abcdef") : 0;
+    const char *commit =
+        digits >= SHOWN_DIGITS ? arena_format(memory, "%.*s", SHOWN_DIGITS, hash) : "";
+    mem_free(hash);
     return commit;
 }
 

@@ -70,5 +70,6 @@ size_t bench_compare(const bench_results *before, const bench_results *now, doub
 // ---- the machine --------------------------------------------------------------------------------
 
 void bench_describe_machine(bench_results *r); // cpu, cores, os, date
-// First digits of the commit that is checked out in `home`; "" when it is none.
+// First digits of the commit that `home` says in its file `commit` (scripts/package) or has checked
+// out; "" when it does neither.
 const char *bench_commit(const char *home, arena *memory);
