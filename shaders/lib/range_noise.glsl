@@ -31,7 +31,7 @@ range1 range_fold(range1 n, int fractal) {
 // Half the diagonal of the box in cells of the first octave, and what rounding makes of a point.
 float range_reach(range3 p, noise_octave o, float frequency) {
     vec3 q = abs(o.q.xyz);
-    return 0.5 * length(p.high - p.low) * frequency + 1e-6 * (q.x + q.y + q.z) + 1e-5;
+    return 0.5 * length(p.high - p.low) * abs(frequency) + 1e-6 * (q.x + q.y + q.z) + 1e-5;
 }
 
 // As NOISE_SUM; NEAR is the range of the base around its value, given the reach `r` in cells.
@@ -45,7 +45,7 @@ float range_reach(range3 p, noise_octave o, float frequency) {
         sum = range1(sum.low + o.weight * n.low, sum.high + o.weight * n.high);                    \
         total += o.weight;                                                                         \
         noise_next(o, persistence);                                                                \
-        reach *= o.lacunarity;                                                                     \
+        reach *= abs(o.lacunarity);                                                                \
     }                                                                                              \
     return range_mul(amplitude, range_wide(sum.low / total, sum.high / total))
 
@@ -106,11 +106,11 @@ range1 range_worley(range3 p, float frequency, float octaves, float persistence,
 
 // The paper's differences: of one octave no more than its range, nor than its slope times the way.
 float range_paper_curl(noise_octave o, float frequency, float persistence, float delta, float slope) {
-    float way = 2.0 * sqrt(2.0) * abs(delta) * frequency + 1e-5, sum = 0.0;
+    float way = 2.0 * sqrt(2.0) * abs(delta * frequency) + 1e-5, sum = 0.0;
     for (int i = 0; i < o.count; i++) {
         sum += o.weight * min(slope * way, 2.0);
         noise_next(o, persistence);
-        way *= o.lacunarity;
+        way *= abs(o.lacunarity);
     }
     return sum;
 }
@@ -136,7 +136,7 @@ range3 range_curl(range3 p, float frequency, float octaves, float persistence, f
             all = range3(all.low + o.weight * n.low, all.high + o.weight * n.high);
             total += o.weight;
             noise_next(o, persistence);
-            reach *= o.lacunarity;
+            reach *= abs(o.lacunarity);
         }
         all = range3(all.low / total, all.high / total);
     }

@@ -62,7 +62,7 @@ static noise_octave begin_range(const noise_desc *desc, const intervals *at, flo
     }
     noise_octave o = noise_begin(desc, (float3){middle[0], middle[1], middle[2]});
     for (int i = 0; i < 3; i++) rounding += 1e-6f * fabsf(o.q[i]);
-    *reach = 0.5f * sqrtf(square) * desc->frequency + rounding + 1e-5f;
+    *reach = 0.5f * sqrtf(square) * fabsf(desc->frequency) + rounding + 1e-5f;
     return o;
 }
 
@@ -76,18 +76,18 @@ interval noise_range(noise_base base, const noise_desc *desc, const intervals *a
         sum.high += o.weight * n.high;
         total += o.weight;
         noise_next(&o, desc);
-        reach *= o.lacunarity;
+        reach *= fabsf(o.lacunarity);
     }
     return range_wide(sum.low / total, sum.high / total);
 }
 
 static intervals paper_curl_range(const noise_desc *desc) {
     noise_octave o = noise_begin(desc, (float3){0, 0, 0});
-    float way = 2 * sqrtf(2) * fabsf(desc->delta) * desc->frequency + 1e-5f, sum = 0;
+    float way = 2 * sqrtf(2) * fabsf(desc->delta * desc->frequency) + 1e-5f, sum = 0;
     for (int i = 0; i < o.count; i++) {
         sum += o.weight * fminf(perlin_slope[desc->four] * way, 2);
         noise_next(&o, desc);
-        way *= o.lacunarity;
+        way *= fabsf(o.lacunarity);
     }
     return (intervals){{{-sum, sum}, {-sum, sum}, {-sum, sum}}};
 }
@@ -108,7 +108,7 @@ intervals noise_curl_ranges(const noise_desc *desc, const intervals *at) {
         }
         total += o.weight;
         noise_next(&o, desc);
-        reach *= o.lacunarity;
+        reach *= fabsf(o.lacunarity);
     }
     for (int k = 0; k < 3; k++) sum.c[k] = range_wide(sum.c[k].low / total, sum.c[k].high / total);
     return sum;

@@ -67,6 +67,24 @@ static void noise_is_known_in_small_boxes(void **state) {
     }
 }
 
+// Parameters may be what constants may not.
+static void noise_may_run_backwards(void **state) {
+    (void)state;
+    const float params[][4] = {{-1.5f}, {-2}};
+    const field_context context = {.params = params, .param_count = 2};
+    field *noise = row("perlin", SET("frequency", field_param(build_memory(), 1, 0)),
+                       SET("lacunarity", field_param(build_memory(), 1, 1)));
+    uint32_t seed = 3;
+    for (int i = 0; i < 400; i++) {
+        float v[4];
+        intervals in;
+        box3 box = random_box(&seed);
+        assert_true(field_ranges(noise, &context, box, &in));
+        assert_true(field_eval(noise, &context, random_inside(box, &seed), v));
+        assert_true(v[0] >= in.c[0].low && v[0] <= in.c[0].high);
+    }
+}
+
 static interval range_of(const field *node, box3 box) {
     intervals in;
     if (!field_ranges(node, &moving, box, &in)) fail_msg("%s", err_get());
@@ -118,6 +136,7 @@ int main(void) {
         cmocka_unit_test(random_expressions_stay_in_their_ranges),
         cmocka_unit_test(every_kind_stays_in_its_range),
         cmocka_unit_test(noise_is_known_in_small_boxes),
+        cmocka_unit_test(noise_may_run_backwards),
         cmocka_unit_test(nothing_stays_nothing),
         cmocka_unit_test(a_warp_to_a_place_is_not_widened_by_the_way),
         cmocka_unit_test(grids_are_unknown_inside_and_nothing_outside),
