@@ -150,6 +150,14 @@ typedef struct roil_save_options {
 // .png: display-referred sRGB; .exr: scene-linear with A, and depth as Z where the effect gives it.
 bool roil_save(roil_effect *e, const char *file, const roil_save_options *options);
 
+// The same for many pictures: reads the last frame back and leaves the file to other threads, while
+// the next frame is drawn. Waits while many pictures wait. False also when an earlier one failed.
+typedef struct roil_writer roil_writer;
+roil_writer *roil_writer_create(void);
+bool roil_writer_save(roil_writer *w, roil_effect *e, const char *file,
+                      const roil_save_options *options);
+bool roil_writer_finish(roil_writer *w); // when all is written; frees; NULL is fine
+
 typedef struct roil_recipe { // what made a picture
     const char *effect; // its file, as it was given; NULL: outside of the current folder, so that
                         // a stranger's picture has it opened only by a user who names it
@@ -163,7 +171,7 @@ void roil_free_recipe(roil_recipe *r);          // NULL is fine
 
 typedef struct roil_video roil_video;
 roil_video *roil_video_create(roil_effect *e, const char *file, double fps); // .mp4
-bool roil_video_add(roil_video *v);     // the last frame of its effect
+bool roil_video_add(roil_video *v);     // the last frame of its effect; encoded on another thread
 bool roil_video_finish(roil_video *v);  // writes the file; frees
 void roil_video_abandon(roil_video *v); // frees, leaves no file; NULL is fine
 

@@ -1,6 +1,7 @@
 // Pictures of the last frame: read back, encoded, saved.
 #include "base/error.h"
 #include "base/file.h"
+#include "base/jobs.h"
 #include "base/memory.h"
 #include "effect/recipe.h"
 #include "media/exr.h"
@@ -9,6 +10,7 @@
 #include "roil_impl.h"
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 // ---- reading back -----------------------------------------------------------------------------
 
@@ -30,27 +32,40 @@ static void expand(const unsigned char *texel, gpu_format format, float out[4]) 
     }
 }
 
-float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height) {
+typedef struct raw_image { // as it lies on the device
+    unsigned char *texels; // NULL: none
+    gpu_format format;
+    uint32_t width, height;
+} raw_image;
+
+static bool read_raw(roil_effect *e, graph_image image, raw_image *out) {
     gpu_image *source = graph_get_image(effect_graph(e->effect), image);
-    if (!source || !e->frame) {
-        err_set("there is no picture yet: render a frame first");
-        return NULL;
-    }
+    if (!source || !e->frame) return err_set("there is no picture yet: render a frame first");
     const gpu_image_desc *desc = gpu_image_get_desc(source);
-    if (desc->depth > 1 || desc->format == GPU_R32U) {
-        err_set("%s: only two-dimensional pictures can be saved", desc->label);
-        return NULL;
-    }
-    size_t count = (size_t)desc->width * desc->height, texel = gpu_format_size(desc->format);
-    unsigned char *raw = mem_alloc(count * texel);
-    float *pixels = NULL;
-    if (gpu_image_read(e->owner->device, source, raw, count * texel)) {
-        pixels = mem_alloc(count * 4 * sizeof *pixels);
-        for (size_t i = 0; i < count; i++) expand(raw + i * texel, desc->format, pixels + i * 4);
-        *width = desc->width;
-        *height = desc->height;
-    }
-    mem_free(raw);
+    if (desc->depth > 1 || desc->format == GPU_R32U)
+        return err_set("%s: only two-dimensional pictures can be saved", desc->label);
+    size_t size = (size_t)desc->width * desc->height * gpu_format_size(desc->format);
+    *out = (raw_image){mem_alloc(size), desc->format, desc->width, desc->height};
+    if (gpu_image_read(e->owner->device, source, out->texels, size)) return true;
+    mem_free(out->texels);
+    out->texels = NULL;
+    return false;
+}
+
+static float *expand_all(const raw_image *raw) {
+    size_t count = (size_t)raw->width * raw->height, texel = gpu_format_size(raw->format);
+    float *pixels = mem_alloc(count * 4 * sizeof *pixels);
+    for (size_t i = 0; i < count; i++) expand(raw->texels + i * texel, raw->format, pixels + i * 4);
+    return pixels;
+}
+
+float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height) {
+    raw_image raw = {0};
+    if (!read_raw(e, image, &raw)) return NULL;
+    float *pixels = expand_all(&raw);
+    mem_free(raw.texels);
+    *width = raw.width;
+    *height = raw.height;
     return pixels;
 }
 
@@ -106,44 +121,56 @@ static void encode16(const float *pixels, size_t count, bool alpha, int channels
     }
 }
 
-bool roil_read(roil_effect *e, bool alpha, uint8_t *out) {
-    uint32_t width, height;
-    float *pixels =
-        roil_read_image(e, effect_get_picture(e->effect, EFFECT_OUTPUT), &width, &height);
-    if (!pixels) return false;
-    if (width != e->width || height != e->height) {
-        mem_free(pixels);
-        return err_set("the effect's output is %u x %u, not %u x %u: its last pass has a "
-                       "resolution below 1",
-                       width, height, e->width, e->height);
-    }
-    encode8(pixels, (size_t)width * height, alpha, 4, out);
+// The effect's picture, if it is as large as was asked for.
+static bool read_output(roil_effect *e, raw_image *out) {
+    if (!read_raw(e, effect_get_picture(e->effect, EFFECT_OUTPUT), out)) return false;
+    if (out->width == e->width && out->height == e->height) return true;
+    mem_free(out->texels);
+    return err_set("the effect's output is %u x %u, not %u x %u: its last pass has a resolution "
+                   "below 1",
+                   out->width, out->height, e->width, e->height);
+}
+
+static void encode_raw(const raw_image *raw, bool alpha, uint8_t *out) {
+    float *pixels = expand_all(raw);
+    encode8(pixels, (size_t)raw->width * raw->height, alpha, 4, out);
     mem_free(pixels);
+}
+
+bool roil_read(roil_effect *e, bool alpha, uint8_t *out) {
+    raw_image raw = {0};
+    if (!read_output(e, &raw)) return false;
+    encode_raw(&raw, alpha, out);
+    mem_free(raw.texels);
     return true;
 }
 
 // ---- files ------------------------------------------------------------------------------------
 
-static bool save_png(const roil_effect *e, const char *file, const float *pixels, uint32_t width,
-                     uint32_t height, const roil_save_options *options) {
-    size_t count = (size_t)width * height;
-    int channels = options->alpha ? 4 : 3;
-    void *encoded = mem_alloc(count * (size_t)channels * (options->sixteen ? 2 : 1));
-    if (options->sixteen)
-        encode16(pixels, count, options->alpha, channels, encoded);
-    else
-        encode8(pixels, count, options->alpha, channels, encoded);
-    arena memory = {0};
+typedef struct picture { // all that its file needs, away from the effect and its device
+    char file[PATH_CAP];
+    bool exr;
+    roil_save_options options;
+    raw_image color, depth;
+    arena memory;
     png_text texts[RECIPE_TEXTS];
-    recipe_write(e->effect, e->shown, e->width, e->height, &memory, texts);
-    bool done = png_write(file,
-                          &(png_image){.width = width,
-                                       .height = height,
+} picture;
+
+static bool write_png(const picture *p, const float *pixels) {
+    size_t count = (size_t)p->color.width * p->color.height;
+    int channels = p->options.alpha ? 4 : 3;
+    void *encoded = mem_alloc(count * (size_t)channels * (p->options.sixteen ? 2 : 1));
+    if (p->options.sixteen)
+        encode16(pixels, count, p->options.alpha, channels, encoded);
+    else
+        encode8(pixels, count, p->options.alpha, channels, encoded);
+    bool done = png_write(p->file,
+                          &(png_image){.width = p->color.width,
+                                       .height = p->color.height,
                                        .channels = channels,
-                                       .bits = options->sixteen ? 16 : 8,
+                                       .bits = p->options.sixteen ? 16 : 8,
                                        .pixels = encoded},
-                          texts, RECIPE_TEXTS);
-    arena_free(&memory);
+                          p->texts, RECIPE_TEXTS);
     mem_free(encoded);
     return done;
 }
@@ -156,48 +183,112 @@ static float *split(const float *pixels, size_t count) {
     return planes;
 }
 
-static bool save_exr(roil_effect *e, const char *file, const float *pixels, uint32_t width,
-                     uint32_t height, const roil_save_options *options) {
-    size_t count = (size_t)width * height;
+static bool write_exr(const picture *p, const float *pixels) {
+    size_t count = (size_t)p->color.width * p->color.height;
     float *planes = split(pixels, count), *depth = NULL;
-    bool half = !options->full;
+    bool half = !p->options.full;
     exr_channel channels[5] = {{"R", planes, half},
                                {"G", planes + count, half},
                                {"B", planes + 2 * count, half},
                                {"A", planes + 3 * count, half}};
     size_t channel_count = 4;
-    graph_image z = effect_get_picture(e->effect, EFFECT_DEPTH);
-    uint32_t z_width = 0, z_height = 0;
-    if (z.id && !options->image) {
-        float *values = roil_read_image(e, z, &z_width, &z_height);
-        if (values && z_width == width && z_height == height) {
-            depth = split(values, count);
-            channels[channel_count++] = (exr_channel){"Z", depth, false}; // half has too few digits
-        }
+    if (p->depth.texels) {
+        float *values = expand_all(&p->depth);
+        depth = split(values, count);
         mem_free(values);
+        channels[channel_count++] = (exr_channel){"Z", depth, false}; // half has too few digits
     }
-    bool done = exr_write(file, &(exr_image){width, height, channels, channel_count});
+    bool done =
+        exr_write(p->file, &(exr_image){p->color.width, p->color.height, channels, channel_count});
     mem_free(planes);
     mem_free(depth);
     return done;
 }
 
-bool roil_save(roil_effect *e, const char *file, const roil_save_options *options) {
+static bool write_picture(void *user) {
+    const picture *p = user;
+    if (!file_make_parent_folders(p->file)) return false;
+    float *pixels = expand_all(&p->color);
+    bool done = p->exr ? write_exr(p, pixels) : write_png(p, pixels);
+    mem_free(pixels);
+    return done;
+}
+
+static void free_picture(void *user) {
+    picture *p = user;
+    mem_free(p->color.texels);
+    mem_free(p->depth.texels);
+    arena_free(&p->memory);
+    mem_free(p);
+}
+
+// The depth of the scene goes with the effect's own picture, where it is as large.
+static void take_depth(roil_effect *e, picture *p) {
+    graph_image z = effect_get_picture(e->effect, EFFECT_DEPTH);
+    if (!p->exr || !z.id || p->options.image || !read_raw(e, z, &p->depth)) return;
+    if (p->depth.width == p->color.width && p->depth.height == p->color.height) return;
+    mem_free(p->depth.texels);
+    p->depth.texels = NULL;
+}
+
+static picture *take_picture(roil_effect *e, const char *file, const roil_save_options *options) {
     static const roil_save_options defaults;
-    if (!options) options = &defaults;
     bool exr = strcmp(path_extension(file), "exr") == 0;
-    if (!exr && strcmp(path_extension(file), "png") != 0)
-        return err_set("%s: pictures are .png or .exr", file);
+    if (!exr && strcmp(path_extension(file), "png") != 0) {
+        err_set("%s: pictures are .png or .exr", file);
+        return NULL;
+    }
+    picture *p = mem_alloc(sizeof *p);
+    p->exr = exr;
+    p->options = options ? *options : defaults;
+    str_copy(p->file, sizeof p->file, file);
     graph_image linear = effect_get_picture(e->effect, EFFECT_LINEAR);
     graph_image image = exr && linear.id ? linear : effect_get_picture(e->effect, EFFECT_OUTPUT);
-    if (options->image) image = roil_find_image(e, options->image);
-    uint32_t width, height;
-    float *pixels = image.id ? roil_read_image(e, image, &width, &height) : NULL;
-    if (!pixels) return false;
-    bool done =
-        file_make_parent_folders(file) && (exr ? save_exr(e, file, pixels, width, height, options)
-                                               : save_png(e, file, pixels, width, height, options));
-    mem_free(pixels);
+    if (p->options.image) image = roil_find_image(e, p->options.image);
+    if (!image.id || !read_raw(e, image, &p->color)) {
+        free_picture(p);
+        return NULL;
+    }
+    take_depth(e, p);
+    if (!exr) recipe_write(e->effect, e->shown, e->width, e->height, &p->memory, p->texts);
+    return p;
+}
+
+bool roil_save(roil_effect *e, const char *file, const roil_save_options *options) {
+    picture *p = take_picture(e, file, options);
+    if (!p) return false;
+    bool done = write_picture(p);
+    free_picture(p);
+    return done;
+}
+
+// ---- files beside the frames ------------------------------------------------------------------
+
+enum { MAX_THREADS = 16, QUEUED = 2 }; // of a writer; pictures that wait besides those at work
+
+struct roil_writer {
+    jobs *files;
+};
+
+roil_writer *roil_writer_create(void) {
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    size_t threads = cores < 1 ? 1 : cores > MAX_THREADS ? MAX_THREADS : (size_t)cores;
+    roil_writer *w = mem_alloc(sizeof *w);
+    roil_srgb_table(); // filled before several threads read it
+    w->files = jobs_create(threads, threads + QUEUED);
+    return w;
+}
+
+bool roil_writer_save(roil_writer *w, roil_effect *e, const char *file,
+                      const roil_save_options *options) {
+    picture *p = take_picture(e, file, options);
+    return p && jobs_add(w->files, write_picture, free_picture, p);
+}
+
+bool roil_writer_finish(roil_writer *w) {
+    if (!w) return true;
+    bool done = jobs_finish(w->files);
+    mem_free(w);
     return done;
 }
 
@@ -206,16 +297,43 @@ bool roil_save(roil_effect *e, const char *file, const roil_save_options *option
 struct roil_video {
     roil_effect *effect;
     video *video;
+    jobs *frames; // encoded one after the other
     uint8_t *pixels;
 };
+
+typedef struct video_frame {
+    roil_video *of;
+    raw_image raw;
+} video_frame;
 
 roil_video *roil_video_create(roil_effect *e, const char *file, double fps) {
     if (!file_make_parent_folders(file)) return NULL;
     video *out = video_create(file, e->width, e->height, fps);
     if (!out) return NULL;
     roil_video *v = mem_alloc(sizeof *v);
-    *v = (roil_video){e, out, mem_alloc((size_t)e->width * e->height * 4)};
+    *v = (roil_video){.effect = e,
+                      .video = out,
+                      .frames = jobs_create(1, 1 + QUEUED),
+                      .pixels = mem_alloc((size_t)e->width * e->height * 4)};
     return v;
+}
+
+static bool encode_frame(void *user) {
+    const video_frame *frame = user;
+    encode_raw(&frame->raw, false, frame->of->pixels);
+    return video_add(frame->of->video, frame->of->pixels);
+}
+
+static void free_frame(void *user) {
+    video_frame *frame = user;
+    mem_free(frame->raw.texels);
+    mem_free(frame);
+}
+
+bool roil_video_add(roil_video *v) {
+    video_frame frame = {.of = v};
+    return read_output(v->effect, &frame.raw) &&
+           jobs_add(v->frames, encode_frame, free_frame, mem_copy(&frame, sizeof frame));
 }
 
 static void release(roil_video *v) {
@@ -223,18 +341,19 @@ static void release(roil_video *v) {
     mem_free(v);
 }
 
-bool roil_video_add(roil_video *v) {
-    return roil_read(v->effect, false, v->pixels) && video_add(v->video, v->pixels);
-}
-
 bool roil_video_finish(roil_video *v) {
-    bool done = video_finish(v->video);
+    bool done = jobs_finish(v->frames);
+    if (done)
+        done = video_finish(v->video);
+    else
+        video_abandon(v->video);
     release(v);
     return done;
 }
 
 void roil_video_abandon(roil_video *v) {
     if (!v) return;
+    jobs_finish(v->frames);
     video_abandon(v->video);
     release(v);
 }

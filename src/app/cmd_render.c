@@ -22,6 +22,7 @@ typedef struct job {
     const char *file, *stats, *device;
     output *outputs;
     size_t output_count, output_capacity;
+    roil_writer *writer; // of pictures
     const char *from_file;
     roil_recipe *from; // of that picture
     app_settings settings;
@@ -204,6 +205,7 @@ static bool open_outputs(job *j, roil_effect *e) {
         if (o->image && !roil_keep(e, o->image)) return false;
     }
     if (!roil_prepare(e, j->width, j->height)) return false;
+    j->writer = roil_writer_create();
     for (size_t i = 0; i < j->output_count; i++) {
         output *o = &j->outputs[i];
         if (!str_ends_with(o->pattern, ".mp4")) continue;
@@ -219,7 +221,9 @@ static bool save_frame(job *j, roil_effect *e, double frame) {
         char file[PATH_CAP];
         app_format_pattern(o->pattern, frame, file, sizeof file);
         roil_save_options options = {o->image, j->alpha, j->sixteen, j->full};
-        if (o->video ? !roil_video_add(o->video) : !roil_save(e, file, &options)) return false;
+        bool done =
+            o->video ? roil_video_add(o->video) : roil_writer_save(j->writer, e, file, &options);
+        if (!done) return false;
     }
     return true;
 }
@@ -266,7 +270,10 @@ static bool render_frames(job *j, roil_effect *e, app_stats *stats) {
     return done;
 }
 
+// Waits until all is written.
 static bool close_outputs(job *j, bool done) {
+    if (!roil_writer_finish(j->writer)) done = false;
+    j->writer = NULL;
     for (size_t i = 0; i < j->output_count; i++) {
         output *o = &j->outputs[i];
         if (!o->video) continue;

@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <fnmatch.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,6 +70,16 @@ static bool write_in_place(const char *path, const void *data, size_t size) {
     return done;
 }
 
+// It can only be read by setting it, which two threads must not do at once.
+static mode_t read_umask(void) {
+    static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+    pthread_mutex_lock(&mutex);
+    mode_t mask = umask(0);
+    umask(mask);
+    pthread_mutex_unlock(&mutex);
+    return mask;
+}
+
 bool file_write(const char *path, const void *data, size_t size) {
     struct stat info;
     if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) {
@@ -80,9 +91,7 @@ bool file_write(const char *path, const void *data, size_t size) {
     if (length >= (int)sizeof temporary) return path_too_long(path);
     int fd = mkostemp(temporary, O_CLOEXEC);
     if (fd < 0) return err_set("%s: cannot be written: %s", path, strerror(errno));
-    mode_t mask = umask(0);
-    umask(mask);
-    bool done = fchmod(fd, 0666 & ~mask) == 0 && write_all(fd, data, size);
+    bool done = fchmod(fd, 0666 & ~read_umask()) == 0 && write_all(fd, data, size);
     int reason = errno;
     if (close(fd) != 0 && done) {
         done = false;
