@@ -62,32 +62,53 @@ local function parts_of(row, passes, series)
   return order
 end
 
-local function bar(sweep, row, passes, series, longest)
+local function bar(sweep, row, parts, longest, total)
   local svg, at = { class = "stack", ["aria-hidden"] = "true" }, 0
-  for _, part in ipairs(parts_of(row, passes, series)) do
+  for _, part in ipairs(parts) do
     local width = part.ms / longest * 100
     svg[#svg + 1] = h.rect { class = "f" .. part.series, x = string.format("%.3f%%", at), y = 0, height = "100%",
       width = string.format("%.3f%%", width), h.title(table.concat(part.names, ", ") .. " ms") }
     at = at + width
   end
   return h.li { h.span { class = "what", data.short_label(sweep, row) }, h.svg(svg),
-                h.span { class = "n", number.short(row.gpu.all.median) } }
+                h.span { class = "n", number.short(total) } }
+end
+
+-- Rows that `get` gives a time for, and the longest of these.
+local function timed(sweep, get)
+  local rows, longest = {}, 0
+  for _, row in ipairs(sweep.rows) do
+    local spread = get(row)
+    if spread then
+      rows[#rows + 1] = row
+      longest = math.max(longest, spread.median)
+    end
+  end
+  return rows, longest
+end
+
+-- One bar each, where there are no passes to tell apart.
+local function plain(sweep)
+  local metric = data.metrics(sweep)[1]
+  local rows, longest = {}, 0
+  if metric then rows, longest = timed(sweep, metric.get) end
+  if #rows < 2 or longest <= 0 then return nil end
+  local out = { class = "bars" }
+  for i = 1, math.min(#rows, MAX_BARS) do
+    local ms = metric.get(rows[i]).median
+    out[i] = bar(sweep, rows[i], { { series = 1, ms = ms, names = { metric.label .. " " .. number.short(ms) } } }, longest, ms)
+  end
+  return h.section { id = "passes", h.h2("Time of " .. metric.name),
+    h.p { class = "lead", "Milliseconds, medians; rows by ", data.label_head(sweep), "." }, h.ol(out) }
 end
 
 return function(sweep)
   local passes, series, has_rest = choose_passes(sweep)
-  if #passes < 2 then return nil end
-  local longest, rows = 0, {}
-  for _, row in ipairs(sweep.rows) do
-    if row.gpu.all then
-      rows[#rows + 1] = row
-      longest = math.max(longest, row.gpu.all.median)
-    end
-  end
-  if longest <= 0 then return nil end
+  local rows, longest = timed(sweep, function(row) return row.gpu.all end)
+  if #passes < 2 or longest <= 0 then return plain(sweep) end
   local out = { class = "bars" }
-  for i, row in ipairs(rows) do
-    if i <= MAX_BARS then out[#out + 1] = bar(sweep, row, passes, series, longest) end
+  for i = 1, math.min(#rows, MAX_BARS) do
+    out[i] = bar(sweep, rows[i], parts_of(rows[i], passes, series), longest, rows[i].gpu.all.median)
   end
   return h.section { id = "passes",
     h.h2 "Where the time goes",

@@ -80,7 +80,7 @@ thead th, thead th.n { font-weight: 600; font-size: 12px; color: var(--quiet); v
   overflow-wrap: break-word; }
 tbody th { font-weight: 400; color: var(--quiet); }
 tbody tr:last-child > * { border-bottom: 0; }
-.rows tr > :first-child { position: sticky; left: 0; background: var(--panel); min-width: 38px; }
+.rows tr > :first-child { position: sticky; left: 0; background: var(--panel); min-width: 38px; width: 1%; }
 td small { display: block; font-size: 11px; line-height: 1.2; }
 td.state { color: var(--bad); white-space: pre-line; min-width: 300px; }
 .published { background: var(--faint); }
