@@ -81,10 +81,10 @@ bool pass_prepare(pass *p); // uniforms, field numbers, palettes and counters of
 bool pass_run(pass *p);     // one dispatch or full-screen draw over the first output
 bool pass_record(pass *p);  // both
 graph_image pass_grid_image(const pass_host *host,
-                            const field_grid *grid);  // zero: not of the graph
+                            const field_grid *grid);         // zero: not of the graph
 pass *pass_writer(const pass_host *host, graph_image image); // NULL: of no pass declared before
 int pass_find_image(const pass *p, const char *name);        // index in face->images, -1: none
-bool pass_declare_images(pass *p);                    // histories and outputs at the pass's scale
+bool pass_declare_images(pass *p); // histories and outputs at the pass's scale
 // The same, with images of its own that it writes besides.
 bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count);
 // The same, with images of its own that it reads besides.
