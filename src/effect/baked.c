@@ -76,7 +76,7 @@ field_grid *effect_add_bake(effect *e, const field *node, const effect_bake_desc
 const field *effect_add_tile(effect *e, const field *noise, const effect_tile_desc *desc) {
     field_tile tile;
     float side = (float)desc->cells;
-    if (!field_tile_create(&e->memory, noise, side, desc->together, &tile)) return NULL;
+    if (!field_tile_create(&e->memory, noise, side, desc->octaves, &tile)) return NULL;
     effect_bake_desc bake = {
         .size = {desc->size, desc->size, desc->size},
         .box = {{0, 0, 0}, {side, side, side}},

@@ -89,7 +89,7 @@ field_grid *effect_add_bake(effect *e, const field *node, const effect_bake_desc
 typedef struct effect_tile_desc {
     uint32_t size;  // voxels along each side
     uint32_t cells; // of the noise, along each side
-    bool together;  // all octaves in the tile; else those of a lone noise are samples of one
+    int octaves;    // of a lone noise that are in the tile
     bool levels;    // with mip levels
 } effect_tile_desc;
 // An expression of noises by samples of a baked tile that repeats (field_tile).

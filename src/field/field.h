@@ -126,13 +126,13 @@ typedef struct field_tile {
     float cells;          // the side of the cube to be baked, from 0; a cell is 1 long
     const field *noise, *frequency, *drift; // the first noise of the expression, and its own
     bool alone;                             // the expression is that noise
-    int octaves;                            // that are samples of their own
+    int samples, octaves;                   // of it; octaves in each, where there are several
 } field_tile;
 
 // NULL of `content`, with a message: something in `node` does not repeat.
-// `together`: all octaves of a lone noise in the tile, at whole lacunarities.
-bool field_tile_create(arena *memory, const field *node, float cells, bool together,
-                       field_tile *out);
+// `octaves`: how many of a lone noise's are in the tile, at whole lacunarities; for the others it
+// is sampled again, which rounds their count up.
+bool field_tile_create(arena *memory, const field *node, float cells, int octaves, field_tile *out);
 // The expression, by samples of a grid that holds the tile and repeats.
 field *field_tile_sample(arena *memory, const field_tile *tile, const field *baked);
 

@@ -7,11 +7,11 @@
 // of paper's curl) are multiplied by the frequency. What changes the shape of a noise (speed, w,
 // seed, power ...) is in the tile, and so makes it anew when it moves.
 //
-// The octaves of a noise that stands alone are alike but for their seeds: the tile holds one
-// octave, and the others are the same tile, scaled, and moved by parts of it that have no simple
-// ratio. A tile with all octaves would need as many texels for a cell of the last one: 2^3 times as
-// many for each octave more. In an expression of several noises, and where the lacunarity is part
-// of the result (steps of paper's curl), or where it is asked for, all octaves are in the tile.
+// The octaves of a noise that stands alone are alike but for their seeds: the tile holds the first,
+// or a few, and the others are samples of the same tile, scaled, and moved by parts of it that have
+// no simple ratio. A tile with all octaves would need as many texels for a cell of the last one:
+// 2^3 times as many for each octave more. In an expression of several noises, and where the
+// lacunarity is part of the result (steps of paper's curl), all octaves are in the tile.
 #include "base/error.h"
 #include "field/kinds.h"
 #include "field/map.h"
@@ -110,7 +110,7 @@ static const field *close_noise(tiling *t, const field *noise) {
     else
         args[DRIFT] = scaled(t, combine(t->memory, "sub", noise->args[DRIFT], tile->drift));
     if (is(noise, "curl")) args[STEP] = scaled(t, noise->args[STEP]);
-    if (tile->octaves > 1) args[OCTAVES] = number(t->memory, 1);
+    if (tile->samples > 1) args[OCTAVES] = number(t->memory, (float)tile->octaves);
     if (tile->alone) args[AMPLITUDE] = number(t->memory, 1);
     for (size_t i = 0; i < kind_arg_count(noise); i++)
         if (!args[i]) return NULL;
@@ -150,14 +150,14 @@ static const field *close(tiling *t, const field *node) {
     return t->made[t->count++] = made;
 }
 
-// Octaves that are taken from the tile one by one; 1: it holds all that there are.
-static int separate_octaves(const field *noise) {
+// Samples that make all octaves, of so many each; 1: the tile holds all that there are.
+static int count_samples(const field *noise, int octaves) {
     bool fixed = kind_of(noise->args[OCTAVES]) == KIND_CONSTANT;
     if (!fixed || (is(noise, "curl") && noise->options[MODE] == PAPER)) return 1;
-    return (int)(noise->args[OCTAVES]->value[0] + 0.5f);
+    return ((int)(noise->args[OCTAVES]->value[0] + 0.5f) + octaves - 1) / octaves;
 }
 
-bool field_tile_create(arena *memory, const field *node, float cells, bool together,
+bool field_tile_create(arena *memory, const field *node, float cells, int octaves,
                        field_tile *out) {
     const field *noise = first_noise(node);
     if (!noise) return err_set("tile: there is no noise in it");
@@ -167,7 +167,8 @@ bool field_tile_create(arena *memory, const field *node, float cells, bool toget
         .frequency = noise->args[FREQUENCY],
         .drift = noise->args[DRIFT],
         .alone = node == noise,
-        .octaves = node == noise && !together ? separate_octaves(noise) : 1,
+        .samples = node == noise ? count_samples(noise, octaves) : 1,
+        .octaves = octaves,
     };
     tiling t = {.memory = memory, .tile = out};
     out->content = close(&t, node);
@@ -177,14 +178,15 @@ bool field_tile_create(arena *memory, const field *node, float cells, bool toget
 
 // ---- where it is sampled ----------------------------------------------------------------------
 
-// Octave i: at (p + drift) * frequency * lacunarity^i + i * apart.
-static field *place_octave(arena *memory, const field_tile *tile, const field *baked, int i) {
+// Sample i: at (p + drift) * frequency * lacunarity^(i octaves) + i * apart.
+static field *place_sample(arena *memory, const field_tile *tile, const field *baked, int i) {
     const field *noise = tile->noise, *frequency = tile->frequency, *drift = tile->drift;
     if (i > 0) {
         const float turn[3] = {0.7549f, 0.5698f, 0.4302f}; // of the plastic number: far from ratios
         float apart[4] = {0};
         for (int c = 0; c < 3; c++) apart[c] = (float)i * turn[c] * tile->cells;
-        field *factor = combine(memory, "pow", noise->args[LACUNARITY], number(memory, (float)i));
+        field *factor = combine(memory, "pow", noise->args[LACUNARITY],
+                                number(memory, (float)(i * tile->octaves)));
         frequency = combine(memory, "mul", frequency, factor);
         field *moved = combine(memory, "div", field_constant(memory, 3, apart), frequency);
         drift = combine(memory, "add", drift, moved);
@@ -194,23 +196,24 @@ static field *place_octave(arena *memory, const field_tile *tile, const field *b
     return args[1] && scale ? field_make(memory, "transform", args, NULL) : NULL;
 }
 
-// persistence^i over the sum of all.
+// Sample i: persistence^(i octaves), over the sum of all.
 static field *weight_of(arena *memory, const field_tile *tile, int i) {
     const field *persistence = tile->noise->args[PERSISTENCE];
     field *total = number(memory, 1);
-    for (int k = 1; k < tile->octaves; k++)
-        total = combine(memory, "add", total,
-                        combine(memory, "pow", persistence, number(memory, (float)k)));
-    field *own = combine(memory, "pow", persistence, number(memory, (float)i));
+    for (int k = 1; k < tile->samples; k++)
+        total = combine(
+            memory, "add", total,
+            combine(memory, "pow", persistence, number(memory, (float)(k * tile->octaves))));
+    field *own = combine(memory, "pow", persistence, number(memory, (float)(i * tile->octaves)));
     return combine(memory, "div", own, total);
 }
 
 field *field_tile_sample(arena *memory, const field_tile *tile, const field *baked) {
     field *sum = NULL;
-    for (int i = 0; i < tile->octaves; i++) {
-        field *octave = place_octave(memory, tile, baked, i);
-        if (tile->octaves > 1) octave = combine(memory, "mul", weight_of(memory, tile, i), octave);
-        sum = i == 0 ? octave : combine(memory, "add", sum, octave);
+    for (int i = 0; i < tile->samples; i++) {
+        field *sample = place_sample(memory, tile, baked, i);
+        if (tile->samples > 1) sample = combine(memory, "mul", weight_of(memory, tile, i), sample);
+        sum = i == 0 ? sample : combine(memory, "add", sum, sample);
     }
     const field *amplitude = tile->noise->args[AMPLITUDE];
     if (tile->alone && !equal(amplitude, number(memory, 1)))

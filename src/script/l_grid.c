@@ -210,15 +210,17 @@ int l_tile(lua_State *L) {
         lua_newtable(L);
         lua_replace(L, 2);
     }
-    const script_object *row = value_check_object(L, 2, "tile");
+    value_check_object(L, 2, "tile");
     effect_tile_desc desc = {
         .size = value_get_count(L, 2, "tile", "resolution", TILE_RESOLUTION),
         .cells = value_get_count(L, 2, "tile", "cells", TILE_CELLS),
-        .together = value_get_choice(L, 2, row, "octaves") == 1,
+        .octaves = (int)value_get_count(L, 2, "tile", "octaves", 1),
         .levels = value_get_bool(L, 2, "tile", "levels", true),
     };
     if (desc.size < 4 || desc.size > 512)
         vm_error(L, "tile: 'resolution' is %d; 4 to 512 voxels are accepted", (int)desc.size);
+    if (desc.octaves < 1 || desc.octaves > 12)
+        vm_error(L, "tile: 'octaves' is %d; 1 to 12 are accepted", desc.octaves);
     if (desc.cells < 1 || desc.cells > 256)
         vm_error(L, "tile: 'cells' is %d; 1 to 256 are accepted", (int)desc.cells);
     vm_charge_memory(L, SEQUENCE_COST);

@@ -111,10 +111,9 @@ static const script_object objects[] = {
         KEY("resolution", "64 voxels [4, 512]", "along each side"),
         KEY("cells", "8 [1, 256]", "of the first noise along each side, after which it repeats; "
          "for simplex a multiple of 3"),
-        CHOICE("octaves", "apart",
-               "apart: a sample for each octave of a single noise, all of the same voxels; together: "
-               "all in the voxels, at whole lacunarities, as those of an expression always are",
-               "apart", "together"),
+        KEY("octaves", "1 [1, 12]",
+            "of a single noise that lie in the voxels, at whole lacunarities; the others are further "
+            "samples of these, as many octaves each. Those of an expression all lie there"),
         KEY("levels", "true", "with mip levels"))},
     {"palette", "source", "palette { {0, \"#000\"}, {0.5, {1, 0.4, 0}}, {1, \"#fff3b0\", 0.5} }",
      "a number to colour and alpha. Called with a field it gives a field of colours: "

@@ -173,7 +173,7 @@ static float *draw_noise(gpu *device, bool tile, float width) {
     const field *args[FIELD_MAX_ARGS] = {number(e, 2), number(e, 1)};
     args[9] = number(e, 4); // period
     const field *noise = effect_field(e, "perlin", args);
-    if (tile) noise = effect_add_tile(e, noise, &(effect_tile_desc){64, 4, .levels = true});
+    if (tile) noise = effect_add_tile(e, noise, &(effect_tile_desc){64, 4, 1, .levels = true});
     gpu_test_ok(noise);
     pass *p = add(e, NULL, "plane.comp");
     gpu_test_ok(pass_set_field(p, "value", noise));

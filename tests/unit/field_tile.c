@@ -59,7 +59,7 @@ static void tile_of_one_octave_is_the_noise_with_that_period(void **state) {
     static const char *const kinds[] = {"perlin", "value", "simplex", "worley", "curl"};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         field_tile tile;
-        assert_true(field_tile_create(build_memory(), noise(kinds[i], 1, 0), CELLS, false, &tile));
+        assert_true(field_tile_create(build_memory(), noise(kinds[i], 1, 0), CELLS, 1, &tile));
         exact_grid baked = bake(&tile);
         assert_equal(sampled(&tile, &baked), noise(kinds[i], 1, CELLS), 0, (float3){0, 0, 0});
         baked.time = 1.75; // the drift is not in the tile
@@ -73,8 +73,8 @@ static void octaves_are_samples_whose_weights_add_up(void **state) {
                    SET("persistence", number(0.7f)), SET("lacunarity", number(2.1f)),
                    SET("amplitude", number(3)));
     field_tile tile;
-    assert_true(field_tile_create(build_memory(), n, CELLS, false, &tile));
-    assert_int_equal(tile.octaves, 4);
+    assert_true(field_tile_create(build_memory(), n, CELLS, 1, &tile));
+    assert_int_equal(tile.samples, 4);
     exact_grid baked = bake(&tile);
     baked.content = number(0.5f);
     assert_true(fabsf(value_at(sampled(&tile, &baked), 0, places[0]) - 1.5f) < 1e-5f);
@@ -100,7 +100,7 @@ static void octaves_are_samples_whose_weights_add_up(void **state) {
 static void octaves_together_are_the_noise_with_that_period(void **state) {
     (void)state;
     field_tile tile;
-    assert_true(field_tile_create(build_memory(), noise("perlin", 3, 0), CELLS, true, &tile));
+    assert_true(field_tile_create(build_memory(), noise("perlin", 3, 0), CELLS, 3, &tile));
     exact_grid baked = bake(&tile);
     assert_equal(sampled(&tile, &baked), noise("perlin", 3, CELLS), 0, (float3){0, 0, 0});
 }
@@ -115,8 +115,8 @@ static field *swirled(float period) {
 static void expression_of_noises_repeats_as_a_whole(void **state) {
     (void)state;
     field_tile tile;
-    assert_true(field_tile_create(build_memory(), swirled(0), CELLS, false, &tile));
-    assert_int_equal(tile.octaves, 1);
+    assert_true(field_tile_create(build_memory(), swirled(0), CELLS, 1, &tile));
+    assert_int_equal(tile.samples, 1);
     exact_grid baked = bake(&tile);
     assert_equal(sampled(&tile, &baked), swirled(CELLS), 0, (float3){0, 0, 0});
     const float metres = CELLS / 1.5f;
@@ -128,10 +128,10 @@ static void expression_of_noises_repeats_as_a_whole(void **state) {
 static void what_does_not_repeat_is_refused(void **state) {
     (void)state;
     field_tile tile;
-    assert_false(field_tile_create(build_memory(), make("sphere", NULL), CELLS, false, &tile));
+    assert_false(field_tile_create(build_memory(), make("sphere", NULL), CELLS, 1, &tile));
     assert_error("there is no noise in it");
     field *both = row("mul", SET("a", noise("perlin", 1, 0)), SET("b", make("sphere", NULL)));
-    assert_false(field_tile_create(build_memory(), both, CELLS, false, &tile));
+    assert_false(field_tile_create(build_memory(), both, CELLS, 1, &tile));
     assert_error("'sphere' does not repeat");
 }
 
@@ -139,7 +139,7 @@ static void what_does_not_repeat_is_refused(void **state) {
 static void advected_tile_is_made_anew_from_other_parts(void **state) {
     (void)state;
     field_tile tile;
-    assert_true(field_tile_create(build_memory(), noise("perlin", 1, 0), CELLS, false, &tile));
+    assert_true(field_tile_create(build_memory(), noise("perlin", 1, 0), CELLS, 1, &tile));
     exact_grid baked = bake(&tile);
     field *a = row("advect", SET("value", sampled(&tile, &baked)), SET("velocity", vector(0, 0, 0)),
                    SET("period", number(1)));

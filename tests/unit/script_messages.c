@@ -143,6 +143,10 @@ static void declarations_are_checked(void **state) {
         {"mesh { '/etc/passwd' }", ""},
         {"bake(sphere { }, { size = 1e9 })", "bake: 'size' is 1e+09"},
         {"bake(perlin { })", "bake: the field has no finite bounds"},
+        {"tile(sphere { })", "tile: there is no noise in it"},
+        {"tile(perlin { } * sphere { })", "tile: 'sphere' does not repeat"},
+        {"perlin { }:tile { resolution = 1000 }", "tile: 'resolution' is 1000; 4 to 512"},
+        {"perlin { }:tile { octaves = 0 }", "tile: 'octaves' is 0; 1 to 12"},
     };
     CHECK(cases);
 }
