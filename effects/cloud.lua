@@ -9,7 +9,7 @@ local density = param { "density", 0.09, min = 0, max = 1, unit = "1/m", help = 
 local detail  = param { "detail", 0.55, min = 0, max = 2, help = "how much the noise eats from the edges" }
 
 local cumulus = vdb { "data/cloud.vdb", loop = "extend", offset = {0, 0, 260} }
-local lumps = worley { frequency = 0.016, octaves = 4, persistence = 0.5, lacunarity = 2.2, speed = 0.02, seed = 4 }
+local lumps = worley { frequency = 0.016, octaves = 4, persistence = 0.5, lacunarity = 2.2, speed = 0.02, seed = 4 }:tile()
 local body  = clamp(cumulus.density * 1.4, 0, 1)
 local eaten = smoothstep(0, 0.25, body - detail * (1 - lumps) * (1 - 0.8 * body))
 

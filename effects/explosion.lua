@@ -29,13 +29,15 @@ local torn = bake(vec(burst.density, burst.temperature, burst.flame):warp(flow, 
 local smoke, heat, flame = torn.x, torn.y, torn.z
 
 -- The detail: lumps at three scales that rise with the smoke. Which noise it is, is structure: it is
--- chosen when the effect loads.
+-- chosen when the effect loads. As a tile it is computed once, into voxels that repeat: two octaves
+-- lie in them, and a sample for the others, at other scales, costs much less than the noise.
 local shape = { frequency = 1.4, octaves = 5, persistence = 0.66, lacunarity = 2.1, drift = {0, 0, -0.5}, seed = 11 }
+local voxels = { resolution = 128, cells = 9, octaves = 2 }
 local kinds = {
-  worley_curl = function() return worley(shape):warp(flow, 0.25) end,
-  worley      = function() return worley(shape) end,
-  perlin      = function() return perlin(shape):remap(0.25, 0.75, 0, 1) end,
-  simplex     = function() return simplex(shape):remap(0.25, 0.75, 0, 1) end,
+  worley_curl = function() return worley(shape):tile(voxels):warp(flow, 0.25) end,
+  worley      = function() return worley(shape):tile(voxels) end,
+  perlin      = function() return perlin(shape):tile(voxels):remap(0.25, 0.75, 0, 1) end,
+  simplex     = function() return simplex(shape):tile(voxels):remap(0.25, 0.75, 0, 1) end,
   none        = function() return 0.5 end,
 }
 local lumps = kinds[noise:get()]()

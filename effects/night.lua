@@ -19,7 +19,7 @@ local torn  = bake(vec(burst.density, burst.temperature, burst.flame):warp(flow,
 local smoke, heat, flame = torn.x, torn.y, torn.z
 
 local lumps = worley({ frequency = 1.4, octaves = 5, persistence = 0.66, lacunarity = 2.1,
-                       drift = {0, 0, -0.5}, seed = 29 }):warp(flow, 0.25)
+                       drift = {0, 0, -0.5}, seed = 29 }):tile { resolution = 128, octaves = 2 }:warp(flow, 0.25)
 local cover = clamp(smoke * 2.2, 0, 1)
 local crust = smoothstep(0, 0.15, cover - detail * (1 - lumps) * (1 - 0.6 * cover))
 

@@ -10,20 +10,27 @@ local fx = effect { name = "paper", fps = 24, frames = 100 }
 local steps   = param { "steps", 128, min = 1, max = 1024, integer = true, help = "16, 32, 64, 128 or 256 in the paper" }
 local opacity = param { "opacity", 20, min = 0, max = 40, help = "volume density, section 4" }
 local noise   = param { "noise", "worley_curl", words = {"perlin", "worley", "worley_curl", "none"}, help = "section 3.7" }
+local noise_bake = param { "noise_bake", "tile", words = {"tile", "exact"}, help = "exact computes the noise at every sample, tile once, in voxels" }
 local show    = param { "show_noise", false, help = "the noise itself, on the faces of the box" }
 
 local burst = vdb { "data/explosion-32/*.vdb", fps = 24 }
 local side  = burst.box.max[1] - burst.box.min[1]
 
--- The paper's noises live in the box's own coordinates, 0 to 1, and slide through it.
+-- The paper's noises live in the box's own coordinates, 0 to 1, and slide through it. As a tile they
+-- are computed once, over twice the box, which they leave after five seconds only: within, the tile is
+-- the noise itself.
 local drift = {0.1, 0.15, 0.2}
+local function baked(noise, frequency)
+  if noise_bake:get() == "exact" then return noise end
+  return noise:tile { resolution = 96, cells = 2 * frequency, octaves = 2 }
+end
 local kinds = {
-  perlin = function() return perlin { frequency = 4, octaves = 2, persistence = 0.5, lacunarity = 2, drift = drift } end,
-  worley = function() return worley { mode = "paper", frequency = 10, power = 1.5, drift = drift } end,
+  perlin = function() return baked(perlin { frequency = 4, octaves = 2, persistence = 0.5, lacunarity = 2, drift = drift }, 4) end,
+  worley = function() return baked(worley { mode = "paper", frequency = 10, power = 1.5, drift = drift }, 10) end,
   worley_curl = function()
     -- Its domain is the box times ten: a step of 0.01 and a factor of 5 there are a tenth here.
     local swirl = curl { mode = "paper", frequency = 10, step = 0.001, drift = drift }
-    return worley { mode = "paper", frequency = 10, power = 1.5, drift = drift }:warp(swirl, 0.5)
+    return baked(worley { mode = "paper", frequency = 10, power = 1.5, drift = drift }:warp(swirl, 0.5), 10)
   end,
   none = function() return 1 end,
 }

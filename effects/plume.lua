@@ -31,7 +31,7 @@ local radius = length(vec(position.x, position.y, 0))
 local stream = vec(0, 0, 0.3 + 0.7 * exp(-1.2 * radius * radius)) * rise
              + curl { frequency = 0.6, seed = 2, amount = 0.35 }
 local lumps  = worley { frequency = 0.72, octaves = 3, persistence = 0.45, lacunarity = 2.2, seed = 5 }
-               :advect(stream, { period = 2.4, mean = 0.48 })
+               :tile():advect(stream, { period = 2.4, mean = 0.48 })
 local depth  = in_column(1 - radius + billows * (lumps - 0.5))
 
 -- Towards its end the smoke thins out, and its edges grow soft. Where the column cannot reach, the
@@ -43,7 +43,7 @@ local smoke = near * smoothstep(0, mix(0.45, 0.12, young), depth - 0.5 * (1 - yo
 -- Computed once a voxel; the smallest eddies are finer than these voxels and torn in while marching.
 local box   = { min = {-3.5, -5, 5.5}, max = {16, 7, 20.5} }
 local whole = bake(smoke, { size = {160, 96, 120}, box = box })
-local eddies = curl { frequency = 1.3, octaves = 3, persistence = 0.6, seed = 9, drift = {0, 0, -2.2}, speed = 0.6 }
+local eddies = curl { frequency = 1.3, octaves = 3, persistence = 0.6, seed = 9, drift = {0, 0, -2.2}, speed = 0.6 }:tile()
 
 fx.camera = camera { eye = {5.5, -25, 1.7}, target = {5.5, 0, 9.2}, fov = 46, near = 0.1, far = 800 }
 fx.sun    = sun { azimuth = 205, elevation = 38, color = {1, 0.94, 0.86}, strength = 5 }

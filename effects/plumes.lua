@@ -25,8 +25,8 @@ local function plume(side, seed)
   local room   = vec(across.x, across.y, wide ^ 0.15 / (0.15 * widening))
   local radius = length(vec(position.x, position.y, 0))
   local stream = vec(0, 0, 0.3 + 0.7 * exp(-1.2 * radius * radius)) * rise + curl { frequency = 0.5, seed = seed + 1, amount = 0.4 }
-  local lumps  = worley { frequency = 0.6, octaves = 3, persistence = 0.5, seed = seed }
-                 :warp(curl { frequency = 0.8, octaves = 2, seed = seed }, 0.3):advect(stream, { period = 2.4, mean = 0.48 })
+  local lumps  = worley { frequency = 0.6, octaves = 3, persistence = 0.5, seed = seed }:tile()
+                 :warp(curl { frequency = 0.8, octaves = 2, seed = seed }:tile(), 0.3):advect(stream, { period = 2.4, mean = 0.48 })
   local function there(f) return f:warp(room - position) end
   local young  = smoothstep(height, 0.2 * height, position.z)
   local depth  = there(1 - radius + 2.2 * (lumps - 0.5)) - 0.5 * (1 - young)
@@ -35,7 +35,7 @@ local function plume(side, seed)
 end
 
 local box    = { min = {-3.8, -1.8, 0}, max = {3.8, 1.8, height} }
-local eddies = curl { frequency = 2.2, octaves = 3, persistence = 0.6, seed = 9, drift = {0, 0, -1.2}, speed = 0.6 }
+local eddies = curl { frequency = 2.2, octaves = 3, persistence = 0.6, seed = 9, drift = {0, 0, -1.2}, speed = 0.6 }:tile()
 local both   = bake(vec(plume(-1, 7), plume(1, 31), 0), { size = {144, 68, 124}, box = box }):warp(eddies, 0.05)
 local smoke  = both.x + both.y
 local hue    = mix(colors[1], colors[2], both.y / smoke)
