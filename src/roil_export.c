@@ -133,8 +133,9 @@ static char *describe(const exporter *x, const voxel_type *type, float scale, co
 char *roil_export_raw(const roil_export *desc) {
     const voxel_type *type = find_type(desc->type ? desc->type : "u8");
     arena memory = {0};
-    sequence *s =
-        type ? sequence_create(&memory, &(sequence_desc){.pattern = desc->pattern}) : NULL;
+    // Every voxel is written: the limits are those of a dense frame.
+    const sequence_desc dense = {.pattern = desc->pattern, .storage = SEQUENCE_DENSE};
+    sequence *s = type ? sequence_create(&memory, &dense) : NULL;
     char *text = NULL;
     if (s) {
         field_grid *grid = sequence_grid(s);
