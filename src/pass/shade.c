@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "pass/builtin.h"
 #include "pass/pass_impl.h"
+#include <string.h>
 
 enum { TILE = 16, LIST_WORDS = 16, MAX_LISTED = 64 }; // as in shade/shafts.glsl, shade_shafts.comp
 
@@ -30,25 +31,50 @@ bool shade_check(pass *p) {
     return compile(p, &s);
 }
 
-// The variant of this frame. The other one becomes a pipeline only when a number first asks for it.
-static bool choose(pass *p) {
+static bool make(pass *p, bool many) {
     shade_state *s = p->state;
-    bool many = pass_evaluate(p, "shadow_samples") > 1 || pass_evaluate(p, "sky_samples") > 0;
     if (!s->pipeline[many]) s->pipeline[many] = pass_create_compute(p, &s->binary[many]);
-    p->binary = s->binary[many];
-    p->pipeline = s->pipeline[many];
-    return p->pipeline != NULL;
+    if (many && !s->shafts_pipeline) s->shafts_pipeline = pass_create_compute(p, &s->shafts);
+    return s->pipeline[many] && (!many || s->shafts_pipeline);
+}
+
+// Whether a number can be above `limit`, as far as that is known before a frame: passes are built
+// side by side, where no Lua may run.
+static void guess(const pass *p, const char *name, float limit, bool can[2]) {
+    size_t index;
+    pass_find_key(p, name, &index);
+    const shader_uniform *declared = &p->face->uniforms[index];
+    const field *node = p->uniforms[index];
+    if (!node) node = pass_inherited_uniform(p, index, &declared);
+    bool moves = node && strcmp(node->kind->name, "constant") != 0;
+    float value = node && !moves ? node->value[0] : declared->value[0];
+    can[0] = moves || value <= limit;
+    can[1] = moves || value > limit;
 }
 
 bool shade_build(pass *p) {
     shade_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    if (!compile(p, s) || !choose(p)) return false;
+    bool shadow[2], sky[2];
+    guess(p, "shadow_samples", 1, shadow);
+    guess(p, "sky_samples", 0, sky);
+    if (!compile(p, s)) return false;
+    p->binary = s->binary[1]; // has all that the other has
     s->shafts_block = arena_alloc(p->host->memory, pass_block_size(&s->shafts) + 16);
-    s->shafts_pipeline = pass_create_compute(p, &s->shafts);
-    return s->shafts_pipeline != NULL;
+    bool few_rays = shadow[0] && sky[0], many_rays = shadow[1] || sky[1];
+    return (!few_rays || make(p, false)) && (!many_rays || make(p, true));
 }
 
 // ---- in a frame -------------------------------------------------------------------------------
+
+// The variant of this frame. One that was not foreseen is made when a number first asks for it.
+static bool choose(pass *p) {
+    shade_state *s = p->state;
+    bool many = pass_evaluate(p, "shadow_samples") > 1 || pass_evaluate(p, "sky_samples") > 0;
+    if (!make(p, many)) return false;
+    p->binary = s->binary[many];
+    p->pipeline = s->pipeline[many];
+    return true;
+}
 
 static uint32_t lights_to_list(pass *p) {
     if (pass_evaluate(p, "shadow_samples") < 2) return 0;
