@@ -19,21 +19,42 @@ range4 range_corners(sampler3D ranges, int x, ivec3 a, ivec3 b) {
                      range_make(least.z, most.z), range_make(least.w, most.w));
 }
 
+// Of all bricks from a to b, of a level that lies at x.
+range4 range_each(sampler3D ranges, int x, ivec3 a, ivec3 b) {
+    vec4 least = vec4(RANGE_END), most = vec4(-RANGE_END);
+    ivec3 side = b - a + 1;
+    for (int i = 0; i < side.x * side.y * side.z; i++) {
+        ivec3 at = a + ivec3(i % side.x, i / side.x % side.y, i / (side.x * side.y));
+        least = min(least, texelFetch(ranges, ivec3(x + at.x, at.y, 2 * at.z), 0));
+        most = max(most, texelFetch(ranges, ivec3(x + at.x, at.y, 2 * at.z + 1), 0));
+    }
+    return range_vec(range_make(least.x, most.x), range_make(least.y, most.y),
+                     range_make(least.z, most.z), range_make(least.w, most.w));
+}
+
 // Over a box given in bricks, of which there are `count` along each axis: at the first level where
 // no more than two along an axis cover it (hierarchical min/max; Greene, "Hierarchical Z-buffer
-// visibility", 1993).
+// visibility", 1993). Where these do not agree, at one where they are smaller: they reach far
+// beyond the box.
 range4 range_bricks(sampler3D ranges, vec3 count, vec3 low, vec3 high) {
+    const int MANY = 4;
     ivec3 size = ivec3(ceil(count));
     ivec3 a = ivec3(clamp(floor(low), vec3(0.0), vec3(size - 1)));
     ivec3 b = ivec3(clamp(floor(high), vec3(0.0), vec3(size - 1)));
-    int x = 0;
+    ivec3 fine_a = a, fine_b = b;
+    int x = 0, fine_x = 0;
     while (any(greaterThan(b - a, ivec3(1)))) {
         x += size.x;
         size.x = (size.x + 1) / 2;
         a >>= 1;
         b >>= 1;
+        if (all(lessThan(fine_b - fine_a, ivec3(MANY)))) continue;
+        fine_a = a;
+        fine_b = b;
+        fine_x = x;
     }
-    return range_corners(ranges, x, a, b);
+    range4 all_of = range_corners(ranges, x, a, b);
+    return fine_x == x || all_of.low == all_of.high ? all_of : range_each(ranges, fine_x, fine_a, fine_b);
 }
 
 // Over a box given in texels, by these themselves, where no more than RANGE_TEXELS along an axis take
