@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "field/sequence_parts.h"
+#include <assert.h>
 #include <string.h>
 
 enum {
@@ -52,25 +53,43 @@ static bool all_fit(const sequence_data *s) {
     return s->cache.counts.largest_bytes * s->frame_count <= s->cache.budget;
 }
 
-// A slot for one more frame of so many bytes: an unused one while the budget lasts, else the least
-// recently used that neither this turn shows nor a copy fills.
-static sequence_slot *take_slot(sequence_data *s, uint64_t bytes) {
-    sequence_cache *c = &s->cache;
-    sequence_slot *unused = NULL, *oldest = NULL;
-    size_t used = 0;
-    if (bytes > c->counts.largest_bytes) c->counts.largest_bytes = bytes;
+typedef struct slots_use {
+    size_t count;                   // in use
+    sequence_slot *unused, *oldest; // the latter neither on show nor being filled
+} slots_use;
+
+static slots_use look_at_slots(sequence_cache *c) {
+    slots_use use = {0};
     for (size_t i = 0; i < c->slot_count; i++) {
         sequence_slot *slot = &c->slots[i];
         if (slot->used == 0) {
-            if (!unused) unused = slot;
+            if (!use.unused) use.unused = slot;
             continue;
         }
-        used++;
+        use.count++;
         if (slot->filling || slot->used == c->turn) continue;
-        if (!oldest || slot->used < oldest->used) oldest = slot;
+        if (!use.oldest || slot->used < use.oldest->used) use.oldest = slot;
     }
-    if (unused && (all_fit(s) || used < SHOWN + UPLOAD_AHEAD || !oldest)) return unused;
-    return oldest;
+    return use;
+}
+
+// A slot for one more frame of so many bytes: an unused one while the budget lasts, else the least
+// recently used. There is one: each slot holds another frame, and there are as many slots as
+// frames.
+static sequence_slot *take_slot(sequence_data *s, gpu *g, uint64_t bytes) {
+    const size_t few = SHOWN + UPLOAD_AHEAD;
+    sequence_cache *c = &s->cache;
+    if (bytes > c->counts.largest_bytes) c->counts.largest_bytes = bytes;
+    slots_use use = look_at_slots(c);
+    if (use.unused && (all_fit(s) || use.count < few || !use.oldest)) return use.unused;
+    while (!all_fit(s) && use.count > few && use.oldest) { // kept while smaller ones would have fit
+        sequence_slot *freed = use.oldest;
+        sequence_slot_free(freed, g);
+        use = look_at_slots(c);
+        if (!use.oldest) return freed;
+    }
+    assert(use.oldest);
+    return use.oldest;
 }
 
 // ---- uploads ----------------------------------------------------------------------------------
@@ -122,7 +141,7 @@ static void note_decoded(sequence_data *s, uint32_t frame, const sequence_texels
 static bool prepare(sequence_data *s, gpu *g, uint32_t frame, const sequence_texels *texels,
                     sequence_slot **slot, gpu_transfer **transfer) {
     uint64_t size = sequence_upload_bytes(s, texels);
-    *slot = take_slot(s, size);
+    *slot = take_slot(s, g, size);
     (*slot)->used = 0; // in case it fails half-way
     for (int i = 0; i < FIELD_GRID_IMAGES; i++)
         if (texels->bricks[i].layers > s->cache.layers[i])
@@ -243,7 +262,8 @@ void sequence_cache_ahead(sequence_data *s, const uint32_t *frames, size_t count
         sequence_job *job = j->list[i];
         bool wanted = false;
         for (size_t k = 0; job && k < count; k++) wanted = wanted || job->frame == frames[k];
-        if (job && !wanted && sequence_job_state(job) == JOB_QUEUED) sequence_job_drop(s, job);
+        int state = job && !wanted ? sequence_job_state(job) : JOB_STAGED;
+        if (state == JOB_QUEUED || (state == JOB_DECODED && !job->ok)) sequence_job_drop(s, job);
     }
     for (size_t k = 0; k < count; k++)
         if (!sequence_job_find(s, frames[k]) && !find_slot(&s->cache, frames[k]) &&

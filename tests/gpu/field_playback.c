@@ -4,7 +4,7 @@
 #include "field_probe.h"
 
 #include "base/clock.h"
-#include "field/sequence.h"
+#include "field/sequence_parts.h"
 #include "media/vdb.h"
 #include <stdio.h>
 #include <time.h>
@@ -109,6 +109,33 @@ static void a_player_that_waits_is_never_late(void **state) {
     p.grid->destroy(p.grid, *state);
 }
 
+static size_t frames_kept(const player *p) {
+    const sequence_cache *c = &p->sequence->data->cache;
+    size_t count = 0;
+    for (size_t i = 0; i < c->slot_count; i++) count += c->slots[i].used > 0;
+    return count;
+}
+
+static void few_frames_are_kept_of_what_does_not_fit(void **state) {
+    for (int punctual = 0; punctual < 2; punctual++) {
+        player p = open_player((sequence_desc){.storage = SEQUENCE_SPARSE}, punctual);
+        const field_playback *counts = p.grid->playback(p.grid);
+        for (int i = 0; i < FRAMES; i++) come_to(*state, &p, i);
+        assert_int_equal(frames_kept(&p), FRAMES);
+        uint64_t all = counts->device_bytes, decoded = counts->decoded;
+        for (int i = 0; i < FRAMES; i++) come_to(*state, &p, i);
+        assert_int_equal(counts->decoded, decoded); // nothing anew
+        p.sequence->data->cache.budget = 1;         // now it does not fit any more
+        p.sequence->data->desc.loop = SEQUENCE_REPEAT;
+        p.sequence->data->cache.slots[0].used = 0; // so that one frame is missing
+        for (int i = 0; i < 3 * FRAMES; i++) come_to(*state, &p, i % FRAMES);
+        assert_true(counts->decoded > decoded + FRAMES);
+        assert_true(frames_kept(&p) <= 7);
+        assert_true(counts->device_bytes < 2 * all); // textures for the largest, but few of them
+        p.grid->destroy(p.grid, *state);
+    }
+}
+
 static void frames_blend_when_both_are_there(void **state) {
     player p = open_player((sequence_desc){.blend = true}, true);
     double end = clock_seconds() + 20;
@@ -157,6 +184,7 @@ int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(late_frames_come_on),
         cmocka_unit_test(a_player_that_waits_is_never_late),
+        cmocka_unit_test(few_frames_are_kept_of_what_does_not_fit),
         cmocka_unit_test(frames_blend_when_both_are_there),
         cmocka_unit_test(broken_frames_are_told),
         cmocka_unit_test(it_can_end_at_any_time),
