@@ -6,7 +6,7 @@
 // is that does, along the axis where it is farthest; so one look goes past many (Sramek and Kaufman,
 // "Fast ray-tracing of rectilinear volume data using distance transforms", 2000).
 uniform usampler3D brick_words;
-uniform vec3 brick_blocks; // along each axis of the box
+uniform vec3 brick_blocks; // along each axis of the box; 0: there are none, and all may hold something
 
 #ifndef LIB_BRICKS_GLSL
 #define LIB_BRICKS_GLSL
@@ -29,6 +29,7 @@ bool bricks_look(vec3 at, out vec3 centre, out float half_side) {
 
 // Whether there may be something at a point of the box.
 bool bricks_may_hold(vec3 p, vec3 low, vec3 high) {
+    if (brick_blocks.x == 0.0) return true;
     vec3 centre;
     float half_side;
     return bricks_look((p - low) * (brick_blocks / max(high - low, vec3(1e-20))), centre, half_side);

@@ -7,6 +7,7 @@
 enum { BRICKS_STAGES = 2 };
 
 typedef struct bricks {
+    bool dear; // samples of nothing are
     graph_image image;
     shader_binary binary[BRICKS_STAGES];
     gpu_pipeline *pipeline[BRICKS_STAGES];
@@ -18,6 +19,8 @@ bool bricks_check(pass *p);
 bool bricks_build(pass *p, bricks *b);
 bool bricks_record(pass *p, bricks *b); // after pass_prepare
 void bricks_destroy(pass *p, bricks *b);
-// The member brick_blocks of a block, for bricks over `box`.
-void bricks_fill(pass *p, const shader_binary *binary, unsigned char *block, box3 box);
+// The member brick_blocks of a block, for bricks over `box`; `samples` are to be taken without
+// them.
+void bricks_fill(pass *p, const bricks *b, const shader_binary *binary, unsigned char *block,
+                 box3 box, float samples);
 pass_override bricks_slot(const pass *p, const bricks *b); // for the pass that reads them

@@ -107,12 +107,10 @@ static bool march_box(const pass *p, box3 *box) {
 }
 
 // A power of two; one where there are rays enough.
-static int32_t team_size(pass *p) {
+static int32_t team_size(pass *p, float rays) {
     const march_state *s = p->state;
     if (!s->teams || pass_evaluate(p, "tolerance") > 0) return 1;
-    uint32_t size[3];
-    graph_get_size(p->host->graph, pass_output(p, "color"), size);
-    float asked = pass_evaluate(p, "threads"), rays = (float)size[0] * (float)size[1];
+    float asked = pass_evaluate(p, "threads");
     float most = asked > 0 ? asked : ENOUGH_THREADS / fmaxf(rays, 1);
     int32_t team = 1;
     while (team < MOST_TEAM && (float)(2 * team) <= most) team *= 2;
@@ -122,11 +120,15 @@ static int32_t team_size(pass *p) {
 bool march_fill(pass *p, const shader_binary *binary, unsigned char *block) {
     march_state *s = p->state;
     box3 box;
+    uint32_t size[3];
     if (!march_box(p, &box)) return false;
     pass_write_box(binary, block, box);
-    s->team = team_size(p);
+    graph_get_size(p->host->graph, pass_output(p, "color"), size);
+    float rays = (float)size[0] * (float)size[1];
+    s->team = team_size(p, rays);
     pass_write_member(binary, block, "team", &s->team, sizeof s->team);
-    if (s->skips) bricks_fill(p, binary, block, box);
+    if (!s->skips) return true;
+    bricks_fill(p, &s->bricks, binary, block, box, rays * pass_evaluate(p, "steps"));
     return true;
 }
 

@@ -79,6 +79,7 @@ walk walk_begin(vec3 origin, vec3 direction, vec2 range, float last, float offse
     w.held = -1.0;
     w.next = 0;
 #if SKIPPING == SKIPPING_ON
+    if (brick_blocks.x == 0.0) w.held = 1e30;
     w.bricks = bricks_begin(origin, direction, box_min, box_max);
 #endif
     return w;
