@@ -54,7 +54,15 @@ local function add_point(panels, row, x, series_axis, facets, metric)
   line[#line + 1] = { x = x.number[at], y = spread.median, low = spread.p5, high = spread.p95, row = row, at = at }
 end
 
+local function has_line(panel)
+  for _, line in ipairs(panel.lines) do
+    if #line > 1 then return true end
+  end
+  return false
+end
+
 -- Panels with their lines, { x, y, low, high } each, in the order of the axis that they stand for.
+-- Those without any line of two points show nothing of the axis.
 local function arrange(sweep, x, metric)
   local others = other_axes(sweep, x)
   local series_axis = choose_lines(others)
@@ -73,7 +81,11 @@ local function arrange(sweep, x, metric)
       end
     end
   end
-  return panels, series_axis
+  local shown = {}
+  for _, panel in ipairs(panels) do
+    if has_line(panel) then shown[#shown + 1] = panel end
+  end
+  return shown, series_axis
 end
 
 -- ---- drawing ------------------------------------------------------------------------------------
@@ -107,21 +119,26 @@ local function draw_line(line, x, y, metric)
   return { h.path { class = "line s" .. line.series, d = table.concat(path) }, marks }
 end
 
+-- Names stand behind the last point of their line, those of lines that end together apart.
 local function draw_labels(panel, x, y, box)
-  local labels, out = {}, {}
+  local columns, out = {}, {}
   for _, line in ipairs(panel.lines) do
     local last = line[#line]
     if line.name ~= "" then
-      labels[#labels + 1] = { y = y.place(last.y), x = x.place(last.x), name = line.name, series = line.series }
+      local labels = columns[last.x] or {}
+      columns[last.x] = labels
+      labels[#labels + 1] = { y = y.place(last.y), name = line.name, series = line.series }
     end
   end
-  plot.spread(labels, box.top, box.bottom)
-  for _, label in ipairs(labels) do
-    local from = box.right + 8
-    out[#out + 1] = math.abs(label.place - label.y) > 4 and h.line { class = "leader s" .. label.series,
-      x1 = px(label.x + 4), y1 = px(label.y), x2 = px(from - 2), y2 = px(label.place) }
-    out[#out + 1] = h.text { class = "label f" .. label.series, x = px(from), y = px(label.place + 4),
-                             plot.shorten(label.name, 16), h.title(label.name) }
+  for at, labels in pairs(columns) do
+    local from = x.place(at) + 18
+    plot.spread(labels, box.top, box.bottom)
+    for _, label in ipairs(labels) do
+      out[#out + 1] = math.abs(label.place - label.y) > 4 and h.line { class = "leader s" .. label.series,
+        x1 = px(from - 14), y1 = px(label.y), x2 = px(from - 2), y2 = px(label.place) }
+      out[#out + 1] = h.text { class = "label f" .. label.series, x = px(from), y = px(label.place + 4),
+                               plot.shorten(label.name, 16), h.title(label.name) }
+    end
   end
   return out
 end

@@ -11,12 +11,12 @@ local function group(text)
   return table.concat(parts, "\u{202f}") .. rest
 end
 
--- Three figures or more, at most three places: 0.036, 1.56, 40.4, 12 688.
+-- Three figures or more: 0.00131, 0.0360, 1.56, 40.4, 12 688.
 function number.short(value)
   local size = math.abs(value)
-  if size >= 1e12 or (size > 0 and size < 5e-4) then return string.format("%.1e", value) end
-  local places = size < 1 and 3 or size < 10 and 2 or size < 100 and 1 or 0
-  return group(string.format("%." .. places .. "f", value))
+  if size >= 1e12 or (size > 0 and size < 1e-4) then return string.format("%.1e", value) end
+  local places = size < 1 and math.min(2 - math.floor(math.log(math.max(size, 1e-9), 10)), 6) or size < 10 and 2 or size < 100 and 1 or 0
+  return group(string.format("%." .. (size == 0 and 0 or places) .. "f", value))
 end
 
 -- At a tick of an axis: no more places than it takes.

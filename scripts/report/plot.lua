@@ -4,7 +4,7 @@ local h = require "html"
 
 local plot = { WIDTH = 360, HEIGHT = 240, TOP = 10, BOTTOM = 36, LEFT = 50, SERIES = 8 }
 
-local LETTER, LINE = 6.1, 13 -- of the labels: mean width, height
+local LETTER, LINE = 6.6, 13 -- of the labels: mean width, height
 
 function plot.px(value)
   return string.format("%.1f", value)

@@ -72,9 +72,9 @@ function scale.new(desc)
   return s
 end
 
--- Whether values over such a range ask for a logarithmic axis.
+-- Whether values over such a range ask for a logarithmic axis. What is next to nothing has none.
 function scale.wants_log(low, high, ratio)
-  return low > 0 and high / low >= ratio
+  return low > 1e-12 and high / low >= ratio
 end
 
 -- The exponent of the power of x that fits best (least squares of the logarithms); nil when x or y
