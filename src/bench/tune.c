@@ -76,7 +76,7 @@ static bench_settings settings_at(const tuning *t, const size_t *rungs, arena *m
         add_setting(&s, o->settings[i].name, o->settings[i].value);
     for (size_t i = 0; i < t->result->axis_count; i++) {
         const tune_axis *a = &t->result->axes[i];
-        if (rungs[i] != a->start) add_setting(&s, a->name, a->values[rungs[i]]);
+        if (rungs[i] != a->start || a->elsewhere) add_setting(&s, a->name, a->values[rungs[i]]);
     }
     return s;
 }

@@ -8,7 +8,8 @@
 typedef struct tune_axis { // a control and the values that it is tried with, cheap to dear
     const char *name;
     const char *values[SEARCH_MAX_RUNGS];
-    size_t count, start; // start: what it is now
+    size_t count, start; // start: where the search begins; what it is now, if that is there
+    bool elsewhere;      // what it is now is not among the values
     size_t reference;    // what the effect at its highest quality has
 } tune_axis;
 

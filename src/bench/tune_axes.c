@@ -174,8 +174,7 @@ static bool same_value(const roil_control *c, const char *text) {
     return end != text && !*end && (float)value == c->value[0];
 }
 
-// "16:32:64". What the effect has now must be among them, or is put before them: the search begins
-// there.
+// "16:32:64". Where what the effect has now is not among them, the search begins with the best.
 static bool take_given(const roil_control *c, const char *text, arena *memory, tune_axis *out) {
     *out = (tune_axis){.name = arena_string(memory, c->name), .start = SEARCH_MAX_RUNGS};
     char *at = arena_string(memory, text), *colon;
@@ -189,7 +188,8 @@ static bool take_given(const roil_control *c, const char *text, arena *memory, t
         out->values[out->count++] = at;
         if (!colon) break;
     }
-    if (out->start == SEARCH_MAX_RUNGS) out->start = out->count - 1;
+    out->elsewhere = out->start == SEARCH_MAX_RUNGS;
+    if (out->elsewhere) out->start = out->count - 1;
     out->reference = out->count - 1;
     return out->count > 1 || err_set("--axes %s=%s: two values at least", c->name, text);
 }

@@ -84,6 +84,12 @@ class Tune(Case):
                       *AXES, *QUICK)
         self.assertEqual(self.chosen()["axes"], {"steps": "128"})
 
+    def test_values_beside_what_the_effect_has(self):
+        self.succeeds("tune", "known.lua", "--max-ms", "1e9", "--axes", "steps=16:32", *QUICK)
+        first = self.rows()[0]
+        self.assertEqual(first["axes"], {"steps": "32"})
+        self.assertEqual(first["settings"], {"steps": "32"})
+
     def test_the_best_within_a_time(self):
         # All rungs are measured once; then the answer follows from what was noted.
         self.succeeds("tune", "known.lua", "--max-ms", "1e9", *AXES, *QUICK)

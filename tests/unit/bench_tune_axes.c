@@ -80,6 +80,8 @@ static void what_is_named(void **state) {
     assert_axis(&f, "steps: 8 [24] 32*");
     assert_axis(&f, "noise_bake: tiny [tile] exact*");
     assert_axis(&f, "look: 0.25 [0.5]*");
+    assert_false(f.axes[0].elsewhere);
+    assert_true(f.axes[3].elsewhere); // it is 1 now
     assert_int_equal(f.count, 4);
     assert_string_equal(f.axes[1].name, "march.early_exit");
     arena_free(&f.memory);
