@@ -124,7 +124,8 @@ bool march_fill(pass *p, const shader_binary *binary, unsigned char *block) {
     if (!march_box(p, &box)) return false;
     pass_write_box(binary, block, box);
     graph_get_size(p->host->graph, pass_output(p, "color"), size);
-    float rays = (float)size[0] * (float)size[1];
+    float rays = (float)size[0] * (float)size[1], rows = (float)size[1];
+    pass_write_member(binary, block, "brick_rows", &rows, sizeof rows);
     s->team = team_size(p, rays);
     pass_write_member(binary, block, "team", &s->team, sizeof s->team);
     if (!s->skips) return true;

@@ -1,6 +1,7 @@
 // Makes the bricks that the march skips by (lib/bricks.glsl), in two stages: what each brick may
 // hold, and how far empty blocks lie from others.
 layout(r32ui) uniform uimage3D bricks_kept;
+uniform float brick_rows; // pixels of the march, from top to bottom
 
 #if defined(STAGE_HOLD)
 layout(local_size_x = 32, local_size_y = 4) in; // bricks of a block, blocks
@@ -20,6 +21,7 @@ void main() {
         vec3 size = (box_max - box_min) / (3.0 * brick_blocks);
         vec3 low = box_min + (3.0 * vec3(block) + vec3(brick % 3u, brick / 3u % 3u, brick / 9u)) * size;
         vec3 around = BESIDE * size + ROUNDED * (abs(low) + distance(frame.eye.xyz, low));
+        range_width = 2.0 * frame.lens.y / brick_rows * (distance(frame.eye.xyz, low + 0.5 * size) + length(size));
         if (field_density_range(low - around, low + size + around).y > 0.0)
             atomicOr(held[row], 1u << brick);
     }
