@@ -5,7 +5,7 @@
 //@ option glow_resolution = 32 {8, 16, 24, 32} : voxels of `glow` along each edge of the volume's box
 //@ option fire_lights = 8 {0, 1, 8} : lights that stand for the volume's fire where it falls on meshes
 //@ counter samples : points at which the density was evaluated
-uniform int sweeps;                //= 2 [0, 32] : of light through `glow`, each of which scatters it once more, and a coarser grid after each brings it far; 0: light that nothing has scattered yet
+uniform int sweeps;                //= 3 [0, 32] : of light through `glow` at most, each of which scatters it once more, and a coarser grid after each brings it far; 0: light that nothing has scattered yet
 uniform float ambient;             //= 1 [0, 10] : factor of the light from the sky
 uniform vec3 box_min;
 uniform vec3 box_max;

@@ -382,16 +382,27 @@ static bool record_shadow(pass *p) {
     return dispatch(p, STAGE_SHADOW, n, n, s->shadow_parts * s->declared);
 }
 
-// About as many as Chebyshev's combination takes to leave a tenth of what is wrong, if at most the
-// part `most` of the light is scattered (as in lighting/level.glsl).
-static uint32_t coarse_sweeps(const pass *p) {
+// The greatest part of the light that is scattered (as in lighting/level.glsl).
+static float most_scattered(const pass *p) {
     const lighting_state *s = p->state;
     float albedo[3] = {0}, most = 0;
     shader_member member;
     if (pass_find_member(&s->binary[STAGE_COARSE_REDUCE], "albedo", &member))
         memcpy(albedo, s->block[STAGE_COARSE_REDUCE] + member.offset, sizeof albedo);
     for (int i = 0; i < 3; i++) most = fmaxf(most, fminf(albedo[i], 0.98f));
-    return (uint32_t)fmaxf(1.7f / sqrtf(1 - most) - 0.7f, 1);
+    return most;
+}
+
+// About as many as Chebyshev's combination takes to leave a tenth of what is wrong.
+static uint32_t coarse_sweeps(const pass *p) {
+    return (uint32_t)fmaxf(1.7f / sqrtf(1 - most_scattered(p)) - 0.7f, 1);
+}
+
+// A sweep with its correction leaves about (most / 2)^2 of what is wrong: no more than half a
+// percent needs to be.
+static uint32_t fine_sweeps(pass *p) {
+    float most = fmaxf(most_scattered(p), 0.1f), asked = pass_evaluate(p, "sweeps");
+    return (uint32_t)fminf(asked, ceilf(logf(0.005f) / (2 * logf(0.5f * most))));
 }
 
 static bool make_buffers(pass *p) {
@@ -426,7 +437,7 @@ static bool correct(pass *p) {
 
 // After each sweep the coarser level finds what is left to do (lighting/level.glsl).
 static bool record_glow(pass *p) {
-    uint32_t sweeps = (uint32_t)pass_evaluate(p, "sweeps");
+    uint32_t sweeps = fine_sweeps(p);
     if (!make_buffers(p) || !dispatch_voxels(p, STAGE_FIRST) ||
         !dispatch(p, STAGE_AROUND, WAYS * LOOKS, 1, 1))
         return false;
