@@ -8,7 +8,7 @@
 
 enum {
     MOST_BLOCKS = 43,
-    USUAL_BLOCKS = 21,
+    USUAL_BLOCKS = 15,
     SOFTWARE_BLOCKS = 11, // where threads are few, looking for what is empty costs more
     FEW_BLOCKS = 5,
     FREE_WIDE = 24,

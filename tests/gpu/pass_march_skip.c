@@ -68,7 +68,7 @@ static pass *add_march(pass_world *w, make_density density, way o) {
     if (o.paper) gpu_test_ok(pass_set_option(p, "mode", "paper"));
     if (o.tolerance > 0) gpu_test_ok(pass_set_uniform(p, "tolerance", number(w, o.tolerance)));
     if (o.threads > 0) gpu_test_ok(pass_set_uniform(p, "threads", number(w, o.threads)));
-    if (o.bricks > 0) gpu_test_ok(pass_set_uniform(p, "bricks", number(w, o.bricks)));
+    gpu_test_ok(pass_set_uniform(p, "bricks", number(w, o.bricks > 0 ? o.bricks : 33)));
     gpu_test_ok(pass_set_uniform(p, "steps", number(w, o.steps > 0 ? o.steps : 48)));
     gpu_test_ok(pass_set_uniform(p, "early_exit", number(w, o.early_exit)));
     gpu_test_ok(pass_set_uniform(p, "jitter", number(w, o.jitters)));
