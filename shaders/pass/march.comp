@@ -29,7 +29,7 @@ uniform float octave_anisotropy;   //= 0.5 [0, 1] : anisotropy, from octave to o
 uniform float octave_contribution; //= 0.5 [0, 1] : light, from octave to octave
 uniform float powder;              //= 0 [0, 1] : artistic: darkens what faces a light and is thin (Schneider 2015), as powder looks
 uniform int bricks;                //= 0 [0, 129] : along the longest side of the volume's box: samples are not taken in bricks in which nothing can be; 0: 45, in software 33 or 15, and none where that would cost more than it saves
-uniform int threads;               //= 0 [0, 16] : that share the samples of a ray: 1, 2, 4, 8 or 16; 0: as many as keep the device busy, in software one
+uniform int threads;               //= 0 [0, 16] : that share the samples of a ray: 1, 2, 4, 8 or 16, at most a subgroup; 0: as many as keep the device busy, in software one
 uniform float opacity;             //= 20 [0, 1000] : factor of the density, mode paper only
 uniform vec3 box_min;
 uniform vec3 box_max;

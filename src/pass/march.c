@@ -112,6 +112,7 @@ static int32_t team_size(pass *p, float rays) {
     if (!s->teams || pass_evaluate(p, "tolerance") > 0) return 1;
     float asked = pass_evaluate(p, "threads");
     float most = asked > 0 ? asked : ENOUGH_THREADS / fmaxf(rays, 1);
+    most = fminf(most, (float)gpu_get_info(p->host->device)->subgroup_size);
     int32_t team = 1;
     while (team < MOST_TEAM && (float)(2 * team) <= most) team *= 2;
     return team;

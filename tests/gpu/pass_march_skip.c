@@ -173,7 +173,7 @@ static void threads_that_share_a_ray_find_what_one_does(void **state) {
     for (size_t i = 0; i < COUNT_OF(ways); i++) {
         way o = ways[i];
         take(*state, lumps, o, &one);
-        for (int threads = 2; threads <= 8; threads *= 2) {
+        for (int threads = 2; threads <= 16; threads *= 2) { // at most a subgroup is taken
             o.threads = (float)threads;
             take(*state, lumps, o, &several);
             expect_near(&one, &several);
