@@ -14,7 +14,7 @@ local kelvin     = param { "kelvin", 1400, min = 500, max = 3000, unit = "K", he
 local noise      = param { "noise", "worley_curl", words = {"worley_curl", "worley", "perlin", "simplex", "none"}, help = "what the detail is made of" }
 local detail     = param { "detail", 1.6, min = 0, max = 3, help = "how much the noise eats from the smoke's edges" }
 local turbulence = param { "turbulence", 0.27, min = 0, max = 2, unit = "m", help = "how far the flow displaces the grid" }
-local steps      = param { "steps", 128, min = 8, max = 1024, integer = true, help = "samples along each ray" }
+local steps      = param { "steps", 192, min = 8, max = 1024, integer = true, help = "samples along each ray" }
 
 -- The grids of the sequence are fields: values in space that arithmetic combines.
 local burst = vdb { "data/explosion-32/*.vdb", fps = 24, blend = true }
@@ -70,7 +70,9 @@ local lit = lighting {
 local scene = geometry { mesh { "data/ground.obj" }, mesh { "data/crates.obj" } }
 local solid = shade { from = {scene, lit}, haze = 0.002 }
 
-local volume = march { from = {lit, scene}, steps = steps, resolution = 0.5 }
+-- Samples are moved by half a step at random: what would be rings between them becomes a grain that is
+-- too fine to see.
+local volume = march { from = {lit, scene}, steps = steps, jitter = 0.5, resolution = 0.5 }
 
 local picture = over { volume, solid, from = {volume, scene} }
 local glow    = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }

@@ -161,7 +161,7 @@ class Statistics(Case):
         self.assertEqual((stats["width"], stats["height"], stats["set"]), (96, 54, {"steps": "9"}))
         self.assertEqual([f["frame"] for f in stats["frames"]], [1, 2, 3])
         for frame in stats["frames"]:
-            self.assertEqual(set(frame["gpu_ms"]), {"geometry", "shade", "march", "over", "final"})
+            self.assertEqual(set(frame["gpu_ms"]), {"geometry", "shade", "march.bricks", "march", "over", "final"})
             self.assertTrue(all(ms >= 0 for ms in frame["gpu_ms"].values()))
             self.assertGreater(frame["gpu_ms"]["march"], 0)
             self.assertGreater(frame["counters"]["march.samples"], 1000)

@@ -73,7 +73,7 @@ class Views(Case):
             live.expect(rf"live: drew frame {frame}\b")
         self.comes(live, "history", empty, "the times")
         left, top, right, bottom = live.widget("passes")
-        self.assertEqual(round((bottom - top) / 22), 3)  # march, bloom, final
+        self.assertEqual(round((bottom - top) / 22), 4)  # march.bricks, march, bloom, final
         live.quit()
 
     def test_a_range_is_looped(self):
