@@ -117,7 +117,7 @@ box3 bounds_min(const field *node, const field_context *context, const box3 *arg
     return box3_union(args[0], args[1]);
 }
 
-// Greatest length of a vector field, INFINITY when unknown.
+// How far a vector field can reach along an axis, INFINITY when unknown.
 static float longest(const field *node, const field_context *context, int depth) {
     float value[4];
     if (node->uniform) {
@@ -148,10 +148,10 @@ static float longest(const field *node, const field_context *context, int depth)
     default:
         break;
     }
-    // The curl of unit noise stayed below 6 in a search for its extremes; its paper mode differs
-    // two noises of -1..1 in each component, an octave more or less.
+    // A component of the curl of unit noise stays below 7.6 (RANGE_CURL of lib/range_noise.glsl); its
+    // paper mode differs two noises of -1..1 in each component, an octave more or less.
     if (strcmp(node->kind->name, "curl") == 0) {
-        if (node->options[0] == 0) return 6 * longest(node->args[5], context, depth - 1);
+        if (node->options[0] == 0) return 7.6f * longest(node->args[5], context, depth - 1);
         float octaves[4];
         if (!kind_uniform_arg(node, 1, context, octaves)) return INFINITY;
         return 3.5f * octaves[0] * longest(node->args[5], context, depth - 1);
