@@ -165,7 +165,7 @@ class Statistics(Case):
             self.assertTrue(all(ms >= 0 for ms in frame["gpu_ms"].values()))
             self.assertGreater(frame["gpu_ms"]["march"], 0)
             self.assertGreater(frame["counters"]["march.samples"], 1000)
-        self.assertEqual(set(stats["median_gpu_ms"]), {"geometry", "shade", "march", "over", "final", "all"})
+        self.assertEqual(set(stats["median_gpu_ms"]), {"geometry", "shade", "march.bricks", "march", "over", "final", "all"})
         for name in ("geometry", "shade", "march", "over", "final"):
             self.assertIn(name, printed)
 
