@@ -14,6 +14,7 @@
 // "warp" and arithmetic, hence there is nothing to generate, evaluate or bound here.
 #include "base/error.h"
 #include "base/memory.h"
+#include "field/compose.h"
 #include "field/kinds.h"
 #include "field/map.h"
 #include <math.h>
@@ -24,21 +25,6 @@ enum { PHASES, PATH };                              // options
 enum { SEED = 4, SEED_STEP = 101, MAX_PHASES = 3 }; // of noises: argument; between two patterns
 
 static const float pi = 3.14159265f;
-
-static field *number(arena *memory, float v) {
-    return field_constant(memory, 1, (const float[4]){v});
-}
-
-// NULL, with the message that stands, when an operand is NULL.
-static field *combine(arena *memory, const char *kind, const field *a, const field *b) {
-    const field *args[FIELD_MAX_ARGS] = {a, b};
-    return a && b ? field_make(memory, kind, args, NULL) : NULL;
-}
-
-static field *apply(arena *memory, const char *kind, const field *a) {
-    const field *args[FIELD_MAX_ARGS] = {a};
-    return a ? field_make(memory, kind, args, NULL) : NULL;
-}
 
 static field *warp(arena *memory, const field *value, const field *by, const field *amount) {
     const field *args[FIELD_MAX_ARGS] = {value, by, amount};
@@ -65,10 +51,10 @@ static const field *shift(seeding *s, const field *tile) {
     const float turn[4] = {0.7549f, 0.5698f, 0.4302f}; // of the plastic number: far from ratios
     const float size[4] = {grid->box.max.x - grid->box.min.x, grid->box.max.y - grid->box.min.y,
                            grid->box.max.z - grid->box.min.z};
-    field *part = combine(s->memory, "mul", s->add, field_constant(s->memory, 3, turn));
-    part = combine(s->memory, "mul", apply(s->memory, "fract", part),
-                   field_constant(s->memory, 3, size));
-    return warp(s->memory, tile, part, number(s->memory, 1));
+    field *part = compose_two(s->memory, "mul", s->add, field_constant(s->memory, 3, turn));
+    part = compose_two(s->memory, "mul", compose_one(s->memory, "fract", part),
+                       field_constant(s->memory, 3, size));
+    return warp(s->memory, tile, part, compose_number(s->memory, 1));
 }
 
 // The same expression with other seeds; what holds no noise is shared. NULL: too many nodes.
@@ -87,7 +73,7 @@ static const field *reseed(seeding *s, const field *node) {
     const field *result = node;
     if (changed) {
         if (s->copies++ == FIELD_MAX_ADVECTED) return NULL;
-        if (noise) args[SEED] = combine(s->memory, "add", args[SEED], s->add);
+        if (noise) args[SEED] = compose_two(s->memory, "add", args[SEED], s->add);
         result = is_tile(node) ? shift(s, node) : field_with_args(s->memory, node, args);
     }
     if (s->count == COUNT_OF(s->made)) return NULL;
@@ -111,31 +97,33 @@ static const field *seeded(arena *memory, const field *value, const field *add) 
 
 static field *phase(arena *memory, const field *node, int k, int count) {
     const field *mean = node->args[MEAN], *velocity = node->args[VELOCITY];
-    field *turns = combine(memory, "div", field_time(memory), node->args[PERIOD]);
-    turns = combine(memory, "add", turns, number(memory, (float)k / (float)count));
-    field *part = apply(memory, "fract", turns), *cycle = apply(memory, "floor", turns);
-    field *back = combine(memory, "mul", node->args[PERIOD],
-                          combine(memory, "sub", number(memory, 0.5f), part));
+    field *turns = compose_two(memory, "div", field_time(memory), node->args[PERIOD]);
+    turns = compose_two(memory, "add", turns, compose_number(memory, (float)k / (float)count));
+    field *part = compose_one(memory, "fract", turns), *cycle = compose_one(memory, "floor", turns);
+    field *back = compose_two(memory, "mul", node->args[PERIOD],
+                              compose_two(memory, "sub", compose_number(memory, 0.5f), part));
     if (node->options[PATH] == 1) { // the velocity half way back: the midpoint rule
-        field *half = combine(memory, "mul", back, number(memory, 0.5f));
+        field *half = compose_two(memory, "mul", back, compose_number(memory, 0.5f));
         velocity = warp(memory, velocity, velocity, half);
     }
-    field *index =
-        combine(memory, "add", combine(memory, "mul", cycle, number(memory, (float)count)),
-                number(memory, (float)k));
+    field *index = compose_two(
+        memory, "add", compose_two(memory, "mul", cycle, compose_number(memory, (float)count)),
+        compose_number(memory, (float)k));
     const field *value =
-        seeded(memory, node->args[VALUE], combine(memory, "mul", index, number(memory, SEED_STEP)));
-    field *weight = apply(memory, "sin", combine(memory, "mul", part, number(memory, pi)));
-    weight = combine(memory, "mul", weight, number(memory, sqrtf(2 / (float)count)));
-    return combine(memory, "mul", weight,
-                   combine(memory, "sub", warp(memory, value, velocity, back), mean));
+        seeded(memory, node->args[VALUE],
+               compose_two(memory, "mul", index, compose_number(memory, SEED_STEP)));
+    field *weight =
+        compose_one(memory, "sin", compose_two(memory, "mul", part, compose_number(memory, pi)));
+    weight = compose_two(memory, "mul", weight, compose_number(memory, sqrtf(2 / (float)count)));
+    return compose_two(memory, "mul", weight,
+                       compose_two(memory, "sub", warp(memory, value, velocity, back), mean));
 }
 
 field *field_advect(arena *memory, const field *node) {
     int count = node->options[PHASES] == 0 ? 2 : MAX_PHASES;
     field *sum = NULL;
     for (int k = 0; k < count; k++)
-        sum =
-            combine(memory, "add", k == 0 ? node->args[MEAN] : sum, phase(memory, node, k, count));
+        sum = compose_two(memory, "add", k == 0 ? node->args[MEAN] : sum,
+                          phase(memory, node, k, count));
     return sum;
 }

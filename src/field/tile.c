@@ -13,6 +13,7 @@
 // 2^3 times as many for each octave more. In an expression of several noises, and where the
 // lacunarity is part of the result (steps of paper's curl), all octaves are in the tile.
 #include "base/error.h"
+#include "field/compose.h"
 #include "field/kinds.h"
 #include "field/map.h"
 #include <math.h>
@@ -29,21 +30,6 @@ typedef struct tiling {
     const field *made[MOST_NODES];
     uint32_t count;
 } tiling;
-
-static field *number(arena *memory, float v) {
-    return field_constant(memory, 1, (const float[4]){v});
-}
-
-// NULL, with the message that stands, when an operand is NULL.
-static field *combine(arena *memory, const char *kind, const field *a, const field *b) {
-    const field *args[FIELD_MAX_ARGS] = {a, b};
-    return a && b ? field_make(memory, kind, args, NULL) : NULL;
-}
-
-static field *apply(arena *memory, const char *kind, const field *a) {
-    const field *args[FIELD_MAX_ARGS] = {a};
-    return a ? field_make(memory, kind, args, NULL) : NULL;
-}
 
 static bool is_noise(const field *node) {
     return strcmp(node->kind->group, "noise") == 0;
@@ -86,17 +72,18 @@ static const field *cells_of(tiling *t, const field *noise) {
     arena *memory = t->memory;
     float cells = t->tile->cells, unit = is(noise, "simplex") ? 3 : 1;
     if (equal(noise->args[FREQUENCY], t->tile->frequency))
-        return number(memory, unit * fmaxf(floorf(cells / unit + 0.5f), 1));
-    field *ratio = combine(memory, "div", noise->args[FREQUENCY], t->tile->frequency);
-    ratio = combine(memory, "mul", ratio, number(memory, cells / unit));
-    ratio = apply(memory, "floor", combine(memory, "add", ratio, number(memory, 0.5f)));
-    ratio = combine(memory, "max", ratio, number(memory, 1));
-    return combine(memory, "mul", ratio, number(memory, unit));
+        return compose_number(memory, unit * fmaxf(floorf(cells / unit + 0.5f), 1));
+    field *ratio = compose_two(memory, "div", noise->args[FREQUENCY], t->tile->frequency);
+    ratio = compose_two(memory, "mul", ratio, compose_number(memory, cells / unit));
+    ratio = compose_one(memory, "floor",
+                        compose_two(memory, "add", ratio, compose_number(memory, 0.5f)));
+    ratio = compose_two(memory, "max", ratio, compose_number(memory, 1));
+    return compose_two(memory, "mul", ratio, compose_number(memory, unit));
 }
 
 // In the unit of the tile. NULL with a message.
 static const field *scaled(tiling *t, const field *length) {
-    return combine(t->memory, "mul", length, t->tile->frequency);
+    return compose_two(t->memory, "mul", length, t->tile->frequency);
 }
 
 static const field *close_noise(tiling *t, const field *noise) {
@@ -104,14 +91,15 @@ static const field *close_noise(tiling *t, const field *noise) {
     const field *args[FIELD_MAX_ARGS];
     memcpy(args, noise->args, sizeof args);
     args[PERIOD] = cells_of(t, noise);
-    args[FREQUENCY] = combine(t->memory, "div", args[PERIOD], number(t->memory, tile->cells));
+    args[FREQUENCY] =
+        compose_two(t->memory, "div", args[PERIOD], compose_number(t->memory, tile->cells));
     if (equal_rate(noise->args[DRIFT], tile->drift))
         args[DRIFT] = field_constant(t->memory, 3, (const float[4]){0});
     else
-        args[DRIFT] = scaled(t, combine(t->memory, "sub", noise->args[DRIFT], tile->drift));
+        args[DRIFT] = scaled(t, compose_two(t->memory, "sub", noise->args[DRIFT], tile->drift));
     if (is(noise, "curl")) args[STEP] = scaled(t, noise->args[STEP]);
-    if (tile->samples > 1) args[OCTAVES] = number(t->memory, (float)tile->octaves);
-    if (tile->alone) args[AMPLITUDE] = number(t->memory, 1);
+    if (tile->samples > 1) args[OCTAVES] = compose_number(t->memory, (float)tile->octaves);
+    if (tile->alone) args[AMPLITUDE] = compose_number(t->memory, 1);
     for (size_t i = 0; i < kind_arg_count(noise); i++)
         if (!args[i]) return NULL;
     return field_make(t->memory, noise->kind->name, args, noise->options);
@@ -185,38 +173,40 @@ static field *place_sample(arena *memory, const field_tile *tile, const field *b
         const float turn[3] = {0.7549f, 0.5698f, 0.4302f}; // of the plastic number: far from ratios
         float apart[4] = {0};
         for (int c = 0; c < 3; c++) apart[c] = (float)i * turn[c] * tile->cells;
-        field *factor = combine(memory, "pow", noise->args[LACUNARITY],
-                                number(memory, (float)(i * tile->octaves)));
-        frequency = combine(memory, "mul", frequency, factor);
-        field *moved = combine(memory, "div", field_constant(memory, 3, apart), frequency);
-        drift = combine(memory, "add", drift, moved);
+        field *factor = compose_two(memory, "pow", noise->args[LACUNARITY],
+                                    compose_number(memory, (float)(i * tile->octaves)));
+        frequency = compose_two(memory, "mul", frequency, factor);
+        field *moved = compose_two(memory, "div", field_constant(memory, 3, apart), frequency);
+        drift = compose_two(memory, "add", drift, moved);
     }
-    const field *scale = combine(memory, "div", number(memory, 1), frequency);
-    const field *args[FIELD_MAX_ARGS] = {baked, apply(memory, "negate", drift), NULL, scale};
+    const field *scale = compose_two(memory, "div", compose_number(memory, 1), frequency);
+    const field *args[FIELD_MAX_ARGS] = {baked, compose_one(memory, "negate", drift), NULL, scale};
     return args[1] && scale ? field_make(memory, "transform", args, NULL) : NULL;
 }
 
 // Sample i: persistence^(i octaves), over the sum of all.
 static field *weight_of(arena *memory, const field_tile *tile, int i) {
     const field *persistence = tile->noise->args[PERSISTENCE];
-    field *total = number(memory, 1);
+    field *total = compose_number(memory, 1);
     for (int k = 1; k < tile->samples; k++)
-        total = combine(
-            memory, "add", total,
-            combine(memory, "pow", persistence, number(memory, (float)(k * tile->octaves))));
-    field *own = combine(memory, "pow", persistence, number(memory, (float)(i * tile->octaves)));
-    return combine(memory, "div", own, total);
+        total = compose_two(memory, "add", total,
+                            compose_two(memory, "pow", persistence,
+                                        compose_number(memory, (float)(k * tile->octaves))));
+    field *own =
+        compose_two(memory, "pow", persistence, compose_number(memory, (float)(i * tile->octaves)));
+    return compose_two(memory, "div", own, total);
 }
 
 field *field_tile_sample(arena *memory, const field_tile *tile, const field *baked) {
     field *sum = NULL;
     for (int i = 0; i < tile->samples; i++) {
         field *sample = place_sample(memory, tile, baked, i);
-        if (tile->samples > 1) sample = combine(memory, "mul", weight_of(memory, tile, i), sample);
-        sum = i == 0 ? sample : combine(memory, "add", sum, sample);
+        if (tile->samples > 1)
+            sample = compose_two(memory, "mul", weight_of(memory, tile, i), sample);
+        sum = i == 0 ? sample : compose_two(memory, "add", sum, sample);
     }
     const field *amplitude = tile->noise->args[AMPLITUDE];
-    if (tile->alone && !equal(amplitude, number(memory, 1)))
-        sum = combine(memory, "mul", amplitude, sum);
+    if (tile->alone && !equal(amplitude, compose_number(memory, 1)))
+        sum = compose_two(memory, "mul", amplitude, sum);
     return sum;
 }
