@@ -148,8 +148,8 @@ static float longest(const field *node, const field_context *context, int depth)
     default:
         break;
     }
-    // A component of the curl of unit noise stays below 7.6 (RANGE_CURL of lib/range_noise.glsl); its
-    // paper mode differs two noises of -1..1 in each component, an octave more or less.
+    // A component of the curl of unit noise stays below 7.6 (RANGE_CURL of lib/range_noise.glsl);
+    // its paper mode differs two noises of -1..1 in each component, an octave more or less.
     if (strcmp(node->kind->name, "curl") == 0) {
         if (node->options[0] == 0) return 7.6f * longest(node->args[5], context, depth - 1);
         float octaves[4];
