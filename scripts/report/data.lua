@@ -34,6 +34,7 @@ end
 
 -- Work for a step along the axis: a picture's side has two dimensions, a volume's three.
 local function dimension(name, values)
+  if name == "voxels" then return 3, "voxel" end -- along a side
   if not name:find("resolution$") then return 1, nil end
   for _, value in ipairs(values) do
     if (tonumber(value) or 0) > 4 then return 3, "voxel" end
@@ -137,15 +138,32 @@ local function process_metric(sweep)
   end }
 end
 
--- The pass that the sweep moves most, then the whole frame; or whatever else was timed.
-function data.metrics(sweep)
+-- How far a time moves along an axis, all else being equal; without an axis, in all rows.
+local function movement(sweep, name, axis)
+  local least, greatest, most = {}, {}, nil
+  for _, row in ipairs(sweep.rows) do
+    local found, key = row.done and row.gpu[name], {}
+    if found and (not axis or row.axes[axis.name]) then
+      for i, other in ipairs(axis and sweep.axes or {}) do key[i] = other == axis and "" or row.axes[other.name] or "" end
+      key = table.concat(key, "\n")
+      least[key] = math.min(least[key] or found.median, found.median)
+      greatest[key] = math.max(greatest[key] or found.median, found.median)
+      local move = #sweep.rows > 1 and greatest[key] - least[key] or found.median
+      most = math.max(most or move, move)
+    end
+  end
+  return most
+end
+
+-- The pass that the sweep moves most (along an axis, if one is given), then the whole frame; or
+-- whatever else was timed.
+function data.metrics(sweep, axis)
   local out, main, moved = {}, nil, -1
   if sweep.by_process then return { process_metric(sweep) } end
   for _, name in ipairs(data.names(sweep, "times")) do out[#out + 1] = metric(sweep, "times", name, name) end
   if #out > 0 then return out end
   for _, name in ipairs(data.names(sweep, "gpu")) do
-    local least, greatest = range(sweep, "gpu", name)
-    local move = least and (#sweep.rows > 1 and greatest - least or greatest)
+    local move = movement(sweep, name, axis)
     if name ~= "all" and move and move > moved then main, moved = name, move end
   end
   if main then out[1] = metric(sweep, "gpu", main, main) end

@@ -249,7 +249,7 @@ end
 return function(sweep)
   local out, said = {}, {}
   for _, axis in ipairs(sweep.axes) do
-    for i, metric in ipairs(axis.numeric and not axis.zipped and data.metrics(sweep) or {}) do
+    for i, metric in ipairs(axis.numeric and not axis.zipped and data.metrics(sweep, axis) or {}) do
       local element, sentence = group(sweep, axis, metric, i == 1)
       out[#out + 1] = element
       if element and i == 1 then said[#said + 1] = sentence end
