@@ -78,22 +78,43 @@ static scene_mesh *make_mirrored(pass_world *w) {
     return mesh;
 }
 
-// Pixels whose middle lies on an edge may differ, and those next to a hole: hardware rounds corners
-// to 1/256 of a pixel, and weights of texels to as much (37 of these pixels differ on an H200).
+// Whether depth jumps beside a pixel: at an outline, or at a hole.
+static bool is_edge(const float *depth, size_t at) {
+    int x = (int)(at % WIDTH), y = (int)(at / WIDTH);
+    for (int j = y - 1; j <= y + 1; j++) {
+        for (int i = x - 1; i <= x + 1; i++) {
+            if (i < 0 || j < 0 || i >= WIDTH || j >= HEIGHT) continue;
+            float other = depth[j * WIDTH + i];
+            if (fabsf(other - depth[at]) > 0.05f * fminf(other, depth[at])) return true;
+        }
+    }
+    return false;
+}
+
+static bool is_same(const seen *a, const seen *b, size_t at) {
+    bool same = fabsf(a->depth[at] - b->depth[at]) <= 1e-4f * b->depth[at];
+    for (size_t c = 4 * at; c < 4 * at + 3; c++) {
+        same = same && fabsf(a->normal[c] - b->normal[c]) < 0.01f;
+        same = same && fabsf(a->albedo[c] - b->albedo[c]) < 0.01f;
+    }
+    return same;
+}
+
+// Pixels whose middle lies on an edge may differ; elsewhere those between two triangles may.
 static void assert_same(gpu *device, scene_mesh *(*make)(pass_world *w)) {
     seen rays = look(device, "rays", make), drawn = look(device, "raster", make);
-    size_t covered = 0, apart = 0;
+    size_t covered = 0, edges = 0, on_edges = 0, inside = 0;
     for (size_t i = 0; i < PIXELS; i++) {
+        bool edge = is_edge(drawn.depth, i), same = is_same(&rays, &drawn, i);
         covered += rays.depth[i] < 1e8f;
-        bool same = fabsf(rays.depth[i] - drawn.depth[i]) <= 1e-4f * drawn.depth[i];
-        for (size_t c = 0; c < 3; c++) {
-            same = same && fabsf(rays.normal[4 * i + c] - drawn.normal[4 * i + c]) < 0.01f;
-            same = same && fabsf(rays.albedo[4 * i + c] - drawn.albedo[4 * i + c]) < 0.01f;
-        }
-        apart += !same;
+        edges += edge;
+        on_edges += edge && !same;
+        inside += !edge && !same;
     }
     assert_true(covered > PIXELS / 4 && covered < PIXELS);
-    if (apart > PIXELS / 100) fail_msg("%zu of %d pixels differ", apart, PIXELS);
+    if (inside > PIXELS / 500 || on_edges > edges / 10)
+        fail_msg("%zu of %zu pixels on edges differ, and %zu of %d others", on_edges, edges, inside,
+                 PIXELS);
     release(&rays);
     release(&drawn);
 }
