@@ -1,5 +1,5 @@
-// OpenVDB behind vdb.h: what a file says of itself, dense sampling, writing. vdb_blocks.cpp reads
-// grids that are not to be spread out.
+// OpenVDB behind vdb.h: what a file says of itself, and dense sampling. vdb_blocks.cpp reads grids
+// that are not to be spread out, vdb_write.cpp writes.
 //
 // Sampling: when the voxel centres of the box lie on the grid's own lattice, values are copied node
 // by node (openvdb::tools::copyToDense: tiles, background and leaves); else every centre goes
@@ -221,38 +221,6 @@ bool size_is_fine(const vdb_sample_desc &desc) {
     return true;
 }
 
-template <class Grid>
-GridBase::Ptr dense_to_grid(const vdb_write_grid &w, typename Grid::ValueType background) {
-    using value = typename Grid::ValueType;
-    auto grid = Grid::create(background);
-    CoordBBox box(Coord(0), Coord(int(w.size[0]) - 1, int(w.size[1]) - 1, int(w.size[2]) - 1));
-    auto values = reinterpret_cast<value *>(const_cast<float *>(w.values));
-    openvdb::tools::Dense<value, openvdb::tools::LayoutXYZ> dense(box, values);
-    openvdb::tools::copyFromDense(dense, *grid, value(0.0f));
-    // OpenVDB finds NaN equal to the background.
-    auto access = grid->getAccessor();
-    for (auto it = box.begin(); it; ++it) {
-        value v = dense.getValue(*it);
-        if (!openvdb::math::isFinite(v)) access.setValueOn(*it, v);
-    }
-    return grid;
-}
-
-GridBase::Ptr make_grid(const vdb_write_grid &w) {
-    static const openvdb::GridClass classes[] = {openvdb::GRID_UNKNOWN, openvdb::GRID_FOG_VOLUME,
-                                                 openvdb::GRID_LEVEL_SET, openvdb::GRID_STAGGERED};
-    GridBase::Ptr grid = w.components == 3
-                             ? dense_to_grid<openvdb::Vec3SGrid>(w, Vec3s(w.background))
-                             : dense_to_grid<openvdb::FloatGrid>(w, w.background);
-    auto transform = openvdb::math::Transform::createLinearTransform(double(w.voxel_size));
-    transform->postTranslate(Vec3d(w.origin.x, w.origin.y, w.origin.z));
-    grid->setTransform(transform);
-    grid->setName(w.name);
-    grid->setGridClass(classes[w.grid_class]);
-    grid->setSaveFloatAsHalf(w.half);
-    return grid;
-}
-
 } // namespace
 
 extern "C" bool vdb_read_info(const char *path, arena *memory, vdb_info *out) {
@@ -289,19 +257,5 @@ extern "C" bool vdb_sample(const vdb_sample_desc *desc, uint64_t *bad) {
         uint64_t cleared = clear_bad(desc->out, voxels * size_t(desc->components));
         if (bad) *bad = cleared;
         return true;
-    });
-}
-
-extern "C" bool vdb_write(const char *path, const vdb_write_grid *grids, size_t count) {
-    return guarded(path, [&] {
-        openvdb::GridCPtrVec list;
-        for (size_t i = 0; i < count; i++) list.push_back(make_grid(grids[i]));
-        openvdb::MetaMap metadata;
-        metadata.insertMeta("creator", openvdb::StringMetadata("roil"));
-        std::ostringstream stream(std::ios::binary);
-        stream.exceptions(std::ios::failbit | std::ios::badbit);
-        archive().write(stream, list, true, metadata);
-        std::string bytes = stream.str();
-        return file_write(path, bytes.data(), bytes.size());
     });
 }

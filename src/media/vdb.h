@@ -65,15 +65,28 @@ void vdb_blocks_background(const vdb_blocks *b, float out[3]); // its components
 // 8^3 values were not finite and became 0.
 uint64_t vdb_blocks_read(vdb_blocks *b, const int32_t at[3], float *out);
 
-typedef struct vdb_write_grid { // for tests and export
+typedef struct vdb_write_grid {
     const char *name;
     uint32_t size[3];
     const float *values; // x fastest
-    int components;
+    int components;      // 1 or 3
     float voxel_size;
     float3 origin;    // world position of the centre of voxel 0
-    float background; // values equal to it become inactive
+    float background; // values that differ from it by `tolerance` or less become inactive
     bool half;
     vdb_class grid_class;
+    float tolerance;
+    const uint16_t *halves; // instead of `values`, `stride` of them a voxel
+    int stride;
+    bool turns; // its vectors turn with the grid, as velocities do and colours do not
 } vdb_write_grid;
-bool vdb_write(const char *path, const vdb_write_grid *grids, size_t count);
+typedef struct vdb_entry { // of a file's metadata
+    const char *key;
+    const char *text; // NULL: it is the number
+    double number;
+} vdb_entry;
+// Sparse: only 8^3 blocks in which something is active are kept, as one value where it is the same
+// everywhere. The file is there whole or not at all.
+bool vdb_write_with(const char *path, const vdb_write_grid *grids, size_t count,
+                    const vdb_entry *metadata, size_t entries);
+bool vdb_write(const char *path, const vdb_write_grid *grids, size_t count); // without metadata

@@ -14,7 +14,8 @@ HOMES = [
     (r"vulkan/|vk_|volk\.h|vulkan", "gpu/"),
     (r"glslang/|SPIRV/|spirv_cross|spirv-cross|spirv", "shader/"),
     (r"(lua|lauxlib|lualib|luaconf)\.h(pp)?$|lua5\.4/", "script/"),
-    (r"openvdb/|nanovdb/|tbb/", ("media/vdb.cpp", "media/vdb_blocks.cpp", "media/vdb_file.hpp")),
+    (r"openvdb/|nanovdb/|tbb/", ("media/vdb.cpp", "media/vdb_blocks.cpp", "media/vdb_write.cpp",
+                                 "media/vdb_file.hpp")),
     (r"assimp/|png\.h|OpenEXR/|openexr|libav|libsw|Imf", "media/"),
     (r"imgui", "ui/ui.cpp"),
     (r"GLFW/", ("app/", "ui/")),
@@ -22,7 +23,8 @@ HOMES = [
     (r"popt\.h", "app/"),
     (r"xxhash\.h", "base/"),
 ]
-CPP = ["src/media/vdb.cpp", "src/media/vdb_blocks.cpp", "src/ui/ui.cpp"]
+CPP = ["src/media/vdb.cpp", "src/media/vdb_blocks.cpp", "src/media/vdb_write.cpp",
+       "src/ui/ui.cpp"]
 INCLUDE = re.compile(r'^\s*#\s*(?:include|import)\b\s*(?:"([^"]*)"|<([^>]*)>|(.*))')
 
 

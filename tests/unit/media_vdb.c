@@ -78,6 +78,54 @@ static void the_box_reaches_half_a_voxel_beyond_the_centres(void **state) {
     assert_float_equal(box.max.z, 29.75f + 0.5f * NZ, 0);
 }
 
+static void the_file_says_what_it_was_told(void **state) {
+    (void)state;
+    fill_ramp();
+    vdb_write_grid grid = {.name = "density",
+                           .size = {NX, NY, NZ},
+                           .values = values,
+                           .components = 1,
+                           .voxel_size = 1};
+    const vdb_entry entries[] = {{.key = "effect", .text = "puff"}, {.key = "time", .number = 1.5}};
+    assert_true(vdb_write_with(test_path("a.vdb"), &grid, 1, entries, 2));
+    const char *metadata = info_of(test_path("a.vdb")).metadata;
+    assert_non_null(strstr(metadata, "effect = puff\n"));
+    assert_non_null(strstr(metadata, "time = 1.5\n"));
+}
+
+// Two of four halves a voxel are not written; what is near the background is left out, and what is
+// not is as it was.
+static void halves_are_written_but_for_what_is_next_to_nothing(void **state) {
+    (void)state;
+    enum { N = 20 };
+    static uint16_t halves[N * N * N * 4];
+    memset(halves, 0, sizeof halves);
+    for (int i = 0; i < N * N * N; i++) {
+        bool inside = i % N >= 16;
+        halves[i * 4] = half_from_float(inside ? 0.3f + 0.001f * (float)(i % 7) : 0.009f);
+        halves[i * 4 + 3] = half_from_float(1000);
+    }
+    vdb_write_grid grid = {.name = "density",
+                           .size = {N, N, N},
+                           .halves = halves,
+                           .stride = 4,
+                           .components = 1,
+                           .voxel_size = 1,
+                           .half = true,
+                           .tolerance = 0.01f,
+                           .grid_class = VDB_FOG};
+    assert_true(vdb_write(test_path("h.vdb"), &grid, 1));
+    const vdb_grid_info *info = &info_of(test_path("h.vdb")).grids[0];
+    assert_int_equal(info->active_voxels, 4 * N * N);
+    assert_int_equal(info->index_min[0], 16);
+    box3 box = {vec(-0.5f, -0.5f, -0.5f), vec(N - 0.5f, N - 0.5f, N - 0.5f)};
+    assert_true(sample(test_path("h.vdb"), "density", box, N, N, N));
+    for (int i = 0; i < N * N * N; i++) {
+        float wanted = i % N >= 16 ? half_to_float(halves[i * 4]) : 0;
+        assert_float_equal(out[i], wanted, 0);
+    }
+}
+
 static void values_are_exact_on_the_lattice(void **state) {
     (void)state;
     write_ramp(test_path("a.vdb"), 0.1f, vec(-3.3f, 0.7f, 2), false);
@@ -89,7 +137,13 @@ static void values_are_exact_on_the_lattice(void **state) {
 static void a_larger_box_shows_the_background(void **state) {
     (void)state;
     fill_ramp();
-    vdb_write_grid grid = {"d", {NX, NY, NZ}, values, 1, 1.0f, vec(0, 0, 0), -4.0f, false, VDB_FOG};
+    vdb_write_grid grid = {.name = "d",
+                           .size = {NX, NY, NZ},
+                           .values = values,
+                           .components = 1,
+                           .voxel_size = 1,
+                           .background = -4.0f,
+                           .grid_class = VDB_FOG};
     assert_true(vdb_write(test_path("b.vdb"), &grid, 1));
     assert_float_equal(info_of(test_path("b.vdb")).grids[0].background[0], -4.0f, 0);
     box3 box = {vec(-2.5f, -0.5f, -0.5f), vec(11.5f, 4.5f, 5.5f)}; // two voxels more at both ends
@@ -144,8 +198,13 @@ static void level_sets_become_fog(void **state) {
         float d = sqrtf(x * x + y * y + z * z) * voxel - radius;
         distance[i] = fminf(fmaxf(d, -band), band);
     }
-    vdb_write_grid grid = {"s",   {SIDE, SIDE, SIDE}, distance, 1, voxel, vec(0, 0, 0), band,
-                           false, VDB_LEVEL_SET};
+    vdb_write_grid grid = {.name = "s",
+                           .size = {SIDE, SIDE, SIDE},
+                           .values = distance,
+                           .components = 1,
+                           .voxel_size = voxel,
+                           .background = band,
+                           .grid_class = VDB_LEVEL_SET};
     assert_true(vdb_write(test_path("s.vdb"), &grid, 1));
     assert_int_equal(info_of(test_path("s.vdb")).grids[0].grid_class, VDB_LEVEL_SET);
     box3 box = {vec(-0.05f, -0.05f, -0.05f), vec(2.35f, 2.35f, 2.35f)};
@@ -164,7 +223,12 @@ static void what_is_not_finite_becomes_zero_and_is_counted(void **state) {
     values[0] = NAN;
     values[7] = INFINITY;
     values[8] = -INFINITY;
-    vdb_write_grid grid = {"n", {NX, NY, NZ}, values, 1, 1.0f, vec(0, 0, 0), 0, false, VDB_FOG};
+    vdb_write_grid grid = {.name = "n",
+                           .size = {NX, NY, NZ},
+                           .values = values,
+                           .components = 1,
+                           .voxel_size = 1,
+                           .grid_class = VDB_FOG};
     assert_true(vdb_write(test_path("n.vdb"), &grid, 1));
     uint64_t bad = 0;
     vdb_sample_desc desc = {
@@ -186,7 +250,12 @@ static void equal_values_become_tiles_and_come_back(void **state) {
     (void)state;
     static float ones[32 * 32 * 32];
     for (int i = 0; i < 32 * 32 * 32; i++) ones[i] = 2.0f;
-    vdb_write_grid grid = {"t", {32, 32, 32}, ones, 1, 1.0f, vec(0, 0, 0), 0, false, VDB_FOG};
+    vdb_write_grid grid = {.name = "t",
+                           .size = {32, 32, 32},
+                           .values = ones,
+                           .components = 1,
+                           .voxel_size = 1,
+                           .grid_class = VDB_FOG};
     assert_true(vdb_write(test_path("t.vdb"), &grid, 1));
     vdb_info info = info_of(test_path("t.vdb"));
     assert_int_equal(info.grids[0].active_voxels, 32 * 32 * 32);
@@ -197,9 +266,18 @@ static void equal_values_become_tiles_and_come_back(void **state) {
 static void a_missing_grid_lists_the_names(void **state) {
     (void)state;
     fill_ramp();
-    vdb_write_grid grids[2] = {
-        {"smoke", {NX, NY, NZ}, values, 1, 1.0f, vec(0, 0, 0), 0, false, VDB_FOG},
-        {"heat", {NX, NY, NZ}, values, 1, 1.0f, vec(0, 0, 0), 0, false, VDB_FOG}};
+    vdb_write_grid grids[2] = {{.name = "smoke",
+                                .size = {NX, NY, NZ},
+                                .values = values,
+                                .components = 1,
+                                .voxel_size = 1,
+                                .grid_class = VDB_FOG},
+                               {.name = "heat",
+                                .size = {NX, NY, NZ},
+                                .values = values,
+                                .components = 1,
+                                .voxel_size = 1,
+                                .grid_class = VDB_FOG}};
     assert_true(vdb_write(test_path("two.vdb"), grids, 2));
     box3 box = {vec(0, 0, 0), vec(1, 1, 1)};
     assert_false(sample(test_path("two.vdb"), "density", box, 4, 4, 4));
@@ -368,6 +446,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(info_says_what_was_written),
         cmocka_unit_test(the_box_reaches_half_a_voxel_beyond_the_centres),
+        cmocka_unit_test(the_file_says_what_it_was_told),
+        cmocka_unit_test(halves_are_written_but_for_what_is_next_to_nothing),
         cmocka_unit_test(values_are_exact_on_the_lattice),
         cmocka_unit_test(a_larger_box_shows_the_background),
         cmocka_unit_test(a_linear_field_is_exact_off_the_lattice),
