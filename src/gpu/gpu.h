@@ -224,11 +224,15 @@ enum { GPU_FRAMES_IN_FLIGHT = 4, GPU_MAX_PASSES = 256 };
 uint64_t gpu_frame_begin(gpu *g);
 bool gpu_frame_end(gpu *g);                  // submits
 bool gpu_frame_wait(gpu *g, uint64_t frame); // until that frame has finished
+bool gpu_frame_done(gpu *g, uint64_t frame); // it has finished; never waits
+uint64_t gpu_frame_open(const gpu *g);       // number of the open frame; 0: none is
 bool gpu_idle(gpu *g);                       // until all has finished
 
 // Brackets the work of one pass: its GPU time is measured and debuggers see the label.
 void gpu_pass_begin(gpu *g, const char *label);
 void gpu_pass_end(gpu *g);
+// Within a pass: what follows is timed as a pass of its own. The same label again changes nothing.
+void gpu_pass_next(gpu *g, const char *label);
 
 typedef struct gpu_pass_time {
     char label[64];

@@ -10,6 +10,7 @@
 #include "base/str.h"
 #include "gpu/vk.h"
 #include <assert.h>
+#include <string.h>
 
 bool vk_timer_create(gpu *g, vk_timer *out) {
     if (g->info.timestamp_period <= 0.0f) return true;
@@ -88,6 +89,14 @@ void gpu_pass_end(gpu *g) {
         mark_end(g, timer, timer->count++);
     }
     if (g->end_label) g->end_label(g->frame->batch.commands);
+}
+
+void gpu_pass_next(gpu *g, const char *label) {
+    if (!g->frame || !g->in_pass) return;
+    const vk_timer *timer = &g->frame->timer;
+    if (timer->count >= GPU_MAX_PASSES || strcmp(timer->labels[timer->count], label) == 0) return;
+    gpu_pass_end(g);
+    gpu_pass_begin(g, label);
 }
 
 static double milliseconds(const gpu *g, const vk_timer *timer, uint64_t begin, uint64_t end) {

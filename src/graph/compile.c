@@ -190,6 +190,19 @@ static void mark_image(graph *g, marking *m, uint32_t image) {
     mark_pass(g, m, source(g, image));
 }
 
+// Readers come after what they read, so that one walk against the order is enough.
+static void mark_needed(graph *g) {
+    for (size_t p = 0; p < g->pass_count; p++) g->passes[p].needed = false;
+    for (size_t i = g->order_count; i-- > 0;) {
+        graph_node_pass *pass = &g->passes[g->order[i]];
+        pass->needed = pass->needed || pass->simulates;
+        for (size_t k = 0; pass->needed && k < pass->read_count; k++) {
+            uint32_t writer = g->images[pass->reads[k]].writer;
+            if (writer != NONE) g->passes[writer].needed = true;
+        }
+    }
+}
+
 void graph_cull(graph *g) {
     marking m = {.stack = mem_alloc(g->pass_count * sizeof *m.stack)};
     for (size_t p = 0; p < g->pass_count; p++) g->passes[p].live = false;
@@ -210,6 +223,7 @@ void graph_cull(graph *g) {
     for (size_t i = 0; i < g->order_count; i++)
         if (g->passes[g->order[i]].live) g->order[live++] = g->order[i];
     g->order_count = live;
+    mark_needed(g);
 }
 
 // ---- sizes ------------------------------------------------------------------------------------

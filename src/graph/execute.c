@@ -35,12 +35,10 @@ static void settle_kept(graph *g, const graph_node_pass *pass) {
     }
 }
 
-bool graph_execute(graph *g, gpu *device) {
-    assert(g->compiled && g->allocated);
-    for (size_t i = 0; i < g->image_count; i++)
-        if (g->images[i].history_used) turn_history(g, device, &g->images[i]);
+static bool execute(graph *g, gpu *device, bool all) {
     for (size_t i = 0; i < g->order_count; i++) {
         const graph_node_pass *pass = &g->passes[g->order[i]];
+        if (!all && !pass->needed) continue;
         assert(pass->record);
         gpu_pass_begin(device, pass->name);
         bool done = pass->record(pass->user, g, device);
@@ -49,4 +47,22 @@ bool graph_execute(graph *g, gpu *device) {
         settle_kept(g, pass);
     }
     return true;
+}
+
+bool graph_execute(graph *g, gpu *device) {
+    assert(g->compiled && g->allocated);
+    for (size_t i = 0; i < g->image_count; i++)
+        if (g->images[i].history_used) turn_history(g, device, &g->images[i]);
+    return execute(g, device, true);
+}
+
+bool graph_execute_simulation(graph *g, gpu *device) {
+    assert(g->compiled && g->allocated);
+    return execute(g, device, false);
+}
+
+bool graph_simulates(const graph *g) {
+    for (size_t i = 0; i < g->order_count; i++)
+        if (g->passes[g->order[i]].simulates) return true;
+    return false;
 }

@@ -139,6 +139,7 @@ bool graph_add_pass(graph *g, const graph_pass_desc *desc) {
                             .read_count = desc->read_count,
                             .write_count = desc->write_count,
                             .keep = desc->keep,
+                            .simulates = desc->simulates,
                             .record = desc->record,
                             .user = desc->user};
     pass.reads = copy_handles(g, desc->reads, &pass.read_count);

@@ -35,7 +35,8 @@ typedef struct graph_pass_desc {
     size_t read_count;
     const graph_image *writes;
     size_t write_count;
-    bool keep; // has an effect besides its images: never culled
+    bool keep;      // has an effect besides its images: never culled
+    bool simulates; // goes on from where it was: runs for frames that are not drawn, too
     bool (*record)(void *user, graph *g, gpu *device); // between gpu_pass_begin and _end
     void *user;
 } graph_pass_desc;
@@ -64,6 +65,9 @@ void graph_adopt(graph *g, graph *from);
 void graph_reset_history(graph *g);
 
 bool graph_execute(graph *g, gpu *device); // inside an open frame; swaps histories afterwards
+// The passes that simulate, and what they read; histories stay as they are. False when one failed.
+bool graph_execute_simulation(graph *g, gpu *device);
+bool graph_simulates(const graph *g); // after compile: such a pass runs
 // After graph_execute the images keep their content until the next one: history images are swapped
 // at the start of graph_execute.
 

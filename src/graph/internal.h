@@ -39,10 +39,11 @@ typedef struct graph_node_pass {
     const char *name;
     uint32_t *reads, *writes; // indices of images, in the arena
     size_t read_count, write_count;
-    bool keep;
+    bool keep, simulates;
     bool (*record)(void *user, graph *g, gpu *device);
     void *user;
-    bool live; // result of graph_compile
+    bool live;   // result of graph_compile
+    bool needed; // by a pass that simulates, or is one; result of graph_compile
 } graph_node_pass;
 
 typedef struct slot_list {

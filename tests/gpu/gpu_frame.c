@@ -47,6 +47,8 @@ static void frames_follow_each_other(void **state) {
         uint64_t frame = gpu_frame_begin(g);
         gpu_test_ok(frame);
         if (i > 0) assert_int_equal(frame, last + 1);
+        assert_int_equal(gpu_frame_open(g), frame);
+        assert_false(gpu_frame_done(g, frame));
         if (i == 0) gpu_buffer_fill(g, buffer, 0);
         gpu_test_ok(step(g, pipeline, buffer, 1 + i));
         gpu_test_ok(gpu_frame_end(g));
@@ -56,6 +58,9 @@ static void frames_follow_each_other(void **state) {
     assert_int_equal(found, 55);
     gpu_test_ok(gpu_frame_wait(g, last));
     gpu_test_ok(gpu_frame_wait(g, 1));
+    assert_true(gpu_frame_done(g, last));
+    assert_false(gpu_frame_done(g, last + 1));
+    assert_int_equal(gpu_frame_open(g), 0);
     assert_false(gpu_frame_wait(g, last + 1));
     gpu_pipeline_destroy(g, pipeline);
     gpu_buffer_destroy(g, buffer);
@@ -93,6 +98,25 @@ static void passes_are_timed_in_order_and_never_negative(void **state) {
     assert_int_equal(gpu_frame_times(g, frames[0], times, 4), 0); // too old
     assert_int_equal(gpu_frame_times(g, frames[FRAMES - 1] + 1, times, 4), 0);
     gpu_pipeline_destroy(g, pipeline);
+    gpu_buffer_destroy(g, buffer);
+}
+
+static void a_pass_is_timed_in_parts(void **state) {
+    gpu *g = *state;
+    gpu_pass_time times[8];
+    gpu_buffer *buffer = make_buffer(g);
+    uint64_t frame = gpu_frame_begin(g);
+    gpu_test_ok(frame);
+    gpu_pass_begin(g, "steps");
+    for (uint32_t i = 0; i < 4; i++) {
+        gpu_pass_next(g, i % 2 ? "sources" : "steps"); // the first is the one that runs
+        gpu_buffer_fill(g, buffer, i);
+        gpu_pass_next(g, i % 2 ? "sources" : "steps");
+    }
+    gpu_pass_end(g);
+    gpu_test_ok(gpu_frame_end(g));
+    assert_int_equal(gpu_frame_times(g, frame, times, COUNT_OF(times)), 4);
+    for (int i = 0; i < 4; i++) assert_string_equal(times[i].label, i % 2 ? "sources" : "steps");
     gpu_buffer_destroy(g, buffer);
 }
 
@@ -252,6 +276,7 @@ int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_follow_each_other),
         cmocka_unit_test(passes_are_timed_in_order_and_never_negative),
+        cmocka_unit_test(a_pass_is_timed_in_parts),
         cmocka_unit_test(passes_beyond_the_limit_run_untimed),
         cmocka_unit_test(destroyed_objects_live_until_their_frame_is_done),
         cmocka_unit_test(unused_objects_give_their_memory_back),
