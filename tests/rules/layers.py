@@ -6,7 +6,7 @@ sys.dont_write_bytecode = True
 from lib import house
 
 LEVELS = [["base"], ["gpu"], ["media", "shader"], ["graph"], ["field"], ["scene"],
-          ["pass", "sim"], ["effect"], ["script"], ["roil"], ["bench", "ui"], ["app"]]
+          ["sim"], ["pass"], ["effect"], ["script"], ["roil"], ["bench", "ui"], ["app"]]
 LEVEL = {layer: level for level, layers in enumerate(LEVELS) for layer in layers}
 
 # Foreign header -> where it may be included: a layer (all its files), layers, or a file.

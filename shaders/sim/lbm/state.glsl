@@ -1,0 +1,303 @@
+// The state of a lattice Boltzmann solver, for its own shaders and those of others (lbm_defines,
+// lbm_bind and lbm_parity in src/sim/lbm.h give what this needs).
+//
+// Streaming is in place: Lehmann, "Esoteric Pull and Esoteric Push", Computation 10(6), 2022,
+// section 4.2. A cell reads direction i (odd) from its own place and i + 1 from that of its
+// neighbour along i, and leaves what collision made of them in the other's place; so each place is
+// read and written by one cell only, and the two places of a pair change roles in each step.
+//
+// A thread does one element: 4 or 8 cells, in chunks of 4 lanes. What arrives at an element is what
+// its cells hold before collision.
+#ifndef SIM_LBM_STATE_GLSL
+#define SIM_LBM_STATE_GLSL
+#include "sim/lbm/lattice.glsl"
+
+uniform uint lbm_parity; // of steps
+
+#if LBM_Q == 27
+#define LBM_PAIRS(X) LBM_D3Q27(X)
+#define LBM_REST LBM_D3Q27_REST
+#define LBM_AXIS LBM_D3Q27_AXIS
+#define LBM_EDGE LBM_D3Q27_EDGE
+#define LBM_CORNER LBM_D3Q27_CORNER
+#else
+#define LBM_PAIRS(X) LBM_D3Q19(X)
+#define LBM_REST LBM_D3Q19_REST
+#define LBM_AXIS LBM_D3Q19_AXIS
+#define LBM_EDGE LBM_D3Q19_EDGE
+#define LBM_CORNER 0.0
+#endif
+// Of pairs: X(direction, x, y, z) gives LBM_WEIGHT(x, y, z).
+#define LBM_WEIGHT(x, y, z)                                                                        \
+    ((x) * (x) + (y) * (y) + (z) * (z) == 1   ? LBM_AXIS                                           \
+     : (x) * (x) + (y) * (y) + (z) * (z) == 2 ? LBM_EDGE                                           \
+                                              : LBM_CORNER)
+
+#if LBM_SCALAR_Q == 27
+#define LBM_SCALAR_PAIRS(X) LBM_D3Q27(X)
+#define LBM_SCALAR_REST LBM_D3Q27_REST
+#define LBM_SCALAR_SPEED (1.0 / 3.0) // square of that of sound
+#define LBM_SCALAR_WEIGHT(x, y, z)                                                                 \
+    ((x) * (x) + (y) * (y) + (z) * (z) == 1   ? LBM_D3Q27_AXIS                                     \
+     : (x) * (x) + (y) * (y) + (z) * (z) == 2 ? LBM_D3Q27_EDGE                                     \
+                                              : LBM_D3Q27_CORNER)
+#else
+#define LBM_SCALAR_PAIRS(X) LBM_D3Q7(X)
+#define LBM_SCALAR_REST LBM_D3Q7_REST
+#define LBM_SCALAR_SPEED (1.0 / 4.0)
+#define LBM_SCALAR_WEIGHT(x, y, z) LBM_D3Q7_AXIS
+#endif
+
+// ---- elements ---------------------------------------------------------------------------------
+
+#if LBM_HALF
+#define LBM_LANES 8
+#define lbm_element uvec4 // eight halves, times a power of two that keeps small values whole
+#define LBM_AIR_SCALE 32768.0
+#define LBM_SCALAR_SCALE 1024.0
+#else
+#define LBM_LANES 4
+#define lbm_element vec4
+#define LBM_AIR_SCALE 1.0
+#define LBM_SCALAR_SCALE 1.0
+#endif
+#define LBM_CHUNKS (LBM_LANES / 4)
+#define LBM_LAYER (LBM_NX * LBM_NY)           // elements
+#define LBM_ELEMENTS (LBM_LAYER * LBM_LAYERS) // of a direction
+
+// Four cells of an element, as they lie in memory.
+#if LBM_HALF
+// Some devices cut what does not fit into a half; rounded before, it fits.
+uint lbm_pack_halves(vec2 v) {
+#if LBM_ROUND
+    uvec2 bits = floatBitsToUint(v);
+    v = uintBitsToFloat(bits + 0xfffu + ((bits >> 13) & 1u));
+#endif
+    return packHalf2x16(v);
+}
+
+vec4 lbm_unpack(lbm_element e, const int chunk, const float scale) {
+    uvec2 half_ = chunk == 0 ? e.xy : e.zw;
+    return vec4(unpackHalf2x16(half_.x), unpackHalf2x16(half_.y)) * (1.0 / scale);
+}
+
+void lbm_pack(inout lbm_element e, const int chunk, const float scale, vec4 v) {
+    v *= scale;
+    uvec2 half_ = uvec2(lbm_pack_halves(v.xy), lbm_pack_halves(v.zw));
+    if (chunk == 0) e.xy = half_;
+    else e.zw = half_;
+}
+
+// Lane l gets what lane l + 1 has, and the other way round.
+lbm_element lbm_next_lane(lbm_element e) {
+    return e >> 16 | e.yzwx << 16;
+}
+
+lbm_element lbm_last_lane(lbm_element e) {
+    return e << 16 | e.wxyz >> 16;
+}
+#else
+vec4 lbm_unpack(lbm_element e, const int chunk, const float scale) {
+    return e;
+}
+
+void lbm_pack(inout lbm_element e, const int chunk, const float scale, vec4 v) {
+    e = v;
+}
+
+lbm_element lbm_next_lane(lbm_element e) {
+    return e.yzwx;
+}
+
+lbm_element lbm_last_lane(lbm_element e) {
+    return e.wxyz;
+}
+#endif
+
+// ---- places -----------------------------------------------------------------------------------
+
+struct lbm_place { // of an element
+    uint own;
+    uint x, x_up, x_down, y, y_up, y_down, z, z_up; // parts of the index of it and its neighbours
+    bool last; // the layer above is the first one, its lanes one lane on
+};
+
+// `at`: x, y, z % LBM_LAYERS.
+lbm_place lbm_place_at(uvec3 at) {
+    lbm_place p;
+    p.x = at.x;
+    p.x_up = at.x == LBM_NX - 1u ? 0u : at.x + 1u;
+    p.x_down = at.x == 0u ? LBM_NX - 1u : at.x - 1u;
+    p.y = at.y * LBM_NX;
+    p.y_up = at.y == LBM_NY - 1u ? 0u : p.y + LBM_NX;
+    p.y_down = at.y == 0u ? (LBM_NY - 1u) * LBM_NX : p.y - LBM_NX;
+    p.z = at.z * LBM_LAYER;
+    p.last = at.z == LBM_LAYERS - 1u;
+    p.z_up = p.last ? 0u : p.z + LBM_LAYER;
+    p.own = p.x + p.y + p.z;
+    return p;
+}
+
+// The element one step along (x, y, z), which are constants.
+uint lbm_there(lbm_place p, const int x, const int y, const int z) {
+    return (x == 0 ? p.x : x > 0 ? p.x_up : p.x_down) +
+           (y == 0 ? p.y : y > 0 ? p.y_up : p.y_down) + (z == 0 ? p.z : p.z_up);
+}
+
+// Places in memory: those of pairs, then those of rest. Each has LBM_ELEMENTS elements.
+#define LBM_AIR_PAIR(i) ((i) - 1)
+#define LBM_SCALAR_PAIR(s, i) (LBM_Q - 1 + (s) * (LBM_SCALAR_Q - 1) + (i) - 1)
+#define LBM_AIR_AT_REST (LBM_Q - 1 + LBM_SCALARS * (LBM_SCALAR_Q - 1))
+#define LBM_SCALAR_AT_REST(s) (LBM_AIR_AT_REST + 1 + (s))
+
+// LBM_EACH_BUFFER is LBM_BUFFER(k, block, array) for k = 0, 1, ...; a buffer holds LBM_RUN slots,
+// an even number, so that no pair is apart.
+#define LBM_BUFFER(k, block, array) layout(std430) buffer block { lbm_element array[]; };
+LBM_EACH_BUFFER
+#undef LBM_BUFFER
+
+// `slot` is a constant, the first of a pair; `side`, 0 or 1, need not be. What is not of the
+// constant's buffer is left out by the driver.
+lbm_element lbm_load(const int slot, uint side, uint element) {
+    uint at = (uint(slot % LBM_RUN) + side) * LBM_ELEMENTS + element;
+    lbm_element e;
+#define LBM_BUFFER(k, block, array) if (slot / LBM_RUN == k) e = array[at];
+    LBM_EACH_BUFFER
+#undef LBM_BUFFER
+    return e;
+}
+
+void lbm_store(const int slot, uint side, uint element, lbm_element e) {
+    uint at = (uint(slot % LBM_RUN) + side) * LBM_ELEMENTS + element;
+#define LBM_BUFFER(k, block, array) if (slot / LBM_RUN == k) array[at] = e;
+    LBM_EACH_BUFFER
+#undef LBM_BUFFER
+}
+
+// A pair's second direction, from or to the neighbour along its first, (x, y, z).
+lbm_element lbm_load_there(const int slot, uint side, lbm_place p, const int x, const int y, const int z) {
+    lbm_element e = lbm_load(slot, side, lbm_there(p, x, y, z));
+    if (z > 0) e = p.last ? lbm_next_lane(e) : e;
+    return e;
+}
+
+void lbm_store_there(const int slot, uint side, lbm_place p, const int x, const int y, const int z, lbm_element e) {
+    if (z > 0) e = p.last ? lbm_last_lane(e) : e;
+    lbm_store(slot, side, lbm_there(p, x, y, z), e);
+}
+
+// ---- populations ------------------------------------------------------------------------------
+
+// What arrives at an element: of air, of scalar s (a constant).
+void lbm_load_air(lbm_place p, out lbm_element q[LBM_Q]) {
+    q[0] = lbm_load(LBM_AIR_AT_REST, 0u, p.own);
+#define LOAD(i, x, y, z)                                                                           \
+    q[i] = lbm_load(LBM_AIR_PAIR(i), 1u - lbm_parity, p.own);                                      \
+    q[i + 1] = lbm_load_there(LBM_AIR_PAIR(i), lbm_parity, p, x, y, z);
+    LBM_PAIRS(LOAD)
+#undef LOAD
+}
+
+void lbm_load_scalar(const int s, lbm_place p, out lbm_element q[LBM_SCALAR_Q]) {
+    q[0] = lbm_load(LBM_SCALAR_AT_REST(s), 0u, p.own);
+#define LOAD(i, x, y, z)                                                                           \
+    q[i] = lbm_load(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, p.own);                                \
+    q[i + 1] = lbm_load_there(LBM_SCALAR_PAIR(s, i), lbm_parity, p, x, y, z);
+    LBM_SCALAR_PAIRS(LOAD)
+#undef LOAD
+}
+
+// Changes what arrives.
+void lbm_replace_air(lbm_place p, lbm_element q[LBM_Q]) {
+    lbm_store(LBM_AIR_AT_REST, 0u, p.own, q[0]);
+#define STORE(i, x, y, z)                                                                          \
+    lbm_store(LBM_AIR_PAIR(i), 1u - lbm_parity, p.own, q[i]);                                      \
+    lbm_store_there(LBM_AIR_PAIR(i), lbm_parity, p, x, y, z, q[i + 1]);
+    LBM_PAIRS(STORE)
+#undef STORE
+}
+
+void lbm_replace_scalar(const int s, lbm_place p, lbm_element q[LBM_SCALAR_Q]) {
+    lbm_store(LBM_SCALAR_AT_REST(s), 0u, p.own, q[0]);
+#define STORE(i, x, y, z)                                                                          \
+    lbm_store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, p.own, q[i]);                                \
+    lbm_store_there(LBM_SCALAR_PAIR(s, i), lbm_parity, p, x, y, z, q[i + 1]);
+    LBM_SCALAR_PAIRS(STORE)
+#undef STORE
+}
+
+// Sends off what collision left: the step's, once for each element.
+void lbm_send_air(lbm_place p, lbm_element q[LBM_Q]) {
+    lbm_store(LBM_AIR_AT_REST, 0u, p.own, q[0]);
+#define STORE(i, x, y, z)                                                                          \
+    lbm_store_there(LBM_AIR_PAIR(i), lbm_parity, p, x, y, z, q[i]);                                \
+    lbm_store(LBM_AIR_PAIR(i), 1u - lbm_parity, p.own, q[i + 1]);
+    LBM_PAIRS(STORE)
+#undef STORE
+}
+
+void lbm_send_scalar(const int s, lbm_place p, lbm_element q[LBM_SCALAR_Q]) {
+    lbm_store(LBM_SCALAR_AT_REST(s), 0u, p.own, q[0]);
+#define STORE(i, x, y, z)                                                                          \
+    lbm_store_there(LBM_SCALAR_PAIR(s, i), lbm_parity, p, x, y, z, q[i]);                          \
+    lbm_store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, p.own, q[i + 1]);
+    LBM_SCALAR_PAIRS(STORE)
+#undef STORE
+}
+
+// ---- four cells -------------------------------------------------------------------------------
+
+struct lbm_vec { // a vector in each of four cells
+    vec4 x, y, z;
+};
+
+lbm_vec lbm_vec_all(vec3 v) {
+    return lbm_vec(vec4(v.x), vec4(v.y), vec4(v.z));
+}
+
+vec4 lbm_dot(lbm_vec a, lbm_vec b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+// Along a direction, whose parts are constants.
+#define LBM_ALONG(v, X, Y, Z) (float(X) * (v).x + float(Y) * (v).y + float(Z) * (v).z)
+
+// Equilibrium of second order, less the weights: density 1 + excess, velocity u.
+void lbm_set_equilibrium(vec4 excess, lbm_vec u, out vec4 f[LBM_Q]) {
+    vec4 density = 1.0 + excess, same = excess - density * 1.5 * lbm_dot(u, u);
+    f[0] = LBM_REST * same;
+#define SET(i, x, y, z)                                                                            \
+    {                                                                                              \
+        vec4 along = LBM_ALONG(u, x, y, z);                                                        \
+        vec4 even = LBM_WEIGHT(x, y, z) * (same + density * 4.5 * along * along);                  \
+        vec4 odd = LBM_WEIGHT(x, y, z) * 3.0 * density * along;                                    \
+        f[i] = even + odd;                                                                         \
+        f[i + 1] = even - odd;                                                                     \
+    }
+    LBM_PAIRS(SET)
+#undef SET
+}
+
+// Equilibrium of a scalar that air of velocity u carries: linear in u (D3Q7), of second order
+// (D3Q27, as published).
+void lbm_set_scalar_equilibrium(vec4 value, lbm_vec u, out vec4 g[LBM_SCALAR_Q]) {
+#if LBM_SCALAR_Q == 27
+    vec4 same = value * (1.0 - 1.5 * lbm_dot(u, u));
+#else
+    vec4 same = value;
+#endif
+    g[0] = LBM_SCALAR_REST * same;
+#define SET(i, x, y, z)                                                                            \
+    {                                                                                              \
+        vec4 along = LBM_ALONG(u, x, y, z) * (1.0 / LBM_SCALAR_SPEED);                             \
+        vec4 even = LBM_SCALAR_WEIGHT(x, y, z) * same;                                             \
+        vec4 odd = LBM_SCALAR_WEIGHT(x, y, z) * value * along;                                     \
+        if (LBM_SCALAR_Q == 27) even += 0.5 * along * odd;                                         \
+        g[i] = even + odd;                                                                         \
+        g[i + 1] = even - odd;                                                                     \
+    }
+    LBM_SCALAR_PAIRS(SET)
+#undef SET
+}
+
+#endif

@@ -1,0 +1,95 @@
+// Lattice Boltzmann: air that moves, and up to three scalars that it carries, on a regular lattice
+// on the device. Lattice units only: a cell is 1 long, a step 1 of time, air at rest has density 1.
+//
+// Layout, which shaders/sim/lbm/state.glsl reads: an element is L cells that lie nz / L apart along
+// z, so that cell (x, y, z) is lane z / (nz / L) of element x + nx * (y + ny * (z % (nz / L))).
+// L is 4 (LBM_F32: a vec4) or 8 (LBM_F16: a uvec4 of eight halves in order). The neighbours of a
+// whole element are a whole element again; where z goes round, its lanes rotate by one. Populations
+// are kept less their weights (air) and streamed in place, see shaders/sim/lbm/state.glsl.
+//
+// Life: lbm_create, lbm_compile (or not), lbm_build, lbm_allocate, then in frames lbm_reset and
+// lbm_step.
+#pragma once
+#include "base/arena.h"
+#include "shader/shader.h"
+
+typedef struct lbm lbm;
+
+typedef enum lbm_set { LBM_D3Q19, LBM_D3Q27 } lbm_set;
+typedef enum lbm_scalar_set { LBM_SCALAR_D3Q7, LBM_SCALAR_D3Q27 } lbm_scalar_set;
+typedef enum lbm_collision { LBM_BGK, LBM_TRT, LBM_CENTRAL_MOMENTS } lbm_collision;
+typedef enum lbm_forcing { LBM_GUO, LBM_WEIGHTS_ONLY } lbm_forcing; // the latter as published
+typedef enum lbm_precision { LBM_F32, LBM_F16 } lbm_precision;      // of what is stored
+typedef enum lbm_face { LBM_PERIODIC, LBM_WALL, LBM_SLIP, LBM_OPEN, LBM_INFLOW } lbm_face;
+
+enum { LBM_MAX_SCALARS = 3, LBM_MAX_BODIES = 63, LBM_MAX_DEFINES = 32, LBM_MAX_BUFFERS = 16 };
+
+typedef struct lbm_desc { // structure: what shaders are compiled for
+    // Cells, at least 4 x 4 x 16; z a multiple of 8. The outermost layer of a face that is not
+    // periodic is the boundary. Opposite faces are both periodic or neither is.
+    uint32_t size[3];
+    lbm_set set;
+    lbm_scalar_set scalar_set;
+    lbm_collision collision;
+    lbm_forcing forcing; // LBM_WEIGHTS_ONLY wants LBM_BGK
+    lbm_precision precision;
+    lbm_face faces[6]; // -x +x -y +y -z +z
+    uint32_t scalars;  // smoke, temperature, second species: in this order
+    bool subgrid;      // Smagorinsky
+    bool force;        // an image says where what force acts: lbm_set_force
+    bool bodies;       // there are solids, which may move
+} lbm_desc;
+
+typedef struct lbm_numbers { // of a step; read anew each step
+    float tau;               // relaxation time of the air: viscosity (tau - 1/2) / 3; above 1/2
+    float scalar_tau[LBM_MAX_SCALARS]; // diffusion (tau - 1/2) * lbm_scalar_speed
+    float smagorinsky;                 // constant of the subgrid term, about 0.1 to 0.2
+    float acceleration[3];
+    float buoyancy[LBM_MAX_SCALARS][3]; // acceleration by 1 of a scalar above ambient
+    float inflow[6][3];                 // velocity at faces LBM_INFLOW and LBM_OPEN
+    float inflow_scalar[6][LBM_MAX_SCALARS];
+    float ambient[LBM_MAX_SCALARS]; // what scalars begin with, and decay to
+    float decay[LBM_MAX_SCALARS];   // part of the difference to ambient that goes in a step
+    float max_speed;                // velocities are kept below; 0: they are not
+} lbm_numbers;
+
+lbm *lbm_create(arena *memory, const lbm_desc *desc); // NULL with a message
+const lbm_desc *lbm_get_desc(const lbm *l);
+// Square of the speed of sound of a scalar set: 1/4 (D3Q7) or 1/3.
+float lbm_scalar_speed(lbm_scalar_set set);
+
+// Compiles all that lbm_build would, without a device. `reader` may be NULL.
+bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader);
+// Shaders and pipelines; any thread. Afterwards lbm_defines and lbm_bind can be asked.
+bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader);
+bool lbm_allocate(lbm *l, gpu *g); // state; contents undefined until lbm_reset
+void lbm_destroy(lbm *l, gpu *g);
+
+// Inside a frame: air at rest, scalars at ambient, step 0.
+bool lbm_reset(lbm *l, gpu *g, const lbm_numbers *numbers);
+// Inside a frame: records one step. `keep`: leaves the moments of the state before the step.
+bool lbm_step(lbm *l, gpu *g, const lbm_numbers *numbers, bool keep);
+uint64_t lbm_steps(const lbm *l); // since the reset
+// For a state that was written into the buffers (lbm_bind): as of this step.
+void lbm_set_steps(lbm *l, uint64_t steps);
+
+// Of the last kept state (0) and of the one kept before it (1); NULL: there is none. For each cell,
+// x fastest, then y, then z, a uvec4 of eight halves: velocity, density - 1, scalars, then the id
+// of the body that the cell lies in, or 0.
+gpu_buffer *lbm_moments(const lbm *l, int which);
+
+// With desc.force: acceleration is `scale` times the first three channels of a 3D image over the
+// whole lattice, sampled linearly. It must be set before the first step.
+void lbm_set_force(lbm *l, gpu_image *image, float scale);
+
+// What a shader that includes sim/lbm/state.glsl must be compiled with, and its uniform
+// "lbm_parity" set to, and which of its slots are the solver's own; all after lbm_build.
+size_t lbm_defines(const lbm *l, shader_define out[LBM_MAX_DEFINES]);
+uint32_t lbm_parity(const lbm *l);
+bool lbm_bind(const lbm *l, const char *slot_name, gpu_binding *out); // false: not one of its slots
+// Buffers that hold the whole state, in order: what a checkpoint keeps beside lbm_steps.
+size_t lbm_buffers(const lbm *l, gpu_buffer **out, size_t capacity);
+
+// Gives each the state, moments and count of steps of the other; false when their structure is not
+// the same.
+bool lbm_exchange(lbm *a, lbm *b);
