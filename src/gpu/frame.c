@@ -58,6 +58,16 @@ bool gpu_frame_wait(gpu *g, uint64_t frame) {
     return true;
 }
 
+bool gpu_frame_done(gpu *g, uint64_t frame) {
+    if (frame > g->frame_number) return false;
+    const vk_frame *slot = slot_of(g, frame);
+    return !slot || (slot != g->frame && vk_completed(g) >= slot->batch.serial);
+}
+
+uint64_t gpu_frame_open(const gpu *g) {
+    return g->frame ? g->frame->number : 0;
+}
+
 static bool next_chunk(gpu *g, vk_uniforms *u) {
     size_t next = u->count > 0 ? u->chunk + 1 : 0;
     if (next == u->count) {
