@@ -48,6 +48,17 @@ uniform uint lbm_parity; // of steps
 #define LBM_SCALAR_WEIGHT(x, y, z) LBM_D3Q7_AXIS
 #endif
 
+// X(s) for each scalar, a constant.
+#if LBM_SCALARS == 0
+#define LBM_EACH_SCALAR(X)
+#elif LBM_SCALARS == 1
+#define LBM_EACH_SCALAR(X) X(0)
+#elif LBM_SCALARS == 2
+#define LBM_EACH_SCALAR(X) X(0) X(1)
+#else
+#define LBM_EACH_SCALAR(X) X(0) X(1) X(2)
+#endif
+
 // ---- elements ---------------------------------------------------------------------------------
 
 #if LBM_HALF
@@ -65,8 +76,6 @@ uniform uint lbm_parity; // of steps
 #define LBM_LAYER (LBM_NX * LBM_NY)           // elements
 #define LBM_ELEMENTS (LBM_LAYER * LBM_LAYERS) // of a direction
 
-// Four cells of an element, as they lie in memory.
-#if LBM_HALF
 // Some devices cut what does not fit into a half; rounded before, it fits.
 uint lbm_pack_halves(vec2 v) {
 #if LBM_ROUND
@@ -76,6 +85,8 @@ uint lbm_pack_halves(vec2 v) {
     return packHalf2x16(v);
 }
 
+// Four cells of an element, as they lie in memory.
+#if LBM_HALF
 vec4 lbm_unpack(lbm_element e, const int chunk, const float scale) {
     uvec2 half_ = chunk == 0 ? e.xy : e.zw;
     return vec4(unpackHalf2x16(half_.x), unpackHalf2x16(half_.y)) * (1.0 / scale);
@@ -113,6 +124,42 @@ lbm_element lbm_last_lane(lbm_element e) {
     return e.wxyz;
 }
 #endif
+
+void lbm_unpack_air(lbm_element q[LBM_Q], const int chunk, out vec4 f[LBM_Q]) {
+    f[0] = lbm_unpack(q[0], chunk, LBM_AIR_SCALE);
+#define UNPACK(i, x, y, z)                                                                         \
+    f[i] = lbm_unpack(q[i], chunk, LBM_AIR_SCALE);                                                 \
+    f[i + 1] = lbm_unpack(q[i + 1], chunk, LBM_AIR_SCALE);
+    LBM_PAIRS(UNPACK)
+#undef UNPACK
+}
+
+void lbm_pack_air(inout lbm_element q[LBM_Q], const int chunk, vec4 f[LBM_Q]) {
+    lbm_pack(q[0], chunk, LBM_AIR_SCALE, f[0]);
+#define PACK(i, x, y, z)                                                                           \
+    lbm_pack(q[i], chunk, LBM_AIR_SCALE, f[i]);                                                    \
+    lbm_pack(q[i + 1], chunk, LBM_AIR_SCALE, f[i + 1]);
+    LBM_PAIRS(PACK)
+#undef PACK
+}
+
+void lbm_unpack_scalar(lbm_element q[LBM_SCALAR_Q], const int chunk, out vec4 g[LBM_SCALAR_Q]) {
+    g[0] = lbm_unpack(q[0], chunk, LBM_SCALAR_SCALE);
+#define UNPACK(i, x, y, z)                                                                         \
+    g[i] = lbm_unpack(q[i], chunk, LBM_SCALAR_SCALE);                                              \
+    g[i + 1] = lbm_unpack(q[i + 1], chunk, LBM_SCALAR_SCALE);
+    LBM_SCALAR_PAIRS(UNPACK)
+#undef UNPACK
+}
+
+void lbm_pack_scalar(inout lbm_element q[LBM_SCALAR_Q], const int chunk, vec4 g[LBM_SCALAR_Q]) {
+    lbm_pack(q[0], chunk, LBM_SCALAR_SCALE, g[0]);
+#define PACK(i, x, y, z)                                                                           \
+    lbm_pack(q[i], chunk, LBM_SCALAR_SCALE, g[i]);                                                 \
+    lbm_pack(q[i + 1], chunk, LBM_SCALAR_SCALE, g[i + 1]);
+    LBM_SCALAR_PAIRS(PACK)
+#undef PACK
+}
 
 // ---- places -----------------------------------------------------------------------------------
 

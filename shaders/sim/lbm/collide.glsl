@@ -1,0 +1,72 @@
+// Collision in four cells: what arrives becomes what leaves. Populations are less their weights, so
+// that small differences keep their digits; `excess` is the density less 1.
+#ifndef SIM_LBM_COLLIDE_GLSL
+#define SIM_LBM_COLLIDE_GLSL
+#include "sim/lbm/state.glsl"
+
+struct lbm_tensor { // symmetric
+    vec4 xx, yy, zz, xy, xz, yz;
+};
+
+struct lbm_air {
+    vec4 excess;
+    lbm_vec u;        // with half of what the force adds
+    lbm_vec force;    // on a cell
+    lbm_tensor stress; // second central moments, less those of equilibrium
+};
+
+// Sums of populations, by direction, and products of directions.
+void lbm_sum(vec4 f[LBM_Q], out vec4 excess, out lbm_vec momentum, out lbm_tensor second) {
+    excess = f[0];
+    momentum = lbm_vec_all(vec3(0.0));
+    second = lbm_tensor(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+#define SUM(i, X, Y, Z)                                                                            \
+    {                                                                                              \
+        vec4 even = f[i] + f[i + 1], odd = f[i] - f[i + 1];                                        \
+        excess += even;                                                                            \
+        if (X != 0) momentum.x += float(X) * odd;                                                  \
+        if (Y != 0) momentum.y += float(Y) * odd;                                                  \
+        if (Z != 0) momentum.z += float(Z) * odd;                                                  \
+        if (X != 0) second.xx += even;                                                             \
+        if (Y != 0) second.yy += even;                                                             \
+        if (Z != 0) second.zz += even;                                                             \
+        if (X * Y != 0) second.xy += float(X * Y) * even;                                          \
+        if (X * Z != 0) second.xz += float(X * Z) * even;                                          \
+        if (Y * Z != 0) second.yz += float(Y * Z) * even;                                          \
+    }
+    LBM_PAIRS(SUM)
+#undef SUM
+}
+
+// The part of the second moments that equilibrium has not, in the frame that moves with u, where
+// half of the force's momentum is still missing.
+lbm_tensor lbm_stress(lbm_tensor second, vec4 excess, lbm_vec u, lbm_vec force) {
+    vec4 density = 1.0 + excess, third = excess * (1.0 / 3.0);
+    lbm_vec m = lbm_vec(density * u.x - force.x, density * u.y - force.y, density * u.z - force.z);
+    lbm_vec h = lbm_vec(0.5 * force.x, 0.5 * force.y, 0.5 * force.z);
+    return lbm_tensor(second.xx - third - u.x * m.x, second.yy - third - u.y * m.y,
+                      second.zz - third - u.z * m.z,
+                      second.xy - u.x * (m.y + h.y) + u.y * h.x,
+                      second.xz - u.x * (m.z + h.z) + u.z * h.x,
+                      second.yz - u.y * (m.z + h.z) + u.z * h.y);
+}
+
+#if LBM_SUBGRID
+// Hou, Sterling, Chen, Doolen, "A lattice Boltzmann subgrid model for high Reynolds number flows",
+// 1996, eqs. 15 to 17: the relaxation time with the eddies' part, from the stress at hand.
+vec4 lbm_eddy_tau(lbm_air a, float tau, float constant) {
+    lbm_tensor s = a.stress;
+    vec4 off = s.xy * s.xy + s.xz * s.xz + s.yz * s.yz;
+    vec4 norm = sqrt(s.xx * s.xx + s.yy * s.yy + s.zz * s.zz + 2.0 * off);
+    float factor = 18.0 * sqrt(2.0) * constant * constant;
+    return 0.5 * (tau + sqrt(tau * tau + factor * norm / (1.0 + a.excess)));
+}
+#endif
+
+#if LBM_CENTRAL_MOMENTS
+#include "sim/lbm/collide_moments.glsl"
+#else
+#include "sim/lbm/collide_pairs.glsl"
+#endif
+
+#endif

@@ -1,0 +1,125 @@
+// Collision of central moments: what has no trace among those of second order relaxes, all others
+// go to equilibrium at once. That keeps the least viscosities stable.
+// Geier, Greiner, Korvink, "Cascaded digital lattice Boltzmann automata for high Reynolds number
+// flow", 2006. Their closed form: De Rosis, "Nonorthogonal central-moments-based lattice Boltzmann
+// scheme in three dimensions", 2017 (D3Q27); De Rosis and Coreixas, "Multiphysics flow simulations
+// using D3Q19 lattice Boltzmann methods based on central moments", 2020. A force in all orders:
+// De Rosis, Huang, Coreixas, "Universal formulation of central-moments-based lattice Boltzmann
+// method with external forcing for multiphysics simulations", 2019.
+//
+// In the frame that moves with the air, the moments after collision are: density d; half of the
+// force, h; the stress s, and d / 3 along each axis; h / 3 of third and h / 9 of fifth order; d / 9
+// of fourth and d / 27 of sixth. All others are 0.
+#ifndef SIM_LBM_COLLIDE_MOMENTS_GLSL
+#define SIM_LBM_COLLIDE_MOMENTS_GLSL
+
+lbm_tensor lbm_relax(lbm_tensor s, vec4 omega) {
+    vec4 keep = 1.0 - omega, mean = (s.xx + s.yy + s.zz) * (1.0 / 3.0);
+    return lbm_tensor(keep * (s.xx - mean), keep * (s.yy - mean), keep * (s.zz - mean),
+                      keep * s.xy, keep * s.xz, keep * s.yz);
+}
+
+#if LBM_Q == 19
+struct lbm_plane { // moments along two axes, a and b, in the frame at rest
+    vec4 ab, abb, baa, aabb; // the last less that of the weights
+};
+
+lbm_plane lbm_plane_of(lbm_air air, vec4 ua, vec4 ub, vec4 ha, vec4 hb, vec4 saa, vec4 sbb, vec4 sab) {
+    vec4 third = (1.0 + air.excess) * (1.0 / 3.0), kaa = third + saa, kbb = third + sbb;
+    vec4 ab = ua * hb, ba = ub * ha, mean = (1.0 + air.excess) * ua * ub + ab + ba;
+    lbm_plane p;
+    p.ab = mean + sab;
+    p.abb = ha * (1.0 / 3.0) + ua * kbb + ub * (2.0 * sab + mean + ab);
+    p.baa = hb * (1.0 / 3.0) + ub * kaa + ua * (2.0 * sab + mean + ba);
+    p.aabb = air.excess * (1.0 / 9.0) + (ua * ha + ub * hb) * (2.0 / 3.0) + ua * ua * kbb + ub * ub * kaa +
+             ua * ub * (4.0 * sab + mean + ab + ba);
+    return p;
+}
+
+void lbm_collide(lbm_air air, vec4 omega, out vec4 f[LBM_Q]) {
+    vec4 density = 1.0 + air.excess, third = air.excess * (1.0 / 3.0);
+    lbm_vec u = air.u, h = lbm_vec(0.5 * air.force.x, 0.5 * air.force.y, 0.5 * air.force.z);
+    lbm_tensor s = lbm_relax(air.stress, omega);
+    vec4 x = density * u.x + h.x, y = density * u.y + h.y, z = density * u.z + h.z;
+    vec4 xx = third + s.xx + u.x * (x + h.x), yy = third + s.yy + u.y * (y + h.y);
+    vec4 zz = third + s.zz + u.z * (z + h.z);
+    lbm_plane xy = lbm_plane_of(air, u.x, u.y, h.x, h.y, s.xx, s.yy, s.xy);
+    lbm_plane xz = lbm_plane_of(air, u.x, u.z, h.x, h.z, s.xx, s.zz, s.xz);
+    lbm_plane yz = lbm_plane_of(air, u.y, u.z, h.y, h.z, s.yy, s.zz, s.yz);
+    f[0] = air.excess - xx - yy - zz + xy.aabb + xz.aabb + yz.aabb;
+#define SET(i, second, first)                                                                      \
+    {                                                                                              \
+        vec4 even = 0.5 * (second), odd = 0.5 * (first);                                           \
+        f[i] = even + odd;                                                                         \
+        f[i + 1] = even - odd;                                                                     \
+    }
+    SET(1, xx - xy.aabb - xz.aabb, x - xy.abb - xz.abb)
+    SET(3, yy - xy.aabb - yz.aabb, y - xy.baa - yz.abb)
+    SET(5, zz - xz.aabb - yz.aabb, z - xz.baa - yz.baa)
+    SET(7, 0.5 * (xy.aabb + xy.ab), 0.5 * (xy.abb + xy.baa))
+    SET(9, 0.5 * (xy.aabb - xy.ab), 0.5 * (xy.abb - xy.baa))
+    SET(11, 0.5 * (xz.aabb + xz.ab), 0.5 * (xz.abb + xz.baa))
+    SET(13, 0.5 * (xz.aabb - xz.ab), 0.5 * (xz.baa - xz.abb))
+    SET(15, 0.5 * (yz.aabb + yz.ab), 0.5 * (yz.abb + yz.baa))
+    SET(17, 0.5 * (yz.aabb - yz.ab), 0.5 * (yz.baa - yz.abb))
+#undef SET
+}
+#else
+struct lbm_line { // along one axis: at rest, up, down
+    vec4 o, p, n;
+};
+
+// From moments of order 0, 1, 2 in the frame that moves with u to populations of one axis, these
+// less `weight` times 2/3, 1/6, 1/6, the moments less `weight` times 1, 0, 1/3.
+lbm_line lbm_line_of(vec4 u, const float weight, vec4 k0, vec4 k1, vec4 k2) {
+    vec4 au = (k0 + weight) * u, even = 0.5 * (u * (au + 2.0 * k1) + k2), odd = 0.5 * (au + k1);
+    return lbm_line(k0 - 2.0 * even, even + odd, even - odd);
+}
+
+// Axis by axis: z, then y, then x. Of the order along x: `weight` is 1, 0 or 1/3.
+struct lbm_slab {
+    lbm_line o, p, n; // along y, each along z
+};
+
+lbm_slab lbm_slab_of(vec4 u, const float weight, lbm_line k0, lbm_line k1, lbm_line k2) {
+    lbm_line o = lbm_line_of(u, weight * (2.0 / 3.0), k0.o, k1.o, k2.o);
+    lbm_line p = lbm_line_of(u, weight * (1.0 / 6.0), k0.p, k1.p, k2.p);
+    lbm_line n = lbm_line_of(u, weight * (1.0 / 6.0), k0.n, k1.n, k2.n);
+    return lbm_slab(lbm_line(o.o, p.o, n.o), lbm_line(o.p, p.p, n.p), lbm_line(o.n, p.n, n.n));
+}
+
+void lbm_collide(lbm_air air, vec4 omega, out vec4 f[LBM_Q]) {
+    const float third = 1.0 / 3.0, ninth = 1.0 / 9.0;
+    lbm_vec u = air.u, h = lbm_vec(0.5 * air.force.x, 0.5 * air.force.y, 0.5 * air.force.z);
+    lbm_tensor s = lbm_relax(air.stress, omega);
+    vec4 e = air.excess, e3 = third * e, e9 = ninth * e, none = vec4(0.0);
+    lbm_slab k0 = lbm_slab_of(u.y, 1.0, lbm_line_of(u.z, 1.0, e, h.z, e3 + s.zz),
+                              lbm_line_of(u.z, 0.0, h.y, s.yz, third * h.y),
+                              lbm_line_of(u.z, third, e3 + s.yy, third * h.z, e9));
+    lbm_slab k1 = lbm_slab_of(u.y, 0.0, lbm_line_of(u.z, 0.0, h.x, s.xz, third * h.x),
+                              lbm_line_of(u.z, 0.0, s.xy, none, none),
+                              lbm_line_of(u.z, 0.0, third * h.x, none, ninth * h.x));
+    lbm_slab k2 = lbm_slab_of(u.y, third, lbm_line_of(u.z, third, e3 + s.xx, third * h.z, e9),
+                              lbm_line_of(u.z, 0.0, third * h.y, none, ninth * h.y),
+                              lbm_line_of(u.z, ninth, e9, ninth * h.z, third * e9));
+#define SET(Y, Z, weight, rest, up, down)                                                          \
+    {                                                                                              \
+        lbm_line line = lbm_line_of(u.x, weight, k0.Y.Z, k1.Y.Z, k2.Y.Z);                          \
+        f[rest] = line.o;                                                                          \
+        f[up] = line.p;                                                                            \
+        f[down] = line.n;                                                                          \
+    }
+    SET(o, o, 4.0 / 9.0, 0, 1, 2)
+    SET(p, o, 1.0 / 9.0, 3, 7, 10)
+    SET(n, o, 1.0 / 9.0, 4, 9, 8)
+    SET(o, p, 1.0 / 9.0, 5, 11, 13)
+    SET(o, n, 1.0 / 9.0, 6, 14, 12)
+    SET(p, p, 1.0 / 36.0, 15, 19, 21)
+    SET(n, n, 1.0 / 36.0, 16, 22, 20)
+    SET(n, p, 1.0 / 36.0, 17, 23, 25)
+    SET(p, n, 1.0 / 36.0, 18, 26, 24)
+#undef SET
+}
+#endif
+
+#endif

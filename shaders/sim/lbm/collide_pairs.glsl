@@ -1,0 +1,48 @@
+// BGK and TRT: the even and the odd parts of each pair go to an equilibrium of second order, each
+// at its own rate. Ginzburg, Verhaeghe, d'Humieres, "Two-relaxation-time lattice Boltzmann scheme",
+// 2008. Forces: Guo, Zheng, Shi, "Discrete lattice effects on the forcing term in the lattice
+// Boltzmann method", 2002, eq. 20.
+#ifndef SIM_LBM_COLLIDE_PAIRS_GLSL
+#define SIM_LBM_COLLIDE_PAIRS_GLSL
+
+#if LBM_TRT
+// With this product of (tau - 1/2) of both rates, walls stand half way between cells whatever the
+// viscosity (Ginzburg and d'Humieres, 2003).
+#define LBM_MAGIC (3.0 / 16.0)
+vec4 lbm_odd_rate(vec4 omega) {
+    vec4 over = 1.0 / omega - 0.5;
+    return over / (LBM_MAGIC + 0.5 * over);
+}
+#else
+vec4 lbm_odd_rate(vec4 omega) {
+    return omega;
+}
+#endif
+
+void lbm_collide(lbm_air a, vec4 omega, inout vec4 f[LBM_Q]) {
+    vec4 density = 1.0 + a.excess, odd_omega = lbm_odd_rate(omega);
+    vec4 same = a.excess - density * 1.5 * lbm_dot(a.u, a.u);
+#if LBM_WEIGHTS_ONLY
+    vec4 even_push = vec4(0.0), odd_push = vec4(3.0), same_push = vec4(0.0);
+#else
+    vec4 even_push = 9.0 - 4.5 * omega, odd_push = 3.0 - 1.5 * odd_omega;
+    vec4 same_push = (1.5 * omega - 3.0) * lbm_dot(a.u, a.force);
+#endif
+    f[0] += omega * (LBM_REST * same - f[0]) + LBM_REST * same_push;
+#define COLLIDE(i, x, y, z)                                                                        \
+    {                                                                                              \
+        vec4 along = LBM_ALONG(a.u, x, y, z), push = LBM_ALONG(a.force, x, y, z);                  \
+        vec4 even = LBM_WEIGHT(x, y, z) * (same + density * 4.5 * along * along);                  \
+        vec4 odd = LBM_WEIGHT(x, y, z) * 3.0 * density * along;                                    \
+        even = omega * (even - 0.5 * (f[i] + f[i + 1])) +                                          \
+               LBM_WEIGHT(x, y, z) * (same_push + even_push * along * push);                       \
+        odd = odd_omega * (odd - 0.5 * (f[i] - f[i + 1])) +                                        \
+              LBM_WEIGHT(x, y, z) * odd_push * push;                                               \
+        f[i] += even + odd;                                                                        \
+        f[i + 1] += even - odd;                                                                    \
+    }
+    LBM_PAIRS(COLLIDE)
+#undef COLLIDE
+}
+
+#endif

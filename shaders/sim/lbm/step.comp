@@ -1,0 +1,159 @@
+// One step of a lattice Boltzmann solver: each thread takes what arrives at an element, collides
+// it, and sends it off. Not a pass of its own: see src/sim/lbm.c.
+layout(local_size_x = LBM_GROUP) in;
+#include "sim/lbm/state.glsl"
+#include "sim/lbm/collide.glsl"
+#include "sim/lbm/scalar.glsl"
+
+uniform float tau;
+uniform float smagorinsky;
+uniform vec3 acceleration;
+uniform float max_speed;
+uniform vec3 scalar_tau;
+uniform vec3 buoyancy[3]; // by 1 of a scalar above ambient
+uniform vec3 ambient;
+uniform vec3 decay;
+#if LBM_FORCE
+uniform sampler3D force; //= input : acceleration, times force_scale
+uniform float force_scale;
+#endif
+#if LBM_KEEP
+layout(std430) writeonly buffer LbmMoments { uvec4 moments[]; };
+#endif
+
+// The diffusion that eddies add is their viscosity over this, the turbulent Schmidt number.
+#define SCHMIDT 0.7
+
+lbm_place place;
+uvec3 at; // x, y, layer
+lbm_element air[LBM_Q], carried[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
+
+// ---- four cells -------------------------------------------------------------------------------
+
+vec4 population[LBM_Q], part[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
+vec4 value[3]; // of scalars
+
+void unpack(const int chunk) {
+    lbm_unpack_air(air, chunk, population);
+#define UNPACK(s)                                                                                  \
+    lbm_unpack_scalar(carried[s], chunk, part[s]);                                                 \
+    value[s] = lbm_sum_scalar(part[s]);
+    LBM_EACH_SCALAR(UNPACK)
+#undef UNPACK
+}
+
+#if LBM_FORCE
+void add_force(const int chunk, inout lbm_vec a) {
+#define ADD(lane)                                                                                  \
+    {                                                                                              \
+        vec3 cell = vec3(at.xy, at.z + LBM_LAYERS * uint(4 * chunk + lane)) + 0.5;                 \
+        vec3 p = cell / vec3(LBM_NX, LBM_NY, LBM_LAYERS * LBM_LANES);                              \
+        vec3 more = force_scale * textureLod(force, p, 0.0).xyz;                                   \
+        a.x[lane] += more.x;                                                                       \
+        a.y[lane] += more.y;                                                                       \
+        a.z[lane] += more.z;                                                                       \
+    }
+    ADD(0) ADD(1) ADD(2) ADD(3)
+#undef ADD
+}
+#endif
+
+lbm_vec find_force(const int chunk, vec4 density) {
+    lbm_vec a = lbm_vec_all(acceleration);
+#define RISE(s)                                                                                    \
+    {                                                                                              \
+        vec4 above = value[s] - ambient[s];                                                        \
+        a.x += above * buoyancy[s].x;                                                              \
+        a.y += above * buoyancy[s].y;                                                              \
+        a.z += above * buoyancy[s].z;                                                              \
+    }
+    LBM_EACH_SCALAR(RISE)
+#undef RISE
+#if LBM_FORCE
+    add_force(chunk, a);
+#endif
+    return lbm_vec(density * a.x, density * a.y, density * a.z);
+}
+
+// Velocities above `most` are cut off: that costs momentum, and keeps what would burst.
+void limit(inout lbm_vec u, float most) {
+    vec4 factor = min(vec4(1.0), most * inversesqrt(max(lbm_dot(u, u), 1e-20)));
+    u = lbm_vec(u.x * factor, u.y * factor, u.z * factor);
+}
+
+lbm_air find_air(const int chunk) {
+    lbm_air a;
+    lbm_vec momentum;
+    lbm_tensor second;
+    lbm_sum(population, a.excess, momentum, second);
+    vec4 density = 1.0 + a.excess, volume = 1.0 / density;
+    a.force = find_force(chunk, density);
+#if LBM_WEIGHTS_ONLY
+    a.u = lbm_vec(momentum.x * volume, momentum.y * volume, momentum.z * volume);
+#else
+    a.u = lbm_vec((momentum.x + 0.5 * a.force.x) * volume, (momentum.y + 0.5 * a.force.y) * volume,
+                  (momentum.z + 0.5 * a.force.z) * volume);
+#endif
+    limit(a.u, max_speed);
+#if LBM_CENTRAL_MOMENTS || LBM_SUBGRID
+    a.stress = lbm_stress(second, a.excess, a.u, a.force);
+#endif
+    return a;
+}
+
+#if LBM_KEEP
+void keep_moments(const int chunk, lbm_air a) {
+    uint index = place.own + uint(4 * chunk) * LBM_ELEMENTS;
+#define KEEP(lane)                                                                                 \
+    moments[index + lane * LBM_ELEMENTS] =                                                         \
+        uvec4(lbm_pack_halves(vec2(a.u.x[lane], a.u.y[lane])),                                     \
+              lbm_pack_halves(vec2(a.u.z[lane], a.excess[lane])),                                  \
+              lbm_pack_halves(vec2(value[0][lane], value[1][lane])),                               \
+              lbm_pack_halves(vec2(value[2][lane], 0.0)));
+    KEEP(0u) KEEP(1u) KEEP(2u) KEEP(3u)
+#undef KEEP
+}
+#endif
+
+void collide(const int chunk) {
+    value[0] = value[1] = value[2] = vec4(0.0);
+    unpack(chunk);
+    lbm_air a = find_air(chunk);
+#if LBM_KEEP
+    keep_moments(chunk, a);
+#endif
+    vec4 eddies = vec4(0.0); // what they add to the relaxation time
+#if LBM_SUBGRID
+    eddies = lbm_eddy_tau(a, tau, smagorinsky) - tau;
+#endif
+    lbm_collide(a, 1.0 / (tau + eddies), population);
+    lbm_pack_air(air, chunk, population);
+#define SCALAR(s)                                                                                  \
+    lbm_collide_scalar(value[s], a.u,                                                              \
+                       1.0 / (scalar_tau[s] + eddies * (1.0 / (3.0 * SCHMIDT * LBM_SCALAR_SPEED))), \
+                       1.0 - decay[s], ambient[s], part[s]);                                       \
+    lbm_pack_scalar(carried[s], chunk, part[s]);
+    LBM_EACH_SCALAR(SCALAR)
+#undef SCALAR
+}
+
+// ---- an element -------------------------------------------------------------------------------
+
+void main() {
+    uint column = gl_GlobalInvocationID.x;
+    if (column >= LBM_LAYER) return;
+    at = uvec3(column % LBM_NX, column / LBM_NX, gl_GlobalInvocationID.z);
+    place = lbm_place_at(at);
+#define LOAD(s) lbm_load_scalar(s, place, carried[s]);
+    LBM_EACH_SCALAR(LOAD)
+#undef LOAD
+    lbm_load_air(place, air);
+    collide(0);
+#if LBM_CHUNKS > 1
+    collide(1);
+#endif
+    lbm_send_air(place, air);
+#define SEND(s) lbm_send_scalar(s, place, carried[s]);
+    LBM_EACH_SCALAR(SEND)
+#undef SEND
+}

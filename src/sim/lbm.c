@@ -1,0 +1,273 @@
+// A solver: what its shaders are compiled for, its state on the device, its steps.
+//
+// The state is one row of slots, each a direction of all elements: those of pairs first, then those
+// at rest; first the air's, then each scalar's. Slots go into as few buffers as the device can bind
+// whole, an even number into each, so that the two directions of a pair, which change places in
+// each step, are never in two buffers: then a shader knows the buffer while it is compiled.
+#include "sim/lbm.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include "sim/lbm_impl.h"
+#include <stdio.h>
+#include <string.h>
+
+enum { GROUP = 128 }; // threads, along x
+
+// ---- structure --------------------------------------------------------------------------------
+
+static uint32_t air_directions(const lbm_desc *desc) {
+    return desc->set == LBM_D3Q27 ? 27 : 19;
+}
+
+static uint32_t scalar_directions(const lbm_desc *desc) {
+    return desc->scalar_set == LBM_SCALAR_D3Q27 ? 27 : 7;
+}
+
+float lbm_scalar_speed(lbm_scalar_set set) {
+    return set == LBM_SCALAR_D3Q27 ? 1.0f / 3 : 1.0f / 4;
+}
+
+static bool check(const lbm_desc *desc) {
+    const uint32_t *size = desc->size;
+    static const char *const axes[3] = {"x", "y", "z"};
+    if (size[0] < 4 || size[1] < 4 || size[2] < 16)
+        return err_set("a lattice of %u x %u x %u cells; at least 4 x 4 x 16 are needed", size[0],
+                       size[1], size[2]);
+    if (size[2] % 8 != 0)
+        return err_set("a lattice of %u cells along z; a multiple of 8 is needed", size[2]);
+    if (size[0] > 4096 || size[1] > 4096 || size[2] > 4096)
+        return err_set("a lattice of %u x %u x %u cells; at most 4096 along an axis are accepted",
+                       size[0], size[1], size[2]);
+    if (desc->scalars > LBM_MAX_SCALARS)
+        return err_set("%u scalars; at most %d are accepted", desc->scalars, LBM_MAX_SCALARS);
+    if (desc->forcing == LBM_WEIGHTS_ONLY && desc->collision != LBM_BGK)
+        return err_set("forces by weights only are accepted with the collision BGK alone");
+    for (int i = 0; i < 3; i++)
+        if ((desc->faces[2 * i] == LBM_PERIODIC) != (desc->faces[2 * i + 1] == LBM_PERIODIC))
+            return err_set("one face along %s is periodic and the other is not", axes[i]);
+    return true;
+}
+
+bool lbm_layout_find(const lbm_desc *desc, uint64_t range, lbm_layout *out) {
+    const uint32_t *size = desc->size;
+    *out = (lbm_layout){.lanes = desc->precision == LBM_F16 ? 8 : 4};
+    out->layers = size[2] / out->lanes;
+    uint64_t elements = (uint64_t)size[0] * size[1] * out->layers;
+    uint64_t fit = range / (elements * 16);
+    out->slots = air_directions(desc) + desc->scalars * scalar_directions(desc);
+    if (fit > UINT32_MAX / elements) fit = UINT32_MAX / elements; // indices are of 32 bits
+    if (fit >= out->slots) fit = out->slots + 1;
+    out->run = (uint32_t)(fit & ~1ull);
+    out->elements = (uint32_t)elements;
+    out->buffers = out->run ? (out->slots + out->run - 1) / out->run : 0;
+    if (out->run && out->buffers <= LBM_MAX_BUFFERS) return true;
+    return err_set("a lattice of %u x %u x %u cells and %u directions is too large for buffers of "
+                   "at most %llu MiB, %d of them",
+                   size[0], size[1], size[2], out->slots, (unsigned long long)(range >> 20),
+                   LBM_MAX_BUFFERS);
+}
+
+lbm *lbm_create(arena *memory, const lbm_desc *desc) {
+    if (!check(desc)) return NULL;
+    lbm *l = arena_alloc(memory, sizeof *l);
+    *l = (lbm){.memory = memory, .desc = *desc};
+    return l;
+}
+
+const lbm_desc *lbm_get_desc(const lbm *l) {
+    return &l->desc;
+}
+
+// ---- shaders ----------------------------------------------------------------------------------
+
+static void define(lbm *l, const char *name, uint32_t value) {
+    l->defines[l->define_count++] = (shader_define){name, arena_format(l->memory, "%u", value)};
+}
+
+static void define_buffers(lbm *l) {
+    strbuf text = {0};
+    for (uint32_t i = 0; i < l->layout.buffers; i++)
+        strbuf_add(&text, "LBM_BUFFER(%u, LbmState%u, lbm_state_%u) ", i, i, i);
+    l->defines[l->define_count++] =
+        (shader_define){"LBM_EACH_BUFFER", arena_string(l->memory, text.text)};
+    strbuf_free(&text);
+}
+
+static void define_all(lbm *l) {
+    const lbm_desc *desc = &l->desc;
+    l->define_count = 0;
+    define(l, "LBM_NX", desc->size[0]);
+    define(l, "LBM_NY", desc->size[1]);
+    define(l, "LBM_LAYERS", l->layout.layers);
+    define(l, "LBM_RUN", l->layout.run);
+    define(l, "LBM_GROUP", GROUP);
+    define(l, "LBM_Q", air_directions(desc));
+    define(l, "LBM_SCALAR_Q", scalar_directions(desc));
+    define(l, "LBM_SCALARS", desc->scalars);
+    define(l, "LBM_HALF", desc->precision == LBM_F16);
+    define(l, "LBM_ROUND", l->rounds);
+    define(l, "LBM_TRT", desc->collision == LBM_TRT);
+    define(l, "LBM_CENTRAL_MOMENTS", desc->collision == LBM_CENTRAL_MOMENTS);
+    define(l, "LBM_WEIGHTS_ONLY", desc->forcing == LBM_WEIGHTS_ONLY);
+    define(l, "LBM_SUBGRID", desc->subgrid);
+    define(l, "LBM_FORCE", desc->force);
+    define_buffers(l);
+}
+
+static bool compile(lbm *l, uint64_t range, shader_library *library, const shader_reader *reader) {
+    static const shader_define bare = {"LBM_KEEP", "0"}, kept = {"LBM_KEEP", "1"};
+    if (!lbm_layout_find(&l->desc, range, &l->layout)) return false;
+    define_all(l);
+    return lbm_kernel_compile(l, &l->reset, "sim/lbm/reset.comp", library, reader, NULL, 0) &&
+           lbm_kernel_compile(l, &l->step, "sim/lbm/step.comp", library, reader, &bare, 1) &&
+           lbm_kernel_compile(l, &l->step_kept, "sim/lbm/step.comp", library, reader, &kept, 1);
+}
+
+bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader) {
+    l->rounds = false;
+    return compile(l, UINT32_MAX, library, reader);
+}
+
+bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader) {
+    const gpu_info *info = gpu_get_info(g);
+    l->rounds = info->kind == GPU_CPU; // llvmpipe cuts
+    return compile(l, info->max_storage_range, library, reader) && lbm_kernel_build(&l->reset, g) &&
+           lbm_kernel_build(&l->step, g) && lbm_kernel_build(&l->step_kept, g);
+}
+
+size_t lbm_defines(const lbm *l, shader_define out[LBM_MAX_DEFINES]) {
+    memcpy(out, l->defines, l->define_count * sizeof *out);
+    return l->define_count;
+}
+
+// ---- state ------------------------------------------------------------------------------------
+
+bool lbm_allocate(lbm *l, gpu *g) {
+    const lbm_layout *layout = &l->layout;
+    for (uint32_t i = 0; i < layout->buffers; i++) {
+        uint32_t left = layout->slots - i * layout->run;
+        uint64_t slots = left < layout->run ? left : layout->run;
+        l->state[i] = gpu_buffer_create(
+            g, &(gpu_buffer_desc){.label = "lattice", .size = slots * layout->elements * 16});
+        if (!l->state[i]) return false;
+    }
+    return true;
+}
+
+void lbm_destroy(lbm *l, gpu *g) {
+    lbm_kernel_destroy(&l->reset, g);
+    lbm_kernel_destroy(&l->step, g);
+    lbm_kernel_destroy(&l->step_kept, g);
+    for (int i = 0; i < LBM_MAX_BUFFERS; i++) gpu_buffer_destroy(g, l->state[i]);
+    for (int i = 0; i < 2; i++) gpu_buffer_destroy(g, l->moments[i]);
+    memset(l->state, 0, sizeof l->state);
+    memset(l->moments, 0, sizeof l->moments);
+}
+
+size_t lbm_buffers(const lbm *l, gpu_buffer **out, size_t capacity) {
+    for (size_t i = 0; i < l->layout.buffers && i < capacity; i++) out[i] = l->state[i];
+    return l->layout.buffers;
+}
+
+bool lbm_bind(const lbm *l, const char *name, gpu_binding *out) {
+    *out = (gpu_binding){.sampler = GPU_LINEAR_CLAMP};
+    if (strcmp(name, "LbmMoments") == 0) out->buffer = l->moments[l->kept % 2];
+    if (strcmp(name, "force") == 0) out->image = l->force;
+    for (uint32_t i = 0; i < l->layout.buffers; i++) {
+        char block[32];
+        snprintf(block, sizeof block, "LbmState%u", i);
+        if (strcmp(name, block) == 0) out->buffer = l->state[i];
+    }
+    return out->buffer || out->image;
+}
+
+void lbm_set_force(lbm *l, gpu_image *image, float scale) {
+    l->force = image;
+    l->force_scale = scale;
+}
+
+static bool same_structure(const lbm_desc *a, const lbm_desc *b) {
+    return memcmp(a->size, b->size, sizeof a->size) == 0 &&
+           memcmp(a->faces, b->faces, sizeof a->faces) == 0 && a->set == b->set &&
+           a->scalar_set == b->scalar_set && a->precision == b->precision &&
+           a->scalars == b->scalars;
+}
+
+bool lbm_exchange(lbm *a, lbm *b) {
+    if (!same_structure(&a->desc, &b->desc)) return false;
+    lbm was = *a;
+    memcpy(a->state, b->state, sizeof a->state);
+    memcpy(a->moments, b->moments, sizeof a->moments);
+    a->kept = b->kept;
+    a->steps = b->steps;
+    memcpy(b->state, was.state, sizeof b->state);
+    memcpy(b->moments, was.moments, sizeof b->moments);
+    b->kept = was.kept;
+    b->steps = was.steps;
+    return true;
+}
+
+// ---- steps ------------------------------------------------------------------------------------
+
+uint64_t lbm_steps(const lbm *l) {
+    return l->steps;
+}
+
+void lbm_set_steps(lbm *l, uint64_t steps) {
+    l->steps = steps;
+}
+
+uint32_t lbm_parity(const lbm *l) {
+    return (uint32_t)(l->steps % 2);
+}
+
+gpu_buffer *lbm_moments(const lbm *l, int which) {
+    return l->kept > (uint64_t)which ? l->moments[(l->kept + 1 + (uint64_t)which) % 2] : NULL;
+}
+
+bool lbm_reset(lbm *l, gpu *g, const lbm_numbers *numbers) {
+    l->steps = l->kept = 0;
+    lbm_kernel_set(&l->reset, "ambient", numbers->ambient, sizeof numbers->ambient);
+    return lbm_kernel_run(l, &l->reset, g, NULL, 0);
+}
+
+static void set_numbers(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
+    const float most = n->max_speed > 0 ? n->max_speed : 1e6f;
+    float buoyancy[LBM_MAX_SCALARS][4] = {0};
+    for (int i = 0; i < LBM_MAX_SCALARS; i++)
+        memcpy(buoyancy[i], n->buoyancy[i], sizeof n->buoyancy[i]);
+    lbm_kernel_set(k, "tau", &n->tau, sizeof n->tau);
+    lbm_kernel_set(k, "scalar_tau", n->scalar_tau, sizeof n->scalar_tau);
+    lbm_kernel_set(k, "smagorinsky", &n->smagorinsky, sizeof n->smagorinsky);
+    lbm_kernel_set(k, "acceleration", n->acceleration, sizeof n->acceleration);
+    lbm_kernel_set(k, "buoyancy", buoyancy, sizeof buoyancy);
+    lbm_kernel_set(k, "ambient", n->ambient, sizeof n->ambient);
+    lbm_kernel_set(k, "decay", n->decay, sizeof n->decay);
+    lbm_kernel_set(k, "max_speed", &most, sizeof most);
+    lbm_kernel_set(k, "force_scale", &l->force_scale, sizeof l->force_scale);
+}
+
+static bool need_moments(lbm *l, gpu *g) {
+    const uint64_t size = 16ull * l->desc.size[0] * l->desc.size[1] * l->desc.size[2];
+    const uint64_t range = gpu_get_info(g)->max_storage_range;
+    if (size > range)
+        return err_set("moments of %u x %u x %u cells take %llu MiB; the device can bind %llu",
+                       l->desc.size[0], l->desc.size[1], l->desc.size[2],
+                       (unsigned long long)(size >> 20), (unsigned long long)(range >> 20));
+    gpu_buffer **next = &l->moments[l->kept % 2];
+    if (!*next)
+        *next =
+            gpu_buffer_create(g, &(gpu_buffer_desc){.label = "lattice's moments", .size = size});
+    return *next != NULL;
+}
+
+bool lbm_step(lbm *l, gpu *g, const lbm_numbers *numbers, bool keep) {
+    lbm_kernel *k = keep ? &l->step_kept : &l->step;
+    if (keep && !need_moments(l, g)) return false;
+    set_numbers(l, k, numbers);
+    if (!lbm_kernel_run(l, k, g, NULL, 0)) return false;
+    l->kept += keep;
+    l->steps++;
+    return true;
+}

@@ -1,0 +1,54 @@
+// The inside of a lattice Boltzmann solver, for the files of this layer only.
+#pragma once
+#include "sim/lbm.h"
+
+// ---- one shader -------------------------------------------------------------------------------
+
+typedef struct lbm_kernel {
+    const char *shader;
+    shader_binary binary;
+    gpu_pipeline *pipeline;
+    unsigned char *block; // of its uniforms
+} lbm_kernel;
+
+// Compiles with the defines of the solver and `more`; again: replaces what was compiled.
+bool lbm_kernel_compile(lbm *l, lbm_kernel *k, const char *shader, shader_library *library,
+                        const shader_reader *reader, const shader_define *more, size_t more_count);
+bool lbm_kernel_build(lbm_kernel *k, gpu *g);
+void lbm_kernel_destroy(lbm_kernel *k, gpu *g);
+// Sets a uniform; one that the shader does not use is passed over. Arrays are std140: each element
+// of 16 bytes.
+void lbm_kernel_set(lbm_kernel *k, const char *name, const void *data, size_t size);
+// A dispatch of a thread for each element, in layers: x is column x + nx * y, z the layer. What is
+// not the solver's own is bound by `more`, in which `binding` is filled in.
+typedef struct lbm_slot {
+    const char *name;
+    gpu_binding binding;
+} lbm_slot;
+bool lbm_kernel_run(const lbm *l, lbm_kernel *k, gpu *g, const lbm_slot *more, size_t more_count);
+
+// ---- the solver -------------------------------------------------------------------------------
+
+typedef struct lbm_layout {
+    uint32_t lanes, layers, elements; // cells of an element, elements along z, elements in all
+    uint32_t slots, run, buffers;     // places of directions, those of one buffer, buffers
+} lbm_layout;
+
+// How the state lies where one binding is at most `range` bytes. False with a message.
+bool lbm_layout_find(const lbm_desc *desc, uint64_t range, lbm_layout *out);
+
+struct lbm {
+    arena *memory;
+    lbm_desc desc;
+    lbm_layout layout;
+    bool rounds; // the device cuts halves instead of rounding them
+    shader_define defines[LBM_MAX_DEFINES];
+    size_t define_count;
+    lbm_kernel reset, step, step_kept; // the last also leaves moments
+    gpu_buffer *state[LBM_MAX_BUFFERS];
+    gpu_buffer *moments[2]; // [kept % 2] is written next
+    uint64_t kept;
+    gpu_image *force;
+    float force_scale;
+    uint64_t steps;
+};
