@@ -91,3 +91,36 @@ struct surface_material {
     SHARED_VEC4 color;    // base colour, linear
     SHARED_UVEC4 texture; // width (0: none), height, first of its texels, 1 where it has holes
 };
+
+// What the shaders of scene/voxels read; src/scene/voxels.c writes it. A part is what of a body is
+// voxelised by itself: a run of items (triangles, large ones in strips) with a box of cells.
+#define VOXEL_MAX_PARTS 512
+#define VOXEL_UNIT 256      // steps a cell that corners are rounded to
+#define VOXEL_STRIPS 64     // of a triangle, at most
+#define VOXEL_CROSSES 4096u // flags of an item, above its strip and its strips less one, 6 bits each
+#define VOXEL_SHELL 8192u
+#define VOXEL_THIN 2.0 // cells: triangles with less of the body behind them are shells as well
+
+struct voxel_head {
+    SHARED_UVEC4 count; // parts; parts that are voxelised now; groups of prepare.comp, of cross.comp
+    SHARED_UVEC4 low;   // xyz: first cell to be composed
+    SHARED_UVEC4 size;  // xyz: how many
+    SHARED_UVEC4 grid;  // xyz: cells of the whole box; w: items of all parts
+    SHARED_VEC4 corner; // xyz: metres, of the whole box; w: farthest that a distance can be (m)
+    SHARED_VEC4 cell;   // xyz: edges (m)
+};
+
+struct voxel_part {
+    SHARED_VEC4 rows[3]; // mesh to cells
+    SHARED_UVEC4 low;    // xyz: first cell of its box, x a multiple of 4; w: id
+    SHARED_UVEC4 size;   // xyz: cells of its box, x a multiple of 4; 0: none; w: 1 where it has a shell
+    SHARED_UVEC4 mesh;   // first of its points, how many; first of its items, how many
+    SHARED_UVEC4 place;  // first of its placed points; its masks (in uvec4) and their size; its items among those of all parts
+    SHARED_VEC4 scale;   // x: cells that a unit of the mesh is long
+};
+
+struct voxel_motion {
+    SHARED_VEC4 centre;  // xyz: m
+    SHARED_VEC4 linear;  // xyz: m/s; w: growth (1/s)
+    SHARED_VEC4 angular; // xyz: rad/s
+};

@@ -1,0 +1,62 @@
+// What a run of the voxeliser is told (src/scene/voxels.c), and where the masks of a part lie.
+#ifndef VOXELS_STATE_GLSL
+#define VOXELS_STATE_GLSL
+#include "shared.h"
+layout(std430) readonly buffer VoxelState {
+    voxel_head voxel;
+    uvec4 voxel_work[VOXEL_MAX_PARTS]; // part, its first group of prepare.comp and of cross.comp, groups of the first
+    voxel_part voxel_parts[];
+};
+
+// Three masks of crossings, a bit a cell, and the shell's where there is one. Bits of the mask of an
+// axis follow each other along that axis, so that the parity before a cell is that of a few words;
+// words follow each other along x where they can, so that four neighbours are a uvec4.
+struct voxel_masks {
+    uvec3 size;    // cells
+    uvec3 words;   // along each axis
+    uint first[4]; // word of each mask
+};
+
+uint voxel_round(uint words) {
+    return (words + 3u) & ~3u;
+}
+
+voxel_masks voxel_find_masks(voxel_part p) {
+    voxel_masks m;
+    m.size = p.size.xyz;
+    m.words = (m.size + 31u) / 32u;
+    m.first[0] = 4u * p.place.y;
+    m.first[1] = m.first[0] + voxel_round(m.words.x * m.size.y * m.size.z);
+    m.first[2] = m.first[1] + m.size.x * m.size.z * m.words.y;
+    m.first[3] = m.first[2] + m.size.x * m.size.y * m.words.z;
+    return m;
+}
+
+// The word of a cell of the part's box, in the masks of crossings along x (and the shell's), y, z.
+uint voxel_word_x(voxel_masks m, uvec3 cell) {
+    return (cell.x >> 5) + m.words.x * (cell.y + m.size.y * cell.z);
+}
+uint voxel_word_y(voxel_masks m, uvec3 cell) {
+    return m.first[1] + cell.x + m.size.x * (cell.z + m.size.z * (cell.y >> 5));
+}
+uint voxel_word_z(voxel_masks m, uvec3 cell) {
+    return m.first[2] + cell.x + m.size.x * (cell.y + m.size.y * (cell.z >> 5));
+}
+
+uint voxel_group() {
+    return gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
+}
+
+// Which of the parts at work a group belongs to: the last whose first group, `column` of the list,
+// is not beyond it.
+uint voxel_find_work(uint group, uint column) {
+    uint low = 0u, high = voxel.count.y;
+    while (high - low > 1u) {
+        uint middle = (low + high) / 2u;
+        if (voxel_work[middle][column] <= group) low = middle;
+        else high = middle;
+    }
+    return low;
+}
+
+#endif

@@ -1,0 +1,418 @@
+// The voxeliser from frame to frame. A body whose transform is what it was costs nothing; for those
+// that moved three dispatches do, whatever they are: prepare.comp, cross.comp, compose.comp. Each
+// part of a body keeps masks of its own, so that what a body uncovers is composed from the masks of
+// those that did not move.
+//
+// Cost for T triangles of which each crosses few lines, in a box of N cells: T * 3 threads that
+// read 48 bytes and make a crossing for each line they meet, about a cell's surface each; N * 3/8
+// bytes of masks cleared and read; N bytes written. At 128^3 with 20,000 triangles: 60,000 threads,
+// some 100,000 atomics, 0.8 MB cleared, read twice, and 2 MB written.
+#include "base/error.h"
+#include "base/memory.h"
+#include "scene/voxels_impl.h"
+#include <math.h>
+#include <string.h>
+
+// ---- creating ---------------------------------------------------------------------------------
+
+static bool check_bodies(const voxels_desc *desc) {
+    bool taken[VOXELS_MAX_BODIES + 1] = {false};
+    if (desc->body_count > VOXELS_MAX_BODIES)
+        return err_set("voxels: %zu bodies; at most %d are possible", desc->body_count,
+                       VOXELS_MAX_BODIES);
+    for (size_t i = 0; i < desc->body_count; i++) {
+        uint8_t id = desc->bodies[i].id;
+        if (id < 1 || id > VOXELS_MAX_BODIES || taken[id])
+            return err_set("voxels: body %zu has the number %d, which is %s; 1 to %d are accepted",
+                           i + 1, id, id && id <= VOXELS_MAX_BODIES ? "taken" : "none",
+                           VOXELS_MAX_BODIES);
+        taken[id] = true;
+    }
+    return true;
+}
+
+static bool check(const voxels_desc *desc) {
+    for (int a = 0; a < 3; a++)
+        if (desc->size[a] < 1 || desc->size[a] > VOXELS_MAX_SIDE || (a == 0 && desc->size[a] % 4))
+            return err_set("voxels: size is %u x %u x %u; accepted: 1 to %d each, the first a "
+                           "multiple of 4",
+                           desc->size[0], desc->size[1], desc->size[2], VOXELS_MAX_SIDE);
+    if (box3_is_empty(desc->box) || !box3_is_finite(desc->box))
+        return err_set("voxels: the box is empty or has no end");
+    return check_bodies(desc);
+}
+
+// Bodies of the same mesh share what was made of it.
+static size_t find_surface(voxels *v, const voxels_body *body) {
+    uint32_t longest = 0;
+    for (int a = 0; a < 3; a++) longest = v->size[a] > longest ? v->size[a] : longest;
+    const mesh_data *mesh = &body->mesh->data;
+    for (size_t i = 0; i < v->surface_count; i++)
+        if (v->sources[i].vertices == mesh->vertices && v->sources[i].rule == body->rule) return i;
+    voxel_surface *s = &v->surfaces[v->surface_count];
+    voxel_surface_create(s, mesh, body->rule, longest);
+    v->sources[v->surface_count] =
+        (struct voxels_source){mesh->vertices, body->rule, v->point_count, v->item_count};
+    v->point_count += (uint32_t)s->point_count;
+    v->item_count += (uint32_t)s->item_count;
+    return v->surface_count++;
+}
+
+static void add_body(voxels *v, size_t index, const voxels_body *body) {
+    voxels_placed *b = &v->bodies[index];
+    *b = (voxels_placed){.body = *body, .surface = find_surface(v, body)};
+    const voxel_surface *s = &v->surfaces[b->surface];
+    const struct voxels_source *source = &v->sources[b->surface];
+    for (size_t i = 0; i < s->group_count; i++) {
+        const voxel_group *group = &s->groups[i];
+        v->parts[v->part_count++] = (voxels_part){
+            .body = index,
+            .group = group,
+            .first_point = source->first_point,
+            .point_count = i == 0 ? (uint32_t)s->point_count : 0,
+            .first_item = source->first_item + (uint32_t)group->first_item,
+            .first_placed = v->placed_count,
+            .first_number = v->number_count,
+        };
+        v->number_count += (uint32_t)group->item_count;
+    }
+    v->placed_count += (uint32_t)s->point_count;
+}
+
+voxels *voxels_create(arena *memory, const voxels_desc *desc) {
+    if (!check(desc)) return NULL;
+    voxels *v = arena_alloc(memory, sizeof *v);
+    v->memory = memory;
+    v->box = desc->box;
+    memcpy(v->size, desc->size, sizeof v->size);
+    v->cell[0] = (v->box.max.x - v->box.min.x) / (float)v->size[0];
+    v->cell[1] = (v->box.max.y - v->box.min.y) / (float)v->size[1];
+    v->cell[2] = (v->box.max.z - v->box.min.z) / (float)v->size[2];
+    v->bodies = arena_alloc(memory, desc->body_count * sizeof *v->bodies);
+    v->surfaces = arena_alloc(memory, desc->body_count * sizeof *v->surfaces);
+    v->sources = arena_alloc(memory, desc->body_count * sizeof *v->sources);
+    v->parts = arena_alloc(memory, desc->body_count * VOXEL_GROUPS * sizeof *v->parts);
+    v->state = arena_alloc(memory, sizeof *v->state);
+    v->body_count = desc->body_count;
+    for (size_t i = 0; i < desc->body_count; i++) add_body(v, i, &desc->bodies[i]);
+    return v;
+}
+
+// ---- where bodies are -------------------------------------------------------------------------
+
+// The turn that takes one orientation to another, as its axis times its angle (radians, up to pi).
+static void turned_by(mat4 from, mat4 to, vec3 out) {
+    mat3 a, b, turn;
+    float size_a = cbrtf(glm_mat4_det(from)), size_b = cbrtf(glm_mat4_det(to));
+    glm_vec3_zero(out);
+    if (size_a == 0 || size_b == 0) return;
+    glm_mat4_pick3(from, a);
+    glm_mat4_pick3(to, b);
+    glm_mat3_scale(a, 1 / size_a);
+    glm_mat3_scale(b, 1 / size_b);
+    glm_mat3_transpose(a);
+    glm_mat3_mul(b, a, turn);
+    versor q;
+    glm_mat3_quat(turn, q);
+    if (q[3] < 0) glm_vec4_negate(q);
+    float sine = glm_vec3_norm(q), angle = 2 * atan2f(sine, q[3]);
+    if (sine > 0) glm_vec3_scale(q, angle / sine, out);
+}
+
+static void find_motion(const voxels *v, const voxels_placed *b, mat4 now, double dt,
+                        voxels_motion *out) {
+    const box3 *box = &v->surfaces[b->surface].box;
+    vec3 middle = {0.5f * (box->min.x + box->max.x), 0.5f * (box->min.y + box->max.y),
+                   0.5f * (box->min.z + box->max.z)};
+    vec3 centre, before, turn = {0};
+    glm_mat4_mulv3(now, middle, 1, centre);
+    *out = (voxels_motion){.centre = {centre[0], centre[1], centre[2]}};
+    if (!b->moved || !b->placed || !(dt > 0)) return;
+    mat4 last;
+    glm_mat4_copy((vec4 *)b->transform, last);
+    float rate = (float)(1 / dt);
+    glm_mat4_mulv3(last, middle, 1, before);
+    out->linear = (float3){(centre[0] - before[0]) * rate, (centre[1] - before[1]) * rate,
+                           (centre[2] - before[2]) * rate};
+    turned_by(last, now, turn);
+    out->angular = (float3){turn[0] * rate, turn[1] * rate, turn[2] * rate};
+    float size = cbrtf(glm_mat4_det(now)), size_before = cbrtf(glm_mat4_det(last));
+    if (size != 0) out->growth = (1 - size_before / size) * rate;
+}
+
+static bool is_finite(mat4 m) {
+    for (int i = 0; i < 16; i++)
+        if (!(fabsf(m[i / 4][i % 4]) < 1e18f)) return false;
+    return true;
+}
+
+// Notes which bodies moved. One that is scaled to nothing or out of all numbers is nowhere.
+static bool place_bodies(voxels *v, const field_context *context, double dt, bool *motion) {
+    for (size_t i = 0; i < v->body_count; i++) {
+        voxels_placed *b = &v->bodies[i];
+        mat4 now;
+        if (!scene_mesh_transform(b->body.mesh, context, now))
+            return err_prefix("%s: ", b->body.mesh->name);
+        if (!is_finite(now)) glm_mat4_zero(now);
+        b->moved = !b->placed || memcmp(now, b->transform, sizeof now) != 0;
+        voxels_motion found;
+        if (!b->moved && dt <= 0) continue; // the same time once more
+        find_motion(v, b, now, dt, &found);
+        if (!b->placed || memcmp(&found, &b->motion, sizeof found) != 0) *motion = true;
+        b->motion = found;
+        glm_mat4_copy(now, b->transform);
+        b->placed = true;
+    }
+    return true;
+}
+
+// Mesh to cells, in rows.
+static void find_rows(const voxels *v, const voxels_placed *b, shared_vec4 out[3]) {
+    const float low[3] = {v->box.min.x, v->box.min.y, v->box.min.z};
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 4; column++) {
+            float shift = column == 3 ? low[row] : 0;
+            out[row].v[column] = (b->transform[column][row] - shift) / v->cell[row];
+        }
+}
+
+// Cells of an axis that a range of places meets: with a little more, as corners are rounded.
+static void clip_axis(float from, float to, uint32_t cells, uint32_t step, uint32_t *low,
+                      uint32_t *size) {
+    const float margin = 2.0f / VOXEL_UNIT;
+    float first = clampf(floorf(from - margin), 0, (float)cells);
+    float end = clampf(floorf(to + margin) + 1, 0, (float)cells);
+    *low = (uint32_t)first / step * step;
+    uint32_t past = ((uint32_t)end + step - 1) / step * step;
+    *size = first < end ? past - *low : 0;
+}
+
+// The cells that a part meets, by the corners of its box: the true box of the turned one. A body
+// without size meets none.
+static cell_box find_box(const voxels *v, const voxels_part *p, const shared_vec4 rows[3]) {
+    const box3 *box = &p->group->box;
+    cell_box out = {{0}, {0}};
+    bool empty = false;
+    for (int a = 0; a < 3; a++) {
+        const float *row = rows[a].v;
+        const float low[3] = {box->min.x, box->min.y, box->min.z};
+        const float high[3] = {box->max.x, box->max.y, box->max.z};
+        float from = row[3], to = row[3];
+        for (int i = 0; i < 3; i++) {
+            from += fminf(row[i] * low[i], row[i] * high[i]);
+            to += fmaxf(row[i] * low[i], row[i] * high[i]);
+        }
+        clip_axis(from, to, v->size[a], a == 0 ? 4 : 1, &out.low[a], &out.size[a]);
+        empty = empty || out.size[a] == 0;
+    }
+    bool nothing = rows[0].v[0] == 0 && rows[0].v[1] == 0 && rows[0].v[2] == 0;
+    return empty || nothing ? (cell_box){{0}, {0}} : out;
+}
+
+// ---- masks ------------------------------------------------------------------------------------
+
+// uvec4s of the masks of a box: state.glsl says how they lie.
+static uint64_t mask_size(const uint32_t size[3], bool shell) {
+    uint64_t words[3], x = size[0], y = size[1], z = size[2];
+    for (int a = 0; a < 3; a++) words[a] = (size[a] + 31) / 32;
+    uint64_t along_x = (words[0] * y * z + 3) / 4;
+    return along_x * (shell ? 2 : 1) + (x * z * words[1] + x * y * words[2]) / 4;
+}
+
+static bool is_still(const scene_mesh *mesh) {
+    const field *const values[] = {mesh->position, mesh->rotation, mesh->scale};
+    for (size_t i = 0; i < COUNT_OF(values); i++)
+        if (strcmp(values[i]->kind->name, "constant") != 0) return false;
+    return true;
+}
+
+// What a part needs however it is turned: the masks of a cube around it.
+static uint32_t choose_capacity(const voxels *v, const voxels_part *p) {
+    const voxels_placed *b = &v->bodies[p->body];
+    if (is_still(b->body.mesh)) return p->used;
+    const box3 *box = &p->group->box;
+    float x = box->max.x - box->min.x, y = box->max.y - box->min.y, z = box->max.z - box->min.z;
+    float scale = cbrtf(fabsf(glm_mat4_det((vec4 *)b->transform)));
+    float across = sqrtf(x * x + y * y + z * z) * scale;
+    uint32_t size[3];
+    for (int a = 0; a < 3; a++) {
+        float cells = ceilf(across / v->cell[a]) + 8;
+        size[a] = cells < (float)v->size[a] ? ((uint32_t)cells + 3) & ~3u : v->size[a];
+        if (size[a] > v->size[a]) size[a] = v->size[a];
+    }
+    uint64_t most = mask_size(size, isfinite(p->group->thinnest));
+    return most > p->used ? (uint32_t)most : p->used;
+}
+
+// Some part has outgrown its masks: all get new ones, and are voxelised anew.
+static bool grow(voxels *v, gpu *g) {
+    uint64_t count = 0;
+    for (size_t i = 0; i < v->part_count; i++) {
+        voxels_part *p = &v->parts[i];
+        p->capacity = choose_capacity(v, p);
+        p->masks = (uint32_t)count;
+        p->moved = true;
+        count += p->capacity;
+    }
+    v->mask_count = count;
+    gpu_buffer_destroy(g, v->buffers[VOXELS_MASKS]);
+    v->buffers[VOXELS_MASKS] = NULL;
+    return voxels_make_buffer(v, g, VOXELS_MASKS, 16 * count);
+}
+
+// ---- the work of an update --------------------------------------------------------------------
+
+static void add_cells(cell_box *all, const cell_box *more) {
+    if (more->size[0] == 0) return;
+    for (int a = 0; a < 3 && all->size[0]; a++) {
+        uint32_t end = all->low[a] + all->size[a], past = more->low[a] + more->size[a];
+        if (more->low[a] < all->low[a]) all->low[a] = more->low[a];
+        all->size[a] = (end > past ? end : past) - all->low[a];
+    }
+    if (all->size[0] == 0) *all = *more;
+}
+
+// Where parts are now; what has to be composed anew. True in `full` when masks do not suffice.
+static void place_parts(voxels *v, cell_box *dirty, bool *full) {
+    for (size_t i = 0; i < v->part_count; i++) {
+        voxels_part *p = &v->parts[i];
+        const voxels_placed *b = &v->bodies[p->body];
+        p->moved = b->moved;
+        if (!p->moved) continue;
+        struct voxel_part *out = &v->state->parts[i];
+        find_rows(v, b, out->rows);
+        cell_box box = find_box(v, p, out->rows);
+        float scale = cbrtf(fabsf(glm_mat4_det((vec4 *)b->transform)));
+        float widest = fmaxf(v->cell[0], fmaxf(v->cell[1], v->cell[2]));
+        out->scale.v[0] = scale * v->surfaces[b->surface].size / widest;
+        p->shell = p->group->thinnest * out->scale.v[0] < (float)VOXEL_THIN;
+        p->used = (uint32_t)mask_size(box.size, p->shell);
+        *full = *full || p->used > p->capacity;
+        add_cells(dirty, &p->box);
+        add_cells(dirty, &box);
+        p->box = box;
+    }
+}
+
+static void describe_part(const voxels *v, const voxels_part *p, struct voxel_part *out) {
+    const voxels_placed *b = &v->bodies[p->body];
+    for (int a = 0; a < 3; a++) {
+        out->low.v[a] = p->box.low[a];
+        out->size.v[a] = p->box.size[a];
+    }
+    out->low.v[3] = b->body.id;
+    out->size.v[3] = p->shell;
+    out->mesh = (shared_uvec4){
+        {p->first_point, p->point_count, p->first_item, (uint32_t)p->group->item_count}};
+    out->place = (shared_uvec4){{p->first_placed, p->masks, p->used, p->first_number}};
+}
+
+enum { CLEARED = 4 }; // uvec4s of masks that a thread clears
+
+// The list of parts at work, with the groups of threads that are theirs. One that meets no cell is
+// still placed, for distances.
+static void list_work(voxels *v) {
+    struct voxel_head *head = &v->state->head;
+    memset(&head->count, 0, sizeof head->count);
+    head->count.v[0] = (uint32_t)v->part_count;
+    for (uint32_t i = 0; i < v->part_count; i++) {
+        const voxels_part *p = &v->parts[i];
+        if (!p->moved) continue;
+        struct voxel_part *out = &v->state->parts[i];
+        describe_part(v, p, out);
+        uint32_t clear = voxels_groups((p->used + CLEARED - 1) / CLEARED);
+        uint32_t points = voxels_groups(out->mesh.v[1]), prepare = clear > points ? clear : points;
+        uint64_t crossing = p->box.size[0] ? (3u + p->shell) * (uint64_t)out->mesh.v[3] : 0;
+        v->state->work[head->count.v[1]++] =
+            (shared_uvec4){{i, head->count.v[2], head->count.v[3], prepare}};
+        head->count.v[2] += prepare;
+        head->count.v[3] += voxels_groups(crossing);
+    }
+}
+
+static void describe_grid(voxels *v, const cell_box *dirty) {
+    struct voxel_head *head = &v->state->head;
+    const float corner[3] = {v->box.min.x, v->box.min.y, v->box.min.z};
+    float across = 0;
+    for (int a = 0; a < 3; a++) {
+        head->low.v[a] = dirty->low[a];
+        head->size.v[a] = dirty->size[a];
+        head->grid.v[a] = v->size[a];
+        head->corner.v[a] = corner[a];
+        head->cell.v[a] = v->cell[a];
+        across += v->cell[a] * (float)v->size[a] * v->cell[a] * (float)v->size[a];
+    }
+    head->grid.v[3] = v->number_count;
+    head->corner.v[3] = sqrtf(across);
+}
+
+static bool run(voxels *v, gpu *g, const cell_box *dirty) {
+    const struct voxel_head *head = &v->state->head;
+    const uint32_t threads[3] = {dirty->size[0] / 4, dirty->size[1], dirty->size[2]};
+    size_t used = offsetof(voxels_state, parts) + v->part_count * sizeof *v->state->parts;
+    return gpu_buffer_write(g, v->buffers[VOXELS_STATE], 0, v->state, used) &&
+           voxels_dispatch_groups(v, g, VOXELS_PREPARE, head->count.v[2]) &&
+           voxels_dispatch_groups(v, g, VOXELS_CROSS, head->count.v[3]) &&
+           (dirty->size[0] == 0 ||
+            voxels_dispatch(v, g, VOXELS_COMPOSE, threads, &(voxels_images){0}));
+}
+
+static void put(shared_vec4 *out, float3 v, float w) {
+    *out = (shared_vec4){{v.x, v.y, v.z, w}};
+}
+
+static bool write_motions(voxels *v, gpu *g) {
+    for (size_t i = 0; i < v->body_count; i++) {
+        const voxels_motion *m = &v->bodies[i].motion;
+        struct voxel_motion *out = &v->motions[v->bodies[i].body.id];
+        put(&out->centre, m->centre, 0);
+        put(&out->linear, m->linear, m->growth);
+        put(&out->angular, m->angular, 0);
+    }
+    v->motions_written =
+        gpu_buffer_write(g, v->buffers[VOXELS_MOTIONS], 0, v->motions, sizeof v->motions);
+    return v->motions_written;
+}
+
+static void count_work(voxels *v, const cell_box *dirty) {
+    v->work.updates++;
+    for (size_t i = 0; i < v->body_count; i++) v->work.bodies += v->bodies[i].moved;
+    v->work.cells += (uint64_t)dirty->size[0] * dirty->size[1] * dirty->size[2];
+}
+
+bool voxels_update(voxels *v, gpu *g, const field_context *context, double dt, voxels_change *out) {
+    *out = (voxels_change){.cells = !v->started, .motion = !v->motions_written};
+    if (!place_bodies(v, context, dt, &out->motion)) return false;
+    if (out->motion && !write_motions(v, g)) return false;
+    cell_box dirty = {{0}, {0}};
+    bool full = false;
+    for (size_t i = 0; i < v->body_count; i++) out->cells = out->cells || v->bodies[i].moved;
+    if (!out->cells) return true;
+    if (!v->started) memcpy(dirty.size, v->size, sizeof dirty.size);
+    place_parts(v, &dirty, &full);
+    if (full && !grow(v, g)) return false;
+    describe_grid(v, &dirty);
+    list_work(v);
+    count_work(v, &dirty);
+    v->started = run(v, g, &dirty);
+    for (size_t i = 0; i < v->body_count && !v->started; i++) v->bodies[i].placed = false;
+    return v->started;
+}
+
+// ---- asking -----------------------------------------------------------------------------------
+
+void voxels_get_motion(const voxels *v, size_t body, voxels_motion *out) {
+    *out = v->bodies[body].motion;
+}
+
+gpu_buffer *voxels_ids(const voxels *v) {
+    return v->buffers[VOXELS_IDS];
+}
+
+gpu_buffer *voxels_motions(const voxels *v) {
+    return v->buffers[VOXELS_MOTIONS];
+}
+
+voxels_work voxels_get_work(const voxels *v) {
+    return v->work;
+}

@@ -1,0 +1,40 @@
+// Signed distances. Near the surface each triangle is held against the cells around it, so that the
+// nearest is known; farther away cells learn it from each other by jump flooding. The sign is that
+// of the inside test. Nothing of this is made or computed before somebody asks.
+#include "base/error.h"
+#include "scene/voxels_impl.h"
+
+static bool make_buffers(voxels *v, gpu *g) {
+    uint64_t cells = (uint64_t)v->size[0] * v->size[1] * v->size[2];
+    v->distances = v->distances || (voxels_make_buffer(v, g, VOXELS_KEYS, 4 * cells) &&
+                                    voxels_make_buffer(v, g, VOXELS_SEEDS, 16 * cells) &&
+                                    voxels_make_buffer(v, g, VOXELS_OTHER_SEEDS, 16 * cells));
+    return v->distances || err_prefix("distances: ");
+}
+
+// Rounds of flooding: neighbours first, which mends most of what the others get wrong, then from
+// half of the box down to neighbours again. `other`: which of the two buffers is read next.
+static bool flood(voxels *v, gpu *g, bool *other) {
+    int32_t longest = 1, apart = 1;
+    for (int a = 0; a < 3; a++)
+        longest = (int32_t)v->size[a] > longest ? (int32_t)v->size[a] : longest;
+    while (2 * apart < longest) apart *= 2;
+    for (int32_t step = 2 * apart; step >= 1; step /= 2) {
+        voxels_images more = {.apart = step > apart ? 1 : step, .other = *other};
+        if (!voxels_dispatch(v, g, VOXELS_FLOOD, v->size, &more)) return false;
+        *other = !*other;
+    }
+    return true;
+}
+
+bool voxels_write_distance(voxels *v, gpu *g, gpu_image *distance) {
+    const uint32_t fours[3] = {v->size[0] / 4, v->size[1], v->size[2]};
+    bool other = false;
+    if (!make_buffers(v, g)) return false;
+    gpu_buffer_fill(g, v->buffers[VOXELS_KEYS], UINT32_MAX);
+    return voxels_dispatch_groups(v, g, VOXELS_NEAR, voxels_groups(v->number_count)) &&
+           voxels_dispatch(v, g, VOXELS_START, v->size, &(voxels_images){.other = !other}) &&
+           flood(v, g, &other) &&
+           voxels_dispatch(v, g, VOXELS_DISTANCE, fours,
+                           &(voxels_images){.image = distance, .other = other});
+}
