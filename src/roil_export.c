@@ -6,9 +6,7 @@
 #include "field/sequence.h"
 #include "media/vdb.h"
 #include "roil_impl.h"
-#include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 typedef struct voxel_type {
@@ -83,35 +81,25 @@ static bool find_scale(exporter *x, float *scale) {
     return true;
 }
 
-static bool write_frames(exporter *x, const voxel_type *type, float scale, FILE *out) {
+static bool write_frames(exporter *x, const voxel_type *type, float scale, file_draft *out) {
     unsigned char *bytes = mem_alloc(x->voxels * type->size);
     bool done = true, present;
     for (size_t frame = 0; done && frame < x->file_count; frame++) {
         done = sample_frame(x, frame, &present);
         if (!done) break;
         encode(type, x->values, x->voxels, scale, bytes);
-        done = fwrite(bytes, type->size, x->voxels, out) == x->voxels;
-        if (!done) err_set("cannot be written: %s", strerror(errno));
+        file_draft_add(out, bytes, x->voxels * type->size);
     }
     mem_free(bytes);
     return done;
 }
 
-// Under a name of its own until it is whole.
 static bool write_file(exporter *x, const voxel_type *type, float scale, const char *file) {
-    char part[PATH_CAP];
-    if (snprintf(part, sizeof part, "%s.part", file) >= (int)sizeof part)
-        return err_set("%s: path too long", file);
-    if (!file_make_parent_folders(file)) return false;
-    FILE *out = fopen(part, "wb");
-    if (!out) return err_set("%s: cannot be written: %s", file, strerror(errno));
-    bool done = write_frames(x, type, scale, out) || err_prefix("%s: ", file);
-    if (fclose(out) != 0 && done)
-        done = err_set("%s: cannot be written: %s", file, strerror(errno));
-    if (done && rename(part, file) != 0)
-        done = err_set("%s: cannot be written: %s", file, strerror(errno));
-    if (!done) remove(part);
-    return done;
+    file_draft draft;
+    if (!file_make_parent_folders(file) || !file_draft_begin(&draft, file)) return false;
+    if (write_frames(x, type, scale, &draft)) return file_draft_end(&draft);
+    file_draft_drop(&draft);
+    return err_prefix("%s: ", file);
 }
 
 static char *describe(const exporter *x, const voxel_type *type, float scale, const char *file) {

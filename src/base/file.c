@@ -57,6 +57,10 @@ static bool write_all(int fd, const char *data, size_t size) {
         data += put;
         size -= (size_t)put;
     }
+    return true;
+}
+
+static bool reach_disk(int fd) {
     return fsync(fd) == 0 || errno == EINVAL;
 }
 
@@ -64,7 +68,7 @@ static bool write_all(int fd, const char *data, size_t size) {
 static bool write_in_place(const char *path, const void *data, size_t size) {
     int fd = open(path, O_WRONLY | O_CLOEXEC);
     if (fd < 0) return err_set("%s: %s", path, strerror(errno));
-    bool done = write_all(fd, data, size);
+    bool done = write_all(fd, data, size) && reach_disk(fd);
     if (!done) err_set("%s: %s", path, strerror(errno));
     close(fd);
     return done;
@@ -80,30 +84,55 @@ static mode_t read_umask(void) {
     return mask;
 }
 
+bool file_draft_begin(file_draft *d, const char *path) {
+    struct stat info;
+    d->reason = 0;
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
+        return err_set("%s: is no regular file", path);
+    int length = snprintf(d->temporary, sizeof d->temporary, "%s.XXXXXX", path);
+    if (length >= (int)sizeof d->temporary) return path_too_long(path);
+    memcpy(d->path, path, strlen(path) + 1);
+    d->fd = mkostemp(d->temporary, O_CLOEXEC);
+    if (d->fd < 0) return err_set("%s: cannot be written: %s", path, strerror(errno));
+    if (fchmod(d->fd, 0666 & ~read_umask()) != 0) d->reason = errno;
+    return true;
+}
+
+void file_draft_add(file_draft *d, const void *data, size_t size) {
+    if (!d->reason && !write_all(d->fd, data, size)) d->reason = errno;
+}
+
+void file_draft_patch(file_draft *d, uint64_t at, const void *data, size_t size) {
+    if (d->reason) return;
+    if (lseek(d->fd, (off_t)at, SEEK_SET) < 0) d->reason = errno;
+    file_draft_add(d, data, size);
+    if (lseek(d->fd, 0, SEEK_END) < 0 && !d->reason) d->reason = errno;
+}
+
+void file_draft_drop(file_draft *d) {
+    close(d->fd);
+    unlink(d->temporary);
+}
+
+bool file_draft_end(file_draft *d) {
+    if (!d->reason && !reach_disk(d->fd)) d->reason = errno;
+    if (close(d->fd) != 0 && !d->reason) d->reason = errno;
+    if (!d->reason && rename(d->temporary, d->path) != 0) d->reason = errno;
+    if (!d->reason) return true;
+    unlink(d->temporary);
+    return err_set("%s: cannot be written: %s", d->path, strerror(d->reason));
+}
+
 bool file_write(const char *path, const void *data, size_t size) {
     struct stat info;
+    file_draft draft;
     if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) {
         if (S_ISDIR(info.st_mode)) return err_set("%s: is a folder", path);
         return write_in_place(path, data, size);
     }
-    char temporary[PATH_CAP];
-    int length = snprintf(temporary, sizeof temporary, "%s.XXXXXX", path);
-    if (length >= (int)sizeof temporary) return path_too_long(path);
-    int fd = mkostemp(temporary, O_CLOEXEC);
-    if (fd < 0) return err_set("%s: cannot be written: %s", path, strerror(errno));
-    bool done = fchmod(fd, 0666 & ~read_umask()) == 0 && write_all(fd, data, size);
-    int reason = errno;
-    if (close(fd) != 0 && done) {
-        done = false;
-        reason = errno;
-    }
-    if (done && rename(temporary, path) != 0) {
-        done = false;
-        reason = errno;
-    }
-    if (done) return true;
-    unlink(temporary);
-    return err_set("%s: cannot be written: %s", path, strerror(reason));
+    if (!file_draft_begin(&draft, path)) return false;
+    file_draft_add(&draft, data, size);
+    return file_draft_end(&draft);
 }
 
 bool file_exists(const char *path) {

@@ -14,6 +14,18 @@ bool file_read(const char *path, size_t max, void **data, size_t *size);
 // A full disk or an unwritable folder is an error; the temporary file is removed.
 bool file_write(const char *path, const void *data, size_t size);
 
+// The same, piece by piece: what fails is told at the end, where either the whole file is there or
+// nothing of it. Only for regular files, as those that do not exist yet will be.
+typedef struct file_draft {
+    int fd, reason; // reason: errno of what failed first, 0: nothing
+    char path[PATH_CAP], temporary[PATH_CAP];
+} file_draft;
+bool file_draft_begin(file_draft *d, const char *path);
+void file_draft_add(file_draft *d, const void *data, size_t size);
+void file_draft_patch(file_draft *d, uint64_t at, const void *data, size_t size);
+bool file_draft_end(file_draft *d);
+void file_draft_drop(file_draft *d); // instead: leaves nothing
+
 bool file_exists(const char *path);
 bool file_is_folder(const char *path);
 bool file_make_folders(const char *path);        // like mkdir -p

@@ -128,6 +128,27 @@ static void full_disk_keeps_the_old_file(void **state) {
     assert_int_equal(names_in(*state), 1);
 }
 
+static void a_draft_appears_when_it_is_whole(void **state) {
+    path_text path = in(*state, "a");
+    file_draft draft;
+    put(*state, "a", "old");
+    assert_true(file_draft_begin(&draft, path.text));
+    file_draft_add(&draft, "....,", 5);
+    file_draft_add(&draft, "world", 5);
+    file_draft_patch(&draft, 0, "hell", 4);
+    file_draft_add(&draft, "!", 1);
+    assert_content(path.text, "old");
+    assert_true(file_draft_end(&draft));
+    assert_content(path.text, "hell,world!");
+    assert_true(file_draft_begin(&draft, path.text));
+    file_draft_add(&draft, "new", 3);
+    file_draft_drop(&draft);
+    assert_content(path.text, "hell,world!");
+    assert_int_equal(names_in(*state), 1);
+    assert_false(file_draft_begin(&draft, "/dev/null"));
+    assert_message("/dev/null: is no regular file");
+}
+
 static int write_without_permission(const char *folder) {
     if (chmod(folder, 0555) != 0) return 10;
     if (geteuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0)) return 11; // root may all
@@ -237,6 +258,7 @@ int main(void) {
         SCRATCH_TEST(write_errors_name_the_file),
         SCRATCH_TEST(devices_are_written_in_place),
         SCRATCH_TEST(full_disk_keeps_the_old_file),
+        SCRATCH_TEST(a_draft_appears_when_it_is_whole),
         SCRATCH_TEST(unwritable_folder_is_an_error),
         SCRATCH_TEST(folders_are_made_on_demand),
         SCRATCH_TEST(change_of_a_file_is_seen),
