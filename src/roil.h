@@ -404,6 +404,33 @@ typedef struct roil_export {
 // reads the file back (free with roil_free), or NULL.
 char *roil_export_raw(const roil_export *desc);
 
+// What fills space in an effect, voxel by voxel, as OpenVDB files.
+typedef struct roil_volume_desc {
+    const char *source; // a grid by the name of its variable ("air", "burst"), or a pass whose
+                        // medium it is ("march"); NULL: the grid that is simulated, else the medium
+                        // of the first pass `march`
+    const char *fields; // "density,velocity"; NULL: all that it has, or that the effect samples
+    uint32_t size;   // voxels along the longest side, 1 to 1024; 0: of the grids that are sampled
+    float box[2][3]; // least and greatest corner, metres; equal: the grid's, or where there is
+                     // something in the frames `first` to `last`
+    double first, last;
+    float tolerance; // values that are no greater are left out of the files
+    bool alone;      // draw no picture
+} roil_volume_desc;
+typedef struct roil_volume roil_volume;
+typedef struct roil_volume_info {
+    uint32_t size[3];
+    float voxel_size; // metres
+    char fields[256]; // "density, velocity"
+} roil_volume_info;
+// After roil_load, before roil_prepare; to be finished before roil_unload.
+roil_volume *roil_volume_create(roil_effect *e, const roil_volume_desc *desc);
+roil_volume_info roil_volume_get_info(const roil_volume *v);
+// The last frame as a .vdb file: fog volumes in halves, Z up, metres, metres a second. Reads it
+// back and leaves the file to another thread; false also when an earlier one failed.
+bool roil_volume_save(roil_volume *v, const char *file);
+bool roil_volume_finish(roil_volume *v); // when all is written; frees; NULL is fine
+
 // ---- reference --------------------------------------------------------------------------------
 // Text for people, made from the tables that the program itself uses. Free with roil_free.
 

@@ -11,6 +11,9 @@
 #ifndef SAMPLING_CUBIC
 #define SAMPLING_CUBIC -2
 #endif
+#ifndef SAMPLING_NEAREST
+#define SAMPLING_NEAREST -3
+#endif
 
 // Width of what a sample stands for (m), for grids with levels. A shader may set it before it asks
 // for a field; 0: the finest level.
@@ -59,6 +62,9 @@ vec4 grid_sample(sampler3D grid, vec3 uvw) {
                    mix(textureLod(grid, vec3(b.x, a.y, b.z), 0.0),
                        textureLod(grid, vec3(a.x, a.y, b.z), 0.0), low.x), low.y);
     return mix(near, far, 1.0 - low.z);
+#elif SAMPLING == SAMPLING_NEAREST
+    ivec3 size = textureSize(grid, 0);
+    return texelFetch(grid, clamp(ivec3(uvw * vec3(size)), ivec3(0), size - 1), 0);
 #else
     return textureLod(grid, uvw, 0.0);
 #endif
@@ -94,6 +100,8 @@ vec4 grid_sample_bricks(sampler3D atlas, usampler3D index, vec3 size, vec3 uvw) 
                    mix(grid_brick(atlas, index, size, vec3(b.x, a.y, b.z)),
                        grid_brick(atlas, index, size, vec3(a.x, a.y, b.z)), low.x), low.y);
     return mix(near, far, 1.0 - low.z);
+#elif SAMPLING == SAMPLING_NEAREST
+    return grid_brick(atlas, index, size, floor(uvw * size) + 0.5);
 #else
     return grid_brick(atlas, index, size, uvw * size);
 #endif

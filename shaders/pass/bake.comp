@@ -1,6 +1,6 @@
 // Evaluates a field at every voxel centre of a box, into a grid.
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
-//@ option sampling = cubic {linear, quasi_cubic, cubic} : interpolation of the grids that the field samples
+//@ option sampling = cubic {linear, quasi_cubic, cubic, nearest} : interpolation of the grids that the field samples
 //@ field vec4 value : what is baked
 #include "fields.glsl"
 uniform vec3 box_min;

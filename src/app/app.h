@@ -11,6 +11,7 @@ int cmd_render(int argc, const char **argv);
 int cmd_check(int argc, const char **argv);
 int cmd_info(int argc, const char **argv);
 int cmd_export(int argc, const char **argv);
+int export_vdb(int argc, const char **argv); // cmd_export
 int cmd_compare(int argc, const char **argv);
 int cmd_bench(int argc, const char **argv);
 int cmd_tune(int argc, const char **argv);

@@ -1,15 +1,18 @@
-// roil export raw 'FILES*.vdb' -o FILE.raw: a VDB sequence as plain voxels.
+// roil export raw 'FILES*.vdb' -o FILE.raw: a VDB sequence as plain voxels. And `roil export vdb`,
+// which is in export_vdb.c.
 #include "app/app.h"
 #include <popt.h>
 #include <stdio.h>
 #include <string.h>
 
 static int usage(const char *message) {
-    return app_fail(APP_BAD_USAGE, "export: %s; usage: roil export raw 'FILES*.vdb' -o FILE.raw",
+    return app_fail(APP_BAD_USAGE,
+                    "export: %s; usage: roil export raw 'FILES*.vdb' -o FILE.raw, or roil "
+                    "export vdb EFFECT.lua -o DIR/%%04d.vdb",
                     message);
 }
 
-int cmd_export(int argc, const char **argv) {
+static int export_raw(int argc, const char **argv) {
     roil_export job = {0};
     const struct poptOption options[] = {
         {"output", 'o', POPT_ARG_STRING, &job.file, 0, "one file of all frames", "FILE.raw"},
@@ -25,7 +28,7 @@ int cmd_export(int argc, const char **argv) {
         status = app_fail(APP_BAD_USAGE, "export: %s: %s", poptBadOption(context, 0),
                           poptStrerror(code));
     } else if (!format || strcmp(format, "raw") != 0) {
-        status = usage(format ? "the format is raw" : "which format?");
+        status = usage(format ? "the first word is the format, raw or vdb" : "which format?");
     } else if (!job.pattern || poptPeekArg(context)) {
         status = usage(job.pattern ? "quote the pattern of the files" : "which files?");
     } else if (!job.file) {
@@ -40,4 +43,9 @@ int cmd_export(int argc, const char **argv) {
     }
     poptFreeContext(context);
     return status;
+}
+
+int cmd_export(int argc, const char **argv) {
+    return argc > 1 && strcmp(argv[1], "vdb") == 0 ? export_vdb(argc - 1, argv + 1)
+                                                   : export_raw(argc, argv);
 }

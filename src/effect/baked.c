@@ -52,6 +52,7 @@ field_grid *effect_add_bake(effect *e, const field *node, const effect_bake_desc
     const field *value = node->components == 3 ? field_swizzle(&e->memory, node, "rgbr") : node;
     pass *p = effect_add_pass(e, "bake", NULL, NULL);
     if (!p || !pass_set_field(p, "value", value)) return NULL;
+    if (desc->sampling && !pass_set_option(p, "sampling", desc->sampling)) return NULL;
     effect_baked *baked = arena_alloc(&e->memory, sizeof *baked);
     *baked = (effect_baked){
         .grid = {.name = pass_label(p),

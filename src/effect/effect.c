@@ -227,6 +227,18 @@ void effect_add_grid(effect *e, field_grid *grid) {
     grid->punctual = e->punctual;
 }
 
+static bool grid_named(const effect *e, const char *name) {
+    for (size_t i = 0; i < e->grid_count; i++)
+        if (e->grids[i]->label && strcmp(e->grids[i]->label, name) == 0) return true;
+    return false;
+}
+
+void effect_name_grid(effect *e, field_grid *grid, const char *name) {
+    const char *free = name;
+    for (int i = 2; grid_named(e, free); i++) free = arena_format(&e->memory, "%s_%d", name, i);
+    grid->label = arena_string(&e->memory, free);
+}
+
 // ---- scene and outputs ------------------------------------------------------------------------
 
 // The mesh of a file, which loads of the same effect share; NULL with a message.
@@ -314,5 +326,5 @@ bool effect_set_depth(effect *e, graph_image image) {
     return set_picture(e, EFFECT_DEPTH, image);
 }
 graph_image effect_get_picture(const effect *e, effect_picture which) {
-    return e->pictures[which];
+    return e->unseen ? (graph_image){0} : e->pictures[which];
 }

@@ -72,17 +72,20 @@ void effect_set_seed(effect *e, uint32_t seed);
 // Checks name, range, default. Returns its index, or -1.
 int effect_add_param(effect *e, const effect_param *param);
 pass *effect_add_pass(effect *e, const char *type, const char *shader,
-                      const char *label);                   // label NULL: type's name, numbered
-void effect_add_grid(effect *e, field_grid *grid);          // owned by the effect from now on
+                      const char *label);          // label NULL: type's name, numbered
+void effect_add_grid(effect *e, field_grid *grid); // owned by the effect from now on
+// By which it is found (effect_add_volume); numbered when it is taken.
+void effect_name_grid(effect *e, field_grid *grid, const char *name);
 bool effect_playback(const effect *e, field_playback *out); // false: no grid is played
 scene_mesh *effect_add_mesh(effect *e, const char *file);   // confined to the effect's folder
 // The panorama of a sky, confined too; an effect has one.
 const struct sky_image *effect_add_sky_image(effect *e, const char *file);
 typedef struct effect_bake_desc {
-    uint32_t size[3]; // voxels
-    box3 box;         // that they cover
-    bool repeats;     // beyond the box the grid goes on as within, in all directions
-    bool levels;      // with mip levels; for a grid that repeats
+    uint32_t size[3];     // voxels
+    box3 box;             // that they cover
+    bool repeats;         // beyond the box the grid goes on as within, in all directions
+    bool levels;          // with mip levels; for a grid that repeats
+    const char *sampling; // of grids, a word of the pass `bake`; NULL: its default
 } effect_bake_desc;
 // A field baked to a grid (pass type "bake"), again whenever it has changed; returns the grid.
 field_grid *effect_add_bake(effect *e, const field *node, const effect_bake_desc *desc);
@@ -94,6 +97,35 @@ typedef struct effect_tile_desc {
 } effect_tile_desc;
 // An expression of noises by samples of a baked tile that repeats (field_tile).
 const field *effect_add_tile(effect *e, const field *noise, const effect_tile_desc *desc);
+// ---- volumes: what fills space, voxel by voxel, to be read back -------------------------------
+
+typedef struct effect_volume_desc {
+    const char *source; // a grid by its name, or a pass whose medium it is by its label; NULL: the
+                        // grid that is simulated, else the medium of the first pass `march`
+    const char *fields; // "density,velocity"; NULL: all that it has
+    uint32_t size;      // voxels along the longest side, at most 1024; 0: as large as those of the
+                        // source's grids, or 64
+    box3 box;           // empty: where the source is not zero in these frames
+    double first, last; // frames
+} effect_volume_desc;
+typedef struct effect_volume_field {
+    const char *name;
+    int components;    // 1: an image of halves; 3: of four halves a voxel
+    graph_image image; // to be kept (graph_add_output)
+} effect_volume_field;
+enum { EFFECT_VOLUME_FIELDS = 16 };
+typedef struct effect_volume {
+    box3 box;         // of voxels that are cubes
+    uint32_t size[3]; // how many
+    float voxel;      // their side (m)
+    effect_volume_field fields[EFFECT_VOLUME_FIELDS];
+    size_t count;
+} effect_volume;
+// Adds passes that compute it in every frame. Once the script has run, before the effect is built.
+bool effect_add_volume(effect *e, const effect_volume_desc *desc, effect_volume *out);
+// Before it is built: its pictures are not drawn, but only what is kept of the graph.
+void effect_skip_pictures(effect *e);
+
 bool effect_set_output(effect *e, graph_image image); // the picture, display-referred
 bool effect_set_linear(effect *e, graph_image image); // scene-linear, for EXR
 bool effect_set_depth(effect *e, graph_image image);  // linear depth in metres, for EXR

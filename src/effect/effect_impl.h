@@ -113,6 +113,7 @@ struct effect {
     bool compiled, allocated;
     uint32_t reference; // effect_desc
     bool punctual;      // effect_desc
+    bool unseen;        // its pictures are not drawn
     const effect_setting *settings;
     bool *applied; // one per setting
     size_t setting_count;

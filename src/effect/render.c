@@ -10,6 +10,7 @@
 
 // Outputs are known once the script has run; they decide which passes are needed.
 static bool add_outputs(effect *e) {
+    if (e->unseen) return true;
     if (!e->pictures[EFFECT_OUTPUT].id)
         return err_set("%s: the effect has no output; set `output` of the effect to an image",
                        e->file);
@@ -46,6 +47,25 @@ static bool make_bvh(effect *e) {
     return e->host.bvh != NULL;
 }
 
+// Whether a pass of the graph is the pass `label` or "label.name", a part of it.
+static bool is_part(const char *name, const char *label) {
+    size_t length = strlen(label);
+    return strncmp(name, label, length) == 0 && (name[length] == '\0' || name[length] == '.');
+}
+
+static bool runs(const effect *e, const pass *p) {
+    const char *names[GPU_MAX_PASSES];
+    size_t count = graph_order(e->graph, names, COUNT_OF(names));
+    for (size_t i = 0; i < count && i < COUNT_OF(names); i++)
+        if (is_part(names[i], pass_label(p))) return true;
+    return false;
+}
+
+// What draws pictures that are not wanted needs no shaders.
+static bool is_wanted(const effect *e, const pass *p) {
+    return !e->unseen || runs(e, p);
+}
+
 enum { ANY_SIZE = 64 }; // of a picture: finds what is wrong with a graph whatever its size
 
 static bool check_one(void *user, size_t index) {
@@ -53,7 +73,8 @@ static bool check_one(void *user, size_t index) {
 }
 
 static bool build_one(void *user, size_t index) {
-    return pass_build(((effect *)user)->passes[index]);
+    effect *e = user;
+    return !is_wanted(e, e->passes[index]) || pass_build(e->passes[index]);
 }
 
 bool effect_check(effect *e) {
@@ -72,7 +93,7 @@ bool effect_compile(effect *e) {
 
 static bool allocate(effect *e) { // the graph is compiled
     for (size_t i = 0; i < e->pass_count; i++)
-        if (!pass_allocate(e->passes[i])) return false;
+        if (is_wanted(e, e->passes[i]) && !pass_allocate(e->passes[i])) return false;
     return scene_bvh_allocate(e->host.bvh, e->device) &&
            (!e->sky || sky_image_upload(e->sky, e->device)) && graph_allocate(e->graph, e->device);
 }
@@ -104,20 +125,6 @@ static bool evaluate(effect *e, double frame, gpu *device) {
     for (size_t i = 0; i < e->grid_count; i++)
         if (!e->grids[i]->update(e->grids[i], device, time)) return false;
     return true;
-}
-
-// Whether a pass of the graph is the pass `label` or "label.name", a part of it.
-static bool is_part(const char *name, const char *label) {
-    size_t length = strlen(label);
-    return strncmp(name, label, length) == 0 && (name[length] == '\0' || name[length] == '.');
-}
-
-static bool runs(const effect *e, const pass *p) {
-    const char *names[GPU_MAX_PASSES];
-    size_t count = graph_order(e->graph, names, COUNT_OF(names));
-    for (size_t i = 0; i < count && i < COUNT_OF(names); i++)
-        if (is_part(names[i], pass_label(p))) return true;
-    return false;
 }
 
 uint32_t effect_samples(const effect *e) {

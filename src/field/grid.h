@@ -47,6 +47,8 @@ struct field_grid {
     bool sparse;       // images hold bricks where there is something; lib/grid.glsl says how
     bool blends;       // may ever have blend > 0: the shader then samples both sets
     bool punctual;     // never waits for data: another frame stands in for one that is late
+    bool simulated;    // each frame follows from the one before
+    const char *label; // what the script calls it; NULL: it has no name
     field_grid_state state; // current; set by update
     // Brings `state` to a time, uploading what is needed. Waits for data that is not decoded yet,
     // unless it is punctual and has anything to show.
@@ -56,6 +58,11 @@ struct field_grid {
     // and takes what that one has; false when they do not show the same. NULL: nothing to exchange.
     bool (*exchange)(field_grid *grid, field_grid *other);
     const field_playback *(*playback)(const field_grid *grid); // NULL: nothing is played
+    // What it holds, by canonical names ("density", "velocity"); NULL past the last. And where: the
+    // first channel of a name with its components, 1 or 3; -1 with a message. Without these hooks
+    // all channels together are one field, called as the grid is.
+    const char *(*field_name)(const field_grid *grid, size_t index);
+    int (*find_field)(field_grid *grid, const char *name, int *components);
     // Host value of one channel at a point, trilinear; NULL when there is no host data.
     bool (*sample)(const field_grid *grid, float3 p, int channel, float *out);
 };

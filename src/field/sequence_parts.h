@@ -1,6 +1,6 @@
-// Between the parts of a sequence: sequence.c knows its files, channels and timeline,
-// sequence_raw.c the layout of raw files, sequence_decode.c makes texels of a frame on any thread,
-// sequence_sparse.c makes bricks of one, sequence_upload.c brings them to the device,
+// Between the parts of a sequence: sequence.c knows its files and timeline, sequence_channel.c its
+// channels, sequence_raw.c the layout of raw files, sequence_decode.c makes texels of a frame on
+// any thread, sequence_sparse.c makes bricks of one, sequence_upload.c brings them to the device,
 // sequence_jobs.c does both ahead of time, sequence_cache.c keeps textures.
 //
 // A sequence is a grid that fields point at, and its data, which another load of the same effect
@@ -138,6 +138,9 @@ bool sequence_raw_read(const sequence_data *s, uint32_t frame, float *out, uint6
 // Which grid of a file a channel is read from: its name, or an alias; NULL when there is none.
 // Three scalar grids "vel.x", "vel.y", "vel.z" make a vector: `part` 0..2 asks for one of them.
 const vdb_grid_info *sequence_find_grid(const vdb_info *info, const char *channel, int part);
+// Hooks of its grid: the channels that fields sample, or that were asked for.
+const char *sequence_field_name(const field_grid *grid, size_t index);
+int sequence_find_field(field_grid *grid, const char *name, int *components);
 
 // How many times as full as this frame the fullest one is.
 float sequence_growth(const sequence_data *s, uint32_t frame);

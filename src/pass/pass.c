@@ -36,6 +36,10 @@ pass *pass_create(pass_host *host, const pass_type *type, const char *shader, co
 const char *pass_label(const pass *p) {
     return p->label;
 }
+
+bool pass_is(const pass *p, const char *type) {
+    return p->type && strcmp(p->type->name, type) == 0;
+}
 const shader_interface *pass_interface(const pass *p) {
     return p->face;
 }

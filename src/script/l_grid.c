@@ -54,13 +54,15 @@ static void read_playback(lua_State *L, const script_object *row, sequence_desc 
     desc->offset = (float3){offset[0], offset[1], offset[2]};
 }
 
-static int push_sequence(lua_State *L, const sequence_desc *desc) {
+static int push_sequence(lua_State *L, const char *who, const sequence_desc *desc) {
+    const char *name = value_name_or_variable(L, 1, who);
     sequence_object *object = object_new(L, "sequence", sizeof *object);
     effect *e = script_of(L)->effect;
     effect_add_file(e, desc->pattern); // new frames count as a change too
     object->sequence = sequence_create(script_memory(L), desc);
     if (!object->sequence) script_raise(L);
     effect_add_grid(e, sequence_grid(object->sequence));
+    effect_name_grid(e, sequence_grid(object->sequence), name);
     const char *const *files;
     size_t count = sequence_files(object->sequence, &files);
     for (size_t i = 0; i < count; i++) effect_add_file(e, files[i]);
@@ -73,7 +75,7 @@ static int l_vdb(lua_State *L) {
     const script_object *row = value_check_object(L, 1, "vdb");
     read_playback(L, row, &desc);
     desc.storage = (sequence_storage)value_get_choice(L, 1, row, "storage");
-    return push_sequence(L, &desc);
+    return push_sequence(L, "vdb", &desc);
 }
 
 static uint64_t bytes_of(lua_State *L, const char *key) {
@@ -104,7 +106,7 @@ static int l_raw(lua_State *L) {
     desc.raw.voxel_size = (float)value_get_number(L, 1, "raw", "voxel_size", 0);
     desc.raw.value_scale = (float)read_factor(L, "raw", "value_scale", 1);
     desc.raw.channel = value_get_string(L, 1, "raw", "channel");
-    return push_sequence(L, &desc);
+    return push_sequence(L, "raw", &desc);
 }
 
 // ---- what a sequence has ----------------------------------------------------------------------
@@ -118,7 +120,7 @@ static void push_vector(lua_State *L, float3 v) {
     }
 }
 
-static void push_box(lua_State *L, box3 box) {
+void value_push_box(lua_State *L, box3 box) {
     lua_createtable(L, 0, 2);
     push_vector(L, box.min);
     lua_setfield(L, -2, "min");
@@ -131,7 +133,7 @@ static int l_sequence_index(lua_State *L) {
     const sequence_object *object = luaL_checkudata(L, 1, "sequence");
     const char *name = luaL_checkstring(L, 2);
     if (strcmp(name, "box") == 0) {
-        push_box(L, sequence_grid(object->sequence)->box);
+        value_push_box(L, sequence_grid(object->sequence)->box);
     } else if (strcmp(name, "frames") == 0) {
         lua_pushinteger(L, sequence_frame_count(object->sequence));
     } else if (strcmp(name, "duration") == 0) {
@@ -146,7 +148,7 @@ static int l_sequence_index(lua_State *L) {
     return 1;
 }
 
-// ---- bake -------------------------------------------------------------------------------------
+// ---- bake and tile ----------------------------------------------------------------------------
 
 static float3 corner(lua_State *L, const char *key) {
     float v[3];
@@ -169,66 +171,78 @@ static box3 read_box(lua_State *L, const field *node) {
     return box;
 }
 
-int l_bake(lua_State *L) {
-    script_require_loading(L, "bake");
+// Both take a field and a table, which may be missing.
+static const field *read_arguments(lua_State *L, const char *who, const char *argument) {
+    script_require_loading(L, who);
     lua_settop(L, 2);
-    const field *node = value_field(L, 1, "bake", "field", 0);
+    const field *node = value_field(L, 1, who, argument, 0);
     if (lua_isnil(L, 2)) {
         lua_newtable(L);
         lua_replace(L, 2);
     }
-    value_check_object(L, 2, "bake");
-    effect_bake_desc desc = {
-        .repeats = value_get_bool(L, 2, "bake", "repeats", false),
-        .levels = value_get_bool(L, 2, "bake", "levels", false),
-    };
+    value_check_object(L, 2, who);
+    return node;
+}
+
+static uint32_t read_whole(lua_State *L, const char *who, const char *key, uint32_t otherwise,
+                           uint32_t least, uint32_t most) {
+    uint32_t value = value_get_count(L, 2, who, key, otherwise);
+    if (value < least || value > most)
+        vm_error(L, "%s: '%s' is %d; %d to %d are accepted", who, key, (int)value, (int)least,
+                 (int)most);
+    return value;
+}
+
+// What an error in between leaves half made makes the effect unsound.
+static const char *begin_making(lua_State *L, const char *who) {
+    script *s = script_of(L);
+    const char *before = s->unsound;
+    vm_charge_memory(L, SEQUENCE_COST);
+    s->unsound = who;
+    return before;
+}
+
+static void read_size(lua_State *L, uint32_t out[3]) {
     float size[3] = {64, 64, 64};
     value_get_vector(L, 2, "bake", "size", size);
     for (int i = 0; i < 3; i++) {
         if (!(size[i] >= 1 && size[i] <= 1024))
             vm_error(L, "bake: 'size' is %g; 1 to 1024 voxels are accepted", (double)size[i]);
-        desc.size[i] = (uint32_t)size[i];
+        out[i] = (uint32_t)size[i];
     }
-    desc.box = read_box(L, node);
-    vm_charge_memory(L, SEQUENCE_COST);
-    script *s = script_of(L);
-    const char *unsound = s->unsound;
-    s->unsound = "bake";
-    field_grid *grid = effect_add_bake(s->effect, node, &desc);
+}
+
+int l_bake(lua_State *L) {
+    const field *node = read_arguments(L, "bake", "field");
+    effect *e = script_of(L)->effect;
+    effect_bake_desc desc = {
+        .box = read_box(L, node),
+        .repeats = value_get_bool(L, 2, "bake", "repeats", false),
+        .levels = value_get_bool(L, 2, "bake", "levels", false),
+    };
+    read_size(L, desc.size);
+    const char *name = value_name_or_variable(L, 2, "bake");
+    const char *unsound = begin_making(L, "bake");
+    field_grid *grid = effect_add_bake(e, node, &desc);
     if (!grid) script_raise(L);
-    s->unsound = unsound;
+    script_of(L)->unsound = unsound;
+    effect_name_grid(e, grid, name);
     field_push(L, field_grid_channel(script_memory(L), grid, 0, node->components));
     return 1;
 }
 
 // tile(noise, { ... }), and as a method noise:tile { ... }.
 int l_tile(lua_State *L) {
-    script_require_loading(L, "tile");
-    lua_settop(L, 2);
-    const field *noise = value_field(L, 1, "tile", "noise", 0);
-    if (lua_isnil(L, 2)) {
-        lua_newtable(L);
-        lua_replace(L, 2);
-    }
-    value_check_object(L, 2, "tile");
+    const field *noise = read_arguments(L, "tile", "noise");
     effect_tile_desc desc = {
-        .size = value_get_count(L, 2, "tile", "resolution", TILE_RESOLUTION),
-        .cells = value_get_count(L, 2, "tile", "cells", TILE_CELLS),
-        .octaves = (int)value_get_count(L, 2, "tile", "octaves", 1),
+        .size = read_whole(L, "tile", "resolution", TILE_RESOLUTION, 4, 512),
+        .cells = read_whole(L, "tile", "cells", TILE_CELLS, 1, 256),
+        .octaves = (int)read_whole(L, "tile", "octaves", 1, 1, 12),
         .levels = value_get_bool(L, 2, "tile", "levels", true),
     };
-    if (desc.size < 4 || desc.size > 512)
-        vm_error(L, "tile: 'resolution' is %d; 4 to 512 voxels are accepted", (int)desc.size);
-    if (desc.octaves < 1 || desc.octaves > 12)
-        vm_error(L, "tile: 'octaves' is %d; 1 to 12 are accepted", desc.octaves);
-    if (desc.cells < 1 || desc.cells > 256)
-        vm_error(L, "tile: 'cells' is %d; 1 to 256 are accepted", (int)desc.cells);
-    vm_charge_memory(L, SEQUENCE_COST);
-    script *s = script_of(L);
-    const char *unsound = s->unsound;
-    s->unsound = "tile";
-    const field *made = effect_add_tile(s->effect, noise, &desc);
-    s->unsound = unsound;
+    const char *unsound = begin_making(L, "tile");
+    const field *made = effect_add_tile(script_of(L)->effect, noise, &desc);
+    script_of(L)->unsound = unsound;
     field_push(L, made);
     return 1;
 }

@@ -22,7 +22,8 @@
     KEY("blend", "false", "mixes neighbouring frames at times between them"),                      \
     KEY("y_up", "false", "the files have Y up: turns them to Z up"),                               \
     KEY("scale", "1 m", "metres a unit of the file"),                                              \
-    KEY("offset", "0, 0, 0 m", "added after scaling")
+    KEY("offset", "0, 0, 0 m", "added after scaling"),                                             \
+    KEY("name", "the variable's", "for `roil export vdb`; numbered when taken")
 #define LIGHT                                                                                      \
     SLOT(scene_light, position, 3, "{x, y, z} m", "where it stands; required"),                    \
     SLOT(scene_light, color, 3, "1, 1, 1", "multiplies the power"),                                \
@@ -34,6 +35,19 @@
     KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "encloses all frames"),                   \
     KEY("frames", "number", "how many there are"),                                                 \
     KEY("duration", "number s", "of all frames at speed 1"))
+
+#define LBM_KEYS KEYS(                                                                             \
+    KEY("size", "{x, y, z} cells",                                                                 \
+        "of the box: x a multiple of 4, z of 8 and at least 16; required"),                        \
+    KEY("voxel_size", "m", "edge of a cell; required"),                                            \
+    KEY("position", "0, 0, 0 m", "middle of the lowest face"),                                     \
+    KEY("speed", "4 m/s", "that the air is expected to stay below: a step is the shorter for it"), \
+    KEY("time_step", "0 s", "that a step takes; 0: by the speed"),                                 \
+    KEY("warm_up", "0 s", "that are simulated before the first frame"),                            \
+    KEY("boundary", "{ sides = \"open\", bottom = \"wall\", top = \"open\" }",                     \
+        "a word for all faces, or one each for left, right, front, back, bottom, top; sides are "  \
+        "the first four"),                                                                         \
+    KEY("name", "\"lbm\"", "for --set NAME.key=value and statistics; numbered when taken"))
 
 static const script_object objects[] = {
     // ---- values
@@ -101,7 +115,8 @@ static const script_object objects[] = {
          "what the voxels cover; without: where the field is not zero, if that is known"),
         KEY("repeats", "false", "fills all of space with copies of the box"),
         KEY("levels", "false",
-         "with `repeats`: adds mip levels, for where a pixel is wider than a voxel"))},
+         "with `repeats`: adds mip levels, for where a pixel is wider than a voxel"),
+        KEY("name", "the variable's", "for `roil export vdb`; numbered when taken"))},
     {"tile", "source", "worley { 1.4, octaves = 5 }:tile { resolution = 64 }",
      "noise, or an expression of noises, computed once into voxels that repeat: one sample instead "
      "of the noise. Its drift, frequency, persistence and amplitude may move; what changes its shape "
@@ -137,6 +152,26 @@ static const script_object objects[] = {
         KEY("function", "\"swirl\"", "takes the point p (m), then the arguments"),
         KEY("argument ...", "field", "float, vec3 or vec4 as given; at most 16")),
      .keys = KEYS(KEY("components", "1", "of the result: 1, 3 or 4"))},
+
+    {"lbm", "source", "local air = lbm { size = {64, 64, 96}, voxel_size = 0.05 }",
+     "air that is simulated in a box, and carries smoke; air.density is a field, 0 outside the box. "
+     "What else it takes is what `roil info passes lbm` lists: viscosity, buoyancy_heat ... Time "
+     "passes in steps of its own, whatever is drawn: a frame that is jumped to is simulated from the "
+     "first on",
+     .keys = LBM_KEYS,
+     .members = KEYS(
+        KEY("source { }", "{ shape = field, density = 1, velocity = {0, 0, 2} }",
+            "where the air is given smoke, heat and speed: where the shape is above 0.5, or within "
+            "meshes, which come first and may move; `roil info passes lbm_source` lists the rest"),
+        KEY("collider { }", "{ mesh { \"data/ball.obj\" } }",
+            "meshes, which may move, that the air flows around"),
+        KEY("density", "field", "of smoke"),
+        KEY("temperature", "field", "0 is that of the air around"),
+        KEY("dye", "field", "a second colour of smoke"),
+        KEY("velocity", "field m/s", "three components"),
+        KEY("pressure", "field Pa", "beyond that of the air around"),
+        KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "in which it is simulated"),
+        KEY("time_step", "number s", "that a step takes"))},
 
     // ---- operators
     {"lerp", "operator", "lerp(a, b, 0.5)", "another name of mix",

@@ -1,0 +1,189 @@
+// roil export vdb EFFECT.lua -o DIR/%04d.vdb: what fills space in an effect, frame by frame.
+#include "app/app.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/str.h"
+#include <inttypes.h>
+#include <popt.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct job {
+    const char *file, *output, *device, *frames_text;
+    roil_volume_desc volume;
+    app_settings settings;
+    app_frames frames;
+    int validate, no_cache;
+    double tolerance, timeout;
+} job;
+
+enum { OPTION_SIZE = 1, OPTION_BOX, OPTION_SET, OPTION_PRESET };
+
+// ---- options ----------------------------------------------------------------------------------
+
+static bool parse_size(const char *text, uint32_t *out) {
+    char *end;
+    long size = strtol(text, &end, 10);
+    if (end == text || *end || size < 1 || size > 1024)
+        return err_set("--size '%s'; accepted: 1 to 1024 voxels along the longest side", text);
+    *out = (uint32_t)size;
+    return true;
+}
+
+static bool parse_box(const char *text, float out[2][3]) {
+    float *v = out[0];
+    char rest;
+    if (sscanf(text, "%f,%f,%f,%f,%f,%f%c", v, v + 1, v + 2, v + 3, v + 4, v + 5, &rest) == 6 &&
+        v[0] < v[3] && v[1] < v[4] && v[2] < v[5])
+        return true;
+    return err_set("--box '%s'; accepted: X,Y,Z,X,Y,Z, the least and the greatest corner", text);
+}
+
+static bool take_option(job *j, poptContext context, int option) {
+    char *text = poptGetOptArg(context);
+    switch (option) {
+    case OPTION_SIZE:
+        return parse_size(text, &j->volume.size);
+    case OPTION_BOX:
+        return parse_box(text, j->volume.box);
+    case OPTION_SET:
+        return app_add_set(&j->settings, text);
+    case OPTION_PRESET:
+        app_add_preset(&j->settings, text);
+        return true;
+    }
+    return true;
+}
+
+static bool check(job *j, poptContext context) {
+    j->file = poptGetArg(context);
+    if (!j->file)
+        return err_set("which effect? usage: roil export vdb EFFECT.lua -o DIR/%%04d.vdb");
+    const char *more = poptGetArg(context);
+    if (more) return err_set("'%s': one effect at a time", more);
+    if (!j->output) return err_set("-o is missing");
+    if (!str_ends_with(j->output, ".vdb")) return err_set("output '%s'; accepted: .vdb", j->output);
+    if (!(j->tolerance >= 0 && j->tolerance < 1e6))
+        return err_set("--tolerance %g; accepted: 0 or more", j->tolerance);
+    j->volume.tolerance = (float)j->tolerance;
+    return app_check_pattern(j->output) &&
+           (!j->frames_text || app_parse_frames(j->frames_text, &j->frames));
+}
+
+static bool parse(job *j, int argc, const char **argv, poptContext *context) {
+    const struct poptOption options[] = {
+        {"output", 'o', POPT_ARG_STRING, &j->output, 0, "file or pattern", "DIR/%04d.vdb"},
+        {"frames", 'f', POPT_ARG_STRING, &j->frames_text, 0,
+         "30, or 0-99, or 0-99:2 (default: all)", "FRAMES"},
+        {"source", '\0', POPT_ARG_STRING, &j->volume.source, 0,
+         "a grid by the name of its variable, or a pass whose medium it is (default: the grid that "
+         "is simulated, else the medium of the march)",
+         "NAME"},
+        {"fields", '\0', POPT_ARG_STRING, &j->volume.fields, 0,
+         "of the source, with commas between (default: all)", "NAMES"},
+        {"size", '\0', POPT_ARG_STRING, NULL, OPTION_SIZE,
+         "voxels along the longest side (default: those of the source)", "N"},
+        {"box", '\0', POPT_ARG_STRING, NULL, OPTION_BOX,
+         "metres (default: where there is something in these frames)", "X,Y,Z,X,Y,Z"},
+        {"tolerance", '\0', POPT_ARG_DOUBLE, &j->tolerance, 0,
+         "values up to this are left out (default: 0)", "VALUE"},
+        {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET, "as of roil render", "NAME=VALUE"},
+        {"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET, "as of roil render",
+         "NAME|FILE.lua"},
+        {"device", 'd', POPT_ARG_STRING, &j->device, 0, "part of a device's name, or its number",
+         "DEVICE"},
+        {"timeout", '\0', POPT_ARG_DOUBLE, &j->timeout, 0,
+         "that a frame may take before the device counts as lost (default: 30, in software 300)",
+         "SECONDS"},
+        {"validate", '\0', POPT_ARG_NONE, &j->validate, 0, "with the Vulkan validation layers",
+         NULL},
+        {"no-cache", '\0', POPT_ARG_NONE, &j->no_cache, 0,
+         "neither read nor write compiled shaders on disk", NULL},
+        POPT_AUTOHELP POPT_TABLEEND};
+    *context = poptGetContext("roil export vdb", argc, argv, options, 0);
+    poptSetOtherOptionHelp(*context, "EFFECT.lua -o DIR/%04d.vdb [options]");
+    int option;
+    while ((option = poptGetNextOpt(*context)) > 0)
+        if (!take_option(j, *context, option)) return false;
+    if (option < -1) return err_set("%s: %s", poptBadOption(*context, 0), poptStrerror(option));
+    return check(j, *context);
+}
+
+// ---- work -------------------------------------------------------------------------------------
+
+enum { PICTURE = 16 }; // pixels a side of what is not drawn
+
+static bool complete(job *j, roil_effect *e) {
+    roil_effect_info info = roil_get_info(e);
+    char range[64];
+    snprintf(range, sizeof range, "%u-%u", info.first_frame, info.first_frame + info.frames - 1);
+    if (!j->frames.count && !app_parse_frames(range, &j->frames)) return false;
+    if (j->frames.count > 1 && !app_has_number(j->output))
+        return err_set("output '%s' would be overwritten by each of %zu frames; name it like "
+                       "%%04d.vdb",
+                       j->output, j->frames.count);
+    j->volume.first = j->frames.numbers[0];
+    j->volume.last = j->frames.numbers[j->frames.count - 1];
+    j->volume.alone = true;
+    return true;
+}
+
+static bool write_frames(const job *j, roil_effect *e, roil_volume *v) {
+    app_progress progress;
+    bool done = roil_prepare(e, PICTURE, PICTURE);
+    app_progress_begin(&progress, j->frames.count, "frames");
+    for (size_t i = 0; done && i < j->frames.count; i++) {
+        char file[PATH_CAP];
+        app_format_pattern(j->output, j->frames.numbers[i], file, sizeof file);
+        done = roil_render(e, j->frames.numbers[i]) && roil_volume_save(v, file);
+        if (done) app_progress_step(&progress, i + 1);
+    }
+    app_progress_end(&progress);
+    return done;
+}
+
+static bool export_all(job *j, roil_effect *e) {
+    roil_volume *v = roil_volume_create(e, &j->volume);
+    if (!v) return false;
+    roil_volume_info info = roil_volume_get_info(v);
+    bool done = write_frames(j, e, v) || (roil_volume_finish(v), false);
+    if (!done || !roil_volume_finish(v)) return false;
+    printf("wrote %s: %zu frames of %s, %u x %u x %u voxels of %g m\n", j->output, j->frames.count,
+           info.fields, info.size[0], info.size[1], info.size[2], (double)info.voxel_size);
+    return true;
+}
+
+static int run(job *j) {
+    roil *r = roil_create(&(roil_desc){.device = j->device,
+                                       .validate = j->validate,
+                                       .no_cache = j->no_cache,
+                                       .timeout = j->timeout});
+    bool collected = r && app_collect_settings(&j->settings, r, j->file, NULL);
+    roil_effect *e = collected ? roil_load(r, j->file, j->settings.all, j->settings.count) : NULL;
+    int status = APP_DONE;
+    if (!e)
+        status = app_fail_input();
+    else if (!complete(j, e))
+        status = app_fail(APP_BAD_USAGE, "export: %s", roil_error());
+    else if (!export_all(j, e))
+        status = app_fail_input();
+    roil_unload(e);
+    uint64_t complaints = r ? roil_validation_messages(r) : 0;
+    if (status == APP_DONE && complaints)
+        status =
+            app_fail(APP_BAD_INPUT, "%" PRIu64 " messages of the validation layers", complaints);
+    roil_destroy(r);
+    return status;
+}
+
+int export_vdb(int argc, const char **argv) {
+    job j = {.frames.step = 1};
+    poptContext context;
+    int status = parse(&j, argc, argv, &context)
+                     ? run(&j)
+                     : app_fail(APP_BAD_USAGE, "export: %s", roil_error());
+    poptFreeContext(context);
+    app_free_frames(&j.frames);
+    app_free_settings(&j.settings);
+    return status;
+}
