@@ -3,7 +3,7 @@
 //
 // Inside is decided per axis by the parity of the crossings before a cell's centre, and by two of
 // the three axes: so a hole in a mesh leaves no streak. What decides ties: corners are rounded to
-// 1/256 of a cell, edges are exact and half-open (the top-left rule), so that a line through
+// 1/256 of a cell, edges are exact and half-open (lower ones count), so that a line through
 // centres that meets an edge or a corner counts it once; a centre on a face lies inside where the
 // body begins in the axis' direction and outside where it ends.
 //

@@ -4,9 +4,9 @@
 // too. The fourth quarter of the threads, where a part has a shell, marks the cells that its
 // triangles touch.
 //
-// Which lines cross a triangle is decided in whole numbers, of 64 bits, and by the top-left rule:
-// of two triangles that share an edge exactly one, or both where it is a fold, is crossed by a line
-// through it (Pineda, "A parallel algorithm for polygon rasterization", 1988).
+// Which lines cross a triangle is decided in whole numbers, of 64 bits; of its edges the left and the
+// lower ones are its own. So of two triangles that share an edge a line through it crosses exactly
+// one, and both or none where it is a fold (Pineda, "A parallel algorithm for polygon rasterization", 1988).
 layout(local_size_x = 64) in;
 #include "state.glsl"
 layout(std430) readonly buffer VoxelItems { uvec4 voxel_items[]; };
@@ -42,9 +42,9 @@ bool wide_is_zero(wide w) {
 }
 
 // Whether a point lies left of an edge, `side` being cross(edge, point - its begin); on it where the
-// edge is a left or top one.
+// edge is a left or lower one.
 bool is_left(wide side, ivec2 edge) {
-    if (wide_is_zero(side)) return edge.y < 0 || (edge.y == 0 && edge.x < 0);
+    if (wide_is_zero(side)) return edge.y < 0 || (edge.y == 0 && edge.x > 0);
     return side.high >= 0;
 }
 
