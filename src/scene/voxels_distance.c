@@ -12,19 +12,23 @@ static bool make_buffers(voxels *v, gpu *g) {
     return v->distances || err_prefix("distances: ");
 }
 
-// Rounds of flooding: neighbours first, which mends most of what the others get wrong, then from
-// half of the box down to neighbours again. `other`: which of the two buffers is read next.
+static bool flood_once(voxels *v, gpu *g, int32_t apart, bool *other) {
+    voxels_images more = {.apart = apart, .other = *other};
+    *other = !*other;
+    return voxels_dispatch(v, g, VOXELS_FLOOD, v->size, &more);
+}
+
+// Rounds of flooding: neighbours first, then from half of the box down to neighbours, and the last
+// two once more, which mends what the others got wrong. `other`: which of the two buffers is read
+// next.
 static bool flood(voxels *v, gpu *g, bool *other) {
     int32_t longest = 1, apart = 1;
     for (int a = 0; a < 3; a++)
         longest = (int32_t)v->size[a] > longest ? (int32_t)v->size[a] : longest;
     while (2 * apart < longest) apart *= 2;
-    for (int32_t step = 2 * apart; step >= 1; step /= 2) {
-        voxels_images more = {.apart = step > apart ? 1 : step, .other = *other};
-        if (!voxels_dispatch(v, g, VOXELS_FLOOD, v->size, &more)) return false;
-        *other = !*other;
-    }
-    return true;
+    bool done = flood_once(v, g, 1, other);
+    for (; apart >= 1 && done; apart /= 2) done = flood_once(v, g, apart, other);
+    return done && flood_once(v, g, 2, other) && flood_once(v, g, 1, other);
 }
 
 bool voxels_write_distance(voxels *v, gpu *g, gpu_image *distance) {
