@@ -112,6 +112,7 @@ static void define_all(lbm *l) {
     define(l, "LBM_WEIGHTS_ONLY", desc->forcing == LBM_WEIGHTS_ONLY);
     define(l, "LBM_SUBGRID", desc->subgrid);
     define(l, "LBM_FORCE", desc->force);
+    lbm_walls_define(l, define);
     define_buffers(l);
 }
 
@@ -121,7 +122,8 @@ static bool compile(lbm *l, uint64_t range, shader_library *library, const shade
     define_all(l);
     return lbm_kernel_compile(l, &l->reset, "sim/lbm/reset.comp", library, reader, NULL, 0) &&
            lbm_kernel_compile(l, &l->step, "sim/lbm/step.comp", library, reader, &bare, 1) &&
-           lbm_kernel_compile(l, &l->step_kept, "sim/lbm/step.comp", library, reader, &kept, 1);
+           lbm_kernel_compile(l, &l->step_kept, "sim/lbm/step.comp", library, reader, &kept, 1) &&
+           lbm_walls_compile(l, library, reader);
 }
 
 bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader) {
@@ -133,7 +135,8 @@ bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *rea
     const gpu_info *info = gpu_get_info(g);
     l->rounds = info->kind == GPU_CPU; // llvmpipe cuts
     return compile(l, info->max_storage_range, library, reader) && lbm_kernel_build(&l->reset, g) &&
-           lbm_kernel_build(&l->step, g) && lbm_kernel_build(&l->step_kept, g);
+           lbm_kernel_build(&l->step, g) && lbm_kernel_build(&l->step_kept, g) &&
+           lbm_walls_build(l, g);
 }
 
 size_t lbm_defines(const lbm *l, shader_define out[LBM_MAX_DEFINES]) {
@@ -148,17 +151,19 @@ bool lbm_allocate(lbm *l, gpu *g) {
     for (uint32_t i = 0; i < layout->buffers; i++) {
         uint32_t left = layout->slots - i * layout->run;
         uint64_t slots = left < layout->run ? left : layout->run;
-        l->state[i] = gpu_buffer_create(
-            g, &(gpu_buffer_desc){.label = "lattice", .size = slots * layout->elements * 16});
+        if (!l->state[i])
+            l->state[i] = gpu_buffer_create(
+                g, &(gpu_buffer_desc){.label = "lattice", .size = slots * layout->elements * 16});
         if (!l->state[i]) return false;
     }
-    return true;
+    return lbm_walls_allocate(l, g);
 }
 
 void lbm_destroy(lbm *l, gpu *g) {
     lbm_kernel_destroy(&l->reset, g);
     lbm_kernel_destroy(&l->step, g);
     lbm_kernel_destroy(&l->step_kept, g);
+    lbm_walls_destroy(l, g);
     for (int i = 0; i < LBM_MAX_BUFFERS; i++) gpu_buffer_destroy(g, l->state[i]);
     for (int i = 0; i < 2; i++) gpu_buffer_destroy(g, l->moments[i]);
     memset(l->state, 0, sizeof l->state);
@@ -171,7 +176,7 @@ size_t lbm_buffers(const lbm *l, gpu_buffer **out, size_t capacity) {
 }
 
 bool lbm_bind(const lbm *l, const char *name, gpu_binding *out) {
-    *out = (gpu_binding){.sampler = GPU_LINEAR_CLAMP};
+    *out = (gpu_binding){.sampler = GPU_LINEAR_CLAMP, .buffer = lbm_walls_buffer(l, name)};
     if (strcmp(name, "LbmMoments") == 0) out->buffer = l->moments[l->kept % 2];
     if (strcmp(name, "force") == 0) out->image = l->force;
     for (uint32_t i = 0; i < l->layout.buffers; i++) {
@@ -197,6 +202,7 @@ static bool same_structure(const lbm_desc *a, const lbm_desc *b) {
 bool lbm_exchange(lbm *a, lbm *b) {
     if (!same_structure(&a->desc, &b->desc)) return false;
     lbm was = *a;
+    lbm_walls_exchange(a, b);
     memcpy(a->state, b->state, sizeof a->state);
     memcpy(a->moments, b->moments, sizeof a->moments);
     a->kept = b->kept;
@@ -228,6 +234,7 @@ gpu_buffer *lbm_moments(const lbm *l, int which) {
 
 bool lbm_reset(lbm *l, gpu *g, const lbm_numbers *numbers) {
     l->steps = l->kept = 0;
+    lbm_walls_reset(l, g);
     lbm_kernel_set(&l->reset, "ambient", numbers->ambient, sizeof numbers->ambient);
     return lbm_kernel_run(l, &l->reset, g, NULL, 0);
 }
@@ -245,6 +252,7 @@ static void set_numbers(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
     lbm_kernel_set(k, "ambient", n->ambient, sizeof n->ambient);
     lbm_kernel_set(k, "decay", n->decay, sizeof n->decay);
     lbm_kernel_set(k, "max_speed", &most, sizeof most);
+    lbm_walls_set(l, k, n);
     lbm_kernel_set(k, "force_scale", &l->force_scale, sizeof l->force_scale);
 }
 
@@ -264,7 +272,7 @@ static bool need_moments(lbm *l, gpu *g) {
 
 bool lbm_step(lbm *l, gpu *g, const lbm_numbers *numbers, bool keep) {
     lbm_kernel *k = keep ? &l->step_kept : &l->step;
-    if (keep && !need_moments(l, g)) return false;
+    if (!lbm_walls_ready(l) || (keep && !need_moments(l, g))) return false;
     set_numbers(l, k, numbers);
     if (!lbm_kernel_run(l, k, g, NULL, 0)) return false;
     l->kept += keep;

@@ -22,7 +22,13 @@ typedef enum lbm_forcing { LBM_GUO, LBM_WEIGHTS_ONLY } lbm_forcing; // the latte
 typedef enum lbm_precision { LBM_F32, LBM_F16 } lbm_precision;      // of what is stored
 typedef enum lbm_face { LBM_PERIODIC, LBM_WALL, LBM_SLIP, LBM_OPEN, LBM_INFLOW } lbm_face;
 
-enum { LBM_MAX_SCALARS = 3, LBM_MAX_BODIES = 63, LBM_MAX_DEFINES = 32, LBM_MAX_BUFFERS = 16 };
+enum {
+    LBM_MAX_SCALARS = 3,
+    LBM_MAX_BODIES = 63,
+    LBM_WALL_ID = 64,
+    LBM_MAX_DEFINES = 32,
+    LBM_MAX_BUFFERS = 16
+};
 
 typedef struct lbm_desc { // structure: what shaders are compiled for
     // Cells, at least 4 x 4 x 16; z a multiple of 8. The outermost layer of a face that is not
@@ -62,7 +68,8 @@ float lbm_scalar_speed(lbm_scalar_set set);
 bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader);
 // Shaders and pipelines; any thread. Afterwards lbm_defines and lbm_bind can be asked.
 bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader);
-bool lbm_allocate(lbm *l, gpu *g); // state; contents undefined until lbm_reset
+// State; contents undefined until lbm_reset. What is there, of an exchange too, stays.
+bool lbm_allocate(lbm *l, gpu *g);
 void lbm_destroy(lbm *l, gpu *g);
 
 // Inside a frame: air at rest, scalars at ambient, step 0.
@@ -75,8 +82,27 @@ void lbm_set_steps(lbm *l, uint64_t steps);
 
 // Of the last kept state (0) and of the one kept before it (1); NULL: there is none. For each cell,
 // x fastest, then y, then z, a uvec4 of eight halves: velocity, density - 1, scalars, then the id
-// of the body that the cell lies in, or 0.
+// of the body that the cell lies in, or LBM_WALL_ID of a wall's cells, or 0.
 gpu_buffer *lbm_moments(const lbm *l, int which);
+
+typedef struct lbm_body { // a rigid motion
+    float centre[3];      // cells from the lattice's corner: a point that moves with `linear`
+    float linear[3];      // in a step
+    float angular[3];     // radians in a step
+} lbm_body;
+
+typedef struct lbm_bodies {
+    gpu_buffer *ids;        // of each cell the body in it or 0: a byte, x fastest, 4 to a word
+    bool changed;           // the ids are not those of the last call
+    const lbm_body *bodies; // [id - 1]; those beyond `count` stand still
+    uint32_t count;
+} lbm_bodies;
+
+// With desc.bodies, inside a frame, before the first step after a reset and whenever bodies move:
+// where they are and how they go on. Cells that they left are filled from around. The ids are read
+// by all steps up to the next call, and may not change in between. Bodies that move by more than a
+// cell at once jump over air: smoke gets through.
+bool lbm_set_bodies(lbm *l, gpu *g, const lbm_numbers *numbers, const lbm_bodies *bodies);
 
 // With desc.force: acceleration is `scale` times the first three channels of a 3D image over the
 // whole lattice, sampled linearly. It must be set before the first step.

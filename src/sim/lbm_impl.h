@@ -27,7 +27,7 @@ typedef struct lbm_slot {
 } lbm_slot;
 bool lbm_kernel_run(const lbm *l, lbm_kernel *k, gpu *g, const lbm_slot *more, size_t more_count);
 
-// ---- the solver -------------------------------------------------------------------------------
+// ---- layout -----------------------------------------------------------------------------------
 
 typedef struct lbm_layout {
     uint32_t lanes, layers, elements; // cells of an element, elements along z, elements in all
@@ -36,6 +36,30 @@ typedef struct lbm_layout {
 
 // How the state lies where one binding is at most `range` bytes. False with a message.
 bool lbm_layout_find(const lbm_desc *desc, uint64_t range, lbm_layout *out);
+
+// ---- boundaries -------------------------------------------------------------------------------
+
+typedef struct lbm_walls {
+    lbm_kernel kernel;           // says what cells are
+    gpu_buffer *cells[2];        // what they are, and were: [current], and the other
+    bool current, known, filled; // filled: the cells hold something
+    gpu_buffer *waves, *ids;
+    float bodies[3 * (LBM_MAX_BODIES + 1)][4];
+    uint32_t moves; // any body does
+} lbm_walls;
+
+void lbm_walls_define(lbm *l, void (*define)(lbm *l, const char *name, uint32_t value));
+bool lbm_walls_compile(lbm *l, shader_library *library, const shader_reader *reader);
+bool lbm_walls_build(lbm *l, gpu *g);
+bool lbm_walls_allocate(lbm *l, gpu *g);
+void lbm_walls_destroy(lbm *l, gpu *g);
+void lbm_walls_reset(lbm *l, gpu *g);
+void lbm_walls_exchange(lbm *a, lbm *b);
+gpu_buffer *lbm_walls_buffer(const lbm *l, const char *slot_name); // NULL: not one of these
+void lbm_walls_set(const lbm *l, lbm_kernel *k, const lbm_numbers *numbers);
+bool lbm_walls_ready(const lbm *l); // false with a message
+
+// ---- the solver -------------------------------------------------------------------------------
 
 struct lbm {
     arena *memory;
@@ -48,6 +72,7 @@ struct lbm {
     gpu_buffer *state[LBM_MAX_BUFFERS];
     gpu_buffer *moments[2]; // [kept % 2] is written next
     uint64_t kept;
+    lbm_walls walls;
     gpu_image *force;
     float force_scale;
     uint64_t steps;

@@ -13,6 +13,14 @@
 #define LBM_D3Q19(X) LBM_AXES(X) LBM_EDGES(X)
 #define LBM_D3Q27(X) LBM_AXES(X) LBM_EDGES(X) LBM_CORNERS(X)
 
+// Pairs M(a, b) that a mirror across an axis exchanges: a goes up along the axis, b down.
+#define LBM_MIRRORS_19_X(M) M(1, 2) M(7, 10) M(9, 8) M(11, 13) M(14, 12)
+#define LBM_MIRRORS_19_Y(M) M(3, 4) M(7, 9) M(10, 8) M(15, 17) M(18, 16)
+#define LBM_MIRRORS_19_Z(M) M(5, 6) M(11, 14) M(13, 12) M(15, 18) M(17, 16)
+#define LBM_MIRRORS_27_X(M) LBM_MIRRORS_19_X(M) M(19, 21) M(22, 20) M(23, 25) M(26, 24)
+#define LBM_MIRRORS_27_Y(M) LBM_MIRRORS_19_Y(M) M(19, 23) M(24, 20) M(21, 25) M(26, 22)
+#define LBM_MIRRORS_27_Z(M) LBM_MIRRORS_19_Z(M) M(19, 26) M(25, 20) M(21, 24) M(23, 22)
+
 // Weights by how many of x, y and z are not 0.
 #define LBM_D3Q7_REST (1.0 / 4.0)
 #define LBM_D3Q7_AXIS (1.0 / 8.0)

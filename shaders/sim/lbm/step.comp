@@ -4,6 +4,7 @@ layout(local_size_x = LBM_GROUP) in;
 #include "sim/lbm/state.glsl"
 #include "sim/lbm/collide.glsl"
 #include "sim/lbm/scalar.glsl"
+#include "sim/lbm/walls.glsl"
 
 uniform float tau;
 uniform float smagorinsky;
@@ -26,6 +27,7 @@ layout(std430) writeonly buffer LbmMoments { uvec4 moments[]; };
 
 lbm_place place;
 uvec3 at; // x, y, layer
+lbm_site site;
 lbm_element air[LBM_Q], carried[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
 
 // ---- four cells -------------------------------------------------------------------------------
@@ -35,11 +37,19 @@ vec4 value[3]; // of scalars
 
 void unpack(const int chunk) {
     lbm_unpack_air(air, chunk, population);
+#if LBM_WALLED
+    lbm_meet_air(at, site, chunk, population);
+#define MEET(s) lbm_meet_scalar(s, at, site, chunk, ambient[s], population, part[s]);
+#else
+#define MEET(s)
+#endif
 #define UNPACK(s)                                                                                  \
     lbm_unpack_scalar(carried[s], chunk, part[s]);                                                 \
+    MEET(s)                                                                                        \
     value[s] = lbm_sum_scalar(part[s]);
     LBM_EACH_SCALAR(UNPACK)
 #undef UNPACK
+#undef MEET
 }
 
 #if LBM_FORCE
@@ -102,6 +112,16 @@ lbm_air find_air(const int chunk) {
 }
 
 #if LBM_KEEP
+// Of solid lanes: none, and the body there.
+void keep_solid() {
+#if LBM_WALLED
+    for (uint lane = 0u; lane < LBM_LANES; lane++)
+        if ((site.solid >> lane & 1u) != 0u)
+            moments[place.own + lane * LBM_ELEMENTS] =
+                uvec4(0u, 0u, 0u, packHalf2x16(vec2(0.0, lbm_body_in(lbm_cell_at(at, lane)))));
+#endif
+}
+
 void keep_moments(const int chunk, lbm_air a) {
     uint index = place.own + uint(4 * chunk) * LBM_ELEMENTS;
 #define KEEP(lane)                                                                                 \
@@ -139,11 +159,36 @@ void collide(const int chunk) {
 
 // ---- an element -------------------------------------------------------------------------------
 
+void send() {
+#if LBM_WALLED
+    if (site.solid != 0u) {
+        lbm_send_air_beside(place, site.solid, air);
+#define SEND(s) lbm_send_scalar_beside(s, place, site.solid, carried[s]);
+        LBM_EACH_SCALAR(SEND)
+#undef SEND
+        return;
+    }
+#endif
+    lbm_send_air(place, air);
+#define SEND(s) lbm_send_scalar(s, place, carried[s]);
+    LBM_EACH_SCALAR(SEND)
+#undef SEND
+}
+
 void main() {
     uint column = gl_GlobalInvocationID.x;
     if (column >= LBM_LAYER) return;
     at = uvec3(column % LBM_NX, column / LBM_NX, gl_GlobalInvocationID.z);
     place = lbm_place_at(at);
+#if LBM_WALLED
+    site = lbm_site_at(at, place.own);
+    if (site.solid == LBM_ALL_LANES) {
+#if LBM_KEEP
+        keep_solid();
+#endif
+        return;
+    }
+#endif
 #define LOAD(s) lbm_load_scalar(s, place, carried[s]);
     LBM_EACH_SCALAR(LOAD)
 #undef LOAD
@@ -152,8 +197,8 @@ void main() {
 #if LBM_CHUNKS > 1
     collide(1);
 #endif
-    lbm_send_air(place, air);
-#define SEND(s) lbm_send_scalar(s, place, carried[s]);
-    LBM_EACH_SCALAR(SEND)
-#undef SEND
+#if LBM_KEEP
+    keep_solid();
+#endif
+    send();
 }

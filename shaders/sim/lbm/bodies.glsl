@@ -1,0 +1,103 @@
+// Bodies that move: what they push. Ladd, "Numerical simulations of particulate suspensions via a
+// discretized Boltzmann equation", part 1, 1994, eq. 3.6: what comes back from a wall has the
+// momentum 2 w rho (c . v) / cs^2 more; so have scalars, since what a wall pushes moves as fast as
+// it: the flux into the cells before it is what those that it covers lose, behind it the same is
+// taken away that uncovered cells begin with.
+#ifndef SIM_LBM_BODIES_GLSL
+#define SIM_LBM_BODIES_GLSL
+#include "sim/lbm/cells.glsl"
+
+#define LBM_WALL_ID 64u // as in src/sim/lbm.h
+
+ivec3 lbm_cell_at(uvec3 at, uint lane) {
+    return ivec3(at.xy, at.z + LBM_LAYERS * lane);
+}
+
+#if LBM_BODIES
+layout(std430) readonly buffer LbmIds { uint lbm_ids[]; }; // a byte a cell, x fastest; 0: air
+
+// Rigid motions by id, three each: a point that moves with the second, and 1 if the body moves at
+// all; velocity in a step, and its greatest; radians in a step.
+uniform vec4 lbm_bodies[192];
+
+bool lbm_body_moves(uint id) {
+    return lbm_bodies[3u * id].w != 0.0;
+}
+
+bool lbm_is_inside(ivec3 cell) { // or beyond a face that leads round
+    const ivec3 size = ivec3(LBM_NX, LBM_NY, LBM_NZ);
+    const bvec3 round_ = bvec3(LBM_FACE_0 == 0, LBM_FACE_2 == 0, LBM_FACE_4 == 0);
+    bvec3 inside = equal(uvec3(lessThan(uvec3(cell), uvec3(size))), uvec3(1u));
+    return all(bvec3(uvec3(inside) | uvec3(round_)));
+}
+
+// Round where the lattice goes round; nothing stands beyond other faces.
+uint lbm_id_at(ivec3 cell) {
+    const ivec3 size = ivec3(LBM_NX, LBM_NY, LBM_NZ);
+    if (!lbm_is_inside(cell)) return 0u;
+    cell = (cell + size) % size;
+    uint i = uint(cell.x) + LBM_NX * (uint(cell.y) + LBM_NY * uint(cell.z));
+    return lbm_ids[i >> 2] >> 8u * (i & 3u) & 255u;
+}
+
+vec3 lbm_body_velocity(uint id, vec3 point) {
+    vec4 centre = lbm_bodies[3u * id], linear = lbm_bodies[3u * id + 1u];
+    vec3 v = linear.xyz + cross(lbm_bodies[3u * id + 2u].xyz, point - centre.xyz);
+    return v * min(1.0, linear.w * inversesqrt(max(dot(v, v), 1e-20)));
+}
+
+// How fast the wall moves along a direction from which comes what arrives in a cell; 0: there is none.
+float lbm_wall_speed(ivec3 cell, ivec3 direction) {
+    uint id = lbm_id_at(cell - direction);
+    if (id == 0u) return 0.0;
+    vec3 point = vec3(cell) + 0.5 - 0.5 * vec3(direction);
+    return dot(vec3(direction), lbm_body_velocity(id, point));
+}
+
+void lbm_push_air(uvec3 at, uint near, const int chunk, inout vec4 f[LBM_Q]) {
+    vec4 density = 1.0 + f[0];
+#define ADD(i, x, y, z) density += f[i] + f[i + 1];
+    LBM_PAIRS(ADD)
+#undef ADD
+    for (uint k = 0u; k < 4u; k++) {
+        uint lane = k + 4u * uint(chunk);
+        if ((near >> lane & 1u) == 0u) continue;
+        ivec3 cell = lbm_cell_at(at, lane);
+        vec4 mine = 6.0 * density * vec4(equal(uvec4(k), uvec4(0, 1, 2, 3)));
+#define PUSH(i, x, y, z)                                                                           \
+    f[i] += LBM_WEIGHT(x, y, z) * lbm_wall_speed(cell, ivec3(x, y, z)) * mine;                     \
+    f[i + 1] += LBM_WEIGHT(x, y, z) * lbm_wall_speed(cell, -ivec3(x, y, z)) * mine;
+        LBM_PAIRS(PUSH)
+#undef PUSH
+    }
+}
+
+void lbm_push_scalar(uvec3 at, uint near, const int chunk, inout vec4 g[LBM_SCALAR_Q]) {
+    vec4 value = g[0];
+#define ADD(i, x, y, z) value += g[i] + g[i + 1];
+    LBM_SCALAR_PAIRS(ADD)
+#undef ADD
+    for (uint k = 0u; k < 4u; k++) {
+        uint lane = k + 4u * uint(chunk);
+        if ((near >> lane & 1u) == 0u) continue;
+        ivec3 cell = lbm_cell_at(at, lane);
+        vec4 mine = 2.0 / LBM_SCALAR_SPEED * value * vec4(equal(uvec4(k), uvec4(0, 1, 2, 3)));
+#define PUSH(i, x, y, z)                                                                           \
+    g[i] += LBM_SCALAR_WEIGHT(x, y, z) * lbm_wall_speed(cell, ivec3(x, y, z)) * mine;              \
+    g[i + 1] += LBM_SCALAR_WEIGHT(x, y, z) * lbm_wall_speed(cell, -ivec3(x, y, z)) * mine;
+        LBM_SCALAR_PAIRS(PUSH)
+#undef PUSH
+    }
+}
+#endif
+
+// Of a solid cell.
+float lbm_body_in(ivec3 cell) {
+    uint id = 0u;
+#if LBM_BODIES
+    id = lbm_id_at(cell);
+#endif
+    return float(id == 0u ? LBM_WALL_ID : id);
+}
+
+#endif

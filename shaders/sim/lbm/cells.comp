@@ -1,0 +1,227 @@
+// What the cells are, anew: solid, or beside a body that moves. What a body has left is filled: its
+// velocity, the mean density and scalars of the air around. What it covers needs nothing done: what
+// is under way between the cell and air comes back, the rest is lost, and this is what the wall has
+// pushed out before it (bodies.glsl). Not a pass of its own: see src/sim/lbm_walls.c.
+layout(local_size_x = LBM_GROUP) in;
+#include "sim/lbm/bodies.glsl"
+
+uniform uint any_moves; // any body does
+
+layout(std430) readonly buffer LbmCellsBefore { uint cells_before[]; };
+
+const int REACH = 4; // cells, to where air is looked for
+
+struct Cell { // one, and where it lies
+    uint element, lane;
+};
+
+// Round the lattice in all directions, as memory goes.
+Cell find(ivec3 at) {
+    const ivec3 size = ivec3(LBM_NX, LBM_NY, LBM_NZ);
+    uvec3 c = uvec3((at + size) % size);
+    return Cell(c.x + LBM_NX * (c.y + LBM_NY * (c.z % LBM_LAYERS)), c.z / LBM_LAYERS);
+}
+
+// ---- what a cell is ---------------------------------------------------------------------------
+
+// The ids of three cells along x, the middle one `at`, which has neighbours in its row.
+uint three_ids(ivec3 at) {
+    uint first = uint(at.x) - 1u + LBM_NX * (uint(at.y) + LBM_NY * uint(at.z)), shift = 8u * (first & 3u);
+    uint ids = lbm_ids[first >> 2] >> shift;
+    if (shift > 8u) ids |= lbm_ids[(first >> 2) + 1u] << 32u - shift;
+    return ids & 0xffffffu;
+}
+
+uint three_ids_anywhere(ivec3 at) {
+    return lbm_id_at(at - ivec3(1, 0, 0)) | lbm_id_at(at) << 8 | lbm_id_at(at + ivec3(1, 0, 0)) << 16;
+}
+
+bool moves(uint ids) {
+    for (; ids != 0u; ids >>= 8)
+        if (lbm_body_moves(ids & 255u)) return true;
+    return false;
+}
+
+bool beside_moving(ivec3 at) {
+    const ivec3 last = ivec3(LBM_NX, LBM_NY, LBM_NZ) - 1;
+    bool inside = all(greaterThan(at, ivec3(0))) && all(lessThan(at, last));
+    for (int k = 0; k < 9; k++) {
+        ivec3 row = at + ivec3(0, k % 3 - 1, k / 3 - 1);
+        uint ids = inside ? three_ids(row) : three_ids_anywhere(row);
+        if (ids != 0u && moves(ids)) return true;
+    }
+    return false;
+}
+
+uint find_kind(ivec3 at) {
+    if (lbm_id_at(at) != 0u) return LBM_CELL_SOLID;
+    return any_moves != 0u && beside_moving(at) ? LBM_CELL_NEAR : 0u;
+}
+
+// ---- what a body has left ---------------------------------------------------------------------
+
+float air[LBM_Q], part[LBM_SCALAR_Q]; // of one cell
+
+float pick(lbm_element e, uint lane, const float scale) {
+    vec4 v = lbm_unpack(e, 0, scale);
+#if LBM_CHUNKS == 2
+    if (lane >= 4u) v = lbm_unpack(e, 1, scale);
+#endif
+    return v[lane & 3u];
+}
+
+void store(const int slot, uint side, Cell c, const float scale, float value) {
+    uint at = (uint(slot % LBM_RUN) + side) * LBM_ELEMENTS + c.element;
+#if LBM_HALF
+    uint word = c.lane >> 1, bits = lbm_pack_halves(vec2(value * scale, 0.0)) & 0xffffu;
+    uint shift = 16u * (c.lane & 1u), others = 0xffff0000u >> shift;
+#define LBM_BUFFER(k, block, array)                                                                \
+    if (slot / LBM_RUN == k) array[at][word] = array[at][word] & others | bits << shift;
+#else
+#define LBM_BUFFER(k, block, array) if (slot / LBM_RUN == k) array[at][c.lane] = value;
+#endif
+    LBM_EACH_BUFFER
+#undef LBM_BUFFER
+}
+
+bool is_solid(ivec3 at) {
+    if (lbm_id_at(at) != 0u) return true;
+    const ivec3 size = ivec3(LBM_NX, LBM_NY, LBM_NZ);
+    uvec3 c = uvec3((at + size) % size);
+    return (lbm_wall_lanes(uvec3(c.xy, c.z % LBM_LAYERS)) >> c.z / LBM_LAYERS & 1u) != 0u;
+}
+
+bool was_solid(Cell c) {
+    uint bytes = cells_before[c.element * LBM_CHUNKS + c.lane / 4u];
+    return (bytes >> 8u * (c.lane & 3u) & LBM_CELL_SOLID) != 0u;
+}
+
+struct Around { // sums over cells of air
+    float count, excess;
+    vec3 velocity, scalars;
+};
+
+// What arrives at a cell that was air and is it still: nobody writes there now.
+void add_cell(ivec3 at, Cell c, inout Around sum) {
+    const ivec3 size = ivec3(LBM_NX, LBM_NY, LBM_NZ);
+    uvec3 place = uvec3((at + size) % size);
+    lbm_place p = lbm_place_at(uvec3(place.xy, place.z % LBM_LAYERS));
+    float excess = pick(lbm_load(LBM_AIR_AT_REST, 0u, p.own), c.lane, LBM_AIR_SCALE);
+    vec3 momentum = vec3(0.0);
+#define ADD(i, x, y, z)                                                                            \
+    {                                                                                              \
+        float a = pick(lbm_load(LBM_AIR_PAIR(i), 1u - lbm_parity, p.own), c.lane, LBM_AIR_SCALE);  \
+        float b = pick(lbm_load_there(LBM_AIR_PAIR(i), lbm_parity, p, x, y, z), c.lane,            \
+                       LBM_AIR_SCALE);                                                             \
+        excess += a + b;                                                                           \
+        momentum += (a - b) * vec3(x, y, z);                                                       \
+    }
+    LBM_PAIRS(ADD)
+#undef ADD
+    sum.count += 1.0;
+    sum.excess += excess;
+    sum.velocity += momentum / (1.0 + excess);
+#define SCALAR(s)                                                                                  \
+    {                                                                                              \
+        lbm_element q[LBM_SCALAR_Q];                                                               \
+        lbm_load_scalar(s, p, q);                                                                  \
+        for (int i = 0; i < LBM_SCALAR_Q; i++)                                                     \
+            sum.scalars[s] += pick(q[i], c.lane, LBM_SCALAR_SCALE);                                \
+    }
+    LBM_EACH_SCALAR(SCALAR)
+#undef SCALAR
+}
+
+// Along the axes, no farther than to where there is some.
+Around look_around(ivec3 at) {
+    Around sum = Around(0.0, 0.0, vec3(0.0), vec3(0.0));
+    for (int k = 0; k < 6 * REACH && (k % 6 > 0 || sum.count == 0.0); k++) {
+        ivec3 step_ = ivec3(0);
+        step_[k / 2 % 3] = (1 - 2 * (k & 1)) * (1 + k / 6);
+        ivec3 there = at + step_;
+        if (!lbm_is_inside(there) || is_solid(there)) continue;
+        Cell c = find(there);
+        if (!was_solid(c)) add_cell(there, c, sum);
+    }
+    return sum;
+}
+
+uint body_beside(ivec3 at) { // the greatest id
+    uint id = 0u;
+    for (int k = 0; k < 27; k++) id = max(id, lbm_id_at(at + ivec3(k % 3, k / 3 % 3, k / 9) - 1));
+    return id;
+}
+
+// What arrives, and what goes into solid cells: it comes back a step later.
+void fill_air(ivec3 at, float excess, vec3 u) {
+    Cell own = find(at);
+    float density = 1.0 + excess, same = excess - density * 1.5 * dot(u, u);
+    store(LBM_AIR_AT_REST, 0u, own, LBM_AIR_SCALE, LBM_REST * same);
+#define FILL(i, x, y, z)                                                                           \
+    {                                                                                              \
+        Cell there = find(at + ivec3(x, y, z));                                                    \
+        float along = dot(u, vec3(x, y, z));                                                       \
+        float even = LBM_WEIGHT(x, y, z) * (same + density * 4.5 * along * along);                 \
+        float odd = LBM_WEIGHT(x, y, z) * 3.0 * density * along;                                   \
+        store(LBM_AIR_PAIR(i), 1u - lbm_parity, own, LBM_AIR_SCALE, even + odd);                   \
+        store(LBM_AIR_PAIR(i), lbm_parity, there, LBM_AIR_SCALE, even - odd);                      \
+        if (is_solid(at + ivec3(x, y, z)))                                                         \
+            store(LBM_AIR_PAIR(i), 1u - lbm_parity, there, LBM_AIR_SCALE, even + odd);             \
+        if (is_solid(at - ivec3(x, y, z)))                                                         \
+            store(LBM_AIR_PAIR(i), lbm_parity, own, LBM_AIR_SCALE, even - odd);                    \
+    }
+    LBM_PAIRS(FILL)
+#undef FILL
+}
+
+void fill_scalar(const int s, ivec3 at, float value, vec3 u) {
+    Cell own = find(at);
+    store(LBM_SCALAR_AT_REST(s), 0u, own, LBM_SCALAR_SCALE, LBM_SCALAR_REST * value);
+#define FILL(i, x, y, z)                                                                           \
+    {                                                                                              \
+        Cell there = find(at + ivec3(x, y, z));                                                    \
+        float even = LBM_SCALAR_WEIGHT(x, y, z) * value;                                           \
+        float odd = even * dot(u, vec3(x, y, z)) * (1.0 / LBM_SCALAR_SPEED);                       \
+        store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, own, LBM_SCALAR_SCALE, even + odd);          \
+        store(LBM_SCALAR_PAIR(s, i), lbm_parity, there, LBM_SCALAR_SCALE, even - odd);             \
+        if (is_solid(at + ivec3(x, y, z)))                                                         \
+            store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, there, LBM_SCALAR_SCALE, even + odd);    \
+        if (is_solid(at - ivec3(x, y, z)))                                                         \
+            store(LBM_SCALAR_PAIR(s, i), lbm_parity, own, LBM_SCALAR_SCALE, even - odd);           \
+    }
+    LBM_SCALAR_PAIRS(FILL)
+#undef FILL
+}
+
+uniform vec3 ambient; // of scalars, where there is no air around
+
+void fill(ivec3 at) {
+    Around around = look_around(at);
+    uint body = body_beside(at);
+    float share = 1.0 / max(around.count, 1.0);
+    vec3 u = around.velocity * share;
+    if (body != 0u) u = lbm_body_velocity(body, vec3(at) + 0.5);
+    fill_air(at, around.excess * share, u);
+    vec3 scalars = around.count > 0.0 ? around.scalars * share : ambient;
+#define SCALAR(s) fill_scalar(s, at, scalars[s], u);
+    LBM_EACH_SCALAR(SCALAR)
+#undef SCALAR
+}
+
+// ---- an element -------------------------------------------------------------------------------
+
+void main() {
+    uint column = gl_GlobalInvocationID.x;
+    if (column >= LBM_LAYER) return;
+    uvec3 at = uvec3(column % LBM_NX, column / LBM_NX, gl_GlobalInvocationID.z);
+    uint element = column + LBM_LAYER * at.z;
+    for (uint chunk = 0u; chunk < LBM_CHUNKS; chunk++) {
+        uint bytes = 0u, before = cells_before[element * LBM_CHUNKS + chunk];
+        for (uint k = 0u; k < 4u; k++)
+            bytes |= find_kind(lbm_cell_at(at, 4u * chunk + k)) << 8u * k;
+        lbm_cells[element * LBM_CHUNKS + chunk] = bytes;
+        uint left = before & ~bytes & LBM_CELL_SOLID * 0x01010101u;
+        for (uint k = 0u; left != 0u && k < 4u; k++)
+            if ((left >> 8u * k & LBM_CELL_SOLID) != 0u) fill(lbm_cell_at(at, 4u * chunk + k));
+    }
+}

@@ -1,0 +1,92 @@
+// Which cells of an element are air: bodies from a buffer of one byte a cell (cells.comp makes it),
+// walls from where a cell is. Lanes as bits.
+#ifndef SIM_LBM_CELLS_GLSL
+#define SIM_LBM_CELLS_GLSL
+#include "sim/lbm/state.glsl"
+
+#define LBM_NZ (LBM_LAYERS * LBM_LANES)
+
+// Faces, as lbm_face in src/sim/lbm.h; LBM_FACE_0 to LBM_FACE_5 are those of the lattice.
+#define LBM_FACE_IS_WALL(k) ((k) == 1)
+#define LBM_FACE_IS_SLIP(k) ((k) == 2)
+#define LBM_FACE_IS_OPEN(k) ((k) >= 3) // air comes and goes
+#define LBM_FACE_IS_INFLOW(k) ((k) == 4)
+
+#define LBM_ALL_LANES ((1u << LBM_LANES) - 1u)
+#define LBM_LAST_LANE (1u << (LBM_LANES - 1))
+
+// Of a cell's byte.
+#define LBM_CELL_SOLID 1u
+#define LBM_CELL_NEAR 8u // air beside a body that moves
+
+struct lbm_site { // of an element
+    uint solid;   // lanes that no air is in
+    uint near;    // lanes of air beside a body that moves
+};
+
+#if LBM_BODIES
+layout(std430) buffer LbmCells { uint lbm_cells[]; }; // LBM_CHUNKS an element: lanes 0 to 3, 4 to 7
+
+uint lbm_bits(uint bytes, uint flag) {
+    return ((bytes / flag) & 0x01010101u) * 0x01020408u >> 24 & 15u;
+}
+
+uint lbm_lanes_with(uint element, uint flag) {
+    uint bits = lbm_bits(lbm_cells[element * LBM_CHUNKS], flag);
+#if LBM_CHUNKS == 2
+    bits |= lbm_bits(lbm_cells[element * LBM_CHUNKS + 1u], flag) << 4;
+#endif
+    return bits;
+}
+#endif
+
+// `at`: x, y, layer.
+uint lbm_wall_lanes(uvec3 at) {
+    bool all = LBM_FACE_IS_WALL(LBM_FACE_0) && at.x == 0u ||
+               LBM_FACE_IS_WALL(LBM_FACE_1) && at.x == LBM_NX - 1u ||
+               LBM_FACE_IS_WALL(LBM_FACE_2) && at.y == 0u ||
+               LBM_FACE_IS_WALL(LBM_FACE_3) && at.y == LBM_NY - 1u;
+    uint some = LBM_FACE_IS_WALL(LBM_FACE_4) && at.z == 0u ? 1u : 0u;
+    if (LBM_FACE_IS_WALL(LBM_FACE_5) && at.z == LBM_LAYERS - 1u) some |= LBM_LAST_LANE;
+    return all ? LBM_ALL_LANES : some;
+}
+
+// Lanes that are of the boundary, whatever kind that is.
+uint lbm_face_lanes(uvec3 at) {
+    bool all = LBM_FACE_0 != 0 && (at.x == 0u || at.x == LBM_NX - 1u) ||
+               LBM_FACE_2 != 0 && (at.y == 0u || at.y == LBM_NY - 1u);
+    uint some = LBM_FACE_4 != 0 && at.z == 0u ? 1u : 0u;
+    if (LBM_FACE_4 != 0 && at.z == LBM_LAYERS - 1u) some |= LBM_LAST_LANE;
+    return all ? LBM_ALL_LANES : some;
+}
+
+lbm_site lbm_site_at(uvec3 at, uint element) {
+    lbm_site site = lbm_site(lbm_wall_lanes(at), 0u);
+#if LBM_BODIES
+    site.solid |= lbm_lanes_with(element, LBM_CELL_SOLID);
+    site.near = lbm_lanes_with(element, LBM_CELL_NEAR);
+#endif
+    return site;
+}
+
+// The lanes of a chunk, in the order of its vec4.
+uvec4 lbm_lanes(const int chunk) {
+    return uvec4(0, 1, 2, 3) + 4u * uint(chunk);
+}
+
+bvec4 lbm_in_lanes(uint bits, const int chunk) {
+    return notEqual(uvec4(bits) >> lbm_lanes(chunk) & 1u, uvec4(0u));
+}
+
+// `b` in the lanes, else `a`.
+lbm_element lbm_choose(lbm_element a, lbm_element b, uint lanes) {
+#if LBM_HALF
+    uvec4 first = uvec4(lanes) >> uvec4(0, 2, 4, 6);
+    uvec4 mask = (first & 1u) * 0xffffu | (first >> 1 & 1u) * 0xffff0000u;
+    return a & ~mask | b & mask;
+#else
+    return mix(a, b, lbm_in_lanes(lanes, 0));
+#endif
+}
+
+#endif

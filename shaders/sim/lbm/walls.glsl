@@ -1,0 +1,286 @@
+// Boundaries within a step: what arrives from beyond faces and from bodies that move, before
+// collision, and what stays in solid cells, after it.
+//
+// Solid cells keep what arrives: no place that they read is written. What a cell of air sends into
+// one is then what arrives from there two steps later: bounce-back with the wall half way between the
+// two, by which a steady flow is that of half-way bounce-back, and the way back takes the time of
+// full-way bounce-back. Links within a solid are never read.
+//
+// Cells at faces that air can pass or slide along are wet: what would arrive from beyond is replaced,
+// then they collide like all others.
+//   slip: mirrored in the face, which lies in the middle of these cells. So are, where two faces meet,
+//     those of the second one, x before y before z.
+//   inflow: equilibrium of the given velocity, with the density that follows from what arrives from
+//     within: Zou and He, "On pressure and velocity boundary conditions for the lattice Boltzmann BGK
+//     model", 1997, eq. 19.
+//   open: equilibrium too, velocity and density from the same relation and a wave coming in that is
+//     none: Izquierdo and Fueyo, "Characteristic nonreflecting boundary conditions for open
+//     boundaries in lattice Boltzmann methods", 2008, without the terms along the face. The wave is
+//     remembered and tends, slowly, to what makes the density 1 (air leaves), or the velocity that of
+//     the wind (the wind enters): Poinsot and Lele, "Boundary conditions for direct simulations of
+//     compressible viscous flows", 1992, eq. 40.
+#ifndef SIM_LBM_WALLS_GLSL
+#define SIM_LBM_WALLS_GLSL
+#include "sim/lbm/bodies.glsl"
+
+// ---- solids -----------------------------------------------------------------------------------
+
+// lbm_send_air and lbm_send_scalar where some lanes keep what arrived.
+void lbm_send_air_beside(lbm_place p, uint solid, lbm_element q[LBM_Q]) {
+    lbm_store(LBM_AIR_AT_REST, 0u, p.own, lbm_choose(q[0], lbm_load(LBM_AIR_AT_REST, 0u, p.own), solid));
+#define STORE(i, x, y, z)                                                                          \
+    {                                                                                              \
+        lbm_element there = lbm_load_there(LBM_AIR_PAIR(i), lbm_parity, p, x, y, z);               \
+        lbm_element own = lbm_load(LBM_AIR_PAIR(i), 1u - lbm_parity, p.own);                       \
+        lbm_store_there(LBM_AIR_PAIR(i), lbm_parity, p, x, y, z, lbm_choose(q[i], there, solid));  \
+        lbm_store(LBM_AIR_PAIR(i), 1u - lbm_parity, p.own, lbm_choose(q[i + 1], own, solid));      \
+    }
+    LBM_PAIRS(STORE)
+#undef STORE
+}
+
+void lbm_send_scalar_beside(const int s, lbm_place p, uint solid, lbm_element q[LBM_SCALAR_Q]) {
+    lbm_store(LBM_SCALAR_AT_REST(s), 0u, p.own,
+              lbm_choose(q[0], lbm_load(LBM_SCALAR_AT_REST(s), 0u, p.own), solid));
+#define STORE(i, x, y, z)                                                                          \
+    {                                                                                              \
+        lbm_element there = lbm_load_there(LBM_SCALAR_PAIR(s, i), lbm_parity, p, x, y, z);         \
+        lbm_element own = lbm_load(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, p.own);                 \
+        lbm_store_there(LBM_SCALAR_PAIR(s, i), lbm_parity, p, x, y, z,                             \
+                        lbm_choose(q[i], there, solid));                                           \
+        lbm_store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, p.own, lbm_choose(q[i + 1], own, solid)); \
+    }
+    LBM_SCALAR_PAIRS(STORE)
+#undef STORE
+}
+
+// ---- faces ------------------------------------------------------------------------------------
+
+#if LBM_RIMS // there are faces that are neither periodic nor walls
+
+uniform vec4 lbm_face_velocity[6]; // of inflow, and of the wind at open faces
+uniform vec4 lbm_face_scalar[6];   // of inflow
+
+// The wave that comes in at each cell of an open face: velocity outward less LBM_SOUND times the
+// excess. Of faces across x and y the chunks of the elements there, of those across z one chunk.
+layout(std430) buffer LbmWaves { vec4 lbm_waves[]; };
+
+const float LBM_SOUND = 0.57735027;
+const float LBM_FACE_SPEED = 0.3;  // greatest across a face
+const float LBM_WAVE_PULL = 0.25;  // sigma of Poinsot and Lele, 0.25 there as well
+
+struct lbm_rim {  // four cells at faces
+    int face;     // that air passes; -1: none
+    bvec4 lanes;  // where
+    bvec4 x_low, x_high, y_low, y_high, z_low, z_high; // at faces that mirror
+};
+
+bool lbm_at_rim(uvec3 at) {
+    return LBM_FACE_0 >= 2 && at.x == 0u || LBM_FACE_1 >= 2 && at.x == LBM_NX - 1u ||
+           LBM_FACE_2 >= 2 && at.y == 0u || LBM_FACE_3 >= 2 && at.y == LBM_NY - 1u ||
+           LBM_FACE_4 >= 2 && at.z == 0u || LBM_FACE_5 >= 2 && at.z == LBM_LAYERS - 1u;
+}
+
+lbm_rim lbm_rim_at(uvec3 at, const int chunk) {
+    lbm_rim r = lbm_rim(-1, bvec4(true), bvec4(false), bvec4(false), bvec4(false), bvec4(false),
+                        bvec4(false), bvec4(false));
+#define FACE(k, here, mirror)                                                                      \
+    if (LBM_FACE_##k >= 2 && (here)) {                                                             \
+        if (LBM_FACE_IS_OPEN(LBM_FACE_##k) && r.face < 0) r.face = k;                              \
+        else mirror = bvec4(true);                                                                 \
+    }
+    FACE(0, at.x == 0u, r.x_low)
+    FACE(1, at.x == LBM_NX - 1u, r.x_high)
+    FACE(2, at.y == 0u, r.y_low)
+    FACE(3, at.y == LBM_NY - 1u, r.y_high)
+#undef FACE
+#define FACE(k, layer, lane, mirror)                                                               \
+    if (LBM_FACE_##k >= 2 && at.z == layer) {                                                      \
+        bvec4 here = lbm_in_lanes(lane, chunk);                                                    \
+        if (LBM_FACE_IS_OPEN(LBM_FACE_##k) && r.face < 0) {                                        \
+            r.face = k;                                                                            \
+            r.lanes = here;                                                                        \
+        } else {                                                                                   \
+            mirror = here;                                                                         \
+        }                                                                                          \
+    }
+    FACE(4, 0u, 1u, r.z_low)
+    FACE(5, LBM_LAYERS - 1u, LBM_LAST_LANE, r.z_high)
+#undef FACE
+    return r;
+}
+
+// What flies away from a face from what flies towards it: a goes up along the axis, b down.
+#define LBM_MIRROR(F, a, b, low, high)                                                             \
+    {                                                                                              \
+        vec4 up = F[a], down = F[b];                                                               \
+        F[a] = mix(up, down, low);                                                                 \
+        F[b] = mix(down, up, high);                                                                \
+    }
+
+void lbm_mirror_air(lbm_rim r, inout vec4 f[LBM_Q]) {
+#define MIRROR(a, b) LBM_MIRROR(f, a, b, r.x_low, r.x_high)
+    LBM_MIRRORS_X(MIRROR)
+#undef MIRROR
+#define MIRROR(a, b) LBM_MIRROR(f, a, b, r.y_low, r.y_high)
+    LBM_MIRRORS_Y(MIRROR)
+#undef MIRROR
+#define MIRROR(a, b) LBM_MIRROR(f, a, b, r.z_low, r.z_high)
+    LBM_MIRRORS_Z(MIRROR)
+#undef MIRROR
+}
+
+void lbm_mirror_scalar(lbm_rim r, inout vec4 g[LBM_SCALAR_Q]) {
+#define MIRROR(a, b) LBM_MIRROR(g, a, b, r.x_low, r.x_high)
+    LBM_SCALAR_MIRRORS_X(MIRROR)
+#undef MIRROR
+#define MIRROR(a, b) LBM_MIRROR(g, a, b, r.y_low, r.y_high)
+    LBM_SCALAR_MIRRORS_Y(MIRROR)
+#undef MIRROR
+#define MIRROR(a, b) LBM_MIRROR(g, a, b, r.z_low, r.z_high)
+    LBM_SCALAR_MIRRORS_Z(MIRROR)
+#undef MIRROR
+}
+
+ivec3 lbm_outward(int face) {
+    int side = 2 * (face & 1) - 1;
+    return ivec3(face < 2 ? side : 0, face >> 1 == 1 ? side : 0, face >= 4 ? side : 0);
+}
+
+bool lbm_flows_in(int face) {
+    const uint faces = uint(LBM_FACE_IS_INFLOW(LBM_FACE_0)) | uint(LBM_FACE_IS_INFLOW(LBM_FACE_1)) << 1 |
+                       uint(LBM_FACE_IS_INFLOW(LBM_FACE_2)) << 2 | uint(LBM_FACE_IS_INFLOW(LBM_FACE_3)) << 3 |
+                       uint(LBM_FACE_IS_INFLOW(LBM_FACE_4)) << 4 | uint(LBM_FACE_IS_INFLOW(LBM_FACE_5)) << 5;
+    return (faces >> face & 1u) != 0u;
+}
+
+uint lbm_wave_at(int face, uvec3 at, const int chunk) {
+    const uint X = LBM_NY * LBM_LAYERS * LBM_CHUNKS, Y = LBM_NX * LBM_LAYERS * LBM_CHUNKS;
+    uint up = uint(face & 1);
+    if (face < 2) return X * up + (at.y + LBM_NY * at.z) * LBM_CHUNKS + uint(chunk);
+    if (face < 4) return X * 2u + Y * up + (at.x + LBM_NX * at.z) * LBM_CHUNKS + uint(chunk);
+    return (X + Y) * 2u + LBM_LAYER * up + at.x + LBM_NX * at.y;
+}
+
+// Sums over what does not come from beyond the face: the first twice where it flies outward, which
+// by what stays unknown is density times (1 + velocity outward), less 1; then mass and momentum.
+struct lbm_within {
+    vec4 twice, mass;
+    lbm_vec momentum;
+};
+
+lbm_within lbm_look_within(ivec3 outward, vec4 f[LBM_Q]) {
+    lbm_within w = lbm_within(f[0], f[0] + 5.0 / 6.0, lbm_vec_all(vec3(0.0)));
+#define ADD(v, along, x, y, z)                                                                     \
+    w.twice += float(1 + along) * v;                                                               \
+    w.mass += along < 0 ? vec4(0.0) : v;                                                           \
+    w.momentum.x += along < 0 ? vec4(0.0) : float(x) * v;                                          \
+    w.momentum.y += along < 0 ? vec4(0.0) : float(y) * v;                                          \
+    w.momentum.z += along < 0 ? vec4(0.0) : float(z) * v;
+#define LOOK(i, x, y, z)                                                                           \
+    {                                                                                              \
+        int along = x * outward.x + y * outward.y + z * outward.z;                                 \
+        ADD(f[i], along, x, y, z)                                                                  \
+        ADD(f[i + 1], -along, -(x), -(y), -(z))                                                          \
+    }
+    LBM_PAIRS(LOOK)
+#undef LOOK
+#undef ADD
+    return w;
+}
+
+lbm_vec lbm_velocity(vec4 f[LBM_Q]) {
+    vec4 density = 1.0 + f[0];
+    lbm_vec m = lbm_vec_all(vec3(0.0));
+#define ADD(i, X, Y, Z)                                                                            \
+    density += f[i] + f[i + 1];                                                                    \
+    m.x += float(X) * (f[i] - f[i + 1]);                                                           \
+    m.y += float(Y) * (f[i] - f[i + 1]);                                                           \
+    m.z += float(Z) * (f[i] - f[i + 1]);
+    LBM_PAIRS(ADD)
+#undef ADD
+    return lbm_vec(m.x / density, m.y / density, m.z / density);
+}
+
+void lbm_pass_face(lbm_rim r, uvec3 at, const int chunk, inout vec4 f[LBM_Q]) {
+    ivec3 outward = lbm_outward(r.face);
+    vec3 n = vec3(outward), wind = lbm_face_velocity[r.face].xyz;
+    const int size[3] = int[3](LBM_NX, LBM_NY, LBM_NZ);
+    float wind_out = dot(wind, n), pull = LBM_WAVE_PULL * LBM_SOUND / float(size[r.face >> 1]);
+    lbm_within w = lbm_look_within(outward, f);
+    vec4 out_, excess;
+    if (lbm_flows_in(r.face)) {
+        out_ = vec4(wind_out);
+        excess = (w.twice - out_) / (1.0 + out_);
+    } else {
+        uint place = lbm_wave_at(r.face, at, chunk);
+        vec4 wave = lbm_waves[place], b = 1.0 + LBM_SOUND + wave, q = w.twice - wave;
+        excess = 2.0 * q / (b + sqrt(max(b * b + 4.0 * LBM_SOUND * q, 0.01)));
+        out_ = clamp(wave + LBM_SOUND * excess, -LBM_FACE_SPEED, LBM_FACE_SPEED);
+        wave += pull * (wind_out < 0.0 ? wind_out - out_ : LBM_SOUND * excess);
+        lbm_waves[place] = wave;
+    }
+    // Along the face what leaves goes on as it came, what enters brings the wind's.
+    vec4 leaves = vec4(greaterThanEqual(out_, vec4(0.0))) / w.mass;
+    lbm_vec u = lbm_vec(w.momentum.x * leaves, w.momentum.y * leaves, w.momentum.z * leaves);
+    vec4 enters = vec4(lessThan(out_, vec4(0.0)));
+    u.x = mix(u.x + enters * wind.x, n.x * out_, bvec4(outward.x != 0));
+    u.y = mix(u.y + enters * wind.y, n.y * out_, bvec4(outward.y != 0));
+    u.z = mix(u.z + enters * wind.z, n.z * out_, bvec4(outward.z != 0));
+    vec4 made[LBM_Q];
+    lbm_set_equilibrium(excess, u, made);
+    for (int i = 0; i < LBM_Q; i++) f[i] = mix(f[i], made[i], r.lanes);
+}
+
+void lbm_pass_face_with(const int s, lbm_rim r, float ambient, vec4 f[LBM_Q], inout vec4 g[LBM_SCALAR_Q]) {
+    ivec3 outward = lbm_outward(r.face);
+    lbm_vec u = lbm_velocity(f);
+    vec4 out_ = LBM_ALONG(u, outward.x, outward.y, outward.z);
+    vec4 value = g[0];
+#define LOOK(i, x, y, z)                                                                           \
+    {                                                                                              \
+        int along = x * outward.x + y * outward.y + z * outward.z;                                 \
+        value += float(1 + along) * g[i] + float(1 - along) * g[i + 1];                            \
+    }
+    LBM_SCALAR_PAIRS(LOOK)
+#undef LOOK
+    value = mix(vec4(ambient), value / (1.0 + out_), greaterThanEqual(out_, vec4(0.0)));
+    if (lbm_flows_in(r.face)) value = vec4(lbm_face_scalar[r.face][s]);
+    vec4 made[LBM_SCALAR_Q];
+    lbm_set_scalar_equilibrium(value, u, made);
+    for (int i = 0; i < LBM_SCALAR_Q; i++) g[i] = mix(g[i], made[i], r.lanes);
+}
+#endif
+
+// ---- a step calls -----------------------------------------------------------------------------
+
+// Makes what arrives in four cells what it should be: of air, of scalar s (a constant).
+void lbm_meet_air(uvec3 at, lbm_site site, const int chunk, inout vec4 f[LBM_Q]) {
+#if LBM_RIMS
+    if (lbm_at_rim(at)) {
+        lbm_rim r = lbm_rim_at(at, chunk);
+        lbm_mirror_air(r, f);
+        if (r.face >= 0) lbm_pass_face(r, at, chunk, f);
+    }
+#endif
+#if LBM_BODIES
+    if (site.near != 0u) lbm_push_air(at, site.near, chunk, f);
+#endif
+}
+
+// `f` is what lbm_meet_air left.
+void lbm_meet_scalar(const int s, uvec3 at, lbm_site site, const int chunk, float ambient,
+                     vec4 f[LBM_Q], inout vec4 g[LBM_SCALAR_Q]) {
+#if LBM_RIMS
+    if (lbm_at_rim(at)) {
+        lbm_rim r = lbm_rim_at(at, chunk);
+        lbm_mirror_scalar(r, g);
+        if (r.face >= 0) lbm_pass_face_with(s, r, ambient, f, g);
+    }
+#endif
+#if LBM_BODIES
+    if (site.near != 0u) lbm_push_scalar(at, site.near, chunk, g);
+#endif
+}
+
+#endif

@@ -1,0 +1,177 @@
+// A thread looks at every stride-th cell, its group adds up what its threads saw, and one more
+// group what the groups did: two dispatches that read each moment once, 16 bytes a cell. Their
+// order is fixed, and so are the sums. The record is copied out as an image, a row of words, into
+// one of as many places as frames can be in flight.
+#include "sim/lbm_guard.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include <string.h>
+
+static const char shader[] = "sim/lbm/guard.comp";
+
+enum {
+    GROUP = 256,        // threads, as in the shader
+    GROUPS = 512,       // most of the first dispatch: enough to fill a large device
+    CELLS_A_THREAD = 4, // least, while there are fewer groups
+    WORDS = 16,         // of a record
+    PLACES = GPU_FRAMES_IN_FLIGHT + 1,
+};
+
+typedef struct guard_place {
+    uint64_t frame, step; // frame 0: nothing was recorded
+} guard_place;
+
+struct lbm_guard {
+    uint32_t size[3], groups;
+    arena *memory;
+    shader_binary binaries[2]; // moments, records
+    gpu_pipeline *pipelines[2];
+    gpu_buffer *parts, *found;
+    gpu_image *result;
+    guard_place places[PLACES];
+    uint32_t next;
+};
+
+static uint32_t count_cells(const lbm_guard *guard) {
+    return guard->size[0] * guard->size[1] * guard->size[2];
+}
+
+lbm_guard *lbm_guard_create(arena *memory, const uint32_t size[3]) {
+    lbm_guard *guard = arena_alloc(memory, sizeof *guard);
+    *guard = (lbm_guard){.memory = memory};
+    memcpy(guard->size, size, sizeof guard->size);
+    uint32_t groups = (count_cells(guard) + GROUP * CELLS_A_THREAD - 1) / (GROUP * CELLS_A_THREAD);
+    guard->groups = groups < GROUPS ? groups : GROUPS;
+    return guard;
+}
+
+bool lbm_guard_compile(lbm_guard *guard, shader_library *library, const shader_reader *reader) {
+    static const shader_define last = {"LAST", ""};
+    for (int i = 0; i < 2; i++)
+        if (!shader_compile(library, guard->memory,
+                            &(shader_compile_desc){.name = shader,
+                                                   .stage = SHADER_COMPUTE,
+                                                   .defines = &last,
+                                                   .define_count = i == 1,
+                                                   .reader = reader},
+                            &guard->binaries[i]))
+            return false;
+    return true;
+}
+
+static gpu_pipeline *make_pipeline(gpu *g, const shader_binary *binary) {
+    gpu_slot slots[GPU_MAX_SLOTS];
+    for (size_t i = 0; i < binary->slot_count; i++) slots[i] = binary->slots[i].slot;
+    gpu_compute_desc desc = {.label = shader,
+                             .code = binary->code,
+                             .code_size = binary->size,
+                             .slots = slots,
+                             .slot_count = binary->slot_count};
+    memcpy(desc.local_size, binary->local_size, sizeof desc.local_size);
+    return gpu_pipeline_create_compute(g, &desc);
+}
+
+bool lbm_guard_allocate(lbm_guard *guard, gpu *g) {
+    for (int i = 0; i < 2; i++) {
+        guard->pipelines[i] = make_pipeline(g, &guard->binaries[i]);
+        if (!guard->pipelines[i]) return false;
+    }
+    guard->parts = gpu_buffer_create(
+        g, &(gpu_buffer_desc){.label = "guard", .size = (uint64_t)guard->groups * WORDS * 4});
+    guard->found = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "guard's report",
+                                                           .size = PLACES * WORDS * 4,
+                                                           .kind = GPU_BUFFER_READBACK});
+    guard->result = gpu_image_create(g, &(gpu_image_desc){.label = "guard",
+                                                          .format = GPU_R32U,
+                                                          .width = WORDS,
+                                                          .height = 1,
+                                                          .use = GPU_USE_STORAGE});
+    return guard->parts && guard->found && guard->result;
+}
+
+void lbm_guard_destroy(lbm_guard *guard, gpu *g) {
+    for (int i = 0; i < 2; i++)
+        if (guard->pipelines[i]) gpu_pipeline_destroy(g, guard->pipelines[i]);
+    gpu_buffer_destroy(g, guard->parts);
+    gpu_buffer_destroy(g, guard->found);
+    gpu_image_destroy(g, guard->result);
+    *guard = (lbm_guard){.memory = guard->memory};
+}
+
+static bool dispatch(lbm_guard *guard, gpu *g, int which, gpu_buffer *moments) {
+    const shader_binary *binary = &guard->binaries[which];
+    uint32_t groups = which == 0 ? guard->groups : 1;
+    uint32_t numbers[] = {which == 0 ? count_cells(guard) : guard->groups, groups * GROUP};
+    unsigned char block[64] = {0};
+    gpu_binding bindings[4];
+    size_t count = 0;
+    for (size_t i = 0; i < binary->member_count; i++) {
+        bool stride = strcmp(binary->members[i].name, "stride") == 0;
+        memcpy(block + binary->members[i].offset, &numbers[stride], 4);
+    }
+    for (size_t i = 0; i < binary->slot_count; i++) {
+        const shader_slot *slot = &binary->slots[i];
+        gpu_binding *b = &bindings[count++];
+        *b = (gpu_binding){.binding = slot->slot.binding};
+        if (strcmp(slot->name, "Uniforms") == 0) {
+            b->uniform = block;
+            b->uniform_size = slot->size;
+        } else if (strcmp(slot->name, "result") == 0) {
+            b->image = guard->result;
+        } else {
+            b->buffer = strcmp(slot->name, "Moments") == 0 ? moments : guard->parts;
+        }
+    }
+    return gpu_dispatch(g, &(gpu_dispatch_desc){.pipeline = guard->pipelines[which],
+                                                .bindings = bindings,
+                                                .binding_count = count,
+                                                .threads = {groups * GROUP, 1, 1}});
+}
+
+bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l) {
+    gpu_buffer *moments = lbm_moments(l, 0);
+    if (!moments) return true;
+    uint32_t place = guard->next;
+    if (!dispatch(guard, g, 0, moments) || !dispatch(guard, g, 1, moments) ||
+        !gpu_image_copy_to_buffer(g, guard->result, guard->found, place * WORDS * 4))
+        return false;
+    guard->places[place] = (guard_place){gpu_frame_open(g), lbm_steps(l)};
+    guard->next = (place + 1) % PLACES;
+    return true;
+}
+
+static void unpack(const lbm_guard *guard, const uint32_t words[WORDS], lbm_report *out) {
+    float values[WORDS];
+    memcpy(values, words, sizeof values);
+    uint32_t cell = words[3], columns = guard->size[0], good = words[0] - words[1];
+    *out = (lbm_report){.cells = words[0], .bad = words[1]};
+    if (good == 0) return;
+    out->speed = values[2];
+    out->where[0] = cell % columns;
+    out->where[1] = cell / columns % guard->size[1];
+    out->where[2] = cell / columns / guard->size[1];
+    out->drift = values[4] / (float)good;
+    out->least_density = values[8];
+    out->most_density = values[12];
+    for (int i = 0; i < LBM_MAX_SCALARS; i++) {
+        out->sum[i] = values[5 + i];
+        out->least[i] = values[9 + i];
+        out->most[i] = values[13 + i];
+    }
+}
+
+bool lbm_guard_read(lbm_guard *guard, gpu *g, lbm_report *out) {
+    for (uint32_t age = 1; age <= PLACES; age++) {
+        uint32_t place = (guard->next + PLACES - age) % PLACES;
+        const guard_place *at = &guard->places[place];
+        if (at->frame == 0 || !gpu_frame_done(g, at->frame)) continue;
+        unpack(guard, (const uint32_t *)gpu_buffer_map(guard->found) + place * WORDS, out);
+        out->step = at->step;
+        return true;
+    }
+    return false;
+}
+
+void lbm_guard_forget(lbm_guard *guard) {
+    memset(guard->places, 0, sizeof guard->places);
+}

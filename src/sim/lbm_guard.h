@@ -1,0 +1,28 @@
+// The guard of a simulation: once per frame the device looks over the moments of a whole state, and
+// some frames later the host reads what they came to, without ever waiting.
+#pragma once
+#include "sim/lbm.h"
+
+typedef struct lbm_guard lbm_guard;
+
+typedef struct lbm_report { // of one kept state; lattice units
+    uint64_t step;          // lbm_steps when it was recorded
+    uint32_t cells;         // of air
+    uint32_t bad;           // of these, whose moments are no numbers; they are left out below
+    float speed;            // greatest; Mach number: times sqrt(3)
+    uint32_t where[3];      // the cell in which it is that
+    // Density - 1: how far the mass has drifted, and how much it is pressed together.
+    float drift, least_density, most_density;
+    float sum[LBM_MAX_SCALARS], least[LBM_MAX_SCALARS], most[LBM_MAX_SCALARS];
+} lbm_report;
+
+lbm_guard *lbm_guard_create(arena *memory, const uint32_t size[3]);
+bool lbm_guard_compile(lbm_guard *guard, shader_library *library, const shader_reader *reader);
+bool lbm_guard_allocate(lbm_guard *guard, gpu *g); // pipelines and memory
+void lbm_guard_destroy(lbm_guard *guard, gpu *g);
+
+// Inside a frame, once: looks at the newest moments that `l` has kept; if none, at nothing.
+bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l);
+// The newest report of a frame that has finished; false: there is none yet.
+bool lbm_guard_read(lbm_guard *guard, gpu *g, lbm_report *out);
+void lbm_guard_forget(lbm_guard *guard); // what was recorded so far: after a reset

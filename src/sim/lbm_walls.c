@@ -1,0 +1,152 @@
+// Boundaries of a solver on the host's side: what its shaders are compiled for, the bytes that say
+// what cells are, the waves that open faces remember, and the motions of bodies.
+//
+// What cells are is found anew (cells.comp) only when bodies have come to lie in other cells: into
+// one of two buffers, so that what a body has left is seen by comparing with the other.
+#include "base/error.h"
+#include "sim/lbm_impl.h"
+#include <string.h>
+
+static const char shader[] = "sim/lbm/cells.comp";
+
+static bool has_rims(const lbm_desc *desc) {
+    for (int i = 0; i < 6; i++)
+        if (desc->faces[i] >= LBM_SLIP) return true;
+    return false;
+}
+
+void lbm_walls_define(lbm *l, void (*define)(lbm *l, const char *name, uint32_t value)) {
+    static const char *const names[6] = {"LBM_FACE_0", "LBM_FACE_1", "LBM_FACE_2",
+                                         "LBM_FACE_3", "LBM_FACE_4", "LBM_FACE_5"};
+    bool walled = l->desc.bodies;
+    for (int i = 0; i < 6; i++) {
+        define(l, names[i], l->desc.faces[i]);
+        walled = walled || l->desc.faces[i] != LBM_PERIODIC;
+    }
+    define(l, "LBM_WALLED", walled);
+    define(l, "LBM_RIMS", has_rims(&l->desc));
+    define(l, "LBM_BODIES", l->desc.bodies);
+}
+
+bool lbm_walls_compile(lbm *l, shader_library *library, const shader_reader *reader) {
+    return !l->desc.bodies ||
+           lbm_kernel_compile(l, &l->walls.kernel, shader, library, reader, NULL, 0);
+}
+
+bool lbm_walls_build(lbm *l, gpu *g) {
+    return !l->desc.bodies || lbm_kernel_build(&l->walls.kernel, g);
+}
+
+static gpu_buffer *make(gpu *g, const char *label, uint64_t size) {
+    return gpu_buffer_create(g, &(gpu_buffer_desc){.label = label, .size = size});
+}
+
+bool lbm_walls_allocate(lbm *l, gpu *g) {
+    lbm_walls *w = &l->walls;
+    const uint64_t nx = l->desc.size[0], ny = l->desc.size[1], chunks = l->layout.lanes / 4;
+    if (has_rims(&l->desc) && !w->waves) { // as lbm_wave_at of walls.glsl counts them
+        const uint64_t count = 2 * (nx + ny) * l->layout.layers * chunks + 2 * nx * ny;
+        w->waves = make(g, "waves at open faces", count * 16);
+        if (!w->waves) return false;
+    }
+    for (int i = 0; l->desc.bodies && i < 2; i++) {
+        if (w->cells[i]) continue;
+        w->cells[i] = make(g, "kinds of cells", (uint64_t)l->layout.elements * chunks * 4);
+        if (!w->cells[i]) return false;
+    }
+    return true;
+}
+
+void lbm_walls_destroy(lbm *l, gpu *g) {
+    lbm_kernel_destroy(&l->walls.kernel, g);
+    gpu_buffer_destroy(g, l->walls.waves);
+    for (int i = 0; i < 2; i++) gpu_buffer_destroy(g, l->walls.cells[i]);
+    l->walls.waves = l->walls.cells[0] = l->walls.cells[1] = NULL;
+}
+
+void lbm_walls_reset(lbm *l, gpu *g) {
+    lbm_walls *w = &l->walls;
+    if (w->waves) gpu_buffer_fill(g, w->waves, 0);
+    for (int i = 0; i < 2; i++)
+        if (w->cells[i]) gpu_buffer_fill(g, w->cells[i], 0);
+    w->known = false;
+    w->filled = true;
+}
+
+// Where bodies are must be said anew.
+void lbm_walls_exchange(lbm *a, lbm *b) {
+    lbm_walls *x = &a->walls, *y = &b->walls, was = *x;
+    x->known = y->known = false;
+    x->waves = y->waves;
+    y->waves = was.waves;
+    if (!a->desc.bodies || !b->desc.bodies) return;
+    memcpy(x->cells, y->cells, sizeof x->cells);
+    memcpy(y->cells, was.cells, sizeof y->cells);
+    x->current = y->current;
+    y->current = was.current;
+    x->filled = y->filled;
+    y->filled = was.filled;
+}
+
+gpu_buffer *lbm_walls_buffer(const lbm *l, const char *name) {
+    const lbm_walls *w = &l->walls;
+    if (strcmp(name, "LbmWaves") == 0) return w->waves;
+    if (strcmp(name, "LbmIds") == 0) return w->ids;
+    if (strcmp(name, "LbmCells") == 0) return w->cells[w->current];
+    if (strcmp(name, "LbmCellsBefore") == 0) return w->cells[!w->current];
+    return NULL;
+}
+
+void lbm_walls_set(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
+    float velocity[6][4] = {0}, scalar[6][4] = {0};
+    for (int i = 0; i < 6; i++) {
+        memcpy(velocity[i], n->inflow[i], sizeof n->inflow[i]);
+        memcpy(scalar[i], n->inflow_scalar[i], sizeof n->inflow_scalar[i]);
+    }
+    lbm_kernel_set(k, "lbm_face_velocity", velocity, sizeof velocity);
+    lbm_kernel_set(k, "lbm_face_scalar", scalar, sizeof scalar);
+    lbm_kernel_set(k, "lbm_bodies", l->walls.bodies, sizeof l->walls.bodies);
+}
+
+bool lbm_walls_ready(const lbm *l) {
+    return !l->desc.bodies || l->walls.known ||
+           err_set("the lattice has bodies, and nothing said yet where they are");
+}
+
+static bool set_motion(lbm_walls *w, const lbm_body *bodies, uint32_t count, float most) {
+    static const float still[3] = {0};
+    bool any = false;
+    memset(w->bodies, 0, sizeof w->bodies);
+    for (uint32_t id = 1; id <= count && id <= LBM_MAX_BODIES; id++) {
+        const lbm_body *body = &bodies[id - 1];
+        bool moves = memcmp(body->linear, still, sizeof still) != 0 ||
+                     memcmp(body->angular, still, sizeof still) != 0;
+        float(*out)[4] = &w->bodies[3 * id];
+        memcpy(out[0], body->centre, sizeof body->centre);
+        memcpy(out[1], body->linear, sizeof body->linear);
+        memcpy(out[2], body->angular, sizeof body->angular);
+        out[0][3] = moves;
+        out[1][3] = most;
+        any = any || moves;
+    }
+    return any;
+}
+
+bool lbm_set_bodies(lbm *l, gpu *g, const lbm_numbers *numbers, const lbm_bodies *bodies) {
+    lbm_walls *w = &l->walls;
+    if (!l->desc.bodies) return err_set("the lattice was made without bodies");
+    const float most = numbers->max_speed > 0 ? numbers->max_speed : 1e6f;
+    const uint32_t moves = set_motion(w, bodies->bodies, bodies->count, most);
+    bool same = w->known && w->ids == bodies->ids && !bodies->changed && w->moves == moves;
+    w->ids = bodies->ids;
+    if (same) return true;
+    for (int i = 0; !w->filled && i < 2; i++) gpu_buffer_fill(g, w->cells[i], 0);
+    w->filled = true;
+    w->moves = moves;
+    w->current = !w->current;
+    lbm_kernel_set(&w->kernel, "any_moves", &moves, sizeof moves);
+    lbm_kernel_set(&w->kernel, "ambient", numbers->ambient, sizeof numbers->ambient);
+    lbm_walls_set(l, &w->kernel, numbers);
+    w->known = lbm_kernel_run(l, &w->kernel, g, NULL, 0);
+    return w->known;
+}

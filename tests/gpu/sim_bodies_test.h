@@ -1,0 +1,43 @@
+// Bodies for tests of lattices: cells that a function fills with ids.
+#pragma once
+#include "sim_test.h"
+
+typedef struct sim_bodies {
+    gpu_buffer *ids;
+    uint8_t *bytes;
+    lbm_body body[2];
+} sim_bodies;
+
+static inline void sim_bodies_open(sim_world *w, sim_bodies *b) {
+    *b = (sim_bodies){.bytes = mem_alloc(w->cells)};
+    b->ids = gpu_buffer_create(w->device, &(gpu_buffer_desc){.label = "ids", .size = w->cells});
+    gpu_test_ok(b->ids);
+}
+
+static inline void sim_bodies_close(sim_world *w, sim_bodies *b) {
+    gpu_buffer_destroy(w->device, b->ids);
+    mem_free(b->bytes);
+}
+
+// Inside a frame. `fill`: the id of a cell whose centre is at p; NULL: as they were.
+static inline void sim_bodies_set(sim_world *w, sim_bodies *b,
+                                  int (*fill)(const float p[3], const void *user),
+                                  const void *user) {
+    const uint32_t *n = w->desc.size;
+    for (size_t c = 0; fill && c < w->cells; c++) {
+        const float p[3] = {(float)(c % n[0]) + 0.5f, (float)(c / n[0] % n[1]) + 0.5f,
+                            (float)(c / n[0] / n[1]) + 0.5f};
+        b->bytes[c] = (uint8_t)fill(p, user);
+    }
+    if (fill) gpu_test_ok(gpu_buffer_write(w->device, b->ids, 0, b->bytes, w->cells));
+    gpu_test_ok(lbm_set_bodies(w->lattice, w->device, &w->numbers,
+                               &(lbm_bodies){.ids = b->ids,
+                                             .changed = fill != NULL,
+                                             .bodies = b->body,
+                                             .count = COUNT_OF(b->body)}));
+}
+
+static inline bool sim_long_tests(void) {
+    const char *wanted = getenv("ROIL_LONG_TESTS");
+    return wanted && strcmp(wanted, "1") == 0;
+}

@@ -1,0 +1,112 @@
+// Boundaries of a solver against theory: channels, plates that move, faces.
+#include "sim_bodies_test.h"
+
+// ---- channels ---------------------------------------------------------------------------------
+
+// Greatest error of the velocity along `flow` across `across`, over the greatest of `theory`, which
+// is given the distance from the lower wall as part of the channel's width. `wall` is the last cell
+// of the lower wall; `skip` cells beside it are passed over.
+static double profile_error(sim_world *w, int flow, int across, int wall, int skip, int width,
+                            double (*theory)(double at)) {
+    double error = 0, most = 0;
+    sim_read(w);
+    for (int i = skip; i < width; i++) {
+        int at[3] = {2, 2, 2};
+        at[across] = wall + 1 + i;
+        double seen = w->state[sim_index(w, at[0], at[1], at[2])].u[flow] +
+                      0.5 * (double)w->numbers.acceleration[flow];
+        double wanted = theory((i + 0.5) / width);
+        error = fmax(error, fabs(seen - wanted));
+        most = fmax(most, fabs(wanted));
+    }
+    return error / most;
+}
+
+static const double channel_speed = 0.05;
+
+static double parabola(double at) {
+    return channel_speed * 4 * at * (1 - at);
+}
+
+// Flow between two walls under a force: Poiseuille.
+static double channel_error(gpu *g, int across, lbm_set set, lbm_collision collision,
+                            lbm_precision precision) {
+    sim_world w;
+    int flow = across == 0 ? 1 : 0;
+    const int cells = 24, width = cells - 2, steps = 5000;
+    lbm_desc desc = {
+        .size = {4, 4, 16}, .set = set, .collision = collision, .precision = precision};
+    desc.size[across] = (uint32_t)cells;
+    desc.faces[2 * across] = desc.faces[2 * across + 1] = LBM_WALL;
+    sim_open(&w, g, &desc);
+    w.numbers.tau = 0.9f;
+    double viscosity = ((double)w.numbers.tau - 0.5) / 3;
+    w.numbers.acceleration[flow] = (float)(8 * viscosity * channel_speed / (width * width));
+    sim_reset(&w);
+    sim_run(&w, steps);
+    double error = profile_error(&w, flow, across, 0, 0, width, parabola);
+    sim_close(&w);
+    return error;
+}
+
+static void a_channel_flows_as_a_parabola(void **state) {
+    static const char *const ways[] = {"BGK", "TRT", "moments"};
+    static const double bounds[] = {0.005, 0.001, 0.005};
+    for (int across = 0; across < 3; across++)
+        for (int way = 0; way < 3; way++) {
+            double error = channel_error(*state, across, across == 1 ? LBM_D3Q27 : LBM_D3Q19,
+                                         (lbm_collision)way, LBM_F32);
+            print_message("channel across %c, %s: %.4f %%\n", "xyz"[across], ways[way],
+                          100 * error);
+            assert_true(error < bounds[way]);
+        }
+    // Halves: what the force adds in a step is some units of their last place only, and in a steady
+    // flow that is rounded the same way each time.
+    double along = channel_error(*state, 0, LBM_D3Q19, LBM_TRT, LBM_F16);
+    double across = channel_error(*state, 2, LBM_D3Q19, LBM_TRT, LBM_F16);
+    print_message("channel, halves: %.4f %% and %.4f %%\n", 100 * along, 100 * across);
+    assert_true(along < 0.15 && fabs(along - across) < 1e-4);
+}
+
+// ---- plates -----------------------------------------------------------------------------------
+
+static double line(double at) {
+    return channel_speed * (1 - at);
+}
+
+static int plate(const float p[3], const void *user) {
+    (void)user;
+    return p[2] < 3;
+}
+
+// A plate that slides in itself below a wall: Couette.
+static void a_plate_drags_the_air_along(void **state) {
+    sim_world w;
+    sim_bodies b;
+    sim_open(&w, *state,
+             &(lbm_desc){.size = {8, 4, 24},
+                         .collision = LBM_TRT,
+                         .faces = {[4] = LBM_WALL, [5] = LBM_WALL},
+                         .bodies = true});
+    sim_bodies_open(&w, &b);
+    sim_reset(&w);
+    b.body[0].linear[0] = (float)channel_speed;
+    gpu_test_ok(gpu_frame_begin(w.device));
+    sim_bodies_set(&w, &b, plate, NULL);
+    gpu_test_ok(gpu_frame_end(w.device));
+    sim_run(&w, 8000);
+    // What a wall pushes is not yet in what arrives beside it.
+    double error = profile_error(&w, 0, 2, 2, 1, 20, line);
+    print_message("plate: %.4f %%\n", 100 * error);
+    assert_true(error < 0.002);
+    sim_bodies_close(&w, &b);
+    sim_close(&w);
+}
+
+int main(void) {
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_channel_flows_as_a_parabola),
+        cmocka_unit_test(a_plate_drags_the_air_along),
+    };
+    return gpu_test_run(tests, COUNT_OF(tests));
+}
