@@ -16,6 +16,7 @@ HOMES = [
     (r"(lua|lauxlib|lualib|luaconf)\.h(pp)?$|lua5\.4/", "script/"),
     (r"openvdb/|nanovdb/|tbb/", ("media/vdb.cpp", "media/vdb_blocks.cpp", "media/vdb_write.cpp",
                                  "media/vdb_file.hpp")),
+    (r"blosc", "media/pack.c"),
     (r"assimp/|png\.h|OpenEXR/|openexr|libav|libsw|Imf", "media/"),
     (r"imgui", "ui/ui.cpp"),
     (r"GLFW/", ("app/", "ui/")),
