@@ -94,6 +94,7 @@ voxels *voxels_create(arena *memory, const voxels_desc *desc) {
     v->parts = arena_alloc(memory, desc->body_count * VOXEL_GROUPS * sizeof *v->parts);
     v->state = arena_alloc(memory, sizeof *v->state);
     v->body_count = desc->body_count;
+    v->distances = desc->distances;
     for (size_t i = 0; i < desc->body_count; i++) add_body(v, i, &desc->bodies[i]);
     return v;
 }

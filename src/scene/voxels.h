@@ -37,6 +37,7 @@ typedef struct voxels_desc {
     uint32_t size[3];          // cells; x a multiple of 4
     const voxels_body *bodies; // where two meet, the cell is the later one's
     size_t body_count;         // 0 is fine
+    bool distances;            // voxels_write_distance will be called
 } voxels_desc;
 
 // Looks at the meshes; needs no device. NULL with a message.
@@ -69,14 +70,12 @@ gpu_buffer *voxels_ids(const voxels *v);
 // struct voxel_motion of shared.h by id; VOXELS_MAX_BODIES + 1 of them, zero where none is.
 gpu_buffer *voxels_motions(const voxels *v);
 
-// Inside a frame, after an update: into an image of the cells' size, each optional. `inside`: r8, 1
-// where there is a body; `velocity`: rgba16f, m/s of the body there.
-bool voxels_write(voxels *v, gpu *g, gpu_image *inside, gpu_image *velocity);
 // Signed distance in metres from the centres to the nearest body, negative within solids: r16f.
 // Exact to 1/100 of a cell within three of the surface, and nearly so beyond.
+// Of voxels that were made with `distances`.
 bool voxels_write_distance(voxels *v, gpu *g, gpu_image *distance);
 
-// Cells that were filled anew so far, and of how many bodies, for tests and statistics.
+// What was done so far, for tests and statistics.
 typedef struct voxels_work {
     uint64_t updates; // that found something moved
     uint64_t bodies;  // voxelised, in all

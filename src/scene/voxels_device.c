@@ -6,8 +6,7 @@
 
 static const char *const shaders[VOXELS_STAGES] = {
     [VOXELS_PREPARE] = "scene/voxels/prepare.comp",   [VOXELS_CROSS] = "scene/voxels/cross.comp",
-    [VOXELS_COMPOSE] = "scene/voxels/compose.comp",   [VOXELS_INSIDE] = "scene/voxels/inside.comp",
-    [VOXELS_VELOCITY] = "scene/voxels/velocity.comp", [VOXELS_NEAR] = "scene/voxels/near.comp",
+    [VOXELS_COMPOSE] = "scene/voxels/compose.comp",   [VOXELS_NEAR] = "scene/voxels/near.comp",
     [VOXELS_START] = "scene/voxels/start.comp",       [VOXELS_FLOOD] = "scene/voxels/flood.comp",
     [VOXELS_DISTANCE] = "scene/voxels/distance.comp",
 };
@@ -27,8 +26,12 @@ static const struct {
     [VOXELS_OTHER_SEEDS] = {"VoxelNextSeeds", "nearest points"},
 };
 
+static int stages_of(const voxels *v) {
+    return v->distances ? VOXELS_STAGES : VOXELS_NEAR;
+}
+
 bool voxels_compile(voxels *v, shader_library *library, const shader_reader *reader) {
-    for (int i = 0; i < VOXELS_STAGES; i++)
+    for (int i = 0; i < stages_of(v); i++)
         if (!shader_compile(library, v->memory,
                             &(shader_compile_desc){
                                 .name = shaders[i], .stage = SHADER_COMPUTE, .reader = reader},
@@ -38,7 +41,7 @@ bool voxels_compile(voxels *v, shader_library *library, const shader_reader *rea
 }
 
 bool voxels_build(voxels *v, gpu *g) {
-    for (int i = 0; i < VOXELS_STAGES; i++) {
+    for (int i = 0; i < stages_of(v); i++) {
         const shader_binary *binary = &v->binaries[i];
         gpu_slot slots[GPU_MAX_SLOTS];
         for (size_t k = 0; k < binary->slot_count; k++) slots[k] = binary->slots[k].slot;
@@ -159,12 +162,4 @@ bool voxels_dispatch_groups(voxels *v, gpu *g, voxels_stage stage, uint32_t grou
     const uint32_t threads[3] = {VOXELS_GROUP * (groups < ROW ? groups : ROW),
                                  (groups + ROW - 1) / ROW, 1};
     return voxels_dispatch(v, g, stage, threads, &(voxels_images){0});
-}
-
-bool voxels_write(voxels *v, gpu *g, gpu_image *inside, gpu_image *velocity) {
-    const uint32_t threads[3] = {v->size[0] / 4, v->size[1], v->size[2]};
-    return (!inside ||
-            voxels_dispatch(v, g, VOXELS_INSIDE, threads, &(voxels_images){.image = inside})) &&
-           (!velocity ||
-            voxels_dispatch(v, g, VOXELS_VELOCITY, threads, &(voxels_images){.image = velocity}));
 }

@@ -1,15 +1,16 @@
 // Signed distances. Near the surface each triangle is held against the cells around it, so that the
 // nearest is known; farther away cells learn it from each other by jump flooding. The sign is that
-// of the inside test. Nothing of this is made or computed before somebody asks.
+// of the inside test. No buffer is made before somebody asks.
 #include "base/error.h"
 #include "scene/voxels_impl.h"
 
 static bool make_buffers(voxels *v, gpu *g) {
     uint64_t cells = (uint64_t)v->size[0] * v->size[1] * v->size[2];
-    v->distances = v->distances || (voxels_make_buffer(v, g, VOXELS_KEYS, 4 * cells) &&
-                                    voxels_make_buffer(v, g, VOXELS_SEEDS, 16 * cells) &&
-                                    voxels_make_buffer(v, g, VOXELS_OTHER_SEEDS, 16 * cells));
-    return v->distances || err_prefix("distances: ");
+    if (v->buffers[VOXELS_OTHER_SEEDS]) return true;
+    return (voxels_make_buffer(v, g, VOXELS_KEYS, 4 * cells) &&
+            voxels_make_buffer(v, g, VOXELS_SEEDS, 16 * cells) &&
+            voxels_make_buffer(v, g, VOXELS_OTHER_SEEDS, 16 * cells)) ||
+           err_prefix("distances: ");
 }
 
 static bool flood_once(voxels *v, gpu *g, int32_t apart, bool *other) {

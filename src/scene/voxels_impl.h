@@ -7,9 +7,7 @@ typedef enum voxels_stage {
     VOXELS_PREPARE,
     VOXELS_CROSS,
     VOXELS_COMPOSE,
-    VOXELS_INSIDE,
-    VOXELS_VELOCITY,
-    VOXELS_NEAR,
+    VOXELS_NEAR, // from here on only for distances
     VOXELS_START,
     VOXELS_FLOOD,
     VOXELS_DISTANCE,
@@ -80,7 +78,7 @@ struct voxels {
     uint32_t placed_count, number_count; // points and items of all bodies
     voxels_part *parts;
     size_t part_count;
-    bool started, distances; // an update was made; buffers for distances are there
+    bool started, distances; // an update was made; distances are wanted
     uint64_t mask_count;     // uvec4s
     voxels_state *state;
     struct voxel_motion motions[VOXELS_MAX_BODIES + 1];

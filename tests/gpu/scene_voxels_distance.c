@@ -1,4 +1,4 @@
-// Signed distances to bodies, and what fields see of cells.
+// Signed distances to bodies.
 #include "voxels_test.h"
 
 static const box3 around = {{-2, -2, -2}, {2, 2, 2}};
@@ -19,7 +19,7 @@ static gpu_image *make_image(gpu *g, gpu_format format) {
 
 // Halves of an r16f image; free with mem_free.
 static float *distances_of(voxels_world *w, const voxels_body *bodies, size_t count) {
-    voxels *v = make_voxels(w, &(voxels_desc){around, {N, N, N}, bodies, count});
+    voxels *v = make_voxels(w, &(voxels_desc){around, {N, N, N}, bodies, count, .distances = true});
     gpu_image *image = make_image(w->device, GPU_R16F);
     voxels_change change;
     gpu_test_ok(gpu_frame_begin(w->device));
@@ -109,55 +109,10 @@ static void distance_to_a_sheet_has_no_sign_and_to_nothing_no_end(void **state) 
     voxels_close(&w);
 }
 
-static void images_show_where_bodies_are_and_how_they_move(void **state) {
-    voxels_world w;
-    voxels_open(&w, *state);
-    shape s = {0};
-    shape_box(&s, (float3){-1, -1, -0.5f}, (float3){1, 1, 0.5f});
-    scene_mesh *mesh = shape_mesh(&w, &s);
-    static const curve_key keys[] = {{0, {0}}, {1, {0, 0, 90}}};
-    const curve *c = curve_create(&w.memory, &(curve){CURVE_LINEAR, 3, keys, 2, 0});
-    mesh->rotation = field_curve(&w.memory, c);
-    voxels_body body = {mesh, 5, VOXELS_AUTO};
-    voxels *v = make_voxels(&w, &(voxels_desc){around, {N, N, N}, &body, 1});
-    gpu_image *inside = make_image(*state, GPU_R8), *velocity = make_image(*state, GPU_RGBA16F);
-    voxels_change change;
-    update_voxels(&w, v, 0, 0);
-    w.context.time = 0.01;
-    gpu_test_ok(gpu_frame_begin(*state));
-    gpu_test_ok(voxels_update(v, *state, &w.context, 0.01, &change));
-    gpu_test_ok(voxels_write(v, *state, inside, velocity));
-    gpu_test_ok(gpu_frame_end(*state));
-    uint8_t *ids = read_ids(&w, v), *shown = mem_alloc(CELLS);
-    uint16_t *halves = mem_alloc(CELLS * 8);
-    gpu_test_ok(gpu_image_read(*state, inside, shown, CELLS));
-    gpu_test_ok(gpu_image_read(*state, velocity, halves, CELLS * 8));
-    size_t moving = 0;
-    for (int i = 0; i < CELLS; i++) {
-        assert_int_equal(shown[i], ids[i] ? 255 : 0);
-        float3 p = centre_of(i);
-        float want[3] = {-1.5707963f * p.y, 1.5707963f * p.x, 0};
-        for (int a = 0; a < 3; a++) {
-            float got = half_to_float(halves[4 * i + a]);
-            assert_true(fabsf(got - (ids[i] ? want[a] : 0)) < 0.005f);
-        }
-        moving += ids[i] == 5;
-    }
-    assert_true(moving > 1900 && moving < 2200);
-    mem_free(ids);
-    mem_free(shown);
-    mem_free(halves);
-    gpu_image_destroy(*state, inside);
-    gpu_image_destroy(*state, velocity);
-    voxels_destroy(v, *state);
-    voxels_close(&w);
-}
-
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(distances_are_those_of_shapes),
         cmocka_unit_test(distance_to_a_sheet_has_no_sign_and_to_nothing_no_end),
-        cmocka_unit_test(images_show_where_bodies_are_and_how_they_move),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }
