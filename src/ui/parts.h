@@ -1,5 +1,5 @@
-// What ui.cpp is made of and needs no ImGui: fonts, icons, numbers as text. Private to ui.cpp and
-// its parts.
+// What ui*.cpp are made of and needs no ImGui: fonts, icons, numbers as text. Private to these and
+// their parts.
 #pragma once
 #include "ui/ui.h"
 #ifdef __cplusplus
@@ -58,8 +58,8 @@ enum { // greys of the style, 0 to 255: neutral, so that they tint no one's judg
     GREY_POPUP = 44,
 };
 uint32_t draw_grey(int level);
-uint32_t draw_enabled(uint32_t color); // the colour, paler where widgets are disabled; ui.cpp
-// One line within the area, cut with "..."; `align`: 0 left to 1 right. ui.cpp has them.
+uint32_t draw_enabled(uint32_t color); // the colour, paler where widgets are disabled
+// One line within the area, cut with "..."; `align`: 0 left to 1 right. ui_widgets.cpp has it all.
 void draw_text(ui_rect area, ui_color color, const char *text, float align);
 void draw_text_in(ui_rect area, uint32_t color, const char *text, float align);
 void draw_clipped(ui_rect area, ui_rect clip, uint32_t color, float rounding);
@@ -71,7 +71,7 @@ void draw_bar(ui_rect area, double value, const number_range *range, const char 
 void draw_swatch(ui_rect area, const float *linear, int components);
 void draw_icon(int icon, ui_rect area, uint32_t color); // icons.c
 
-// ---- ui.cpp: what widgets.c is made of --------------------------------------------------------
+// ---- ui_widgets.cpp: what widgets.c is made of ------------------------------------------------
 
 void part_group_begin(const char *id); // one item to what asks about the last one
 void part_group_end(const char *id);

@@ -1,4 +1,4 @@
-// Widgets for the live window: a C face of Dear ImGui (ui.cpp is the only file that knows it).
+// Widgets for the live window: a C face of Dear ImGui (only ui*.cpp know it).
 //
 // Between ui_begin and ui_end the window's contents are said anew each frame; what a user did comes
 // back as return values. There is one window, so there is one state, and it is of one thread.

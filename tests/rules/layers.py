@@ -18,14 +18,14 @@ HOMES = [
                                  "media/vdb_file.hpp")),
     (r"blosc", "media/pack.c"),
     (r"assimp/|png\.h|OpenEXR/|openexr|libav|libsw|Imf", "media/"),
-    (r"imgui", "ui/ui.cpp"),
+    (r"imgui", ("ui/ui.cpp", "ui/ui_canvas.cpp", "ui/ui_widgets.cpp", "ui/ui_state.hpp")),
     (r"GLFW/", ("app/", "ui/")),
     (r"fontconfig/", "ui/"),
     (r"popt\.h", "app/"),
     (r"xxhash\.h", "base/"),
 ]
 CPP = ["src/media/vdb.cpp", "src/media/vdb_blocks.cpp", "src/media/vdb_write.cpp",
-       "src/ui/ui.cpp"]
+       "src/ui/ui.cpp", "src/ui/ui_canvas.cpp", "src/ui/ui_widgets.cpp"]
 INCLUDE = re.compile(r'^\s*#\s*(?:include|import)\b\s*(?:"([^"]*)"|<([^>]*)>|(.*))')
 
 
