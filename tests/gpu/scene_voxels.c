@@ -10,7 +10,7 @@ static double3 centre_of(int x, int y, int z) {
 }
 
 static uint8_t *voxelise(voxels_world *w, const voxels_body *bodies, size_t count) {
-    voxels *v = make_voxels(w, &(voxels_desc){around, {N, N, N}, bodies, count});
+    voxels *v = make_voxels(w, &(voxels_desc){around, {N, N, N}, bodies, count, false});
     update_voxels(w, v, w->context.time, 0);
     uint8_t *ids = read_ids(w, v);
     voxels_destroy(v, w->device);
@@ -317,7 +317,7 @@ static void moving_body_leaves_what_it_covered(void **state) {
     ball->position = moving(&w, 3, (float[]){-1, 0, 0}, (float[]){1, 0.3f, 0});
     ball->scale = moving(&w, 1, (float[]){0.4f}, (float[]){0.7f});
     const voxels_body bodies[] = {{still, 1, VOXELS_AUTO}, {ball, 2, VOXELS_AUTO}};
-    voxels *v = make_voxels(&w, &(voxels_desc){around, {N, N, N}, bodies, 2});
+    voxels *v = make_voxels(&w, &(voxels_desc){around, {N, N, N}, bodies, 2, false});
     for (int i = 0; i <= 8; i++) {
         voxels_change change = update_voxels(&w, v, i / 8.0, 1 / 8.0);
         assert_true(change.cells && change.motion);
@@ -341,7 +341,7 @@ static void what_stands_still_is_voxelised_once(void **state) {
     shape s = {0};
     shape_sphere(&s, 6);
     const voxels_body body = {shape_mesh(&w, &s), 1, VOXELS_AUTO};
-    voxels *v = make_voxels(&w, &(voxels_desc){around, {N, N, N}, &body, 1});
+    voxels *v = make_voxels(&w, &(voxels_desc){around, {N, N, N}, &body, 1, false});
     voxels_change first = update_voxels(&w, v, 0, 0);
     assert_true(first.cells && first.motion);
     for (int i = 1; i < 4; i++) {
@@ -370,7 +370,7 @@ static void motion_is_that_of_the_transforms(void **state) {
     mesh->position = moving(&w, 3, (float[]){0, 0, 0}, (float[]){0, 0, 0.5f});
     mesh->scale = moving(&w, 1, (float[]){1}, (float[]){1.5f});
     voxels_body body = {mesh, 1, VOXELS_AUTO};
-    voxels *v = make_voxels(&w, &(voxels_desc){around, {N, N, N}, &body, 1});
+    voxels *v = make_voxels(&w, &(voxels_desc){around, {N, N, N}, &body, 1, false});
     const double dt = 1.0 / 256;
     voxels_motion m;
     update_voxels(&w, v, 0.5, dt);
@@ -405,13 +405,13 @@ static void what_cannot_be_voxelised_is_refused(void **state) {
     const voxels_body twice[] = {{mesh, 1, VOXELS_AUTO}, {mesh, 1, VOXELS_AUTO}};
     const voxels_body none = {mesh, 0, VOXELS_AUTO};
     const box3 flat = {{0, 0, 0}, {1, 1, 0}};
-    assert_null(voxels_create(&w.memory, &(voxels_desc){around, {30, 32, 32}, NULL, 0}));
+    assert_null(voxels_create(&w.memory, &(voxels_desc){around, {30, 32, 32}, NULL, 0, false}));
     assert_non_null(strstr(err_get(), "multiple of 4"));
-    assert_null(voxels_create(&w.memory, &(voxels_desc){around, {32, 0, 32}, NULL, 0}));
-    assert_null(voxels_create(&w.memory, &(voxels_desc){flat, {32, 32, 32}, NULL, 0}));
-    assert_null(voxels_create(&w.memory, &(voxels_desc){around, {32, 32, 32}, twice, 2}));
+    assert_null(voxels_create(&w.memory, &(voxels_desc){around, {32, 0, 32}, NULL, 0, false}));
+    assert_null(voxels_create(&w.memory, &(voxels_desc){flat, {32, 32, 32}, NULL, 0, false}));
+    assert_null(voxels_create(&w.memory, &(voxels_desc){around, {32, 32, 32}, twice, 2, false}));
     assert_non_null(strstr(err_get(), "taken"));
-    assert_null(voxels_create(&w.memory, &(voxels_desc){around, {32, 32, 32}, &none, 1}));
+    assert_null(voxels_create(&w.memory, &(voxels_desc){around, {32, 32, 32}, &none, 1, false}));
     uint8_t *ids = voxelise(&w, NULL, 0);
     assert_int_equal(count_ids(ids, 0), CELLS);
     mem_free(ids);
