@@ -106,7 +106,6 @@ static void define_all(lbm *l) {
     define(l, "LBM_SCALAR_Q", scalar_directions(desc));
     define(l, "LBM_SCALARS", desc->scalars);
     define(l, "LBM_HALF", desc->precision == LBM_F16);
-    define(l, "LBM_ROUND", l->rounds);
     define(l, "LBM_TRT", desc->collision == LBM_TRT);
     define(l, "LBM_CENTRAL_MOMENTS", desc->collision == LBM_CENTRAL_MOMENTS);
     define(l, "LBM_WEIGHTS_ONLY", desc->forcing == LBM_WEIGHTS_ONLY);
@@ -127,13 +126,11 @@ static bool compile(lbm *l, uint64_t range, shader_library *library, const shade
 }
 
 bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader) {
-    l->rounds = false;
     return compile(l, UINT32_MAX, library, reader);
 }
 
 bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader) {
     const gpu_info *info = gpu_get_info(g);
-    l->rounds = info->kind == GPU_CPU; // llvmpipe cuts
     return compile(l, info->max_storage_range, library, reader) && lbm_kernel_build(&l->reset, g) &&
            lbm_kernel_build(&l->step, g) && lbm_kernel_build(&l->step_kept, g) &&
            lbm_walls_build(l, g);

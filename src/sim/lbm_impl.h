@@ -65,7 +65,6 @@ struct lbm {
     arena *memory;
     lbm_desc desc;
     lbm_layout layout;
-    bool rounds; // the device cuts halves instead of rounding them
     shader_define defines[LBM_MAX_DEFINES];
     size_t define_count;
     lbm_kernel reset, step, step_kept; // the last also leaves moments

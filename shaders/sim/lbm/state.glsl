@@ -76,15 +76,6 @@ uniform uint lbm_parity; // of steps
 #define LBM_LAYER (LBM_NX * LBM_NY)           // elements
 #define LBM_ELEMENTS (LBM_LAYER * LBM_LAYERS) // of a direction
 
-// Some devices cut what does not fit into a half; rounded before, it fits.
-uint lbm_pack_halves(vec2 v) {
-#if LBM_ROUND
-    uvec2 bits = floatBitsToUint(v);
-    v = uintBitsToFloat(bits + 0xfffu + ((bits >> 13) & 1u));
-#endif
-    return packHalf2x16(v);
-}
-
 // Four cells of an element, as they lie in memory.
 #if LBM_HALF
 vec4 lbm_unpack(lbm_element e, const int chunk, const float scale) {
@@ -94,7 +85,7 @@ vec4 lbm_unpack(lbm_element e, const int chunk, const float scale) {
 
 void lbm_pack(inout lbm_element e, const int chunk, const float scale, vec4 v) {
     v *= scale;
-    uvec2 half_ = uvec2(lbm_pack_halves(v.xy), lbm_pack_halves(v.zw));
+    uvec2 half_ = uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
     if (chunk == 0) e.xy = half_;
     else e.zw = half_;
 }

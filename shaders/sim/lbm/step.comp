@@ -126,10 +126,10 @@ void keep_moments(const int chunk, lbm_air a) {
     uint index = place.own + uint(4 * chunk) * LBM_ELEMENTS;
 #define KEEP(lane)                                                                                 \
     moments[index + lane * LBM_ELEMENTS] =                                                         \
-        uvec4(lbm_pack_halves(vec2(a.u.x[lane], a.u.y[lane])),                                     \
-              lbm_pack_halves(vec2(a.u.z[lane], a.excess[lane])),                                  \
-              lbm_pack_halves(vec2(value[0][lane], value[1][lane])),                               \
-              lbm_pack_halves(vec2(value[2][lane], 0.0)));
+        uvec4(packHalf2x16(vec2(a.u.x[lane], a.u.y[lane])),                                     \
+              packHalf2x16(vec2(a.u.z[lane], a.excess[lane])),                                  \
+              packHalf2x16(vec2(value[0][lane], value[1][lane])),                               \
+              packHalf2x16(vec2(value[2][lane], 0.0)));
     KEEP(0u) KEEP(1u) KEEP(2u) KEEP(3u)
 #undef KEEP
 }

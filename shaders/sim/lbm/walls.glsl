@@ -10,15 +10,17 @@
 // then they collide like all others.
 //   slip: mirrored in the face, which lies in the middle of these cells. So are, where two faces meet,
 //     those of the second one, x before y before z.
-//   inflow: equilibrium of the given velocity, with the density that follows from what arrives from
-//     within: Zou and He, "On pressure and velocity boundary conditions for the lattice Boltzmann BGK
-//     model", 1997, eq. 19.
-//   open: equilibrium too, velocity and density from the same relation and a wave coming in that is
-//     none: Izquierdo and Fueyo, "Characteristic nonreflecting boundary conditions for open
+//   inflow: of the given velocity, with the density that follows from what arrives from within: Zou
+//     and He, "On pressure and velocity boundary conditions for the lattice Boltzmann BGK model",
+//     1997, eq. 19.
+//   open: velocity and density from the same relation and a wave that comes in from outside, which
+//     is none: Izquierdo and Fueyo, "Characteristic nonreflecting boundary conditions for open
 //     boundaries in lattice Boltzmann methods", 2008, without the terms along the face. The wave is
 //     remembered and tends, slowly, to what makes the density 1 (air leaves), or the velocity that of
 //     the wind (the wind enters): Poinsot and Lele, "Boundary conditions for direct simulations of
 //     compressible viscous flows", 1992, eq. 40.
+// The populations of both are equilibrium and the stress at hand: Latt, Chopard, Malaspinas, Deville,
+// Michler, "Straight velocity boundaries in the lattice Boltzmann method", 2008, section III C.
 #ifndef SIM_LBM_WALLS_GLSL
 #define SIM_LBM_WALLS_GLSL
 #include "sim/lbm/bodies.glsl"
@@ -110,6 +112,25 @@ lbm_rim lbm_rim_at(uvec3 at, const int chunk) {
     return r;
 }
 
+#if LBM_Q == 27
+#define LBM_MIRRORS_X LBM_MIRRORS_27_X
+#define LBM_MIRRORS_Y LBM_MIRRORS_27_Y
+#define LBM_MIRRORS_Z LBM_MIRRORS_27_Z
+#else
+#define LBM_MIRRORS_X LBM_MIRRORS_19_X
+#define LBM_MIRRORS_Y LBM_MIRRORS_19_Y
+#define LBM_MIRRORS_Z LBM_MIRRORS_19_Z
+#endif
+#if LBM_SCALAR_Q == 27
+#define LBM_SCALAR_MIRRORS_X LBM_MIRRORS_27_X
+#define LBM_SCALAR_MIRRORS_Y LBM_MIRRORS_27_Y
+#define LBM_SCALAR_MIRRORS_Z LBM_MIRRORS_27_Z
+#else
+#define LBM_SCALAR_MIRRORS_X(M) M(1, 2)
+#define LBM_SCALAR_MIRRORS_Y(M) M(3, 4)
+#define LBM_SCALAR_MIRRORS_Z(M) M(5, 6)
+#endif
+
 // What flies away from a face from what flies towards it: a goes up along the axis, b down.
 #define LBM_MIRROR(F, a, b, low, high)                                                             \
     {                                                                                              \
@@ -171,17 +192,17 @@ struct lbm_within {
 
 lbm_within lbm_look_within(ivec3 outward, vec4 f[LBM_Q]) {
     lbm_within w = lbm_within(f[0], f[0] + 5.0 / 6.0, lbm_vec_all(vec3(0.0)));
-#define ADD(v, along, x, y, z)                                                                     \
+#define ADD(v, along, X, Y, Z)                                                                     \
     w.twice += float(1 + along) * v;                                                               \
     w.mass += along < 0 ? vec4(0.0) : v;                                                           \
-    w.momentum.x += along < 0 ? vec4(0.0) : float(x) * v;                                          \
-    w.momentum.y += along < 0 ? vec4(0.0) : float(y) * v;                                          \
-    w.momentum.z += along < 0 ? vec4(0.0) : float(z) * v;
-#define LOOK(i, x, y, z)                                                                           \
+    w.momentum.x += along < 0 ? vec4(0.0) : float(X) * v;                                          \
+    w.momentum.y += along < 0 ? vec4(0.0) : float(Y) * v;                                          \
+    w.momentum.z += along < 0 ? vec4(0.0) : float(Z) * v;
+#define LOOK(i, X, Y, Z)                                                                           \
     {                                                                                              \
-        int along = x * outward.x + y * outward.y + z * outward.z;                                 \
-        ADD(f[i], along, x, y, z)                                                                  \
-        ADD(f[i + 1], -along, -(x), -(y), -(z))                                                          \
+        int along = X * outward.x + Y * outward.y + Z * outward.z;                                 \
+        ADD(f[i], along, X, Y, Z)                                                                  \
+        ADD(f[i + 1], -along, -(X), -(Y), -(Z))                                                          \
     }
     LBM_PAIRS(LOOK)
 #undef LOOK
@@ -200,6 +221,37 @@ lbm_vec lbm_velocity(vec4 f[LBM_Q]) {
     LBM_PAIRS(ADD)
 #undef ADD
     return lbm_vec(m.x / density, m.y / density, m.z / density);
+}
+
+// To equilibrium, the stress of what arrives from within, and that of its mirror from beyond.
+void lbm_add_stress(ivec3 outward, vec4 part, vec4 f[LBM_Q], inout vec4 made[LBM_Q]) {
+    vec4 xx = vec4(0.0), yy = xx, zz = xx, xy = xx, xz = xx, yz = xx;
+#define SUM(i, X, Y, Z)                                                                            \
+    {                                                                                              \
+        int along = X * outward.x + Y * outward.y + Z * outward.z;                                 \
+        vec4 a = f[i] - made[i], b = f[i + 1] - made[i + 1];                                       \
+        vec4 both = along == 0 ? a + b : 2.0 * (along > 0 ? a : b);                                \
+        if (X != 0) xx += both;                                                                    \
+        if (Y != 0) yy += both;                                                                    \
+        if (Z != 0) zz += both;                                                                    \
+        xy += float(X * Y) * both;                                                                 \
+        xz += float(X * Z) * both;                                                                 \
+        yz += float(Y * Z) * both;                                                                 \
+    }
+    LBM_PAIRS(SUM)
+#undef SUM
+    part *= 4.5;
+    vec4 third = (xx + yy + zz) * (1.0 / 3.0);
+    made[0] -= LBM_REST * part * third;
+#define ADD(i, X, Y, Z)                                                                            \
+    {                                                                                              \
+        vec4 along = float(X * X) * xx + float(Y * Y) * yy + float(Z * Z) * zz - third +           \
+                     2.0 * (float(X * Y) * xy + float(X * Z) * xz + float(Y * Z) * yz);            \
+        made[i] += LBM_WEIGHT(X, Y, Z) * part * along;                                             \
+        made[i + 1] += LBM_WEIGHT(X, Y, Z) * part * along;                                         \
+    }
+    LBM_PAIRS(ADD)
+#undef ADD
 }
 
 void lbm_pass_face(lbm_rim r, uvec3 at, const int chunk, inout vec4 f[LBM_Q]) {
@@ -229,6 +281,7 @@ void lbm_pass_face(lbm_rim r, uvec3 at, const int chunk, inout vec4 f[LBM_Q]) {
     u.z = mix(u.z + enters * wind.z, n.z * out_, bvec4(outward.z != 0));
     vec4 made[LBM_Q];
     lbm_set_equilibrium(excess, u, made);
+    lbm_add_stress(outward, 1.0 - enters, f, made);
     for (int i = 0; i < LBM_Q; i++) f[i] = mix(f[i], made[i], r.lanes);
 }
 
@@ -237,9 +290,9 @@ void lbm_pass_face_with(const int s, lbm_rim r, float ambient, vec4 f[LBM_Q], in
     lbm_vec u = lbm_velocity(f);
     vec4 out_ = LBM_ALONG(u, outward.x, outward.y, outward.z);
     vec4 value = g[0];
-#define LOOK(i, x, y, z)                                                                           \
+#define LOOK(i, X, Y, Z)                                                                           \
     {                                                                                              \
-        int along = x * outward.x + y * outward.y + z * outward.z;                                 \
+        int along = X * outward.x + Y * outward.y + Z * outward.z;                                 \
         value += float(1 + along) * g[i] + float(1 - along) * g[i + 1];                            \
     }
     LBM_SCALAR_PAIRS(LOOK)
