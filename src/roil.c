@@ -234,9 +234,56 @@ uint32_t roil_samples(const roil_effect *e) {
     return effect_samples(e->effect);
 }
 
+bool roil_get_simulation(const roil_effect *e, roil_simulation *out) {
+    effect_simulation now;
+    bool any = effect_get_simulation(e->effect, &now);
+    *out = (roil_simulation){now.waiting, now.reached, now.trouble, now.where};
+    return any;
+}
+
+void roil_restart(roil_effect *e) {
+    effect_restart(e->effect);
+}
+
+void roil_on_progress(roil_effect *e, void (*call)(void *user, double done, double whole),
+                      void *user) {
+    effect_on_progress(e->effect, call, user);
+}
+
+size_t roil_readouts(roil_effect *e, roil_readout *out, size_t capacity) {
+    size_t count = 0;
+    for (size_t i = 0; i < effect_pass_count(e->effect); i++) {
+        const pass *p = effect_get_pass(e->effect, i);
+        const pass_simulation *simulation = pass_get_simulation(p);
+        pass_readout values[16];
+        size_t found = simulation && e->width ? simulation->readouts(p, values, 16) : 0;
+        for (size_t k = 0; k < found && k < 16; k++, count++) {
+            if (count >= capacity) continue;
+            out[count] =
+                (roil_readout){pass_label(p), values[k].name, values[k].unit, values[k].value};
+        }
+    }
+    return count;
+}
+
+// A pass may have been timed in parts, each several times: those of one name are added up.
+static size_t add_up(gpu_pass_time *times, size_t count) {
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        size_t k = 0;
+        while (k < kept && strcmp(times[k].label, times[i].label) != 0) k++;
+        if (k < kept)
+            times[k].milliseconds += times[i].milliseconds;
+        else
+            times[kept++] = times[i];
+    }
+    return kept;
+}
+
 size_t roil_times(roil_effect *e, roil_time *out, size_t capacity) {
     gpu_pass_time *times = mem_alloc(GPU_MAX_PASSES * sizeof *times);
-    size_t count = gpu_frame_times(e->owner->device, e->frame, times, GPU_MAX_PASSES);
+    size_t count =
+        add_up(times, gpu_frame_times(e->owner->device, e->frame, times, GPU_MAX_PASSES));
     for (size_t i = 0; i < count && i < capacity; i++) {
         str_copy(out[i].pass, sizeof out[i].pass, times[i].label);
         out[i].milliseconds = times[i].milliseconds;

@@ -110,6 +110,27 @@ bool roil_advance(roil_effect *e, double frame);
 // frame adds to them. 0: nothing in the picture is.
 uint32_t roil_samples(const roil_effect *e);
 
+typedef struct roil_simulation { // what goes on from frame to frame in steps of its own
+    bool waiting;   // the last rendered frame shows an earlier state: render it again (punctual)
+    double reached; // seconds of the effect; -INFINITY: nothing yet
+    const char *trouble; // which key to change; NULL: none
+    const char *pass;    // of the trouble
+} roil_simulation;
+// A frame that does not follow the last has the frames between simulated first: from the last one
+// on, or, back in time, from the beginning. A punctual roil does that over several frames.
+bool roil_get_simulation(const roil_effect *e, roil_simulation *out); // false: nothing simulates
+void roil_restart(roil_effect *e); // simulations begin anew with the next frame
+// Is told, while frames that were left out are simulated, of the steps done and wanted.
+void roil_on_progress(roil_effect *e, void (*call)(void *user, double done, double whole),
+                      void *user);
+
+typedef struct roil_readout { // what a pass tells of itself: "Mach", "time step"
+    const char *pass, *name, *unit;
+    double value;
+} roil_readout;
+// After roil_prepare; returns how many there are. At most `capacity` are written.
+size_t roil_readouts(roil_effect *e, roil_readout *out, size_t capacity);
+
 typedef struct roil_time { // GPU time of a pass in the last frame
     char pass[64];
     double milliseconds;

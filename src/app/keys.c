@@ -38,6 +38,14 @@ static void go_last(live *l) {
     seek(l, l->time.to);
 }
 
+static void restart(live *l) {
+    roil_simulation simulation;
+    if (!l->effect || !roil_get_simulation(l->effect, &simulation)) return;
+    roil_restart(l->effect);
+    l->dirty = true;
+    live_notice(l, "Simulated anew");
+}
+
 static void loop(live *l) {
     l->time.loop = !l->time.loop;
     live_notice(l, l->time.loop ? "Starts again at the end" : "Stops at the end");
@@ -110,6 +118,7 @@ static const live_key keys[] = {
     {GLFW_KEY_HOME, 0, "Home", "first frame of the range", go_first},
     {GLFW_KEY_END, 0, "End", "last frame of the range", go_last},
     {GLFW_KEY_L, 0, "L", "start again at the end, or stop", loop},
+    {GLFW_KEY_BACKSPACE, 0, "Backspace", "begin the simulation anew", restart},
     {GLFW_KEY_F, 0, "F", "frame the volume", camera_frame},
     {GLFW_KEY_R, 0, "R", "camera of the effect file", camera_reset},
     {GLFW_KEY_V, 0, "V", "picture at full, half, quarter size", preview},

@@ -141,10 +141,16 @@ static bool gathers(const live *l) {
     return samples > 0 && samples < MOST_SAMPLES;
 }
 
-// Whether a frame of a sequence came too late for the picture.
+// Whether a simulation has not come as far as the picture.
+static bool simulates(const live *l) {
+    roil_simulation simulation;
+    return roil_get_simulation(l->effect, &simulation) && simulation.waiting;
+}
+
+// Whether that, or a frame of a sequence, came too late for the picture.
 static bool waits(const live *l) {
     roil_playback playback;
-    return roil_get_playback(l->effect, &playback) && playback.waiting;
+    return simulates(l) || (roil_get_playback(l->effect, &playback) && playback.waiting);
 }
 
 static void draw_effect(live *l, loop *p) {
@@ -172,6 +178,8 @@ static void advance(live *l, loop *p, double seconds) {
         l->held = false;
         changed(l);
     }
+    // Time that a simulation cannot keep up with passes more slowly.
+    if (can_draw(l) && simulates(l)) seconds = 0;
     bool moved = l->effect && timeline_advance(&l->time, seconds);
     if (l->broken && !l->held && l->time.frame != l->broken_frame)
         l->broken = NULL; // another time may do

@@ -82,6 +82,20 @@ static const char *hint_of(const live *l) {
     return l->effect ? "The last good effect goes on." : NULL;
 }
 
+// How far a simulation is behind, or what is wrong with it. False: there is nothing to say.
+static bool say_simulation(const live *l, char *out, size_t capacity) {
+    roil_simulation s;
+    if (!l->effect || !roil_get_simulation(l->effect, &s)) return false;
+    double time = timeline_seconds(&l->time);
+    if (s.waiting && isfinite(s.reached))
+        snprintf(out, capacity, "Simulating: %.2f of %.2f s", s.reached, time);
+    else if (s.waiting)
+        snprintf(out, capacity, "Simulating");
+    else if (s.trouble)
+        snprintf(out, capacity, "%s: %s", s.pass, s.trouble);
+    return s.waiting || s.trouble;
+}
+
 void overlay_draw(live *l, ui_rect view) {
     if (!is_room(view)) return;
     const char *message = message_of(l);
@@ -93,5 +107,9 @@ void overlay_draw(live *l, ui_rect view) {
         draw_card(message, hint_of(l), card);
         bottom = card.top - SPACING * ui_scale();
     }
-    if (l->notice[0] && clock_seconds() < l->notice_until) draw_notice(l->notice, view, bottom);
+    char simulation[640];
+    if (l->notice[0] && clock_seconds() < l->notice_until)
+        draw_notice(l->notice, view, bottom);
+    else if (say_simulation(l, simulation, sizeof simulation))
+        draw_notice(simulation, view, bottom);
 }

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { PANEL_READOUTS = 64 };
 static const float SEARCH = 48, PRESETS = 78; // heights of the parts that do not scroll, units
 
 panel *panel_create(void) {
@@ -37,14 +38,29 @@ static void draw_rows(live *l, const panel_section *s) {
     ui_table_end();
 }
 
-static void draw_content(live *l, const panel_section *s) {
-    const roil_control *c = &l->panel->controls[l->panel->model.rows[s->first]];
-    if (s->part != PANEL_SHAPE)
-        draw_rows(l, s);
-    else if (c->type == ROIL_PALETTE)
+// What a pass tells of itself, under what it lets one turn.
+static void draw_readouts(live *l, const char *pass) {
+    roil_readout all[PANEL_READOUTS];
+    size_t count = roil_readouts(l->effect, all, PANEL_READOUTS);
+    for (size_t i = 0; i < count && i < PANEL_READOUTS; i++) {
+        if (strcmp(all[i].pass, pass) != 0) continue;
+        ui_text_color(UI_DIM, "%s  %.4g %s", all[i].name, all[i].value, all[i].unit);
+    }
+}
+
+static void draw_shape(live *l, const roil_control *c) {
+    if (c->type == ROIL_PALETTE)
         palette_draw(l, c->name);
     else
         curve_draw(l, c->name);
+}
+
+static void draw_content(live *l, const panel_section *s) {
+    if (s->part == PANEL_SHAPE)
+        draw_shape(l, &l->panel->controls[l->panel->model.rows[s->first]]);
+    else
+        draw_rows(l, s);
+    if (s->part == PANEL_PASS) draw_readouts(l, s->title);
 }
 
 // What a run of sections has in common, where it is worth saying.

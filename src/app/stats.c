@@ -7,11 +7,12 @@
 #include "base/statistics.h"
 #include <inttypes.h>
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_PASSES = 256, MAX_COUNTERS = 64 };
+enum { MAX_PASSES = 256, MAX_COUNTERS = 64, MAX_READOUTS = 64 };
 
 typedef struct frame_stats {
     double number, seconds;
@@ -28,6 +29,8 @@ struct app_stats {
     bool plays;                // sequences
     roil_playback first, last; // after the first frame, whose first data nobody could read ahead
     double began, ended;       // clock_seconds
+    roil_readout readouts[MAX_READOUTS]; // after the last frame; strings are the effect's
+    size_t readout_count;
 };
 
 app_stats *app_stats_create(void) {
@@ -47,6 +50,8 @@ void app_stats_add(app_stats *s, roil_effect *e, double frame, double seconds) {
     MEM_RESERVE(s->frames, s->count + 1, s->capacity);
     s->frames[s->count++] = f;
     s->plays = roil_get_playback(e, &s->last);
+    s->readout_count = roil_readouts(e, s->readouts, MAX_READOUTS);
+    if (s->readout_count > MAX_READOUTS) s->readout_count = MAX_READOUTS;
     s->ended = clock_seconds();
     if (s->count > 1) return;
     s->first = s->last;
@@ -110,6 +115,17 @@ static void print_playback(const app_stats *s) {
            (double)p->frame_bytes * 1e-6, bytes_a_voxel(p), (double)p->device_bytes * 1e-6);
 }
 
+static void print_readouts(const app_stats *s) {
+    for (size_t i = 0; i < s->readout_count; i++) {
+        const roil_readout *r = &s->readouts[i];
+        bool first = i == 0 || strcmp(r->pass, s->readouts[i - 1].pass) != 0;
+        if (first) printf("%s%s:", i ? "\n" : "", r->pass);
+        printf("%s %s %.4g%s%s", first ? "" : ",", r->name, r->value, r->unit[0] ? " " : "",
+               r->unit);
+    }
+    if (s->readout_count) printf("\n");
+}
+
 void app_stats_print(const app_stats *s) {
     if (!s->count) return;
     double *values = mem_alloc(s->count * sizeof *values);
@@ -123,6 +139,7 @@ void app_stats_print(const app_stats *s) {
     printf("%-20s %10.3f %10.3f\n", "all", total.median, total.p95);
     mem_free(values);
     print_playback(s);
+    print_readouts(s);
 }
 
 // ---- file -------------------------------------------------------------------------------------
@@ -153,6 +170,17 @@ static json_t *playback_json(const app_stats *s) {
                      "threads", (int)p->threads);
 }
 
+static json_t *readouts_json(const app_stats *s) {
+    json_t *all = json_object();
+    for (size_t i = 0; i < s->readout_count; i++) {
+        const roil_readout *r = &s->readouts[i];
+        char name[160];
+        snprintf(name, sizeof name, "%s.%s", r->pass, r->name);
+        if (isfinite(r->value)) json_object_set_new(all, name, json_real(r->value));
+    }
+    return all;
+}
+
 bool app_stats_save(const app_stats *s, const char *file, const roil *r, const char *effect,
                     uint32_t width, uint32_t height, const roil_setting *settings, size_t count) {
     json_t *root = json_pack("{s:s, s:s, s:s, s:s, s:i, s:i}", "roil", roil_version(), "effect",
@@ -171,6 +199,7 @@ bool app_stats_save(const app_stats *s, const char *file, const roil *r, const c
     json_object_set_new(root, "set", set);
     json_object_set_new(root, "median_gpu_ms", median);
     json_object_set_new(root, "frames", frames);
+    if (s->readout_count) json_object_set_new(root, "readouts", readouts_json(s));
     if (s->plays) json_object_set_new(root, "sequences", playback_json(s));
     char *text = json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(6));
     json_decref(root);

@@ -31,6 +31,7 @@ effect *effect_create(const effect_desc *desc) {
     e->root = arena_string(&e->memory, folder);
     e->name = arena_string(&e->memory, path_name(desc->file));
     e->fps = 24;
+    e->updated = (double)NAN;
     e->frames = 1;
     e->first = 1;
     scene_init(&e->scene, &e->memory);

@@ -233,6 +233,17 @@ size_t effect_files(const effect *e, const char *const **out); // all that were 
 // set. Returns the GPU's frame number, 0 on error.
 uint64_t effect_render(effect *e, double frame, bool jump);
 
+typedef struct effect_simulation {
+    bool waiting;        // they have not reached the last frame yet: render it again (punctual)
+    double reached;      // seconds; -INFINITY: nothing
+    const char *trouble; // of the pass `where`: which key to change; NULL: none
+    const char *where;
+} effect_simulation;
+bool effect_get_simulation(const effect *e, effect_simulation *out); // false: nothing simulates
+void effect_restart(effect *e); // simulations begin anew with the next frame
+// Is told, while effect_render runs frames that were left out, of the steps done and wanted.
+void effect_on_progress(effect *e, void (*call)(void *user, double done, double whole), void *user);
+
 // Samples a pixel of the last frame, of that pass `reference` which has the fewest; 0: the picture
 // needs none.
 uint32_t effect_samples(const effect *e);

@@ -7,6 +7,14 @@ void effect_copy_settings(effect *e, const effect_setting *settings, size_t coun
 // Applies the settings that name this pass; called before it enters the graph.
 bool effect_apply_settings(void *user, pass *p);
 
+// ---- a frame ------------------------------------------------------------------------------------
+
+bool effect_runs(const effect *e, const pass *p); // some part of it; after the graph was compiled
+// Evaluates a frame. `again`: the same as the last, for which `update` ran.
+bool effect_evaluate(effect *e, double frame, gpu *device, bool again);
+// Brings simulations to the frame. `*again`: `update` need not run for it.
+bool effect_simulate(effect *e, double frame, bool *again);
+
 // ---- controls ---------------------------------------------------------------------------------
 
 typedef struct control {
@@ -106,8 +114,12 @@ struct effect {
     struct frame_block frame;
     struct light_block lights;
     uint32_t width, height;
-    uint32_t counter;            // frames rendered so far
-    double last_frame;           // number of the frame rendered last
+    uint32_t counter;  // frames rendered so far
+    double last_frame; // number of the frame rendered last
+    double updated;    // frame that `update` ran for last; NAN: none
+    bool behind;       // simulations have not reached the frame rendered last
+    void (*progress)(void *user, double done, double whole); // effect_on_progress
+    void *progress_user;
     shared_mat4 clip, last_clip; // world to clip of the frame being recorded, of the one before
     bool has_last;               // there is one before, of which histories tell
     bool compiled, allocated;

@@ -37,7 +37,7 @@ static bool make_bvh(effect *e) {
         bool found = false;
         for (size_t k = 0; k < e->pass_count && !found; k++) {
             scene_mesh *const *meshes;
-            size_t n = pass_meshes(e->passes[k], &meshes);
+            size_t n = pass_draws_meshes(e->passes[k]) ? pass_meshes(e->passes[k], &meshes) : 0;
             for (size_t m = 0; m < n && !found; m++) found = meshes[m] == e->meshes[i];
         }
         if (found) drawn[count++] = e->meshes[i];
@@ -53,7 +53,7 @@ static bool is_part(const char *name, const char *label) {
     return strncmp(name, label, length) == 0 && (name[length] == '\0' || name[length] == '.');
 }
 
-static bool runs(const effect *e, const pass *p) {
+bool effect_runs(const effect *e, const pass *p) {
     const char *names[GPU_MAX_PASSES];
     size_t count = graph_order(e->graph, names, COUNT_OF(names));
     for (size_t i = 0; i < count && i < COUNT_OF(names); i++)
@@ -63,7 +63,7 @@ static bool runs(const effect *e, const pass *p) {
 
 // What draws pictures that are not wanted needs no shaders.
 static bool is_wanted(const effect *e, const pass *p) {
-    return !e->unseen || runs(e, p);
+    return !e->unseen || effect_runs(e, p);
 }
 
 enum { ANY_SIZE = 64 }; // of a picture: finds what is wrong with a graph whatever its size
@@ -77,13 +77,19 @@ static bool build_one(void *user, size_t index) {
     return !is_wanted(e, e->passes[index]) || pass_build(e->passes[index]);
 }
 
+static bool complete(effect *e) {
+    for (size_t i = 0; i < e->pass_count; i++)
+        if (!pass_complete(e->passes[i])) return false;
+    return true;
+}
+
 bool effect_check(effect *e) {
-    return check_reference(e) && add_outputs(e) && make_bvh(e) &&
+    return check_reference(e) && add_outputs(e) && complete(e) && make_bvh(e) &&
            worker_each(e->pass_count, check_one, e) && graph_compile(e->graph, ANY_SIZE, ANY_SIZE);
 }
 
 bool effect_compile(effect *e) {
-    if (!check_reference(e) || !add_outputs(e) || !make_bvh(e) ||
+    if (!check_reference(e) || !add_outputs(e) || !complete(e) || !make_bvh(e) ||
         !graph_compile(e->graph, ANY_SIZE, ANY_SIZE) || !worker_each(e->pass_count, build_one, e))
         return false;
     e->width = e->height = ANY_SIZE;
@@ -109,12 +115,18 @@ bool effect_build(effect *e, uint32_t width, uint32_t height) {
     return (e->compiled || effect_compile(e)) && effect_allocate(e, width, height);
 }
 
+static bool update(effect *e, double frame) {
+    double dt = isnan(e->updated) ? 0 : (frame - e->updated) / e->fps;
+    e->updated = frame;
+    return !e->hooks.update || e->hooks.update(e->hooks.user, e->context.time, dt);
+}
+
 // Without a device grids know their bounds only.
-static bool evaluate(effect *e, double frame, gpu *device) {
+bool effect_evaluate(effect *e, double frame, gpu *device, bool again) {
     double time = (frame - e->first) / e->fps;
     double dt = e->counter ? (frame - e->last_frame) / e->fps : 0;
     e->context.time = time;
-    if (e->hooks.update && !e->hooks.update(e->hooks.user, time, dt)) return false;
+    if (!again && !update(e, frame)) return false;
     if (!scene_fill_frame(&e->scene, &e->context, (float)e->width / (float)e->height, &e->frame) ||
         !scene_fill_lights(&e->scene, &e->context, &e->lights))
         return false;
@@ -130,15 +142,15 @@ static bool evaluate(effect *e, double frame, gpu *device) {
 uint32_t effect_samples(const effect *e) {
     uint32_t least = 0, samples;
     for (size_t i = 0; i < e->pass_count; i++)
-        if (pass_samples(e->passes[i], &samples) && runs(e, e->passes[i]))
+        if (pass_samples(e->passes[i], &samples) && effect_runs(e, e->passes[i]))
             least = least && least < samples ? least : samples;
     return least;
 }
 
 bool effect_rehearse(effect *e, double frame) {
-    if (!evaluate(e, frame, NULL)) return false;
+    if (!effect_evaluate(e, frame, NULL, false)) return false;
     for (size_t i = 0; i < e->pass_count; i++) {
-        if (!runs(e, e->passes[i]) || pass_rehearse(e->passes[i])) continue;
+        if (!effect_runs(e, e->passes[i]) || pass_rehearse(e->passes[i])) continue;
         return err_prefix("pass '%s': ", pass_label(e->passes[i]));
     }
     return true;
@@ -151,10 +163,12 @@ static void forget(effect *e) { // the frames before
 
 uint64_t effect_render(effect *e, double frame, bool jump) {
     if (e->counter && !jump && frame != e->last_frame + 1) forget(e);
+    bool again;
+    if (!effect_simulate(e, frame, &again)) return 0;
     uint64_t number = gpu_frame_begin(e->device);
     if (!number) return 0;
     e->host.fresh = !e->has_last;
-    bool done = evaluate(e, frame, e->device) &&
+    bool done = effect_evaluate(e, frame, e->device, again) &&
                 scene_bvh_update(e->host.bvh, e->device, &e->context) &&
                 graph_execute(e->graph, e->device);
     if (!gpu_frame_end(e->device)) done = false;
@@ -215,6 +229,7 @@ bool effect_adopt(effect *e, effect *from, uint32_t width, uint32_t height) {
     e->height = height;
     e->counter = from->counter;
     e->last_frame = from->last_frame;
+    e->updated = from->updated;
     e->has_last = from->has_last;
     e->last_clip = from->last_clip;
     return true;

@@ -217,6 +217,22 @@ size_t field_grids(const field *node, const field_grid **out, size_t capacity) {
     return list.count;
 }
 
+static bool samples(map *seen, const field *node, const field_grid *grid, int image) {
+    if (map_find(seen, node, 0)) return false;
+    map_set(seen, node, 0, 0);
+    bool found = kind_of(node) == KIND_GRID && node->object == grid && node->index / 4 == image;
+    for (size_t i = 0; i < kind_arg_count(node) && !found; i++)
+        found = samples(seen, node->args[i], grid, image);
+    return found;
+}
+
+bool field_samples(const field *node, const field_grid *grid, int image) {
+    map seen = {0};
+    bool found = samples(&seen, node, grid, image);
+    map_free(&seen);
+    return found;
+}
+
 static void print(const field *node, strbuf *out, size_t limit) {
     if (out->length > limit) return;
     switch (kind_of(node)) {

@@ -150,4 +150,6 @@ bool field_bounds(const field *node, const field_context *context, box3 *out);
 float field_longest(const field *node, const field_context *context);
 // Every grid the tree samples, each once; returns the count (writes at most `capacity`).
 size_t field_grids(const field *node, const field_grid **out, size_t capacity);
+// Whether the tree samples channels of that image of the grid.
+bool field_samples(const field *node, const field_grid *grid, int image);
 void field_print(const field *node, strbuf *out); // one line, for messages and `roil info graph`

@@ -48,7 +48,7 @@ bool bake_declare(pass *p) {
                                                             .keep = true,
                                                         });
     if (!p->images[output].id) return false;
-    pass_host_add_grid_image(p->host, grid, p->images[output]);
+    pass_host_add_grid_image(p->host, grid, 0, p->images[output]);
     return pass_add_to_graph(p);
 }
 

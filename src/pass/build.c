@@ -216,6 +216,10 @@ static bool make_pipeline(pass *p) {
 }
 
 bool pass_build(pass *p) {
+    return p->runs_in || pass_build_part(p);
+}
+
+bool pass_build_part(pass *p) {
     p->program = generate(p);
     if (!p->program) return err_prefix("%s: ", p->label);
     if (p->type && p->type->build) {
@@ -237,6 +241,10 @@ bool pass_allocate(pass *p) {
 
 // What pass_build can find wrong without a device.
 bool pass_check(pass *p) {
+    return p->runs_in || pass_check_part(p);
+}
+
+bool pass_check_part(pass *p) {
     p->program = generate(p);
     if (!p->program) return err_prefix("%s: ", p->label);
     if (p->type && p->type->check) return p->type->check(p);

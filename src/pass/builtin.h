@@ -50,3 +50,19 @@ bool bake_build(pass *p);
 bool bake_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool bake_record(pass *p);
 void bake_destroy(pass *p);
+
+bool lbm_declare(pass *p);
+bool lbm_complete(pass *p);
+bool lbm_check(pass *p);
+bool lbm_build_pass(pass *p);
+bool lbm_allocate_pass(pass *p);
+bool lbm_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool lbm_rehearse(pass *p);
+bool lbm_record(pass *p);
+void lbm_destroy_pass(pass *p);
+extern const pass_simulation lbm_simulation;
+
+bool lbm_source_declare(pass *p);
+bool lbm_source_check(pass *p);
+bool lbm_source_build(pass *p);
+bool lbm_source_fill(pass *p, const shader_binary *binary, unsigned char *block);

@@ -55,15 +55,19 @@ static void list_image(image_list *list, graph_image image) {
     list->at[list->count++] = image;
 }
 
+static void list_grid(const pass *p, size_t index, const field_grid *grid, image_list *list) {
+    for (int k = 0; k < FIELD_GRID_IMAGES; k++) {
+        graph_image image = pass_grid_image(p->host, grid, k);
+        if (image.id && field_samples(p->fields[index], grid, k)) list_image(list, image);
+    }
+}
+
 // Grids that passes of the graph make and the pass's fields sample.
 static void list_grids(const pass *p, image_list *list) {
     for (size_t i = 0; i < p->face->field_count; i++) {
         const field_grid *grids[64];
         size_t count = p->fields[i] ? field_grids(p->fields[i], grids, COUNT_OF(grids)) : 0;
-        for (size_t g = 0; g < count && g < COUNT_OF(grids); g++) {
-            graph_image image = pass_grid_image(p->host, grids[g]);
-            if (image.id) list_image(list, image);
-        }
+        for (size_t g = 0; g < count && g < COUNT_OF(grids); g++) list_grid(p, i, grids[g], list);
     }
 }
 
@@ -127,6 +131,7 @@ bool pass_add_part(pass *p, const pass_part *part) {
     *user = (part_record){p, part->record};
     for (size_t i = 0; i < part->read_count; i++) list_image(&reads, part->reads[i]);
     if (part->fields) list_grids(p, &reads);
+    for (size_t i = 0; i < part->with_count; i++) list_grids(part->with[i], &reads);
     bool done = graph_add_pass(
         p->host->graph, &(graph_pass_desc){
                             .name = arena_format(p->host->memory, "%s.%s", p->label, part->name),
@@ -134,6 +139,7 @@ bool pass_add_part(pass *p, const pass_part *part) {
                             .read_count = reads.count,
                             .writes = part->writes,
                             .write_count = part->write_count,
+                            .simulates = part->simulates,
                             .record = record_part,
                             .user = user,
                         });
@@ -164,13 +170,21 @@ bool pass_declare(pass *p) {
     return pass_declare_images(p) && pass_add_to_graph(p);
 }
 
-void pass_host_add_grid_image(pass_host *host, const field_grid *grid, graph_image image) {
-    MEM_RESERVE(host->grid_images, host->grid_image_count + 1, host->grid_image_capacity);
-    host->grid_images[host->grid_image_count++] = (pass_grid){grid, image};
+bool pass_complete(pass *p) {
+    if (p->completed) return true;
+    p->completed = true;
+    return !p->type || !p->type->complete || p->type->complete(p);
 }
 
-graph_image pass_grid_image(const pass_host *host, const field_grid *grid) {
+void pass_host_add_grid_image(pass_host *host, const field_grid *grid, int index,
+                              graph_image image) {
+    MEM_RESERVE(host->grid_images, host->grid_image_count + 1, host->grid_image_capacity);
+    host->grid_images[host->grid_image_count++] = (pass_grid){grid, index, image};
+}
+
+graph_image pass_grid_image(const pass_host *host, const field_grid *grid, int index) {
     for (size_t i = 0; i < host->grid_image_count; i++)
-        if (host->grid_images[i].grid == grid) return host->grid_images[i].image;
+        if (host->grid_images[i].grid == grid && host->grid_images[i].index == index)
+            return host->grid_images[i].image;
     return (graph_image){0};
 }

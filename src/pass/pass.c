@@ -210,11 +210,19 @@ bool pass_set_format(pass *p, const char *output, gpu_format format) {
 }
 
 bool pass_add_mesh(pass *p, scene_mesh *mesh) {
-    if (!p->type || strcmp(p->type->name, "geometry") != 0)
+    if (!p->type || p->type->meshes == PASS_REFUSES_MESHES)
         return err_set("%s: takes no meshes; pass them to geometry", p->label);
     MEM_RESERVE(p->meshes, p->mesh_count + 1, p->mesh_capacity);
     p->meshes[p->mesh_count++] = mesh;
     return true;
+}
+
+bool pass_draws_meshes(const pass *p) {
+    return p->type && p->type->meshes == PASS_DRAWS_MESHES;
+}
+
+const pass_simulation *pass_get_simulation(const pass *p) {
+    return p->type ? p->type->simulation : NULL;
 }
 
 size_t pass_meshes(const pass *p, scene_mesh *const **out) {

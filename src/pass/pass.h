@@ -12,8 +12,9 @@
 
 typedef struct pass pass;
 
-typedef struct pass_grid { // a grid that a pass of the graph fills
+typedef struct pass_grid { // an image of a grid that a pass of the graph fills
     const field_grid *grid;
+    int index; // of the grid's images
     graph_image image;
 } pass_grid;
 
@@ -22,15 +23,18 @@ typedef struct pass_host { // what all passes of one effect share
     shader_library *library;
     graph *graph;
     arena *memory;
-    const field_context *context;                // of the frame being recorded
-    const struct frame_block *frame;             // of the frame being recorded
-    const struct light_block *lights;            // of the frame being recorded
-    const scene *scene;                          // for its sky
-    struct scene_bvh *bvh;                       // of all meshes; after pass_allocate
-    struct pass_ranges *ranges;                  // owned: of grids (pass/ranges.h)
-    gpu_image *blue_noise;                       // texture "BlueNoise" of lib/random.glsl
-    bool fresh;                                  // histories begin with the frame being recorded
-    bool counters;                               // compile counters in and read them
+    const field_context *context;     // of the frame being recorded
+    const struct frame_block *frame;  // of the frame being recorded
+    const struct light_block *lights; // of the frame being recorded
+    const scene *scene;               // for its sky
+    struct scene_bvh *bvh;            // of all meshes; after pass_allocate
+    struct pass_ranges *ranges;       // owned: of grids (pass/ranges.h)
+    gpu_image *blue_noise;            // texture "BlueNoise" of lib/random.glsl
+    bool fresh;                       // histories begin with the frame being recorded
+    bool ahead;    // the frame being recorded is not drawn: what simulates goes on alone
+    bool hold;     // what simulates stays as it is
+    bool brief;    // a submit is to be short, so that a window stays awake
+    bool counters; // compile counters in and read them
     const shader_reader *reader;                 // of all files of shaders; may be NULL
     bool (*before_declare)(void *user, pass *p); // last chance to change a pass; may be NULL
     void *user;
@@ -40,21 +44,49 @@ typedef struct pass_host { // what all passes of one effect share
     size_t declared_count, declared_capacity;
 } pass_host;
 
-// Passes whose fields sample `grid` run after the pass that writes `image`.
-void pass_host_add_grid_image(pass_host *host, const field_grid *grid, graph_image image);
+// Passes whose fields sample that image of `grid` run after the pass that writes `image`.
+void pass_host_add_grid_image(pass_host *host, const field_grid *grid, int index,
+                              graph_image image);
 void pass_host_free(pass_host *host);
+
+typedef struct pass_readout { // what a pass can tell of itself
+    const char *name, *unit;  // "Mach", ""
+    double value;
+} pass_readout;
+
+// Of a type whose work goes on from frame to frame in steps of its own. `record` brings it toward
+// the time of the frame, by as many steps as one submit may take.
+typedef struct pass_simulation {
+    int64_t (*left)(const pass *p, double time); // steps until it shows `time`; below 0: it is past
+    int64_t (*most)(const pass *p);              // steps of one submit
+    double (*reached)(const pass *p); // the latest time that it shows; -INFINITY: none yet
+    void (*restart)(pass *p);         // begins anew with the next record
+    // At most `capacity`; returns the count. After pass_allocate.
+    size_t (*readouts)(const pass *p, pass_readout *out, size_t capacity);
+    const char *(*trouble)(const pass *p); // what is wrong and which key to change; NULL: nothing
+} pass_simulation;
+
+typedef enum pass_meshes_use { // what a type does with the meshes that it is given
+    PASS_REFUSES_MESHES,
+    PASS_DRAWS_MESHES, // rays meet them too
+    PASS_USES_MESHES,  // as shapes that need not be seen
+} pass_meshes_use;
 
 typedef struct pass_type {
     const char *name;   // "march"
     const char *shader; // "pass/march.comp"
+    pass_meshes_use meshes;
+    const pass_simulation *simulation; // NULL: it does not simulate
     // Optional hooks.
     bool (*declare)(pass *p);  // instead of one image per output
+    bool (*complete)(pass *p); // see pass_complete
     bool (*check)(pass *p);    // compile all that build would, without a device
     bool (*build)(pass *p);    // instead of one pipeline; see pass_build
     bool (*allocate)(pass *p); // besides what every pass needs; see pass_allocate
     // Uniforms that the host computes, written into a block of `binary`'s layout.
     bool (*fill)(pass *p, const shader_binary *binary, unsigned char *block);
-    bool (*record)(pass *p); // instead of one dispatch over the first output
+    bool (*rehearse)(pass *p); // besides what every pass evaluates
+    bool (*record)(pass *p);   // instead of one dispatch over the first output
     void (*destroy)(pass *p);
 } pass_type;
 
@@ -81,7 +113,7 @@ bool pass_set_image(pass *p, const char *name, graph_image image);
 bool pass_set_scale(pass *p,
                     float scale); // of its outputs, relative to the effect's output; (0, 1]
 bool pass_set_format(pass *p, const char *output, gpu_format format);
-bool pass_add_mesh(pass *p, scene_mesh *mesh); // geometry only
+bool pass_add_mesh(pass *p, scene_mesh *mesh); // of types that take them
 size_t pass_meshes(const pass *p, scene_mesh *const **out);
 // What `p` says nothing about it takes from `source`, a pass declared before, where both have
 // something of that name and type: images that it reads and `source` writes; fields, options and
@@ -93,6 +125,10 @@ typedef enum pass_key { PASS_UNKNOWN, PASS_UNIFORM, PASS_OPTION, PASS_FIELD, PAS
 pass_key pass_find_key(const pass *p, const char *name, size_t *index);
 
 bool pass_declare(pass *p); // checks that what is required is there; adds images and passes
+// When all is declared, before check and build; again: does nothing.
+bool pass_complete(pass *p);
+const pass_simulation *pass_get_simulation(const pass *p); // NULL: it does not simulate
+bool pass_draws_meshes(const pass *p);
 // Compiles the shaders; needs no device. Passes of one effect may be checked, or built, side by
 // side.
 bool pass_check(pass *p);

@@ -42,7 +42,13 @@ struct pass {
     gpu_image **unread;  // one per entry of `face`: what an optional output is while unread
     field_grid *baked;   // bake only: the grid it fills
     void *state;         // of the type's hooks
+    bool completed;
+    pass *runs_in; // the pass that builds and runs this one; NULL: the graph does
 };
+
+// Of a pass that runs in another.
+bool pass_check_part(pass *p);
+bool pass_build_part(pass *p);
 
 // ---- help for hooks ---------------------------------------------------------------------------
 
@@ -80,8 +86,8 @@ gpu_image *pass_field_image(const pass *p, const field_texture *texture);
 bool pass_prepare(pass *p); // uniforms, field numbers, palettes and counters of this frame
 bool pass_run(pass *p);     // one dispatch or full-screen draw over the first output
 bool pass_record(pass *p);  // both
-graph_image pass_grid_image(const pass_host *host,
-                            const field_grid *grid);         // zero: not of the graph
+// That image of a grid; zero: it is not of the graph.
+graph_image pass_grid_image(const pass_host *host, const field_grid *grid, int index);
 pass *pass_writer(const pass_host *host, graph_image image); // NULL: of no pass declared before
 int pass_find_image(const pass *p, const char *name);        // index in face->images, -1: none
 bool pass_declare_images(pass *p); // histories and outputs at the pass's scale
@@ -96,7 +102,10 @@ typedef struct pass_part {
     const char *name;
     const graph_image *reads, *writes;
     size_t read_count, write_count;
-    bool fields; // it evaluates the pass's fields, and so reads the grids that they sample
+    bool fields;       // it evaluates the pass's fields, and so reads the grids that they sample
+    pass *const *with; // passes whose fields it evaluates too
+    size_t with_count;
+    bool simulates; // graph_pass_desc
     bool (*record)(pass *p);
 } pass_part;
 bool pass_add_part(pass *p, const pass_part *part);
@@ -107,4 +116,6 @@ bool pass_density_box(const pass *p, box3 *box);
 // Into the members box_min and box_max of a block; an empty box is a point.
 void pass_write_box(const shader_binary *binary, unsigned char *block, box3 box);
 
-float pass_evaluate(pass *p, const char *uniform); // current value of a scalar uniform
+float pass_evaluate(const pass *p, const char *uniform); // current value of a scalar uniform
+// Of any uniform, one component in all four; false when a function of the script failed.
+bool pass_evaluate_vector(const pass *p, const char *uniform, float out[4]);

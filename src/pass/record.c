@@ -49,10 +49,15 @@ static bool evaluate(const pass *p, size_t index, float out[4]) {
     return true;
 }
 
-float pass_evaluate(pass *p, const char *name) {
+bool pass_evaluate_vector(const pass *p, const char *name, float out[4]) {
     size_t index;
-    float value[4] = {0};
-    if (pass_find_key(p, name, &index) == PASS_UNIFORM) evaluate(p, index, value);
+    memset(out, 0, 4 * sizeof *out);
+    return pass_find_key(p, name, &index) != PASS_UNIFORM || evaluate(p, index, out);
+}
+
+float pass_evaluate(const pass *p, const char *name) {
+    float value[4];
+    pass_evaluate_vector(p, name, value);
     return value[0];
 }
 
@@ -99,7 +104,7 @@ static gpu_image *palette_image(const pass *p, const palette *source) {
 }
 
 gpu_image *pass_field_image(const pass *p, const field_texture *t) {
-    graph_image made = pass_grid_image(p->host, t->grid);
+    graph_image made = pass_grid_image(p->host, t->grid, t->image);
     if (made.id) return graph_get_image(p->host->graph, made);
     gpu_image *image = t->grid->state.images[t->set][t->image];
     return image ? image : t->grid->state.images[0][t->image];
@@ -244,7 +249,7 @@ bool pass_rehearse(pass *p) {
         float tint[4];
         if (!scene_mesh_place(p->meshes[i], p->host->context, transform, tint)) return false;
     }
-    return fill_numbers(p);
+    return fill_numbers(p) && (!p->type || !p->type->rehearse || p->type->rehearse(p));
 }
 
 static bool draw_fullscreen(pass *p, const gpu_binding *bindings, size_t count) {

@@ -9,6 +9,7 @@ static const pass_type types[] = {
     {
         .name = "geometry",
         .shader = "pass/geometry.comp",
+        .meshes = PASS_DRAWS_MESHES,
         .declare = geometry_declare,
         .check = geometry_check,
         .build = geometry_build,
@@ -93,6 +94,29 @@ static const pass_type types[] = {
         .fill = bake_fill,
         .record = bake_record,
         .destroy = bake_destroy,
+    },
+    {
+        .name = "lbm",
+        .shader = "pass/lbm.comp",
+        .simulation = &lbm_simulation,
+        .declare = lbm_declare,
+        .complete = lbm_complete,
+        .check = lbm_check,
+        .build = lbm_build_pass,
+        .allocate = lbm_allocate_pass,
+        .fill = lbm_fill,
+        .rehearse = lbm_rehearse,
+        .record = lbm_record,
+        .destroy = lbm_destroy_pass,
+    },
+    {
+        .name = "lbm_source",
+        .shader = "pass/lbm_source.comp",
+        .meshes = PASS_USES_MESHES,
+        .declare = lbm_source_declare,
+        .check = lbm_source_check,
+        .build = lbm_source_build,
+        .fill = lbm_source_fill,
     },
 };
 

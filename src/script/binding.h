@@ -95,6 +95,7 @@ const char *value_get_string(lua_State *L, int table, const char *who, const cha
 // The key `name`; without one, the variable that the script assigns the call to; else `who`.
 const char *value_name_or_variable(lua_State *L, int table, const char *who); // naming.c
 bool value_get_vector(lua_State *L, int table, const char *who, const char *key, float out[3]);
+void value_push_box(lua_State *L, box3 box); // { min = {x, y, z}, max = {x, y, z} }
 int value_word(lua_State *L, int index, const char *who, const char *key, const char *const *words,
                size_t count);
 // Index among the words of the object's key; that of its default when absent.
@@ -107,6 +108,10 @@ void value_read_slots(lua_State *L, const char *who, void *out);
 void value_refuse_array(lua_State *L, const char *who);
 // A list of lights, in the effect's memory; returns how many.
 size_t value_lights(lua_State *L, int index, const char *who, scene_light **out);
+
+// A pass of a built-in type by the table at `table`, not declared yet. Keys among `own` are left to
+// the caller. script.unsound is `who` until the caller has declared it.
+pass *pass_make(lua_State *L, const char *type, const char *who, int table, const script_key *own);
 
 // ---- the objects' globals ---------------------------------------------------------------------
 
@@ -122,3 +127,4 @@ void l_grid_open(lua_State *L);
 void l_scene_open(lua_State *L);
 void l_light_open(lua_State *L);
 void l_pass_open(lua_State *L);
+void l_lbm_open(lua_State *L);

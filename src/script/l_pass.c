@@ -20,9 +20,10 @@ typedef struct result_object {
 typedef struct pass_call {
     pass *pass;
     const shader_interface *face;
-    const char *who;   // type or file, for messages
-    size_t next_input; // image that the next positional value is for
-    bool *taken;       // of the interface's images
+    const char *who;       // type or file, for messages
+    size_t next_input;     // image that the next positional value is for
+    bool *taken;           // of the interface's images
+    const script_key *own; // of the constructor, which reads them itself; NULL: none
 } pass_call;
 
 // ---- images -----------------------------------------------------------------------------------
@@ -165,6 +166,7 @@ static void unknown_key(lua_State *L, const pass_call *call, const char *key) {
     const shader_interface *face = call->face;
     size_t total = face->uniform_count + face->option_count + face->field_count + face->image_count;
     for (const script_key *k = reserved_keys(); k->name; k++) total++;
+    for (const script_key *k = call->own; k && k->name; k++) total++;
     const char **known = lua_newuserdatauv(L, total * sizeof *known, 0);
     size_t count = 0;
     for (size_t i = 0; i < face->uniform_count; i++) known[count++] = face->uniforms[i].name;
@@ -173,6 +175,7 @@ static void unknown_key(lua_State *L, const pass_call *call, const char *key) {
     for (size_t i = 0; i < face->image_count; i++)
         if (!face->images[i].output) known[count++] = face->images[i].name;
     for (const script_key *k = reserved_keys(); k->name; k++) known[count++] = k->name;
+    for (const script_key *k = call->own; k && k->name; k++) known[count++] = k->name;
     value_unknown(L, call->who, "key", key, known, count);
 }
 
@@ -276,14 +279,16 @@ static void read_table(lua_State *L, pass_call *call, int table, lua_Integer fir
         add_positional(L, call, lua_gettop(L));
         lua_pop(L, 1);
     }
-    double scale = value_get_number(L, table, call->who, "resolution", 1);
+    bool scaled = !script_key_find(call->own, "resolution");
+    double scale = scaled ? value_get_number(L, table, call->who, "resolution", 1) : 1;
     if (scale != 1 && !pass_set_scale(call->pass, (float)scale)) script_raise(L);
     set_formats(L, call, table);
     add_sources(L, call, table);
     size_t count;
     const char **names = value_names(L, table, call->who, &count);
     for (size_t i = 0; i < count; i++) {
-        if (script_key_find(reserved_keys(), names[i])) continue;
+        if (script_key_find(reserved_keys(), names[i]) || script_key_find(call->own, names[i]))
+            continue;
         value_get(L, table, names[i]);
         set_key(L, call, names[i]);
         lua_pop(L, 1);
@@ -299,22 +304,36 @@ static int settings_table(lua_State *L) {
     return n > 0 && value_is_plain_table(L, n) ? n : 0;
 }
 
+// The pass itself; the effect is unsound until it is declared.
+static void begin_pass(lua_State *L, pass_call *call, const char *type, const char *file,
+                       int table) {
+    script *s = script_of(L);
+    const char *label = table ? value_get_string(L, table, call->who, "name") : NULL;
+    vm_charge_memory(L, PASS_COST);
+    s->unsound = call->who;
+    call->pass = effect_add_pass(s->effect, type, file, label);
+    if (!call->pass) script_raise(L);
+    call->face = pass_interface(call->pass);
+    vm_charge_memory(L, (call->face->uniform_count + call->face->option_count + 1) *
+                            EFFECT_CONTROL_COST);
+    call->taken = lua_newuserdatauv(L, call->face->image_count + 1, 0);
+    memset(call->taken, 0, call->face->image_count + 1);
+}
+
+pass *pass_make(lua_State *L, const char *type, const char *who, int table, const script_key *own) {
+    pass_call call = {.who = who, .own = own};
+    begin_pass(L, &call, type, NULL, table);
+    read_table(L, &call, table, 1);
+    return call.pass;
+}
+
 static int make_pass(lua_State *L, const char *type, const char *file, int first_positional,
                      lua_Integer first_element) {
     script *s = script_of(L);
     int n = lua_gettop(L), table = settings_table(L);
     pass_call call = {.who = type ? type : file};
-    const char *label = table ? value_get_string(L, table, call.who, "name") : NULL;
-    vm_charge_memory(L, PASS_COST);
     const char *unsound = s->unsound;
-    s->unsound = call.who;
-    call.pass = effect_add_pass(s->effect, type, file, label);
-    if (!call.pass) script_raise(L);
-    call.face = pass_interface(call.pass);
-    vm_charge_memory(L, (call.face->uniform_count + call.face->option_count + 1) *
-                            EFFECT_CONTROL_COST);
-    call.taken = lua_newuserdatauv(L, call.face->image_count + 1, 0);
-    memset(call.taken, 0, call.face->image_count + 1);
+    begin_pass(L, &call, type, file, table);
     for (int i = first_positional; i <= n - (table != 0); i++) add_positional(L, &call, i);
     if (table) read_table(L, &call, table, first_element);
     if (!pass_declare(call.pass)) script_raise(L);
@@ -349,6 +368,14 @@ static int l_shader(lua_State *L) {
     return make_pass(L, NULL, file, direct ? 2 : 1, direct ? 1 : 2);
 }
 
+// Made by a function of its own, or a method: bake(field), lbm { }, air:source { }.
+static bool has_constructor(const char *type) {
+    static const char *const types[] = {"bake", "lbm", "lbm_source"};
+    for (size_t i = 0; i < COUNT_OF(types); i++)
+        if (strcmp(types[i], type) == 0) return true;
+    return false;
+}
+
 void l_pass_open(lua_State *L) {
     static const luaL_Reg none[] = {{NULL, NULL}};
     static const luaL_Reg result[] = {{"__index", l_result_index}, {NULL, NULL}};
@@ -357,7 +384,7 @@ void l_pass_open(lua_State *L) {
     size_t count;
     const pass_type *types = pass_types(&count);
     for (size_t i = 0; i < count; i++) {
-        if (strcmp(types[i].name, "bake") == 0) continue; // bake(field) makes it
+        if (has_constructor(types[i].name)) continue;
         lua_pushstring(L, types[i].name);
         lua_pushcclosure(L, l_pass, 1);
         lua_setglobal(L, types[i].name);

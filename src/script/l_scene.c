@@ -62,8 +62,14 @@ static int l_sky(lua_State *L) {
     return 1;
 }
 
+// mesh { "data/ground.obj", ... }, or mesh "data/ground.obj".
 static int l_mesh(lua_State *L) {
     scene_mesh values = {0};
+    if (lua_type(L, 1) == LUA_TSTRING) {
+        lua_createtable(L, 1, 0);
+        lua_insert(L, 1);
+        lua_rawseti(L, 1, 1);
+    }
     value_read_slots(L, "mesh", &values);
     if (lua_rawlen(L, 1) != 1 || lua_rawgeti(L, 1, 1) != LUA_TSTRING)
         vm_error(L, "mesh: its file comes first, as in mesh { \"data/ground.obj\" }");

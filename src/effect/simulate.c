@@ -1,0 +1,130 @@
+// Simulations brought to the time of a frame before it is drawn. Where frames were left out (a
+// jump, the first frame, seconds of warming up), they run all the same, with `update` and the
+// numbers of their own time, but without pictures: each in a submit of its own, or in several where
+// it is long.
+//
+// A live window waits for this no longer than a moment. It shows the simulation as far as it has
+// come, and goes on with the next picture.
+#include "base/clock.h"
+#include "base/error.h"
+#include "effect/effect_impl.h"
+#include <math.h>
+
+static const double patience = 0.03; // seconds, of a live window
+
+static double time_of(const effect *e, double frame) {
+    return (frame - e->first) / e->fps;
+}
+
+// The next pass that simulates and runs, from `*index` on; NULL: no more.
+static pass *next_simulation(const effect *e, size_t *index) {
+    while (*index < e->pass_count) {
+        pass *p = e->passes[(*index)++];
+        if (pass_get_simulation(p) && effect_runs(e, p)) return p;
+    }
+    return NULL;
+}
+
+// Steps of all simulations until they show a time.
+static int64_t left(const effect *e, double time) {
+    int64_t sum = 0;
+    pass *p;
+    for (size_t i = 0; (p = next_simulation(e, &i));) {
+        int64_t one = pass_get_simulation(p)->left(p, time);
+        if (one > 0) sum += one;
+    }
+    return sum;
+}
+
+// Whether the record of a frame does all that is left.
+static bool is_near(const effect *e, double time) {
+    pass *p;
+    for (size_t i = 0; (p = next_simulation(e, &i));)
+        if (pass_get_simulation(p)->left(p, time) > pass_get_simulation(p)->most(p)) return false;
+    return true;
+}
+
+static double reached(const effect *e) {
+    double least = (double)INFINITY;
+    pass *p;
+    for (size_t i = 0; (p = next_simulation(e, &i));)
+        least = fmin(least, pass_get_simulation(p)->reached(p));
+    return least;
+}
+
+// Those that are past the time begin anew.
+static void turn_back(effect *e, double time) {
+    pass *p;
+    for (size_t i = 0; (p = next_simulation(e, &i));)
+        if (pass_get_simulation(p)->left(p, time) < 0) pass_get_simulation(p)->restart(p);
+}
+
+void effect_restart(effect *e) {
+    pass *p;
+    if (!e->compiled) return;
+    for (size_t i = 0; (p = next_simulation(e, &i));) pass_get_simulation(p)->restart(p);
+}
+
+// The first frame that has not been simulated, not after `frame`.
+static double next_frame(const effect *e, double frame) {
+    double shown = reached(e);
+    double next = isfinite(shown) ? floor(shown * e->fps + 1e-6) + e->first + 1 : (double)e->first;
+    return fmin(fmax(next, (double)e->first), frame);
+}
+
+static bool run_frame(effect *e, double frame, bool again) {
+    if (!gpu_frame_begin(e->device)) return false;
+    e->host.ahead = true;
+    bool done = effect_evaluate(e, frame, e->device, again) &&
+                graph_execute_simulation(e->graph, e->device);
+    e->host.ahead = false;
+    if (!gpu_frame_end(e->device)) done = false;
+    return done;
+}
+
+static bool run(effect *e, double frame, bool *again) {
+    double next = next_frame(e, frame), end = clock_seconds() + patience;
+    double time = time_of(e, frame);
+    int64_t whole = left(e, time);
+    while (next < frame || !is_near(e, time)) {
+        if (e->punctual && clock_seconds() > end) {
+            e->behind = true;
+            break;
+        }
+        if (!run_frame(e, next, *again)) return false;
+        double done = (double)(whole - left(e, time));
+        if (e->progress) e->progress(e->progress_user, done, (double)whole);
+        *again = next == frame || left(e, time_of(e, next)) > 0;
+        if (!*again) next = fmin(next + 1, frame);
+    }
+    return true;
+}
+
+bool effect_simulate(effect *e, double frame, bool *again) {
+    *again = e->behind = e->host.hold = false;
+    if (!graph_simulates(e->graph)) return true;
+    e->host.brief = e->punctual;
+    turn_back(e, time_of(e, frame));
+    if (!run(e, frame, again)) return false;
+    e->host.hold = e->behind;
+    *again = *again || e->behind; // what frames before it set is not to be set after it
+    return true;
+}
+
+bool effect_get_simulation(const effect *e, effect_simulation *out) {
+    *out = (effect_simulation){.waiting = e->behind};
+    if (!e->compiled || !graph_simulates(e->graph)) return false;
+    out->reached = reached(e);
+    pass *p;
+    for (size_t i = 0; (p = next_simulation(e, &i)) && !out->trouble;) {
+        out->trouble = pass_get_simulation(p)->trouble(p);
+        out->where = pass_label(p);
+    }
+    return true;
+}
+
+void effect_on_progress(effect *e, void (*call)(void *user, double done, double whole),
+                        void *user) {
+    e->progress = call;
+    e->progress_user = user;
+}

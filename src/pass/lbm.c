@@ -1,0 +1,202 @@
+// Life of the pass type `lbm`: what it is made of is known when the script has run.
+#include "pass/lbm.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "pass/builtin.h"
+#include "pass/lbm_parts.h"
+#include <math.h>
+#include <string.h>
+
+const char *const pass_lbm_names[PASS_LBM_NAMES] = {"density", "temperature", "dye", "pressure",
+                                                    "velocity"};
+
+// ---- the grid ---------------------------------------------------------------------------------
+
+static bool update_grid(field_grid *grid, gpu *g, double time) {
+    (void)grid;
+    (void)g;
+    (void)time;
+    return true; // the pass does
+}
+
+static void destroy_grid(field_grid *grid, gpu *g) { // memory is the effect's, images the graph's
+    (void)grid;
+    (void)g;
+}
+
+static bool same_place(const lbm_air *a, const lbm_air *b) {
+    return memcmp(&a->grid.box, &b->grid.box, sizeof a->grid.box) == 0 &&
+           a->units.step == b->units.step && a->desc.warm_up == b->desc.warm_up;
+}
+
+static bool exchange_grids(field_grid *grid, field_grid *other) {
+    lbm_air *a = (lbm_air *)grid, *b = (lbm_air *)other;
+    if (!a->solver || !b->solver || !same_place(a, b) || !lbm_exchange(a->solver, b->solver))
+        return false;
+    bool fresh = a->fresh;
+    a->fresh = b->fresh;
+    b->fresh = fresh;
+    a->shown_steps = b->shown_steps = UINT64_MAX;
+    return true;
+}
+
+static const char *field_name(const field_grid *grid, size_t index) {
+    const lbm_air *a = (const lbm_air *)grid;
+    for (int i = 0; i < PASS_LBM_NAMES; i++)
+        if (a->used[i] && index-- == 0) return pass_lbm_names[i];
+    return NULL;
+}
+
+static int find_field(field_grid *grid, const char *name, int *components) {
+    return pass_lbm_use(((lbm_air *)grid)->pass, name, components);
+}
+
+static box3 box_of(const pass_lbm_desc *d) {
+    float h = (float)d->voxel_size, w[3];
+    for (int i = 0; i < 3; i++) w[i] = h * (float)d->size[i];
+    return (box3){{d->position.x - w[0] / 2, d->position.y - w[1] / 2, d->position.z},
+                  {d->position.x + w[0] / 2, d->position.y + w[1] / 2, d->position.z + w[2]}};
+}
+
+static bool check(const pass *p, const pass_lbm_desc *d) {
+    if (!(d->voxel_size >= 1e-6 && d->voxel_size <= 1e6))
+        return err_set("%s: 'voxel_size' is %g m; accepted: 1e-6 to 1e6", p->label, d->voxel_size);
+    if (!(d->speed >= 1e-6 && d->speed <= 1e6))
+        return err_set("%s: 'speed' is %g m/s; accepted: 1e-6 to 1e6", p->label, d->speed);
+    if (!(d->time_step >= 0 && d->time_step <= 3600))
+        return err_set("%s: 'time_step' is %g s; accepted: 0 to 3600, where 0 goes by 'speed'",
+                       p->label, d->time_step);
+    if (!(d->warm_up >= 0 && d->warm_up <= 86400))
+        return err_set("%s: 'warm_up' is %g s; accepted: 0 to 86400", p->label, d->warm_up);
+    return true;
+}
+
+field_grid *pass_lbm_open(pass *p, const pass_lbm_desc *desc) {
+    if (!check(p, desc)) return NULL;
+    lbm_air *a = p->state = arena_alloc(p->host->memory, sizeof *a);
+    *a = (lbm_air){
+        .grid = {.name = p->label,
+                 .box = box_of(desc),
+                 .size = {desc->size[0], desc->size[1], desc->size[2]},
+                 .channel_count = PASS_LBM_CHANNELS,
+                 .simulated = true,
+                 .state = {.active = box_of(desc)},
+                 .update = update_grid,
+                 .destroy = destroy_grid,
+                 .exchange = exchange_grids,
+                 .field_name = field_name,
+                 .find_field = find_field},
+        .pass = p,
+        .desc = *desc,
+        .units = sim_units_make(desc->voxel_size, desc->speed, desc->time_step),
+        .givers = {.updated = (double)NAN},
+        .solids = {.updated = (double)NAN},
+        .force = {.turn = UINT64_MAX},
+        .fresh = true,
+        .shown_steps = UINT64_MAX,
+    };
+    a->used[PASS_LBM_DENSITY] = true;
+    static const char *const parts[LBM_LABELS] = {"step", "voxels", "sources", "fields"};
+    for (int i = 0; i < LBM_LABELS; i++)
+        a->labels[i] = arena_format(p->host->memory, "%s.%s", p->label, parts[i]);
+    return &a->grid;
+}
+
+double pass_lbm_time_step(const pass *p) {
+    return lbm_air_of(p)->units.step;
+}
+
+int pass_lbm_use(pass *p, const char *name, int *components) {
+    for (int i = 0; i < PASS_LBM_NAMES; i++) {
+        if (strcmp(pass_lbm_names[i], name) != 0) continue;
+        lbm_air_of(p)->used[i] = true;
+        *components = i == PASS_LBM_VELOCITY ? 3 : 1;
+        return i;
+    }
+    const char *near = str_nearest(name, pass_lbm_names, PASS_LBM_NAMES);
+    err_set("%s: no field '%s'; %s%s%s", p->label, name, near ? "did you mean '" : "",
+            near ? near : "it has density, temperature, dye, velocity and pressure",
+            near ? "'?" : "");
+    return -1;
+}
+
+// ---- declaring --------------------------------------------------------------------------------
+
+static bool add_image(pass *p, lbm_air *a, const char *output, int index) {
+    int image = pass_find_image(p, output);
+    p->images[image] = graph_add_image(
+        p->host->graph, &(graph_image_desc){
+                            .name = arena_format(p->host->memory, "%s.%s", p->label, output),
+                            .format = p->formats[image],
+                            .width = a->desc.size[0],
+                            .height = a->desc.size[1],
+                            .depth = a->desc.size[2],
+                            .optional = true,
+                            .keep = true,
+                        });
+    if (!p->images[image].id) return false;
+    pass_host_add_grid_image(p->host, &a->grid, index, p->images[image]);
+    return true;
+}
+
+bool lbm_declare(pass *p) {
+    lbm_air *a = lbm_air_of(p);
+    return add_image(p, a, "scalars", 0) && add_image(p, a, "velocity", PASS_LBM_VELOCITY / 4);
+}
+
+static size_t option(const pass *p, const char *name) {
+    size_t index;
+    return pass_find_key(p, name, &index) == PASS_OPTION ? p->options[index] : 0;
+}
+
+// A constant that is 0 leaves the subgrid term out.
+static bool has_subgrid(const pass *p) {
+    size_t index;
+    if (pass_find_key(p, "smagorinsky", &index) != PASS_UNIFORM) return false;
+    const field *given = p->uniforms[index];
+    return !given || strcmp(given->kind->name, "constant") != 0 || given->value[0] > 0;
+}
+
+static uint32_t count_scalars(const lbm_air *a) {
+    return a->used[PASS_LBM_DYE] ? 3 : a->used[PASS_LBM_TEMPERATURE] ? 2 : 1;
+}
+
+static lbm_desc structure_of(const pass *p, const lbm_air *a) {
+    static const char *const faces[] = {"boundary_left", "boundary_right",  "boundary_front",
+                                        "boundary_back", "boundary_bottom", "boundary_top"};
+    lbm_desc d = {
+        .set = (lbm_set)option(p, "velocity_set"),
+        .scalar_set = (lbm_scalar_set)option(p, "scalar_set"),
+        .collision = (lbm_collision)option(p, "collision"),
+        .forcing = (lbm_forcing)option(p, "forcing"),
+        .precision = (lbm_precision)option(p, "precision"),
+        .scalars = count_scalars(a),
+        .subgrid = has_subgrid(p),
+        .force = lbm_air_force_varies(p),
+        .bodies = a->solids.count > 0,
+    };
+    memcpy(d.size, a->desc.size, sizeof d.size);
+    for (int i = 0; i < 6; i++) d.faces[i] = (lbm_face)option(p, faces[i]);
+    return d;
+}
+
+bool lbm_complete(pass *p) {
+    lbm_air *a = lbm_air_of(p);
+    lbm_desc structure = structure_of(p, a);
+    a->stops = option(p, "guard") == 1;
+    a->solver = lbm_create(p->host->memory, &structure);
+    if (!a->solver || !lbm_air_make_bodies(a)) return err_prefix("%s: ", p->label);
+    a->guard = lbm_guard_create(p->host->memory, a->desc.size);
+    const graph_image writes[] = {p->images[pass_find_image(p, "scalars")],
+                                  p->images[pass_find_image(p, "velocity")]};
+    return a->guard && pass_add_part(p, &(pass_part){
+                                            .name = "step",
+                                            .writes = writes,
+                                            .write_count = COUNT_OF(writes),
+                                            .fields = true,
+                                            .with = a->sources,
+                                            .with_count = a->source_count,
+                                            .simulates = true,
+                                            .record = lbm_record,
+                                        });
+}

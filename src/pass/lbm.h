@@ -1,0 +1,38 @@
+// The pass type `lbm`: simulated air (sim/lbm.h) as a grid that fields sample. Its uniforms and
+// options are those of shaders/pass/lbm.comp; its sources are passes of the type `lbm_source`,
+// which it runs itself.
+//
+// Time: a step of the solver is a fixed part of a second. The state stands one step ahead of the
+// time that is drawn, so that the states before and after it are mixed: what is drawn, and how
+// often, never changes what is simulated. Fields of sources, uniforms and bodies are evaluated at
+// the time of each step; grids that fields sample, and what `update` sets, are those of the frame.
+#pragma once
+#include "pass/pass.h"
+
+typedef struct pass_lbm_desc {
+    uint32_t size[3];  // cells
+    double voxel_size; // metres
+    float3 position;   // of the middle of the lowest face, metres
+    double speed;      // m/s that the air is expected to stay below
+    double time_step;  // seconds; 0: by the speed
+    double warm_up;    // seconds that are simulated before time 0
+} pass_lbm_desc;
+
+enum { // channels of the grid
+    PASS_LBM_DENSITY,
+    PASS_LBM_TEMPERATURE,
+    PASS_LBM_DYE,
+    PASS_LBM_PRESSURE,
+    PASS_LBM_VELOCITY,
+    PASS_LBM_NAMES, // of these
+    PASS_LBM_CHANNELS = 8,
+};
+extern const char *const pass_lbm_names[PASS_LBM_NAMES];
+
+// Before pass_declare; then the grid is the effect's. NULL with a message.
+field_grid *pass_lbm_open(pass *p, const pass_lbm_desc *desc);
+double pass_lbm_time_step(const pass *p); // seconds
+// Before pass_complete: a field of that name is wanted. Its first channel; -1 with a message.
+int pass_lbm_use(pass *p, const char *name, int *components);
+bool pass_lbm_add_source(pass *p, pass *source); // declared before
+bool pass_lbm_add_collider(pass *p, scene_mesh *mesh);

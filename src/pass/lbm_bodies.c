@@ -1,0 +1,108 @@
+// Meshes in simulated air: those of sources and those that it flows around, each as cells.
+#include "base/error.h"
+#include "base/memory.h"
+#include "pass/lbm_parts.h"
+#include <math.h>
+#include <string.h>
+
+bool lbm_air_add_body(lbm_air *a, lbm_meshes *m, const scene_mesh *mesh) {
+    if (m->count == VOXELS_MAX_BODIES)
+        return err_set("%s: more than %d meshes of %s", a->pass->label, VOXELS_MAX_BODIES,
+                       m == &a->givers ? "sources" : "colliders");
+    MEM_RESERVE(m->bodies, m->count + 1, m->capacity);
+    m->bodies[m->count] = (voxels_body){.mesh = mesh, .id = (uint8_t)(m->count + 1)};
+    m->count++;
+    return true;
+}
+
+bool pass_lbm_add_collider(pass *p, scene_mesh *mesh) {
+    lbm_air *a = lbm_air_of(p);
+    return lbm_air_add_body(a, &a->solids, mesh);
+}
+
+static bool make(lbm_air *a, lbm_meshes *m) {
+    voxels_desc desc = {.box = a->grid.box, .bodies = m->bodies, .body_count = m->count};
+    memcpy(desc.size, a->desc.size, sizeof desc.size);
+    if (m->count) m->cells = voxels_create(a->pass->host->memory, &desc);
+    return !m->count || m->cells;
+}
+
+static bool compile(lbm_air *a, lbm_meshes *m) {
+    const pass_host *host = a->pass->host;
+    return !m->cells || voxels_compile(m->cells, host->library, host->reader);
+}
+
+static bool build(lbm_air *a, lbm_meshes *m) {
+    return compile(a, m) && (!m->cells || voxels_build(m->cells, a->pass->host->device));
+}
+
+static bool allocate(lbm_air *a, lbm_meshes *m) {
+    return !m->cells || voxels_allocate(m->cells, a->pass->host->device);
+}
+
+static bool move(lbm_air *a, lbm_meshes *m, voxels_change *change) {
+    const pass_host *host = a->pass->host;
+    double now = host->context->time, passed = isnan(m->updated) ? 0 : now - m->updated;
+    *change = (voxels_change){false, false};
+    if (!m->cells) return true;
+    m->updated = now;
+    return voxels_update(m->cells, host->device, host->context, passed, change);
+}
+
+static void destroy(lbm_air *a, lbm_meshes *m) {
+    if (m->cells) voxels_destroy(m->cells, a->pass->host->device);
+    mem_free(m->bodies);
+}
+
+bool lbm_air_make_bodies(lbm_air *a) {
+    return make(a, &a->givers) && make(a, &a->solids);
+}
+
+bool lbm_air_check_bodies(lbm_air *a) {
+    return compile(a, &a->givers) && compile(a, &a->solids);
+}
+
+bool lbm_air_build_bodies(lbm_air *a) {
+    return build(a, &a->givers) && build(a, &a->solids);
+}
+
+bool lbm_air_allocate_bodies(lbm_air *a) {
+    return allocate(a, &a->givers) && allocate(a, &a->solids);
+}
+
+static float3 in_steps(const lbm_air *a, float3 v) { // from m/s to cells a step
+    float k = (float)sim_velocity(&a->units, 1);
+    return (float3){v.x * k, v.y * k, v.z * k};
+}
+
+// How a body goes on. One that grows does not push the air.
+static lbm_body body_of(const lbm_air *a, size_t index) {
+    voxels_motion m;
+    voxels_get_motion(a->solids.cells, index, &m);
+    float3 corner = a->grid.box.min, v = in_steps(a, m.linear);
+    float cell = (float)a->units.cell, step = (float)a->units.step;
+    return (lbm_body){
+        .centre = {(m.centre.x - corner.x) / cell, (m.centre.y - corner.y) / cell,
+                   (m.centre.z - corner.z) / cell},
+        .linear = {v.x, v.y, v.z},
+        .angular = {m.angular.x * step, m.angular.y * step, m.angular.z * step},
+    };
+}
+
+bool lbm_air_move_bodies(lbm_air *a, const lbm_numbers *numbers) {
+    voxels_change change;
+    lbm_body bodies[VOXELS_MAX_BODIES];
+    if (!move(a, &a->givers, &change) || !move(a, &a->solids, &change)) return false;
+    if (!a->solids.cells) return true;
+    for (size_t i = 0; i < a->solids.count; i++) bodies[i] = body_of(a, i);
+    return lbm_set_bodies(a->solver, a->pass->host->device, numbers,
+                          &(lbm_bodies){.ids = voxels_ids(a->solids.cells),
+                                        .changed = change.cells,
+                                        .bodies = bodies,
+                                        .count = (uint32_t)a->solids.count});
+}
+
+void lbm_air_destroy_bodies(lbm_air *a) {
+    destroy(a, &a->givers);
+    destroy(a, &a->solids);
+}

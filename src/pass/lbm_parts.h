@@ -1,0 +1,96 @@
+// The inside of the pass type `lbm`, for its own files only.
+#pragma once
+#include "pass/lbm.h"
+#include "pass/pass_impl.h"
+#include "scene/voxels.h"
+#include "sim/lbm.h"
+#include "sim/lbm_guard.h"
+#include "sim/units.h"
+
+typedef struct lbm_meshes { // bodies as cells; zero: none
+    voxels_body *bodies;
+    size_t count, capacity;
+    voxels *cells;
+    double updated; // time of the last update; NAN: none
+} lbm_meshes;
+
+typedef struct lbm_force { // that varies in space; zero: it does not
+    shader_binary shader;
+    gpu_pipeline *pipeline;
+    unsigned char *block;
+    gpu_image *image;
+    uint64_t turn; // in which it was baked (lbm_force.c); UINT64_MAX: never
+} lbm_force;
+
+enum { LBM_STEP, LBM_VOXELS, LBM_SOURCES, LBM_FIELDS, LBM_LABELS };
+
+typedef struct lbm_air {
+    field_grid grid; // first: the effect has it
+    pass *pass;
+    pass_lbm_desc desc;
+    sim_units units;
+    bool used[PASS_LBM_NAMES]; // by a field or a source
+
+    pass **sources;
+    size_t source_count, source_capacity;
+    lbm_meshes givers, solids; // of sources, of colliders
+    lbm *solver;               // after pass_complete
+    lbm_guard *guard;
+
+    lbm_force force;
+    const char *labels[LBM_LABELS]; // of times
+
+    bool fresh; // begins anew with the next record
+    bool stops; // on trouble
+    bool stopped;
+    char trouble[512]; // what it says; "": nothing
+    lbm_report report; // the newest
+    bool reported;
+    uint64_t shown_steps; // of the grid's content
+    double shown_blend;
+    uint64_t last_steps; // that the last record took
+} lbm_air;
+
+static inline lbm_air *lbm_air_of(const pass *p) {
+    return p->state;
+}
+
+// lbm_numbers.c: values as of the host's context
+bool lbm_air_numbers(const pass *p, lbm_numbers *out);
+sim_flow lbm_air_flow(const pass *p);
+bool lbm_air_force_varies(const pass *p);
+
+// lbm_time.c
+double lbm_air_step_time(const lbm_air *a, uint64_t step); // of the state before it
+int64_t lbm_air_left(const pass *p, double time);
+int64_t lbm_air_most(const pass *p);
+double lbm_air_reached(const pass *p);
+void lbm_air_restart(pass *p);
+bool lbm_air_advance(pass *p); // to the host's time, as far as one submit goes
+// How the two kept states are mixed for the host's time.
+double lbm_air_blend(const lbm_air *a, double time);
+
+// lbm_force.c
+bool lbm_air_compile_force(lbm_air *a);
+bool lbm_air_build_force(lbm_air *a);
+bool lbm_air_allocate_force(lbm_air *a);
+bool lbm_air_push(lbm_air *a); // the force as of the host's time, which is that of a step
+void lbm_air_destroy_force(lbm_air *a);
+
+// lbm_source.c
+bool lbm_air_run_source(lbm_air *a, pass *source);
+
+// lbm_bodies.c
+bool lbm_air_add_body(lbm_air *a, lbm_meshes *m, const scene_mesh *mesh);
+bool lbm_air_make_bodies(lbm_air *a); // when all are known
+bool lbm_air_check_bodies(lbm_air *a);
+bool lbm_air_build_bodies(lbm_air *a);
+bool lbm_air_allocate_bodies(lbm_air *a);
+// To the host's time, which is that of a step.
+bool lbm_air_move_bodies(lbm_air *a, const lbm_numbers *numbers);
+void lbm_air_destroy_bodies(lbm_air *a);
+
+// lbm_readouts.c
+bool lbm_air_watch(pass *p); // after steps: what the guard found, and what it is to look at
+size_t lbm_air_readouts(const pass *p, pass_readout *out, size_t capacity);
+const char *lbm_air_trouble(const pass *p);

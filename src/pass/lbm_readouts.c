@@ -1,0 +1,69 @@
+// What simulated air tells of itself, and the guard: what the device noticed some frames ago.
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include "pass/builtin.h"
+#include "pass/lbm_parts.h"
+#include <math.h>
+#include <string.h>
+
+static void tell(lbm_air *a) {
+    sim_flow flow = lbm_air_flow(a->pass);
+    double speed = (double)a->report.speed * a->units.cell / a->units.step;
+    if (a->report.bad)
+        snprintf(a->trouble, sizeof a->trouble,
+                 "the air in %u cells is no number any more: set 'speed' above %.3g m/s, or "
+                 "'collision' to \"central_moments\"",
+                 a->report.bad, a->desc.speed);
+    else if (!sim_advise_speed(&a->units, &flow, speed, a->trouble, sizeof a->trouble))
+        a->trouble[0] = '\0';
+}
+
+bool lbm_air_watch(pass *p) {
+    lbm_air *a = lbm_air_of(p);
+    gpu *device = p->host->device;
+    if (a->last_steps && !lbm_guard_record(a->guard, device, a->solver)) return false;
+    lbm_report report;
+    if (!lbm_guard_read(a->guard, device, &report)) return true;
+    if (a->reported && report.step == a->report.step) return true;
+    a->report = report;
+    a->reported = true;
+    tell(a);
+    a->stopped = a->stops && a->trouble[0];
+    return true;
+}
+
+const char *lbm_air_trouble(const pass *p) {
+    const lbm_air *a = lbm_air_of(p);
+    return a->trouble[0] ? a->trouble : NULL;
+}
+
+size_t lbm_air_readouts(const pass *p, pass_readout *out, size_t capacity) {
+    const lbm_air *a = lbm_air_of(p);
+    sim_flow flow = lbm_air_flow(p);
+    if (a->reported) flow.speed = (double)a->report.speed * a->units.cell / a->units.step;
+    sim_readout now = sim_judge(&a->units, &flow);
+    double cells = (double)a->desc.size[0] * a->desc.size[1] * a->desc.size[2];
+    const pass_readout all[] = {
+        {"tau", "", now.tau},
+        {"Mach", "", now.mach},
+        {"Reynolds", "", now.reynolds},
+        {"speed", "m/s", flow.speed},
+        {"time step", "s", a->units.step},
+        {"steps", "", (double)lbm_steps(a->solver)},
+        {"cells", "", cells},
+        {"updates", "cells", cells * (double)a->last_steps},
+        {"mass drift", "%", a->reported ? 100 * (double)a->report.drift : 0},
+    };
+    for (size_t i = 0; i < COUNT_OF(all) && i < capacity; i++) out[i] = all[i];
+    return COUNT_OF(all);
+}
+
+const pass_simulation lbm_simulation = {
+    .left = lbm_air_left,
+    .most = lbm_air_most,
+    .reached = lbm_air_reached,
+    .restart = lbm_air_restart,
+    .readouts = lbm_air_readouts,
+    .trouble = lbm_air_trouble,
+};

@@ -1,0 +1,171 @@
+// Simulated air: lbm { size = {64, 64, 96}, voxel_size = 0.05 } gives fields by name (air.density);
+// air:source { } gives it smoke, air:collider { } stands in its way.
+#include "base/memory.h"
+#include "pass/lbm.h"
+#include "script/binding.h"
+#include <math.h>
+#include <string.h>
+
+enum { BODY_COST = 4 << 10 }; // bytes of host memory charged for a mesh in the air
+
+typedef struct lbm_object {
+    pass *pass;
+    field_grid *grid;
+    double time_step;
+} lbm_object;
+
+// ---- reading ----------------------------------------------------------------------------------
+
+static void read_size(lua_State *L, pass_lbm_desc *desc) {
+    float size[3];
+    if (!value_get_vector(L, 1, "lbm", "size", size))
+        vm_error(L, "lbm: 'size' is missing: the cells of its box, as in {64, 64, 96}");
+    for (int i = 0; i < 3; i++) {
+        if (!(size[i] >= 4 && size[i] <= 1024 && size[i] == floorf(size[i])))
+            vm_error(L, "lbm: 'size' has %g; whole numbers from 4 to 1024 are accepted",
+                     (double)size[i]);
+        desc->size[i] = (uint32_t)size[i];
+    }
+    if (desc->size[0] % 4 != 0)
+        vm_error(L, "lbm: 'size' has x = %d; a multiple of 4 is needed", (int)desc->size[0]);
+    if (desc->size[2] % 8 != 0 || desc->size[2] < 16)
+        vm_error(L, "lbm: 'size' has z = %d; a multiple of 8 from 16 on is needed",
+                 (int)desc->size[2]);
+}
+
+static void read_desc(lua_State *L, pass_lbm_desc *desc) {
+    float position[3] = {0};
+    read_size(L, desc);
+    desc->voxel_size = value_get_number(L, 1, "lbm", "voxel_size", 0);
+    if (desc->voxel_size == 0)
+        vm_error(L, "lbm: 'voxel_size' is missing: the edge of a cell in metres");
+    value_get_vector(L, 1, "lbm", "position", position);
+    desc->position = (float3){position[0], position[1], position[2]};
+    desc->speed = value_get_number(L, 1, "lbm", "speed", 4);
+    desc->time_step = value_get_number(L, 1, "lbm", "time_step", 0);
+    desc->warm_up = value_get_number(L, 1, "lbm", "warm_up", 0);
+}
+
+static void set_face(lua_State *L, pass *p, const char *face) {
+    if (lua_type(L, -1) != LUA_TSTRING)
+        vm_error(L,
+                 "lbm: boundary: '%s' takes a word: \"open\", \"wall\", \"slip\", \"inflow\" or "
+                 "\"periodic\"; got a %s",
+                 face, luaL_typename(L, -1));
+    const char *option = lua_pushfstring(L, "boundary_%s", face);
+    if (!pass_set_option(p, option, lua_tostring(L, -2))) script_raise(L);
+    lua_pop(L, 1);
+}
+
+// Stands at the top of the stack: a word, or a table of them.
+static void set_boundary(lua_State *L, pass *p) {
+    static const char *const faces[] = {"left", "right", "front", "back", "bottom", "top"};
+    static const script_key keys[] = {{.name = "sides"}, {.name = "left"}, {.name = "right"},
+                                      {.name = "front"}, {.name = "back"}, {.name = "bottom"},
+                                      {.name = "top"},   {.name = NULL}};
+    if (!value_is_plain_table(L, -1)) {
+        for (size_t i = 0; i < COUNT_OF(faces); i++) set_face(L, p, faces[i]);
+        return;
+    }
+    int table = lua_gettop(L);
+    value_check_keys(L, table, "lbm: boundary", keys);
+    if (value_get(L, table, "sides") != LUA_TNIL)
+        for (size_t i = 0; i < 4; i++) set_face(L, p, faces[i]);
+    lua_pop(L, 1);
+    for (size_t i = 0; i < COUNT_OF(faces); i++) {
+        if (value_get(L, table, faces[i]) != LUA_TNIL) set_face(L, p, faces[i]);
+        lua_pop(L, 1);
+    }
+}
+
+static int l_lbm(lua_State *L) {
+    script_require_loading(L, "lbm");
+    if (lua_gettop(L) != 1 || !value_is_plain_table(L, 1))
+        vm_error(L, "lbm takes named values, as in lbm { size = {64, 64, 96}, voxel_size = 0.05 }");
+    pass_lbm_desc desc = {{0}, 0, {0, 0, 0}, 0, 0, 0};
+    read_desc(L, &desc);
+    script *s = script_of(L);
+    const char *unsound = s->unsound, *variable = value_name_or_variable(L, 1, "lbm");
+    lbm_object *object = object_new(L, "lbm", sizeof *object);
+    int result = lua_gettop(L);
+    pass *p = pass_make(L, "lbm", "lbm", 1, script_object_find("lbm")->keys);
+    if (value_get(L, 1, "boundary") != LUA_TNIL) set_boundary(L, p);
+    object->pass = p;
+    object->grid = pass_lbm_open(p, &desc);
+    if (!object->grid) script_raise(L);
+    object->time_step = pass_lbm_time_step(p);
+    effect_add_grid(s->effect, object->grid);
+    effect_name_grid(s->effect, object->grid, variable);
+    if (!pass_declare(p)) script_raise(L);
+    s->unsound = unsound;
+    lua_pushvalue(L, result);
+    return 1;
+}
+
+// ---- methods ----------------------------------------------------------------------------------
+
+static const lbm_object *self(lua_State *L, const char *method) {
+    const lbm_object *object = object_test(L, 1, "lbm");
+    if (!object || lua_gettop(L) != 2 || !value_is_plain_table(L, 2))
+        vm_error(L, "%s takes a table, as in air:%s { mesh { \"data/ball.obj\" } }: mind the ':'",
+                 method, method);
+    script_require_loading(L, method);
+    return object;
+}
+
+static int l_source(lua_State *L) {
+    const lbm_object *air = self(L, "source");
+    script *s = script_of(L);
+    const char *unsound = s->unsound;
+    pass *source = pass_make(L, "lbm_source", "source", 2, NULL);
+    vm_charge_memory(L, lua_rawlen(L, 2) * BODY_COST);
+    if (!pass_declare(source) || !pass_lbm_add_source(air->pass, source)) script_raise(L);
+    s->unsound = unsound;
+    return 0;
+}
+
+static int l_collider(lua_State *L) {
+    const lbm_object *air = self(L, "collider");
+    size_t names;
+    value_names(L, 2, "collider", &names);
+    lua_pop(L, 1);
+    lua_Integer count = (lua_Integer)lua_rawlen(L, 2);
+    if (names || count == 0)
+        vm_error(L, "collider takes meshes, as in air:collider { mesh { \"data/ball.obj\" } }");
+    for (lua_Integer i = 1; i <= count; i++) {
+        lua_rawgeti(L, 2, i);
+        const mesh_object *mesh = object_test(L, -1, "mesh");
+        if (!mesh) vm_error(L, "collider takes meshes; got a %s", luaL_typename(L, -1));
+        vm_charge_memory(L, BODY_COST);
+        if (!pass_lbm_add_collider(air->pass, mesh->mesh)) script_raise(L);
+        lua_pop(L, 1);
+    }
+    return 0;
+}
+
+// air.box, air.time_step, air:source, air:collider; every other name is a field's.
+static int l_index(lua_State *L) {
+    const lbm_object *air = luaL_checkudata(L, 1, "lbm");
+    const char *name = luaL_checkstring(L, 2);
+    if (strcmp(name, "source") == 0) {
+        lua_pushcfunction(L, l_source);
+    } else if (strcmp(name, "collider") == 0) {
+        lua_pushcfunction(L, l_collider);
+    } else if (strcmp(name, "time_step") == 0) {
+        lua_pushnumber(L, air->time_step);
+    } else if (strcmp(name, "box") == 0) {
+        value_push_box(L, air->grid->box);
+    } else {
+        script_require_loading(L, "a field of simulated air");
+        int components, channel = pass_lbm_use(air->pass, name, &components);
+        if (channel < 0) script_raise(L);
+        field_push(L, field_grid_channel(script_memory(L), air->grid, channel, components));
+    }
+    return 1;
+}
+
+void l_lbm_open(lua_State *L) {
+    static const luaL_Reg methods[] = {{"__index", l_index}, {NULL, NULL}};
+    object_type(L, "lbm", methods);
+    lua_register(L, "lbm", l_lbm);
+}
