@@ -1,22 +1,32 @@
-// Last of three dispatches: the ids of four cells at once, of the later part where several hold one.
-layout(local_size_x = 16, local_size_y = 16) in;
+// Last of three dispatches: the ids of a row of cells, of the later part where several hold one.
+layout(local_size_x = 8, local_size_y = 16, local_size_z = 2) in;
 #include "inside.glsl"
 layout(std430) writeonly buffer VoxelIds { uint voxel_ids[]; };
 
+const uint fours = 4u; // of cells, that a thread composes: as in src/scene/voxels.c
+
 void main() {
-    uvec3 at = gl_GlobalInvocationID * uvec3(4u, 1u, 1u);
+    uvec3 at = gl_GlobalInvocationID * uvec3(4u * fours, 1u, 1u);
     if (any(greaterThanEqual(at, voxel.size.xyz))) return;
+    uint count = min(fours, (voxel.size.x - at.x) / 4u);
     at += voxel.low.xyz;
-    uvec4 ids = uvec4(0u);
-    for (uint i = voxel.count.x; i-- > 0u && any(equal(ids, uvec4(0u)));) {
-        uvec3 cell = at;
-        if (!voxel_enter(voxel_parts[i], cell)) continue;
-        voxel_masks m = voxel_find_masks(voxel_parts[i]);
-        uvec4 inside = voxel_solid(m, cell);
-        if (voxel_parts[i].size.w != 0u) inside |= voxel_shell(m, cell);
-        ids = mix(ids, inside * voxel_parts[i].low.w, equal(ids, uvec4(0u)));
+    uvec4 ids[fours] = uvec4[fours](uvec4(0u), uvec4(0u), uvec4(0u), uvec4(0u));
+    for (uint i = 0u; i < voxel.count.x; i++) {
+        uvec3 low = voxel_parts[i].low.xyz, end = low + voxel_parts[i].size.xyz;
+        if (at.x + 4u * count <= low.x || at.x >= end.x || any(lessThan(at.yz, low.yz)) ||
+            any(greaterThanEqual(at.yz, end.yz)))
+            continue;
+        voxel_part p = voxel_parts[i];
+        voxel_masks m = voxel_find_masks(p);
+        for (uint k = 0u; k < fours; k++) {
+            uvec3 cell = at + uvec3(4u * k, 0u, 0u);
+            if (!voxel_enter(p, cell)) continue;
+            uvec4 inside = voxel_solid(m, cell);
+            if (p.size.w != 0u) inside |= voxel_shell(m, cell);
+            ids[k] = mix(ids[k], uvec4(p.low.w), notEqual(inside, uvec4(0u)));
+        }
     }
-    uint row = voxel.grid.x / 4u;
-    voxel_ids[at.x / 4u + row * (at.y + voxel.grid.y * at.z)] =
-        ids.x | ids.y << 8 | ids.z << 16 | ids.w << 24;
+    uint word = at.x / 4u + voxel.grid.x / 4u * (at.y + voxel.grid.y * at.z);
+    for (uint k = 0u; k < count; k++)
+        voxel_ids[word + k] = ids[k].x | ids[k].y << 8 | ids[k].z << 16 | ids[k].w << 24;
 }

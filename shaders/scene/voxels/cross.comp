@@ -1,12 +1,12 @@
 // Second of three dispatches: every item of a part that moved is crossed with the lines through the
-// centres of cells along x, y and z. A crossing toggles the bit of the first cell whose centre does
-// not lie before it; one before the box toggles the first cell's, so that what is outside counts
-// too. The fourth quarter of the threads, where a part has a shell, marks the cells that its
-// triangles touch.
+// centres of cells along x, y and z. A crossing toggles the bits of all cells whose centre does not
+// lie before it: in the end they are those of the cells with an odd number of crossings before. The
+// fourth quarter of the threads, where a part has a shell, marks the cells that its triangles touch.
 //
-// Which lines cross a triangle is decided in whole numbers, of 64 bits; of its edges the left and the
-// lower ones are its own. So of two triangles that share an edge a line through it crosses exactly
-// one, and both or none where it is a fold (Pineda, "A parallel algorithm for polygon rasterization", 1988).
+// Which lines cross a triangle is decided in whole numbers, of 64 bits; of its edges the left and
+// the lower ones are its own. So of two triangles that share an edge a line through it crosses
+// exactly one, and both or none where it is a fold (Pineda, "A parallel algorithm for polygon
+// rasterization", 1988).
 layout(local_size_x = 64) in;
 #include "state.glsl"
 layout(std430) readonly buffer VoxelItems { uvec4 voxel_items[]; };
@@ -58,11 +58,19 @@ uvec3 turn_back(uvec3 v, uint axis) {
     return axis == 0u ? v.zxy : axis == 1u ? v.xzy : v;
 }
 
+// All cells of a column from one on: the rest of its word, and the words behind that.
 void toggle(voxel_masks m, uvec3 cell, uint axis) {
     uint word = axis == 0u   ? m.first[0] + voxel_word_x(m, cell)
                 : axis == 1u ? voxel_word_y(m, cell)
                              : voxel_word_z(m, cell);
-    atomicXor(voxel_words[word], 1u << (cell[axis] & 31u));
+    uint apart = axis == 0u   ? 1u
+                 : axis == 1u ? m.size.x * m.size.z
+                              : m.size.x * m.size.y;
+    atomicXor(voxel_words[word], ~0u << (cell[axis] & 31u));
+    for (uint i = (cell[axis] >> 5) + 1u; i < m.words[axis]; i++) {
+        word += apart;
+        atomicXor(voxel_words[word], ~0u);
+    }
 }
 
 // First and last cell whose centre lies in a range, of which neither end is negative.

@@ -8,9 +8,10 @@ layout(std430) readonly buffer VoxelState {
     voxel_part voxel_parts[];
 };
 
-// Three masks of crossings, a bit a cell, and the shell's where there is one. Bits of the mask of an
-// axis follow each other along that axis, so that the parity before a cell is that of a few words;
-// words follow each other along x where they can, so that four neighbours are a uvec4.
+// Three masks, a bit a cell: where the number of crossings before is odd, along x, y and z; and the
+// shell's where there is one. Bits of the mask of an axis follow each other along that axis, so that
+// a crossing toggles few words; words follow each other along x where they can, so that four
+// neighbours are a uvec4.
 struct voxel_masks {
     uvec3 size;    // cells
     uvec3 words;   // along each axis
@@ -32,7 +33,7 @@ voxel_masks voxel_find_masks(voxel_part p) {
     return m;
 }
 
-// The word of a cell of the part's box, in the masks of crossings along x (and the shell's), y, z.
+// The word of a cell of the part's box, in the masks along x (and the shell's), y, z.
 uint voxel_word_x(voxel_masks m, uvec3 cell) {
     return (cell.x >> 5) + m.words.x * (cell.y + m.size.y * cell.z);
 }
