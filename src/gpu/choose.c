@@ -83,6 +83,7 @@ static void list_missing(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32
     if (!has_extension(physical, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) {
         lacks(info, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
     }
+    info->int64 = f.core.features.shaderInt64;
     if (!f.v13.dynamicRendering) lacks(info, "dynamicRendering");
     if (!f.v13.synchronization2) lacks(info, "synchronization2");
     if (!f.v13.maintenance4) lacks(info, "maintenance4");

@@ -30,6 +30,7 @@ typedef struct gpu_info {
     uint32_t api_major, api_minor;
     uint32_t subgroup_size;
     float timestamp_period; // nanoseconds a tick; 0: no timestamps
+    bool int64;             // shaders may use integers of 64 bits
     bool usable;            // has all that roil needs
     char missing[256];      // what it lacks, when not usable
 } gpu_info;
