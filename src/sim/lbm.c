@@ -115,23 +115,28 @@ static void define_all(lbm *l) {
     define_buffers(l);
 }
 
-static bool compile(lbm *l, uint64_t range, shader_library *library, const shader_reader *reader) {
-    static const shader_define bare = {"LBM_KEEP", "0"}, kept = {"LBM_KEEP", "1"};
-    if (!lbm_layout_find(&l->desc, range, &l->layout)) return false;
+// `device`: NULL, none in particular.
+static bool compile(lbm *l, const gpu_info *device, shader_library *library,
+                    const shader_reader *reader) {
+    const bool wide = device && device->kind == GPU_CPU && device->int64;
+    const shader_define defines[][2] = {{{"LBM_WIDE", wide ? "1" : "0"}, {"LBM_KEEP", "0"}},
+                                        {{"LBM_WIDE", wide ? "1" : "0"}, {"LBM_KEEP", "1"}}};
+    const char *step = "sim/lbm/step.comp";
+    if (!lbm_layout_find(&l->desc, device ? device->max_storage_range : UINT32_MAX, &l->layout))
+        return false;
     define_all(l);
     return lbm_kernel_compile(l, &l->reset, "sim/lbm/reset.comp", library, reader, NULL, 0) &&
-           lbm_kernel_compile(l, &l->step, "sim/lbm/step.comp", library, reader, &bare, 1) &&
-           lbm_kernel_compile(l, &l->step_kept, "sim/lbm/step.comp", library, reader, &kept, 1) &&
+           lbm_kernel_compile(l, &l->step, step, library, reader, defines[0], 2) &&
+           lbm_kernel_compile(l, &l->step_kept, step, library, reader, defines[1], 2) &&
            lbm_walls_compile(l, library, reader);
 }
 
 bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader) {
-    return compile(l, UINT32_MAX, library, reader);
+    return compile(l, NULL, library, reader);
 }
 
 bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader) {
-    const gpu_info *info = gpu_get_info(g);
-    return compile(l, info->max_storage_range, library, reader) && lbm_kernel_build(&l->reset, g) &&
+    return compile(l, gpu_get_info(g), library, reader) && lbm_kernel_build(&l->reset, g) &&
            lbm_kernel_build(&l->step, g) && lbm_kernel_build(&l->step_kept, g) &&
            lbm_walls_build(l, g);
 }
@@ -217,10 +222,6 @@ uint64_t lbm_steps(const lbm *l) {
     return l->steps;
 }
 
-void lbm_set_steps(lbm *l, uint64_t steps) {
-    l->steps = steps;
-}
-
 uint32_t lbm_parity(const lbm *l) {
     return (uint32_t)(l->steps % 2);
 }
@@ -253,14 +254,14 @@ static void set_numbers(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
     lbm_kernel_set(k, "force_scale", &l->force_scale, sizeof l->force_scale);
 }
 
-static bool need_moments(lbm *l, gpu *g) {
+bool lbm_make_moments(lbm *l, gpu *g, uint32_t which) {
     const uint64_t size = 16ull * l->desc.size[0] * l->desc.size[1] * l->desc.size[2];
     const uint64_t range = gpu_get_info(g)->max_storage_range;
     if (size > range)
         return err_set("moments of %u x %u x %u cells take %llu MiB; the device can bind %llu",
                        l->desc.size[0], l->desc.size[1], l->desc.size[2],
                        (unsigned long long)(size >> 20), (unsigned long long)(range >> 20));
-    gpu_buffer **next = &l->moments[l->kept % 2];
+    gpu_buffer **next = &l->moments[which];
     if (!*next)
         *next =
             gpu_buffer_create(g, &(gpu_buffer_desc){.label = "lattice's moments", .size = size});
@@ -269,7 +270,7 @@ static bool need_moments(lbm *l, gpu *g) {
 
 bool lbm_step(lbm *l, gpu *g, const lbm_numbers *numbers, bool keep) {
     lbm_kernel *k = keep ? &l->step_kept : &l->step;
-    if (!lbm_walls_ready(l) || (keep && !need_moments(l, g))) return false;
+    if (!lbm_walls_ready(l) || (keep && !lbm_make_moments(l, g, l->kept % 2))) return false;
     set_numbers(l, k, numbers);
     if (!lbm_kernel_run(l, k, g, NULL, 0)) return false;
     l->kept += keep;

@@ -188,9 +188,39 @@ uint lbm_there(lbm_place p, const int x, const int y, const int z) {
 #define LBM_AIR_AT_REST (LBM_Q - 1 + LBM_SCALARS * (LBM_SCALAR_Q - 1))
 #define LBM_SCALAR_AT_REST(s) (LBM_AIR_AT_REST + 1 + (s))
 
+// How elements are read and written. Where vectors are emulated word by word, two words of 64 bits
+// cost half of what four of 32 do (llvmpipe: src/sim/README.md).
+#ifndef LBM_WIDE
+#define LBM_WIDE 0
+#endif
+#if LBM_WIDE
+#define lbm_memory u64vec2
+lbm_element lbm_from_memory(lbm_memory m) {
+    uvec4 words = uvec4(unpackUint2x32(m.x), unpackUint2x32(m.y));
+#if LBM_HALF
+    return words;
+#else
+    return uintBitsToFloat(words);
+#endif
+}
+
+lbm_memory lbm_to_memory(lbm_element e) {
+#if LBM_HALF
+    uvec4 words = e;
+#else
+    uvec4 words = floatBitsToUint(e);
+#endif
+    return u64vec2(packUint2x32(words.xy), packUint2x32(words.zw));
+}
+#else
+#define lbm_memory lbm_element
+#define lbm_from_memory(m) (m)
+#define lbm_to_memory(e) (e)
+#endif
+
 // LBM_EACH_BUFFER is LBM_BUFFER(k, block, array) for k = 0, 1, ...; a buffer holds LBM_RUN slots,
 // an even number, so that no pair is apart.
-#define LBM_BUFFER(k, block, array) layout(std430) buffer block { lbm_element array[]; };
+#define LBM_BUFFER(k, block, array) layout(std430) buffer block { lbm_memory array[]; };
 LBM_EACH_BUFFER
 #undef LBM_BUFFER
 
@@ -198,16 +228,17 @@ LBM_EACH_BUFFER
 // constant's buffer is left out by the driver.
 lbm_element lbm_load(const int slot, uint side, uint element) {
     uint at = (uint(slot % LBM_RUN) + side) * LBM_ELEMENTS + element;
-    lbm_element e;
-#define LBM_BUFFER(k, block, array) if (slot / LBM_RUN == k) e = array[at];
+    lbm_memory m;
+#define LBM_BUFFER(k, block, array) if (slot / LBM_RUN == k) m = array[at];
     LBM_EACH_BUFFER
 #undef LBM_BUFFER
-    return e;
+    return lbm_from_memory(m);
 }
 
 void lbm_store(const int slot, uint side, uint element, lbm_element e) {
     uint at = (uint(slot % LBM_RUN) + side) * LBM_ELEMENTS + element;
-#define LBM_BUFFER(k, block, array) if (slot / LBM_RUN == k) array[at] = e;
+    lbm_memory m = lbm_to_memory(e);
+#define LBM_BUFFER(k, block, array) if (slot / LBM_RUN == k) array[at] = m;
     LBM_EACH_BUFFER
 #undef LBM_BUFFER
 }
