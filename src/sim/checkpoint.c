@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/memory.h"
+#include "base/str.h"
 #include "base/worker.h"
 #include "media/pack.h"
 #include <ctype.h>
@@ -12,7 +13,11 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { NAME_CAP = 64, BATCH = 8 }; // BATCH: chunks that are packed side by side
+enum {
+    NAME_CAP = 64,
+    MOST_TEXT = 1 << 16,
+    BATCH = 8
+}; // BATCH: chunks that are packed side by side
 static const uint64_t MOST_BYTES = UINT64_C(1) << 40;
 static const char MAGIC[8] = "roilsim";
 
@@ -68,6 +73,17 @@ static void batch_free(batch *b) {
 
 static uint32_t chunk_size(uint64_t left) {
     return left < CHECKPOINT_CHUNK ? (uint32_t)left : CHECKPOINT_CHUNK;
+}
+
+void checkpoint_add(checkpoint_list *list, const checkpoint_part *part) {
+    MEM_RESERVE(list->parts, list->count + 1, list->capacity);
+    list->parts[list->count++] = *part;
+}
+
+void checkpoint_list_free(checkpoint_list *list) {
+    mem_free(list->parts);
+    arena_free(&list->memory);
+    *list = (checkpoint_list){0};
 }
 
 // ---- writing ----------------------------------------------------------------------------------
@@ -307,23 +323,6 @@ bool checkpoint_load(checkpoint *c, gpu *g, const checkpoint_part *part) {
     return done;
 }
 
-// ---- the lattice ------------------------------------------------------------------------------
-
-void checkpoint_describe(const lbm_desc *desc, strbuf *out) {
-    static const char *const sets[] = {"d3q19", "d3q27"}, *const scalar_sets[] = {"d3q7", "d3q27"};
-    static const char *const precisions[] = {"f32", "f16"};
-    static const char *const faces[] = {"left", "right", "front", "back", "bottom", "top"};
-    static const char *const kinds[] = {"periodic", "wall", "slip", "open", "inflow"};
-    strbuf_add(out, "size = %u x %u x %u\n", desc->size[0], desc->size[1], desc->size[2]);
-    strbuf_add(out, "velocity_set = %s\n", sets[desc->set]);
-    strbuf_add(out, "scalar_set = %s\n", scalar_sets[desc->scalar_set]);
-    strbuf_add(out, "precision = %s\n", precisions[desc->precision]);
-    strbuf_add(out, "scalars = %u\n", desc->scalars);
-    strbuf_add(out, "colliders = %s\n", desc->bodies ? "yes" : "no");
-    for (int i = 0; i < 6; i++)
-        strbuf_add(out, "boundary.%s = %s\n", faces[i], kinds[desc->faces[i]]);
-}
-
 // Cuts a line off; false at the end.
 static bool next_line(const char **text, char line[128]) {
     size_t length = strcspn(*text, "\n");
@@ -334,13 +333,23 @@ static bool next_line(const char **text, char line[128]) {
     return length > 0;
 }
 
-bool checkpoint_matches(const char *theirs, const char *ours) {
+static bool matches(const checkpoint *c, const char *theirs, const char *ours) {
     char a[128], b[128];
     for (;;) {
         bool more = next_line(&theirs, a), also = next_line(&ours, b);
         if (!more && !also) return true;
         if (strcmp(a, b) != 0)
-            return err_set("the checkpoint was made with %s, the effect has %s",
+            return err_set("%s: the checkpoint was made with %s, the effect has %s", c->path,
                            more ? a : "nothing more", also ? b : "nothing more");
     }
+}
+
+bool checkpoint_require(checkpoint *c, const char *name, const char *ours) {
+    const file_entry *e = find(c, name);
+    if (e && e->size > MOST_TEXT) return damaged(c, "a text is too long");
+    char *theirs = mem_alloc(e ? e->size + 1 : 1);
+    const checkpoint_part part = {.name = name, .size = e ? e->size : 0, .bytes = theirs};
+    bool done = checkpoint_load(c, NULL, &part) && matches(c, theirs, ours);
+    mem_free(theirs);
+    return done;
 }

@@ -4,8 +4,8 @@
 // each with its hash and, where that makes it smaller, packed. Numbers are little-endian. It is
 // there whole or not at all, and it is read with suspicion: whoever wrote it.
 #pragma once
-#include "base/str.h"
-#include "sim/lbm.h"
+#include "base/arena.h"
+#include "gpu/gpu.h"
 
 enum { CHECKPOINT_VERSION = 1, CHECKPOINT_PARTS = 256, CHECKPOINT_CHUNK = 1 << 22 };
 
@@ -16,6 +16,14 @@ typedef struct checkpoint_part {
     gpu_buffer *buffer; // of at least that size; NULL: `bytes`
     void *bytes;
 } checkpoint_part;
+
+typedef struct checkpoint_list { // zero: empty
+    checkpoint_part *parts;
+    size_t count, capacity;
+    arena memory; // for names, and bytes of parts that live no longer than the list
+} checkpoint_list;
+void checkpoint_add(checkpoint_list *list, const checkpoint_part *part);
+void checkpoint_list_free(checkpoint_list *list);
 
 // Between frames. `g` may be NULL when no part is a buffer.
 bool checkpoint_save(const char *path, gpu *g, const checkpoint_part *parts, size_t count);
@@ -28,9 +36,6 @@ void checkpoint_close(checkpoint *c); // NULL is fine
 bool checkpoint_has(const checkpoint *c, const char *name, uint64_t *size);
 // Between frames: fills the part, whose size must be the file's. On failure its content is lost.
 bool checkpoint_load(checkpoint *c, gpu *g, const checkpoint_part *part);
-
-// The structure of a lattice as text, a line "key = value" for each thing that must be the same,
-// named as effects name it. And whether a file's is that of the one at hand: the message says what
+// What must be the same in the file, as text: a part of lines "key = value". The message says which
 // differs.
-void checkpoint_describe(const lbm_desc *desc, strbuf *out);
-bool checkpoint_matches(const char *theirs, const char *ours);
+bool checkpoint_require(checkpoint *c, const char *name, const char *ours);

@@ -77,8 +77,6 @@ bool lbm_reset(lbm *l, gpu *g, const lbm_numbers *numbers);
 // Inside a frame: records one step. `keep`: leaves the moments of the state before the step.
 bool lbm_step(lbm *l, gpu *g, const lbm_numbers *numbers, bool keep);
 uint64_t lbm_steps(const lbm *l); // since the reset
-// For a state that was written into the buffers (lbm_bind): as of this step.
-void lbm_set_steps(lbm *l, uint64_t steps);
 
 // Of the last kept state (0) and of the one kept before it (1); NULL: there is none. For each cell,
 // x fastest, then y, then z, a uvec4 of eight halves: velocity, density - 1, scalars, then the id
@@ -113,7 +111,7 @@ void lbm_set_force(lbm *l, gpu_image *image, float scale);
 size_t lbm_defines(const lbm *l, shader_define out[LBM_MAX_DEFINES]);
 uint32_t lbm_parity(const lbm *l);
 bool lbm_bind(const lbm *l, const char *slot_name, gpu_binding *out); // false: not one of its slots
-// Buffers that hold the whole state, in order: what a checkpoint keeps beside lbm_steps.
+// Buffers that hold the populations, in order. All that a state consists of: sim/lbm_state.h.
 size_t lbm_buffers(const lbm *l, gpu_buffer **out, size_t capacity);
 
 // Gives each the state, moments and count of steps of the other; false when their structure is not

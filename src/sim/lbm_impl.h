@@ -59,6 +59,10 @@ gpu_buffer *lbm_walls_buffer(const lbm *l, const char *slot_name); // NULL: not 
 void lbm_walls_set(const lbm *l, lbm_kernel *k, const lbm_numbers *numbers);
 bool lbm_walls_ready(const lbm *l); // false with a message
 
+// ---- moments ----------------------------------------------------------------------------------
+
+bool lbm_make_moments(lbm *l, gpu *g, uint32_t which); // the buffer, unless it is there
+
 // ---- the solver -------------------------------------------------------------------------------
 
 struct lbm {

@@ -4,10 +4,11 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/memory.h"
-#include "sim/checkpoint.h"
+#include "sim/lbm_state.h"
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -288,28 +289,59 @@ static void a_full_disk_keeps_the_old_file(void **state) {
     checkpoint_close(open_file());
 }
 
-// ---- the lattice ------------------------------------------------------------------------------
+// ---- what must be the same ----------------------------------------------------------------------
+
+static void save_text(const char *text) {
+    save_one("air/lattice", (char *)(uintptr_t)text, strlen(text));
+}
+
+static void require(const char *ours, const char *says) {
+    checkpoint *c = open_file();
+    bool done = checkpoint_require(c, "air/lattice", ours);
+    checkpoint_close(c);
+    assert_true(done == !says);
+    if (says) assert_message(says);
+}
 
 static void the_message_says_what_differs(void **state) {
     (void)state;
-    lbm_desc desc = {.size = {64, 48, 32}, .set = LBM_D3Q19, .precision = LBM_F16, .scalars = 2};
-    strbuf ours = {0}, theirs = {0};
-    checkpoint_describe(&desc, &ours);
-    assert_true(checkpoint_matches(strbuf_text(&ours), strbuf_text(&ours)));
+    save_text("size = 4 x 4 x 16\nprecision = f32\n");
+    require("size = 4 x 4 x 16\nprecision = f32\n", NULL);
+    require("size = 4 x 4 x 16\nprecision = f16\n",
+            "made with precision = f32, the effect has precision = f16");
+    require("size = 4 x 4 x 16\n", "made with precision = f32, the effect has nothing more");
+    require("", "made with size = 4 x 4 x 16, the effect has nothing more");
+    save_text("");
+    require("size = 4", "made with nothing more, the effect has size = 4");
+    save_text("size = \033[2J 4"); // not to be obeyed by a terminal
+    require("size = 4", "made with size = ?[2J 4");
+}
+
+// Solvers that were never built: nothing of them is on a device, and nothing may be touched.
+static void another_lattice_is_refused(void **state) {
+    (void)state;
+    arena memory = {0};
+    checkpoint_list list = {0};
+    lbm_desc desc = {.size = {8, 8, 16}, .precision = LBM_F16, .scalars = 2};
+    lbm *one = lbm_create(&memory, &desc);
+    lbm_state_list(one, "air", "voxel_size = 0.05\n", &list);
+    assert_true(checkpoint_save(file, NULL, list.parts, list.count));
+    checkpoint_list_free(&list);
+    checkpoint *c = open_file();
+    assert_true(lbm_state_load(one, NULL, "air", "voxel_size = 0.05\n", c));
+    assert_false(lbm_state_load(one, NULL, "smoke", "voxel_size = 0.05\n", c));
+    assert_message("has no part 'smoke/lattice'");
+    assert_false(lbm_state_load(one, NULL, "air", "voxel_size = 0.1\n", c));
+    assert_message("made with voxel_size = 0.05, the effect has voxel_size = 0.1");
     desc.precision = LBM_F32;
-    checkpoint_describe(&desc, &theirs);
-    assert_false(checkpoint_matches(strbuf_text(&theirs), strbuf_text(&ours)));
-    assert_message("made with precision = f32, the effect has precision = f16");
-    strbuf_free(&theirs);
+    assert_false(lbm_state_load(lbm_create(&memory, &desc), NULL, "air", "", c));
+    assert_message("made with precision = f16, the effect has precision = f32");
     desc.precision = LBM_F16;
-    desc.faces[5] = LBM_OPEN;
-    checkpoint_describe(&desc, &theirs);
-    assert_false(checkpoint_matches(strbuf_text(&theirs), strbuf_text(&ours)));
-    assert_message("made with boundary.top = open, the effect has boundary.top = periodic");
-    assert_false(checkpoint_matches("", strbuf_text(&ours)));
-    assert_message("made with nothing more");
-    strbuf_free(&theirs);
-    strbuf_free(&ours);
+    desc.faces[4] = LBM_WALL, desc.faces[5] = LBM_OPEN;
+    assert_false(lbm_state_load(lbm_create(&memory, &desc), NULL, "air", "", c));
+    assert_message("made with boundary.bottom = periodic, the effect has boundary.bottom = wall");
+    checkpoint_close(c);
+    arena_free(&memory);
 }
 
 int main(void) {
@@ -324,6 +356,7 @@ int main(void) {
         cmocka_unit_test(forged_chunks_are_refused),
         cmocka_unit_test(a_full_disk_keeps_the_old_file),
         cmocka_unit_test(the_message_says_what_differs),
+        cmocka_unit_test(another_lattice_is_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

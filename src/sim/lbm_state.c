@@ -1,0 +1,114 @@
+// Populations, the moments of the last two kept states, what cells are and were, waves at open
+// faces: buffers as they lie, and a clock that says which of them takes its turn.
+#include "sim/lbm_state.h"
+#include "base/error.h"
+#include "base/str.h"
+#include "sim/lbm_impl.h"
+#include <string.h>
+
+typedef struct state_clock { // as it lies in the file
+    uint64_t steps, kept;
+    uint32_t current, filled; // of the cells
+} state_clock;
+
+enum { PARTS = LBM_MAX_BUFFERS + 5 };
+
+static void describe(const lbm_desc *desc, const char *more, strbuf *out) {
+    static const char *const sets[] = {"d3q19", "d3q27"}, *const scalar_sets[] = {"d3q7", "d3q27"};
+    static const char *const precisions[] = {"f32", "f16"};
+    static const char *const faces[] = {"left", "right", "front", "back", "bottom", "top"};
+    static const char *const kinds[] = {"periodic", "wall", "slip", "open", "inflow"};
+    strbuf_add(out, "size = %u x %u x %u\n", desc->size[0], desc->size[1], desc->size[2]);
+    strbuf_add(out, "velocity_set = %s\n", sets[desc->set]);
+    strbuf_add(out, "scalar_set = %s\n", scalar_sets[desc->scalar_set]);
+    strbuf_add(out, "precision = %s\n", precisions[desc->precision]);
+    strbuf_add(out, "scalars = %u\n", desc->scalars);
+    strbuf_add(out, "colliders = %s\n", desc->bodies ? "yes" : "no");
+    for (int i = 0; i < 6; i++)
+        strbuf_add(out, "boundary.%s = %s\n", faces[i], kinds[desc->faces[i]]);
+    strbuf_add(out, "%s", more);
+}
+
+// Those that there are; moments only once states were kept.
+static size_t list_buffers(const lbm *l, checkpoint_part out[PARTS]) {
+    static const char *const states[LBM_MAX_BUFFERS] = {
+        "state0", "state1", "state2",  "state3",  "state4",  "state5",  "state6",  "state7",
+        "state8", "state9", "state10", "state11", "state12", "state13", "state14", "state15"};
+    const lbm_walls *w = &l->walls;
+    const uint32_t wide = l->desc.precision == LBM_F16 ? 2 : 4;
+    const checkpoint_part others[] = {
+        {.name = "moments0", .width = 2, .buffer = l->kept > 0 ? l->moments[0] : NULL},
+        {.name = "moments1", .width = 2, .buffer = l->kept > 1 ? l->moments[1] : NULL},
+        {.name = "cells0", .width = 1, .buffer = w->cells[0]},
+        {.name = "cells1", .width = 1, .buffer = w->cells[1]},
+        {.name = "waves", .width = 4, .buffer = w->waves},
+    };
+    size_t count = 0;
+    for (uint32_t i = 0; i < l->layout.buffers; i++)
+        out[count++] = (checkpoint_part){.name = states[i], .width = wide, .buffer = l->state[i]};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (others[i].buffer) out[count++] = others[i];
+    for (size_t i = 0; i < count; i++) out[i].size = gpu_buffer_size(out[i].buffer);
+    return count;
+}
+
+static const char *name(arena *memory, const char *label, const char *part) {
+    return arena_format(memory, "%s/%s", label, part);
+}
+
+void lbm_state_list(const lbm *l, const char *label, const char *more, checkpoint_list *out) {
+    arena *memory = &out->memory;
+    strbuf text = {0};
+    describe(&l->desc, more, &text);
+    state_clock *clock = arena_alloc(memory, sizeof *clock);
+    *clock = (state_clock){l->steps, l->kept, l->walls.current, l->walls.filled};
+    checkpoint_add(out, &(checkpoint_part){.name = name(memory, label, "lattice"),
+                                           .size = text.length,
+                                           .width = 1,
+                                           .bytes = arena_string(memory, strbuf_text(&text))});
+    checkpoint_add(out, &(checkpoint_part){.name = name(memory, label, "clock"),
+                                           .size = sizeof *clock,
+                                           .width = 8,
+                                           .bytes = clock});
+    strbuf_free(&text);
+    checkpoint_part buffers[PARTS];
+    size_t count = list_buffers(l, buffers);
+    for (size_t i = 0; i < count; i++) {
+        buffers[i].name = name(memory, label, buffers[i].name);
+        checkpoint_add(out, &buffers[i]);
+    }
+}
+
+// Makes what a state with this clock has.
+static bool take_clock(lbm *l, gpu *g, const state_clock *clock) {
+    if (clock->steps > UINT64_C(1) << 60 || clock->kept > clock->steps || clock->current > 1)
+        return err_set("the checkpoint's clock is damaged");
+    for (uint64_t i = 0; i < 2 && i < clock->kept; i++)
+        if (!lbm_make_moments(l, g, (uint32_t)i)) return false;
+    l->steps = clock->steps;
+    l->kept = clock->kept;
+    l->walls.current = clock->current;
+    l->walls.filled = clock->filled != 0;
+    l->walls.known = false;
+    return true;
+}
+
+bool lbm_state_load(lbm *l, gpu *g, const char *label, const char *more, checkpoint *c) {
+    arena memory = {0};
+    strbuf text = {0};
+    state_clock clock;
+    checkpoint_part buffers[PARTS];
+    describe(&l->desc, more, &text);
+    const checkpoint_part own = {
+        .name = name(&memory, label, "clock"), .size = sizeof clock, .bytes = &clock};
+    bool done = checkpoint_require(c, name(&memory, label, "lattice"), strbuf_text(&text)) &&
+                checkpoint_load(c, NULL, &own) && take_clock(l, g, &clock);
+    size_t count = done ? list_buffers(l, buffers) : 0;
+    for (size_t i = 0; done && i < count; i++) {
+        buffers[i].name = name(&memory, label, buffers[i].name);
+        done = checkpoint_load(c, g, &buffers[i]);
+    }
+    strbuf_free(&text);
+    arena_free(&memory);
+    return done;
+}
