@@ -1,0 +1,263 @@
+// Simulated air through the public interface: what is drawn, and how often, does not change what is
+// simulated; frames that were left out are caught up with; a reload goes on.
+#include "roil_test.h"
+
+enum { WIDE = 16, HIGH = 24 };
+
+// The upright slice through the middle of the box, cell by cell.
+static const char SLICE[] =
+    "// A slice.\n"
+    "//@ field float value : shown\n"
+    "#include \"fields.glsl\"\n"
+    "writeonly uniform image2D color; //= output rgba16f : it\n"
+    "void main() {\n"
+    "    ivec2 at = ivec2(gl_GlobalInvocationID.xy), size = imageSize(color);\n"
+    "    if (any(greaterThanEqual(at, size))) return;\n"
+    "    vec2 uv = (vec2(at) + 0.5) / vec2(size);\n"
+    "    vec3 p = vec3(mix(-0.8, 0.8, uv.x), 0.05, mix(2.4, 0.0, uv.y));\n"
+    "    imageStore(color, at, vec4(vec3(field_value(p)), 1.0));\n"
+    "}\n";
+
+// %s: frames a second, more keys of the air, more of the file; what is shown.
+static const char SCRIPT[] =
+    "local fx = effect { name = 'air', fps = %g, frames = 1000 }\n"
+    "local strength = param { 'strength', 1, min = 0, max = 9 }\n"
+    "local air = lbm { size = {16, 16, 24}, voxel_size = 0.1, speed = 2, buoyancy_heat = 6, %s }\n"
+    "air:source { shape = box { position = {0.2, 0, 0.5}, size = {0.4, 0.4, 0.4} }, temperature = "
+    "1,\n"
+    "             density = strength * curve { {0, 0.9}, {0.3, 0.1}, {0.5, 0.5} } }\n"
+    "%s\n"
+    "local shown = shader { 'slice.comp', value = %s }\n"
+    "fx.output = shown.color\n"
+    "return fx\n";
+
+typedef uint8_t picture[WIDE * HIGH * 4];
+
+static void script(char out[2048], double fps, const char *keys, const char *more,
+                   const char *shown) {
+    snprintf(out, 2048, SCRIPT, fps, keys, more, shown);
+}
+
+static roil_effect *open(roil *r, double fps, const char *keys, const char *more) {
+    char text[2048], path[512];
+    script(text, fps, keys, more, "air.density");
+    write_text("slice.comp", SLICE, path);
+    roil_effect *e = load_text(r, "air.lua", text);
+    ok(roil_prepare(e, WIDE, HIGH));
+    return e;
+}
+
+static void draw(roil_effect *e, double frame, picture out) {
+    ok(roil_render(e, frame));
+    ok(roil_read(e, false, out));
+}
+
+static int at(const picture p, int x, int y) {
+    return p[4 * (y * WIDE + x)];
+}
+
+static void is_same(const picture a, const picture b, int slack) {
+    for (int i = 0; i < WIDE * HIGH; i++)
+        if (abs(a[4 * i] - b[4 * i]) > slack)
+            fail_msg("texel %d, %d: %d is not %d", i % WIDE, i / WIDE, a[4 * i], b[4 * i]);
+}
+
+static int brightest(const picture p) {
+    int most = 0;
+    for (int i = 0; i < WIDE * HIGH; i++)
+        if (p[4 * i] > most) most = p[4 * i];
+    return most;
+}
+
+// Of what is shown, the mean row, from above.
+static double height_of(const picture p) {
+    double sum = 0, weighted = 0;
+    for (int i = 0; i < WIDE * HIGH; i++) {
+        sum += p[4 * i];
+        weighted += p[4 * i] * (double)(i / WIDE);
+    }
+    assert_true(sum > 0);
+    return weighted / sum;
+}
+
+// ---- time -------------------------------------------------------------------------------------
+
+static void how_often_is_drawn_changes_nothing(void **state) {
+    static const double rates[] = {10, 24, 60};
+    picture pictures[3];
+    for (int i = 0; i < 3; i++) {
+        roil_effect *e = open(*state, rates[i], "", "");
+        for (double frame = 1; frame <= 1 + 0.5 * rates[i]; frame++) draw(e, frame, pictures[i]);
+        roil_unload(e);
+    }
+    assert_true(brightest(pictures[0]) > 100);
+    is_same(pictures[0], pictures[1], 1);
+    is_same(pictures[0], pictures[2], 1);
+}
+
+static const char UPDATE[] =
+    "function fx.update(t, dt) strength:set(t > 0.2 and t < 0.3 and 5 or 1) end";
+
+static void a_jump_is_as_good_as_every_frame(void **state) {
+    picture each, jump;
+    roil_effect *a = open(*state, 24, "", UPDATE), *b = open(*state, 24, "", UPDATE);
+    for (int frame = 1; frame <= 13; frame++) draw(a, frame, each);
+    draw(b, 13, jump);
+    is_same(each, jump, 0);
+    roil_unload(a);
+    roil_unload(b);
+}
+
+static void a_jump_back_begins_anew(void **state) {
+    picture first, again, anew;
+    roil_effect *e = open(*state, 24, "", "");
+    draw(e, 5, first);
+    draw(e, 12, again);
+    draw(e, 5, again);
+    is_same(first, again, 0);
+    roil_restart(e);
+    draw(e, 5, anew);
+    is_same(first, anew, 0);
+    roil_unload(e);
+}
+
+static void air_is_warmed_up_before_the_first_frame(void **state) {
+    picture cold, warm;
+    roil_effect *a = open(*state, 24, "", ""), *b = open(*state, 24, "warm_up = 0.3", "");
+    draw(a, 1, cold);
+    draw(b, 1, warm);
+    if (!(height_of(warm) < height_of(cold) - 0.5))
+        fail_msg("rows %.2f and %.2f", height_of(warm), height_of(cold));
+    roil_unload(a);
+    roil_unload(b);
+}
+
+// ---- what it is given -------------------------------------------------------------------------
+
+static void smoke_is_where_its_source_is_and_rises(void **state) {
+    picture early, late;
+    roil_effect *e = open(*state, 24, "", "");
+    draw(e, 1, early);
+    for (int y = 0; y < HIGH; y++)
+        for (int x = 0; x < WIDE; x++) { // cells 8 to 11 along x, 3 to 6 along z
+            bool inside = x >= 8 && x < 12 && y >= HIGH - 7 && y < HIGH - 3;
+            int value = at(early, x, y);
+            if (inside ? value < 200 : value > 0) fail_msg("%d, %d: %d", x, y, value);
+        }
+    draw(e, 20, late);
+    if (!(height_of(late) < height_of(early) - 2))
+        fail_msg("it is at row %.2f, and was at %.2f", height_of(late), height_of(early));
+    roil_unload(e);
+}
+
+static void a_field_pushes_the_air(void **state) {
+    picture still, pushed;
+    roil_effect *a = open(*state, 24, "buoyancy_density = 0", "");
+    roil_effect *b = open(*state, 24, "force = vec(-8 * step(0, position.z), 0, 0)", "");
+    draw(a, 12, still);
+    draw(b, 12, pushed);
+    double left[2] = {0, 0};
+    for (int i = 0; i < WIDE * HIGH; i++)
+        if (i % WIDE < 7) {
+            left[0] += still[4 * i];
+            left[1] += pushed[4 * i];
+        }
+    if (!(left[1] > 1.5 * left[0])) fail_msg("%g is not much above %g", left[1], left[0]);
+    roil_unload(a);
+    roil_unload(b);
+}
+
+// ---- what it tells ----------------------------------------------------------------------------
+
+static double readout(roil_effect *e, const char *name) {
+    roil_readout all[32];
+    size_t count = roil_readouts(e, all, 32);
+    for (size_t i = 0; i < count && i < 32; i++)
+        if (strcmp(all[i].name, name) == 0) return all[i].value;
+    fail_msg("no readout '%s' of %zu", name, count);
+    return 0;
+}
+
+static void it_tells_of_itself(void **state) {
+    picture p;
+    roil_simulation s;
+    roil_effect *e = open(*state, 24, "", "");
+    for (int frame = 1; frame <= 9; frame++) draw(e, frame, p);
+    assert_true(fabs(readout(e, "time step") - 0.005) < 1e-9);
+    assert_true(readout(e, "steps") == 68); // 8 / 24 s are 66.7 steps, and one more to mix with
+    assert_true(readout(e, "speed") > 0.01 && readout(e, "speed") < 2);
+    assert_true(fabs(readout(e, "mass drift")) < 5);
+    assert_true(roil_get_simulation(e, &s));
+    assert_false(s.waiting);
+    assert_null(s.trouble);
+    assert_true(s.reached >= 8 / 24.0 && s.reached < 8 / 24.0 + 0.006);
+    roil_unload(e);
+}
+
+static void air_that_is_too_fast_stops_and_says_why(void **state) {
+    picture p;
+    roil_simulation s;
+    roil_effect *e =
+        open(*state, 24, "guard = 'stop'",
+             "air:source { shape = box { position = {0, 0, 0.5} }, velocity = {0, 0, 9} }");
+    for (int frame = 1; frame <= 12; frame++) draw(e, frame, p);
+    assert_true(roil_get_simulation(e, &s));
+    assert_non_null(s.trouble);
+    if (!strstr(s.trouble, "'speed'")) fail_msg("%s", s.trouble);
+    double steps = readout(e, "steps");
+    draw(e, 13, p);
+    assert_true(readout(e, "steps") == steps);
+    roil_unload(e);
+}
+
+// ---- reload -----------------------------------------------------------------------------------
+
+static void count_call(void *user, double done, double whole) {
+    (void)done, (void)whole;
+    ++*(int *)user;
+}
+
+static int reload(roil_live *live, const char *keys, const char *shown, double frame) {
+    char text[2048], path[512];
+    int calls = 0;
+    script(text, 24, keys, "", shown);
+    write_text("air.lua", text, path);
+    roil_live_wait(live);
+    assert_true(roil_live_update(live, WIDE, HIGH, frame));
+    if (roil_live_message(live)) fail_msg("%s", roil_live_message(live));
+    roil_on_progress(roil_live_effect(live), count_call, &calls);
+    ok(roil_advance(roil_live_effect(live), frame));
+    return calls;
+}
+
+static void a_reload_goes_on_where_the_lattice_is_the_same(void **state) {
+    char path[512];
+    write_text("slice.comp", SLICE, path);
+    write_text("air.lua", "", path);
+    roil_live *live = roil_live_create(*state, &(roil_live_desc){.file = path});
+    ok(live);
+    assert_int_equal(reload(live, "", "air.density", 1), 0);
+    ok(roil_advance(roil_live_effect(live), 2));
+    ok(roil_advance(roil_live_effect(live), 3));
+    double steps = readout(roil_live_effect(live), "steps");
+    assert_int_equal(reload(live, "viscosity = 0.001", "air.density * 0.5", 4), 0);
+    assert_true(readout(roil_live_effect(live), "steps") > steps);
+    assert_true(reload(live, "velocity_set = 'd3q27'", "air.density", 5) > 0); // from the first on
+    assert_true(reload(live, "time_step = 0.003", "air.density", 6) > 0);
+    roil_live_destroy(live);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(how_often_is_drawn_changes_nothing),
+        cmocka_unit_test(a_jump_is_as_good_as_every_frame),
+        cmocka_unit_test(a_jump_back_begins_anew),
+        cmocka_unit_test(air_is_warmed_up_before_the_first_frame),
+        cmocka_unit_test(smoke_is_where_its_source_is_and_rises),
+        cmocka_unit_test(a_field_pushes_the_air),
+        cmocka_unit_test(it_tells_of_itself),
+        cmocka_unit_test(air_that_is_too_fast_stops_and_says_why),
+        cmocka_unit_test(a_reload_goes_on_where_the_lattice_is_the_same),
+    };
+    return test_run(tests);
+}
