@@ -66,3 +66,11 @@ bool lbm_source_declare(pass *p);
 bool lbm_source_check(pass *p);
 bool lbm_source_build(pass *p);
 bool lbm_source_fill(pass *p, const shader_binary *binary, unsigned char *block);
+
+bool voxels_declare(pass *p);
+bool voxels_check_pass(pass *p);
+bool voxels_build_pass(pass *p);
+bool voxels_allocate_pass(pass *p);
+bool voxels_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool voxels_record(pass *p);
+void voxels_destroy_pass(pass *p);

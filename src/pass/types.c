@@ -96,6 +96,18 @@ static const pass_type types[] = {
         .destroy = bake_destroy,
     },
     {
+        .name = "voxels",
+        .shader = "pass/voxels.comp",
+        .meshes = PASS_USES_MESHES,
+        .declare = voxels_declare,
+        .check = voxels_check_pass,
+        .build = voxels_build_pass,
+        .allocate = voxels_allocate_pass,
+        .fill = voxels_fill,
+        .record = voxels_record,
+        .destroy = voxels_destroy_pass,
+    },
+    {
         .name = "lbm",
         .shader = "pass/lbm.comp",
         .simulation = &lbm_simulation,

@@ -95,6 +95,8 @@ const char *value_get_string(lua_State *L, int table, const char *who, const cha
 // The key `name`; without one, the variable that the script assigns the call to; else `who`.
 const char *value_name_or_variable(lua_State *L, int table, const char *who); // naming.c
 bool value_get_vector(lua_State *L, int table, const char *who, const char *key, float out[3]);
+// The table's box = { min, max }; false when absent.
+bool value_get_box(lua_State *L, int table, const char *who, box3 *out);
 void value_push_box(lua_State *L, box3 box); // { min = {x, y, z}, max = {x, y, z} }
 int value_word(lua_State *L, int index, const char *who, const char *key, const char *const *words,
                size_t count);
@@ -128,3 +130,4 @@ void l_scene_open(lua_State *L);
 void l_light_open(lua_State *L);
 void l_pass_open(lua_State *L);
 void l_lbm_open(lua_State *L);
+void l_voxels_open(lua_State *L);

@@ -150,24 +150,30 @@ static int l_sequence_index(lua_State *L) {
 
 // ---- bake and tile ----------------------------------------------------------------------------
 
-static float3 corner(lua_State *L, const char *key) {
+static float3 corner(lua_State *L, const char *who, const char *key) {
     float v[3];
-    if (!value_get_vector(L, -1, "bake", key, v))
-        vm_error(L, "bake: 'box' must be { min = {x, y, z}, max = {x, y, z} }");
+    if (!value_get_vector(L, -1, who, key, v))
+        vm_error(L, "%s: 'box' must be { min = {x, y, z}, max = {x, y, z} }", who);
     return (float3){v[0], v[1], v[2]};
+}
+
+bool value_get_box(lua_State *L, int table, const char *who, box3 *out) {
+    static const script_key corners[] = {{.name = "min"}, {.name = "max"}, {.name = NULL}};
+    bool given = value_get(L, table, "box") != LUA_TNIL;
+    if (given) {
+        int box = lua_gettop(L);
+        value_check_keys(L, box, lua_pushfstring(L, "%s: box", who), corners);
+        lua_pop(L, 1);
+        *out = (box3){corner(L, who, "min"), corner(L, who, "max")};
+    }
+    lua_pop(L, 1);
+    return given;
 }
 
 static box3 read_box(lua_State *L, const field *node) {
     box3 box;
-    if (value_get(L, 2, "box") == LUA_TNIL) {
-        field_context context = script_context(L);
-        if (!field_bounds(node, &context, &box)) script_raise(L);
-    } else {
-        static const script_key corners[] = {{.name = "min"}, {.name = "max"}, {.name = NULL}};
-        value_check_keys(L, -1, "bake: box", corners);
-        box = (box3){corner(L, "min"), corner(L, "max")};
-    }
-    lua_pop(L, 1);
+    field_context context = script_context(L);
+    if (!value_get_box(L, 2, "bake", &box) && !field_bounds(node, &context, &box)) script_raise(L);
     return box;
 }
 

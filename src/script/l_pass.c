@@ -370,7 +370,7 @@ static int l_shader(lua_State *L) {
 
 // Made by a function of its own, or a method: bake(field), lbm { }, air:source { }.
 static bool has_constructor(const char *type) {
-    static const char *const types[] = {"bake", "lbm", "lbm_source"};
+    static const char *const types[] = {"bake", "lbm", "lbm_source", "voxels"};
     for (size_t i = 0; i < COUNT_OF(types); i++)
         if (strcmp(types[i], type) == 0) return true;
     return false;

@@ -173,6 +173,26 @@ static const script_object objects[] = {
         KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "in which it is simulated"),
         KEY("time_step", "number s", "that a step takes"))},
 
+    {"voxels", "source", "local body = voxels { mesh { \"data/ball.obj\" }, resolution = 64 }",
+     "meshes as cells of a box: fields of what is inside of them, how far their surface is, how they "
+     "move. Meshes that stand still are computed once",
+     .args = KEYS(KEY("mesh ...", "mesh { \"data/ball.obj\" }", "1 to 63, which may move")),
+     .keys = KEYS(
+        KEY("resolution", "64 [8, 1024]", "cells along the longest side of the box"),
+        KEY("size", "{x, y, z} [1, 1024]", "instead: cells along each side, x a multiple of 4"),
+        KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m",
+            "what the cells cover; without: the meshes as they stand at first, and a margin"),
+        CHOICE("rule", "auto",
+               "solid fills what is inside, even where a mesh has holes; shell is every cell that a "
+               "triangle touches; auto is solid where a mesh is closed, shell where it is open or thin",
+               "auto", "solid", "shell"),
+        KEY("name", "voxels", "for --set NAME.rule=shell and statistics; numbered when taken")),
+     .members = KEYS(
+        KEY("inside", "field", "1 in cells whose middle is inside, 0 elsewhere"),
+        KEY("distance", "field m", "to the nearest surface, negative inside; beyond the box by way of it"),
+        KEY("velocity", "field m/s", "of the mesh inside of it; 0 elsewhere"),
+        KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "what the cells cover"))},
+
     // ---- operators
     {"lerp", "operator", "lerp(a, b, 0.5)", "another name of mix",
      .args = KEYS(KEY("a", NULL, "result at t = 0"), KEY("b", NULL, "result at t = 1"),
