@@ -13,6 +13,7 @@ typedef struct probe {
     bvh_forest forest;
     uint32_t *numbers; // of the triangles in the forest's mesh
     size_t count;
+    bool inverted; // the mesh as a whole is turned inside out
 } probe;
 
 // Length of the part of a ray, whose direction is no unit vector, before a box; INFINITY: it
@@ -64,19 +65,18 @@ static bool look(void *user, size_t index) {
     size_t end = (index + 1) * CHUNK < p->count ? (index + 1) * CHUNK : p->count;
     for (size_t i = index * CHUNK; i < end; i++) {
         voxel_triangle *tri = &t->triangles[p->numbers[i]];
-        bool inverted = t->components[tri->component].volume < 0;
         vec3 corners[3], first, second, inwards, from;
         for (int c = 0; c < 3; c++) glm_vec3_copy(t->points[tri->points[c]], corners[c]);
         glm_vec3_sub(corners[1], corners[0], first);
         glm_vec3_sub(corners[2], corners[0], second);
         glm_vec3_cross(second, first, inwards);
-        if (inverted) glm_vec3_negate(inwards);
+        if (p->inverted) glm_vec3_negate(inwards);
         if (glm_vec3_norm2(inwards) < 1e-30f) continue;
         glm_vec3_normalize(inwards);
         glm_vec3_add(corners[0], corners[1], from);
         glm_vec3_add(from, corners[2], from);
         glm_vec3_scale(from, 1.0f / 3, from);
-        tri->behind = walk(&p->forest, from, inwards, inverted);
+        tri->behind = walk(&p->forest, from, inwards, p->inverted);
     }
     return true;
 }
@@ -84,6 +84,10 @@ static bool look(void *user, size_t index) {
 void voxel_find_thin(voxel_topology *t) {
     if (t->triangle_count > VOXEL_MOST_THIN) return;
     probe p = {.t = t, .numbers = mem_alloc(t->triangle_count * sizeof *p.numbers)};
+    double volume = 0;
+    for (size_t i = 0; i < t->component_count; i++)
+        volume += t->components[i].closed ? t->components[i].volume : 0;
+    p.inverted = volume < 0;
     mesh_vertex *vertices = mem_alloc(t->point_count * sizeof *vertices);
     uint32_t *indices = mem_alloc(3 * t->triangle_count * sizeof *indices);
     for (size_t i = 0; i < t->point_count; i++) glm_vec3_copy(t->points[i], vertices[i].position);
