@@ -45,7 +45,8 @@ typedef struct lbm_walls {
     bool current, known, filled; // filled: the cells hold something
     gpu_buffer *waves, *ids;
     float bodies[3 * (LBM_MAX_BODIES + 1)][4];
-    uint32_t moves; // any body does
+    uint32_t moves;   // any body does
+    uint64_t updated; // the step before which it was said last what cells are
 } lbm_walls;
 
 void lbm_walls_define(lbm *l, void (*define)(lbm *l, const char *name, uint32_t value));

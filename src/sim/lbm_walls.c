@@ -105,6 +105,8 @@ void lbm_walls_set(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
     }
     lbm_kernel_set(k, "lbm_face_velocity", velocity, sizeof velocity);
     lbm_kernel_set(k, "lbm_face_scalar", scalar, sizeof scalar);
+    const uint32_t moved = l->walls.updated == l->steps;
+    lbm_kernel_set(k, "lbm_moved", &moved, sizeof moved);
     lbm_kernel_set(k, "lbm_bodies", l->walls.bodies, sizeof l->walls.bodies);
 }
 
@@ -143,6 +145,7 @@ bool lbm_set_bodies(lbm *l, gpu *g, const lbm_numbers *numbers, const lbm_bodies
     for (int i = 0; !w->filled && i < 2; i++) gpu_buffer_fill(g, w->cells[i], 0);
     w->filled = true;
     w->moves = moves;
+    w->updated = l->steps;
     w->current = !w->current;
     lbm_kernel_set(&w->kernel, "any_moves", &moves, sizeof moves);
     lbm_kernel_set(&w->kernel, "ambient", numbers->ambient, sizeof numbers->ambient);

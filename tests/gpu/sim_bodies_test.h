@@ -19,14 +19,20 @@ static inline void sim_bodies_close(sim_world *w, sim_bodies *b) {
     mem_free(b->bytes);
 }
 
+static inline void sim_centre(const sim_world *w, size_t cell, float out[3]) {
+    const uint32_t *n = w->desc.size;
+    out[0] = (float)(cell % n[0]) + 0.5f;
+    out[1] = (float)(cell / n[0] % n[1]) + 0.5f;
+    out[2] = (float)(cell / n[0] / n[1]) + 0.5f;
+}
+
 // Inside a frame. `fill`: the id of a cell whose centre is at p; NULL: as they were.
 static inline void sim_bodies_set(sim_world *w, sim_bodies *b,
                                   int (*fill)(const float p[3], const void *user),
                                   const void *user) {
-    const uint32_t *n = w->desc.size;
     for (size_t c = 0; fill && c < w->cells; c++) {
-        const float p[3] = {(float)(c % n[0]) + 0.5f, (float)(c / n[0] % n[1]) + 0.5f,
-                            (float)(c / n[0] / n[1]) + 0.5f};
+        float p[3];
+        sim_centre(w, c, p);
         b->bytes[c] = (uint8_t)fill(p, user);
     }
     if (fill) gpu_test_ok(gpu_buffer_write(w->device, b->ids, 0, b->bytes, w->cells));

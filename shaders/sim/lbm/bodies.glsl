@@ -40,6 +40,17 @@ uint lbm_id_at(ivec3 cell) {
     return lbm_ids[i >> 2] >> 8u * (i & 3u) & 255u;
 }
 
+uniform uint lbm_moved; // bodies came to lie in other cells just before this step
+
+// The first step after a cell became solid, or air, what passes between it and others was sent by
+// air, or filled as if it was: then walls push nothing, or mass would not be kept.
+bool lbm_is_new(ivec3 cell) {
+    const ivec3 size = ivec3(LBM_NX, LBM_NY, LBM_NZ);
+    uvec3 c = uvec3((cell + size) % size);
+    uint element = c.x + LBM_NX * (c.y + LBM_NY * (c.z % LBM_LAYERS)), lane = c.z / LBM_LAYERS;
+    return (lbm_cells[element * LBM_CHUNKS + lane / 4u] >> 8u * (lane & 3u) & LBM_CELL_NEW) != 0u;
+}
+
 vec3 lbm_body_velocity(uint id, vec3 point) {
     vec4 centre = lbm_bodies[3u * id], linear = lbm_bodies[3u * id + 1u];
     vec3 v = linear.xyz + cross(lbm_bodies[3u * id + 2u].xyz, point - centre.xyz);
@@ -49,7 +60,7 @@ vec3 lbm_body_velocity(uint id, vec3 point) {
 // How fast the wall moves along a direction from which comes what arrives in a cell; 0: there is none.
 float lbm_wall_speed(ivec3 cell, ivec3 direction) {
     uint id = lbm_id_at(cell - direction);
-    if (id == 0u) return 0.0;
+    if (id == 0u || lbm_moved != 0u && lbm_is_new(cell - direction)) return 0.0;
     vec3 point = vec3(cell) + 0.5 - 0.5 * vec3(direction);
     return dot(vec3(direction), lbm_body_velocity(id, point));
 }
@@ -63,6 +74,7 @@ void lbm_push_air(uvec3 at, uint near, const int chunk, inout vec4 f[LBM_Q]) {
         uint lane = k + 4u * uint(chunk);
         if ((near >> lane & 1u) == 0u) continue;
         ivec3 cell = lbm_cell_at(at, lane);
+        if (lbm_moved != 0u && lbm_is_new(cell)) continue;
         vec4 mine = 6.0 * density * vec4(equal(uvec4(k), uvec4(0, 1, 2, 3)));
 #define PUSH(i, x, y, z)                                                                           \
     f[i] += LBM_WEIGHT(x, y, z) * lbm_wall_speed(cell, ivec3(x, y, z)) * mine;                     \
@@ -81,6 +93,7 @@ void lbm_push_scalar(uvec3 at, uint near, const int chunk, inout vec4 g[LBM_SCAL
         uint lane = k + 4u * uint(chunk);
         if ((near >> lane & 1u) == 0u) continue;
         ivec3 cell = lbm_cell_at(at, lane);
+        if (lbm_moved != 0u && lbm_is_new(cell)) continue;
         vec4 mine = 2.0 / LBM_SCALAR_SPEED * value * vec4(equal(uvec4(k), uvec4(0, 1, 2, 3)));
 #define PUSH(i, x, y, z)                                                                           \
     g[i] += LBM_SCALAR_WEIGHT(x, y, z) * lbm_wall_speed(cell, ivec3(x, y, z)) * mine;              \

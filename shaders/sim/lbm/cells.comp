@@ -1,6 +1,6 @@
 // What the cells are, anew: solid, or beside a body that moves. What a body has left is filled: its
 // velocity, the mean density and scalars of the air around. What it covers needs nothing done: what
-// is under way between the cell and air comes back, the rest is lost, and this is what the wall has
+// is under way between the cell and air comes back, the rest is lost, and that much the wall has
 // pushed out before it (bodies.glsl). Not a pass of its own: see src/sim/lbm_walls.c.
 layout(local_size_x = LBM_GROUP) in;
 #include "sim/lbm/bodies.glsl"
@@ -152,7 +152,12 @@ uint body_beside(ivec3 at) { // the greatest id
     return id;
 }
 
-// What arrives, and what goes into solid cells: it comes back a step later.
+// What arrives, and what the cell would have sent: to air, and into solids, from where it comes back
+// a step later. Others that a body has left are filled themselves.
+bool takes(ivec3 at) {
+    return is_solid(at) || !was_solid(find(at));
+}
+
 void fill_air(ivec3 at, float excess, vec3 u) {
     Cell own = find(at);
     float density = 1.0 + excess, same = excess - density * 1.5 * dot(u, u);
@@ -165,9 +170,9 @@ void fill_air(ivec3 at, float excess, vec3 u) {
         float odd = LBM_WEIGHT(x, y, z) * 3.0 * density * along;                                   \
         store(LBM_AIR_PAIR(i), 1u - lbm_parity, own, LBM_AIR_SCALE, even + odd);                   \
         store(LBM_AIR_PAIR(i), lbm_parity, there, LBM_AIR_SCALE, even - odd);                      \
-        if (is_solid(at + ivec3(x, y, z)))                                                         \
+        if (takes(at + ivec3(x, y, z)))                                                         \
             store(LBM_AIR_PAIR(i), 1u - lbm_parity, there, LBM_AIR_SCALE, even + odd);             \
-        if (is_solid(at - ivec3(x, y, z)))                                                         \
+        if (takes(at - ivec3(x, y, z)))                                                         \
             store(LBM_AIR_PAIR(i), lbm_parity, own, LBM_AIR_SCALE, even - odd);                    \
     }
     LBM_PAIRS(FILL)
@@ -184,9 +189,9 @@ void fill_scalar(const int s, ivec3 at, float value, vec3 u) {
         float odd = even * dot(u, vec3(x, y, z)) * (1.0 / LBM_SCALAR_SPEED);                       \
         store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, own, LBM_SCALAR_SCALE, even + odd);          \
         store(LBM_SCALAR_PAIR(s, i), lbm_parity, there, LBM_SCALAR_SCALE, even - odd);             \
-        if (is_solid(at + ivec3(x, y, z)))                                                         \
+        if (takes(at + ivec3(x, y, z)))                                                         \
             store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, there, LBM_SCALAR_SCALE, even + odd);    \
-        if (is_solid(at - ivec3(x, y, z)))                                                         \
+        if (takes(at - ivec3(x, y, z)))                                                         \
             store(LBM_SCALAR_PAIR(s, i), lbm_parity, own, LBM_SCALAR_SCALE, even - odd);           \
     }
     LBM_SCALAR_PAIRS(FILL)
@@ -219,8 +224,8 @@ void main() {
         uint bytes = 0u, before = cells_before[element * LBM_CHUNKS + chunk];
         for (uint k = 0u; k < 4u; k++)
             bytes |= find_kind(lbm_cell_at(at, 4u * chunk + k)) << 8u * k;
-        lbm_cells[element * LBM_CHUNKS + chunk] = bytes;
-        uint left = before & ~bytes & LBM_CELL_SOLID * 0x01010101u;
+        uint changed = (before ^ bytes) & LBM_CELL_SOLID * 0x01010101u, left = changed & before;
+        lbm_cells[element * LBM_CHUNKS + chunk] = bytes | changed * (LBM_CELL_NEW / LBM_CELL_SOLID);
         for (uint k = 0u; left != 0u && k < 4u; k++)
             if ((left >> 8u * k & LBM_CELL_SOLID) != 0u) fill(lbm_cell_at(at, 4u * chunk + k));
     }

@@ -17,6 +17,7 @@
 
 // Of a cell's byte.
 #define LBM_CELL_SOLID 1u
+#define LBM_CELL_NEW 2u  // it became solid, or air, when bodies moved last
 #define LBM_CELL_NEAR 8u // air beside a body that moves
 
 struct lbm_site { // of an element
