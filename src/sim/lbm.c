@@ -118,9 +118,9 @@ static void define_all(lbm *l) {
 // `device`: NULL, none in particular.
 static bool compile(lbm *l, const gpu_info *device, shader_library *library,
                     const shader_reader *reader) {
-    const bool wide = device && device->kind == GPU_CPU && device->int64;
-    const shader_define defines[][2] = {{{"LBM_WIDE", wide ? "1" : "0"}, {"LBM_KEEP", "0"}},
-                                        {{"LBM_WIDE", wide ? "1" : "0"}, {"LBM_KEEP", "1"}}};
+    const char *software = device && device->kind == GPU_CPU && device->int64 ? "1" : "0";
+    const shader_define defines[][2] = {{{"LBM_SOFTWARE", software}, {"LBM_KEEP", "0"}},
+                                        {{"LBM_SOFTWARE", software}, {"LBM_KEEP", "1"}}};
     const char *step = "sim/lbm/step.comp";
     if (!lbm_layout_find(&l->desc, device ? device->max_storage_range : UINT32_MAX, &l->layout))
         return false;

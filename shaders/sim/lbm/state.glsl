@@ -73,22 +73,49 @@ uniform uint lbm_parity; // of steps
 #define LBM_SCALAR_SCALE 1.0
 #endif
 #define LBM_CHUNKS (LBM_LANES / 4)
+// 1: the device is a processor (llvmpipe) that loads vectors word by word, so that two words of 64
+// bits cost half of what four of 32 do, and that converts halves one by one. src/sim/README.md has
+// figures.
+#ifndef LBM_SOFTWARE
+#define LBM_SOFTWARE 0
+#endif
 #define LBM_LAYER (LBM_NX * LBM_NY)           // elements
 #define LBM_ELEMENTS (LBM_LAYER * LBM_LAYERS) // of a direction
 
 // Four cells of an element, as they lie in memory.
 #if LBM_HALF
+#if LBM_SOFTWARE
+// By hand: a half shifted into a float has an exponent that is 112 too low, which the factor mends.
+// Halves too small to be normal are 0. Rounded to nearest even, as devices do.
+#define LBM_BIAS 5192296858534827628530496329220096.0 // 2^112
 vec4 lbm_unpack(lbm_element e, const int chunk, const float scale) {
-    uvec2 half_ = chunk == 0 ? e.xy : e.zw;
-    return vec4(unpackHalf2x16(half_.x), unpackHalf2x16(half_.y)) * (1.0 / scale);
+    uvec2 words = chunk == 0 ? e.xy : e.zw;
+    ivec4 bits = ivec4(words.x << 16, words.x, words.y << 16, words.y) >> 3 & 0x8fffe000;
+    return intBitsToFloat(bits) * (LBM_BIAS / scale);
+}
+
+void lbm_pack(inout lbm_element e, const int chunk, const float scale, vec4 v) {
+    const float most = 65504.0 / LBM_BIAS;
+    uvec4 bits = floatBitsToUint(clamp(v * (scale / LBM_BIAS), -most, most));
+    bits += (bits >> 13 & 1u) + 0xfffu;
+    uvec2 low = bits.xz >> 13 & 0x7fffu | bits.xz >> 16 & 0x8000u;
+    uvec2 words = low | bits.yw << 3 & 0x7fff0000u | bits.yw & 0x80000000u;
+    if (chunk == 0) e.xy = words;
+    else e.zw = words;
+}
+#else
+vec4 lbm_unpack(lbm_element e, const int chunk, const float scale) {
+    uvec2 words = chunk == 0 ? e.xy : e.zw;
+    return vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y)) * (1.0 / scale);
 }
 
 void lbm_pack(inout lbm_element e, const int chunk, const float scale, vec4 v) {
     v *= scale;
-    uvec2 half_ = uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
-    if (chunk == 0) e.xy = half_;
-    else e.zw = half_;
+    uvec2 words = uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
+    if (chunk == 0) e.xy = words;
+    else e.zw = words;
 }
+#endif
 
 // Lane l gets what lane l + 1 has, and the other way round.
 lbm_element lbm_next_lane(lbm_element e) {
@@ -188,12 +215,8 @@ uint lbm_there(lbm_place p, const int x, const int y, const int z) {
 #define LBM_AIR_AT_REST (LBM_Q - 1 + LBM_SCALARS * (LBM_SCALAR_Q - 1))
 #define LBM_SCALAR_AT_REST(s) (LBM_AIR_AT_REST + 1 + (s))
 
-// How elements are read and written. Where vectors are emulated word by word, two words of 64 bits
-// cost half of what four of 32 do (llvmpipe: src/sim/README.md).
-#ifndef LBM_WIDE
-#define LBM_WIDE 0
-#endif
-#if LBM_WIDE
+// How elements are read and written.
+#if LBM_SOFTWARE
 #define lbm_memory u64vec2
 lbm_element lbm_from_memory(lbm_memory m) {
     uvec4 words = uvec4(unpackUint2x32(m.x), unpackUint2x32(m.y));

@@ -1,6 +1,6 @@
 // One step of a lattice Boltzmann solver: each thread takes what arrives at an element, collides
 // it, and sends it off. Not a pass of its own: see src/sim/lbm.c.
-#if LBM_WIDE
+#if LBM_SOFTWARE
 #extension GL_ARB_gpu_shader_int64 : require
 #endif
 layout(local_size_x = LBM_GROUP) in;
