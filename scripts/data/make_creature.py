@@ -75,8 +75,8 @@ def spikes(path, count, height, thick):
 
 NECK = ((-0.20, 0, 0.20, 0.24), (-0.52, 0, 0.10, 0.255), (-0.86, 0, -0.18, 0.265), (-1.06, 0, -0.62, 0.295), (-1.02, 0, -1.12, 0.35),
         (-0.86, 0, -1.62, 0.43), (-0.82, 0, -1.95, 0.47))
-GULLET = ((0.55, 0, -0.02, 0.07), (0.20, 0, -0.01, 0.115), (-0.15, 0, 0.02, 0.135), (-0.45, 0, 0.0, 0.14), (-0.72, 0, -0.16, 0.13),
-          (-0.86, 0, -0.40, 0.10))
+GULLET = ((0.55, 0, -0.01, 0.08), (0.20, 0, 0.01, 0.13), (-0.10, 0, 0.03, 0.155), (-0.42, 0, 0.02, 0.16), (-0.68, 0, -0.10, 0.14),
+          (-0.84, 0, -0.34, 0.10))
 
 
 def on_neck(p):
@@ -144,7 +144,8 @@ def upper():
     skin, lids, eye, horns, teeth = skull()
     throat = neck()
     spines = join(0.0, *spikes(NECK, 13, 0.17, 0.045))
-    palate = cut(0.03, loft(shrunk(UPPER, 0.055, -0.2, -0.17), 2.2), lambda p: p[:, 0] - 1.10)
+    palate = loft(shrunk(UPPER, 0.055, -0.2, -0.15), 2.2)
+    palate = cut(0.03, palate, lambda p: p[:, 0] + 0.02, lambda p: 1.10 - p[:, 0])  # behind the jaw the gullet is whole
     hollow = join(0.08, limb(*spline(GULLET, 6)), palate)
     solid = join(0.10, skin, throat)
     body = cut(0.03, solid, hollow)
@@ -166,7 +167,7 @@ def jaw():
     bone = join(0.06, loft(LOWER, 2.6), ellipsoid((-0.02, 0.185, -0.06), (0.17, 0.07, 0.15)))
     lip = limb(*spline([(x, 0.92 * w, b - 0.03, 0.022) for x, w, _, b in LOWER[1:-1]], 4))
     bone = join(0.03, bone, lip)
-    trough = cut(0.02, loft(shrunk(LOWER, 0.05, 0.085, 0.2), 2.4), lambda p: p[:, 0] - 1.10)
+    trough = cut(0.02, loft(shrunk(LOWER, 0.05, 0.07, 0.2), 2.4), lambda p: 1.10 - p[:, 0])
     tongue = limb((-0.02, 0, -0.115, 0.06), (0.40, 0, -0.085, 0.062), (0.75, 0, -0.062, 0.052), (0.95, 0, -0.030, 0.034), (1.04, 0, 0.005, 0.008))
     flat = lambda p: tongue(p * (1, 0.75, 1.0))
     teeth = join(0.0, *row(LOWER, (1.19, 1.08, 0.98, 0.88, 0.78, 0.68, 0.58, 0.48, 0.39, 0.30),
@@ -185,7 +186,7 @@ def jaw():
 
 def breath():
     """What fills the back of the gullet, a little less wide."""
-    return limb((-0.30, 0, -0.005, 0.10), (-0.45, 0, -0.02, 0.10), (-0.62, 0, -0.10, 0.09))
+    return limb((-0.18, 0, 0.025, 0.12), (-0.42, 0, 0.02, 0.125), (-0.60, 0, -0.05, 0.10))
 
 
 def in_world(mesh, at):
@@ -195,13 +196,12 @@ def in_world(mesh, at):
 
 folder, cell = sys.argv[1], float(sys.argv[2]) if len(sys.argv) > 2 else 0.014
 hinge = np.array(HEAD) + TILT @ np.array(HINGE)
-if "--jaw" not in sys.argv:
-    whole, materials = upper()
-    write_obj(folder, "creature", "make_creature.py",
-              in_world(build(whole, (-1.65, -0.62, -1.9), (1.42, 0.62, 0.98), cell, 17000, materials), HEAD), COLORS)
+whole, materials = upper()
+write_obj(folder, "creature", "make_creature.py",
+          in_world(build(whole, (-1.65, -0.62, -1.9), (1.42, 0.62, 0.98), cell, 17000, materials), HEAD), COLORS)
 whole, materials = jaw()
 vertices, faces, labels = build(whole, (-0.35, -0.40, -0.45), (1.40, 0.40, 0.25), cell, 6000, materials)
 write_obj(folder, "creature_jaw", "make_creature.py", in_world((vertices - HINGE, faces, labels), (0, 0, 0)), {k: COLORS[k] for k in materials})
 write_obj(folder, "creature_throat", "make_creature.py",
-          in_world(build(breath(), (-0.85, -0.2, -0.35), (-0.1, 0.2, 0.2), 0.02, 400), HEAD), {"body": (0.5, 0.5, 0.5)})
+          in_world(build(breath(), (-0.85, -0.2, -0.35), (0.05, 0.2, 0.25), 0.02, 400), HEAD), {"body": (0.5, 0.5, 0.5)})
 print("the jaw's hinge: %.3f %.3f %.3f" % tuple(hinge))
