@@ -96,7 +96,11 @@ struct surface_material {
 // voxelised by itself: a run of items (triangles, large ones in strips) with a box of cells.
 #define VOXEL_MAX_PARTS 512
 #define VOXEL_UNIT 256      // steps a cell that corners are rounded to
-#define VOXEL_STRIPS 64     // of a triangle, at most
+#define VOXEL_GROUP 64      // threads of a group of those that prepare and cross
+#define VOXEL_CLEARED 4     // uvec4s of masks that a thread clears
+#define VOXEL_LINES 512     // lines through cells that an item meets, about: larger triangles are cut
+#define VOXEL_STRIPS 64     // into so many at most
+#define VOXEL_ROW 16        // cells that a thread composes; a multiple of 4
 #define VOXEL_CROSSES 4096u // flags of an item, above its strip and its strips less one, 6 bits each
 #define VOXEL_SHELL 8192u
 #define VOXEL_THIN 2.0 // cells: triangles with less of the body behind them are shells as well

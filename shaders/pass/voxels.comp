@@ -1,5 +1,7 @@
 // Meshes as cells of a box: a field of what is inside of them, of how far their surface is, and of
 // how they move. Meshes that stand still are computed once.
+
+// Here all but the distance, which shaders/scene/voxels/distance.comp writes.
 layout(local_size_x = 16, local_size_y = 16, local_size_z = 1) in;
 //@ option rule = auto {auto, solid, shell} : solid fills what is inside, even with holes; shell is every cell that a triangle touches; auto is solid where a mesh is closed, shell where it is open or thin
 #include "shared.h"
@@ -9,7 +11,7 @@ uniform vec3 box_min;
 uniform vec3 box_max;
 uniform vec3 size; // cells
 writeonly uniform image3D inside;    //= output r8 optional : 1 where there is a mesh
-writeonly uniform image3D distance_; //= output r16f optional : to the nearest surface (m), negative inside; another stage's
+writeonly uniform image3D distance_; //= output r16f optional : to the nearest surface (m), negative inside
 writeonly uniform image3D velocity;  //= output rgba16f optional : of the mesh in a cell (m/s)
 
 vec3 velocity_at(uint id, vec3 p) {

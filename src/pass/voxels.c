@@ -196,6 +196,7 @@ const field *pass_voxels_field(pass *p, const char *name) {
 
 static bool add_image(pass *p, voxels_pass *s, const char *output, int channel) {
     int image = pass_find_image(p, output);
+    p->formats[image] = p->face->images[image].format; // as other shaders write it
     p->images[image] = graph_add_image(
         p->host->graph, &(graph_image_desc){
                             .name = arena_format(p->host->memory, "%s.%s", p->label, output),

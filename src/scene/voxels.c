@@ -143,7 +143,7 @@ static void find_motion(const voxels *v, const voxels_placed *b, mat4 now, doubl
 
 static bool is_finite(mat4 m) {
     for (int i = 0; i < 16; i++)
-        if (!(fabsf(m[i / 4][i % 4]) < 1e18f)) return false;
+        if (!(fabsf(m[i / 4][i % 4]) < 1e12f)) return false;
     return true;
 }
 
@@ -180,9 +180,10 @@ static void find_rows(const voxels *v, const voxels_placed *b, shared_vec4 out[3
 // Cells of an axis that a range of places meets: with a little more, as corners are rounded.
 static void clip_axis(float from, float to, uint32_t cells, uint32_t step, uint32_t *low,
                       uint32_t *size) {
-    const float margin = 2.0f / VOXEL_UNIT;
-    float first = clampf(floorf(from - margin), 0, (float)cells);
-    float end = clampf(floorf(to + margin) + 1, 0, (float)cells);
+    const float margin = 2.0f / VOXEL_UNIT, most = (float)cells;
+    float first = floorf(from - margin), end = floorf(to + margin) + 1;
+    first = first > 0 ? fminf(first, most) : 0; // what is no number becomes the whole axis
+    end = end < most ? fmaxf(end, 0) : most;
     *low = (uint32_t)first / step * step;
     uint32_t past = ((uint32_t)end + step - 1) / step * step;
     *size = first < end ? past - *low : 0;
@@ -308,8 +309,6 @@ static void describe_part(const voxels *v, const voxels_part *p, struct voxel_pa
     out->place = (shared_uvec4){{p->first_placed, p->masks, p->used, p->first_number}};
 }
 
-enum { CLEARED = 4, ROW = 16 }; // uvec4s of masks that a thread clears, cells that one composes
-
 // The list of parts at work, with the groups of threads that are theirs. One that meets no cell is
 // still placed, for distances.
 static void list_work(voxels *v) {
@@ -321,7 +320,7 @@ static void list_work(voxels *v) {
         if (!p->moved) continue;
         struct voxel_part *out = &v->state->parts[i];
         describe_part(v, p, out);
-        uint32_t clear = voxels_groups((p->used + CLEARED - 1) / CLEARED);
+        uint32_t clear = voxels_groups((p->used + VOXEL_CLEARED - 1) / VOXEL_CLEARED);
         uint32_t points = voxels_groups(out->mesh.v[1]), prepare = clear > points ? clear : points;
         uint64_t crossing = p->box.size[0] ? (3u + p->shell) * (uint64_t)out->mesh.v[3] : 0;
         v->state->work[head->count.v[1]++] =
@@ -349,7 +348,8 @@ static void describe_grid(voxels *v, const cell_box *dirty) {
 
 static bool run(voxels *v, gpu *g, const cell_box *dirty) {
     const struct voxel_head *head = &v->state->head;
-    const uint32_t threads[3] = {(dirty->size[0] + ROW - 1) / ROW, dirty->size[1], dirty->size[2]};
+    const uint32_t threads[3] = {(dirty->size[0] + VOXEL_ROW - 1) / VOXEL_ROW, dirty->size[1],
+                                 dirty->size[2]};
     size_t used = offsetof(voxels_state, parts) + v->part_count * sizeof *v->state->parts;
     return gpu_buffer_write(g, v->buffers[VOXELS_STATE], 0, v->state, used) &&
            voxels_dispatch_groups(v, g, VOXELS_PREPARE, head->count.v[2]) &&

@@ -153,13 +153,13 @@ bool voxels_dispatch(voxels *v, gpu *g, voxels_stage stage, const uint32_t threa
 }
 
 uint32_t voxels_groups(uint64_t threads) {
-    return (uint32_t)((threads + VOXELS_GROUP - 1) / VOXELS_GROUP);
+    return (uint32_t)((threads + VOXEL_GROUP - 1) / VOXEL_GROUP);
 }
 
 bool voxels_dispatch_groups(voxels *v, gpu *g, voxels_stage stage, uint32_t groups) {
     enum { ROW = 32768 };
     if (groups == 0) return true;
-    const uint32_t threads[3] = {VOXELS_GROUP * (groups < ROW ? groups : ROW),
+    const uint32_t threads[3] = {VOXEL_GROUP * (groups < ROW ? groups : ROW),
                                  (groups + ROW - 1) / ROW, 1};
     return voxels_dispatch(v, g, stage, threads, &(voxels_images){0});
 }

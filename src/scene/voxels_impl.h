@@ -99,7 +99,6 @@ bool voxels_dispatch(voxels *v, gpu *g, voxels_stage stage, const uint32_t threa
                      const voxels_images *more);
 // Of shaders whose groups are counted by voxel_group() of state.glsl: as many as are wanted, in
 // rows that every device can take.
-enum { VOXELS_GROUP = 64 }; // threads
 uint32_t voxels_groups(uint64_t threads);
 bool voxels_dispatch_groups(voxels *v, gpu *g, voxels_stage stage, uint32_t groups);
 // Of `bytes`; too much for the device: a message that says so.

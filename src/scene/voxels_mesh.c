@@ -8,7 +8,7 @@
 #include <string.h>
 
 // Components that are looked at for overlaps; with more of them all are one group.
-enum { MOST_COMPONENTS = 2048, ITEM_LINES = 512 };
+enum { MOST_COMPONENTS = 2048 };
 
 static bool overlap(box3 a, box3 b) {
     return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
@@ -72,7 +72,7 @@ static uint32_t count_strips(const voxel_topology *t, const voxel_triangle *tri,
         widest = fmaxf(widest, fmaxf(p, fmaxf(q, r)) - fminf(p, fminf(q, r)));
     }
     float lines = widest / t->size * (float)cells;
-    return (uint32_t)clampf(ceilf(lines * lines / ITEM_LINES), 1, VOXEL_STRIPS);
+    return (uint32_t)clampf(ceilf(lines * lines / VOXEL_LINES), 1, VOXEL_STRIPS);
 }
 
 // 0: it plays no part.

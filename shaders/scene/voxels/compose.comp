@@ -3,14 +3,15 @@ layout(local_size_x = 8, local_size_y = 16, local_size_z = 2) in;
 #include "inside.glsl"
 layout(std430) writeonly buffer VoxelIds { uint voxel_ids[]; };
 
-const uint fours = 4u; // of cells, that a thread composes: as in src/scene/voxels.c
+const uint fours = uint(VOXEL_ROW) / 4u;
 
 void main() {
-    uvec3 at = gl_GlobalInvocationID * uvec3(4u * fours, 1u, 1u);
+    uvec3 at = gl_GlobalInvocationID * uvec3(VOXEL_ROW, 1, 1);
     if (any(greaterThanEqual(at, voxel.size.xyz))) return;
     uint count = min(fours, (voxel.size.x - at.x) / 4u);
     at += voxel.low.xyz;
-    uvec4 ids[fours] = uvec4[fours](uvec4(0u), uvec4(0u), uvec4(0u), uvec4(0u));
+    uvec4 ids[fours];
+    for (uint k = 0u; k < fours; k++) ids[k] = uvec4(0u);
     for (uint i = 0u; i < voxel.count.x; i++) {
         uvec3 low = voxel_parts[i].low.xyz, end = low + voxel_parts[i].size.xyz;
         if (at.x + 4u * count <= low.x || at.x >= end.x || any(lessThan(at.yz, low.yz)) ||

@@ -7,8 +7,8 @@
 // the lower ones are its own. So of two triangles that share an edge a line through it crosses
 // exactly one, and both or none where it is a fold (Pineda, "A parallel algorithm for polygon
 // rasterization", 1988).
-layout(local_size_x = 64) in;
 #include "state.glsl"
+layout(local_size_x = VOXEL_GROUP) in;
 layout(std430) readonly buffer VoxelItems { uvec4 voxel_items[]; };
 layout(std430) readonly buffer VoxelPlaced { ivec4 voxel_placed[]; };
 layout(std430) buffer VoxelMasks { uint voxel_words[]; };
@@ -173,7 +173,7 @@ void main() {
     if (group >= voxel.count.w) return;
     uvec4 work = voxel_work[voxel_find_work(group, 2u)];
     voxel_part p = voxel_parts[work.x];
-    uint thread = 64u * (group - work.z) + gl_LocalInvocationID.x;
+    uint thread = uint(VOXEL_GROUP) * (group - work.z) + gl_LocalInvocationID.x;
     uint axis = thread / p.mesh.w;
     if (axis > 2u + p.size.w) return;
     uvec4 item = voxel_items[p.mesh.z + thread - axis * p.mesh.w];

@@ -1,7 +1,7 @@
 // Which triangle is nearest to the cells around it, for each item of all parts. Of the lines along
 // the axis that the triangle faces most, only the cells near its plane are looked at.
-layout(local_size_x = 64) in;
 #include "near.glsl"
+layout(local_size_x = VOXEL_GROUP) in;
 layout(std430) buffer VoxelKeys { uint voxel_keys[]; };
 
 uvec3 turn_back(uvec3 v, uint axis) {
@@ -9,7 +9,7 @@ uvec3 turn_back(uvec3 v, uint axis) {
 }
 
 void main() {
-    uint number = 64u * voxel_group() + gl_LocalInvocationID.x;
+    uint number = uint(VOXEL_GROUP) * voxel_group() + gl_LocalInvocationID.x;
     if (number >= voxel.grid.w) return;
     near_triangle t = near_get(number);
     uint bits = near_bits();

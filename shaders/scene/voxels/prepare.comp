@@ -1,8 +1,8 @@
 // First of three dispatches: of each part that moved, the masks are cleared and its points placed:
 // in steps of 1 / VOXEL_UNIT of a cell, from the corner of the box. A point of several triangles is
 // placed once, so that they meet exactly.
-layout(local_size_x = 64) in;
 #include "state.glsl"
+layout(local_size_x = VOXEL_GROUP) in;
 layout(std430) readonly buffer VoxelPoints { vec4 voxel_points[]; };
 layout(std430) writeonly buffer VoxelPlaced { ivec4 voxel_placed[]; };
 layout(std430) writeonly buffer VoxelMasks { uvec4 voxel_masks4[]; };
@@ -15,7 +15,7 @@ void main() {
     if (group >= voxel.count.z) return;
     uvec4 work = voxel_work[voxel_find_work(group, 1u)];
     voxel_part p = voxel_parts[work.x];
-    uint threads = 64u * work.w, thread = 64u * (group - work.y) + gl_LocalInvocationID.x;
+    uint threads = uint(VOXEL_GROUP) * work.w, thread = uint(VOXEL_GROUP) * (group - work.y) + gl_LocalInvocationID.x;
     for (uint i = thread; i < p.place.z; i += threads) voxel_masks4[p.place.y + i] = uvec4(0u);
     for (uint i = thread; i < p.mesh.y; i += threads) {
         vec4 point = vec4(voxel_points[p.mesh.x + i].xyz, 1.0);
