@@ -32,6 +32,12 @@ uniform float pressure; // pascals of an excess of density of 1
 writeonly uniform image3D scalars;  //= output rgba16f optional : density, temperature, dye, pressure
 writeonly uniform image3D velocity; //= output rgba16f optional : m/s
 
+// Halves that are no numbers become 0: what goes wrong is told, and not shown.
+uvec4 numbers_of(uvec4 m) {
+    m = mix(m, m & 0xffff0000u, equal(m & 0x7c00u, uvec4(0x7c00u)));
+    return mix(m, m & 0xffffu, equal(m & 0x7c000000u, uvec4(0x7c000000u)));
+}
+
 vec4 flow_of(uvec4 m) {
     return vec4(unpackHalf2x16(m.x), unpackHalf2x16(m.y));
 }
@@ -44,7 +50,7 @@ void main() {
     uvec3 cell = gl_GlobalInvocationID, cells = uvec3(size);
     if (any(greaterThanEqual(cell, cells))) return;
     uint at = cell.x + cells.x * (cell.y + cells.y * cell.z);
-    uvec4 now = moments[at], last = before[at];
+    uvec4 now = numbers_of(moments[at]), last = numbers_of(before[at]);
     vec4 flow = mix(flow_of(last), flow_of(now), blend);
     vec3 carried = mix(scalars_of(last), scalars_of(now), blend);
     if (imageSize(scalars).x > 1) imageStore(scalars, ivec3(cell), vec4(carried, flow.w * pressure));

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"
 #include <inttypes.h>
@@ -262,6 +263,12 @@ static void tell_steps(void *user, double done, double whole) {
     if (done >= whole) *steps = (app_progress){0};
 }
 
+static void warn_of_trouble(const roil_effect *e) {
+    roil_simulation s;
+    if (roil_get_simulation(e, &s) && s.trouble)
+        log_write(LOG_WARNING, "%s: %s", s.pass, s.trouble);
+}
+
 static bool render_frames(job *j, roil_effect *e, app_stats *stats) {
     app_progress progress, steps = {0};
     roil_on_progress(e, tell_steps, &steps);
@@ -276,6 +283,7 @@ static bool render_frames(job *j, roil_effect *e, app_stats *stats) {
         app_progress_step(&progress, (i + 1) * each);
     }
     app_progress_end(&progress);
+    if (done) warn_of_trouble(e);
     return done;
 }
 

@@ -114,10 +114,11 @@ struct effect {
     struct frame_block frame;
     struct light_block lights;
     uint32_t width, height;
-    uint32_t counter;  // frames rendered so far
-    double last_frame; // number of the frame rendered last
-    double updated;    // frame that `update` ran for last; NAN: none
-    bool behind;       // simulations have not reached the frame rendered last
+    uint32_t counter;   // frames rendered so far
+    double last_frame;  // number of the frame rendered last
+    double updated;     // frame that `update` ran for last; NAN: none
+    double rendered_at; // clock_seconds at its end
+    bool behind;        // simulations have not reached the frame rendered last
     void (*progress)(void *user, double done, double whole); // effect_on_progress
     void *progress_user;
     shared_mat4 clip, last_clip; // world to clip of the frame being recorded, of the one before

@@ -1,4 +1,5 @@
 // An effect at work: built once for a size, then one frame after the other.
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/worker.h"
@@ -180,6 +181,7 @@ uint64_t effect_render(effect *e, double frame, bool jump) {
     e->has_last = true;
     e->last_clip = e->clip;
     e->last_frame = frame;
+    e->rendered_at = clock_seconds();
     return number;
 }
 

@@ -10,7 +10,8 @@
 #include "effect/effect_impl.h"
 #include <math.h>
 
-static const double patience = 0.03; // seconds, of a live window
+// Seconds that a live window waits: as long as the rest of a frame takes, within these.
+static const double least_patience = 0.03, most_patience = 0.25;
 
 static double time_of(const effect *e, double frame) {
     return (frame - e->first) / e->fps;
@@ -83,11 +84,12 @@ static bool run_frame(effect *e, double frame, bool again) {
 }
 
 static bool run(effect *e, double frame, bool *again) {
-    double next = next_frame(e, frame), end = clock_seconds() + patience;
+    double next = next_frame(e, frame), begin = clock_seconds();
+    double patience = fmin(fmax(begin - e->rendered_at, least_patience), most_patience);
     double time = time_of(e, frame);
     int64_t whole = left(e, time);
     while (next < frame || !is_near(e, time)) {
-        if (e->punctual && clock_seconds() > end) {
+        if (e->punctual && clock_seconds() > begin + patience) {
             e->behind = true;
             break;
         }

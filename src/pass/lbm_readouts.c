@@ -7,29 +7,49 @@
 #include <math.h>
 #include <string.h>
 
+static double measured(const lbm_air *a) { // m/s
+    return (double)a->report.speed * a->units.cell / a->units.step;
+}
+
+// Air that is as fast as it may be would be faster.
+static bool is_held_back(const lbm_air *a) {
+    return !a->stops && (double)a->report.speed * sqrt(3) > 0.99 * SIM_MACH_MAX;
+}
+
 static void tell(lbm_air *a) {
     sim_flow flow = lbm_air_flow(a->pass);
-    double speed = (double)a->report.speed * a->units.cell / a->units.step;
+    double speed = measured(a);
     if (a->report.bad)
         snprintf(a->trouble, sizeof a->trouble,
                  "the air in %u cells is no number any more: set 'speed' above %.3g m/s, or "
                  "'collision' to \"central_moments\"",
                  a->report.bad, a->desc.speed);
-    else if (!sim_advise_speed(&a->units, &flow, speed, a->trouble, sizeof a->trouble))
+    else if (is_held_back(a))
+        snprintf(a->trouble, sizeof a->trouble,
+                 "air is held back at %.3g m/s, Mach %g on the lattice: set 'speed' above that (it "
+                 "is %.3g)",
+                 speed, SIM_MACH_MAX, a->desc.speed);
+    else if (!sim_advise_speed(&a->units, &flow, speed, a->trouble, sizeof a->trouble) &&
+             !sim_advise(&a->units, &flow, a->trouble, sizeof a->trouble))
         a->trouble[0] = '\0';
+}
+
+// What stops air: that it is beyond help, or, if that is wanted, that it is too fast.
+static bool must_stop(const lbm_air *a) {
+    return a->report.bad || (a->stops && (double)a->report.speed * sqrt(3) > SIM_MACH_MAX);
 }
 
 bool lbm_air_watch(pass *p) {
     lbm_air *a = lbm_air_of(p);
     gpu *device = p->host->device;
-    if (a->last_steps && !lbm_guard_record(a->guard, device, a->solver)) return false;
     lbm_report report;
+    if (a->last_steps && !lbm_guard_record(a->guard, device, a->solver)) return false;
     if (!lbm_guard_read(a->guard, device, &report)) return true;
     if (a->reported && report.step == a->report.step) return true;
     a->report = report;
     a->reported = true;
     tell(a);
-    a->stopped = a->stops && a->trouble[0];
+    a->stopped = must_stop(a);
     return true;
 }
 
@@ -41,7 +61,7 @@ const char *lbm_air_trouble(const pass *p) {
 size_t lbm_air_readouts(const pass *p, pass_readout *out, size_t capacity) {
     const lbm_air *a = lbm_air_of(p);
     sim_flow flow = lbm_air_flow(p);
-    if (a->reported) flow.speed = (double)a->report.speed * a->units.cell / a->units.step;
+    if (a->reported) flow.speed = measured(a);
     sim_readout now = sim_judge(&a->units, &flow);
     double cells = (double)a->desc.size[0] * a->desc.size[1] * a->desc.size[2];
     const pass_readout all[] = {

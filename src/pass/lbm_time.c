@@ -6,7 +6,7 @@
 // Cell updates that one submit may take: about 0.1 s of a large device, 2 s of a software one. In a
 // window it is a part of that.
 static const double most_updates = 2e9, most_in_software = 5e7;
-enum { BRIEF = 16 };
+enum { BRIEF = 64 };
 
 // Steps of a frame whose parts are timed, where counters are on: each part takes microseconds more
 // for it.
