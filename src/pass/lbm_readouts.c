@@ -16,21 +16,29 @@ static bool is_held_back(const lbm_air *a) {
     return !a->stops && (double)a->report.speed * sqrt(3) > 0.99 * SIM_MACH_MAX;
 }
 
-static void tell(lbm_air *a) {
-    sim_flow flow = lbm_air_flow(a->pass);
-    double speed = measured(a);
+// What the guard saw; false: nothing.
+static bool tell_report(lbm_air *a, const sim_flow *flow) {
+    char *out = a->trouble;
+    const size_t capacity = sizeof a->trouble;
+    if (!a->reported) return false;
+    if (!a->report.bad && !is_held_back(a))
+        return sim_advise_speed(&a->units, flow, measured(a), out, capacity);
     if (a->report.bad)
-        snprintf(a->trouble, sizeof a->trouble,
+        snprintf(out, capacity,
                  "the air in %u cells is no number any more: set 'speed' above %.3g m/s, or "
                  "'collision' to \"central_moments\"",
                  a->report.bad, a->desc.speed);
-    else if (is_held_back(a))
-        snprintf(a->trouble, sizeof a->trouble,
+    else
+        snprintf(out, capacity,
                  "air is held back at %.3g m/s, Mach %g on the lattice: set 'speed' above that (it "
                  "is %.3g)",
-                 speed, SIM_MACH_MAX, a->desc.speed);
-    else if (!sim_advise_speed(&a->units, &flow, speed, a->trouble, sizeof a->trouble) &&
-             !sim_advise(&a->units, &flow, a->trouble, sizeof a->trouble))
+                 measured(a), SIM_MACH_MAX, a->desc.speed);
+    return true;
+}
+
+static void tell(lbm_air *a) {
+    sim_flow flow = lbm_air_flow(a->pass);
+    if (!tell_report(a, &flow) && !sim_advise(&a->units, &flow, a->trouble, sizeof a->trouble))
         a->trouble[0] = '\0';
 }
 
@@ -44,12 +52,12 @@ bool lbm_air_watch(pass *p) {
     gpu *device = p->host->device;
     lbm_report report;
     if (a->last_steps && !lbm_guard_record(a->guard, device, a->solver)) return false;
-    if (!lbm_guard_read(a->guard, device, &report)) return true;
-    if (a->reported && report.step == a->report.step) return true;
-    a->report = report;
-    a->reported = true;
+    if (lbm_guard_read(a->guard, device, &report)) {
+        a->report = report;
+        a->reported = true;
+        a->stopped = must_stop(a);
+    }
     tell(a);
-    a->stopped = must_stop(a);
     return true;
 }
 

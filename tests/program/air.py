@@ -1,0 +1,54 @@
+"""Simulated air by the program: a plume rises, its readouts and times are told, mistakes are named."""
+import json
+
+from lib.pictures import Png
+from lib.program import Case, main
+
+EFFECT = """
+local fx = effect { name = "air", fps = 12, frames = 12 }
+local air = lbm { size = {16, 16, 32}, voxel_size = 0.1, speed = 2, buoyancy_heat = 8%s }
+air:source { shape = sphere { position = {0, 0, 0.4}, radius = 0.3 }, density = 1, temperature = 1 }
+fx.camera = camera { eye = {0, -8, 1.6}, target = {0, 0, 1.6}, fov = 30 }
+fx.output = final { march { density = air.density * 10, steps = 32, albedo = {0, 0, 0} } }.color
+return fx
+"""
+SMALL = ["--size", "16x32", "--alpha"]
+
+
+class Air(Case):
+    def rows(self, frame, *options):
+        """How opaque the rows of a frame are."""
+        self.write("effect.lua", EFFECT % "")
+        said = self.succeeds("render", "effect.lua", "--frames", str(frame), *SMALL, "-o", "o.png", *options)
+        return said, [sum(row[3::4]) for row in Png(self.read("o.png")).rows]
+
+    def test_a_plume_rises(self):
+        def top(rows):
+            return next(i for i, alpha in enumerate(rows) if alpha > 200)
+
+        _, first = self.rows(1)
+        said, last = self.rows(12, "--stats", "stats.json")
+        self.assertLess(top(last), top(first) - 3)
+        self.assertIn("time step 0.005 s", said)
+        stats = json.loads(self.read("stats.json"))
+        self.assertEqual(stats["readouts"]["lbm.steps"], 185)
+        self.assertAlmostEqual(stats["readouts"]["lbm.tau"], 0.50003, 4)
+        for part in ("lbm.step", "lbm.sources", "lbm.fields"):
+            self.assertIn(part, stats["median_gpu_ms"])
+
+    def test_no_device_is_needed_to_check(self):
+        self.write("effect.lua", EFFECT % "")
+        self.assertIn("effect.lua: good", self.succeeds("check", "effect.lua"))
+
+    def test_a_mistyped_option_gets_a_suggestion(self):
+        self.write("effect.lua", EFFECT % ", bouyancy_density = 1")
+        self.fails(1, ["effect.lua:3:", "did you mean 'buoyancy_density'?"], "check", "effect.lua")
+
+    def test_a_step_that_is_too_long_is_told(self):
+        self.write("effect.lua", EFFECT % ", time_step = 0.02, guard = 'stop'")
+        done = self.run_program("render", "effect.lua", "--frames", "4", *SMALL, "-o", "o.png")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, "lbm: .*'time_step' below")
+
+
+main()

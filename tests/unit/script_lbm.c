@@ -1,0 +1,124 @@
+// lbm { } in an effect file: what it gives, what can be set by name, and what is said after a
+// mistake. Without a device.
+#include "script_helper.h"
+
+#define HEAD "local fx = effect { name = 'air' }\n"
+#define AIR "local air = lbm { size = {16, 16, 24}, voxel_size = 0.1, "
+#define TAIL "\nfx.output = march { density = air.density }.color\nreturn fx\n"
+
+static void refused(const char *text, const char *message) {
+    char whole[2048];
+    snprintf(whole, sizeof whole, HEAD "%s" TAIL, text);
+    effect *e = helper_load(whole);
+    if (e) fail_msg("no error in: %s", text);
+    if (!strstr(err_get(), message)) fail_msg("in: %s\n got: %s", text, err_get());
+}
+
+static effect *load(const char *text, const effect_setting *settings, size_t count) {
+    char whole[2048];
+    snprintf(whole, sizeof whole, HEAD "%s" TAIL, text);
+    effect *e = helper_load_with(whole, NULL, settings, count);
+    if (!e) fail_msg("%s", err_get());
+    return e;
+}
+
+static void is_set(effect *e, const char *name, const char *value) {
+    const effect_control *c = effect_find_control(e, name);
+    if (!c) fail_msg("%s", err_get());
+    strbuf text = {0};
+    effect_print_control(e, c, &text);
+    if (strcmp(strbuf_text(&text), value) != 0)
+        fail_msg("%s is %s, not %s", name, strbuf_text(&text), value);
+    strbuf_free(&text);
+}
+
+static void mistakes_are_named(void **state) {
+    (void)state;
+    refused("local air = lbm { voxel_size = 0.1 }", "lbm: 'size' is missing");
+    refused("local air = lbm { size = {16, 16, 24} }", "lbm: 'voxel_size' is missing");
+    refused("local air = lbm { size = {15, 16, 24}, voxel_size = 1 }", "x = 15; a multiple of 4");
+    refused("local air = lbm { size = {16, 16, 20}, voxel_size = 1 }", "z = 20; a multiple of 8");
+    refused("local air = lbm { size = {16, 2, 24}, voxel_size = 1 }", "'size' has 2");
+    refused(AIR "viscosty = 1 }", "lbm: unknown key 'viscosty'; did you mean 'viscosity'?");
+    refused(AIR "warmup = 1 }", "lbm: unknown key 'warmup'; did you mean 'warm_up'?");
+    refused(AIR "viscosity = -1 }", "uniform 'viscosity' is -1; accepted: 0 to");
+    refused(AIR "speed = 0 }", "'speed' is 0 m/s");
+    refused(AIR "collision = 'trt2' }", "option 'collision' cannot be 'trt2'");
+    refused(AIR "boundary = { tpo = 'open' } }",
+            "boundary: unknown key 'tpo'; did you mean 'top'?");
+    refused(AIR "boundary = { top = 'opne' } }", "'boundary_top' cannot be 'opne'; accepted: "
+                                                 "periodic, wall, slip, open, inflow");
+    refused(AIR "boundary = { top = 3 } }", "boundary: 'top' takes a word");
+    refused(AIR "}\nlocal a = air.densty", "no field 'densty'; did you mean 'density'?");
+    refused(AIR "}\nair:source { densty = 1 }",
+            "source: unknown key 'densty'; did you mean 'density'?");
+    refused(AIR "}\nair:source { density = 1 }", "it has no place; give it a mesh, or shape");
+    refused(AIR "}\nair.source { density = 1 }", "mind the ':'");
+    refused(AIR "}\nair:collider { }", "collider takes meshes");
+    refused(AIR "}\nair:collider { sphere { } }", "collider takes meshes; got a userdata");
+}
+
+static void a_graph_that_cannot_be_is_refused(void **state) {
+    (void)state;
+    effect *e = load(AIR "boundary = { left = 'periodic' } }", NULL, 0);
+    assert_false(effect_check(e));
+    if (!strstr(err_get(), "one face along x is periodic")) fail_msg("%s", err_get());
+    effect_destroy(e);
+    e = load(AIR "}\nair:source { shape = sphere { }, velocity = air.velocity }", NULL, 0);
+    assert_false(effect_check(e));
+    if (!strstr(err_get(), "cycle: lbm.step -> lbm.step")) fail_msg("%s", err_get());
+    effect_destroy(e);
+}
+
+static void all_of_it_can_be_set_by_name(void **state) {
+    (void)state;
+    const effect_setting settings[] = {{"lbm.viscosity", "0.5", NULL},
+                                       {"lbm.boundary_top", "wall", NULL},
+                                       {"lbm_source.rate", "3", NULL},
+                                       {"lbm.precision", "f32", NULL}};
+    effect *e = load(AIR "boundary = 'slip', viscosity = 2 }\n"
+                         "air:source { shape = sphere { }, density = 1, rate = 7 }",
+                     settings, 4);
+    if (!effect_check(e)) fail_msg("%s", err_get());
+    is_set(e, "lbm.viscosity", "0.5");
+    is_set(e, "lbm.boundary_top", "wall");
+    is_set(e, "lbm.boundary_left", "slip");
+    is_set(e, "lbm_source.rate", "3");
+    is_set(e, "lbm.precision", "f32");
+    effect_destroy(e);
+}
+
+static void faces_can_be_said_together(void **state) {
+    (void)state;
+    effect *e =
+        load(AIR "boundary = { sides = 'periodic', top = 'slip', back = 'wall' } }", NULL, 0);
+    is_set(e, "lbm.boundary_left", "periodic");
+    is_set(e, "lbm.boundary_front", "periodic");
+    is_set(e, "lbm.boundary_back", "wall");
+    is_set(e, "lbm.boundary_top", "slip");
+    is_set(e, "lbm.boundary_bottom", "wall");
+    effect_destroy(e);
+}
+
+static void a_script_knows_its_box_and_step(void **state) {
+    (void)state;
+    effect *e =
+        load(AIR "position = {1, 2, 3}, speed = 5 }\n"
+                 "assert(math.abs(air.time_step - 0.002) < 1e-9)\n"
+                 "local b = air.box\n"
+                 "assert(math.abs(b.min[1] - 0.2) < 1e-6 and math.abs(b.max[3] - 5.4) < 1e-6)\n"
+                 "local dark = air.dye + air.temperature * length(air.velocity) + air.pressure",
+             NULL, 0);
+    effect_destroy(e);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mistakes_are_named),
+        cmocka_unit_test(a_graph_that_cannot_be_is_refused),
+        cmocka_unit_test(all_of_it_can_be_set_by_name),
+        cmocka_unit_test(faces_can_be_said_together),
+        cmocka_unit_test(a_script_knows_its_box_and_step),
+    };
+    return cmocka_run_group_tests(tests, helper_setup, helper_teardown);
+}
