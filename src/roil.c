@@ -245,6 +245,17 @@ void roil_restart(roil_effect *e) {
     effect_restart(e->effect);
 }
 
+bool roil_checkpoint(roil_effect *e, const char *file) {
+    return effect_save_state(e->effect, file);
+}
+
+bool roil_restore(roil_effect *e, const char *file, double *frame) {
+    double last;
+    if (!effect_load_state(e->effect, file, &last)) return false;
+    if (frame) *frame = last;
+    return true;
+}
+
 void roil_on_progress(roil_effect *e, void (*call)(void *user, double done, double whole),
                       void *user) {
     effect_on_progress(e->effect, call, user);

@@ -120,6 +120,12 @@ typedef struct roil_simulation { // what goes on from frame to frame in steps of
 // on, or, back in time, from the beginning. A punctual roil does that over several frames.
 bool roil_get_simulation(const roil_effect *e, roil_simulation *out); // false: nothing simulates
 void roil_restart(roil_effect *e); // simulations begin anew with the next frame
+// The state of all that simulates, after the last frame, as one file: there whole or not at all.
+// And back, after roil_prepare: the next frames are then those of a run that never stopped. `frame`
+// (NULL is fine) is the one rendered last before it was saved. A file that does not fit the effect
+// is refused with a message that says what differs; simulations then begin anew.
+bool roil_checkpoint(roil_effect *e, const char *file);
+bool roil_restore(roil_effect *e, const char *file, double *frame);
 // Is told, while frames that were left out are simulated, of the steps done and wanted.
 void roil_on_progress(roil_effect *e, void (*call)(void *user, double done, double whole),
                       void *user);

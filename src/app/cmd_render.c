@@ -21,6 +21,7 @@ typedef struct output {
 
 typedef struct job {
     const char *file, *stats, *device;
+    const char *checkpoint, *restore;
     output *outputs;
     size_t output_count, output_capacity;
     roil_writer *writer; // of pictures
@@ -32,6 +33,7 @@ typedef struct job {
     uint32_t width, height;
     int alpha, sixteen, full, validate, no_cache;
     int warmup;         // frames
+    bool all;           // frames, as nobody says which
     uint32_t reference; // samples a pixel; 0: as the effect draws it
     double fps, timeout;
     char default_output[PATH_CAP];
@@ -113,6 +115,10 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
         {"from", '\0', POPT_ARG_STRING, &j->from_file, 0,
          "as this picture was made: its effect, frame, size and settings, where no other are given",
          "SHOT.png"},
+        {"restore", '\0', POPT_ARG_STRING, &j->restore, 0,
+         "go on with the simulation from this file: by default with the frame after it", "FILE"},
+        {"checkpoint", '\0', POPT_ARG_STRING, &j->checkpoint, 0,
+         "write the state of the simulation after the last frame", "FILE"},
         {"reference", '\0', POPT_ARG_STRING, NULL, OPTION_REFERENCE,
          "trace paths of light instead of each pass march, so many for each pixel", "SPP"},
         {"device", 'd', POPT_ARG_STRING, &j->device, 0, "part of a device's name, or its number",
@@ -147,6 +153,8 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
     if (more) return err_set("'%s': one effect at a time", more);
     if (j->warmup < 0 || j->warmup > 1000)
         return err_set("--warmup %d; accepted: 0 to 1000 frames", j->warmup);
+    if (j->warmup && j->restore)
+        return err_set("--warmup goes back, --restore goes on: one of the two");
     return !j->frames_text || app_parse_frames(j->frames_text, &j->frames);
 }
 
@@ -179,7 +187,8 @@ static bool complete(job *j, roil_effect *e) {
     roil_effect_info info = roil_get_info(e);
     char range[64];
     snprintf(range, sizeof range, "%u-%u", info.first_frame, info.first_frame + info.frames - 1);
-    if (!j->frames.count && !app_parse_frames(range, &j->frames)) return false;
+    j->all = !j->frames.count;
+    if (j->all && !app_parse_frames(range, &j->frames)) return false;
     if (!(j->fps > 0)) j->fps = info.fps / j->frames.step;
     bool picture = false;
     for (size_t i = 0; i < j->output_count; i++) picture = picture || !j->outputs[i].image;
@@ -200,12 +209,25 @@ static bool complete(job *j, roil_effect *e) {
     return true;
 }
 
+// Of all frames, those that come after the checkpoint's are left.
+static bool restore(job *j, roil_effect *e) {
+    double last, *numbers = j->frames.numbers;
+    size_t left = 0;
+    if (!roil_restore(e, j->restore, &last)) return false;
+    for (size_t i = 0; j->all && i < j->frames.count; i++)
+        if (numbers[i] > last) numbers[left++] = numbers[i];
+    if (j->all) j->frames.count = left;
+    if (!j->frames.count) return err_set("%s: is of frame %g, the last", j->restore, last);
+    return numbers[0] > last || err_set("%s: is of frame %g; frames after it are accepted, not %g",
+                                        j->restore, last, numbers[0]);
+}
+
 static bool open_outputs(job *j, roil_effect *e) {
     for (size_t i = 0; i < j->output_count; i++) {
         output *o = &j->outputs[i];
         if (o->image && !roil_keep(e, o->image)) return false;
     }
-    if (!roil_prepare(e, j->width, j->height)) return false;
+    if (!roil_prepare(e, j->width, j->height) || (j->restore && !restore(j, e))) return false;
     j->writer = roil_writer_create();
     for (size_t i = 0; i < j->output_count; i++) {
         output *o = &j->outputs[i];
@@ -322,7 +344,8 @@ static int run(job *j) {
     } else if (!complete(j, e)) {
         status = app_fail(APP_BAD_USAGE, "render: %s", roil_error());
     } else {
-        bool done = open_outputs(j, e) && render_frames(j, e, stats);
+        bool done = open_outputs(j, e) && render_frames(j, e, stats) &&
+                    (!j->checkpoint || roil_checkpoint(e, j->checkpoint));
         if (!done) status = app_fail_input(); // before closing changes the message
         if (!close_outputs(j, done) && done) status = app_fail_input();
     }
@@ -330,6 +353,7 @@ static int run(job *j) {
         printf("%s on %s\n", j->file, roil_device_name(r));
         app_stats_print(stats);
         for (size_t i = 0; i < j->output_count; i++) printf("wrote %s\n", j->outputs[i].pattern);
+        if (j->checkpoint) printf("wrote %s\n", j->checkpoint);
         if (j->stats && !app_stats_save(stats, j->stats, r, j->file, j->width, j->height,
                                         j->settings.all, j->settings.count))
             status = app_fail_input();

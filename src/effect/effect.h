@@ -241,6 +241,10 @@ typedef struct effect_simulation {
 } effect_simulation;
 bool effect_get_simulation(const effect *e, effect_simulation *out); // false: nothing simulates
 void effect_restart(effect *e); // simulations begin anew with the next frame
+// The state of all that simulates, to a file and back, between frames. After effect_allocate; a
+// state that does not load leaves them to begin anew. `frame`: that was rendered last.
+bool effect_save_state(effect *e, const char *path);
+bool effect_load_state(effect *e, const char *path, double *frame);
 // Is told, while effect_render runs frames that were left out, of the steps done and wanted.
 void effect_on_progress(effect *e, void (*call)(void *user, double done, double whole), void *user);
 

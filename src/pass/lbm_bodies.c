@@ -40,11 +40,23 @@ static bool allocate(lbm_air *a, lbm_meshes *m) {
     return !m->cells || voxels_allocate(m->cells, a->pass->host->device);
 }
 
+// Bodies of a state that was taken over go on from where they were a step ago.
+static bool place(lbm_air *a, lbm_meshes *m) {
+    const pass_host *host = a->pass->host;
+    uint64_t steps = lbm_steps(a->solver);
+    if (!steps) return true;
+    voxels_change change;
+    field_context before = *host->context;
+    before.time = m->updated = lbm_air_step_time(a, steps - 1);
+    return voxels_update(m->cells, host->device, &before, 0, &change);
+}
+
 static bool move(lbm_air *a, lbm_meshes *m, voxels_change *change) {
     const pass_host *host = a->pass->host;
-    double now = host->context->time, passed = isnan(m->updated) ? 0 : now - m->updated;
+    double now = host->context->time;
     *change = (voxels_change){false, false};
-    if (!m->cells) return true;
+    if (!m->cells || (isnan(m->updated) && !place(a, m))) return !m->cells;
+    double passed = isnan(m->updated) ? 0 : now - m->updated;
     m->updated = now;
     return voxels_update(m->cells, host->device, host->context, passed, change);
 }

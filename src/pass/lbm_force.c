@@ -67,5 +67,13 @@ bool lbm_air_push(lbm_air *a) {
     uint64_t turn = lbm_steps(a->solver) / each;
     if (turn == a->force.turn) return true;
     a->force.turn = turn;
-    return bake(a->pass, &a->force);
+    // As of the turn's first step, also where a state is taken over in the middle of one.
+    pass_host *host = a->pass->host;
+    const field_context *now = host->context;
+    field_context first = *now;
+    first.time = lbm_air_step_time(a, turn * each);
+    host->context = &first;
+    bool done = bake(a->pass, &a->force);
+    host->context = now;
+    return done;
 }

@@ -70,6 +70,9 @@ bool lbm_air_advance(pass *p); // to the host's time, as far as one submit goes
 // How the two kept states are mixed for the host's time.
 double lbm_air_blend(const lbm_air *a, double time);
 
+// lbm_frame.c
+double lbm_air_pascals(const lbm_air *a); // of an excess of density of 1
+
 // lbm_force.c
 bool lbm_air_compile_force(lbm_air *a);
 bool lbm_air_build_force(lbm_air *a);
@@ -89,6 +92,10 @@ bool lbm_air_allocate_bodies(lbm_air *a);
 // To the host's time, which is that of a step.
 bool lbm_air_move_bodies(lbm_air *a, const lbm_numbers *numbers);
 void lbm_air_destroy_bodies(lbm_air *a);
+
+// lbm_state.c
+void lbm_air_save(const pass *p, struct checkpoint_list *out);
+bool lbm_air_load(pass *p, struct checkpoint *from);
 
 // lbm_readouts.c
 bool lbm_air_watch(pass *p); // after steps: what the guard found, and what it is to look at

@@ -92,6 +92,8 @@ const pass_simulation lbm_simulation = {
     .most = lbm_air_most,
     .reached = lbm_air_reached,
     .restart = lbm_air_restart,
+    .save = lbm_air_save,
+    .load = lbm_air_load,
     .readouts = lbm_air_readouts,
     .trouble = lbm_air_trouble,
 };

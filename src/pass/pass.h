@@ -49,6 +49,9 @@ void pass_host_add_grid_image(pass_host *host, const field_grid *grid, int index
                               graph_image image);
 void pass_host_free(pass_host *host);
 
+struct checkpoint;
+struct checkpoint_list;
+
 typedef struct pass_readout { // what a pass can tell of itself
     const char *name, *unit;  // "Mach", ""
     double value;
@@ -61,6 +64,10 @@ typedef struct pass_simulation {
     int64_t (*most)(const pass *p);              // steps of one submit
     double (*reached)(const pass *p); // the latest time that it shows; -INFINITY: none yet
     void (*restart)(pass *p);         // begins anew with the next record
+    // Its state in a checkpoint (sim/checkpoint.h). After pass_allocate; a state that does not load
+    // leaves it to begin anew.
+    void (*save)(const pass *p, struct checkpoint_list *out);
+    bool (*load)(pass *p, struct checkpoint *from);
     // At most `capacity`; returns the count. After pass_allocate.
     size_t (*readouts)(const pass *p, pass_readout *out, size_t capacity);
     const char *(*trouble)(const pass *p); // what is wrong and which key to change; NULL: nothing

@@ -1,0 +1,71 @@
+// What goes on from frame to frame, to disk and back: the states of all that simulates. Histories
+// of pictures are not kept, they begin anew.
+#include "base/error.h"
+#include "effect/effect_impl.h"
+#include "sim/checkpoint.h"
+#include <math.h>
+
+typedef struct effect_clock { // as it lies in the file
+    double frame;             // rendered last
+} effect_clock;
+
+static const char clock_name[] = "effect/clock";
+
+// The next pass that simulates and runs, from `*index` on; NULL: no more.
+static pass *next(const effect *e, size_t *index, const pass_simulation **out) {
+    while (*index < e->pass_count) {
+        pass *p = e->passes[(*index)++];
+        *out = pass_get_simulation(p);
+        if (*out && effect_runs(e, p)) return p;
+    }
+    return NULL;
+}
+
+static bool is_ready(const effect *e) {
+    return (e->compiled && graph_simulates(e->graph)) ||
+           err_set("%s: nothing in it simulates, so it has no state to keep", e->file);
+}
+
+bool effect_save_state(effect *e, const char *path) {
+    const pass_simulation *simulation;
+    checkpoint_list list = {0};
+    if (!is_ready(e)) return false;
+    pass *p;
+    for (size_t i = 0; (p = next(e, &i, &simulation));) {
+        if (!isfinite(simulation->reached(p)))
+            return err_set("%s: nothing is simulated yet: render a frame first", pass_label(p));
+    }
+    effect_clock clock = {e->last_frame};
+    checkpoint_add(
+        &list,
+        &(checkpoint_part){.name = clock_name, .size = sizeof clock, .width = 8, .bytes = &clock});
+    for (size_t i = 0; (p = next(e, &i, &simulation));) simulation->save(p, &list);
+    bool done = checkpoint_save(path, e->device, list.parts, list.count);
+    checkpoint_list_free(&list);
+    return done;
+}
+
+static bool load(effect *e, checkpoint *c) {
+    const pass_simulation *simulation;
+    effect_clock clock;
+    const checkpoint_part own = {.name = clock_name, .size = sizeof clock, .bytes = &clock};
+    if (!checkpoint_load(c, NULL, &own)) return false;
+    if (!isfinite(clock.frame)) return err_set("the checkpoint's frame is no number");
+    pass *p;
+    for (size_t i = 0; (p = next(e, &i, &simulation));)
+        if (!simulation->load(p, c)) return false;
+    graph_reset_history(e->graph);
+    e->has_last = false;
+    e->last_frame = e->updated = clock.frame;
+    return true;
+}
+
+bool effect_load_state(effect *e, const char *path, double *frame) {
+    if (!is_ready(e)) return false;
+    checkpoint *c = checkpoint_open(path);
+    bool done = c && load(e, c);
+    if (c && !done) effect_restart(e); // not half of one and half of another
+    checkpoint_close(c);
+    if (done) *frame = e->last_frame;
+    return done;
+}
