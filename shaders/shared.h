@@ -103,7 +103,7 @@ struct surface_material {
 #define VOXEL_ROW 16        // cells that a thread composes; a multiple of 4
 #define VOXEL_CROSSES 4096u // flags of an item, above its strip and its strips less one, 6 bits each
 #define VOXEL_SHELL 8192u
-#define VOXEL_THIN 2.0 // cells: triangles with less of the body behind them are shells as well
+#define VOXEL_THIN 1.7321 // cells: triangles with more of the body behind them need no shell
 
 struct voxel_head {
     SHARED_UVEC4 count; // parts; parts that are voxelised now; groups of prepare.comp, of cross.comp

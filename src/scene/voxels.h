@@ -9,8 +9,8 @@
 //
 // Rules: "solid" is that alone. "shell" marks every cell that a triangle touches, so that no line
 // from a cell to one of its 26 neighbours passes through. "auto": parts of the mesh (triangles that
-// share corners) that are closed are solid, and where they are thinner than two cells the
-// triangles' shell is added; the others are shells.
+// share corners) that are closed are solid, and where they are so thin that such lines could pass
+// (one cell thick, 1.7 across the diagonals) the triangles' shell is added; the others are shells.
 //
 // Of a mesh duplicate triangles count once. Two that lie on each other back to back: a part made of
 // nothing else is a surface with two sides, and one of each pair is left out; elsewhere they are a

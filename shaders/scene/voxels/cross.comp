@@ -134,9 +134,13 @@ bool meets_square(vec2 a, vec2 b, vec2 c, bool left, vec2 at) {
     return !is_beyond(a, b, at) && !is_beyond(b, c, at) && !is_beyond(c, a, at);
 }
 
-void mark_shell(triangle t, voxel_masks m) {
+// Cells of a slab let no line between 26 neighbours through if it is as thick as the sum of its unit
+// normal's components: the standard plane of Andres, Acharya and Sibata, "Discrete analytical
+// hyperplanes", 1997. `behind`: cells.
+void mark_shell(triangle t, float behind, voxel_masks m) {
     const float step = 1.0 / float(VOXEL_UNIT);
     vec3 sharp = cross(vec3(t.b - t.a), vec3(t.c - t.a)), steep = abs(sharp);
+    if (behind * length(sharp) > steep.x + steep.y + steep.z) return;
     uint axis = steep.x > steep.y && steep.x > steep.z ? 0u : steep.y > steep.z ? 1u : 2u;
     vec3 a = vec3(turn(t.a, axis)) * step, b = vec3(turn(t.b, axis)) * step;
     vec3 c = vec3(turn(t.c, axis)) * step, normal = cross(b - a, c - a);
@@ -164,8 +168,9 @@ void mark_shell(triangle t, voxel_masks m) {
     }
 }
 
-bool has_shell(uint flags, voxel_part p) {
-    return (flags & VOXEL_SHELL) != 0u || unpackHalf2x16(flags).y * p.scale.x < VOXEL_THIN;
+// Of the body behind an item, in cells; 0 of one that is a shell anyway.
+float behind_of(uint flags, voxel_part p) {
+    return (flags & VOXEL_SHELL) != 0u ? 0.0 : unpackHalf2x16(flags).y * p.scale.x;
 }
 
 void main() {
@@ -177,7 +182,8 @@ void main() {
     uint axis = thread / p.mesh.w;
     if (axis > 2u + p.size.w) return;
     uvec4 item = voxel_items[p.mesh.z + thread - axis * p.mesh.w];
-    if (axis < 3u ? (item.w & VOXEL_CROSSES) == 0u : !has_shell(item.w, p)) return;
+    float behind = behind_of(item.w, p);
+    if (axis < 3u ? (item.w & VOXEL_CROSSES) == 0u : behind > VOXEL_THIN) return;
     triangle t;
     ivec3 corner = VOXEL_UNIT * ivec3(p.low.xyz);
     t.a = voxel_placed[p.place.x + item.x].xyz - corner;
@@ -187,5 +193,5 @@ void main() {
     t.strips = ((item.w >> 6) & 63u) + 1u;
     voxel_masks m = voxel_find_masks(p);
     if (axis < 3u) cross_along(axis, t, m);
-    else mark_shell(t, m);
+    else mark_shell(t, behind, m);
 }
