@@ -40,6 +40,10 @@ uint lbm_id_at(ivec3 cell) {
     return lbm_ids[i >> 2] >> 8u * (i & 3u) & 255u;
 }
 
+#define ENTRY(i, x, y, z) , ivec3(x, y, z), -ivec3(x, y, z)
+const ivec3 lbm_directions[27] = ivec3[27](ivec3(0) LBM_D3Q27(ENTRY));
+#undef ENTRY
+
 uniform uint lbm_moved; // bodies came to lie in other cells just before this step
 
 // The first step after a cell became solid, or air, what passes between it and others was sent by
@@ -65,42 +69,43 @@ float lbm_wall_speed(ivec3 cell, ivec3 direction) {
     return dot(vec3(direction), lbm_body_velocity(id, point));
 }
 
-void lbm_push_air(uvec3 at, uint near, const int chunk, inout vec4 f[LBM_Q]) {
+// Of four cells, by direction. In loops and memory, not in unrolled code: few cells come here.
+#define LBM_WAYS max(LBM_Q, LBM_SCALAR_Q)
+vec4 lbm_wall_speeds[LBM_WAYS];
+
+void lbm_find_wall_speeds(uvec3 at, uint near, const int chunk) {
+    for (uint k = 0u; k < 4u; k++) {
+        uint lane = k + 4u * uint(chunk);
+        ivec3 cell = lbm_cell_at(at, lane);
+        bool pushed = (near >> lane & 1u) != 0u && !(lbm_moved != 0u && lbm_is_new(cell));
+        for (int i = 1; i < LBM_WAYS; i++)
+            lbm_wall_speeds[i][k] = pushed ? lbm_wall_speed(cell, lbm_directions[i]) : 0.0;
+    }
+}
+
+void lbm_push_air(inout vec4 f[LBM_Q]) {
     vec4 density = 1.0 + f[0];
 #define ADD(i, x, y, z) density += f[i] + f[i + 1];
     LBM_PAIRS(ADD)
 #undef ADD
-    for (uint k = 0u; k < 4u; k++) {
-        uint lane = k + 4u * uint(chunk);
-        if ((near >> lane & 1u) == 0u) continue;
-        ivec3 cell = lbm_cell_at(at, lane);
-        if (lbm_moved != 0u && lbm_is_new(cell)) continue;
-        vec4 mine = 6.0 * density * vec4(equal(uvec4(k), uvec4(0, 1, 2, 3)));
 #define PUSH(i, x, y, z)                                                                           \
-    f[i] += LBM_WEIGHT(x, y, z) * lbm_wall_speed(cell, ivec3(x, y, z)) * mine;                     \
-    f[i + 1] += LBM_WEIGHT(x, y, z) * lbm_wall_speed(cell, -ivec3(x, y, z)) * mine;
-        LBM_PAIRS(PUSH)
+    f[i] += 6.0 * LBM_WEIGHT(x, y, z) * density * lbm_wall_speeds[i];                              \
+    f[i + 1] += 6.0 * LBM_WEIGHT(x, y, z) * density * lbm_wall_speeds[i + 1];
+    LBM_PAIRS(PUSH)
 #undef PUSH
-    }
 }
 
-void lbm_push_scalar(uvec3 at, uint near, const int chunk, inout vec4 g[LBM_SCALAR_Q]) {
+void lbm_push_scalar(inout vec4 g[LBM_SCALAR_Q]) {
     vec4 value = g[0];
 #define ADD(i, x, y, z) value += g[i] + g[i + 1];
     LBM_SCALAR_PAIRS(ADD)
 #undef ADD
-    for (uint k = 0u; k < 4u; k++) {
-        uint lane = k + 4u * uint(chunk);
-        if ((near >> lane & 1u) == 0u) continue;
-        ivec3 cell = lbm_cell_at(at, lane);
-        if (lbm_moved != 0u && lbm_is_new(cell)) continue;
-        vec4 mine = 2.0 / LBM_SCALAR_SPEED * value * vec4(equal(uvec4(k), uvec4(0, 1, 2, 3)));
+    value *= 2.0 / LBM_SCALAR_SPEED;
 #define PUSH(i, x, y, z)                                                                           \
-    g[i] += LBM_SCALAR_WEIGHT(x, y, z) * lbm_wall_speed(cell, ivec3(x, y, z)) * mine;              \
-    g[i + 1] += LBM_SCALAR_WEIGHT(x, y, z) * lbm_wall_speed(cell, -ivec3(x, y, z)) * mine;
-        LBM_SCALAR_PAIRS(PUSH)
+    g[i] += LBM_SCALAR_WEIGHT(x, y, z) * value * lbm_wall_speeds[i];                               \
+    g[i + 1] += LBM_SCALAR_WEIGHT(x, y, z) * value * lbm_wall_speeds[i + 1];
+    LBM_SCALAR_PAIRS(PUSH)
 #undef PUSH
-    }
 }
 #endif
 

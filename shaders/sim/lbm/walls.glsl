@@ -317,7 +317,10 @@ void lbm_meet_air(uvec3 at, lbm_site site, const int chunk, inout vec4 f[LBM_Q])
     }
 #endif
 #if LBM_BODIES
-    if (site.near != 0u) lbm_push_air(at, site.near, chunk, f);
+    if (site.near != 0u) {
+        lbm_find_wall_speeds(at, site.near, chunk);
+        lbm_push_air(f);
+    }
 #endif
 }
 
@@ -332,7 +335,7 @@ void lbm_meet_scalar(const int s, uvec3 at, lbm_site site, const int chunk, floa
     }
 #endif
 #if LBM_BODIES
-    if (site.near != 0u) lbm_push_scalar(at, site.near, chunk, g);
+    if (site.near != 0u) lbm_push_scalar(g);
 #endif
 }
 
