@@ -261,22 +261,6 @@ void roil_on_progress(roil_effect *e, void (*call)(void *user, double done, doub
     effect_on_progress(e->effect, call, user);
 }
 
-size_t roil_readouts(roil_effect *e, roil_readout *out, size_t capacity) {
-    size_t count = 0;
-    for (size_t i = 0; i < effect_pass_count(e->effect); i++) {
-        const pass *p = effect_get_pass(e->effect, i);
-        const pass_simulation *simulation = pass_get_simulation(p);
-        pass_readout values[16];
-        size_t found = simulation && e->width ? simulation->readouts(p, values, 16) : 0;
-        for (size_t k = 0; k < found && k < 16; k++, count++) {
-            if (count >= capacity) continue;
-            out[count] =
-                (roil_readout){pass_label(p), values[k].name, values[k].unit, values[k].value};
-        }
-    }
-    return count;
-}
-
 // A pass may have been timed in parts, each several times: those of one name are added up.
 static size_t add_up(gpu_pass_time *times, size_t count) {
     size_t kept = 0;
@@ -300,6 +284,43 @@ size_t roil_times(roil_effect *e, roil_time *out, size_t capacity) {
         out[i].milliseconds = times[i].milliseconds;
     }
     mem_free(times);
+    return count;
+}
+
+// Of the last frame that did any, in millions a second: `work` by the time of the parts of a pass
+// besides its grids.
+static double rate_of(roil_effect *e, const pass *p, double work) {
+    roil_time times[GPU_MAX_PASSES];
+    size_t count = roil_times(e, times, GPU_MAX_PASSES), length = strlen(pass_label(p));
+    double sum = 0;
+    for (size_t i = 0; i < count && i < GPU_MAX_PASSES; i++) {
+        const char *part = times[i].pass + length;
+        if (strncmp(times[i].pass, pass_label(p), length) == 0 && part[0] == '.' &&
+            strcmp(part, ".fields") != 0)
+            sum += times[i].milliseconds;
+    }
+    return sum > 0 ? work / sum * 1e-3 : 0;
+}
+
+static roil_readout speed_of(roil_effect *e, const pass *p) {
+    double work = pass_get_simulation(p)->work(p);
+    if (work > 0 && e->frame) e->speed = rate_of(e, p, work);
+    return (roil_readout){pass_label(p), "cell updates", "million/s", e->speed};
+}
+
+size_t roil_readouts(roil_effect *e, roil_readout *out, size_t capacity) {
+    size_t count = 0;
+    for (size_t i = 0; i < effect_pass_count(e->effect); i++) {
+        const pass *p = effect_get_pass(e->effect, i);
+        const pass_simulation *simulation = pass_get_simulation(p);
+        pass_readout values[16];
+        size_t found = simulation && e->width ? simulation->readouts(p, values, 16) : 0;
+        for (size_t k = 0; k < found && k < 16; k++, count++)
+            if (count < capacity)
+                out[count] =
+                    (roil_readout){pass_label(p), values[k].name, values[k].unit, values[k].value};
+        if (found && count++ < capacity) out[count - 1] = speed_of(e, p);
+    }
     return count;
 }
 

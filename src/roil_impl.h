@@ -19,6 +19,7 @@ struct roil_effect {
     effect *effect;
     uint32_t width, height;
     uint64_t frame; // number of the last GPU frame, 0: none
+    double speed;   // of simulations, when they last moved (roil_readouts)
     double shown;   // number of the effect's frame that it shows
     char **kept;    // names by roil_keep, for roil_apply_kept
     size_t kept_count, kept_capacity;

@@ -14,14 +14,14 @@ layout(local_size_x = 32, local_size_y = 4, local_size_z = 1) in;
 //@ option boundary_top = open {periodic, wall, slip, open, inflow} : face at +z
 //@ option guard = clamp {clamp, stop} : air that becomes too fast for the lattice is slowed down, or the simulation stops there
 //@ field vec3 force = {0, 0, 0} : acceleration of the air (m/s^2), sampled at every second cell
-uniform float viscosity;             //= 2e-5 [0, 1e6] m^2/s : of the air
-uniform float diffusion;             //= 0 [0, 1e6] m^2/s : of smoke and dye
-uniform float temperature_diffusion; //= 0 [0, 1e6] m^2/s : of heat
-uniform float buoyancy_density;      //= 0 [-1e3, 1e3] m/s^2 : acceleration upwards by a density of 1
-uniform float buoyancy_heat;         //= 1.2 [-1e3, 1e3] m/s^2 : acceleration upwards by a temperature of 1
-uniform float dissolve_rate;         //= 0 [0, 1e3] 1/s : share of the smoke and the dye that goes
-uniform float cooling_rate;          //= 0 [0, 1e3] 1/s : share of the temperature that goes
-uniform vec3 wind;                   //= {0, 0, 0} [-1e3, 1e3] m/s : of faces that are inflow or open
+uniform float viscosity;             //= 2e-5 [0, inf] m^2/s : of the air
+uniform float diffusion;             //= 0 [0, inf] m^2/s : of smoke and dye
+uniform float temperature_diffusion; //= 0 [0, inf] m^2/s : of heat
+uniform float buoyancy_density;      //= 0 [-inf, inf] m/s^2 : acceleration upwards by a density of 1
+uniform float buoyancy_heat;         //= 1.2 [-inf, inf] m/s^2 : acceleration upwards by a temperature of 1
+uniform float dissolve_rate;         //= 0 [0, 10] 1/s : share of the smoke and the dye that goes
+uniform float cooling_rate;          //= 0 [0, 10] 1/s : share of the temperature that goes
+uniform vec3 wind;                   //= {0, 0, 0} [-inf, inf] m/s : of faces that are inflow or open
 uniform float smagorinsky;           //= 0.1 [0, 1] : of the eddies finer than a cell, which take motion away
 layout(std430) readonly buffer Moments { uvec4 moments[]; };
 layout(std430) readonly buffer MomentsBefore { uvec4 before[]; };

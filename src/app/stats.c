@@ -120,7 +120,7 @@ static void print_readouts(const app_stats *s) {
         const roil_readout *r = &s->readouts[i];
         bool first = i == 0 || strcmp(r->pass, s->readouts[i - 1].pass) != 0;
         if (first) printf("%s%s:", i ? "\n" : "", r->pass);
-        printf("%s %s %.4g%s%s", first ? "" : ",", r->name, r->value, r->unit[0] ? " " : "",
+        printf("%s %s %.6g%s%s", first ? "" : ",", r->name, r->value, r->unit[0] ? " " : "",
                r->unit);
     }
     if (s->readout_count) printf("\n");

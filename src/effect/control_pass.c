@@ -22,7 +22,7 @@ void pass_control_add_all(effect *e, size_t index) {
         add(e, EFFECT_CONTROL_OPTION, index, i, face->options[i].name);
     for (size_t i = 0; i < face->uniform_count; i++)
         add(e, EFFECT_CONTROL_UNIFORM, index, i, face->uniforms[i].name);
-    add(e, EFFECT_CONTROL_SCALE, index, 0, "resolution");
+    if (pass_is_scaled(e->passes[index])) add(e, EFFECT_CONTROL_SCALE, index, 0, "resolution");
 }
 
 void pass_control_declare(effect *e, control *c) {

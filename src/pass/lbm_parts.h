@@ -100,4 +100,5 @@ bool lbm_air_load(pass *p, struct checkpoint *from);
 // lbm_readouts.c
 bool lbm_air_watch(pass *p); // after steps: what the guard found, and what it is to look at
 size_t lbm_air_readouts(const pass *p, pass_readout *out, size_t capacity);
+double lbm_air_work(const pass *p);
 const char *lbm_air_trouble(const pass *p);

@@ -66,6 +66,11 @@ const char *lbm_air_trouble(const pass *p) {
     return a->trouble[0] ? a->trouble : NULL;
 }
 
+double lbm_air_work(const pass *p) {
+    const lbm_air *a = lbm_air_of(p);
+    return (double)a->last_steps * a->desc.size[0] * a->desc.size[1] * a->desc.size[2];
+}
+
 size_t lbm_air_readouts(const pass *p, pass_readout *out, size_t capacity) {
     const lbm_air *a = lbm_air_of(p);
     sim_flow flow = lbm_air_flow(p);
@@ -80,7 +85,6 @@ size_t lbm_air_readouts(const pass *p, pass_readout *out, size_t capacity) {
         {"time step", "s", a->units.step},
         {"steps", "", (double)lbm_steps(a->solver)},
         {"cells", "", cells},
-        {"updates", "cells", cells * (double)a->last_steps},
         {"mass drift", "%", a->reported ? 100 * (double)a->report.drift : 0},
     };
     for (size_t i = 0; i < COUNT_OF(all) && i < capacity; i++) out[i] = all[i];
@@ -95,5 +99,6 @@ const pass_simulation lbm_simulation = {
     .save = lbm_air_save,
     .load = lbm_air_load,
     .readouts = lbm_air_readouts,
+    .work = lbm_air_work,
     .trouble = lbm_air_trouble,
 };

@@ -46,6 +46,9 @@ const shader_interface *pass_interface(const pass *p) {
 size_t pass_get_option(const pass *p, size_t index) {
     return p->options[index];
 }
+bool pass_is_scaled(const pass *p) {
+    return !p->type || !p->type->unscaled;
+}
 float pass_get_scale(const pass *p) {
     return p->scale;
 }

@@ -70,6 +70,7 @@ typedef struct pass_simulation {
     bool (*load)(pass *p, struct checkpoint *from);
     // At most `capacity`; returns the count. After pass_allocate.
     size_t (*readouts)(const pass *p, pass_readout *out, size_t capacity);
+    double (*work)(const pass *p);         // cells that the last record brought a step on
     const char *(*trouble)(const pass *p); // what is wrong and which key to change; NULL: nothing
 } pass_simulation;
 
@@ -83,6 +84,7 @@ typedef struct pass_type {
     const char *name;   // "march"
     const char *shader; // "pass/march.comp"
     pass_meshes_use meshes;
+    bool unscaled;                     // what it writes has a size of its own
     const pass_simulation *simulation; // NULL: it does not simulate
     // Optional hooks.
     bool (*declare)(pass *p);  // instead of one image per output
@@ -155,6 +157,7 @@ bool pass_refuse_uniform(const pass *p, const char *name); // the message for a 
 const field *pass_get_field(const pass *p, size_t index);  // NULL: not given
 size_t pass_get_option(const pass *p, size_t index);       // index of the chosen word
 float pass_get_scale(const pass *p);
+bool pass_is_scaled(const pass *p); // whether the scale means anything
 // Counter totals of a frame, after it finished: one value per counter of the interface.
 bool pass_read_counters(pass *p, uint64_t *out);
 // Whether it is a `reference`, and samples a pixel that its picture holds after its last frame.

@@ -110,6 +110,7 @@ static const pass_type types[] = {
     {
         .name = "lbm",
         .shader = "pass/lbm.comp",
+        .unscaled = true,
         .simulation = &lbm_simulation,
         .declare = lbm_declare,
         .complete = lbm_complete,
@@ -124,6 +125,7 @@ static const pass_type types[] = {
     {
         .name = "lbm_source",
         .shader = "pass/lbm_source.comp",
+        .unscaled = true,
         .meshes = PASS_USES_MESHES,
         .declare = lbm_source_declare,
         .check = lbm_source_check,
