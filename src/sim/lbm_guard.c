@@ -3,8 +3,7 @@
 // order is fixed, and so are the sums. The record is copied out as an image, a row of words, into
 // one of as many places as frames can be in flight.
 #include "sim/lbm_guard.h"
-#include "base/error.h"
-#include "base/memory.h"
+#include "sim/lbm_impl.h"
 #include <string.h>
 
 static const char shader[] = "sim/lbm/guard.comp";
@@ -14,6 +13,7 @@ enum {
     GROUPS = 512,       // most of the first dispatch: enough to fill a large device
     CELLS_A_THREAD = 4, // least, while there are fewer groups
     WORDS = 16,         // of a record
+    BLOCK = 64,         // bytes that its two numbers have room in
     PLACES = GPU_FRAMES_IN_FLIGHT + 1,
 };
 
@@ -24,8 +24,7 @@ typedef struct guard_place {
 struct lbm_guard {
     uint32_t size[3], groups;
     arena *memory;
-    shader_binary binaries[2]; // moments, records
-    gpu_pipeline *pipelines[2];
+    lbm_kernel kernels[2]; // moments, records
     gpu_buffer *parts, *found;
     gpu_image *result;
     guard_place places[PLACES];
@@ -47,35 +46,23 @@ lbm_guard *lbm_guard_create(arena *memory, const uint32_t size[3]) {
 
 bool lbm_guard_compile(lbm_guard *guard, shader_library *library, const shader_reader *reader) {
     static const shader_define last = {"LAST", ""};
-    for (int i = 0; i < 2; i++)
-        if (!shader_compile(library, guard->memory,
-                            &(shader_compile_desc){.name = shader,
-                                                   .stage = SHADER_COMPUTE,
-                                                   .defines = &last,
-                                                   .define_count = i == 1,
-                                                   .reader = reader},
-                            &guard->binaries[i]))
-            return false;
+    for (size_t i = 0; i < 2; i++) {
+        shader_compile_desc desc = {.name = shader,
+                                    .stage = SHADER_COMPUTE,
+                                    .defines = &last,
+                                    .define_count = i,
+                                    .reader = reader};
+        lbm_kernel *k = &guard->kernels[i];
+        if (!shader_compile(library, guard->memory, &desc, &k->binary)) return false;
+        k->shader = shader;
+        k->block = arena_alloc(guard->memory, BLOCK);
+    }
     return true;
 }
 
-static gpu_pipeline *make_pipeline(gpu *g, const shader_binary *binary) {
-    gpu_slot slots[GPU_MAX_SLOTS];
-    for (size_t i = 0; i < binary->slot_count; i++) slots[i] = binary->slots[i].slot;
-    gpu_compute_desc desc = {.label = shader,
-                             .code = binary->code,
-                             .code_size = binary->size,
-                             .slots = slots,
-                             .slot_count = binary->slot_count};
-    memcpy(desc.local_size, binary->local_size, sizeof desc.local_size);
-    return gpu_pipeline_create_compute(g, &desc);
-}
-
 bool lbm_guard_allocate(lbm_guard *guard, gpu *g) {
-    for (int i = 0; i < 2; i++) {
-        guard->pipelines[i] = make_pipeline(g, &guard->binaries[i]);
-        if (!guard->pipelines[i]) return false;
-    }
+    for (int i = 0; i < 2; i++)
+        if (!lbm_kernel_build(&guard->kernels[i], g)) return false;
     guard->parts = gpu_buffer_create(
         g, &(gpu_buffer_desc){.label = "guard", .size = (uint64_t)guard->groups * WORDS * 4});
     guard->found = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "guard's report",
@@ -90,31 +77,29 @@ bool lbm_guard_allocate(lbm_guard *guard, gpu *g) {
 }
 
 void lbm_guard_destroy(lbm_guard *guard, gpu *g) {
-    for (int i = 0; i < 2; i++)
-        if (guard->pipelines[i]) gpu_pipeline_destroy(g, guard->pipelines[i]);
+    for (int i = 0; i < 2; i++) lbm_kernel_destroy(&guard->kernels[i], g);
     gpu_buffer_destroy(g, guard->parts);
     gpu_buffer_destroy(g, guard->found);
     gpu_image_destroy(g, guard->result);
-    *guard = (lbm_guard){.memory = guard->memory};
+    guard->parts = guard->found = NULL;
+    guard->result = NULL;
+    lbm_guard_forget(guard);
 }
 
 static bool dispatch(lbm_guard *guard, gpu *g, int which, gpu_buffer *moments) {
-    const shader_binary *binary = &guard->binaries[which];
-    uint32_t groups = which == 0 ? guard->groups : 1;
-    uint32_t numbers[] = {which == 0 ? count_cells(guard) : guard->groups, groups * GROUP};
-    unsigned char block[64] = {0};
+    lbm_kernel *k = &guard->kernels[which];
+    const uint32_t groups = which == 0 ? guard->groups : 1, stride = groups * GROUP;
+    const uint32_t items = which == 0 ? count_cells(guard) : guard->groups;
     gpu_binding bindings[4];
     size_t count = 0;
-    for (size_t i = 0; i < binary->member_count; i++) {
-        bool stride = strcmp(binary->members[i].name, "stride") == 0;
-        memcpy(block + binary->members[i].offset, &numbers[stride], 4);
-    }
-    for (size_t i = 0; i < binary->slot_count; i++) {
-        const shader_slot *slot = &binary->slots[i];
+    lbm_kernel_set(k, "count", &items, sizeof items);
+    lbm_kernel_set(k, "stride", &stride, sizeof stride);
+    for (size_t i = 0; i < k->binary.slot_count; i++) {
+        const shader_slot *slot = &k->binary.slots[i];
         gpu_binding *b = &bindings[count++];
         *b = (gpu_binding){.binding = slot->slot.binding};
         if (strcmp(slot->name, "Uniforms") == 0) {
-            b->uniform = block;
+            b->uniform = k->block;
             b->uniform_size = slot->size;
         } else if (strcmp(slot->name, "result") == 0) {
             b->image = guard->result;
@@ -122,10 +107,10 @@ static bool dispatch(lbm_guard *guard, gpu *g, int which, gpu_buffer *moments) {
             b->buffer = strcmp(slot->name, "Moments") == 0 ? moments : guard->parts;
         }
     }
-    return gpu_dispatch(g, &(gpu_dispatch_desc){.pipeline = guard->pipelines[which],
+    return gpu_dispatch(g, &(gpu_dispatch_desc){.pipeline = k->pipeline,
                                                 .bindings = bindings,
                                                 .binding_count = count,
-                                                .threads = {groups * GROUP, 1, 1}});
+                                                .threads = {stride, 1, 1}});
 }
 
 bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l) {
