@@ -61,6 +61,7 @@ bool lbm_guard_compile(lbm_guard *guard, shader_library *library, const shader_r
 }
 
 bool lbm_guard_allocate(lbm_guard *guard, gpu *g) {
+    if (guard->result) return true;
     for (int i = 0; i < 2; i++)
         if (!lbm_kernel_build(&guard->kernels[i], g)) return false;
     guard->parts = gpu_buffer_create(

@@ -18,7 +18,7 @@ typedef struct lbm_report { // of one kept state; lattice units
 
 lbm_guard *lbm_guard_create(arena *memory, const uint32_t size[3]);
 bool lbm_guard_compile(lbm_guard *guard, shader_library *library, const shader_reader *reader);
-bool lbm_guard_allocate(lbm_guard *guard, gpu *g); // pipelines and memory
+bool lbm_guard_allocate(lbm_guard *guard, gpu *g); // pipelines and memory; again: does nothing
 void lbm_guard_destroy(lbm_guard *guard, gpu *g);
 
 // Inside a frame, once: looks at the newest moments that `l` has kept; if none, at nothing.

@@ -80,6 +80,15 @@ static double height_of(const picture p) {
     return weighted / sum;
 }
 
+static double readout(roil_effect *e, const char *name) {
+    roil_readout all[32];
+    size_t count = roil_readouts(e, all, 32);
+    for (size_t i = 0; i < count && i < 32; i++)
+        if (strcmp(all[i].name, name) == 0) return all[i].value;
+    fail_msg("no readout '%s' of %zu", name, count);
+    return 0;
+}
+
 // ---- time -------------------------------------------------------------------------------------
 
 static void how_often_is_drawn_changes_nothing(void **state) {
@@ -128,6 +137,22 @@ static void air_is_warmed_up_before_the_first_frame(void **state) {
     draw(b, 1, warm);
     if (!(height_of(warm) < height_of(cold) - 0.5))
         fail_msg("rows %.2f and %.2f", height_of(warm), height_of(cold));
+    roil_unload(a);
+    roil_unload(b);
+}
+
+static void another_size_of_the_picture_changes_nothing(void **state) {
+    picture each, resized;
+    roil_effect *a = open(*state, 24, "", ""), *b = open(*state, 24, "", "");
+    for (int frame = 1; frame <= 8; frame++) draw(a, frame, each);
+    draw(b, 7, resized);
+    double steps = readout(b, "steps");
+    ok(roil_prepare(b, 3 * WIDE, 2 * HIGH));
+    ok(roil_prepare(b, WIDE, HIGH));
+    assert_true(readout(b, "steps") == steps);
+    draw(b, 7, resized); // the same state
+    draw(b, 8, resized);
+    is_same(each, resized, 0);
     roil_unload(a);
     roil_unload(b);
 }
@@ -224,15 +249,6 @@ static void meshes_give_smoke_and_stand_in_its_way(void **state) {
 
 // ---- what it tells ----------------------------------------------------------------------------
 
-static double readout(roil_effect *e, const char *name) {
-    roil_readout all[32];
-    size_t count = roil_readouts(e, all, 32);
-    for (size_t i = 0; i < count && i < 32; i++)
-        if (strcmp(all[i].name, name) == 0) return all[i].value;
-    fail_msg("no readout '%s' of %zu", name, count);
-    return 0;
-}
-
 static void it_tells_of_itself(void **state) {
     picture p;
     roil_simulation s;
@@ -323,6 +339,7 @@ int main(void) {
         cmocka_unit_test(a_jump_is_as_good_as_every_frame),
         cmocka_unit_test(a_jump_back_begins_anew),
         cmocka_unit_test(air_is_warmed_up_before_the_first_frame),
+        cmocka_unit_test(another_size_of_the_picture_changes_nothing),
         cmocka_unit_test(a_window_catches_up_over_several_pictures),
         cmocka_unit_test(meshes_give_smoke_and_stand_in_its_way),
         cmocka_unit_test(air_that_is_too_fast_is_held_back_by_itself),
