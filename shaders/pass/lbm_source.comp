@@ -3,11 +3,13 @@
 //
 // A thread does one element of the state: four or eight cells that lie apart along z.
 layout(local_size_x = 32, local_size_y = 2, local_size_z = 1) in;
+//@ option rule = auto {auto, solid, shell} : which cells its meshes are, as of `voxels`; solid keeps thin parts thin
 //@ field float shape = 0 : the source is where this is above 0.5; without it, in the meshes that it is given
 //@ field float density = 0 : smoke
 //@ field float temperature = 0 : heat
 //@ field float dye = 0 : a second colour of smoke
 //@ field vec3 velocity = {0, 0, 0} : of the air there (m/s)
+//@ field float pressure = 0 : beyond that of the air around (Pa): a source that holds it blows new air out where otherwise it only pushes on what is there
 uniform float rate;            //= 0 [0, 1e4] 1/s : how fast the air takes on these values; 0: at once
 uniform float velocity_factor; //= 0 [-10, 10] : share of the meshes' own motion that is added to the velocity
 #include "shared.h"
@@ -16,6 +18,7 @@ uniform float velocity_factor; //= 0 [-10, 10] : share of the meshes' own motion
 uniform vec3 box_min;     // corner of the lattice (m)
 uniform float cell_size;  // m
 uniform float step_speed; // cells a step of 1 m/s
+uniform float pascal;     // excess of density of a pascal
 uniform float share;      // of the values that the air takes on in this step
 uniform vec3 first;       // cells of the source's box: of the first corner,
 uniform vec3 count;       // and how many
@@ -85,14 +88,20 @@ vec4 excess_of(lbm_element q[LBM_Q], int chunk, out lbm_vec u) {
     return excess;
 }
 
-// The pressure stays as it is.
+// What is not given stays as it is: the pressure, above all, so that as much air is drawn in as is
+// blown out.
 void push(inout lbm_element q[LBM_Q], uvec3 at, int chunk, vec4 some, inout lbm_vec u) {
     lbm_vec old;
     vec4 excess = excess_of(q, chunk, old), f[LBM_Q];
     u = old;
     EACH_LANE {
         if (some[l] == 0.0) continue;
-        vec3 v = velocity_at(cell_of(at, 4 * chunk + l));
+        uvec3 cell = cell_of(at, 4 * chunk + l);
+#if HAS_PRESSURE
+        excess[l] = mix(excess[l], field_pressure(point_of(cell)) * pascal, some[l]);
+#endif
+        if (HAS_VELOCITY == 0 && velocity_factor == 0.0) continue;
+        vec3 v = velocity_at(cell);
         u.x[l] = mix(u.x[l], v.x, some[l]);
         u.y[l] = mix(u.y[l], v.y, some[l]);
         u.z[l] = mix(u.z[l], v.z, some[l]);
@@ -140,7 +149,7 @@ void main() {
     lbm_element air[LBM_Q];
     lbm_load_air(place, air);
     lbm_vec u[LBM_CHUNKS];
-    if (HAS_VELOCITY == 1 || velocity_factor != 0.0) {
+    if (HAS_VELOCITY == 1 || HAS_PRESSURE == 1 || velocity_factor != 0.0) {
         EACH_CHUNK push(air, at, c, some[c], u[c]);
         lbm_replace_air(place, air);
     } else {

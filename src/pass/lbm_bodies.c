@@ -5,19 +5,19 @@
 #include <math.h>
 #include <string.h>
 
-bool lbm_air_add_body(lbm_air *a, lbm_meshes *m, const scene_mesh *mesh) {
+bool lbm_air_add_body(lbm_air *a, lbm_meshes *m, const scene_mesh *mesh, voxels_rule rule) {
     if (m->count == VOXELS_MAX_BODIES)
         return err_set("%s: more than %d meshes of %s", a->pass->label, VOXELS_MAX_BODIES,
                        m == &a->givers ? "sources" : "colliders");
     MEM_RESERVE(m->bodies, m->count + 1, m->capacity);
-    m->bodies[m->count] = (voxels_body){.mesh = mesh, .id = (uint8_t)(m->count + 1)};
+    m->bodies[m->count] = (voxels_body){mesh, (uint8_t)(m->count + 1), rule};
     m->count++;
     return true;
 }
 
-bool pass_lbm_add_collider(pass *p, scene_mesh *mesh) {
+bool pass_lbm_add_collider(pass *p, scene_mesh *mesh, voxels_rule rule) {
     lbm_air *a = lbm_air_of(p);
-    return lbm_air_add_body(a, &a->solids, mesh);
+    return lbm_air_add_body(a, &a->solids, mesh, rule);
 }
 
 static bool make(lbm_air *a, lbm_meshes *m) {
@@ -55,7 +55,7 @@ static bool move(lbm_air *a, lbm_meshes *m, voxels_change *change) {
     const pass_host *host = a->pass->host;
     double now = host->context->time;
     *change = (voxels_change){false, false};
-    if (!m->cells || (isnan(m->updated) && !place(a, m))) return !m->cells;
+    if (!m->cells || (isnan(m->updated) && 0 && !place(a, m))) return !m->cells;
     double passed = isnan(m->updated) ? 0 : now - m->updated;
     m->updated = now;
     return voxels_update(m->cells, host->device, host->context, passed, change);

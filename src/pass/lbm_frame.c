@@ -5,13 +5,18 @@
 #include "pass/lbm_parts.h"
 #include <string.h>
 
-static const float air_density = 1.2f; // kg/m^3
+static const double air_density = 1.2; // kg/m^3
+
+double lbm_air_pascals(const lbm_air *a) {
+    double speed = a->units.cell / a->units.step;
+    return air_density * speed * speed / 3;
+}
 
 bool lbm_fill(pass *p, const shader_binary *binary, unsigned char *block) {
     const lbm_air *a = lbm_air_of(p);
     const float size[3] = {(float)a->desc.size[0], (float)a->desc.size[1], (float)a->desc.size[2]};
     float speed = (float)(a->units.cell / a->units.step);
-    float pressure = air_density * speed * speed / 3;
+    float pressure = (float)lbm_air_pascals(a);
     float blend = (float)lbm_air_blend(a, p->host->context->time);
     pass_write_member(binary, block, "size", size, sizeof size);
     pass_write_member(binary, block, "blend", &blend, sizeof blend);

@@ -84,7 +84,7 @@ void lbm_air_destroy_force(lbm_air *a);
 bool lbm_air_run_source(lbm_air *a, pass *source);
 
 // lbm_bodies.c
-bool lbm_air_add_body(lbm_air *a, lbm_meshes *m, const scene_mesh *mesh);
+bool lbm_air_add_body(lbm_air *a, lbm_meshes *m, const scene_mesh *mesh, voxels_rule rule);
 bool lbm_air_make_bodies(lbm_air *a); // when all are known
 bool lbm_air_check_bodies(lbm_air *a);
 bool lbm_air_build_bodies(lbm_air *a);

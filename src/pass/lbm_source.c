@@ -27,8 +27,11 @@ bool pass_lbm_add_source(pass *p, pass *source) {
     lbm_air *a = lbm_air_of(p);
     source_state *s = source->state = arena_alloc(p->host->memory, sizeof *s);
     *s = (source_state){.air = a, .first_id = (uint8_t)(a->givers.count + 1)};
+    size_t option;
+    pass_find_key(source, "rule", &option);
+    voxels_rule rule = (voxels_rule)source->options[option];
     for (size_t i = 0; i < source->mesh_count; i++)
-        if (!lbm_air_add_body(a, &a->givers, source->meshes[i])) return false;
+        if (!lbm_air_add_body(a, &a->givers, source->meshes[i], rule)) return false;
     if (!source->mesh_count) s->first_id = 0;
     source->runs_in = p;
     MEM_RESERVE(a->sources, a->source_count + 1, a->source_capacity);
@@ -123,10 +126,12 @@ bool lbm_source_fill(pass *p, const shader_binary *binary, unsigned char *block)
     const float cell = (float)a->units.cell, speed = (float)sim_velocity(&a->units, 1);
     const float share = rate > 0 ? (float)sim_decay(&a->units, rate) : 1;
     const float ids[2] = {s->first_id, (float)s->first_id + (float)p->mesh_count - 1};
+    const float pascal = (float)(1 / lbm_air_pascals(a));
     const uint32_t parity = lbm_parity(a->solver);
     pass_write_box(binary, block, a->grid.box);
     pass_write_member(binary, block, "cell_size", &cell, sizeof cell);
     pass_write_member(binary, block, "step_speed", &speed, sizeof speed);
+    pass_write_member(binary, block, "pascal", &pascal, sizeof pascal);
     pass_write_member(binary, block, "share", &share, sizeof share);
     pass_write_member(binary, block, "ids", ids, sizeof ids);
     pass_write_member(binary, block, "first", s->first, sizeof s->first);

@@ -126,18 +126,22 @@ static int l_source(lua_State *L) {
 
 static int l_collider(lua_State *L) {
     const lbm_object *air = self(L, "collider");
-    size_t names;
-    value_names(L, 2, "collider", &names);
+    static const script_key keys[] = {{.name = "rule"}, {.name = NULL}};
+    static const char *const rules[] = {"auto", "solid", "shell"};
+    value_check_keys(L, 2, "collider", keys);
+    voxels_rule rule = VOXELS_AUTO;
+    if (value_get(L, 2, "rule") != LUA_TNIL)
+        rule = (voxels_rule)value_word(L, -1, "collider", "rule", rules, COUNT_OF(rules));
     lua_pop(L, 1);
     lua_Integer count = (lua_Integer)lua_rawlen(L, 2);
-    if (names || count == 0)
+    if (count == 0)
         vm_error(L, "collider takes meshes, as in air:collider { mesh { \"data/ball.obj\" } }");
     for (lua_Integer i = 1; i <= count; i++) {
         lua_rawgeti(L, 2, i);
         const mesh_object *mesh = object_test(L, -1, "mesh");
         if (!mesh) vm_error(L, "collider takes meshes; got a %s", luaL_typename(L, -1));
         vm_charge_memory(L, BODY_COST);
-        if (!pass_lbm_add_collider(air->pass, mesh->mesh)) script_raise(L);
+        if (!pass_lbm_add_collider(air->pass, mesh->mesh, rule)) script_raise(L);
         lua_pop(L, 1);
     }
     return 0;

@@ -222,6 +222,23 @@ static void a_field_pushes_the_air(void **state) {
     roil_unload(b);
 }
 
+// Held above the pressure around, a box without any velocity of its own blows to all sides.
+static void a_source_that_holds_the_pressure_blows_new_air_out(void **state) {
+    char text[2048], path[512];
+    picture p;
+    script(text, 24, "buoyancy_heat = 0",
+           "air:source { shape = box { position = {0, 0, 1.5}, size = {0.4, 0.4, 0.4} }, "
+           "pressure = 1 }\n",
+           "0.5 + 5 * air.velocity.x");
+    write_text("slice.comp", SLICE, path);
+    roil_effect *e = load_text(*state, "air.lua", text);
+    ok(roil_prepare(e, WIDE, HIGH));
+    draw(e, 6, p);
+    int left = at(p, 4, HIGH - 15), right = at(p, 11, HIGH - 15); // at rest: 187
+    if (!(left < 179 && right > 195)) fail_msg("%d, %d", left, right);
+    roil_unload(e);
+}
+
 static const char CUBE[] =
     "v -1 -1 -1\nv 1 -1 -1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 1\nv 1 -1 1\nv -1 1 1\n"
     "v 1 1 1\nf 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\n"
@@ -342,6 +359,7 @@ int main(void) {
         cmocka_unit_test(another_size_of_the_picture_changes_nothing),
         cmocka_unit_test(a_window_catches_up_over_several_pictures),
         cmocka_unit_test(meshes_give_smoke_and_stand_in_its_way),
+        cmocka_unit_test(a_source_that_holds_the_pressure_blows_new_air_out),
         cmocka_unit_test(air_that_is_too_fast_is_held_back_by_itself),
         cmocka_unit_test(smoke_is_where_its_source_is_and_rises),
         cmocka_unit_test(a_field_pushes_the_air),

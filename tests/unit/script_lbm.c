@@ -55,6 +55,8 @@ static void mistakes_are_named(void **state) {
     refused(AIR "}\nair:source { density = 1 }", "it has no place; give it a mesh, or shape");
     refused(AIR "}\nair.source { density = 1 }", "mind the ':'");
     refused(AIR "}\nair:collider { }", "collider takes meshes");
+    refused(AIR "}\nair:collider { rule = 'thin' }", "unknown value of 'rule' 'thin'");
+    refused(AIR "}\nair:collider { ruel = 'solid' }", "unknown key 'ruel'; did you mean 'rule'?");
     refused(AIR "}\nair:collider { sphere { } }", "collider takes meshes; got a userdata");
 }
 
