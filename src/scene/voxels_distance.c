@@ -19,17 +19,16 @@ static bool flood_once(voxels *v, gpu *g, int32_t apart, bool *other) {
     return voxels_dispatch(v, g, VOXELS_FLOOD, v->size, &more);
 }
 
-// Rounds of flooding: neighbours first, then from half of the box down to neighbours, and the last
-// two once more, which mends what the others got wrong. `other`: which of the two buffers is read
-// next.
+// Rounds of flooding: from half of the box down to neighbours, and these once more, which mends most
+// of what the others got wrong. `other`: which of the two buffers is read next.
 static bool flood(voxels *v, gpu *g, bool *other) {
     int32_t longest = 1, apart = 1;
     for (int a = 0; a < 3; a++)
         longest = (int32_t)v->size[a] > longest ? (int32_t)v->size[a] : longest;
     while (2 * apart < longest) apart *= 2;
-    bool done = flood_once(v, g, 1, other);
-    for (; apart >= 1 && done; apart /= 2) done = flood_once(v, g, apart, other);
-    return done && flood_once(v, g, 2, other) && flood_once(v, g, 1, other);
+    for (; apart >= 1; apart /= 2)
+        if (!flood_once(v, g, apart, other)) return false;
+    return flood_once(v, g, 1, other);
 }
 
 bool voxels_write_distance(voxels *v, gpu *g, gpu_image *distance) {

@@ -15,7 +15,8 @@ void main() {
     if (group >= voxel.count.z) return;
     uvec4 work = voxel_work[voxel_find_work(group, 1u)];
     voxel_part p = voxel_parts[work.x];
-    uint threads = uint(VOXEL_GROUP) * work.w, thread = uint(VOXEL_GROUP) * (group - work.y) + gl_LocalInvocationID.x;
+    uint threads = uint(VOXEL_GROUP) * work.w;
+    uint thread = uint(VOXEL_GROUP) * (group - work.y) + gl_LocalInvocationID.x;
     for (uint i = thread; i < p.place.z; i += threads) voxel_masks4[p.place.y + i] = uvec4(0u);
     for (uint i = thread; i < p.mesh.y; i += threads) {
         vec4 point = vec4(voxel_points[p.mesh.x + i].xyz, 1.0);

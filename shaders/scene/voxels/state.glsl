@@ -4,7 +4,8 @@
 #include "shared.h"
 layout(std430) readonly buffer VoxelState {
     voxel_head voxel;
-    uvec4 voxel_work[VOXEL_MAX_PARTS]; // part, its first group of prepare.comp and of cross.comp, groups of the first
+    // Part, its first group of prepare.comp and of cross.comp, how many of the former.
+    uvec4 voxel_work[VOXEL_MAX_PARTS];
     voxel_part voxel_parts[];
 };
 
