@@ -256,10 +256,11 @@ static bool grow(voxels *v, gpu *g) {
         p->moved = true;
         count += p->capacity;
     }
-    v->mask_count = count;
     gpu_buffer_destroy(g, v->buffers[VOXELS_MASKS]);
     v->buffers[VOXELS_MASKS] = NULL;
-    return voxels_make_buffer(v, g, VOXELS_MASKS, 16 * count);
+    if (voxels_make_buffer(v, g, VOXELS_MASKS, 16 * count)) return true;
+    for (size_t i = 0; i < v->part_count; i++) v->parts[i].capacity = 0; // tries again
+    return false;
 }
 
 // ---- the work of an update --------------------------------------------------------------------
@@ -381,14 +382,9 @@ static void count_work(voxels *v, const cell_box *dirty) {
     v->work.cells += (uint64_t)dirty->size[0] * dirty->size[1] * dirty->size[2];
 }
 
-bool voxels_update(voxels *v, gpu *g, const field_context *context, double dt, voxels_change *out) {
-    *out = (voxels_change){.cells = !v->started, .motion = !v->motions_written};
-    if (!place_bodies(v, context, dt, &out->motion)) return false;
-    if (out->motion && !write_motions(v, g)) return false;
+static bool voxelise(voxels *v, gpu *g) {
     cell_box dirty = {{0}, {0}};
     bool full = false;
-    for (size_t i = 0; i < v->body_count; i++) out->cells = out->cells || v->bodies[i].moved;
-    if (!out->cells) return true;
     if (!v->started) memcpy(dirty.size, v->size, sizeof dirty.size);
     place_parts(v, &dirty, &full);
     if (full && !grow(v, g)) return false;
@@ -396,8 +392,16 @@ bool voxels_update(voxels *v, gpu *g, const field_context *context, double dt, v
     list_work(v);
     count_work(v, &dirty);
     v->started = run(v, g, &dirty);
-    for (size_t i = 0; i < v->body_count && !v->started; i++) v->bodies[i].placed = false;
     return v->started;
+}
+
+bool voxels_update(voxels *v, gpu *g, const field_context *context, double dt, voxels_change *out) {
+    *out = (voxels_change){.cells = !v->started, .motion = !v->motions_written};
+    bool done = place_bodies(v, context, dt, &out->motion) && (!out->motion || write_motions(v, g));
+    for (size_t i = 0; i < v->body_count; i++) out->cells = out->cells || v->bodies[i].moved;
+    if (done && out->cells) done = voxelise(v, g);
+    for (size_t i = 0; i < v->body_count && !done; i++) v->bodies[i].placed = false; // all anew
+    return done;
 }
 
 // ---- asking -----------------------------------------------------------------------------------

@@ -70,9 +70,9 @@ gpu_buffer *voxels_ids(const voxels *v);
 // struct voxel_motion of shared.h by id; VOXELS_MAX_BODIES + 1 of them, zero where none is.
 gpu_buffer *voxels_motions(const voxels *v);
 
-// Signed distance in metres from the centres to the nearest body, negative within solids: r16f.
-// Exact to 1/100 of a cell within three of the surface, and nearly so beyond.
-// Of voxels that were made with `distances`.
+// Inside a frame, after an update, of voxels that were made with `distances`: signed distances in
+// metres from the centres of cells to the nearest body, negative within solids, into an image of
+// the cells' size, r16f. Within three cells of a surface exact to 1/100 of a cell, beyond to 1/20.
 bool voxels_write_distance(voxels *v, gpu *g, gpu_image *distance);
 
 // What was done so far, for tests and statistics.

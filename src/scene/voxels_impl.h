@@ -79,7 +79,6 @@ struct voxels {
     voxels_part *parts;
     size_t part_count;
     bool started, distances; // an update was made; distances are wanted
-    uint64_t mask_count;     // uvec4s
     voxels_state *state;
     struct voxel_motion motions[VOXELS_MAX_BODIES + 1];
     bool motions_written;

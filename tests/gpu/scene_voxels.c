@@ -411,6 +411,44 @@ static void motion_is_that_of_the_transforms(void **state) {
     voxels_close(&w);
 }
 
+// A function of the script, which fails when it is told to.
+static bool call(void *user, int function, double time, float out[4]) {
+    (void)function;
+    out[0] = (float)time;
+    return !*(bool *)user || err_set("no");
+}
+
+static void update_that_fails_is_made_up_for(void **state) {
+    voxels_world w;
+    voxels_open(&w, *state);
+    bool fails = false;
+    w.context.call = call;
+    w.context.user = &fails;
+    shape s = {0};
+    shape_sphere(&s, 6);
+    scene_mesh *first = shape_mesh(&w, &s), second = *first;
+    first->position = moving(&w, 3, (float[]){-1, 0, 0}, (float[]){1, 0, 0});
+    second.position = triple(&w, 0, 0.5f, 1);
+    second.scale = field_call(&w.memory, 1, 0);
+    const voxels_body bodies[] = {{first, 1, VOXELS_AUTO}, {&second, 2, VOXELS_AUTO}};
+    voxels *v = make_voxels(&w, &(voxels_desc){around, {N, N, N}, bodies, 2, false});
+    update_voxels(&w, v, 0.25, 0);
+    voxels_change change;
+    fails = true;
+    w.context.time = 0.5;
+    gpu_test_ok(gpu_frame_begin(*state));
+    assert_false(voxels_update(v, *state, &w.context, 0.25, &change));
+    gpu_test_ok(gpu_frame_end(*state));
+    fails = false;
+    assert_true(update_voxels(&w, v, 0.5, 0.25).cells);
+    uint8_t *ids = read_ids(&w, v), *want = voxelise(&w, bodies, 2);
+    assert_memory_equal(ids, want, CELLS);
+    mem_free(ids);
+    mem_free(want);
+    voxels_destroy(v, *state);
+    voxels_close(&w);
+}
+
 static void what_cannot_be_voxelised_is_refused(void **state) {
     voxels_world w;
     voxels_open(&w, *state);
@@ -450,6 +488,7 @@ int main(void) {
         cmocka_unit_test(moving_body_leaves_what_it_covered),
         cmocka_unit_test(what_stands_still_is_voxelised_once),
         cmocka_unit_test(motion_is_that_of_the_transforms),
+        cmocka_unit_test(update_that_fails_is_made_up_for),
         cmocka_unit_test(what_cannot_be_voxelised_is_refused),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
