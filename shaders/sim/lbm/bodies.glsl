@@ -33,26 +33,19 @@ bool lbm_is_inside(ivec3 cell) { // or beyond a face that leads round
 
 // Round where the lattice goes round; nothing stands beyond other faces.
 uint lbm_id_at(ivec3 cell) {
-    const ivec3 size = ivec3(LBM_NX, LBM_NY, LBM_NZ);
     if (!lbm_is_inside(cell)) return 0u;
-    cell = (cell + size) % size;
+    cell = lbm_wrap(cell);
     uint i = uint(cell.x) + LBM_NX * (uint(cell.y) + LBM_NY * uint(cell.z));
     return lbm_ids[i >> 2] >> 8u * (i & 3u) & 255u;
 }
-
-#define ENTRY(i, x, y, z) , ivec3(x, y, z), -ivec3(x, y, z)
-const ivec3 lbm_directions[27] = ivec3[27](ivec3(0) LBM_D3Q27(ENTRY));
-#undef ENTRY
 
 uniform uint lbm_moved; // bodies came to lie in other cells just before this step
 
 // The first step after a cell became solid, or air, what passes between it and others was sent by
 // air, or filled as if it was: then walls push nothing, or mass would not be kept.
 bool lbm_is_new(ivec3 cell) {
-    const ivec3 size = ivec3(LBM_NX, LBM_NY, LBM_NZ);
-    uvec3 c = uvec3((cell + size) % size);
-    uint element = c.x + LBM_NX * (c.y + LBM_NY * (c.z % LBM_LAYERS)), lane = c.z / LBM_LAYERS;
-    return (lbm_cells[element * LBM_CHUNKS + lane / 4u] >> 8u * (lane & 3u) & LBM_CELL_NEW) != 0u;
+    uint lane, element = lbm_element_of(lbm_wrap(cell), lane);
+    return (lbm_cells[element * LBM_CHUNKS + (lane >> 2)] >> 8u * (lane & 3u) & LBM_CELL_NEW) != 0u;
 }
 
 vec3 lbm_body_velocity(uint id, vec3 point) {
@@ -69,17 +62,24 @@ float lbm_wall_speed(ivec3 cell, ivec3 direction) {
     return dot(vec3(direction), lbm_body_velocity(id, point));
 }
 
-// Of four cells, by direction. In loops and memory, not in unrolled code: few cells come here.
-#define LBM_WAYS max(LBM_Q, LBM_SCALAR_Q)
-vec4 lbm_wall_speeds[LBM_WAYS];
+// Of four cells, 27 directions each: x + 1 + 3 (y + 1) + 9 (z + 1). In loops that are not unrolled: few
+// cells come here, and processors that run all branches under a mask leave a loop when it is empty.
+float lbm_wall_speeds[108];
+#define LBM_WALL_SPEEDS(x, y, z)                                                                   \
+    vec4(lbm_wall_speeds[(x) + 3 * (y) + 9 * (z) + 13], lbm_wall_speeds[(x) + 3 * (y) + 9 * (z) + 40], \
+         lbm_wall_speeds[(x) + 3 * (y) + 9 * (z) + 67], lbm_wall_speeds[(x) + 3 * (y) + 9 * (z) + 94])
 
 void lbm_find_wall_speeds(uvec3 at, uint near, const int chunk) {
-    for (uint k = 0u; k < 4u; k++) {
-        uint lane = k + 4u * uint(chunk);
-        ivec3 cell = lbm_cell_at(at, lane);
-        bool pushed = (near >> lane & 1u) != 0u && !(lbm_moved != 0u && lbm_is_new(cell));
-        for (int i = 1; i < LBM_WAYS; i++)
-            lbm_wall_speeds[i][k] = pushed ? lbm_wall_speed(cell, lbm_directions[i]) : 0.0;
+    for (int i = 0; i < 108; i++) lbm_wall_speeds[i] = 0.0;
+    for (uint left = near >> 4u * uint(chunk) & 15u; left != 0u; left &= left - 1u) {
+        int k = findLSB(left);
+        ivec3 cell = lbm_cell_at(at, uint(k + 4 * chunk));
+        if (lbm_moved != 0u && lbm_is_new(cell)) continue;
+        [[dont_unroll]] for (int i = 0; i < 27; i++) {
+            int layer = i * 57 >> 9, row = i * 86 >> 8; // i / 9, i / 3
+            ivec3 direction = ivec3(i - 3 * row, row - 3 * layer, layer) - 1;
+            lbm_wall_speeds[27 * k + i] = lbm_wall_speed(cell, direction);
+        }
     }
 }
 
@@ -89,8 +89,8 @@ void lbm_push_air(inout vec4 f[LBM_Q]) {
     LBM_PAIRS(ADD)
 #undef ADD
 #define PUSH(i, x, y, z)                                                                           \
-    f[i] += 6.0 * LBM_WEIGHT(x, y, z) * density * lbm_wall_speeds[i];                              \
-    f[i + 1] += 6.0 * LBM_WEIGHT(x, y, z) * density * lbm_wall_speeds[i + 1];
+    f[i] += 6.0 * LBM_WEIGHT(x, y, z) * density * LBM_WALL_SPEEDS(x, y, z);                              \
+    f[i + 1] += 6.0 * LBM_WEIGHT(x, y, z) * density * LBM_WALL_SPEEDS(-(x), -(y), -(z));
     LBM_PAIRS(PUSH)
 #undef PUSH
 }
@@ -102,8 +102,8 @@ void lbm_push_scalar(inout vec4 g[LBM_SCALAR_Q]) {
 #undef ADD
     value *= 2.0 / LBM_SCALAR_SPEED;
 #define PUSH(i, x, y, z)                                                                           \
-    g[i] += LBM_SCALAR_WEIGHT(x, y, z) * value * lbm_wall_speeds[i];                               \
-    g[i + 1] += LBM_SCALAR_WEIGHT(x, y, z) * value * lbm_wall_speeds[i + 1];
+    g[i] += LBM_SCALAR_WEIGHT(x, y, z) * value * LBM_WALL_SPEEDS(x, y, z);                               \
+    g[i + 1] += LBM_SCALAR_WEIGHT(x, y, z) * value * LBM_WALL_SPEEDS(-(x), -(y), -(z));
     LBM_SCALAR_PAIRS(PUSH)
 #undef PUSH
 }

@@ -15,11 +15,10 @@ struct Cell { // one, and where it lies
     uint element, lane;
 };
 
-// Round the lattice in all directions, as memory goes.
 Cell find(ivec3 at) {
-    const ivec3 size = ivec3(LBM_NX, LBM_NY, LBM_NZ);
-    uvec3 c = uvec3((at + size) % size);
-    return Cell(c.x + LBM_NX * (c.y + LBM_NY * (c.z % LBM_LAYERS)), c.z / LBM_LAYERS);
+    Cell c;
+    c.element = lbm_element_of(lbm_wrap(at), c.lane);
+    return c;
 }
 
 // ---- what a cell is ---------------------------------------------------------------------------
@@ -86,13 +85,13 @@ void store(const int slot, uint side, Cell c, const float scale, float value) {
 
 bool is_solid(ivec3 at) {
     if (lbm_id_at(at) != 0u) return true;
-    const ivec3 size = ivec3(LBM_NX, LBM_NY, LBM_NZ);
-    uvec3 c = uvec3((at + size) % size);
-    return (lbm_wall_lanes(uvec3(c.xy, c.z % LBM_LAYERS)) >> c.z / LBM_LAYERS & 1u) != 0u;
+    ivec3 c = lbm_wrap(at);
+    uint lane, element = lbm_element_of(c, lane);
+    return (lbm_wall_lanes(uvec3(c.xy, uint(c.z) - lane * LBM_LAYERS)) >> lane & 1u) != 0u;
 }
 
 bool was_solid(Cell c) {
-    uint bytes = cells_before[c.element * LBM_CHUNKS + c.lane / 4u];
+    uint bytes = cells_before[c.element * LBM_CHUNKS + (c.lane >> 2)];
     return (bytes >> 8u * (c.lane & 3u) & LBM_CELL_SOLID) != 0u;
 }
 
@@ -103,9 +102,8 @@ struct Around { // sums over cells of air
 
 // What arrives at a cell that was air and is it still: nobody writes there now.
 void add_cell(ivec3 at, Cell c, inout Around sum) {
-    const ivec3 size = ivec3(LBM_NX, LBM_NY, LBM_NZ);
-    uvec3 place = uvec3((at + size) % size);
-    lbm_place p = lbm_place_at(uvec3(place.xy, place.z % LBM_LAYERS));
+    ivec3 around = lbm_wrap(at);
+    lbm_place p = lbm_place_at(uvec3(around.xy, uint(around.z) - c.lane * LBM_LAYERS));
     float excess = pick(lbm_load(LBM_AIR_AT_REST, 0u, p.own), c.lane, LBM_AIR_SCALE);
     vec3 momentum = vec3(0.0);
 #define ADD(i, x, y, z)                                                                            \

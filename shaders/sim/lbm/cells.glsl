@@ -20,6 +20,19 @@
 #define LBM_CELL_NEW 2u  // it became solid, or air, when bodies moved last
 #define LBM_CELL_NEAR 8u // air beside a body that moves
 
+// Round the lattice in all directions, as memory goes: from less than it beyond. No division: that is
+// slow where it is not done by a unit of its own.
+ivec3 lbm_wrap(ivec3 cell) {
+    const ivec3 size = ivec3(LBM_NX, LBM_NY, LBM_NZ);
+    return cell + size * (ivec3(lessThan(cell, ivec3(0))) - ivec3(greaterThanEqual(cell, size)));
+}
+
+// The element and the lane that a cell of the lattice lies in.
+uint lbm_element_of(ivec3 cell, out uint lane) {
+    lane = uint((float(cell.z) + 0.5) * (1.0 / float(LBM_LAYERS)));
+    return uint(cell.x) + LBM_NX * uint(cell.y) + LBM_LAYER * (uint(cell.z) - lane * LBM_LAYERS);
+}
+
 struct lbm_site { // of an element
     uint solid;   // lanes that no air is in
     uint near;    // lanes of air beside a body that moves
@@ -43,6 +56,7 @@ uint lbm_lanes_with(uint element, uint flag) {
 
 // `at`: x, y, layer.
 uint lbm_wall_lanes(uvec3 at) {
+    if (LBM_REGION == LBM_CORE) return 0u;
     bool all = LBM_FACE_IS_WALL(LBM_FACE_0) && at.x == 0u ||
                LBM_FACE_IS_WALL(LBM_FACE_1) && at.x == LBM_NX - 1u ||
                LBM_FACE_IS_WALL(LBM_FACE_2) && at.y == 0u ||
