@@ -118,17 +118,11 @@ static void define_all(lbm *l) {
 // `device`: NULL, none in particular.
 static bool compile(lbm *l, const gpu_info *device, shader_library *library,
                     const shader_reader *reader) {
-    const char *software = device && device->kind == GPU_CPU && device->int64 ? "1" : "0";
-    const shader_define defines[][2] = {{{"LBM_SOFTWARE", software}, {"LBM_KEEP", "0"}},
-                                        {{"LBM_SOFTWARE", software}, {"LBM_KEEP", "1"}}};
-    const char *step = "sim/lbm/step.comp";
     if (!lbm_layout_find(&l->desc, device ? device->max_storage_range : UINT32_MAX, &l->layout))
         return false;
     define_all(l);
     return lbm_kernel_compile(l, &l->reset, "sim/lbm/reset.comp", library, reader, NULL, 0) &&
-           lbm_kernel_compile(l, &l->step, step, library, reader, defines[0], 2) &&
-           lbm_kernel_compile(l, &l->step_kept, step, library, reader, defines[1], 2) &&
-           lbm_walls_compile(l, library, reader);
+           lbm_step_compile(l, device, library, reader) && lbm_walls_compile(l, library, reader);
 }
 
 bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader) {
@@ -137,8 +131,7 @@ bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader) {
 
 bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader) {
     return compile(l, gpu_get_info(g), library, reader) && lbm_kernel_build(&l->reset, g) &&
-           lbm_kernel_build(&l->step, g) && lbm_kernel_build(&l->step_kept, g) &&
-           lbm_walls_build(l, g);
+           lbm_step_build(l, g) && lbm_walls_build(l, g);
 }
 
 size_t lbm_defines(const lbm *l, shader_define out[LBM_MAX_DEFINES]) {
@@ -158,13 +151,12 @@ bool lbm_allocate(lbm *l, gpu *g) {
                 g, &(gpu_buffer_desc){.label = "lattice", .size = slots * layout->elements * 16});
         if (!l->state[i]) return false;
     }
-    return lbm_walls_allocate(l, g);
+    return lbm_step_allocate(l, g) && lbm_walls_allocate(l, g);
 }
 
 void lbm_destroy(lbm *l, gpu *g) {
     lbm_kernel_destroy(&l->reset, g);
-    lbm_kernel_destroy(&l->step, g);
-    lbm_kernel_destroy(&l->step_kept, g);
+    lbm_step_destroy(l, g);
     lbm_walls_destroy(l, g);
     for (int i = 0; i < LBM_MAX_BUFFERS; i++) gpu_buffer_destroy(g, l->state[i]);
     for (int i = 0; i < 2; i++) gpu_buffer_destroy(g, l->moments[i]);
@@ -179,6 +171,7 @@ size_t lbm_buffers(const lbm *l, gpu_buffer **out, size_t capacity) {
 
 bool lbm_bind(const lbm *l, const char *name, gpu_binding *out) {
     *out = (gpu_binding){.sampler = GPU_LINEAR_CLAMP, .buffer = lbm_walls_buffer(l, name)};
+    if (strcmp(name, "LbmSkin") == 0) out->buffer = l->stepper.skin;
     if (strcmp(name, "LbmMoments") == 0) out->buffer = l->moments[l->kept % 2];
     if (strcmp(name, "force") == 0) out->image = l->force;
     for (uint32_t i = 0; i < l->layout.buffers; i++) {
@@ -237,23 +230,6 @@ bool lbm_reset(lbm *l, gpu *g, const lbm_numbers *numbers) {
     return lbm_kernel_run(l, &l->reset, g, NULL, 0);
 }
 
-static void set_numbers(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
-    const float most = n->max_speed > 0 ? n->max_speed : 1e6f;
-    float buoyancy[LBM_MAX_SCALARS][4] = {0};
-    for (int i = 0; i < LBM_MAX_SCALARS; i++)
-        memcpy(buoyancy[i], n->buoyancy[i], sizeof n->buoyancy[i]);
-    lbm_kernel_set(k, "tau", &n->tau, sizeof n->tau);
-    lbm_kernel_set(k, "scalar_tau", n->scalar_tau, sizeof n->scalar_tau);
-    lbm_kernel_set(k, "smagorinsky", &n->smagorinsky, sizeof n->smagorinsky);
-    lbm_kernel_set(k, "acceleration", n->acceleration, sizeof n->acceleration);
-    lbm_kernel_set(k, "buoyancy", buoyancy, sizeof buoyancy);
-    lbm_kernel_set(k, "ambient", n->ambient, sizeof n->ambient);
-    lbm_kernel_set(k, "decay", n->decay, sizeof n->decay);
-    lbm_kernel_set(k, "max_speed", &most, sizeof most);
-    lbm_walls_set(l, k, n);
-    lbm_kernel_set(k, "force_scale", &l->force_scale, sizeof l->force_scale);
-}
-
 bool lbm_make_moments(lbm *l, gpu *g, uint32_t which) {
     const uint64_t size = 16ull * l->desc.size[0] * l->desc.size[1] * l->desc.size[2];
     const uint64_t range = gpu_get_info(g)->max_storage_range;
@@ -266,14 +242,4 @@ bool lbm_make_moments(lbm *l, gpu *g, uint32_t which) {
         *next =
             gpu_buffer_create(g, &(gpu_buffer_desc){.label = "lattice's moments", .size = size});
     return *next != NULL;
-}
-
-bool lbm_step(lbm *l, gpu *g, const lbm_numbers *numbers, bool keep) {
-    lbm_kernel *k = keep ? &l->step_kept : &l->step;
-    if (!lbm_walls_ready(l) || (keep && !lbm_make_moments(l, g, l->kept % 2))) return false;
-    set_numbers(l, k, numbers);
-    if (!lbm_kernel_run(l, k, g, NULL, 0)) return false;
-    l->kept += keep;
-    l->steps++;
-    return true;
 }

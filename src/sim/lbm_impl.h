@@ -9,6 +9,7 @@ typedef struct lbm_kernel {
     shader_binary binary;
     gpu_pipeline *pipeline;
     unsigned char *block; // of its uniforms
+    uint32_t threads;     // in one row; 0: one for each element, in layers
 } lbm_kernel;
 
 // Compiles with the defines of the solver and `more`; again: replaces what was compiled.
@@ -19,8 +20,8 @@ void lbm_kernel_destroy(lbm_kernel *k, gpu *g);
 // Sets a uniform; one that the shader does not use is passed over. Arrays are std140: each element
 // of 16 bytes.
 void lbm_kernel_set(lbm_kernel *k, const char *name, const void *data, size_t size);
-// A dispatch of a thread for each element, in layers: x is column x + nx * y, z the layer. What is
-// not the solver's own is bound by `more`, in which `binding` is filled in.
+// A dispatch; of a thread for each element x is column x + nx * y, z the layer. What is not the
+// solver's own is bound by `more`, in which `binding` is filled in.
 typedef struct lbm_slot {
     const char *name;
     gpu_binding binding;
@@ -60,6 +61,21 @@ gpu_buffer *lbm_walls_buffer(const lbm *l, const char *slot_name); // NULL: not 
 void lbm_walls_set(const lbm *l, lbm_kernel *k, const lbm_numbers *numbers);
 bool lbm_walls_ready(const lbm *l); // false with a message
 
+// ---- steps ------------------------------------------------------------------------------------
+
+typedef struct lbm_stepper {
+    int parts; // dispatches of a step: all; or first what no face touches, then the skin
+    lbm_kernel kernels[2][2]; // [part][moments are kept]
+    gpu_buffer *skin;         // the elements at faces
+    uint32_t skin_count;
+} lbm_stepper;
+
+bool lbm_step_compile(lbm *l, const gpu_info *device, shader_library *library,
+                      const shader_reader *reader); // `device` NULL: none in particular
+bool lbm_step_build(lbm *l, gpu *g);
+bool lbm_step_allocate(lbm *l, gpu *g);
+void lbm_step_destroy(lbm *l, gpu *g);
+
 // ---- moments ----------------------------------------------------------------------------------
 
 bool lbm_make_moments(lbm *l, gpu *g, uint32_t which); // the buffer, unless it is there
@@ -72,7 +88,8 @@ struct lbm {
     lbm_layout layout;
     shader_define defines[LBM_MAX_DEFINES];
     size_t define_count;
-    lbm_kernel reset, step, step_kept; // the last also leaves moments
+    lbm_kernel reset;
+    lbm_stepper stepper;
     gpu_buffer *state[LBM_MAX_BUFFERS];
     gpu_buffer *moments[2]; // [kept % 2] is written next
     uint64_t kept;

@@ -85,7 +85,11 @@ bool lbm_kernel_run(const lbm *l, lbm_kernel *k, gpu *g, const lbm_slot *more, s
         .pipeline = k->pipeline,
         .bindings = bindings,
         .binding_count = k->binary.slot_count,
-        .threads = {l->desc.size[0] * l->desc.size[1], 1, l->layout.layers},
+        .threads = {k->threads, 1, 1},
     };
+    if (!k->threads) {
+        desc.threads[0] = l->desc.size[0] * l->desc.size[1];
+        desc.threads[2] = l->layout.layers;
+    }
     return gpu_dispatch(g, &desc);
 }

@@ -1,7 +1,7 @@
 // How fast the bare solver of src/sim steps: no fields, no pictures.
 //
-//   bench_lattice [-d DEVICE] [-n STEPS] [-s X,Y,Z] [-q 19|27] [-p 16|32] [-c SCALARS] [-o
-//   bgk|trt|moments] [-k] [-l]
+//   bench_lattice [-d DEVICE] [-n STEPS] [-s X,Y,Z] [-q 19|27] [-p 16|32] [-c SCALARS]
+//                 [-o bgk|trt|moments] [-f periodic|wall|slip|open] [-k] [-l]
 //
 // -k keeps moments in each step; -l adds the subgrid term. Prints one line: million cell updates
 // a second by the device's clock, by the processor time of this process (of interest for a software
@@ -32,7 +32,7 @@ static int fail(const char *what) {
 
 static bool parse(int argc, char **argv, bench *b) {
     *b = (bench){.steps = 100, .desc = {.size = {96, 96, 96}, .collision = LBM_CENTRAL_MOMENTS}};
-    for (int c; (c = getopt(argc, argv, "d:n:s:q:p:c:o:kl")) != -1;) {
+    for (int c; (c = getopt(argc, argv, "d:n:s:q:p:c:o:f:kl")) != -1;) {
         uint32_t *s = b->desc.size;
         if (c == 'd') b->device = optarg;
         if (c == 'n') b->steps = atoi(optarg);
@@ -44,6 +44,11 @@ static bool parse(int argc, char **argv, bench *b) {
             b->desc.collision = optarg[0] == 'b'   ? LBM_BGK
                                 : optarg[0] == 't' ? LBM_TRT
                                                    : LBM_CENTRAL_MOMENTS;
+        for (int i = 0; c == 'f' && i < 6; i++)
+            b->desc.faces[i] = optarg[0] == 'w'   ? LBM_WALL
+                               : optarg[0] == 's' ? LBM_SLIP
+                               : optarg[0] == 'o' ? LBM_OPEN
+                                                  : LBM_PERIODIC;
         if (c == 'k') b->keep = true;
         if (c == 'l') b->desc.subgrid = true;
         if (c == '?') return false;
@@ -85,12 +90,13 @@ static int measure(const bench *b, lbm *l, gpu *g) {
     double updates = (double)d->size[0] * d->size[1] * d->size[2] * b->steps;
     double directions = (d->set == LBM_D3Q27 ? 27 : 19) + 7.0 * d->scalars;
     double bytes = 2 * directions * (d->precision == LBM_F16 ? 2 : 4) + (b->keep ? 16 : 0);
-    printf("%ux%ux%u %s %s, %u scalars%s%s: %.2f million updates/s, %.2f per processor second, "
+    static const char *const faces[] = {"", ", walls", ", slip", ", open"};
+    printf("%ux%ux%u %s %s, %u scalars%s%s%s: %.2f million updates/s, %.2f per processor second, "
            "%.1f GB/s\n",
            d->size[0], d->size[1], d->size[2], d->set == LBM_D3Q27 ? "D3Q27" : "D3Q19",
            d->precision == LBM_F16 ? "16 bits" : "32 bits", d->scalars, b->keep ? ", kept" : "",
-           d->subgrid ? ", subgrid" : "", updates / milliseconds / 1e3, updates / processor / 1e6,
-           updates * bytes / milliseconds / 1e6);
+           d->subgrid ? ", subgrid" : "", faces[d->faces[0]], updates / milliseconds / 1e3,
+           updates / processor / 1e6, updates * bytes / milliseconds / 1e6);
     return 0;
 }
 

@@ -48,6 +48,14 @@ uniform uint lbm_parity; // of steps
 #define LBM_SCALAR_WEIGHT(x, y, z) LBM_D3Q7_AXIS
 #endif
 
+// What a dispatch does: all, what is not at a face that is not periodic, what is.
+#define LBM_WHOLE 0
+#define LBM_CORE 1
+#define LBM_SKIN 2
+#ifndef LBM_REGION
+#define LBM_REGION LBM_WHOLE
+#endif
+
 // X(s) for each scalar, a constant.
 #if LBM_SCALARS == 0
 #define LBM_EACH_SCALAR(X)

@@ -9,6 +9,13 @@ layout(local_size_x = LBM_GROUP) in;
 #include "sim/lbm/scalar.glsl"
 #include "sim/lbm/walls.glsl"
 
+// All elements; or those without a face that is not periodic, then those with one, in two dispatches.
+#if LBM_REGION == LBM_SKIN
+layout(std430) readonly buffer LbmSkin { uint skin[]; };
+uniform uint skin_count;
+#endif
+#define WALLED (LBM_WALLED && (LBM_BODIES || LBM_REGION != LBM_CORE))
+
 uniform float tau;
 uniform float smagorinsky;
 uniform vec3 acceleration;
@@ -40,7 +47,7 @@ vec4 value[3]; // of scalars
 
 void unpack(const int chunk) {
     lbm_unpack_air(air, chunk, population);
-#if LBM_WALLED
+#if WALLED
     lbm_meet_air(at, site, chunk, population);
 #define MEET(s) lbm_meet_scalar(s, at, site, chunk, ambient[s], population, part[s]);
 #else
@@ -117,7 +124,7 @@ lbm_air find_air(const int chunk) {
 #if LBM_KEEP
 // Of solid lanes: none, and the body there.
 void keep_solid() {
-#if LBM_WALLED
+#if WALLED
     for (uint lane = 0u; lane < LBM_LANES; lane++)
         if ((site.solid >> lane & 1u) != 0u)
             moments[place.own + lane * LBM_ELEMENTS] =
@@ -162,8 +169,31 @@ void collide(const int chunk) {
 
 // ---- an element -------------------------------------------------------------------------------
 
+#if WALLED && LBM_SOFTWARE
+#define KEEPS_ARRIVALS 1
+lbm_element air_before[LBM_Q], carried_before[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
+#else
+#define KEEPS_ARRIVALS 0
+#endif
+
+void load() {
+#define LOAD(s) lbm_load_scalar(s, place, carried[s]);
+    LBM_EACH_SCALAR(LOAD)
+#undef LOAD
+    lbm_load_air(place, air);
+#if KEEPS_ARRIVALS
+    carried_before = carried;
+    air_before = air;
+#endif
+}
+
 void send() {
-#if LBM_WALLED
+#if KEEPS_ARRIVALS
+    lbm_keep_air(site.solid, air_before, air);
+#define KEEP(s) lbm_keep_scalar(site.solid, carried_before[s], carried[s]);
+    LBM_EACH_SCALAR(KEEP)
+#undef KEEP
+#elif WALLED
     if (site.solid != 0u) {
         lbm_send_air_beside(place, site.solid, air);
 #define SEND(s) lbm_send_scalar_beside(s, place, site.solid, carried[s]);
@@ -178,12 +208,29 @@ void send() {
 #undef SEND
 }
 
+bool find_element() {
+    uint thread = gl_GlobalInvocationID.x;
+#if LBM_REGION == LBM_SKIN
+    if (thread >= skin_count) return false;
+    uint element = skin[thread], column = element % LBM_LAYER;
+    at = uvec3(column % LBM_NX, column / LBM_NX, element / LBM_LAYER);
+#elif LBM_REGION == LBM_CORE
+    const uvec3 rim = uvec3(LBM_FACE_0 != 0, LBM_FACE_2 != 0, LBM_FACE_4 != 0);
+    const uvec2 size = uvec2(LBM_NX, LBM_NY) - 2u * rim.xy;
+    if (thread >= size.x * size.y) return false;
+    at = uvec3(thread % size.x, thread / size.x, gl_GlobalInvocationID.z) + rim;
+    if (at.z >= LBM_LAYERS - rim.z) return false;
+#else
+    if (thread >= LBM_LAYER) return false;
+    at = uvec3(thread % LBM_NX, thread / LBM_NX, gl_GlobalInvocationID.z);
+#endif
+    return true;
+}
+
 void main() {
-    uint column = gl_GlobalInvocationID.x;
-    if (column >= LBM_LAYER) return;
-    at = uvec3(column % LBM_NX, column / LBM_NX, gl_GlobalInvocationID.z);
+    if (!find_element()) return;
     place = lbm_place_at(at);
-#if LBM_WALLED
+#if WALLED
     site = lbm_site_at(at, place.own);
     if (site.solid == LBM_ALL_LANES) {
 #if LBM_KEEP
@@ -192,10 +239,7 @@ void main() {
         return;
     }
 #endif
-#define LOAD(s) lbm_load_scalar(s, place, carried[s]);
-    LBM_EACH_SCALAR(LOAD)
-#undef LOAD
-    lbm_load_air(place, air);
+    load();
     collide(0);
 #if LBM_CHUNKS > 1
     collide(1);

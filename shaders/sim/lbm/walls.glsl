@@ -56,6 +56,25 @@ void lbm_send_scalar_beside(const int s, lbm_place p, uint solid, lbm_element q[
 #undef STORE
 }
 
+// The same without a branch, from a copy of what arrived.
+void lbm_keep_air(uint solid, lbm_element arrived[LBM_Q], inout lbm_element q[LBM_Q]) {
+    q[0] = lbm_choose(q[0], arrived[0], solid);
+#define KEEP(i, x, y, z)                                                                           \
+    q[i] = lbm_choose(q[i], arrived[i + 1], solid);                                                \
+    q[i + 1] = lbm_choose(q[i + 1], arrived[i], solid);
+    LBM_PAIRS(KEEP)
+#undef KEEP
+}
+
+void lbm_keep_scalar(uint solid, lbm_element arrived[LBM_SCALAR_Q], inout lbm_element q[LBM_SCALAR_Q]) {
+    q[0] = lbm_choose(q[0], arrived[0], solid);
+#define KEEP(i, x, y, z)                                                                           \
+    q[i] = lbm_choose(q[i], arrived[i + 1], solid);                                                \
+    q[i + 1] = lbm_choose(q[i + 1], arrived[i], solid);
+    LBM_SCALAR_PAIRS(KEEP)
+#undef KEEP
+}
+
 // ---- faces ------------------------------------------------------------------------------------
 
 #if LBM_RIMS // there are faces that are neither periodic nor walls
@@ -309,7 +328,7 @@ void lbm_pass_face_with(const int s, lbm_rim r, float ambient, vec4 f[LBM_Q], in
 
 // Makes what arrives in four cells what it should be: of air, of scalar s (a constant).
 void lbm_meet_air(uvec3 at, lbm_site site, const int chunk, inout vec4 f[LBM_Q]) {
-#if LBM_RIMS
+#if LBM_RIMS && LBM_REGION != LBM_CORE
     if (lbm_at_rim(at)) {
         lbm_rim r = lbm_rim_at(at, chunk);
         lbm_mirror_air(r, f);
@@ -327,7 +346,7 @@ void lbm_meet_air(uvec3 at, lbm_site site, const int chunk, inout vec4 f[LBM_Q])
 // `f` is what lbm_meet_air left.
 void lbm_meet_scalar(const int s, uvec3 at, lbm_site site, const int chunk, float ambient,
                      vec4 f[LBM_Q], inout vec4 g[LBM_SCALAR_Q]) {
-#if LBM_RIMS
+#if LBM_RIMS && LBM_REGION != LBM_CORE
     if (lbm_at_rim(at)) {
         lbm_rim r = lbm_rim_at(at, chunk);
         lbm_mirror_scalar(r, g);

@@ -1,0 +1,114 @@
+// A step: one dispatch over all elements. Or two, where branches cost what they leave out (software
+// devices take both ways) and there are faces that air can pass, which are dear: over the elements
+// that no face touches, whose shader knows nothing of faces, and over a list of those that one
+// does. They share no places in memory, so their order does not matter.
+#include "base/error.h"
+#include "base/memory.h"
+#include "sim/lbm_impl.h"
+#include <string.h>
+
+static const char shader[] = "sim/lbm/step.comp";
+
+static bool is_software(const gpu_info *device) {
+    return device && device->kind == GPU_CPU && device->int64;
+}
+
+static bool is_passable(const lbm *l) {
+    for (int i = 0; i < 6; i++)
+        if (l->desc.faces[i] >= LBM_OPEN) return true;
+    return false;
+}
+
+bool lbm_step_compile(lbm *l, const gpu_info *device, shader_library *library,
+                      const shader_reader *reader) {
+    static const char *const regions[] = {"LBM_WHOLE", "LBM_CORE", "LBM_SKIN"};
+    lbm_stepper *s = &l->stepper;
+    s->parts = is_software(device) && is_passable(l) ? 2 : 1;
+    for (int i = 0; i < 2 * s->parts; i++) {
+        const shader_define defines[] = {
+            {"LBM_SOFTWARE", is_software(device) ? "1" : "0"},
+            {"LBM_KEEP", i % 2 ? "1" : "0"},
+            {"LBM_REGION", regions[s->parts == 1 ? 0 : 1 + i / 2]},
+        };
+        if (!lbm_kernel_compile(l, &s->kernels[i / 2][i % 2], shader, library, reader, defines, 3))
+            return false;
+    }
+    return true;
+}
+
+bool lbm_step_build(lbm *l, gpu *g) {
+    for (int i = 0; i < 2 * l->stepper.parts; i++)
+        if (!lbm_kernel_build(&l->stepper.kernels[i / 2][i % 2], g)) return false;
+    return true;
+}
+
+// ---- the elements at faces --------------------------------------------------------------------
+
+static bool at_face(const lbm *l, uint32_t x, uint32_t y, uint32_t layer) {
+    const uint32_t at[3] = {x, y, layer};
+    const uint32_t last[3] = {l->desc.size[0] - 1, l->desc.size[1] - 1, l->layout.layers - 1};
+    for (int i = 0; i < 3; i++)
+        if (l->desc.faces[2 * i] != LBM_PERIODIC && (at[i] == 0 || at[i] == last[i])) return true;
+    return false;
+}
+
+static uint32_t list_skin(const lbm *l, uint32_t *out) {
+    uint32_t count = 0, element = 0;
+    for (uint32_t z = 0; z < l->layout.layers; z++)
+        for (uint32_t y = 0; y < l->desc.size[1]; y++)
+            for (uint32_t x = 0; x < l->desc.size[0]; x++, element++)
+                if (at_face(l, x, y, z)) out[count++] = element;
+    return count;
+}
+
+bool lbm_step_allocate(lbm *l, gpu *g) {
+    lbm_stepper *s = &l->stepper;
+    if (s->parts == 1 || s->skin) return true;
+    uint32_t *list = mem_alloc(l->layout.elements * sizeof *list);
+    s->skin_count = list_skin(l, list);
+    s->skin = gpu_buffer_create(
+        g, &(gpu_buffer_desc){.label = "elements at faces", .size = s->skin_count * 4ull});
+    bool done = s->skin && gpu_buffer_write(g, s->skin, 0, list, s->skin_count * 4ull);
+    mem_free(list);
+    for (int kept = 0; kept < 2; kept++) s->kernels[1][kept].threads = s->skin_count;
+    return done;
+}
+
+void lbm_step_destroy(lbm *l, gpu *g) {
+    lbm_stepper *s = &l->stepper;
+    for (int i = 0; i < 4; i++) lbm_kernel_destroy(&s->kernels[i / 2][i % 2], g);
+    gpu_buffer_destroy(g, s->skin);
+    s->skin = NULL;
+}
+
+// ---- a step -----------------------------------------------------------------------------------
+
+static void set_numbers(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
+    const float most = n->max_speed > 0 ? n->max_speed : 1e6f;
+    float buoyancy[LBM_MAX_SCALARS][4] = {0};
+    for (int i = 0; i < LBM_MAX_SCALARS; i++)
+        memcpy(buoyancy[i], n->buoyancy[i], sizeof n->buoyancy[i]);
+    lbm_kernel_set(k, "tau", &n->tau, sizeof n->tau);
+    lbm_kernel_set(k, "scalar_tau", n->scalar_tau, sizeof n->scalar_tau);
+    lbm_kernel_set(k, "smagorinsky", &n->smagorinsky, sizeof n->smagorinsky);
+    lbm_kernel_set(k, "acceleration", n->acceleration, sizeof n->acceleration);
+    lbm_kernel_set(k, "buoyancy", buoyancy, sizeof buoyancy);
+    lbm_kernel_set(k, "ambient", n->ambient, sizeof n->ambient);
+    lbm_kernel_set(k, "decay", n->decay, sizeof n->decay);
+    lbm_kernel_set(k, "max_speed", &most, sizeof most);
+    lbm_kernel_set(k, "force_scale", &l->force_scale, sizeof l->force_scale);
+    lbm_kernel_set(k, "skin_count", &l->stepper.skin_count, sizeof l->stepper.skin_count);
+    lbm_walls_set(l, k, n);
+}
+
+bool lbm_step(lbm *l, gpu *g, const lbm_numbers *numbers, bool keep) {
+    if (!lbm_walls_ready(l) || (keep && !lbm_make_moments(l, g, l->kept % 2))) return false;
+    for (int part = 0; part < l->stepper.parts; part++) {
+        lbm_kernel *k = &l->stepper.kernels[part][keep];
+        set_numbers(l, k, numbers);
+        if (!lbm_kernel_run(l, k, g, NULL, 0)) return false;
+    }
+    l->kept += keep;
+    l->steps++;
+    return true;
+}
