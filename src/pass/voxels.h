@@ -5,7 +5,7 @@
 
 typedef struct pass_voxels_desc {
     box3 box;            // metres; empty: around the meshes of now, with a margin of two cells
-    uint32_t size[3];    // cells; 0: by the resolution, in cells that are cubes, at least
+    uint32_t size[3];    // cells; 0: cubes by the resolution, and the box grows to whole ones
     uint32_t resolution; // cells along the longest side
 } pass_voxels_desc;
 

@@ -182,7 +182,7 @@ static const script_object objects[] = {
         KEY("resolution", "64 [8, 1024]", "cells along the longest side of the box"),
         KEY("size", "{x, y, z} [1, 1024]", "instead: cells along each side, x a multiple of 4"),
         KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m",
-            "what the cells cover; without: the meshes as they stand at first, and a margin"),
+            "what the cells cover, at least; without: the meshes as they stand at first, and a margin"),
         CHOICE("rule", "auto",
                "solid fills what is inside, even where a mesh has holes; shell is every cell that a "
                "triangle touches; auto is solid where a mesh is closed, shell where it is open or thin",
