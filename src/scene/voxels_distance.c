@@ -19,8 +19,8 @@ static bool flood_once(voxels *v, gpu *g, int32_t apart, bool *other) {
     return voxels_dispatch(v, g, VOXELS_FLOOD, v->size, &more);
 }
 
-// Rounds of flooding: from half of the box down to neighbours, and these once more, which mends most
-// of what the others got wrong. `other`: which of the two buffers is read next.
+// Rounds of flooding: from half of the box down to neighbours, and these once more, which mends
+// most of what the others got wrong. `other`: which of the two buffers is read next.
 static bool flood(voxels *v, gpu *g, bool *other) {
     int32_t longest = 1, apart = 1;
     for (int a = 0; a < 3; a++)
