@@ -14,7 +14,7 @@ uniform float rate;            //= 0 [0, 1e4] 1/s : how fast the air takes on th
 uniform float velocity_factor; //= 0 [-10, 10] : share of the meshes' own motion that is added to the velocity
 #include "shared.h"
 #include "fields.glsl"
-#include "sim/lbm/state.glsl"
+#include "sim/lbm/cells.glsl"
 uniform vec3 box_min;     // corner of the lattice (m)
 uniform float cell_size;  // m
 uniform float step_speed; // cells a step of 1 m/s
@@ -137,15 +137,16 @@ void main() {
     if (any(greaterThanEqual(vec3(at), min(count, vec3(count.xy, LBM_LAYERS))))) return;
     at += uvec3(first);
     at.z %= LBM_LAYERS;
+    lbm_place place = lbm_place_at(at);
+    uint solid = lbm_site_at(at, place.own).solid; // nothing comes out of walls and colliders
     vec4 some[LBM_CHUNKS];
     bool any_ = false;
     EACH_CHUNK EACH_LANE {
-        bool here = gives(cell_of(at, 4 * c + l));
+        bool here = (solid >> 4 * c + l & 1u) == 0u && gives(cell_of(at, 4 * c + l));
         some[c][l] = here ? share : 0.0;
         any_ = any_ || here;
     }
     if (!any_) return;
-    lbm_place place = lbm_place_at(at);
     lbm_element air[LBM_Q];
     lbm_load_air(place, air);
     lbm_vec u[LBM_CHUNKS];
