@@ -55,7 +55,7 @@ static bool move(lbm_air *a, lbm_meshes *m, voxels_change *change) {
     const pass_host *host = a->pass->host;
     double now = host->context->time;
     *change = (voxels_change){false, false};
-    if (!m->cells || (isnan(m->updated) && 0 && !place(a, m))) return !m->cells;
+    if (!m->cells || (isnan(m->updated) && !place(a, m))) return !m->cells;
     double passed = isnan(m->updated) ? 0 : now - m->updated;
     m->updated = now;
     return voxels_update(m->cells, host->device, host->context, passed, change);
