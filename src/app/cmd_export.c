@@ -20,7 +20,8 @@ static int export_raw(int argc, const char **argv) {
         {"type", 't', POPT_ARG_STRING, &job.type, 0, "u8, u16, f16 or f32 (default: u8)", "TYPE"},
         POPT_AUTOHELP POPT_TABLEEND};
     poptContext context = poptGetContext("roil export", argc, argv, options, 0);
-    poptSetOtherOptionHelp(context, "raw 'FILES*.vdb' -o FILE.raw");
+    poptSetOtherOptionHelp(context,
+                           "raw 'FILES*.vdb' -o FILE.raw (see also: roil export vdb --help)");
     int code = poptGetNextOpt(context), status = APP_DONE;
     const char *format = poptGetArg(context);
     job.pattern = poptGetArg(context);

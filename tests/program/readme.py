@@ -22,8 +22,8 @@ class Readme(Case):
 
     def test_options_in_it_exist(self):
         options = set(re.findall(r"--[a-z-]+", readme()))
-        offered = "".join(self.succeeds(c, "--help")
-                          for c in ("render", "live", "export", "compare", "bench", "tune")) + "--help"
+        offered = "".join(self.succeeds(*c.split(), "--help") for c in (
+            "render", "live", "export raw", "export vdb", "compare", "bench", "tune")) + "--help"
         for option in options:
             self.assertIn(option, offered)
 
