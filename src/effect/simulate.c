@@ -85,7 +85,8 @@ static bool run_frame(effect *e, double frame, bool again) {
 
 static bool run(effect *e, double frame, bool *again) {
     double next = next_frame(e, frame), begin = clock_seconds();
-    double patience = fmin(fmax(begin - e->rendered_at, least_patience), most_patience);
+    double patience = e->counter ? begin - e->rendered_at : 0;
+    patience = fmin(fmax(patience, least_patience), most_patience);
     double time = time_of(e, frame);
     int64_t whole = left(e, time);
     while (next < frame || !is_near(e, time)) {

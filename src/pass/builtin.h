@@ -66,6 +66,7 @@ bool lbm_source_declare(pass *p);
 bool lbm_source_check(pass *p);
 bool lbm_source_build(pass *p);
 bool lbm_source_fill(pass *p, const shader_binary *binary, unsigned char *block);
+void lbm_source_destroy(pass *p);
 
 bool voxels_declare(pass *p);
 bool voxels_check_pass(pass *p);

@@ -3,14 +3,10 @@
 // this (lbm_numbers.c).
 #include "base/memory.h"
 #include "pass/lbm_parts.h"
-#include <math.h>
 #include <string.h>
 
 static const char shader[] = "pass/lbm/force.comp";
-enum {
-    COARSER = 2, // cells of the lattice along a side of one of the image's
-    RATE = 48,   // a second
-};
+enum { COARSER = 2 }; // cells of the lattice along a side of one of the image's
 
 bool lbm_air_compile_force(lbm_air *a) {
     return !lbm_air_force_varies(a->pass) ||
@@ -62,16 +58,16 @@ static bool bake(pass *p, lbm_force *f) {
 }
 
 bool lbm_air_push(lbm_air *a) {
+    double begin, end;
     if (!a->force.image) return true;
-    uint64_t each = (uint64_t)fmax(1, floor(1 / (RATE * a->units.step)));
-    uint64_t turn = lbm_steps(a->solver) / each;
+    uint64_t turn = lbm_air_turn(a, &begin, &end);
     if (turn == a->force.turn) return true;
     a->force.turn = turn;
     // As of the turn's first step, also where a state is taken over in the middle of one.
     pass_host *host = a->pass->host;
     const field_context *now = host->context;
     field_context first = *now;
-    first.time = lbm_air_step_time(a, turn * each);
+    first.time = begin;
     host->context = &first;
     bool done = bake(a->pass, &a->force);
     host->context = now;

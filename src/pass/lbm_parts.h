@@ -19,7 +19,7 @@ typedef struct lbm_force { // that varies in space; zero: it does not
     gpu_pipeline *pipeline;
     unsigned char *block;
     gpu_image *image;
-    uint64_t turn; // in which it was baked (lbm_force.c); UINT64_MAX: never
+    uint64_t turn; // in which it was baked; UINT64_MAX: never
 } lbm_force;
 
 enum { LBM_STEP, LBM_VOXELS, LBM_SOURCES, LBM_FIELDS, LBM_LABELS };
@@ -62,6 +62,9 @@ bool lbm_air_force_varies(const pass *p);
 
 // lbm_time.c
 double lbm_air_step_time(const lbm_air *a, uint64_t step); // of the state before it
+// What is dear to find, the force and what sources hold, is found anew so many times a second of
+// the simulation, whatever is drawn: in which turn the next step lies, and from when to when it is.
+uint64_t lbm_air_turn(const lbm_air *a, double *begin, double *end);
 int64_t lbm_air_left(const pass *p, double time);
 int64_t lbm_air_most(const pass *p);
 double lbm_air_reached(const pass *p);
@@ -81,7 +84,16 @@ bool lbm_air_push(lbm_air *a); // the force as of the host's time, which is that
 void lbm_air_destroy_force(lbm_air *a);
 
 // lbm_source.c
-bool lbm_air_run_source(lbm_air *a, pass *source);
+bool lbm_air_run_source(pass *source);    // before a step
+void lbm_air_forget_source(pass *source); // its values are found anew
+
+// lbm_source_box.c
+typedef struct lbm_cells { // whole numbers
+    float first[3], count[3];
+} lbm_cells;
+const field *lbm_source_shape(const pass *p); // NULL: it has none
+// From the host's time to `end`.
+bool lbm_source_cells(const lbm_air *a, const pass *p, double end, lbm_cells *out);
 
 // lbm_bodies.c
 bool lbm_air_add_body(lbm_air *a, lbm_meshes *m, const scene_mesh *mesh, voxels_rule rule);

@@ -1,32 +1,38 @@
-// Sources of simulated air: passes of the type `lbm_source`, which the air's pass runs before each
-// of its steps, over the cells of their box.
+// Sources of simulated air: passes of the type `lbm_source`, which the air's pass runs. Their
+// fields become values of the cells of their box so many times a second of the simulation
+// (lbm_air_turn), which is what costs; before each step the values are given to the air, where
+// meshes are then.
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/builtin.h"
 #include "pass/lbm_parts.h"
-#include <math.h>
 #include <string.h>
+
+static const char give_shader[] = "pass/lbm/give.comp";
 
 typedef struct source_state {
     lbm_air *air;
-    uint8_t first_id;         // of its meshes; 0: it has none
-    float first[3], count[3]; // cells of its box as of now
+    uint8_t first_id; // of its meshes; 0: it has none
+    shader_binary give;
+    gpu_pipeline *pipeline; // that gives
+    unsigned char *block;   // of its uniforms
+    uint64_t turn;          // in which the values were found; UINT64_MAX: never
+    lbm_cells cells;        // of its box in this turn
+    gpu_buffer *values;     // of these; NULL: none yet
+    unsigned char *last;    // the numbers that they were found with
+    lbm_cells last_cells;
+    bool known; // these two
 } source_state;
 
-static const field *shape_of(const pass *p) {
-    size_t index;
-    return pass_find_key(p, "shape", &index) == PASS_FIELD ? p->fields[index] : NULL;
-}
-
 bool lbm_source_declare(pass *p) {
-    return shape_of(p) || p->mesh_count ||
+    return lbm_source_shape(p) || p->mesh_count ||
            err_set("%s: it has no place; give it a mesh, or shape = sphere { ... }", p->label);
 }
 
 bool pass_lbm_add_source(pass *p, pass *source) {
     lbm_air *a = lbm_air_of(p);
     source_state *s = source->state = arena_alloc(p->host->memory, sizeof *s);
-    *s = (source_state){.air = a, .first_id = (uint8_t)(a->givers.count + 1)};
+    *s = (source_state){.air = a, .first_id = (uint8_t)(a->givers.count + 1), .turn = UINT64_MAX};
     size_t option;
     pass_find_key(source, "rule", &option);
     voxels_rule rule = (voxels_rule)source->options[option];
@@ -47,11 +53,13 @@ bool pass_lbm_add_source(pass *p, pass *source) {
 // ---- building ---------------------------------------------------------------------------------
 
 static bool compile(pass *p) {
-    const source_state *s = p->state;
-    shader_define defines[LBM_MAX_DEFINES + 1];
+    source_state *s = p->state;
+    shader_define defines[LBM_MAX_DEFINES + 2];
     size_t count = lbm_defines(s->air->solver, defines);
     defines[count++] = (shader_define){"MESHES", s->first_id ? "1" : "0"};
-    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, count, &p->binary);
+    defines[count++] = (shader_define){"WITHOUT_FIELDS", ""};
+    return pass_compile(p, p->shader, SHADER_COMPUTE, NULL, 0, &p->binary) &&
+           pass_compile(p, give_shader, SHADER_COMPUTE, defines, count, &s->give);
 }
 
 bool lbm_source_check(pass *p) {
@@ -59,121 +67,154 @@ bool lbm_source_check(pass *p) {
 }
 
 bool lbm_source_build(pass *p) {
+    source_state *s = p->state;
     if (!compile(p)) return false;
+    s->block = arena_alloc(p->host->memory, pass_block_size(&s->give) + 16);
+    s->last = arena_alloc(p->host->memory, field_program_block_size(p->program) + 16);
     p->pipeline = pass_create_compute(p, &p->binary);
-    return p->pipeline != NULL;
+    s->pipeline = pass_create_compute(p, &s->give);
+    return p->pipeline && s->pipeline;
 }
 
-// ---- where it is ------------------------------------------------------------------------------
+void lbm_source_destroy(pass *p) {
+    source_state *s = p->state;
+    if (!s) return;
+    if (s->pipeline) gpu_pipeline_destroy(p->host->device, s->pipeline);
+    if (s->values) gpu_buffer_destroy(p->host->device, s->values);
+}
 
-static bool mesh_box(const scene_mesh *mesh, const field_context *context, box3 *out) {
-    const float corners[2][3] = {
-        {mesh->data.box.min.x, mesh->data.box.min.y, mesh->data.box.min.z},
-        {mesh->data.box.max.x, mesh->data.box.max.y, mesh->data.box.max.z}};
-    mat4 place;
-    if (!scene_mesh_transform(mesh, context, place)) return false;
-    for (int i = 0; i < 8; i++) {
-        vec3 p = {corners[i & 1][0], corners[i >> 1 & 1][1], corners[i >> 2][2]}, q;
-        glm_mat4_mulv3(place, p, 1, q);
-        box3 point = {{q[0], q[1], q[2]}, {q[0], q[1], q[2]}};
-        if (i == 0) *out = point;
-        out->min =
-            (float3){fminf(out->min.x, q[0]), fminf(out->min.y, q[1]), fminf(out->min.z, q[2])};
-        out->max =
-            (float3){fmaxf(out->max.x, q[0]), fmaxf(out->max.y, q[1]), fmaxf(out->max.z, q[2])};
-    }
+void lbm_air_forget_source(pass *source) {
+    source_state *s = source->state;
+    s->turn = UINT64_MAX;
+}
+
+// ---- values -----------------------------------------------------------------------------------
+
+static void write_place(const source_state *s, const shader_binary *binary, unsigned char *block) {
+    const float cell = (float)s->air->units.cell;
+    pass_write_box(binary, block, s->air->grid.box);
+    pass_write_member(binary, block, "cell_size", &cell, sizeof cell);
+    pass_write_member(binary, block, "first", s->cells.first, sizeof s->cells.first);
+    pass_write_member(binary, block, "count", s->cells.count, sizeof s->cells.count);
+}
+
+bool lbm_source_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+    write_place(p->state, binary, block);
     return true;
 }
 
-static bool box_of(const pass *p, box3 *out) {
-    const field_context *context = p->host->context;
-    *out = box3_infinite();
-    if (shape_of(p) && !field_bounds(shape_of(p), context, out)) return false;
-    box3 meshes = box3_empty();
-    for (size_t i = 0; i < p->mesh_count; i++) {
-        box3 one;
-        if (!mesh_box(p->meshes[i], context, &one)) return false;
-        meshes = i ? box3_union(meshes, one) : one;
-    }
-    if (p->mesh_count) *out = box3_intersect(*out, box3_grow(meshes, 1e-3f));
-    return true;
+static bool make_values(pass *p, source_state *s) {
+    const float *n = s->cells.count;
+    uint64_t size = 16 * (uint64_t)n[0] * (uint64_t)n[1] * (uint64_t)n[2];
+    uint64_t most = gpu_get_info(p->host->device)->max_storage_range;
+    if (s->values && gpu_buffer_size(s->values) >= size) return true;
+    if (size > most)
+        return err_set("its box has %.0f x %.0f x %.0f cells, of which the device can bind %llu at "
+                       "most; give 'shape' an end, as by the product with a box",
+                       (double)n[0], (double)n[1], (double)n[2], (unsigned long long)(most / 16));
+    if (s->values) gpu_buffer_destroy(p->host->device, s->values);
+    s->values = gpu_buffer_create(p->host->device,
+                                  &(gpu_buffer_desc){.label = "values of a source", .size = size});
+    s->known = false;
+    return s->values != NULL;
 }
 
-// Cells whose middle the box may hold; none: false.
-static bool find_cells(source_state *s, box3 box) {
-    const lbm_air *a = s->air;
-    box = box3_intersect(box, a->grid.box);
-    if (box3_is_empty(box)) return false;
-    float h = (float)a->desc.voxel_size;
-    const float low[3] = {box.min.x - a->grid.box.min.x, box.min.y - a->grid.box.min.y,
-                          box.min.z - a->grid.box.min.z};
-    const float high[3] = {box.max.x - a->grid.box.min.x, box.max.y - a->grid.box.min.y,
-                           box.max.z - a->grid.box.min.z};
-    for (int i = 0; i < 3; i++) {
-        float n = (float)a->desc.size[i];
-        s->first[i] = clampf(floorf(low[i] / h - 0.5f), 0, n - 1);
-        s->count[i] = clampf(ceilf(high[i] / h + 0.5f), 1, n) - s->first[i];
-    }
-    return true;
+// Values that depend on numbers only, and these are as they were, are known already.
+static bool are_known(const pass *p, const source_state *s) {
+    const field_texture *textures;
+    return s->known && field_program_textures(p->program, &textures) == 0 &&
+           memcmp(s->last, p->numbers, field_program_block_size(p->program)) == 0 &&
+           memcmp(&s->last_cells, &s->cells, sizeof s->cells) == 0;
+}
+
+static bool find_values(pass *p, source_state *s) {
+    if (!make_values(p, s) || !pass_prepare(p)) return false;
+    if (are_known(p, s)) return true;
+    memcpy(s->last, p->numbers, field_program_block_size(p->program));
+    s->last_cells = s->cells;
+    const pass_override overrides[] = {{"SourceValues", {.buffer = s->values}}};
+    gpu_binding bindings[GPU_MAX_SLOTS];
+    gpu_dispatch_desc dispatch = {.pipeline = p->pipeline, .bindings = bindings};
+    for (int i = 0; i < 3; i++) dispatch.threads[i] = (uint32_t)s->cells.count[i];
+    s->known =
+        pass_bind(p, &p->binary, p->block, overrides, 1, bindings, &dispatch.binding_count) &&
+        gpu_dispatch(p->host->device, &dispatch);
+    return s->known;
+}
+
+// As of the beginning of the turn, whenever in it that is.
+static bool begin_turn(pass *p, source_state *s) {
+    double begin, end;
+    uint64_t turn = lbm_air_turn(s->air, &begin, &end);
+    if (turn == s->turn) return true;
+    pass_host *host = p->host;
+    const field_context *now = host->context;
+    field_context first = *now;
+    first.time = begin;
+    host->context = &first;
+    bool done = lbm_source_cells(s->air, p, end, &s->cells) &&
+                (s->cells.count[0] <= 0 || find_values(p, s));
+    host->context = now;
+    s->turn = done ? turn : UINT64_MAX;
+    return done;
 }
 
 // ---- a step -----------------------------------------------------------------------------------
 
-bool lbm_source_fill(pass *p, const shader_binary *binary, unsigned char *block) {
-    const source_state *s = p->state;
+static void fill_give(const pass *p, source_state *s) {
     const lbm_air *a = s->air;
     double rate = (double)pass_evaluate(p, "rate");
-    const float cell = (float)a->units.cell, speed = (float)sim_velocity(&a->units, 1);
+    const float speed = (float)sim_velocity(&a->units, 1);
     const float share = rate > 0 ? (float)sim_decay(&a->units, rate) : 1;
+    const float factor = pass_evaluate(p, "velocity_factor");
     const float ids[2] = {s->first_id, (float)s->first_id + (float)p->mesh_count - 1};
     const float pascal = (float)(1 / lbm_air_pascals(a));
     const uint32_t parity = lbm_parity(a->solver);
-    pass_write_box(binary, block, a->grid.box);
-    pass_write_member(binary, block, "cell_size", &cell, sizeof cell);
-    pass_write_member(binary, block, "step_speed", &speed, sizeof speed);
-    pass_write_member(binary, block, "pascal", &pascal, sizeof pascal);
-    pass_write_member(binary, block, "share", &share, sizeof share);
-    pass_write_member(binary, block, "ids", ids, sizeof ids);
-    pass_write_member(binary, block, "first", s->first, sizeof s->first);
-    pass_write_member(binary, block, "count", s->count, sizeof s->count);
-    pass_write_member(binary, block, "lbm_parity", &parity, sizeof parity);
-    return true;
+    write_place(s, &s->give, s->block);
+    pass_write_member(&s->give, s->block, "step_speed", &speed, sizeof speed);
+    pass_write_member(&s->give, s->block, "velocity_factor", &factor, sizeof factor);
+    pass_write_member(&s->give, s->block, "pascal", &pascal, sizeof pascal);
+    pass_write_member(&s->give, s->block, "share", &share, sizeof share);
+    pass_write_member(&s->give, s->block, "ids", ids, sizeof ids);
+    pass_write_member(&s->give, s->block, "lbm_parity", &parity, sizeof parity);
 }
 
-static size_t override(const pass *p, pass_override out[GPU_MAX_SLOTS]) {
-    const lbm_air *a = ((const source_state *)p->state)->air;
+static gpu_buffer *find_buffer(const source_state *s, const char *name) {
+    voxels *meshes = s->air->givers.cells;
+    if (strcmp(name, "SourceValues") == 0) return s->values;
+    if (meshes && strcmp(name, "SourceIds") == 0) return voxels_ids(meshes);
+    return meshes && strcmp(name, "SourceMotions") == 0 ? voxels_motions(meshes) : NULL;
+}
+
+static size_t override(const source_state *s, pass_override out[GPU_MAX_SLOTS]) {
     size_t count = 0;
-    for (size_t i = 0; i < p->binary.slot_count; i++) {
-        const char *name = p->binary.slots[i].name;
+    for (size_t i = 0; i < s->give.slot_count; i++) {
+        const char *name = s->give.slots[i].name;
         gpu_binding *binding = &out[count].binding;
-        *binding = (gpu_binding){0};
-        bool known = lbm_bind(a->solver, name, binding);
-        if (!known && a->givers.cells) {
-            if (strcmp(name, "SourceIds") == 0) binding->buffer = voxels_ids(a->givers.cells);
-            if (strcmp(name, "SourceMotions") == 0)
-                binding->buffer = voxels_motions(a->givers.cells);
-            known = binding->buffer != NULL;
-        }
+        if (!lbm_bind(s->air->solver, name, binding))
+            *binding = (gpu_binding){.buffer = find_buffer(s, name)};
         out[count].name = name;
-        count += known;
+        count += binding->buffer || binding->image;
     }
     return count;
 }
 
-bool lbm_air_run_source(lbm_air *a, pass *p) {
-    source_state *s = p->state;
-    box3 box;
-    if (!box_of(p, &box)) return err_prefix("%s: ", p->label);
-    if (!find_cells(s, box)) return true;
-    if (!pass_prepare(p)) return err_prefix("%s: ", p->label);
+static bool give(pass *p, source_state *s) {
+    const lbm_desc *structure = lbm_get_desc(s->air->solver);
+    uint32_t layers = structure->size[2] / (structure->precision == LBM_F16 ? 8 : 4);
     pass_override overrides[GPU_MAX_SLOTS];
     gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc dispatch = {.pipeline = p->pipeline, .bindings = bindings};
-    uint32_t layers = a->desc.size[2] / (lbm_get_desc(a->solver)->precision == LBM_F16 ? 8 : 4);
-    for (int i = 0; i < 3; i++) dispatch.threads[i] = (uint32_t)s->count[i];
+    gpu_dispatch_desc dispatch = {.pipeline = s->pipeline, .bindings = bindings};
+    for (int i = 0; i < 3; i++) dispatch.threads[i] = (uint32_t)s->cells.count[i];
     if (dispatch.threads[2] > layers) dispatch.threads[2] = layers;
-    size_t count = override(p, overrides);
-    return pass_bind(p, &p->binary, p->block, overrides, count, bindings,
-                     &dispatch.binding_count) &&
+    fill_give(p, s);
+    size_t count = override(s, overrides);
+    return pass_bind(p, &s->give, s->block, overrides, count, bindings, &dispatch.binding_count) &&
            gpu_dispatch(p->host->device, &dispatch);
+}
+
+bool lbm_air_run_source(pass *p) {
+    source_state *s = p->state;
+    if (begin_turn(p, s) && (s->cells.count[0] <= 0 || give(p, s))) return true;
+    return err_prefix("%s: ", p->label);
 }

@@ -13,6 +13,7 @@ enum { BRIEF = 64 };
 enum { MOST_TIMED = GPU_MAX_PASSES / 4 };
 
 static const double rounding = 1e-6; // of a step
+enum { TURNS = 96 };                 // a second
 
 static double steps_at(const lbm_air *a, double time) { // from the beginning, with a fraction
     return fmax((time + a->desc.warm_up) / a->units.step, 0);
@@ -20,6 +21,14 @@ static double steps_at(const lbm_air *a, double time) { // from the beginning, w
 
 double lbm_air_step_time(const lbm_air *a, uint64_t step) {
     return (double)step * a->units.step - a->desc.warm_up;
+}
+
+uint64_t lbm_air_turn(const lbm_air *a, double *begin, double *end) {
+    uint64_t each = (uint64_t)fmax(1, floor(1 / (TURNS * a->units.step)));
+    uint64_t turn = lbm_steps(a->solver) / each;
+    *begin = lbm_air_step_time(a, turn * each);
+    *end = lbm_air_step_time(a, (turn + 1) * each);
+    return turn;
 }
 
 // Steps that must be done for a time: two beyond the state before it, which leave that state and
@@ -56,6 +65,7 @@ void lbm_air_restart(pass *p) {
     a->trouble[0] = '\0';
     a->givers.updated = a->solids.updated = (double)NAN;
     a->force.turn = UINT64_MAX;
+    for (size_t i = 0; i < a->source_count; i++) lbm_air_forget_source(a->sources[i]);
     lbm_guard_forget(a->guard);
 }
 
@@ -79,7 +89,7 @@ static bool step(pass *p, lbm_air *a, bool keep, bool apart) {
     if (apart) gpu_pass_next(device, a->labels[LBM_SOURCES]);
     if (!lbm_air_push(a)) return false;
     for (size_t i = 0; i < a->source_count; i++)
-        if (!lbm_air_run_source(a, a->sources[i])) return false;
+        if (!lbm_air_run_source(a->sources[i])) return false;
     if (apart) gpu_pass_next(device, a->labels[LBM_STEP]);
     return lbm_step(a->solver, device, &numbers, keep);
 }

@@ -131,6 +131,7 @@ static const pass_type types[] = {
         .check = lbm_source_check,
         .build = lbm_source_build,
         .fill = lbm_source_fill,
+        .destroy = lbm_source_destroy,
     },
 };
 

@@ -1,0 +1,169 @@
+// Gives the air what a source holds (pass/lbm_source.comp), as the state of the solver: cells that
+// are inside take on its values, as equilibria. Meshes are where they are at the step.
+//
+// A thread does one element of the state: four or eight cells that lie apart along z.
+layout(local_size_x = 32, local_size_y = 2, local_size_z = 1) in;
+#include "shared.h"
+#include "sim/lbm/cells.glsl"
+uniform vec3 box_min;          // corner of the lattice (m)
+uniform float cell_size;       // m
+uniform float step_speed;      // cells a step of 1 m/s
+uniform float pascal;          // excess of density of a pascal
+uniform float share;           // of the values that the air takes on in this step
+uniform float velocity_factor; // of a mesh's own motion
+uniform vec3 first;            // cells of the source's box: of the first corner,
+uniform vec3 count;            // and how many
+uniform vec2 ids;              // of its meshes: the first and the last
+layout(std430) readonly buffer SourceValues { uvec4 source_values[]; };
+
+#define EACH_CHUNK for (int c = 0; c < LBM_CHUNKS; c++)
+#define EACH_LANE for (int l = 0; l < 4; l++)
+
+struct Held { // of four cells
+    vec4 some; // how much they take on
+    vec4 density, temperature, dye, pressure;
+    lbm_vec velocity; // cells a step
+};
+
+#if MESHES
+layout(std430) readonly buffer SourceIds { uint source_ids[]; };
+layout(std430) readonly buffer SourceMotions { voxel_motion source_motions[]; };
+
+uint body_at(uvec3 cell) {
+    uint at = cell.x + LBM_NX * (cell.y + LBM_NY * cell.z);
+    return source_ids[at >> 2] >> (8u * (at & 3u)) & 0xffu;
+}
+
+bool is_ours(uvec3 cell) {
+    uint id = body_at(cell);
+    return id >= uint(ids.x) && id <= uint(ids.y);
+}
+
+vec3 motion_at(uvec3 cell) {
+    voxel_motion body = source_motions[body_at(cell)];
+    vec3 r = box_min + (vec3(cell) + 0.5) * cell_size - body.centre.xyz;
+    return velocity_factor * (body.linear.xyz + cross(body.angular.xyz, r) + body.linear.w * r);
+}
+#endif
+
+// A cell's values; nothing outside of the box.
+uvec4 values_at(uvec3 cell) {
+    uvec3 at = cell - uvec3(first), n = uvec3(count);
+    if (any(lessThan(cell, uvec3(first))) || any(greaterThanEqual(at, n))) return uvec4(0u);
+#if MESHES
+    if (!is_ours(cell)) return uvec4(0u);
+#endif
+    return source_values[at.x + n.x * (at.y + n.y * at.z)];
+}
+
+// `solid`: bits of lanes. Nothing comes out of walls and colliders.
+Held held_by(uvec3 at, int chunk, uint solid) {
+    Held h;
+    EACH_LANE {
+        uvec3 cell = uvec3(at.xy, at.z + uint(4 * chunk + l) * LBM_LAYERS);
+        uvec4 values = (solid >> 4 * chunk + l & 1u) == 0u ? values_at(cell) : uvec4(0u);
+        vec2 a = unpackHalf2x16(values.x), b = unpackHalf2x16(values.y), d = unpackHalf2x16(values.w);
+        vec3 v = vec3(unpackHalf2x16(values.z), d.x);
+#if MESHES
+        if (b.y > 0.0) v += motion_at(cell);
+#endif
+        h.some[l] = b.y * share;
+        h.density[l] = a.x;
+        h.temperature[l] = a.y;
+        h.dye[l] = b.x;
+        h.pressure[l] = d.y * pascal;
+        h.velocity.x[l] = v.x * step_speed;
+        h.velocity.y[l] = v.y * step_speed;
+        h.velocity.z[l] = v.z * step_speed;
+    }
+    return h;
+}
+
+// Density less 1, and velocity, of four cells.
+vec4 excess_of(lbm_element q[LBM_Q], int chunk, out lbm_vec u) {
+    vec4 excess = lbm_unpack(q[0], chunk, LBM_AIR_SCALE);
+    u = lbm_vec_all(vec3(0.0));
+#define SUM(i, dx, dy, dz)                                                                         \
+    {                                                                                              \
+        vec4 a = lbm_unpack(q[i], chunk, LBM_AIR_SCALE);                                           \
+        vec4 b = lbm_unpack(q[i + 1], chunk, LBM_AIR_SCALE);                                       \
+        excess += a + b;                                                                           \
+        u.x += float(dx) * (a - b);                                                                \
+        u.y += float(dy) * (a - b);                                                                \
+        u.z += float(dz) * (a - b);                                                                \
+    }
+    LBM_PAIRS(SUM)
+#undef SUM
+    vec4 density = 1.0 + excess;
+    u = lbm_vec(u.x / density, u.y / density, u.z / density);
+    return excess;
+}
+
+// What is not given stays as it is: the pressure, above all, so that as much air is drawn in as is
+// blown out.
+void push(inout lbm_element q[LBM_Q], int chunk, Held h, out lbm_vec u) {
+    vec4 f[LBM_Q], excess = excess_of(q, chunk, u);
+#if HAS_PRESSURE
+    excess = mix(excess, h.pressure, h.some);
+#endif
+    if (HAS_VELOCITY == 1 || velocity_factor != 0.0) {
+        u.x = mix(u.x, h.velocity.x, h.some);
+        u.y = mix(u.y, h.velocity.y, h.some);
+        u.z = mix(u.z, h.velocity.z, h.some);
+    }
+    lbm_set_equilibrium(excess, u, f);
+    for (int i = 0; i < LBM_Q; i++)
+        lbm_pack(q[i], chunk, LBM_AIR_SCALE,
+                 mix(lbm_unpack(q[i], chunk, LBM_AIR_SCALE), f[i], h.some));
+}
+
+void carry(inout lbm_element q[LBM_SCALAR_Q], int chunk, vec4 some, vec4 value, lbm_vec u) {
+    vec4 g[LBM_SCALAR_Q];
+    lbm_set_scalar_equilibrium(value, u, g);
+    for (int i = 0; i < LBM_SCALAR_Q; i++)
+        lbm_pack(q[i], chunk, LBM_SCALAR_SCALE,
+                 mix(lbm_unpack(q[i], chunk, LBM_SCALAR_SCALE), g[i], some));
+}
+
+#define GIVE(s, VALUE)                                                                             \
+    {                                                                                              \
+        lbm_element q[LBM_SCALAR_Q];                                                               \
+        lbm_load_scalar(s, place, q);                                                              \
+        EACH_CHUNK carry(q, c, held[c].some, held[c].VALUE, u[c]);                                 \
+        lbm_replace_scalar(s, place, q);                                                           \
+    }
+
+void main() {
+    uvec3 at = gl_GlobalInvocationID;
+    if (any(greaterThanEqual(vec3(at), min(count, vec3(count.xy, LBM_LAYERS))))) return;
+    at += uvec3(first);
+    at.z %= LBM_LAYERS;
+    lbm_place place = lbm_place_at(at);
+    uint solid = lbm_site_at(at, place.own).solid;
+    Held held[LBM_CHUNKS];
+    bool gives = false;
+    EACH_CHUNK {
+        held[c] = held_by(at, c, solid);
+        gives = gives || any(greaterThan(held[c].some, vec4(0.0)));
+    }
+    if (!gives) return;
+    lbm_element air[LBM_Q];
+    lbm_load_air(place, air);
+    lbm_vec u[LBM_CHUNKS];
+#if HAS_VELOCITY || HAS_PRESSURE || MESHES
+    EACH_CHUNK push(air, c, held[c], u[c]);
+    if (HAS_VELOCITY == 1 || HAS_PRESSURE == 1 || velocity_factor != 0.0)
+        lbm_replace_air(place, air);
+#else
+    EACH_CHUNK excess_of(air, c, u[c]);
+#endif
+#if HAS_DENSITY
+    GIVE(0, density)
+#endif
+#if HAS_TEMPERATURE
+    GIVE(1, temperature)
+#endif
+#if HAS_DYE
+    GIVE(2, dye)
+#endif
+}
