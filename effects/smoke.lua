@@ -6,22 +6,24 @@
 
 local fx = effect { name = "smoke", fps = 24, frames = 240 }
 
-local density = param { "density", 14, min = 0, max = 100, unit = "1/m", help = "how thick the smoke is" }
+local density = param { "density", 5, min = 0, max = 100, unit = "1/m", help = "how thick the smoke is" }
 local heat    = param { "heat", 1, min = 0, max = 4, help = "temperature of the fire" }
 
+-- Small enough for a computer without a graphics card. On one that has it, try {96, 96, 192} cells of 0.04 m.
 local air = lbm {
-    size = {64, 64, 128}, voxel_size = 0.035,
-    speed = 3.5, buoyancy_heat = 7, cooling_rate = 0.25, dissolve_rate = 0.05,
+    size = {32, 32, 64}, voxel_size = 0.12, speed = 6,
+    buoyancy_heat = 4, cooling_rate = 0.3, dissolve_rate = 0.1,
+    force = curl { frequency = 0.7, octaves = 2, speed = 0.8, seed = 4 } * 1.5, -- a restless day
 }
 
 -- Noise that moves through the fire breaks its evenness.
-local flicker = perlin { frequency = 5, speed = 1.5, drift = {0, 0, 1.5}, octaves = 2 }
+local flicker = perlin { frequency = 2, speed = 1.5, drift = {0, 0, 1.5}, octaves = 2 }
 air:source {
-    shape = sphere { position = {0, 0, 0.25}, radius = 0.26 },
-    density = 1 + 0.8 * flicker, temperature = heat * (1 + 0.8 * flicker), rate = 12,
+    shape = sphere { position = {0, 0, 0.7}, radius = 0.6 },
+    density = 1 + flicker, temperature = heat * (1 + flicker), rate = 12,
 }
 
-fx.camera = orbit { target = {0, 0, 2}, distance = 8.4, yaw = 25, pitch = 4, fov = 34 }
+fx.camera = orbit { target = {0, 0, 3.4}, distance = 15, yaw = 25, pitch = 3, fov = 34 }
 fx.sun    = sun { azimuth = 160, elevation = 48, color = {1, 0.95, 0.88}, strength = 5 }
 fx.sky    = sky { zenith = {0.10, 0.20, 0.42}, horizon = {0.42, 0.50, 0.60}, strength = 0.7 }
 
