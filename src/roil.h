@@ -145,7 +145,8 @@ typedef struct roil_counter { // what a pass counted in the last frame, if count
     char pass[64], name[64];
     uint64_t value;
 } roil_counter;
-// Both wait for the frame and return how many there are; at most `capacity` are written.
+// A pass that is several pieces of work under one name counts as one. Both wait for the frame and
+// return how many there are; at most `capacity` are written.
 size_t roil_times(roil_effect *e, roil_time *out, size_t capacity);
 size_t roil_counters(roil_effect *e, roil_counter *out, size_t capacity);
 

@@ -90,18 +90,10 @@ static void record_free(record *r) {
     bench_collection_free(&r->cpu);
 }
 
-// A pass that is several pieces of work under one name counts as one.
-static void record_passes(record *r, roil_time *times, size_t count) {
+static void record_passes(record *r, const roil_time *times, size_t count) {
     double all = 0;
     for (size_t i = 0; i < count; i++) {
         all += times[i].milliseconds;
-        if (!times[i].pass[0]) continue;
-        for (size_t k = i + 1; k < count; k++)
-            if (strcmp(times[k].pass, times[i].pass) == 0) {
-                times[i].milliseconds += times[k].milliseconds;
-                all += times[k].milliseconds;
-                times[k] = (roil_time){0};
-            }
         bench_collect(&r->gpu, times[i].pass, times[i].milliseconds);
     }
     bench_collect(&r->gpu, "all", all);
