@@ -150,6 +150,10 @@ bool lbm_set_bodies(lbm *l, gpu *g, const lbm_numbers *numbers, const lbm_bodies
     lbm_kernel_set(&w->kernel, "any_moves", &moves, sizeof moves);
     lbm_kernel_set(&w->kernel, "ambient", numbers->ambient, sizeof numbers->ambient);
     lbm_walls_set(l, &w->kernel, numbers);
-    w->known = lbm_kernel_run(l, &w->kernel, g, NULL, 0);
+    w->known = true;
+    for (uint32_t stage = 0; stage < 3 && w->known; stage++) { // see cells.comp
+        lbm_kernel_set(&w->kernel, "stage", &stage, sizeof stage);
+        w->known = lbm_kernel_run(l, &w->kernel, g, NULL, 0);
+    }
     return w->known;
 }

@@ -5,6 +5,14 @@
 layout(local_size_x = LBM_GROUP) in;
 #include "sim/lbm/bodies.glsl"
 
+// In three dispatches, so that what one thread reads no other writes, nor the other half of a word
+// that it writes: then the same comes out each time.
+const uint PLAN = 0u;       // says what cells are; what cells are filled with is left in them, in places
+                            // that are read for these cells alone
+const uint NEIGHBOURS = 1u; // fills what lies at neighbours: each place is reached from one side
+const uint HOME = 2u;       // fills what lies in the cells themselves
+uniform uint stage;
+
 uniform uint any_moves; // any body does
 
 layout(std430) readonly buffer LbmCellsBefore { uint cells_before[]; };
@@ -100,7 +108,7 @@ struct Around { // sums over cells of air
     vec3 velocity, scalars;
 };
 
-// What arrives at a cell that was air and is it still: nobody writes there now.
+// What arrives at a cell that was air and is it still.
 void add_cell(ivec3 at, Cell c, inout Around sum) {
     ivec3 around = lbm_wrap(at);
     lbm_place p = lbm_place_at(uvec3(around.xy, uint(around.z) - c.lane * LBM_LAYERS));
@@ -159,19 +167,22 @@ bool takes(ivec3 at) {
 void fill_air(ivec3 at, float excess, vec3 u) {
     Cell own = find(at);
     float density = 1.0 + excess, same = excess - density * 1.5 * dot(u, u);
-    store(LBM_AIR_AT_REST, 0u, own, LBM_AIR_SCALE, LBM_REST * same);
+    if (stage == HOME) store(LBM_AIR_AT_REST, 0u, own, LBM_AIR_SCALE, LBM_REST * same);
 #define FILL(i, x, y, z)                                                                           \
     {                                                                                              \
         Cell there = find(at + ivec3(x, y, z));                                                    \
         float along = dot(u, vec3(x, y, z));                                                       \
         float even = LBM_WEIGHT(x, y, z) * (same + density * 4.5 * along * along);                 \
         float odd = LBM_WEIGHT(x, y, z) * 3.0 * density * along;                                   \
-        store(LBM_AIR_PAIR(i), 1u - lbm_parity, own, LBM_AIR_SCALE, even + odd);                   \
-        store(LBM_AIR_PAIR(i), lbm_parity, there, LBM_AIR_SCALE, even - odd);                      \
-        if (takes(at + ivec3(x, y, z)))                                                         \
-            store(LBM_AIR_PAIR(i), 1u - lbm_parity, there, LBM_AIR_SCALE, even + odd);             \
-        if (takes(at - ivec3(x, y, z)))                                                         \
-            store(LBM_AIR_PAIR(i), lbm_parity, own, LBM_AIR_SCALE, even - odd);                    \
+        if (stage == HOME) {                                                                       \
+            store(LBM_AIR_PAIR(i), 1u - lbm_parity, own, LBM_AIR_SCALE, even + odd);               \
+            if (takes(at - ivec3(x, y, z)))                                                        \
+                store(LBM_AIR_PAIR(i), lbm_parity, own, LBM_AIR_SCALE, even - odd);                \
+        } else {                                                                                   \
+            store(LBM_AIR_PAIR(i), lbm_parity, there, LBM_AIR_SCALE, even - odd);                  \
+            if (takes(at + ivec3(x, y, z)))                                                        \
+                store(LBM_AIR_PAIR(i), 1u - lbm_parity, there, LBM_AIR_SCALE, even + odd);         \
+        }                                                                                          \
     }
     LBM_PAIRS(FILL)
 #undef FILL
@@ -179,18 +190,22 @@ void fill_air(ivec3 at, float excess, vec3 u) {
 
 void fill_scalar(const int s, ivec3 at, float value, vec3 u) {
     Cell own = find(at);
-    store(LBM_SCALAR_AT_REST(s), 0u, own, LBM_SCALAR_SCALE, LBM_SCALAR_REST * value);
+    if (stage == HOME)
+        store(LBM_SCALAR_AT_REST(s), 0u, own, LBM_SCALAR_SCALE, LBM_SCALAR_REST * value);
 #define FILL(i, x, y, z)                                                                           \
     {                                                                                              \
         Cell there = find(at + ivec3(x, y, z));                                                    \
         float even = LBM_SCALAR_WEIGHT(x, y, z) * value;                                           \
         float odd = even * dot(u, vec3(x, y, z)) * (1.0 / LBM_SCALAR_SPEED);                       \
-        store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, own, LBM_SCALAR_SCALE, even + odd);          \
-        store(LBM_SCALAR_PAIR(s, i), lbm_parity, there, LBM_SCALAR_SCALE, even - odd);             \
-        if (takes(at + ivec3(x, y, z)))                                                         \
-            store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, there, LBM_SCALAR_SCALE, even + odd);    \
-        if (takes(at - ivec3(x, y, z)))                                                         \
-            store(LBM_SCALAR_PAIR(s, i), lbm_parity, own, LBM_SCALAR_SCALE, even - odd);           \
+        if (stage == HOME) {                                                                       \
+            store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, own, LBM_SCALAR_SCALE, even + odd);      \
+            if (takes(at - ivec3(x, y, z)))                                                        \
+                store(LBM_SCALAR_PAIR(s, i), lbm_parity, own, LBM_SCALAR_SCALE, even - odd);       \
+        } else {                                                                                   \
+            store(LBM_SCALAR_PAIR(s, i), lbm_parity, there, LBM_SCALAR_SCALE, even - odd);         \
+            if (takes(at + ivec3(x, y, z)))                                                        \
+                store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, there, LBM_SCALAR_SCALE, even + odd); \
+        }                                                                                          \
     }
     LBM_SCALAR_PAIRS(FILL)
 #undef FILL
@@ -198,17 +213,42 @@ void fill_scalar(const int s, ivec3 at, float value, vec3 u) {
 
 uniform vec3 ambient; // of scalars, where there is no air around
 
-void fill(ivec3 at) {
+// Numbers of a cell between the dispatches: in place of what arrives, as large as that may be.
+void leave(const int slot, Cell c, const float scale, float value) {
+    store(slot, 1u - lbm_parity, c, scale, value);
+}
+
+float left_in(const int slot, Cell c, const float scale) {
+    return pick(lbm_load(slot, 1u - lbm_parity, c.element), c.lane, scale);
+}
+
+void plan(ivec3 at) {
     Around around = look_around(at);
     uint body = body_beside(at);
     float share = 1.0 / max(around.count, 1.0);
     vec3 u = around.velocity * share;
     if (body != 0u) u = lbm_body_velocity(body, vec3(at) + 0.5);
-    fill_air(at, around.excess * share, u);
+    Cell own = find(at);
+    leave(LBM_AIR_PAIR(1), own, LBM_AIR_SCALE, around.excess * share);
+    leave(LBM_AIR_PAIR(3), own, LBM_AIR_SCALE, u.x);
+    leave(LBM_AIR_PAIR(5), own, LBM_AIR_SCALE, u.y);
+    leave(LBM_AIR_PAIR(7), own, LBM_AIR_SCALE, u.z);
     vec3 scalars = around.count > 0.0 ? around.scalars * share : ambient;
-#define SCALAR(s) fill_scalar(s, at, scalars[s], u);
+#define SCALAR(s) leave(LBM_SCALAR_PAIR(s, 1), own, LBM_SCALAR_SCALE, LBM_SCALAR_REST * scalars[s]);
     LBM_EACH_SCALAR(SCALAR)
 #undef SCALAR
+}
+
+void fill(ivec3 at) {
+    Cell own = find(at);
+    float excess = left_in(LBM_AIR_PAIR(1), own, LBM_AIR_SCALE);
+    vec3 u = vec3(left_in(LBM_AIR_PAIR(3), own, LBM_AIR_SCALE), left_in(LBM_AIR_PAIR(5), own, LBM_AIR_SCALE),
+                  left_in(LBM_AIR_PAIR(7), own, LBM_AIR_SCALE));
+#define SCALAR(s)                                                                                  \
+    fill_scalar(s, at, left_in(LBM_SCALAR_PAIR(s, 1), own, LBM_SCALAR_SCALE) / LBM_SCALAR_REST, u);
+    LBM_EACH_SCALAR(SCALAR)
+#undef SCALAR
+    fill_air(at, excess, u);
 }
 
 // ---- an element -------------------------------------------------------------------------------
@@ -219,12 +259,23 @@ void main() {
     uvec3 at = uvec3(column % LBM_NX, column / LBM_NX, gl_GlobalInvocationID.z);
     uint element = column + LBM_LAYER * at.z;
     for (uint chunk = 0u; chunk < LBM_CHUNKS; chunk++) {
-        uint bytes = 0u, before = cells_before[element * LBM_CHUNKS + chunk];
-        for (uint k = 0u; k < 4u; k++)
-            bytes |= find_kind(lbm_cell_at(at, 4u * chunk + k)) << 8u * k;
-        uint changed = (before ^ bytes) & LBM_CELL_SOLID * 0x01010101u, left = changed & before;
-        lbm_cells[element * LBM_CHUNKS + chunk] = bytes | changed * (LBM_CELL_NEW / LBM_CELL_SOLID);
-        for (uint k = 0u; left != 0u && k < 4u; k++)
-            if ((left >> 8u * k & LBM_CELL_SOLID) != 0u) fill(lbm_cell_at(at, 4u * chunk + k));
+        uint place = element * LBM_CHUNKS + chunk, bytes = 0u;
+        if (stage == PLAN) {
+            for (uint k = 0u; k < 4u; k++)
+                bytes |= find_kind(lbm_cell_at(at, 4u * chunk + k)) << 8u * k;
+            uint changed = (cells_before[place] ^ bytes) & LBM_CELL_SOLID * 0x01010101u;
+            bytes |= changed * (LBM_CELL_NEW / LBM_CELL_SOLID);
+            lbm_cells[place] = bytes;
+        } else {
+            bytes = lbm_cells[place];
+        }
+        for (uint k = 0u; bytes != 0u && k < 4u; k++) {
+            if ((bytes >> 8u * k & (LBM_CELL_NEW | LBM_CELL_SOLID)) != LBM_CELL_NEW) continue;
+            ivec3 cell = lbm_cell_at(at, 4u * chunk + k);
+            if (stage == PLAN)
+                plan(cell);
+            else
+                fill(cell);
+        }
     }
 }
