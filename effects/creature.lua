@@ -1,0 +1,77 @@
+-- A dragon breathes: hot smoke is blown out of the back of its gullet, past palate, tongue and jaw, which
+-- are all in its way, and the jaw opens and shuts while it flows. What is hot glows, then it is smoke.
+--
+--   roil render effects/creature.lua --frames 50 -o creature.png
+--   roil render effects/creature.lua --frames 50 --set heat=0 --set throat=0 -o smoker.png   -- only smoke
+--
+-- Play with `breath` (a curve: how hard it blows), `open` (the jaw), `heat` and `lift`.
+
+local fx = effect { name = "creature", fps = 24, frames = 192 }
+
+local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along each edge, relative to 160 x 64 x 96; taken when the effect loads" }
+local density = param { "density", 14, min = 0, max = 50, unit = "1/m", help = "how thick the smoke is" }
+local heat    = param { "heat", 2300, min = 0, max = 3000, unit = "K", help = "of the breath in the throat" }
+local glowing = param { "glowing", 2, min = 0, max = 50, help = "factor of the fire's light" }
+local lift    = param { "lift", 2.2, min = -5, max = 10, unit = "m/s^2", help = "how fast its heat makes it rise" }
+local eaten   = param { "eaten", 1.6, min = 0, max = 2, help = "how much noise finer than a cell eats from the smoke" }
+local throat  = param { "throat", 45, min = 0, max = 500, unit = "W", help = "of the light in its mouth" }
+
+-- Four seconds of breath: how hard it blows, and how far the jaw is open (degrees).
+local breath = curve { {0, 0}, {0.35, 0}, {0.7, 1}, {2.2, 0.8}, {2.9, 0}, {4, 0}, shape = "ease_in_out", period = 4 }
+local open   = curve { {0, 5}, {0.3, 8}, {0.7, 29}, {2.4, 24}, {3.1, 6}, {4, 5}, shape = "ease_in_out", period = 4 }
+
+local head = mesh { "data/creature.obj" }
+local jaw  = mesh { "data/creature_jaw.obj", position = {-0.115, 0, 1.656}, rotation = vec(0, open, 0) }
+
+-- From the middle of the neck to where the breath has spread: 5.6 x 2.24 x 3.36 metres.
+local function cells(count) return math.max(16, 8 * math.floor(count * detail:get() / 8 + 0.5)) end
+local air = lbm {
+  size = {cells(160), cells(64), cells(96)}, voxel_size = 5.6 / cells(160), position = {1.9, 0, 0.3},
+  boundary = "open", buoyancy_heat = lift, cooling_rate = 0.9, dissolve_rate = 0.15, speed = 4,
+}
+
+-- Both meshes stand in its way, and the jaw pushes on the air as it moves; "solid": teeth are thinner than
+-- cells, and would close the mouth if each were made a whole one. The gullet has but one end, so that the
+-- source must hold the pressure: new air comes with the smoke.
+air:collider { head, jaw, rule = "solid" }
+local flutter = perlin { frequency = 3, speed = 5, octaves = 2, seed = 2 }
+air:source {
+  mesh { "data/creature_throat.obj" }, rule = "solid",
+  density = breath, temperature = breath * (0.6 + 0.8 * flutter),
+  velocity = vec(6.2, 0, 0.8) * breath * (0.6 + 0.8 * flutter), pressure = 0,
+}
+
+-- What is finer than a cell is not in the air. Noise stands for it, carried along by the air, and eats at
+-- the smoke where that is thin.
+local lumps = worley { frequency = 3, octaves = 3, persistence = 0.55, lacunarity = 2.1, seed = 4 }
+              :tile():advect(air.velocity, { period = 0.4, mean = 0.48 })
+local cover = clamp(air.density * 2.5, 0, 1)
+local smoke = cover * smoothstep(0, 0.3, cover - eaten * (1 - lumps) * (1 - 0.7 * cover))
+local fire  = palette { blackbody = {600, 3500}, physical = true, reference = 1500 }
+
+-- Moonlight from behind on the horns, and the light of the fire in the mouth.
+fx.sun    = sun { azimuth = 60, elevation = 22, color = {0.5, 0.66, 1}, strength = 1.6 }
+fx.sky    = sky { zenith = {0.006, 0.010, 0.022}, horizon = {0.030, 0.034, 0.05}, strength = 1 }
+fx.lights = {
+  spot_light { position = {-3.0, 2.6, 4.6}, target = {0, 0, 1.7}, color = {0.55, 0.72, 1}, power = 4000, angle = 60, softness = 0.5 },
+  spot_light { position = {-2.2, -4.5, 0.8}, target = {0, 0, 1.5}, color = {1, 0.55, 0.3}, power = 300, angle = 50, softness = 0.6 },
+  point_light { position = {0.45, 0, 1.75}, color = {1, 0.42, 0.1}, power = throat * breath },
+}
+fx.camera = camera { eye = {1.3, -7.6, 1.3}, target = {1.3, 0, 1.58}, fov = 29, near = 0.1, far = 500 }
+
+local lit = lighting {
+  density = smoke * density, emission = fire(air.temperature ^ 0.5 * (0.4 + lumps) * heat) * smoke * glowing,
+  albedo = {0.6, 0.58, 0.56}, anisotropy = 0.35, sampling = "cubic",
+}
+local scene  = geometry { mesh { "data/ground.obj", color = {0.35, 0.37, 0.42} }, head, jaw }
+local solid  = shade { from = {scene, lit}, sky_samples = 8, shadow_samples = 4, haze = 0.01 }
+local volume = march { from = {lit, scene}, steps = 128 }
+
+local picture = over { volume, solid, from = {volume, scene} }
+local glow    = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }
+local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.25, exposure_ev = 0.8, tonemap = "aces" }
+
+fx.output = shown.color
+fx.linear = shown.linear
+fx.depth  = scene.depth
+return fx

@@ -1,0 +1,71 @@
+-- A runner made of smoke, in the wind: the whole body is a source, and the air tears off it what it is
+-- made of. Every two seconds the runner fades, and is there again.
+--
+--   roil render effects/figure.lua --frames 54 -o figure.png
+--   roil render effects/figure.lua --frames 54 --set wind=0.2 --set lift=3 -o ghost.png   -- it rises off the shoulders
+--
+-- Play with `wind`, `lift`, `uneven` (how patchy the body is) and `presence`, a curve.
+
+local fx = effect { name = "figure", fps = 24, frames = 192 }
+
+local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along each edge, relative to 192 x 64 x 96; taken when the effect loads" }
+local density = param { "density", 26, min = 0, max = 100, unit = "1/m", help = "how thick the smoke is" }
+local wind    = param { "wind", 1.5, min = 0, max = 3, unit = "m/s", help = "against which the runner runs" }
+local lift    = param { "lift", 0.5, min = -5, max = 10, unit = "m/s^2", help = "how fast the smoke's heat makes it rise" }
+local uneven  = param { "uneven", 0.6, min = 0, max = 1, help = "how patchy the body is" }
+local eaten   = param { "eaten", 1.3, min = 0, max = 2, help = "how much noise finer than a cell eats from the smoke" }
+local color   = param { "color", {0.42, 0.72, 1}, color = true, help = "of the smoke" }
+
+-- How much of the runner is there, by the second.
+local presence = curve { {0, 1}, {1.4, 1}, {1.8, 0.1}, {2, 1}, shape = "ease_in_out", period = 2 }
+
+-- 4.8 x 1.6 x 2.4 metres: the wind comes in on the right, and leaves where it likes. The mesh's cells are
+-- the source; `rule` keeps wrists and ankles from being fattened to a whole cell.
+local function cells(count) return math.max(16, 8 * math.floor(count * detail:get() / 8 + 0.5)) end
+local air = lbm {
+  size = {cells(192), cells(64), cells(96)}, voxel_size = 4.8 / cells(192), position = {-1.35, 0, 0},
+  boundary = { right = "inflow", left = "open", front = "open", back = "open", top = "open", bottom = "wall" },
+  wind = vec(-wind, 0, 0), buoyancy_heat = lift, cooling_rate = 0.3, dissolve_rate = 0.1, speed = 2.5,
+}
+local runner = mesh { "data/figure.obj" }
+local grain  = worley { frequency = 5, octaves = 2, speed = 1.5, drift = {-0.4, 0, 0}, seed = 4 }
+air:source {
+  runner, rule = "solid",
+  density = presence * mix(1, smoothstep(0.25, 0.6, grain), uneven), temperature = 1,
+  velocity = 0.25 * curl { frequency = 2, speed = 2, seed = 6 },
+}
+
+-- What is finer than a cell is not in the air. Noise stands for it, carried along by the air, and eats at
+-- the smoke where that is thin.
+local lumps = worley { frequency = 5, octaves = 3, persistence = 0.55, lacunarity = 2.1, seed = 4 }
+              :tile():advect(air.velocity, { period = 0.5, mean = 0.48 })
+local cover = clamp(air.density * 1.6, 0, 1)
+local trail = cover * smoothstep(0, 0.35, cover - eaten * (1 - lumps) * (1 - 0.6 * cover))
+
+-- The body itself is sharper than cells of the air could show it: a distance to the mesh, in finer ones.
+local body  = voxels { runner, resolution = 160 }
+local near  = box { position = {-0.05, 0, 1.06}, size = {1.5, 0.75, 1.75} } -- a distance is known everywhere; the smoke ends here
+local skin  = near * smoothstep(0.012, -0.02, body.distance + 0.03 * (1 - presence) + 0.03 * uneven * (1 - grain))
+local smoke = max(0.35 * trail, skin * presence)
+
+-- The sun stands low behind the smoke, and comes through it.
+fx.sun    = sun { azimuth = 118, elevation = 9, color = {1, 0.62, 0.30}, strength = 7 }
+fx.sky    = sky { zenith = {0.012, 0.022, 0.06}, horizon = {0.10, 0.075, 0.085}, strength = 1 }
+fx.lights = {
+  spot_light { position = {4.5, -5, 3.5}, target = {0, 0, 1.1}, color = {0.55, 0.75, 1}, power = 900, angle = 50, softness = 0.6 },
+}
+fx.camera = camera { eye = {-0.7, -9, 0.7}, target = {-0.75, 0, 1.12}, fov = 16, near = 0.1, far = 500 }
+
+local lit    = lighting { density = smoke * density, albedo = {0.96, 0.96, 0.96}, tint = color, anisotropy = 0.45, sampling = "cubic" }
+local scene  = geometry { mesh { "data/ground.obj", color = {0.5, 0.55, 0.7} } }
+local solid  = shade { from = {scene, lit}, haze = 0.012 }
+local volume = march { from = {lit, scene}, steps = 160 }
+
+local picture = over { volume, solid, from = {volume, scene} }
+local glow    = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }
+local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.2, exposure_ev = 0.5, tonemap = "aces" }
+
+fx.output = shown.color
+fx.linear = shown.linear
+fx.depth  = scene.depth
+return fx
