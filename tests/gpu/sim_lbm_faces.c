@@ -153,6 +153,38 @@ static void what_flows_in_flows_out(void **state) {
     sim_close(&w);
 }
 
+// ---- wind -------------------------------------------------------------------------------------
+
+// Wind that open faces let in blows through air that was still.
+static void wind_blows_through_open_faces(void **state) {
+    sim_world w;
+    enum { SIDE = 16, RIM = 4 };
+    sim_open(&w, *state,
+             &(lbm_desc){.size = {SIDE, SIDE, SIDE},
+                         .collision = LBM_CENTRAL_MOMENTS,
+                         .faces = {LBM_OPEN, LBM_OPEN, LBM_OPEN, LBM_OPEN, LBM_SLIP, LBM_OPEN},
+                         .scalars = 1});
+    w.numbers.tau = 0.51f;
+    w.numbers.ambient[0] = 0.25f;
+    for (int face = 0; face < 6; face++) w.numbers.inflow[face][0] = 0.05f;
+    sim_reset(&w);
+    sim_run(&w, 4000);
+    sim_read(&w);
+    double least = 1, most = 0, drift = 0;
+    for (int z = RIM; z < SIDE - RIM; z++)
+        for (int y = RIM; y < SIDE - RIM; y++)
+            for (int x = RIM; x < SIDE - RIM; x++) {
+                const sim_cell *cell = &w.state[sim_index(&w, x, y, z)];
+                least = fmin(least, cell->u[0]);
+                most = fmax(most, cell->u[0]);
+                drift = fmax(drift, fabs(cell->density - 1));
+                assert_true(fabs(cell->scalar[0] / cell->density - 0.25) < 0.01);
+            }
+    print_message("wind of 0.05: %.4f to %.4f, density off by %.4f\n", least, most, drift);
+    assert_true(least > 0.045 && most < 0.055 && drift < 0.002);
+    sim_close(&w);
+}
+
 // ---- a puff -----------------------------------------------------------------------------------
 
 static void hot_ball(int x, int y, int z, sim_cell *cell) {
@@ -208,6 +240,7 @@ int main(void) {
         cmocka_unit_test(air_slides_along_slip_faces),
         cmocka_unit_test(a_mirror_is_the_middle_of_a_channel),
         cmocka_unit_test(what_flows_in_flows_out),
+        cmocka_unit_test(wind_blows_through_open_faces),
         cmocka_unit_test(a_puff_leaves_through_open_faces),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
