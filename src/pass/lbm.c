@@ -31,7 +31,8 @@ static bool same_place(const lbm_air *a, const lbm_air *b) {
 
 static bool exchange_grids(field_grid *grid, field_grid *other) {
     lbm_air *a = (lbm_air *)grid, *b = (lbm_air *)other;
-    if (!a->solver || !b->solver || !same_place(a, b) || !lbm_exchange(a->solver, b->solver))
+    if (!a->solver || !b->solver || a->stopped || b->stopped || !same_place(a, b) ||
+        !lbm_exchange(a->solver, b->solver))
         return false;
     bool fresh = a->fresh;
     a->fresh = b->fresh;
