@@ -96,6 +96,32 @@ static lbm_layout lay_out(lbm_desc desc, uint64_t range) {
     return layout;
 }
 
+// Every direction with a part along the axis is in one pair, whose two differ in that part's sign.
+static void mirrors_exchange_what_goes_up_and_down(void **state) {
+    (void)state;
+    static const int x[][2] = {
+#define PAIR(a, b) {a, b},
+        LBM_MIRRORS_27_X(PAIR)};
+    static const int y[][2] = {LBM_MIRRORS_27_Y(PAIR)};
+    static const int z[][2] = {LBM_MIRRORS_27_Z(PAIR)};
+#undef PAIR
+    static const int(*const lists[3])[2] = {x, y, z};
+    table t[3];
+    tables(t);
+    for (int axis = 0; axis < 3; axis++) {
+        bool seen[27] = {false};
+        for (int i = 0; i < 9; i++) {
+            const int up = lists[axis][i][0], down = lists[axis][i][1];
+            assert_true(!seen[up] && !seen[down]);
+            seen[up] = seen[down] = true;
+            assert_int_equal(t[2].c[up][axis], 1);
+            for (int k = 0; k < 3; k++)
+                assert_int_equal(t[2].c[up][k], k == axis ? -t[2].c[down][k] : t[2].c[down][k]);
+            if (i < 5) assert_true(up < 19 && down < 19); // these are all that D3Q19 has
+        }
+    }
+}
+
 static void a_state_fits_into_what_a_device_binds(void **state) {
     const uint64_t mib = 1 << 20, gib = 1 << 30;
     (void)state;
@@ -146,6 +172,7 @@ int main(void) {
         cmocka_unit_test(the_lists_are_as_long_as_their_names_say),
         cmocka_unit_test(every_direction_is_there_once_and_its_opposite_beside_it),
         cmocka_unit_test(moments_of_the_weights_are_isotropic),
+        cmocka_unit_test(mirrors_exchange_what_goes_up_and_down),
         cmocka_unit_test(a_state_fits_into_what_a_device_binds),
         cmocka_unit_test(what_does_not_fit_is_refused_with_numbers),
         cmocka_unit_test(a_lattice_that_cannot_be_is_refused),

@@ -89,7 +89,7 @@ void lbm_push_air(inout vec4 f[LBM_Q]) {
     LBM_PAIRS(ADD)
 #undef ADD
 #define PUSH(i, x, y, z)                                                                           \
-    f[i] += 6.0 * LBM_WEIGHT(x, y, z) * density * LBM_WALL_SPEEDS(x, y, z);                              \
+    f[i] += 6.0 * LBM_WEIGHT(x, y, z) * density * LBM_WALL_SPEEDS(x, y, z);                        \
     f[i + 1] += 6.0 * LBM_WEIGHT(x, y, z) * density * LBM_WALL_SPEEDS(-(x), -(y), -(z));
     LBM_PAIRS(PUSH)
 #undef PUSH
@@ -102,7 +102,7 @@ void lbm_push_scalar(inout vec4 g[LBM_SCALAR_Q]) {
 #undef ADD
     value *= 2.0 / LBM_SCALAR_SPEED;
 #define PUSH(i, x, y, z)                                                                           \
-    g[i] += LBM_SCALAR_WEIGHT(x, y, z) * value * LBM_WALL_SPEEDS(x, y, z);                               \
+    g[i] += LBM_SCALAR_WEIGHT(x, y, z) * value * LBM_WALL_SPEEDS(x, y, z);                         \
     g[i + 1] += LBM_SCALAR_WEIGHT(x, y, z) * value * LBM_WALL_SPEEDS(-(x), -(y), -(z));
     LBM_SCALAR_PAIRS(PUSH)
 #undef PUSH

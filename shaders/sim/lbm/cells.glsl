@@ -8,7 +8,6 @@
 
 // Faces, as lbm_face in src/sim/lbm.h; LBM_FACE_0 to LBM_FACE_5 are those of the lattice.
 #define LBM_FACE_IS_WALL(k) ((k) == 1)
-#define LBM_FACE_IS_SLIP(k) ((k) == 2)
 #define LBM_FACE_IS_OPEN(k) ((k) >= 3) // air comes and goes
 #define LBM_FACE_IS_INFLOW(k) ((k) == 4)
 
@@ -34,8 +33,8 @@ uint lbm_element_of(ivec3 cell, out uint lane) {
 }
 
 struct lbm_site { // of an element
-    uint solid;   // lanes that no air is in
-    uint near;    // lanes of air beside a body that moves
+    uint solid; // lanes that no air is in
+    uint near;  // lanes of air beside a body that moves
 };
 
 #if LBM_BODIES
@@ -63,15 +62,6 @@ uint lbm_wall_lanes(uvec3 at) {
                LBM_FACE_IS_WALL(LBM_FACE_3) && at.y == LBM_NY - 1u;
     uint some = LBM_FACE_IS_WALL(LBM_FACE_4) && at.z == 0u ? 1u : 0u;
     if (LBM_FACE_IS_WALL(LBM_FACE_5) && at.z == LBM_LAYERS - 1u) some |= LBM_LAST_LANE;
-    return all ? LBM_ALL_LANES : some;
-}
-
-// Lanes that are of the boundary, whatever kind that is.
-uint lbm_face_lanes(uvec3 at) {
-    bool all = LBM_FACE_0 != 0 && (at.x == 0u || at.x == LBM_NX - 1u) ||
-               LBM_FACE_2 != 0 && (at.y == 0u || at.y == LBM_NY - 1u);
-    uint some = LBM_FACE_4 != 0 && at.z == 0u ? 1u : 0u;
-    if (LBM_FACE_4 != 0 && at.z == LBM_LAYERS - 1u) some |= LBM_LAST_LANE;
     return all ? LBM_ALL_LANES : some;
 }
 
