@@ -1,17 +1,19 @@
-// Bytes of the same significance lie together before they are compressed: exponents of neighbouring
+// Bits of the same significance lie together before they are compressed: exponents of neighbouring
 // numbers are alike, mantissas are not.
+//
+// Of the populations of a plume in FP16 (32 x 32 x 48 cells after 14 frames), on one core of 2.5
+// GHz: zstd 1 leaves 78 % (466 MB/s, back at 948), with bytes shuffled instead of bits 82 % (376);
+// zstd 5 76 % (70); lz4 91 % (1547). Air at rest takes next to nothing with all of them.
 #include "media/pack.h"
 #include <blosc.h>
 
-// Measured on a plume of 64^3 cells (src/sim/README.md): zstd is a fifth smaller than lz4, and
-// writing takes longer than either.
 static const char codec[] = "zstd";
 enum { LEVEL = 1 };
 
 size_t pack_bytes(const void *data, size_t size, uint32_t width, void *out) {
     if (size == 0 || size > PACK_MOST) return 0;
     int length =
-        blosc_compress_ctx(LEVEL, BLOSC_SHUFFLE, width, size, data, out, size, codec, 0, 1);
+        blosc_compress_ctx(LEVEL, BLOSC_BITSHUFFLE, width, size, data, out, size, codec, 0, 1);
     return length > 0 && (size_t)length < size ? (size_t)length : 0;
 }
 
