@@ -15,27 +15,48 @@ struct lbm_air {
     lbm_tensor stress; // second central moments, less those of equilibrium
 };
 
-// Sums of populations, by direction, and products of directions.
-void lbm_sum(vec4 f[LBM_Q], out vec4 excess, out lbm_vec momentum, out lbm_tensor second) {
-    excess = f[0];
-    momentum = lbm_vec_all(vec3(0.0));
-    second = lbm_tensor(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
-#define SUM(i, X, Y, Z)                                                                            \
-    {                                                                                              \
-        vec4 even = f[i] + f[i + 1], odd = f[i] - f[i + 1];                                        \
-        excess += even;                                                                            \
-        if (X != 0) momentum.x += float(X) * odd;                                                  \
-        if (Y != 0) momentum.y += float(Y) * odd;                                                  \
-        if (Z != 0) momentum.z += float(Z) * odd;                                                  \
-        if (X != 0) second.xx += even;                                                             \
-        if (Y != 0) second.yy += even;                                                             \
-        if (Z != 0) second.zz += even;                                                             \
-        if (X * Y != 0) second.xy += float(X * Y) * even;                                          \
-        if (X * Z != 0) second.xz += float(X * Z) * even;                                          \
-        if (Y * Z != 0) second.yz += float(Y * Z) * even;                                          \
-    }
+struct lbm_sums { // of populations, by direction, and products of directions
+    vec4 excess;
+    lbm_vec momentum;
+    lbm_tensor second;
+};
+
+void lbm_add_pair(const int X, const int Y, const int Z, vec4 up, vec4 down, inout lbm_sums s) {
+    vec4 even = up + down, odd = up - down;
+    s.excess += even;
+    if (X != 0) s.momentum.x += float(X) * odd;
+    if (Y != 0) s.momentum.y += float(Y) * odd;
+    if (Z != 0) s.momentum.z += float(Z) * odd;
+    if (X != 0) s.second.xx += even;
+    if (Y != 0) s.second.yy += even;
+    if (Z != 0) s.second.zz += even;
+    if (X * Y != 0) s.second.xy += float(X * Y) * even;
+    if (X * Z != 0) s.second.xz += float(X * Z) * even;
+    if (Y * Z != 0) s.second.yz += float(Y * Z) * even;
+}
+
+lbm_sums lbm_begin_sums(vec4 rest) {
+    vec4 none = vec4(0.0);
+    return lbm_sums(rest, lbm_vec(none, none, none), lbm_tensor(none, none, none, none, none, none));
+}
+
+lbm_sums lbm_sum(vec4 f[LBM_Q]) {
+    lbm_sums s = lbm_begin_sums(f[0]);
+#define SUM(i, x, y, z) lbm_add_pair(x, y, z, f[i], f[i + 1], s);
     LBM_PAIRS(SUM)
 #undef SUM
+    return s;
+}
+
+// Of packed ones: pair by pair, so that few of them need registers at a time.
+lbm_sums lbm_sum_packed(lbm_element q[LBM_Q], const int chunk) {
+    lbm_sums s = lbm_begin_sums(lbm_unpack(q[0], chunk, LBM_AIR_SCALE));
+#define SUM(i, x, y, z)                                                                            \
+    lbm_add_pair(x, y, z, lbm_unpack(q[i], chunk, LBM_AIR_SCALE),                                  \
+                 lbm_unpack(q[i + 1], chunk, LBM_AIR_SCALE), s);
+    LBM_PAIRS(SUM)
+#undef SUM
+    return s;
 }
 
 // The part of the second moments that equilibrium has not, in the frame that moves with u, where

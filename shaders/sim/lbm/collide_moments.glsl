@@ -19,6 +19,10 @@ lbm_tensor lbm_relax(lbm_tensor s, vec4 omega) {
                       keep * s.xy, keep * s.xz, keep * s.yz);
 }
 
+void lbm_leave(inout lbm_element q[LBM_Q], const int chunk, const int i, vec4 f) {
+    lbm_pack(q[i], chunk, LBM_AIR_SCALE, f);
+}
+
 #if LBM_Q == 19
 struct lbm_plane { // moments along two axes, a and b, in the frame at rest
     vec4 ab, abb, baa, aabb; // the last less that of the weights
@@ -36,32 +40,40 @@ lbm_plane lbm_plane_of(lbm_air air, vec4 ua, vec4 ub, vec4 ha, vec4 hb, vec4 saa
     return p;
 }
 
-void lbm_collide(lbm_air air, vec4 omega, out vec4 f[LBM_Q]) {
+// Packs what leaves into a chunk of q; `f`, what arrived, is not asked any more.
+void lbm_collide(lbm_air air, vec4 omega, vec4 f[LBM_Q], const int chunk, inout lbm_element q[LBM_Q]) {
     vec4 density = 1.0 + air.excess, third = air.excess * (1.0 / 3.0);
     lbm_vec u = air.u, h = lbm_vec(0.5 * air.force.x, 0.5 * air.force.y, 0.5 * air.force.z);
     lbm_tensor s = lbm_relax(air.stress, omega);
     vec4 x = density * u.x + h.x, y = density * u.y + h.y, z = density * u.z + h.z;
     vec4 xx = third + s.xx + u.x * (x + h.x), yy = third + s.yy + u.y * (y + h.y);
-    vec4 zz = third + s.zz + u.z * (z + h.z);
-    lbm_plane xy = lbm_plane_of(air, u.x, u.y, h.x, h.y, s.xx, s.yy, s.xy);
-    lbm_plane xz = lbm_plane_of(air, u.x, u.z, h.x, h.z, s.xx, s.zz, s.xz);
-    lbm_plane yz = lbm_plane_of(air, u.y, u.z, h.y, h.z, s.yy, s.zz, s.yz);
-    f[0] = air.excess - xx - yy - zz + xy.aabb + xz.aabb + yz.aabb;
+    vec4 zz = third + s.zz + u.z * (z + h.z), rest = air.excess - xx - yy - zz;
 #define SET(i, second, first)                                                                      \
     {                                                                                              \
         vec4 even = 0.5 * (second), odd = 0.5 * (first);                                           \
-        f[i] = even + odd;                                                                         \
-        f[i + 1] = even - odd;                                                                     \
+        lbm_leave(q, chunk, i, even + odd);                                                        \
+        lbm_leave(q, chunk, i + 1, even - odd);                                                    \
     }
-    SET(1, xx - xy.aabb - xz.aabb, x - xy.abb - xz.abb)
-    SET(3, yy - xy.aabb - yz.aabb, y - xy.baa - yz.abb)
-    SET(5, zz - xz.aabb - yz.aabb, z - xz.baa - yz.baa)
-    SET(7, 0.5 * (xy.aabb + xy.ab), 0.5 * (xy.abb + xy.baa))
-    SET(9, 0.5 * (xy.aabb - xy.ab), 0.5 * (xy.abb - xy.baa))
-    SET(11, 0.5 * (xz.aabb + xz.ab), 0.5 * (xz.abb + xz.baa))
-    SET(13, 0.5 * (xz.aabb - xz.ab), 0.5 * (xz.baa - xz.abb))
-    SET(15, 0.5 * (yz.aabb + yz.ab), 0.5 * (yz.abb + yz.baa))
-    SET(17, 0.5 * (yz.aabb - yz.ab), 0.5 * (yz.baa - yz.abb))
+// Directions `up` along (A, B) and `down` along (sign, -sign); what a plane has is not along an axis.
+#define PLANE(A, B, AA, BB, AB, up, down, sign)                                                    \
+    {                                                                                              \
+        lbm_plane p = lbm_plane_of(air, u.A, u.B, h.A, h.B, s.AA, s.BB, s.AB);                     \
+        SET(up, 0.5 * (p.aabb + p.ab), 0.5 * (p.abb + p.baa))                                      \
+        SET(down, 0.5 * (p.aabb - p.ab), sign * 0.5 * (p.abb - p.baa))                             \
+        rest += p.aabb;                                                                            \
+        AA -= p.aabb;                                                                              \
+        BB -= p.aabb;                                                                              \
+        A -= p.abb;                                                                                \
+        B -= p.baa;                                                                                \
+    }
+    PLANE(x, y, xx, yy, xy, 7, 9, 1.0)
+    PLANE(x, z, xx, zz, xz, 11, 13, -1.0)
+    PLANE(y, z, yy, zz, yz, 15, 17, -1.0)
+#undef PLANE
+    lbm_leave(q, chunk, 0, rest);
+    SET(1, xx, x)
+    SET(3, yy, y)
+    SET(5, zz, z)
 #undef SET
 }
 #else
@@ -88,7 +100,7 @@ lbm_slab lbm_slab_of(vec4 u, const float weight, lbm_line k0, lbm_line k1, lbm_l
     return lbm_slab(lbm_line(o.o, p.o, n.o), lbm_line(o.p, p.p, n.p), lbm_line(o.n, p.n, n.n));
 }
 
-void lbm_collide(lbm_air air, vec4 omega, out vec4 f[LBM_Q]) {
+void lbm_collide(lbm_air air, vec4 omega, vec4 f[LBM_Q], const int chunk, inout lbm_element q[LBM_Q]) {
     const float third = 1.0 / 3.0, ninth = 1.0 / 9.0;
     lbm_vec u = air.u, h = lbm_vec(0.5 * air.force.x, 0.5 * air.force.y, 0.5 * air.force.z);
     lbm_tensor s = lbm_relax(air.stress, omega);
@@ -105,9 +117,9 @@ void lbm_collide(lbm_air air, vec4 omega, out vec4 f[LBM_Q]) {
 #define SET(Y, Z, weight, rest, up, down)                                                          \
     {                                                                                              \
         lbm_line line = lbm_line_of(u.x, weight, k0.Y.Z, k1.Y.Z, k2.Y.Z);                          \
-        f[rest] = line.o;                                                                          \
-        f[up] = line.p;                                                                            \
-        f[down] = line.n;                                                                          \
+        lbm_leave(q, chunk, rest, line.o);                                                         \
+        lbm_leave(q, chunk, up, line.p);                                                           \
+        lbm_leave(q, chunk, down, line.n);                                                         \
     }
     SET(o, o, 4.0 / 9.0, 0, 1, 2)
     SET(p, o, 1.0 / 9.0, 3, 7, 10)

@@ -19,7 +19,8 @@ vec4 lbm_odd_rate(vec4 omega) {
 }
 #endif
 
-void lbm_collide(lbm_air a, vec4 omega, inout vec4 f[LBM_Q]) {
+// Packs what leaves into a chunk of q; `f` is what arrived.
+void lbm_collide(lbm_air a, vec4 omega, vec4 f[LBM_Q], const int chunk, inout lbm_element q[LBM_Q]) {
     vec4 density = 1.0 + a.excess, odd_omega = lbm_odd_rate(omega);
     vec4 same = a.excess - density * 1.5 * lbm_dot(a.u, a.u);
 #if LBM_WEIGHTS_ONLY
@@ -28,7 +29,7 @@ void lbm_collide(lbm_air a, vec4 omega, inout vec4 f[LBM_Q]) {
     vec4 even_push = 9.0 - 4.5 * omega, odd_push = 3.0 - 1.5 * odd_omega;
     vec4 same_push = (1.5 * omega - 3.0) * lbm_dot(a.u, a.force);
 #endif
-    f[0] += omega * (LBM_REST * same - f[0]) + LBM_REST * same_push;
+    lbm_pack(q[0], chunk, LBM_AIR_SCALE, f[0] + omega * (LBM_REST * same - f[0]) + LBM_REST * same_push);
 #define COLLIDE(i, x, y, z)                                                                        \
     {                                                                                              \
         vec4 along = LBM_ALONG(a.u, x, y, z), push = LBM_ALONG(a.force, x, y, z);                  \
@@ -38,8 +39,8 @@ void lbm_collide(lbm_air a, vec4 omega, inout vec4 f[LBM_Q]) {
                LBM_WEIGHT(x, y, z) * (same_push + even_push * along * push);                       \
         odd = odd_omega * (odd - 0.5 * (f[i] - f[i + 1])) +                                        \
               LBM_WEIGHT(x, y, z) * odd_push * push;                                               \
-        f[i] += even + odd;                                                                        \
-        f[i + 1] += even - odd;                                                                    \
+        lbm_pack(q[i], chunk, LBM_AIR_SCALE, f[i] + even + odd);                                   \
+        lbm_pack(q[i + 1], chunk, LBM_AIR_SCALE, f[i + 1] + even - odd);                           \
     }
     LBM_PAIRS(COLLIDE)
 #undef COLLIDE

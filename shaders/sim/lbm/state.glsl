@@ -277,12 +277,12 @@ void lbm_store(const int slot, uint side, uint element, lbm_element e) {
 // A pair's second direction, from or to the neighbour along its first, (x, y, z).
 lbm_element lbm_load_there(const int slot, uint side, lbm_place p, const int x, const int y, const int z) {
     lbm_element e = lbm_load(slot, side, lbm_there(p, x, y, z));
-    if (z > 0) e = p.last ? lbm_next_lane(e) : e;
+    if (z > 0) e = mix(e, lbm_next_lane(e), bvec4(p.last)); // no branch, which loads would wait for
     return e;
 }
 
 void lbm_store_there(const int slot, uint side, lbm_place p, const int x, const int y, const int z, lbm_element e) {
-    if (z > 0) e = p.last ? lbm_last_lane(e) : e;
+    if (z > 0) e = mix(e, lbm_last_lane(e), bvec4(p.last));
     lbm_store(slot, side, lbm_there(p, x, y, z), e);
 }
 

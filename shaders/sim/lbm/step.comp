@@ -15,6 +15,8 @@ layout(std430) readonly buffer LbmSkin { uint skin[]; };
 uniform uint skin_count;
 #endif
 #define WALLED (LBM_WALLED && (LBM_BODIES || LBM_REGION != LBM_CORE))
+// Boundaries change what arrives, or collision asks for it again: then it is held unpacked.
+#define UNPACKED (LBM_BODIES || LBM_RIMS && LBM_REGION != LBM_CORE || !LBM_CENTRAL_MOMENTS)
 
 uniform float tau;
 uniform float smagorinsky;
@@ -46,7 +48,9 @@ vec4 population[LBM_Q], part[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
 vec4 value[3]; // of scalars
 
 void unpack(const int chunk) {
+#if UNPACKED
     lbm_unpack_air(air, chunk, population);
+#endif
 #if WALLED
     lbm_meet_air(at, site, chunk, population);
 #define MEET(s) lbm_meet_scalar(s, at, site, chunk, ambient[s], population, part[s]);
@@ -103,9 +107,13 @@ void limit(inout lbm_vec u, float most) {
 
 lbm_air find_air(const int chunk) {
     lbm_air a;
-    lbm_vec momentum;
-    lbm_tensor second;
-    lbm_sum(population, a.excess, momentum, second);
+#if UNPACKED
+    lbm_sums sums = lbm_sum(population);
+#else
+    lbm_sums sums = lbm_sum_packed(air, chunk);
+#endif
+    lbm_vec momentum = sums.momentum;
+    a.excess = sums.excess;
     vec4 density = 1.0 + a.excess, volume = 1.0 / density;
     a.force = find_force(chunk, density);
 #if LBM_WEIGHTS_ONLY
@@ -116,7 +124,7 @@ lbm_air find_air(const int chunk) {
 #endif
     limit(a.u, max_speed);
 #if LBM_CENTRAL_MOMENTS || LBM_SUBGRID
-    a.stress = lbm_stress(second, a.excess, a.u, a.force);
+    a.stress = lbm_stress(sums.second, a.excess, a.u, a.force);
 #endif
     return a;
 }
@@ -156,8 +164,7 @@ void collide(const int chunk) {
 #if LBM_SUBGRID
     eddies = lbm_eddy_tau(a, tau, smagorinsky) - tau;
 #endif
-    lbm_collide(a, 1.0 / (tau + eddies), population);
-    lbm_pack_air(air, chunk, population);
+    lbm_collide(a, 1.0 / (tau + eddies), population, chunk, air);
 #define SCALAR(s)                                                                                  \
     lbm_collide_scalar(value[s], a.u,                                                              \
                        1.0 / (scalar_tau[s] + eddies * (1.0 / (3.0 * SCHMIDT * LBM_SCALAR_SPEED))), \
