@@ -42,6 +42,8 @@ VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, int copies
     want.core.features.vertexPipelineStoresAndAtomics =
         has.core.features.vertexPipelineStoresAndAtomics;
     want.core.features.fragmentStoresAndAtomics = has.core.features.fragmentStoresAndAtomics;
+    want.core.features.shaderUniformBufferArrayDynamicIndexing =
+        has.core.features.shaderUniformBufferArrayDynamicIndexing; // hide.c
     want.core.features.shaderInt64 = has.core.features.shaderInt64;
     want.v11.storageBuffer16BitAccess = has.v11.storageBuffer16BitAccess;
     want.v11.uniformAndStorageBuffer16BitAccess = has.v11.uniformAndStorageBuffer16BitAccess;

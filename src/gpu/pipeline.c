@@ -126,7 +126,13 @@ static bool build_compute(gpu *g, const gpu_pipeline *pipeline, const gpu_comput
                           vk_built *out) {
     VkShaderModule module;
     if (!create_layout(g, pipeline, VK_SHADER_STAGE_COMPUTE_BIT, out)) return false;
-    if (!create_module(g, pipeline->label, desc->code, desc->code_size, &module)) return false;
+    size_t size;
+    uint32_t *hidden =
+        g->info.kind == GPU_CPU ? vk_hide_uniforms(desc->code, desc->code_size, &size) : NULL;
+    bool loaded = create_module(g, pipeline->label, hidden ? hidden : desc->code,
+                                hidden ? size : desc->code_size, &module);
+    mem_free(hidden);
+    if (!loaded) return false;
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,

@@ -236,6 +236,10 @@ typedef struct vk_uses {
 } vk_uses;
 
 VkDescriptorType vk_descriptor_type(gpu_slot_kind kind);
+// The same code with its uniform blocks hidden from a software driver (hide.c), for mem_free; NULL:
+// there are none, or it is left as it is. `size` in bytes.
+uint32_t *vk_hide_uniforms(const uint32_t *code, size_t size, size_t *out_size);
+
 // Validates bindings against the slots of a pipeline; then notes what they touch; then binds them.
 bool vk_bindings_check(gpu *g, const gpu_pipeline *pipeline, const gpu_binding *list, size_t count);
 bool vk_bindings_use(gpu *g, const gpu_pipeline *pipeline, const gpu_binding *list, size_t count);
