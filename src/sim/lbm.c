@@ -1,4 +1,4 @@
-// A solver: what its shaders are compiled for, its state on the device, its steps.
+// A solver: what its shaders are compiled for, and its state on the device.
 //
 // The state is one row of slots, each a direction of all elements: those of pairs first, then those
 // at rest; first the air's, then each scalar's. Slots go into as few buffers as the device can bind

@@ -1,8 +1,7 @@
-// A step: one dispatch over all elements. Or two, where branches cost what they leave out (software
-// devices take both ways) and there are faces that air can pass, which are dear: over the elements
-// that no face touches, whose shader knows nothing of faces, and over a list of those that one
-// does. They share no places in memory, so their order does not matter.
-#include "base/error.h"
+// A step: one dispatch over all elements. Or two, where there are faces that air can pass, which
+// take many registers, and on software devices, which take both ways of a branch, time everywhere:
+// over the elements that no face touches, whose shader knows nothing of faces, and over a list of
+// those that one does. They share no places in memory, so their order does not matter.
 #include "base/memory.h"
 #include "sim/lbm_impl.h"
 #include <string.h>
@@ -23,7 +22,7 @@ bool lbm_step_compile(lbm *l, const gpu_info *device, shader_library *library,
                       const shader_reader *reader) {
     static const char *const regions[] = {"LBM_WHOLE", "LBM_CORE", "LBM_SKIN"};
     lbm_stepper *s = &l->stepper;
-    s->parts = is_software(device) && is_passable(l) ? 2 : 1;
+    s->parts = is_passable(l) ? 2 : 1;
     for (int i = 0; i < 2 * s->parts; i++) {
         const shader_define defines[] = {
             {"LBM_SOFTWARE", is_software(device) ? "1" : "0"},

@@ -160,15 +160,6 @@ void lbm_unpack_air(lbm_element q[LBM_Q], const int chunk, out vec4 f[LBM_Q]) {
 #undef UNPACK
 }
 
-void lbm_pack_air(inout lbm_element q[LBM_Q], const int chunk, vec4 f[LBM_Q]) {
-    lbm_pack(q[0], chunk, LBM_AIR_SCALE, f[0]);
-#define PACK(i, x, y, z)                                                                           \
-    lbm_pack(q[i], chunk, LBM_AIR_SCALE, f[i]);                                                    \
-    lbm_pack(q[i + 1], chunk, LBM_AIR_SCALE, f[i + 1]);
-    LBM_PAIRS(PACK)
-#undef PACK
-}
-
 void lbm_unpack_scalar(lbm_element q[LBM_SCALAR_Q], const int chunk, out vec4 g[LBM_SCALAR_Q]) {
     g[0] = lbm_unpack(q[0], chunk, LBM_SCALAR_SCALE);
 #define UNPACK(i, x, y, z)                                                                         \

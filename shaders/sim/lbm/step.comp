@@ -1,5 +1,5 @@
 // One step of a lattice Boltzmann solver: each thread takes what arrives at an element, collides
-// it, and sends it off. Not a pass of its own: see src/sim/lbm.c.
+// it, and sends it off. Not a pass of its own: see src/sim/lbm_step.c.
 #if LBM_SOFTWARE
 #extension GL_ARB_gpu_shader_int64 : require
 #endif
