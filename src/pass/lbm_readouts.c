@@ -47,22 +47,26 @@ static bool must_stop(const lbm_air *a) {
     return a->report.bad || (a->stops && (double)a->report.speed * sqrt(3) > SIM_MACH_MAX);
 }
 
-bool lbm_air_watch(pass *p) {
-    lbm_air *a = lbm_air_of(p);
-    gpu *device = p->host->device;
+// What has come back from the device by now.
+static void look(lbm_air *a) {
     lbm_report report;
-    if (a->last_steps && !lbm_guard_record(a->guard, device, a->solver)) return false;
-    if (lbm_guard_read(a->guard, device, &report)) {
+    if (lbm_guard_read(a->guard, a->pass->host->device, &report)) {
         a->report = report;
         a->reported = true;
         a->stopped = must_stop(a);
     }
     tell(a);
-    return true;
+}
+
+bool lbm_air_watch(pass *p) {
+    lbm_air *a = lbm_air_of(p);
+    look(a);
+    return !a->last_steps || lbm_guard_record(a->guard, p->host->device, a->solver);
 }
 
 const char *lbm_air_trouble(const pass *p) {
-    const lbm_air *a = lbm_air_of(p);
+    lbm_air *a = lbm_air_of(p);
+    look(a);
     return a->trouble[0] ? a->trouble : NULL;
 }
 
@@ -72,7 +76,8 @@ double lbm_air_work(const pass *p) {
 }
 
 size_t lbm_air_readouts(const pass *p, pass_readout *out, size_t capacity) {
-    const lbm_air *a = lbm_air_of(p);
+    lbm_air *a = lbm_air_of(p);
+    look(a);
     sim_flow flow = lbm_air_flow(p);
     if (a->reported) flow.speed = measured(a);
     sim_readout now = sim_judge(&a->units, &flow);

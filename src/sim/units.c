@@ -6,15 +6,15 @@
 
 static const double sound2 = 1.0 / 3.0; // of the lattices of the air
 
-// Least tau at which operators were seen to stay stable at the speed that steps are chosen for: on
-// their own, and with a subgrid model. src/sim/README.md has the runs.
+// About the least tau at which operators hold shear layers of the speed that steps are chosen for
+// (src/sim/README.md): on their own, and with the subgrid model.
 static const struct {
     const char *name;
     double least[2];
 } operators[] = {
     [SIM_BGK] = {"bgk", {0.51, 0.502}},
     [SIM_TRT] = {"trt", {0.505, 0.501}},
-    [SIM_CENTRAL_MOMENTS] = {"central_moments", {0.5, 0.5}},
+    [SIM_CENTRAL_MOMENTS] = {"central_moments", {0.502, 0.5}},
 };
 
 sim_units sim_units_make(double cell, double speed, double step) {
@@ -68,11 +68,13 @@ bool sim_advise(const sim_units *u, const sim_flow *flow, char *out, size_t capa
     double least = operators[flow->collision].least[flow->subgrid];
     double square = u->cell * u->cell * sound2 / u->step; // m^2/s of each 1 of tau
     if (tau < least) {
-        snprintf(out, capacity,
-                 "tau is %.5f, and collision = \"%s\" is stable above %g: set 'viscosity' above "
-                 "%.2g m^2/s (it is %.2g), 'collision' to \"central_moments\"%s",
-                 tau, operators[flow->collision].name, least, (least - 0.5) * square,
-                 flow->viscosity, flow->subgrid ? "" : ", or 'smagorinsky' to 0.1");
+        snprintf(
+            out, capacity,
+            "tau is %.5f, and collision = \"%s\" is stable above %g: set 'viscosity' above "
+            "%.2g m^2/s (it is %.2g)%s%s",
+            tau, operators[flow->collision].name, least, (least - 0.5) * square, flow->viscosity,
+            flow->collision == SIM_CENTRAL_MOMENTS ? "" : ", 'collision' to \"central_moments\"",
+            flow->subgrid ? "" : ", or 'smagorinsky' to 0.1");
         return true;
     }
     if (tau <= SIM_TAU_MAX) return false;

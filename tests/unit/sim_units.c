@@ -83,6 +83,10 @@ static void a_tau_that_an_operator_cannot_take_is_noticed(void **state) {
     flow.viscosity = 0.0067;
     assert_false(advice(&u, &flow, text));
     flow = (sim_flow){.viscosity = 0, .speed = 4, .length = 3, .collision = SIM_CENTRAL_MOMENTS};
+    assert_true(advice(&u, &flow, text));
+    names(text, "or 'smagorinsky' to 0.1");
+    assert_null(strstr(text, "'collision'"));
+    flow.subgrid = true;
     assert_false(advice(&u, &flow, text));
     flow.viscosity = 2; // tau is 3.5
     assert_true(advice(&u, &flow, text));
