@@ -8,9 +8,9 @@
 static const double most_updates = 2e9, most_in_software = 5e7;
 enum { BRIEF = 64 };
 
-// Steps of a frame whose parts are timed, where counters are on: each part takes microseconds more
-// for it.
-enum { MOST_TIMED = GPU_MAX_PASSES / 4 };
+// Steps of a frame whose parts are timed apart, for which each takes microseconds more: while
+// counters are off few, else as many as there are times for.
+enum { FEW_TIMED = 4, MOST_TIMED = GPU_MAX_PASSES / 4 };
 
 static const double rounding = 1e-6; // of a step
 enum { TURNS = 96 };                 // a second
@@ -94,7 +94,7 @@ static bool step(pass *p, lbm_air *a, bool keep, bool apart) {
     return lbm_step(a->solver, device, &numbers, keep);
 }
 
-// All parts have a time, in the same order in all frames.
+// All parts have a time in every frame, if it is none, and come in the same order.
 static void name_parts(const pass *p, const lbm_air *a) {
     for (int i = 0; i < LBM_FIELDS; i++) gpu_pass_next(p->host->device, a->labels[i]);
 }
@@ -106,8 +106,8 @@ bool lbm_air_advance(pass *p) {
     const field_context *frame = p->host->context;
     field_context now = *frame;
     p->host->context = &now;
-    bool fine = true, apart = p->host->counters && left <= MOST_TIMED;
-    if (apart) name_parts(p, a);
+    bool fine = true, apart = left <= (p->host->counters ? MOST_TIMED : FEW_TIMED);
+    name_parts(p, a);
     for (int64_t i = 0; i < left && fine; i++) {
         now.time = lbm_air_step_time(a, (uint64_t)done(a));
         fine = step(p, a, left - i <= 2, apart);
