@@ -11,17 +11,17 @@ local fx = effect { name = "cumulus", fps = 24, frames = 240 }
 
 local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along each edge, relative to 128 x 128 x 96; taken when the effect loads" }
 local density = param { "density", 16, min = 0, max = 100, unit = "1/m", help = "of the cloud" }
-local lift    = param { "lift", 5, min = 0, max = 10, unit = "m/s^2", help = "how fast warm air rises" }
-local base    = param { "base", 1.9, min = 0, max = 8, unit = "m", help = "height at which vapour becomes a cloud" }
+local lift    = param { "lift", 3.8, min = 0, max = 10, unit = "m/s^2", help = "how fast warm air rises" }
+local base    = param { "base", 1.6, min = 0, max = 8, unit = "m", help = "height at which vapour becomes a cloud" }
 local wind    = param { "wind", 0.2, min = 0, max = 2, unit = "m/s", help = "from the left" }
-local width   = param { "width", 2, min = 0.2, max = 3, unit = "m", help = "of the warm field, half of it" }
+local width   = param { "width", 2.6, min = 0.2, max = 3, unit = "m", help = "of the warm field, half of it" }
 local eaten   = param { "eaten", 1.5, min = 0, max = 2, help = "how much the noise eats from the edges" }
 
 local function cells(count) return math.max(16, 8 * math.floor(count * detail:get() / 8 + 0.5)) end
 local air = lbm {
   size = {cells(128), cells(128), cells(96)}, voxel_size = 9.6 / cells(128),
   boundary = { bottom = "wall", sides = "open", top = "open" },
-  buoyancy_heat = lift, cooling_rate = 0.35, dissolve_rate = 0.18, wind = vec(wind, 0, 0), speed = 4,
+  buoyancy_heat = lift, cooling_rate = 0.4, dissolve_rate = 0.2, wind = vec(wind, 0, 0), speed = 4,
 }
 
 -- Thermals: bubbles of warm, moist air that leave the field here and there, one after the other. Each
@@ -30,7 +30,7 @@ for i = 1, 9 do
   local angle, far = 2.4 * i, 0.33 * width * math.sqrt(i)
   local beat = smoothstep(0.3, 0.8, sin(2.1 * time + 2.1 * i))
   air:source {
-    shape = sphere { position = vec(far * math.cos(angle) - 0.5, far * math.sin(angle), 0.75), radius = 0.55 },
+    shape = sphere { position = vec(far * math.cos(angle) - 0.5, far * math.sin(angle), 0.75), radius = 0.65 },
     density = 1, temperature = 1, rate = 0.001 + 10 * beat,
   }
 end
@@ -44,7 +44,7 @@ local cloud = body * smoothstep(0, 0.2, body - eaten * (1 - lumps) * (1 - 0.6 * 
 
 fx.sun    = sun { azimuth = 210, elevation = 30, color = {1, 0.93, 0.80}, strength = 9 }
 fx.sky    = sky { zenith = {0.06, 0.18, 0.55}, horizon = {0.48, 0.60, 0.76}, strength = 0.75 }
-fx.camera = camera { eye = {0, -18, 0.7}, target = {0.3, 0, 3.3}, fov = 22, near = 0.1, far = 2000 }
+fx.camera = camera { eye = {0, -18, 0.7}, target = {0.2, 0, 2.9}, fov = 21, near = 0.1, far = 2000 }
 
 local lit = lighting {
   density = cloud * density, albedo = {0.998, 0.998, 0.998}, lobes = { {0.75, 0.7}, {0.25, -0.15} },
@@ -54,7 +54,7 @@ local solid  = shade { from = {scene, lit}, haze = 0.008 }
 local volume = march { from = {lit, scene}, steps = 160 }
 
 local picture = over { volume, solid, from = {volume, scene} }
-local shown   = final { source = picture, tonemap = "aces", exposure_ev = 0.2 }
+local shown   = final { source = picture, tonemap = "aces", exposure_ev = 0.4 }
 
 fx.output = shown.color
 fx.linear = shown.linear
