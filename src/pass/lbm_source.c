@@ -161,22 +161,25 @@ static bool begin_turn(pass *p, source_state *s) {
 
 // ---- a step -----------------------------------------------------------------------------------
 
-static void fill_give(const pass *p, source_state *s) {
+static bool fill_give(const pass *p, source_state *s) {
     const lbm_air *a = s->air;
-    double rate = (double)pass_evaluate(p, "rate");
+    float rate[4], factor[4];
+    if (!pass_evaluate_vector(p, "rate", rate) ||
+        !pass_evaluate_vector(p, "velocity_factor", factor))
+        return false;
     const float speed = (float)sim_velocity(&a->units, 1);
-    const float share = rate > 0 ? (float)sim_decay(&a->units, rate) : 1;
-    const float factor = pass_evaluate(p, "velocity_factor");
+    const float share = rate[0] > 0 ? (float)sim_decay(&a->units, (double)rate[0]) : 1;
     const float ids[2] = {s->first_id, (float)s->first_id + (float)p->mesh_count - 1};
     const float pascal = (float)(1 / lbm_air_pascals(a));
     const uint32_t parity = lbm_parity(a->solver);
     write_place(s, &s->give, s->block);
     pass_write_member(&s->give, s->block, "step_speed", &speed, sizeof speed);
-    pass_write_member(&s->give, s->block, "velocity_factor", &factor, sizeof factor);
+    pass_write_member(&s->give, s->block, "velocity_factor", factor, sizeof *factor);
     pass_write_member(&s->give, s->block, "pascal", &pascal, sizeof pascal);
     pass_write_member(&s->give, s->block, "share", &share, sizeof share);
     pass_write_member(&s->give, s->block, "ids", ids, sizeof ids);
     pass_write_member(&s->give, s->block, "lbm_parity", &parity, sizeof parity);
+    return true;
 }
 
 static gpu_buffer *find_buffer(const source_state *s, const char *name) {
@@ -207,7 +210,7 @@ static bool give(pass *p, source_state *s) {
     gpu_dispatch_desc dispatch = {.pipeline = s->pipeline, .bindings = bindings};
     for (int i = 0; i < 3; i++) dispatch.threads[i] = (uint32_t)s->cells.count[i];
     if (dispatch.threads[2] > layers) dispatch.threads[2] = layers;
-    fill_give(p, s);
+    if (!fill_give(p, s)) return false;
     size_t count = override(s, overrides);
     return pass_bind(p, &s->give, s->block, overrides, count, bindings, &dispatch.binding_count) &&
            gpu_dispatch(p->host->device, &dispatch);

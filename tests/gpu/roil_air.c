@@ -259,6 +259,21 @@ static void meshes_give_smoke_and_stand_in_its_way(void **state) {
     roil_unload(e);
 }
 
+static void what_fails_at_a_step_is_told(void **state) {
+    roil_effect *e =
+        open(*state, 24, "viscosity = function(t) assert(t < 0.1) return 0.001 end", "");
+    ok(roil_render(e, 2));
+    expect_error(roil_render(e, 4), "viscosity");
+    roil_unload(e);
+    e = open(*state, 24, "",
+             "air:source { shape = sphere { position = {0, 0, 1}, radius = 0.2 }, density = 1,\n"
+             "  rate = function(t) assert(t < 0.1) return 3 end }");
+    ok(roil_render(e, 2));
+    expect_error(roil_render(e, 4), "lbm_source");
+    expect_error(roil_render(e, 5), "rate");
+    roil_unload(e);
+}
+
 // ---- what it tells ----------------------------------------------------------------------------
 
 static void it_tells_of_itself(void **state) {
@@ -360,6 +375,7 @@ int main(void) {
         cmocka_unit_test(air_that_is_too_fast_is_held_back_by_itself),
         cmocka_unit_test(smoke_is_where_its_source_is_and_rises),
         cmocka_unit_test(a_field_pushes_the_air),
+        cmocka_unit_test(what_fails_at_a_step_is_told),
         cmocka_unit_test(it_tells_of_itself),
         cmocka_unit_test(air_that_is_too_fast_stops_and_says_why),
         cmocka_unit_test(a_reload_goes_on_where_the_lattice_is_the_same),
