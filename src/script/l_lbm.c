@@ -82,13 +82,13 @@ static int l_lbm(lua_State *L) {
     script_require_loading(L, "lbm");
     if (lua_gettop(L) != 1 || !value_is_plain_table(L, 1))
         vm_error(L, "lbm takes named values, as in lbm { size = {64, 64, 96}, voxel_size = 0.05 }");
-    pass_lbm_desc desc = {{0}, 0, {0, 0, 0}, 0, 0, 0};
-    read_desc(L, &desc);
     script *s = script_of(L);
     const char *unsound = s->unsound, *variable = value_name_or_variable(L, 1, "lbm");
     lbm_object *object = object_new(L, "lbm", sizeof *object);
     int result = lua_gettop(L);
     pass *p = pass_make(L, "lbm", "lbm", 1, script_object_find("lbm")->keys);
+    pass_lbm_desc desc = {{0}, 0, {0, 0, 0}, 0, 0, 0};
+    read_desc(L, &desc); // after keys that are not known, which may be those that are missing
     if (value_get(L, 1, "boundary") != LUA_TNIL) set_boundary(L, p);
     object->pass = p;
     object->grid = pass_lbm_open(p, &desc);
