@@ -219,5 +219,6 @@ int main(void) {
         STAGE_TEST(bake_has_limits),
         STAGE_TEST(meshes_go_to_geometry_only),
     };
+    shader_warm_up(); // as the program does, before it has threads
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

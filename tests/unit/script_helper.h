@@ -60,6 +60,7 @@ static inline effect *helper_load(const char *text) {
 static inline int helper_setup(void **state) {
     (void)state;
     log_set_level(LOG_WARNING);
+    shader_warm_up(); // as the program does, before it has threads
     const char *temporary = getenv("TMPDIR");
     snprintf(helper_folder, sizeof helper_folder, "%s/roil-script-XXXXXX",
              temporary ? temporary : "/tmp");
