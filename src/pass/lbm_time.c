@@ -94,9 +94,11 @@ static bool step(pass *p, lbm_air *a, bool keep, bool apart) {
     return lbm_step(a->solver, device, &numbers, keep);
 }
 
-// All parts have a time in every frame, if it is none, and come in the same order.
+// All parts have a time in every frame, if it is none, and come in the same order. What is not
+// timed apart counts as the step's.
 static void name_parts(const pass *p, const lbm_air *a) {
     for (int i = 0; i < LBM_FIELDS; i++) gpu_pass_next(p->host->device, a->labels[i]);
+    gpu_pass_next(p->host->device, a->labels[LBM_STEP]);
 }
 
 bool lbm_air_advance(pass *p) {
