@@ -1,0 +1,42 @@
+// The pass type `particles`: points that are born, move and die on the device, in steps that are a
+// fixed part of a second whatever is drawn. Its uniforms, options and fields are those of
+// shaders/pass/particles.comp; what is kept of each, shaders/lib/particles_state.glsl says.
+//
+// Nothing of it depends on a camera (but collisions with what a picture shows), and no picture
+// comes of it. A pass that reads it has `#include "lib/particles.glsl"`, which declares an input
+// `particles`: given as `particles = sparks` or by `from = sparks`, it orders the passes and names
+// the particles. Its hooks then do
+//
+//     const pass *source = pass_particles_of(p);                  // declare: NULL is an error
+//     count = pass_particles_defines(source, defines);            // with every pass_compile
+//     pass_particles_write(source, binary, block);                // in `fill`
+//     if (pass_particles_bind(source, slot_name, &binding)) ...   // overrides of pass_bind
+//     threads = pass_particles_used(source);                      // at record; 0: there are none
+//
+// The state is up to a step ahead of the frame; particle_read() goes back along the velocity.
+#pragma once
+#include "pass/pass.h"
+
+enum { PASS_PARTICLES_MOST = 1 << 24, PASS_PARTICLES_EACH = 1 << 23 }; // in all; of a binding
+
+typedef struct pass_particles_desc {
+    uint32_t count;   // at most so many at a time; the oldest make room for new ones
+    double time_step; // seconds
+    double warm_up;   // seconds that are simulated before time 0
+} pass_particles_desc;
+
+// Before pass_declare. False with a message.
+bool pass_particles_open(pass *p, const pass_particles_desc *desc);
+
+// ---- for passes that read them ----------------------------------------------------------------
+
+// The pass behind p's input `particles`; NULL with a message.
+const pass *pass_particles_of(const pass *p);
+enum { PASS_PARTICLES_DEFINES = 2 };
+size_t pass_particles_defines(const pass *particles, shader_define out[PASS_PARTICLES_DEFINES]);
+uint32_t pass_particles_count(const pass *particles); // slots
+uint32_t pass_particles_used(const pass *particles);  // of these, from 0 on, such as may hold one
+// The members of "Uniforms" that the include declares, as of the frame being recorded.
+void pass_particles_write(const pass *particles, const shader_binary *binary, unsigned char *block);
+// The buffer of a slot by its name; false: it is none of theirs. After pass_allocate.
+bool pass_particles_bind(const pass *particles, const char *name, gpu_binding *out);
