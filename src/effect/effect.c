@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
+#include "media/picture.h"
 #include "scene/bvh.h"
 #include "scene/sky_image.h"
 #include <math.h>
@@ -309,6 +310,32 @@ const sky_image *effect_add_sky_image(effect *e, const char *file) {
     e->sky = load_sky_image(e, path);
     e->sky_file = arena_string(&e->memory, path);
     return e->sky;
+}
+
+// A picture of a file, which loads of the same effect share; NULL with a message.
+static const picture *load_picture(effect *e, const char *path, uint32_t side_max) {
+    const char *key = arena_format(&e->memory, "picture up to %u: %s", side_max, path);
+    shelf_item *item = shelf_take(e->shelf, key);
+    if (!item) {
+        arena memory = {0};
+        int64_t begin = file_clock_ns();
+        picture *data = arena_alloc(&memory, sizeof *data);
+        if (!picture_read(path, e->root, side_max, &memory, data)) {
+            arena_free(&memory);
+            return NULL;
+        }
+        item = shelf_put(e->shelf, key, data, memory, &path, 1, begin);
+    }
+    MEM_RESERVE(e->held, e->held_count + 1, e->held_capacity);
+    e->held[e->held_count++] = item;
+    return item->data;
+}
+
+const picture *effect_read_picture(effect *e, const char *file, uint32_t side_max) {
+    char path[PATH_CAP];
+    if (!path_confine(path, e->root, file)) return NULL;
+    effect_add_file(e, path); // even if it cannot be read
+    return load_picture(e, path, side_max);
 }
 
 static bool set_picture(effect *e, effect_picture which, graph_image image) {

@@ -80,6 +80,9 @@ bool effect_playback(const effect *e, field_playback *out); // false: no grid is
 scene_mesh *effect_add_mesh(effect *e, const char *file);   // confined to the effect's folder
 // The panorama of a sky, confined too; an effect has one.
 const struct sky_image *effect_add_sky_image(effect *e, const char *file);
+// A picture as numbers (media/picture.h), confined too; lives as long as the effect. `side_max`:
+// pixels a side that are accepted.
+const struct picture *effect_read_picture(effect *e, const char *file, uint32_t side_max);
 typedef struct effect_bake_desc {
     uint32_t size[3];     // voxels
     box3 box;             // that they cover

@@ -55,6 +55,11 @@ typedef struct sky_object {
 typedef struct mesh_object {
     scene_mesh *mesh;
 } mesh_object;
+typedef struct picture_object { // a file's: image "templates/source.exr"
+    const struct picture *picture;
+    const char *file; // as the script says it
+} picture_object;
+const picture_object *value_picture(lua_State *L, int index); // NULL: something else
 typedef struct light_object {
     scene_light light;
 } light_object;
@@ -131,3 +136,4 @@ void l_light_open(lua_State *L);
 void l_pass_open(lua_State *L);
 void l_lbm_open(lua_State *L);
 void l_voxels_open(lua_State *L);
+void l_image_open(lua_State *L);

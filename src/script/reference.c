@@ -145,6 +145,9 @@ static const script_object objects[] = {
         KEY("physical", "false", "of blackbody: brightness grows with the fourth power"),
         KEY("reference", "1500 K", "of physical: where the luminance is 1"),
         KEY("name", "the variable's", "for --set and presets; numbered when taken"))},
+    {"image", "source", "image \"templates/source.exr\"",
+     "a picture from a file, for what takes one",
+     .args = KEYS(KEY("file", "\"templates/source.exr\"", ".exr or .png, up to 4096 pixels a side"))},
     {"glsl", "source", "glsl { \"swirl.glsl\", \"swirl\", 3, components = 1 }",
      "a GLSL function of yours as a field: float swirl(vec3 p, float turns)",
      .args = KEYS(

@@ -111,6 +111,7 @@ static int open_bindings(lua_State *L) {
     l_pass_open(L);
     l_lbm_open(L);
     l_voxels_open(L);
+    l_image_open(L);
     return 0;
 }
 
