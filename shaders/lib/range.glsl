@@ -115,6 +115,10 @@ range1 range_unknown1() { return range1(-RANGE_END, RANGE_END); }
 range3 range_unknown3() { return range_vec3(range_unknown1()); }
 range4 range_unknown4() { return range_vec4(range_unknown1()); }
 
+// Of what no place tells.
+range1 range_nowhere1(range3 p) { return range_unknown1(); }
+range3 range_nowhere3(range3 p) { return range_unknown3(); }
+
 range1 range_union(range1 a, range1 b) {
     return range1(min(a.low, b.low), max(a.high, b.high));
 }

@@ -17,6 +17,10 @@
     .group = "shape", .components = 1, .include = "lib/shape.glsl", .function = NAME,              \
     .spatial = true, .cost = 12
 #define NOISE(NAME) .group = "noise", .include = "lib/noise.glsl", .function = NAME, .spatial = true
+#define PARTICLE(NAME, COMPONENTS)                                                                 \
+    .group = "source", .include = "lib/particle.glsl", .function = "particle_said_" NAME,          \
+    .components = COMPONENTS, .spatial = true, .cost = 1, .eval = eval_zero,                       \
+    .ranges = ranges_unknown, .range_function = "range_nowhere" #COMPONENTS
 
 #define UNARY                                                                                      \
     {                                                                                              \
@@ -260,6 +264,12 @@ const field_kind field_kinds[] = {
                     DIMENSIONS_OPTION},
         .eval = eval_curl, RANGE(curl),
         .summary = "swirling vectors: the curl of three Perlin noises, a unit of length a cell (Bridson 2007)"},
+
+    // ---- of the particle that a field is evaluated for; where there is none, 0
+    {"particle_age", PARTICLE("age", 1), .summary = "part of a particle's life that has passed, 0..1"},
+    {"particle_quantity", PARTICLE("quantity", 1), .summary = "the number that a particle carries (`quantity` of particles)"},
+    {"particle_random", PARTICLE("random", 1), .summary = "a number of a particle's own, evenly spread over 0..1"},
+    {"particle_velocity", PARTICLE("velocity", 3), .summary = "of a particle (m/s)"},
     {NULL},
 };
 // clang-format on

@@ -76,6 +76,12 @@ void eval_position(const field *node, const field_context *context, float3 p,
     out[2] = p.z;
 }
 
+void eval_zero(const field *node, const field_context *context, float3 p, const float (*args)[4],
+               float out[4]) {
+    (void)node, (void)context, (void)p, (void)args;
+    memset(out, 0, 4 * sizeof *out);
+}
+
 void eval_length(const field *node, const field_context *context, float3 p, const float (*args)[4],
                  float out[4]) {
     (void)context, (void)p;
