@@ -18,7 +18,8 @@ typedef struct program_node { // a distinct expression
 typedef enum program_slot_kind {
     SLOT_NUMBER,    // value of a node that does not vary in space
     SLOT_GRID,      // 5 vec4: box min, blend; 1 / box size, texels a metre; active min; active max;
-                    // bricks along each side. w of the last three: texels along each side
+                    // bricks along each side. w of the last three: texels along each side. Then,
+                    // of slices round an axis, the four of field_extrusion_numbers
     SLOT_PALETTE,   // 1 vec4: min, 1 / (max - min)
     SLOT_TRANSFORM, // 3 vec4: rows of the matrix to where the field is sampled
 } program_slot_kind;
@@ -68,7 +69,8 @@ uint32_t program_transform(field_program *p, uint32_t node);
 program_grid *program_use_grid(field_program *p, const field_grid *grid, size_t *index);
 program_palette *program_use_palette(field_program *p, const palette *table, size_t *index);
 
-const char *program_type(int components); // "float", "vec3", "vec4"
+bool program_extrudes(const field_program *p); // a grid of it is slices round an axis
+const char *program_type(int components);      // "float", "vec3", "vec4"
 
 // The globals and functions of all roots. False with a message when there are too many operations.
 bool program_emit(field_program *p, strbuf *out);

@@ -315,10 +315,27 @@ static void add_tile_fetch(const program_grid *grid, size_t g, int image, strbuf
                g, image, g, image, g, image, g, image, at + 1, at, at + 1, at + 4);
 }
 
+static void add_extruded_fetch(const program_grid *grid, size_t g, int image, strbuf *out) {
+    unsigned at = grid->at, own = at + 5;
+    bool vectors = grid->grid->extruded->vectors >> image & 1;
+    strbuf_add(out,
+               "uniform sampler3D field_ranges_%zu_%d;\n"
+               "range4 field_fetch_range_%zu_%d(range3 p) {\n"
+               "    return extrude_%srange(field_ranges_%zu_%d, field_grid_%zu_%d, "
+               "field_numbers[%u], field_numbers[%u], field_numbers[%u], field_numbers[%u], p, "
+               "field_numbers[%u].xyz);\n}\n",
+               g, image, g, image, vectors ? "vector_" : "", g, image, g, image, own, own + 1,
+               own + 2, own + 3, at + 4);
+}
+
 // Of a grid, by what is known of its bricks, and in small boxes by its texels.
 static void add_fetch(const program_grid *grid, size_t g, int image, strbuf *out) {
     if (grid->grid->repeats) {
         add_tile_fetch(grid, g, image, out);
+        return;
+    }
+    if (grid->grid->extruded) {
+        add_extruded_fetch(grid, g, image, out);
         return;
     }
     static const char *const sets[] = {"field_ranges", "field_ranges_next"};
@@ -362,6 +379,7 @@ static void add_libraries(const field_program *p, strbuf *out) {
                             strcmp(p->nodes[i].node->kind->group, groups[g]) == 0);
         if (used) strbuf_add(out, "#include \"lib/range_%s.glsl\"\n", groups[g]);
     }
+    if (program_extrudes(p)) strbuf_add(out, "#include \"lib/range_extrude.glsl\"\n");
 }
 
 // Where there are more operations than can be told apart, nothing is known.

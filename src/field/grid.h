@@ -3,6 +3,7 @@
 // solver) implements `update`; fields and the generator see only this.
 #pragma once
 #include "base/maths.h"
+#include "field/extrude.h"
 #include "gpu/gpu.h"
 #include <stdbool.h>
 #include <stddef.h>
@@ -48,8 +49,9 @@ struct field_grid {
     bool blends;       // may ever have blend > 0: the shader then samples both sets
     bool punctual;     // never waits for data: another frame stands in for one that is late
     bool simulated;    // each frame follows from the one before
-    const char *label; // what the script calls it; NULL: it has no name
-    field_grid_state state; // current; set by update
+    const field_extrusion *extruded; // images are slices round an axis; NULL: they fill the box
+    const char *label;               // what the script calls it; NULL: it has no name
+    field_grid_state state;          // current; set by update
     // Brings `state` to a time, uploading what is needed. Waits for data that is not decoded yet,
     // unless it is punctual and has anything to show.
     bool (*update)(field_grid *grid, gpu *g, double time);

@@ -130,7 +130,8 @@ program_grid *program_use_grid(field_program *p, const field_grid *grid, size_t 
     for (*index = 0; *index < p->grid_count; ++*index)
         if (p->grids[*index].grid == grid) return &p->grids[*index];
     MEM_RESERVE(p->grids, p->grid_count + 1, p->grid_capacity);
-    uint32_t at = add_slot(p, (program_slot){SLOT_GRID, .object = grid}, 5) / 4;
+    uint32_t size = 5 + (grid->extruded ? EXTRUSION_NUMBERS / 4 : 0);
+    uint32_t at = add_slot(p, (program_slot){SLOT_GRID, .object = grid}, size) / 4;
     p->grids[p->grid_count++] = (program_grid){.grid = grid, .at = at};
     return &p->grids[*index];
 }
@@ -142,6 +143,12 @@ program_palette *program_use_palette(field_program *p, const palette *table, siz
     uint32_t at = add_slot(p, (program_slot){SLOT_PALETTE, .object = table}, 1) / 4;
     p->palettes[p->palette_count++] = (program_palette){table, at};
     return &p->palettes[*index];
+}
+
+bool program_extrudes(const field_program *p) {
+    for (size_t g = 0; g < p->grid_count; g++)
+        if (p->grids[g].grid->extruded) return true;
+    return false;
 }
 
 const char *program_type(int components) {
@@ -162,6 +169,7 @@ static void add_includes(const field_program *p, strbuf *out) {
         if (used) strbuf_add(out, "#include \"%s\"\n", kind->include);
     }
     if (p->grid_count > 0) strbuf_add(out, "#include \"lib/grid.glsl\"\n");
+    if (program_extrudes(p)) strbuf_add(out, "#include \"lib/extrude.glsl\"\n");
     for (size_t i = 0; i < p->node_count; i++) {
         if (kind_of(p->nodes[i].node) != KIND_GLSL) continue;
         const field_glsl *glsl = p->nodes[i].node->object;
@@ -203,9 +211,25 @@ static void sample_text(const program_grid *grid, size_t g, int image, bool next
         snprintf(out, 240, "grid_sample(field_%s_%zu_%d, uvw)", set, g, image);
 }
 
+static void add_extruded_fetch(const program_grid *grid, size_t g, int image, strbuf *out) {
+    unsigned at = grid->at + 5;
+    bool vectors = grid->grid->extruded->vectors >> image & 1;
+    strbuf_add(out,
+               "uniform sampler3D field_grid_%zu_%d;\n"
+               "vec4 field_fetch_%zu_%d(vec3 p) {\n"
+               "    return extrude_%s(field_grid_%zu_%d, field_numbers[%u], field_numbers[%u], "
+               "field_numbers[%u], field_numbers[%u], p);\n}\n",
+               g, image, g, image, vectors ? "vector" : "sample", g, image, at, at + 1, at + 2,
+               at + 3);
+}
+
 static void add_fetch(const program_grid *grid, size_t g, int image, strbuf *out) {
     if (grid->grid->repeats) {
         add_repeating_fetch(grid, g, image, out);
+        return;
+    }
+    if (grid->grid->extruded) {
+        add_extruded_fetch(grid, g, image, out);
         return;
     }
     unsigned at = grid->at;
@@ -431,7 +455,8 @@ static bool fill_values(const field_program *p, const field_context *context) {
     return true;
 }
 
-static void fill_grid(const field_grid *grid, float out[20]) {
+static void fill_grid(const field_grid *grid, float *out) {
+    if (grid->extruded) field_extrusion_numbers(grid->extruded, out + 20);
     box3 box = grid->box, active = box3_intersect(box, grid->state.active);
     const float size[3] = {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
     memcpy(out, &box.min, sizeof box.min);
