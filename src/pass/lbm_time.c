@@ -1,26 +1,21 @@
-// The clock of simulated air. Steps are so long whatever is drawn; the time of a frame lies between
-// two states, which the last two steps left behind.
+// The clock of simulated air (pass/steps.h), and its steps.
 #include "pass/lbm_parts.h"
+#include "pass/steps.h"
 #include <math.h>
-
-// Cell updates that one submit may take: about 0.1 s of a large device, 2 s of a software one. In a
-// window it is a part of that.
-static const double most_updates = 2e9, most_in_software = 5e7;
-enum { BRIEF = 64 };
 
 // Steps of a frame whose parts are timed apart, for which each takes microseconds more: while
 // counters are off few, else as many as there are times for.
 enum { FEW_TIMED = 4, MOST_TIMED = GPU_MAX_PASSES / 4 };
 
-static const double rounding = 1e-6; // of a step
-enum { TURNS = 96 };                 // a second
+enum { TURNS = 96 }; // a second
 
-static double steps_at(const lbm_air *a, double time) { // from the beginning, with a fraction
-    return fmax((time + a->desc.warm_up) / a->units.step, 0);
+static pass_steps clock_of(const lbm_air *a) {
+    return (pass_steps){.step = a->units.step, .warm_up = a->desc.warm_up};
 }
 
 double lbm_air_step_time(const lbm_air *a, uint64_t step) {
-    return (double)step * a->units.step - a->desc.warm_up;
+    pass_steps clock = clock_of(a);
+    return pass_steps_time(&clock, step);
 }
 
 uint64_t lbm_air_turn(const lbm_air *a, double *begin, double *end) {
@@ -31,30 +26,25 @@ uint64_t lbm_air_turn(const lbm_air *a, double *begin, double *end) {
     return turn;
 }
 
-// Steps that must be done for a time: two beyond the state before it, which leave that state and
-// the one after it.
-static int64_t wanted(const lbm_air *a, double time) {
-    return (int64_t)floor(steps_at(a, time) + rounding) + 2;
-}
-
 static int64_t done(const lbm_air *a) {
     return a->fresh ? 0 : (int64_t)lbm_steps(a->solver);
 }
 
 int64_t lbm_air_left(const pass *p, double time) {
     const lbm_air *a = lbm_air_of(p);
-    return a->stopped ? 0 : wanted(a, time) - done(a);
+    pass_steps clock = clock_of(a);
+    return a->stopped ? 0 : pass_steps_wanted(&clock, time) - done(a);
 }
 
 double lbm_air_reached(const pass *p) {
     const lbm_air *a = lbm_air_of(p);
-    int64_t steps = done(a);
-    return steps < 2 ? -(double)INFINITY : lbm_air_step_time(a, (uint64_t)steps - 1);
+    pass_steps clock = clock_of(a);
+    return pass_steps_reached(&clock, done(a));
 }
 
 double lbm_air_blend(const lbm_air *a, double time) {
-    double blend = steps_at(a, time) - (double)(done(a) - 2);
-    return blend < rounding ? 0 : fmin(blend, 1);
+    pass_steps clock = clock_of(a);
+    return pass_steps_blend(&clock, done(a), time);
 }
 
 void lbm_air_restart(pass *p) {
@@ -73,8 +63,7 @@ int64_t lbm_air_most(const pass *p) {
     const lbm_air *a = lbm_air_of(p);
     bool software = gpu_get_info(p->host->device)->kind == GPU_CPU;
     double cells = (double)a->desc.size[0] * a->desc.size[1] * a->desc.size[2];
-    double most = (software ? most_in_software : most_updates) / cells;
-    return (int64_t)fmax(1, p->host->brief ? most / BRIEF : most);
+    return pass_steps_most(cells, 1, software, p->host->brief);
 }
 
 // `apart`: what a step consists of is timed by itself.
