@@ -43,7 +43,10 @@ static inline void sim_bodies_set(sim_world *w, sim_bodies *b,
                                              .count = COUNT_OF(b->body)}));
 }
 
-static inline bool sim_long_tests(void) {
+// Whether tests are wanted that take minutes. `left_out`: what is not tested without them.
+static inline bool sim_long_tests(const char *left_out) {
     const char *wanted = getenv("ROIL_LONG_TESTS");
-    return wanted && strcmp(wanted, "1") == 0;
+    if (wanted && strcmp(wanted, "1") == 0) return true;
+    print_message("left out: %s; set ROIL_LONG_TESTS=1\n", left_out);
+    return false;
 }

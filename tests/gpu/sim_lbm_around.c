@@ -74,7 +74,7 @@ static void a_lid_drives_a_cavity(void **state) {
     double error = cavity_error(*state, 40, 100, 16);
     print_message("cavity of 38 cells, Re 100: within %.2f %% of the lid\n", 100 * error);
     assert_true(error < 0.015);
-    if (!sim_long_tests()) return;
+    if (!sim_long_tests("finer cavities, up to Re 1000")) return;
     static const struct {
         int cells;
         double reynolds, times, bound;
@@ -179,7 +179,7 @@ static int in_cylinder(const float p[3], const void *user) {
 // 0.164 to 0.167 in free air: Williamson, "Vortex dynamics in the cylinder wake", 1996; between
 // walls 16 D apart a little more often.
 static void eddies_leave_a_cylinder(void **state) {
-    if (!sim_long_tests()) skip();
+    if (!sim_long_tests("a cylinder at Re 100")) skip();
     sim_world w;
     sim_bodies b;
     enum { D = 10, WIDTH = 16 * D, LENGTH = 24 * D, EVERY = 20 };
