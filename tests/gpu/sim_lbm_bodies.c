@@ -164,7 +164,9 @@ static void sweep(gpu *g, bool tilted, lbm_precision precision, double speed, do
     print_message("%s plate: %.2e of the smoke that it swept is behind it; fastest %.3f\n",
                   tilted ? "tilted" : "thin", behind.smoke / swept, all.fastest);
     assert_true(fabs(behind.smoke / swept) < 1e-4 && behind.most < 1e-2);
-    assert_true(all.fastest < (most > 0 ? 1.01 * most : 2 * speed) && all.most < 1.3);
+    assert_true(all.fastest < (most > 0 ? 1.01 * most : 2 * speed));
+    // What halves round to differs by device.
+    assert_true(all.most < (precision == LBM_F16 ? 1.3 : 1.2));
     sim_bodies_close(&w, &b);
     sim_close(&w);
 }
