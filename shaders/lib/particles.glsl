@@ -9,7 +9,6 @@ uniform sampler2D particles; //= input : the particles (of the pass particles)
 #ifndef LIB_PARTICLES_GLSL
 #define LIB_PARTICLES_GLSL
 #include "lib/particles_state.glsl"
-#include "lib/random.glsl"
 uniform float particle_back; // seconds from the frame to the state, which is up to a step ahead
 
 struct particle {
@@ -18,7 +17,7 @@ struct particle {
     vec3 velocity;  // m/s
     float lifetime; // s, above the age
     float quantity; // that it carries; 0: none
-    uint id;        // its own as long as it lives, whatever slot it is in; from 0 on
+    uint id;        // its own, from 0 on: particle_random(id, 1024 and more) is too
 };
 
 // False: nothing is alive in the slot.
@@ -35,12 +34,6 @@ bool particle_read(uint slot, out particle p) {
     p.quantity = particle_quantities[slot];
 #endif
     return true;
-}
-
-// Evenly spread over [0, 1), the same for a particle all its life. `what` from 64 on is for those
-// that draw: lower ones are used up by its birth.
-float particle_random(uint id, uint what) {
-    return float(random_hash(id + random_hash(what + random_hash(particle_seed))) >> 8) * (1.0 / 16777216.0);
 }
 
 #endif

@@ -7,6 +7,7 @@
 // knows, and birth needs neither a list nor an atomic.
 #ifndef LIB_PARTICLES_STATE_GLSL
 #define LIB_PARTICLES_STATE_GLSL
+#include "lib/random.glsl"
 #ifndef PARTICLES_ACCESS // of the arrays
 #define PARTICLES_ACCESS readonly
 #endif
@@ -53,6 +54,11 @@ vec4 particle_velocity_at(uint slot) {
 // The number of the slot's particle: of all that were ever born, modulo 2^32.
 uint particle_number(uint slot) {
     return particle_round + slot - (slot < particle_next ? 0u : particle_count);
+}
+
+// Evenly spread over [0, 1), the same for a particle all its life. `what` below 1024 is for its birth.
+float particle_random(uint id, uint what) {
+    return float(random_hash(id + random_hash(what + random_hash(particle_seed))) >> 8) * (1.0 / 16777216.0);
 }
 
 #endif

@@ -213,9 +213,23 @@ static void exchange_meshes(effect *e, effect *from) {
     mem_free(taken);
 }
 
+static void exchange_simulations(effect *e, effect *from) {
+    bool *taken = mem_alloc(from->pass_count * sizeof *taken);
+    for (size_t i = 0; i < e->pass_count; i++) {
+        const pass_simulation *kind = pass_get_simulation(e->passes[i]);
+        bool done = !kind || !kind->exchange;
+        for (size_t k = 0; k < from->pass_count && !done; k++) {
+            if (taken[k] || pass_get_simulation(from->passes[k]) != kind) continue;
+            done = taken[k] = kind->exchange(e->passes[i], from->passes[k]);
+        }
+    }
+    mem_free(taken);
+}
+
 static void exchange(effect *e, effect *from) {
     graph_adopt(e->graph, from->graph);
     exchange_grids(e, from);
+    exchange_simulations(e, from);
     exchange_meshes(e, from);
     if (e->sky && from->sky) sky_image_exchange(e->sky, from->sky);
 }

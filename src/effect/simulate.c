@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "effect/effect_impl.h"
+#include "scene/bvh.h"
 #include <math.h>
 
 // Seconds that a live window waits: as long as the rest of a frame takes, within these.
@@ -77,6 +78,7 @@ static bool run_frame(effect *e, double frame, bool again) {
     if (!gpu_frame_begin(e->device)) return false;
     e->host.ahead = true;
     bool done = effect_evaluate(e, frame, e->device, again) &&
+                scene_bvh_update(e->host.bvh, e->device, &e->context) &&
                 graph_execute_simulation(e->graph, e->device);
     e->host.ahead = false;
     if (!gpu_frame_end(e->device)) done = false;

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/blue_noise.h"
+#include "pass/particles.h"
 #include "pass/pass_impl.h"
 #include "pass/ranges.h"
 #include <ctype.h>
@@ -36,8 +37,9 @@ bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_
     const shader_interface *face = p->face;
     arena *memory = p->host->memory;
     size_t count = 0;
-    shader_define *all = arena_alloc(
-        memory, (define_count + face->image_count + face->field_count + 1) * sizeof *all);
+    shader_define *all = arena_alloc(memory, (define_count + face->image_count + face->field_count +
+                                              1 + PASS_PARTICLES_DEFINES) *
+                                                 sizeof *all);
     for (size_t i = 0; i < define_count; i++) all[count++] = defines[i];
     for (size_t i = 0; i < face->image_count; i++) {
         const shader_image *image = &face->images[i];
@@ -48,6 +50,7 @@ bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_
     }
     for (size_t i = 0; i < face->field_count; i++)
         all[count++] = define(memory, "HAS", face->fields[i].name, p->fields[i] ? "1" : "0");
+    if (p->particles) count += pass_particles_defines(p->particles, all + count);
     const scene *around = p->host->scene;
     all[count++] = (shader_define){"SKY_IMAGE", around && around->sky.image ? "1" : "0"};
     bool without = false;

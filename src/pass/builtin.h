@@ -68,6 +68,28 @@ bool lbm_source_build(pass *p);
 bool lbm_source_fill(pass *p, const shader_binary *binary, unsigned char *block);
 void lbm_source_destroy(pass *p);
 
+bool slices_templates_declare_group(pass *p);
+bool slices_templates_check_group(pass *p);
+bool slices_templates_build_group(pass *p);
+bool slices_templates_fill_group(pass *p, const shader_binary *binary, unsigned char *block);
+
+bool particles_declare(pass *p);
+bool particles_check(pass *p);
+bool particles_build(pass *p);
+bool particles_allocate(pass *p);
+bool particles_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool particles_rehearse(pass *p);
+bool particles_record(pass *p);
+void particles_destroy(pass *p);
+extern const pass_simulation particles_simulation;
+
+bool splats_declare(pass *p);
+bool splats_check(pass *p);
+bool splats_build(pass *p);
+bool splats_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool splats_record(pass *p);
+void splats_destroy(pass *p);
+
 bool voxels_declare(pass *p);
 bool voxels_check_pass(pass *p);
 bool voxels_build_pass(pass *p);

@@ -5,13 +5,8 @@
 // Nothing of it depends on a camera (but collisions with what a picture shows), and no picture
 // comes of it. A pass that reads it has `#include "lib/particles.glsl"`, which declares an input
 // `particles`: given as `particles = sparks` or by `from = sparks`, it orders the passes and names
-// the particles. Its hooks then do
-//
-//     const pass *source = pass_particles_of(p);                  // declare: NULL is an error
-//     count = pass_particles_defines(source, defines);            // with every pass_compile
-//     pass_particles_write(source, binary, block);                // in `fill`
-//     if (pass_particles_bind(source, slot_name, &binding)) ...   // overrides of pass_bind
-//     threads = pass_particles_used(source);                      // at record; 0: there are none
+// the particles. All else comes by itself, in a user's shader too: pass_compile adds the defines,
+// pass_fill_block writes the members, pass_bind finds the buffers.
 //
 // The state is up to a step ahead of the frame; particle_read() goes back along the velocity.
 #pragma once
@@ -30,8 +25,9 @@ bool pass_particles_open(pass *p, const pass_particles_desc *desc);
 
 // ---- for passes that read them ----------------------------------------------------------------
 
-// The pass behind p's input `particles`; NULL with a message.
+// The pass behind p's input `particles`, from pass_declare on; NULL: it has none.
 const pass *pass_particles_of(const pass *p);
+bool pass_find_particles(pass *p); // pass_declare does
 enum { PASS_PARTICLES_DEFINES = 2 };
 size_t pass_particles_defines(const pass *particles, shader_define out[PASS_PARTICLES_DEFINES]);
 uint32_t pass_particles_count(const pass *particles); // slots

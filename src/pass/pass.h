@@ -64,6 +64,9 @@ typedef struct pass_simulation {
     int64_t (*most)(const pass *p);              // steps of one submit
     double (*reached)(const pass *p); // the latest time that it shows; -INFINITY: none yet
     void (*restart)(pass *p);         // begins anew with the next record
+    // A reload: exchanges the states of both, before the new one is allocated; a second time undoes
+    // it. False: they do not match. NULL: its grid does so.
+    bool (*exchange)(pass *p, pass *other);
     // Its state in a checkpoint (sim/checkpoint.h). After pass_allocate; a state that does not load
     // leaves it to begin anew.
     void (*save)(const pass *p, struct checkpoint_list *out);

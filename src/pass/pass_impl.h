@@ -29,6 +29,7 @@ struct pass {
     size_t mesh_count, mesh_capacity;
     pass **sources; // asked, in order, for what this pass says nothing about
     size_t source_count, source_capacity;
+    const pass *particles; // behind the input of that name; NULL: it has none
 
     // After pass_build.
     field_program *program;

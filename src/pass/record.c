@@ -2,6 +2,7 @@
 // dispatched.
 #include "base/error.h"
 #include "base/memory.h"
+#include "pass/particles.h"
 #include "pass/pass_impl.h"
 #include "pass/ranges.h"
 #include "scene/bvh.h"
@@ -74,6 +75,7 @@ bool pass_fill_block(pass *p, const shader_binary *binary, unsigned char *block)
             memcpy(block + member.offset, value, member.size < 16 ? member.size : 16);
         }
     }
+    if (p->particles) pass_particles_write(p->particles, binary, block);
     return !p->type || !p->type->fill || p->type->fill(p, binary, block);
 }
 
@@ -178,6 +180,7 @@ static bool bind_buffer(const pass *p, const char *name, gpu_binding *out) {
     static const char *const bvh_parts[BVH_PARTS] = {"BvhNodes",    "BvhTriangles", "BvhInstances",
                                                      "BvhSurfaces", "BvhVertices",  "BvhMaterials",
                                                      "BvhTexels"};
+    if (p->particles && pass_particles_bind(p->particles, name, out)) return true;
     if (strcmp(name, "Counters") == 0) out->buffer = p->counters;
     for (int i = 0; i < BVH_PARTS; i++)
         if (strcmp(name, bvh_parts[i]) == 0)

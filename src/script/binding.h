@@ -119,6 +119,8 @@ size_t value_lights(lua_State *L, int index, const char *who, scene_light **out)
 // A pass of a built-in type by the table at `table`, not declared yet. Keys among `own` are left to
 // the caller. script.unsound is `who` until the caller has declared it.
 pass *pass_make(lua_State *L, const char *type, const char *who, int table, const script_key *own);
+// What stands for a pass that is declared: `from` takes it, and its outputs are images by name.
+void pass_push(lua_State *L, pass *p);
 
 // ---- the objects' globals ---------------------------------------------------------------------
 
@@ -135,5 +137,6 @@ void l_scene_open(lua_State *L);
 void l_light_open(lua_State *L);
 void l_pass_open(lua_State *L);
 void l_lbm_open(lua_State *L);
+void l_particles_open(lua_State *L);
 void l_voxels_open(lua_State *L);
 void l_image_open(lua_State *L);

@@ -320,6 +320,11 @@ static void begin_pass(lua_State *L, pass_call *call, const char *type, const ch
     memset(call->taken, 0, call->face->image_count + 1);
 }
 
+void pass_push(lua_State *L, pass *p) {
+    result_object *result = object_new(L, "pass result", sizeof *result);
+    result->pass = p;
+}
+
 pass *pass_make(lua_State *L, const char *type, const char *who, int table, const script_key *own) {
     pass_call call = {.who = who, .own = own};
     begin_pass(L, &call, type, NULL, table);
@@ -338,8 +343,7 @@ static int make_pass(lua_State *L, const char *type, const char *file, int first
     if (table) read_table(L, &call, table, first_element);
     if (!pass_declare(call.pass)) script_raise(L);
     s->unsound = unsound;
-    result_object *result = object_new(L, "pass result", sizeof *result);
-    result->pass = call.pass;
+    pass_push(L, call.pass);
     return 1;
 }
 
@@ -370,7 +374,7 @@ static int l_shader(lua_State *L) {
 
 // Made by a function of its own, or a method: bake(field), lbm { }, air:source { }.
 static bool has_constructor(const char *type) {
-    static const char *const types[] = {"bake", "lbm", "lbm_source", "voxels"};
+    static const char *const types[] = {"bake", "lbm", "lbm_source", "particles", "voxels"};
     for (size_t i = 0; i < COUNT_OF(types); i++)
         if (strcmp(types[i], type) == 0) return true;
     return false;

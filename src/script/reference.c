@@ -177,6 +177,24 @@ static const script_object objects[] = {
         KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "in which it is simulated"),
         KEY("time_step", "number s", "that a step takes"))},
 
+    {"particles", "source", "local sparks = particles { count = 4096, rate = 2000, lifetime = {0.5, 2} }",
+     "points that are born, are carried or thrown, meet what is solid and die; `splats` draws them. "
+     "What else it takes is what `roil info passes particles` lists: rate, burst, velocity, speed, "
+     "gravity, drag, collide ... Time passes in steps of its own, whatever is drawn",
+     .args = KEYS(KEY("mesh", "mesh { \"data/ball.obj\" }", "on whose surface they are born; it may move")),
+     .keys = KEYS(
+        KEY("count", "65536 [1, 16777216]",
+            "how many there are at a time: of more, the oldest make room. 'rate' times 'lifetime' is "
+            "enough"),
+        KEY("lifetime", "2 s", "or {0.5, 2}: the shortest and the longest"),
+        KEY("shape", "field or mesh",
+            "they are born where the field is above 0.5, evenly, or on the mesh, evenly; without: "
+            "within 'radius' of 'position'"),
+        KEY("above", "{field, threshold}", "instead of a shape: where the field is above that"),
+        KEY("time_step", "1/60 s", "that a step takes"),
+        KEY("warm_up", "0 s", "that are simulated before the first frame"),
+        KEY("name", "\"particles\"", "for --set NAME.key=value and statistics; numbered when taken"))},
+
     {"voxels", "source", "local body = voxels { mesh { \"data/ball.obj\" }, resolution = 64 }",
      "meshes as cells of a box: fields of what is inside of them, how far their surface is, how they "
      "move. Meshes that stand still are computed once",

@@ -1,0 +1,107 @@
+// Birth of particles: which slots are taken in this step, when, where and how fast. The host knows
+// how many are born (src/pass/particles_birth.c); all else is random by the particle's number.
+uniform uint birth_first;        // slot of the step's first newborn
+uniform uint birth_count;        // of this step
+uniform uint birth_burst;        // the first so many of them are born at once,
+uniform float birth_burst_rest;  // so long before the end of the step (s)
+uniform float birth_first_rest;  // the next one so long before it,
+uniform float birth_every;       // those after it later by so much each
+#if MESH
+uniform uint mesh_triangles;
+uniform mat4 mesh_from; // mesh to world, at the begin of the step
+uniform mat4 mesh_to;   // at its end
+// Triangles and, for choosing one of them by its area with two random numbers, an alias table
+// (Walker 1977; made as Vose 1991 does).
+struct birth_triangle {
+    vec4 corner; // w: probability of this one
+    vec4 first;  // edge; w: the bits of the other one's index
+    vec4 second; // edge
+};
+layout(std430) readonly buffer BirthTriangles { birth_triangle birth_triangles[]; };
+#endif
+#define BIRTH_TRIES 64 // to find a place in the shape
+
+// How many of the step are born before it; at least birth_count where it is none of them.
+uint birth_index(uint slot) {
+    return slot - birth_first + (slot < birth_first ? particle_count : 0u);
+}
+
+// Seconds of the step that are left to it.
+float birth_rest(uint index) {
+    if (index < birth_burst) return birth_burst_rest;
+    return clamp(birth_first_rest - float(index - birth_burst) * birth_every, 0.0, time_step);
+}
+
+vec3 birth_direction(float across, float around) { // evenly over the sphere
+    float z = 1.0 - 2.0 * across, r = sqrt(max(1.0 - z * z, 0.0)), turn = 6.2831853 * around;
+    return vec3(r * cos(turn), r * sin(turn), z);
+}
+
+// Turned by at most `spread`, evenly over the cap; `v` is not zero.
+vec3 birth_spread(vec3 v, float a, float b) {
+    float z = 1.0 - a * (1.0 - cos(radians(spread))), r = sqrt(max(1.0 - z * z, 0.0));
+    vec3 n = normalize(v), side = normalize(abs(n.z) < 0.9 ? vec3(-n.y, n.x, 0.0) : vec3(0.0, -n.z, n.y));
+    float turn = 6.2831853 * b;
+    return length(v) * (z * n + r * (cos(turn) * side + sin(turn) * cross(n, side)));
+}
+
+#if MESH
+uint birth_choose(uint id, uint what) {
+    uint h = random_hash(id + random_hash(what + random_hash(particle_seed))), chosen, low;
+    umulExtended(h, mesh_triangles, chosen, low);
+    birth_triangle t = birth_triangles[chosen];
+    return particle_random(id, what + 1u) < t.corner.w ? chosen : floatBitsToUint(t.first.w);
+}
+#endif
+
+// A place that may be one, the way out of there, and how the mesh moves there.
+void birth_try(uint id, uint what, float share, out vec3 p, out vec3 way, out vec3 motion) {
+    vec3 r = vec3(particle_random(id, what), particle_random(id, what + 1u), particle_random(id, what + 2u));
+    motion = vec3(0.0);
+#if MESH
+    birth_triangle t = birth_triangles[birth_choose(id, what + 3u)];
+    float s = sqrt(r.x); // Osada et al., "Shape distributions", 2002, section 4.2
+    vec4 inside = vec4(t.corner.xyz + s * ((1.0 - r.y) * t.first.xyz + r.y * t.second.xyz), 1.0);
+    vec3 from = (mesh_from * inside).xyz, to = (mesh_to * inside).xyz;
+    p = mix(from, to, share);
+    motion = (to - from) / time_step;
+    way = normalize(mat3(mesh_to) * cross(t.first.xyz, t.second.xyz));
+#elif HAS_SHAPE
+    p = mix(box_min, box_max, r);
+    way = p - 0.5 * (box_min + box_max);
+    way /= max(length(way), 1e-20);
+#else
+    way = birth_direction(r.x, r.y);
+    p = position + radius * pow(r.z, 1.0 / 3.0) * way;
+#endif
+}
+
+bool birth_place(uint id, float share, out vec3 p, out vec3 way, out vec3 motion) {
+#if HAS_SHAPE
+    for (uint i = 0u; i < BIRTH_TRIES; i++) {
+        birth_try(id, 8u * i + 8u, share, p, way, motion);
+        if (field_shape(p) > threshold) return true;
+    }
+    return false;
+#else
+    birth_try(id, 8u, share, p, way, motion);
+    return true;
+#endif
+}
+
+// Of particle `id`, when `share` of the step is over. Without a place it is dead at once.
+void birth(uint id, float share, out vec4 at, out vec4 moves) {
+    vec3 p, way, motion;
+    bool found = birth_place(id, share, p, way, motion);
+    at = vec4(p, 0.0);
+    moves = vec4(0.0);
+    if (!found) return;
+    moves.w = mix(lifetime_min, max(lifetime_min, lifetime_max), particle_random(id, 0u));
+#if !CARRIED
+    vec3 v = field_speed(p) + outward * way;
+    if (dot(v, v) > 0.0) v = birth_spread(v, particle_random(id, 1u), particle_random(id, 2u));
+    v *= 1.0 - variation * particle_random(id, 3u);
+    moves.xyz = v + mesh_factor * motion;
+    if (inherit != 0.0) moves.xyz += inherit * field_velocity(p);
+#endif
+}

@@ -1,0 +1,165 @@
+// The clock of particles. Steps are so long whatever is drawn; the state is that at the end of the
+// step in which the time of the frame lies, and what is drawn goes back from there.
+#include "base/error.h"
+#include "base/memory.h"
+#include "pass/builtin.h"
+#include "pass/particles_parts.h"
+#include <math.h>
+
+// Particles that one submit may move: about 0.1 s of a large device, 2 s of a software one. In a
+// window it is a part of that.
+static const double most_moves = 1e9, most_in_software = 2e7;
+enum { BRIEF = 64 };
+
+static const double rounding = 1e-6; // of a step
+enum { ROW = 1 << 16 };              // threads side by side
+
+double particles_reached(const particles_state *s) {
+    return (double)s->clock.steps * s->desc.time_step - s->desc.warm_up;
+}
+
+int64_t particles_left(const pass *p, double time) {
+    const particles_state *s = particles_of(p);
+    double steps = ceil((time + s->desc.warm_up) / s->desc.time_step - rounding);
+    return (int64_t)fmax(steps, 0) - (s->fresh ? 0 : (int64_t)s->clock.steps);
+}
+
+static int64_t most(const pass *p) {
+    bool software = gpu_get_info(p->host->device)->kind == GPU_CPU;
+    double steps = (software ? most_in_software : most_moves) / particles_of(p)->desc.count;
+    return (int64_t)fmax(1, p->host->brief ? steps / BRIEF : steps);
+}
+
+static double reached(const pass *p) {
+    const particles_state *s = particles_of(p);
+    return s->fresh ? -(double)INFINITY : particles_reached(s);
+}
+
+static void restart(pass *p) {
+    particles_of(p)->fresh = true;
+}
+
+// ---- a step -----------------------------------------------------------------------------------
+
+bool particles_rates_of(const pass *p, particles_rates *out) {
+    static const char *const names[] = {"rate", "burst", "burst_time", "burst_period"};
+    const particles_state *s = particles_of(p);
+    double *const slots[] = {&out->rate, &out->burst, &out->burst_time, &out->burst_period};
+    *out = (particles_rates){.begin = particles_reached(s), .step = s->desc.time_step};
+    for (size_t i = 0; i < COUNT_OF(names); i++) {
+        float value[4];
+        if (!pass_evaluate_vector(p, names[i], value)) return false;
+        *slots[i] = (double)value[0];
+    }
+    return true;
+}
+
+static bool find_births(const pass *p, particles_state *s) {
+    particles_rates rates;
+    if (!particles_rates_of(p, &rates)) return false;
+    s->births = particles_next(&s->clock, &rates, s->desc.count);
+    return true;
+}
+
+static bool find_places(const pass *p, particles_state *s) {
+    const field *shape = particles_field(p, "shape");
+    s->box = (box3){{0, 0, 0}, {0, 0, 0}};
+    if (shape && !p->mesh_count) {
+        if (!field_bounds(shape, p->host->context, &s->box)) return false;
+        if (!box3_is_finite(s->box))
+            return err_set("%s: 'shape' has no end; make it zero outside of a box, as by the "
+                           "product with box { }",
+                           p->label);
+    }
+    for (int i = 0; i < 2 && p->mesh_count; i++) {
+        field_context then = *p->host->context;
+        then.time += (i - 0.5) * s->desc.time_step;
+        if (!scene_mesh_transform(p->meshes[0], &then, s->places[i]))
+            return err_prefix("%s: ", p->meshes[0]->name);
+    }
+    return true;
+}
+
+static bool step(pass *p, particles_state *s) {
+    if (!find_births(p, s)) return false;
+    uint32_t used = pass_particles_used(p);
+    if (!used) return true;
+    pass_override overrides[GPU_MAX_SLOTS];
+    gpu_binding bindings[GPU_MAX_SLOTS];
+    gpu_dispatch_desc dispatch = {.pipeline = p->pipeline, .bindings = bindings};
+    dispatch.threads[0] = used < ROW ? used : ROW;
+    dispatch.threads[1] = (used + ROW - 1) / ROW;
+    size_t count = 0;
+    for (size_t i = 0; i < p->binary.slot_count; i++) {
+        overrides[count].name = p->binary.slots[i].name;
+        count += pass_particles_bind(p, overrides[count].name, &overrides[count].binding);
+    }
+    return find_places(p, s) && pass_prepare(p) &&
+           pass_bind(p, &p->binary, p->block, overrides, count, bindings,
+                     &dispatch.binding_count) &&
+           gpu_dispatch(p->host->device, &dispatch);
+}
+
+bool particles_advance(pass *p) {
+    particles_state *s = particles_of(p);
+    int64_t left = particles_left(p, p->host->context->time), limit = most(p);
+    if (s->fresh) s->clock = (particles_clock){0};
+    s->fresh = false;
+    if (left > limit) left = limit;
+    const field_context *frame = p->host->context;
+    field_context now = *frame;
+    p->host->context = &now;
+    bool fine = true;
+    for (int64_t i = 0; i < left && fine; i++) {
+        now.time = particles_reached(s) + 0.5 * s->desc.time_step;
+        fine = step(p, s);
+    }
+    p->host->context = frame;
+    s->last_steps = left > 0 ? (uint64_t)left : 0;
+    return fine;
+}
+
+// ---- asking -----------------------------------------------------------------------------------
+
+static double work(const pass *p) {
+    return (double)particles_of(p)->last_steps * pass_particles_used(p);
+}
+
+static size_t readouts(const pass *p, pass_readout *out, size_t capacity) {
+    const particles_state *s = particles_of(p);
+    const pass_readout all[] = {
+        {"born", "", (double)s->clock.born},
+        {"slots", "", pass_particles_used(p)},
+        {"steps", "", (double)s->clock.steps},
+        {"time step", "s", s->desc.time_step},
+    };
+    for (size_t i = 0; i < COUNT_OF(all) && i < capacity; i++) out[i] = all[i];
+    return COUNT_OF(all);
+}
+
+// More than there are slots for: who is born takes the place of one that could live on.
+static const char *trouble(const pass *p) {
+    particles_state *s = particles_of(p);
+    double rate = (double)pass_evaluate(p, "rate");
+    double life =
+        fmax((double)pass_evaluate(p, "lifetime_min"), (double)pass_evaluate(p, "lifetime_max"));
+    if (rate * life <= s->desc.count) return NULL;
+    snprintf(s->trouble, sizeof s->trouble,
+             "the oldest die early, to make room: set 'count' to %.0f, which is 'rate' times "
+             "'lifetime' (it is %u)",
+             ceil(rate * life), s->desc.count);
+    return s->trouble;
+}
+
+const pass_simulation particles_simulation = {
+    .left = particles_left,
+    .most = most,
+    .reached = reached,
+    .restart = restart,
+    .exchange = particles_exchange,
+    .save = particles_save,
+    .load = particles_load,
+    .readouts = readouts,
+    .work = work,
+    .trouble = trouble,
+};
