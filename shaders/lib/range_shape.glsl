@@ -45,4 +45,9 @@ range1 range_torus(range3 p, range3 position, range1 radius, range1 thickness, r
     return range_density(range_sub(range_length(range_vec(ring, range_z(q), none)), thickness), falloff);
 }
 
+range1 range_disc(range3 p, range1 x, range1 y, range1 radius, range1 falloff) {
+    range3 q = range_vec(range_sub(range_x(p), x), range_sub(range_y(p), y), range_number(0.0));
+    return range_density(range_sub(range_length(q), radius), falloff);
+}
+
 #endif

@@ -27,4 +27,8 @@ float shape_torus(vec3 p, vec3 position, float radius, float thickness, float fa
     return shape_density(length(vec2(length(q.xy) - radius, q.z)) - thickness, falloff);
 }
 
+float shape_disc(vec3 p, float x, float y, float radius, float falloff) {
+    return shape_density(length(p.xy - vec2(x, y)) - radius, falloff);
+}
+
 #endif

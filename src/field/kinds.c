@@ -237,6 +237,11 @@ const field_kind field_kinds[] = {
                  {"thickness", SCALAR("m"), .value = {0.25f}, .min = 0, .max = 1e6f, .help = "radius of the tube"},
                  {"falloff", SCALAR("m"), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge"}},
         .eval = eval_torus, RANGE(torus), .bounds = bounds_torus},
+    {"disc", SHAPE("shape_disc"), .summary = "a disc in X and Y, the same at every Z: for slices; 0 outside, 1 from `falloff` below the edge",
+        .args = {{"x", SCALAR(""), .value = {0.5f}, .help = "centre"}, {"y", SCALAR(""), .value = {0.5f}, .help = "centre"},
+                 {"radius", SCALAR(""), .value = {0.1f}, .min = 0, .max = 1e6f, .help = "to the edge"},
+                 {"falloff", SCALAR(""), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge"}},
+        .eval = eval_disc, RANGE(disc), .bounds = bounds_disc},
 
     // ---- noise; arguments and options in the order of the GLSL functions
     {"perlin", LATTICE_NOISE("noise_perlin", 200), .eval = eval_perlin, RANGE(perlin),

@@ -37,7 +37,7 @@ kind_eval eval_constant, eval_palette, eval_swizzle, eval_position, eval_add, ev
     eval_negate, eval_div, eval_min, eval_max, eval_mix, eval_clamp, eval_remap, eval_smoothstep,
     eval_step, eval_pow, eval_abs, eval_sqrt, eval_exp, eval_sin, eval_floor, eval_fract,
     eval_length, eval_dot, eval_vec, eval_zero;
-kind_eval eval_sphere, eval_box, eval_capsule, eval_torus;
+kind_eval eval_sphere, eval_box, eval_capsule, eval_torus, eval_disc;
 kind_eval eval_perlin, eval_simplex, eval_value, eval_worley, eval_curl;
 
 kind_ranges ranges_grid, ranges_palette, ranges_unknown, ranges_swizzle, ranges_position,
@@ -45,11 +45,11 @@ kind_ranges ranges_grid, ranges_palette, ranges_unknown, ranges_swizzle, ranges_
     ranges_mix, ranges_clamp, ranges_remap, ranges_smoothstep, ranges_step, ranges_pow, ranges_abs,
     ranges_sqrt, ranges_exp, ranges_sin, ranges_floor, ranges_fract, ranges_length, ranges_dot,
     ranges_vec;
-kind_ranges ranges_sphere, ranges_box, ranges_capsule, ranges_torus;
+kind_ranges ranges_sphere, ranges_box, ranges_capsule, ranges_torus, ranges_disc;
 kind_ranges ranges_perlin, ranges_simplex, ranges_value, ranges_worley, ranges_curl;
 
 kind_bounds bounds_mul, bounds_div, bounds_mix, bounds_min, bounds_dot, bounds_grid, bounds_warp,
-    bounds_transform, bounds_sphere, bounds_box, bounds_capsule, bounds_torus;
+    bounds_transform, bounds_sphere, bounds_box, bounds_capsule, bounds_torus, bounds_disc;
 
 // What a node "advect" stands for, made of other kinds (advect.c). NULL with a message.
 field *field_advect(arena *memory, const field *node);

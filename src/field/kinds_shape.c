@@ -46,6 +46,12 @@ void eval_torus(const field *node, const field_context *context, float3 p, const
     out[0] = density(length3(ring, z, 0) - a[2][0], a[3][0]);
 }
 
+void eval_disc(const field *node, const field_context *context, float3 p, const float (*a)[4],
+               float out[4]) {
+    (void)node, (void)context;
+    out[0] = density(length3(p.x - a[0][0], p.y - a[1][0], 0) - a[2][0], a[3][0]);
+}
+
 static box3 around(const float centre[4], float x, float y, float z) {
     return (box3){{centre[0] - x, centre[1] - y, centre[2] - z},
                   {centre[0] + x, centre[1] + y, centre[2] + z}};
@@ -89,4 +95,14 @@ box3 bounds_torus(const field *node, const field_context *context, const box3 *a
     if (!uniform_args(node, context, a)) return box3_infinite();
     float out = a[1][0] + a[2][0];
     return around(a[0], out, out, a[2][0]);
+}
+
+box3 bounds_disc(const field *node, const field_context *context, const box3 *args) {
+    (void)args;
+    float a[3][4];
+    box3 box = box3_infinite();
+    if (!uniform_args(node, context, a)) return box;
+    box.min.x = a[0][0] - a[2][0], box.max.x = a[0][0] + a[2][0];
+    box.min.y = a[1][0] - a[2][0], box.max.y = a[1][0] + a[2][0];
+    return box;
 }

@@ -325,3 +325,10 @@ intervals ranges_torus(const field *node, const field_context *context, const in
     intervals tube = {{range_sub(length(&flat, 3), args[1].c[0]), q.c[2]}};
     return densities(range_sub(length(&tube, 3), args[2].c[0]), args[3].c[0]);
 }
+
+intervals ranges_disc(const field *node, const field_context *context, const intervals *at,
+                      const intervals *args) {
+    (void)node, (void)context;
+    intervals q = {{range_sub(at->c[0], args[0].c[0]), range_sub(at->c[1], args[1].c[0])}};
+    return densities(range_sub(length(&q, 3), args[2].c[0]), args[3].c[0]);
+}
