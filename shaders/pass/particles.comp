@@ -75,8 +75,8 @@ void main() {
         at = particle_position_at(slot);
         moves = particle_velocity_at(slot);
     }
-    if (at.w >= moves.w) { // it is dead, or found no place to be born
-        if (born) put(slot, at, moves);
+    if (at.w >= moves.w) { // it has died, in the step before or long ago, or found no place to be born
+        if (born || moves.w > 0.0) put(slot, at, vec4(0.0));
         return;
     }
 #if PARTICLE_QUANTITY
