@@ -1,0 +1,198 @@
+// All levels of at most 32 x 32 cells, in one group for each slice, in shared memory; and whether
+// the solve is done. The same sweeps as in down.comp and up.comp.
+layout(local_size_x = 256) in;
+#include "sim/flow/state.glsl"
+#include "sim/flow/levels.glsl"
+#include "sim/flow/solve.glsl"
+
+uniform vec2 level_cells; // of the first of these levels
+uniform vec2 fine_cells;  // of the one before it
+#define level_size ivec2(level_cells)
+#define fine_size ivec2(fine_cells)
+uniform int fine_level_at; // where coefficients of the latter begin
+uniform int from_at, z_at;
+uniform int iteration;
+uniform float tolerance;
+layout(std430) readonly buffer FlowCoefficients { uvec2 flow_coefficients[]; };
+layout(std430) readonly buffer FlowFrom { float from[]; };
+layout(std430) writeonly buffer FlowZ { float z_out[]; };
+
+const int MOST = 32 * 32 * 4 / 3 + 16;
+shared float r[MOST], z[MOST], d[MOST]; // d: the cell's own coefficient
+shared uint a[MOST];
+
+int thread() {
+    return int(gl_LocalInvocationIndex);
+}
+
+// ---- whether it is done -----------------------------------------------------------------------
+
+bool is_done(int slice) {
+    uint at = uint(slice * FLOW_KNOWN);
+    float residual = flow_total(slice, FLOW_PARTS_R).x;
+    float reference = flow_known[at + FLOW_REFERENCE];
+    if (iteration == 0) reference = flow_total(slice, FLOW_PARTS_BUILD).x;
+    bool done = !(residual > tolerance * tolerance * reference);
+    barrier(); // all have read what the first now writes
+    if (thread() == 0) {
+        flow_known[at + FLOW_DONE] = done ? 1.0 : 0.0;
+        flow_known[at + FLOW_REFERENCE] = reference;
+        flow_known[at + FLOW_RESIDUAL] = residual;
+        flow_known[at + FLOW_ITERATIONS] = float(iteration);
+    }
+    return done;
+}
+
+// ---- levels -----------------------------------------------------------------------------------
+
+struct Level {
+    ivec2 size;
+    int at;
+};
+
+Level coarser(Level l) {
+    return Level((l.size + 1) / 2, l.at + l.size.x * l.size.y);
+}
+bool is_last(Level l) {
+    return l.size.x <= 2 && l.size.y <= 2;
+}
+
+ivec2 cell_of(Level l, int i) {
+    return ivec2(i % l.size.x, i / l.size.x);
+}
+int place(Level l, ivec2 cell) {
+    return l.at + cell.y * l.size.x + cell.x;
+}
+
+float z_of(Level l, ivec2 cell) {
+    cell = flow_around(cell, l.size);
+    return flow_within(cell, l.size) ? z[place(l, cell)] : 0.0;
+}
+
+float around(Level l, ivec2 cell) {
+    vec4 value = vec4(z_of(l, cell - ivec2(1, 0)), z_of(l, cell + ivec2(1, 0)),
+                      z_of(l, cell - ivec2(0, 1)), z_of(l, cell + ivec2(0, 1)));
+    return dot(flow_faces_of(a[place(l, cell)]), value);
+}
+
+// Of a coarse cell, by the four in it.
+void put_coefficients(int at, uvec4 faces, vec4 held, bvec2 there) {
+    a[at] = flow_faces_coarse(faces, there);
+    d[at] = dot(flow_faces_of(a[at]), vec4(1.0)) + dot(held, vec4(1.0));
+}
+
+// What the first of these levels is given.
+void load(Level l, int slice) {
+    for (int i = thread(); i < l.size.x * l.size.y; i += FLOW_GROUP) {
+        ivec2 cell = cell_of(l, i);
+        uvec4 faces;
+        vec4 held;
+        for (int k = 0; k < 4; k++) {
+            ivec2 fine = 2 * cell + ivec2(k & 1, k >> 1);
+            bool is = flow_within(fine, fine_size);
+            uint at = uint(fine_level_at + (slice * fine_size.y + fine.y) * fine_size.x + fine.x);
+            uvec2 c = is ? flow_coefficients[at] : uvec2(0u);
+            faces[k] = c.x;
+            held[k] = uintBitsToFloat(c.y);
+        }
+        put_coefficients(i, faces, held, lessThan(2 * cell + 1, fine_size));
+        r[i] = from[uint(from_at + slice * l.size.x * l.size.y + i)];
+    }
+    barrier();
+}
+
+// ---- sweeps -----------------------------------------------------------------------------------
+
+void sweep(Level l, int color) {
+    for (int i = thread(); i < l.size.x * l.size.y; i += FLOW_GROUP) {
+        ivec2 cell = cell_of(l, i);
+        int at = l.at + i;
+        if (((cell.x + cell.y) & 1) == color)
+            z[at] = d[at] > 0.0 ? (r[at] + around(l, cell)) / d[at] : 0.0;
+    }
+    barrier();
+}
+
+void begin(Level l) {
+    for (int i = thread(); i < l.size.x * l.size.y; i += FLOW_GROUP) {
+        ivec2 cell = cell_of(l, i);
+        int at = l.at + i;
+        z[at] = ((cell.x + cell.y) & 1) == 0 && d[at] > 0.0 ? r[at] / d[at] : 0.0;
+    }
+    barrier();
+    sweep(l, 1);
+}
+
+void leave(Level l) { // red cells: what they have left
+    for (int i = thread(); i < l.size.x * l.size.y; i += FLOW_GROUP) {
+        ivec2 cell = cell_of(l, i);
+        int at = l.at + i;
+        if (((cell.x + cell.y) & 1) == 0) z[at] = d[at] > 0.0 ? around(l, cell) : 0.0;
+    }
+    barrier();
+}
+
+void restrict_(Level fine, Level coarse) {
+    for (int i = thread(); i < coarse.size.x * coarse.size.y; i += FLOW_GROUP) {
+        ivec2 cell = cell_of(coarse, i);
+        float sum = 0.0;
+        for (int j = 0; j < 8; j++) {
+            ivec2 o = ivec2(j % 2 * 2 + (j / 2 & 1), j / 2);
+            ivec2 from_ = flow_around(2 * cell - 1 + o, fine.size);
+            if (!flow_within(from_, fine.size) || !all(flow_asked(o, fine.size))) continue;
+            sum += flow_share(from_, cell, coarse.size) * z[place(fine, from_)];
+        }
+        uvec4 faces = uvec4(0u);
+        vec4 held = vec4(0.0);
+        for (int k = 0; k < 4; k++) {
+            ivec2 child = 2 * cell + ivec2(k & 1, k >> 1);
+            if (!flow_within(child, fine.size)) continue;
+            int at = place(fine, child);
+            faces[k] = a[at];
+            held[k] = d[at] - dot(flow_faces_of(a[at]), vec4(1.0));
+        }
+        r[coarse.at + i] = sum;
+        put_coefficients(coarse.at + i, faces, held, lessThan(2 * cell + 1, fine.size));
+    }
+    barrier();
+}
+
+void add(Level fine, Level coarse) { // to red cells; black ones are made anew
+    for (int i = thread(); i < fine.size.x * fine.size.y; i += FLOW_GROUP) {
+        ivec2 cell = cell_of(fine, i);
+        int at = fine.at + i;
+        if (((cell.x + cell.y) & 1) != 0) continue;
+        ivec2 own = cell >> 1, other = flow_others(cell, coarse.size);
+        float more = 0.5625 * z_of(coarse, own);
+        if (other.x >= 0) more += 0.1875 * z_of(coarse, ivec2(other.x, own.y));
+        if (other.y >= 0) more += 0.1875 * z_of(coarse, ivec2(own.x, other.y));
+        if (other.x >= 0 && other.y >= 0) more += 0.0625 * z_of(coarse, other);
+        z[at] = d[at] > 0.0 ? r[at] / d[at] + more : 0.0;
+    }
+    barrier();
+}
+
+void main() {
+    int slice = int(gl_WorkGroupID.z);
+    if (flow_known[slice * FLOW_KNOWN + FLOW_DONE] > 0.0) return;
+    if (is_done(slice)) return;
+    Level levels[7]; // of at most 32 cells a side: 32, 16, 8, 4, 2
+    int last = 0;
+    levels[0] = Level(level_size, 0);
+    load(levels[0], slice);
+    for (; !is_last(levels[last]); last++) {
+        levels[last + 1] = coarser(levels[last]);
+        begin(levels[last]);
+        leave(levels[last]);
+        restrict_(levels[last], levels[last + 1]);
+    }
+    begin(levels[last]);
+    for (int i = 2; i < 7; i++) sweep(levels[last], i & 1); // red first and last
+    for (; last > 0; last--) {
+        add(levels[last - 1], levels[last]);
+        sweep(levels[last - 1], 1);
+        sweep(levels[last - 1], 0);
+    }
+    for (int i = thread(); i < level_size.x * level_size.y; i += FLOW_GROUP)
+        z_out[uint(z_at + slice * level_size.x * level_size.y + i)] = z[i];
+}

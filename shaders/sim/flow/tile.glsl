@@ -1,0 +1,60 @@
+// A tile of a level with what surrounds it, in shared memory: r, the pressure z, coefficients. Red
+// cells are those whose x + y is even.
+#ifndef SIM_FLOW_TILE_GLSL
+#define SIM_FLOW_TILE_GLSL
+
+// FLOW_HALO: cells around the tile, before the include
+const int FLOW_WIDE = FLOW_TILE + 2 * FLOW_HALO; // even
+const int FLOW_TILE_CELLS = FLOW_WIDE * FLOW_WIDE;
+shared float flow_tile_r[FLOW_TILE_CELLS];
+shared float flow_tile_z[FLOW_TILE_CELLS];
+shared float flow_tile_d[FLOW_TILE_CELLS]; // 1 / the cell's own coefficient; 0: it is no air
+shared uint flow_tile_a[FLOW_TILE_CELLS];
+
+uniform vec2 level_cells;
+#define level_size ivec2(level_cells)
+uniform int level_at; // where those of the first slice begin, in coefficients
+layout(std430) readonly buffer FlowCoefficients { uvec2 flow_coefficients[]; };
+
+// From the tile's first own cell.
+int flow_tile_at(ivec2 p) {
+    return (p.y + FLOW_HALO) * FLOW_WIDE + p.x + FLOW_HALO;
+}
+
+ivec2 flow_tile_first() {
+    return ivec2(gl_WorkGroupID.xy) * FLOW_TILE;
+}
+
+uint flow_level_cell(ivec2 cell, int slice) {
+    return uint((slice * level_size.y + cell.y) * level_size.x + cell.x);
+}
+
+void flow_tile_coefficients(int i, ivec2 cell, int slice) {
+    uvec2 c = flow_coefficients[uint(level_at) + flow_level_cell(cell, slice)];
+    float d = dot(flow_faces_of(c.x), vec4(1.0)) + uintBitsToFloat(c.y);
+    flow_tile_a[i] = c.x;
+    flow_tile_d[i] = d > 0.0 ? 1.0 / d : 0.0;
+}
+
+void flow_tile_nothing(int i) {
+    flow_tile_r[i] = flow_tile_z[i] = flow_tile_d[i] = 0.0;
+    flow_tile_a[i] = 0u;
+}
+
+// The k-th cell of a colour, 0 red, among those at most `border` around the tile.
+ivec2 flow_tile_cell(int k, int border, int color) {
+    const int half_ = (FLOW_TILE + 2 * border) / 2;
+    int y = k / half_ - border, x = k % half_ * 2 - border;
+    return ivec2(x + ((x + y + color) & 1), y);
+}
+int flow_tile_count(int border) {
+    return (FLOW_TILE + 2 * border) * (FLOW_TILE + 2 * border) / 2;
+}
+
+// Sum over faces of a times z of the neighbour.
+float flow_tile_around(int i) {
+    vec4 z = vec4(flow_tile_z[i - 1], flow_tile_z[i + 1], flow_tile_z[i - FLOW_WIDE],
+                  flow_tile_z[i + FLOW_WIDE]);
+    return dot(flow_faces_of(flow_tile_a[i]), z);
+}
+#endif

@@ -1,0 +1,256 @@
+// A solver of 2D flow: what its shaders are compiled for, and its state on the device.
+#include "sim/flow.h"
+#include "base/error.h"
+#include "base/str.h"
+#include "sim/flow_impl.h"
+#include <string.h>
+
+// ---- structure --------------------------------------------------------------------------------
+
+static bool check_faces(const flow_desc *desc) {
+    static const char *const axes[2] = {"x", "y"};
+    for (int i = 0; i < 2; i++) {
+        bool around = desc->faces[2 * i] == FLOW_PERIODIC;
+        uint32_t n = desc->size[i];
+        if (around != (desc->faces[2 * i + 1] == FLOW_PERIODIC))
+            return err_set("one face along %s is periodic and the other is not", axes[i]);
+        if (around && (n & (n - 1)) != 0)
+            return err_set("%u cells along %s, which is periodic; a power of two is needed", n,
+                           axes[i]);
+    }
+    return true;
+}
+
+static bool check(const flow_desc *desc) {
+    for (int i = 0; i < 2; i++)
+        if (desc->size[i] < FLOW_LEAST_SIZE || desc->size[i] > FLOW_MOST_SIZE)
+            return err_set("a slice of %u x %u cells; %d to %d along each axis are accepted",
+                           desc->size[0], desc->size[1], FLOW_LEAST_SIZE, FLOW_MOST_SIZE);
+    if (desc->slices < 1 || desc->slices > FLOW_MAX_SLICES)
+        return err_set("%u slices; 1 to %d are accepted", desc->slices, FLOW_MAX_SLICES);
+    return check_faces(desc);
+}
+
+flow *flow_create(arena *memory, const flow_desc *desc) {
+    if (!check(desc)) return NULL;
+    flow *f = arena_alloc(memory, sizeof *f);
+    *f = (flow){.memory = memory, .desc = *desc};
+    if (f->desc.max_iterations == 0) f->desc.max_iterations = flow_default_iterations(desc);
+    flow_levels_find(f);
+    return f;
+}
+
+const flow_desc *flow_get_desc(const flow *f) {
+    return &f->desc;
+}
+
+uint64_t flow_cells(const flow *f) {
+    return (uint64_t)f->desc.size[0] * f->desc.size[1] * f->desc.slices;
+}
+
+// ---- shaders ----------------------------------------------------------------------------------
+
+static void define(flow *f, const char *name, uint32_t value) {
+    f->defines[f->define_count++] = (shader_define){name, arena_format(f->memory, "%u", value)};
+}
+
+static void define_all(flow *f) {
+    static const char *const faces[4] = {"FLOW_FACE_LEFT", "FLOW_FACE_RIGHT", "FLOW_FACE_BOTTOM",
+                                         "FLOW_FACE_TOP"};
+    const flow_desc *desc = &f->desc;
+    f->define_count = 0;
+    define(f, "FLOW_NX", desc->size[0]);
+    define(f, "FLOW_NY", desc->size[1]);
+    define(f, "FLOW_SLICES", desc->slices);
+    for (int i = 0; i < 4; i++) define(f, faces[i], desc->faces[i]);
+    define(f, "FLOW_WITH_SOURCES", desc->sources);
+    define(f, "FLOW_WITH_OBSTACLES", desc->obstacles);
+    define(f, "FLOW_WITH_TEMPLATES", desc->templates);
+    define(f, "FLOW_WITH_CORRECTION", desc->advection == FLOW_MACCORMACK);
+    define(f, "FLOW_TILE", FLOW_TILE);
+}
+
+size_t flow_defines(const flow *f, shader_define out[FLOW_MAX_DEFINES]) {
+    memcpy(out, f->defines, f->define_count * sizeof *out);
+    return f->define_count;
+}
+
+typedef struct part { // of what is compiled
+    sim_kernel *kernel;
+    const char *shader, *define; // define: NULL, none of its own
+    bool unused;
+} part;
+
+bool flow_compile(flow *f, shader_library *library, const shader_reader *reader) {
+    flow_kernels *k = &f->kernels;
+    const bool plain = f->desc.solver == FLOW_CG;
+    const part parts[] = {
+        {&k->diffuse, "sim/flow/diffuse.comp", NULL, false},
+        {&k->predict, "sim/flow/predict.comp", NULL, f->desc.advection != FLOW_MACCORMACK},
+        {&k->advance, "sim/flow/advance.comp", NULL, false},
+        {&k->build, "sim/flow/build.comp", NULL, false},
+        {&k->follow, "sim/flow/follow.comp", NULL, !plain},
+        {&k->direction, "sim/flow/direction.comp", plain ? "FLOW_PLAIN" : NULL, false},
+        {&k->project, "sim/flow/project.comp", NULL, false},
+        {&k->down_finest, "sim/flow/down.comp", "FLOW_FINEST", plain},
+        {&k->down, "sim/flow/down.comp", NULL, plain},
+        {&k->coarse, "sim/flow/coarse.comp", NULL, plain},
+        {&k->up, "sim/flow/up.comp", NULL, plain},
+        {&k->up_finest, "sim/flow/up.comp", "FLOW_FINEST", plain},
+        {&k->look, "sim/flow/look.comp", NULL, false},
+    };
+    define_all(f);
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        const shader_define own = {parts[i].define, ""};
+        const sim_defines all = {f->defines, f->define_count};
+        if (!parts[i].unused &&
+            !sim_kernel_compile(parts[i].kernel, parts[i].shader, f->memory, library, reader, all,
+                                (sim_defines){&own, own.name != NULL}))
+            return false;
+    }
+    return true;
+}
+
+bool flow_build(flow *f, gpu *g, shader_library *library, const shader_reader *reader) {
+    if (!flow_compile(f, library, reader)) return false;
+    for (int i = 0; i < FLOW_KERNELS; i++)
+        if (f->all[i].shader && !sim_kernel_build(&f->all[i], g)) return false;
+    return true;
+}
+
+// ---- state ------------------------------------------------------------------------------------
+
+static uint64_t tiles(const flow_desc *desc, uint32_t side) {
+    return (uint64_t)((desc->size[0] + side - 1) / side) * ((desc->size[1] + side - 1) / side);
+}
+
+// Bytes; 0: not needed.
+static void find_sizes(const flow *f, uint64_t out[FLOW_MEM_COUNT]) {
+    const flow_desc *desc = &f->desc;
+    const flow_level *last = &f->levels[f->level_count - 1];
+    const uint64_t cells = flow_cells(f), row = (desc->size[0] + 4) / 4 * 4;
+    const uint64_t corners = row * (desc->size[1] + 1) * desc->slices;
+    const uint64_t end = (uint64_t)last->size[0] * last->size[1] * desc->slices;
+    const bool multigrid = desc->solver == FLOW_MULTIGRID;
+    uint64_t parts = tiles(desc, FLOW_TILE), builds = tiles(desc, FLOW_BUILD_TILE);
+    if (builds > parts) parts = builds;
+    memset(out, 0, FLOW_MEM_COUNT * sizeof *out);
+    for (int i = FLOW_MEM_VELOCITY; i < FLOW_MEM_SCALARS; i++) out[i] = corners * 8;
+    for (int i = 0; i < 2; i++) {
+        out[FLOW_MEM_SCALARS + i] = cells * 16;
+        out[FLOW_MEM_PRESSURE + i] = out[FLOW_MEM_RESIDUAL + i] = cells * 4;
+        out[FLOW_MEM_DIRECTION + i] = cells * 4;
+    }
+    if (desc->advection == FLOW_MACCORMACK) out[FLOW_MEM_SCALARS_HAT] = cells * 16;
+    if (desc->sources) out[FLOW_MEM_SOURCES] = cells * 48;
+    if (desc->obstacles) out[FLOW_MEM_OBSTACLES] = cells * 16;
+    if (desc->templates) out[FLOW_MEM_TEMPLATES] = cells * 8;
+    out[FLOW_MEM_COEFFICIENTS] = last->coefficients_at * 8ull;
+    out[FLOW_MEM_COARSE_RESIDUAL] = multigrid ? (last->r_at + end) * 4 : 0;
+    out[FLOW_MEM_Z] = multigrid ? (last->z_at + end) * 4 : 0;
+    out[FLOW_MEM_IMAGE] = cells * 4;
+    out[FLOW_MEM_KNOWN] = desc->slices * FLOW_KNOWN_WORDS * 4ull;
+    out[FLOW_MEM_PARTS] = desc->slices * FLOW_PART_KINDS * parts * 16;
+}
+
+bool flow_allocate(flow *f, gpu *g) {
+    uint64_t sizes[FLOW_MEM_COUNT];
+    find_sizes(f, sizes);
+    for (int i = 0; i < FLOW_MEM_COUNT; i++) {
+        if (f->buffers[i] || sizes[i] == 0) continue;
+        f->buffers[i] = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "flow", .size = sizes[i]});
+        if (!f->buffers[i]) return false;
+    }
+    return true;
+}
+
+void flow_destroy(flow *f, gpu *g) {
+    for (int i = 0; i < FLOW_KERNELS; i++) sim_kernel_destroy(&f->all[i], g);
+    for (int i = 0; i < FLOW_MEM_COUNT; i++) gpu_buffer_destroy(g, f->buffers[i]);
+    for (int i = 0; i < 2 * FLOW_LOOKS; i++)
+        gpu_image_destroy(g, f->looks[i / FLOW_LOOKS][i % FLOW_LOOKS]);
+    memset(f->buffers, 0, sizeof f->buffers);
+    memset(f->looks, 0, sizeof f->looks);
+}
+
+gpu_buffer *flow_pair(const flow *f, flow_memory pair, uint32_t which) {
+    return f->buffers[pair + (f->current ^ which)];
+}
+
+// ---- what is bound ----------------------------------------------------------------------------
+
+enum { OWN_SLOTS = 13 };
+
+static void own_slots(const flow *f, sim_slot out[OWN_SLOTS]) {
+    gpu_buffer *const *b = f->buffers;
+    const sim_slot slots[OWN_SLOTS] = {
+        {"FlowScalars", flow_pair(f, FLOW_MEM_SCALARS, 0), NULL},
+        {"FlowVelocity", b[FLOW_MEM_VELOCITY], NULL},
+        {"FlowSources", b[FLOW_MEM_SOURCES], NULL},
+        {"FlowObstacles", b[FLOW_MEM_OBSTACLES], NULL},
+        {"FlowTemplates", b[FLOW_MEM_TEMPLATES], NULL},
+        {"FlowPressure", flow_pair(f, FLOW_MEM_PRESSURE, 0), NULL},
+        {"FlowCoefficients", b[FLOW_MEM_COEFFICIENTS], NULL},
+        {"FlowKnown", b[FLOW_MEM_KNOWN], NULL},
+        {"FlowParts", b[FLOW_MEM_PARTS], NULL},
+        {"FlowZ", b[FLOW_MEM_Z], NULL},
+        {"FlowImage", b[FLOW_MEM_IMAGE], NULL},
+        {"FlowHatVelocity", b[FLOW_MEM_VELOCITY_HAT], NULL},
+        {"FlowHatScalars", b[FLOW_MEM_SCALARS_HAT], NULL},
+    };
+    memcpy(out, slots, sizeof slots);
+}
+
+bool flow_bind(const flow *f, const char *name, gpu_binding *out) {
+    sim_slot slots[OWN_SLOTS];
+    own_slots(f, slots);
+    *out = (gpu_binding){0};
+    for (int i = 0; i < OWN_SLOTS; i++)
+        if (strcmp(slots[i].name, name) == 0) out->buffer = slots[i].buffer;
+    return out->buffer != NULL;
+}
+
+bool flow_run(const flow *f, gpu *g, const flow_call *call) {
+    sim_slot slots[32 + OWN_SLOTS];
+    if (call->count) memcpy(slots, call->more, call->count * sizeof *slots);
+    own_slots(f, slots + call->count);
+    return sim_kernel_run(call->kernel, g, slots, call->count + OWN_SLOTS, call->threads);
+}
+
+size_t flow_buffers(const flow *f, gpu_buffer *out[FLOW_STATE_BUFFERS]) {
+    out[0] = f->buffers[FLOW_MEM_VELOCITY];
+    out[1] = flow_pair(f, FLOW_MEM_SCALARS, 0);
+    out[2] = flow_pair(f, FLOW_MEM_PRESSURE, 0);
+    return FLOW_STATE_BUFFERS;
+}
+
+void flow_set_steps(flow *f, uint64_t steps) {
+    f->steps = steps;
+}
+
+uint64_t flow_steps(const flow *f) {
+    return f->steps;
+}
+
+static void swap_state(flow *a, flow *b) {
+    static const flow_memory state[] = {FLOW_MEM_VELOCITY, FLOW_MEM_SCALARS, FLOW_MEM_SCALARS + 1,
+                                        FLOW_MEM_PRESSURE, FLOW_MEM_PRESSURE + 1};
+    const flow was = *a;
+    for (size_t i = 0; i < sizeof state / sizeof *state; i++) {
+        a->buffers[state[i]] = b->buffers[state[i]];
+        b->buffers[state[i]] = was.buffers[state[i]];
+    }
+    memcpy(a->looks, b->looks, sizeof a->looks);
+    memcpy(b->looks, was.looks, sizeof b->looks);
+    a->current = b->current, b->current = was.current;
+    a->kept = b->kept, b->kept = was.kept;
+    a->steps = b->steps, b->steps = was.steps;
+}
+
+bool flow_exchange(flow *a, flow *b) {
+    if (memcmp(a->desc.size, b->desc.size, sizeof a->desc.size) != 0 ||
+        a->desc.slices != b->desc.slices)
+        return false;
+    swap_state(a, b);
+    return true;
+}

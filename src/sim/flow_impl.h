@@ -1,0 +1,98 @@
+// The inside of a solver of 2D flow, for the files of this layer only.
+#pragma once
+#include "sim/flow.h"
+#include "sim/kernel.h"
+
+// ---- to be measured on a device ---------------------------------------------------------------
+
+enum {
+    // Cells along a side of what a group does of the pressure's finer levels: 16 or 32. Smaller
+    // ones are more groups, and more cells that are computed in two.
+    FLOW_TILE = 32,
+    FLOW_MULTIGRID_ITERATIONS = 6, // default of max_iterations
+};
+
+// ---- memory -----------------------------------------------------------------------------------
+
+// Pairs: [current] and the other.
+typedef enum flow_memory {
+    FLOW_MEM_VELOCITY, // of the state
+    FLOW_MEM_VELOCITY_NEXT,
+    FLOW_MEM_VELOCITY_HAT,
+    FLOW_MEM_SCALARS, // two
+    FLOW_MEM_SCALARS_HAT = FLOW_MEM_SCALARS + 2,
+    FLOW_MEM_PRESSURE,                        // two: times dt / cell
+    FLOW_MEM_SOURCES = FLOW_MEM_PRESSURE + 2, // the inputs
+    FLOW_MEM_OBSTACLES,
+    FLOW_MEM_TEMPLATES,
+    FLOW_MEM_COEFFICIENTS,                            // of all levels but the coarsest
+    FLOW_MEM_RESIDUAL,                                // two: of the finest level
+    FLOW_MEM_COARSE_RESIDUAL = FLOW_MEM_RESIDUAL + 2, // of the others
+    FLOW_MEM_Z,                                       // of all levels
+    FLOW_MEM_DIRECTION,                               // two
+    FLOW_MEM_IMAGE = FLOW_MEM_DIRECTION + 2,
+    FLOW_MEM_KNOWN,
+    FLOW_MEM_PARTS,
+    FLOW_MEM_COUNT
+} flow_memory;
+
+// Of src/sim/flow_pressure.c and shaders/sim/flow/solve.glsl.
+enum { FLOW_KNOWN_WORDS = 8, FLOW_PART_KINDS = 5, FLOW_BUILD_TILE = 32 };
+
+// ---- levels -----------------------------------------------------------------------------------
+
+// The last one, and those after it, are done by one group (shaders/sim/flow/coarse.comp).
+enum { FLOW_MAX_LEVELS = 7, FLOW_COARSE = 32 };
+
+typedef struct flow_level {
+    uint32_t size[2];
+    uint32_t coefficients_at, r_at, z_at; // where those of the first slice begin
+} flow_level;
+
+// ---- the solver -------------------------------------------------------------------------------
+
+typedef struct flow_kernels {
+    sim_kernel diffuse, predict, advance;                // flow_step.c
+    sim_kernel build, follow, direction, project;        // flow_pressure.c
+    sim_kernel down_finest, down, coarse, up, up_finest; // with multigrid
+    sim_kernel look;
+} flow_kernels;
+enum { FLOW_KERNELS = sizeof(flow_kernels) / sizeof(sim_kernel) };
+
+struct flow {
+    arena *memory;
+    flow_desc desc;
+    shader_define defines[FLOW_MAX_DEFINES];
+    size_t define_count;
+    flow_level levels[FLOW_MAX_LEVELS];
+    uint32_t level_count;
+    union {
+        flow_kernels kernels;
+        sim_kernel all[FLOW_KERNELS]; // those without a shader are not used
+    };
+    gpu_buffer *buffers[FLOW_MEM_COUNT];
+    gpu_image *looks[2][FLOW_LOOKS]; // [kept % 2] is written next
+    uint32_t current;                // of pairs that are the state's
+    bool built;                      // coefficients are there
+    uint64_t kept, steps;
+};
+
+uint64_t flow_cells(const flow *f); // of all slices
+// A buffer of a pair: the current one (0), the other (1).
+gpu_buffer *flow_pair(const flow *f, flow_memory pair, uint32_t which);
+
+// A dispatch; slots that are not the solver's own, or not what is usual, are `more`.
+typedef struct flow_call {
+    sim_kernel *kernel;
+    const sim_slot *more;
+    size_t count;
+    uint32_t threads[3];
+} flow_call;
+bool flow_run(const flow *f, gpu *g, const flow_call *call);
+
+// ---- pressure: flow_pressure.c ----------------------------------------------------------------
+
+void flow_levels_find(flow *f);
+uint32_t flow_default_iterations(const flow_desc *desc);
+// From the velocity next, to that of the state.
+bool flow_project(flow *f, gpu *g, const flow_numbers *numbers);
