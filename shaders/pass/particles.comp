@@ -1,6 +1,6 @@
 // Points that are born, are carried or thrown, meet what is solid and die: sparks, embers, dust. No
 // picture comes of it: `splats` draws them. Here a step of a fixed part of a second, whatever is
-// drawn; every particle is its own thread, from birth to death.
+// drawn; every particle is its own thread. Who is born in it comes from particles/birth.comp.
 layout(local_size_x = 256, local_size_y = 1, local_size_z = 1) in;
 //@ option motion = auto {auto, carried, forces} : carried: they go as `velocity` says; forces: they go on as they are, pushed by gravity and force, slowed by drag; auto: forces where one of these or a speed is given
 //@ option integrator = rk2 {euler, rk2} : of the motion: by the velocity where they are (as published), or half a step ahead (midpoint)
@@ -38,55 +38,27 @@ uniform uint seed;          //= 0 [0, 16777215] : of all that is random
 uniform sampler2D depth;    //= input optional : what they bounce off as far as the picture shows it (of the pass geometry)
 uniform sampler2D normal;   //= input optional : and how that is turned
 uniform float time_step;    // s
-uniform vec3 box_min;       // around the shape (m)
-uniform vec3 box_max;
 #define PARTICLES_ACCESS
 #include "lib/particles_state.glsl"
 writeonly uniform image2D particles; //= output r32f : stands for the particles: `from` and the input `particles` name them by it
 #include "lib/frame.glsl"
 #include "fields.glsl"
-#include "particles/birth.glsl"
+#include "particles/put.glsl"
 #include "particles/contact.glsl"
 #include "particles/move.glsl"
-
-void put(uint slot, vec4 position, vec4 velocity) {
-#if PARTICLE_PARTS > 1
-    if (slot >= PARTICLES_EACH) {
-        particle_positions_more[slot - PARTICLES_EACH] = position;
-        particle_velocities_more[slot - PARTICLES_EACH] = velocity;
-        return;
-    }
-#endif
-    particle_positions[slot] = position;
-    particle_velocities[slot] = velocity;
-}
 
 void main() {
     uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (slot >= particle_used) return;
-    uint newborn = birth_index(slot);
-    bool born = newborn < birth_count;
-    float passes = time_step; // s
-    vec4 at, moves;
-    if (born) {
-        passes = birth_rest(newborn);
-        birth(particle_number(slot), 1.0 - passes / time_step, at, moves);
-    } else {
-        at = particle_position_at(slot);
-        moves = particle_velocity_at(slot);
-    }
-    if (at.w >= moves.w) { // it has died, in the step before or long ago, or found no place to be born
-        if (born || moves.w > 0.0) put(slot, at, vec4(0.0));
+    vec4 at = particle_position_at(slot), moves = particle_velocity_at(slot);
+    if (at.w >= moves.w) { // it has died, in the step before or long ago
+        if (moves.w > 0.0) particle_put(slot, vec4(0.0), vec4(0.0));
         return;
     }
+    move(at.xyz, moves.xyz, time_step + min(at.w, 0.0), moves.w); // born within the step: the rest of it
+    at.w += time_step;
+    particle_put(slot, at, moves);
 #if PARTICLE_QUANTITY
-    vec3 place = at.xyz;
-#endif
-    move(at.xyz, moves.xyz, passes, moves.w);
-    at.w += passes;
-    put(slot, at, moves);
-#if PARTICLE_QUANTITY
-    if (QUANTITY_FROM == QUANTITY_FROM_STEP) place = at.xyz;
-    if (born || QUANTITY_FROM == QUANTITY_FROM_STEP) particle_quantities[slot] = field_quantity(place);
+    if (QUANTITY_FROM == QUANTITY_FROM_STEP) particle_quantities[slot] = field_quantity(at.xyz);
 #endif
 }

@@ -86,19 +86,25 @@ bool particles_declare(pass *p) {
 
 // ---- building ---------------------------------------------------------------------------------
 
+static const char birth_shader[] = "pass/particles/birth.comp";
+
 bool particles_check(pass *p) {
-    const particles_state *s = particles_of(p);
+    particles_state *s = particles_of(p);
     shader_define defines[PASS_PARTICLES_DEFINES + 2];
     size_t count = pass_particles_defines(p, defines);
     defines[count++] = (shader_define){"CARRIED", s->carried ? "1" : "0"};
     defines[count++] = (shader_define){"MESH", p->mesh_count ? "1" : "0"};
-    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, count, &p->binary);
+    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, count, &p->binary) &&
+           pass_compile(p, birth_shader, SHADER_COMPUTE, defines, count, &s->birth);
 }
 
 bool particles_build(pass *p) {
+    particles_state *s = particles_of(p);
     if (!particles_check(p)) return false;
+    s->birth_block = arena_alloc(p->host->memory, pass_block_size(&s->birth) + 16);
     p->pipeline = pass_create_compute(p, &p->binary);
-    return p->pipeline != NULL;
+    s->birth_pipeline = pass_create_compute(p, &s->birth);
+    return p->pipeline && s->birth_pipeline;
 }
 
 static bool make_triangles(pass *p, particles_state *s) {
@@ -142,6 +148,7 @@ bool particles_allocate(pass *p) {
 void particles_destroy(pass *p) {
     particles_state *s = particles_of(p);
     if (!s) return;
+    if (s->birth_pipeline) gpu_pipeline_destroy(p->host->device, s->birth_pipeline);
     gpu_buffer *const all[] = {s->buffers.positions[0],  s->buffers.positions[1],
                                s->buffers.velocities[0], s->buffers.velocities[1],
                                s->buffers.quantities,    s->triangles};

@@ -59,6 +59,9 @@ typedef struct particles_state {
     particles_buffers buffers;
     gpu_buffer *triangles; // of the mesh; NULL: none, or not yet
     uint32_t triangle_count;
+    shader_binary birth; // runs before a step in which some are born
+    gpu_pipeline *birth_pipeline;
+    unsigned char *birth_block;
     particles_clock clock;
     bool fresh;              // begins anew with the next record
     particles_births births; // of the step being recorded

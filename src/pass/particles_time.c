@@ -80,24 +80,35 @@ static bool find_places(const pass *p, particles_state *s) {
     return true;
 }
 
+// One thread for each of `count`, in rows.
+static bool run(pass *p, const shader_binary *binary, gpu_pipeline *pipeline,
+                const unsigned char *block, uint32_t count) {
+    pass_override overrides[GPU_MAX_SLOTS];
+    gpu_binding bindings[GPU_MAX_SLOTS];
+    gpu_dispatch_desc dispatch = {.pipeline = pipeline, .bindings = bindings};
+    dispatch.threads[0] = count < ROW ? count : ROW;
+    dispatch.threads[1] = (count + ROW - 1) / ROW;
+    size_t known = 0;
+    for (size_t i = 0; i < binary->slot_count; i++) {
+        overrides[known].name = binary->slots[i].name;
+        known += pass_particles_bind(p, overrides[known].name, &overrides[known].binding);
+    }
+    return pass_bind(p, binary, block, overrides, known, bindings, &dispatch.binding_count) &&
+           gpu_dispatch(p->host->device, &dispatch);
+}
+
+static bool give_birth(pass *p, particles_state *s) {
+    return find_places(p, s) && pass_fill_block(p, &s->birth, s->birth_block) &&
+           run(p, &s->birth, s->birth_pipeline, s->birth_block, s->births.burst + s->births.steady);
+}
+
 static bool step(pass *p, particles_state *s) {
     if (!find_births(p, s)) return false;
     uint32_t used = pass_particles_used(p);
     if (!used) return true;
-    pass_override overrides[GPU_MAX_SLOTS];
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc dispatch = {.pipeline = p->pipeline, .bindings = bindings};
-    dispatch.threads[0] = used < ROW ? used : ROW;
-    dispatch.threads[1] = (used + ROW - 1) / ROW;
-    size_t count = 0;
-    for (size_t i = 0; i < p->binary.slot_count; i++) {
-        overrides[count].name = p->binary.slots[i].name;
-        count += pass_particles_bind(p, overrides[count].name, &overrides[count].binding);
-    }
-    return find_places(p, s) && pass_prepare(p) &&
-           pass_bind(p, &p->binary, p->block, overrides, count, bindings,
-                     &dispatch.binding_count) &&
-           gpu_dispatch(p->host->device, &dispatch);
+    bool born = s->births.burst + s->births.steady > 0;
+    return pass_prepare(p) && (!born || give_birth(p, s)) &&
+           run(p, &p->binary, p->pipeline, p->block, used);
 }
 
 bool particles_advance(pass *p) {

@@ -91,11 +91,9 @@ vec3 contact_turn(vec3 v, vec3 n, vec3 motion) {
 }
 
 // Where a particle that ends up inside is set, and what is left of its speed.
-void contact_settle(inout vec3 p, inout vec3 v) {
-    float d = contact_distance(p);
-    if (d >= 0.0) return;
-    vec3 motion, n = contact_normal(p, motion);
+void contact_settle(inout vec3 p, inout vec3 v, vec3 n, vec3 motion) {
+    float d = min(contact_distance(p), 0.0);
     p -= d * n;
-    v -= min(dot(v - motion, n), 0.0) * n;
+    if (d < 0.0) v -= min(dot(v - motion, n), 0.0) * n;
 }
 #endif

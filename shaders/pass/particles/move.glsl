@@ -12,7 +12,8 @@ void move(inout vec3 p, inout vec3 v, float h, inout float lifetime) {
 #if CONTACTS
     if (contact_distance(p) >= 0.0) return;
     if (CONTACT == CONTACT_DIE) lifetime = 0.0;
-    contact_settle(p, v);
+    vec3 motion, n = contact_normal(p, motion);
+    contact_settle(p, v, n, motion);
     v = h > 0.0 ? (p - from) / h : v; // as far as it came: drawing goes back along it
 #endif
 }
@@ -61,7 +62,7 @@ void move_against(move_push push, inout vec3 p, inout vec3 v, float h, float end
     p = q;
     v = contact_turn(w, n, motion);
     move_on(push, p, v, h - share * h);
-    contact_settle(p, v);
+    contact_settle(p, v, n, motion);
 }
 #endif
 

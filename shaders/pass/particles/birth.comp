@@ -1,5 +1,25 @@
-// Birth of particles: which slots are taken in this step, when, where and how fast. The host knows
-// how many are born (src/pass/particles_birth.c); all else is random by the particle's number.
+// Birth of particles, before the step that it lies in: when, where and how fast. The host knows how
+// many are born (src/pass/particles_birth.c); all else is random by the particle's number. Apart
+// from the step, since few are born in it, and software devices go through all of a branch.
+layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
+#define PARTICLES_ACCESS
+#include "lib/particles_state.glsl"
+#include "fields.glsl"
+#include "put.glsl"
+// Those of pass/particles.comp:
+uniform float lifetime_min;
+uniform float lifetime_max;
+uniform float threshold;
+uniform vec3 position;
+uniform float radius;
+uniform float outward;
+uniform float spread;
+uniform float variation;
+uniform float inherit;
+uniform float mesh_factor;
+uniform float time_step; // s
+uniform vec3 box_min;    // around the shape (m)
+uniform vec3 box_max;
 uniform uint birth_first;        // slot of the step's first newborn
 uniform uint birth_count;        // of this step
 uniform uint birth_burst;        // the first so many of them are born at once,
@@ -20,11 +40,6 @@ struct birth_triangle {
 layout(std430) readonly buffer BirthTriangles { birth_triangle birth_triangles[]; };
 #endif
 #define BIRTH_TRIES 64 // to find a place in the shape
-
-// How many of the step are born before it; at least birth_count where it is none of them.
-uint birth_index(uint slot) {
-    return slot - birth_first + (slot < birth_first ? particle_count : 0u);
-}
 
 // Seconds of the step that are left to it.
 float birth_rest(uint index) {
@@ -89,19 +104,32 @@ bool birth_place(uint id, float share, out vec3 p, out vec3 way, out vec3 motion
 #endif
 }
 
-// Of particle `id`, when `share` of the step is over. Without a place it is dead at once.
-void birth(uint id, float share, out vec4 at, out vec4 moves) {
-    vec3 p, way, motion;
-    bool found = birth_place(id, share, p, way, motion);
-    at = vec4(p, 0.0);
-    moves = vec4(0.0);
-    if (!found) return;
-    moves.w = mix(lifetime_min, max(lifetime_min, lifetime_max), particle_random(id, 0u));
-#if !CARRIED
+vec3 birth_speed(uint id, vec3 p, vec3 way, vec3 motion) {
     vec3 v = field_speed(p) + outward * way;
     if (dot(v, v) > 0.0) v = birth_spread(v, particle_random(id, 1u), particle_random(id, 2u));
     v *= 1.0 - variation * particle_random(id, 3u);
-    moves.xyz = v + mesh_factor * motion;
-    if (inherit != 0.0) moves.xyz += inherit * field_velocity(p);
+    return v + mesh_factor * motion + (inherit != 0.0 ? inherit * field_velocity(p) : vec3(0.0));
+}
+
+// Its age is below 0 by what of the step is over when it is born. Without a place it is dead at once.
+void main() {
+    uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (index >= birth_count) return;
+    uint slot = birth_first + index;
+    slot -= slot < particle_count ? 0u : particle_count;
+    uint id = particle_number(slot);
+    float before = time_step - birth_rest(index);
+    vec3 p, way, motion;
+    bool found = birth_place(id, before / time_step, p, way, motion);
+    vec4 moves = vec4(0.0);
+    if (found) {
+        moves.w = mix(lifetime_min, max(lifetime_min, lifetime_max), particle_random(id, 0u));
+#if !CARRIED
+        moves.xyz = birth_speed(id, p, way, motion);
+#endif
+    }
+    particle_put(slot, vec4(p, found ? -before : 0.0), moves);
+#if PARTICLE_QUANTITY
+    particle_quantities[slot] = field_quantity(p);
 #endif
 }
