@@ -52,9 +52,11 @@ uniform vec3 box_max;
 #include "lib/lighting.glsl"
 #include "lib/light.glsl"
 
+// Stages: project, scan, list, draw; sorted has one more before the last, bounds.
 #include "splats/shape.glsl"
 #include "splats/look.glsl"
+#include "splats/group.glsl"
 #include "splats/project.glsl"
-#include "splats/scan.glsl"
 #include "splats/list.glsl"
+#include "splats/order.glsl"
 #include "splats/draw.glsl"

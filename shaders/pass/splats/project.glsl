@@ -1,11 +1,6 @@
 // A thread for each particle: small ones are drawn at once, the others kept and counted for the
 // tiles that they touch.
-#if defined(STAGE_PROJECT)
-layout(local_size_x = 256) in;
-
-uint slot_of_thread() {
-    return 256u * (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) + gl_LocalInvocationIndex;
-}
+#if defined(STAGE_PROJECT) && BLEND != BLEND_SORTED
 
 // A point of the picture, in the four pixels around it: whatever its place, all of it is in them.
 void add_point(splat s, vec3 at, vec3 light, float opacity) {

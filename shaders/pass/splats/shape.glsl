@@ -1,8 +1,8 @@
 // What a splat is, and how much of it is in a pixel.
 
 const float PI = 3.14159265;
-const uint TILE = 16u, NONE = 0xffffffffu;
-const float LEAST_OPACITY = 1.0 / 1024.0;
+const uint TILE = 16u;
+const float LEAST_THROUGH = 1.0 / 1024.0; // what shines through less hides all
 const float MOST = 60000.0; // of a colour: half floats hold it
 
 // Sums are in these parts of 1, of colours and of the logarithm of what shines through. So a pixel

@@ -1,0 +1,70 @@
+// The inside of the pass type `splats`, for its own files only.
+#pragma once
+#include "pass/pass_impl.h"
+
+enum {
+    SPLATS_TILE = 16,              // pixels along a tile
+    SPLATS_GROUP = 256,            // threads of a group that has one for each particle
+    SPLATS_ACROSS = 1024,          // of such groups: a device takes 65535 along each side
+    SPLATS_RECORD = 48,            // bytes of a splat that is kept
+    SPLATS_MOST_RECORDS = 1 << 20, // kept, where others are drawn by themselves,
+    SPLATS_MOST_SORTED = 2097152,  // and where none is
+};
+
+typedef enum splats_stage {
+    SPLATS_PROJECT,
+    SPLATS_SCAN,
+    SPLATS_LIST,
+    SPLATS_BOUNDS,
+    SPLATS_DRAW,
+    SPLATS_STAGES
+} splats_stage;
+
+typedef enum splats_sort_stage {
+    SPLATS_SORT_COUNT,
+    SPLATS_SORT_SCAN,
+    SPLATS_SORT_MOVE,
+    SPLATS_SORT_STAGES
+} splats_sort_stage;
+
+typedef enum splats_buffer {
+    SPLATS_RECORDS,
+    SPLATS_SUMS,
+    SPLATS_HEAD,
+    SPLATS_TILES,
+    SPLATS_ENTRIES,
+    SPLATS_COUNTS, // from here on: of what is sorted
+    SPLATS_GROUPS,
+    SPLATS_PAIRS,
+    SPLATS_SORTED, // the other of two between which pairs go to and fro
+    SPLATS_SORT_COUNTS,
+    SPLATS_BUFFERS
+} splats_buffer;
+
+typedef enum splats_blend { SPLATS_ADDITIVE, SPLATS_WEIGHTED, SPLATS_SORTED_BLEND } splats_blend;
+
+typedef struct splats_state {
+    const pass *particles;
+    splats_blend blend;
+    shader_binary binary[SPLATS_STAGES], sort_binary[SPLATS_SORT_STAGES];
+    gpu_pipeline *pipeline[SPLATS_STAGES], *sort_pipeline[SPLATS_SORT_STAGES];
+    unsigned char *block[SPLATS_STAGES], *sort_block[SPLATS_SORT_STAGES];
+    gpu_buffer *buffers[SPLATS_BUFFERS];
+    bool empty; // the sums are
+} splats_state;
+
+static inline splats_state *splats_of(const pass *p) {
+    return p->state;
+}
+
+// splats.c
+uint32_t splats_entries(const pass *p);    // places in the lists
+uint32_t splats_tile_count(const pass *p); // as of the picture's size
+bool splats_make_buffer(pass *p, splats_buffer which, uint64_t size);
+
+// splats_sort.c: of blend = "sorted"
+bool splats_compile_sort(pass *p);
+bool splats_build_sort(pass *p);
+bool splats_make_sort(pass *p);
+uint32_t splats_depth_bits(const pass *p); // of a key; the others say which tile
+bool splats_sort(pass *p);                 // the pairs
