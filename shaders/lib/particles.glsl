@@ -17,7 +17,7 @@ struct particle {
     vec3 velocity;  // m/s
     float lifetime; // s, above the age
     float quantity; // that it carries; 0: none
-    uint id;        // its own, from 0 on: particle_random(id, 1024 and more) is too
+    uint id;        // its own, from 0 on: particle_random(id, 64) and those up to 127 are, too
 };
 
 // False: nothing is alive in the slot.

@@ -56,7 +56,8 @@ uint particle_number(uint slot) {
     return particle_round + slot - (slot < particle_next ? 0u : particle_count);
 }
 
-// Evenly spread over [0, 1), the same for a particle all its life. `what` below 1024 is for its birth.
+// Evenly spread over [0, 1), the same for a particle all its life. `what` from 64 to 127 is for those who
+// draw; the others are used up by its birth.
 float particle_random(uint id, uint what) {
     return float(random_hash(id + random_hash(what + random_hash(particle_seed))) >> 8) * (1.0 / 16777216.0);
 }

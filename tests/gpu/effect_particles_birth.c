@@ -114,7 +114,7 @@ static void a_threshold_says_where(void **state) {
         float from[3] = {s.at[i][0] - 1, s.at[i][1], s.at[i][2]};
         assert_true(length_of(from) < 0.5001);
     }
-    is_near(alive, 1024 * (1 - pow(1 - 0.00818, 64)), 80, "found a place"); // pi / 6 / 64 each try
+    is_near(alive, 1024 * (1 - pow(1 - 0.00818, 256)), 42, "found a place"); // pi / 6 / 64 each try
     swarm_close(&s);
 }
 

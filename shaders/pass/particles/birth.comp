@@ -39,7 +39,7 @@ struct birth_triangle {
 };
 layout(std430) readonly buffer BirthTriangles { birth_triangle birth_triangles[]; };
 #endif
-#define BIRTH_TRIES 64 // to find a place in the shape
+#define BIRTH_TRIES 256 // to find a place in the shape
 
 // Seconds of the step that are left to it.
 float birth_rest(uint index) {
@@ -94,12 +94,12 @@ void birth_try(uint id, uint what, float share, out vec3 p, out vec3 way, out ve
 bool birth_place(uint id, float share, out vec3 p, out vec3 way, out vec3 motion) {
 #if HAS_SHAPE
     for (uint i = 0u; i < BIRTH_TRIES; i++) {
-        birth_try(id, 8u * i + 8u, share, p, way, motion);
+        birth_try(id, 128u + 8u * i, share, p, way, motion);
         if (field_shape(p) > threshold) return true;
     }
     return false;
 #else
-    birth_try(id, 8u, share, p, way, motion);
+    birth_try(id, 128u, share, p, way, motion);
     return true;
 #endif
 }
