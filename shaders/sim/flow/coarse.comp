@@ -176,22 +176,23 @@ void main() {
     int slice = int(gl_WorkGroupID.z);
     if (flow_known[slice * FLOW_KNOWN + FLOW_DONE] > 0.0) return;
     if (is_done(slice)) return;
-    Level levels[7]; // of at most 32 cells a side: 32, 16, 8, 4, 2
-    int last = 0;
-    levels[0] = Level(level_size, 0);
-    load(levels[0], slice);
-    for (; !is_last(levels[last]); last++) {
-        levels[last + 1] = coarser(levels[last]);
-        begin(levels[last]);
-        leave(levels[last]);
-        restrict_(levels[last], levels[last + 1]);
+    Level l = Level(level_size, 0);
+    int depth = 0;
+    load(l, slice);
+    for (; !is_last(l); depth++) {
+        begin(l);
+        leave(l);
+        restrict_(l, coarser(l));
+        l = coarser(l);
     }
-    begin(levels[last]);
-    for (int i = 2; i < 7; i++) sweep(levels[last], i & 1); // red first and last
-    for (; last > 0; last--) {
-        add(levels[last - 1], levels[last]);
-        sweep(levels[last - 1], 1);
-        sweep(levels[last - 1], 0);
+    begin(l);
+    for (int i = 2; i < 7; i++) sweep(l, i & 1); // red first and last
+    for (; depth > 0; depth--) {
+        Level fine = Level(level_size, 0);
+        for (int i = 1; i < depth; i++) fine = coarser(fine);
+        add(fine, coarser(fine));
+        sweep(fine, 1);
+        sweep(fine, 0);
     }
     for (int i = thread(); i < level_size.x * level_size.y; i += FLOW_GROUP)
         z_out[uint(z_at + slice * level_size.x * level_size.y + i)] = z[i];
