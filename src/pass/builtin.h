@@ -90,6 +90,24 @@ bool splats_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool splats_record(pass *p);
 void splats_destroy(pass *p);
 
+bool slices_declare(pass *p);
+bool slices_complete(pass *p);
+bool slices_check(pass *p);
+bool slices_build(pass *p);
+bool slices_allocate(pass *p);
+bool slices_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool slices_rehearse(pass *p);
+bool slices_record(pass *p);
+void slices_destroy(pass *p);
+extern const pass_simulation slices_simulation;
+
+bool slices_part_declare(pass *p);
+bool slices_part_check(pass *p);
+bool slices_part_build(pass *p);
+bool slices_part_allocate(pass *p);
+bool slices_part_fill(pass *p, const shader_binary *binary, unsigned char *block);
+void slices_part_destroy(pass *p);
+
 bool voxels_declare(pass *p);
 bool voxels_check_pass(pass *p);
 bool voxels_build_pass(pass *p);

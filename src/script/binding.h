@@ -60,6 +60,13 @@ typedef struct picture_object { // a file's: image "templates/source.exr"
     const char *file; // as the script says it
 } picture_object;
 const picture_object *value_picture(lua_State *L, int index); // NULL: something else
+typedef struct slices_object { // l_slices.c
+    pass *pass;
+    field_grid *grid;
+    const field *offset; // of points, for what is turned round the axis; NULL: none
+    uint32_t count;
+    double time_step;
+} slices_object;
 typedef struct light_object {
     scene_light light;
 } light_object;
@@ -113,6 +120,8 @@ const field *value_get_uniform(lua_State *L, int table, const char *who, const c
 // says where. And raises when the table holds values without a name.
 void value_read_slots(lua_State *L, const char *who, void *out);
 void value_refuse_array(lua_State *L, const char *who);
+// The slices that a method is called of, with a table at 2; raises when it is anything else.
+const slices_object *slices_self(lua_State *L, const char *method, const char *example);
 // A list of lights, in the effect's memory; returns how many.
 size_t value_lights(lua_State *L, int index, const char *who, scene_light **out);
 
@@ -126,6 +135,7 @@ void pass_push(lua_State *L, pass *p);
 
 int l_bake(lua_State *L); // functions, and methods of fields
 int l_tile(lua_State *L);
+int l_slices_templates(lua_State *L); // a method of slices
 
 void l_effect_open(lua_State *L);
 void l_param_open(lua_State *L);
@@ -137,6 +147,7 @@ void l_scene_open(lua_State *L);
 void l_light_open(lua_State *L);
 void l_pass_open(lua_State *L);
 void l_lbm_open(lua_State *L);
+void l_slices_open(lua_State *L);
 void l_particles_open(lua_State *L);
 void l_voxels_open(lua_State *L);
 void l_image_open(lua_State *L);

@@ -49,6 +49,19 @@
         "the first four"),                                                                         \
     KEY("name", "\"lbm\"", "for --set NAME.key=value and statistics; numbered when taken"))
 
+#define SLICES_KEYS KEYS(                                                                          \
+    KEY("count", "2 [1, 32]", "slices; they stand at equal angles round the axis"),                \
+    KEY("size", "{128, 128} cells [16, 2048]", "of a slice"),                                      \
+    KEY("height", "1 m", "of a slice; its width follows from `size`"),                             \
+    KEY("position", "0, 0, 0 m", "middle of the lower edge"),                                      \
+    KEY("axis", "0, 0, 1", "that slices stand round; upwards in them"),                            \
+    KEY("offset", "vec3 field m", "by which points are moved before they are turned into a slice: " \
+        "a small fractal one hides that all sides are alike"),                                     \
+    KEY("time_step", "1/60 s", "that a step takes"),                                               \
+    KEY("warm_up", "0 s", "that are simulated before the first frame"),                            \
+    KEY("max_iterations", "0", "of the pressure in a step; 0: what suits solver and size"),        \
+    KEY("name", "\"slices\"", "for --set NAME.key=value and statistics; numbered when taken"))
+
 static const script_object objects[] = {
     // ---- values
     {"param", "value", "param { \"density\", 20, min = 0, max = 100, unit = \"1/m\" }",
@@ -175,6 +188,32 @@ static const script_object objects[] = {
         KEY("velocity", "field m/s", "three components"),
         KEY("pressure", "field Pa", "beyond that of the air around"),
         KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "in which it is simulated"),
+        KEY("time_step", "number s", "that a step takes"))},
+
+    {"slices", "source", "local flow = slices { count = 4, size = {128, 128}, height = 4 }",
+     "a few planes of simulated flow that stand round an axis, and what they hold turned round it; "
+     "flow.density is a field, 0 outside. What else it takes is what `roil info passes slices` "
+     "lists: reynolds, buoyancy_heat, vorticity, top = \"open\" ... Time passes in steps of its own, "
+     "whatever is drawn",
+     .keys = SLICES_KEYS,
+     .members = KEYS(
+        KEY("inflow { }", "{ shape = disc { 0.5, 0.05, radius = 0.06 }, density = 1, velocity = {0, 2} }",
+            "where the flow is given density, temperature, dye and speed. Places are shares of the "
+            "slice's width: x from 0 to 1, the axis at 1/2, y from 0 at the lower edge; "
+            "`roil info passes slices_inflow` lists the rest"),
+        KEY("obstacle { }", "{ image = image \"rock.png\" } or { shape = disc { }, velocity = {1, 0} }",
+            "what stands in the way in all slices: what is dark in a picture that covers them, or a "
+            "shape; `roil info passes slices_obstacle` lists the rest"),
+        KEY("force { }", "{ force = {1, 0}, shape = disc { } }",
+            "what pushes in some places (m/s^2); `roil info passes slices_force` lists the rest"),
+        KEY("density", "field", "of smoke"),
+        KEY("temperature", "field", "0 is that of the fluid around"),
+        KEY("dye", "field", "a second colour of smoke"),
+        KEY("velocity", "field m/s", "three components, turned with the arc"),
+        KEY("pressure", "field m^2/s^2", "over the density of the fluid"),
+        KEY("slice(1)", "its density, temperature, dye, velocity, pressure",
+            "one slice as it is, its plane going on along its normal"),
+        KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "around the cylinder that it fills"),
         KEY("time_step", "number s", "that a step takes"))},
 
     {"particles", "source", "local sparks = particles { count = 4096, rate = 2000, lifetime = {0.5, 2} }",

@@ -110,6 +110,7 @@ static int open_bindings(lua_State *L) {
     l_light_open(L);
     l_pass_open(L);
     l_lbm_open(L);
+    l_slices_open(L);
     l_particles_open(L);
     l_voxels_open(L);
     l_image_open(L);

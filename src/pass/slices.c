@@ -1,0 +1,216 @@
+// Life of the pass type `slices`: what it is made of is known when the script has run.
+#include "pass/slices.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "pass/builtin.h"
+#include "pass/slices_parts.h"
+#include "pass/slices_templates.h"
+#include <math.h>
+#include <string.h>
+
+const char *const pass_slices_names[PASS_SLICES_NAMES] = {"density", "temperature", "dye",
+                                                          "pressure", "velocity"};
+
+// ---- the grid ---------------------------------------------------------------------------------
+
+static bool update_grid(field_grid *grid, gpu *g, double time) {
+    (void)grid;
+    (void)g;
+    (void)time;
+    return true; // the pass does
+}
+
+static void destroy_grid(field_grid *grid, gpu *g) { // memory is the effect's, images the graph's
+    (void)grid;
+    (void)g;
+}
+
+// Where slices stand in space changes nothing of what flows in them.
+static bool same_flow(const slices_flow *a, const slices_flow *b) {
+    return a->desc.height == b->desc.height && a->clock.step == b->clock.step &&
+           a->clock.warm_up == b->clock.warm_up;
+}
+
+static bool exchange_grids(field_grid *grid, field_grid *other) {
+    slices_flow *a = (slices_flow *)grid, *b = (slices_flow *)other;
+    if (!a->solver || !b->solver || !same_flow(a, b) || !flow_exchange(a->solver, b->solver))
+        return false;
+    bool fresh = a->fresh;
+    a->fresh = b->fresh;
+    b->fresh = fresh;
+    slices_forget(a);
+    slices_forget(b);
+    return true;
+}
+
+static const char *field_name(const field_grid *grid, size_t index) {
+    const slices_flow *f = (const slices_flow *)grid;
+    for (int i = 0; i < PASS_SLICES_NAMES; i++)
+        if (f->used[i] && index-- == 0) return pass_slices_names[i];
+    return NULL;
+}
+
+static int find_field(field_grid *grid, const char *name, int *components) {
+    return pass_slices_use(((slices_flow *)grid)->pass, name, components);
+}
+
+static bool check(const pass *p, const pass_slices_desc *d) {
+    float length = d->axis.x * d->axis.x + d->axis.y * d->axis.y + d->axis.z * d->axis.z;
+    if (!(d->height >= 1e-6 && d->height <= 1e6))
+        return err_set("%s: 'height' is %g m; accepted: 1e-6 to 1e6", p->label, d->height);
+    if (!(length > 1e-12f))
+        return err_set("%s: 'axis' is {0, 0, 0}; a direction is accepted", p->label);
+    if (!(d->time_step >= 1e-5 && d->time_step <= 3600))
+        return err_set("%s: 'time_step' is %g s; accepted: 1e-5 to 3600", p->label, d->time_step);
+    if (!(d->warm_up >= 0 && d->warm_up <= 86400))
+        return err_set("%s: 'warm_up' is %g s; accepted: 0 to 86400", p->label, d->warm_up);
+    return true;
+}
+
+static field_grid grid_of(const slices_flow *f, const field_extrusion *extrusion) {
+    box3 box = field_extrusion_box(extrusion);
+    return (field_grid){
+        .name = f->pass->label,
+        .box = box,
+        .size = {f->desc.size[0], f->desc.size[1], f->desc.count + 1},
+        .channel_count = PASS_SLICES_CHANNELS,
+        .simulated = true,
+        .extruded = extrusion,
+        .state = {.active = box},
+        .update = update_grid,
+        .destroy = destroy_grid,
+        .exchange = exchange_grids,
+        .field_name = field_name,
+        .find_field = find_field,
+    };
+}
+
+field_grid *pass_slices_open(pass *p, const pass_slices_desc *desc) {
+    if (!check(p, desc)) return NULL;
+    slices_flow *f = p->state = arena_alloc(p->host->memory, sizeof *f);
+    double cell = desc->height / desc->size[1];
+    *f = (slices_flow){
+        .pass = p,
+        .desc = *desc,
+        .width = cell * desc->size[0],
+        .cell = cell,
+        .clock = {.step = desc->time_step, .warm_up = desc->warm_up},
+        .fresh = true,
+        .shown_steps = UINT64_MAX,
+    };
+    f->extrusion = field_extrusion_make(desc->position, desc->axis, (float)f->width,
+                                        (float)desc->height, desc->count);
+    f->extrusion.vectors = 1u << PASS_SLICES_VELOCITY / 4;
+    f->grid = grid_of(f, &f->extrusion);
+    f->used[PASS_SLICES_DENSITY] = true;
+    static const char *const parts[SLICES_LABELS] = {"step", "sources", "templates", "fields"};
+    for (int i = 0; i < SLICES_LABELS; i++)
+        f->labels[i] = arena_format(p->host->memory, "%s.%s", p->label, parts[i]);
+    return &f->grid;
+}
+
+const field_grid *pass_slices_only(pass *p, uint32_t slice) {
+    slices_flow *f = slices_of(p);
+    if (f->only[slice]) return f->only[slice];
+    field_extrusion *extrusion = &f->only_extrusion[slice];
+    *extrusion = f->extrusion;
+    extrusion->only = (int)slice;
+    field_grid *grid = f->only[slice] = arena_alloc(p->host->memory, sizeof *grid);
+    *grid = grid_of(f, extrusion);
+    for (int i = 0; i < PASS_SLICES_CHANNELS / 4; i++)
+        pass_host_add_grid_image(p->host, grid, i, pass_grid_image(p->host, &f->grid, i));
+    return grid;
+}
+
+int pass_slices_use(pass *p, const char *name, int *components) {
+    for (int i = 0; i < PASS_SLICES_NAMES; i++) {
+        if (strcmp(pass_slices_names[i], name) != 0) continue;
+        slices_of(p)->used[i] = true;
+        *components = i == PASS_SLICES_VELOCITY ? 3 : 1;
+        return i;
+    }
+    const char *near = str_nearest(name, pass_slices_names, PASS_SLICES_NAMES);
+    err_set("%s: no field '%s'; %s%s%s", p->label, name, near ? "did you mean '" : "",
+            near ? near : "it has density, temperature, dye, velocity and pressure",
+            near ? "'?" : "");
+    return -1;
+}
+
+// ---- declaring --------------------------------------------------------------------------------
+
+static bool add_image(pass *p, slices_flow *f, const char *output, int index) {
+    int image = pass_find_image(p, output);
+    p->images[image] = graph_add_image(
+        p->host->graph, &(graph_image_desc){
+                            .name = arena_format(p->host->memory, "%s.%s", p->label, output),
+                            .format = p->formats[image],
+                            .width = f->desc.size[0],
+                            .height = f->desc.size[1],
+                            .depth = f->desc.count + 1,
+                            .optional = true,
+                            .keep = true,
+                        });
+    if (!p->images[image].id) return false;
+    pass_host_add_grid_image(p->host, &f->grid, index, p->images[image]);
+    return true;
+}
+
+static size_t option(const pass *p, const char *name) {
+    size_t index;
+    return pass_find_key(p, name, &index) == PASS_OPTION ? p->options[index] : 0;
+}
+
+static bool check_viscosity(const pass *p) {
+    size_t viscosity, reynolds;
+    pass_find_key(p, "viscosity", &viscosity);
+    pass_find_key(p, "reynolds", &reynolds);
+    return !p->uniforms[viscosity] || !p->uniforms[reynolds] ||
+           err_set("%s: 'reynolds' and 'viscosity' say the same; give one of them", p->label);
+}
+
+bool slices_declare(pass *p) {
+    slices_flow *f = slices_of(p);
+    return check_viscosity(p) && add_image(p, f, "scalars", 0) &&
+           add_image(p, f, "velocity", PASS_SLICES_VELOCITY / 4);
+}
+
+static flow_desc structure_of(const pass *p, const slices_flow *f) {
+    flow_desc d = {
+        .size = {f->desc.size[0], f->desc.size[1]},
+        .slices = f->desc.count,
+        .advection = (flow_advection)option(p, "advection"),
+        .solver = (flow_solver)option(p, "solver"),
+        .templates = f->templates && slices_has_pressing(p),
+        .sources = f->templates && slices_has_pushing(p),
+        .max_iterations = f->desc.max_iterations,
+    };
+    static const char *const faces[4] = {"sides", "sides", "bottom", "top"};
+    for (int i = 0; i < 4; i++) d.faces[i] = (flow_face)option(p, faces[i]);
+    for (size_t i = 0; i < f->part_count; i++) {
+        bool template = slices_is_template(f->parts[i]);
+        bool obstacle = slices_is_obstacle(f->parts[i]);
+        d.obstacles = d.obstacles || obstacle;
+        d.sources = d.sources || !(template || obstacle);
+    }
+    return d;
+}
+
+bool slices_complete(pass *p) {
+    slices_flow *f = slices_of(p);
+    if (f->templates && f->templates->complete && !f->templates->complete(f)) return false;
+    flow_desc structure = structure_of(p, f);
+    f->solver = flow_create(p->host->memory, &structure);
+    if (!f->solver) return err_prefix("%s: ", p->label);
+    const graph_image writes[] = {p->images[pass_find_image(p, "scalars")],
+                                  p->images[pass_find_image(p, "velocity")]};
+    return pass_add_part(p, &(pass_part){
+                                .name = "step",
+                                .writes = writes,
+                                .write_count = COUNT_OF(writes),
+                                .fields = true,
+                                .with = f->parts,
+                                .with_count = f->part_count,
+                                .simulates = true,
+                                .record = slices_record,
+                            });
+}

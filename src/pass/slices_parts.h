@@ -1,0 +1,79 @@
+// The inside of the pass type `slices`, for its own files only.
+#pragma once
+#include "pass/pass_impl.h"
+#include "pass/slices.h"
+#include "pass/steps.h"
+#include "sim/flow.h"
+
+typedef struct slices_flow slices_flow;
+
+// What a file of its own adds to the flow: templates (slices_templates.c). Called by the hooks of
+// the pass of the same name; NULL: nothing to do.
+typedef struct slices_extra {
+    bool (*complete)(slices_flow *f); // all has been declared; the solver is made next
+    bool (*check)(slices_flow *f);    // the solver has been compiled
+    bool (*build)(slices_flow *f);    // the solver has been built
+    bool (*allocate)(slices_flow *f);
+    bool (*rehearse)(slices_flow *f);
+    void (*restart)(slices_flow *f); // the flow begins anew
+    // Before a step, when inflow and forces are in the solver's buffers, which are written anew for
+    // every step then. The host's context has the time of the step, flow_steps is its number, and
+    // f->clock.step how long it takes.
+    bool (*run)(slices_flow *f);
+    void (*destroy)(slices_flow *f);
+} slices_extra;
+
+enum { SLICES_STEP, SLICES_SOURCES, SLICES_TEMPLATES, SLICES_FIELDS, SLICES_LABELS };
+
+struct slices_flow {
+    field_grid grid;                    // first: the effect has it
+    field_grid *only[PASS_SLICES_MOST]; // grids of single slices that were asked for
+    field_extrusion extrusion, only_extrusion[PASS_SLICES_MOST];
+    pass *pass;
+    pass_slices_desc desc;
+    double width, cell; // of a slice, of a cell; metres
+    pass_steps clock;
+    bool used[PASS_SLICES_NAMES]; // by a field or a part
+
+    pass **parts; // inflow, obstacles, forces, templates, in the order of their declaration
+    size_t part_count, part_capacity;
+    flow *solver; // after pass_complete
+
+    const slices_extra *templates; // NULL: there are none
+    void *templates_state;         // theirs
+
+    const char *labels[SLICES_LABELS]; // of times
+    bool fresh;                        // begins anew with the next record
+    uint64_t shown_steps;              // of the grid's content
+    double shown_blend;
+    uint64_t last_steps; // that the last record took
+};
+
+static inline slices_flow *slices_of(const pass *p) {
+    return p->state;
+}
+
+// The seed of all that is random, as of the host's time.
+static inline uint32_t slices_seed(const slices_flow *f) {
+    return (uint32_t)pass_evaluate(f->pass, "seed");
+}
+
+// slices_part.c: a pass that runs in the slices' own, after what its fields sample. A group of
+// templates too, but all else that is to do with it is for f->templates.
+void slices_add_part(slices_flow *f, pass *part);
+bool slices_is_obstacle(const pass *part);
+bool slices_is_template(const pass *part);
+bool slices_run_parts(slices_flow *f, bool obstacles); // those alone, or the others
+void slices_forget_part(pass *part);                   // what it wrote is gone
+
+// slices_numbers.c
+bool slices_numbers(const pass *p, flow_numbers *out); // as of the host's context
+
+// slices_time.c
+int64_t slices_left(const pass *p, double time);
+int64_t slices_most(const pass *p);
+double slices_reached(const pass *p);
+void slices_restart(pass *p);
+void slices_forget(slices_flow *f); // another state has come
+bool slices_advance(pass *p);       // to the host's time, as far as one submit goes
+double slices_blend(const slices_flow *f, double time);
