@@ -11,7 +11,7 @@ void add_point(splat s, vec3 at, vec3 light, float opacity) {
         ivec2 side = ivec2(i & 1, i >> 1), pixel = ivec2(corner) + side;
         if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(picture)))) continue;
         vec2 share = mix(1.0 - part, part, vec2(side));
-        splat_add(splat_part(light, opacity * share.x * share.y, at.z, s.id, pixel), pixel);
+        splat_add(splat_part(light, opacity * share.x * share.y, at.z, s.seed, pixel), pixel);
     }
 }
 

@@ -24,7 +24,7 @@ struct splat {
     float cell;   // of the flipbook
     vec3 color;
     float opacity;
-    uint id;
+    uint seed;    // of chance: the same wherever in the lists it is
 };
 
 // ---- as it is kept ----------------------------------------------------------------------------
@@ -40,7 +40,7 @@ void splat_keep(uint index, splat s) {
     splat_records[3u * index + 1u] =
         uvec4(floatBitsToUint(s.along), floatBitsToUint(s.reach), floatBitsToUint(s.cell));
     splat_records[3u * index + 2u] =
-        uvec4(packHalf2x16(s.color.rg), packHalf2x16(vec2(s.color.b, s.opacity)), s.id, 0u);
+        uvec4(packHalf2x16(s.color.rg), packHalf2x16(vec2(s.color.b, s.opacity)), s.seed, 0u);
 }
 
 splat splat_kept(uint index) {
@@ -114,8 +114,8 @@ float splat_weight(float away) {
     return clamp(near * near * near * near, 1.0 / 256.0, 64.0);
 }
 
-splat_sum splat_part(vec3 light, float opacity, float away, uint id, ivec2 pixel) {
-    float chance = float(random_hash(id ^ random_hash(uint(pixel.y) << 16 | uint(pixel.x))) >> 8) / 16777216.0;
+splat_sum splat_part(vec3 light, float opacity, float away, uint seed, ivec2 pixel) {
+    float chance = float(random_hash(seed ^ random_hash(uint(pixel.y) << 16 | uint(pixel.x))) >> 8) / 16777216.0;
 #if BLEND == BLEND_WEIGHTED
     float covered = min(opacity, 0.999), weight = covered * splat_weight(away);
     return splat_sum(uvec3(weight * light * UNIT + chance), uint(weight * UNIT + chance),
@@ -137,7 +137,7 @@ void splat_add(splat_sum part, ivec2 pixel) {
 // Part of a large one in a pixel.
 splat_sum splat_part_at(splat s, ivec2 pixel) {
     vec4 c = splat_at(s, vec2(pixel) + 0.5 - s.at);
-    return splat_part(c.rgb, c.a * splat_visible(pixel, s.depth), s.depth, s.id, pixel);
+    return splat_part(c.rgb, c.a * splat_visible(pixel, s.depth), s.depth, s.seed, pixel);
 }
 
 // ---- tiles ------------------------------------------------------------------------------------
