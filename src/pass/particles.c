@@ -142,12 +142,14 @@ static bool make_buffers(const pass *p, particles_state *s) {
 
 bool particles_allocate(pass *p) {
     particles_state *s = particles_of(p);
-    return (make_buffers(p, s) && make_triangles(p, s)) || err_prefix("%s: ", p->label);
+    return (make_buffers(p, s) && make_triangles(p, s) && particles_make_lost(p, s)) ||
+           err_prefix("%s: ", p->label);
 }
 
 void particles_destroy(pass *p) {
     particles_state *s = particles_of(p);
     if (!s) return;
+    particles_destroy_lost(p, s);
     if (s->birth_pipeline) gpu_pipeline_destroy(p->host->device, s->birth_pipeline);
     gpu_buffer *const all[] = {s->buffers.positions[0],  s->buffers.positions[1],
                                s->buffers.velocities[0], s->buffers.velocities[1],

@@ -52,6 +52,20 @@ typedef struct particles_buffers {
     gpu_buffer *positions[PARTICLES_PARTS], *velocities[PARTICLES_PARTS], *quantities;
 } particles_buffers;
 
+typedef struct particles_lost_place { // that a count is copied to
+    uint64_t frame, births;           // frame 0: there is none
+} particles_lost_place;
+
+enum { PARTICLES_PLACES = GPU_FRAMES_IN_FLIGHT + 1 };
+
+typedef struct particles_lost { // births without a place; zero: there is no shape
+    gpu_image *count;
+    gpu_buffer *found;
+    particles_lost_place places[PARTICLES_PLACES];
+    uint32_t next;
+    uint64_t births; // of the record
+} particles_lost;
+
 typedef struct particles_state {
     pass *pass;
     pass_particles_desc desc;
@@ -67,8 +81,9 @@ typedef struct particles_state {
     particles_births births; // of the step being recorded
     box3 box;                // around the shape then
     mat4 places[2];          // of the mesh, at the begin and the end of it
-    uint64_t last_steps;     // that the last record took
-    char trouble[256];       // "": none
+    particles_lost lost;
+    uint64_t last_steps; // that the last record took
+    char trouble[256];   // "": none
 } particles_state;
 
 static inline particles_state *particles_of(const pass *p) {
@@ -81,6 +96,13 @@ const field *particles_field(const pass *p, const char *name); // NULL: not give
 bool particles_rates_of(const pass *p, particles_rates *out); // as of the host's time
 int64_t particles_left(const pass *p, double time);
 bool particles_advance(pass *p); // to the host's time, as far as one submit goes
+
+// particles_lost.c
+bool particles_make_lost(pass *p, particles_state *s);
+void particles_destroy_lost(pass *p, particles_state *s);
+bool particles_begin_lost(pass *p, particles_state *s); // around the steps of a record
+bool particles_end_lost(pass *p, particles_state *s);
+double particles_lost_share(const pass *p); // of the births of a frame some frames ago
 
 // particles_state.c
 void particles_save(const pass *p, struct checkpoint_list *out);

@@ -5,14 +5,16 @@
 #include "pass/builtin.h"
 #include "pass/particles_parts.h"
 #include <math.h>
+#include <string.h>
 
 // Particles that one submit may move: about 0.1 s of a large device, 2 s of a software one. In a
 // window it is a part of that.
 static const double most_moves = 1e9, most_in_software = 2e7;
 enum { BRIEF = 64 };
 
-static const double rounding = 1e-6; // of a step
-enum { ROW = 1 << 16 };              // threads side by side
+static const double rounding = 1e-6;  // of a step
+static const double most_lost = 0.05; // share of the births
+enum { ROW = 1 << 16 };               // threads side by side
 
 double particles_reached(const particles_state *s) {
     return (double)s->clock.steps * s->desc.time_step - s->desc.warm_up;
@@ -80,6 +82,12 @@ static bool find_places(const pass *p, particles_state *s) {
     return true;
 }
 
+static bool bind(const pass *p, const char *name, gpu_binding *out) {
+    if (strcmp(name, "lost") != 0) return pass_particles_bind(p, name, out);
+    *out = (gpu_binding){.image = particles_of(p)->lost.count};
+    return true;
+}
+
 // One thread for each of `count`, in rows.
 static bool run(pass *p, const shader_binary *binary, gpu_pipeline *pipeline,
                 const unsigned char *block, uint32_t count) {
@@ -90,14 +98,16 @@ static bool run(pass *p, const shader_binary *binary, gpu_pipeline *pipeline,
     dispatch.threads[1] = (count + ROW - 1) / ROW;
     size_t known = 0;
     for (size_t i = 0; i < binary->slot_count; i++) {
-        overrides[known].name = binary->slots[i].name;
-        known += pass_particles_bind(p, overrides[known].name, &overrides[known].binding);
+        pass_override *slot = &overrides[known];
+        slot->name = binary->slots[i].name;
+        known += bind(p, slot->name, &slot->binding);
     }
     return pass_bind(p, binary, block, overrides, known, bindings, &dispatch.binding_count) &&
            gpu_dispatch(p->host->device, &dispatch);
 }
 
 static bool give_birth(pass *p, particles_state *s) {
+    s->lost.births += s->births.burst + s->births.steady;
     return find_places(p, s) && pass_fill_block(p, &s->birth, s->birth_block) &&
            run(p, &s->birth, s->birth_pipeline, s->birth_block, s->births.burst + s->births.steady);
 }
@@ -120,14 +130,14 @@ bool particles_advance(pass *p) {
     const field_context *frame = p->host->context;
     field_context now = *frame;
     p->host->context = &now;
-    bool fine = true;
+    bool fine = left <= 0 || particles_begin_lost(p, s);
     for (int64_t i = 0; i < left && fine; i++) {
         now.time = particles_reached(s) + 0.5 * s->desc.time_step;
         fine = step(p, s);
     }
     p->host->context = frame;
     s->last_steps = left > 0 ? (uint64_t)left : 0;
-    return fine;
+    return fine && (left <= 0 || particles_end_lost(p, s));
 }
 
 // ---- asking -----------------------------------------------------------------------------------
@@ -143,22 +153,33 @@ static size_t readouts(const pass *p, pass_readout *out, size_t capacity) {
         {"slots", "", pass_particles_used(p)},
         {"steps", "", (double)s->clock.steps},
         {"time step", "s", s->desc.time_step},
+        {"without a place", "%", 100 * particles_lost_share(p)},
     };
     for (size_t i = 0; i < COUNT_OF(all) && i < capacity; i++) out[i] = all[i];
     return COUNT_OF(all);
 }
 
-// More than there are slots for: who is born takes the place of one that could live on.
+// More than there are slots for, so that who is born takes the place of one that could live on; or
+// births that came to nothing.
 static const char *trouble(const pass *p) {
     particles_state *s = particles_of(p);
+    double lost = particles_lost_share(p);
     double rate = (double)pass_evaluate(p, "rate");
     double life =
         fmax((double)pass_evaluate(p, "lifetime_min"), (double)pass_evaluate(p, "lifetime_max"));
-    if (rate * life <= s->desc.count) return NULL;
-    snprintf(s->trouble, sizeof s->trouble,
-             "the oldest die early, to make room: set 'count' to %.0f, which is 'rate' times "
-             "'lifetime' (it is %u)",
-             ceil(rate * life), s->desc.count);
+    if (rate * life > s->desc.count)
+        snprintf(s->trouble, sizeof s->trouble,
+                 "the oldest die early, to make room: set 'count' to %.0f, which is 'rate' times "
+                 "'lifetime' (it is %u)",
+                 ceil(rate * life), s->desc.count);
+    else if (lost > most_lost)
+        snprintf(
+            s->trouble, sizeof s->trouble,
+            "%.0f %% of the births found no place: 'shape' is above the threshold in too small "
+            "a part of its box; multiply it by a smaller box { }, or lower the threshold",
+            100 * lost);
+    else
+        return NULL;
     return s->trouble;
 }
 

@@ -222,7 +222,7 @@ static void what_is_carried_slides_along(void **state) {
     }
     int below = 0;
     for (uint32_t i = 0; i < s.used; i++) below += s.at[i][2] < -0.5f;
-    assert_true(below > 250);
+    assert_true(below > 230); // the others stay near the top for long
     swarm_close(&s);
 }
 

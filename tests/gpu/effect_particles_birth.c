@@ -114,6 +114,14 @@ static void a_threshold_says_where(void **state) {
         float from[3] = {s.at[i][0] - 1, s.at[i][1], s.at[i][2]};
         assert_true(length_of(from) < 0.5001);
     }
+    const pass_simulation *simulation = pass_get_simulation(s.pass);
+    pass_readout all[8];
+    size_t count = simulation->readouts(s.pass, all, COUNT_OF(all));
+    assert_string_equal(all[count - 1].name, "without a place");
+    is_near(all[count - 1].value, 100 - alive / 10.24, 1e-6, "share without a place");
+    assert_non_null(simulation->trouble(s.pass));
+    if (!strstr(simulation->trouble(s.pass), "found no place"))
+        fail_msg("%s", simulation->trouble(s.pass));
     is_near(alive, 1024 * (1 - pow(1 - 0.00818, 256)), 42, "found a place"); // pi / 6 / 64 each try
     swarm_close(&s);
 }

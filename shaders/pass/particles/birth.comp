@@ -39,6 +39,9 @@ struct birth_triangle {
 };
 layout(std430) readonly buffer BirthTriangles { birth_triangle birth_triangles[]; };
 #endif
+#if HAS_SHAPE
+layout(r32ui) uniform uimage2D lost; // births that found no place
+#endif
 #define BIRTH_TRIES 256 // to find a place in the shape
 
 // Seconds of the step that are left to it.
@@ -97,6 +100,7 @@ bool birth_place(uint id, float share, out vec3 p, out vec3 way, out vec3 motion
         birth_try(id, 128u + 8u * i, share, p, way, motion);
         if (field_shape(p) > threshold) return true;
     }
+    imageAtomicAdd(lost, ivec2(0), 1u);
     return false;
 #else
     birth_try(id, 128u, share, p, way, motion);
