@@ -1,0 +1,76 @@
+// Puts the templates of all groups into all slices of a flow: the pressure that the solver blends
+// in, and forces. A thread does cells above each other, so that threads side by side write side by
+// side, and a template is looked at once for all of them.
+layout(local_size_x = 32, local_size_y = 2, local_size_z = 1) in;
+#if PUSHES
+#define FLOW_SOURCES
+#endif
+#if PRESSES
+#define FLOW_TEMPLATES writeonly
+#endif
+#include "sim/flow/state.glsl"
+#define TEMPLATES_USE readonly
+#include "pass/slices/templates.glsl"
+uniform float time_step; // s
+uniform uint alone;      // nobody else has written sources in this step
+uniform sampler2D TemplateImages; // tiles below each other: values times alpha, alpha
+
+#define EACH_CELL for (int c = 0; c < TEMPLATES_CELLS; c++)
+
+// `at`: from the middle, in halves of the side; the upper edge is at +1.
+vec4 tile_at(vec2 at, float tile, float level) {
+    vec2 size = vec2(textureSize(TemplateImages, 0)); // one tile wide
+    float inside = 1.0 - exp2(level) / size.x;
+    at = clamp(at, -inside, inside);
+    return textureLod(TemplateImages,
+                      vec2(0.5 + 0.5 * at.x, (tile + 0.5 - 0.5 * at.y) * size.x / size.y), level);
+}
+
+void main() {
+    ivec2 low = ivec2(gl_GlobalInvocationID.x, gl_GlobalInvocationID.y * TEMPLATES_CELLS);
+    int slice = int(gl_GlobalInvocationID.z);
+    if (low.x >= FLOW_NX || low.y >= FLOW_NY || slice >= FLOW_SLICES) return;
+    vec2 middle = vec2(low) + vec2(0.5, 0.5 * float(TEMPLATES_CELLS));
+    flow_template pressed[TEMPLATES_CELLS];
+    vec2 pushed[TEMPLATES_CELLS];
+    EACH_CELL {
+        pressed[c] = flow_template(0.0, 0.0);
+        pushed[c] = vec2(0.0);
+    }
+    for (uint i = 0u; i < total; i++) {
+        vec4 place = templates[template_at(0u, slice, i)];
+        vec2 far = abs(middle - place.xy) - vec2(0.0, 0.5 * float(TEMPLATES_CELLS));
+        if (max(far.x, far.y) > 1.41422 * place.z || place.z <= 0.0) continue;
+        vec4 look = templates[template_at(1u, slice, i)];
+        float level = log2(float(textureSize(TemplateImages, 0).x) * 0.5 / place.z);
+        bool pushes = look.w < 0.0;
+        EACH_CELL {
+            vec2 d = (vec2(low) + vec2(0.5, float(c) + 0.5) - place.xy) / place.z;
+            vec2 at = vec2(look.x * d.x + look.y * d.y, look.x * d.y - look.y * d.x);
+            if (max(abs(at.x), abs(at.y)) > 1.0) continue;
+            vec4 held = tile_at(at, pushes ? -1.0 - look.w : look.w, max(level, 0.0));
+            if (pushes) {
+                vec2 v = place.w * look.z * held.xy;
+                pushed[c] += vec2(look.x * v.x - look.y * v.y, look.y * v.x + look.x * v.y);
+            } else if (held.w > 0.0) {
+                flow_blend(pressed[c], clamp(look.z * held.w, 0.0, 1.0), place.w * held.z / held.w);
+            }
+        }
+    }
+    EACH_CELL {
+        ivec2 cell = low + ivec2(0, c);
+        if (cell.y >= FLOW_NY) break;
+#if PRESSES
+        FLOW_TEMPLATE_STORE(cell, slice, pressed[c]);
+#endif
+#if PUSHES
+        if (alone == 1u) {
+            flow_source s = flow_no_source();
+            s.push = pushed[c] * time_step;
+            FLOW_SOURCE_STORE(cell, slice, s);
+        } else if (pushed[c] != vec2(0.0)) {
+            FLOW_PUSH_ADD(cell, slice, pushed[c] * time_step);
+        }
+#endif
+    }
+}

@@ -1,0 +1,376 @@
+// Templates of a flow, where they are and how they are drawn, without what the flow makes of them
+// (pass_slices_templates_flow.c).
+#include "templates_test.h"
+
+static const double pi = 3.14159265358979;
+static const flow_desc small = {.size = {64, 64}, .slices = 2};
+static const float blue[4] = {0, 0, 1, 1}, red[4] = {1, 0, 0, 1};
+
+typedef struct group_of { // settings of a group by name
+    const char *name;
+    float value;
+} group_of;
+
+// Pictures without alpha, whose border fades.
+static pass *add_group(templates_world *t, uint32_t count, picture image, const group_of *settings,
+                       size_t setting_count) {
+    picture *kept = arena_alloc(&t->w.memory, sizeof *kept);
+    *kept = image;
+    pass *p = templates_add(t, kept, count);
+    for (size_t i = 0; i < setting_count; i++)
+        templates_set(t, p, settings[i].name, settings[i].value);
+    return p;
+}
+
+#define GROUP(t, count, color, ...)                                                                \
+    add_group(t, count, templates_picture(&(t)->w.memory, color), (const group_of[]){__VA_ARGS__}, \
+              COUNT_OF(((const group_of[]){__VA_ARGS__})))
+
+static void set_word(pass *p, const char *name, const char *word) {
+    gpu_test_ok(pass_set_option(p, name, word));
+}
+
+// A ball cut by the slice: a disc.
+static const field *disc(templates_world *t, float x, float y, float radius, float falloff) {
+    return row(&t->w, "sphere", SET("position", triple(&t->w, x, y, 0)),
+               SET("radius", number(&t->w, radius)), SET("falloff", number(&t->w, falloff)));
+}
+
+// ---- lives ------------------------------------------------------------------------------------
+
+// Lives are as likely at all lengths, and templates of all sizes between their bounds. Over many
+// lives, of which each counts once.
+static void sizes_and_lifetimes_are_spread_evenly_between_their_bounds(void **state) {
+    enum { COUNT = 200, STEPS = 60, BINS = 8 };
+    templates_world t;
+    templates_open(&t, *state, &small, 0.02);
+    GROUP(&t, COUNT, blue, {"size_min", 0.1f}, {"size_max", 0.3f}, {"lifetime_min", 0.05f},
+          {"lifetime_max", 0.25f});
+    templates_build(&t);
+    int sizes[BINS] = {0}, lifetimes[BINS] = {0}, lives = 0;
+    float last[COUNT] = {0};
+    for (int k = 0; k < STEPS / 3; k++) {
+        templates_run(&t, 3, false);
+        template_seen *seen = templates_read(&t, 0);
+        for (int i = 0; i < COUNT; i++) {
+            const template_seen *s = &seen[i];
+            assert_true(s->side >= 0.1f && s->side < 0.3f);
+            assert_true(s->lifetime >= 0.05f && s->lifetime < 0.25f);
+            assert_true(s->age >= 0 && s->age < s->lifetime + 1e-5f);
+            assert_true(fabsf(s->half_side - 32 * s->side) < 1e-4f);
+            if (s->life == last[i]) continue;
+            last[i] = s->life;
+            sizes[(int)((s->side - 0.1f) / 0.2f * BINS)]++;
+            lifetimes[(int)((s->lifetime - 0.05f) / 0.2f * BINS)]++;
+            lives++;
+        }
+        mem_free(seen);
+    }
+    double size_misfit = 0, life_misfit = 0, each = (double)lives / BINS;
+    for (int b = 0; b < BINS; b++) {
+        size_misfit += (sizes[b] - each) * (sizes[b] - each) / each;
+        life_misfit += (lifetimes[b] - each) * (lifetimes[b] - each) / each;
+    }
+    print_message("%d lives; chi-squared of sizes %.1f, of lifetimes %.1f\n", lives, size_misfit,
+                  life_misfit);
+    assert_true(lives > 1000);
+    assert_true(size_misfit < 24.3 && life_misfit < 24.3); // 7 degrees of freedom: 1 in 1000
+    templates_close(&t);
+}
+
+static void same_seed_gives_the_same_templates_and_another_one_others(void **state) {
+    template_seen *seen[3];
+    static const float seeds[3] = {5, 5, 6};
+    for (int k = 0; k < 3; k++) {
+        templates_world t;
+        templates_open(&t, *state, &small, 0.02);
+        GROUP(&t, 50, blue, {"seed", seeds[k]});
+        GROUP(&t, 30, red, {"seed", seeds[k]});
+        templates_build(&t);
+        // In frames of one step, and of twenty.
+        if (k == 0)
+            for (int i = 0; i < 40; i++) templates_run(&t, 1, false);
+        else
+            templates_run(&t, 40, false);
+        seen[k] = templates_read(&t, 1);
+        templates_close(&t);
+    }
+    assert_memory_equal(seen[0], seen[1], 80 * sizeof **seen);
+    assert_memory_not_equal(seen[0], seen[2], 80 * sizeof **seen);
+    assert_memory_not_equal(seen[0], seen[0] + 50, 30 * sizeof **seen);
+    for (int k = 0; k < 3; k++) mem_free(seen[k]);
+}
+
+// Half as long steps: after the same time the same lives, up to what a step is late by.
+static void lives_do_not_hang_on_the_step(void **state) {
+    template_seen *seen[2];
+    for (int k = 0; k < 2; k++) {
+        templates_world t;
+        templates_open(&t, *state, &small, k == 0 ? 0.02 : 0.01);
+        GROUP(&t, 100, blue, {"lifetime_min", 0.3f}, {"lifetime_max", 0.6f});
+        templates_build(&t);
+        templates_run(&t, k == 0 ? 50 : 100, false);
+        seen[k] = templates_read(&t, 0);
+        templates_close(&t);
+    }
+    int same = 0;
+    for (int i = 0; i < 100; i++)
+        same += seen[0][i].life == seen[1][i].life && seen[0][i].x == seen[1][i].x;
+    assert_true(same >= 95); // others are just about to begin anew
+    for (int k = 0; k < 2; k++) mem_free(seen[k]);
+}
+
+static void slices_have_templates_of_their_own(void **state) {
+    templates_world t;
+    templates_open(&t, *state, &small, 0.02);
+    GROUP(&t, 20, blue, {"strength", 1});
+    templates_build(&t);
+    templates_run(&t, 1, false);
+    template_seen *first = templates_read(&t, 0), *second = templates_read(&t, 1);
+    for (int i = 0; i < 20; i++) assert_true(first[i].x != second[i].x);
+    mem_free(first);
+    mem_free(second);
+    templates_close(&t);
+}
+
+static void fewer_act_by_amount(void **state) {
+    templates_world t;
+    templates_open(&t, *state, &small, 0.02);
+    pass *p = GROUP(&t, 20, blue, {"amount", 0.25f});
+    templates_build(&t);
+    for (int k = 0; k < 2; k++) {
+        templates_run(&t, 1, false);
+        template_seen *seen = templates_read(&t, 0);
+        int acting = 0;
+        for (int i = 0; i < 20; i++) acting += seen[i].half_side > 0;
+        assert_int_equal(acting, k == 0 ? 5 : 0);
+        mem_free(seen);
+        templates_set(&t, p, "amount", 0);
+    }
+    templates_close(&t);
+}
+
+// ---- places -----------------------------------------------------------------------------------
+
+static void all_lie_in_the_region_and_all_over_it(void **state) {
+    templates_world t;
+    templates_open(&t, *state, &small, 0.02);
+    pass *p = GROUP(&t, 400, blue, {"strength", 1});
+    gpu_test_ok(pass_set_field(p, "region", disc(&t, 0.3f, 0.6f, 0.2f, 0)));
+    templates_build(&t);
+    templates_run(&t, 1, false);
+    template_seen *seen = templates_read(&t, 0);
+    int inner = 0, left = 0;
+    for (int i = 0; i < 400; i++) {
+        float x = seen[i].x / 64 - 0.3f, y = seen[i].y / 64 - 0.6f, r = sqrtf(x * x + y * y);
+        assert_true(seen[i].put == 1 && r <= 0.2001f);
+        inner += r < 0.2f * sqrtf(0.5f);
+        left += x < 0;
+    }
+    assert_true(abs(inner - 200) < 50 && abs(left - 200) < 50); // five standard deviations
+    mem_free(seen);
+    templates_close(&t);
+}
+
+// A region that is nowhere: none is put, and none is drawn, until it is somewhere.
+static void none_is_put_where_there_is_no_place(void **state) {
+    templates_world t;
+    templates_open(&t, *state, &small, 0.02);
+    pass *p = GROUP(&t, 10, blue, {"strength", 1});
+    const field *factors[FIELD_MAX_ARGS] = {disc(&t, 0.5f, 0.5f, 0.2f, 0),
+                                            field_param(&t.w.memory, 1, 0)};
+    float value[1][4] = {{0}};
+    t.w.context.params = value;
+    t.w.context.param_count = 1;
+    gpu_test_ok(pass_set_field(p, "region", field_make(&t.w.memory, "mul", factors, NULL)));
+    templates_build(&t);
+    for (int k = 0; k < 2; k++) {
+        templates_run(&t, 3, false);
+        template_seen *seen = templates_read(&t, 0);
+        for (int i = 0; i < 10; i++) assert_true((seen[i].half_side > 0) == (k == 1));
+        mem_free(seen);
+        value[0][0] = 1;
+    }
+    templates_close(&t);
+}
+
+// ---- turns ------------------------------------------------------------------------------------
+
+// How far the upper edge looks away from `x, y`: 1 straight away, -1 straight towards it.
+static float outward(const template_seen *s, float x, float y) {
+    float dx = s->x - x, dy = s->y - y, r = sqrtf(dx * dx + dy * dy);
+    return (-s->sine * dx + s->cosine * dy) / r;
+}
+
+static void align_turns_the_upper_edge(void **state) {
+    static const char *const words[] = {"fixed", "radial", "contour", "none"};
+    templates_world t;
+    templates_open(&t, *state, &small, 0.02);
+    pass *groups[4];
+    for (int k = 0; k < 4; k++) {
+        groups[k] = GROUP(&t, 64, blue, {"size_min", 0.1f}, {"size_max", 0.2f}, {"center_x", 0.2f},
+                          {"center_y", 0.9f});
+        set_word(groups[k], "align", words[k]);
+        gpu_test_ok(pass_set_field(groups[k], "region", disc(&t, 0.5f, 0.4f, 0.3f, 0)));
+    }
+    templates_set(&t, groups[0], "angle", 30);
+    templates_build(&t);
+    templates_run(&t, 1, false);
+    template_seen *seen = templates_read(&t, 0);
+    double worst = 1, mean = 0, any[2] = {0, 0};
+    for (int i = 0; i < 64; i++) {
+        assert_true(fabsf(seen[i].cosine - cosf((float)pi / 6)) < 1e-5f);
+        assert_true(fabsf(seen[i].sine - 0.5f) < 1e-5f);
+        assert_true(outward(&seen[64 + i], 0.2f * 64, 0.9f * 64) > 0.9999f);
+        double out = (double)outward(&seen[128 + i], 32, 0.4f * 64); // the contour is a circle
+        worst = fmin(worst, out), mean += out / 64;
+        any[0] += (double)seen[192 + i].cosine, any[1] += (double)seen[192 + i].sine;
+    }
+    print_message("out of a disc: mean cosine %.4f, worst %.3f\n", mean, worst);
+    assert_true(mean > 0.97 && worst > 0.6);
+    assert_true(hypot(any[0], any[1]) < 24); // of 64 that look anywhere: three deviations
+    mem_free(seen);
+    templates_close(&t);
+}
+
+static void spread_turns_each_by_less_than_it_says(void **state) {
+    templates_world t;
+    templates_open(&t, *state, &small, 0.02);
+    set_word(GROUP(&t, 64, blue, {"spread", 20}), "align", "fixed");
+    templates_build(&t);
+    templates_run(&t, 1, false);
+    template_seen *seen = templates_read(&t, 0);
+    float least = 1, most = -1;
+    for (int i = 0; i < 64; i++)
+        least = fminf(least, seen[i].sine), most = fmaxf(most, seen[i].sine);
+    assert_true(most <= sinf(20 * (float)pi / 180) + 1e-5f && most > 0.25f);
+    assert_true(least >= -sinf(20 * (float)pi / 180) - 1e-5f && least < -0.25f);
+    mem_free(seen);
+    templates_close(&t);
+}
+
+// ---- drawing ----------------------------------------------------------------------------------
+
+// One of 32 cells in the middle of a slice of 64, at a given turn, that does not come and go.
+static pass *add_one(templates_world *t, picture image, float angle) {
+    static const group_of settings[] = {
+        {"size_min", 0.5f}, {"size_max", 0.5f}, {"fade", 0}, {"strength", 3}};
+    pass *p = add_group(t, 1, image, settings, COUNT_OF(settings));
+    templates_set(t, p, "angle", angle);
+    set_word(p, "align", "fixed");
+    gpu_test_ok(pass_set_field(p, "region", disc(t, 0.5f, 0.5f, 1e-4f, 0)));
+    return p;
+}
+
+// Alpha is 1 in the middle and nearly 0 at the border (K21), the pressure as strong as it says.
+static void border_fades_as_a_gaussian(void **state) {
+    templates_world t;
+    templates_open(&t, *state, &small, 0.02);
+    add_one(&t, templates_picture(&t.w.memory, blue), 0);
+    templates_build(&t);
+    templates_run(&t, 1, false);
+    float *drawn = templates_read_flow(&t, "FlowTemplates");
+    double worst = 0;
+    for (int y = 0; y < 64; y++)
+        for (int x = 0; x < 64; x++) {
+            double u = (x + 0.5 - 32) / 16, v = (y + 0.5 - 32) / 16;
+            bool inside = fabs(u) < 1 && fabs(v) < 1;
+            double alpha = inside ? exp(-0.5 * (u * u + v * v) / 0.09) : 0;
+            const float *cell = drawn + 2 * (64 * y + x);
+            worst = fmax(worst, fabs((double)cell[0] - alpha));
+            if (inside && alpha > 1e-3) assert_true(fabsf(cell[1] - 3) < 0.01f);
+        }
+    print_message("alpha is off by %.4f at most\n", worst);
+    assert_true(worst < 0.02);
+    assert_true(drawn[2 * (64 * 32 + 32)] > 0.98f && drawn[2 * (64 * 32 + 16)] < 0.006f);
+    mem_free(drawn);
+    templates_close(&t);
+}
+
+// The picture's lower left quarter is red: it lands where the turn brings it, and its velocity
+// turns with it.
+static void pictures_and_velocities_turn_together(void **state) {
+    enum { SIDE = 16 };
+    float texels[SIDE * SIDE * 4] = {0};
+    for (int y = 0; y < SIDE; y++) // rows from the top
+        for (int x = 0; x < SIDE; x++) {
+            texels[4 * (y * SIDE + x)] = x < SIDE / 2 && y >= SIDE / 2;
+            texels[4 * (y * SIDE + x) + 3] = x < SIDE / 2 && y >= SIDE / 2;
+        }
+    const picture quarter = {SIDE, SIDE, 0, texels};
+    static const int turned[4][2] = {{24, 24}, {40, 24}, {40, 40}, {24, 40}}; // anticlockwise
+    static const float way[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    for (int k = 0; k < 4; k++) {
+        templates_world t;
+        templates_open(&t, *state, &small, 0.02);
+        pass *p = add_one(&t, quarter, 90.0f * (float)k);
+        set_word(p, "kind", "velocity");
+        templates_build(&t);
+        templates_run(&t, 2, false); // what is written stays as it is
+        float *drawn = templates_read_flow(&t, "FlowSources");
+        for (int i = 0; i < 4; i++) {
+            const float *push = drawn + 12 * (64 * turned[i][1] + turned[i][0]) + 8;
+            for (int c = 0; c < 2; c++)
+                assert_true(fabsf(push[c] - (i == k ? 3 * 0.02f * way[k][c] : 0)) < 1e-3f);
+        }
+        mem_free(drawn);
+        templates_close(&t);
+    }
+}
+
+// Two that overlap: the later one is blended over the earlier one, and both kinds are drawn at
+// once.
+static void groups_of_both_kinds_are_drawn_over_each_other(void **state) {
+    templates_world t;
+    templates_open(&t, *state, &small, 0.02);
+    templates_set(&t, add_one(&t, templates_picture(&t.w.memory, blue), 0), "blend", 0.5f);
+    templates_set(&t, add_one(&t, templates_picture(&t.w.memory, blue), 0), "strength", -3);
+    set_word(add_one(&t, templates_picture(&t.w.memory, red), 0), "kind", "velocity");
+    templates_set(&t, t.groups[1], "blend", 0.5f);
+    templates_build(&t);
+    templates_run(&t, 1, false);
+    float *pressed = templates_read_flow(&t, "FlowTemplates");
+    float *pushed = templates_read_flow(&t, "FlowSources");
+    const float *middle = pressed + 2 * (64 * 32 + 32);
+    assert_true(fabsf(middle[0] - 0.75f) < 0.01f);
+    assert_true(fabsf(middle[1] - (0.25f * 3 - 0.5f * 3) / 0.75f) < 0.03f);
+    assert_true(fabsf(pushed[12 * (64 * 32 + 32) + 8] - 0.06f) < 1e-3f);
+    mem_free(pressed);
+    mem_free(pushed);
+    templates_close(&t);
+}
+
+static void they_come_and_go_by_fade(void **state) {
+    templates_world t;
+    templates_open(&t, *state, &small, 0.01);
+    GROUP(&t, 200, blue, {"fade", 0.25f}, {"lifetime_min", 1}, {"lifetime_max", 1});
+    templates_build(&t);
+    templates_run(&t, 1, false);
+    template_seen *seen = templates_read(&t, 0);
+    for (int i = 0; i < 200; i++) {
+        float age = fminf(seen[i].age, 1 - seen[i].age) / 0.25f;
+        float expected = age >= 1 ? 1 : age * age * (3 - 2 * age);
+        assert_true(fabsf(seen[i].alpha - expected) < 1e-4f);
+    }
+    mem_free(seen);
+    templates_close(&t);
+}
+
+int main(void) {
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sizes_and_lifetimes_are_spread_evenly_between_their_bounds),
+        cmocka_unit_test(same_seed_gives_the_same_templates_and_another_one_others),
+        cmocka_unit_test(lives_do_not_hang_on_the_step),
+        cmocka_unit_test(slices_have_templates_of_their_own),
+        cmocka_unit_test(fewer_act_by_amount),
+        cmocka_unit_test(all_lie_in_the_region_and_all_over_it),
+        cmocka_unit_test(none_is_put_where_there_is_no_place),
+        cmocka_unit_test(align_turns_the_upper_edge),
+        cmocka_unit_test(spread_turns_each_by_less_than_it_says),
+        cmocka_unit_test(border_fades_as_a_gaussian),
+        cmocka_unit_test(pictures_and_velocities_turn_together),
+        cmocka_unit_test(groups_of_both_kinds_are_drawn_over_each_other),
+        cmocka_unit_test(they_come_and_go_by_fade),
+    };
+    return gpu_test_run(tests, COUNT_OF(tests));
+}
