@@ -1,6 +1,7 @@
 // roil bench SWEEP.lua: measures a sweep, row by row.
 #include "app/app.h"
 #include "app/bench_print.h"
+#include "app/device_options.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
@@ -135,8 +136,7 @@ static bool parse(bench_options *o, int argc, const char **argv, poptContext *co
          "that a row is drawn before it is timed, so that clocks rise", "SECONDS"},
         {"no-reference", 0, POPT_ARG_NONE, &o->no_reference, 0,
          "draw no references, and compare no pictures", NULL},
-        {"device", 'd', POPT_ARG_STRING, &o->order.device, 0,
-         "part of a device's name, or its number", "DEVICE"},
+        APP_DEVICE_ROW(&o->order.device),
         POPT_AUTOHELP POPT_TABLEEND};
     *context = poptGetContext("roil bench", argc, argv, options, 0);
     poptSetOtherOptionHelp(*context, "SWEEP.lua [options]");

@@ -1,4 +1,5 @@
 // roil live EFFECT.lua ...: a window in which an effect is tuned while it runs.
+#include "app/device_options.h"
 #include "app/live.h"
 #include "app/window.h"
 #include "base/error.h"
@@ -16,11 +17,12 @@
 #include <unistd.h>
 
 typedef struct job {
-    const char *file, *device, *preview, *after_hang;
+    const char *file, *preview, *after_hang;
     app_settings settings;
+    app_device device;
     uint32_t width, height;
-    double frame, timeout;
-    int paused, validate, hidden_panel;
+    double frame;
+    int paused, hidden_panel;
 } job;
 
 // ---- options ----------------------------------------------------------------------------------
@@ -46,10 +48,9 @@ static bool check(const job *j, poptContext context) {
     if (!j->file) return err_set("which effect? usage: roil live EFFECT.lua [options]");
     const char *more = poptGetArg(context);
     if (more) return err_set("'%s': one effect at a time", more);
-    if (j->timeout < 0) return err_set("--timeout %g; accepted: 0 or more", j->timeout);
     if (j->preview && preview_of(j->preview) < 0)
         return err_set("--preview '%s'; accepted: full, half, quarter", j->preview);
-    return true;
+    return app_check_device(&j->device);
 }
 
 static bool parse(job *j, int argc, const char **argv, poptContext *context) {
@@ -60,19 +61,13 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
          "a parameter, or a uniform or option of a pass (march.steps=64)", "NAME=VALUE"},
         {"preset", 'p', POPT_ARG_STRING, NULL, OPTION_PRESET,
          "values saved under a name beside the effect, or in a .lua file", "NAME"},
-        {"device", 'd', POPT_ARG_STRING, &j->device, 0, "part of a device's name, or its number",
-         "DEVICE"},
         {"frame", 'f', POPT_ARG_DOUBLE, &j->frame, 0, "to begin with (default: the first)",
          "FRAME"},
         {"paused", '\0', POPT_ARG_NONE, &j->paused, 0, "do not play at once", NULL},
         {"preview", '\0', POPT_ARG_STRING, &j->preview, 0,
          "size of the picture: full, half, quarter (default: as it was left)", "SIZE"},
         {"hidden-panel", '\0', POPT_ARG_NONE, &j->hidden_panel, 0, "show the picture alone", NULL},
-        {"timeout", '\0', POPT_ARG_DOUBLE, &j->timeout, 0,
-         "that a frame may take before the device counts as lost (default: 30, in software 300)",
-         "SECONDS"},
-        {"validate", '\0', POPT_ARG_NONE, &j->validate, 0, "with the Vulkan validation layers",
-         NULL},
+        app_device_rows(&j->device),
         {"after-hang", '\0', POPT_ARG_STRING | POPT_ARGFLAG_DOC_HIDDEN, &j->after_hang, 0, NULL,
          NULL},
         POPT_AUTOHELP POPT_TABLEEND};
@@ -120,6 +115,15 @@ static void add_moved(arguments *a, roil_effect *e) {
     }
 }
 
+static void add_device(arguments *a, const app_device *d) {
+    if (d->name) add(a, "--device");
+    if (d->name) add(a, d->name);
+    if (d->validate) add(a, "--validate");
+    if (d->no_cache) add(a, "--no-cache");
+    if (d->timeout > 0) add(a, "--timeout");
+    if (d->timeout > 0) add_number(a, d->timeout);
+}
+
 // The device is lost, and a thread of its driver may never end: nothing can be freed or joined. The
 // program becomes itself anew, with what the user had set, and holds the effect back.
 static int begin_anew(const job *j, const live *l) {
@@ -128,13 +132,7 @@ static int begin_anew(const job *j, const live *l) {
                                   "--after-hang", l->broken_text, "--frame"};
     for (size_t i = 0; i < COUNT_OF(always); i++) add(&a, always[i]);
     add_number(&a, l->time.frame);
-    if (j->device) add(&a, "--device");
-    if (j->device) add(&a, j->device);
-    if (j->validate) add(&a, "--validate");
-    if (j->timeout > 0) {
-        add(&a, "--timeout");
-        add_number(&a, j->timeout);
-    }
+    add_device(&a, &j->device);
     if (l->effect) add_moved(&a, l->effect);
     log_write(LOG_WARNING, "%s; the program starts anew", l->broken_text);
     execv("/proc/self/exe", a.list);
@@ -185,11 +183,10 @@ static int run_window(live *l, window *w, const job *j) {
 }
 
 static int run_device(live *l, window *w, job *j) {
-    l->r = roil_create(&(roil_desc){.device = j->device,
-                                    .validate = j->validate,
-                                    .timeout = j->timeout,
-                                    .window = &w->desc,
-                                    .punctual = true});
+    roil_desc desc = app_device_desc(&j->device);
+    desc.window = &w->desc;
+    desc.punctual = true;
+    l->r = roil_create(&desc);
     if (!l->r) return app_fail_input();
     l->follow = roil_live_create(l->r, &(roil_live_desc){.file = j->file,
                                                          .presets = j->settings.presets,

@@ -1,5 +1,6 @@
 // roil render EFFECT.lua ...: frames to PNG, EXR or MP4.
 #include "app/app.h"
+#include "app/device_options.h"
 #include "base/arena.h"
 #include "base/clock.h"
 #include "base/error.h"
@@ -20,7 +21,7 @@ typedef struct output {
 } output;
 
 typedef struct job {
-    const char *file, *stats, *device;
+    const char *file, *stats;
     const char *checkpoint, *restore;
     output *outputs;
     size_t output_count, output_capacity;
@@ -28,14 +29,15 @@ typedef struct job {
     const char *from_file;
     roil_recipe *from; // of that picture
     app_settings settings;
+    app_device device;
     app_frames frames;
     const char *frames_text;
     uint32_t width, height;
-    int alpha, sixteen, full, validate, no_cache;
+    int alpha, sixteen, full;
     int warmup;         // frames
     bool all;           // frames, as nobody says which
     uint32_t reference; // samples a pixel; 0: as the effect draws it
-    double fps, timeout;
+    double fps;
     char default_output[PATH_CAP];
 } job;
 
@@ -121,8 +123,6 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
          "write the state of the simulation after the last frame", "FILE"},
         {"reference", '\0', POPT_ARG_STRING, NULL, OPTION_REFERENCE,
          "trace paths of light instead of each pass march, so many for each pixel", "SPP"},
-        {"device", 'd', POPT_ARG_STRING, &j->device, 0, "part of a device's name, or its number",
-         "DEVICE"},
         {"stats", '\0', POPT_ARG_STRING, &j->stats, 0,
          "write GPU milliseconds by pass, samples taken and the device as JSON", "FILE.json"},
         {"dump-pass", '\0', POPT_ARG_STRING, NULL, OPTION_DUMP,
@@ -132,13 +132,7 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
         {"16", '\0', POPT_ARG_NONE, &j->sixteen, 0, "16 bits a channel in PNG files", NULL},
         {"float", '\0', POPT_ARG_NONE, &j->full, 0, "32-bit float in EXR files (default: half)",
          NULL},
-        {"timeout", '\0', POPT_ARG_DOUBLE, &j->timeout, 0,
-         "that a frame may take before the device counts as lost (default: 30, in software 300)",
-         "SECONDS"},
-        {"validate", '\0', POPT_ARG_NONE, &j->validate, 0, "with the Vulkan validation layers",
-         NULL},
-        {"no-cache", '\0', POPT_ARG_NONE, &j->no_cache, 0,
-         "neither read nor write compiled shaders on disk", NULL},
+        app_device_rows(&j->device),
         POPT_AUTOHELP POPT_TABLEEND};
     *context = poptGetContext("roil render", argc, argv, options, 0);
     poptSetOtherOptionHelp(*context, "EFFECT.lua [options]");
@@ -155,7 +149,8 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
         return err_set("--warmup %d; accepted: 0 to 1000 frames", j->warmup);
     if (j->warmup && j->restore)
         return err_set("--warmup goes back, --restore goes on: one of the two");
-    return !j->frames_text || app_parse_frames(j->frames_text, &j->frames);
+    return app_check_device(&j->device) &&
+           (!j->frames_text || app_parse_frames(j->frames_text, &j->frames));
 }
 
 // ---- work -------------------------------------------------------------------------------------
@@ -327,14 +322,10 @@ static bool close_outputs(job *j, bool done) {
 
 static int run(job *j) {
     if (!complete_from(j)) return app_fail_input();
-    roil *r = roil_create(&(roil_desc){
-        .device = j->device,
-        .validate = j->validate,
-        .no_cache = j->no_cache,
-        .counters = j->stats != NULL,
-        .reference = j->reference,
-        .timeout = j->timeout,
-    });
+    roil_desc desc = app_device_desc(&j->device);
+    desc.counters = j->stats != NULL;
+    desc.reference = j->reference;
+    roil *r = roil_create(&desc);
     bool collected = r && app_collect_settings(&j->settings, r, j->file, j->from);
     roil_effect *e = collected ? roil_load(r, j->file, j->settings.all, j->settings.count) : NULL;
     app_stats *stats = app_stats_create();

@@ -1,5 +1,6 @@
 // roil tune EFFECT.lua: searches the settings of its quality, and writes what it finds as a preset.
 #include "app/app.h"
+#include "app/device_options.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -136,8 +137,7 @@ static bool parse(tune_options *o, int argc, const char **argv, poptContext *con
         {"set", 0, POPT_ARG_STRING, NULL, OPTION_SET, "for all that is measured", "NAME=VALUE"},
         {"preset", 0, POPT_ARG_STRING, NULL, OPTION_PRESET, "for all that is measured",
          "NAME|FILE.lua"},
-        {"device", 'd', POPT_ARG_STRING, &o->order.device, 0,
-         "part of a device's name, or its number", "DEVICE"},
+        APP_DEVICE_ROW(&o->order.device),
         POPT_AUTOHELP POPT_TABLEEND};
     *context = poptGetContext("roil tune", argc, argv, options, 0);
     poptSetOtherOptionHelp(*context, "EFFECT.lua --max-ms MS | --max-error E [options]");

@@ -1,5 +1,6 @@
 // roil export vdb EFFECT.lua -o DIR/%04d.vdb: what fills space in an effect, frame by frame.
 #include "app/app.h"
+#include "app/device_options.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/str.h"
@@ -9,12 +10,12 @@
 #include <stdlib.h>
 
 typedef struct job {
-    const char *file, *output, *device, *frames_text;
+    const char *file, *output, *frames_text;
     roil_volume_desc volume;
     app_settings settings;
+    app_device device;
     app_frames frames;
-    int validate, no_cache;
-    double tolerance, timeout;
+    double tolerance;
 } job;
 
 enum { OPTION_SIZE = 1, OPTION_BOX, OPTION_SET, OPTION_PRESET };
@@ -66,7 +67,7 @@ static bool check(job *j, poptContext context) {
     if (!(j->tolerance >= 0 && j->tolerance < 1e6))
         return err_set("--tolerance %g; accepted: 0 or more", j->tolerance);
     j->volume.tolerance = (float)j->tolerance;
-    return app_check_pattern(j->output) &&
+    return app_check_pattern(j->output) && app_check_device(&j->device) &&
            (!j->frames_text || app_parse_frames(j->frames_text, &j->frames));
 }
 
@@ -90,15 +91,7 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
         {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET, "as of roil render", "NAME=VALUE"},
         {"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET, "as of roil render",
          "NAME|FILE.lua"},
-        {"device", 'd', POPT_ARG_STRING, &j->device, 0, "part of a device's name, or its number",
-         "DEVICE"},
-        {"timeout", '\0', POPT_ARG_DOUBLE, &j->timeout, 0,
-         "that a frame may take before the device counts as lost (default: 30, in software 300)",
-         "SECONDS"},
-        {"validate", '\0', POPT_ARG_NONE, &j->validate, 0, "with the Vulkan validation layers",
-         NULL},
-        {"no-cache", '\0', POPT_ARG_NONE, &j->no_cache, 0,
-         "neither read nor write compiled shaders on disk", NULL},
+        app_device_rows(&j->device),
         POPT_AUTOHELP POPT_TABLEEND};
     *context = poptGetContext("roil export vdb", argc, argv, options, 0);
     poptSetOtherOptionHelp(*context, "EFFECT.lua -o DIR/%04d.vdb [options]");
@@ -154,10 +147,8 @@ static bool export_all(job *j, roil_effect *e) {
 }
 
 static int run(job *j) {
-    roil *r = roil_create(&(roil_desc){.device = j->device,
-                                       .validate = j->validate,
-                                       .no_cache = j->no_cache,
-                                       .timeout = j->timeout});
+    const roil_desc desc = app_device_desc(&j->device);
+    roil *r = roil_create(&desc);
     bool collected = r && app_collect_settings(&j->settings, r, j->file, NULL);
     roil_effect *e = collected ? roil_load(r, j->file, j->settings.all, j->settings.count) : NULL;
     int status = APP_DONE;

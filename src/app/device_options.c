@@ -1,0 +1,29 @@
+#include "app/device_options.h"
+#include "base/error.h"
+#include <assert.h>
+#include <string.h>
+
+struct poptOption app_device_rows(app_device *d) {
+    const struct poptOption rows[] = {
+        APP_DEVICE_ROW(&d->name),
+        {"timeout", '\0', POPT_ARG_DOUBLE, &d->timeout, 0,
+         "that a frame may take before the device counts as lost (default: 30, in software 300)",
+         "SECONDS"},
+        {"validate", '\0', POPT_ARG_NONE, &d->validate, 0, "with the Vulkan validation layers",
+         NULL},
+        {"no-cache", '\0', POPT_ARG_NONE, &d->no_cache, 0,
+         "neither read nor write compiled shaders on disk", NULL},
+        POPT_TABLEEND};
+    static_assert(sizeof rows == sizeof d->rows, "app_device has a place for each row");
+    memcpy(d->rows, rows, sizeof rows);
+    return (struct poptOption){.argInfo = POPT_ARG_INCLUDE_TABLE, .arg = d->rows};
+}
+
+bool app_check_device(const app_device *d) {
+    return d->timeout >= 0 || err_set("--timeout %g; accepted: 0 or more", d->timeout);
+}
+
+roil_desc app_device_desc(const app_device *d) {
+    return (roil_desc){
+        .device = d->name, .validate = d->validate, .no_cache = d->no_cache, .timeout = d->timeout};
+}
