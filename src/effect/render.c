@@ -98,9 +98,10 @@ bool effect_compile(effect *e) {
     return true;
 }
 
-static bool allocate(effect *e) { // the graph is compiled
+// The graph is compiled: what it culls needs no memory.
+static bool allocate(effect *e) {
     for (size_t i = 0; i < e->pass_count; i++)
-        if (is_wanted(e, e->passes[i]) && !pass_allocate(e->passes[i])) return false;
+        if (effect_runs(e, pass_runner(e->passes[i])) && !pass_allocate(e->passes[i])) return false;
     return scene_bvh_allocate(e->host.bvh, e->device) &&
            (!e->sky || sky_image_upload(e->sky, e->device)) && graph_allocate(e->graph, e->device);
 }

@@ -37,6 +37,10 @@ const char *pass_label(const pass *p) {
     return p->label;
 }
 
+const pass *pass_runner(const pass *p) {
+    return p->runs_in ? p->runs_in : p;
+}
+
 bool pass_is(const pass *p, const char *type) {
     return p->type && strcmp(p->type->name, type) == 0;
 }

@@ -114,6 +114,7 @@ bool pass_stand_for(pass *p, const pass_type *other);
 bool pass_ignores(const pass *p, const char *name);
 void pass_destroy(pass *p);
 const char *pass_label(const pass *p);
+const pass *pass_runner(const pass *p);        // the pass that it is a part of, else itself
 bool pass_is(const pass *p, const char *type); // of the built-in type "march"
 const shader_interface *pass_interface(const pass *p);
 

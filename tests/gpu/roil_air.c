@@ -274,6 +274,30 @@ static void what_fails_at_a_step_is_told(void **state) {
     roil_unload(e);
 }
 
+static uint64_t memory_with(roil *r, const char *more) {
+    picture p;
+    uint64_t before = roil_get_memory(r).device;
+    roil_effect *e = open(r, 24, "", more);
+    draw(e, 2, p);
+    uint64_t taken = roil_get_memory(r).device - before;
+    roil_unload(e);
+    return taken;
+}
+
+static void air_that_nobody_reads_takes_no_memory(void **state) {
+    static const char MORE[] =
+        "local more = lbm { size = {32, 32, 32}, voxel_size = 0.1, speed = 2 }\n"
+        "more:source { shape = sphere { position = {0, 0, 1}, radius = 0.2 }, density = 1 }\n";
+    char read[512];
+    snprintf(read, sizeof read,
+             "%sair:source { shape = sphere { position = {0, 0, 1} },\n"
+             "             density = more.density }",
+             MORE);
+    uint64_t alone = memory_with(*state, ""), unread = memory_with(*state, MORE);
+    assert_true(unread < alone + (1 << 14));
+    assert_true(memory_with(*state, read) > alone + (1 << 20));
+}
+
 // ---- what it tells ----------------------------------------------------------------------------
 
 static void it_tells_of_itself(void **state) {
@@ -376,6 +400,7 @@ int main(void) {
         cmocka_unit_test(smoke_is_where_its_source_is_and_rises),
         cmocka_unit_test(a_field_pushes_the_air),
         cmocka_unit_test(what_fails_at_a_step_is_told),
+        cmocka_unit_test(air_that_nobody_reads_takes_no_memory),
         cmocka_unit_test(it_tells_of_itself),
         cmocka_unit_test(air_that_is_too_fast_stops_and_says_why),
         cmocka_unit_test(a_reload_goes_on_where_the_lattice_is_the_same),
