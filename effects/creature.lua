@@ -53,7 +53,7 @@ local fire  = palette { blackbody = {600, 3500}, physical = true, reference = 15
 fx.sun    = sun { azimuth = 60, elevation = 22, color = {0.5, 0.66, 1}, strength = 1.6 }
 fx.sky    = sky { zenith = {0.006, 0.010, 0.022}, horizon = {0.030, 0.034, 0.05}, strength = 1 }
 fx.lights = {
-  spot_light { position = {-3.0, 2.6, 4.6}, target = {0, 0, 1.7}, color = {0.55, 0.72, 1}, power = 4000, angle = 60, softness = 0.5 },
+  spot_light { position = {-3.0, 2.6, 4.6}, target = {0, 0, 1.7}, color = {0.55, 0.72, 1}, power = 4000, angle = 60, softness = 0.5, radius = 0.2 },
   spot_light { position = {-2.2, -4.5, 0.8}, target = {0, 0, 1.5}, color = {1, 0.55, 0.3}, power = 300, angle = 50, softness = 0.6 },
   point_light { position = {0.45, 0, 1.75}, color = {1, 0.42, 0.1}, power = throat * breath },
 }
@@ -64,7 +64,7 @@ local lit = lighting {
   albedo = {0.6, 0.58, 0.56}, anisotropy = 0.35, sampling = "cubic",
 }
 local scene  = geometry { mesh { "data/ground.obj", color = {0.35, 0.37, 0.42} }, head, jaw }
-local solid  = shade { from = {scene, lit}, sky_samples = 8, shadow_samples = 4, haze = 0.01 }
+local solid  = shade { from = {scene, lit}, sky_samples = 8, shadow_samples = 8, haze = 0.01 }
 local volume = march { from = {lit, scene}, steps = 128 }
 
 local picture = over { volume, solid, from = {volume, scene} }

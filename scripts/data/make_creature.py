@@ -77,6 +77,7 @@ NECK = ((-0.20, 0, 0.20, 0.24), (-0.52, 0, 0.10, 0.255), (-0.86, 0, -0.18, 0.265
         (-0.86, 0, -1.62, 0.43), (-0.82, 0, -1.95, 0.47))
 GULLET = ((0.55, 0, -0.01, 0.08), (0.20, 0, 0.01, 0.13), (-0.10, 0, 0.04, 0.15), (-0.42, 0, 0.08, 0.145), (-0.68, 0, 0.01, 0.13),
           (-0.84, 0, -0.24, 0.10))
+POUCH = ((-0.50, 0, 0.03, 0.20), (-0.30, 0, -0.03, 0.19), (-0.12, 0, -0.07, 0.15))  # below the gullet: the jaw turns around it
 
 
 def on_neck(p):
@@ -144,10 +145,10 @@ def upper():
     skin, lids, eye, horns, teeth = skull()
     throat = neck()
     spines = join(0.0, *spikes(NECK, 13, 0.17, 0.045))
-    palate = loft(shrunk(UPPER, 0.055, -0.2, -0.15), 2.2)
+    palate = loft(shrunk(UPPER, 0.085, -0.2, -0.15), 2.2)
     palate = cut(0.03, palate, lambda p: p[:, 0] + 0.02, lambda p: 1.10 - p[:, 0])  # behind the jaw the gullet is whole
     hollow = join(0.08, limb(*spline(GULLET, 6)), palate)
-    solid = join(0.10, skin, throat)
+    solid = join(0.10, skin, throat, limb(*spline(POUCH, 6)))
     body = cut(0.03, solid, hollow)
     body = join(0.012, join(0.02, body, lids), eye)
     whole = join(0.012, join(0.03, body, horns), join(0.015, teeth), spines)
@@ -167,7 +168,7 @@ def jaw():
     bone = join(0.06, loft(LOWER, 2.6), ellipsoid((-0.02, 0.185, -0.06), (0.17, 0.07, 0.15)))
     lip = limb(*spline([(x, 0.92 * w, b - 0.03, 0.022) for x, w, _, b in LOWER[1:-1]], 4))
     bone = join(0.03, bone, lip)
-    trough = cut(0.02, loft(shrunk(LOWER, 0.05, 0.07, 0.2), 2.4), lambda p: 1.10 - p[:, 0])
+    trough = cut(0.02, loft(shrunk(LOWER, 0.065, 0.07, 0.2), 2.4), lambda p: 1.10 - p[:, 0])
     tongue = limb((-0.02, 0, -0.115, 0.06), (0.40, 0, -0.085, 0.062), (0.75, 0, -0.062, 0.052), (0.95, 0, -0.030, 0.034), (1.04, 0, 0.005, 0.008))
     flat = lambda p: tongue(p * (1, 0.75, 1.0))
     teeth = join(0.0, *row(LOWER, (1.19, 1.08, 0.98, 0.88, 0.78, 0.68, 0.58, 0.48, 0.39, 0.30),
