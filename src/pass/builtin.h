@@ -83,6 +83,11 @@ bool particles_record(pass *p);
 void particles_destroy(pass *p);
 extern const pass_simulation particles_simulation;
 
+bool picture_declare(pass *p);
+bool picture_check(pass *p);
+bool picture_build(pass *p);
+bool picture_record(pass *p);
+
 bool splats_declare(pass *p);
 bool splats_check(pass *p);
 bool splats_build(pass *p);

@@ -132,6 +132,15 @@ static const pass_type types[] = {
         .destroy = particles_destroy,
     },
     {
+        .name = "picture",
+        .shader = "pass/picture.comp",
+        .unscaled = true,
+        .declare = picture_declare,
+        .check = picture_check,
+        .build = picture_build,
+        .record = picture_record,
+    },
+    {
         .name = "splats",
         .shader = "pass/splats.comp",
         .declare = splats_declare,

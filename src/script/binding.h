@@ -58,6 +58,7 @@ typedef struct mesh_object {
 typedef struct picture_object { // a file's: image "templates/source.exr"
     const struct picture *picture;
     const char *file; // as the script says it
+    pass *pass;       // that gives it as an image of the graph; NULL: nobody asked yet
 } picture_object;
 const picture_object *value_picture(lua_State *L, int index); // NULL: something else
 typedef struct slices_object { // l_slices.c

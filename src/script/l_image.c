@@ -26,6 +26,7 @@ static int l_image(lua_State *L) {
     if (strlen(file) != length) vm_error(L, "image: the file name contains a zero byte");
     vm_charge_memory(L, length + 1);
     picture_object *object = object_new(L, "picture", sizeof *object);
+    object->pass = NULL;
     object->file = arena_string(script_memory(L), file);
     object->picture = effect_read_picture(script_of(L)->effect, file, SIDE_MAX);
     if (!object->picture) script_raise(L);

@@ -4,6 +4,7 @@
 // The result stands for the pass's first output where an image is wanted; result.name is the output
 // of that name. history(image) is its content in the last frame.
 #include "base/memory.h"
+#include "pass/picture.h"
 #include "script/binding.h"
 #include <string.h>
 
@@ -39,7 +40,29 @@ static const shader_image *first_output(const shader_interface *face) {
     return NULL;
 }
 
+// A file's, by a pass that all share who ask for it.
+static bool picture_image(lua_State *L, int index, graph_image *out) {
+    script *s = script_of(L);
+    picture_object *object = object_test(L, index, "picture");
+    if (!object) return false;
+    if (!object->pass) {
+        const char *unsound = s->unsound;
+        script_require_loading(L, "an image of a file");
+        vm_charge_memory(L, PASS_COST);
+        s->unsound = "image";
+        pass *made = effect_add_pass(s->effect, "picture", NULL, NULL);
+        if (!made) script_raise(L);
+        pass_picture_open(made, object->picture);
+        if (!pass_declare(made)) script_raise(L);
+        s->unsound = unsound;
+        object->pass = made;
+    }
+    *out = pass_output(object->pass, "color");
+    return true;
+}
+
 bool value_image(lua_State *L, int index, graph_image *out) {
+    if (picture_image(L, index, out)) return true;
     const image_object *image = object_test(L, index, "image");
     if (image) {
         *out = image->image;
@@ -375,8 +398,9 @@ static int l_shader(lua_State *L) {
 // Made by a function of its own, or a method: bake(field), lbm { }, air:source { }.
 static bool has_constructor(const char *type) {
     static const char *const types[] = {
-        "bake",         "lbm",           "lbm_source",      "particles",        "slices",
-        "slices_force", "slices_inflow", "slices_obstacle", "slices_templates", "voxels"};
+        "bake",   "picture",      "lbm",           "lbm_source",      "particles",
+        "slices", "slices_force", "slices_inflow", "slices_obstacle", "slices_templates",
+        "voxels"};
     for (size_t i = 0; i < COUNT_OF(types); i++)
         if (strcmp(types[i], type) == 0) return true;
     return false;
