@@ -97,6 +97,8 @@ bool flow_compile(flow *f, shader_library *library, const shader_reader *reader)
         {&k->coarse, "sim/flow/coarse.comp", NULL, plain},
         {&k->up, "sim/flow/up.comp", NULL, plain},
         {&k->up_finest, "sim/flow/up.comp", "FLOW_FINEST", plain},
+        {&k->report, "sim/flow/report.comp", NULL, false},
+        {&k->report_last, "sim/flow/report.comp", "LAST", false},
         {&k->look, "sim/flow/look.comp", NULL, false},
     };
     define_all(f);
@@ -150,6 +152,7 @@ static void find_sizes(const flow *f, uint64_t out[FLOW_MEM_COUNT]) {
     out[FLOW_MEM_Z] = multigrid ? (last->z_at + end) * 4 : 0;
     out[FLOW_MEM_IMAGE] = cells * 4;
     out[FLOW_MEM_KNOWN] = desc->slices * FLOW_KNOWN_WORDS * 4ull;
+    out[FLOW_MEM_REPORT] = desc->slices * tiles(desc, FLOW_TILE) * 32;
     out[FLOW_MEM_PARTS] = desc->slices * FLOW_PART_KINDS * parts * 16;
 }
 
@@ -161,7 +164,7 @@ bool flow_allocate(flow *f, gpu *g) {
         f->buffers[i] = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "flow", .size = sizes[i]});
         if (!f->buffers[i]) return false;
     }
-    return true;
+    return flow_report_allocate(f, g);
 }
 
 void flow_destroy(flow *f, gpu *g) {
@@ -169,6 +172,7 @@ void flow_destroy(flow *f, gpu *g) {
     for (int i = 0; i < FLOW_MEM_COUNT; i++) gpu_buffer_destroy(g, f->buffers[i]);
     for (int i = 0; i < 2 * FLOW_LOOKS; i++)
         gpu_image_destroy(g, f->looks[i / FLOW_LOOKS][i % FLOW_LOOKS]);
+    flow_report_destroy(f, g);
     memset(f->buffers, 0, sizeof f->buffers);
     memset(f->looks, 0, sizeof f->looks);
 }
@@ -179,7 +183,7 @@ gpu_buffer *flow_pair(const flow *f, flow_memory pair, uint32_t which) {
 
 // ---- what is bound ----------------------------------------------------------------------------
 
-enum { OWN_SLOTS = 13 };
+enum { OWN_SLOTS = 14 };
 
 static void own_slots(const flow *f, sim_slot out[OWN_SLOTS]) {
     gpu_buffer *const *b = f->buffers;
@@ -195,6 +199,7 @@ static void own_slots(const flow *f, sim_slot out[OWN_SLOTS]) {
         {"FlowParts", b[FLOW_MEM_PARTS], NULL},
         {"FlowZ", b[FLOW_MEM_Z], NULL},
         {"FlowImage", b[FLOW_MEM_IMAGE], NULL},
+        {"FlowReport", b[FLOW_MEM_REPORT], NULL},
         {"FlowHatVelocity", b[FLOW_MEM_VELOCITY_HAT], NULL},
         {"FlowHatScalars", b[FLOW_MEM_SCALARS_HAT], NULL},
     };
@@ -215,6 +220,14 @@ bool flow_run(const flow *f, gpu *g, const flow_call *call) {
     if (call->count) memcpy(slots, call->more, call->count * sizeof *slots);
     own_slots(f, slots + call->count);
     return sim_kernel_run(call->kernel, g, slots, call->count + OWN_SLOTS, call->threads);
+}
+
+bool flow_run_tiles(const flow *f, gpu *g, sim_kernel *k, const sim_slot *more, size_t count,
+                    const uint32_t size[2]) {
+    flow_call call = {k, more, count, {1, 1, f->desc.slices}};
+    call.threads[0] = (size[0] + FLOW_TILE - 1) / FLOW_TILE * 256;
+    call.threads[1] = (size[1] + FLOW_TILE - 1) / FLOW_TILE;
+    return flow_run(f, g, &call);
 }
 
 size_t flow_buffers(const flow *f, gpu_buffer *out[FLOW_STATE_BUFFERS]) {

@@ -89,6 +89,19 @@ typedef enum flow_look {
 } flow_look;
 gpu_image *flow_image(const flow *f, flow_look look, int which);
 
+typedef struct flow_report { // of the state after a step
+    uint64_t step;           // flow_steps then
+    uint32_t iterations;     // of the pressure: the most that a slice took
+    float residual;          // the greatest of a slice, of what it is measured against
+    float speed;             // greatest, m/s
+    float sum[3], most[3];   // density, temperature, dye: over all cells
+} flow_report;
+
+// Inside a frame, once, after its last step.
+bool flow_watch(flow *f, gpu *g);
+// The newest report of a frame that has finished; false: there is none yet. Never waits.
+bool flow_read(const flow *f, gpu *g, flow_report *out);
+
 // What a shader that includes sim/flow/state.glsl must be compiled with, and which of its slots are
 // the solver's own; after flow_build. The inputs (FlowSources, FlowObstacles, FlowTemplates) are
 // there when desc says so. They keep what was written to them: for the next step too.

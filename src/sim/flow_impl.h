@@ -9,7 +9,9 @@ enum {
     // Cells along a side of what a group does of the pressure's finer levels: 16 or 32. Smaller
     // ones are more groups, and more cells that are computed in two.
     FLOW_TILE = 32,
-    FLOW_MULTIGRID_ITERATIONS = 6, // default of max_iterations
+    // Defaults of max_iterations: those that are not needed still cost what a dispatch costs.
+    FLOW_MULTIGRID_ITERATIONS = 6,
+    FLOW_OBSTACLE_ITERATIONS = 10,
 };
 
 // ---- memory -----------------------------------------------------------------------------------
@@ -33,6 +35,7 @@ typedef enum flow_memory {
     FLOW_MEM_IMAGE = FLOW_MEM_DIRECTION + 2,
     FLOW_MEM_KNOWN,
     FLOW_MEM_PARTS,
+    FLOW_MEM_REPORT,
     FLOW_MEM_COUNT
 } flow_memory;
 
@@ -49,13 +52,31 @@ typedef struct flow_level {
     uint32_t coefficients_at, r_at, z_at; // where those of the first slice begin
 } flow_level;
 
+// ---- reports: flow_report.c -------------------------------------------------------------------
+
+enum { FLOW_REPORT_PLACES = GPU_FRAMES_IN_FLIGHT + 1 };
+
+typedef struct flow_place {
+    uint64_t frame, step; // frame 0: nothing was recorded
+} flow_place;
+
+typedef struct flow_reporter {
+    gpu_buffer *found;
+    gpu_image *result;
+    flow_place places[FLOW_REPORT_PLACES];
+    uint32_t next;
+} flow_reporter;
+
+bool flow_report_allocate(flow *f, gpu *g);
+void flow_report_destroy(flow *f, gpu *g);
+
 // ---- the solver -------------------------------------------------------------------------------
 
 typedef struct flow_kernels {
     sim_kernel diffuse, predict, advance;                // flow_step.c
     sim_kernel build, follow, direction, project;        // flow_pressure.c
     sim_kernel down_finest, down, coarse, up, up_finest; // with multigrid
-    sim_kernel look;
+    sim_kernel look, report, report_last;
 } flow_kernels;
 enum { FLOW_KERNELS = sizeof(flow_kernels) / sizeof(sim_kernel) };
 
@@ -75,6 +96,7 @@ struct flow {
     uint32_t current;                // of pairs that are the state's
     bool built;                      // coefficients are there
     uint64_t kept, steps;
+    flow_reporter reporter;
 };
 
 uint64_t flow_cells(const flow *f); // of all slices
@@ -89,6 +111,12 @@ typedef struct flow_call {
     uint32_t threads[3];
 } flow_call;
 bool flow_run(const flow *f, gpu *g, const flow_call *call);
+// A group for each tile of a level of `size` cells.
+bool flow_run_tiles(const flow *f, gpu *g, sim_kernel *k, const sim_slot *more, size_t count,
+                    const uint32_t size[2]);
+
+// The image that kept states of an even or odd number are looked at in, unless it is there.
+bool flow_make_look(flow *f, gpu *g, uint32_t which, flow_look look);
 
 // ---- pressure: flow_pressure.c ----------------------------------------------------------------
 

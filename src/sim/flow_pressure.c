@@ -22,7 +22,8 @@ void flow_levels_find(flow *f) {
 
 uint32_t flow_default_iterations(const flow_desc *desc) {
     const uint32_t side = desc->size[0] > desc->size[1] ? desc->size[0] : desc->size[1];
-    return desc->solver == FLOW_CG ? 2 * side : FLOW_MULTIGRID_ITERATIONS;
+    if (desc->solver == FLOW_CG) return 2 * side;
+    return desc->obstacles ? FLOW_OBSTACLE_ITERATIONS : FLOW_MULTIGRID_ITERATIONS;
 }
 
 // ---- dispatches -------------------------------------------------------------------------------
@@ -38,14 +39,6 @@ static void set_float(sim_kernel *k, const char *name, float value) {
 static void set_size(sim_kernel *k, const char *name, const uint32_t size[2]) {
     const float cells[2] = {(float)size[0], (float)size[1]};
     sim_kernel_set(k, name, cells, sizeof cells);
-}
-
-static bool run_tiles(const flow *f, gpu *g, sim_kernel *k, const sim_slot *more, size_t count,
-                      const uint32_t size[2]) {
-    flow_call call = {k, more, count, {1, 1, f->desc.slices}};
-    call.threads[0] = (size[0] + FLOW_TILE - 1) / FLOW_TILE * 256;
-    call.threads[1] = (size[1] + FLOW_TILE - 1) / FLOW_TILE;
-    return flow_run(f, g, &call);
 }
 
 static bool build(flow *f, gpu *g, float unit) {
@@ -104,7 +97,7 @@ static bool go_down(flow *f, gpu *g, uint32_t level, uint32_t iteration) {
                              {"FlowDirection", t.last, NULL}};
     set_level(f, k, level);
     set_int(k, "iteration", iteration);
-    return run_tiles(f, g, k, more, 4, f->levels[level].size);
+    return flow_run_tiles(f, g, k, more, 4, f->levels[level].size);
 }
 
 static bool go_up(flow *f, gpu *g, uint32_t level, uint32_t iteration) {
@@ -113,7 +106,7 @@ static bool go_up(flow *f, gpu *g, uint32_t level, uint32_t iteration) {
     const sim_slot more[] = {
         {"FlowFrom", level == 0 ? turn_of(f, iteration).residual : coarse, NULL}};
     set_level(f, k, level);
-    return run_tiles(f, g, k, more, 1, f->levels[level].size);
+    return flow_run_tiles(f, g, k, more, 1, f->levels[level].size);
 }
 
 static bool do_coarse(flow *f, gpu *g, uint32_t iteration, float tolerance) {
@@ -147,7 +140,7 @@ static bool follow(flow *f, gpu *g, uint32_t iteration) {
                              {"FlowResidual", t.residual, NULL},
                              {"FlowDirection", t.last, NULL}};
     set_int(&f->kernels.follow, "iteration", iteration);
-    return run_tiles(f, g, &f->kernels.follow, more, 3, f->desc.size);
+    return flow_run_tiles(f, g, &f->kernels.follow, more, 3, f->desc.size);
 }
 
 static bool iterate(flow *f, gpu *g, uint32_t iteration, float tolerance) {
@@ -160,7 +153,7 @@ static bool iterate(flow *f, gpu *g, uint32_t iteration, float tolerance) {
     if (!(plain ? follow(f, g, iteration) : precondition(f, g, iteration, tolerance))) return false;
     set_int(k, "iteration", iteration);
     set_float(k, "tolerance", tolerance);
-    return run_tiles(f, g, k, more, 3, f->desc.size);
+    return flow_run_tiles(f, g, k, more, 3, f->desc.size);
 }
 
 bool flow_project(flow *f, gpu *g, const flow_numbers *numbers) {
@@ -176,5 +169,5 @@ bool flow_project(flow *f, gpu *g, const flow_numbers *numbers) {
                              {"FlowVelocityFrom", f->buffers[FLOW_MEM_VELOCITY_NEXT], NULL},
                              {"FlowVelocityTo", f->buffers[FLOW_MEM_VELOCITY], NULL}};
     set_int(&f->kernels.project, "iteration", iterations);
-    return run_tiles(f, g, &f->kernels.project, more, 5, f->desc.size);
+    return flow_run_tiles(f, g, &f->kernels.project, more, 5, f->desc.size);
 }

@@ -105,8 +105,8 @@ gpu_image *flow_image(const flow *f, flow_look look, int which) {
     return f->kept > (uint64_t)which ? f->looks[(f->kept + 1 + (uint64_t)which) % 2][look] : NULL;
 }
 
-static bool make_look(flow *f, gpu *g, flow_look look) {
-    gpu_image **image = &f->looks[f->kept % 2][look];
+bool flow_make_look(flow *f, gpu *g, uint32_t which, flow_look look) {
+    gpu_image **image = &f->looks[which][look];
     if (*image) return true;
     *image = gpu_image_create(
         g, &(gpu_image_desc){.label = look == FLOW_SCALARS ? "flow's scalars" : "flow's velocity",
@@ -120,7 +120,7 @@ static bool make_look(flow *f, gpu *g, flow_look look) {
 
 static bool look(flow *f, gpu *g, const flow_numbers *n) {
     for (flow_look i = 0; i < FLOW_LOOKS; i++)
-        if (!make_look(f, g, i)) return false;
+        if (!flow_make_look(f, g, f->kept % 2, i)) return false;
     const sim_slot more[] = {{"scalars", NULL, f->looks[f->kept % 2][FLOW_SCALARS]},
                              {"velocity", NULL, f->looks[f->kept % 2][FLOW_VELOCITY]}};
     flow_call call = {.kernel = &f->kernels.look, .more = more, .count = 2};
@@ -136,6 +136,7 @@ bool flow_reset(flow *f, gpu *g) {
     f->kept = f->steps = 0;
     f->current = 0;
     f->built = false;
+    memset(f->reporter.places, 0, sizeof f->reporter.places);
     for (int i = 0; i < FLOW_MEM_COUNT; i++)
         if (f->buffers[i]) gpu_buffer_fill(g, f->buffers[i], 0);
     return true;

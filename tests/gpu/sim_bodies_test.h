@@ -1,5 +1,6 @@
 // Bodies for tests of lattices: cells that a function fills with ids.
 #pragma once
+#include "long_test.h"
 #include "sim_test.h"
 
 typedef struct sim_bodies {
@@ -41,12 +42,4 @@ static inline void sim_bodies_set(sim_world *w, sim_bodies *b,
                                              .changed = fill != NULL,
                                              .bodies = b->body,
                                              .count = COUNT_OF(b->body)}));
-}
-
-// Whether tests are wanted that take minutes. `left_out`: what is not tested without them.
-static inline bool sim_long_tests(const char *left_out) {
-    const char *wanted = getenv("ROIL_LONG_TESTS");
-    if (wanted && strcmp(wanted, "1") == 0) return true;
-    print_message("left out: %s; set ROIL_LONG_TESTS=1\n", left_out);
-    return false;
 }
