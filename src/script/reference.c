@@ -206,6 +206,11 @@ static const script_object objects[] = {
             "shape; `roil info passes slices_obstacle` lists the rest"),
         KEY("force { }", "{ force = {1, 0}, shape = disc { } }",
             "what pushes in some places (m/s^2); `roil info passes slices_force` lists the rest"),
+        KEY("templates { }", "{ image \"templates/source.exr\", count = 40, size = {0.04, 0.12}, lifetime = {0.05, 0.4} }",
+            "pictures of pressure or velocity that are put into the flow for a while, again and again: "
+            "`count` in each slice, 20 if not given; `size` (widths of a slice) and `lifetime` (s) are "
+            "one number, or {least, most}; center = {x, y} is that of align = \"radial\". "
+            "`roil info passes slices_templates` lists the rest"),
         KEY("density", "field", "of smoke"),
         KEY("temperature", "field", "0 is that of the fluid around"),
         KEY("dye", "field", "a second colour of smoke"),
