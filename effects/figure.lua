@@ -46,18 +46,19 @@ local trail = cover * smoothstep(0, 0.35, cover - eaten * (1 - lumps) * (1 - 0.6
 local body  = voxels { runner, resolution = 160 }
 local near  = box { position = {-0.05, 0, 1.06}, size = {1.5, 0.75, 1.75} } -- a distance is known everywhere; the smoke ends here
 local skin  = near * smoothstep(0.012, -0.02, body.distance + 0.03 * (1 - presence) + 0.03 * uneven * (1 - grain))
-local smoke = max(0.35 * trail, skin * presence)
+local left  = smoothstep(0.0, 0.11, body.distance) -- what has left it: around it, cells of the air are not seen
+local smoke = max(0.35 * trail * left, skin * presence)
 
 -- The sun stands low behind the smoke, and comes through it.
-fx.sun    = sun { azimuth = 118, elevation = 9, color = {1, 0.62, 0.30}, strength = 7 }
-fx.sky    = sky { zenith = {0.012, 0.022, 0.06}, horizon = {0.10, 0.075, 0.085}, strength = 1 }
+fx.sun    = sun { azimuth = 118, elevation = 9, color = {1, 0.62, 0.30}, strength = 14 }
+fx.sky    = sky { zenith = {0.008, 0.018, 0.055}, horizon = {0.055, 0.06, 0.09}, strength = 1 }
 fx.lights = {
   spot_light { position = {4.5, -5, 3.5}, target = {0, 0, 1.1}, color = {0.55, 0.75, 1}, power = 900, angle = 50, softness = 0.6 },
 }
 fx.camera = camera { eye = {-0.7, -9, 0.7}, target = {-0.75, 0, 1.12}, fov = 16, near = 0.1, far = 500 }
 
 local lit    = lighting { density = smoke * density, albedo = {0.96, 0.96, 0.96}, tint = color, anisotropy = 0.45, sampling = "cubic" }
-local scene  = geometry { mesh { "data/ground.obj", color = {0.5, 0.55, 0.7} } }
+local scene  = geometry { mesh { "data/ground.obj", color = {0.22, 0.32, 0.55} } }
 local solid  = shade { from = {scene, lit}, haze = 0.012 }
 local volume = march { from = {lit, scene}, steps = 160 }
 
