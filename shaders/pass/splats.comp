@@ -13,7 +13,7 @@
 //@ field float size = 0.02 : diameter (m)
 //@ field vec3 color = {1, 1, 1} : radiance in the middle, or, if lit, the part of the light that it scatters
 //@ field float opacity = 1 : of its middle, 0..1; of blend = additive: factor of the light
-//@ field float angle = 0 : by which a picture is turned (degrees)
+//@ field float angle = 0 : by which its picture is turned to the left (degrees)
 //@ field float cell = 0 : of a flipbook: the number of the image, from 0 on. Without it the images follow each other over a particle's life
 //@ field float density = 0 : of smoke that dims what is behind it (1/m), as the pass lighting has it
 //@ counter small : particles added to pixels

@@ -1,5 +1,5 @@
-// Particles at places that a test says, drawn by the pass `splats` in a small world (pass_test.h). The
-// picture is SIDE pixels wide and high; at the middle of it, 5 m away, a metre is METRE pixels.
+// Particles at places that a test says, drawn by the pass `splats` in a small world (pass_test.h).
+// The picture is SIDE pixels wide and high; at the middle of it, 5 m away, a metre is METRE pixels.
 #pragma once
 #include "pass/particles.h"
 #include "pass_test.h"
@@ -24,8 +24,8 @@ static inline void spots_open(spots *s, gpu *device, uint32_t count) {
     s->w.scene.camera.fov = number(&s->w, 2 * atanf(0.5f * SIDE / METRE / 5) * 57.29578f);
     s->particles = world_add(&s->w, "particles", NULL, "particles");
     gpu_test_ok(pass_set_uniform(s->particles, "burst", number(&s->w, (float)count)));
-    gpu_test_ok(pass_particles_open(s->particles,
-                                    &(pass_particles_desc){.count = count, .time_step = 1}));
+    gpu_test_ok(
+        pass_particles_open(s->particles, &(pass_particles_desc){.count = count, .time_step = 1}));
     gpu_test_ok(pass_declare(s->particles));
     s->splats = world_add(&s->w, "splats", NULL, "splats");
     pass_add_source(s->splats, s->particles);

@@ -115,7 +115,7 @@ looks look_at(uint slot) {
     opacity *= shows;
     color *= through / max(shows, 1e-6);
     float turned = radians(field_angle(p.position));
-    l.s = splat(seen.xy, seen.z, radius, vec2(cos(turned), sin(turned)), 0.0, cell_of(p),
+    l.s = splat(seen.xy, seen.z, radius, vec2(cos(turned), -sin(turned)), 0.0, cell_of(p),
                 positive(color, MOST), opacity, random_hash(floatBitsToUint(seen.x)) ^ floatBitsToUint(seen.y));
     l.seen = true;
     return l;
