@@ -7,41 +7,9 @@
 // its index is computed: always 0, which a compiler cannot know.
 //
 // SPIR-V is rewritten word by word; a module with anything unforeseen is left as it is.
-#include "base/memory.h"
+#include "gpu/spirv.h"
 #include "gpu/vk.h"
 #include <string.h>
-
-enum { HEADER = 5, BOUND = 3 }; // words; where the header says that all ids are below
-
-enum { // SPIR-V 1.6, section 3
-    OP_ENTRY_POINT = 15,
-    OP_CAPABILITY = 17,
-    OP_TYPE_FIRST = 19, // OpTypeVoid, up to
-    OP_TYPE_LAST = 39,  // OpTypeForwardPointer
-    OP_TYPE_INT = 21,
-    OP_TYPE_VECTOR = 23,
-    OP_TYPE_ARRAY = 28,
-    OP_TYPE_POINTER = 32,
-    OP_CONSTANT = 43,
-    OP_FUNCTION = 54,
-    OP_FUNCTION_CALL = 57,
-    OP_VARIABLE = 59,
-    OP_LOAD = 61,
-    OP_COPY_MEMORY = 63,
-    OP_ACCESS_CHAIN = 65,
-    OP_IN_BOUNDS_ACCESS_CHAIN = 66,
-    OP_DECORATE = 71,
-    OP_COMPOSITE_EXTRACT = 81,
-    OP_COPY_OBJECT = 83,
-    OP_SHIFT_RIGHT_LOGICAL = 194,
-    OP_LABEL = 248,
-    OP_LINE = 8,
-    STORAGE_INPUT = 1,
-    STORAGE_UNIFORM = 2,
-    CAPABILITY_UNIFORM_INDEXING = 28,
-    DECORATION_BUILT_IN = 11,
-    BUILT_IN_WORKGROUP = 26,
-};
 
 typedef struct block { // a variable of storage class Uniform
     uint32_t id, type; // and of what it points to
@@ -50,8 +18,7 @@ typedef struct block { // a variable of storage class Uniform
 typedef struct hider {
     const uint32_t *in;
     size_t in_count;
-    uint32_t *out;
-    size_t count, capacity;
+    spirv_words out;
     uint32_t bound;                                // next free id
     uint32_t *pointees;                            // of pointer types to Uniform, by id; or 0
     uint32_t uint_type, triple_type, group;        // as the module has them; 0: it does not
@@ -62,20 +29,8 @@ typedef struct hider {
 } hider;
 
 static void put(hider *h, uint32_t word) {
-    MEM_RESERVE(h->out, h->count + 1, h->capacity);
-    h->out[h->count++] = word;
+    spirv_put(&h->out, &word, 1);
 }
-
-static void put_all(hider *h, const uint32_t *words, size_t count) {
-    for (size_t i = 0; i < count; i++) put(h, words[i]);
-}
-
-#define PUT(h, op, ...)                                                                            \
-    do {                                                                                           \
-        const uint32_t operands[] = {__VA_ARGS__};                                                 \
-        put(h, (uint32_t)(COUNT_OF(operands) + 1) << 16 | (op));                                   \
-        put_all(h, operands, COUNT_OF(operands));                                                  \
-    } while (0)
 
 static const block *find_block(const hider *h, uint32_t id) {
     for (size_t i = 0; i < h->block_count; i++)
@@ -121,7 +76,7 @@ static bool is_whole(uint32_t op, uint32_t words) {
 }
 
 static bool read_module(hider *h) {
-    for (size_t at = HEADER; at < h->in_count;) {
+    for (size_t at = SPIRV_HEADER; at < h->in_count;) {
         uint32_t words = h->in[at] >> 16, op = h->in[at] & 0xffff;
         if (!words || words > h->in_count - at || !is_whole(op, words) ||
             !note(h, op, h->in + at, words))
@@ -146,59 +101,60 @@ static void choose_ids(hider *h) {
 
 // Before the first function: types that are missing, and the blocks.
 static void put_globals(hider *h) {
-    if (!h->uint_type) PUT(h, OP_TYPE_INT, h->own_uint, 32, 0);
-    if (!h->triple_type) PUT(h, OP_TYPE_VECTOR, h->own_triple, h->own_uint, 3);
+    if (!h->uint_type) SPIRV_PUT(&h->out, OP_TYPE_INT, h->own_uint, 32, 0);
+    if (!h->triple_type) SPIRV_PUT(&h->out, OP_TYPE_VECTOR, h->own_triple, h->own_uint, 3);
     if (!h->group) {
         uint32_t pointer = fresh(h);
-        PUT(h, OP_TYPE_POINTER, pointer, STORAGE_INPUT, h->own_triple);
-        PUT(h, OP_VARIABLE, pointer, h->own_group, STORAGE_INPUT);
+        SPIRV_PUT(&h->out, OP_TYPE_POINTER, pointer, STORAGE_INPUT, h->own_triple);
+        SPIRV_PUT(&h->out, OP_VARIABLE, pointer, h->own_group, STORAGE_INPUT);
     }
     uint32_t one = fresh(h);
-    PUT(h, OP_CONSTANT, h->own_uint, one, 1);
-    PUT(h, OP_CONSTANT, h->own_uint, h->top, 31);
+    SPIRV_PUT(&h->out, OP_CONSTANT, h->own_uint, one, 1);
+    SPIRV_PUT(&h->out, OP_CONSTANT, h->own_uint, h->top, 31);
     for (size_t i = 0; i < h->block_count; i++) {
         uint32_t array = fresh(h), pointer = fresh(h);
-        PUT(h, OP_TYPE_ARRAY, array, h->blocks[i].type, one);
-        PUT(h, OP_TYPE_POINTER, pointer, STORAGE_UNIFORM, array);
-        PUT(h, OP_VARIABLE, pointer, h->blocks[i].id, STORAGE_UNIFORM);
+        SPIRV_PUT(&h->out, OP_TYPE_ARRAY, array, h->blocks[i].type, one);
+        SPIRV_PUT(&h->out, OP_TYPE_POINTER, pointer, STORAGE_UNIFORM, array);
+        SPIRV_PUT(&h->out, OP_VARIABLE, pointer, h->blocks[i].id, STORAGE_UNIFORM);
     }
 }
 
 // The index, in a function: groups are counted to less than 2^31.
 static uint32_t put_zero(hider *h) {
     uint32_t group = fresh(h), x = fresh(h), zero = fresh(h);
-    PUT(h, OP_LOAD, h->own_triple, group, h->own_group);
-    PUT(h, OP_COMPOSITE_EXTRACT, h->own_uint, x, group, 0);
-    PUT(h, OP_SHIFT_RIGHT_LOGICAL, h->own_uint, zero, x, h->top);
+    SPIRV_PUT(&h->out, OP_LOAD, h->own_triple, group, h->own_group);
+    SPIRV_PUT(&h->out, OP_COMPOSITE_EXTRACT, h->own_uint, x, group, 0);
+    SPIRV_PUT(&h->out, OP_SHIFT_RIGHT_LOGICAL, h->own_uint, zero, x, h->top);
     return zero;
 }
 
 static void put_entry(hider *h, const uint32_t *w, uint32_t words) {
     put(h, (words + !h->group) << 16 | OP_ENTRY_POINT);
-    put_all(h, w + 1, words - 1);
+    spirv_put(&h->out, w + 1, words - 1);
     if (!h->group) put(h, h->own_group);
 }
 
 static void put_chain(hider *h, const uint32_t *w, uint32_t words, uint32_t zero) {
     put(h, w[0] + (1u << 16));
-    put_all(h, w + 1, 3);
+    spirv_put(&h->out, w + 1, 3);
     put(h, zero);
-    put_all(h, w + 4, words - 4);
+    spirv_put(&h->out, w + 4, words - 4);
 }
 
 static void write_module(hider *h) {
     bool globals = true, begins = false; // before all functions; in one, before what it does
     uint32_t zero = 0;
-    put_all(h, h->in, HEADER);
-    PUT(h, OP_CAPABILITY, CAPABILITY_UNIFORM_INDEXING);
+    spirv_put(&h->out, h->in, SPIRV_HEADER);
+    SPIRV_PUT(&h->out, OP_CAPABILITY, CAPABILITY_UNIFORM_INDEXING);
     choose_ids(h);
-    for (size_t at = HEADER; at < h->in_count;) {
+    for (size_t at = SPIRV_HEADER; at < h->in_count;) {
         const uint32_t *w = h->in + at;
         uint32_t words = w[0] >> 16, op = w[0] & 0xffff;
         at += words;
         if (op >= OP_TYPE_FIRST && op <= OP_TYPE_LAST && !h->decorated) {
             if (!h->group)
-                PUT(h, OP_DECORATE, h->own_group, DECORATION_BUILT_IN, BUILT_IN_WORKGROUP);
+                SPIRV_PUT(&h->out, OP_DECORATE, h->own_group, DECORATION_BUILT_IN,
+                          BUILT_IN_WORKGROUP);
             h->decorated = true;
         }
         if (op == OP_FUNCTION && globals) {
@@ -216,20 +172,20 @@ static void write_module(hider *h) {
         else if (chain && find_block(h, w[3]))
             put_chain(h, w, words, zero);
         else if (!globals || op != OP_VARIABLE || !find_block(h, w[2]))
-            put_all(h, w, words);
+            spirv_put(&h->out, w, words);
         if (op == OP_LABEL && !zero) begins = true;
     }
-    h->out[BOUND] = h->bound;
+    h->out.words[SPIRV_BOUND] = h->bound;
 }
 
 uint32_t *vk_hide_uniforms(const uint32_t *code, size_t size, size_t *out_size) {
     enum { MOST_IDS = 1 << 24 };
-    hider h = {.in = code, .in_count = size / 4, .bound = code[BOUND]};
+    hider h = {.in = code, .in_count = size / 4, .bound = code[SPIRV_BOUND]};
     if (h.bound > MOST_IDS) return NULL;
     h.pointees = mem_alloc(h.bound * sizeof *h.pointees);
     bool known = read_module(&h);
     if (known) write_module(&h);
     mem_free(h.pointees);
-    *out_size = h.count * 4;
-    return known ? h.out : NULL;
+    if (known) *out_size = h.out.count * 4;
+    return known ? h.out.words : NULL;
 }

@@ -122,17 +122,26 @@ static bool check_local_size(gpu *g, const char *label, const uint32_t size[3]) 
         label, size[0], size[1], size[2], most[0], most[1], most[2], total);
 }
 
+// A software driver fares better where uniforms are read once, and hidden.
+static bool create_compute_module(gpu *g, const char *label, const uint32_t *code, size_t size,
+                                  VkShaderModule *out) {
+    if (g->info.kind != GPU_CPU) return create_module(g, label, code, size, out);
+    uint32_t *hoisted = vk_hoist_uniforms(code, size, &size);
+    if (hoisted) code = hoisted;
+    uint32_t *hidden = vk_hide_uniforms(code, size, &size);
+    if (hidden) code = hidden;
+    bool created = create_module(g, label, code, size, out);
+    mem_free(hidden);
+    mem_free(hoisted);
+    return created;
+}
+
 static bool build_compute(gpu *g, const gpu_pipeline *pipeline, const gpu_compute_desc *desc,
                           vk_built *out) {
     VkShaderModule module;
     if (!create_layout(g, pipeline, VK_SHADER_STAGE_COMPUTE_BIT, out)) return false;
-    size_t size;
-    uint32_t *hidden =
-        g->info.kind == GPU_CPU ? vk_hide_uniforms(desc->code, desc->code_size, &size) : NULL;
-    bool loaded = create_module(g, pipeline->label, hidden ? hidden : desc->code,
-                                hidden ? size : desc->code_size, &module);
-    mem_free(hidden);
-    if (!loaded) return false;
+    if (!create_compute_module(g, pipeline->label, desc->code, desc->code_size, &module))
+        return false;
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,

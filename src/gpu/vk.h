@@ -236,8 +236,10 @@ typedef struct vk_uses {
 } vk_uses;
 
 VkDescriptorType vk_descriptor_type(gpu_slot_kind kind);
-// The same code with its uniform blocks hidden from a software driver (hide.c), for mem_free; NULL:
-// there are none, or it is left as it is. `size` in bytes.
+// The same code for a software driver, for mem_free: with uniforms read once (hoist.c), with their
+// blocks hidden (hide.c). NULL: there are none, or it is left as it is. Sizes in bytes; `*out_size`
+// is set with the code only.
+uint32_t *vk_hoist_uniforms(const uint32_t *code, size_t size, size_t *out_size);
 uint32_t *vk_hide_uniforms(const uint32_t *code, size_t size, size_t *out_size);
 
 // Validates bindings against the slots of a pipeline; then notes what they touch; then binds them.

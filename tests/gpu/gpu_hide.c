@@ -1,6 +1,10 @@
 // Uniforms that a branch depends on: any value counts at once, and none stays behind. A software
-// driver would make a shader of its own for every dispatch (src/gpu/hide.c).
+// driver would make a shader of its own for every dispatch (src/gpu/hide.c), and read them anew in
+// every branch (src/gpu/hoist.c).
+#include "gpu/spirv.h"
+#include "gpu/vk.h"
 #include "gpu_test.h"
+#include <string.h>
 #include <unistd.h>
 
 // clang-format off
@@ -131,15 +135,20 @@ typedef struct params {
     int32_t way;
 } params;
 
-static void run(gpu *g, gpu_pipeline *pipeline, gpu_buffer *values, params p) {
+static void run_threads(gpu *g, gpu_pipeline *pipeline, gpu_buffer *values, params p,
+                        uint32_t threads) {
     const gpu_binding bindings[] = {{.binding = 0, .uniform = &p, .uniform_size = sizeof p},
                                     {.binding = 1, .buffer = values}};
     gpu_test_ok(gpu_frame_begin(g));
     gpu_test_ok(gpu_dispatch(g, &(gpu_dispatch_desc){.pipeline = pipeline,
                                                      .bindings = bindings,
                                                      .binding_count = COUNT_OF(bindings),
-                                                     .threads = {COUNT, 1, 1}}));
+                                                     .threads = {threads, 1, 1}}));
     gpu_test_ok(gpu_frame_end(g));
+}
+
+static void run(gpu *g, gpu_pipeline *pipeline, gpu_buffer *values, params p) {
+    run_threads(g, pipeline, values, p, COUNT);
 }
 
 static gpu_pipeline *make_pipeline(gpu *g) {
@@ -157,9 +166,9 @@ static gpu_pipeline *make_pipeline(gpu *g) {
     return pipeline;
 }
 
-static gpu_buffer *make_values(gpu *g) {
+static gpu_buffer *make_values(gpu *g, size_t count) {
     gpu_buffer *values = gpu_buffer_create(
-        g, &(gpu_buffer_desc){.label = "values", .size = COUNT * 4, .kind = GPU_BUFFER_DEVICE});
+        g, &(gpu_buffer_desc){.label = "values", .size = count * 4, .kind = GPU_BUFFER_DEVICE});
     gpu_test_ok(values);
     return values;
 }
@@ -167,7 +176,7 @@ static gpu_buffer *make_values(gpu *g) {
 static void values_count_at_once(void **state) {
     gpu *g = *state;
     gpu_pipeline *pipeline = make_pipeline(g);
-    gpu_buffer *values = make_values(g);
+    gpu_buffer *values = make_values(g, COUNT);
     for (int32_t way = 0; way < 5; way++) {
         float got[COUNT];
         run(g, pipeline, values, (params){0.5f, way});
@@ -194,7 +203,7 @@ static long resident(void) { // bytes
 static void memory_does_not_grow(void **state) {
     gpu *g = *state;
     gpu_pipeline *pipeline = make_pipeline(g);
-    gpu_buffer *values = make_values(g);
+    gpu_buffer *values = make_values(g, COUNT);
     for (int i = 0; i < WARM; i++) run(g, pipeline, values, (params){0.5f, i % 3});
     long before = resident();
     for (int i = 0; i < TURNS; i++) run(g, pipeline, values, (params){0.5f, i % 3});
@@ -205,7 +214,67 @@ static void memory_does_not_grow(void **state) {
     gpu_pipeline_destroy(g, pipeline);
 }
 
+enum { PARAMS = 0x3a }; // the id of the block
+
+// Chains into the block, and the first branch, in words; 0: none.
+static size_t count_reads(const uint32_t *code, size_t count, size_t *last, size_t *branch) {
+    size_t reads = 0;
+    *last = *branch = 0;
+    for (size_t at = SPIRV_HEADER; at < count; at += code[at] >> 16) {
+        uint32_t op = code[at] & 0xffff;
+        if (op == 250 && !*branch) *branch = at; // OpBranchConditional
+        if (op != OP_ACCESS_CHAIN || code[at + 3] != PARAMS) continue;
+        *last = at;
+        reads++;
+    }
+    return reads;
+}
+
+static void each_number_is_read_once_before_branches(void **state) {
+    (void)state;
+    size_t size = 0, last, branch;
+    uint32_t *code = vk_hoist_uniforms(way_comp_code, sizeof way_comp_code, &size);
+    assert_non_null(code);
+    assert_int_equal(count_reads(way_comp_code, COUNT_OF(way_comp_code), &last, &branch), 4);
+    assert_true(last > branch);
+    assert_int_equal(count_reads(code, size / 4, &last, &branch), 2);
+    assert_true(last < branch);
+    mem_free(code);
+}
+
+// Where a chain is more than read (here its pointer is copied), it stays.
+static void what_is_not_only_read_stays(void **state) {
+    (void)state;
+    static uint32_t copied[COUNT_OF(way_comp_code)];
+    memcpy(copied, way_comp_code, sizeof copied);
+    for (size_t at = SPIRV_HEADER; at < COUNT_OF(copied); at += copied[at] >> 16)
+        if ((copied[at] & 0xffff) == OP_LOAD && copied[at + 3] == 0x67)
+            copied[at] = 4 << 16 | OP_COPY_OBJECT;
+    size_t size = 0, last, branch;
+    uint32_t *code = vk_hoist_uniforms(copied, sizeof copied, &size);
+    assert_non_null(code);
+    assert_int_equal(count_reads(code, size / 4, &last, &branch), 3);
+    mem_free(code);
+}
+
+static void broken_code_is_left(void **state) {
+    (void)state;
+    static uint32_t broken[COUNT_OF(way_comp_code)];
+    size_t size = 77;
+    for (size_t i = SPIRV_HEADER; i < COUNT_OF(broken); i++) { // an id that cannot be, a long end
+        memcpy(broken, way_comp_code, sizeof broken);
+        broken[i] = UINT32_MAX;
+        uint32_t *code = vk_hoist_uniforms(broken, sizeof broken, &size);
+        mem_free(code);
+    }
+    memcpy(broken, way_comp_code, sizeof broken);
+    assert_null(vk_hoist_uniforms(broken, SPIRV_HEADER * 4, &(size_t){0}));
+}
+
 static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(each_number_is_read_once_before_branches),
+    cmocka_unit_test(what_is_not_only_read_stays),
+    cmocka_unit_test(broken_code_is_left),
     cmocka_unit_test(values_count_at_once),
     cmocka_unit_test(memory_does_not_grow),
 };
