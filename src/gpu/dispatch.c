@@ -1,5 +1,13 @@
 // Compute work: check, barriers, bind, dispatch.
+//
+// Mesa's lavapipe (22.3) deals a dispatch out before it begins: each core takes a run of its
+// groups, as many as the others, and waits for the slowest. The upper half of a picture is not as
+// dear as the lower one, so there a dispatch goes in slices, whose halves are more alike.
 #include "gpu/vk.h"
+#include <string.h>
+#include <unistd.h>
+
+enum { MOST_SLICES = 16, GROUPS_A_CORE = 8 }; // of a slice, at least
 
 static bool check(gpu *g, const gpu_dispatch_desc *desc) {
     if (!vk_alive(g)) return false;
@@ -25,6 +33,32 @@ static bool count_groups(gpu *g, const gpu_dispatch_desc *desc, uint32_t groups[
     return true;
 }
 
+static uint32_t count_slices(const vk_built *built, const uint32_t groups[3], uint32_t along) {
+    if (!built->sliced) return 1;
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    uint64_t least = GROUPS_A_CORE * (uint64_t)(cores > 0 ? cores : 1);
+    uint64_t most = (uint64_t)groups[0] * groups[1] * groups[2] / least;
+    most = most < MOST_SLICES ? most : MOST_SLICES;
+    most = most < groups[along] / 2 ? most : groups[along] / 2;
+    return most > 1 ? (uint32_t)most : 1;
+}
+
+// Groups are numbered along x first, then y, then z.
+static void dispatch(VkCommandBuffer commands, const vk_built *built, const uint32_t groups[3]) {
+    uint32_t along = groups[2] > 1 ? 2 : groups[1] > 1 ? 1 : 0;
+    uint32_t slices = count_slices(built, groups, along), first[3] = {0}, count[3];
+    memcpy(count, groups, sizeof count);
+    for (uint32_t i = 1; i <= slices; i++) {
+        uint32_t end = (uint32_t)((uint64_t)groups[along] * i / slices);
+        count[along] = end - first[along];
+        if (first[along] == 0)
+            vkCmdDispatch(commands, count[0], count[1], count[2]);
+        else
+            vkCmdDispatchBase(commands, first[0], first[1], first[2], count[0], count[1], count[2]);
+        first[along] = end;
+    }
+}
+
 bool gpu_dispatch(gpu *g, const gpu_dispatch_desc *desc) {
     uint32_t groups[3];
     if (!check(g, desc) || !count_groups(g, desc, groups)) return false;
@@ -35,6 +69,6 @@ bool gpu_dispatch(gpu *g, const gpu_dispatch_desc *desc) {
     vk_uses_flush(g, commands);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline->built->handle);
     if (!vk_bindings_push(g, commands, pipeline, desc->bindings, desc->binding_count)) return false;
-    vkCmdDispatch(commands, groups[0], groups[1], groups[2]);
+    dispatch(commands, pipeline->built, groups);
     return true;
 }

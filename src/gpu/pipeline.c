@@ -6,6 +6,7 @@
 // and the pipeline cache, which the driver locks; destruction goes through the locked queue of
 // destroy.c.
 #include "base/memory.h"
+#include "gpu/spirv.h"
 #include "gpu/vk.h"
 #include <string.h>
 
@@ -136,14 +137,30 @@ static bool create_compute_module(gpu *g, const char *label, const uint32_t *cod
     return created;
 }
 
+// Whether a shader asks how many groups there are (gl_NumWorkGroups): slices have fewer.
+static bool counts_groups(const uint32_t *code, size_t size) {
+    size_t count = size / 4, words;
+    for (size_t at = SPIRV_HEADER; at < count; at += words) {
+        const uint32_t *w = code + at;
+        words = w[0] >> 16;
+        if (!words || words > count - at) return true;
+        if (words == 4 && (w[0] & 0xffff) == OP_DECORATE && w[2] == DECORATION_BUILT_IN &&
+            w[3] == BUILT_IN_GROUP_COUNT)
+            return true;
+    }
+    return false;
+}
+
 static bool build_compute(gpu *g, const gpu_pipeline *pipeline, const gpu_compute_desc *desc,
                           vk_built *out) {
     VkShaderModule module;
+    out->sliced = g->info.kind == GPU_CPU && !counts_groups(desc->code, desc->code_size);
     if (!create_layout(g, pipeline, VK_SHADER_STAGE_COMPUTE_BIT, out)) return false;
     if (!create_compute_module(g, pipeline->label, desc->code, desc->code_size, &module))
         return false;
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .flags = out->sliced ? VK_PIPELINE_CREATE_DISPATCH_BASE_BIT : 0,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                   .module = module,

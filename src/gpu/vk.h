@@ -138,6 +138,7 @@ typedef struct vk_built {
     VkPipeline handle;
     VkPipelineLayout layout;
     VkDescriptorSetLayout set_layout;
+    bool sliced; // may go in several dispatches (dispatch.c)
     hash128 key; // of the description, without its label
     uint32_t references;
     struct vk_built *next; // in its row of the table
