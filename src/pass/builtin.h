@@ -88,6 +88,14 @@ bool picture_check(pass *p);
 bool picture_build(pass *p);
 bool picture_record(pass *p);
 
+bool deposit_declare(pass *p);
+bool deposit_check(pass *p);
+bool deposit_build(pass *p);
+bool deposit_allocate(pass *p);
+bool deposit_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool deposit_record(pass *p);
+void deposit_destroy(pass *p);
+
 bool splats_declare(pass *p);
 bool splats_check(pass *p);
 bool splats_build(pass *p);

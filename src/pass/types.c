@@ -141,6 +141,18 @@ static const pass_type types[] = {
         .record = picture_record,
     },
     {
+        .name = "deposit",
+        .shader = "pass/deposit.comp",
+        .unscaled = true,
+        .declare = deposit_declare,
+        .check = deposit_check,
+        .build = deposit_build,
+        .allocate = deposit_allocate,
+        .fill = deposit_fill,
+        .record = deposit_record,
+        .destroy = deposit_destroy,
+    },
+    {
         .name = "splats",
         .shader = "pass/splats.comp",
         .declare = splats_declare,

@@ -151,4 +151,5 @@ void l_lbm_open(lua_State *L);
 void l_slices_open(lua_State *L);
 void l_particles_open(lua_State *L);
 void l_voxels_open(lua_State *L);
+void l_deposit_open(lua_State *L);
 void l_image_open(lua_State *L);

@@ -398,9 +398,9 @@ static int l_shader(lua_State *L) {
 // Made by a function of its own, or a method: bake(field), lbm { }, air:source { }.
 static bool has_constructor(const char *type) {
     static const char *const types[] = {
-        "bake",   "picture",      "lbm",           "lbm_source",      "particles",
-        "slices", "slices_force", "slices_inflow", "slices_obstacle", "slices_templates",
-        "voxels"};
+        "bake",          "deposit",         "picture",          "lbm",
+        "lbm_source",    "particles",       "slices",           "slices_force",
+        "slices_inflow", "slices_obstacle", "slices_templates", "voxels"};
     for (size_t i = 0; i < COUNT_OF(types); i++)
         if (strcmp(types[i], type) == 0) return true;
     return false;

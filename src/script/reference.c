@@ -258,6 +258,17 @@ static const script_object objects[] = {
         KEY("distance", "field m", "to the nearest surface, negative inside; beyond the box by way of it"),
         KEY("velocity", "field m/s", "of the mesh inside of it; 0 elsewhere"),
         KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "what the cells cover"))},
+    {"deposit", "source", "local dust = deposit { chaff, box = { min = {-1, -1, 0}, max = {1, 1, 2} } }",
+     "particles as the density of a volume: beside that of the smoke in `lighting` they cast shadows. "
+     "Size, opacity and what else `roil info passes deposit` lists are set here too",
+     .args = KEYS(KEY("particles", "particles { }", "which; or by the key `particles`, or `from`")),
+     .keys = KEYS(
+        KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "where they are counted; required"),
+        KEY("resolution", "32 [4, 512]", "cells along the longest side of the box"),
+        KEY("name", "deposit", "for --set NAME.amount=value and statistics; numbered when taken")),
+     .members = KEYS(
+        KEY("density", "field 1/m", "extinction of the particles in a cell; 0 outside of the box"),
+        KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "as it was given"))},
 
     // ---- operators
     {"lerp", "operator", "lerp(a, b, 0.5)", "another name of mix",

@@ -62,8 +62,9 @@ static inline void spots_write(const spots *s, const char *name, const void *dat
     gpu_test_ok(gpu_buffer_write(s->w.host.device, binding.buffer, 0, data, 16ull * s->count));
 }
 
-// RGBA of the picture; free with mem_free. A lifetime of 0 is one of 10 s, of which 5 have passed.
-static inline float *spots_draw(spots *s, const spot *list) {
+// RGBA of an image of the next frame; free with mem_free. A lifetime of 0 is one of 10 s, of which
+// 5 have passed.
+static inline float *spots_draw_other(spots *s, const spot *list, graph_image image) {
     static float at[MOST_SPOTS][4], moves[MOST_SPOTS][4];
     for (uint32_t i = 0; i < s->count; i++) {
         memcpy(at[i], list[i].at, sizeof list[i].at);
@@ -74,7 +75,11 @@ static inline float *spots_draw(spots *s, const spot *list) {
     spots_write(s, "ParticlePositions", at);
     spots_write(s, "ParticleVelocities", moves);
     world_frame(&s->w, SIDE, SIDE, 2);
-    return world_read(&s->w, pass_output(s->splats, "image"));
+    return world_read(&s->w, image);
+}
+
+static inline float *spots_draw(spots *s, const spot *list) {
+    return spots_draw_other(s, list, pass_output(s->splats, "image"));
 }
 
 static inline void spots_close(spots *s) {
