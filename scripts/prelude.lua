@@ -29,6 +29,21 @@ function rgb(red, green, blue)
   return { linear(red), linear(green), linear(blue) }
 end
 
+-- over_age { {0, 0.01}, {0.2, 0.1}, {1, 0} }: a number or a colour over a particle's life (0..1).
+function over_age(keys)
+  local function wrong(what)
+    error("over_age takes 2 to 64 keys {age, value}, as in over_age { {0, 0.01}, {1, 0.1} }; " .. what, 3)
+  end
+  if type(keys) ~= "table" or #keys < 2 then wrong("got " .. (type(keys) == "table" and #keys or "a " .. type(keys))) end
+  local stops, number = {}, type(keys[1]) == "table" and type(keys[1][2]) == "number"
+  for i, key in ipairs(keys) do
+    if type(key) ~= "table" or #key ~= 2 or (type(key[2]) == "number") ~= number then wrong("number " .. i .. " is none, or no value like the first") end
+    stops[i] = { key[1], number and { key[2], key[2], key[2] } or key[2] }
+  end
+  local value = palette(stops)(particle_age)
+  return number and value.r or value.rgb
+end
+
 -- lobes = { {weight, g}, ... } of the passes that scatter light: a blend of lobes.
 local function value_at(value, t)
   if type(value) == "function" then return value(t) end

@@ -274,6 +274,9 @@ static const script_object objects[] = {
     {"lerp", "operator", "lerp(a, b, 0.5)", "another name of mix",
      .args = KEYS(KEY("a", NULL, "result at t = 0"), KEY("b", NULL, "result at t = 1"),
                   KEY("t", "0.5", "share of b"))},
+    {"over_age", "operator", "over_age { {0, 0.01}, {0.2, 0.1}, {1, 0} }",
+     "a number or a colour over a particle's life: that of a palette at particle_age",
+     .args = KEYS(KEY("key ...", "{age, value}", "2 to 64, of rising age in 0..1; values from 0 to 65504"))},
     {"saturate", "operator", "saturate(value)", "limits a value to 0..1",
      .args = KEYS(KEY("value", NULL, "what it limits"))},
 
