@@ -120,3 +120,17 @@ bool picture_read(const char *path, const char *root, uint32_t side_max, arena *
     mem_free(data);
     return done;
 }
+
+bool picture_write(const char *path, const picture *image) {
+    static const char *const names[4] = {"R", "G", "B", "A"};
+    size_t count = (size_t)image->width * image->height;
+    float *planes = mem_alloc(4 * count * sizeof *planes);
+    exr_channel channels[4];
+    for (size_t c = 0; c < 4; c++) {
+        for (size_t i = 0; i < count; i++) planes[c * count + i] = image->rgba[4 * i + c];
+        channels[c] = (exr_channel){names[c], planes + c * count, true};
+    }
+    bool done = exr_write(path, &(exr_image){image->width, image->height, channels, 4});
+    mem_free(planes);
+    return done;
+}

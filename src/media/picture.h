@@ -15,3 +15,6 @@ typedef struct picture {
 // finite. False with a message.
 bool picture_read(const char *path, const char *root, uint32_t side_max, arena *memory,
                   picture *out);
+
+// As OpenEXR of halves with alpha. Atomic.
+bool picture_write(const char *path, const picture *image);

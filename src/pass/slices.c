@@ -35,6 +35,7 @@ static bool exchange_grids(field_grid *grid, field_grid *other) {
     slices_flow *a = (slices_flow *)grid, *b = (slices_flow *)other;
     if (!a->solver || !b->solver || !same_flow(a, b) || !flow_exchange(a->solver, b->solver))
         return false;
+    if (a->templates && b->templates) a->templates->exchange(a, b);
     bool fresh = a->fresh;
     a->fresh = b->fresh;
     b->fresh = fresh;

@@ -16,6 +16,9 @@ typedef struct slices_extra {
     bool (*allocate)(slices_flow *f);
     bool (*rehearse)(slices_flow *f);
     void (*restart)(slices_flow *f); // the flow begins anew
+    void (*loaded)(slices_flow *f);  // slices_templates_buffer holds what a checkpoint did
+    // Both have templates, and the solvers have been exchanged: those that match are, too.
+    void (*exchange)(slices_flow *f, slices_flow *other);
     // Before a step, when inflow and forces are in the solver's buffers, which are written anew for
     // every step then. The host's context has the time of the step, flow_steps is its number, and
     // f->clock.step how long it takes.
@@ -65,6 +68,12 @@ bool slices_is_obstacle(const pass *part);
 bool slices_is_template(const pass *part);
 bool slices_run_parts(slices_flow *f, bool obstacles); // those alone, or the others
 void slices_forget_part(pass *part);                   // what it wrote is gone
+
+// slices_state.c
+struct checkpoint;
+struct checkpoint_list;
+void slices_save(const pass *p, struct checkpoint_list *out);
+bool slices_load(pass *p, struct checkpoint *from);
 
 // slices_numbers.c
 bool slices_numbers(const pass *p, flow_numbers *out); // as of the host's context

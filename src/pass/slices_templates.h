@@ -7,6 +7,7 @@
 // is 1 everywhere, which is a file without it, the border fades as a Gaussian, from 1 in the middle
 // to 0.004.
 #pragma once
+#include "base/str.h"
 #include "media/picture.h"
 #include "pass/pass.h"
 
@@ -26,8 +27,47 @@ bool slices_add_templates(pass *p, pass *group, const picture *image, uint32_t c
 bool slices_has_pressing(const pass *p);
 bool slices_has_pushing(const pass *p);
 
+// ---- by hand ----------------------------------------------------------------------------------
+//
+// What the tools of a live window need: a template is put where one clicks, the flow is pushed
+// where one drags, and a square of it becomes a picture. Once the window has a template it likes,
+// it writes the picture (media/picture.h) and the line for the effect's file.
+
+enum { SLICES_HAND_MOST = 8, SLICES_ALL = -1 };
+
+typedef struct slices_hand {
+    const picture *image; // lives until the flow is destroyed; NULL: a push to the upper edge
+    bool pushes;          // its velocity, as a force; else its pressure
+    int slice;            // from 0, or SLICES_ALL
+    float place[2], size; // middle, side (widths of a slice)
+    float angle;          // degrees, anticlockwise
+    float strength;       // m/s^2, or m^2/s^2
+    float blend;          // of its alpha; 1: all
+    double lifetime;      // seconds of the simulation; 0: one step
+} slices_hand;
+
+// Before pass_complete of the flow: templates may be put by hand. A step then takes a little
+// longer, whether there are any or not.
+void slices_take_hand(pass *p);
+// From the next step on. Beyond SLICES_HAND_MOST the one that would end first makes room. False
+// with a message: the flow was not made ready for it.
+bool slices_put(pass *p, const slices_hand *hand);
+// What the flow is like in a square of a slice after the last kept step, as a picture of
+// SLICES_TILE pixels a side: velocity, pressure less its mean along the border, and alpha that
+// fades as those of the library do. Both kinds reach from -1 to 1; `scale`: what 1 stands for, m/s
+// and m^2/s^2. Not in a frame: waits for the device. False with a message.
+bool slices_capture(const pass *p, uint32_t slice, const float place[2], float size, arena *memory,
+                    picture *out, float scale[2]);
+// The line for the effect's file that puts it there all the time: `variable` is that of the
+// slices, `file` that of the picture.
+void slices_hand_line(const slices_hand *hand, const char *variable, const char *file, strbuf *out);
+
+// ---- on the device ----------------------------------------------------------------------------
+
 // A picture as a tile: rows from the top, red, green and blue times alpha, alpha.
 void slices_tile(const picture *from, float out[SLICES_TILE * SLICES_TILE * 4]);
+// Gives it alpha that fades to the border, as that of the library's pictures.
+void slices_tile_fade(float rgba[SLICES_TILE * SLICES_TILE * 4]);
 // The next level of a tile, of half the size.
 void slices_tile_half(const float *from, uint32_t side, float *out);
 

@@ -71,6 +71,11 @@ void slices_tile(const picture *from, float out[SLICES_TILE * SLICES_TILE * 4]) 
     }
 }
 
+void slices_tile_fade(float rgba[SLICES_TILE * SLICES_TILE * 4]) {
+    for (uint32_t i = 0; i < SLICES_TILE * SLICES_TILE; i++)
+        rgba[4 * i + 3] = gaussian_at(i % SLICES_TILE, i / SLICES_TILE);
+}
+
 void slices_tile_half(const float *from, uint32_t side, float *out) {
     uint32_t half = side / 2;
     for (uint32_t y = 0; y < half; y++)

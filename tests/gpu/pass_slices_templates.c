@@ -356,6 +356,70 @@ static void they_come_and_go_by_fade(void **state) {
     templates_close(&t);
 }
 
+// ---- by hand ----------------------------------------------------------------------------------
+
+static float drawn_at(templates_world *t, const char *slot, int stride, int channel, int slice) {
+    float *values = templates_read_flow(t, slot);
+    float out = values[(size_t)stride * (size_t)(64 * 64 * slice + 64 * 32 + 32) + (size_t)channel];
+    mem_free(values);
+    return out;
+}
+
+// Put into one slice, or all, for as long as it says, besides a group or alone.
+static void one_is_put_by_hand_and_goes_again(void **state) {
+    for (int groups = 0; groups < 2; groups++) {
+        templates_world t;
+        templates_open(&t, *state, &small, 0.02);
+        if (groups) GROUP(&t, 3, red, {"amount", 0});
+        slices_take_hand(t.f.pass);
+        templates_build(&t);
+        picture image = templates_picture(&t.w.memory, blue);
+        slices_hand pressed = {&image, false, 1, {0.5f, 0.5f}, 0.4f, 0, 3, 1, 0.05};
+        slices_hand pushed = {NULL, true, SLICES_ALL, {0.5f, 0.5f}, 0.4f, 90, 2, 1, 0};
+        gpu_test_ok(slices_put(t.f.pass, &pressed) && slices_put(t.f.pass, &pushed));
+        for (int step = 0; step < 4; step++) {
+            templates_run(&t, 1, false);
+            for (int slice = 0; slice < 2; slice++) {
+                bool there = slice == 1 && step < 3; // 0.05 s are two and a half steps
+                float pressure = drawn_at(&t, "FlowTemplates", 2, 1, slice);
+                assert_true(fabsf(pressure - (there ? 3 : 0)) < 0.02f);
+                float left = drawn_at(&t, "FlowSources", 12, 8, slice);
+                assert_true(fabsf(left - (step == 0 ? -2 * 0.02f : 0)) < 2e-3f);
+            }
+        }
+        templates_close(&t);
+    }
+}
+
+static void hand_makes_room_for_the_newest(void **state) {
+    templates_world t;
+    templates_open(&t, *state, &small, 0.02);
+    slices_hand push = {NULL, true, SLICES_ALL, {0.1f, 0.1f}, 0.4f, 0, 2, 1, 10};
+    GROUP(&t, 1, red, {"amount", 0});
+    assert_false(slices_put(t.f.pass, &push)); // not made ready
+    slices_take_hand(t.f.pass);
+    templates_build(&t);
+    for (int i = 0; i < 2 * SLICES_HAND_MOST; i++) gpu_test_ok(slices_put(t.f.pass, &push));
+    push.place[0] = push.place[1] = 0.5f;
+    gpu_test_ok(slices_put(t.f.pass, &push));
+    templates_run(&t, 1, false);
+    assert_true(drawn_at(&t, "FlowSources", 12, 9, 0) > 0.03f);
+    templates_close(&t);
+}
+
+static void line_for_the_file_says_it_all(void **state) {
+    (void)state;
+    strbuf line = {0};
+    slices_hand hand = {NULL, true, 0, {0.25f, 1.5f}, 0.1f, -30, 4, 0.5f, 0.2};
+    slices_hand_line(&hand, "flow", "templates/mine.exr", &line);
+    assert_string_equal(strbuf_text(&line),
+                        "flow:templates { image \"templates/mine.exr\", kind = \"velocity\", "
+                        "count = 1, region = disc { 0.25, 1.5, radius = 0.005 }, size = 0.1, "
+                        "align = \"fixed\", angle = -30, strength = 4, blend = 0.5, "
+                        "lifetime = 0.2 }\n");
+    strbuf_free(&line);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(sizes_and_lifetimes_are_spread_evenly_between_their_bounds),
@@ -371,6 +435,9 @@ int main(void) {
         cmocka_unit_test(pictures_and_velocities_turn_together),
         cmocka_unit_test(groups_of_both_kinds_are_drawn_over_each_other),
         cmocka_unit_test(they_come_and_go_by_fade),
+        cmocka_unit_test(one_is_put_by_hand_and_goes_again),
+        cmocka_unit_test(hand_makes_room_for_the_newest),
+        cmocka_unit_test(line_for_the_file_says_it_all),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }

@@ -172,6 +172,31 @@ static void templates_go_by_what_the_flow_has(void **state) {
     templates_close(&t);
 }
 
+// What a vortex has made of the flow, taken out as a picture, is a vortex with a low core.
+static void what_flows_is_captured_as_a_picture(void **state) {
+    templates_world t;
+    templates_open(&t, *state, &box, 1.0 / 60);
+    add_middle(&t, "vortex_left", "velocity", 20);
+    templates_build(&t);
+    picture seen;
+    float scale[2];
+    static const float place[2] = {0.5f, 0.5f};
+    assert_false(slices_capture(t.f.pass, 0, place, 0.375f, &t.w.memory, &seen, scale));
+    templates_run(&t, 20, true);
+    assert_false(slices_capture(t.f.pass, 1, place, 0.375f, &t.w.memory, &seen, scale));
+    gpu_test_ok(slices_capture(t.f.pass, 0, place, 0.375f, &t.w.memory, &seen, scale));
+    print_message("captured %.3f m/s, %.4f m^2/s^2\n", (double)scale[0], (double)scale[1]);
+    const int middle = SLICES_TILE / 2, quarter = SLICES_TILE / 4;
+    const float *right = seen.rgba + 4 * (middle * SLICES_TILE + middle + quarter);
+    const float *above = seen.rgba + 4 * (quarter * SLICES_TILE + middle);
+    const float *core = seen.rgba + 4 * (middle * SLICES_TILE + middle);
+    assert_true(right[1] > 0.5f && fabsf(right[0]) < 0.2f);
+    assert_true(above[0] < -0.5f && fabsf(above[1]) < 0.2f);
+    assert_true(core[2] < -0.5f && core[3] > 0.99f && hypotf(core[0], core[1]) < 0.2f);
+    assert_true(scale[0] > 0.2f && scale[1] > 0.01f);
+    templates_close(&t);
+}
+
 // ---- frequencies ------------------------------------------------------------------------------
 
 enum { BANDS = 3 }; // up to 3, up to 8, more waves across
@@ -286,6 +311,7 @@ int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(pressure_makes_sources_and_velocity_vortices),
         cmocka_unit_test(templates_go_by_what_the_flow_has),
+        cmocka_unit_test(what_flows_is_captured_as_a_picture),
         cmocka_unit_test(sizes_and_lifetimes_choose_the_frequencies),
     };
     return gpu_test_run(tests, COUNT_OF(tests));

@@ -86,6 +86,19 @@ static void png_becomes_0_to_1_of_its_whole_numbers(void **state) {
     arena_free(&memory);
 }
 
+static void what_is_written_is_read_again(void **state) {
+    (void)state;
+    arena memory = {0};
+    picture p;
+    float values[4 * COUNT];
+    for (int i = 0; i < 4 * COUNT; i++) values[i] = (float)i / 8;
+    assert_true(picture_write(test_path("d.exr"), &(picture){WIDTH, HEIGHT, 0, values}));
+    assert_true(load("d.exr", SIDE_MAX, &memory, &p));
+    assert_int_equal(p.width, WIDTH);
+    assert_memory_equal(p.rgba, values, sizeof values);
+    arena_free(&memory);
+}
+
 static void broken_pictures_are_refused(void **state) {
     (void)state;
     float values[4 * COUNT] = {0};
@@ -119,6 +132,7 @@ int main(void) {
         cmocka_unit_test(exr_keeps_its_numbers),
         cmocka_unit_test(what_an_exr_lacks_is_grey_or_nothing_and_alpha_is_1),
         cmocka_unit_test(png_becomes_0_to_1_of_its_whole_numbers),
+        cmocka_unit_test(what_is_written_is_read_again),
         cmocka_unit_test(broken_pictures_are_refused),
         cmocka_unit_test(pictures_lie_below_the_root),
     };

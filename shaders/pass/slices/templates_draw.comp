@@ -13,6 +13,11 @@ layout(local_size_x = 32, local_size_y = 2, local_size_z = 1) in;
 #include "pass/slices/templates.glsl"
 uniform float time_step; // s
 uniform uint alone;      // nobody else has written sources in this step
+#if HAND
+// By hand: each has rows 0 and 1 of an instance, and the slice that it is in (below 0: all).
+uniform vec4 hand[3 * HAND];
+uniform uint hand_count;
+#endif
 uniform sampler2D TemplateImages; // tiles below each other: values times alpha, alpha
 
 #define EACH_CELL for (int c = 0; c < TEMPLATES_CELLS; c++)
@@ -26,6 +31,26 @@ vec4 tile_at(vec2 at, float tile, float level) {
                       vec2(0.5 + 0.5 * at.x, (tile + 0.5 - 0.5 * at.y) * size.x / size.y), level);
 }
 
+uint count_of() {
+#if HAND
+    return total + hand_count;
+#else
+    return total;
+#endif
+}
+
+// Row 0 or 1 of an instance, or of one by hand; the former is 0 where it is in another slice.
+vec4 row_of(uint row, int slice, uint i) {
+#if HAND
+    if (i >= total) {
+        uint at = 3u * (i - total);
+        float where = hand[at + 2u].x;
+        return where < 0.0 || int(where) == slice ? hand[at + row] : vec4(0.0);
+    }
+#endif
+    return templates[template_at(row, slice, i)];
+}
+
 void main() {
     ivec2 low = ivec2(gl_GlobalInvocationID.x, gl_GlobalInvocationID.y * TEMPLATES_CELLS);
     int slice = int(gl_GlobalInvocationID.z);
@@ -37,11 +62,11 @@ void main() {
         pressed[c] = flow_template(0.0, 0.0);
         pushed[c] = vec2(0.0);
     }
-    for (uint i = 0u; i < total; i++) {
-        vec4 place = templates[template_at(0u, slice, i)];
+    for (uint i = 0u; i < count_of(); i++) {
+        vec4 place = row_of(0u, slice, i);
         vec2 far = abs(middle - place.xy) - vec2(0.0, 0.5 * float(TEMPLATES_CELLS));
         if (max(far.x, far.y) > 1.41422 * place.z || place.z <= 0.0) continue;
-        vec4 look = templates[template_at(1u, slice, i)];
+        vec4 look = row_of(1u, slice, i);
         float level = log2(float(textureSize(TemplateImages, 0).x) * 0.5 / place.z);
         bool pushes = look.w < 0.0;
         EACH_CELL {

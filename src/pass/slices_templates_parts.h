@@ -1,0 +1,54 @@
+// The inside of templates of slices, for their own files only.
+#pragma once
+#include "pass/slices_parts.h"
+#include "pass/slices_templates.h"
+
+typedef struct template_group {
+    pass *pass;
+    slices_flow *flow;
+    const picture *image;
+    uint32_t index, first, count; // in each slice
+} template_group;
+
+enum { SLICES_TILE_VALUES = 4 * SLICES_TILE * SLICES_TILE };
+
+typedef struct template_hand { // templates that are put by hand; zero: none may be
+    bool taken;                // they may
+    slices_hand at[SLICES_HAND_MOST];
+    double left[SLICES_HAND_MOST];           // seconds of its life; 0: there is none
+    const picture *images[SLICES_HAND_MOST]; // of the tiles
+} template_hand;
+
+typedef struct slices_templates {
+    template_group *groups[SLICES_TEMPLATES_GROUPS];
+    uint32_t group_count, total; // templates in each slice
+    template_hand hand;
+    shader_binary draw;
+    gpu_pipeline *pipeline; // that draws
+    unsigned char *block;   // of its uniforms
+    float *tiles;           // of groups, then those by hand; NULL: none yet
+    gpu_image *images;      // these, below each other
+    bool repainted;         // tiles are others than those of the image
+    gpu_buffer *instances;
+    bool fresh; // they begin anew with the next step
+} slices_templates;
+
+static inline slices_templates *slices_templates_of(const slices_flow *f) {
+    return f->templates_state;
+}
+slices_templates *slices_templates_make(slices_flow *f); // again: those that are there
+
+// slices_templates_draw.c
+bool slices_templates_compile_draw(slices_flow *f);
+bool slices_templates_build_draw(slices_flow *f);
+bool slices_templates_make_images(slices_flow *f);
+bool slices_templates_draw(slices_flow *f);
+void slices_templates_destroy_draw(slices_flow *f);
+// A dispatch whose slots are templates' own, the solver's, or those of the pass.
+bool slices_templates_dispatch(const slices_flow *f, pass *p, const shader_binary *binary,
+                               const unsigned char *block, gpu_dispatch_desc *desc);
+
+// slices_hand.c
+void slices_hand_tile(const slices_templates *t, uint32_t slot, float out[SLICES_TILE_VALUES]);
+// Writes what is put by hand in this step into the block of the shader that draws, and ages it.
+void slices_hand_fill(slices_flow *f, const shader_binary *binary, unsigned char *block);
