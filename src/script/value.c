@@ -303,12 +303,13 @@ static const field *function_of_time(lua_State *L, int index, const char *who, c
     return field_call(script_memory(L), count == 2 ? 3 : count, reference);
 }
 
-// {x, y, z} of which some are fields.
+// {x, y, z}, or {x, y}, of which some are fields.
 static const field *mixed_vector(lua_State *L, int index, const char *who, const char *key) {
     const field *parts[FIELD_MAX_ARGS] = {0};
-    if (lua_rawlen(L, index) != 3 || value_has_names(L, index))
+    lua_Unsigned count = lua_rawlen(L, index);
+    if ((count != 2 && count != 3) || value_has_names(L, index))
         wrong(L, index, who, key, accepted_values);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < (int)count; i++) {
         lua_rawgeti(L, index, i + 1);
         if (value_is_plain_table(L, -1)) wrong(L, index, who, key, accepted_values);
         parts[i] = value_field(L, lua_absindex(L, -1), who, key, 1);
