@@ -193,11 +193,13 @@ static void mark_image(graph *g, marking *m, uint32_t image) {
 // Readers come after what they read, so that one walk against the order is enough.
 static void mark_needed(graph *g) {
     for (size_t p = 0; p < g->pass_count; p++) g->passes[p].needed = false;
+    for (size_t i = 0; i < g->image_count; i++) g->images[i].feeds = false;
     for (size_t i = g->order_count; i-- > 0;) {
         graph_node_pass *pass = &g->passes[g->order[i]];
         pass->needed = pass->needed || pass->simulates;
         for (size_t k = 0; pass->needed && k < pass->read_count; k++) {
             uint32_t writer = g->images[pass->reads[k]].writer;
+            g->images[pass->reads[k]].feeds = true;
             if (writer != NONE) g->passes[writer].needed = true;
         }
     }

@@ -66,3 +66,7 @@ bool graph_simulates(const graph *g) {
         if (g->passes[g->order[i]].simulates) return true;
     return false;
 }
+
+bool graph_feeds_simulation(const graph *g, graph_image image) {
+    return image.id && g->images[image.id - 1].feeds;
+}

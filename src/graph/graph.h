@@ -68,6 +68,8 @@ bool graph_execute(graph *g, gpu *device); // inside an open frame; swaps histor
 // The passes that simulate, and what they read; histories stay as they are. False when one failed.
 bool graph_execute_simulation(graph *g, gpu *device);
 bool graph_simulates(const graph *g); // after compile: such a pass runs
+// Whether graph_execute_simulation runs a pass that reads it.
+bool graph_feeds_simulation(const graph *g, graph_image image);
 // After graph_execute the images keep their content until the next one: history images are swapped
 // at the start of graph_execute.
 

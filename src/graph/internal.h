@@ -30,6 +30,7 @@ typedef struct graph_node_image {
     // from here: results of graph_compile
     bool read;         // it or its history, by a pass that runs or as an output
     bool history_used; // its history is read by a pass that runs, or is an output
+    bool feeds;        // read by a pass that is needed
     uint32_t writer;   // index of a pass or NONE
     uint32_t size[3];
     uint32_t slot; // NONE when culled

@@ -78,5 +78,5 @@ bool lbm_record(pass *p) {
     a->last_steps = 0;
     if (!p->host->hold && !a->stopped && !lbm_air_advance(p)) return false;
     gpu_pass_next(p->host->device, a->labels[LBM_FIELDS]);
-    return lbm_air_watch(p) && (p->host->ahead || (pass_prepare(p) && show(p, a)));
+    return lbm_air_watch(p) && (!pass_is_watched(p) || (pass_prepare(p) && show(p, a)));
 }

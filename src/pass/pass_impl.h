@@ -81,6 +81,10 @@ bool pass_bind(pass *p, const shader_binary *binary, const unsigned char *block,
                const pass_override *overrides, size_t override_count,
                gpu_binding out[GPU_MAX_SLOTS], size_t *count);
 
+// Of what simulates: whether its images are looked at in this frame, by the picture or by something
+// else that simulates.
+bool pass_is_watched(const pass *p);
+
 // An image of a grid that fields sample, as it is now; NULL: there is none just now. A second set
 // is the first when it is not blended.
 gpu_image *pass_field_image(const pass *p, const field_texture *texture);

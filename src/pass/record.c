@@ -241,6 +241,13 @@ static bool fill_numbers(pass *p) {
            pass_fill_block(p, &p->binary, p->block);
 }
 
+bool pass_is_watched(const pass *p) {
+    bool feeds = false;
+    for (size_t i = 0; i < p->face->image_count && !feeds; i++)
+        feeds = p->face->images[i].output && graph_feeds_simulation(p->host->graph, p->images[i]);
+    return feeds || !p->host->ahead;
+}
+
 bool pass_prepare(pass *p) {
     if (p->counters) gpu_buffer_fill(p->host->device, p->counters, 0);
     return update_palettes(p) && fill_numbers(p);

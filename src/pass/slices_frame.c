@@ -92,5 +92,5 @@ bool slices_record(pass *p) {
     f->last_steps = 0;
     if (!p->host->hold && !slices_advance(p)) return false;
     gpu_pass_next(p->host->device, f->labels[SLICES_FIELDS]);
-    return p->host->ahead || (pass_prepare(p) && show(p, f));
+    return !pass_is_watched(p) || (pass_prepare(p) && show(p, f));
 }

@@ -236,7 +236,7 @@ static const script_object objects[] = {
             "within 'radius' of 'position'"),
         KEY("above", "{field, threshold}", "instead of a shape: where the field is above that"),
         KEY("time_step", "1/60 s", "that a step takes"),
-        KEY("warm_up", "0 s", "that are simulated before the first frame"),
+        KEY("warm_up", "0 s", "that are simulated before the first frame, in air as it is then"),
         KEY("name", "\"particles\"", "for --set NAME.key=value and statistics; numbered when taken"))},
 
     {"voxels", "source", "local body = voxels { mesh { \"data/ball.obj\" }, resolution = 64 }",

@@ -49,6 +49,10 @@ static void what_is_simulated_runs_alone(void **state) {
     graph_add_output(s.g, s.picture);
     compile(s.g);
     assert_true(graph_simulates(s.g));
+    assert_true(graph_feeds_simulation(s.g, s.noise));
+    assert_false(graph_feeds_simulation(s.g, s.air)); // only the picture looks at it
+    assert_false(graph_feeds_simulation(s.g, s.sky));
+    assert_false(graph_feeds_simulation(s.g, (graph_image){0}));
     assert_true(graph_allocate(s.g, &device));
     assert_true(graph_execute_simulation(s.g, &device)); // histories are not touched
     assert_string_equal(strbuf_text(&device.log), "begin bake;end;begin step;end;");
@@ -62,6 +66,7 @@ static void nothing_is_simulated_without_need(void **state) {
     graph_add_output(s.g, s.picture);
     compile(s.g);
     assert_false(graph_simulates(s.g));
+    assert_false(graph_feeds_simulation(s.g, s.noise));
     graph_add_output(unread.g, unread.sky);
     compile(unread.g);
     assert_false(graph_simulates(unread.g));
