@@ -117,7 +117,8 @@ typedef struct roil_simulation { // what goes on from frame to frame in steps of
     const char *pass;    // of the trouble
 } roil_simulation;
 // A frame that does not follow the last has the frames between simulated first: from the last one
-// on, or, back in time, from the beginning. A punctual roil does that over several frames.
+// on, or, back in time, from the beginning. A punctual roil does that over several frames, and goes
+// back to one of the moments that it keeps, about a second apart, while numbers stay as they are.
 bool roil_get_simulation(const roil_effect *e, roil_simulation *out); // false: nothing simulates
 void roil_restart(roil_effect *e); // simulations begin anew with the next frame
 // The state of all that simulates, after the last frame, as one file: there whole or not at all.

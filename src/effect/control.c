@@ -184,7 +184,14 @@ static bool set(effect *e, control *c, const char *text) {
     return false;
 }
 
+// What simulates may have gone by its old value; only by the scene's it never does.
+static void forget_old(effect *e, const control *c) {
+    if (c->face.kind != EFFECT_CONTROL_SCENE && c->face.kind != EFFECT_CONTROL_LIGHT)
+        effect_forget_moments(e);
+}
+
 void effect_reset_control(effect *e, control *c) {
+    forget_old(e, c);
     switch (c->face.kind) {
     case EFFECT_CONTROL_PARAM:
         effect_set_value(e, c->face.index, e->params[c->face.index].initial);
@@ -211,6 +218,7 @@ bool effect_set_control(effect *e, control *c, const char *text) {
         effect_reset_control(e, c);
         return true;
     }
+    forget_old(e, c);
     if (!set(e, c, text)) return false;
     note_moved(e, c, text);
     if (strcmp(text, c->face.initial) == 0) c->face.moved = NULL;

@@ -75,6 +75,8 @@ effect *effect_create(const effect_desc *desc) {
 
 void effect_destroy(effect *e) {
     if (!e) return;
+    effect_forget_moments(e);
+    mem_free(e->moments);
     for (size_t i = 0; i < e->pass_count; i++) pass_destroy(e->passes[i]);
     for (size_t i = 0; i < e->grid_count; i++) e->grids[i]->destroy(e->grids[i], e->device);
     for (size_t i = 0; i < e->mesh_count; i++) scene_mesh_destroy(e->meshes[i], e->device);

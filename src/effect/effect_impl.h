@@ -15,6 +15,23 @@ bool effect_evaluate(effect *e, double frame, gpu *device, bool again);
 // Brings simulations to the frame. `*again`: `update` need not run for it.
 bool effect_simulate(effect *e, double frame, bool *again);
 
+// ---- states -----------------------------------------------------------------------------------
+
+struct checkpoint;
+struct checkpoint_list;
+bool effect_can_save(const effect *e); // all that simulates, as of now
+void effect_list_state(const effect *e, struct checkpoint_list *out);
+bool effect_take_state(effect *e, struct checkpoint *c); // false: all begins anew
+
+// Moments of a window that plays, to which it can go back (moments.c).
+void effect_keep_moment(effect *e);           // after a frame
+bool effect_go_back(effect *e, double frame); // to the last one until then; false: none
+void effect_forget_moments(effect *e);        // numbers have changed
+typedef struct effect_moment {
+    double frame;
+    struct checkpoint *state;
+} effect_moment;
+
 // ---- controls ---------------------------------------------------------------------------------
 
 typedef struct control {
@@ -124,9 +141,12 @@ struct effect {
     shared_mat4 clip, last_clip; // world to clip of the frame being recorded, of the one before
     bool has_last;               // there is one before, of which histories tell
     bool compiled, allocated;
-    uint32_t reference; // effect_desc
-    bool punctual;      // effect_desc
-    bool unseen;        // its pictures are not drawn
+    uint32_t reference;     // effect_desc
+    bool punctual;          // effect_desc
+    bool unseen;            // its pictures are not drawn
+    effect_moment *moments; // by frame
+    size_t moment_count, moment_capacity;
+    double moment_gap; // frames from one to the next at least; 0: a second
     const effect_setting *settings;
     bool *applied; // one per setting
     size_t setting_count;

@@ -54,8 +54,17 @@ static double reached(const effect *e) {
     return least;
 }
 
-// Those that are past the time begin anew.
-static void turn_back(effect *e, double time) {
+static bool is_past(const effect *e, double time) {
+    pass *p;
+    for (size_t i = 0; (p = next_simulation(e, &i));)
+        if (pass_get_simulation(p)->left(p, time) < 0) return true;
+    return false;
+}
+
+// Those that are past the frame begin anew, or all go on from a moment before it.
+static void turn_back(effect *e, double frame) {
+    double time = time_of(e, frame);
+    if (!is_past(e, time) || effect_go_back(e, frame)) return;
     pass *p;
     for (size_t i = 0; (p = next_simulation(e, &i));)
         if (pass_get_simulation(p)->left(p, time) < 0) pass_get_simulation(p)->restart(p);
@@ -63,6 +72,7 @@ static void turn_back(effect *e, double time) {
 
 void effect_restart(effect *e) {
     pass *p;
+    effect_forget_moments(e);
     if (!e->compiled) return;
     for (size_t i = 0; (p = next_simulation(e, &i));) pass_get_simulation(p)->restart(p);
 }
@@ -109,7 +119,7 @@ bool effect_simulate(effect *e, double frame, bool *again) {
     *again = e->behind = e->host.hold = false;
     if (!graph_simulates(e->graph)) return true;
     e->host.brief = e->punctual;
-    turn_back(e, time_of(e, frame));
+    turn_back(e, frame);
     if (!run(e, frame, again)) return false;
     e->host.hold = e->behind;
     *again = *again || e->behind; // what frames before it set is not to be set after it

@@ -21,9 +21,28 @@ static pass *next(const effect *e, size_t *index, const pass_simulation **out) {
     return NULL;
 }
 
+bool effect_can_save(const effect *e) {
+    const pass_simulation *simulation;
+    pass *p;
+    for (size_t i = 0; (p = next(e, &i, &simulation));)
+        if (!simulation->save || !simulation->load || !isfinite(simulation->reached(p)))
+            return false;
+    return true;
+}
+
 static bool is_ready(const effect *e) {
     return (e->compiled && graph_simulates(e->graph)) ||
            err_set("%s: nothing in it simulates, so it has no state to keep", e->file);
+}
+
+void effect_list_state(const effect *e, checkpoint_list *out) {
+    const pass_simulation *simulation;
+    effect_clock *clock = arena_alloc(&out->memory, sizeof *clock);
+    clock->frame = e->last_frame;
+    checkpoint_add(out, &(checkpoint_part){
+                            .name = clock_name, .size = sizeof *clock, .width = 8, .bytes = clock});
+    pass *p;
+    for (size_t i = 0; (p = next(e, &i, &simulation));) simulation->save(p, out);
 }
 
 bool effect_save_state(effect *e, const char *path) {
@@ -35,11 +54,7 @@ bool effect_save_state(effect *e, const char *path) {
         if (!isfinite(simulation->reached(p)))
             return err_set("%s: nothing is simulated yet: render a frame first", pass_label(p));
     }
-    effect_clock clock = {e->last_frame};
-    checkpoint_add(
-        &list,
-        &(checkpoint_part){.name = clock_name, .size = sizeof clock, .width = 8, .bytes = &clock});
-    for (size_t i = 0; (p = next(e, &i, &simulation));) simulation->save(p, &list);
+    effect_list_state(e, &list);
     bool done = checkpoint_save(path, e->device, list.parts, list.count);
     checkpoint_list_free(&list);
     return done;
@@ -60,12 +75,18 @@ static bool load(effect *e, checkpoint *c) {
     return true;
 }
 
+bool effect_take_state(effect *e, checkpoint *c) {
+    bool done = load(e, c);
+    if (!done) effect_restart(e); // not half of one and half of another
+    return done;
+}
+
 bool effect_load_state(effect *e, const char *path, double *frame) {
     if (!is_ready(e)) return false;
     checkpoint *c = checkpoint_open(path);
-    bool done = c && load(e, c);
-    if (c && !done) effect_restart(e); // not half of one and half of another
+    bool done = c && effect_take_state(e, c);
     checkpoint_close(c);
+    effect_forget_moments(e);
     if (done) *frame = e->last_frame;
     return done;
 }

@@ -87,6 +87,27 @@ bool gpu_image_copy(gpu *g, gpu_image *from, gpu_image *to) {
     return true;
 }
 
+static bool copy_bytes(gpu *g, gpu_buffer *from, uint64_t offset, gpu_buffer *to, uint64_t size) {
+    VkCommandBuffer commands = vk_commands(g);
+    if (!commands) return false;
+    vk_uses_begin(g);
+    vk_use_buffer(g, from, vk_buffer_from);
+    vk_use_buffer(g, to, vk_buffer_to);
+    vk_uses_flush(g, commands);
+    VkBufferCopy region = {.srcOffset = offset, .size = size};
+    vkCmdCopyBuffer(commands, from->handle, to->handle, 1, &region);
+    return true;
+}
+
+bool gpu_buffer_copy(gpu *g, gpu_buffer *from, gpu_buffer *to, uint64_t size) {
+    if (size > from->size || size > to->size || from == to) {
+        return err_set("%" PRIu64 " bytes cannot be copied from buffer '%s' (%" PRIu64
+                       ") to '%s' (%" PRIu64 "); another buffer of that size is accepted",
+                       size, from->label, from->size, to->label, to->size);
+    }
+    return size == 0 || copy_bytes(g, from, 0, to, size);
+}
+
 // ---- reading back -----------------------------------------------------------------------------
 
 static bool between_frames(gpu *g, const char *label) {
@@ -117,18 +138,6 @@ bool gpu_image_read(gpu *g, gpu_image *image, void *out, size_t size) {
     return ok;
 }
 
-static bool copy_out(gpu *g, gpu_buffer *buffer, uint64_t offset, gpu_buffer *target) {
-    VkCommandBuffer commands = vk_commands(g);
-    if (!commands) return false;
-    vk_uses_begin(g);
-    vk_use_buffer(g, buffer, vk_buffer_from);
-    vk_use_buffer(g, target, vk_buffer_to);
-    vk_uses_flush(g, commands);
-    VkBufferCopy region = {.srcOffset = offset, .size = target->size};
-    vkCmdCopyBuffer(commands, buffer->handle, target->handle, 1, &region);
-    return gpu_idle(g);
-}
-
 bool gpu_buffer_read(gpu *g, gpu_buffer *buffer, uint64_t offset, void *out, size_t size) {
     if (!between_frames(g, buffer->label)) return false;
     if (offset > buffer->size || size > buffer->size - offset) {
@@ -143,7 +152,7 @@ bool gpu_buffer_read(gpu *g, gpu_buffer *buffer, uint64_t offset, void *out, siz
     }
     gpu_buffer *target = target_create(g, size, buffer->label);
     if (!target) return false;
-    bool ok = copy_out(g, buffer, offset, target);
+    bool ok = copy_bytes(g, buffer, offset, target, size) && gpu_idle(g);
     if (ok) memcpy(out, gpu_buffer_map(target), size);
     gpu_buffer_destroy(g, target);
     return ok;

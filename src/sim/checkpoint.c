@@ -163,11 +163,13 @@ bool checkpoint_save(const char *path, gpu *g, const checkpoint_part *parts, siz
 // ---- reading ----------------------------------------------------------------------------------
 
 struct checkpoint {
-    FILE *file;
+    FILE *file; // NULL: it is in memory
     char *path;
     uint64_t size; // of the file
     file_entry *table;
     size_t count;
+    checkpoint_part *kept; // in memory: one per entry
+    gpu *device;
 };
 
 static bool damaged(const checkpoint *c, const char *what) {
@@ -264,9 +266,19 @@ checkpoint *checkpoint_open(const char *path) {
     return NULL;
 }
 
+// Of what is in memory.
+static void release(checkpoint *c) {
+    for (size_t i = 0; i < c->count; i++) {
+        if (c->device) gpu_buffer_destroy(c->device, c->kept[i].buffer);
+        mem_free(c->kept[i].bytes);
+    }
+    mem_free(c->kept);
+}
+
 void checkpoint_close(checkpoint *c) {
     if (!c) return;
-    fclose(c->file);
+    if (c->kept) release(c);
+    if (c->file) fclose(c->file);
     mem_free(c->path);
     mem_free(c->table);
     mem_free(c);
@@ -283,6 +295,50 @@ bool checkpoint_has(const checkpoint *c, const char *name, uint64_t *size) {
     if (e) *size = e->size;
     return e != NULL;
 }
+
+// ---- in memory --------------------------------------------------------------------------------
+
+static bool keep_part(checkpoint *c, const checkpoint_part *part) {
+    file_entry *entry = &c->table[c->count];
+    checkpoint_part *kept = &c->kept[c->count++];
+    entry->size = part->size;
+    str_copy(entry->name, sizeof entry->name, part->name);
+    if (part->size == 0) return true;
+    if (!part->buffer) {
+        kept->bytes = mem_copy(part->bytes, part->size);
+        return true;
+    }
+    kept->buffer =
+        gpu_buffer_create(c->device, &(gpu_buffer_desc){.label = "kept", .size = part->size});
+    return kept->buffer && gpu_buffer_copy(c->device, part->buffer, kept->buffer, part->size);
+}
+
+checkpoint *checkpoint_keep(gpu *g, const checkpoint_part *parts, size_t count) {
+    checkpoint *c = mem_alloc(sizeof *c);
+    *c = (checkpoint){.path = mem_copy("kept", sizeof "kept"),
+                      .table = mem_alloc(count * sizeof *c->table),
+                      .kept = mem_alloc(count * sizeof *c->kept),
+                      .device = g};
+    for (size_t i = 0; i < count; i++) {
+        if (keep_part(c, &parts[i])) continue;
+        checkpoint_close(c);
+        return NULL;
+    }
+    return c;
+}
+
+static bool load_kept(const checkpoint *c, size_t index, const checkpoint_part *part) {
+    const checkpoint_part *kept = &c->kept[index];
+    if (part->size == 0) return true;
+    if (part->buffer && kept->buffer)
+        return gpu_buffer_copy(c->device, kept->buffer, part->buffer, part->size);
+    if (part->buffer) return gpu_buffer_write(c->device, part->buffer, 0, kept->bytes, part->size);
+    if (kept->buffer) return gpu_buffer_read(c->device, kept->buffer, 0, part->bytes, part->size);
+    memcpy(part->bytes, kept->bytes, part->size);
+    return true;
+}
+
+// ---- loading ----------------------------------------------------------------------------------
 
 static bool open_one(void *user, size_t index) {
     chunk *c = &((batch *)user)->chunks[index];
@@ -314,6 +370,7 @@ bool checkpoint_load(checkpoint *c, gpu *g, const checkpoint_part *part) {
     if (e->size != part->size)
         return err_set("%s: part '%s' has %" PRIu64 " bytes; %" PRIu64 " are accepted", c->path,
                        part->name, e->size, part->size);
+    if (c->kept) return load_kept(c, (size_t)(e - c->table), part);
     if (fseeko(c->file, (off_t)e->offset, SEEK_SET) != 0) return damaged(c, "it ends too early");
     batch b;
     bool done = true;

@@ -1,4 +1,5 @@
-// States of simulations on disk: named parts, each bytes of the host or a buffer of the device.
+// States of simulations, on disk or in memory: named parts, each bytes of the host or a buffer of
+// the device.
 //
 // The file: a head, a table of the parts, then their content in chunks of CHECKPOINT_CHUNK bytes,
 // each with its hash and, where that makes it smaller, packed. Numbers are little-endian. It is
@@ -32,6 +33,8 @@ typedef struct checkpoint checkpoint;
 // Reads the whole file once and checks all hashes, so that what is damaged is known before anything
 // is overwritten.
 checkpoint *checkpoint_open(const char *path);
+// The parts as they are now, in memory: what is a buffer stays on the device. Between frames.
+checkpoint *checkpoint_keep(gpu *g, const checkpoint_part *parts, size_t count);
 void checkpoint_close(checkpoint *c); // NULL is fine
 bool checkpoint_has(const checkpoint *c, const char *name, uint64_t *size);
 // Between frames: fills the part, whose size must be the file's. On failure its content is lost.

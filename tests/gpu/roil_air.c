@@ -182,6 +182,44 @@ static void a_window_catches_up_over_several_pictures(void **state) {
     roil_destroy(window);
 }
 
+static void count_steps(void *user, double done, double whole) {
+    (void)done;
+    if (whole > *(double *)user) *(double *)user = whole;
+}
+
+static void draw_whole(roil_effect *e, double frame, picture out) {
+    roil_simulation s;
+    do {
+        draw(e, frame, out);
+        assert_true(roil_get_simulation(e, &s));
+    } while (s.waiting);
+}
+
+// A window that has shown three seconds goes back to any frame of them by a second of steps.
+static void a_window_goes_back_by_a_second_at_most(void **state) {
+    enum { FPS = 10, SHOWN = 31, STEPS = 200 }; // of a second
+    picture was[SHOWN + 1], again;
+    double steps = 0;
+    (void)state;
+    roil *window = roil_create(
+        &(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true, .punctual = true});
+    ok(window);
+    roil_effect *e = open(window, FPS, "", UPDATE);
+    for (int frame = 1; frame <= SHOWN; frame++) draw_whole(e, frame, was[frame]);
+    roil_on_progress(e, count_steps, &steps);
+    draw_whole(e, 28, again);
+    is_same(was[28], again, 0);
+    draw_whole(e, 19, again);
+    is_same(was[19], again, 0);
+    assert_true(steps > 0 && steps < 1.2 * STEPS);
+    ok(roil_set(e, "strength", "2")); // from here on, what was computed is of no use
+    draw_whole(e, 18, again);
+    assert_true(steps > 1.6 * STEPS);
+    roil_unload(e);
+    test_messages += roil_validation_messages(window);
+    roil_destroy(window);
+}
+
 // ---- what it is given -------------------------------------------------------------------------
 
 static void smoke_is_where_its_source_is_and_rises(void **state) {
@@ -394,6 +432,7 @@ int main(void) {
         cmocka_unit_test(air_is_warmed_up_before_the_first_frame),
         cmocka_unit_test(another_size_of_the_picture_changes_nothing),
         cmocka_unit_test(a_window_catches_up_over_several_pictures),
+        cmocka_unit_test(a_window_goes_back_by_a_second_at_most),
         cmocka_unit_test(meshes_give_smoke_and_stand_in_its_way),
         cmocka_unit_test(a_source_that_holds_the_pressure_blows_new_air_out),
         cmocka_unit_test(air_that_is_too_fast_is_held_back_by_itself),

@@ -101,9 +101,40 @@ static void a_restored_state_goes_on_bit_by_bit(void **state) {
     rmdir(folder);
 }
 
+// The same without a file: kept twice, gone on from twice.
+static void what_is_kept_in_memory_stays_as_it_was(void **state) {
+    run r;
+    char folder[] = "/tmp/roil-sim-XXXXXX", ends[2][64];
+    assert_non_null(mkdtemp(folder));
+    run_open(&r, *state);
+    sim_reset(&r.w);
+    steps(&r, BEFORE);
+    checkpoint_list list = {0};
+    lbm_state_list(r.w.lattice, "air", "voxel_size = 0.05\n", &list);
+    checkpoint *kept = checkpoint_keep(r.w.device, list.parts, list.count);
+    gpu_test_ok(kept);
+    checkpoint_list_free(&list);
+    for (int i = 0; i < 2; i++) {
+        snprintf(ends[i], sizeof ends[i], "%s/end%d", folder, i);
+        if (i)
+            gpu_test_ok(
+                lbm_state_load(r.w.lattice, r.w.device, "air", "voxel_size = 0.05\n", kept));
+        assert_int_equal(lbm_steps(r.w.lattice), BEFORE);
+        steps(&r, AFTER);
+        save(&r, ends[i]);
+    }
+    assert_same_file(ends[0], ends[1]);
+    assert_false(lbm_state_load(r.w.lattice, r.w.device, "air", "voxel_size = 0.1\n", kept));
+    checkpoint_close(kept);
+    run_close(&r);
+    for (int i = 0; i < 2; i++) unlink(ends[i]);
+    rmdir(folder);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_restored_state_goes_on_bit_by_bit),
+        cmocka_unit_test(what_is_kept_in_memory_stays_as_it_was),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }
