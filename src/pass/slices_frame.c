@@ -91,6 +91,7 @@ bool slices_record(pass *p) {
     slices_flow *f = slices_of(p);
     f->last_steps = 0;
     if (!p->host->hold && !slices_advance(p)) return false;
+    if (f->last_steps && !flow_watch(f->solver, p->host->device)) return false;
     gpu_pass_next(p->host->device, f->labels[SLICES_FIELDS]);
     return !pass_is_watched(p) || (pass_prepare(p) && show(p, f));
 }

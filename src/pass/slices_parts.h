@@ -50,6 +50,9 @@ struct slices_flow {
     uint64_t shown_steps;              // of the grid's content
     double shown_blend;
     uint64_t last_steps; // that the last record took
+    flow_report report;  // the newest
+    bool reported;
+    char trouble[256]; // what it says; "": nothing
 };
 
 static inline slices_flow *slices_of(const pass *p) {

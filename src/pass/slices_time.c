@@ -36,6 +36,7 @@ void slices_forget(slices_flow *f) {
 void slices_restart(pass *p) {
     slices_flow *f = slices_of(p);
     f->fresh = true;
+    f->reported = false;
     slices_forget(f);
     if (f->templates && f->templates->restart) f->templates->restart(f);
 }

@@ -227,6 +227,37 @@ static void an_obstacle_that_moves_pushes(void **state) {
     assert_true(sum(p, 0, SIDE) > 1000);
 }
 
+static double readout(roil_effect *e, const char *name) {
+    roil_readout all[16];
+    size_t count = roil_readouts(e, all, 16);
+    for (size_t i = 0; i < count && i < 16; i++)
+        if (strcmp(all[i].name, name) == 0) return all[i].value;
+    fail_msg("no readout '%s'", name);
+    return 0;
+}
+
+static void it_tells_of_itself(void **state) {
+    picture p;
+    roil_simulation now;
+    roil_effect *e = open(*state, 24, "viscosity = 0.01, speed = 3", INFLOW, "flow.density");
+    for (int frame = 1; frame <= 6; frame++) draw(e, frame, p);
+    assert_float_equal(readout(e, "Reynolds"), 600, 1e-3);
+    assert_float_equal(readout(e, "steps"), 14, 0);
+    assert_true(readout(e, "speed") > 0.5 && readout(e, "speed") < 3);
+    assert_true(readout(e, "iterations") >= 1);
+    assert_true(readout(e, "residual") < 1e-3);
+    assert_true(roil_get_simulation(e, &now) && !now.trouble);
+    roil_unload(e);
+    static const char fast[] =
+        "flow:inflow { shape = disc { 0.5, 0.3, radius = 0.2 }, velocity = {0, "
+        "50} }";
+    e = open(*state, 24, "", fast, "flow.density");
+    for (int frame = 1; frame <= 6; frame++) draw(e, frame, p);
+    assert_true(roil_get_simulation(e, &now) && now.trouble);
+    if (!strstr(now.trouble, "set 'time_step' below")) fail_msg("%s", now.trouble);
+    roil_unload(e);
+}
+
 // ---- going on ---------------------------------------------------------------------------------
 
 static void count_call(void *user, double done, double whole) {
@@ -298,6 +329,7 @@ int main(void) {
         cmocka_unit_test(velocity_points_outwards_all_round),
         cmocka_unit_test(a_painted_obstacle_stands_in_the_way),
         cmocka_unit_test(an_obstacle_that_moves_pushes),
+        cmocka_unit_test(it_tells_of_itself),
         cmocka_unit_test(a_reload_goes_on_where_the_flow_is_the_same),
         cmocka_unit_test(a_restored_run_is_the_one_that_never_stopped),
     };
