@@ -1,12 +1,13 @@
 -- Smoke that is simulated: hot air rises from a small fire, rolls up and breaks into eddies. Nothing
--- is drawn by hand; what the air does follows from heat and viscosity.
+-- is drawn by hand; what the air does follows from heat and viscosity, and noise is only for what is
+-- finer than its cells.
 --
 --   roil render effects/smoke.lua --frames 72 -o smoke.png
 --   roil render effects/smoke.lua --frames 72 --set lbm.buoyancy_heat=10 -o hotter.png
 
 local fx = effect { name = "smoke", fps = 24, frames = 240 }
 
-local density = param { "density", 5, min = 0, max = 100, unit = "1/m", help = "how thick the smoke is" }
+local density = param { "density", 7, min = 0, max = 100, unit = "1/m", help = "how thick the smoke is" }
 local heat    = param { "heat", 1, min = 0, max = 4, help = "temperature of the fire" }
 
 -- Small enough for a computer without a graphics card. On one that has it, try {96, 96, 192} cells of 0.04 m.
@@ -23,13 +24,19 @@ air:source {
     density = 1 + flicker, temperature = heat * (1 + flicker), rate = 12,
 }
 
-fx.camera = orbit { target = {0, 0, 3.4}, distance = 15, yaw = 25, pitch = 3, fov = 34 }
-fx.sun    = sun { azimuth = 160, elevation = 48, color = {1, 0.95, 0.88}, strength = 5 }
-fx.sky    = sky { zenith = {0.10, 0.20, 0.42}, horizon = {0.42, 0.50, 0.60}, strength = 0.7 }
+-- Noise that the air carries along eats at the smoke where that is thin.
+local lumps = worley { frequency = 1.5, octaves = 3, persistence = 0.55, lacunarity = 2.1, seed = 4 }
+              :tile():advect(air.velocity, { period = 0.8, mean = 0.48 })
+local cover = clamp(air.density * 4, 0, 1)
+local smoke = cover * smoothstep(0, 0.6, cover - 1.5 * (1 - lumps) * (1 - 0.5 * cover))
 
-local lit    = lighting { density = air.density * density, albedo = {0.96, 0.96, 0.97}, anisotropy = 0.2 }
-local scene  = geometry { mesh { "data/ground.obj" } }
-local solid  = shade { from = {scene, lit} }
+fx.camera = orbit { target = {0, 0, 3.4}, distance = 15, yaw = 25, pitch = 3, fov = 34 }
+fx.sun    = sun { azimuth = 215, elevation = 36, color = {1, 0.90, 0.76}, strength = 8 }
+fx.sky    = sky { zenith = {0.04, 0.11, 0.32}, horizon = {0.32, 0.42, 0.56}, strength = 0.7 }
+
+local lit    = lighting { density = smoke * density, albedo = {0.96, 0.96, 0.97}, anisotropy = 0.2, sampling = "cubic" }
+local scene  = geometry { mesh { "data/ground.obj", color = {0.7, 0.75, 0.6} } }
+local solid  = shade { from = {scene, lit}, haze = 0.01 }
 local volume = march { from = {lit, scene}, steps = 128 }
 
 local picture = over { volume, solid, from = {volume, scene} }
