@@ -7,7 +7,7 @@
 --
 -- Play with `lift` (a gentle day or a thunderstorm), `base` (moist air has low clouds), `width` and `wind`.
 
-local fx = effect { name = "cumulus", fps = 24, frames = 240 }
+local fx = effect { name = "cumulus", fps = 24, frames = 132 }
 
 local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along each edge, relative to 128 x 128 x 96; taken when the effect loads" }
 local density = param { "density", 16, min = 0, max = 100, unit = "1/m", help = "of the cloud" }
@@ -21,14 +21,15 @@ local function cells(count) return math.max(16, 8 * math.floor(count * detail:ge
 local air = lbm {
   size = {cells(128), cells(128), cells(96)}, voxel_size = 9.6 / cells(128),
   boundary = { bottom = "wall", sides = "open", top = "open" },
-  buoyancy_heat = lift, cooling_rate = 0.4, dissolve_rate = 0.2, wind = vec(wind, 0, 0), speed = 4,
+  buoyancy_heat = lift, cooling_rate = 0.5, dissolve_rate = 0.2, wind = vec(wind, 0, 0), speed = 4,
 }
 
 -- Thermals: bubbles of warm, moist air that leave the field here and there, one after the other. Each
--- place warms its air for a second of three; meanwhile it lets the wind pass (`rate`).
+-- place warms its air for a second of three, until evening; meanwhile it lets the wind pass (`rate`).
+local day = smoothstep(4.8, 3.4, time)
 for i = 1, 9 do
   local angle, far = 2.4 * i, 0.33 * width * math.sqrt(i)
-  local beat = smoothstep(0.3, 0.8, sin(2.1 * time + 2.1 * i))
+  local beat = smoothstep(0.3, 0.8, sin(2.1 * time + 2.1 * i)) * day
   air:source {
     shape = sphere { position = vec(far * math.cos(angle) - 0.5, far * math.sin(angle), 0.75), radius = 0.65 },
     density = 1, temperature = 1, rate = 0.001 + 10 * beat,
