@@ -103,6 +103,25 @@ static void parts_of_a_buffer_are_read_and_written_at_any_byte(void **state) {
     gpu_buffer_destroy(g, buffer);
 }
 
+static void buffers_are_copied_from_their_beginning(void **state) {
+    gpu *g = *state;
+    gpu_buffer *from = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "from", .size = 11});
+    gpu_buffer *to = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "to", .size = 7});
+    gpu_test_ok(from && to);
+    char found[8] = {0};
+    gpu_test_ok(gpu_buffer_write(g, from, 0, "hello world", 11));
+    gpu_test_ok(gpu_buffer_write(g, to, 0, "1234567", 7));
+    gpu_test_ok(gpu_buffer_copy(g, from, to, 4));
+    gpu_test_ok(gpu_buffer_copy(g, from, to, 0));
+    gpu_test_ok(gpu_buffer_read(g, to, 0, found, 7));
+    assert_string_equal(found, "hell567");
+    assert_false(gpu_buffer_copy(g, from, to, 8));
+    assert_non_null(strstr(err_get(), "'to' (7)"));
+    assert_false(gpu_buffer_copy(g, from, from, 4));
+    gpu_buffer_destroy(g, from);
+    gpu_buffer_destroy(g, to);
+}
+
 static void frame_copies_land_in_a_mapped_buffer(void **state) {
     gpu *g = *state;
     float texels[4] = {1, 2, 3, 4}, zero[4] = {0};
@@ -154,6 +173,7 @@ int main(void) {
         cmocka_unit_test(buffer_larger_than_the_ring_arrives),
         cmocka_unit_test(many_small_writes_keep_their_order),
         cmocka_unit_test(parts_of_a_buffer_are_read_and_written_at_any_byte),
+        cmocka_unit_test(buffers_are_copied_from_their_beginning),
         cmocka_unit_test(frame_copies_land_in_a_mapped_buffer),
         cmocka_unit_test(wrong_sizes_are_refused),
     };
