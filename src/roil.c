@@ -305,7 +305,8 @@ static double rate_of(roil_effect *e, const pass *p, double work) {
 static roil_readout speed_of(roil_effect *e, const pass *p) {
     double work = pass_get_simulation(p)->work(p);
     if (work > 0 && e->frame) e->speed = rate_of(e, p, work);
-    return (roil_readout){pass_label(p), "cell updates", "million/s", e->speed};
+    const char *name = pass_get_simulation(p)->work_name;
+    return (roil_readout){pass_label(p), name ? name : "cell updates", "million/s", e->speed};
 }
 
 size_t roil_readouts(roil_effect *e, roil_readout *out, size_t capacity) {

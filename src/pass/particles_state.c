@@ -24,7 +24,7 @@ static size_t list_buffers(const particles_state *s, arena *memory, checkpoint_p
     static const char *const moves[] = {"velocities0", "velocities1"};
     uint64_t used = pass_particles_used(s->pass), left = used;
     size_t count = 0;
-    for (int i = 0; i < PARTICLES_PARTS && s->buffers.positions[i]; i++) {
+    for (int i = 0; i < PARTICLES_PARTS && left > 0; i++) {
         uint64_t here = left < PASS_PARTICLES_EACH ? left : PASS_PARTICLES_EACH;
         out[count++] = (checkpoint_part){
             .name = places[i], .size = 16 * here, .buffer = s->buffers.positions[i]};
@@ -32,7 +32,7 @@ static size_t list_buffers(const particles_state *s, arena *memory, checkpoint_p
             .name = moves[i], .size = 16 * here, .buffer = s->buffers.velocities[i]};
         left -= here;
     }
-    if (s->carries)
+    if (s->carries && used)
         out[count++] = (checkpoint_part){
             .name = "quantities", .size = 4 * used, .buffer = s->buffers.quantities};
     for (size_t i = 0; i < count; i++) {

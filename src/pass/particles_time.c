@@ -215,5 +215,6 @@ const pass_simulation particles_simulation = {
     .load = particles_load,
     .readouts = readouts,
     .work = work,
+    .work_name = "particle steps",
     .trouble = trouble,
 };

@@ -73,7 +73,8 @@ typedef struct pass_simulation {
     bool (*load)(pass *p, struct checkpoint *from);
     // At most `capacity`; returns the count. After pass_allocate.
     size_t (*readouts)(const pass *p, pass_readout *out, size_t capacity);
-    double (*work)(const pass *p);         // cells that the last record brought a step on
+    double (*work)(const pass *p);         // how much the last record brought a step on
+    const char *work_name;                 // of what; NULL: "cell updates"
     const char *(*trouble)(const pass *p); // what is wrong and which key to change; NULL: nothing
 } pass_simulation;
 
