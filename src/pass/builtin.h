@@ -27,6 +27,9 @@ bool march_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool march_record(pass *p);
 void march_destroy(pass *p);
 
+bool stack_declare(pass *p);
+bool stack_fill(pass *p, const shader_binary *binary, unsigned char *block);
+
 bool reference_declare(pass *p);
 bool reference_check(pass *p);
 bool reference_build(pass *p);

@@ -45,6 +45,12 @@ static const pass_type types[] = {
         .destroy = march_destroy,
     },
     {
+        .name = "stack",
+        .shader = "pass/stack.comp",
+        .declare = stack_declare,
+        .fill = stack_fill,
+    },
+    {
         .name = "reference",
         .shader = "pass/reference.comp",
         .declare = reference_declare,

@@ -1,0 +1,35 @@
+// Stack: what it draws into has a size of its own; the box of its slices is the density's.
+#include "base/memory.h"
+#include "pass/builtin.h"
+#include "pass/pass_impl.h"
+#include <stdlib.h>
+
+static bool add_image(pass *p, const char *output, uint32_t side) {
+    int image = pass_find_image(p, output);
+    p->images[image] = graph_add_image(
+        p->host->graph, &(graph_image_desc){
+                            .name = arena_format(p->host->memory, "%s.%s", p->label, output),
+                            .format = p->formats[image],
+                            .width = side,
+                            .height = side,
+                        });
+    return p->images[image].id != 0;
+}
+
+bool stack_declare(pass *p) {
+    size_t index;
+    box3 box;
+    pass_find_key(p, "target", &index);
+    const char *word = p->face->options[index].words[p->options[index]];
+    uint32_t side = (uint32_t)strtoul(word, NULL, 10);
+    if (!pass_density_box(p, &box)) return false;
+    if (side && (!add_image(p, "color", side) || !add_image(p, "edge", side))) return false;
+    return pass_declare_images(p) && pass_add_to_graph(p);
+}
+
+bool stack_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+    box3 box;
+    if (!pass_density_box(p, &box)) return false;
+    pass_write_box(binary, block, box);
+    return true;
+}
