@@ -33,6 +33,7 @@ uniform float drag_square;  //= 0 [0, inf] 1/m : the same for each m/s of the di
 uniform float bounce;       //= 0.5 [0, 1] : share of the speed towards what they meet that is left, turned round
 uniform float friction;     //= 0.2 [0, inf] : of Coulomb: speed along the surface lost for that across it
 uniform float clearance;    //= 0 [0, inf] m : that they keep from what they meet: their own radius
+uniform float contact_step; //= 0.005 [1e-6, 1e6] m : over twice which the direction of a surface is found: a part of the cells, where the distance has any
 uniform float thickness;    //= 0.5 [0, inf] m : of what the picture shows: who is farther behind it is hidden, not inside
 uniform uint seed;          //= 0 [0, 16777215] : of all that is random
 uniform sampler2D depth;    //= input optional : what they bounce off as far as the picture shows it (of the pass geometry)

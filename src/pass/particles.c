@@ -112,9 +112,13 @@ static bool make_triangles(pass *p, particles_state *s) {
     const mesh_data *mesh = &p->meshes[0]->data;
     particles_triangle *all = mem_alloc((mesh->index_count / 3 + 1) * sizeof *all);
     s->triangle_count = particles_list_triangles(mesh, all);
-    size_t size = s->triangle_count * sizeof *all;
+    uint64_t size = s->triangle_count * sizeof *all;
     gpu *device = p->host->device;
-    if (size)
+    uint64_t most = gpu_get_info(device)->max_storage_range;
+    if (size > most)
+        err_set("%u triangles; the device can bind %llu at most", s->triangle_count,
+                (unsigned long long)(most / sizeof *all));
+    else if (size)
         s->triangles =
             gpu_buffer_create(device, &(gpu_buffer_desc){.label = "triangles", .size = size});
     bool done = s->triangles && gpu_buffer_write(device, s->triangles, 0, all, size);

@@ -8,7 +8,9 @@
 // the particles. All else comes by itself, in a user's shader too: pass_compile adds the defines,
 // pass_fill_block writes the members, pass_bind finds the buffers.
 //
-// The state is up to a step ahead of the frame; particle_read() goes back along the velocity.
+// Numbers and fields are those of the middle of each step; grids that fields sample are those of
+// the frame. The state is up to a step ahead of the frame; particle_read() goes back along the
+// velocity.
 #pragma once
 #include "pass/pass.h"
 

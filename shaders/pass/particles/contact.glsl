@@ -2,7 +2,6 @@
 // whose zero is the surface.
 #define CONTACTS (HAS_COLLIDE || HAS_DEPTH)
 #if CONTACTS
-#define CONTACT_STEP 0.005 // m: over twice which the slope of a distance is taken
 
 #if HAS_DEPTH
 // Depth of what the picture shows at a texel (m), and the ray there, one metre deep.
@@ -71,8 +70,8 @@ vec3 contact_normal(vec3 p, out vec3 motion) {
     motion = field_collide_velocity(p);
     const vec2 k = vec2(1.0, -1.0);
     vec3 n = vec3(0.0);
-    n += k.xyy * field_collide(p + CONTACT_STEP * k.xyy) + k.yyx * field_collide(p + CONTACT_STEP * k.yyx);
-    n += k.yxy * field_collide(p + CONTACT_STEP * k.yxy) + k.xxx * field_collide(p + CONTACT_STEP * k.xxx);
+    n += k.xyy * field_collide(p + contact_step * k.xyy) + k.yyx * field_collide(p + contact_step * k.yyx);
+    n += k.yxy * field_collide(p + contact_step * k.yxy) + k.xxx * field_collide(p + contact_step * k.xxx);
     float steep = length(n);
     return steep > 0.0 ? n / steep : vec3(0.0, 0.0, 1.0);
 #endif
