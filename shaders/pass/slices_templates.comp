@@ -15,7 +15,7 @@ uniform float size_max;     //= 0.1 [1e-3, 10] widths : of the largest; sizes be
 uniform float lifetime_min; //= 0.1 [1e-3, 1e4] s : of the shortest life
 uniform float lifetime_max; //= 0.4 [1e-3, 1e4] s : of the longest; those between are as likely
 uniform float fade;         //= 0.25 [0, 0.5] : share of its life in which a template comes, and in which it goes
-uniform float blend;        //= 1 [0, 1] : of the picture's alpha; a hundredth still holds the pressure of a template that is many cells wide
+uniform float blend;        //= 0.02 [0, 1] : of the alpha of pressure: how firmly it is held, as in a slice of 128 cells across; more cells hold it no firmer. 0.002 nudges what flows, 0.1 blows it apart
 uniform float amount;       //= 1 [0, 1] : share of the templates that act
 uniform float angle;        //= 0 [-inf, inf] degrees : that templates are turned by besides, anticlockwise
 uniform float spread;       //= 0 [0, 180] degrees : by which each may be turned more or less
@@ -186,7 +186,7 @@ void main() {
     bool pushes = KIND == KIND_VELOCITY;
     templates[template_at(0u, slice, which)] = vec4(place.yz, factor != 0.0 ? half_side : 0.0, factor);
     templates[template_at(1u, slice, which)] =
-        vec4(cos(turn), sin(turn), blend * now, pushes ? -1.0 - tile : tile);
+        vec4(cos(turn), sin(turn), pushes ? now : blend * now, pushes ? -1.0 - tile : tile);
     templates[template_at(2u, slice, which)] = life;
     templates[template_at(3u, slice, which)] = place;
 }

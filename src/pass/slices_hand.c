@@ -56,7 +56,7 @@ static void fill_one(const slices_flow *f, const slices_hand *hand, uint32_t til
         hand->strength,
         cosf(turn),
         sinf(turn),
-        clampf(hand->blend, 0, 1),
+        hand->pushes ? 1 : clampf(hand->blend, 0, 1),
         hand->pushes ? -1 - (float)tile : (float)tile,
         (float)hand->slice,
     };
@@ -84,7 +84,7 @@ void slices_hand_line(const slices_hand *hand, const char *variable, const char 
                (double)hand->place[0], (double)hand->place[1], (double)hand->size);
     strbuf_add(out, "align = \"fixed\", angle = %.3g, strength = %.3g", (double)hand->angle,
                (double)hand->strength);
-    if (hand->blend < 1) strbuf_add(out, ", blend = %.3g", (double)hand->blend);
+    if (!hand->pushes) strbuf_add(out, ", blend = %.3g", (double)hand->blend);
     if (hand->lifetime > 0) strbuf_add(out, ", lifetime = %.3g", hand->lifetime);
     strbuf_add(out, " }\n");
 }

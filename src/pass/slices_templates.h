@@ -42,7 +42,7 @@ typedef struct slices_hand {
     float place[2], size; // middle, side (widths of a slice)
     float angle;          // degrees, anticlockwise
     float strength;       // m/s^2, or m^2/s^2
-    float blend;          // of its alpha; 1: all
+    float blend;          // of the alpha of pressure, as the uniform of that name
     double lifetime;      // seconds of the simulation; 0: one step
 } slices_hand;
 

@@ -251,15 +251,21 @@ static void spread_turns_each_by_less_than_it_says(void **state) {
 
 // ---- drawing ----------------------------------------------------------------------------------
 
-// One of 32 cells in the middle of a slice of 64, at a given turn, that does not come and go.
+// One of 32 cells in the middle of a slice of 64, at a given turn, that does not come and go and is
+// blended in by all of its alpha.
 static pass *add_one(templates_world *t, picture image, float angle) {
     static const group_of settings[] = {
-        {"size_min", 0.5f}, {"size_max", 0.5f}, {"fade", 0}, {"strength", 3}};
+        {"size_min", 0.5f}, {"size_max", 0.5f}, {"fade", 0}, {"strength", 3}, {"blend", 1}};
     pass *p = add_group(t, 1, image, settings, COUNT_OF(settings));
     templates_set(t, p, "angle", angle);
     set_word(p, "align", "fixed");
     gpu_test_ok(pass_set_field(p, "region", disc(t, 0.5f, 0.5f, 1e-4f, 0)));
     return p;
+}
+
+// What is drawn for an alpha of a slice of 128 cells.
+static double alpha_of_64(double alpha) {
+    return alpha / (alpha + (1 - alpha) * 0.25);
 }
 
 // Alpha is 1 in the middle and nearly 0 at the border (K21), the pressure as strong as it says.
@@ -277,12 +283,13 @@ static void border_fades_as_a_gaussian(void **state) {
             bool inside = fabs(u) < 1 && fabs(v) < 1;
             double alpha = inside ? exp(-0.5 * (u * u + v * v) / 0.09) : 0;
             const float *cell = drawn + 2 * (64 * y + x);
-            worst = fmax(worst, fabs((double)cell[0] - alpha));
+            double drawn_alpha = (double)cell[0] / (4 - 3 * (double)cell[0]);
+            worst = fmax(worst, fabs(drawn_alpha - alpha));
             if (inside && alpha > 1e-3) assert_true(fabsf(cell[1] - 3) < 0.01f);
         }
     print_message("alpha is off by %.4f at most\n", worst);
     assert_true(worst < 0.02);
-    assert_true(drawn[2 * (64 * 32 + 32)] > 0.98f && drawn[2 * (64 * 32 + 16)] < 0.006f);
+    assert_true(drawn[2 * (64 * 32 + 32)] > 0.99f && drawn[2 * (64 * 32 + 16)] < 0.024f);
     mem_free(drawn);
     templates_close(&t);
 }
@@ -332,8 +339,9 @@ static void groups_of_both_kinds_are_drawn_over_each_other(void **state) {
     float *pressed = templates_read_flow(&t, "FlowTemplates");
     float *pushed = templates_read_flow(&t, "FlowSources");
     const float *middle = pressed + 2 * (64 * 32 + 32);
-    assert_true(fabsf(middle[0] - 0.75f) < 0.01f);
-    assert_true(fabsf(middle[1] - (0.25f * 3 - 0.5f * 3) / 0.75f) < 0.03f);
+    double one = alpha_of_64(0.5), first = one * (1 - one), both = first + one;
+    assert_true(fabs((double)middle[0] - both) < 0.01);
+    assert_true(fabs((double)middle[1] - (first * 3 - one * 3) / both) < 0.03);
     assert_true(fabsf(pushed[12 * (64 * 32 + 32) + 8] - 0.06f) < 1e-3f);
     mem_free(pressed);
     mem_free(pushed);
@@ -343,7 +351,7 @@ static void groups_of_both_kinds_are_drawn_over_each_other(void **state) {
 static void they_come_and_go_by_fade(void **state) {
     templates_world t;
     templates_open(&t, *state, &small, 0.01);
-    GROUP(&t, 200, blue, {"fade", 0.25f}, {"lifetime_min", 1}, {"lifetime_max", 1});
+    GROUP(&t, 200, blue, {"fade", 0.25f}, {"blend", 1}, {"lifetime_min", 1}, {"lifetime_max", 1});
     templates_build(&t);
     templates_run(&t, 1, false);
     template_seen *seen = templates_read(&t, 0);
@@ -410,10 +418,10 @@ static void hand_makes_room_for_the_newest(void **state) {
 static void line_for_the_file_says_it_all(void **state) {
     (void)state;
     strbuf line = {0};
-    slices_hand hand = {NULL, true, 0, {0.25f, 1.5f}, 0.1f, -30, 4, 0.5f, 0.2};
+    slices_hand hand = {NULL, false, 0, {0.25f, 1.5f}, 0.1f, -30, 4, 0.5f, 0.2};
     slices_hand_line(&hand, "flow", "templates/mine.exr", &line);
     assert_string_equal(strbuf_text(&line),
-                        "flow:templates { image \"templates/mine.exr\", kind = \"velocity\", "
+                        "flow:templates { image \"templates/mine.exr\", kind = \"pressure\", "
                         "count = 1, region = disc { 0.25, 1.5, radius = 0.005 }, size = 0.1, "
                         "align = \"fixed\", angle = -30, strength = 4, blend = 0.5, "
                         "lifetime = 0.2 }\n");

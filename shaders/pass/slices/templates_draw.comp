@@ -20,6 +20,13 @@ uniform uint hand_count;
 #endif
 uniform sampler2D TemplateImages; // tiles below each other: values times alpha, alpha
 
+// Mixing in each iteration adds 4 alpha / (1 - alpha) (p - pressure) to the equation of the pressure,
+// for each square of a cell's side: alpha is made such that it is as much for a square of a width.
+float alpha_here(float alpha) {
+    const float finer = float(FLOW_NX) / 128.0;
+    return alpha / max(alpha + (1.0 - alpha) * finer * finer, 1e-6);
+}
+
 #define EACH_CELL for (int c = 0; c < TEMPLATES_CELLS; c++)
 
 // `at`: from the middle, in halves of the side; the upper edge is at +1.
@@ -78,7 +85,8 @@ void main() {
                 vec2 v = place.w * look.z * held.xy;
                 pushed[c] += vec2(look.x * v.x - look.y * v.y, look.y * v.x + look.x * v.y);
             } else if (held.w > 0.0) {
-                flow_blend(pressed[c], clamp(look.z * held.w, 0.0, 1.0), place.w * held.z / held.w);
+                flow_blend(pressed[c], alpha_here(min(look.z * held.w, 1.0)),
+                           place.w * held.z / held.w);
             }
         }
     }
