@@ -7,6 +7,7 @@
 // knows, and birth needs neither a list nor an atomic.
 #ifndef LIB_PARTICLES_STATE_GLSL
 #define LIB_PARTICLES_STATE_GLSL
+#include "lib/particle.glsl"
 #include "lib/random.glsl"
 #ifndef PARTICLES_ACCESS // of the arrays
 #define PARTICLES_ACCESS readonly
@@ -60,6 +61,16 @@ uint particle_number(uint slot) {
 // draw; the others are used up by its birth.
 float particle_random(uint id, uint what) {
     return float(random_hash(id + random_hash(what + random_hash(particle_seed))) >> 8) * (1.0 / 16777216.0);
+}
+
+// Before fields are evaluated for the slot's particle.
+void particle_say(uint slot, float age, float lifetime, vec3 velocity) {
+    particle_said.age = clamp(age / max(lifetime, 1e-20), 0.0, 1.0);
+    particle_said.random = particle_random(particle_number(slot), 64u);
+    particle_said.velocity = velocity;
+#if PARTICLE_QUANTITY
+    particle_said.quantity = particle_quantities[slot];
+#endif
 }
 
 #endif

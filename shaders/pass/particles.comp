@@ -1,6 +1,8 @@
 // Points that are born, are carried or thrown, meet what is solid and die: sparks, embers, dust. No
 // picture comes of it: `splats` draws them. Here a step of a fixed part of a second, whatever is
-// drawn; every particle is its own thread. Who is born in it comes from particles/birth.comp.
+// drawn; every particle is its own thread. Who is born in it comes from particles/birth.comp. Fields
+// may use particle_age (0..1 over its life), particle_random, particle_velocity and particle_quantity,
+// which is what it carried until now.
 layout(local_size_x = 256, local_size_y = 1, local_size_z = 1) in;
 //@ option motion = auto {auto, carried, forces} : carried: they go as `velocity` says; forces: they go on as they are, pushed by gravity and force, slowed by drag; auto: forces where one of these or a speed is given
 //@ option integrator = rk2 {euler, rk2} : of the motion: by the velocity where they are (as published), or half a step ahead (midpoint)
@@ -56,7 +58,9 @@ void main() {
         if (moves.w > 0.0) particle_put(slot, vec4(0.0), vec4(0.0));
         return;
     }
-    move(at.xyz, moves.xyz, time_step + min(at.w, 0.0), moves.w); // born within the step: the rest of it
+    float passes = time_step + min(at.w, 0.0); // born within the step: the rest of it
+    particle_say(slot, at.w + time_step - 0.5 * passes, moves.w, moves.xyz);
+    move(at.xyz, moves.xyz, passes, moves.w);
     at.w += time_step;
     particle_put(slot, at, moves);
 #if PARTICLE_QUANTITY

@@ -54,6 +54,31 @@ static void a_way_round_a_vortex_closes(void **state) {
     assert_true(half < rk2 / 3.5 && half > rk2 / 4.5);
 }
 
+// What a field says of a particle is that particle's own, as long as it lives.
+static void a_field_may_be_of_the_particle(void **state) {
+    swarm s = swarm_open(*state, 300, 0);
+    float first[300];
+    swarm_set(&s, "burst", 300);
+    swarm_live(&s, 4, 4);
+    const field *own = make(s.e, "particle_random", NULL), *age = make(s.e, "particle_age", NULL);
+    swarm_field(&s, "velocity", make(s.e, "vec", own, make(s.e, "mul", age, number(s.e, 8)), own));
+    swarm_build(&s);
+    double sum = 0;
+    swarm_run(&s, 30);
+    for (uint32_t i = 0; i < s.used; i++) {
+        first[i] = s.at[i][0] * 2; // after half a second
+        assert_true(first[i] >= 0 && first[i] < 1);
+        sum += (double)first[i];
+    }
+    is_near(sum / 300, 0.5, 0.06, "mean");
+    swarm_run(&s, 120);
+    for (uint32_t i = 0; i < s.used; i++) {
+        is_near((double)s.at[i][0], 2 * (double)first[i], 1e-3, "a way of its own");
+        is_near((double)s.at[i][1], 4, 1e-3, "by age"); // the integral of 8 t / 4 up to 2
+    }
+    swarm_close(&s);
+}
+
 // ---- thrown -----------------------------------------------------------------------------------
 
 // One particle from (0, 0, height), for ever.
@@ -255,6 +280,7 @@ static void they_bounce_off_what_the_picture_shows(void **state) {
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_way_round_a_vortex_closes),
+        cmocka_unit_test(a_field_may_be_of_the_particle),
         cmocka_unit_test(what_is_thrown_flies_a_parabola),
         cmocka_unit_test(drag_leads_to_the_terminal_velocity),
         cmocka_unit_test(a_bounce_leaves_the_energy_that_it_says),

@@ -123,6 +123,7 @@ void main() {
     slot -= slot < particle_count ? 0u : particle_count;
     uint id = particle_number(slot);
     float before = time_step - birth_rest(index);
+    particle_said.random = particle_random(id, 64u);
     vec3 p, way, motion;
     bool found = birth_place(id, before / time_step, p, way, motion);
     vec4 moves = vec4(0.0);
