@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { GROUP = 128 }; // threads, along x
+enum { GROUP = 64 }; // threads, along x
 
 // ---- structure --------------------------------------------------------------------------------
 
@@ -34,8 +34,9 @@ static bool check(const lbm_desc *desc) {
     if (size[0] < 4 || size[1] < 4 || size[2] < 16)
         return err_set("a lattice of %u x %u x %u cells; at least 4 x 4 x 16 are needed", size[0],
                        size[1], size[2]);
-    if (size[2] % 8 != 0)
-        return err_set("a lattice of %u cells along z; a multiple of 8 is needed", size[2]);
+    if (size[2] % LBM_LANES != 0)
+        return err_set("a lattice of %u cells along z; a multiple of %d is needed", size[2],
+                       LBM_LANES);
     if (size[0] > 4096 || size[1] > 4096 || size[2] > 4096)
         return err_set("a lattice of %u x %u x %u cells; at most 4096 along an axis are accepted",
                        size[0], size[1], size[2]);
@@ -49,12 +50,15 @@ static bool check(const lbm_desc *desc) {
     return true;
 }
 
+static uint64_t element_size(const lbm_desc *desc) {
+    return LBM_LANES * (desc->precision == LBM_F16 ? 2 : 4);
+}
+
 bool lbm_layout_find(const lbm_desc *desc, uint64_t range, lbm_layout *out) {
     const uint32_t *size = desc->size;
-    *out = (lbm_layout){.lanes = desc->precision == LBM_F16 ? 8 : 4};
-    out->layers = size[2] / out->lanes;
+    *out = (lbm_layout){.layers = size[2] / LBM_LANES};
     uint64_t elements = (uint64_t)size[0] * size[1] * out->layers;
-    uint64_t fit = range / (elements * 16);
+    uint64_t fit = range / (elements * element_size(desc));
     out->slots = air_directions(desc) + desc->scalars * scalar_directions(desc);
     if (fit > UINT32_MAX / elements) fit = UINT32_MAX / elements; // indices are of 32 bits
     if (fit >= out->slots) fit = out->slots + 1;
@@ -146,9 +150,10 @@ bool lbm_allocate(lbm *l, gpu *g) {
     for (uint32_t i = 0; i < layout->buffers; i++) {
         uint32_t left = layout->slots - i * layout->run;
         uint64_t slots = left < layout->run ? left : layout->run;
+        uint64_t size = slots * layout->elements * element_size(&l->desc);
         if (!l->state[i])
-            l->state[i] = gpu_buffer_create(
-                g, &(gpu_buffer_desc){.label = "lattice", .size = slots * layout->elements * 16});
+            l->state[i] =
+                gpu_buffer_create(g, &(gpu_buffer_desc){.label = "lattice", .size = size});
         if (!l->state[i]) return false;
     }
     return lbm_step_allocate(l, g) && lbm_walls_allocate(l, g);

@@ -1,11 +1,10 @@
 // Lattice Boltzmann: air that moves, and up to three scalars that it carries, on a regular lattice
 // on the device. Lattice units only: a cell is 1 long, a step 1 of time, air at rest has density 1.
 //
-// Layout, which shaders/sim/lbm/state.glsl reads: an element is L cells that lie nz / L apart along
-// z, so that cell (x, y, z) is lane z / (nz / L) of element x + nx * (y + ny * (z % (nz / L))).
-// L is 4 (LBM_F32: a vec4) or 8 (LBM_F16: a uvec4 of eight halves in order). The neighbours of a
-// whole element are a whole element again; where z goes round, its lanes rotate by one. Populations
-// are kept less their weights (air) and streamed in place, see shaders/sim/lbm/state.glsl.
+// Layout, which shaders/sim/lbm/state.glsl reads: an element is four cells that lie nz / 4 apart along
+// z, so that cell (x, y, z) is lane z / (nz / 4) of element x + nx * (y + ny * (z % (nz / 4))): a vec4
+// (LBM_F32) or a uvec2 of four halves in order (LBM_F16). The neighbours of a whole element are a
+// whole element again; where z goes round, its lanes rotate by one. Populations are kept less their weights (air) and streamed in place, see shaders/sim/lbm/state.glsl.
 //
 // Life: lbm_create, lbm_compile (or not), lbm_build, lbm_allocate, then in frames lbm_reset and
 // lbm_step.
@@ -23,6 +22,7 @@ typedef enum lbm_precision { LBM_F32, LBM_F16 } lbm_precision;      // of what i
 typedef enum lbm_face { LBM_PERIODIC, LBM_WALL, LBM_SLIP, LBM_OPEN, LBM_INFLOW } lbm_face;
 
 enum {
+    LBM_LANES = 4, // cells of an element
     LBM_MAX_SCALARS = 3,
     LBM_MAX_BODIES = 63,
     LBM_WALL_ID = 64,
@@ -31,7 +31,7 @@ enum {
 };
 
 typedef struct lbm_desc { // structure: what shaders are compiled for
-    // Cells, at least 4 x 4 x 16; z a multiple of 8. The outermost layer of a face that is not
+    // Cells, at least 4 x 4 x 16; z a multiple of 4. The outermost layer of a face that is not
     // periodic is the boundary. Opposite faces are both periodic or neither is.
     uint32_t size[3];
     lbm_set set;

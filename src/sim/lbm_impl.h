@@ -31,7 +31,7 @@ bool lbm_kernel_run(const lbm *l, lbm_kernel *k, gpu *g, const lbm_slot *more, s
 // ---- layout -----------------------------------------------------------------------------------
 
 typedef struct lbm_layout {
-    uint32_t lanes, layers, elements; // cells of an element, elements along z, elements in all
+    uint32_t layers, elements; // along z, in all
     uint32_t slots, run, buffers;     // places of directions, those of one buffer, buffers
 } lbm_layout;
 
@@ -44,6 +44,7 @@ typedef struct lbm_walls {
     lbm_kernel kernel;           // says what cells are
     gpu_buffer *cells[2];        // what they are, and were: [current], and the other
     bool current, known, filled; // filled: the cells hold something
+    bool restored; // the cells are what they were when a checkpoint was made
     gpu_buffer *waves, *ids;
     float bodies[3 * (LBM_MAX_BODIES + 1)][4];
     uint32_t moves;   // any body does

@@ -90,6 +90,7 @@ static bool take_clock(lbm *l, gpu *g, const state_clock *clock) {
     l->walls.current = clock->current;
     l->walls.filled = clock->filled != 0;
     l->walls.known = false;
+    l->walls.restored = true;
     return true;
 }
 

@@ -43,15 +43,15 @@ static gpu_buffer *make(gpu *g, const char *label, uint64_t size) {
 
 bool lbm_walls_allocate(lbm *l, gpu *g) {
     lbm_walls *w = &l->walls;
-    const uint64_t nx = l->desc.size[0], ny = l->desc.size[1], chunks = l->layout.lanes / 4;
+    const uint64_t nx = l->desc.size[0], ny = l->desc.size[1];
     if (has_rims(&l->desc) && !w->waves) { // as lbm_wave_at of walls.glsl counts them
-        const uint64_t count = 2 * (nx + ny) * l->layout.layers * chunks + 2 * nx * ny;
+        const uint64_t count = 2 * (nx + ny) * l->layout.layers + 2 * nx * ny;
         w->waves = make(g, "waves at open faces", count * 16);
         if (!w->waves) return false;
     }
     for (int i = 0; l->desc.bodies && i < 2; i++) {
         if (w->cells[i]) continue;
-        w->cells[i] = make(g, "kinds of cells", (uint64_t)l->layout.elements * chunks * 4);
+        w->cells[i] = make(g, "kinds of cells", (uint64_t)l->layout.elements * 4);
         if (!w->cells[i]) return false;
     }
     return true;
@@ -140,11 +140,14 @@ bool lbm_set_bodies(lbm *l, gpu *g, const lbm_numbers *numbers, const lbm_bodies
     const float most = numbers->max_speed > 0 ? numbers->max_speed : 1e6f;
     const uint32_t moves = set_motion(w, bodies->bodies, bodies->count, most);
     bool same = w->known && w->ids == bodies->ids && !bodies->changed && w->moves == moves;
+    same = same || (w->restored && !bodies->changed);
+    w->known = w->known || same;
+    w->moves = moves;
+    w->restored = false;
     w->ids = bodies->ids;
     if (same) return true;
     for (int i = 0; !w->filled && i < 2; i++) gpu_buffer_fill(g, w->cells[i], 0);
     w->filled = true;
-    w->moves = moves;
     w->updated = l->steps;
     w->current = !w->current;
     lbm_kernel_set(&w->kernel, "any_moves", &moves, sizeof moves);

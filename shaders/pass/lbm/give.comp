@@ -1,7 +1,7 @@
 // Gives the air what a source holds (pass/lbm_source.comp), as the state of the solver: cells that
 // are inside take on its values, as equilibria. Meshes are where they are at the step.
 //
-// A thread does one element of the state: four or eight cells that lie apart along z.
+// A thread does one element of the state: four cells that lie apart along z.
 layout(local_size_x = 32, local_size_y = 2, local_size_z = 1) in;
 #include "shared.h"
 #include "sim/lbm/cells.glsl"
@@ -16,7 +16,6 @@ uniform vec3 count;            // and how many
 uniform vec2 ids;              // of its meshes: the first and the last
 layout(std430) readonly buffer SourceValues { uvec4 source_values[]; };
 
-#define EACH_CHUNK for (int c = 0; c < LBM_CHUNKS; c++)
 #define EACH_LANE for (int l = 0; l < 4; l++)
 
 struct Held { // of four cells
@@ -57,11 +56,11 @@ uvec4 values_at(uvec3 cell) {
 }
 
 // `solid`: bits of lanes. Nothing comes out of walls and colliders.
-Held held_by(uvec3 at, int chunk, uint solid) {
+Held held_by(uvec3 at, uint solid) {
     Held h;
     EACH_LANE {
-        uvec3 cell = uvec3(at.xy, at.z + uint(4 * chunk + l) * LBM_LAYERS);
-        uvec4 values = (solid >> 4 * chunk + l & 1u) == 0u ? values_at(cell) : uvec4(0u);
+        uvec3 cell = uvec3(at.xy, at.z + uint(l) * LBM_LAYERS);
+        uvec4 values = (solid >> l & 1u) == 0u ? values_at(cell) : uvec4(0u);
         vec2 a = unpackHalf2x16(values.x), b = unpackHalf2x16(values.y), d = unpackHalf2x16(values.w);
         vec3 v = vec3(unpackHalf2x16(values.z), d.x);
 #if MESHES
@@ -80,13 +79,12 @@ Held held_by(uvec3 at, int chunk, uint solid) {
 }
 
 // Density less 1, and velocity, of four cells.
-vec4 excess_of(lbm_element q[LBM_Q], int chunk, out lbm_vec u) {
-    vec4 excess = lbm_unpack(q[0], chunk, LBM_AIR_SCALE);
+vec4 excess_of(lbm_element q[LBM_Q], out lbm_vec u) {
+    vec4 excess = lbm_unpack(q[0], LBM_AIR_SCALE);
     u = lbm_vec_all(vec3(0.0));
 #define SUM(i, dx, dy, dz)                                                                         \
     {                                                                                              \
-        vec4 a = lbm_unpack(q[i], chunk, LBM_AIR_SCALE);                                           \
-        vec4 b = lbm_unpack(q[i + 1], chunk, LBM_AIR_SCALE);                                       \
+        vec4 a = lbm_unpack(q[i], LBM_AIR_SCALE), b = lbm_unpack(q[i + 1], LBM_AIR_SCALE);         \
         excess += a + b;                                                                           \
         u.x += float(dx) * (a - b);                                                                \
         u.y += float(dy) * (a - b);                                                                \
@@ -101,8 +99,8 @@ vec4 excess_of(lbm_element q[LBM_Q], int chunk, out lbm_vec u) {
 
 // What is not given stays as it is: the pressure, above all, so that as much air is drawn in as is
 // blown out.
-void push(inout lbm_element q[LBM_Q], int chunk, Held h, out lbm_vec u) {
-    vec4 f[LBM_Q], excess = excess_of(q, chunk, u);
+void push(inout lbm_element q[LBM_Q], Held h, out lbm_vec u) {
+    vec4 f[LBM_Q], excess = excess_of(q, u);
 #if HAS_PRESSURE
     excess = mix(excess, h.pressure, h.some);
 #endif
@@ -113,23 +111,21 @@ void push(inout lbm_element q[LBM_Q], int chunk, Held h, out lbm_vec u) {
     }
     lbm_set_equilibrium(excess, u, f);
     for (int i = 0; i < LBM_Q; i++)
-        lbm_pack(q[i], chunk, LBM_AIR_SCALE,
-                 mix(lbm_unpack(q[i], chunk, LBM_AIR_SCALE), f[i], h.some));
+        q[i] = lbm_pack(LBM_AIR_SCALE, mix(lbm_unpack(q[i], LBM_AIR_SCALE), f[i], h.some));
 }
 
-void carry(inout lbm_element q[LBM_SCALAR_Q], int chunk, vec4 some, vec4 value, lbm_vec u) {
+void carry(inout lbm_element q[LBM_SCALAR_Q], vec4 some, vec4 value, lbm_vec u) {
     vec4 g[LBM_SCALAR_Q];
     lbm_set_scalar_equilibrium(value, u, g);
     for (int i = 0; i < LBM_SCALAR_Q; i++)
-        lbm_pack(q[i], chunk, LBM_SCALAR_SCALE,
-                 mix(lbm_unpack(q[i], chunk, LBM_SCALAR_SCALE), g[i], some));
+        q[i] = lbm_pack(LBM_SCALAR_SCALE, mix(lbm_unpack(q[i], LBM_SCALAR_SCALE), g[i], some));
 }
 
 #define GIVE(s, VALUE)                                                                             \
     {                                                                                              \
         lbm_element q[LBM_SCALAR_Q];                                                               \
         lbm_load_scalar(s, place, q);                                                              \
-        EACH_CHUNK carry(q, c, held[c].some, held[c].VALUE, u[c]);                                 \
+        carry(q, held.some, held.VALUE, u);                                                        \
         lbm_replace_scalar(s, place, q);                                                           \
     }
 
@@ -139,23 +135,17 @@ void main() {
     at += uvec3(first);
     at.z %= LBM_LAYERS;
     lbm_place place = lbm_place_at(at);
-    uint solid = lbm_site_at(at, place.own).solid;
-    Held held[LBM_CHUNKS];
-    bool gives = false;
-    EACH_CHUNK {
-        held[c] = held_by(at, c, solid);
-        gives = gives || any(greaterThan(held[c].some, vec4(0.0)));
-    }
-    if (!gives) return;
+    Held held = held_by(at, lbm_site_at(at, place.own).solid);
+    if (!any(greaterThan(held.some, vec4(0.0)))) return;
     lbm_element air[LBM_Q];
     lbm_load_air(place, air);
-    lbm_vec u[LBM_CHUNKS];
+    lbm_vec u;
 #if HAS_VELOCITY || HAS_PRESSURE || MESHES
-    EACH_CHUNK push(air, c, held[c], u[c]);
+    push(air, held, u);
     if (HAS_VELOCITY == 1 || HAS_PRESSURE == 1 || velocity_factor != 0.0)
         lbm_replace_air(place, air);
 #else
-    EACH_CHUNK excess_of(air, c, u[c]);
+    excess_of(air, u);
 #endif
 #if HAS_DENSITY
     GIVE(0, density)

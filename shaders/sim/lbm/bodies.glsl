@@ -45,7 +45,7 @@ uniform uint lbm_moved; // bodies came to lie in other cells just before this st
 // air, or filled as if it was: then walls push nothing, or mass would not be kept.
 bool lbm_is_new(ivec3 cell) {
     uint lane, element = lbm_element_of(lbm_wrap(cell), lane);
-    return (lbm_cells[element * LBM_CHUNKS + (lane >> 2)] >> 8u * (lane & 3u) & LBM_CELL_NEW) != 0u;
+    return (lbm_cells[element] >> 8u * lane & LBM_CELL_NEW) != 0u;
 }
 
 vec3 lbm_body_velocity(uint id, vec3 point) {
@@ -69,11 +69,11 @@ float lbm_wall_speeds[108];
     vec4(lbm_wall_speeds[(x) + 3 * (y) + 9 * (z) + 13], lbm_wall_speeds[(x) + 3 * (y) + 9 * (z) + 40], \
          lbm_wall_speeds[(x) + 3 * (y) + 9 * (z) + 67], lbm_wall_speeds[(x) + 3 * (y) + 9 * (z) + 94])
 
-void lbm_find_wall_speeds(uvec3 at, uint near, const int chunk) {
+void lbm_find_wall_speeds(uvec3 at, uint near) {
     for (int i = 0; i < 108; i++) lbm_wall_speeds[i] = 0.0;
-    for (uint left = near >> 4u * uint(chunk) & 15u; left != 0u; left &= left - 1u) {
+    for (uint left = near; left != 0u; left &= left - 1u) {
         int k = findLSB(left);
-        ivec3 cell = lbm_cell_at(at, uint(k + 4 * chunk));
+        ivec3 cell = lbm_cell_at(at, uint(k));
         if (lbm_moved != 0u && lbm_is_new(cell)) continue;
         [[dont_unroll]] for (int i = 0; i < 27; i++) {
             int layer = i * 57 >> 9, row = i * 86 >> 8; // i / 9, i / 3

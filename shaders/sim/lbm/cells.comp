@@ -70,11 +70,7 @@ uint find_kind(ivec3 at) {
 float air[LBM_Q], part[LBM_SCALAR_Q]; // of one cell
 
 float pick(lbm_element e, uint lane, const float scale) {
-    vec4 v = lbm_unpack(e, 0, scale);
-#if LBM_CHUNKS == 2
-    if (lane >= 4u) v = lbm_unpack(e, 1, scale);
-#endif
-    return v[lane & 3u];
+    return lbm_unpack(e, scale)[lane];
 }
 
 void store(const int slot, uint side, Cell c, const float scale, float value) {
@@ -99,8 +95,7 @@ bool is_solid(ivec3 at) {
 }
 
 bool was_solid(Cell c) {
-    uint bytes = cells_before[c.element * LBM_CHUNKS + (c.lane >> 2)];
-    return (bytes >> 8u * (c.lane & 3u) & LBM_CELL_SOLID) != 0u;
+    return (cells_before[c.element] >> 8u * c.lane & LBM_CELL_SOLID) != 0u;
 }
 
 struct Around { // sums over cells of air
@@ -258,24 +253,21 @@ void main() {
     if (column >= LBM_LAYER) return;
     uvec3 at = uvec3(column % LBM_NX, column / LBM_NX, gl_GlobalInvocationID.z);
     uint element = column + LBM_LAYER * at.z;
-    for (uint chunk = 0u; chunk < LBM_CHUNKS; chunk++) {
-        uint place = element * LBM_CHUNKS + chunk, bytes = 0u;
-        if (stage == PLAN) {
-            for (uint k = 0u; k < 4u; k++)
-                bytes |= find_kind(lbm_cell_at(at, 4u * chunk + k)) << 8u * k;
-            uint changed = (cells_before[place] ^ bytes) & LBM_CELL_SOLID * 0x01010101u;
-            bytes |= changed * (LBM_CELL_NEW / LBM_CELL_SOLID);
-            lbm_cells[place] = bytes;
-        } else {
-            bytes = lbm_cells[place];
-        }
-        for (uint k = 0u; bytes != 0u && k < 4u; k++) {
-            if ((bytes >> 8u * k & (LBM_CELL_NEW | LBM_CELL_SOLID)) != LBM_CELL_NEW) continue;
-            ivec3 cell = lbm_cell_at(at, 4u * chunk + k);
-            if (stage == PLAN)
-                plan(cell);
-            else
-                fill(cell);
-        }
+    uint bytes = 0u;
+    if (stage == PLAN) {
+        for (uint k = 0u; k < LBM_LANES; k++) bytes |= find_kind(lbm_cell_at(at, k)) << 8u * k;
+        uint changed = (cells_before[element] ^ bytes) & LBM_CELL_SOLID * 0x01010101u;
+        bytes |= changed * (LBM_CELL_NEW / LBM_CELL_SOLID);
+        lbm_cells[element] = bytes;
+    } else {
+        bytes = lbm_cells[element];
+    }
+    for (uint k = 0u; bytes != 0u && k < LBM_LANES; k++) {
+        if ((bytes >> 8u * k & (LBM_CELL_NEW | LBM_CELL_SOLID)) != LBM_CELL_NEW) continue;
+        ivec3 cell = lbm_cell_at(at, k);
+        if (stage == PLAN)
+            plan(cell);
+        else
+            fill(cell);
     }
 }

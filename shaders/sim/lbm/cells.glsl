@@ -38,18 +38,14 @@ struct lbm_site { // of an element
 };
 
 #if LBM_BODIES
-layout(std430) buffer LbmCells { uint lbm_cells[]; }; // LBM_CHUNKS an element: lanes 0 to 3, 4 to 7
+layout(std430) buffer LbmCells { uint lbm_cells[]; }; // one an element, a byte a lane
 
 uint lbm_bits(uint bytes, uint flag) {
     return ((bytes / flag) & 0x01010101u) * 0x01020408u >> 24 & 15u;
 }
 
 uint lbm_lanes_with(uint element, uint flag) {
-    uint bits = lbm_bits(lbm_cells[element * LBM_CHUNKS], flag);
-#if LBM_CHUNKS == 2
-    bits |= lbm_bits(lbm_cells[element * LBM_CHUNKS + 1u], flag) << 4;
-#endif
-    return bits;
+    return lbm_bits(lbm_cells[element], flag);
 }
 #endif
 
@@ -74,23 +70,18 @@ lbm_site lbm_site_at(uvec3 at, uint element) {
     return site;
 }
 
-// The lanes of a chunk, in the order of its vec4.
-uvec4 lbm_lanes(const int chunk) {
-    return uvec4(0, 1, 2, 3) + 4u * uint(chunk);
-}
-
-bvec4 lbm_in_lanes(uint bits, const int chunk) {
-    return notEqual(uvec4(bits) >> lbm_lanes(chunk) & 1u, uvec4(0u));
+bvec4 lbm_in_lanes(uint bits) {
+    return notEqual(uvec4(bits) >> uvec4(0, 1, 2, 3) & 1u, uvec4(0u));
 }
 
 // `b` in the lanes, else `a`.
 lbm_element lbm_choose(lbm_element a, lbm_element b, uint lanes) {
 #if LBM_HALF
-    uvec4 first = uvec4(lanes) >> uvec4(0, 2, 4, 6);
-    uvec4 mask = (first & 1u) * 0xffffu | (first >> 1 & 1u) * 0xffff0000u;
+    uvec2 first = uvec2(lanes) >> uvec2(0, 2);
+    uvec2 mask = (first & 1u) * 0xffffu | (first >> 1 & 1u) * 0xffff0000u;
     return a & ~mask | b & mask;
 #else
-    return mix(a, b, lbm_in_lanes(lanes, 0));
+    return mix(a, b, lbm_in_lanes(lanes));
 #endif
 }
 

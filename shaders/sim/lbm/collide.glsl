@@ -40,20 +40,11 @@ lbm_sums lbm_begin_sums(vec4 rest) {
     return lbm_sums(rest, lbm_vec(none, none, none), lbm_tensor(none, none, none, none, none, none));
 }
 
-lbm_sums lbm_sum(vec4 f[LBM_Q]) {
-    lbm_sums s = lbm_begin_sums(f[0]);
-#define SUM(i, x, y, z) lbm_add_pair(x, y, z, f[i], f[i + 1], s);
-    LBM_PAIRS(SUM)
-#undef SUM
-    return s;
-}
-
-// Of packed ones: pair by pair, so that few of them need registers at a time.
-lbm_sums lbm_sum_packed(lbm_element q[LBM_Q], const int chunk) {
-    lbm_sums s = lbm_begin_sums(lbm_unpack(q[0], chunk, LBM_AIR_SCALE));
+// Pair by pair, so that few unpacked ones need registers at a time.
+lbm_sums lbm_sum(lbm_element q[LBM_Q]) {
+    lbm_sums s = lbm_begin_sums(lbm_unpack(q[0], LBM_AIR_SCALE));
 #define SUM(i, x, y, z)                                                                            \
-    lbm_add_pair(x, y, z, lbm_unpack(q[i], chunk, LBM_AIR_SCALE),                                  \
-                 lbm_unpack(q[i + 1], chunk, LBM_AIR_SCALE), s);
+    lbm_add_pair(x, y, z, lbm_unpack(q[i], LBM_AIR_SCALE), lbm_unpack(q[i + 1], LBM_AIR_SCALE), s);
     LBM_PAIRS(SUM)
 #undef SUM
     return s;

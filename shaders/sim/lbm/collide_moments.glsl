@@ -19,8 +19,12 @@ lbm_tensor lbm_relax(lbm_tensor s, vec4 omega) {
                       keep * s.xy, keep * s.xz, keep * s.yz);
 }
 
-void lbm_leave(inout lbm_element q[LBM_Q], const int chunk, const int i, vec4 f) {
-    lbm_pack(q[i], chunk, LBM_AIR_SCALE, f);
+lbm_vec lbm_half_force(lbm_air air) {
+    return lbm_vec(0.5 * air.force.x, 0.5 * air.force.y, 0.5 * air.force.z);
+}
+
+void lbm_leave(out lbm_element q, vec4 f) {
+    q = lbm_pack(LBM_AIR_SCALE, f);
 }
 
 #if LBM_Q == 19
@@ -28,22 +32,21 @@ struct lbm_plane { // moments along two axes, a and b, in the frame at rest
     vec4 ab, abb, baa, aabb; // the last less that of the weights
 };
 
-lbm_plane lbm_plane_of(lbm_air air, vec4 ua, vec4 ub, vec4 ha, vec4 hb, vec4 saa, vec4 sbb, vec4 sab) {
-    vec4 third = (1.0 + air.excess) * (1.0 / 3.0), kaa = third + saa, kbb = third + sbb;
-    vec4 ab = ua * hb, ba = ub * ha, mean = (1.0 + air.excess) * ua * ub + ab + ba;
+lbm_plane lbm_plane_of(vec4 excess, vec4 ua, vec4 ub, vec4 ha, vec4 hb, vec4 saa, vec4 sbb, vec4 sab) {
+    vec4 density = 1.0 + excess, kaa = density * (1.0 / 3.0) + saa, kbb = density * (1.0 / 3.0) + sbb;
+    vec4 ab = ua * hb, ba = ub * ha, mean = density * ua * ub + ab + ba;
     lbm_plane p;
     p.ab = mean + sab;
     p.abb = ha * (1.0 / 3.0) + ua * kbb + ub * (2.0 * sab + mean + ab);
     p.baa = hb * (1.0 / 3.0) + ub * kaa + ua * (2.0 * sab + mean + ba);
-    p.aabb = air.excess * (1.0 / 9.0) + (ua * ha + ub * hb) * (2.0 / 3.0) + ua * ua * kbb + ub * ub * kaa +
+    p.aabb = excess * (1.0 / 9.0) + (ua * ha + ub * hb) * (2.0 / 3.0) + ua * ua * kbb + ub * ub * kaa +
              ua * ub * (4.0 * sab + mean + ab + ba);
     return p;
 }
 
-// Packs what leaves into a chunk of q; `f`, what arrived, is not asked any more.
-void lbm_collide(lbm_air air, vec4 omega, vec4 f[LBM_Q], const int chunk, inout lbm_element q[LBM_Q]) {
+void lbm_collide(lbm_air air, vec4 omega, inout lbm_element q[LBM_Q]) {
     vec4 density = 1.0 + air.excess, third = air.excess * (1.0 / 3.0);
-    lbm_vec u = air.u, h = lbm_vec(0.5 * air.force.x, 0.5 * air.force.y, 0.5 * air.force.z);
+    lbm_vec u = air.u, h = lbm_half_force(air);
     lbm_tensor s = lbm_relax(air.stress, omega);
     vec4 x = density * u.x + h.x, y = density * u.y + h.y, z = density * u.z + h.z;
     vec4 xx = third + s.xx + u.x * (x + h.x), yy = third + s.yy + u.y * (y + h.y);
@@ -51,13 +54,13 @@ void lbm_collide(lbm_air air, vec4 omega, vec4 f[LBM_Q], const int chunk, inout 
 #define SET(i, second, first)                                                                      \
     {                                                                                              \
         vec4 even = 0.5 * (second), odd = 0.5 * (first);                                           \
-        lbm_leave(q, chunk, i, even + odd);                                                        \
-        lbm_leave(q, chunk, i + 1, even - odd);                                                    \
+        lbm_leave(q[i], even + odd);                                                               \
+        lbm_leave(q[i + 1], even - odd);                                                           \
     }
 // Directions `up` along (A, B) and `down` along (sign, -sign); what a plane has is not along an axis.
 #define PLANE(A, B, AA, BB, AB, up, down, sign)                                                    \
     {                                                                                              \
-        lbm_plane p = lbm_plane_of(air, u.A, u.B, h.A, h.B, s.AA, s.BB, s.AB);                     \
+        lbm_plane p = lbm_plane_of(air.excess, u.A, u.B, h.A, h.B, s.AA, s.BB, s.AB);                     \
         SET(up, 0.5 * (p.aabb + p.ab), 0.5 * (p.abb + p.baa))                                      \
         SET(down, 0.5 * (p.aabb - p.ab), sign * 0.5 * (p.abb - p.baa))                             \
         rest += p.aabb;                                                                            \
@@ -70,7 +73,7 @@ void lbm_collide(lbm_air air, vec4 omega, vec4 f[LBM_Q], const int chunk, inout 
     PLANE(x, z, xx, zz, xz, 11, 13, -1.0)
     PLANE(y, z, yy, zz, yz, 15, 17, -1.0)
 #undef PLANE
-    lbm_leave(q, chunk, 0, rest);
+    lbm_leave(q[0], rest);
     SET(1, xx, x)
     SET(3, yy, y)
     SET(5, zz, z)
@@ -100,9 +103,9 @@ lbm_slab lbm_slab_of(vec4 u, const float weight, lbm_line k0, lbm_line k1, lbm_l
     return lbm_slab(lbm_line(o.o, p.o, n.o), lbm_line(o.p, p.p, n.p), lbm_line(o.n, p.n, n.n));
 }
 
-void lbm_collide(lbm_air air, vec4 omega, vec4 f[LBM_Q], const int chunk, inout lbm_element q[LBM_Q]) {
+void lbm_collide(lbm_air air, vec4 omega, inout lbm_element q[LBM_Q]) {
     const float third = 1.0 / 3.0, ninth = 1.0 / 9.0;
-    lbm_vec u = air.u, h = lbm_vec(0.5 * air.force.x, 0.5 * air.force.y, 0.5 * air.force.z);
+    lbm_vec u = air.u, h = lbm_half_force(air);
     lbm_tensor s = lbm_relax(air.stress, omega);
     vec4 e = air.excess, e3 = third * e, e9 = ninth * e, none = vec4(0.0);
     lbm_slab k0 = lbm_slab_of(u.y, 1.0, lbm_line_of(u.z, 1.0, e, h.z, e3 + s.zz),
@@ -117,9 +120,9 @@ void lbm_collide(lbm_air air, vec4 omega, vec4 f[LBM_Q], const int chunk, inout 
 #define SET(Y, Z, weight, rest, up, down)                                                          \
     {                                                                                              \
         lbm_line line = lbm_line_of(u.x, weight, k0.Y.Z, k1.Y.Z, k2.Y.Z);                          \
-        lbm_leave(q, chunk, rest, line.o);                                                         \
-        lbm_leave(q, chunk, up, line.p);                                                           \
-        lbm_leave(q, chunk, down, line.n);                                                         \
+        lbm_leave(q[rest], line.o);                                                                \
+        lbm_leave(q[up], line.p);                                                                  \
+        lbm_leave(q[down], line.n);                                                                \
     }
     SET(o, o, 4.0 / 9.0, 0, 1, 2)
     SET(p, o, 1.0 / 9.0, 3, 7, 10)

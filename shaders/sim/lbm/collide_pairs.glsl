@@ -19,8 +19,7 @@ vec4 lbm_odd_rate(vec4 omega) {
 }
 #endif
 
-// Packs what leaves into a chunk of q; `f` is what arrived.
-void lbm_collide(lbm_air a, vec4 omega, vec4 f[LBM_Q], const int chunk, inout lbm_element q[LBM_Q]) {
+void lbm_collide(lbm_air a, vec4 omega, inout lbm_element q[LBM_Q]) {
     vec4 density = 1.0 + a.excess, odd_omega = lbm_odd_rate(omega);
     vec4 same = a.excess - density * 1.5 * lbm_dot(a.u, a.u);
 #if LBM_WEIGHTS_ONLY
@@ -29,18 +28,19 @@ void lbm_collide(lbm_air a, vec4 omega, vec4 f[LBM_Q], const int chunk, inout lb
     vec4 even_push = 9.0 - 4.5 * omega, odd_push = 3.0 - 1.5 * odd_omega;
     vec4 same_push = (1.5 * omega - 3.0) * lbm_dot(a.u, a.force);
 #endif
-    lbm_pack(q[0], chunk, LBM_AIR_SCALE, f[0] + omega * (LBM_REST * same - f[0]) + LBM_REST * same_push);
+    vec4 rest = lbm_unpack(q[0], LBM_AIR_SCALE);
+    q[0] = lbm_pack(LBM_AIR_SCALE, rest + omega * (LBM_REST * same - rest) + LBM_REST * same_push);
 #define COLLIDE(i, x, y, z)                                                                        \
     {                                                                                              \
+        vec4 up = lbm_unpack(q[i], LBM_AIR_SCALE), down = lbm_unpack(q[i + 1], LBM_AIR_SCALE);   \
         vec4 along = LBM_ALONG(a.u, x, y, z), push = LBM_ALONG(a.force, x, y, z);                  \
         vec4 even = LBM_WEIGHT(x, y, z) * (same + density * 4.5 * along * along);                  \
         vec4 odd = LBM_WEIGHT(x, y, z) * 3.0 * density * along;                                    \
-        even = omega * (even - 0.5 * (f[i] + f[i + 1])) +                                          \
+        even = omega * (even - 0.5 * (up + down)) +                                                \
                LBM_WEIGHT(x, y, z) * (same_push + even_push * along * push);                       \
-        odd = odd_omega * (odd - 0.5 * (f[i] - f[i + 1])) +                                        \
-              LBM_WEIGHT(x, y, z) * odd_push * push;                                               \
-        lbm_pack(q[i], chunk, LBM_AIR_SCALE, f[i] + even + odd);                                   \
-        lbm_pack(q[i + 1], chunk, LBM_AIR_SCALE, f[i + 1] + even - odd);                           \
+        odd = odd_omega * (odd - 0.5 * (up - down)) + LBM_WEIGHT(x, y, z) * odd_push * push;       \
+        q[i] = lbm_pack(LBM_AIR_SCALE, up + even + odd);                                          \
+        q[i + 1] = lbm_pack(LBM_AIR_SCALE, down + even - odd);                                    \
     }
     LBM_PAIRS(COLLIDE)
 #undef COLLIDE

@@ -3,9 +3,10 @@
 #define SIM_LBM_SCALAR_GLSL
 #include "sim/lbm/state.glsl"
 
-vec4 lbm_sum_scalar(vec4 g[LBM_SCALAR_Q]) {
-    vec4 value = g[0];
-#define SUM(i, x, y, z) value += g[i] + g[i + 1];
+vec4 lbm_sum_scalar(lbm_element q[LBM_SCALAR_Q]) {
+    vec4 value = lbm_unpack(q[0], LBM_SCALAR_SCALE);
+#define SUM(i, x, y, z)                                                                            \
+    value += lbm_unpack(q[i], LBM_SCALAR_SCALE) + lbm_unpack(q[i + 1], LBM_SCALAR_SCALE);
     LBM_SCALAR_PAIRS(SUM)
 #undef SUM
     return value;

@@ -6,8 +6,8 @@
 // neighbour along i, and leaves what collision made of them in the other's place; so each place is
 // read and written by one cell only, and the two places of a pair change roles in each step.
 //
-// A thread does one element: 4 or 8 cells, in chunks of 4 lanes. What arrives at an element is what
-// its cells hold before collision.
+// A thread does one element: four cells. What arrives at an element is what its cells hold before
+// collision.
 #ifndef SIM_LBM_STATE_GLSL
 #define SIM_LBM_STATE_GLSL
 #include "sim/lbm/lattice.glsl"
@@ -70,76 +70,70 @@ uniform uint lbm_parity; // of steps
 // ---- elements ---------------------------------------------------------------------------------
 
 #if LBM_HALF
-#define LBM_LANES 8
-#define lbm_element uvec4 // eight halves, times a power of two that keeps small values whole
+#define lbm_element uvec2 // four halves, times a power of two that keeps small values whole
+#define lbm_mask bvec2
 #define LBM_AIR_SCALE 32768.0
 #define LBM_SCALAR_SCALE 1024.0
 #else
-#define LBM_LANES 4
 #define lbm_element vec4
+#define lbm_mask bvec4
 #define LBM_AIR_SCALE 1.0
 #define LBM_SCALAR_SCALE 1.0
 #endif
-#define LBM_CHUNKS (LBM_LANES / 4)
 // 1: the device is a processor (llvmpipe) that loads vectors word by word, so that two words of 64
 // bits cost half of what four of 32 do, and that converts halves one by one. src/sim/README.md has
 // figures.
 #ifndef LBM_SOFTWARE
 #define LBM_SOFTWARE 0
 #endif
+#define LBM_LANES 4                           // cells of an element
 #define LBM_LAYER (LBM_NX * LBM_NY)           // elements
 #define LBM_ELEMENTS (LBM_LAYER * LBM_LAYERS) // of a direction
 
-// Four cells of an element, as they lie in memory.
+// Cells of an element, as they lie in memory.
 #if LBM_HALF
 #if LBM_SOFTWARE
 // By hand: a half shifted into a float has an exponent that is 112 too low, which the factor mends.
 // Halves too small to be normal are 0. Rounded to nearest even, as devices do.
 #define LBM_BIAS 5192296858534827628530496329220096.0 // 2^112
-vec4 lbm_unpack(lbm_element e, const int chunk, const float scale) {
-    uvec2 words = chunk == 0 ? e.xy : e.zw;
-    ivec4 bits = ivec4(words.x << 16, words.x, words.y << 16, words.y) >> 3 & 0x8fffe000;
+vec4 lbm_unpack(lbm_element e, const float scale) {
+    ivec4 bits = ivec4(e.x << 16, e.x, e.y << 16, e.y) >> 3 & 0x8fffe000;
     return intBitsToFloat(bits) * (LBM_BIAS / scale);
 }
 
-void lbm_pack(inout lbm_element e, const int chunk, const float scale, vec4 v) {
+lbm_element lbm_pack(const float scale, vec4 v) {
     const float most = 65504.0 / LBM_BIAS;
     uvec4 bits = floatBitsToUint(clamp(v * (scale / LBM_BIAS), -most, most));
     bits += (bits >> 13 & 1u) + 0xfffu;
     uvec2 low = bits.xz >> 13 & 0x7fffu | bits.xz >> 16 & 0x8000u;
-    uvec2 words = low | bits.yw << 3 & 0x7fff0000u | bits.yw & 0x80000000u;
-    if (chunk == 0) e.xy = words;
-    else e.zw = words;
+    return low | bits.yw << 3 & 0x7fff0000u | bits.yw & 0x80000000u;
 }
 #else
-vec4 lbm_unpack(lbm_element e, const int chunk, const float scale) {
-    uvec2 words = chunk == 0 ? e.xy : e.zw;
-    return vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y)) * (1.0 / scale);
+vec4 lbm_unpack(lbm_element e, const float scale) {
+    return vec4(unpackHalf2x16(e.x), unpackHalf2x16(e.y)) * (1.0 / scale);
 }
 
-void lbm_pack(inout lbm_element e, const int chunk, const float scale, vec4 v) {
+lbm_element lbm_pack(const float scale, vec4 v) {
     v *= scale;
-    uvec2 words = uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
-    if (chunk == 0) e.xy = words;
-    else e.zw = words;
+    return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
 }
 #endif
 
 // Lane l gets what lane l + 1 has, and the other way round.
 lbm_element lbm_next_lane(lbm_element e) {
-    return e >> 16 | e.yzwx << 16;
+    return e >> 16 | e.yx << 16;
 }
 
 lbm_element lbm_last_lane(lbm_element e) {
-    return e << 16 | e.wxyz >> 16;
+    return e << 16 | e.yx >> 16;
 }
 #else
-vec4 lbm_unpack(lbm_element e, const int chunk, const float scale) {
-    return e;
+vec4 lbm_unpack(lbm_element e, const float scale) {
+    return e * (1.0 / scale);
 }
 
-void lbm_pack(inout lbm_element e, const int chunk, const float scale, vec4 v) {
-    e = v;
+lbm_element lbm_pack(const float scale, vec4 v) {
+    return v * scale;
 }
 
 lbm_element lbm_next_lane(lbm_element e) {
@@ -151,29 +145,39 @@ lbm_element lbm_last_lane(lbm_element e) {
 }
 #endif
 
-void lbm_unpack_air(lbm_element q[LBM_Q], const int chunk, out vec4 f[LBM_Q]) {
-    f[0] = lbm_unpack(q[0], chunk, LBM_AIR_SCALE);
+// `scale`: of memory over that of the values.
+void lbm_unpack_air(lbm_element q[LBM_Q], const float scale, out vec4 f[LBM_Q]) {
+    f[0] = lbm_unpack(q[0], scale);
 #define UNPACK(i, x, y, z)                                                                         \
-    f[i] = lbm_unpack(q[i], chunk, LBM_AIR_SCALE);                                                 \
-    f[i + 1] = lbm_unpack(q[i + 1], chunk, LBM_AIR_SCALE);
+    f[i] = lbm_unpack(q[i], scale);                                                                \
+    f[i + 1] = lbm_unpack(q[i + 1], scale);
     LBM_PAIRS(UNPACK)
 #undef UNPACK
 }
 
-void lbm_unpack_scalar(lbm_element q[LBM_SCALAR_Q], const int chunk, out vec4 g[LBM_SCALAR_Q]) {
-    g[0] = lbm_unpack(q[0], chunk, LBM_SCALAR_SCALE);
+void lbm_pack_air(vec4 f[LBM_Q], const float scale, out lbm_element q[LBM_Q]) {
+    q[0] = lbm_pack(scale, f[0]);
+#define PACK(i, x, y, z)                                                                           \
+    q[i] = lbm_pack(scale, f[i]);                                                                  \
+    q[i + 1] = lbm_pack(scale, f[i + 1]);
+    LBM_PAIRS(PACK)
+#undef PACK
+}
+
+void lbm_unpack_scalar(lbm_element q[LBM_SCALAR_Q], const float scale, out vec4 g[LBM_SCALAR_Q]) {
+    g[0] = lbm_unpack(q[0], scale);
 #define UNPACK(i, x, y, z)                                                                         \
-    g[i] = lbm_unpack(q[i], chunk, LBM_SCALAR_SCALE);                                              \
-    g[i + 1] = lbm_unpack(q[i + 1], chunk, LBM_SCALAR_SCALE);
+    g[i] = lbm_unpack(q[i], scale);                                                                \
+    g[i + 1] = lbm_unpack(q[i + 1], scale);
     LBM_SCALAR_PAIRS(UNPACK)
 #undef UNPACK
 }
 
-void lbm_pack_scalar(inout lbm_element q[LBM_SCALAR_Q], const int chunk, vec4 g[LBM_SCALAR_Q]) {
-    lbm_pack(q[0], chunk, LBM_SCALAR_SCALE, g[0]);
+void lbm_pack_scalar(vec4 g[LBM_SCALAR_Q], const float scale, out lbm_element q[LBM_SCALAR_Q]) {
+    q[0] = lbm_pack(scale, g[0]);
 #define PACK(i, x, y, z)                                                                           \
-    lbm_pack(q[i], chunk, LBM_SCALAR_SCALE, g[i]);                                                 \
-    lbm_pack(q[i + 1], chunk, LBM_SCALAR_SCALE, g[i + 1]);
+    q[i] = lbm_pack(scale, g[i]);                                                                  \
+    q[i + 1] = lbm_pack(scale, g[i + 1]);
     LBM_SCALAR_PAIRS(PACK)
 #undef PACK
 }
@@ -215,23 +219,18 @@ uint lbm_there(lbm_place p, const int x, const int y, const int z) {
 #define LBM_SCALAR_AT_REST(s) (LBM_AIR_AT_REST + 1 + (s))
 
 // How elements are read and written.
-#if LBM_SOFTWARE
+#if LBM_SOFTWARE && LBM_HALF
+#define lbm_memory uint64_t
+#define lbm_from_memory(m) unpackUint2x32(m)
+#define lbm_to_memory(e) packUint2x32(e)
+#elif LBM_SOFTWARE
 #define lbm_memory u64vec2
 lbm_element lbm_from_memory(lbm_memory m) {
-    uvec4 words = uvec4(unpackUint2x32(m.x), unpackUint2x32(m.y));
-#if LBM_HALF
-    return words;
-#else
-    return uintBitsToFloat(words);
-#endif
+    return uintBitsToFloat(uvec4(unpackUint2x32(m.x), unpackUint2x32(m.y)));
 }
 
 lbm_memory lbm_to_memory(lbm_element e) {
-#if LBM_HALF
-    uvec4 words = e;
-#else
     uvec4 words = floatBitsToUint(e);
-#endif
     return u64vec2(packUint2x32(words.xy), packUint2x32(words.zw));
 }
 #else
@@ -265,16 +264,23 @@ void lbm_store(const int slot, uint side, uint element, lbm_element e) {
 #undef LBM_BUFFER
 }
 
+// Lanes turned where they go round. Without a branch, which loads would wait for.
+lbm_element lbm_from_above(lbm_place p, lbm_element e) {
+    return mix(e, lbm_next_lane(e), lbm_mask(p.last));
+}
+
+lbm_element lbm_to_above(lbm_place p, lbm_element e) {
+    return mix(e, lbm_last_lane(e), lbm_mask(p.last));
+}
+
 // A pair's second direction, from or to the neighbour along its first, (x, y, z).
 lbm_element lbm_load_there(const int slot, uint side, lbm_place p, const int x, const int y, const int z) {
     lbm_element e = lbm_load(slot, side, lbm_there(p, x, y, z));
-    if (z > 0) e = mix(e, lbm_next_lane(e), bvec4(p.last)); // no branch, which loads would wait for
-    return e;
+    return z > 0 ? lbm_from_above(p, e) : e;
 }
 
 void lbm_store_there(const int slot, uint side, lbm_place p, const int x, const int y, const int z, lbm_element e) {
-    if (z > 0) e = mix(e, lbm_last_lane(e), bvec4(p.last));
-    lbm_store(slot, side, lbm_there(p, x, y, z), e);
+    lbm_store(slot, side, lbm_there(p, x, y, z), z > 0 ? lbm_to_above(p, e) : e);
 }
 
 // ---- populations ------------------------------------------------------------------------------

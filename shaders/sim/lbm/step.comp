@@ -15,8 +15,8 @@ layout(std430) readonly buffer LbmSkin { uint skin[]; };
 uniform uint skin_count;
 #endif
 #define WALLED (LBM_WALLED && (LBM_BODIES || LBM_REGION != LBM_CORE))
-// Boundaries change what arrives, or collision asks for it again: then it is held unpacked.
-#define UNPACKED (LBM_BODIES || LBM_RIMS && LBM_REGION != LBM_CORE || !LBM_CENTRAL_MOMENTS)
+// Faces or bodies may change what arrives.
+#define MEETS (LBM_BODIES || LBM_RIMS && LBM_REGION != LBM_CORE)
 
 uniform float tau;
 uniform float smagorinsky;
@@ -42,35 +42,13 @@ uvec3 at; // x, y, layer
 lbm_site site;
 lbm_element air[LBM_Q], carried[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
 
-// ---- four cells -------------------------------------------------------------------------------
-
-vec4 population[LBM_Q], part[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
 vec4 value[3]; // of scalars
 
-void unpack(const int chunk) {
-#if UNPACKED
-    lbm_unpack_air(air, chunk, population);
-#endif
-#if WALLED
-    lbm_meet_air(at, site, chunk, population);
-#define MEET(s) lbm_meet_scalar(s, at, site, chunk, ambient[s], population, part[s]);
-#else
-#define MEET(s)
-#endif
-#define UNPACK(s)                                                                                  \
-    lbm_unpack_scalar(carried[s], chunk, part[s]);                                                 \
-    MEET(s)                                                                                        \
-    value[s] = lbm_sum_scalar(part[s]);
-    LBM_EACH_SCALAR(UNPACK)
-#undef UNPACK
-#undef MEET
-}
-
 #if LBM_FORCE
-void add_force(const int chunk, inout lbm_vec a) {
+void add_force(inout lbm_vec a) {
 #define ADD(lane)                                                                                  \
     {                                                                                              \
-        vec3 cell = vec3(at.xy, at.z + LBM_LAYERS * uint(4 * chunk + lane)) + 0.5;                 \
+        vec3 cell = vec3(at.xy, at.z + LBM_LAYERS * uint(lane)) + 0.5;                             \
         vec3 p = cell / vec3(LBM_NX, LBM_NY, LBM_LAYERS * LBM_LANES);                              \
         vec3 more = force_scale * textureLod(force, p, 0.0).xyz;                                   \
         a.x[lane] += more.x;                                                                       \
@@ -82,7 +60,7 @@ void add_force(const int chunk, inout lbm_vec a) {
 }
 #endif
 
-lbm_vec find_force(const int chunk, vec4 density) {
+lbm_vec find_force(vec4 density) {
     lbm_vec a = lbm_vec_all(acceleration);
 #define RISE(s)                                                                                    \
     {                                                                                              \
@@ -94,7 +72,7 @@ lbm_vec find_force(const int chunk, vec4 density) {
     LBM_EACH_SCALAR(RISE)
 #undef RISE
 #if LBM_FORCE
-    add_force(chunk, a);
+    add_force(a);
 #endif
     return lbm_vec(density * a.x, density * a.y, density * a.z);
 }
@@ -105,17 +83,13 @@ void limit(inout lbm_vec u, float most) {
     u = lbm_vec(u.x * factor, u.y * factor, u.z * factor);
 }
 
-lbm_air find_air(const int chunk) {
+lbm_air find_air() {
     lbm_air a;
-#if UNPACKED
-    lbm_sums sums = lbm_sum(population);
-#else
-    lbm_sums sums = lbm_sum_packed(air, chunk);
-#endif
+    lbm_sums sums = lbm_sum(air);
     lbm_vec momentum = sums.momentum;
     a.excess = sums.excess;
     vec4 density = 1.0 + a.excess, volume = 1.0 / density;
-    a.force = find_force(chunk, density);
+    a.force = find_force(density);
 #if LBM_WEIGHTS_ONLY
     a.u = lbm_vec(momentum.x * volume, momentum.y * volume, momentum.z * volume);
 #else
@@ -140,10 +114,9 @@ void keep_solid() {
 #endif
 }
 
-void keep_moments(const int chunk, lbm_air a) {
-    uint index = place.own + uint(4 * chunk) * LBM_ELEMENTS;
+void keep_moments(lbm_air a) {
 #define KEEP(lane)                                                                                 \
-    moments[index + lane * LBM_ELEMENTS] =                                                         \
+    moments[place.own + lane * LBM_ELEMENTS] =                                                     \
         uvec4(packHalf2x16(vec2(a.u.x[lane], a.u.y[lane])),                                     \
               packHalf2x16(vec2(a.u.z[lane], a.excess[lane])),                                  \
               packHalf2x16(vec2(value[0][lane], value[1][lane])),                               \
@@ -153,34 +126,13 @@ void keep_moments(const int chunk, lbm_air a) {
 }
 #endif
 
-void collide(const int chunk) {
-    value[0] = value[1] = value[2] = vec4(0.0);
-    unpack(chunk);
-    lbm_air a = find_air(chunk);
-#if LBM_KEEP
-    keep_moments(chunk, a);
-#endif
-    vec4 eddies = vec4(0.0); // what they add to the relaxation time
-#if LBM_SUBGRID
-    eddies = lbm_eddy_tau(a, tau, smagorinsky) - tau;
-#endif
-    lbm_collide(a, 1.0 / (tau + eddies), population, chunk, air);
-#define SCALAR(s)                                                                                  \
-    lbm_collide_scalar(value[s], a.u,                                                              \
-                       1.0 / (scalar_tau[s] + eddies * (1.0 / (3.0 * SCHMIDT * LBM_SCALAR_SPEED))), \
-                       1.0 - decay[s], ambient[s], part[s]);                                       \
-    lbm_pack_scalar(carried[s], chunk, part[s]);
-    LBM_EACH_SCALAR(SCALAR)
-#undef SCALAR
-}
-
 // ---- an element -------------------------------------------------------------------------------
 
-#if WALLED && LBM_SOFTWARE
-#define KEEPS_ARRIVALS 1
-lbm_element air_before[LBM_Q], carried_before[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
+#if WALLED && LBM_SOFTWARE // which takes both ways of a branch: copies cost less than loads
+#define COPIES_ARRIVALS 1
+lbm_element arrived[LBM_Q], carried_there[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
 #else
-#define KEEPS_ARRIVALS 0
+#define COPIES_ARRIVALS 0
 #endif
 
 void load() {
@@ -188,27 +140,73 @@ void load() {
     LBM_EACH_SCALAR(LOAD)
 #undef LOAD
     lbm_load_air(place, air);
-#if KEEPS_ARRIVALS
-    carried_before = carried;
-    air_before = air;
+#if COPIES_ARRIVALS
+    carried_there = carried;
+    arrived = air;
 #endif
 }
 
-void send() {
-#if KEEPS_ARRIVALS
-    lbm_keep_air(site.solid, air_before, air);
-#define KEEP(s) lbm_keep_scalar(site.solid, carried_before[s], carried[s]);
+#if MEETS
+void meet() {
+    vec4 f[LBM_Q], g[LBM_SCALAR_Q];
+    lbm_unpack_air(air, LBM_AIR_SCALE, f);
+    lbm_meet_air(at, site, f);
+    lbm_pack_air(f, LBM_AIR_SCALE, air);
+#define MEET(s)                                                                                    \
+    lbm_unpack_scalar(carried[s], LBM_SCALAR_SCALE, g);                                            \
+    lbm_meet_scalar(s, at, site, ambient[s], f, g);                                                \
+    lbm_pack_scalar(g, LBM_SCALAR_SCALE, carried[s]);
+    LBM_EACH_SCALAR(MEET)
+#undef MEET
+}
+#endif
+
+void collide() {
+    value[0] = value[1] = value[2] = vec4(0.0);
+#define SUM(s) value[s] = lbm_sum_scalar(carried[s]);
+    LBM_EACH_SCALAR(SUM)
+#undef SUM
+    lbm_air a = find_air();
+#if LBM_KEEP
+    keep_moments(a);
+#endif
+    vec4 eddies = vec4(0.0); // what they add to the relaxation time
+#if LBM_SUBGRID
+    eddies = lbm_eddy_tau(a, tau, smagorinsky) - tau;
+#endif
+    lbm_collide(a, 1.0 / (tau + eddies), air);
+    vec4 g[LBM_SCALAR_Q];
+#define COLLIDE(s)                                                                                 \
+    lbm_unpack_scalar(carried[s], LBM_SCALAR_SCALE, g);                                           \
+    lbm_collide_scalar(value[s], a.u,                                                              \
+                       1.0 / (scalar_tau[s] + eddies * (1.0 / (3.0 * SCHMIDT * LBM_SCALAR_SPEED))), \
+                       1.0 - decay[s], ambient[s], g);                                             \
+    lbm_pack_scalar(g, LBM_SCALAR_SCALE, carried[s]);
+    LBM_EACH_SCALAR(COLLIDE)
+#undef COLLIDE
+}
+
+// In lanes of solids what arrived stays.
+#if WALLED
+void keep() {
+#if COPIES_ARRIVALS
+    lbm_keep_air(site.solid, arrived, air);
+#define KEEP(s) lbm_keep_scalar(site.solid, carried_there[s], carried[s]);
+#else
+    if (site.solid == 0u) return;
+    lbm_element arrived[LBM_Q], carried_there[LBM_SCALAR_Q];
+    lbm_load_air(place, arrived);
+    lbm_keep_air(site.solid, arrived, air);
+#define KEEP(s)                                                                                    \
+    lbm_load_scalar(s, place, carried_there);                                                      \
+    lbm_keep_scalar(site.solid, carried_there, carried[s]);
+#endif
     LBM_EACH_SCALAR(KEEP)
 #undef KEEP
-#elif WALLED
-    if (site.solid != 0u) {
-        lbm_send_air_beside(place, site.solid, air);
-#define SEND(s) lbm_send_scalar_beside(s, place, site.solid, carried[s]);
-        LBM_EACH_SCALAR(SEND)
-#undef SEND
-        return;
-    }
+}
 #endif
+
+void send() {
     lbm_send_air(place, air);
 #define SEND(s) lbm_send_scalar(s, place, carried[s]);
     LBM_EACH_SCALAR(SEND)
@@ -247,12 +245,15 @@ void main() {
     }
 #endif
     load();
-    collide(0);
-#if LBM_CHUNKS > 1
-    collide(1);
+#if MEETS
+    if (lbm_meets(at, site)) meet();
 #endif
+    collide();
 #if LBM_KEEP
     keep_solid();
+#endif
+#if WALLED
+    keep();
 #endif
     send();
 }

@@ -27,36 +27,7 @@
 
 // ---- solids -----------------------------------------------------------------------------------
 
-// lbm_send_air and lbm_send_scalar where some lanes keep what arrived.
-void lbm_send_air_beside(lbm_place p, uint solid, lbm_element q[LBM_Q]) {
-    lbm_store(LBM_AIR_AT_REST, 0u, p.own, lbm_choose(q[0], lbm_load(LBM_AIR_AT_REST, 0u, p.own), solid));
-#define STORE(i, x, y, z)                                                                          \
-    {                                                                                              \
-        lbm_element there = lbm_load_there(LBM_AIR_PAIR(i), lbm_parity, p, x, y, z);               \
-        lbm_element own = lbm_load(LBM_AIR_PAIR(i), 1u - lbm_parity, p.own);                       \
-        lbm_store_there(LBM_AIR_PAIR(i), lbm_parity, p, x, y, z, lbm_choose(q[i], there, solid));  \
-        lbm_store(LBM_AIR_PAIR(i), 1u - lbm_parity, p.own, lbm_choose(q[i + 1], own, solid));      \
-    }
-    LBM_PAIRS(STORE)
-#undef STORE
-}
-
-void lbm_send_scalar_beside(const int s, lbm_place p, uint solid, lbm_element q[LBM_SCALAR_Q]) {
-    lbm_store(LBM_SCALAR_AT_REST(s), 0u, p.own,
-              lbm_choose(q[0], lbm_load(LBM_SCALAR_AT_REST(s), 0u, p.own), solid));
-#define STORE(i, x, y, z)                                                                          \
-    {                                                                                              \
-        lbm_element there = lbm_load_there(LBM_SCALAR_PAIR(s, i), lbm_parity, p, x, y, z);         \
-        lbm_element own = lbm_load(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, p.own);                 \
-        lbm_store_there(LBM_SCALAR_PAIR(s, i), lbm_parity, p, x, y, z,                             \
-                        lbm_choose(q[i], there, solid));                                           \
-        lbm_store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, p.own, lbm_choose(q[i + 1], own, solid)); \
-    }
-    LBM_SCALAR_PAIRS(STORE)
-#undef STORE
-}
-
-// The same without a branch, from a copy of what arrived.
+// In lanes of solids, what arrived takes the place of what collision made of it.
 void lbm_keep_air(uint solid, lbm_element arrived[LBM_Q], inout lbm_element q[LBM_Q]) {
     q[0] = lbm_choose(q[0], arrived[0], solid);
 #define KEEP(i, x, y, z)                                                                           \
@@ -83,7 +54,7 @@ uniform vec4 lbm_face_velocity[6]; // of inflow, and of the wind at open faces
 uniform vec4 lbm_face_scalar[6];   // of inflow
 
 // The wave that comes in at each cell of an open face: velocity outward less LBM_SOUND times the
-// excess. Of faces across x and y the chunks of the elements there, of those across z one chunk.
+// excess. Of all elements there, by face.
 layout(std430) buffer LbmWaves { vec4 lbm_waves[]; };
 
 const float LBM_SOUND = 0.57735027;
@@ -102,7 +73,7 @@ bool lbm_at_rim(uvec3 at) {
            LBM_FACE_4 >= 2 && at.z == 0u || LBM_FACE_5 >= 2 && at.z == LBM_LAYERS - 1u;
 }
 
-lbm_rim lbm_rim_at(uvec3 at, const int chunk) {
+lbm_rim lbm_rim_at(uvec3 at) {
     lbm_rim r = lbm_rim(-1, bvec4(true), bvec4(false), bvec4(false), bvec4(false), bvec4(false),
                         bvec4(false), bvec4(false));
 #define FACE(k, here, mirror)                                                                      \
@@ -117,7 +88,7 @@ lbm_rim lbm_rim_at(uvec3 at, const int chunk) {
 #undef FACE
 #define FACE(k, layer, lane, mirror)                                                               \
     if (LBM_FACE_##k >= 2 && at.z == layer) {                                                      \
-        bvec4 here = lbm_in_lanes(lane, chunk);                                                    \
+        bvec4 here = lbm_in_lanes(lane);                                                           \
         if (LBM_FACE_IS_OPEN(LBM_FACE_##k) && r.face < 0) {                                        \
             r.face = k;                                                                            \
             r.lanes = here;                                                                        \
@@ -194,11 +165,11 @@ bool lbm_flows_in(int face) {
     return (faces >> face & 1u) != 0u;
 }
 
-uint lbm_wave_at(int face, uvec3 at, const int chunk) {
-    const uint X = LBM_NY * LBM_LAYERS * LBM_CHUNKS, Y = LBM_NX * LBM_LAYERS * LBM_CHUNKS;
+uint lbm_wave_at(int face, uvec3 at) {
+    const uint X = LBM_NY * LBM_LAYERS, Y = LBM_NX * LBM_LAYERS;
     uint up = uint(face & 1);
-    if (face < 2) return X * up + (at.y + LBM_NY * at.z) * LBM_CHUNKS + uint(chunk);
-    if (face < 4) return X * 2u + Y * up + (at.x + LBM_NX * at.z) * LBM_CHUNKS + uint(chunk);
+    if (face < 2) return X * up + at.y + LBM_NY * at.z;
+    if (face < 4) return X * 2u + Y * up + at.x + LBM_NX * at.z;
     return (X + Y) * 2u + LBM_LAYER * up + at.x + LBM_NX * at.y;
 }
 
@@ -273,7 +244,7 @@ void lbm_add_stress(ivec3 outward, vec4 part, vec4 f[LBM_Q], inout vec4 made[LBM
 #undef ADD
 }
 
-void lbm_pass_face(lbm_rim r, uvec3 at, const int chunk, inout vec4 f[LBM_Q]) {
+void lbm_pass_face(lbm_rim r, uvec3 at, inout vec4 f[LBM_Q]) {
     ivec3 outward = lbm_outward(r.face);
     vec3 n = vec3(outward), wind = lbm_face_velocity[r.face].xyz;
     const int size[3] = int[3](LBM_NX, LBM_NY, LBM_NZ);
@@ -284,7 +255,7 @@ void lbm_pass_face(lbm_rim r, uvec3 at, const int chunk, inout vec4 f[LBM_Q]) {
         out_ = vec4(wind_out);
         excess = (w.twice - out_) / (1.0 + out_);
     } else {
-        uint place = lbm_wave_at(r.face, at, chunk);
+        uint place = lbm_wave_at(r.face, at);
         vec4 wave = lbm_waves[place], b = 1.0 + LBM_SOUND + wave, q = w.twice - wave;
         excess = 2.0 * q / (b + sqrt(max(b * b + 4.0 * LBM_SOUND * q, 0.01)));
         out_ = clamp(wave + LBM_SOUND * excess, -LBM_FACE_SPEED, LBM_FACE_SPEED);
@@ -326,29 +297,38 @@ void lbm_pass_face_with(const int s, lbm_rim r, float ambient, vec4 f[LBM_Q], in
 
 // ---- a step calls -----------------------------------------------------------------------------
 
+// Whether an element has anything to do with faces or bodies that change what arrives.
+bool lbm_meets(uvec3 at, lbm_site site) {
+    bool any_ = site.near != 0u;
+#if LBM_RIMS && LBM_REGION != LBM_CORE
+    any_ = any_ || lbm_at_rim(at);
+#endif
+    return any_;
+}
+
 // Makes what arrives in four cells what it should be: of air, of scalar s (a constant).
-void lbm_meet_air(uvec3 at, lbm_site site, const int chunk, inout vec4 f[LBM_Q]) {
+void lbm_meet_air(uvec3 at, lbm_site site, inout vec4 f[LBM_Q]) {
 #if LBM_RIMS && LBM_REGION != LBM_CORE
     if (lbm_at_rim(at)) {
-        lbm_rim r = lbm_rim_at(at, chunk);
+        lbm_rim r = lbm_rim_at(at);
         lbm_mirror_air(r, f);
-        if (r.face >= 0) lbm_pass_face(r, at, chunk, f);
+        if (r.face >= 0) lbm_pass_face(r, at, f);
     }
 #endif
 #if LBM_BODIES
     if (site.near != 0u) {
-        lbm_find_wall_speeds(at, site.near, chunk);
+        lbm_find_wall_speeds(at, site.near);
         lbm_push_air(f);
     }
 #endif
 }
 
 // `f` is what lbm_meet_air left.
-void lbm_meet_scalar(const int s, uvec3 at, lbm_site site, const int chunk, float ambient,
-                     vec4 f[LBM_Q], inout vec4 g[LBM_SCALAR_Q]) {
+void lbm_meet_scalar(const int s, uvec3 at, lbm_site site, float ambient, vec4 f[LBM_Q],
+                     inout vec4 g[LBM_SCALAR_Q]) {
 #if LBM_RIMS && LBM_REGION != LBM_CORE
     if (lbm_at_rim(at)) {
-        lbm_rim r = lbm_rim_at(at, chunk);
+        lbm_rim r = lbm_rim_at(at);
         lbm_mirror_scalar(r, g);
         if (r.face >= 0) lbm_pass_face_with(s, r, ambient, f, g);
     }
