@@ -40,25 +40,34 @@ static bool allocate(lbm_air *a, lbm_meshes *m) {
     return !m->cells || voxels_allocate(m->cells, a->pass->host->device);
 }
 
-// Bodies of a state that was taken over go on from where they were a step ago.
-static bool place(lbm_air *a, lbm_meshes *m) {
-    const pass_host *host = a->pass->host;
-    uint64_t steps = lbm_steps(a->solver);
-    if (!steps) return true;
-    voxels_change change;
-    field_context before = *host->context;
-    before.time = m->updated = lbm_air_step_time(a, steps - 1);
-    return voxels_update(m->cells, host->device, &before, 0, &change);
+// Steps from one placing of bodies to the next: one that is as fast as the flow is expected to be
+// goes half a cell meanwhile. Its motion pushes the air in all of them.
+static const double farthest = 0.5;
+
+static uint64_t stride(const lbm_air *a) {
+    return (uint64_t)fmax(1, floor(farthest / sim_velocity(&a->units, a->desc.speed)));
 }
 
-static bool move(lbm_air *a, lbm_meshes *m, voxels_change *change) {
+// As before a step: moved on from where they were placed last, or put there.
+static bool place(lbm_air *a, lbm_meshes *m, uint64_t step, voxels_change *change) {
     const pass_host *host = a->pass->host;
-    double now = host->context->time;
+    field_context then = *host->context;
+    then.time = lbm_air_step_time(a, step);
+    double passed = isnan(m->updated) ? 0 : then.time - m->updated;
+    m->updated = then.time;
+    return voxels_update(m->cells, host->device, &then, passed, change);
+}
+
+// Those of a state that was taken over go on from where they were placed before.
+static bool move(lbm_air *a, lbm_meshes *m, voxels_change *change) {
+    const uint64_t step = lbm_steps(a->solver), each = stride(a), last = step - step % each;
     *change = (voxels_change){false, false};
-    if (!m->cells || (isnan(m->updated) && !place(a, m))) return !m->cells;
-    double passed = isnan(m->updated) ? 0 : now - m->updated;
-    m->updated = now;
-    return voxels_update(m->cells, host->device, host->context, passed, change);
+    if (!m->cells) return true;
+    bool known = !isnan(m->updated), done = true;
+    if (!known && last >= each) done = place(a, m, last - each, change);
+    if (!known || step == last) done = done && place(a, m, last, change);
+    if (step > last) *change = (voxels_change){false, false};
+    return done;
 }
 
 static void destroy(lbm_air *a, lbm_meshes *m) {
