@@ -4,7 +4,8 @@
 #include "pass/particles_parts.h"
 #include <math.h>
 
-static const double rounding = 1e-9; // of a step, of a period
+static const double rounding = 1e-9;    // of a step, of a period
+static const double most_births = 1e12; // of a step: beyond any that could be counted
 
 // Bursts that begin within the step, and the seconds that are left of it then.
 static double count_bursts(const particles_rates *r, double *rest) {
@@ -23,7 +24,7 @@ static uint32_t at_most(double count, uint32_t most) {
 particles_births particles_next(particles_clock *clock, const particles_rates *rates,
                                 uint32_t most) {
     particles_births out = {0};
-    double bursts = count_bursts(rates, &out.burst_rest) * round(rates->burst);
+    double bursts = fmin(count_bursts(rates, &out.burst_rest) * round(rates->burst), most_births);
     double owed = clock->owed + rates->rate * rates->step, steady = floor(owed);
     out.steady = at_most(steady, most);
     out.burst = at_most(bursts, most - out.steady);

@@ -8,8 +8,8 @@ static const field *height(effect *e) {
 }
 
 // A bit of everything, moving with time: a rate, wind, gravity, drag and a ground.
-static swarm fountain(gpu *device, double fps, uint32_t count) {
-    swarm s = swarm_open(device, count, 0);
+static swarm fountain_as(const effect_desc *desc, double fps, uint32_t count) {
+    swarm s = swarm_open_as(desc, count, 0);
     effect *e = s.e;
     gpu_test_ok(effect_set_timeline(e, fps, 100000, 0));
     const field *time = field_time(effect_memory(e));
@@ -27,6 +27,10 @@ static swarm fountain(gpu *device, double fps, uint32_t count) {
     swarm_field(&s, "collide", height(e));
     swarm_field(&s, "quantity", height(e));
     return s;
+}
+
+static swarm fountain(gpu *device, double fps, uint32_t count) {
+    return fountain_as(&(effect_desc){.device = device}, fps, count);
 }
 
 static void is_same(const swarm *a, const swarm *b) {
@@ -59,6 +63,24 @@ static void how_often_is_drawn_changes_no_byte(void **state) {
     is_same(&each, &anew);
     swarm_close(&anew);
     swarm_close(&each);
+}
+
+// What a window keeps now and then, so that a jump back is a short way.
+static void a_window_goes_back(void **state) {
+    swarm window = fountain_as(&(effect_desc){.device = *state, .punctual = true}, 60, 700);
+    swarm anew = fountain(*state, 60, 700);
+    swarm_build(&window);
+    swarm_build(&anew);
+    for (int frame = 0; frame <= 150; frame++) gpu_test_ok(effect_render(window.e, frame, false));
+    effect_simulation now;
+    do {
+        swarm_run(&window, 100);
+        assert_true(effect_get_simulation(window.e, &now));
+    } while (now.waiting);
+    swarm_run(&anew, 100);
+    is_same(&window, &anew);
+    swarm_close(&window);
+    swarm_close(&anew);
 }
 
 static void another_seed_gives_others(void **state) {
@@ -182,6 +204,7 @@ static void a_million_fit(void **state) {
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(how_often_is_drawn_changes_no_byte),
+        cmocka_unit_test(a_window_goes_back),
         cmocka_unit_test(another_seed_gives_others),
         cmocka_unit_test(a_reload_goes_on),
         cmocka_unit_test(a_checkpoint_goes_on),

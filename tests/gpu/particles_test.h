@@ -13,14 +13,18 @@ typedef struct swarm {
     float (*at)[4], (*move)[4]; // position and age, velocity and lifetime
 } swarm;
 
-static inline swarm swarm_open(gpu *device, uint32_t count, double step) {
-    swarm s = {.e = open_effect(&(effect_desc){.device = device})};
+static inline swarm swarm_open_as(const effect_desc *desc, uint32_t count, double step) {
+    swarm s = {.e = open_effect(desc)};
     gpu_test_ok(effect_set_timeline(s.e, RATE_OF_FRAMES, 100000, 0));
     s.pass = add(s.e, "particles", NULL);
     gpu_test_ok(pass_particles_open(
         s.pass, &(pass_particles_desc){.count = count,
                                        .time_step = step > 0 ? step : 1.0 / RATE_OF_FRAMES}));
     return s;
+}
+
+static inline swarm swarm_open(gpu *device, uint32_t count, double step) {
+    return swarm_open_as(&(effect_desc){.device = device}, count, step);
 }
 
 static inline void swarm_set(const swarm *s, const char *name, float value) {

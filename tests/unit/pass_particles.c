@@ -68,6 +68,9 @@ static void bursts_come_when_they_should(void **state) {
     const particles_rates quick = {.burst = 1, .burst_period = 0.05};
     for (int k = 0; k < 100; k++) next(&clock, step, quick);
     assert_int_equal(clock.born, 200);
+    const particles_rates mad = {.burst = 1e7, .burst_period = 1e-30};
+    b = next(&clock, step, mad);
+    assert_true(b.burst == 1000 && clock.born < 1e13);
 }
 
 // Only the last of them find room, and they are the ones born last.
