@@ -130,6 +130,7 @@ static float finest_side(const field_grid *grid) {
     const float extents[] = {grid->box.max.x - grid->box.min.x, grid->box.max.y - grid->box.min.y,
                              grid->box.max.z - grid->box.min.z};
     float side = INFINITY;
+    if (grid->extruded) return grid->extruded->width / (float)grid->size[0];
     for (int i = 0; i < 3; i++) side = fminf(side, extents[i] / (float)grid->size[i]);
     return side;
 }
@@ -197,7 +198,7 @@ static bool make_lattice(effect *e, const source *s, const effect_volume_desc *d
 
 // Whether its voxels are those of the grid.
 static bool is_same(const effect_volume *v, const field_grid *grid) {
-    return grid && memcmp(v->size, grid->size, sizeof v->size) == 0 &&
+    return grid && !grid->extruded && memcmp(v->size, grid->size, sizeof v->size) == 0 &&
            memcmp(&v->box.min, &grid->box.min, sizeof v->box.min) == 0 &&
            fabsf(v->box.max.x - grid->box.max.x) < 1e-3f * v->voxel &&
            fabsf(v->box.max.y - grid->box.max.y) < 1e-3f * v->voxel &&
