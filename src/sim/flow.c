@@ -90,7 +90,7 @@ bool flow_compile(flow *f, shader_library *library, const shader_reader *reader)
         {&k->advance, "sim/flow/advance.comp", NULL, false},
         {&k->build, "sim/flow/build.comp", NULL, false},
         {&k->follow, "sim/flow/follow.comp", NULL, !plain},
-        {&k->direction, "sim/flow/direction.comp", plain ? "FLOW_PLAIN" : NULL, false},
+        {&k->direction, "sim/flow/direction.comp", NULL, false},
         {&k->project, "sim/flow/project.comp", NULL, false},
         {&k->down_finest, "sim/flow/down.comp", "FLOW_FINEST", plain},
         {&k->down, "sim/flow/down.comp", NULL, plain},

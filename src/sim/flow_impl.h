@@ -40,7 +40,7 @@ typedef enum flow_memory {
 } flow_memory;
 
 // Of src/sim/flow_pressure.c and shaders/sim/flow/solve.glsl.
-enum { FLOW_KNOWN_WORDS = 8, FLOW_PART_KINDS = 5, FLOW_BUILD_TILE = 32 };
+enum { FLOW_KNOWN_WORDS = 8, FLOW_PART_KINDS = 4, FLOW_BUILD_TILE = 32 };
 
 // ---- levels -----------------------------------------------------------------------------------
 

@@ -1,6 +1,6 @@
 // The pressure of a step: conjugate gradients, preconditioned by a cycle of multigrid or by
 // nothing. All that the host decides is how many iterations are recorded; whether they still do
-// anything is decided on the device (shaders/sim/flow/coarse.comp, direction.comp).
+// anything is decided on the device (flow_begin in shaders/sim/flow/solve.glsl).
 #include "sim/flow_impl.h"
 #include <string.h>
 
@@ -87,7 +87,7 @@ static void set_level(const flow *f, sim_kernel *k, uint32_t level) {
     set_int(k, "coarse_z_at", next->z_at);
 }
 
-static bool go_down(flow *f, gpu *g, uint32_t level, uint32_t iteration) {
+static bool go_down(flow *f, gpu *g, uint32_t level, uint32_t iteration, float tolerance) {
     const turn t = turn_of(f, iteration);
     gpu_buffer *coarse = f->buffers[FLOW_MEM_COARSE_RESIDUAL];
     sim_kernel *k = level == 0 ? &f->kernels.down_finest : &f->kernels.down;
@@ -97,6 +97,7 @@ static bool go_down(flow *f, gpu *g, uint32_t level, uint32_t iteration) {
                              {"FlowDirection", t.last, NULL}};
     set_level(f, k, level);
     set_int(k, "iteration", iteration);
+    set_float(k, "tolerance", tolerance);
     return flow_run_tiles(f, g, k, more, 4, f->levels[level].size);
 }
 
@@ -109,7 +110,7 @@ static bool go_up(flow *f, gpu *g, uint32_t level, uint32_t iteration) {
     return flow_run_tiles(f, g, k, more, 1, f->levels[level].size);
 }
 
-static bool do_coarse(flow *f, gpu *g, uint32_t iteration, float tolerance) {
+static bool do_coarse(flow *f, gpu *g) {
     sim_kernel *k = &f->kernels.coarse;
     const flow_level *l = &f->levels[f->level_count - 1], *fine = l - 1;
     const sim_slot more[] = {{"FlowFrom", f->buffers[FLOW_MEM_COARSE_RESIDUAL], NULL}};
@@ -118,28 +119,27 @@ static bool do_coarse(flow *f, gpu *g, uint32_t iteration, float tolerance) {
     set_int(k, "fine_level_at", fine->coefficients_at);
     set_int(k, "from_at", l->r_at);
     set_int(k, "z_at", l->z_at);
-    set_int(k, "iteration", iteration);
-    set_float(k, "tolerance", tolerance);
-    return flow_run(f, g, &(flow_call){k, more, 1, {256, 1, f->desc.slices}});
+    return flow_run(f, g, &(flow_call){k, more, 1, {16, 16, f->desc.slices}});
 }
 
 // The residual of the last direction, and what multigrid makes of it.
 static bool precondition(flow *f, gpu *g, uint32_t iteration, float tolerance) {
     const uint32_t last = f->level_count - 1;
     for (uint32_t i = 0; i < last; i++)
-        if (!go_down(f, g, i, iteration)) return false;
-    if (!do_coarse(f, g, iteration, tolerance)) return false;
+        if (!go_down(f, g, i, iteration, tolerance)) return false;
+    if (!do_coarse(f, g)) return false;
     for (uint32_t i = last; i > 0; i--)
         if (!go_up(f, g, i - 1, iteration)) return false;
     return true;
 }
 
-static bool follow(flow *f, gpu *g, uint32_t iteration) {
+static bool follow(flow *f, gpu *g, uint32_t iteration, float tolerance) {
     const turn t = turn_of(f, iteration);
     const sim_slot more[] = {{"FlowFrom", t.from, NULL},
                              {"FlowResidual", t.residual, NULL},
                              {"FlowDirection", t.last, NULL}};
     set_int(&f->kernels.follow, "iteration", iteration);
+    set_float(&f->kernels.follow, "tolerance", tolerance);
     return flow_run_tiles(f, g, &f->kernels.follow, more, 3, f->desc.size);
 }
 
@@ -148,12 +148,13 @@ static bool iterate(flow *f, gpu *g, uint32_t iteration, float tolerance) {
     sim_kernel *k = &f->kernels.direction;
     const bool plain = f->desc.solver == FLOW_CG;
     const sim_slot more[] = {{"FlowBefore", t.last, NULL},
+                             {"FlowResidual", t.residual, NULL},
                              {"FlowDirection", t.direction, NULL},
                              {"FlowZ", plain ? t.residual : f->buffers[FLOW_MEM_Z], NULL}};
-    if (!(plain ? follow(f, g, iteration) : precondition(f, g, iteration, tolerance))) return false;
+    if (!(plain ? follow(f, g, iteration, tolerance) : precondition(f, g, iteration, tolerance)))
+        return false;
     set_int(k, "iteration", iteration);
-    set_float(k, "tolerance", tolerance);
-    return flow_run_tiles(f, g, k, more, 3, f->desc.size);
+    return flow_run_tiles(f, g, k, more, 4, f->desc.size);
 }
 
 bool flow_project(flow *f, gpu *g, const flow_numbers *numbers) {
@@ -163,11 +164,10 @@ bool flow_project(flow *f, gpu *g, const flow_numbers *numbers) {
     for (uint32_t i = 0; i < iterations; i++)
         if (!iterate(f, g, i, tolerance)) return false;
     const turn t = turn_of(f, iterations);
-    const sim_slot more[] = {{"FlowFrom", t.from, NULL},
-                             {"FlowDirection", t.last, NULL},
+    const sim_slot more[] = {{"FlowDirection", t.last, NULL},
                              {"FlowPressureTo", flow_pair(f, FLOW_MEM_PRESSURE, 1), NULL},
                              {"FlowVelocityFrom", f->buffers[FLOW_MEM_VELOCITY_NEXT], NULL},
                              {"FlowVelocityTo", f->buffers[FLOW_MEM_VELOCITY], NULL}};
     set_int(&f->kernels.project, "iteration", iterations);
-    return flow_run_tiles(f, g, &f->kernels.project, more, 5, f->desc.size);
+    return flow_run_tiles(f, g, &f->kernels.project, more, 4, f->desc.size);
 }

@@ -120,7 +120,8 @@ void main() {
     int slice = int(gl_WorkGroupID.z);
     ivec2 p = ivec2(gl_LocalInvocationID.xy), coarse = ivec2(gl_WorkGroupID.xy) * 16 + p;
     uvec4 children = uvec4(0u);
-    float lambda = 0.0, mean = 0.0;
+    float lambda = 0.0;
+    vec2 means = vec2(0.0);
     vec4 sums = vec4(0.0);
     for (int k = 0; k < 4; k++) {
         ivec2 cell = 2 * coarse + ivec2(k & 1, k >> 1);
@@ -134,12 +135,12 @@ void main() {
         residual[flow_cell(cell, slice)] = d > 0.0 ? r : 0.0;
         if (coefficients != 0) put(0, cell, slice, children[k], hold.x);
         if (d == 0.0) continue;
-        given *= 4.0 / d;
-        sums += vec4(given * given, r, 1.0, hold.x > 0.0 ? 1.0 : 0.0);
-        mean += pressure[flow_cell(cell, slice)];
+        vec2 scaled = 4.0 / d * vec2(given, r);
+        sums += vec4(scaled * scaled, 1.0, hold.x > 0.0 ? 1.0 : 0.0);
+        means += vec2(r, pressure[flow_cell(cell, slice)]);
     }
     flow_leave(slice, FLOW_PARTS_BUILD, sums);
-    flow_leave(slice, FLOW_PARTS_MEAN, vec4(mean, 0.0, 0.0, 0.0));
+    flow_leave(slice, FLOW_PARTS_MEAN, vec4(means, 0.0, 0.0));
     if (gl_WorkGroupID.xy == uvec2(0u) && gl_LocalInvocationIndex < FLOW_KNOWN)
         flow_known[slice * FLOW_KNOWN + gl_LocalInvocationIndex] = 0.0;
     if (coefficients == 0) return;

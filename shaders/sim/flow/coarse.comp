@@ -1,6 +1,6 @@
-// All levels of at most 32 x 32 cells, in one group for each slice, in shared memory; and whether
-// the solve is done. The same sweeps as in down.comp and up.comp.
-layout(local_size_x = 256) in;
+// All levels of at most 32 x 32 cells, in one group for each slice, in shared memory. The same
+// sweeps as in down.comp and up.comp.
+layout(local_size_x = 16, local_size_y = 16) in;
 #include "sim/flow/state.glsl"
 #include "sim/flow/levels.glsl"
 #include "sim/flow/solve.glsl"
@@ -11,8 +11,6 @@ uniform vec2 fine_cells;  // of the one before it
 #define fine_size ivec2(fine_cells)
 uniform int fine_level_at; // where coefficients of the latter begin
 uniform int from_at, z_at;
-uniform int iteration;
-uniform float tolerance;
 layout(std430) readonly buffer FlowCoefficients { uvec2 flow_coefficients[]; };
 layout(std430) readonly buffer FlowFrom { float from[]; };
 layout(std430) writeonly buffer FlowZ { float z_out[]; };
@@ -21,27 +19,10 @@ const int MOST = 32 * 32 * 4 / 3 + 16;
 shared float r[MOST], z[MOST], d[MOST]; // d: the cell's own coefficient
 shared uint a[MOST];
 
-int thread() {
-    return int(gl_LocalInvocationIndex);
-}
-
-// ---- whether it is done -----------------------------------------------------------------------
-
-bool is_done(int slice) {
-    uint at = uint(slice * FLOW_KNOWN);
-    float residual = flow_total(slice, FLOW_PARTS_R).x;
-    float reference = flow_known[at + FLOW_REFERENCE];
-    if (iteration == 0) reference = flow_total(slice, FLOW_PARTS_BUILD).x;
-    bool done = !(residual > tolerance * tolerance * reference);
-    barrier(); // all have read what the first now writes
-    if (thread() == 0) {
-        flow_known[at + FLOW_DONE] = done ? 1.0 : 0.0;
-        flow_known[at + FLOW_REFERENCE] = reference;
-        flow_known[at + FLOW_RESIDUAL] = residual;
-        flow_known[at + FLOW_ITERATIONS] = float(iteration);
-    }
-    return done;
-}
+// Threads go over a level in blocks of 16 x 16, so that nothing is divided by its size.
+#define EACH_CELL(l, cell)                                                                         \
+    for (ivec2 cell = ivec2(gl_LocalInvocationID.xy); cell.y < (l).size.y; cell.y += 16)           \
+        for (cell.x = int(gl_LocalInvocationID.x); cell.x < (l).size.x; cell.x += 16)
 
 // ---- levels -----------------------------------------------------------------------------------
 
@@ -57,9 +38,6 @@ bool is_last(Level l) {
     return l.size.x <= 2 && l.size.y <= 2;
 }
 
-ivec2 cell_of(Level l, int i) {
-    return ivec2(i % l.size.x, i / l.size.x);
-}
 int place(Level l, ivec2 cell) {
     return l.at + cell.y * l.size.x + cell.x;
 }
@@ -83,8 +61,8 @@ void put_coefficients(int at, uvec4 faces, vec4 held, bvec2 there) {
 
 // What the first of these levels is given.
 void load(Level l, int slice) {
-    for (int i = thread(); i < l.size.x * l.size.y; i += FLOW_GROUP) {
-        ivec2 cell = cell_of(l, i);
+    EACH_CELL(l, cell) {
+        int own = place(l, cell);
         uvec4 faces;
         vec4 held;
         for (int k = 0; k < 4; k++) {
@@ -95,8 +73,8 @@ void load(Level l, int slice) {
             faces[k] = c.x;
             held[k] = uintBitsToFloat(c.y);
         }
-        put_coefficients(i, faces, held, lessThan(2 * cell + 1, fine_size));
-        r[i] = from[uint(from_at + slice * l.size.x * l.size.y + i)];
+        put_coefficients(own, faces, held, lessThan(2 * cell + 1, fine_size));
+        r[own] = from[uint(from_at + slice * l.size.x * l.size.y + own)];
     }
     barrier();
 }
@@ -104,9 +82,8 @@ void load(Level l, int slice) {
 // ---- sweeps -----------------------------------------------------------------------------------
 
 void sweep(Level l, int color) {
-    for (int i = thread(); i < l.size.x * l.size.y; i += FLOW_GROUP) {
-        ivec2 cell = cell_of(l, i);
-        int at = l.at + i;
+    EACH_CELL(l, cell) {
+        int at = place(l, cell);
         if (((cell.x + cell.y) & 1) == color)
             z[at] = d[at] > 0.0 ? (r[at] + around(l, cell)) / d[at] : 0.0;
     }
@@ -114,9 +91,8 @@ void sweep(Level l, int color) {
 }
 
 void begin(Level l) {
-    for (int i = thread(); i < l.size.x * l.size.y; i += FLOW_GROUP) {
-        ivec2 cell = cell_of(l, i);
-        int at = l.at + i;
+    EACH_CELL(l, cell) {
+        int at = place(l, cell);
         z[at] = ((cell.x + cell.y) & 1) == 0 && d[at] > 0.0 ? r[at] / d[at] : 0.0;
     }
     barrier();
@@ -124,17 +100,16 @@ void begin(Level l) {
 }
 
 void leave(Level l) { // red cells: what they have left
-    for (int i = thread(); i < l.size.x * l.size.y; i += FLOW_GROUP) {
-        ivec2 cell = cell_of(l, i);
-        int at = l.at + i;
+    EACH_CELL(l, cell) {
+        int at = place(l, cell);
         if (((cell.x + cell.y) & 1) == 0) z[at] = d[at] > 0.0 ? around(l, cell) : 0.0;
     }
     barrier();
 }
 
 void restrict_(Level fine, Level coarse) {
-    for (int i = thread(); i < coarse.size.x * coarse.size.y; i += FLOW_GROUP) {
-        ivec2 cell = cell_of(coarse, i);
+    EACH_CELL(coarse, cell) {
+        int own = place(coarse, cell);
         float sum = 0.0;
         for (int j = 0; j < 8; j++) {
             ivec2 o = ivec2(j % 2 * 2 + (j / 2 & 1), j / 2);
@@ -151,16 +126,15 @@ void restrict_(Level fine, Level coarse) {
             faces[k] = a[at];
             held[k] = d[at] - dot(flow_faces_of(a[at]), vec4(1.0));
         }
-        r[coarse.at + i] = sum;
-        put_coefficients(coarse.at + i, faces, held, lessThan(2 * cell + 1, fine.size));
+        r[own] = sum;
+        put_coefficients(own, faces, held, lessThan(2 * cell + 1, fine.size));
     }
     barrier();
 }
 
 void add(Level fine, Level coarse) { // to red cells; black ones are made anew
-    for (int i = thread(); i < fine.size.x * fine.size.y; i += FLOW_GROUP) {
-        ivec2 cell = cell_of(fine, i);
-        int at = fine.at + i;
+    EACH_CELL(fine, cell) {
+        int at = place(fine, cell);
         if (((cell.x + cell.y) & 1) != 0) continue;
         ivec2 own = cell >> 1, other = flow_others(cell, coarse.size);
         float more = 0.5625 * z_of(coarse, own);
@@ -174,8 +148,7 @@ void add(Level fine, Level coarse) { // to red cells; black ones are made anew
 
 void main() {
     int slice = int(gl_WorkGroupID.z);
-    if (flow_known[slice * FLOW_KNOWN + FLOW_DONE] > 0.0) return;
-    if (is_done(slice)) return;
+    if (flow_stopped(slice)) return;
     Level l = Level(level_size, 0);
     int depth = 0;
     load(l, slice);
@@ -194,6 +167,9 @@ void main() {
         sweep(fine, 1);
         sweep(fine, 0);
     }
-    for (int i = thread(); i < level_size.x * level_size.y; i += FLOW_GROUP)
-        z_out[uint(z_at + slice * level_size.x * level_size.y + i)] = z[i];
+    Level first = Level(level_size, 0);
+    EACH_CELL(first, cell) {
+        int own = place(first, cell);
+        z_out[uint(z_at + slice * level_size.x * level_size.y + own)] = z[own];
+    }
 }

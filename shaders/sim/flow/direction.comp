@@ -1,34 +1,18 @@
 // Conjugate gradients (Hestenes and Stiefel 1952; on the GPU: Krueger and Westermann 2003): the
-// next direction, and its image under the pressure's equation. With FLOW_PLAIN without a
-// preconditioner: z is the residual itself, and here it is seen whether the solve is done.
+// next direction, and its image under the pressure's equation. Without a preconditioner z is the
+// residual itself.
 layout(local_size_x = 256) in;
 #include "sim/flow/state.glsl"
 #include "sim/flow/levels.glsl"
 #include "sim/flow/solve.glsl"
 
 uniform int iteration;
-uniform float tolerance;
 layout(std430) readonly buffer FlowCoefficients { uvec2 flow_coefficients[]; };
 layout(std430) readonly buffer FlowZ { float z[]; };
+layout(std430) readonly buffer FlowResidual { float r[]; };
 layout(std430) readonly buffer FlowBefore { float before[]; };
 layout(std430) writeonly buffer FlowDirection { float direction[]; };
 layout(std430) writeonly buffer FlowImage { float image[]; };
-
-#ifdef FLOW_PLAIN
-bool is_done(int slice) {
-    uint at = uint(slice * FLOW_KNOWN);
-    float residual = flow_total(slice, FLOW_PARTS_R).x;
-    float reference = flow_total(slice, FLOW_PARTS_BUILD).x;
-    bool done = !(residual > tolerance * tolerance * reference);
-    if (gl_LocalInvocationIndex == 0u && gl_WorkGroupID.xy == uvec2(0u)) {
-        flow_known[at + FLOW_DONE] = done ? 1.0 : 0.0;
-        flow_known[at + FLOW_REFERENCE] = reference;
-        flow_known[at + FLOW_RESIDUAL] = residual;
-        flow_known[at + FLOW_ITERATIONS] = float(iteration);
-    }
-    return done;
-}
-#endif
 
 // Along the way: beta, of the last direction.
 float direction_of(ivec2 cell, int slice, float beta) {
@@ -38,7 +22,8 @@ float direction_of(ivec2 cell, int slice, float beta) {
     return beta == 0.0 ? z[at] : z[at] + beta * before[at];
 }
 
-float follow(ivec2 cell, int slice, float beta) {
+// Of FLOW_PARTS_PQ.
+vec4 follow(ivec2 cell, int slice, float beta) {
     uint at = flow_cell(cell, slice);
     uvec2 c = flow_coefficients[at];
     vec4 faces = flow_faces_of(c.x);
@@ -50,27 +35,24 @@ float follow(ivec2 cell, int slice, float beta) {
     float q = dot(faces, own - others) + uintBitsToFloat(c.y) * own;
     direction[at] = own;
     image[at] = q;
-    return own * q;
+    float d = dot(faces, vec4(1.0)) + uintBitsToFloat(c.y), weight = d > 0.0 ? 4.0 / d : 0.0;
+    float scaled = weight * weight * q;
+    return vec4(own * q, scaled * r[at], scaled * q, weight * weight * r[at] * r[at]);
 }
 
 void main() {
     int slice = int(gl_WorkGroupID.z), turn = iteration & 1;
     uint known = uint(slice * FLOW_KNOWN);
-#ifdef FLOW_PLAIN
-    // All groups decide, and from the same numbers: what the first one says is for later.
-    if (flow_known[known + FLOW_OVER] > 0.0 || is_done(slice)) return;
-#else
-    if (flow_known[known + FLOW_DONE] > 0.0) return;
-#endif
+    if (flow_stopped(slice)) return;
     float rz = flow_total(slice, FLOW_PARTS_RZ).x;
     float last = flow_known[known + FLOW_RZ + 1 - turn];
     float beta = iteration > 0 && last > 0.0 ? flow_clean(rz / last) : 0.0;
     if (gl_LocalInvocationIndex == 0u && gl_WorkGroupID.xy == uvec2(0u))
         flow_known[known + FLOW_RZ + turn] = rz;
-    float sum = 0.0;
+    vec4 sum = vec4(0.0);
     for (int i = int(gl_LocalInvocationIndex); i < FLOW_TILE * FLOW_TILE; i += FLOW_GROUP) {
         ivec2 cell = ivec2(gl_WorkGroupID.xy) * FLOW_TILE + ivec2(i % FLOW_TILE, i / FLOW_TILE);
         if (flow_inside(cell)) sum += follow(cell, slice, beta);
     }
-    flow_leave(slice, FLOW_PARTS_PQ, vec4(sum, 0.0, 0.0, 0.0));
+    flow_leave(slice, FLOW_PARTS_PQ, sum);
 }

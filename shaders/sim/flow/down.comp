@@ -3,7 +3,7 @@
 // something left. The sweep's result is not kept: up.comp makes what it needs of it again.
 //
 // With FLOW_FINEST, before that: the step of conjugate gradients that the last direction was found
-// for (Hestenes and Stiefel 1952).
+// for (Hestenes and Stiefel 1952), and whether the solve is done.
 layout(local_size_x = 256) in;
 #define FLOW_HALO 3
 #include "sim/flow/state.glsl"
@@ -18,61 +18,80 @@ layout(std430) readonly buffer FlowFrom { float from[]; };
 layout(std430) writeonly buffer FlowTo { float to[]; };
 #ifdef FLOW_FINEST
 uniform int iteration;
+uniform float tolerance;
 layout(std430) readonly buffer FlowDirection { float direction[]; };
 layout(std430) readonly buffer FlowImage { float image[]; }; // of the direction
 layout(std430) buffer FlowPressure { float pressure[]; };
 layout(std430) writeonly buffer FlowResidual { float residual[]; };
+
+// r of a cell once the direction is followed.
+float follow(uint at, bool is_air, bool own, flow_way way, float mean) {
+    float r = from[at];
+    r = way.leads ? r - way.stride * image[at] : is_air ? r - mean : 0.0;
+    if (!own) return r;
+    residual[at] = r;
+    if (way.leads) pressure[at] += way.stride * direction[at];
+    return r;
+}
+
+// The solve is done: the solution alone is wanted.
+void finish(int slice, flow_way way) {
+    for (int i = int(gl_LocalInvocationIndex); i < FLOW_TILE * FLOW_TILE; i += FLOW_GROUP) {
+        ivec2 cell = flow_tile_first() + ivec2(i % FLOW_TILE, i / FLOW_TILE);
+        if (!flow_inside(cell)) continue;
+        uint at = flow_cell(cell, slice);
+        pressure[at] += way.stride * direction[at];
+    }
+}
 #endif
 
-// Loads the tile; what remains of r, scaled to as if all cells had four neighbours, squared.
-float load(int slice) {
-#ifdef FLOW_FINEST
-    float mean = iteration == 0 ? flow_mean(slice, FLOW_PARTS_BUILD) : 0.0;
-    float stride = iteration > 0 ? flow_stride(slice, (iteration + 1) & 1) : 0.0;
-#endif
-    float sum = 0.0;
+// Red cells: what a sweep gives them. Black ones: r.
+void load(int slice, flow_way way, float mean) {
     for (int i = int(gl_LocalInvocationIndex); i < FLOW_TILE_CELLS; i += FLOW_GROUP) {
         ivec2 p = ivec2(i % FLOW_WIDE, i / FLOW_WIDE) - FLOW_HALO;
         ivec2 cell = flow_around(flow_tile_first() + p, level_size);
-        flow_tile_nothing(i);
+        flow_tile[i] = 0.0;
         if (!flow_within(cell, level_size)) continue;
-        flow_tile_coefficients(i, cell, slice);
+        float d = flow_own(flow_coefficients_of(cell, slice));
         uint at = flow_level_cell(cell, slice);
-        float r = from[uint(from_at) + at];
 #ifdef FLOW_FINEST
-        r = iteration == 0 ? (flow_tile_d[i] > 0.0 ? r - mean : 0.0) : r - stride * image[at];
-        bool own = all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, ivec2(FLOW_TILE))) &&
-                   flow_within(flow_tile_first() + p, level_size);
-        if (own) {
-            residual[at] = r;
-            if (iteration > 0) pressure[at] += stride * direction[at];
-            float left = 4.0 * r * flow_tile_d[i];
-            sum += left * left;
-        }
+        float r = follow(at, d > 0.0, flow_tile_owns(p), way, mean);
+#else
+        float r = from[uint(from_at) + at];
 #endif
-        flow_tile_r[i] = r;
-        if (((p.x + p.y) & 1) == 0) flow_tile_z[i] = r * flow_tile_d[i];
+        flow_tile[i] = ((p.x + p.y) & 1) == 0 ? r * d : r;
     }
-    return sum;
+    barrier();
+}
+
+// The k-th cell of a colour at most `border` around the tile: true when it is in the level.
+bool find(int k, int border, int color, int slice, out int i, out uvec2 c) {
+    ivec2 p = flow_tile_cell(k, border, color), cell = flow_around(flow_tile_first() + p, level_size);
+    i = flow_tile_at(p);
+    c = uvec2(0u);
+    if (!flow_within(cell, level_size)) return false;
+    c = flow_coefficients_of(cell, slice);
+    return true;
 }
 
 void main() {
-    int slice = int(gl_WorkGroupID.z), thread = int(gl_LocalInvocationIndex);
-    if (flow_known[slice * FLOW_KNOWN + FLOW_DONE] > 0.0) return;
-    float sum = load(slice);
+    int slice = int(gl_WorkGroupID.z), thread = int(gl_LocalInvocationIndex), i;
+    uvec2 c;
 #ifdef FLOW_FINEST
-    flow_leave(slice, FLOW_PARTS_R, vec4(sum, 0.0, 0.0, 0.0));
+    flow_way way = flow_begin(slice, iteration, tolerance);
+    if (way.done && way.leads) finish(slice, way);
+    if (way.done) return;
+    load(slice, way, way.leads ? 0.0 : flow_means(slice).x);
+#else
+    if (flow_stopped(slice)) return;
+    load(slice, flow_way(false, false, 0.0), 0.0);
 #endif
+    for (int k = thread; k < flow_tile_count(2); k += FLOW_GROUP)
+        if (find(k, 2, 1, slice, i, c))
+            flow_tile[i] = (flow_tile[i] + flow_tile_around(i, c.x)) * flow_own(c);
     barrier();
-    for (int k = thread; k < flow_tile_count(2); k += FLOW_GROUP) {
-        int i = flow_tile_at(flow_tile_cell(k, 2, 1));
-        flow_tile_z[i] = (flow_tile_r[i] + flow_tile_around(i)) * flow_tile_d[i];
-    }
-    barrier();
-    for (int k = thread; k < flow_tile_count(1); k += FLOW_GROUP) { // now what red cells have left
-        int i = flow_tile_at(flow_tile_cell(k, 1, 0));
-        flow_tile_z[i] = flow_tile_d[i] > 0.0 ? flow_tile_around(i) : 0.0;
-    }
+    for (int k = thread; k < flow_tile_count(1); k += FLOW_GROUP) // now what red cells have left
+        if (find(k, 1, 0, slice, i, c)) flow_tile[i] = flow_tile_around(i, c.x);
     barrier();
     const int half_ = FLOW_TILE / 2;
     for (int k = thread; k < half_ * half_; k += FLOW_GROUP) {
@@ -83,7 +102,7 @@ void main() {
             ivec2 o = ivec2(j % 2 * 2 + (j / 2 & 1), j / 2);
             ivec2 fine = flow_around(2 * coarse - 1 + o, level_size);
             if (!flow_within(fine, level_size) || !all(flow_asked(o, level_size))) continue;
-            r += flow_share(fine, coarse, coarse_size) * flow_tile_z[flow_tile_at(2 * p - 1 + o)];
+            r += flow_share(fine, coarse, coarse_size) * flow_tile[flow_tile_at(2 * p - 1 + o)];
         }
         to[uint(to_at) + uint((slice * coarse_size.y + coarse.y) * coarse_size.x + coarse.x)] = r;
     }

@@ -6,9 +6,7 @@ layout(local_size_x = 256) in;
 
 uniform int iteration; // that would be next
 layout(std430) readonly buffer FlowCoefficients { uvec2 flow_coefficients[]; };
-layout(std430) readonly buffer FlowFrom { float from[]; }; // residual
 layout(std430) readonly buffer FlowDirection { float direction[]; };
-layout(std430) readonly buffer FlowImage { float image[]; };
 layout(std430) readonly buffer FlowPressure { float pressure[]; };
 layout(std430) writeonly buffer FlowPressureTo { float pressure_to[]; };
 layout(std430) readonly buffer FlowVelocityFrom { vec2 velocity[]; };
@@ -26,8 +24,7 @@ float pressure_of(ivec2 cell, int slice, Way way) {
     return flow_clean(way.stride == 0.0 ? p : p + way.stride * direction[at]);
 }
 
-// What is left, squared.
-float project(ivec2 cell, int slice, Way way) {
+void project(ivec2 cell, int slice, Way way) {
     uint at = flow_cell(cell, slice), corner = flow_corner(cell, slice);
     uvec2 c = flow_coefficients[at];
     vec4 faces = flow_faces_of(c.x);
@@ -44,20 +41,15 @@ float project(ivec2 cell, int slice, Way way) {
         uint end = flow_corner(cell + ivec2(0, 1), slice);
         velocity_to[end] = vec2(0.0, velocity[end].y + faces.w * own);
     }
-    float r = way.stride == 0.0 ? from[at] : from[at] - way.stride * image[at];
-    float left = d > 0.0 ? 4.0 * r / d : 0.0;
-    return left * left;
 }
 
 void main() {
     int slice = int(gl_WorkGroupID.z);
-    bool done = flow_known[slice * FLOW_KNOWN + FLOW_DONE] > 0.0;
-    Way way = Way(0.0, flow_mean(slice, FLOW_PARTS_MEAN));
-    if (!done) way.stride = flow_stride(slice, (iteration + 1) & 1);
-    float sum = 0.0;
+    Way way = Way(0.0, flow_means(slice).y);
+    if (!flow_stopped(slice))
+        way.stride = flow_stride(slice, iteration, flow_total(slice, FLOW_PARTS_PQ));
     for (int i = int(gl_LocalInvocationIndex); i < FLOW_TILE * FLOW_TILE; i += FLOW_GROUP) {
         ivec2 cell = ivec2(gl_WorkGroupID.xy) * FLOW_TILE + ivec2(i % FLOW_TILE, i / FLOW_TILE);
-        if (flow_inside(cell)) sum += project(cell, slice, way);
+        if (flow_inside(cell)) project(cell, slice, way);
     }
-    flow_leave(slice, FLOW_PARTS_R, vec4(sum, 0.0, 0.0, 0.0));
 }

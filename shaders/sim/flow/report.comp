@@ -39,12 +39,12 @@ vec2 solves() {
     vec2 worst = vec2(0.0);
     for (int slice = 0; slice < FLOW_SLICES; slice++) {
         uint at = uint(slice * FLOW_KNOWN);
-        bool done = flow_known[at + FLOW_DONE] > 0.0;
-        float left = flow_total(slice, FLOW_PARTS_R).x;
-        if (done) left = flow_known[at + FLOW_RESIDUAL];
-        float reference = flow_known[at + FLOW_REFERENCE];
+        bool done = flow_known[at + FLOW_STOPPED] > 0.0;
         float taken = done ? flow_known[at + FLOW_ITERATIONS] : float(iterations);
-        worst = max(worst, vec2(taken, reference > 0.0 ? sqrt(left / reference) : 0.0));
+        vec2 left = vec2(flow_known[at + FLOW_RESIDUAL], flow_known[at + FLOW_REFERENCE]);
+        vec4 pq = flow_total(slice, FLOW_PARTS_PQ);
+        if (!done) left = flow_remains(slice, iterations, flow_stride(slice, iterations, pq), pq);
+        worst = max(worst, vec2(taken, left.y > 0.0 ? sqrt(left.x / left.y) : 0.0));
     }
     return worst;
 }

@@ -8,23 +8,21 @@
 
 #define FLOW_GROUP 256 // threads of these dispatches
 
-// Of each slice. Whoever finds the solve done says so; later dispatches return at once.
-#define FLOW_DONE 0       // 1: done
+// Of each slice.
+#define FLOW_STOPPED 0    // 1 + the iteration before which it was seen that the solve is done
 #define FLOW_REFERENCE 1  // square of what the residual is measured against
-#define FLOW_RESIDUAL 2   // square of the residual, newest
-#define FLOW_ITERATIONS 3 // so far
+#define FLOW_ITERATIONS 2 // that were taken, once it is done
+#define FLOW_RESIDUAL 3   // square of the residual, newest
 #define FLOW_RZ 4         // and 5, by turns: r * z
-#define FLOW_OVER 6       // 1: was done a dispatch before
 #define FLOW_KNOWN 8
 layout(std430) buffer FlowKnown { float flow_known[]; };
 
 // Parts of sums, of all kinds of a slice one after the other.
-#define FLOW_PARTS_BUILD 0 // reference; residual; cells of air; cells that something holds
-#define FLOW_PARTS_R 1     // square of the residual
+#define FLOW_PARTS_BUILD 0 // squares: reference, residual; cells of air; those that something holds
+#define FLOW_PARTS_MEAN 1  // residual; pressure before the step
 #define FLOW_PARTS_RZ 2
-#define FLOW_PARTS_PQ 3
-#define FLOW_PARTS_MEAN 4 // of build.comp: pressure before the step
-#define FLOW_PARTS 5
+#define FLOW_PARTS_PQ 3 // p q; and, weighed as the residual is, r q, q q, r r
+#define FLOW_PARTS 4
 layout(std430) buffer FlowParts { vec4 flow_parts[]; };
 
 // Tiles of level 0: of FLOW_TILE cells, and of 32 in build.comp.
@@ -72,20 +70,59 @@ vec4 flow_total(int slice, int kind) {
 
 // Where nothing holds the pressure no flow can fill the space or leave it, and a pressure that is
 // the same everywhere changes nothing: of the residual, and of the pressure before the step, what
-// differs from the mean is all that counts. `of`: FLOW_PARTS_BUILD or FLOW_PARTS_MEAN.
-float flow_mean(int slice, int of) {
+// differs from the mean is all that counts. Both means.
+vec2 flow_means(int slice) {
     const bool open = FLOW_FACE_LEFT == FLOW_OPEN || FLOW_FACE_RIGHT == FLOW_OPEN ||
                       FLOW_FACE_BOTTOM == FLOW_OPEN || FLOW_FACE_TOP == FLOW_OPEN;
-    if (open) return 0.0;
+    if (open) return vec2(0.0);
     vec4 sum = flow_total(slice, FLOW_PARTS_BUILD);
-    if (sum.w > 0.0 || sum.z == 0.0) return 0.0;
-    return (of == FLOW_PARTS_BUILD ? sum.y : flow_total(slice, of).x) / sum.z;
+    if (sum.w > 0.0 || sum.z == 0.0) return vec2(0.0);
+    return flow_total(slice, FLOW_PARTS_MEAN).xy / sum.z;
 }
 
-// How far the solution goes along the direction that it was led to.
-float flow_stride(int slice, int turn) {
-    float pq = flow_total(slice, FLOW_PARTS_PQ).x;
-    float rz = flow_known[slice * FLOW_KNOWN + FLOW_RZ + turn];
-    return pq > 0.0 ? flow_clean(rz / pq) : 0.0;
+// ---- what an iteration begins with ------------------------------------------------------------
+
+struct flow_way {
+    bool done;     // nothing more is to be computed
+    bool leads;    // along the last direction it still goes
+    float stride;  // so far
+};
+
+// Squares of the residual (after the last direction was followed) and of what it is measured
+// against. It is known from the sums beforehand, so that no dispatch is begun in vain.
+vec2 flow_remains(int slice, int iteration, float stride, vec4 pq) {
+    uint at = uint(slice * FLOW_KNOWN);
+    if (iteration == 0) return flow_total(slice, FLOW_PARTS_BUILD).yx;
+    float left = pq.w + stride * (stride * pq.z - 2.0 * pq.y);
+    return vec2(max(left, 0.0), flow_known[at + FLOW_REFERENCE]);
+}
+
+// How far the solution goes along the direction that the iteration before this one led to.
+float flow_stride(int slice, int iteration, vec4 pq) {
+    float rz = flow_known[slice * FLOW_KNOWN + FLOW_RZ + 1 - (iteration & 1)];
+    return pq.x > 0.0 ? flow_clean(rz / pq.x) : 0.0;
+}
+
+bool flow_stopped(int slice) { // in an earlier dispatch
+    return flow_known[slice * FLOW_KNOWN + FLOW_STOPPED] > 0.0;
+}
+
+// By all threads of all groups of the dispatch that an iteration begins with. All decide, from the
+// same numbers; what the first one notes they must not see yet.
+flow_way flow_begin(int slice, int iteration, float tolerance) {
+    uint at = uint(slice * FLOW_KNOWN);
+    float stopped = flow_known[at + FLOW_STOPPED];
+    if (stopped > 0.0 && stopped < float(iteration + 1)) return flow_way(true, false, 0.0);
+    vec4 pq = iteration == 0 ? vec4(0.0) : flow_total(slice, FLOW_PARTS_PQ);
+    float stride = iteration == 0 ? 0.0 : flow_stride(slice, iteration, pq);
+    vec2 left = flow_remains(slice, iteration, stride, pq);
+    bool done = !(left.x > tolerance * tolerance * left.y);
+    if (gl_LocalInvocationIndex == 0u && gl_WorkGroupID.xy == uvec2(0u)) {
+        flow_known[at + FLOW_RESIDUAL] = left.x;
+        flow_known[at + FLOW_REFERENCE] = left.y;
+        flow_known[at + FLOW_ITERATIONS] = float(iteration);
+        if (done) flow_known[at + FLOW_STOPPED] = float(iteration + 1);
+    }
+    return flow_way(done, iteration > 0, stride);
 }
 #endif

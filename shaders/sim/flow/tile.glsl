@@ -1,15 +1,12 @@
-// A tile of a level with what surrounds it, in shared memory: r, the pressure z, coefficients. Red
-// cells are those whose x + y is even.
+// A tile of a level with what surrounds it, in shared memory: the pressure z of cells, and r of
+// those whose z is not known yet. Red cells are those whose x + y is even.
 #ifndef SIM_FLOW_TILE_GLSL
 #define SIM_FLOW_TILE_GLSL
 
 // FLOW_HALO: cells around the tile, before the include
 const int FLOW_WIDE = FLOW_TILE + 2 * FLOW_HALO; // even
 const int FLOW_TILE_CELLS = FLOW_WIDE * FLOW_WIDE;
-shared float flow_tile_r[FLOW_TILE_CELLS];
-shared float flow_tile_z[FLOW_TILE_CELLS];
-shared float flow_tile_d[FLOW_TILE_CELLS]; // 1 / the cell's own coefficient; 0: it is no air
-shared uint flow_tile_a[FLOW_TILE_CELLS];
+shared float flow_tile[FLOW_TILE_CELLS];
 
 uniform vec2 level_cells;
 #define level_size ivec2(level_cells)
@@ -29,16 +26,20 @@ uint flow_level_cell(ivec2 cell, int slice) {
     return uint((slice * level_size.y + cell.y) * level_size.x + cell.x);
 }
 
-void flow_tile_coefficients(int i, ivec2 cell, int slice) {
-    uvec2 c = flow_coefficients[uint(level_at) + flow_level_cell(cell, slice)];
-    float d = dot(flow_faces_of(c.x), vec4(1.0)) + uintBitsToFloat(c.y);
-    flow_tile_a[i] = c.x;
-    flow_tile_d[i] = d > 0.0 ? 1.0 / d : 0.0;
+uvec2 flow_coefficients_of(ivec2 cell, int slice) {
+    return flow_coefficients[uint(level_at) + flow_level_cell(cell, slice)];
 }
 
-void flow_tile_nothing(int i) {
-    flow_tile_r[i] = flow_tile_z[i] = flow_tile_d[i] = 0.0;
-    flow_tile_a[i] = 0u;
+// 1 / the cell's own coefficient; 0: it is no air.
+float flow_own(uvec2 c) {
+    float d = dot(flow_faces_of(c.x), vec4(1.0)) + uintBitsToFloat(c.y);
+    return d > 0.0 ? 1.0 / d : 0.0;
+}
+
+// The tile's own, and in the level.
+bool flow_tile_owns(ivec2 p) {
+    return all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, ivec2(FLOW_TILE))) &&
+           flow_within(flow_tile_first() + p, level_size);
 }
 
 // The k-th cell of a colour, 0 red, among those at most `border` around the tile.
@@ -52,9 +53,8 @@ int flow_tile_count(int border) {
 }
 
 // Sum over faces of a times z of the neighbour.
-float flow_tile_around(int i) {
-    vec4 z = vec4(flow_tile_z[i - 1], flow_tile_z[i + 1], flow_tile_z[i - FLOW_WIDE],
-                  flow_tile_z[i + FLOW_WIDE]);
-    return dot(flow_faces_of(flow_tile_a[i]), z);
+float flow_tile_around(int i, uint faces) {
+    vec4 z = vec4(flow_tile[i - 1], flow_tile[i + 1], flow_tile[i - FLOW_WIDE], flow_tile[i + FLOW_WIDE]);
+    return dot(flow_faces_of(faces), z);
 }
 #endif

@@ -26,42 +26,51 @@ float interpolate(ivec2 fine, int slice) {
            0.1875 * (coarse(ivec2(other.x, own.y), slice) + coarse(ivec2(own.x, other.y), slice));
 }
 
+// Red cells: z before the sweep. Black ones: r.
 void load(int slice) {
     for (int i = int(gl_LocalInvocationIndex); i < FLOW_TILE_CELLS; i += FLOW_GROUP) {
         ivec2 p = ivec2(i % FLOW_WIDE, i / FLOW_WIDE) - FLOW_HALO;
         ivec2 cell = flow_around(flow_tile_first() + p, level_size);
-        flow_tile_nothing(i);
+        flow_tile[i] = 0.0;
         if (!flow_within(cell, level_size)) continue;
-        flow_tile_coefficients(i, cell, slice);
-        flow_tile_r[i] = from[uint(from_at) + flow_level_cell(cell, slice)];
-        if (((p.x + p.y) & 1) == 0 && flow_tile_d[i] > 0.0)
-            flow_tile_z[i] = flow_tile_r[i] * flow_tile_d[i] + interpolate(cell, slice);
+        float value = from[uint(from_at) + flow_level_cell(cell, slice)];
+        if (((p.x + p.y) & 1) == 0) {
+            float d = flow_own(flow_coefficients_of(cell, slice));
+            value = d > 0.0 ? value * d + interpolate(cell, slice) : 0.0;
+        }
+        flow_tile[i] = value;
     }
+    barrier();
 }
 
-// Updates a cell; r z of it, if it is the tile's own.
-float update(ivec2 p, int slice) {
+// Of a cell with r; r z of it, if it is the tile's own.
+float update(ivec2 p, float r, uvec2 c, uint at) {
     int i = flow_tile_at(p);
-    float value = (flow_tile_r[i] + flow_tile_around(i)) * flow_tile_d[i];
-    flow_tile_z[i] = value;
-    ivec2 cell = flow_tile_first() + p;
-    bool own = all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, ivec2(FLOW_TILE)));
-    if (!own || !flow_within(cell, level_size)) return 0.0;
-    z[uint(z_at) + flow_level_cell(cell, slice)] = value;
-    return value * flow_tile_r[i];
+    float value = (r + flow_tile_around(i, c.x)) * flow_own(c);
+    flow_tile[i] = value;
+    if (!flow_tile_owns(p)) return 0.0;
+    z[uint(z_at) + at] = value;
+    return value * r;
 }
 
 void main() {
     int slice = int(gl_WorkGroupID.z), thread = int(gl_LocalInvocationIndex);
-    if (flow_known[slice * FLOW_KNOWN + FLOW_DONE] > 0.0) return;
+    if (flow_stopped(slice)) return;
     load(slice);
-    barrier();
     float sum = 0.0;
-    for (int k = thread; k < flow_tile_count(1); k += FLOW_GROUP)
-        sum += update(flow_tile_cell(k, 1, 1), slice);
+    for (int k = thread; k < flow_tile_count(1); k += FLOW_GROUP) {
+        ivec2 p = flow_tile_cell(k, 1, 1), cell = flow_around(flow_tile_first() + p, level_size);
+        if (!flow_within(cell, level_size)) continue;
+        uvec2 c = flow_coefficients_of(cell, slice);
+        sum += update(p, flow_tile[flow_tile_at(p)], c, flow_level_cell(cell, slice));
+    }
     barrier();
-    for (int k = thread; k < flow_tile_count(0); k += FLOW_GROUP)
-        sum += update(flow_tile_cell(k, 0, 0), slice);
+    for (int k = thread; k < flow_tile_count(0); k += FLOW_GROUP) {
+        ivec2 p = flow_tile_cell(k, 0, 0), cell = flow_tile_first() + p;
+        if (!flow_within(cell, level_size)) continue;
+        uint at = flow_level_cell(cell, slice);
+        sum += update(p, from[uint(from_at) + at], flow_coefficients_of(cell, slice), at);
+    }
 #ifdef FLOW_FINEST
     flow_leave(slice, FLOW_PARTS_RZ, vec4(sum, 0.0, 0.0, 0.0));
 #endif
