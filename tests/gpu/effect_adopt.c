@@ -131,6 +131,7 @@ static effect *open_mesh(gpu *device, scene_mesh **mesh) {
     *mesh = effect_add_mesh(e, "crate.obj");
     gpu_test_ok(*mesh);
     pass *p = add(e, "geometry", NULL);
+    gpu_test_ok(pass_set_option(p, "mode", "raster")); // rays need no vertices
     gpu_test_ok(pass_add_mesh(p, *mesh) && pass_declare(p));
     gpu_test_ok(effect_set_output(e, pass_output(p, "albedo")));
     gpu_test_ok(effect_compile(e));

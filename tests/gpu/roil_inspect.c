@@ -59,7 +59,7 @@ static const char *const look_lua =
 static const char *const solid_lua =
     "local fx = effect { name = 'solid', fps = 24, frames = 9 }\n"
     "fx.camera = camera { eye = {0, -5, 0}, target = {0, 0, 0} }\n"
-    "local scene = geometry { mesh { 'wall.obj' } }\n"
+    "local scene = geometry { mesh { 'wall.obj' }, mode = 'raster' }\n" // what has a depth buffer
     "local shown = final { source = scene, bloom = bloom { bright { scene } } }\n"
     "fx.output = shown.color\n"
     "return fx\n";
