@@ -3,29 +3,99 @@
 #if defined(STAGE_PROJECT) && BLEND != BLEND_SORTED
 
 // A point of the picture, in the four pixels around it: whatever its place, all of it is in them.
-void add_point(splat s, vec3 at, vec3 light, float opacity) {
-    vec2 corner = floor(at.xy - 0.5), part = at.xy - 0.5 - corner;
-    opacity *= splat_visible(ivec2(floor(at.xy)), at.z);
-    if (opacity <= 0.0) return;
-    for (int i = 0; i < 4; i++) {
-        ivec2 side = ivec2(i & 1, i >> 1), pixel = ivec2(corner) + side;
-        if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(picture)))) continue;
-        vec2 share = mix(1.0 - part, part, vec2(side));
-        splat_add(splat_part(light, opacity * share.x * share.y, at.z, s.seed, pixel), pixel);
+struct point {
+    ivec2 corner; // the first of the four
+    vec2 part;    // of it that is in the others, by x and y
+    float depth;  // m
+    vec3 light;
+    float opacity;
+    uint seed;
+};
+
+// Streaks are points no more than a pixel apart.
+int count_points(looks l) {
+    return max(int(ceil(distance(l.s.at, l.before.xy))), 1);
+}
+
+point point_of(looks l, int index, int count) {
+    vec4 mean = look_mean(l.s);
+    vec3 at = vec3(l.s.at, l.s.depth);
+    if (count > 1) at = mix(at, l.before, (float(index) + 0.5) / float(count));
+    vec2 corner = floor(at.xy - 0.5);
+    float opacity = l.s.opacity * mean.a * l.s.radius * l.s.radius / float(count);
+    return point(ivec2(corner), at.xy - 0.5 - corner, at.z, l.s.color * mean.rgb,
+                 opacity * splat_visible(ivec2(floor(at.xy)), at.z), l.s.seed);
+}
+
+// What of it is in the pixel of that number, 0..3.
+splat_sum point_part(point p, int number, out ivec2 pixel) {
+    ivec2 side = ivec2(number & 1, number >> 1);
+    vec2 share = mix(1.0 - p.part, p.part, vec2(side));
+    pixel = p.corner + side;
+    bool outside = any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(picture)));
+    if (outside || p.opacity <= 0.0) return splat_sum(uvec3(0u), 0u, 0u);
+    return splat_part(p.light, p.opacity * share.x * share.y, p.depth, p.seed, pixel);
+}
+
+#if GATHERED
+// Where threads wait for memory rather than for each other, neighbours add what lies side by side:
+// the two pixels of a row, and their channels. The same numbers, in fewer accesses.
+const uint PARTS = 4u * CHANNELS;
+shared uint gathered[SCANNERS * PARTS], gathered_at[SCANNERS], gathered_most;
+
+void put_part(uint place, splat_sum sum) {
+    for (uint i = 0u; i < 3u; i++) gathered[place + i] = sum.color[i];
+#if BLEND == BLEND_WEIGHTED
+    gathered[place + 3u] = sum.weight;
+    gathered[place + 4u] = sum.log;
+#endif
+}
+
+void put_point(point p) {
+    uint thread = gl_LocalInvocationIndex;
+    ivec2 pixel;
+    gathered_at[thread] = uint(p.corner.y * int(picture.x) + p.corner.x); // beyond an edge all is 0
+    for (int k = 0; k < 4; k++) put_part(PARTS * thread + CHANNELS * uint(k), point_part(p, k, pixel));
+}
+
+void add_gathered() {
+    for (uint i = gl_LocalInvocationIndex; i < SCANNERS * PARTS; i += SCANNERS) {
+        uint part = gathered[i], within = i % PARTS, row = within / (2u * CHANNELS);
+        if (part == 0u) continue;
+        uint pixel = gathered_at[i / PARTS] + row * uint(picture.x);
+        atomicAdd(splat_sums[CHANNELS * pixel + within % (2u * CHANNELS)], part);
     }
 }
 
-// A streak is points no more than a pixel apart.
-void add_small(looks l) {
-    vec4 mean = look_mean(l.s);
-    float whole = l.s.opacity * mean.a * l.s.radius * l.s.radius;
-    int count = max(int(ceil(distance(l.s.at, l.before.xy))), 1);
-    for (int i = 0; i < count; i++) {
-        float part = (float(i) + 0.5) / float(count);
-        vec3 at = count > 1 ? mix(vec3(l.s.at, l.s.depth), l.before, part) : vec3(l.s.at, l.s.depth);
-        add_point(l.s, at, l.s.color * mean.rgb, whole / float(count));
+void add_small(looks l, bool small) {
+    int count = small ? count_points(l) : 0;
+    if (gl_LocalInvocationIndex == 0u) gathered_most = 0u;
+    barrier();
+    atomicMax(gathered_most, uint(count));
+    barrier();
+    for (int i = 0; i < int(gathered_most); i++) {
+        if (i < count)
+            put_point(point_of(l, i, count));
+        else
+            for (uint k = 0u; k < PARTS; k++) gathered[PARTS * gl_LocalInvocationIndex + k] = 0u;
+        barrier();
+        add_gathered();
+        barrier();
     }
 }
+#else
+void add_small(looks l, bool small) {
+    int count = small ? count_points(l) : 0;
+    for (int i = 0; i < count; i++) {
+        point p = point_of(l, i, count);
+        for (int k = 0; k < 4 && p.opacity > 0.0; k++) {
+            ivec2 pixel;
+            splat_sum part = point_part(p, k, pixel);
+            if (part.color != uvec3(0u) || part.log != 0u) splat_add(part, pixel);
+        }
+    }
+}
+#endif
 
 void count_tiles(splat s) {
     ivec4 box = splat_tile_box(s);
@@ -41,15 +111,7 @@ void add_tiles(splat s) {
             if (splat_meets(s, ivec2(x, y))) splat_add_tile(s, ivec2(x, y));
 }
 
-void main() {
-    looks l = look_at(slot_of_thread());
-    if (!l.seen) return;
-    if (l.s.radius <= SMALL && distance(l.s.at, l.before.xy) <= SHORT) {
-        count_small(1);
-        add_small(l);
-        return;
-    }
-    count_large(1);
+void add_large(looks l) {
     uint index = atomicAdd(splat_found, 1u);
     splat s = look_spread(l);
     if (index < records_most) {
@@ -58,5 +120,14 @@ void main() {
     } else {
         add_tiles(s);
     }
+}
+
+void main() {
+    looks l = look_at(slot_of_thread());
+    bool small = l.seen && l.s.radius <= SMALL && distance(l.s.at, l.before.xy) <= SHORT;
+    count_small(small ? 1 : 0);
+    count_large(l.seen && !small ? 1 : 0);
+    add_small(l, small);
+    if (l.seen && !small) add_large(l);
 }
 #endif
