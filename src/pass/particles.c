@@ -200,7 +200,7 @@ bool particles_fill(pass *p, const shader_binary *binary, unsigned char *block) 
 
 bool particles_rehearse(pass *p) {
     particles_rates rates;
-    return particles_rates_of(p, &rates);
+    return particles_rates_of(p, &rates) && particles_find_places(p);
 }
 
 bool particles_record(pass *p) {

@@ -94,6 +94,7 @@ const field *particles_field(const pass *p, const char *name); // NULL: not give
 
 // particles_time.c
 bool particles_rates_of(const pass *p, particles_rates *out); // as of the host's time
+bool particles_find_places(const pass *p); // where the shape and the mesh are then
 int64_t particles_left(const pass *p, double time);
 bool particles_advance(pass *p); // to the host's time, as far as one submit goes
 

@@ -63,7 +63,8 @@ static bool find_births(const pass *p, particles_state *s) {
     return true;
 }
 
-static bool find_places(const pass *p, particles_state *s) {
+bool particles_find_places(const pass *p) {
+    particles_state *s = particles_of(p);
     const field *shape = particles_field(p, "shape");
     s->box = (box3){{0, 0, 0}, {0, 0, 0}};
     if (shape && !p->mesh_count) {
@@ -108,17 +109,23 @@ static bool run(pass *p, const shader_binary *binary, gpu_pipeline *pipeline,
 
 static bool give_birth(pass *p, particles_state *s) {
     s->lost.births += s->births.burst + s->births.steady;
-    return find_places(p, s) && pass_fill_block(p, &s->birth, s->birth_block) &&
+    return particles_find_places(p) && pass_fill_block(p, &s->birth, s->birth_block) &&
            run(p, &s->birth, s->birth_pipeline, s->birth_block, s->births.burst + s->births.steady);
 }
 
-static bool step(pass *p, particles_state *s) {
-    if (!find_births(p, s)) return false;
+static bool move(pass *p, particles_state *s) {
     uint32_t used = pass_particles_used(p);
     if (!used) return true;
     bool born = s->births.burst + s->births.steady > 0;
     return pass_prepare(p) && (!born || give_birth(p, s)) &&
            run(p, &p->binary, p->pipeline, p->block, used);
+}
+
+static bool step(pass *p, particles_state *s) {
+    particles_clock before = s->clock;
+    bool done = find_births(p, s) && move(p, s);
+    if (!done) s->clock = before; // no number of it was found: it is still to be done
+    return done;
 }
 
 // Air that a field samples and that has not come to the frame yet, as where a submit was too short:
@@ -146,6 +153,7 @@ static bool waits(const pass *p) {
 bool particles_advance(pass *p) {
     particles_state *s = particles_of(p);
     int64_t left = waits(p) ? 0 : particles_left(p, p->host->context->time), limit = most(p);
+    if (s->fresh && !particles_find_places(p)) return false; // told before the first birth
     if (s->fresh) s->clock = (particles_clock){0};
     s->fresh = false;
     if (left > limit) left = limit;
@@ -181,19 +189,27 @@ static size_t readouts(const pass *p, pass_readout *out, size_t capacity) {
     return COUNT_OF(all);
 }
 
+// As the numbers are now, if all live to the longest.
+static double most_alive(const pass *p) {
+    particles_rates rates;
+    if (!particles_rates_of(p, &rates)) return 0;
+    double life =
+        fmax((double)pass_evaluate(p, "lifetime_min"), (double)pass_evaluate(p, "lifetime_max"));
+    double bursts = rates.burst_period > 0 ? ceil(life / rates.burst_period) : 1;
+    return rates.rate * life + bursts * rates.burst;
+}
+
 // More than there are slots for, so that who is born takes the place of one that could live on; or
 // births that came to nothing.
 static const char *trouble(const pass *p) {
     particles_state *s = particles_of(p);
     double lost = particles_lost_share(p);
-    double rate = (double)pass_evaluate(p, "rate");
-    double life =
-        fmax((double)pass_evaluate(p, "lifetime_min"), (double)pass_evaluate(p, "lifetime_max"));
-    if (rate * life > s->desc.count)
+    double alive = most_alive(p);
+    if (alive > s->desc.count)
         snprintf(s->trouble, sizeof s->trouble,
-                 "the oldest die early, to make room: set 'count' to %.0f, which is 'rate' times "
-                 "'lifetime' (it is %u)",
-                 ceil(rate * life), s->desc.count);
+                 "the oldest die early, to make room: set 'count' to %.0f, as many as live at a "
+                 "time by 'rate', 'burst' and 'lifetime' (it is %u)",
+                 ceil(alive), s->desc.count);
     else if (lost > most_lost)
         snprintf(
             s->trouble, sizeof s->trouble,

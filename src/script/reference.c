@@ -228,8 +228,8 @@ static const script_object objects[] = {
      .args = KEYS(KEY("mesh", "mesh { \"data/ball.obj\" }", "on whose surface they are born; it may move")),
      .keys = KEYS(
         KEY("count", "65536 [1, 16777216]",
-            "how many there are at a time: of more, the oldest make room. 'rate' times 'lifetime' is "
-            "enough"),
+            "how many live at a time: of more, the oldest make room. 'rate' times 'lifetime', and "
+            "those of bursts, are enough"),
         KEY("lifetime", "2 s", "or {0.5, 2}: the shortest and the longest"),
         KEY("shape", "field or mesh",
             "they are born where the field is above 0.5, evenly, or on the mesh, evenly; without: "

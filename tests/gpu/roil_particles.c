@@ -89,9 +89,62 @@ static void short_submits_change_nothing(void **state) {
     roil_destroy(window);
 }
 
+static roil_effect *open_alone(roil *r, const char *keys) {
+    char path[512], text[2048];
+    snprintf(text, sizeof text,
+             "local fx = effect { name = 'sparks', fps = 24, frames = 1000 }\n"
+             "local sparks = particles { count = 100, %s }\n"
+             "fx.output = shader { 'map.comp', from = sparks }.color\n"
+             "return fx\n",
+             keys);
+    write_text("map.comp", SHADER, path);
+    roil_effect *e = load_text(r, "alone.lua", text);
+    ok(roil_prepare(e, SIDE, SIDE));
+    return e;
+}
+
+static void what_fails_at_a_step_is_told(void **state) {
+    roil_effect *e = open_alone(*state, "rate = function(t) assert(t < 0.1) return 9 end");
+    ok(roil_render(e, 2));
+    expect_error(roil_render(e, 5), "rate");
+    expect_error(roil_render(e, 6), "particles");
+    roil_unload(e);
+    e = open_alone(*state, "rate = 9, gravity = function(t) assert(t < 0.1) return 9 end");
+    ok(roil_render(e, 2));
+    expect_error(roil_render(e, 5), "gravity");
+    roil_unload(e);
+    e = open_alone(*state, "rate = 9, shape = position.z");
+    expect_error(roil_render(e, 2), "'shape' has no end");
+    roil_unload(e);
+}
+
+static double readout(roil_effect *e, const char *name) {
+    roil_readout all[32];
+    size_t count = roil_readouts(e, all, COUNT_OF(all));
+    for (size_t i = 0; i < count && i < COUNT_OF(all); i++)
+        if (strcmp(all[i].name, name) == 0) return all[i].value;
+    fail_msg("no readout '%s' of %zu", name, count);
+    return 0;
+}
+
+static void they_tell_of_themselves(void **state) {
+    roil_simulation s;
+    roil_effect *e = open_alone(*state, "rate = 60, burst = 40, burst_period = 0.5, lifetime = 1");
+    ok(roil_render(e, 25)); // a second
+    assert_true(readout(e, "born") == 140 && readout(e, "slots") == 100);
+    assert_true(readout(e, "steps") == 60 && readout(e, "particle steps") > 0);
+    assert_true(roil_get_simulation(e, &s));
+    assert_true(fabs(s.reached - 1) < 1e-9);
+    assert_non_null(s.trouble);
+    if (!strstr(s.trouble, "'count' to 140")) fail_msg("%s", s.trouble);
+    roil_unload(e);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_jump_is_as_good_as_every_frame),
+        cmocka_unit_test(what_fails_at_a_step_is_told),
+        cmocka_unit_test(they_tell_of_themselves),
         cmocka_unit_test(short_submits_change_nothing),
     };
     return test_run(tests);

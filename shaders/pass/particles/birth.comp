@@ -17,15 +17,16 @@ uniform float spread;
 uniform float variation;
 uniform float inherit;
 uniform float mesh_factor;
-uniform float time_step; // s
-uniform vec3 box_min;    // around the shape (m)
+// The host's:
+uniform float time_step;        // s
+uniform vec3 box_min;           // around the shape (m)
 uniform vec3 box_max;
-uniform uint birth_first;        // slot of the step's first newborn
-uniform uint birth_count;        // of this step
-uniform uint birth_burst;        // the first so many of them are born at once,
-uniform float birth_burst_rest;  // so long before the end of the step (s)
-uniform float birth_first_rest;  // the next one so long before it,
-uniform float birth_every;       // those after it later by so much each
+uniform uint birth_first;       // slot of the step's first newborn
+uniform uint birth_count;       // of this step
+uniform uint birth_burst;       // the first so many of them are born at once,
+uniform float birth_burst_rest; // so long before the end of the step (s)
+uniform float birth_first_rest; // the next one so long before it,
+uniform float birth_every;      // those after it later by so much each
 #if MESH
 uniform uint mesh_triangles;
 uniform mat4 mesh_from; // mesh to world, at the begin of the step
