@@ -163,6 +163,15 @@ float envelope(float age) { // of 0 to 1
     return smoothstep(0.0, fade, age) * smoothstep(0.0, fade, 1.0 - age);
 }
 
+void mark_tiles(vec2 at, float reach, int slice, uint which) {
+    ivec2 low = max(ivec2(floor((at - reach) / float(TEMPLATES_TILE))), ivec2(0));
+    ivec2 high = min(ivec2(floor((at + reach) / float(TEMPLATES_TILE))), TEMPLATES_TILES - 1);
+    for (int y = low.y; y <= high.y; y++)
+        for (int x = low.x; x <= high.x; x++)
+            atomicOr(template_masks[template_mask_at(parity, slice, ivec2(x, y)) + (which >> 5)],
+                     1u << (which & 31u));
+}
+
 void main() {
     uint i = gl_GlobalInvocationID.x, which = first + i;
     int slice = int(gl_GlobalInvocationID.y);
@@ -184,7 +193,13 @@ void main() {
     float factor = strength * (acts ? scale_at(place.yz, half_side, slice) : 0.0);
     float now = envelope(life.x / life.y), turn = place.x + radians(angle);
     bool pushes = KIND == KIND_VELOCITY;
-    templates[template_at(0u, slice, which)] = vec4(place.yz, factor != 0.0 ? half_side : 0.0, factor);
+    if (factor != 0.0) {
+        float reach = half_side * (abs(cos(turn)) + abs(sin(turn))); // of the turned square
+        mark_tiles(place.yz, reach, slice, which);
+    } else {
+        half_side = 0.0;
+    }
+    templates[template_at(0u, slice, which)] = vec4(place.yz, half_side, factor);
     templates[template_at(1u, slice, which)] =
         vec4(cos(turn), sin(turn), pushes ? now : blend * now, pushes ? -1.0 - tile : tile);
     templates[template_at(2u, slice, which)] = life;

@@ -62,12 +62,36 @@ bool slices_add_templates(pass *p, pass *group, const picture *image, uint32_t c
     return true;
 }
 
+// ---- tiles ------------------------------------------------------------------------------------
+
+// Cells along a side: 16, or as many as leave at most 32 tiles along each side of a slice.
+static uint32_t tile_side(const slices_flow *f) {
+    const uint32_t *size = f->desc.size, most = size[0] > size[1] ? size[0] : size[1];
+    return 16 * ((most + 511) / 512);
+}
+
+static uint64_t mask_bytes(const slices_flow *f) {
+    const uint32_t *size = f->desc.size, side = tile_side(f);
+    const uint64_t words = (slices_templates_of(f)->total + 31) / 32;
+    const uint64_t tiles = (uint64_t)((size[0] + side - 1) / side) * ((size[1] + side - 1) / side);
+    return 2 * 4 * tiles * (words ? words : 1) * f->desc.count;
+}
+
+size_t slices_templates_defines(const slices_flow *f, shader_define *out) {
+    arena *memory = f->pass->host->memory;
+    const slices_templates *t = slices_templates_of(f);
+    out[0] = (shader_define){"TEMPLATES_TOTAL", arena_format(memory, "%u", t->total)};
+    out[1] = (shader_define){"TEMPLATES_TILE", arena_format(memory, "%u", tile_side(f))};
+    return SLICES_TEMPLATES_DEFINES;
+}
+
 // ---- building: of a group ---------------------------------------------------------------------
 
 static bool compile_group(pass *p) {
     const template_group *g = p->state;
-    shader_define defines[FLOW_MAX_DEFINES];
+    shader_define defines[FLOW_MAX_DEFINES + SLICES_TEMPLATES_DEFINES];
     size_t count = flow_defines(g->flow->solver, defines);
+    count += slices_templates_defines(g->flow, defines + count);
     return pass_compile(p, p->shader, SHADER_COMPUTE, defines, count, &p->binary);
 }
 
@@ -113,7 +137,7 @@ bool slices_templates_fill_group(pass *p, const shader_binary *binary, unsigned 
     pass_write_member(binary, block, "key", &key, sizeof key);
     pass_write_member(binary, block, "first", &g->first, sizeof g->first);
     pass_write_member(binary, block, "count", &g->count, sizeof g->count);
-    pass_write_member(binary, block, "total", &t->total, sizeof t->total);
+    pass_write_member(binary, block, "parity", &t->parity, sizeof t->parity);
     pass_write_member(binary, block, "tile", &tile, sizeof tile);
     pass_write_member(binary, block, "time_step", &step, sizeof step);
     pass_write_member(binary, block, "box_min", low, sizeof low);
@@ -142,7 +166,11 @@ static bool allocate(slices_flow *f) {
     gpu *device = f->pass->host->device;
     uint32_t count = t->total ? t->total : 1; // there are none but by hand
     if (!slices_templates_make_images(f)) return false;
-    if (t->instances) return true;
+    if (!t->masks)
+        t->masks = gpu_buffer_create(
+            device, &(gpu_buffer_desc){.label = "tiles of templates", .size = mask_bytes(f)});
+    t->unmarked = true;
+    if (!t->masks || t->instances) return t->masks != NULL;
     t->instances =
         gpu_buffer_create(device, &(gpu_buffer_desc){.label = "templates",
                                                      .size = 16ull * ROWS * count * f->desc.count});
@@ -154,6 +182,7 @@ static void destroy(slices_flow *f) {
     slices_templates *t = slices_templates_of(f);
     slices_templates_destroy_draw(f);
     gpu_buffer_destroy(f->pass->host->device, t->instances);
+    gpu_buffer_destroy(f->pass->host->device, t->masks);
     *t = (slices_templates){0};
 }
 
@@ -171,7 +200,9 @@ static bool run_group(const template_group *g) {
 static bool run(slices_flow *f) {
     slices_templates *t = slices_templates_of(f);
     if (t->fresh) gpu_buffer_fill(f->pass->host->device, t->instances, 0);
-    t->fresh = false;
+    if (t->unmarked) gpu_buffer_fill(f->pass->host->device, t->masks, 0);
+    t->fresh = t->unmarked = false;
+    t->parity = 1 - t->parity;
     for (uint32_t i = 0; i < t->group_count; i++)
         if (!run_group(t->groups[i])) return false;
     return slices_templates_draw(f);

@@ -16,8 +16,9 @@ enum { CELLS = 4 };
 bool slices_templates_compile_draw(slices_flow *f) {
     slices_templates *t = slices_templates_of(f);
     arena *memory = f->pass->host->memory;
-    shader_define defines[FLOW_MAX_DEFINES + 5];
+    shader_define defines[FLOW_MAX_DEFINES + SLICES_TEMPLATES_DEFINES + 5];
     size_t count = flow_defines(f->solver, defines);
+    count += slices_templates_defines(f, defines + count);
     int hand = t->hand.taken ? SLICES_HAND_MOST : 0;
     defines[count++] = (shader_define){"TEMPLATES_CELLS", arena_format(memory, "%d", CELLS)};
     defines[count++] = (shader_define){"HAND", arena_format(memory, "%d", hand)};
@@ -106,6 +107,8 @@ static size_t override(const slices_flow *f, const shader_binary *binary,
         *binding = (gpu_binding){0};
         if (strcmp(name, "Templates") == 0)
             binding->buffer = t->instances;
+        else if (strcmp(name, "TemplateMasks") == 0)
+            binding->buffer = t->masks;
         else if (strcmp(name, "TemplateImages") == 0)
             *binding = (gpu_binding){.image = t->images, .sampler = GPU_LINEAR_CLAMP};
         else
@@ -141,7 +144,7 @@ bool slices_templates_draw(slices_flow *f) {
     if (t->repainted && !write_images(t, f->pass->host->device)) return false;
     t->repainted = false;
     pass_write_member(&t->draw, t->block, "alone", &alone, sizeof alone);
-    pass_write_member(&t->draw, t->block, "total", &t->total, sizeof t->total);
+    pass_write_member(&t->draw, t->block, "parity", &t->parity, sizeof t->parity);
     pass_write_member(&t->draw, t->block, "time_step", &step, sizeof step);
     slices_hand_fill(f, &t->draw, t->block);
     gpu_dispatch_desc desc = {.pipeline = t->pipeline,

@@ -30,13 +30,20 @@ typedef struct slices_templates {
     gpu_image *images;      // these, below each other
     bool repainted;         // tiles are others than those of the image
     gpu_buffer *instances;
-    bool fresh; // they begin anew with the next step
+    gpu_buffer *masks; // of tiles: which reach there
+    uint32_t parity;   // half of the masks, that the next step writes
+    bool fresh;        // instances begin anew with the next step
+    bool unmarked;     // masks hold nothing that is known
 } slices_templates;
 
 static inline slices_templates *slices_templates_of(const slices_flow *f) {
     return f->templates_state;
 }
 slices_templates *slices_templates_make(slices_flow *f); // again: those that are there
+
+// What shaders of templates are compiled with, besides what the solver wants.
+enum { SLICES_TEMPLATES_DEFINES = 2 };
+size_t slices_templates_defines(const slices_flow *f, shader_define *out);
 
 // slices_templates_draw.c
 bool slices_templates_compile_draw(slices_flow *f);

@@ -348,6 +348,53 @@ static void groups_of_both_kinds_are_drawn_over_each_other(void **state) {
     templates_close(&t);
 }
 
+// Alpha of all instances of a slice in a cell, one blended over the other.
+static double alpha_at(const template_seen *seen, uint32_t count, int x, int y) {
+    double out = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const template_seen *s = &seen[i];
+        if (s->half_side <= 0) continue;
+        double dx = (x + 0.5 - (double)s->x) / (double)s->half_side;
+        double dy = (y + 0.5 - (double)s->y) / (double)s->half_side;
+        double u = (double)s->cosine * dx + (double)s->sine * dy;
+        double v = (double)s->cosine * dy - (double)s->sine * dx;
+        if (fabs(u) > 1 || fabs(v) > 1) continue;
+        double alpha = (double)s->alpha * exp(-0.5 * (u * u + v * v) / 0.09);
+        out = 1 - (1 - out) * (1 - alpha_of_64(alpha));
+    }
+    return out;
+}
+
+// Templates of all sizes, across tiles and beyond the slice, are where their instances are, in the
+// first step and in later ones.
+static void what_reaches_a_cell_is_drawn_there(void **state) {
+    static const flow_desc oblong = {.size = {64, 48}, .slices = 2};
+    templates_world t;
+    templates_open(&t, *state, &oblong, 0.02);
+    GROUP(&t, 30, blue, {"size_min", 0.15f}, {"size_max", 0.25f}, {"blend", 0.3f});
+    GROUP(&t, 10, blue, {"size_min", 0.3f}, {"size_max", 1.5f}, {"blend", 0.02f});
+    templates_build(&t);
+    double worst = 0, sum = 0;
+    for (int k = 0; k < 3; k++) {
+        templates_run(&t, k + 1, false);
+        float *drawn = templates_read_flow(&t, "FlowTemplates");
+        for (int slice = 0; slice < 2; slice++) {
+            template_seen *seen = templates_read(&t, (uint32_t)slice);
+            for (int i = 0; i < 64 * 48; i++) {
+                double alpha = alpha_at(seen, 40, i % 64, i / 64);
+                worst = fmax(worst, fabs(alpha - (double)drawn[2 * (64 * 48 * slice + i)]));
+                sum += alpha;
+            }
+            mem_free(seen);
+        }
+        mem_free(drawn);
+    }
+    print_message("alpha of 40 is off by %.4f at most, mean %.3f\n", worst, sum / (6 * 64 * 48));
+    assert_true(worst < 0.06); // small ones are sampled on coarse levels
+    assert_true(sum / (6 * 64 * 48) > 0.1);
+    templates_close(&t);
+}
+
 static void they_come_and_go_by_fade(void **state) {
     templates_world t;
     templates_open(&t, *state, &small, 0.01);
@@ -442,6 +489,7 @@ int main(void) {
         cmocka_unit_test(border_fades_as_a_gaussian),
         cmocka_unit_test(pictures_and_velocities_turn_together),
         cmocka_unit_test(groups_of_both_kinds_are_drawn_over_each_other),
+        cmocka_unit_test(what_reaches_a_cell_is_drawn_there),
         cmocka_unit_test(they_come_and_go_by_fade),
         cmocka_unit_test(one_is_put_by_hand_and_goes_again),
         cmocka_unit_test(hand_makes_room_for_the_newest),

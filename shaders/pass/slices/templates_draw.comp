@@ -1,7 +1,7 @@
 // Puts the templates of all groups into all slices of a flow: the pressure that the solver blends
 // in, and forces. A thread does cells above each other, so that threads side by side write side by
-// side, and a template is looked at once for all of them.
-layout(local_size_x = 32, local_size_y = 2, local_size_z = 1) in;
+// side, and a template is looked at once for all of them; it looks at those of its tile alone.
+layout(local_size_x = 16, local_size_y = 4, local_size_z = 1) in;
 #if PUSHES
 #define FLOW_SOURCES
 #endif
@@ -38,58 +38,57 @@ vec4 tile_at(vec2 at, float tile, float level) {
                       vec2(0.5 + 0.5 * at.x, (tile + 0.5 - 0.5 * at.y) * size.x / size.y), level);
 }
 
-uint count_of() {
-#if HAND
-    return total + hand_count;
-#else
-    return total;
-#endif
+flow_template pressed[TEMPLATES_CELLS];
+vec2 pushed[TEMPLATES_CELLS];
+
+// `place`, `look`: rows 0 and 1 of an instance.
+void add(vec4 place, vec4 look, ivec2 low) {
+    float level = log2(float(textureSize(TemplateImages, 0).x) * 0.5 / place.z);
+    bool pushes = look.w < 0.0;
+    EACH_CELL {
+        vec2 d = (vec2(low) + vec2(0.5, float(c) + 0.5) - place.xy) / place.z;
+        vec2 at = vec2(look.x * d.x + look.y * d.y, look.x * d.y - look.y * d.x);
+        if (max(abs(at.x), abs(at.y)) > 1.0) continue;
+        vec4 held = tile_at(at, pushes ? -1.0 - look.w : look.w, max(level, 0.0));
+        if (pushes) {
+            vec2 v = place.w * look.z * held.xy;
+            pushed[c] += vec2(look.x * v.x - look.y * v.y, look.y * v.x + look.x * v.y);
+        } else if (held.w > 0.0) {
+            flow_blend(pressed[c], alpha_here(min(look.z * held.w, 1.0)),
+                       place.w * held.z / held.w);
+        }
+    }
 }
 
-// Row 0 or 1 of an instance, or of one by hand; the former is 0 where it is in another slice.
-vec4 row_of(uint row, int slice, uint i) {
-#if HAND
-    if (i >= total) {
-        uint at = 3u * (i - total);
-        float where = hand[at + 2u].x;
-        return where < 0.0 || int(where) == slice ? hand[at + row] : vec4(0.0);
+void add_groups(ivec2 low, int slice) {
+    ivec2 tile = low / TEMPLATES_TILE;
+    uint now = template_mask_at(parity, slice, tile), last = template_mask_at(1u - parity, slice, tile);
+    for (int w = 0; w < TEMPLATES_WORDS; w++) {
+        uint bits = template_masks[now + uint(w)];
+        while (bits != 0u) {
+            uint i = uint(w * 32 + findLSB(bits));
+            bits &= bits - 1u;
+            add(templates[template_at(0u, slice, i)], templates[template_at(1u, slice, i)], low);
+        }
+        if (low == tile * TEMPLATES_TILE) template_masks[last + uint(w)] = 0u; // for the next step
     }
-#endif
-    return templates[template_at(row, slice, i)];
 }
 
 void main() {
     ivec2 low = ivec2(gl_GlobalInvocationID.x, gl_GlobalInvocationID.y * TEMPLATES_CELLS);
     int slice = int(gl_GlobalInvocationID.z);
     if (low.x >= FLOW_NX || low.y >= FLOW_NY || slice >= FLOW_SLICES) return;
-    vec2 middle = vec2(low) + vec2(0.5, 0.5 * float(TEMPLATES_CELLS));
-    flow_template pressed[TEMPLATES_CELLS];
-    vec2 pushed[TEMPLATES_CELLS];
     EACH_CELL {
         pressed[c] = flow_template(0.0, 0.0);
         pushed[c] = vec2(0.0);
     }
-    for (uint i = 0u; i < count_of(); i++) {
-        vec4 place = row_of(0u, slice, i);
-        vec2 far = abs(middle - place.xy) - vec2(0.0, 0.5 * float(TEMPLATES_CELLS));
-        if (max(far.x, far.y) > 1.41422 * place.z || place.z <= 0.0) continue;
-        vec4 look = row_of(1u, slice, i);
-        float level = log2(float(textureSize(TemplateImages, 0).x) * 0.5 / place.z);
-        bool pushes = look.w < 0.0;
-        EACH_CELL {
-            vec2 d = (vec2(low) + vec2(0.5, float(c) + 0.5) - place.xy) / place.z;
-            vec2 at = vec2(look.x * d.x + look.y * d.y, look.x * d.y - look.y * d.x);
-            if (max(abs(at.x), abs(at.y)) > 1.0) continue;
-            vec4 held = tile_at(at, pushes ? -1.0 - look.w : look.w, max(level, 0.0));
-            if (pushes) {
-                vec2 v = place.w * look.z * held.xy;
-                pushed[c] += vec2(look.x * v.x - look.y * v.y, look.y * v.x + look.x * v.y);
-            } else if (held.w > 0.0) {
-                flow_blend(pressed[c], alpha_here(min(look.z * held.w, 1.0)),
-                           place.w * held.z / held.w);
-            }
-        }
+    add_groups(low, slice);
+#if HAND
+    for (uint i = 0u; i < hand_count; i++) {
+        float where = hand[3u * i + 2u].x;
+        if (where < 0.0 || int(where) == slice) add(hand[3u * i], hand[3u * i + 1u], low);
     }
+#endif
     EACH_CELL {
         ivec2 cell = low + ivec2(0, c);
         if (cell.y >= FLOW_NY) break;
