@@ -108,5 +108,5 @@ int main(void) {
         cmocka_unit_test(all_of_it_can_be_set_by_name),
         cmocka_unit_test(all_of_it_compiles),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, helper_setup, helper_teardown);
 }
