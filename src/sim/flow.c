@@ -137,13 +137,17 @@ static void find_sizes(const flow *f, uint64_t out[FLOW_MEM_COUNT]) {
     uint64_t parts = tiles(desc, FLOW_TILE), builds = tiles(desc, FLOW_BUILD_TILE);
     if (builds > parts) parts = builds;
     memset(out, 0, FLOW_MEM_COUNT * sizeof *out);
-    for (int i = FLOW_MEM_VELOCITY; i < FLOW_MEM_SCALARS; i++) out[i] = corners * 8;
+    for (int i = FLOW_MEM_VELOCITY; i <= FLOW_MEM_VELOCITY_HAT; i++) out[i] = corners * 8;
     for (int i = 0; i < 2; i++) {
         out[FLOW_MEM_SCALARS + i] = cells * 16;
         out[FLOW_MEM_PRESSURE + i] = out[FLOW_MEM_RESIDUAL + i] = cells * 4;
         out[FLOW_MEM_DIRECTION + i] = cells * 4;
     }
-    if (desc->advection == FLOW_MACCORMACK) out[FLOW_MEM_SCALARS_HAT] = cells * 16;
+    if (desc->advection == FLOW_MACCORMACK) {
+        out[FLOW_MEM_SCALARS_HAT] = cells * 16;
+        out[FLOW_MEM_FACE_FROM] = corners * 16;
+        out[FLOW_MEM_CELL_FROM] = cells * 8;
+    }
     if (desc->sources) out[FLOW_MEM_SOURCES] = cells * 48;
     if (desc->obstacles) out[FLOW_MEM_OBSTACLES] = cells * 16;
     if (desc->templates) out[FLOW_MEM_TEMPLATES] = cells * 8;
@@ -183,7 +187,7 @@ gpu_buffer *flow_pair(const flow *f, flow_memory pair, uint32_t which) {
 
 // ---- what is bound ----------------------------------------------------------------------------
 
-enum { OWN_SLOTS = 14 };
+enum { OWN_SLOTS = 16 };
 
 static void own_slots(const flow *f, sim_slot out[OWN_SLOTS]) {
     gpu_buffer *const *b = f->buffers;
@@ -201,6 +205,8 @@ static void own_slots(const flow *f, sim_slot out[OWN_SLOTS]) {
         {"FlowImage", b[FLOW_MEM_IMAGE], NULL},
         {"FlowReport", b[FLOW_MEM_REPORT], NULL},
         {"FlowHatVelocity", b[FLOW_MEM_VELOCITY_HAT], NULL},
+        {"FlowFaceFrom", b[FLOW_MEM_FACE_FROM], NULL},
+        {"FlowCellFrom", b[FLOW_MEM_CELL_FROM], NULL},
         {"FlowHatScalars", b[FLOW_MEM_SCALARS_HAT], NULL},
     };
     memcpy(out, slots, sizeof slots);

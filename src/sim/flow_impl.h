@@ -21,6 +21,8 @@ typedef enum flow_memory {
     FLOW_MEM_VELOCITY, // of the state
     FLOW_MEM_VELOCITY_NEXT,
     FLOW_MEM_VELOCITY_HAT,
+    FLOW_MEM_FACE_FROM, // where what the predictor traced back was
+    FLOW_MEM_CELL_FROM,
     FLOW_MEM_SCALARS, // two
     FLOW_MEM_SCALARS_HAT = FLOW_MEM_SCALARS + 2,
     FLOW_MEM_PRESSURE,                        // two: times dt / cell

@@ -20,6 +20,8 @@ layout(std430) writeonly buffer FlowScalarsTo { vec4 scalars_to[]; };
 #if FLOW_WITH_CORRECTION
 layout(std430) readonly buffer FlowHatVelocity { vec2 hat_velocity[]; };
 layout(std430) readonly buffer FlowHatScalars { vec4 hat_scalars[]; };
+layout(std430) readonly buffer FlowFaceFrom { vec4 face_from[]; };
+layout(std430) readonly buffer FlowCellFrom { vec2 cell_from[]; };
 FLOW_SCALAR_QUAD(hat_scalars_at, hat_scalars)
 #endif
 
@@ -32,13 +34,13 @@ FLOW_LAPLACE_BOTH(laplace, laplace_u, laplace_v)
 // MacCormack (Selle et al. 2008): half of what tracing there and back changes is taken away, within
 // the values that were found. Next to what is no air it is not.
 #if FLOW_WITH_CORRECTION
-#define CARRY(name, component, QUAD)                                                               \
+#define CARRY(name, component, QUAD, from, here)                                                  \
     float name(ivec2 face, vec2 p, int slice) {                                                    \
-        vec2 from = flow_trace(p, -1.0, slice), to = flow_trace(p, 1.0, slice);                    \
         uint at = flow_corner(face, slice);                                                        \
+        vec2 was = from, to = flow_trace(p, here(face, slice), 1.0, slice);                        \
         float first = hat_velocity[at].component;                                                  \
-        if (flow_is_near(from, slice) || flow_is_near(to, slice)) return first;                    \
-        flow_quad q = QUAD(from), back = QUAD(to);                                                 \
+        if (flow_is_near(was, slice) || flow_is_near(to, slice)) return first;                     \
+        flow_quad q = QUAD(was), back = QUAD(to);                                                  \
         vec4 found = FLOW_FOUR(flow_velocity, component, q, slice);                                \
         float there = flow_mix(FLOW_FOUR(hat_velocity, component, back, slice), back.t);           \
         float value = first + 0.5 * (flow_velocity[at].component - there);                         \
@@ -46,9 +48,9 @@ FLOW_LAPLACE_BOTH(laplace, laplace_u, laplace_v)
     }
 
 vec4 carry_scalars(ivec2 cell, int slice) {
-    vec2 p = vec2(cell) + 0.5;
-    vec2 from = flow_trace(p, -1.0, slice), to = flow_trace(p, 1.0, slice);
     uint at = flow_cell(cell, slice);
+    vec2 from = cell_from[at];
+    vec2 to = flow_trace(vec2(cell) + 0.5, flow_velocity_of(cell, slice), 1.0, slice);
     vec4 first = hat_scalars[at], own = flow_scalars[at];
     if (flow_is_near(from, slice) || flow_is_near(to, slice)) return first;
     flow_scalar_quad q = flow_scalars_before(from, slice), back = hat_scalars_at(to, slice);
@@ -57,20 +59,20 @@ vec4 carry_scalars(ivec2 cell, int slice) {
                  max(max(q.value[0], q.value[1]), max(q.value[2], q.value[3])));
 }
 #else
-#define CARRY(name, component, QUAD)                                                               \
+#define CARRY(name, component, QUAD, from, here)                                                  \
     float name(ivec2 face, vec2 p, int slice) {                                                    \
-        flow_quad q = QUAD(flow_trace(p, -1.0, slice));                                            \
+        flow_quad q = QUAD(flow_trace(p, here(face, slice), -1.0, slice));                         \
         return flow_mix(FLOW_FOUR(flow_velocity, component, q, slice), q.t);                       \
     }
 
 vec4 carry_scalars(ivec2 cell, int slice) {
-    vec2 from = flow_trace(vec2(cell) + 0.5, -1.0, slice);
+    vec2 from = flow_trace(vec2(cell) + 0.5, flow_velocity_of(cell, slice), -1.0, slice);
     return flow_scalars_mean(flow_scalars_before(from, slice), flow_scalars[flow_cell(cell, slice)]);
 }
 #endif
 
-CARRY(carry_u, x, flow_quad_u)
-CARRY(carry_v, y, flow_quad_v)
+CARRY(carry_u, x, flow_quad_u, face_from[at].xy, flow_velocity_left)
+CARRY(carry_v, y, flow_quad_v, face_from[at].zw, flow_velocity_bottom)
 
 // ---- forces -----------------------------------------------------------------------------------
 
@@ -83,22 +85,21 @@ ivec2 nearest(ivec2 cell) { // in the slice
     return clamp(around(cell), ivec2(0), FLOW_SIZE - 1);
 }
 
-// At the lower left corner of a cell, times the side of a cell.
-float vorticity_at(ivec2 corner, int slice) {
-    ivec2 here = around(corner), low = around(corner - 1);
-    ivec2 last_u = ivec2(FLOW_NX, FLOW_NY - 1), last_v = ivec2(FLOW_NX - 1, FLOW_NY);
-    const ivec2 no = ivec2(0);
-    float u1 = flow_velocity[flow_corner(clamp(here, no, last_u), slice)].x;
-    float u0 = flow_velocity[flow_corner(clamp(ivec2(here.x, low.y), no, last_u), slice)].x;
-    float v1 = flow_velocity[flow_corner(clamp(here, no, last_v), slice)].y;
-    float v0 = flow_velocity[flow_corner(clamp(ivec2(low.x, here.y), no, last_v), slice)].y;
-    return (v1 - v0) - (u1 - u0);
-}
-
-// Confinement (Fedkiw, Stam and Jensen 2001), of both velocities of a cell.
+// Confinement (Fedkiw, Stam and Jensen 2001), of both velocities of a cell. Vorticity is that of the
+// corners of cells, times the side of a cell.
 vec2 confine(ivec2 cell, int slice) {
-    float w[9];
-    for (int i = 0; i < 9; i++) w[i] = vorticity_at(cell + ivec2(i % 3 - 1, i / 3 - 1), slice);
+    const ivec2 no = ivec2(0), last_u = ivec2(FLOW_NX, FLOW_NY - 1), last_v = ivec2(FLOW_NX - 1, FLOW_NY);
+    float u[12], v[12], w[9];
+    for (int i = 0; i < 12; i++) {
+        ivec2 at_u = around(cell + ivec2(i % 3 - 1, i / 3 - 2));
+        ivec2 at_v = around(cell + ivec2(i % 4 - 2, i / 4 - 1));
+        u[i] = flow_velocity[flow_corner(clamp(at_u, no, last_u), slice)].x;
+        v[i] = flow_velocity[flow_corner(clamp(at_v, no, last_v), slice)].y;
+    }
+    for (int i = 0; i < 9; i++) {
+        int at = i / 3 * 4 + i % 3;
+        w[i] = (v[at + 1] - v[at]) - (u[i + 3] - u[i]);
+    }
     // w[4] is the corner between the left face, up to w[7], and the bottom face, up to w[5].
     vec2 left = vec2(0.25 * (abs(w[5]) + abs(w[8]) - abs(w[3]) - abs(w[6])), abs(w[7]) - abs(w[4]));
     vec2 bottom = vec2(abs(w[5]) - abs(w[4]), 0.25 * (abs(w[7]) + abs(w[8]) - abs(w[1]) - abs(w[2])));

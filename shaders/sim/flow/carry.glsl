@@ -16,9 +16,21 @@ vec2 flow_velocity_at(vec2 p, int slice) {
                 flow_mix(FLOW_FOUR(flow_velocity, y, v, slice), v.t));
 }
 
-// Where the air at p was (-1) or will be (1).
-vec2 flow_trace(vec2 p, float way, int slice) {
-    vec2 half_ = p + 0.5 * way * reach * flow_velocity_at(p, slice);
+// Of a left face, of a bottom face, of the middle of a cell.
+vec2 flow_velocity_left(ivec2 cell, int slice) {
+    flow_quad q = flow_quad_v(vec2(cell) + vec2(0.0, 0.5));
+    return vec2(flow_velocity[flow_corner(cell, slice)].x,
+                0.25 * dot(FLOW_FOUR(flow_velocity, y, q, slice), vec4(1.0)));
+}
+vec2 flow_velocity_bottom(ivec2 cell, int slice) {
+    flow_quad q = flow_quad_u(vec2(cell) + vec2(0.5, 0.0));
+    return vec2(0.25 * dot(FLOW_FOUR(flow_velocity, x, q, slice), vec4(1.0)),
+                flow_velocity[flow_corner(cell, slice)].y);
+}
+
+// Where the air at p, whose velocity is `here`, was (-1) or will be (1).
+vec2 flow_trace(vec2 p, vec2 here, float way, int slice) {
+    vec2 half_ = p + 0.5 * way * reach * here;
     return p + way * reach * flow_velocity_at(half_, slice);
 }
 
