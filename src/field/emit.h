@@ -72,5 +72,8 @@ program_palette *program_use_palette(field_program *p, const palette *table, siz
 bool program_extrudes(const field_program *p); // a grid of it is slices round an axis
 const char *program_type(int components);      // "float", "vec3", "vec4"
 
+// The sampler and the function of an image of a grid, the g-th of the program.
+void emit_grid_fetch(const program_grid *grid, size_t g, int image, strbuf *out);
+
 // The globals and functions of all roots. False with a message when there are too many operations.
 bool program_emit(field_program *p, strbuf *out);

@@ -1,8 +1,8 @@
 // Slices round an axis on the GPU: the generated samples against the host's.
 #include "../unit/field_build.h"
 #include "../unit/field_slices.h"
-#include "field_probe.h"
 #include "base/maths.h"
+#include "field_probe.h"
 
 enum { COUNT = 512 };
 
