@@ -14,6 +14,7 @@ layout(local_size_x = 256, local_size_y = 1, local_size_z = 1) in;
 //@ field vec3 speed = {0, 0, 0} : that they are born with (m/s)
 //@ field float collide = 0 : distance to what they meet (m), below 0 within, as of `voxels`
 //@ field vec3 collide_velocity = {0, 0, 0} : how that moves (m/s)
+//@ field float alive = 1 : they die where this is 0 or less: where the air that carries them ends, as by 4 - position.z, or where it is cold
 //@ field float quantity = 0 : a number that they carry, for those that draw them: a temperature, a density
 uniform float rate;         //= 0 [0, 1e9] 1/s : how many are born
 uniform float burst;        //= 0 [0, 16777216] : how many are born at once,
@@ -61,6 +62,9 @@ void main() {
     float passes = time_step + min(at.w, 0.0); // born within the step: the rest of it
     particle_say(slot, at.w + time_step - 0.5 * passes, moves.w, moves.xyz);
     move(at.xyz, moves.xyz, passes, moves.w);
+#if HAS_ALIVE
+    if (!(field_alive(at.xyz) > 0.0)) moves.w = 0.0;
+#endif
     at.w += time_step;
     particle_put(slot, at, moves);
 #if PARTICLE_QUANTITY

@@ -65,6 +65,30 @@ static void the_oldest_make_room(void **state) {
     swarm_close(&s);
 }
 
+// Up at 1 m/s, from the middle of a ball of 0.25 m, to the end at 0.5 m.
+static void they_die_where_they_should_not_be(void **state) {
+    swarm s = swarm_open(*state, 512, 0);
+    swarm_set(&s, "burst", 512);
+    swarm_live(&s, 100, 100);
+    swarm_set(&s, "radius", 0.25f);
+    swarm_field(&s, "velocity", triple(s.e, 0, 0, 1));
+    const field *here = make(s.e, "position", NULL);
+    swarm_field(&s, "alive",
+                make(s.e, "sub", number(s.e, 0.5f), field_swizzle(effect_memory(s.e), here, "z")));
+    swarm_build(&s);
+    static const int alive[][2] = {{12, 512}, {30, 256}, {47, 0}}; // frame, how many
+    for (size_t k = 0; k < COUNT_OF(alive); k++) {
+        int count = 0;
+        swarm_run(&s, alive[k][0]);
+        for (uint32_t i = 0; i < s.used; i++) {
+            count += swarm_lives(&s, i);
+            assert_true(!swarm_lives(&s, i) || s.at[i][2] < 0.5f);
+        }
+        is_near(count, alive[k][1], k == 1 ? 50 : 0, "alive");
+    }
+    swarm_close(&s);
+}
+
 // ---- where ------------------------------------------------------------------------------------
 
 static double length_of(const float *p) {
@@ -257,6 +281,7 @@ int main(void) {
         cmocka_unit_test(as_many_are_born_as_the_rate_says),
         cmocka_unit_test(each_lives_as_long_as_it_should),
         cmocka_unit_test(the_oldest_make_room),
+        cmocka_unit_test(they_die_where_they_should_not_be),
         cmocka_unit_test(a_ball_is_filled_evenly),
         cmocka_unit_test(a_threshold_says_where),
         cmocka_unit_test(a_mesh_is_covered_evenly),

@@ -88,7 +88,7 @@ static void all_of_it_compiles(void **state) {
         "gravity = 9.81, drag = 1, force = position, collide = position.z, quantity = position.x }",
         "speed = position, contact = 'die', collide = position.z, quantity_from = 'birth', "
         "quantity = 3 }",
-        "count = 16777216 }",
+        "count = 16777216, alive = 4 - position.z }",
         "mesh { 'triangle.obj' }, outward = 1 }",
         "shape = mesh { 'triangle.obj' }, mesh_factor = 1, quantity = 1, drag = 2 }",
         "mesh { 'triangle.obj' }, shape = sphere { } }",
