@@ -68,6 +68,8 @@ static void define_all(flow *f) {
     define(f, "FLOW_WITH_TEMPLATES", desc->templates);
     define(f, "FLOW_WITH_CORRECTION", desc->advection == FLOW_MACCORMACK);
     define(f, "FLOW_TILE", FLOW_TILE);
+    define(f, "FLOW_GROUP", f->group);
+    define(f, "FLOW_COARSE_SIDE", f->coarse_side);
 }
 
 size_t flow_defines(const flow *f, shader_define out[FLOW_MAX_DEFINES]) {
@@ -81,7 +83,9 @@ typedef struct part { // of what is compiled
     bool unused;
 } part;
 
-bool flow_compile(flow *f, shader_library *library, const shader_reader *reader) {
+// `device`: NULL, none in particular.
+static bool compile(flow *f, const gpu_info *device, shader_library *library,
+                    const shader_reader *reader) {
     flow_kernels *k = &f->kernels;
     const bool plain = f->desc.solver == FLOW_CG;
     const part parts[] = {
@@ -101,6 +105,9 @@ bool flow_compile(flow *f, shader_library *library, const shader_reader *reader)
         {&k->report_last, "sim/flow/report.comp", "LAST", false},
         {&k->look, "sim/flow/look.comp", NULL, false},
     };
+    const bool software = device && device->kind == GPU_CPU;
+    f->group = software ? FLOW_SOFTWARE_GROUP : FLOW_GROUP;
+    f->coarse_side = software ? FLOW_SOFTWARE_COARSE_SIDE : FLOW_COARSE_SIDE;
     define_all(f);
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         const shader_define own = {parts[i].define, ""};
@@ -113,8 +120,12 @@ bool flow_compile(flow *f, shader_library *library, const shader_reader *reader)
     return true;
 }
 
+bool flow_compile(flow *f, shader_library *library, const shader_reader *reader) {
+    return compile(f, NULL, library, reader);
+}
+
 bool flow_build(flow *f, gpu *g, shader_library *library, const shader_reader *reader) {
-    if (!flow_compile(f, library, reader)) return false;
+    if (!compile(f, gpu_get_info(g), library, reader)) return false;
     for (int i = 0; i < FLOW_KERNELS; i++)
         if (f->all[i].shader && !sim_kernel_build(&f->all[i], g)) return false;
     return true;
@@ -231,7 +242,7 @@ bool flow_run(const flow *f, gpu *g, const flow_call *call) {
 bool flow_run_tiles(const flow *f, gpu *g, sim_kernel *k, const sim_slot *more, size_t count,
                     const uint32_t size[2]) {
     flow_call call = {k, more, count, {1, 1, f->desc.slices}};
-    call.threads[0] = (size[0] + FLOW_TILE - 1) / FLOW_TILE * 256;
+    call.threads[0] = (size[0] + FLOW_TILE - 1) / FLOW_TILE * f->group;
     call.threads[1] = (size[1] + FLOW_TILE - 1) / FLOW_TILE;
     return flow_run(f, g, &call);
 }

@@ -9,6 +9,12 @@ enum {
     // Cells along a side of what a group does of the pressure's finer levels: 16 or 32. Smaller
     // ones are more groups, and more cells that are computed in two.
     FLOW_TILE = 32,
+    // Threads of such a group, and along a side of the one that does all coarser levels; on a
+    // processor, where each eight threads cost to begin and at every barrier.
+    FLOW_GROUP = 256,
+    FLOW_SOFTWARE_GROUP = 64,
+    FLOW_COARSE_SIDE = 16,
+    FLOW_SOFTWARE_COARSE_SIDE = 8,
     // Defaults of max_iterations: those that are not needed still cost what a dispatch costs.
     FLOW_MULTIGRID_ITERATIONS = 6,
     FLOW_OBSTACLE_ITERATIONS = 10,
@@ -89,6 +95,7 @@ struct flow {
     size_t define_count;
     flow_level levels[FLOW_MAX_LEVELS];
     uint32_t level_count;
+    uint32_t group, coarse_side; // threads
     union {
         flow_kernels kernels;
         sim_kernel all[FLOW_KERNELS]; // those without a shader are not used

@@ -119,7 +119,8 @@ static bool do_coarse(flow *f, gpu *g) {
     set_int(k, "fine_level_at", fine->coefficients_at);
     set_int(k, "from_at", l->r_at);
     set_int(k, "z_at", l->z_at);
-    return flow_run(f, g, &(flow_call){k, more, 1, {16, 16, f->desc.slices}});
+    return flow_run(f, g,
+                    &(flow_call){k, more, 1, {f->coarse_side, f->coarse_side, f->desc.slices}});
 }
 
 // The residual of the last direction, and what multigrid makes of it.

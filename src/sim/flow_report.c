@@ -30,7 +30,7 @@ bool flow_watch(flow *f, gpu *g) {
     const uint32_t place = r->next;
     const int32_t iterations = (int32_t)f->desc.max_iterations;
     const sim_slot more[] = {{"result", NULL, r->result}};
-    const flow_call last = {&f->kernels.report_last, more, 1, {256, 1, 1}};
+    const flow_call last = {&f->kernels.report_last, more, 1, {f->group, 1, 1}};
     if (f->steps == 0) return true;
     sim_kernel_set(last.kernel, "iterations", &iterations, sizeof iterations);
     if (!flow_run_tiles(f, g, &f->kernels.report, NULL, 0, f->desc.size) ||

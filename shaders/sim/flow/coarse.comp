@@ -1,6 +1,6 @@
 // All levels of at most 32 x 32 cells, in one group for each slice, in shared memory. The same
 // sweeps as in down.comp and up.comp.
-layout(local_size_x = 16, local_size_y = 16) in;
+layout(local_size_x = FLOW_COARSE_SIDE, local_size_y = FLOW_COARSE_SIDE) in;
 #include "sim/flow/state.glsl"
 #include "sim/flow/levels.glsl"
 #include "sim/flow/solve.glsl"
@@ -19,10 +19,10 @@ const int MOST = 32 * 32 * 4 / 3 + 16;
 shared float r[MOST], z[MOST], d[MOST]; // d: the cell's own coefficient
 shared uint a[MOST];
 
-// Threads go over a level in blocks of 16 x 16, so that nothing is divided by its size.
+// Threads go over a level in square blocks, so that nothing is divided by its size.
 #define EACH_CELL(l, cell)                                                                         \
-    for (ivec2 cell = ivec2(gl_LocalInvocationID.xy); cell.y < (l).size.y; cell.y += 16)           \
-        for (cell.x = int(gl_LocalInvocationID.x); cell.x < (l).size.x; cell.x += 16)
+    for (ivec2 cell = ivec2(gl_LocalInvocationID.xy); cell.y < (l).size.y; cell.y += FLOW_COARSE_SIDE) \
+        for (cell.x = int(gl_LocalInvocationID.x); cell.x < (l).size.x; cell.x += FLOW_COARSE_SIDE)
 
 // ---- levels -----------------------------------------------------------------------------------
 

@@ -1,7 +1,7 @@
 // Conjugate gradients (Hestenes and Stiefel 1952; on the GPU: Krueger and Westermann 2003): the
 // next direction, and its image under the pressure's equation. Without a preconditioner z is the
 // residual itself.
-layout(local_size_x = 256) in;
+layout(local_size_x = FLOW_GROUP) in;
 #include "sim/flow/state.glsl"
 #include "sim/flow/levels.glsl"
 #include "sim/flow/solve.glsl"

@@ -4,7 +4,7 @@
 //
 // With FLOW_FINEST, before that: the step of conjugate gradients that the last direction was found
 // for (Hestenes and Stiefel 1952), and whether the solve is done.
-layout(local_size_x = 256) in;
+layout(local_size_x = FLOW_GROUP) in;
 #define FLOW_HALO 3
 #include "sim/flow/state.glsl"
 #include "sim/flow/levels.glsl"

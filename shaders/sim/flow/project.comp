@@ -1,5 +1,5 @@
 // The end of a step: the pressure as it was found, and the velocity less its gradient.
-layout(local_size_x = 256) in;
+layout(local_size_x = FLOW_GROUP) in;
 #include "sim/flow/state.glsl"
 #include "sim/flow/levels.glsl"
 #include "sim/flow/solve.glsl"

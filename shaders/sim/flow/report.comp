@@ -1,6 +1,6 @@
 // What a state comes to, for the host to read some frames later. Twice: each group its tile, and,
 // with LAST, one group all of that and what is known of the solves.
-layout(local_size_x = 256) in;
+layout(local_size_x = FLOW_GROUP) in;
 #define FLOW_STATE
 #include "sim/flow/state.glsl"
 #include "sim/flow/solve.glsl"

@@ -6,8 +6,6 @@
 #define SIM_FLOW_SOLVE_GLSL
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
-#define FLOW_GROUP 256 // threads of these dispatches
-
 // Of each slice.
 #define FLOW_STOPPED 0    // 1 + the iteration before which it was seen that the solve is done
 #define FLOW_REFERENCE 1  // square of what the residual is measured against
@@ -30,6 +28,7 @@ const int FLOW_TILES = ((FLOW_NX + FLOW_TILE - 1) / FLOW_TILE) * ((FLOW_NY + FLO
 const int FLOW_BUILDS = ((FLOW_NX + 31) / 32) * ((FLOW_NY + 31) / 32);
 const int FLOW_MOST_PARTS = max(FLOW_TILES, FLOW_BUILDS);
 
+const int FLOW_THREADS = int(gl_WorkGroupSize.x * gl_WorkGroupSize.y);
 shared vec4 flow_shares[64]; // one for each subgroup: these are of 4 threads or more
 
 // By all threads of a group.
@@ -64,7 +63,7 @@ vec4 flow_total(int slice, int kind) {
     bool build = kind == FLOW_PARTS_BUILD || kind == FLOW_PARTS_MEAN;
     int count = build ? FLOW_BUILDS : FLOW_TILES;
     vec4 v = vec4(0.0);
-    for (int i = int(gl_LocalInvocationIndex); i < count; i += FLOW_GROUP) v += flow_parts[at + i];
+    for (int i = int(gl_LocalInvocationIndex); i < count; i += FLOW_THREADS) v += flow_parts[at + i];
     return flow_group_sum(v);
 }
 

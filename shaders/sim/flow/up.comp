@@ -1,7 +1,7 @@
 // From a level to the next finer one: what down.comp's sweep gave, and what the coarser level makes
 // of what that left, then a sweep in the opposite order (black cells, then red ones), so that the
 // whole cycle is symmetric.
-layout(local_size_x = 256) in;
+layout(local_size_x = FLOW_GROUP) in;
 #define FLOW_HALO 2
 #include "sim/flow/state.glsl"
 #include "sim/flow/levels.glsl"
