@@ -65,6 +65,9 @@ float mean(vec3 v) { return (v.x + v.y + v.z) / 3.0; }
 #ifndef ADAPTIVE
 #define ADAPTIVE 1
 #endif
+#ifndef MARCH_SOFTWARE
+#define MARCH_SOFTWARE 0
+#endif
 
 // Whether the density may be above 0.
 bool may_hold(vec3 p) {

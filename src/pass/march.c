@@ -15,6 +15,7 @@ typedef struct march_state {
     bool skips;    // by bricks
     bool adaptive; // has code for a tolerance
     bool teams;    // has code for several threads a ray
+    bool software; // the device is: it has no branches
     int32_t team;  // threads a ray, in this frame
     bricks bricks;
 } march_state;
@@ -60,12 +61,14 @@ static void choose_code(const pass *p) {
     s->adaptive = gives(p, "tolerance");
     s->teams =
         !has_word(p, "view", "noise") && ((!software && p->scale < 1) || gives(p, "threads"));
+    s->software = software;
 }
 
 static bool compile(pass *p, shader_binary *out) {
     const march_state *s = p->state;
     const shader_define defines[] = {{"ADAPTIVE", s->adaptive ? "1" : "0"},
-                                     {"TEAMS", s->teams ? "1" : "0"}};
+                                     {"TEAMS", s->teams ? "1" : "0"},
+                                     {"MARCH_SOFTWARE", s->software && !s->teams ? "1" : "0"}};
     return pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines), out);
 }
 

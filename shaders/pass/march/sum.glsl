@@ -16,9 +16,13 @@ struct node { // the medium at a point of the ray
     vec3 scattering; // 1/m
 };
 
-node look(vec3 p, float at) { // metres along the ray
+float look_for_density(vec3 p, float at) { // metres along the ray
     grid_width = pixel_width * at;
-    node n = node(medium_density(p), vec3(0.0), vec3(0.0));
+    return medium_density(p);
+}
+
+node look(vec3 p, float at) {
+    node n = node(look_for_density(p, at), vec3(0.0), vec3(0.0));
     if (n.density > 0.0) {
         n.own = medium_emission(p, n.density);
         n.scattering = n.density * medium_scattering(p);
@@ -120,6 +124,40 @@ bool walk_on(inout walk w, out site s) {
     return false;
 }
 
+#if MARCH_SOFTWARE
+// A software device has no branches, only loops: it computes light for all rays of a subgroup where
+// one of them asks for it, and where none does. So each looks for smoke first, in a loop of its own.
+bool walk_to_smoke(inout walk w, vec3 origin, vec3 direction, inout int taken, out site s,
+                   out float density) {
+    density = 0.0;
+    while (walk_on(w, s)) {
+        density = look_for_density(origin + s.at * direction, s.at);
+        taken++;
+        if (density > 0.0) return true;
+    }
+    return false;
+}
+
+ray_state march_even(vec3 origin, vec3 direction, vec2 range, float offset) {
+    ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
+    if (range.x >= range.y) return ray;
+    walk w = walk_begin(origin, direction, range, range.y, offset);
+    site s;
+    float density;
+    int taken = 0, dense = 0;
+    while (walk_to_smoke(w, origin, direction, taken, s, density)) {
+        vec3 p = origin + s.at * direction;
+        node n = node(density, medium_emission(p, density), density * medium_scattering(p));
+        dense++;
+        bool lit = greatest(n.scattering) > 0.0;
+        add_stretch(ray, n, lit ? scattered_light(p, direction) : vec3(0.0), s.width, s.at);
+        if (mean(ray.transmittance) < early_exit) break;
+    }
+    count_samples(taken);
+    count_dense(dense);
+    return ray;
+}
+#else
 ray_state march_even(vec3 origin, vec3 direction, vec2 range, float offset) {
     ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
     if (range.x >= range.y) return ray;
@@ -152,6 +190,7 @@ ray_state march_even(vec3 origin, vec3 direction, vec2 range, float offset) {
     count_dense(dense);
     return ray;
 }
+#endif
 
 // Section 3.6: `last`, how far samples may lie, weighs them and leaves the steps as they are.
 ray_state march_paper(vec3 origin, vec3 direction, vec2 range, float last, float offset) {
