@@ -167,6 +167,38 @@ static void a_slice_is_what_space_holds_in_its_plane(void **state) {
     assert_true(difference(space, slice) <= 2);
 }
 
+// A round plume that leans, seen from the side.
+static void draw_marched(roil *r, const char *keys, const char *skipping, picture out) {
+    char text[2048];
+    snprintf(
+        text, sizeof text,
+        "local fx = effect { name = 'slices', fps = 24 }\n"
+        "fx.camera = orbit { target = {0, 0, 1}, distance = 5, yaw = 20 }\n"
+        "local flow = slices { size = {32, 32}, height = 2, sides = 'open', axis = {0.3, 0, 1},\n"
+        "                      buoyancy_heat = 4, %s }\n"
+        "%s\n"
+        "fx.output = march { density = flow.density * 5 * length(flow.velocity),\n"
+        "                    radiance = {1, 1, 1}, skipping = '%s', bricks = 48 }.color\n"
+        "return fx\n",
+        keys, INFLOW, skipping);
+    roil_effect *e = load_text(r, "marched.lua", text);
+    ok(roil_prepare(e, SIDE, SIDE));
+    draw(e, 20, out);
+    roil_unload(e);
+}
+
+static void bricks_leave_nothing_out(void **state) {
+    static const char *const keys[] = {"count = 5",
+                                       "count = 2, offset = vec(sin(position.z * 4), 0, 0) * 0.1"};
+    picture all, skipped;
+    for (size_t i = 0; i < COUNT_OF(keys); i++) {
+        draw_marched(*state, keys[i], "off", all);
+        draw_marched(*state, keys[i], "on", skipped);
+        assert_true(sum(all, 0, SIDE) > 2000);
+        assert_int_equal(difference(all, skipped), 0);
+    }
+}
+
 static void velocity_points_outwards_all_round(void **state) {
     static const char jets[] = "flow:force { force = vec((position.x - 0.5) * 60, 0, 0), shape = "
                                "disc { 0.5, 0.3, radius = "
@@ -326,6 +358,7 @@ int main(void) {
         cmocka_unit_test(it_is_warmed_up_before_the_first_frame),
         cmocka_unit_test(without_variation_and_offset_it_is_alike_all_round),
         cmocka_unit_test(a_slice_is_what_space_holds_in_its_plane),
+        cmocka_unit_test(bricks_leave_nothing_out),
         cmocka_unit_test(velocity_points_outwards_all_round),
         cmocka_unit_test(a_painted_obstacle_stands_in_the_way),
         cmocka_unit_test(an_obstacle_that_moves_pushes),
