@@ -44,16 +44,19 @@ static bool is_used(const splats_state *s, splats_stage stage) {
     return stage != SPLATS_BOUNDS || s->blend == SPLATS_SORTED_BLEND;
 }
 
+// What suits processors whose threads take turns: no waiting for each other, and a splat's own thread
+// draws it up to that many pixels to each side, since reading a splat for each pixel is dear there.
 static bool is_software(const pass *p) {
     return p->host->device && gpu_get_info(p->host->device)->kind == GPU_CPU;
 }
 
 static bool compile(pass *p, splats_stage stage) {
     splats_state *s = splats_of(p);
-    shader_define defines[PASS_PARTICLES_DEFINES + 3];
+    shader_define defines[PASS_PARTICLES_DEFINES + 4];
     size_t count = pass_particles_defines(s->particles, defines);
     defines[count++] = (shader_define){stage_defines[stage], "1"};
     defines[count++] = (shader_define){"GATHERED", is_software(p) ? "0" : "1"};
+    defines[count++] = (shader_define){"DIRECT", is_software(p) ? "24.0" : "0.0"};
     if (stage != SPLATS_PROJECT) defines[count++] = (shader_define){"WITHOUT_FIELDS", "1"};
     return pass_compile(p, p->shader, SHADER_COMPUTE, defines, count, &s->binary[stage]);
 }

@@ -32,7 +32,7 @@ static void light_is_kept_wherever_a_splat_lies(void **state) {
     }
 }
 
-// Of several sizes: small ones and such as are listed.
+// Of all sizes: added to pixels, and listed, where that begins late, too.
 static void scatter(spot *list, uint32_t count) {
     uint32_t seed = 5;
     for (uint32_t i = 0; i < count; i++) {
@@ -50,7 +50,7 @@ static void open_scattered(spots *s, gpu *device, uint32_t count, const char *bl
     spots_open(s, device, count);
     const field *age = field_make(&s->w.memory, "particle_age", NULL, NULL);
     const field *square = row(&s->w, "mul", SET("a", age), SET("b", age));
-    spots_field(s, "size", row(&s->w, "mul", SET("a", square), SET("b", number(&s->w, 0.4f))));
+    spots_field(s, "size", row(&s->w, "mul", SET("a", square), SET("b", number(&s->w, 2.5f))));
     const field *color =
         row(&s->w, "vec", SET("x", age), SET("y", number(&s->w, 0.5f)), SET("z", square));
     spots_field(s, "color", color);

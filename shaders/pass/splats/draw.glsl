@@ -8,6 +8,7 @@ vec4 color_of_pixel(ivec2 pixel, uvec2 list) {
     vec3 light = vec3(0.0);
     float through = 1.0;
     for (uint i = list.x; i < list.y && through > LEAST_THROUGH; i++) {
+        if (splat_misses(splat_pairs[i].y, pixel)) continue;
         splat s = splat_kept(splat_pairs[i].y);
         vec4 c = splat_at(s, vec2(pixel) + 0.5 - s.at);
         float covered = c.a > 0.0 ? c.a * splat_visible(pixel, s.depth) : 0.0;
@@ -33,6 +34,7 @@ splat_sum take_sum(ivec2 pixel) {
 vec4 color_of_pixel(ivec2 pixel, uvec2 list) {
     splat_sum sum = take_sum(pixel);
     for (uint i = list.x; i < min(list.y, entries_most); i++) {
+        if (splat_misses(splat_entries[i], pixel)) continue;
         splat_sum part = splat_part_at(splat_kept(splat_entries[i]), pixel);
         sum.color += part.color;
         sum.weight += part.weight;

@@ -111,9 +111,24 @@ void add_tiles(splat s) {
             if (splat_meets(s, ivec2(x, y))) splat_add_tile(s, ivec2(x, y));
 }
 
+// All pixels of its box, by atomics.
+void add_pixels(splat s) {
+    vec2 extent = splat_extent(s);
+    ivec2 low = ivec2(max(floor(s.at - extent), vec2(0.0))), high = ivec2(min(ceil(s.at + extent), picture));
+    for (int y = low.y; y < high.y; y++)
+        for (int x = low.x; x < high.x; x++) {
+            splat_sum part = splat_part_at(s, ivec2(x, y));
+            if (part.color != uvec3(0u) || part.log != 0u) splat_add(part, ivec2(x, y));
+        }
+}
+
 void add_large(looks l) {
-    uint index = atomicAdd(splat_found, 1u);
     splat s = look_spread(l);
+    if (s.radius + s.reach <= DIRECT) {
+        add_pixels(s);
+        return;
+    }
+    uint index = atomicAdd(splat_found, 1u);
     if (index < records_most) {
         splat_keep(index, s);
         count_tiles(s);

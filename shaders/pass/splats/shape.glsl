@@ -36,9 +36,9 @@ layout(std430) buffer SplatTiles { uvec2 splat_tiles[]; };     // where the list
 layout(std430) buffer SplatEntries { uint splat_entries[]; };  // numbers of records
 
 void splat_keep(uint index, splat s) {
-    splat_records[3u * index] = uvec4(floatBitsToUint(s.at), floatBitsToUint(s.depth), floatBitsToUint(s.radius));
+    splat_records[3u * index] = uvec4(floatBitsToUint(s.at), floatBitsToUint(s.radius), floatBitsToUint(s.reach));
     splat_records[3u * index + 1u] =
-        uvec4(floatBitsToUint(s.along), floatBitsToUint(s.reach), floatBitsToUint(s.cell));
+        uvec4(floatBitsToUint(s.along), floatBitsToUint(s.depth), floatBitsToUint(s.cell));
     splat_records[3u * index + 2u] =
         uvec4(packHalf2x16(s.color.rg), packHalf2x16(vec2(s.color.b, s.opacity)), s.seed, 0u);
 }
@@ -46,8 +46,16 @@ void splat_keep(uint index, splat s) {
 splat splat_kept(uint index) {
     uvec4 a = splat_records[3u * index], b = splat_records[3u * index + 1u], c = splat_records[3u * index + 2u];
     vec2 last = unpackHalf2x16(c.y);
-    return splat(uintBitsToFloat(a.xy), uintBitsToFloat(a.z), uintBitsToFloat(a.w), uintBitsToFloat(b.xy),
-                 uintBitsToFloat(b.z), uintBitsToFloat(b.w), vec3(unpackHalf2x16(c.x), last.x), last.y, c.z);
+    return splat(uintBitsToFloat(a.xy), uintBitsToFloat(b.z), uintBitsToFloat(a.z), uintBitsToFloat(b.xy),
+                 uintBitsToFloat(a.w), uintBitsToFloat(b.w), vec3(unpackHalf2x16(c.x), last.x), last.y, c.z);
+}
+
+// Whether nothing of it can be in a pixel, by a third of what is kept.
+bool splat_misses(uint index, ivec2 pixel) {
+    uvec4 a = splat_records[3u * index];
+    vec2 offset = vec2(pixel) + 0.5 - uintBitsToFloat(a.xy);
+    float far = uintBitsToFloat(a.z) + uintBitsToFloat(a.w);
+    return dot(offset, offset) >= (HAS_SPRITE == 1 ? 2.0 : 1.0) * far * far; // to a picture's corner
 }
 
 // As it would be kept.
@@ -137,6 +145,7 @@ void splat_add(splat_sum part, ivec2 pixel) {
 // Part of a large one in a pixel.
 splat_sum splat_part_at(splat s, ivec2 pixel) {
     vec4 c = splat_at(s, vec2(pixel) + 0.5 - s.at);
+    if (c.a <= 0.0) return splat_sum(uvec3(0u), 0u, 0u);
     return splat_part(c.rgb, c.a * splat_visible(pixel, s.depth), s.depth, s.seed, pixel);
 }
 
