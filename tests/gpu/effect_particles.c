@@ -199,6 +199,21 @@ static void what_comes_to_rest_stays(void **state) {
     swarm_close(&s);
 }
 
+// 0.2 m in a step, and a wall of 2 cm at x = 1.03.
+static void a_thin_wall_is_not_stepped_over(void **state) {
+    swarm s = one(*state, 0, 0);
+    const field *x = field_swizzle(effect_memory(s.e), make(s.e, "position", NULL), "x");
+    const field *from = make(s.e, "abs", make(s.e, "sub", x, number(s.e, 1.03f)));
+    swarm_field(&s, "collide", make(s.e, "sub", from, number(s.e, 0.01f)));
+    swarm_field(&s, "speed", triple(s.e, 12, 0, 0));
+    swarm_set(&s, "bounce", 1);
+    swarm_build(&s);
+    swarm_run(&s, 8);
+    is_near((double)s.move[0][0], -12, 1e-3, "speed");
+    is_near((double)s.at[0][0], 1.02 - (1.6 - 1.02), 1e-3, "place");
+    swarm_close(&s);
+}
+
 static void a_wall_that_moves_pushes(void **state) {
     swarm s = one(*state, 1, 0);
     swarm_field(&s, "collide", height(s.e));
@@ -286,6 +301,7 @@ int main(void) {
         cmocka_unit_test(a_bounce_leaves_the_energy_that_it_says),
         cmocka_unit_test(friction_takes_speed_along_the_surface),
         cmocka_unit_test(what_comes_to_rest_stays),
+        cmocka_unit_test(a_thin_wall_is_not_stepped_over),
         cmocka_unit_test(a_wall_that_moves_pushes),
         cmocka_unit_test(contact_may_be_the_end),
         cmocka_unit_test(what_is_carried_slides_along),

@@ -47,14 +47,41 @@ void move_on(move_push push, inout vec3 p, inout vec3 v, float h) {
 }
 
 #if CONTACTS
+#define MOVE_LOOKS 8 // along the way of a step
+
+struct move_entry { // the part of a way in which it enters something
+    float low, high;     // shares of the way
+    float before, after; // distances there
+};
+
+// Whether there is one on the way from p to q. A distance says how far nothing is, so that who is far
+// away looks no further, and who is fast does not step over a thin wall. What the picture shows is
+// no such distance: nearer things may be at other pixels.
+bool move_enters(vec3 p, vec3 q, out move_entry e) {
+    float way = length(q - p), d = contact_distance(p);
+    e = move_entry(0.0, 0.0, d, d);
+    if (d <= 0.0) return contact_distance(q) < 0.0;
+    if (HAS_DEPTH == 0 && way <= 0.5 * d) return false;
+    for (int i = 0; i < MOVE_LOOKS && e.high < 1.0; i++) {
+        e.low = e.high;
+        e.before = e.after;
+        e.high = HAS_DEPTH != 0 ? 1.0 : min(e.high + max(e.after / way, 1.0 / float(MOVE_LOOKS)), 1.0);
+        e.after = contact_distance(mix(p, q, e.high));
+        if (e.after < 0.0) return true;
+    }
+    return false;
+}
+
 // Goes on to where the surface is met, by the secant twice, is turned there, and goes the rest.
-void move_against(move_push push, inout vec3 p, inout vec3 v, float h, float end) {
-    float begin = contact_distance(p), share = begin > 0.0 ? begin / (begin - end) : 0.0;
+void move_against(move_push push, move_entry e, inout vec3 p, inout vec3 v, float h) {
+    bool within = e.high == 0.0; // it begins there
+    float share = within ? 0.0 : mix(e.low, e.high, e.before / (e.before - e.after));
     vec3 q = p, w = v, motion;
     move_on(push, q, w, share * h);
     float there = contact_distance(q);
-    if (there != 0.0 && begin > 0.0) {
-        share = there > 0.0 ? mix(share, 1.0, there / (there - end)) : share * begin / (begin - there);
+    if (there != 0.0 && !within) {
+        share = there > 0.0 ? mix(share, e.high, there / (there - e.after)) :
+                              mix(e.low, share, e.before / (e.before - there));
         q = p, w = v;
         move_on(push, q, w, share * h);
     }
@@ -76,11 +103,11 @@ void move(inout vec3 p, inout vec3 v, float h, inout float lifetime) {
 #endif
     move_on(push, q, w, h);
 #if CONTACTS
-    float end = contact_distance(q);
-    if (end < 0.0) {
+    move_entry e;
+    if (move_enters(p, q, e)) {
         if (CONTACT == CONTACT_DIE) lifetime = 0.0;
         else {
-            move_against(push, p, v, h, end);
+            move_against(push, e, p, v, h);
             return;
         }
     }
