@@ -55,8 +55,8 @@ struct move_entry { // the part of a way in which it enters something
 };
 
 // Whether there is one on the way from p to q. A distance says how far nothing is, so that who is far
-// away looks no further, and who is fast does not step over a thin wall. What the picture shows is
-// no such distance: nearer things may be at other pixels.
+// away looks no further, and who is fast does not step over a thin wall (Hart, "Sphere tracing",
+// 1996). What the picture shows is no such distance: nearer things may be at other pixels.
 bool move_enters(vec3 p, vec3 q, out move_entry e) {
     float way = length(q - p), d = contact_distance(p);
     e = move_entry(0.0, 0.0, d, d);
