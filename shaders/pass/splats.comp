@@ -17,7 +17,7 @@
 //@ field float cell = 0 : of a flipbook: the number of the image, from 0 on. Without it the images follow each other over a particle's life
 //@ field float density = 0 : of smoke that dims what is behind it (1/m), as the pass lighting has it
 //@ counter small : particles added to pixels
-//@ counter large : particles listed by tiles
+//@ counter large : particles drawn pixel by pixel
 uniform float brightness;          //= 1 [0, 1e6] : factor of the colour
 uniform float streak;              //= 0 [0, 10] s : how much of its way a particle is drawn along, backwards; it gets as much fainter as it gets longer
 uniform float soften;              //= 0 [0, 100] m : distance before a surface over which it fades
@@ -29,6 +29,7 @@ uniform vec3 albedo;               //= {0.5, 0.5, 0.5} [0, 1] : of the smoke
 uniform vec3 absorption_color;     //= {0, 0, 0} [0, 1] : of the smoke
 uniform int view_steps;            //= 8 [0, 64] : samples of the smoke between the eye and each particle; 0: none dims it
 uniform float weight_distance;     //= 5 [0.01, 10000] m : of blend = weighted: about how far away the particles are
+#include "lib/particles.glsl"
 uniform sampler2D depth;           //= input optional : depth of the scene (m)
 uniform sampler2D sprite;          //= input optional : what a particle looks like: its opacity, times its colour
 writeonly uniform image2D image;   //= output rgba16f : premultiplied radiance and opacity
@@ -43,7 +44,6 @@ uniform vec3 box_max;
 
 #include "lib/frame.glsl"
 #include "lib/random.glsl"
-#include "lib/particles.glsl"
 #include "lib/particle.glsl"
 #include "fields.glsl"
 #include "lib/box.glsl"

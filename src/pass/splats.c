@@ -44,8 +44,9 @@ static bool is_used(const splats_state *s, splats_stage stage) {
     return stage != SPLATS_BOUNDS || s->blend == SPLATS_SORTED_BLEND;
 }
 
-// What suits processors whose threads take turns: no waiting for each other, and a splat's own thread
-// draws it up to that many pixels to each side, since reading a splat for each pixel is dear there.
+// What suits processors whose threads take turns: no waiting for each other, and a splat's own
+// thread draws it up to that many pixels to each side, since reading a splat for each pixel is dear
+// there.
 static bool is_software(const pass *p) {
     return p->host->device && gpu_get_info(p->host->device)->kind == GPU_CPU;
 }

@@ -173,6 +173,8 @@ static void set_option(lua_State *L, pass_call *call, size_t index, int value) {
         word = param->words[(size_t)param->value[0]];
     } else if (lua_isstring(L, value)) { // or a number: words like 64
         word = lua_tostring(L, value);
+    } else if (lua_isboolean(L, value)) { // of off and on
+        word = lua_toboolean(L, value) ? "on" : "off";
     } else {
         vm_error(L, "%s: option '%s' takes a word in quotes, or a parameter with words; got a %s",
                  call->who, name, luaL_typename(L, value));
