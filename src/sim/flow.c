@@ -28,6 +28,8 @@ static bool check(const flow_desc *desc) {
                            desc->size[0], desc->size[1], FLOW_LEAST_SIZE, FLOW_MOST_SIZE);
     if (desc->slices < 1 || desc->slices > FLOW_MAX_SLICES)
         return err_set("%u slices; 1 to %d are accepted", desc->slices, FLOW_MAX_SLICES);
+    if (desc->sweeps > 2)
+        return err_set("%u sweeps of multigrid; 1 and 2 are accepted", desc->sweeps);
     return check_faces(desc);
 }
 
@@ -35,7 +37,8 @@ flow *flow_create(arena *memory, const flow_desc *desc) {
     if (!check(desc)) return NULL;
     flow *f = arena_alloc(memory, sizeof *f);
     *f = (flow){.memory = memory, .desc = *desc};
-    if (f->desc.max_iterations == 0) f->desc.max_iterations = flow_default_iterations(desc);
+    f->chooses_iterations = desc->max_iterations == 0;
+    f->chooses_sweeps = desc->sweeps == 0;
     flow_levels_find(f);
     return f;
 }
@@ -68,6 +71,7 @@ static void define_all(flow *f) {
     define(f, "FLOW_WITH_TEMPLATES", desc->templates);
     define(f, "FLOW_WITH_CORRECTION", desc->advection == FLOW_MACCORMACK);
     define(f, "FLOW_TILE", FLOW_TILE);
+    define(f, "FLOW_SWEEPS", desc->sweeps);
     define(f, "FLOW_GROUP", f->group);
     define(f, "FLOW_COARSE_SIDE", f->coarse_side);
 }
@@ -108,6 +112,8 @@ static bool compile(flow *f, const gpu_info *device, shader_library *library,
     const bool software = device && device->kind == GPU_CPU;
     f->group = software ? FLOW_SOFTWARE_GROUP : FLOW_GROUP;
     f->coarse_side = software ? FLOW_SOFTWARE_COARSE_SIDE : FLOW_COARSE_SIDE;
+    if (f->chooses_sweeps) f->desc.sweeps = software ? FLOW_SOFTWARE_SWEEPS : FLOW_SWEEPS;
+    if (f->chooses_iterations) flow_choose_iterations(f);
     define_all(f);
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         const shader_define own = {parts[i].define, ""};
@@ -165,6 +171,7 @@ static void find_sizes(const flow *f, uint64_t out[FLOW_MEM_COUNT]) {
     out[FLOW_MEM_COEFFICIENTS] = last->coefficients_at * 8ull;
     out[FLOW_MEM_COARSE_RESIDUAL] = multigrid ? (last->r_at + end) * 4 : 0;
     out[FLOW_MEM_Z] = multigrid ? (last->z_at + end) * 4 : 0;
+    if (desc->sweeps > 1) out[FLOW_MEM_SWEPT] = out[FLOW_MEM_Z];
     out[FLOW_MEM_IMAGE] = cells * 4;
     out[FLOW_MEM_KNOWN] = desc->slices * FLOW_KNOWN_WORDS * 4ull;
     out[FLOW_MEM_REPORT] = desc->slices * tiles(desc, FLOW_TILE) * 32;
@@ -198,7 +205,7 @@ gpu_buffer *flow_pair(const flow *f, flow_memory pair, uint32_t which) {
 
 // ---- what is bound ----------------------------------------------------------------------------
 
-enum { OWN_SLOTS = 16 };
+enum { OWN_SLOTS = 17 };
 
 static void own_slots(const flow *f, sim_slot out[OWN_SLOTS]) {
     gpu_buffer *const *b = f->buffers;
@@ -213,6 +220,7 @@ static void own_slots(const flow *f, sim_slot out[OWN_SLOTS]) {
         {"FlowKnown", b[FLOW_MEM_KNOWN], NULL},
         {"FlowParts", b[FLOW_MEM_PARTS], NULL},
         {"FlowZ", b[FLOW_MEM_Z], NULL},
+        {"FlowSwept", b[FLOW_MEM_SWEPT], NULL},
         {"FlowImage", b[FLOW_MEM_IMAGE], NULL},
         {"FlowReport", b[FLOW_MEM_REPORT], NULL},
         {"FlowHatVelocity", b[FLOW_MEM_VELOCITY_HAT], NULL},

@@ -45,6 +45,7 @@ typedef struct flow_desc { // structure: what shaders are compiled for
     bool obstacles;          // FlowObstacles is written
     bool templates;          // FlowTemplates is written
     uint32_t max_iterations; // of the pressure, each step; 0: what suits solver and size
+    uint32_t sweeps;         // of multigrid, on each level: 1 or 2; 0: what suits the device
 } flow_desc;
 
 typedef struct flow_numbers { // of a step; read anew each step
@@ -62,7 +63,7 @@ typedef struct flow_numbers { // of a step; read anew each step
 } flow_numbers;
 
 flow *flow_create(arena *memory, const flow_desc *desc); // NULL with a message
-const flow_desc *flow_get_desc(const flow *f);           // max_iterations as it is used
+const flow_desc *flow_get_desc(const flow *f);           // after flow_build with what it chose
 
 // Compiles all that flow_build would, without a device. `reader` may be NULL.
 bool flow_compile(flow *f, shader_library *library, const shader_reader *reader);

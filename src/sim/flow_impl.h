@@ -9,15 +9,21 @@ enum {
     // Cells along a side of what a group does of the pressure's finer levels: 16 or 32. Smaller
     // ones are more groups, and more cells that are computed in two.
     FLOW_TILE = 32,
+    // Defaults of sweeps. Two take about half of the iterations, and a wider border around each
+    // tile: dispatches are saved for work.
+    FLOW_SWEEPS = 2,
+    FLOW_SOFTWARE_SWEEPS = 1,
     // Threads of such a group, and along a side of the one that does all coarser levels; on a
     // processor, where each eight threads cost to begin and at every barrier.
     FLOW_GROUP = 256,
     FLOW_SOFTWARE_GROUP = 64,
     FLOW_COARSE_SIDE = 16,
     FLOW_SOFTWARE_COARSE_SIDE = 8,
-    // Defaults of max_iterations: those that are not needed still cost what a dispatch costs.
-    FLOW_MULTIGRID_ITERATIONS = 6,
-    FLOW_OBSTACLE_ITERATIONS = 10,
+    // Defaults of max_iterations, by sweeps: those that are not needed still cost what a dispatch
+    // costs. With obstacles, whose shapes coarse levels cannot see, more.
+    FLOW_ITERATIONS = 6,
+    FLOW_ITERATIONS_OF_TWO = 4,
+    FLOW_OBSTACLE_ITERATIONS = 4,
 };
 
 // ---- memory -----------------------------------------------------------------------------------
@@ -39,7 +45,8 @@ typedef enum flow_memory {
     FLOW_MEM_RESIDUAL,                                // two: of the finest level
     FLOW_MEM_COARSE_RESIDUAL = FLOW_MEM_RESIDUAL + 2, // of the others
     FLOW_MEM_Z,                                       // of all levels
-    FLOW_MEM_DIRECTION,                               // two
+    FLOW_MEM_SWEPT,     // with more than one sweep: the same before the coarser levels are known
+    FLOW_MEM_DIRECTION, // two
     FLOW_MEM_IMAGE = FLOW_MEM_DIRECTION + 2,
     FLOW_MEM_KNOWN,
     FLOW_MEM_PARTS,
@@ -91,6 +98,7 @@ enum { FLOW_KERNELS = sizeof(flow_kernels) / sizeof(sim_kernel) };
 struct flow {
     arena *memory;
     flow_desc desc;
+    bool chooses_iterations, chooses_sweeps; // the desc gave none
     shader_define defines[FLOW_MAX_DEFINES];
     size_t define_count;
     flow_level levels[FLOW_MAX_LEVELS];
@@ -130,6 +138,6 @@ bool flow_make_look(flow *f, gpu *g, uint32_t which, flow_look look);
 // ---- pressure: flow_pressure.c ----------------------------------------------------------------
 
 void flow_levels_find(flow *f);
-uint32_t flow_default_iterations(const flow_desc *desc);
+void flow_choose_iterations(flow *f);
 // From the velocity next, to that of the state.
 bool flow_project(flow *f, gpu *g, const flow_numbers *numbers);

@@ -20,10 +20,14 @@ void flow_levels_find(flow *f) {
              f->levels[f->level_count - 1].size[1] > FLOW_COARSE || f->level_count == 1);
 }
 
-uint32_t flow_default_iterations(const flow_desc *desc) {
-    const uint32_t side = desc->size[0] > desc->size[1] ? desc->size[0] : desc->size[1];
-    if (desc->solver == FLOW_CG) return 2 * side;
-    return desc->obstacles ? FLOW_OBSTACLE_ITERATIONS : FLOW_MULTIGRID_ITERATIONS;
+void flow_choose_iterations(flow *f) {
+    flow_desc *d = &f->desc;
+    const uint32_t side = d->size[0] > d->size[1] ? d->size[0] : d->size[1];
+    if (d->solver == FLOW_CG)
+        d->max_iterations = 2 * side;
+    else
+        d->max_iterations = d->sweeps == 2 ? FLOW_ITERATIONS_OF_TWO : FLOW_ITERATIONS;
+    if (d->solver == FLOW_MULTIGRID && d->obstacles) d->max_iterations += FLOW_OBSTACLE_ITERATIONS;
 }
 
 // ---- dispatches -------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 // How fast the bare solver of 2D flow in src/sim steps: no fields, no pictures.
 //
 //   bench_flow [-d DEVICE] [-n STEPS] [-s X[,Y]] [-z SLICES] [-a semi|mac] [-p multigrid|cg]
-//              [-f open|closed|periodic] [-i ITERATIONS] [-e TOLERANCE] [-o] [-t] [-k]
+//              [-f open|closed|periodic] [-i ITERATIONS] [-e TOLERANCE] [-w SWEEPS] [-o] [-t] [-k]
 //
 // -o puts two discs in the way, -t blends 40 templates in, -k keeps a look of each step. A plume
 // rises from the lower face.
@@ -48,7 +48,7 @@ static bool parse(int argc, char **argv, bench *b) {
                           .advection = FLOW_MACCORMACK,
                           .solver = FLOW_MULTIGRID,
                           .sources = true}};
-    for (int c; (c = getopt(argc, argv, "d:n:s:z:a:p:f:i:e:otk")) != -1;) {
+    for (int c; (c = getopt(argc, argv, "d:n:s:z:a:p:f:i:e:w:otk")) != -1;) {
         uint32_t *s = b->desc.size;
         if (c == 'd') b->device = optarg;
         if (c == 'n') b->steps = atoi(optarg);
@@ -59,6 +59,7 @@ static bool parse(int argc, char **argv, bench *b) {
         if (c == 'f') set_faces(b, optarg);
         if (c == 'i') b->desc.max_iterations = (uint32_t)atoi(optarg);
         if (c == 'e') b->numbers.tolerance = (float)atof(optarg);
+        if (c == 'w') b->desc.sweeps = (uint32_t)atoi(optarg);
         if (c == 'o') b->desc.obstacles = true;
         if (c == 't') b->desc.templates = true;
         if (c == 'k') b->keep = true;

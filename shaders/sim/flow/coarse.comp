@@ -17,6 +17,7 @@ layout(std430) writeonly buffer FlowZ { float z_out[]; };
 
 const int MOST = 32 * 32 * 4 / 3 + 16;
 shared float r[MOST], z[MOST], d[MOST]; // d: the cell's own coefficient
+shared float left[MOST];                // of red cells, after the sweeps down
 shared uint a[MOST];
 
 // Threads go over a level in square blocks, so that nothing is divided by its size.
@@ -96,13 +97,14 @@ void begin(Level l) {
         z[at] = ((cell.x + cell.y) & 1) == 0 && d[at] > 0.0 ? r[at] / d[at] : 0.0;
     }
     barrier();
-    sweep(l, 1);
+    for (int i = 1; i < 2 * FLOW_SWEEPS; i++) sweep(l, i & 1);
 }
 
-void leave(Level l) { // red cells: what they have left
+void leave(Level l) {
     EACH_CELL(l, cell) {
         int at = place(l, cell);
-        if (((cell.x + cell.y) & 1) == 0) z[at] = d[at] > 0.0 ? around(l, cell) : 0.0;
+        float r_left = r[at] - d[at] * z[at] + around(l, cell);
+        if (((cell.x + cell.y) & 1) == 0) left[at] = d[at] > 0.0 ? r_left : 0.0;
     }
     barrier();
 }
@@ -115,7 +117,7 @@ void restrict_(Level fine, Level coarse) {
             ivec2 o = ivec2(j % 2 * 2 + (j / 2 & 1), j / 2);
             ivec2 from_ = flow_around(2 * cell - 1 + o, fine.size);
             if (!flow_within(from_, fine.size) || !all(flow_asked(o, fine.size))) continue;
-            sum += flow_share(from_, cell, coarse.size) * z[place(fine, from_)];
+            sum += flow_share(from_, cell, coarse.size) * left[place(fine, from_)];
         }
         uvec4 faces = uvec4(0u);
         vec4 held = vec4(0.0);
@@ -141,7 +143,7 @@ void add(Level fine, Level coarse) { // to red cells; black ones are made anew
         if (other.x >= 0) more += 0.1875 * z_of(coarse, ivec2(other.x, own.y));
         if (other.y >= 0) more += 0.1875 * z_of(coarse, ivec2(own.x, other.y));
         if (other.x >= 0 && other.y >= 0) more += 0.0625 * z_of(coarse, other);
-        z[at] = d[at] > 0.0 ? r[at] / d[at] + more : 0.0;
+        if (d[at] > 0.0) z[at] += more;
     }
     barrier();
 }
@@ -159,13 +161,12 @@ void main() {
         l = coarser(l);
     }
     begin(l);
-    for (int i = 2; i < 7; i++) sweep(l, i & 1); // red first and last
+    for (int i = 2 * FLOW_SWEEPS; i < 7; i++) sweep(l, i & 1); // red first and last
     for (; depth > 0; depth--) {
         Level fine = Level(level_size, 0);
         for (int i = 1; i < depth; i++) fine = coarser(fine);
         add(fine, coarser(fine));
-        sweep(fine, 1);
-        sweep(fine, 0);
+        for (int i = 2 * FLOW_SWEEPS; i > 0; i--) sweep(fine, 1 - (i & 1));
     }
     Level first = Level(level_size, 0);
     EACH_CELL(first, cell) {

@@ -1,11 +1,11 @@
-// From a level to the next coarser one: a sweep of red-black Gauss-Seidel that begins with nothing
-// (red cells, then black ones), and what it leaves, restricted. After it only red cells have
-// something left. The sweep's result is not kept: up.comp makes what it needs of it again.
+// From a level to the next coarser one: FLOW_SWEEPS sweeps of red-black Gauss-Seidel that begin with
+// nothing (red cells, then black ones), and what they leave, restricted. After them only red cells
+// have something left.
 //
 // With FLOW_FINEST, before that: the step of conjugate gradients that the last direction was found
 // for (Hestenes and Stiefel 1952), and whether the solve is done.
 layout(local_size_x = FLOW_GROUP) in;
-#define FLOW_HALO 3
+#define FLOW_HALO (2 * FLOW_SWEEPS + 1)
 #include "sim/flow/state.glsl"
 #include "sim/flow/levels.glsl"
 #include "sim/flow/solve.glsl"
@@ -16,6 +16,10 @@ uniform vec2 coarse_cells;
 uniform int from_at, to_at; // where r of the first slice begins: here, on the coarser level
 layout(std430) readonly buffer FlowFrom { float from[]; };
 layout(std430) writeonly buffer FlowTo { float to[]; };
+#if FLOW_SWEEPS > 1
+uniform int z_at;
+layout(std430) writeonly buffer FlowSwept { float swept[]; };
+#endif
 #ifdef FLOW_FINEST
 uniform int iteration;
 uniform float tolerance;
@@ -45,12 +49,12 @@ void finish(int slice, flow_way way) {
 }
 #endif
 
-// Red cells: what a sweep gives them. Black ones: r.
+// With what the first half of a sweep gives red cells.
 void load(int slice, flow_way way, float mean) {
     for (int i = int(gl_LocalInvocationIndex); i < FLOW_TILE_CELLS; i += FLOW_GROUP) {
         ivec2 p = ivec2(i % FLOW_WIDE, i / FLOW_WIDE) - FLOW_HALO;
         ivec2 cell = flow_around(flow_tile_first() + p, level_size);
-        flow_tile[i] = 0.0;
+        flow_tile_r[i] = flow_tile_z[i] = 0.0;
         if (!flow_within(cell, level_size)) continue;
         float d = flow_own(flow_coefficients_of(cell, slice));
         uint at = flow_level_cell(cell, slice);
@@ -59,24 +63,43 @@ void load(int slice, flow_way way, float mean) {
 #else
         float r = from[uint(from_at) + at];
 #endif
-        flow_tile[i] = ((p.x + p.y) & 1) == 0 ? r * d : r;
+        flow_tile_r[i] = r;
+        if (((p.x + p.y) & 1) == 0) flow_tile_z[i] = r * d;
     }
     barrier();
 }
 
-// The k-th cell of a colour at most `border` around the tile: true when it is in the level.
-bool find(int k, int border, int color, int slice, out int i, out uvec2 c) {
-    ivec2 p = flow_tile_cell(k, border, color), cell = flow_around(flow_tile_first() + p, level_size);
-    i = flow_tile_at(p);
-    c = uvec2(0u);
-    if (!flow_within(cell, level_size)) return false;
-    c = flow_coefficients_of(cell, slice);
-    return true;
+// What red cells have left takes the place of their z, which up.comp wants again.
+void leave(int slice) {
+    ivec2 p, cell;
+    for (int k = int(gl_LocalInvocationIndex); k < flow_tile_count(1); k += FLOW_GROUP) {
+        if (!flow_tile_find(k, 1, 0, p, cell)) continue;
+        int i = flow_tile_at(p);
+        uvec2 c = flow_coefficients_of(cell, slice);
+        float z_own = flow_tile_z[i], left = flow_tile_around(i, c.x);
+#if FLOW_SWEEPS > 1
+        if (flow_tile_owns(p)) swept[uint(z_at) + flow_level_cell(cell, slice)] = z_own;
+        float d = flow_diagonal(c);
+        left += d > 0.0 ? flow_tile_r[i] - d * z_own : 0.0;
+#endif
+        flow_tile_z[i] = left;
+    }
+    barrier();
+}
+
+float restrict_(ivec2 p, ivec2 coarse) {
+    float r = 0.0;
+    for (int j = 0; j < 8; j++) { // red cells
+        ivec2 o = ivec2(j % 2 * 2 + (j / 2 & 1), j / 2);
+        ivec2 fine = flow_around(2 * coarse - 1 + o, level_size);
+        if (!flow_within(fine, level_size) || !all(flow_asked(o, level_size))) continue;
+        r += flow_share(fine, coarse, coarse_size) * flow_tile_z[flow_tile_at(2 * p - 1 + o)];
+    }
+    return r;
 }
 
 void main() {
-    int slice = int(gl_WorkGroupID.z), thread = int(gl_LocalInvocationIndex), i;
-    uvec2 c;
+    int slice = int(gl_WorkGroupID.z);
 #ifdef FLOW_FINEST
     flow_way way = flow_begin(slice, iteration, tolerance);
     if (way.done && way.leads) finish(slice, way);
@@ -86,24 +109,14 @@ void main() {
     if (flow_stopped(slice)) return;
     load(slice, flow_way(false, false, 0.0), 0.0);
 #endif
-    for (int k = thread; k < flow_tile_count(2); k += FLOW_GROUP)
-        if (find(k, 2, 1, slice, i, c))
-            flow_tile[i] = (flow_tile[i] + flow_tile_around(i, c.x)) * flow_own(c);
-    barrier();
-    for (int k = thread; k < flow_tile_count(1); k += FLOW_GROUP) // now what red cells have left
-        if (find(k, 1, 0, slice, i, c)) flow_tile[i] = flow_tile_around(i, c.x);
-    barrier();
+    for (int border = FLOW_HALO - 1; border > 1; border--)
+        flow_tile_sweep(border, FLOW_HALO - border & 1, slice);
+    leave(slice);
     const int half_ = FLOW_TILE / 2;
-    for (int k = thread; k < half_ * half_; k += FLOW_GROUP) {
+    for (int k = int(gl_LocalInvocationIndex); k < half_ * half_; k += FLOW_GROUP) {
         ivec2 p = ivec2(k % half_, k / half_), coarse = flow_tile_first() / 2 + p;
         if (!flow_within(coarse, coarse_size)) continue;
-        float r = 0.0;
-        for (int j = 0; j < 8; j++) { // red ones
-            ivec2 o = ivec2(j % 2 * 2 + (j / 2 & 1), j / 2);
-            ivec2 fine = flow_around(2 * coarse - 1 + o, level_size);
-            if (!flow_within(fine, level_size) || !all(flow_asked(o, level_size))) continue;
-            r += flow_share(fine, coarse, coarse_size) * flow_tile[flow_tile_at(2 * p - 1 + o)];
-        }
-        to[uint(to_at) + uint((slice * coarse_size.y + coarse.y) * coarse_size.x + coarse.x)] = r;
+        uint at = uint((slice * coarse_size.y + coarse.y) * coarse_size.x + coarse.x);
+        to[uint(to_at) + at] = restrict_(p, coarse);
     }
 }

@@ -1,12 +1,13 @@
-// A tile of a level with what surrounds it, in shared memory: the pressure z of cells, and r of
-// those whose z is not known yet. Red cells are those whose x + y is even.
+// A tile of a level with what surrounds it, in shared memory, and sweeps of Gauss-Seidel over it: r,
+// and the pressure z. Red cells are those whose x + y is even.
 #ifndef SIM_FLOW_TILE_GLSL
 #define SIM_FLOW_TILE_GLSL
 
 // FLOW_HALO: cells around the tile, before the include
 const int FLOW_WIDE = FLOW_TILE + 2 * FLOW_HALO; // even
 const int FLOW_TILE_CELLS = FLOW_WIDE * FLOW_WIDE;
-shared float flow_tile[FLOW_TILE_CELLS];
+shared float flow_tile_r[FLOW_TILE_CELLS];
+shared float flow_tile_z[FLOW_TILE_CELLS];
 
 uniform vec2 level_cells;
 #define level_size ivec2(level_cells)
@@ -30,9 +31,12 @@ uvec2 flow_coefficients_of(ivec2 cell, int slice) {
     return flow_coefficients[uint(level_at) + flow_level_cell(cell, slice)];
 }
 
-// 1 / the cell's own coefficient; 0: it is no air.
+// The cell's own coefficient; 0: it is no air. And 1 / that.
+float flow_diagonal(uvec2 c) {
+    return dot(flow_faces_of(c.x), vec4(1.0)) + uintBitsToFloat(c.y);
+}
 float flow_own(uvec2 c) {
-    float d = dot(flow_faces_of(c.x), vec4(1.0)) + uintBitsToFloat(c.y);
+    float d = flow_diagonal(c);
     return d > 0.0 ? 1.0 / d : 0.0;
 }
 
@@ -54,7 +58,28 @@ int flow_tile_count(int border) {
 
 // Sum over faces of a times z of the neighbour.
 float flow_tile_around(int i, uint faces) {
-    vec4 z = vec4(flow_tile[i - 1], flow_tile[i + 1], flow_tile[i - FLOW_WIDE], flow_tile[i + FLOW_WIDE]);
+    vec4 z = vec4(flow_tile_z[i - 1], flow_tile_z[i + 1], flow_tile_z[i - FLOW_WIDE],
+                  flow_tile_z[i + FLOW_WIDE]);
     return dot(flow_faces_of(faces), z);
+}
+
+// The k-th cell of a colour at most `border` around the tile, where it lies in the tile and in the
+// level; false: it is not in the level.
+bool flow_tile_find(int k, int border, int color, out ivec2 p, out ivec2 cell) {
+    p = flow_tile_cell(k, border, color);
+    cell = flow_around(flow_tile_first() + p, level_size);
+    return flow_within(cell, level_size);
+}
+
+// Cells of one colour, with what surrounds the tile.
+void flow_tile_sweep(int border, int color, int slice) {
+    ivec2 p, cell;
+    for (int k = int(gl_LocalInvocationIndex); k < flow_tile_count(border); k += FLOW_GROUP) {
+        if (!flow_tile_find(k, border, color, p, cell)) continue;
+        int i = flow_tile_at(p);
+        uvec2 c = flow_coefficients_of(cell, slice);
+        flow_tile_z[i] = (flow_tile_r[i] + flow_tile_around(i, c.x)) * flow_own(c);
+    }
+    barrier();
 }
 #endif
