@@ -38,7 +38,7 @@ uniform float time_step;  // s
 uniform vec2 box_min; // where the region may be (widths)
 uniform vec2 box_max;
 
-const int TRIES = 32;           // places a step
+const int TRIES = 32, TOGETHER = 4; // places a step, and at once
 const int RING = 12, RINGS = 10; // points of a circle that a contour is looked for with; circles
 const float TURN = 6.28318530718;
 
@@ -50,9 +50,13 @@ void begin_chance(uint slice, uint which, float life) {
     chance = random_hash(uint(life) + random_hash(which + random_hash(slice + random_hash(key))));
 }
 
+float share_of(uint number) { // [0, 1)
+    return float(number >> 8) * (1.0 / 16777216.0);
+}
+
 float next_chance() { // [0, 1)
     chance = random_hash(chance);
-    return float(chance >> 8) * (1.0 / 16777216.0);
+    return share_of(chance);
 }
 
 // ---- the flow ---------------------------------------------------------------------------------
@@ -141,6 +145,27 @@ float turn_at(vec2 at, float half_side, int slice) {
 
 // ---- life -------------------------------------------------------------------------------------
 
+// A place that the region and the flow agree to. Several are looked at together: each waits for
+// memory, and a template that finds none looks again in the next step.
+bool find_place(int slice, out vec2 found) {
+    for (int k = 0; k < TRIES; k += TOGETHER) {
+        vec2 places[TOGETHER];
+        bool good[TOGETHER], any = false;
+        for (int i = 0; i < TOGETHER; i++) {
+            uint x = random_hash(chance + uint(k + i)), y = random_hash(x), share = random_hash(y);
+            places[i] = mix(box_min, box_max, vec2(share_of(x), share_of(y))) * float(FLOW_NX);
+            good[i] = share_of(share) < region_at(places[i]) && fits(places[i], slice);
+        }
+        for (int i = TOGETHER - 1; i >= 0; i--)
+            if (good[i]) {
+                found = places[i];
+                any = true;
+            }
+        if (any) return true;
+    }
+    return false;
+}
+
 // The next life: how long, how large, and where. False: there is no place for it now.
 bool begin_life(int slice, uint which, inout vec4 life, inout vec4 place) {
     life.z += 1.0;
@@ -148,14 +173,11 @@ bool begin_life(int slice, uint which, inout vec4 life, inout vec4 place) {
     life.y = mix(lifetime_min, max(lifetime_min, lifetime_max), next_chance());
     life.w = mix(size_min, max(size_min, size_max), next_chance());
     float half_side = 0.5 * life.w * float(FLOW_NX);
-    for (int i = 0; i < TRIES; i++) {
-        vec2 at = mix(box_min, box_max, vec2(next_chance(), next_chance())) * float(FLOW_NX);
-        if (next_chance() >= region_at(at) || !fits(at, slice)) continue;
-        float turn = turn_at(at, half_side, slice);
-        place = vec4(turn + radians(spread) * (2.0 * next_chance() - 1.0), at, 1.0);
-        return true;
-    }
-    return false;
+    vec2 at;
+    if (!find_place(slice, at)) return false;
+    float turn = turn_at(at, half_side, slice);
+    place = vec4(turn + radians(spread) * (2.0 * next_chance() - 1.0), at, 1.0);
+    return true;
 }
 
 float envelope(float age) { // of 0 to 1

@@ -133,6 +133,33 @@ static void slices_have_templates_of_their_own(void **state) {
     templates_close(&t);
 }
 
+// As a reload does: the new flow goes on with the instances of the old one, where they match.
+static void instances_are_exchanged_where_they_match(void **state) {
+    static const uint32_t counts[2] = {20, 21};
+    for (int k = 0; k < 2; k++) {
+        templates_world a, b;
+        templates_open(&a, *state, &small, 0.02);
+        templates_open(&b, *state, &small, 0.02);
+        GROUP(&a, 20, blue, {"strength", 1});
+        GROUP(&b, counts[k], blue, {"strength", 2});
+        templates_build(&a);
+        templates_build(&b);
+        templates_run(&a, 5, false);
+        template_seen *old = templates_read(&a, 0);
+        b.f.templates->exchange(&b.f, &a.f);
+        templates_run(&b, 1, false);
+        template_seen *now = templates_read(&b, 0);
+        int same = 0;
+        for (int i = 0; i < 20; i++)
+            same += now[i].x == old[i].x && fabsf(now[i].age - old[i].age - 0.02f) < 1e-5f;
+        assert_true(k == 0 ? same > 10 : same == 0);
+        mem_free(old);
+        mem_free(now);
+        templates_close(&a);
+        templates_close(&b);
+    }
+}
+
 static void fewer_act_by_amount(void **state) {
     templates_world t;
     templates_open(&t, *state, &small, 0.02);
@@ -481,6 +508,7 @@ int main(void) {
         cmocka_unit_test(same_seed_gives_the_same_templates_and_another_one_others),
         cmocka_unit_test(lives_do_not_hang_on_the_step),
         cmocka_unit_test(slices_have_templates_of_their_own),
+        cmocka_unit_test(instances_are_exchanged_where_they_match),
         cmocka_unit_test(fewer_act_by_amount),
         cmocka_unit_test(all_lie_in_the_region_and_all_over_it),
         cmocka_unit_test(none_is_put_where_there_is_no_place),
