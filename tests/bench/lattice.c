@@ -1,9 +1,9 @@
 // How fast the bare solver of src/sim steps: no fields, no pictures.
 //
 //   bench_lattice [-d DEVICE] [-n STEPS] [-s X,Y,Z] [-q 19|27] [-p 16|32] [-c SCALARS]
-//                 [-o bgk|trt|moments] [-f periodic|wall|slip|open] [-k] [-l]
+//                 [-o bgk|trt|moments] [-f periodic|wall|slip|open] [-k] [-l] [-x]
 //
-// -k keeps moments in each step; -l adds the subgrid term. Prints one line: million cell updates
+// -k keeps moments in each step; -l adds the subgrid term; -x carries scalars on D3Q27. Prints one line: million cell updates
 // a second by the device's clock, by the processor time of this process (of interest for a software
 // device alone), and the bytes a second that the populations themselves make.
 #include "base/clock.h"
@@ -32,7 +32,7 @@ static int fail(const char *what) {
 
 static bool parse(int argc, char **argv, bench *b) {
     *b = (bench){.steps = 100, .desc = {.size = {96, 96, 96}, .collision = LBM_CENTRAL_MOMENTS}};
-    for (int c; (c = getopt(argc, argv, "d:n:s:q:p:c:o:f:kl")) != -1;) {
+    for (int c; (c = getopt(argc, argv, "d:n:s:q:p:c:o:f:klx")) != -1;) {
         uint32_t *s = b->desc.size;
         if (c == 'd') b->device = optarg;
         if (c == 'n') b->steps = atoi(optarg);
@@ -50,6 +50,7 @@ static bool parse(int argc, char **argv, bench *b) {
                                : optarg[0] == 'o' ? LBM_OPEN
                                                   : LBM_PERIODIC;
         if (c == 'k') b->keep = true;
+        if (c == 'x') b->desc.scalar_set = LBM_SCALAR_D3Q27;
         if (c == 'l') b->desc.subgrid = true;
         if (c == '?') return false;
     }
@@ -88,7 +89,7 @@ static int measure(const bench *b, lbm *l, gpu *g) {
     if (milliseconds <= 0) return fail("step");
     const lbm_desc *d = &b->desc;
     double updates = (double)d->size[0] * d->size[1] * d->size[2] * b->steps;
-    double directions = (d->set == LBM_D3Q27 ? 27 : 19) + 7.0 * d->scalars;
+    double directions = (d->set == LBM_D3Q27 ? 27 : 19) + (d->scalar_set == LBM_SCALAR_D3Q27 ? 27.0 : 7.0) * d->scalars;
     double bytes = 2 * directions * (d->precision == LBM_F16 ? 2 : 4) + (b->keep ? 16 : 0);
     static const char *const faces[] = {"", ", walls", ", slip", ", open"};
     printf("%ux%ux%u %s %s, %u scalars%s%s%s: %.2f million updates/s, %.2f per processor second, "

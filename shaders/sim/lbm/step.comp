@@ -17,6 +17,9 @@ uniform uint skin_count;
 #define WALLED (LBM_WALLED && (LBM_BODIES || LBM_REGION != LBM_CORE))
 // Faces or bodies may change what arrives.
 #define MEETS (LBM_BODIES || LBM_RIMS && LBM_REGION != LBM_CORE)
+// Scalars of 27 directions do not fit into registers beside the air: they are summed for their
+// buoyancy, forgotten, and loaded again once the air is sent.
+#define RELOADS (LBM_SCALAR_Q == 27 && !MEETS && !WALLED && !LBM_SOFTWARE)
 
 uniform float tau;
 uniform float smagorinsky;
@@ -175,15 +178,27 @@ void collide() {
     eddies = lbm_eddy_tau(a, tau, smagorinsky) - tau;
 #endif
     lbm_collide(a, 1.0 / (tau + eddies), air);
+#if RELOADS
+    lbm_send_air(place, air);
+#define LOAD(s) lbm_load_scalar(s, place, carried[s]);
+#define SEND(s) lbm_send_scalar(s, place, carried[s]);
+#else
+#define LOAD(s)
+#define SEND(s)
+#endif
     vec4 g[LBM_SCALAR_Q];
 #define COLLIDE(s)                                                                                 \
-    lbm_unpack_scalar(carried[s], LBM_SCALAR_SCALE, g);                                           \
+    LOAD(s)                                                                                        \
+    lbm_unpack_scalar(carried[s], LBM_SCALAR_SCALE, g);                                            \
     lbm_collide_scalar(value[s], a.u,                                                              \
                        1.0 / (scalar_tau[s] + eddies * (1.0 / (3.0 * SCHMIDT * LBM_SCALAR_SPEED))), \
                        1.0 - decay[s], ambient[s], g);                                             \
-    lbm_pack_scalar(g, LBM_SCALAR_SCALE, carried[s]);
+    lbm_pack_scalar(g, LBM_SCALAR_SCALE, carried[s]);                                              \
+    SEND(s)
     LBM_EACH_SCALAR(COLLIDE)
 #undef COLLIDE
+#undef LOAD
+#undef SEND
 }
 
 // In lanes of solids what arrived stays.
@@ -207,10 +222,12 @@ void keep() {
 #endif
 
 void send() {
+#if !RELOADS
     lbm_send_air(place, air);
 #define SEND(s) lbm_send_scalar(s, place, carried[s]);
     LBM_EACH_SCALAR(SEND)
 #undef SEND
+#endif
 }
 
 bool find_element() {
