@@ -12,11 +12,10 @@
 #include "pass/pass.h"
 
 enum {
-    SLICES_TILE = 64,                 // texels a side of a picture as it is on the device
-    SLICES_TILE_LEVELS = 4,           // 64 to 8
-    SLICES_TEMPLATES_GROUPS = 16,     // of a flow
-    SLICES_TEMPLATES_MOST = 4096,     // of all groups, in each slice
-    SLICES_TEMPLATES_SIDE_MAX = 4096, // pixels of a picture
+    SLICES_TILE = 64,             // texels a side of a picture as it is on the device
+    SLICES_TILE_LEVELS = 4,       // 64 to 8
+    SLICES_TEMPLATES_GROUPS = 16, // of a flow
+    SLICES_TEMPLATES_MOST = 4096, // of all groups, in each slice
 };
 
 // A group of `count` templates in each slice of `p`, a pass `slices`; both are declared. The
