@@ -91,6 +91,14 @@ bool picture_check(pass *p);
 bool picture_build(pass *p);
 bool picture_record(pass *p);
 
+bool pieces_declare(pass *p);
+bool pieces_check(pass *p);
+bool pieces_build(pass *p);
+bool pieces_allocate(pass *p);
+bool pieces_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool pieces_record(pass *p);
+void pieces_destroy(pass *p);
+
 bool deposit_declare(pass *p);
 bool deposit_check(pass *p);
 bool deposit_build(pass *p);

@@ -147,6 +147,18 @@ static const pass_type types[] = {
         .record = picture_record,
     },
     {
+        .name = "pieces",
+        .shader = "pass/pieces.comp",
+        .meshes = PASS_USES_MESHES,
+        .declare = pieces_declare,
+        .check = pieces_check,
+        .build = pieces_build,
+        .allocate = pieces_allocate,
+        .fill = pieces_fill,
+        .record = pieces_record,
+        .destroy = pieces_destroy,
+    },
+    {
         .name = "deposit",
         .shader = "pass/deposit.comp",
         .unscaled = true,

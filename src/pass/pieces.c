@@ -1,0 +1,202 @@
+// Pieces: a mesh at each particle, drawn in compute: a thread for each triangle of each piece finds
+// the least depth in its pixels (depth), then the first of the triangles that are as near (number),
+// so that nothing is left to chance; then each pixel tells of its triangle, or of the scene (show).
+#include "base/error.h"
+#include "base/memory.h"
+#include "pass/builtin.h"
+#include "pass/particles.h"
+#include "pass/pass_impl.h"
+#include "shared.h"
+#include <string.h>
+
+enum { GROUP = 256, ACROSS = 1024, MOST_TRIANGLES = 4096 };
+
+typedef enum pieces_stage { DEPTH, NUMBER, SHOW, STAGES } pieces_stage;
+static const char *const stage_defines[STAGES] = {"STAGE_DEPTH", "STAGE_NUMBER", "STAGE_SHOW"};
+
+typedef struct pieces_state {
+    uint32_t triangle_count; // of the mesh
+    shader_binary binary[STAGES];
+    gpu_pipeline *pipeline[STAGES];
+    unsigned char *block[STAGES];
+    gpu_buffer *triangles, *depths, *numbers;
+    bool empty; // depths and numbers are
+} pieces_state;
+
+static pieces_state *state_of(const pass *p) {
+    return p->state;
+}
+
+// ---- declaring --------------------------------------------------------------------------------
+
+// The scene is that of the first pass among the sources that gives one.
+static void find_scene(pass *p) {
+    static const char *const names[][2] = {
+        {"scene_albedo", "albedo"}, {"scene_normal", "normal"}, {"scene_depth", "depth"}};
+    for (size_t i = 0; i < COUNT_OF(names); i++) {
+        graph_image *input = &p->images[pass_find_image(p, names[i][0])];
+        for (size_t k = 0; k < p->source_count && !input->id; k++)
+            *input = pass_output(p->sources[k], names[i][1]);
+    }
+}
+
+bool pieces_declare(pass *p) {
+    pieces_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
+    if (p->mesh_count != 1)
+        return err_set("%s: %zu meshes; one is needed, as in pieces { shards, mesh { "
+                       "\"data/ball.obj\" } }",
+                       p->label, p->mesh_count);
+    s->triangle_count = p->meshes[0]->data.index_count / 3;
+    if (s->triangle_count < 1 || s->triangle_count > MOST_TRIANGLES)
+        return err_set(
+            "%s: the mesh has %u triangles; 1 to %d are accepted: each is drawn anew for "
+            "every particle",
+            p->label, s->triangle_count, MOST_TRIANGLES);
+    find_scene(p);
+    return pass_declare_images(p) && pass_add_to_graph(p);
+}
+
+// ---- building ---------------------------------------------------------------------------------
+
+static bool compile(pass *p, pieces_stage stage) {
+    pieces_state *s = state_of(p);
+    shader_define defines[PASS_PARTICLES_DEFINES + 2];
+    size_t count = pass_particles_defines(pass_particles_of(p), defines);
+    defines[count++] = (shader_define){stage_defines[stage], "1"};
+    defines[count++] =
+        (shader_define){"TRIANGLES", arena_format(p->host->memory, "%u", s->triangle_count)};
+    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, count, &s->binary[stage]);
+}
+
+bool pieces_check(pass *p) {
+    for (int i = 0; i < STAGES; i++)
+        if (!compile(p, (pieces_stage)i)) return false;
+    return true;
+}
+
+bool pieces_build(pass *p) {
+    pieces_state *s = state_of(p);
+    for (int i = 0; i < STAGES; i++) {
+        if (!compile(p, (pieces_stage)i)) return false;
+        s->pipeline[i] = pass_create_compute(p, &s->binary[i]);
+        s->block[i] = arena_alloc(p->host->memory, pass_block_size(&s->binary[i]) + 16);
+        if (!s->pipeline[i]) return false;
+    }
+    p->binary = s->binary[DEPTH];
+    return true;
+}
+
+static void write_triangle(const mesh_data *mesh, const mesh_part *part, uint32_t first,
+                           struct bvh_triangle *out) {
+    const float *corners[3];
+    for (int k = 0; k < 3; k++) corners[k] = mesh->vertices[mesh->indices[first + k]].position;
+    for (int k = 0; k < 3; k++) {
+        out->corner.v[k] = corners[0][k];
+        out->first.v[k] = corners[1][k] - corners[0][k];
+        out->second.v[k] = corners[2][k] - corners[0][k];
+    }
+    out->corner.v[3] = part->color[0];
+    out->first.v[3] = part->color[1];
+    out->second.v[3] = part->color[2];
+}
+
+bool pieces_allocate(pass *p) {
+    pieces_state *s = state_of(p);
+    const mesh_data *mesh = &p->meshes[0]->data;
+    if (s->triangles) return true;
+    size_t size = s->triangle_count * sizeof(struct bvh_triangle), count = 0;
+    struct bvh_triangle *all = mem_alloc(size);
+    for (uint32_t i = 0; i < mesh->part_count; i++) {
+        const mesh_part *part = &mesh->parts[i];
+        for (uint32_t k = 0; k + 2 < part->count && count < s->triangle_count; k += 3)
+            write_triangle(mesh, part, part->first + k, &all[count++]);
+    }
+    s->triangles = gpu_buffer_create(
+        p->host->device, &(gpu_buffer_desc){.label = "triangles of pieces", .size = size});
+    bool done = s->triangles && gpu_buffer_write(p->host->device, s->triangles, 0, all, size);
+    mem_free(all);
+    return done || err_prefix("%s: ", p->label);
+}
+
+void pieces_destroy(pass *p) {
+    pieces_state *s = state_of(p);
+    if (!s) return;
+    for (int i = 0; i < STAGES; i++)
+        if (s->pipeline[i]) gpu_pipeline_destroy(p->host->device, s->pipeline[i]);
+    gpu_buffer *const buffers[] = {s->triangles, s->depths, s->numbers};
+    for (size_t i = 0; i < COUNT_OF(buffers); i++)
+        if (buffers[i]) gpu_buffer_destroy(p->host->device, buffers[i]);
+}
+
+// ---- a frame ----------------------------------------------------------------------------------
+
+static void picture_size(const pass *p, uint32_t size[3]) {
+    graph_get_size(p->host->graph, pass_output(p, "depth"), size);
+}
+
+bool pieces_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+    uint32_t size[3];
+    picture_size(p, size);
+    const float picture[2] = {(float)size[0], (float)size[1]};
+    pass_write_member(binary, block, "picture", picture, sizeof picture);
+    pass_particles_write(pass_particles_of(p), binary, block);
+    return true;
+}
+
+static bool make_buffer(pass *p, gpu_buffer **buffer, const char *label, uint64_t size) {
+    gpu *device = p->host->device;
+    if (*buffer && gpu_buffer_size(*buffer) == size) return true;
+    if (*buffer) gpu_buffer_destroy(device, *buffer);
+    *buffer = gpu_buffer_create(device, &(gpu_buffer_desc){.label = label, .size = size});
+    state_of(p)->empty = false;
+    return *buffer || err_prefix("%s: ", p->label);
+}
+
+static bool run(pass *p, pieces_stage stage, uint32_t x, uint32_t y) {
+    pieces_state *s = state_of(p);
+    const shader_binary *binary = &s->binary[stage];
+    pass_override overrides[GPU_MAX_SLOTS] = {{"PieceTriangles", {.buffer = s->triangles}},
+                                              {"PieceDepths", {.buffer = s->depths}},
+                                              {"PieceNumbers", {.buffer = s->numbers}}};
+    gpu_binding bindings[GPU_MAX_SLOTS];
+    gpu_dispatch_desc desc = {
+        .pipeline = s->pipeline[stage], .bindings = bindings, .threads = {x, y, 1}};
+    size_t count = 3;
+    for (size_t i = 0; i < binary->slot_count && count < GPU_MAX_SLOTS; i++) {
+        overrides[count].name = binary->slots[i].name;
+        count += pass_particles_bind(pass_particles_of(p), overrides[count].name,
+                                     &overrides[count].binding);
+    }
+    return pass_fill_block(p, binary, s->block[stage]) &&
+           pass_bind(p, binary, s->block[stage], overrides, count, bindings, &desc.binding_count) &&
+           gpu_dispatch(p->host->device, &desc);
+}
+
+// A thread for each triangle.
+static bool run_triangles(pass *p, pieces_stage stage, uint64_t count) {
+    uint64_t groups = (count + GROUP - 1) / GROUP, across = groups < ACROSS ? groups : ACROSS;
+    return count == 0 ||
+           run(p, stage, (uint32_t)across * GROUP, (uint32_t)((groups + across - 1) / across));
+}
+
+bool pieces_record(pass *p) {
+    pieces_state *s = state_of(p);
+    uint32_t size[3];
+    uint64_t count = (uint64_t)pass_particles_used(pass_particles_of(p)) * s->triangle_count;
+    picture_size(p, size);
+    uint64_t bytes = 4ull * size[0] * size[1];
+    if (count >= UINT32_MAX)
+        return err_set("%s: %llu triangles; at most 4294967294 are drawn", p->label,
+                       (unsigned long long)count);
+    if (!pass_prepare(p) || !make_buffer(p, &s->depths, "depths of pieces", bytes) ||
+        !make_buffer(p, &s->numbers, "numbers of pieces", bytes))
+        return false;
+    if (!s->empty) {
+        gpu_buffer_fill(p->host->device, s->depths, UINT32_MAX);
+        gpu_buffer_fill(p->host->device, s->numbers, UINT32_MAX);
+    }
+    s->empty = false; // until they are shown
+    s->empty = run_triangles(p, DEPTH, count) && run_triangles(p, NUMBER, count) &&
+               run(p, SHOW, size[0], size[1]);
+    return s->empty;
+}
