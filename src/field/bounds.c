@@ -4,6 +4,7 @@
 #include "field/field.h"
 #include "field/kinds.h"
 #include "field/map.h"
+#include "field/range.h"
 #include <math.h>
 #include <string.h>
 
@@ -117,6 +118,18 @@ box3 bounds_min(const field *node, const field_context *context, const box3 *arg
     return box3_union(args[0], args[1]);
 }
 
+// By the range over all of space; that of a large expression is not asked for.
+static float ranged(const field *node, const field_context *context) {
+    const uint32_t large = 256;
+    const float known = 1e12f;
+    intervals all;
+    float most = 0;
+    if (node->size > large || !field_ranges(node, context, box3_infinite(), &all)) return INFINITY;
+    for (int c = 0; c < node->components; c++)
+        most = fmaxf(most, fmaxf(fabsf(all.c[c].low), fabsf(all.c[c].high)));
+    return most < known ? most : INFINITY;
+}
+
 // How far a vector field can reach along an axis, INFINITY when unknown.
 static float longest(const field *node, const field_context *context, int depth) {
     float value[4];
@@ -157,7 +170,7 @@ static float longest(const field *node, const field_context *context, int depth)
         return 3.5f * octaves[0] * longest(node->args[5], context, depth - 1);
     }
     if (strcmp(node->kind->group, "noise") == 0) return longest(node->args[5], context, depth - 1);
-    return INFINITY;
+    return ranged(node, context);
 }
 
 float field_longest(const field *node, const field_context *context) {

@@ -293,6 +293,11 @@ static void bounds_of_moved_fields(void **state) {
                (float3){3.5f, 3.5f, 3.5f});
     assert_true(box3_is_finite(box_of(make("warp", a, make("curl", NULL)))));
     assert_false(box3_is_finite(box_of(make("warp", a, make("position", NULL)))));
+    // Where no rule of its own says how far a field reaches, its range does.
+    field *wave =
+        make("vec", make("step", make("perlin", NULL), number(0.5f)), number(0), number(0.5f));
+    assert_box(make("warp", a, make("mul", wave, number(2))), (float3){-3, -3, -3},
+               (float3){3, 3, 3});
     assert_box(make("transform", a, vector(10, 0, 0), vector(0, 0, 45), vector(1, 1, 3)),
                (float3){10 - sqrtf(2), -sqrtf(2), -3}, (float3){10 + sqrtf(2), sqrtf(2), 3});
 }
