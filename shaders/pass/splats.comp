@@ -18,6 +18,7 @@
 //@ field float density = 0 : of smoke that dims what is behind it (1/m), as the pass lighting has it
 //@ counter small : particles added to pixels
 //@ counter large : particles drawn pixel by pixel
+//@ counter left_out : places in lists that were missing (see `entries`)
 uniform float brightness;          //= 1 [0, 1e6] : factor of the colour
 uniform float streak;              //= 0 [0, 10] s : how much of its way a particle is drawn along, backwards; it gets as much fainter as it gets longer
 uniform float soften;              //= 0 [0, 100] m : distance before a surface over which it fades

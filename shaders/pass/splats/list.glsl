@@ -24,10 +24,12 @@ void main() {
         for (int x = box.x; x < box.z; x++) {
             if (!splat_meets(s, ivec2(x, y))) continue;
             uint place = atomicAdd(splat_tiles[splat_tile(ivec2(x, y))].y, 1u);
-            if (place < entries_most)
+            if (place < entries_most) {
                 splat_entries[place] = index;
-            else
+            } else {
                 splat_add_tile(s, ivec2(x, y));
+                count_left_out(1);
+            }
         }
 }
 #endif

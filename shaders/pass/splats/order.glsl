@@ -69,7 +69,10 @@ void main() {
     for (int y = box.y; y < box.w; y++)
         for (int x = box.x; x < box.z; x++) {
             if (!splat_meets(s, ivec2(x, y))) continue;
-            if (at < entries_most) splat_pairs[at] = uvec2(key_of(splat_tile(ivec2(x, y)), s.depth), slot);
+            if (at < entries_most)
+                splat_pairs[at] = uvec2(key_of(splat_tile(ivec2(x, y)), s.depth), slot);
+            else
+                count_left_out(1);
             at++;
         }
 }
