@@ -70,7 +70,7 @@ static void define_all(flow *f) {
     define(f, "FLOW_WITH_OBSTACLES", desc->obstacles);
     define(f, "FLOW_WITH_TEMPLATES", desc->templates);
     define(f, "FLOW_WITH_CORRECTION", desc->advection == FLOW_MACCORMACK);
-    define(f, "FLOW_TILE", FLOW_TILE);
+    define(f, "FLOW_TILE", f->tile);
     define(f, "FLOW_SWEEPS", desc->sweeps);
     define(f, "FLOW_GROUP", f->group);
     define(f, "FLOW_COARSE_SIDE", f->coarse_side);
@@ -86,6 +86,20 @@ typedef struct part { // of what is compiled
     const char *shader, *define; // define: NULL, none of its own
     bool unused;
 } part;
+
+static uint64_t tiles(const flow_desc *desc, uint32_t side) {
+    return (uint64_t)((desc->size[0] + side - 1) / side) * ((desc->size[1] + side - 1) / side);
+}
+
+// What suits the device.
+static void choose(flow *f, bool software) {
+    const bool few = tiles(&f->desc, FLOW_LARGE_TILE) * f->desc.slices < FLOW_FEW_TILES;
+    f->tile = few && !software ? FLOW_SMALL_TILE : FLOW_LARGE_TILE;
+    f->group = software ? FLOW_SOFTWARE_GROUP : FLOW_GROUP;
+    f->coarse_side = software ? FLOW_SOFTWARE_COARSE_SIDE : FLOW_COARSE_SIDE;
+    if (f->chooses_sweeps) f->desc.sweeps = software ? FLOW_SOFTWARE_SWEEPS : FLOW_SWEEPS;
+    if (f->chooses_iterations) flow_choose_iterations(f);
+}
 
 // `device`: NULL, none in particular.
 static bool compile(flow *f, const gpu_info *device, shader_library *library,
@@ -109,11 +123,7 @@ static bool compile(flow *f, const gpu_info *device, shader_library *library,
         {&k->report_last, "sim/flow/report.comp", "LAST", false},
         {&k->look, "sim/flow/look.comp", NULL, false},
     };
-    const bool software = device && device->kind == GPU_CPU;
-    f->group = software ? FLOW_SOFTWARE_GROUP : FLOW_GROUP;
-    f->coarse_side = software ? FLOW_SOFTWARE_COARSE_SIDE : FLOW_COARSE_SIDE;
-    if (f->chooses_sweeps) f->desc.sweeps = software ? FLOW_SOFTWARE_SWEEPS : FLOW_SWEEPS;
-    if (f->chooses_iterations) flow_choose_iterations(f);
+    choose(f, device && device->kind == GPU_CPU);
     define_all(f);
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         const shader_define own = {parts[i].define, ""};
@@ -139,10 +149,6 @@ bool flow_build(flow *f, gpu *g, shader_library *library, const shader_reader *r
 
 // ---- state ------------------------------------------------------------------------------------
 
-static uint64_t tiles(const flow_desc *desc, uint32_t side) {
-    return (uint64_t)((desc->size[0] + side - 1) / side) * ((desc->size[1] + side - 1) / side);
-}
-
 // Bytes; 0: not needed.
 static void find_sizes(const flow *f, uint64_t out[FLOW_MEM_COUNT]) {
     const flow_desc *desc = &f->desc;
@@ -151,7 +157,7 @@ static void find_sizes(const flow *f, uint64_t out[FLOW_MEM_COUNT]) {
     const uint64_t corners = row * (desc->size[1] + 1) * desc->slices;
     const uint64_t end = (uint64_t)last->size[0] * last->size[1] * desc->slices;
     const bool multigrid = desc->solver == FLOW_MULTIGRID;
-    uint64_t parts = tiles(desc, FLOW_TILE), builds = tiles(desc, FLOW_BUILD_TILE);
+    uint64_t parts = tiles(desc, f->tile), builds = tiles(desc, FLOW_BUILD_TILE);
     if (builds > parts) parts = builds;
     memset(out, 0, FLOW_MEM_COUNT * sizeof *out);
     for (int i = FLOW_MEM_VELOCITY; i <= FLOW_MEM_VELOCITY_HAT; i++) out[i] = corners * 8;
@@ -174,7 +180,7 @@ static void find_sizes(const flow *f, uint64_t out[FLOW_MEM_COUNT]) {
     if (desc->sweeps > 1) out[FLOW_MEM_SWEPT] = out[FLOW_MEM_Z];
     out[FLOW_MEM_IMAGE] = cells * 4;
     out[FLOW_MEM_KNOWN] = desc->slices * FLOW_KNOWN_WORDS * 4ull;
-    out[FLOW_MEM_REPORT] = desc->slices * tiles(desc, FLOW_TILE) * 32;
+    out[FLOW_MEM_REPORT] = desc->slices * tiles(desc, f->tile) * 32;
     out[FLOW_MEM_PARTS] = desc->slices * FLOW_PART_KINDS * parts * 16;
 }
 
@@ -250,8 +256,8 @@ bool flow_run(const flow *f, gpu *g, const flow_call *call) {
 bool flow_run_tiles(const flow *f, gpu *g, sim_kernel *k, const sim_slot *more, size_t count,
                     const uint32_t size[2]) {
     flow_call call = {k, more, count, {1, 1, f->desc.slices}};
-    call.threads[0] = (size[0] + FLOW_TILE - 1) / FLOW_TILE * f->group;
-    call.threads[1] = (size[1] + FLOW_TILE - 1) / FLOW_TILE;
+    call.threads[0] = (size[0] + f->tile - 1) / f->tile * f->group;
+    call.threads[1] = (size[1] + f->tile - 1) / f->tile;
     return flow_run(f, g, &call);
 }
 

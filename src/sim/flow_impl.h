@@ -6,9 +6,13 @@
 // ---- to be measured on a device ---------------------------------------------------------------
 
 enum {
-    // Cells along a side of what a group does of the pressure's finer levels: 16 or 32. Smaller
-    // ones are more groups, and more cells that are computed in two.
-    FLOW_TILE = 32,
+    // Cells along a side of what a group does of the pressure's finer levels. Smaller tiles are
+    // more
+    // groups, and more cells that are computed in two: for slices that have fewer of the large ones
+    // than the device has processors.
+    FLOW_LARGE_TILE = 32,
+    FLOW_SMALL_TILE = 16,
+    FLOW_FEW_TILES = 128,
     // Defaults of sweeps. Two take about half of the iterations, and a wider border around each
     // tile: dispatches are saved for work.
     FLOW_SWEEPS = 2,
@@ -24,6 +28,7 @@ enum {
     FLOW_ITERATIONS = 6,
     FLOW_ITERATIONS_OF_TWO = 4,
     FLOW_OBSTACLE_ITERATIONS = 4,
+    FLOW_CG_ITERATIONS = 3, // by cells along the longer side
 };
 
 // ---- memory -----------------------------------------------------------------------------------
@@ -104,6 +109,7 @@ struct flow {
     flow_level levels[FLOW_MAX_LEVELS];
     uint32_t level_count;
     uint32_t group, coarse_side; // threads
+    uint32_t tile;               // cells along a side
     union {
         flow_kernels kernels;
         sim_kernel all[FLOW_KERNELS]; // those without a shader are not used

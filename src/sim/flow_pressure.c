@@ -24,7 +24,7 @@ void flow_choose_iterations(flow *f) {
     flow_desc *d = &f->desc;
     const uint32_t side = d->size[0] > d->size[1] ? d->size[0] : d->size[1];
     if (d->solver == FLOW_CG)
-        d->max_iterations = 2 * side;
+        d->max_iterations = FLOW_CG_ITERATIONS * side;
     else
         d->max_iterations = d->sweeps == 2 ? FLOW_ITERATIONS_OF_TWO : FLOW_ITERATIONS;
     if (d->solver == FLOW_MULTIGRID && d->obstacles) d->max_iterations += FLOW_OBSTACLE_ITERATIONS;
