@@ -8,7 +8,7 @@
 // round stays round; 1/2 is the axis. z is 0.
 //
 // Time: a step is a fixed part of a second (pass/steps.h); uniforms and fields are those of the
-// step's own time.
+// step's own time. What is seen at a time is what the step that begins then has made.
 #pragma once
 #include "pass/pass.h"
 
@@ -47,3 +47,15 @@ int pass_slices_use(pass *p, const char *name, int *components);
 // A pass of the types above, declared before. `painted`: of an obstacle, what is dark in it is
 // solid; it lives as long as the pass. NULL: there is none.
 bool pass_slices_add(pass *p, pass *part, const struct picture *painted);
+
+// ---- for tools, between frames ----------------------------------------------------------------
+// What is put into the flow by hand and taken out of it: pass/slices_templates.h.
+
+const pass_slices_desc *pass_slices_get_desc(const pass *p);
+const char *pass_slices_variable(const pass *p); // of the script
+// The state after the last kept step, of the field of that index in pass_slices_names: an image of
+// (x, y, slice) and the channel where it lies, of a velocity the first of two. NULL with a message:
+// nothing has flowed yet.
+gpu_image *pass_slices_look(const pass *p, int index, int *channel);
+// The greatest size of such a field in a slice. Waits for the device.
+bool pass_slices_greatest(const pass *p, int index, uint32_t slice, float *out);

@@ -1,10 +1,11 @@
 // The clock of slices (pass/steps.h), and their steps.
 #include "base/memory.h"
 #include "pass/slices_parts.h"
+#include <math.h>
 
-// Updates of a cell that one of a step is worth, as a lattice does them: the pressure is solved for
-// in several sweeps, for most of which a slice is too small to fill a device.
-static const double dearer = 12;
+// Updates of a lattice that one of a cell is worth: the pressure is solved for in several sweeps.
+// And those that fit into the least time of a step on a device, which small slices do not fill.
+static const double dearer = 12, least_updates = 2e6;
 
 // Steps of a frame whose parts are timed apart, for which each takes microseconds more: while
 // counters are off few, else as many as there are times for.
@@ -45,7 +46,8 @@ int64_t slices_most(const pass *p) {
     const slices_flow *f = slices_of(p);
     bool software = gpu_get_info(p->host->device)->kind == GPU_CPU;
     double cells = (double)f->desc.size[0] * f->desc.size[1] * f->desc.count;
-    return pass_steps_most(cells, dearer, software, p->host->brief);
+    double updates = software ? cells * dearer : fmax(cells * dearer, least_updates);
+    return pass_steps_most(updates, software, p->host->brief);
 }
 
 // `apart`: what a step consists of is timed by itself.

@@ -26,7 +26,7 @@ double pass_steps_blend(const pass_steps *s, int64_t done, double time) {
     return blend < rounding ? 0 : fmin(blend, 1);
 }
 
-int64_t pass_steps_most(double updates, double dearer, bool software, bool brief) {
-    double most = (software ? most_in_software : most_updates) / (updates * dearer);
+int64_t pass_steps_most(double updates, bool software, bool brief) {
+    double most = (software ? most_in_software : most_updates) / updates;
     return (int64_t)fmax(1, brief ? most / BRIEF : most);
 }

@@ -189,7 +189,7 @@ static void draw_marched(roil *r, const char *keys, const char *skipping, pictur
 
 static void bricks_leave_nothing_out(void **state) {
     static const char *const keys[] = {"count = 5",
-                                       "count = 2, offset = curl { frequency = 2, amount = 0.2 }"};
+                                       "count = 2, offset = vec(sin(position.z * 4), 0, 0) * 0.1"};
     picture all, skipped;
     for (size_t i = 0; i < COUNT_OF(keys); i++) {
         draw_marched(*state, keys[i], "off", all);
