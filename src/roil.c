@@ -76,6 +76,7 @@ roil *roil_create(const roil_desc *desc) {
     r->counters = desc->counters;
     r->reference = desc->reference;
     r->punctual = desc->punctual;
+    r->hands = desc->hands;
     // Without a place for it (no home folder, a read-only one) roil works, only slower.
     if (!desc->no_cache && path_cache_folder(cache, "")) r->cache = joined(cache, "");
     if (desc->no_device || open_device(r, desc)) return r;
@@ -142,6 +143,7 @@ roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, 
         .shader_root = r->shaders,
         .cache_dir = r->cache,
         .counters = r->counters,
+        .hands = r->hands,
         .reference = r->reference,
         .punctual = r->punctual,
         .settings = own,
@@ -157,6 +159,7 @@ roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, 
 void roil_unload(roil_effect *e) {
     if (!e) return;
     effect_destroy(e->effect);
+    roil_free_templates(e);
     roil_keep_only(e, NULL);
     mem_free(e->kept);
     mem_free(e);

@@ -1,5 +1,5 @@
-// roil: a runtime for volumetric effects. This is the whole public interface of libroil; the
-// program `roil` does everything through it.
+// roil: a runtime for volumetric effects. This is, with roil_slices.h, which it includes, the whole
+// public interface of libroil; the program `roil` does everything through it.
 //
 //   roil *r = roil_create(&(roil_desc){0});
 //   roil_effect *e = r ? roil_load(r, "effects/explosion.lua", NULL, 0) : NULL;
@@ -49,6 +49,8 @@ typedef struct roil_desc {
     const roil_window_desc *window; // NULL: nothing is shown
     bool punctual; // no frame waits for a frame of a sequence that is not decoded yet: the nearest
                    // one that is stands in for it (roil_playback.late)
+    bool hands;    // flows in slices can be touched (roil_slices.h); each of their steps takes a
+                   // little longer then
 } roil_desc;
 
 roil *roil_create(const roil_desc *desc);
@@ -474,3 +476,5 @@ void roil_free(void *text);
 #ifdef __cplusplus
 }
 #endif
+
+#include "roil_slices.h" // flows in a user's hands

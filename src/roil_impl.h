@@ -4,12 +4,13 @@
 #include "effect/effect.h"
 #include "roil.h"
 
-typedef struct view view; // roil_view.h
+typedef struct view view;                   // roil_view.h
+typedef struct template_file template_file; // roil_template.c
 
 struct roil {
     gpu *device; // NULL: no_device
     char *home, *shaders, *scripts, *cache;
-    bool counters, window, punctual;
+    bool counters, window, punctual, hands;
     uint32_t reference;
     view *view; // NULL until something is shown or inspected
 };
@@ -23,6 +24,8 @@ struct roil_effect {
     double shown;   // number of the effect's frame that it shows
     char **kept;    // names by roil_keep, for roil_apply_kept
     size_t kept_count, kept_capacity;
+    template_file **templates; // that were read
+    size_t template_count, template_capacity;
 };
 
 // What a control is worth, as the table or word that Lua reads. `whole`: of palettes and curves
@@ -37,6 +40,7 @@ enum { ROIL_SRGB_STEPS = 4096 };
 const uint8_t *roil_srgb_table(void);
 
 void roil_free_view(roil *r);
+void roil_free_templates(roil_effect *e); // after the effect itself
 // Tells the graph which images are outputs: the effect's pictures, and those of roil_keep that it
 // has. Before it is compiled for a size.
 void roil_apply_kept(roil_effect *e);

@@ -144,6 +144,7 @@ static effect *load(roil_live *l, const order *o, file_set *files) {
         .shader_root = r->shaders,
         .cache_dir = r->cache,
         .counters = r->counters,
+        .hands = r->hands,
         .reference = r->reference,
         .punctual = r->punctual,
         .settings = o->settings,

@@ -46,8 +46,9 @@ void roil_free_view(roil *r) {
     if (!v) return;
     gpu_image *images[] = {v->srgb, v->white, v->canvas, v->probe.texel};
     gpu_buffer *buffers[] = {v->vertices, v->indices, v->probe.readback};
-    view_shader *shaders[] = {&v->compose,       &v->overlay,       &v->inspect[0][0],
-                              &v->inspect[0][1], &v->inspect[1][0], &v->inspect[1][1]};
+    view_shader *shaders[] = {&v->compose,       &v->overlay,       &v->slices,
+                              &v->inspect[0][0], &v->inspect[0][1], &v->inspect[1][0],
+                              &v->inspect[1][1]};
     for (size_t i = 0; i < COUNT_OF(images); i++) gpu_image_destroy(r->device, images[i]);
     for (size_t i = 0; i < COUNT_OF(buffers); i++) gpu_buffer_destroy(r->device, buffers[i]);
     for (size_t i = 0; i < COUNT_OF(shaders); i++)

@@ -26,7 +26,8 @@ struct view {
     gpu_image *srgb, *white;
     gpu_image *canvas; // what was shown last
     gpu_buffer *vertices, *indices;
-    view_shader compose, overlay, inspect[2][2]; // inspect: of volumes, of whole numbers
+    view_shader compose, overlay, slices;
+    view_shader inspect[2][2]; // of volumes, of whole numbers
     view_probe probe;
 };
 

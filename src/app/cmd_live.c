@@ -186,6 +186,7 @@ static int run_device(live *l, window *w, job *j) {
     roil_desc desc = app_device_desc(&j->device);
     desc.window = &w->desc;
     desc.punctual = true;
+    desc.hands = true;
     l->r = roil_create(&desc);
     if (!l->r) return app_fail_input();
     l->follow = roil_live_create(l->r, &(roil_live_desc){.file = j->file,

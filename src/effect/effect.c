@@ -64,6 +64,7 @@ effect *effect_create(const effect_desc *desc) {
         .lights = &e->lights,
         .scene = &e->scene,
         .counters = desc->counters,
+        .hands = desc->hands,
         .reader = &e->reader,
         .before_declare = effect_apply_settings,
         .user = e,

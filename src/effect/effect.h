@@ -43,6 +43,7 @@ typedef struct effect_desc {
     const char *shader_root; // the program's shaders
     const char *cache_dir;   // NULL: no caches
     bool counters;
+    bool hands;    // pass_host.hands
     bool punctual; // field_grid.punctual, of all grids
     // Above 0: each pass `march` becomes a `reference`, and this is what effect_samples shall come
     // to.

@@ -35,6 +35,7 @@ typedef struct pass_host { // what all passes of one effect share
     bool hold;     // what simulates stays as it is
     bool brief;    // a submit is to be short, so that a window stays awake
     bool counters; // compile counters in and read them
+    bool hands;    // flows can be touched (pass/slices_templates.h)
     const shader_reader *reader;                 // of all files of shaders; may be NULL
     bool (*before_declare)(void *user, pass *p); // last chance to change a pass; may be NULL
     void *user;
