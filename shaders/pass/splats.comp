@@ -1,8 +1,10 @@
 // Draws particles: as soft round spots, pictures or streaks, in front of what is solid and behind the smoke that is before them.
 //
-// over { drawn, picture, from = {drawn, scene} } lays the result over a picture. Fields are evaluated
-// for each particle at its place; they may use particle_age (0..1 over its life), particle_quantity,
-// particle_random and particle_velocity, as in size = 0.02 * (1 - particle_age).
+// splats { from = {sparks, scene, lit} } takes depth from a pass geometry, smoke and its shadows from a
+// pass lighting; over { drawn, picture, from = {drawn, scene} } lays the result over a picture that has
+// the smoke in it already. Fields are evaluated for each particle at its place; they may use
+// particle_age (0..1 over its life), particle_quantity, particle_random and particle_velocity, as in
+// size = 0.02 * (1 - particle_age).
 //
 // Spots of up to two pixels, and short streaks, are added to pixels in whole numbers, which no order
 // changes. Larger ones are listed by the tiles of the picture that they touch. Nothing is drawn

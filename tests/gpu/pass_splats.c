@@ -95,12 +95,11 @@ static void nothing_is_lost_where_lists_are_full(void **state) {
 
 static void the_dead_and_those_outside_are_not_drawn(void **state) {
     spots s;
-    open_round(&s, *state, 4, 2);
+    open_round(&s, *state, 6, 2);
     spots_build(&s);
-    static const spot none[4] = {{.age = 2, .lifetime = 1},
-                                 {.age = -1, .lifetime = 1},
-                                 {.at = {0, -6, 0}},
-                                 {.at = {9, 0, 0}}};
+    static const spot none[6] = {{.age = 2, .lifetime = 1}, {.age = -1, .lifetime = 1},
+                                 {.at = {0, -6, 0}},        {.at = {9, 0, 0}},
+                                 {.at = {NAN, 0, 0}},       {.at = {0, INFINITY, 0}}};
     float *pixels = spots_draw(&s, none);
     assert_true(sum_of(pixels, 0) == 0);
     mem_free(pixels);

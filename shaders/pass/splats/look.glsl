@@ -4,7 +4,7 @@
 const float SMALL = 1.0;     // pixels: radius of those that are added to the four pixels around them
 const float SHORT = 16.0;    // pixels: length of streaks that are added point by point
 const float SMOOTH = 1.5;    // pixels: added to the radius of others (in squares), so that pixels miss nothing
-const float VIEW_MOST = 1e12;
+const float VIEW_MOST = 1e12, FARTHEST = 1e5; // of density; of a streak's begin, pixels
 
 float positive(float v, float most) { return v > 0.0 ? min(v, most) : 0.0; }
 
@@ -97,12 +97,13 @@ looks look_at(uint slot) {
     l.seen = false;
     if (slot >= particle_used || !particle_read(slot, p)) return l;
     vec3 seen = place_seen(p.position);
-    if (seen.z < frame.lens.z || seen.z > frame.lens.w) return l;
+    if (!(seen.z >= frame.lens.z && seen.z <= frame.lens.w)) return l; // of no number, too
     particle_said = particle_facts(p.age / p.lifetime, p.quantity, particle_random(p.id, 64u), p.velocity);
     float meter = 0.5 * picture.y / (frame.lens.y * seen.z); // in pixels
     float radius = 0.5 * positive(field_size(p.position), 1e6) * meter;
     float opacity = positive(field_opacity(p.position), BLEND == BLEND_ADDITIVE ? MOST : 1.0);
     l.before = streak > 0.0 ? place_before(p) : seen;
+    if (!(distance(l.before, seen) < FARTHEST)) l.before = seen;
     vec2 around = vec2(2.0 * radius) + 4.0, low = min(seen.xy, l.before.xy), high = max(seen.xy, l.before.xy);
     if (radius <= 0.0 || opacity <= 0.0 || any(lessThan(high + around, vec2(0.0))) ||
         any(greaterThan(low - around, picture)))

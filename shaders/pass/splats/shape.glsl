@@ -7,7 +7,7 @@ const float MOST = 60000.0; // of a colour: half floats hold it
 
 // Sums are in these parts of 1, of colours and of the logarithm of what shines through. So a pixel
 // may be a million bright; rounding is by chance, which is right on average however faint a splat.
-const float UNIT = 4096.0, LOG_UNIT = 65536.0;
+const float UNIT = 4096.0, LOG_UNIT = 65536.0, PART_MOST = 1e6;
 
 #if BLEND == BLEND_WEIGHTED
 #define CHANNELS 5u // weighted colour, weight, logarithm
@@ -126,10 +126,10 @@ splat_sum splat_part(vec3 light, float opacity, float away, uint seed, ivec2 pix
     float chance = float(random_hash(seed ^ random_hash(uint(pixel.y) << 16 | uint(pixel.x))) >> 8) / 16777216.0;
 #if BLEND == BLEND_WEIGHTED
     float covered = min(opacity, 0.999), weight = covered * splat_weight(away);
-    return splat_sum(uvec3(weight * light * UNIT + chance), uint(weight * UNIT + chance),
+    return splat_sum(uvec3(min(weight * light, PART_MOST) * UNIT + chance), uint(weight * UNIT + chance),
                      uint(-log2(1.0 - covered) * LOG_UNIT + chance));
 #else
-    return splat_sum(uvec3(opacity * light * UNIT + chance), 0u, 0u);
+    return splat_sum(uvec3(min(opacity * light, PART_MOST) * UNIT + chance), 0u, 0u);
 #endif
 }
 
