@@ -123,6 +123,31 @@ static void pressure_makes_sources_and_velocity_vortices(void **state) {
     templates_close(&t);
 }
 
+// The flux of a source does not hang on the cells, of which there are twice as many, or on the
+// step.
+static void pressure_is_as_firm_on_other_cells_and_steps(void **state) {
+    double seen[3];
+    for (int k = 0; k < 3; k++) {
+        templates_world t;
+        flow_desc desc = box;
+        desc.size[0] = desc.size[1] = k == 1 ? 2 * SIDE : SIDE;
+        int steps = k == 2 ? 40 : 20;
+        templates_open(&t, *state, &desc, 1.0 / 3 / steps);
+        add_middle(&t, "source", "pressure", 0.05f);
+        templates_build(&t);
+        templates_run(&t, steps, true);
+        float *uv = templates_read_flow(&t, "FlowVelocity");
+        const speeds s = {uv, ((int)desc.size[0] + 4) / 4 * 4};
+        int side = (int)desc.size[0], half = side * 14 / 64;
+        seen[k] = flux(&s, side / 2 - half, side / 2 + half) / side;
+        mem_free(uv);
+        templates_close(&t);
+    }
+    print_message("flux %.4f m^2/s, of twice the cells %.4f, of twice the steps %.4f\n", seen[0],
+                  seen[1], seen[2]);
+    assert_true(fabs(seen[1] / seen[0] - 1) < 0.15 && fabs(seen[2] / seen[0] - 1) < 0.15);
+}
+
 // Gives each cell `value` of density and temperature where it is in the first `columns`.
 static void fill(templates_world *t, int columns, float value) {
     gpu *device = t->w.host.device;
@@ -310,6 +335,7 @@ static void sizes_and_lifetimes_choose_the_frequencies(void **state) {
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(pressure_makes_sources_and_velocity_vortices),
+        cmocka_unit_test(pressure_is_as_firm_on_other_cells_and_steps),
         cmocka_unit_test(templates_go_by_what_the_flow_has),
         cmocka_unit_test(what_flows_is_captured_as_a_picture),
         cmocka_unit_test(sizes_and_lifetimes_choose_the_frequencies),

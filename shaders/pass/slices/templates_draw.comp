@@ -22,9 +22,11 @@ uniform sampler2D TemplateImages; // tiles below each other: values times alpha,
 
 // Mixing in each iteration adds 4 alpha / (1 - alpha) (p - pressure) to the equation of the pressure,
 // for each square of a cell's side: alpha is made such that it is as much for a square of a width.
+// And what flows out of a template in a step is as much longer as the step is: alpha is made such
+// that it is as much in a second.
 float alpha_here(float alpha) {
     const float finer = float(FLOW_NX) / 128.0;
-    return alpha / max(alpha + (1.0 - alpha) * finer * finer, 1e-6);
+    return alpha / max(alpha + (1.0 - alpha) * finer * finer * 60.0 * time_step, 1e-6);
 }
 
 #define EACH_CELL for (int c = 0; c < TEMPLATES_CELLS; c++)
