@@ -57,10 +57,10 @@ writeonly uniform image2D transmittance; //= output rgba16f optional : part of w
 float greatest(vec3 v) { return max(max(v.x, v.y), v.z); }
 float mean(vec3 v) { return (v.x + v.y + v.z) / 3.0; }
 
-// What is compiled of this file: a stage that makes bricks, or else the march itself, which has code
-// for steps of variable length where those are asked for.
-#if defined(STAGE_HOLD) || defined(STAGE_FREE)
-#define BRICKS_ONLY
+// What is compiled of this file: a stage that makes bricks, or what rays see that miss the box, or
+// else the march itself, which has code for steps of variable length where those are asked for.
+#if defined(STAGE_HOLD) || defined(STAGE_FREE) || defined(STAGE_AROUND)
+#define WITHOUT_RAYS
 #endif
 #ifndef ADAPTIVE
 #define ADAPTIVE 1
@@ -82,7 +82,36 @@ bool may_hold(vec3 p) {
 #include "march/light.glsl"
 #include "march/sum.glsl"
 
-#if !defined(BRICKS_ONLY)
+#if MARCH_SOFTWARE || defined(STAGE_AROUND)
+uniform vec2 corner; // of the part of the picture at hand
+#else
+const vec2 corner = vec2(0.0);
+#endif
+
+float scene_depth(vec2 uv) {
+#if HAS_DEPTH
+    return texelFetch(depth, ivec2(uv * vec2(textureSize(depth, 0))), 0).r;
+#else
+    return 1e9;
+#endif
+}
+
+#if defined(STAGE_AROUND)
+layout(local_size_x = 16, local_size_y = 16) in;
+
+void main() {
+    ivec2 pixel = ivec2(corner) + ivec2(gl_GlobalInvocationID.xy), size = imageSize(color);
+    if (any(greaterThanEqual(pixel, size))) return;
+    vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
+    float stop = scene_depth(uv);
+    imageStore(color, pixel, vec4(0.0));
+    imageStore(edge, pixel, vec4(stop));
+    imageStore(transmittance, pixel, vec4(1.0));
+    imageStore(reach, pixel, vec4(stop * length(frame_ray(uv))));
+}
+#endif
+
+#if !defined(WITHOUT_RAYS)
 layout(local_size_x = 16, local_size_y = 16) in;
 
 float chance(uvec2 pixel) {
@@ -105,7 +134,7 @@ ivec2 pixel_of_thread() {
     uvec2 within = uvec2(0u);
     for (uint bit = 0u; bit < 4u; bit++) within |= uvec2(i, i >> 1) >> bit & 1u << bit;
     uvec2 tile = uvec2(1u << (bits + 1u) / 2u, 1u << bits / 2u);
-    return ivec2(gl_WorkGroupID.xy * tile + within);
+    return ivec2(corner) + ivec2(gl_WorkGroupID.xy * tile + within);
 }
 
 void main() {
@@ -117,11 +146,8 @@ void main() {
     float metres = length(along); // along the ray for each metre of depth
     vec3 direction = along / metres;
     vec2 range = box_range(frame.eye.xyz, direction, box_min, box_max);
-    float stop = 1e9, last = 1e30;
-#if HAS_DEPTH
-    stop = texelFetch(depth, ivec2(uv * vec2(textureSize(depth, 0))), 0).r;
-    last = stop * metres + depth_bias;
-#endif
+    float stop = scene_depth(uv);
+    float last = HAS_DEPTH != 0 ? stop * metres + depth_bias : 1e30;
     if (!inside) range = vec2(0.0);
     float offset = MODE == MODE_PAPER ? 0.0 : 0.5;
     offset = clamp(offset + jitter * (chance(uvec2(pixel)) - 0.5), 0.0, 1.0);

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "pass/bricks.h"
 #include "pass/builtin.h"
+#include "pass/march_around.h"
 #include <math.h>
 #include <string.h>
 
@@ -17,7 +18,9 @@ typedef struct march_state {
     bool teams;    // has code for several threads a ray
     bool software; // the device is: it has no branches
     int32_t team;  // threads a ray, in this frame
+    box3 box;      // that rays are cut to, in this frame
     bricks bricks;
+    march_around around; // in software
 } march_state;
 
 static bool has_word(const pass *p, const char *option, const char *word) {
@@ -75,13 +78,15 @@ static bool compile(pass *p, shader_binary *out) {
 bool march_check(pass *p) {
     const march_state *s = p->state;
     choose_code(p);
-    return (!s->skips || bricks_check(p)) && compile(p, &p->binary);
+    return (!s->skips || bricks_check(p)) && (!s->software || march_around_check(p)) &&
+           compile(p, &p->binary);
 }
 
 bool march_build(pass *p) {
     march_state *s = p->state;
     if (s->skips && !bricks_build(p, &s->bricks)) return false;
     choose_code(p);
+    if (s->software && !march_around_build(p, &s->around)) return false;
     if (!compile(p, &p->binary)) return false;
     p->pipeline = pass_create_compute(p, &p->binary);
     return p->pipeline != NULL;
@@ -89,7 +94,9 @@ bool march_build(pass *p) {
 
 void march_destroy(pass *p) {
     march_state *s = p->state;
-    if (s) bricks_destroy(p, &s->bricks);
+    if (!s) return;
+    bricks_destroy(p, &s->bricks);
+    march_around_destroy(p, &s->around);
 }
 
 // ---- in a frame -------------------------------------------------------------------------------
@@ -126,6 +133,7 @@ bool march_fill(pass *p, const shader_binary *binary, unsigned char *block) {
     box3 box;
     uint32_t size[3];
     if (!march_box(p, &box)) return false;
+    s->box = box;
     pass_write_box(binary, block, box);
     graph_get_size(p->host->graph, pass_output(p, "color"), size);
     float rays = (float)size[0] * (float)size[1], rows = (float)size[1];
@@ -158,23 +166,33 @@ static bool follow_code(pass *p) {
 }
 
 // A group is a square of pixels, or half of one, of 256 threads.
-static void count_threads(const pass *p, uint32_t threads[3]) {
-    const march_state *s = p->state;
+static void count_threads(const march_state *s, march_part part, uint32_t threads[3]) {
     int bits = 8;
     for (int32_t i = 1; i < s->team; i *= 2) bits--;
     const uint32_t tile[2] = {1u << (bits + 1) / 2, 1u << bits / 2};
-    graph_get_size(p->host->graph, pass_output(p, "color"), threads);
-    for (int i = 0; i < 2; i++) threads[i] = (threads[i] + tile[i] - 1) / tile[i] * GROUP_SIDE;
+    for (int i = 0; i < 2; i++) {
+        uint32_t pixels = (uint32_t)(part.high[i] - part.low[i]);
+        threads[i] = (pixels + tile[i] - 1) / tile[i] * GROUP_SIDE;
+    }
 }
 
-bool march_record(pass *p) {
-    const march_state *s = p->state;
-    if (!s->skips && !pass_prepare(p)) return false;
-    if (!follow_code(p)) return false;
+static bool record_part(pass *p, march_part part) {
+    march_state *s = p->state;
     pass_override slot = s->skips ? bricks_slot(p, &s->bricks) : (pass_override){"", {0}};
     gpu_binding bindings[GPU_MAX_SLOTS];
     gpu_dispatch_desc desc = {.pipeline = p->pipeline, .bindings = bindings};
-    count_threads(p, desc.threads);
+    count_threads(s, part, desc.threads);
+    if (!desc.threads[0] || !desc.threads[1]) return true;
+    march_write_corner(&p->binary, p->block, part);
     return pass_bind(p, &p->binary, p->block, &slot, s->skips, bindings, &desc.binding_count) &&
            gpu_dispatch(p->host->device, &desc);
+}
+
+bool march_record(pass *p) {
+    march_state *s = p->state;
+    march_part inside;
+    if (!s->skips && !pass_prepare(p)) return false;
+    if (!follow_code(p)) return false;
+    march_around *around = s->software && !s->teams ? &s->around : NULL;
+    return march_around_record(p, around, s->box, &inside) && record_part(p, inside);
 }

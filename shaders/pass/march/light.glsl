@@ -1,5 +1,5 @@
 // The light that reaches a point of the march and is scattered there into its ray.
-#if !defined(BRICKS_ONLY)
+#if !defined(WITHOUT_RAYS)
 
 // Density times metres along a ray from p; steps grow with distance, where detail matters less.
 float depth_along(vec3 p, vec3 direction, float far, int count) {

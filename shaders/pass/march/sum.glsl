@@ -1,5 +1,5 @@
 // The sum along a ray.
-#if !defined(BRICKS_ONLY)
+#if !defined(WITHOUT_RAYS)
 #include "team.glsl"
 
 float pixel_width = 0.0; // of the ray, at a distance of a metre
