@@ -61,7 +61,7 @@ typedef struct picture_object { // a file's: image "templates/source.exr"
     pass *pass;       // that gives it as an image of the graph; NULL: nobody asked yet
 } picture_object;
 const picture_object *value_picture(lua_State *L, int index); // NULL: something else
-typedef struct slices_object { // l_slices.c
+typedef struct slices_object {                                // l_slices.c
     pass *pass;
     field_grid *grid;
     const field *offset; // of points, for what is turned round the axis; NULL: none
