@@ -7,7 +7,7 @@ layout(local_size_x = 16, local_size_y = 8, local_size_z = 1) in;
 //@ option bottom = closed {closed, open, periodic} : lower edge; periodic only with the upper one
 //@ option sides = closed {closed, open, periodic} : left and right edge
 //@ option advection = maccormack {semi_lagrangian, maccormack} : how the flow carries; semi_lagrangian is as published and blurs more
-//@ option solver = multigrid {cg, multigrid} : of the pressure; cg, conjugate gradients, is as published, multigrid is faster
+//@ option solver = auto {cg, multigrid, transform, auto} : of the pressure; cg, conjugate gradients, is as published, multigrid is faster; transform needs no iterations where there are neither obstacles nor templates, and is what auto takes there
 uniform float viscosity;        //= 1e-4 [0, inf] m^2/s : of the fluid; not used where a Reynolds number is given
 uniform float reynolds;         //= 0 [0, inf] : speed * height / viscosity: the lower, the tougher the fluid; 0: by viscosity
 uniform float speed;            //= 1 [0, inf] m/s : that reynolds refers to

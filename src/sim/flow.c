@@ -30,6 +30,9 @@ static bool check(const flow_desc *desc) {
         return err_set("%u slices; 1 to %d are accepted", desc->slices, FLOW_MAX_SLICES);
     if (desc->sweeps > 2)
         return err_set("%u sweeps of multigrid; 1 and 2 are accepted", desc->sweeps);
+    if (desc->solver == FLOW_TRANSFORM && desc->size[1] > FLOW_MOST_LINE)
+        return err_set("a slice of %u cells along y; a transform solves at most %d", desc->size[1],
+                       FLOW_MOST_LINE);
     return check_faces(desc);
 }
 
@@ -39,6 +42,7 @@ flow *flow_create(arena *memory, const flow_desc *desc) {
     *f = (flow){.memory = memory, .desc = *desc};
     f->chooses_iterations = desc->max_iterations == 0;
     f->chooses_sweeps = desc->sweeps == 0;
+    f->chooses_solver = desc->solver == FLOW_AUTO;
     flow_levels_find(f);
     return f;
 }
@@ -87,6 +91,12 @@ typedef struct part { // of what is compiled
     bool unused;
 } part;
 
+static flow_solver choose_solver(const flow_desc *desc, bool software) {
+    const bool suits = !desc->obstacles && !desc->templates && desc->size[1] <= FLOW_MOST_LINE &&
+                       (!software || desc->size[0] <= FLOW_SOFTWARE_TRANSFORM);
+    return suits ? FLOW_TRANSFORM : FLOW_MULTIGRID;
+}
+
 static uint64_t tiles(const flow_desc *desc, uint32_t side) {
     return (uint64_t)((desc->size[0] + side - 1) / side) * ((desc->size[1] + side - 1) / side);
 }
@@ -97,6 +107,7 @@ static void choose(flow *f, bool software) {
     f->tile = few && !software ? FLOW_SMALL_TILE : FLOW_LARGE_TILE;
     f->group = software ? FLOW_SOFTWARE_GROUP : FLOW_GROUP;
     f->coarse_side = software ? FLOW_SOFTWARE_COARSE_SIDE : FLOW_COARSE_SIDE;
+    if (f->chooses_solver) f->desc.solver = choose_solver(&f->desc, software);
     if (f->chooses_sweeps) f->desc.sweeps = software ? FLOW_SOFTWARE_SWEEPS : FLOW_SWEEPS;
     if (f->chooses_iterations) flow_choose_iterations(f);
 }
@@ -105,25 +116,28 @@ static void choose(flow *f, bool software) {
 static bool compile(flow *f, const gpu_info *device, shader_library *library,
                     const shader_reader *reader) {
     flow_kernels *k = &f->kernels;
-    const bool plain = f->desc.solver == FLOW_CG;
+    choose(f, device && device->kind == GPU_CPU);
+    const flow_solver solver = f->desc.solver;
     const part parts[] = {
         {&k->diffuse, "sim/flow/diffuse.comp", NULL, false},
         {&k->predict, "sim/flow/predict.comp", NULL, f->desc.advection != FLOW_MACCORMACK},
         {&k->advance, "sim/flow/advance.comp", NULL, false},
         {&k->build, "sim/flow/build.comp", NULL, false},
-        {&k->follow, "sim/flow/follow.comp", NULL, !plain},
+        {&k->follow, "sim/flow/follow.comp", NULL, solver == FLOW_MULTIGRID},
         {&k->direction, "sim/flow/direction.comp", NULL, false},
         {&k->project, "sim/flow/project.comp", NULL, false},
-        {&k->down_finest, "sim/flow/down.comp", "FLOW_FINEST", plain},
-        {&k->down, "sim/flow/down.comp", NULL, plain},
-        {&k->coarse, "sim/flow/coarse.comp", NULL, plain},
-        {&k->up, "sim/flow/up.comp", NULL, plain},
-        {&k->up_finest, "sim/flow/up.comp", "FLOW_FINEST", plain},
+        {&k->down_finest, "sim/flow/down.comp", "FLOW_FINEST", solver != FLOW_MULTIGRID},
+        {&k->down, "sim/flow/down.comp", NULL, solver != FLOW_MULTIGRID},
+        {&k->coarse, "sim/flow/coarse.comp", NULL, solver != FLOW_MULTIGRID},
+        {&k->up, "sim/flow/up.comp", NULL, solver != FLOW_MULTIGRID},
+        {&k->up_finest, "sim/flow/up.comp", "FLOW_FINEST", solver != FLOW_MULTIGRID},
+        {&k->to_modes, "sim/flow/transform.comp", NULL, solver != FLOW_TRANSFORM},
+        {&k->lines, "sim/flow/lines.comp", NULL, solver != FLOW_TRANSFORM},
+        {&k->from_modes, "sim/flow/transform.comp", "FLOW_BACK", solver != FLOW_TRANSFORM},
         {&k->report, "sim/flow/report.comp", NULL, false},
         {&k->report_last, "sim/flow/report.comp", "LAST", false},
         {&k->look, "sim/flow/look.comp", NULL, false},
     };
-    choose(f, device && device->kind == GPU_CPU);
     define_all(f);
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         const shader_define own = {parts[i].define, ""};
@@ -176,8 +190,9 @@ static void find_sizes(const flow *f, uint64_t out[FLOW_MEM_COUNT]) {
     if (desc->templates) out[FLOW_MEM_TEMPLATES] = cells * 8;
     out[FLOW_MEM_COEFFICIENTS] = last->coefficients_at * 8ull;
     out[FLOW_MEM_COARSE_RESIDUAL] = multigrid ? (last->r_at + end) * 4 : 0;
-    out[FLOW_MEM_Z] = multigrid ? (last->z_at + end) * 4 : 0;
-    if (desc->sweeps > 1) out[FLOW_MEM_SWEPT] = out[FLOW_MEM_Z];
+    out[FLOW_MEM_Z] = multigrid ? (last->z_at + end) * 4 : cells * 4;
+    if (desc->solver == FLOW_TRANSFORM) out[FLOW_MEM_LINES] = cells * 4;
+    if (multigrid && desc->sweeps > 1) out[FLOW_MEM_SWEPT] = out[FLOW_MEM_Z];
     out[FLOW_MEM_IMAGE] = cells * 4;
     out[FLOW_MEM_KNOWN] = desc->slices * FLOW_KNOWN_WORDS * 4ull;
     out[FLOW_MEM_REPORT] = desc->slices * tiles(desc, f->tile) * 32;
@@ -192,7 +207,7 @@ bool flow_allocate(flow *f, gpu *g) {
         f->buffers[i] = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "flow", .size = sizes[i]});
         if (!f->buffers[i]) return false;
     }
-    return flow_report_allocate(f, g);
+    return flow_transform_allocate(f, g) && flow_report_allocate(f, g);
 }
 
 void flow_destroy(flow *f, gpu *g) {
@@ -201,6 +216,8 @@ void flow_destroy(flow *f, gpu *g) {
     for (int i = 0; i < 2 * FLOW_LOOKS; i++)
         gpu_image_destroy(g, f->looks[i / FLOW_LOOKS][i % FLOW_LOOKS]);
     flow_report_destroy(f, g);
+    gpu_buffer_destroy(g, f->modes);
+    f->modes = NULL;
     memset(f->buffers, 0, sizeof f->buffers);
     memset(f->looks, 0, sizeof f->looks);
 }

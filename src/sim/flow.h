@@ -25,12 +25,15 @@ typedef struct flow flow;
 
 typedef enum flow_face { FLOW_CLOSED, FLOW_OPEN, FLOW_PERIODIC } flow_face;
 typedef enum flow_advection { FLOW_SEMI_LAGRANGIAN, FLOW_MACCORMACK } flow_advection;
-// Conjugate gradients as published, or with a multigrid cycle as their preconditioner.
-typedef enum flow_solver { FLOW_CG, FLOW_MULTIGRID } flow_solver;
+// Conjugate gradients as published, or preconditioned by a multigrid cycle or by a transform along
+// x, which alone solves what has neither obstacles nor templates. Auto: that where it does (in
+// software up to 128 cells along x), else multigrid.
+typedef enum flow_solver { FLOW_CG, FLOW_MULTIGRID, FLOW_TRANSFORM, FLOW_AUTO } flow_solver;
 
 enum {
     FLOW_LEAST_SIZE = 16,
     FLOW_MOST_SIZE = 2048,
+    FLOW_MOST_LINE = 1024, // along y, of FLOW_TRANSFORM
     FLOW_MAX_SLICES = 64,
     FLOW_MAX_DEFINES = 32,
 };

@@ -29,6 +29,11 @@ enum {
     FLOW_ITERATIONS_OF_TWO = 4,
     FLOW_OBSTACLE_ITERATIONS = 4,
     FLOW_CG_ITERATIONS = 3, // by cells along the longer side
+    // Of a transform: the second is for what rounding leaves of large slices. What obstacles and
+    // templates change takes it many.
+    FLOW_TRANSFORM_ITERATIONS = 2,
+    FLOW_TRANSFORM_ITERATIONS_AROUND = 32,
+    FLOW_SOFTWARE_TRANSFORM = 128, // cells along x up to which a processor does it in less time
 };
 
 // ---- memory -----------------------------------------------------------------------------------
@@ -51,6 +56,7 @@ typedef enum flow_memory {
     FLOW_MEM_COARSE_RESIDUAL = FLOW_MEM_RESIDUAL + 2, // of the others
     FLOW_MEM_Z,                                       // of all levels
     FLOW_MEM_SWEPT,     // with more than one sweep: the same before the coarser levels are known
+    FLOW_MEM_LINES,     // with a transform: of modes, along y
     FLOW_MEM_DIRECTION, // two
     FLOW_MEM_IMAGE = FLOW_MEM_DIRECTION + 2,
     FLOW_MEM_KNOWN,
@@ -96,6 +102,7 @@ typedef struct flow_kernels {
     sim_kernel diffuse, predict, advance;                // flow_step.c
     sim_kernel build, follow, direction, project;        // flow_pressure.c
     sim_kernel down_finest, down, coarse, up, up_finest; // with multigrid
+    sim_kernel to_modes, lines, from_modes;              // flow_transform.c
     sim_kernel look, report, report_last;
 } flow_kernels;
 enum { FLOW_KERNELS = sizeof(flow_kernels) / sizeof(sim_kernel) };
@@ -103,7 +110,7 @@ enum { FLOW_KERNELS = sizeof(flow_kernels) / sizeof(sim_kernel) };
 struct flow {
     arena *memory;
     flow_desc desc;
-    bool chooses_iterations, chooses_sweeps; // the desc gave none
+    bool chooses_iterations, chooses_sweeps, chooses_solver; // the desc gave none
     shader_define defines[FLOW_MAX_DEFINES];
     size_t define_count;
     flow_level levels[FLOW_MAX_LEVELS];
@@ -115,6 +122,7 @@ struct flow {
         sim_kernel all[FLOW_KERNELS]; // those without a shader are not used
     };
     gpu_buffer *buffers[FLOW_MEM_COUNT];
+    gpu_buffer *modes; // along x, each of size[0]; then what the equation makes of each
     gpu_image *looks[2][FLOW_LOOKS]; // [kept % 2] is written next
     uint32_t current;                // of pairs that are the state's
     bool built;                      // coefficients are there
@@ -147,3 +155,11 @@ void flow_levels_find(flow *f);
 void flow_choose_iterations(flow *f);
 // From the velocity next, to that of the state.
 bool flow_project(flow *f, gpu *g, const flow_numbers *numbers);
+
+// ---- a transform: flow_transform.c ------------------------------------------------------------
+
+// size[0] modes of size[0] cells, each of length 1, and by what the equation multiplies each.
+void flow_transform_modes(const flow_desc *desc, float *out);
+bool flow_transform_allocate(flow *f, gpu *g);
+// From a residual to z, and the product of both.
+bool flow_transform(flow *f, gpu *g, gpu_buffer *residual);

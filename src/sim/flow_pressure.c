@@ -1,6 +1,6 @@
-// The pressure of a step: conjugate gradients, preconditioned by a cycle of multigrid or by
-// nothing. All that the host decides is how many iterations are recorded; whether they still do
-// anything is decided on the device (flow_begin in shaders/sim/flow/solve.glsl).
+// The pressure of a step: conjugate gradients, preconditioned by a cycle of multigrid, by a
+// transform or by nothing. All that the host decides is how many iterations are recorded; whether
+// they still do anything is decided on the device (flow_begin in shaders/sim/flow/solve.glsl).
 #include "sim/flow_impl.h"
 #include <string.h>
 
@@ -25,6 +25,9 @@ void flow_choose_iterations(flow *f) {
     const uint32_t side = d->size[0] > d->size[1] ? d->size[0] : d->size[1];
     if (d->solver == FLOW_CG)
         d->max_iterations = FLOW_CG_ITERATIONS * side;
+    else if (d->solver == FLOW_TRANSFORM)
+        d->max_iterations = d->obstacles || d->templates ? FLOW_TRANSFORM_ITERATIONS_AROUND
+                                                         : FLOW_TRANSFORM_ITERATIONS;
     else
         d->max_iterations = d->sweeps == 2 ? FLOW_ITERATIONS_OF_TWO : FLOW_ITERATIONS;
     if (d->solver == FLOW_MULTIGRID && d->obstacles) d->max_iterations += FLOW_OBSTACLE_ITERATIONS;
@@ -128,7 +131,7 @@ static bool do_coarse(flow *f, gpu *g) {
 }
 
 // The residual of the last direction, and what multigrid makes of it.
-static bool precondition(flow *f, gpu *g, uint32_t iteration, float tolerance) {
+static bool do_levels(flow *f, gpu *g, uint32_t iteration, float tolerance) {
     const uint32_t last = f->level_count - 1;
     for (uint32_t i = 0; i < last; i++)
         if (!go_down(f, g, i, iteration, tolerance)) return false;
@@ -151,12 +154,15 @@ static bool follow(flow *f, gpu *g, uint32_t iteration, float tolerance) {
 static bool iterate(flow *f, gpu *g, uint32_t iteration, float tolerance) {
     const turn t = turn_of(f, iteration);
     sim_kernel *k = &f->kernels.direction;
-    const bool plain = f->desc.solver == FLOW_CG;
-    const sim_slot more[] = {{"FlowBefore", t.last, NULL},
-                             {"FlowResidual", t.residual, NULL},
-                             {"FlowDirection", t.direction, NULL},
-                             {"FlowZ", plain ? t.residual : f->buffers[FLOW_MEM_Z], NULL}};
-    if (!(plain ? follow(f, g, iteration, tolerance) : precondition(f, g, iteration, tolerance)))
+    const flow_solver solver = f->desc.solver;
+    const sim_slot more[] = {
+        {"FlowBefore", t.last, NULL},
+        {"FlowResidual", t.residual, NULL},
+        {"FlowDirection", t.direction, NULL},
+        {"FlowZ", solver == FLOW_CG ? t.residual : f->buffers[FLOW_MEM_Z], NULL}};
+    if (!(solver == FLOW_MULTIGRID ? do_levels(f, g, iteration, tolerance)
+                                   : follow(f, g, iteration, tolerance)) ||
+        (solver == FLOW_TRANSFORM && !flow_transform(f, g, t.residual)))
         return false;
     set_int(k, "iteration", iteration);
     return flow_run_tiles(f, g, k, more, 4, f->desc.size);

@@ -1,10 +1,11 @@
 // Lattice Boltzmann: air that moves, and up to three scalars that it carries, on a regular lattice
 // on the device. Lattice units only: a cell is 1 long, a step 1 of time, air at rest has density 1.
 //
-// Layout, which shaders/sim/lbm/state.glsl reads: an element is four cells that lie nz / 4 apart along
-// z, so that cell (x, y, z) is lane z / (nz / 4) of element x + nx * (y + ny * (z % (nz / 4))): a vec4
-// (LBM_F32) or a uvec2 of four halves in order (LBM_F16). The neighbours of a whole element are a
-// whole element again; where z goes round, its lanes rotate by one. Populations are kept less their weights (air) and streamed in place, see shaders/sim/lbm/state.glsl.
+// Layout, which shaders/sim/lbm/state.glsl reads: an element is four cells that lie nz / 4 apart
+// along z, so that cell (x, y, z) is lane z / (nz / 4) of element x + nx * (y + ny * (z % (nz /
+// 4))): a vec4 (LBM_F32) or a uvec2 of four halves in order (LBM_F16). The neighbours of a whole
+// element are a whole element again; where z goes round, its lanes rotate by one. Populations are
+// kept less their weights (air) and streamed in place, see shaders/sim/lbm/state.glsl.
 //
 // Life: lbm_create, lbm_compile (or not), lbm_build, lbm_allocate, then in frames lbm_reset and
 // lbm_step.

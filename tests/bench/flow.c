@@ -1,7 +1,8 @@
 // How fast the bare solver of 2D flow in src/sim steps: no fields, no pictures.
 //
-//   bench_flow [-d DEVICE] [-n STEPS] [-s X[,Y]] [-z SLICES] [-a semi|mac] [-p multigrid|cg]
-//              [-f open|closed|periodic] [-i ITERATIONS] [-e TOLERANCE] [-w SWEEPS] [-o] [-t] [-k]
+//   bench_flow [-d DEVICE] [-n STEPS] [-s X[,Y]] [-z SLICES] [-a semi|mac]
+//              [-p multigrid|cg|transform|auto] [-f open|closed|periodic] [-i ITERATIONS] [-e
+//              TOLERANCE] [-w SWEEPS] [-o] [-t] [-k]
 //
 // -o puts two discs in the way, -t blends 40 templates in, -k keeps a look of each step. A plume
 // rises from the lower face.
@@ -55,7 +56,11 @@ static bool parse(int argc, char **argv, bench *b) {
         if (c == 's' && sscanf(optarg, "%u,%u", &s[0], &s[1]) == 1) s[1] = s[0];
         if (c == 'z') b->desc.slices = (uint32_t)atoi(optarg);
         if (c == 'a') b->desc.advection = optarg[0] == 'm' ? FLOW_MACCORMACK : FLOW_SEMI_LAGRANGIAN;
-        if (c == 'p') b->desc.solver = optarg[0] == 'c' ? FLOW_CG : FLOW_MULTIGRID;
+        if (c == 'p')
+            b->desc.solver = optarg[0] == 'c'   ? FLOW_CG
+                             : optarg[0] == 't' ? FLOW_TRANSFORM
+                             : optarg[0] == 'a' ? FLOW_AUTO
+                                                : FLOW_MULTIGRID;
         if (c == 'f') set_faces(b, optarg);
         if (c == 'i') b->desc.max_iterations = (uint32_t)atoi(optarg);
         if (c == 'e') b->numbers.tolerance = (float)atof(optarg);
@@ -158,15 +163,15 @@ static int measure(const bench *b, flow *f, gpu *g) {
     processor = processor_milliseconds() - processor;
     flow_report report;
     if (milliseconds <= 0 || !flow_read(f, g, &report)) return fail("step");
+    static const char *const solvers[] = {"cg", "multigrid", "transform"};
     const flow_desc *d = flow_get_desc(f);
     printf("%ux%ux%u %s %s%s%s%s: %.3f ms a step, %.3f ms of the processor, %u of %u iterations, "
            "residual %.1e, %.2f m/s\n",
            d->size[0], d->size[1], d->slices,
-           d->advection == FLOW_MACCORMACK ? "maccormack" : "semi-lagrangian",
-           d->solver == FLOW_CG ? "cg" : "multigrid", d->obstacles ? ", obstacles" : "",
-           d->templates ? ", templates" : "", b->keep ? ", kept" : "", milliseconds / b->steps,
-           processor / b->steps, report.iterations, d->max_iterations, (double)report.residual,
-           (double)report.speed);
+           d->advection == FLOW_MACCORMACK ? "maccormack" : "semi-lagrangian", solvers[d->solver],
+           d->obstacles ? ", obstacles" : "", d->templates ? ", templates" : "",
+           b->keep ? ", kept" : "", milliseconds / b->steps, processor / b->steps,
+           report.iterations, d->max_iterations, (double)report.residual, (double)report.speed);
     return 0;
 }
 

@@ -3,9 +3,10 @@
 //   bench_lattice [-d DEVICE] [-n STEPS] [-s X,Y,Z] [-q 19|27] [-p 16|32] [-c SCALARS]
 //                 [-o bgk|trt|moments] [-f periodic|wall|slip|open] [-k] [-l] [-x]
 //
-// -k keeps moments in each step; -l adds the subgrid term; -x carries scalars on D3Q27. Prints one line: million cell updates
-// a second by the device's clock, by the processor time of this process (of interest for a software
-// device alone), and the bytes a second that the populations themselves make.
+// -k keeps moments in each step; -l adds the subgrid term; -x carries scalars on D3Q27. Prints one
+// line: million cell updates a second by the device's clock, by the processor time of this process
+// (of interest for a software device alone), and the bytes a second that the populations themselves
+// make.
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -89,7 +90,8 @@ static int measure(const bench *b, lbm *l, gpu *g) {
     if (milliseconds <= 0) return fail("step");
     const lbm_desc *d = &b->desc;
     double updates = (double)d->size[0] * d->size[1] * d->size[2] * b->steps;
-    double directions = (d->set == LBM_D3Q27 ? 27 : 19) + (d->scalar_set == LBM_SCALAR_D3Q27 ? 27.0 : 7.0) * d->scalars;
+    double directions = (d->set == LBM_D3Q27 ? 27 : 19) +
+                        (d->scalar_set == LBM_SCALAR_D3Q27 ? 27.0 : 7.0) * d->scalars;
     double bytes = 2 * directions * (d->precision == LBM_F16 ? 2 : 4) + (b->keep ? 16 : 0);
     static const char *const faces[] = {"", ", walls", ", slip", ", open"};
     printf("%ux%ux%u %s %s, %u scalars%s%s%s: %.2f million updates/s, %.2f per processor second, "

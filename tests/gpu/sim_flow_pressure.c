@@ -58,6 +58,15 @@ static void divergence_vanishes(void **state) {
         {{72, 50}, {FLOW_CLOSED, FLOW_CLOSED, FLOW_CLOSED, FLOW_CLOSED}, FLOW_MULTIGRID, 1, 5},
         {{72, 50}, {FLOW_CLOSED, FLOW_OPEN, FLOW_CLOSED, FLOW_OPEN}, FLOW_MULTIGRID, 1, 6},
         {{96, 64}, {FLOW_CLOSED, FLOW_OPEN, FLOW_CLOSED, FLOW_OPEN}, FLOW_MULTIGRID, 2, 4},
+        {{64, 128},
+         {FLOW_PERIODIC, FLOW_PERIODIC, FLOW_PERIODIC, FLOW_PERIODIC},
+         FLOW_TRANSFORM,
+         1,
+         2},
+        {{72, 50}, {FLOW_CLOSED, FLOW_CLOSED, FLOW_CLOSED, FLOW_CLOSED}, FLOW_TRANSFORM, 1, 2},
+        {{72, 50}, {FLOW_CLOSED, FLOW_OPEN, FLOW_CLOSED, FLOW_OPEN}, FLOW_TRANSFORM, 1, 2},
+        {{40, 300}, {FLOW_OPEN, FLOW_CLOSED, FLOW_OPEN, FLOW_OPEN}, FLOW_TRANSFORM, 1, 2},
+        {{64, 32}, {FLOW_OPEN, FLOW_OPEN, FLOW_PERIODIC, FLOW_PERIODIC}, FLOW_TRANSFORM, 1, 2},
         {{40, 48}, {FLOW_OPEN, FLOW_OPEN, FLOW_CLOSED, FLOW_OPEN}, FLOW_CG, 0, 200},
         {{32, 32}, {FLOW_PERIODIC, FLOW_PERIODIC, FLOW_CLOSED, FLOW_CLOSED}, FLOW_CG, 0, 200},
     };
@@ -80,7 +89,8 @@ static void divergence_vanishes(void **state) {
         print_message("%ux%u: %.1e left after %u iterations, residual %.1e\n", desc.size[0],
                       desc.size[1], left, report.iterations, (double)report.residual);
         assert_true(left < 1e-4 && report.residual <= w.numbers.tolerance);
-        assert_true(report.iterations > 1 && report.iterations <= rows[i].most);
+        const uint32_t least = desc.solver == FLOW_TRANSFORM ? 1 : 2;
+        assert_true(report.iterations >= least && report.iterations <= rows[i].most);
         flow_close(&w);
     }
 }

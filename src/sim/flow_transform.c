@@ -1,0 +1,64 @@
+// The pressure without iterations: along x the equation's solutions are sums of modes, which are
+// known and do not disturb each other, so that one equation along y is left for each (Hockney, "A
+// fast direct solution of Poisson's equation using Fourier analysis", 1965). Modes are as the faces
+// are: cosines between closed ones, sines between open ones, quarters of waves between the two.
+//
+// Sums of modes are products of matrices here, not fast transforms: that takes any faces and any
+// number of cells, and up to 1024 of them it is a matter of microseconds. What obstacles and
+// templates change is not in the modes: with those this is a preconditioner, and multigrid a better
+// one.
+#include "base/memory.h"
+#include "sim/flow_impl.h"
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+// Mode k of n cells, in cell i, not yet of length 1; and how many waves it has in 2 n cells.
+static double mode_of(const flow_desc *desc, uint32_t k, double i, double *waves) {
+    const double n = desc->size[0], middle = pi * (i + 0.5) / n;
+    const bool open[2] = {desc->faces[0] == FLOW_OPEN, desc->faces[1] == FLOW_OPEN};
+    if (desc->faces[0] == FLOW_PERIODIC) {
+        *waves = 2.0 * ((k + 1) / 2);
+        return k % 2 ? cos(*waves * pi * i / n) : k ? sin(*waves * pi * i / n) : 1;
+    }
+    *waves = open[0] != open[1] ? k + 0.5 : open[0] ? k + 1.0 : (double)k;
+    return open[0] ? sin(*waves * middle) : cos(*waves * middle);
+}
+
+void flow_transform_modes(const flow_desc *desc, float *out) {
+    const uint32_t n = desc->size[0];
+    for (uint32_t k = 0; k < n; k++) {
+        double waves = 0, square = 0;
+        float *mode = out + (size_t)k * n;
+        for (uint32_t i = 0; i < n; i++) {
+            const double value = mode_of(desc, k, i, &waves);
+            mode[i] = (float)value;
+            square += value * value;
+        }
+        for (uint32_t i = 0; i < n; i++) mode[i] /= (float)sqrt(square);
+        out[(size_t)n * n + k] = (float)(2 - 2 * cos(waves * pi / n));
+    }
+}
+
+bool flow_transform_allocate(flow *f, gpu *g) {
+    const uint32_t n = f->desc.size[0];
+    const uint64_t size = (uint64_t)n * (n + 1) * sizeof(float);
+    if (f->desc.solver != FLOW_TRANSFORM || f->modes) return true;
+    float *modes = mem_alloc(size);
+    flow_transform_modes(&f->desc, modes);
+    f->modes = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "modes of a flow", .size = size});
+    bool done = f->modes && gpu_buffer_write(g, f->modes, 0, modes, size);
+    mem_free(modes);
+    return done;
+}
+
+bool flow_transform(flow *f, gpu *g, gpu_buffer *residual) {
+    const sim_slot more[] = {{"FlowModes", f->modes, NULL},
+                             {"FlowResidual", residual, NULL},
+                             {"FlowLines", f->buffers[FLOW_MEM_LINES], NULL}};
+    const flow_call lines = {
+        &f->kernels.lines, more, 3, {f->desc.size[0] * f->group, f->desc.slices, 1}};
+    return flow_run_tiles(f, g, &f->kernels.to_modes, more, 3, f->desc.size) &&
+           flow_run(f, g, &lines) &&
+           flow_run_tiles(f, g, &f->kernels.from_modes, more, 3, f->desc.size);
+}
