@@ -39,9 +39,9 @@ layer upsample(ivec2 pixel, vec2 uv) {
     ivec2 base = ivec2(floor(at));
     // Four bilinear taps see all sixteen texels: most of the picture has nothing to scale.
     vec4 taps = vec4(vec2(base), vec2(base + 2)) / vec4(low, low);
-    float any_alpha = textureLod(volume, taps.xy, 0.0).a + textureLod(volume, taps.zy, 0.0).a +
-                      textureLod(volume, taps.xw, 0.0).a + textureLod(volume, taps.zw, 0.0).a;
-    if (any_alpha == 0.0) return layer(vec4(0.0), vec3(1.0));
+    vec4 any = textureLod(volume, taps.xy, 0.0) + textureLod(volume, taps.zy, 0.0) +
+               textureLod(volume, taps.xw, 0.0) + textureLod(volume, taps.zw, 0.0);
+    if (any == vec4(0.0)) return layer(vec4(0.0), vec3(1.0));
     vec4 wx = mitchell(at.x - float(base.x)), wy = mitchell(at.y - float(base.y));
 #if HAS_DEPTH && HAS_EDGE
     float here = texelFetch(depth, pixel, 0).r;

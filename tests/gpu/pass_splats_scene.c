@@ -41,6 +41,28 @@ static void surfaces_hide_what_is_behind(void **state) {
     }
 }
 
+// Light without opacity is scaled up, too.
+static void half_the_resolution_keeps_the_light(void **state) {
+    spots s;
+    open_one(&s, *state);
+    gpu_test_ok(pass_set_scale(s.splats, 0.5f));
+    gpu_test_ok(pass_declare(s.splats));
+    pass *back = world_add(&s.w, NULL, "even.comp", "back");
+    gpu_test_ok(pass_set_uniform(back, "tint", triple(&s.w, 0, 0, 0)) && pass_declare(back));
+    pass *over = world_add(&s.w, "over", NULL, "over");
+    gpu_test_ok(pass_set_image(over, "volume", pass_output(s.splats, "image")));
+    gpu_test_ok(pass_set_image(over, "source", pass_output(back, "color")));
+    gpu_test_ok(pass_declare(over));
+    world_render(&s.w, SIDE, SIDE, pass_output(over, "color"));
+    s.w.host.hold = true;
+    spot one = {.age = 0};
+    float *pixels = spots_draw_other(&s, &one, pass_output(over, "color"));
+    double wanted = 3.14159265 / 3 * 8 * 8;
+    is_near(sum_of(pixels, 0), wanted, 0.03 * wanted, "light");
+    mem_free(pixels);
+    spots_close(&s);
+}
+
 // ---- pictures ---------------------------------------------------------------------------------
 
 static void open_pictured(spots *s, gpu *device, float columns, float rows) {
@@ -193,6 +215,7 @@ static void smoke_before_a_particle_dims_it(void **state) {
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(surfaces_hide_what_is_behind),
+        cmocka_unit_test(half_the_resolution_keeps_the_light),
         cmocka_unit_test(a_flipbook_goes_with_age),
         cmocka_unit_test(a_picture_turns),
         cmocka_unit_test(a_streak_is_as_long_as_its_way),
