@@ -134,7 +134,7 @@ bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader) {
 }
 
 bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader) {
-    return compile(l, gpu_get_info(g), library, reader) && lbm_kernel_build(&l->reset, g) &&
+    return compile(l, gpu_get_info(g), library, reader) && sim_kernel_build(&l->reset.base, g) &&
            lbm_step_build(l, g) && lbm_walls_build(l, g);
 }
 
@@ -160,7 +160,7 @@ bool lbm_allocate(lbm *l, gpu *g) {
 }
 
 void lbm_destroy(lbm *l, gpu *g) {
-    lbm_kernel_destroy(&l->reset, g);
+    sim_kernel_destroy(&l->reset.base, g);
     lbm_step_destroy(l, g);
     lbm_walls_destroy(l, g);
     for (int i = 0; i < LBM_MAX_BUFFERS; i++) gpu_buffer_destroy(g, l->state[i]);
@@ -232,7 +232,7 @@ bool lbm_reset(lbm *l, gpu *g, const lbm_numbers *numbers) {
     l->steps = l->kept = 0;
     lbm_walls_reset(l, g);
     lbm_kernel_set(&l->reset, "ambient", numbers->ambient, sizeof numbers->ambient);
-    return lbm_kernel_run(l, &l->reset, g, NULL, 0);
+    return lbm_kernel_run(l, &l->reset, g);
 }
 
 bool lbm_make_moments(lbm *l, gpu *g, uint32_t which) {

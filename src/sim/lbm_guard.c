@@ -13,7 +13,6 @@ enum {
     GROUPS = 512,       // most of the first dispatch: enough to fill a large device
     CELLS_A_THREAD = 4, // least, while there are fewer groups
     WORDS = 16,         // of a record
-    BLOCK = 64,         // bytes that its two numbers have room in
     PLACES = GPU_FRAMES_IN_FLIGHT + 1,
 };
 
@@ -24,7 +23,7 @@ typedef struct guard_place {
 struct lbm_guard {
     uint32_t size[3], groups;
     arena *memory;
-    lbm_kernel kernels[2]; // moments, records
+    sim_kernel kernels[2]; // moments, records
     gpu_buffer *parts, *found;
     gpu_image *result;
     guard_place places[PLACES];
@@ -46,24 +45,17 @@ lbm_guard *lbm_guard_create(arena *memory, const uint32_t size[3]) {
 
 bool lbm_guard_compile(lbm_guard *guard, shader_library *library, const shader_reader *reader) {
     static const shader_define last = {"LAST", ""};
-    for (size_t i = 0; i < 2; i++) {
-        shader_compile_desc desc = {.name = shader,
-                                    .stage = SHADER_COMPUTE,
-                                    .defines = &last,
-                                    .define_count = i,
-                                    .reader = reader};
-        lbm_kernel *k = &guard->kernels[i];
-        if (!shader_compile(library, guard->memory, &desc, &k->binary)) return false;
-        k->shader = shader;
-        k->block = arena_alloc(guard->memory, BLOCK);
-    }
+    for (size_t i = 0; i < 2; i++)
+        if (!sim_kernel_compile(&guard->kernels[i], shader, guard->memory, library, reader,
+                                (sim_defines){0}, (sim_defines){&last, i}))
+            return false;
     return true;
 }
 
 bool lbm_guard_allocate(lbm_guard *guard, gpu *g) {
     if (guard->result) return true;
     for (int i = 0; i < 2; i++)
-        if (!lbm_kernel_build(&guard->kernels[i], g)) return false;
+        if (!sim_kernel_build(&guard->kernels[i], g)) return false;
     guard->parts = gpu_buffer_create(
         g, &(gpu_buffer_desc){.label = "guard", .size = (uint64_t)guard->groups * WORDS * 4});
     guard->found = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "guard's report",
@@ -78,7 +70,7 @@ bool lbm_guard_allocate(lbm_guard *guard, gpu *g) {
 }
 
 void lbm_guard_destroy(lbm_guard *guard, gpu *g) {
-    for (int i = 0; i < 2; i++) lbm_kernel_destroy(&guard->kernels[i], g);
+    for (int i = 0; i < 2; i++) sim_kernel_destroy(&guard->kernels[i], g);
     gpu_buffer_destroy(g, guard->parts);
     gpu_buffer_destroy(g, guard->found);
     gpu_image_destroy(g, guard->result);
@@ -88,30 +80,14 @@ void lbm_guard_destroy(lbm_guard *guard, gpu *g) {
 }
 
 static bool dispatch(lbm_guard *guard, gpu *g, int which, gpu_buffer *moments) {
-    lbm_kernel *k = &guard->kernels[which];
+    sim_kernel *k = &guard->kernels[which];
     const uint32_t groups = which == 0 ? guard->groups : 1, stride = groups * GROUP;
     const uint32_t items = which == 0 ? count_cells(guard) : guard->groups;
-    gpu_binding bindings[4];
-    size_t count = 0;
-    lbm_kernel_set(k, "count", &items, sizeof items);
-    lbm_kernel_set(k, "stride", &stride, sizeof stride);
-    for (size_t i = 0; i < k->binary.slot_count; i++) {
-        const shader_slot *slot = &k->binary.slots[i];
-        gpu_binding *b = &bindings[count++];
-        *b = (gpu_binding){.binding = slot->slot.binding};
-        if (strcmp(slot->name, "Uniforms") == 0) {
-            b->uniform = k->block;
-            b->uniform_size = slot->size;
-        } else if (strcmp(slot->name, "result") == 0) {
-            b->image = guard->result;
-        } else {
-            b->buffer = strcmp(slot->name, "Moments") == 0 ? moments : guard->parts;
-        }
-    }
-    return gpu_dispatch(g, &(gpu_dispatch_desc){.pipeline = k->pipeline,
-                                                .bindings = bindings,
-                                                .binding_count = count,
-                                                .threads = {stride, 1, 1}});
+    const sim_slot slots[] = {
+        {"Moments", moments, NULL}, {"Parts", guard->parts, NULL}, {"result", NULL, guard->result}};
+    sim_kernel_set(k, "count", &items, sizeof items);
+    sim_kernel_set(k, "stride", &stride, sizeof stride);
+    return sim_kernel_run(k, g, slots, 3, (const uint32_t[3]){stride, 1, 1});
 }
 
 bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l) {

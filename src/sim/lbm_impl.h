@@ -1,32 +1,21 @@
 // The inside of a lattice Boltzmann solver, for the files of this layer only.
 #pragma once
+#include "sim/kernel.h"
 #include "sim/lbm.h"
 
 // ---- one shader -------------------------------------------------------------------------------
 
 typedef struct lbm_kernel {
-    const char *shader;
-    shader_binary binary;
-    gpu_pipeline *pipeline;
-    unsigned char *block; // of its uniforms
-    uint32_t threads;     // in one row; 0: one for each element, in layers
+    sim_kernel base;
+    uint32_t threads; // in one row; 0: one for each element, in layers
 } lbm_kernel;
 
 // Compiles with the defines of the solver and `more`; again: replaces what was compiled.
 bool lbm_kernel_compile(lbm *l, lbm_kernel *k, const char *shader, shader_library *library,
                         const shader_reader *reader, const shader_define *more, size_t more_count);
-bool lbm_kernel_build(lbm_kernel *k, gpu *g);
-void lbm_kernel_destroy(lbm_kernel *k, gpu *g);
-// Sets a uniform; one that the shader does not use is passed over. Arrays are std140: each element
-// of 16 bytes.
 void lbm_kernel_set(lbm_kernel *k, const char *name, const void *data, size_t size);
-// A dispatch; of a thread for each element x is column x + nx * y, z the layer. What is not the
-// solver's own is bound by `more`, in which `binding` is filled in.
-typedef struct lbm_slot {
-    const char *name;
-    gpu_binding binding;
-} lbm_slot;
-bool lbm_kernel_run(const lbm *l, lbm_kernel *k, gpu *g, const lbm_slot *more, size_t more_count);
+// A dispatch; of a thread for each element x is column x + nx * y, z the layer.
+bool lbm_kernel_run(const lbm *l, lbm_kernel *k, gpu *g);
 
 // ---- layout -----------------------------------------------------------------------------------
 

@@ -37,7 +37,7 @@ bool lbm_step_compile(lbm *l, const gpu_info *device, shader_library *library,
 
 bool lbm_step_build(lbm *l, gpu *g) {
     for (int i = 0; i < 2 * l->stepper.parts; i++)
-        if (!lbm_kernel_build(&l->stepper.kernels[i / 2][i % 2], g)) return false;
+        if (!sim_kernel_build(&l->stepper.kernels[i / 2][i % 2].base, g)) return false;
     return true;
 }
 
@@ -75,7 +75,7 @@ bool lbm_step_allocate(lbm *l, gpu *g) {
 
 void lbm_step_destroy(lbm *l, gpu *g) {
     lbm_stepper *s = &l->stepper;
-    for (int i = 0; i < 4; i++) lbm_kernel_destroy(&s->kernels[i / 2][i % 2], g);
+    for (int i = 0; i < 4; i++) sim_kernel_destroy(&s->kernels[i / 2][i % 2].base, g);
     gpu_buffer_destroy(g, s->skin);
     s->skin = NULL;
 }
@@ -105,7 +105,7 @@ bool lbm_step(lbm *l, gpu *g, const lbm_numbers *numbers, bool keep) {
     for (int part = 0; part < l->stepper.parts; part++) {
         lbm_kernel *k = &l->stepper.kernels[part][keep];
         set_numbers(l, k, numbers);
-        if (!lbm_kernel_run(l, k, g, NULL, 0)) return false;
+        if (!lbm_kernel_run(l, k, g)) return false;
     }
     l->kept += keep;
     l->steps++;

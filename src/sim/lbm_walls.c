@@ -34,7 +34,7 @@ bool lbm_walls_compile(lbm *l, shader_library *library, const shader_reader *rea
 }
 
 bool lbm_walls_build(lbm *l, gpu *g) {
-    return !l->desc.bodies || lbm_kernel_build(&l->walls.kernel, g);
+    return !l->desc.bodies || sim_kernel_build(&l->walls.kernel.base, g);
 }
 
 static gpu_buffer *make(gpu *g, const char *label, uint64_t size) {
@@ -58,7 +58,7 @@ bool lbm_walls_allocate(lbm *l, gpu *g) {
 }
 
 void lbm_walls_destroy(lbm *l, gpu *g) {
-    lbm_kernel_destroy(&l->walls.kernel, g);
+    sim_kernel_destroy(&l->walls.kernel.base, g);
     gpu_buffer_destroy(g, l->walls.waves);
     for (int i = 0; i < 2; i++) gpu_buffer_destroy(g, l->walls.cells[i]);
     l->walls.waves = l->walls.cells[0] = l->walls.cells[1] = NULL;
@@ -156,7 +156,7 @@ bool lbm_set_bodies(lbm *l, gpu *g, const lbm_numbers *numbers, const lbm_bodies
     w->known = true;
     for (uint32_t stage = 0; stage < 3 && w->known; stage++) { // see cells.comp
         lbm_kernel_set(&w->kernel, "stage", &stage, sizeof stage);
-        w->known = lbm_kernel_run(l, &w->kernel, g, NULL, 0);
+        w->known = lbm_kernel_run(l, &w->kernel, g);
     }
     return w->known;
 }
