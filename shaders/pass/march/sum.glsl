@@ -192,6 +192,17 @@ ray_state march_even(vec3 origin, vec3 direction, vec2 range, float offset) {
 }
 #endif
 
+// Samples that are taken for each look at what may be there. A software device looks for all rays of
+// a subgroup where one of them has to, so there it does so less often, and takes some in vain.
+const int RUN = MARCH_SOFTWARE != 0 ? 4 : 1;
+
+// The next sample, whatever is there; false at the end of the ray.
+bool walk_further(inout walk w, inout site s) {
+    s = walk_step(w, w.next);
+    w.next++;
+    return s.taken;
+}
+
 // Section 3.6: `last`, how far samples may lie, weighs them and leaves the steps as they are.
 ray_state march_paper(vec3 origin, vec3 direction, vec2 range, float last, float offset) {
     ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
@@ -200,25 +211,28 @@ ray_state march_paper(vec3 origin, vec3 direction, vec2 range, float last, float
     site s;
     int taken = 0, dense = 0;
     while (walk_on(w, s)) {
-        vec3 p = origin + s.at * direction;
-        float part = 0.0;
-        if (s.taken) {
-            grid_width = pixel_width * s.at;
-            part = min(medium_density(p) * opacity / float(steps), 1.0);
-            taken++;
-        }
+        int left = RUN;
+        do {
+            vec3 p = origin + s.at * direction;
+            float part = 0.0;
+            if (s.taken) {
+                grid_width = pixel_width * s.at;
+                part = min(medium_density(p) * opacity / float(steps), 1.0);
+                taken++;
+            }
 #if TEAMS
-        vec3 run_begin = ray.transmittance;
-        ray.transmittance *= team_product_before(1.0 - part);
-        if (ray.transmittance.x < early_exit) part = 0.0;
+            vec3 run_begin = ray.transmittance;
+            ray.transmittance *= team_product_before(1.0 - part);
+            if (ray.transmittance.x < early_exit) part = 0.0;
 #endif
-        if (part > 0.0) {
-            dense++;
-            add_paper(ray, p, part, s.at);
-        }
+            if (part > 0.0) {
+                dense++;
+                add_paper(ray, p, part, s.at);
+            }
 #if TEAMS
-        ray.transmittance = run_begin * team_product(1.0 - part);
+            ray.transmittance = run_begin * team_product(1.0 - part);
 #endif
+        } while (--left > 0 && ray.transmittance.x >= early_exit && walk_further(w, s));
         if (ray.transmittance.x < early_exit) break;
     }
     count_samples(taken);
