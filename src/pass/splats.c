@@ -26,6 +26,13 @@ static size_t option(const pass *p, const char *name) {
     return p->options[index];
 }
 
+// What is not lit by them asks for no light.
+static void drop_light(pass *p) {
+    static const char *const images[] = {"lights", "shadow", "glow"};
+    for (size_t i = 0; i < COUNT_OF(images); i++)
+        p->images[pass_find_image(p, images[i])] = (graph_image){0};
+}
+
 bool splats_declare(pass *p) {
     splats_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     s->particles = pass_particles_of(p);
@@ -35,6 +42,7 @@ bool splats_declare(pass *p) {
         return err_set("%s: %u particles are too many to be sorted; blend = \"weighted\" takes "
                        "them, or 'count' of particles at most %d",
                        p->label, pass_particles_count(s->particles), SPLATS_MOST_SORTED);
+    if (!option(p, "lit")) drop_light(p);
     return pass_declare_images(p) && pass_add_to_graph(p);
 }
 
