@@ -122,27 +122,45 @@ void add_pixels(splat s) {
         }
 }
 
-void add_large(looks l) {
-    splat s = look_spread(l);
-    if (s.radius + s.reach <= DIRECT) {
-        add_pixels(s);
-        return;
+// The number of one that is kept: a group asks for all of its own at once, where one number that all
+// count up is what they would wait for.
+#if GATHERED
+shared uint kept_here, kept_before;
+
+uint take_number(bool kept) {
+    if (gl_LocalInvocationIndex == 0u) kept_here = 0u;
+    barrier();
+    uint own = kept ? atomicAdd(kept_here, 1u) : 0u;
+    barrier();
+    if (gl_LocalInvocationIndex == 0u && kept_here > 0u) kept_before = atomicAdd(splat_found, kept_here);
+    barrier();
+    return kept_before + own;
+}
+#else
+uint take_number(bool kept) {
+    return kept ? atomicAdd(splat_found, 1u) : 0u;
+}
+#endif
+
+void main() {
+    looks l = look_at(slot_of_thread());
+    bool small = l.seen && l.s.radius <= SMALL && distance(l.s.at, l.before.xy) <= SHORT, kept = false;
+    count_small(small ? 1 : 0);
+    count_large(l.seen && !small ? 1 : 0);
+    add_small(l, small);
+    splat s;
+    if (l.seen && !small) {
+        s = look_spread(l);
+        kept = s.radius + s.reach > DIRECT;
+        if (!kept) add_pixels(s);
     }
-    uint index = atomicAdd(splat_found, 1u);
-    if (index < records_most) {
-        splat_keep(index, s);
+    uint number = take_number(kept);
+    if (!kept) return;
+    if (number < records_most) {
+        splat_keep(number, s);
         count_tiles(s);
     } else {
         add_tiles(s);
     }
-}
-
-void main() {
-    looks l = look_at(slot_of_thread());
-    bool small = l.seen && l.s.radius <= SMALL && distance(l.s.at, l.before.xy) <= SHORT;
-    count_small(small ? 1 : 0);
-    count_large(l.seen && !small ? 1 : 0);
-    add_small(l, small);
-    if (l.seen && !small) add_large(l);
 }
 #endif
