@@ -76,6 +76,7 @@ static void define_all(flow *f) {
     define(f, "FLOW_WITH_CORRECTION", desc->advection == FLOW_MACCORMACK);
     define(f, "FLOW_TILE", f->tile);
     define(f, "FLOW_SWEEPS", desc->sweeps);
+    define(f, "FLOW_COARSE_SWEEPS", FLOW_COARSE_SWEEPS);
     define(f, "FLOW_GROUP", f->group);
     define(f, "FLOW_COARSE_SIDE", f->coarse_side);
 }
