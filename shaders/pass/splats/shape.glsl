@@ -80,10 +80,10 @@ vec4 sprite_at(vec2 uv, float which) {
 }
 #endif
 
-// Colour and opacity that it has at a point of the picture, `offset` pixels from its middle.
+// Colour and opacity that it has at a point of the picture, `offset` pixels from its middle. Precise:
+// the same wherever it is computed, in a list's turn or for want of a place there.
 vec4 splat_at(splat s, vec2 offset) {
-    vec2 across = vec2(-s.along.y, s.along.x);
-    vec2 q = vec2(dot(offset, s.along), dot(offset, across));
+    precise vec2 q = vec2(offset.x * s.along.x + offset.y * s.along.y, offset.y * s.along.x - offset.x * s.along.y);
 #if HAS_SPRITE
     q /= vec2(s.radius + s.reach, s.radius);
     if (max(abs(q.x), abs(q.y)) >= 1.0) return vec4(0.0);
@@ -91,8 +91,9 @@ vec4 splat_at(splat s, vec2 offset) {
     return vec4(s.color * c.rgb, s.opacity * min(c.a, 1.0));
 #else
     q.x = max(abs(q.x) - s.reach, 0.0);
-    float rest = max(1.0 - dot(q, q) / (s.radius * s.radius), 0.0);
-    return vec4(s.color, s.opacity * rest * rest);
+    precise float rest = max(1.0 - (q.x * q.x + q.y * q.y) / (s.radius * s.radius), 0.0);
+    precise float covers = s.opacity * rest * rest;
+    return vec4(s.color, covers);
 #endif
 }
 
@@ -126,10 +127,12 @@ splat_sum splat_part(vec3 light, float opacity, float away, uint seed, ivec2 pix
     float chance = float(random_hash(seed ^ random_hash(uint(pixel.y) << 16 | uint(pixel.x))) >> 8) / 16777216.0;
 #if BLEND == BLEND_WEIGHTED
     float covered = min(opacity, 0.999), weight = covered * splat_weight(away);
-    return splat_sum(uvec3(min(weight * light, PART_MOST) * UNIT + chance), uint(weight * UNIT + chance),
-                     uint(-log2(1.0 - covered) * LOG_UNIT + chance));
+    precise vec3 sum = min(weight * light, PART_MOST) * UNIT + chance;
+    precise vec2 more = vec2(weight * UNIT, -log2(1.0 - covered) * LOG_UNIT) + chance;
+    return splat_sum(uvec3(sum), uint(more.x), uint(more.y));
 #else
-    return splat_sum(uvec3(min(opacity * light, PART_MOST) * UNIT + chance), 0u, 0u);
+    precise vec3 sum = min(opacity * light, PART_MOST) * UNIT + chance;
+    return splat_sum(uvec3(sum), 0u, 0u);
 #endif
 }
 
