@@ -220,6 +220,31 @@ static void velocity_points_outwards_all_round(void **state) {
 
 // ---- parts ------------------------------------------------------------------------------------
 
+// In the middle of a disc in fluid at rest, after half a second: 31 steps have begun.
+static int held(roil *r, const char *keys, const char *inflow) {
+    picture p;
+    char more[256];
+    snprintf(more, sizeof more, "flow:inflow { shape = disc { 0.5, 0.5, radius = 0.3 }, %s }",
+             inflow);
+    draw_of(r, keys, more, "flow.density", 13, p);
+    assert_int_equal(at(p, 1, 1), 0); // nothing elsewhere
+    return at(p, SIDE / 2, SIDE / 2);
+}
+
+static void inflow_holds_or_adds(void **state) {
+    static const char still[] = "variation = 0";
+    assert_int_equal(held(*state, still, "density = 0.4"), srgb(0.4f));
+    int added = held(*state, still, "density = 0.6, mode = 'add'");
+    assert_true(abs(added - srgb(0.6f * 31 / 60)) <= 1);
+    int slow = held(*state, still, "density = 0.6, rate = 2");
+    assert_true(abs(slow - srgb(0.6f * (1 - expf(-2 * 31 / 60.0f)))) <= 1);
+    // As much is given in a second as goes.
+    int even = held(*state, "variation = 0, dissolve_rate = 20", "density = 8, mode = 'add'");
+    float left = expf(-20 / 60.0f), each = 8 / 60.0f;
+    float least = each * left / (1 - left), most = each / (1 - left);
+    assert_true(even >= srgb(least) - 1 && even <= srgb(most) + 1);
+}
+
 static void write_plate(void) { // dark from 0.2 to 0.8 of the width, at half the height
     static uint8_t pixels[64][64][4];
     char path[512];
@@ -360,6 +385,7 @@ int main(void) {
         cmocka_unit_test(a_slice_is_what_space_holds_in_its_plane),
         cmocka_unit_test(bricks_leave_nothing_out),
         cmocka_unit_test(velocity_points_outwards_all_round),
+        cmocka_unit_test(inflow_holds_or_adds),
         cmocka_unit_test(a_painted_obstacle_stands_in_the_way),
         cmocka_unit_test(an_obstacle_that_moves_pushes),
         cmocka_unit_test(it_tells_of_itself),
