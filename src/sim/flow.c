@@ -286,10 +286,6 @@ size_t flow_buffers(const flow *f, gpu_buffer *out[FLOW_STATE_BUFFERS]) {
     return FLOW_STATE_BUFFERS;
 }
 
-void flow_set_steps(flow *f, uint64_t steps) {
-    f->steps = steps;
-}
-
 uint64_t flow_steps(const flow *f) {
     return f->steps;
 }

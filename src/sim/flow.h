@@ -115,7 +115,6 @@ bool flow_bind(const flow *f, const char *slot_name, gpu_binding *out); // false
 // All that a state consists of besides the count of steps and the inputs.
 enum { FLOW_STATE_BUFFERS = 3 };
 size_t flow_buffers(const flow *f, gpu_buffer *out[FLOW_STATE_BUFFERS]);
-void flow_set_steps(flow *f, uint64_t steps); // of a state that was written into these
 
 // Gives each the state, looks and count of steps of the other; false when size or slices are not
 // the same.

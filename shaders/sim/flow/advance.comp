@@ -67,7 +67,8 @@ vec4 carry_scalars(ivec2 cell, int slice) {
 
 vec4 carry_scalars(ivec2 cell, int slice) {
     vec2 from = flow_trace(vec2(cell) + 0.5, flow_velocity_of(cell, slice), -1.0, slice);
-    return flow_scalars_mean(flow_scalars_before(from, slice), flow_scalars[flow_cell(cell, slice)]);
+    vec4 own = flow_scalars[flow_cell(cell, slice)];
+    return flow_scalars_mean(flow_scalars_before(from, slice), own);
 }
 #endif
 
@@ -85,11 +86,12 @@ ivec2 nearest(ivec2 cell) { // in the slice
     return clamp(around(cell), ivec2(0), FLOW_SIZE - 1);
 }
 
-// Confinement (Fedkiw, Stam and Jensen 2001), of both velocities of a cell. Vorticity is that of the
-// corners of cells, times the side of a cell.
+// Confinement (Fedkiw, Stam and Jensen 2001), of both velocities of a cell. Vorticity is that of
+// the corners of cells, times the side of a cell.
 vec2 confine(ivec2 cell, int slice) {
-    const ivec2 no = ivec2(0), last_u = ivec2(FLOW_NX, FLOW_NY - 1), last_v = ivec2(FLOW_NX - 1, FLOW_NY);
-    float u[12], v[12], w[9];
+    const ivec2 no = ivec2(0);
+    const ivec2 last_u = ivec2(FLOW_NX, FLOW_NY - 1), last_v = ivec2(FLOW_NX - 1, FLOW_NY);
+    float u[12], v[12], w[9], m[9];
     for (int i = 0; i < 12; i++) {
         ivec2 at_u = around(cell + ivec2(i % 3 - 1, i / 3 - 2));
         ivec2 at_v = around(cell + ivec2(i % 4 - 2, i / 4 - 1));
@@ -101,8 +103,9 @@ vec2 confine(ivec2 cell, int slice) {
         w[i] = (v[at + 1] - v[at]) - (u[i + 3] - u[i]);
     }
     // w[4] is the corner between the left face, up to w[7], and the bottom face, up to w[5].
-    vec2 left = vec2(0.25 * (abs(w[5]) + abs(w[8]) - abs(w[3]) - abs(w[6])), abs(w[7]) - abs(w[4]));
-    vec2 bottom = vec2(abs(w[5]) - abs(w[4]), 0.25 * (abs(w[7]) + abs(w[8]) - abs(w[1]) - abs(w[2])));
+    for (int i = 0; i < 9; i++) m[i] = abs(w[i]);
+    vec2 left = vec2(0.25 * (m[5] + m[8] - m[3] - m[6]), m[7] - m[4]);
+    vec2 bottom = vec2(m[5] - m[4], 0.25 * (m[7] + m[8] - m[1] - m[2]));
     float up = left.y / max(length(left), 1e-12), right = bottom.x / max(length(bottom), 1e-12);
     return vorticity * vec2(0.5 * up * (w[4] + w[7]), -0.5 * right * (w[4] + w[5]));
 }

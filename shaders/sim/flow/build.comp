@@ -2,9 +2,9 @@
 // remains of it with the pressure of the last step (src/sim/flow.h), and what its residual is
 // measured against. A group does 32 x 32 cells, a thread 2 x 2.
 //
-// A template that blends p with alpha in every iteration, p = (1 - alpha) (sum of neighbours - div)
-// / 4 + alpha p', comes to rest where the equation has lambda (p - p') more, with lambda = 4 alpha /
-// (1 - alpha): the equation stays symmetric, and any solver for it does what the blending would.
+// A template that blends p with alpha in every iteration, p = (1 - alpha) (neighbours - div) / 4 +
+// alpha p', comes to rest where the equation has lambda (p - p') more, with lambda = 4 alpha / (1 -
+// alpha): the equation stays symmetric, and any solver for it does what the blending would.
 layout(local_size_x = 16, local_size_y = 16) in;
 #define FLOW_OBSTACLES readonly
 #define FLOW_TEMPLATES readonly
@@ -75,8 +75,9 @@ float pressure_of(ivec2 cell, int slice) {
 
 float image(ivec2 cell, vec4 faces, float lambda, int slice) {
     float own = pressure[flow_cell(cell, slice)];
-    vec4 others = vec4(pressure_of(cell - ivec2(1, 0), slice), pressure_of(cell + ivec2(1, 0), slice),
-                       pressure_of(cell - ivec2(0, 1), slice), pressure_of(cell + ivec2(0, 1), slice));
+    const ivec2 x = ivec2(1, 0), y = ivec2(0, 1);
+    vec4 others = vec4(pressure_of(cell - x, slice), pressure_of(cell + x, slice),
+                       pressure_of(cell - y, slice), pressure_of(cell + y, slice));
     return dot(faces, own - others) + lambda * own;
 }
 

@@ -36,7 +36,8 @@ vec2 flow_trace(vec2 p, vec2 here, float way, int slice) {
 
 bool flow_left(vec2 p) { // the slice
     bvec2 out_ = bvec2(!FLOW_AROUND_X, !FLOW_AROUND_Y);
-    return (out_.x && (p.x < 0.0 || p.x > FLOW_END.x)) || (out_.y && (p.y < 0.0 || p.y > FLOW_END.y));
+    bvec2 low = lessThan(p, vec2(0.0)), high = greaterThan(p, FLOW_END);
+    return (out_.x && (low.x || high.x)) || (out_.y && (low.y || high.y));
 }
 
 bool flow_is_solid(ivec2 cell, int slice) {
@@ -71,7 +72,8 @@ struct flow_scalar_quad {
 #define FLOW_SCALAR_QUAD(name, from)                                                               \
     flow_scalar_quad name(vec2 p, int slice) {                                                     \
         flow_quad q = flow_quad_at(p - 0.5, FLOW_SIZE - 1);                                        \
-        ivec2 cell[4] = ivec2[4](q.low, ivec2(q.high.x, q.low.y), ivec2(q.low.x, q.high.y), q.high); \
+        ivec2 cell[4] =                                                                            \
+            ivec2[4](q.low, ivec2(q.high.x, q.low.y), ivec2(q.low.x, q.high.y), q.high);           \
         flow_scalar_quad s;                                                                        \
         vec2 a = 1.0 - q.t, b = q.t;                                                               \
         s.weight = vec4(a.x * a.y, b.x * a.y, a.x * b.y, b.x * b.y);                               \

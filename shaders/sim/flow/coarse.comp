@@ -21,9 +21,10 @@ shared float left[MOST];                // of red cells, after the sweeps down
 shared uint a[MOST];
 
 // Threads go over a level in square blocks, so that nothing is divided by its size.
+const int SIDE = FLOW_COARSE_SIDE;
 #define EACH_CELL(l, cell)                                                                         \
-    for (ivec2 cell = ivec2(gl_LocalInvocationID.xy); cell.y < (l).size.y; cell.y += FLOW_COARSE_SIDE) \
-        for (cell.x = int(gl_LocalInvocationID.x); cell.x < (l).size.x; cell.x += FLOW_COARSE_SIDE)
+    for (ivec2 cell = ivec2(gl_LocalInvocationID.xy); cell.y < (l).size.y; cell.y += SIDE)         \
+        for (cell.x = int(gl_LocalInvocationID.x); cell.x < (l).size.x; cell.x += SIDE)
 
 // ---- levels -----------------------------------------------------------------------------------
 

@@ -1,6 +1,6 @@
 // Diffusion where a step of central differences would be too long: a stage of the Runge-Kutta-
-// Legendre method of first order (Meyer, Balsara and Aslam 2012), which is stable over (s^2 + s) / 2
-// such steps in s stages.
+// Legendre method of first order (Meyer, Balsara and Aslam 2012), which is stable over (s^2 + s) /
+// 2 such steps in s stages.
 layout(local_size_x = 16, local_size_y = 16) in;
 #define FLOW_OBSTACLES readonly
 #include "sim/flow/state.glsl"

@@ -1,6 +1,6 @@
-// From a level to the next coarser one: FLOW_SWEEPS sweeps of red-black Gauss-Seidel that begin with
-// nothing (red cells, then black ones), and what they leave, restricted. After them only red cells
-// have something left.
+// From a level to the next coarser one: FLOW_SWEEPS sweeps of red-black Gauss-Seidel that begin
+// with nothing (red cells, then black ones), and what they leave, restricted. After them only red
+// cells have something left.
 //
 // With FLOW_FINEST, before that: the step of conjugate gradients that the last direction was found
 // for (Hestenes and Stiefel 1952), and whether the solve is done.

@@ -1,5 +1,5 @@
-// Conjugate gradients without a preconditioner: goes along the direction as far as is best, and sees
-// whether the solve is done. (With multigrid, down.comp does this too.)
+// Conjugate gradients without a preconditioner: goes along the direction as far as is best, and
+// sees whether the solve is done. (With multigrid, down.comp does this too.)
 layout(local_size_x = FLOW_GROUP) in;
 #include "sim/flow/state.glsl"
 #include "sim/flow/levels.glsl"

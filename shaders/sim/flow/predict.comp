@@ -1,4 +1,5 @@
-// What MacCormack's method (Selle et al. 2008) corrects: everything traced back once; and from where.
+// What MacCormack's method (Selle et al. 2008) corrects: everything traced back once; and from
+// where.
 layout(local_size_x = 16, local_size_y = 16) in;
 #define FLOW_STATE
 #define FLOW_OBSTACLES readonly
@@ -18,12 +19,14 @@ void main() {
     vec2 corner = vec2(cell), v = vec2(0.0);
     vec4 from = vec4(0.0);
     if (cell.y < FLOW_NY) {
-        from.xy = flow_trace(corner + vec2(0.0, 0.5), flow_velocity_left(cell, slice), -1.0, slice);
+        vec2 here = flow_velocity_left(cell, slice);
+        from.xy = flow_trace(corner + vec2(0.0, 0.5), here, -1.0, slice);
         flow_quad q = flow_quad_u(from.xy);
         v.x = flow_mix(FLOW_FOUR(flow_velocity, x, q, slice), q.t);
     }
     if (cell.x < FLOW_NX) {
-        from.zw = flow_trace(corner + vec2(0.5, 0.0), flow_velocity_bottom(cell, slice), -1.0, slice);
+        vec2 here = flow_velocity_bottom(cell, slice);
+        from.zw = flow_trace(corner + vec2(0.5, 0.0), here, -1.0, slice);
         flow_quad q = flow_quad_v(from.zw);
         v.y = flow_mix(FLOW_FOUR(flow_velocity, y, q, slice), q.t);
     }

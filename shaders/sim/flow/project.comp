@@ -12,7 +12,7 @@ layout(std430) writeonly buffer FlowPressureTo { float pressure_to[]; };
 layout(std430) readonly buffer FlowVelocityFrom { vec2 velocity[]; };
 layout(std430) writeonly buffer FlowVelocityTo { vec2 velocity_to[]; };
 
-struct Way { // that the last direction is still to be followed
+struct Way { // how far the last direction is still to be followed; what all pressures are less
     float stride, mean;
 };
 

@@ -1,7 +1,8 @@
 // What the dispatches of a pressure solve share: sums over a slice, and what is known of it.
 //
-// Sums are made without atomics, always in the same order: each group leaves its part, and each
-// group of a later dispatch that wants the sum adds all parts up.
+// FLOW_GROUP threads make a group of most of them. Sums are made without atomics, always in the same
+// order: each group leaves its part, and each group of a later dispatch that wants the sum adds all
+// parts up.
 #ifndef SIM_FLOW_SOLVE_GLSL
 #define SIM_FLOW_SOLVE_GLSL
 #extension GL_KHR_shader_subgroup_arithmetic : require
@@ -24,7 +25,8 @@ layout(std430) buffer FlowKnown { float flow_known[]; };
 layout(std430) buffer FlowParts { vec4 flow_parts[]; };
 
 // Tiles of level 0: of FLOW_TILE cells, and of 32 in build.comp.
-const int FLOW_TILES = ((FLOW_NX + FLOW_TILE - 1) / FLOW_TILE) * ((FLOW_NY + FLOW_TILE - 1) / FLOW_TILE);
+const int FLOW_TILES =
+    ((FLOW_NX + FLOW_TILE - 1) / FLOW_TILE) * ((FLOW_NY + FLOW_TILE - 1) / FLOW_TILE);
 const int FLOW_BUILDS = ((FLOW_NX + 31) / 32) * ((FLOW_NY + 31) / 32);
 const int FLOW_MOST_PARTS = max(FLOW_TILES, FLOW_BUILDS);
 
@@ -40,9 +42,6 @@ vec4 flow_group_sum(vec4 v) {
     vec4 sum = flow_shares[0];
     for (uint i = 1u; i < gl_NumSubgroups; i++) sum += flow_shares[i];
     return sum;
-}
-float flow_group_sum(float v) {
-    return flow_group_sum(vec4(v, 0.0, 0.0, 0.0)).x;
 }
 
 uint flow_parts_at(int slice, int kind) {
@@ -63,7 +62,8 @@ vec4 flow_total(int slice, int kind) {
     bool build = kind == FLOW_PARTS_BUILD || kind == FLOW_PARTS_MEAN;
     int count = build ? FLOW_BUILDS : FLOW_TILES;
     vec4 v = vec4(0.0);
-    for (int i = int(gl_LocalInvocationIndex); i < count; i += FLOW_THREADS) v += flow_parts[at + i];
+    for (int i = int(gl_LocalInvocationIndex); i < count; i += FLOW_THREADS)
+        v += flow_parts[at + i];
     return flow_group_sum(v);
 }
 
@@ -82,9 +82,9 @@ vec2 flow_means(int slice) {
 // ---- what an iteration begins with ------------------------------------------------------------
 
 struct flow_way {
-    bool done;     // nothing more is to be computed
-    bool leads;    // along the last direction it still goes
-    float stride;  // so far
+    bool done;    // nothing more is to be computed
+    bool leads;   // the last direction is still to be followed
+    float stride; // as far as this
 };
 
 // Squares of the residual (after the last direction was followed) and of what it is measured

@@ -1,5 +1,5 @@
-// A tile of a level with what surrounds it, in shared memory, and sweeps of Gauss-Seidel over it: r,
-// and the pressure z. Red cells are those whose x + y is even.
+// A tile of a level with what surrounds it, in shared memory, and sweeps of Gauss-Seidel over it:
+// r, and the pressure z. Red cells are those whose x + y is even.
 #ifndef SIM_FLOW_TILE_GLSL
 #define SIM_FLOW_TILE_GLSL
 

@@ -1,5 +1,5 @@
-// From a level to the next finer one: what down.comp's sweeps gave, and what the coarser level makes
-// of what they left, then sweeps in the opposite order (black cells, then red ones), so that the
+// From a level to the next finer one: what down.comp's sweeps gave, and what the coarser level
+// makes of what they left, then sweeps in the opposite order (black cells, then red ones), so that the
 // whole cycle is symmetric.
 layout(local_size_x = FLOW_GROUP) in;
 #define FLOW_HALO (2 * FLOW_SWEEPS)
