@@ -32,10 +32,12 @@ void slices_add_part(slices_flow *f, pass *part) {
     f->parts[f->part_count++] = part;
 }
 
-static bool use_field(slices_flow *f, const pass *part, int name) {
-    size_t index;
-    return pass_find_key(part, pass_slices_names[name], &index) == PASS_FIELD &&
-           (f->used[name] = f->used[name] || part->fields[index]);
+static void note_used(slices_flow *f, const pass *part) {
+    for (int i = 0; i < PASS_SLICES_NAMES; i++) {
+        size_t index;
+        if (pass_find_key(part, pass_slices_names[i], &index) == PASS_FIELD && part->fields[index])
+            f->used[i] = true;
+    }
 }
 
 bool pass_slices_add(pass *p, pass *part, const struct picture *painted) {
@@ -44,7 +46,7 @@ bool pass_slices_add(pass *p, pass *part, const struct picture *painted) {
     bool obstacle = slices_is_obstacle(part), first = true;
     if (obstacle && !painted && pass_find_key(part, "shape", &shape) == PASS_FIELD &&
         !part->fields[shape])
-        return err_set("%s: nothing stands there; give it shape = sphere { ... }, or image = "
+        return err_set("%s: nothing stands there; give it shape = disc { ... }, or image = "
                        "image \"obstacle.png\"",
                        part->label);
     for (size_t i = 0; i < f->part_count; i++)
@@ -52,7 +54,7 @@ bool pass_slices_add(pass *p, pass *part, const struct picture *painted) {
             first = false;
     part_state *s = part->state = arena_alloc(p->host->memory, sizeof *s);
     *s = (part_state){.flow = f, .painted = painted, .first = first};
-    for (int i = 0; i < PASS_SLICES_NAMES && !obstacle; i++) use_field(f, part, i);
+    if (!obstacle) note_used(f, part);
     slices_add_part(f, part);
     return true;
 }
