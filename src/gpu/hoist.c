@@ -1,10 +1,10 @@
 // Uniforms read once, where a shader begins, for a software driver that reads them anew everywhere.
 //
 // Mesa's lavapipe (22.3) reads a uniform before all branches and loops with one load for all of a
-// subgroup's threads; within them with one for each thread, each behind a comparison: fifty numbers
-// in a loop take it a microsecond a turn. Here every number, vector or matrix of a block that is
-// reached by constant indices is read at the beginning of the entry point into a variable of the
-// module, which is what all functions read. The driver keeps such variables on its stack.
+// subgroup's threads; within them with one for each thread, behind a comparison: fifty numbers in
+// the loop of the march were a third of its time. Here every number, vector or matrix of a block
+// that is reached by constant indices is read at the beginning of the entry point into a variable
+// of the module, which is what all functions read. The driver keeps such variables on its stack.
 //
 // SPIR-V is rewritten word by word. What is used otherwise than to be read stays as it is.
 #include "gpu/spirv.h"
