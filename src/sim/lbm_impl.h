@@ -20,8 +20,8 @@ bool lbm_kernel_run(const lbm *l, lbm_kernel *k, gpu *g);
 // ---- layout -----------------------------------------------------------------------------------
 
 typedef struct lbm_layout {
-    uint32_t layers, elements; // along z, in all
-    uint32_t slots, run, buffers;     // places of directions, those of one buffer, buffers
+    uint32_t layers, elements;    // along z, in all
+    uint32_t slots, run, buffers; // places of directions, those of one buffer, buffers
 } lbm_layout;
 
 // How the state lies where one binding is at most `range` bytes. False with a message.
@@ -33,7 +33,7 @@ typedef struct lbm_walls {
     lbm_kernel kernel;           // says what cells are
     gpu_buffer *cells[2];        // what they are, and were: [current], and the other
     bool current, known, filled; // filled: the cells hold something
-    bool restored; // the cells are what they were when a checkpoint was made
+    bool restored;               // the cells are what they were when a checkpoint was made
     gpu_buffer *waves, *ids;
     float bodies[3 * (LBM_MAX_BODIES + 1)][4];
     uint32_t moves;   // any body does
