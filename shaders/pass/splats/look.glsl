@@ -66,12 +66,10 @@ vec3 place_seen(vec3 p) { // pixels, and depth in metres
     return vec3(picture * (0.5 + 0.5 * vec2(screen.x, -screen.y)), -v.z);
 }
 
-// The end of the streak, at most as near as what the camera sees.
-vec3 place_before(particle p) {
-    float now = -dot(vec4(frame.view[0].z, frame.view[1].z, frame.view[2].z, frame.view[3].z), vec4(p.position, 1.0));
-    float rate = -dot(vec3(frame.view[0].z, frame.view[1].z, frame.view[2].z), p.velocity);
-    float back = min(streak, p.age);
-    if (rate > 0.0) back = min(back, max(now - frame.lens.z, 0.0) / rate);
+// Where the streak begins: not before the particle's birth, and no nearer than the camera sees.
+vec3 place_before(particle p, float away) {
+    float recedes = -(frame.view * vec4(p.velocity, 0.0)).z, back = min(streak, p.age);
+    if (recedes > 0.0) back = min(back, (away - frame.lens.z) / recedes);
     return place_seen(p.position - back * p.velocity);
 }
 
@@ -102,7 +100,7 @@ looks look_at(uint slot) {
     float meter = 0.5 * picture.y / (frame.lens.y * seen.z); // in pixels
     float radius = 0.5 * positive(field_size(p.position), 1e6) * meter;
     float opacity = positive(field_opacity(p.position), BLEND == BLEND_ADDITIVE ? MOST : 1.0);
-    l.before = streak > 0.0 ? place_before(p) : seen;
+    l.before = streak > 0.0 ? place_before(p, seen.z) : seen;
     if (!(distance(l.before, seen) < FARTHEST)) l.before = seen;
     vec2 around = vec2(2.0 * radius) + 4.0, low = min(seen.xy, l.before.xy), high = max(seen.xy, l.before.xy);
     if (radius <= 0.0 || opacity <= 0.0 || any(lessThan(high + around, vec2(0.0))) ||
