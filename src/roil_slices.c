@@ -50,6 +50,15 @@ pass *roil_slices_find(const roil_effect *e, size_t flow, uint32_t slice) {
     return NULL;
 }
 
+pass *roil_slices_find_square(const roil_effect *e, const roil_slices_square *where) {
+    if (isfinite(where->middle[0]) && isfinite(where->middle[1]) && where->side > 0 &&
+        isfinite(where->side))
+        return roil_slices_find(e, where->flow, where->slice);
+    err_set("there is no square of side %g at %g, %g", (double)where->side,
+            (double)where->middle[0], (double)where->middle[1]);
+    return NULL;
+}
+
 // ---- seeing -----------------------------------------------------------------------------------
 
 typedef struct slices_block { // std140, as slices.comp has it
@@ -109,7 +118,7 @@ bool roil_slices_greatest(roil_effect *e, const roil_slices_view *how, float *ou
 // ---- touching ---------------------------------------------------------------------------------
 
 bool roil_slices_push(roil_effect *e, const roil_slices_square *where, const float force[2]) {
-    pass *p = roil_slices_find(e, where->flow, where->slice);
+    pass *p = roil_slices_find_square(e, where);
     const slices_hand push = {
         .pushes = true,
         .slice = (int)where->slice,
@@ -126,10 +135,8 @@ bool roil_slices_capture(roil_effect *e, const roil_slices_square *where, const 
     char path[PATH_CAP];
     arena memory = {0};
     picture image;
-    const pass *p = roil_slices_find(e, where->flow, where->slice);
+    const pass *p = roil_slices_find_square(e, where);
     if (!p || !template_new_path(e, name, path)) return false;
-    if (!(where->side > 0))
-        return err_set("nothing is selected: the square's side is %g", (double)where->side);
     bool done =
         slices_capture(p, where->slice, where->middle, where->side, &memory, &image, scale) &&
         file_make_parent_folders(path) && picture_write(path, &image);

@@ -83,6 +83,7 @@ typedef struct roil_template_use { // a template put into a flow
     bool velocity;   // its velocity, as a force; else its pressure
     float angle;     // degrees, anticlockwise
     float strength;  // m/s^2, or m^2/s^2
+    float blend;     // of pressure, 0 to 1: how firmly it is held, as the uniform of that name
     double lifetime; // seconds of the simulation; 0: one step
 } roil_template_use;
 // From the next step on. Of more than eight at a time the one that would end first makes room.

@@ -210,13 +210,13 @@ static slices_hand hand_of(const roil_template_use *use, const picture *image) {
         .size = use->where.side,
         .angle = use->angle,
         .strength = use->strength,
-        .blend = 1,
+        .blend = use->blend,
         .lifetime = use->lifetime,
     };
 }
 
 bool roil_template_put(roil_effect *e, const roil_template_use *use) {
-    pass *p = roil_slices_find(e, use->where.flow, use->where.slice);
+    pass *p = roil_slices_find_square(e, &use->where);
     const picture *image = p ? read_template(e, use->file) : NULL;
     if (!image) return false;
     const slices_hand hand = hand_of(use, image);

@@ -7,3 +7,5 @@
 bool template_new_path(const roil_effect *e, const char *name, char out[PATH_CAP]);
 // The flow of the list, which has that slice; NULL with a message.
 pass *roil_slices_find(const roil_effect *e, size_t flow, uint32_t slice);
+// The same, of a square that something can be put into.
+pass *roil_slices_find_square(const roil_effect *e, const roil_slices_square *where);

@@ -168,6 +168,7 @@ static int run_window(live *l, window *w, const job *j) {
     ui_on_key(on_key, l);
     l->performance = performance_create();
     l->inspector = inspector_create();
+    l->flow_tools = flow_tools_create();
     l->panel = panel_create();
     take_session(l, j);
     bool done = live_loop(l, w);
@@ -176,6 +177,7 @@ static int run_window(live *l, window *w, const job *j) {
     if (roil_is_lost(l->r)) return begin_anew(j, l);
     int status = done ? APP_DONE : app_fail_input();
     panel_destroy(l->panel);
+    flow_tools_destroy(l->flow_tools, l->r);
     inspector_destroy(l->inspector, l->r);
     performance_destroy(l->performance);
     ui_close();

@@ -64,6 +64,10 @@ static void inspect(live *l) {
     l->session.inspector = !l->session.inspector;
 }
 
+static void slices(live *l) {
+    l->session.slices = !l->session.slices;
+}
+
 static void performance_key(live *l) {
     l->session.performance = !l->session.performance;
 }
@@ -83,6 +87,8 @@ static void quit(live *l) {
 static void close_top(live *l) {
     if (l->help)
         l->help = false;
+    else if (l->session.slices)
+        l->session.slices = false;
     else if (l->session.inspector)
         l->session.inspector = false;
     else
@@ -124,6 +130,7 @@ static const live_key keys[] = {
     {GLFW_KEY_V, 0, "V", "picture at full, half, quarter size", preview},
     {GLFW_KEY_TAB, 0, "Tab", "show the picture alone", panels},
     {GLFW_KEY_I, 0, "I", "inspect the images of passes", inspect},
+    {GLFW_KEY_S, 0, "S", "see, push and capture the flow of slices", slices},
     {GLFW_KEY_P, 0, "P", "performance", performance_key},
     {GLFW_KEY_F12, 0, "F12", "save the picture as PNG", shot},
     {GLFW_KEY_S, GLFW_MOD_CONTROL, "Ctrl+S", "save a preset", save_preset},

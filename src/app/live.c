@@ -250,6 +250,7 @@ static void draw_interface(live *l, const layout *at, uint32_t width) {
             panel_draw(l, at->panel);
         }
         inspector_draw(l);
+        flow_tools_draw(l);
         performance_draw(l);
     }
     overlay_draw(l, l->view);
@@ -337,6 +338,7 @@ bool live_loop(live *l, window *w) {
         advance(l, &p, passed);
         playing = l->time.playing;
         if (p.drawn) inspector_update(l);
+        if (p.drawn) flow_tools_update(l);
         if (l->shot) take_shot(l, &p);
         ui_begin();
         draw_interface(l, &at, width);

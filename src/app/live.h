@@ -17,13 +17,14 @@ typedef struct live_session { // what is found again at the next start; session.
     int x, y, width, height;  // of the window; width 0: none kept yet
     bool maximized;
     float panel; // width of the panel, units
-    bool panel_hidden, performance, inspector;
+    bool panel_hidden, performance, inspector, slices;
     char image[96]; // of the inspector
     int preview;    // of live_previews; -1: never chosen
 } live_session;
 
 typedef struct performance performance; // performance.c
 typedef struct inspector inspector;     // inspector.c
+typedef struct flow_tools flow_tools;   // flow_tools.c
 typedef struct panel panel;             // panel.c
 
 typedef struct live {
@@ -47,6 +48,7 @@ typedef struct live {
     const char *broken;  // why no frame can be drawn, besides roil_live_message; NULL: it can
     performance *performance;
     inspector *inspector;
+    flow_tools *flow_tools;
     panel *panel;
     uint32_t width, height; // of the effect's picture, pixels
     ui_rect view;           // where it is shown
@@ -91,6 +93,11 @@ void inspector_destroy(inspector *p, roil *r);
 // Before the interface is drawn, of an effect that was: draws the image into its texture.
 void inspector_update(live *l);
 void inspector_draw(live *l);
+
+flow_tools *flow_tools_create(void);
+void flow_tools_destroy(flow_tools *t, roil *r);
+void flow_tools_update(live *l); // as the inspector's
+void flow_tools_draw(live *l);   // slices { }: seen, pushed, captured, given templates
 
 void overlay_draw(live *l, ui_rect view); // the message of a broken file, and notices
 void help_draw(live *l);                  // F1

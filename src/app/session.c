@@ -59,6 +59,7 @@ static void take(live_session *s, const json_t *root) {
     s->panel_hidden = flag(root, "panel_hidden");
     s->performance = flag(root, "performance");
     s->inspector = flag(root, "inspector");
+    s->slices = flag(root, "slices");
     s->preview = whole(root, "preview", -1, LIVE_PREVIEWS - 1, -1);
     const char *image = json_string_value(json_object_get(root, "image"));
     if (!image || !str_copy(s->image, sizeof s->image, image)) s->image[0] = '\0';
@@ -82,11 +83,11 @@ void session_load(live_session *s) {
 
 void session_save(const live_session *s) {
     char path[PATH_CAP];
-    json_t *root =
-        json_pack("{s:i, s:i, s:i, s:i, s:b, s:f, s:b, s:b, s:b, s:s, s:i}", "x", s->x, "y", s->y,
-                  "width", s->width, "height", s->height, "maximized", s->maximized, "panel",
-                  (double)s->panel, "panel_hidden", s->panel_hidden, "performance", s->performance,
-                  "inspector", s->inspector, "image", s->image, "preview", s->preview);
+    json_t *root = json_pack(
+        "{s:i, s:i, s:i, s:i, s:b, s:f, s:b, s:b, s:b, s:b, s:s, s:i}", "x", s->x, "y", s->y,
+        "width", s->width, "height", s->height, "maximized", s->maximized, "panel",
+        (double)s->panel, "panel_hidden", s->panel_hidden, "performance", s->performance,
+        "inspector", s->inspector, "slices", s->slices, "image", s->image, "preview", s->preview);
     char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(6)) : NULL;
     if (text &&
         (!session_file(path, sizeof path, "session.json") || !file_write(path, text, strlen(text))))

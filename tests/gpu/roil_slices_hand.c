@@ -97,6 +97,10 @@ static void capture_writes_a_template(void **state) {
     expect_error(roil_slices_capture(e, &where, "../grown", scale), "is not a name");
     expect_error(roil_slices_capture(e, &where, "a/b", scale), "is not a name");
     expect_error(roil_slices_capture(e, &where, "", scale), "is not a name");
+    expect_error(roil_slices_capture(e, &(roil_slices_square){.side = 0}, "other", scale),
+                 "no square");
+    expect_error(roil_slices_push(e, &(roil_slices_square){.slice = 2, .side = 1}, scale),
+                 "no slice 3");
     arena memory = {0};
     picture image;
     char path[512];
@@ -163,6 +167,7 @@ static void its_line_can_be_pasted(void **state) {
                                    .file = "pump.exr",
                                    .angle = 30,
                                    .strength = 2,
+                                   .blend = 0.02f,
                                    .lifetime = 0.2};
     char *line = roil_template_lua(e, &use);
     ok(line != NULL);

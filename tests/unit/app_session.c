@@ -13,6 +13,7 @@ static const live_session moved = {
     .panel_hidden = true,
     .performance = true,
     .inspector = true,
+    .slices = true,
     .image = "march.color",
     .preview = 2,
 };
@@ -32,7 +33,7 @@ static void assert_defaults(const live_session *s) {
     assert_int_equal(s->width, 0);
     assert_int_equal(s->preview, -1);
     assert_true(s->panel > 200 && s->panel < 600);
-    assert_false(s->maximized || s->panel_hidden || s->performance || s->inspector);
+    assert_false(s->maximized || s->panel_hidden || s->performance || s->inspector || s->slices);
     assert_string_equal(s->image, "");
 }
 
@@ -46,7 +47,7 @@ static void what_is_kept_is_found(void **state) {
     assert_int_equal(s.width, moved.width);
     assert_int_equal(s.height, moved.height);
     assert_true(s.panel == moved.panel);
-    assert_true(s.maximized && s.panel_hidden && s.performance && s.inspector);
+    assert_true(s.maximized && s.panel_hidden && s.performance && s.inspector && s.slices);
     assert_string_equal(s.image, moved.image);
     assert_int_equal(s.preview, moved.preview);
 }

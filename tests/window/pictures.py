@@ -3,7 +3,7 @@ ROIL_UPDATE=1 takes new ones; look at them before they are kept."""
 import os
 import subprocess
 
-from lib.window import BINARY, PUFF, SOURCE, Case, Display, main, require_tools
+from lib.window import BINARY, PUFF, RISE, SOURCE, Case, Display, main, require_tools
 
 GOLDEN = os.path.join(SOURCE, "tests/window/golden")
 COMPARE = os.path.join(BINARY, "golden_compare")
@@ -59,6 +59,17 @@ class Pictures(Case):
         self.check(live, "inspector.png")
         live.quit()
 
+    def test_slices(self):
+        live = self.start(effect=RISE)
+        live.keys("s")
+        live.click_on("slices/view")
+        live.click_on("slices/velocity")
+        live.click_on("slices/put")
+        live.click_on("slices/jet.exr")
+        live.tool("mousemove", 1, 1)
+        self.check(live, "slices.png")
+        live.quit()
+
 
 class HighDensity(Pictures):
     @classmethod
@@ -66,7 +77,7 @@ class HighDensity(Pictures):
         cls.display = Display(density=192)
         cls.addClassCleanup(cls.display.close)
 
-    test_panel_message_and_help = test_inspector = None
+    test_panel_message_and_help = test_inspector = test_slices = None
 
     def test_panel(self):
         live = self.start()

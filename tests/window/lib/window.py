@@ -42,6 +42,16 @@ fx.output = final { volume.color }.color
 return fx
 """
 
+# A slice that is quick to simulate, in which something rises.
+RISE = """
+local fx = effect { name = "rise", fps = 24, frames = 240 }
+local air = slices { count = 1, size = {32, 32}, height = 2, variation = 0 }
+air:inflow { shape = disc { 0.5, 0.15, radius = 0.12 }, density = 1, velocity = {0, 1} }
+fx.camera = orbit { target = {0, 0, 1}, distance = 6, pitch = 10 }
+fx.output = final { march { density = air.density * 4, steps = 4, shadow_steps = 1 } }.color
+return fx
+"""
+
 
 def require_tools():
     missing = [tool for tool in TOOLS if not shutil.which(tool)]
