@@ -14,14 +14,15 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIDE_MAX = 1024, FILE_MAX = 64 << 20 };
+enum { SIDE_MAX = 4096, FILE_MAX = 64 << 20 };
 static const char *const kinds[] = {"exr", "png"};
 
 struct template_file { // one that was read
     char file[64];
     int64_t changed;
-    arena memory;
-    picture image;
+    bool square;
+    picture image; // as large as the flow takes it
+    float rgba[4 * SLICES_TILE * SLICES_TILE];
 };
 
 // ---- names ------------------------------------------------------------------------------------
@@ -129,32 +130,42 @@ size_t roil_templates(const roil_effect *e, roil_template *out, size_t capacity)
 // ---- reading ----------------------------------------------------------------------------------
 
 void roil_free_templates(roil_effect *e) {
-    for (size_t i = 0; i < e->template_count; i++) {
-        arena_free(&e->templates[i]->memory);
-        mem_free(e->templates[i]);
-    }
+    for (size_t i = 0; i < e->template_count; i++) mem_free(e->templates[i]);
     mem_free(e->templates);
 }
 
-static const picture *read_template(roil_effect *e, const char *file) {
+// As a tile, which as a picture becomes the same tile again.
+static void take_tile(template_file *t, const picture *read) {
+    t->square = read->width == read->height;
+    slices_tile(read, t->rgba);
+    for (int i = 0; i < SLICES_TILE * SLICES_TILE; i++) {
+        float *texel = t->rgba + 4 * i;
+        for (int c = 0; c < 3 && texel[3] > 0; c++) texel[c] /= texel[3];
+    }
+    t->image = (picture){SLICES_TILE, SLICES_TILE, 0, t->rgba};
+}
+
+static const template_file *read_template(roil_effect *e, const char *file) {
     char root[PATH_CAP], path[PATH_CAP];
     if (!find_file(e, file, root, path)) return NULL;
     int64_t changed = file_changed_ns(path);
     for (size_t i = 0; i < e->template_count; i++) {
         const template_file *t = e->templates[i];
-        if (t->changed == changed && strcmp(t->file, file) == 0) return &t->image;
+        if (t->changed == changed && strcmp(t->file, file) == 0) return t;
     }
-    template_file *t = mem_alloc(sizeof *t);
-    t->changed = changed;
-    str_copy(t->file, sizeof t->file, file);
-    if (!picture_read(path, root, SIDE_MAX, &t->memory, &t->image)) {
-        arena_free(&t->memory);
-        mem_free(t);
-        return NULL;
+    arena memory = {0};
+    picture read;
+    template_file *t = NULL;
+    if (picture_read(path, root, SIDE_MAX, &memory, &read)) {
+        t = mem_alloc(sizeof *t);
+        t->changed = changed;
+        str_copy(t->file, sizeof t->file, file);
+        take_tile(t, &read);
+        MEM_RESERVE(e->templates, e->template_count + 1, e->template_capacity);
+        e->templates[e->template_count++] = t;
     }
-    MEM_RESERVE(e->templates, e->template_count + 1, e->template_capacity);
-    e->templates[e->template_count++] = t;
-    return &t->image;
+    arena_free(&memory);
+    return t;
 }
 
 // ---- icons ------------------------------------------------------------------------------------
@@ -163,12 +174,11 @@ static uint8_t byte_of(float value) {
     return (uint8_t)(clampf(value, 0, 1) * 255 + 0.5f);
 }
 
-// As shaders/view/slices.comp has it; `texel`: of slices_tile.
+// As shaders/view/slices.comp has it, times the root of alpha: as much as one sees of it.
 static void color_of(const float texel[4], bool velocity, uint8_t out[4]) {
     const float third = 2.0943951f, ground = 0.08f;
     float rgb[3] = {ground, ground, ground};
-    // Times the root of alpha, as much as one sees of it.
-    float weight = texel[3] > 1e-6f ? 1 / sqrtf(texel[3]) : 0;
+    float weight = sqrtf(texel[3]);
     float angle = atan2f(texel[1], texel[0]), p = texel[2] * weight;
     float speed = fminf(hypotf(texel[0], texel[1]) * weight, 1);
     for (int i = 0; i < 3 && velocity; i++) {
@@ -182,19 +192,14 @@ static void color_of(const float texel[4], bool velocity, uint8_t out[4]) {
 
 bool roil_template_icon(roil_effect *e, const char *file, bool velocity, uint32_t side,
                         uint8_t *out) {
-    const picture *image = read_template(e, file);
-    if (!image) return false;
-    if (image->width != image->height)
-        return err_set("%s is no template: %u x %u pixels, which is no square", file, image->width,
-                       image->height);
-    float *tile = mem_alloc(4 * sizeof *tile * SLICES_TILE * SLICES_TILE);
-    slices_tile(image, tile);
+    const template_file *t = read_template(e, file);
+    if (!t) return false;
+    if (!t->square) return err_set("%s is no template: it is no square", file);
     for (uint32_t y = 0; y < side; y++)
         for (uint32_t x = 0; x < side; x++) {
             uint32_t i = x * SLICES_TILE / side, j = y * SLICES_TILE / side;
-            color_of(tile + 4 * (j * SLICES_TILE + i), velocity, out + 4 * (y * side + x));
+            color_of(t->rgba + 4 * (j * SLICES_TILE + i), velocity, out + 4 * (y * side + x));
         }
-    mem_free(tile);
     return true;
 }
 
@@ -217,9 +222,9 @@ static slices_hand hand_of(const roil_template_use *use, const picture *image) {
 
 bool roil_template_put(roil_effect *e, const roil_template_use *use) {
     pass *p = roil_slices_find_square(e, &use->where);
-    const picture *image = p ? read_template(e, use->file) : NULL;
-    if (!image) return false;
-    const slices_hand hand = hand_of(use, image);
+    const template_file *t = p ? read_template(e, use->file) : NULL;
+    if (!t) return false;
+    const slices_hand hand = hand_of(use, &t->image);
     return slices_put(p, &hand);
 }
 

@@ -155,7 +155,9 @@ static void capture(live *l, flow_tools *t) {
     flow_list_choose(t, file);
     t->next_look = 0;
     t->use.where.side = t->side;
-    t->use.strength = scale[t->use.velocity ? 0 : 1];
+    // A force that gives what lies there the speed of what was captured while it acts.
+    double acts = fmax(t->use.lifetime, t->flows[t->view.flow].time_step);
+    t->use.strength = t->use.velocity ? scale[0] / (float)acts : scale[1];
     t->name[0] = '\0';
     t->tool = FLOW_PUT;
 }
