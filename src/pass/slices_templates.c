@@ -19,7 +19,7 @@ slices_templates *slices_templates_make(slices_flow *f) {
 
 gpu_buffer *slices_templates_buffer(const pass *p) {
     const slices_templates *t = slices_templates_of(slices_of(p));
-    return t ? t->instances : NULL;
+    return t && t->total ? t->instances : NULL;
 }
 
 // ---- declaring --------------------------------------------------------------------------------

@@ -71,5 +71,5 @@ void slices_tile_fade(float rgba[SLICES_TILE * SLICES_TILE * 4]);
 void slices_tile_half(const float *from, uint32_t side, float *out);
 
 // Of the instances on the device; shaders/pass/slices/templates.glsl says how they lie there. NULL:
-// not allocated.
+// not allocated, or there are none but by hand.
 gpu_buffer *slices_templates_buffer(const pass *p);

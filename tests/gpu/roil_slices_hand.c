@@ -181,6 +181,27 @@ static void its_line_can_be_pasted(void **state) {
     roil_unload(e);
 }
 
+// Whoever saved it had no hands.
+static void a_checkpoint_is_taken_up(void **state) {
+    char file[512];
+    snprintf(file, sizeof file, "%s/state", test_folder);
+    roil *other = roil_create(&(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true});
+    ok(other);
+    roil_effect *e = open(other, RISING);
+    ok(roil_render(e, 12));
+    float left = speed(e, 0);
+    ok(roil_checkpoint(e, file));
+    roil_unload(e);
+    assert_int_equal(roil_validation_messages(other), 0);
+    roil_destroy(other);
+    double frame;
+    e = open(*state, RISING);
+    ok(roil_restore(e, file, &frame));
+    ok(roil_render(e, frame + 1));
+    assert_true(left > 0.01f && speed(e, 0) > left);
+    roil_unload(e);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(flows_are_listed),
@@ -190,6 +211,7 @@ int main(void) {
         cmocka_unit_test(templates_are_of_the_effect_and_of_the_library),
         cmocka_unit_test(a_template_that_is_put_acts_for_its_lifetime),
         cmocka_unit_test(its_line_can_be_pasted),
+        cmocka_unit_test(a_checkpoint_is_taken_up),
     };
     test_hands = true;
     return test_run(tests);
