@@ -10,7 +10,7 @@ static const float SHARE = 0.5f;   // of the pointer's speed that a push gives w
 static const float STEP = 1.1f;    // of a size, by a notch of the wheel
 static const float TURN = 15;      // degrees, by a notch with Shift
 static const float LEAST_SIDE = 4; // cells that are worth to be captured
-static const double LONGEST = 0.1, SHORTEST = 1 / 240.0; // seconds between two looks at the pointer
+static const double LONGEST = 0.5, SHORTEST = 1 / 240.0; // seconds between two looks at the pointer
 static const float ARROWS = 22;                          // units
 
 typedef struct sheet { // the slice on the canvas
@@ -56,7 +56,7 @@ static void push(live *l, flow_tools *t, const sheet *s, const ui_canvas *c) {
     float now[2], force[2];
     place_of(s, c->x, c->y, now);
     double passed = fmin(fmax(clock_seconds() - t->looked, SHORTEST), LONGEST);
-    if (c->held && !c->pressed && (c->dx != 0 || c->dy != 0)) {
+    if (t->pushing && !c->pressed && (c->dx != 0 || c->dy != 0)) {
         float middle[2];
         for (int i = 0; i < 2; i++) {
             float speed = (now[i] - t->last[i]) * flow->width / (float)passed;
@@ -68,6 +68,7 @@ static void push(live *l, flow_tools *t, const sheet *s, const ui_canvas *c) {
         log_write(LOG_DEBUG, "live: pushed %s at %.3f %.3f by %.3g %.3g", flow->name,
                   (double)middle[0], (double)middle[1], (double)force[0], (double)force[1]);
     }
+    t->pushing = c->held; // and in the frame in which it is let go
     t->last[0] = now[0], t->last[1] = now[1];
     t->looked = clock_seconds();
 }
@@ -93,7 +94,8 @@ static void draw_out(flow_tools *t, const sheet *s, const ui_canvas *c) {
 }
 
 static void select_square(flow_tools *t, const sheet *s, const ui_canvas *c) {
-    if (c->pressed ? is_inside(s, c) : c->held && t->corner[0] >= 0) draw_out(t, s, c);
+    if (c->pressed ? is_inside(s, c) : (c->held || c->released) && t->corner[0] >= 0)
+        draw_out(t, s, c);
     if (c->pressed && !is_inside(s, c)) t->corner[0] = -1; // what is drawn out begins in the slice
     if (t->side <= 0) return;
     ui_rect square = square_of(s, t->middle, t->side);

@@ -28,6 +28,7 @@ struct flow_tools {
     float push_side;       // widths of a slice
     float last[2];         // place of the pointer when it was looked at last,
     double looked;         // and when: clock_seconds
+    bool pushing;          // it was held then
     float corner[2];       // where the square was begun
     float middle[2], side; // the square; side 0: none
     char name[48];         // for what is captured
