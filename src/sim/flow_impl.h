@@ -27,7 +27,7 @@ enum {
     // Defaults of max_iterations, by sweeps: those that are not needed still cost what a dispatch
     // costs. With obstacles, whose shapes coarse levels cannot see, more.
     FLOW_ITERATIONS = 6,
-    FLOW_ITERATIONS_OF_TWO = 3,
+    FLOW_ITERATIONS_OF_TWO = 4,
     FLOW_OBSTACLE_ITERATIONS = 4,
     FLOW_CG_ITERATIONS = 3, // by cells along the longer side
     // Of a transform: the second is for what rounding leaves of large slices. What obstacles and

@@ -140,7 +140,8 @@ static void open_box(flow_world *w, gpu *g, flow_solver solver) {
                            .solver = solver,
                            .faces = {FLOW_OPEN, FLOW_OPEN, FLOW_OPEN, FLOW_OPEN},
                            .templates = true,
-                           .sources = true});
+                           .sources = true,
+                           .max_iterations = solver == FLOW_MULTIGRID ? 10 : 0});
     w->numbers.tolerance = 1e-5f;
 }
 
