@@ -57,6 +57,35 @@ static inline effect *helper_load(const char *text) {
     return helper_load_with(text, NULL, NULL, 0);
 }
 
+// A script with something before and after it, which is refused with a message.
+static inline void helper_refuses(const char *head, const char *text, const char *tail,
+                                  const char *message) {
+    char whole[2048];
+    snprintf(whole, sizeof whole, "%s%s%s", head, text, tail);
+    if (helper_load(whole)) fail_msg("no error in: %s", text);
+    if (!strstr(err_get(), message)) fail_msg("in: %s\n got: %s", text, err_get());
+}
+
+// One that is not.
+static inline effect *helper_accepts(const char *head, const char *text, const char *tail,
+                                     const effect_setting *settings, size_t count) {
+    char whole[2048];
+    snprintf(whole, sizeof whole, "%s%s%s", head, text, tail);
+    effect *e = helper_load_with(whole, NULL, settings, count);
+    if (!e) fail_msg("%s", err_get());
+    return e;
+}
+
+static inline void helper_is_set(effect *e, const char *name, const char *value) {
+    const effect_control *c = effect_find_control(e, name);
+    if (!c) fail_msg("%s", err_get());
+    strbuf text = {0};
+    effect_print_control(e, c, &text);
+    if (strcmp(strbuf_text(&text), value) != 0)
+        fail_msg("%s is %s, not %s", name, strbuf_text(&text), value);
+    strbuf_free(&text);
+}
+
 static inline int helper_setup(void **state) {
     (void)state;
     log_set_level(LOG_WARNING);

@@ -7,29 +7,11 @@
 #define TAIL "\nfx.output = march { density = air.density }.color\nreturn fx\n"
 
 static void refused(const char *text, const char *message) {
-    char whole[2048];
-    snprintf(whole, sizeof whole, HEAD "%s" TAIL, text);
-    effect *e = helper_load(whole);
-    if (e) fail_msg("no error in: %s", text);
-    if (!strstr(err_get(), message)) fail_msg("in: %s\n got: %s", text, err_get());
+    helper_refuses(HEAD, text, TAIL, message);
 }
 
 static effect *load(const char *text, const effect_setting *settings, size_t count) {
-    char whole[2048];
-    snprintf(whole, sizeof whole, HEAD "%s" TAIL, text);
-    effect *e = helper_load_with(whole, NULL, settings, count);
-    if (!e) fail_msg("%s", err_get());
-    return e;
-}
-
-static void is_set(effect *e, const char *name, const char *value) {
-    const effect_control *c = effect_find_control(e, name);
-    if (!c) fail_msg("%s", err_get());
-    strbuf text = {0};
-    effect_print_control(e, c, &text);
-    if (strcmp(strbuf_text(&text), value) != 0)
-        fail_msg("%s is %s, not %s", name, strbuf_text(&text), value);
-    strbuf_free(&text);
+    return helper_accepts(HEAD, text, TAIL, settings, count);
 }
 
 static void mistakes_are_named(void **state) {
@@ -82,11 +64,11 @@ static void all_of_it_can_be_set_by_name(void **state) {
                          "air:source { shape = sphere { }, density = 1, rate = 7 }",
                      settings, 4);
     if (!effect_check(e)) fail_msg("%s", err_get());
-    is_set(e, "lbm.viscosity", "0.5");
-    is_set(e, "lbm.boundary_top", "wall");
-    is_set(e, "lbm.boundary_left", "slip");
-    is_set(e, "lbm_source.rate", "3");
-    is_set(e, "lbm.precision", "f32");
+    helper_is_set(e, "lbm.viscosity", "0.5");
+    helper_is_set(e, "lbm.boundary_top", "wall");
+    helper_is_set(e, "lbm.boundary_left", "slip");
+    helper_is_set(e, "lbm_source.rate", "3");
+    helper_is_set(e, "lbm.precision", "f32");
     effect_destroy(e);
 }
 
@@ -94,11 +76,11 @@ static void faces_can_be_said_together(void **state) {
     (void)state;
     effect *e =
         load(AIR "boundary = { sides = 'periodic', top = 'slip', back = 'wall' } }", NULL, 0);
-    is_set(e, "lbm.boundary_left", "periodic");
-    is_set(e, "lbm.boundary_front", "periodic");
-    is_set(e, "lbm.boundary_back", "wall");
-    is_set(e, "lbm.boundary_top", "slip");
-    is_set(e, "lbm.boundary_bottom", "wall");
+    helper_is_set(e, "lbm.boundary_left", "periodic");
+    helper_is_set(e, "lbm.boundary_front", "periodic");
+    helper_is_set(e, "lbm.boundary_back", "wall");
+    helper_is_set(e, "lbm.boundary_top", "slip");
+    helper_is_set(e, "lbm.boundary_bottom", "wall");
     effect_destroy(e);
 }
 

@@ -8,29 +8,11 @@
 #define TAIL "\nfx.output = sparks.particles\nreturn fx\n"
 
 static void refused(const char *text, const char *message) {
-    char whole[2048];
-    snprintf(whole, sizeof whole, HEAD "%s" TAIL, text);
-    effect *e = helper_load(whole);
-    if (e) fail_msg("no error in: %s", text);
-    if (!strstr(err_get(), message)) fail_msg("in: %s\n got: %s", text, err_get());
+    helper_refuses(HEAD, text, TAIL, message);
 }
 
 static effect *load(const char *text, const effect_setting *settings, size_t count) {
-    char whole[2048];
-    snprintf(whole, sizeof whole, HEAD "%s" TAIL, text);
-    effect *e = helper_load_with(whole, NULL, settings, count);
-    if (!e) fail_msg("%s", err_get());
-    return e;
-}
-
-static void is_set(effect *e, const char *name, const char *value) {
-    const effect_control *c = effect_find_control(e, name);
-    if (!c) fail_msg("%s", err_get());
-    strbuf text = {0};
-    effect_print_control(e, c, &text);
-    if (strcmp(strbuf_text(&text), value) != 0)
-        fail_msg("%s is %s, not %s", name, strbuf_text(&text), value);
-    strbuf_free(&text);
+    return helper_accepts(HEAD, text, TAIL, settings, count);
 }
 
 static const char TRIANGLE[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -67,12 +49,12 @@ static void all_of_it_can_be_set_by_name(void **state) {
     };
     effect *e = load(SPARKS "lifetime = {0.5, 2}, above = {sphere { }, 0.25}, drag = 3 }", settings,
                      COUNT_OF(settings));
-    is_set(e, "particles.rate", "30");
-    is_set(e, "particles.lifetime_min", "0.5");
-    is_set(e, "particles.lifetime_max", "7");
-    is_set(e, "particles.threshold", "0.25");
-    is_set(e, "particles.drag", "3");
-    is_set(e, "particles.integrator", "euler");
+    helper_is_set(e, "particles.rate", "30");
+    helper_is_set(e, "particles.lifetime_min", "0.5");
+    helper_is_set(e, "particles.lifetime_max", "7");
+    helper_is_set(e, "particles.threshold", "0.25");
+    helper_is_set(e, "particles.drag", "3");
+    helper_is_set(e, "particles.integrator", "euler");
     if (!effect_check(e)) fail_msg("%s", err_get());
     effect_destroy(e);
 }

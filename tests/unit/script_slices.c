@@ -7,29 +7,11 @@
 #define TAIL "\nfx.output = march { density = flow.density }.color\nreturn fx\n"
 
 static void refused(const char *text, const char *message) {
-    char whole[2048];
-    snprintf(whole, sizeof whole, HEAD "%s" TAIL, text);
-    effect *e = helper_load(whole);
-    if (e) fail_msg("no error in: %s", text);
-    if (!strstr(err_get(), message)) fail_msg("in: %s\n got: %s", text, err_get());
+    helper_refuses(HEAD, text, TAIL, message);
 }
 
 static effect *load(const char *text, const effect_setting *settings, size_t count) {
-    char whole[2048];
-    snprintf(whole, sizeof whole, HEAD "%s" TAIL, text);
-    effect *e = helper_load_with(whole, NULL, settings, count);
-    if (!e) fail_msg("%s", err_get());
-    return e;
-}
-
-static void is_set(effect *e, const char *name, const char *value) {
-    const effect_control *c = effect_find_control(e, name);
-    if (!c) fail_msg("%s", err_get());
-    strbuf text = {0};
-    effect_print_control(e, c, &text);
-    if (strcmp(strbuf_text(&text), value) != 0)
-        fail_msg("%s is %s, not %s", name, strbuf_text(&text), value);
-    strbuf_free(&text);
+    return helper_accepts(HEAD, text, TAIL, settings, count);
 }
 
 static void mistakes_are_named(void **state) {
@@ -100,11 +82,11 @@ static void all_of_it_can_be_set_by_name(void **state) {
                           "flow:obstacle { shape = disc { radius = 0.1 }, velocity = {1, 0} }",
                      settings, 4);
     if (!effect_check(e)) fail_msg("%s", err_get());
-    is_set(e, "slices.viscosity", "0.5");
-    is_set(e, "slices.top", "closed");
-    is_set(e, "slices.sides", "open");
-    is_set(e, "slices_inflow.rate", "3");
-    is_set(e, "slices.seed", "9");
+    helper_is_set(e, "slices.viscosity", "0.5");
+    helper_is_set(e, "slices.top", "closed");
+    helper_is_set(e, "slices.sides", "open");
+    helper_is_set(e, "slices_inflow.rate", "3");
+    helper_is_set(e, "slices.seed", "9");
     effect_destroy(e);
 }
 
