@@ -81,6 +81,25 @@ struct bvh_instance {
     SHARED_VEC4 color; // rgb: factor of the triangles' colours; w: number of the mesh
 };
 
+// One of the instances of meshes that stand in a scene: storage buffer "Instances" of shaders that
+// draw them (src/scene/instances.h). Place and turn are in the space of all.
+#define INSTANCE_HIDDEN 0xffffffffu
+struct instance_entry {
+    SHARED_VEC4 place; // xyz: metres; w: scale
+    SHARED_VEC4 turn;  // quaternion x, y, z, w
+    SHARED_VEC4 color; // rgb: factor of the mesh's colours; w: glow, factor of what it emits
+    SHARED_VEC4 state; // numbers of the effect's own
+    SHARED_UVEC4 kind; // x: which of the meshes, INSTANCE_HIDDEN: not shown; y: number, from 0; z: bits of a float in 0..1, its random number
+};
+
+// A view that meshes and instances are drawn in, one of those of the storage buffer "Views". The
+// host writes it, or a pass that places its views on the device (pass/shadow_maps), so that nothing
+// is read back; where in the target it is drawn the host always knows.
+struct view_entry {
+    SHARED_MAT4 clip; // world to clip; all 0: nothing is drawn in it
+    SHARED_VEC4 eye;  // xyz: metres, where distances are counted from; w: pixels of a metre at 1 m, for levels of detail; 0: all detail
+};
+
 // What lib/surface.glsl tells of a triangle that was hit; src/scene/surfaces.c makes it.
 struct surface_vertex { // as mesh_vertex
     SHARED_VEC4 position_u;

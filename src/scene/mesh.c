@@ -70,11 +70,11 @@ bool scene_mesh_exchange(scene_mesh *mesh, scene_mesh *other) {
     return true;
 }
 
-bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, mat4 out) {
+// One place, within what it stands in.
+static bool place_matrix(const field *const place[3], const field_context *context, mat4 out) {
     float position[4], rotation[4], scale[4];
-    if (!scene_evaluate(mesh->position, context, position) ||
-        !scene_evaluate(mesh->rotation, context, rotation) ||
-        !scene_evaluate(mesh->scale, context, scale))
+    if (!scene_evaluate(place[0], context, position) ||
+        !scene_evaluate(place[1], context, rotation) || !scene_evaluate(place[2], context, scale))
         return false;
     vec3 angles = {glm_rad(rotation[0]), glm_rad(rotation[1]), glm_rad(rotation[2])};
     mat4 turn;
@@ -83,6 +83,23 @@ bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, 
     glm_mat4_mul(out, turn, out);
     glm_scale_uni(out, scale[0]);
     return true;
+}
+
+bool scene_place_matrix(const field *position, const field *rotation, const field *scale,
+                        const scene_node *parent, const field_context *context, mat4 out) {
+    if (!place_matrix((const field *[]){position, rotation, scale}, context, out)) return false;
+    for (const scene_node *n = parent; n; n = n->parent) {
+        mat4 outer;
+        if (!place_matrix((const field *[]){n->position, n->rotation, n->scale}, context, outer))
+            return err_prefix("%s: ", n->name);
+        glm_mat4_mul(outer, out, out);
+    }
+    return true;
+}
+
+bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, mat4 out) {
+    return scene_place_matrix(mesh->position, mesh->rotation, mesh->scale, mesh->parent, context,
+                              out);
 }
 
 bool scene_mesh_place(const scene_mesh *mesh, const field_context *context, mat4 transform,

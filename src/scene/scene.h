@@ -48,12 +48,21 @@ typedef struct scene_light {
     const field *softness; // 0..1: part of the cone over which it fades
 } scene_light;
 
+typedef struct scene_node { // a place that meshes and instances may stand in
+    const char *name;
+    const field *position; // vec3, metres
+    const field *rotation; // vec3, degrees about X, then Y, then Z
+    const field *scale;    // factor
+    const struct scene_node *parent; // that this stands in; NULL: the world
+} scene_node;
+
 typedef struct scene_mesh {
     const char *name;
     mesh_data data;
     const field *position;          // vec3, metres
     const field *rotation;          // vec3, degrees about X, then Y, then Z
     const field *scale;             // factor
+    const scene_node *parent;       // that it stands in; NULL: the world
     const field *color;             // vec3, multiplies the material's
     gpu_buffer *vertices, *indices; // made on first use
     gpu_image **textures;           // per mesh_data texture
