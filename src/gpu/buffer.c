@@ -51,7 +51,8 @@ gpu_buffer *gpu_buffer_create(gpu *g, const gpu_buffer_desc *desc) {
     VkBufferUsageFlags usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     bool readback = desc->kind == GPU_BUFFER_READBACK;
     if (!readback) {
-        usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+        usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
+                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
         if (desc->size > g->info.max_storage_range) {
             err_set("buffer '%s': %" PRIu64 " bytes; the device binds at most %" PRIu64,
                     desc->label ? desc->label : "buffer", desc->size, g->info.max_storage_range);

@@ -89,6 +89,7 @@ static void list_missing(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32
     if (!f.v13.maintenance4) lacks(info, "maintenance4");
     if (!f.v12.timelineSemaphore) lacks(info, "timelineSemaphore");
     if (!f.v12.scalarBlockLayout) lacks(info, "scalarBlockLayout");
+    if (!f.core.features.drawIndirectFirstInstance) lacks(info, "drawIndirectFirstInstance");
     if (!f.core.features.shaderStorageImageExtendedFormats) {
         lacks(info, "shaderStorageImageExtendedFormats");
     }

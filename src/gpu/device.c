@@ -31,6 +31,7 @@ VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, int copies
     want.v12.timelineSemaphore = VK_TRUE;
     want.v12.scalarBlockLayout = VK_TRUE;
     want.core.features.shaderStorageImageExtendedFormats = VK_TRUE;
+    want.core.features.drawIndirectFirstInstance = VK_TRUE;
     // Shaders are written by strangers: an index out of bounds must stay inside its own binding.
     want.core.features.robustBufferAccess = has.core.features.robustBufferAccess;
     want.v13.robustImageAccess = has.v13.robustImageAccess;

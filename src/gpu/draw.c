@@ -4,7 +4,7 @@
 
 static uint32_t color_count(const gpu_draw_desc *desc) {
     uint32_t count = 0;
-    while (count < VK_MAX_TARGETS && desc->colors[count]) count++;
+    while (count < GPU_MAX_TARGETS && desc->colors[count]) count++;
     return count;
 }
 
@@ -46,6 +46,29 @@ static bool check_pipeline(const gpu_draw_desc *desc, uint32_t colors) {
     return true;
 }
 
+static uint64_t command_size(const gpu_draw *draw) {
+    return draw->indices ? sizeof(gpu_draw_indexed_command) : sizeof(gpu_draw_command);
+}
+
+// What a command of the device draws cannot be checked here: who wrote it must know.
+static bool check_buffers(const gpu_pipeline *p, const gpu_draw *draw) {
+    const gpu_buffer *indices = draw->indices, *commands = draw->commands;
+    if ((indices && indices->kind != GPU_BUFFER_DEVICE) ||
+        (commands && commands->kind != GPU_BUFFER_DEVICE))
+        return err_set("pipeline '%s': indices and commands must lie in device buffers", p->label);
+    if (commands && (draw->command % 4 != 0 || draw->command > commands->size ||
+                     commands->size - draw->command < command_size(draw)))
+        return err_set("pipeline '%s': the command at byte %llu of buffer '%s' is not whole words "
+                       "inside it",
+                       p->label, (unsigned long long)draw->command, commands->label);
+    uint64_t end = (uint64_t)draw->first_vertex + draw->vertices;
+    if (indices && !commands && end * sizeof(uint32_t) > indices->size)
+        return err_set("pipeline '%s': indices up to %llu are drawn; buffer '%s' holds %llu",
+                       p->label, (unsigned long long)end, indices->label,
+                       (unsigned long long)(indices->size / sizeof(uint32_t)));
+    return true;
+}
+
 static bool check(gpu *g, const gpu_draw_desc *desc) {
     if (!vk_alive(g)) return false;
     if (!g->frame) return err_set("drawing: no frame is open");
@@ -59,11 +82,21 @@ static bool check(gpu *g, const gpu_draw_desc *desc) {
     if (!check_pipeline(desc, colors)) return false;
     for (size_t i = 0; i < desc->draw_count; i++) {
         const gpu_draw *draw = &desc->draws[i];
-        if (!vk_bindings_check(g, desc->pipeline, draw->bindings, draw->binding_count)) {
+        if (!check_buffers(desc->pipeline, draw) ||
+            !vk_bindings_check(g, desc->pipeline, draw->bindings, draw->binding_count)) {
             return false;
         }
     }
     return true;
+}
+
+static bool use_buffers(gpu *g, const gpu_draw *draw) {
+    static const hazard_access indices = {.stages = VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT,
+                                          .reads = VK_ACCESS_2_INDEX_READ_BIT};
+    static const hazard_access commands = {.stages = VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+                                           .reads = VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT};
+    return (!draw->indices || vk_use_buffer(g, draw->indices, indices)) &&
+           (!draw->commands || vk_use_buffer(g, draw->commands, commands));
 }
 
 static bool use_all(gpu *g, const gpu_draw_desc *desc) {
@@ -83,7 +116,9 @@ static bool use_all(gpu *g, const gpu_draw_desc *desc) {
     if (desc->depth && !vk_use_image(g, desc->depth, 0, 1, depth)) return false;
     for (size_t i = 0; i < desc->draw_count; i++) {
         const gpu_draw *draw = &desc->draws[i];
-        if (!vk_bindings_use(g, desc->pipeline, draw->bindings, draw->binding_count)) return false;
+        if (!use_buffers(g, draw) ||
+            !vk_bindings_use(g, desc->pipeline, draw->bindings, draw->binding_count))
+            return false;
     }
     return true;
 }
@@ -101,7 +136,7 @@ static VkRenderingAttachmentInfo attachment(const gpu_image *image, bool clear,
 
 // Returns the size of the targets.
 static VkExtent2D begin(VkCommandBuffer commands, const gpu_draw_desc *desc) {
-    VkRenderingAttachmentInfo colors[VK_MAX_TARGETS], depth;
+    VkRenderingAttachmentInfo colors[GPU_MAX_TARGETS], depth;
     const gpu_image *first = desc->colors[0] ? desc->colors[0] : desc->depth;
     VkExtent2D size = {first->desc.width, first->desc.height};
     VkRenderingInfo info = {.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
@@ -119,15 +154,12 @@ static VkExtent2D begin(VkCommandBuffer commands, const gpu_draw_desc *desc) {
         info.pDepthAttachment = &depth;
     }
     vkCmdBeginRendering(commands, &info);
-    VkViewport viewport = {
-        .width = (float)size.width, .height = (float)size.height, .maxDepth = 1.0f};
-    vkCmdSetViewport(commands, 0, 1, &viewport);
     return size;
 }
 
 // Clipped to the target. One that lies outside is empty, and nothing is drawn.
 static VkRect2D scissor_of(const gpu_draw *draw, VkExtent2D size) {
-    const uint32_t *s = draw->scissor;
+    const uint32_t *s = draw->scissor[2] > 0 ? draw->scissor : draw->viewport;
     if (s[2] == 0) return (VkRect2D){.extent = size};
     uint32_t x = s[0] < size.width ? s[0] : size.width;
     uint32_t y = s[1] < size.height ? s[1] : size.height;
@@ -136,13 +168,33 @@ static VkRect2D scissor_of(const gpu_draw *draw, VkExtent2D size) {
     return (VkRect2D){{(int32_t)x, (int32_t)y}, {width, height}};
 }
 
+static void place(VkCommandBuffer commands, const gpu_draw *draw, VkExtent2D size) {
+    const uint32_t *v = draw->viewport;
+    VkViewport viewport = {
+        .width = (float)size.width, .height = (float)size.height, .maxDepth = 1.0f};
+    if (v[2] > 0)
+        viewport = (VkViewport){(float)v[0], (float)v[1], (float)v[2], (float)v[3], 0.0f, 1.0f};
+    VkRect2D scissor = scissor_of(draw, size);
+    vkCmdSetViewport(commands, 0, 1, &viewport);
+    vkCmdSetScissor(commands, 0, 1, &scissor);
+}
+
 static bool record(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipeline,
                    const gpu_draw *draw, VkExtent2D size) {
     if (!vk_bindings_push(g, commands, pipeline, draw->bindings, draw->binding_count)) return false;
-    VkRect2D scissor = scissor_of(draw, size);
-    vkCmdSetScissor(commands, 0, 1, &scissor);
-    vkCmdDraw(commands, draw->vertices, draw->instances ? draw->instances : 1, draw->first_vertex,
-              0);
+    place(commands, draw, size);
+    uint32_t instances = draw->instances ? draw->instances : 1;
+    uint32_t stride = (uint32_t)command_size(draw);
+    if (draw->indices)
+        vkCmdBindIndexBuffer(commands, draw->indices->handle, 0, VK_INDEX_TYPE_UINT32);
+    if (draw->commands && draw->indices)
+        vkCmdDrawIndexedIndirect(commands, draw->commands->handle, draw->command, 1, stride);
+    else if (draw->commands)
+        vkCmdDrawIndirect(commands, draw->commands->handle, draw->command, 1, stride);
+    else if (draw->indices)
+        vkCmdDrawIndexed(commands, draw->vertices, instances, draw->first_vertex, 0, 0);
+    else
+        vkCmdDraw(commands, draw->vertices, instances, draw->first_vertex, 0);
     return true;
 }
 

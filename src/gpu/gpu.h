@@ -177,7 +177,7 @@ typedef enum gpu_slot_kind {
     GPU_SLOT_STORAGE_IMAGE,
 } gpu_slot_kind;
 
-enum { GPU_MAX_SLOTS = 32 };
+enum { GPU_MAX_SLOTS = 32, GPU_MAX_TARGETS = 8 };
 
 typedef struct gpu_slot { // one binding of descriptor set 0, as reflection found it
     uint32_t binding;
@@ -203,10 +203,10 @@ typedef struct gpu_graphics_desc { // vertices are pulled from storage buffers: 
     size_t vertex_size, fragment_size;
     const gpu_slot *slots; // union of both stages
     size_t slot_count;
-    gpu_format colors[4]; // of the targets; GPU_FORMAT_NONE ends the list
-    gpu_format depth;     // GPU_FORMAT_NONE: no depth test; else test less-equal and write
-    gpu_cull cull;        // front faces are counter-clockwise seen in the picture
-    bool blend;           // colours are premultiplied and laid over what is there
+    gpu_format colors[GPU_MAX_TARGETS]; // of the targets; GPU_FORMAT_NONE ends the list
+    gpu_format depth; // GPU_FORMAT_NONE: no depth test; else test less-equal and write
+    gpu_cull cull;    // front faces are counter-clockwise seen in the picture
+    bool blend;       // colours are premultiplied and laid over what is there
 } gpu_graphics_desc;
 
 // Pipelines are shared: a description equal to one that is still alive, or was until lately, costs
@@ -270,21 +270,34 @@ typedef struct gpu_dispatch_desc {
 } gpu_dispatch_desc;
 bool gpu_dispatch(gpu *g, const gpu_dispatch_desc *desc);
 
+// What the device reads where the numbers of a draw are left to it.
+typedef struct gpu_draw_command { // without indices
+    uint32_t vertices, instances, first_vertex, first_instance;
+} gpu_draw_command;
+
+typedef struct gpu_draw_indexed_command {
+    uint32_t indices, instances, first_index, vertex_offset, first_instance;
+} gpu_draw_indexed_command;
+
 typedef struct gpu_draw { // one draw call inside a gpu_draw_desc
     const gpu_binding *bindings;
     size_t binding_count;
-    uint32_t vertices;     // how many times the vertex shader runs
-    uint32_t first_vertex; // what gl_VertexIndex begins with
+    uint32_t vertices;     // how many times the vertex shader runs; of indices: how many are drawn
+    uint32_t first_vertex; // what gl_VertexIndex begins with; of indices: the first of them
     uint32_t instances;    // 0 means 1
-    uint32_t scissor[4];   // x, y, width, height in pixels; width 0: the whole target
+    gpu_buffer *indices;   // of 32 bits, which gl_VertexIndex runs through; NULL: none
+    gpu_buffer *commands;  // a command that is read by the device instead of these numbers ...
+    uint64_t command;      // ... from this byte on, a multiple of 4; NULL: there is none
+    uint32_t viewport[4];  // x, y, width, height in pixels; width 0: the whole target
+    uint32_t scissor[4];   // the same; width 0: the viewport
 } gpu_draw;
 
 typedef struct gpu_draw_desc {
     gpu_pipeline *pipeline;
-    gpu_image *colors[4]; // targets, mip 0; NULL ends the list
+    gpu_image *colors[GPU_MAX_TARGETS]; // targets, mip 0; NULL ends the list
     gpu_image *depth;
     bool clear; // clear before drawing: colours to clear_color[i], depth to clear_depth
-    float clear_color[4][4];
+    float clear_color[GPU_MAX_TARGETS][4];
     float clear_depth;
     const gpu_draw *draws;
     size_t draw_count; // 0 just clears

@@ -98,10 +98,10 @@ static bool create_module(gpu *g, const char *label, const uint32_t *code, size_
 // Of all but the shaders and the rasteriser's settings: what slots read and write does not matter
 // to the driver.
 static hash128 hash_interface(const gpu_pipeline *pipeline) {
-    uint32_t words[2 + VK_MAX_TARGETS + 2 * GPU_MAX_SLOTS] = {pipeline->bind_point,
-                                                              pipeline->depth};
+    uint32_t words[2 + GPU_MAX_TARGETS + 2 * GPU_MAX_SLOTS] = {pipeline->bind_point,
+                                                               pipeline->depth};
     uint32_t count = 2;
-    for (uint32_t i = 0; i < VK_MAX_TARGETS; i++) words[count++] = pipeline->colors[i];
+    for (uint32_t i = 0; i < GPU_MAX_TARGETS; i++) words[count++] = pipeline->colors[i];
     for (uint32_t i = 0; i < pipeline->slot_count; i++) {
         words[count++] = pipeline->slots[i].binding;
         words[count++] = pipeline->slots[i].kind;
@@ -219,8 +219,8 @@ static VkPipelineColorBlendAttachmentState blend_state(bool blend) {
 
 static VkResult create_graphics(gpu *g, const gpu_pipeline *pipeline, const gpu_graphics_desc *desc,
                                 const VkPipelineShaderStageCreateInfo stages[2], vk_built *out) {
-    VkFormat formats[VK_MAX_TARGETS];
-    VkPipelineColorBlendAttachmentState blends[VK_MAX_TARGETS];
+    VkFormat formats[GPU_MAX_TARGETS];
+    VkPipelineColorBlendAttachmentState blends[GPU_MAX_TARGETS];
     for (uint32_t i = 0; i < pipeline->color_count; i++) {
         formats[i] = vk_format_get(pipeline->colors[i])->format;
         blends[i] = blend_state(desc->blend);
@@ -302,15 +302,18 @@ static bool build_graphics(gpu *g, const gpu_pipeline *pipeline, const gpu_graph
 }
 
 static bool check_targets(gpu *g, const char *label, const gpu_graphics_desc *desc) {
-    for (int i = 0; i < VK_MAX_TARGETS && desc->colors[i]; i++) {
+    for (uint32_t i = 0; i < GPU_MAX_TARGETS && desc->colors[i]; i++) {
+        if (i == g->limits.maxColorAttachments)
+            return err_set("pipeline '%s': the device draws to at most %u colour targets at once",
+                           label, i);
         if (desc->colors[i] >= GPU_FORMAT_COUNT ||
             !(g->format_features[desc->colors[i]] & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT)) {
-            return err_set("pipeline '%s': colour target %d has a format that cannot be drawn to",
+            return err_set("pipeline '%s': colour target %u has a format that cannot be drawn to",
                            label, i);
         }
         if (desc->blend &&
             !(g->format_features[desc->colors[i]] & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT)) {
-            return err_set("pipeline '%s': the device cannot blend colour target %d of format %s",
+            return err_set("pipeline '%s': the device cannot blend colour target %u of format %s",
                            label, i, gpu_format_name(desc->colors[i]));
         }
     }
@@ -350,7 +353,7 @@ gpu_pipeline *gpu_pipeline_create_graphics(gpu *g, const gpu_graphics_desc *desc
     gpu_pipeline *pipeline = pipeline_new(label, desc->slots, desc->slot_count);
     pipeline->bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS;
     pipeline->depth = desc->depth;
-    for (int i = 0; i < VK_MAX_TARGETS && desc->colors[i]; i++) {
+    for (int i = 0; i < GPU_MAX_TARGETS && desc->colors[i]; i++) {
         pipeline->colors[pipeline->color_count++] = desc->colors[i];
     }
     pipeline->built = obtain_graphics(g, pipeline, desc);

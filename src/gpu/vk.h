@@ -16,7 +16,6 @@
 enum {
     VK_MAX_MIPS = 16,
     VK_MAX_DEVICES = 16,
-    VK_MAX_TARGETS = 4,
     VK_BATCHES = 4,
     VK_BUILT_ROWS = 64,
     VK_BUILT_IDLE = 16,
@@ -151,7 +150,7 @@ struct gpu_pipeline {
     gpu_slot slots[GPU_MAX_SLOTS];
     uint32_t slot_count;
     uint32_t local_size[3];
-    gpu_format colors[VK_MAX_TARGETS], depth;
+    gpu_format colors[GPU_MAX_TARGETS], depth;
     uint32_t color_count;
 };
 
