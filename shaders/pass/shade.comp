@@ -6,6 +6,7 @@ uniform sampler2D depth;          //= input : distance along the view axis (m)
 uniform int shadow_samples;       //= 1 [0, 64] : rays to each light: 1 goes to its middle, for hard shadows; more go all over its disc, for soft ones; 0: meshes cast no shadows
 uniform int sky_samples;          //= 0 [0, 64] : rays to the sky, which find what stands before it; 0: all of it is seen
 uniform float haze;               //= 0 [0, 10] 1/m : how fast distance fades to the colour of the horizon
+//@ option lamps_by = auto {auto, all, tiles} : which lamps of point_lights a pixel looks at: all of them, or (tiles) those that reach what 16 by 16 pixels show, which are found out first; auto: all where they are few
 uniform float sky_alpha;          //= 1 [0, 1] : opacity of the sky; 0 for pictures to be laid over others
 writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultiplied
 #include "lib/frame.glsl"
@@ -14,6 +15,7 @@ writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultipl
 #include "lib/sky.glsl"
 #include "lib/bvh.glsl"
 #include "lib/lighting.glsl"
+#include "lib/lamps.glsl"
 #include "shade/surface.glsl"
 #if MANY_RAYS
 #include "shade/shafts.glsl"
@@ -94,6 +96,12 @@ vec3 surface_light(vec3 p, vec3 n, uvec2 pixel) {
         if (matters) given *= light_seen(l, i, ray, p, chance);
         sum += given;
     }
+#if HAS_LAMPS
+    for (lamp_list list = lamps_at(ivec2(pixel)); lamps_next(list);) {
+        light_ray ray = lamp_ray(lamps_get(list), p);
+        sum += ray.irradiance * max(dot(n, ray.direction), 0.0) / 3.14159265;
+    }
+#endif
     return sum;
 }
 

@@ -21,6 +21,10 @@
     .group = "source", .include = "lib/particle.glsl", .function = "particle_said_" NAME,          \
     .components = COMPONENTS, .spatial = true, .cost = 1, .eval = eval_zero,                       \
     .ranges = ranges_unknown, .range_function = "range_nowhere" #COMPONENTS
+#define LAMP(NAME)                                                                                 \
+    .group = "source", .include = "lib/lamp.glsl", .function = "lamp_said_" NAME, .components = 1, \
+    .spatial = true, .cost = 1, .eval = eval_zero, .ranges = ranges_unknown,                       \
+    .range_function = "range_nowhere1"
 
 #define UNARY                                                                                      \
     {                                                                                              \
@@ -275,6 +279,10 @@ const field_kind field_kinds[] = {
     {"particle_quantity", PARTICLE("quantity", 1), .summary = "the number that a particle carries (`quantity` of particles)"},
     {"particle_random", PARTICLE("random", 1), .summary = "a number of a particle's own, evenly spread over 0..1"},
     {"particle_velocity", PARTICLE("velocity", 3), .summary = "of a particle (m/s)"},
+
+    // ---- of the light of `point_lights` that a field is evaluated for; where there is none, 0
+    {"light_index", LAMP("index"), .summary = "number of a light of point_lights, from 0 on"},
+    {"light_random", LAMP("random"), .summary = "a number of a light's own, evenly spread over 0..1"},
     {NULL},
 };
 // clang-format on

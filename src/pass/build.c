@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/blue_noise.h"
+#include "pass/lamps.h"
 #include "pass/particles.h"
 #include "pass/pass_impl.h"
 #include "pass/ranges.h"
@@ -38,7 +39,7 @@ bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_
     arena *memory = p->host->memory;
     size_t count = 0;
     shader_define *all = arena_alloc(memory, (define_count + face->image_count + face->field_count +
-                                              1 + PASS_PARTICLES_DEFINES) *
+                                              1 + PASS_PARTICLES_DEFINES + PASS_LAMPS_DEFINES) *
                                                  sizeof *all);
     for (size_t i = 0; i < define_count; i++) all[count++] = defines[i];
     for (size_t i = 0; i < face->image_count; i++) {
@@ -51,6 +52,7 @@ bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_
     for (size_t i = 0; i < face->field_count; i++)
         all[count++] = define(memory, "HAS", face->fields[i].name, p->fields[i] ? "1" : "0");
     if (p->particles) count += pass_particles_defines(p->particles, all + count);
+    if (p->lamps) count += pass_lamps_defines(p, all + count);
     const scene *around = p->host->scene;
     all[count++] = (shader_define){"SKY_IMAGE", around && around->sky.image ? "1" : "0"};
     bool without = false;
@@ -230,6 +232,7 @@ bool pass_build_part(pass *p) {
     } else if (!make_pipeline(p)) {
         return false;
     }
+    if (!pass_lamps_build(p)) return false;
     p->block = arena_alloc(p->host->memory, pass_block_size(&p->binary) + 16);
     p->numbers = arena_alloc(p->host->memory, field_program_block_size(p->program) + 16);
     list_palettes(p);
@@ -250,6 +253,7 @@ bool pass_check(pass *p) {
 bool pass_check_part(pass *p) {
     p->program = generate(p);
     if (!p->program) return err_prefix("%s: ", p->label);
+    if (!pass_lamps_check(p)) return false;
     if (p->type && p->type->check) return p->type->check(p);
     shader_stage stage = str_ends_with(p->shader, ".frag") ? SHADER_FRAGMENT : SHADER_COMPUTE;
     return pass_compile(p, p->shader, stage, NULL, 0, &p->binary);
@@ -265,6 +269,7 @@ void pass_destroy(pass *p) {
     for (size_t i = 0; i < p->face->image_count; i++)
         if (p->unread[i]) gpu_image_destroy(device, p->unread[i]);
     if (p->counters) gpu_buffer_destroy(device, p->counters);
+    pass_lamps_destroy(p);
     if (p->pipeline) gpu_pipeline_destroy(device, p->pipeline);
     mem_free(p->meshes);
     mem_free(p->sources);

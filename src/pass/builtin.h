@@ -14,6 +14,10 @@ bool shade_build(pass *p);
 bool shade_record(pass *p);
 void shade_destroy(pass *p);
 
+bool lamps_declare(pass *p);
+bool lamps_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool lamps_record(pass *p);
+
 bool lighting_declare(pass *p);
 bool lighting_check(pass *p);
 bool lighting_build(pass *p);

@@ -29,7 +29,8 @@ struct pass {
     size_t mesh_count, mesh_capacity;
     pass **sources; // asked, in order, for what this pass says nothing about
     size_t source_count, source_capacity;
-    const pass *particles; // behind the input of that name; NULL: it has none
+    const pass *particles;    // behind the input of that name; NULL: it has none
+    struct pass_lamps *lamps; // of the input of that name (pass/lamps.h); NULL: it has none
 
     // After pass_build.
     field_program *program;

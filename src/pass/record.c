@@ -2,6 +2,7 @@
 // dispatched.
 #include "base/error.h"
 #include "base/memory.h"
+#include "pass/lamps.h"
 #include "pass/particles.h"
 #include "pass/pass_impl.h"
 #include "pass/ranges.h"
@@ -76,6 +77,7 @@ bool pass_fill_block(pass *p, const shader_binary *binary, unsigned char *block)
         }
     }
     if (p->particles) pass_particles_write(p->particles, binary, block);
+    pass_lamps_write(p, binary, block);
     return !p->type || !p->type->fill || p->type->fill(p, binary, block);
 }
 
@@ -181,6 +183,7 @@ static bool bind_buffer(const pass *p, const char *name, gpu_binding *out) {
                                                      "BvhSurfaces", "BvhVertices",  "BvhMaterials",
                                                      "BvhTexels"};
     if (p->particles && pass_particles_bind(p->particles, name, out)) return true;
+    if (pass_lamps_bind(p, name, out)) return true;
     if (strcmp(name, "Counters") == 0) out->buffer = p->counters;
     for (int i = 0; i < BVH_PARTS; i++)
         if (strcmp(name, bvh_parts[i]) == 0)
@@ -250,7 +253,7 @@ bool pass_is_watched(const pass *p) {
 
 bool pass_prepare(pass *p) {
     if (p->counters) gpu_buffer_fill(p->host->device, p->counters, 0);
-    return update_palettes(p) && fill_numbers(p);
+    return update_palettes(p) && fill_numbers(p) && pass_lamps_record(p);
 }
 
 bool pass_rehearse(pass *p) {

@@ -26,6 +26,14 @@ static const pass_type types[] = {
         .destroy = shade_destroy,
     },
     {
+        .name = "point_lights",
+        .shader = "pass/lamps.comp",
+        .unscaled = true,
+        .declare = lamps_declare,
+        .fill = lamps_fill,
+        .record = lamps_record,
+    },
+    {
         .name = "lighting",
         .shader = "pass/lighting.comp",
         .declare = lighting_declare,

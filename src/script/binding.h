@@ -149,6 +149,7 @@ void l_light_open(lua_State *L);
 void l_pass_open(lua_State *L);
 void l_lbm_open(lua_State *L);
 void l_slices_open(lua_State *L);
+void l_lamps_open(lua_State *L);
 void l_particles_open(lua_State *L);
 void l_voxels_open(lua_State *L);
 void l_deposit_open(lua_State *L);

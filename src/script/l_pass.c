@@ -399,10 +399,11 @@ static int l_shader(lua_State *L) {
 
 // Made by a function of its own, or a method: bake(field), lbm { }, air:source { }.
 static bool has_constructor(const char *type) {
-    static const char *const types[] = {
-        "bake",          "deposit",         "picture",          "lbm",
-        "lbm_source",    "particles",       "slices",           "slices_force",
-        "slices_inflow", "slices_obstacle", "slices_templates", "voxels"};
+    static const char *const types[] = {"bake",          "deposit",         "picture",
+                                        "lbm",           "lbm_source",      "particles",
+                                        "point_lights",  "slices",          "slices_force",
+                                        "slices_inflow", "slices_obstacle", "slices_templates",
+                                        "voxels"};
     for (size_t i = 0; i < COUNT_OF(types); i++)
         if (strcmp(types[i], type) == 0) return true;
     return false;

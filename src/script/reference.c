@@ -239,6 +239,14 @@ static const script_object objects[] = {
         KEY("warm_up", "0 s", "that are simulated before the first frame, in air as it is then"),
         KEY("name", "\"particles\"", "for --set NAME.key=value and statistics; numbered when taken"))},
 
+    {"point_lights", "source", "local lamps = point_lights { count = 200, position = vec(3 * sin(time + light_index), 0, 2) }",
+     "point lights by the hundred, for shade { from = {scene, lamps} } and forward { }: fields say how "
+     "each of them shines, and may use light_index and light_random. What else it takes is what "
+     "`roil info passes point_lights` lists: position, color, power, range, radius, falloff",
+     .keys = KEYS(
+        KEY("count", "number [1, 16384]", "how many there are; required"),
+        KEY("name", "\"point_lights\"", "for --set NAME.falloff=linear and statistics; numbered when taken"))},
+
     {"voxels", "source", "local body = voxels { mesh { \"data/ball.obj\" }, resolution = 64 }",
      "meshes as cells of a box: fields of what is inside of them, how far their surface is, how they "
      "move. Meshes that stand still are computed once",

@@ -112,6 +112,7 @@ static int open_bindings(lua_State *L) {
     l_lbm_open(L);
     l_slices_open(L);
     l_particles_open(L);
+    l_lamps_open(L);
     l_voxels_open(L);
     l_deposit_open(L);
     l_image_open(L);

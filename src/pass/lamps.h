@@ -1,0 +1,37 @@
+// The pass type `point_lights`: lamps by the hundred, from fields that the device evaluates once
+// for each (shaders/pass/lamps.comp), as an image with a row of four texels for each.
+//
+// A pass that reads it has `#include "lib/lamps.glsl"`, which declares an input `lamps`: given by
+// name or by `from`, it orders the passes. Before such a pass runs, its picture is divided into
+// tiles, and which lamps may light something in each is found out (shaders/pass/lamps_lists.comp).
+// All that comes by itself, in a user's shader too: pass_compile adds the defines, pass_fill_block
+// writes the members, pass_bind finds the buffers, pass_prepare runs the lists' shaders.
+//
+// An option `lamps_by` of the reader says how: auto, all (every lamp for every pixel), tiles, and
+// volumes where the reader draws them itself (pass/lamps_volumes.h).
+#pragma once
+#include "pass/pass.h"
+
+enum { PASS_LAMPS_MOST = 16384 }; // rows of an image on any device
+
+// Before pass_declare: so many lamps. False with a message.
+bool pass_lamps_open(pass *p, uint32_t count);
+
+// ---- for passes that read them ----------------------------------------------------------------
+
+typedef struct pass_lamps pass_lamps; // of a pass that reads them
+typedef enum lamps_way { LAMPS_ALL, LAMPS_TILES, LAMPS_VOLUMES } lamps_way;
+enum { PASS_LAMPS_DEFINES = 2 };
+
+bool pass_find_lamps(pass *p);            // pass_declare does
+uint32_t pass_lamps_count(const pass *p); // that it reads; 0: it reads none
+lamps_way pass_lamps_way(const pass *p);
+size_t pass_lamps_defines(const pass *p, shader_define out[PASS_LAMPS_DEFINES]);
+bool pass_lamps_check(pass *p); // compiles the lists' shaders
+bool pass_lamps_build(pass *p);
+void pass_lamps_destroy(pass *p);
+// The members of "Uniforms" that the include declares, as of the picture's size.
+void pass_lamps_write(const pass *p, const shader_binary *binary, unsigned char *block);
+bool pass_lamps_record(pass *p); // the lists of a frame
+// The buffer of a slot by its name; false: it is none of theirs.
+bool pass_lamps_bind(const pass *p, const char *name, gpu_binding *out);

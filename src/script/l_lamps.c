@@ -1,0 +1,28 @@
+// Point lights by the hundred: point_lights { count = 200, position = vec(...) }. It gives what
+// passes that are lit by them name by `from`. How one shines, fields say that the device evaluates;
+// those that the script moves one by one are point_light { }.
+#include "pass/lamps.h"
+#include "script/binding.h"
+
+static int l_point_lights(lua_State *L) {
+    script_require_loading(L, "point_lights");
+    if (lua_gettop(L) != 1 || !value_is_plain_table(L, 1))
+        vm_error(L, "point_lights takes named values, as in point_lights { count = 200, position = "
+                    "vec(3 * sin(time + light_index), 0, 2) }");
+    script *s = script_of(L);
+    const char *unsound = s->unsound;
+    pass *p =
+        pass_make(L, "point_lights", "point_lights", 1, script_object_find("point_lights")->keys);
+    if (value_get(L, 1, "count") == LUA_TNIL)
+        vm_error(L, "point_lights: 'count' is missing: how many there are, 1 to %d",
+                 (int)PASS_LAMPS_MOST);
+    uint32_t count = value_get_count(L, 1, "point_lights", "count", 0);
+    if (!pass_lamps_open(p, count) || !pass_declare(p)) script_raise(L);
+    s->unsound = unsound;
+    pass_push(L, p);
+    return 1;
+}
+
+void l_lamps_open(lua_State *L) {
+    lua_register(L, "point_lights", l_point_lights);
+}
