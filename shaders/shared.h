@@ -31,10 +31,12 @@ struct frame_block {
     SHARED_VEC4 lens;           // tan(half width), tan(half height), near, far (metres)
     SHARED_VEC4 time;           // seconds, seconds since the last frame, frame number, 0
     SHARED_UVEC4 size;          // output width, height, frame counter, seed
-    SHARED_VEC4 sun_direction;  // xyz: towards the sun, unit
+    SHARED_VEC4 sun_direction;  // xyz: towards the sun, unit; w: angular radius of the moon that is seen there, radians
     SHARED_VEC4 sun_radiance;   // rgb: irradiance at normal incidence over pi
     SHARED_VEC4 sky_zenith;     // rgb: radiance straight up, about; w: factor of the sky's image, 0: there is none
     SHARED_VEC4 sky_horizon;    // rgb: radiance at the horizon, about; w: how far the image is turned, radians
+    SHARED_VEC4 night_zenith;   // rgb: radiance of the night sky straight up; w: how much of the sky is night, 0..1
+    SHARED_VEC4 night_horizon;  // rgb: at the horizon; w: factor of what stars and the moon shine
 };
 
 // Kinds of light, in light_entry.color.w.
@@ -58,12 +60,13 @@ struct light_block {
 };
 
 // Storage buffers of lib/bvh.glsl, whose trees src/scene/bvh.c makes. The nodes of a tree lie in
-// the order of a walk that enters both children of each node, so that it needs no stack.
+// the order of a walk that enters both children of each node, so that it needs no stack. The first
+// tree is that over what is placed; the others are over the triangles of meshes.
 struct bvh_node {
     SHARED_VEC3 low;  // of its box
     SHARED_UINT next; // the node to go on with when this one is done with
     SHARED_VEC3 high;
-    SHARED_UINT leaf; // how many triangles << 28 | the first of them; 0: its first child follows
+    SHARED_UINT leaf; // how many triangles, of the first tree placed meshes, << 28 | the first of them; 0: its first child follows
 };
 
 struct bvh_triangle {
@@ -77,8 +80,9 @@ struct bvh_instance {
     SHARED_VEC3 low;        // of its box in the world
     SHARED_UINT root;
     SHARED_VEC3 high;
-    SHARED_UINT end;   // node behind its tree
-    SHARED_VEC4 color; // rgb: factor of the triangles' colours; w: number of the mesh
+    SHARED_UINT end;    // node behind its tree
+    SHARED_VEC4 color;  // rgb: factor of the triangles' colours; w: of what they emit
+    SHARED_UVEC4 what;  // x: the mesh, or the instances that it is one of, as scene_bvh_choose counts them; y: its number among these; z: first of the materials of its mesh
 };
 
 // One of the instances of meshes that stand in a scene: storage buffer "Instances" of shaders that
@@ -100,15 +104,44 @@ struct view_entry {
     SHARED_VEC4 eye;  // xyz: metres, where distances are counted from; w: pixels of a metre at 1 m, for levels of detail; 0: all detail
 };
 
+// A view of the pass shadow_maps, out of a light.
+#define SHADOW_VIEW_VECTORS 6
+struct shadow_view {
+    SHARED_MAT4 clip;  // world to clip
+    SHARED_VEC4 right; // xyz: unit, along rows of texels; w: width of a texel (m): where rays are parallel, else at 1 m along the axis
+    SHARED_VEC4 up;    // xyz: unit, along columns; w: 1 where rays are parallel
+};
+
+// One part of a mesh, of all instances that are drawn at once: uniform block "Part" of
+// lib/mesh_part.glsl (src/pass/drawn.c).
+struct drawn_part {
+    SHARED_MAT4 place;  // from the space of the instances to the world
+    SHARED_VEC4 color;  // base colour, linear, with the factor of all instances; w: alpha
+    SHARED_VEC4 surface;  // as of surface_material
+    SHARED_VEC4 emission; // the same
+    SHARED_UVEC4 flags; // x: 1 where it is textured; y: the view
+};
+
+// A mesh at one of its levels, as shaders/pass/drawn/ choose it; src/pass/drawn_cull.c writes them.
+#define DRAWN_LEVELS 4       // of a mesh, at most; the first is in full
+#define DRAWN_BLOCK 128      // instances whose places in the lists are counted together
+#define DRAWN_NONE 0xffffffffu
+struct drawn_bucket {
+    SHARED_VEC4 sphere; // around the mesh, in the space of an instance: xyz: metres; w: radius
+    SHARED_UVEC4 draws; // x: first of its commands; y: how many, 0: the mesh has no such level; z: bits of a float: metres that it is off at most
+};
+
 // What lib/surface.glsl tells of a triangle that was hit; src/scene/surfaces.c makes it.
 struct surface_vertex { // as mesh_vertex
     SHARED_VEC4 position_u;
     SHARED_VEC4 normal_v;
 };
 
-struct surface_material {
+struct surface_material { // of a part of a mesh
     SHARED_VEC4 color;    // base colour, linear
     SHARED_UVEC4 texture; // width (0: none), height, first of its texels, 1 where it has holes
+    SHARED_VEC4 surface;  // specular, roughness, metallic; 1 where toon shading is allowed
+    SHARED_VEC4 emission; // rgb: radiance
 };
 
 // What the shaders of scene/voxels read; src/scene/voxels.c writes it. A part is what of a body is

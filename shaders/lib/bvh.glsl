@@ -4,7 +4,7 @@
 #include "shared.h"
 layout(std430) readonly buffer BvhNodes { bvh_node bvh_nodes[]; };
 layout(std430) readonly buffer BvhTriangles { bvh_triangle bvh_triangles[]; };
-layout(std430) readonly buffer BvhInstances { uvec4 bvh_count; bvh_instance bvh_instances[]; };
+layout(std430) readonly buffer BvhInstances { uvec4 bvh_count; bvh_instance bvh_instances[]; }; // count: x: of these, y: of nodes over them
 
 struct bvh_hit {
     float distance; // metres; negative: nothing was hit
@@ -74,17 +74,26 @@ bvh_ray bvh_to_mesh(bvh_ray ray, uint instance) {
     return bvh_make_ray(vec3(dot(x, from), dot(y, from), dot(z, from)), way, ray.near, ray.far);
 }
 
-// x: the instance that is hit, -1: none; y: the triangle.
+// x: what is placed and hit, -1: none; y: the triangle.
 ivec2 bvh_find(inout bvh_ray ray, bool any) {
     ivec2 hit = ivec2(-1);
-    for (uint i = 0u; i < bvh_count.x; i++) {
-        if (!bvh_meets_box(ray, bvh_instances[i].low, bvh_instances[i].high)) continue;
-        bvh_ray inner = bvh_to_mesh(ray, i);
-        int found = bvh_walk(inner, bvh_instances[i].root, bvh_instances[i].end, any);
-        if (found < 0) continue;
-        hit = ivec2(i, found);
-        ray.far = inner.far;
-        if (any) break;
+    uint node = 0u;
+    while (node < bvh_count.y) {
+        bvh_node n = bvh_nodes[node];
+        bool inside = bvh_meets_box(ray, n.low, n.high);
+        node = inside && n.leaf == 0u ? node + 1u : n.next;
+        if (!inside) continue;
+        uint first = n.leaf & 0xfffffffu, last = first + (n.leaf >> 28);
+        for (uint i = first; i < last; i++) {
+            if (!bvh_meets_box(ray, bvh_instances[i].low, bvh_instances[i].high)) continue;
+            bvh_ray inner = bvh_to_mesh(ray, i);
+            int found = bvh_walk(inner, bvh_instances[i].root, bvh_instances[i].end, any);
+            if (found < 0) continue;
+            hit = ivec2(i, found);
+            ray.far = inner.far;
+            if (any) break;
+        }
+        if (any && hit.x >= 0) break;
     }
     return hit;
 }

@@ -118,6 +118,12 @@ range4 range_unknown4() { return range_vec4(range_unknown1()); }
 // Of what no place tells.
 range1 range_nowhere1(range3 p) { return range_unknown1(); }
 range3 range_nowhere3(range3 p) { return range_unknown3(); }
+range4 range_nowhere4(range3 p) { return range_unknown4(); }
+
+// Of such a part of a whole, and of a direction.
+range1 range_share1(range3 p) { return range1(0.0, 1.0); }
+range3 range_share3(range3 p) { return range_vec3(range1(0.0, 1.0)); }
+range3 range_way3(range3 p) { return range_vec3(range1(-1.0, 1.0)); }
 
 range1 range_union(range1 a, range1 b) {
     return range1(min(a.low, b.low), max(a.high, b.high));

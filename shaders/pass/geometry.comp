@@ -6,33 +6,47 @@
 //@ option mode = auto {auto, rays, raster} : rays: by rays through the middles of pixels; raster: drawn; auto: drawn where the device is software or a texture does not fit, else rays
 #include "lib/frame.glsl"
 #include "lib/surface.glsl"
-uniform uint shown[8];              // a bit for each mesh
+uniform uint shown[8];              // a bit for each mesh, and for all instances of an object
 uniform bool holes;                 // textures may be clear in places
+uniform float lod;                  //= 0 [0, 64] px : how far a simplified mesh may be off in the picture, when drawn; 0: all are in full, as rays meet them
 writeonly uniform image2D albedo;   //= output rgba16f : base colour of the surface; alpha 0 where nothing is
 writeonly uniform image2D normal;   //= output rgba16f : its normal in the world, towards the viewer
 writeonly uniform image2D depth;    //= output r32f : distance along the view axis (m); 1e9 where nothing is
+writeonly uniform image2D surface;  //= output rgba16f optional : specular, roughness, metallic; alpha 1 where model toon is allowed
+writeonly uniform image2D emission; //= output rgba16f optional : radiance that the surface gives off
 
 bool is_shown(uint mesh) {
     return (shown[mesh >> 5] >> (mesh & 31u) & 1u) != 0u;
 }
 
+// One of what is placed.
+void meet(uint item, inout bvh_ray ray, inout surface_hit hit) {
+    if (!is_shown(bvh_instances[item].what.x)) return;
+    if (!bvh_meets_box(ray, bvh_instances[item].low, bvh_instances[item].high)) return;
+    bvh_ray inner = bvh_to_mesh(ray, item);
+    int before = hit.triangle;
+    hit.triangle = -1;
+    surface_walk(inner, item, holes, hit);
+    if (hit.triangle < 0) {
+        hit.triangle = before;
+        return;
+    }
+    hit.instance = int(item);
+    hit.way = inner.direction;
+    ray.far = inner.far;
+}
+
 // Distances of the ray are depths, since its direction is one metre deep.
 surface_hit find(inout bvh_ray ray) {
     surface_hit hit = surface_hit(-1, -1, vec2(0.0), vec3(0.0));
-    for (uint i = 0u; i < bvh_count.x; i++) {
-        if (!is_shown(uint(bvh_instances[i].color.w))) continue;
-        if (!bvh_meets_box(ray, bvh_instances[i].low, bvh_instances[i].high)) continue;
-        bvh_ray inner = bvh_to_mesh(ray, i);
-        int before = hit.triangle;
-        hit.triangle = -1;
-        surface_walk(inner, bvh_instances[i].root, bvh_instances[i].end, holes, hit);
-        if (hit.triangle < 0) {
-            hit.triangle = before;
-            continue;
-        }
-        hit.instance = int(i);
-        hit.way = inner.direction;
-        ray.far = inner.far;
+    uint node = 0u;
+    while (node < bvh_count.y) {
+        bvh_node n = bvh_nodes[node];
+        bool inside = bvh_meets_box(ray, n.low, n.high);
+        node = inside && n.leaf == 0u ? node + 1u : n.next;
+        if (!inside) continue;
+        uint first = n.leaf & 0xfffffffu, last = first + (n.leaf >> 28);
+        for (uint i = first; i < last; i++) meet(i, ray, hit);
     }
     return hit;
 }
@@ -59,15 +73,19 @@ void main() {
     vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
     bvh_ray ray = bvh_make_ray(frame.eye.xyz, frame_ray(uv), frame.lens.z, frame.lens.w);
     surface_hit hit = find(ray);
-    vec4 color = vec4(0.0), facing = vec4(0.0);
+    vec4 color = vec4(0.0), facing = vec4(0.0), kind = vec4(0.0), glow = vec4(0.0);
     if (hit.instance >= 0) {
         uvec4 corners = surface_triangles[hit.triangle];
-        surface_material m = surface_materials[corners.w];
+        surface_material m = surface_materials[bvh_instances[hit.instance].what.z + corners.w];
         color = m.texture.x == 0u ? m.color : surface_color(m, surface_uv(corners, hit.where));
         color = vec4(color.rgb * bvh_instances[hit.instance].color.rgb, 1.0);
         facing.xyz = normal_at(hit, corners);
+        kind = m.surface;
+        glow = m.emission * bvh_instances[hit.instance].color.w;
     }
     imageStore(albedo, pixel, color);
     imageStore(normal, pixel, facing);
+    imageStore(surface, pixel, kind);
+    imageStore(emission, pixel, glow);
     imageStore(depth, pixel, vec4(hit.instance >= 0 ? ray.far : 1e9));
 }

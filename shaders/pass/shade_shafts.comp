@@ -96,7 +96,7 @@ void collect(shaft f, uint instance, uint list, inout uint count) {
         node = inside && n.leaf == 0u ? node + 1u : n.next;
         if (!inside || n.leaf == 0u) continue;
         count++;
-        if (!shaft_can_hold(n.leaf)) count = SHAFT_LEAVES + 1u;
+        if (!shaft_can_hold(instance, n.leaf)) count = SHAFT_LEAVES + 1u;
         if (count <= SHAFT_LEAVES) shaft_words[list + count] = shaft_pack(instance, n.leaf);
     }
 }
@@ -117,8 +117,16 @@ void main() {
     light l = light_get(index);
     shaft world = shaft_to(l, middle, extent, -1);
     uint list = shaft_start(index), count = 0u;
-    for (uint i = 0u; i < bvh_count.x && count <= SHAFT_LEAVES; i++)
-        if (shaft_meets(world, bvh_instances[i].low, bvh_instances[i].high))
-            collect(shaft_to(l, middle, extent, int(i)), i, list, count);
+    uint node = 0u;
+    while (node < bvh_count.y && count <= SHAFT_LEAVES) {
+        bvh_node n = bvh_nodes[node];
+        bool inside = shaft_meets(world, n.low, n.high);
+        node = inside && n.leaf == 0u ? node + 1u : n.next;
+        if (!inside) continue;
+        uint first = n.leaf & 0xfffffffu, last = first + (n.leaf >> 28);
+        for (uint i = first; i < last && count <= SHAFT_LEAVES; i++)
+            if (shaft_meets(world, bvh_instances[i].low, bvh_instances[i].high))
+                collect(shaft_to(l, middle, extent, int(i)), i, list, count);
+    }
     shaft_words[list] = count;
 }

@@ -81,12 +81,15 @@ void effect_destroy(effect *e) {
     for (size_t i = 0; i < e->pass_count; i++) pass_destroy(e->passes[i]);
     for (size_t i = 0; i < e->grid_count; i++) e->grids[i]->destroy(e->grids[i], e->device);
     for (size_t i = 0; i < e->mesh_count; i++) scene_mesh_destroy(e->meshes[i], e->device);
+    for (size_t i = 0; i < e->instances_count; i++)
+        scene_instances_destroy(e->instances[i], e->device);
     scene_bvh_destroy(e->host.bvh, e->device);
     if (e->sky) sky_image_destroy(e->sky, e->device);
     if (e->graph) graph_destroy(e->graph, e->device);
     if (e->hooks.destroy) e->hooks.destroy(e->hooks.user);
     shader_library_destroy(e->own_library);
     pass_host_free(&e->host);
+    effect_free_systems(e);
     pthread_mutex_destroy(&e->reading);
     mem_free(e->params);
     mem_free(e->values);
@@ -96,6 +99,7 @@ void effect_destroy(effect *e) {
     shelf_destroy(e->own_shelf);
     mem_free(e->held);
     mem_free(e->meshes);
+    mem_free(e->instances);
     mem_free(e->files);
     arena_free(&e->memory);
     mem_free(e);
@@ -282,6 +286,22 @@ scene_mesh *effect_add_mesh(effect *e, const char *file) {
     MEM_RESERVE(e->meshes, e->mesh_count + 1, e->mesh_capacity);
     e->meshes[e->mesh_count++] = mesh;
     return mesh;
+}
+
+scene_instances *effect_add_instances(effect *e, const scene_instances_desc *desc) {
+    size_t all = desc->count;
+    for (size_t i = 0; i < e->instances_count; i++) all += scene_instances_count(e->instances[i]);
+    if (all > SCENE_INSTANCES_ALL) {
+        err_set("%s: with these there are %zu instances; at most %d are possible", desc->name, all,
+                SCENE_INSTANCES_ALL);
+        return NULL;
+    }
+    MEM_RESERVE(e->instances, e->instances_count + 1, e->instances_capacity);
+    return e->instances[e->instances_count++] = scene_instances_create(desc);
+}
+
+void effect_reset_instances(effect *e) {
+    for (size_t i = 0; i < e->instances_count; i++) scene_instances_reset(e->instances[i]);
 }
 
 static sky_image *load_sky_image(effect *e, const char *path) {

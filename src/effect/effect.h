@@ -7,6 +7,7 @@
 #include "pass/pass.h"
 
 typedef struct effect effect;
+struct effect_happening; // events.h
 
 typedef enum effect_param_type {
     EFFECT_FLOAT,
@@ -79,6 +80,8 @@ void effect_add_grid(effect *e, field_grid *grid); // owned by the effect from n
 void effect_name_grid(effect *e, field_grid *grid, const char *name);
 bool effect_playback(const effect *e, field_playback *out); // false: no grid is played
 scene_mesh *effect_add_mesh(effect *e, const char *file);   // confined to the effect's folder
+// Owned by the effect; NULL with a message when it has too many.
+scene_instances *effect_add_instances(effect *e, const scene_instances_desc *desc);
 // The panorama of a sky, confined too; an effect has one.
 const struct sky_image *effect_add_sky_image(effect *e, const char *file);
 // A picture as numbers (media/picture.h), confined too; lives as long as the effect. `side_max`:
@@ -137,6 +140,9 @@ bool effect_set_depth(effect *e, graph_image image);  // linear depth in metres,
 typedef struct effect_hooks {                                          // calls back into the script
     bool (*call)(void *user, int function, double time, float out[4]); // function of time
     bool (*update)(void *user, double time, double dt); // `update(t, dt)` of the effect, or NULL
+    bool (*start)(void *user);                          // its systems (events.h), or NULL
+    bool (*frame)(void *user, double time, double dt);
+    bool (*event)(void *user, const struct effect_happening *what);
     void (*destroy)(void *user);
     void *user;
 } effect_hooks;
@@ -174,6 +180,7 @@ typedef enum effect_control_kind {
     EFFECT_CONTROL_CURVE,
     EFFECT_CONTROL_SCENE,   // "camera.fov", "sun.azimuth", "sky.strength"
     EFFECT_CONTROL_LIGHT,   // "lamp.power"
+    EFFECT_CONTROL_EVENTS,  // "effect.events"
     EFFECT_CONTROL_UNIFORM, // "march.steps"
     EFFECT_CONTROL_OPTION,  // "march.mode"
     EFFECT_CONTROL_SCALE,   // "march.resolution"

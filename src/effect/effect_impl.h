@@ -12,6 +12,7 @@ bool effect_apply_settings(void *user, pass *p);
 bool effect_runs(const effect *e, const pass *p); // some part of it; after the graph was compiled
 // Evaluates a frame. `again`: the same as the last, for which `update` ran.
 bool effect_evaluate(effect *e, double frame, gpu *device, bool again);
+void effect_reset_instances(effect *e); // to how they began: time has gone back
 // Brings simulations to the frame. `*again`: `update` need not run for it.
 bool effect_simulate(effect *e, double frame, bool *again);
 
@@ -24,13 +25,23 @@ void effect_list_state(const effect *e, struct checkpoint_list *out);
 bool effect_take_state(effect *e, struct checkpoint *c); // false: all begins anew
 
 // Moments of a window that plays, to which it can go back (moments.c).
-void effect_keep_moment(effect *e);           // after a frame
-bool effect_go_back(effect *e, double frame); // to the last one until then; false: none
-void effect_forget_moments(effect *e);        // numbers have changed
+void effect_keep_moment(effect *e);                      // after a frame
+bool effect_go_back(effect *e, double frame);            // to the last one until then; false: none
+void effect_forget_moments(effect *e);                   // numbers have changed
+void effect_forget_moments_from(effect *e, double time); // events of this time or later (s)
 typedef struct effect_moment {
     double frame;
     struct checkpoint *state;
 } effect_moment;
+
+// ---- systems.c: what goes on in the script from frame to frame (events.h) -----------------------
+
+typedef struct effect_systems effect_systems;
+void effect_free_systems(effect *e);
+bool effect_run_systems(effect *e, double frame); // up to it; again: only what is new
+void effect_restart_systems(effect *e);           // from the first frame on, with the next one
+void effect_resize_systems(effect *e, uint32_t width, uint32_t height); // before the effect is
+void effect_forget_moved(effect *e, size_t param);                      // a user has set it
 
 // ---- controls ---------------------------------------------------------------------------------
 
@@ -76,6 +87,10 @@ bool ramp_set(effect *e, control *c, const char *text);
 void ramp_reset(effect *e, control *c);
 void ramp_print(const effect *e, const control *c, strbuf *out);
 bool ramp_rename(effect *e, control *c); // because a parameter takes its name
+bool events_add_control(effect *e);      // of one that hears any; systems.c
+bool events_control_set(effect *e, control *c, const char *text);
+void events_control_reset(effect *e);
+void events_control_print(const effect *e, strbuf *out);
 
 // The constant that a setting becomes; `c->turn` says which of the two is in force.
 field *control_node(effect *e, control *c, int components, const float value[4]);
@@ -116,6 +131,8 @@ struct effect {
     size_t held_count, held_capacity;
     scene_mesh **meshes;
     size_t mesh_count, mesh_capacity;
+    scene_instances **instances;
+    size_t instances_count, instances_capacity;
     struct sky_image *sky;   // of the scene, where it has one
     const char *sky_file;    // whose it is
     shader_reader reader;    // adds to `files`
@@ -125,6 +142,7 @@ struct effect {
 
     graph_image pictures[3]; // by effect_picture
     effect_hooks hooks;
+    effect_systems *systems; // NULL: none
 
     // Of the frame being recorded.
     field_context context;

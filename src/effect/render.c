@@ -29,22 +29,43 @@ static bool check_reference(const effect *e) {
                                     e->file);
 }
 
-// The trees that rays are shot at: of every mesh that a pass draws.
+static bool draws_mesh(const pass *p, const scene_mesh *mesh) {
+    scene_mesh *const *meshes;
+    size_t count = pass_draws_meshes(p) ? pass_meshes(p, &meshes) : 0;
+    for (size_t i = 0; i < count; i++)
+        if (meshes[i] == mesh) return true;
+    return false;
+}
+
+static bool draws_instances(const pass *p, const scene_instances *instances) {
+    scene_instances *const *all;
+    size_t count = pass_instances(p, &all);
+    for (size_t i = 0; i < count; i++)
+        if (all[i] == instances) return true;
+    return false;
+}
+
+// The trees that rays are shot at: of all that a pass draws.
 static bool make_bvh(effect *e) {
     if (e->host.bvh) return true;
-    scene_mesh **drawn = mem_alloc(e->mesh_count * sizeof *drawn);
-    size_t count = 0;
+    scene_mesh **meshes = mem_alloc(e->mesh_count * sizeof *meshes);
+    scene_instances **instances = mem_alloc(e->instances_count * sizeof *instances);
+    size_t mesh_count = 0, instances_count = 0;
     for (size_t i = 0; i < e->mesh_count; i++) {
         bool found = false;
-        for (size_t k = 0; k < e->pass_count && !found; k++) {
-            scene_mesh *const *meshes;
-            size_t n = pass_draws_meshes(e->passes[k]) ? pass_meshes(e->passes[k], &meshes) : 0;
-            for (size_t m = 0; m < n && !found; m++) found = meshes[m] == e->meshes[i];
-        }
-        if (found) drawn[count++] = e->meshes[i];
+        for (size_t k = 0; k < e->pass_count && !found; k++)
+            found = draws_mesh(e->passes[k], e->meshes[i]);
+        if (found) meshes[mesh_count++] = e->meshes[i];
     }
-    e->host.bvh = scene_bvh_create(drawn, count);
-    mem_free(drawn);
+    for (size_t i = 0; i < e->instances_count; i++) {
+        bool found = false;
+        for (size_t k = 0; k < e->pass_count && !found; k++)
+            found = draws_instances(e->passes[k], e->instances[i]);
+        if (found) instances[instances_count++] = e->instances[i];
+    }
+    e->host.bvh = scene_bvh_create(meshes, mesh_count, instances, instances_count);
+    mem_free(meshes);
+    mem_free(instances);
     return e->host.bvh != NULL;
 }
 
@@ -102,12 +123,15 @@ bool effect_compile(effect *e) {
 static bool allocate(effect *e) {
     for (size_t i = 0; i < e->pass_count; i++)
         if (effect_runs(e, pass_runner(e->passes[i])) && !pass_allocate(e->passes[i])) return false;
+    for (size_t i = 0; i < e->instances_count; i++)
+        if (!scene_instances_allocate(e->instances[i], e->device)) return false;
     return scene_bvh_allocate(e->host.bvh, e->device) &&
            (!e->sky || sky_image_upload(e->sky, e->device)) && graph_allocate(e->graph, e->device);
 }
 
 bool effect_allocate(effect *e, uint32_t width, uint32_t height) {
     if (!graph_compile(e->graph, width, height) || !allocate(e)) return false;
+    effect_resize_systems(e, width, height);
     e->width = width;
     e->height = height;
     return true;
@@ -120,7 +144,8 @@ bool effect_build(effect *e, uint32_t width, uint32_t height) {
 static bool update(effect *e, double frame) {
     double dt = isnan(e->updated) ? 0 : (frame - e->updated) / e->fps;
     e->updated = frame;
-    return !e->hooks.update || e->hooks.update(e->hooks.user, e->context.time, dt);
+    return effect_run_systems(e, frame) &&
+           (!e->hooks.update || e->hooks.update(e->hooks.user, e->context.time, dt));
 }
 
 // Without a device grids know their bounds only.
@@ -138,6 +163,8 @@ bool effect_evaluate(effect *e, double frame, gpu *device, bool again) {
     e->frame.size = (shared_uvec4){{e->width, e->height, (uint32_t)llrint(frame), e->seed}};
     for (size_t i = 0; i < e->grid_count; i++)
         if (!e->grids[i]->update(e->grids[i], device, time)) return false;
+    for (size_t i = 0; device && i < e->instances_count; i++)
+        if (!scene_instances_upload(e->instances[i], device)) return false;
     return true;
 }
 
@@ -243,6 +270,7 @@ bool effect_adopt(effect *e, effect *from, uint32_t width, uint32_t height) {
         exchange(e, from);
         return false;
     }
+    effect_resize_systems(e, width, height);
     e->width = width;
     e->height = height;
     e->counter = from->counter;

@@ -21,10 +21,20 @@
     .group = "source", .include = "lib/particle.glsl", .function = "particle_said_" NAME,          \
     .components = COMPONENTS, .spatial = true, .cost = 1, .eval = eval_zero,                       \
     .ranges = ranges_unknown, .range_function = "range_nowhere" #COMPONENTS
+#define ranges_nowhere ranges_unknown
+#define SHELL(NAME, COMPONENTS, RANGES)                                                            \
+    .group = "source", .include = "lib/shell.glsl", .function = "shell_said_" NAME,                \
+    .components = COMPONENTS, .spatial = true, .cost = 1, .eval = eval_zero,                       \
+    .ranges = ranges_##RANGES, .range_function = "range_" #RANGES #COMPONENTS
 #define LAMP(NAME)                                                                                 \
     .group = "source", .include = "lib/lamp.glsl", .function = "lamp_said_" NAME, .components = 1, \
     .spatial = true, .cost = 1, .eval = eval_zero, .ranges = ranges_unknown,                       \
     .range_function = "range_nowhere1"
+
+#define INSTANCE(NAME, COMPONENTS)                                                                 \
+    .group = "source", .include = "lib/instance.glsl", .function = "instance_said_" NAME,          \
+    .components = COMPONENTS, .spatial = true, .cost = 1, .eval = eval_zero,                       \
+    .ranges = ranges_unknown, .range_function = "range_nowhere" #COMPONENTS
 
 #define UNARY                                                                                      \
     {                                                                                              \
@@ -213,6 +223,11 @@ const field_kind field_kinds[] = {
         .eval = eval_length, RANGE(length)},
     {"dot", BUILTIN("dot"), .components = 1, .summary = "scalar product", .args = BINARY,
         .eval = eval_dot, RANGE(dot), .bounds = bounds_dot},
+    {"atan", LIBRARY("operator_atan"), .components = 1,
+        .summary = "angle from the axis of x to the point (x, y), in radians, -pi to pi; 0 where both are 0. "
+                   "In GLSL's order: atan(y, x)",
+        .args = {{"y", SCALAR(""), .required = true, .help = "of the point"}, {"x", SCALAR(""), .value = {1}, .help = "of the point"}},
+        .eval = eval_atan, RANGE(atan)},
     {"vec", BUILTIN("vec3"), .components = 3, .summary = "a vector of three numbers",
         .args = {{"x", SCALAR(""), .help = "first"}, {"y", SCALAR(""), .help = "second"},
                  {"z", SCALAR(""), .help = "third"}},
@@ -280,9 +295,24 @@ const field_kind field_kinds[] = {
     {"particle_random", PARTICLE("random", 1), .summary = "a number of a particle's own, evenly spread over 0..1"},
     {"particle_velocity", PARTICLE("velocity", 3), .summary = "of a particle (m/s)"},
 
+    // ---- of the one of `instances` that a field is evaluated for; where there is none, 0
+    {"instance_state", INSTANCE("state", 4), .summary = "four numbers of an instance, which the script sets: instance_state.x"},
+    {"instance_random", INSTANCE("random", 1), .summary = "a number of an instance's own, evenly spread over 0..1"},
+    {"instance_index", INSTANCE("index", 1), .summary = "number of an instance among those of its object, from 0 on"},
+    {"instance_glow", INSTANCE("glow", 1), .summary = "factor of what an instance emits"},
+
     // ---- of the light of `point_lights` that a field is evaluated for; where there is none, 0
     {"light_index", LAMP("index"), .summary = "number of a light of point_lights, from 0 on"},
     {"light_random", LAMP("random"), .summary = "a number of a light's own, evenly spread over 0..1"},
+
+    // ---- of the shell, and its point, that a field is evaluated for; where there is none, 0
+    {"shell_age", SHELL("age", 1, share), .summary = "part of a shell's life that has passed, 0..1"},
+    {"shell_random", SHELL("random", 1, share), .summary = "a number of a shell's own, evenly spread over 0..1"},
+    {"shell_shift", SHELL("shift", 3, share), .summary = "three more of these, by which noise is moved so that no two shells look alike"},
+    {"shell_depth", SHELL("depth", 1, nowhere), .summary = "what the field `shell_depth` of a shell gave for it"},
+    {"shell_displacement", SHELL("displacement", 1, nowhere), .summary = "how far the surface is pushed out, in radii"},
+    {"shell_normal", SHELL("normal", 3, way), .summary = "of the surface of a shell, towards the eye, of length 1"},
+    {"shell_view", SHELL("view", 3, way), .summary = "from the surface of a shell to the eye, of length 1"},
     {NULL},
 };
 // clang-format on

@@ -224,6 +224,14 @@ bool pass_add_mesh(pass *p, scene_mesh *mesh) {
     return true;
 }
 
+bool pass_add_instances(pass *p, scene_instances *instances) {
+    if (!pass_draws_meshes(p))
+        return err_set("%s: takes no instances; pass them to geometry", p->label);
+    MEM_RESERVE(p->instances, p->instances_count + 1, p->instances_capacity);
+    p->instances[p->instances_count++] = instances;
+    return true;
+}
+
 bool pass_draws_meshes(const pass *p) {
     return p->type && p->type->meshes == PASS_DRAWS_MESHES;
 }
@@ -235,6 +243,11 @@ const pass_simulation *pass_get_simulation(const pass *p) {
 size_t pass_meshes(const pass *p, scene_mesh *const **out) {
     *out = p->meshes;
     return p->mesh_count;
+}
+
+size_t pass_instances(const pass *p, scene_instances *const **out) {
+    *out = p->instances;
+    return p->instances_count;
 }
 
 graph_image pass_output(const pass *p, const char *name) {

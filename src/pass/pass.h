@@ -7,7 +7,7 @@
 #pragma once
 #include "field/field.h"
 #include "graph/graph.h"
-#include "scene/scene.h"
+#include "scene/instances.h"
 #include "shader/shader.h"
 
 typedef struct pass pass;
@@ -130,6 +130,8 @@ bool pass_set_scale(pass *p,
 bool pass_set_format(pass *p, const char *output, gpu_format format);
 bool pass_add_mesh(pass *p, scene_mesh *mesh); // of types that take them
 size_t pass_meshes(const pass *p, scene_mesh *const **out);
+bool pass_add_instances(pass *p, scene_instances *instances); // of types that draw
+size_t pass_instances(const pass *p, scene_instances *const **out);
 // What `p` says nothing about it takes from `source`, a pass declared before, where both have
 // something of that name and type: images that it reads and `source` writes; fields, options and
 // uniforms, the latter as they are in each frame. Several sources: the first that has it.

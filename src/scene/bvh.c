@@ -1,31 +1,11 @@
-// The meshes as rays see them: their trees, and where they stand in this frame.
+// The meshes as rays see them: their trees, and what their surfaces are like.
 #include "scene/bvh.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "scene/bvh_tree.h"
+#include "scene/bvh_impl.h"
+#include "scene/runs.h"
 #include "scene/surfaces.h"
-#include <math.h>
 #include <string.h>
-
-typedef struct tree { // nodes of the forest
-    uint32_t root, end;
-    size_t triangles; // of the forest, up to those of this tree
-} tree;
-
-typedef struct placement { // the buffer "BvhInstances"
-    shared_uvec4 count;
-    struct bvh_instance instances[SCENE_BVH_MAX_MESHES];
-} placement;
-
-struct scene_bvh {
-    scene_mesh *const *meshes;
-    tree *trees; // per mesh
-    size_t mesh_count;
-    bvh_forest forest;
-    placement now; // as on the device, once there
-    bool written, holes;
-    gpu_buffer *buffers[BVH_PARTS];
-};
 
 static bool same_mesh(const mesh_data *a, const mesh_data *b) {
     return a->vertices == b->vertices && a->indices == b->indices && a->parts == b->parts;
@@ -45,23 +25,66 @@ static bool add_tree(scene_bvh *b, size_t index) {
     return true;
 }
 
-scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count) {
-    if (count > SCENE_BVH_MAX_MESHES) {
-        err_set("%zu meshes; at most %d are possible", count, SCENE_BVH_MAX_MESHES);
+static void add_thing(scene_bvh *b, const thing *made) {
+    b->things[b->thing_count++] = *made;
+    b->item_count += made->count;
+}
+
+static void add_things(scene_bvh *b, scene_mesh *const *meshes, size_t count,
+                       scene_instances *const *instances, size_t instances_count) {
+    for (size_t i = 0; i < count; i++) {
+        add_thing(b, &(thing){.mesh = meshes[i],
+                              .first_mesh = b->mesh_count,
+                              .first = b->item_count,
+                              .count = 1});
+        b->meshes[b->mesh_count++] = meshes[i];
+    }
+    for (size_t i = 0; i < instances_count; i++) {
+        scene_mesh *const *kinds;
+        size_t n = scene_instances_kinds(instances[i], &kinds);
+        thing made = {.instances = instances[i],
+                      .first_mesh = b->mesh_count,
+                      .first = b->item_count,
+                      .count = scene_instances_count(instances[i])};
+        made.entries = mem_alloc(made.count * sizeof *made.entries);
+        add_thing(b, &made);
+        for (size_t k = 0; k < n; k++) b->meshes[b->mesh_count++] = kinds[k];
+    }
+}
+
+static bool add_trees(scene_bvh *b) {
+    MEM_RESERVE(b->forest.nodes, bvh_top_nodes(b->item_count), b->forest.node_capacity);
+    b->forest.node_count = bvh_top_nodes(b->item_count);
+    memset(b->forest.nodes, 0, b->forest.node_count * sizeof *b->forest.nodes);
+    for (size_t i = 0; i < b->mesh_count; i++)
+        if (!add_tree(b, i)) return false;
+    return true;
+}
+
+scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count,
+                            scene_instances *const *instances, size_t instances_count) {
+    size_t all = count;
+    for (size_t i = 0; i < instances_count; i++) {
+        scene_mesh *const *kinds;
+        all += scene_instances_kinds(instances[i], &kinds);
+    }
+    if (all > SCENE_BVH_MAX_MESHES) {
+        err_set("%zu meshes; at most %d are possible", all, SCENE_BVH_MAX_MESHES);
         return NULL;
     }
     scene_bvh *b = mem_alloc(sizeof *b);
-    *b = (scene_bvh){
-        .meshes = mem_copy(meshes, count * sizeof(scene_mesh *)),
-        .trees = mem_alloc(count * sizeof(tree)),
-        .mesh_count = count,
-    };
-    for (size_t i = 0; i < count; i++) {
-        if (add_tree(b, i)) continue;
-        scene_bvh_destroy(b, NULL);
-        return NULL;
-    }
-    return b;
+    b->meshes = mem_alloc(all * sizeof *b->meshes);
+    b->trees = mem_alloc(all * sizeof *b->trees);
+    b->things = mem_alloc((count + instances_count) * sizeof *b->things);
+    add_things(b, meshes, count, instances, instances_count);
+    b->items = mem_alloc(b->item_count * sizeof *b->items);
+    b->item_at = mem_alloc(b->item_count * sizeof *b->item_at);
+    b->changed = mem_alloc(run_marks(b->item_count));
+    for (uint32_t i = 0; i < b->item_count; i++) b->item_at[i] = i;
+    bvh_looks_count(b);
+    if (add_trees(b)) return b;
+    scene_bvh_destroy(b, NULL);
+    return NULL;
 }
 
 void scene_bvh_destroy(scene_bvh *b, gpu *g) {
@@ -69,7 +92,14 @@ void scene_bvh_destroy(scene_bvh *b, gpu *g) {
     for (int i = 0; i < BVH_PARTS; i++)
         if (b->buffers[i]) gpu_buffer_destroy(g, b->buffers[i]);
     bvh_forest_free(&b->forest);
-    mem_free((void *)b->meshes);
+    for (size_t i = 0; i < b->thing_count; i++) mem_free(b->things[i].entries);
+    mem_free(b->things);
+    mem_free(b->items);
+    mem_free(b->item_at);
+    mem_free(b->changed);
+    mem_free(b->materials);
+    mem_free(b->looks);
+    mem_free(b->meshes);
     mem_free(b->trees);
     mem_free(b);
 }
@@ -85,7 +115,8 @@ static bool make_buffer(scene_bvh *b, gpu *g, scene_bvh_part part, const char *l
                        least >> 20, (unsigned long long)most >> 20);
     gpu_buffer_desc desc = {.label = label, .size = least, .kind = GPU_BUFFER_DEVICE};
     b->buffers[part] = gpu_buffer_create(g, &desc);
-    return b->buffers[part] && (size == 0 || gpu_buffer_write(g, b->buffers[part], 0, data, size));
+    return b->buffers[part] &&
+           (!data || size == 0 || gpu_buffer_write(g, b->buffers[part], 0, data, size));
 }
 
 bool scene_bvh_allocate(scene_bvh *b, gpu *g) {
@@ -95,7 +126,9 @@ bool scene_bvh_allocate(scene_bvh *b, gpu *g) {
                        f->node_count * sizeof *f->nodes) &&
            make_buffer(b, g, BVH_TRIANGLES, "triangles of meshes", f->triangles,
                        f->triangle_count * sizeof *f->triangles) &&
-           make_buffer(b, g, BVH_INSTANCES, "placed meshes", &b->now, sizeof b->now);
+           make_buffer(b, g, BVH_INSTANCES, "placed meshes", NULL,
+                       BVH_HEAD + b->item_count * sizeof *b->items) &&
+           gpu_buffer_write(g, b->buffers[BVH_INSTANCES], 0, (uint32_t[4]){0}, BVH_HEAD);
 }
 
 bool scene_bvh_surfaces_fit(const scene_mesh *mesh, gpu *g) {
@@ -105,16 +138,14 @@ bool scene_bvh_surfaces_fit(const scene_mesh *mesh, gpu *g) {
 bool scene_bvh_allocate_surfaces(scene_bvh *b, gpu *g) {
     if (b->buffers[BVH_TEXELS]) return true;
     surfaces s = {0};
-    for (size_t i = 0; i < b->mesh_count; i++) // a tree of several meshes is done after the first
-        if (b->trees[i].triangles > s.triangle_count)
-            surfaces_add(&s, &b->forest, b->trees[i].triangles, &b->meshes[i]->data);
+    for (size_t i = 0; i < b->mesh_count; i++) bvh_looks_add(b, &s, i);
     b->holes = s.holes;
     bool done = make_buffer(b, g, BVH_SURFACES, "surfaces of meshes", s.triangles,
                             s.triangle_count * sizeof *s.triangles) &&
                 make_buffer(b, g, BVH_VERTICES, "vertices of meshes", s.vertices,
                             s.vertex_count * sizeof *s.vertices) &&
-                make_buffer(b, g, BVH_MATERIALS, "materials of meshes", s.materials,
-                            s.material_count * sizeof *s.materials) &&
+                make_buffer(b, g, BVH_MATERIALS, "materials of meshes", b->looks,
+                            b->material_count * sizeof *b->looks) &&
                 make_buffer(b, g, BVH_TEXELS, "textures of meshes", s.texels,
                             s.texel_count * sizeof *s.texels);
     surfaces_free(&s);
@@ -125,77 +156,24 @@ bool scene_bvh_has_holes(const scene_bvh *b) {
     return b->holes;
 }
 
+static void choose(const scene_bvh *b, const void *what, uint32_t *bits) {
+    for (size_t i = 0; i < b->thing_count; i++)
+        if (b->things[i].mesh == what || b->things[i].instances == what)
+            bits[i / 32] |= 1u << i % 32;
+}
+
 void scene_bvh_choose(const scene_bvh *b, scene_mesh *const *meshes, size_t count,
+                      scene_instances *const *instances, size_t instances_count,
                       uint32_t bits[SCENE_BVH_MAX_MESHES / 32]) {
     memset(bits, 0, SCENE_BVH_MAX_MESHES / 8);
-    for (size_t i = 0; i < b->mesh_count; i++)
-        for (size_t k = 0; k < count; k++)
-            if (b->meshes[i] == meshes[k]) bits[i / 32] |= 1u << i % 32;
+    for (size_t i = 0; i < count; i++) choose(b, meshes[i], bits);
+    for (size_t i = 0; i < instances_count; i++) choose(b, instances[i], bits);
+}
+
+size_t scene_bvh_count(const scene_bvh *b) {
+    return b->item_count;
 }
 
 gpu_buffer *scene_bvh_buffer(const scene_bvh *b, scene_bvh_part part) {
     return b->buffers[part];
-}
-
-// ---- placed -----------------------------------------------------------------------------------
-
-// The box of a tree's root, moved into the world: all eight corners, and a little more for
-// rounding.
-static void world_box(const struct bvh_node *root, mat4 transform, struct bvh_instance *out) {
-    vec3 box[2];
-    for (int i = 0; i < 8; i++) {
-        vec3 at;
-        for (int a = 0; a < 3; a++) at[a] = i >> a & 1 ? root->high.v[a] : root->low.v[a];
-        glm_mat4_mulv3(transform, at, 1, at);
-        for (int a = 0; a < 3; a++) {
-            box[0][a] = i ? fminf(box[0][a], at[a]) : at[a];
-            box[1][a] = i ? fmaxf(box[1][a], at[a]) : at[a];
-        }
-    }
-    for (int a = 0; a < 3; a++) {
-        float margin = 1e-5f * fmaxf(fabsf(box[0][a]), fabsf(box[1][a]));
-        out->low.v[a] = box[0][a] - margin;
-        out->high.v[a] = box[1][a] + margin;
-    }
-}
-
-// False where nothing would be seen of it: scaled to nothing, or out of all numbers.
-static bool invert(mat4 transform, struct bvh_instance *out) {
-    mat4 inverse;
-    float size = glm_mat4_det(transform);
-    if (!isfinite(size) || size == 0) return false;
-    glm_mat4_inv(transform, inverse);
-    for (int row = 0; row < 3; row++) {
-        for (int column = 0; column < 4; column++) {
-            if (!isfinite(inverse[column][row])) return false;
-            out->inverse[row].v[column] = inverse[column][row];
-        }
-    }
-    return true;
-}
-
-static bool place(const scene_bvh *b, const field_context *context, placement *out) {
-    for (size_t i = 0; i < b->mesh_count; i++) {
-        const tree *t = &b->trees[i];
-        mat4 transform;
-        float tint[4];
-        if (!scene_mesh_place(b->meshes[i], context, transform, tint)) return false;
-        struct bvh_instance made = {.root = t->root, .end = t->end};
-        if (t->root == t->end || !invert(transform, &made)) continue;
-        world_box(&b->forest.nodes[t->root], transform, &made);
-        memcpy(made.color.v, tint, 3 * sizeof *tint);
-        made.color.v[3] = (float)i;
-        out->instances[out->count.v[0]++] = made;
-    }
-    return true;
-}
-
-bool scene_bvh_update(scene_bvh *b, gpu *g, const field_context *context) {
-    placement now = {0};
-    if (!place(b, context, &now)) return false;
-    size_t used = offsetof(placement, instances) + now.count.v[0] * sizeof *now.instances;
-    if (b->written && memcmp(&b->now, &now, used) == 0) return true;
-    b->now = now;
-    b->written = gpu_buffer_write(g, b->buffers[BVH_INSTANCES], 0, &now, used);
-    return b->written;
 }

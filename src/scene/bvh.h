@@ -1,28 +1,45 @@
-// Rays against the meshes of an effect: a tree of boxes for each mesh, made once on the host, and a
-// list of placed meshes, written every frame. Shaders trace it with lib/bvh.glsl.
+// Rays against what a scene is made of: a tree of boxes for each mesh, made once on the host, and
+// one over all that is placed, meshes and instances, which follows what moves. Shaders trace them
+// with lib/bvh.glsl.
 #pragma once
-#include "scene/scene.h"
+#include "scene/instances.h"
 
 typedef struct scene_bvh scene_bvh;
 
-enum { SCENE_BVH_MAX_MESHES = 256 };
+enum { SCENE_BVH_MAX_MESHES = 256 }; // with the kinds of instances
 
-// The trees of these meshes, in order; a mesh with the same data has the same tree. Needs no
-// device.
-scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count);
+// The trees of these meshes, and of the kinds of these instances, in order; a mesh with the same
+// data has the same tree. Needs no device.
+scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count,
+                            scene_instances *const *instances, size_t instances_count);
 void scene_bvh_destroy(scene_bvh *b, gpu *g);
 bool scene_bvh_allocate(scene_bvh *b, gpu *g); // trees to the device; again: does nothing
-// Places the meshes as of now. Inside a frame; once a frame.
+// Places all as of now, on the host; then, inside a frame and once a frame, on the device.
+bool scene_bvh_place(scene_bvh *b, const field_context *context);
 bool scene_bvh_update(scene_bvh *b, gpu *g, const field_context *context);
+
+typedef struct scene_hit {
+    float distance;               // in lengths of the direction
+    float position[3], normal[3]; // in the world; the normal is a unit vector, towards the origin
+    const scene_mesh *mesh;       // whose triangle it is
+    scene_instances *instances;   // that it is one of; NULL: a mesh alone
+    uint32_t index;               // and its number among these
+} scene_hit;
+
+// The first triangle that a ray meets, as all was placed last; false: none.
+bool scene_pick(const scene_bvh *b, const float origin[3], const float direction[3],
+                scene_hit *out);
 
 // What the triangles look like, for passes that show them by rays. A mesh whose surfaces are larger
 // than the device can read must be drawn instead.
 bool scene_bvh_surfaces_fit(const scene_mesh *mesh, gpu *g);
 bool scene_bvh_allocate_surfaces(scene_bvh *b, gpu *g); // again: does nothing
 bool scene_bvh_has_holes(const scene_bvh *b);           // textures that are clear in places
-// A bit for each mesh of `b` that is among these.
+// A bit for each of the meshes and instances of `b` (bvh_instance.what.x) that is among these.
 void scene_bvh_choose(const scene_bvh *b, scene_mesh *const *meshes, size_t count,
+                      scene_instances *const *instances, size_t instances_count,
                       uint32_t bits[SCENE_BVH_MAX_MESHES / 32]);
+size_t scene_bvh_count(const scene_bvh *b); // all that is placed: meshes, and instances one by one
 
 // Storage buffers "BvhNodes", "BvhTriangles" and "BvhInstances" of lib/bvh.glsl, then those of
 // lib/surface.glsl; never empty.

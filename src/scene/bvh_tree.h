@@ -2,6 +2,7 @@
 // shaders read them (bvh_node, bvh_triangle of shared.h).
 #pragma once
 #include "media/mesh.h"
+#include "scene/bvh_build.h"
 #include "shared.h"
 
 typedef struct bvh_origin { // of a triangle, in its mesh
@@ -18,7 +19,7 @@ typedef struct bvh_forest { // zero: empty
     size_t origin_capacity;
 } bvh_forest;
 
-enum { BVH_LEAF_SIZE = 4, BVH_MAX_TRIANGLES = (1 << 28) - 1 };
+enum { BVH_MAX_TRIANGLES = (1 << 28) - 1 };
 
 // Adds a tree of all triangles that have an area and are not clear; none: no nodes. Its nodes are
 // those from the count before to that after. False with a message when they are too many.

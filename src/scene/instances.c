@@ -1,28 +1,22 @@
-// Entries lie as the device reads them. A byte for each block of them says that something in it has
-// changed; blocks side by side are one copy.
+// Entries lie as the device reads them; those that have changed are marked.
 #include "scene/instances.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "scene/instances_grid.h"
+#include "scene/runs.h"
 #include "scene/scene_impl.h"
 #include <math.h>
 #include <string.h>
 
-enum { BLOCK = 16 }; // entries
-
 struct scene_instances {
     scene_instances_desc desc; // entries and kinds: copies
     struct instance_entry *now;
-    uint8_t *changed; // per block
+    uint8_t *changed; // marks (runs.h)
     uint64_t version;
     uint64_t uploaded; // version that the device has; 0: none
     gpu_buffer *buffer;
     instances_grid grid;
 };
-
-static size_t block_count(const scene_instances *s) {
-    return (s->desc.count + BLOCK - 1) / BLOCK;
-}
 
 scene_instances *scene_instances_create(const scene_instances_desc *desc) {
     scene_instances *s = mem_alloc(sizeof *s);
@@ -35,7 +29,8 @@ scene_instances *scene_instances_create(const scene_instances_desc *desc) {
     };
     s->desc.entries = initial;
     s->desc.kinds = mem_copy(desc->kinds, desc->kind_count * sizeof(scene_mesh *));
-    s->changed = mem_alloc(block_count(s));
+    s->changed = mem_alloc(run_marks(desc->count));
+    memset(s->changed, 1, run_marks(desc->count));
     return s;
 }
 
@@ -89,7 +84,7 @@ void scene_instances_set(scene_instances *s, uint32_t index, const struct instan
     if (memcmp(old->place.v, made.place.v, 3 * sizeof *made.place.v) != 0)
         instances_grid_forget(&s->grid);
     *old = made;
-    s->changed[index / BLOCK] = 1;
+    run_mark(s->changed, index);
     s->version++;
 }
 
@@ -133,24 +128,10 @@ bool scene_instances_allocate(scene_instances *s, gpu *g) {
     return s->buffer != NULL;
 }
 
-static bool write_run(scene_instances *s, gpu *g, size_t first, size_t end) {
-    size_t from = first * BLOCK, to = end * BLOCK < s->desc.count ? end * BLOCK : s->desc.count;
-    return gpu_buffer_write(g, s->buffer, from * sizeof *s->now, s->now + from,
-                            (to - from) * sizeof *s->now);
-}
-
 bool scene_instances_upload(scene_instances *s, gpu *g) {
     if (s->uploaded == s->version) return true;
-    size_t blocks = block_count(s);
-    for (size_t i = 0; i < blocks; i++) {
-        if (s->uploaded && !s->changed[i]) continue;
-        size_t first = i;
-        while (i < blocks && (!s->uploaded || s->changed[i])) i++;
-        if (!write_run(s, g, first, i)) return false;
-    }
-    memset(s->changed, 0, blocks);
     s->uploaded = s->version;
-    return true;
+    return runs_write(g, s->buffer, 0, s->now, sizeof *s->now, s->desc.count, s->changed);
 }
 
 gpu_buffer *scene_instances_buffer(const scene_instances *s) {

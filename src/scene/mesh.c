@@ -2,6 +2,7 @@
 // shader), textures as sRGB images.
 #include "base/error.h"
 #include "base/memory.h"
+#include "scene/material.h"
 #include "scene/scene_impl.h"
 #include <string.h>
 
@@ -37,7 +38,8 @@ bool scene_mesh_upload(scene_mesh *mesh, gpu *g) {
     mesh->textures = mem_alloc(data->texture_count * sizeof *mesh->textures);
     mesh->vertices =
         upload(g, mesh->name, data->vertices, data->vertex_count * sizeof *data->vertices);
-    mesh->indices = upload(g, mesh->name, data->indices, data->index_count * sizeof *data->indices);
+    size_t index_count = (size_t)data->index_count + data->level_index_count;
+    mesh->indices = upload(g, mesh->name, data->indices, index_count * sizeof *data->indices);
     bool done = mesh->vertices && mesh->indices;
     for (uint32_t i = 0; done && i < data->texture_count; i++) {
         mesh->textures[i] = upload_texture(g, mesh->name, &data->textures[i]);
@@ -58,7 +60,9 @@ void scene_mesh_destroy(scene_mesh *mesh, gpu *g) {
 }
 
 bool scene_mesh_exchange(scene_mesh *mesh, scene_mesh *other) {
-    if (mesh->data.vertices != other->data.vertices) return false; // not shared by a cache
+    if (mesh->data.vertices != other->data.vertices || // not shared by a cache
+        mesh->data.textures != other->data.textures)
+        return false;
     gpu_buffer *vertices = mesh->vertices, *indices = mesh->indices;
     gpu_image **textures = mesh->textures;
     mesh->vertices = other->vertices;
@@ -104,9 +108,9 @@ bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, 
 
 bool scene_mesh_place(const scene_mesh *mesh, const field_context *context, mat4 transform,
                       float tint[4]) {
-    if (!scene_mesh_transform(mesh, context, transform) ||
-        !scene_evaluate(mesh->color, context, tint))
-        return err_prefix("%s: ", mesh->name);
-    for (int i = 0; i < 3; i++) tint[i] = scene_limit_light(tint[i]);
+    scene_look look;
+    if (!scene_mesh_transform(mesh, context, transform)) return err_prefix("%s: ", mesh->name);
+    if (!scene_mesh_look(mesh, context, &look)) return false;
+    memcpy(tint, look.tint, sizeof look.tint);
     return true;
 }

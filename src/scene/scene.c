@@ -36,6 +36,10 @@ void scene_init(scene *s, arena *memory) {
         .horizon = vector(memory, 0.22f, 0.32f, 0.48f),
         .strength = scalar(memory, 0.6f),
         .rotation = scalar(memory, 0),
+        .night_zenith = vector(memory, 0.003f, 0.006f, 0.016f),
+        .night_horizon = vector(memory, 0.012f, 0.018f, 0.034f),
+        .stars = scalar(memory, 1),
+        .moon = scalar(memory, 0),
     };
 }
 
@@ -67,6 +71,15 @@ static const scene_value values[] = {
           .need = SCENE_GRADIENT),
     VALUE(sky, strength, 1, 0, INFINITY, "", "factor of its light"),
     VALUE(sky, rotation, 1, -360, 360, "degrees", "of the image, about +Z", .need = SCENE_IMAGE),
+    VALUE(sky, night, 1, 0, 1, "", "how much of it is night", .need = SCENE_NIGHT),
+    VALUE(sky, night_zenith, 3, 0, INFINITY, "", "radiance of the night straight up", .color = true,
+          .need = SCENE_NIGHT),
+    VALUE(sky, night_horizon, 3, 0, INFINITY, "", "radiance of the night at the horizon",
+          .color = true, .need = SCENE_NIGHT),
+    VALUE(sky, stars, 1, 0, INFINITY, "", "factor of what stars and moon shine",
+          .need = SCENE_NIGHT),
+    VALUE(sky, moon, 1, 0, 90, "degrees", "how wide it looks, where the sun stands; 0: none",
+          .need = SCENE_NIGHT),
 };
 
 const scene_value *scene_values(size_t *count) {
@@ -88,6 +101,8 @@ bool scene_has(const scene *s, scene_need need) {
         return !s->sky.image;
     case SCENE_IMAGE:
         return s->sky.image;
+    case SCENE_NIGHT:
+        return s->sky.night;
     }
     return false;
 }
@@ -196,6 +211,32 @@ static bool fill_sun(const scene_sun *sun, const field_context *context, struct 
     return true;
 }
 
+// What is said of the sky's two colours is of both the day and the night, mixed: an image is mixed
+// by shaders.
+static bool fill_night(const scene_sky *sky, const field_context *context,
+                       struct frame_block *out) {
+    float night, zenith[4], horizon[4], stars, moon;
+    out->night_zenith = out->night_horizon = (shared_vec4){0};
+    if (!sky->night) return true;
+    if (!scene_evaluate_scalar(sky->night, context, &night) ||
+        !scene_evaluate(sky->night_zenith, context, zenith) ||
+        !scene_evaluate(sky->night_horizon, context, horizon) ||
+        !scene_evaluate_scalar(sky->stars, context, &stars) ||
+        !scene_evaluate_scalar(sky->moon, context, &moon))
+        return false;
+    night = scene_limit(night, 0, 1);
+    for (int i = 0; i < 3; i++) {
+        out->night_zenith.v[i] = scene_limit_light(zenith[i]);
+        out->night_horizon.v[i] = scene_limit_light(horizon[i]);
+        out->sky_zenith.v[i] = mixf(out->sky_zenith.v[i], out->night_zenith.v[i], night);
+        out->sky_horizon.v[i] = mixf(out->sky_horizon.v[i], out->night_horizon.v[i], night);
+    }
+    out->night_zenith.v[3] = night;
+    out->night_horizon.v[3] = scene_limit_light(stars);
+    out->sun_direction.v[3] = radians(scene_limit(moon, 0, 90) / 2);
+    return true;
+}
+
 static bool fill_sky(const scene_sky *sky, const field_context *context, struct frame_block *out) {
     float zenith[4], horizon[4], strength, rotation;
     if (!scene_evaluate(sky->zenith, context, zenith) ||
@@ -213,7 +254,7 @@ static bool fill_sky(const scene_sky *sky, const field_context *context, struct 
         out->sky_zenith.v[i] = scene_limit_light(zenith[i] * strength);
         out->sky_horizon.v[i] = scene_limit_light(horizon[i] * strength);
     }
-    return true;
+    return fill_night(sky, context, out);
 }
 
 bool scene_fill_frame(const scene *s, const field_context *context, float aspect,

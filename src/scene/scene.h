@@ -27,6 +27,10 @@ typedef struct scene_sky {
     const field *zenith, *horizon; // vec3, radiance
     const field *strength;
     const field *rotation;         // degrees about +Z, of the image
+    const field *night;            // 0..1: how much of the sky is night; NULL: there is none
+    const field *night_zenith, *night_horizon; // vec3, radiance
+    const field *stars;                        // factor of what they and the moon shine
+    const field *moon; // degrees across, where the sun stands; 0: none
     const struct sky_image *image; // instead of the two colours; NULL: none (sky_image.h)
 } scene_sky;
 
@@ -56,6 +60,8 @@ typedef struct scene_node { // a place that meshes and instances may stand in
     const struct scene_node *parent; // that this stands in; NULL: the world
 } scene_node;
 
+typedef struct scene_material scene_material;
+
 typedef struct scene_mesh {
     const char *name;
     mesh_data data;
@@ -64,6 +70,7 @@ typedef struct scene_mesh {
     const field *scale;             // factor
     const scene_node *parent;       // that it stands in; NULL: the world
     const field *color;             // vec3, multiplies the material's
+    const scene_material *material; // material.h; NULL: the file's
     gpu_buffer *vertices, *indices; // made on first use
     gpu_image **textures;           // per mesh_data texture
 } scene_mesh;
@@ -81,6 +88,7 @@ typedef enum scene_need { // where a scene has a value at all
     SCENE_ORBIT,    // of a camera that circles its target
     SCENE_GRADIENT, // of a sky without an image
     SCENE_IMAGE,    // of a sky with one
+    SCENE_NIGHT,    // of a sky that has a night
 } scene_need;
 
 typedef struct scene_value { // one value of camera, sun, sky or a light

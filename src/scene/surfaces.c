@@ -50,7 +50,7 @@ static void add_material(surfaces *s, const mesh_data *mesh, const mesh_part *pa
 }
 
 void surfaces_add(surfaces *s, const bvh_forest *f, size_t end, const mesh_data *mesh) {
-    uint32_t vertex = (uint32_t)s->vertex_count, material = (uint32_t)s->material_count;
+    uint32_t vertex = (uint32_t)s->vertex_count;
     MEM_RESERVE(s->vertices, s->vertex_count + mesh->vertex_count, s->vertex_capacity);
     memcpy(s->vertices + s->vertex_count, mesh->vertices,
            mesh->vertex_count * sizeof *mesh->vertices);
@@ -67,7 +67,7 @@ void surfaces_add(surfaces *s, const bvh_forest *f, size_t end, const mesh_data 
         bvh_origin from = f->origins[s->triangle_count];
         const uint32_t *corner = mesh->indices + from.first;
         s->triangles[s->triangle_count] = (shared_uvec4){
-            {vertex + corner[0], vertex + corner[1], vertex + corner[2], material + from.part}};
+            {vertex + corner[0], vertex + corner[1], vertex + corner[2], from.part}};
     }
 }
 

@@ -4,11 +4,11 @@
 #include "scene/bvh_tree.h"
 
 typedef struct surfaces {    // zero: empty
-    shared_uvec4 *triangles; // of each of the forest: its three vertices and its material
+    shared_uvec4 *triangles; // of each of the forest: its three vertices and the part it is of
     size_t triangle_count, triangle_capacity;
     struct surface_vertex *vertices;
     size_t vertex_count, vertex_capacity;
-    struct surface_material *materials;
+    struct surface_material *materials; // of the parts of each mesh
     size_t material_count, material_capacity;
     uint16_t (*texels)[4]; // linear, half floats
     size_t texel_count, texel_capacity;

@@ -14,6 +14,9 @@ typedef struct script {
     const char *unsound; // what was left half made by an error that the script caught; or NULL
     bool declared;       // effect { } was called
     int update;          // registry reference of fx.update, or LUA_NOREF
+    int handlers;        // of the lists of functions of fx:on_frame and the like (l_events.c)
+    uint64_t seed;       // of math.random
+    struct scene_explosions *explosions; // all lists of the script, linked; NULL: there is none
 } script;
 
 script *script_of(lua_State *L);
@@ -54,6 +57,7 @@ typedef struct sky_object {
 } sky_object;
 typedef struct mesh_object {
     scene_mesh *mesh;
+    bool placed; // it has a place or a colour of its own
 } mesh_object;
 typedef struct picture_object { // a file's: image "templates/source.exr"
     const struct picture *picture;
@@ -107,6 +111,10 @@ bool value_get_bool(lua_State *L, int table, const char *who, const char *key, b
 const char *value_get_string(lua_State *L, int table, const char *who, const char *key);
 // The key `name`; without one, the variable that the script assigns the call to; else `who`.
 const char *value_name_or_variable(lua_State *L, int table, const char *who); // naming.c
+// NULL when absent.
+const scene_node *value_get_node(lua_State *L, int table, const char *who, const char *key);
+scene_instances *value_instances(lua_State *L, int index);            // NULL: something else
+void instances_push(lua_State *L, const scene_instances *instances); // the object of the script
 bool value_get_vector(lua_State *L, int table, const char *who, const char *key, float out[3]);
 // The table's box = { min, max }; false when absent.
 bool value_get_box(lua_State *L, int table, const char *who, box3 *out);
@@ -138,7 +146,15 @@ int l_bake(lua_State *L); // functions, and methods of fields
 int l_tile(lua_State *L);
 int l_slices_templates(lua_State *L); // a method of slices
 
+bool events_push_method(lua_State *L, const char *name); // of the effect; false: it has none
+void events_assign(lua_State *L);                        // of the list at 3 to the effect
+void explosions_reset(script *s); // of all lists; l_shell.c
+bool script_start(void *user);                           // as effect_hooks has them
+bool script_frame(void *user, double time, double dt);
+bool script_event(void *user, const struct effect_happening *what);
+
 void l_effect_open(lua_State *L);
+void l_events_open(lua_State *L);
 void l_param_open(lua_State *L);
 void l_field_open(lua_State *L);
 void l_curve_open(lua_State *L);
@@ -146,11 +162,14 @@ void l_palette_open(lua_State *L);
 void l_grid_open(lua_State *L);
 void l_scene_open(lua_State *L);
 void l_light_open(lua_State *L);
+void l_instances_open(lua_State *L);
+void l_scatter_open(lua_State *L);
 void l_pass_open(lua_State *L);
 void l_lbm_open(lua_State *L);
 void l_slices_open(lua_State *L);
 void l_lamps_open(lua_State *L);
 void l_particles_open(lua_State *L);
+void l_shell_open(lua_State *L);
 void l_voxels_open(lua_State *L);
 void l_deposit_open(lua_State *L);
 void l_image_open(lua_State *L);

@@ -132,14 +132,20 @@ static void add_image(lua_State *L, pass_call *call, int value) {
 
 static void add_positional(lua_State *L, pass_call *call, int value) {
     const mesh_object *mesh = object_test(L, value, "mesh");
+    scene_instances *instances = value_instances(L, value);
     graph_image image;
     if (mesh) {
         vm_charge_memory(L, sizeof mesh);
         if (!pass_add_mesh(call->pass, mesh->mesh)) script_raise(L);
+    } else if (instances) {
+        vm_charge_memory(L, sizeof instances);
+        if (!pass_add_instances(call->pass, instances)) script_raise(L);
     } else if (value_image(L, value, &image)) {
         add_image(L, call, value);
     } else {
-        vm_error(L, "%s: values without a name are images, or meshes for geometry; got a %s",
+        vm_error(L,
+                 "%s: values without a name are images, or meshes and instances for geometry; got "
+                 "a %s",
                  call->who, luaL_typename(L, value));
     }
 }
@@ -401,7 +407,8 @@ static int l_shader(lua_State *L) {
 static bool has_constructor(const char *type) {
     static const char *const types[] = {"bake",          "deposit",         "picture",
                                         "lbm",           "lbm_source",      "particles",
-                                        "point_lights",  "slices",          "slices_force",
+                                        "point_lights",  "shell",           "slices",
+                                        "slices_force",
                                         "slices_inflow", "slices_obstacle", "slices_templates",
                                         "voxels"};
     for (size_t i = 0; i < COUNT_OF(types); i++)

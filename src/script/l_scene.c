@@ -62,6 +62,45 @@ static int l_sky(lua_State *L) {
     return 1;
 }
 
+enum { MOST_NODES = 64 }; // one in the other
+
+typedef struct node_object {
+    const scene_node *node;
+} node_object;
+
+const scene_node *value_get_node(lua_State *L, int table, const char *who, const char *key) {
+    const scene_node *node = NULL;
+    if (value_get(L, table, key) != LUA_TNIL) {
+        const node_object *object = object_test(L, -1, "node");
+        if (!object)
+            vm_error(L, "%s: '%s' takes node { }; got a %s", who, key, luaL_typename(L, -1));
+        node = object->node;
+    }
+    lua_pop(L, 1);
+    return node;
+}
+
+// node { position = {0, 0, 2}, parent = ... }: what meshes and instances may stand in.
+static int l_node(lua_State *L) {
+    value_refuse_array(L, "node");
+    node_object *object = object_new(L, "node", sizeof *object);
+    vm_charge_memory(L, sizeof(scene_node) + 3 * sizeof(field));
+    arena *memory = script_memory(L);
+    scene_node *node = arena_alloc(memory, sizeof *node);
+    *node = (scene_node){.name = value_name_or_variable(L, 1, "node"),
+                         .position = field_constant(memory, 3, (float[4]){0}),
+                         .rotation = field_constant(memory, 3, (float[4]){0}),
+                         .scale = field_constant(memory, 1, (float[4]){1}),
+                         .parent = value_get_node(L, 1, "node", "parent")};
+    int depth = 1;
+    for (const scene_node *n = node->parent; n; n = n->parent) depth++;
+    if (depth > MOST_NODES)
+        vm_error(L, "node: %d stand in each other; at most %d are possible", depth, MOST_NODES);
+    value_read_slots(L, "node", node);
+    object->node = node;
+    return 1;
+}
+
 // mesh { "data/ground.obj", ... }, or mesh "data/ground.obj".
 static int l_mesh(lua_State *L) {
     scene_mesh values = {0};
@@ -85,12 +124,15 @@ static int l_mesh(lua_State *L) {
     if (values.rotation) mesh->rotation = values.rotation;
     if (values.scale) mesh->scale = values.scale;
     if (values.color) mesh->color = values.color;
+    mesh->parent = value_get_node(L, 1, "mesh", "parent");
+    object->placed =
+        values.position || values.rotation || values.scale || values.color || mesh->parent;
     object->mesh = mesh;
     return 1;
 }
 
 void l_scene_open(lua_State *L) {
-    static const char *const types[] = {"camera", "sun", "sky", "mesh"};
+    static const char *const types[] = {"camera", "sun", "sky", "mesh", "node"};
     static const luaL_Reg none[] = {{NULL, NULL}};
     for (size_t i = 0; i < COUNT_OF(types); i++) object_type(L, types[i], none);
     lua_register(L, "orbit", l_orbit);
@@ -98,4 +140,5 @@ void l_scene_open(lua_State *L) {
     lua_register(L, "sun", l_sun);
     lua_register(L, "sky", l_sky);
     lua_register(L, "mesh", l_mesh);
+    lua_register(L, "node", l_node);
 }

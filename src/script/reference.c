@@ -239,6 +239,32 @@ static const script_object objects[] = {
         KEY("warm_up", "0 s", "that are simulated before the first frame, in air as it is then"),
         KEY("name", "\"particles\"", "for --set NAME.key=value and statistics; numbered when taken"))},
 
+    {"explosions", "source", "local blasts = explosions { {0.5, position = {0, 0, 1}}, {1.2, size = 0.5} }",
+     "a list of what bursts: when, where, how large; `shell` draws it. #list is how many there are. Up to 1024",
+     .args = KEYS(KEY("explosion ...", "{time, ...}", "seconds, and the keys of `explosion`; none: `add` adds them")),
+     .members = KEYS(
+        KEY("add", "blasts:add { position = {x, y, z}, size = 2 }",
+            "one more from now on, while the effect runs: from a function of fx:on_frame, fx:on_key or "
+            "fx:on_click. It is forgotten when time goes back"),
+        KEY("get", "blasts:get(2)", "{ time, position, size, life, seed } of the second, or nil"),
+        KEY("latest", "blasts:latest(t, 2)",
+            "the same of those that have begun by t: the second youngest, or nil. For lights: "
+            "position = function(t) ... end"))},
+    {"explosion", "source", "{ 0.5, position = {0, 0, 1}, size = 2, seed = 4 }",
+     "one of `explosions`, a table: its time (s) comes first, of blasts:add without it the time is now",
+     .keys = KEYS(
+        KEY("position", "0, 0, 0 m", "where it bursts"),
+        KEY("size", "1", "factor of the radius"),
+        KEY("life", "1", "factor of how long it takes"),
+        KEY("seed", "number [0, 16777215]", "no two look alike; without: its number in the list"))},
+    {"shell", "source", "local ball = shell { at = blasts, radius = 2, displacement = layers { {2, 1}, {7, 0.4} }, color = fire(shell_displacement + shell_depth).rgb }",
+     "balls of fire and globes of smoke: spheres pushed out along their normals, one for each explosion; "
+     "`over` lays them over a picture. What else it takes is what `roil info passes shell` lists: radius, "
+     "displacement, color, clip, opacity, life ...",
+     .keys = KEYS(
+        KEY("at", "explosions { }", "when and where; without: once, at 0 s in the origin. The 64 youngest are drawn"),
+        KEY("name", "\"shell\"", "for --set NAME.life=3 and statistics; numbered when taken"))},
+
     {"point_lights", "source", "local lamps = point_lights { count = 200, position = vec(3 * sin(time + light_index), 0, 2) }",
      "point lights by the hundred, for shade { from = {scene, lamps} } and forward { }: fields say how "
      "each of them shines, and may use light_index and light_random. What else it takes is what "
@@ -296,7 +322,56 @@ static const script_object objects[] = {
         SLOT(scene_mesh, position, 3, "0, 0, 0 m", "where its origin goes"),
         SLOT(scene_mesh, rotation, 3, "0, 0, 0 degrees", "about X, then Y, then Z"),
         SLOT(scene_mesh, scale, 1, "1", "factor of its size"),
-        SLOT(scene_mesh, color, 3, "1, 1, 1", "multiplies the material's"))},
+        SLOT(scene_mesh, color, 3, "1, 1, 1", "multiplies the material's"),
+        KEY("parent", "node { }", "that it stands in"))},
+    {"node", "scene", "local boat = node { position = {0, 0, 2} }; mesh { \"data/mast.obj\", parent = boat }",
+     "a place for meshes and instances to stand in: they move, turn and grow with it",
+     .keys = KEYS(
+        SLOT(scene_node, position, 3, "0, 0, 0 m", "where its origin goes"),
+        SLOT(scene_node, rotation, 3, "0, 0, 0 degrees", "about X, then Y, then Z"),
+        SLOT(scene_node, scale, 1, "1", "factor of its size"),
+        KEY("parent", "node { }", "that it stands in"),
+        KEY("name", "the variable's", "for messages"))},
+    {"instances", "scene", "geometry { instances { mesh { \"data/pine.obj\" }, at = scatter { count = 500, size = {120, 120} } } }",
+     "many copies of a few meshes, for geometry: each with a place, a look and four numbers of yours, "
+     "which may change at any time. When time goes back they are as they began. Numbers are said for "
+     "all, as {low, high} for chance to pick from, as a list, or by a function(i, place)",
+     .args = KEYS(KEY("mesh ...", "mesh { \"data/pine.obj\" }", "1 to 64: the kinds 1, 2, 3 ...")),
+     .keys = KEYS(
+        KEY("at", "scatter { }, { {x, y, z}, ... } m", "where they stand; required"),
+        KEY("kind", "1", "which of the meshes; a list: of each, or the share of each mesh; 0: not shown"),
+        KEY("scale", "1", "factor of their size"),
+        KEY("yaw", "0 degrees", "how they are turned about +Z"),
+        KEY("lean", "0 degrees", "how far at most they lean, each into a direction of its own"),
+        KEY("color", "1, 1, 1", "multiplies that of the mesh; two colours: between them"),
+        KEY("glow", "1", "factor of what the mesh emits"),
+        KEY("state", "0, 0, 0, 0", "numbers of yours, which fields read as instance_state"),
+        KEY("seed", "1", "of chance"),
+        KEY("position", "0, 0, 0 m", "of all together; may move"),
+        KEY("rotation", "0, 0, 0 degrees", "of all together: about X, then Y, then Z; may move"),
+        KEY("tint", "1, 1, 1", "of all together; may move"),
+        KEY("parent", "node { }", "that all stand in"),
+        KEY("name", "the variable's", "for messages")),
+     .members = KEYS(
+        KEY("get(i)", NULL, "{ position, yaw, scale, kind, color, glow, state, random } of one; #forest is how many"),
+        KEY("set(i, { })", "{ kind = 3, scale = 1, state = {1} }",
+            "any of position, rotation, yaw, scale, kind, color, glow, state; of a list of i, too; "
+            "numbers of the state that are not given stay"),
+        KEY("set_all { }", "{ glow = 2, state = { {1, 0}, {0, 3}, ... } }", "of all: one value, or a list of as many"),
+        KEY("near({x, y, z}, radius)", NULL, "numbers of those that stand there, the nearest first"),
+        KEY("reset()", NULL, "all are as they began"))},
+    {"scatter", "scene", "scatter { count = 500, size = {120, 120}, distance = 2.2 }",
+     "a list of places {x, y, z} by chance, none too near to another: for `at` of instances. Fewer "
+     "when no more find room",
+     .keys = KEYS(
+        KEY("count", "number [1, 131072]", "how many; with a distance, without: all that have room"),
+        KEY("size", "{x, y} m", "sides of the rectangle that is filled; required"),
+        KEY("position", "0, 0, 0 m", "its middle"),
+        KEY("distance", "0 m", "between two, at least"),
+        KEY("inside", "field", "places where it is above 0 stay"),
+        KEY("density", "field", "0..1: how likely a place stays"),
+        KEY("height", "field m", "of the ground: lifts them"),
+        KEY("seed", "1", "of chance"))},
     {"camera", "scene", "fx.camera = camera { eye = {0, -6, 2} }",
      "a camera that stands somewhere and looks at a target",
      .keys = KEYS(
@@ -331,6 +406,11 @@ static const script_object objects[] = {
             "instead of the colours: an equirectangular .exr of up to 8192x4096, whose middle is "
             "+Y"),
         SLOT(scene_sky, rotation, 1, "0 degrees", "of the image, about +Z"),
+        SLOT(scene_sky, night, 1, "none [0, 1]", "how much of the sky is night, over its colours or its image: dark, with stars"),
+        SLOT(scene_sky, night_zenith, 3, "0.003, 0.006, 0.016", "radiance of the night straight up"),
+        SLOT(scene_sky, night_horizon, 3, "0.012, 0.018, 0.034", "radiance of the night at the horizon"),
+        SLOT(scene_sky, stars, 1, "1", "factor of what stars and moon shine"),
+        SLOT(scene_sky, moon, 1, "0 degrees", "how wide the moon looks, which stands where the sun does; 0: none"),
         SLOT(scene_sky, strength, 1, "0.6; 1 of an image", "factor of its light"))},
     {"point_light", "scene", "fx.lights = { point_light { position = {2, 0, 3}, power = 200 } }",
      "a light that shines from a point into all directions",
@@ -364,7 +444,28 @@ static const script_object objects[] = {
         KEY("sun", "sun { }", "see there"),
         KEY("sky", "sky { }", "see there"),
         KEY("lights", "{ point_light { }, ... }", "up to 63 besides the sun"),
-        KEY("update", "function(t, dt)", "runs before each frame, to set parameters"))},
+        KEY("update", "function(t, dt)", "runs before each frame, to set parameters"),
+        KEY("events", "{ { 2.5, key = \"f\" }, { 3, click = {0.4, 0.6} } }",
+            "what happens to it at which second; {x, y}: 0..1 from the top left of the picture, "
+            "{x, y, z}: over that point; at = {x, y} gives a key a place, too. `--event` says "
+            "another list"),
+        KEY("on_start", "fx:on_start(function() end)",
+            "runs at time 0, and again whenever time goes back: what the functions below keep "
+            "begins anew there"),
+        KEY("on_frame", "fx:on_frame(function(t, dt) end)",
+            "runs at each frame of the timeline once, those left out too; several, in order"),
+        KEY("on_key", "fx:on_key(\"f\", function(event) end, \"what it does\")",
+            "runs when the key is pressed: event.time, event.key and what on_click has"),
+        KEY("on_click", "fx:on_click(function(event) end, \"what it does\")",
+            "runs at a click in the picture: event.x, event.y, event.ray { origin, direction }, "
+            "event.hit { position, normal, distance, mesh, instances, index } or nil"),
+        KEY("status", "fx:status(\"burning\", 12)", "a number for users to see while it runs"))},
+    {"pick", "effect", "pick(0.5, 0.5), pick { {0, -5, 1}, {0, 1, 0} }",
+     "what a ray meets first, through a place in the picture or from a point into a direction: as "
+     "event.hit of fx:on_click. Meshes that are drawn, else the ground z = 0; else nil. While the "
+     "effect runs, not while the file loads",
+     .args = KEYS(KEY("x, y", NULL, "0..1 from the top left of the picture"),
+                  KEY("ray", NULL, "instead: origin and direction"))},
     {"shader", "effect", "shader { \"haze.comp\", image, strength = 0.2 }",
      "a GLSL file of yours as a pass. Passes give images: the pass itself is its first output, "
      "result.NAME any. The keys below are every pass's; others are what the file declares",

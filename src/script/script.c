@@ -82,6 +82,9 @@ static void set_hooks(script *s) {
     effect_set_hooks(s->effect, &(effect_hooks){
                                     .call = script_call,
                                     .update = s->update == LUA_NOREF ? NULL : update,
+                                    .start = script_start,
+                                    .frame = script_frame,
+                                    .event = script_event,
                                     .destroy = destroy,
                                     .user = s,
                                 });
@@ -102,16 +105,20 @@ static void add_file(void *user, const char *path) {
 static int open_bindings(lua_State *L) {
     l_field_open(L);
     l_effect_open(L);
+    l_events_open(L);
     l_param_open(L);
     l_curve_open(L);
     l_palette_open(L);
     l_grid_open(L);
     l_scene_open(L);
     l_light_open(L);
+    l_instances_open(L);
+    l_scatter_open(L);
     l_pass_open(L);
     l_lbm_open(L);
     l_slices_open(L);
     l_particles_open(L);
+    l_shell_open(L);
     l_lamps_open(L);
     l_voxels_open(L);
     l_deposit_open(L);
@@ -153,7 +160,7 @@ bool script_load_limited(effect *e, const char *prelude_folder, const script_lim
     shown_folder(effect_file(e), shown);
     if (!path_join(library, prelude_folder, "lib")) return false;
     script *s = mem_alloc(sizeof *s);
-    *s = (script){.effect = e, .loading = true, .update = LUA_NOREF};
+    *s = (script){.effect = e, .loading = true, .update = LUA_NOREF, .handlers = LUA_NOREF};
     if (limits) s->limits = *limits;
     if (!s->limits.memory) s->limits.memory = MEMORY_LIMIT;
     if (!s->limits.load) s->limits.load = LOAD_LIMIT;

@@ -19,6 +19,8 @@ typedef struct pass_world {
     size_t count;
     scene_mesh meshes[4];
     size_t mesh_count;
+    scene_instances *instances[2];
+    size_t instances_count;
 } pass_world;
 
 static inline const field *number(pass_world *w, float value) {
@@ -136,6 +138,8 @@ static inline void world_frame(pass_world *w, uint32_t width, uint32_t height, u
     gpu_test_ok(scene_fill_lights(&w->scene, &w->context, &w->lights));
     w->frame.size = (shared_uvec4){{width, height, frame, 0}};
     gpu_test_ok(gpu_frame_begin(w->host.device));
+    for (size_t i = 0; i < w->instances_count; i++)
+        gpu_test_ok(scene_instances_upload(w->instances[i], w->host.device));
     gpu_test_ok(scene_bvh_update(w->host.bvh, w->host.device, &w->context));
     gpu_test_ok(graph_execute(w->host.graph, w->host.device));
     gpu_test_ok(gpu_frame_end(w->host.device));
@@ -147,8 +151,10 @@ static inline void world_render(pass_world *w, uint32_t width, uint32_t height,
     gpu_test_ok(graph_compile(w->host.graph, width, height));
     scene_mesh *meshes[COUNT_OF(w->meshes)];
     for (size_t i = 0; i < w->mesh_count; i++) meshes[i] = &w->meshes[i];
-    w->host.bvh = scene_bvh_create(meshes, w->mesh_count);
+    w->host.bvh = scene_bvh_create(meshes, w->mesh_count, w->instances, w->instances_count);
     gpu_test_ok(w->host.bvh && scene_bvh_allocate(w->host.bvh, w->host.device));
+    for (size_t i = 0; i < w->instances_count; i++)
+        gpu_test_ok(scene_instances_allocate(w->instances[i], w->host.device));
     for (size_t i = 0; i < w->count; i++)
         gpu_test_ok(pass_build(w->passes[i]) && pass_allocate(w->passes[i]));
     gpu_test_ok(graph_allocate(w->host.graph, w->host.device));
@@ -181,6 +187,8 @@ static inline float *world_read_depth(pass_world *w, graph_image image) {
 static inline void world_close(pass_world *w) {
     for (size_t i = 0; i < w->count; i++) pass_destroy(w->passes[i]);
     for (size_t i = 0; i < w->mesh_count; i++) scene_mesh_destroy(&w->meshes[i], w->host.device);
+    for (size_t i = 0; i < w->instances_count; i++)
+        scene_instances_destroy(w->instances[i], w->host.device);
     scene_bvh_destroy(w->host.bvh, w->host.device);
     graph_destroy(w->host.graph, w->host.device);
     pass_host_free(&w->host);

@@ -230,10 +230,10 @@ static void more_meshes_than_can_be_placed_are_refused(void **state) {
     scene_mesh mesh = {.name = "one", .data = s.data};
     scene_mesh *meshes[SCENE_BVH_MAX_MESHES + 1];
     for (size_t i = 0; i < COUNT_OF(meshes); i++) meshes[i] = &mesh;
-    scene_bvh *b = scene_bvh_create(meshes, SCENE_BVH_MAX_MESHES);
+    scene_bvh *b = scene_bvh_create(meshes, SCENE_BVH_MAX_MESHES, NULL, 0);
     assert_non_null(b);
     scene_bvh_destroy(b, NULL);
-    assert_null(scene_bvh_create(meshes, COUNT_OF(meshes)));
+    assert_null(scene_bvh_create(meshes, COUNT_OF(meshes), NULL, 0));
     assert_string_equal(err_get(), "257 meshes; at most 256 are possible");
     free_soup(&s);
 }

@@ -13,8 +13,8 @@ uint shaft_start(int light) {
 }
 
 // A leaf in a word: the instance in 8 bits, its triangles less one in 2, its first triangle in 22.
-bool shaft_can_hold(uint leaf) {
-    return (leaf & 0x0fffffffu) < 1u << 22;
+bool shaft_can_hold(uint instance, uint leaf) {
+    return instance < 256u && (leaf & 0x0fffffffu) < 1u << 22;
 }
 
 uint shaft_pack(uint instance, uint leaf) {

@@ -1,0 +1,64 @@
+// The inside of the trees that rays meet, for bvh*.c only.
+#pragma once
+#include "scene/bvh.h"
+#include "scene/bvh_tree.h"
+#include "scene/surfaces.h"
+
+typedef struct tree { // nodes of the forest
+    uint32_t root, end;
+    size_t triangles; // of the forest, up to those of this tree
+} tree;
+
+// A mesh, or instances. What it was placed by last tells what has changed.
+typedef struct thing {
+    scene_mesh *mesh;           // NULL: instances
+    scene_instances *instances; // NULL: a mesh
+    size_t first_mesh;          // among those of the trees
+    size_t first, count;        // of its items
+    bool placed;
+    mat4 transform;
+    float tint[4];
+    uint64_t version;
+    struct instance_entry *entries;
+} thing;
+
+// All that is placed are items, one behind the other by their things. On the device they lie in the
+// order of the tree over them.
+struct scene_bvh {
+    scene_mesh **meshes; // alone, then the kinds of each of the instances
+    tree *trees;         // per mesh
+    uint32_t *materials; // per mesh: the first of its own
+    size_t material_count;
+    size_t mesh_count;
+    thing *things;
+    size_t thing_count;
+    size_t item_count;
+
+    bvh_forest forest;  // its first nodes are of the tree over the items
+    uint32_t top_count; // 0: there is none yet
+    float top_cost;     // as it was when it was made
+    bool top_moved;     // an item's box has changed
+    bool top_changed;   // nodes have
+
+    struct bvh_instance *items; // in the order of the tree
+    uint32_t *item_at;          // by item: its place there
+    uint8_t *changed;           // marks of items (runs.h)
+
+    struct surface_material *looks; // of all materials, once they are on the device
+    bool looked;                    // they have been written
+    bool holes;
+    gpu_buffer *buffers[BVH_PARTS];
+};
+
+enum { BVH_HEAD = 16 }; // bytes before the items of "BvhInstances": how many, and nodes over them
+
+// The materials of all meshes (bvh_looks.c): counted when all trees are made, then added with the
+// surfaces of each mesh, then brought to each frame.
+void bvh_looks_count(scene_bvh *b);
+void bvh_looks_add(scene_bvh *b, surfaces *s, size_t mesh);
+bool bvh_looks_update(scene_bvh *b, gpu *g, const field_context *context);
+// The tree over the items is made, where there is none, or follows their boxes (bvh_top.c).
+void bvh_top_update(scene_bvh *b);
+size_t bvh_top_nodes(size_t items); // that it may take
+// The box of an item that is not to be seen: nothing meets it.
+bool bvh_is_nowhere(const struct bvh_instance *item);

@@ -1,0 +1,153 @@
+// The tree over all that is placed. When something has moved its boxes are fitted anew; when they
+// have come to cost more than they did it is built anew (Lauterbach et al., "RT-DEFORM: Interactive
+// ray tracing of dynamic scenes using BVHs", 2006, section 3.3). A few items are one leaf.
+#include "base/memory.h"
+#include "scene/bvh_impl.h"
+#include "scene/runs.h"
+#include <math.h>
+#include <string.h>
+
+enum { ONE_LEAF = 8 };              // items that need no tree
+static const float worn_out = 1.5f; // costs by those of the tree when it was built
+
+size_t bvh_top_nodes(size_t items) {
+    return items <= ONE_LEAF ? 1 : 2 * items - 1;
+}
+
+bool bvh_is_nowhere(const struct bvh_instance *item) {
+    return item->low.v[0] >= 1e30f;
+}
+
+static bvh_bounds item_box(const struct bvh_instance *item) {
+    bvh_bounds box = bvh_bounds_empty();
+    if (bvh_is_nowhere(item)) return box;
+    memcpy(box.low, item->low.v, sizeof box.low);
+    memcpy(box.high, item->high.v, sizeof box.high);
+    return box;
+}
+
+// A box of nothing is where no ray goes.
+static void set_box(struct bvh_node *node, const bvh_bounds *box) {
+    for (int a = 0; a < 3; a++) {
+        bool empty = box->low[a] > box->high[a];
+        node->low.v[a] = empty ? 1e30f : box->low[a];
+        node->high.v[a] = empty ? 1e30f : box->high[a];
+    }
+}
+
+static bvh_bounds node_box(const struct bvh_node *node) {
+    bvh_bounds box = bvh_bounds_empty();
+    if (node->low.v[0] >= 1e30f) return box;
+    memcpy(box.low, node->low.v, sizeof box.low);
+    memcpy(box.high, node->high.v, sizeof box.high);
+    return box;
+}
+
+// Children lie behind their parents.
+static void fit(scene_bvh *b) {
+    struct bvh_node *nodes = b->forest.nodes;
+    for (uint32_t i = b->top_count; i-- > 0;) {
+        struct bvh_node *node = &nodes[i];
+        bvh_bounds box = bvh_bounds_empty();
+        if (node->leaf) {
+            uint32_t first = node->leaf & 0xfffffff;
+            for (uint32_t k = first; k < first + (node->leaf >> 28); k++) {
+                bvh_bounds one = item_box(&b->items[k]);
+                bvh_bounds_add(&box, &one);
+            }
+        } else {
+            bvh_bounds left = node_box(node + 1), right = node_box(&nodes[node[1].next]);
+            bvh_bounds_add(&box, &left);
+            bvh_bounds_add(&box, &right);
+        }
+        set_box(node, &box);
+    }
+}
+
+// The area of all boxes of the tree by that of the items': what does not change when all moves, or
+// one item moves far away.
+static float cost(const scene_bvh *b) {
+    double nodes = 0, items = 0;
+    for (uint32_t i = 0; i < b->top_count; i++) {
+        bvh_bounds box = node_box(&b->forest.nodes[i]);
+        nodes += (double)bvh_bounds_area(&box);
+    }
+    for (size_t i = 0; i < b->item_count; i++) {
+        bvh_bounds box = item_box(&b->items[i]);
+        items += (double)bvh_bounds_area(&box);
+    }
+    return items > 0 ? (float)(nodes / items) : 0;
+}
+
+// ---- building ---------------------------------------------------------------------------------
+
+typedef struct top_build {
+    uint32_t *order; // items, leaf by leaf
+    uint32_t count;
+} top_build;
+
+static uint32_t add_leaf(void *user, const bvh_piece *pieces, size_t count) {
+    top_build *t = user;
+    uint32_t first = t->count;
+    for (size_t i = 0; i < count; i++) t->order[t->count++] = pieces[i].first;
+    return first;
+}
+
+// An item that is nowhere has its place in the tree all the same, in the middle of the others.
+static bvh_piece *make_pieces(const scene_bvh *b) {
+    bvh_piece *pieces = mem_alloc(b->item_count * sizeof *pieces);
+    for (size_t i = 0; i < b->item_count; i++) {
+        bvh_piece *p = &pieces[i];
+        p->box = item_box(&b->items[b->item_at[i]]);
+        p->first = (uint32_t)i;
+        if (p->box.low[0] > p->box.high[0]) continue;
+        for (int a = 0; a < 3; a++) p->middle[a] = 0.5f * p->box.low[a] + 0.5f * p->box.high[a];
+    }
+    return pieces;
+}
+
+static void reorder(scene_bvh *b, const uint32_t *order) {
+    struct bvh_instance *before = mem_copy(b->items, b->item_count * sizeof *before);
+    uint32_t *place = mem_copy(b->item_at, b->item_count * sizeof *place);
+    for (uint32_t k = 0; k < b->item_count; k++) {
+        b->items[k] = before[place[order[k]]];
+        b->item_at[order[k]] = k;
+    }
+    mem_free(before);
+    mem_free(place);
+    memset(b->changed, 1, run_marks(b->item_count));
+}
+
+static void build(scene_bvh *b) {
+    if (b->item_count <= ONE_LEAF) {
+        b->top_count = 1;
+        b->forest.nodes[0] = (struct bvh_node){.next = 1, .leaf = (uint32_t)b->item_count << 28};
+        return;
+    }
+    top_build t = {.order = mem_alloc(b->item_count * sizeof *t.order)};
+    bvh_build made = {.add_leaf = add_leaf, .user = &t};
+    bvh_piece *pieces = make_pieces(b);
+    bvh_build_tree(&made, pieces, b->item_count);
+    memcpy(b->forest.nodes, made.nodes, made.node_count * sizeof *made.nodes);
+    b->top_count = (uint32_t)made.node_count;
+    reorder(b, t.order);
+    mem_free(pieces);
+    mem_free(made.nodes);
+    mem_free(t.order);
+}
+
+void bvh_top_update(scene_bvh *b) {
+    bool first = b->top_count == 0;
+    if ((!b->top_moved && !first) || b->item_count == 0) return;
+    if (first) build(b);
+    fit(b);
+    if (first || (b->item_count > ONE_LEAF && cost(b) > worn_out * b->top_cost)) {
+        if (!first) {
+            build(b);
+            fit(b);
+        }
+        b->top_cost = cost(b);
+    }
+    b->top_moved = false;
+    b->top_changed = true;
+}
