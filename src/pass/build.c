@@ -39,7 +39,7 @@ bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_
     arena *memory = p->host->memory;
     size_t count = 0;
     shader_define *all = arena_alloc(memory, (define_count + face->image_count + face->field_count +
-                                              1 + PASS_PARTICLES_DEFINES + PASS_LAMPS_DEFINES) *
+                                              2 + PASS_PARTICLES_DEFINES + PASS_LAMPS_DEFINES) *
                                                  sizeof *all);
     for (size_t i = 0; i < define_count; i++) all[count++] = defines[i];
     for (size_t i = 0; i < face->image_count; i++) {
@@ -55,6 +55,7 @@ bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_
     if (p->lamps) count += pass_lamps_defines(p, all + count);
     const scene *around = p->host->scene;
     all[count++] = (shader_define){"SKY_IMAGE", around && around->sky.image ? "1" : "0"};
+    all[count++] = (shader_define){"SKY_NIGHT", around && around->sky.night ? "1" : "0"};
     bool without = false;
     for (size_t i = 0; i < define_count; i++)
         without = without || strcmp(defines[i].name, "WITHOUT_FIELDS") == 0;
@@ -272,6 +273,7 @@ void pass_destroy(pass *p) {
     pass_lamps_destroy(p);
     if (p->pipeline) gpu_pipeline_destroy(device, p->pipeline);
     mem_free(p->meshes);
+    mem_free(p->instances);
     mem_free(p->sources);
     *p = (pass){0};
 }

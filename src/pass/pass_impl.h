@@ -27,6 +27,8 @@ struct pass {
     float scale;
     scene_mesh **meshes;
     size_t mesh_count, mesh_capacity;
+    scene_instances **instances;
+    size_t instances_count, instances_capacity;
     pass **sources; // asked, in order, for what this pass says nothing about
     size_t source_count, source_capacity;
     const pass *particles;    // behind the input of that name; NULL: it has none

@@ -151,7 +151,9 @@ static bool bind_image(pass *p, const char *glsl_name, gpu_binding *out) {
         out->image = p->images[i].id ? graph_get_image(p->host->graph, p->images[i])
                                      : p->blank[image->volume];
         if (!out->image) out->image = p->unread[i];
-        out->sampler = GPU_LINEAR_CLAMP;
+        // Depths are compared, not mixed, and few devices could filter them.
+        bool depth = out->image && gpu_image_get_desc(out->image)->format == GPU_D32F;
+        out->sampler = depth ? GPU_NEAREST_CLAMP : GPU_LINEAR_CLAMP;
         return true;
     }
     return false;
@@ -261,6 +263,11 @@ bool pass_rehearse(pass *p) {
         mat4 transform;
         float tint[4];
         if (!scene_mesh_place(p->meshes[i], p->host->context, transform, tint)) return false;
+    }
+    for (size_t i = 0; i < p->instances_count; i++) {
+        mat4 transform;
+        float tint[4];
+        if (!scene_instances_place(p->instances[i], p->host->context, transform, tint)) return false;
     }
     return fill_numbers(p) && (!p->type || !p->type->rehearse || p->type->rehearse(p));
 }
