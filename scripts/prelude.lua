@@ -44,6 +44,52 @@ function over_age(keys)
   return number and value.r or value.rgb
 end
 
+-- layers { {scale, strength}, ... }: the layered noise of a layered explosion (Avalos 2019, section 2),
+-- 0..1: the sum over the layers of noise at `scale` times `strength`, divided by all strengths. One
+-- layer of gradient noise alone looks too soft: its lumps are all of one size and as high as deep.
+-- A second, finer layer breaks their outline, which is what makes a ball of noise look like a burst;
+-- more layers cost as much each and show less.
+--
+-- dimensions = 3: the noise fills space; of a shell: it is taken at the unit sphere. 2: it is a
+-- picture wrapped around the origin, as published: it shrinks to a point at both poles, and scales are
+-- rounded so that it closes behind. Other keys are those of the noise: seed, speed, octaves, fractal.
+local function layers_wrong(what)
+  error("layers takes 1 to 8 pairs {scale, strength}, as in layers { {2, 1}, {7, 0.4} }; " .. what, 3)
+end
+
+local function whole_cells(scale)
+  if type(scale) == "number" then return math.max(math.floor(scale + 0.5), 1) end
+  return max(floor(scale + 0.5), 1)
+end
+
+local function one_layer(settings, number, scale, flat)
+  local own = { octaves = 1 }
+  for key, value in pairs(settings) do
+    if type(key) == "string" and key ~= "dimensions" and key ~= "noise" then own[key] = value end
+  end
+  own.seed = (settings.seed or 0) + 17 * (number - 1)
+  own.frequency = flat and whole_cells(scale) or scale
+  if flat then own.period = own.frequency end
+  return (settings.noise or perlin)(own)
+end
+
+function layers(settings)
+  if type(settings) ~= "table" then layers_wrong("got a " .. type(settings)) end
+  if #settings < 1 or #settings > 8 then layers_wrong("got " .. #settings .. " of them") end
+  local flat, sum, all = settings.dimensions == 2, 0, 0
+  if not (flat or settings.dimensions == nil or settings.dimensions == 3) then layers_wrong("'dimensions' is 2 or 3") end
+  for i, layer in ipairs(settings) do
+    if type(layer) ~= "table" or #layer ~= 2 then layers_wrong("number " .. i .. " is none") end
+    sum = sum + one_layer(settings, i, layer[1], flat) * layer[2]
+    all = all + layer[2]
+  end
+  local noise = sum / all
+  if not flat then return noise:warp(61 * shell_shift) end
+  local across = atan(position.y, position.x) / (2 * math.pi)
+  local up = atan(position.z, length(vec(position.x, position.y, 0))) / math.pi
+  return noise:warp(vec(across + 0.5, up + 0.5, 0) + 16 * shell_shift - position)
+end
+
 -- lobes = { {weight, g}, ... } of the passes that scatter light: a blend of lobes.
 local function value_at(value, t)
   if type(value) == "function" then return value(t) end

@@ -33,6 +33,10 @@ float operator_remap(float value, float in_min, float in_max, float out_min, flo
     return out_min + operator_div(value - in_min, in_max - in_min) * (out_max - out_min);
 }
 
+float operator_atan(float y, float x) {
+    return x == 0.0 && y == 0.0 ? 0.0 : atan(y, x);
+}
+
 // The same for vectors, component by component.
 #define OPERATOR_1(NAME)                                                                           \
     vec3 NAME(vec3 a) { return vec3(NAME(a.x), NAME(a.y), NAME(a.z)); }                            \

@@ -82,6 +82,8 @@ range1 range_exp(range1 a) {
     return range_make(low * (1.0 - 1e-4), high * (1.0 + 1e-4)); // drivers are inexact far from 0
 }
 
+range1 range_atan(range1 y, range1 x) { return range1(-3.1416, 3.1416); }
+
 // No steeper than 1. The sine of a large number is not exact.
 range1 range_sin(range1 a) {
     float middle = 0.5 * (a.low + a.high), reach = 0.5 * (a.high - a.low) + 1e-3;

@@ -36,7 +36,7 @@ typedef box3 kind_bounds(const field *node, const field_context *context, const 
 kind_eval eval_constant, eval_palette, eval_swizzle, eval_position, eval_add, eval_sub, eval_mul,
     eval_negate, eval_div, eval_min, eval_max, eval_mix, eval_clamp, eval_remap, eval_smoothstep,
     eval_step, eval_pow, eval_abs, eval_sqrt, eval_exp, eval_sin, eval_floor, eval_fract,
-    eval_length, eval_dot, eval_vec, eval_zero;
+    eval_length, eval_dot, eval_atan, eval_vec, eval_zero;
 kind_eval eval_sphere, eval_box, eval_capsule, eval_torus, eval_disc;
 kind_eval eval_perlin, eval_simplex, eval_value, eval_worley, eval_curl;
 
@@ -44,7 +44,7 @@ kind_ranges ranges_grid, ranges_palette, ranges_unknown, ranges_swizzle, ranges_
     ranges_add, ranges_sub, ranges_mul, ranges_negate, ranges_div, ranges_min, ranges_max,
     ranges_mix, ranges_clamp, ranges_remap, ranges_smoothstep, ranges_step, ranges_pow, ranges_abs,
     ranges_sqrt, ranges_exp, ranges_sin, ranges_floor, ranges_fract, ranges_length, ranges_dot,
-    ranges_vec;
+    ranges_atan, ranges_vec, ranges_share, ranges_way;
 kind_ranges ranges_sphere, ranges_box, ranges_capsule, ranges_torus, ranges_disc;
 kind_ranges ranges_perlin, ranges_simplex, ranges_value, ranges_worley, ranges_curl;
 

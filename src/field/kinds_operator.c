@@ -97,6 +97,12 @@ void eval_dot(const field *node, const field_context *context, float3 p, const f
     for (int i = 0; i < kind_arg_width(node, 0); i++) out[0] += A * B;
 }
 
+void eval_atan(const field *node, const field_context *context, float3 p, const float (*args)[4],
+               float out[4]) {
+    (void)node, (void)context, (void)p;
+    out[0] = args[0][0] == 0 && args[1][0] == 0 ? 0 : atan2f(args[0][0], args[1][0]);
+}
+
 void eval_vec(const field *node, const field_context *context, float3 p, const float (*args)[4],
               float out[4]) {
     (void)node, (void)context, (void)p;

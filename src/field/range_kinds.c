@@ -168,6 +168,30 @@ intervals ranges_length(const field *node, const field_context *context, const i
     return alone(length(&args[0], kind_arg_width(node, 0)));
 }
 
+static intervals all_in(float low, float high) {
+    intervals out;
+    for (int i = 0; i < 4; i++) out.c[i] = (interval){low, high};
+    return out;
+}
+
+intervals ranges_atan(const field *node, const field_context *context, const intervals *at,
+                      const intervals *args) {
+    (void)node, (void)context, (void)at, (void)args;
+    return all_in(-3.1416f, 3.1416f);
+}
+
+intervals ranges_share(const field *node, const field_context *context, const intervals *at,
+                       const intervals *args) {
+    (void)node, (void)context, (void)at, (void)args;
+    return all_in(0, 1);
+}
+
+intervals ranges_way(const field *node, const field_context *context, const intervals *at,
+                     const intervals *args) {
+    (void)node, (void)context, (void)at, (void)args;
+    return all_in(-1, 1);
+}
+
 intervals ranges_vec(const field *node, const field_context *context, const intervals *at,
                      const intervals *args) {
     (void)node, (void)context, (void)at;

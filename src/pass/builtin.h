@@ -57,6 +57,14 @@ bool bake_build(pass *p);
 bool bake_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool bake_record(pass *p);
 void bake_destroy(pass *p);
+bool shell_declare(pass *p);
+bool shell_check(pass *p);
+bool shell_build(pass *p);
+bool shell_allocate(pass *p);
+bool shell_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool shell_record(pass *p);
+void shell_destroy(pass *p);
+
 
 bool lbm_declare(pass *p);
 bool lbm_complete(pass *p);
