@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "effect/events.h"
 #include "roil_impl.h"
 #include "script/script.h"
 #include <stdio.h>
@@ -325,6 +326,11 @@ size_t roil_readouts(roil_effect *e, roil_readout *out, size_t capacity) {
                     (roil_readout){pass_label(p), values[k].name, values[k].unit, values[k].value};
         if (found && count++ < capacity) out[count - 1] = speed_of(e, p);
     }
+    const effect_status *status;
+    size_t told = effect_statuses(e->effect, &status);
+    for (size_t i = 0; i < told; i++, count++)
+        if (count < capacity)
+            out[count] = (roil_readout){"effect", status[i].name, status[i].unit, status[i].value};
     return count;
 }
 

@@ -137,7 +137,8 @@ typedef struct roil_readout { // what a pass tells of itself: "Mach", "time step
     const char *pass, *name, *unit;
     double value;
 } roil_readout;
-// After roil_prepare; returns how many there are. At most `capacity` are written.
+// After roil_prepare; returns how many there are. At most `capacity` are written. What the script
+// says by its fx:status comes last, as of the pass "effect".
 size_t roil_readouts(roil_effect *e, roil_readout *out, size_t capacity);
 
 typedef struct roil_time { // GPU time of a pass in the last frame
@@ -217,6 +218,7 @@ typedef enum roil_type {
     ROIL_COLOR,  // linear Rec.709
     ROIL_PALETTE,
     ROIL_CURVE,
+    ROIL_EVENTS, // "effect.events"
 } roil_type;
 
 typedef struct roil_control { // strings live as long as the effect
@@ -289,6 +291,24 @@ typedef struct roil_camera {
 } roil_camera;
 bool roil_get_camera(roil_effect *e, roil_camera *out);
 bool roil_get_bounds(roil_effect *e, float low[3], float high[3]); // of its volumes; false: none
+
+// ---- events: what happens to an effect, where its script hears it -------------------------------
+// They are one control, "effect.events": "2.5 click 0.4 0.6; 3 key f; 4 key f 12 -3 0" (seconds,
+// what, and where: 0 to 1 from the top left of the picture, a point in metres, or the six numbers
+// of a ray). So they are set, undone and kept like any other, and a picture's recipe has them. What
+// the script makes of them is the same whichever frames are drawn: frames that were left out are
+// run by it, and back in time is from the beginning. A checkpoint holds none of it; after
+// roil_restore the script runs from the first frame again.
+
+typedef struct roil_hotkey { // strings live as long as the effect
+    const char *key;         // "f", "space"; "": clicks
+    const char *help;
+} roil_hotkey;
+// What the script hears; returns how many there are. At most `capacity` are written.
+size_t roil_hotkeys(const roil_effect *e, roil_hotkey *out, size_t capacity);
+// The events with one more, at the time of the last frame and along the ray through a place in it,
+// as roil_set takes them; key "": a click. Free with roil_free. NULL when there can be no more.
+char *roil_event_text(roil_effect *e, const char *key, float x, float y);
 
 // ---- presets: named values in a small Lua file, "explosion.presets/NAME.lua" beside the effect --
 

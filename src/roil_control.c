@@ -190,6 +190,12 @@ void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
     case EFFECT_CONTROL_LIGHT:
         fill_scene(e, c, out);
         break;
+    case EFFECT_CONTROL_EVENTS:
+        out->type = ROIL_EVENTS;
+        out->components = 0;
+        out->group = "effect";
+        out->help = "what happens to it: seconds, click or key and its name, where";
+        break;
     case EFFECT_CONTROL_UNIFORM:
         fill_uniform(e, c, p, out);
         break;

@@ -355,9 +355,10 @@ static void print_control(roil_effect *e, size_t index, strbuf *out) {
     roil_get_control(e, index, &c);
     const effect_control *own = effect_get_control(e->effect, index);
     bool ramp = c.type == ROIL_PALETTE || c.type == ROIL_CURVE;
+    bool text = ramp || c.type == ROIL_EVENTS;
     strbuf name = {0}, help = {0};
     strbuf_add(&name, "%s = ", c.parameter || ramp ? c.name : c.label);
-    if (ramp)
+    if (text)
         effect_print_control(e->effect, own, &name);
     else if (c.type == ROIL_ENUM)
         add_words(&name, c.words, c.word_count, (size_t)c.value[0]);
@@ -370,7 +371,7 @@ static void print_control(roil_effect *e, size_t index, strbuf *out) {
     if (c.driven) strbuf_add(&help, "%s(the script moves it)", help.length ? " " : "");
     if (c.moved) {
         strbuf_add(&help, "%s(moved; the script says ", help.length ? " " : "");
-        if (ramp)
+        if (text)
             strbuf_add(&help, "%s", own->initial);
         else
             print_value(&help, &c, c.initial);

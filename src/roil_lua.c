@@ -136,6 +136,11 @@ void roil_add_lua(const roil_effect *e, const effect_control *c, bool whole, str
         add_palette(out, palette_get_desc(effect_control_palette(c)), whole);
     } else if (c->kind == EFFECT_CONTROL_CURVE) {
         add_curve(out, effect_control_curve(c), whole);
+    } else if (c->kind == EFFECT_CONTROL_EVENTS) {
+        strbuf text = {0};
+        effect_print_control(e->effect, c, &text);
+        add_quoted(out, strbuf_text(&text));
+        strbuf_free(&text);
     } else {
         get(e, c->name, &control);
         add_control_value(out, &control, control.value);

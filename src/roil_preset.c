@@ -120,6 +120,7 @@ static void print_preset(const roil_effect *e, const char *name, strbuf *out) {
     for (size_t i = 0; i < effect_control_count(e->effect); i++) {
         const effect_control *c = effect_get_control(e->effect, i);
         if (!c->moved || strncmp(c->name, "camera.", 7) == 0) continue;
+        if (c->kind == EFFECT_CONTROL_EVENTS) continue; // what was done, not how it looks
         strbuf_add(out, "  ");
         roil_add_lua_key(c->name, out);
         roil_add_lua(e, c, false, out);

@@ -57,11 +57,21 @@ typedef struct app_settings { // --from, then --preset, then --set: what comes l
     size_t set_count, set_capacity;
     roil_preset **loaded;
     size_t loaded_count;
+    char *events;      // of --event, as one setting of `sets`
     roil_setting *all; // after app_collect_settings
     size_t count, capacity;
 } app_settings;
 void app_add_preset(app_settings *s, const char *preset);
-bool app_add_set(app_settings *s, char *text); // "NAME=VALUE", cut at its '='
+bool app_add_set(app_settings *s, char *text);         // "NAME=VALUE", cut at its '='
+void app_add_event(app_settings *s, const char *text); // "2.5 click 0.4 0.6"
+#define APP_EVENT_ROW(VALUE)                                                                       \
+    {                                                                                              \
+        "event", '\0', POPT_ARG_STRING, NULL, VALUE,                                               \
+            "what happens to the effect instead of its own events: SECONDS click X Y, or SECONDS " \
+            "key "                                                                                 \
+            "NAME [X Y]; may be given several times",                                              \
+            "EVENT"                                                                                \
+    }
 // Of an effect; reads the presets. `from` may be NULL, else outlives `s`.
 bool app_collect_settings(app_settings *s, roil *r, const char *effect, const roil_recipe *from);
 void app_free_settings(app_settings *s);

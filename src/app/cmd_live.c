@@ -27,14 +27,17 @@ typedef struct job {
 
 // ---- options ----------------------------------------------------------------------------------
 
-enum { OPTION_SIZE = 1, OPTION_SET, OPTION_PRESET };
+enum { OPTION_SIZE = 1, OPTION_SET, OPTION_PRESET, OPTION_EVENT };
 
 // Handles one option of the table below; poptGetOptArg's text lives until the program ends.
 static bool take_option(job *j, poptContext context, int option) {
     char *text = poptGetOptArg(context);
     if (option == OPTION_SIZE) return app_parse_size(text, &j->width, &j->height);
     if (option == OPTION_SET) return app_add_set(&j->settings, text);
-    app_add_preset(&j->settings, text);
+    if (option == OPTION_EVENT)
+        app_add_event(&j->settings, text);
+    else
+        app_add_preset(&j->settings, text);
     return true;
 }
 
@@ -61,6 +64,7 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
          "a parameter, or a uniform or option of a pass (march.steps=64)", "NAME=VALUE"},
         {"preset", 'p', POPT_ARG_STRING, NULL, OPTION_PRESET,
          "values saved under a name beside the effect, or in a .lua file", "NAME"},
+        APP_EVENT_ROW(OPTION_EVENT),
         {"frame", 'f', POPT_ARG_DOUBLE, &j->frame, 0, "to begin with (default: the first)",
          "FRAME"},
         {"paused", '\0', POPT_ARG_NONE, &j->paused, 0, "do not play at once", NULL},

@@ -43,7 +43,15 @@ typedef struct job {
 
 // ---- options ----------------------------------------------------------------------------------
 
-enum { OPTION_OUTPUT = 1, OPTION_SIZE, OPTION_SET, OPTION_DUMP, OPTION_PRESET, OPTION_REFERENCE };
+enum {
+    OPTION_OUTPUT = 1,
+    OPTION_SIZE,
+    OPTION_SET,
+    OPTION_DUMP,
+    OPTION_PRESET,
+    OPTION_REFERENCE,
+    OPTION_EVENT,
+};
 
 static bool add_output(job *j, const char *pattern, const char *image) {
     const char *extension = path_extension(pattern);
@@ -70,6 +78,9 @@ static bool take_option(job *j, poptContext context, int option) {
         return app_parse_samples(text, &j->reference);
     case OPTION_PRESET:
         app_add_preset(&j->settings, text);
+        return true;
+    case OPTION_EVENT:
+        app_add_event(&j->settings, text);
         return true;
     case OPTION_DUMP: { // NAME and FILE, joined by join_dump
         char *file = strchr(text, '\n');
@@ -114,6 +125,7 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
          "a parameter, or a uniform or option of a pass (march.steps=64)", "NAME=VALUE"},
         {"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET,
          "values kept beside the effect, or in a file; --set goes before them", "NAME|FILE.lua"},
+        APP_EVENT_ROW(OPTION_EVENT),
         {"from", '\0', POPT_ARG_STRING, &j->from_file, 0,
          "as this picture was made: its effect, frame, size and settings, where no other are given",
          "SHOT.png"},

@@ -1,6 +1,9 @@
 // F1: what the keys and the mouse do.
 #include "app/live.h"
+#include "base/memory.h"
+#include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 
 // Units.
 static const float PADDING = 24, ROW = 26, BETWEEN = 40, GAP = 14, CAP = 14, HEADING = 30,
@@ -22,19 +25,37 @@ static const entry mouse[] = {
     {"Right click a value", "reset it, copy it as Lua"},
 };
 
-static entry key_of(const void *from, size_t i) {
-    const live_key *key = (const live_key *)from + i;
-    return (entry){key->name, key->help};
+typedef struct keys { // as they are with this effect
+    entry list[64];
+    char names[64][16];
+    size_t count;
+} keys;
+
+static void list_keys(const live *l, keys *out) {
+    size_t count;
+    const live_key *table = live_keys(&count);
+    for (size_t i = 0; i < count && out->count < COUNT_OF(out->list); i++) {
+        bool taken = !table[i].mods && event_hears_key(l, table[i].key);
+        char *name = out->names[out->count];
+        snprintf(name, sizeof *out->names, "%s%s", taken ? "Alt+" : "", table[i].name);
+        out->list[out->count++] = (entry){name, table[i].help};
+    }
 }
 
-static entry mouse_of(const void *from, size_t i) {
-    return ((const entry *)from)[i];
+static void list_hotkeys(const live *l, keys *out) {
+    roil_hotkey all[LIVE_HOTKEYS];
+    size_t count = event_hotkeys(l, all);
+    for (size_t i = 0; i < count; i++) {
+        char *name = out->names[out->count];
+        snprintf(name, sizeof *out->names, "%s", all[i].key[0] ? all[i].key : "Click");
+        name[0] = (char)toupper((unsigned char)name[0]);
+        out->list[out->count++] = (entry){name, all[i].help};
+    }
 }
 
 typedef struct block { // two columns under a heading
     const char *heading;
-    const void *from;
-    entry (*get)(const void *from, size_t i);
+    const entry *list;
     size_t count;
 } block;
 
@@ -45,14 +66,13 @@ static size_t rows_of(const block *b) {
 static float name_width(const block *b) {
     float width = 0;
     for (size_t i = 0; i < b->count; i++)
-        width = fmaxf(width, ui_text_width(b->get(b->from, i).name) + (CAP + GAP) * ui_scale());
+        width = fmaxf(width, ui_text_width(b->list[i].name) + (CAP + GAP) * ui_scale());
     return width;
 }
 
 static float column_width(const block *b) {
     float width = 0;
-    for (size_t i = 0; i < b->count; i++)
-        width = fmaxf(width, ui_text_width(b->get(b->from, i).help));
+    for (size_t i = 0; i < b->count; i++) width = fmaxf(width, ui_text_width(b->list[i].help));
     return name_width(b) + width;
 }
 
@@ -71,28 +91,35 @@ static float draw_block(const block *b, float left, float top, float column) {
     top += HEADING * s;
     size_t rows = rows_of(b);
     for (size_t i = 0; i < b->count; i++)
-        draw_entry(b->get(b->from, i), left + (float)(i / rows) * (column + BETWEEN * s),
+        draw_entry(b->list[i], left + (float)(i / rows) * (column + BETWEEN * s),
                    top + (float)(i % rows) * ROW * s, name);
     return top + (float)rows * ROW * s;
 }
 
 void help_draw(live *l) {
     if (!l->help) return;
-    block keys = {"Keys", NULL, key_of, 0};
-    const block hands = {"Mouse", mouse, mouse_of, sizeof mouse / sizeof *mouse};
-    keys.from = live_keys(&keys.count);
-    float s = ui_scale(), column = fmaxf(column_width(&keys), column_width(&hands));
-    float rows = (float)(rows_of(&keys) + rows_of(&hands));
+    keys own = {.count = 0}, heard = {.count = 0};
+    list_keys(l, &own);
+    list_hotkeys(l, &heard);
+    const block blocks[] = {{"Keys", own.list, own.count},
+                            {"Mouse", mouse, COUNT_OF(mouse)},
+                            {"This effect", heard.list, heard.count}};
+    size_t count = heard.count ? 3 : 2;
+    float s = ui_scale(), column = 0, height = (2 * PADDING - BLOCK_GAP) * s;
+    for (size_t i = 0; i < count; i++) {
+        column = fmaxf(column, column_width(&blocks[i]));
+        height += (HEADING + BLOCK_GAP + (float)rows_of(&blocks[i]) * ROW) * s;
+    }
     float width = 2 * (column + PADDING * s) + BETWEEN * s;
-    float height = (2 * PADDING + 2 * HEADING + BLOCK_GAP + rows * ROW) * s;
     float left = floorf((l->view.left + l->view.right - width) / 2);
     float top = floorf((l->view.top + l->view.bottom - height) / 2);
     ui_shade(l->view);
     ui_card_begin("help", (ui_rect){left, top, left + width, top + height}, 0);
     ui_canvas c = ui_canvas_begin("keys", width - 2 * EDGE * s, height - 2 * EDGE * s);
     left = c.area.left + (PADDING - EDGE) * s;
-    top = draw_block(&keys, left, c.area.top + (PADDING - EDGE) * s, column);
-    draw_block(&hands, left, top + BLOCK_GAP * s, column);
+    top = c.area.top + (PADDING - EDGE) * s;
+    for (size_t i = 0; i < count; i++)
+        top = draw_block(&blocks[i], left, top, column) + BLOCK_GAP * s;
     ui_canvas_end();
     ui_card_end();
 }

@@ -144,8 +144,11 @@ const live_key *live_keys(size_t *count) {
     return keys;
 }
 
+// What an effect hears comes before what the window does by it, which Alt gets at then.
 void live_press(live *l, int key, int mods, bool repeated) {
     const int used = GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT | GLFW_MOD_SUPER;
+    if (event_press(l, key, mods, repeated)) return;
+    if ((mods & used) == GLFW_MOD_ALT && event_hears_key(l, key)) mods = 0;
     for (size_t i = 0; i < COUNT_OF(keys); i++) {
         if (keys[i].key != key || keys[i].mods != (mods & used)) continue;
         if (!repeated || keys[i].run == step_back || keys[i].run == step_on) keys[i].run(l);

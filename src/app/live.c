@@ -241,6 +241,8 @@ static void draw_interface(live *l, const layout *at, uint32_t width) {
     ui_canvas view = ui_bare(l->view);
     ui_mark("view", l->view);
     camera_hand(l, &view);
+    event_hand(l, &view);
+    status_draw(l, l->view);
     if (!l->session.panel_hidden) {
         timeline_draw(l, at->bar);
         if (at->has_panel) {

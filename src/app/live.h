@@ -52,6 +52,8 @@ typedef struct live {
     panel *panel;
     uint32_t width, height; // of the effect's picture, pixels
     ui_rect view;           // where it is shown
+    float pointer[2];       // in the picture, 0..1 from its top left
+    float slipped;          // of the pointer, since it was pressed there (pixels)
 } live;
 
 // Sets a control by hand, and has the frame drawn again; what goes wrong becomes a notice.
@@ -68,6 +70,16 @@ bool live_loop(live *l, window *w);
 void camera_hand(live *l, const ui_canvas *view); // what the pointer does over the picture
 void camera_frame(live *l);                       // so that the volume fills the picture
 void camera_reset(live *l);                       // to the script's
+
+// ---- event_hand.c: what the effect hears
+// ----------------------------------------------------------
+
+enum { LIVE_HOTKEYS = 64 };
+size_t event_hotkeys(const live *l, roil_hotkey out[LIVE_HOTKEYS]);
+bool event_hears_key(const live *l, int key); // of GLFW
+bool event_hears_clicks(const live *l);
+bool event_press(live *l, int key, int mods, bool repeated); // true: the key was the effect's
+void event_hand(live *l, const ui_canvas *view);
 
 // ---- parts, in the order in which they are drawn ----------------------------------------------
 
@@ -99,8 +111,9 @@ void flow_tools_destroy(flow_tools *t, roil *r);
 void flow_tools_update(live *l); // as the inspector's
 void flow_tools_draw(live *l);   // slices { }: seen, pushed, captured, given templates
 
-void overlay_draw(live *l, ui_rect view); // the message of a broken file, and notices
-void help_draw(live *l);                  // F1
+void status_draw(const live *l, ui_rect view); // what the effect says of itself
+void overlay_draw(live *l, ui_rect view);      // the message of a broken file, and notices
+void help_draw(live *l);                       // F1
 
 // ---- keys ---------------------------------------------------------------------------------------
 

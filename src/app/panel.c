@@ -25,7 +25,13 @@ void panel_destroy(panel *p) {
 static void gather(panel *p, roil_effect *e) {
     p->control_count = roil_control_count(e);
     MEM_RESERVE(p->controls, p->control_count, p->control_capacity);
-    for (size_t i = 0; i < p->control_count; i++) roil_get_control(e, i, &p->controls[i]);
+    size_t count = p->control_count;
+    p->control_count = 0;
+    for (size_t i = 0; i < count; i++) {
+        roil_control *next = &p->controls[p->control_count];
+        roil_get_control(e, i, next);
+        p->control_count += next->type != ROIL_EVENTS; // they are made in the picture
+    }
     panel_model_fill(&p->model, p->controls, p->control_count, p->search);
 }
 

@@ -2,6 +2,7 @@
 #include "app/app.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include <stdio.h>
 #include <string.h>
 
 void app_add_preset(app_settings *s, const char *preset) {
@@ -16,6 +17,21 @@ bool app_add_set(app_settings *s, char *text) {
     MEM_RESERVE(s->sets, s->set_count + 1, s->set_capacity);
     s->sets[s->set_count++] = (roil_setting){text, equals + 1};
     return true;
+}
+
+void app_add_event(app_settings *s, const char *text) {
+    size_t i = 0, before = s->events ? strlen(s->events) : 0;
+    while (i < s->set_count && s->sets[i].value != s->events) i++;
+    char *joined = mem_alloc(before + strlen(text) + 3);
+    if (before) memcpy(joined, s->events, before);
+    snprintf(joined + before, strlen(text) + 3, "%s%s", before ? "; " : "", text);
+    if (i == s->set_count) {
+        MEM_RESERVE(s->sets, s->set_count + 1, s->set_capacity);
+        s->set_count++;
+    }
+    s->sets[i] = (roil_setting){"effect.events", joined};
+    mem_free(s->events);
+    s->events = joined;
 }
 
 static void add_all(app_settings *s, const roil_setting *settings, size_t count) {
@@ -48,6 +64,7 @@ void app_free_settings(app_settings *s) {
     drop(s);
     mem_free(s->presets);
     mem_free(s->sets);
+    mem_free(s->events);
     mem_free(s->all);
     *s = (app_settings){0};
 }

@@ -26,6 +26,9 @@ static void print(const effect *e, const control *c, strbuf *out) {
     case EFFECT_CONTROL_LIGHT:
         scene_control_print(e, c, out);
         break;
+    case EFFECT_CONTROL_EVENTS:
+        events_control_print(e, out);
+        break;
     case EFFECT_CONTROL_UNIFORM:
     case EFFECT_CONTROL_OPTION:
     case EFFECT_CONTROL_SCALE:
@@ -121,6 +124,8 @@ static bool unknown(effect *e, const char *name) {
     pass *p = dot ? pass_named(e, name, (size_t)(dot - name)) : NULL;
     if (p) return unknown_in_pass(p, dot + 1);
     if (scene_control_unknown(e, name)) return false;
+    if (strcmp(name, "effect.events") == 0)
+        return err_set("the effect hears no events: its script has no fx:on_key, fx:on_click");
     const char **names = mem_alloc((e->control_count + 1) * sizeof *names);
     for (size_t i = 0; i < e->control_count; i++) names[i] = e->controls[i]->face.name;
     const char *near = str_nearest(name, names, e->control_count);
@@ -176,6 +181,8 @@ static bool set(effect *e, control *c, const char *text) {
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
         return scene_control_set(e, c, text);
+    case EFFECT_CONTROL_EVENTS:
+        return events_control_set(e, c, text);
     case EFFECT_CONTROL_UNIFORM:
     case EFFECT_CONTROL_OPTION:
     case EFFECT_CONTROL_SCALE:
@@ -184,9 +191,11 @@ static bool set(effect *e, control *c, const char *text) {
     return false;
 }
 
-// What simulates may have gone by its old value; only by the scene's it never does.
+// What simulates may have gone by its old value; only by the scene's it never does, and by events
+// only since they were.
 static void forget_old(effect *e, const control *c) {
-    if (c->face.kind != EFFECT_CONTROL_SCENE && c->face.kind != EFFECT_CONTROL_LIGHT)
+    if (c->face.kind != EFFECT_CONTROL_SCENE && c->face.kind != EFFECT_CONTROL_LIGHT &&
+        c->face.kind != EFFECT_CONTROL_EVENTS)
         effect_forget_moments(e);
 }
 
@@ -195,6 +204,7 @@ void effect_reset_control(effect *e, control *c) {
     switch (c->face.kind) {
     case EFFECT_CONTROL_PARAM:
         effect_set_value(e, c->face.index, e->params[c->face.index].initial);
+        effect_forget_moved(e, c->face.index);
         break;
     case EFFECT_CONTROL_PALETTE:
     case EFFECT_CONTROL_CURVE:
@@ -203,6 +213,9 @@ void effect_reset_control(effect *e, control *c) {
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
         scene_control_reset(e, c);
+        break;
+    case EFFECT_CONTROL_EVENTS:
+        events_control_reset(e);
         break;
     case EFFECT_CONTROL_UNIFORM:
     case EFFECT_CONTROL_OPTION:
@@ -220,6 +233,7 @@ bool effect_set_control(effect *e, control *c, const char *text) {
     }
     forget_old(e, c);
     if (!set(e, c, text)) return false;
+    if (c->face.kind == EFFECT_CONTROL_PARAM) effect_forget_moved(e, c->face.index);
     note_moved(e, c, text);
     if (strcmp(text, c->face.initial) == 0) c->face.moved = NULL;
     return true;
@@ -292,7 +306,7 @@ bool effect_apply_settings(void *user, pass *p) {
 }
 
 bool effect_check_settings(effect *e) {
-    if (!scene_control_add_all(e)) return false;
+    if (!scene_control_add_all(e) || !events_add_control(e)) return false;
     for (size_t i = 0; i < e->setting_count; i++)
         if (!e->applied[i] && !e->settings[i].initial) return unknown(e, e->settings[i].name);
     return true;

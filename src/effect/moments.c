@@ -4,7 +4,7 @@
 // from then on they lie twice as far apart.
 //
 // A moment tells of the numbers that it was computed with: when one is moved by hand, all are
-// forgotten.
+// forgotten; when an event is, those since then.
 #include "base/memory.h"
 #include "effect/effect_impl.h"
 #include "sim/checkpoint.h"
@@ -18,6 +18,15 @@ void effect_forget_moments(effect *e) {
     for (size_t i = 0; i < e->moment_count; i++) checkpoint_close(e->moments[i].state);
     e->moment_count = 0;
     e->moment_gap = 0;
+}
+
+void effect_forget_moments_from(effect *e, double time) {
+    while (e->moment_count > 0) {
+        effect_moment *last = &e->moments[e->moment_count - 1];
+        if ((last->frame - e->first) / e->fps < time) return;
+        checkpoint_close(last->state);
+        e->moment_count--;
+    }
 }
 
 static double gap_of(const effect *e) { // frames

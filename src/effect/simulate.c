@@ -73,6 +73,7 @@ static void turn_back(effect *e, double frame) {
 void effect_restart(effect *e) {
     pass *p;
     effect_forget_moments(e);
+    effect_restart_systems(e);
     if (!e->compiled) return;
     for (size_t i = 0; (p = next_simulation(e, &i));) pass_get_simulation(p)->restart(p);
 }

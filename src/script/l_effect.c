@@ -1,5 +1,5 @@
 // effect { name = "explosion", fps = 24, frames = 100 } gives the effect's object. Assigned to it:
-// output, linear, depth (images), camera, sun, sky, lights, and update, a function(t, dt).
+// output, linear, depth (images), camera, sun, sky, lights, update, a function(t, dt), and events.
 #include "base/memory.h"
 #include "script/binding.h"
 #include <string.h>
@@ -19,7 +19,7 @@ static int l_effect(lua_State *L) {
     if (name) effect_set_name(s->effect, name);
     if (!effect_set_timeline(s->effect, fps, frames, first)) script_raise(L);
     effect_set_seed(s->effect, seed);
-    vm_set_seed(L, seed);
+    vm_set_seed(L, s->seed = seed);
     s->declared = true;
     object_new(L, who, sizeof(char));
     lua_newtable(L); // what can be read: this, and what was assigned
@@ -115,6 +115,8 @@ static int l_newindex(lua_State *L) {
         set_lights(L);
     else if (strcmp(key, "update") == 0)
         set_update(L);
+    else if (strcmp(key, "events") == 0)
+        events_assign(L);
     else
         refuse_member(L, key, false);
     lua_settop(L, 3);
@@ -127,6 +129,7 @@ static int l_newindex(lua_State *L) {
 static int l_index(lua_State *L) {
     luaL_checkudata(L, 1, who);
     const char *key = luaL_checkstring(L, 2);
+    if (events_push_method(L, key)) return 1;
     lua_getiuservalue(L, 1, 1);
     if (value_get(L, -1, key) == LUA_TNIL &&
         !script_key_find(script_object_find(who)->members, key))

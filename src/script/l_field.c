@@ -2,6 +2,7 @@
 // methods all come from the table of kinds, so a new kind is there by itself.
 #include "base/memory.h"
 #include "base/str.h"
+#include "effect/events.h"
 #include "script/binding.h"
 #include <math.h>
 #include <stdlib.h>
@@ -247,7 +248,7 @@ static int l_get(lua_State *L) {
     return 1;
 }
 
-// p:set(value): for `update`.
+// p:set(value): for `update` and what runs by events. Until time goes back.
 static int l_set(lua_State *L) {
     const field_object *object = self(L);
     const effect_param *param = field_param_of(L, 1);
@@ -260,7 +261,18 @@ static int l_set(lua_State *L) {
         if (count != wanted)
             vm_error(L, "set: '%s' takes %d number%s", param->name, wanted, wanted > 1 ? "s" : "");
     }
-    if (!effect_set_value(script_of(L)->effect, (size_t)object->param, value)) script_raise(L);
+    if (!effect_move_param(script_of(L)->effect, (size_t)object->param, value)) script_raise(L);
+    return 0;
+}
+
+// p:toggle(): of true and false the other one, of words the next.
+static int l_toggle(lua_State *L) {
+    const field_object *object = self(L);
+    const effect_param *param = field_param_of(L, 1);
+    if (!param || (param->type != EFFECT_BOOL && param->type != EFFECT_ENUM))
+        vm_error(L, "toggle: only a parameter of true and false, or of words, has another value");
+    float value[4] = {param->value[0] < param->max ? param->value[0] + 1 : 0};
+    if (!effect_move_param(script_of(L)->effect, (size_t)object->param, value)) script_raise(L);
     return 0;
 }
 
@@ -340,8 +352,8 @@ void l_field_open(lua_State *L) {
         {"__pow", l_pow},           {"__unm", l_unm}, {"__lt", l_compare}, {"__le", l_compare},
         {"__tostring", l_tostring}, {NULL, NULL},
     };
-    static const luaL_Reg own[] = {
-        {"get", l_get}, {"set", l_set}, {"bake", l_bake}, {"tile", l_tile}, {NULL, NULL}};
+    static const luaL_Reg own[] = {{"get", l_get},   {"set", l_set},   {"toggle", l_toggle},
+                                   {"bake", l_bake}, {"tile", l_tile}, {NULL, NULL}};
     object_type(L, "field", operators);
     lua_newtable(L);
     int methods = lua_gettop(L);

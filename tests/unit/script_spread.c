@@ -1,0 +1,186 @@
+// The module of rules by which fire spreads (scripts/lib/spread.lua), with lists of places.
+#include "script_helper.h"
+
+#include "effect/events.h"
+#include <math.h>
+
+#define HEAD "local fx = effect { fps = 10, frames = 400 } local spread = require 'spread' "
+#define END " fx.output = geometry { }"
+// A square of 21 x 21 things, 2 m apart; its middle, the 221st, at the origin, is lit at first.
+#define SQUARE                                                                                     \
+    "local list = {} for x = -20, 20, 2 do for y = -20, 20, 2 do list[#list + 1] = {x, y} end "    \
+    "end local function light(t) t.fx, t.at = fx, list; local fire = spread(t) "                   \
+    "local lit, burned = 0, 0 "                                                                    \
+    "fx:on_start(function() lit, burned = 0, 0; fire:ignite(221) end) "                            \
+    "fire:on_ignite(function(i, t) assert(fire:state(i) == 'burning'); lit = lit + 1 end) "        \
+    "fire:on_burned(function(i, t) assert(fire:state(i) == 'burned'); burned = burned + 1 end) "   \
+    "fx:on_frame(function() local at = {0, 0, 0} "                                                 \
+    "fx:status('lit', lit) fx:status('burned', burned) fx:status('burning', fire.burning) "        \
+    "local high, low, sum = -1, 1, 0 for i, p in ipairs(list) do "                                 \
+    "if fire:state(i) ~= 'normal' then "                                                           \
+    "high, low, sum = math.max(high, p[1]), math.min(low, p[1]), sum + i * i % 1009 end end "      \
+    "fx:status('high', high) fx:status('low', low) fx:status('sum', sum) "                         \
+    "fx:status('sum of burned', fire.burned) end) return fire end "
+
+static effect *load(const char *text) {
+    effect *e = helper_accepts(HEAD SQUARE, text, END, NULL, 0);
+    if (!effect_check_settings(e) || !effect_check(e)) fail_msg("%s\n  in: %s", err_get(), text);
+    return e;
+}
+
+static void draw(effect *e, double frame) {
+    if (!effect_rehearse(e, frame)) fail_msg("frame %g: %s", frame, err_get());
+}
+
+static double status(const effect *e, const char *name) {
+    const effect_status *all;
+    size_t count = effect_statuses(e, &all);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(all[i].name, name) == 0) return all[i].value;
+    fail_msg("no status '%s'", name);
+    return 0;
+}
+
+static void it_is_the_same_every_time(void **state) {
+    (void)state;
+    effect *e = load("light { reach = 3, speed = 2, burn = {2, 4}, seed = 7 }");
+    effect *other = load("light { reach = 3, speed = 2, burn = {2, 4}, seed = 8 }");
+    draw(e, 31);
+    double lit = status(e, "lit"), sum = status(e, "sum");
+    assert_true(lit > 20 && lit < 441);
+    for (double frame = 40; frame < 60; frame++) draw(e, frame);
+    for (double frame = 1; frame <= 31; frame++) draw(e, frame);
+    assert_true(status(e, "lit") == lit && status(e, "sum") == sum);
+    draw(other, 31);
+    assert_true(status(other, "sum") != sum);
+    effect_destroy(e);
+    effect_destroy(other);
+}
+
+static void every_change_is_an_event(void **state) {
+    (void)state;
+    effect *e = load("light { reach = 3, speed = 2, burn = {2, 4} }");
+    const double frames[] = {1, 12, 40, 90, 400};
+    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
+        draw(e, frames[i]);
+        assert_true(status(e, "lit") - status(e, "burned") == status(e, "burning"));
+        assert_true(status(e, "burned") == status(e, "sum of burned"));
+    }
+    assert_true(status(e, "lit") == 441 && status(e, "burned") == 441); // all of them, in the end
+    effect_destroy(e);
+}
+
+static void it_stops_at_a_gap(void **state) {
+    (void)state;
+    static const char text[] =
+        "local kept = {} for i, p in ipairs(list) do "
+        "if math.abs(p[1] - 8) > 1 then kept[#kept + 1] = p end end list = kept "
+        "local fire = light { reach = %g, speed = 2, burn = 3, variation = 0 } "
+        "fx:on_start(function() fire:ignite_near({0, 0, 0}, 1) end)";
+    char narrow[1024], wide[1024];
+    snprintf(narrow, sizeof narrow, text, 3.9); // the gap is 4 m wide
+    snprintf(wide, sizeof wide, text, 4.1);
+    effect *e = load(narrow);
+    draw(e, 400);
+    assert_true(status(e, "burning") == 0 && status(e, "lit") == 14 * 21);
+    assert_true(status(e, "high") == 6 && status(e, "low") == -20);
+    effect_destroy(e);
+    e = load(wide);
+    draw(e, 400);
+    assert_true(status(e, "lit") == 20 * 21);
+    effect_destroy(e);
+}
+
+static void wind_drives_it(void **state) {
+    (void)state;
+    effect *calm = load("light { reach = 3, burn = 8, variation = 0 }");
+    effect *windy =
+        load("light { reach = 3, burn = 8, variation = 0, wind = {2, 0, 0}, lean = 0 }");
+    effect *strong = load("light { reach = 3, burn = 8, variation = 0, wind = function() return "
+                          "{5, 0, 0} end, lean = 0 }");
+    draw(calm, 71);
+    draw(windy, 71);
+    draw(strong, 71);
+    assert_true(status(calm, "high") == 6 && status(calm, "low") == -6); // 1 m/s for 7 s
+    assert_true(status(windy, "high") > status(calm, "high"));
+    assert_true(status(windy, "low") > status(calm, "low"));
+    assert_true(status(strong, "high") > status(windy, "high"));
+    draw(calm, 300);
+    draw(strong, 300);
+    assert_true(status(calm, "low") == -20);
+    assert_true(status(strong, "low") > -20); // it burns out before it gets on against the wind
+    effect_destroy(calm);
+    effect_destroy(windy);
+    effect_destroy(strong);
+}
+
+static void fuel_says_what_burns_and_how_long(void **state) {
+    (void)state;
+    effect *e = load("light { reach = 3, speed = 2, burn = 3, fuel = function(i) "
+                     "return list[i][1] == 4 and 0 or 1 end }");
+    draw(e, 400);
+    assert_true(status(e, "high") == 2 && status(e, "lit") == 12 * 21);
+    effect_destroy(e);
+}
+
+// A row of barrels, each of which passes it on when it bursts, a second after it was lit.
+static void what_is_passed_on_at_the_end_goes_in_steps(void **state) {
+    (void)state;
+    effect *e =
+        load("list = { {0, 0}, {1, 0}, {2, 0}, {3, 0} } "
+             "local fire = spread { fx = fx, at = list, reach = 1.5, speed = 1000, burn = 1, "
+             "variation = 0, pass = 'burned' } local late = 0 "
+             "fx:on_start(function() late = 0; fire:ignite(1) end) "
+             "fire:on_late(function(i, t) late = late + 1 fx:status('late', late) end) "
+             "fx:on_frame(function() fx:status('burned', fire.burned) "
+             "fx:status('burning', fire.burning) fx:status('first', fire:progress(1)) end)");
+    draw(e, 6);
+    assert_true(status(e, "burning") == 1 && fabs(status(e, "first") - 0.5) < 1e-9);
+    draw(e, 17);
+    assert_true(status(e, "burned") == 1 && status(e, "burning") == 1 && status(e, "late") == 2);
+    draw(e, 60);
+    assert_true(status(e, "burned") == 4 && status(e, "late") == 4);
+    effect_destroy(e);
+}
+
+static void a_frame_makes_so_many_changes_at_most(void **state) {
+    (void)state;
+    effect *e = load("light { reach = 60, speed = 1000, burn = 30, most = 10 }");
+    draw(e, 2);
+    assert_true(status(e, "lit") == 11); // and the first, by hand
+    draw(e, 3);
+    assert_true(status(e, "lit") == 21);
+    effect_destroy(e);
+}
+
+static void what_is_wrong_is_said(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *message;
+    } wrong[] = {
+        {"spread { at = { {0, 0} } }", "spread: 'fx' is missing"},
+        {"spread { fx = fx }", "spread: 'at' is missing"},
+        {"spread { fx = fx, at = { 3 } }", "'at' has no place as number 1"},
+        {"spread { fx = fx, at = {} }", "'at' is empty"},
+        {"spread { fx = fx, at = { {0, 0} }, rech = 2 }", "unknown key 'rech'"},
+        {"spread { fx = fx, at = { {0, 0} }, reach = 0 }", "'reach' takes a number"},
+        {"spread { fx = fx, at = { {0, 0} }, burn = {3, 2} }", "'burn' takes s"},
+        {"spread { fx = fx, at = { {0, 0} }, pass = 'x' }", "'pass' takes"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        helper_refuses(HEAD, wrong[i].text, END, wrong[i].message);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_is_the_same_every_time),
+        cmocka_unit_test(every_change_is_an_event),
+        cmocka_unit_test(it_stops_at_a_gap),
+        cmocka_unit_test(wind_drives_it),
+        cmocka_unit_test(fuel_says_what_burns_and_how_long),
+        cmocka_unit_test(what_is_passed_on_at_the_end_goes_in_steps),
+        cmocka_unit_test(a_frame_makes_so_many_changes_at_most),
+        cmocka_unit_test(what_is_wrong_is_said),
+    };
+    return cmocka_run_group_tests(tests, helper_setup, helper_teardown);
+}
