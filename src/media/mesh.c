@@ -15,6 +15,7 @@
 enum { TEXEL_SIDE_MAX = 16384 };
 // Beyond this, areas and dot products overflow.
 static const float POSITION_MAX = 1e18f;
+static const float MESH_EMISSION_MAX = 1e4f; // that a half float holds several times over
 
 typedef struct loader {
     const char *path;
@@ -77,19 +78,46 @@ static bool check_parts(const loader *l, mesh_part *parts, const mesh_blob *head
         if (parts[i].texture < -1 || parts[i].texture >= (int)head->texture_count) return broken(l);
         for (int c = 0; c < 4; c++)
             parts[i].color[c] = clampf(finite_or(parts[i].color[c], 1.0f), 0.0f, 1.0f);
+        float *const shares[] = {&parts[i].specular, &parts[i].roughness, &parts[i].metallic};
+        for (size_t s = 0; s < COUNT_OF(shares); s++)
+            *shares[s] = clampf(finite_or(*shares[s], 0.0f), 0.0f, 1.0f);
+        for (int c = 0; c < 3; c++)
+            parts[i].emission[c] =
+                clampf(finite_or(parts[i].emission[c], 0.0f), 0.0f, MESH_EMISSION_MAX);
         index += parts[i].count;
     }
     return index == head->index_count || broken(l);
 }
 
+// Their runs follow each other, behind the mesh's own indices.
+static bool take_levels(loader *l, const mesh_blob *head, mesh_data *out) {
+    uint32_t index = head->index_count, last = head->index_count + head->level_index_count;
+    for (uint32_t i = 0; i < head->level_count; i++) {
+        const mesh_run *runs = take_array(l, head->part_count, sizeof *runs);
+        float before = i > 0 ? head->errors[i - 1] : 0.0f;
+        if (!runs || !(head->errors[i] >= before && head->errors[i] <= POSITION_MAX))
+            return broken(l);
+        for (uint32_t k = 0; k < head->part_count; k++) {
+            if (runs[k].first != index || runs[k].count > last - index) return broken(l);
+            index += runs[k].count;
+        }
+        out->levels[i] = (mesh_level){head->errors[i], runs};
+    }
+    out->level_count = head->level_count;
+    out->level_index_count = head->level_index_count;
+    return index == last || broken(l);
+}
+
 static bool take_geometry(loader *l, const mesh_blob *head, mesh_part **parts, mesh_data *out) {
     mesh_part *p = take_array(l, head->part_count, sizeof *p);
     mesh_vertex *vertices = take_array(l, head->vertex_count, sizeof *vertices);
-    uint32_t *indices = take_array(l, head->index_count, sizeof *indices);
+    uint32_t index_count = head->index_count + head->level_index_count;
+    uint32_t *indices = take_array(l, index_count, sizeof *indices);
     if (!p || !vertices || !indices) return broken(l);
-    for (uint32_t i = 0; i < head->index_count; i++)
+    for (uint32_t i = 0; i < index_count; i++)
         if (indices[i] >= head->vertex_count) return broken(l);
-    if (!check_parts(l, p, head) || !check_vertices(l, vertices, head->vertex_count, &out->box))
+    if (!take_levels(l, head, out) || !check_parts(l, p, head) ||
+        !check_vertices(l, vertices, head->vertex_count, &out->box))
         return false;
     *parts = p;
     out->vertices = vertices;
@@ -180,7 +208,8 @@ static bool take_mesh(loader *l, mesh_data *out) {
     if (!p) return broken(l);
     memcpy(&head, p, sizeof head);
     if (head.vertex_count > MESH_VERTICES_MAX || head.index_count > MESH_INDICES_MAX ||
-        head.texture_count > MESH_TEXTURES_MAX)
+        head.texture_count > MESH_TEXTURES_MAX || head.level_count > MESH_LEVELS ||
+        head.level_index_count > MESH_INDICES_MAX)
         return broken(l);
     mesh_part *parts = NULL;
     return take_geometry(l, &head, &parts, out) && take_textures(l, &head, parts, out) &&

@@ -19,13 +19,31 @@ typedef struct mesh_part { // a run of indices with one material
     uint32_t first, count; // indices
     float color[4];        // base colour, linear
     int texture;           // index, -1: none
+    float specular;        // 0..1, 0.5: reflects 4 percent head on; 0: matte
+    float roughness;       // 0..1
+    float metallic;        // 0..1
+    float emission[3];     // radiance that it gives off
 } mesh_part;
+
+typedef struct mesh_run { // of indices
+    uint32_t first, count;
+} mesh_run;
+
+typedef struct mesh_level { // the mesh with fewer triangles, of the same vertices
+    float error;            // metres that it is off, at most, about
+    const mesh_run *runs;   // for each part
+} mesh_level;
+
+enum { MESH_LEVELS = 3 };
 
 typedef struct mesh_data {
     const mesh_vertex *vertices;
     uint32_t vertex_count;
-    const uint32_t *indices; // triangles, counter-clockwise
-    uint32_t index_count;
+    const uint32_t *indices; // triangles, counter-clockwise; those of the levels come last
+    uint32_t index_count;    // without those of the levels
+    uint32_t level_index_count;
+    mesh_level levels[MESH_LEVELS]; // each coarser than the one before it
+    uint32_t level_count;
     const mesh_part *parts;
     uint32_t part_count;
     const mesh_texture *textures;

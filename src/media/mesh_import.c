@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "media/isolate.h"
 #include "media/mesh_files.h"
+#include "media/mesh_levels.h"
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <assimp/material.h>
@@ -67,8 +68,36 @@ static int find_texture(importer *im, const char *name) {
     return (int)im->texture_count++;
 }
 
+// Leaves `out` as it is when the material has no such number. A key of assimp's stands for three
+// arguments.
+static bool get_number(const struct aiMaterial *material, const char *key, unsigned type,
+                       unsigned index, float *out) {
+    float value;
+    if (aiGetMaterialFloat(material, key, type, index, &value) != aiReturn_SUCCESS) return false;
+    *out = value;
+    return true;
+}
+
+// By roughness and metallic where the file has them (glTF, and MTL's Pr and Pm), else by a
+// highlight (MTL's Ks and Ns). Both at 1 is what a glTF file means that says nothing, or has it in
+// a texture: matte.
+static void set_reflection(const struct aiMaterial *material, mesh_part *part) {
+    struct aiColor4D c;
+    float exponent;
+    if (get_number(material, AI_MATKEY_SHININESS, &exponent) && exponent > 0)
+        part->roughness = powf(2 / (exponent + 2), 0.25f); // of a highlight as wide
+    if (aiGetMaterialColor(material, AI_MATKEY_COLOR_SPECULAR, &c) == aiReturn_SUCCESS)
+        part->specular = fmaxf(c.r, fmaxf(c.g, c.b));
+    bool measured = get_number(material, AI_MATKEY_ROUGHNESS_FACTOR, &part->roughness);
+    measured |= get_number(material, AI_MATKEY_METALLIC_FACTOR, &part->metallic);
+    if (!measured) return;
+    bool unsaid = part->roughness >= 1 && part->metallic >= 1;
+    part->specular = unsaid ? 0.0f : 0.5f;
+    if (unsaid) part->metallic = 0;
+}
+
 static void set_material(importer *im, unsigned index, mesh_part *part) {
-    *part = (mesh_part){.color = {1.0f, 1.0f, 1.0f, 1.0f}, .texture = -1};
+    *part = (mesh_part){.color = {1.0f, 1.0f, 1.0f, 1.0f}, .texture = -1, .roughness = 1};
     if (index >= im->scene->mNumMaterials) return;
     const struct aiMaterial *material = im->scene->mMaterials[index];
     struct aiColor4D c;
@@ -77,6 +106,9 @@ static void set_material(importer *im, unsigned index, mesh_part *part) {
         const float color[4] = {c.r, c.g, c.b, c.a};
         memcpy(part->color, color, sizeof color);
     }
+    if (aiGetMaterialColor(material, AI_MATKEY_COLOR_EMISSIVE, &c) == aiReturn_SUCCESS)
+        memcpy(part->emission, (const float[3]){c.r, c.g, c.b}, sizeof part->emission);
+    set_reflection(material, part);
     static const enum aiTextureType TYPES[] = {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE};
     for (size_t i = 0; i < COUNT_OF(TYPES) && part->texture < 0; i++) {
         struct aiString name;
@@ -98,6 +130,31 @@ static mesh_vertex convert_vertex(const importer *im, const struct aiMesh *mesh,
     return (mesh_vertex){{p.x, p.y, p.z}, uv.x, {n.x, n.y, n.z}, uv.y};
 }
 
+static bool put_all_geometry(importer *im, mesh_blob *head, const mesh_part *parts,
+                             const mesh_vertex *vertices, const uint32_t *indices) {
+    const mesh_data mesh = {.vertices = vertices,
+                            .vertex_count = head->vertex_count,
+                            .indices = indices,
+                            .index_count = head->index_count,
+                            .parts = parts,
+                            .part_count = head->part_count};
+    mesh_levels levels;
+    mesh_levels_make(&mesh, &im->memory, &levels);
+    head->texture_count = im->texture_count;
+    head->file_count = (uint32_t)im->files.opened_count;
+    head->level_count = levels.count;
+    head->level_index_count = levels.index_count;
+    memcpy(head->errors, levels.errors, sizeof head->errors);
+    bool done = isolate_put(im->out, head, sizeof *head) &&
+                isolate_put(im->out, parts, head->part_count * sizeof *parts) &&
+                isolate_put(im->out, vertices, head->vertex_count * sizeof *vertices) &&
+                isolate_put(im->out, indices, head->index_count * sizeof *indices) &&
+                isolate_put(im->out, levels.indices, levels.index_count * sizeof *indices);
+    for (uint32_t i = 0; i < levels.count && done; i++)
+        done = isolate_put(im->out, levels.runs[i], head->part_count * sizeof(mesh_run));
+    return done;
+}
+
 static bool put_geometry(importer *im, mesh_blob *head) {
     mesh_part *parts = arena_alloc(&im->memory, head->part_count * sizeof *parts);
     mesh_vertex *vertices = arena_alloc(&im->memory, head->vertex_count * sizeof *vertices);
@@ -115,12 +172,7 @@ static bool put_geometry(importer *im, mesh_blob *head) {
         for (unsigned i = 0; i < mesh->mNumVertices; i++)
             vertices[vertex++] = convert_vertex(im, mesh, i);
     }
-    head->texture_count = im->texture_count;
-    head->file_count = (uint32_t)im->files.opened_count;
-    return isolate_put(im->out, head, sizeof *head) &&
-           isolate_put(im->out, parts, head->part_count * sizeof *parts) &&
-           isolate_put(im->out, vertices, head->vertex_count * sizeof *vertices) &&
-           isolate_put(im->out, indices, head->index_count * sizeof *indices);
+    return put_all_geometry(im, head, parts, vertices, indices);
 }
 
 static bool put_texels(const importer *im, const struct aiTexture *texture) {

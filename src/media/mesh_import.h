@@ -1,12 +1,15 @@
 // Assimp's part of reading a mesh. It runs in a child process (isolate.h): assimp 5.2 crashes on
 // many damaged files. The result goes over as bytes, in this order:
-//   mesh_blob, mesh_part[part_count], mesh_vertex[vertex_count], uint32_t[index_count],
-//   texture_count times mesh_blob_texture and its bytes, file_count times uint32_t and a name.
+//   mesh_blob, mesh_part[part_count], mesh_vertex[vertex_count], uint32_t[index_count and
+//   level_index_count], mesh_run[level_count times part_count], texture_count times
+//   mesh_blob_texture and its bytes, file_count times uint32_t and a name.
 #pragma once
 #include "media/mesh.h"
 
 typedef struct mesh_blob {
     uint32_t part_count, vertex_count, index_count, texture_count, file_count;
+    uint32_t level_count, level_index_count;
+    float errors[MESH_LEVELS];
 } mesh_blob; // a part's texture is an index into the textures that follow, or -1
 
 typedef enum mesh_texture_kind {

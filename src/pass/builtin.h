@@ -8,6 +8,7 @@ bool geometry_build(pass *p);
 bool geometry_allocate(pass *p);
 bool geometry_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool geometry_record(pass *p);
+void geometry_destroy(pass *p);
 
 bool shade_check(pass *p);
 bool shade_build(pass *p);

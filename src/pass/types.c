@@ -16,6 +16,7 @@ static const pass_type types[] = {
         .allocate = geometry_allocate,
         .fill = geometry_fill,
         .record = geometry_record,
+        .destroy = geometry_destroy,
     },
     {
         .name = "shade",

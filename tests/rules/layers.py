@@ -17,7 +17,7 @@ HOMES = [
     (r"openvdb/|nanovdb/|tbb/", ("media/vdb.cpp", "media/vdb_blocks.cpp", "media/vdb_write.cpp",
                                  "media/vdb_file.hpp")),
     (r"blosc", "media/pack.c"),
-    (r"assimp/|png\.h|OpenEXR/|openexr|libav|libsw|Imf", "media/"),
+    (r"assimp/|meshoptimizer\.h|png\.h|OpenEXR/|openexr|libav|libsw|Imf", "media/"),
     (r"imgui", ("ui/ui.cpp", "ui/ui_canvas.cpp", "ui/ui_widgets.cpp", "ui/ui_state.hpp")),
     (r"GLFW/", ("app/", "ui/")),
     (r"fontconfig/", "ui/"),

@@ -1,0 +1,15 @@
+// Simplified copies of a mesh, for where it is small in a picture.
+#pragma once
+#include "media/mesh.h"
+
+typedef struct mesh_levels {
+    uint32_t count;
+    float errors[MESH_LEVELS];
+    mesh_run *runs[MESH_LEVELS]; // for each part; indices count from those of the mesh itself
+    uint32_t *indices;           // of all levels
+    uint32_t index_count;
+} mesh_levels;
+
+// Of the mesh's vertices, indices and parts; results lie in `memory`. A small mesh has no levels,
+// nor has one that would take long.
+void mesh_levels_make(const mesh_data *mesh, arena *memory, mesh_levels *out);

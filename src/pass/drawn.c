@@ -1,0 +1,295 @@
+// What is drawn: the meshes of a pass, bound part by part and recorded as one call of the device.
+#include "pass/drawn.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "pass/drawn_parts.h"
+#include <string.h>
+
+// ---- stages -----------------------------------------------------------------------------------
+
+bool drawn_check(pass *p, const char *vertex, const char *fragment, const shader_define *defines,
+                 size_t define_count, drawn_stages *out) {
+    return pass_compile(p, vertex, SHADER_VERTEX, defines, define_count, &out->vertex) &&
+           pass_compile(p, fragment, SHADER_FRAGMENT, defines, define_count, &out->fragment);
+}
+
+bool drawn_build(pass *p, const drawn_target *target, drawn_stages *stages) {
+    const shader_binary *both[] = {&stages->vertex, &stages->fragment};
+    gpu_slot slots[GPU_MAX_SLOTS];
+    size_t slot_count = 0;
+    for (int s = 0; s < 2; s++) {
+        if (slot_count + both[s]->slot_count > GPU_MAX_SLOTS)
+            return err_set("%s: more than %d bindings to draw with", p->label, GPU_MAX_SLOTS);
+        for (size_t i = 0; i < both[s]->slot_count; i++)
+            slots[slot_count++] = both[s]->slots[i].slot;
+        stages->blocks[s] = arena_alloc(p->host->memory, pass_block_size(both[s]) + 16);
+    }
+    gpu_graphics_desc desc = {
+        .label = p->label,
+        .vertex_code = stages->vertex.code,
+        .vertex_size = stages->vertex.size,
+        .fragment_code = stages->fragment.code,
+        .fragment_size = stages->fragment.size,
+        .slots = slots,
+        .slot_count = slot_count,
+        .depth = GPU_D32F,
+        .cull = target->cull,
+    };
+    memcpy(desc.colors, target->colors, sizeof desc.colors);
+    stages->pipeline = gpu_pipeline_create_graphics(p->host->device, &desc);
+    return stages->pipeline != NULL;
+}
+
+void drawn_stages_destroy(pass *p, drawn_stages *stages) {
+    if (stages->pipeline) gpu_pipeline_destroy(p->host->device, stages->pipeline);
+    stages->pipeline = NULL;
+}
+
+// ---- what there is ----------------------------------------------------------------------------
+
+uint32_t drawn_level_count(const mesh_data *mesh) {
+    return 1 + mesh->level_count;
+}
+
+mesh_run drawn_run(const mesh_data *mesh, uint32_t part, uint32_t level) {
+    if (level > 0) return mesh->levels[level - 1].runs[part];
+    return (mesh_run){mesh->parts[part].first, mesh->parts[part].count};
+}
+
+static void add_body(drawn *d, scene_instances *instances, scene_mesh *const *kinds,
+                     size_t kind_count) {
+    arena *memory = d->p->host->memory;
+    drawn_body *body = &d->bodies[d->body_count++];
+    body->instances = instances;
+    body->kinds = kinds;
+    body->kind_count = kind_count;
+    body->count = instances ? scene_instances_count(instances) : (uint32_t)kind_count;
+    body->places = arena_alloc(memory, kind_count * sizeof *body->places);
+    body->commands = arena_alloc(memory, kind_count * sizeof *body->commands);
+    for (size_t k = 0; k < kind_count; k++) {
+        const mesh_data *mesh = &kinds[k]->data;
+        body->commands[k] = body->command_count;
+        body->command_count += mesh->part_count * drawn_level_count(mesh);
+    }
+}
+
+drawn *drawn_create(pass *p) {
+    drawn *d = arena_alloc(p->host->memory, sizeof *d);
+    d->p = p;
+    d->bodies = arena_alloc(p->host->memory, (1 + p->instances_count) * sizeof *d->bodies);
+    if (p->mesh_count > 0) add_body(d, NULL, p->meshes, p->mesh_count);
+    for (size_t i = 0; i < p->instances_count; i++) {
+        scene_mesh *const *kinds;
+        size_t count = scene_instances_kinds(p->instances[i], &kinds);
+        if (scene_instances_count(p->instances[i]) > 0) add_body(d, p->instances[i], kinds, count);
+    }
+    return d;
+}
+
+gpu_buffer *drawn_buffer(gpu *device, const char *label, const void *data, size_t size) {
+    gpu_buffer *buffer =
+        gpu_buffer_create(device, &(gpu_buffer_desc){.label = label, .size = size});
+    if (buffer && gpu_buffer_write(device, buffer, 0, data, size)) return buffer;
+    gpu_buffer_destroy(device, buffer);
+    return NULL;
+}
+
+// Of meshes by themselves: each is an instance of its own kind, where that stands.
+static gpu_buffer *make_entries(gpu *device, uint32_t count) {
+    struct instance_entry *all = mem_alloc(count * sizeof *all);
+    for (uint32_t i = 0; i < count; i++)
+        all[i] = (struct instance_entry){.place = {{0, 0, 0, 1}},
+                                         .turn = {{0, 0, 0, 1}},
+                                         .color = {{1, 1, 1, 1}},
+                                         .kind = {{i, i, 0, 0}}};
+    gpu_buffer *buffer = drawn_buffer(device, "meshes as instances", all, count * sizeof *all);
+    mem_free(all);
+    return buffer;
+}
+
+gpu_buffer *drawn_entries(const drawn_body *body) {
+    return body->instances ? scene_instances_buffer(body->instances) : body->entries;
+}
+
+bool drawn_allocate(drawn *d) {
+    gpu *device = d->p->host->device;
+    static const struct view_entry blank = {{{0}}, {{0}}};
+    if (!d->camera) d->camera = drawn_buffer(device, "view of the camera", &blank, sizeof blank);
+    bool done = d->camera != NULL;
+    for (size_t i = 0; i < d->body_count && done; i++) {
+        drawn_body *body = &d->bodies[i];
+        if (body->instances)
+            done = scene_instances_allocate(body->instances, device);
+        else if (!body->entries)
+            done = (body->entries = make_entries(device, body->count)) != NULL;
+        for (size_t k = 0; k < body->kind_count && done; k++)
+            done = scene_mesh_upload(body->kinds[k], device);
+    }
+    return done || err_prefix("%s: ", d->p->label);
+}
+
+void drawn_destroy(drawn *d) {
+    if (!d) return;
+    gpu *device = d->p->host->device;
+    gpu_buffer_destroy(device, d->camera);
+    for (size_t i = 0; i < d->body_count; i++) {
+        gpu_buffer_destroy(device, d->bodies[i].entries);
+        for (int k = 0; k < DRAWN_BUFFERS; k++) gpu_buffer_destroy(device, d->bodies[i].buffers[k]);
+    }
+    for (int i = 0; i < DRAWN_STEPS; i++)
+        if (d->pipelines[i]) gpu_pipeline_destroy(device, d->pipelines[i]);
+    mem_free(d->draws);
+    mem_free(d->bindings);
+    mem_free(d->parts);
+}
+
+// ---- bindings ---------------------------------------------------------------------------------
+
+// Slots that are another's for each draw, by name.
+enum { SLOT_PART, SLOT_VERTICES, SLOT_INSTANCES, SLOT_LIST, SLOT_TEXTURE, SLOT_VIEWS, SLOT_NAMES };
+static const char *const slot_names[SLOT_NAMES] = {"Part",         "Vertices",     "Instances",
+                                                   "InstanceList", "mesh_texture", "Views"};
+
+typedef struct drawn_slots { // of both stages
+    gpu_binding bindings[GPU_MAX_SLOTS];
+    int names[GPU_MAX_SLOTS]; // in slot_names; -1: the pass's own
+    size_t count;
+} drawn_slots;
+
+static int name_of(const shader_slot *slot) {
+    for (int i = 0; i < SLOT_NAMES; i++)
+        if (strcmp(slot->name, slot_names[i]) == 0) return i;
+    return -1;
+}
+
+static bool bind_stages(drawn *d, drawn_stages *stages, drawn_slots *out) {
+    const shader_binary *both[] = {&stages->vertex, &stages->fragment};
+    pass_override overrides[SLOT_NAMES];
+    for (int i = 0; i < SLOT_NAMES; i++) overrides[i] = (pass_override){slot_names[i], {0}};
+    overrides[SLOT_VIEWS].binding.buffer = d->views;
+    out->count = 0;
+    for (int s = 0; s < 2; s++) {
+        gpu_binding bindings[GPU_MAX_SLOTS];
+        size_t count;
+        if (!pass_fill_block(d->p, both[s], stages->blocks[s]) ||
+            !pass_bind(d->p, both[s], stages->blocks[s], overrides, SLOT_NAMES, bindings, &count))
+            return false;
+        for (size_t i = 0; i < count; i++) {
+            out->names[out->count] = name_of(&both[s]->slots[i]);
+            out->bindings[out->count++] = bindings[i];
+        }
+    }
+    return true;
+}
+
+static void fill_part(const drawn_place *place, const mesh_part *part, size_t view,
+                      struct drawn_part *out) {
+    *out = (struct drawn_part){.flags = {{part->texture >= 0, (uint32_t)view, 0, 0}}};
+    memcpy(out->place.m, place->matrix, sizeof out->place.m);
+    for (int c = 0; c < 3; c++) out->color.v[c] = part->color[c] * place->look.tint[c];
+    scene_look_part(&place->look, part, out->surface.v, out->emission.v);
+    out->color.v[3] = part->color[3];
+}
+
+static void bind_part(const drawn *d, const drawn_body *body, const scene_mesh *mesh,
+                      const mesh_part *part, const struct drawn_part *block,
+                      const drawn_slots *slots, gpu_binding *out) {
+    memcpy(out, slots->bindings, slots->count * sizeof *out);
+    for (size_t i = 0; i < slots->count; i++) {
+        switch (slots->names[i]) {
+        case SLOT_PART:
+            out[i].uniform = block;
+            out[i].uniform_size = sizeof *block;
+            break;
+        case SLOT_VERTICES:
+            out[i].buffer = mesh->vertices;
+            break;
+        case SLOT_INSTANCES:
+            out[i].buffer = drawn_entries(body);
+            break;
+        case SLOT_LIST:
+            out[i].buffer = body->buffers[DRAWN_LIST];
+            break;
+        case SLOT_TEXTURE:
+            out[i].image = part->texture >= 0 ? mesh->textures[part->texture] : d->p->blank[0];
+            out[i].sampler = GPU_LINEAR_REPEAT;
+            break;
+        default:
+            break;
+        }
+    }
+}
+
+// ---- recording --------------------------------------------------------------------------------
+
+typedef struct recording {
+    drawn *d;
+    const drawn_slots *slots;
+    size_t view;
+    const uint32_t *viewport; // NULL: the whole target
+} recording;
+
+static uint32_t levels_of(const drawn *d, const mesh_data *mesh) {
+    return d->levels ? drawn_level_count(mesh) : 1;
+}
+
+static size_t count_draws(const drawn *d) { // of a view
+    size_t count = 0;
+    for (size_t i = 0; i < d->body_count; i++)
+        for (size_t k = 0; k < d->bodies[i].kind_count; k++) {
+            const mesh_data *mesh = &d->bodies[i].kinds[k]->data;
+            count += (size_t)mesh->part_count * levels_of(d, mesh);
+        }
+    return count;
+}
+
+// All places first: draws point at bindings, and these at parts.
+static void reserve(drawn *d, size_t draws, size_t slots) {
+    MEM_RESERVE(d->draws, draws, d->draw_capacity);
+    MEM_RESERVE(d->bindings, draws * slots, d->binding_capacity);
+    MEM_RESERVE(d->parts, draws, d->part_capacity);
+    d->draw_count = 0;
+}
+
+static void add_draw(const recording *r, const drawn_body *body, size_t kind, uint32_t level,
+                     uint32_t part) {
+    drawn *d = r->d;
+    size_t i = d->draw_count++;
+    const scene_mesh *mesh = body->kinds[kind];
+    gpu_binding *bindings = d->bindings + i * r->slots->count;
+    fill_part(&body->places[kind], &mesh->data.parts[part], r->view, &d->parts[i]);
+    bind_part(d, body, mesh, &mesh->data.parts[part], &d->parts[i], r->slots, bindings);
+    uint64_t command = (uint64_t)r->view * body->command_count + body->commands[kind] +
+                       level * mesh->data.part_count + part;
+    d->draws[i] = (gpu_draw){
+        .bindings = bindings,
+        .binding_count = r->slots->count,
+        .indices = mesh->indices,
+        .commands = body->buffers[DRAWN_COMMANDS],
+        .command = command * sizeof(gpu_draw_indexed_command),
+    };
+    if (r->viewport) memcpy(d->draws[i].viewport, r->viewport, sizeof d->draws[i].viewport);
+}
+
+static void add_body_draws(const recording *r, const drawn_body *body) {
+    for (size_t k = 0; k < body->kind_count; k++) {
+        const mesh_data *mesh = &body->kinds[k]->data;
+        for (uint32_t level = 0; level < levels_of(r->d, mesh); level++)
+            for (uint32_t i = 0; i < mesh->part_count; i++) add_draw(r, body, k, level, i);
+    }
+}
+
+bool drawn_record(drawn *d, drawn_stages *stages, gpu_draw_desc *target, size_t first, size_t count,
+                  const uint32_t (*places)[4]) {
+    drawn_slots slots;
+    if (!bind_stages(d, stages, &slots)) return false;
+    reserve(d, count * count_draws(d), slots.count);
+    for (size_t v = 0; v < count; v++) {
+        const recording r = {d, &slots, first + v, places ? places[v] : NULL};
+        for (size_t i = 0; i < d->body_count; i++) add_body_draws(&r, &d->bodies[i]);
+    }
+    target->pipeline = stages->pipeline;
+    target->draws = d->draws;
+    target->draw_count = d->draw_count;
+    return gpu_draw_all(d->p->host->device, target);
+}

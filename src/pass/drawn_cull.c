@@ -1,0 +1,228 @@
+// What each view is to show: the device chooses among all instances (shaders/pass/drawn/).
+#include "base/error.h"
+#include "base/memory.h"
+#include "pass/drawn.h"
+#include "pass/drawn_parts.h"
+#include <string.h>
+
+static const char *const shaders[DRAWN_STEPS] = {"pass/drawn/choose.comp", "pass/drawn/count.comp",
+                                                 "pass/drawn/list.comp"};
+
+bool drawn_check_cull(drawn *d) {
+    static const shader_define none = {"WITHOUT_FIELDS", "1"};
+    for (int i = 0; i < DRAWN_STEPS; i++)
+        if (!pass_compile(d->p, shaders[i], SHADER_COMPUTE, &none, 1, &d->binaries[i]))
+            return false;
+    return true;
+}
+
+bool drawn_build_cull(drawn *d) {
+    if (!drawn_check_cull(d)) return false;
+    for (int i = 0; i < DRAWN_STEPS; i++) {
+        d->pipelines[i] = pass_create_compute(d->p, &d->binaries[i]);
+        d->blocks[i] = arena_alloc(d->p->host->memory, pass_block_size(&d->binaries[i]) + 16);
+        if (!d->pipelines[i]) return false;
+    }
+    return true;
+}
+
+// ---- buffers ----------------------------------------------------------------------------------
+
+static uint32_t bucket_count(const drawn_body *body) {
+    return (uint32_t)body->kind_count * DRAWN_LEVELS;
+}
+
+static uint32_t block_count(const drawn_body *body) {
+    return (body->count + DRAWN_BLOCK - 1) / DRAWN_BLOCK;
+}
+
+// What the device leaves as it is of the commands: all but how many instances, and the first.
+static gpu_buffer *make_commands(gpu *device, const drawn_body *body, size_t views) {
+    size_t count = views * body->command_count, size = count * sizeof(gpu_draw_indexed_command);
+    gpu_draw_indexed_command *all = mem_alloc(size), *next = all;
+    for (size_t v = 0; v < views; v++) {
+        for (size_t k = 0; k < body->kind_count; k++) {
+            const mesh_data *mesh = &body->kinds[k]->data;
+            for (uint32_t level = 0; level < drawn_level_count(mesh); level++) {
+                for (uint32_t i = 0; i < mesh->part_count; i++) {
+                    mesh_run run = drawn_run(mesh, i, level);
+                    *next++ =
+                        (gpu_draw_indexed_command){.indices = run.count, .first_index = run.first};
+                }
+            }
+        }
+    }
+    gpu_buffer *buffer = drawn_buffer(device, "draws", all, size);
+    mem_free(all);
+    return buffer;
+}
+
+static bool make_buffers(gpu *device, drawn_body *body, size_t views) {
+    uint64_t instances = views * body->count, buckets = views * bucket_count(body);
+    const struct {
+        const char *label;
+        uint64_t words;
+    } sizes[DRAWN_BUFFERS] = {
+        [DRAWN_CHOICES] = {"choices of draws", instances},
+        [DRAWN_TOTALS] = {"totals of draws", buckets},
+        [DRAWN_COUNTS] = {"counts of draws", buckets * block_count(body)},
+        [DRAWN_FIRSTS] = {"firsts of draws", buckets * block_count(body)},
+        [DRAWN_LIST] = {"lists of draws", instances},
+    };
+    bool done = true;
+    for (int i = 0; i < DRAWN_BUFFERS && done; i++) {
+        if (i == DRAWN_BUCKETS) continue;
+        gpu_buffer_destroy(device, body->buffers[i]);
+        body->buffers[i] =
+            i == DRAWN_COMMANDS
+                ? make_commands(device, body, views)
+                : gpu_buffer_create(device, &(gpu_buffer_desc){.label = sizes[i].label,
+                                                               .size = sizes[i].words * 4});
+        done = body->buffers[i] != NULL;
+    }
+    return done;
+}
+
+static bool fit_views(drawn *d, size_t count) {
+    if (count > DRAWN_MAX_VIEWS)
+        return err_set("%zu views; at most %d are drawn", count, DRAWN_MAX_VIEWS);
+    if (count <= d->capacity) return true;
+    d->capacity = 0;
+    for (size_t i = 0; i < d->body_count; i++)
+        if (!make_buffers(d->p->host->device, &d->bodies[i], count)) return false;
+    d->capacity = count;
+    return true;
+}
+
+// ---- where all stand --------------------------------------------------------------------------
+
+static void fill_buckets(const mesh_data *mesh, const drawn_place *place, uint32_t command,
+                         struct drawn_bucket out[DRAWN_LEVELS]) {
+    const float3 *low = &mesh->box.min, *high = &mesh->box.max;
+    vec3 centre = {(low->x + high->x) / 2, (low->y + high->y) / 2, (low->z + high->z) / 2};
+    float radius = glm_vec3_distance(centre, (vec3){high->x, high->y, high->z}), scale = 1;
+    if (place) {
+        scale = glm_vec3_norm((float *)place->matrix[0]);
+        glm_mat4_mulv3((vec4 *)place->matrix, centre, 1, centre);
+    }
+    for (uint32_t i = 0; i < DRAWN_LEVELS; i++) {
+        out[i] =
+            (struct drawn_bucket){.sphere = {{centre[0], centre[1], centre[2], radius * scale}},
+                                  .draws = {{command + i * mesh->part_count,
+                                             i < drawn_level_count(mesh) ? mesh->part_count : 0}}};
+        float error = i > 0 && i < drawn_level_count(mesh) ? mesh->levels[i - 1].error * scale : 0;
+        memcpy(&out[i].draws.v[2], &error, sizeof error);
+    }
+}
+
+// Those of instances stand in their own space and never change.
+static bool write_buckets(drawn *d, drawn_body *body) {
+    if (body->instances && body->buffers[DRAWN_BUCKETS]) return true;
+    gpu *device = d->p->host->device;
+    size_t size = bucket_count(body) * sizeof(struct drawn_bucket);
+    struct drawn_bucket *all = mem_alloc(size);
+    for (size_t k = 0; k < body->kind_count; k++)
+        fill_buckets(&body->kinds[k]->data, body->instances ? NULL : &body->places[k],
+                     body->commands[k], all + k * DRAWN_LEVELS);
+    gpu_buffer **buffer = &body->buffers[DRAWN_BUCKETS];
+    bool done = true;
+    if (*buffer)
+        done = gpu_buffer_write(device, *buffer, 0, all, size);
+    else
+        done = (*buffer = drawn_buffer(device, "kinds of draws", all, size)) != NULL;
+    mem_free(all);
+    return done;
+}
+
+static bool place(drawn *d, drawn_body *body) {
+    const field_context *context = d->p->host->context;
+    mat4 matrix;
+    float tint[4] = {1, 1, 1, 1};
+    if (body->instances && !scene_instances_place(body->instances, context, matrix, tint))
+        return false;
+    for (size_t k = 0; k < body->kind_count; k++) {
+        drawn_place *at = &body->places[k];
+        if (body->instances)
+            glm_mat4_copy(matrix, at->matrix);
+        else if (!scene_mesh_transform(body->kinds[k], context, at->matrix))
+            return err_prefix("%s: ", body->kinds[k]->name);
+        if (!scene_mesh_look(body->kinds[k], context, &at->look)) return false;
+        for (int c = 0; c < 3; c++) at->look.tint[c] *= tint[c];
+    }
+    return true;
+}
+
+// ---- choosing ---------------------------------------------------------------------------------
+
+static void fill_block(const drawn *d, const drawn_body *body, drawn_step step, uint32_t views,
+                       float lod) {
+    const shader_binary *binary = &d->binaries[step];
+    unsigned char *block = d->blocks[step];
+    mat4 matrix = GLM_MAT4_IDENTITY_INIT;
+    if (body->instances) glm_mat4_copy(body->places[0].matrix, matrix);
+    const float scale = glm_vec3_norm(matrix[0]);
+    const uint32_t numbers[] = {body->count, views, bucket_count(body), block_count(body),
+                                body->command_count};
+    static const char *const names[COUNT_OF(numbers)] = {
+        "instance_count", "view_count", "bucket_count", "block_count", "command_count"};
+    for (size_t i = 0; i < COUNT_OF(numbers); i++)
+        pass_write_member(binary, block, names[i], &numbers[i], sizeof numbers[i]);
+    pass_write_member(binary, block, "place", matrix, sizeof matrix);
+    pass_write_member(binary, block, "scale", &scale, sizeof scale);
+    pass_write_member(binary, block, "lod", &lod, sizeof lod);
+}
+
+static bool run(drawn *d, const drawn_body *body, drawn_step step, uint32_t views, float lod) {
+    const pass_override overrides[] = {
+        {"Views", {.buffer = d->views}},
+        {"Instances", {.buffer = drawn_entries(body)}},
+        {"DrawnBuckets", {.buffer = body->buffers[DRAWN_BUCKETS]}},
+        {"DrawnChoices", {.buffer = body->buffers[DRAWN_CHOICES]}},
+        {"DrawnTotals", {.buffer = body->buffers[DRAWN_TOTALS]}},
+        {"DrawnCounts", {.buffer = body->buffers[DRAWN_COUNTS]}},
+        {"DrawnFirsts", {.buffer = body->buffers[DRAWN_FIRSTS]}},
+        {"DrawnCommands", {.buffer = body->buffers[DRAWN_COMMANDS]}},
+        {"InstanceList", {.buffer = body->buffers[DRAWN_LIST]}},
+    };
+    uint32_t threads = step == DRAWN_COUNT ? bucket_count(body) : body->count;
+    gpu_binding bindings[GPU_MAX_SLOTS];
+    gpu_dispatch_desc desc = {
+        .pipeline = d->pipelines[step], .bindings = bindings, .threads = {threads, views, 1}};
+    fill_block(d, body, step, views, lod);
+    return pass_bind(d->p, &d->binaries[step], d->blocks[step], overrides, COUNT_OF(overrides),
+                     bindings, &desc.binding_count) &&
+           gpu_dispatch(d->p->host->device, &desc);
+}
+
+static bool choose(drawn *d, drawn_body *body, uint32_t views, float lod) {
+    gpu *device = d->p->host->device;
+    gpu_buffer_fill(device, body->buffers[DRAWN_TOTALS], 0);
+    gpu_buffer_fill(device, body->buffers[DRAWN_COUNTS], 0);
+    for (int i = 0; i < DRAWN_STEPS; i++)
+        if (!run(d, body, (drawn_step)i, views, lod)) return false;
+    return true;
+}
+
+static bool write_camera(drawn *d, uint32_t height) {
+    const struct frame_block *frame = d->p->host->frame;
+    struct view_entry view = {.eye = frame->eye};
+    mat4 from, to, clip;
+    memcpy(from, frame->view.m, sizeof from);
+    memcpy(to, frame->projection.m, sizeof to);
+    glm_mat4_mul(to, from, clip);
+    memcpy(view.clip.m, clip, sizeof clip);
+    view.eye.v[3] = (float)height / (2 * frame->lens.v[1]);
+    d->views = d->camera;
+    return gpu_buffer_write(d->p->host->device, d->camera, 0, &view, sizeof view);
+}
+
+bool drawn_cull(drawn *d, gpu_buffer *views, size_t count, uint32_t height, float lod) {
+    d->views = views;
+    d->levels = lod > 0;
+    bool done = (views || write_camera(d, height)) && fit_views(d, count);
+    for (size_t i = 0; i < d->body_count && done; i++) {
+        drawn_body *body = &d->bodies[i];
+        done = place(d, body) && write_buckets(d, body) && choose(d, body, (uint32_t)count, lod);
+    }
+    return done || err_prefix("%s: ", d->p->label);
+}

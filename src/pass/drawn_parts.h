@@ -1,0 +1,65 @@
+// The inside of what is drawn, for drawn*.c only.
+#pragma once
+#include "pass/drawn.h"
+#include "scene/material.h"
+#include "shared.h"
+
+typedef struct drawn_place {
+    mat4 matrix; // to the world
+    scene_look look;
+} drawn_place;
+
+// Buffers of shaders/pass/drawn/, of all views.
+enum {
+    DRAWN_BUCKETS, // the only one that the host writes in each frame, if at all
+    DRAWN_CHOICES,
+    DRAWN_TOTALS,
+    DRAWN_COUNTS,
+    DRAWN_FIRSTS,
+    DRAWN_LIST,
+    DRAWN_COMMANDS,
+    DRAWN_BUFFERS
+};
+
+// What is chosen from and listed together: instances, or all meshes that stand by themselves. Such
+// a mesh is the only instance of its kind, and stands where its kind does.
+typedef struct drawn_body {
+    scene_instances *instances; // NULL: meshes
+    scene_mesh *const *kinds;
+    size_t kind_count;
+    uint32_t count;         // of instances
+    drawn_place *places;    // as of this frame, for each kind; of instances all at one place
+    uint32_t *commands;     // of a kind: the first of its level 0
+    uint32_t command_count; // of a view
+    gpu_buffer *entries;    // of meshes: their instances
+    gpu_buffer *buffers[DRAWN_BUFFERS];
+} drawn_body;
+
+typedef enum drawn_step { DRAWN_CHOOSE, DRAWN_COUNT, DRAWN_PUT, DRAWN_STEPS } drawn_step;
+
+struct drawn {
+    pass *p;
+    drawn_body *bodies;
+    size_t body_count;
+    shader_binary binaries[DRAWN_STEPS];
+    gpu_pipeline *pipelines[DRAWN_STEPS];
+    unsigned char *blocks[DRAWN_STEPS];
+    gpu_buffer *camera; // the view of the camera
+    gpu_buffer *views;  // of this frame
+    size_t capacity;    // of views that there are buffers for
+    bool levels;        // of this frame: meshes may be simplified
+
+    // Of the call that is being recorded.
+    gpu_draw *draws;
+    gpu_binding *bindings;
+    struct drawn_part *parts;
+    size_t draw_count, draw_capacity, binding_capacity, part_capacity;
+};
+
+_Static_assert(DRAWN_LEVELS == MESH_LEVELS + 1, "levels of shaders and of meshes");
+
+gpu_buffer *drawn_buffer(gpu *device, const char *label, const void *data, size_t size);
+// Of a part at a level.
+mesh_run drawn_run(const mesh_data *mesh, uint32_t part, uint32_t level);
+uint32_t drawn_level_count(const mesh_data *mesh); // with the full one
+gpu_buffer *drawn_entries(const drawn_body *body); // of its instances
