@@ -19,6 +19,14 @@ bool lamps_declare(pass *p);
 bool lamps_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool lamps_record(pass *p);
 
+bool shadow_maps_declare(pass *p);
+bool shadow_maps_check(pass *p);
+bool shadow_maps_build(pass *p);
+bool shadow_maps_allocate(pass *p);
+bool shadow_maps_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool shadow_maps_record(pass *p);
+void shadow_maps_destroy(pass *p);
+
 bool lighting_declare(pass *p);
 bool lighting_check(pass *p);
 bool lighting_build(pass *p);

@@ -1,0 +1,7 @@
+// Leaves out what is clear.
+#include "lib/mesh_color.glsl"
+layout(location = 0) in vec2 uv;
+
+void main() {
+    if (mesh_color(uv, vec3(1.0)).a < 0.5) discard;
+}

@@ -1,0 +1,263 @@
+// Maps of what stands before the lights: views are placed (those of sun and spots on the host,
+// those of the point lights that matter most on the device, where lamps move), then meshes and
+// instances are drawn in each, into one atlas. Cubes, not tetrahedra: README.md of
+// shaders/pass/shadow_maps says what was counted.
+#include "base/error.h"
+#include "base/memory.h"
+#include "pass/builtin.h"
+#include "pass/drawn.h"
+#include "pass/pass_impl.h"
+#include "pass/shadow_maps_parts.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    FACES = 6,         // of a cube
+    TABLE_WIDTH = 8,   // texels of a row of `shadow_views`, in shadow_maps/views.glsl
+    LARGEST = 1 << 14, // edge of an image
+};
+
+typedef struct shadow_state {
+    uint32_t declared; // lights of the scene, its sun among them
+    uint32_t cascades, points;
+    uint32_t fixed, views; // of sun and spots; all
+    int spots[LIGHT_MAX];  // view of each light, -1: none
+    uint32_t sizes[DRAWN_MAX_VIEWS], places[DRAWN_MAX_VIEWS][4], atlas[2];
+    struct shadow_view now[DRAWN_MAX_VIEWS]; // the fixed ones of this frame
+    bool wide[LIGHT_MAX];                    // spots too wide for a view
+    drawn *drawn;
+    drawn_stages stages;
+    gpu_buffer *placed; // the views, as the device has placed them
+} shadow_state;
+
+static shadow_state *state_of(const pass *p) {
+    return p->state;
+}
+
+// ---- declaring --------------------------------------------------------------------------------
+
+static uint32_t number_of(const pass *p, const char *option) {
+    size_t index;
+    pass_find_key(p, option, &index);
+    return (uint32_t)strtoul(p->face->options[index].words[p->options[index]], NULL, 10);
+}
+
+static void add_views(shadow_state *s, uint32_t count, uint32_t size) {
+    for (uint32_t i = 0; i < count; i++) s->sizes[s->views++] = size;
+}
+
+// Spots that there is no room for have no map.
+static void list_views(pass *p) {
+    shadow_state *s = state_of(p);
+    const scene *around = p->host->scene;
+    s->declared = around ? (uint32_t)around->light_count + 1 : 1;
+    s->cascades = number_of(p, "cascades");
+    s->points = number_of(p, "points");
+    add_views(s, s->cascades, number_of(p, "size"));
+    uint32_t most = DRAWN_MAX_VIEWS - FACES * s->points;
+    for (uint32_t i = 0; i < s->declared; i++) {
+        bool spot = i && around->lights[i - 1].kind == SCENE_SPOT && s->views < most;
+        s->spots[i] = spot ? (int)s->views : -1;
+        add_views(s, spot, number_of(p, "spot_size"));
+    }
+    s->fixed = s->views;
+    add_views(s, FACES * s->points, number_of(p, "point_size"));
+}
+
+// The large ones first.
+static bool place_views(pass *p) {
+    shadow_state *s = state_of(p);
+    uint32_t order[DRAWN_MAX_VIEWS], sizes[DRAWN_MAX_VIEWS], places[DRAWN_MAX_VIEWS][4];
+    uint32_t count = 0;
+    for (uint32_t size = LARGEST; size; size /= 2)
+        for (uint32_t i = 0; i < s->views; i++)
+            if (s->sizes[i] == size) order[count] = i, sizes[count++] = size;
+    if (!shadow_maps_pack(sizes, count, LARGEST, places, s->atlas))
+        return err_set("%s: an atlas of %ux%u texels; at most %d are possible: choose smaller "
+                       "maps, or fewer",
+                       p->label, s->atlas[0], s->atlas[1], LARGEST);
+    for (uint32_t i = 0; i < count; i++) memcpy(s->places[order[i]], places[i], sizeof places[i]);
+    return true;
+}
+
+// What is drawn is what the sources draw, where nothing else is given.
+static bool take_meshes(pass *p) {
+    bool given = p->mesh_count > 0 || p->instances_count > 0;
+    for (size_t i = 0; i < p->source_count && !given; i++) {
+        const pass *source = p->sources[i];
+        for (size_t k = 0; k < source->mesh_count; k++)
+            if (!pass_add_mesh(p, source->meshes[k])) return false;
+        for (size_t k = 0; k < source->instances_count; k++)
+            if (!pass_add_instances(p, source->instances[k])) return false;
+    }
+    return true;
+}
+
+static uint32_t count_lights(const pass *p) {
+    uint32_t count = 0;
+    static const char *const names[] = {"lights", "lamps"};
+    for (size_t i = 0; i < COUNT_OF(names); i++) {
+        graph_image image = p->images[pass_find_image(p, names[i])];
+        if (image.id)
+            count += graph_get_desc(p->host->graph, image)->height;
+        else if (i == 0)
+            count += state_of(p)->declared;
+    }
+    return count;
+}
+
+static bool add_image(pass *p, const char *name, gpu_format format, uint32_t width,
+                      uint32_t height) {
+    int index = pass_find_image(p, name);
+    p->images[index] = graph_add_image(
+        p->host->graph, &(graph_image_desc){
+                            .name = arena_format(p->host->memory, "%s.%s", p->label, name),
+                            .format = format,
+                            .width = width,
+                            .height = height,
+                            .target = format == GPU_D32F,
+                        });
+    return p->images[index].id != 0;
+}
+
+bool shadow_maps_declare(pass *p) {
+    shadow_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
+    p->lamps = NULL; // of lamps the image is all that is read
+    list_views(p);
+    if (!place_views(p) || !take_meshes(p)) return false;
+    uint32_t rows = 1 + s->views + (count_lights(p) + TABLE_WIDTH - 1) / TABLE_WIDTH;
+    s->drawn = drawn_create(p);
+    return add_image(p, "shadow_atlas", GPU_D32F, s->atlas[0], s->atlas[1]) &&
+           add_image(p, "shadow_views", GPU_RGBA32F, TABLE_WIDTH, rows) && pass_add_to_graph(p);
+}
+
+// ---- building ---------------------------------------------------------------------------------
+
+bool shadow_maps_check(pass *p) {
+    const shadow_state *s = state_of(p);
+    arena *memory = p->host->memory;
+    const shader_define defines[] = {
+        {"SHADOW_FIXED", arena_format(memory, "%u", s->fixed)},
+        {"SHADOW_VIEWS", arena_format(memory, "%u", s->views)},
+        {"SHADOW_POINTS", arena_format(memory, "%u", s->points)},
+    };
+    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines), &p->binary) &&
+           drawn_check(p, "pass/shadow_maps.vert", "pass/shadow_maps.frag", NULL, 0,
+                       &state_of(p)->stages) &&
+           drawn_check_cull(s->drawn);
+}
+
+bool shadow_maps_build(pass *p) {
+    shadow_state *s = state_of(p);
+    if (!shadow_maps_check(p)) return false;
+    p->pipeline = pass_create_compute(p, &p->binary);
+    return p->pipeline && drawn_build(p, &(drawn_target){.cull = GPU_CULL_NONE}, &s->stages) &&
+           drawn_build_cull(s->drawn);
+}
+
+bool shadow_maps_allocate(pass *p) {
+    shadow_state *s = state_of(p);
+    if (!s->placed)
+        s->placed = gpu_buffer_create(
+            p->host->device,
+            &(gpu_buffer_desc){.label = "views of shadows",
+                               .size = (s->views + 1) * sizeof(struct view_entry)});
+    return s->placed && drawn_allocate(s->drawn);
+}
+
+void shadow_maps_destroy(pass *p) {
+    shadow_state *s = state_of(p);
+    if (!s) return;
+    drawn_stages_destroy(p, &s->stages);
+    drawn_destroy(s->drawn);
+    gpu_buffer_destroy(p->host->device, s->placed);
+}
+
+// ---- in a frame -------------------------------------------------------------------------------
+
+// Texels at the edges of a view that a look from within it may ask for.
+static float margin_of(const pass *p) {
+    return pass_evaluate(p, "shadow_radius") + 2;
+}
+
+static void place_sun(pass *p, const float sun[3]) {
+    shadow_state *s = state_of(p);
+    const struct frame_block *frame = p->host->frame;
+    float ends[DRAWN_MAX_VIEWS], far = pass_evaluate(p, "distance"), near;
+    near = fminf(fmaxf(frame->lens.v[2], far * 2e-3f), 0.5f * far);
+    shadow_maps_split(near, far, pass_evaluate(p, "split"), s->cascades, ends);
+    for (uint32_t i = 0; i < s->cascades; i++)
+        shadow_maps_cascade(frame, sun, i ? ends[i - 1] : 0, ends[i], SHADOW_REACH * far,
+                            s->sizes[i], margin_of(p), &s->now[i]);
+}
+
+static void place_spots(pass *p) {
+    shadow_state *s = state_of(p);
+    float far = pass_evaluate(p, "distance");
+    for (uint32_t i = 1; i < s->declared; i++) {
+        int view = s->spots[i];
+        if (view < 0) continue;
+        s->now[view] = (struct shadow_view){0};
+        s->wide[i] = !shadow_maps_spot(&p->host->lights->lights[i], far, s->sizes[view],
+                                       margin_of(p), &s->now[view]);
+    }
+}
+
+// As fixed_lights of the shader has them: a light that has views, is too wide for one, or competes.
+static void write_lights(const pass *p, const shader_binary *binary, unsigned char *block) {
+    const shadow_state *s = state_of(p);
+    float lights[LIGHT_MAX][4] = {{0, (float)s->cascades}};
+    for (uint32_t i = 1; i < s->declared; i++) {
+        bool spot = p->host->lights->lights[i].color.v[3] == LIGHT_SPOT;
+        bool seen = spot && s->spots[i] >= 0 && !s->wide[i];
+        lights[i][0] = seen ? (float)s->spots[i] : 0;
+        lights[i][1] = seen ? 1 : spot ? 0 : -1;
+    }
+    for (uint32_t i = s->declared; i < LIGHT_MAX; i++) lights[i][1] = -1;
+    pass_write_member(binary, block, "fixed_lights", lights, sizeof lights);
+}
+
+bool shadow_maps_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+    shadow_state *s = state_of(p);
+    uint32_t count = p->host->lights->count.v[0];
+    if (count != s->declared)
+        return err_set("%s: made for %u lights (the sun is one), but the effect has %u; set "
+                       "'lights' of the effect before it",
+                       p->label, s->declared, count);
+    place_sun(p, p->host->lights->lights[0].position.v);
+    place_spots(p);
+    float places[DRAWN_MAX_VIEWS][4], margin = margin_of(p);
+    for (uint32_t i = 0; i < s->views; i++)
+        for (int k = 0; k < 4; k++) places[i][k] = (float)s->places[i][k];
+    float pixels = (float)p->host->frame->size.v[1] / (2 * p->host->frame->lens.v[1]);
+    pass_write_member(binary, block, "places", places, sizeof places);
+    pass_write_member(binary, block, "fixed_views", s->now, sizeof s->now);
+    pass_write_member(binary, block, "margin", &margin, sizeof margin);
+    pass_write_member(binary, block, "pixels", &pixels, sizeof pixels);
+    write_lights(p, binary, block);
+    return true;
+}
+
+static bool place_views_drawn(pass *p) {
+    const pass_override views = {.name = "Views", .binding = {.buffer = state_of(p)->placed}};
+    gpu_binding bindings[GPU_MAX_SLOTS];
+    gpu_dispatch_desc desc = {.pipeline = p->pipeline, .bindings = bindings, .threads = {1, 1, 1}};
+    return pass_bind(p, &p->binary, p->block, &views, 1, bindings, &desc.binding_count) &&
+           gpu_dispatch(p->host->device, &desc);
+}
+
+bool shadow_maps_record(pass *p) {
+    shadow_state *s = state_of(p);
+    gpu_draw_desc target = {
+        .depth = graph_get_image(p->host->graph, pass_output(p, "shadow_atlas")),
+        .clear = true,
+        .clear_depth = 1,
+    };
+    if (!pass_prepare(p) || !place_views_drawn(p) || !gpu_draw_all(p->host->device, &target) ||
+        !drawn_cull(s->drawn, s->placed, s->views, p->host->frame->size.v[1],
+                    pass_evaluate(p, "lod")))
+        return false;
+    target.clear = false;
+    return drawn_record(s->drawn, &s->stages, &target, 0, s->views,
+                        (const uint32_t(*)[4])s->places);
+}

@@ -1,0 +1,219 @@
+// Maps of shadows against geometry and against rays. The scene is a wall at y = 0 that faces the
+// camera, which stands at (0, -5, 0).
+#include "pass_test.h"
+
+enum { SIZE = 96, PIXELS = SIZE * SIZE };
+
+static const float light_at_10m = 4 * GLM_PIf * GLM_PIf * 100; // W: radiance 1 of a white wall
+
+// ---- meshes made here ---------------------------------------------------------------------------
+
+static scene_mesh *add_mesh(pass_world *w, const mesh_data *data) {
+    scene_mesh *mesh = &w->meshes[w->mesh_count++];
+    *mesh = (scene_mesh){.name = "mesh",
+                         .position = triple(w, 0, 0, 0),
+                         .rotation = triple(w, 0, 0, 0),
+                         .scale = number(w, 1),
+                         .color = triple(w, 1, 1, 1),
+                         .data = *data};
+    return mesh;
+}
+
+static mesh_part *white_part(pass_world *w, uint32_t count) {
+    mesh_part *part = arena_alloc(&w->memory, sizeof *part);
+    *part = (mesh_part){.count = count, .color = {1, 1, 1, 1}, .texture = -1, .roughness = 1};
+    return part;
+}
+
+// Of radius 1, fine enough to be a sphere.
+static scene_mesh *add_sphere(pass_world *w, float radius, float x, float y, float z) {
+    enum { AROUND = 96, DOWN = 48 };
+    mesh_vertex *vertices = arena_alloc(&w->memory, (AROUND + 1) * (DOWN + 1) * sizeof *vertices);
+    uint32_t *indices = arena_alloc(&w->memory, 6 * AROUND * DOWN * sizeof *indices), count = 0;
+    for (uint32_t i = 0; i <= DOWN; i++) {
+        for (uint32_t k = 0; k <= AROUND; k++) {
+            float a = GLM_PIf * (float)i / DOWN, b = 2 * GLM_PIf * (float)k / AROUND;
+            float p[3] = {sinf(a) * cosf(b), sinf(a) * sinf(b), cosf(a)};
+            mesh_vertex *v = &vertices[i * (AROUND + 1) + k];
+            memcpy(v->position, p, sizeof p);
+            memcpy(v->normal, p, sizeof p);
+        }
+    }
+    for (uint32_t i = 0; i < DOWN; i++) {
+        for (uint32_t k = 0; k < AROUND; k++) {
+            uint32_t a = i * (AROUND + 1) + k, b = a + AROUND + 1;
+            const uint32_t both[] = {a, b, b + 1, a, b + 1, a + 1};
+            memcpy(indices + count, both, sizeof both);
+            count += 6;
+        }
+    }
+    scene_mesh *mesh = add_mesh(w, &(mesh_data){.vertices = vertices,
+                                                .vertex_count = (DOWN + 1) * (AROUND + 1),
+                                                .indices = indices,
+                                                .index_count = count,
+                                                .parts = white_part(w, count),
+                                                .part_count = 1,
+                                                .box = {.min = {-1, -1, -1}, .max = {1, 1, 1}}});
+    mesh->scale = number(w, radius);
+    mesh->position = triple(w, x, y, z);
+    return mesh;
+}
+
+static scene_mesh *add_plane(pass_world *w, float scale, float tilt, float x, float y, float z) {
+    scene_mesh *plane = world_mesh(w, "plane.obj");
+    plane->scale = number(w, scale);
+    plane->rotation = triple(w, tilt, 0, 0);
+    plane->position = triple(w, x, y, z);
+    return plane;
+}
+
+// ---- pictures -----------------------------------------------------------------------------------
+
+static pass *add_maps(pass_world *w, pass *geometry, const pass_named *settings, size_t count) {
+    pass *p = world_add(w, "shadow_maps", NULL, "shadows");
+    pass_add_source(p, geometry);
+    for (size_t i = 0; i < count; i++)
+        gpu_test_ok(settings[i].word ? pass_set_option(p, settings[i].name, settings[i].word)
+                                     : pass_set_uniform(p, settings[i].name, settings[i].value));
+    gpu_test_ok(pass_declare(p));
+    return p;
+}
+
+static pass *add_geometry(pass_world *w) {
+    pass *p = world_add(w, "geometry", NULL, "geometry");
+    for (size_t i = 0; i < w->mesh_count; i++) gpu_test_ok(pass_add_mesh(p, &w->meshes[i]));
+    for (size_t i = 0; i < w->instances_count; i++)
+        gpu_test_ok(pass_add_instances(p, w->instances[i]));
+    gpu_test_ok(pass_declare(p));
+    return p;
+}
+
+// With maps of these settings; NULL: with rays.
+static float *shade(pass_world *w, const pass_named *settings, size_t count) {
+    pass *geometry = add_geometry(w), *maps = NULL;
+    if (settings) maps = add_maps(w, geometry, settings, count);
+    pass *p = world_add(w, "shade", NULL, "shade");
+    pass_add_source(p, geometry);
+    if (maps) pass_add_source(p, maps);
+    gpu_test_ok(pass_declare(p));
+    world_render(w, SIZE, SIZE, pass_output(p, "color"));
+    return world_read(w, pass_output(p, "color"));
+}
+
+#define SHADE(w, ...)                                                                              \
+    shade(w, (const pass_named[]){__VA_ARGS__},                                                    \
+          sizeof((const pass_named[]){__VA_ARGS__}) / sizeof(pass_named))
+
+static void pixel_ray(const pass_world *w, size_t i, double out[3]) {
+    double u = ((double)(i % SIZE) + 0.5) / SIZE, v = ((double)(i / SIZE) + 0.5) / SIZE;
+    out[0] = (2 * u - 1) * (double)w->frame.lens.v[0];
+    out[1] = 1;
+    out[2] = (1 - 2 * v) * (double)w->frame.lens.v[1];
+}
+
+// Distance of a point from a line.
+static double off_line(const double at[3], const double way[3], const double point[3]) {
+    double d[3], along = 0, length = 0, squared = 0;
+    for (int i = 0; i < 3; i++) {
+        d[i] = point[i] - at[i];
+        along += d[i] * way[i];
+        length += way[i] * way[i];
+    }
+    for (int i = 0; i < 3; i++) squared += d[i] * d[i];
+    return sqrt(fmax(squared - along * along / length, 0));
+}
+
+static void add_light(pass_world *w, scene_light_kind kind, float x, float y, float z) {
+    scene_light *light = arena_alloc(&w->memory, sizeof *light);
+    *light = (scene_light){
+        .kind = kind,
+        .position = triple(w, x, y, z),
+        .color = triple(w, 1, 1, 1),
+        .power = number(w, light_at_10m),
+        .radius = number(w, 0),
+        .target = triple(w, 0, 0, 0),
+        .angle = number(w, 60),
+        .softness = number(w, 0),
+    };
+    w->scene.lights = light;
+    w->scene.light_count = 1;
+}
+
+static void shine(pass_world *w, float azimuth, float elevation) { // radiance of the sun: 1
+    w->scene.sun.strength = number(w, GLM_PIf);
+    w->scene.sun.azimuth = number(w, azimuth);
+    w->scene.sun.elevation = number(w, elevation);
+}
+
+// ---- against geometry ---------------------------------------------------------------------------
+
+static const double ball[3] = {0.5, -1, 0.3};
+static const double radius = 0.4;
+
+// Pixels of the wall that a light at `source` (of the sun: the way to it) shades wrongly, of all
+// but those that are nearer than `edge` (m) to the edge of the shadow as seen from the light.
+static size_t count_wrong(const pass_world *w, const float *c, const float *lit, bool sun,
+                          const double source[3], double edge, size_t *dark) {
+    size_t wrong = 0;
+    *dark = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        double eye[3] = {0, -5, 0}, ray[3], p[3], way[3];
+        pixel_ray(w, i, ray);
+        if (off_line(eye, ray, ball) < radius + 0.02) continue;
+        for (int k = 0; k < 3; k++) p[k] = eye[k] + 5 * ray[k];
+        for (int k = 0; k < 3; k++) way[k] = sun ? source[k] : source[k] - p[k];
+        double away = off_line(p, way, ball) - radius;
+        if (fabs(away) < edge || !(lit[4 * i] > 0.01f)) continue;
+        double seen = (double)(c[4 * i] / lit[4 * i]);
+        wrong += fabs(seen - (away > 0)) > 0.02;
+        *dark += away < 0;
+    }
+    return wrong;
+}
+
+// The ball before the wall under a light; lit: without the ball.
+static void compare_with_geometry(gpu *device, const char *what, scene_light_kind kind,
+                                  const double source[3], double texel) {
+    float *pictures[2];
+    for (int with = 0; with < 2; with++) {
+        pass_world w;
+        world_open(&w, device);
+        add_plane(&w, 20, 0, 0, 0, 0);
+        if (with) add_sphere(&w, (float)radius, (float)ball[0], (float)ball[1], (float)ball[2]);
+        if (kind)
+            add_light(&w, kind, (float)source[0], (float)source[1], (float)source[2]);
+        else
+            shine(&w, (float)(atan2(source[1], source[0]) * 180 / GLM_PI),
+                  (float)(asin(source[2]) * 180 / GLM_PI));
+        pictures[with] =
+            SHADE(&w, WORD("cascades", "2"), WORD("size", "1024"), WORD("spot_size", "1024"),
+                  WORD("point_size", "512"), SET("distance", number(&w, kind ? 20 : 12)),
+                  SET("shadow_radius", number(&w, 0.5f)));
+        if (with) {
+            size_t dark, wrong = count_wrong(&w, pictures[1], pictures[0], !kind, source,
+                                             2.5 * texel, &dark);
+            if (wrong) fail_msg("%s: %zu pixels are wrong, %zu dark", what, wrong, dark);
+            assert_true(dark > 150);
+        }
+        world_close(&w);
+    }
+    mem_free(pictures[0]);
+    mem_free(pictures[1]);
+}
+
+static void shadow_of_a_ball_is_where_geometry_puts_it(void **state) {
+    const double sun[3] = {0.48, -0.8, 0.36};
+    compare_with_geometry(*state, "sun", 0, sun, 12.0 / 1024);
+    const double lamp[3] = {1.5, -3, 1};
+    double away = 3; // of the wall's farthest lit point, along an axis
+    compare_with_geometry(*state, "spot", SCENE_SPOT, lamp,
+                          2 * away * tan(GLM_PI / 6) / 1024 * 1.2);
+    compare_with_geometry(*state, "point", SCENE_POINT, lamp, 2 * away / 512);
+}
+
+int main(void) {
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shadow_of_a_ball_is_where_geometry_puts_it),
+    };
+    return gpu_test_run(tests, COUNT_OF(tests));
+}
