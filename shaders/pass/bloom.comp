@@ -2,20 +2,23 @@
 //
 // In mode normal every level weighs what `radius` says and the weights sum to one: the bloom has
 // the energy of the bright picture. In mode paper C_i += alpha U(C_{i+1}), which adds energy with
-// every level.
-//@ option mode = normal {normal, paper} : normal keeps the energy; paper as published
+// every level. Mode gaussian blurs in one size: by nine taps across and nine down, again and again.
+//@ option mode = normal {normal, paper, gaussian} : normal keeps the energy; paper as published there; gaussian: a separable blur
 uniform sampler2D source;      //= input : the bright picture
 uniform float radius;          //= 0.7 [0, 1] : how much of the light goes to the wider levels
 uniform float alpha;           //= 0.8 [0, 4] : weight of each wider level in mode paper
 uniform int levels;            //= 0 [0, 16] : how many halvings; 0: down to one pixel
+uniform int passes;            //= 5 [1, 64] : of mode gaussian: how often it blurs, across and down each time
+uniform int spread;            //= 1 [1, 64] pixels : of mode gaussian: distance of its taps, which makes it wider and coarser
 uniform image2D color;         //= output rgba16f : the bloom
 
 // One shader for all steps (pass/bloom.c): STAGE_FIRST halves the source, STAGE_DOWN a level,
 // STAGE_TAIL goes down and up again through all small levels, STAGE_UP adds a wider level to one, and
-// STAGE_LAST the first level to the source. Where the source is what a pass `bright` keeps of a
-// picture and nobody else wants to see that, FROM_BRIGHT is 1 and the picture is read instead.
+// STAGE_LAST the first level to the source. Mode gaussian has STAGE_BLUR_FIRST and STAGE_BLUR instead
+// (pass/bloom_gaussian.c). Where the source is what a pass `bright` keeps of a picture and nobody else
+// wants to see that, FROM_BRIGHT is 1 and the picture is read instead.
 #if FROM_BRIGHT
-uniform float threshold, knee, limit; // of that pass
+uniform float threshold, knee, limit, intensity; // of that pass
 #include "bright/keep.glsl"
 #endif
 
@@ -40,7 +43,7 @@ vec3 blend(vec3 own, vec3 wide) {
 layout(local_size_x = 16, local_size_y = 16) in;
 #endif
 
-#if STAGE_FIRST || STAGE_LAST
+#if STAGE_FIRST || STAGE_LAST || STAGE_BLUR_FIRST
 uniform sampler2D picture; // of any size
 
 // Of the finest level.
@@ -88,6 +91,8 @@ void main() {
 }
 #elif STAGE_TAIL
 #include "bloom/tail.glsl"
+#elif STAGE_BLUR_FIRST || STAGE_BLUR
+#include "bloom/gaussian.glsl"
 #else
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(color);

@@ -2,6 +2,7 @@
 #include "lib/color.glsl"
 #include "lib/tonemap.glsl"
 //@ option tonemap = agx {agx, aces, reinhard, exponential, none} : how scene light becomes display light
+//@ option bloom_mix = add {add, luminance} : add: all of the bloom; luminance: the less of it, the brighter the picture is already, down to none where that is 2, so that lights keep their colours
 //@ option saturate = scene {scene, display} : which light `saturation` changes: before or after the tone map
 uniform sampler2D source;         //= input : the picture, scene-linear
 uniform sampler2D bloom;          //= input optional : added to it
@@ -21,7 +22,11 @@ void main() {
     vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
     vec4 c = textureLod(source, uv, 0.0);
 #if HAS_BLOOM
-    c.rgb += bloom_intensity * textureLod(bloom, uv, 0.0).rgb;
+    vec3 halo = bloom_intensity * textureLod(bloom, uv, 0.0).rgb;
+#if BLOOM_MIX == BLOOM_MIX_LUMINANCE
+    halo *= max(1.0 - 0.5 * luminance(c.rgb), 0.0);
+#endif
+    c.rgb += halo;
 #endif
     imageStore(linear, pixel, c);
     float stops = exposure_ev;

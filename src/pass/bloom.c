@@ -5,36 +5,26 @@
 // Level 0 is not written on the way down: the first step halves the picture,
 // the last one adds to it. Where the picture comes from a pass `bright`, both
 // do its work as well, and that pass is left out unless something else reads
-// it.
+// it. Mode gaussian stays in one size (bloom_gaussian.c).
 #include "base/error.h"
 #include "base/memory.h"
+#include "pass/bloom_parts.h"
 #include "pass/builtin.h"
-#include "pass/pass_impl.h"
 #include <string.h>
 
 // Levels of so few texels are done in one dispatch; with those below they fit
 // into its shared memory (bloom/tail.glsl).
 enum { TAIL_TEXELS = 2560 };
 
-typedef enum bloom_stage { FIRST, DOWN, TAIL, UP, LAST, STAGES } bloom_stage;
-
-static const char *const stage_names[STAGES] = {"STAGE_FIRST", "STAGE_DOWN", "STAGE_TAIL",
-                                                "STAGE_UP", "STAGE_LAST"};
-
-typedef struct bloom_state {
-    pass *bright;        // whose work is done here; NULL: none
-    graph_image picture; // that is read
-    bool same_size;      // as the bloom
-    shader_binary binary[STAGES];
-    gpu_pipeline *pipeline[STAGES];
-    unsigned char *block[STAGES];
-} bloom_state;
+static const char *const stage_names[BLOOM_STAGES] = {
+    "STAGE_FIRST", "STAGE_DOWN",       "STAGE_TAIL", "STAGE_UP",
+    "STAGE_LAST",  "STAGE_BLUR_FIRST", "STAGE_BLUR"};
 
 typedef struct levels { // of the bloom
     gpu_image *chain;
     uint32_t size[2];
     uint32_t last; // the widest that is added
-    uint32_t tail; // the finest that TAIL does; `last`: it does none
+    uint32_t tail; // the finest that BLOOM_TAIL does; `last`: it does none
 } levels;
 
 // ---- declaring
@@ -55,20 +45,34 @@ static void find_picture(pass *p) {
     s->same_size = desc->scale == p->scale;
 }
 
+static const char *word_of(const pass *p, const char *option) {
+    size_t index;
+    pass_find_key(p, option, &index);
+    return p->face->options[index].words[p->options[index]];
+}
+
+graph_image bloom_add_image(pass *p, const char *name, uint32_t mips) {
+    return graph_add_image(p->host->graph,
+                           &(graph_image_desc){
+                               .name = arena_format(p->host->memory, "%s.%s", p->label, name),
+                               .format = p->formats[pass_find_image(p, "color")],
+                               .scale = p->scale,
+                               .mips = mips,
+                           });
+}
+
 bool bloom_declare(pass *p) {
     bloom_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     int output = pass_find_image(p, "color"), source = pass_find_image(p, "source");
+    bool gaussian = strcmp(word_of(p, "mode"), "gaussian") == 0;
+    s->begin = gaussian ? BLOOM_BLUR_FIRST : BLOOM_FIRST;
+    s->end = gaussian ? BLOOM_STAGES : BLOOM_BLUR_FIRST;
     if (p->images[source].id) find_picture(p);
-    p->images[output] = graph_add_image(
-        p->host->graph, &(graph_image_desc){
-                            .name = arena_format(p->host->memory, "%s.color", p->label),
-                            .format = p->formats[output],
-                            .scale = p->scale,
-                            .mips = GRAPH_ALL_MIPS,
-                        });
+    if (gaussian && !(s->across = bloom_add_image(p, "across", 1)).id) return false;
+    p->images[output] = bloom_add_image(p, "color", gaussian ? 1 : GRAPH_ALL_MIPS);
     if (!p->images[output].id || !pass_declare_images(p)) return false;
     p->images[source] = s->picture;
-    return pass_add_to_graph(p);
+    return pass_add_to_graph_with(p, &s->across, gaussian ? 1 : 0);
 }
 
 // ---- building
@@ -78,25 +82,19 @@ static const char *word(bool is) {
     return is ? "1" : "0";
 }
 
-static bool is_paper(const pass *bright) {
-    size_t index;
-    pass_find_key(bright, "mode", &index);
-    return strcmp(bright->face->options[index].words[bright->options[index]], "paper") == 0;
-}
-
 static bool compile(pass *p) {
     bloom_state *s = p->state;
-    for (int i = 0; i < STAGES; i++) {
-        shader_define defines[STAGES + 3] = {
+    for (int i = s->begin; i < (int)s->end; i++) {
+        shader_define defines[BLOOM_STAGES + 3] = {
             {"FROM_BRIGHT", word(s->bright)},
-            {"BRIGHT_PAPER", word(s->bright && is_paper(s->bright))},
+            {"BRIGHT_PAPER", word(s->bright && strcmp(word_of(s->bright, "mode"), "paper") == 0)},
             {"SAME_SIZE", word(s->same_size)}};
-        for (int k = 0; k < STAGES; k++)
+        for (int k = 0; k < BLOOM_STAGES; k++)
             defines[3 + k] = (shader_define){stage_names[k], word(i == k)};
         if (!pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines), &s->binary[i]))
             return false;
     }
-    p->binary = s->binary[FIRST];
+    p->binary = s->binary[s->begin];
     return true;
 }
 
@@ -107,7 +105,7 @@ bool bloom_check(pass *p) {
 bool bloom_build(pass *p) {
     bloom_state *s = p->state;
     if (!compile(p)) return false;
-    for (int i = 0; i < STAGES; i++) {
+    for (int i = s->begin; i < (int)s->end; i++) {
         s->pipeline[i] = pass_create_compute(p, &s->binary[i]);
         if (!s->pipeline[i]) return false;
         s->block[i] = arena_alloc(p->host->memory, pass_block_size(&s->binary[i]) + 16);
@@ -122,15 +120,15 @@ static uint32_t mip_size(uint32_t size, uint32_t mip) {
     return size >> mip ? size >> mip : 1;
 }
 
-static void write_int(pass *p, bloom_stage stage, const char *name, uint32_t value) {
+void bloom_write_int(pass *p, bloom_stage stage, const char *name, uint32_t value) {
     bloom_state *s = p->state;
     pass_write_member(&s->binary[stage], s->block[stage], name, &value, sizeof value);
 }
 
 static bool fill_blocks(pass *p) {
-    static const char *const names[] = {"threshold", "knee", "limit"};
+    static const char *const names[] = {"threshold", "knee", "limit", "intensity"};
     bloom_state *s = p->state;
-    for (int i = 0; i < STAGES; i++) {
+    for (int i = s->begin; i < (int)s->end; i++) {
         if (!pass_fill_block(p, &s->binary[i], s->block[i])) return false;
         for (size_t k = 0; s->bright && k < COUNT_OF(names); k++) {
             float value = pass_evaluate(s->bright, names[k]);
@@ -163,19 +161,19 @@ static bool step(pass *p, bloom_stage stage, const levels *l, uint32_t from, uin
 }
 
 static bool halve(pass *p, const levels *l, uint32_t from) {
-    bloom_stage stage = from ? DOWN : FIRST;
-    write_int(p, stage, "width", mip_size(l->size[0], from));
-    write_int(p, stage, "height", mip_size(l->size[1], from));
+    bloom_stage stage = from ? BLOOM_DOWN : BLOOM_FIRST;
+    bloom_write_int(p, stage, "width", mip_size(l->size[0], from));
+    bloom_write_int(p, stage, "height", mip_size(l->size[1], from));
     return step(p, stage, l, from, from + 1);
 }
 
 static bool run_tail(pass *p, const levels *l) {
     const bloom_state *s = p->state;
-    write_int(p, TAIL, "tail_levels", l->last - l->tail);
+    bloom_write_int(p, BLOOM_TAIL, "tail_levels", l->last - l->tail);
     gpu_binding bindings[GPU_MAX_SLOTS];
     const pass_override color = {"color", {.image = l->chain, .mip = l->tail}};
-    gpu_dispatch_desc desc = {.pipeline = s->pipeline[TAIL], .bindings = bindings};
-    return pass_bind(p, &s->binary[TAIL], s->block[TAIL], &color, 1, bindings,
+    gpu_dispatch_desc desc = {.pipeline = s->pipeline[BLOOM_TAIL], .bindings = bindings};
+    return pass_bind(p, &s->binary[BLOOM_TAIL], s->block[BLOOM_TAIL], &color, 1, bindings,
                      &desc.binding_count) &&
            gpu_dispatch(p->host->device, &desc);
 }
@@ -198,22 +196,24 @@ static levels find_levels(pass *p) {
 }
 
 bool bloom_record(pass *p) {
-    levels l = find_levels(p);
+    const bloom_state *s = p->state;
     if (!pass_prepare(p) || !fill_blocks(p)) return false;
+    if (s->begin == BLOOM_BLUR_FIRST) return bloom_record_gaussian(p);
+    levels l = find_levels(p);
     if (!l.last) { // one texel: nothing is wider
-        write_int(p, LAST, "radius", 0);
-        write_int(p, LAST, "alpha", 0);
+        bloom_write_int(p, BLOOM_LAST, "radius", 0);
+        bloom_write_int(p, BLOOM_LAST, "alpha", 0);
     }
     for (uint32_t mip = 0; mip < l.tail; mip++)
         if (!halve(p, &l, mip)) return false;
     if (l.tail < l.last && !run_tail(p, &l)) return false;
     for (uint32_t mip = l.tail; mip > 1; mip--)
-        if (!step(p, UP, &l, mip, mip - 1)) return false;
-    return step(p, LAST, &l, l.last ? 1 : 0, 0);
+        if (!step(p, BLOOM_UP, &l, mip, mip - 1)) return false;
+    return step(p, BLOOM_LAST, &l, l.last ? 1 : 0, 0);
 }
 
 void bloom_destroy(pass *p) {
     bloom_state *s = p->state;
-    for (int i = 0; s && i < STAGES; i++)
+    for (int i = 0; s && i < BLOOM_STAGES; i++)
         if (s->pipeline[i]) gpu_pipeline_destroy(p->host->device, s->pipeline[i]);
 }

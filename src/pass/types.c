@@ -87,6 +87,10 @@ static const pass_type types[] = {
         .shader = "pass/over.comp",
     },
     {
+        .name = "outline",
+        .shader = "pass/outline.comp",
+    },
+    {
         .name = "bright",
         .shader = "pass/bright.comp",
     },
