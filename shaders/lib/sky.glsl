@@ -16,6 +16,19 @@ bool sky_is_image() {
     return SKY_IMAGE == 1;
 }
 
+// Whether the sky has a night; over two colours the program has mixed it in already.
+#ifndef SKY_NIGHT
+#define SKY_NIGHT 1
+#endif
+vec3 sky_with_night(vec3 day, vec3 night) {
+    return SKY_NIGHT == 1 ? mix(day, night, frame.night_zenith.w) : day;
+}
+
+// Of two colours: the radiance from a direction.
+vec3 sky_gradient(vec3 zenith, vec3 horizon, float z) {
+    return mix(horizon, zenith, sqrt(clamp(z, 0.0, 1.0)));
+}
+
 // Azimuth in the panorama, from its middle column to the right.
 float sky_azimuth(vec3 direction) {
     return atan(direction.x, direction.y) + frame.sky_horizon.w;
@@ -23,11 +36,11 @@ float sky_azimuth(vec3 direction) {
 
 // Radiance that comes from a direction (unit).
 vec3 sky_radiance(vec3 direction) {
-    if (!sky_is_image())
-        return mix(frame.sky_horizon.rgb, frame.sky_zenith.rgb, sqrt(clamp(direction.z, 0.0, 1.0)));
+    if (!sky_is_image()) return sky_gradient(frame.sky_zenith.rgb, frame.sky_horizon.rgb, direction.z);
     float row = 0.5 / float(textureSize(Sky, 0).y); // the sampler repeats, which is wrong at the poles
     float v = clamp(acos(clamp(direction.z, -1.0, 1.0)) / SKY_PI, row, 1.0 - row);
-    return frame.sky_zenith.w * textureLod(Sky, vec2(0.5 + sky_azimuth(direction) / (2.0 * SKY_PI), v), 0.0).rgb;
+    vec3 day = frame.sky_zenith.w * textureLod(Sky, vec2(0.5 + sky_azimuth(direction) / (2.0 * SKY_PI), v), 0.0).rgb;
+    return sky_with_night(day, sky_gradient(frame.night_zenith.rgb, frame.night_horizon.rgb, direction.z));
 }
 
 // Coefficient of the panorama's light as SH polynomials, already spread by the cosine.
@@ -42,23 +55,23 @@ vec3 sky_coefficient(int index) {
 // nine coefficients (Ramamoorthi and Hanrahan, "An efficient representation for irradiance
 // environment maps", 2001); of the gradient by a fit that is within 0.005 of the integral.
 vec3 sky_irradiance(vec3 n) {
-    if (!sky_is_image()) {
-        float zenith = 0.305 + n.z * (0.4 + 0.095 * n.z);
-        return mix(frame.sky_horizon.rgb, frame.sky_zenith.rgb, zenith);
-    }
+    float zenith = 0.305 + n.z * (0.4 + 0.095 * n.z);
+    if (!sky_is_image()) return mix(frame.sky_horizon.rgb, frame.sky_zenith.rgb, zenith);
     float c = cos(frame.sky_horizon.w), s = sin(frame.sky_horizon.w);
     vec3 m = vec3(n.x * c + n.y * s, n.y * c - n.x * s, n.z); // in the panorama
     vec3 sum = sky_coefficient(0) + m.y * sky_coefficient(1) + m.z * sky_coefficient(2) +
                m.x * sky_coefficient(3) + m.x * m.y * sky_coefficient(4) +
                m.y * m.z * sky_coefficient(5) + (3.0 * m.z * m.z - 1.0) * sky_coefficient(6) +
                m.x * m.z * sky_coefficient(7) + (m.x * m.x - m.y * m.y) * sky_coefficient(8);
-    return frame.sky_zenith.w * max(sum, vec3(0.0));
+    vec3 night = mix(frame.night_horizon.rgb, frame.night_zenith.rgb, zenith);
+    return sky_with_night(frame.sky_zenith.w * max(sum, vec3(0.0)), night);
 }
 
 // Mean radiance of all directions.
 vec3 sky_mean() {
     if (!sky_is_image()) return mix(frame.sky_horizon.rgb, frame.sky_zenith.rgb, 1.0 / 3.0);
-    return frame.sky_zenith.w * sky_coefficient(0);
+    vec3 night = mix(frame.night_horizon.rgb, frame.night_zenith.rgb, 1.0 / 3.0);
+    return sky_with_night(frame.sky_zenith.w * sky_coefficient(0), night);
 }
 
 // ---- drawing directions by their light ----------------------------------------------------------

@@ -34,6 +34,7 @@ uniform int part;  // which dispatch of the execution this is; each has the same
 #include "lib/path.glsl"
 #include "lib/random.glsl"
 #include "lib/sky.glsl"
+#include "lib/night.glsl"
 
 // Where light is scattered: in the medium, or on a surface (`normal` is not zero).
 struct path_vertex {
@@ -207,7 +208,8 @@ void meet_sky(inout path_state s) {
     vec3 sky = s.weight * sky_radiance(s.walk.direction);
     s.done = true;
     if (s.bounce == 0) {
-        s.light += sky_alpha * sky;
+        float pixel = 2.0 * frame.lens.y / float(frame.size.y);
+        s.light += sky_alpha * s.weight * night_sky(s.walk.direction, pixel);
         s.alpha -= (1.0 - sky_alpha) * dot(s.weight, vec3(1.0 / 3.0));
     } else {
         float share = s.total > 0.0 ? luminance(sky_mean()) / s.total : 0.0;

@@ -13,6 +13,7 @@ writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultipl
 #include "lib/across.glsl"
 #include "lib/random.glsl"
 #include "lib/sky.glsl"
+#include "lib/night.glsl"
 #include "lib/bvh.glsl"
 #include "lib/lighting.glsl"
 #include "lib/lamps.glsl"
@@ -112,7 +113,7 @@ void main() {
     vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
     surface_point s = surface_at(uv);
     if (s.base.a == 0.0) {
-        imageStore(color, pixel, vec4(sky_radiance(normalize(frame_ray(uv))), 1.0) * sky_alpha);
+        imageStore(color, pixel, vec4(night_sky(normalize(frame_ray(uv)), 2.0 * frame.lens.y / float(size.y)), 1.0) * sky_alpha);
         return;
     }
     vec3 lit = s.base.rgb * surface_light(s.p, s.normal, uvec2(pixel));

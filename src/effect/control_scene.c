@@ -42,6 +42,7 @@ bool scene_control_unknown(const effect *e, const char *name) {
         [SCENE_ORBIT] = "this camera stands at an eye; only an orbit has it",
         [SCENE_GRADIENT] = "this sky is an image; only one of two colours has it",
         [SCENE_IMAGE] = "this sky has no image",
+        [SCENE_NIGHT] = "this sky has no night; sky { night = 0 } gives it one",
     };
     size_t count;
     const scene_value *values = scene_values(&count);
