@@ -35,9 +35,10 @@ vec2 surface_uv(uvec4 corners, vec2 where) {
     return a + where.x * (b - a) + where.y * (c - a);
 }
 
-bool surface_has_hole(uint triangle, vec2 where) {
+// `materials`: the first of those of its mesh.
+bool surface_has_hole(uint materials, uint triangle, vec2 where) {
     uvec4 corners = surface_triangles[triangle];
-    surface_material m = surface_materials[corners.w];
+    surface_material m = surface_materials[materials + corners.w];
     return m.texture.w != 0u && surface_color(m, surface_uv(corners, where)).a < 0.5;
 }
 
@@ -61,8 +62,10 @@ struct surface_hit {
     vec3 way;               // of the ray, in the space of the mesh
 };
 
-// The nearest triangle of a tree.
-void surface_walk(inout bvh_ray ray, uint node, uint end, bool holes, inout surface_hit hit) {
+// The nearest triangle of what is placed; the ray is in its space.
+void surface_walk(inout bvh_ray ray, uint instance, bool holes, inout surface_hit hit) {
+    uint node = bvh_instances[instance].root, end = bvh_instances[instance].end;
+    uint materials = bvh_instances[instance].what.z;
     while (node < end) {
         bvh_node n = bvh_nodes[node];
         bool inside = bvh_meets_box(ray, n.low, n.high);
@@ -73,7 +76,7 @@ void surface_walk(inout bvh_ray ray, uint node, uint end, bool holes, inout surf
             vec2 where;
             float distance = surface_meet(ray, bvh_triangles[i], where);
             if (distance < 0.0 || distance > ray.far) continue;
-            if (holes && surface_has_hole(i, where)) continue;
+            if (holes && surface_has_hole(materials, i, where)) continue;
             ray.far = distance;
             hit.triangle = int(i);
             hit.where = where;

@@ -6,15 +6,20 @@
 //@ option turn = random {random, along} : random: about an axis of their own; along: with x along their way
 //@ field float size = 1 : metres a unit of the mesh
 //@ field vec3 color = {1, 1, 1} : factor of the mesh's colours
+//@ field float glow = 1 : factor of what the mesh's material gives off
 //@ field float angle = 0 : how far a piece is turned about its axis (degrees)
 //@ counter triangles : drawn
 #include "lib/particles.glsl"
 uniform sampler2D scene_albedo;   //= input optional : of what is solid besides; `from` a pass geometry gives all three
 uniform sampler2D scene_normal;   //= input optional : how that is turned
 uniform sampler2D scene_depth;    //= input optional : how far away that is (m)
+uniform sampler2D scene_surface;  //= input optional : how that reflects
+uniform sampler2D scene_emission; //= input optional : what light that gives off
 writeonly uniform image2D albedo; //= output rgba16f : base colour of the surface; alpha 0 where nothing is
 writeonly uniform image2D normal; //= output rgba16f : its normal in the world, towards the viewer
 writeonly uniform image2D depth;  //= output r32f : distance along the view axis (m); 1e9 where nothing is
+writeonly uniform image2D surface;  //= output rgba16f optional : specular, roughness, metallic; alpha 1 where model toon is allowed
+writeonly uniform image2D emission; //= output rgba16f optional : radiance that the surface gives off
 uniform vec2 picture;             // pixels
 
 #include "shared.h"
@@ -24,6 +29,7 @@ uniform vec2 picture;             // pixels
 #include "fields.glsl"
 
 layout(std430) readonly buffer PieceTriangles { bvh_triangle piece_triangles[]; };
+layout(std430) readonly buffer PieceMaterials { surface_material piece_materials[]; }; // one for each of these
 layout(std430) buffer PieceDepths { uint piece_depths[]; };   // of each pixel: bits of the least depth
 layout(std430) buffer PieceNumbers { uint piece_numbers[]; }; // and the first triangle there
 const uint NONE = 0xffffffffu;
@@ -34,6 +40,7 @@ struct triangle {
     vec3 corner[3]; // pixels, and depth in metres
     vec3 normal;    // in the world
     vec3 color;
+    vec4 surface, emission;
 };
 
 // Rows of the rotation about an axis (Rodrigues).
@@ -84,7 +91,10 @@ triangle triangle_of(uint number) {
     t.seen = near > frame.lens.z && dot(face, face) > 0.0;
     t.normal = normalize(face);
     if (dot(t.normal, frame.eye.xyz - corner) < 0.0) t.normal = -t.normal;
-    t.color = vec3(own.corner.w, own.first.w, own.second.w) * max(field_color(p.position), vec3(0.0));
+    surface_material m = piece_materials[number % uint(TRIANGLES)];
+    t.color = m.color.rgb * max(field_color(p.position), vec3(0.0));
+    t.surface = m.surface;
+    t.emission = m.emission * max(field_glow(p.position), 0.0);
     return t;
 }
 
@@ -150,22 +160,33 @@ void main() {
     if (any(greaterThanEqual(pixel, ivec2(picture)))) return;
     uint at = pixel_number(pixel), number = piece_numbers[at];
     float away = number == NONE ? scene_depth_in(pixel) : uintBitsToFloat(piece_depths[at]);
-    vec4 base = vec4(0.0), facing = vec4(0.0);
+    vec4 base = vec4(0.0), facing = vec4(0.0), kind = vec4(0.0), glow = vec4(0.0);
     piece_numbers[at] = NONE;
     piece_depths[at] = NONE;
     if (number != NONE) {
         triangle t = triangle_of(number);
         base = vec4(t.color, 1.0);
         facing = vec4(t.normal, 0.0);
+        kind = t.surface;
+        glow = t.emission;
     } else {
 #if HAS_SCENE_ALBEDO && HAS_SCENE_NORMAL
         vec2 uv = (vec2(pixel) + 0.5) / picture;
         base = texelFetch(scene_albedo, ivec2(uv * vec2(textureSize(scene_albedo, 0))), 0);
         facing = texelFetch(scene_normal, ivec2(uv * vec2(textureSize(scene_normal, 0))), 0);
+        kind = vec4(0.0, 1.0, 0.0, 1.0); // matte
+#endif
+#if HAS_SCENE_ALBEDO && HAS_SCENE_SURFACE
+        kind = texelFetch(scene_surface, ivec2(uv * vec2(textureSize(scene_surface, 0))), 0);
+#endif
+#if HAS_SCENE_ALBEDO && HAS_SCENE_EMISSION
+        glow = texelFetch(scene_emission, ivec2(uv * vec2(textureSize(scene_emission, 0))), 0);
 #endif
     }
     imageStore(albedo, pixel, base);
     imageStore(normal, pixel, facing);
+    imageStore(surface, pixel, kind);
+    imageStore(emission, pixel, glow);
     imageStore(depth, pixel, vec4(away));
 }
 #endif

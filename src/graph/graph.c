@@ -167,6 +167,11 @@ const graph_image_desc *graph_get_desc(const graph *g, graph_image image) {
     return &g->images[index_of(g, image)].desc;
 }
 
+bool graph_is_read(const graph *g, graph_image image) {
+    assert(g->compiled);
+    return g->images[index_of(g, image)].read;
+}
+
 void graph_get_size(const graph *g, graph_image image, uint32_t size[3]) {
     assert(g->compiled);
     memcpy(size, g->images[index_of(g, image)].size, 3 * sizeof *size);

@@ -77,6 +77,8 @@ bool graph_feeds_simulation(const graph *g, graph_image image);
 gpu_image *graph_get_image(const graph *g, graph_image image);
 // As declared, except that after compiling `mips` is the true number of levels.
 const graph_image_desc *graph_get_desc(const graph *g, graph_image image);
+// After compile: whether an output of the graph, or a pass that runs, reads it.
+bool graph_is_read(const graph *g, graph_image image);
 void graph_get_size(const graph *g, graph_image image, uint32_t size[3]); // texels, depth >= 1
 graph_image graph_find_image(const graph *g, const char *name);           // zero when unknown
 size_t graph_images(const graph *g, graph_image *out, size_t capacity);

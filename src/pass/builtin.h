@@ -10,6 +10,7 @@ bool geometry_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool geometry_record(pass *p);
 void geometry_destroy(pass *p);
 
+bool shade_declare(pass *p);
 bool shade_check(pass *p);
 bool shade_build(pass *p);
 bool shade_record(pass *p);
@@ -56,6 +57,14 @@ bool bloom_build(pass *p);
 bool bloom_record(pass *p);
 void bloom_destroy(pass *p);
 
+bool shell_declare(pass *p);
+bool shell_check(pass *p);
+bool shell_build(pass *p);
+bool shell_allocate(pass *p);
+bool shell_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool shell_record(pass *p);
+void shell_destroy(pass *p);
+
 bool accumulate_declare(pass *p);
 
 bool meter_declare(pass *p);
@@ -66,14 +75,6 @@ bool bake_build(pass *p);
 bool bake_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool bake_record(pass *p);
 void bake_destroy(pass *p);
-bool shell_declare(pass *p);
-bool shell_check(pass *p);
-bool shell_build(pass *p);
-bool shell_allocate(pass *p);
-bool shell_fill(pass *p, const shader_binary *binary, unsigned char *block);
-bool shell_record(pass *p);
-void shell_destroy(pass *p);
-
 
 bool lbm_declare(pass *p);
 bool lbm_complete(pass *p);

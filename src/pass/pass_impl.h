@@ -105,6 +105,10 @@ bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count)
 bool pass_add_to_graph_after(pass *p, const graph_image *more, size_t more_count);
 bool pass_add_to_graph(pass *p); // reads and writes by its images and fields
 
+// Forgets inputs of these names where they come from a pass that shows nothing but matte surfaces
+// (matte.c), so that nobody makes or asks them.
+void pass_drop_matte(pass *p, const char *surface, const char *emission);
+
 // One of several passes of the graph that a pass consists of: "label.name".
 typedef struct pass_part {
     const char *name;

@@ -6,6 +6,7 @@
 #include "pass/builtin.h"
 #include "pass/particles.h"
 #include "pass/pass_impl.h"
+#include "scene/material.h"
 #include "shared.h"
 #include <string.h>
 
@@ -20,6 +21,8 @@ typedef struct pieces_state {
     gpu_pipeline *pipeline[STAGES];
     unsigned char *block[STAGES];
     gpu_buffer *triangles, *depths, *numbers;
+    struct surface_material *looks; // of the triangles, as on the device
+    gpu_buffer *materials;
     bool empty; // depths and numbers are
 } pieces_state;
 
@@ -31,13 +34,17 @@ static pieces_state *state_of(const pass *p) {
 
 // The scene is that of the first pass among the sources that gives one.
 static void find_scene(pass *p) {
-    static const char *const names[][2] = {
-        {"scene_albedo", "albedo"}, {"scene_normal", "normal"}, {"scene_depth", "depth"}};
+    static const char *const names[][2] = {{"scene_albedo", "albedo"},
+                                           {"scene_normal", "normal"},
+                                           {"scene_depth", "depth"},
+                                           {"scene_surface", "surface"},
+                                           {"scene_emission", "emission"}};
     for (size_t i = 0; i < COUNT_OF(names); i++) {
         graph_image *input = &p->images[pass_find_image(p, names[i][0])];
         for (size_t k = 0; k < p->source_count && !input->id; k++)
             *input = pass_output(p->sources[k], names[i][1]);
     }
+    pass_drop_matte(p, "scene_surface", "scene_emission");
 }
 
 bool pieces_declare(pass *p) {
@@ -86,8 +93,7 @@ bool pieces_build(pass *p) {
     return true;
 }
 
-static void write_triangle(const mesh_data *mesh, const mesh_part *part, uint32_t first,
-                           struct bvh_triangle *out) {
+static void write_triangle(const mesh_data *mesh, uint32_t first, struct bvh_triangle *out) {
     const float *corners[3];
     for (int k = 0; k < 3; k++) corners[k] = mesh->vertices[mesh->indices[first + k]].position;
     for (int k = 0; k < 3; k++) {
@@ -95,9 +101,6 @@ static void write_triangle(const mesh_data *mesh, const mesh_part *part, uint32_
         out->first.v[k] = corners[1][k] - corners[0][k];
         out->second.v[k] = corners[2][k] - corners[0][k];
     }
-    out->corner.v[3] = part->color[0];
-    out->first.v[3] = part->color[1];
-    out->second.v[3] = part->color[2];
 }
 
 bool pieces_allocate(pass *p) {
@@ -109,12 +112,18 @@ bool pieces_allocate(pass *p) {
     for (uint32_t i = 0; i < mesh->part_count; i++) {
         const mesh_part *part = &mesh->parts[i];
         for (uint32_t k = 0; k + 2 < part->count && count < s->triangle_count; k += 3)
-            write_triangle(mesh, part, part->first + k, &all[count++]);
+            write_triangle(mesh, part->first + k, &all[count++]);
     }
     s->triangles = gpu_buffer_create(
         p->host->device, &(gpu_buffer_desc){.label = "triangles of pieces", .size = size});
     bool done = s->triangles && gpu_buffer_write(p->host->device, s->triangles, 0, all, size);
     mem_free(all);
+    size = s->triangle_count * sizeof *s->looks;
+    s->looks = mem_alloc(size);
+    s->materials = gpu_buffer_create(
+        p->host->device, &(gpu_buffer_desc){.label = "materials of pieces", .size = size});
+    done =
+        done && s->materials && gpu_buffer_write(p->host->device, s->materials, 0, s->looks, size);
     return done || err_prefix("%s: ", p->label);
 }
 
@@ -123,9 +132,10 @@ void pieces_destroy(pass *p) {
     if (!s) return;
     for (int i = 0; i < STAGES; i++)
         if (s->pipeline[i]) gpu_pipeline_destroy(p->host->device, s->pipeline[i]);
-    gpu_buffer *const buffers[] = {s->triangles, s->depths, s->numbers};
+    gpu_buffer *const buffers[] = {s->triangles, s->materials, s->depths, s->numbers};
     for (size_t i = 0; i < COUNT_OF(buffers); i++)
         if (buffers[i]) gpu_buffer_destroy(p->host->device, buffers[i]);
+    mem_free(s->looks);
 }
 
 // ---- a frame ----------------------------------------------------------------------------------
@@ -152,16 +162,39 @@ static bool make_buffer(pass *p, gpu_buffer **buffer, const char *label, uint64_
     return *buffer || err_prefix("%s: ", p->label);
 }
 
+// What the triangles look like in this frame.
+static bool write_looks(pass *p) {
+    pieces_state *s = state_of(p);
+    const mesh_data *mesh = &p->meshes[0]->data;
+    scene_look look;
+    if (!scene_mesh_look(p->meshes[0], p->host->context, &look)) return false;
+    size_t size = s->triangle_count * sizeof *s->looks;
+    struct surface_material *all = mem_alloc(size);
+    for (uint32_t i = 0, at = 0; i < mesh->part_count; i++) {
+        const mesh_part *part = &mesh->parts[i];
+        struct surface_material made = {0};
+        for (int c = 0; c < 3; c++) made.color.v[c] = part->color[c] * look.tint[c];
+        scene_look_part(&look, part, made.surface.v, made.emission.v);
+        for (uint32_t k = 0; k + 2 < part->count && at < s->triangle_count; k += 3)
+            all[at++] = made;
+    }
+    bool same = memcmp(all, s->looks, size) == 0;
+    memcpy(s->looks, all, size);
+    mem_free(all);
+    return same || gpu_buffer_write(p->host->device, s->materials, 0, s->looks, size);
+}
+
 static bool run(pass *p, pieces_stage stage, uint32_t x, uint32_t y) {
     pieces_state *s = state_of(p);
     const shader_binary *binary = &s->binary[stage];
     pass_override overrides[GPU_MAX_SLOTS] = {{"PieceTriangles", {.buffer = s->triangles}},
+                                              {"PieceMaterials", {.buffer = s->materials}},
                                               {"PieceDepths", {.buffer = s->depths}},
                                               {"PieceNumbers", {.buffer = s->numbers}}};
     gpu_binding bindings[GPU_MAX_SLOTS];
     gpu_dispatch_desc desc = {
         .pipeline = s->pipeline[stage], .bindings = bindings, .threads = {x, y, 1}};
-    size_t count = 3;
+    size_t count = 4;
     for (size_t i = 0; i < binary->slot_count && count < GPU_MAX_SLOTS; i++) {
         overrides[count].name = binary->slots[i].name;
         count += pass_particles_bind(pass_particles_of(p), overrides[count].name,
@@ -188,7 +221,8 @@ bool pieces_record(pass *p) {
     if (count >= UINT32_MAX)
         return err_set("%s: %llu triangles; at most 4294967294 are drawn", p->label,
                        (unsigned long long)count);
-    if (!pass_prepare(p) || !make_buffer(p, &s->depths, "depths of pieces", bytes) ||
+    if (!pass_prepare(p) || !write_looks(p) ||
+        !make_buffer(p, &s->depths, "depths of pieces", bytes) ||
         !make_buffer(p, &s->numbers, "numbers of pieces", bytes))
         return false;
     if (!s->empty) {

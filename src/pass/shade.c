@@ -20,6 +20,11 @@ typedef struct shade_state {
 
 static const shader_define variants[2] = {{"MANY_RAYS", "0"}, {"MANY_RAYS", "1"}};
 
+bool shade_declare(pass *p) {
+    pass_drop_matte(p, "surface", "emission");
+    return pass_declare_images(p) && pass_add_to_graph(p);
+}
+
 static bool compile(pass *p, shade_state *s) {
     return pass_compile(p, p->shader, SHADER_COMPUTE, &variants[0], 1, &s->binary[0]) &&
            pass_compile(p, p->shader, SHADER_COMPUTE, &variants[1], 1, &s->binary[1]) &&

@@ -47,6 +47,7 @@ static void add_things(scene_bvh *b, scene_mesh *const *meshes, size_t count,
                       .first = b->item_count,
                       .count = scene_instances_count(instances[i])};
         made.entries = mem_alloc(made.count * sizeof *made.entries);
+        made.tints = mem_alloc(n * sizeof *made.tints);
         add_thing(b, &made);
         for (size_t k = 0; k < n; k++) b->meshes[b->mesh_count++] = kinds[k];
     }
@@ -92,7 +93,10 @@ void scene_bvh_destroy(scene_bvh *b, gpu *g) {
     for (int i = 0; i < BVH_PARTS; i++)
         if (b->buffers[i]) gpu_buffer_destroy(g, b->buffers[i]);
     bvh_forest_free(&b->forest);
-    for (size_t i = 0; i < b->thing_count; i++) mem_free(b->things[i].entries);
+    for (size_t i = 0; i < b->thing_count; i++) {
+        mem_free(b->things[i].entries);
+        mem_free(b->things[i].tints);
+    }
     mem_free(b->things);
     mem_free(b->items);
     mem_free(b->item_at);

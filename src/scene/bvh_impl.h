@@ -18,6 +18,7 @@ typedef struct thing {
     bool placed;
     mat4 transform;
     float tint[4];
+    float (*tints)[3]; // of instances: those of each kind
     uint64_t version;
     struct instance_entry *entries;
 } thing;

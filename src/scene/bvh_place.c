@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "scene/bvh_impl.h"
+#include "scene/material.h"
 #include "scene/runs.h"
 #include <math.h>
 #include <string.h>
@@ -78,12 +79,13 @@ static void place_mesh(scene_bvh *b, thing *t) {
 static void place_instance(scene_bvh *b, thing *t, uint32_t index) {
     const struct instance_entry *entry = &t->entries[index];
     struct bvh_instance made = {.what = {{(uint32_t)(t - b->things), index}}};
-    for (int c = 0; c < 3; c++) made.color.v[c] = t->tint[c] * entry->color.v[c];
     made.color.v[3] = entry->color.v[3];
     mat4 transform = GLM_MAT4_ZERO_INIT; // hidden
     scene_mesh *const *kinds;
     bool shown = entry->kind.v[0] < scene_instances_kinds(t->instances, &kinds);
     if (shown) {
+        const float *own = t->tints[entry->kind.v[0]];
+        for (int c = 0; c < 3; c++) made.color.v[c] = t->tint[c] * own[c] * entry->color.v[c];
         scene_instances_matrix(entry, transform);
         glm_mat4_mul(t->transform, transform, transform);
     }
@@ -103,6 +105,19 @@ static void place_instances(scene_bvh *b, thing *t, bool all) {
     }
 }
 
+// What multiplies the colours of each kind. `same`: becomes false where it has changed.
+static bool tint_kinds(thing *t, const field_context *context, bool *same) {
+    scene_mesh *const *kinds;
+    size_t count = t->instances ? scene_instances_kinds(t->instances, &kinds) : 0;
+    for (size_t i = 0; i < count; i++) {
+        scene_look look;
+        if (!scene_mesh_look(kinds[i], context, &look)) return false;
+        *same = *same && memcmp(t->tints[i], look.tint, sizeof look.tint) == 0;
+        memcpy(t->tints[i], look.tint, sizeof look.tint);
+    }
+    return true;
+}
+
 static bool place_thing(scene_bvh *b, thing *t, const field_context *context) {
     mat4 transform;
     float tint[4] = {0};
@@ -111,6 +126,7 @@ static bool place_thing(scene_bvh *b, thing *t, const field_context *context) {
         return false;
     bool same = t->placed && memcmp(transform, t->transform, sizeof transform) == 0 &&
                 memcmp(tint, t->tint, 3 * sizeof *tint) == 0;
+    if (!tint_kinds(t, context, &same)) return false;
     t->placed = true;
     memcpy(t->transform, transform, sizeof transform);
     memcpy(t->tint, tint, sizeof tint);

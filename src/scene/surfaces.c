@@ -66,8 +66,8 @@ void surfaces_add(surfaces *s, const bvh_forest *f, size_t end, const mesh_data 
     for (; s->triangle_count < end; s->triangle_count++) {
         bvh_origin from = f->origins[s->triangle_count];
         const uint32_t *corner = mesh->indices + from.first;
-        s->triangles[s->triangle_count] = (shared_uvec4){
-            {vertex + corner[0], vertex + corner[1], vertex + corner[2], from.part}};
+        s->triangles[s->triangle_count] =
+            (shared_uvec4){{vertex + corner[0], vertex + corner[1], vertex + corner[2], from.part}};
     }
 }
 

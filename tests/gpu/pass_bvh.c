@@ -127,7 +127,8 @@ static void scatter(pass_world *w, mesh_data *out) {
             vertices[i].position[a] = 4 * chance(i / 3 * 3 + a) - 2 + chance(7000 + 3 * i + a);
         indices[i] = i;
     }
-    static const mesh_part part = {0, 3 * TRIANGLES, {0.5f, 0.25f, 1, 1}, -1};
+    static const mesh_part part = {
+        .first = 0, .count = 3 * TRIANGLES, .color = {0.5f, 0.25f, 1, 1}, .texture = -1};
     *out = (mesh_data){.vertices = vertices,
                        .vertex_count = 3 * TRIANGLES,
                        .indices = indices,

@@ -207,7 +207,7 @@ static void texture_is_decoded_from_srgb_and_multiplied(void **state) {
                                           {{9, 0, 9}, 1, {0, -1, 0}, 1},
                                           {{-9, 0, 9}, 0, {0, -1, 0}, 1}};
     static const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
-    static const mesh_part part = {0, 6, {1, 1, 0.5f, 1}, 0};
+    static const mesh_part part = {.first = 0, .count = 6, .color = {1, 1, 0.5f, 1}, .texture = 0};
     pass_world w;
     world_open(&w, *state);
     scene_mesh *mesh = world_mesh(&w, "plane.obj");

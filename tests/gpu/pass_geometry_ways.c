@@ -44,8 +44,12 @@ static scene_mesh *make_globe(pass_world *w) {
     static const mesh_texture texture = {8, 4, texels};
     static mesh_vertex vertices[(RINGS + 1) * (SECTORS + 1)];
     static uint32_t indices[RINGS * SECTORS * 6];
-    static const mesh_part parts[] = {{0, RINGS * SECTORS * 3, {1, 0.5f, 0.25f, 1}, 0},
-                                      {RINGS * SECTORS * 3, RINGS * SECTORS * 3, {1, 1, 1, 1}, -1}};
+    static const mesh_part parts[] = {
+        {.first = 0, .count = RINGS * SECTORS * 3, .color = {1, 0.5f, 0.25f, 1}, .texture = 0},
+        {.first = RINGS * SECTORS * 3,
+         .count = RINGS * SECTORS * 3,
+         .color = {1, 1, 1, 1},
+         .texture = -1}};
     for (uint32_t r = 0; r <= RINGS; r++) {
         for (uint32_t s = 0; s <= SECTORS; s++) {
             double up = GLM_PI * r / RINGS, around = 2 * GLM_PI * s / SECTORS;
@@ -150,7 +154,7 @@ static scene_mesh *make_sheet(pass_world *w) {
         }
     }
     mesh_part *part = arena_alloc(&w->memory, sizeof *part);
-    *part = (mesh_part){0, count, {1, 1, 1, 1}, -1};
+    *part = (mesh_part){.first = 0, .count = count, .color = {1, 1, 1, 1}, .texture = -1};
     scene_mesh *mesh = world_mesh(w, "plane.obj");
     mesh->data = (mesh_data){.vertices = vertices,
                              .vertex_count = side * side,

@@ -10,7 +10,7 @@ static const uint32_t indices[3] = {0, 1, 2};
 static const uint8_t texels[2][8] = {{255, 0, 0, 255, 0, 255, 0, 255},
                                      {1, 2, 3, 4, 250, 128, 64, 32}};
 static const mesh_texture textures[2] = {{2, 1, texels[0]}, {1, 2, texels[1]}};
-static const mesh_part part = {0, 3, {1, 1, 1, 1}, 0};
+static const mesh_part part = {.first = 0, .count = 3, .color = {1, 1, 1, 1}, .texture = 0};
 
 static scene_mesh make_mesh(void) {
     return (scene_mesh){.name = "triangle",

@@ -26,7 +26,7 @@ static soup make_soup(uint32_t count, void (*place)(uint32_t i, float middle[3],
     soup s = {
         .vertices = mem_alloc(3 * count * sizeof *s.vertices),
         .indices = mem_alloc(3 * count * sizeof *s.indices),
-        .part = {0, 3 * count, {1, 1, 1, 1}, -1},
+        .part = {.first = 0, .count = 3 * count, .color = {1, 1, 1, 1}, .texture = -1},
     };
     for (uint32_t i = 0; i < count; i++) {
         float middle[3], size;
@@ -200,9 +200,13 @@ static void colors_are_those_of_parts_and_textures(void **state) {
     soup s = make_soup(12, scattered);
     static const uint8_t texels[] = {255, 0, 188, 255, 0, 0, 188, 0};
     static const mesh_texture texture = {2, 1, texels};
-    const mesh_part parts[] = {{0, 12, {0.1f, 0.2f, 0.3f, 1}, -1},
-                               {12, 12, {0.1f, 0.2f, 0.3f, 0.4f}, -1}, // clear: not drawn
-                               {24, 12, {1, 1, 0.5f, 1}, 0}};
+    const mesh_part parts[] = {
+        {.first = 0, .count = 12, .color = {0.1f, 0.2f, 0.3f, 1}, .texture = -1},
+        {.first = 12,
+         .count = 12,
+         .color = {0.1f, 0.2f, 0.3f, 0.4f},
+         .texture = -1}, // clear: not drawn
+        {.first = 24, .count = 12, .color = {1, 1, 0.5f, 1}, .texture = 0}};
     s.data.parts = parts;
     s.data.part_count = 3;
     s.data.textures = &texture;
