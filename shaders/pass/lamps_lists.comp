@@ -5,11 +5,15 @@
 //
 // A tile is a part of the view's frustum between two depths: a lamp is left out where its sphere misses
 // the box around that, or one of the four sides (Olsson and Assarsson, "Tiled shading", 2011).
+// LAMPS_BETWEEN: it begins at the eye, for what is seen before the surfaces.
 #define LAMPS_ACCESS
 #include "lib/frame.glsl"
 #include "lib/lamps.glsl"
 #ifndef HAS_DEPTH
 #define HAS_DEPTH 0
+#endif
+#ifndef LAMPS_BETWEEN
+#define LAMPS_BETWEEN 0
 #endif
 uniform sampler2D depth; //= input optional : how far away what is lit is (m)
 uniform int width;       // of the picture
@@ -35,10 +39,16 @@ vec2 bounds_of_row(ivec2 first) {
     vec2 scale = vec2(textureSize(depth, 0)) / vec2(width, height);
     for (int x = first.x; x < min(first.x + LAMPS_TILE, width); x++) {
         float deep = texelFetch(depth, ivec2((vec2(x, first.y) + 0.5) * scale), 0).r;
+#if LAMPS_BETWEEN
+        deep = min(deep, frame.lens.w);
+#endif
         if (deep < NOTHING) bounds = vec2(min(bounds.x, deep), max(bounds.y, deep));
     }
 #else
     bounds = frame.lens.zw;
+#endif
+#if LAMPS_BETWEEN
+    bounds.x = 0.0;
 #endif
     return bounds;
 }

@@ -21,7 +21,7 @@ bool pass_lamps_open(pass *p, uint32_t count);
 
 typedef struct pass_lamps pass_lamps; // of a pass that reads them
 typedef enum lamps_way { LAMPS_ALL, LAMPS_TILES, LAMPS_VOLUMES } lamps_way;
-enum { PASS_LAMPS_DEFINES = 2 };
+enum { PASS_LAMPS_DEFINES = 3 };
 
 bool pass_find_lamps(pass *p);            // pass_declare does
 uint32_t pass_lamps_count(const pass *p); // that it reads; 0: it reads none

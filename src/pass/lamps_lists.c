@@ -68,6 +68,7 @@ lamps_way pass_lamps_way(const pass *p) {
 size_t pass_lamps_defines(const pass *p, shader_define out[PASS_LAMPS_DEFINES]) {
     out[0] = (shader_define){"LAMPS_TILES", pass_lamps_way(p) == LAMPS_TILES ? "1" : "0"};
     out[1] = (shader_define){"LAMPS_VOLUMES", pass_lamps_way(p) == LAMPS_VOLUMES ? "1" : "0"};
+    out[2] = (shader_define){"LAMPS_BETWEEN", pass_is(p, "lamp_glows") ? "1" : "0"};
     return PASS_LAMPS_DEFINES;
 }
 

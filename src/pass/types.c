@@ -49,6 +49,10 @@ static const pass_type types[] = {
         .destroy = shadow_maps_destroy,
     },
     {
+        .name = "lamp_glows",
+        .shader = "pass/lamp_glows.comp",
+    },
+    {
         .name = "lighting",
         .shader = "pass/lighting.comp",
         .declare = lighting_declare,
