@@ -1,4 +1,5 @@
-// Drawing: coverage, depth test, culling, blending, scissors, clearing, loading, and errors.
+// Drawing: coverage, depth test, culling, blending, scissors, viewports, indices, commands of the
+// device, clearing, loading, and errors.
 #include "gpu_shaders.h"
 #include "gpu_test.h"
 #include <string.h>
@@ -209,6 +210,157 @@ static void draws_begin_at_their_vertex_inside_their_scissor(void **state) {
     stage_close(&s);
 }
 
+static gpu_buffer *make_buffer(gpu *g, const char *label, const void *data, size_t size) {
+    gpu_buffer *buffer = gpu_buffer_create(g, &(gpu_buffer_desc){.label = label, .size = size});
+    gpu_test_ok(buffer && gpu_buffer_write(g, buffer, 0, data, size));
+    return buffer;
+}
+
+static gpu_draw_desc draw_over(const stage *s, const gpu_draw *draws, size_t count) {
+    return (gpu_draw_desc){.pipeline = s->pipeline,
+                           .colors = {s->color},
+                           .depth = s->depth,
+                           .clear = true,
+                           .clear_color = {{0, 0, 1, 0}},
+                           .clear_depth = 1.0f,
+                           .draws = draws,
+                           .draw_count = count};
+}
+
+// By indices the left half and the upper half are drawn out of one buffer, in one call.
+static void indices_name_the_vertices(void **state) {
+    static float texels[N][N][4];
+    static const float blue[4] = {0, 0, 1, 0};
+    static const uint32_t order[] = {8, 8, 3, 4, 5, 6, 7, 8};
+    stage s = stage_open(*state, GPU_CULL_NONE);
+    gpu_buffer *all = make_buffer(s.g, "all", corners, sizeof corners);
+    gpu_buffer *indices = make_buffer(s.g, "indices", order, sizeof order);
+    const gpu_binding bindings[] = {{.binding = 0, .buffer = all},
+                                    {.binding = 1, .uniform = red, .uniform_size = 16}};
+    gpu_draw one = {.bindings = bindings,
+                    .binding_count = 2,
+                    .indices = indices,
+                    .first_vertex = 2,
+                    .vertices = 6};
+    gpu_draw_desc desc = draw_over(&s, &one, 1);
+    gpu_test_ok(gpu_frame_begin(s.g));
+    gpu_test_ok(gpu_draw_all(s.g, &desc));
+    one.vertices = 7;
+    assert_false(gpu_draw_all(s.g, &desc));
+    assert_non_null(strstr(err_get(), "indices up to 9 are drawn; buffer 'indices' holds 8"));
+    gpu_test_ok(gpu_frame_end(s.g));
+    gpu_test_ok(gpu_image_read(s.g, s.color, texels, sizeof texels));
+    expect_texel(texels, 1, N - 2, red);
+    expect_texel(texels, N - 2, 1, red);
+    expect_texel(texels, N - 2, N - 2, blue);
+    gpu_buffer_destroy(s.g, indices);
+    gpu_buffer_destroy(s.g, all);
+    stage_close(&s);
+}
+
+// What is drawn changes on the device, in the frame itself: to the left half by vertices, then to
+// the upper half by indices.
+static void commands_are_read_by_the_device(void **state) {
+    static float texels[N][N][4];
+    static const float blue[4] = {0, 0, 1, 0};
+    static const uint32_t order[] = {6, 7, 8};
+    static const gpu_draw_command plain = {.vertices = 3, .instances = 1, .first_vertex = 3};
+    static const gpu_draw_indexed_command indexed = {.indices = 3, .instances = 1};
+    uint32_t words[9] = {0};
+    memcpy(words + 1, &plain, sizeof plain); // not at the beginning
+    stage s = stage_open(*state, GPU_CULL_NONE);
+    gpu_buffer *all = make_buffer(s.g, "all", corners, sizeof corners);
+    gpu_buffer *indices = make_buffer(s.g, "indices", order, sizeof order);
+    gpu_buffer *first = make_buffer(s.g, "first", words, sizeof words);
+    memcpy(words + 1, &indexed, sizeof indexed);
+    gpu_buffer *second = make_buffer(s.g, "second", words, sizeof words);
+    gpu_buffer *commands = make_buffer(s.g, "commands", words, sizeof words);
+    const gpu_binding bindings[] = {{.binding = 0, .buffer = all},
+                                    {.binding = 1, .uniform = red, .uniform_size = 16}};
+    gpu_draw one = {.bindings = bindings, .binding_count = 2, .commands = commands, .command = 4};
+    gpu_draw_desc desc = draw_over(&s, &one, 1);
+    gpu_test_ok(gpu_frame_begin(s.g));
+    gpu_test_ok(gpu_buffer_copy(s.g, first, commands, sizeof words));
+    gpu_test_ok(gpu_draw_all(s.g, &desc));
+    gpu_test_ok(gpu_buffer_copy(s.g, second, commands, sizeof words));
+    one.indices = indices;
+    desc.clear = false;
+    gpu_test_ok(gpu_draw_all(s.g, &desc));
+    gpu_test_ok(gpu_frame_end(s.g));
+    gpu_test_ok(gpu_image_read(s.g, s.color, texels, sizeof texels));
+    expect_texel(texels, 1, N - 2, red);
+    expect_texel(texels, N - 2, 1, red);
+    expect_texel(texels, N - 2, N - 2, blue);
+    gpu_buffer *const buffers[] = {all, indices, first, second, commands};
+    for (size_t i = 0; i < COUNT_OF(buffers); i++) gpu_buffer_destroy(s.g, buffers[i]);
+    stage_close(&s);
+}
+
+static void commands_beyond_their_buffer_are_refused(void **state) {
+    static const uint32_t words[8] = {0};
+    stage s = stage_open(*state, GPU_CULL_NONE);
+    gpu_buffer *commands = make_buffer(s.g, "commands", words, sizeof words);
+    const gpu_binding bindings[] = {{.binding = 0, .buffer = s.points},
+                                    {.binding = 1, .uniform = red, .uniform_size = 16}};
+    gpu_draw one = {.bindings = bindings, .binding_count = 2, .commands = commands};
+    gpu_draw_desc desc = draw_over(&s, &one, 1);
+    gpu_test_ok(gpu_frame_begin(s.g));
+    static const uint64_t wrong[] = {2, 20, 32, UINT64_MAX - 3};
+    for (size_t i = 0; i < COUNT_OF(wrong); i++) {
+        one.command = wrong[i];
+        assert_false(gpu_draw_all(s.g, &desc));
+        assert_non_null(strstr(err_get(), "of buffer 'commands' is not whole words inside it"));
+    }
+    one.command = 16;
+    gpu_test_ok(gpu_draw_all(s.g, &desc)); // draws nothing
+    gpu_test_ok(gpu_frame_end(s.g));
+    gpu_buffer_destroy(s.g, commands);
+    stage_close(&s);
+}
+
+// A viewport holds the whole view, and nothing is drawn beside it; a scissor is of the target.
+static void views_lie_in_their_viewports(void **state) {
+    static float texels[N][N][4];
+    static const float blue[4] = {0, 0, 1, 0};
+    stage s = stage_open(*state, GPU_CULL_NONE);
+    gpu_buffer *all = make_buffer(s.g, "all", corners, sizeof corners);
+    const float *tints[3] = {white, red, green};
+    gpu_draw draws[3] = {
+        {.viewport = {0, 0, 8, 4}},
+        {.viewport = {8, 4, 8, 8}, .first_vertex = 3}, // its left half
+        {.viewport = {0, 8, 8, 8}, .scissor = {2, 10, 2, 2}},
+    };
+    gpu_binding bindings[3][2];
+    for (int i = 0; i < 3; i++) {
+        bindings[i][0] = (gpu_binding){.binding = 0, .buffer = all};
+        bindings[i][1] = (gpu_binding){.binding = 1, .uniform = tints[i], .uniform_size = 16};
+        draws[i].bindings = bindings[i];
+        draws[i].binding_count = 2;
+        draws[i].vertices = 3;
+    }
+    gpu_draw_desc desc = draw_over(&s, draws, COUNT_OF(draws));
+    gpu_test_ok(gpu_frame_begin(s.g));
+    gpu_test_ok(gpu_draw_all(s.g, &desc));
+    gpu_test_ok(gpu_frame_end(s.g));
+    gpu_test_ok(gpu_image_read(s.g, s.color, texels, sizeof texels));
+    for (int y = 0; y < N; y++) {
+        for (int x = 0; x < N; x++) {
+            if (x == 11 || x == 10) continue; // the edge of the red triangle is slanted
+            bool is_red = x >= 8 && x < 10 && y == 8;
+            if (x < 8 && y < 4)
+                expect_texel(texels, x, y, white);
+            else if (x >= 2 && x < 4 && y >= 10 && y < 12)
+                expect_texel(texels, x, y, green);
+            else if (is_red)
+                expect_texel(texels, x, y, red);
+            else if (x < 8 || y < 4 || y >= 12 || x >= 12)
+                expect_texel(texels, x, y, blue);
+        }
+    }
+    gpu_buffer_destroy(s.g, all);
+    stage_close(&s);
+}
+
 static void no_draws_just_clears(void **state) {
     static float texels[N][N][4];
     stage s = stage_open(*state, GPU_CULL_NONE);
@@ -269,6 +421,10 @@ int main(void) {
         cmocka_unit_test(premultiplied_colors_are_laid_over),
         cmocka_unit_test(integers_cannot_be_blended),
         cmocka_unit_test(draws_begin_at_their_vertex_inside_their_scissor),
+        cmocka_unit_test(indices_name_the_vertices),
+        cmocka_unit_test(commands_are_read_by_the_device),
+        cmocka_unit_test(commands_beyond_their_buffer_are_refused),
+        cmocka_unit_test(views_lie_in_their_viewports),
         cmocka_unit_test(no_draws_just_clears),
         cmocka_unit_test(wrong_targets_are_named),
     };
