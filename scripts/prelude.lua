@@ -19,6 +19,11 @@ function saturate(value)
   return clamp(value, 0, 1)
 end
 
+-- The middle of the step that a value lies in, of `steps` from 0 to 1: bands instead of shades.
+function quantise(value, steps)
+  return (floor(value * steps) + 0.5) / steps
+end
+
 -- A colour from sRGB values of 0 to 255, as picture editors show them.
 function rgb(red, green, blue)
   local function linear(byte)

@@ -96,6 +96,10 @@ static const pass_type types[] = {
         .shader = "pass/outline.comp",
     },
     {
+        .name = "bands",
+        .shader = "pass/bands.comp",
+    },
+    {
         .name = "bright",
         .shader = "pass/bright.comp",
     },

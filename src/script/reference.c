@@ -311,6 +311,9 @@ static const script_object objects[] = {
     {"over_age", "operator", "over_age { {0, 0.01}, {0.2, 0.1}, {1, 0} }",
      "a number or a colour over a particle's life: that of a palette at particle_age",
      .args = KEYS(KEY("key ...", "{age, value}", "2 to 64, of rising age in 0..1; values from 0 to 65504"))},
+    {"quantise", "operator", "quantise(value, 4)",
+     "the middle of the step that a value lies in: flat bands instead of shades",
+     .args = KEYS(KEY("value", NULL, "0..1, or any"), KEY("steps", NULL, "how many there are from 0 to 1"))},
     {"saturate", "operator", "saturate(value)", "limits a value to 0..1",
      .args = KEYS(KEY("value", NULL, "what it limits"))},
 
