@@ -1,7 +1,8 @@
-// What lib/sky.glsl says, pixel by pixel.
-//@ option show = radiance {radiance, irradiance, density, drawn} : of a direction (even over the sphere); drawn: of one that sky_sample drew, radiance over density, both densities, height
+// What lib/sky.glsl and lib/night.glsl say, pixel by pixel.
+//@ option show = radiance {radiance, irradiance, density, drawn, seen} : of a direction (even over the sphere); drawn: of one that sky_sample drew, radiance over density, both densities, height
 writeonly uniform image2D color; //= output rgba16f : the answer
 #include "lib/sky.glsl"
+#include "lib/night.glsl"
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(color);
@@ -18,6 +19,8 @@ void main() {
     float pdf;
     vec3 drawn = sky_sample(uv, pdf);
     answer = vec4(sky_radiance(drawn).r / pdf, pdf, sky_pdf(drawn), drawn.z);
+#elif SHOW == SHOW_SEEN
+    answer.rgb = night_sky(d, 0.02);
 #endif
     imageStore(color, pixel, answer);
 }
