@@ -52,6 +52,7 @@ typedef struct field_context { // what values depend on besides space
     size_t param_count;
     bool (*call)(void *user, int function, double time, float out[4]); // Lua functions of time
     void *user;
+    const struct instance_entry *instance; // that it is evaluated for; NULL: none
 } field_context;
 
 struct field_kind {

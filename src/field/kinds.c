@@ -31,9 +31,9 @@
     .spatial = true, .cost = 1, .eval = eval_zero, .ranges = ranges_unknown,                       \
     .range_function = "range_nowhere1"
 
-#define INSTANCE(NAME, COMPONENTS)                                                                 \
+#define INSTANCE(NAME, EVAL, COMPONENTS)                                                                 \
     .group = "source", .include = "lib/instance.glsl", .function = "instance_said_" NAME,          \
-    .components = COMPONENTS, .spatial = true, .cost = 1, .eval = eval_zero,                       \
+    .components = COMPONENTS, .spatial = true, .cost = 1, .eval = eval_instance_##EVAL,            \
     .ranges = ranges_unknown, .range_function = "range_nowhere" #COMPONENTS
 
 #define UNARY                                                                                      \
@@ -296,10 +296,10 @@ const field_kind field_kinds[] = {
     {"particle_velocity", PARTICLE("velocity", 3), .summary = "of a particle (m/s)"},
 
     // ---- of the one of `instances` that a field is evaluated for; where there is none, 0
-    {"instance_state", INSTANCE("state", 4), .summary = "four numbers of an instance, which the script sets: instance_state.x"},
-    {"instance_random", INSTANCE("random", 1), .summary = "a number of an instance's own, evenly spread over 0..1"},
-    {"instance_index", INSTANCE("index", 1), .summary = "number of an instance among those of its object, from 0 on"},
-    {"instance_glow", INSTANCE("glow", 1), .summary = "factor of what an instance emits"},
+    {"instance_state", INSTANCE("state", state, 4), .summary = "four numbers of an instance, which the script sets: instance_state.x"},
+    {"instance_random", INSTANCE("random", random, 1), .summary = "a number of an instance's own, evenly spread over 0..1"},
+    {"instance_index", INSTANCE("index", index, 1), .summary = "number of an instance among those of its object, from 0 on"},
+    {"instance_glow", INSTANCE("glow", glow, 1), .summary = "factor of what an instance emits"},
 
     // ---- of the light of `point_lights` that a field is evaluated for; where there is none, 0
     {"light_index", LAMP("index"), .summary = "number of a light of point_lights, from 0 on"},

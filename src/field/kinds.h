@@ -36,7 +36,8 @@ typedef box3 kind_bounds(const field *node, const field_context *context, const 
 kind_eval eval_constant, eval_palette, eval_swizzle, eval_position, eval_add, eval_sub, eval_mul,
     eval_negate, eval_div, eval_min, eval_max, eval_mix, eval_clamp, eval_remap, eval_smoothstep,
     eval_step, eval_pow, eval_abs, eval_sqrt, eval_exp, eval_sin, eval_floor, eval_fract,
-    eval_length, eval_dot, eval_atan, eval_vec, eval_zero;
+    eval_length, eval_dot, eval_atan, eval_vec, eval_zero, eval_instance_state,
+    eval_instance_random, eval_instance_index, eval_instance_glow;
 kind_eval eval_sphere, eval_box, eval_capsule, eval_torus, eval_disc;
 kind_eval eval_perlin, eval_simplex, eval_value, eval_worley, eval_curl;
 

@@ -1,6 +1,7 @@
 // Operators: the twin of shaders/lib/operator.glsl and of GLSL's own functions. Arguments come
 // widened to four components, so that every component can be computed alike.
 #include "field/kinds.h"
+#include "shared.h"
 #include <math.h>
 #include <string.h>
 
@@ -80,6 +81,32 @@ void eval_zero(const field *node, const field_context *context, float3 p, const 
                float out[4]) {
     (void)node, (void)context, (void)p, (void)args;
     memset(out, 0, 4 * sizeof *out);
+}
+
+// ---- of an instance: zero where there is none ---------------------------------------------------
+
+void eval_instance_state(const field *node, const field_context *context, float3 p,
+                         const float (*args)[4], float out[4]) {
+    eval_zero(node, context, p, args, out);
+    if (context->instance) memcpy(out, context->instance->state.v, 4 * sizeof *out);
+}
+
+void eval_instance_random(const field *node, const field_context *context, float3 p,
+                          const float (*args)[4], float out[4]) {
+    eval_zero(node, context, p, args, out);
+    if (context->instance) memcpy(out, &context->instance->kind.v[2], sizeof *out);
+}
+
+void eval_instance_index(const field *node, const field_context *context, float3 p,
+                         const float (*args)[4], float out[4]) {
+    eval_zero(node, context, p, args, out);
+    if (context->instance) out[0] = (float)context->instance->kind.v[1];
+}
+
+void eval_instance_glow(const field *node, const field_context *context, float3 p,
+                        const float (*args)[4], float out[4]) {
+    eval_zero(node, context, p, args, out);
+    if (context->instance) out[0] = context->instance->color.v[3];
 }
 
 void eval_length(const field *node, const field_context *context, float3 p, const float (*args)[4],

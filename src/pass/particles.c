@@ -33,7 +33,7 @@ bool pass_particles_open(pass *p, const pass_particles_desc *desc) {
     if (!check(p, desc)) return false;
     particles_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     *s = (particles_state){.pass = p, .desc = *desc, .fresh = true};
-    return true;
+    return particles_open_at(p, s);
 }
 
 static bool has_uniform(const pass *p, const char *name) {
@@ -90,10 +90,11 @@ static const char birth_shader[] = "pass/particles/birth.comp";
 
 bool particles_check(pass *p) {
     particles_state *s = particles_of(p);
-    shader_define defines[PASS_PARTICLES_DEFINES + 2];
+    shader_define defines[PASS_PARTICLES_DEFINES + 3];
     size_t count = pass_particles_defines(p, defines);
     defines[count++] = (shader_define){"CARRIED", s->carried ? "1" : "0"};
     defines[count++] = (shader_define){"MESH", p->mesh_count ? "1" : "0"};
+    defines[count++] = (shader_define){"AT", s->desc.at ? "1" : "0"};
     return pass_compile(p, p->shader, SHADER_COMPUTE, defines, count, &p->binary) &&
            pass_compile(p, birth_shader, SHADER_COMPUTE, defines, count, &s->birth);
 }
@@ -146,7 +147,8 @@ static bool make_buffers(const pass *p, particles_state *s) {
 
 bool particles_allocate(pass *p) {
     particles_state *s = particles_of(p);
-    return (make_buffers(p, s) && make_triangles(p, s) && particles_make_lost(p, s)) ||
+    return (make_buffers(p, s) && make_triangles(p, s) && particles_make_lost(p, s) &&
+            particles_make_at(p, s)) ||
            err_prefix("%s: ", p->label);
 }
 
@@ -154,6 +156,7 @@ void particles_destroy(pass *p) {
     particles_state *s = particles_of(p);
     if (!s) return;
     particles_destroy_lost(p, s);
+    particles_destroy_at(p, s);
     if (s->birth_pipeline) gpu_pipeline_destroy(p->host->device, s->birth_pipeline);
     gpu_buffer *const all[] = {s->buffers.positions[0],  s->buffers.positions[1],
                                s->buffers.velocities[0], s->buffers.velocities[1],
@@ -195,12 +198,12 @@ bool particles_fill(pass *p, const shader_binary *binary, unsigned char *block) 
     pass_write_member(binary, block, "mesh_from", s->places[0], sizeof s->places[0]);
     pass_write_member(binary, block, "mesh_to", s->places[1], sizeof s->places[1]);
     pass_write_box(binary, block, s->box);
-    return true;
+    return particles_fill_at(p, binary, block);
 }
 
 bool particles_rehearse(pass *p) {
     particles_rates rates;
-    return particles_rates_of(p, &rates) && particles_find_places(p);
+    return particles_sum_shares(p) && particles_rates_of(p, &rates) && particles_find_places(p);
 }
 
 bool particles_record(pass *p) {
@@ -270,9 +273,11 @@ bool pass_particles_bind(const pass *particles, const char *name, gpu_binding *o
         {"ParticleVelocitiesMore", s->buffers.velocities[1]},
         {"ParticleQuantities", s->buffers.quantities},
         {"BirthTriangles", s->triangles},
+        {"BirthShares", s->at.buffer},
+        {"Instances", s->desc.at ? scene_instances_buffer(s->desc.at) : NULL},
     };
     for (size_t i = 0; i < COUNT_OF(all); i++) {
-        if (strcmp(all[i].name, name) != 0) continue;
+        if (!all[i].buffer || strcmp(all[i].name, name) != 0) continue;
         *out = (gpu_binding){.buffer = all[i].buffer};
         return true;
     }

@@ -20,6 +20,10 @@ typedef struct pass_particles_desc {
     uint32_t count;   // at most so many at a time; the oldest make room for new ones
     double time_step; // seconds
     double warm_up;   // seconds that are simulated before time 0
+    // They are born in the space of one of these, as often as `share` says of it (NULL: 1), which
+    // multiplies 'rate' and 'burst'. NULL: in the world.
+    scene_instances *at;
+    const field *share;
 } pass_particles_desc;
 
 // Before pass_declare. False with a message.

@@ -66,6 +66,14 @@ typedef struct particles_lost { // births without a place; zero: there is no sha
     uint64_t births; // of the record
 } particles_lost;
 
+typedef struct particles_at { // births at instances; zero: anywhere
+    float *sums;              // of the shares up to each
+    uint32_t count;
+    double total;
+    bool written; // to the buffer
+    gpu_buffer *buffer;
+} particles_at;
+
 typedef struct particles_state {
     pass *pass;
     pass_particles_desc desc;
@@ -82,6 +90,7 @@ typedef struct particles_state {
     box3 box;                // around the shape then
     mat4 places[2];          // of the mesh, at the begin and the end of it
     particles_lost lost;
+    particles_at at;
     uint64_t last_steps; // that the last record took
     char trouble[256];   // "": none
 } particles_state;
@@ -104,6 +113,14 @@ void particles_destroy_lost(pass *p, particles_state *s);
 bool particles_begin_lost(pass *p, particles_state *s); // around the steps of a record
 bool particles_end_lost(pass *p, particles_state *s);
 double particles_lost_share(const pass *p); // of the births of a frame some frames ago
+
+// particles_at.c; all do nothing where there are no instances
+bool particles_open_at(pass *p, particles_state *s);
+bool particles_make_at(pass *p, particles_state *s);
+void particles_destroy_at(pass *p, particles_state *s);
+bool particles_sum_shares(const pass *p); // as of the host's time
+bool particles_write_shares(const pass *p);
+bool particles_fill_at(const pass *p, const shader_binary *binary, unsigned char *block);
 
 // particles_state.c
 void particles_save(const pass *p, struct checkpoint_list *out);

@@ -53,6 +53,9 @@ bool particles_rates_of(const pass *p, particles_rates *out) {
         if (!pass_evaluate_vector(p, names[i], value)) return false;
         *slots[i] = (double)value[0];
     }
+    if (!s->desc.at) return true;
+    out->rate *= s->at.total;
+    out->burst *= s->at.total;
     return true;
 }
 
@@ -154,6 +157,7 @@ bool particles_advance(pass *p) {
     particles_state *s = particles_of(p);
     int64_t left = waits(p) ? 0 : particles_left(p, p->host->context->time), limit = most(p);
     if (s->fresh && !particles_find_places(p)) return false; // told before the first birth
+    if (!particles_sum_shares(p) || !particles_write_shares(p)) return false;
     if (s->fresh) s->clock = (particles_clock){0};
     s->fresh = false;
     if (left > limit) left = limit;

@@ -10,6 +10,17 @@ static void read_desc(lua_State *L, pass_particles_desc *desc) {
     desc->count = value_get_count(L, 1, "particles", "count", COUNT);
     desc->time_step = value_get_number(L, 1, "particles", "time_step", 1.0 / 60);
     desc->warm_up = value_get_number(L, 1, "particles", "warm_up", 0);
+    desc->at = NULL;
+    desc->share = NULL;
+    bool given = value_get(L, 1, "at") != LUA_TNIL;
+    if (given && !(desc->at = value_instances(L, -1)))
+        vm_error(L, "particles: 'at' takes instances { }; got a %s", luaL_typename(L, -1));
+    if (given) vm_charge_memory(L, 2 * sizeof(float) * scene_instances_count(desc->at));
+    if (value_get(L, 1, "share") != LUA_TNIL) {
+        if (!given) vm_error(L, "particles: 'share' is of instances; 'at' says which");
+        desc->share = value_field(L, -1, "particles", "share", 1);
+    }
+    lua_pop(L, 2);
 }
 
 static void set_uniform(lua_State *L, pass *p, int value, const char *key, const char *uniform) {

@@ -236,6 +236,12 @@ static const script_object objects[] = {
             "within 'radius' of 'position'"),
         KEY("above", "{field, threshold}", "instead of a shape: where the field is above that"),
         KEY("time_step", "1/60 s", "that a step takes"),
+        KEY("at", "instances { }",
+            "they are born in the space of one of these, which moves, turns and scales the place; "
+            "speed and quantity may use instance_state and the like there"),
+        KEY("share", "1",
+            "of each of these, as instance_state.x: 'rate' and 'burst' are times that, of all together; evaluated "
+            "on the host"),
         KEY("warm_up", "0 s", "that are simulated before the first frame, in air as it is then"),
         KEY("name", "\"particles\"", "for --set NAME.key=value and statistics; numbered when taken"))},
 

@@ -40,6 +40,13 @@ struct birth_triangle {
 };
 layout(std430) readonly buffer BirthTriangles { birth_triangle birth_triangles[]; };
 #endif
+#if AT
+#include "lib/instance.glsl"
+uniform uint birth_instances;
+uniform mat4 birth_group; // their space to the world
+layout(std430) readonly buffer Instances { instance_entry instances[]; };
+layout(std430) readonly buffer BirthShares { float birth_sums[]; }; // of their shares, up to each
+#endif
 #if HAS_SHAPE
 layout(r32ui) uniform uimage2D lost; // births that found no place
 #endif
@@ -70,6 +77,29 @@ uint birth_choose(uint id, uint what) {
     umulExtended(h, mesh_triangles, chosen, low);
     birth_triangle t = birth_triangles[chosen];
     return particle_random(id, what + 1u) < t.corner.w ? chosen : floatBitsToUint(t.first.w);
+}
+#endif
+
+#if AT
+// The first whose sum is above a random part of the whole.
+uint birth_instance(uint id) {
+    float wanted = particle_random(id, 4u) * birth_sums[birth_instances - 1u];
+    uint low = 0u, high = birth_instances - 1u;
+    while (low < high) {
+        uint middle = (low + high) / 2u;
+        if (birth_sums[middle] > wanted) high = middle;
+        else low = middle + 1u;
+    }
+    return low;
+}
+
+// From the instance's own space to the world.
+void birth_place_at(instance_entry e, inout vec3 p, inout vec3 way, inout vec3 motion) {
+    vec3 from = instance_point(e, vec3(0.0));
+    way = mat3(birth_group) * (instance_point(e, way) - from);
+    way /= max(length(way), 1e-20);
+    motion = mat3(birth_group) * (instance_point(e, motion) - from);
+    p = (birth_group * vec4(instance_point(e, p), 1.0)).xyz;
 }
 #endif
 
@@ -126,7 +156,14 @@ void main() {
     float before = time_step - birth_rest(index);
     particle_said.random = particle_random(id, 64u);
     vec3 p, way, motion;
+#if AT
+    instance_entry e = instances[birth_instance(id)];
+    instance_say(e);
     bool found = birth_place(id, before / time_step, p, way, motion);
+    birth_place_at(e, p, way, motion);
+#else
+    bool found = birth_place(id, before / time_step, p, way, motion);
+#endif
     vec4 moves = vec4(0.0);
     if (found) {
         moves.w = mix(lifetime_min, max(lifetime_min, lifetime_max), particle_random(id, 0u));
