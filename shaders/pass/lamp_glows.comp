@@ -35,7 +35,7 @@ vec3 sphere_seen(lamp l, passing by, float end, float pixel) {
     if (radius <= 0.0 || by.along <= frame.lens.z || by.along > end) return vec3(0.0);
     float shown = max(radius, wide);
     float covered = clamp((shown - by.away) / wide + 0.5, 0.0, 1.0);
-    return l.color * (brightness * covered / (PI * shown * shown));
+    return l.color * (brightness * covered / (PI * (shown * shown + wide * wide / 12.0))); // its soft edge, too
 }
 
 // The integral from 0 to s of the lamp's falloff at the distance sqrt(h h + s s).

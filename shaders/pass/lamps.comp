@@ -3,8 +3,9 @@
 // point_lights { count = 200, position = vec(3 * sin(time + light_index), 0, 2), color = {1, 0.6, 0.3} }
 // gives an image that shade { from = {scene, lamps} } reads. Fields are evaluated for each light:
 // `position` at the origin, the others where the light then is. They may use light_index (0, 1, 2 ...)
-// and light_random (0..1).
-//@ field vec3 position = {0, 0, 0} : where it is (m)
+// and light_random (0..1). With at = instances there is one for each, which moves with it, and fields
+// may use instance_state and the like: power = 200 * instance_state.x is a fire that the script lights.
+//@ field vec3 position = {0, 0, 0} : where it is (m); with `at`: in the space of its instance, as the mesh is
 //@ field vec3 color = {1, 1, 1} : multiplies the power
 //@ field float power = 100 : as light into all directions (W); 0: it is off, and costs next to nothing
 //@ field float range = 10 : how far it reaches (m): beyond, nothing is lit. What is lit is what it costs
@@ -13,11 +14,13 @@ uniform int falloff;              //= inverse_square {inverse_square, linear} : 
 uniform uint seed;                //= 0 [0, 16777215] : another one gives other random numbers
 writeonly uniform image2D lamps;  //= output rgba32f : a row of four texels for each, a light_entry (shaders/shared.h)
 uniform uint lamp_total;
+uniform mat4 lamp_group; // of `at`: where all instances are
 
 #include "shared.h"
 #include "lib/frame.glsl"
 #include "lib/random.glsl"
 #include "lib/lamp.glsl"
+#include "lib/instance.glsl"
 #include "fields.glsl"
 
 layout(local_size_x = 64) in;
@@ -34,9 +37,23 @@ bool is_place(vec3 p) {
     return all(lessThan(abs(p), vec3(FARTHEST))); // false for what is no number, too
 }
 
+#if LAMPS_AT
+layout(std430) readonly buffer Instances { instance_entry lamp_instances[]; };
+
+vec3 place_of(uint index) {
+    instance_entry at = lamp_instances[index];
+    instance_say(at);
+    return (lamp_group * vec4(instance_point(at, field_position(vec3(0.0))), 1.0)).xyz;
+}
+#else
+vec3 place_of(uint index) {
+    return field_position(vec3(0.0));
+}
+#endif
+
 light_entry entry_of(uint index) {
     lamp_said = lamp_facts(float(index), float(random_hash(index + random_hash(seed)) >> 8) / 16777216.0);
-    vec3 p = field_position(vec3(0.0));
+    vec3 p = place_of(index);
     light_entry e = light_entry(vec4(0.0), vec4(vec3(0.0), LIGHT_POINT), vec4(0.0), vec4(0.0));
     if (!is_place(p)) return e;
     vec3 shines = positive(field_color(p) * positive(field_power(p), BRIGHTEST), BRIGHTEST) / (4.0 * 3.14159265);

@@ -17,6 +17,9 @@ bool shade_record(pass *p);
 void shade_destroy(pass *p);
 
 bool lamps_declare(pass *p);
+bool lamps_check(pass *p);
+bool lamps_build(pass *p);
+bool lamps_allocate(pass *p);
 bool lamps_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool lamps_record(pass *p);
 

@@ -8,17 +8,21 @@ enum { TEXELS = 4 }; // of a light_entry
 
 typedef struct lamps_state {
     uint32_t count;
+    scene_instances *at; // NULL: they stand for themselves
 } lamps_state;
 
 static lamps_state *state_of(const pass *p) {
     return p->state;
 }
 
-bool pass_lamps_open(pass *p, uint32_t count) {
+bool pass_lamps_open(pass *p, uint32_t count, scene_instances *at) {
+    if (at) count = scene_instances_count(at);
     if (count < 1 || count > PASS_LAMPS_MOST)
-        return err_set("%s: 'count' is %u; 1 to %d are accepted", p->label, count, PASS_LAMPS_MOST);
+        return err_set("%s: %s %u; 1 to %d are accepted", p->label,
+                       at ? "the instances of 'at' are" : "'count' is", count, PASS_LAMPS_MOST);
     lamps_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     s->count = count;
+    s->at = at;
     return true;
 }
 
@@ -34,16 +38,45 @@ bool lamps_declare(pass *p) {
     return p->images[output].id && pass_declare_images(p) && pass_add_to_graph(p);
 }
 
+static bool compile(pass *p) {
+    const shader_define at = {"LAMPS_AT", state_of(p)->at ? "1" : "0"};
+    return pass_compile(p, p->shader, SHADER_COMPUTE, &at, 1, &p->binary);
+}
+
+bool lamps_check(pass *p) {
+    return compile(p);
+}
+
+bool lamps_build(pass *p) {
+    if (!compile(p)) return false;
+    p->pipeline = pass_create_compute(p, &p->binary);
+    return p->pipeline != NULL;
+}
+
+bool lamps_allocate(pass *p) {
+    scene_instances *at = state_of(p)->at;
+    return !at || scene_instances_allocate(at, p->host->device);
+}
+
 bool lamps_fill(pass *p, const shader_binary *binary, unsigned char *block) {
-    pass_write_member(binary, block, "lamp_total", &state_of(p)->count, sizeof(uint32_t));
+    const lamps_state *s = state_of(p);
+    mat4 group;
+    float tint[4];
+    pass_write_member(binary, block, "lamp_total", &s->count, sizeof s->count);
+    if (!s->at) return true;
+    if (!scene_instances_place(s->at, p->host->context, group, tint)) return false;
+    pass_write_member(binary, block, "lamp_group", group, sizeof group);
     return true;
 }
 
 bool lamps_record(pass *p) {
+    const lamps_state *s = state_of(p);
+    const pass_override at = {.name = "Instances",
+                              .binding = {.buffer = s->at ? scene_instances_buffer(s->at) : NULL}};
     gpu_binding bindings[GPU_MAX_SLOTS];
     gpu_dispatch_desc desc = {
-        .pipeline = p->pipeline, .bindings = bindings, .threads = {state_of(p)->count, 1, 1}};
+        .pipeline = p->pipeline, .bindings = bindings, .threads = {s->count, 1, 1}};
     return pass_prepare(p) &&
-           pass_bind(p, &p->binary, p->block, NULL, 0, bindings, &desc.binding_count) &&
+           pass_bind(p, &p->binary, p->block, &at, 1, bindings, &desc.binding_count) &&
            gpu_dispatch(p->host->device, &desc);
 }

@@ -14,8 +14,9 @@
 
 enum { PASS_LAMPS_MOST = 16384 }; // rows of an image on any device
 
-// Before pass_declare: so many lamps. False with a message.
-bool pass_lamps_open(pass *p, uint32_t count);
+// Before pass_declare: so many lamps, or (`at`, which may be NULL) one for each of the instances.
+// False with a message.
+bool pass_lamps_open(pass *p, uint32_t count, scene_instances *at);
 
 // ---- for passes that read them ----------------------------------------------------------------
 

@@ -4,6 +4,21 @@
 #include "pass/lamps.h"
 #include "script/binding.h"
 
+// at = forest: one for each; else `count` says how many.
+static scene_instances *read_at(lua_State *L) {
+    bool counted = value_get(L, 1, "count") != LUA_TNIL, given = value_get(L, 1, "at") != LUA_TNIL;
+    scene_instances *at = given ? value_instances(L, -1) : NULL;
+    if (given && !at)
+        vm_error(L, "point_lights: 'at' takes instances { }; got a %s", luaL_typename(L, -1));
+    if (counted == given)
+        vm_error(L,
+                 "point_lights: one of 'count' (1 to %d) and 'at' (instances) is to be given: how "
+                 "many there are",
+                 (int)PASS_LAMPS_MOST);
+    lua_pop(L, 2);
+    return at;
+}
+
 static int l_point_lights(lua_State *L) {
     script_require_loading(L, "point_lights");
     if (lua_gettop(L) != 1 || !value_is_plain_table(L, 1))
@@ -13,11 +28,9 @@ static int l_point_lights(lua_State *L) {
     const char *unsound = s->unsound;
     pass *p =
         pass_make(L, "point_lights", "point_lights", 1, script_object_find("point_lights")->keys);
-    if (value_get(L, 1, "count") == LUA_TNIL)
-        vm_error(L, "point_lights: 'count' is missing: how many there are, 1 to %d",
-                 (int)PASS_LAMPS_MOST);
+    scene_instances *at = read_at(L);
     uint32_t count = value_get_count(L, 1, "point_lights", "count", 0);
-    if (!pass_lamps_open(p, count) || !pass_declare(p)) script_raise(L);
+    if (!pass_lamps_open(p, count, at) || !pass_declare(p)) script_raise(L);
     s->unsound = unsound;
     pass_push(L, p);
     return 1;

@@ -276,7 +276,9 @@ static const script_object objects[] = {
      "each of them shines, and may use light_index and light_random. What else it takes is what "
      "`roil info passes point_lights` lists: position, color, power, range, radius, falloff",
      .keys = KEYS(
-        KEY("count", "number [1, 16384]", "how many there are; required"),
+        KEY("count", "number [1, 16384]", "how many there are"),
+        KEY("at", "instances { }", "instead: one for each of these, in whose own space its position is; "
+            "fields may use instance_state and the like, as in power = 200 * instance_state.x"),
         KEY("name", "\"point_lights\"", "for --set NAME.falloff=linear and statistics; numbered when taken"))},
 
     {"voxels", "source", "local body = voxels { mesh { \"data/ball.obj\" }, resolution = 64 }",

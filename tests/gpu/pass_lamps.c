@@ -29,7 +29,7 @@ static const field *vector(pass_world *w, const field *x, const field *y, const 
 
 static pass *add_lamps(pass_world *w, uint32_t count) {
     pass *p = world_add(w, "point_lights", NULL, "lamps");
-    gpu_test_ok(pass_lamps_open(p, count));
+    gpu_test_ok(pass_lamps_open(p, count, NULL));
     return p;
 }
 
@@ -167,11 +167,154 @@ static void thousands_of_lamps_are_lit(void **state) {
     expect_equal_ways(*state, 4096, 20);
 }
 
+// ---- of instances -----------------------------------------------------------------------------
+
+static float *read_lamps(pass_world *w, pass *lamps, size_t count) {
+    gpu_image *image = graph_get_image(w->host.graph, pass_output(lamps, "lamps"));
+    float *texels = mem_alloc(count * sizeof(struct light_entry));
+    gpu_test_ok(gpu_image_read(w->host.device, image, texels, count * sizeof(struct light_entry)));
+    return texels;
+}
+
+// In their own space, which is turned, scaled and moved, and so is that of all.
+static void lamps_move_with_their_instances(void **state) {
+    pass_world w;
+    world_open(&w, *state);
+    scene_mesh *mesh = add_wall(&w);
+    const float half = sqrtf(0.5f);
+    const struct instance_entry entries[2] = {
+        {.place = {{1, 2, 3, 2}}, .turn = {{0, 0, half, half}}, .state = {{0, 5, 0, 0}}},
+        {.place = {{-1, 0, 0, 1}}, .turn = {{0, 0, 0, 1}}, .state = {{0, 0, 0, 0}}},
+    };
+    scene_mesh *const kinds[] = {mesh};
+    scene_instances *trees =
+        scene_instances_create(&(scene_instances_desc){.name = "trees",
+                                                       .kinds = kinds,
+                                                       .kind_count = 1,
+                                                       .entries = entries,
+                                                       .count = 2,
+                                                       .position = triple(&w, 0, 0, 10),
+                                                       .rotation = triple(&w, 0, 0, 0),
+                                                       .scale = number(&w, 3),
+                                                       .color = triple(&w, 1, 1, 1)});
+    gpu_test_ok(trees);
+    pass *lamps = world_add(&w, "point_lights", NULL, "lamps");
+    gpu_test_ok(pass_lamps_open(lamps, 0, trees));
+    set(lamps, "position", triple(&w, 0.5f, 0, 1));
+    set(lamps, "power",
+        of(&w, "dot", of(&w, "instance_state", NULL, NULL),
+           field_constant(&w.memory, 4, (float[4]){0, 1, 0, 0})));
+    gpu_test_ok(pass_declare(lamps));
+    gpu_test_ok(scene_instances_allocate(trees, *state) && gpu_frame_begin(*state) &&
+                scene_instances_upload(trees, *state) && gpu_frame_end(*state));
+    world_render(&w, SIZE, SIZE, pass_output(lamps, "lamps"));
+    float *texels = read_lamps(&w, lamps, 2);
+    const float first[] = {3 * 1, 3 * (2 + 2 * 0.5f), 10 + 3 * (3 + 2)};
+    const float second[] = {3 * -0.5f, 0, 10 + 3};
+    for (int i = 0; i < 3; i++) {
+        assert_float_equal(texels[i], first[i], 1e-4);
+        assert_float_equal(texels[16 + i], second[i], 1e-4);
+        assert_float_equal(texels[4 + i], 5 / (4 * GLM_PIf), 1e-6);
+        assert_float_equal(texels[20 + i], 0, 0); // off: the other has no power
+    }
+    mem_free(texels);
+    scene_instances_destroy(trees, *state);
+    world_close(&w);
+}
+
+// ---- as they are seen -------------------------------------------------------------------------
+
+// What a lamp's sphere sends to the camera is what the lamp would light it by.
+static void spheres_give_the_light_of_their_lamps(void **state) {
+    static const float radii[] = {0.2f, 0.01f}; // many pixels; less than one
+    for (size_t k = 0; k < COUNT_OF(radii); k++) {
+        pass_world w;
+        world_open(&w, *state);
+        pass *lamps = add_lamps(&w, 1);
+        set(lamps, "position", triple(&w, 0.31f, 0, 0.17f));
+        set(lamps, "radius", number(&w, radii[k]));
+        set(lamps, "power", number(&w, 4 * GLM_PIf));
+        gpu_test_ok(pass_declare(lamps));
+        pass *glows = world_add(&w, "lamp_glows", NULL, "glows");
+        pass_add_source(glows, lamps);
+        gpu_test_ok(pass_declare(glows));
+        world_render(&w, 64, 64, pass_output(glows, "image"));
+        float *c = world_read(&w, pass_output(glows, "image"));
+        double sum = 0, wide = 2 * (double)w.frame.lens.v[1] / 64; // of a pixel, a metre away
+        for (size_t i = 0; i < 64 * 64; i++) {
+            double x = ((double)(i % 64) + 0.5 - 32) * wide,
+                   y = ((double)(i / 64) + 0.5 - 32) * wide;
+            sum += (double)c[4 * i] * wide * wide / pow(1 + x * x + y * y, 1.5);
+            assert_true(c[4 * i + 3] == 0);
+        }
+        double want = 1 / (25 + 0.31 * 0.31 + 0.17 * 0.17);
+        if (fabs(sum - want) > 0.06 * want)
+            fail_msg("radius %g: %.5f, not %.5f", (double)radii[k], sum, want);
+        mem_free(c);
+        world_close(&w);
+    }
+}
+
+// By a sum in small steps along the ray, up to the wall.
+static double mist_by_steps(const double way[3], const double at[3], double range, bool linear,
+                            double end) {
+    enum { STEPS = 20000 };
+    double sum = 0, length = end / STEPS;
+    for (int i = 0; i < STEPS; i++) {
+        double t = (i + 0.5) * length, square = 0;
+        for (int a = 0; a < 3; a++) {
+            double off = way[a] * t + (a == 1 ? -5 : 0) - at[a];
+            square += off * off;
+        }
+        double d = sqrt(square), window = fmax(1 - pow(d / range, 4), 0);
+        sum += linear ? fmax(1 - d / range, 0) : window * window / square;
+    }
+    return sum * length;
+}
+
+static void mist_is_lit_by_the_integral(void **state) {
+    static const double at[] = {0.3, -1.2, 0.2};
+    for (int linear = 0; linear < 2; linear++) {
+        pass_world w;
+        world_open(&w, *state);
+        pass *lamps = add_lamps(&w, 1);
+        set(lamps, "position", triple(&w, (float)at[0], (float)at[1], (float)at[2]));
+        set(lamps, "power", number(&w, 16 * GLM_PIf * GLM_PIf));
+        set(lamps, "range", number(&w, 2.5f));
+        gpu_test_ok(pass_set_uniform(lamps, "falloff", number(&w, (float)linear)));
+        add_wall(&w);
+        pass *shade = add_shade(&w, lamps, "tiles"), *glows;
+        glows = world_add(&w, "lamp_glows", NULL, "glows");
+        gpu_test_ok(pass_set_option(glows, "lamps_by", "tiles"));
+        gpu_test_ok(pass_set_uniform(glows, "mist", number(&w, 1)));
+        gpu_test_ok(pass_set_uniform(glows, "size", number(&w, 0)));
+        gpu_test_ok(pass_declare(shade));
+        pass_add_source(glows, w.passes[1]);
+        pass_add_source(glows, lamps);
+        gpu_test_ok(pass_declare(glows));
+        world_render(&w, SIZE, SIZE, pass_output(glows, "image"));
+        float *c = world_read(&w, pass_output(glows, "image"));
+        for (size_t i = 0; i < PIXELS; i += 29) {
+            double x, z;
+            wall_point(&w, i, &x, &z);
+            double end = sqrt(x * x + z * z + 25);
+            const double way[] = {x / end, 5 / end, z / end};
+            double want = mist_by_steps(way, at, 2.5, linear, end);
+            expect_near(c[4 * i], want, 0.004 * want + 1e-4, linear ? "linear" : "mist", i);
+        }
+        mem_free(c);
+        world_close(&w);
+    }
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(lamps_fall_off_by_the_formula),
         cmocka_unit_test(every_way_gives_the_same_light),
         cmocka_unit_test(thousands_of_lamps_are_lit),
+        cmocka_unit_test(lamps_move_with_their_instances),
+        cmocka_unit_test(spheres_give_the_light_of_their_lamps),
+        cmocka_unit_test(mist_is_lit_by_the_integral),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }
