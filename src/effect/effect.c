@@ -304,6 +304,28 @@ void effect_reset_instances(effect *e) {
     for (size_t i = 0; i < e->instances_count; i++) scene_instances_reset(e->instances[i]);
 }
 
+const mesh_texture *effect_add_texture(effect *e, const char *file) {
+    char path[PATH_CAP];
+    if (!path_confine(path, e->root, file)) return NULL;
+    effect_add_file(e, path); // even if it cannot be read
+    const char *key = arena_format(&e->memory, "texture %s", path);
+    shelf_item *item = shelf_take(e->shelf, key);
+    if (!item) {
+        arena memory = {0};
+        const char *kept = path;
+        int64_t begin = file_clock_ns();
+        mesh_texture *texture = arena_alloc(&memory, sizeof *texture);
+        if (!mesh_texture_load(path, &memory, texture)) {
+            arena_free(&memory);
+            return NULL;
+        }
+        item = shelf_put(e->shelf, key, texture, memory, &kept, 1, begin);
+    }
+    MEM_RESERVE(e->held, e->held_count + 1, e->held_capacity);
+    e->held[e->held_count++] = item;
+    return item->data;
+}
+
 static sky_image *load_sky_image(effect *e, const char *path) {
     shelf_item *item = shelf_take(e->shelf, path);
     if (!item) {

@@ -80,6 +80,7 @@ void effect_add_grid(effect *e, field_grid *grid); // owned by the effect from n
 void effect_name_grid(effect *e, field_grid *grid, const char *name);
 bool effect_playback(const effect *e, field_playback *out); // false: no grid is played
 scene_mesh *effect_add_mesh(effect *e, const char *file);   // confined to the effect's folder
+const mesh_texture *effect_add_texture(effect *e, const char *file); // a PNG; the same
 // Owned by the effect; NULL with a message when it has too many.
 scene_instances *effect_add_instances(effect *e, const scene_instances_desc *desc);
 // The panorama of a sky, confined too; an effect has one.

@@ -130,11 +130,11 @@ static bool take_geometry(loader *l, const mesh_blob *head, mesh_part **parts, m
 }
 
 // 16-bit pictures lose their low bytes: textures are shown, not measured.
-static mesh_texture texture_from_png(loader *l, const png_image *image) {
+static mesh_texture texture_from_png(arena *memory, const png_image *image) {
     if (image->bits == 8) return (mesh_texture){image->width, image->height, image->pixels};
     size_t values = (size_t)image->width * image->height * 4;
     const uint16_t *wide = image->pixels;
-    uint8_t *pixels = arena_alloc(l->memory, values);
+    uint8_t *pixels = arena_alloc(memory, values);
     for (size_t i = 0; i < values; i++) pixels[i] = (uint8_t)(wide[i] >> 8);
     return (mesh_texture){image->width, image->height, pixels};
 }
@@ -160,7 +160,14 @@ static bool load_texture(loader *l, const mesh_blob_texture *t, const void *byte
         mesh_files_note(&l->files, file); // even if it is missing: it may come
         if (!png_read(file, l->memory, &image)) return false;
     }
-    *out = texture_from_png(l, &image);
+    *out = texture_from_png(l->memory, &image);
+    return true;
+}
+
+bool mesh_texture_load(const char *path, arena *memory, mesh_texture *out) {
+    png_image image;
+    if (!png_read(path, memory, &image)) return false;
+    *out = texture_from_png(memory, &image);
     return true;
 }
 

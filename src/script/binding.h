@@ -55,6 +55,9 @@ typedef struct sun_object {
 typedef struct sky_object {
     scene_sky sky;
 } sky_object;
+typedef struct material_object {
+    const struct scene_material *material;
+} material_object;
 typedef struct mesh_object {
     scene_mesh *mesh;
     bool placed; // it has a place or a colour of its own
@@ -129,6 +132,8 @@ const field *value_get_uniform(lua_State *L, int table, const char *who, const c
 // says where. And raises when the table holds values without a name.
 void value_read_slots(lua_State *L, const char *who, void *out);
 void value_refuse_array(lua_State *L, const char *who);
+// The key `material` of a mesh's call, the table at 1 (l_material.c).
+void value_read_material(lua_State *L, const char *who, scene_mesh *mesh);
 // The slices that a method is called of, with a table at 2; raises when it is anything else.
 const slices_object *slices_self(lua_State *L, const char *method, const char *example);
 // A list of lights, in the effect's memory; returns how many.
@@ -162,6 +167,7 @@ void l_palette_open(lua_State *L);
 void l_grid_open(lua_State *L);
 void l_scene_open(lua_State *L);
 void l_light_open(lua_State *L);
+void l_material_open(lua_State *L);
 void l_instances_open(lua_State *L);
 void l_scatter_open(lua_State *L);
 void l_pass_open(lua_State *L);

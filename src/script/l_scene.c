@@ -124,6 +124,7 @@ static int l_mesh(lua_State *L) {
     if (values.rotation) mesh->rotation = values.rotation;
     if (values.scale) mesh->scale = values.scale;
     if (values.color) mesh->color = values.color;
+    value_read_material(L, "mesh", mesh);
     mesh->parent = value_get_node(L, 1, "mesh", "parent");
     object->placed =
         values.position || values.rotation || values.scale || values.color || mesh->parent;

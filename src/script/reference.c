@@ -1,6 +1,7 @@
 // The table of constructors. What a kind's row can say stands in field/kinds.c.
 #include "script/reference.h"
 #include "base/memory.h"
+#include "scene/material.h"
 #include "scene/scene.h"
 #include <string.h>
 
@@ -235,13 +236,13 @@ static const script_object objects[] = {
             "they are born where the field is above 0.5, evenly, or on the mesh, evenly; without: "
             "within 'radius' of 'position'"),
         KEY("above", "{field, threshold}", "instead of a shape: where the field is above that"),
-        KEY("time_step", "1/60 s", "that a step takes"),
         KEY("at", "instances { }",
             "they are born in the space of one of these, which moves, turns and scales the place; "
             "speed and quantity may use instance_state and the like there"),
         KEY("share", "1",
             "of each of these, as instance_state.x: 'rate' and 'burst' are times that, of all together; evaluated "
             "on the host"),
+        KEY("time_step", "1/60 s", "that a step takes"),
         KEY("warm_up", "0 s", "that are simulated before the first frame, in air as it is then"),
         KEY("name", "\"particles\"", "for --set NAME.key=value and statistics; numbered when taken"))},
 
@@ -252,7 +253,8 @@ static const script_object objects[] = {
         KEY("add", "blasts:add { position = {x, y, z}, size = 2 }",
             "one more from now on, while the effect runs: from a function of fx:on_frame, fx:on_key or "
             "fx:on_click. It is forgotten when time goes back"),
-        KEY("get", "blasts:get(2)", "{ time, position, size, life, seed } of the second, or nil"),
+        KEY("get", "blasts:get(2)", "{ time, position, size, life, seed, shift, random } of the second, or nil; the last two are "
+            "its shell_shift and shell_random"),
         KEY("latest", "blasts:latest(t, 2)",
             "the same of those that have begun by t: the second youngest, or nil. For lights: "
             "position = function(t) ... end"))},
@@ -334,7 +336,20 @@ static const script_object objects[] = {
         SLOT(scene_mesh, rotation, 3, "0, 0, 0 degrees", "about X, then Y, then Z"),
         SLOT(scene_mesh, scale, 1, "1", "factor of its size"),
         SLOT(scene_mesh, color, 3, "1, 1, 1", "multiplies the material's"),
+        KEY("material", "material { }", "of all of it; without: what the file says"),
         KEY("parent", "node { }", "that it stands in"))},
+    {"material", "scene", "mesh { \"data/barrel.obj\", material = material { metallic = 1, roughness = 0.3 } }",
+     "what a surface is like. What is not given is as the file has it; a file that says nothing is matte",
+     .keys = KEYS(
+        SLOT(scene_material, color, 3, "the file's", "of the whole mesh"),
+        KEY("texture", "\"data/bark.png\"", "its colours, times `color`; by the file's coordinates"),
+        SLOT(scene_material, specular, 1, "0.5 with roughness or metallic, else the file's [0, 1]",
+             "how much is mirrored: 0.5 is 4 percent of what comes head on, as of most things; 0: matte"),
+        SLOT(scene_material, roughness, 1, "the file's [0, 1]", "0: polished; 1: highlights spread over all"),
+        SLOT(scene_material, metallic, 1, "the file's [0, 1]", "1: mirrors in its colour, and does nothing else"),
+        SLOT(scene_material, emission, 3, "the file's", "radiance that it gives off; of instances times `glow`"),
+        KEY("toon", "true", "false: it keeps smooth light where model = \"toon\""),
+        KEY("name", "the variable's", "for --set NAME.roughness=value and presets; numbered when taken"))},
     {"node", "scene", "local boat = node { position = {0, 0, 2} }; mesh { \"data/mast.obj\", parent = boat }",
      "a place for meshes and instances to stand in: they move, turn and grow with it",
      .keys = KEYS(

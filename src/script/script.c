@@ -112,6 +112,7 @@ static int open_bindings(lua_State *L) {
     l_grid_open(L);
     l_scene_open(L);
     l_light_open(L);
+    l_material_open(L);
     l_instances_open(L);
     l_scatter_open(L);
     l_pass_open(L);
