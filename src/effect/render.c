@@ -143,6 +143,7 @@ bool effect_build(effect *e, uint32_t width, uint32_t height) {
 
 static bool update(effect *e, double frame) {
     double dt = isnan(e->updated) ? 0 : (frame - e->updated) / e->fps;
+    if (frame < e->updated && !e->systems) effect_reset_instances(e); // these do so themselves
     e->updated = frame;
     return effect_run_systems(e, frame) &&
            (!e->hooks.update || e->hooks.update(e->hooks.user, e->context.time, dt));

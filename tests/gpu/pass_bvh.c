@@ -229,12 +229,65 @@ static void meshes_that_move_are_hit_where_they_are_now(void **state) {
     world_close(&w);
 }
 
+// Many copies of a few meshes: a tree stands over them, and the host's twin of it finds the same.
+static void instances_are_hit_as_the_host_sees_it(void **state) {
+    enum { COUNT = 400 };
+    pass_world w;
+    world_open(&w, *state);
+    scene_mesh *crate = world_mesh(&w, "crate.obj");
+    scene_mesh *kinds[2] = {world_mesh(&w, "plane.obj"), crate};
+    scatter(&w, &kinds[0]->data);
+    struct instance_entry *entries = arena_alloc(&w.memory, COUNT * sizeof *entries);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        struct instance_entry *e = &entries[i];
+        for (uint32_t a = 0; a < 3; a++) e->place.v[a] = 12 * chance(50 * i + a) - 6;
+        e->place.v[3] = 0.05f + 0.3f * chance(50 * i + 3);
+        float angle = 3 * chance(50 * i + 4);
+        e->turn = (shared_vec4){{0, 0.6f * sinf(angle), 0.8f * sinf(angle), cosf(angle)}};
+        e->color = (shared_vec4){{1, chance(50 * i + 5), 1, 1}};
+        e->kind.v[0] = i % 7 == 0 ? INSTANCE_HIDDEN : i % 2;
+    }
+    w.instances[w.instances_count++] =
+        scene_instances_create(&(scene_instances_desc){.name = "many",
+                                                       .kinds = kinds,
+                                                       .kind_count = 2,
+                                                       .entries = entries,
+                                                       .count = COUNT,
+                                                       .position = triple(&w, 0.5f, 0, 0),
+                                                       .rotation = triple(&w, 10, 20, 30),
+                                                       .scale = number(&w, 1),
+                                                       .color = triple(&w, 1, 1, 1)});
+    w.mesh_count = 1; // the crate alone, too
+    traced t = trace(&w, 0, 1e6f);
+    size_t hits = 0, other = 0;
+    for (size_t i = 0; i < 4 * PIXELS; i += 4) {
+        scene_hit want;
+        bool hit = scene_pick(w.host.bvh, t.origin + i, t.way + i, &want);
+        hits += hit;
+        if (hit != (t.way[i + 3] >= 0) || hit != (t.origin[i + 3] != 0) ||
+            (hit && fabsf(t.way[i + 3] - want.distance) > 1e-4f * (1 + want.distance))) {
+            other++;
+            continue;
+        }
+        if (!hit) continue;
+        assert_true(glm_vec3_dot(want.normal, t.face + i) > 0.999f);
+        float green = want.mesh->data.parts[0].color[1];
+        if (want.instances) green *= entries[want.index].color.v[1];
+        assert_true(fabsf(t.color[i + 1] - green) < 1e-5f);
+    }
+    if (other > PIXELS / 500) fail_msg("%zu of %d rays hit something else", other, PIXELS);
+    assert_true(hits > PIXELS / 16 && hits < PIXELS);
+    free_traced(&t);
+    world_close(&w);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(rays_hit_what_is_nearest),
         cmocka_unit_test(rays_begin_and_end_where_they_are_told),
         cmocka_unit_test(rays_hit_nothing_where_no_mesh_can_be_seen),
         cmocka_unit_test(meshes_that_move_are_hit_where_they_are_now),
+        cmocka_unit_test(instances_are_hit_as_the_host_sees_it),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }
