@@ -203,8 +203,7 @@ static size_t override(const source_state *s, pass_override out[GPU_MAX_SLOTS]) 
 }
 
 static bool give(pass *p, source_state *s) {
-    const lbm_desc *structure = lbm_get_desc(s->air->solver);
-    uint32_t layers = structure->size[2] / LBM_LANES;
+    uint32_t layers = lbm_layers(s->air->solver);
     pass_override overrides[GPU_MAX_SLOTS];
     gpu_binding bindings[GPU_MAX_SLOTS];
     gpu_dispatch_desc dispatch = {.pipeline = s->pipeline, .bindings = bindings};

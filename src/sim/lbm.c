@@ -34,9 +34,11 @@ static bool check(const lbm_desc *desc) {
     if (size[0] < 4 || size[1] < 4 || size[2] < 16)
         return err_set("a lattice of %u x %u x %u cells; at least 4 x 4 x 16 are needed", size[0],
                        size[1], size[2]);
-    if (size[2] % LBM_LANES != 0)
+    if (size[2] % LBM_ALONG_Z != 0)
         return err_set("a lattice of %u cells along z; a multiple of %d is needed", size[2],
-                       LBM_LANES);
+                       LBM_ALONG_Z);
+    if (desc->lanes != 0 && desc->lanes != 2 && desc->lanes != 4)
+        return err_set("elements of %u cells; 2 and 4 are accepted", desc->lanes);
     if (size[0] > 4096 || size[1] > 4096 || size[2] > 4096)
         return err_set("a lattice of %u x %u x %u cells; at most 4096 along an axis are accepted",
                        size[0], size[1], size[2]);
@@ -50,15 +52,20 @@ static bool check(const lbm_desc *desc) {
     return true;
 }
 
-static uint64_t element_size(const lbm_desc *desc) {
-    return LBM_LANES * (desc->precision == LBM_F16 ? 2 : 4);
+// Four, but where populations of four cells take so many registers that memory waits for threads:
+// README.md has figures. A processor's own way of reading halves is of four, too.
+static uint32_t choose_lanes(const lbm_desc *desc, const gpu_info *device) {
+    const bool software = device && device->kind == GPU_CPU;
+    const bool many = desc->precision == LBM_F16 && (desc->set == LBM_D3Q27 || desc->scalars > 0);
+    return many && !software ? 2 : 4;
 }
 
 bool lbm_layout_find(const lbm_desc *desc, uint64_t range, lbm_layout *out) {
-    const uint32_t *size = desc->size;
-    *out = (lbm_layout){.layers = size[2] / LBM_LANES};
+    const uint32_t *size = desc->size, lanes = desc->lanes;
+    const uint32_t bytes = desc->precision == LBM_F16 ? 2 : 4;
+    *out = (lbm_layout){.lanes = lanes, .element = lanes * bytes, .layers = size[2] / lanes};
     uint64_t elements = (uint64_t)size[0] * size[1] * out->layers;
-    uint64_t fit = range / (elements * element_size(desc));
+    uint64_t fit = range / (elements * out->element);
     out->slots = air_directions(desc) + desc->scalars * scalar_directions(desc);
     if (fit > UINT32_MAX / elements) fit = UINT32_MAX / elements; // indices are of 32 bits
     if (fit >= out->slots) fit = out->slots + 1;
@@ -75,12 +82,16 @@ bool lbm_layout_find(const lbm_desc *desc, uint64_t range, lbm_layout *out) {
 lbm *lbm_create(arena *memory, const lbm_desc *desc) {
     if (!check(desc)) return NULL;
     lbm *l = arena_alloc(memory, sizeof *l);
-    *l = (lbm){.memory = memory, .desc = *desc};
+    *l = (lbm){.memory = memory, .desc = *desc, .chooses_lanes = desc->lanes == 0};
     return l;
 }
 
 const lbm_desc *lbm_get_desc(const lbm *l) {
     return &l->desc;
+}
+
+uint32_t lbm_layers(const lbm *l) {
+    return l->layout.layers;
 }
 
 // ---- shaders ----------------------------------------------------------------------------------
@@ -104,6 +115,7 @@ static void define_all(lbm *l) {
     define(l, "LBM_NX", desc->size[0]);
     define(l, "LBM_NY", desc->size[1]);
     define(l, "LBM_LAYERS", l->layout.layers);
+    define(l, "LBM_LANES", l->layout.lanes);
     define(l, "LBM_RUN", l->layout.run);
     define(l, "LBM_GROUP", GROUP);
     define(l, "LBM_Q", air_directions(desc));
@@ -122,6 +134,7 @@ static void define_all(lbm *l) {
 // `device`: NULL, none in particular.
 static bool compile(lbm *l, const gpu_info *device, shader_library *library,
                     const shader_reader *reader) {
+    if (l->chooses_lanes) l->desc.lanes = choose_lanes(&l->desc, device);
     if (!lbm_layout_find(&l->desc, device ? device->max_storage_range : UINT32_MAX, &l->layout))
         return false;
     define_all(l);
@@ -150,7 +163,7 @@ bool lbm_allocate(lbm *l, gpu *g) {
     for (uint32_t i = 0; i < layout->buffers; i++) {
         uint32_t left = layout->slots - i * layout->run;
         uint64_t slots = left < layout->run ? left : layout->run;
-        uint64_t size = slots * layout->elements * element_size(&l->desc);
+        uint64_t size = slots * layout->elements * layout->element;
         if (!l->state[i])
             l->state[i] =
                 gpu_buffer_create(g, &(gpu_buffer_desc){.label = "lattice", .size = size});
@@ -196,7 +209,7 @@ static bool same_structure(const lbm_desc *a, const lbm_desc *b) {
     return memcmp(a->size, b->size, sizeof a->size) == 0 &&
            memcmp(a->faces, b->faces, sizeof a->faces) == 0 && a->set == b->set &&
            a->scalar_set == b->scalar_set && a->precision == b->precision &&
-           a->scalars == b->scalars;
+           a->scalars == b->scalars && a->lanes == b->lanes;
 }
 
 bool lbm_exchange(lbm *a, lbm *b) {

@@ -23,7 +23,7 @@ typedef enum lbm_precision { LBM_F32, LBM_F16 } lbm_precision;      // of what i
 typedef enum lbm_face { LBM_PERIODIC, LBM_WALL, LBM_SLIP, LBM_OPEN, LBM_INFLOW } lbm_face;
 
 enum {
-    LBM_LANES = 4, // cells of an element
+    LBM_ALONG_Z = 4, // what cells along z are a multiple of
     LBM_MAX_SCALARS = 3,
     LBM_MAX_BODIES = 63,
     LBM_WALL_ID = 64,
@@ -45,6 +45,7 @@ typedef struct lbm_desc { // structure: what shaders are compiled for
     bool subgrid;      // Smagorinsky
     bool force;        // an image says where what force acts: lbm_set_force
     bool bodies;       // there are solids, which may move
+    uint32_t lanes;    // cells of an access of memory, 2 or 4; 0: what suits the device
 } lbm_desc;
 
 typedef struct lbm_numbers { // of a step; read anew each step
@@ -62,6 +63,7 @@ typedef struct lbm_numbers { // of a step; read anew each step
 
 lbm *lbm_create(arena *memory, const lbm_desc *desc); // NULL with a message
 const lbm_desc *lbm_get_desc(const lbm *l);
+uint32_t lbm_layers(const lbm *l); // of elements, along z; after lbm_build
 // Square of the speed of sound of a scalar set: 1/4 (D3Q7) or 1/3.
 float lbm_scalar_speed(lbm_scalar_set set);
 

@@ -20,6 +20,7 @@ bool lbm_kernel_run(const lbm *l, lbm_kernel *k, gpu *g);
 // ---- layout -----------------------------------------------------------------------------------
 
 typedef struct lbm_layout {
+    uint32_t lanes, element;      // cells of an element, its bytes
     uint32_t layers, elements;    // along z, in all
     uint32_t slots, run, buffers; // places of directions, those of one buffer, buffers
 } lbm_layout;
@@ -75,6 +76,7 @@ bool lbm_make_moments(lbm *l, gpu *g, uint32_t which); // the buffer, unless it 
 struct lbm {
     arena *memory;
     lbm_desc desc;
+    bool chooses_lanes; // the desc gave none
     lbm_layout layout;
     shader_define defines[LBM_MAX_DEFINES];
     size_t define_count;

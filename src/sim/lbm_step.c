@@ -25,7 +25,7 @@ bool lbm_step_compile(lbm *l, const gpu_info *device, shader_library *library,
     s->parts = is_passable(l) ? 2 : 1;
     for (int i = 0; i < 2 * s->parts; i++) {
         const shader_define defines[] = {
-            {"LBM_SOFTWARE", is_software(device) ? "1" : "0"},
+            {"LBM_SOFTWARE", is_software(device) && l->layout.lanes == 4 ? "1" : "0"},
             {"LBM_KEEP", i % 2 ? "1" : "0"},
             {"LBM_REGION", regions[s->parts == 1 ? 0 : 1 + i / 2]},
         };

@@ -94,7 +94,7 @@ static inline size_t sim_index(const sim_world *w, int x, int y, int z) {
 
 // Where a slot's value of a cell lies among all values of the slot.
 static inline size_t sim_place(const sim_world *w, size_t cell) {
-    const uint32_t lanes = 4, layers = w->desc.size[2] / lanes;
+    const uint32_t lanes = lbm_get_desc(w->lattice)->lanes, layers = w->desc.size[2] / lanes;
     size_t plane = (size_t)w->desc.size[0] * w->desc.size[1], z = cell / plane;
     return ((cell % plane) + plane * (z % layers)) * lanes + z / layers;
 }

@@ -89,6 +89,7 @@ static void moments_of_the_weights_are_isotropic(void **state) {
 
 static lbm_layout lay_out(lbm_desc desc, uint64_t range) {
     lbm_layout layout;
+    desc.lanes = 4;
     if (!lbm_layout_find(&desc, range, &layout)) fail_msg("%s", err_get());
     assert_int_equal(layout.run % 2, 0);
     assert_true(layout.run * layout.buffers >= layout.slots);
@@ -147,7 +148,8 @@ static void a_state_fits_into_what_a_device_binds(void **state) {
 static void what_does_not_fit_is_refused_with_numbers(void **state) {
     lbm_layout layout;
     (void)state;
-    assert_false(lbm_layout_find(&(lbm_desc){.size = {512, 512, 512}}, 128 << 20, &layout));
+    assert_false(
+        lbm_layout_find(&(lbm_desc){.size = {512, 512, 512}, .lanes = 4}, 128 << 20, &layout));
     assert_non_null(strstr(err_get(), "512 x 512 x 512"));
     assert_non_null(strstr(err_get(), "128 MiB"));
 }

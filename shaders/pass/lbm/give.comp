@@ -1,7 +1,7 @@
 // Gives the air what a source holds (pass/lbm_source.comp), as the state of the solver: cells that
 // are inside take on its values, as equilibria. Meshes are where they are at the step.
 //
-// A thread does one element of the state: four cells that lie apart along z.
+// A thread does one element of the state: cells that lie apart along z.
 layout(local_size_x = 32, local_size_y = 2, local_size_z = 1) in;
 #include "shared.h"
 #include "sim/lbm/cells.glsl"
@@ -16,11 +16,11 @@ uniform vec3 count;            // and how many
 uniform vec2 ids;              // of its meshes: the first and the last
 layout(std430) readonly buffer SourceValues { uvec4 source_values[]; };
 
-#define EACH_LANE for (int l = 0; l < 4; l++)
+#define EACH_LANE for (int l = 0; l < LBM_LANES; l++)
 
-struct Held { // of four cells
-    vec4 some; // how much they take on
-    vec4 density, temperature, dye, pressure;
+struct Held { // of the cells of an element
+    lbm_float some; // how much they take on
+    lbm_float density, temperature, dye, pressure;
     lbm_vec velocity; // cells a step
 };
 
@@ -78,13 +78,13 @@ Held held_by(uvec3 at, uint solid) {
     return h;
 }
 
-// Density less 1, and velocity, of four cells.
-vec4 excess_of(lbm_element q[LBM_Q], out lbm_vec u) {
-    vec4 excess = lbm_unpack(q[0], LBM_AIR_SCALE);
+// Density less 1, and velocity, of the cells of an element.
+lbm_float excess_of(lbm_element q[LBM_Q], out lbm_vec u) {
+    lbm_float excess = lbm_unpack(q[0], LBM_AIR_SCALE);
     u = lbm_vec_all(vec3(0.0));
 #define SUM(i, dx, dy, dz)                                                                         \
     {                                                                                              \
-        vec4 a = lbm_unpack(q[i], LBM_AIR_SCALE), b = lbm_unpack(q[i + 1], LBM_AIR_SCALE);         \
+        lbm_float a = lbm_unpack(q[i], LBM_AIR_SCALE), b = lbm_unpack(q[i + 1], LBM_AIR_SCALE);    \
         excess += a + b;                                                                           \
         u.x += float(dx) * (a - b);                                                                \
         u.y += float(dy) * (a - b);                                                                \
@@ -92,7 +92,7 @@ vec4 excess_of(lbm_element q[LBM_Q], out lbm_vec u) {
     }
     LBM_PAIRS(SUM)
 #undef SUM
-    vec4 density = 1.0 + excess;
+    lbm_float density = 1.0 + excess;
     u = lbm_vec(u.x / density, u.y / density, u.z / density);
     return excess;
 }
@@ -100,7 +100,7 @@ vec4 excess_of(lbm_element q[LBM_Q], out lbm_vec u) {
 // What is not given stays as it is: the pressure, above all, so that as much air is drawn in as is
 // blown out.
 void push(inout lbm_element q[LBM_Q], Held h, out lbm_vec u) {
-    vec4 f[LBM_Q], excess = excess_of(q, u);
+    lbm_float f[LBM_Q], excess = excess_of(q, u);
 #if HAS_PRESSURE
     excess = mix(excess, h.pressure, h.some);
 #endif
@@ -114,8 +114,8 @@ void push(inout lbm_element q[LBM_Q], Held h, out lbm_vec u) {
         q[i] = lbm_pack(LBM_AIR_SCALE, mix(lbm_unpack(q[i], LBM_AIR_SCALE), f[i], h.some));
 }
 
-void carry(inout lbm_element q[LBM_SCALAR_Q], vec4 some, vec4 value, lbm_vec u) {
-    vec4 g[LBM_SCALAR_Q];
+void carry(inout lbm_element q[LBM_SCALAR_Q], lbm_float some, lbm_float value, lbm_vec u) {
+    lbm_float g[LBM_SCALAR_Q];
     lbm_set_scalar_equilibrium(value, u, g);
     for (int i = 0; i < LBM_SCALAR_Q; i++)
         q[i] = lbm_pack(LBM_SCALAR_SCALE, mix(lbm_unpack(q[i], LBM_SCALAR_SCALE), g[i], some));
@@ -136,7 +136,7 @@ void main() {
     at.z %= LBM_LAYERS;
     lbm_place place = lbm_place_at(at);
     Held held = held_by(at, lbm_site_at(at, place.own).solid);
-    if (!any(greaterThan(held.some, vec4(0.0)))) return;
+    if (!any(greaterThan(held.some, lbm_float(0.0)))) return;
     lbm_element air[LBM_Q];
     lbm_load_air(place, air);
     lbm_vec u;

@@ -62,15 +62,23 @@ float lbm_wall_speed(ivec3 cell, ivec3 direction) {
     return dot(vec3(direction), lbm_body_velocity(id, point));
 }
 
-// Of four cells, 27 directions each: x + 1 + 3 (y + 1) + 9 (z + 1). In loops that are not unrolled: few
+// Of the cells of an element, 27 directions each: x + 1 + 3 (y + 1) + 9 (z + 1). In loops that are not unrolled: few
 // cells come here, and processors that run all branches under a mask leave a loop when it is empty.
-float lbm_wall_speeds[108];
+float lbm_wall_speeds[27 * LBM_LANES];
+
+lbm_float lbm_wall_speeds_at(const int i) {
+#if LBM_LANES == 2
+    return vec2(lbm_wall_speeds[i], lbm_wall_speeds[i + 27]);
+#else
+    return vec4(lbm_wall_speeds[i], lbm_wall_speeds[i + 27], lbm_wall_speeds[i + 54], lbm_wall_speeds[i + 81]);
+#endif
+}
+
 #define LBM_WALL_SPEEDS(x, y, z)                                                                   \
-    vec4(lbm_wall_speeds[(x) + 3 * (y) + 9 * (z) + 13], lbm_wall_speeds[(x) + 3 * (y) + 9 * (z) + 40], \
-         lbm_wall_speeds[(x) + 3 * (y) + 9 * (z) + 67], lbm_wall_speeds[(x) + 3 * (y) + 9 * (z) + 94])
+    lbm_wall_speeds_at(13 + (x) + 3 * (y) + 9 * (z))
 
 void lbm_find_wall_speeds(uvec3 at, uint near) {
-    for (int i = 0; i < 108; i++) lbm_wall_speeds[i] = 0.0;
+    for (int i = 0; i < 27 * LBM_LANES; i++) lbm_wall_speeds[i] = 0.0;
     for (uint left = near; left != 0u; left &= left - 1u) {
         int k = findLSB(left);
         ivec3 cell = lbm_cell_at(at, uint(k));
@@ -83,8 +91,8 @@ void lbm_find_wall_speeds(uvec3 at, uint near) {
     }
 }
 
-void lbm_push_air(inout vec4 f[LBM_Q]) {
-    vec4 density = 1.0 + f[0];
+void lbm_push_air(inout lbm_float f[LBM_Q]) {
+    lbm_float density = 1.0 + f[0];
 #define ADD(i, x, y, z) density += f[i] + f[i + 1];
     LBM_PAIRS(ADD)
 #undef ADD
@@ -95,8 +103,8 @@ void lbm_push_air(inout vec4 f[LBM_Q]) {
 #undef PUSH
 }
 
-void lbm_push_scalar(inout vec4 g[LBM_SCALAR_Q]) {
-    vec4 value = g[0];
+void lbm_push_scalar(inout lbm_float g[LBM_SCALAR_Q]) {
+    lbm_float value = g[0];
 #define ADD(i, x, y, z) value += g[i] + g[i + 1];
     LBM_SCALAR_PAIRS(ADD)
 #undef ADD

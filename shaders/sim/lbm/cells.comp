@@ -76,10 +76,15 @@ float pick(lbm_element e, uint lane, const float scale) {
 void store(const int slot, uint side, Cell c, const float scale, float value) {
     uint at = (uint(slot % LBM_RUN) + side) * LBM_ELEMENTS + c.element;
 #if LBM_HALF
-    uint word = c.lane >> 1, bits = packHalf2x16(vec2(value * scale, 0.0)) & 0xffffu;
+    uint bits = packHalf2x16(vec2(value * scale, 0.0)) & 0xffffu;
     uint shift = 16u * (c.lane & 1u), others = 0xffff0000u >> shift;
+#if LBM_LANES == 2
+#define WORD(array) array[at]
+#else
+#define WORD(array) array[at][c.lane >> 1]
+#endif
 #define LBM_BUFFER(k, block, array)                                                                \
-    if (slot / LBM_RUN == k) array[at][word] = array[at][word] & others | bits << shift;
+    if (slot / LBM_RUN == k) WORD(array) = WORD(array) & others | bits << shift;
 #else
 #define LBM_BUFFER(k, block, array) if (slot / LBM_RUN == k) array[at][c.lane] = value;
 #endif

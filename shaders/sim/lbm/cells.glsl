@@ -70,15 +70,24 @@ lbm_site lbm_site_at(uvec3 at, uint element) {
     return site;
 }
 
-bvec4 lbm_in_lanes(uint bits) {
+lbm_bool lbm_in_lanes(uint bits) {
+#if LBM_LANES == 2
+    return notEqual(uvec2(bits) >> uvec2(0, 1) & 1u, uvec2(0u));
+#else
     return notEqual(uvec4(bits) >> uvec4(0, 1, 2, 3) & 1u, uvec4(0u));
+#endif
 }
 
 // `b` in the lanes, else `a`.
 lbm_element lbm_choose(lbm_element a, lbm_element b, uint lanes) {
 #if LBM_HALF
+#if LBM_LANES == 2
+    uint first = lanes;
+    uint mask = (first & 1u) * 0xffffu | (first >> 1 & 1u) * 0xffff0000u;
+#else
     uvec2 first = uvec2(lanes) >> uvec2(0, 2);
     uvec2 mask = (first & 1u) * 0xffffu | (first >> 1 & 1u) * 0xffff0000u;
+#endif
     return a & ~mask | b & mask;
 #else
     return mix(a, b, lbm_in_lanes(lanes));

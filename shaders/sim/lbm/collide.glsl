@@ -1,28 +1,28 @@
-// Collision in four cells: what arrives becomes what leaves. Populations are less their weights, so
+// Collision in the cells of an element: what arrives becomes what leaves. Populations are less their weights, so
 // that small differences keep their digits; `excess` is the density less 1.
 #ifndef SIM_LBM_COLLIDE_GLSL
 #define SIM_LBM_COLLIDE_GLSL
 #include "sim/lbm/state.glsl"
 
 struct lbm_tensor { // symmetric
-    vec4 xx, yy, zz, xy, xz, yz;
+    lbm_float xx, yy, zz, xy, xz, yz;
 };
 
 struct lbm_air {
-    vec4 excess;
+    lbm_float excess;
     lbm_vec u;        // with half of what the force adds
     lbm_vec force;    // on a cell
     lbm_tensor stress; // second central moments, less those of equilibrium
 };
 
 struct lbm_sums { // of populations, by direction, and products of directions
-    vec4 excess;
+    lbm_float excess;
     lbm_vec momentum;
     lbm_tensor second;
 };
 
-void lbm_add_pair(const int X, const int Y, const int Z, vec4 up, vec4 down, inout lbm_sums s) {
-    vec4 even = up + down, odd = up - down;
+void lbm_add_pair(const int X, const int Y, const int Z, lbm_float up, lbm_float down, inout lbm_sums s) {
+    lbm_float even = up + down, odd = up - down;
     s.excess += even;
     if (X != 0) s.momentum.x += float(X) * odd;
     if (Y != 0) s.momentum.y += float(Y) * odd;
@@ -35,8 +35,8 @@ void lbm_add_pair(const int X, const int Y, const int Z, vec4 up, vec4 down, ino
     if (Y * Z != 0) s.second.yz += float(Y * Z) * even;
 }
 
-lbm_sums lbm_begin_sums(vec4 rest) {
-    vec4 none = vec4(0.0);
+lbm_sums lbm_begin_sums(lbm_float rest) {
+    lbm_float none = lbm_float(0.0);
     return lbm_sums(rest, lbm_vec(none, none, none), lbm_tensor(none, none, none, none, none, none));
 }
 
@@ -52,8 +52,8 @@ lbm_sums lbm_sum(lbm_element q[LBM_Q]) {
 
 // The part of the second moments that equilibrium has not, in the frame that moves with u, where
 // half of the force's momentum is still missing.
-lbm_tensor lbm_stress(lbm_tensor second, vec4 excess, lbm_vec u, lbm_vec force) {
-    vec4 density = 1.0 + excess, third = excess * (1.0 / 3.0);
+lbm_tensor lbm_stress(lbm_tensor second, lbm_float excess, lbm_vec u, lbm_vec force) {
+    lbm_float density = 1.0 + excess, third = excess * (1.0 / 3.0);
     lbm_vec m = lbm_vec(density * u.x - force.x, density * u.y - force.y, density * u.z - force.z);
     lbm_vec h = lbm_vec(0.5 * force.x, 0.5 * force.y, 0.5 * force.z);
     return lbm_tensor(second.xx - third - u.x * m.x, second.yy - third - u.y * m.y,
@@ -66,10 +66,10 @@ lbm_tensor lbm_stress(lbm_tensor second, vec4 excess, lbm_vec u, lbm_vec force) 
 #if LBM_SUBGRID
 // Hou, Sterling, Chen, Doolen, "A lattice Boltzmann subgrid model for high Reynolds number flows",
 // 1996, eqs. 15 to 17: the relaxation time with the eddies' part, from the stress at hand.
-vec4 lbm_eddy_tau(lbm_air a, float tau, float constant) {
+lbm_float lbm_eddy_tau(lbm_air a, float tau, float constant) {
     lbm_tensor s = a.stress;
-    vec4 off = s.xy * s.xy + s.xz * s.xz + s.yz * s.yz;
-    vec4 norm = sqrt(s.xx * s.xx + s.yy * s.yy + s.zz * s.zz + 2.0 * off);
+    lbm_float off = s.xy * s.xy + s.xz * s.xz + s.yz * s.yz;
+    lbm_float norm = sqrt(s.xx * s.xx + s.yy * s.yy + s.zz * s.zz + 2.0 * off);
     float factor = 18.0 * sqrt(2.0) * constant * constant;
     return 0.5 * (tau + sqrt(tau * tau + factor * norm / (1.0 + a.excess)));
 }

@@ -10,11 +10,11 @@ void main() {
     if (column >= LBM_LAYER) return;
     lbm_place place = lbm_place_at(uvec3(column % LBM_NX, column / LBM_NX, gl_GlobalInvocationID.z));
     lbm_element air[LBM_Q], carried[LBM_SCALAR_Q];
-    for (int i = 0; i < LBM_Q; i++) air[i] = lbm_pack(1.0, vec4(0.0));
+    for (int i = 0; i < LBM_Q; i++) air[i] = lbm_pack(1.0, lbm_float(0.0));
     lbm_send_air(place, air);
-    vec4 g[LBM_SCALAR_Q];
+    lbm_float g[LBM_SCALAR_Q];
 #define SCALAR(s)                                                                                  \
-    lbm_set_scalar_equilibrium(vec4(ambient[s]), lbm_vec_all(vec3(0.0)), g);                       \
+    lbm_set_scalar_equilibrium(lbm_float(ambient[s]), lbm_vec_all(vec3(0.0)), g);                  \
     lbm_pack_scalar(g, LBM_SCALAR_SCALE, carried);                                                 \
     lbm_send_scalar(s, place, carried);
     LBM_EACH_SCALAR(SCALAR)

@@ -6,7 +6,7 @@
 // neighbour along i, and leaves what collision made of them in the other's place; so each place is
 // read and written by one cell only, and the two places of a pair change roles in each step.
 //
-// A thread does one element: four cells. What arrives at an element is what its cells hold before
+// A thread does one element: two or four cells. What arrives at an element is what its cells hold before
 // collision.
 #ifndef SIM_LBM_STATE_GLSL
 #define SIM_LBM_STATE_GLSL
@@ -69,14 +69,29 @@ uniform uint lbm_parity; // of steps
 
 // ---- elements ---------------------------------------------------------------------------------
 
-#if LBM_HALF
-#define lbm_element uvec2 // four halves, times a power of two that keeps small values whole
+// LBM_LANES: cells of an element, 4 or 2.
+#if LBM_LANES == 2
+#define lbm_float vec2 // a number in each lane
+#define lbm_bool bvec2
+#define LBM_EACH_LANE(X) X(0) X(1)
+#else
+#define lbm_float vec4
+#define lbm_bool bvec4
+#define LBM_EACH_LANE(X) X(0) X(1) X(2) X(3)
+#endif
+#if LBM_HALF // halves, times a power of two that keeps small values whole
+#if LBM_LANES == 2
+#define lbm_element uint
+#define lbm_mask bool
+#else
+#define lbm_element uvec2
 #define lbm_mask bvec2
+#endif
 #define LBM_AIR_SCALE 32768.0
 #define LBM_SCALAR_SCALE 1024.0
 #else
-#define lbm_element vec4
-#define lbm_mask bvec4
+#define lbm_element lbm_float
+#define lbm_mask lbm_bool
 #define LBM_AIR_SCALE 1.0
 #define LBM_SCALAR_SCALE 1.0
 #endif
@@ -86,7 +101,6 @@ uniform uint lbm_parity; // of steps
 #ifndef LBM_SOFTWARE
 #define LBM_SOFTWARE 0
 #endif
-#define LBM_LANES 4                           // cells of an element
 #define LBM_LAYER (LBM_NX * LBM_NY)           // elements
 #define LBM_ELEMENTS (LBM_LAYER * LBM_LAYERS) // of a direction
 
@@ -96,12 +110,12 @@ uniform uint lbm_parity; // of steps
 // By hand: a half shifted into a float has an exponent that is 112 too low, which the factor mends.
 // Halves too small to be normal are 0. Rounded to nearest even, as devices do.
 #define LBM_BIAS 5192296858534827628530496329220096.0 // 2^112
-vec4 lbm_unpack(lbm_element e, const float scale) {
+lbm_float lbm_unpack(lbm_element e, const float scale) {
     ivec4 bits = ivec4(e.x << 16, e.x, e.y << 16, e.y) >> 3 & 0x8fffe000;
     return intBitsToFloat(bits) * (LBM_BIAS / scale);
 }
 
-lbm_element lbm_pack(const float scale, vec4 v) {
+lbm_element lbm_pack(const float scale, lbm_float v) {
     const float most = 65504.0 / LBM_BIAS;
     uvec4 bits = floatBitsToUint(clamp(v * (scale / LBM_BIAS), -most, most));
     bits += (bits >> 13 & 1u) + 0xfffu;
@@ -109,17 +123,36 @@ lbm_element lbm_pack(const float scale, vec4 v) {
     return low | bits.yw << 3 & 0x7fff0000u | bits.yw & 0x80000000u;
 }
 #else
-vec4 lbm_unpack(lbm_element e, const float scale) {
+#if LBM_LANES == 2
+lbm_float lbm_unpack(lbm_element e, const float scale) {
+    return unpackHalf2x16(e) * (1.0 / scale);
+}
+
+lbm_element lbm_pack(const float scale, lbm_float v) {
+    return packHalf2x16(v * scale);
+}
+#else
+lbm_float lbm_unpack(lbm_element e, const float scale) {
     return vec4(unpackHalf2x16(e.x), unpackHalf2x16(e.y)) * (1.0 / scale);
 }
 
-lbm_element lbm_pack(const float scale, vec4 v) {
+lbm_element lbm_pack(const float scale, lbm_float v) {
     v *= scale;
     return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
 }
 #endif
+#endif
 
 // Lane l gets what lane l + 1 has, and the other way round.
+#if LBM_LANES == 2
+lbm_element lbm_next_lane(lbm_element e) {
+    return e >> 16 | e << 16;
+}
+
+lbm_element lbm_last_lane(lbm_element e) {
+    return lbm_next_lane(e);
+}
+#else
 lbm_element lbm_next_lane(lbm_element e) {
     return e >> 16 | e.yx << 16;
 }
@@ -127,26 +160,35 @@ lbm_element lbm_next_lane(lbm_element e) {
 lbm_element lbm_last_lane(lbm_element e) {
     return e << 16 | e.yx >> 16;
 }
+#endif
 #else
-vec4 lbm_unpack(lbm_element e, const float scale) {
+lbm_float lbm_unpack(lbm_element e, const float scale) {
     return e * (1.0 / scale);
 }
 
-lbm_element lbm_pack(const float scale, vec4 v) {
+lbm_element lbm_pack(const float scale, lbm_float v) {
     return v * scale;
 }
 
 lbm_element lbm_next_lane(lbm_element e) {
+#if LBM_LANES == 2
+    return e.yx;
+#else
     return e.yzwx;
+#endif
 }
 
 lbm_element lbm_last_lane(lbm_element e) {
+#if LBM_LANES == 2
+    return e.yx;
+#else
     return e.wxyz;
+#endif
 }
 #endif
 
 // `scale`: of memory over that of the values.
-void lbm_unpack_air(lbm_element q[LBM_Q], const float scale, out vec4 f[LBM_Q]) {
+void lbm_unpack_air(lbm_element q[LBM_Q], const float scale, out lbm_float f[LBM_Q]) {
     f[0] = lbm_unpack(q[0], scale);
 #define UNPACK(i, x, y, z)                                                                         \
     f[i] = lbm_unpack(q[i], scale);                                                                \
@@ -155,7 +197,7 @@ void lbm_unpack_air(lbm_element q[LBM_Q], const float scale, out vec4 f[LBM_Q]) 
 #undef UNPACK
 }
 
-void lbm_pack_air(vec4 f[LBM_Q], const float scale, out lbm_element q[LBM_Q]) {
+void lbm_pack_air(lbm_float f[LBM_Q], const float scale, out lbm_element q[LBM_Q]) {
     q[0] = lbm_pack(scale, f[0]);
 #define PACK(i, x, y, z)                                                                           \
     q[i] = lbm_pack(scale, f[i]);                                                                  \
@@ -164,7 +206,7 @@ void lbm_pack_air(vec4 f[LBM_Q], const float scale, out lbm_element q[LBM_Q]) {
 #undef PACK
 }
 
-void lbm_unpack_scalar(lbm_element q[LBM_SCALAR_Q], const float scale, out vec4 g[LBM_SCALAR_Q]) {
+void lbm_unpack_scalar(lbm_element q[LBM_SCALAR_Q], const float scale, out lbm_float g[LBM_SCALAR_Q]) {
     g[0] = lbm_unpack(q[0], scale);
 #define UNPACK(i, x, y, z)                                                                         \
     g[i] = lbm_unpack(q[i], scale);                                                                \
@@ -173,7 +215,7 @@ void lbm_unpack_scalar(lbm_element q[LBM_SCALAR_Q], const float scale, out vec4 
 #undef UNPACK
 }
 
-void lbm_pack_scalar(vec4 g[LBM_SCALAR_Q], const float scale, out lbm_element q[LBM_SCALAR_Q]) {
+void lbm_pack_scalar(lbm_float g[LBM_SCALAR_Q], const float scale, out lbm_element q[LBM_SCALAR_Q]) {
     q[0] = lbm_pack(scale, g[0]);
 #define PACK(i, x, y, z)                                                                           \
     q[i] = lbm_pack(scale, g[i]);                                                                  \
@@ -342,17 +384,17 @@ void lbm_send_scalar(const int s, lbm_place p, lbm_element q[LBM_SCALAR_Q]) {
 #undef STORE
 }
 
-// ---- four cells -------------------------------------------------------------------------------
+// ---- in all lanes -------------------------------------------------------------------------------
 
-struct lbm_vec { // a vector in each of four cells
-    vec4 x, y, z;
+struct lbm_vec { // a vector in each lane
+    lbm_float x, y, z;
 };
 
 lbm_vec lbm_vec_all(vec3 v) {
-    return lbm_vec(vec4(v.x), vec4(v.y), vec4(v.z));
+    return lbm_vec(lbm_float(v.x), lbm_float(v.y), lbm_float(v.z));
 }
 
-vec4 lbm_dot(lbm_vec a, lbm_vec b) {
+lbm_float lbm_dot(lbm_vec a, lbm_vec b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
@@ -360,14 +402,14 @@ vec4 lbm_dot(lbm_vec a, lbm_vec b) {
 #define LBM_ALONG(v, X, Y, Z) (float(X) * (v).x + float(Y) * (v).y + float(Z) * (v).z)
 
 // Equilibrium of second order, less the weights: density 1 + excess, velocity u.
-void lbm_set_equilibrium(vec4 excess, lbm_vec u, out vec4 f[LBM_Q]) {
-    vec4 density = 1.0 + excess, same = excess - density * 1.5 * lbm_dot(u, u);
+void lbm_set_equilibrium(lbm_float excess, lbm_vec u, out lbm_float f[LBM_Q]) {
+    lbm_float density = 1.0 + excess, same = excess - density * 1.5 * lbm_dot(u, u);
     f[0] = LBM_REST * same;
 #define SET(i, x, y, z)                                                                            \
     {                                                                                              \
-        vec4 along = LBM_ALONG(u, x, y, z);                                                        \
-        vec4 even = LBM_WEIGHT(x, y, z) * (same + density * 4.5 * along * along);                  \
-        vec4 odd = LBM_WEIGHT(x, y, z) * 3.0 * density * along;                                    \
+        lbm_float along = LBM_ALONG(u, x, y, z);                                                   \
+        lbm_float even = LBM_WEIGHT(x, y, z) * (same + density * 4.5 * along * along);             \
+        lbm_float odd = LBM_WEIGHT(x, y, z) * 3.0 * density * along;                               \
         f[i] = even + odd;                                                                         \
         f[i + 1] = even - odd;                                                                     \
     }
@@ -377,18 +419,18 @@ void lbm_set_equilibrium(vec4 excess, lbm_vec u, out vec4 f[LBM_Q]) {
 
 // Equilibrium of a scalar that air of velocity u carries: linear in u (D3Q7), of second order
 // (D3Q27, as published).
-void lbm_set_scalar_equilibrium(vec4 value, lbm_vec u, out vec4 g[LBM_SCALAR_Q]) {
+void lbm_set_scalar_equilibrium(lbm_float value, lbm_vec u, out lbm_float g[LBM_SCALAR_Q]) {
 #if LBM_SCALAR_Q == 27
-    vec4 same = value * (1.0 - 1.5 * lbm_dot(u, u));
+    lbm_float same = value * (1.0 - 1.5 * lbm_dot(u, u));
 #else
-    vec4 same = value;
+    lbm_float same = value;
 #endif
     g[0] = LBM_SCALAR_REST * same;
 #define SET(i, x, y, z)                                                                            \
     {                                                                                              \
-        vec4 along = LBM_ALONG(u, x, y, z) * (1.0 / LBM_SCALAR_SPEED);                             \
-        vec4 even = LBM_SCALAR_WEIGHT(x, y, z) * same;                                             \
-        vec4 odd = LBM_SCALAR_WEIGHT(x, y, z) * value * along;                                     \
+        lbm_float along = LBM_ALONG(u, x, y, z) * (1.0 / LBM_SCALAR_SPEED);                        \
+        lbm_float even = LBM_SCALAR_WEIGHT(x, y, z) * same;                                        \
+        lbm_float odd = LBM_SCALAR_WEIGHT(x, y, z) * value * along;                                \
         if (LBM_SCALAR_Q == 27) even += 0.5 * along * odd;                                         \
         g[i] = even + odd;                                                                         \
         g[i + 1] = even - odd;                                                                     \

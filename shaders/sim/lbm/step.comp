@@ -45,7 +45,7 @@ uvec3 at; // x, y, layer
 lbm_site site;
 lbm_element air[LBM_Q], carried[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
 
-vec4 value[3]; // of scalars
+lbm_float value[3]; // of scalars
 
 #if LBM_FORCE
 void add_force(inout lbm_vec a) {
@@ -58,16 +58,16 @@ void add_force(inout lbm_vec a) {
         a.y[lane] += more.y;                                                                       \
         a.z[lane] += more.z;                                                                       \
     }
-    ADD(0) ADD(1) ADD(2) ADD(3)
+    LBM_EACH_LANE(ADD)
 #undef ADD
 }
 #endif
 
-lbm_vec find_force(vec4 density) {
+lbm_vec find_force(lbm_float density) {
     lbm_vec a = lbm_vec_all(acceleration);
 #define RISE(s)                                                                                    \
     {                                                                                              \
-        vec4 above = value[s] - ambient[s];                                                        \
+        lbm_float above = value[s] - ambient[s];                                                   \
         a.x += above * buoyancy[s].x;                                                              \
         a.y += above * buoyancy[s].y;                                                              \
         a.z += above * buoyancy[s].z;                                                              \
@@ -82,7 +82,7 @@ lbm_vec find_force(vec4 density) {
 
 // Velocities above `most` are cut off: that costs momentum, and keeps what would burst.
 void limit(inout lbm_vec u, float most) {
-    vec4 factor = min(vec4(1.0), most * inversesqrt(max(lbm_dot(u, u), 1e-20)));
+    lbm_float factor = min(lbm_float(1.0), most * inversesqrt(max(lbm_dot(u, u), 1e-20)));
     u = lbm_vec(u.x * factor, u.y * factor, u.z * factor);
 }
 
@@ -91,7 +91,7 @@ lbm_air find_air() {
     lbm_sums sums = lbm_sum(air);
     lbm_vec momentum = sums.momentum;
     a.excess = sums.excess;
-    vec4 density = 1.0 + a.excess, volume = 1.0 / density;
+    lbm_float density = 1.0 + a.excess, volume = 1.0 / density;
     a.force = find_force(density);
 #if LBM_WEIGHTS_ONLY
     a.u = lbm_vec(momentum.x * volume, momentum.y * volume, momentum.z * volume);
@@ -119,12 +119,12 @@ void keep_solid() {
 
 void keep_moments(lbm_air a) {
 #define KEEP(lane)                                                                                 \
-    moments[place.own + lane * LBM_ELEMENTS] =                                                     \
-        uvec4(packHalf2x16(vec2(a.u.x[lane], a.u.y[lane])),                                     \
-              packHalf2x16(vec2(a.u.z[lane], a.excess[lane])),                                  \
-              packHalf2x16(vec2(value[0][lane], value[1][lane])),                               \
+    moments[place.own + uint(lane) * LBM_ELEMENTS] =                                               \
+        uvec4(packHalf2x16(vec2(a.u.x[lane], a.u.y[lane])),                                        \
+              packHalf2x16(vec2(a.u.z[lane], a.excess[lane])),                                     \
+              packHalf2x16(vec2(value[0][lane], value[1][lane])),                                  \
               packHalf2x16(vec2(value[2][lane], 0.0)));
-    KEEP(0u) KEEP(1u) KEEP(2u) KEEP(3u)
+    LBM_EACH_LANE(KEEP)
 #undef KEEP
 }
 #endif
@@ -151,7 +151,7 @@ void load() {
 
 #if MEETS
 void meet() {
-    vec4 f[LBM_Q], g[LBM_SCALAR_Q];
+    lbm_float f[LBM_Q], g[LBM_SCALAR_Q];
     lbm_unpack_air(air, LBM_AIR_SCALE, f);
     lbm_meet_air(at, site, f);
     lbm_pack_air(f, LBM_AIR_SCALE, air);
@@ -165,7 +165,7 @@ void meet() {
 #endif
 
 void collide() {
-    value[0] = value[1] = value[2] = vec4(0.0);
+    value[0] = value[1] = value[2] = lbm_float(0.0);
 #define SUM(s) value[s] = lbm_sum_scalar(carried[s]);
     LBM_EACH_SCALAR(SUM)
 #undef SUM
@@ -173,7 +173,7 @@ void collide() {
 #if LBM_KEEP
     keep_moments(a);
 #endif
-    vec4 eddies = vec4(0.0); // what they add to the relaxation time
+    lbm_float eddies = lbm_float(0.0); // what they add to the relaxation time
 #if LBM_SUBGRID
     eddies = lbm_eddy_tau(a, tau, smagorinsky) - tau;
 #endif
@@ -186,7 +186,7 @@ void collide() {
 #define LOAD(s)
 #define SEND(s)
 #endif
-    vec4 g[LBM_SCALAR_Q];
+    lbm_float g[LBM_SCALAR_Q];
 #define COLLIDE(s)                                                                                 \
     LOAD(s)                                                                                        \
     lbm_unpack_scalar(carried[s], LBM_SCALAR_SCALE, g);                                            \

@@ -55,16 +55,16 @@ uniform vec4 lbm_face_scalar[6];   // of inflow
 
 // The wave that comes in at each cell of an open face: velocity outward less LBM_SOUND times the
 // excess. Of all elements there, by face.
-layout(std430) buffer LbmWaves { vec4 lbm_waves[]; };
+layout(std430) buffer LbmWaves { lbm_float lbm_waves[]; };
 
 const float LBM_SOUND = 0.57735027;
 const float LBM_FACE_SPEED = 0.3;  // greatest across a face
 const float LBM_WAVE_PULL = 0.25;  // sigma of Poinsot and Lele, 0.25 there as well
 
-struct lbm_rim {  // four cells at faces
+struct lbm_rim {  // lanes at faces
     int face;     // that air passes; -1: none
-    bvec4 lanes;  // where
-    bvec4 x_low, x_high, y_low, y_high, z_low, z_high; // at faces that mirror
+    lbm_bool lanes;  // where
+    lbm_bool x_low, x_high, y_low, y_high, z_low, z_high; // at faces that mirror
 };
 
 bool lbm_at_rim(uvec3 at) {
@@ -74,12 +74,12 @@ bool lbm_at_rim(uvec3 at) {
 }
 
 lbm_rim lbm_rim_at(uvec3 at) {
-    lbm_rim r = lbm_rim(-1, bvec4(true), bvec4(false), bvec4(false), bvec4(false), bvec4(false),
-                        bvec4(false), bvec4(false));
+    lbm_rim r = lbm_rim(-1, lbm_bool(true), lbm_bool(false), lbm_bool(false), lbm_bool(false), lbm_bool(false),
+                        lbm_bool(false), lbm_bool(false));
 #define FACE(k, here, mirror)                                                                      \
     if (LBM_FACE_##k >= 2 && (here)) {                                                             \
         if (LBM_FACE_IS_OPEN(LBM_FACE_##k) && r.face < 0) r.face = k;                              \
-        else mirror = bvec4(true);                                                                 \
+        else mirror = lbm_bool(true);                                                              \
     }
     FACE(0, at.x == 0u, r.x_low)
     FACE(1, at.x == LBM_NX - 1u, r.x_high)
@@ -88,7 +88,7 @@ lbm_rim lbm_rim_at(uvec3 at) {
 #undef FACE
 #define FACE(k, layer, lane, mirror)                                                               \
     if (LBM_FACE_##k >= 2 && at.z == layer) {                                                      \
-        bvec4 here = lbm_in_lanes(lane);                                                           \
+        lbm_bool here = lbm_in_lanes(lane);                                                        \
         if (LBM_FACE_IS_OPEN(LBM_FACE_##k) && r.face < 0) {                                        \
             r.face = k;                                                                            \
             r.lanes = here;                                                                        \
@@ -124,12 +124,12 @@ lbm_rim lbm_rim_at(uvec3 at) {
 // What flies away from a face from what flies towards it: a goes up along the axis, b down.
 #define LBM_MIRROR(F, a, b, low, high)                                                             \
     {                                                                                              \
-        vec4 up = F[a], down = F[b];                                                               \
+        lbm_float up = F[a], down = F[b];                                                          \
         F[a] = mix(up, down, low);                                                                 \
         F[b] = mix(down, up, high);                                                                \
     }
 
-void lbm_mirror_air(lbm_rim r, inout vec4 f[LBM_Q]) {
+void lbm_mirror_air(lbm_rim r, inout lbm_float f[LBM_Q]) {
 #define MIRROR(a, b) LBM_MIRROR(f, a, b, r.x_low, r.x_high)
     LBM_MIRRORS_X(MIRROR)
 #undef MIRROR
@@ -141,7 +141,7 @@ void lbm_mirror_air(lbm_rim r, inout vec4 f[LBM_Q]) {
 #undef MIRROR
 }
 
-void lbm_mirror_scalar(lbm_rim r, inout vec4 g[LBM_SCALAR_Q]) {
+void lbm_mirror_scalar(lbm_rim r, inout lbm_float g[LBM_SCALAR_Q]) {
 #define MIRROR(a, b) LBM_MIRROR(g, a, b, r.x_low, r.x_high)
     LBM_SCALAR_MIRRORS_X(MIRROR)
 #undef MIRROR
@@ -176,23 +176,23 @@ uint lbm_wave_at(int face, uvec3 at) {
 // Sums over what does not come from beyond the face: the first twice where it flies outward, which
 // by what stays unknown is density times (1 + velocity outward), less 1; then mass and momentum.
 struct lbm_within {
-    vec4 twice, mass;
+    lbm_float twice, mass;
     lbm_vec momentum;
 };
 
-lbm_within lbm_look_within(ivec3 outward, vec4 f[LBM_Q]) {
+lbm_within lbm_look_within(ivec3 outward, lbm_float f[LBM_Q]) {
     lbm_within w = lbm_within(f[0], f[0] + 5.0 / 6.0, lbm_vec_all(vec3(0.0)));
 #define ADD(v, along, X, Y, Z)                                                                     \
     w.twice += float(1 + along) * v;                                                               \
-    w.mass += along < 0 ? vec4(0.0) : v;                                                           \
-    w.momentum.x += along < 0 ? vec4(0.0) : float(X) * v;                                          \
-    w.momentum.y += along < 0 ? vec4(0.0) : float(Y) * v;                                          \
-    w.momentum.z += along < 0 ? vec4(0.0) : float(Z) * v;
+    w.mass += along < 0 ? lbm_float(0.0) : v;                                                      \
+    w.momentum.x += along < 0 ? lbm_float(0.0) : float(X) * v;                                     \
+    w.momentum.y += along < 0 ? lbm_float(0.0) : float(Y) * v;                                     \
+    w.momentum.z += along < 0 ? lbm_float(0.0) : float(Z) * v;
 #define LOOK(i, X, Y, Z)                                                                           \
     {                                                                                              \
         int along = X * outward.x + Y * outward.y + Z * outward.z;                                 \
         ADD(f[i], along, X, Y, Z)                                                                  \
-        ADD(f[i + 1], -along, -(X), -(Y), -(Z))                                                          \
+        ADD(f[i + 1], -along, -(X), -(Y), -(Z))                                                    \
     }
     LBM_PAIRS(LOOK)
 #undef LOOK
@@ -200,8 +200,8 @@ lbm_within lbm_look_within(ivec3 outward, vec4 f[LBM_Q]) {
     return w;
 }
 
-lbm_vec lbm_velocity(vec4 f[LBM_Q]) {
-    vec4 density = 1.0 + f[0];
+lbm_vec lbm_velocity(lbm_float f[LBM_Q]) {
+    lbm_float density = 1.0 + f[0];
     lbm_vec m = lbm_vec_all(vec3(0.0));
 #define ADD(i, X, Y, Z)                                                                            \
     density += f[i] + f[i + 1];                                                                    \
@@ -214,13 +214,13 @@ lbm_vec lbm_velocity(vec4 f[LBM_Q]) {
 }
 
 // To equilibrium, the stress of what arrives from within, and that of its mirror from beyond.
-void lbm_add_stress(ivec3 outward, vec4 part, vec4 f[LBM_Q], inout vec4 made[LBM_Q]) {
-    vec4 xx = vec4(0.0), yy = xx, zz = xx, xy = xx, xz = xx, yz = xx;
+void lbm_add_stress(ivec3 outward, lbm_float part, lbm_float f[LBM_Q], inout lbm_float made[LBM_Q]) {
+    lbm_float xx = lbm_float(0.0), yy = xx, zz = xx, xy = xx, xz = xx, yz = xx;
 #define SUM(i, X, Y, Z)                                                                            \
     {                                                                                              \
         int along = X * outward.x + Y * outward.y + Z * outward.z;                                 \
-        vec4 a = f[i] - made[i], b = f[i + 1] - made[i + 1];                                       \
-        vec4 both = along == 0 ? a + b : 2.0 * (along > 0 ? a : b);                                \
+        lbm_float a = f[i] - made[i], b = f[i + 1] - made[i + 1];                                  \
+        lbm_float both = along == 0 ? a + b : 2.0 * (along > 0 ? a : b);                           \
         if (X != 0) xx += both;                                                                    \
         if (Y != 0) yy += both;                                                                    \
         if (Z != 0) zz += both;                                                                    \
@@ -231,11 +231,11 @@ void lbm_add_stress(ivec3 outward, vec4 part, vec4 f[LBM_Q], inout vec4 made[LBM
     LBM_PAIRS(SUM)
 #undef SUM
     part *= 4.5;
-    vec4 third = (xx + yy + zz) * (1.0 / 3.0);
+    lbm_float third = (xx + yy + zz) * (1.0 / 3.0);
     made[0] -= LBM_REST * part * third;
 #define ADD(i, X, Y, Z)                                                                            \
     {                                                                                              \
-        vec4 along = float(X * X) * xx + float(Y * Y) * yy + float(Z * Z) * zz - third +           \
+        lbm_float along = float(X * X) * xx + float(Y * Y) * yy + float(Z * Z) * zz - third +      \
                      2.0 * (float(X * Y) * xy + float(X * Z) * xz + float(Y * Z) * yz);            \
         made[i] += LBM_WEIGHT(X, Y, Z) * part * along;                                             \
         made[i + 1] += LBM_WEIGHT(X, Y, Z) * part * along;                                         \
@@ -244,42 +244,42 @@ void lbm_add_stress(ivec3 outward, vec4 part, vec4 f[LBM_Q], inout vec4 made[LBM
 #undef ADD
 }
 
-void lbm_pass_face(lbm_rim r, uvec3 at, inout vec4 f[LBM_Q]) {
+void lbm_pass_face(lbm_rim r, uvec3 at, inout lbm_float f[LBM_Q]) {
     ivec3 outward = lbm_outward(r.face);
     vec3 n = vec3(outward), wind = lbm_face_velocity[r.face].xyz;
     const int size[3] = int[3](LBM_NX, LBM_NY, LBM_NZ);
     float wind_out = dot(wind, n), pull = LBM_WAVE_PULL * LBM_SOUND / float(size[r.face >> 1]);
     lbm_within w = lbm_look_within(outward, f);
-    vec4 out_, excess;
+    lbm_float out_, excess;
     if (lbm_flows_in(r.face)) {
-        out_ = vec4(wind_out);
+        out_ = lbm_float(wind_out);
         excess = (w.twice - out_) / (1.0 + out_);
     } else {
         uint place = lbm_wave_at(r.face, at);
-        vec4 wave = lbm_waves[place], b = 1.0 + LBM_SOUND + wave, q = w.twice - wave;
+        lbm_float wave = lbm_waves[place], b = 1.0 + LBM_SOUND + wave, q = w.twice - wave;
         excess = 2.0 * q / (b + sqrt(max(b * b + 4.0 * LBM_SOUND * q, 0.01)));
         out_ = clamp(wave + LBM_SOUND * excess, -LBM_FACE_SPEED, LBM_FACE_SPEED);
         wave += pull * (wind_out < 0.0 ? wind_out - out_ : LBM_SOUND * excess);
         lbm_waves[place] = wave;
     }
     // Along the face what leaves goes on as it came, what enters brings the wind's.
-    vec4 leaves = vec4(greaterThanEqual(out_, vec4(0.0))) / w.mass;
+    lbm_float leaves = lbm_float(greaterThanEqual(out_, lbm_float(0.0))) / w.mass;
     lbm_vec u = lbm_vec(w.momentum.x * leaves, w.momentum.y * leaves, w.momentum.z * leaves);
-    vec4 enters = vec4(lessThan(out_, vec4(0.0)));
-    u.x = mix(u.x + enters * wind.x, n.x * out_, bvec4(outward.x != 0));
-    u.y = mix(u.y + enters * wind.y, n.y * out_, bvec4(outward.y != 0));
-    u.z = mix(u.z + enters * wind.z, n.z * out_, bvec4(outward.z != 0));
-    vec4 made[LBM_Q];
+    lbm_float enters = lbm_float(lessThan(out_, lbm_float(0.0)));
+    u.x = mix(u.x + enters * wind.x, n.x * out_, lbm_bool(outward.x != 0));
+    u.y = mix(u.y + enters * wind.y, n.y * out_, lbm_bool(outward.y != 0));
+    u.z = mix(u.z + enters * wind.z, n.z * out_, lbm_bool(outward.z != 0));
+    lbm_float made[LBM_Q];
     lbm_set_equilibrium(excess, u, made);
     lbm_add_stress(outward, 1.0 - enters, f, made);
     for (int i = 0; i < LBM_Q; i++) f[i] = mix(f[i], made[i], r.lanes);
 }
 
-void lbm_pass_face_with(const int s, lbm_rim r, float ambient, vec4 f[LBM_Q], inout vec4 g[LBM_SCALAR_Q]) {
+void lbm_pass_face_with(const int s, lbm_rim r, float ambient, lbm_float f[LBM_Q], inout lbm_float g[LBM_SCALAR_Q]) {
     ivec3 outward = lbm_outward(r.face);
     lbm_vec u = lbm_velocity(f);
-    vec4 out_ = LBM_ALONG(u, outward.x, outward.y, outward.z);
-    vec4 value = g[0];
+    lbm_float out_ = LBM_ALONG(u, outward.x, outward.y, outward.z);
+    lbm_float value = g[0];
 #define LOOK(i, X, Y, Z)                                                                           \
     {                                                                                              \
         int along = X * outward.x + Y * outward.y + Z * outward.z;                                 \
@@ -287,9 +287,9 @@ void lbm_pass_face_with(const int s, lbm_rim r, float ambient, vec4 f[LBM_Q], in
     }
     LBM_SCALAR_PAIRS(LOOK)
 #undef LOOK
-    value = mix(vec4(ambient), value / (1.0 + out_), greaterThanEqual(out_, vec4(0.0)));
-    if (lbm_flows_in(r.face)) value = vec4(lbm_face_scalar[r.face][s]);
-    vec4 made[LBM_SCALAR_Q];
+    value = mix(lbm_float(ambient), value / (1.0 + out_), greaterThanEqual(out_, lbm_float(0.0)));
+    if (lbm_flows_in(r.face)) value = lbm_float(lbm_face_scalar[r.face][s]);
+    lbm_float made[LBM_SCALAR_Q];
     lbm_set_scalar_equilibrium(value, u, made);
     for (int i = 0; i < LBM_SCALAR_Q; i++) g[i] = mix(g[i], made[i], r.lanes);
 }
@@ -306,8 +306,8 @@ bool lbm_meets(uvec3 at, lbm_site site) {
     return any_;
 }
 
-// Makes what arrives in four cells what it should be: of air, of scalar s (a constant).
-void lbm_meet_air(uvec3 at, lbm_site site, inout vec4 f[LBM_Q]) {
+// Makes what arrives in an element what it should be: of air, of scalar s (a constant).
+void lbm_meet_air(uvec3 at, lbm_site site, inout lbm_float f[LBM_Q]) {
 #if LBM_RIMS && LBM_REGION != LBM_CORE
     if (lbm_at_rim(at)) {
         lbm_rim r = lbm_rim_at(at);
@@ -324,8 +324,8 @@ void lbm_meet_air(uvec3 at, lbm_site site, inout vec4 f[LBM_Q]) {
 }
 
 // `f` is what lbm_meet_air left.
-void lbm_meet_scalar(const int s, uvec3 at, lbm_site site, float ambient, vec4 f[LBM_Q],
-                     inout vec4 g[LBM_SCALAR_Q]) {
+void lbm_meet_scalar(const int s, uvec3 at, lbm_site site, float ambient, lbm_float f[LBM_Q],
+                     inout lbm_float g[LBM_SCALAR_Q]) {
 #if LBM_RIMS && LBM_REGION != LBM_CORE
     if (lbm_at_rim(at)) {
         lbm_rim r = lbm_rim_at(at);
