@@ -78,6 +78,7 @@ static void define_all(flow *f) {
     define(f, "FLOW_SWEEPS", desc->sweeps);
     define(f, "FLOW_COARSE_SWEEPS", FLOW_COARSE_SWEEPS);
     define(f, "FLOW_GROUP", f->group);
+    define(f, "FLOW_FOLDS", flow_transform_folds(desc, f->tile));
     define(f, "FLOW_COARSE_SIDE", f->coarse_side);
 }
 
@@ -274,7 +275,7 @@ bool flow_run(const flow *f, gpu *g, const flow_call *call) {
 bool flow_run_tiles(const flow *f, gpu *g, sim_kernel *k, const sim_slot *more, size_t count,
                     const uint32_t size[2]) {
     flow_call call = {k, more, count, {1, 1, f->desc.slices}};
-    call.threads[0] = (size[0] + f->tile - 1) / f->tile * f->group;
+    call.threads[0] = (size[0] + f->tile - 1) / f->tile * k->binary.local_size[0];
     call.threads[1] = (size[1] + f->tile - 1) / f->tile;
     return flow_run(f, g, &call);
 }

@@ -159,8 +159,10 @@ bool flow_project(flow *f, gpu *g, const flow_numbers *numbers);
 
 // ---- a transform: flow_transform.c ------------------------------------------------------------
 
+// Whether products are of halves of rows; then modes that look the same from both ends come first.
+bool flow_transform_folds(const flow_desc *desc, uint32_t tile);
 // size[0] modes of size[0] cells, each of length 1, and by what the equation multiplies each.
-void flow_transform_modes(const flow_desc *desc, float *out);
+void flow_transform_modes(const flow_desc *desc, bool folds, float *out);
 bool flow_transform_allocate(flow *f, gpu *g);
 // From a residual to z, and the product of both.
 bool flow_transform(flow *f, gpu *g, gpu_buffer *residual);

@@ -13,30 +13,38 @@
 
 static const double pi = 3.14159265358979323846;
 
-// Mode k of n cells, in cell i, not yet of length 1; and how many waves it has in 2 n cells.
+// Where both faces are of a kind, modes look the same, or the same but for their sign, from both
+// ends: halves of the rows say all, and halves of the products are left.
+bool flow_transform_folds(const flow_desc *desc, uint32_t tile) {
+    return desc->faces[0] == desc->faces[1] && desc->size[0] % (2 * tile) == 0;
+}
+
+// Mode k of n cells, in cell i, not yet of length 1; and how many waves it has in 2 n cells. Those
+// of even k are the same from both ends, if any are.
 static double mode_of(const flow_desc *desc, uint32_t k, double i, double *waves) {
     const double n = desc->size[0], middle = pi * (i + 0.5) / n;
     const bool open[2] = {desc->faces[0] == FLOW_OPEN, desc->faces[1] == FLOW_OPEN};
     if (desc->faces[0] == FLOW_PERIODIC) {
         *waves = 2.0 * ((k + 1) / 2);
-        return k % 2 ? cos(*waves * pi * i / n) : k ? sin(*waves * pi * i / n) : 1;
+        return k % 2 ? sin(*waves * middle) : cos(*waves * middle);
     }
     *waves = open[0] != open[1] ? k + 0.5 : open[0] ? k + 1.0 : (double)k;
     return open[0] ? sin(*waves * middle) : cos(*waves * middle);
 }
 
-void flow_transform_modes(const flow_desc *desc, float *out) {
+void flow_transform_modes(const flow_desc *desc, bool folds, float *out) {
     const uint32_t n = desc->size[0];
     for (uint32_t k = 0; k < n; k++) {
         double waves = 0, square = 0;
-        float *mode = out + (size_t)k * n;
+        const uint32_t place = folds ? k % 2 * (n / 2) + k / 2 : k;
+        float *mode = out + (size_t)place * n;
         for (uint32_t i = 0; i < n; i++) {
             const double value = mode_of(desc, k, i, &waves);
             mode[i] = (float)value;
             square += value * value;
         }
         for (uint32_t i = 0; i < n; i++) mode[i] /= (float)sqrt(square);
-        out[(size_t)n * n + k] = (float)(2 - 2 * cos(waves * pi / n));
+        out[(size_t)n * n + place] = (float)(2 - 2 * cos(waves * pi / n));
     }
 }
 
@@ -45,7 +53,7 @@ bool flow_transform_allocate(flow *f, gpu *g) {
     const uint64_t size = (uint64_t)n * (n + 1) * sizeof(float);
     if (f->desc.solver != FLOW_TRANSFORM || f->modes) return true;
     float *modes = mem_alloc(size);
-    flow_transform_modes(&f->desc, modes);
+    flow_transform_modes(&f->desc, flow_transform_folds(&f->desc, f->tile), modes);
     f->modes = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "modes of a flow", .size = size});
     bool done = f->modes && gpu_buffer_write(g, f->modes, 0, modes, size);
     mem_free(modes);
@@ -58,7 +66,9 @@ bool flow_transform(flow *f, gpu *g, gpu_buffer *residual) {
                              {"FlowLines", f->buffers[FLOW_MEM_LINES], NULL}};
     const flow_call lines = {
         &f->kernels.lines, more, 3, {f->desc.size[0] * f->group, f->desc.slices, 1}};
-    return flow_run_tiles(f, g, &f->kernels.to_modes, more, 3, f->desc.size) &&
-           flow_run(f, g, &lines) &&
-           flow_run_tiles(f, g, &f->kernels.from_modes, more, 3, f->desc.size);
+    const uint32_t *size = f->desc.size;
+    const bool folds = flow_transform_folds(&f->desc, f->tile);
+    const uint32_t back[2] = {folds ? size[0] / 2 : size[0], size[1]}; // a group does both ends
+    return flow_run_tiles(f, g, &f->kernels.to_modes, more, 3, size) && flow_run(f, g, &lines) &&
+           flow_run_tiles(f, g, &f->kernels.from_modes, more, 3, back);
 }
