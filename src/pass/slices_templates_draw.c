@@ -7,9 +7,14 @@
 
 static const char shader[] = "pass/slices/templates_draw.comp";
 
-// Cells above each other that a thread draws: more look at each template less often, fewer make
-// more threads. To be measured on a GPU.
-enum { CELLS = 4 };
+// Cells above each other that a thread draws: more look at each template less often, fewer wait for
+// fewer pictures one after the other. The second is for a processor.
+enum { CELLS = 1, SOFTWARE_CELLS = 4 };
+
+static uint32_t cells_of(const slices_flow *f) {
+    gpu *device = f->pass->host->device;
+    return device && gpu_get_info(device)->kind == GPU_CPU ? SOFTWARE_CELLS : CELLS;
+}
 
 // ---- building ---------------------------------------------------------------------------------
 
@@ -20,7 +25,7 @@ bool slices_templates_compile_draw(slices_flow *f) {
     size_t count = flow_defines(f->solver, defines);
     count += slices_templates_defines(f, defines + count);
     int hand = t->hand.taken ? SLICES_HAND_MOST : 0;
-    defines[count++] = (shader_define){"TEMPLATES_CELLS", arena_format(memory, "%d", CELLS)};
+    defines[count++] = (shader_define){"TEMPLATES_CELLS", arena_format(memory, "%u", cells_of(f))};
     defines[count++] = (shader_define){"HAND", arena_format(memory, "%d", hand)};
     defines[count++] = (shader_define){"PRESSES", slices_has_pressing(f->pass) ? "1" : "0"};
     defines[count++] = (shader_define){"PUSHES", slices_has_pushing(f->pass) ? "1" : "0"};
@@ -139,7 +144,7 @@ static bool has_sources(const slices_flow *f) {
 
 bool slices_templates_draw(slices_flow *f) {
     slices_templates *t = slices_templates_of(f);
-    const uint32_t *size = f->desc.size, alone = !has_sources(f);
+    const uint32_t *size = f->desc.size, cells = cells_of(f), alone = !has_sources(f);
     const float step = (float)f->clock.step;
     if (t->repainted && !write_images(t, f->pass->host->device)) return false;
     t->repainted = false;
@@ -148,6 +153,6 @@ bool slices_templates_draw(slices_flow *f) {
     pass_write_member(&t->draw, t->block, "time_step", &step, sizeof step);
     slices_hand_fill(f, &t->draw, t->block);
     gpu_dispatch_desc desc = {.pipeline = t->pipeline,
-                              .threads = {size[0], (size[1] + CELLS - 1) / CELLS, f->desc.count}};
+                              .threads = {size[0], (size[1] + cells - 1) / cells, f->desc.count}};
     return slices_templates_dispatch(f, f->pass, &t->draw, t->block, &desc);
 }

@@ -65,15 +65,20 @@ void add(vec4 place, vec4 look, ivec2 low) {
 void add_groups(ivec2 low, int slice) {
     ivec2 tile = low / TEMPLATES_TILE;
     uint now = template_mask_at(parity, slice, tile), last = template_mask_at(1u - parity, slice, tile);
+    vec4 place = vec4(0.0), look = vec4(0.0);
     for (int w = 0; w < TEMPLATES_WORDS; w++) {
         uint bits = template_masks[now + uint(w)];
         while (bits != 0u) {
             uint i = uint(w * 32 + findLSB(bits));
             bits &= bits - 1u;
-            add(templates[template_at(0u, slice, i)], templates[template_at(1u, slice, i)], low);
+            vec4 next = templates[template_at(0u, slice, i)], next_look = templates[template_at(1u, slice, i)];
+            if (place.z > 0.0) add(place, look, low); // while the next is on its way
+            place = next;
+            look = next_look;
         }
         if (low == tile * TEMPLATES_TILE) template_masks[last + uint(w)] = 0u; // for the next step
     }
+    if (place.z > 0.0) add(place, look, low);
 }
 
 void main() {
