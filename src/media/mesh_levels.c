@@ -1,124 +1,184 @@
-// By meshoptimizer, which collapses edges by quadric errors (Garland and Heckbert 1997, "Surface
-// Simplification Using Quadric Error Metrics"). Each part by itself, up to the same error: what is
-// thin goes sooner than what is large.
+// By meshoptimizer: edges are collapsed by quadric errors (Garland and Heckbert 1997, "Surface
+// Simplification Using Quadric Error Metrics"); where that leaves too much, of leaves and other
+// loose pieces, vertices that lie in one cell of a grid are merged (Rossignac and Borrel 1993).
+//
+// What has no texture is simplified as one, its corners welded: meshes of flat faces are nothing
+// but seams, and materials may differ from face to face. The triangles that are left then look for
+// the vertices and the part whose normals fit theirs. A textured part is simplified by itself, with
+// its seams.
 #include "media/mesh_levels.h"
 #include "base/memory.h"
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
 
-// Triangles of a mesh: fewer are drawn as fast as they are chosen, more would hold a load up (0.6 s
-// for so many).
-enum { LEAST = 96, MOST = 200000 };
-// Of the mesh's extent: at a metre's height and a picture of 1080 lines, a pixel from 6, 20 and 50
-// m on, about.
-static const float errors[] = {0.005f, 0.015f, 0.04f};
-// A level that does not leave out this much of the one before it is none.
-static const double least_gain = 0.3;
+// Triangles of a mesh: fewer are drawn as fast as they are chosen, more would hold a load up.
+enum { LEAST = 96, MOST = 200000, MOST_PARTS = 256 };
+static const double shares[] = {0.5, 0.2, 0.08}; // of the triangles, that levels aim at
+static const double least_gain = 0.3;    // a level leaves out this much of the one before it
+static const double missed = 1.25;       // of what was aimed at: then vertices are merged
+static const float error_most = 0.1f;    // of the mesh's extent
+static const float cell_most = 0.2f;     // in which vertices are merged, of the extent
+static const float POSITION_MOST = 1e9f; // metres: beyond, errors overflow
+static const uint32_t NONE = UINT32_MAX;
 
 typedef struct simplifier {
     const mesh_data *mesh;
-    unsigned *welded;        // indices of a part, its seams closed
-    unsigned *made;          // indices of a part, simplified
-    uint32_t *heads, *nexts; // vertices at the same place, in lists; NONE ends one
+    uint32_t *owners; // of each triangle: its part
+    // Of the group that is simplified: parts without a texture, or one with a texture.
+    uint32_t *slots;  // its indices, as places in those of the mesh
+    unsigned *welded; // the same, as vertices that stand for all at their place
+    uint32_t count;
+    uint32_t *heads, *nexts; // by such a vertex: slots there, in lists; NONE ends one
+    unsigned *merged;        // by the second way
+    // Of the level that is made: triangles in any order.
+    unsigned *made;
+    uint32_t *made_owners, made_count;
+    float error; // of the extent
 } simplifier;
 
-static const uint32_t NONE = UINT32_MAX;
-static const float POSITION_MOST = 1e9f; // metres: beyond, errors overflow
+// ---- groups -----------------------------------------------------------------------------------
 
-static const float *position(const simplifier *s, uint32_t vertex) {
-    return s->mesh->vertices[vertex].position;
+static void add_slots(simplifier *s, const mesh_part *part) {
+    for (uint32_t i = 0; i < part->count; i++) s->slots[s->count++] = part->first + i;
 }
 
-// A texture's seams must stay where they are. Else a part is simplified as if its corners had no
-// normals: one of flat faces is nothing but seams.
-static void weld(simplifier *s, const mesh_part *part) {
+// The group of a part: `texture` is its own, or all that have none are one.
+static void begin_group(simplifier *s, uint32_t index) {
     const mesh_data *mesh = s->mesh;
-    const uint32_t *indices = mesh->indices + part->first;
-    if (part->texture >= 0) {
-        memcpy(s->welded, indices, part->count * sizeof *indices);
-        return;
-    }
-    meshopt_generateShadowIndexBuffer(s->welded, indices, part->count, mesh->vertices,
-                                      mesh->vertex_count, sizeof mesh->vertices->position,
-                                      sizeof *mesh->vertices);
-    for (uint32_t i = 0; i < part->count; i++) {
-        s->heads[s->welded[i]] = NONE;
-        s->nexts[indices[i]] = NONE - 1; // in no list
-    }
-    for (uint32_t i = 0; i < part->count; i++) {
-        uint32_t vertex = indices[i], *head = &s->heads[s->welded[i]];
-        if (s->nexts[vertex] != NONE - 1) continue;
-        s->nexts[vertex] = *head;
-        *head = vertex;
+    bool textured = mesh->parts[index].texture >= 0;
+    s->count = 0;
+    for (uint32_t i = index; i < (textured ? index + 1 : mesh->part_count); i++)
+        if (textured || mesh->parts[i].texture < 0) add_slots(s, &mesh->parts[i]);
+    for (uint32_t i = 0; i < s->count; i++) s->merged[i] = mesh->indices[s->slots[i]];
+    size_t same = textured ? sizeof *mesh->vertices : sizeof mesh->vertices->position;
+    meshopt_generateShadowIndexBuffer(s->welded, s->merged, s->count, mesh->vertices,
+                                      mesh->vertex_count, same, sizeof *mesh->vertices);
+    for (uint32_t i = 0; i < s->count; i++) s->heads[s->welded[i]] = NONE;
+    for (uint32_t i = s->count; i-- > 0;) {
+        s->nexts[s->slots[i]] = s->heads[s->welded[i]];
+        s->heads[s->welded[i]] = s->slots[i];
     }
 }
 
-// Of the vertices at a corner's place, the one whose normal is nearest to the triangle's.
-static uint32_t choose_vertex(const simplifier *s, uint32_t corner, const vec3 normal) {
+// Whether a group begins with this part: it is textured, or the first that is not.
+static bool begins_group(const mesh_data *mesh, uint32_t index) {
+    for (uint32_t i = 0; i < index; i++)
+        if (mesh->parts[i].texture < 0 && mesh->parts[index].texture < 0) return false;
+    return true;
+}
+
+// ---- triangles --------------------------------------------------------------------------------
+
+static void face_normal(const mesh_data *mesh, const uint32_t corners[3], vec3 out) {
+    const mesh_vertex *v = mesh->vertices;
+    vec3 a, b;
+    glm_vec3_sub((float *)v[corners[1]].position, (float *)v[corners[0]].position, a);
+    glm_vec3_sub((float *)v[corners[2]].position, (float *)v[corners[0]].position, b);
+    glm_vec3_crossn(a, b, out);
+}
+
+// Of the slots at a corner's place, the one whose vertex has the nearest normal; and the owner of
+// the triangle there that lies most alike, if it does so more than `*most`.
+static uint32_t choose_vertex(const simplifier *s, uint32_t corner, const vec3 normal, float *most,
+                              uint32_t *owner) {
+    const mesh_data *mesh = s->mesh;
     uint32_t best = corner;
-    float most = -INFINITY;
-    for (uint32_t v = s->heads[corner]; v != NONE; v = s->nexts[v]) {
-        float along = glm_vec3_dot((float *)s->mesh->vertices[v].normal, (float *)normal);
-        if (along <= most) continue;
-        most = along;
-        best = v;
+    float nearest = -INFINITY;
+    for (uint32_t slot = s->heads[corner]; slot != NONE; slot = s->nexts[slot]) {
+        uint32_t vertex = mesh->indices[slot];
+        vec3 face;
+        face_normal(mesh, mesh->indices + slot / 3 * 3, face);
+        float along = glm_vec3_dot((float *)mesh->vertices[vertex].normal, (float *)normal);
+        float alike = glm_vec3_dot(face, (float *)normal);
+        if (along > nearest) best = vertex;
+        if (alike > *most) *owner = s->owners[slot / 3];
+        nearest = fmaxf(along, nearest);
+        *most = fmaxf(alike, *most);
     }
     return best;
 }
 
-static void open_seams(const simplifier *s, uint32_t count) {
-    for (uint32_t i = 0; i + 2 < count; i += 3) {
-        unsigned *corners = s->made + i;
-        vec3 a, b, normal;
-        glm_vec3_sub((float *)position(s, corners[1]), (float *)position(s, corners[0]), a);
-        glm_vec3_sub((float *)position(s, corners[2]), (float *)position(s, corners[0]), b);
-        glm_vec3_crossn(a, b, normal);
-        for (int k = 0; k < 3; k++) corners[k] = choose_vertex(s, corners[k], normal);
-    }
+static void add_triangle(simplifier *s, const unsigned corners[3]) {
+    unsigned *out = s->made + 3 * s->made_count;
+    uint32_t owner = s->owners[s->heads[corners[0]] / 3];
+    float most = -INFINITY;
+    vec3 normal;
+    face_normal(s->mesh, corners, normal);
+    for (int k = 0; k < 3; k++) out[k] = choose_vertex(s, corners[k], normal, &most, &owner);
+    s->made_owners[s->made_count++] = owner;
 }
 
-// How many indices are left of a part. Parts of many pieces, as leaves, are not simplified by their
-// edges: where few of them go the coarsest level merges what lies close together.
-static uint32_t simplify(simplifier *s, const mesh_part *part, float error, bool coarsest) {
+static void simplify_group(simplifier *s, double share) {
     const mesh_data *mesh = s->mesh;
     const float *positions = mesh->vertices->position;
-    weld(s, part);
-    size_t count = meshopt_simplify(s->made, s->welded, part->count, positions, mesh->vertex_count,
-                                    sizeof *mesh->vertices, 0, error, 0, NULL);
-    if (coarsest && count > part->count / 2)
-        count = meshopt_simplifySloppy(s->made, s->welded, part->count, positions,
-                                       mesh->vertex_count, sizeof *mesh->vertices, 0, error, NULL);
-    if (part->texture < 0) open_seams(s, (uint32_t)count);
-    return (uint32_t)count;
+    size_t stride = sizeof *mesh->vertices, target = (size_t)(share * (s->count / 3)) * 3;
+    float error = 0, other = 0;
+    unsigned *result = s->made + 3 * s->made_count; // read as it is overwritten, at the same place
+    size_t count = meshopt_simplify(result, s->welded, s->count, positions, mesh->vertex_count,
+                                    stride, target, error_most, 0, &error);
+    if ((double)count > missed * (double)target) {
+        size_t fewer =
+            meshopt_simplifySloppy(s->merged, s->welded, s->count, positions, mesh->vertex_count,
+                                   stride, target, cell_most, &other);
+        if (fewer > 0 && fewer < count) {
+            memcpy(result, s->merged, fewer * sizeof *result);
+            count = fewer;
+            error = other;
+        }
+    }
+    s->error = fmaxf(s->error, error);
+    for (size_t i = 0; i + 2 < count; i += 3)
+        add_triangle(s, (const unsigned[3]){result[i], result[i + 1], result[i + 2]});
 }
 
-// Appends the level, or leaves `out` as it was.
-static void add_level(simplifier *s, size_t level, uint32_t before, arena *memory,
-                      mesh_levels *out) {
-    const mesh_data *mesh = s->mesh;
-    mesh_run *runs = arena_alloc(memory, mesh->part_count * sizeof *runs);
-    uint32_t end = out->index_count;
-    for (uint32_t i = 0; i < mesh->part_count; i++) {
-        uint32_t count = simplify(s, &mesh->parts[i], errors[level], level + 1 == COUNT_OF(errors));
-        runs[i] = (mesh_run){mesh->index_count + end, count};
-        memcpy(out->indices + end, s->made, count * sizeof *s->made);
-        end += count;
+// ---- levels -----------------------------------------------------------------------------------
+
+static void make_level(simplifier *s, double share) {
+    s->made_count = 0;
+    s->error = 0;
+    for (uint32_t i = 0; i < s->mesh->part_count; i++) {
+        if (!begins_group(s->mesh, i)) continue;
+        begin_group(s, i);
+        simplify_group(s, share);
     }
-    if (end - out->index_count > (1 - least_gain) * before || end == out->index_count) return;
-    out->runs[out->count] = runs;
-    out->errors[out->count++] =
-        errors[level] *
-        meshopt_simplifyScale(mesh->vertices->position, mesh->vertex_count, sizeof *mesh->vertices);
+}
+
+// Appends what was made, sorted by parts, where it is worth it. One before it that is no better
+// goes.
+static void keep_level(const simplifier *s, arena *memory, mesh_levels *out) {
+    const mesh_data *mesh = s->mesh;
+    uint32_t at = out->count;
+    while (at > 0 && out->errors[at - 1] >= s->error) at--;
+    uint32_t end = at > 0 ? out->ends[at - 1] : 0, begin = at > 1 ? out->ends[at - 2] : 0;
+    double before = at > 0 ? end - begin : mesh->index_count;
+    if (s->made_count == 0 || s->error > error_most ||
+        3 * s->made_count > (1 - least_gain) * before)
+        return;
+    mesh_run *runs = arena_alloc(memory, mesh->part_count * sizeof *runs);
+    for (uint32_t p = 0; p < mesh->part_count; p++) {
+        runs[p].first = mesh->index_count + end;
+        for (uint32_t i = 0; i < s->made_count; i++) {
+            if (s->made_owners[i] != p) continue;
+            memcpy(out->indices + end, s->made + 3 * i, 3 * sizeof *s->made);
+            end += 3;
+        }
+        runs[p].count = mesh->index_count + end - runs[p].first;
+    }
+    out->runs[at] = runs;
+    out->ends[at] = end;
+    out->errors[at] = s->error;
+    out->count = at + 1;
     out->index_count = end;
 }
 
 // It comes from a file that nobody has checked yet.
 static bool is_usable(const mesh_data *mesh) {
-    bool usable = true;
-    for (uint32_t i = 0; i < mesh->index_count; i++)
-        usable = usable && mesh->indices[i] < mesh->vertex_count;
-    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+    uint32_t triangles = mesh->index_count / 3;
+    bool usable = triangles >= LEAST && triangles <= MOST && mesh->part_count <= MOST_PARTS;
+    for (uint32_t i = 0; usable && i < mesh->index_count; i++)
+        usable = mesh->indices[i] < mesh->vertex_count;
+    for (uint32_t i = 0; usable && i < mesh->vertex_count; i++)
         for (int k = 0; k < 3; k++)
             usable = usable && fabsf(mesh->vertices[i].position[k]) < POSITION_MOST;
     return usable;
@@ -126,24 +186,30 @@ static bool is_usable(const mesh_data *mesh) {
 
 void mesh_levels_make(const mesh_data *mesh, arena *memory, mesh_levels *out) {
     *out = (mesh_levels){0};
-    uint32_t triangles = mesh->index_count / 3;
-    if (triangles < LEAST || triangles > MOST || !is_usable(mesh)) return;
+    if (!is_usable(mesh)) return;
+    arena scratch = {0};
+    size_t words = (size_t)mesh->index_count * sizeof(uint32_t);
     simplifier s = {
         .mesh = mesh,
-        .welded = mem_alloc(mesh->index_count * sizeof *s.welded),
-        .made = mem_alloc(mesh->index_count * sizeof *s.made),
-        .heads = mem_alloc(mesh->vertex_count * sizeof *s.heads),
-        .nexts = mem_alloc(mesh->vertex_count * sizeof *s.nexts),
+        .owners = arena_alloc(&scratch, words / 3),
+        .slots = arena_alloc(&scratch, words),
+        .welded = arena_alloc(&scratch, words),
+        .heads = arena_alloc(&scratch, mesh->vertex_count * sizeof *s.heads),
+        .nexts = arena_alloc(&scratch, words),
+        .merged = arena_alloc(&scratch, words),
+        .made = arena_alloc(&scratch, words),
+        .made_owners = arena_alloc(&scratch, words / 3),
     };
-    out->indices = arena_alloc(memory, COUNT_OF(errors) * mesh->index_count * sizeof *out->indices);
-    uint32_t before = mesh->index_count, at = 0;
-    for (size_t i = 0; i < COUNT_OF(errors); i++) {
-        add_level(&s, i, before, memory, out);
-        if (out->index_count > at) before = out->index_count - at;
-        at = out->index_count;
+    for (uint32_t p = 0; p < mesh->part_count; p++)
+        for (uint32_t i = 0; i < mesh->parts[p].count; i++)
+            s.owners[(mesh->parts[p].first + i) / 3] = p;
+    out->indices = arena_alloc(memory, words * COUNT_OF(shares));
+    for (size_t i = 0; i < COUNT_OF(shares); i++) {
+        make_level(&s, shares[i]);
+        keep_level(&s, memory, out);
     }
-    mem_free(s.welded);
-    mem_free(s.made);
-    mem_free(s.heads);
-    mem_free(s.nexts);
+    float extent =
+        meshopt_simplifyScale(mesh->vertices->position, mesh->vertex_count, sizeof *mesh->vertices);
+    for (uint32_t i = 0; i < out->count; i++) out->errors[i] *= extent;
+    arena_free(&scratch);
 }

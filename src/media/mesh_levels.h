@@ -6,6 +6,7 @@ typedef struct mesh_levels {
     uint32_t count;
     float errors[MESH_LEVELS];
     mesh_run *runs[MESH_LEVELS]; // for each part; indices count from those of the mesh itself
+    uint32_t ends[MESH_LEVELS];  // of their indices
     uint32_t *indices;           // of all levels
     uint32_t index_count;
 } mesh_levels;
