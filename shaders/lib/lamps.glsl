@@ -21,6 +21,9 @@ uniform sampler2D lamps; //= input optional : point lights by the hundred (of th
 #ifndef LAMPS_TILES
 #define LAMPS_TILES 0
 #endif
+#ifndef LAMPS_VOLUMES // 1: the reader draws spheres around them, and no lists are made
+#define LAMPS_VOLUMES 0
+#endif
 #ifndef LAMPS_ACCESS // of the buffers
 #define LAMPS_ACCESS readonly
 #endif

@@ -8,7 +8,7 @@ uniform sampler2D emission;       //= input optional : radiance that the surface
 uniform int shadow_samples;       //= 1 [0, 64] : rays to each light: 1 goes to its middle, for hard shadows; more go all over its disc, for soft ones; 0: meshes cast no shadows
 uniform int sky_samples;          //= 0 [0, 64] : rays to the sky, which find what stands before it; 0: all of it is seen
 uniform float haze;               //= 0 [0, 10] 1/m : how fast distance fades to the colour of the horizon
-//@ option lamps_by = auto {auto, all, tiles} : which lamps of point_lights a pixel looks at: all of them, or (tiles) those that reach what 16 by 16 pixels show, which are found out first; auto: all where they are few
+//@ option lamps_by = auto {auto, all, tiles, volumes} : which lamps of point_lights light a pixel: all are asked; those that reach what 16 by 16 pixels show, which are found out first (tiles); or those whose sphere, drawn, covers it (volumes); auto: tiles, or all where they are few
 uniform float sky_alpha;          //= 1 [0, 1] : opacity of the sky; 0 for pictures to be laid over others
 writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultiplied
 #include "lib/frame.glsl"
@@ -29,14 +29,10 @@ writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultipl
 #endif
 
 #include "shade/light.glsl"
-
-shaded shaded_at(surface_point s, vec2 uv) {
-    vec4 kind = vec4(0.0, 1.0, 0.0, 1.0);
-#if HAS_SURFACE
-    kind = texelFetch(surface, ivec2(uv * vec2(textureSize(surface, 0))), 0);
+#include "shade/shaded.glsl"
+#if LAMPS_VOLUMES
+uniform sampler2D LampLight; // what spheres that were drawn around the lamps have added up
 #endif
-    return shading_of(s.p, s.normal, -normalize(frame_ray(uv)), s.base.rgb, kind);
-}
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -49,6 +45,9 @@ void main() {
         return;
     }
     vec3 lit = surface_light(shaded_at(s, uv), uvec2(pixel));
+#if LAMPS_VOLUMES
+    lit += texelFetch(LampLight, pixel, 0).rgb;
+#endif
 #if HAS_EMISSION
     lit += texelFetch(emission, ivec2(uv * vec2(textureSize(emission, 0))), 0).rgb;
 #endif

@@ -33,6 +33,22 @@ static shader_define define(arena *memory, const char *prefix, const char *name,
     return (shader_define){whole, value};
 }
 
+// The pass's options as `shader` counts them, which may be another file than the pass's own. One
+// that is of that file alone has its default.
+static const size_t *options_of(pass *p, const char *shader) {
+    if (strcmp(shader, p->shader) == 0) return p->options;
+    const shader_interface *face =
+        shader_interface_load(p->host->library, p->host->memory, shader, p->host->reader);
+    if (!face) return NULL;
+    size_t *values = arena_alloc(p->host->memory, (face->option_count + 1) * sizeof *values), own;
+    for (size_t i = 0; i < face->option_count; i++) {
+        values[i] = face->options[i].value;
+        if (pass_find_key(p, face->options[i].name, &own) == PASS_OPTION)
+            values[i] = p->options[own];
+    }
+    return values;
+}
+
 bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_define *defines,
                   size_t define_count, shader_binary *out) {
     const shader_interface *face = p->face;
@@ -61,19 +77,20 @@ bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_
         without = without || strcmp(defines[i].name, "WITHOUT_FIELDS") == 0;
     const char *text = p->program && !without ? field_program_text(p->program) : "";
     shader_text fields = {"fields.glsl", text};
-    bool done = shader_compile(p->host->library, memory,
-                               &(shader_compile_desc){
-                                   .name = shader,
-                                   .stage = stage,
-                                   .defines = all,
-                                   .define_count = count,
-                                   .texts = &fields,
-                                   .text_count = 1,
-                                   .options = p->options,
-                                   .counters = p->host->counters,
-                                   .reader = p->host->reader,
-                               },
-                               out);
+    const size_t *options = options_of(p, shader);
+    bool done = options && shader_compile(p->host->library, memory,
+                                          &(shader_compile_desc){
+                                              .name = shader,
+                                              .stage = stage,
+                                              .defines = all,
+                                              .define_count = count,
+                                              .texts = &fields,
+                                              .text_count = 1,
+                                              .options = options,
+                                              .counters = p->host->counters,
+                                              .reader = p->host->reader,
+                                          },
+                                          out);
     return done || err_prefix("%s: ", p->label);
 }
 

@@ -34,5 +34,5 @@ void pass_lamps_destroy(pass *p);
 // The members of "Uniforms" that the include declares, as of the picture's size.
 void pass_lamps_write(const pass *p, const shader_binary *binary, unsigned char *block);
 bool pass_lamps_record(pass *p); // the lists of a frame
-// The buffer of a slot by its name; false: it is none of theirs.
+// The buffer or image of a slot by its name; false: it is none of theirs.
 bool pass_lamps_bind(const pass *p, const char *name, gpu_binding *out);

@@ -4,8 +4,7 @@
 // them.
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/lamps.h"
-#include "pass/pass_impl.h"
+#include "pass/lamps_parts.h"
 #include <string.h>
 
 enum {
@@ -16,21 +15,9 @@ enum {
     FEW = 4, // lamps, up to which every pixel may as well look at all
 };
 
-typedef enum lists_stage { RECORDS, MASKS, STAGES } lists_stage;
-typedef enum lists_buffer { LAMP_RECORDS, LAMP_MASKS, LAMP_BOUNDS, BUFFERS } lists_buffer;
-
 static const char shader[] = "pass/lamps_lists.comp";
-static const char *const stages[STAGES] = {"STAGE_RECORDS", "STAGE_MASKS"};
-static const char *const buffer_names[BUFFERS] = {"LampRecords", "LampMasks", "LampBounds"};
-
-struct pass_lamps {
-    uint32_t count;
-    lamps_way way;
-    shader_binary binary[STAGES];
-    gpu_pipeline *pipeline[STAGES];
-    unsigned char *block[STAGES];
-    gpu_buffer *buffers[BUFFERS];
-};
+static const char *const stages[LISTS_STAGES] = {"STAGE_RECORDS", "STAGE_MASKS"};
+static const char *const buffer_names[LAMP_BUFFERS] = {"LampRecords", "LampMasks", "LampBounds"};
 
 static lamps_way choose_way(const pass *p, uint32_t count) {
     static const char *const words[] = {"all", "tiles", "volumes"};
@@ -75,36 +62,38 @@ size_t pass_lamps_defines(const pass *p, shader_define out[PASS_LAMPS_DEFINES]) 
 // ---- building ---------------------------------------------------------------------------------
 
 static bool is_used(const pass_lamps *l, int stage) {
-    return stage != MASKS || l->way == LAMPS_TILES;
+    return stage != LISTS_MASKS || l->way == LAMPS_TILES;
 }
 
 bool pass_lamps_check(pass *p) {
-    for (int i = 0; p->lamps && i < STAGES; i++) {
+    for (int i = 0; p->lamps && i < LISTS_STAGES; i++) {
         const shader_define defines[] = {{stages[i], "1"}, {"WITHOUT_FIELDS", "1"}};
         if (is_used(p->lamps, i) && !pass_compile(p, shader, SHADER_COMPUTE, defines,
                                                   COUNT_OF(defines), &p->lamps->binary[i]))
             return false;
     }
-    return true;
+    return pass_lamps_way(p) != LAMPS_VOLUMES || lamps_check_volumes(p);
 }
 
 bool pass_lamps_build(pass *p) {
     if (!pass_lamps_check(p)) return false;
-    for (int i = 0; p->lamps && i < STAGES; i++) {
+    for (int i = 0; p->lamps && i < LISTS_STAGES; i++) {
         const shader_binary *binary = &p->lamps->binary[i];
         if (!is_used(p->lamps, i)) continue;
         p->lamps->block[i] = arena_alloc(p->host->memory, pass_block_size(binary) + 16);
         p->lamps->pipeline[i] = pass_create_compute(p, binary);
         if (!p->lamps->pipeline[i]) return false;
     }
-    return true;
+    return pass_lamps_way(p) != LAMPS_VOLUMES || lamps_build_volumes(p);
 }
 
 void pass_lamps_destroy(pass *p) {
     gpu *device = p->host->device;
-    for (int i = 0; p->lamps && i < STAGES; i++)
+    for (int i = 0; p->lamps && i < LISTS_STAGES; i++)
         if (p->lamps->pipeline[i]) gpu_pipeline_destroy(device, p->lamps->pipeline[i]);
-    for (int i = 0; p->lamps && i < BUFFERS; i++) gpu_buffer_destroy(device, p->lamps->buffers[i]);
+    for (int i = 0; p->lamps && i < LAMP_BUFFERS; i++)
+        gpu_buffer_destroy(device, p->lamps->buffers[i]);
+    if (p->lamps) lamps_destroy_volumes(p);
 }
 
 // ---- in a frame -------------------------------------------------------------------------------
@@ -180,14 +169,20 @@ bool pass_lamps_record(pass *p) {
     if (!p->lamps) return true;
     const tiling t = tiling_of(p);
     uint32_t x = (t.across + GROUP - 1) / GROUP * GROUP, rows = (p->lamps->count + x - 1) / x;
-    bool tiles = p->lamps->way == LAMPS_TILES;
-    if (tiles && rows < t.height) rows = t.height;
-    return make_buffers(p, &t) && run(p, RECORDS, &t, x, rows) &&
-           (!tiles || run(p, MASKS, &t, t.across * t.words, t.down));
+    lamps_way way = p->lamps->way;
+    if (way == LAMPS_TILES && rows < t.height) rows = t.height;
+    return make_buffers(p, &t) && run(p, LISTS_RECORDS, &t, x, rows) &&
+           (way != LAMPS_TILES || run(p, LISTS_MASKS, &t, t.across * t.words, t.down)) &&
+           (way != LAMPS_VOLUMES || lamps_draw_volumes(p, t.width, t.height));
 }
 
 bool pass_lamps_bind(const pass *p, const char *name, gpu_binding *out) {
-    for (int i = 0; p->lamps && i < BUFFERS; i++) {
+    if (p->lamps && p->lamps->volumes.light && strcmp(name, "LampLight") == 0) {
+        out->image = p->lamps->volumes.light;
+        out->sampler = GPU_NEAREST_CLAMP;
+        return true;
+    }
+    for (int i = 0; p->lamps && i < LAMP_BUFFERS; i++) {
         if (!p->lamps->buffers[i] || strcmp(name, buffer_names[i]) != 0) continue;
         out->buffer = p->lamps->buffers[i];
         return true;

@@ -215,7 +215,7 @@ static bool bind_slot(pass *p, const shader_binary *binary, const shader_slot *s
     if (slot->slot.kind == GPU_SLOT_UNIFORM) return bind_block(p, binary, slot->name, block, out);
     if (slot->slot.kind == GPU_SLOT_STORAGE_BUFFER) return bind_buffer(p, slot->name, out);
     return bind_field_texture(p, slot->name, out) || bind_image(p, slot->name, out) ||
-           bind_common_image(p, slot->name, out) ||
+           bind_common_image(p, slot->name, out) || pass_lamps_bind(p, slot->name, out) ||
            err_set("%s: image '%s' has no annotation (//= input or //= output)", p->label,
                    slot->name);
 }
@@ -267,7 +267,8 @@ bool pass_rehearse(pass *p) {
     for (size_t i = 0; i < p->instances_count; i++) {
         mat4 transform;
         float tint[4];
-        if (!scene_instances_place(p->instances[i], p->host->context, transform, tint)) return false;
+        if (!scene_instances_place(p->instances[i], p->host->context, transform, tint))
+            return false;
     }
     return fill_numbers(p) && (!p->type || !p->type->rehearse || p->type->rehearse(p));
 }

@@ -137,7 +137,7 @@ static float *light_many(pass_world *w, const char *way, uint32_t count, uint32_
 }
 
 static void expect_equal_ways(gpu *device, uint32_t count, uint32_t size) {
-    static const char *const ways[] = {"all", "tiles"};
+    static const char *const ways[] = {"all", "tiles", "volumes"};
     float *pictures[COUNT_OF(ways)];
     double sum = 0;
     for (size_t i = 0; i < COUNT_OF(ways); i++) {

@@ -84,19 +84,7 @@ vec3 sky_mirrored(shaded s) {
     return shading_mirrored(s) * mix(given, wide, s.roughness);
 }
 
-#if HAS_LAMPS
-// Of the lamps of `point_lights`.
-void add_lamps(inout reflected sum, shaded s, ivec2 pixel) {
-    for (lamp_list list = lamps_at(pixel); lamps_next(list);) {
-        lamp l = lamps_get(list);
-        light_ray ray = lamp_ray(l, s.position);
-#if HAS_SHADOW_MAPS
-        ray.irradiance *= shadow_of(shadow_maps_of_lamp(l.index), false, l.position, s.position, s.normal);
-#endif
-        shading_add(sum, shading_respond(s, ray.direction, ray.irradiance));
-    }
-}
-#endif
+#include "lamps.glsl"
 
 // Radiance towards the viewer, of all light but what the surface itself gives off.
 vec3 surface_light(shaded s, uvec2 pixel) {
@@ -122,7 +110,7 @@ vec3 surface_light(shaded s, uvec2 pixel) {
         if (matters) shading_dim(given, vec3(light_seen(l, i, ray, s, chance)));
         shading_add(sum, given);
     }
-#if HAS_LAMPS
+#if HAS_LAMPS && !LAMPS_VOLUMES
     add_lamps(sum, s, ivec2(pixel));
 #endif
     return shading_total(s, sum);
