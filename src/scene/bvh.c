@@ -80,7 +80,12 @@ scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count,
     add_things(b, meshes, count, instances, instances_count);
     b->items = mem_alloc(b->item_count * sizeof *b->items);
     b->item_at = mem_alloc(b->item_count * sizeof *b->item_at);
+    b->leaf_of = mem_alloc(b->item_count * sizeof *b->leaf_of);
     b->changed = mem_alloc(run_marks(b->item_count));
+    size_t nodes = bvh_top_nodes(b->item_count);
+    b->parents = mem_alloc(nodes * sizeof *b->parents);
+    b->stale = mem_alloc(nodes);
+    b->top_marks = mem_alloc(run_marks(nodes));
     for (uint32_t i = 0; i < b->item_count; i++) b->item_at[i] = i;
     bvh_looks_count(b);
     if (add_trees(b)) return b;
@@ -100,6 +105,10 @@ void scene_bvh_destroy(scene_bvh *b, gpu *g) {
     mem_free(b->things);
     mem_free(b->items);
     mem_free(b->item_at);
+    mem_free(b->leaf_of);
+    mem_free(b->parents);
+    mem_free(b->stale);
+    mem_free(b->top_marks);
     mem_free(b->changed);
     mem_free(b->materials);
     mem_free(b->looks);

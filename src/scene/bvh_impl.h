@@ -38,16 +38,20 @@ struct scene_bvh {
     bvh_forest forest;  // its first nodes are of the tree over the items
     uint32_t top_count; // 0: there is none yet
     float top_cost;     // as it was when it was made
-    bool top_moved;     // an item's box has changed
-    bool top_changed;   // nodes have
+    uint32_t *parents;  // of these nodes; the root's is 0
+    uint8_t *stale;     // whose boxes do not fit
+    uint8_t *top_marks; // that have changed (runs.h)
+    size_t top_moved;   // boxes of items that have changed since the cost was looked at
 
     struct bvh_instance *items; // in the order of the tree
     uint32_t *item_at;          // by item: its place there
+    uint32_t *leaf_of;          // by place: the node that it is in
     uint8_t *changed;           // marks of items (runs.h)
 
     struct surface_material *looks; // of all materials, once they are on the device
     bool looked;                    // they have been written
     bool holes;
+    bool headed; // the device knows how many items and nodes over them there are
     gpu_buffer *buffers[BVH_PARTS];
 };
 
@@ -60,6 +64,7 @@ void bvh_looks_add(scene_bvh *b, surfaces *s, size_t mesh);
 bool bvh_looks_update(scene_bvh *b, gpu *g, const field_context *context);
 // The tree over the items is made, where there is none, or follows their boxes (bvh_top.c).
 void bvh_top_update(scene_bvh *b);
-size_t bvh_top_nodes(size_t items); // that it may take
+void bvh_top_moved(scene_bvh *b, size_t place); // the box of the item there has changed
+size_t bvh_top_nodes(size_t items);             // that it may take
 // The box of an item that is not to be seen: nothing meets it.
 bool bvh_is_nowhere(const struct bvh_instance *item);

@@ -48,7 +48,7 @@ static void put(scene_bvh *b, size_t item, const struct bvh_instance *made) {
     if (memcmp(now, made, sizeof *now) == 0) return;
     if (memcmp(&now->low, &made->low, sizeof now->low) != 0 ||
         memcmp(&now->high, &made->high, sizeof now->high) != 0)
-        b->top_moved = true;
+        bvh_top_moved(b, b->item_at[item]);
     *now = *made;
     run_mark(b->changed, b->item_at[item]);
 }
@@ -147,11 +147,12 @@ bool scene_bvh_place(scene_bvh *b, const field_context *context) {
 bool scene_bvh_update(scene_bvh *b, gpu *g, const field_context *context) {
     if (!scene_bvh_place(b, context) || !bvh_looks_update(b, g, context)) return false;
     const uint32_t head[4] = {(uint32_t)b->item_count, b->top_count};
-    size_t nodes = b->top_count * sizeof *b->forest.nodes;
-    if (b->top_changed && (!gpu_buffer_write(g, b->buffers[BVH_INSTANCES], 0, head, BVH_HEAD) ||
-                           !gpu_buffer_write(g, b->buffers[BVH_NODES], 0, b->forest.nodes, nodes)))
+    if (!b->headed && !gpu_buffer_write(g, b->buffers[BVH_INSTANCES], 0, head, BVH_HEAD))
         return false;
-    b->top_changed = false;
+    b->headed = true;
+    if (!runs_write(g, b->buffers[BVH_NODES], 0, b->forest.nodes, sizeof *b->forest.nodes,
+                    b->top_count, b->top_marks))
+        return false;
     return runs_write(g, b->buffers[BVH_INSTANCES], BVH_HEAD, b->items, sizeof *b->items,
                       b->item_count, b->changed);
 }

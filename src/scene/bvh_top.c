@@ -7,7 +7,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { ONE_LEAF = 8 };              // items that need no tree
+enum {
+    ONE_LEAF = 8, // items that need no tree
+    LOOK = 8,     // part of the items that must have moved before the cost is looked at
+};
 static const float worn_out = 1.5f; // costs by those of the tree when it was built
 
 size_t bvh_top_nodes(size_t items) {
@@ -43,24 +46,39 @@ static bvh_bounds node_box(const struct bvh_node *node) {
     return box;
 }
 
+static bvh_bounds leaf_box(const scene_bvh *b, uint32_t leaf) {
+    bvh_bounds box = bvh_bounds_empty();
+    for (uint32_t first = leaf & 0xfffffff, i = first; i < first + (leaf >> 28); i++) {
+        bvh_bounds one = item_box(&b->items[i]);
+        bvh_bounds_add(&box, &one);
+    }
+    return box;
+}
+
+void bvh_top_moved(scene_bvh *b, size_t place) {
+    b->top_moved++;
+    if (b->top_count) b->stale[b->leaf_of[place]] = 1;
+}
+
 // Children lie behind their parents.
 static void fit(scene_bvh *b) {
     struct bvh_node *nodes = b->forest.nodes;
     for (uint32_t i = b->top_count; i-- > 0;) {
-        struct bvh_node *node = &nodes[i];
-        bvh_bounds box = bvh_bounds_empty();
-        if (node->leaf) {
-            uint32_t first = node->leaf & 0xfffffff;
-            for (uint32_t k = first; k < first + (node->leaf >> 28); k++) {
-                bvh_bounds one = item_box(&b->items[k]);
-                bvh_bounds_add(&box, &one);
-            }
+        if (!b->stale[i]) continue;
+        b->stale[i] = 0;
+        struct bvh_node before = nodes[i];
+        bvh_bounds box;
+        if (before.leaf) {
+            box = leaf_box(b, before.leaf);
         } else {
-            bvh_bounds left = node_box(node + 1), right = node_box(&nodes[node[1].next]);
-            bvh_bounds_add(&box, &left);
+            bvh_bounds right = node_box(&nodes[nodes[i + 1].next]);
+            box = node_box(&nodes[i + 1]);
             bvh_bounds_add(&box, &right);
         }
-        set_box(node, &box);
+        set_box(&nodes[i], &box);
+        if (memcmp(&before, &nodes[i], sizeof before) == 0) continue;
+        run_mark(b->top_marks, i);
+        b->stale[b->parents[i]] = i > 0;
     }
 }
 
@@ -118,36 +136,48 @@ static void reorder(scene_bvh *b, const uint32_t *order) {
     memset(b->changed, 1, run_marks(b->item_count));
 }
 
+// Where everything is in it; all of it is new.
+static void link(scene_bvh *b) {
+    for (uint32_t i = 0; i < b->top_count; i++) {
+        const struct bvh_node *node = &b->forest.nodes[i];
+        uint32_t first = node->leaf & 0xfffffff;
+        for (uint32_t k = first; k < first + (node->leaf >> 28); k++) b->leaf_of[k] = i;
+        if (node->leaf) continue;
+        b->parents[i + 1] = b->parents[node[1].next] = i;
+    }
+    memset(b->stale, 1, b->top_count);
+    memset(b->top_marks, 1, run_marks(b->top_count));
+    b->headed = false;
+}
+
 static void build(scene_bvh *b) {
     if (b->item_count <= ONE_LEAF) {
         b->top_count = 1;
         b->forest.nodes[0] = (struct bvh_node){.next = 1, .leaf = (uint32_t)b->item_count << 28};
-        return;
+    } else {
+        top_build t = {.order = mem_alloc(b->item_count * sizeof *t.order)};
+        bvh_build made = {.add_leaf = add_leaf, .user = &t};
+        bvh_piece *pieces = make_pieces(b);
+        bvh_build_tree(&made, pieces, b->item_count);
+        memcpy(b->forest.nodes, made.nodes, made.node_count * sizeof *made.nodes);
+        b->top_count = (uint32_t)made.node_count;
+        reorder(b, t.order);
+        mem_free(pieces);
+        mem_free(made.nodes);
+        mem_free(t.order);
     }
-    top_build t = {.order = mem_alloc(b->item_count * sizeof *t.order)};
-    bvh_build made = {.add_leaf = add_leaf, .user = &t};
-    bvh_piece *pieces = make_pieces(b);
-    bvh_build_tree(&made, pieces, b->item_count);
-    memcpy(b->forest.nodes, made.nodes, made.node_count * sizeof *made.nodes);
-    b->top_count = (uint32_t)made.node_count;
-    reorder(b, t.order);
-    mem_free(pieces);
-    mem_free(made.nodes);
-    mem_free(t.order);
+    link(b);
+    fit(b);
+    b->top_cost = cost(b);
+    b->top_moved = 0;
 }
 
 void bvh_top_update(scene_bvh *b) {
-    bool first = b->top_count == 0;
-    if ((!b->top_moved && !first) || b->item_count == 0) return;
-    if (first) build(b);
+    if (b->item_count == 0) return;
+    if (b->top_count == 0) build(b);
+    if (b->top_moved == 0) return;
     fit(b);
-    if (first || (b->item_count > ONE_LEAF && cost(b) > worn_out * b->top_cost)) {
-        if (!first) {
-            build(b);
-            fit(b);
-        }
-        b->top_cost = cost(b);
-    }
-    b->top_moved = false;
-    b->top_changed = true;
+    if (b->top_moved < b->item_count / LOOK || b->item_count <= ONE_LEAF) return;
+    b->top_moved = 0;
+    if (cost(b) > worn_out * b->top_cost) build(b);
 }
