@@ -5,6 +5,7 @@ uniform sampler2D depth;   //= input : of the surface (m)
 uniform sampler2D surface; //= input optional : its reflection
 #include "lib/frame.glsl"
 #include "lib/light.glsl"
+#include "lib/bvh.glsl"
 #include "lib/lamps.glsl"
 #include "lib/shadows.glsl"
 #include "lib/shading.glsl"
