@@ -64,15 +64,15 @@ float shadow_filter(vec2 at, float z, float radius) {
     return sum / (4.0 * radius * radius);
 }
 
-struct shadow_look {
-    float seen;   // part of the light that arrives
+struct shadow_place {
+    vec3 at;      // xy: texels of the atlas; z: depth
     float within; // texels from the edge of the view; below 0: it does not show the point
 };
 
 // Neighbours of a texel are nearer to the light by what the plane of the surface rises between them:
 // to lift a point by the way across times the part of the normal along that way is just enough, in
 // either direction of the texels (after Holbert, "Saying goodbye to shadow acne", GDC 2011).
-shadow_look shadow_look_at(int view, vec3 p, vec3 n) {
+shadow_place shadow_place_at(int view, vec3 p, vec3 n) {
     int row = 1 + view;
     vec4 row_x = texelFetch(shadow_views, ivec2(0, row), 0), row_y = texelFetch(shadow_views, ivec2(1, row), 0);
     vec4 row_z = texelFetch(shadow_views, ivec2(2, row), 0), row_w = texelFetch(shadow_views, ivec2(3, row), 0);
@@ -82,25 +82,29 @@ shadow_look shadow_look_at(int view, vec3 p, vec3 n) {
     float lift = all.y * texel * (all.x + 1.0) * (abs(dot(n, right.xyz)) + abs(dot(n, up.xyz)));
     vec4 q = vec4(p + lift * n, 1.0);
     float w = dot(row_w, q);
-    if (!(w > 0.0)) return shadow_look(1.0, -1.0);
-    vec2 at = vec2(dot(row_x, q), dot(row_y, q)) / w;
-    float z = dot(row_z, q) / w, reach = all.x + 1.0;
-    vec2 inside = min(at - edge.xy, edge.zw - at) - reach;
-    float within = min(inside.x, inside.y);
-    if (within < 0.0) return shadow_look(1.0, within);
-    return shadow_look(shadow_filter(at, min(z, 1.0), all.x), within);
+    vec3 at = vec3(dot(row_x, q), dot(row_y, q), dot(row_z, q)) / max(w, 1e-20);
+    vec2 inside = min(at.xy - edge.xy, edge.zw - at.xy) - all.x - 1.0;
+    return shadow_place(vec3(at.xy, min(at.z, 1.0)), w > 0.0 ? min(inside.x, inside.y) : -1.0);
 }
+
+float shadow_look(vec3 at) {
+    return shadow_filter(at.xy, at.z, texelFetch(shadow_views, ivec2(0), 0).x);
+}
+
+// Part of a cascade's width along which it goes over into the next.
+const float SHADOW_BLEND = 0.05;
 
 // The sun's: the finest cascade that shows the point, blended with the next near its edge; the last
 // with light.
 float shadow_of_cascades(shadow_maps m, vec3 p, vec3 n) {
+    int i = m.first, end = m.first + m.count;
+    shadow_place place = shadow_place_at(i, p, n);
+    for (; place.within < 0.0 && ++i < end;) place = shadow_place_at(i, p, n);
     float seen = 0.0, left = 1.0;
-    for (int i = 0; i < m.count && left > 0.0; i++) {
-        shadow_look look = shadow_look_at(m.first + i, p, n);
-        if (look.within < 0.0) continue;
-        vec4 edge = texelFetch(shadow_views, ivec2(6, 1 + m.first + i), 0);
-        float here = left * clamp(look.within / (0.05 * (edge.z - edge.x)), 0.0, 1.0);
-        seen += here * look.seen;
+    for (; i < end && left > 0.0; place = shadow_place_at(min(++i, end - 1), p, n)) {
+        vec4 edge = texelFetch(shadow_views, ivec2(6, 1 + i), 0);
+        float here = left * clamp(place.within / (SHADOW_BLEND * (edge.z - edge.x)), 0.0, 1.0);
+        seen += here * shadow_look(place.at);
         left -= here;
     }
     return seen + left;
@@ -119,7 +123,8 @@ float shadow_of(shadow_maps m, bool sun, vec3 source, vec3 p, vec3 n) {
     if (m.count == 0) return 1.0;
     if (sun) return shadow_of_cascades(m, p, n);
     int face = m.count > 1 ? shadow_face(p - source) : 0;
-    return mix(1.0, shadow_look_at(m.first + face, p, n).seen, m.dark);
+    shadow_place place = shadow_place_at(m.first + face, p, n);
+    return place.within < 0.0 ? 1.0 : mix(1.0, shadow_look(place.at), m.dark);
 }
 
 // The same of the light `index` of lib/light.glsl.

@@ -2,6 +2,7 @@
 // those of the point lights that matter most on the device, where lamps move), then meshes and
 // instances are drawn in each, into one atlas. Cubes, not tetrahedra: README.md of
 // shaders/pass/shadow_maps says what was counted.
+#include "pass/shadow_maps.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/builtin.h"
@@ -46,6 +47,15 @@ static void add_views(shadow_state *s, uint32_t count, uint32_t size) {
     for (uint32_t i = 0; i < count; i++) s->sizes[s->views++] = size;
 }
 
+// Rows of the images that say so.
+static uint32_t count_lights(const pass *p) {
+    graph_image lights = p->images[pass_find_image(p, "lights")];
+    graph_image lamps = p->images[pass_find_image(p, "lamps")];
+    const graph *g = p->host->graph;
+    return (lights.id ? graph_get_desc(g, lights)->height : state_of(p)->declared) +
+           (lamps.id ? graph_get_desc(g, lamps)->height : 0);
+}
+
 // Spots that there is no room for have no map.
 static void list_views(pass *p) {
     shadow_state *s = state_of(p);
@@ -54,12 +64,14 @@ static void list_views(pass *p) {
     s->cascades = number_of(p, "cascades");
     s->points = number_of(p, "points");
     add_views(s, s->cascades, number_of(p, "size"));
-    uint32_t most = DRAWN_MAX_VIEWS - FACES * s->points;
+    uint32_t most = DRAWN_MAX_VIEWS - FACES * s->points, competing = count_lights(p) - 1;
     for (uint32_t i = 0; i < s->declared; i++) {
-        bool spot = i && around->lights[i - 1].kind == SCENE_SPOT && s->views < most;
-        s->spots[i] = spot ? (int)s->views : -1;
-        add_views(s, spot, number_of(p, "spot_size"));
+        bool spot = i && around->lights[i - 1].kind == SCENE_SPOT, fits = spot && s->views < most;
+        s->spots[i] = fits ? (int)s->views : -1;
+        add_views(s, fits, number_of(p, "spot_size"));
+        competing -= spot;
     }
+    if (s->points > competing) s->points = competing;
     s->fixed = s->views;
     add_views(s, FACES * s->points, number_of(p, "point_size"));
 }
@@ -91,19 +103,6 @@ static bool take_meshes(pass *p) {
             if (!pass_add_instances(p, source->instances[k])) return false;
     }
     return true;
-}
-
-static uint32_t count_lights(const pass *p) {
-    uint32_t count = 0;
-    static const char *const names[] = {"lights", "lamps"};
-    for (size_t i = 0; i < COUNT_OF(names); i++) {
-        graph_image image = p->images[pass_find_image(p, names[i])];
-        if (image.id)
-            count += graph_get_desc(p->host->graph, image)->height;
-        else if (i == 0)
-            count += state_of(p)->declared;
-    }
-    return count;
 }
 
 static bool add_image(pass *p, const char *name, gpu_format format, uint32_t width,
@@ -260,4 +259,34 @@ bool shadow_maps_record(pass *p) {
     target.clear = false;
     return drawn_record(s->drawn, &s->stages, &target, 0, s->views,
                         (const uint32_t(*)[4])s->places);
+}
+
+// ---- for passes that look ---------------------------------------------------------------------
+
+// Whether to look is faster than a ray to each light, by device. Drawing the maps counts, too: on a
+// processor they cost as much as rays in a small picture, and win in a large one, or among many
+// trees. Of a GPU that traces well nothing is measured yet.
+static const struct {
+    gpu_kind kind;
+    bool maps;
+} faster[] = {{GPU_CPU, true}, {GPU_DISCRETE, false}, {GPU_INTEGRATED, true}, {GPU_VIRTUAL, false}};
+
+static bool maps_are_faster(const gpu *device) {
+    gpu_kind kind = device ? gpu_get_info(device)->kind : GPU_CPU;
+    for (size_t i = 0; i < COUNT_OF(faster); i++)
+        if (faster[i].kind == kind) return faster[i].maps;
+    return true;
+}
+
+void pass_choose_shadows(pass *p) {
+    static const char *const names[] = {"shadow_atlas", "shadow_views"};
+    size_t index;
+    if (pass_find_key(p, "shadows_by", &index) != PASS_OPTION) return;
+    const char *const *words = p->face->options[index].words;
+    if (strcmp(words[p->options[index]], "auto") == 0)
+        pass_set_option(p, "shadows_by", maps_are_faster(p->host->device) ? "maps" : "rays");
+    bool maps = strcmp(words[p->options[index]], "maps") == 0;
+    if (maps || p->images[pass_find_image(p, "lamps")].id) return;
+    for (size_t i = 0; i < COUNT_OF(names); i++)
+        p->images[pass_find_image(p, names[i])] = (graph_image){0};
 }

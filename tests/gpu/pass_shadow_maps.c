@@ -211,9 +211,222 @@ static void shadow_of_a_ball_is_where_geometry_puts_it(void **state) {
     compare_with_geometry(*state, "point", SCENE_POINT, lamp, 2 * away / 512);
 }
 
+// ---- what must not be shaded, and what must -----------------------------------------------------
+
+// Pixels where two pictures differ by more than a fiftieth of the light.
+static size_t count_different(const float *a, const float *b) {
+    size_t count = 0;
+    for (size_t i = 0; i < PIXELS; i++)
+        count += fabsf(a[4 * i] - b[4 * i]) > 0.02f * b[4 * i] + 1e-4f;
+    return count;
+}
+
+typedef struct bare_scene {
+    const char *name;
+    float tilt;      // of the only plane, degrees
+    float y, z;      // where it is
+    float azimuth;   // of the sun
+    float elevation; // 0 with the next: it does not shine
+    scene_light_kind kind;
+    float light[3];
+} bare_scene;
+
+// A plane by itself has no shadow, however coarse the map and low the light, and where one cascade
+// or face goes over into another.
+static void a_plane_does_not_shade_itself(void **state) {
+    static const bare_scene scenes[] = {
+        {.name = "sun, 3 degrees", .azimuth = -3, .elevation = 1},
+        {.name = "sun, 20 degrees", .azimuth = -160, .elevation = 5},
+        {.name = "ground", .tilt = -90, .z = -1, .azimuth = 50, .elevation = 12},
+        {.name = "ground, high sun", .tilt = -90, .z = -1, .azimuth = 50, .elevation = 80},
+        {.name = "slope", .tilt = -70, .z = -1, .azimuth = 200, .elevation = 35},
+        {.name = "spot", .kind = SCENE_SPOT, .light = {2.2f, -0.3f, 0.4f}},
+        {.name = "point", .kind = SCENE_POINT, .light = {0.9f, -0.1f, 0.4f}},
+        {.name = "point, away", .kind = SCENE_POINT, .light = {1, -2, 2}},
+    };
+    for (size_t i = 0; i < COUNT_OF(scenes); i++) {
+        const bare_scene *s = &scenes[i];
+        float *pictures[2];
+        for (int maps = 0; maps < 2; maps++) {
+            pass_world w;
+            world_open(&w, *state);
+            add_plane(&w, 200, s->tilt, 0, s->y, s->z);
+            if (s->kind)
+                add_light(&w, s->kind, s->light[0], s->light[1], s->light[2]);
+            else
+                shine(&w, s->azimuth, s->elevation);
+            pictures[maps] = maps ? SHADE(&w, WORD("cascades", "4"), WORD("size", "256"),
+                                          WORD("point_size", "128"), WORD("spot_size", "128"))
+                                  : shade(&w, NULL, 0);
+            world_close(&w);
+        }
+        size_t wrong = count_different(pictures[1], pictures[0]);
+        if (wrong > PIXELS / 1000) fail_msg("%s: %zu of %d pixels are off", s->name, wrong, PIXELS);
+        mem_free(pictures[0]);
+        mem_free(pictures[1]);
+    }
+}
+
+// Behind a wall without thickness, up to where it stands.
+static void no_light_leaks_under_a_thin_wall(void **state) {
+    pass_world w;
+    world_open(&w, *state);
+    add_plane(&w, 200, -90, 0, 0, -1);
+    add_plane(&w, 1, 0, 0, 0, 0);
+    shine(&w, 90, 45);
+    float *c = SHADE(&w, WORD("cascades", "1"), SET("distance", number(&w, 10)));
+    size_t dark = 0, lit = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        double ray[3];
+        pixel_ray(&w, i, ray);
+        double t = ray[2] < 0 ? -1 / ray[2] : 1e9, x = ray[0] * t, y = -5 + t;
+        if (y > -0.02 || y < -4 || (y < -1.94 && y > -2.06) || fabs(fabs(x) - 1) < 0.06) continue;
+        bool hidden = y > -2 && fabs(x) < 1;
+        if (hidden ? c[4 * i] > 0.001f : c[4 * i] < 0.1f)
+            fail_msg("(%.3f, %.3f) is %s: %g", x, y, hidden ? "lit" : "dark", (double)c[4 * i]);
+        dark += hidden;
+        lit += !hidden;
+    }
+    assert_true(dark > 300 && lit > 300);
+    mem_free(c);
+    world_close(&w);
+}
+
+// ---- against rays -------------------------------------------------------------------------------
+
+static void add_crate(pass_world *w, float half, float x, float y, float z) {
+    scene_mesh *crate = world_mesh(w, "crate.obj");
+    crate->scale = number(w, half);
+    crate->position = triple(w, x, y, z);
+}
+
+static const float crates[3][4] = {{0.4f, 0.8f, -1, -0.6f}, {1, -3, 9, 0}, {3, 8, 30, 2}};
+
+static void add_crates(pass_world *w) {
+    add_plane(w, 200, -90, 0, 0, -1);
+    for (int i = 0; i < 3; i++)
+        add_crate(w, crates[i][0], crates[i][1], crates[i][2], crates[i][3]);
+}
+
+// As many instances of one crate.
+static void add_crates_as_instances(pass_world *w) {
+    struct instance_entry entries[3] = {0};
+    add_plane(w, 200, -90, 0, 0, -1);
+    for (int i = 0; i < 3; i++) {
+        const float *c = crates[i];
+        entries[i] = (struct instance_entry){
+            .place = {{c[1], c[2], c[3], c[0]}}, .turn = {{0, 0, 0, 1}}, .color = {{1, 1, 1, 1}}};
+    }
+    scene_mesh *crate = world_mesh(w, "crate.obj");
+    w->mesh_count--; // the kind is no mesh of the scene
+    scene_mesh *kept = arena_alloc(&w->memory, sizeof *kept);
+    *kept = *crate;
+    w->instances[w->instances_count++] = scene_instances_create(&(scene_instances_desc){
+        .name = "crates",
+        .kinds = &kept,
+        .kind_count = 1,
+        .entries = entries,
+        .count = 3,
+        .position = triple(w, 0, 0, 0),
+        .rotation = triple(w, 0, 0, 0),
+        .scale = number(w, 1),
+        .color = triple(w, 1, 1, 1),
+    });
+    gpu_test_ok(w->instances[0]);
+}
+
+// Near and far, over all cascades; from faces of a cube.
+static void maps_show_what_rays_find(void **state) {
+    for (int lamp = 0; lamp < 2; lamp++) {
+        float *pictures[3];
+        for (int way = 0; way < 3; way++) { // rays; maps; maps of instances
+            pass_world w;
+            world_open(&w, *state);
+            if (way == 2)
+                add_crates_as_instances(&w);
+            else
+                add_crates(&w);
+            if (lamp)
+                add_light(&w, SCENE_POINT, 0, 2, 1.5f);
+            else
+                shine(&w, 30, 30);
+            pictures[way] = way ? SHADE(&w, WORD("point_size", "1024"), WORD("cascades", "4"),
+                                        SET("shadow_radius", number(&w, 0.5f)))
+                                : shade(&w, NULL, 0);
+            if (way == 2) {
+                scene_mesh *const *kinds;
+                scene_instances_kinds(w.instances[0], &kinds);
+                scene_mesh_destroy(kinds[0], *state);
+            }
+            world_close(&w);
+        }
+        size_t off = count_different(pictures[1], pictures[0]);
+        size_t apart = count_different(pictures[2], pictures[1]);
+        if (off > PIXELS / 50 || apart)
+            fail_msg("%s: %zu pixels are not as by rays, %zu not as of meshes",
+                     lamp ? "lamp" : "sun", off, apart);
+        for (int way = 0; way < 3; way++) mem_free(pictures[way]);
+    }
+}
+
+// ---- holes --------------------------------------------------------------------------------------
+
+// A square across the Y axis, 2 m wide, whose left half is clear.
+static void add_half(pass_world *w, float y) {
+    static const uint8_t pixels[] = {255, 255, 255, 0, 255, 255, 255, 255};
+    mesh_texture *texture = arena_alloc(&w->memory, sizeof *texture);
+    mesh_vertex *vertices = arena_alloc(&w->memory, 4 * sizeof *vertices);
+    static const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
+    for (int i = 0; i < 4; i++) {
+        float x = i == 1 || i == 2 ? 1.0f : -1.0f, z = i < 2 ? -1.0f : 1.0f;
+        vertices[i] = (mesh_vertex){.position = {x, 0, z}, .normal = {0, -1, 0}};
+        vertices[i].u = 0.5f + 0.25f * x;
+    }
+    *texture = (mesh_texture){.width = 2, .height = 1, .pixels = pixels};
+    mesh_part *part = white_part(w, 6);
+    part->texture = 0;
+    add_mesh(w, &(mesh_data){.vertices = vertices,
+                             .vertex_count = 4,
+                             .indices = indices,
+                             .index_count = 6,
+                             .parts = part,
+                             .part_count = 1,
+                             .textures = texture,
+                             .texture_count = 1,
+                             .box = {.min = {-1, -0.01f, -1}, .max = {1, 0.01f, 1}}})
+        ->position = triple(w, 0, y, 0);
+}
+
+static void light_shines_through_what_is_clear(void **state) {
+    pass_world w;
+    world_open(&w, *state);
+    add_plane(&w, 200, 0, 0, 0, 0);
+    add_half(&w, -7); // behind the camera
+    shine(&w, -90, 0);
+    float *c = SHADE(&w, WORD("cascades", "1"), SET("distance", number(&w, 20)));
+    size_t dark = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        double ray[3];
+        pixel_ray(&w, i, ray);
+        double x = 5 * ray[0], z = 5 * ray[2];
+        if (fabs(x) < 0.1 || fabs(fabs(x) - 1) < 0.1 || fabs(fabs(z) - 1) < 0.1) continue;
+        bool hidden = x > 0 && x < 1 && fabs(z) < 1;
+        if (hidden ? c[4 * i] > 0.01f : c[4 * i] < 0.1f)
+            fail_msg("(%.3f, %.3f) is %s", x, z, hidden ? "lit" : "dark");
+        dark += hidden;
+    }
+    assert_true(dark > 200);
+    mem_free(c);
+    world_close(&w);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(shadow_of_a_ball_is_where_geometry_puts_it),
+        cmocka_unit_test(a_plane_does_not_shade_itself),
+        cmocka_unit_test(no_light_leaks_under_a_thin_wall),
+        cmocka_unit_test(maps_show_what_rays_find),
+        cmocka_unit_test(light_shines_through_what_is_clear),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }

@@ -1,0 +1,8 @@
+// Passes that look into the maps of `shadow_maps`: they include lib/shadows.glsl, which declares
+// the inputs, and have the option `shadows_by`.
+#pragma once
+#include "pass/pass.h"
+
+// Before the pass is declared: settles `auto`. Maps that nothing is looked up in are let go, so
+// that they are not drawn.
+void pass_choose_shadows(pass *p);
