@@ -31,6 +31,14 @@ bool shadow_maps_fill(pass *p, const shader_binary *binary, unsigned char *block
 bool shadow_maps_record(pass *p);
 void shadow_maps_destroy(pass *p);
 
+bool forward_declare(pass *p);
+bool forward_check(pass *p);
+bool forward_build(pass *p);
+bool forward_allocate(pass *p);
+bool forward_fill(pass *p, const shader_binary *binary, unsigned char *block);
+bool forward_record(pass *p);
+void forward_destroy(pass *p);
+
 bool lighting_declare(pass *p);
 bool lighting_check(pass *p);
 bool lighting_build(pass *p);

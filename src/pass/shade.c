@@ -1,10 +1,10 @@
-// Shade: one shader, compiled with and without the loops over many rays. Which of them a frame
-// needs its numbers say; a software device computes what it skips, so that loops for nothing cost
-// it three times the rest. Before many rays it is found out what may stand between each tile of the
-// picture and each light; for single rays that takes longer than it saves.
+// Shade: one shader, in two variants (rays.h). Before many rays it is found out what may stand
+// between each tile of the picture and each light; for single rays that takes longer than it saves.
 #include "base/error.h"
 #include "pass/builtin.h"
 #include "pass/pass_impl.h"
+#include "pass/rays.h"
+#include "pass/shadow_maps.h"
 #include <string.h>
 
 enum { TILE = 16, LIST_WORDS = 16, MAX_LISTED = 64 }; // as in shade/shafts.glsl, shade_shafts.comp
@@ -18,17 +18,17 @@ typedef struct shade_state {
     gpu_buffer *lists; // of leaves, for each tile and light
 } shade_state;
 
-static const shader_define variants[2] = {{"MANY_RAYS", "0"}, {"MANY_RAYS", "1"}};
-
 bool shade_declare(pass *p) {
     pass_drop_matte(p, "surface", "emission");
+    pass_choose_shadows(p);
     return pass_declare_images(p) && pass_add_to_graph(p);
 }
 
 static bool compile(pass *p, shade_state *s) {
-    return pass_compile(p, p->shader, SHADER_COMPUTE, &variants[0], 1, &s->binary[0]) &&
-           pass_compile(p, p->shader, SHADER_COMPUTE, &variants[1], 1, &s->binary[1]) &&
-           pass_compile(p, "pass/shade_shafts.comp", SHADER_COMPUTE, NULL, 0, &s->shafts);
+    for (int i = 0; i < 2; i++)
+        if (!pass_compile(p, p->shader, SHADER_COMPUTE, &pass_rays_variants[i], 1, &s->binary[i]))
+            return false;
+    return pass_compile(p, "pass/shade_shafts.comp", SHADER_COMPUTE, NULL, 0, &s->shafts);
 }
 
 bool shade_check(pass *p) {
@@ -43,30 +43,14 @@ static bool make(pass *p, bool many) {
     return s->pipeline[many] && (!many || s->shafts_pipeline);
 }
 
-// Whether a number can be above `limit`, as far as that is known before a frame: passes are built
-// side by side, where no Lua may run.
-static void guess(const pass *p, const char *name, float limit, bool can[2]) {
-    size_t index;
-    pass_find_key(p, name, &index);
-    const shader_uniform *declared = &p->face->uniforms[index];
-    const field *node = p->uniforms[index];
-    if (!node) node = pass_inherited_uniform(p, index, &declared);
-    bool moves = node && strcmp(node->kind->name, "constant") != 0;
-    float value = node && !moves ? node->value[0] : declared->value[0];
-    can[0] = moves || value <= limit;
-    can[1] = moves || value > limit;
-}
-
 bool shade_build(pass *p) {
     shade_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    bool shadow[2], sky[2];
-    guess(p, "shadow_samples", 1, shadow);
-    guess(p, "sky_samples", 0, sky);
+    bool can[2];
+    pass_rays_foresee(p, can);
     if (!compile(p, s)) return false;
     p->binary = s->binary[1]; // has all that the other has
     s->shafts_block = arena_alloc(p->host->memory, pass_block_size(&s->shafts) + 16);
-    bool few_rays = shadow[0] && sky[0], many_rays = shadow[1] || sky[1];
-    return (!few_rays || make(p, false)) && (!many_rays || make(p, true));
+    return (!can[0] || make(p, false)) && (!can[1] || make(p, true));
 }
 
 // ---- in a frame -------------------------------------------------------------------------------
@@ -74,7 +58,7 @@ bool shade_build(pass *p) {
 // The variant of this frame. One that was not foreseen is made when a number first asks for it.
 static bool choose(pass *p) {
     shade_state *s = p->state;
-    bool many = pass_evaluate(p, "shadow_samples") > 1 || pass_evaluate(p, "sky_samples") > 0;
+    bool many = pass_rays_many(p);
     if (!make(p, many)) return false;
     p->binary = s->binary[many];
     p->pipeline = s->pipeline[many];

@@ -56,6 +56,18 @@ static const pass_type types[] = {
         .shader = "pass/lamp_glows.comp",
     },
     {
+        .name = "forward",
+        .shader = "pass/forward.frag",
+        .meshes = PASS_DRAWS_MESHES,
+        .declare = forward_declare,
+        .check = forward_check,
+        .build = forward_build,
+        .allocate = forward_allocate,
+        .fill = forward_fill,
+        .record = forward_record,
+        .destroy = forward_destroy,
+    },
+    {
         .name = "lighting",
         .shader = "pass/lighting.comp",
         .declare = lighting_declare,

@@ -2,6 +2,7 @@
 //
 // The including shader has the uniforms shadow_samples and sky_samples; MANY_RAYS says whether they
 // are looked at, SHAFTS whether there are lists of what may stand in the rays' way (shafts.glsl).
+//@ option shadows_by = auto {auto, maps, rays} : how it is found out what stands before sun and lights: maps: by the maps of shadow_maps, of those lights that have some; rays: by rays, of all; auto: what is faster on the device
 
 const float PI = 3.14159265, GOLDEN_ANGLE = 2.39996323;
 const float NEGLIGIBLE = 1.0 / 4096.0; // of the light on a surface: such a light gets no shadow
@@ -15,9 +16,10 @@ vec2 disc_point(int k, int count, vec2 chance) {
 // Part of the light's disc that no mesh hides. `index` is the light's.
 float light_seen(light l, int index, light_ray ray, shaded s, vec2 chance) {
     float far = ray.distance - (l.kind == LIGHT_SUN ? 0.0 : l.radius);
-#if HAS_SHADOW_MAPS
-    return shadow_of(shadow_maps_of(index), l.kind == LIGHT_SUN, l.position, s.position, s.normal);
-#else
+#if HAS_SHADOW_MAPS && SHADOWS_BY == SHADOWS_BY_MAPS
+    shadow_maps maps = shadow_maps_of(index);
+    if (maps.count > 0) return shadow_of(maps, l.kind == LIGHT_SUN, l.position, s.position, s.normal);
+#endif
     if (shadow_samples == 0 || far <= 0.0) return 1.0;
 #if MANY_RAYS
 #if SHAFTS
@@ -38,7 +40,6 @@ float light_seen(light l, int index, light_ray ray, shaded s, vec2 chance) {
     return float(seen) / float(count);
 #else
     return bvh_occluded(s.position, ray.direction, 0.0, far) ? 0.0 : 1.0;
-#endif
 #endif
 }
 

@@ -1,3 +1,5 @@
+#include "point.glsl"
+
 // The surface that a point of the picture shows, from what `geometry` found.
 struct surface_point {
     vec4 base;      // its colour; a: 0 where nothing is
@@ -10,7 +12,5 @@ surface_point surface_at(vec2 uv) {
     vec3 along = frame_ray(uv);
     float deep = texelFetch(depth, texel, 0).r, distance = deep * length(along);
     vec3 n = normalize(texelFetch(normal, texel, 0).xyz);
-    // Rays begin as far off the surface as rounding may have moved the point: less than a pixel.
-    vec3 p = frame.eye.xyz + deep * along + (1e-4 + 3e-4 * distance) * n;
-    return surface_point(texelFetch(albedo, texel, 0), n, p, distance);
+    return surface_point(texelFetch(albedo, texel, 0), n, lifted_point(deep, along, n), distance);
 }
