@@ -105,6 +105,7 @@ static void add_triangle(simplifier *s, const unsigned corners[3]) {
     float most = -INFINITY;
     vec3 normal;
     face_normal(s->mesh, corners, normal);
+    if (glm_vec3_dot(normal, normal) == 0) return; // without area
     for (int k = 0; k < 3; k++) out[k] = choose_vertex(s, corners[k], normal, &most, &owner);
     s->made_owners[s->made_count++] = owner;
 }
