@@ -27,10 +27,12 @@ static void add_texture(surfaces *s, const mesh_texture *texture) {
     }
 }
 
-static bool has_holes(const mesh_texture *texture, float alpha) {
+bool surface_has_holes(const mesh_data *mesh, const mesh_part *part) {
+    if (part->texture < 0) return part->color[3] < 0.5f;
+    const mesh_texture *texture = &mesh->textures[part->texture];
     size_t count = (size_t)texture->width * texture->height;
     for (size_t i = 0; i < count; i++)
-        if (alpha * (float)texture->pixels[4 * i + 3] / 255 < 0.5f) return true;
+        if (part->color[3] * (float)texture->pixels[4 * i + 3] / 255 < 0.5f) return true;
     return false;
 }
 
@@ -43,7 +45,7 @@ static void add_material(surfaces *s, const mesh_data *mesh, const mesh_part *pa
     memcpy(material->color.v, part->color, sizeof part->color);
     if (part->texture < 0) return;
     const mesh_texture *texture = &mesh->textures[part->texture];
-    bool holes = has_holes(texture, part->color[3]);
+    bool holes = surface_has_holes(mesh, part);
     material->texture =
         (shared_uvec4){{texture->width, texture->height, first[part->texture], holes}};
     s->holes = s->holes || holes;

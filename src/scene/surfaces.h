@@ -15,6 +15,8 @@ typedef struct surfaces {    // zero: empty
     bool holes; // some material has
 } surfaces;
 
+// Whether something shows through: its colour or its texture is clear in places.
+bool surface_has_holes(const mesh_data *mesh, const mesh_part *part);
 // The triangles of the forest up to `end` that have no surface yet are those of `mesh`.
 void surfaces_add(surfaces *s, const bvh_forest *f, size_t end, const mesh_data *mesh);
 void surfaces_free(surfaces *s);
