@@ -10,6 +10,7 @@ struct bvh_hit {
     float distance; // metres; negative: nothing was hit
     vec3 normal;    // unit, of the face, towards the ray's origin
     vec3 albedo;    // material colour times the mesh's, of a texture its mean
+    ivec2 what;     // what is placed there, and its triangle
 };
 
 struct bvh_ray {
@@ -102,7 +103,7 @@ ivec2 bvh_find(inout bvh_ray ray, bool any) {
 bvh_hit bvh_trace(vec3 origin, vec3 direction, float near, float far) {
     bvh_ray ray = bvh_make_ray(origin, direction, near, far);
     ivec2 hit = bvh_find(ray, false);
-    if (hit.x < 0) return bvh_hit(-1.0, vec3(0.0), vec3(0.0));
+    if (hit.x < 0) return bvh_hit(-1.0, vec3(0.0), vec3(0.0), ivec2(-1));
     bvh_triangle t = bvh_triangles[hit.y];
     // A normal is turned by the transpose of what turns points back.
     vec3 face = normalize(cross(normalize(t.first.xyz), normalize(t.second.xyz)));
@@ -110,7 +111,7 @@ bvh_hit bvh_trace(vec3 origin, vec3 direction, float near, float far) {
                             bvh_instances[hit.x].inverse[1].xyz * face.y +
                             bvh_instances[hit.x].inverse[2].xyz * face.z);
     vec3 albedo = vec3(t.corner.w, t.first.w, t.second.w) * bvh_instances[hit.x].color.rgb;
-    return bvh_hit(ray.far, dot(normal, direction) > 0.0 ? -normal : normal, albedo);
+    return bvh_hit(ray.far, dot(normal, direction) > 0.0 ? -normal : normal, albedo, hit);
 }
 
 // Whether anything lies between `near` and `far` metres.

@@ -9,6 +9,12 @@ layout(std430) readonly buffer BvhVertices { surface_vertex surface_vertices[]; 
 layout(std430) readonly buffer BvhMaterials { surface_material surface_materials[]; };
 layout(std430) readonly buffer BvhTexels { uvec2 surface_texels[]; };
 
+// Radiance that a triangle of what is placed gives off.
+vec3 surface_emission(ivec2 what) {
+    uint material = bvh_instances[what.x].what.z + surface_triangles[what.y].w;
+    return surface_materials[material].emission.rgb * bvh_instances[what.x].color.w;
+}
+
 // Of a material with a texture, which is repeated and linear between texels.
 vec4 surface_color(surface_material m, vec2 uv) {
     ivec2 size = ivec2(m.texture.xy);

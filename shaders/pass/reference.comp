@@ -9,6 +9,8 @@
 // 2017). Light towards a source is found by ratio tracking (Novak et al., "Residual ratio tracking",
 // 2014). Sources are drawn by what they would give unshadowed; sky, sun and glowing spheres are met by
 // scattered paths, too, and both ways are weighed by the balance heuristic (Veach 1997). Emission counts at each tentative collision.
+//
+// Meshes are matte here: of their materials it minds the colours, and what they give off as the eye sees it.
 //@ counter samples : points at which the density was evaluated
 uniform int samples;               //= 1 [1, 64] : paths for each pixel and execution
 uniform int bounces;               //= 64 [0, 1024] : how often light may be scattered, by the medium or a surface
@@ -27,7 +29,7 @@ uniform int paths; // for each pixel in this dispatch
 uniform int part;  // which dispatch of the execution this is; each has the same number of paths
 
 #include "lib/frame.glsl"
-#include "lib/bvh.glsl"
+#include "lib/surface.glsl"
 #include "lib/color.glsl"
 #include "lib/medium.glsl"
 #include "lib/majorant.glsl"
@@ -176,6 +178,9 @@ path_vertex meet_surface(inout path_state s) {
         s.light += s.weight * (1.0 - kept) * frame.sky_horizon.rgb;
         s.weight *= kept;
     }
+#if MESHES_GLOW
+    if (s.bounce == 0) s.light += s.weight * surface_emission(s.hit.what); // lights stand for what it lights
+#endif
     s.weight *= s.hit.albedo;
     s.done = s.bounce >= bounces;
     if (!s.done) roulette(s, path_next(s.random).x);

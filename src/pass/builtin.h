@@ -58,6 +58,7 @@ bool stack_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool reference_declare(pass *p);
 bool reference_check(pass *p);
 bool reference_build(pass *p);
+bool reference_allocate(pass *p);
 bool reference_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool reference_record(pass *p);
 void reference_destroy(pass *p);

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "pass/builtin.h"
 #include "pass/pass_impl.h"
+#include "scene/bvh.h"
 #include "shared.h"
 #include <string.h>
 
@@ -36,9 +37,14 @@ bool reference_declare(pass *p) {
     return p->images[bounds].id && pass_declare_images(p) && pass_add_to_graph(p);
 }
 
+static bool meshes_glow(const pass *p) {
+    return p->host->bvh && scene_bvh_glows(p->host->bvh);
+}
+
 static bool compile_both(pass *p, shader_binary *bounds) {
+    const shader_define glow = {"MESHES_GLOW", meshes_glow(p) ? "1" : "0"};
     return pass_compile(p, "pass/reference_majorants.comp", SHADER_COMPUTE, NULL, 0, bounds) &&
-           pass_compile(p, p->shader, SHADER_COMPUTE, NULL, 0, &p->binary);
+           pass_compile(p, p->shader, SHADER_COMPUTE, &glow, 1, &p->binary);
 }
 
 bool reference_check(pass *p) {
@@ -53,6 +59,10 @@ bool reference_build(pass *p) {
     p->pipeline = pass_create_compute(p, &p->binary);
     s->bounds_block = arena_alloc(p->host->memory, pass_block_size(&s->bounds) + 16);
     return s->bounds_pipeline && p->pipeline;
+}
+
+bool reference_allocate(pass *p) {
+    return !meshes_glow(p) || scene_bvh_allocate_surfaces(p->host->bvh, p->host->device);
 }
 
 // Members that say how far the picture is.

@@ -98,6 +98,7 @@ static const pass_type types[] = {
         .declare = reference_declare,
         .check = reference_check,
         .build = reference_build,
+        .allocate = reference_allocate,
         .fill = reference_fill,
         .record = reference_record,
         .destroy = reference_destroy,

@@ -14,6 +14,12 @@ void bvh_looks_count(scene_bvh *b) {
     }
 }
 
+bool scene_bvh_glows(const scene_bvh *b) {
+    for (size_t i = 0; i < b->mesh_count; i++)
+        if (scene_mesh_glows(b->meshes[i])) return true;
+    return false;
+}
+
 // The first mesh that has the tree of another.
 static size_t first_of_tree(const scene_bvh *b, size_t mesh) {
     size_t i = 0;

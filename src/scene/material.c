@@ -28,12 +28,21 @@ static bool is_none(const field *node) { // zero at all times
     return true;
 }
 
+static bool glows(const scene_material *m, const mesh_part *part) {
+    if (m && m->emission) return !is_none(m->emission);
+    return part->emission[0] + part->emission[1] + part->emission[2] > 0;
+}
+
+bool scene_mesh_glows(const scene_mesh *mesh) {
+    for (uint32_t i = 0; i < mesh->data.part_count; i++)
+        if (glows(mesh->material, &mesh->data.parts[i])) return true;
+    return false;
+}
+
 static bool is_matte(const scene_material *m, const mesh_part *part) {
-    bool emits = part->emission[0] + part->emission[1] + part->emission[2] > 0;
-    if (m && m->emission) emits = !is_none(m->emission);
     bool specular = m && m->specular ? !is_none(m->specular) : part->specular > 0;
     bool metallic = m && m->metallic ? !is_none(m->metallic) : part->metallic > 0;
-    return !emits && !specular && !metallic;
+    return !specular && !metallic && !glows(m, part);
 }
 
 bool scene_mesh_is_matte(const scene_mesh *mesh) {

@@ -17,6 +17,7 @@ struct scene_material {
 void scene_mesh_set_material(scene_mesh *mesh, const scene_material *material, arena *memory);
 // Nothing but its colour is to be seen of it: no highlights, no light of its own.
 bool scene_mesh_is_matte(const scene_mesh *mesh);
+bool scene_mesh_glows(const scene_mesh *mesh); // or may at some time
 
 // What is said of a mesh, as of a frame. Below 0: what its part says.
 typedef struct scene_look {

@@ -76,9 +76,11 @@ vec3 sky_mirrored(shaded s) {
     if (!shading_is_physical(s) || s.specular + s.metallic <= 0.0) return vec3(0.0);
     vec3 way = reflect(-s.view, s.normal), wide = sky_irradiance(way), given;
 #if MANY_RAYS
-    bvh_hit hit = bvh_hit(-1.0, vec3(0.0), vec3(0.0));
-    if (sky_samples > 0) hit = bvh_trace(s.position, way, 0.0, 1e9);
-    given = hit.distance < 0.0 ? sky_radiance(way) : sky_from_mesh(hit);
+    given = sky_radiance(way);
+    if (sky_samples > 0) {
+        bvh_hit hit = bvh_trace(s.position, way, 0.0, 1e9);
+        if (hit.distance >= 0.0) given = sky_from_mesh(hit);
+    }
 #else
     given = sky_radiance(way);
 #endif
