@@ -255,11 +255,11 @@ def reflections(folder, name, kinds):
 
 def main():
     folder = sys.argv[1]
-    rotunda().write(folder, "rotunda", SCRIPT, {"marble": (0.50, 0.47, 0.42), "break": (0.42, 0.38, 0.33), "stone": (0.22, 0.21, 0.20),
+    rotunda().write(folder, "rotunda", SCRIPT, {"marble": (0.42, 0.40, 0.37), "break": (0.42, 0.38, 0.33), "stone": (0.13, 0.125, 0.12),
                                                 "water": (0.004, 0.009, 0.011)})
     reflections(folder, "rotunda", {"marble": (0.35, 0.45), "break": (0.2, 0.8), "stone": (0.5, 0.30), "water": (0.5, 0.11)})
-    floor().write(folder, "rotunda_floor", SCRIPT, {"flag_wet": (0.040, 0.042, 0.046), "flag_damp": (0.075, 0.074, 0.074),
-                                                    "flag_dry": (0.15, 0.143, 0.135), "earth": (0.035, 0.031, 0.026)})
+    floor().write(folder, "rotunda_floor", SCRIPT, {"flag_wet": (0.022, 0.023, 0.026), "flag_damp": (0.045, 0.045, 0.046),
+                                                    "flag_dry": (0.085, 0.082, 0.078), "earth": (0.035, 0.031, 0.026)})
     reflections(folder, "rotunda_floor", {"flag_wet": (0.8, 0.17), "flag_damp": (0.6, 0.30), "flag_dry": (0.4, 0.5), "earth": (0.3, 0.45)})
 
 
