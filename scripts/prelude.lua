@@ -57,7 +57,8 @@ end
 --
 -- dimensions = 3: the noise fills space; of a shell: it is taken at the unit sphere. 2: it is a
 -- picture wrapped around the origin, as published: it shrinks to a point at both poles, and scales are
--- rounded so that it closes behind. Other keys are those of the noise: seed, speed, octaves, fractal.
+-- rounded so that it closes behind. `shift`, 0..1, moves it: shell_shift, so that no two shells look
+-- alike. Other keys are those of the noise: seed, speed, octaves, fractal.
 local function layers_wrong(what)
   error("layers takes 1 to 8 pairs {scale, strength}, as in layers { {2, 1}, {7, 0.4} }; " .. what, 3)
 end
@@ -88,11 +89,12 @@ function layers(settings)
     sum = sum + one_layer(settings, i, layer[1], flat) * layer[2]
     all = all + layer[2]
   end
-  local noise = sum / all
-  if not flat then return noise:warp(61 * shell_shift) end
+  local noise, shift = sum / all, settings.shift or shell_shift
+  if type(shift) == "table" then shift = vec(shift[1], shift[2], shift[3]) end
+  if not flat then return noise:warp(61 * shift) end
   local across = atan(position.y, position.x) / (2 * math.pi)
   local up = atan(position.z, length(vec(position.x, position.y, 0))) / math.pi
-  return noise:warp(vec(across + 0.5, up + 0.5, 0) + 16 * shell_shift - position)
+  return noise:warp(vec(across + 0.5, up + 0.5, 0) + 16 * shift - position)
 end
 
 -- lobes = { {weight, g}, ... } of the passes that scatter light: a blend of lobes.

@@ -8,13 +8,15 @@
 // (unit, towards the eye). over { ball, picture, from = {ball, scene} } lays it over a picture.
 #include "shell/face.glsl"
 writeonly uniform image2D image;   //= output rgba16f : premultiplied radiance and opacity
-writeonly uniform image2D front;   //= output r32f optional : depth of the nearest surface of a shell that hides half of what is behind it (m); 1e9 where there is none
+writeonly uniform image2D front;   //= output r32f optional : depth of the scene, or of a shell before it that hides half of what is behind (m): another shell, or a march, stops there by `depth = ball.front`
 
 #include "shell/surface.glsl"
 #if defined(STAGE_GATHER)
 #include "shell/gather.glsl"
 #elif defined(STAGE_VERTICES)
 #include "shell/vertices.glsl"
+#elif defined(STAGE_FRONT)
+#include "shell/front.glsl"
 #else
 #include "shell/rays.glsl"
 #endif

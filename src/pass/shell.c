@@ -10,7 +10,7 @@
 #include <string.h>
 
 static const char *const stage_defines[SHELL_STAGES] = {"STAGE_GATHER", "STAGE_VERTICES",
-                                                        "STAGE_RAYS"};
+                                                        "STAGE_FRONT", "STAGE_RAYS"};
 
 shell_state *shell_state_of(pass *p) {
     if (!p->state) p->state = arena_alloc(p->host->memory, sizeof(shell_state));
@@ -36,7 +36,7 @@ bool shell_declare(pass *p) {
 }
 
 static bool is_used(const shell_state *s, shell_stage stage) {
-    return stage == SHELL_GATHER || (stage == SHELL_VERTICES) == s->drawn;
+    return stage == SHELL_GATHER || (stage != SHELL_RAYS) == s->drawn;
 }
 
 static bool compile(pass *p, shell_stage stage) {
@@ -100,17 +100,18 @@ static size_t list_alive(pass *p, const scene_explosion *out[PASS_SHELL_MOST], d
 // As shell/gather.glsl has them.
 static void write_shells(pass *p, const shader_binary *binary, unsigned char *block) {
     const scene_explosion *alive[PASS_SHELL_MOST];
-    float shells[PASS_SHELL_MOST][2][4];
+    float shells[PASS_SHELL_MOST][3][4];
     double life;
     uint32_t count = (uint32_t)list_alive(p, alive, &life);
     for (uint32_t i = 0; i < count; i++) {
         const scene_explosion *one = alive[i];
         double age = (p->host->context->time - one->time) / (life * (double)one->life);
         const float place[4] = {one->place.x, one->place.y, one->place.z, one->size};
-        const float own[4] = {(float)age, (float)one->seed};
+        const float own[4] = {(float)age};
         memcpy(shell_state_of(p)->places[i], place, sizeof(float[3]));
         memcpy(shells[i][0], place, sizeof place);
         memcpy(shells[i][1], own, sizeof own);
+        scene_explosion_chance(one, shells[i][2]);
     }
     shell_state_of(p)->count = count;
     pass_write_member(binary, block, "shell_count", &count, sizeof count);
@@ -142,8 +143,10 @@ bool shell_fill(pass *p, const shader_binary *binary, unsigned char *block) {
 bool shell_run(pass *p, shell_stage stage, uint32_t x, uint32_t y) {
     shell_state *s = shell_state_of(p);
     const shader_binary *binary = &s->binary[stage];
+    gpu_image *drawn = s->drawn ? graph_get_image(p->host->graph, s->drawn_front) : NULL;
     const pass_override overrides[] = {{"ShellRecords", {.buffer = s->records}},
-                                       {"ShellVertices", {.buffer = s->vertices}}};
+                                       {"ShellVertices", {.buffer = s->vertices}},
+                                       {"drawn_front", {.image = drawn}}};
     gpu_binding bindings[GPU_MAX_SLOTS];
     gpu_dispatch_desc desc = {
         .pipeline = s->pipeline[stage], .bindings = bindings, .threads = {x, y, 1}};

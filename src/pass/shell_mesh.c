@@ -9,8 +9,6 @@
 
 enum { FACES = 6, SIDES = 2, CORNERS_OF_SQUARE = 6 }; // a square is two triangles
 
-static const char *const outputs[] = {"image", "front"};
-
 static uint32_t corners(const pass *p) {
     return (uint32_t)strtoul(shell_option(p, "corners"), NULL, 10);
 }
@@ -41,13 +39,13 @@ static graph_image add_target(pass *p, const char *name, gpu_format format) {
 
 bool shell_declare_mesh(pass *p) {
     shell_state *s = shell_state_of(p);
+    int image = pass_find_image(p, "image");
+    p->images[image] = add_target(p, "image", p->formats[image]);
     s->z = add_target(p, "z", GPU_D32F);
-    for (size_t i = 0; i < COUNT_OF(outputs); i++) {
-        int index = pass_find_image(p, outputs[i]);
-        p->images[index] = add_target(p, outputs[i], p->formats[index]);
-        if (!p->images[index].id) return false;
-    }
-    return s->z.id && pass_add_to_graph_with(p, &s->z, 1);
+    s->drawn_front = add_target(p, "drawn_front", GPU_R32F);
+    const graph_image own[] = {s->z, s->drawn_front};
+    return p->images[image].id && s->z.id && s->drawn_front.id && pass_declare_images(p) &&
+           pass_add_to_graph_with(p, own, COUNT_OF(own));
 }
 
 bool shell_check_mesh(pass *p) {
@@ -183,10 +181,10 @@ static bool draw_shells(pass *p, gpu_draw_desc *target) {
 bool shell_record_mesh(pass *p) {
     const shell_state *s = shell_state_of(p);
     graph *g = p->host->graph;
+    uint32_t size[3];
     gpu_draw_desc target = {
         .pipeline = s->draw,
-        .colors = {graph_get_image(g, pass_output(p, "image")),
-                   graph_get_image(g, pass_output(p, "front"))},
+        .colors = {graph_get_image(g, pass_output(p, "image")), graph_get_image(g, s->drawn_front)},
         .depth = graph_get_image(g, s->z),
         .clear = true,
         .clear_color = {{0}, {1e9f}},
@@ -194,7 +192,11 @@ bool shell_record_mesh(pass *p) {
     };
     if (!gpu_draw_all(p->host->device, &target)) return false;
     target.clear = false;
-    return s->count == 0 ||
-           (make_vertices(p) && shell_run(p, SHELL_VERTICES, vertex_count(p), s->count) &&
-            draw_shells(p, &target));
+    if (s->count > 0 &&
+        !(make_vertices(p) && shell_run(p, SHELL_VERTICES, vertex_count(p), s->count) &&
+          draw_shells(p, &target)))
+        return false;
+    graph_get_size(g, pass_output(p, "image"), size);
+    return !graph_get_image(g, pass_output(p, "front")) ||
+           shell_run(p, SHELL_FRONT, size[0], size[1]);
 }

@@ -6,7 +6,7 @@
 enum { SHELL_RECORD = 48, SHELL_VERTEX = 16 }; // bytes, as shell/surface.glsl has them
 static const float SHELL_LEAST = -0.95f;       // of the displacement: the sphere stays one
 
-typedef enum shell_stage { SHELL_GATHER, SHELL_VERTICES, SHELL_RAYS, SHELL_STAGES } shell_stage;
+typedef enum shell_stage { SHELL_GATHER, SHELL_VERTICES, SHELL_FRONT, SHELL_RAYS, SHELL_STAGES } shell_stage;
 
 typedef struct shell_state {
     const scene_explosions *list; // NULL: one from time 0 on
@@ -19,7 +19,7 @@ typedef struct shell_state {
     gpu_buffer *records, *vertices;
 
     // Drawn.
-    graph_image z;
+    graph_image z, drawn_front;
     shader_binary vertex, fragment;
     unsigned char *vertex_block, *fragment_block;
     gpu_pipeline *draw;

@@ -24,6 +24,21 @@ bool scene_explosion_check(const scene_explosion *one) {
     return true;
 }
 
+// PCG hash by Jarzynski and Olano (JCGT 9(3), 2020).
+static uint32_t scramble(uint32_t v) {
+    uint32_t state = v * 747796405u + 2891336453u;
+    uint32_t word = ((state >> ((state >> 28) + 4)) ^ state) * 277803737u;
+    return (word >> 22) ^ word;
+}
+
+void scene_explosion_chance(const scene_explosion *one, float out[4]) {
+    uint32_t chance = one->seed;
+    for (int i = 0; i < 4; i++) {
+        chance = scramble(chance);
+        out[i] = (float)(chance >> 8) / 16777216;
+    }
+}
+
 bool scene_explosions_add(scene_explosions *list, const scene_explosion *one) {
     if (list->count == SCENE_EXPLOSIONS_MAX) {
         if (list->fixed == list->count) return false;

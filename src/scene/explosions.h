@@ -26,6 +26,8 @@ typedef struct scene_explosions {
 
 // False with a message that names the number at fault.
 bool scene_explosion_check(const scene_explosion *one);
+// Numbers of its own, 0..1: three by which noise is moved, and one for all else.
+void scene_explosion_chance(const scene_explosion *one, float out[4]);
 // One that came while the effect runs. In a full list the first of these makes room; false: there
 // is none.
 bool scene_explosions_add(scene_explosions *list, const scene_explosion *one);

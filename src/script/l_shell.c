@@ -95,23 +95,32 @@ static int l_add(lua_State *L) {
     return 0;
 }
 
-static void push_one(lua_State *L, const scene_explosion *one) {
-    const float place[3] = {one->place.x, one->place.y, one->place.z};
-    lua_createtable(L, 0, 5);
+static void set_vector(lua_State *L, const char *key, const float v[3]) {
     lua_createtable(L, 3, 0);
     for (int i = 0; i < 3; i++) {
-        lua_pushnumber(L, (double)place[i]);
+        lua_pushnumber(L, (double)v[i]);
         lua_rawseti(L, -2, i + 1);
     }
-    lua_setfield(L, -2, "position");
-    lua_pushnumber(L, one->time);
-    lua_setfield(L, -2, "time");
-    lua_pushnumber(L, (double)one->size);
-    lua_setfield(L, -2, "size");
-    lua_pushnumber(L, (double)one->life);
-    lua_setfield(L, -2, "life");
-    lua_pushinteger(L, one->seed);
-    lua_setfield(L, -2, "seed");
+    lua_setfield(L, -2, key);
+}
+
+static void set_number(lua_State *L, const char *key, double value) {
+    lua_pushnumber(L, value);
+    lua_setfield(L, -2, key);
+}
+
+static void push_one(lua_State *L, const scene_explosion *one) {
+    const float place[3] = {one->place.x, one->place.y, one->place.z};
+    float chance[4];
+    scene_explosion_chance(one, chance);
+    lua_createtable(L, 0, 7);
+    set_vector(L, "position", place);
+    set_vector(L, "shift", chance);
+    set_number(L, "random", (double)chance[3]);
+    set_number(L, "time", one->time);
+    set_number(L, "size", (double)one->size);
+    set_number(L, "life", (double)one->life);
+    set_number(L, "seed", one->seed);
 }
 
 // list:get(2): the second of the list. Nil: there is none.
