@@ -70,18 +70,20 @@ static bool begins_group(const mesh_data *mesh, uint32_t index) {
 
 // ---- triangles --------------------------------------------------------------------------------
 
+// As long as twice its area.
 static void face_normal(const mesh_data *mesh, const uint32_t corners[3], vec3 out) {
     const mesh_vertex *v = mesh->vertices;
     vec3 a, b;
     glm_vec3_sub((float *)v[corners[1]].position, (float *)v[corners[0]].position, a);
     glm_vec3_sub((float *)v[corners[2]].position, (float *)v[corners[0]].position, b);
-    glm_vec3_crossn(a, b, out);
+    glm_vec3_cross(a, b, out);
 }
 
 // Of the slots at a corner's place, the one whose vertex has the nearest normal; and the owner of
-// the triangle there that lies most alike, if it does so more than `*most`.
-static uint32_t choose_vertex(const simplifier *s, uint32_t corner, const vec3 normal, float *most,
-                              uint32_t *owner) {
+// the triangle there that lies most alike, if it does so more than `*most`; of vertices that were
+// merged, that covers most of what is seen along the normal.
+static uint32_t choose_vertex(const simplifier *s, uint32_t corner, const vec3 normal, bool merged,
+                              float *most, uint32_t *owner) {
     const mesh_data *mesh = s->mesh;
     uint32_t best = corner;
     float nearest = -INFINITY;
@@ -89,6 +91,7 @@ static uint32_t choose_vertex(const simplifier *s, uint32_t corner, const vec3 n
         uint32_t vertex = mesh->indices[slot];
         vec3 face;
         face_normal(mesh, mesh->indices + slot / 3 * 3, face);
+        if (!merged) glm_vec3_normalize(face);
         float along = glm_vec3_dot((float *)mesh->vertices[vertex].normal, (float *)normal);
         float alike = glm_vec3_dot(face, (float *)normal);
         if (along > nearest) best = vertex;
@@ -99,14 +102,34 @@ static uint32_t choose_vertex(const simplifier *s, uint32_t corner, const vec3 n
     return best;
 }
 
-static void add_triangle(simplifier *s, const unsigned corners[3]) {
+// What lies at the corners of a triangle faces this way, on the whole.
+static void find_outward(const simplifier *s, const unsigned corners[3], vec3 out) {
+    glm_vec3_zero(out);
+    for (int k = 0; k < 3; k++) {
+        vec3 mean = {0};
+        for (uint32_t slot = s->heads[corners[k]]; slot != NONE; slot = s->nexts[slot])
+            glm_vec3_add(mean, (float *)s->mesh->vertices[s->mesh->indices[slot]].normal, mean);
+        glm_vec3_normalize(mean);
+        glm_vec3_add(out, mean, out);
+    }
+}
+
+// Of vertices that were merged, triangles may be turned either way: outwards is right.
+static void add_triangle(simplifier *s, const unsigned corners[3], bool merged) {
     unsigned *out = s->made + 3 * s->made_count;
     uint32_t owner = s->owners[s->heads[corners[0]] / 3];
+    unsigned order[3] = {corners[0], corners[1], corners[2]};
     float most = -INFINITY;
-    vec3 normal;
-    face_normal(s->mesh, corners, normal);
+    vec3 normal, outward = {0};
+    face_normal(s->mesh, order, normal);
     if (glm_vec3_dot(normal, normal) == 0) return; // without area
-    for (int k = 0; k < 3; k++) out[k] = choose_vertex(s, corners[k], normal, &most, &owner);
+    if (merged) find_outward(s, corners, outward);
+    if (glm_vec3_dot(normal, outward) < 0) {
+        glm_vec3_negate(normal);
+        order[1] = corners[2];
+        order[2] = corners[1];
+    }
+    for (int k = 0; k < 3; k++) out[k] = choose_vertex(s, order[k], normal, merged, &most, &owner);
     s->made_owners[s->made_count++] = owner;
 }
 
@@ -115,6 +138,7 @@ static void simplify_group(simplifier *s, double share) {
     const float *positions = mesh->vertices->position;
     size_t stride = sizeof *mesh->vertices, target = (size_t)(share * (s->count / 3)) * 3;
     float error = 0, other = 0;
+    bool merged = false;
     unsigned *result = s->made + 3 * s->made_count; // read as it is overwritten, at the same place
     size_t count = meshopt_simplify(result, s->welded, s->count, positions, mesh->vertex_count,
                                     stride, target, error_most, 0, &error);
@@ -126,11 +150,14 @@ static void simplify_group(simplifier *s, double share) {
             memcpy(result, s->merged, fewer * sizeof *result);
             count = fewer;
             error = other;
+            merged = true;
         }
     }
     s->error = fmaxf(s->error, error);
-    for (size_t i = 0; i + 2 < count; i += 3)
-        add_triangle(s, (const unsigned[3]){result[i], result[i + 1], result[i + 2]});
+    for (size_t i = 0; i + 2 < count; i += 3) {
+        const unsigned corners[3] = {result[i], result[i + 1], result[i + 2]};
+        add_triangle(s, corners, merged);
+    }
 }
 
 // ---- levels -----------------------------------------------------------------------------------
