@@ -46,17 +46,22 @@ layout(local_size_x = 16, local_size_y = 16) in;
 #if STAGE_FIRST || STAGE_LAST || STAGE_BLUR_FIRST
 uniform sampler2D picture; // of any size
 
-// Of the finest level.
-vec3 picture_at(ivec2 pixel, ivec2 size) {
-#if SAME_SIZE
-    vec3 c = texelFetch(picture, pixel, 0).rgb;
-#else
-    vec3 c = textureLod(picture, (vec2(pixel) + 0.5) / vec2(size), 0.0).rgb;
-#endif
+vec3 picture_bright(vec3 c) {
 #if FROM_BRIGHT
     return bright_keep(c, BRIGHT_PAPER == 1);
 #else
     return c;
+#endif
+}
+
+vec3 picture_look(vec2 uv) { return picture_bright(textureLod(picture, uv, 0.0).rgb); }
+
+// Of the finest level.
+vec3 picture_at(ivec2 pixel, ivec2 size) {
+#if SAME_SIZE
+    return picture_bright(texelFetch(picture, pixel, 0).rgb);
+#else
+    return picture_look((vec2(pixel) + 0.5) / vec2(size));
 #endif
 }
 #endif
