@@ -12,7 +12,9 @@
 -- time (Finney, "Fire growth using minimum travel time methods", Canadian Journal of Forest Research 32,
 -- 2002). How speed depends on the direction is an ellipse with the fire at one focus (Alexander,
 -- "Estimating the length-to-breadth ratio of elliptical forest fire patterns", 1985), as long and as wide
--- as Anderson measured ("Predicting wind-driven wild land fire size and shape", 1983).
+-- as Anderson measured ("Predicting wind-driven wild land fire size and shape", 1983), by the part of the
+-- wind that gets down among the trees (Albini and Baughman, "Estimating windspeeds for predicting wildland
+-- fire behavior", 1979).
 --
 -- What is to happen lies in a queue, by its time: a frame costs what changes in it, not what there is. No
 -- more than `most` changes are made in a frame; what is left over is made in the next.
@@ -23,7 +25,7 @@ local names = { [NORMAL] = "normal", [BURNING] = "burning", [BURNED] = "burned" 
 local keys = {
   fx = "the effect", at = "instances { } or a list of {x, y, z}", reach = "m, how far it reaches",
   wind = "{x, y, z} m/s, a parameter or a function(t)", speed = "m/s without wind", gain = "of the speed, a share for each m/s of wind",
-  lean = "s: how far the wind carries the reach", burn = "s, or {shortest, longest}", fuel = "a list or function(i): factor of how long it burns; 0: never lit",
+  shelter = "part of the wind that reaches the flames", lean = "s: how far the wind carries the reach", burn = "s, or {shortest, longest}", fuel = "a list or function(i): factor of how long it burns; 0: never lit",
   variation = "0..1: by how much times differ", pass = "\"ignite\" or \"burned\": when it is passed on", late = "s before its end at which on_late runs",
   most = "changes in a frame", seed = "of chance",
 }
@@ -166,7 +168,7 @@ end
 
 -- Speed into a direction, against that with the wind: 1 with it, least against it.
 local function ellipse(wind, along)
-  local u = math.min(wind * 2.237, 12) -- miles an hour; beyond that Anderson's fires grew no longer
+  local u = math.min(wind * 2.237, 12) -- in miles an hour; beyond that Anderson's fires grew no longer
   local ratio = 0.936 * math.exp(0.2566 * u) + 0.461 * math.exp(-0.1548 * u) - 0.397
   local e = math.sqrt(math.max(1 - 1 / (ratio * ratio), 0))
   return (1 - e) / (1 - e * along)
@@ -187,7 +189,7 @@ local function pass_on(self, i, t, ends)
       local x, y = q[1] - p[1], q[2] - p[2]
       local far = math.sqrt(x * x + y * y + (q[3] - p[3]) ^ 2)
       local along = far > 0 and wind > 0 and (x * wx + y * wy) / (far * wind) or 0
-      local speed = self.speed * (1 + self.gain * wind) * ellipse(wind, along)
+      local speed = self.speed * (1 + self.gain * wind) * ellipse(self.shelter * wind, along)
       local takes = far / speed * (1 + self.variation * (2 * chance(self.seed, i, k) - 1))
       if t + takes <= ends then push(self.queue, { time = t + takes, what = "ignite", index = k }) end
     end
@@ -279,7 +281,7 @@ return function(t)
   if t.pass ~= nil and t.pass ~= "ignite" and t.pass ~= "burned" then refuse("'pass' takes " .. keys.pass) end
   local self = setmetatable({
     reach = reach, wind = t.wind or { 0, 0, 0 }, speed = number(t, "speed", 1, 1e-6), gain = number(t, "gain", 0.3, 0),
-    lean = number(t, "lean", 0.1, 0), shortest = burn[1], longest = burn[2], fuel = t.fuel or 1,
+    lean = number(t, "lean", 0.1, 0), shelter = number(t, "shelter", 0.3, 0), shortest = burn[1], longest = burn[2], fuel = t.fuel or 1,
     variation = math.min(number(t, "variation", 0.3, 0), 1), pass = t.pass or "ignite", late = number(t, "late", 0.5, 0),
     most = number(t, "most", 64, 1), seed = number(t, "seed", 0, 0), ignite_functions = {}, late_functions = {}, burned_functions = {},
   }, fire)

@@ -35,6 +35,7 @@ static float aspect_of(const live *l) {
 
 void camera_hand(live *l, const ui_canvas *view) {
     bool moved = (view->held || view->middle_held) && (view->dx != 0 || view->dy != 0);
+    if (view->pressed) moved = false; // that was the way to where it was pressed
     if (view->double_clicked && !event_hears_clicks(l)) camera_frame(l);
     if ((!moved && view->wheel == 0) || !take_up(l)) return;
     float height = fmaxf(view->area.bottom - view->area.top, 1);

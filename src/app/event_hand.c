@@ -72,7 +72,9 @@ void event_hand(live *l, const ui_canvas *view) {
         l->pointer[0] = fminf(fmaxf((view->x - view->area.left) / fmaxf(width, 1), 0), 1);
         l->pointer[1] = fminf(fmaxf((view->y - view->area.top) / fmaxf(height, 1), 0), 1);
     }
-    if (view->pressed) l->slipped = 0;
-    if (view->held) l->slipped += fabsf(view->dx) + fabsf(view->dy);
+    if (view->pressed)
+        l->slipped = 0;
+    else if (view->held)
+        l->slipped += fabsf(view->dx) + fabsf(view->dy);
     if (view->released && l->slipped <= STILL * ui_scale() && event_hears_clicks(l)) send(l, "");
 }

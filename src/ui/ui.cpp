@@ -221,7 +221,10 @@ void ui_begin(void) {
     use_pixels(io);
     io.DeltaTime = fminf(io.DeltaTime, 0.1f); // the loop may have slept
     ImGui::NewFrame();
-    if (!ImGui::IsMouseDown(0) && !ImGui::IsMouseDown(1) && !ImGui::IsMouseDown(2)) ui.bare = 0;
+    bool let_go = true; // and not just now: that is still told
+    for (int i = 0; i < 3; i++)
+        let_go = let_go && !ImGui::IsMouseDown(i) && !ImGui::IsMouseReleased(i);
+    if (let_go) ui.bare = 0;
 }
 
 void ui_end(roil_picture *out) {

@@ -9,8 +9,8 @@ typedef struct grove {
     scene_instances *trees;
 } grove;
 
-// At x = 0, 10 and 20 m, with the states 1, 0 and 3, which are the shares; the last is twice as large
-// and turned by 90 degrees about z. Particles rise from (1, 0, 2) of each.
+// At x = 0, 10 and 20 m, with the states 1, 0 and 3, which are the shares; the last is twice as
+// large and turned by 90 degrees about z. Particles rise from (1, 0, 2) of each.
 static grove open_grove(gpu *device, uint32_t seed) {
     grove g = {.swarm = swarm_open(device, 8192, 0)};
     effect *e = g.swarm.e;
@@ -38,11 +38,10 @@ static grove open_grove(gpu *device, uint32_t seed) {
     gpu_test_ok(g.trees);
     const field *state = make(e, "instance_state", NULL);
     const field *share = field_swizzle(effect_memory(e), state, "x");
-    gpu_test_ok(pass_particles_open(g.swarm.pass,
-                                    &(pass_particles_desc){.count = 8192,
-                                                           .time_step = 1.0 / RATE_OF_FRAMES,
-                                                           .at = g.trees,
-                                                           .share = share}));
+    gpu_test_ok(pass_particles_open(
+        g.swarm.pass,
+        &(pass_particles_desc){
+            .count = 8192, .time_step = 1.0 / RATE_OF_FRAMES, .at = g.trees, .share = share}));
     swarm_set(&g.swarm, "rate", 300);
     swarm_set(&g.swarm, "seed", (float)seed);
     swarm_set3(&g.swarm, "position", 1, 0, 2);
