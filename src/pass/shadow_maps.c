@@ -1,7 +1,6 @@
 // Maps of what stands before the lights: views are placed (those of sun and spots on the host,
 // those of the point lights that matter most on the device, where lamps move), then meshes and
-// instances are drawn in each, into one atlas. Cubes, not tetrahedra: README.md of
-// shaders/pass/shadow_maps says what was counted.
+// instances are drawn in each, into one atlas.
 #include "pass/shadow_maps.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -120,11 +119,19 @@ static bool add_image(pass *p, const char *name, gpu_format format, uint32_t wid
     return p->images[index].id != 0;
 }
 
+// Depths are compared and places are exact to a texel: no other format holds them.
+static bool check_formats(const pass *p) {
+    for (size_t i = 0; i < p->face->image_count; i++)
+        if (p->formats[i] != p->face->images[i].format)
+            return err_set("%s: 'format' is that of its maps and cannot be chosen", p->label);
+    return true;
+}
+
 bool shadow_maps_declare(pass *p) {
     shadow_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     p->lamps = NULL; // of lamps the image is all that is read
     list_views(p);
-    if (!place_views(p) || !take_meshes(p)) return false;
+    if (!check_formats(p) || !place_views(p) || !take_meshes(p)) return false;
     uint32_t rows = 1 + s->views + (count_lights(p) + TABLE_WIDTH - 1) / TABLE_WIDTH;
     s->drawn = drawn_create(p);
     return add_image(p, "shadow_atlas", GPU_D32F, s->atlas[0], s->atlas[1]) &&

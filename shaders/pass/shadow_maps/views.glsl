@@ -8,6 +8,13 @@ shadow_view fixed_view(int index) {
 
 // Out of a point light, through a face of a cube. A face shows a little more than its part, so that
 // what is looked up near its edge lies in one view.
+//
+// Four faces of a tetrahedron would do (Liao, "Shadow mapping for omnidirectional light using
+// tetrahedron mapping", GPU Pro, 2010). Counted for both, at as many texels in all: the coarsest texel
+// is 1.3 times as wide as a cube's even if the triangular faces are packed without loss, 1.9 times in
+// their boxes, and the solid angles of texels differ by 26 to 1, a cube's by 5 to 1. For that it saves
+// two draws of six; what it draws is less by 5 percent only, since of meshes 10 degrees wide 16 percent
+// lie on an edge of it, and 22 percent on one of a cube.
 shadow_view face_view(light_entry e, int face, float size) {
     vec3 along = vec3(0.0), up = vec3(0.0);
     along[face >> 1] = (face & 1) == 0 ? 1.0 : -1.0;
