@@ -13,7 +13,7 @@
 #include <string.h>
 
 // Triangles of a mesh: fewer are drawn as fast as they are chosen, more would hold a load up.
-enum { LEAST = 96, MOST = 200000, MOST_PARTS = 256 };
+enum { LEAST = 96, MOST = 1000000, MOST_PARTS = 256 };
 static const double shares[] = {0.5, 0.2, 0.08}; // of the triangles, that levels aim at
 static const double least_gain = 0.3;    // a level leaves out this much of the one before it
 static const double missed = 1.25;       // of what was aimed at: then vertices are merged
@@ -21,6 +21,7 @@ static const float error_most = 0.1f;    // of the mesh's extent
 static const float cell_most = 0.2f;     // in which vertices are merged, of the extent
 static const float POSITION_MOST = 1e9f; // metres: beyond, errors overflow
 static const uint32_t NONE = UINT32_MAX;
+enum { NEIGHBOURS = 64 }; // that are looked at, of a corner: a fan may have all triangles
 
 typedef struct simplifier {
     const mesh_data *mesh;
@@ -87,7 +88,8 @@ static uint32_t choose_vertex(const simplifier *s, uint32_t corner, const vec3 n
     const mesh_data *mesh = s->mesh;
     uint32_t best = corner;
     float nearest = -INFINITY;
-    for (uint32_t slot = s->heads[corner]; slot != NONE; slot = s->nexts[slot]) {
+    uint32_t slot = s->heads[corner];
+    for (int i = 0; slot != NONE && i < NEIGHBOURS; i++, slot = s->nexts[slot]) {
         uint32_t vertex = mesh->indices[slot];
         vec3 face;
         face_normal(mesh, mesh->indices + slot / 3 * 3, face);
@@ -107,7 +109,8 @@ static void find_outward(const simplifier *s, const unsigned corners[3], vec3 ou
     glm_vec3_zero(out);
     for (int k = 0; k < 3; k++) {
         vec3 mean = {0};
-        for (uint32_t slot = s->heads[corners[k]]; slot != NONE; slot = s->nexts[slot])
+        uint32_t slot = s->heads[corners[k]];
+        for (int i = 0; slot != NONE && i < NEIGHBOURS; i++, slot = s->nexts[slot])
             glm_vec3_add(mean, (float *)s->mesh->vertices[s->mesh->indices[slot]].normal, mean);
         glm_vec3_normalize(mean);
         glm_vec3_add(out, mean, out);
