@@ -112,6 +112,18 @@ void scene_instances_matrix(const struct instance_entry *entry, mat4 out) {
     memcpy(out[3], entry->place.v, 3 * sizeof(float));
 }
 
+bool scene_instances_transform(const scene_instances *s, uint32_t index, uint32_t kind,
+                               const field_context *context, mat4 out) {
+    const struct instance_entry *entry = &s->now[index];
+    float tint[4];
+    mat4 own;
+    if (!scene_instances_place(s, context, out, tint)) return false;
+    scene_instances_matrix(entry, own);
+    if (entry->kind.v[0] != kind) glm_scale_uni(own, 0);
+    glm_mat4_mul(out, own, out);
+    return true;
+}
+
 size_t scene_instances_near(scene_instances *s, const float point[3], float radius, uint32_t *out,
                             size_t capacity) {
     instances_grid_make(&s->grid, s->now, s->desc.count);

@@ -44,6 +44,9 @@ bool scene_instances_place(const scene_instances *s, const field_context *contex
                            float tint[4]);
 // Of one, within that space.
 void scene_instances_matrix(const struct instance_entry *entry, mat4 out);
+// Of one to the world, as long as it is of that kind; else all of it is in one point.
+bool scene_instances_transform(const scene_instances *s, uint32_t index, uint32_t kind,
+                               const field_context *context, mat4 out);
 
 // The storage buffer "Instances". Allocate on the device's thread, again: does nothing; upload
 // inside a frame, once a frame: only what changed.

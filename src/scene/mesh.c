@@ -2,6 +2,7 @@
 // shader), textures as sRGB images.
 #include "base/error.h"
 #include "base/memory.h"
+#include "scene/instances.h"
 #include "scene/material.h"
 #include "scene/scene_impl.h"
 #include <string.h>
@@ -102,6 +103,8 @@ bool scene_place_matrix(const field *position, const field *rotation, const fiel
 }
 
 bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, mat4 out) {
+    if (mesh->instances)
+        return scene_instances_transform(mesh->instances, mesh->index, mesh->kind, context, out);
     return scene_place_matrix(mesh->position, mesh->rotation, mesh->scale, mesh->parent, context,
                               out);
 }

@@ -26,11 +26,11 @@ typedef struct scene_sun {
 typedef struct scene_sky {
     const field *zenith, *horizon; // vec3, radiance
     const field *strength;
-    const field *rotation;         // degrees about +Z, of the image
-    const field *night;            // 0..1: how much of the sky is night; NULL: there is none
+    const field *rotation; // degrees about +Z, of the image
+    const field *night;    // 0..1: how much of the sky is night; NULL: there is none
     const field *night_zenith, *night_horizon; // vec3, radiance
     const field *stars;                        // factor of what they and the moon shine
-    const field *moon; // degrees across, where the sun stands; 0: none
+    const field *moon;                         // degrees across, where the sun stands; 0: none
     const struct sky_image *image; // instead of the two colours; NULL: none (sky_image.h)
 } scene_sky;
 
@@ -54,9 +54,9 @@ typedef struct scene_light {
 
 typedef struct scene_node { // a place that meshes and instances may stand in
     const char *name;
-    const field *position; // vec3, metres
-    const field *rotation; // vec3, degrees about X, then Y, then Z
-    const field *scale;    // factor
+    const field *position;           // vec3, metres
+    const field *rotation;           // vec3, degrees about X, then Y, then Z
+    const field *scale;              // factor
     const struct scene_node *parent; // that this stands in; NULL: the world
 } scene_node;
 
@@ -65,14 +65,16 @@ typedef struct scene_material scene_material;
 typedef struct scene_mesh {
     const char *name;
     mesh_data data;
-    const field *position;          // vec3, metres
-    const field *rotation;          // vec3, degrees about X, then Y, then Z
-    const field *scale;             // factor
-    const scene_node *parent;       // that it stands in; NULL: the world
-    const field *color;             // vec3, multiplies the material's
-    const scene_material *material; // material.h; NULL: the file's
-    gpu_buffer *vertices, *indices; // made on first use
-    gpu_image **textures;           // per mesh_data texture
+    const field *position;                   // vec3, metres
+    const field *rotation;                   // vec3, degrees about X, then Y, then Z
+    const field *scale;                      // factor
+    const scene_node *parent;                // that it stands in; NULL: the world
+    const struct scene_instances *instances; // instead of all that, one of these; NULL: none
+    uint32_t index, kind;                    // which, as long as it is of this kind
+    const field *color;                      // vec3, multiplies the material's
+    const scene_material *material;          // material.h; NULL: the file's
+    gpu_buffer *vertices, *indices;          // made on first use
+    gpu_image **textures;                    // per mesh_data texture
 } scene_mesh;
 
 typedef struct scene {

@@ -138,7 +138,7 @@ static void add_positional(lua_State *L, pass_call *call, int value) {
         vm_charge_memory(L, sizeof mesh);
         if (!pass_add_mesh(call->pass, mesh->mesh)) script_raise(L);
     } else if (instances) {
-        vm_charge_memory(L, sizeof instances);
+        vm_charge_memory(L, PASS_MAX_SHAPES * sizeof(scene_mesh));
         if (!pass_add_instances(call->pass, instances)) script_raise(L);
     } else if (value_image(L, value, &image)) {
         add_image(L, call, value);
@@ -405,11 +405,19 @@ static int l_shader(lua_State *L) {
 
 // Made by a function of its own, or a method: bake(field), lbm { }, air:source { }.
 static bool has_constructor(const char *type) {
-    static const char *const types[] = {"bake",          "deposit",         "picture",
-                                        "lbm",           "lbm_source",      "particles",
-                                        "point_lights",  "shell",           "slices",
+    static const char *const types[] = {"bake",
+                                        "deposit",
+                                        "picture",
+                                        "lbm",
+                                        "lbm_source",
+                                        "particles",
+                                        "point_lights",
+                                        "shell",
+                                        "slices",
                                         "slices_force",
-                                        "slices_inflow", "slices_obstacle", "slices_templates",
+                                        "slices_inflow",
+                                        "slices_obstacle",
+                                        "slices_templates",
                                         "voxels"};
     for (size_t i = 0; i < COUNT_OF(types); i++)
         if (strcmp(types[i], type) == 0) return true;

@@ -286,7 +286,7 @@ static const script_object objects[] = {
     {"voxels", "source", "local body = voxels { mesh { \"data/ball.obj\" }, resolution = 64 }",
      "meshes as cells of a box: fields of what is inside of them, how far their surface is, how they "
      "move. Meshes that stand still are computed once",
-     .args = KEYS(KEY("mesh ...", "mesh { \"data/ball.obj\" }", "1 to 63, which may move")),
+     .args = KEYS(KEY("mesh ...", "mesh { \"data/ball.obj\" }", "1 to 63, which may move; instances are as many")),
      .keys = KEYS(
         KEY("resolution", "64 [8, 1024]", "cells along the longest side of the box"),
         KEY("size", "{x, y, z} [1, 1024]", "instead: cells along each side, x a multiple of 4"),

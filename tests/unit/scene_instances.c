@@ -262,7 +262,7 @@ static void expect_picks(world *w, const scene_bvh *b) {
 static void picks_find_what_is_nearest(void **state) {
     (void)state;
     static const uint32_t counts[] = {3, 8, 9, 2000}; // with and without a tree over them
-    static const float sizes[] = {60, 40, 40, 3}; // m; no ray begins in one
+    static const float sizes[] = {60, 40, 40, 3};     // m; no ray begins in one
     for (size_t i = 0; i < COUNT_OF(counts); i++) {
         world w;
         open_cubes(&w, counts[i], sizes[i], NULL);
@@ -333,6 +333,25 @@ static void nodes_place_what_stands_in_them(void **state) {
     arena_free(&memory);
 }
 
+static void a_mesh_may_be_one_of_them(void **state) {
+    (void)state;
+    world w;
+    open_cubes(&w, 5, 2, NULL);
+    scene_mesh one = w.cube;
+    one.instances = w.instances;
+    one.index = 3;
+    mat4 place;
+    set_place(&w, 3, 7, 8, 9);
+    assert_true(scene_mesh_transform(&one, &w.context, place));
+    assert_true(place[0][0] == 2 && place[3][0] == 7 && place[3][2] == 9);
+    struct instance_entry e = scene_instances_entries(w.instances)[3];
+    e.kind.v[0] = 1;
+    scene_instances_set(w.instances, 3, &e);
+    assert_true(scene_mesh_transform(&one, &w.context, place));
+    assert_true(glm_mat4_det(place) == 0);
+    close_world(&w);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(places_keep_their_distance_and_their_number),
@@ -344,6 +363,7 @@ int main(void) {
         cmocka_unit_test(picks_find_what_is_nearest),
         cmocka_unit_test(picks_follow_what_moves_hides_and_grows),
         cmocka_unit_test(nodes_place_what_stands_in_them),
+        cmocka_unit_test(a_mesh_may_be_one_of_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

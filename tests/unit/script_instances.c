@@ -62,7 +62,13 @@ static void mistakes_are_named(void **state) {
     refused(TWO "}\nwood:near(3, 1)", "near takes a point and a radius");
     refused(TWO "}\nwood:near({0, 0}, -1)", "its radius is -1");
     refused(TWO "}\nwood.set(1, {})", "set is a method of instances");
-    refused(TWO "}\nlocal a = voxels { wood, resolution = 8 }", "takes no instances");
+    refused(TWO "}\nlocal a = final { wood }", "final: takes no instances");
+    refused("local wood = instances { mesh 'a.obj', at = scatter { size = 99, count = 257 } }\n"
+            "local a = voxels { wood, resolution = 8 }",
+            "257 instances of 'wood'; as shapes at most 256 are possible");
+    refused("local wood = instances { mesh 'a.obj', at = scatter { size = 99, count = 64 } }\n"
+            "local a = voxels { wood, resolution = 8 }",
+            "64 meshes; at most 63");
     refused("local wood = node { 3 }", "node takes only named values");
     refused("local wood\nlocal n for i = 1, 70 do n = node { parent = n } end",
             "65 stand in each other");
@@ -132,7 +138,8 @@ static void nodes_and_meshes_compile(void **state) {
         HEAD,
         "local hub = node { position = {0, 0, 1}, rotation = function(t) return {0, 0, t} end,\n"
         "  parent = node { scale = 2 } }\n" TWO "parent = hub }\n"
-        "local all = geometry { mesh { 'a.obj', parent = hub }, wood, mode = 'rays' }\n",
+        "local all = geometry { mesh { 'a.obj', parent = hub }, wood, mode = 'rays' }\n"
+        "local cells = voxels { wood, resolution = 8 }\n",
         TAIL, NULL, 0);
     if (!effect_check(e)) fail_msg("%s", err_get());
     effect_destroy(e);
