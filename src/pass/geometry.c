@@ -36,6 +36,16 @@ static bool surfaces_fit(const pass *p) {
     return fit;
 }
 
+// Instances of a pass, from which on they are drawn on any device: a ray goes through a tree over
+// all of them, which the host makes, while lists of them are made where they are drawn.
+enum { MANY = 20000 };
+
+static bool has_many(const pass *p) {
+    size_t count = 0;
+    for (size_t i = 0; i < p->instances_count; i++) count += scene_instances_count(p->instances[i]);
+    return count >= MANY;
+}
+
 // A software device draws triangles many times faster than it traces rays. Of the others, those for
 // computing have few processors that draw, and none was seen to trace slowly.
 static bool choose_rays(const pass *p) {
@@ -43,7 +53,8 @@ static bool choose_rays(const pass *p) {
     pass_find_key(p, "mode", &index);
     const char *mode = p->face->options[index].words[p->options[index]];
     if (strcmp(mode, "auto") != 0) return strcmp(mode, "rays") == 0;
-    return p->host->device && gpu_get_info(p->host->device)->kind != GPU_CPU && surfaces_fit(p);
+    return p->host->device && gpu_get_info(p->host->device)->kind != GPU_CPU && !has_many(p) &&
+           surfaces_fit(p);
 }
 
 static bool declare_targets(pass *p) {
