@@ -71,15 +71,15 @@ static const scene_value values[] = {
           .need = SCENE_GRADIENT),
     VALUE(sky, strength, 1, 0, INFINITY, "", "factor of its light"),
     VALUE(sky, rotation, 1, -360, 360, "degrees", "of the image, about +Z", .need = SCENE_IMAGE),
-    VALUE(sky, night, 1, 0, 1, "", "how much of it is night", .need = SCENE_NIGHT),
+    VALUE(sky, night, 1, 0, 1, "", "how much of the sky is night", .need = SCENE_NIGHT),
     VALUE(sky, night_zenith, 3, 0, INFINITY, "", "radiance of the night straight up", .color = true,
           .need = SCENE_NIGHT),
     VALUE(sky, night_horizon, 3, 0, INFINITY, "", "radiance of the night at the horizon",
           .color = true, .need = SCENE_NIGHT),
     VALUE(sky, stars, 1, 0, INFINITY, "", "factor of what stars and moon shine",
           .need = SCENE_NIGHT),
-    VALUE(sky, moon, 1, 0, 90, "degrees", "how wide it looks, where the sun stands; 0: none",
-          .need = SCENE_NIGHT),
+    VALUE(sky, moon, 1, 0, 90, "degrees",
+          "how wide the moon looks, which stands where the sun does; 0: none", .need = SCENE_NIGHT),
 };
 
 const scene_value *scene_values(size_t *count) {
