@@ -24,6 +24,7 @@ bool lamps_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool lamps_record(pass *p);
 
 bool shadow_maps_declare(pass *p);
+bool shadow_maps_complete(pass *p);
 bool shadow_maps_check(pass *p);
 bool shadow_maps_build(pass *p);
 bool shadow_maps_allocate(pass *p);

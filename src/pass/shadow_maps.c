@@ -26,6 +26,7 @@ typedef struct shadow_state {
     uint32_t sizes[DRAWN_MAX_VIEWS], places[DRAWN_MAX_VIEWS][4], atlas[2];
     struct shadow_view now[DRAWN_MAX_VIEWS]; // the fixed ones of this frame
     bool wide[LIGHT_MAX];                    // spots too wide for a view
+    bool lights;                             // somebody looks for other lights than lamps
     drawn *drawn;
     drawn_stages stages;
     gpu_buffer *placed; // the views, as the device has placed them
@@ -138,6 +139,29 @@ bool shadow_maps_declare(pass *p) {
            add_image(p, "shadow_views", GPU_RGBA32F, TABLE_WIDTH, rows) && pass_add_to_graph(p);
 }
 
+static bool looks_for_lights(const pass *p) {
+    size_t index;
+    if (pass_find_key(p, "shadows_by", &index) != PASS_OPTION) return true; // a user's shader
+    return strcmp(p->face->options[index].words[p->options[index]], "rays") != 0;
+}
+
+// What readers that ask rays have no use for is not drawn. Who else is there asks for all.
+bool shadow_maps_complete(pass *p) {
+    shadow_state *s = state_of(p);
+    const uint32_t atlas = pass_output(p, "shadow_atlas").id;
+    size_t readers = 0, looking = 0;
+    for (size_t i = 0; i < p->host->declared_count; i++) {
+        const pass *reader = p->host->declared[i];
+        for (size_t k = 0; k < reader->face->image_count && reader != p; k++) {
+            if (reader->images[k].id != atlas) continue;
+            readers++;
+            looking += looks_for_lights(reader);
+        }
+    }
+    s->lights = readers == 0 || looking > 0;
+    return true;
+}
+
 // ---- building ---------------------------------------------------------------------------------
 
 static bool has_holes(scene_mesh *const *meshes, size_t count) {
@@ -211,13 +235,18 @@ static bool is_dark(const struct light_entry *light) {
     return c[0] <= 0 && c[1] <= 0 && c[2] <= 0;
 }
 
+static bool needs_sun(const pass *p) {
+    return state_of(p)->lights && !is_dark(&p->host->lights->lights[0]);
+}
+
 // One that does not shine has views of nothing.
 static void place_sun(pass *p, const struct light_entry *sun) {
     shadow_state *s = state_of(p);
     const struct frame_block *frame = p->host->frame;
     float ends[DRAWN_MAX_VIEWS], far = pass_evaluate(p, "distance"), near;
     memset(s->now, 0, s->cascades * sizeof *s->now);
-    if (is_dark(sun)) return;
+    if (!needs_sun(p)) return;
+    far = fminf(far, frame->lens.v[3]);
     near = fminf(fmaxf(frame->lens.v[2], far * 2e-3f), 0.5f * far);
     shadow_maps_split(near, far, pass_evaluate(p, "split"), s->cascades, ends);
     for (uint32_t i = 0; i < s->cascades; i++)
@@ -232,6 +261,7 @@ static void place_spots(pass *p) {
         int view = s->spots[i];
         if (view < 0) continue;
         s->now[view] = (struct shadow_view){0};
+        if (!s->lights) continue;
         s->wide[i] = !shadow_maps_spot(&p->host->lights->lights[i], far, s->sizes[view],
                                        margin_of(p), &s->now[view]);
     }
@@ -240,15 +270,13 @@ static void place_spots(pass *p) {
 // As fixed_lights of the shader has them: a light that has views, is too wide for one, or competes.
 static void write_lights(const pass *p, const shader_binary *binary, unsigned char *block) {
     const shadow_state *s = state_of(p);
-    float lights[LIGHT_MAX][4] = {
-        {0, is_dark(&p->host->lights->lights[0]) ? 0 : (float)s->cascades}};
-    for (uint32_t i = 1; i < s->declared; i++) {
-        bool spot = p->host->lights->lights[i].color.v[3] == LIGHT_SPOT;
+    float lights[LIGHT_MAX][4] = {{0, needs_sun(p) ? (float)s->cascades : 0}};
+    for (uint32_t i = 1; i < LIGHT_MAX && s->lights; i++) {
+        bool spot = i < s->declared && p->host->lights->lights[i].color.v[3] == LIGHT_SPOT;
         bool seen = spot && s->spots[i] >= 0 && !s->wide[i];
         lights[i][0] = seen ? (float)s->spots[i] : 0;
         lights[i][1] = seen ? 1 : spot ? 0 : -1;
     }
-    for (uint32_t i = s->declared; i < LIGHT_MAX; i++) lights[i][1] = -1;
     pass_write_member(binary, block, "fixed_lights", lights, sizeof lights);
 }
 

@@ -44,6 +44,7 @@ static const pass_type types[] = {
         .meshes = PASS_DRAWS_MESHES,
         .unscaled = true,
         .declare = shadow_maps_declare,
+        .complete = shadow_maps_complete,
         .check = shadow_maps_check,
         .build = shadow_maps_build,
         .allocate = shadow_maps_allocate,

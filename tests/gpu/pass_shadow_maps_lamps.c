@@ -117,6 +117,7 @@ static float *shade_lamps(pass_world *w, bool maps) {
         gpu_test_ok(pass_set_uniform(shadows, "shadow_radius", number(w, 0.5f)));
         gpu_test_ok(pass_declare(shadows));
         pass_add_source(p, shadows);
+        gpu_test_ok(pass_set_option(p, "shadows_by", "rays")); // but lamps have their maps
     } else {
         gpu_test_ok(pass_set_option(p, "lamp_shadows", "rays"));
     }
