@@ -225,22 +225,14 @@ bool pass_add_mesh(pass *p, scene_mesh *mesh) {
 }
 
 // As shapes each is a mesh by itself, of the kind that it begins as.
-static bool add_shapes(pass *p, scene_instances *instances) {
-    const struct instance_entry *entries = scene_instances_entries(instances);
+static bool add_shapes(pass *p, const scene_instances *instances) {
     uint32_t count = scene_instances_count(instances);
-    scene_mesh *const *kinds;
-    scene_instances_kinds(instances, &kinds);
     if (count > PASS_MAX_SHAPES)
         return err_set("%s: %u instances of '%s'; as shapes at most %d are possible", p->label,
                        count, scene_instances_name(instances), PASS_MAX_SHAPES);
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t kind = entries[i].kind.v[0];
-        if (kind == INSTANCE_HIDDEN) continue;
-        scene_mesh *mesh = arena_copy(p->host->memory, kinds[kind], sizeof *mesh);
-        mesh->instances = instances;
-        mesh->index = i;
-        mesh->kind = kind;
-        if (!pass_add_mesh(p, mesh)) return false;
+        scene_mesh *mesh = scene_instances_mesh(instances, i, p->host->memory);
+        if (mesh && !pass_add_mesh(p, mesh)) return false;
     }
     return true;
 }

@@ -124,6 +124,16 @@ bool scene_instances_transform(const scene_instances *s, uint32_t index, uint32_
     return true;
 }
 
+scene_mesh *scene_instances_mesh(const scene_instances *s, uint32_t index, arena *memory) {
+    uint32_t kind = s->now[index].kind.v[0];
+    if (kind == INSTANCE_HIDDEN) return NULL;
+    scene_mesh *mesh = arena_copy(memory, s->desc.kinds[kind], sizeof *mesh);
+    mesh->instances = s;
+    mesh->index = index;
+    mesh->kind = kind;
+    return mesh;
+}
+
 size_t scene_instances_near(scene_instances *s, const float point[3], float radius, uint32_t *out,
                             size_t capacity) {
     instances_grid_make(&s->grid, s->now, s->desc.count);

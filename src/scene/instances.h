@@ -47,6 +47,9 @@ void scene_instances_matrix(const struct instance_entry *entry, mat4 out);
 // Of one to the world, as long as it is of that kind; else all of it is in one point.
 bool scene_instances_transform(const scene_instances *s, uint32_t index, uint32_t kind,
                                const field_context *context, mat4 out);
+// One as a mesh by itself, in `memory`, as long as it is of the kind that it is now; NULL: it is
+// not shown.
+scene_mesh *scene_instances_mesh(const scene_instances *s, uint32_t index, arena *memory);
 
 // The storage buffer "Instances". Allocate on the device's thread, again: does nothing; upload
 // inside a frame, once a frame: only what changed.

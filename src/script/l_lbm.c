@@ -124,6 +124,20 @@ static int l_source(lua_State *L) {
     return 0;
 }
 
+// What lies at the top of the stack.
+static void add_collider(lua_State *L, pass *air, voxels_rule rule) {
+    const mesh_object *mesh = object_test(L, -1, "mesh");
+    const scene_instances *instances = value_instances(L, -1);
+    if (!mesh && !instances)
+        vm_error(L, "collider takes meshes and instances; got a %s", luaL_typename(L, -1));
+    uint32_t count = mesh ? 1 : scene_instances_count(instances);
+    for (uint32_t i = 0; i < count; i++) {
+        vm_charge_memory(L, BODY_COST);
+        scene_mesh *one = mesh ? mesh->mesh : scene_instances_mesh(instances, i, script_memory(L));
+        if (one && !pass_lbm_add_collider(air, one, rule)) script_raise(L);
+    }
+}
+
 static int l_collider(lua_State *L) {
     const lbm_object *air = self(L, "collider");
     static const script_key keys[] = {{.name = "rule"}, {.name = NULL}};
@@ -138,10 +152,7 @@ static int l_collider(lua_State *L) {
         vm_error(L, "collider takes meshes, as in air:collider { mesh { \"data/ball.obj\" } }");
     for (lua_Integer i = 1; i <= count; i++) {
         lua_rawgeti(L, 2, i);
-        const mesh_object *mesh = object_test(L, -1, "mesh");
-        if (!mesh) vm_error(L, "collider takes meshes; got a %s", luaL_typename(L, -1));
-        vm_charge_memory(L, BODY_COST);
-        if (!pass_lbm_add_collider(air->pass, mesh->mesh, rule)) script_raise(L);
+        add_collider(L, air->pass, rule);
         lua_pop(L, 1);
     }
     return 0;

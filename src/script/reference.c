@@ -181,7 +181,7 @@ static const script_object objects[] = {
             "where the air is given smoke, heat and speed: where the shape is above 0.5, or within "
             "meshes, which come first and may move; `roil info passes lbm_source` lists the rest"),
         KEY("collider { }", "{ mesh { \"data/ball.obj\" } }",
-            "meshes, which may move, that the air flows around; rule = \"solid\" leaves gaps narrower "
+            "meshes or instances, which may move, that the air flows around; rule = \"solid\" leaves gaps narrower "
             "than two cells open, as of `voxels`"),
         KEY("density", "field", "of smoke"),
         KEY("temperature", "field", "0 is that of the air around"),
