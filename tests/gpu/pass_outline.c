@@ -127,6 +127,41 @@ static void its_creases_are_drawn_by_the_normal(void **state) {
     world_close(&w);
 }
 
+static void count_lines(gpu *device, float reach, int *on_cube, int *beside) {
+    pass_world w;
+    world_open(&w, device);
+    scene_mesh *cube = world_mesh(&w, "crate.obj");
+    pass *solid = world_add(&w, "geometry", NULL, "geometry");
+    gpu_test_ok(pass_add_mesh(solid, cube) && pass_declare(solid));
+    pass *lines = world_add(&w, "outline", NULL, "outline");
+    pass_add_source(lines, solid);
+    gpu_test_ok(pass_set_option(lines, "side", "outside"));
+    gpu_test_ok(pass_set_uniform(lines, "thickness", number(&w, THICKNESS)));
+    gpu_test_ok(pass_set_uniform(lines, "reach", number(&w, reach)));
+    gpu_test_ok(pass_declare(lines));
+    gpu_test_ok(graph_add_output(w.host.graph, pass_output(solid, "depth")));
+    world_render(&w, SIZE, SIZE, pass_output(lines, "image"));
+    float *image = world_read(&w, pass_output(lines, "image"));
+    float *depth = world_read_depth(&w, pass_output(solid, "depth"));
+    *on_cube = *beside = 0;
+    for (int i = 0; i < PIXELS; i++)
+        if (image[4 * i + 3] > 0) *(depth[i] < 1e8f ? on_cube : beside) += 1;
+    mem_free(image);
+    mem_free(depth);
+    world_close(&w);
+}
+
+static void outside_lines_lie_on_what_is_behind(void **state) {
+    int on_cube, beside, far;
+    count_lines(*state, 0, &on_cube, &beside);
+    assert_int_equal(on_cube, 0);
+    assert_true(beside > 4 * SIZE);
+    count_lines(*state, 6, &on_cube, &far); // the cube begins at 4 m: a third is left
+    assert_true(far > 0 && far < beside * 2 / 3);
+    count_lines(*state, 4, &on_cube, &far);
+    assert_int_equal(far, 0);
+}
+
 // Whose depth differs from pixel to pixel by more than a part of it, but which is flat.
 static void ground_that_is_seen_flat_has_no_lines(void **state) {
     const char *const modes[] = {"planes", "published"};
@@ -163,6 +198,7 @@ int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cube_has_its_silhouette_only),
         cmocka_unit_test(its_creases_are_drawn_by_the_normal),
+        cmocka_unit_test(outside_lines_lie_on_what_is_behind),
         cmocka_unit_test(ground_that_is_seen_flat_has_no_lines),
     };
     return gpu_test_run(tests, COUNT_OF(tests));

@@ -20,6 +20,7 @@ assert(near((v + { p, p * 2, 0 }):get(), { 4, 8, 3 }))
 
 -- Functions, methods, names; numbers give numbers.
 assert(clamp(5, 0, 1) == 1 and near(mix(2, 4, 0.25), 2.5) and near(saturate(-1), 0))
+assert(near(quantise(0.3, 4), 0.375) and near(quantise(0, 4), 0.125) and near(quantise(p, 2):get(), 3.25))
 assert(near(clamp(p, 0, 1):get(), 1) and near(p:clamp(0, 2):get(), 2))
 assert(near(p:clamp { high = 2.5 }:get(), 2.5) and near(clamp { p, 0, high = 2 }:get(), 2))
 assert(near(remap(p, 0, 6, 0, 1):get(), 0.5) and near(p:remap(0, 6):get(), 0.5))
