@@ -71,7 +71,7 @@ end
 local function one_layer(settings, number, scale, flat)
   local own = { octaves = 1 }
   for key, value in pairs(settings) do
-    if type(key) == "string" and key ~= "dimensions" and key ~= "noise" then own[key] = value end
+    if type(key) == "string" and key ~= "dimensions" and key ~= "noise" and key ~= "shift" then own[key] = value end
   end
   own.seed = (settings.seed or 0) + 17 * (number - 1)
   own.frequency = flat and whole_cells(scale) or scale
