@@ -7,7 +7,8 @@
 -- it lights, whatever the scene is made of. `point_lights` says how they move and shine, by fields that
 -- the device evaluates for each of them: light_index and light_random tell them apart. lamps_by chooses
 -- how a pixel finds those that reach it: by lists for tiles of the picture, by spheres that are drawn
--- around the lights as published, or by asking all of them. The picture is the same.
+-- around the lights as published, or by asking all of them; path = "forward" lights triangles where they
+-- are drawn instead. The picture is the same.
 
 local fx = effect { name = "deferred_lights", fps = 30, frames = 600 }
 
@@ -18,6 +19,7 @@ local power  = param { "power", 7, min = 0, max = 200, unit = "W", help = "of ea
 local mist   = param { "mist", 0.012, min = 0, max = 0.2, unit = "1/m", help = "how much the air scatters" }
 local turn   = param { "turn", 1.2, min = 0, max = 30, unit = "degrees/s", help = "of the camera around the ruin" }
 local way    = param { "lamps_by", "auto", words = {"auto", "all", "tiles", "volumes"}, help = "how a pixel finds the lights that reach it" }
+local path   = param { "path", "deferred", words = {"deferred", "forward"}, help = "whether light comes after all is drawn, or with it" }
 local model  = param { "model", "physical", words = {"physical", "lambert", "blinn_phong", "toon"}, help = "what stone makes of light" }
 
 fx.camera = orbit { target = {0, 0, 1.95}, distance = 13.8, yaw = 14 + turn * time, pitch = 6.5, fov = 42, near = 0.1, far = 300 }
@@ -49,13 +51,18 @@ local woods  = instances {
   at = scatter { count = 90, size = {90, 90}, distance = 3, seed = 4, inside = length(vec(position.x, position.y, 0)) - 21 },
   scale = {0.8, 1.9}, yaw = {0, 360}, color = {0.5, 0.6, 0.6}, seed = 2,
 }
-local scene = geometry {
-  mesh { "data/rotunda.obj" },
-  mesh { "data/rotunda_floor.obj" },
-  mesh { "data/creature.obj", scale = 1.5, position = {-0.2, 0, 0.35}, rotation = {0, 0, -15}, material = bronze },
-  woods,
-}
-local lit     = shade { from = {scene, lamps}, lamps_by = way, model = model }
+local ruin   = mesh { "data/rotunda.obj" }
+local paving = mesh { "data/rotunda_floor.obj" }
+local dragon = mesh { "data/creature.obj", scale = 1.5, position = {-0.2, 0, 0.35}, rotation = {0, 0, -15}, material = bronze }
+
+local scene, lit
+if path:get() == "deferred" then
+  scene = geometry { ruin, paving, dragon, woods }
+  lit   = shade { from = {scene, lamps}, lamps_by = way, model = model }
+else
+  scene = forward { ruin, paving, dragon, woods, from = lamps, lamps_by = way:get() == "all" and "all" or "tiles", model = model }
+  lit   = scene.color
+end
 local seen    = lamp_glows { from = {scene, lamps}, mist = mist }
 local picture = over { seen, lit, from = scene }
 local glow    = bloom { bright { picture, threshold = 1.2 }, radius = 0.7 }

@@ -44,10 +44,12 @@ struct lamp_record {
     vec4 place; // xyz: m; w: range (m), 0: it is off; below 0: it falls off linearly
     vec4 shine; // rgb: W/sr; w: radius (m)
 };
-layout(std430) LAMPS_ACCESS buffer LampRecords { lamp_record lamp_records[]; };
-uniform uint lamp_count;
-uniform uint lamp_words;        // of a tile's masks
-uniform uint lamp_tiles_across;
+// The head is: how many lamps, words of a tile's masks, tiles side by side. Not uniforms: a software
+// driver (Mesa's lavapipe 22.3) compiles loops for the values of their ends, and crashes over this one.
+layout(std430) LAMPS_ACCESS buffer LampRecords {
+    uvec4 lamp_head;
+    lamp_record lamp_records[];
+};
 #if LAMPS_TILES
 layout(std430) LAMPS_ACCESS buffer LampMasks { uint lamp_masks[]; }; // a bit for each lamp, tile by tile
 #endif
@@ -67,8 +69,8 @@ struct lamp_list {
 #if LAMPS_TILES
 lamp_list lamps_at(ivec2 pixel) {
     uvec2 tile = uvec2(pixel) / LAMPS_TILE;
-    uint first = (tile.y * lamp_tiles_across + tile.x) * lamp_words;
-    return lamp_list(first, first + lamp_words, 0u, 0u - 32u);
+    uint first = (tile.y * lamp_head.z + tile.x) * lamp_head.y;
+    return lamp_list(first, first + lamp_head.y, 0u, 0u - 32u);
 }
 
 bool lamps_next(inout lamp_list list) {
@@ -83,7 +85,7 @@ bool lamps_next(inout lamp_list list) {
 }
 #else
 lamp_list lamps_at(ivec2 pixel) {
-    return lamp_list(0u, lamp_count, 0u, 0u);
+    return lamp_list(0u, lamp_head.x, 0u, 0u);
 }
 
 bool lamps_next(inout lamp_list list) {

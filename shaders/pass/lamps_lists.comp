@@ -18,6 +18,9 @@
 uniform sampler2D depth; //= input optional : how far away what is lit is (m)
 uniform int width;       // of the picture
 uniform int height;
+uniform uint lamp_count;
+uniform uint lamp_words;
+uniform uint lamp_tiles_across;
 #if LAMPS_TILES
 layout(std430) buffer LampBounds { vec2 lamp_bounds[]; }; // m; of the rows, from the top
 #endif
@@ -58,6 +61,7 @@ void main() {
     uvec2 thread = gl_GlobalInvocationID.xy;
     uint across = (lamp_tiles_across + 15u) & ~15u, index = thread.y * across + thread.x;
     if (index < lamp_count) keep_lamp(index);
+    if (index == 0u) lamp_head = uvec4(lamp_count, lamp_words, lamp_tiles_across, 0u);
 #if LAMPS_TILES
     if (thread.x < lamp_tiles_across && thread.y < uint(height))
         lamp_bounds[thread.y * lamp_tiles_across + thread.x] =

@@ -4,8 +4,8 @@
 // A pass that reads it has `#include "lib/lamps.glsl"`, which declares an input `lamps`: given by
 // name or by `from`, it orders the passes. Before such a pass runs, its picture is divided into
 // tiles, and which lamps may light something in each is found out (shaders/pass/lamps_lists.comp).
-// All that comes by itself, in a user's shader too: pass_compile adds the defines, pass_fill_block
-// writes the members, pass_bind finds the buffers, pass_prepare runs the lists' shaders.
+// All that comes by itself, in a user's shader too: pass_compile adds the defines, pass_bind finds
+// the buffers, pass_prepare runs the lists' shaders.
 //
 // An option `lamps_by` of the reader says how: auto, all (every lamp for every pixel), tiles, and
 // volumes where the reader draws them itself (pass/lamps_volumes.h).
@@ -31,8 +31,6 @@ size_t pass_lamps_defines(const pass *p, shader_define out[PASS_LAMPS_DEFINES]);
 bool pass_lamps_check(pass *p); // compiles the lists' shaders
 bool pass_lamps_build(pass *p);
 void pass_lamps_destroy(pass *p);
-// The members of "Uniforms" that the include declares, as of the picture's size.
-void pass_lamps_write(const pass *p, const shader_binary *binary, unsigned char *block);
 bool pass_lamps_record(pass *p); // the lists of a frame
 // The buffer or image of a slot by its name; false: it is none of theirs.
 bool pass_lamps_bind(const pass *p, const char *name, gpu_binding *out);

@@ -11,6 +11,7 @@ enum {
     TILE = 16,   // pixels, as in lib/lamps.glsl
     GROUP = 16,  // threads along a group
     RECORD = 32, // bytes
+    HEAD = 16,
     WORD_BITS = 32,
     FEW = 4, // lamps, up to which every pixel may as well look at all
 };
@@ -115,18 +116,6 @@ static tiling tiling_of(const pass *p) {
     };
 }
 
-void pass_lamps_write(const pass *p, const shader_binary *binary, unsigned char *block) {
-    if (!p->lamps) return;
-    const tiling t = tiling_of(p);
-    const struct {
-        const char *name;
-        uint32_t value;
-    } members[] = {
-        {"lamp_count", p->lamps->count}, {"lamp_words", t.words}, {"lamp_tiles_across", t.across}};
-    for (size_t i = 0; i < COUNT_OF(members); i++)
-        pass_write_member(binary, block, members[i].name, &members[i].value, sizeof(uint32_t));
-}
-
 static bool make_buffer(pass *p, lists_buffer which, uint64_t size) {
     gpu *device = p->host->device;
     gpu_buffer **buffer = &p->lamps->buffers[which];
@@ -145,7 +134,7 @@ static bool make_buffer(pass *p, lists_buffer which, uint64_t size) {
 }
 
 static bool make_buffers(pass *p, const tiling *t) {
-    if (!make_buffer(p, LAMP_RECORDS, (uint64_t)RECORD * p->lamps->count)) return false;
+    if (!make_buffer(p, LAMP_RECORDS, HEAD + (uint64_t)RECORD * p->lamps->count)) return false;
     return p->lamps->way != LAMPS_TILES ||
            (make_buffer(p, LAMP_MASKS, 4ull * t->across * t->down * t->words) &&
             make_buffer(p, LAMP_BOUNDS, 8ull * t->across * t->height));
@@ -154,13 +143,19 @@ static bool make_buffers(pass *p, const tiling *t) {
 static bool run(pass *p, lists_stage stage, const tiling *t, uint32_t x, uint32_t y) {
     const shader_binary *binary = &p->lamps->binary[stage];
     unsigned char *block = p->lamps->block[stage];
-    const int32_t width = (int32_t)t->width, height = (int32_t)t->height;
+    const struct {
+        const char *name;
+        uint32_t value;
+    } members[] = {{"width", t->width},
+                   {"height", t->height},
+                   {"lamp_count", p->lamps->count},
+                   {"lamp_words", t->words},
+                   {"lamp_tiles_across", t->across}};
     gpu_binding bindings[GPU_MAX_SLOTS];
     gpu_dispatch_desc desc = {
         .pipeline = p->lamps->pipeline[stage], .bindings = bindings, .threads = {x, y, 1}};
-    pass_lamps_write(p, binary, block);
-    pass_write_member(binary, block, "width", &width, sizeof width);
-    pass_write_member(binary, block, "height", &height, sizeof height);
+    for (size_t i = 0; i < COUNT_OF(members); i++)
+        pass_write_member(binary, block, members[i].name, &members[i].value, sizeof(uint32_t));
     return pass_bind(p, binary, block, NULL, 0, bindings, &desc.binding_count) &&
            gpu_dispatch(p->host->device, &desc);
 }

@@ -77,7 +77,6 @@ bool pass_fill_block(pass *p, const shader_binary *binary, unsigned char *block)
         }
     }
     if (p->particles) pass_particles_write(p->particles, binary, block);
-    pass_lamps_write(p, binary, block);
     return !p->type || !p->type->fill || p->type->fill(p, binary, block);
 }
 
