@@ -12,7 +12,10 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { GROUP = 64 }; // threads, along x
+enum {
+    GROUP = 64,  // threads, along x
+    BLOCK = 512, // bytes: a power of two
+};
 
 // ---- structure --------------------------------------------------------------------------------
 
@@ -54,8 +57,7 @@ static bool check(const lbm_desc *desc) {
 
 // Four, but where populations of four cells take so many registers that memory waits for threads:
 // README.md has figures. A processor's own way of reading halves is of four, too.
-static uint32_t choose_lanes(const lbm_desc *desc, const gpu_info *device) {
-    const bool software = device && device->kind == GPU_CPU;
+static uint32_t choose_lanes(const lbm_desc *desc, bool software) {
     const bool many = desc->precision == LBM_F16 && (desc->set == LBM_D3Q27 || desc->scalars > 0);
     return many && !software ? 2 : 4;
 }
@@ -63,14 +65,17 @@ static uint32_t choose_lanes(const lbm_desc *desc, const gpu_info *device) {
 bool lbm_layout_find(const lbm_desc *desc, uint64_t range, lbm_layout *out) {
     const uint32_t *size = desc->size, lanes = desc->lanes;
     const uint32_t bytes = desc->precision == LBM_F16 ? 2 : 4;
+    const uint64_t elements = (uint64_t)size[0] * size[1] * (size[2] / lanes);
     *out = (lbm_layout){.lanes = lanes, .element = lanes * bytes, .layers = size[2] / lanes};
-    uint64_t elements = (uint64_t)size[0] * size[1] * out->layers;
-    uint64_t fit = range / (elements * out->element);
+    if (desc->order == LBM_BLOCKS) out->block = BLOCK / out->element;
+    const uint64_t many = out->block ? out->block : 1, places = (elements + many - 1) / many * many;
+    uint64_t fit = range / (places * out->element);
     out->slots = air_directions(desc) + desc->scalars * scalar_directions(desc);
-    if (fit > UINT32_MAX / elements) fit = UINT32_MAX / elements; // indices are of 32 bits
+    if (fit > UINT32_MAX / places) fit = UINT32_MAX / places; // indices are of 32 bits
     if (fit >= out->slots) fit = out->slots + 1;
     out->run = (uint32_t)(fit & ~1ull);
     out->elements = (uint32_t)elements;
+    out->places = (uint32_t)places;
     out->buffers = out->run ? (out->slots + out->run - 1) / out->run : 0;
     if (out->run && out->buffers <= LBM_MAX_BUFFERS) return true;
     return err_set("a lattice of %u x %u x %u cells and %u directions is too large for buffers of "
@@ -82,7 +87,10 @@ bool lbm_layout_find(const lbm_desc *desc, uint64_t range, lbm_layout *out) {
 lbm *lbm_create(arena *memory, const lbm_desc *desc) {
     if (!check(desc)) return NULL;
     lbm *l = arena_alloc(memory, sizeof *l);
-    *l = (lbm){.memory = memory, .desc = *desc, .chooses_lanes = desc->lanes == 0};
+    *l = (lbm){.memory = memory,
+               .desc = *desc,
+               .chooses_lanes = desc->lanes == 0,
+               .chooses_order = desc->order == LBM_ORDER_AUTO};
     return l;
 }
 
@@ -117,6 +125,7 @@ static void define_all(lbm *l) {
     define(l, "LBM_LAYERS", l->layout.layers);
     define(l, "LBM_LANES", l->layout.lanes);
     define(l, "LBM_RUN", l->layout.run);
+    define(l, "LBM_BLOCK", l->layout.block);
     define(l, "LBM_GROUP", GROUP);
     define(l, "LBM_Q", air_directions(desc));
     define(l, "LBM_SCALAR_Q", scalar_directions(desc));
@@ -134,7 +143,9 @@ static void define_all(lbm *l) {
 // `device`: NULL, none in particular.
 static bool compile(lbm *l, const gpu_info *device, shader_library *library,
                     const shader_reader *reader) {
-    if (l->chooses_lanes) l->desc.lanes = choose_lanes(&l->desc, device);
+    const bool software = device && device->kind == GPU_CPU;
+    if (l->chooses_lanes) l->desc.lanes = choose_lanes(&l->desc, software);
+    if (l->chooses_order) l->desc.order = software ? LBM_WHOLE : LBM_BLOCKS;
     if (!lbm_layout_find(&l->desc, device ? device->max_storage_range : UINT32_MAX, &l->layout))
         return false;
     define_all(l);
@@ -163,7 +174,7 @@ bool lbm_allocate(lbm *l, gpu *g) {
     for (uint32_t i = 0; i < layout->buffers; i++) {
         uint32_t left = layout->slots - i * layout->run;
         uint64_t slots = left < layout->run ? left : layout->run;
-        uint64_t size = slots * layout->elements * layout->element;
+        uint64_t size = slots * layout->places * layout->element;
         if (!l->state[i])
             l->state[i] =
                 gpu_buffer_create(g, &(gpu_buffer_desc){.label = "lattice", .size = size});
@@ -209,7 +220,7 @@ static bool same_structure(const lbm_desc *a, const lbm_desc *b) {
     return memcmp(a->size, b->size, sizeof a->size) == 0 &&
            memcmp(a->faces, b->faces, sizeof a->faces) == 0 && a->set == b->set &&
            a->scalar_set == b->scalar_set && a->precision == b->precision &&
-           a->scalars == b->scalars && a->lanes == b->lanes;
+           a->scalars == b->scalars && a->lanes == b->lanes && a->order == b->order;
 }
 
 bool lbm_exchange(lbm *a, lbm *b) {

@@ -20,6 +20,11 @@ typedef enum lbm_scalar_set { LBM_SCALAR_D3Q7, LBM_SCALAR_D3Q27 } lbm_scalar_set
 typedef enum lbm_collision { LBM_BGK, LBM_TRT, LBM_CENTRAL_MOMENTS } lbm_collision;
 typedef enum lbm_forcing { LBM_GUO, LBM_WEIGHTS_ONLY } lbm_forcing; // the latter as published
 typedef enum lbm_precision { LBM_F32, LBM_F16 } lbm_precision;      // of what is stored
+typedef enum lbm_order {                                            // of the state in memory
+    LBM_ORDER_AUTO,
+    LBM_BLOCKS,
+    LBM_WHOLE
+} lbm_order;
 typedef enum lbm_face { LBM_PERIODIC, LBM_WALL, LBM_SLIP, LBM_OPEN, LBM_INFLOW } lbm_face;
 
 enum {
@@ -45,7 +50,9 @@ typedef struct lbm_desc { // structure: what shaders are compiled for
     bool subgrid;      // Smagorinsky
     bool force;        // an image says where what force acts: lbm_set_force
     bool bodies;       // there are solids, which may move
-    uint32_t lanes;    // cells of an access of memory, 2 or 4; 0: what suits the device
+    // How the state lies; left 0: as suits the device.
+    uint32_t lanes;  // cells of an access of memory, 2 or 4
+    lbm_order order; // directions by turns, in blocks of a few elements, or each as a whole
 } lbm_desc;
 
 typedef struct lbm_numbers { // of a step; read anew each step

@@ -22,6 +22,7 @@ bool lbm_kernel_run(const lbm *l, lbm_kernel *k, gpu *g);
 typedef struct lbm_layout {
     uint32_t lanes, element;      // cells of an element, its bytes
     uint32_t layers, elements;    // along z, in all
+    uint32_t block, places;       // elements of a block, 0: none; elements that there is room for
     uint32_t slots, run, buffers; // places of directions, those of one buffer, buffers
 } lbm_layout;
 
@@ -76,7 +77,7 @@ bool lbm_make_moments(lbm *l, gpu *g, uint32_t which); // the buffer, unless it 
 struct lbm {
     arena *memory;
     lbm_desc desc;
-    bool chooses_lanes; // the desc gave none
+    bool chooses_lanes, chooses_order; // the desc gave none
     lbm_layout layout;
     shader_define defines[LBM_MAX_DEFINES];
     size_t define_count;

@@ -1,12 +1,12 @@
 // How fast the bare solver of src/sim steps: no fields, no pictures.
 //
 //   bench_lattice [-d DEVICE] [-n STEPS] [-s X,Y,Z] [-q 19|27] [-p 16|32] [-c SCALARS]
-//                 [-o bgk|trt|moments] [-f periodic|wall|slip|open] [-w LANES] [-k] [-l] [-x]
+//                 [-o bgk|trt|moments] [-f periodic|wall|slip|open] [-w LANES] [-b] [-k] [-l] [-x]
 //
-// LANES, 2 or 4, are the cells of an element. -k keeps moments in each step; -l adds the subgrid
-// term; -x carries scalars on D3Q27. Prints one line: million cell updates a second by the device's
-// clock, by the processor time of this process (of interest for a software device alone), and the
-// bytes a second that the populations themselves make.
+// LANES, 2 or 4, are the cells of an element; -b: without blocks. -k keeps moments in each step; -l
+// adds the subgrid term; -x carries scalars on D3Q27. Prints one line: million cell updates a
+// second by the device's clock, by the processor time of this process (of interest for a software
+// device alone), and the bytes a second that the populations themselves make.
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -33,7 +33,7 @@ static int fail(const char *what) {
 
 static bool parse(int argc, char **argv, bench *b) {
     *b = (bench){.steps = 100, .desc = {.size = {96, 96, 96}, .collision = LBM_CENTRAL_MOMENTS}};
-    for (int c; (c = getopt(argc, argv, "d:n:s:q:p:c:o:f:w:klx")) != -1;) {
+    for (int c; (c = getopt(argc, argv, "d:n:s:q:p:c:o:f:w:bklx")) != -1;) {
         uint32_t *s = b->desc.size;
         if (c == 'd') b->device = optarg;
         if (c == 'n') b->steps = atoi(optarg);
@@ -50,6 +50,7 @@ static bool parse(int argc, char **argv, bench *b) {
                                : optarg[0] == 's' ? LBM_SLIP
                                : optarg[0] == 'o' ? LBM_OPEN
                                                   : LBM_PERIODIC;
+        if (c == 'b') b->desc.order = LBM_WHOLE;
         if (c == 'w') b->desc.lanes = (uint32_t)atoi(optarg);
         if (c == 'k') b->keep = true;
         if (c == 'x') b->desc.scalar_set = LBM_SCALAR_D3Q27;

@@ -2,8 +2,8 @@
 #pragma once
 #include "base/maths.h"
 #include "gpu_test.h"
-#include "sim/lbm.h"
 #include "sim/lbm/lattice.glsl"
+#include "sim/lbm_impl.h"
 #include <math.h>
 #include <string.h>
 
@@ -92,11 +92,17 @@ static inline size_t sim_index(const sim_world *w, int x, int y, int z) {
     return (size_t)x + n[0] * ((size_t)y + n[1] * (size_t)z);
 }
 
-// Where a slot's value of a cell lies among all values of the slot.
-static inline size_t sim_place(const sim_world *w, size_t cell) {
-    const uint32_t lanes = lbm_get_desc(w->lattice)->lanes, layers = w->desc.size[2] / lanes;
+// Where a slot's value of a cell lies among all values of the state.
+static inline size_t sim_place(const sim_world *w, int slot, size_t cell) {
+    const lbm_layout *l = &w->lattice->layout;
     size_t plane = (size_t)w->desc.size[0] * w->desc.size[1], z = cell / plane;
-    return ((cell % plane) + plane * (z % layers)) * lanes + z / layers;
+    size_t element = (cell % plane) + plane * (z % l->layers);
+    size_t run = l->run, own = (size_t)slot % run, first = (size_t)slot - own;
+    size_t slots = l->slots - first < run ? l->slots - first : run;
+    size_t in = l->block
+                    ? element / l->block * l->block * slots + own * l->block + element % l->block
+                    : own * l->places + element;
+    return (first * l->places + in) * l->lanes + z / l->layers;
 }
 
 typedef struct sim_memory { // of all slots, one after the other
@@ -122,7 +128,7 @@ static inline void sim_transfer(sim_world *w, sim_memory *m, bool write) {
 
 static inline void sim_put(const sim_world *w, sim_memory *m, int slot, size_t cell, double v,
                            double scale) {
-    size_t place = (size_t)slot * w->cells + sim_place(w, cell);
+    size_t place = sim_place(w, slot, cell);
     if (w->desc.precision == LBM_F16) {
         uint16_t half = half_from_float((float)(v * scale));
         memcpy(m->bytes + 2 * place, &half, 2);
@@ -134,7 +140,7 @@ static inline void sim_put(const sim_world *w, sim_memory *m, int slot, size_t c
 
 static inline double sim_get(const sim_world *w, const sim_memory *m, int slot, size_t cell,
                              double scale) {
-    size_t place = (size_t)slot * w->cells + sim_place(w, cell);
+    size_t place = sim_place(w, slot, cell);
     uint16_t half;
     float value;
     if (w->desc.precision == LBM_F16) {

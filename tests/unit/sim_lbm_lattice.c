@@ -90,6 +90,7 @@ static void moments_of_the_weights_are_isotropic(void **state) {
 static lbm_layout lay_out(lbm_desc desc, uint64_t range) {
     lbm_layout layout;
     desc.lanes = 4;
+    desc.order = LBM_BLOCKS;
     if (!lbm_layout_find(&desc, range, &layout)) fail_msg("%s", err_get());
     assert_int_equal(layout.run % 2, 0);
     assert_true(layout.run * layout.buffers >= layout.slots);

@@ -74,7 +74,7 @@ float pick(lbm_element e, uint lane, const float scale) {
 }
 
 void store(const int slot, uint side, Cell c, const float scale, float value) {
-    uint at = (uint(slot % LBM_RUN) + side) * LBM_ELEMENTS + c.element;
+    uint at = lbm_memory_at(slot, side, c.element);
 #if LBM_HALF
     uint bits = packHalf2x16(vec2(value * scale, 0.0)) & 0xffffu;
     uint shift = 16u * (c.lane & 1u), others = 0xffff0000u >> shift;

@@ -254,11 +254,12 @@ uint lbm_there(lbm_place p, const int x, const int y, const int z) {
            (y == 0 ? p.y : y > 0 ? p.y_up : p.y_down) + (z == 0 ? p.z : p.z_up);
 }
 
-// Places in memory: those of pairs, then those of rest. Each has LBM_ELEMENTS elements.
+// Slots: those of pairs, then those at rest. Each has an element for each of the lattice.
 #define LBM_AIR_PAIR(i) ((i) - 1)
 #define LBM_SCALAR_PAIR(s, i) (LBM_Q - 1 + (s) * (LBM_SCALAR_Q - 1) + (i) - 1)
 #define LBM_AIR_AT_REST (LBM_Q - 1 + LBM_SCALARS * (LBM_SCALAR_Q - 1))
 #define LBM_SCALAR_AT_REST(s) (LBM_AIR_AT_REST + 1 + (s))
+#define LBM_SLOTS (LBM_AIR_AT_REST + 1 + LBM_SCALARS)
 
 // How elements are read and written.
 #if LBM_SOFTWARE && LBM_HALF
@@ -287,10 +288,26 @@ lbm_memory lbm_to_memory(lbm_element e) {
 LBM_EACH_BUFFER
 #undef LBM_BUFFER
 
-// `slot` is a constant, the first of a pair; `side`, 0 or 1, need not be. What is not of the
-// constant's buffer is left out by the driver.
+// Where an element lies in its slot's buffer. `slot` is a constant, the first of a pair; `side`, 0 or 1,
+// need not be.
+//
+// LBM_BLOCK: so many elements of a slot lie together, then come as many of the next one: what a group
+// of threads reads is near to each other, and its addresses differ by constants. 0: the whole of a
+// slot lies together.
+uint lbm_memory_at(const int slot, uint side, uint element) {
+    const int first = slot / LBM_RUN * LBM_RUN;
+    const uint own = uint(slot - first);
+#if LBM_BLOCK
+    const uint inside = uint(LBM_BLOCK - 1), slots = uint(min(LBM_RUN, LBM_SLOTS - first));
+    return (element & ~inside) * slots + (element & inside) + side * uint(LBM_BLOCK) + own * uint(LBM_BLOCK);
+#else
+    return (own + side) * LBM_ELEMENTS + element;
+#endif
+}
+
+// What is not of the slot's buffer is left out by the driver.
 lbm_element lbm_load(const int slot, uint side, uint element) {
-    uint at = (uint(slot % LBM_RUN) + side) * LBM_ELEMENTS + element;
+    uint at = lbm_memory_at(slot, side, element);
     lbm_memory m;
 #define LBM_BUFFER(k, block, array) if (slot / LBM_RUN == k) m = array[at];
     LBM_EACH_BUFFER
@@ -299,7 +316,7 @@ lbm_element lbm_load(const int slot, uint side, uint element) {
 }
 
 void lbm_store(const int slot, uint side, uint element, lbm_element e) {
-    uint at = (uint(slot % LBM_RUN) + side) * LBM_ELEMENTS + element;
+    uint at = lbm_memory_at(slot, side, element);
     lbm_memory m = lbm_to_memory(e);
 #define LBM_BUFFER(k, block, array) if (slot / LBM_RUN == k) array[at] = m;
     LBM_EACH_BUFFER
