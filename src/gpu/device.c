@@ -46,6 +46,7 @@ VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, int copies
     want.core.features.shaderUniformBufferArrayDynamicIndexing =
         has.core.features.shaderUniformBufferArrayDynamicIndexing; // hide.c
     want.core.features.shaderInt64 = has.core.features.shaderInt64;
+    want.core.features.multiDrawIndirect = has.core.features.multiDrawIndirect;
     want.v11.storageBuffer16BitAccess = has.v11.storageBuffer16BitAccess;
     want.v11.uniformAndStorageBuffer16BitAccess = has.v11.uniformAndStorageBuffer16BitAccess;
 

@@ -50,6 +50,10 @@ static uint64_t command_size(const gpu_draw *draw) {
     return draw->indices ? sizeof(gpu_draw_indexed_command) : sizeof(gpu_draw_command);
 }
 
+static uint32_t command_count(const gpu_draw *draw) {
+    return draw->commands_drawn ? draw->commands_drawn : 1;
+}
+
 // What a command of the device draws cannot be checked here: who wrote it must know.
 static bool check_buffers(const gpu_pipeline *p, const gpu_draw *draw) {
     const gpu_buffer *indices = draw->indices, *commands = draw->commands;
@@ -57,7 +61,7 @@ static bool check_buffers(const gpu_pipeline *p, const gpu_draw *draw) {
         (commands && commands->kind != GPU_BUFFER_DEVICE))
         return err_set("pipeline '%s': indices and commands must lie in device buffers", p->label);
     if (commands && (draw->command % 4 != 0 || draw->command > commands->size ||
-                     commands->size - draw->command < command_size(draw)))
+                     commands->size - draw->command < command_count(draw) * command_size(draw)))
         return err_set("pipeline '%s': the command at byte %llu of buffer '%s' is not whole words "
                        "inside it",
                        p->label, (unsigned long long)draw->command, commands->label);
@@ -179,18 +183,29 @@ static void place(VkCommandBuffer commands, const gpu_draw *draw, VkExtent2D siz
     vkCmdSetScissor(commands, 0, 1, &scissor);
 }
 
+// A device that takes one command at a time says so by its limit.
+static void draw_commands(const gpu *g, VkCommandBuffer commands, const gpu_draw *draw) {
+    uint32_t stride = (uint32_t)command_size(draw), left = command_count(draw);
+    for (uint64_t at = draw->command; left > 0;) {
+        uint32_t most = g->limits.maxDrawIndirectCount, count = left < most ? left : most;
+        if (draw->indices)
+            vkCmdDrawIndexedIndirect(commands, draw->commands->handle, at, count, stride);
+        else
+            vkCmdDrawIndirect(commands, draw->commands->handle, at, count, stride);
+        at += (uint64_t)count * stride;
+        left -= count;
+    }
+}
+
 static bool record(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipeline,
                    const gpu_draw *draw, VkExtent2D size) {
     if (!vk_bindings_push(g, commands, pipeline, draw->bindings, draw->binding_count)) return false;
     place(commands, draw, size);
     uint32_t instances = draw->instances ? draw->instances : 1;
-    uint32_t stride = (uint32_t)command_size(draw);
     if (draw->indices)
         vkCmdBindIndexBuffer(commands, draw->indices->handle, 0, VK_INDEX_TYPE_UINT32);
-    if (draw->commands && draw->indices)
-        vkCmdDrawIndexedIndirect(commands, draw->commands->handle, draw->command, 1, stride);
-    else if (draw->commands)
-        vkCmdDrawIndirect(commands, draw->commands->handle, draw->command, 1, stride);
+    if (draw->commands)
+        draw_commands(g, commands, draw);
     else if (draw->indices)
         vkCmdDrawIndexed(commands, draw->vertices, instances, draw->first_vertex, 0, 0);
     else

@@ -288,8 +288,9 @@ typedef struct gpu_draw { // one draw call inside a gpu_draw_desc
     gpu_buffer *indices;   // of 32 bits, which gl_VertexIndex runs through; NULL: none
     gpu_buffer *commands;  // a command that is read by the device instead of these numbers ...
     uint64_t command;      // ... from this byte on, a multiple of 4; NULL: there is none
-    uint32_t viewport[4];  // x, y, width, height in pixels; width 0: the whole target
-    uint32_t scissor[4];   // the same; width 0: the viewport
+    uint32_t commands_drawn; // so many, one behind the other; 0 means 1
+    uint32_t viewport[4];    // x, y, width, height in pixels; width 0: the whole target
+    uint32_t scissor[4];     // the same; width 0: the viewport
 } gpu_draw;
 
 typedef struct gpu_draw_desc {

@@ -296,6 +296,32 @@ static void commands_are_read_by_the_device(void **state) {
     stage_close(&s);
 }
 
+// Both halves, at once.
+static void commands_follow_one_another(void **state) {
+    static float texels[N][N][4];
+    static const float blue[4] = {0, 0, 1, 0};
+    static const gpu_draw_command both[] = {{.vertices = 3, .instances = 1, .first_vertex = 3},
+                                            {.vertices = 3, .instances = 1, .first_vertex = 6}};
+    stage s = stage_open(*state, GPU_CULL_NONE);
+    gpu_buffer *all = make_buffer(s.g, "all", corners, sizeof corners);
+    gpu_buffer *commands = make_buffer(s.g, "commands", both, sizeof both);
+    const gpu_binding bindings[] = {{.binding = 0, .buffer = all},
+                                    {.binding = 1, .uniform = red, .uniform_size = 16}};
+    gpu_draw two = {
+        .bindings = bindings, .binding_count = 2, .commands = commands, .commands_drawn = 2};
+    gpu_draw_desc desc = draw_over(&s, &two, 1);
+    gpu_test_ok(gpu_frame_begin(s.g));
+    gpu_test_ok(gpu_draw_all(s.g, &desc));
+    gpu_test_ok(gpu_frame_end(s.g));
+    gpu_test_ok(gpu_image_read(s.g, s.color, texels, sizeof texels));
+    expect_texel(texels, 1, N - 2, red);
+    expect_texel(texels, N - 2, 1, red);
+    expect_texel(texels, N - 2, N - 2, blue);
+    gpu_buffer_destroy(s.g, commands);
+    gpu_buffer_destroy(s.g, all);
+    stage_close(&s);
+}
+
 static void commands_beyond_their_buffer_are_refused(void **state) {
     static const uint32_t words[8] = {0};
     stage s = stage_open(*state, GPU_CULL_NONE);
@@ -313,6 +339,10 @@ static void commands_beyond_their_buffer_are_refused(void **state) {
     }
     one.command = 16;
     gpu_test_ok(gpu_draw_all(s.g, &desc)); // draws nothing
+    one.commands_drawn = 2;
+    assert_false(gpu_draw_all(s.g, &desc));
+    one.command = 0;
+    gpu_test_ok(gpu_draw_all(s.g, &desc));
     gpu_test_ok(gpu_frame_end(s.g));
     gpu_buffer_destroy(s.g, commands);
     stage_close(&s);
@@ -423,6 +453,7 @@ int main(void) {
         cmocka_unit_test(draws_begin_at_their_vertex_inside_their_scissor),
         cmocka_unit_test(indices_name_the_vertices),
         cmocka_unit_test(commands_are_read_by_the_device),
+        cmocka_unit_test(commands_follow_one_another),
         cmocka_unit_test(commands_beyond_their_buffer_are_refused),
         cmocka_unit_test(views_lie_in_their_viewports),
         cmocka_unit_test(no_draws_just_clears),
