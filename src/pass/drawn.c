@@ -227,18 +227,19 @@ typedef struct recording {
     const drawn_slots *slots;
     size_t view;
     const uint32_t *viewport; // NULL: the whole target
+    bool alike;
 } recording;
 
 static uint32_t levels_of(const drawn *d, const mesh_data *mesh) {
     return d->levels ? drawn_level_count(mesh) : 1;
 }
 
-static size_t count_draws(const drawn *d) { // of a view
+static size_t count_draws(const drawn *d, bool alike) { // of a view
     size_t count = 0;
     for (size_t i = 0; i < d->body_count; i++)
         for (size_t k = 0; k < d->bodies[i].kind_count; k++) {
             const mesh_data *mesh = &d->bodies[i].kinds[k]->data;
-            count += (size_t)mesh->part_count * levels_of(d, mesh);
+            count += alike ? 1 : (size_t)mesh->part_count * levels_of(d, mesh);
         }
     return count;
 }
@@ -251,8 +252,9 @@ static void reserve(drawn *d, size_t draws, size_t slots) {
     d->draw_count = 0;
 }
 
+// `count`: commands, that of the part at the level and those behind it.
 static void add_draw(const recording *r, const drawn_body *body, size_t kind, uint32_t level,
-                     uint32_t part) {
+                     uint32_t part, uint32_t count) {
     drawn *d = r->d;
     size_t i = d->draw_count++;
     const scene_mesh *mesh = body->kinds[kind];
@@ -267,6 +269,7 @@ static void add_draw(const recording *r, const drawn_body *body, size_t kind, ui
         .indices = mesh->indices,
         .commands = body->buffers[DRAWN_COMMANDS],
         .command = command * sizeof(gpu_draw_indexed_command),
+        .commands_drawn = count,
     };
     if (r->viewport) memcpy(d->draws[i].viewport, r->viewport, sizeof d->draws[i].viewport);
 }
@@ -274,8 +277,10 @@ static void add_draw(const recording *r, const drawn_body *body, size_t kind, ui
 static void add_body_draws(const recording *r, const drawn_body *body) {
     for (size_t k = 0; k < body->kind_count; k++) {
         const mesh_data *mesh = &body->kinds[k]->data;
-        for (uint32_t level = 0; level < levels_of(r->d, mesh); level++)
-            for (uint32_t i = 0; i < mesh->part_count; i++) add_draw(r, body, k, level, i);
+        uint32_t levels = levels_of(r->d, mesh);
+        if (r->alike) add_draw(r, body, k, 0, 0, levels * mesh->part_count);
+        for (uint32_t level = 0; level < levels && !r->alike; level++)
+            for (uint32_t i = 0; i < mesh->part_count; i++) add_draw(r, body, k, level, i, 1);
     }
 }
 
@@ -283,9 +288,9 @@ bool drawn_record(drawn *d, drawn_stages *stages, gpu_draw_desc *target, size_t 
                   const uint32_t (*places)[4]) {
     drawn_slots slots;
     if (!bind_stages(d, stages, &slots)) return false;
-    reserve(d, count * count_draws(d), slots.count);
+    reserve(d, count * count_draws(d, stages->alike), slots.count);
     for (size_t v = 0; v < count; v++) {
-        const recording r = {d, &slots, first + v, places ? places[v] : NULL};
+        const recording r = {d, &slots, first + v, places ? places[v] : NULL, stages->alike};
         for (size_t i = 0; i < d->body_count; i++) add_body_draws(&r, &d->bodies[i]);
     }
     target->pipeline = stages->pipeline;

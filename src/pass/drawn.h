@@ -22,6 +22,7 @@ typedef struct drawn_stages { // a vertex and a fragment shader, and what they d
     shader_binary vertex, fragment;
     gpu_pipeline *pipeline;
     unsigned char *blocks[2]; // host copies of their "Uniforms"
+    bool alike; // no stage asks which part it draws: those of a mesh and its levels are one draw
 } drawn_stages;
 
 typedef struct drawn_target {           // beside a depth buffer

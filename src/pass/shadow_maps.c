@@ -183,9 +183,10 @@ static bool draws_holes(const pass *p) {
 }
 
 bool shadow_maps_check(pass *p) {
-    const shadow_state *s = state_of(p);
+    shadow_state *s = state_of(p);
     arena *memory = p->host->memory;
-    const shader_define holes = {"HOLES", draws_holes(p) ? "1" : "0"};
+    s->stages.alike = !draws_holes(p);
+    const shader_define holes = {"HOLES", s->stages.alike ? "0" : "1"};
     const shader_define defines[] = {
         {"SHADOW_FIXED", arena_format(memory, "%u", s->fixed)},
         {"SHADOW_VIEWS", arena_format(memory, "%u", s->views)},
@@ -193,7 +194,7 @@ bool shadow_maps_check(pass *p) {
     };
     return pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines), &p->binary) &&
            drawn_check(p, "pass/shadow_maps.vert", "pass/shadow_maps.frag", &holes, 1,
-                       &state_of(p)->stages) &&
+                       &s->stages) &&
            drawn_check_cull(s->drawn);
 }
 
