@@ -2,21 +2,19 @@
 // hold one place at most (Bridson, "Fast Poisson disk sampling in arbitrary dimensions", 2007,
 // section 2). Unlike his, places do not grow out of each other: a few are as evenly spread as many.
 #include "scene/scatter.h"
-#include "base/memory.h"
 #include <math.h>
 
 enum {
-    EMPTY = 0,            // of a cell; else the number of its place, from 1 on
-    MOST_CELLS = 1 << 24, // larger cells than need be hold one place all the same
-    MOST_MISSES = 3000,   // one after the other: there is no room left
-    MOST_DARTS = 100,     // for each place
+    EMPTY = 0,                          // of a cell; else the number of its place, from 1 on
+    MOST_CELLS = SCATTER_MAX_CELLS / 4, // larger ones than need be hold one place all the same
+    MOST_MISSES = 3000,                 // one after the other: there is no room left
+    MOST_DARTS = 100,                   // for each place
 };
 
 typedef struct board {
     const scatter_desc *desc;
     float cell;
     int32_t size[2]; // cells
-    uint32_t *cells;
     float (*places)[3];
     size_t count;
 } board;
@@ -34,15 +32,20 @@ float scatter_chance(uint32_t seed, uint32_t index, uint32_t what) {
     return (float)(h >> 8) / 16777216.0f;
 }
 
-static void open(board *b, const scatter_desc *desc, float (*out)[3]) {
-    *b = (board){.desc = desc, .places = out};
+static board open(const scatter_desc *desc, float (*out)[3]) {
+    board b = {.desc = desc, .places = out};
     double area = (double)desc->size[0] * (double)desc->size[1];
     // A cell's diagonal is the distance.
     double cell = fmax((double)desc->distance / sqrt(2.0), sqrt(area / MOST_CELLS));
     double longest = fmax((double)desc->size[0], (double)desc->size[1]);
-    b->cell = (float)fmax(cell, longest / MOST_CELLS);
-    for (int a = 0; a < 2; a++) b->size[a] = (int32_t)(desc->size[a] / b->cell) + 1;
-    b->cells = mem_alloc((size_t)b->size[0] * (size_t)b->size[1] * sizeof *b->cells);
+    b.cell = (float)fmax(cell, longest / MOST_CELLS);
+    for (int a = 0; a < 2; a++) b.size[a] = (int32_t)(desc->size[a] / b.cell) + 1;
+    return b;
+}
+
+size_t scatter_cells(const scatter_desc *desc) {
+    board b = open(desc, NULL);
+    return (size_t)b.size[0] * (size_t)b.size[1];
 }
 
 static int32_t cell_along(const board *b, int axis, float at) {
@@ -59,10 +62,11 @@ static bool is_near(const board *b, uint32_t place, const float at[2]) {
 
 static bool has_room(const board *b, const float at[2]) {
     int32_t x = cell_along(b, 0, at[0]), y = cell_along(b, 1, at[1]);
-    if (b->cells[(size_t)y * (size_t)b->size[0] + (size_t)x] != EMPTY) return false;
+    if (b->desc->cells[(size_t)y * (size_t)b->size[0] + (size_t)x] != EMPTY) return false;
     for (int32_t v = y > 2 ? y - 2 : 0; v <= y + 2 && v < b->size[1]; v++)
         for (int32_t u = x > 2 ? x - 2 : 0; u <= x + 2 && u < b->size[0]; u++)
-            if (is_near(b, b->cells[(size_t)v * (size_t)b->size[0] + (size_t)u], at)) return false;
+            if (is_near(b, b->desc->cells[(size_t)v * (size_t)b->size[0] + (size_t)u], at))
+                return false;
     return true;
 }
 
@@ -71,7 +75,7 @@ static void add(board *b, const float at[3]) {
     b->count++;
     if (b->desc->distance == 0) return; // cells would hold several, and nobody asks
     int32_t x = cell_along(b, 0, at[0]), y = cell_along(b, 1, at[1]);
-    b->cells[(size_t)y * (size_t)b->size[0] + (size_t)x] = (uint32_t)b->count;
+    b->desc->cells[(size_t)y * (size_t)b->size[0] + (size_t)x] = (uint32_t)b->count;
 }
 
 static bool throw(board * b, uint32_t dart, bool *stays) {
@@ -87,8 +91,7 @@ static bool throw(board * b, uint32_t dart, bool *stays) {
 }
 
 bool scatter_places(const scatter_desc *desc, float (*out)[3], size_t *found) {
-    board b;
-    open(&b, desc, out);
+    board b = open(desc, out);
     bool fine = true;
     int misses = 0;
     size_t most = MOST_DARTS * desc->count + MOST_MISSES;
@@ -98,7 +101,6 @@ bool scatter_places(const scatter_desc *desc, float (*out)[3], size_t *found) {
         fine = throw(&b, dart, &stays);
         misses = stays ? 0 : misses + 1;
     }
-    mem_free(b.cells);
     *found = b.count;
     return fine;
 }

@@ -4,18 +4,21 @@
 #include "scene/scatter.h"
 #include "script/binding.h"
 #include <math.h>
+#include <string.h>
 
 static const char who[] = "scatter";
 
 typedef struct chooser { // of places that have room
+    lua_State *L;
     field_context context;
     const field *inside, *density, *height; // NULL: not given
 } chooser;
 
-enum { DART_COST = 20, FIELD_COST = 200 }; // in instructions of the script
+enum { DART_COST = 20, FIELD_COST = 50, NODE_COST = 10 }; // in instructions of the script
 
 static bool value_at(const chooser *c, const field *node, const float place[3], float *out) {
     float value[4];
+    vm_charge(c->L, FIELD_COST + (uint64_t)NODE_COST * node->size);
     if (!field_eval(node, &c->context, (float3){place[0], place[1], place[2]}, value)) return false;
     *out = value[0];
     return true;
@@ -88,14 +91,16 @@ static int l_scatter(lua_State *L) {
     size_t found;
     value_check_object(L, 1, who);
     read_desc(L, &desc);
-    chooser c = {.context = script_context(L),
+    chooser c = {.L = L,
+                 .context = script_context(L),
                  .inside = get_field(L, "inside"),
                  .density = get_field(L, "density"),
                  .height = get_field(L, "height")};
-    bool asks = c.inside || c.density || c.height;
-    vm_charge(L, desc.count * (uint64_t)(asks ? DART_COST + FIELD_COST : DART_COST));
-    desc.accept = asks ? accept : NULL;
+    vm_charge(L, desc.count * (uint64_t)DART_COST);
+    desc.accept = c.inside || c.density || c.height ? accept : NULL;
     desc.user = &c;
+    size_t cells = scatter_cells(&desc) * sizeof *desc.cells;
+    desc.cells = memset(lua_newuserdatauv(L, cells, 0), 0, cells); // an error may end it all
     float(*places)[3] = lua_newuserdatauv(L, desc.count * sizeof *places, 0);
     if (!scatter_places(&desc, places, &found)) script_raise(L);
     if (found == 0)

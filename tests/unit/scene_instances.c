@@ -99,13 +99,21 @@ static float least_distance(float (*places)[3], size_t count) {
     return least;
 }
 
+static size_t scatter(scatter_desc desc, float (*out)[3]) {
+    size_t found, cells = scatter_cells(&desc);
+    assert_true(cells <= SCATTER_MAX_CELLS);
+    desc.cells = mem_alloc(cells * sizeof *desc.cells);
+    assert_true(scatter_places(&desc, out, &found));
+    mem_free(desc.cells);
+    return found;
+}
+
 static void places_keep_their_distance_and_their_number(void **state) {
     (void)state;
     float(*places)[3] = mem_alloc(2000 * sizeof *places), again[100][3];
     scatter_desc desc = {
         .count = 2000, .middle = {5, -5, 1}, .size = {120, 80}, .distance = 1.2f, .seed = 3};
-    size_t found;
-    assert_true(scatter_places(&desc, places, &found));
+    size_t found = scatter(desc, places);
     assert_int_equal(found, 2000);
     assert_true(least_distance(places, found) >= 1.2f);
     for (size_t i = 0; i < found; i++) {
@@ -113,10 +121,10 @@ static void places_keep_their_distance_and_their_number(void **state) {
         assert_true(places[i][2] == 1);
     }
     desc.count = 100; // the first of the many
-    assert_true(scatter_places(&desc, again, &found));
+    scatter(desc, again);
     assert_memory_equal(places, again, sizeof again);
     desc.seed = 4;
-    assert_true(scatter_places(&desc, again, &found));
+    scatter(desc, again);
     assert_memory_not_equal(places, again, sizeof again);
     mem_free(places);
 }
@@ -124,9 +132,8 @@ static void places_keep_their_distance_and_their_number(void **state) {
 static void places_are_fewer_where_there_is_no_room(void **state) {
     (void)state;
     float places[1000][3];
-    scatter_desc desc = {.count = 1000, .size = {10, 10}, .distance = 1, .seed = 1};
-    size_t found;
-    assert_true(scatter_places(&desc, places, &found));
+    size_t found =
+        scatter((scatter_desc){.count = 1000, .size = {10, 10}, .distance = 1, .seed = 1}, places);
     assert_true(found > 55 && found < 100); // discs at random come to rest at 0.547 of the area: 70
     assert_true(least_distance(places, found) >= 1);
 }
@@ -141,12 +148,23 @@ static bool left_only(void *user, float place[3], float chance, bool *stays) {
 static void places_may_be_refused_and_lifted(void **state) {
     (void)state;
     float places[50][3];
-    size_t found;
-    assert_true(scatter_places(
-        &(scatter_desc){.count = 50, .size = {10, 10}, .seed = 1, .accept = left_only}, places,
-        &found));
+    size_t found = scatter(
+        (scatter_desc){.count = 50, .size = {10, 10}, .seed = 1, .accept = left_only}, places);
     assert_int_equal(found, 50);
     for (size_t i = 0; i < found; i++) assert_true(places[i][0] < 0 && places[i][2] == 7);
+}
+
+static void places_far_apart_need_few_cells(void **state) {
+    (void)state;
+    float places[100][3];
+    const float sizes[][2] = {{1e6f, 1e6f}, {1e6f, 1e-3f}, {1e-3f, 1e-3f}};
+    for (size_t i = 0; i < COUNT_OF(sizes); i++) {
+        scatter_desc desc = {.count = 100, .distance = 1e-3f, .seed = 2};
+        memcpy(desc.size, sizes[i], sizeof desc.size);
+        size_t found = scatter(desc, places);
+        assert_true(i == 2 ? found < 5 : found == 100);
+        assert_true(found == 1 || least_distance(places, found) >= 1e-3f);
+    }
 }
 
 // ---- near and set -----------------------------------------------------------------------------
@@ -357,6 +375,7 @@ int main(void) {
         cmocka_unit_test(places_keep_their_distance_and_their_number),
         cmocka_unit_test(places_are_fewer_where_there_is_no_room),
         cmocka_unit_test(places_may_be_refused_and_lifted),
+        cmocka_unit_test(places_far_apart_need_few_cells),
         cmocka_unit_test(near_finds_what_a_look_at_all_finds),
         cmocka_unit_test(near_takes_places_along_a_line_and_in_one_point),
         cmocka_unit_test(what_is_set_comes_back_with_a_reset),

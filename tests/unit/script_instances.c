@@ -84,6 +84,9 @@ static void scatter_says_what_it_takes(void **state) {
     refused("local wood = scatter { size = 5, count = 2, distance = -1 }", "'distance' is -1");
     refused("local wood = scatter { size = 5, count = 2, inside = -1 }", "no place was found");
     refused("local wood = scatter { size = 5, count = 2, inside = position }", "1 component");
+    refused("local f = position.x for i = 1, 100 do f = f * 0.5 - 1 end\n"
+            "local wood = scatter { size = 5, count = 1e5, density = f + 2.005 }",
+            "instruction limit of");
 }
 
 static void values_are_what_was_said(void **state) {
