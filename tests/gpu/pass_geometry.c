@@ -218,7 +218,8 @@ static void texture_is_decoded_from_srgb_and_multiplied(void **state) {
                              .parts = &part,
                              .part_count = 1,
                              .textures = &texture,
-                             .texture_count = 1};
+                             .texture_count = 1,
+                             .box = {{-9, 0, -9}, {9, 0, 9}}};
     pass *p = add_geometry(&w, &mesh, 1);
     gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "depth")));
     world_render(&w, WIDTH, HEIGHT, pass_output(p, "albedo"));

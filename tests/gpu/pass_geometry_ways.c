@@ -13,7 +13,9 @@ static seen look(gpu *device, const char *mode, scene_mesh *(*make)(pass_world *
     scene_mesh *mesh = make(&w);
     pass *p = world_add(&w, "geometry", NULL, "geometry");
     gpu_test_ok(pass_set_option(p, "mode", mode));
-    gpu_test_ok(pass_add_mesh(p, mesh) && pass_declare(p));
+    for (size_t i = 0; i < w.instances_count; i++)
+        gpu_test_ok(pass_add_instances(p, w.instances[i]));
+    gpu_test_ok((w.instances_count > 0 || pass_add_mesh(p, mesh)) && pass_declare(p));
     gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "depth")));
     gpu_test_ok(graph_add_output(w.host.graph, pass_output(p, "normal")));
     world_render(&w, WIDTH, HEIGHT, pass_output(p, "albedo"));
@@ -70,7 +72,8 @@ static scene_mesh *make_globe(pass_world *w) {
                              .parts = parts,
                              .part_count = 2,
                              .textures = &texture,
-                             .texture_count = 1};
+                             .texture_count = 1,
+                             .box = {{-1.5f, -1.5f, -1.5f}, {1.5f, 1.5f, 1.5f}}};
     mesh->rotation = triple(w, 20, 30, 40);
     mesh->color = triple(w, 0.9f, 0.8f, 0.7f);
     return mesh;
@@ -80,6 +83,36 @@ static scene_mesh *make_mirrored(pass_world *w) {
     scene_mesh *mesh = make_globe(w);
     mesh->scale = number(w, -0.9f);
     return mesh;
+}
+
+// Turned, scaled, mirrored and tinted, some of them not shown, in a space that is turned and
+// scaled.
+static scene_mesh *make_instances(pass_world *w) {
+    enum { COUNT = 40 };
+    scene_mesh *globe = make_globe(w);
+    struct instance_entry entries[COUNT] = {0};
+    for (uint32_t i = 0; i < COUNT; i++) {
+        float a = (float)i, step = a * 0.618034f - floorf(a * 0.618034f);
+        vec4 turn = {sinf(a), cosf(2 * a), sinf(3 * a), 1};
+        glm_vec4_normalize(turn);
+        entries[i] = (struct instance_entry){
+            .place = {{5 * step - 2.5f, 0.2f * a, 3 * sinf(5 * a), i % 7 == 3 ? -0.4f : 0.3f}},
+            .color = {{0.5f + 0.5f * step, 1, 1 - 0.5f * step, 1}},
+            .kind = {{i % 9 == 4 ? INSTANCE_HIDDEN : 0, i, 0, 0}}};
+        memcpy(entries[i].turn.v, turn, sizeof turn);
+    }
+    w->instances[w->instances_count++] =
+        scene_instances_create(&(scene_instances_desc){.name = "globes",
+                                                       .kinds = &globe,
+                                                       .kind_count = 1,
+                                                       .entries = entries,
+                                                       .count = COUNT,
+                                                       .position = triple(w, 0, -1, 0.25f),
+                                                       .rotation = triple(w, 10, 20, 30),
+                                                       .scale = number(w, 1.25f),
+                                                       .color = triple(w, 1, 0.75f, 0.5f)});
+    gpu_test_ok(w->instances[0]);
+    return globe;
 }
 
 // Whether depth jumps beside a pixel: at an outline, or at a hole.
@@ -131,6 +164,10 @@ static void rays_show_what_is_drawn_of_a_mirrored_mesh(void **state) {
     assert_same(*state, make_mirrored);
 }
 
+static void rays_show_what_is_drawn_of_instances(void **state) {
+    assert_same(*state, make_instances);
+}
+
 // ---- no gaps -----------------------------------------------------------------------------------
 
 enum { CELLS = 256 };
@@ -161,7 +198,8 @@ static scene_mesh *make_sheet(pass_world *w) {
                              .indices = indices,
                              .index_count = count,
                              .parts = part,
-                             .part_count = 1};
+                             .part_count = 1,
+                             .box = {{94, 50, 0}, {106, 50, 12}}};
     mesh->position = triple(w, -100, -50, -6);
     return mesh;
 }
@@ -178,6 +216,7 @@ int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(rays_show_what_is_drawn),
         cmocka_unit_test(rays_show_what_is_drawn_of_a_mirrored_mesh),
+        cmocka_unit_test(rays_show_what_is_drawn_of_instances),
         cmocka_unit_test(no_ray_slips_through_between_triangles),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
