@@ -6,6 +6,8 @@
 // A tile is a part of the view's frustum between two depths: a lamp is left out where its sphere misses
 // the box around that, or one of the four sides (Olsson and Assarsson, "Tiled shading", 2011).
 // LAMPS_BETWEEN: it begins at the eye, for what is seen before the surfaces.
+#undef HAS_LIGHTS // the reader's table of lights is not read here
+#define HAS_LIGHTS 0
 #define LAMPS_ACCESS
 #include "lib/frame.glsl"
 #include "lib/lamps.glsl"

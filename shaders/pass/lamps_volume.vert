@@ -1,6 +1,8 @@
 // A sphere around each lamp, as far as it reaches: an icosahedron of which each face is divided into
 // four, large enough to hold the sphere. Corners turn so that the far side is what is drawn: it is seen
 // from inside, too.
+#undef HAS_LIGHTS // the reader's table of lights is not read here
+#define HAS_LIGHTS 0
 #include "lib/frame.glsl"
 #include "lib/lamps.glsl"
 layout(location = 0) flat out int number;
