@@ -89,7 +89,7 @@ local forest = instances {
 local function apart(x, y, far) return length(vec(position.x - x, position.y - y, 0)) - far end
 local undergrowth = instances {
   mesh { "data/tuft.obj" }, mesh { "data/fern.obj" },
-  at = scatter { count = 90, size = {11, 8}, distance = 0.5, seed = 9, inside = min(min(apart(0, 0, 1.6), apart(-1.36, -0.55, 0.6)), min(apart(1.62, 0.55, 0.9), apart(-2.35, 2.35, 1.5))) },
+  at = scatter { count = 90, size = {11, 8}, distance = 0.5, seed = 9, inside = min(min(min(apart(0, 0, 1.6), apart(0.1, -1.8, 1)), apart(-1.36, -0.55, 0.6)), min(apart(1.62, 0.55, 0.9), apart(-2.35, 2.35, 1.5))) },
   kind = {0.7, 0.3}, scale = {0.45, 1}, yaw = {0, 360}, seed = 5,
 }
 local scene = geometry {
@@ -105,7 +105,7 @@ local scene = geometry {
 local heat   = palette { {0.05, {0, 0, 0}}, {0.2, {0.20, 0.035, 0.004}}, {0.45, {1, 0.30, 0.04}}, {0.75, {1.7, 0.80, 0.18}}, {1, {2, 1.4, 0.6}} }
 local solid  = shade { name = "plain", from = scene }
 local fire   = march { name = "fire", density = flames * 0.8, radiance = heat(flames * 1.1).rgb * 2.4, from = scene, steps = 48, jitter = 0.5 }
-local grey   = march { name = "grey", density = cloud * smoke * 1.4, radiance = {0.03, 0.035, 0.05}, from = scene, steps = 40, jitter = 0.5 }
+local grey   = march { name = "grey", density = cloud * smoke * 1.4, radiance = {0.03, 0.035, 0.05}, from = scene, steps = 40, jitter = 0.5, resolution = 0.5 }
 local plain  = over { fire, over { grey, solid, from = {grey, scene} }, from = {fire, scene} }
 
 -- ---- as it is drawn -----------------------------------------------------------------------------
@@ -113,7 +113,7 @@ local plain  = over { fire, over { grey, solid, from = {grey, scene} }, from = {
 -- The same volumes, but what is marched only counts how much flame and smoke a ray meets.
 local flat   = shade { name = "flat", from = scene, model = "toon", toon_levels = shades }
 local much   = march { name = "much", density = flames * 1.5, radiance = vec(1, 1, 1) * flames * flames * 8, from = scene, steps = 48, jitter = 0 }
-local thick  = march { name = "thick", density = cloud * smoke * 3, radiance = {1, 1, 1}, from = scene, steps = 40, jitter = 0 }
+local thick  = march { name = "thick", density = cloud * smoke * 3, radiance = {1, 1, 1}, from = scene, steps = 40, jitter = 0, resolution = 0.5 }
 local paint  = palette { {0, {0.62, 0.035, 0.012}}, {0.36, {1, 0.16, 0.012}}, {0.66, {1, 0.48, 0.035}}, {1, {1, 0.88, 0.42}} }
 local ashes  = palette { {0, {0.030, 0.036, 0.062}}, {1, {0.072, 0.080, 0.120}} }
 local flame  = bands { name = "flame", much, levels = colours, low = 0.12, high = 2.4, curve = 1, color = paint(position.y).rgb }

@@ -31,9 +31,8 @@ float bands_at(vec4 c) {
     return float(levels) * (share > 0.0 ? pow(share, 1.0 / curve) : share);
 }
 
-vec4 fetch(ivec2 texel) {
-    return texelFetch(source, clamp(texel, ivec2(0), textureSize(source, 0) - 1), 0);
-}
+// A source of fewer pixels is smooth between them, and its bands as sharp as those of a large one.
+float bands_near(vec2 uv) { return bands_at(textureLod(source, uv, 0.0)); }
 
 // Integral of floor(x), for its mean over an interval: an edge that is as wide as that.
 float floor_sum(float x) {
@@ -42,18 +41,19 @@ float floor_sum(float x) {
 }
 
 float floor_mean(float x, float width) {
-    if (width < 1e-3) return floor(x);
-    return (floor_sum(x + 0.5 * width) - floor_sum(x - 0.5 * width)) / width;
+    float whole = floor(x), rest = x - whole; // small numbers are exact
+    if (width < 1e-3) return whole;
+    return whole + (floor_sum(rest + 0.5 * width) - floor_sum(rest - 0.5 * width)) / width;
 }
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(image);
     if (any(greaterThanEqual(pixel, size))) return;
-    ivec2 at = ivec2((vec2(pixel) + 0.5) * vec2(textureSize(source, 0)) / vec2(size));
-    vec4 here = fetch(at);
+    vec2 uv = (vec2(pixel) + 0.5) / vec2(size), next = 1.0 / vec2(size);
+    vec4 here = textureLod(source, uv, 0.0);
     float t = bands_at(here);
-    vec2 slope = 0.5 * vec2(bands_at(fetch(at + ivec2(1, 0))) - bands_at(fetch(at - ivec2(1, 0))),
-                            bands_at(fetch(at + ivec2(0, 1))) - bands_at(fetch(at - ivec2(0, 1))));
+    vec2 slope = 0.5 * vec2(bands_near(uv + vec2(next.x, 0.0)) - bands_near(uv - vec2(next.x, 0.0)),
+                            bands_near(uv + vec2(0.0, next.y)) - bands_near(uv - vec2(0.0, next.y)));
     float width = min(soften * length(slope), float(levels));
     float band = clamp(floor_mean(t, width), 0.0, float(levels) - 1.0);
     float cover = width < 1e-3 ? step(0.0, t) : clamp(t / width + 0.5, 0.0, 1.0);

@@ -86,18 +86,19 @@ float line_at(edge_test t, float radius) {
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(image);
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(image), seen = textureSize(depth, 0);
     if (any(greaterThanEqual(pixel, size))) return;
-    float radius = (SIDE == SIDE_BOTH ? 0.5 : 1.0) * thickness * float(size.y) / 1080.0;
+    ivec2 at = ivec2((vec2(pixel) + 0.5) * vec2(seen) / vec2(size)); // in pixels of the depth from here on
+    float radius = (SIDE == SIDE_BOTH ? 0.5 : 1.0) * thickness * float(seen.y) / 1080.0;
     if (reach > 0.0) { // by what is nearest: the line belongs to that
         ivec2 d = ivec2(ceil(radius));
-        float near = min(min(depth_at(pixel), min(depth_at(pixel + ivec2(d.x, 0)), depth_at(pixel - ivec2(d.x, 0)))),
-                         min(depth_at(pixel + ivec2(0, d.y)), depth_at(pixel - ivec2(0, d.y))));
+        float near = min(min(depth_at(at), min(depth_at(at + ivec2(d.x, 0)), depth_at(at - ivec2(d.x, 0)))),
+                         min(depth_at(at + ivec2(0, d.y)), depth_at(at - ivec2(0, d.y))));
         radius *= clamp(1.0 - near / reach, 0.0, 1.0);
     }
     float faint = min(radius / THINNEST, 1.0), alpha = 0.0;
     radius = max(radius, THINNEST);
-    edge_test t = edge_test(pixel, depth_at(pixel), least_jump(radius, size.y), cos(radians(normal_threshold)));
+    edge_test t = edge_test(at, depth_at(at), least_jump(radius, seen.y), cos(radians(normal_threshold)));
     if (faint > 0.0) alpha = opacity * faint * line_at(t, radius);
     imageStore(image, pixel, vec4(alpha * color, alpha));
 }

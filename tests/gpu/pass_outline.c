@@ -127,6 +127,34 @@ static void its_creases_are_drawn_by_the_normal(void **state) {
     world_close(&w);
 }
 
+// However many pixels the lines have, they lie where those of the picture do.
+static void coarse_lines_lie_along_too(void **state) {
+    pass_world w;
+    world_open(&w, *state);
+    scene_mesh *cube = world_mesh(&w, "crate.obj");
+    pass *solid = world_add(&w, "geometry", NULL, "geometry");
+    gpu_test_ok(pass_add_mesh(solid, cube) && pass_declare(solid));
+    pass *lines[2];
+    for (int i = 0; i < 2; i++) {
+        lines[i] = world_add(&w, "outline", NULL, i ? "coarse" : "fine");
+        pass_add_source(lines[i], solid);
+        gpu_test_ok(pass_set_uniform(lines[i], "thickness", number(&w, THICKNESS)));
+        if (i) gpu_test_ok(pass_set_scale(lines[i], 0.5f));
+        gpu_test_ok(pass_declare(lines[i]));
+        gpu_test_ok(graph_add_output(w.host.graph, pass_output(lines[i], "image")));
+    }
+    world_render(&w, SIZE, SIZE, pass_output(lines[0], "image"));
+    float *fine = world_read(&w, pass_output(lines[0], "image"));
+    float *coarse = world_read(&w, pass_output(lines[1], "image"));
+    for (int i = 0; i < PIXELS / 4; i++) {
+        int x = i % (SIZE / 2), y = i / (SIZE / 2);
+        assert_true(coarse[4 * i + 3] == fine[4 * ((2 * y + 1) * SIZE + 2 * x + 1) + 3]);
+    }
+    mem_free(fine);
+    mem_free(coarse);
+    world_close(&w);
+}
+
 static void count_lines(gpu *device, float reach, int *on_cube, int *beside) {
     pass_world w;
     world_open(&w, device);
@@ -199,6 +227,7 @@ int main(void) {
         cmocka_unit_test(a_cube_has_its_silhouette_only),
         cmocka_unit_test(its_creases_are_drawn_by_the_normal),
         cmocka_unit_test(outside_lines_lie_on_what_is_behind),
+        cmocka_unit_test(coarse_lines_lie_along_too),
         cmocka_unit_test(ground_that_is_seen_flat_has_no_lines),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
