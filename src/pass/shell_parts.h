@@ -6,7 +6,13 @@
 enum { SHELL_RECORD = 48, SHELL_VERTEX = 16 }; // bytes, as shell/surface.glsl has them
 static const float SHELL_LEAST = -0.95f;       // of the displacement: the sphere stays one
 
-typedef enum shell_stage { SHELL_GATHER, SHELL_VERTICES, SHELL_FRONT, SHELL_RAYS, SHELL_STAGES } shell_stage;
+typedef enum shell_stage {
+    SHELL_GATHER,
+    SHELL_VERTICES,
+    SHELL_FRONT,
+    SHELL_RAYS,
+    SHELL_STAGES
+} shell_stage;
 
 typedef struct shell_state {
     const scene_explosions *list; // NULL: one from time 0 on

@@ -31,15 +31,13 @@ static double first_number(lua_State *L, int table, double otherwise) {
 
 // { time, position = ... } at the top of the stack. `number`: in the list, 0: of `add`.
 static scene_explosion read_one(lua_State *L, int number, double time, uint32_t seed) {
-    static const script_key *keys;
     int table = lua_gettop(L);
     const char *name = name_of(L, number);
     float place[3] = {0, 0, 0};
     if (!value_is_plain_table(L, table))
         vm_error(L, "%s is a %s; a table is accepted, as in { 0.5, position = {0, 0, 1} }", name,
                  luaL_typename(L, table));
-    keys = script_object_find("explosion")->keys;
-    value_check_keys(L, table, name, keys);
+    value_check_keys(L, table, name, script_object_find(who)->keys);
     value_get_vector(L, table, name, "position", place);
     scene_explosion one = {
         .time = first_number(L, table, time),

@@ -248,7 +248,13 @@ static const script_object objects[] = {
 
     {"explosions", "source", "local blasts = explosions { {0.5, position = {0, 0, 1}}, {1.2, size = 0.5} }",
      "a list of what bursts: when, where, how large; `shell` draws it. #list is how many there are. Up to 1024",
-     .args = KEYS(KEY("explosion ...", "{time, ...}", "seconds, and the keys of `explosion`; none: `add` adds them")),
+     .args = KEYS(KEY("explosion ...", "{ 0.5, position = {0, 0, 1} }",
+                      "when (s), and the keys below; none: `add` brings them")),
+     .keys = KEYS(
+        KEY("position", "0, 0, 0 m", "where it bursts"),
+        KEY("size", "1", "factor of the radius"),
+        KEY("life", "1", "factor of how long it takes"),
+        KEY("seed", "number [0, 16777215]", "no two look alike; without: its number in the list")),
      .members = KEYS(
         KEY("add", "blasts:add { position = {x, y, z}, size = 2 }",
             "one more from now on, while the effect runs: from a function of fx:on_frame, fx:on_key or "
@@ -258,13 +264,6 @@ static const script_object objects[] = {
         KEY("latest", "blasts:latest(t, 2)",
             "the same of those that have begun by t: the second youngest, or nil. For lights: "
             "position = function(t) ... end"))},
-    {"explosion", "source", "{ 0.5, position = {0, 0, 1}, size = 2, seed = 4 }",
-     "one of `explosions`, a table: its time (s) comes first, of blasts:add without it the time is now",
-     .keys = KEYS(
-        KEY("position", "0, 0, 0 m", "where it bursts"),
-        KEY("size", "1", "factor of the radius"),
-        KEY("life", "1", "factor of how long it takes"),
-        KEY("seed", "number [0, 16777215]", "no two look alike; without: its number in the list"))},
     {"shell", "source", "local ball = shell { at = blasts, radius = 2, displacement = layers { {2, 1}, {7, 0.4} }, color = fire(shell_displacement + shell_depth).rgb }",
      "balls of fire and globes of smoke: spheres pushed out along their normals, one for each explosion; "
      "`over` lays them over a picture. What else it takes is what `roil info passes shell` lists: radius, "
@@ -326,6 +325,15 @@ static const script_object objects[] = {
      .args = KEYS(KEY("value", NULL, "0..1, or any"), KEY("steps", NULL, "how many there are from 0 to 1"))},
     {"saturate", "operator", "saturate(value)", "limits a value to 0..1",
      .args = KEYS(KEY("value", NULL, "what it limits"))},
+
+    {"layers", "noise", "layers { {2, 1}, {7, 0.4}, seed = 3 }",
+     "the layered noise of a layered explosion, 0..1: a sum over {scale, strength} of noise at each scale times "
+     "its strength, divided by all strengths. Of a shell: at the unit sphere. Other keys are those of the noise",
+     .args = KEYS(KEY("layer ...", "{scale, strength}", "1 to 8")),
+     .keys = KEYS(
+        KEY("noise", "perlin", "perlin, simplex, value or worley: what makes it"),
+        KEY("dimensions", "3", "2: a picture that is wrapped around the origin, as published; scales are rounded"),
+        KEY("shift", "shell_shift", "0..1 in x, y and z: moves it"))},
 
     // ---- the scene
     {"mesh", "scene", "geometry { mesh { \"data/ground.obj\" } }",

@@ -130,6 +130,8 @@ static void operators_agree(void **state) {
         agree(state, make(binary[i], a, make("mul", b, number(0.05f))), 1e-4f);
         agree(state, make(binary[i], p, p), binary[i][0] == 'p' ? 1e-2f : 1e-4f);
     }
+    agree(state, make("atan", y, x), 1e-4f);
+    agree(state, make("atan", number(0), number(0)), 0);
     agree(state, make("div", x, number(0)), 0);
     agree(state, make("mix", p, x, number(0.3f)), 1e-4f);
     agree(state, make("mix", p, x, make("mul", y, number(0.1f))), 1e-4f);
