@@ -277,9 +277,10 @@ static const field_kind *find_kind(const char *name) {
 
 static char *refuse_field(const char *name) {
     const char *names[256];
-    size_t count = 0, object_count;
-    const script_object *objects = script_objects(&object_count);
-    for (size_t i = 0; i < object_count; i++) names[count++] = objects[i].name;
+    size_t count = 0;
+    const script_object *object;
+    for (size_t i = 0; (object = script_object_at(i)) && count < COUNT_OF(names); i++)
+        names[count++] = object->name;
     for (const field_kind *kind = field_kinds; kind->name && count < COUNT_OF(names); kind++)
         if (script_has_kind(kind)) names[count++] = kind->name;
     const char *near = str_nearest(name, names, count);
@@ -298,15 +299,13 @@ static void print_line(strbuf *out, const char *name, const char *summary) {
 }
 
 static void print_group(strbuf *out, const char *group) {
-    size_t count;
-    const script_object *objects = script_objects(&count);
+    const script_object *object;
     strbuf_add(out, "%s%s\n", out->length ? "\n" : "", group);
     for (const field_kind *kind = field_kinds; kind->name; kind++)
         if (script_has_kind(kind) && strcmp(kind->group, group) == 0)
             print_line(out, kind->name, kind->summary);
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(objects[i].group, group) == 0)
-            print_line(out, objects[i].name, objects[i].summary);
+    for (size_t i = 0; (object = script_object_at(i)); i++)
+        if (strcmp(object->group, group) == 0) print_line(out, object->name, object->summary);
 }
 
 char *roil_info_fields(const char *name) {

@@ -23,7 +23,7 @@ typedef struct script_object {
     const script_key *args, *keys, *members;
 } script_object;
 
-const script_object *script_objects(size_t *count);
+const script_object *script_object_at(size_t index);       // NULL: there are no more
 const script_object *script_object_find(const char *name); // NULL when unknown
 const script_key *script_key_find(const script_key *keys, const char *name);
 

@@ -64,14 +64,13 @@ static void every_global_is_documented(void **state) {
 static void what_is_documented_is_a_global(void **state) {
     (void)state;
     effect *e = load_globals();
-    size_t count;
-    const script_object *objects = script_objects(&count);
+    const script_object *object;
     char *listing = roil_info_fields(NULL);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; (object = script_object_at(i)); i++) {
         char line[80];
-        snprintf(line, sizeof line, "\n  %s ", objects[i].name);
-        if (!strstr(listing, line)) fail_msg("%s is not listed", objects[i].name);
-        if (!has_global(e, objects[i].name)) fail_msg("%s is no global", objects[i].name);
+        snprintf(line, sizeof line, "\n  %s ", object->name);
+        if (!strstr(listing, line)) fail_msg("%s is not listed", object->name);
+        if (!has_global(e, object->name)) fail_msg("%s is no global", object->name);
     }
     for (const field_kind *kind = field_kinds; kind->name; kind++)
         if (script_has_kind(kind) && !has_global(e, kind->name))
