@@ -174,7 +174,7 @@ static size_t count_wrong(const pass_world *w, const float *c, const float *lit,
 // The ball before the wall under a light; lit: without the ball.
 static void compare_with_geometry(gpu *device, const char *what, scene_light_kind kind,
                                   const double source[3], double texel) {
-    float *pictures[2];
+    float *pictures[2] = {NULL};
     for (int with = 0; with < 2; with++) {
         pass_world w;
         world_open(&w, device);
@@ -246,7 +246,7 @@ static void a_plane_does_not_shade_itself(void **state) {
     };
     for (size_t i = 0; i < COUNT_OF(scenes); i++) {
         const bare_scene *s = &scenes[i];
-        float *pictures[2];
+        float *pictures[2] = {NULL};
         for (int maps = 0; maps < 2; maps++) {
             pass_world w;
             world_open(&w, *state);
@@ -338,7 +338,7 @@ static void add_crates_as_instances(pass_world *w) {
 // Near and far, over all cascades; from faces of a cube.
 static void maps_show_what_rays_find(void **state) {
     for (int lamp = 0; lamp < 2; lamp++) {
-        float *pictures[3];
+        float *pictures[3] = {NULL};
         for (int way = 0; way < 3; way++) { // rays; maps; maps of instances
             pass_world w;
             world_open(&w, *state);
@@ -367,6 +367,35 @@ static void maps_show_what_rays_find(void **state) {
                      lamp ? "lamp" : "sun", off, apart);
         for (int way = 0; way < 3; way++) mem_free(pictures[way]);
     }
+}
+
+// The same maps, asked where triangles are drawn.
+static void forward_shows_the_same_shadows(void **state) {
+    float *pictures[2] = {NULL};
+    for (int forward = 0; forward < 2; forward++) {
+        pass_world w;
+        world_open(&w, *state);
+        add_crates(&w);
+        shine(&w, 30, 30);
+        if (forward) {
+            pass *maps = world_add(&w, "shadow_maps", NULL, "shadows");
+            pass *p = world_add(&w, "forward", NULL, "forward");
+            for (size_t i = 0; i < w.mesh_count; i++)
+                gpu_test_ok(pass_add_mesh(maps, &w.meshes[i]) && pass_add_mesh(p, &w.meshes[i]));
+            gpu_test_ok(pass_declare(maps));
+            pass_add_source(p, maps);
+            gpu_test_ok(pass_declare(p));
+            world_render(&w, SIZE, SIZE, pass_output(p, "color"));
+            pictures[1] = world_read(&w, pass_output(p, "color"));
+        } else {
+            pictures[0] = SHADE(&w, WORD("cascades", "3"));
+        }
+        world_close(&w);
+    }
+    size_t off = count_different(pictures[1], pictures[0]);
+    if (off > PIXELS / 200) fail_msg("%zu pixels are not as deferred", off);
+    mem_free(pictures[0]);
+    mem_free(pictures[1]);
 }
 
 // ---- holes --------------------------------------------------------------------------------------
@@ -426,6 +455,7 @@ int main(void) {
         cmocka_unit_test(a_plane_does_not_shade_itself),
         cmocka_unit_test(no_light_leaks_under_a_thin_wall),
         cmocka_unit_test(maps_show_what_rays_find),
+        cmocka_unit_test(forward_shows_the_same_shadows),
         cmocka_unit_test(light_shines_through_what_is_clear),
     };
     return gpu_test_run(tests, COUNT_OF(tests));

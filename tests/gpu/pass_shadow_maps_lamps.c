@@ -127,7 +127,7 @@ static float *shade_lamps(pass_world *w, bool maps) {
 }
 
 static void lamps_are_hidden_by_maps_as_by_rays(void **state) {
-    float *pictures[2];
+    float *pictures[2] = {NULL};
     for (int maps = 0; maps < 2; maps++) {
         pass_world w;
         world_open(&w, *state);
