@@ -16,8 +16,8 @@ void main() {
     shell_record s = shell_records[shell_at];
     shell_said = shell_facts_of(s);
     vec3 way = normalize(place - s.ball.xyz);
-    float displacement = shell_displaced(way), longer = length(place - frame.eye.xyz) / away;
-    image = shell_look(way, place, displacement, shell_normal(way, displacement), (stop - away) * longer);
+    float longer = length(place - frame.eye.xyz) / away;
+    image = shell_look(way, place, (stop - away) * longer);
     if (image.a == 0.0) discard;
     front = image.a >= 0.5 ? vec4(away, 0.0, 0.0, 1.0) : vec4(0.0);
 }

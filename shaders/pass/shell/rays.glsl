@@ -16,6 +16,12 @@ struct shell_hit {
     float passed_at, cover;
 };
 
+struct shell_span { // of a ray
+    float at, height; // where it is (m)
+    bool sinking;     // it is nearer to the surface than before
+    float end, end_height; // once it has crossed: where it was then
+};
+
 // Metres above the surface; `from`: the eye, seen from the centre.
 float above(shell_record s, vec3 from, vec3 way, float distance) {
     vec3 p = from + distance * way;
@@ -24,18 +30,8 @@ float above(shell_record s, vec3 from, vec3 way, float distance) {
     return away - s.ball.w * (1.0 + shell_displaced(p / away));
 }
 
-// Where it crosses the surface between two distances, whose heights are of different sign.
-float cross_between(shell_record s, vec3 from, vec3 way, float a, float b, float height_a, float height_b) {
-    for (int i = 0; i < HALVINGS; i++) {
-        float middle = mix(a, b, clamp(height_a / (height_a - height_b), 0.1, 0.9));
-        float height = above(s, from, way, middle);
-        bool near = (height > 0.0) == (height_a > 0.0);
-        a = near ? middle : a;
-        height_a = near ? height : height_a;
-        b = near ? b : middle;
-        height_b = near ? height_b : height;
-    }
-    return mix(a, b, height_a / (height_a - height_b));
+float next_step(shell_span span, float last, int left) {
+    return min(span.at + max(stride * abs(span.height), (last - span.at) / float(max(left, 1))), last);
 }
 
 // Part of a pixel that a surface covers whose edge is that far from the pixel's middle; about, since
@@ -44,38 +40,68 @@ float cover_of(float height, float distance) {
     return clamp(1.0 - height / (distance * pixel_angle), 0.0, 1.0);
 }
 
-// The nearest crossing of one shell before the hit replaces that.
-void cross_shell(int shell, shell_record s, vec3 way, float begin, inout shell_hit hit) {
-    vec3 from = frame.eye.xyz - s.ball.xyz;
+// Where it comes nearest to a surface and does not meet it.
+void pass_by(int shell, shell_span span, float height, inout shell_hit hit) {
+    float cover = span.sinking && height > span.height ? cover_of(span.height, span.at) : 0.0;
+    if (span.height <= 0.0 || cover <= hit.cover) return;
+    hit.passed = shell;
+    hit.passed_at = span.at;
+    hit.cover = cover;
+}
+
+bool crosses(float before, float height) {
+#if SIDES == SIDES_FRONT
+    return before > 0.0 && height <= 0.0;
+#else
+    return (before > 0.0) != (height > 0.0);
+#endif
+}
+
+// The part of a ray in the sphere that a shell can reach; false: there is none.
+bool reach_of(shell_record s, vec3 from, vec3 way, inout float begin, inout float end) {
     float middle = -dot(from, way), most = s.ball.w * (1.0 + bounds.y) + abs(middle) * pixel_angle;
     vec3 nearest = from + middle * way;
-    float half_chord = most * most - dot(nearest, nearest);
-    if (half_chord <= 0.0) return;
-    half_chord = sqrt(half_chord);
-    float at = max(middle - half_chord, begin), last = min(middle + half_chord, hit.distance);
-    if (at >= last) return;
-    float height = above(s, from, way, at);
-    bool sinking = false;
-    for (int i = 0; i < steps && at < last; i++) {
-        float before = at, height_before = height;
-        at = min(at + max(stride * abs(height), (last - at) / float(steps - i)), last);
-        height = above(s, from, way, at);
-        bool crossed = (height > 0.0) != (height_before > 0.0);
-#if SIDES == SIDES_FRONT
-        crossed = crossed && height_before > 0.0;
-#endif
-        if (crossed) {
+    float square = most * most - dot(nearest, nearest);
+    if (square <= 0.0) return false;
+    begin = max(middle - sqrt(square), begin);
+    end = min(middle + sqrt(square), end);
+    return begin < end;
+}
+
+// The nearest crossing of one shell before the hit replaces that. The loop goes on by steps, and once
+// it has crossed by parts of the last one: the height is asked for in one place, since its code is long.
+void cross_shell(int shell, shell_record s, vec3 way, float begin, inout shell_hit hit) {
+    vec3 from = frame.eye.xyz - s.ball.xyz;
+    float at = begin, last = hit.distance;
+    if (!reach_of(s, from, way, at, last)) return;
+    shell_span span;
+    int left = steps + 1, halvings = -2; // -1: it has not crossed yet, -2: nor begun
+    while (left-- > 0) {
+        float height = above(s, from, way, at);
+        bool first = halvings == -2;
+        if (first || (halvings < 0 && !crosses(span.height, height))) {
+            if (!first) pass_by(shell, span, height, hit);
+            if (at >= last) return;
+            span = shell_span(at, height, !first && height < span.height, at, 0.0);
+            halvings = -1;
+            at = next_step(span, last, left);
+            continue;
+        }
+        if (halvings < 0) left = HALVINGS + 1;
+        if (halvings < 0 || (height > 0.0) != (span.height > 0.0)) {
+            span.end = at;
+            span.end_height = height;
+        } else {
+            span.at = at;
+            span.height = height;
+        }
+        float part = span.height / (span.height - span.end_height);
+        if (++halvings == HALVINGS) {
             hit.shell = shell;
-            hit.distance = cross_between(s, from, way, before, at, height_before, height);
+            hit.distance = mix(span.at, span.end, part);
             return;
         }
-        float cover = sinking && height > height_before ? cover_of(height_before, before) : 0.0;
-        if (height_before > 0.0 && cover > hit.cover) {
-            hit.passed = shell;
-            hit.passed_at = before;
-            hit.cover = cover;
-        }
-        sinking = height < height_before;
+        at = mix(span.at, span.end, clamp(part, 0.1, 0.9));
     }
 }
 
@@ -93,9 +119,8 @@ shell_hit find(vec3 way, float begin, float end) {
 vec4 look_at(int shell, float distance, vec3 way, float end) {
     shell_record s = shell_records[shell];
     shell_said = shell_facts_of(s);
-    vec3 p = frame.eye.xyz + distance * way, outward = normalize(p - s.ball.xyz);
-    float displacement = shell_displaced(outward);
-    return shell_look(outward, p, displacement, shell_normal(outward, displacement), end - distance);
+    vec3 p = frame.eye.xyz + distance * way;
+    return shell_look(normalize(p - s.ball.xyz), p, end - distance);
 }
 
 void main() {

@@ -30,17 +30,17 @@ float shell_displaced(vec3 way) {
     return clamp(field_displacement(way), bounds.x, bounds.y);
 }
 
-// Of the surface 1 + d(way), outwards: the way times that, less the slope of d over the unit sphere.
-vec3 shell_normal(vec3 way, float displacement) {
+// The normal of the surface 1 + d(way), outwards: the way times that, less the slope of d over the unit
+// sphere; w: d.
+vec4 shell_facing(vec3 way) {
     const float ASIDE = 0.004;
     vec3 u = normalize(cross(way, abs(way.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
-    mat2x3 sides = mat2x3(u, cross(way, u));
-    vec3 slope = vec3(0.0);
-    for (int i = 0; i < 2; i++) {
-        float aside = shell_displaced(normalize(way + ASIDE * sides[i]));
-        slope += (aside - displacement) / ASIDE * sides[i];
+    vec3 v = cross(way, u), d;
+    for (int i = 0; i < 3; i++) { // one call, which is unfolded once
+        vec3 aside = i == 0 ? vec3(0.0) : i == 1 ? u : v;
+        d[i] = shell_displaced(normalize(way + ASIDE * aside));
     }
-    return normalize((1.0 + displacement) * way - slope);
+    return vec4(normalize((1.0 + d.x) * way - (d.y - d.x) / ASIDE * u - (d.z - d.x) / ASIDE * v), d.x);
 }
 
 // Depth of the scene at a point of the picture (m).
@@ -67,12 +67,14 @@ vec3 shell_lit(vec3 p, vec3 normal) {
 
 // Premultiplied radiance and opacity of a point, whose facts `shell_said` holds but for the last three;
 // `ahead`: metres to what the scene has behind it.
-vec4 shell_look(vec3 way, vec3 p, float displacement, vec3 normal, float ahead) {
-    shell_said.displacement = displacement;
+vec4 shell_look(vec3 way, vec3 p, float ahead) {
+    vec4 facing = shell_facing(way);
+    shell_said.displacement = facing.w;
     shell_said.view = normalize(frame.eye.xyz - p);
-    shell_said.normal = dot(normal, shell_said.view) < 0.0 ? -normal : normal;
-    if (!(field_clip(way) >= 0.0)) return vec4(0.0);
-    float opacity = clamp(field_opacity(way), 0.0, 1.0);
+    shell_said.normal = dot(facing.xyz, shell_said.view) < 0.0 ? -facing.xyz : facing.xyz;
+    if (!(field_clip(way) > 0.0)) return vec4(0.0);
+    float given = field_opacity(way), opacity = clamp(given, 0.0, 1.0);
+    if (!(given != 0.0)) return vec4(0.0);
     if (soften > 0.0) opacity *= clamp(ahead / soften, 0.0, 1.0);
     vec3 color = brightness * max(field_color(way), vec3(0.0));
 #if HAS_ALBEDO
