@@ -128,7 +128,7 @@ struct drawn_part {
 #define DRAWN_NONE 0xffffffffu
 struct drawn_bucket {
     SHARED_VEC4 sphere; // around the mesh, in the space of an instance: xyz: metres; w: radius
-    SHARED_UVEC4 draws; // x: first of its commands; y: how many, 0: the mesh has no such level; z: bits of a float: metres that it is off at most
+    SHARED_UVEC4 draws; // x: first of its commands; y: how many, 0: the mesh has no such level; z: bits of a float: metres that it is off at most; w: how far apart they are
 };
 
 // What lib/surface.glsl tells of a triangle that was hit; src/scene/surfaces.c makes it.

@@ -230,16 +230,12 @@ typedef struct recording {
     bool alike;
 } recording;
 
-static uint32_t levels_of(const drawn *d, const mesh_data *mesh) {
-    return d->levels ? drawn_level_count(mesh) : 1;
-}
-
 static size_t count_draws(const drawn *d, bool alike) { // of a view
     size_t count = 0;
     for (size_t i = 0; i < d->body_count; i++)
         for (size_t k = 0; k < d->bodies[i].kind_count; k++) {
             const mesh_data *mesh = &d->bodies[i].kinds[k]->data;
-            count += alike ? 1 : (size_t)mesh->part_count * levels_of(d, mesh);
+            count += alike ? 1 : mesh->part_count;
         }
     return count;
 }
@@ -252,9 +248,9 @@ static void reserve(drawn *d, size_t draws, size_t slots) {
     d->draw_count = 0;
 }
 
-// `count`: commands, that of the part at the level and those behind it.
-static void add_draw(const recording *r, const drawn_body *body, size_t kind, uint32_t level,
-                     uint32_t part, uint32_t count) {
+// The part at all its levels; `count`: commands, which may go on to the parts behind it.
+static void add_draw(const recording *r, const drawn_body *body, size_t kind, uint32_t part,
+                     uint32_t count) {
     drawn *d = r->d;
     size_t i = d->draw_count++;
     const scene_mesh *mesh = body->kinds[kind];
@@ -262,7 +258,7 @@ static void add_draw(const recording *r, const drawn_body *body, size_t kind, ui
     fill_part(&body->places[kind], &mesh->data.parts[part], r->view, &d->parts[i]);
     bind_part(d, body, mesh, &mesh->data.parts[part], &d->parts[i], r->slots, bindings);
     uint64_t command = (uint64_t)r->view * body->command_count + body->commands[kind] +
-                       level * mesh->data.part_count + part;
+                       part * drawn_level_count(&mesh->data);
     d->draws[i] = (gpu_draw){
         .bindings = bindings,
         .binding_count = r->slots->count,
@@ -277,10 +273,10 @@ static void add_draw(const recording *r, const drawn_body *body, size_t kind, ui
 static void add_body_draws(const recording *r, const drawn_body *body) {
     for (size_t k = 0; k < body->kind_count; k++) {
         const mesh_data *mesh = &body->kinds[k]->data;
-        uint32_t levels = levels_of(r->d, mesh);
-        if (r->alike) add_draw(r, body, k, 0, 0, levels * mesh->part_count);
-        for (uint32_t level = 0; level < levels && !r->alike; level++)
-            for (uint32_t i = 0; i < mesh->part_count; i++) add_draw(r, body, k, level, i, 1);
+        uint32_t levels = drawn_level_count(mesh);
+        if (r->alike) add_draw(r, body, k, 0, levels * mesh->part_count);
+        for (uint32_t i = 0; i < mesh->part_count && !r->alike; i++)
+            add_draw(r, body, k, i, r->d->levels ? levels : 1);
     }
 }
 

@@ -3,8 +3,8 @@
 //
 // Before they are drawn, the device leaves out of each view what lies outside of it, and chooses
 // for the rest how far its mesh is simplified (shaders/pass/drawn/): their number costs the host
-// nothing, and views may be placed on the device, too. In a view there is one draw for each kind,
-// level and part.
+// nothing, and views may be placed on the device, too. In a view there is one draw for each kind
+// and part.
 //
 // Shaders include lib/mesh.glsl (a vertex shader, for its vertex) and lib/mesh_color.glsl (a
 // fragment shader). All else that they bind is bound by name as in any pass.

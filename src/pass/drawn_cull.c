@@ -43,8 +43,8 @@ static gpu_buffer *make_commands(gpu *device, const drawn_body *body, size_t vie
     for (size_t v = 0; v < views; v++) {
         for (size_t k = 0; k < body->kind_count; k++) {
             const mesh_data *mesh = &body->kinds[k]->data;
-            for (uint32_t level = 0; level < drawn_level_count(mesh); level++) {
-                for (uint32_t i = 0; i < mesh->part_count; i++) {
+            for (uint32_t i = 0; i < mesh->part_count; i++) {
+                for (uint32_t level = 0; level < drawn_level_count(mesh); level++) {
                     mesh_run run = drawn_run(mesh, i, level);
                     *next++ =
                         (gpu_draw_indexed_command){.indices = run.count, .first_index = run.first};
@@ -105,12 +105,12 @@ static void fill_buckets(const mesh_data *mesh, const drawn_place *place, uint32
         scale = glm_vec3_norm((float *)place->matrix[0]);
         glm_mat4_mulv3((vec4 *)place->matrix, centre, 1, centre);
     }
+    uint32_t levels = drawn_level_count(mesh);
     for (uint32_t i = 0; i < DRAWN_LEVELS; i++) {
-        out[i] =
-            (struct drawn_bucket){.sphere = {{centre[0], centre[1], centre[2], radius * scale}},
-                                  .draws = {{command + i * mesh->part_count,
-                                             i < drawn_level_count(mesh) ? mesh->part_count : 0}}};
-        float error = i > 0 && i < drawn_level_count(mesh) ? mesh->levels[i - 1].error * scale : 0;
+        float error = i > 0 && i < levels ? mesh->levels[i - 1].error * scale : 0;
+        out[i] = (struct drawn_bucket){
+            .sphere = {{centre[0], centre[1], centre[2], radius * scale}},
+            .draws = {{command + i, i < levels ? mesh->part_count : 0, 0, levels}}};
         memcpy(&out[i].draws.v[2], &error, sizeof error);
     }
 }

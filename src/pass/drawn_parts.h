@@ -27,9 +27,9 @@ typedef struct drawn_body {
     scene_instances *instances; // NULL: meshes
     scene_mesh *const *kinds;
     size_t kind_count;
-    uint32_t count;         // of instances
-    drawn_place *places;    // as of this frame, for each kind; of instances all at one place
-    uint32_t *commands;     // of a kind: the first of its level 0
+    uint32_t count;      // of instances
+    drawn_place *places; // as of this frame, for each kind; of instances all at one place
+    uint32_t *commands;  // of a kind: the first; its parts one after the other, each at all levels
     uint32_t command_count; // of a view
     gpu_buffer *entries;    // of meshes: their instances
     gpu_buffer *buffers[DRAWN_BUFFERS];

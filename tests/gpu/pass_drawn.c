@@ -222,13 +222,14 @@ static shown read_shown(stand *s, size_t view, uint32_t **list) {
     for (size_t k = 0; k < KINDS; k++) {
         const mesh_data *mesh = &body->kinds[k]->data;
         for (uint32_t level = 0; level < drawn_level_count(mesh); level++) {
-            const gpu_draw_indexed_command *first = commands + view * body->command_count +
-                                                    body->commands[k] + level * mesh->part_count;
+            const gpu_draw_indexed_command *first =
+                commands + view * body->command_count + body->commands[k] + level;
             for (uint32_t i = 0; i < mesh->part_count; i++) {
+                const gpu_draw_indexed_command *command = first + i * drawn_level_count(mesh);
                 mesh_run run = drawn_run(mesh, i, level);
-                assert_true(first[i].indices == run.count && first[i].first_index == run.first);
-                assert_true(first[i].instances == first->instances);
-                assert_true(first[i].first_instance == first->first_instance);
+                assert_true(command->indices == run.count && command->first_index == run.first);
+                assert_true(command->instances == first->instances);
+                assert_true(command->first_instance == first->first_instance);
             }
             out.counts[k][level] = first->instances;
             out.list[k][level] = *list + first->first_instance;
@@ -309,10 +310,7 @@ static void draws_do_not_grow_with_instances(void **state) {
         for (int i = 0; i < TARGETS; i++) mem_free(pixels[i]);
         draws[many] = s.d->draw_count;
         size_t wanted = 0;
-        for (size_t m = 0; m < s.w.mesh_count; m++) {
-            const mesh_data *mesh = &s.w.meshes[m].data;
-            wanted += mesh->part_count * drawn_level_count(mesh);
-        }
+        for (size_t m = 0; m < s.w.mesh_count; m++) wanted += s.w.meshes[m].data.part_count;
         assert_int_equal(draws[many], wanted);
         close_stand(&s);
     }

@@ -21,7 +21,7 @@ void main() {
     }
     uvec4 draws = buckets[bucket].draws;
     for (uint i = 0u; i < draws.y; i++) {
-        uint command = 5u * (view * command_count + draws.x + i);
+        uint command = 5u * (view * command_count + draws.x + i * draws.w);
         commands[command + 1u] = at - first;
         commands[command + 4u] = first;
     }
