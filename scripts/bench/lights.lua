@@ -3,12 +3,12 @@
 --   roil bench scripts/bench/lights.lua -o out/lights
 --   roil bench scripts/bench/lights.lua -o out/lights --size 480x270 --frames 8 --only lights=200
 --
--- `shade` of the deferred path is all of its light, the lists with it; forward does the same in the
--- fragments of what it draws. The rows named "pairs" count how often a light is computed for a pixel.
+-- `shade` of the deferred path is all of its light, lists and spheres with it; `forward` does the same in
+-- the fragments of what it draws.
 
 return sweep {
   name = "lights", title = "Point lights",
-  effect = "effects/lamps.lua", size = {1920, 1080}, frames = "10-29", warmup = 4, limit = 120,
+  effect = "../../effects/deferred_lights.lua", size = {1920, 1080}, frames = "10-29", warmup = 4, limit = 120,
   axes = {
     axis { "lights", 1, 10, 50, 100, 200, 500, 1000, 4000 },
     axis { "way",

@@ -28,6 +28,10 @@ uniform sampler2D lamps; //= input optional : point lights by the hundred (of th
 #define LAMPS_ACCESS readonly
 #endif
 #define LAMPS_TILE 16 // pixels along a tile
+// Whether a branch leaves out lamps that do not reach a point, of those that reach its tile. Of 200 in
+// effects/deferred_lights.lua a tile has 13, a pixel 7, and 5 of these are before its surface. lavapipe
+// loses 0 to 3 percent by it.
+const bool LAMPS_SKIP = true;
 
 struct lamp {
     vec3 position; // m
@@ -99,6 +103,12 @@ lamp lamps_get(lamp_list list) {
     return lamp_of(list.index);
 }
 #endif
+
+// False: a surface there gets none of its light.
+bool lamp_reaches(lamp l, vec3 p, vec3 normal) {
+    vec3 to = l.position - p;
+    return !LAMPS_SKIP || (dot(to, to) < l.range * l.range && dot(to, normal) > 0.0);
+}
 
 // As light_at. The inverse square is let down to 0 at the range by (1 - (d / range)^4)^2, which leaves
 // most of it as it is (Karis, "Real shading in Unreal Engine 4", 2013, Lagarde and de Rousiers, "Moving

@@ -70,6 +70,7 @@ void main() {
     for (lamp_list list = lamps_at(pixel); lamps_next(list);) {
         lamp l = lamps_get(list);
         passing by = pass_by(l, way / deep);
+        if (LAMPS_SKIP && by.away >= l.range) continue;
         light += sphere_seen(l, by, end, wide);
         if (mist > 0.0) light += mist_lit(l, by, end);
     }

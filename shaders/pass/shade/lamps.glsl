@@ -24,7 +24,9 @@ reflected lamp_reflected(lamp l, shaded s) {
 }
 
 void add_lamps(inout reflected sum, shaded s, ivec2 pixel) {
-    for (lamp_list list = lamps_at(pixel); lamps_next(list);)
-        shading_add(sum, lamp_reflected(lamps_get(list), s));
+    for (lamp_list list = lamps_at(pixel); lamps_next(list);) {
+        lamp l = lamps_get(list);
+        if (lamp_reaches(l, s.position, s.normal)) shading_add(sum, lamp_reflected(l, s));
+    }
 }
 #endif
