@@ -51,6 +51,7 @@ static void make_ball(shape *s) {
             mesh_vertex *v = &s->vertices[s->data.vertex_count++];
             memcpy(v->position, n, sizeof n);
             memcpy(v->normal, n, sizeof n);
+            v->u = (float)k / SECTORS;
             if (r == RINGS || k == SECTORS) continue;
             uint32_t at = s->data.vertex_count - 1, next = at + SECTORS + 1;
             const uint32_t corners[6] = {at, next, next + 1, at, next + 1, at + 1};
@@ -100,6 +101,33 @@ static void levels_are_as_near_as_they_say(void **state) {
         assert_true(count < before * 0.7);
         assert_true(i == 0 || levels.errors[i] > levels.errors[i - 1]);
         before = count;
+    }
+    arena_free(&s.memory);
+}
+
+// A triangle across the seam would show the whole texture backwards.
+static void seams_of_textures_stay(void **state) {
+    (void)state;
+    shape s;
+    mesh_levels levels;
+    make_ball(&s);
+    s.parts[1].texture = 0;
+    mesh_levels_make(&s.data, &s.memory, &levels);
+    assert_true(levels.count >= 2);
+    for (uint32_t i = 0; i < levels.count; i++) {
+        mesh_run run = levels.runs[i][1];
+        assert_true(run.count > 0 && run.count < s.parts[1].count * 0.7);
+        for (uint32_t t = 0; t < run.count; t += 3) {
+            const uint32_t *triangle = levels.indices + run.first - s.data.index_count + t;
+            float least = 1, most = 0;
+            for (int k = 0; k < 3; k++) {
+                assert_true(corner(&s, triangle, k, 2) < 1e-6f);   // of the lower half
+                if (corner(&s, triangle, k, 2) < -0.99f) continue; // all angles meet at the pole
+                least = fminf(least, s.vertices[triangle[k]].u);
+                most = fmaxf(most, s.vertices[triangle[k]].u);
+            }
+            assert_true(most - least < 0.6f);
+        }
     }
     arena_free(&s.memory);
 }
@@ -195,6 +223,7 @@ static void a_file_comes_with_its_levels(void **state) {
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(levels_are_as_near_as_they_say),
+        cmocka_unit_test(seams_of_textures_stay),
         cmocka_unit_test(flat_faces_stay_flat),
         cmocka_unit_test(what_is_small_or_broken_has_none),
         cmocka_unit_test(a_file_comes_with_its_levels),
