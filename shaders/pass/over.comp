@@ -47,7 +47,8 @@ layer upsample(ivec2 pixel, vec2 uv) {
     float here = texelFetch(depth, pixel, 0).r;
 #endif
     layer sum = layer(vec4(0.0), vec3(0.0)), least = layer(vec4(1e9), vec3(1e9)), most = sum;
-    float total = 0.0;
+    layer alike = least; // the texel that is most like the pixel
+    float total = 0.0, whole = 0.0, most_same = 0.0;
     for (int i = 0; i < 16; i++) {
         ivec2 offset = ivec2(i & 3, i >> 2);
         ivec2 texel = clamp(base + offset - 1, ivec2(0), low - 1);
@@ -62,12 +63,19 @@ layer upsample(ivec2 pixel, vec2 uv) {
         sum.color += w * same * c.color;
         sum.through += w * same * c.through;
         total += w * same;
+        whole += max(w, 0.0) * same;
+        if (same > most_same) {
+            most_same = same;
+            alike = c;
+        }
         if (same > 0.5) {
             least = layer(min(least.color, c.color), min(least.through, c.through));
             most = layer(max(most.color, c.color), max(most.through, c.through));
         }
     }
     layer smooth_value = layer(sum.color / max(total, 1e-9), sum.through / max(total, 1e-9));
+    // Where none is at its depth, the lobes may leave next to nothing to divide by.
+    if (most.color.a < least.color.a && total < 0.5 * whole) return alike;
     if (most.color.a < least.color.a) return smooth_value;
     return layer(clamp(smooth_value.color, least.color, most.color),
                  clamp(smooth_value.through, least.through, most.through));
