@@ -6,6 +6,12 @@ shadow_view fixed_view(int index) {
                             fixed_views[first + 3]), fixed_views[first + 4], fixed_views[first + 5]);
 }
 
+vec3 face_axis(int face) {
+    vec3 axis = vec3(0.0);
+    axis[face >> 1] = (face & 1) == 0 ? 1.0 : -1.0;
+    return axis;
+}
+
 // Out of a point light, through a face of a cube. A face shows a little more than its part, so that
 // what is looked up near its edge lies in one view.
 //
@@ -16,8 +22,7 @@ shadow_view fixed_view(int index) {
 // two draws of six; what it draws is less by 5 percent only, since of meshes 10 degrees wide 16 percent
 // lie on an edge of it, and 22 percent on one of a cube.
 shadow_view face_view(light_entry e, int face, float size) {
-    vec3 along = vec3(0.0), up = vec3(0.0);
-    along[face >> 1] = (face & 1) == 0 ? 1.0 : -1.0;
+    vec3 along = face_axis(face), up = vec3(0.0);
     up[face >> 1 == 2 ? 1 : 2] = 1.0;
     vec3 right = cross(along, up), p = e.position.xyz;
     float half_width = size / (size - 2.0 * margin), far = min(reach_of(e), distance);
@@ -28,12 +33,20 @@ shadow_view face_view(light_entry e, int face, float size) {
     return shadow_view(transpose(mat4(x, y, z, deep)), vec4(right, 2.0 * half_width / size), vec4(up, 0.0));
 }
 
+// Whether the camera sees anything that the light shines on through that face: the least sphere about
+// its part of the light's own has its middle below the corners.
+bool is_face_in_sight(light_entry e, int face) {
+    float far = min(reach_of(e), distance);
+    return is_in_sight(e.position.xyz + sqrt(1.0 / 3.0) * far * face_axis(face), sqrt(2.0 / 3.0) * far);
+}
+
 shadow_view view_of(int index) {
+    const shadow_view none = shadow_view(mat4(0.0), vec4(0.0), vec4(0.0));
     if (index < SHADOW_FIXED) return fixed_view(index);
     int point = (index - SHADOW_FIXED) / SHADOW_FACES, face = (index - SHADOW_FIXED) % SHADOW_FACES;
-    if (chosen[point] == NOBODY || fade_of(point) == 0.0)
-        return shadow_view(mat4(0.0), vec4(0.0), vec4(0.0));
-    return face_view(candidate_of(int(chosen[point])), face, places[index].z);
+    if (chosen[point] == NOBODY || fade_of(point) == 0.0) return none;
+    light_entry e = candidate_of(int(chosen[point]));
+    return is_face_in_sight(e, face) ? face_view(e, face, places[index].z) : none;
 }
 
 // The first row of shadow_views says what all share; then there is one for each view.
