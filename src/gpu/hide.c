@@ -4,7 +4,8 @@
 // shader as constants, and compiles that: at every dispatch, whatever the values were before, and
 // what it made stays in memory for the life of the pipeline. Only where a shader says outright
 // which block and member it reads can it do so. Here each block becomes an array of one block, and
-// its index is computed: always 0, which a compiler cannot know.
+// its index is computed: always 0, which a compiler cannot know. Of what is drawn fragment shaders
+// need it, too: with loops by uniforms of two blocks lavapipe reads beside its own table of blocks.
 //
 // SPIR-V is rewritten word by word; a module with anything unforeseen is left as it is.
 #include "gpu/spirv.h"
@@ -19,10 +20,13 @@ typedef struct hider {
     const uint32_t *in;
     size_t in_count;
     spirv_words out;
-    uint32_t bound;                                // next free id
-    uint32_t *pointees;                            // of pointer types to Uniform, by id; or 0
-    uint32_t uint_type, triple_type, group;        // as the module has them; 0: it does not
-    uint32_t own_uint, own_triple, own_group, top; // made here; `top` is the number 31
+    uint32_t bound;     // next free id
+    uint32_t *pointees; // of pointer types to Uniform, by id; or 0
+    bool fragment;
+    // As the module has them; 0: it does not. `place` is a variable that says where a thread is, a
+    // vector of `scalar`: the work group's, or a fragment's.
+    uint32_t uint_type, scalar_type, vector_type, place;
+    uint32_t own_uint, own_scalar, own_vector, own_place, top; // made here; `top` is the number 31
     bool decorated;
     block blocks[GPU_MAX_SLOTS];
     size_t block_count;
@@ -49,12 +53,23 @@ static bool is_unforeseen(const hider *h, uint32_t op, const uint32_t *w, uint32
     return false;
 }
 
+static uint32_t built_in(const hider *h) {
+    return h->fragment ? BUILT_IN_FRAG_COORD : BUILT_IN_WORKGROUP;
+}
+
+static uint32_t vector_size(const hider *h) {
+    return h->fragment ? 4 : 3;
+}
+
 static bool note(hider *h, uint32_t op, const uint32_t *w, uint32_t words) {
+    if (op == OP_ENTRY_POINT) h->fragment = w[1] == MODEL_FRAGMENT;
     if (op == OP_TYPE_INT && w[2] == 32 && w[3] == 0) h->uint_type = w[1];
-    if (op == OP_TYPE_VECTOR && w[2] == h->uint_type && w[3] == 3) h->triple_type = w[1];
-    if (op == OP_DECORATE && words == 4 && w[2] == DECORATION_BUILT_IN &&
-        w[3] == BUILT_IN_WORKGROUP)
-        h->group = w[1];
+    if (op == OP_TYPE_FLOAT && w[2] == 32 && h->fragment) h->scalar_type = w[1];
+    if (!h->fragment) h->scalar_type = h->uint_type;
+    if (op == OP_TYPE_VECTOR && w[2] == h->scalar_type && w[3] == vector_size(h))
+        h->vector_type = w[1];
+    if (op == OP_DECORATE && words == 4 && w[2] == DECORATION_BUILT_IN && w[3] == built_in(h))
+        h->place = w[1];
     if (op == OP_TYPE_POINTER && w[2] == STORAGE_UNIFORM && w[1] < h->bound)
         h->pointees[w[1]] = w[3];
     if (op == OP_VARIABLE && w[3] == STORAGE_UNIFORM) {
@@ -67,6 +82,7 @@ static bool note(hider *h, uint32_t op, const uint32_t *w, uint32_t words) {
 
 // The least words of an instruction that is looked at.
 static bool is_whole(uint32_t op, uint32_t words) {
+    if (op == OP_TYPE_FLOAT || op == OP_ENTRY_POINT) return words >= 3;
     uint32_t least = op == OP_TYPE_INT || op == OP_TYPE_VECTOR || op == OP_TYPE_POINTER ||
                              op == OP_VARIABLE || op == OP_ACCESS_CHAIN ||
                              op == OP_IN_BOUNDS_ACCESS_CHAIN
@@ -94,19 +110,22 @@ static uint32_t fresh(hider *h) {
 
 static void choose_ids(hider *h) {
     h->own_uint = h->uint_type ? h->uint_type : fresh(h);
-    h->own_triple = h->triple_type ? h->triple_type : fresh(h);
-    h->own_group = h->group ? h->group : fresh(h);
+    h->own_scalar = h->scalar_type ? h->scalar_type : h->fragment ? fresh(h) : h->own_uint;
+    h->own_vector = h->vector_type ? h->vector_type : fresh(h);
+    h->own_place = h->place ? h->place : fresh(h);
     h->top = fresh(h);
 }
 
 // Before the first function: types that are missing, and the blocks.
 static void put_globals(hider *h) {
     if (!h->uint_type) SPIRV_PUT(&h->out, OP_TYPE_INT, h->own_uint, 32, 0);
-    if (!h->triple_type) SPIRV_PUT(&h->out, OP_TYPE_VECTOR, h->own_triple, h->own_uint, 3);
-    if (!h->group) {
+    if (h->fragment && !h->scalar_type) SPIRV_PUT(&h->out, OP_TYPE_FLOAT, h->own_scalar, 32);
+    if (!h->vector_type)
+        SPIRV_PUT(&h->out, OP_TYPE_VECTOR, h->own_vector, h->own_scalar, vector_size(h));
+    if (!h->place) {
         uint32_t pointer = fresh(h);
-        SPIRV_PUT(&h->out, OP_TYPE_POINTER, pointer, STORAGE_INPUT, h->own_triple);
-        SPIRV_PUT(&h->out, OP_VARIABLE, pointer, h->own_group, STORAGE_INPUT);
+        SPIRV_PUT(&h->out, OP_TYPE_POINTER, pointer, STORAGE_INPUT, h->own_vector);
+        SPIRV_PUT(&h->out, OP_VARIABLE, pointer, h->own_place, STORAGE_INPUT);
     }
     uint32_t one = fresh(h);
     SPIRV_PUT(&h->out, OP_CONSTANT, h->own_uint, one, 1);
@@ -119,19 +138,24 @@ static void put_globals(hider *h) {
     }
 }
 
-// The index, in a function: groups are counted to less than 2^31.
+// The index, in a function: groups, and pixels, are counted to less than 2^31.
 static uint32_t put_zero(hider *h) {
-    uint32_t group = fresh(h), x = fresh(h), zero = fresh(h);
-    SPIRV_PUT(&h->out, OP_LOAD, h->own_triple, group, h->own_group);
-    SPIRV_PUT(&h->out, OP_COMPOSITE_EXTRACT, h->own_uint, x, group, 0);
+    uint32_t place = fresh(h), x = fresh(h), zero = fresh(h);
+    SPIRV_PUT(&h->out, OP_LOAD, h->own_vector, place, h->own_place);
+    SPIRV_PUT(&h->out, OP_COMPOSITE_EXTRACT, h->own_scalar, x, place, 0);
+    if (h->fragment) {
+        uint32_t whole = fresh(h);
+        SPIRV_PUT(&h->out, OP_CONVERT_F_TO_U, h->own_uint, whole, x);
+        x = whole;
+    }
     SPIRV_PUT(&h->out, OP_SHIFT_RIGHT_LOGICAL, h->own_uint, zero, x, h->top);
     return zero;
 }
 
 static void put_entry(hider *h, const uint32_t *w, uint32_t words) {
-    put(h, (words + !h->group) << 16 | OP_ENTRY_POINT);
+    put(h, (words + !h->place) << 16 | OP_ENTRY_POINT);
     spirv_put(&h->out, w + 1, words - 1);
-    if (!h->group) put(h, h->own_group);
+    if (!h->place) put(h, h->own_place);
 }
 
 static void put_chain(hider *h, const uint32_t *w, uint32_t words, uint32_t zero) {
@@ -152,9 +176,8 @@ static void write_module(hider *h) {
         uint32_t words = w[0] >> 16, op = w[0] & 0xffff;
         at += words;
         if (op >= OP_TYPE_FIRST && op <= OP_TYPE_LAST && !h->decorated) {
-            if (!h->group)
-                SPIRV_PUT(&h->out, OP_DECORATE, h->own_group, DECORATION_BUILT_IN,
-                          BUILT_IN_WORKGROUP);
+            if (!h->place)
+                SPIRV_PUT(&h->out, OP_DECORATE, h->own_place, DECORATION_BUILT_IN, built_in(h));
             h->decorated = true;
         }
         if (op == OP_FUNCTION && globals) {

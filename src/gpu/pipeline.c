@@ -109,6 +109,20 @@ static hash128 hash_interface(const gpu_pipeline *pipeline) {
     return hash_bytes(words, count * sizeof *words);
 }
 
+// A software driver fares better where uniforms are read once, and hidden.
+static bool create_rewritten_module(gpu *g, const char *label, const uint32_t *code, size_t size,
+                                    VkShaderModule *out) {
+    if (g->info.kind != GPU_CPU) return create_module(g, label, code, size, out);
+    uint32_t *hoisted = vk_hoist_uniforms(code, size, &size);
+    if (hoisted) code = hoisted;
+    uint32_t *hidden = vk_hide_uniforms(code, size, &size);
+    if (hidden) code = hidden;
+    bool created = create_module(g, label, code, size, out);
+    mem_free(hidden);
+    mem_free(hoisted);
+    return created;
+}
+
 // ---- compute ----------------------------------------------------------------------------------
 
 static bool check_local_size(gpu *g, const char *label, const uint32_t size[3]) {
@@ -121,20 +135,6 @@ static bool check_local_size(gpu *g, const char *label, const uint32_t size[3]) 
         "pipeline '%s' has groups of %ux%ux%u threads; the device allows %ux%ux%u and %u "
         "in all",
         label, size[0], size[1], size[2], most[0], most[1], most[2], total);
-}
-
-// A software driver fares better where uniforms are read once, and hidden.
-static bool create_compute_module(gpu *g, const char *label, const uint32_t *code, size_t size,
-                                  VkShaderModule *out) {
-    if (g->info.kind != GPU_CPU) return create_module(g, label, code, size, out);
-    uint32_t *hoisted = vk_hoist_uniforms(code, size, &size);
-    if (hoisted) code = hoisted;
-    uint32_t *hidden = vk_hide_uniforms(code, size, &size);
-    if (hidden) code = hidden;
-    bool created = create_module(g, label, code, size, out);
-    mem_free(hidden);
-    mem_free(hoisted);
-    return created;
 }
 
 // Whether a shader asks how many groups there are (gl_NumWorkGroups): slices have fewer.
@@ -156,7 +156,7 @@ static bool build_compute(gpu *g, const gpu_pipeline *pipeline, const gpu_comput
     VkShaderModule module;
     out->sliced = g->info.kind == GPU_CPU && !counts_groups(desc->code, desc->code_size);
     if (!create_layout(g, pipeline, VK_SHADER_STAGE_COMPUTE_BIT, out)) return false;
-    if (!create_compute_module(g, pipeline->label, desc->code, desc->code_size, &module))
+    if (!create_rewritten_module(g, pipeline->label, desc->code, desc->code_size, &module))
         return false;
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
@@ -292,8 +292,8 @@ static bool build_graphics(gpu *g, const gpu_pipeline *pipeline, const gpu_graph
     bool ok = create_layout(g, pipeline, both, out) &&
               create_module(g, pipeline->label, desc->vertex_code, desc->vertex_size,
                             &stages[0].module) &&
-              create_module(g, pipeline->label, desc->fragment_code, desc->fragment_size,
-                            &stages[1].module) &&
+              create_rewritten_module(g, pipeline->label, desc->fragment_code, desc->fragment_size,
+                                      &stages[1].module) &&
               vk_check(g, create_graphics(g, pipeline, desc, stages, out), "creating pipeline '%s'",
                        pipeline->label);
     vkDestroyShaderModule(g->device, stages[0].module, NULL);
