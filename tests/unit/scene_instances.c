@@ -351,6 +351,28 @@ static void nodes_place_what_stands_in_them(void **state) {
     arena_free(&memory);
 }
 
+static void what_is_shown_is_chosen_by_object(void **state) {
+    (void)state;
+    world a, b;
+    uint32_t bits[SCENE_BVH_MAX_MESHES / 32];
+    open_cubes(&a, 20, 2, NULL);
+    open_cubes(&b, 30, 2, NULL);
+    scene_mesh *mesh = &a.cube;
+    scene_instances *both[] = {a.instances, b.instances};
+    scene_bvh *tree = scene_bvh_create(&mesh, 1, both, 2);
+    assert_int_equal(scene_bvh_count(tree), 51);
+    scene_bvh_choose(tree, NULL, 0, &b.instances, 1, bits);
+    assert_int_equal(bits[0], 4);
+    scene_bvh_choose(tree, &mesh, 1, &a.instances, 1, bits);
+    assert_int_equal(bits[0], 3);
+    assert_true(scene_bvh_place(tree, &a.context));
+    for (size_t i = 0; i < 51; i++)
+        assert_int_equal(tree->items[tree->item_at[i]].what.v[0], i == 0 ? 0 : i <= 20 ? 1 : 2);
+    scene_bvh_destroy(tree, NULL);
+    close_world(&a);
+    close_world(&b);
+}
+
 static void a_mesh_may_be_one_of_them(void **state) {
     (void)state;
     world w;
@@ -382,6 +404,7 @@ int main(void) {
         cmocka_unit_test(picks_find_what_is_nearest),
         cmocka_unit_test(picks_follow_what_moves_hides_and_grows),
         cmocka_unit_test(nodes_place_what_stands_in_them),
+        cmocka_unit_test(what_is_shown_is_chosen_by_object),
         cmocka_unit_test(a_mesh_may_be_one_of_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
