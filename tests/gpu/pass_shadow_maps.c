@@ -95,6 +95,7 @@ static float *shade(pass_world *w, const pass_named *settings, size_t count) {
     pass *p = world_add(w, "shade", NULL, "shade");
     pass_add_source(p, geometry);
     if (maps) pass_add_source(p, maps);
+    gpu_test_ok(pass_set_option(p, "shadows_by", maps ? "maps" : "rays"));
     gpu_test_ok(pass_declare(p));
     world_render(w, SIZE, SIZE, pass_output(p, "color"));
     return world_read(w, pass_output(p, "color"));
@@ -384,6 +385,7 @@ static void forward_shows_the_same_shadows(void **state) {
                 gpu_test_ok(pass_add_mesh(maps, &w.meshes[i]) && pass_add_mesh(p, &w.meshes[i]));
             gpu_test_ok(pass_declare(maps));
             pass_add_source(p, maps);
+            gpu_test_ok(pass_set_option(p, "shadows_by", "maps"));
             gpu_test_ok(pass_declare(p));
             world_render(&w, SIZE, SIZE, pass_output(p, "color"));
             pictures[1] = world_read(&w, pass_output(p, "color"));
