@@ -359,16 +359,16 @@ static void what_is_shown_is_chosen_by_object(void **state) {
     open_cubes(&b, 30, 2, NULL);
     scene_mesh *mesh = &a.cube;
     scene_instances *both[] = {a.instances, b.instances};
-    scene_bvh *tree = scene_bvh_create(&mesh, 1, both, 2);
-    assert_int_equal(scene_bvh_count(tree), 51);
-    scene_bvh_choose(tree, NULL, 0, &b.instances, 1, bits);
+    scene_bvh *rays = scene_bvh_create(&mesh, 1, both, 2);
+    assert_int_equal(scene_bvh_count(rays), 51);
+    scene_bvh_choose(rays, NULL, 0, &b.instances, 1, bits);
     assert_int_equal(bits[0], 4);
-    scene_bvh_choose(tree, &mesh, 1, &a.instances, 1, bits);
+    scene_bvh_choose(rays, &mesh, 1, &a.instances, 1, bits);
     assert_int_equal(bits[0], 3);
-    assert_true(scene_bvh_place(tree, &a.context));
+    assert_true(scene_bvh_place(rays, &a.context));
     for (size_t i = 0; i < 51; i++)
-        assert_int_equal(tree->items[tree->item_at[i]].what.v[0], i == 0 ? 0 : i <= 20 ? 1 : 2);
-    scene_bvh_destroy(tree, NULL);
+        assert_int_equal(rays->items[rays->item_at[i]].what.v[0], i == 0 ? 0 : i <= 20 ? 1 : 2);
+    scene_bvh_destroy(rays, NULL);
     close_world(&a);
     close_world(&b);
 }
