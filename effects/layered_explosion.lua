@@ -6,13 +6,13 @@
 --   roil render effects/layered_explosion.lua --frames 14 -o explosion.png
 --   roil render effects/layered_explosion.lua --frames 14 --set form=mesh -o mesh.png
 --   roil render effects/layered_explosion.lua --frames 14 --set form=volume -o volume.png
---   roil live effects/layered_explosion.lua     -- click on the ground, or press x
+--   roil live effects/layered_explosion.lua     -- click on the ground, press x, or throw a bomb with b
 --
 -- One picture, three ways to it. rays: the surface is found by a ray for each pixel. mesh: as
 -- published, the vertices of a sphere are moved and drawn. volume: the same layers fill space, and a
 -- ray marches through what is inside of the surface.
 
-local fx = effect { name = "layered_explosion", fps = 24, frames = 84 }
+local fx = effect { name = "layered_explosion", fps = 24, frames = 120 }
 
 local form = param { "form", "rays", words = {"rays", "mesh", "volume"}, help = "what the explosion is made of" }
 
@@ -62,7 +62,8 @@ local flash_low   = param { "flash_low", 0.6, min = 0.05, max = 2, help = "expos
 local flash_high  = param { "flash_high", 1.0, min = 0.05, max = 4, help = "exposure when it bursts" }
 local flash_time  = param { "flash_time", 0.7, min = 0.05, max = 5, unit = "s", help = "there and back" }
 
--- Where and when: seconds, place, size. More come from the keyboard and the mouse.
+-- Where and when: seconds, place, size. More come from the keyboard, from the mouse, and from a bomb that
+-- bursts where it hits something: timer, script and collision.
 local blasts = explosions {
   { 0.25, position = {0, 0, 0.9}, size = 1, seed = 3 },
   { 0.80, position = {3.1, 1.6, 0.5}, size = 0.55, seed = 9 },
@@ -73,6 +74,24 @@ fx:on_click(function(event)
   local at = event.hit and event.hit.position
   if at then blasts:add { position = {at[1], at[2], at[3] + 0.5}, size = 0.7 } end
 end, "an explosion there")
+
+local bomb = nil -- its place and velocity while it flies
+fx:on_start(function() bomb = nil end)
+fx:on_key("b", function() bomb = { {-11, -4, 0.6}, {4.7, 5.45, 6.2} } end, "throw a bomb at the crates")
+fx:on_frame(function(t, dt)
+  if not bomb then return end
+  local p, v = bomb[1], bomb[2]
+  local hit = pick { p, v }
+  local far = dt * math.sqrt(v[1] ^ 2 + v[2] ^ 2 + v[3] ^ 2)
+  if hit and hit.distance <= far then
+    blasts:add { position = {hit.position[1], hit.position[2], hit.position[3] + 0.4}, size = 0.75 }
+    bomb = nil
+    return
+  end
+  for i = 1, 3 do p[i] = p[i] + dt * v[i] end
+  v[3] = v[3] - 9.81 * dt
+end)
+fx.events = { { 1.3, key = "b" } }
 
 -- N keys at equal distances; the palette editor changes them.
 local fire = palette {
@@ -183,7 +202,12 @@ local function as_shells()
     opacity = dust * smoothstep(0, 0.9, rim) * (1.6 * puffs + 0.2 - 1.2 * shell_age),
     albedo = vec(0.62, 0.50, 0.40) * (0.5 + 0.5 * puffs), wrap = 0.6, soften = 0.8,
   }
-  return over { globe, over { skirt, over { ball, shade { from = scene, haze = 0.006 } } } }
+  -- The bomb: a shell that nothing pushes out.
+  local flying = shell {
+    from = scene, life = 1e6, color = {9, 3.2, 0.7},
+    radius = function() return bomb and 0.09 or 0 end, position = function() return bomb and bomb[1] or {0, 0, -1} end,
+  }
+  return over { globe, over { skirt, over { ball, over { flying, shade { from = scene, haze = 0.006 } } } } }
 end
 
 -- As a volume: the same fields, asked at the direction of each point in space from the centre. What is

@@ -160,6 +160,21 @@ static void flat_layers_wrap_the_origin(void **state) {
     effect_destroy(e);
 }
 
+static void the_explosion_compiles_in_every_form(void **state) {
+    (void)state;
+    static const effect_setting settings[] = {
+        {"form", "mesh", NULL}, {"form", "volume", NULL}, {"noise", "worley", NULL}};
+    char file[PATH_CAP], scripts[PATH_CAP];
+    helper_source(file, "effects/layered_explosion.lua");
+    helper_source(scripts, "scripts");
+    for (size_t i = 0; i < COUNT_OF(settings); i++) {
+        effect *e = helper_create(file, &settings[i], 1);
+        if (!script_load_limited(e, scripts, NULL) || !effect_check_settings(e) || !effect_check(e))
+            fail_msg("%s=%s: %s", settings[i].name, settings[i].text, err_get());
+        effect_destroy(e);
+    }
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(mistakes_are_named),
@@ -168,6 +183,7 @@ int main(void) {
         cmocka_unit_test(what_came_is_forgotten_when_time_goes_back),
         cmocka_unit_test(layers_are_the_sum_of_their_noises),
         cmocka_unit_test(flat_layers_wrap_the_origin),
+        cmocka_unit_test(the_explosion_compiles_in_every_form),
     };
     return cmocka_run_group_tests(tests, helper_setup, helper_teardown);
 }
