@@ -48,7 +48,7 @@ typedef struct mesh_data {
     uint32_t part_count;
     const mesh_texture *textures;
     uint32_t texture_count;
-    box3 box; // around all vertices: what it says is out of sight is not drawn
+    box3 box;                 // around all vertices: what it says is out of sight is not drawn
     const char *const *files; // all files read, and textures that are missing
     size_t file_count;
 } mesh_data;
