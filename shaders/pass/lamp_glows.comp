@@ -38,21 +38,26 @@ vec3 sphere_seen(lamp l, passing by, float end, float pixel) {
     return l.color * (brightness * covered / (PI * (shown * shown + wide * wide / 12.0))); // its soft edge, too
 }
 
-// The integral from 0 to s of the lamp's falloff at the distance sqrt(h h + s s).
-float falloff_sum(lamp l, float h, float s) {
-    float h2 = h * h, s2 = s * s, over = 1.0 / l.range;
-    if (l.linear) return s - 0.5 * over * (s * sqrt(h2 + s2) + h2 * asinh(s / h));
+// The integral of the lamp's falloff at the distance sqrt(h h + s s), over s between two places. One
+// arcus tangent or logarithm for both: their differences.
+float falloff_sum(lamp l, float h, float from, float to) {
+    float h2 = h * h, over = 1.0 / l.range;
+    vec2 s = vec2(from, to), s2 = s * s, away = sqrt(h2 + s2);
+    if (l.linear) {
+        float turn = h2 * log((to + away.y) / max(from + away.x, 1e-12 * away.x));
+        return to - from - 0.5 * over * (to * away.y - from * away.x + turn);
+    }
     float over2 = over * over, over4 = over2 * over2;
-    float square = s * (h2 + s2 / 3.0), sixth = s * (h2 * h2 * h2 + s2 * (h2 * h2 + s2 * (0.6 * h2 + s2 / 7.0)));
-    return atan(s, h) / h - 2.0 * over4 * square + over4 * over4 * sixth;
+    vec2 square = s * (h2 + s2 / 3.0), sixth = s * (h2 * h2 * h2 + s2 * (h2 * h2 + s2 * (0.6 * h2 + s2 / 7.0)));
+    vec2 lost = over4 * (over4 * sixth - 2.0 * square);
+    return atan(h * (to - from), h2 + from * to) / h + lost.y - lost.x;
 }
 
 vec3 mist_lit(lamp l, passing by, float end) {
     float h = max(by.away, max(l.radius, LEAST)), half_chord = sqrt(max(l.range * l.range - h * h, 0.0));
     float from = max(-by.along, -half_chord), to = min(end - by.along, half_chord);
     if (!(from < to)) return vec3(0.0);
-    float sum = falloff_sum(l, h, to) - falloff_sum(l, h, from);
-    return l.color * (max(sum, 0.0) * mist / (4.0 * PI));
+    return l.color * (max(falloff_sum(l, h, from, to), 0.0) * mist / (4.0 * PI));
 }
 
 void main() {
