@@ -115,7 +115,7 @@ static void fill_uniform(const roil_effect *e, const effect_control *c, const pa
 static void fill_scene(const roil_effect *e, const effect_control *c, roil_control *out) {
     static const char *const groups[] = {"camera", "sun", "sky"};
     const scene_value *v = effect_control_value(c);
-    if (c->kind == EFFECT_CONTROL_LIGHT) out->group = effect_scene(e->effect)->lights[c->pass].name;
+    if (c->kind != EFFECT_CONTROL_SCENE) out->group = effect_control_owner(e->effect, c);
     for (size_t i = 0; c->kind == EFFECT_CONTROL_SCENE && i < COUNT_OF(groups); i++)
         if (strncmp(v->name, groups[i], strlen(groups[i])) == 0) out->group = groups[i];
     out->type = v->color ? ROIL_COLOR : v->components == 3 ? ROIL_VECTOR : ROIL_FLOAT;
@@ -188,6 +188,7 @@ void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
         break;
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
+    case EFFECT_CONTROL_MATERIAL:
         fill_scene(e, c, out);
         break;
     case EFFECT_CONTROL_EVENTS:

@@ -24,6 +24,7 @@ static void print(const effect *e, const control *c, strbuf *out) {
         break;
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
+    case EFFECT_CONTROL_MATERIAL:
         scene_control_print(e, c, out);
         break;
     case EFFECT_CONTROL_EVENTS:
@@ -180,6 +181,7 @@ static bool set(effect *e, control *c, const char *text) {
         return ramp_set(e, c, text);
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
+    case EFFECT_CONTROL_MATERIAL:
         return scene_control_set(e, c, text);
     case EFFECT_CONTROL_EVENTS:
         return events_control_set(e, c, text);
@@ -195,7 +197,7 @@ static bool set(effect *e, control *c, const char *text) {
 // only since they were.
 static void forget_old(effect *e, const control *c) {
     if (c->face.kind != EFFECT_CONTROL_SCENE && c->face.kind != EFFECT_CONTROL_LIGHT &&
-        c->face.kind != EFFECT_CONTROL_EVENTS)
+        c->face.kind != EFFECT_CONTROL_MATERIAL && c->face.kind != EFFECT_CONTROL_EVENTS)
         effect_forget_moments(e);
 }
 
@@ -212,6 +214,7 @@ void effect_reset_control(effect *e, control *c) {
         break;
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
+    case EFFECT_CONTROL_MATERIAL:
         scene_control_reset(e, c);
         break;
     case EFFECT_CONTROL_EVENTS:

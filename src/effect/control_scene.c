@@ -4,13 +4,15 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
+#include "scene/material.h"
 #include <string.h>
 
 const scene_value *effect_control_value(const effect_control *c) {
     size_t count;
     const scene_value *values = c->kind == EFFECT_CONTROL_LIGHT
                                     ? scene_light_values(SCENE_SPOT, &count)
-                                    : scene_values(&count);
+                                : c->kind == EFFECT_CONTROL_MATERIAL ? scene_material_values(&count)
+                                                                     : scene_values(&count);
     return &values[c->index];
 }
 
@@ -22,7 +24,18 @@ static const field **light_slot(scene_light *light, const scene_value *value) {
     return (const field **)(void *)((char *)light + value->offset);
 }
 
+static const field **material_slot(scene_material *material, const scene_value *value) {
+    return (const field **)(void *)((char *)material + value->offset);
+}
+
+const char *effect_control_owner(const effect *e, const effect_control *c) {
+    return c->kind == EFFECT_CONTROL_MATERIAL ? e->materials[c->pass]->name
+                                              : e->scene.lights[c->pass].name;
+}
+
 static const field **slot_of(effect *e, const control *c) {
+    if (c->face.kind == EFFECT_CONTROL_MATERIAL)
+        return material_slot(e->materials[c->face.pass], value_of(c));
     if (c->face.kind == EFFECT_CONTROL_LIGHT)
         return light_slot(&e->scene.lights[c->face.pass], value_of(c));
     return scene_slot(&e->scene, value_of(c));
@@ -85,6 +98,28 @@ static bool add_light(effect *e, size_t index) {
     return true;
 }
 
+// Of what the script says of it; the rest is as its mesh has it.
+static bool add_material(effect *e, size_t index) {
+    scene_material *material = e->materials[index];
+    const char *stem = material->name;
+    if (!stem) return true;
+    for (int i = 2; is_taken(e, material->name); i++)
+        material->name = arena_format(&e->memory, "%s_%d", stem, i);
+    size_t count;
+    const scene_value *values = scene_material_values(&count);
+    for (size_t i = 0; i < count; i++) {
+        control own = {
+            .face = {.kind = EFFECT_CONTROL_MATERIAL,
+                     .name = arena_format(&e->memory, "%s.%s", material->name, values[i].name),
+                     .pass = index,
+                     .index = i},
+            .original = *material_slot(material, &values[i]),
+        };
+        if (own.original && !effect_apply_to(e, effect_add_control(e, &own))) return false;
+    }
+    return true;
+}
+
 bool scene_control_add_all(effect *e) {
     size_t count;
     const scene_value *values = scene_values(&count);
@@ -100,6 +135,8 @@ bool scene_control_add_all(effect *e) {
     }
     for (size_t i = 0; i < e->scene.light_count; i++)
         if (!add_light(e, i)) return false;
+    for (size_t i = 0; i < e->material_count; i++)
+        if (!add_material(e, i)) return false;
     return true;
 }
 

@@ -99,6 +99,7 @@ void effect_destroy(effect *e) {
     shelf_destroy(e->own_shelf);
     mem_free(e->held);
     mem_free(e->meshes);
+    mem_free(e->materials);
     mem_free(e->instances);
     mem_free(e->files);
     arena_free(&e->memory);
@@ -302,6 +303,11 @@ scene_instances *effect_add_instances(effect *e, const scene_instances_desc *des
 
 void effect_reset_instances(effect *e) {
     for (size_t i = 0; i < e->instances_count; i++) scene_instances_reset(e->instances[i]);
+}
+
+void effect_add_material(effect *e, scene_material *material) {
+    MEM_RESERVE(e->materials, e->material_count + 1, e->material_capacity);
+    e->materials[e->material_count++] = material;
 }
 
 const mesh_texture *effect_add_texture(effect *e, const char *file) {

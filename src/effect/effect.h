@@ -81,6 +81,8 @@ void effect_name_grid(effect *e, field_grid *grid, const char *name);
 bool effect_playback(const effect *e, field_playback *out); // false: no grid is played
 scene_mesh *effect_add_mesh(effect *e, const char *file);   // confined to the effect's folder
 const mesh_texture *effect_add_texture(effect *e, const char *file); // a PNG; the same
+// One whose numbers can be set by its name, if it has one. It must live as long as the effect.
+void effect_add_material(effect *e, scene_material *material);
 // Owned by the effect; NULL with a message when it has too many.
 scene_instances *effect_add_instances(effect *e, const scene_instances_desc *desc);
 // The panorama of a sky, confined too; an effect has one.
@@ -179,18 +181,20 @@ typedef enum effect_control_kind {
     EFFECT_CONTROL_PARAM,
     EFFECT_CONTROL_PALETTE,
     EFFECT_CONTROL_CURVE,
-    EFFECT_CONTROL_SCENE,   // "camera.fov", "sun.azimuth", "sky.strength"
-    EFFECT_CONTROL_LIGHT,   // "lamp.power"
-    EFFECT_CONTROL_EVENTS,  // "effect.events"
-    EFFECT_CONTROL_UNIFORM, // "march.steps"
-    EFFECT_CONTROL_OPTION,  // "march.mode"
-    EFFECT_CONTROL_SCALE,   // "march.resolution"
+    EFFECT_CONTROL_SCENE,    // "camera.fov", "sun.azimuth", "sky.strength"
+    EFFECT_CONTROL_LIGHT,    // "lamp.power"
+    EFFECT_CONTROL_MATERIAL, // "rust.roughness"
+    EFFECT_CONTROL_EVENTS,   // "effect.events"
+    EFFECT_CONTROL_UNIFORM,  // "march.steps"
+    EFFECT_CONTROL_OPTION,   // "march.mode"
+    EFFECT_CONTROL_SCALE,    // "march.resolution"
 } effect_control_kind;
 
 typedef struct effect_control {
     effect_control_kind kind;
     const char *name;
-    size_t pass, index;  // of the pass or light, and of the thing itself (scene_value; uniform)
+    size_t pass,
+        index; // of the pass, light or material, and of the thing itself (scene_value; uniform)
     const char *initial; // as text, before any setting
     const char *moved;   // the setting that holds, as text; NULL: the script's own value
 } effect_control;
@@ -204,7 +208,9 @@ const palette *effect_control_palette(const effect_control *c);
 const curve *effect_control_curve(const effect_control *c);
 const field *effect_control_field(const effect *e, const effect_control *c);
 const field *effect_control_original(const effect_control *c);
-const scene_value *effect_control_value(const effect_control *c); // of the scene, of a light
+const scene_value *effect_control_value(const effect_control *c); // of the scene, a light ...
+// The name that the values of a light or material begin with.
+const char *effect_control_owner(const effect *e, const effect_control *c);
 // The value of now, as effect_set takes it; of what the script moves how it does.
 void effect_print_control(const effect *e, const effect_control *c, strbuf *out);
 

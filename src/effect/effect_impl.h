@@ -129,6 +129,8 @@ struct effect {
     shelf *shelf, *own_shelf; // as the library
     shelf_item **held;        // data of meshes
     size_t held_count, held_capacity;
+    scene_material **materials;
+    size_t material_count, material_capacity;
     scene_mesh **meshes;
     size_t mesh_count, mesh_capacity;
     scene_instances **instances;

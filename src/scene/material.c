@@ -3,9 +3,31 @@
 #include "scene/material.h"
 #include "base/error.h"
 #include "scene/scene_impl.h"
+#include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 static const float emission_max = 1e4f; // that a half float holds several times over
+
+#define VALUE(NAME, COMPONENTS, MAX, HELP, ...)                                                    \
+    {                                                                                              \
+#NAME, offsetof(scene_material, NAME), COMPONENTS, .max = MAX, .unit = "", .help = HELP,   \
+                                                           __VA_ARGS__                             \
+    }
+
+// What they mean is said in the words of script/reference*.c.
+static const scene_value values[] = {
+    VALUE(color, 3, INFINITY, "of the whole mesh", .color = true),
+    VALUE(specular, 1, 1, "how much is mirrored"),
+    VALUE(roughness, 1, 1, "0: polished; 1: highlights spread over all"),
+    VALUE(metallic, 1, 1, "1: mirrors in its colour"),
+    VALUE(emission, 3, INFINITY, "radiance that it gives off", .color = true),
+};
+
+const scene_value *scene_material_values(size_t *count) {
+    *count = sizeof values / sizeof *values;
+    return values;
+}
 
 void scene_mesh_set_material(scene_mesh *mesh, const scene_material *material, arena *memory) {
     mesh_data *data = &mesh->data;
@@ -21,7 +43,9 @@ void scene_mesh_set_material(scene_mesh *mesh, const scene_material *material, a
     data->texture_count = material->texture ? 1 : 0;
 }
 
-static bool is_none(const field *node) { // zero at all times
+// Zero at all times. A number that has a name can be set at any.
+static bool is_none(const scene_material *m, const field *node) {
+    if (m->name) return false;
     if (strcmp(node->kind->name, "constant") != 0) return false;
     for (int i = 0; i < node->components; i++)
         if (node->value[i] != 0) return false;
@@ -29,7 +53,7 @@ static bool is_none(const field *node) { // zero at all times
 }
 
 static bool glows(const scene_material *m, const mesh_part *part) {
-    if (m && m->emission) return !is_none(m->emission);
+    if (m && m->emission) return !is_none(m, m->emission);
     return part->emission[0] + part->emission[1] + part->emission[2] > 0;
 }
 
@@ -40,8 +64,8 @@ bool scene_mesh_glows(const scene_mesh *mesh) {
 }
 
 static bool is_matte(const scene_material *m, const mesh_part *part) {
-    bool specular = m && m->specular ? !is_none(m->specular) : part->specular > 0;
-    bool metallic = m && m->metallic ? !is_none(m->metallic) : part->metallic > 0;
+    bool specular = m && m->specular ? !is_none(m, m->specular) : part->specular > 0;
+    bool metallic = m && m->metallic ? !is_none(m, m->metallic) : part->metallic > 0;
     return !specular && !metallic && !glows(m, part);
 }
 

@@ -6,14 +6,16 @@
 #include <string.h>
 
 static const char type_name[] = "material";
+enum { CONTROLS = 5 };
 
 static int l_material(lua_State *L) {
     value_refuse_array(L, "material");
     material_object *object = object_new(L, type_name, sizeof *object);
-    vm_charge_memory(L, sizeof(scene_material) + sizeof(field));
+    vm_charge_memory(L, sizeof(scene_material) + sizeof(field) + CONTROLS * EFFECT_CONTROL_COST);
     scene_material *made = arena_alloc(script_memory(L), sizeof *made);
     value_read_slots(L, "material", made);
-    made->name = value_name_or_variable(L, 1, "material");
+    made->name = value_name_or_variable(L, 1, type_name);
+    if (strcmp(made->name, type_name) == 0) made->name = NULL; // made in passing
     made->no_toon = !value_get_bool(L, 1, "material", "toon", true);
     const char *texture = value_get_string(L, 1, "material", "texture");
     if (texture) {
@@ -23,6 +25,7 @@ static int l_material(lua_State *L) {
     }
     if (!made->specular && (made->roughness || made->metallic)) // it is to be seen
         made->specular = field_constant(script_memory(L), 1, (float[4]){0.5f});
+    effect_add_material(script_of(L)->effect, made);
     object->material = made;
     return 1;
 }
