@@ -103,7 +103,7 @@ local holes = layers { {1.7, 1}, {5.5, 0.6}, seed = 70 }:remap(0.2, 0.8, 0, 1)
 local at = shell_displacement / extrusion * 1.15 + shell_depth
 local left = 1.1 - shell_depth - 0.85 * holes
 local ball = shell {
-  at = blasts, from = drawn, life = life,
+  name = "ball", at = blasts, from = drawn, life = life,
   radius = size * (1 - exp(-growth * shell_age) + 0.35 * shell_age), position = vec(0, 0, height_of(shell_age)),
   displacement = extrusion * lumps, shell_depth = mix(-0.3, 1.12, shell_age ^ 0.8), clip = left,
   color = gradient(at).rgb * (0.55 + 0.45 * dot(shell_view, shell_normal)) + vec(1.6, 0.35, 0.05) * smoothstep(0.045, 0, left) * smoothstep(1, 0.5, shell_age),
@@ -113,7 +113,7 @@ local whole = 4.2 -- seconds that a globe of smoke is there, the first 0.15 of t
 local old = clamp((shell_age * whole - 0.15) / (whole - 0.15), 0, 1)
 local wisps = layers { {1.4, 1}, {3.9, 0.55}, {9.5, 0.25}, fractal = "billow", speed = 0.25, seed = 40 }:remap(0.05, 0.55, 0, 1)
 local globe = shell {
-  at = blasts, depth = ball.front, life = whole, sides = "front",
+  name = "globe", resolution = 0.5, at = blasts, depth = ball.front, life = whole, sides = "front",
   radius = size * (0.8 + 1.1 * sqrt(old)), position = vec(0, 0, height_of(clamp(shell_age * whole / life, 0, 1)) + 1.1 * old),
   displacement = 0.33 * wisps * (0.8 + 0.4 * position.z),
   opacity = saturate(dot(shell_view, shell_normal)) * (smoke + 1.4 * (wisps - 0.5) - (smoke + 0.7) * old) * smoothstep(0, 0.06, old),

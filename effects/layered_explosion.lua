@@ -174,7 +174,7 @@ local function as_shells()
   local left = dissolve - shell_depth - tear * holes
   local facing = dot(shell_view, shell_normal)
   local ball = shell {
-    at = blasts, from = scene, mode = of_form, life = life,
+    name = "ball", at = blasts, from = scene, mode = of_form, life = life,
     radius = ball_radius(shell_age), position = vec(0, 0, ball_height(shell_age)),
     displacement = extrusion * lumps, shell_depth = depth_of(shell_age), clip = left,
     color = (fire(at).rgb * (0.55 + 0.45 * facing) + vec(1, 0.22, 0.03) * ember * smoothstep(0.045, 0, left) * smoothstep(1, 0.5, shell_age)) * brightness,
@@ -185,7 +185,7 @@ local function as_shells()
   local rim = saturate(dot(shell_view, shell_normal))
   local wisps = wisps_of()
   local globe = shell {
-    at = blasts, depth = ball.front, mode = of_form, sides = "front", life = whole,
+    name = "smoke", resolution = 0.5, at = blasts, depth = ball.front, mode = of_form, sides = "front", life = whole,
     radius = smoke_radius(age), position = vec(0, 0, ball_height(clamp(shell_age * whole / life, 0, 1)) + 0.8 * age),
     displacement = 0.33 * wisps * (0.8 + 0.4 * position.z),
     opacity = smoothstep(0, 1, rim) * (smoke_alpha + smoke_noise * (wisps - 0.5) - (smoke_alpha + 0.5 * smoke_noise) * age) * smoothstep(0, 0.1, age),
@@ -196,7 +196,7 @@ local function as_shells()
   local flat = 1 / sqrt(1 + 34 * position.z * position.z)
   local puffs = wisps:warp(position * (2 * flat - 1))
   local skirt = shell {
-    at = blasts, depth = ball.front, mode = of_form, sides = "front", life = 1.5,
+    name = "skirt", resolution = 0.5, at = blasts, depth = ball.front, mode = of_form, sides = "front", life = 1.5,
     radius = size * (0.5 + dust_reach * (1 - exp(-3.2 * shell_age))), position = vec(0, 0, -0.55),
     displacement = flat * (1 + 0.5 * puffs) - 1,
     opacity = dust * smoothstep(0, 0.9, rim) * (1.6 * puffs + 0.2 - 1.2 * shell_age),
@@ -204,7 +204,7 @@ local function as_shells()
   }
   -- The bomb: a shell that nothing pushes out.
   local flying = shell {
-    from = scene, life = 1e6, color = {9, 3.2, 0.7},
+    name = "bomb", from = scene, life = 1e6, color = {9, 3.2, 0.7},
     radius = function() return bomb and 0.09 or 0 end, position = function() return bomb and bomb[1] or {0, 0, -1} end,
   }
   return over { globe, over { skirt, over { ball, over { flying, shade { from = scene, haze = 0.006 } } } } }
