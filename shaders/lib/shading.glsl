@@ -91,10 +91,10 @@ float shading_highlight(shaded s, vec3 to_light) {
     return pow(max(dot(s.normal, normalize(to_light + s.view)), 0.0), max(2.0 / (a * a) - 2.0, 1.0));
 }
 
-// The middle of the band that a share of light is in. What is not lit stays dark.
+// The middle of the band that a share of light is in.
 float shading_band(float share) {
     float levels = float(toon_levels);
-    return share > 0.0 ? (min(floor(share * levels), levels - 1.0) + 0.5) / levels : 0.0;
+    return (min(floor(share * levels), levels - 1.0) + 0.5) / levels;
 }
 
 // ---- all --------------------------------------------------------------------------------------
@@ -111,10 +111,11 @@ reflected shading_respond(shaded s, vec3 to_light, vec3 irradiance) {
     reflected r = reflected(irradiance * (cosine / SHADING_PI), vec3(0.0));
 #if MODEL == MODEL_BLINN_PHONG || MODEL == MODEL_TOON
     if (!shading_is_physical(s)) {
-        float highlight = cosine > 0.0 ? shading_highlight(s, to_light) : 0.0;
+        if (cosine <= 0.0) return r; // so that of toon what faces away stays dark
+        float highlight = shading_highlight(s, to_light);
         if (shading_is_toon(s)) {
             r.white = irradiance * (shading_band(cosine) / SHADING_PI);
-            highlight = cosine > 0.0 ? shading_band(highlight) : 0.0;
+            highlight = shading_band(highlight);
         }
         r.shine = irradiance * (s.specular * highlight / SHADING_PI);
         return r;
