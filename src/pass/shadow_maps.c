@@ -343,15 +343,28 @@ static bool maps_are_faster(const gpu *device) {
     return true;
 }
 
+// Whether there are lights, besides lamps, that may have no maps.
+static bool leaves_lights_out(const pass *maps) {
+    const shadow_state *s = state_of(maps);
+    graph_image lights = maps->images[pass_find_image(maps, "lights")];
+    return s->cascades == 0 || s->declared > 1 || lights.id;
+}
+
+static const char *choose_way(const pass *p) {
+    const pass *maps = pass_writer(p->host, p->images[pass_find_image(p, "shadow_atlas")]);
+    if (!maps || !pass_is(maps, "shadow_maps") || !maps_are_faster(p->host->device)) return "rays";
+    return leaves_lights_out(maps) ? "both" : "maps";
+}
+
 void pass_choose_shadows(pass *p) {
     static const char *const names[] = {"shadow_atlas", "shadow_views"};
     size_t index;
     if (pass_find_key(p, "shadows_by", &index) != PASS_OPTION) return;
     const char *const *words = p->face->options[index].words;
     if (strcmp(words[p->options[index]], "auto") == 0)
-        pass_set_option(p, "shadows_by", maps_are_faster(p->host->device) ? "maps" : "rays");
-    bool maps = strcmp(words[p->options[index]], "maps") == 0;
-    if (maps || p->images[pass_find_image(p, "lamps")].id) return;
+        pass_set_option(p, "shadows_by", choose_way(p));
+    bool rays = strcmp(words[p->options[index]], "rays") == 0;
+    if (!rays || p->images[pass_find_image(p, "lamps")].id) return;
     for (size_t i = 0; i < COUNT_OF(names); i++)
         p->images[pass_find_image(p, names[i])] = (graph_image){0};
 }

@@ -370,6 +370,31 @@ static void maps_show_what_rays_find(void **state) {
     }
 }
 
+// A lamp for which no maps are left.
+static void lights_without_maps_are_asked_by_rays(void **state) {
+    static const char *const ways[] = {"rays", "both", "maps"};
+    float *pictures[COUNT_OF(ways)] = {NULL};
+    for (size_t i = 0; i < COUNT_OF(ways); i++) {
+        pass_world w;
+        world_open(&w, *state);
+        add_crates(&w);
+        add_light(&w, SCENE_POINT, 0, 2, 1.5f);
+        pass *geometry = add_geometry(&w);
+        pass *maps = add_maps(&w, geometry, (const pass_named[]){WORD("points", "0")}, 1);
+        pass *p = world_add(&w, "shade", NULL, "shade");
+        pass_add_source(p, geometry);
+        pass_add_source(p, maps);
+        gpu_test_ok(pass_set_option(p, "shadows_by", ways[i]));
+        gpu_test_ok(pass_declare(p));
+        world_render(&w, SIZE, SIZE, pass_output(p, "color"));
+        pictures[i] = world_read(&w, pass_output(p, "color"));
+        world_close(&w);
+    }
+    assert_int_equal(count_different(pictures[1], pictures[0]), 0);
+    assert_true(count_different(pictures[2], pictures[0]) > PIXELS / 100);
+    for (size_t i = 0; i < COUNT_OF(ways); i++) mem_free(pictures[i]);
+}
+
 // The same maps, asked where triangles are drawn.
 static void forward_shows_the_same_shadows(void **state) {
     float *pictures[2] = {NULL};
@@ -457,6 +482,7 @@ int main(void) {
         cmocka_unit_test(a_plane_does_not_shade_itself),
         cmocka_unit_test(no_light_leaks_under_a_thin_wall),
         cmocka_unit_test(maps_show_what_rays_find),
+        cmocka_unit_test(lights_without_maps_are_asked_by_rays),
         cmocka_unit_test(forward_shows_the_same_shadows),
         cmocka_unit_test(light_shines_through_what_is_clear),
     };

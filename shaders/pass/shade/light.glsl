@@ -2,7 +2,7 @@
 //
 // The including shader has the uniforms shadow_samples and sky_samples; MANY_RAYS says whether they
 // are looked at, SHAFTS whether there are lists of what may stand in the rays' way (shafts.glsl).
-//@ option shadows_by = auto {auto, maps, rays} : how it is found out what stands before sun and lights: maps: by the maps of shadow_maps, of those lights that have some; rays: by rays, of all; auto: what is faster on the device
+//@ option shadows_by = auto {auto, maps, rays, both} : how it is found out what stands before sun and lights: maps: by the maps of shadow_maps, and nothing hides lights that have none; rays: by rays, of all; both: by rays where there are no maps; auto: rays, or else both, by what is faster on the device
 
 const float PI = 3.14159265, GOLDEN_ANGLE = 2.39996323;
 const float NEGLIGIBLE = 1.0 / 4096.0; // of the light on a surface: such a light gets no shadow
@@ -13,13 +13,16 @@ vec2 disc_point(int k, int count, vec2 chance) {
     return sqrt((float(k) + chance.y) / float(count)) * vec2(cos(angle), sin(angle));
 }
 
-// Part of the light's disc that no mesh hides. `index` is the light's.
-float light_seen(light l, int index, light_ray ray, shaded s, vec2 chance) {
-    float far = ray.distance - (l.kind == LIGHT_SUN ? 0.0 : l.radius);
 #if HAS_SHADOW_MAPS && SHADOWS_BY == SHADOWS_BY_MAPS
-    shadow_maps maps = shadow_maps_of(index);
-    if (maps.count > 0) return shadow_of(maps, l.kind == LIGHT_SUN, l.position, s.position, s.normal);
+#define LIGHT_RAYS 0
+#else
+#define LIGHT_RAYS 1
 #endif
+
+#if LIGHT_RAYS
+// Part of the light's disc that no mesh hides, by rays. `index` is the light's.
+float light_traced(light l, int index, light_ray ray, shaded s, vec2 chance) {
+    float far = ray.distance - (l.kind == LIGHT_SUN ? 0.0 : l.radius);
     if (shadow_samples == 0 || far <= 0.0) return 1.0;
 #if MANY_RAYS
 #if SHAFTS
@@ -40,6 +43,19 @@ float light_seen(light l, int index, light_ray ray, shaded s, vec2 chance) {
     return float(seen) / float(count);
 #else
     return bvh_occluded(s.position, ray.direction, 0.0, far) ? 0.0 : 1.0;
+#endif
+}
+#endif
+
+float light_seen(light l, int index, light_ray ray, shaded s, vec2 chance) {
+#if HAS_SHADOW_MAPS && SHADOWS_BY != SHADOWS_BY_RAYS
+    shadow_maps maps = shadow_maps_of(index);
+    if (maps.count > 0) return shadow_of(maps, l.kind == LIGHT_SUN, l.position, s.position, s.normal);
+#endif
+#if LIGHT_RAYS
+    return light_traced(l, index, ray, s, chance);
+#else
+    return 1.0;
 #endif
 }
 
