@@ -10,7 +10,7 @@ enum {
     SCENE_INSTANCES_MAX = 1 << 17,  // of one object
     SCENE_INSTANCES_ALL = 1 << 18,  // of an effect
     SCENE_INSTANCES_MAX_KINDS = 64, // meshes of one object
-    SCENE_INSTANCES_COST = 384,     // bytes of host memory that an instance takes, about
+    SCENE_INSTANCES_COST = 512,     // bytes of host memory that an instance takes, about
 };
 
 typedef struct scene_instances_desc {
