@@ -59,8 +59,8 @@ typedef struct effect_status {
     double value;
 } effect_status;
 size_t effect_statuses(const effect *e, const effect_status **out);
-// Along a ray, of any length but 0: meshes that are drawn, and the ground. As of the frame that was
-// evaluated last.
+// Along a ray, of any length but 0: meshes that are drawn; the ground, z = 0, where there is none.
+// As of the frame that was evaluated last.
 bool effect_pick(effect *e, const float origin[3], const float direction[3], scene_hit *out);
 // The ray of the camera through a place in the picture, as of the same frame.
 bool effect_camera_ray(effect *e, float x, float y, float origin[3], float direction[3]);

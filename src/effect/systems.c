@@ -244,14 +244,10 @@ static bool pick_ground(const float origin[3], const float direction[3], scene_h
 
 bool effect_pick(effect *e, const float origin[3], const float direction[3], scene_hit *out) {
     vec3 way;
-    scene_hit mesh;
     glm_vec3_normalize_to((float *)(uintptr_t)direction, way);
-    bool met = pick_ground(origin, way, out);
-    if (!e->host.bvh || !scene_bvh_place(e->host.bvh, &e->context) ||
-        !scene_pick(e->host.bvh, origin, way, &mesh) || (met && mesh.distance > out->distance))
-        return met;
-    *out = mesh;
-    return true;
+    bool met = e->host.bvh && scene_bvh_place(e->host.bvh, &e->context) &&
+               scene_pick(e->host.bvh, origin, way, out);
+    return met || pick_ground(origin, way, out);
 }
 
 // ---- running ----------------------------------------------------------------------------------
