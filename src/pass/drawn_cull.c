@@ -115,21 +115,23 @@ static void fill_buckets(const mesh_data *mesh, const drawn_place *place, uint32
     }
 }
 
-// Those of instances stand in their own space and never change.
+// Those of instances stand in their own space and never change, others where a mesh has moved.
 static bool write_buckets(drawn *d, drawn_body *body) {
-    if (body->instances && body->buffers[DRAWN_BUCKETS]) return true;
+    gpu_buffer **buffer = &body->buffers[DRAWN_BUCKETS];
+    if (body->instances && *buffer) return true;
     gpu *device = d->p->host->device;
     size_t size = bucket_count(body) * sizeof(struct drawn_bucket);
     struct drawn_bucket *all = mem_alloc(size);
     for (size_t k = 0; k < body->kind_count; k++)
         fill_buckets(&body->kinds[k]->data, body->instances ? NULL : &body->places[k],
                      body->commands[k], all + k * DRAWN_LEVELS);
-    gpu_buffer **buffer = &body->buffers[DRAWN_BUCKETS];
     bool done = true;
-    if (*buffer)
-        done = gpu_buffer_write(device, *buffer, 0, all, size);
-    else
+    if (!*buffer)
         done = (*buffer = drawn_buffer(device, "kinds of draws", all, size)) != NULL;
+    else if (memcmp(body->buckets, all, size) != 0)
+        done = gpu_buffer_write(device, *buffer, 0, all, size);
+    if (!body->buckets) body->buckets = arena_alloc(d->p->host->memory, size);
+    memcpy(body->buckets, all, size);
     mem_free(all);
     return done;
 }
@@ -194,15 +196,6 @@ static bool run(drawn *d, const drawn_body *body, drawn_step step, uint32_t view
            gpu_dispatch(d->p->host->device, &desc);
 }
 
-static bool choose(drawn *d, drawn_body *body, uint32_t views, float lod) {
-    gpu *device = d->p->host->device;
-    gpu_buffer_fill(device, body->buffers[DRAWN_TOTALS], 0);
-    gpu_buffer_fill(device, body->buffers[DRAWN_COUNTS], 0);
-    for (int i = 0; i < DRAWN_STEPS; i++)
-        if (!run(d, body, (drawn_step)i, views, lod)) return false;
-    return true;
-}
-
 static bool write_camera(drawn *d, uint32_t height) {
     const struct frame_block *frame = d->p->host->frame;
     struct view_entry view = {.eye = frame->eye};
@@ -222,7 +215,13 @@ bool drawn_cull(drawn *d, gpu_buffer *views, size_t count, uint32_t height, floa
     bool done = (views || write_camera(d, height)) && fit_views(d, count);
     for (size_t i = 0; i < d->body_count && done; i++) {
         drawn_body *body = &d->bodies[i];
-        done = place(d, body) && write_buckets(d, body) && choose(d, body, (uint32_t)count, lod);
+        done = place(d, body) && write_buckets(d, body);
+        gpu_buffer_fill(d->p->host->device, body->buffers[DRAWN_TOTALS], 0);
+        gpu_buffer_fill(d->p->host->device, body->buffers[DRAWN_COUNTS], 0);
     }
+    // Step by step, so that bodies need not wait for each other.
+    for (int step = 0; step < DRAWN_STEPS; step++)
+        for (size_t i = 0; i < d->body_count && done; i++)
+            done = run(d, &d->bodies[i], (drawn_step)step, (uint32_t)count, lod);
     return done || err_prefix("%s: ", d->p->label);
 }

@@ -33,6 +33,7 @@ typedef struct drawn_body {
     uint32_t command_count; // of a view
     gpu_buffer *entries;    // of meshes: their instances
     gpu_buffer *buffers[DRAWN_BUFFERS];
+    struct drawn_bucket *buckets; // as they were written last; NULL: never
 } drawn_body;
 
 typedef enum drawn_step { DRAWN_CHOOSE, DRAWN_COUNT, DRAWN_PUT, DRAWN_STEPS } drawn_step;

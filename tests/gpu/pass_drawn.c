@@ -418,6 +418,27 @@ static void an_instance_looks_as_a_mesh_does(void **state) {
     for (int i = 0; i < 2; i++) mem_free(pictures[i]);
 }
 
+static void a_mesh_is_seen_when_it_comes_into_view(void **state) {
+    pass_world w;
+    world_open(&w, *state);
+    scene_mesh *crate = world_mesh(&w, "crate.obj");
+    pass *p = world_add(&w, "geometry", NULL, "geometry");
+    gpu_test_ok(pass_set_option(p, "mode", "raster"));
+    gpu_test_ok(pass_add_mesh(p, crate) && pass_declare(p));
+    crate->position = triple(&w, 40, 0, 0);
+    world_render(&w, WIDTH, HEIGHT, pass_output(p, "depth"));
+    const float places[] = {0, -40, 0};
+    for (uint32_t i = 0; i < COUNT_OF(places); i++) {
+        crate->position = triple(&w, places[i], 0, 0);
+        world_frame(&w, WIDTH, HEIGHT, 2 + i);
+        float *depth = world_read_depth(&w, pass_output(p, "depth"));
+        bool seen = depth[HEIGHT / 2 * WIDTH + WIDTH / 2] < 10;
+        assert_true(seen == (places[i] == 0));
+        mem_free(depth);
+    }
+    world_close(&w);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(culling_changes_no_pixel),
@@ -425,6 +446,7 @@ int main(void) {
         cmocka_unit_test(draws_do_not_grow_with_instances),
         cmocka_unit_test(levels_follow_distance),
         cmocka_unit_test(an_instance_looks_as_a_mesh_does),
+        cmocka_unit_test(a_mesh_is_seen_when_it_comes_into_view),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }
