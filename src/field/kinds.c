@@ -31,7 +31,7 @@
     .spatial = true, .cost = 1, .eval = eval_zero, .ranges = ranges_unknown,                       \
     .range_function = "range_nowhere1"
 
-#define INSTANCE(NAME, EVAL, COMPONENTS)                                                                 \
+#define INSTANCE(NAME, EVAL, COMPONENTS)                                                           \
     .group = "source", .include = "lib/instance.glsl", .function = "instance_said_" NAME,          \
     .components = COMPONENTS, .spatial = true, .cost = 1, .eval = eval_instance_##EVAL,            \
     .ranges = ranges_unknown, .range_function = "range_nowhere" #COMPONENTS

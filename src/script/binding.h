@@ -116,7 +116,7 @@ const char *value_get_string(lua_State *L, int table, const char *who, const cha
 const char *value_name_or_variable(lua_State *L, int table, const char *who); // naming.c
 // NULL when absent.
 const scene_node *value_get_node(lua_State *L, int table, const char *who, const char *key);
-scene_instances *value_instances(lua_State *L, int index);            // NULL: something else
+scene_instances *value_instances(lua_State *L, int index);           // NULL: something else
 void instances_push(lua_State *L, const scene_instances *instances); // the object of the script
 bool value_get_vector(lua_State *L, int table, const char *who, const char *key, float out[3]);
 // The table's box = { min, max }; false when absent.
@@ -153,7 +153,7 @@ int l_slices_templates(lua_State *L); // a method of slices
 
 bool events_push_method(lua_State *L, const char *name); // of the effect; false: it has none
 void events_assign(lua_State *L);                        // of the list at 3 to the effect
-void explosions_reset(script *s); // of all lists; l_shell.c
+void explosions_reset(script *s);                        // of all lists; l_shell.c
 bool script_start(void *user);                           // as effect_hooks has them
 bool script_frame(void *user, double time, double dt);
 bool script_event(void *user, const struct effect_happening *what);
