@@ -189,6 +189,36 @@ static void thousands_of_lamps_are_lit(void **state) {
     expect_equal_ways(*state, 4096, 20);
 }
 
+// Three lamps that are on, among `count`: few are all asked, of more there are lists, without a
+// depth.
+static float *light_user(gpu *device, uint32_t count) {
+    pass_world w;
+    world_open(&w, device);
+    pass *lamps = add_lamps(&w, count), *user = world_add(&w, NULL, "lamps.comp", "user");
+    const field *first = of(&w, "sub", number(&w, 3), of(&w, "light_index", NULL, NULL));
+    set(lamps, "power", of(&w, "min", of(&w, "max", first, number(&w, 0)), number(&w, 1)));
+    set(lamps, "position",
+        vector(&w, spread(&w, 0.618f, -2, 2), spread(&w, 0.414f, -1, 1),
+               spread(&w, 0.732f, -2, 2)));
+    set(lamps, "range", number(&w, 1.5f));
+    gpu_test_ok(pass_declare(lamps));
+    pass_add_source(user, lamps);
+    float *c = render(&w, user, SIZE);
+    world_close(&w);
+    return c;
+}
+
+static void a_shader_of_a_users_own_is_lit(void **state) {
+    float *all = light_user(*state, 3), *tiles = light_user(*state, 70), most = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        expect_near(tiles[4 * i], (double)all[4 * i], 0.001 * (double)all[4 * i], "user", i);
+        most = fmaxf(most, all[4 * i]);
+    }
+    assert_true(most > 0.05f);
+    mem_free(all);
+    mem_free(tiles);
+}
+
 // ---- of instances -----------------------------------------------------------------------------
 
 static float *read_lamps(pass_world *w, pass *lamps, size_t count) {
@@ -334,6 +364,7 @@ int main(void) {
         cmocka_unit_test(lamps_fall_off_by_the_formula),
         cmocka_unit_test(every_way_gives_the_same_light),
         cmocka_unit_test(thousands_of_lamps_are_lit),
+        cmocka_unit_test(a_shader_of_a_users_own_is_lit),
         cmocka_unit_test(lamps_move_with_their_instances),
         cmocka_unit_test(spheres_give_the_light_of_their_lamps),
         cmocka_unit_test(mist_is_lit_by_the_integral),
