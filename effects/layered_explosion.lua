@@ -24,7 +24,7 @@ local swelling  = param { "swelling", 0.35, min = 0, max = 2, help = "by which i
 local rise      = param { "rise", 1.5, min = 0, max = 6, unit = "m", help = "how far it is carried up" }
 
 -- The layers: {scale, strength} of each. One alone is too soft.
-local noise     = param { "noise", "billow", words = {"perlin", "billow", "worley"}, help = "what layers are made of; perlin: as published" }
+local noise     = param { "noise", "billow", words = {"published", "perlin", "billow", "worley"}, help = "what layers are made of; published: a picture wrapped around the ball" }
 local scale1    = param { "scale1", 1.35, min = 0.2, max = 20, help = "lumps of the first layer across the ball" }
 local strength1 = param { "strength1", 1, min = 0, max = 4, help = "what the first layer counts for" }
 local scale2    = param { "scale2", 4.1, min = 0.2, max = 40, help = "of the second" }
@@ -99,17 +99,21 @@ local fire = palette {
   {0.8, {0.05, 0.014, 0.010}}, {1.0, {0.008, 0.007, 0.007}},
 }
 
+-- low and high: between which most of it lies.
 local kinds = {
-  perlin = { noise = perlin },
-  billow = { noise = perlin, fractal = "billow" },
-  worley = { noise = worley },
+  published = { dimensions = 2, cells = 3, low = 0.35, high = 0.95 }, -- scales count lumps all around, not across
+  perlin = { low = 0.35, high = 0.95 },
+  billow = { fractal = "billow", low = 0, high = 1 },
+  worley = { noise = worley, low = 0.3, high = 1.1 },
 }
 local function lumps_of(shift)
   local kind = kinds[noise:get()]
-  local own = layers { {scale1, strength1}, {scale2, strength2}, noise = kind.noise, fractal = kind.fractal, speed = boil, seed = 5, shift = shift }
-  return noise:get() == "perlin" and own:remap(0.25, 0.75, 0, 1) or own
+  local cells = kind.cells or 1
+  return layers {
+    {scale1 * cells, strength1}, {scale2 * cells, strength2},
+    noise = kind.noise, fractal = kind.fractal, dimensions = kind.dimensions, speed = boil, seed = 5, shift = shift,
+  }:remap(kind.low, kind.high, 0, 1)
 end
-
 local function holes_of(shift)
   return layers { {1.7, 1}, {5.5, 0.6}, seed = 70, shift = shift }:remap(0.2, 0.8, 0, 1)
 end
