@@ -1,5 +1,6 @@
 // The inside of the pass shadow_maps: where its views stand, and where in the atlas they lie.
 #pragma once
+#include "base/hash.h"
 #include "pass/pass.h"
 #include "shared.h"
 
@@ -27,3 +28,7 @@ bool shadow_maps_spot(const struct light_entry *light, float far, uint32_t size,
 // width and height of each. False when no atlas of at most `most` texels along an edge holds them.
 bool shadow_maps_pack(const uint32_t *sizes, uint32_t count, uint32_t most, uint32_t (*places)[4],
                       uint32_t atlas[2]);
+
+// What the maps of this frame follow from, after pass_prepare; `choice`: also from which lights are
+// chosen for them. False: the device alone knows.
+bool shadow_maps_content(const pass *p, bool choice, hash128 *out);

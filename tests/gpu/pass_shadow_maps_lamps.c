@@ -83,6 +83,62 @@ static void shadows_fade_where_the_choice_is_close(void **state) {
     }
 }
 
+// ---- frames -------------------------------------------------------------------------------------
+
+// A crate before the wall; the sun from the right.
+static pass *open_crate(pass_world *w, gpu *device, float x, float azimuth) {
+    world_open(w, device);
+    world_mesh(w, "plane.obj")->scale = number(w, 200);
+    scene_mesh *crate = world_mesh(w, "crate.obj");
+    crate->scale = number(w, 0.2f);
+    crate->position = triple(w, x, -1, 0);
+    w->scene.sun.strength = number(w, GLM_PIf);
+    w->scene.sun.azimuth = number(w, azimuth);
+    w->scene.sun.elevation = number(w, 0);
+    pass *geometry = world_add(w, "geometry", NULL, "geometry");
+    for (size_t i = 0; i < w->mesh_count; i++) gpu_test_ok(pass_add_mesh(geometry, &w->meshes[i]));
+    gpu_test_ok(pass_declare(geometry));
+    pass *maps = world_add(w, "shadow_maps", NULL, "shadows");
+    pass_add_source(maps, geometry);
+    gpu_test_ok(pass_set_option(maps, "size", "512"));
+    gpu_test_ok(pass_declare(maps));
+    pass *p = world_add(w, "shade", NULL, "shade");
+    pass_add_source(p, geometry);
+    pass_add_source(p, maps);
+    gpu_test_ok(pass_set_option(p, "shadows_by", "maps"));
+    gpu_test_ok(pass_declare(p));
+    world_render(w, SIZE, SIZE, pass_output(p, "color"));
+    return p;
+}
+
+// As if it were the first frame of a world where all stands so from the beginning.
+static void expect_fresh(pass_world *w, pass *shade, gpu *device, float x, float azimuth) {
+    pass_world fresh;
+    pass *p = open_crate(&fresh, device, x, azimuth);
+    float *got = world_read(w, pass_output(shade, "color"));
+    float *want = world_read(&fresh, pass_output(p, "color"));
+    if (memcmp(got, want, PIXELS * 16) != 0)
+        fail_msg("crate at %g, sun at %g: not as drawn anew", (double)x, (double)azimuth);
+    mem_free(got);
+    mem_free(want);
+    world_close(&fresh);
+}
+
+// Maps that nothing has changed for are kept, others are not.
+static void maps_follow_what_moves(void **state) {
+    pass_world w;
+    pass *p = open_crate(&w, *state, 0.3f, -60);
+    world_frame(&w, SIZE, SIZE, 2);
+    expect_fresh(&w, p, *state, 0.3f, -60);
+    w.meshes[1].position = triple(&w, -0.5f, -1, 0);
+    world_frame(&w, SIZE, SIZE, 3);
+    expect_fresh(&w, p, *state, -0.5f, -60);
+    w.scene.sun.azimuth = number(&w, -110);
+    world_frame(&w, SIZE, SIZE, 4);
+    expect_fresh(&w, p, *state, -0.5f, -110);
+    world_close(&w);
+}
+
 // ---- lamps --------------------------------------------------------------------------------------
 
 static void set(pass *p, const char *name, const field *value) {
@@ -149,6 +205,7 @@ int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_strongest_lights_in_sight_have_maps),
         cmocka_unit_test(shadows_fade_where_the_choice_is_close),
+        cmocka_unit_test(maps_follow_what_moves),
         cmocka_unit_test(lamps_are_hidden_by_maps_as_by_rays),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
