@@ -1,4 +1,5 @@
 // Particles as meshes: where a cube is seen, which is before which, and what of the scene.
+#include "scene/material.h"
 #include "splats_test.h"
 
 enum { MIDDLE = SIDE / 2 };
@@ -111,11 +112,37 @@ static void a_piece_turns_about_its_way(void **state) {
     spots_close(&b.s);
 }
 
+// Before the wall as their mesh is, elsewhere as what is behind.
+static void materials_are_those_of_the_pieces_and_of_the_scene(void **state) {
+    boxes b;
+    boxes_open(&b, *state, 1, 8);
+    pass_world *w = &b.s.w;
+    const scene_material skin = {
+        .specular = number(w, 0.25f), .roughness = number(w, 0.5f), .emission = triple(w, 2, 1, 0)};
+    scene_mesh_set_material(&w->meshes[0], &skin, &w->memory);
+    gpu_test_ok(graph_add_output(w->host.graph, pass_output(b.pieces, "surface")));
+    gpu_test_ok(graph_add_output(w->host.graph, pass_output(b.pieces, "emission")));
+    boxes_build(&b);
+    spot one = {.age = 0};
+    mem_free(boxes_draw(&b, &one, NULL));
+    float *s = world_read(w, pass_output(b.pieces, "surface"));
+    float *e = world_read(w, pass_output(b.pieces, "emission"));
+    size_t middle = 4 * (MIDDLE * SIDE + MIDDLE);
+    const float want[] = {0.25f, 0.5f, 0, 1, 2, 1, 0, 0};
+    for (size_t i = 0; i < 4; i++)
+        assert_true(s[middle + i] == want[i] && e[middle + i] == want[4 + i]);
+    assert_true(s[0] == 0 && e[0] == 0);
+    mem_free(s);
+    mem_free(e);
+    spots_close(&b.s);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cube_is_seen_where_it_stands),
         cmocka_unit_test(the_nearest_is_seen),
         cmocka_unit_test(a_piece_turns_about_its_way),
+        cmocka_unit_test(materials_are_those_of_the_pieces_and_of_the_scene),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }

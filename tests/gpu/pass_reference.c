@@ -1,5 +1,6 @@
 // The path tracer against what is known without one.
 #include "pass_test.h"
+#include "scene/material.h"
 
 // Samples of an execution are few: llvmpipe ends all loops of a thread after 65535 turns together.
 enum { SIZE = 16, PIXELS = SIZE * SIZE, SAMPLES = 4 };
@@ -319,6 +320,18 @@ static void glowing_sphere_lights_a_wall_as_a_point_does(void **state) {
     near(end(&w, p, 64), 0, 0.6 / 3.14159265358979 * irradiance);
 }
 
+// As far as smoke lets it through, and no light besides: nothing else is lit by it.
+static void what_a_material_gives_off_is_seen(void **state) {
+    pass_world w;
+    pass *p = begin(&w, *state, nothing);
+    const scene_material glow = {.emission = triple(&w, 3, 2, 0.5f)};
+    scene_mesh_set_material(world_mesh(&w, "plane.obj"), &glow, &w.memory);
+    picture got = end(&w, p, 4);
+    near(got, 0, 3);
+    near(got, 1, 2);
+    near(got, 2, 0.5);
+}
+
 // ---- beside the march
 // -----------------------------------------------------------------------------
 
@@ -430,6 +443,7 @@ int main(void) {
         cmocka_unit_test(white_crate_in_a_white_sky_is_white),
         cmocka_unit_test(gradient_of_the_sky_lights_a_wall),
         cmocka_unit_test(glowing_sphere_lights_a_wall_as_a_point_does),
+        cmocka_unit_test(what_a_material_gives_off_is_seen),
         cmocka_unit_test(march_without_approximations_shows_the_same),
         cmocka_unit_test(reach_beside_the_medium_is_that_of_the_scene),
         cmocka_unit_test(noise_falls_with_the_root_of_the_samples),

@@ -99,6 +99,57 @@ static void a_gltf_is_turned_to_z_up_and_has_its_texture(void **state) {
     assert_int_equal(mesh.textures[0].height, 2);
 }
 
+static bool shines(float specular, float roughness, float metallic) {
+    const mesh_part *p = &mesh.parts[0];
+    return near(p->specular, specular) && near(p->roughness, roughness) &&
+           near(p->metallic, metallic);
+}
+
+// Of an OBJ file by its highlight; a file that says nothing is matte.
+static void an_obj_says_how_it_shines(void **state) {
+    (void)state;
+    put_text("s.obj", "mtllib s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+    put_text("s.mtl", "newmtl m\nKd 1 1 1\n");
+    assert_true(load("s.obj") && shines(0, 1, 0));
+    assert_true(mesh.parts[0].emission[0] == 0);
+    put_text("s.mtl", "newmtl m\nKd 1 1 1\nKs 0.1 0.3 0.2\nNs 30\nKe 2 1 0.5\n");
+    assert_true(load("s.obj") && shines(0.3f, 0.5f, 0)); // (2 / 32)^(1/4)
+    assert_true(near(mesh.parts[0].emission[0], 2) && near(mesh.parts[0].emission[2], 0.5f));
+    put_text("s.mtl", "newmtl m\nKd 1 1 1\nKs 7 0 -1\nNs nan\nKe -1 1e30 inf\n");
+    assert_true(load("s.obj"));
+    for (int i = 0; i < 3; i++)
+        assert_true(mesh.parts[0].emission[i] >= 0 && mesh.parts[0].emission[i] <= 1e4f);
+    assert_true(mesh.parts[0].specular <= 1 && mesh.parts[0].roughness <= 1);
+}
+
+// Both at 1 is what the format means where nothing is said.
+static void a_gltf_says_how_it_shines(void **state) {
+    (void)state;
+    static const float POINTS[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    test_put("tri.bin", POINTS, sizeof POINTS);
+    static const struct {
+        const char *said;
+        float specular, roughness, metallic;
+    } files[] = {{"", 0, 1, 0},
+                 {"\"metallicFactor\":0,\"roughnessFactor\":0.25", 0.5f, 0.25f, 0},
+                 {"\"roughnessFactor\":0.5", 0.5f, 0.5f, 1}};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        char text[2048];
+        snprintf(
+            text, sizeof text,
+            "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
+            "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":"
+            "{\"POSITION\":0},\"material\":0}]}],\"materials\":[{\"pbrMetallicRoughness\":{%s},"
+            "\"emissiveFactor\":[0.5,0.25,0]}],\"buffers\":[{\"uri\":\"tri.bin\","
+            "\"byteLength\":36}]," TRIANGLE_TAIL,
+            files[i].said);
+        put_text("m.gltf", text);
+        assert_true(load("m.gltf"));
+        assert_true(shines(files[i].specular, files[i].roughness, files[i].metallic));
+        assert_true(near(mesh.parts[0].emission[1], 0.25f));
+    }
+}
+
 static void an_embedded_texture_is_read(void **state) {
     (void)state;
     static const char *const NAMES[] = {"triangle.gltf", "triangle.glb"};
@@ -232,6 +283,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_obj_has_its_geometry_and_material),
         cmocka_unit_test(a_gltf_is_turned_to_z_up_and_has_its_texture),
+        cmocka_unit_test(an_obj_says_how_it_shines),
+        cmocka_unit_test(a_gltf_says_how_it_shines),
         cmocka_unit_test(an_embedded_texture_is_read),
         cmocka_unit_test(a_texture_that_cannot_be_read_is_left_out),
         cmocka_unit_test(files_outside_the_root_are_refused),
