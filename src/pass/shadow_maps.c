@@ -370,21 +370,37 @@ static bool leaves_lights_out(const pass *maps) {
     return s->cascades == 0 || s->declared > 1 || lights.id;
 }
 
-static const char *choose_way(const pass *p) {
-    const pass *maps = pass_writer(p->host, p->images[pass_find_image(p, "shadow_atlas")]);
-    if (!maps || !pass_is(maps, "shadow_maps") || !maps_are_faster(p->host->device)) return "rays";
+// The pass behind the maps; NULL: there are none.
+static const pass *maps_of(const pass *p) {
+    graph_image atlas = p->images[pass_find_image(p, "shadow_atlas")];
+    const pass *maps = atlas.id ? pass_writer(p->host, atlas) : NULL;
+    return maps && pass_is(maps, "shadow_maps") ? maps : NULL;
+}
+
+static bool is_word(const pass *p, const char *option, const char *word) {
+    size_t index;
+    pass_find_key(p, option, &index);
+    return strcmp(p->face->options[index].words[p->options[index]], word) == 0;
+}
+
+// A lamp that can have no map need not be asked for one.
+static bool asks_for_lamps(pass *p, const pass *maps) {
+    bool can =
+        maps && state_of(maps)->points > 0 && maps->images[pass_find_image(maps, "lamps")].id != 0;
+    if (!can && is_word(p, "lamp_shadows", "maps")) pass_set_option(p, "lamp_shadows", "none");
+    return can && p->images[pass_find_image(p, "lamps")].id && !is_word(p, "lamp_shadows", "none");
+}
+
+static const char *choose_way(const pass *p, const pass *maps) {
+    if (!maps || !maps_are_faster(p->host->device)) return "rays";
     return leaves_lights_out(maps) ? "both" : "maps";
 }
 
 void pass_choose_shadows(pass *p) {
     static const char *const names[] = {"shadow_atlas", "shadow_views"};
-    size_t index;
-    if (pass_find_key(p, "shadows_by", &index) != PASS_OPTION) return;
-    const char *const *words = p->face->options[index].words;
-    if (strcmp(words[p->options[index]], "auto") == 0)
-        pass_set_option(p, "shadows_by", choose_way(p));
-    bool rays = strcmp(words[p->options[index]], "rays") == 0;
-    if (!rays || p->images[pass_find_image(p, "lamps")].id) return;
+    const pass *maps = maps_of(p);
+    if (is_word(p, "shadows_by", "auto")) pass_set_option(p, "shadows_by", choose_way(p, maps));
+    if (asks_for_lamps(p, maps) || !is_word(p, "shadows_by", "rays")) return;
     for (size_t i = 0; i < COUNT_OF(names); i++)
         p->images[pass_find_image(p, names[i])] = (graph_image){0};
 }

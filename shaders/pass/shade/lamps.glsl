@@ -1,10 +1,10 @@
 // The light of the lamps of `point_lights` that a surface sends back.
-//@ option lamp_shadows = maps {maps, rays} : which lamps of point_lights cast shadows: maps: those that have maps; rays: all, the others by a ray to each
+//@ option lamp_shadows = maps {maps, rays, none} : which lamps of point_lights cast shadows: maps: those that have maps; rays: all, the others by a ray to each; none: none
 #if HAS_LAMPS
 
 // Part of a lamp that no mesh hides.
 float lamp_seen(lamp l, light_ray ray, shaded s) {
-#if HAS_SHADOW_MAPS
+#if HAS_SHADOW_MAPS && LAMP_SHADOWS != LAMP_SHADOWS_NONE
     shadow_maps maps = shadow_maps_of_lamp(l.index);
     if (maps.count > 0) return shadow_of(maps, false, l.position, s.position, s.normal);
 #endif
