@@ -75,7 +75,7 @@ static void make_mesh(bench *b, mesh_data *out) {
             count += 6;
         }
     mesh_part *part = arena_alloc(&b->memory, sizeof *part);
-    *part = (mesh_part){0, count, {1, 1, 1, 1}, -1};
+    *part = (mesh_part){.count = count, .color = {1, 1, 1, 1}, .texture = -1};
     *out = (mesh_data){.vertices = vertices,
                        .vertex_count = around * (rows + 1),
                        .indices = indices,

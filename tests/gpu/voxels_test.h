@@ -110,7 +110,7 @@ static inline void shape_sphere(shape *s, uint32_t fine) {
 static inline scene_mesh *shape_mesh(voxels_world *w, shape *s) {
     scene_mesh *mesh = arena_alloc(&w->memory, sizeof *mesh);
     mesh_part *part = arena_alloc(&w->memory, sizeof *part);
-    *part = (mesh_part){0, (uint32_t)s->index_count, {1, 1, 1, 1}, -1};
+    *part = (mesh_part){.count = (uint32_t)s->index_count, .color = {1, 1, 1, 1}, .texture = -1};
     *mesh = (scene_mesh){
         .name = "shape",
         .data = {.vertices =
