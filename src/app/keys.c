@@ -40,10 +40,12 @@ static void go_last(live *l) {
 
 static void restart(live *l) {
     roil_simulation simulation;
-    if (!l->effect || !roil_get_simulation(l->effect, &simulation)) return;
+    bool hears = l->effect && roil_hotkeys(l->effect, NULL, 0) > 0;
+    if (!l->effect || (!hears && !roil_get_simulation(l->effect, &simulation))) return;
+    if (hears) live_reset(l, "effect.events"); // what hands have done
     roil_restart(l->effect);
     l->dirty = true;
-    live_notice(l, "Simulated anew");
+    live_notice(l, hears ? "Begun anew, without what was done by hand" : "Simulated anew");
 }
 
 static void loop(live *l) {
@@ -124,7 +126,7 @@ static const live_key keys[] = {
     {GLFW_KEY_HOME, 0, "Home", "first frame of the range", go_first},
     {GLFW_KEY_END, 0, "End", "last frame of the range", go_last},
     {GLFW_KEY_L, 0, "L", "start again at the end, or stop", loop},
-    {GLFW_KEY_BACKSPACE, 0, "Backspace", "begin the simulation anew", restart},
+    {GLFW_KEY_BACKSPACE, 0, "Backspace", "begin anew, without clicks and keys", restart},
     {GLFW_KEY_F, 0, "F", "frame the volume", camera_frame},
     {GLFW_KEY_R, 0, "R", "camera of the effect file", camera_reset},
     {GLFW_KEY_V, 0, "V", "picture at full, half, quarter size", preview},
