@@ -16,10 +16,10 @@ static bool add_meshes(const pass *p, hash128 *sum) {
         add(sum, place, sizeof place);
     }
     for (size_t i = 0; i < p->instances_count; i++) {
-        const uint64_t version = scene_instances_version(p->instances[i]);
+        const uint64_t shape = scene_instances_shape(p->instances[i]);
         if (!scene_instances_place(p->instances[i], p->host->context, place, tint)) return false;
         add(sum, place, sizeof place);
-        add(sum, &version, sizeof version);
+        add(sum, &shape, sizeof shape);
     }
     return true;
 }

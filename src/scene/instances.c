@@ -11,9 +11,9 @@
 struct scene_instances {
     scene_instances_desc desc; // entries and kinds: copies
     struct instance_entry *now;
-    uint8_t *changed; // marks (runs.h)
-    uint64_t version;
-    uint64_t uploaded; // version that the device has; 0: none
+    uint8_t *changed;        // marks (runs.h)
+    uint64_t version, shape; // of all; of places and kinds alone
+    uint64_t uploaded;       // version that the device has; 0: none
     gpu_buffer *buffer;
     instances_grid grid;
 };
@@ -26,6 +26,7 @@ scene_instances *scene_instances_create(const scene_instances_desc *desc) {
         .desc = *desc,
         .now = mem_copy(initial, desc->count * sizeof *initial),
         .version = 1,
+        .shape = 1,
     };
     s->desc.entries = initial;
     s->desc.kinds = mem_copy(desc->kinds, desc->kind_count * sizeof(scene_mesh *));
@@ -66,6 +67,10 @@ uint64_t scene_instances_version(const scene_instances *s) {
     return s->version;
 }
 
+uint64_t scene_instances_shape(const scene_instances *s) {
+    return s->shape;
+}
+
 // ---- changes ----------------------------------------------------------------------------------
 
 static void keep_finite(shared_vec4 *value, const shared_vec4 *before) {
@@ -83,6 +88,9 @@ void scene_instances_set(scene_instances *s, uint32_t index, const struct instan
     if (memcmp(old, &made, sizeof made) == 0) return;
     if (memcmp(old->place.v, made.place.v, 3 * sizeof *made.place.v) != 0)
         instances_grid_forget(&s->grid);
+    s->shape += memcmp(&old->place, &made.place, sizeof made.place) != 0 ||
+                memcmp(&old->turn, &made.turn, sizeof made.turn) != 0 ||
+                old->kind.v[0] != made.kind.v[0];
     *old = made;
     run_mark(s->changed, index);
     s->version++;

@@ -38,6 +38,8 @@ void scene_instances_set(scene_instances *s, uint32_t index, const struct instan
 void scene_instances_reset(scene_instances *s); // to how they began: time has gone back
 // Another one after each change; at least 1.
 uint64_t scene_instances_version(const scene_instances *s);
+// The same, but for changes of colours and of the effect's own numbers.
+uint64_t scene_instances_shape(const scene_instances *s);
 
 // Of all together: their space to the world, and what multiplies their colours.
 bool scene_instances_place(const scene_instances *s, const field_context *context, mat4 transform,

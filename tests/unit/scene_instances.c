@@ -229,6 +229,27 @@ static void what_is_set_comes_back_with_a_reset(void **state) {
     close_world(&w);
 }
 
+static void colors_and_states_change_no_shape(void **state) {
+    (void)state;
+    world w;
+    open_cubes(&w, 4, 1, NULL);
+    struct instance_entry e = scene_instances_entries(w.instances)[2];
+    uint64_t shape = scene_instances_shape(w.instances);
+    e.color.v[3] = 3;
+    e.state.v[0] = 1;
+    scene_instances_set(w.instances, 2, &e);
+    assert_int_equal(scene_instances_shape(w.instances), shape);
+    for (int i = 0; i < 3; i++) {
+        if (i == 0) e.place.v[3] = 2;
+        if (i == 1) e.turn.v[0] = 0.5f;
+        if (i == 2) e.kind.v[0] = INSTANCE_HIDDEN;
+        scene_instances_set(w.instances, 2, &e);
+        assert_true(scene_instances_shape(w.instances) != shape);
+        shape = scene_instances_shape(w.instances);
+    }
+    close_world(&w);
+}
+
 // ---- the tree ---------------------------------------------------------------------------------
 
 // What a ray meets first: by a look at each cube alone.
@@ -401,6 +422,7 @@ int main(void) {
         cmocka_unit_test(near_finds_what_a_look_at_all_finds),
         cmocka_unit_test(near_takes_places_along_a_line_and_in_one_point),
         cmocka_unit_test(what_is_set_comes_back_with_a_reset),
+        cmocka_unit_test(colors_and_states_change_no_shape),
         cmocka_unit_test(picks_find_what_is_nearest),
         cmocka_unit_test(picks_follow_what_moves_hides_and_grows),
         cmocka_unit_test(nodes_place_what_stands_in_them),
