@@ -6,6 +6,7 @@
 #include <math.h>
 
 #define HEAD "local fx = effect { fps = 10, frames = 40 } "
+
 #define SCENE                                                                                      \
     " fx.camera = camera { eye = {0, -10, 10}, target = {0, 0, 0}, fov = 60 }"                     \
     " fx.output = geometry { }"
@@ -199,6 +200,35 @@ static void an_event_of_now_happens_at_once(void **state) {
     effect_destroy(e);
 }
 
+// Crates of 2 m at x = -4, 0 and 4; the camera looks down at the middle one.
+static void clicks_meet_instances_which_go_back_with_time(void **state) {
+    (void)state;
+    helper_put("crate.obj", "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\n"
+                            "v -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+                            "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    effect *e =
+        load_with("local crates = instances { mesh { 'crate.obj' }, at = { {-4, 0, 0}, {0, 0, 0}, "
+                  "{4, 0, 0} } } fx:on_click(function(event) local h = event.hit "
+                  "fx:status('index', h.index) fx:status('own', h.instances == crates) "
+                  "fx:status('z', h.normal[3]) fx:status('mesh', h.mesh:find('crate.obj') ~= nil) "
+                  "crates:set(h.index, { state = {7}, kind = 0 }) end) "
+                  "fx:on_frame(function() local sum = 0 for i = 1, #crates do "
+                  "sum = sum + i * crates:get(i).state[1] end fx:status('sum', sum) end) "
+                  "local scene = geometry { crates } fx.output = scene.albedo ",
+                  "1 click 0 0 1; 1 click 4 0 1; 2 click 0 0 1 0 0 -1");
+    draw(e, 11);
+    is(e, "index", 3);
+    is(e, "own", 1);
+    is(e, "mesh", 1);
+    is(e, "z", 1);
+    draw(e, 13);
+    is(e, "sum", 2 * 7 + 3 * 7);
+    assert_false(effect_rehearse(e, 21)); // what was hidden is met no more: the ground is no crate
+    draw(e, 5);
+    is(e, "sum", 0);
+    effect_destroy(e);
+}
+
 // ---- parameters -------------------------------------------------------------------------------
 
 static void parameters_go_back_with_time(void **state) {
@@ -311,6 +341,7 @@ int main(void) {
         cmocka_unit_test(clicks_meet_the_ground),
         cmocka_unit_test(the_scripts_own_events_are_a_control),
         cmocka_unit_test(an_event_of_now_happens_at_once),
+        cmocka_unit_test(clicks_meet_instances_which_go_back_with_time),
         cmocka_unit_test(parameters_go_back_with_time),
         cmocka_unit_test(what_is_wrong_is_said),
         cmocka_unit_test(a_fault_is_reported_and_then_all_begins_anew),

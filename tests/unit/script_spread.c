@@ -9,7 +9,7 @@
 // A square of 21 x 21 things, 2 m apart; its middle, the 221st, at the origin, is lit at first.
 #define SQUARE                                                                                     \
     "local list = {} for x = -20, 20, 2 do for y = -20, 20, 2 do list[#list + 1] = {x, y} end "    \
-    "end local function light(t) t.fx, t.at = fx, list; local fire = spread(t) "                   \
+    "end local function light(t) t.fx, t.at = fx, t.at or list; local fire = spread(t) "           \
     "local lit, burned = 0, 0 "                                                                    \
     "fx:on_start(function() lit, burned = 0, 0; fire:ignite(221) end) "                            \
     "fire:on_ignite(function(i, t) assert(fire:state(i) == 'burning'); lit = lit + 1 end) "        \
@@ -123,6 +123,23 @@ static void fuel_says_what_burns_and_how_long(void **state) {
     effect_destroy(e);
 }
 
+// Instances know their neighbours themselves; the fire is the same as among places of a list.
+static void instances_burn_as_places_do(void **state) {
+    (void)state;
+    helper_put("tree.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
+    effect *places = load("light { reach = 3, speed = 2, burn = {2, 4}, seed = 7 }");
+    effect *trees =
+        load("local forest = instances { mesh { 'tree.obj' }, at = (function() local all "
+             "= {} for i, p in ipairs(list) do all[i] = {p[1], p[2], 0} end return all "
+             "end)() } light { at = forest, reach = 3, speed = 2, burn = {2, 4}, seed = 7 }");
+    draw(places, 31);
+    draw(trees, 31);
+    assert_true(status(places, "lit") == status(trees, "lit"));
+    assert_true(status(places, "sum") == status(trees, "sum"));
+    effect_destroy(places);
+    effect_destroy(trees);
+}
+
 // A row of barrels, each of which passes it on when it bursts, a second after it was lit.
 static void what_is_passed_on_at_the_end_goes_in_steps(void **state) {
     (void)state;
@@ -178,6 +195,7 @@ int main(void) {
         cmocka_unit_test(it_stops_at_a_gap),
         cmocka_unit_test(wind_drives_it),
         cmocka_unit_test(fuel_says_what_burns_and_how_long),
+        cmocka_unit_test(instances_burn_as_places_do),
         cmocka_unit_test(what_is_passed_on_at_the_end_goes_in_steps),
         cmocka_unit_test(a_frame_makes_so_many_changes_at_most),
         cmocka_unit_test(what_is_wrong_is_said),
