@@ -320,8 +320,9 @@ static bool draw(pass *p) {
         .clear = true,
         .clear_depth = 1,
     };
-    if (!place_views_drawn(p) || !gpu_draw_all(p->host->device, &target) ||
-        !drawn_cull(s->drawn, s->placed, s->views, p->host->frame->size.v[1],
+    if (!place_views_drawn(p) || !gpu_draw_all(p->host->device, &target)) return false;
+    if (s->views == 0) return true;
+    if (!drawn_cull(s->drawn, s->placed, s->views, p->host->frame->size.v[1],
                     pass_evaluate(p, "lod")))
         return false;
     target.clear = false;
