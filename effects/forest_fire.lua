@@ -132,7 +132,7 @@ local air  = deposit { smoke, box = sky_box, resolution = 96, size = over_age { 
 local heat = deposit { flames, box = sky_box, resolution = 96, size = 1, opacity = over_age { {0, 1}, {1, 0.2} } }
 local bed  = deposit { ash, box = { min = {-66, -40, -1}, max = {78, 80, 26} }, resolution = 112, size = 1.1, opacity = 1.6 }
 
-local lumps  = worley { frequency = 0.22, octaves = 3, persistence = 0.55, drift = {-1.2, -0.5, -1.2}, seed = 11 }
+local lumps  = worley { frequency = 0.22, octaves = 3, persistence = 0.55, drift = {-1.2, -0.5, -1.2}, seed = 11 }:tile { resolution = 96, octaves = 2 }
 local medium = lighting {
   density = air.density * smoothstep(0.1, 0.55, lumps) * soot * 1.5, emission = vec(1, 0.33, 0.06) * heat.density * blaze * 0.5,
   albedo = {0.42, 0.38, 0.35}, anisotropy = 0.4, shadow_resolution = 64, sampling = "linear", fire_lights = 0,
@@ -144,8 +144,8 @@ local lamps = point_lights {
 
 -- ---- the picture ------------------------------------------------------------------------------------------
 
-local scene   = geometry { mesh { "data/valley.obj" }, water, forest, floor }
-local shadows = shadow_maps { from = scene, points = 0, distance = 160 }
+local scene   = geometry { lod = 0.7, mesh { "data/valley.obj" }, water, forest, floor }
+local shadows = shadow_maps { from = scene, points = 0, distance = 160, lod = 1 }
 local colors  = shader { "burnt_ground.comp", albedo = scene.albedo, depth = scene.depth, burnt = bed.density }
 local solid   = shade { albedo = colors.color, from = {scene, medium, lamps, shadows}, haze = 0.0012,
                         model = look == "drawn" and "toon" or "physical" }
