@@ -100,6 +100,10 @@ static hash128 hash_inputs(const pass *p) {
     all = hash_combine(all, hash_bytes(p->host->lights, sizeof *p->host->lights));
     all = hash_combine(all, hash_bytes(p->block, pass_block_size(&p->binary)));
     all = hash_combine(all, hash_bytes(p->numbers, field_program_block_size(p->program)));
+    if (p->host->bvh) {
+        uint64_t version = scene_bvh_version(p->host->bvh);
+        all = hash_combine(all, hash_bytes(&version, sizeof version));
+    }
     if (c->param_count)
         all = hash_combine(all, hash_bytes(c->params, c->param_count * sizeof *c->params));
     for (size_t i = 0; i < p->palette_count; i++) {

@@ -165,6 +165,10 @@ bool scene_bvh_allocate_surfaces(scene_bvh *b, gpu *g) {
     return done;
 }
 
+uint64_t scene_bvh_version(const scene_bvh *b) {
+    return b->version;
+}
+
 bool scene_bvh_has_holes(const scene_bvh *b) {
     return b->holes;
 }

@@ -34,8 +34,10 @@ bool scene_pick(const scene_bvh *b, const float origin[3], const float direction
 // than the device can read must be drawn instead.
 bool scene_bvh_surfaces_fit(const scene_mesh *mesh, gpu *g);
 bool scene_bvh_allocate_surfaces(scene_bvh *b, gpu *g); // again: does nothing
-bool scene_bvh_glows(const scene_bvh *b);               // materials may give off light
-bool scene_bvh_has_holes(const scene_bvh *b);           // textures that are clear in places
+// Another one when something has moved or looks different.
+uint64_t scene_bvh_version(const scene_bvh *b);
+bool scene_bvh_glows(const scene_bvh *b);     // materials may give off light
+bool scene_bvh_has_holes(const scene_bvh *b); // textures that are clear in places
 // A bit for each of the meshes and instances of `b` (bvh_instance.what.x) that is among these.
 void scene_bvh_choose(const scene_bvh *b, scene_mesh *const *meshes, size_t count,
                       scene_instances *const *instances, size_t instances_count,

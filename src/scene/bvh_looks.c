@@ -61,6 +61,7 @@ bool bvh_looks_update(scene_bvh *b, gpu *g, const field_context *context) {
         if ((!b->looked || b->meshes[i]->material) && !look_at(b, i, context, &changed))
             return false;
     b->looked = true;
+    b->version += changed;
     return !changed || gpu_buffer_write(g, b->buffers[BVH_MATERIALS], 0, b->looks,
                                         b->material_count * sizeof *b->looks);
 }

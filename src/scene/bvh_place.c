@@ -50,6 +50,7 @@ static void put(scene_bvh *b, size_t item, const struct bvh_instance *made) {
         memcmp(&now->high, &made->high, sizeof now->high) != 0)
         bvh_top_moved(b, b->item_at[item]);
     *now = *made;
+    b->version++;
     run_mark(b->changed, b->item_at[item]);
 }
 
