@@ -50,7 +50,7 @@ struct scene_bvh {
 
     struct surface_material *looks; // of all materials, once they are on the device
     bool looked;                    // they have been written
-    uint64_t version; // of all that is placed, and of its looks
+    uint64_t version;               // of all that is placed, and of its looks
     bool holes;
     bool headed; // the device knows how many items and nodes over them there are
     gpu_buffer *buffers[BVH_PARTS];

@@ -332,6 +332,28 @@ static void what_a_material_gives_off_is_seen(void **state) {
     near(got, 2, 0.5);
 }
 
+// What was gathered before is of another scene.
+static void a_material_that_changes_begins_anew(void **state) {
+    pass_world w;
+    pass *p = begin(&w, *state, nothing);
+    scene_material glow = {.emission = triple(&w, 3, 3, 3)};
+    scene_mesh_set_material(world_mesh(&w, "plane.obj"), &glow, &w.memory);
+    gpu_test_ok(pass_declare(p));
+    world_render(&w, 8, 8, pass_output(p, "color"));
+    uint32_t samples;
+    for (uint32_t still = 1; still <= 2; still++) {
+        assert_true(pass_samples(p, &samples) && samples == still * SAMPLES);
+        world_frame(&w, 8, 8, 1);
+    }
+    glow.emission = triple(&w, 1, 1, 1);
+    world_frame(&w, 8, 8, 1);
+    assert_true(pass_samples(p, &samples) && samples == SAMPLES);
+    float *c = world_read(&w, pass_output(p, "color"));
+    for (int i = 0; i < 8 * 8; i++) assert_true(fabsf(c[4 * i] - 1) < 0.01f);
+    mem_free(c);
+    world_close(&w);
+}
+
 // ---- beside the march
 // -----------------------------------------------------------------------------
 
@@ -444,6 +466,7 @@ int main(void) {
         cmocka_unit_test(gradient_of_the_sky_lights_a_wall),
         cmocka_unit_test(glowing_sphere_lights_a_wall_as_a_point_does),
         cmocka_unit_test(what_a_material_gives_off_is_seen),
+        cmocka_unit_test(a_material_that_changes_begins_anew),
         cmocka_unit_test(march_without_approximations_shows_the_same),
         cmocka_unit_test(reach_beside_the_medium_is_that_of_the_scene),
         cmocka_unit_test(noise_falls_with_the_root_of_the_samples),
