@@ -102,11 +102,39 @@ static void unread_transmittance_costs_nothing(void **state) {
     world_close(&w);
 }
 
+// Texels around the middle are a little like it, but count as less than nothing; those that would
+// count are not like it at all. What comes of it is no more than there is.
+static void no_pixel_is_brighter_than_the_volume(void **state) {
+    pass_world w;
+    world_open(&w, *state);
+    pass *back = world_add(&w, NULL, "even.comp", "back");
+    pass *deep = world_add(&w, NULL, "even.comp", "deep");
+    pass *volume = world_add(&w, NULL, "far_edge.comp", "volume");
+    gpu_test_ok(pass_set_uniform(back, "tint", triple(&w, 1, 1, 1)) && pass_declare(back));
+    gpu_test_ok(pass_set_uniform(deep, "tint", triple(&w, 10, 0, 0)) && pass_declare(deep));
+    gpu_test_ok(pass_set_scale(volume, 0.5f) && pass_declare(volume));
+    pass *over = world_add(&w, "over", NULL, "over");
+    gpu_test_ok(pass_set_image(over, "volume", pass_output(volume, "color")));
+    gpu_test_ok(pass_set_image(over, "edge", pass_output(volume, "edge")));
+    gpu_test_ok(pass_set_image(over, "depth", pass_output(deep, "color")));
+    gpu_test_ok(pass_set_image(over, "source", pass_output(back, "color")));
+    gpu_test_ok(pass_declare(over));
+    enum { ACROSS = 36, DOWN = 20 }; // an even number of texels for the volume
+    world_render(&w, ACROSS, DOWN, pass_output(over, "color"));
+    float *pixels = world_read(&w, pass_output(over, "color"));
+    for (int i = 0; i < ACROSS * DOWN; i++) // 0.25 + 0.5 * 1
+        if (!(fabs((double)pixels[4 * i] - 0.75) < 2e-3))
+            fail_msg("pixel %d, %d: %g", i % ACROSS, i / ACROSS, (double)pixels[4 * i]);
+    mem_free(pixels);
+    world_close(&w);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(slab_dyes_what_is_behind),
         cmocka_unit_test(grey_is_as_its_opacity_says),
         cmocka_unit_test(unread_transmittance_costs_nothing),
+        cmocka_unit_test(no_pixel_is_brighter_than_the_volume),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }
