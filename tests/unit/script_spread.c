@@ -2,6 +2,7 @@
 #include "script_helper.h"
 
 #include "effect/events.h"
+#include "script/reference.h"
 #include <math.h>
 
 #define HEAD "local fx = effect { fps = 10, frames = 400 } local spread = require 'spread' "
@@ -188,6 +189,18 @@ static void what_is_wrong_is_said(void **state) {
         helper_refuses(HEAD, wrong[i].text, END, wrong[i].message);
 }
 
+static void the_reference_has_its_keys(void **state) {
+    (void)state;
+    helper_refuses(HEAD, "spread { fx = fx, at = { {0, 0} }, x = 1 }", END, "unknown key 'x'");
+    const script_key *keys = script_object_find("spread")->keys;
+    size_t count = 0;
+    for (const char *at = strstr(err_get(), "known are "); (at = strchr(at, ',')); at++) count++;
+    for (size_t i = 0; keys[i].name; i++)
+        if (!strstr(err_get(), keys[i].name)) fail_msg("the module knows no '%s'", keys[i].name);
+    for (; count > 0 && keys->name; keys++) count--;
+    assert_true(count == 0 && keys->name && !keys[1].name); // as many
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_is_the_same_every_time),
@@ -199,6 +212,7 @@ int main(void) {
         cmocka_unit_test(what_is_passed_on_at_the_end_goes_in_steps),
         cmocka_unit_test(a_frame_makes_so_many_changes_at_most),
         cmocka_unit_test(what_is_wrong_is_said),
+        cmocka_unit_test(the_reference_has_its_keys),
     };
     return cmocka_run_group_tests(tests, helper_setup, helper_teardown);
 }
