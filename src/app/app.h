@@ -21,6 +21,14 @@ int cmd_live(int argc, const char **argv);
 int app_fail(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 int app_fail_input(void); // with roil_error()
 
+// ---- options ----------------------------------------------------------------------------------
+
+struct poptOption;
+struct poptContext_s;
+// False, with a message for the error `code` of poptGetNextOpt: an unknown option gets the nearest
+// of `options`, or all of them.
+bool app_refuse_option(struct poptContext_s *context, const struct poptOption *options, int code);
+
 // ---- frames -----------------------------------------------------------------------------------
 
 typedef struct app_frames {

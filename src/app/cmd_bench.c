@@ -143,7 +143,7 @@ static bool parse(bench_options *o, int argc, const char **argv, poptContext *co
     int option;
     while ((option = poptGetNextOpt(*context)) > 0)
         if (!take_option(o, *context, option)) return false;
-    if (option < -1) return err_set("%s: %s", poptBadOption(*context, 0), poptStrerror(option));
+    if (option < -1) return app_refuse_option(*context, options, option);
     o->order.resume = o->resume;
     s->no_reference = o->no_reference;
     o->order.choice.only = o->only;

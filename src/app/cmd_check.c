@@ -32,13 +32,14 @@ int cmd_check(int argc, const char **argv) {
     int code, status;
     while ((code = poptGetNextOpt(context)) > 0) app_add_preset(&settings, poptGetOptArg(context));
     const char **files = poptGetArgs(context);
-    if (code < -1)
-        status =
-            app_fail(APP_BAD_USAGE, "check: %s: %s", poptBadOption(context, 0), poptStrerror(code));
-    else if (!files || !files[0])
+    if (code < -1) {
+        app_refuse_option(context, options, code);
+        status = app_fail(APP_BAD_USAGE, "check: %s", roil_error());
+    } else if (!files || !files[0]) {
         status = app_fail(APP_BAD_USAGE, "check: which effect? usage: roil check EFFECT.lua...");
-    else
+    } else {
         status = check(files, &settings);
+    }
     app_free_settings(&settings);
     poptFreeContext(context);
     return status;

@@ -90,17 +90,18 @@ int cmd_compare(int argc, const char **argv) {
     int code = poptGetNextOpt(context), status;
     job.how.a = poptGetArg(context);
     job.how.b = poptGetArg(context);
-    if (code < -1)
-        status = app_fail(APP_BAD_USAGE, "compare: %s: %s", poptBadOption(context, 0),
-                          poptStrerror(code));
-    else if (!job.how.b || poptPeekArg(context))
+    if (code < -1) {
+        app_refuse_option(context, options, code);
+        status = app_fail(APP_BAD_USAGE, "compare: %s", roil_error());
+    } else if (!job.how.b || poptPeekArg(context)) {
         status = usage("two pictures are compared");
-    else if (!(job.max_flip >= 0 && job.max_flip <= 1))
+    } else if (!(job.max_flip >= 0 && job.max_flip <= 1)) {
         status = usage("--max-flip is 0 to 1");
-    else if (isnan(job.min_psnr))
+    } else if (isnan(job.min_psnr)) {
         status = usage("--min-psnr is a number of dB");
-    else
+    } else {
         status = compare(&job);
+    }
     poptFreeContext(context);
     return status;
 }

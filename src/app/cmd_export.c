@@ -26,8 +26,8 @@ static int export_raw(int argc, const char **argv) {
     const char *format = poptGetArg(context);
     job.pattern = poptGetArg(context);
     if (code < -1) {
-        status = app_fail(APP_BAD_USAGE, "export: %s: %s", poptBadOption(context, 0),
-                          poptStrerror(code));
+        app_refuse_option(context, options, code);
+        status = app_fail(APP_BAD_USAGE, "export: %s", roil_error());
     } else if (!format || strcmp(format, "raw") != 0) {
         status = usage(format ? "the first word is the format, raw or vdb" : "which format?");
     } else if (!job.pattern || poptPeekArg(context)) {

@@ -77,8 +77,8 @@ int cmd_info(int argc, const char **argv) {
     if (!right) {
         status = app_fail(APP_BAD_USAGE, "info: %s", roil_error());
     } else if (code < -1) {
-        status =
-            app_fail(APP_BAD_USAGE, "info: %s: %s", poptBadOption(context, 0), poptStrerror(code));
+        app_refuse_option(context, options, code);
+        status = app_fail(APP_BAD_USAGE, "info: %s", roil_error());
     } else {
         const char *what = poptGetArg(context);
         status = info(what, poptGetArg(context), &settings);

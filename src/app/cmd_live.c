@@ -80,7 +80,7 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
     int option;
     while ((option = poptGetNextOpt(*context)) > 0)
         if (!take_option(j, *context, option)) return false;
-    if (option < -1) return err_set("%s: %s", poptBadOption(*context, 0), poptStrerror(option));
+    if (option < -1) return app_refuse_option(*context, options, option);
     j->file = poptGetArg(*context);
     return check(j, *context);
 }

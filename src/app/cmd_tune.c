@@ -144,7 +144,7 @@ static bool parse(tune_options *o, int argc, const char **argv, poptContext *con
     int option;
     while ((option = poptGetNextOpt(*context)) > 0)
         if (!take_option(o, *context, option)) return false;
-    if (option < -1) return err_set("%s: %s", poptBadOption(*context, 0), poptStrerror(option));
+    if (option < -1) return app_refuse_option(*context, options, option);
     return take_effect(o, *context) && take_goal(o) && take_numbers(o);
 }
 

@@ -1,14 +1,52 @@
-// Frames, sizes and file patterns, as they stand on the command line.
+// Wrong options; frames, sizes and file patterns, as they stand on the command line.
 #include "app/app.h"
 #include "base/error.h"
 #include "base/frames.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include <assert.h>
 #include <ctype.h>
 #include <math.h>
+#include <popt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+typedef struct option_names {
+    const char *names[64];
+    size_t count;
+} option_names;
+
+static void list_options(option_names *list, const struct poptOption *options) {
+    for (const struct poptOption *o = options; o->longName || o->shortName || o->arg; o++) {
+        if ((o->argInfo & POPT_ARG_MASK) == POPT_ARG_INCLUDE_TABLE) {
+            list_options(list, o->arg);
+        } else if (o->longName) {
+            assert(list->count < COUNT_OF(list->names));
+            list->names[list->count++] = o->longName;
+        }
+    }
+}
+
+bool app_refuse_option(struct poptContext_s *context, const struct poptOption *options, int code) {
+    const char *given = poptBadOption(context, 0);
+    if (code != POPT_ERROR_BADOPT) return err_set("%s: %s", given, poptStrerror(code));
+    option_names known = {0};
+    list_options(&known, options);
+    const char *word = given + strspn(given, "-");
+    strbuf text = {0};
+    strbuf_append(&text, word, strcspn(word, "="));
+    const char *near = str_nearest(strbuf_text(&text), known.names, known.count);
+    strbuf_free(&text);
+    if (near) return err_set("unknown option '%s'; did you mean '--%s'?", given, near);
+    for (size_t i = 0; i < known.count; i++)
+        strbuf_add(&text, i ? ", --%s" : "--%s", known.names[i]);
+    err_set("unknown option '%s'; accepted: %s", given, strbuf_text(&text));
+    strbuf_free(&text);
+    return false;
+}
+
+// ---- frames and sizes -------------------------------------------------------------------------
 
 bool app_parse_frames(const char *text, app_frames *out) {
     *out = (app_frames){.step = 1};

@@ -29,6 +29,23 @@ class Usage(Case):
         self.fails(2, "--quick", "check", "--quick", "puff.lua")
         self.fails(2, "--all", "info", "--all")
 
+    def test_unknown_option_gets_a_suggestion(self):
+        self.fails(2, "render: unknown option '--frams'; did you mean '--frames'?", "render", "puff.lua",
+                   "--frams", "30")
+        self.fails(2, "unknown option '--sise=96x54'; did you mean '--size'?", "render", "puff.lua",
+                   "--sise=96x54")
+        self.fails(2, "did you mean '--validate'?", "render", "puff.lua", "--validat") # of the device
+        self.fails(2, "did you mean '--help'?", "check", "--hepl")
+        self.fails(2, "did you mean '--preset'?", "info", "--presets", "params")
+        self.fails(2, "did you mean '--max-flip'?", "compare", "--max_flip", "1")
+        self.fails(2, "did you mean '--grid'?", "export", "--gird", "density")
+        self.fails(2, "did you mean '--fields'?", "export", "vdb", "--field", "density")
+        self.fails(2, "did you mean '--shard'?", "bench", "--shart", "1/2")
+        self.fails(2, "did you mean '--max-error'?", "tune", "--max-eror", "1")
+        self.fails(2, ["unknown option '--quick'", "accepted: --preset, --help, --usage"], "check",
+                   "--quick", "puff.lua")
+        self.fails(2, ["unknown option '-x'", "accepted: --output, "], "compare", "-x")
+
     def test_option_without_its_value_is_named(self):
         self.fails(2, "--frames", "render", "puff.lua", "--frames")
         self.fails(2, "NAME FILE", "render", "puff.lua", "--dump-pass", "march")
