@@ -10,6 +10,7 @@ typedef struct script {
     effect *effect;
     vm *vm;
     script_limits limits;
+    bool acting;         // frames and events run; not functions of time, which others wait for
     bool loading;        // things are declared only while the file runs, not in functions of time
     const char *unsound; // what was left half made by an error that the script caught; or NULL
     bool declared;       // effect { } was called

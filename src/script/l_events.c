@@ -223,6 +223,8 @@ static int l_pick(lua_State *L) {
     if (script_of(L)->loading)
         vm_error(L, "pick: nothing stands anywhere while the file loads; on_frame, on_key and "
                     "on_click can pick");
+    if (!script_of(L)->acting) // it may be what says where something stands
+        vm_error(L, "pick: a function of time cannot pick; on_frame, on_key and on_click can");
     if (lua_type(L, 1) == LUA_TTABLE) {
         read_vector(L, 1, 1, "origin", origin);
         read_vector(L, 1, 2, "direction", direction);
@@ -311,23 +313,30 @@ static int run_event(lua_State *L) {
     return 0;
 }
 
+static bool act(script *s, lua_CFunction run, void *call) {
+    s->acting = true;
+    bool done = vm_protect(s->vm, run, call, s->limits.frame);
+    s->acting = false;
+    return done;
+}
+
 bool script_start(void *user) {
     script *s = user;
     vm_set_seed(vm_lua(s->vm), s->seed);
     explosions_reset(s);
-    return vm_protect(s->vm, run_start, s, s->limits.frame);
+    return act(s, run_start, s);
 }
 
 bool script_frame(void *user, double time, double dt) {
     script *s = user;
     frame_call call = {s, time, dt};
-    return vm_protect(s->vm, run_frame, &call, s->limits.frame);
+    return act(s, run_frame, &call);
 }
 
 bool script_event(void *user, const effect_happening *what) {
     script *s = user;
     event_call call = {s, what};
-    return vm_protect(s->vm, run_event, &call, s->limits.frame);
+    return act(s, run_event, &call);
 }
 
 void l_events_open(lua_State *L) {

@@ -56,10 +56,11 @@ bool script_call(void *user, int function, double time, float out[4]) {
     if (!lua_checkstack(L, 8)) return err_set("the script's stack is full");
     lua_rawgeti(L, LUA_REGISTRYINDEX, function);
     lua_pushnumber(L, time);
-    bool loading = s->loading;
-    s->loading = false;
+    bool loading = s->loading, acting = s->acting;
+    s->loading = s->acting = false;
     bool done = vm_call(s->vm, 1, 1, s->limits.frame);
     s->loading = loading;
+    s->acting = acting;
     return done && read_result(L, time, out);
 }
 
@@ -69,7 +70,10 @@ static bool update(void *user, double time, double dt) {
     lua_rawgeti(L, LUA_REGISTRYINDEX, s->update);
     lua_pushnumber(L, time);
     lua_pushnumber(L, dt);
-    return vm_call(s->vm, 2, 0, s->limits.frame);
+    s->acting = true;
+    bool done = vm_call(s->vm, 2, 0, s->limits.frame);
+    s->acting = false;
+    return done;
 }
 
 static void destroy(void *user) {

@@ -22,22 +22,9 @@ static effect *load(const char *text) {
     return load_with(text, NULL);
 }
 
-static void draw(effect *e, double frame) {
-    if (!effect_rehearse(e, frame)) fail_msg("frame %g: %s", frame, err_get());
-}
-
-static double status(const effect *e, const char *name) {
-    const effect_status *all;
-    size_t count = effect_statuses(e, &all);
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(all[i].name, name) == 0) return all[i].value;
-    fail_msg("no status '%s'", name);
-    return 0;
-}
-
 static void is(const effect *e, const char *name, double wanted) {
-    if (fabs(status(e, name) - wanted) > 1e-4)
-        fail_msg("%s is %g, not %g", name, status(e, name), wanted);
+    if (fabs(helper_status(e, name) - wanted) > 1e-4)
+        fail_msg("%s is %g, not %g", name, helper_status(e, name), wanted);
 }
 
 // ---- frames -----------------------------------------------------------------------------------
@@ -51,18 +38,18 @@ static void is(const effect *e, const char *name, double wanted) {
 static void each_frame_runs_once_whichever_are_drawn(void **state) {
     (void)state;
     effect *e = load(COUNTING);
-    draw(e, 1);
+    helper_run(e, 1);
     is(e, "n", 1);
     is(e, "t", 0);
     is(e, "sum", 0);
-    draw(e, 11);
+    helper_run(e, 11);
     is(e, "n", 11);
     is(e, "t", 1);
     is(e, "sum", 1);
-    draw(e, 11);
-    draw(e, 11.7); // between two: as of the one before
+    helper_run(e, 11);
+    helper_run(e, 11.7); // between two: as of the one before
     is(e, "n", 11);
-    draw(e, 14);
+    helper_run(e, 14);
     is(e, "n", 14);
     is(e, "starts", 1);
     effect_destroy(e);
@@ -71,13 +58,13 @@ static void each_frame_runs_once_whichever_are_drawn(void **state) {
 static void back_in_time_is_from_the_beginning(void **state) {
     (void)state;
     effect *e = load(COUNTING);
-    draw(e, 20);
-    draw(e, 6);
+    helper_run(e, 20);
+    helper_run(e, 6);
     is(e, "n", 6);
     is(e, "t", 0.5);
     is(e, "starts", 2);
     effect_restart(e);
-    draw(e, 6);
+    helper_run(e, 6);
     is(e, "n", 6);
     is(e, "starts", 3);
     effect_destroy(e);
@@ -87,12 +74,12 @@ static void chance_is_the_same_again(void **state) {
     (void)state;
     effect *e = load("local x fx:on_start(function() x = 0 end) "
                      "fx:on_frame(function() x = x + math.random(); fx:status('x', x) end)");
-    draw(e, 9);
-    double first = status(e, "x");
-    draw(e, 30);
-    assert_true(status(e, "x") != first);
-    draw(e, 9);
-    assert_true(status(e, "x") == first);
+    helper_run(e, 9);
+    double first = helper_status(e, "x");
+    helper_run(e, 30);
+    assert_true(helper_status(e, "x") != first);
+    helper_run(e, 9);
+    assert_true(helper_status(e, "x") == first);
     effect_destroy(e);
 }
 
@@ -113,18 +100,18 @@ static void chance_is_the_same_again(void **state) {
 static void events_come_at_their_frame(void **state) {
     (void)state;
     effect *e = load_with(HEARING, "1 key f; 0.42 key f; 2 key f 0.5 0.5");
-    draw(e, 5); // 0.4 s
+    helper_run(e, 5); // 0.4 s
     const effect_status *all;
     assert_int_equal(effect_statuses(e, &all), 1);
-    draw(e, 6);
+    helper_run(e, 6);
     is(e, "keys", 1);
     is(e, "key time", 0.42);
     is(e, "t", 0.5);
     is(e, "placed", 0);
-    draw(e, 40);
+    helper_run(e, 40);
     is(e, "keys", 3);
     is(e, "placed", 1);
-    draw(e, 8);
+    helper_run(e, 8);
     is(e, "keys", 1);
     const effect_hearing *heard;
     assert_int_equal(effect_hearings(e, &heard), 2);
@@ -138,7 +125,7 @@ static void events_come_at_their_frame(void **state) {
 static void clicks_meet_the_ground(void **state) {
     (void)state;
     effect *e = load_with(HEARING, "0 click 0.5 0.5");
-    draw(e, 1);
+    helper_run(e, 1);
     is(e, "hit x", 0);
     is(e, "hit y", 0);
     is(e, "hit z", 0);
@@ -147,13 +134,13 @@ static void clicks_meet_the_ground(void **state) {
     is(e, "again", sqrt(200));
     effect_destroy(e);
     e = load_with(HEARING, "0 click 3 -2 0"); // over a point
-    draw(e, 1);
+    helper_run(e, 1);
     is(e, "hit x", 3);
     is(e, "hit y", -2);
-    assert_true(status(e, "x") > 0.5 && status(e, "y") > 0.5);
+    assert_true(helper_status(e, "x") > 0.5 && helper_status(e, "y") > 0.5);
     effect_destroy(e);
     e = load_with(HEARING, "0 click 5 5 8 0 0 -2"); // along a ray
-    draw(e, 1);
+    helper_run(e, 1);
     is(e, "hit x", 5);
     is(e, "hit y", 5);
     is(e, "distance", 8);
@@ -165,14 +152,14 @@ static void the_scripts_own_events_are_a_control(void **state) {
     effect *e = load(HEARING "fx.events = { { 2, key = 'f', at = {0.25, 0.5} }, "
                              "{ 1, click = {1, 2, 0} } }");
     helper_is_set(e, "effect.events", "1 click 1 2 0; 2 key f 0.25 0.5");
-    draw(e, 40);
+    helper_run(e, 40);
     is(e, "keys", 1);
     assert_true(effect_set(e, "effect.events", "1 key f; 1.5 key f"));
-    draw(e, 40);
+    helper_run(e, 40);
     is(e, "keys", 2);
     assert_true(effect_reset(e, "effect.events"));
     helper_is_set(e, "effect.events", "1 click 1 2 0; 2 key f 0.25 0.5");
-    draw(e, 40);
+    helper_run(e, 40);
     is(e, "keys", 1);
     assert_false(effect_set(e, "effect.events", "1 key g"));
     assert_string_equal(err_get(),
@@ -184,17 +171,17 @@ static void the_scripts_own_events_are_a_control(void **state) {
 static void an_event_of_now_happens_at_once(void **state) {
     (void)state;
     effect *e = load_with(COUNTING HEARING, "0.2 key f");
-    draw(e, 11);
+    helper_run(e, 11);
     is(e, "keys", 1);
     assert_true(effect_set(e, "effect.events", "0.2 key f; 1 key f"));
-    draw(e, 11);
+    helper_run(e, 11);
     is(e, "keys", 2);
     assert_true(effect_set(e, "effect.events", "0.2 key f; 1 key f; 3 key f"));
-    draw(e, 12);
+    helper_run(e, 12);
     is(e, "keys", 2);
     is(e, "starts", 1);
     assert_true(effect_set(e, "effect.events", "0.2 key f; 0.5 key f; 1 key f; 3 key f"));
-    draw(e, 12);
+    helper_run(e, 12);
     is(e, "keys", 3);
     is(e, "starts", 2);
     effect_destroy(e);
@@ -216,15 +203,15 @@ static void clicks_meet_instances_which_go_back_with_time(void **state) {
                   "sum = sum + i * crates:get(i).state[1] end fx:status('sum', sum) end) "
                   "local scene = geometry { crates } fx.output = scene.albedo ",
                   "1 click 0 0 1; 1 click 4 0 1; 2 click 0 0 1 0 0 -1");
-    draw(e, 11);
+    helper_run(e, 11);
     is(e, "index", 3);
     is(e, "own", 1);
     is(e, "mesh", 1);
     is(e, "z", 1);
-    draw(e, 13);
+    helper_run(e, 13);
     is(e, "sum", 2 * 7 + 3 * 7);
     assert_false(effect_rehearse(e, 21)); // what was hidden is met no more: the ground is no crate
-    draw(e, 5);
+    helper_run(e, 5);
     is(e, "sum", 0);
     effect_destroy(e);
 }
@@ -239,17 +226,17 @@ static void parameters_go_back_with_time(void **state) {
                           "fx:on_frame(function() fx:status('toon', toon:get()) "
                           "fx:status('a', word:get() == 'a') end)",
                           "1 key t");
-    draw(e, 12);
+    helper_run(e, 12);
     helper_is_set(e, "wind", "5");
     helper_is_set(e, "toon", "true");
     is(e, "a", 1);
-    draw(e, 5);
+    helper_run(e, 5);
     helper_is_set(e, "wind", "3");
     helper_is_set(e, "toon", "false");
     is(e, "a", 0);
-    draw(e, 12);
+    helper_run(e, 12);
     assert_true(effect_set(e, "wind", "7")); // by hand
-    draw(e, 5);
+    helper_run(e, 5);
     helper_is_set(e, "wind", "7");
     effect_destroy(e);
 }
@@ -312,10 +299,10 @@ static void a_fault_is_reported_and_then_all_begins_anew(void **state) {
                           "fx:on_key('f', function(event) event.hit.x = 1 end)\n"
                           "fx:on_frame(function() n = n + 1 fx:status('n', n) end)",
                           "1 key f");
-    draw(e, 5);
+    helper_run(e, 5);
     assert_false(effect_rehearse(e, 15));
     assert_non_null(strstr(err_get(), "e.lua:2:"));
-    draw(e, 5);
+    helper_run(e, 5);
     is(e, "n", 5);
     effect_destroy(e);
     script_limits limits = {.frame = 100000};
@@ -323,8 +310,15 @@ static void a_fault_is_reported_and_then_all_begins_anew(void **state) {
                          NULL, 0);
     assert_non_null(e);
     assert_true(effect_check_settings(e) && effect_check(e));
-    draw(e, 4);
+    helper_run(e, 4);
     assert_false(effect_rehearse(e, 9));
+    effect_destroy(e);
+    helper_put("flag.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
+    e = load("fx:on_frame(function() pick(0.5, 0.5) end) " // where it stands says what is picked
+             "geometry { mesh { 'flag.obj', position = function() "
+             "fx:status('picked', pcall(pick, 0.5, 0.5)) return {0, 0, 0} end } }");
+    helper_run(e, 4);
+    is(e, "picked", 0);
     effect_destroy(e);
     e = load(COUNTING);
     assert_false(effect_rehearse(e, 1e9));

@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "base/log.h"
+#include "effect/events.h"
 #include "script/script.h"
 
 static char helper_folder[PATH_CAP];
@@ -84,6 +85,20 @@ static inline void helper_is_set(effect *e, const char *name, const char *value)
     if (strcmp(strbuf_text(&text), value) != 0)
         fail_msg("%s is %s, not %s", name, strbuf_text(&text), value);
     strbuf_free(&text);
+}
+
+// Runs the script up to a frame, which is not drawn.
+static inline void helper_run(effect *e, double frame) {
+    if (!effect_rehearse(e, frame)) fail_msg("frame %g: %s", frame, err_get());
+}
+
+static inline double helper_status(const effect *e, const char *name) {
+    const effect_status *all;
+    size_t count = effect_statuses(e, &all);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(all[i].name, name) == 0) return all[i].value;
+    fail_msg("no status '%s'", name);
+    return 0;
 }
 
 static inline int helper_setup(void **state) {

@@ -1,7 +1,6 @@
 // The module of rules by which fire spreads (scripts/lib/spread.lua), with lists of places.
 #include "script_helper.h"
 
-#include "effect/events.h"
 #include "script/reference.h"
 #include <math.h>
 
@@ -29,31 +28,18 @@ static effect *load(const char *text) {
     return e;
 }
 
-static void draw(effect *e, double frame) {
-    if (!effect_rehearse(e, frame)) fail_msg("frame %g: %s", frame, err_get());
-}
-
-static double status(const effect *e, const char *name) {
-    const effect_status *all;
-    size_t count = effect_statuses(e, &all);
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(all[i].name, name) == 0) return all[i].value;
-    fail_msg("no status '%s'", name);
-    return 0;
-}
-
 static void it_is_the_same_every_time(void **state) {
     (void)state;
     effect *e = load("light { reach = 3, speed = 2, burn = {2, 4}, seed = 7 }");
     effect *other = load("light { reach = 3, speed = 2, burn = {2, 4}, seed = 8 }");
-    draw(e, 31);
-    double lit = status(e, "lit"), sum = status(e, "sum");
+    helper_run(e, 31);
+    double lit = helper_status(e, "lit"), sum = helper_status(e, "sum");
     assert_true(lit > 20 && lit < 441);
-    for (double frame = 40; frame < 60; frame++) draw(e, frame);
-    for (double frame = 1; frame <= 31; frame++) draw(e, frame);
-    assert_true(status(e, "lit") == lit && status(e, "sum") == sum);
-    draw(other, 31);
-    assert_true(status(other, "sum") != sum);
+    for (double frame = 40; frame < 60; frame++) helper_run(e, frame);
+    for (double frame = 1; frame <= 31; frame++) helper_run(e, frame);
+    assert_true(helper_status(e, "lit") == lit && helper_status(e, "sum") == sum);
+    helper_run(other, 31);
+    assert_true(helper_status(other, "sum") != sum);
     effect_destroy(e);
     effect_destroy(other);
 }
@@ -63,11 +49,13 @@ static void every_change_is_an_event(void **state) {
     effect *e = load("light { reach = 3, speed = 2, burn = {2, 4} }");
     const double frames[] = {1, 12, 40, 90, 400};
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
-        draw(e, frames[i]);
-        assert_true(status(e, "lit") - status(e, "burned") == status(e, "burning"));
-        assert_true(status(e, "burned") == status(e, "sum of burned"));
+        helper_run(e, frames[i]);
+        assert_true(helper_status(e, "lit") - helper_status(e, "burned") ==
+                    helper_status(e, "burning"));
+        assert_true(helper_status(e, "burned") == helper_status(e, "sum of burned"));
     }
-    assert_true(status(e, "lit") == 441 && status(e, "burned") == 441); // all of them, in the end
+    assert_true(helper_status(e, "lit") == 441 &&
+                helper_status(e, "burned") == 441); // all of them, in the end
     effect_destroy(e);
 }
 
@@ -82,13 +70,13 @@ static void it_stops_at_a_gap(void **state) {
     snprintf(narrow, sizeof narrow, text, 3.9); // the gap is 4 m wide
     snprintf(wide, sizeof wide, text, 4.1);
     effect *e = load(narrow);
-    draw(e, 400);
-    assert_true(status(e, "burning") == 0 && status(e, "lit") == 14 * 21);
-    assert_true(status(e, "high") == 6 && status(e, "low") == -20);
+    helper_run(e, 400);
+    assert_true(helper_status(e, "burning") == 0 && helper_status(e, "lit") == 14 * 21);
+    assert_true(helper_status(e, "high") == 6 && helper_status(e, "low") == -20);
     effect_destroy(e);
     e = load(wide);
-    draw(e, 400);
-    assert_true(status(e, "lit") == 20 * 21);
+    helper_run(e, 400);
+    assert_true(helper_status(e, "lit") == 20 * 21);
     effect_destroy(e);
 }
 
@@ -99,17 +87,19 @@ static void wind_drives_it(void **state) {
         load("light { reach = 3, burn = 8, variation = 0, wind = {2, 0, 0}, lean = 0 }");
     effect *strong = load("light { reach = 3, burn = 8, variation = 0, wind = function() return "
                           "{5, 0, 0} end, lean = 0 }");
-    draw(calm, 71);
-    draw(windy, 71);
-    draw(strong, 71);
-    assert_true(status(calm, "high") == 6 && status(calm, "low") == -6); // 1 m/s for 7 s
-    assert_true(status(windy, "high") > status(calm, "high"));
-    assert_true(status(windy, "low") > status(calm, "low"));
-    assert_true(status(strong, "high") > status(windy, "high"));
-    draw(calm, 300);
-    draw(strong, 300);
-    assert_true(status(calm, "low") == -20);
-    assert_true(status(strong, "low") > -20); // it burns out before it gets on against the wind
+    helper_run(calm, 71);
+    helper_run(windy, 71);
+    helper_run(strong, 71);
+    assert_true(helper_status(calm, "high") == 6 &&
+                helper_status(calm, "low") == -6); // 1 m/s for 7 s
+    assert_true(helper_status(windy, "high") > helper_status(calm, "high"));
+    assert_true(helper_status(windy, "low") > helper_status(calm, "low"));
+    assert_true(helper_status(strong, "high") > helper_status(windy, "high"));
+    helper_run(calm, 300);
+    helper_run(strong, 300);
+    assert_true(helper_status(calm, "low") == -20);
+    assert_true(helper_status(strong, "low") >
+                -20); // it burns out before it gets on against the wind
     effect_destroy(calm);
     effect_destroy(windy);
     effect_destroy(strong);
@@ -119,8 +109,8 @@ static void fuel_says_what_burns_and_how_long(void **state) {
     (void)state;
     effect *e = load("light { reach = 3, speed = 2, burn = 3, fuel = function(i) "
                      "return list[i][1] == 4 and 0 or 1 end }");
-    draw(e, 400);
-    assert_true(status(e, "high") == 2 && status(e, "lit") == 12 * 21);
+    helper_run(e, 400);
+    assert_true(helper_status(e, "high") == 2 && helper_status(e, "lit") == 12 * 21);
     effect_destroy(e);
 }
 
@@ -133,10 +123,10 @@ static void instances_burn_as_places_do(void **state) {
         load("local forest = instances { mesh { 'tree.obj' }, at = (function() local all "
              "= {} for i, p in ipairs(list) do all[i] = {p[1], p[2], 0} end return all "
              "end)() } light { at = forest, reach = 3, speed = 2, burn = {2, 4}, seed = 7 }");
-    draw(places, 31);
-    draw(trees, 31);
-    assert_true(status(places, "lit") == status(trees, "lit"));
-    assert_true(status(places, "sum") == status(trees, "sum"));
+    helper_run(places, 31);
+    helper_run(trees, 31);
+    assert_true(helper_status(places, "lit") == helper_status(trees, "lit"));
+    assert_true(helper_status(places, "sum") == helper_status(trees, "sum"));
     effect_destroy(places);
     effect_destroy(trees);
 }
@@ -152,22 +142,23 @@ static void what_is_passed_on_at_the_end_goes_in_steps(void **state) {
              "fire:on_late(function(i, t) late = late + 1 fx:status('late', late) end) "
              "fx:on_frame(function() fx:status('burned', fire.burned) "
              "fx:status('burning', fire.burning) fx:status('first', fire:progress(1)) end)");
-    draw(e, 6);
-    assert_true(status(e, "burning") == 1 && fabs(status(e, "first") - 0.5) < 1e-9);
-    draw(e, 17);
-    assert_true(status(e, "burned") == 1 && status(e, "burning") == 1 && status(e, "late") == 2);
-    draw(e, 60);
-    assert_true(status(e, "burned") == 4 && status(e, "late") == 4);
+    helper_run(e, 6);
+    assert_true(helper_status(e, "burning") == 1 && fabs(helper_status(e, "first") - 0.5) < 1e-9);
+    helper_run(e, 17);
+    assert_true(helper_status(e, "burned") == 1 && helper_status(e, "burning") == 1 &&
+                helper_status(e, "late") == 2);
+    helper_run(e, 60);
+    assert_true(helper_status(e, "burned") == 4 && helper_status(e, "late") == 4);
     effect_destroy(e);
 }
 
 static void a_frame_makes_so_many_changes_at_most(void **state) {
     (void)state;
     effect *e = load("light { reach = 60, speed = 1000, burn = 30, most = 10 }");
-    draw(e, 2);
-    assert_true(status(e, "lit") == 11); // and the first, by hand
-    draw(e, 3);
-    assert_true(status(e, "lit") == 21);
+    helper_run(e, 2);
+    assert_true(helper_status(e, "lit") == 11); // and the first, by hand
+    helper_run(e, 3);
+    assert_true(helper_status(e, "lit") == 21);
     effect_destroy(e);
 }
 
