@@ -6,7 +6,6 @@
 // the last one adds to it. Where the picture comes from a pass `bright`, both
 // do its work as well, and that pass is left out unless something else reads
 // it. Mode gaussian stays in one size (bloom_gaussian.c).
-#include "base/error.h"
 #include "base/memory.h"
 #include "pass/bloom_parts.h"
 #include "pass/builtin.h"
@@ -45,12 +44,6 @@ static void find_picture(pass *p) {
     s->same_size = desc->scale == p->scale;
 }
 
-static const char *word_of(const pass *p, const char *option) {
-    size_t index;
-    pass_find_key(p, option, &index);
-    return p->face->options[index].words[p->options[index]];
-}
-
 graph_image bloom_add_image(pass *p, const char *name, uint32_t mips) {
     return graph_add_image(p->host->graph,
                            &(graph_image_desc){
@@ -64,7 +57,7 @@ graph_image bloom_add_image(pass *p, const char *name, uint32_t mips) {
 bool bloom_declare(pass *p) {
     bloom_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     int output = pass_find_image(p, "color"), source = pass_find_image(p, "source");
-    bool gaussian = strcmp(word_of(p, "mode"), "gaussian") == 0;
+    bool gaussian = pass_has_word(p, "mode", "gaussian");
     s->begin = gaussian ? BLOOM_BLUR_FIRST : BLOOM_FIRST;
     s->end = gaussian ? BLOOM_STAGES : BLOOM_BLUR_FIRST;
     if (p->images[source].id) find_picture(p);
@@ -87,7 +80,7 @@ static bool compile(pass *p) {
     for (int i = s->begin; i < (int)s->end; i++) {
         shader_define defines[BLOOM_STAGES + 3] = {
             {"FROM_BRIGHT", word(s->bright)},
-            {"BRIGHT_PAPER", word(s->bright && strcmp(word_of(s->bright, "mode"), "paper") == 0)},
+            {"BRIGHT_PAPER", word(s->bright && pass_has_word(s->bright, "mode", "paper"))},
             {"SAME_SIZE", word(s->same_size)}};
         for (int k = 0; k < BLOOM_STAGES; k++)
             defines[3 + k] = (shader_define){stage_names[k], word(i == k)};

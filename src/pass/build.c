@@ -114,6 +114,28 @@ gpu_pipeline *pass_create_compute(pass *p, const shader_binary *binary) {
     return gpu_pipeline_create_compute(p->host->device, &desc);
 }
 
+gpu_pipeline *pass_create_graphics(pass *p, const shader_binary *vertex,
+                                   const shader_binary *fragment, gpu_graphics_desc desc) {
+    const shader_binary *both[] = {vertex, fragment};
+    gpu_slot slots[GPU_MAX_SLOTS];
+    size_t count = 0;
+    if (vertex->slot_count + fragment->slot_count > GPU_MAX_SLOTS) {
+        err_set("%s: %zu bindings to draw with; at most %d are possible", p->label,
+                vertex->slot_count + fragment->slot_count, GPU_MAX_SLOTS);
+        return NULL;
+    }
+    for (size_t s = 0; s < COUNT_OF(both); s++)
+        for (size_t i = 0; i < both[s]->slot_count; i++) slots[count++] = both[s]->slots[i].slot;
+    desc.label = p->label;
+    desc.vertex_code = vertex->code;
+    desc.vertex_size = vertex->size;
+    desc.fragment_code = fragment->code;
+    desc.fragment_size = fragment->size;
+    desc.slots = slots;
+    desc.slot_count = count;
+    return gpu_pipeline_create_graphics(p->host->device, &desc);
+}
+
 gpu_pipeline *pass_create_fullscreen(pass *p, const shader_binary *fragment,
                                      const gpu_format *formats, size_t count) {
     shader_binary vertex;
@@ -123,23 +145,13 @@ gpu_pipeline *pass_create_fullscreen(pass *p, const shader_binary *fragment,
                                                .reader = p->host->reader},
                         &vertex))
         return NULL;
-    gpu_slot slots[GPU_MAX_SLOTS];
-    if (fragment->slot_count > GPU_MAX_SLOTS || count > 4) {
-        err_set("%s: too many bindings or outputs", p->label);
+    gpu_graphics_desc desc = {0};
+    if (count > COUNT_OF(desc.colors)) {
+        err_set("%s: %zu outputs; at most %d are drawn to", p->label, count, GPU_MAX_TARGETS);
         return NULL;
     }
-    for (size_t i = 0; i < fragment->slot_count; i++) slots[i] = fragment->slots[i].slot;
-    gpu_graphics_desc desc = {
-        .label = p->label,
-        .vertex_code = vertex.code,
-        .vertex_size = vertex.size,
-        .fragment_code = fragment->code,
-        .fragment_size = fragment->size,
-        .slots = slots,
-        .slot_count = fragment->slot_count,
-    };
     for (size_t i = 0; i < count; i++) desc.colors[i] = formats[i];
-    return gpu_pipeline_create_graphics(p->host->device, &desc);
+    return pass_create_graphics(p, &vertex, fragment, desc);
 }
 
 static void list_palettes(pass *p) {

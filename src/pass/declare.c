@@ -6,6 +6,16 @@
 #include "pass/pass_impl.h"
 #include <string.h>
 
+graph_image pass_add_target(pass *p, const char *name, gpu_format format) {
+    return graph_add_image(p->host->graph,
+                           &(graph_image_desc){
+                               .name = arena_format(p->host->memory, "%s.%s", p->label, name),
+                               .format = format,
+                               .scale = p->scale,
+                               .target = true,
+                           });
+}
+
 static bool declare_output(pass *p, size_t index) {
     const shader_image *image = &p->face->images[index];
     bool drawn = str_ends_with(p->shader, ".frag");

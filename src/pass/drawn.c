@@ -15,28 +15,11 @@ bool drawn_check(pass *p, const char *vertex, const char *fragment, const shader
 
 bool drawn_build(pass *p, const drawn_target *target, drawn_stages *stages) {
     const shader_binary *both[] = {&stages->vertex, &stages->fragment};
-    gpu_slot slots[GPU_MAX_SLOTS];
-    size_t slot_count = 0;
-    for (int s = 0; s < 2; s++) {
-        if (slot_count + both[s]->slot_count > GPU_MAX_SLOTS)
-            return err_set("%s: more than %d bindings to draw with", p->label, GPU_MAX_SLOTS);
-        for (size_t i = 0; i < both[s]->slot_count; i++)
-            slots[slot_count++] = both[s]->slots[i].slot;
+    gpu_graphics_desc desc = {.depth = GPU_D32F, .cull = target->cull};
+    for (int s = 0; s < 2; s++)
         stages->blocks[s] = arena_alloc(p->host->memory, pass_block_size(both[s]) + 16);
-    }
-    gpu_graphics_desc desc = {
-        .label = p->label,
-        .vertex_code = stages->vertex.code,
-        .vertex_size = stages->vertex.size,
-        .fragment_code = stages->fragment.code,
-        .fragment_size = stages->fragment.size,
-        .slots = slots,
-        .slot_count = slot_count,
-        .depth = GPU_D32F,
-        .cull = target->cull,
-    };
     memcpy(desc.colors, target->colors, sizeof desc.colors);
-    stages->pipeline = gpu_pipeline_create_graphics(p->host->device, &desc);
+    stages->pipeline = pass_create_graphics(p, &stages->vertex, &stages->fragment, desc);
     return stages->pipeline != NULL;
 }
 

@@ -17,13 +17,7 @@ bool forward_declare(pass *p) {
     forward_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     pass_choose_shadows(p);
     s->drawn = drawn_create(p);
-    s->z =
-        graph_add_image(p->host->graph, &(graph_image_desc){
-                                            .name = arena_format(p->host->memory, "%s.z", p->label),
-                                            .format = GPU_D32F,
-                                            .scale = p->scale,
-                                            .target = true,
-                                        });
+    s->z = pass_add_target(p, "z", GPU_D32F);
     return s->z.id && pass_declare_images(p) && pass_add_to_graph_with(p, &s->z, 1);
 }
 

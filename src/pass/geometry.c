@@ -1,6 +1,5 @@
 // Geometry: by rays in a compute shader, or drawn (drawn.h). When drawn, the linear depth that
 // volumes are tested against is a colour target; the depth buffer proper stays in this pass.
-#include "base/error.h"
 #include "base/memory.h"
 #include "pass/builtin.h"
 #include "pass/drawn.h"
@@ -49,10 +48,7 @@ static bool has_many(const pass *p) {
 // A software device draws triangles many times faster than it traces rays. Of the others, those for
 // computing have few processors that draw, and none was seen to trace slowly.
 static bool choose_rays(const pass *p) {
-    size_t index;
-    pass_find_key(p, "mode", &index);
-    const char *mode = p->face->options[index].words[p->options[index]];
-    if (strcmp(mode, "auto") != 0) return strcmp(mode, "rays") == 0;
+    if (!pass_has_word(p, "mode", "auto")) return pass_has_word(p, "mode", "rays");
     return p->host->device && gpu_get_info(p->host->device)->kind != GPU_CPU && !has_many(p) &&
            surfaces_fit(p);
 }
@@ -78,13 +74,7 @@ bool geometry_declare(pass *p) {
     s->rays = choose_rays(p);
     if (s->rays) return pass_declare_images(p) && pass_add_to_graph(p);
     s->drawn = drawn_create(p);
-    s->z =
-        graph_add_image(p->host->graph, &(graph_image_desc){
-                                            .name = arena_format(p->host->memory, "%s.z", p->label),
-                                            .format = GPU_D32F,
-                                            .scale = p->scale,
-                                            .target = true,
-                                        });
+    s->z = pass_add_target(p, "z", GPU_D32F);
     return s->z.id && declare_targets(p) && pass_add_to_graph_with(p, &s->z, 1);
 }
 

@@ -22,12 +22,8 @@ static const char *const buffer_names[LAMP_BUFFERS] = {"LampRecords", "LampMasks
 
 static lamps_way choose_way(const pass *p, uint32_t count) {
     static const char *const words[] = {"all", "tiles", "volumes"};
-    size_t index;
-    const char *word = "auto";
-    if (pass_find_key(p, "lamps_by", &index) == PASS_OPTION)
-        word = p->face->options[index].words[p->options[index]];
     for (size_t i = 0; i < COUNT_OF(words); i++)
-        if (strcmp(word, words[i]) == 0) return (lamps_way)i;
+        if (pass_has_word(p, "lamps_by", words[i])) return (lamps_way)i;
     return count <= FEW ? LAMPS_ALL : LAMPS_TILES;
 }
 

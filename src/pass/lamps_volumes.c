@@ -2,7 +2,6 @@
 // fragments add the lamp's light to what is seen there (Hargreaves and Harris, "Deferred shading",
 // 2004). The far side is drawn, without a test of depth, so that a sphere that the eye is in
 // counts, too. One draw for all.
-#include "base/error.h"
 #include "pass/lamps_parts.h"
 #include <string.h>
 
@@ -15,39 +14,17 @@ bool lamps_check_volumes(pass *p) {
            pass_compile(p, "pass/lamps_volume.frag", SHADER_FRAGMENT, &without, 1, &v->fragment);
 }
 
-// The two stages share one set; their bindings are numbered apart.
-static bool merge_slots(const pass *p, gpu_slot out[GPU_MAX_SLOTS], size_t *count) {
-    const shader_binary *stages[] = {&p->lamps->volumes.vertex, &p->lamps->volumes.fragment};
-    *count = 0;
-    for (int stage = 0; stage < 2; stage++)
-        for (size_t i = 0; i < stages[stage]->slot_count; i++) {
-            if (*count == GPU_MAX_SLOTS)
-                return err_set("%s: more than %d bindings", p->label, GPU_MAX_SLOTS);
-            out[(*count)++] = stages[stage]->slots[i].slot;
-        }
-    return true;
-}
-
 bool lamps_build_volumes(pass *p) {
     lamps_volumes *v = &p->lamps->volumes;
-    gpu_slot slots[GPU_MAX_SLOTS];
-    size_t count;
-    if (!lamps_check_volumes(p) || !merge_slots(p, slots, &count)) return false;
+    if (!lamps_check_volumes(p)) return false;
     v->vertex_block = arena_alloc(p->host->memory, pass_block_size(&v->vertex) + 16);
     v->fragment_block = arena_alloc(p->host->memory, pass_block_size(&v->fragment) + 16);
-    v->pipeline =
-        gpu_pipeline_create_graphics(p->host->device, &(gpu_graphics_desc){
-                                                          .label = p->label,
-                                                          .vertex_code = v->vertex.code,
-                                                          .vertex_size = v->vertex.size,
-                                                          .fragment_code = v->fragment.code,
-                                                          .fragment_size = v->fragment.size,
-                                                          .slots = slots,
-                                                          .slot_count = count,
-                                                          .colors = {GPU_RGBA32F},
-                                                          .cull = GPU_CULL_BACK,
-                                                          .blend = true,
-                                                      });
+    v->pipeline = pass_create_graphics(p, &v->vertex, &v->fragment,
+                                       (gpu_graphics_desc){
+                                           .colors = {GPU_RGBA32F},
+                                           .cull = GPU_CULL_BACK,
+                                           .blend = true,
+                                       });
     return v->pipeline != NULL;
 }
 

@@ -8,7 +8,6 @@
 #include "pass/pass_impl.h"
 #include "shared.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -101,13 +100,6 @@ typedef struct lighting_state {
 } lighting_state;
 
 // ---- declaring --------------------------------------------------------------------------------
-
-// An option whose words are numbers.
-static uint32_t number_of(const pass *p, const char *option) {
-    size_t index;
-    if (pass_find_key(p, option, &index) != PASS_OPTION) return 0;
-    return (uint32_t)strtoul(p->face->options[index].words[p->options[index]], NULL, 10);
-}
 
 static bool add_image(pass *p, const char *name, const uint32_t size[3]) {
     int index = pass_find_image(p, name);
@@ -217,10 +209,10 @@ bool lighting_declare(pass *p) {
     lighting_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     box3 box;
     s->declared = around ? (uint32_t)around->light_count + 1 : 1;
-    s->shadow_size = number_of(p, "shadow_resolution");
+    s->shadow_size = pass_number(p, "shadow_resolution");
     s->shadow_parts = choose_shadow_parts(p->host->device, s->shadow_size);
-    s->glow_size = number_of(p, "glow_resolution");
-    s->fire_count = number_of(p, "fire_lights");
+    s->glow_size = pass_number(p, "glow_resolution");
+    s->fire_count = pass_number(p, "fire_lights");
     return pass_density_box(p, &box) && add_images(p) && add_parts(p);
 }
 

@@ -5,7 +5,6 @@
 #include "pass/builtin.h"
 #include "pass/march_around.h"
 #include <math.h>
-#include <string.h>
 
 enum { GROUP_SIDE = 16, MOST_TEAM = 16 };
 
@@ -23,12 +22,6 @@ typedef struct march_state {
     march_around around; // in software
 } march_state;
 
-static bool has_word(const pass *p, const char *option, const char *word) {
-    size_t index;
-    if (pass_find_key(p, option, &index) != PASS_OPTION) return false;
-    return strcmp(p->face->options[index].words[p->options[index]], word) == 0;
-}
-
 static bool record_bricks(pass *p) {
     march_state *s = p->state;
     return pass_prepare(p) && bricks_record(p, &s->bricks);
@@ -37,7 +30,7 @@ static bool record_bricks(pass *p) {
 bool march_declare(pass *p) {
     march_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     box3 box;
-    s->skips = has_word(p, "skipping", "on");
+    s->skips = pass_has_word(p, "skipping", "on");
     if (!pass_density_box(p, &box) || !pass_declare_images(p)) return false;
     if (!s->skips) return pass_add_to_graph(p);
     return bricks_declare(p, &s->bricks, record_bricks) &&
@@ -63,7 +56,7 @@ static void choose_code(const pass *p) {
     bool software = !device || gpu_get_info(device)->kind == GPU_CPU;
     s->adaptive = gives(p, "tolerance");
     s->teams =
-        !has_word(p, "view", "noise") && ((!software && p->scale < 1) || gives(p, "threads"));
+        !pass_has_word(p, "view", "noise") && ((!software && p->scale < 1) || gives(p, "threads"));
     s->software = software;
 }
 
@@ -107,7 +100,7 @@ static bool march_box(const pass *p, box3 *box) {
     const field *density = pass_density(p);
     const field_grid *grids[16];
     size_t count = field_grids(density, grids, 16);
-    if (has_word(p, "mode", "paper") && count) {
+    if (pass_has_word(p, "mode", "paper") && count) {
         *box = box3_empty();
         for (size_t i = 0; i < count && i < 16; i++)
             if (!grids[i]->repeats) *box = box3_union(*box, grids[i]->box);
@@ -161,7 +154,7 @@ static bool compile_again(pass *p) {
 static bool follow_code(pass *p) {
     march_state *s = p->state, before = *s;
     s->adaptive = s->adaptive || pass_evaluate(p, "tolerance") > 0;
-    s->teams = s->teams || (pass_evaluate(p, "threads") > 1 && !has_word(p, "view", "noise"));
+    s->teams = s->teams || (pass_evaluate(p, "threads") > 1 && !pass_has_word(p, "view", "noise"));
     return (s->adaptive == before.adaptive && s->teams == before.teams) || compile_again(p);
 }
 

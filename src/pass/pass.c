@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "pass/pass_impl.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 pass *pass_create(pass_host *host, const pass_type *type, const char *shader, const char *label) {
@@ -170,6 +171,20 @@ bool pass_set_option(pass *p, const char *name, const char *word) {
             strbuf_text(&list));
     strbuf_free(&list);
     return false;
+}
+
+const char *pass_word(const pass *p, const char *option) {
+    size_t index;
+    if (pass_find_key(p, option, &index) != PASS_OPTION) return "";
+    return p->face->options[index].words[p->options[index]];
+}
+
+bool pass_has_word(const pass *p, const char *option, const char *word) {
+    return strcmp(pass_word(p, option), word) == 0;
+}
+
+uint32_t pass_number(const pass *p, const char *option) {
+    return (uint32_t)strtoul(pass_word(p, option), NULL, 10);
 }
 
 bool pass_set_field(pass *p, const char *name, const field *value) {

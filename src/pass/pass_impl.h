@@ -56,12 +56,21 @@ bool pass_build_part(pass *p);
 
 // ---- help for hooks ---------------------------------------------------------------------------
 
+// The word that an option has now; "": the pass has no such option.
+const char *pass_word(const pass *p, const char *option);
+bool pass_has_word(const pass *p, const char *option, const char *word);
+uint32_t pass_number(const pass *p, const char *option); // of words that are numbers; else 0
+
 // Compiles `shader` with the pass's options, fields and the given defines. Where WITHOUT_FIELDS is
 // among these, the fields' GLSL is left out: then the code is the same whatever they are, and need
 // not be compiled again.
 bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_define *defines,
                   size_t define_count, shader_binary *out);
 gpu_pipeline *pass_create_compute(pass *p, const shader_binary *binary);
+// All of `desc` but its label, code and slots, which are those of both stages: they share one set,
+// in which their bindings are numbered apart.
+gpu_pipeline *pass_create_graphics(pass *p, const shader_binary *vertex,
+                                   const shader_binary *fragment, gpu_graphics_desc desc);
 // A full-screen triangle drawn with a fragment shader to targets of these formats.
 gpu_pipeline *pass_create_fullscreen(pass *p, const shader_binary *fragment,
                                      const gpu_format *formats, size_t count);
@@ -98,6 +107,8 @@ bool pass_record(pass *p);  // both
 graph_image pass_grid_image(const pass_host *host, const field_grid *grid, int index);
 pass *pass_writer(const pass_host *host, graph_image image); // NULL: of no pass declared before
 int pass_find_image(const pass *p, const char *name);        // index in face->images, -1: none
+// An image of its own that it draws to, at the pass's scale.
+graph_image pass_add_target(pass *p, const char *name, gpu_format format);
 bool pass_declare_images(pass *p); // histories and outputs at the pass's scale
 // The same, with images of its own that it writes besides.
 bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count);

@@ -9,7 +9,6 @@
 #include "pass/pass_impl.h"
 #include "pass/shadow_maps_parts.h"
 #include "scene/surfaces.h"
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -40,12 +39,6 @@ static shadow_state *state_of(const pass *p) {
 
 // ---- declaring --------------------------------------------------------------------------------
 
-static uint32_t number_of(const pass *p, const char *option) {
-    size_t index;
-    pass_find_key(p, option, &index);
-    return (uint32_t)strtoul(p->face->options[index].words[p->options[index]], NULL, 10);
-}
-
 static void add_views(shadow_state *s, uint32_t count, uint32_t size) {
     for (uint32_t i = 0; i < count; i++) s->sizes[s->views++] = size;
 }
@@ -64,19 +57,19 @@ static void list_views(pass *p) {
     shadow_state *s = state_of(p);
     const scene *around = p->host->scene;
     s->declared = around ? (uint32_t)around->light_count + 1 : 1;
-    s->cascades = number_of(p, "cascades");
-    s->points = number_of(p, "points");
-    add_views(s, s->cascades, number_of(p, "size"));
+    s->cascades = pass_number(p, "cascades");
+    s->points = pass_number(p, "points");
+    add_views(s, s->cascades, pass_number(p, "size"));
     uint32_t most = DRAWN_MAX_VIEWS - FACES * s->points, competing = count_lights(p) - 1;
     for (uint32_t i = 0; i < s->declared; i++) {
         bool spot = i && around->lights[i - 1].kind == SCENE_SPOT, fits = spot && s->views < most;
         s->spots[i] = fits ? (int)s->views : -1;
-        add_views(s, fits, number_of(p, "spot_size"));
+        add_views(s, fits, pass_number(p, "spot_size"));
         competing -= spot;
     }
     if (s->points > competing) s->points = competing;
     s->fixed = s->views;
-    add_views(s, FACES * s->points, number_of(p, "point_size"));
+    add_views(s, FACES * s->points, pass_number(p, "point_size"));
 }
 
 // The large ones first.
@@ -142,12 +135,6 @@ bool shadow_maps_declare(pass *p) {
            add_image(p, "shadow_views", GPU_RGBA32F, TABLE_WIDTH, rows) && pass_add_to_graph(p);
 }
 
-static bool looks_for_lights(const pass *p) {
-    size_t index;
-    if (pass_find_key(p, "shadows_by", &index) != PASS_OPTION) return true; // a user's shader
-    return strcmp(p->face->options[index].words[p->options[index]], "rays") != 0;
-}
-
 // What readers that ask rays have no use for is not drawn. Who else is there asks for all.
 bool shadow_maps_complete(pass *p) {
     shadow_state *s = state_of(p);
@@ -158,7 +145,7 @@ bool shadow_maps_complete(pass *p) {
         for (size_t k = 0; k < reader->face->image_count && reader != p; k++) {
             if (reader->images[k].id != atlas) continue;
             readers++;
-            looking += looks_for_lights(reader);
+            looking += !pass_has_word(reader, "shadows_by", "rays"); // a user's shader, too
         }
     }
     s->lights = readers == 0 || looking > 0;
@@ -378,18 +365,14 @@ static const pass *maps_of(const pass *p) {
     return maps && pass_is(maps, "shadow_maps") ? maps : NULL;
 }
 
-static bool is_word(const pass *p, const char *option, const char *word) {
-    size_t index;
-    pass_find_key(p, option, &index);
-    return strcmp(p->face->options[index].words[p->options[index]], word) == 0;
-}
-
 // A lamp that can have no map need not be asked for one.
 static bool asks_for_lamps(pass *p, const pass *maps) {
     bool can =
         maps && state_of(maps)->points > 0 && maps->images[pass_find_image(maps, "lamps")].id != 0;
-    if (!can && is_word(p, "lamp_shadows", "maps")) pass_set_option(p, "lamp_shadows", "none");
-    return can && p->images[pass_find_image(p, "lamps")].id && !is_word(p, "lamp_shadows", "none");
+    if (!can && pass_has_word(p, "lamp_shadows", "maps"))
+        pass_set_option(p, "lamp_shadows", "none");
+    return can && p->images[pass_find_image(p, "lamps")].id &&
+           !pass_has_word(p, "lamp_shadows", "none");
 }
 
 static const char *choose_way(const pass *p, const pass *maps) {
@@ -400,8 +383,9 @@ static const char *choose_way(const pass *p, const pass *maps) {
 void pass_choose_shadows(pass *p) {
     static const char *const names[] = {"shadow_atlas", "shadow_views"};
     const pass *maps = maps_of(p);
-    if (is_word(p, "shadows_by", "auto")) pass_set_option(p, "shadows_by", choose_way(p, maps));
-    if (asks_for_lamps(p, maps) || !is_word(p, "shadows_by", "rays")) return;
+    if (pass_has_word(p, "shadows_by", "auto"))
+        pass_set_option(p, "shadows_by", choose_way(p, maps));
+    if (asks_for_lamps(p, maps) || !pass_has_word(p, "shadows_by", "rays")) return;
     for (size_t i = 0; i < COUNT_OF(names); i++)
         p->images[pass_find_image(p, names[i])] = (graph_image){0};
 }

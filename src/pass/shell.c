@@ -21,17 +21,11 @@ void pass_shell_open(pass *p, const scene_explosions *list) {
     shell_state_of(p)->list = list;
 }
 
-const char *shell_option(const pass *p, const char *name) {
-    size_t index;
-    pass_find_key(p, name, &index);
-    return p->face->options[index].words[p->options[index]];
-}
-
 // ---- declaring and building -------------------------------------------------------------------
 
 bool shell_declare(pass *p) {
     shell_state *s = shell_state_of(p);
-    s->drawn = strcmp(shell_option(p, "mode"), "mesh") == 0;
+    s->drawn = pass_has_word(p, "mode", "mesh");
     return s->drawn ? shell_declare_mesh(p) : pass_declare_images(p) && pass_add_to_graph(p);
 }
 

@@ -4,13 +4,12 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/shell_parts.h"
-#include <stdlib.h>
 #include <string.h>
 
 enum { FACES = 6, SIDES = 2, CORNERS_OF_SQUARE = 6 }; // a square is two triangles
 
 static uint32_t corners(const pass *p) {
-    return (uint32_t)strtoul(shell_option(p, "corners"), NULL, 10);
+    return pass_number(p, "corners");
 }
 
 static uint32_t vertex_count(const pass *p) { // that are pushed out
@@ -22,27 +21,17 @@ static uint32_t drawn_count(const pass *p) {
 }
 
 shader_define shell_corners_define(const pass *p) {
-    return (shader_define){"SHELL_CORNERS", shell_option(p, "corners")};
+    return (shader_define){"SHELL_CORNERS", pass_word(p, "corners")};
 }
 
 // ---- declaring and building -------------------------------------------------------------------
 
-static graph_image add_target(pass *p, const char *name, gpu_format format) {
-    return graph_add_image(p->host->graph,
-                           &(graph_image_desc){
-                               .name = arena_format(p->host->memory, "%s.%s", p->label, name),
-                               .format = format,
-                               .scale = p->scale,
-                               .target = true,
-                           });
-}
-
 bool shell_declare_mesh(pass *p) {
     shell_state *s = shell_state_of(p);
     int image = pass_find_image(p, "image");
-    p->images[image] = add_target(p, "image", p->formats[image]);
-    s->z = add_target(p, "z", GPU_D32F);
-    s->drawn_front = add_target(p, "drawn_front", GPU_R32F);
+    p->images[image] = pass_add_target(p, "image", p->formats[image]);
+    s->z = pass_add_target(p, "z", GPU_D32F);
+    s->drawn_front = pass_add_target(p, "drawn_front", GPU_R32F);
     const graph_image own[] = {s->z, s->drawn_front};
     return p->images[image].id && s->z.id && s->drawn_front.id && pass_declare_images(p) &&
            pass_add_to_graph_with(p, own, COUNT_OF(own));
@@ -55,41 +44,18 @@ bool shell_check_mesh(pass *p) {
            pass_compile(p, "pass/shell.frag", SHADER_FRAGMENT, &define, 1, &s->fragment);
 }
 
-// The two stages share one set; their bindings are numbered apart.
-static bool merge_slots(const pass *p, const shell_state *s, gpu_slot out[GPU_MAX_SLOTS],
-                        size_t *count) {
-    const shader_binary *stages[] = {&s->vertex, &s->fragment};
-    *count = 0;
-    for (size_t stage = 0; stage < COUNT_OF(stages); stage++)
-        for (size_t i = 0; i < stages[stage]->slot_count; i++) {
-            if (*count == GPU_MAX_SLOTS)
-                return err_set("%s: more than %d bindings", p->label, GPU_MAX_SLOTS);
-            out[(*count)++] = stages[stage]->slots[i].slot;
-        }
-    return true;
-}
-
 bool shell_build_mesh(pass *p) {
     shell_state *s = shell_state_of(p);
-    gpu_slot slots[GPU_MAX_SLOTS];
-    size_t slot_count;
-    if (!shell_check_mesh(p) || !merge_slots(p, s, slots, &slot_count)) return false;
+    if (!shell_check_mesh(p)) return false;
     s->vertex_block = arena_alloc(p->host->memory, pass_block_size(&s->vertex) + 16);
     s->fragment_block = arena_alloc(p->host->memory, pass_block_size(&s->fragment) + 16);
-    s->draw = gpu_pipeline_create_graphics(p->host->device,
-                                           &(gpu_graphics_desc){
-                                               .label = p->label,
-                                               .vertex_code = s->vertex.code,
-                                               .vertex_size = s->vertex.size,
-                                               .fragment_code = s->fragment.code,
-                                               .fragment_size = s->fragment.size,
-                                               .slots = slots,
-                                               .slot_count = slot_count,
-                                               .colors = {p->formats[pass_find_image(p, "image")],
-                                                          p->formats[pass_find_image(p, "front")]},
-                                               .depth = GPU_D32F,
-                                               .blend = true,
-                                           });
+    s->draw = pass_create_graphics(p, &s->vertex, &s->fragment,
+                                   (gpu_graphics_desc){
+                                       .colors = {p->formats[pass_find_image(p, "image")],
+                                                  p->formats[pass_find_image(p, "front")]},
+                                       .depth = GPU_D32F,
+                                       .blend = true,
+                                   });
     return s->draw != NULL;
 }
 
@@ -167,7 +133,7 @@ static bool draw_side(pass *p, gpu_draw_desc *target, const drawing *what) {
 static bool draw_shells(pass *p, gpu_draw_desc *target) {
     const shell_state *s = shell_state_of(p);
     uint32_t order[PASS_SHELL_MOST];
-    int32_t first = strcmp(shell_option(p, "sides"), "front") == 0 ? 0 : 1;
+    int32_t first = pass_has_word(p, "sides", "front") ? 0 : 1;
     if (!fill_stage(p, &s->vertex, s->vertex_block) ||
         !fill_stage(p, &s->fragment, s->fragment_block))
         return false;

@@ -32,7 +32,6 @@ typedef struct shell_state {
 } shell_state;
 
 shell_state *shell_state_of(pass *p);
-const char *shell_option(const pass *p, const char *name); // the word that was chosen
 bool shell_run(pass *p, shell_stage stage, uint32_t x, uint32_t y);
 
 // ---- shell_mesh.c: drawn ------------------------------------------------------------------------

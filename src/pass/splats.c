@@ -10,7 +10,6 @@
 #include "pass/builtin.h"
 #include "pass/particles.h"
 #include "pass/splats_parts.h"
-#include <stdlib.h>
 #include <string.h>
 
 static const char *const stage_defines[SPLATS_STAGES] = {
@@ -108,10 +107,7 @@ static uint32_t record_count(const splats_state *s) {
 }
 
 uint32_t splats_entries(const pass *p) {
-    size_t index;
-    pass_find_key(p, "entries", &index);
-    const char *each = p->face->options[index].words[p->options[index]];
-    return record_count(splats_of(p)) * (uint32_t)strtoul(each, NULL, 10);
+    return record_count(splats_of(p)) * pass_number(p, "entries");
 }
 
 static void picture_size(const pass *p, uint32_t size[3]) {

@@ -2,7 +2,6 @@
 #include "base/memory.h"
 #include "pass/builtin.h"
 #include "pass/pass_impl.h"
-#include <stdlib.h>
 
 static bool add_image(pass *p, const char *output, uint32_t side) {
     int image = pass_find_image(p, output);
@@ -17,11 +16,8 @@ static bool add_image(pass *p, const char *output, uint32_t side) {
 }
 
 bool stack_declare(pass *p) {
-    size_t index;
     box3 box;
-    pass_find_key(p, "target", &index);
-    const char *word = p->face->options[index].words[p->options[index]];
-    uint32_t side = (uint32_t)strtoul(word, NULL, 10);
+    uint32_t side = pass_number(p, "target");
     if (!pass_density_box(p, &box)) return false;
     if (side && (!add_image(p, "color", side) || !add_image(p, "edge", side))) return false;
     return pass_declare_images(p) && pass_add_to_graph(p);
