@@ -4,6 +4,7 @@
 #ifndef LIB_INSTANCE_GLSL
 #define LIB_INSTANCE_GLSL
 #include "shared.h"
+#include "lib/turn.glsl"
 
 struct instance_facts {
     vec4 state;   // numbers of the effect's own
@@ -23,10 +24,8 @@ void instance_say(instance_entry e) {
     instance_said = instance_facts(e.state, uintBitsToFloat(e.kind.z), float(e.kind.y), e.color.w);
 }
 
-// A point of its own space in that of all.
-vec3 instance_point(instance_entry e, vec3 p) {
-    vec3 twice = 2.0 * cross(e.turn.xyz, p * e.place.w);
-    return e.place.xyz + p * e.place.w + e.turn.w * twice + cross(e.turn.xyz, twice);
-}
+// From its own space to that of all.
+vec3 instance_vector(instance_entry e, vec3 v) { return turn_vector(e.turn, v * e.place.w); }
+vec3 instance_point(instance_entry e, vec3 p) { return e.place.xyz + instance_vector(e, p); }
 
 #endif

@@ -156,17 +156,16 @@ static bool place(drawn *d, drawn_body *body) {
 
 // ---- choosing ---------------------------------------------------------------------------------
 
-static void fill_block(const drawn *d, const drawn_body *body, drawn_step step, uint32_t views,
-                       float lod) {
+static void fill_block(const drawn *d, const drawn_body *body, drawn_step step, float lod) {
     const shader_binary *binary = &d->binaries[step];
     unsigned char *block = d->blocks[step];
     mat4 matrix = GLM_MAT4_IDENTITY_INIT;
     if (body->instances) glm_mat4_copy(body->places[0].matrix, matrix);
     const float scale = glm_vec3_norm(matrix[0]);
-    const uint32_t numbers[] = {body->count, views, bucket_count(body), block_count(body),
+    const uint32_t numbers[] = {body->count, bucket_count(body), block_count(body),
                                 body->command_count};
-    static const char *const names[COUNT_OF(numbers)] = {
-        "instance_count", "view_count", "bucket_count", "block_count", "command_count"};
+    static const char *const names[COUNT_OF(numbers)] = {"instance_count", "bucket_count",
+                                                         "block_count", "command_count"};
     for (size_t i = 0; i < COUNT_OF(numbers); i++)
         pass_write_member(binary, block, names[i], &numbers[i], sizeof numbers[i]);
     pass_write_member(binary, block, "place", matrix, sizeof matrix);
@@ -190,7 +189,7 @@ static bool run(drawn *d, const drawn_body *body, drawn_step step, uint32_t view
     gpu_binding bindings[GPU_MAX_SLOTS];
     gpu_dispatch_desc desc = {
         .pipeline = d->pipelines[step], .bindings = bindings, .threads = {threads, views, 1}};
-    fill_block(d, body, step, views, lod);
+    fill_block(d, body, step, lod);
     return pass_bind(d->p, &d->binaries[step], d->blocks[step], overrides, COUNT_OF(overrides),
                      bindings, &desc.binding_count) &&
            gpu_dispatch(d->p->host->device, &desc);

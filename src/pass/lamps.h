@@ -8,7 +8,7 @@
 // the buffers, pass_prepare runs the lists' shaders.
 //
 // An option `lamps_by` of the reader says how: auto, all (every lamp for every pixel), tiles, and
-// volumes where the reader draws them itself (pass/lamps_volumes.h).
+// volumes where the reader draws them itself (lamps_volumes.c).
 #pragma once
 #include "pass/pass.h"
 

@@ -5,7 +5,6 @@
 layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 #include "shared.h"
 uniform uint instance_count;
-uniform uint view_count;
 uniform uint bucket_count;
 uniform uint block_count; // of DRAWN_BLOCK instances each
 

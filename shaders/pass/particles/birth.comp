@@ -95,10 +95,9 @@ uint birth_instance(uint id) {
 
 // From the instance's own space to the world.
 void birth_place_at(instance_entry e, inout vec3 p, inout vec3 way, inout vec3 motion) {
-    vec3 from = instance_point(e, vec3(0.0));
-    way = mat3(birth_group) * (instance_point(e, way) - from);
+    way = mat3(birth_group) * instance_vector(e, way);
     way /= max(length(way), 1e-20);
-    motion = mat3(birth_group) * (instance_point(e, motion) - from);
+    motion = mat3(birth_group) * instance_vector(e, motion);
     p = (birth_group * vec4(instance_point(e, p), 1.0)).xyz;
 }
 #endif

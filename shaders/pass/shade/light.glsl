@@ -90,15 +90,12 @@ vec3 sky_light(shaded s, vec2 chance) {
 // Radiance that the surface mirrors of the sky: the rougher, the more of it is seen at once.
 vec3 sky_mirrored(shaded s) {
     if (!shading_is_physical(s) || s.specular + s.metallic <= 0.0) return vec3(0.0);
-    vec3 way = reflect(-s.view, s.normal), wide = sky_irradiance(way), given;
+    vec3 way = reflect(-s.view, s.normal), wide = sky_irradiance(way), given = sky_radiance(way);
 #if MANY_RAYS
-    given = sky_radiance(way);
     if (sky_samples > 0) {
         bvh_hit hit = bvh_trace(s.position, way, 0.0, 1e9);
         if (hit.distance >= 0.0) given = sky_from_mesh(hit);
     }
-#else
-    given = sky_radiance(way);
 #endif
     return shading_mirrored(s) * mix(given, wide, s.roughness);
 }
