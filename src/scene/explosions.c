@@ -15,7 +15,7 @@ bool scene_explosion_check(const scene_explosion *one) {
         {"position.z", (double)one->place.z, -1e6, 1e6},
         {"size", (double)one->size, 0, (double)most},
         {"life", (double)one->life, 1e-6, (double)most},
-        {"seed", one->seed, 0, 16777215},
+        {"seed", one->seed, 0, SCENE_EXPLOSIONS_SEED},
     };
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         if (!(numbers[i].value >= numbers[i].least && numbers[i].value <= numbers[i].most))
@@ -39,11 +39,16 @@ void scene_explosion_chance(const scene_explosion *one, float out[4]) {
     }
 }
 
+uint32_t scene_explosions_seed(const scene_explosions *list) {
+    return (uint32_t)(list->gone + list->count + 1) & SCENE_EXPLOSIONS_SEED;
+}
+
 bool scene_explosions_add(scene_explosions *list, const scene_explosion *one) {
     if (list->count == SCENE_EXPLOSIONS_MAX) {
         if (list->fixed == list->count) return false;
         scene_explosion *first = &list->all[list->fixed];
         list->count--;
+        list->gone++;
         memmove(first, first + 1, (list->count - list->fixed) * sizeof *first);
     }
     list->all[list->count++] = *one;
@@ -52,6 +57,7 @@ bool scene_explosions_add(scene_explosions *list, const scene_explosion *one) {
 
 void scene_explosions_reset(scene_explosions *list) {
     list->count = list->fixed;
+    list->gone = 0;
 }
 
 size_t scene_explosions_alive(const scene_explosions *list, double time, double life,

@@ -123,6 +123,9 @@ bool value_get_vector(lua_State *L, int table, const char *who, const char *key,
 // The table's box = { min, max }; false when absent.
 bool value_get_box(lua_State *L, int table, const char *who, box3 *out);
 void value_push_box(lua_State *L, box3 box); // { min = {x, y, z}, max = {x, y, z} }
+// key = number, key = {number, ...} of the table at the top of the stack.
+void value_put_number(lua_State *L, const char *key, double value);
+void value_put_numbers(lua_State *L, const char *key, const float *values, int count);
 int value_word(lua_State *L, int index, const char *who, const char *key, const char *const *words,
                size_t count);
 // Index among the words of the object's key; that of its default when absent.

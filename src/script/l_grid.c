@@ -111,21 +111,10 @@ static int l_raw(lua_State *L) {
 
 // ---- what a sequence has ----------------------------------------------------------------------
 
-static void push_vector(lua_State *L, float3 v) {
-    const float values[] = {v.x, v.y, v.z};
-    lua_createtable(L, 3, 0);
-    for (int i = 0; i < 3; i++) {
-        lua_pushnumber(L, (double)values[i]);
-        lua_rawseti(L, -2, i + 1);
-    }
-}
-
 void value_push_box(lua_State *L, box3 box) {
     lua_createtable(L, 0, 2);
-    push_vector(L, box.min);
-    lua_setfield(L, -2, "min");
-    push_vector(L, box.max);
-    lua_setfield(L, -2, "max");
+    value_put_numbers(L, "min", (const float[]){box.min.x, box.min.y, box.min.z}, 3);
+    value_put_numbers(L, "max", (const float[]){box.max.x, box.max.y, box.max.z}, 3);
 }
 
 // burst.box, burst.frames, burst.duration; every other name is a grid's.

@@ -40,33 +40,19 @@ static uint32_t check_index(lua_State *L, int index, const scene_instances *s) {
 
 // ---- get --------------------------------------------------------------------------------------
 
-static void set_numbers(lua_State *L, const char *key, const float *values, int count) {
-    lua_createtable(L, count, 0);
-    for (int i = 0; i < count; i++) {
-        lua_pushnumber(L, (lua_Number)values[i]);
-        lua_rawseti(L, -2, i + 1);
-    }
-    lua_setfield(L, -2, key);
-}
-
-static void set_number(lua_State *L, const char *key, float value) {
-    lua_pushnumber(L, (lua_Number)value);
-    lua_setfield(L, -2, key);
-}
-
 static int l_get(lua_State *L) {
     const scene_instances *s = self(L, "get");
     const struct instance_entry *e = &scene_instances_entries(s)[check_index(L, 2, s)];
     float random;
     memcpy(&random, &e->kind.v[2], sizeof random);
     lua_createtable(L, 0, 9);
-    set_numbers(L, "position", e->place.v, 3);
-    set_number(L, "scale", e->place.v[3]);
-    set_number(L, "yaw", instance_yaw(e));
-    set_numbers(L, "color", e->color.v, 3);
-    set_number(L, "glow", e->color.v[3]);
-    set_numbers(L, "state", e->state.v, 4);
-    set_number(L, "random", random);
+    value_put_numbers(L, "position", e->place.v, 3);
+    value_put_number(L, "scale", (double)e->place.v[3]);
+    value_put_number(L, "yaw", (double)instance_yaw(e));
+    value_put_numbers(L, "color", e->color.v, 3);
+    value_put_number(L, "glow", (double)e->color.v[3]);
+    value_put_numbers(L, "state", e->state.v, 4);
+    value_put_number(L, "random", (double)random);
     lua_pushinteger(L, e->kind.v[0] == INSTANCE_HIDDEN ? 0 : (lua_Integer)e->kind.v[0] + 1);
     lua_setfield(L, -2, "kind");
     return 1;
@@ -83,7 +69,7 @@ static int push_values(lua_State *L, int table, const char *who) {
     if (!value_is_plain_table(L, table))
         vm_error(L, "%s: what is set is a table, as in { kind = 2, scale = 1 }; got a %s", who,
                  luaL_typename(L, table));
-    luaL_checkstack(L, INSTANCE_KEYS + 8, who);
+    luaL_checkstack(L, 2 * INSTANCE_KEYS + LUA_MINSTACK, who); // lists stand beside them in set_all
     int base = lua_gettop(L) + 1, given = 0, known = 0;
     for (int k = 0; k < INSTANCE_KEYS; k++)
         known += value_get(L, table, instance_key_names[k]) != LUA_TNIL;

@@ -65,7 +65,7 @@ static int l_explosions(lua_State *L) {
     scene_explosions *list = arena_alloc(script_memory(L), sizeof *list);
     for (int i = 1; i <= (int)count; i++) {
         lua_rawgeti(L, 1, i);
-        scene_explosion one = read_one(L, i, 0, (uint32_t)i);
+        scene_explosion one = read_one(L, i, 0, scene_explosions_seed(list));
         scene_explosions_add(list, &one);
         lua_pop(L, 1);
     }
@@ -87,24 +87,10 @@ static int l_add(lua_State *L) {
                     "stand in the list itself");
     if (lua_gettop(L) != 2) vm_error(L, "explosions:add takes a table, as in { size = 2 }");
     field_context context = script_context(L);
-    scene_explosion one = read_one(L, 0, context.time, (uint32_t)list->count + 1);
+    scene_explosion one = read_one(L, 0, context.time, scene_explosions_seed(list));
     if (!scene_explosions_add(list, &one))
         vm_error(L, "explosions:add: the list is full: it began with %d", SCENE_EXPLOSIONS_MAX);
     return 0;
-}
-
-static void set_vector(lua_State *L, const char *key, const float v[3]) {
-    lua_createtable(L, 3, 0);
-    for (int i = 0; i < 3; i++) {
-        lua_pushnumber(L, (double)v[i]);
-        lua_rawseti(L, -2, i + 1);
-    }
-    lua_setfield(L, -2, key);
-}
-
-static void set_number(lua_State *L, const char *key, double value) {
-    lua_pushnumber(L, value);
-    lua_setfield(L, -2, key);
 }
 
 static void push_one(lua_State *L, const scene_explosion *one) {
@@ -112,13 +98,13 @@ static void push_one(lua_State *L, const scene_explosion *one) {
     float chance[4];
     scene_explosion_chance(one, chance);
     lua_createtable(L, 0, 7);
-    set_vector(L, "position", place);
-    set_vector(L, "shift", chance);
-    set_number(L, "random", (double)chance[3]);
-    set_number(L, "time", one->time);
-    set_number(L, "size", (double)one->size);
-    set_number(L, "life", (double)one->life);
-    set_number(L, "seed", one->seed);
+    value_put_numbers(L, "position", place, 3);
+    value_put_numbers(L, "shift", chance, 3);
+    value_put_number(L, "random", (double)chance[3]);
+    value_put_number(L, "time", one->time);
+    value_put_number(L, "size", (double)one->size);
+    value_put_number(L, "life", (double)one->life);
+    value_put_number(L, "seed", one->seed);
 }
 
 // list:get(2): the second of the list. Nil: there is none.

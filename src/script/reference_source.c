@@ -204,7 +204,7 @@ const script_object reference_sources[] = {
         KEY("position", "0, 0, 0 m", "where it bursts"),
         KEY("size", "1", "factor of the radius"),
         KEY("life", "1", "factor of how long it takes"),
-        KEY("seed", "number [0, 16777215]", "no two look alike; without: its number in the list")),
+        KEY("seed", "number [0, 16777215]", "no two look alike; without: its number among all that the list has had")),
      .members = KEYS(
         KEY("add", "blasts:add { position = {x, y, z}, size = 2 }",
             "one more from now on, while the effect runs: from a function of fx:on_frame, fx:on_key or "

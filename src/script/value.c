@@ -362,6 +362,20 @@ const field *value_uniform(lua_State *L, int index, const char *who, const char 
     return node;
 }
 
+void value_put_number(lua_State *L, const char *key, double value) {
+    lua_pushnumber(L, value);
+    lua_setfield(L, -2, key);
+}
+
+void value_put_numbers(lua_State *L, const char *key, const float *values, int count) {
+    lua_createtable(L, count, 0);
+    for (int i = 0; i < count; i++) {
+        lua_pushnumber(L, (double)values[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setfield(L, -2, key);
+}
+
 const field *value_get_uniform(lua_State *L, int table, const char *who, const char *key,
                                int components, const field *otherwise) {
     const field *node = otherwise;

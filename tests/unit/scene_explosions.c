@@ -50,8 +50,10 @@ static void of_a_full_list_the_first_that_came_makes_room(void **state) {
     assert_int_equal(list->count, SCENE_EXPLOSIONS_MAX);
     assert_true(list->all[2].time == 2 && list->all[3].time == 5);
     assert_true(list->all[SCENE_EXPLOSIONS_MAX - 1].time == SCENE_EXPLOSIONS_MAX + 1);
+    assert_int_equal(scene_explosions_seed(list), SCENE_EXPLOSIONS_MAX + 3);
     scene_explosions_reset(list);
     assert_int_equal(list->count, 3);
+    assert_int_equal(scene_explosions_seed(list), 4);
     list->fixed = list->count = SCENE_EXPLOSIONS_MAX;
     scene_explosion one = at(0);
     assert_false(scene_explosions_add(list, &one));

@@ -3,7 +3,6 @@
 #include "base/memory.h"
 #include "script_helper.h"
 
-#include "effect/events.h"
 #include <math.h>
 
 #define HEAD "local fx = effect { name = 'burst', fps = 10, frames = 50 }\n"
@@ -37,6 +36,7 @@ static void layers_name_mistakes(void **state) {
     refused("layers { }", "got 0 of them");
     refused("layers { {1} }", "number 1 is none");
     refused("layers { {2, 1}, dimensions = 4 }", "'dimensions' is 2 or 3");
+    refused("layers { {2, 1}, noise = 'worley' }", "'noise' is perlin, simplex, value or worley");
     refused("layers { {2, 1}, sed = 4 }", "sed");
 }
 
@@ -58,15 +58,6 @@ static void a_list_tells_what_it_holds(void **state) {
     effect_destroy(e);
 }
 
-static double status(const effect *e, const char *name) {
-    const effect_status *all;
-    size_t count = effect_statuses(e, &all);
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(all[i].name, name) == 0) return all[i].value;
-    fail_msg("no status '%s'", name);
-    return 0;
-}
-
 static void what_came_is_forgotten_when_time_goes_back(void **state) {
     (void)state;
     effect *e = helper_accepts(HEAD,
@@ -85,10 +76,10 @@ static void what_came_is_forgotten_when_time_goes_back(void **state) {
         double frame, count, last, size;
     } draws[] = {{5, 1, 9, 1}, {15, 2, 1, 3}, {30, 3, 2, 3}, {3, 1, 9, 1}, {15, 2, 1, 3}};
     for (size_t i = 0; i < COUNT_OF(draws); i++) {
-        if (!effect_rehearse(e, draws[i].frame)) fail_msg("%s", err_get());
-        assert_true(status(e, "count") == draws[i].count);
-        assert_true(status(e, "last") == draws[i].last);
-        assert_true(status(e, "size") == draws[i].size);
+        helper_run(e, draws[i].frame);
+        assert_true(helper_status(e, "count") == draws[i].count);
+        assert_true(helper_status(e, "last") == draws[i].last);
+        assert_true(helper_status(e, "size") == draws[i].size);
     }
     effect_destroy(e);
 }
