@@ -103,7 +103,10 @@ static void take(effect *e, const effect_event *list, size_t count) {
     sort(taken, count);
     double from;
     size_t first = first_difference(taken, count, s->events, s->count, &from);
-    if (first < s->next || from <= time_of(e, s->frame - 1) + SOON) s->frame = (double)NAN;
+    if (first < s->next || from <= time_of(e, s->frame - 1) + SOON) {
+        s->frame = (double)NAN;
+        s->next = 0;
+    }
     effect_forget_moments_from(e, from);
     mem_free(s->events);
     s->events = taken;

@@ -157,6 +157,8 @@ static void the_scripts_own_events_are_a_control(void **state) {
     assert_true(effect_set(e, "effect.events", "1 key f; 1.5 key f"));
     helper_run(e, 40);
     is(e, "keys", 2);
+    assert_true(effect_set(e, "effect.events", ""));
+    helper_is_set(e, "effect.events", "");
     assert_true(effect_reset(e, "effect.events"));
     helper_is_set(e, "effect.events", "1 click 1 2 0; 2 key f 0.25 0.5");
     helper_run(e, 40);
