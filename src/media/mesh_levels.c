@@ -44,7 +44,7 @@ static void add_slots(simplifier *s, const mesh_part *part) {
     for (uint32_t i = 0; i < part->count; i++) s->slots[s->count++] = part->first + i;
 }
 
-// The group of a part: `texture` is its own, or all that have none are one.
+// The group that begins with a part: it alone if it has a texture, else all that have none.
 static void begin_group(simplifier *s, uint32_t index) {
     const mesh_data *mesh = s->mesh;
     bool textured = mesh->parts[index].texture >= 0;

@@ -45,7 +45,7 @@ const script_object reference_scene[] = {
     {"instances", "scene", "geometry { instances { mesh { \"data/pine.obj\" }, at = scatter { count = 500, size = {120, 120} } } }",
      "many copies of a few meshes, for geometry: each with a place, a look and four numbers of yours, "
      "which may change at any time. When time goes back, and after a reload, they are as they began. Numbers are said for "
-     "all, as {low, high} for chance to pick from, as a list, or by a function(i, place)",
+     "all, as {low, high} for chance to pick from, as a list (so is a pair for two of them), or by a function(i, place)",
      .args = KEYS(KEY("mesh ...", "mesh { \"data/pine.obj\" }", "1 to 64: the kinds 1, 2, 3 ...")),
      .keys = KEYS(
         KEY("at", "scatter { }, { {x, y, z}, ... } m", "where they stand; required"),
