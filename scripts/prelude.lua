@@ -84,6 +84,7 @@ function layers(settings)
   if #settings < 1 or #settings > 8 then layers_wrong("got " .. #settings .. " of them") end
   local flat, sum, all = settings.dimensions == 2, 0, 0
   if not (flat or settings.dimensions == nil or settings.dimensions == 3) then layers_wrong("'dimensions' is 2 or 3") end
+  if type(settings.noise or perlin) ~= "function" then layers_wrong("'noise' is perlin, simplex, value or worley, as in noise = worley") end
   for i, layer in ipairs(settings) do
     if type(layer) ~= "table" or #layer ~= 2 then layers_wrong("number " .. i .. " is none") end
     sum = sum + one_layer(settings, i, layer[1], flat) * layer[2]

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "script/instances.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 const char *const instance_key_names[INSTANCE_KEYS] = {"position", "rotation", "yaw",  "scale",
@@ -9,10 +10,33 @@ const char *const instance_key_names[INSTANCE_KEYS] = {"position", "rotation", "
 
 enum { FARTHEST = 1000000 }; // metres from the origin, as of most numbers here
 
+// A number, text or list of numbers as it stands, else what it is.
+static const char *shown(lua_State *L, int index) {
+    if (lua_isnumber(L, index)) {
+        char text[32];
+        lua_Number number = lua_tonumber(L, index);
+        snprintf(text, sizeof text, "%.9g", isnan(number) ? fabs(number) : number);
+        return lua_pushstring(L, text);
+    }
+    if (lua_isstring(L, index)) return lua_pushfstring(L, "string '%s'", lua_tostring(L, index));
+    size_t count = lua_istable(L, index) ? lua_rawlen(L, index) : 0;
+    if (count < 1 || count > 8) return lua_pushfstring(L, "a %s", luaL_typename(L, index));
+    const char *list = "";
+    for (size_t i = 1; i <= count; i++) {
+        lua_rawgeti(L, index, (lua_Integer)i);
+        bool nested = lua_istable(L, -1);
+        list = lua_pushfstring(L, i == 1 ? "%s%s" : "%s, %s", list,
+                               nested ? "{...}" : shown(L, lua_gettop(L)));
+    }
+    return lua_pushfstring(L, "{%s}", list);
+}
+
 static _Noreturn void refuse(lua_State *L, int index, const char *who, instance_key key,
                              const char *accepted) {
+    luaL_checkstack(L, 2 * LUA_MINSTACK, NULL);
+    index = lua_absindex(L, index);
     vm_error(L, "%s: '%s' of an instance is %s; got %s", who, instance_key_names[key], accepted,
-             lua_isnumber(L, index) ? lua_tostring(L, index) : luaL_typename(L, index));
+             shown(L, index));
 }
 
 static int read_numbers(lua_State *L, int index, const char *who, instance_key key, int least,
@@ -50,6 +74,7 @@ static void set_rotation(struct instance_entry *entry, const float degrees[3]) {
 
 static void read_kind(lua_State *L, int index, const char *who, size_t kinds,
                       struct instance_entry *out) {
+    index = lua_absindex(L, index);
     lua_Number kind = lua_type(L, index) == LUA_TNUMBER ? lua_tonumber(L, index) : -1;
     if (!(kind >= 0 && kind <= (lua_Number)kinds && kind == floor(kind)))
         refuse(L, index, who, INSTANCE_KIND,

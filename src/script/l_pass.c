@@ -272,12 +272,14 @@ static void set_formats(lua_State *L, pass_call *call, int table) {
 
 static void add_source(lua_State *L, pass_call *call, int value) {
     const result_object *source = object_test(L, value, "pass result");
-    if (!source)
-        vm_error(
-            L, "%s: 'from' takes a pass or a list of passes, as in from = {lit, scene}; got %s",
-            call->who,
-            object_test(L, value, "image") ? "an image"
-                                           : lua_pushfstring(L, "a %s", luaL_typename(L, value)));
+    if (!source) {
+        const char *got = lua_pushfstring(L, "a %s", luaL_typename(L, value));
+        if (object_test(L, value, "image")) got = "an image";
+        if (object_test(L, value, "instances")) got = "instances { }, which geometry { } takes";
+        vm_error(L,
+                 "%s: 'from' takes a pass or a list of passes, as in from = {lit, scene}; got %s",
+                 call->who, got);
+    }
     vm_charge_memory(L, 2 * sizeof source);
     pass_add_source(call->pass, source->pass);
 }

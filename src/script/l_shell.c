@@ -22,9 +22,12 @@ static const char *name_of(lua_State *L, int number) {
     return number > 0 ? lua_pushfstring(L, "explosions: number %d", number) : "explosions:add";
 }
 
-static double first_number(lua_State *L, int table, double otherwise) {
-    bool given = lua_rawgeti(L, table, 1) == LUA_TNUMBER;
-    double time = given ? lua_tonumber(L, -1) : otherwise;
+static double first_number(lua_State *L, int table, const char *name, double otherwise) {
+    int type = lua_rawgeti(L, table, 1);
+    if (type != LUA_TNIL && type != LUA_TNUMBER)
+        vm_error(L, "%s: its time is a %s; a number of seconds is accepted", name,
+                 luaL_typename(L, -1));
+    double time = type == LUA_TNUMBER ? lua_tonumber(L, -1) : otherwise;
     lua_pop(L, 1);
     return time;
 }
@@ -40,7 +43,7 @@ static scene_explosion read_one(lua_State *L, int number, double time, uint32_t 
     value_check_keys(L, table, name, script_object_find(who)->keys);
     value_get_vector(L, table, name, "position", place);
     scene_explosion one = {
-        .time = first_number(L, table, time),
+        .time = first_number(L, table, name, time),
         .place = {place[0], place[1], place[2]},
         .size = (float)value_get_number(L, table, name, "size", 1),
         .life = (float)value_get_number(L, table, name, "life", 1),

@@ -57,9 +57,10 @@ static int l_require(lua_State *L) {
     for (size_t i = 0; i < length; i++)
         if (file[i] == '.') file[i] = '/';
     const vm_desc *desc = vm_get_desc(L);
+    bool ours = false;
     if (find_in(L, desc->root, file, path))
         snprintf(shown, sizeof shown, "%s%s", desc->shown, file);
-    else if (find_in(L, desc->library, file, path))
+    else if ((ours = find_in(L, desc->library, file, path)))
         snprintf(shown, sizeof shown, "lib/%s", file);
     else
         fail_missing(L, name, file);
@@ -67,7 +68,7 @@ static int l_require(lua_State *L) {
     lua_pushvalue(L, 1);
     lua_pushboolean(L, false);
     lua_rawset(L, lua_upvalueindex(1));
-    vm_load_chunk(L, path, shown);
+    vm_load_chunk(L, path, shown, ours);
     lua_pushvalue(L, 1);
     lua_call(L, 1, 1);
     if (!lua_toboolean(L, -1)) {

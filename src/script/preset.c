@@ -18,7 +18,7 @@ typedef struct reader { // outlives the errors that Lua raises
 static int read_preset(lua_State *L) {
     reader *r = lua_touserdata(L, 1);
     luaL_checkstack(L, 16, "preset");
-    vm_load_chunk(L, r->path, r->path);
+    vm_load_chunk(L, r->path, r->path, false);
     lua_call(L, 0, 1);
     if (!value_is_plain_table(L, -1))
         vm_error(L, "%s: a preset returns a table, as in return { density = 30 }", r->path);

@@ -73,7 +73,7 @@ static int write_page(lua_State *L) {
     const request *r = lua_touserdata(L, 1);
     char path[PATH_CAP];
     if (!path_join(path, r->folder, "page.lua")) vm_error(L, "%s", err_get());
-    vm_load_chunk(L, path, "report/page.lua");
+    vm_load_chunk(L, path, "report/page.lua", false);
     lua_call(L, 0, 1);
     push(L, r->data, 0);
     lua_call(L, 1, 1);

@@ -44,7 +44,6 @@ struct vm {
     int depth;       // vm_calls that are running
     char where[96];  // "file:line: " of the last tick, or where `stop` was set
     uint64_t random;
-    const char *prelude; // chunk name
 };
 
 // ---- limits -----------------------------------------------------------------------------------
@@ -57,18 +56,18 @@ static double processor_seconds(void) {
 
 static void tick(lua_State *L, lua_Debug *ar);
 
-static bool is_prelude(const vm *v, const lua_Debug *ar) {
-    return v->prelude && strcmp(ar->source, v->prelude) == 0;
-}
+enum { OF_EFFECT = '@', OF_ROIL = '=' }; // first letters of chunk names; OF_ROIL: prelude, library
 
-// The innermost line that a person wrote: not in C, not in the prelude.
+// The innermost line that the effect's author wrote, else one of ours; none in C.
 static bool find_line(lua_State *L, lua_Debug *ar) {
-    const vm *v = vm_of(L);
+    int ours = -1;
     for (int level = 0; lua_getstack(L, level, ar); level++) {
         lua_getinfo(L, "Sl", ar);
-        if (ar->currentline > 0 && !is_prelude(v, ar)) return true;
+        if (ar->currentline <= 0) continue;
+        if (ar->source[0] != OF_ROIL) return true;
+        if (ours < 0) ours = level;
     }
-    return false;
+    return ours >= 0 && lua_getstack(L, ours, ar) && lua_getinfo(L, "Sl", ar);
 }
 
 static void locate(lua_State *L, char *out, size_t size) {
@@ -182,6 +181,19 @@ static bool has_position(const char *text) {
     return digits > 0 && text[n + 1 + digits] == ':';
 }
 
+// "lib/spread.lua:12: ...": says where it went wrong, not what the author did.
+static bool blames_us(lua_State *L, const char *text) {
+    lua_Debug ar;
+    for (int level = 0; level < 32 && lua_getstack(L, level, &ar); level++) {
+        lua_getinfo(L, "S", &ar);
+        if (ar.source[0] == OF_EFFECT) break;
+        size_t n = strlen(ar.short_src);
+        if (ar.source[0] == OF_ROIL && strncmp(text, ar.short_src, n) == 0 && text[n] == ':')
+            return true;
+    }
+    return false;
+}
+
 // Message handler: turns whatever was thrown into text with a traceback below.
 static int describe_error(lua_State *L) {
     const char *message = lua_tostring(L, 1);
@@ -192,7 +204,8 @@ static int describe_error(lua_State *L) {
             message = lua_pushfstring(L, "(error object is a %s value)", luaL_typename(L, 1));
     }
     char where[96] = "", text[MESSAGE_MAX];
-    if (!has_position(message)) locate(L, where, sizeof where);
+    if (!has_position(message) || blames_us(L, message)) locate(L, where, sizeof where);
+    if (strncmp(message, where, strlen(where)) == 0) where[0] = 0;
     snprintf(text, sizeof text, "%s%s", where, message);
     luaL_traceback(L, L, text, 1);
     return 1;
@@ -273,11 +286,11 @@ bool vm_protect(vm *v, lua_CFunction function, void *argument, uint64_t instruct
 // ---- chunks -----------------------------------------------------------------------------------
 
 // Lua cuts chunk names at LUA_IDSIZE: a long path loses its folders instead of its line number.
-static void chunk_name(const char *shown, char out[LUA_IDSIZE]) {
+static void chunk_name(const char *shown, char owner, char out[LUA_IDSIZE]) {
     size_t length = strlen(shown), most = LUA_IDSIZE - 2;
     const char *text = shown;
     if (length > most) text = path_name(shown);
-    snprintf(out, LUA_IDSIZE, "@%s", text);
+    snprintf(out, LUA_IDSIZE, "%c%s", owner, text);
 }
 
 static const char sources[] = "roil.sources"; // of the registry: texts by chunk name
@@ -311,7 +324,7 @@ const char *vm_caller_source(lua_State *L, size_t *line) {
     return text;
 }
 
-void vm_load_chunk(lua_State *L, const char *path, const char *shown) {
+void vm_load_chunk(lua_State *L, const char *path, const char *shown, bool ours) {
     const vm *v = vm_of(L);
     void *data = NULL;
     size_t size = 0;
@@ -328,7 +341,7 @@ void vm_load_chunk(lua_State *L, const char *path, const char *shown) {
         vm_error(L, "%s: compiled Lua; only its text is accepted", shown);
     }
     char name[LUA_IDSIZE];
-    chunk_name(shown, name);
+    chunk_name(shown, ours ? OF_ROIL : OF_EFFECT, name);
     lua_pushcfunction(L, keep_source);
     lua_pushlightuserdata(L, &(source){name, text, length});
     int status = lua_pcall(L, 1, 0, 0);
@@ -340,22 +353,18 @@ void vm_load_chunk(lua_State *L, const char *path, const char *shown) {
 
 typedef struct run_request {
     const char *path, *shown;
+    bool prelude;
 } run_request;
 
 static int run_chunk(lua_State *L) {
     const run_request *r = lua_touserdata(L, 1);
-    vm_load_chunk(L, r->path, r->shown);
+    vm_load_chunk(L, r->path, r->shown, r->prelude);
     lua_call(L, 0, 0);
     return 0;
 }
 
 bool vm_run_file(vm *v, const char *path, const char *shown, uint64_t instructions, bool prelude) {
-    if (prelude) {
-        char name[LUA_IDSIZE];
-        chunk_name(shown, name);
-        v->prelude = arena_string(&v->memory, name);
-    }
-    run_request request = {path, shown};
+    run_request request = {path, shown, prelude};
     return vm_protect(v, run_chunk, &request, instructions);
 }
 

@@ -26,7 +26,7 @@ vm *vm_of(lua_State *L);
 void *vm_user(lua_State *L);
 
 // Reads and runs a file in the sandbox. False with "file:line: message" and a traceback.
-// `prelude`: errors that its functions raise with vm_error name their caller's line instead.
+// `prelude`: errors in its functions name the line of the effect that called them.
 bool vm_run_file(vm *v, const char *path, const char *shown, uint64_t instructions, bool prelude);
 
 // Calls what lies on the stack below `args` arguments. False: message set, nothing is pushed.
@@ -49,7 +49,8 @@ uint64_t vm_random(lua_State *L);
 const char *vm_caller_source(lua_State *L, size_t *line);
 
 // Loads a text chunk and leaves it as a function on the stack. `path` must be confined already.
-void vm_load_chunk(lua_State *L, const char *path, const char *shown);
+// `ours`: as `prelude` of vm_run_file.
+void vm_load_chunk(lua_State *L, const char *path, const char *shown, bool ours);
 const vm_desc *vm_get_desc(lua_State *L);
 
 // The parts of the sandbox; each leaves the stack as it was.

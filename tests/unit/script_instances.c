@@ -40,6 +40,8 @@ static void mistakes_are_named(void **state) {
             "'scale' is a list of 4; one value, {low, high}, a list of 3");
     refused(TWO "scale = 'big' }", "'scale' of an instance is a number, up to 1e6; got string");
     refused(TWO "scale = 0/0 }", "'scale' of an instance is");
+    refused(TWO "kind = 9 }", "0: not shown; got 9");
+    refused(TWO "color = {1, 0/0, 2} }", "got {1, nan, 2}");
     refused(TWO "scale = function(i) return 'x' end }", "'scale' of an instance is");
     refused(TWO "scale = function(i) error('no') end }", "no");
     refused(TWO "kind = 3 }", "a whole number from 1 to 2, by its meshes");

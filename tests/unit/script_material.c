@@ -107,6 +107,9 @@ static void mistakes_have_messages(void **state) {
     refused("local m = mesh { 'm.obj', material = material { specular = perlin { } } }",
             "varies in space");
     refused("local m = material { 1 }", "only named values");
+    refused("local m = material { roughness = 3 }", "'roughness' is 3; accepted: 0 to 1");
+    refused("local m = material { emission = {1, -1, 0} }",
+            "'emission' is -1; accepted: 0 or more");
 }
 
 static int setup(void **state) {

@@ -184,6 +184,19 @@ static void the_prelude_is_never_blamed(void **state) {
     (void)state;
     assert_null(helper_load("effect { }\nlocal x = smoothstep('a', 2, 3)"));
     assert_non_null(strstr(err_get(), "e.lua:2: smoothstep: 'low' must be"));
+    assert_null(helper_load("effect { }\nlocal x = layers { {2, 1}, shift = { {} } }"));
+    assert_non_null(strstr(err_get(), "e.lua:2: "));
+}
+
+static void a_module_of_the_library_is_not_blamed_alone(void **state) {
+    (void)state;
+    assert_null(helper_load("local fx = effect { }\nlocal spread = require 'spread'\n"
+                            "spread { fx = fx, at = { {0, 0}, {1, 0} }, fuel = {{}, {}} }"
+                            ":ignite(1)"));
+    assert_non_null(strstr(err_get(), "e.lua:3: lib/spread.lua:"));
+    assert_null(helper_load("local fx = effect { }\nlocal spread = require 'spread'\n"
+                            "spread { fx = fx }"));
+    assert_non_null(strstr(err_get(), "e.lua:3: spread: 'at' is missing"));
 }
 
 int main(void) {
@@ -194,6 +207,7 @@ int main(void) {
         cmocka_unit_test(a_file_must_be_a_whole_effect),
         cmocka_unit_test(endless_expressions_are_limited),
         cmocka_unit_test(the_prelude_is_never_blamed),
+        cmocka_unit_test(a_module_of_the_library_is_not_blamed_alone),
     };
     return cmocka_run_group_tests(tests, helper_setup, helper_teardown);
 }

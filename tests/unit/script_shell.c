@@ -25,6 +25,7 @@ static void mistakes_are_named(void **state) {
     refused("explosions { {1, sise = 2} }", "unknown key 'sise'; did you mean 'size'?");
     refused("explosions { {1, size = -1} }", "number 1: 'size' is -1; accepted: 0 to");
     refused("explosions { {0/0} }", "'time' is");
+    refused("explosions { {'1'} }", "number 1: its time is a string; a number of seconds");
     refused("local l = {} for i = 1, 1025 do l[i] = {i} end explosions(l)", "at most 1024");
     refused("explosions { {1} }:add { size = 2 }", "adds one while the effect runs");
     refused("explosions { {1} }:latest(1, 65)", "number 65; accepted: 1 to 64");
