@@ -118,7 +118,7 @@ static void add_node(bvh_build *b, bvh_piece *pieces, size_t count, int depth) {
     glm_vec3_copy(box.high, node.high.v);
     size_t left = split(pieces, count, &box, depth);
     if (left == 0) {
-        node.leaf = (uint32_t)count << 28 | b->add_leaf(b->user, pieces, count);
+        node.leaf = bvh_leaf(b->add_leaf(b->user, pieces, count), count);
     } else {
         add_node(b, pieces, left, depth + 1);
         add_node(b, pieces + left, count - left, depth + 1);

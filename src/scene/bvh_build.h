@@ -3,6 +3,17 @@
 #include "shared.h"
 #include <stddef.h>
 
+// What a leaf holds, as a node says it: so many, up to 15, from a place on.
+static inline uint32_t bvh_leaf(uint32_t first, size_t count) {
+    return (uint32_t)count << 28 | first;
+}
+static inline uint32_t bvh_leaf_first(uint32_t leaf) {
+    return leaf & 0xfffffff;
+}
+static inline uint32_t bvh_leaf_end(uint32_t leaf) {
+    return bvh_leaf_first(leaf) + (leaf >> 28);
+}
+
 typedef struct bvh_bounds {
     float low[3], high[3];
 } bvh_bounds;

@@ -59,8 +59,8 @@ static int64_t walk_item(const scene_bvh *b, const struct bvh_instance *item, ra
     for (uint32_t i = item->root; i < item->end;) {
         const struct bvh_node *node = &b->forest.nodes[i];
         i = step(r, node, i, &inside);
-        uint32_t first = node->leaf & 0xfffffff;
-        for (uint32_t k = first; inside && k < first + (node->leaf >> 28); k++)
+        uint32_t first = bvh_leaf_first(node->leaf), end = bvh_leaf_end(node->leaf);
+        for (uint32_t k = first; inside && k < end; k++)
             if (meet_triangle(r, &b->forest.triangles[k])) found = k;
     }
     return found;
@@ -113,8 +113,8 @@ bool scene_pick(const scene_bvh *b, const float origin[3], const float direction
     for (uint32_t i = 0; i < b->top_count;) {
         const struct bvh_node *node = &b->forest.nodes[i];
         i = step(&r, node, i, &inside);
-        uint32_t first = node->leaf & 0xfffffff;
-        for (uint32_t k = first; inside && k < first + (node->leaf >> 28); k++) {
+        uint32_t first = bvh_leaf_first(node->leaf), end = bvh_leaf_end(node->leaf);
+        for (uint32_t k = first; inside && k < end; k++) {
             const struct bvh_instance *item = &b->items[k];
             if (bvh_is_nowhere(item) || !meets_box(&r, &item->low, &item->high)) continue;
             ray inner = to_item(&r, item);

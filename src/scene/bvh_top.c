@@ -48,7 +48,7 @@ static bvh_bounds node_box(const struct bvh_node *node) {
 
 static bvh_bounds leaf_box(const scene_bvh *b, uint32_t leaf) {
     bvh_bounds box = bvh_bounds_empty();
-    for (uint32_t first = leaf & 0xfffffff, i = first; i < first + (leaf >> 28); i++) {
+    for (uint32_t i = bvh_leaf_first(leaf); i < bvh_leaf_end(leaf); i++) {
         bvh_bounds one = item_box(&b->items[i]);
         bvh_bounds_add(&box, &one);
     }
@@ -140,8 +140,8 @@ static void reorder(scene_bvh *b, const uint32_t *order) {
 static void link(scene_bvh *b) {
     for (uint32_t i = 0; i < b->top_count; i++) {
         const struct bvh_node *node = &b->forest.nodes[i];
-        uint32_t first = node->leaf & 0xfffffff;
-        for (uint32_t k = first; k < first + (node->leaf >> 28); k++) b->leaf_of[k] = i;
+        for (uint32_t k = bvh_leaf_first(node->leaf); k < bvh_leaf_end(node->leaf); k++)
+            b->leaf_of[k] = i;
         if (node->leaf) continue;
         b->parents[i + 1] = b->parents[node[1].next] = i;
     }
@@ -153,7 +153,7 @@ static void link(scene_bvh *b) {
 static void build(scene_bvh *b) {
     if (b->item_count <= ONE_LEAF) {
         b->top_count = 1;
-        b->forest.nodes[0] = (struct bvh_node){.next = 1, .leaf = (uint32_t)b->item_count << 28};
+        b->forest.nodes[0] = (struct bvh_node){.next = 1, .leaf = bvh_leaf(0, b->item_count)};
     } else {
         top_build t = {.order = mem_alloc(b->item_count * sizeof *t.order)};
         bvh_build made = {.add_leaf = add_leaf, .user = &t};

@@ -52,8 +52,8 @@ static float walk(const bvh_forest *f, const vec3 from, const vec3 way, bool inv
         const struct bvh_node *n = &f->nodes[node];
         bool inside = enters(n, from, way) < nearest;
         node = inside && n->leaf == 0 ? node + 1 : n->next;
-        uint32_t first = n->leaf & 0xfffffff, last = first + (n->leaf >> 28);
-        for (uint32_t i = first; inside && i < last; i++)
+        uint32_t first = bvh_leaf_first(n->leaf), end = bvh_leaf_end(n->leaf);
+        for (uint32_t i = first; inside && i < end; i++)
             nearest = fminf(nearest, leaves(&f->triangles[i], from, way, inverted));
     }
     return nearest;
