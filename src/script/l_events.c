@@ -178,21 +178,11 @@ void events_assign(lua_State *L) {
 
 // ---- what a ray meets ---------------------------------------------------------------------------
 
-static void set_vector(lua_State *L, const char *key, const float v[3]) {
-    lua_createtable(L, 3, 0);
-    for (int i = 0; i < 3; i++) {
-        lua_pushnumber(L, (double)v[i]);
-        lua_rawseti(L, -2, i + 1);
-    }
-    lua_setfield(L, -2, key);
-}
-
 static void push_hit(lua_State *L, const scene_hit *hit) {
     lua_createtable(L, 0, 6);
-    set_vector(L, "position", hit->position);
-    set_vector(L, "normal", hit->normal);
-    lua_pushnumber(L, (double)hit->distance);
-    lua_setfield(L, -2, "distance");
+    value_put_numbers(L, "position", hit->position, 3);
+    value_put_numbers(L, "normal", hit->normal, 3);
+    value_put_number(L, "distance", (double)hit->distance);
     if (hit->mesh) {
         lua_pushstring(L, hit->mesh->name);
         lua_setfield(L, -2, "mesh");
@@ -284,20 +274,17 @@ static int run_frame(lua_State *L) {
 
 static void push_event(lua_State *L, const effect_happening *what) {
     lua_createtable(L, 0, 6);
-    lua_pushnumber(L, what->event->time);
-    lua_setfield(L, -2, "time");
+    value_put_number(L, "time", what->event->time);
     if (what->event->key[0]) {
         lua_pushstring(L, what->event->key);
         lua_setfield(L, -2, "key");
     }
     if (!what->placed) return;
-    lua_pushnumber(L, (double)what->x);
-    lua_setfield(L, -2, "x");
-    lua_pushnumber(L, (double)what->y);
-    lua_setfield(L, -2, "y");
+    value_put_number(L, "x", (double)what->x);
+    value_put_number(L, "y", (double)what->y);
     lua_createtable(L, 0, 2);
-    set_vector(L, "origin", what->origin);
-    set_vector(L, "direction", what->direction);
+    value_put_numbers(L, "origin", what->origin, 3);
+    value_put_numbers(L, "direction", what->direction, 3);
     lua_setfield(L, -2, "ray");
     if (!what->met) return;
     push_hit(L, &what->hit);
