@@ -17,7 +17,8 @@ enum {
     AXES = 3,
     COLORS = 3,
     LEVELS = 2,           // of the buffers, in lighting/level.glsl
-    LOOKS = 64,           // into each direction, in lighting/around.glsl
+    LOOKS = 64,           // into each direction, in lighting/ways.glsl
+    LOOK_PARTS = 4,       // groups that do them, in lighting/ways.glsl
     FIRE_SLOTS = 16,      // threads for each of 2 x 2 x 2 voxels, in lighting/fire.glsl
     GATHER_THREADS = 512, // for a light
 };
@@ -92,6 +93,7 @@ typedef struct lighting_state {
     uint32_t declared; // lights of the scene, its sun among them
     uint32_t shadow_size, glow_size, fire_count;
     uint32_t shadow_parts; // threads of a ray, in lighting/shadow.glsl
+    uint32_t rays_apart;   // of threads, one traces rays to meshes
     shader_binary binary[STAGES];
     gpu_pipeline *pipeline[STAGES];
     unsigned char *block[STAGES];
@@ -124,7 +126,7 @@ static bool add_grids(pass *p) {
     const uint32_t sizes[GRIDS][3] = {
         [MEDIUM] = {n, n, n},
         [SCATTERING] = {n, n, n},
-        [AROUND] = {WAYS, 1, 1},
+        [AROUND] = {WAYS, LOOK_PARTS, 1},
         [FIRE] = {n, n, 2 * n},
     };
     for (int i = 0; i < GRIDS; i++) {
@@ -204,6 +206,11 @@ static uint32_t choose_shadow_parts(const gpu *device, uint32_t size) {
     return device && gpu_get_info(device)->kind == GPU_CPU ? 8 : size / 4;
 }
 
+// Rays of one subgroup wait for each other; on a processor threads that wait for one cost the same.
+static uint32_t choose_rays_apart(const gpu *device) {
+    return device && gpu_get_info(device)->kind == GPU_CPU ? 1 : 32;
+}
+
 bool lighting_declare(pass *p) {
     const scene *around = p->host->scene;
     lighting_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
@@ -211,6 +218,7 @@ bool lighting_declare(pass *p) {
     s->declared = around ? (uint32_t)around->light_count + 1 : 1;
     s->shadow_size = pass_number(p, "shadow_resolution");
     s->shadow_parts = choose_shadow_parts(p->host->device, s->shadow_size);
+    s->rays_apart = choose_rays_apart(p->host->device);
     s->glow_size = pass_number(p, "glow_resolution");
     s->fire_count = pass_number(p, "fire_lights");
     return pass_density_box(p, &box) && add_images(p) && add_parts(p);
@@ -226,6 +234,7 @@ static bool compile(pass *p, lighting_stage stage, shader_binary *out) {
         {"SHADOW_SIZE", arena_format(memory, "%u", s->shadow_size)},
         {"SHADOW_PARTS", arena_format(memory, "%u", s->shadow_parts)},
         {"GLOW_SIZE", arena_format(memory, "%u", s->glow_size)},
+        {"RAYS_APART", arena_format(memory, "%u", s->rays_apart)},
         {"FIRE_COUNT", arena_format(memory, "%u", s->fire_count)},
         {"LEVEL_SIZE", arena_format(memory, "%u", s->glow_size >> stages[stage].level)},
         {"WITHOUT_FIELDS", "1"}, // last: not of these two
@@ -429,9 +438,10 @@ static bool correct(pass *p) {
 
 // After each sweep the coarser level finds what is left to do (lighting/level.glsl).
 static bool record_glow(pass *p) {
+    const lighting_state *s = p->state;
     uint32_t sweeps = fine_sweeps(p);
     if (!make_buffers(p) || !dispatch_voxels(p, STAGE_FIRST) ||
-        !dispatch(p, STAGE_AROUND, WAYS * LOOKS, 1, 1))
+        !dispatch(p, STAGE_AROUND, WAYS * LOOKS / LOOK_PARTS * s->rays_apart, LOOK_PARTS, 1))
         return false;
     for (uint32_t i = 0; i < sweeps || i == 0; i++) {
         if (!dispatch_sweep(p, STAGE_SWEEP) || !dispatch_colors(p, STAGE_RESTRICT)) return false;

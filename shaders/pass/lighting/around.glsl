@@ -1,10 +1,10 @@
 // Light that enters the volume in each of the directions that it is swept in: of the sky, and of the
 // meshes before it, which send back what falls on them. It is the mean over the volume, so that the
-// ground below is half of all there is, however large the box. One workgroup a direction.
+// ground below is half of all there is, however large the box. A few workgroups a direction.
 #if defined(STAGE_AROUND)
-const int LOOKS = 64, TRIES = 16;
-layout(local_size_x = LOOKS) in;
-shared vec3 looks[LOOKS];
+const int OWN_LOOKS = LOOKS / LOOK_PARTS, TRIES = 16;
+layout(local_size_x = OWN_LOOKS * RAYS_APART) in;
+shared vec3 looks[OWN_LOOKS];
 
 // What a surface sends back of the sky and the lights, each past the meshes and through the volume.
 vec3 light_of_surface(vec3 p, bvh_hit hit) {
@@ -47,13 +47,15 @@ vec3 look(vec3 way, int index) {
     return light_of_surface(p + hit.distance * from + off * hit.normal, hit);
 }
 
+// Rays that go far take all others of their subgroup with them, so that each has its own on a GPU.
 void main() {
-    int way = int(gl_WorkGroupID.x), index = int(gl_LocalInvocationIndex);
-    looks[index] = look(way_of(way), index);
-    for (int half_ = LOOKS / 2; half_ > 0; half_ /= 2) {
+    int way = int(gl_WorkGroupID.x), part = int(gl_WorkGroupID.y), thread = int(gl_LocalInvocationIndex);
+    int own = thread / RAYS_APART;
+    if (thread % RAYS_APART == 0) looks[own] = look(way_of(way), part * OWN_LOOKS + own);
+    for (int half_ = OWN_LOOKS / 2; half_ > 0; half_ /= 2) {
         barrier();
-        if (index < half_) looks[index] += looks[index + half_];
+        if (thread < half_) looks[thread] += looks[thread + half_];
     }
-    if (index == 0) imageStore(around_kept, ivec3(way, 0, 0), vec4(looks[0] / float(LOOKS), 0.0));
+    if (thread == 0) imageStore(around_kept, ivec3(way, part, 0), vec4(looks[0] / float(LOOKS), 0.0));
 }
 #endif

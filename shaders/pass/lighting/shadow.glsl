@@ -36,7 +36,8 @@ void main() {
     }
     count_samples(slice > 0.0 ? PART : 0);
     passed[part][lane] = sum;
-    if (part == 0) hidden_from[lane] = slice > 0.0 ? find_mesh(m, ray) : FAR;
+    const int tracer = RAYS_APART > 1 ? lane % PARTS : 0; // of the ray's threads: spread, or side by side
+    if (part == tracer) hidden_from[lane] = slice > 0.0 ? find_mesh(m, ray) : FAR;
     barrier();
 
     float before = 0.0;

@@ -65,7 +65,9 @@ path make_path(int index, int color) {
     vec3 cells = way / max(voxel_size(), vec3(1e-6));
     int axis = axis_of(way);
     cells = axis == 0 ? cells.yzx : axis == 1 ? cells.zxy : cells;
-    float outside = CORRECTS ? 0.0 : texelFetch(around_made, ivec3(index, 0, 0), 0)[color];
+    float outside = 0.0;
+    for (int part = 0; part < LOOK_PARTS && !CORRECTS; part++)
+        outside += texelFetch(around_made, ivec3(index, part, 0), 0)[color];
     return path(way, axis, greaterThan(cells.xy, vec2(0.0)), min(abs(cells.xy / cells.z), vec2(1.0)),
                 0.5 / (abs(cells.z) * voxel_width()), outside);
 }

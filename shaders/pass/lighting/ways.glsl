@@ -4,6 +4,7 @@
 // integrate polynomials of degree 7 exactly, since the mean of x^4 is 1/5 and that of (x y z)^2 is
 // 1/105: the squares are the roots of x^3 - x^2 + x / 5 - 1 / 105.
 const int WAYS = 48, TURNS = 6, SIGNS = WAYS / TURNS;
+const int LOOKS = 64, LOOK_PARTS = 4; // of light that comes from around: rays, and groups that do them
 
 // All of a turn differ in their signs only.
 vec3 turn_of(int turn) {
