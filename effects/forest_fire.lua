@@ -106,7 +106,7 @@ fx.events = { { 0.5, click = {-32, 10, 0} }, { 1.5, click = {-14, 34, 6} } }
 local since, left = time - instance_state.x, instance_state.y - time
 local burning  = smoothstep(0, 2.5, since) * smoothstep(-0.5, 2, left)
 local smoking  = smoothstep(0.5, 3, since) * smoothstep(-14, 0, left)
-local gusts    = curl { frequency = 0.45, octaves = 2, speed = 0.6 }
+local gusts    = curl { frequency = 0.5, octaves = 1, speed = 0.6 }
 local skirts   = box { position = {0, 0, 3}, size = {3.6, 3.6, 5.6} } * (1.7 - 0.27 * position.z - length(vec(x, y, 0))) -- a cone
 
 local flames = particles {
@@ -151,7 +151,7 @@ local solid   = shade { albedo = colors.color, from = {scene, medium, lamps, sha
                         model = look == "drawn" and "toon" or "physical" }
 if look == "drawn" then solid = over { outline { from = scene, thickness = 3, reach = 250 }, solid } end
 
-local volume = march { from = {medium, scene}, steps = 64, resolution = 0.5 }
+local volume = march { from = {medium, scene}, steps = 40, jitter = 0.5, resolution = 0.35 }
 local tongue = palette { {0, {2.0, 0.85, 0.20}}, {0.35, {1.8, 0.46, 0.05}}, {0.7, {0.9, 0.11, 0.01}}, {1, {0, 0, 0}} }
 local near   = splats {
   from = {flames, scene, medium}, size = over_age { {0, 0.22}, {0.3, 0.42}, {1, 0.06} }, color = tongue(particle_age).rgb * 1.6 * blaze,
