@@ -35,22 +35,12 @@ static bool surfaces_fit(const pass *p) {
     return fit;
 }
 
-// Instances of a pass, from which on they are drawn on any device: a ray goes through a tree over
-// all of them, which the host makes, while lists of them are made where they are drawn.
-enum { MANY = 20000 };
-
-static bool has_many(const pass *p) {
-    size_t count = 0;
-    for (size_t i = 0; i < p->instances_count; i++) count += scene_instances_count(p->instances[i]);
-    return count >= MANY;
-}
-
 // A software device draws triangles many times faster than it traces rays. Of the others, those for
-// computing have few processors that draw, and none was seen to trace slowly.
+// computing have few processors that draw, and none was seen to trace slowly, among 100,000
+// instances neither (scripts/bench/README.md).
 static bool choose_rays(const pass *p) {
     if (!pass_has_word(p, "mode", "auto")) return pass_has_word(p, "mode", "rays");
-    return p->host->device && gpu_get_info(p->host->device)->kind != GPU_CPU && !has_many(p) &&
-           surfaces_fit(p);
+    return p->host->device && gpu_get_info(p->host->device)->kind != GPU_CPU && surfaces_fit(p);
 }
 
 static bool declare_targets(pass *p) {
