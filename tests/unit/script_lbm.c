@@ -39,7 +39,8 @@ static void mistakes_are_named(void **state) {
     refused(AIR "}\nair:collider { }", "collider takes meshes");
     refused(AIR "}\nair:collider { rule = 'thin' }", "unknown value of 'rule' 'thin'");
     refused(AIR "}\nair:collider { ruel = 'solid' }", "unknown key 'ruel'; did you mean 'rule'?");
-    refused(AIR "}\nair:collider { sphere { } }", "collider takes meshes and instances; got a userdata");
+    refused(AIR "}\nair:collider { sphere { } }",
+            "collider takes meshes and instances; got a userdata");
 }
 
 static void a_graph_that_cannot_be_is_refused(void **state) {
