@@ -44,6 +44,8 @@ local function check_keys(t)
   end
   if not t.fx then refuse("'fx' is missing: the effect, as effect { } gives it") end
   if not t.at then refuse("'at' is missing: " .. keys.at) end
+  if type(t.fx) ~= "userdata" then refuse("'fx' takes the effect, as effect { } gives it; got a " .. type(t.fx)) end
+  if type(t.at) ~= "userdata" and type(t.at) ~= "table" then refuse("'at' takes " .. keys.at .. "; got a " .. type(t.at)) end
 end
 
 local function number(t, key, otherwise, low)
@@ -83,7 +85,7 @@ local function list_places(list, cell)
   local grid, places = {}, {}
   local function key(x, y) return math.floor(x / cell) * 1048583 + math.floor(y / cell) end
   for i, p in ipairs(list) do
-    if type(p) ~= "table" or type(p[1]) ~= "number" or type(p[2]) ~= "number" then refuse("'at' has no place as number " .. i) end
+    if type(p) ~= "table" or type(p[1]) ~= "number" or type(p[2]) ~= "number" or p[1] ~= p[1] or p[2] ~= p[2] then refuse("'at' has no place as number " .. i) end
     places[i] = { p[1], p[2], p[3] or 0 }
     local k = key(p[1], p[2])
     grid[k] = grid[k] or {}
@@ -244,15 +246,25 @@ local function begin(self)
     self.states[i] = NORMAL
     local fuel = self.fuel
     if type(fuel) == "function" then fuel = fuel(i) elseif type(fuel) == "table" then fuel = fuel[i] end
+    if fuel and type(fuel) ~= "number" then refuse("'fuel' of " .. i .. " is a " .. type(fuel) .. "; a number is accepted (" .. keys.fuel .. ")") end
     self.fuels[i] = fuel or 1
   end
 end
 
+local function need_begun(self)
+  if self.states then return end
+  error("spread: nothing burns while the file loads; fx:on_start, on_frame, on_key and on_click can ignite", 3)
+end
+
 -- Lights one by hand; false where it has burned, or cannot.
-function fire:ignite(i) return catch(self, i, self.time) end
+function fire:ignite(i)
+  need_begun(self)
+  return catch(self, i, self.time)
+end
 
 -- The nearest to a place that can still be lit; its number, or nil where none is within the radius.
 function fire:ignite_near(point, radius)
+  need_begun(self)
   for _, i in ipairs(self.near(point, radius)) do
     if catch(self, i, self.time) then return i end
   end
@@ -271,9 +283,14 @@ function fire:progress(i)
   return math.min((self.time - self.lit[i]) / (self.ends[i] - self.lit[i]), 1)
 end
 
-function fire:on_ignite(f) table.insert(self.ignite_functions, f) end
-function fire:on_late(f) table.insert(self.late_functions, f) end
-function fire:on_burned(f) table.insert(self.burned_functions, f) end
+local function hear(list, f)
+  if type(f) ~= "function" then error("spread: what is told is a function(i, t); got a " .. type(f), 3) end
+  table.insert(list, f)
+end
+
+function fire:on_ignite(f) hear(self.ignite_functions, f) end
+function fire:on_late(f) hear(self.late_functions, f) end
+function fire:on_burned(f) hear(self.burned_functions, f) end
 
 return function(t)
   check_keys(t)

@@ -191,8 +191,7 @@ static void the_prelude_is_never_blamed(void **state) {
 static void a_module_of_the_library_is_not_blamed_alone(void **state) {
     (void)state;
     assert_null(helper_load("local fx = effect { }\nlocal spread = require 'spread'\n"
-                            "spread { fx = fx, at = { {0, 0}, {1, 0} }, fuel = {{}, {}} }"
-                            ":ignite(1)"));
+                            "local x = spread { fx = fx, at = { {0, 0} } }:state(1)"));
     assert_non_null(strstr(err_get(), "e.lua:3: lib/spread.lua:"));
     assert_null(helper_load("local fx = effect { }\nlocal spread = require 'spread'\n"
                             "spread { fx = fx }"));

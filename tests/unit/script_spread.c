@@ -175,6 +175,12 @@ static void what_is_wrong_is_said(void **state) {
         {"spread { fx = fx, at = { {0, 0} }, reach = 0 }", "'reach' takes a number"},
         {"spread { fx = fx, at = { {0, 0} }, burn = {3, 2} }", "'burn' takes s"},
         {"spread { fx = fx, at = { {0, 0} }, pass = 'x' }", "'pass' takes"},
+        {"spread { fx = fx, at = 3 }",
+         "'at' takes instances { } or a list of {x, y, z}; got a number"},
+        {"spread { fx = 3, at = { {0, 0} } }", "'fx' takes the effect"},
+        {"spread { fx = fx, at = { {0, 0/0} } }", "'at' has no place as number 1"},
+        {"spread { fx = fx, at = { {0, 0} } }:ignite(1)", "nothing burns while the file loads"},
+        {"spread { fx = fx, at = { {0, 0} } }:on_ignite(3)", "is a function(i, t); got a number"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         helper_refuses(HEAD, wrong[i].text, END, wrong[i].message);
