@@ -5,7 +5,7 @@ import shutil
 import subprocess
 import tempfile
 
-from lib.program import BINARY, PROGRAM, SOURCE, Case, main
+from lib.program import BINARY, PROGRAM, PUFF, SMALL, SOURCE, Case, main
 
 HIDE = ["unshare", "--map-root-user", "--mount", "sh", "-c",
         'for folder in "$1" "$2"; do mount -t tmpfs none "$folder" || exit 99; done; shift 2; exec "$@"', "hide"]
@@ -40,6 +40,19 @@ class Package(Case):
         self.assertEqual(alike.returncode, 0)
         self.assertGreater(os.path.getsize(self.path("there.mp4")), 500)
 
+    def test_films_need_no_coders_but_theirs(self):
+        """What stands in for the others is tried even where the machine has the real ones."""
+        coders = [f"{self.package}/lib/fallback/{name}" for name in os.listdir(f"{self.package}/lib/fallback")
+                  if re.match(r"lib(aom|codec2|rav1e|rsvg-2|SvtAv1Enc|vpx|x265)\.so", name)]
+        self.assertEqual(len(coders), 7)
+        self.assertLess(max(os.path.getsize(coder) for coder in coders), 20000)
+        self.write("puff.lua", PUFF)
+        done = self.run_hidden("env", f"LD_PRELOAD={':'.join(coders)}", f"{self.package}/bin/roil", "render",
+                               self.path("puff.lua"), "--frames", "0-3", *SMALL, "-o", self.path("puff.mp4"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.path("puff.mp4"), "rb") as film:
+            self.assertIn(b"x264", film.read())
+
     def test_libraries_are_its_own(self):
         loaded = self.run_hidden("env", "LD_TRACE_LOADED_OBJECTS=1", f"{self.package}/bin/roil").stdout
         self.assertNotIn("not found", loaded)
@@ -50,6 +63,14 @@ class Package(Case):
             self.assertTrue(os.path.exists(f"{self.package}/lib/fallback/{name}"), name)
         self.assertFalse([name for name in os.listdir(f"{self.package}/lib") if name.startswith("libc.")])
         self.assertTrue(os.path.getsize(f"{self.package}/licences/libavcodec59"))
+
+    def test_stays_small(self):
+        """The quickest compression stands for the thorough one, which takes off a sixth more."""
+        tar = subprocess.Popen(["tar", "-C", self.package, "-cf", "-", "."], stdout=subprocess.PIPE)
+        with tar, open(self.path("quick.xz"), "wb") as out:
+            subprocess.run(["xz", "--x86", "--lzma2=preset=0"], stdin=tar.stdout, stdout=out, check=True)
+        self.assertEqual(tar.returncode, 0)
+        self.assertLess(os.path.getsize(self.path("quick.xz")), 60 << 20)
 
 
 if __name__ == "__main__":
