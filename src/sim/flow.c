@@ -76,7 +76,6 @@ static void define_all(flow *f) {
     define(f, "FLOW_WITH_CORRECTION", desc->advection == FLOW_MACCORMACK);
     define(f, "FLOW_TILE", f->tile);
     define(f, "FLOW_SWEEPS", desc->sweeps);
-    define(f, "FLOW_COARSE_SWEEPS", FLOW_COARSE_SWEEPS);
     define(f, "FLOW_GROUP", f->group);
     define(f, "FLOW_FOLDS", flow_transform_folds(desc, f->tile));
     define(f, "FLOW_COARSE_SIDE", f->coarse_side);

@@ -17,8 +17,7 @@ enum {
     // tile: dispatches are saved for work.
     FLOW_SWEEPS = 2,
     FLOW_SOFTWARE_SWEEPS = 1,
-    FLOW_COARSE_SWEEPS = 1, // of the coarser levels, which one group does: it waits after each half
-    // Threads of such a group, and along a side of the one that does all coarser levels; on a
+    // Threads of a group, and along a side of the one that does all coarser levels; on a
     // processor, where each eight threads cost to begin and at every barrier.
     FLOW_GROUP = 256,
     FLOW_SOFTWARE_GROUP = 64,
@@ -27,7 +26,7 @@ enum {
     // Defaults of max_iterations, by sweeps: those that are not needed still cost what a dispatch
     // costs. With obstacles, whose shapes coarse levels cannot see, more.
     FLOW_ITERATIONS = 6,
-    FLOW_ITERATIONS_OF_TWO = 4,
+    FLOW_ITERATIONS_OF_TWO = 3,
     FLOW_OBSTACLE_ITERATIONS = 4,
     FLOW_CG_ITERATIONS = 3, // by cells along the longer side
     // Of a transform: the second is for what rounding leaves of large slices. What obstacles and

@@ -98,7 +98,7 @@ void begin(Level l) {
         z[at] = ((cell.x + cell.y) & 1) == 0 && d[at] > 0.0 ? r[at] / d[at] : 0.0;
     }
     barrier();
-    for (int i = 1; i < 2 * FLOW_COARSE_SWEEPS; i++) sweep(l, i & 1);
+    for (int i = 1; i < 2 * FLOW_SWEEPS; i++) sweep(l, i & 1);
 }
 
 void leave(Level l) {
@@ -162,12 +162,12 @@ void main() {
         l = coarser(l);
     }
     begin(l);
-    for (int i = 2 * FLOW_COARSE_SWEEPS; i < 7; i++) sweep(l, i & 1); // red first and last
+    for (int i = 2 * FLOW_SWEEPS; i < 7; i++) sweep(l, i & 1); // red first and last
     for (; depth > 0; depth--) {
         Level fine = Level(level_size, 0);
         for (int i = 1; i < depth; i++) fine = coarser(fine);
         add(fine, coarser(fine));
-        for (int i = 2 * FLOW_COARSE_SWEEPS; i > 0; i--) sweep(fine, 1 - (i & 1));
+        for (int i = 2 * FLOW_SWEEPS; i > 0; i--) sweep(fine, 1 - (i & 1));
     }
     Level first = Level(level_size, 0);
     EACH_CELL(first, cell) {
