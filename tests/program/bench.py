@@ -169,7 +169,7 @@ class Bench(Case):
         """The first row of each."""
         folder = os.path.join(SOURCE, "scripts/bench")
         sweeps = sorted(name for name in os.listdir(folder) if name.endswith(".lua"))
-        self.assertEqual(len(sweeps), 14)
+        self.assertEqual(len(sweeps), 15)
         for name in sweeps:
             self.succeeds("bench", os.path.join(folder, name), "-o", name, "--shard", "1/1000", "--size", "96x54", "--frames",
                           "30", "--warmup", "0", "--repeats", "1", "--settle", "0", "--no-reference")
