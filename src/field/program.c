@@ -401,9 +401,11 @@ static void fill_grid(const field_grid *grid, float *out) {
 }
 
 bool field_program_fill(const field_program *p, const field_context *context, void *block) {
+    const size_t size = field_program_block_size(p);
     if (!fill_values(p, context)) return false;
+    if (size == 0) return true; // without a block
     float *numbers = block, low, high;
-    memset(block, 0, field_program_block_size(p));
+    memset(block, 0, size);
     for (size_t i = 0; i < p->slot_count; i++) {
         const program_slot *slot = &p->slots[i];
         float *out = numbers + slot->at;
