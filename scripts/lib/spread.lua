@@ -32,15 +32,20 @@ local keys = {
 
 local function refuse(text) error("spread: " .. text, 4) end
 
+local function names_of(t)
+  local names = {}
+  for name in pairs(t) do names[#names + 1] = name end
+  table.sort(names)
+  return table.concat(names, ", ")
+end
+
+local function is_number(value) return type(value) == "number" and value - value == 0 end
+local function is_place(p) return type(p) == "table" and is_number(p[1]) and is_number(p[2]) and (p[3] == nil or is_number(p[3])) end
+
 local function check_keys(t)
   if type(t) ~= "table" then refuse("takes named values, as in spread { fx = fx, at = forest, reach = 5 }") end
   for key in pairs(t) do
-    if not keys[key] then
-      local known = {}
-      for name in pairs(keys) do known[#known + 1] = name end
-      table.sort(known)
-      refuse("unknown key '" .. tostring(key) .. "'; known are " .. table.concat(known, ", "))
-    end
+    if not keys[key] then refuse("unknown key '" .. tostring(key) .. "'; known are " .. names_of(keys)) end
   end
   if not t.fx then refuse("'fx' is missing: the effect, as effect { } gives it") end
   if not t.at then refuse("'at' is missing: " .. keys.at) end
@@ -51,7 +56,7 @@ end
 local function number(t, key, otherwise, low)
   local value = t[key]
   if value == nil then return otherwise end
-  if type(value) ~= "number" or not (value >= low) then refuse("'" .. key .. "' takes a number from " .. low .. " (" .. keys[key] .. ")") end
+  if not is_number(value) or value < low then refuse("'" .. key .. "' takes a number from " .. low .. " (" .. keys[key] .. ")") end
   return value
 end
 
@@ -85,7 +90,7 @@ local function list_places(list, cell)
   local grid, places = {}, {}
   local function key(x, y) return math.floor(x / cell) * 1048583 + math.floor(y / cell) end
   for i, p in ipairs(list) do
-    if type(p) ~= "table" or type(p[1]) ~= "number" or type(p[2]) ~= "number" or p[1] ~= p[1] or p[2] ~= p[2] then refuse("'at' has no place as number " .. i) end
+    if not is_place(p) then refuse("'at' has no place as number " .. i) end
     places[i] = { p[1], p[2], p[3] or 0 }
     local k = key(p[1], p[2])
     grid[k] = grid[k] or {}
@@ -98,7 +103,7 @@ local function list_places(list, cell)
       for y = math.floor((point[2] - radius) / cell), math.floor((point[2] + radius) / cell) do
         for _, i in ipairs(grid[x * 1048583 + y] or {}) do
           local p = places[i]
-          local d = (p[1] - point[1]) ^ 2 + (p[2] - point[2]) ^ 2 + (p[3] - point[3]) ^ 2
+          local d = (p[1] - point[1]) ^ 2 + (p[2] - point[2]) ^ 2 + (p[3] - (point[3] or 0)) ^ 2
           if d <= radius * radius then
             found[#found + 1] = i
             far[i] = d
@@ -157,14 +162,14 @@ end
 
 -- ---- fire -------------------------------------------------------------------------------------------
 
-local fire = {}
-fire.__index = fire
+local fire = {} -- what it can be asked to do
 
 local function wind_at(self, t)
   local w = self.wind
   if type(w) == "function" then w = w(t) end
   if type(w) == "userdata" then w = w:get() end
   if type(w) == "number" then w = { w, 0, 0 } end
+  if not is_place(w) then error("spread: 'wind' is no wind; accepted: " .. keys.wind, 0) end
   return w[1], w[2]
 end
 
@@ -251,20 +256,27 @@ local function begin(self)
   end
 end
 
-local function need_begun(self)
-  if self.states then return end
-  error("spread: nothing burns while the file loads; fx:on_start, on_frame, on_key and on_click can ignite", 3)
+-- Every method asks this first, so that a mistake is told of in the line that made it.
+local function check(self, ...)
+  if type(self) ~= "table" or not self.open then error("spread: a method is called with a colon, as in fire:ignite(1)", 3) end
+  if not self.states then
+    error("spread: nothing burns while the file loads; fx:on_start, on_frame, on_key and on_click can ignite", 3)
+  end
+  if select("#", ...) > 0 and not self.states[...] then
+    error("spread: there is no number " .. tostring(...) .. "; 1 to " .. #self.places .. " are there", 3)
+  end
 end
 
 -- Lights one by hand; false where it has burned, or cannot.
 function fire:ignite(i)
-  need_begun(self)
+  check(self, i)
   return catch(self, i, self.time)
 end
 
 -- The nearest to a place that can still be lit; its number, or nil where none is within the radius.
 function fire:ignite_near(point, radius)
-  need_begun(self)
+  check(self)
+  if not is_place(point) or not is_number(radius) then error("spread: ignite_near takes a place and a radius, as in fire:ignite_near({1, 2, 0}, 4)", 2) end
   for _, i in ipairs(self.near(point, radius)) do
     if catch(self, i, self.time) then return i end
   end
@@ -272,15 +284,28 @@ end
 
 -- One that burns stops at once, and counts as burned.
 function fire:put_out(i)
+  check(self, i)
   if self.states[i] == BURNING then burn_out(self, i, self.time) end
 end
 
-function fire:state(i) return names[self.states[i]] end
+function fire:state(i)
+  check(self, i)
+  return names[self.states[i]]
+end
 
 -- How much of its fire has passed, 0..1; 0 before it.
 function fire:progress(i)
+  check(self, i)
   if self.states[i] == NORMAL then return 0 end
   return math.min((self.time - self.lit[i]) / (self.ends[i] - self.lit[i]), 1)
+end
+
+local numbers = { burning = true, burned = true, lit = true, ends = true } -- what it tells besides
+
+local meta = {}
+function meta.__index(_, name)
+  if fire[name] then return fire[name] end
+  error("spread: unknown name '" .. tostring(name) .. "'; known are " .. names_of(fire) .. ", " .. names_of(numbers), 2)
 end
 
 local function hear(list, f)
@@ -300,8 +325,9 @@ return function(t)
     reach = reach, wind = t.wind or { 0, 0, 0 }, speed = number(t, "speed", 1, 1e-6), gain = number(t, "gain", 0.3, 0),
     lean = number(t, "lean", 0.1, 0), shelter = number(t, "shelter", 0.3, 0), shortest = burn[1], longest = burn[2], fuel = t.fuel or 1,
     variation = math.min(number(t, "variation", 0.3, 0), 1), pass = t.pass or "ignite", late = number(t, "late", 0.5, 0),
-    most = number(t, "most", 64, 1), seed = number(t, "seed", 0, 0), ignite_functions = {}, late_functions = {}, burned_functions = {},
-  }, fire)
+    most = number(t, "most", 64, 1), seed = math.floor(number(t, "seed", 0, 0)), ignite_functions = {}, late_functions = {}, burned_functions = {},
+    states = false, burning = 0, burned = 0, lit = {}, ends = {},
+  }, meta)
   local at = t.at
   self.open = function()
     if type(at) == "table" then return list_places(at, reach) end

@@ -190,8 +190,10 @@ static void the_prelude_is_never_blamed(void **state) {
 
 static void a_module_of_the_library_is_not_blamed_alone(void **state) {
     (void)state;
-    assert_null(helper_load("local fx = effect { }\nlocal spread = require 'spread'\n"
-                            "local x = spread { fx = fx, at = { {0, 0} } }:state(1)"));
+    assert_null(
+        helper_load("local fx = effect { }\nlocal spread = require 'spread'\n"
+                    "local fire = spread { fx = fx, at = { {0, 0} } } fire.late_functions = 3 "
+                    "fire:on_late(print)"));
     assert_non_null(strstr(err_get(), "e.lua:3: lib/spread.lua:"));
     assert_null(helper_load("local fx = effect { }\nlocal spread = require 'spread'\n"
                             "spread { fx = fx }"));

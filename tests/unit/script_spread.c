@@ -181,9 +181,37 @@ static void what_is_wrong_is_said(void **state) {
         {"spread { fx = fx, at = { {0, 0/0} } }", "'at' has no place as number 1"},
         {"spread { fx = fx, at = { {0, 0} } }:ignite(1)", "nothing burns while the file loads"},
         {"spread { fx = fx, at = { {0, 0} } }:on_ignite(3)", "is a function(i, t); got a number"},
+        {"spread { fx = fx, at = { {0, 0, 'x'} } }", "'at' has no place as number 1"},
+        {"spread { fx = fx, at = { {0, 1/0} } }", "'at' has no place as number 1"},
+        {"spread { fx = fx, at = { {0, 0} }, reach = 1/0 }", "'reach' takes a number"},
+        {"spread { fx = fx, at = { {0, 0} } }:ignte(1)",
+         "e.lua:1: spread: unknown name 'ignte'; known are ignite, ignite_near, on_burned"},
+        {"spread { fx = fx, at = { {0, 0} } }.ignite(1)", "with a colon, as in fire:ignite(1)"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         helper_refuses(HEAD, wrong[i].text, END, wrong[i].message);
+}
+
+static void stops(const char *text, const char *message) {
+    effect *e = load(text);
+    assert_false(effect_rehearse(e, 3));
+    if (!strstr(err_get(), message)) fail_msg("\"%s\" is not in: %s", message, err_get());
+    effect_destroy(e);
+}
+
+#define FRAME(call) "local fire = light { } fx:on_frame(function() " call " end)"
+
+static void mistakes_of_a_frame_are_named(void **state) {
+    (void)state;
+    stops(FRAME("fire:ignite(442)"), "e.lua:1: spread: there is no number 442; 1 to 441 are there");
+    stops(FRAME("fire:ignite()"), "there is no number nil");
+    stops(FRAME("fire:put_out('a')"), "there is no number a");
+    stops(FRAME("fire:progress(0)"), "there is no number 0");
+    stops(FRAME("fire:ignite_near(5, 3)"), "ignite_near takes a place and a radius");
+    stops(FRAME("fire:ignite_near({0, 0})"), "ignite_near takes a place and a radius");
+    stops(FRAME("fx:status('burnt', fire.burnt)"), "unknown name 'burnt'");
+    stops("light { wind = {1} }", "'wind' is no wind; accepted: {x, y, z} m/s");
+    stops("light { wind = function() end }", "'wind' is no wind");
 }
 
 static void the_reference_has_its_keys(void **state) {
@@ -209,6 +237,7 @@ int main(void) {
         cmocka_unit_test(what_is_passed_on_at_the_end_goes_in_steps),
         cmocka_unit_test(a_frame_makes_so_many_changes_at_most),
         cmocka_unit_test(what_is_wrong_is_said),
+        cmocka_unit_test(mistakes_of_a_frame_are_named),
         cmocka_unit_test(the_reference_has_its_keys),
     };
     return cmocka_run_group_tests(tests, helper_setup, helper_teardown);
