@@ -18,6 +18,11 @@ static bool is_key(const char *name) {
     return (islower((unsigned char)name[0]) || isdigit((unsigned char)name[0])) && !name[1];
 }
 
+static bool check_key(const char *name) {
+    return is_key(name) ||
+           err_set("key '%s'; accepted: a letter as f, a digit, enter, up, down", name);
+}
+
 static bool check_place(const effect_event *event) {
     float length = 0;
     for (int i = 0; i < event->numbers; i++)
@@ -35,8 +40,7 @@ static bool check_place(const effect_event *event) {
 bool events_check(const effect_event *event) {
     if (!(event->time >= 0 && event->time <= 1e6))
         return err_set("an event is at %g s; accepted: 0 to 1e6", event->time);
-    if (event->key[0] && !is_key(event->key))
-        return err_set("key '%s'; accepted: a letter as f, a digit, enter, up, down", event->key);
+    if (event->key[0] && !check_key(event->key)) return false;
     if (!event->key[0] && !event->numbers)
         return err_set("a click needs a place: two numbers, 0 to 1 from the top left of the "
                        "picture, or three of a point (m)");
@@ -71,19 +75,26 @@ static const char *take_place(const char *text, effect_event *out) {
     return known ? text : NULL;
 }
 
+static const char *refuse_event(const char *text) {
+    err_set("event '%.*s'; accepted: %s", (int)strcspn(text, ";"), text, form);
+    return NULL;
+}
+
 static const char *take_event(const char *text, effect_event *out) {
     char word[2 * EFFECT_KEY_SIZE], *end;
     *out = (effect_event){.time = strtod(text, &end)};
-    if (end == text) return NULL;
-    text = take_word(end, word, sizeof word);
+    if (end == text) return refuse_event(text);
+    const char *next = take_word(end, word, sizeof word);
     if (strcmp(word, "key") == 0) {
-        text = take_word(text, word, sizeof word);
-        if (!is_key(word)) return NULL;
+        next = take_word(next, word, sizeof word);
+        if (!word[0]) return refuse_event(text);
+        if (!check_key(word)) return NULL;
         memcpy(out->key, word, EFFECT_KEY_SIZE);
     } else if (strcmp(word, "click") != 0) {
-        return NULL;
+        return refuse_event(text);
     }
-    return take_place(text, out);
+    next = take_place(next, out);
+    return next ? next : refuse_event(text);
 }
 
 bool events_parse(const char *text, effect_event *out, size_t *count) {
@@ -91,8 +102,7 @@ bool events_parse(const char *text, effect_event *out, size_t *count) {
     for (text = skip(text); *text; text = skip(text)) {
         effect_event event;
         const char *end = take_event(text, &event);
-        if (!end) return err_set("event '%.*s'; accepted: %s", (int)strcspn(text, ";"), text, form);
-        if (!events_check(&event)) return false;
+        if (!end || !events_check(&event)) return false;
         if (*count == EFFECT_MOST_EVENTS) return err_set("more than %d events", EFFECT_MOST_EVENTS);
         out[(*count)++] = event;
         text = *end ? end + 1 : end;

@@ -13,7 +13,7 @@ enum { EFFECT_MOST_EVENTS = 4096, EFFECT_KEY_SIZE = 16, EFFECT_MOST_STATUS = 32 
 
 typedef struct effect_event {
     double time;               // seconds
-    char key[EFFECT_KEY_SIZE]; // "f", "space"; "": a click
+    char key[EFFECT_KEY_SIZE]; // "f", "enter"; "": a click
     // Where the pointer is: 0: nowhere; 2: in the picture, 0..1 from its top left; 3: over a point
     // (m); 6: by a ray, from a point into a direction.
     int numbers;

@@ -56,6 +56,7 @@ class Events(Case):
         self.assertEqual(first, self.read("from.png"))
         self.fails(1, "the effect hears no key x; it hears: click, key b", "render", "ball.lua", "--event", "1 key x")
         self.fails(1, "event '1 tap'; accepted: SECONDS click X Y", "render", "ball.lua", "--event", "1 tap")
+        self.fails(1, "key 'space'; accepted: a letter as f, a digit, enter", "render", "ball.lua", "--event", "1 key space")
         info = self.succeeds("info", "params", "ball.lua")
         self.assertIn("events = 0.2 click 0.7 0.8", info)
 

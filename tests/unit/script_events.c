@@ -260,6 +260,7 @@ static void what_is_wrong_is_said(void **state) {
         {"fx.events = { { key = 'f' } }", "events[1] has no time"},
         {"fx.events = { { 1 } }", "events[1] is not one of click and key"},
         {"fx.events = { { 1, key = 'f', click = {1, 1} } }", "is not one of click and key"},
+        {"fx.events = { { 1, key = 'f', ta = {0, 0} } }", "an event: unknown key 'ta'"},
         {"fx.events = { { 1, click = {0.5} } }", "events[1] is at no place"},
         {"fx.events = { { 1, click = {0.5, 'x'} } }", "is at what is no number"},
         {"fx.events = { { 1, click = {0.5, 2} } }", "accepted: 0 to 1"},
