@@ -190,14 +190,7 @@ static int l_length(lua_State *L) {
 static int l_index(lua_State *L) {
     static const luaL_Reg methods[] = {{"get", l_get},     {"set", l_set},   {"set_all", l_set_all},
                                        {"reset", l_reset}, {"near", l_near}, {NULL, NULL}};
-    const char *known[COUNT_OF(methods)], *name = luaL_checkstring(L, 2);
-    for (size_t i = 0; methods[i].name; i++) {
-        known[i] = methods[i].name;
-        if (strcmp(name, known[i]) != 0) continue;
-        lua_pushcfunction(L, methods[i].func);
-        return 1;
-    }
-    value_unknown(L, type_name, "method", name, known, COUNT_OF(methods) - 1);
+    return object_method(L, type_name, methods);
 }
 
 void l_instances_open(lua_State *L) {

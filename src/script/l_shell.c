@@ -12,8 +12,12 @@ typedef struct explosions_object {
 
 static const char who[] = "explosions";
 
-static scene_explosions *self(lua_State *L) {
-    return ((explosions_object *)luaL_checkudata(L, 1, who))->list;
+static scene_explosions *self(lua_State *L, const char *method) {
+    const explosions_object *object = object_test(L, 1, who);
+    if (!object)
+        vm_error(L, "%s is a method of explosions { }: blasts:%s(...), with a colon", method,
+                 method);
+    return object->list;
 }
 
 // ---- one of them ------------------------------------------------------------------------------
@@ -84,7 +88,7 @@ static int l_explosions(lua_State *L) {
 
 // list:add { position = {0, 0, 1}, size = 2 }: from now on, or from a time on.
 static int l_add(lua_State *L) {
-    scene_explosions *list = self(L);
+    scene_explosions *list = self(L, "add");
     if (script_of(L)->loading)
         vm_error(L, "explosions:add: adds one while the effect runs; those that are known before "
                     "stand in the list itself");
@@ -112,7 +116,7 @@ static void push_one(lua_State *L, const scene_explosion *one) {
 
 // list:get(2): the second of the list. Nil: there is none.
 static int l_get(lua_State *L) {
-    const scene_explosions *list = self(L);
+    const scene_explosions *list = self(L, "get");
     lua_Integer i = luaL_checkinteger(L, 2);
     if (i < 1 || i > (lua_Integer)list->count) return 0;
     push_one(L, &list->all[i - 1]);
@@ -121,7 +125,7 @@ static int l_get(lua_State *L) {
 
 // list:latest(t, 2): of those that have begun by then, the second youngest. Nil: there is none.
 static int l_latest(lua_State *L) {
-    const scene_explosions *list = self(L);
+    const scene_explosions *list = self(L, "latest");
     double time = luaL_checknumber(L, 2);
     lua_Integer which = luaL_optinteger(L, 3, 1);
     const scene_explosion *alive[64];
@@ -136,8 +140,14 @@ static int l_latest(lua_State *L) {
 }
 
 static int l_count(lua_State *L) {
-    lua_pushinteger(L, (lua_Integer)self(L)->count);
+    lua_pushinteger(L, (lua_Integer)self(L, "#")->count);
     return 1;
+}
+
+static int l_index(lua_State *L) {
+    static const luaL_Reg methods[] = {
+        {"add", l_add}, {"get", l_get}, {"latest", l_latest}, {NULL, NULL}};
+    return object_method(L, who, methods);
 }
 
 void explosions_reset(script *s) {
@@ -166,14 +176,8 @@ static int l_shell(lua_State *L) {
 }
 
 void l_shell_open(lua_State *L) {
-    static const luaL_Reg methods[] = {
-        {"add", l_add}, {"get", l_get}, {"latest", l_latest}, {NULL, NULL}};
-    static const luaL_Reg meta[] = {{"__len", l_count}, {NULL, NULL}};
+    static const luaL_Reg meta[] = {{"__index", l_index}, {"__len", l_count}, {NULL, NULL}};
     object_type(L, who, meta);
-    luaL_getmetatable(L, who);
-    luaL_newlib(L, methods);
-    lua_setfield(L, -2, "__index");
-    lua_pop(L, 1);
     lua_register(L, who, l_explosions);
     lua_register(L, "shell", l_shell);
 }

@@ -29,6 +29,19 @@ void *object_test(lua_State *L, int index, const char *name) {
     return luaL_testudata(L, index, name);
 }
 
+int object_method(lua_State *L, const char *type, const luaL_Reg *methods) {
+    const char *known[16], *name = luaL_checkstring(L, 2);
+    size_t count = 0;
+    for (; methods[count].name; count++) {
+        assert(count < COUNT_OF(known));
+        known[count] = methods[count].name;
+        if (strcmp(name, known[count]) != 0) continue;
+        lua_pushcfunction(L, methods[count].func);
+        return 1;
+    }
+    value_unknown(L, type, "method", name, known, count);
+}
+
 bool value_is_plain_table(lua_State *L, int index) {
     return lua_type(L, index) == LUA_TTABLE;
 }

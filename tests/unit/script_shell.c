@@ -28,6 +28,8 @@ static void mistakes_are_named(void **state) {
     refused("explosions { {'1'} }", "number 1: its time is a string; a number of seconds");
     refused("local l = {} for i = 1, 1025 do l[i] = {i} end explosions(l)", "at most 1024");
     refused("explosions { {1} }:add { size = 2 }", "adds one while the effect runs");
+    refused("explosions { {1} }:ad { size = 2 }", "unknown method 'ad'; did you mean 'add'?");
+    refused("explosions { {1} }.add { size = 2 }", "with a colon");
     refused("explosions { {1} }:latest(1, 65)", "number 65; accepted: 1 to 64");
 }
 
