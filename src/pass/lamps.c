@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "pass/builtin.h"
 #include "pass/pass_impl.h"
+#include <string.h>
 
 enum { TEXELS = 4 }; // of a light_entry
 
@@ -26,7 +27,24 @@ bool pass_lamps_open(pass *p, uint32_t count, scene_instances *at) {
     return true;
 }
 
+// Of what does not move: the device keeps the rest from 0 on.
+static bool check_constants(const pass *p) {
+    const shader_interface *interface = pass_interface(p);
+    for (size_t i = 0; i < interface->field_count; i++) {
+        const char *name = interface->fields[i].name;
+        const field *value = pass_get_field(p, i);
+        if (!value || strcmp(value->kind->name, "constant") != 0 || strcmp(name, "position") == 0)
+            continue;
+        for (int c = 0; c < value->components; c++)
+            if (!(value->value[c] >= 0))
+                return err_set("%s: '%s' is %g; accepted: 0 and above", p->label, name,
+                               (double)value->value[c]);
+    }
+    return true;
+}
+
 bool lamps_declare(pass *p) {
+    if (!check_constants(p)) return false;
     int output = pass_find_image(p, "lamps");
     p->images[output] = graph_add_image(
         p->host->graph, &(graph_image_desc){

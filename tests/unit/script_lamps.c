@@ -53,6 +53,9 @@ static void what_is_wrong_is_said(void **state) {
     refused(HEAD "point_lights { at = 3 }", "'at' takes instances { }; got a number");
     refused(HEAD "point_lights { count = 2, strength = 3 }", "unknown key 'strength'");
     refused(HEAD "point_lights { count = 2, position = 1, colour = {1, 1, 1} }", "'color'");
+    refused(HEAD "point_lights { count = 2, range = -3 }", "'range' is -3; accepted: 0 and above");
+    refused(HEAD "point_lights { count = 2, radius = -1 }", "'radius' is -1; accepted: 0");
+    refused(HEAD "point_lights { count = 2, color = {1, -1, 1} }", "'color' is -1; accepted: 0");
     refused(HEAD "point_lights(3)", "point_lights takes named values");
     refused(HEAD "local scene = geometry { }\n"
                  "shade { from = scene, lamps = scene.albedo }",
