@@ -21,6 +21,7 @@ end
 
 -- The middle of the step that a value lies in, of `steps` from 0 to 1: bands instead of shades.
 function quantise(value, steps)
+  if not steps or steps == 0 then error("quantise takes a value and how many steps it gets, as in quantise(position.z, 4)", 2) end
   return (floor(value * steps) + 0.5) / steps
 end
 
@@ -86,7 +87,7 @@ function layers(settings)
   if not (flat or settings.dimensions == nil or settings.dimensions == 3) then layers_wrong("'dimensions' is 2 or 3") end
   if type(settings.noise or perlin) ~= "function" then layers_wrong("'noise' is perlin, simplex, value or worley, as in noise = worley") end
   for i, layer in ipairs(settings) do
-    if type(layer) ~= "table" or #layer ~= 2 then layers_wrong("number " .. i .. " is none") end
+    if type(layer) ~= "table" or #layer ~= 2 or type(layer[1]) == "string" or type(layer[2]) == "string" then layers_wrong("number " .. i .. " is none") end
     sum = sum + one_layer(settings, i, layer[1], flat) * layer[2]
     all = all + layer[2]
   end

@@ -25,12 +25,16 @@ local names = { [NORMAL] = "normal", [BURNING] = "burning", [BURNED] = "burned" 
 local keys = {
   fx = "the effect", at = "instances { } or a list of {x, y, z}", reach = "m, how far it reaches",
   wind = "{x, y, z} m/s, a parameter or a function(t)", speed = "m/s without wind", gain = "of the speed, a share for each m/s of wind",
-  shelter = "part of the wind that reaches the flames", lean = "s: how far the wind carries the reach", burn = "s, or {shortest, longest}", fuel = "a list or function(i): factor of how long it burns; 0: never lit",
+  shelter = "part of the wind that reaches the flames", lean = "s: how far the wind carries the reach", burn = "s, or {shortest, longest}", fuel = "a number, a list or function(i): factor of how long it burns; 0: never lit",
   variation = "0..1: by how much times differ", pass = "\"ignite\" or \"burned\": when it is passed on", late = "s before its end at which on_late runs",
   most = "changes in a frame", seed = "of chance",
 }
 
 local function refuse(text) error("spread: " .. text, 4) end
+
+-- "number", "instances", "effect"; and for messages "a number", "an effect".
+local function kind_of(value) return type(value) == "userdata" and tostring(value):match("^[%a ]+") or type(value) end
+local function a_kind(value) return (kind_of(value):find("^[aei]") and "an " or "a ") .. kind_of(value) end
 
 local function names_of(t)
   local names = {}
@@ -49,8 +53,12 @@ local function check_keys(t)
   end
   if not t.fx then refuse("'fx' is missing: the effect, as effect { } gives it") end
   if not t.at then refuse("'at' is missing: " .. keys.at) end
-  if type(t.fx) ~= "userdata" then refuse("'fx' takes the effect, as effect { } gives it; got a " .. type(t.fx)) end
-  if type(t.at) ~= "userdata" and type(t.at) ~= "table" then refuse("'at' takes " .. keys.at .. "; got a " .. type(t.at)) end
+  if kind_of(t.fx) ~= "effect" then refuse("'fx' takes the effect, as effect { } gives it; got " .. a_kind(t.fx)) end
+  if type(t.at) ~= "table" and kind_of(t.at) ~= "instances" then refuse("'at' takes " .. keys.at .. "; got " .. a_kind(t.at)) end
+  local fuel = type(t.fuel)
+  if fuel ~= "nil" and fuel ~= "number" and fuel ~= "table" and fuel ~= "function" then
+    refuse("'fuel' takes " .. keys.fuel .. "; got " .. a_kind(t.fuel))
+  end
 end
 
 local function number(t, key, otherwise, low)
@@ -251,7 +259,9 @@ local function begin(self)
     self.states[i] = NORMAL
     local fuel = self.fuel
     if type(fuel) == "function" then fuel = fuel(i) elseif type(fuel) == "table" then fuel = fuel[i] end
-    if fuel and type(fuel) ~= "number" then refuse("'fuel' of " .. i .. " is a " .. type(fuel) .. "; a number is accepted (" .. keys.fuel .. ")") end
+    if fuel and not is_number(fuel) then
+      error("spread: 'fuel' of " .. i .. " is " .. a_kind(fuel) .. "; a number is accepted (" .. keys.fuel .. ")", 0)
+    end
     self.fuels[i] = fuel or 1
   end
 end
@@ -309,7 +319,7 @@ function meta.__index(_, name)
 end
 
 local function hear(list, f)
-  if type(f) ~= "function" then error("spread: what is told is a function(i, t); got a " .. type(f), 3) end
+  if type(f) ~= "function" then error("spread: what is told is a function(i, t); got " .. a_kind(f), 3) end
   table.insert(list, f)
 end
 

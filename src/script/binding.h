@@ -36,6 +36,8 @@ field_context script_context(lua_State *L); // of time 0, with the parameters' c
 void object_type(lua_State *L, const char *name, const luaL_Reg *methods);
 void *object_new(lua_State *L, const char *name, size_t size);
 void *object_test(lua_State *L, int index, const char *name); // NULL when it is something else
+// What stands there, for messages: "a number", "an image", "instances", "nil". Leaves values above.
+const char *object_kind(lua_State *L, int index);
 // __index of an object that has nothing but methods: pushes the one that 2 names.
 int object_method(lua_State *L, const char *type, const luaL_Reg *methods);
 

@@ -20,7 +20,7 @@ static const char *shown(lua_State *L, int index) {
     }
     if (lua_isstring(L, index)) return lua_pushfstring(L, "string '%s'", lua_tostring(L, index));
     size_t count = lua_istable(L, index) ? lua_rawlen(L, index) : 0;
-    if (count < 1 || count > 8) return lua_pushfstring(L, "a %s", luaL_typename(L, index));
+    if (count < 1 || count > 8) return object_kind(L, index);
     const char *list = "";
     for (size_t i = 1; i <= count; i++) {
         lua_rawgeti(L, index, (lua_Integer)i);

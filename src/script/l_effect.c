@@ -42,8 +42,8 @@ static int l_effect(lua_State *L) {
 static void set_picture(lua_State *L, const char *key, bool (*set)(effect *, graph_image)) {
     graph_image image;
     if (!value_image(L, 3, &image))
-        vm_error(L, "effect: '%s' takes an image, such as the result of a pass; got a %s", key,
-                 luaL_typename(L, 3));
+        vm_error(L, "effect: '%s' takes an image, such as the result of a pass; got %s", key,
+                 object_kind(L, 3));
     if (!set(script_of(L)->effect, image)) script_raise(L);
 }
 
@@ -57,10 +57,10 @@ static void set_scene(lua_State *L, const char *key) {
     scene *s = effect_scene(script_of(L)->effect);
     void *value = object_test(L, 3, key);
     if (!value)
-        vm_error(L, "effect: '%s' takes %s; got a %s", key,
+        vm_error(L, "effect: '%s' takes %s; got %s", key,
                  strcmp(key, "camera") == 0 ? "orbit { } or camera { }"
                                             : lua_pushfstring(L, "%s { }", key),
-                 luaL_typename(L, 3));
+                 object_kind(L, 3));
     if (strcmp(key, "camera") == 0) {
         s->camera.eye = NULL; // an orbit has none
         merge((const field **)&s->camera, (const field *const *)value,
@@ -83,7 +83,7 @@ static void set_lights(lua_State *L) {
 static void set_update(lua_State *L) {
     script *s = script_of(L);
     if (lua_type(L, 3) != LUA_TFUNCTION)
-        vm_error(L, "effect: 'update' takes a function(t, dt); got a %s", luaL_typename(L, 3));
+        vm_error(L, "effect: 'update' takes a function(t, dt); got %s", object_kind(L, 3));
     luaL_unref(L, LUA_REGISTRYINDEX, s->update);
     lua_pushvalue(L, 3);
     s->update = luaL_ref(L, LUA_REGISTRYINDEX);

@@ -32,9 +32,9 @@ static void push_list(lua_State *L, const char *kind) {
 static void add_function(lua_State *L, int index, const char *method, const char *kind) {
     script_require_loading(L, method);
     if (lua_type(L, index) != LUA_TFUNCTION)
-        vm_error(L, "%s takes a function%s; got a %s", method,
+        vm_error(L, "%s takes a function%s; got %s", method,
                  index == 3 ? " after the key, as fx:on_key(\"f\", function(event) end)" : "",
-                 luaL_typename(L, index));
+                 object_kind(L, index));
     push_list(L, kind);
     lua_Integer count = (lua_Integer)lua_rawlen(L, -1);
     if (count == MOST_FUNCTIONS) vm_error(L, "%s: more than %d functions", method, MOST_FUNCTIONS);
@@ -61,8 +61,8 @@ static int l_on_frame(lua_State *L) {
 static const char *read_help(lua_State *L, int index, const char *method) {
     if (lua_isnoneornil(L, index)) return "";
     if (lua_type(L, index) != LUA_TSTRING)
-        vm_error(L, "%s: what comes after the function says in a text what it does; got a %s",
-                 method, luaL_typename(L, index));
+        vm_error(L, "%s: what comes after the function says in a text what it does; got %s", method,
+                 object_kind(L, index));
     vm_charge_memory(L, lua_rawlen(L, index) + FUNCTION_COST);
     return lua_tostring(L, index);
 }
@@ -80,8 +80,8 @@ static int l_on_key(lua_State *L) {
     if (lua_type(L, 2) != LUA_TSTRING)
         vm_error(L,
                  "fx:on_key takes the name of a key first, as fx:on_key(\"f\", function(event) "
-                 "end); got a %s",
-                 luaL_typename(L, 2));
+                 "end); got %s",
+                 object_kind(L, 2));
     const char *help = read_help(L, 4, "fx:on_key");
     add_function(L, 3, "fx:on_key", lua_pushfstring(L, "%s%s", key_list, lua_tostring(L, 2)));
     if (!lua_tostring(L, 2)[0]) vm_error(L, "fx:on_key: the key has no name");

@@ -20,8 +20,8 @@ static int l_image(lua_State *L) {
     }
     size_t length;
     if (lua_type(L, -1) != LUA_TSTRING)
-        vm_error(L, "image takes a file, as in image \"templates/source.exr\"; got a %s",
-                 luaL_typename(L, -1));
+        vm_error(L, "image takes a file, as in image \"templates/source.exr\"; got %s",
+                 object_kind(L, -1));
     const char *file = lua_tolstring(L, -1, &length);
     if (strlen(file) != length) vm_error(L, "image: the file name contains a zero byte");
     vm_charge_memory(L, length + 1);

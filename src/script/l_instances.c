@@ -67,8 +67,8 @@ static _Noreturn void refuse_key(lua_State *L, const char *who, const char *name
 // The values of the table at `table`, pushed in the order of instance_key; nil: not given.
 static int push_values(lua_State *L, int table, const char *who) {
     if (!value_is_plain_table(L, table))
-        vm_error(L, "%s: what is set is a table, as in { kind = 2, scale = 1 }; got a %s", who,
-                 luaL_typename(L, table));
+        vm_error(L, "%s: what is set is a table, as in { kind = 2, scale = 1 }; got %s", who,
+                 object_kind(L, table));
     luaL_checkstack(L, 2 * INSTANCE_KEYS + LUA_MINSTACK, who); // lists stand beside them in set_all
     int base = lua_gettop(L) + 1, given = 0, known = 0;
     for (int k = 0; k < INSTANCE_KEYS; k++)
@@ -77,7 +77,7 @@ static int push_values(lua_State *L, int table, const char *who) {
     if (given == known) return base;
     for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) { // some key is none
         if (lua_type(L, -2) != LUA_TSTRING)
-            vm_error(L, "%s: a key is a %s; keys are names", who, luaL_typename(L, -2));
+            vm_error(L, "%s: a key is %s; keys are names", who, object_kind(L, -2));
         bool found = false;
         for (int k = 0; k < INSTANCE_KEYS; k++)
             found = found || strcmp(lua_tostring(L, -2), instance_key_names[k]) == 0;
@@ -155,14 +155,15 @@ static int l_reset(lua_State *L) {
 
 static int l_near(lua_State *L) {
     scene_instances *s = self(L, "near");
+    lua_settop(L, 3);
     float point[4];
     int count = value_numbers(L, 2, point);
     double radius = lua_tonumber(L, 3);
     if (count != 2 && count != 3)
         vm_error(L,
-                 "%s: near takes a point and a radius, as in near({0, 0, 0}, 4); its point is a "
+                 "%s: near takes a point and a radius, as in near({0, 0, 0}, 4); its point is "
                  "%s",
-                 scene_instances_name(s), luaL_typename(L, 2));
+                 scene_instances_name(s), object_kind(L, 2));
     for (int i = 0; i < count; i++)
         if (!isfinite(point[i])) vm_error(L, "near: its point must be finite");
     if (lua_type(L, 3) != LUA_TNUMBER || !(radius >= 0 && radius <= 1e6))

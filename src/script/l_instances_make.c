@@ -31,8 +31,7 @@ static void read_places(maker *m) {
         vm_error(L, "instances: 'at' is missing: where they stand, as in at = scatter { count = "
                     "500, size = {120, 120}, distance = 2 } or at = { {0, 0, 0}, {2, 0, 0} }");
     if (!value_is_plain_table(L, -1) || value_has_names(L, -1))
-        vm_error(L, "instances: 'at' takes a list of places {x, y, z}; got a %s",
-                 luaL_typename(L, -1));
+        vm_error(L, "instances: 'at' takes a list of places {x, y, z}; got %s", object_kind(L, -1));
     lua_Unsigned count = lua_rawlen(L, -1);
     if (count < 1 || count > SCENE_INSTANCES_MAX)
         vm_error(L, "instances: 'at' has %d places; 1 to %d are accepted", (int)count,
@@ -189,8 +188,8 @@ static size_t read_kinds(lua_State *L, scene_mesh *kinds[SCENE_INSTANCES_MAX_KIN
         lua_rawgeti(L, 1, (lua_Integer)i + 1);
         const mesh_object *object = object_test(L, -1, "mesh");
         if (!object)
-            vm_error(L, "instances: value %d is a %s; those without a name are meshes", (int)i + 1,
-                     luaL_typename(L, -1));
+            vm_error(L, "instances: value %d is %s; those without a name are meshes", (int)i + 1,
+                     object_kind(L, -1));
         if (object->placed)
             vm_error(L,
                      "instances: mesh '%s' has a place or colour of its own; say it of the "

@@ -9,7 +9,7 @@ static scene_instances *read_at(lua_State *L) {
     bool counted = value_get(L, 1, "count") != LUA_TNIL, given = value_get(L, 1, "at") != LUA_TNIL;
     scene_instances *at = given ? value_instances(L, -1) : NULL;
     if (given && !at)
-        vm_error(L, "point_lights: 'at' takes instances { }; got a %s", luaL_typename(L, -1));
+        vm_error(L, "point_lights: 'at' takes instances { }; got %s", object_kind(L, -1));
     if (counted == given)
         vm_error(L,
                  "point_lights: one of 'count' (1 to %d) and 'at' (instances) is to be given: how "

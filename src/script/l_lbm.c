@@ -50,8 +50,8 @@ static void set_face(lua_State *L, pass *p, const char *face) {
     if (lua_type(L, -1) != LUA_TSTRING)
         vm_error(L,
                  "lbm: boundary: '%s' takes a word: \"open\", \"wall\", \"slip\", \"inflow\" or "
-                 "\"periodic\"; got a %s",
-                 face, luaL_typename(L, -1));
+                 "\"periodic\"; got %s",
+                 face, object_kind(L, -1));
     const char *option = lua_pushfstring(L, "boundary_%s", face);
     if (!pass_set_option(p, option, lua_tostring(L, -2))) script_raise(L);
     lua_pop(L, 1);
@@ -129,7 +129,7 @@ static void add_collider(lua_State *L, pass *air, voxels_rule rule) {
     const mesh_object *mesh = object_test(L, -1, "mesh");
     const scene_instances *instances = value_instances(L, -1);
     if (!mesh && !instances)
-        vm_error(L, "collider takes meshes and instances; got a %s", luaL_typename(L, -1));
+        vm_error(L, "collider takes meshes and instances; got %s", object_kind(L, -1));
     uint32_t count = mesh ? 1 : scene_instances_count(instances);
     for (uint32_t i = 0; i < count; i++) {
         vm_charge_memory(L, BODY_COST);

@@ -54,9 +54,7 @@ size_t value_lights(lua_State *L, int index, const char *who, scene_light **out)
     if (!value_is_plain_table(L, index) || value_has_names(L, index))
         vm_error(
             L, "%s: 'lights' takes a list, as in { point_light { position = {0, 0, 3} } }; got %s",
-            who,
-            value_is_plain_table(L, index) ? "a table with names"
-                                           : lua_pushfstring(L, "a %s", luaL_typename(L, index)));
+            who, value_is_plain_table(L, index) ? "a table with names" : object_kind(L, index));
     size_t count = lua_rawlen(L, index);
     if (count > MOST)
         vm_error(L, "%s: %d lights; at most %d are possible", who, (int)count, (int)MOST);
@@ -67,9 +65,9 @@ size_t value_lights(lua_State *L, int index, const char *who, scene_light **out)
         const light_object *object = object_test(L, -1, "light");
         if (!object)
             vm_error(L,
-                     "%s: entry %d of 'lights' is a %s; point_light { }, spot_light { } and "
+                     "%s: entry %d of 'lights' is %s; point_light { }, spot_light { } and "
                      "sphere_light { } are accepted",
-                     who, (int)i + 1, luaL_typename(L, -1));
+                     who, (int)i + 1, object_kind(L, -1));
         lights[i] = object->light;
         lua_pop(L, 1);
     }

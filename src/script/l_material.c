@@ -9,31 +9,12 @@
 static const char type_name[] = "material";
 enum { CONTROLS = 5 };
 
-// What moves is limited instead.
-static void check_constants(lua_State *L, const scene_material *made) {
-    size_t count;
-    const scene_value *values = scene_material_values(&count);
-    for (size_t i = 0; i < count; i++) {
-        const field *node;
-        memcpy(&node, (const char *)made + values[i].offset, sizeof node);
-        if (!node || strcmp(node->kind->name, "constant") != 0) continue;
-        for (int c = 0; c < node->components; c++) {
-            double value = (double)node->value[c], max = (double)values[i].max;
-            if (value >= 0 && value <= max) continue;
-            if (max < (double)INFINITY)
-                vm_error(L, "material: '%s' is %g; accepted: 0 to %g", values[i].name, value, max);
-            vm_error(L, "material: '%s' is %g; accepted: 0 or more", values[i].name, value);
-        }
-    }
-}
-
 static int l_material(lua_State *L) {
     value_refuse_array(L, "material");
     material_object *object = object_new(L, type_name, sizeof *object);
     vm_charge_memory(L, sizeof(scene_material) + sizeof(field) + CONTROLS * EFFECT_CONTROL_COST);
     scene_material *made = arena_alloc(script_memory(L), sizeof *made);
     value_read_slots(L, "material", made);
-    check_constants(L, made);
     made->name = value_name_or_variable(L, 1, type_name);
     if (strcmp(made->name, type_name) == 0) made->name = NULL; // made in passing
     made->no_toon = !value_get_bool(L, 1, "material", "toon", true);
@@ -54,7 +35,7 @@ void value_read_material(lua_State *L, const char *who, scene_mesh *mesh) {
     if (value_get(L, 1, "material") != LUA_TNIL) {
         const material_object *object = object_test(L, -1, type_name);
         if (!object)
-            vm_error(L, "%s: 'material' takes material { }; got a %s", who, luaL_typename(L, -1));
+            vm_error(L, "%s: 'material' takes material { }; got %s", who, object_kind(L, -1));
         vm_charge_memory(L, mesh->data.part_count * sizeof *mesh->data.parts);
         scene_mesh_set_material(mesh, object->material, script_memory(L));
     }

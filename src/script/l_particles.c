@@ -14,7 +14,7 @@ static void read_desc(lua_State *L, pass_particles_desc *desc) {
     desc->share = NULL;
     bool given = value_get(L, 1, "at") != LUA_TNIL;
     if (given && !(desc->at = value_instances(L, -1)))
-        vm_error(L, "particles: 'at' takes instances { }; got a %s", luaL_typename(L, -1));
+        vm_error(L, "particles: 'at' takes instances { }; got %s", object_kind(L, -1));
     if (given) vm_charge_memory(L, 2 * sizeof(float) * scene_instances_count(desc->at));
     if (value_get(L, 1, "share") != LUA_TNIL) {
         if (!given) vm_error(L, "particles: 'share' is of instances; 'at' says which");

@@ -93,8 +93,8 @@ static int l_history(lua_State *L) {
     graph_image image;
     script_require_loading(L, "history");
     if (!value_image(L, 1, &image))
-        vm_error(L, "history takes an image, as in history(volume.color); got a %s",
-                 luaL_typename(L, 1));
+        vm_error(L, "history takes an image, as in history(volume.color); got %s",
+                 object_kind(L, 1));
     image = graph_add_history(effect_graph(script_of(L)->effect), image);
     if (!image.id) script_raise(L);
     image_push(L, image);
@@ -107,8 +107,8 @@ static void set_image(lua_State *L, pass_call *call, size_t index, int value) {
     const shader_image *slot = &call->face->images[index];
     graph_image image;
     if (!value_image(L, value, &image))
-        vm_error(L, "%s: input '%s' takes an image, such as the result of a pass; got a %s",
-                 call->who, slot->name, luaL_typename(L, value));
+        vm_error(L, "%s: input '%s' takes an image, such as the result of a pass; got %s",
+                 call->who, slot->name, object_kind(L, value));
     if (call->taken[index]) vm_error(L, "%s: input '%s' is given twice", call->who, slot->name);
     call->taken[index] = true;
     if (!pass_set_image(call->pass, slot->name, image)) script_raise(L);
@@ -145,8 +145,8 @@ static void add_positional(lua_State *L, pass_call *call, int value) {
     } else {
         vm_error(L,
                  "%s: values without a name are images, or meshes and instances for geometry; got "
-                 "a %s",
-                 call->who, luaL_typename(L, value));
+                 "%s",
+                 call->who, object_kind(L, value));
     }
 }
 
@@ -182,8 +182,8 @@ static void set_option(lua_State *L, pass_call *call, size_t index, int value) {
     } else if (lua_isboolean(L, value)) { // of off and on
         word = lua_toboolean(L, value) ? "on" : "off";
     } else {
-        vm_error(L, "%s: option '%s' takes a word in quotes, or a parameter with words; got a %s",
-                 call->who, name, luaL_typename(L, value));
+        vm_error(L, "%s: option '%s' takes a word in quotes, or a parameter with words; got %s",
+                 call->who, name, object_kind(L, value));
     }
     if (!pass_set_option(call->pass, name, word)) script_raise(L);
 }
@@ -273,7 +273,7 @@ static void set_formats(lua_State *L, pass_call *call, int table) {
 static void add_source(lua_State *L, pass_call *call, int value) {
     const result_object *source = object_test(L, value, "pass result");
     if (!source) {
-        const char *got = lua_pushfstring(L, "a %s", luaL_typename(L, value));
+        const char *got = object_kind(L, value);
         if (object_test(L, value, "image")) got = "an image";
         if (object_test(L, value, "instances")) got = "instances { }, which geometry { } takes";
         vm_error(L,

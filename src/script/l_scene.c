@@ -1,15 +1,54 @@
 // What stands around the volume: mesh { "file" }, orbit { } and camera { }, sun { }, sky { }. Every
 // number may move. What is not given keeps the scene's default.
 #include "base/memory.h"
+#include "scene/material.h"
 #include "script/binding.h"
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+// What may be said for it; NULL: anything.
+static const scene_value *find_value(const char *who, const char *key) {
+    static const char *const groups[] = {"camera", "sun", "sky"};
+    char name[64];
+    size_t count;
+    const scene_value *values = scene_values(&count);
+    if (strcmp(who, "material") == 0) values = scene_material_values(&count);
+    if (strstr(who, "_light")) values = scene_light_values(SCENE_SPOT, &count);
+    const char *group = strcmp(who, "orbit") == 0 ? "camera" : who;
+    bool grouped = false;
+    for (size_t i = 0; i < COUNT_OF(groups); i++)
+        grouped = grouped || strcmp(group, groups[i]) == 0;
+    snprintf(name, sizeof name, "%s%s%s", grouped ? group : "", grouped ? "." : "", key);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(values[i].name, name) == 0) return &values[i];
+    return NULL;
+}
+
+// What moves is limited instead.
+static void check_constant(lua_State *L, const char *who, const char *key, const field *node) {
+    const scene_value *value = find_value(who, key);
+    if (!value || strcmp(node->kind->name, "constant") != 0) return;
+    for (int c = 0; c < node->components; c++) {
+        float v = node->value[c];
+        if (v >= value->min && v <= value->max) continue;
+        const char *unit = value->unit && value->unit[0] ? value->unit : "";
+        if (value->max < INFINITY)
+            vm_error(L, "%s: '%s' is %g; accepted: %g to %g%s%s", who, key, (double)v,
+                     (double)value->min, (double)value->max, unit[0] ? " " : "", unit);
+        vm_error(L, "%s: '%s' is %g; accepted: %g%s%s or more", who, key, (double)v,
+                 (double)value->min, unit[0] ? " " : "", unit);
+    }
+}
 
 void value_read_slots(lua_State *L, const char *who, void *out) {
     script_require_loading(L, who);
     for (const script_key *key = value_check_object(L, 1, who)->keys; key->name; key++) {
         if (!key->components) continue; // no number
         const field *node = value_get_uniform(L, 1, who, key->name, key->components, NULL);
-        if (node) memcpy((char *)out + key->offset, &node, sizeof node);
+        if (!node) continue;
+        check_constant(L, who, key->name, node);
+        memcpy((char *)out + key->offset, &node, sizeof node);
     }
 }
 
@@ -72,8 +111,7 @@ const scene_node *value_get_node(lua_State *L, int table, const char *who, const
     const scene_node *node = NULL;
     if (value_get(L, table, key) != LUA_TNIL) {
         const node_object *object = object_test(L, -1, "node");
-        if (!object)
-            vm_error(L, "%s: '%s' takes node { }; got a %s", who, key, luaL_typename(L, -1));
+        if (!object) vm_error(L, "%s: '%s' takes node { }; got %s", who, key, object_kind(L, -1));
         node = object->node;
     }
     lua_pop(L, 1);

@@ -29,8 +29,8 @@ static const char *name_of(lua_State *L, int number) {
 static double first_number(lua_State *L, int table, const char *name, double otherwise) {
     int type = lua_rawgeti(L, table, 1);
     if (type != LUA_TNIL && type != LUA_TNUMBER)
-        vm_error(L, "%s: its time is a %s; a number of seconds is accepted", name,
-                 luaL_typename(L, -1));
+        vm_error(L, "%s: its time is %s; a number of seconds is accepted", name,
+                 object_kind(L, -1));
     double time = type == LUA_TNUMBER ? lua_tonumber(L, -1) : otherwise;
     lua_pop(L, 1);
     return time;
@@ -42,8 +42,8 @@ static scene_explosion read_one(lua_State *L, int number, double time, uint32_t 
     const char *name = name_of(L, number);
     float place[3] = {0, 0, 0};
     if (!value_is_plain_table(L, table))
-        vm_error(L, "%s is a %s; a table is accepted, as in { 0.5, position = {0, 0, 1} }", name,
-                 luaL_typename(L, table));
+        vm_error(L, "%s is %s; a table is accepted, as in { 0.5, position = {0, 0, 1} }", name,
+                 object_kind(L, table));
     value_check_keys(L, table, name, script_object_find(who)->keys);
     value_get_vector(L, table, name, "position", place);
     scene_explosion one = {
@@ -165,7 +165,7 @@ static int l_shell(lua_State *L) {
     const char *unsound = s->unsound;
     const explosions_object *at = NULL;
     if (value_get(L, 1, "at") != LUA_TNIL && !(at = object_test(L, -1, who)))
-        vm_error(L, "shell: 'at' takes explosions { }; got a %s", luaL_typename(L, -1));
+        vm_error(L, "shell: 'at' takes explosions { }; got %s", object_kind(L, -1));
     lua_pop(L, 1);
     pass *p = pass_make(L, "shell", "shell", 1, script_object_find("shell")->keys);
     if (at) pass_shell_open(p, at->list);

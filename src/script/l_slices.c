@@ -22,8 +22,8 @@ static void read_size(lua_State *L, pass_slices_desc *desc) {
         int count = value_numbers(L, -1, size);
         if (count == 1) size[1] = size[0];
         if (count != 1 && count != 2)
-            vm_error(L, "slices: 'size' must be the cells of a slice, as in {128, 128}; got a %s",
-                     luaL_typename(L, -1));
+            vm_error(L, "slices: 'size' must be the cells of a slice, as in {128, 128}; got %s",
+                     object_kind(L, -1));
     }
     lua_pop(L, 1);
     for (int i = 0; i < 2; i++) {
@@ -121,8 +121,8 @@ static const struct picture *read_painted(lua_State *L) {
         if (!object)
             vm_error(L,
                      "obstacle: 'image' takes a picture, as in image = image \"rock.png\"; got "
-                     "a %s",
-                     luaL_typename(L, -1));
+                     "%s",
+                     object_kind(L, -1));
         painted = object->picture;
     }
     lua_pop(L, 1);

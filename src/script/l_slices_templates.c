@@ -37,8 +37,8 @@ static const picture *take_image(lua_State *L) {
     lua_rawgeti(L, 2, 1);
     const picture_object *image = value_picture(L, -1);
     if (!image)
-        vm_error(L, "templates: its picture comes first, as in flow:templates { %s }; got a %s",
-                 example, luaL_typename(L, -1));
+        vm_error(L, "templates: its picture comes first, as in flow:templates { %s }; got %s",
+                 example, object_kind(L, -1));
     const picture *result = image->picture; // of the effect, not of the script
     lua_pop(L, 1);
     lua_createtable(L, 0, 8);

@@ -149,8 +149,8 @@ static void ask_published(lua_State *L, sweep_reader *r, const combination *c, s
         if (!value_is_plain_table(L, -1))
             vm_error(L,
                      "sweep: 'published' must return a table, as { [\"GTX 1650\"] = 7.21 }, or "
-                     "nil; it returned a %s",
-                     luaL_typename(L, -1));
+                     "nil; it returned %s",
+                     object_kind(L, -1));
         size_t count;
         int table = lua_gettop(L);
         const char **names = value_names(L, table, "published", &count);

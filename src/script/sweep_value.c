@@ -29,7 +29,7 @@ sweep_patch sweep_patch_empty(void) {
 // ---- plain values -----------------------------------------------------------------------------
 
 _Noreturn static void wrong(lua_State *L, const char *who, const char *key, const char *accepted) {
-    vm_error(L, "%s: '%.64s' must be %s; got a %s", who, key, accepted, luaL_typename(L, -1));
+    vm_error(L, "%s: '%.64s' must be %s; got %s", who, key, accepted, object_kind(L, -1));
 }
 
 double sweep_take_number(lua_State *L, const char *who, const char *key, double min, double max) {

@@ -29,6 +29,19 @@ void *object_test(lua_State *L, int index, const char *name) {
     return luaL_testudata(L, index, name);
 }
 
+const char *object_kind(lua_State *L, int index) {
+    static const char *const bare[] = {"nil",        "no value", "instances",
+                                       "explosions", "slices",   "voxels"};
+    if (field_param_of(L, index)) return "a parameter";
+    index = lua_absindex(L, index);
+    bool ours =
+        lua_type(L, index) == LUA_TUSERDATA && luaL_getmetafield(L, index, "__name") == LUA_TSTRING;
+    const char *name = ours ? lua_tostring(L, -1) : luaL_typename(L, index);
+    for (size_t i = 0; i < COUNT_OF(bare); i++)
+        if (strcmp(name, bare[i]) == 0) return bare[i];
+    return lua_pushfstring(L, "%s %s", strchr("aeio", name[0]) ? "an" : "a", name);
+}
+
 int object_method(lua_State *L, const char *type, const luaL_Reg *methods) {
     const char *known[16], *name = luaL_checkstring(L, 2);
     size_t count = 0;
@@ -92,8 +105,8 @@ const char **value_names(lua_State *L, int table, const char *who, size_t *count
         bool in_array = lua_isinteger(L, -2) && lua_tointeger(L, -2) >= 1 &&
                         (lua_Unsigned)lua_tointeger(L, -2) <= length;
         if (type != LUA_TSTRING && !in_array)
-            vm_error(L, "%s: a key is a %s; keys are names, or 1, 2, 3 ... without gaps", who,
-                     luaL_typename(L, -2));
+            vm_error(L, "%s: a key is %s; keys are names, or 1, 2, 3 ... without gaps", who,
+                     object_kind(L, -2));
         n += type == LUA_TSTRING;
     }
     const char **names = lua_newuserdatauv(L, (n + 1) * sizeof *names, 1);
@@ -119,8 +132,7 @@ static void refuse_key(lua_State *L, const char *who, const char *name, const sc
 
 void value_check_keys(lua_State *L, int table, const char *who, const script_key *keys) {
     if (!value_is_plain_table(L, table))
-        vm_error(L, "%s takes a table, as in %s { ... }; got a %s", who, who,
-                 luaL_typename(L, table));
+        vm_error(L, "%s takes a table, as in %s { ... }; got %s", who, who, object_kind(L, table));
     size_t n;
     const char **names = value_names(L, table, who, &n);
     for (size_t i = 0; i < n; i++)
@@ -139,10 +151,7 @@ const script_object *value_check_object(lua_State *L, int table, const char *nam
 
 _Noreturn static void wrong(lua_State *L, int index, const char *who, const char *key,
                             const char *accepted) {
-    const char *got = luaL_typename(L, index);
-    if (field_param_of(L, index)) got = "parameter";
-    if (luaL_getmetafield(L, index, "__name") == LUA_TSTRING) got = lua_tostring(L, -1);
-    vm_error(L, "%s: '%s' must be %s; got a %s", who, key, accepted, got);
+    vm_error(L, "%s: '%s' must be %s; got %s", who, key, accepted, object_kind(L, index));
 }
 
 // Number of a constant; fields that move are no numbers.
@@ -303,8 +312,8 @@ static const field *function_of_time(lua_State *L, int index, const char *who, c
     if (count == 0)
         vm_error(L,
                  "%s: the function for '%s' must return a number, {x, y, z} or a colour; it "
-                 "returned a %s for time 0",
-                 who, key, luaL_typename(L, -1));
+                 "returned %s for time 0",
+                 who, key, object_kind(L, -1));
     for (int i = 0; i < count; i++)
         if (!isfinite(value[i]))
             vm_error(L, "%s: the function for '%s' returned %g for time 0", who, key,

@@ -58,7 +58,7 @@ class Templates(Case):
         self.refused("flow:templates { %s, center = 1 }" % GOOD, "'center' takes two numbers {x, y}")
         self.refused("flow:templates { %s, count = 5000 }" % GOOD, "'count' is 5000; a flow has 1 to 4096 templates")
         self.refused("flow:templates { %s, strength = perlin { 1 } }" % GOOD, "strength")
-        self.refused("flow:templates { count = 3 }", "its picture comes first", "got a nil")
+        self.refused("flow:templates { count = 3 }", "its picture comes first", "got nil")
         self.refused("flow:templates { 'templates/source.exr' }", "its picture comes first", "got a string")
         self.refused("flow:templates { %s, %s }" % (GOOD, GOOD), "templates")
         self.refused("flow.templates { %s }" % GOOD, "mind the ':'")

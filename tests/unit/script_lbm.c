@@ -40,7 +40,7 @@ static void mistakes_are_named(void **state) {
     refused(AIR "}\nair:collider { rule = 'thin' }", "unknown value of 'rule' 'thin'");
     refused(AIR "}\nair:collider { ruel = 'solid' }", "unknown key 'ruel'; did you mean 'rule'?");
     refused(AIR "}\nair:collider { sphere { } }",
-            "collider takes meshes and instances; got a userdata");
+            "collider takes meshes and instances; got a field");
 }
 
 static void a_graph_that_cannot_be_is_refused(void **state) {

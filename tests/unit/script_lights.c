@@ -90,11 +90,16 @@ static void mistakes_are_named(void **state) {
             "point_light: 'power' varies in space");
     refused(HEAD "fx.lights = point_light { position = {0, 0, 1} }" TAIL,
             "effect: 'lights' takes a list, as in { point_light { position = {0, 0, 3} } }; got a "
-            "userdata");
+            "light");
     refused(HEAD "fx.lights = { key = point_light { position = {0, 0, 1} } }" TAIL,
             "got a table with names");
     refused(HEAD "fx.lights = { point_light { position = {0, 0, 1} }, sun { } }" TAIL,
-            "effect: entry 2 of 'lights' is a userdata");
+            "effect: entry 2 of 'lights' is a sun");
+    refused(HEAD "fx.lights = { point_light { position = {0, 0, 1}, power = -3 } }" TAIL,
+            "point_light: 'power' is -3; accepted: 0 W or more");
+    refused(HEAD "fx.sky = sky { night = 2 }" TAIL, "sky: 'night' is 2; accepted: 0 to 1");
+    refused(HEAD "fx.camera = orbit { fov = 200 }" TAIL,
+            "orbit: 'fov' is 200; accepted: 1 to 170 degrees");
     refused(HEAD "local a = {}\n"
                  "for i = 1, 64 do a[i] = point_light { position = {0, 0, i} } end\n"
                  "fx.lights = a" TAIL,

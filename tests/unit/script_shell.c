@@ -38,6 +38,7 @@ static void layers_name_mistakes(void **state) {
     refused("layers(3)", "layers takes 1 to 8 pairs");
     refused("layers { }", "got 0 of them");
     refused("layers { {1} }", "number 1 is none");
+    refused("layers { {2, 1}, {3, 'x'} }", "number 2 is none");
     refused("layers { {2, 1}, dimensions = 4 }", "'dimensions' is 2 or 3");
     refused("layers { {2, 1}, noise = 'worley' }", "'noise' is perlin, simplex, value or worley");
     refused("layers { {2, 1}, sed = 4 }", "sed");
