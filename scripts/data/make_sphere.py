@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write effects/data/sphere.obj: a round ball of radius 1 m, to show materials on.
+"""Write effects/data/sphere.obj: a round ball of radius 1 m.
 
   python3 scripts/data/make_sphere.py effects/data
 
