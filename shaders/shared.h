@@ -59,14 +59,17 @@ struct light_block {
     SHARED_LIGHT lights[LIGHT_MAX];
 };
 
-// Storage buffers of lib/bvh.glsl, whose trees src/scene/bvh.c makes. The nodes of a tree lie in
-// the order of a walk that enters both children of each node, so that it needs no stack. The first
-// tree is that over what is placed; the others are over the triangles of meshes.
+// Storage buffers of lib/bvh.glsl, whose trees src/scene/bvh.c makes. Both children of a node lie side
+// by side, behind it. The first tree is that over what is placed; the others are over the triangles of
+// meshes. A walk in a fixed order needs no stack; one that goes to what is near first needs as many
+// entries as a tree is deep.
+#define BVH_DEPTH 32         // nodes on the way to a leaf, at most
+#define BVH_DONE 0xffffffffu // there is no next node
 struct bvh_node {
-    SHARED_VEC3 low;  // of its box
-    SHARED_UINT next; // the node to go on with when this one is done with
+    SHARED_VEC3 low;   // of its box
+    SHARED_UINT next;  // the node to go on with when this one is done with, or BVH_DONE
     SHARED_VEC3 high;
-    SHARED_UINT leaf; // how many triangles, of the first tree placed meshes, << 28 | the first of them; 0: its first child follows
+    SHARED_UINT below; // of a leaf: how many triangles, of the first tree placed meshes, << 28 | the first of them; else: its first child
 };
 
 struct bvh_triangle {
@@ -80,7 +83,7 @@ struct bvh_instance {
     SHARED_VEC3 low;        // of its box in the world
     SHARED_UINT root;
     SHARED_VEC3 high;
-    SHARED_UINT end;    // node behind its tree
+    SHARED_UINT below;  // what its root has below it
     SHARED_VEC4 color;  // rgb: factor of the triangles' colours; w: of what they emit
     SHARED_UVEC4 what;  // x: the mesh, or the instances that it is one of, as scene_bvh_choose counts them; y: its number among these; z: first of the materials of its mesh
 };

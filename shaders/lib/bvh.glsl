@@ -4,7 +4,7 @@
 #include "shared.h"
 layout(std430) readonly buffer BvhNodes { bvh_node bvh_nodes[]; };
 layout(std430) readonly buffer BvhTriangles { bvh_triangle bvh_triangles[]; };
-layout(std430) readonly buffer BvhInstances { uvec4 bvh_count; bvh_instance bvh_instances[]; }; // count: x: of these, y: of nodes over them
+layout(std430) readonly buffer BvhInstances { uvec4 bvh_count; bvh_instance bvh_instances[]; }; // count: x: of these; y: what the root of the tree over them has below it, 0: there is none
 
 struct bvh_hit {
     float distance; // metres; negative: nothing was hit
@@ -24,13 +24,64 @@ bvh_ray bvh_make_ray(vec3 origin, vec3 direction, float near, float far) {
     return bvh_ray(origin, direction, 1.0 / divisor, near, far);
 }
 
-// Slab test. The exit is moved out by more than its rounding, so that no ray slips through between
-// boxes that touch (Ize, "Robust BVH ray traversal", 2013).
-bool bvh_meets_box(bvh_ray ray, vec3 low, vec3 high) {
+// Where a ray enters a box, BVH_MISS: it does not. Slab test; the exit is moved out by more than its
+// rounding, so that no ray slips through between boxes that touch (Ize, "Robust BVH ray traversal",
+// 2013).
+const float BVH_MISS = 3e38;
+float bvh_enter_box(bvh_ray ray, vec3 low, vec3 high) {
     vec3 a = (low - ray.origin) * ray.inverse, b = (high - ray.origin) * ray.inverse;
     vec3 near = min(a, b), far = max(a, b) * 1.0000008;
-    return max(max(near.x, near.y), max(near.z, ray.near)) <=
-           min(min(far.x, far.y), min(far.z, ray.far));
+    float enter = max(max(near.x, near.y), max(near.z, ray.near));
+    return enter <= min(min(far.x, far.y), min(far.z, ray.far)) ? enter : BVH_MISS;
+}
+
+bool bvh_meets_box(bvh_ray ray, vec3 low, vec3 high) {
+    return bvh_enter_box(ray, low, high) < BVH_MISS;
+}
+
+// A walk goes to the nearer of two children and keeps the other for later (Aila and Laine,
+// "Understanding the efficiency of ray traversal on GPUs", 2009). One tree is walked inside a leaf of
+// another: they share the stack.
+struct bvh_walk {
+    uint below;      // of the node to enter now, 0: the top of the stack is next
+    int top, bottom; // of what is kept: the end, and where this walk began
+};
+uint bvh_kept[2 * BVH_DEPTH];
+float bvh_kept_at[2 * BVH_DEPTH]; // where the ray enters it
+
+// `below`: of the root. `outer_top`: entries that others have on the stack.
+bvh_walk bvh_begin(uint below, int outer_top) {
+    return bvh_walk(below, outer_top, outer_top);
+}
+
+// What the next leaf holds that the ray enters, 0: there is none. ray.far may have become less.
+uint bvh_next_leaf(bvh_ray ray, inout bvh_walk w) {
+    while (w.below != 0u || w.top > w.bottom) {
+        if (w.below == 0u) {
+            w.top--;
+            if (bvh_kept_at[w.top] <= ray.far) w.below = bvh_kept[w.top];
+            continue;
+        }
+        if (w.below >> 28 != 0u) break;
+        bvh_node a = bvh_nodes[w.below], b = bvh_nodes[w.below + 1u];
+        float a_at = bvh_enter_box(ray, a.low, a.high), b_at = bvh_enter_box(ray, b.low, b.high);
+        bool swapped = b_at < a_at;
+        w.below = min(a_at, b_at) < BVH_MISS ? (swapped ? b.below : a.below) : 0u;
+        if (max(a_at, b_at) >= BVH_MISS) continue;
+        bvh_kept[w.top] = swapped ? a.below : b.below;
+        bvh_kept_at[w.top++] = max(a_at, b_at);
+    }
+    uint leaf = w.below;
+    w.below = 0u;
+    return leaf;
+}
+
+uint bvh_first(uint leaf) { return leaf & 0xfffffffu; }
+uint bvh_end(uint leaf) { return bvh_first(leaf) + (leaf >> 28); }
+
+// The node that a walk in a fixed order goes on with, which enters this one or does not.
+uint bvh_next(bvh_node n, bool enter) {
+    return enter && n.below >> 28 == 0u ? n.below : n.next;
 }
 
 // Distance to a triangle, -1 if the ray misses it: Moeller and Trumbore, "Fast, minimum storage
@@ -47,15 +98,10 @@ float bvh_meet_triangle(bvh_ray ray, bvh_triangle t) {
 
 // The triangle of a tree that is hit, -1: none; ray.far becomes its distance. With `any` the first
 // that is met will do.
-int bvh_walk(inout bvh_ray ray, uint node, uint end, bool any) {
+int bvh_find_triangle(inout bvh_ray ray, bvh_walk w, bool any) {
     int found = -1;
-    while (node < end) {
-        bvh_node n = bvh_nodes[node];
-        bool inside = bvh_meets_box(ray, n.low, n.high);
-        node = inside && n.leaf == 0u ? node + 1u : n.next;
-        if (!inside) continue;
-        uint first = n.leaf & 0xfffffffu, last = first + (n.leaf >> 28);
-        for (uint i = first; i < last; i++) {
+    for (uint leaf; (leaf = bvh_next_leaf(ray, w)) != 0u;) {
+        for (uint i = bvh_first(leaf); i < bvh_end(leaf); i++) {
             float distance = bvh_meet_triangle(ray, bvh_triangles[i]);
             if (distance < 0.0 || distance > ray.far) continue;
             ray.far = distance;
@@ -78,17 +124,12 @@ bvh_ray bvh_to_mesh(bvh_ray ray, uint instance) {
 // x: what is placed and hit, -1: none; y: the triangle.
 ivec2 bvh_find(inout bvh_ray ray, bool any) {
     ivec2 hit = ivec2(-1);
-    uint node = 0u;
-    while (node < bvh_count.y) {
-        bvh_node n = bvh_nodes[node];
-        bool inside = bvh_meets_box(ray, n.low, n.high);
-        node = inside && n.leaf == 0u ? node + 1u : n.next;
-        if (!inside) continue;
-        uint first = n.leaf & 0xfffffffu, last = first + (n.leaf >> 28);
-        for (uint i = first; i < last; i++) {
+    bvh_walk w = bvh_begin(bvh_count.y, 0);
+    for (uint leaf; (leaf = bvh_next_leaf(ray, w)) != 0u;) {
+        for (uint i = bvh_first(leaf); i < bvh_end(leaf); i++) {
             if (!bvh_meets_box(ray, bvh_instances[i].low, bvh_instances[i].high)) continue;
             bvh_ray inner = bvh_to_mesh(ray, i);
-            int found = bvh_walk(inner, bvh_instances[i].root, bvh_instances[i].end, any);
+            int found = bvh_find_triangle(inner, bvh_begin(bvh_instances[i].below, w.top), any);
             if (found < 0) continue;
             hit = ivec2(i, found);
             ray.far = inner.far;

@@ -68,17 +68,12 @@ struct surface_hit {
     vec3 way;               // of the ray, in the space of the mesh
 };
 
-// The nearest triangle of what is placed; the ray is in its space.
-void surface_walk(inout bvh_ray ray, uint instance, bool holes, inout surface_hit hit) {
-    uint node = bvh_instances[instance].root, end = bvh_instances[instance].end;
+// The nearest triangle of what is placed; the ray is in its space. `outer_top`: of the walk that found it.
+void surface_find(inout bvh_ray ray, uint instance, int outer_top, bool holes, inout surface_hit hit) {
+    bvh_walk w = bvh_begin(bvh_instances[instance].below, outer_top);
     uint materials = bvh_instances[instance].what.z;
-    while (node < end) {
-        bvh_node n = bvh_nodes[node];
-        bool inside = bvh_meets_box(ray, n.low, n.high);
-        node = inside && n.leaf == 0u ? node + 1u : n.next;
-        if (!inside) continue;
-        uint first = n.leaf & 0xfffffffu, last = first + (n.leaf >> 28);
-        for (uint i = first; i < last; i++) {
+    for (uint leaf; (leaf = bvh_next_leaf(ray, w)) != 0u;) {
+        for (uint i = bvh_first(leaf); i < bvh_end(leaf); i++) {
             vec2 where;
             float distance = surface_meet(ray, bvh_triangles[i], where);
             if (distance < 0.0 || distance > ray.far) continue;

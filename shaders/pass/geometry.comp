@@ -20,13 +20,13 @@ bool is_shown(uint mesh) {
 }
 
 // One of what is placed.
-void meet(uint item, inout bvh_ray ray, inout surface_hit hit) {
+void meet(uint item, int outer_top, inout bvh_ray ray, inout surface_hit hit) {
     if (!is_shown(bvh_instances[item].what.x)) return;
     if (!bvh_meets_box(ray, bvh_instances[item].low, bvh_instances[item].high)) return;
     bvh_ray inner = bvh_to_mesh(ray, item);
     int before = hit.triangle;
     hit.triangle = -1;
-    surface_walk(inner, item, holes, hit);
+    surface_find(inner, item, outer_top, holes, hit);
     if (hit.triangle < 0) {
         hit.triangle = before;
         return;
@@ -39,15 +39,9 @@ void meet(uint item, inout bvh_ray ray, inout surface_hit hit) {
 // Distances of the ray are depths, since its direction is one metre deep.
 surface_hit find(inout bvh_ray ray) {
     surface_hit hit = surface_hit(-1, -1, vec2(0.0), vec3(0.0));
-    uint node = 0u;
-    while (node < bvh_count.y) {
-        bvh_node n = bvh_nodes[node];
-        bool inside = bvh_meets_box(ray, n.low, n.high);
-        node = inside && n.leaf == 0u ? node + 1u : n.next;
-        if (!inside) continue;
-        uint first = n.leaf & 0xfffffffu, last = first + (n.leaf >> 28);
-        for (uint i = first; i < last; i++) meet(i, ray, hit);
-    }
+    bvh_walk w = bvh_begin(bvh_count.y, 0);
+    for (uint leaf; (leaf = bvh_next_leaf(ray, w)) != 0u;)
+        for (uint i = bvh_first(leaf); i < bvh_end(leaf); i++) meet(i, w.top, ray, hit);
     return hit;
 }
 

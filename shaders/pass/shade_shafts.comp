@@ -89,15 +89,15 @@ shaft shaft_to(light l, vec3 middle, vec3 extent, int instance) {
 
 // Adds leaves of a tree to the list; past its end when there are more than it holds.
 void collect(shaft f, uint instance, uint list, inout uint count) {
-    uint node = bvh_instances[instance].root, end = bvh_instances[instance].end;
-    while (node < end && count <= SHAFT_LEAVES) {
+    uint node = bvh_instances[instance].root;
+    while (node != BVH_DONE && count <= SHAFT_LEAVES) {
         bvh_node n = bvh_nodes[node];
         bool inside = shaft_meets(f, n.low, n.high);
-        node = inside && n.leaf == 0u ? node + 1u : n.next;
-        if (!inside || n.leaf == 0u) continue;
+        node = bvh_next(n, inside);
+        if (!inside || n.below >> 28 == 0u) continue;
         count++;
-        if (!shaft_can_hold(instance, n.leaf)) count = SHAFT_LEAVES + 1u;
-        if (count <= SHAFT_LEAVES) shaft_words[list + count] = shaft_pack(instance, n.leaf);
+        if (!shaft_can_hold(instance, n.below)) count = SHAFT_LEAVES + 1u;
+        if (count <= SHAFT_LEAVES) shaft_words[list + count] = shaft_pack(instance, n.below);
     }
 }
 
@@ -117,14 +117,13 @@ void main() {
     light l = light_get(index);
     shaft world = shaft_to(l, middle, extent, -1);
     uint list = shaft_start(index), count = 0u;
-    uint node = 0u;
-    while (node < bvh_count.y && count <= SHAFT_LEAVES) {
+    uint node = bvh_count.y == 0u ? BVH_DONE : 0u;
+    while (node != BVH_DONE && count <= SHAFT_LEAVES) {
         bvh_node n = bvh_nodes[node];
         bool inside = shaft_meets(world, n.low, n.high);
-        node = inside && n.leaf == 0u ? node + 1u : n.next;
+        node = bvh_next(n, inside);
         if (!inside) continue;
-        uint first = n.leaf & 0xfffffffu, last = first + (n.leaf >> 28);
-        for (uint i = first; i < last && count <= SHAFT_LEAVES; i++)
+        for (uint i = bvh_first(n.below); i < bvh_end(n.below) && count <= SHAFT_LEAVES; i++)
             if (shaft_meets(world, bvh_instances[i].low, bvh_instances[i].high))
                 collect(shaft_to(l, middle, extent, int(i)), i, list, count);
     }

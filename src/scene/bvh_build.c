@@ -1,12 +1,12 @@
 // Splits by the surface area heuristic over bins: Wald, "On fast construction of SAH-based bounding
-// volume hierarchies", 2007. Nodes are laid out depth first, each with a link past its subtree, so
-// that rays need no stack: Smits, "Efficiency issues for ray tracing", 1998.
+// volume hierarchies", 2007. Each node has a link past its subtree, so that a walk in a
+// fixed order needs no stack: Smits, "Efficiency issues for ray tracing", 1998.
 #include "scene/bvh_build.h"
 #include "base/maths.h"
 #include "base/memory.h"
 #include <math.h>
 
-enum { BINS = 16, MAX_SAH_DEPTH = 48 }; // deeper than that, lists of pieces are just halved
+enum { BINS = 16 };
 
 bvh_bounds bvh_bounds_empty(void) {
     return (bvh_bounds){{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
@@ -97,36 +97,45 @@ static size_t partition(bvh_piece *pieces, size_t count, const plane *at) {
     return left;
 }
 
+// Whether a tree over so many pieces still fits below a node at this depth when they are only
+// halved from there on.
+static bool is_free(size_t count, int depth) {
+    return depth + 1 < BVH_DEPTH && count >> (BVH_DEPTH - 1 - depth) == 0;
+}
+
 // How many of the pieces, then the first ones, go to the first child; 0: they are a leaf.
 static size_t split(bvh_piece *pieces, size_t count, const bvh_bounds *box, int depth) {
     if (count == 1) return 0;
     plane best = {.axis = -1, .cost = INFINITY};
-    if (depth < MAX_SAH_DEPTH) best = best_plane(pieces, count, bvh_bounds_area(box));
+    if (is_free(count, depth)) best = best_plane(pieces, count, bvh_bounds_area(box));
     if (count <= BVH_LEAF_SIZE && !(best.cost < (float)count)) return 0;
     return best.axis < 0 ? count / 2 : partition(pieces, count, &best);
 }
 
 // ---- nodes ------------------------------------------------------------------------------------
 
-static void add_node(bvh_build *b, bvh_piece *pieces, size_t count, int depth) {
+static void fill_node(bvh_build *b, size_t index, bvh_piece *pieces, size_t count, int depth,
+                      uint32_t next) {
     bvh_bounds box = bvh_bounds_empty();
     for (size_t i = 0; i < count; i++) bvh_bounds_add(&box, &pieces[i].box);
-    MEM_RESERVE(b->nodes, b->node_count + 1, b->node_capacity);
-    size_t index = b->node_count++;
-    struct bvh_node node = {0};
+    struct bvh_node node = {.next = next};
     glm_vec3_copy(box.low, node.low.v);
     glm_vec3_copy(box.high, node.high.v);
-    size_t left = split(pieces, count, &box, depth);
+    size_t left = split(pieces, count, &box, depth), first = b->node_count;
     if (left == 0) {
-        node.leaf = bvh_leaf(b->add_leaf(b->user, pieces, count), count);
+        node.below = bvh_leaf(b->add_leaf(b->user, pieces, count), count);
     } else {
-        add_node(b, pieces, left, depth + 1);
-        add_node(b, pieces + left, count - left, depth + 1);
+        MEM_RESERVE(b->nodes, first + 2, b->node_capacity);
+        b->node_count += 2;
+        node.below = (uint32_t)first;
+        fill_node(b, first, pieces, left, depth + 1, (uint32_t)first + 1);
+        fill_node(b, first + 1, pieces + left, count - left, depth + 1, next);
     }
-    node.next = (uint32_t)b->node_count;
     b->nodes[index] = node;
 }
 
 void bvh_build_tree(bvh_build *b, bvh_piece *pieces, size_t count) {
-    if (count > 0) add_node(b, pieces, count, 0);
+    if (count == 0) return;
+    MEM_RESERVE(b->nodes, b->node_count + 1, b->node_capacity);
+    fill_node(b, b->node_count++, pieces, count, 0, BVH_DONE);
 }

@@ -1,17 +1,26 @@
 // A tree of boxes over anything that has one, laid out as shaders walk it (bvh_node of shared.h).
 #pragma once
 #include "shared.h"
+#include <stdbool.h>
 #include <stddef.h>
 
-// What a leaf holds, as a node says it: so many, up to 15, from a place on.
+// What is below a node. A leaf holds so many, up to 15, from a place on; any other node has two
+// children, for which the range is empty.
 static inline uint32_t bvh_leaf(uint32_t first, size_t count) {
     return (uint32_t)count << 28 | first;
 }
-static inline uint32_t bvh_leaf_first(uint32_t leaf) {
-    return leaf & 0xfffffff;
+static inline bool bvh_is_leaf(uint32_t below) {
+    return below >> 28 != 0;
 }
-static inline uint32_t bvh_leaf_end(uint32_t leaf) {
-    return bvh_leaf_first(leaf) + (leaf >> 28);
+static inline uint32_t bvh_leaf_first(uint32_t below) {
+    return below & 0xfffffff;
+}
+static inline uint32_t bvh_leaf_end(uint32_t below) {
+    return bvh_leaf_first(below) + (below >> 28);
+}
+// The node that a walk in a fixed order goes on with, which enters this one or does not.
+static inline uint32_t bvh_next(const struct bvh_node *node, bool enter) {
+    return enter && !bvh_is_leaf(node->below) ? node->below : node->next;
 }
 
 typedef struct bvh_bounds {
@@ -31,7 +40,7 @@ typedef struct bvh_piece {
 enum { BVH_LEAF_SIZE = 4 };
 
 typedef struct bvh_build {
-    struct bvh_node *nodes; // the tree is added behind those that are there
+    struct bvh_node *nodes; // the tree is added behind those that are there, its root first
     size_t node_count, node_capacity;
     // Takes the pieces of a leaf, at most BVH_LEAF_SIZE; returns the number of the first.
     uint32_t (*add_leaf)(void *user, const bvh_piece *pieces, size_t count);

@@ -46,20 +46,14 @@ static bool meet_triangle(ray *r, const struct bvh_triangle *t) {
     return true;
 }
 
-// The next node of a walk, and whether the ray enters this one.
-static uint32_t step(const ray *r, const struct bvh_node *node, uint32_t index, bool *inside) {
-    *inside = meets_box(r, &node->low, &node->high);
-    return *inside && !node->leaf ? index + 1 : node->next;
-}
-
 // The triangle of an item that the ray meets first, -1: none.
 static int64_t walk_item(const scene_bvh *b, const struct bvh_instance *item, ray *r) {
     int64_t found = -1;
-    bool inside;
-    for (uint32_t i = item->root; i < item->end;) {
+    for (uint32_t i = item->root; i != BVH_DONE;) {
         const struct bvh_node *node = &b->forest.nodes[i];
-        i = step(r, node, i, &inside);
-        uint32_t first = bvh_leaf_first(node->leaf), end = bvh_leaf_end(node->leaf);
+        bool inside = meets_box(r, &node->low, &node->high);
+        i = bvh_next(node, inside);
+        uint32_t first = bvh_leaf_first(node->below), end = bvh_leaf_end(node->below);
         for (uint32_t k = first; inside && k < end; k++)
             if (meet_triangle(r, &b->forest.triangles[k])) found = k;
     }
@@ -109,11 +103,11 @@ bool scene_pick(const scene_bvh *b, const float origin[3], const float direction
     ray r = make_ray(origin, direction, INFINITY);
     const struct bvh_instance *hit = NULL;
     int64_t triangle = -1;
-    bool inside;
-    for (uint32_t i = 0; i < b->top_count;) {
+    for (uint32_t i = b->top_count ? 0 : BVH_DONE; i != BVH_DONE;) {
         const struct bvh_node *node = &b->forest.nodes[i];
-        i = step(&r, node, i, &inside);
-        uint32_t first = bvh_leaf_first(node->leaf), end = bvh_leaf_end(node->leaf);
+        bool inside = meets_box(&r, &node->low, &node->high);
+        i = bvh_next(node, inside);
+        uint32_t first = bvh_leaf_first(node->below), end = bvh_leaf_end(node->below);
         for (uint32_t k = first; inside && k < end; k++) {
             const struct bvh_instance *item = &b->items[k];
             if (bvh_is_nowhere(item) || !meets_box(&r, &item->low, &item->high)) continue;

@@ -61,7 +61,7 @@ static void place_item(scene_bvh *b, size_t item, size_t mesh, mat4 transform,
     if (t->root != t->end && invert(transform, made)) {
         made->what.v[2] = b->materials[mesh];
         made->root = t->root;
-        made->end = t->end;
+        made->below = b->forest.nodes[t->root].below;
         world_box(&b->forest.nodes[t->root], transform, made);
     } else {
         *made =
@@ -147,7 +147,7 @@ bool scene_bvh_place(scene_bvh *b, const field_context *context) {
 
 bool scene_bvh_update(scene_bvh *b, gpu *g, const field_context *context) {
     if (!scene_bvh_place(b, context) || !bvh_looks_update(b, g, context)) return false;
-    const uint32_t head[4] = {(uint32_t)b->item_count, b->top_count};
+    const uint32_t head[4] = {(uint32_t)b->item_count, b->forest.nodes[0].below};
     if (!b->headed && !gpu_buffer_write(g, b->buffers[BVH_INSTANCES], 0, head, BVH_HEAD))
         return false;
     b->headed = true;

@@ -46,9 +46,9 @@ static bvh_bounds node_box(const struct bvh_node *node) {
     return box;
 }
 
-static bvh_bounds leaf_box(const scene_bvh *b, uint32_t leaf) {
+static bvh_bounds leaf_box(const scene_bvh *b, uint32_t below) {
     bvh_bounds box = bvh_bounds_empty();
-    for (uint32_t i = bvh_leaf_first(leaf); i < bvh_leaf_end(leaf); i++) {
+    for (uint32_t i = bvh_leaf_first(below); i < bvh_leaf_end(below); i++) {
         bvh_bounds one = item_box(&b->items[i]);
         bvh_bounds_add(&box, &one);
     }
@@ -68,12 +68,12 @@ static void fit(scene_bvh *b) {
         b->stale[i] = 0;
         struct bvh_node before = nodes[i];
         bvh_bounds box;
-        if (before.leaf) {
-            box = leaf_box(b, before.leaf);
+        if (bvh_is_leaf(before.below)) {
+            box = leaf_box(b, before.below);
         } else {
-            bvh_bounds right = node_box(&nodes[nodes[i + 1].next]);
-            box = node_box(&nodes[i + 1]);
-            bvh_bounds_add(&box, &right);
+            bvh_bounds second = node_box(&nodes[before.below + 1]);
+            box = node_box(&nodes[before.below]);
+            bvh_bounds_add(&box, &second);
         }
         set_box(&nodes[i], &box);
         if (memcmp(&before, &nodes[i], sizeof before) == 0) continue;
@@ -140,10 +140,10 @@ static void reorder(scene_bvh *b, const uint32_t *order) {
 static void link(scene_bvh *b) {
     for (uint32_t i = 0; i < b->top_count; i++) {
         const struct bvh_node *node = &b->forest.nodes[i];
-        for (uint32_t k = bvh_leaf_first(node->leaf); k < bvh_leaf_end(node->leaf); k++)
+        for (uint32_t k = bvh_leaf_first(node->below); k < bvh_leaf_end(node->below); k++)
             b->leaf_of[k] = i;
-        if (node->leaf) continue;
-        b->parents[i + 1] = b->parents[node[1].next] = i;
+        if (bvh_is_leaf(node->below)) continue;
+        b->parents[node->below] = b->parents[node->below + 1] = i;
     }
     memset(b->stale, 1, b->top_count);
     memset(b->top_marks, 1, run_marks(b->top_count));
@@ -153,7 +153,8 @@ static void link(scene_bvh *b) {
 static void build(scene_bvh *b) {
     if (b->item_count <= ONE_LEAF) {
         b->top_count = 1;
-        b->forest.nodes[0] = (struct bvh_node){.next = 1, .leaf = bvh_leaf(0, b->item_count)};
+        b->forest.nodes[0] =
+            (struct bvh_node){.next = BVH_DONE, .below = bvh_leaf(0, b->item_count)};
     } else {
         top_build t = {.order = mem_alloc(b->item_count * sizeof *t.order)};
         bvh_build made = {.add_leaf = add_leaf, .user = &t};

@@ -48,11 +48,11 @@ static float leaves(const struct bvh_triangle *t, const vec3 from, const vec3 wa
 
 static float walk(const bvh_forest *f, const vec3 from, const vec3 way, bool inverted) {
     float nearest = INFINITY;
-    for (uint32_t node = 0; node < f->node_count;) {
+    for (uint32_t node = f->node_count ? 0 : BVH_DONE; node != BVH_DONE;) {
         const struct bvh_node *n = &f->nodes[node];
         bool inside = enters(n, from, way) < nearest;
-        node = inside && n->leaf == 0 ? node + 1 : n->next;
-        uint32_t first = bvh_leaf_first(n->leaf), end = bvh_leaf_end(n->leaf);
+        node = bvh_next(n, inside);
+        uint32_t first = bvh_leaf_first(n->below), end = bvh_leaf_end(n->below);
         for (uint32_t i = first; inside && i < end; i++)
             nearest = fminf(nearest, leaves(&f->triangles[i], from, way, inverted));
     }
