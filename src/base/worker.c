@@ -58,12 +58,22 @@ static void grow(worker *w) {
     w->capacity = capacity;
 }
 
-void worker_submit(worker *w, worker_job job) {
+static void submit(worker *w, worker_job job, bool first) {
     pthread_mutex_lock(&w->mutex);
     if (w->count == w->capacity) grow(w);
-    w->jobs[(w->first + w->count++) % w->capacity] = job;
+    size_t place = w->first + w->count++;
+    if (first) place = w->first = (w->first + w->capacity - 1) % w->capacity;
+    w->jobs[place % w->capacity] = job;
     pthread_cond_signal(&w->wake);
     pthread_mutex_unlock(&w->mutex);
+}
+
+void worker_submit(worker *w, worker_job job) {
+    submit(w, job, false);
+}
+
+void worker_submit_first(worker *w, worker_job job) {
+    submit(w, job, true);
 }
 
 void worker_wait(worker *w) {

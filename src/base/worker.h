@@ -1,4 +1,4 @@
-// A few threads that run queued jobs in order of submission; and a loop over all cores.
+// A few threads that run queued jobs in order; and a loop over all cores.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -11,6 +11,7 @@ typedef struct worker_job {
 
 worker *worker_create(size_t threads); // threads >= 1
 void worker_submit(worker *w, worker_job job);
+void worker_submit_first(worker *w, worker_job job); // before all that still wait
 void worker_wait(worker *w);    // until every submitted job has ended
 void worker_destroy(worker *w); // runs what is queued, then joins; NULL is fine
 

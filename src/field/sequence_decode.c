@@ -153,11 +153,16 @@ bool sequence_decode(const sequence_data *s, uint32_t frame, sequence_texels *ou
     return ok;
 }
 
-void sequence_texels_free(sequence_texels *texels) {
+void sequence_texels_drop(sequence_texels *texels) {
     for (int i = 0; i < FIELD_GRID_IMAGES; i++) {
         mem_free(texels->images[i]);
         mem_free(texels->bricks[i].index);
+        texels->images[i] = NULL;
+        texels->bricks[i].index = NULL;
     }
-    memset(texels->images, 0, sizeof texels->images);
+}
+
+void sequence_texels_free(sequence_texels *texels) {
+    sequence_texels_drop(texels);
     memset(texels->bricks, 0, sizeof texels->bricks);
 }

@@ -57,12 +57,13 @@ static void decode(void *user) {
 static void stage(void *user) {
     sequence_job *job = user;
     sequence_upload_write(job->owner, &job->texels, gpu_transfer_map(job->transfer));
+    sequence_texels_drop(&job->texels); // here, as that takes milliseconds
     finish(job, JOB_STAGED);
 }
 
 void sequence_job_stage(sequence_job *job) {
     job->state = JOB_STAGING; // no thread has it now
-    worker_submit(job->owner->cache.jobs.pool, (worker_job){stage, job});
+    worker_submit_first(job->owner->cache.jobs.pool, (worker_job){stage, job});
 }
 
 int sequence_job_state(sequence_job *job) {

@@ -162,6 +162,7 @@ bool sequence_decode_sparse(const sequence_data *s, uint32_t frame, sequence_tex
 // The atlas of an image, as its texture takes it: any thread.
 void sequence_atlas_write(const sequence_data *s, const sequence_texels *texels, int image,
                           void *out);
+void sequence_texels_drop(sequence_texels *texels); // their memory, not what is known of them
 void sequence_texels_free(sequence_texels *texels);
 
 // Gives the slot textures that a frame fits into, with room for others if these will follow; false

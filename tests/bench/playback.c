@@ -14,13 +14,17 @@
 enum { MOST_SETTINGS = 16, MOST_TIMES = 64 };
 static const double tick = 1.0 / 60, warm = 1; // seconds: of a picture; that do not count
 
+typedef struct picture { // milliseconds
+    double whole, recorded, device;
+} picture;
+
 typedef struct bench {
     const char *file;
     double seconds;
     uint32_t width, height;
     roil_setting settings[MOST_SETTINGS];
     size_t setting_count;
-    double *times; // milliseconds of each picture
+    picture *pictures;
     size_t count, capacity;
 } bench;
 
@@ -30,7 +34,7 @@ static void fail(const char *what) {
 }
 
 static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
+    double x = ((const picture *)a)->whole, y = ((const picture *)b)->whole;
     return (x > y) - (x < y);
 }
 
@@ -42,10 +46,16 @@ static void sleep_until(double when) {
 }
 
 // Until the device has drawn it, as the live window waits for its times.
-static void draw(roil_effect *e, double frame) {
+static picture draw(roil_effect *e, double frame) {
     roil_time times[MOST_TIMES];
+    picture p = {0};
+    double begin = clock_seconds();
     if (!roil_advance(e, frame)) fail("advance");
-    roil_times(e, times, MOST_TIMES);
+    p.recorded = 1e3 * (clock_seconds() - begin);
+    size_t count = roil_times(e, times, MOST_TIMES);
+    for (size_t i = 0; i < count; i++) p.device += times[i].milliseconds;
+    p.whole = 1e3 * (clock_seconds() - begin);
+    return p;
 }
 
 static roil_playback playback_of(roil_effect *e) {
@@ -89,10 +99,10 @@ static void in_time(bench *b) {
     for (double now = start; now - start < b->seconds + warm || b->count == 0;
          now = clock_seconds()) {
         double at = (now - start) * info.fps;
-        draw(e, info.first_frame + at);
+        picture p = draw(e, info.first_frame + at);
         if (now - start >= warm) {
-            MEM_RESERVE(b->times, b->count + 1, b->capacity);
-            b->times[b->count++] = 1e3 * (clock_seconds() - now);
+            MEM_RESERVE(b->pictures, b->count + 1, b->capacity);
+            b->pictures[b->count++] = p;
         } else {
             before = playback_of(e);
             counted = clock_seconds();
@@ -103,18 +113,21 @@ static void in_time(bench *b) {
     }
     double seconds = clock_seconds() - counted;
     roil_playback after = playback_of(e);
-    qsort(b->times, b->count, sizeof *b->times, by_size);
+    qsort(b->pictures, b->count, sizeof *b->pictures, by_size);
     size_t over = 0;
-    for (size_t i = 0; i < b->count; i++) over += b->times[i] > 1e3 * tick;
-    printf("in time:  %.1f frames/s shown of %g, %" PRIu64
-           " of %zu pictures late; decoded %.0f MB/s, "
-           "uploaded %.0f MB/s; decoding took %.2f threads\n"
-           "          picture %.2f ms (median), %.2f (95 %%), %.2f (worst); %zu over %.1f ms\n",
-           (double)(after.shown - before.shown) / seconds, info.fps, after.late - before.late,
-           b->count, megabytes(after.decoded_bytes, before.decoded_bytes, seconds),
-           megabytes(after.uploaded_bytes, before.uploaded_bytes, seconds),
-           (after.decode_seconds - before.decode_seconds) / seconds, b->times[b->count / 2],
-           b->times[b->count * 95 / 100], b->times[b->count - 1], over, 1e3 * tick);
+    for (size_t i = 0; i < b->count; i++) over += b->pictures[i].whole > 1e3 * tick;
+    const picture *often = &b->pictures[b->count * 95 / 100], *worst = &b->pictures[b->count - 1];
+    printf(
+        "in time:  %.1f frames/s shown of %g, %" PRIu64 " of %zu pictures late; decoded %.0f MB/s, "
+        "uploaded %.0f MB/s; decoding took %.2f threads\n"
+        "          picture %.2f ms (median), %.2f (95 %%; recorded in %.2f, on the device %.2f), "
+        "%.2f (worst; %.2f, %.2f); %zu over %.1f ms\n",
+        (double)(after.shown - before.shown) / seconds, info.fps, after.late - before.late,
+        b->count, megabytes(after.decoded_bytes, before.decoded_bytes, seconds),
+        megabytes(after.uploaded_bytes, before.uploaded_bytes, seconds),
+        (after.decode_seconds - before.decode_seconds) / seconds, b->pictures[b->count / 2].whole,
+        often->whole, often->recorded, often->device, worst->whole, worst->recorded, worst->device,
+        over, 1e3 * tick);
     print_frame(&after);
     close_effect(r, e);
 }
@@ -160,6 +173,6 @@ int main(int argc, char **argv) {
     }
     at_full_speed(&b);
     in_time(&b);
-    mem_free(b.times);
+    mem_free(b.pictures);
     return EXIT_SUCCESS;
 }

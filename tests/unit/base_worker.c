@@ -82,6 +82,31 @@ static void one_thread_keeps_the_order(void **state) {
     gate_destroy(g);
 }
 
+// They come before all that wait, the latest of them first, also where the ring begins at its
+// start.
+static void what_is_urgent_goes_first(void **state) {
+    (void)state;
+    static record records[JOBS];
+    static int order[JOBS];
+    atomic_int done = 0;
+    gate *g = gate_create();
+    worker *w = worker_create(1);
+    worker_submit(w, (worker_job){gate_pass, g});
+    gate_await(g, 1);
+    for (int i = 0; i < JOBS; i++) {
+        records[i] = (record){i, order, &done};
+        (i % 2 ? worker_submit_first : worker_submit)(w, (worker_job){run_record, &records[i]});
+    }
+    gate_open(g);
+    worker_wait(w);
+    for (int i = 0; i < JOBS / 2; i++) {
+        assert_int_equal(order[i], JOBS - 1 - 2 * i);
+        assert_int_equal(order[JOBS / 2 + i], 2 * i);
+    }
+    worker_destroy(w);
+    gate_destroy(g);
+}
+
 static void add_one(void *user) {
     atomic_fetch_add((atomic_int *)user, 1);
 }
@@ -197,6 +222,7 @@ static void loops_nest(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_thread_keeps_the_order),
+        cmocka_unit_test(what_is_urgent_goes_first),
         cmocka_unit_test(wait_sees_every_job_ended),
         cmocka_unit_test(threads_run_side_by_side),
         cmocka_unit_test(destroying_runs_what_is_queued),
