@@ -62,13 +62,39 @@ void find_block(int i, ivec3 corner) {
     most[i] = high;
 }
 
+#ifdef SPARSE
+shared bool held;
+
+// Whether the index says that there is nothing in the group's bricks nor in those around them: so it
+// is with most of a large sparse grid. Called by all threads alike.
+bool is_empty(int i) {
+    if (repeats) return false;
+    if (i == 0) held = false;
+    barrier();
+    ivec3 last = (ivec3(size) - 1) >> 3, cell = 2 * ivec3(gl_WorkGroupID) - 1 + place(i, 4);
+    if (i < 64 && texelFetch(index, clamp(cell, ivec3(0), last), 0).r != 0u) held = true;
+    barrier();
+    return !held;
+}
+#else
+bool is_empty(int i) {
+    return false;
+}
+#endif
+
 void from_values() {
     int i = int(gl_LocalInvocationIndex);
+    ivec3 own = BRICKS * ivec3(gl_WorkGroupID) + place(i, BRICKS);
+    bool stores = i < BRICKS * BRICKS * BRICKS && all(lessThan(own, ivec3(count)));
+    if (is_empty(i)) {
+        if (stores) store(own, vec4(0.0), vec4(0.0));
+        return;
+    }
     ivec3 corner = 16 * ivec3(gl_WorkGroupID) - 2;
     for (int k = i; k < BLOCKS * BLOCKS * BLOCKS; k += 256) find_block(k, corner);
     barrier();
-    ivec3 brick = place(i, BRICKS), at = BRICKS * ivec3(gl_WorkGroupID) + brick;
-    if (i >= BRICKS * BRICKS * BRICKS || any(greaterThanEqual(at, ivec3(count)))) return;
+    if (!stores) return;
+    ivec3 brick = place(i, BRICKS);
     vec4 low = vec4(END), high = vec4(-END);
     for (int k = 0; k < REACH * REACH * REACH; k++) {
         ivec3 block = OWN * brick + place(k, REACH);
@@ -76,7 +102,7 @@ void from_values() {
         low = min(low, least[b]);
         high = max(high, most[b]);
     }
-    store(at, low, high);
+    store(own, low, high);
 }
 
 void from_level() {

@@ -234,9 +234,19 @@ bool sequence_frames_at(const sequence_data *s, double time, uint32_t frames[2],
     return s->desc.loop != SEQUENCE_CLIP || (frame >= 0 && frame < (int64_t)s->frame_count);
 }
 
+// Frames that are decoded or about to be: so many that threads which are done with small ones do not
+// wait for the large, as far as memory allows.
+static uint32_t count_ahead(const sequence_data *s) {
+    const uint64_t most = (uint64_t)2 << 30;
+    uint32_t threads = s->cache.jobs.threads, many = 2 * threads + 2;
+    uint64_t frame = s->cache.counts.largest_bytes;
+    if (frame == 0 || many > most / frame) many = threads + 2;
+    return many < SEQUENCE_MAX_JOBS ? many : SEQUENCE_MAX_JOBS;
+}
+
 // What is late first, then what comes next.
 static void decode_ahead(sequence_data *s, double position, const uint32_t late[2], size_t count) {
-    uint32_t frames[SEQUENCE_MAX_JOBS], most = s->cache.jobs.threads + 2;
+    uint32_t frames[SEQUENCE_MAX_JOBS], most = count_ahead(s);
     double step = position - s->last_position;
     s->last_position = position;
     // After a jump: playback at the rate of the files is as good a guess as any. Less than a frame
@@ -244,7 +254,7 @@ static void decode_ahead(sequence_data *s, double position, const uint32_t late[
     if (!(fabs(step) > 1e-3 && fabs(step) < 8)) step = 1;
     if (fabs(step) < 1) step = copysign(1, step);
     memcpy(frames, late, count * sizeof *late);
-    for (uint32_t i = 1; count < most && count < SEQUENCE_MAX_JOBS && i <= most; i++) {
+    for (uint32_t i = 1; count < most && i <= most; i++) {
         int64_t frame = whole_frame(position + step * i);
         if (s->desc.loop == SEQUENCE_CLIP && (frame < 0 || frame >= (int64_t)s->frame_count)) break;
         frames[count++] = fold(s, frame + (s->desc.blend && step > 0));

@@ -12,7 +12,7 @@
 #include <pthread.h>
 
 enum {
-    SEQUENCE_MAX_JOBS = 16,
+    SEQUENCE_MAX_JOBS = 32,
     SEQUENCE_TRANSFERS = 4,
     SEQUENCE_MAX_FRAMES = 100000,
     SEQUENCE_BRICK = 8, // voxels a side
