@@ -131,8 +131,8 @@ local function smoke_age(age) return clamp((age * whole - smoke_at) / smoke_life
 local function smoke_radius(age) return size * (smoke_size + smoke_growth * sqrt(age)) * step(0.0001, age) end
 
 fx.camera = camera { eye = {0, -11.5, 1.7}, target = {0, 0, 2.2}, fov = 40, near = 0.1, far = 500 }
-fx.sun    = sun { azimuth = 198, elevation = 16, color = {1, 0.72, 0.5}, strength = 2.4 }
-fx.sky    = sky { zenith = {0.012, 0.024, 0.06}, horizon = {0.13, 0.085, 0.08}, strength = 1 }
+fx.sun    = sun { azimuth = 198, elevation = 14, color = {1, 0.66, 0.42}, strength = 1.5 }
+fx.sky    = sky { zenith = {0.012, 0.026, 0.075}, horizon = {0.15, 0.085, 0.08}, night = 0.35, stars = 1.2 }
 
 -- Of a list of explosions those that have begun last have the lights.
 local function since(t, which)
@@ -168,7 +168,20 @@ local function exposure(t)
   return math.log(flash_low:get() + (flash_high:get() - flash_low:get()) * math.min(most, 1), 2)
 end
 
-local scene = geometry { mesh { "data/ground.obj" }, mesh { "data/crates.obj", position = {-7.4, 0.6, 0} } }
+-- A clearing: what stands around is what tells how large a blast is, and where its light comes from.
+local function far_from(x, y) return length(vec(position.x - x, position.y - y, 0)) end
+local woods = instances {
+  mesh { "data/pine.obj" }, mesh { "data/leafy.obj" },
+  at = scatter { count = 130, size = {64, 44}, position = {0, 13, 0}, distance = 2.1, seed = 4, inside = far_from(0, -4) - 13 },
+  kind = {0.85, 0.15}, scale = {0.75, 1.5}, yaw = {0, 360}, color = {0.8, 0.85, 0.9}, seed = 4,
+}
+local undergrowth = instances {
+  mesh { "data/tuft.obj" }, mesh { "data/fern.obj" }, mesh { "data/rock.obj" }, mesh { "data/stump.obj" },
+  at = scatter { count = 240, size = {34, 24}, position = {0, 1, 0}, distance = 0.8, seed = 7, inside = min(min(far_from(0, 0.6) - 4, far_from(0, -5) - 3.4), far_from(-6.8, 0.6) - 1.6) },
+  kind = {0.55, 0.25, 0.16, 0.04}, scale = {0.5, 1.2}, yaw = {0, 360}, seed = 3,
+}
+local ground = mesh { "data/ground.obj", color = {0.55, 0.5, 0.45}, material = material { specular = 0.35, roughness = 0.5 } }
+local scene  = geometry { ground, mesh { "data/crates.obj", position = {-7.4, 0.6, 0} }, woods, undergrowth }
 
 -- As shells: fields are asked at the unit sphere, and told of the shell that they are asked for.
 local function as_shells()
