@@ -75,7 +75,7 @@ local puddle = step(0, burst_for) * smoothstep(5, 1, burst_for) -- what it has s
 
 fx.camera = camera { eye = {3.2, -9.4, 2.2}, target = {3.4, 4, 1.5}, fov = 38, near = 0.1, far = 500 }
 fx.sun    = sun { azimuth = 300, elevation = 24, color = {0.62, 0.75, 1}, strength = 0.55 }
-fx.sky    = sky { zenith = {0.010, 0.018, 0.045}, horizon = {0.055, 0.050, 0.070} }
+fx.sky    = sky { zenith = {0.012, 0.024, 0.070}, horizon = {0.10, 0.065, 0.07}, night = 0.4, stars = 1.2 }
 
 local lamps = point_lights {
   at = barrels, position = vec(0, 0, 1.1), color = {1, 0.52, 0.17}, radius = 0.3, range = 15,
@@ -87,7 +87,8 @@ local shards = particles {
   position = {0, 0, 0.5}, radius = 0.3, outward = speed * 0.5, speed = vec(0, 0, 1) * speed, spread = 62, variation = 0.75,
   gravity = 9.81, drag = 0.12, collide = position.z, clearance = 0.05, bounce = 0.32, friction = 0.45,
 }
-local scene = geometry { mesh { "data/ground.obj" }, mesh { "data/yard.obj" }, barrels }
+local ground = mesh { "data/ground.obj", color = {0.6, 0.6, 0.65}, material = material { specular = 0.09, roughness = 0.42 } } -- damp
+local scene = geometry { ground, mesh { "data/yard.obj" }, barrels }
 local drawn = pieces { shards, mesh { "data/shard.obj" }, from = scene, size = 0.35 + 0.75 * particle_random, angle = 1300 * (particle_random - 0.5) * over_age { {0, 0}, {0.35, 1}, {1, 1.1} } }
 local solid = shade { from = {drawn, scene, lamps}, lamp_shadows = "rays", haze = 0.004 }
 

@@ -131,8 +131,8 @@ local function smoke_age(age) return clamp((age * whole - smoke_at) / smoke_life
 local function smoke_radius(age) return size * (smoke_size + smoke_growth * sqrt(age)) * step(0.0001, age) end
 
 fx.camera = camera { eye = {0, -11.5, 1.7}, target = {0, 0, 2.2}, fov = 40, near = 0.1, far = 500 }
-fx.sun    = sun { azimuth = 198, elevation = 14, color = {1, 0.66, 0.42}, strength = 1.5 }
-fx.sky    = sky { zenith = {0.012, 0.026, 0.075}, horizon = {0.15, 0.085, 0.08}, night = 0.35, stars = 1.2 }
+fx.sun    = sun { azimuth = 198, elevation = 14, color = {1, 0.66, 0.42}, strength = 2 }
+fx.sky    = sky { zenith = {0.012, 0.026, 0.075}, horizon = {0.15, 0.085, 0.08}, night = 0.35, stars = 1.2, strength = 1 }
 
 -- Of a list of explosions those that have begun last have the lights.
 local function since(t, which)
