@@ -71,7 +71,10 @@ fire:on_late(function(i) -- it becomes what is left of it, three quarters as lar
   falling[i] = tree.scale
   forest:set(i, { kind = tree.kind + 2, glow = 3, color = {1, 1, 1} })
 end)
-fire:on_burned(function(i, t) glowing[i] = t end)
+fire:on_burned(function(i, t)
+  glowing[i] = t
+  forest:set(i, { state = {fire.lit[i], t} }) -- sooner than was thought, where it was put out
+end)
 local batch = 8 -- frames in which all that burn get darker once
 fx:on_frame(function(t)
   for k = #singed - (math.floor(t * fx.fps + 0.5) % batch), 1, -batch do

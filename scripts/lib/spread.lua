@@ -206,7 +206,7 @@ local function pass_on(self, i, t, ends)
       local along = far > 0 and wind > 0 and (x * wx + y * wy) / (far * wind) or 0
       local speed = self.speed * (1 + self.gain * wind) * ellipse(self.shelter * wind, along)
       local takes = far / speed * (1 + self.variation * (2 * chance(self.seed, i, k) - 1))
-      if t + takes <= ends then push(self.queue, { time = t + takes, what = "ignite", index = k }) end
+      if t + takes <= ends then push(self.queue, { time = t + takes, what = "ignite", index = k, from = i }) end
     end
   end
 end
@@ -244,15 +244,15 @@ local function run(self, t)
       burn_out(self, item.index, item.time)
     elseif item.what == "late" then
       if self.states[item.index] == BURNING then tell(self.late_functions, item.index, item.time) end
-    elseif not catch(self, item.index, item.time) then
-      left = left + 1 -- another was faster: nothing has changed
+    elseif self.out[item.from] or not catch(self, item.index, item.time) then
+      left = left + 1 -- it was put out before, or another was faster: nothing has changed
     end
   end
 end
 
 local function begin(self)
   self.places, self.near = self.open()
-  self.states, self.lit, self.ends, self.fuels = {}, {}, {}, {}
+  self.states, self.lit, self.ends, self.fuels, self.out = {}, {}, {}, {}, {}
   self.queue = { order = 0 }
   self.time, self.burning, self.burned = 0, 0, 0
   for i = 1, #self.places do
@@ -292,10 +292,12 @@ function fire:ignite_near(point, radius)
   end
 end
 
--- One that burns stops at once, and counts as burned.
+-- One that burns stops at once, lights nothing any more, and counts as burned.
 function fire:put_out(i)
   check(self, i)
-  if self.states[i] == BURNING then burn_out(self, i, self.time) end
+  if self.states[i] ~= BURNING then return end
+  self.out[i], self.ends[i] = true, self.time
+  burn_out(self, i, self.time)
 end
 
 function fire:state(i)

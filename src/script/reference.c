@@ -120,7 +120,7 @@ static const script_object reference_words[] = {
      .members = KEYS(
         KEY("ignite(i)", NULL, "lights one; false where it cannot"),
         KEY("ignite_near({x, y, z}, radius)", NULL, "the nearest that can be lit: its number, or nil"),
-        KEY("put_out(i)", NULL, "it counts as burned"),
+        KEY("put_out(i)", NULL, "it lights nothing any more, and counts as burned"),
         KEY("state(i)", "\"normal\"", "or \"burning\", \"burned\""),
         KEY("progress(i)", "0..1", "part of its fire that has passed"),
         KEY("burning", "number", "how many burn"), KEY("burned", "number", "how many have"),

@@ -152,6 +152,22 @@ static void what_is_passed_on_at_the_end_goes_in_steps(void **state) {
     effect_destroy(e);
 }
 
+static void what_is_put_out_lights_nothing_any_more(void **state) {
+    (void)state;
+    effect *e = load("list = { {0, 0}, {1, 0}, {2, 0} } local fire = spread { fx = fx, at = list, "
+                     "reach = 1.5, speed = 1, burn = 10, variation = 0 } "
+                     "fx:on_start(function() fire:ignite(1) end) fx:on_frame(function(t) "
+                     "if t >= 1.5 then fire:put_out(2) end fx:status('burned', fire.burned) "
+                     "fx:status('burning', fire.burning) fx:status('second', fire:progress(2)) "
+                     "end)");
+    helper_run(e, 13);
+    assert_true(helper_status(e, "burning") == 2 && helper_status(e, "burned") == 0);
+    helper_run(e, 60);
+    assert_true(helper_status(e, "burning") == 1 && helper_status(e, "burned") == 1 &&
+                helper_status(e, "second") == 1);
+    effect_destroy(e);
+}
+
 static void a_frame_makes_so_many_changes_at_most(void **state) {
     (void)state;
     effect *e = load("light { reach = 60, speed = 1000, burn = 30, most = 10 }");
@@ -238,6 +254,7 @@ int main(void) {
         cmocka_unit_test(fuel_says_what_burns_and_how_long),
         cmocka_unit_test(instances_burn_as_places_do),
         cmocka_unit_test(what_is_passed_on_at_the_end_goes_in_steps),
+        cmocka_unit_test(what_is_put_out_lights_nothing_any_more),
         cmocka_unit_test(a_frame_makes_so_many_changes_at_most),
         cmocka_unit_test(what_is_wrong_is_said),
         cmocka_unit_test(mistakes_of_a_frame_are_named),
