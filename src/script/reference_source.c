@@ -197,7 +197,8 @@ const script_object reference_sources[] = {
         KEY("name", "\"particles\"", "for --set NAME.key=value and statistics; numbered when taken"))},
 
     {"explosions", "source", "local blasts = explosions { {0.5, position = {0, 0, 1}}, {1.2, size = 0.5} }",
-     "a list of what bursts: when, where, how large; `shell` draws it. #list is how many there are. Up to 1024",
+     "a list of what bursts: when, where, how large; `shell` draws it: of those that go on, the 64 youngest. "
+     "#list is how many there are, up to 1024: then the oldest that was added makes room",
      .args = KEYS(KEY("explosion ...", "{ 0.5, position = {0, 0, 1} }",
                       "when (s), and the keys below; none: `add` brings them")),
      .keys = KEYS(
