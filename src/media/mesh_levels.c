@@ -5,7 +5,8 @@
 // What has no texture is simplified as one, its corners welded: meshes of flat faces are nothing
 // but seams, and materials may differ from face to face. The triangles that are left then look for
 // the vertices and the part whose normals fit theirs. A textured part is simplified by itself, with
-// its seams.
+// its seams. Where colours that differ much have spread or shrunk, a level is off by as much as
+// their edges have moved, whatever its shape.
 #include "media/mesh_levels.h"
 #include "base/memory.h"
 #include <math.h>
@@ -21,11 +22,15 @@ static const float error_most = 0.1f;    // of the mesh's extent
 static const float cell_most = 0.2f;     // in which vertices are merged, of the extent
 static const float POSITION_MOST = 1e9f; // metres: beyond, errors overflow
 static const uint32_t NONE = UINT32_MAX;
+static const float same_shade = 0.35f; // of roots of colours: more is another shade
 enum { NEIGHBOURS = 64 }; // that are looked at, of a corner: a fan may have all triangles
 
 typedef struct simplifier {
     const mesh_data *mesh;
-    uint32_t *owners; // of each triangle: its part
+    uint32_t *owners;          // of each triangle: its part
+    uint32_t *shades;          // of each part: the first of nearly its colour
+    float *areas, *areas_made; // of each shade, in the mesh and in the level
+    float extent;
     // Of the group that is simplified: parts without a texture, or one with a texture.
     uint32_t *slots;  // its indices, as places in those of the mesh
     unsigned *welded; // the same, as vertices that stand for all at their place
@@ -163,6 +168,49 @@ static void simplify_group(simplifier *s, double share) {
     }
 }
 
+// ---- colours ----------------------------------------------------------------------------------
+
+static bool is_same_shade(const mesh_part *a, const mesh_part *b) {
+    float most = 0;
+    for (int k = 0; k < 3; k++)
+        most = fmaxf(most, fabsf(sqrtf(fmaxf(a->color[k], 0)) - sqrtf(fmaxf(b->color[k], 0))));
+    return a->texture == b->texture && most < same_shade;
+}
+
+static void find_shades(simplifier *s) {
+    const mesh_part *parts = s->mesh->parts;
+    for (uint32_t i = 0; i < s->mesh->part_count; i++) {
+        s->shades[i] = i;
+        for (uint32_t k = 0; k < i && s->shades[i] == i; k++)
+            if (s->shades[k] == k && is_same_shade(&parts[k], &parts[i])) s->shades[i] = k;
+    }
+}
+
+static void add_areas(const simplifier *s, const uint32_t *indices, const uint32_t *owners,
+                      uint32_t triangles, float *areas) {
+    memset(areas, 0, s->mesh->part_count * sizeof *areas);
+    for (uint32_t i = 0; i < triangles; i++) {
+        vec3 normal;
+        face_normal(s->mesh, indices + 3 * (size_t)i, normal);
+        areas[s->shades[owners[i]]] += glm_vec3_norm(normal) / 2;
+    }
+}
+
+// How far edges of shades have moved, as if each was round: what a shade has won or lost, by its
+// circumference. Of the extent; 0: there is only one.
+static float color_error(simplifier *s) {
+    float most = 0;
+    uint32_t shades = 0;
+    add_areas(s, s->made, s->made_owners, s->made_count, s->areas_made);
+    for (uint32_t i = 0; i < s->mesh->part_count; i++) {
+        shades += s->shades[i] == i;
+        if (s->areas[i] > 0)
+            most = fmaxf(most, fabsf(s->areas_made[i] - s->areas[i]) /
+                                   (2 * sqrtf((float)M_PI * s->areas[i])));
+    }
+    return shades > 1 && s->extent > 0 ? most / s->extent : 0;
+}
+
 // ---- levels -----------------------------------------------------------------------------------
 
 static void make_level(simplifier *s, double share) {
@@ -173,6 +221,7 @@ static void make_level(simplifier *s, double share) {
         begin_group(s, i);
         simplify_group(s, share);
     }
+    s->error = fmaxf(s->error, color_error(s));
 }
 
 // Appends what was made, sorted by parts, where it is worth it. One before it that is no better
@@ -223,6 +272,11 @@ void mesh_levels_make(const mesh_data *mesh, arena *memory, mesh_levels *out) {
     simplifier s = {
         .mesh = mesh,
         .owners = arena_alloc(&scratch, words / 3),
+        .shades = arena_alloc(&scratch, mesh->part_count * sizeof *s.shades),
+        .areas = arena_alloc(&scratch, mesh->part_count * sizeof *s.areas),
+        .areas_made = arena_alloc(&scratch, mesh->part_count * sizeof *s.areas_made),
+        .extent = meshopt_simplifyScale(mesh->vertices->position, mesh->vertex_count,
+                                        sizeof *mesh->vertices),
         .slots = arena_alloc(&scratch, words),
         .welded = arena_alloc(&scratch, words),
         .heads = arena_alloc(&scratch, mesh->vertex_count * sizeof *s.heads),
@@ -234,13 +288,13 @@ void mesh_levels_make(const mesh_data *mesh, arena *memory, mesh_levels *out) {
     for (uint32_t p = 0; p < mesh->part_count; p++)
         for (uint32_t i = 0; i < mesh->parts[p].count; i++)
             s.owners[(mesh->parts[p].first + i) / 3] = p;
+    find_shades(&s);
+    add_areas(&s, mesh->indices, s.owners, mesh->index_count / 3, s.areas);
     out->indices = arena_alloc(memory, words * COUNT_OF(shares));
     for (size_t i = 0; i < COUNT_OF(shares); i++) {
         make_level(&s, shares[i]);
         keep_level(&s, memory, out);
     }
-    float extent =
-        meshopt_simplifyScale(mesh->vertices->position, mesh->vertex_count, sizeof *mesh->vertices);
-    for (uint32_t i = 0; i < out->count; i++) out->errors[i] *= extent;
+    for (uint32_t i = 0; i < out->count; i++) out->errors[i] *= s.extent;
     arena_free(&scratch);
 }

@@ -180,6 +180,48 @@ static void flat_faces_stay_flat(void **state) {
     arena_free(&s.memory);
 }
 
+// How much of the box is of a part, by the sides of its triangles.
+static double area_of(const shape *s, const uint32_t *indices, mesh_run run) {
+    double sum = 0;
+    for (uint32_t t = 0; t < run.count; t += 3) {
+        vec3 a, b, out;
+        float *at = s->vertices[indices[run.first + t]].position;
+        glm_vec3_sub(s->vertices[indices[run.first + t + 1]].position, at, a);
+        glm_vec3_sub(s->vertices[indices[run.first + t + 2]].position, at, b);
+        glm_vec3_cross(a, b, out);
+        sum += (double)glm_vec3_norm(out) / 2;
+    }
+    return sum;
+}
+
+// A yellow stripe over all of a red, flat board: no shape is lost, but a colour may be.
+static void what_colours_have_moved_is_said(void **state) {
+    (void)state;
+    enum { CELLS = 24, ROW = 6 * CELLS, STRIPE = 2 * ROW };
+    shape s;
+    mesh_levels levels;
+    begin_shape(&s, (CELLS + 1) * (CELLS + 1), CELLS * ROW + STRIPE);
+    add_face(&s, 2, 1, CELLS);
+    end_shape(&s, 2);
+    uint32_t *middle = s.indices + 11 * ROW, *end = s.indices + CELLS * ROW;
+    memcpy(end, middle, STRIPE * sizeof *end);
+    memmove(middle, middle + STRIPE, (size_t)(end - middle) * sizeof *end);
+    s.parts[0] = (mesh_part){.count = CELLS * ROW - STRIPE, .color = {0.5f, 0, 0}, .texture = -1};
+    s.parts[1] = (mesh_part){
+        .first = CELLS * ROW - STRIPE, .count = STRIPE, .color = {0.8f, 0.5f, 0}, .texture = -1};
+    double before = area_of(&s, s.indices, (mesh_run){s.parts[1].first, STRIPE});
+    mesh_levels_make(&s.data, &s.memory, &levels);
+    for (uint32_t i = 0; i < levels.count; i++) {
+        mesh_run run = levels.runs[i][1];
+        run.first -= s.data.index_count;
+        double moved = fabs(area_of(&s, levels.indices, run) - before) / 2 / 2; // of two edges
+        if ((double)levels.errors[i] < moved)
+            fail_msg("level %u: edges moved by %g, and %g is said", i + 1, moved,
+                     (double)levels.errors[i]);
+    }
+    arena_free(&s.memory);
+}
+
 static void what_is_small_or_broken_has_none(void **state) {
     (void)state;
     shape s;
@@ -225,6 +267,7 @@ int main(void) {
         cmocka_unit_test(levels_are_as_near_as_they_say),
         cmocka_unit_test(seams_of_textures_stay),
         cmocka_unit_test(flat_faces_stay_flat),
+        cmocka_unit_test(what_colours_have_moved_is_said),
         cmocka_unit_test(what_is_small_or_broken_has_none),
         cmocka_unit_test(a_file_comes_with_its_levels),
     };
