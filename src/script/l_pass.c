@@ -206,7 +206,8 @@ static void unknown_key(lua_State *L, const pass_call *call, const char *key) {
     for (size_t i = 0; i < face->image_count; i++)
         if (!face->images[i].output) known[count++] = face->images[i].name;
     for (const script_key *k = reserved_keys(); k->name; k++) known[count++] = k->name;
-    for (const script_key *k = call->own; k && k->name; k++) known[count++] = k->name;
+    for (const script_key *k = call->own; k && k->name; k++)
+        if (!script_key_find(reserved_keys(), k->name)) known[count++] = k->name;
     value_unknown(L, call->who, "key", key, known, count);
 }
 
