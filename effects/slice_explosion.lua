@@ -53,7 +53,8 @@ local cover = clamp(turned.x * 1.6, 0, 1)
 local smoke = cover * smoothstep(0, 0.2, cover - eaten * (1 - lumps) * (1 - 0.7 * cover))
 local fire  = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
 local hot   = turned.y * (0.12 + 1.5 * lumps * lumps)
-local glow  = fire(mix(1200, 2300, clamp(hot * 0.6, 0, 1))) * smoothstep(0.12, 0.7, hot) * brightness
+local flash = curve { {0, 4}, {0.2, 3}, {0.7, 1.2}, {1, 1} } -- fierce at first
+local glow  = fire(mix(1200, 2300, clamp(hot * 0.6, 0, 1))) * smoothstep(0.12, 0.7, hot) * brightness * flash
 
 fx.camera = camera { eye = {0, -22, 2}, target = {0, 0, 4.6}, fov = 30, near = 0.1, far = 500 }
 fx.sun    = sun { azimuth = 239, elevation = 34, color = {1, 0.93, 0.82}, strength = 4.6 }
@@ -72,22 +73,22 @@ if rendering ~= "particles" then
   picture = over { volume, picture, from = {volume, scene} }
 end
 if rendering ~= "volume" then
-  -- Puffs that go where the flow goes, and fray a little besides. They are born where heat is let go, most
-  -- of them in its first second; the scene's light falls on them, and the hot ones glow.
-  local fray  = curl { frequency = 0.7, octaves = 2, speed = 0.5, seed = 2 }
+  -- Small puffs that go where the flow goes, and are what the volume is where they are. What a plane carries is
+  -- blown to rings once the plane is turned: they live shortly, and are born again wherever there is smoke,
+  -- so that it stays filled however it rolls. No volume is drawn before them that would dim them.
   local puffs = particles {
-    count = 32768, burst = 6000, rate = curve { {0, 14000}, {0.8, 9000}, {1.6, 2000} }, lifetime = {2.6, 4}, seed = 8,
-    position = {0, 0, 0.9}, radius = 1, quantity = flow.temperature,
-    velocity = flow.velocity + fray * 1.6 * over_age { {0, 1}, {0.6, 0.3}, {1, 0.1} },
+    count = 32768, rate = 36000, lifetime = {0.4, 0.8}, seed = 8,
+    shape = flow.density, threshold = 0.15, velocity = flow.velocity,
   }
-  local dark = splats {
-    name = "puffs", from = {puffs, scene, lit}, size = over_age { {0, 0.35}, {0.4, 0.9}, {1, 1.2} }, color = {0.42, 0.40, 0.38},
-    opacity = over_age { {0, 0.5}, {0.8, 0.4}, {1, 0} }, blend = "sorted", lit = "on", soften = 0.2,
+  local there = smoke * over_age { {0, 0}, {0.25, 1}, {0.7, 1}, {1, 0} }
+  local size  = curve { {0, 0.22}, {1, 0.26}, {3, 0.45} } * (0.6 + 0.8 * particle_random)
+  local dark  = splats {
+    name = "puffs", from = {puffs, scene, lit}, size = size, color = {0.75, 0.72, 0.68}, opacity = 0.7 * there,
+    blend = "sorted", lit = "on", soften = 0.1, entries = 16, view_steps = 0,
   }
-  local flames = splats {
-    name = "flames", from = {puffs, scene, lit}, size = over_age { {0, 0.3}, {0.4, 0.7}, {1, 0.8} },
-    color = fire(mix(1200, 2300, clamp(particle_quantity * 0.6, 0, 1))).rgb * smoothstep(0.2, 0.9, particle_quantity),
-    brightness = 0.05 * brightness,
+  local flames = splats { -- seen through some of the smoke, not all: puffs leave gaps
+    name = "flames", from = {puffs, scene, lit}, size = size, color = glow.rgb * there,
+    brightness = curve { {0, 0.03}, {0.8, 0.03}, {1.8, 0.06} }, extinction = {0.2, 0.2, 0.2},
   }
   picture = over { dark, picture, from = {dark, scene} }
   picture = over { flames, picture, from = {flames, scene} }
