@@ -28,7 +28,7 @@ local offset = curl { frequency = 1.8, octaves = 3, persistence = 0.6, drift = {
 local function cells(count) return math.max(16, 8 * math.floor(count * detail:get() / 8 + 0.5)) end
 local flow = slices {
   count = 4, size = {cells(128), cells(256)}, height = 3.6, position = {0, 0, 0.02}, sides = "open", offset = offset, seed = 3,
-  buoyancy_heat = 7, cooling_rate = 1.3, dissolve_rate = 0.6, vorticity = 2, variation = 0.25, warm_up = 1,
+  buoyancy_heat = 7, cooling_rate = 1.3, dissolve_rate = 0.6, vorticity = 2, variation = 0.25, warm_up = 3,
 }
 
 -- The bed glows unevenly: here and there, and now and then.
@@ -38,14 +38,14 @@ flow:inflow {
   density = 0.8, temperature = heat * (0.5 + 1.1 * smoothstep(0.3, 0.6, flicker)),
 }
 flow:templates {
-  image "templates/corona.exr", name = "licks", kind = "pressure", strength = 0.5 * licks, scale_by = "temperature", align = "fixed", spread = 40,
-  count = 30, size = {0.05, 0.14}, lifetime = {0.05, 0.25}, region = box { position = {0.5, 0.18, 0}, size = {0.5, 0.3, 1} },
+  image "templates/corona.exr", name = "licks", kind = "pressure", strength = 0.12 * licks, scale_by = "temperature", align = "fixed", spread = 40,
+  count = 48, size = {0.03, 0.09}, lifetime = {0.04, 0.15}, region = box { position = {0.5, 0.18, 0}, size = {0.5, 0.3, 1} },
   within = "temperature", above = 0.1,
 }
 for _, sense in ipairs { "left", "right" } do
   flow:templates {
-    image("templates/vortex_" .. sense .. ".exr"), kind = "velocity", strength = 7 * billows, scale_by = "temperature",
-    count = 10, size = {0.2, 0.5}, lifetime = {0.15, 0.5}, region = box { position = {0.5, 1.1, 0}, size = {1, 1.4, 1} },
+    image("templates/vortex_" .. sense .. ".exr"), kind = "velocity", strength = 3.5 * billows, scale_by = "temperature",
+    count = 10, size = {0.2, 0.5}, lifetime = {0.15, 0.5}, region = box { position = {0.5, 1.3, 0}, size = {0.7, 1.4, 1} },
     within = "density", above = 0.05,
   }
 end
