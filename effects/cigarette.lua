@@ -66,7 +66,7 @@ if rendering ~= "volume" then
   }
   local drawn = splats {
     from = {smoke, scene, lit}, size = over_age { {0, 0.0016}, {1, 0.003} }, color = {0.95, 0.96, 1},
-    opacity = over_age { {0, 0.25}, {0.7, 0.12}, {1, 0} }, blend = "weighted", weight_distance = 1, lit = "on", anisotropy = 0.6,
+    opacity = over_age { {0, 0.25}, {0.7, 0.12}, {1, 0} }, blend = "weighted", weight_distance = 1, lit = "on", anisotropy = 0.6, view_steps = 0,
   }
   picture = over { drawn, picture, from = {drawn, scene} }
 end
