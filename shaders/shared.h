@@ -59,17 +59,15 @@ struct light_block {
     SHARED_LIGHT lights[LIGHT_MAX];
 };
 
-// Storage buffers of lib/bvh.glsl, whose trees src/scene/bvh.c makes. Both children of a node lie side
-// by side, behind it. The first tree is that over what is placed; the others are over the triangles of
-// meshes. A walk in a fixed order needs no stack; one that goes to what is near first needs as many
-// entries as a tree is deep.
-#define BVH_DEPTH 32         // nodes on the way to a leaf, at most
-#define BVH_DONE 0xffffffffu // there is no next node
-struct bvh_node {
-    SHARED_VEC3 low;   // of its box
-    SHARED_UINT next;  // the node to go on with when this one is done with, or BVH_DONE
-    SHARED_VEC3 high;
-    SHARED_UINT below; // of a leaf: how many triangles, of the first tree placed meshes, << 28 | the first of them; else: its first child
+// Storage buffers of lib/bvh.glsl, whose trees src/scene/bvh.c makes. The first tree is that over what
+// is placed; the others are over the triangles of meshes. What is below a node, a word says: of a leaf
+// how many triangles, of the first tree placed meshes, << 28 | the first of them; else its place among
+// the nodes; 0: there is nothing.
+#define BVH_KEPT 48 // a walk of a tree keeps fewer nodes for later
+struct bvh_wide {
+    SHARED_VEC4 low[3];  // of the boxes of its four children, by axis
+    SHARED_VEC4 high[3];
+    SHARED_UVEC4 below;  // each of them
 };
 
 struct bvh_triangle {
@@ -81,9 +79,9 @@ struct bvh_triangle {
 struct bvh_instance {
     SHARED_VEC4 inverse[3]; // rows: world to mesh
     SHARED_VEC3 low;        // of its box in the world
-    SHARED_UINT root;
+    SHARED_UINT below;  // what the root of its tree has below it
     SHARED_VEC3 high;
-    SHARED_UINT below;  // what its root has below it
+    SHARED_UINT root;   // of its tree, as the host walks it
     SHARED_VEC4 color;  // rgb: factor of the triangles' colours; w: of what they emit
     SHARED_UVEC4 what;  // x: the mesh, or the instances that it is one of, as scene_bvh_choose counts them; y: its number among these; z: first of the materials of its mesh
 };

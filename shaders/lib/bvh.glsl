@@ -2,7 +2,7 @@
 #ifndef LIB_BVH_GLSL
 #define LIB_BVH_GLSL
 #include "shared.h"
-layout(std430) readonly buffer BvhNodes { bvh_node bvh_nodes[]; };
+layout(std430) readonly buffer BvhNodes { bvh_wide bvh_nodes[]; };
 layout(std430) readonly buffer BvhTriangles { bvh_triangle bvh_triangles[]; };
 layout(std430) readonly buffer BvhInstances { uvec4 bvh_count; bvh_instance bvh_instances[]; }; // count: x: of these; y: what the root of the tree over them has below it, 0: there is none
 
@@ -16,73 +16,94 @@ struct bvh_hit {
 struct bvh_ray {
     vec3 origin, direction;
     vec3 inverse;    // of the direction
+    vec3 enter, leave; // where it passes planes through 0, with a margin for rounding
     float near, far; // in lengths of the direction
 };
 
 bvh_ray bvh_make_ray(vec3 origin, vec3 direction, float near, float far) {
     vec3 divisor = mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
-    return bvh_ray(origin, direction, 1.0 / divisor, near, far);
+    vec3 inverse = 1.0 / divisor, zero = -origin * inverse, margin = 2.4e-7 * abs(zero);
+    return bvh_ray(origin, direction, inverse, zero - margin, zero + margin, near, far);
 }
 
-// Where a ray enters a box, BVH_MISS: it does not. Slab test; the exit is moved out by more than its
-// rounding, so that no ray slips through between boxes that touch (Ize, "Robust BVH ray traversal",
-// 2013).
+// Where a ray enters each of four boxes, BVH_MISS: it does not. Slab test, with what rounding can do
+// taken from the entry and added to the exit, so that no ray slips through between boxes that touch
+// (Ize, "Robust BVH ray traversal", 2013).
 const float BVH_MISS = 3e38;
-float bvh_enter_box(bvh_ray ray, vec3 low, vec3 high) {
-    vec3 a = (low - ray.origin) * ray.inverse, b = (high - ray.origin) * ray.inverse;
-    vec3 near = min(a, b), far = max(a, b) * 1.0000008;
-    float enter = max(max(near.x, near.y), max(near.z, ray.near));
-    return enter <= min(min(far.x, far.y), min(far.z, ray.far)) ? enter : BVH_MISS;
+vec4 bvh_enter_boxes(bvh_ray ray, vec4 low[3], vec4 high[3]) {
+    vec4 enter = vec4(ray.near), leave = vec4(ray.far);
+    for (int a = 0; a < 3; a++) {
+        bool back = ray.inverse[a] < 0.0;
+        enter = max(enter, (back ? high[a] : low[a]) * ray.inverse[a] + ray.enter[a]);
+        leave = min(leave, (back ? low[a] : high[a]) * ray.inverse[a] + ray.leave[a]);
+    }
+    return mix(vec4(BVH_MISS), enter, lessThanEqual(enter, leave * 1.0000008));
 }
 
 bool bvh_meets_box(bvh_ray ray, vec3 low, vec3 high) {
-    return bvh_enter_box(ray, low, high) < BVH_MISS;
+    vec3 a = (low - ray.origin) * ray.inverse, b = (high - ray.origin) * ray.inverse;
+    vec3 near = min(a, b), far = max(a, b);
+    return max(max(near.x, near.y), max(near.z, ray.near)) <=
+           min(min(far.x, far.y), min(far.z, ray.far)) * 1.0000008;
 }
 
-// A walk goes to the nearer of two children and keeps the other for later (Aila and Laine,
+// A walk goes to the nearest of a node's children and keeps the others for later (Aila and Laine,
 // "Understanding the efficiency of ray traversal on GPUs", 2009). One tree is walked inside a leaf of
 // another: they share the stack.
 struct bvh_walk {
-    uint below;      // of the node to enter now, 0: the top of the stack is next
+    uint below;      // what to enter now, 0: what is on top of the stack
     int top, bottom; // of what is kept: the end, and where this walk began
 };
-uint bvh_kept[2 * BVH_DEPTH];
-float bvh_kept_at[2 * BVH_DEPTH]; // where the ray enters it
+uint bvh_kept[2 * BVH_KEPT];
+float bvh_kept_at[2 * BVH_KEPT]; // where the ray enters it
 
 // `below`: of the root. `outer_top`: entries that others have on the stack.
 bvh_walk bvh_begin(uint below, int outer_top) {
     return bvh_walk(below, outer_top, outer_top);
 }
 
+#define BVH_ORDER(a, b)                                                                            \
+    if (at.b < at.a) {                                                                             \
+        at.a##b = at.b##a;                                                                         \
+        below.a##b = below.b##a;                                                                   \
+    }
+#define BVH_KEEP(a)                                                                                \
+    if (at.a < BVH_MISS) {                                                                         \
+        bvh_kept[w.top] = below.a;                                                                 \
+        bvh_kept_at[w.top++] = at.a;                                                               \
+    }
+// The nearest of a node's children that the ray enters, 0: none. The next nearest is kept last.
+uint bvh_enter(bvh_ray ray, uint node, inout bvh_walk w) {
+    vec4 at = bvh_enter_boxes(ray, bvh_nodes[node].low, bvh_nodes[node].high);
+    uvec4 below = bvh_nodes[node].below;
+    BVH_ORDER(x, y)
+    BVH_ORDER(z, w)
+    BVH_ORDER(x, z)
+    BVH_ORDER(y, w)
+    BVH_ORDER(y, z)
+    BVH_KEEP(w)
+    BVH_KEEP(z)
+    BVH_KEEP(y)
+    return at.x < BVH_MISS ? below.x : 0u;
+}
+
 // What the next leaf holds that the ray enters, 0: there is none. ray.far may have become less.
 uint bvh_next_leaf(bvh_ray ray, inout bvh_walk w) {
-    while (w.below != 0u || w.top > w.bottom) {
-        if (w.below == 0u) {
+    uint at = w.below;
+    for (;;) {
+        while (at == 0u && w.top > w.bottom) {
             w.top--;
-            if (bvh_kept_at[w.top] <= ray.far) w.below = bvh_kept[w.top];
-            continue;
+            if (bvh_kept_at[w.top] <= ray.far) at = bvh_kept[w.top];
         }
-        if (w.below >> 28 != 0u) break;
-        bvh_node a = bvh_nodes[w.below], b = bvh_nodes[w.below + 1u];
-        float a_at = bvh_enter_box(ray, a.low, a.high), b_at = bvh_enter_box(ray, b.low, b.high);
-        bool swapped = b_at < a_at;
-        w.below = min(a_at, b_at) < BVH_MISS ? (swapped ? b.below : a.below) : 0u;
-        if (max(a_at, b_at) >= BVH_MISS) continue;
-        bvh_kept[w.top] = swapped ? a.below : b.below;
-        bvh_kept_at[w.top++] = max(a_at, b_at);
+        if (at == 0u || at >> 28 != 0u) break;
+        at = bvh_enter(ray, at, w);
     }
-    uint leaf = w.below;
     w.below = 0u;
-    return leaf;
+    return at;
 }
 
 uint bvh_first(uint leaf) { return leaf & 0xfffffffu; }
 uint bvh_end(uint leaf) { return bvh_first(leaf) + (leaf >> 28); }
-
-// The node that a walk in a fixed order goes on with, which enters this one or does not.
-uint bvh_next(bvh_node n, bool enter) {
-    return enter && n.below >> 28 == 0u ? n.below : n.next;
-}
 
 // Distance to a triangle, -1 if the ray misses it: Moeller and Trumbore, "Fast, minimum storage
 // ray-triangle intersection", 1997.

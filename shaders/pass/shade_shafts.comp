@@ -87,17 +87,29 @@ shaft shaft_to(light l, vec3 middle, vec3 extent, int instance) {
     return shaft(low, high, never_zero(goal - wide - low), never_zero(goal + wide - high), 1.0);
 }
 
+// The next leaf of a walk that enters all children that the shaft meets; 0: there is none.
+uint next_leaf(shaft f, inout bvh_walk w) {
+    uint at = w.below;
+    w.below = 0u;
+    while (at >> 28 == 0u) {
+        for (int i = 0; i < 4 && at != 0u; i++) {
+            vec3 low = vec3(bvh_nodes[at].low[0][i], bvh_nodes[at].low[1][i], bvh_nodes[at].low[2][i]);
+            vec3 high = vec3(bvh_nodes[at].high[0][i], bvh_nodes[at].high[1][i], bvh_nodes[at].high[2][i]);
+            if (shaft_meets(f, low, high)) bvh_kept[w.top++] = bvh_nodes[at].below[i];
+        }
+        if (w.top == w.bottom) return 0u;
+        at = bvh_kept[--w.top];
+    }
+    return at;
+}
+
 // Adds leaves of a tree to the list; past its end when there are more than it holds.
-void collect(shaft f, uint instance, uint list, inout uint count) {
-    uint node = bvh_instances[instance].root;
-    while (node != BVH_DONE && count <= SHAFT_LEAVES) {
-        bvh_node n = bvh_nodes[node];
-        bool inside = shaft_meets(f, n.low, n.high);
-        node = bvh_next(n, inside);
-        if (!inside || n.below >> 28 == 0u) continue;
+void collect(shaft f, uint instance, int outer_top, uint list, inout uint count) {
+    bvh_walk w = bvh_begin(bvh_instances[instance].below, outer_top);
+    for (uint leaf; count <= SHAFT_LEAVES && (leaf = next_leaf(f, w)) != 0u;) {
         count++;
-        if (!shaft_can_hold(instance, n.below)) count = SHAFT_LEAVES + 1u;
-        if (count <= SHAFT_LEAVES) shaft_words[list + count] = shaft_pack(instance, n.below);
+        if (!shaft_can_hold(instance, leaf)) count = SHAFT_LEAVES + 1u;
+        if (count <= SHAFT_LEAVES) shaft_words[list + count] = shaft_pack(instance, leaf);
     }
 }
 
@@ -117,15 +129,10 @@ void main() {
     light l = light_get(index);
     shaft world = shaft_to(l, middle, extent, -1);
     uint list = shaft_start(index), count = 0u;
-    uint node = bvh_count.y == 0u ? BVH_DONE : 0u;
-    while (node != BVH_DONE && count <= SHAFT_LEAVES) {
-        bvh_node n = bvh_nodes[node];
-        bool inside = shaft_meets(world, n.low, n.high);
-        node = bvh_next(n, inside);
-        if (!inside) continue;
-        for (uint i = bvh_first(n.below); i < bvh_end(n.below) && count <= SHAFT_LEAVES; i++)
+    bvh_walk w = bvh_begin(bvh_count.y, 0);
+    for (uint leaf; count <= SHAFT_LEAVES && (leaf = next_leaf(world, w)) != 0u;)
+        for (uint i = bvh_first(leaf); i < bvh_end(leaf) && count <= SHAFT_LEAVES; i++)
             if (shaft_meets(world, bvh_instances[i].low, bvh_instances[i].high))
-                collect(shaft_to(l, middle, extent, int(i)), i, list, count);
-    }
+                collect(shaft_to(l, middle, extent, int(i)), i, w.top, list, count);
     shaft_words[list] = count;
 }

@@ -12,7 +12,7 @@ typedef struct worker_job {
 worker *worker_create(size_t threads); // threads >= 1
 void worker_submit(worker *w, worker_job job);
 void worker_submit_first(worker *w, worker_job job); // before all that still wait
-void worker_wait(worker *w);    // until every submitted job has ended
+void worker_wait(worker *w);                         // until every submitted job has ended
 void worker_destroy(worker *w); // runs what is queued, then joins; NULL is fine
 
 // Calls run(user, 0) to run(user, count - 1), shared out over the machine's cores, this thread

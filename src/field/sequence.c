@@ -234,8 +234,8 @@ bool sequence_frames_at(const sequence_data *s, double time, uint32_t frames[2],
     return s->desc.loop != SEQUENCE_CLIP || (frame >= 0 && frame < (int64_t)s->frame_count);
 }
 
-// Frames that are decoded or about to be: so many that threads which are done with small ones do not
-// wait for the large, as far as memory allows.
+// Frames that are decoded or about to be: so many that threads which are done with small ones do
+// not wait for the large, as far as memory allows.
 static uint32_t count_ahead(const sequence_data *s) {
     const uint64_t most = (uint64_t)2 << 30;
     uint32_t threads = s->cache.jobs.threads, many = 2 * threads + 2;

@@ -11,6 +11,15 @@ static bool same_mesh(const mesh_data *a, const mesh_data *b) {
     return a->vertices == b->vertices && a->indices == b->indices && a->parts == b->parts;
 }
 
+static void widen(scene_bvh *b, tree *t) {
+    if (t->root == t->end) return;
+    MEM_RESERVE(b->wide, b->wide_count + (t->end - t->root) / 2, b->wide_capacity);
+    bvh_widening made = {
+        .nodes = b->forest.nodes, .out = b->wide, .count = (uint32_t)b->wide_count};
+    t->below = bvh_widen(&made, t->root);
+    b->wide_count = made.count;
+}
+
 static bool add_tree(scene_bvh *b, size_t index) {
     const mesh_data *data = &b->meshes[index]->data;
     for (size_t i = 0; i < index; i++) {
@@ -22,6 +31,7 @@ static bool add_tree(scene_bvh *b, size_t index) {
     if (!bvh_forest_add(&b->forest, data)) return err_prefix("%s: ", b->meshes[index]->name);
     b->trees[index].end = (uint32_t)b->forest.node_count;
     b->trees[index].triangles = b->forest.triangle_count;
+    widen(b, &b->trees[index]);
     return true;
 }
 
@@ -57,6 +67,9 @@ static bool add_trees(scene_bvh *b) {
     MEM_RESERVE(b->forest.nodes, bvh_top_nodes(b->item_count), b->forest.node_capacity);
     b->forest.node_count = bvh_top_nodes(b->item_count);
     memset(b->forest.nodes, 0, b->forest.node_count * sizeof *b->forest.nodes);
+    b->wide_count = bvh_top_wide(b->item_count);
+    MEM_RESERVE(b->wide, b->wide_count, b->wide_capacity);
+    memset(b->wide, 0, b->wide_count * sizeof *b->wide);
     for (size_t i = 0; i < b->mesh_count; i++)
         if (!add_tree(b, i)) return false;
     return true;
@@ -85,7 +98,8 @@ scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count,
     size_t nodes = bvh_top_nodes(b->item_count);
     b->parents = mem_alloc(nodes * sizeof *b->parents);
     b->stale = mem_alloc(nodes);
-    b->top_marks = mem_alloc(run_marks(nodes));
+    b->slots = mem_alloc(nodes * sizeof *b->slots);
+    b->wide_marks = mem_alloc(run_marks(bvh_top_wide(b->item_count)));
     for (uint32_t i = 0; i < b->item_count; i++) b->item_at[i] = i;
     bvh_looks_count(b);
     if (add_trees(b)) return b;
@@ -108,7 +122,9 @@ void scene_bvh_destroy(scene_bvh *b, gpu *g) {
     mem_free(b->leaf_of);
     mem_free(b->parents);
     mem_free(b->stale);
-    mem_free(b->top_marks);
+    mem_free(b->slots);
+    mem_free(b->wide);
+    mem_free(b->wide_marks);
     mem_free(b->changed);
     mem_free(b->materials);
     mem_free(b->looks);
@@ -135,8 +151,8 @@ static bool make_buffer(scene_bvh *b, gpu *g, scene_bvh_part part, const char *l
 bool scene_bvh_allocate(scene_bvh *b, gpu *g) {
     if (b->buffers[BVH_INSTANCES]) return true;
     const bvh_forest *f = &b->forest;
-    return make_buffer(b, g, BVH_NODES, "boxes of meshes", f->nodes,
-                       f->node_count * sizeof *f->nodes) &&
+    return make_buffer(b, g, BVH_NODES, "boxes of meshes", b->wide,
+                       b->wide_count * sizeof *b->wide) &&
            make_buffer(b, g, BVH_TRIANGLES, "triangles of meshes", f->triangles,
                        f->triangle_count * sizeof *f->triangles) &&
            make_buffer(b, g, BVH_INSTANCES, "placed meshes", NULL,

@@ -29,7 +29,7 @@ float bvh_bounds_area(const bvh_bounds *b) {
 typedef struct plane { // between two bins of an axis
     int axis, bin;
     float low, scale; // bin of a middle: (middle - low) * scale
-    float cost;       // in ray-triangle tests
+    float cost;       // of a ray, in pieces that it meets
 } plane;
 
 static int bin_of(const bvh_piece *p, const plane *at) {
@@ -37,7 +37,8 @@ static int bin_of(const bvh_piece *p, const plane *at) {
     return bin < BINS - 1 ? bin : BINS - 1;
 }
 
-static void try_axis(const bvh_piece *pieces, size_t count, plane at, float area, plane *best) {
+static void try_axis(const bvh_build *b, const bvh_piece *pieces, size_t count, plane at,
+                     float area, plane *best) {
     struct {
         bvh_bounds box;
         size_t count;
@@ -65,12 +66,12 @@ static void try_axis(const bvh_piece *pieces, size_t count, plane at, float area
         bvh_bounds_add(&box, &bins[i + 1].box);
         sum += bins[i + 1].count;
         at.bin = i;
-        at.cost = 1 + (before[i] + bvh_bounds_area(&box) * (float)sum) / area;
+        at.cost = b->node_cost + (before[i] + bvh_bounds_area(&box) * (float)sum) / area;
         if (sum > 0 && sum < count && at.cost < best->cost) *best = at;
     }
 }
 
-static plane best_plane(const bvh_piece *pieces, size_t count, float area) {
+static plane best_plane(const bvh_build *b, const bvh_piece *pieces, size_t count, float area) {
     plane best = {.axis = -1, .cost = INFINITY};
     bvh_bounds middles = bvh_bounds_empty();
     for (size_t i = 0; i < count; i++) {
@@ -81,7 +82,7 @@ static plane best_plane(const bvh_piece *pieces, size_t count, float area) {
     for (int a = 0; a < 3; a++) {
         plane at = {.axis = a, .low = middles.low[a]};
         at.scale = BINS / (middles.high[a] - middles.low[a]);
-        if (isfinite(at.scale) && at.scale > 0) try_axis(pieces, count, at, area, &best);
+        if (isfinite(at.scale) && at.scale > 0) try_axis(b, pieces, count, at, area, &best);
     }
     return best;
 }
@@ -104,10 +105,11 @@ static bool is_free(size_t count, int depth) {
 }
 
 // How many of the pieces, then the first ones, go to the first child; 0: they are a leaf.
-static size_t split(bvh_piece *pieces, size_t count, const bvh_bounds *box, int depth) {
+static size_t split(const bvh_build *b, bvh_piece *pieces, size_t count, const bvh_bounds *box,
+                    int depth) {
     if (count == 1) return 0;
     plane best = {.axis = -1, .cost = INFINITY};
-    if (is_free(count, depth)) best = best_plane(pieces, count, bvh_bounds_area(box));
+    if (is_free(count, depth)) best = best_plane(b, pieces, count, bvh_bounds_area(box));
     if (count <= BVH_LEAF_SIZE && !(best.cost < (float)count)) return 0;
     return best.axis < 0 ? count / 2 : partition(pieces, count, &best);
 }
@@ -121,7 +123,7 @@ static void fill_node(bvh_build *b, size_t index, bvh_piece *pieces, size_t coun
     struct bvh_node node = {.next = next};
     glm_vec3_copy(box.low, node.low.v);
     glm_vec3_copy(box.high, node.high.v);
-    size_t left = split(pieces, count, &box, depth), first = b->node_count;
+    size_t left = split(b, pieces, count, &box, depth), first = b->node_count;
     if (left == 0) {
         node.below = bvh_leaf(b->add_leaf(b->user, pieces, count), count);
     } else {

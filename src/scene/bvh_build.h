@@ -1,8 +1,20 @@
-// A tree of boxes over anything that has one, laid out as shaders walk it (bvh_node of shared.h).
+// A tree of boxes over anything that has one. Both children of a node lie side by side, behind it;
+// each has a link past what is below it, so that a walk needs no stack. Shaders walk wider ones
+// (bvh_wide.h).
 #pragma once
 #include "shared.h"
 #include <stdbool.h>
 #include <stddef.h>
+
+enum { BVH_DEPTH = 32 };     // nodes on the way to a leaf, at most
+#define BVH_DONE 0xffffffffu // there is no next node
+
+struct bvh_node {
+    shared_vec3 low; // of its box
+    uint32_t next;   // the node to go on with when this one is done with, or BVH_DONE
+    shared_vec3 high;
+    uint32_t below; // bvh_leaf, else its first child
+};
 
 // What is below a node. A leaf holds so many, up to 15, from a place on; any other node has two
 // children, for which the range is empty.
@@ -45,6 +57,7 @@ typedef struct bvh_build {
     // Takes the pieces of a leaf, at most BVH_LEAF_SIZE; returns the number of the first.
     uint32_t (*add_leaf)(void *user, const bvh_piece *pieces, size_t count);
     void *user;
+    float node_cost; // of meeting a node's children, by that of meeting a piece
 } bvh_build;
 
 void bvh_build_tree(bvh_build *b, bvh_piece *pieces, size_t count); // orders the pieces anew

@@ -2,10 +2,12 @@
 #pragma once
 #include "scene/bvh.h"
 #include "scene/bvh_tree.h"
+#include "scene/bvh_wide.h"
 #include "scene/surfaces.h"
 
 typedef struct tree { // nodes of the forest
     uint32_t root, end;
+    uint32_t below;   // its root, as shaders walk it
     size_t triangles; // of the forest, up to those of this tree
 } tree;
 
@@ -35,12 +37,17 @@ struct scene_bvh {
     size_t thing_count;
     size_t item_count;
 
+    struct bvh_wide *wide; // nodes on the device: none, those over the items, then all others
+    size_t wide_count, wide_capacity;
+    uint8_t *wide_marks; // of those over the items that have changed (runs.h)
+
     bvh_forest forest;  // its first nodes are of the tree over the items
     uint32_t top_count; // 0: there is none yet
+    uint32_t top_below; // its root, as shaders walk it
     float top_cost;     // as it was when it was made
     uint32_t *parents;  // of these nodes; the root's is 0
     uint8_t *stale;     // whose boxes do not fit
-    uint8_t *top_marks; // that have changed (runs.h)
+    uint32_t *slots;    // where they are among `wide`
     size_t top_moved;   // boxes of items that have changed since the cost was looked at
 
     struct bvh_instance *items; // in the order of the tree
@@ -67,5 +74,6 @@ bool bvh_looks_update(scene_bvh *b, gpu *g, const field_context *context);
 void bvh_top_update(scene_bvh *b);
 void bvh_top_moved(scene_bvh *b, size_t place); // the box of the item there has changed
 size_t bvh_top_nodes(size_t items);             // that it may take
+size_t bvh_top_wide(size_t items);              // on the device, that of none before it
 // The box of an item that is not to be seen: nothing meets it.
 bool bvh_is_nowhere(const struct bvh_instance *item);

@@ -60,8 +60,8 @@ static void place_item(scene_bvh *b, size_t item, size_t mesh, mat4 transform,
     const tree *t = &b->trees[mesh];
     if (t->root != t->end && invert(transform, made)) {
         made->what.v[2] = b->materials[mesh];
+        made->below = t->below;
         made->root = t->root;
-        made->below = b->forest.nodes[t->root].below;
         world_box(&b->forest.nodes[t->root], transform, made);
     } else {
         *made =
@@ -147,12 +147,12 @@ bool scene_bvh_place(scene_bvh *b, const field_context *context) {
 
 bool scene_bvh_update(scene_bvh *b, gpu *g, const field_context *context) {
     if (!scene_bvh_place(b, context) || !bvh_looks_update(b, g, context)) return false;
-    const uint32_t head[4] = {(uint32_t)b->item_count, b->forest.nodes[0].below};
+    const uint32_t head[4] = {(uint32_t)b->item_count, b->top_below};
     if (!b->headed && !gpu_buffer_write(g, b->buffers[BVH_INSTANCES], 0, head, BVH_HEAD))
         return false;
     b->headed = true;
-    if (!runs_write(g, b->buffers[BVH_NODES], 0, b->forest.nodes, sizeof *b->forest.nodes,
-                    b->top_count, b->top_marks))
+    if (!runs_write(g, b->buffers[BVH_NODES], 0, b->wide, sizeof *b->wide,
+                    bvh_top_wide(b->item_count), b->wide_marks))
         return false;
     return runs_write(g, b->buffers[BVH_INSTANCES], BVH_HEAD, b->items, sizeof *b->items,
                       b->item_count, b->changed);

@@ -11,10 +11,15 @@ enum {
     ONE_LEAF = 8, // items that need no tree
     LOOK = 8,     // part of the items that must have moved before the cost is looked at
 };
-static const float worn_out = 1.5f; // costs by those of the tree when it was built
+static const float node_cost = 0.25f; // a ray is turned into the space of each item that it meets
+static const float worn_out = 1.5f;   // costs by those of the tree when it was built
 
 size_t bvh_top_nodes(size_t items) {
     return items <= ONE_LEAF ? 1 : 2 * items - 1;
+}
+
+size_t bvh_top_wide(size_t items) {
+    return 1 + bvh_top_nodes(items) / 2;
 }
 
 bool bvh_is_nowhere(const struct bvh_instance *item) {
@@ -77,7 +82,10 @@ static void fit(scene_bvh *b) {
         }
         set_box(&nodes[i], &box);
         if (memcmp(&before, &nodes[i], sizeof before) == 0) continue;
-        run_mark(b->top_marks, i);
+        if (b->slots[i] != BVH_NO_SLOT) {
+            bvh_wide_set_box(b->wide, b->slots[i], &nodes[i]);
+            run_mark(b->wide_marks, b->slots[i] / 4);
+        }
         b->stale[b->parents[i]] = i > 0;
     }
 }
@@ -146,7 +154,10 @@ static void link(scene_bvh *b) {
         b->parents[node->below] = b->parents[node->below + 1] = i;
     }
     memset(b->stale, 1, b->top_count);
-    memset(b->top_marks, 1, run_marks(b->top_count));
+    memset(b->slots, 0xff, b->top_count * sizeof *b->slots);
+    bvh_widening made = {.nodes = b->forest.nodes, .out = b->wide, .count = 1, .slots = b->slots};
+    b->top_below = bvh_widen(&made, 0);
+    memset(b->wide_marks, 1, run_marks(bvh_top_wide(b->item_count)));
     b->headed = false;
 }
 
@@ -157,7 +168,7 @@ static void build(scene_bvh *b) {
             (struct bvh_node){.next = BVH_DONE, .below = bvh_leaf(0, b->item_count)};
     } else {
         top_build t = {.order = mem_alloc(b->item_count * sizeof *t.order)};
-        bvh_build made = {.add_leaf = add_leaf, .user = &t};
+        bvh_build made = {.add_leaf = add_leaf, .user = &t, .node_cost = node_cost};
         bvh_piece *pieces = make_pieces(b);
         bvh_build_tree(&made, pieces, b->item_count);
         memcpy(b->forest.nodes, made.nodes, made.node_count * sizeof *made.nodes);

@@ -1,5 +1,4 @@
-// Trees of boxes over the triangles of meshes, one behind the other in two arrays that are as
-// shaders read them (bvh_node, bvh_triangle of shared.h).
+// Trees of boxes over the triangles of meshes, one behind the other.
 #pragma once
 #include "media/mesh.h"
 #include "scene/bvh_build.h"

@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "scene/bvh.h"
 #include "scene/bvh_tree.h"
+#include "scene/bvh_wide.h"
 #include <math.h>
 #include <string.h>
 
@@ -72,13 +73,10 @@ static void assert_inside(const struct bvh_node *outer, const float low[3], cons
         assert_true(low[a] >= outer->low.v[a] && high[a] <= outer->high.v[a]);
 }
 
-static void check_leaf(checked *c, const struct bvh_node *node) {
-    uint32_t first = node->below & 0xfffffff, count = node->below >> 28;
-    assert_true(count >= 1 && count <= BVH_LEAF_SIZE);
-    assert_true(first + count <= c->forest->triangle_count);
-    for (uint32_t i = first; i < first + count; i++) {
+// All corners of a leaf's triangles lie in its box.
+static void check_corners(const checked *c, const struct bvh_node *node) {
+    for (uint32_t i = bvh_leaf_first(node->below); i < bvh_leaf_end(node->below); i++) {
         const struct bvh_triangle *t = &c->forest->triangles[i];
-        c->seen[i]++;
         for (int corner = 0; corner < 3; corner++) {
             float at[3], slack = 0;
             for (int a = 0; a < 3; a++) {
@@ -91,6 +89,23 @@ static void check_leaf(checked *c, const struct bvh_node *node) {
                 assert_true(at[a] >= node->low.v[a] - slack && at[a] <= node->high.v[a] + slack);
         }
     }
+}
+
+static void check_leaf(checked *c, const struct bvh_node *node) {
+    uint32_t first = bvh_leaf_first(node->below), end = bvh_leaf_end(node->below);
+    assert_true(end > first && end - first <= BVH_LEAF_SIZE);
+    assert_true(end <= c->forest->triangle_count);
+    for (uint32_t i = first; i < end; i++) c->seen[i]++;
+    check_corners(c, node);
+}
+
+static struct bvh_node wide_child(const struct bvh_wide *node, int child) {
+    struct bvh_node made = {.below = node->below.v[child]};
+    for (int a = 0; a < 3; a++) {
+        made.low.v[a] = node->low[a].v[child];
+        made.high.v[a] = node->high[a].v[child];
+    }
+    return made;
 }
 
 // `next`: the node behind the subtree, as a walk enters nodes.
@@ -124,12 +139,50 @@ static int check_tree(const bvh_forest *f, size_t count) {
     return c.deepest;
 }
 
+// What shaders walk: every triangle is in it once, in boxes that hold it; returns how many nodes a
+// walk may keep for later.
+static uint32_t check_wide(checked *c, const struct bvh_wide *wide, uint32_t below) {
+    uint32_t kept = 0, children = 0;
+    for (uint32_t i = bvh_leaf_first(below); i < bvh_leaf_end(below); i++) c->seen[i]++;
+    if (bvh_is_leaf(below)) return 0;
+    for (int i = 0; i < 4; i++) {
+        const struct bvh_node box = wide_child(&wide[below], i);
+        if (box.below == 0) continue;
+        if (bvh_is_leaf(box.below)) check_corners(c, &box);
+        for (int k = 0; k < 4 && !bvh_is_leaf(box.below); k++) {
+            const struct bvh_node inner = wide_child(&wide[box.below], k);
+            if (inner.below) assert_inside(&box, inner.low.v, inner.high.v);
+        }
+        uint32_t more = check_wide(c, wide, box.below);
+        kept = more > kept ? more : kept;
+        children++;
+    }
+    assert_true(children >= 2);
+    return kept + children - 1;
+}
+
+static void check_widened(const bvh_forest *f, size_t count) {
+    checked c = {.forest = f, .seen = mem_alloc(count * sizeof *c.seen)};
+    bvh_widening w = {.nodes = f->nodes,
+                      .out = mem_alloc((1 + f->node_count / 2) * sizeof *w.out),
+                      .count = 1,
+                      .slots = mem_alloc(f->node_count * sizeof *w.slots)};
+    uint32_t below = bvh_widen(&w, 0);
+    assert_true(w.count <= 1 + f->node_count / 2);
+    assert_true(check_wide(&c, w.out, below) < BVH_KEPT);
+    for (size_t i = 0; i < count; i++) assert_int_equal(c.seen[i], 1);
+    mem_free(w.slots);
+    mem_free(w.out);
+    mem_free(c.seen);
+}
+
 static int depth_of(uint32_t count, void (*place)(uint32_t, float[3], float *)) {
     soup s = make_soup(count, place);
     s.data.parts = &s.part;
     bvh_forest f = {0};
     assert_true(bvh_forest_add(&f, &s.data));
     int depth = check_tree(&f, count);
+    check_widened(&f, count);
     bvh_forest_free(&f);
     free_soup(&s);
     return depth;
