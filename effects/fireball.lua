@@ -15,7 +15,7 @@ local detail     = param { "detail", 0.5, min = 0.25, max = 4, help = "cells alo
 local rendering  = param { "rendering", "volume", words = {"volume", "particles", "both"}, help = "how the flow is shown" }:get()
 local thickness  = param { "thickness", 20, min = 0, max = 50, unit = "1/m", help = "how dense it is: how deep one sees into it" }
 local corona     = param { "corona", 1, min = 0, max = 5, help = "strength of the templates at its surface" }
-local brightness = param { "brightness", 75, min = 0, max = 500, unit = "1/m", help = "factor of the fire's light" }
+local brightness = param { "brightness", 64, min = 0, max = 500, unit = "1/m", help = "factor of the fire's light" }
 local wobble     = param { "wobble", 0.14, min = 0, max = 1, unit = "m", help = "how far the volume is bent out of its round shape" }
 
 -- What is turned round an axis looks turned: points are moved by a fractal offset, which boils.
@@ -45,7 +45,7 @@ flow:templates {
 }
 
 -- One sample for all that is shown: the offset is evaluated once for each of these voxels.
-local heat = bake(flow.temperature, { size = {cells(160), cells(160), cells(160)} })
+local heat = bake(flow.temperature, { size = {cells(192), cells(192), cells(192)} })
 
 -- Between two slices tongues are as wide as the angle there. Noise that is looked up by the direction
 -- from the middle tears them into strands, more so further out, along which it moves outwards.
@@ -59,7 +59,7 @@ local torn    = heat - 0.2 * (1 - strands) * smoothstep(0.7, 1.5, radius)
 local grains = worley { frequency = 3.2, octaves = 3, persistence = 0.55, speed = 0.8, distance = "f2_f1", seed = 11 }
 local hot    = torn * (0.32 + 1.35 * grains)
 local fire   = palette {
-  {0.08, {0, 0, 0}}, {0.26, {0.12, 0.008, 0.0004}}, {0.47, {0.75, 0.11, 0.007}}, {0.8, {2.4, 0.85, 0.12}}, {1.1, {6, 3.9, 1.5}},
+  {0.08, {0, 0, 0}}, {0.24, {0.15, 0.011, 0.0005}}, {0.44, {0.9, 0.15, 0.01}}, {0.8, {2.4, 0.85, 0.12}}, {1.1, {6, 3.9, 1.5}},
 }
 
 fx.camera = camera { eye = {0, -8.2, 1.5}, target = {0, 0, 2.1}, fov = 32, near = 0.1, far = 500 }
@@ -89,7 +89,7 @@ if rendering ~= "volume" then
   }
   local drawn = splats {
     from = {sparks, scene, lit}, density = 0.4 * heat * smoothstep(0.4, 0.9, heat) * thickness, size = over_age { {0, 0.08}, {1, 0.05} }, streak = 0.05,
-    color = fire(0.1 + particle_quantity).rgb, brightness = 0.01 * brightness,
+    color = fire(0.1 + particle_quantity).rgb, brightness = (rendering == "both" and 0.004 or 0.011) * brightness,
   }
   picture = over { drawn, picture, from = {drawn, scene} }
 end
