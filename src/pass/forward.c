@@ -15,7 +15,7 @@ typedef struct forward_state {
 
 bool forward_declare(pass *p) {
     forward_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    pass_choose_shadows(p);
+    if (!pass_choose_shadows(p)) return false;
     s->drawn = drawn_create(p);
     s->z = pass_add_target(p, "z", GPU_D32F);
     return s->z.id && pass_declare_images(p) && pass_add_to_graph_with(p, &s->z, 1);

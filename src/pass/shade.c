@@ -20,8 +20,7 @@ typedef struct shade_state {
 
 bool shade_declare(pass *p) {
     pass_drop_matte(p, "surface", "emission");
-    pass_choose_shadows(p);
-    return pass_declare_images(p) && pass_add_to_graph(p);
+    return pass_choose_shadows(p) && pass_declare_images(p) && pass_add_to_graph(p);
 }
 
 static bool compile(pass *p, shade_state *s) {

@@ -381,12 +381,18 @@ static const char *choose_way(const pass *p, const pass *maps) {
     return leaves_lights_out(maps) ? "both" : "maps";
 }
 
-void pass_choose_shadows(pass *p) {
+bool pass_choose_shadows(pass *p) {
     static const char *const names[] = {"shadow_atlas", "shadow_views"};
     const pass *maps = maps_of(p);
+    bool asks = pass_has_word(p, "shadows_by", "maps") || pass_has_word(p, "shadows_by", "both");
+    if (asks && !p->images[pass_find_image(p, names[0])].id)
+        return err_set("%s: 'shadows_by' asks for maps of shadows; give it some, as in 'from = "
+                       "{scene, shadow_maps { from = scene }}'",
+                       p->label);
     if (pass_has_word(p, "shadows_by", "auto"))
         pass_set_option(p, "shadows_by", choose_way(p, maps));
-    if (asks_for_lamps(p, maps) || !pass_has_word(p, "shadows_by", "rays")) return;
+    if (asks_for_lamps(p, maps) || !pass_has_word(p, "shadows_by", "rays")) return true;
     for (size_t i = 0; i < COUNT_OF(names); i++)
         p->images[pass_find_image(p, names[i])] = (graph_image){0};
+    return true;
 }

@@ -4,5 +4,5 @@
 #include "pass/pass.h"
 
 // Before the pass is declared: settles `auto`. Maps that nothing is looked up in are let go, so
-// that they are not drawn.
-void pass_choose_shadows(pass *p);
+// that they are not drawn. False with a message: maps are asked for, and there are none.
+bool pass_choose_shadows(pass *p);

@@ -89,6 +89,18 @@ static void users_function_that_is_not_there_is_found(void **state) {
     assert_error("there");
 }
 
+static void shadows_by_maps_want_maps(void **state) {
+    stage *s = *state;
+    pass *solid = effect_add_pass(s->e, "geometry", NULL, NULL);
+    pass *p = effect_add_pass(s->e, "shade", NULL, NULL);
+    assert_non_null(solid);
+    assert_non_null(p);
+    pass_add_source(p, solid);
+    ok(pass_set_option(p, "shadows_by", "maps"));
+    assert_false(pass_declare(p));
+    assert_error("shade: 'shadows_by' asks for maps");
+}
+
 static void missing_files_are_named(void **state) {
     stage *s = *state;
     assert_null(effect_add_pass(s->e, NULL, "absent.comp", NULL));
@@ -210,6 +222,7 @@ int main(void) {
         STAGE_TEST(mistake_in_a_users_shader_is_found_without_a_device),
         STAGE_TEST(mistake_in_an_annotation_is_found_when_the_pass_is_added),
         STAGE_TEST(users_function_that_is_not_there_is_found),
+        STAGE_TEST(shadows_by_maps_want_maps),
         STAGE_TEST(missing_files_are_named),
         STAGE_TEST(needed_field_or_image_that_is_missing_is_named),
         STAGE_TEST(effect_without_output_is_refused),
