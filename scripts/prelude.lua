@@ -61,7 +61,7 @@ end
 -- rounded so that it closes behind. `shift`, 0..1, moves it: shell_shift, so that no two shells look
 -- alike. Other keys are those of the noise: seed, speed, octaves, fractal.
 local function layers_wrong(what)
-  error("layers takes 1 to 8 pairs {scale, strength}, as in layers { {2, 1}, {7, 0.4} }; " .. what, 3)
+  error("layers takes 1 to 64 pairs {scale, strength}, as in layers { {2, 1}, {7, 0.4} }; " .. what, 3)
 end
 
 local function whole_cells(scale)
@@ -82,7 +82,7 @@ end
 
 function layers(settings)
   if type(settings) ~= "table" then layers_wrong("got a " .. type(settings)) end
-  if #settings < 1 or #settings > 8 then layers_wrong("got " .. #settings .. " of them") end
+  if #settings < 1 or #settings > 64 then layers_wrong("got " .. #settings .. " of them") end
   local flat, sum, all = settings.dimensions == 2, 0, 0
   if not (flat or settings.dimensions == nil or settings.dimensions == 3) then layers_wrong("'dimensions' is 2 or 3") end
   if type(settings.noise or perlin) ~= "function" then layers_wrong("'noise' is perlin, simplex, value or worley, as in noise = worley") end

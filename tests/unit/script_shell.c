@@ -35,7 +35,7 @@ static void mistakes_are_named(void **state) {
 
 static void layers_name_mistakes(void **state) {
     (void)state;
-    refused("layers(3)", "layers takes 1 to 8 pairs");
+    refused("layers(3)", "layers takes 1 to 64 pairs");
     refused("layers { }", "got 0 of them");
     refused("layers { {1} }", "number 1 is none");
     refused("layers { {2, 1}, {3, 'x'} }", "number 2 is none");
