@@ -338,8 +338,8 @@ bool shadow_maps_record(pass *p) {
 
 // Whether to look is faster than a ray to each light, by device. Drawing the maps counts, too: on a
 // processor they cost as much as rays in a small picture, and win in a large one, or among many
-// trees. On an H200 maps that are kept beat rays (a forest: 0.3 ms against 1.2), those that
-// something moves in do not (3.2): drawing them takes 3 ms.
+// trees. On an H200 maps that are kept beat rays (a forest: 0.3 ms against 1.0), those that
+// something moves in do not (3.3): drawing them takes 3 ms.
 static const struct {
     gpu_kind kind;
     bool maps;
