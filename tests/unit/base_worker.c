@@ -59,9 +59,9 @@ static void run_record(void *user) {
     r->order[atomic_fetch_add(r->done, 1)] = r->number;
 }
 
-// The queue is filled while the only thread is held back, so the ring grows and wraps.
-static void one_thread_keeps_the_order(void **state) {
-    (void)state;
+// Runs JOBS jobs by one thread that is held back until all are in the queue, so that the ring grows
+// and wraps; returns their numbers as they ran.
+static const int *run_held_back(void (*submit)(worker *w, worker_job job, int number)) {
     static record records[JOBS];
     static int order[JOBS];
     atomic_int done = 0;
@@ -71,40 +71,40 @@ static void one_thread_keeps_the_order(void **state) {
     gate_await(g, 1);
     for (int i = 0; i < JOBS; i++) {
         records[i] = (record){i, order, &done};
-        worker_submit(w, (worker_job){run_record, &records[i]});
+        submit(w, (worker_job){run_record, &records[i]}, i);
     }
     assert_int_equal(atomic_load(&done), 0);
     gate_open(g);
     worker_wait(w);
     assert_int_equal(atomic_load(&done), JOBS);
-    for (int i = 0; i < JOBS; i++) assert_int_equal(order[i], i);
     worker_destroy(w);
     gate_destroy(g);
+    return order;
 }
 
-// They come before all that wait, the latest of them first, also where the ring begins at its
-// start.
+static void submit_last(worker *w, worker_job job, int number) {
+    (void)number;
+    worker_submit(w, job);
+}
+
+static void submit_odd_first(worker *w, worker_job job, int number) {
+    (number % 2 ? worker_submit_first : worker_submit)(w, job);
+}
+
+static void one_thread_keeps_the_order(void **state) {
+    (void)state;
+    const int *order = run_held_back(submit_last);
+    for (int i = 0; i < JOBS; i++) assert_int_equal(order[i], i);
+}
+
+// The latest of them first.
 static void what_is_urgent_goes_first(void **state) {
     (void)state;
-    static record records[JOBS];
-    static int order[JOBS];
-    atomic_int done = 0;
-    gate *g = gate_create();
-    worker *w = worker_create(1);
-    worker_submit(w, (worker_job){gate_pass, g});
-    gate_await(g, 1);
-    for (int i = 0; i < JOBS; i++) {
-        records[i] = (record){i, order, &done};
-        (i % 2 ? worker_submit_first : worker_submit)(w, (worker_job){run_record, &records[i]});
-    }
-    gate_open(g);
-    worker_wait(w);
+    const int *order = run_held_back(submit_odd_first);
     for (int i = 0; i < JOBS / 2; i++) {
         assert_int_equal(order[i], JOBS - 1 - 2 * i);
         assert_int_equal(order[JOBS / 2 + i], 2 * i);
     }
-    worker_destroy(w);
-    gate_destroy(g);
 }
 
 static void add_one(void *user) {
