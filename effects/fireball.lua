@@ -84,7 +84,7 @@ if rendering ~= "volume" then
   -- They are born wherever the surface and its tongues are hot, and die soon: what is turned from
   -- planes does not keep its volume, and would sweep them together.
   local sparks = particles {
-    count = 65536, rate = 180000, lifetime = {0.1, 0.6}, seed = 8, warm_up = 0.6, above = {heat * smoothstep(0.4, 0.7, radius), 0.18},
+    count = 108032, rate = 180000, lifetime = {0.1, 0.6}, seed = 8, warm_up = 0.6, above = {heat * smoothstep(0.4, 0.7, radius), 0.18},
     velocity = flow.velocity, quantity = hot,
   }
   local drawn = splats {
