@@ -1,11 +1,13 @@
 // Lattice Boltzmann: air that moves, and up to three scalars that it carries, on a regular lattice
 // on the device. Lattice units only: a cell is 1 long, a step 1 of time, air at rest has density 1.
 //
-// Layout, which shaders/sim/lbm/state.glsl reads: an element is four cells that lie nz / 4 apart
-// along z, so that cell (x, y, z) is lane z / (nz / 4) of element x + nx * (y + ny * (z % (nz /
-// 4))): a vec4 (LBM_F32) or a uvec2 of four halves in order (LBM_F16). The neighbours of a whole
-// element are a whole element again; where z goes round, its lanes rotate by one. Populations are
-// kept less their weights (air) and streamed in place, see shaders/sim/lbm/state.glsl.
+// Layout, which shaders/sim/lbm/state.glsl reads: an element is n = 4 cells that lie nz / n apart
+// along z, so that cell (x, y, z) is lane z / (nz / n) of element x + nx * (y + ny * (z % (nz /
+// n))): a vec4 (LBM_F32) or a uvec2 of four halves in order (LBM_F16). The neighbours of a whole
+// element are a whole element again; where z goes round, its lanes rotate by one. On GPUs n is 2
+// in half precision, and four elements that lie nz / 8 apart are side by side in memory: a bundle
+// of 16 bytes, whose neighbours are whole bundles. Populations are kept less their weights (air)
+// and streamed in place.
 //
 // Life: lbm_create, lbm_compile (or not), lbm_build, lbm_allocate, then in frames lbm_reset and
 // lbm_step.
@@ -51,7 +53,7 @@ typedef struct lbm_desc { // structure: what shaders are compiled for
     bool force;        // an image says where what force acts: lbm_set_force
     bool bodies;       // there are solids, which may move
     // How the state lies; left 0: as suits the device.
-    uint32_t lanes;  // cells of an access of memory, 2 or 4
+    uint32_t lanes;  // cells of an element, 4; or 2: LBM_F16, scalars on D3Q7, z a multiple of 8
     lbm_order order; // directions by turns, in blocks of a few elements, or each as a whole
 } lbm_desc;
 

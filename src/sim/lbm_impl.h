@@ -7,7 +7,7 @@
 
 typedef struct lbm_kernel {
     sim_kernel base;
-    uint32_t threads; // in one row; 0: one for each element, in layers
+    uint32_t threads[3]; // of a dispatch; 0: one for each element, in layers
 } lbm_kernel;
 
 // Compiles with the defines of the solver and `more`; again: replaces what was compiled.
@@ -21,6 +21,7 @@ bool lbm_kernel_run(const lbm *l, lbm_kernel *k, gpu *g);
 
 typedef struct lbm_layout {
     uint32_t lanes, element;      // cells of an element, its bytes
+    uint32_t bundle;              // elements side by side
     uint32_t layers, elements;    // along z, in all
     uint32_t block, places;       // elements of a block, 0: none; elements that there is room for
     uint32_t slots, run, buffers; // places of directions, those of one buffer, buffers

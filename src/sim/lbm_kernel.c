@@ -23,10 +23,6 @@ bool lbm_kernel_run(const lbm *l, lbm_kernel *k, gpu *g) {
         if (lbm_bind(l, binary->slots[i].name, &own))
             slots[count++] = (sim_slot){binary->slots[i].name, own.buffer, own.image};
     }
-    uint32_t threads[3] = {k->threads, 1, 1};
-    if (!k->threads) {
-        threads[0] = l->desc.size[0] * l->desc.size[1];
-        threads[2] = l->layout.layers;
-    }
-    return sim_kernel_run(&k->base, g, slots, count, threads);
+    const uint32_t each[3] = {l->desc.size[0] * l->desc.size[1], 1, l->layout.layers};
+    return sim_kernel_run(&k->base, g, slots, count, k->threads[0] ? k->threads : each);
 }

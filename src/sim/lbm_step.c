@@ -1,7 +1,8 @@
 // A step: one dispatch over all elements. Or two, where there are faces that air can pass, which
 // take many registers, and on software devices, which take both ways of a branch, time everywhere:
 // over the elements that no face touches, whose shader knows nothing of faces, and over a list of
-// those that one does. They share no places in memory, so their order does not matter.
+// those that one does. Each element has places in memory of its own, so their order does not
+// matter; where a bundle has elements of both, the first leaves those of the second as they are.
 #include "base/memory.h"
 #include "sim/lbm_impl.h"
 #include <string.h>
@@ -24,13 +25,19 @@ bool lbm_step_compile(lbm *l, const gpu_info *device, shader_library *library,
     lbm_stepper *s = &l->stepper;
     s->parts = is_passable(l) ? 2 : 1;
     for (int i = 0; i < 2 * s->parts; i++) {
+        lbm_kernel *k = &s->kernels[i / 2][i % 2];
+        const bool bundled = l->layout.bundle > 1 && i < 2; // not those in the list
+        const bool software = is_software(device) && l->layout.lanes == 4;
         const shader_define defines[] = {
-            {"LBM_SOFTWARE", is_software(device) && l->layout.lanes == 4 ? "1" : "0"},
+            {"LBM_SOFTWARE", software ? "1" : "0"},
             {"LBM_KEEP", i % 2 ? "1" : "0"},
             {"LBM_REGION", regions[s->parts == 1 ? 0 : 1 + i / 2]},
+            {"LBM_BUNDLED", bundled ? "1" : "0"},
         };
-        if (!lbm_kernel_compile(l, &s->kernels[i / 2][i % 2], shader, library, reader, defines, 3))
-            return false;
+        k->threads[0] = l->desc.size[0] * l->desc.size[1];
+        k->threads[1] = 1;
+        k->threads[2] = l->layout.layers / (bundled ? l->layout.bundle : 1);
+        if (!lbm_kernel_compile(l, k, shader, library, reader, defines, 4)) return false;
     }
     return true;
 }
@@ -51,12 +58,16 @@ static bool at_face(const lbm *l, uint32_t x, uint32_t y, uint32_t layer) {
     return false;
 }
 
+// In the order of memory, so that neighbours in the list read what is side by side.
 static uint32_t list_skin(const lbm *l, uint32_t *out) {
-    uint32_t count = 0, element = 0;
-    for (uint32_t z = 0; z < l->layout.layers; z++)
-        for (uint32_t y = 0; y < l->desc.size[1]; y++)
-            for (uint32_t x = 0; x < l->desc.size[0]; x++, element++)
-                if (at_face(l, x, y, z)) out[count++] = element;
+    const uint32_t nx = l->desc.size[0], ny = l->desc.size[1];
+    const uint32_t bundle = l->layout.bundle, span = l->layout.layers / bundle;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < l->layout.elements; i++) {
+        const uint32_t column = i / bundle % (nx * ny);
+        const uint32_t z = i / bundle / (nx * ny) + i % bundle * span;
+        if (at_face(l, column % nx, column / nx, z)) out[count++] = column + nx * ny * z;
+    }
     return count;
 }
 
@@ -69,7 +80,10 @@ bool lbm_step_allocate(lbm *l, gpu *g) {
         g, &(gpu_buffer_desc){.label = "elements at faces", .size = s->skin_count * 4ull});
     bool done = s->skin && gpu_buffer_write(g, s->skin, 0, list, s->skin_count * 4ull);
     mem_free(list);
-    for (int kept = 0; kept < 2; kept++) s->kernels[1][kept].threads = s->skin_count;
+    for (int kept = 0; kept < 2; kept++) {
+        uint32_t threads[3] = {s->skin_count, 1, 1};
+        memcpy(s->kernels[1][kept].threads, threads, sizeof threads);
+    }
     return done;
 }
 

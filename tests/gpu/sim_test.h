@@ -96,7 +96,8 @@ static inline size_t sim_index(const sim_world *w, int x, int y, int z) {
 static inline size_t sim_place(const sim_world *w, int slot, size_t cell) {
     const lbm_layout *l = &w->lattice->layout;
     size_t plane = (size_t)w->desc.size[0] * w->desc.size[1], z = cell / plane;
-    size_t element = (cell % plane) + plane * (z % l->layers);
+    size_t layer = z % l->layers, span = l->layers / l->bundle;
+    size_t element = l->bundle * (cell % plane + plane * (layer % span)) + layer / span;
     size_t run = l->run, own = (size_t)slot % run, first = (size_t)slot - own;
     size_t slots = l->slots - first < run ? l->slots - first : run;
     size_t in = l->block

@@ -135,7 +135,7 @@ void main() {
     at += uvec3(first);
     at.z %= LBM_LAYERS;
     lbm_place place = lbm_place_at(at);
-    Held held = held_by(at, lbm_site_at(at, place.own).solid);
+    Held held = held_by(at, lbm_site_at(at, lbm_element_at(at)).solid);
     if (!any(greaterThan(held.some, lbm_float(0.0)))) return;
     lbm_element air[LBM_Q];
     lbm_load_air(place, air);

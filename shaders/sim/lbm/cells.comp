@@ -20,12 +20,14 @@ layout(std430) readonly buffer LbmCellsBefore { uint cells_before[]; };
 const int REACH = 4; // cells, to where air is looked for
 
 struct Cell { // one, and where it lies
-    uint element, lane;
+    uint element, home, lane;
 };
 
 Cell find(ivec3 at) {
     Cell c;
-    c.element = lbm_element_of(lbm_wrap(at), c.lane);
+    ivec3 inside = lbm_wrap(at);
+    c.element = lbm_element_of(inside, c.lane);
+    c.home = lbm_home(uvec3(inside.xy, uint(inside.z) - c.lane * LBM_LAYERS));
     return c;
 }
 
@@ -74,7 +76,7 @@ float pick(lbm_element e, uint lane, const float scale) {
 }
 
 void store(const int slot, uint side, Cell c, const float scale, float value) {
-    uint at = lbm_memory_at(slot, side, c.element);
+    uint at = lbm_memory_at(slot, side, c.home);
 #if LBM_HALF
     uint bits = packHalf2x16(vec2(value * scale, 0.0)) & 0xffffu;
     uint shift = 16u * (c.lane & 1u), others = 0xffff0000u >> shift;
@@ -112,11 +114,11 @@ struct Around { // sums over cells of air
 void add_cell(ivec3 at, Cell c, inout Around sum) {
     ivec3 around = lbm_wrap(at);
     lbm_place p = lbm_place_at(uvec3(around.xy, uint(around.z) - c.lane * LBM_LAYERS));
-    float excess = pick(lbm_load(LBM_AIR_AT_REST, 0u, p.own), c.lane, LBM_AIR_SCALE);
+    float excess = pick(lbm_load(LBM_AIR_AT_REST, 0u, p.home), c.lane, LBM_AIR_SCALE);
     vec3 momentum = vec3(0.0);
 #define ADD(i, x, y, z)                                                                            \
     {                                                                                              \
-        float a = pick(lbm_load(LBM_AIR_PAIR(i), 1u - lbm_parity, p.own), c.lane, LBM_AIR_SCALE);  \
+        float a = pick(lbm_load(LBM_AIR_PAIR(i), 1u - lbm_parity, p.home), c.lane, LBM_AIR_SCALE);  \
         float b = pick(lbm_load_there(LBM_AIR_PAIR(i), lbm_parity, p, x, y, z), c.lane,            \
                        LBM_AIR_SCALE);                                                             \
         excess += a + b;                                                                           \
@@ -219,7 +221,7 @@ void leave(const int slot, Cell c, const float scale, float value) {
 }
 
 float left_in(const int slot, Cell c, const float scale) {
-    return pick(lbm_load(slot, 1u - lbm_parity, c.element), c.lane, scale);
+    return pick(lbm_load(slot, 1u - lbm_parity, c.home), c.lane, scale);
 }
 
 void plan(ivec3 at) {

@@ -26,10 +26,15 @@ ivec3 lbm_wrap(ivec3 cell) {
     return cell + size * (ivec3(lessThan(cell, ivec3(0))) - ivec3(greaterThanEqual(cell, size)));
 }
 
+// Elements as they are counted, x fastest; `at`: x, y, layer.
+uint lbm_element_at(uvec3 at) {
+    return at.x + LBM_NX * at.y + LBM_LAYER * at.z;
+}
+
 // The element and the lane that a cell of the lattice lies in.
 uint lbm_element_of(ivec3 cell, out uint lane) {
     lane = uint((float(cell.z) + 0.5) * (1.0 / float(LBM_LAYERS)));
-    return uint(cell.x) + LBM_NX * uint(cell.y) + LBM_LAYER * (uint(cell.z) - lane * LBM_LAYERS);
+    return lbm_element_at(uvec3(cell.xy, uint(cell.z) - lane * LBM_LAYERS));
 }
 
 struct lbm_site { // of an element

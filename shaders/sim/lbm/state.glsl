@@ -6,10 +6,10 @@
 // neighbour along i, and leaves what collision made of them in the other's place; so each place is
 // read and written by one cell only, and the two places of a pair change roles in each step.
 //
-// A thread does one element: two or four cells. What arrives at an element is what its cells hold before
-// collision.
+// What arrives at an element is what its cells hold before collision.
 #ifndef SIM_LBM_STATE_GLSL
 #define SIM_LBM_STATE_GLSL
+#include "sim/lbm/element.glsl"
 #include "sim/lbm/lattice.glsl"
 
 uniform uint lbm_parity; // of steps
@@ -67,125 +67,7 @@ uniform uint lbm_parity; // of steps
 #define LBM_EACH_SCALAR(X) X(0) X(1) X(2)
 #endif
 
-// ---- elements ---------------------------------------------------------------------------------
-
-// LBM_LANES: cells of an element, 4 or 2.
-#if LBM_LANES == 2
-#define lbm_float vec2 // a number in each lane
-#define lbm_bool bvec2
-#define LBM_EACH_LANE(X) X(0) X(1)
-#else
-#define lbm_float vec4
-#define lbm_bool bvec4
-#define LBM_EACH_LANE(X) X(0) X(1) X(2) X(3)
-#endif
-#if LBM_HALF // halves, times a power of two that keeps small values whole
-#if LBM_LANES == 2
-#define lbm_element uint
-#define lbm_mask bool
-#else
-#define lbm_element uvec2
-#define lbm_mask bvec2
-#endif
-#define LBM_AIR_SCALE 32768.0
-#define LBM_SCALAR_SCALE 1024.0
-#else
-#define lbm_element lbm_float
-#define lbm_mask lbm_bool
-#define LBM_AIR_SCALE 1.0
-#define LBM_SCALAR_SCALE 1.0
-#endif
-// 1: the device is a processor (llvmpipe) that loads vectors word by word, so that two words of 64
-// bits cost half of what four of 32 do, and that converts halves one by one. src/sim/README.md has
-// figures.
-#ifndef LBM_SOFTWARE
-#define LBM_SOFTWARE 0
-#endif
-#define LBM_LAYER (LBM_NX * LBM_NY)           // elements
-#define LBM_ELEMENTS (LBM_LAYER * LBM_LAYERS) // of a direction
-
-// Cells of an element, as they lie in memory.
-#if LBM_HALF
-#if LBM_SOFTWARE
-// By hand: a half shifted into a float has an exponent that is 112 too low, which the factor mends.
-// Halves too small to be normal are 0. Rounded to nearest even, as devices do.
-#define LBM_BIAS 5192296858534827628530496329220096.0 // 2^112
-lbm_float lbm_unpack(lbm_element e, const float scale) {
-    ivec4 bits = ivec4(e.x << 16, e.x, e.y << 16, e.y) >> 3 & 0x8fffe000;
-    return intBitsToFloat(bits) * (LBM_BIAS / scale);
-}
-
-lbm_element lbm_pack(const float scale, lbm_float v) {
-    const float most = 65504.0 / LBM_BIAS;
-    uvec4 bits = floatBitsToUint(clamp(v * (scale / LBM_BIAS), -most, most));
-    bits += (bits >> 13 & 1u) + 0xfffu;
-    uvec2 low = bits.xz >> 13 & 0x7fffu | bits.xz >> 16 & 0x8000u;
-    return low | bits.yw << 3 & 0x7fff0000u | bits.yw & 0x80000000u;
-}
-#else
-#if LBM_LANES == 2
-lbm_float lbm_unpack(lbm_element e, const float scale) {
-    return unpackHalf2x16(e) * (1.0 / scale);
-}
-
-lbm_element lbm_pack(const float scale, lbm_float v) {
-    return packHalf2x16(v * scale);
-}
-#else
-lbm_float lbm_unpack(lbm_element e, const float scale) {
-    return vec4(unpackHalf2x16(e.x), unpackHalf2x16(e.y)) * (1.0 / scale);
-}
-
-lbm_element lbm_pack(const float scale, lbm_float v) {
-    v *= scale;
-    return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
-}
-#endif
-#endif
-
-// Lane l gets what lane l + 1 has, and the other way round.
-#if LBM_LANES == 2
-lbm_element lbm_next_lane(lbm_element e) {
-    return e >> 16 | e << 16;
-}
-
-lbm_element lbm_last_lane(lbm_element e) {
-    return lbm_next_lane(e);
-}
-#else
-lbm_element lbm_next_lane(lbm_element e) {
-    return e >> 16 | e.yx << 16;
-}
-
-lbm_element lbm_last_lane(lbm_element e) {
-    return e << 16 | e.yx >> 16;
-}
-#endif
-#else
-lbm_float lbm_unpack(lbm_element e, const float scale) {
-    return e * (1.0 / scale);
-}
-
-lbm_element lbm_pack(const float scale, lbm_float v) {
-    return v * scale;
-}
-
-lbm_element lbm_next_lane(lbm_element e) {
-#if LBM_LANES == 2
-    return e.yx;
-#else
-    return e.yzwx;
-#endif
-}
-
-lbm_element lbm_last_lane(lbm_element e) {
-#if LBM_LANES == 2
-    return e.yx;
-#else
-    return e.wxyz;
-#endif
-}
-#endif
+// ---- all directions ---------------------------------------------------------------------------
 
 // `scale`: of memory over that of the values.
 void lbm_unpack_air(lbm_element q[LBM_Q], const float scale, out lbm_float f[LBM_Q]) {
@@ -226,29 +108,44 @@ void lbm_pack_scalar(lbm_float g[LBM_SCALAR_Q], const float scale, out lbm_eleme
 
 // ---- places -----------------------------------------------------------------------------------
 
-struct lbm_place { // of an element
-    uint own;
-    uint x, x_up, x_down, y, y_up, y_down, z, z_up; // parts of the index of it and its neighbours
+struct lbm_place { // of an access
+    uint home; // in memory
+    uint x, x_up, x_down, y, y_up, y_down, z, z_up; // parts of `home` and of that of neighbours
     bool last; // the layer above is the first one, its lanes one lane on
 };
 
-// `at`: x, y, z % LBM_LAYERS.
+// What a layer adds to `home`.
+uint lbm_depth(uint z) {
+#if LBM_STRIDE > 1
+    uint row = z / LBM_SPAN;
+    return (z - row * LBM_SPAN) * (LBM_LAYER * LBM_STRIDE) + row;
+#else
+    return z * LBM_LAYER;
+#endif
+}
+
+// `at`: x, y, z % LBM_LAYERS of an element; z % LBM_SPAN of a bundle.
+uint lbm_home(uvec3 at) {
+    return (at.x + at.y * LBM_NX) * LBM_STRIDE + lbm_depth(at.z);
+}
+
 lbm_place lbm_place_at(uvec3 at) {
+    const uint row = LBM_NX * LBM_STRIDE, layers = LBM_BUNDLED == 1 ? LBM_SPAN : LBM_LAYERS;
     lbm_place p;
-    p.x = at.x;
-    p.x_up = at.x == LBM_NX - 1u ? 0u : at.x + 1u;
-    p.x_down = at.x == 0u ? LBM_NX - 1u : at.x - 1u;
-    p.y = at.y * LBM_NX;
-    p.y_up = at.y == LBM_NY - 1u ? 0u : p.y + LBM_NX;
-    p.y_down = at.y == 0u ? (LBM_NY - 1u) * LBM_NX : p.y - LBM_NX;
-    p.z = at.z * LBM_LAYER;
-    p.last = at.z == LBM_LAYERS - 1u;
-    p.z_up = p.last ? 0u : p.z + LBM_LAYER;
-    p.own = p.x + p.y + p.z;
+    p.x = at.x * LBM_STRIDE;
+    p.x_up = at.x == LBM_NX - 1u ? 0u : p.x + LBM_STRIDE;
+    p.x_down = at.x == 0u ? row - LBM_STRIDE : p.x - LBM_STRIDE;
+    p.y = at.y * row;
+    p.y_up = at.y == LBM_NY - 1u ? 0u : p.y + row;
+    p.y_down = at.y == 0u ? (LBM_NY - 1u) * row : p.y - row;
+    p.z = lbm_depth(at.z);
+    p.last = at.z == layers - 1u;
+    p.z_up = p.last ? 0u : lbm_depth(at.z + 1u);
+    p.home = p.x + p.y + p.z;
     return p;
 }
 
-// The element one step along (x, y, z), which are constants.
+// The one a step along (x, y, z), which are constants.
 uint lbm_there(lbm_place p, const int x, const int y, const int z) {
     return (x == 0 ? p.x : x > 0 ? p.x_up : p.x_down) +
            (y == 0 ? p.y : y > 0 ? p.y_up : p.y_down) + (z == 0 ? p.z : p.z_up);
@@ -261,7 +158,7 @@ uint lbm_there(lbm_place p, const int x, const int y, const int z) {
 #define LBM_SCALAR_AT_REST(s) (LBM_AIR_AT_REST + 1 + (s))
 #define LBM_SLOTS (LBM_AIR_AT_REST + 1 + LBM_SCALARS)
 
-// How elements are read and written.
+// As it lies in memory.
 #if LBM_SOFTWARE && LBM_HALF
 #define lbm_memory uint64_t
 #define lbm_from_memory(m) unpackUint2x32(m)
@@ -277,7 +174,7 @@ lbm_memory lbm_to_memory(lbm_element e) {
     return u64vec2(packUint2x32(words.xy), packUint2x32(words.zw));
 }
 #else
-#define lbm_memory lbm_element
+#define lbm_memory lbm_access
 #define lbm_from_memory(m) (m)
 #define lbm_to_memory(e) (e)
 #endif
@@ -288,26 +185,27 @@ lbm_memory lbm_to_memory(lbm_element e) {
 LBM_EACH_BUFFER
 #undef LBM_BUFFER
 
-// Where an element lies in its slot's buffer. `slot` is a constant, the first of a pair; `side`, 0 or 1,
+// Where `home` is in its slot's buffer. `slot` is a constant, the first of a pair; `side`, 0 or 1,
 // need not be.
 //
 // LBM_BLOCK: so many elements of a slot lie together, then come as many of the next one: what a group
 // of threads reads is near to each other, and its addresses differ by constants. 0: the whole of a
 // slot lies together.
-uint lbm_memory_at(const int slot, uint side, uint element) {
+uint lbm_memory_at(const int slot, uint side, uint home) {
     const int first = slot / LBM_RUN * LBM_RUN;
     const uint own = uint(slot - first);
 #if LBM_BLOCK
-    const uint inside = uint(LBM_BLOCK - 1), slots = uint(min(LBM_RUN, LBM_SLOTS - first));
-    return (element & ~inside) * slots + (element & inside) + side * uint(LBM_BLOCK) + own * uint(LBM_BLOCK);
+    const uint block = uint(LBM_BLOCK * LBM_STRIDE / LBM_BUNDLE), inside = block - 1u;
+    const uint slots = uint(min(LBM_RUN, LBM_SLOTS - first));
+    return (home & ~inside) * slots + (home & inside) + side * block + own * block;
 #else
-    return (own + side) * LBM_ELEMENTS + element;
+    return (own + side) * (LBM_LAYERS / LBM_BUNDLE * LBM_LAYER * LBM_STRIDE) + home;
 #endif
 }
 
 // What is not of the slot's buffer is left out by the driver.
-lbm_element lbm_load(const int slot, uint side, uint element) {
-    uint at = lbm_memory_at(slot, side, element);
+lbm_access lbm_load(const int slot, uint side, uint home) {
+    uint at = lbm_memory_at(slot, side, home);
     lbm_memory m;
 #define LBM_BUFFER(k, block, array) if (slot / LBM_RUN == k) m = array[at];
     LBM_EACH_BUFFER
@@ -315,88 +213,88 @@ lbm_element lbm_load(const int slot, uint side, uint element) {
     return lbm_from_memory(m);
 }
 
-void lbm_store(const int slot, uint side, uint element, lbm_element e) {
-    uint at = lbm_memory_at(slot, side, element);
-    lbm_memory m = lbm_to_memory(e);
+void lbm_store(const int slot, uint side, uint home, lbm_access a) {
+    uint at = lbm_memory_at(slot, side, home);
+    lbm_memory m = lbm_to_memory(a);
 #define LBM_BUFFER(k, block, array) if (slot / LBM_RUN == k) array[at] = m;
     LBM_EACH_BUFFER
 #undef LBM_BUFFER
 }
 
 // Lanes turned where they go round. Without a branch, which loads would wait for.
-lbm_element lbm_from_above(lbm_place p, lbm_element e) {
-    return mix(e, lbm_next_lane(e), lbm_mask(p.last));
+lbm_access lbm_from_above(lbm_place p, lbm_access a) {
+    return mix(a, lbm_next_row(a), lbm_access_mask(p.last));
 }
 
-lbm_element lbm_to_above(lbm_place p, lbm_element e) {
-    return mix(e, lbm_last_lane(e), lbm_mask(p.last));
+lbm_access lbm_to_above(lbm_place p, lbm_access a) {
+    return mix(a, lbm_last_row(a), lbm_access_mask(p.last));
 }
 
 // A pair's second direction, from or to the neighbour along its first, (x, y, z).
-lbm_element lbm_load_there(const int slot, uint side, lbm_place p, const int x, const int y, const int z) {
-    lbm_element e = lbm_load(slot, side, lbm_there(p, x, y, z));
-    return z > 0 ? lbm_from_above(p, e) : e;
+lbm_access lbm_load_there(const int slot, uint side, lbm_place p, const int x, const int y, const int z) {
+    lbm_access a = lbm_load(slot, side, lbm_there(p, x, y, z));
+    return z > 0 ? lbm_from_above(p, a) : a;
 }
 
-void lbm_store_there(const int slot, uint side, lbm_place p, const int x, const int y, const int z, lbm_element e) {
-    lbm_store(slot, side, lbm_there(p, x, y, z), z > 0 ? lbm_to_above(p, e) : e);
+void lbm_store_there(const int slot, uint side, lbm_place p, const int x, const int y, const int z, lbm_access a) {
+    lbm_store(slot, side, lbm_there(p, x, y, z), z > 0 ? lbm_to_above(p, a) : a);
 }
 
 // ---- populations ------------------------------------------------------------------------------
 
 // What arrives at an element: of air, of scalar s (a constant).
-void lbm_load_air(lbm_place p, out lbm_element q[LBM_Q]) {
-    q[0] = lbm_load(LBM_AIR_AT_REST, 0u, p.own);
+void lbm_load_air(lbm_place p, out lbm_access q[LBM_Q]) {
+    q[0] = lbm_load(LBM_AIR_AT_REST, 0u, p.home);
 #define LOAD(i, x, y, z)                                                                           \
-    q[i] = lbm_load(LBM_AIR_PAIR(i), 1u - lbm_parity, p.own);                                      \
+    q[i] = lbm_load(LBM_AIR_PAIR(i), 1u - lbm_parity, p.home);                                     \
     q[i + 1] = lbm_load_there(LBM_AIR_PAIR(i), lbm_parity, p, x, y, z);
     LBM_PAIRS(LOAD)
 #undef LOAD
 }
 
-void lbm_load_scalar(const int s, lbm_place p, out lbm_element q[LBM_SCALAR_Q]) {
-    q[0] = lbm_load(LBM_SCALAR_AT_REST(s), 0u, p.own);
+void lbm_load_scalar(const int s, lbm_place p, out lbm_access q[LBM_SCALAR_Q]) {
+    q[0] = lbm_load(LBM_SCALAR_AT_REST(s), 0u, p.home);
 #define LOAD(i, x, y, z)                                                                           \
-    q[i] = lbm_load(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, p.own);                                \
+    q[i] = lbm_load(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, p.home);                               \
     q[i + 1] = lbm_load_there(LBM_SCALAR_PAIR(s, i), lbm_parity, p, x, y, z);
     LBM_SCALAR_PAIRS(LOAD)
 #undef LOAD
 }
 
 // Changes what arrives.
-void lbm_replace_air(lbm_place p, lbm_element q[LBM_Q]) {
-    lbm_store(LBM_AIR_AT_REST, 0u, p.own, q[0]);
+void lbm_replace_air(lbm_place p, lbm_access q[LBM_Q]) {
+    lbm_store(LBM_AIR_AT_REST, 0u, p.home, q[0]);
 #define STORE(i, x, y, z)                                                                          \
-    lbm_store(LBM_AIR_PAIR(i), 1u - lbm_parity, p.own, q[i]);                                      \
+    lbm_store(LBM_AIR_PAIR(i), 1u - lbm_parity, p.home, q[i]);                                     \
     lbm_store_there(LBM_AIR_PAIR(i), lbm_parity, p, x, y, z, q[i + 1]);
     LBM_PAIRS(STORE)
 #undef STORE
 }
 
-void lbm_replace_scalar(const int s, lbm_place p, lbm_element q[LBM_SCALAR_Q]) {
-    lbm_store(LBM_SCALAR_AT_REST(s), 0u, p.own, q[0]);
+void lbm_replace_scalar(const int s, lbm_place p, lbm_access q[LBM_SCALAR_Q]) {
+    lbm_store(LBM_SCALAR_AT_REST(s), 0u, p.home, q[0]);
 #define STORE(i, x, y, z)                                                                          \
-    lbm_store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, p.own, q[i]);                                \
+    lbm_store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, p.home, q[i]);                               \
     lbm_store_there(LBM_SCALAR_PAIR(s, i), lbm_parity, p, x, y, z, q[i + 1]);
     LBM_SCALAR_PAIRS(STORE)
 #undef STORE
 }
 
 // Sends off what collision left: the step's, once for each element.
-void lbm_send_air(lbm_place p, lbm_element q[LBM_Q]) {
-    lbm_store(LBM_AIR_AT_REST, 0u, p.own, q[0]);
+void lbm_send_air(lbm_place p, lbm_access q[LBM_Q]) {
+    lbm_store(LBM_AIR_AT_REST, 0u, p.home, q[0]);
 #define STORE(i, x, y, z)                                                                          \
     lbm_store_there(LBM_AIR_PAIR(i), lbm_parity, p, x, y, z, q[i]);                                \
-    lbm_store(LBM_AIR_PAIR(i), 1u - lbm_parity, p.own, q[i + 1]);
+    lbm_store(LBM_AIR_PAIR(i), 1u - lbm_parity, p.home, q[i + 1]);
     LBM_PAIRS(STORE)
 #undef STORE
 }
 
-void lbm_send_scalar(const int s, lbm_place p, lbm_element q[LBM_SCALAR_Q]) {
-    lbm_store(LBM_SCALAR_AT_REST(s), 0u, p.own, q[0]);
+void lbm_send_scalar(const int s, lbm_place p, lbm_access q[LBM_SCALAR_Q]) {
+    lbm_store(LBM_SCALAR_AT_REST(s), 0u, p.home, q[0]);
 #define STORE(i, x, y, z)                                                                          \
     lbm_store_there(LBM_SCALAR_PAIR(s, i), lbm_parity, p, x, y, z, q[i]);                          \
-    lbm_store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, p.own, q[i + 1]);
+    lbm_store(LBM_SCALAR_PAIR(s, i), 1u - lbm_parity, p.home, q[i + 1]);
     LBM_SCALAR_PAIRS(STORE)
 #undef STORE
 }

@@ -1,5 +1,6 @@
 // One step of a lattice Boltzmann solver: each thread takes what arrives at an element, collides
-// it, and sends it off. Not a pass of its own: see src/sim/lbm_step.c.
+// it, and sends it off; with LBM_BUNDLED at the elements of a bundle. Not a pass of its own: see
+// src/sim/lbm_step.c.
 #if LBM_SOFTWARE
 #extension GL_ARB_gpu_shader_int64 : require
 #endif
@@ -19,7 +20,7 @@ uniform uint skin_count;
 #define MEETS (LBM_BODIES || LBM_RIMS && LBM_REGION != LBM_CORE)
 // Scalars of 27 directions do not fit into registers beside the air: they are summed for their
 // buoyancy, forgotten, and loaded again once the air is sent.
-#define RELOADS (LBM_SCALAR_Q == 27 && !MEETS && !WALLED && !LBM_SOFTWARE)
+#define RELOADS (LBM_SCALAR_Q == 27 && !MEETS && !WALLED && !LBM_SOFTWARE && !LBM_BUNDLED)
 
 uniform float tau;
 uniform float smagorinsky;
@@ -41,9 +42,22 @@ layout(std430) writeonly buffer LbmMoments { uvec4 moments[]; };
 #define SCHMIDT 0.7
 
 lbm_place place;
+
+// An element:
 uvec3 at; // x, y, layer
+uint element;
 lbm_site site;
 lbm_element air[LBM_Q], carried[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
+
+// What arrives, and then leaves, at once; apart from the element where it is a bundle, or where what arrived is
+// wanted again (processors take both ways of a branch: copies cost them less than loads).
+#define APART (LBM_BUNDLED || WALLED && LBM_SOFTWARE)
+#if APART
+lbm_access all_air[LBM_Q], all_carried[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
+#else
+#define all_air air
+#define all_carried carried
+#endif
 
 lbm_float value[3]; // of scalars
 
@@ -112,14 +126,14 @@ void keep_solid() {
 #if WALLED
     for (uint lane = 0u; lane < LBM_LANES; lane++)
         if ((site.solid >> lane & 1u) != 0u)
-            moments[place.own + lane * LBM_ELEMENTS] =
+            moments[element + lane * LBM_ELEMENTS] =
                 uvec4(0u, 0u, 0u, packHalf2x16(vec2(0.0, lbm_body_in(lbm_cell_at(at, lane)))));
 #endif
 }
 
 void keep_moments(lbm_air a) {
 #define KEEP(lane)                                                                                 \
-    moments[place.own + uint(lane) * LBM_ELEMENTS] =                                               \
+    moments[element + uint(lane) * LBM_ELEMENTS] =                                                 \
         uvec4(packHalf2x16(vec2(a.u.x[lane], a.u.y[lane])),                                        \
               packHalf2x16(vec2(a.u.z[lane], a.excess[lane])),                                     \
               packHalf2x16(vec2(value[0][lane], value[1][lane])),                                  \
@@ -129,25 +143,43 @@ void keep_moments(lbm_air a) {
 }
 #endif
 
-// ---- an element -------------------------------------------------------------------------------
-
-#if WALLED && LBM_SOFTWARE // which takes both ways of a branch: copies cost less than loads
-#define COPIES_ARRIVALS 1
-lbm_element arrived[LBM_Q], carried_there[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
-#else
-#define COPIES_ARRIVALS 0
-#endif
+// ---- what is loaded and stored ---------------------------------------------------------------
 
 void load() {
-#define LOAD(s) lbm_load_scalar(s, place, carried[s]);
+#define LOAD(s) lbm_load_scalar(s, place, all_carried[s]);
     LBM_EACH_SCALAR(LOAD)
 #undef LOAD
-    lbm_load_air(place, air);
-#if COPIES_ARRIVALS
-    carried_there = carried;
-    arrived = air;
+    lbm_load_air(place, all_air);
+}
+
+void take() {
+#if APART
+    for (int i = 0; i < LBM_Q; i++) air[i] = lbm_take(all_air[i]);
+#define TAKE(s) for (int i = 0; i < LBM_SCALAR_Q; i++) carried[s][i] = lbm_take(all_carried[s][i]);
+    LBM_EACH_SCALAR(TAKE)
+#undef TAKE
 #endif
 }
+
+void give() {
+#if APART
+    for (int i = 0; i < LBM_Q; i++) lbm_give(all_air[i], air[i]);
+#define GIVE(s) for (int i = 0; i < LBM_SCALAR_Q; i++) lbm_give(all_carried[s][i], carried[s][i]);
+    LBM_EACH_SCALAR(GIVE)
+#undef GIVE
+#endif
+}
+
+void send() {
+#if !RELOADS
+    lbm_send_air(place, all_air);
+#define SEND(s) lbm_send_scalar(s, place, all_carried[s]);
+    LBM_EACH_SCALAR(SEND)
+#undef SEND
+#endif
+}
+
+// ---- an element -------------------------------------------------------------------------------
 
 #if MEETS
 void meet() {
@@ -201,43 +233,65 @@ void collide() {
 #undef SEND
 }
 
-// In lanes of solids what arrived stays.
-#if WALLED
-void keep() {
-#if COPIES_ARRIVALS
-    lbm_keep_air(site.solid, arrived, air);
-#define KEEP(s) lbm_keep_scalar(site.solid, carried_there[s], carried[s]);
-#else
-    if (site.solid == 0u) return;
-    lbm_element arrived[LBM_Q], carried_there[LBM_SCALAR_Q];
-    lbm_load_air(place, arrived);
-    lbm_keep_air(site.solid, arrived, air);
-#define KEEP(s)                                                                                    \
-    lbm_load_scalar(s, place, carried_there);                                                      \
-    lbm_keep_scalar(site.solid, carried_there, carried[s]);
+// In these lanes what arrived stays.
+void keep(uint lanes) {
+#if !LBM_SOFTWARE
+    if (lanes == 0u) return;
 #endif
+    lbm_element arrived[LBM_Q], arrived_with[LBM_SCALAR_Q];
+#if APART
+    for (int i = 0; i < LBM_Q; i++) arrived[i] = lbm_take(all_air[i]);
+#define AGAIN(s) for (int i = 0; i < LBM_SCALAR_Q; i++) arrived_with[i] = lbm_take(all_carried[s][i]);
+#else
+    lbm_load_air(place, arrived);
+#define AGAIN(s) lbm_load_scalar(s, place, arrived_with);
+#endif
+    lbm_keep_air(lanes, arrived, air);
+#define KEEP(s) AGAIN(s) lbm_keep_scalar(lanes, arrived_with, carried[s]);
     LBM_EACH_SCALAR(KEEP)
 #undef KEEP
-}
-#endif
-
-void send() {
-#if !RELOADS
-    lbm_send_air(place, air);
-#define SEND(s) lbm_send_scalar(s, place, carried[s]);
-    LBM_EACH_SCALAR(SEND)
-#undef SEND
-#endif
+#undef AGAIN
 }
 
-bool find_element() {
+// False: there is no air in it.
+bool find_site() {
+    element = lbm_element_at(at);
+#if WALLED
+    site = lbm_site_at(at, element);
+    if (site.solid == LBM_ALL_LANES) {
+#if LBM_KEEP
+        keep_solid();
+#endif
+        return false;
+    }
+#endif
+    return true;
+}
+
+void step_element() {
+#if MEETS
+    if (lbm_meets(at, site)) meet();
+#endif
+    collide();
+#if LBM_KEEP
+    keep_solid();
+#endif
+#if WALLED
+    keep(site.solid);
+#endif
+}
+
+// ---- all ---------------------------------------------------------------------------------------
+
+// The thread's element, or the first of its bundle.
+bool find() {
     uint thread = gl_GlobalInvocationID.x;
 #if LBM_REGION == LBM_SKIN
     if (thread >= skin_count) return false;
-    uint element = skin[thread], column = element % LBM_LAYER;
-    at = uvec3(column % LBM_NX, column / LBM_NX, element / LBM_LAYER);
+    uint first = skin[thread], column = first % LBM_LAYER;
+    at = uvec3(column % LBM_NX, column / LBM_NX, first / LBM_LAYER);
 #elif LBM_REGION == LBM_CORE
-    const uvec3 rim = uvec3(LBM_FACE_0 != 0, LBM_FACE_2 != 0, LBM_FACE_4 != 0);
+    const uvec3 rim = uvec3(LBM_FACE_0 != 0, LBM_FACE_2 != 0, LBM_FACE_4 != 0 && LBM_BUNDLED == 0);
     const uvec2 size = uvec2(LBM_NX, LBM_NY) - 2u * rim.xy;
     if (thread >= size.x * size.y) return false;
     at = uvec3(thread % size.x, thread / size.x, gl_GlobalInvocationID.z) + rim;
@@ -249,28 +303,37 @@ bool find_element() {
     return true;
 }
 
+#if LBM_BUNDLED
+// LBM_BUNDLE, but no compiler knows that it is no more: unrolled, the numbers of all rows would want
+// registers at once.
+#define ROWS (LBM_BUNDLE + (lbm_parity & 2u))
+
+bool in_region() {
+    return LBM_REGION != LBM_CORE || LBM_FACE_4 == 0 || at.z > 0u && at.z < LBM_LAYERS - 1u;
+}
+
 void main() {
-    if (!find_element()) return;
+    if (!find()) return;
     place = lbm_place_at(at);
-#if WALLED
-    site = lbm_site_at(at, place.own);
-    if (site.solid == LBM_ALL_LANES) {
-#if LBM_KEEP
-        keep_solid();
-#endif
-        return;
-    }
-#endif
     load();
-#if MEETS
-    if (lbm_meets(at, site)) meet();
-#endif
-    collide();
-#if LBM_KEEP
-    keep_solid();
-#endif
-#if WALLED
-    keep();
-#endif
+    for (uint row = 0u; row < ROWS; row++, at.z += LBM_SPAN) {
+        take();
+        if (in_region() && find_site())
+            step_element();
+        else
+            keep(LBM_ALL_LANES);
+        give();
+    }
     send();
 }
+#else
+void main() {
+    if (!find() || !find_site()) return;
+    place = lbm_place_at(at);
+    load();
+    take();
+    step_element();
+    give();
+    send();
+}
+#endif
