@@ -28,8 +28,8 @@ static void read_size(lua_State *L, pass_lbm_desc *desc) {
     }
     if (desc->size[0] % 4 != 0)
         vm_error(L, "lbm: 'size' has x = %d; a multiple of 4 is needed", (int)desc->size[0]);
-    if (desc->size[2] % 4 != 0 || desc->size[2] < 16)
-        vm_error(L, "lbm: 'size' has z = %d; a multiple of 4 from 16 on is needed",
+    if (desc->size[2] % 8 != 0 || desc->size[2] < 16)
+        vm_error(L, "lbm: 'size' has z = %d; a multiple of 8 from 16 on is needed",
                  (int)desc->size[2]);
 }
 

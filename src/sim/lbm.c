@@ -31,13 +31,6 @@ float lbm_scalar_speed(lbm_scalar_set set) {
     return set == LBM_SCALAR_D3Q27 ? 1.0f / 3 : 1.0f / 4;
 }
 
-// Whether four elements of two cells can lie side by side. Scalars of 27 directions as well would
-// not fit into registers so.
-static bool can_bundle(const lbm_desc *desc) {
-    const bool fits = desc->scalars == 0 || desc->scalar_set == LBM_SCALAR_D3Q7;
-    return fits && desc->precision == LBM_F16 && desc->size[2] % 8 == 0;
-}
-
 static bool check(const lbm_desc *desc) {
     const uint32_t *size = desc->size;
     static const char *const axes[3] = {"x", "y", "z"};
@@ -47,11 +40,9 @@ static bool check(const lbm_desc *desc) {
     if (size[2] % LBM_ALONG_Z != 0)
         return err_set("a lattice of %u cells along z; a multiple of %d is needed", size[2],
                        LBM_ALONG_Z);
-    if (desc->lanes != 0 && desc->lanes != 4 && !(desc->lanes == 2 && can_bundle(desc)))
-        return err_set(
-            "elements of %u cells; 4 are accepted, and 2 in half precision with scalars on "
-            "D3Q7 where cells along z are a multiple of 8",
-            desc->lanes);
+    if (desc->lanes != 0 && desc->lanes != 4 && !(desc->lanes == 2 && desc->precision == LBM_F16))
+        return err_set("elements of %u cells; 4 are accepted, and 2 in half precision",
+                       desc->lanes);
     if (size[0] > 4096 || size[1] > 4096 || size[2] > 4096)
         return err_set("a lattice of %u x %u x %u cells; at most 4096 along an axis are accepted",
                        size[0], size[1], size[2]);
@@ -65,10 +56,16 @@ static bool check(const lbm_desc *desc) {
     return true;
 }
 
-// Two, in bundles of four elements, wherever these can be: as many populations as those of eight
-// cells would not fit into registers all unpacked. A processor reads halves in a way of its own.
+// A processor reads halves in a way of its own.
 static uint32_t choose_lanes(const lbm_desc *desc, bool software) {
-    return can_bundle(desc) && !software ? 2 : 4;
+    return desc->precision == LBM_F16 && !software ? 2 : 4;
+}
+
+// Four elements of two cells side by side, where these are to be had, and where all populations of
+// eight cells fit into registers.
+static uint32_t choose_bundle(const lbm_desc *desc) {
+    const bool fits = desc->scalars == 0 || desc->scalar_set == LBM_SCALAR_D3Q7;
+    return desc->lanes == 2 && desc->size[2] % 8 == 0 && fits ? 4 : 1;
 }
 
 bool lbm_layout_find(const lbm_desc *desc, uint64_t range, lbm_layout *out) {
@@ -76,7 +73,7 @@ bool lbm_layout_find(const lbm_desc *desc, uint64_t range, lbm_layout *out) {
     const uint32_t bytes = desc->precision == LBM_F16 ? 2 : 4;
     const uint64_t elements = (uint64_t)size[0] * size[1] * (size[2] / lanes);
     *out = (lbm_layout){.lanes = lanes, .element = lanes * bytes, .layers = size[2] / lanes};
-    out->bundle = lanes == 2 ? 4 : 1;
+    out->bundle = choose_bundle(desc);
     if (desc->order == LBM_BLOCKS) out->block = BLOCK / out->element;
     const uint64_t many = out->block ? out->block : 1, places = (elements + many - 1) / many * many;
     uint64_t fit = range / (places * out->element);
@@ -134,6 +131,7 @@ static void define_all(lbm *l) {
     define(l, "LBM_NY", desc->size[1]);
     define(l, "LBM_LAYERS", l->layout.layers);
     define(l, "LBM_LANES", l->layout.lanes);
+    define(l, "LBM_BUNDLE", l->layout.bundle);
     define(l, "LBM_RUN", l->layout.run);
     define(l, "LBM_BLOCK", l->layout.block);
     define(l, "LBM_GROUP", GROUP);

@@ -5,9 +5,9 @@
 // along z, so that cell (x, y, z) is lane z / (nz / n) of element x + nx * (y + ny * (z % (nz /
 // n))): a vec4 (LBM_F32) or a uvec2 of four halves in order (LBM_F16). The neighbours of a whole
 // element are a whole element again; where z goes round, its lanes rotate by one. On GPUs n is 2
-// in half precision, and four elements that lie nz / 8 apart are side by side in memory: a bundle
-// of 16 bytes, whose neighbours are whole bundles. Populations are kept less their weights (air)
-// and streamed in place.
+// in half precision, and four elements that lie nz / 8 apart are side by side in memory, if nz is
+// a multiple of 8 and scalars are on D3Q7: a bundle of 16 bytes, whose neighbours are whole
+// bundles. Populations are kept less their weights (air) and streamed in place.
 //
 // Life: lbm_create, lbm_compile (or not), lbm_build, lbm_allocate, then in frames lbm_reset and
 // lbm_step.
@@ -53,7 +53,7 @@ typedef struct lbm_desc { // structure: what shaders are compiled for
     bool force;        // an image says where what force acts: lbm_set_force
     bool bodies;       // there are solids, which may move
     // How the state lies; left 0: as suits the device.
-    uint32_t lanes;  // cells of an element, 4; or 2: LBM_F16, scalars on D3Q7, z a multiple of 8
+    uint32_t lanes;  // cells of an element, 4; or 2, with LBM_F16
     lbm_order order; // directions by turns, in blocks of a few elements, or each as a whole
 } lbm_desc;
 

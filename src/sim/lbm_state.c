@@ -23,8 +23,8 @@ static void describe(const lbm_desc *desc, const char *more, strbuf *out) {
     strbuf_add(out, "scalar_set = %s\n", scalar_sets[desc->scalar_set]);
     strbuf_add(out, "precision = %s\n", precisions[desc->precision]);
     strbuf_add(out, "scalars = %u\n", desc->scalars);
-    strbuf_add(out, "order = %s, %s\n", desc->lanes == 2 ? "4 x 2 cells" : "4 cells",
-               desc->order == LBM_BLOCKS ? "blocks" : "whole");
+    strbuf_add(out, "order = %u cells, %s\n", desc->lanes,
+               desc->order == LBM_BLOCKS ? "blocks of bundles" : "whole");
     strbuf_add(out, "colliders = %s\n", desc->bodies ? "yes" : "no");
     for (int i = 0; i < 6; i++)
         strbuf_add(out, "boundary.%s = %s\n", faces[i], kinds[desc->faces[i]]);

@@ -19,7 +19,7 @@ static void mistakes_are_named(void **state) {
     refused("local air = lbm { voxel_size = 0.1 }", "lbm: 'size' is missing");
     refused("local air = lbm { size = {16, 16, 24} }", "lbm: 'voxel_size' is missing");
     refused("local air = lbm { size = {15, 16, 24}, voxel_size = 1 }", "x = 15; a multiple of 4");
-    refused("local air = lbm { size = {16, 16, 18}, voxel_size = 1 }", "z = 18; a multiple of 4");
+    refused("local air = lbm { size = {16, 16, 20}, voxel_size = 1 }", "z = 20; a multiple of 8");
     refused("local air = lbm { size = {16, 2, 24}, voxel_size = 1 }", "'size' has 2");
     refused(AIR "viscosty = 1 }", "lbm: unknown key 'viscosty'; did you mean 'viscosity'?");
     refused(AIR "warmup = 1 }", "lbm: unknown key 'warmup'; did you mean 'warm_up'?");

@@ -1,7 +1,7 @@
 // Elements, cells that a thread does at once, and what is read and written at once.
 //
-// An element is four cells, or two of halves. Four of the latter lie side by side, a bundle of the 16 bytes
-// that memory is read fastest in; what moves whole bundles (LBM_BUNDLED: a step) takes their elements one
+// An element is four cells, or two of halves. Four of the latter can lie side by side, a bundle of the 16
+// bytes that memory is read fastest in; what moves whole bundles (LBM_BUNDLED: a step) takes their elements one
 // after the other. All others read and write elements.
 #ifndef SIM_LBM_ELEMENT_GLSL
 #define SIM_LBM_ELEMENT_GLSL
@@ -13,7 +13,6 @@
 #define lbm_element uint
 #define lbm_mask bool
 #define LBM_EACH_LANE(X) X(0) X(1)
-#define LBM_BUNDLE 4 // elements, which lie LBM_SPAN layers apart along z
 #else
 #define lbm_float vec4
 #define lbm_bool bvec4
@@ -25,7 +24,6 @@
 #define lbm_mask bvec4
 #endif
 #define LBM_EACH_LANE(X) X(0) X(1) X(2) X(3)
-#define LBM_BUNDLE 1
 #endif
 #if LBM_HALF // times a power of two that keeps small values whole
 #define LBM_AIR_SCALE 32768.0
@@ -36,6 +34,7 @@
 #endif
 #define LBM_LAYER (LBM_NX * LBM_NY)           // elements
 #define LBM_ELEMENTS (LBM_LAYER * LBM_LAYERS) // of a direction
+// LBM_BUNDLE: elements side by side, 4 or 1, which lie LBM_SPAN layers apart along z.
 #define LBM_SPAN (LBM_LAYERS / LBM_BUNDLE)
 
 // 1: the device is a processor (llvmpipe) that loads vectors word by word, so that two words of 64
