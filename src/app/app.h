@@ -39,6 +39,9 @@ typedef struct app_frames {
 // "30", "10,30,50", "0-99", "0-99:2", or a list of such. False with a message when it is none.
 bool app_parse_frames(const char *text, app_frames *out);
 void app_free_frames(app_frames *frames);
+// Frames that the effect says nothing of may be wanted, but are more often a slip.
+void app_warn_of_frames(const app_frames *frames, const roil_effect_info *info);
+void app_warn_of_trouble(const roil_effect *e); // that a simulation is in
 
 bool app_parse_size(const char *text, uint32_t *width, uint32_t *height); // "960x540"
 

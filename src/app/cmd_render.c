@@ -5,7 +5,6 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"
 #include <inttypes.h>
@@ -196,6 +195,7 @@ static bool complete(job *j, roil_effect *e) {
     snprintf(range, sizeof range, "%u-%u", info.first_frame, info.first_frame + info.frames - 1);
     j->all = !j->frames.count;
     if (j->all && !app_parse_frames(range, &j->frames)) return false;
+    app_warn_of_frames(&j->frames, &info);
     if (!(j->fps > 0)) j->fps = info.fps / j->frames.step;
     bool picture = false;
     for (size_t i = 0; i < j->output_count; i++) picture = picture || !j->outputs[i].image;
@@ -292,12 +292,6 @@ static void tell_steps(void *user, double done, double whole) {
     if (done >= whole) *steps = (app_progress){0};
 }
 
-static void warn_of_trouble(const roil_effect *e) {
-    roil_simulation s;
-    if (roil_get_simulation(e, &s) && s.trouble)
-        log_write(LOG_WARNING, "%s: %s", s.pass, s.trouble);
-}
-
 static bool render_frames(job *j, roil_effect *e, app_stats *stats) {
     app_progress progress, steps = {0};
     roil_on_progress(e, tell_steps, &steps);
@@ -312,7 +306,7 @@ static bool render_frames(job *j, roil_effect *e, app_stats *stats) {
         app_progress_step(&progress, (i + 1) * each);
     }
     app_progress_end(&progress);
-    if (done) warn_of_trouble(e);
+    if (done) app_warn_of_trouble(e);
     return done;
 }
 

@@ -115,6 +115,7 @@ static bool complete(job *j, roil_effect *e) {
         return err_set("output '%s' would be overwritten by each of %zu frames; name it like "
                        "%%04d.vdb",
                        j->output, j->frames.count);
+    app_warn_of_frames(&j->frames, &info);
     j->volume.first = j->frames.numbers[0];
     j->volume.last = j->frames.numbers[j->frames.count - 1];
     j->volume.alone = true;
@@ -141,6 +142,7 @@ static bool export_all(job *j, roil_effect *e) {
     roil_volume_info info = roil_volume_get_info(v);
     bool done = write_frames(j, e, v) || (roil_volume_finish(v), false);
     if (!done || !roil_volume_finish(v)) return false;
+    app_warn_of_trouble(e);
     printf("wrote %s: %zu frames of %s, %u x %u x %u voxels of %g m\n", j->output, j->frames.count,
            info.fields, info.size[0], info.size[1], info.size[2], (double)info.voxel_size);
     return true;

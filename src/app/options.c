@@ -2,6 +2,7 @@
 #include "app/app.h"
 #include "base/error.h"
 #include "base/frames.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"
 #include <assert.h>
@@ -59,6 +60,23 @@ bool app_parse_frames(const char *text, app_frames *out) {
 void app_free_frames(app_frames *frames) {
     mem_free(frames->numbers);
     *frames = (app_frames){.step = 1};
+}
+
+void app_warn_of_frames(const app_frames *frames, const roil_effect_info *info) {
+    double first = info->first_frame, last = first + info->frames - 1;
+    for (size_t i = 0; i < frames->count; i++) {
+        double frame = frames->numbers[i];
+        if (frame >= first && frame <= last) continue;
+        log_write(LOG_WARNING, "frame %g is none of the effect's, which are %g to %g", frame, first,
+                  last);
+        return;
+    }
+}
+
+void app_warn_of_trouble(const roil_effect *e) {
+    roil_simulation s;
+    if (roil_get_simulation(e, &s) && s.trouble)
+        log_write(LOG_WARNING, "%s: %s", s.pass, s.trouble);
 }
 
 bool app_parse_size(const char *text, uint32_t *width, uint32_t *height) {
