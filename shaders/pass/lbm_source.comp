@@ -3,7 +3,7 @@
 // second of the simulation; pass/lbm/give.comp gives them to the air.
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 //@ option rule = auto {auto, solid, shell} : which cells its meshes are, as of `voxels`; solid keeps thin parts thin
-//@ field float shape = 0 : the source is where this is above 0.5; without it, in the meshes that it is given
+//@ field float shape = 0 : the source is where this is above 0.5, and within its meshes if it has any; without it, it is these
 //@ field float density = 0 : smoke
 //@ field float temperature = 0 : heat
 //@ field float dye = 0 : a second colour of smoke
@@ -19,6 +19,12 @@ uniform vec3 count;      // and how many
 // Halves: density and temperature, dye and 1 within the shape, velocity, pressure.
 layout(std430) writeonly buffer SourceValues { uvec4 source_values[]; };
 
+// What is no number, or too large for a half, would spoil the air for good: it becomes 0.
+uvec4 numbers_of(uvec4 v) {
+    v = mix(v, v & 0xffff0000u, equal(v & 0x7c00u, uvec4(0x7c00u)));
+    return mix(v, v & 0xffffu, equal(v & 0x7c000000u, uvec4(0x7c000000u)));
+}
+
 void main() {
     uvec3 at = gl_GlobalInvocationID, n = uvec3(count);
     if (any(greaterThanEqual(at, n))) return;
@@ -30,5 +36,5 @@ void main() {
                        packHalf2x16(vec2(field_dye(p), 1.0)), packHalf2x16(v.xy),
                        packHalf2x16(vec2(v.z, field_pressure(p))));
     }
-    source_values[at.x + n.x * (at.y + n.y * at.z)] = values;
+    source_values[at.x + n.x * (at.y + n.y * at.z)] = numbers_of(values);
 }

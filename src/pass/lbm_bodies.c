@@ -48,6 +48,15 @@ static uint64_t stride(const lbm_air *a) {
     return (uint64_t)fmax(1, floor(farthest / sim_velocity(&a->units, a->desc.speed)));
 }
 
+static bool is_inside(const lbm_air *a, const lbm_meshes *m, const field_context *context) {
+    box3 box;
+    for (size_t i = 0; i < m->count; i++)
+        if (!lbm_mesh_box(m->bodies[i].mesh, context, &box) ||
+            !box3_is_empty(box3_intersect(box, a->grid.box)))
+            return true;
+    return false;
+}
+
 // As before a step: moved on from where they were placed last, or put there.
 static bool place(lbm_air *a, lbm_meshes *m, uint64_t step, voxels_change *change) {
     const pass_host *host = a->pass->host;
@@ -55,6 +64,7 @@ static bool place(lbm_air *a, lbm_meshes *m, uint64_t step, voxels_change *chang
     then.time = lbm_air_step_time(a, step);
     double passed = isnan(m->updated) ? 0 : then.time - m->updated;
     m->updated = then.time;
+    m->met = m->met || is_inside(a, m, &then);
     return voxels_update(m->cells, host->device, &then, passed, change);
 }
 

@@ -12,6 +12,7 @@ typedef struct lbm_meshes { // bodies as cells; zero: none
     size_t count, capacity;
     voxels *cells;
     double updated; // time of the last update; NAN: none
+    bool met;       // one of them has been in the air's box
 } lbm_meshes;
 
 typedef struct lbm_force { // that varies in space; zero: it does not
@@ -58,6 +59,7 @@ static inline lbm_air *lbm_air_of(const pass *p) {
 // lbm_numbers.c: values as of the host's context
 bool lbm_air_numbers(const pass *p, lbm_numbers *out);
 sim_flow lbm_air_flow(const pass *p);
+float lbm_air_most_speed(const lbm_air *a); // cells a step; what is given to it is cut off there
 bool lbm_air_force_varies(const pass *p);
 
 // lbm_time.c
@@ -84,14 +86,16 @@ bool lbm_air_push(lbm_air *a); // the force as of the host's time, which is that
 void lbm_air_destroy_force(lbm_air *a);
 
 // lbm_source.c
-bool lbm_air_run_source(pass *source);    // before a step
-void lbm_air_forget_source(pass *source); // its values are found anew
+bool lbm_air_run_source(pass *source);       // before a step
+void lbm_air_forget_source(pass *source);    // its values are found anew
+bool lbm_source_is_away(const pass *source); // it ran, and was never in the air's box
 
 // lbm_source_box.c
 typedef struct lbm_cells { // whole numbers
     float first[3], count[3];
 } lbm_cells;
 const field *lbm_source_shape(const pass *p); // NULL: it has none
+bool lbm_mesh_box(const scene_mesh *mesh, const field_context *context, box3 *out);
 // From the host's time to `end`.
 bool lbm_source_cells(const lbm_air *a, const pass *p, double end, lbm_cells *out);
 

@@ -7,44 +7,96 @@
 #include <math.h>
 #include <string.h>
 
+// Of the air's mass, either way: more is not air that was blown or drawn, but a solver that fails.
+static const double most_drift = 0.5;
+
 static double measured(const lbm_air *a) { // m/s
     return (double)a->report.speed * a->units.cell / a->units.step;
 }
 
+static double mach(const lbm_air *a) {
+    return (double)a->report.speed * sqrt(3);
+}
+
 // Air that is as fast as it may be would be faster.
 static bool is_held_back(const lbm_air *a) {
-    return !a->stops && (double)a->report.speed * sqrt(3) > 0.99 * SIM_MACH_MAX;
+    return !a->stops && mach(a) > 0.99 * SIM_MACH_MAX;
+}
+
+// Beyond help: what is there is no air any more.
+static bool is_spoilt(const lbm_air *a) {
+    return a->report.bad || fabs((double)a->report.drift) > most_drift;
+}
+
+// What stops air: that, or, if it is wanted, that it is too fast.
+static bool must_stop(const lbm_air *a) {
+    return is_spoilt(a) || (a->stops && mach(a) > SIM_MACH_MAX);
+}
+
+// Air that burst tells nothing of how fast it should have been.
+static void tell_burst(lbm_air *a) {
+    char what[128], change[64];
+    if (a->report.bad)
+        snprintf(what, sizeof what, "in %u cells it is no number any more", a->report.bad);
+    else if (is_spoilt(a))
+        snprintf(what, sizeof what, "its mass changed by %.3g %%", 100 * (double)a->report.drift);
+    else
+        snprintf(what, sizeof what, "it became Mach %.2g on the lattice", mach(a));
+    if (a->desc.time_step > 0)
+        snprintf(change, sizeof change, "'time_step' below %.3g s", a->desc.time_step);
+    else
+        snprintf(change, sizeof change, "'speed' above %.3g m/s", a->desc.speed);
+    bool sturdy = lbm_get_desc(a->solver)->collision == LBM_CENTRAL_MOMENTS;
+    snprintf(a->trouble, sizeof a->trouble,
+             "the air burst and has stopped, %s: set %s, for the fastest that sources, forces and "
+             "meshes make it%s",
+             what, change, sturdy ? "" : ", or 'collision' to \"central_moments\"");
+}
+
+static void tell_held_back(lbm_air *a) {
+    char change[64];
+    if (a->desc.time_step > 0)
+        snprintf(change, sizeof change, "'time_step' below %.3g s", a->desc.time_step);
+    else
+        snprintf(change, sizeof change, "'speed' above that (it is %.3g)", a->desc.speed);
+    snprintf(a->trouble, sizeof a->trouble,
+             "air is held back at %.3g m/s, Mach %g on the lattice: set %s", measured(a),
+             SIM_MACH_MAX, change);
 }
 
 // What the guard saw; false: nothing.
 static bool tell_report(lbm_air *a, const sim_flow *flow) {
-    char *out = a->trouble;
-    const size_t capacity = sizeof a->trouble;
     if (!a->reported) return false;
-    if (!a->report.bad && !is_held_back(a))
-        return sim_advise_speed(&a->units, flow, measured(a), out, capacity);
-    if (a->report.bad)
-        snprintf(out, capacity,
-                 "the air in %u cells is no number any more: set 'speed' above %.3g m/s, or "
-                 "'collision' to \"central_moments\"",
-                 a->report.bad, a->desc.speed);
+    if (is_spoilt(a) || (a->stops && mach(a) > 1))
+        tell_burst(a);
+    else if (is_held_back(a))
+        tell_held_back(a);
     else
-        snprintf(out, capacity,
-                 "air is held back at %.3g m/s, Mach %g on the lattice: set 'speed' above that (it "
-                 "is %.3g)",
-                 measured(a), SIM_MACH_MAX, a->desc.speed);
+        return sim_advise_speed(&a->units, flow, measured(a), a->trouble, sizeof a->trouble);
     return true;
+}
+
+// What the air never met is most likely in the wrong place.
+static void tell_absent(lbm_air *a) {
+    const box3 box = a->grid.box;
+    const char *who =
+        a->solids.count && !a->solids.met && !isnan(a->solids.updated) ? "no collider" : NULL;
+    for (size_t i = 0; i < a->source_count && !who; i++)
+        if (lbm_source_is_away(a->sources[i])) who = pass_label(a->sources[i]);
+    a->trouble[0] = '\0';
+    if (!who) return;
+    snprintf(a->trouble, sizeof a->trouble,
+             "%s has%s been in the air so far, which is from {%.3g, %.3g, %.3g} to {%.3g, %.3g, "
+             "%.3g}: move it there, or the air by 'position'",
+             who, strcmp(who, "no collider") == 0 ? "" : " not", (double)box.min.x,
+             (double)box.min.y, (double)box.min.z, (double)box.max.x, (double)box.max.y,
+             (double)box.max.z);
 }
 
 static void tell(lbm_air *a) {
     sim_flow flow = lbm_air_flow(a->pass);
     if (!tell_report(a, &flow) && !sim_advise(&a->units, &flow, a->trouble, sizeof a->trouble))
-        a->trouble[0] = '\0';
-}
-
-// What stops air: that it is beyond help, or, if that is wanted, that it is too fast.
-static bool must_stop(const lbm_air *a) {
-    return a->report.bad || (a->stops && (double)a->report.speed * sqrt(3) > SIM_MACH_MAX);
+        tell_absent(a);
 }
 
 // What has come back from the device by now.

@@ -22,11 +22,23 @@ typedef struct source_state {
     unsigned char *last;    // the numbers that they were found with
     lbm_cells last_cells;
     bool known; // these two
+    bool met;   // it has been in the air's box
 } source_state;
 
+static bool gives(const pass *p) {
+    size_t index;
+    for (int i = 0; i < PASS_LBM_NAMES; i++)
+        if (pass_find_key(p, pass_lbm_names[i], &index) == PASS_FIELD && p->fields[index])
+            return true;
+    return pass_find_key(p, "velocity_factor", &index) == PASS_UNIFORM && p->uniforms[index];
+}
+
 bool lbm_source_declare(pass *p) {
-    return lbm_source_shape(p) || p->mesh_count ||
-           err_set("%s: it has no place; give it a mesh, or shape = sphere { ... }", p->label);
+    if (!lbm_source_shape(p) && !p->mesh_count)
+        return err_set("%s: it has no place; give it a mesh, or shape = sphere { ... }", p->label);
+    return gives(p) || err_set("%s: it gives the air nothing; say its density, temperature, dye, "
+                               "velocity or pressure",
+                               p->label);
 }
 
 bool pass_lbm_add_source(pass *p, pass *source) {
@@ -86,6 +98,11 @@ void lbm_source_destroy(pass *p) {
 void lbm_air_forget_source(pass *source) {
     source_state *s = source->state;
     s->turn = UINT64_MAX;
+}
+
+bool lbm_source_is_away(const pass *source) {
+    const source_state *s = source->state;
+    return s->turn != UINT64_MAX && !s->met;
 }
 
 // ---- values -----------------------------------------------------------------------------------
@@ -156,6 +173,7 @@ static bool begin_turn(pass *p, source_state *s) {
                 (s->cells.count[0] <= 0 || find_values(p, s));
     host->context = now;
     s->turn = done ? turn : UINT64_MAX;
+    s->met = s->met || s->cells.count[0] > 0;
     return done;
 }
 
@@ -168,12 +186,14 @@ static bool fill_give(const pass *p, source_state *s) {
         !pass_evaluate_vector(p, "velocity_factor", factor))
         return false;
     const float speed = (float)sim_velocity(&a->units, 1);
+    const float most = lbm_air_most_speed(a);
     const float share = rate[0] > 0 ? (float)sim_decay(&a->units, (double)rate[0]) : 1;
     const float ids[2] = {s->first_id, (float)s->first_id + (float)p->mesh_count - 1};
     const float pascal = (float)(1 / lbm_air_pascals(a));
     const uint32_t parity = lbm_parity(a->solver);
     write_place(s, &s->give, s->block);
     pass_write_member(&s->give, s->block, "step_speed", &speed, sizeof speed);
+    pass_write_member(&s->give, s->block, "most_speed", &most, sizeof most);
     pass_write_member(&s->give, s->block, "velocity_factor", factor, sizeof *factor);
     pass_write_member(&s->give, s->block, "pascal", &pascal, sizeof pascal);
     pass_write_member(&s->give, s->block, "share", &share, sizeof share);

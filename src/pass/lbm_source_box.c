@@ -7,7 +7,7 @@ const field *lbm_source_shape(const pass *p) {
     return pass_find_key(p, "shape", &index) == PASS_FIELD ? p->fields[index] : NULL;
 }
 
-static bool mesh_box(const scene_mesh *mesh, const field_context *context, box3 *out) {
+bool lbm_mesh_box(const scene_mesh *mesh, const field_context *context, box3 *out) {
     const float corners[2][3] = {
         {mesh->data.box.min.x, mesh->data.box.min.y, mesh->data.box.min.z},
         {mesh->data.box.max.x, mesh->data.box.max.y, mesh->data.box.max.z}};
@@ -33,7 +33,7 @@ static bool meshes_box(const pass *p, double end, box3 *out) {
     for (size_t i = 0; i < 2 * p->mesh_count; i++) {
         box3 one;
         if (i == p->mesh_count) then.time = end;
-        if (!mesh_box(p->meshes[i % p->mesh_count], &then, &one)) return false;
+        if (!lbm_mesh_box(p->meshes[i % p->mesh_count], &then, &one)) return false;
         *out = i ? box3_union(*out, one) : one;
     }
     return true;

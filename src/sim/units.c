@@ -52,13 +52,20 @@ sim_readout sim_judge(const sim_units *u, const sim_flow *flow) {
 
 bool sim_advise_speed(const sim_units *u, const sim_flow *flow, double measured, char *out,
                       size_t capacity) {
-    double now = mach(u, measured);
+    double now = mach(u, measured), step = u->step * SIM_MACH_MAX / now;
     if (now <= SIM_MACH_MAX) return false;
-    snprintf(
-        out, capacity,
-        "air of %.3g m/s is Mach %.2g on the lattice, which must stay below %g: set 'speed' to "
-        "%.3g m/s (it is %.3g), or 'time_step' below %.3g s (it is %.3g)",
-        measured, now, SIM_MACH_MAX, measured, flow->speed, u->step * SIM_MACH_MAX / now, u->step);
+    int said =
+        snprintf(out, capacity,
+                 "air of %.3g m/s is Mach %.2g on the lattice, which must stay below %g: set ",
+                 measured, now, SIM_MACH_MAX);
+    if (said < 0 || (size_t)said >= capacity) return true;
+    out += said, capacity -= (size_t)said;
+    if (flow->fixed)
+        snprintf(out, capacity, "'time_step' below %.3g s (it is %.3g)", step, u->step);
+    else
+        snprintf(out, capacity,
+                 "'speed' to %.3g m/s (it is %.3g), or 'time_step' below %.3g s (it is %.3g)",
+                 measured, flow->speed, step, u->step);
     return true;
 }
 

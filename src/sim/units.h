@@ -32,6 +32,7 @@ typedef struct sim_flow {
     double length;    // m, of the shortest side of the box
     sim_operator collision;
     bool subgrid; // with a model of what is finer than a cell
+    bool fixed;   // the step does not follow from `speed`
 } sim_flow;
 
 typedef struct sim_readout {

@@ -387,6 +387,65 @@ static void air_that_is_too_fast_is_held_back_by_itself(void **state) {
     roil_unload(e);
 }
 
+// Whatever is given to it, held-back air stays air: its mass, too.
+static void nothing_that_is_given_bursts_it(void **state) {
+    static const char *const more[] = {
+        "air:source { shape = box { position = {0, 0, 0.5} }, velocity = {0, 0, 90} }",
+        "air:source { shape = box { position = {0, 0, 0.5} }, density = sqrt(position.x),\n"
+        "  temperature = 1 / (0 * position.x), velocity = {0, 0, 1} }",
+        ""};
+    static const char *const keys[] = {"", "", "wind = {90, 0, 0}, boundary = { left = 'inflow' }"};
+    for (size_t i = 0; i < 3; i++) {
+        picture p;
+        roil_time times[32];
+        roil_effect *e = open(*state, 24, keys[i], more[i]);
+        draw(e, 13, p);
+        assert_true(roil_times(e, times, 32) > 0); // waits
+        assert_true(fabs(readout(e, "mass drift")) < 15);
+        assert_true(readout(e, "Mach") > 0.01 && readout(e, "Mach") < 0.31);
+        roil_unload(e);
+    }
+}
+
+static void said(roil_effect *e, const char *part) {
+    roil_simulation s;
+    roil_time times[32];
+    assert_true(roil_times(e, times, 32) > 0); // waits
+    assert_true(roil_get_simulation(e, &s));
+    assert_non_null(s.trouble);
+    if (!strstr(s.trouble, part)) fail_msg("%s", s.trouble);
+}
+
+static void air_that_bursts_stops_and_says_so(void **state) {
+    picture p;
+    roil_effect *e = open(*state, 24, "buoyancy_density = 1e9", "");
+    draw(e, 13, p);
+    said(e, "the air burst and has stopped");
+    double steps = readout(e, "steps");
+    draw(e, 14, p);
+    assert_true(readout(e, "steps") == steps);
+    roil_unload(e);
+}
+
+static void what_is_not_in_the_air_is_told(void **state) {
+    static const char beside[] =
+        "air:source { shape = sphere { position = %s, radius = 0.2 }, density = 1 }";
+    static const char *const places[] = {"{50, 0, 0}", "vec(50 - 150 * time, 0, 0.5)"};
+    for (int i = 0; i < 2; i++) {
+        picture p;
+        char more[256];
+        snprintf(more, sizeof more, beside, places[i]);
+        roil_effect *e = open(*state, 24, "", more);
+        draw(e, 2, p);
+        said(e, "lbm_source_2 has not been in the air so far");
+        draw(e, 9, p); // the second one comes by
+        roil_simulation s;
+        assert_true(roil_get_simulation(e, &s));
+        assert_true(i == 0 ? s.trouble != NULL : s.trouble == NULL);
+        roil_unload(e);
+    }
+}
+
 // ---- reload -----------------------------------------------------------------------------------
 
 static void count_call(void *user, double done, double whole) {
@@ -436,6 +495,9 @@ int main(void) {
         cmocka_unit_test(meshes_give_smoke_and_stand_in_its_way),
         cmocka_unit_test(a_source_that_holds_the_pressure_blows_new_air_out),
         cmocka_unit_test(air_that_is_too_fast_is_held_back_by_itself),
+        cmocka_unit_test(nothing_that_is_given_bursts_it),
+        cmocka_unit_test(air_that_bursts_stops_and_says_so),
+        cmocka_unit_test(what_is_not_in_the_air_is_told),
         cmocka_unit_test(smoke_is_where_its_source_is_and_rises),
         cmocka_unit_test(a_field_pushes_the_air),
         cmocka_unit_test(what_fails_at_a_step_is_told),

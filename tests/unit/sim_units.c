@@ -67,6 +67,10 @@ static void air_that_is_too_fast_is_noticed(void **state) {
     assert_false(advice(&u, &flow, again));
     assert_true(sim_advise_speed(&u, &flow, 9, text, sizeof text)); // measured
     names(text, "'speed' to 9 m/s");
+    flow.fixed = true;
+    assert_true(sim_advise_speed(&u, &flow, 9, text, sizeof text));
+    names(text, "set 'time_step' below 0.000962 s");
+    assert_null(strstr(text, "'speed'")); // which would change nothing
     u = sim_units_make(0.05, 9, 0);
     assert_false(sim_advise_speed(&u, &flow, 9, text, sizeof text));
 }
