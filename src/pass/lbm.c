@@ -44,7 +44,7 @@ static bool exchange_grids(field_grid *grid, field_grid *other) {
 static const char *field_name(const field_grid *grid, size_t index) {
     const lbm_air *a = (const lbm_air *)grid;
     for (int i = 0; i < PASS_LBM_NAMES; i++)
-        if (a->used[i] && index-- == 0) return pass_lbm_names[i];
+        if ((a->used[i] || i == PASS_LBM_VELOCITY) && index-- == 0) return pass_lbm_names[i];
     return NULL;
 }
 
@@ -62,6 +62,11 @@ static box3 box_of(const pass_lbm_desc *d) {
 static bool check(const pass *p, const pass_lbm_desc *d) {
     if (!(d->voxel_size >= 1e-6 && d->voxel_size <= 1e6))
         return err_set("%s: 'voxel_size' is %g m; accepted: 1e-6 to 1e6", p->label, d->voxel_size);
+    const float at[3] = {d->position.x, d->position.y, d->position.z};
+    for (int i = 0; i < 3; i++)
+        if (!(fabsf(at[i]) <= 1e6f))
+            return err_set("%s: 'position' has %g m; accepted: -1e6 to 1e6", p->label,
+                           (double)at[i]);
     if (!(d->speed >= 1e-6 && d->speed <= 1e6))
         return err_set("%s: 'speed' is %g m/s; accepted: 1e-6 to 1e6", p->label, d->speed);
     if (!(d->time_step >= 0 && d->time_step <= 3600))
@@ -145,6 +150,8 @@ bool lbm_declare(pass *p) {
     return add_image(p, a, "scalars", 0) && add_image(p, a, "velocity", PASS_LBM_VELOCITY / 4);
 }
 
+// ---- options ----------------------------------------------------------------------------------
+
 static size_t option(const pass *p, const char *name) {
     size_t index;
     return pass_find_key(p, name, &index) == PASS_OPTION ? p->options[index] : 0;
@@ -162,9 +169,25 @@ static uint32_t count_scalars(const lbm_air *a) {
     return a->used[PASS_LBM_DYE] ? 3 : a->used[PASS_LBM_TEMPERATURE] ? 2 : 1;
 }
 
+static const char *const faces[] = {"boundary_left", "boundary_right",  "boundary_front",
+                                    "boundary_back", "boundary_bottom", "boundary_top"};
+
+bool pass_lbm_check(const pass *p) {
+    for (int i = 0; i < 6; i += 2) {
+        bool periodic = option(p, faces[i]) == LBM_PERIODIC;
+        if (periodic != (option(p, faces[i + 1]) == LBM_PERIODIC))
+            return err_set("%s: '%s' is periodic and '%s' is not; what leaves one comes in at the "
+                           "other, so both are, or none",
+                           p->label, faces[periodic ? i : i + 1], faces[periodic ? i + 1 : i]);
+    }
+    if (option(p, "forcing") == LBM_WEIGHTS_ONLY && option(p, "collision") != LBM_BGK)
+        return err_set("%s: forcing = \"weights_only\" wants collision = \"bgk\"; with another "
+                       "collision \"guo\" is accepted",
+                       p->label);
+    return true;
+}
+
 static lbm_desc structure_of(const pass *p, const lbm_air *a) {
-    static const char *const faces[] = {"boundary_left", "boundary_right",  "boundary_front",
-                                        "boundary_back", "boundary_bottom", "boundary_top"};
     lbm_desc d = {
         .set = (lbm_set)option(p, "velocity_set"),
         .scalar_set = (lbm_scalar_set)option(p, "scalar_set"),

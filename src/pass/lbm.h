@@ -33,6 +33,7 @@ extern const char *const pass_lbm_names[PASS_LBM_NAMES];
 
 // Before pass_declare; then the grid is the effect's. NULL with a message.
 field_grid *pass_lbm_open(pass *p, const pass_lbm_desc *desc);
+bool pass_lbm_check(const pass *p);       // after pass_declare: whether its options go together
 double pass_lbm_time_step(const pass *p); // seconds
 // Before pass_complete: a field of that name is wanted. Its first channel; -1 with a message.
 int pass_lbm_use(pass *p, const char *name, int *components);

@@ -66,6 +66,7 @@ typedef struct material_object {
 typedef struct mesh_object {
     scene_mesh *mesh;
     bool placed; // it has a place or a colour of its own
+    bool at;     // a position
 } mesh_object;
 typedef struct picture_object { // a file's: image "templates/source.exr"
     const struct picture *picture;

@@ -36,8 +36,8 @@ static void read_size(lua_State *L, pass_lbm_desc *desc) {
 static void read_desc(lua_State *L, pass_lbm_desc *desc) {
     float position[3] = {0};
     read_size(L, desc);
-    desc->voxel_size = value_get_number(L, 1, "lbm", "voxel_size", 0);
-    if (desc->voxel_size == 0)
+    desc->voxel_size = value_get_number(L, 1, "lbm", "voxel_size", (double)NAN);
+    if (isnan(desc->voxel_size))
         vm_error(L, "lbm: 'voxel_size' is missing: the edge of a cell in metres");
     value_get_vector(L, 1, "lbm", "position", position);
     desc->position = (float3){position[0], position[1], position[2]};
@@ -69,6 +69,9 @@ static void set_boundary(lua_State *L, pass *p) {
     }
     int table = lua_gettop(L);
     value_check_keys(L, table, "lbm: boundary", keys);
+    if (lua_rawlen(L, table) > 0)
+        vm_error(L, "lbm: boundary: a value has no name; name the face, as in { top = \"open\", "
+                    "sides = \"open\", bottom = \"wall\" }");
     if (value_get(L, table, "sides") != LUA_TNIL)
         for (size_t i = 0; i < 4; i++) set_face(L, p, faces[i]);
     lua_pop(L, 1);
@@ -96,7 +99,7 @@ static int l_lbm(lua_State *L) {
     object->time_step = pass_lbm_time_step(p);
     effect_add_grid(s->effect, object->grid);
     effect_name_grid(s->effect, object->grid, variable);
-    if (!pass_declare(p)) script_raise(L);
+    if (!pass_declare(p) || !pass_lbm_check(p)) script_raise(L);
     s->unsound = unsound;
     lua_pushvalue(L, result);
     return 1;
@@ -113,11 +116,44 @@ static const lbm_object *self(lua_State *L, const char *method) {
     return object;
 }
 
+// motion = curve { ... }: where the meshes of the table at 2 go, said here instead of in each.
+static const field *read_motion(lua_State *L, const char *who) {
+    return value_get_uniform(L, 2, who, "motion", 3, NULL);
+}
+
+static void set_motion(lua_State *L, const char *who, mesh_object *mesh, const field *motion) {
+    if (!mesh)
+        vm_error(L,
+                 "%s: 'motion' moves meshes, and there is something else; instances and shapes "
+                 "move by their own keys",
+                 who);
+    if (mesh->at)
+        vm_error(L,
+                 "%s: 'motion' is given, and the mesh's own 'position', too; one of both says "
+                 "where it is",
+                 who);
+    mesh->mesh->position = motion;
+    mesh->at = mesh->placed = true;
+}
+
+static void move_meshes(lua_State *L, const char *who) {
+    const field *motion = read_motion(L, who);
+    lua_Integer count = motion ? (lua_Integer)lua_rawlen(L, 2) : 0;
+    if (motion && count == 0) set_motion(L, who, NULL, motion);
+    for (lua_Integer i = 1; i <= count; i++) {
+        lua_rawgeti(L, 2, i);
+        set_motion(L, who, object_test(L, -1, "mesh"), motion);
+        lua_pop(L, 1);
+    }
+}
+
 static int l_source(lua_State *L) {
     const lbm_object *air = self(L, "source");
+    static const script_key own[] = {{.name = "motion"}, {.name = NULL}};
     script *s = script_of(L);
     const char *unsound = s->unsound;
-    pass *source = pass_make(L, "lbm_source", "source", 2, NULL);
+    pass *source = pass_make(L, "lbm_source", "source", 2, own);
+    move_meshes(L, "source");
     vm_charge_memory(L, lua_rawlen(L, 2) * BODY_COST);
     if (!pass_declare(source) || !pass_lbm_add_source(air->pass, source)) script_raise(L);
     s->unsound = unsound;
@@ -140,7 +176,7 @@ static void add_collider(lua_State *L, pass *air, voxels_rule rule) {
 
 static int l_collider(lua_State *L) {
     const lbm_object *air = self(L, "collider");
-    static const script_key keys[] = {{.name = "rule"}, {.name = NULL}};
+    static const script_key keys[] = {{.name = "rule"}, {.name = "motion"}, {.name = NULL}};
     static const char *const rules[] = {"auto", "solid", "shell"};
     value_check_keys(L, 2, "collider", keys);
     voxels_rule rule = VOXELS_AUTO;
@@ -150,6 +186,7 @@ static int l_collider(lua_State *L) {
     lua_Integer count = (lua_Integer)lua_rawlen(L, 2);
     if (count == 0)
         vm_error(L, "collider takes meshes, as in air:collider { mesh { \"data/ball.obj\" } }");
+    move_meshes(L, "collider");
     for (lua_Integer i = 1; i <= count; i++) {
         lua_rawgeti(L, 2, i);
         add_collider(L, air->pass, rule);
@@ -179,8 +216,17 @@ static int l_index(lua_State *L) {
     return 1;
 }
 
+// What air holds follows from its keys and its sources.
+static int l_newindex(lua_State *L) {
+    vm_error(L,
+             "air.%s cannot be set; say it in lbm { } or --set, or give it to the air with "
+             "air:source { }",
+             luaL_tolstring(L, 2, NULL));
+}
+
 void l_lbm_open(lua_State *L) {
-    static const luaL_Reg methods[] = {{"__index", l_index}, {NULL, NULL}};
+    static const luaL_Reg methods[] = {
+        {"__index", l_index}, {"__newindex", l_newindex}, {NULL, NULL}};
     object_type(L, "lbm", methods);
     lua_register(L, "lbm", l_lbm);
 }

@@ -166,6 +166,7 @@ static int l_mesh(lua_State *L) {
     mesh->parent = value_get_node(L, 1, "mesh", "parent");
     object->placed =
         values.position || values.rotation || values.scale || values.color || mesh->parent;
+    object->at = values.position;
     object->mesh = mesh;
     return 1;
 }

@@ -21,7 +21,7 @@
 
 #define LBM_KEYS KEYS(                                                                             \
     KEY("size", "{x, y, z} cells",                                                                 \
-        "of the box: x a multiple of 4, z of 8 and at least 16; required"),                        \
+        "of the box, at least 4: x and z multiples of 4, z at least 16; required"),                        \
     KEY("voxel_size", "m", "edge of a cell; required"),                                            \
     KEY("position", "0, 0, 0 m", "middle of the lowest face"),                                     \
     KEY("speed", "4 m/s", "that the air is expected to stay below: a step is the shorter for it"), \
@@ -129,10 +129,11 @@ const script_object reference_sources[] = {
      .members = KEYS(
         KEY("source { }", "{ shape = field, density = 1, velocity = {0, 0, 2} }",
             "where the air is given smoke, heat and speed: where the shape is above 0.5, or within "
-            "meshes, which come first and may move; `roil info passes lbm_source` lists the rest"),
+            "meshes, which come first and may move, each by its own position or all by motion = "
+            "curve { ... }; `roil info passes lbm_source` lists the rest"),
         KEY("collider { }", "{ mesh { \"data/ball.obj\" } }",
-            "meshes or instances, which may move, that the air flows around; rule = \"solid\" leaves gaps narrower "
-            "than two cells open, as of `voxels`"),
+            "meshes or instances, which may move, that the air flows around; motion = curve { ... } is the position of "
+            "meshes that say none; rule = \"solid\" leaves gaps narrower than two cells open, as of `voxels`"),
         KEY("density", "field", "of smoke"),
         KEY("temperature", "field", "0 is that of the air around"),
         KEY("dye", "field", "a second colour of smoke"),

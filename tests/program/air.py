@@ -50,5 +50,34 @@ class Air(Case):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stderr, "lbm: .*'time_step' below")
 
+    def test_motion_is_the_place_of_meshes(self):
+        """Said for all, and in the mesh itself: the same picture."""
+        self.write("ball.obj", "v 0 0 0\nv 0.4 0 0\nv 0 0.4 0\nv 0 0 0.4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+        path = "curve { {0, {-0.7, 0, 0.5}}, {1, {0.3, 0, 0.9}} }"
+        pictures = []
+        for collider in (f"mesh {{ 'ball.obj', position = {path} }}", f"mesh 'ball.obj', motion = {path}",
+                         "mesh { 'ball.obj' }"):
+            self.write("effect.lua", EFFECT.replace("fx.camera", f"air:collider {{ {collider} }}\nfx.camera", 1) % "")
+            self.succeeds("render", "effect.lua", "--frames", "12", *SMALL, "-o", "o.png")
+            pictures.append(self.read("o.png"))
+        self.assertEqual(pictures[0], pictures[1])
+        self.assertNotEqual(pictures[0], pictures[2])
+        self.write("effect.lua", EFFECT.replace("fx.camera", f"air:source {{ mesh {{ 'ball.obj', position = {path} }}, "
+                                                             f"density = 1, motion = {path} }}\nfx.camera", 1) % "")
+        self.fails(1, "source: 'motion' is given, and the mesh's own 'position', too", "check", "effect.lua")
+
+    def test_frames_that_are_none_of_the_effects_are_told(self):
+        self.write("effect.lua", EFFECT % "")
+        for command, output in (["render", *SMALL], "o.png"), (["export", "vdb"], "o.vdb"):
+            for frame, is_told in ("13", True), ("12", False):
+                done = self.run_program(*command, "effect.lua", "--frames", frame, "-o", output)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual("frame 13 is none of the effect's, which are 1 to 12" in done.stderr, is_told)
+
+    def test_velocity_is_exported_though_nothing_draws_it(self):
+        self.write("effect.lua", EFFECT % "")
+        self.assertIn("of density, temperature, velocity,",
+                      self.succeeds("export", "vdb", "effect.lua", "--frames", "4", "-o", "o.vdb"))
+
 
 main()
