@@ -41,8 +41,22 @@ bool lbm_source_declare(pass *p) {
                                p->label);
 }
 
+// What the air holds is known when a step is done, and a source gives before it.
+static bool reads_itself(const lbm_air *a, const pass *source) {
+    for (size_t i = 0; i < source->face->field_count; i++) {
+        const field *given = source->fields[i];
+        if (given && (field_samples(given, &a->grid, 0) || field_samples(given, &a->grid, 1)))
+            return err_set("%s: '%s' reads the air that it is given to; fields of other air, of "
+                           "files and of shapes are accepted",
+                           source->label, source->face->fields[i].name),
+                   true;
+    }
+    return false;
+}
+
 bool pass_lbm_add_source(pass *p, pass *source) {
     lbm_air *a = lbm_air_of(p);
+    if (reads_itself(a, source)) return false;
     source_state *s = source->state = arena_alloc(p->host->memory, sizeof *s);
     *s = (source_state){.air = a, .first_id = (uint8_t)(a->givers.count + 1), .turn = UINT64_MAX};
     size_t option;
