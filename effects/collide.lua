@@ -15,6 +15,7 @@ local speed   = param { "speed", 3.2, min = 0, max = 5, unit = "m/s", help = "of
 local lift    = param { "lift", 1.3, min = -5, max = 10, unit = "m/s^2", help = "how fast their heat makes them rise" }
 local uneven  = param { "uneven", 0.8, min = 0, max = 3, unit = "m/s", help = "how much the jets flutter" }
 local eaten   = param { "eaten", 1.2, min = 0, max = 2, help = "how much noise finer than a cell eats from the smoke" }
+local folded  = param { "folded", 0.1, min = 0, max = 0.3, unit = "m", help = "how far eddies finer than a cell carry the smoke" }
 local power   = param { "power", 420, min = 0, max = 5000, unit = "W", help = "of the lamp" }
 local colors  = { param { "left", {0.66, 0.84, 1}, color = true, help = "of the left jet's smoke" },
                   param { "right", {1, 0.74, 0.70}, color = true, help = "of the right jet's smoke" } }
@@ -43,9 +44,10 @@ end
 -- the smoke where that is thin.
 local lumps = worley { frequency = 2.6, octaves = 3, persistence = 0.55, lacunarity = 2.1, seed = 4 }
               :tile():advect(air.velocity, { period = 0.7, mean = 0.48 })
-local cover = clamp(air.density * 6, 0, 1)
+local folds = curl { frequency = 2, octaves = 3, persistence = 0.6, drift = {0, 0, -0.8}, speed = 0.6, seed = 9 }:tile()
+local cover = clamp(air.density:warp(folds, folded) * 6, 0, 1)
 local smoke = cover * smoothstep(0, 0.25, cover - eaten * (1 - lumps) * (1 - 0.7 * cover))
-local hue   = mix(colors[1], colors[2], smoothstep(0.2, 0.8, air.dye / air.density))
+local hue   = mix(colors[1], colors[2], smoothstep(0.2, 0.8, (air.dye / air.density):warp(folds, folded)))
 
 -- The lamp is a little gas that glows, and a light in its place.
 local at   = {0, -0.15, 1.75}

@@ -11,9 +11,10 @@ local fx = effect { name = "creature", fps = 24, frames = 192 }
 local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along each edge, relative to 160 x 64 x 96; taken when the effect loads" }
 local density = param { "density", 14, min = 0, max = 50, unit = "1/m", help = "how thick the smoke is" }
 local heat    = param { "heat", 2300, min = 0, max = 3000, unit = "K", help = "of the breath in the throat" }
-local glowing = param { "glowing", 2, min = 0, max = 50, help = "factor of the fire's light" }
+local glowing = param { "glowing", 2.5, min = 0, max = 50, help = "factor of the fire's light" }
 local lift    = param { "lift", 2.2, min = -5, max = 10, unit = "m/s^2", help = "how fast its heat makes it rise" }
 local eaten   = param { "eaten", 1.6, min = 0, max = 2, help = "how much noise finer than a cell eats from the smoke" }
+local folded  = param { "folded", 0.07, min = 0, max = 0.2, unit = "m", help = "how far eddies finer than a cell carry the smoke" }
 local throat  = param { "throat", 45, min = 0, max = 500, unit = "W", help = "of the light in its mouth" }
 
 -- Four seconds of breath: how hard it blows, and how far the jaw is open (degrees).
@@ -45,7 +46,8 @@ air:source {
 -- the smoke where that is thin.
 local lumps = worley { frequency = 3, octaves = 3, persistence = 0.55, lacunarity = 2.1, seed = 4 }
               :tile():advect(air.velocity, { period = 0.4, mean = 0.48 })
-local cover = clamp(air.density * 2.5, 0, 1)
+local folds = curl { frequency = 3, octaves = 3, persistence = 0.6, drift = {-2, 0, 0}, speed = 0.8, seed = 9 }:tile()
+local cover = clamp(air.density:warp(folds, folded) * 2.5, 0, 1)
 local smoke = cover * smoothstep(0, 0.3, cover - eaten * (1 - lumps) * (1 - 0.7 * cover))
 local fire  = palette { blackbody = {600, 3500}, physical = true, reference = 1500 }
 
@@ -60,7 +62,7 @@ fx.lights = {
 fx.camera = camera { eye = {1.3, -7.6, 1.3}, target = {1.3, 0, 1.58}, fov = 29, near = 0.1, far = 500 }
 
 local lit = lighting {
-  density = smoke * density, emission = fire(air.temperature ^ 0.5 * (0.4 + lumps) * heat) * smoke * glowing,
+  density = smoke * density, emission = fire(air.temperature:warp(folds, folded) ^ 0.7 * (0.4 + lumps) * heat) * smoke * glowing,
   albedo = {0.6, 0.58, 0.56}, anisotropy = 0.35, sampling = "cubic",
 }
 local scene  = geometry { mesh { "data/ground.obj", color = {0.35, 0.37, 0.42} }, head, jaw }

@@ -16,6 +16,7 @@ local base    = param { "base", 1.6, min = 0, max = 8, unit = "m", help = "heigh
 local wind    = param { "wind", 0.2, min = 0, max = 2, unit = "m/s", help = "from the left" }
 local width   = param { "width", 2.6, min = 0.2, max = 3, unit = "m", help = "of the warm field, half of it" }
 local eaten   = param { "eaten", 1.5, min = 0, max = 2, help = "how much the noise eats from the edges" }
+local folded  = param { "folded", 0.16, min = 0, max = 0.5, unit = "m", help = "how far eddies finer than a cell carry the cloud" }
 
 local function cells(count) return math.max(16, 8 * math.floor(count * detail:get() / 8 + 0.5)) end
 local air = lbm {
@@ -40,11 +41,12 @@ end
 -- the cloud where that is thin.
 local lumps = worley { frequency = 1.1, octaves = 4, persistence = 0.55, lacunarity = 2.2, seed = 4 }
               :tile():advect(air.velocity, { period = 1.2, mean = 0.48 })
-local body  = clamp(air.density * 3, 0, 1) * smoothstep(base - 0.15, base + 0.35, position.z)
+local folds = curl { frequency = 0.9, octaves = 4, persistence = 0.6, drift = {0, 0, -0.4}, speed = 0.4, seed = 9 }:tile()
+local body  = clamp(air.density:warp(folds, folded) * 3, 0, 1) * smoothstep(base - 0.15, base + 0.35, position.z)
 local cloud = body * smoothstep(0, 0.2, body - eaten * (1 - lumps) * (1 - 0.6 * body))
 
-fx.sun    = sun { azimuth = 210, elevation = 30, color = {1, 0.93, 0.80}, strength = 9 }
-fx.sky    = sky { zenith = {0.06, 0.18, 0.55}, horizon = {0.48, 0.60, 0.76}, strength = 0.75 }
+fx.sun    = sun { azimuth = 186, elevation = 38, color = {1, 0.93, 0.80}, strength = 11 }
+fx.sky    = sky { zenith = {0.06, 0.18, 0.55}, horizon = {0.48, 0.60, 0.76}, strength = 0.55 }
 fx.camera = camera { eye = {0, -18, 0.7}, target = {0.2, 0, 2.9}, fov = 21, near = 0.1, far = 2000 }
 
 local lit = lighting {
@@ -55,7 +57,7 @@ local solid  = shade { from = {scene, lit}, haze = 0.008 }
 local volume = march { from = {lit, scene}, steps = 160 }
 
 local picture = over { volume, solid, from = {volume, scene} }
-local shown   = final { source = picture, tonemap = "aces", exposure_ev = 0.4 }
+local shown   = final { source = picture, tonemap = "aces", exposure_ev = 0.25 }
 
 fx.output = shown.color
 fx.linear = shown.linear

@@ -14,6 +14,7 @@ local wind    = param { "wind", 1.5, min = 0, max = 3, unit = "m/s", help = "aga
 local lift    = param { "lift", 0.5, min = -5, max = 10, unit = "m/s^2", help = "how fast the smoke's heat makes it rise" }
 local uneven  = param { "uneven", 0.6, min = 0, max = 1, help = "how patchy the body is" }
 local eaten   = param { "eaten", 1.3, min = 0, max = 2, help = "how much noise finer than a cell eats from the smoke" }
+local folded  = param { "folded", 0.05, min = 0, max = 0.2, unit = "m", help = "how far eddies finer than a cell carry the smoke" }
 local color   = param { "color", {0.42, 0.72, 1}, color = true, help = "of the smoke" }
 
 -- How much of the runner is there, by the second.
@@ -39,18 +40,19 @@ air:source {
 -- the smoke where that is thin.
 local lumps = worley { frequency = 5, octaves = 3, persistence = 0.55, lacunarity = 2.1, seed = 4 }
               :tile():advect(air.velocity, { period = 0.5, mean = 0.48 })
-local cover = clamp(air.density * 1.6, 0, 1)
+local folds = curl { frequency = 4, octaves = 3, persistence = 0.6, drift = {1, 0, 0}, speed = 0.8, seed = 9 }:tile()
+local cover = clamp(air.density:warp(folds, folded) * 1.6, 0, 1)
 local trail = cover * smoothstep(0, 0.35, cover - eaten * (1 - lumps) * (1 - 0.6 * cover))
 
 -- The body itself is sharper than cells of the air could show it: a distance to the mesh, in finer ones.
 local body  = voxels { runner, resolution = 160 }
 local near  = box { position = {-0.05, 0, 1.06}, size = {1.5, 0.75, 1.75} } -- a distance is known everywhere; the smoke ends here
 local skin  = near * smoothstep(0.012, -0.02, body.distance + 0.03 * (1 - presence) + 0.03 * uneven * (1 - grain))
-local left  = smoothstep(0.0, 0.11, body.distance) -- what has left it: around it, cells of the air are not seen
-local smoke = max(0.35 * trail * left, skin * presence)
+local left  = smoothstep(-0.02, 0.1, body.distance) -- what has left it: around it, cells of the air are not seen
+local smoke = max(0.3 * trail * left, skin * presence)
 
 -- The sun stands low behind the smoke, and comes through it.
-fx.sun    = sun { azimuth = 118, elevation = 9, color = {1, 0.62, 0.30}, strength = 14 }
+fx.sun    = sun { azimuth = 118, elevation = 9, color = {1, 0.76, 0.54}, strength = 9 }
 fx.sky    = sky { zenith = {0.008, 0.018, 0.055}, horizon = {0.055, 0.06, 0.09}, strength = 1 }
 fx.lights = {
   spot_light { position = {4.5, -5, 3.5}, target = {0, 0, 1.1}, color = {0.55, 0.75, 1}, power = 900, angle = 50, softness = 0.6 },
