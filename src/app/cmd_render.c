@@ -284,17 +284,9 @@ static bool render_frame(const job *j, roil_effect *e, size_t index, app_progres
     return done;
 }
 
-// Of steps of simulations, for frames that were left out.
-static void tell_steps(void *user, double done, double whole) {
-    app_progress *steps = user;
-    if (steps->total != (size_t)whole) app_progress_begin(steps, (size_t)whole, "steps");
-    app_progress_step(steps, (size_t)done);
-    if (done >= whole) *steps = (app_progress){0};
-}
-
 static bool render_frames(job *j, roil_effect *e, app_stats *stats) {
     app_progress progress, steps = {0};
-    roil_on_progress(e, tell_steps, &steps);
+    roil_on_progress(e, app_tell_steps, &steps);
     size_t each = j->reference ? j->reference : 1; // steps of the progress
     app_progress_begin(&progress, each * j->frames.count, j->reference ? "samples" : "frames");
     bool done = true;

@@ -123,8 +123,9 @@ static bool complete(job *j, roil_effect *e) {
 }
 
 static bool write_frames(const job *j, roil_effect *e, roil_volume *v) {
-    app_progress progress;
+    app_progress progress, steps = {0};
     bool done = roil_prepare(e, PICTURE, PICTURE);
+    roil_on_progress(e, app_tell_steps, &steps);
     app_progress_begin(&progress, j->frames.count, "frames");
     for (size_t i = 0; done && i < j->frames.count; i++) {
         char file[PATH_CAP];
