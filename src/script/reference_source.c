@@ -21,7 +21,7 @@
 
 #define LBM_KEYS KEYS(                                                                             \
     KEY("size", "{x, y, z} cells",                                                                 \
-        "of the box, at least 4: x and z multiples of 4, z at least 16; required"),                        \
+        "of the box, at least 4: x a multiple of 4, z of 8, z at least 16; required"),                        \
     KEY("voxel_size", "m", "edge of a cell; required"),                                            \
     KEY("position", "0, 0, 0 m", "middle of the lowest face"),                                     \
     KEY("speed", "4 m/s", "that the air is expected to stay below: a step is the shorter for it"), \
