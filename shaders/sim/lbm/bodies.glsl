@@ -2,7 +2,8 @@
 // discretized Boltzmann equation", part 1, 1994, eq. 3.6: what comes back from a wall has the
 // momentum 2 w rho (c . v) / cs^2 more; so have scalars, since what a wall pushes moves as fast as
 // it: the flux into the cells before it is what those that it covers lose, behind it the same is
-// taken away that uncovered cells begin with.
+// taken away that uncovered cells begin with. A scalar grows by the same part as the air does, also
+// where a wall meets a link of the air that the scalar has not.
 #ifndef SIM_LBM_BODIES_GLSL
 #define SIM_LBM_BODIES_GLSL
 #include "sim/lbm/cells.glsl"
@@ -54,17 +55,30 @@ vec3 lbm_body_velocity(uint id, vec3 point) {
     return v * min(1.0, linear.w * inversesqrt(max(dot(v, v), 1e-20)));
 }
 
+bool lbm_is_wall(ivec3 cell) { // of a face
+    ivec3 at = lbm_wrap(cell);
+    return LBM_FACE_IS_WALL(LBM_FACE_0) && at.x == 0 || LBM_FACE_IS_WALL(LBM_FACE_1) && at.x == LBM_NX - 1 ||
+           LBM_FACE_IS_WALL(LBM_FACE_2) && at.y == 0 || LBM_FACE_IS_WALL(LBM_FACE_3) && at.y == LBM_NY - 1 ||
+           LBM_FACE_IS_WALL(LBM_FACE_4) && at.z == 0 || LBM_FACE_IS_WALL(LBM_FACE_5) && at.z == LBM_NZ - 1;
+}
+
 // How fast the wall moves along a direction from which comes what arrives in a cell; 0: there is none.
-float lbm_wall_speed(ivec3 cell, ivec3 direction) {
-    uint id = lbm_id_at(cell - direction);
+// `id`: of the body there.
+float lbm_wall_speed(ivec3 cell, ivec3 direction, uint id) {
     if (id == 0u || lbm_moved != 0u && lbm_is_new(cell - direction)) return 0.0;
     vec3 point = vec3(cell) + 0.5 - 0.5 * vec3(direction);
     return dot(vec3(direction), lbm_body_velocity(id, point));
 }
 
-// Of the cells of an element, 27 directions each: x + 1 + 3 (y + 1) + 9 (z + 1). In loops that are not unrolled: few
+#define LBM_DIRECTION(x, y, z) (13 + (x) + 3 * (y) + 9 * (z)) // of 27
+// Of the cells of an element, in all directions; and as bits, in which of them a solid lies. In loops that are not unrolled: few
 // cells come here, and processors that run all branches under a mask leave a loop when it is empty.
 float lbm_wall_speeds[27 * LBM_LANES];
+#if LBM_LANES == 2
+uvec2 lbm_solids = uvec2(0u);
+#else
+uvec4 lbm_solids = uvec4(0u);
+#endif
 
 lbm_float lbm_wall_speeds_at(const int i) {
 #if LBM_LANES == 2
@@ -74,31 +88,42 @@ lbm_float lbm_wall_speeds_at(const int i) {
 #endif
 }
 
-#define LBM_WALL_SPEEDS(x, y, z)                                                                   \
-    lbm_wall_speeds_at(13 + (x) + 3 * (y) + 9 * (z))
+#define LBM_WALL_SPEEDS(x, y, z) lbm_wall_speeds_at(LBM_DIRECTION(x, y, z))
 
-void lbm_find_wall_speeds(uvec3 at, uint near) {
+void lbm_find_walls(uvec3 at, uint near) {
     for (int i = 0; i < 27 * LBM_LANES; i++) lbm_wall_speeds[i] = 0.0;
     for (uint left = near; left != 0u; left &= left - 1u) {
         int k = findLSB(left);
         ivec3 cell = lbm_cell_at(at, uint(k));
-        if (lbm_moved != 0u && lbm_is_new(cell)) continue;
+        bool new_ = lbm_moved != 0u && lbm_is_new(cell);
+        uint solids = 0u;
         [[dont_unroll]] for (int i = 0; i < 27; i++) {
             int layer = i * 57 >> 9, row = i * 86 >> 8; // i / 9, i / 3
             ivec3 direction = ivec3(i - 3 * row, row - 3 * layer, layer) - 1;
-            lbm_wall_speeds[27 * k + i] = lbm_wall_speed(cell, direction);
+            uint id = lbm_id_at(cell - direction);
+            if (!new_) lbm_wall_speeds[27 * k + i] = lbm_wall_speed(cell, direction, id);
+            if (LBM_ROUTES && (id != 0u || lbm_is_wall(cell - direction))) solids |= 1u << 26 - i;
         }
+        lbm_solids[k] = solids;
     }
 }
+
+lbm_float lbm_pushed; // the part by which walls make more of the air of a cell
 
 void lbm_push_air(inout lbm_float f[LBM_Q]) {
     lbm_float density = 1.0 + f[0];
 #define ADD(i, x, y, z) density += f[i] + f[i + 1];
     LBM_PAIRS(ADD)
 #undef ADD
+    lbm_pushed = lbm_float(0.0);
 #define PUSH(i, x, y, z)                                                                           \
-    f[i] += 6.0 * LBM_WEIGHT(x, y, z) * density * LBM_WALL_SPEEDS(x, y, z);                        \
-    f[i + 1] += 6.0 * LBM_WEIGHT(x, y, z) * density * LBM_WALL_SPEEDS(-(x), -(y), -(z));
+    {                                                                                              \
+        lbm_float a = 6.0 * LBM_WEIGHT(x, y, z) * LBM_WALL_SPEEDS(x, y, z);                        \
+        lbm_float b = 6.0 * LBM_WEIGHT(x, y, z) * LBM_WALL_SPEEDS(-(x), -(y), -(z));               \
+        f[i] += density * a;                                                                       \
+        f[i + 1] += density * b;                                                                   \
+        lbm_pushed += a + b;                                                                       \
+    }
     LBM_PAIRS(PUSH)
 #undef PUSH
 }
@@ -108,10 +133,16 @@ void lbm_push_scalar(inout lbm_float g[LBM_SCALAR_Q]) {
 #define ADD(i, x, y, z) value += g[i] + g[i + 1];
     LBM_SCALAR_PAIRS(ADD)
 #undef ADD
+    g[0] += value * lbm_pushed; // less what the links bring
     value *= 2.0 / LBM_SCALAR_SPEED;
 #define PUSH(i, x, y, z)                                                                           \
-    g[i] += LBM_SCALAR_WEIGHT(x, y, z) * value * LBM_WALL_SPEEDS(x, y, z);                         \
-    g[i + 1] += LBM_SCALAR_WEIGHT(x, y, z) * value * LBM_WALL_SPEEDS(-(x), -(y), -(z));
+    {                                                                                              \
+        lbm_float a = LBM_SCALAR_WEIGHT(x, y, z) * value * LBM_WALL_SPEEDS(x, y, z);               \
+        lbm_float b = LBM_SCALAR_WEIGHT(x, y, z) * value * LBM_WALL_SPEEDS(-(x), -(y), -(z));      \
+        g[i] += a;                                                                                 \
+        g[i + 1] += b;                                                                             \
+        g[0] -= a + b;                                                                             \
+    }
     LBM_SCALAR_PAIRS(PUSH)
 #undef PUSH
 }

@@ -45,26 +45,41 @@ uint three_ids_anywhere(ivec3 at) {
     return lbm_id_at(at - ivec3(1, 0, 0)) | lbm_id_at(at) << 8 | lbm_id_at(at + ivec3(1, 0, 0)) << 16;
 }
 
-bool moves(uint ids) {
+uint three_ids_of(bool inside, ivec3 at) {
+    return inside ? three_ids(at) : three_ids_anywhere(at);
+}
+
+bool counts(uint ids) { // one is of a body that moves, or any does
+    if (LBM_ROUTES) return ids != 0u;
     for (; ids != 0u; ids >>= 8)
         if (lbm_body_moves(ids & 255u)) return true;
     return false;
 }
 
-bool beside_moving(ivec3 at) {
-    const ivec3 last = ivec3(LBM_NX, LBM_NY, LBM_NZ) - 1;
-    bool inside = all(greaterThan(at, ivec3(0))) && all(lessThan(at, last));
-    for (int k = 0; k < 9; k++) {
-        ivec3 row = at + ivec3(0, k % 3 - 1, k / 3 - 1);
-        uint ids = inside ? three_ids(row) : three_ids_anywhere(row);
-        if (ids != 0u && moves(ids)) return true;
+bool beside_body(bool inside, ivec3 at) {
+    for (int k = 0; k < 9; k++)
+        if (counts(three_ids_of(inside, at + ivec3(0, k % 3 - 1, k / 3 - 1)))) return true;
+    return false;
+}
+
+// Whether a neighbour along an axis is beside a body.
+bool one_beyond(bool inside, ivec3 at) {
+    for (int k = 0; k < 6; k++) {
+        int side = 2 * (k & 1) - 1, across = (k >> 1) - 1;
+        uint ids = three_ids_of(inside, at + ivec3(0, 2 * side, across)) |
+                   three_ids_of(inside, at + ivec3(0, across, 2 * side));
+        for (int z = -1; z <= 1; z++) ids |= three_ids_of(inside, at + ivec3(side, across, z));
+        if (ids != 0u) return true;
     }
     return false;
 }
 
 uint find_kind(ivec3 at) {
+    const ivec3 last = ivec3(LBM_NX, LBM_NY, LBM_NZ) - 1;
+    bool inside = all(greaterThan(at, ivec3(1))) && all(lessThan(at, last - 1));
     if (lbm_id_at(at) != 0u) return LBM_CELL_SOLID;
-    return any_moves != 0u && beside_moving(at) ? LBM_CELL_NEAR : 0u;
+    if ((LBM_ROUTES || any_moves != 0u) && beside_body(inside, at)) return LBM_CELL_NEAR | LBM_CELL_REACHED;
+    return LBM_ROUTES && one_beyond(inside, at) ? LBM_CELL_REACHED : 0u;
 }
 
 // ---- what a body has left ---------------------------------------------------------------------

@@ -17,7 +17,8 @@
 // Of a cell's byte.
 #define LBM_CELL_SOLID 1u
 #define LBM_CELL_NEW 2u  // it became solid, or air, when bodies moved last
-#define LBM_CELL_NEAR 8u // air beside a body that moves
+#define LBM_CELL_REACHED 4u // air whose scalars a body changes (routes.glsl): up to two cells away
+#define LBM_CELL_NEAR 8u // air beside a body that moves, or, with such scalars, any
 
 // Round the lattice in all directions, as memory goes: from less than it beyond. No division: that is
 // slow where it is not done by a unit of its own.
@@ -37,9 +38,13 @@ uint lbm_element_of(ivec3 cell, out uint lane) {
     return lbm_element_at(uvec3(cell.xy, uint(cell.z) - lane * LBM_LAYERS));
 }
 
+// Bodies stand where scalars have fewer links than the air.
+#define LBM_ROUTES (LBM_BODIES != 0 && LBM_SCALARS > 0 && LBM_SCALAR_Q == 7)
+
 struct lbm_site { // of an element
     uint solid; // lanes that no air is in
-    uint near;  // lanes of air beside a body that moves
+    uint near;  // lanes of air beside a body that moves, or, where LBM_ROUTES, any
+    uint reached; // lanes of air whose scalars a body changes
 };
 
 #if LBM_BODIES
@@ -67,10 +72,11 @@ uint lbm_wall_lanes(uvec3 at) {
 }
 
 lbm_site lbm_site_at(uvec3 at, uint element) {
-    lbm_site site = lbm_site(lbm_wall_lanes(at), 0u);
+    lbm_site site = lbm_site(lbm_wall_lanes(at), 0u, 0u);
 #if LBM_BODIES
     site.solid |= lbm_lanes_with(element, LBM_CELL_SOLID);
     site.near = lbm_lanes_with(element, LBM_CELL_NEAR);
+    site.reached = lbm_lanes_with(element, LBM_CELL_REACHED);
 #endif
     return site;
 }

@@ -209,7 +209,17 @@ void collide() {
 #if LBM_SUBGRID
     eddies = lbm_eddy_tau(a, tau, smagorinsky) - tau;
 #endif
+#if LBM_ROUTES
+    if (site.reached != 0u) lbm_begin_routes(air);
+#endif
     lbm_collide(a, 1.0 / (tau + eddies), air);
+#if LBM_ROUTES
+    if (site.reached != 0u) lbm_end_routes(air, 1.0 + a.excess, a.u);
+#define ROUTE(s)                                                                                   \
+    if (site.reached != 0u) lbm_route_scalar(value[s], site.reached, 1.0 - decay[s], ambient[s], g);
+#else
+#define ROUTE(s)
+#endif
 #if RELOADS
     lbm_send_air(place, air);
 #define LOAD(s) lbm_load_scalar(s, place, carried[s]);
@@ -225,10 +235,12 @@ void collide() {
     lbm_collide_scalar(value[s], a.u,                                                              \
                        1.0 / (scalar_tau[s] + eddies * (1.0 / (3.0 * SCHMIDT * LBM_SCALAR_SPEED))), \
                        1.0 - decay[s], ambient[s], g);                                             \
+    ROUTE(s)                                                                                       \
     lbm_pack_scalar(g, LBM_SCALAR_SCALE, carried[s]);                                              \
     SEND(s)
     LBM_EACH_SCALAR(COLLIDE)
 #undef COLLIDE
+#undef ROUTE
 #undef LOAD
 #undef SEND
 }

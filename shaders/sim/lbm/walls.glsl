@@ -23,7 +23,7 @@
 // Michler, "Straight velocity boundaries in the lattice Boltzmann method", 2008, section III C.
 #ifndef SIM_LBM_WALLS_GLSL
 #define SIM_LBM_WALLS_GLSL
-#include "sim/lbm/bodies.glsl"
+#include "sim/lbm/routes.glsl"
 
 // ---- solids -----------------------------------------------------------------------------------
 
@@ -317,7 +317,7 @@ void lbm_meet_air(uvec3 at, lbm_site site, inout lbm_float f[LBM_Q]) {
 #endif
 #if LBM_BODIES
     if (site.near != 0u) {
-        lbm_find_wall_speeds(at, site.near);
+        lbm_find_walls(at, site.near);
         lbm_push_air(f);
     }
 #endif
