@@ -28,7 +28,8 @@ local jaw  = mesh { "data/creature_jaw.obj", position = {-0.115, 0, 1.656}, rota
 local function cells(count) return math.max(16, 8 * math.floor(count * detail:get() / 8 + 0.5)) end
 local air = lbm {
   size = {cells(160), cells(64), cells(96)}, voxel_size = 5.6 / cells(160), position = {1.9, 0, 0.3},
-  boundary = "open", buoyancy_heat = lift, cooling_rate = 0.9, dissolve_rate = 0.15, speed = 4,
+  boundary = "open", beside_bodies = "velocity", -- sharper in a throat of few cells
+  buoyancy_heat = lift, cooling_rate = 0.9, dissolve_rate = 0.15, speed = 4,
 }
 
 -- Both meshes stand in its way, and the jaw pushes on the air as it moves; "solid": teeth are thinner than

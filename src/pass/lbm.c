@@ -193,6 +193,7 @@ static lbm_desc structure_of(const pass *p, const lbm_air *a) {
         .scalar_set = (lbm_scalar_set)option(p, "scalar_set"),
         .collision = (lbm_collision)option(p, "collision"),
         .forcing = (lbm_forcing)option(p, "forcing"),
+        .beside_bodies = (lbm_beside)option(p, "beside_bodies"),
         .precision = (lbm_precision)option(p, "precision"),
         .scalars = count_scalars(a),
         .subgrid = has_subgrid(p),

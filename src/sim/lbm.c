@@ -141,6 +141,7 @@ static void define_all(lbm *l) {
     define(l, "LBM_HALF", desc->precision == LBM_F16);
     define(l, "LBM_TRT", desc->collision == LBM_TRT);
     define(l, "LBM_CENTRAL_MOMENTS", desc->collision == LBM_CENTRAL_MOMENTS);
+    define(l, "LBM_BY_LINKS", desc->beside_bodies == LBM_BY_LINKS);
     define(l, "LBM_WEIGHTS_ONLY", desc->forcing == LBM_WEIGHTS_ONLY);
     define(l, "LBM_SUBGRID", desc->subgrid);
     define(l, "LBM_FORCE", desc->force);

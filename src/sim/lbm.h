@@ -21,8 +21,9 @@ typedef enum lbm_set { LBM_D3Q19, LBM_D3Q27 } lbm_set;
 typedef enum lbm_scalar_set { LBM_SCALAR_D3Q7, LBM_SCALAR_D3Q27 } lbm_scalar_set;
 typedef enum lbm_collision { LBM_BGK, LBM_TRT, LBM_CENTRAL_MOMENTS } lbm_collision;
 typedef enum lbm_forcing { LBM_GUO, LBM_WEIGHTS_ONLY } lbm_forcing; // the latter as published
-typedef enum lbm_precision { LBM_F32, LBM_F16 } lbm_precision;      // of what is stored
-typedef enum lbm_order {                                            // of the state in memory
+typedef enum lbm_beside { LBM_BY_LINKS, LBM_BY_VELOCITY } lbm_beside;
+typedef enum lbm_precision { LBM_F32, LBM_F16 } lbm_precision; // of what is stored
+typedef enum lbm_order {                                       // of the state in memory
     LBM_ORDER_AUTO,
     LBM_BLOCKS,
     LBM_WHOLE
@@ -45,7 +46,8 @@ typedef struct lbm_desc { // structure: what shaders are compiled for
     lbm_set set;
     lbm_scalar_set scalar_set;
     lbm_collision collision;
-    lbm_forcing forcing; // LBM_WEIGHTS_ONLY wants LBM_BGK
+    lbm_forcing forcing;      // LBM_WEIGHTS_ONLY wants LBM_BGK
+    lbm_beside beside_bodies; // what carries scalars on D3Q7 there
     lbm_precision precision;
     lbm_face faces[6]; // -x +x -y +y -z +z
     uint32_t scalars;  // smoke, temperature, second species: in this order

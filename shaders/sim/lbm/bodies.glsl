@@ -40,6 +40,17 @@ uint lbm_id_at(ivec3 cell) {
     return lbm_ids[i >> 2] >> 8u * (i & 3u) & 255u;
 }
 
+// The ids of three cells along x, the middle one `at`; `inside`: it has neighbours in its row, and the row is
+// one of the lattice.
+uint lbm_three_ids(bool inside, ivec3 at) {
+    if (!inside)
+        return lbm_id_at(at - ivec3(1, 0, 0)) | lbm_id_at(at) << 8 | lbm_id_at(at + ivec3(1, 0, 0)) << 16;
+    uint first = uint(at.x) - 1u + LBM_NX * (uint(at.y) + LBM_NY * uint(at.z)), shift = 8u * (first & 3u);
+    uint ids = lbm_ids[first >> 2] >> shift;
+    if (shift > 8u) ids |= lbm_ids[(first >> 2) + 1u] << 32u - shift;
+    return ids & 0xffffffu;
+}
+
 uniform uint lbm_moved; // bodies came to lie in other cells just before this step
 
 // The first step after a cell became solid, or air, what passes between it and others was sent by
@@ -71,8 +82,9 @@ float lbm_wall_speed(ivec3 cell, ivec3 direction, uint id) {
 }
 
 #define LBM_DIRECTION(x, y, z) (13 + (x) + 3 * (y) + 9 * (z)) // of 27
-// Of the cells of an element, in all directions; and as bits, in which of them a solid lies. In loops that are not unrolled: few
-// cells come here, and processors that run all branches under a mask leave a loop when it is empty.
+// Of the cells of an element, in all directions; and as bits, in which of them a solid lies. Ids are loaded
+// together; the rest is in a loop that is not unrolled: few cells come here, and processors that run all
+// branches under a mask leave a loop when it is empty.
 float lbm_wall_speeds[27 * LBM_LANES];
 #if LBM_LANES == 2
 uvec2 lbm_solids = uvec2(0u);
@@ -96,11 +108,14 @@ void lbm_find_walls(uvec3 at, uint near) {
         int k = findLSB(left);
         ivec3 cell = lbm_cell_at(at, uint(k));
         bool new_ = lbm_moved != 0u && lbm_is_new(cell);
-        uint solids = 0u;
+        const ivec3 last = ivec3(LBM_NX, LBM_NY, LBM_NZ) - 1;
+        bool inside = all(greaterThan(cell, ivec3(0))) && all(lessThan(cell, last));
+        uint solids = 0u, ids[9];
+        for (int i = 0; i < 9; i++) ids[i] = lbm_three_ids(inside, cell + ivec3(0, 1 - i % 3, 1 - i / 3));
         [[dont_unroll]] for (int i = 0; i < 27; i++) {
             int layer = i * 57 >> 9, row = i * 86 >> 8; // i / 9, i / 3
             ivec3 direction = ivec3(i - 3 * row, row - 3 * layer, layer) - 1;
-            uint id = lbm_id_at(cell - direction);
+            uint id = ids[row] >> 8 * (1 - direction.x) & 255u;
             if (!new_) lbm_wall_speeds[27 * k + i] = lbm_wall_speed(cell, direction, id);
             if (LBM_ROUTES && (id != 0u || lbm_is_wall(cell - direction))) solids |= 1u << 26 - i;
         }

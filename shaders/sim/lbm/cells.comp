@@ -33,22 +33,6 @@ Cell find(ivec3 at) {
 
 // ---- what a cell is ---------------------------------------------------------------------------
 
-// The ids of three cells along x, the middle one `at`, which has neighbours in its row.
-uint three_ids(ivec3 at) {
-    uint first = uint(at.x) - 1u + LBM_NX * (uint(at.y) + LBM_NY * uint(at.z)), shift = 8u * (first & 3u);
-    uint ids = lbm_ids[first >> 2] >> shift;
-    if (shift > 8u) ids |= lbm_ids[(first >> 2) + 1u] << 32u - shift;
-    return ids & 0xffffffu;
-}
-
-uint three_ids_anywhere(ivec3 at) {
-    return lbm_id_at(at - ivec3(1, 0, 0)) | lbm_id_at(at) << 8 | lbm_id_at(at + ivec3(1, 0, 0)) << 16;
-}
-
-uint three_ids_of(bool inside, ivec3 at) {
-    return inside ? three_ids(at) : three_ids_anywhere(at);
-}
-
 bool counts(uint ids) { // one is of a body that moves, or any does
     if (LBM_ROUTES) return ids != 0u;
     for (; ids != 0u; ids >>= 8)
@@ -58,7 +42,7 @@ bool counts(uint ids) { // one is of a body that moves, or any does
 
 bool beside_body(bool inside, ivec3 at) {
     for (int k = 0; k < 9; k++)
-        if (counts(three_ids_of(inside, at + ivec3(0, k % 3 - 1, k / 3 - 1)))) return true;
+        if (counts(lbm_three_ids(inside, at + ivec3(0, k % 3 - 1, k / 3 - 1)))) return true;
     return false;
 }
 
@@ -66,9 +50,9 @@ bool beside_body(bool inside, ivec3 at) {
 bool one_beyond(bool inside, ivec3 at) {
     for (int k = 0; k < 6; k++) {
         int side = 2 * (k & 1) - 1, across = (k >> 1) - 1;
-        uint ids = three_ids_of(inside, at + ivec3(0, 2 * side, across)) |
-                   three_ids_of(inside, at + ivec3(0, across, 2 * side));
-        for (int z = -1; z <= 1; z++) ids |= three_ids_of(inside, at + ivec3(side, across, z));
+        uint ids = lbm_three_ids(inside, at + ivec3(0, 2 * side, across)) |
+                   lbm_three_ids(inside, at + ivec3(0, across, 2 * side));
+        for (int z = -1; z <= 1; z++) ids |= lbm_three_ids(inside, at + ivec3(side, across, z));
         if (ids != 0u) return true;
     }
     return false;

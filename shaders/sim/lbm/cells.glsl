@@ -39,7 +39,7 @@ uint lbm_element_of(ivec3 cell, out uint lane) {
 }
 
 // Bodies stand where scalars have fewer links than the air.
-#define LBM_ROUTES (LBM_BODIES != 0 && LBM_SCALARS > 0 && LBM_SCALAR_Q == 7)
+#define LBM_ROUTES (LBM_BODIES != 0 && LBM_BY_LINKS != 0 && LBM_SCALARS > 0 && LBM_SCALAR_Q == 7)
 
 struct lbm_site { // of an element
     uint solid; // lanes that no air is in
