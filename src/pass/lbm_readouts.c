@@ -10,6 +10,14 @@
 // Of the air's mass, either way: more is not air that was blown or drawn, but a solver that fails.
 static const double most_drift = 0.5;
 
+float lbm_air_speed_shown(const lbm_air *a) {
+    return a->stops ? (float)(SIM_MACH_MAX / sqrt(3)) : 1e30f;
+}
+
+float lbm_air_drift_shown(void) {
+    return (float)most_drift;
+}
+
 static double measured(const lbm_air *a) { // m/s
     return (double)a->report.speed * a->units.cell / a->units.step;
 }

@@ -134,6 +134,10 @@ bool lbm_guard_read(lbm_guard *guard, gpu *g, lbm_report *out) {
     return false;
 }
 
+gpu_buffer *lbm_guard_newest(const lbm_guard *guard) {
+    return guard->places[(guard->next + PLACES - 1) % PLACES].frame ? guard->parts : NULL;
+}
+
 void lbm_guard_forget(lbm_guard *guard) {
     memset(guard->places, 0, sizeof guard->places);
 }

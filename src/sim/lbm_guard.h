@@ -25,4 +25,7 @@ void lbm_guard_destroy(lbm_guard *guard, gpu *g);
 bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l);
 // The newest report of a frame that has finished; false: there is none yet.
 bool lbm_guard_read(lbm_guard *guard, gpu *g, lbm_report *out);
+// On the device, in the frame that recorded it: the newest record, in 32-bit words: cells, bad,
+// speed (float), where, sum of density - 1 (float). NULL: none was recorded.
+gpu_buffer *lbm_guard_newest(const lbm_guard *guard);
 void lbm_guard_forget(lbm_guard *guard); // what was recorded so far: after a reset

@@ -427,6 +427,32 @@ static void air_that_bursts_stops_and_says_so(void **state) {
     roil_unload(e);
 }
 
+// While the host does not know yet that it has to stop, steps go on, and the picture stays.
+static void what_burst_is_never_shown(void **state) {
+    static const char *const keys[] = {"guard = 'stop'", "buoyancy_heat = 1e7"};
+    for (int i = 0; i < 2; i++) {
+        picture p, last = {0};
+        double steps = 0;
+        int changed = 0, held = 0;
+        roil_effect *e =
+            open(*state, 24, keys[i],
+                 "air:source { shape = box { position = {0, 0, 0.5} }, density = 1,\n"
+                 "  temperature = smoothstep(0.1, 0.2, time), velocity = vec(0, 0, 40 * time) }");
+        for (int frame = 1; frame <= 12; frame++) {
+            draw(e, frame, p);
+            bool same = memcmp(p, last, sizeof p) == 0, steps_on = readout(e, "steps") > steps;
+            if (held) assert_true(same);
+            changed += !same;
+            held += same && steps_on;
+            steps = readout(e, "steps");
+            memcpy(last, p, sizeof p);
+        }
+        print_message("%s: %d pictures, then %d more states of it\n", keys[i], changed, held);
+        assert_true(changed > 0 && held > 0);
+        roil_unload(e);
+    }
+}
+
 static void what_is_not_in_the_air_is_told(void **state) {
     static const char beside[] =
         "air:source { shape = sphere { position = %s, radius = 0.2 }, density = 1 }";
@@ -497,6 +523,7 @@ int main(void) {
         cmocka_unit_test(air_that_is_too_fast_is_held_back_by_itself),
         cmocka_unit_test(nothing_that_is_given_bursts_it),
         cmocka_unit_test(air_that_bursts_stops_and_says_so),
+        cmocka_unit_test(what_burst_is_never_shown),
         cmocka_unit_test(what_is_not_in_the_air_is_told),
         cmocka_unit_test(smoke_is_where_its_source_is_and_rises),
         cmocka_unit_test(a_field_pushes_the_air),

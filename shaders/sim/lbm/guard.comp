@@ -16,7 +16,7 @@ struct Record {
 };
 
 #ifdef LAST
-layout(std430) readonly buffer Parts { Record parts[]; };
+layout(std430) buffer Parts { Record parts[]; }; // afterwards the first is the only one, for other shaders
 layout(r32ui) writeonly uniform uimage2D result; //= output r32ui : the record, word by word
 #else
 layout(std430) readonly buffer Moments { uvec4 moments[]; };
@@ -94,6 +94,7 @@ void main() {
         floatBitsToUint(r.least.w), floatBitsToUint(r.most.x), floatBitsToUint(r.most.y),
         floatBitsToUint(r.most.z), floatBitsToUint(r.most.w));
     for (int i = 0; i < 16; i++) imageStore(result, ivec2(i, 0), uvec4(words[i]));
+    parts[0] = r;
 #else
     parts[gl_WorkGroupID.x] = r;
 #endif
