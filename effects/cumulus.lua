@@ -1,4 +1,4 @@
--- A cumulus grows on a summer afternoon, in time-lapse: bubbles of warm air rise from a field, and where
+-- A cumulus grows late on a summer afternoon, in time-lapse: bubbles of warm air rise from a field, and where
 -- they are high enough to cool to their dew point, the water in them shows. So what is simulated is
 -- vapour, and the cloud is what of it is above that height. A metre here is a hundred outside.
 --
@@ -10,7 +10,7 @@
 local fx = effect { name = "cumulus", fps = 24, frames = 132 }
 
 local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along each edge, relative to 128 x 128 x 96; taken when the effect loads" }
-local density = param { "density", 16, min = 0, max = 100, unit = "1/m", help = "of the cloud" }
+local density = param { "density", 40, min = 0, max = 100, unit = "1/m", help = "of the cloud" }
 local lift    = param { "lift", 3.8, min = 0, max = 10, unit = "m/s^2", help = "how fast warm air rises" }
 local base    = param { "base", 1.6, min = 0, max = 8, unit = "m", help = "height at which vapour becomes a cloud" }
 local wind    = param { "wind", 0.2, min = 0, max = 2, unit = "m/s", help = "from the left" }
@@ -45,19 +45,19 @@ local folds = curl { frequency = 0.9, octaves = 4, persistence = 0.6, drift = {0
 local body  = clamp(air.density:warp(folds, folded) * 3, 0, 1) * smoothstep(base - 0.15, base + 0.35, position.z)
 local cloud = body * smoothstep(0, 0.2, body - eaten * (1 - lumps) * (1 - 0.6 * body))
 
-fx.sun    = sun { azimuth = 186, elevation = 38, color = {1, 0.93, 0.80}, strength = 11 }
-fx.sky    = sky { zenith = {0.06, 0.18, 0.55}, horizon = {0.48, 0.60, 0.76}, strength = 0.55 }
-fx.camera = camera { eye = {0, -18, 0.7}, target = {0.2, 0, 2.9}, fov = 21, near = 0.1, far = 2000 }
+fx.sun    = sun { azimuth = 160, elevation = 26, color = {1, 0.80, 0.55}, strength = 20 }
+fx.sky    = sky { zenith = {0.03, 0.13, 0.5}, horizon = {0.40, 0.52, 0.68}, strength = 0.65 }
+fx.camera = camera { eye = {0, -18, 0.5}, target = {0.1, 0, 2.9}, fov = 18, near = 0.1, far = 2000 }
 
 local lit = lighting {
   density = cloud * density, albedo = {0.998, 0.998, 0.998}, lobes = { {0.75, 0.7}, {0.25, -0.15} },
 }
-local scene  = geometry { mesh { "data/ground.obj", color = {0.75, 0.95, 0.5} } }
+local scene  = geometry { mesh { "data/ground.obj", color = {0.35, 0.5, 0.22} } }
 local solid  = shade { from = {scene, lit}, haze = 0.008 }
-local volume = march { from = {lit, scene}, steps = 160 }
+local volume = march { from = {lit, scene}, steps = 224 }
 
 local picture = over { volume, solid, from = {volume, scene} }
-local shown   = final { source = picture, tonemap = "aces", exposure_ev = 0.25 }
+local shown   = final { source = picture, tonemap = "aces", exposure_ev = 0.1 }
 
 fx.output = shown.color
 fx.linear = shown.linear

@@ -9,13 +9,13 @@
 local fx = effect { name = "figure", fps = 24, frames = 192 }
 
 local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along each edge, relative to 192 x 64 x 96; taken when the effect loads" }
-local density = param { "density", 26, min = 0, max = 100, unit = "1/m", help = "how thick the smoke is" }
-local wind    = param { "wind", 1.5, min = 0, max = 3, unit = "m/s", help = "against which the runner runs" }
-local lift    = param { "lift", 0.5, min = -5, max = 10, unit = "m/s^2", help = "how fast the smoke's heat makes it rise" }
+local density = param { "density", 80, min = 0, max = 200, unit = "1/m", help = "how thick the body is; what it leaves is much thinner" }
+local wind    = param { "wind", 3, min = 0, max = 5, unit = "m/s", help = "against which the runner runs" }
+local lift    = param { "lift", 0.8, min = -5, max = 10, unit = "m/s^2", help = "how fast the smoke's heat makes it rise" }
 local uneven  = param { "uneven", 0.6, min = 0, max = 1, help = "how patchy the body is" }
-local eaten   = param { "eaten", 1.3, min = 0, max = 2, help = "how much noise finer than a cell eats from the smoke" }
-local folded  = param { "folded", 0.05, min = 0, max = 0.2, unit = "m", help = "how far eddies finer than a cell carry the smoke" }
-local color   = param { "color", {0.42, 0.72, 1}, color = true, help = "of the smoke" }
+local eaten   = param { "eaten", 0.6, min = 0, max = 2, help = "how much noise finer than a cell eats from the smoke" }
+local folded  = param { "folded", 0.1, min = 0, max = 0.2, unit = "m", help = "how far eddies finer than a cell carry the smoke" }
+local color   = param { "color", {0.92, 0.95, 1}, color = true, help = "of the smoke" }
 
 -- How much of the runner is there, by the second.
 local presence = curve { {0, 1}, {1.4, 1}, {1.8, 0.1}, {2, 1}, shape = "ease_in_out", period = 2 }
@@ -26,41 +26,43 @@ local function cells(count) return math.max(16, 8 * math.floor(count * detail:ge
 local air = lbm {
   size = {cells(192), cells(64), cells(96)}, voxel_size = 4.8 / cells(192), position = {-1.35, 0, 0},
   boundary = { right = "inflow", left = "open", front = "open", back = "open", top = "open", bottom = "wall" },
-  wind = vec(-wind, 0, 0), buoyancy_heat = lift, cooling_rate = 0.3, dissolve_rate = 0.1, speed = 2.5,
+  wind = vec(-wind, 0, 0), buoyancy_heat = lift, cooling_rate = 0.3, dissolve_rate = 0.6, speed = 4,
 }
 local runner = mesh { "data/figure.obj" }
-local grain  = worley { frequency = 5, octaves = 2, speed = 1.5, drift = {-0.4, 0, 0}, seed = 4 }
+local grain  = worley { frequency = 5, octaves = 2, speed = 1.5, drift = {-0.4, 0, 0}, seed = 4 }:tile()
 air:source {
-  runner, rule = "solid",
-  density = presence * mix(1, smoothstep(0.25, 0.6, grain), uneven), temperature = 1,
-  velocity = 0.25 * curl { frequency = 2, speed = 2, seed = 6 },
+  runner, rule = "solid", temperature = 1,
+  density = presence * mix(1, smoothstep(0.3, 0.6, grain), uneven) * mix(0.2, 1, smoothstep(0.3, -0.2, position.x)),
+  velocity = vec(-0.45 * wind, 0, 0) + curl { frequency = 1.5, speed = 2, seed = 6 },
 }
 
 -- What is finer than a cell is not in the air. Noise stands for it, carried along by the air, and eats at
--- the smoke where that is thin.
+-- the smoke where that is thin. What is hardly there is left out: no samples are taken where nothing is.
 local lumps = worley { frequency = 5, octaves = 3, persistence = 0.55, lacunarity = 2.1, seed = 4 }
               :tile():advect(air.velocity, { period = 0.5, mean = 0.48 })
 local folds = curl { frequency = 4, octaves = 3, persistence = 0.6, drift = {1, 0, 0}, speed = 0.8, seed = 9 }:tile()
-local cover = clamp(air.density:warp(folds, folded) * 1.6, 0, 1)
-local trail = cover * smoothstep(0, 0.35, cover - eaten * (1 - lumps) * (1 - 0.6 * cover))
+local cover = smoothstep(0.06, 0.65, air.density:warp(folds, folded))
+local trail = cover * (0.3 + 1.2 * lumps * lumps) * smoothstep(0, 0.35, cover - eaten * (1 - lumps) * (1 - 0.6 * cover))
 
 -- The body itself is sharper than cells of the air could show it: a distance to the mesh, in finer ones.
+-- The wind eats at what is behind.
 local body  = voxels { runner, resolution = 160 }
 local near  = box { position = {-0.05, 0, 1.06}, size = {1.5, 0.75, 1.75} } -- a distance is known everywhere; the smoke ends here
-local skin  = near * smoothstep(0.012, -0.02, body.distance + 0.03 * (1 - presence) + 0.03 * uneven * (1 - grain))
+local behind = 0.02 + 0.12 * smoothstep(0.1, -0.45, position.x)
+local skin  = near * smoothstep(0.012, -0.02, body.distance + 0.03 * (1 - presence) + behind * uneven * (1 - grain))
 local left  = smoothstep(-0.02, 0.1, body.distance) -- what has left it: around it, cells of the air are not seen
-local smoke = max(0.3 * trail * left, skin * presence)
+local smoke = max(0.04 * trail * left, skin * presence)
 
--- The sun stands low behind the smoke, and comes through it.
-fx.sun    = sun { azimuth = 118, elevation = 9, color = {1, 0.76, 0.54}, strength = 9 }
-fx.sky    = sky { zenith = {0.008, 0.018, 0.055}, horizon = {0.055, 0.06, 0.09}, strength = 1 }
+-- The sun has almost set behind the runner, and shines through what is thin; on this side it is night.
+fx.sun    = sun { azimuth = 80, elevation = 14, color = {1, 0.5, 0.2}, strength = 16 }
+fx.sky    = sky { zenith = {0.004, 0.010, 0.030}, horizon = {0.022, 0.034, 0.07}, strength = 1 }
 fx.lights = {
-  spot_light { position = {4.5, -5, 3.5}, target = {0, 0, 1.1}, color = {0.55, 0.75, 1}, power = 900, angle = 50, softness = 0.6 },
+  spot_light { position = {4.5, -4, 3.8}, target = {-0.5, 0, 1.1}, color = {0.2, 0.45, 1}, power = 1500, angle = 50, softness = 0.6 },
 }
-fx.camera = camera { eye = {-0.7, -9, 0.7}, target = {-0.75, 0, 1.12}, fov = 16, near = 0.1, far = 500 }
+fx.camera = camera { eye = {-0.3, -9, 0.75}, target = {-0.5, 0, 1.15}, fov = 14, near = 0.1, far = 500 }
 
-local lit    = lighting { density = smoke * density, albedo = {0.96, 0.96, 0.96}, tint = color, anisotropy = 0.45, sampling = "cubic" }
-local scene  = geometry { mesh { "data/ground.obj", color = {0.22, 0.32, 0.55} } }
+local lit    = lighting { density = smoke * density, albedo = {0.8, 0.81, 0.83}, tint = color, anisotropy = 0.3, shadow_resolution = 192, sampling = "cubic" }
+local scene  = geometry { mesh { "data/ground.obj", color = {0.1, 0.14, 0.25} } }
 local solid  = shade { from = {scene, lit}, haze = 0.012 }
 local volume = march { from = {lit, scene}, steps = 160 }
 
