@@ -26,10 +26,7 @@ uniform vec3 wind;                   //= {0, 0, 0} [-inf, inf] m/s : of faces th
 uniform float smagorinsky;           //= 0.1 [0, 1] : of the eddies finer than a cell, which take motion away
 layout(std430) readonly buffer Moments { uvec4 moments[]; };
 layout(std430) readonly buffer MomentsBefore { uvec4 before[]; };
-// What the guard saw (src/sim/lbm_guard.h).
-layout(std430) readonly buffer Guard { uint guard_cells, guard_bad; float guard_speed; uint guard_where; float guard_mass; };
-uniform float most_speed; // cells a step, and
-uniform float most_drift; // change of the mass, of which no more is shown; 0: the guard saw nothing yet
+layout(std430) readonly buffer Guard { uint spoilt; }; // what the guard found (src/sim/lbm_guard.h)
 uniform vec3 size;      // cells
 uniform float blend;    // of the two states
 uniform float speed;    // metres a second of a cell a step
@@ -51,15 +48,8 @@ vec3 scalars_of(uvec4 m) {
     return vec3(unpackHalf2x16(m.z), unpackHalf2x16(m.w).x);
 }
 
-// What is no air any more is not shown: what was shown before stays.
-bool is_spoilt() {
-    if (most_drift == 0.0) return false;
-    float good = max(float(guard_cells - guard_bad), 1.0);
-    return guard_bad > 0u || guard_speed > most_speed || abs(guard_mass) > most_drift * good;
-}
-
 void main() {
-    if (is_spoilt()) return;
+    if (spoilt != 0u) return; // it is no air any more: what was shown before stays
     uvec3 cell = gl_GlobalInvocationID, cells = uvec3(size);
     if (any(greaterThanEqual(cell, cells))) return;
     uint at = cell.x + cells.x * (cell.y + cells.y * cell.z);

@@ -18,12 +18,8 @@ bool lbm_fill(pass *p, const shader_binary *binary, unsigned char *block) {
     float speed = (float)(a->units.cell / a->units.step);
     float pressure = (float)lbm_air_pascals(a);
     float blend = (float)lbm_air_blend(a, p->host->context->time);
-    float speed_shown = lbm_air_speed_shown(a);
-    float drift_shown = lbm_guard_newest(a->guard) ? lbm_air_drift_shown() : 0;
     pass_write_member(binary, block, "size", size, sizeof size);
     pass_write_member(binary, block, "blend", &blend, sizeof blend);
-    pass_write_member(binary, block, "most_speed", &speed_shown, sizeof speed_shown);
-    pass_write_member(binary, block, "most_drift", &drift_shown, sizeof drift_shown);
     pass_write_member(binary, block, "speed", &speed, sizeof speed);
     pass_write_member(binary, block, "pressure", &pressure, sizeof pressure);
     pass_write_box(binary, block, a->grid.box);
@@ -66,12 +62,12 @@ static bool show(pass *p, lbm_air *a) {
     a->shown_steps = steps;
     a->shown_blend = blend;
     a->grid.state.content++;
-    if (!now || a->fresh) return show_nothing(p);
     gpu_buffer *seen = lbm_guard_newest(a->guard);
-    if (seen && !has_content(p) && !show_nothing(p)) return false; // it may stay as it is
+    if (!now || !seen || a->fresh) return show_nothing(p);
+    if (!has_content(p) && !show_nothing(p)) return false; // it may stay as it is
     const pass_override overrides[] = {{"Moments", {.buffer = now}},
                                        {"MomentsBefore", {.buffer = before ? before : now}},
-                                       {"Guard", {.buffer = seen ? seen : now}}};
+                                       {"Guard", {.buffer = seen}}};
     gpu_binding bindings[GPU_MAX_SLOTS];
     gpu_dispatch_desc dispatch = {.pipeline = p->pipeline, .bindings = bindings};
     memcpy(dispatch.threads, a->desc.size, sizeof dispatch.threads);

@@ -75,12 +75,6 @@ bool lbm_air_advance(pass *p); // to the host's time, as far as one submit goes
 // How the two kept states are mixed for the host's time.
 double lbm_air_blend(const lbm_air *a, double time);
 
-// lbm_readouts.c
-// Beyond these air is stopped and not shown: its greatest speed (cells a step), and how its mass
-// changed, either way, as a part of it.
-float lbm_air_speed_shown(const lbm_air *a);
-float lbm_air_drift_shown(void);
-
 // lbm_frame.c
 double lbm_air_pascals(const lbm_air *a); // of an excess of density of 1
 

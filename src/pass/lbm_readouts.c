@@ -8,14 +8,12 @@
 #include <string.h>
 
 // Of the air's mass, either way: more is not air that was blown or drawn, but a solver that fails.
-static const double most_drift = 0.5;
+static const float spoilt_drift = 0.5f;
 
-float lbm_air_speed_shown(const lbm_air *a) {
-    return a->stops ? (float)(SIM_MACH_MAX / sqrt(3)) : 1e30f;
-}
-
-float lbm_air_drift_shown(void) {
-    return (float)most_drift;
+// Air that is slowed down is never too fast.
+static lbm_guard_limits spoilt_beyond(const lbm_air *a) {
+    return (lbm_guard_limits){.speed = a->stops ? (float)(SIM_MACH_MAX / sqrt(3)) : 1e30f,
+                              .drift = spoilt_drift};
 }
 
 static double measured(const lbm_air *a) { // m/s
@@ -31,14 +29,9 @@ static bool is_held_back(const lbm_air *a) {
     return !a->stops && mach(a) > 0.99 * SIM_MACH_MAX;
 }
 
-// Beyond help: what is there is no air any more.
-static bool is_spoilt(const lbm_air *a) {
-    return a->report.bad || fabs((double)a->report.drift) > most_drift;
-}
-
-// What stops air: that, or, if it is wanted, that it is too fast.
-static bool must_stop(const lbm_air *a) {
-    return is_spoilt(a) || (a->stops && mach(a) > SIM_MACH_MAX);
+// Beyond help, however fast it is.
+static bool is_ruined(const lbm_air *a) {
+    return a->report.spoilt & (LBM_SPOILT_NUMBERS | LBM_SPOILT_MASS);
 }
 
 // Air that burst tells nothing of how fast it should have been.
@@ -46,7 +39,7 @@ static void tell_burst(lbm_air *a) {
     char what[128], change[64];
     if (a->report.bad)
         snprintf(what, sizeof what, "in %u cells it is no number any more", a->report.bad);
-    else if (is_spoilt(a))
+    else if (is_ruined(a))
         snprintf(what, sizeof what, "its mass changed by %.3g %%", 100 * (double)a->report.drift);
     else
         snprintf(what, sizeof what, "it became Mach %.2g on the lattice", mach(a));
@@ -75,7 +68,7 @@ static void tell_held_back(lbm_air *a) {
 // What the guard saw; false: nothing.
 static bool tell_report(lbm_air *a, const sim_flow *flow) {
     if (!a->reported) return false;
-    if (is_spoilt(a) || (a->stops && mach(a) > 1))
+    if (is_ruined(a) || (a->stops && mach(a) > 1))
         tell_burst(a);
     else if (is_held_back(a))
         tell_held_back(a);
@@ -113,7 +106,7 @@ static void look(lbm_air *a) {
     if (lbm_guard_read(a->guard, a->pass->host->device, &report)) {
         a->report = report;
         a->reported = true;
-        a->stopped = must_stop(a);
+        a->stopped = report.spoilt != 0;
     }
     tell(a);
 }
@@ -121,7 +114,9 @@ static void look(lbm_air *a) {
 bool lbm_air_watch(pass *p) {
     lbm_air *a = lbm_air_of(p);
     look(a);
-    return !a->last_steps || lbm_guard_record(a->guard, p->host->device, a->solver);
+    // A state that was taken over has not been looked at yet.
+    if (!a->last_steps && (a->fresh || lbm_guard_newest(a->guard))) return true;
+    return lbm_guard_record(a->guard, p->host->device, a->solver, spoilt_beyond(a));
 }
 
 const char *lbm_air_trouble(const pass *p) {

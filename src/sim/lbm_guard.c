@@ -12,7 +12,8 @@ enum {
     GROUP = 256,        // threads, as in the shader
     GROUPS = 512,       // most of the first dispatch: enough to fill a large device
     CELLS_A_THREAD = 4, // least, while there are fewer groups
-    WORDS = 16,         // of a record
+    RECORD = 80,        // bytes of one, as the shader lays it out
+    WORDS = 17,         // of the one that is read
     PLACES = GPU_FRAMES_IN_FLIGHT + 1,
 };
 
@@ -57,7 +58,7 @@ bool lbm_guard_allocate(lbm_guard *guard, gpu *g) {
     for (int i = 0; i < 2; i++)
         if (!sim_kernel_build(&guard->kernels[i], g)) return false;
     guard->parts = gpu_buffer_create(
-        g, &(gpu_buffer_desc){.label = "guard", .size = (uint64_t)guard->groups * WORDS * 4});
+        g, &(gpu_buffer_desc){.label = "guard", .size = (uint64_t)guard->groups * RECORD});
     guard->found = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "guard's report",
                                                            .size = PLACES * WORDS * 4,
                                                            .kind = GPU_BUFFER_READBACK});
@@ -90,10 +91,12 @@ static bool dispatch(lbm_guard *guard, gpu *g, int which, gpu_buffer *moments) {
     return sim_kernel_run(k, g, slots, 3, (const uint32_t[3]){stride, 1, 1});
 }
 
-bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l) {
+bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l, lbm_guard_limits limits) {
     gpu_buffer *moments = lbm_moments(l, 0);
     if (!moments) return true;
     uint32_t place = guard->next;
+    sim_kernel_set(&guard->kernels[1], "spoilt_speed", &limits.speed, sizeof limits.speed);
+    sim_kernel_set(&guard->kernels[1], "spoilt_drift", &limits.drift, sizeof limits.drift);
     if (!dispatch(guard, g, 0, moments) || !dispatch(guard, g, 1, moments) ||
         !gpu_image_copy_to_buffer(g, guard->result, guard->found, place * WORDS * 4))
         return false;
@@ -106,7 +109,7 @@ static void unpack(const lbm_guard *guard, const uint32_t words[WORDS], lbm_repo
     float values[WORDS];
     memcpy(values, words, sizeof values);
     uint32_t cell = words[3], columns = guard->size[0], good = words[0] - words[1];
-    *out = (lbm_report){.cells = words[0], .bad = words[1]};
+    *out = (lbm_report){.cells = words[0], .bad = words[1], .spoilt = words[16]};
     if (good == 0) return;
     out->speed = values[2];
     out->where[0] = cell % columns;

@@ -5,10 +5,22 @@
 
 typedef struct lbm_guard lbm_guard;
 
+typedef struct lbm_guard_limits { // beyond these a state is spoilt: it is no air any more
+    float speed;                  // cells a step
+    float drift;                  // of the mass, either way, as a part of it
+} lbm_guard_limits;
+
+typedef enum lbm_spoilt {   // by what; bits
+    LBM_SPOILT_NUMBERS = 1, // moments that are no numbers
+    LBM_SPOILT_MASS = 2,
+    LBM_SPOILT_SPEED = 4,
+} lbm_spoilt;
+
 typedef struct lbm_report { // of one kept state; lattice units
     uint64_t step;          // lbm_steps when it was recorded
     uint32_t cells;         // of air
     uint32_t bad;           // of these, whose moments are no numbers; they are left out below
+    uint32_t spoilt;        // lbm_spoilt; 0: it is not
     float speed;            // greatest; Mach number: times sqrt(3)
     uint32_t where[3];      // the cell in which it is that
     // Density - 1: how far the mass has drifted, and how much it is pressed together.
@@ -22,10 +34,9 @@ bool lbm_guard_allocate(lbm_guard *guard, gpu *g); // pipelines and memory; agai
 void lbm_guard_destroy(lbm_guard *guard, gpu *g);
 
 // Inside a frame, once: looks at the newest moments that `l` has kept; if none, at nothing.
-bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l);
+bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l, lbm_guard_limits limits);
 // The newest report of a frame that has finished; false: there is none yet.
 bool lbm_guard_read(lbm_guard *guard, gpu *g, lbm_report *out);
-// On the device, in the frame that recorded it: the newest record, in 32-bit words: cells, bad,
-// speed (float), where, sum of density - 1 (float). NULL: none was recorded.
+// On the device: the newest record, whose first word is `spoilt`. NULL: none was recorded.
 gpu_buffer *lbm_guard_newest(const lbm_guard *guard);
 void lbm_guard_forget(lbm_guard *guard); // what was recorded so far: after a reset

@@ -43,22 +43,28 @@ static void close_guarded(guarded *t) {
     sim_close(&t->w);
 }
 
+typedef void state_at(int x, int y, int z, sim_cell *cell);
+
 // The report of the state that `at` says, of one frame, read when that is done.
-static lbm_report report_of(guarded *t, void (*at)(int x, int y, int z, sim_cell *cell)) {
+static lbm_report report_within(guarded *t, state_at *at, lbm_guard_limits limits) {
     lbm_report report;
     sim_set_state(&t->w, at);
     lbm_guard_forget(t->guard);
     uint64_t frame = gpu_frame_begin(t->w.device);
     gpu_test_ok(frame);
-    gpu_test_ok(lbm_guard_record(t->guard, t->w.device, t->w.lattice)); // nothing is kept yet
+    gpu_test_ok(lbm_guard_record(t->guard, t->w.device, t->w.lattice, limits)); // nothing is kept
     sim_bodies_set(&t->w, &t->b, corner, NULL);
     gpu_test_ok(lbm_step(t->w.lattice, t->w.device, &t->w.numbers, true));
-    gpu_test_ok(lbm_guard_record(t->guard, t->w.device, t->w.lattice));
+    gpu_test_ok(lbm_guard_record(t->guard, t->w.device, t->w.lattice, limits));
     assert_false(lbm_guard_read(t->guard, t->w.device, &report)); // of an open frame
     gpu_test_ok(gpu_frame_end(t->w.device));
     gpu_test_ok(gpu_frame_wait(t->w.device, frame));
     gpu_test_ok(lbm_guard_read(t->guard, t->w.device, &report));
     return report;
+}
+
+static lbm_report report_of(guarded *t, state_at *at) {
+    return report_within(t, at, (lbm_guard_limits){.speed = 1, .drift = 0.5f});
 }
 
 static bool near(float seen, double wanted, double by) {
@@ -71,6 +77,7 @@ static void guard_tells_speed_mass_and_scalars(void **state) {
     lbm_report r = report_of(&t, stirred);
     assert_int_equal(r.cells, NX * NY * NZ - 8);
     assert_int_equal(r.bad, 0);
+    assert_int_equal(r.spoilt, 0);
     assert_int_equal(r.step, 1);
     assert_true(near(r.speed, 0.12, 1e-4));
     assert_int_equal(r.where[0], 5);
@@ -88,7 +95,35 @@ static void guard_counts_what_is_no_number(void **state) {
     open_guarded(&t, *state);
     lbm_report r = report_of(&t, spoilt);
     assert_int_equal(r.bad, 2);
+    assert_int_equal(r.spoilt, LBM_SPOILT_NUMBERS);
     assert_true(near(r.speed, 0.12, 1e-4) && near(r.most[0], 4, 1e-2)); // of the others
+    close_guarded(&t);
+}
+
+static void thin(int x, int y, int z, sim_cell *cell) {
+    stirred(x, y, z, cell);
+    cell->density = 0.9;
+}
+
+// The speed is 0.12, the mass 0.001 more or 0.1 less: each limit by itself, a little above and
+// below.
+static void guard_says_by_what_air_is_spoilt(void **state) {
+    static const struct {
+        state_at *at;
+        lbm_guard_limits limits;
+        uint32_t spoilt;
+    } rows[] = {
+        {stirred, {0.121f, 0.0011f}, 0},
+        {stirred, {0.119f, 0.0011f}, LBM_SPOILT_SPEED},
+        {stirred, {0.121f, 0.0009f}, LBM_SPOILT_MASS},
+        {thin, {1, 0.11f}, 0},
+        {thin, {1, 0.09f}, LBM_SPOILT_MASS},
+        {spoilt, {0.119f, 0.0009f}, LBM_SPOILT_NUMBERS | LBM_SPOILT_MASS | LBM_SPOILT_SPEED},
+    };
+    guarded t;
+    open_guarded(&t, *state);
+    for (size_t i = 0; i < COUNT_OF(rows); i++)
+        assert_int_equal(report_within(&t, rows[i].at, rows[i].limits).spoilt, rows[i].spoilt);
     close_guarded(&t);
 }
 
@@ -103,7 +138,8 @@ static void guard_never_waits(void **state) {
         gpu_test_ok(gpu_frame_begin(t.w.device));
         if (i == 0) sim_bodies_set(&t.w, &t.b, corner, NULL);
         gpu_test_ok(lbm_step(t.w.lattice, t.w.device, &t.w.numbers, true));
-        gpu_test_ok(lbm_guard_record(t.guard, t.w.device, t.w.lattice));
+        gpu_test_ok(lbm_guard_record(t.guard, t.w.device, t.w.lattice,
+                                     (lbm_guard_limits){.speed = 1, .drift = 0.5f}));
         if (lbm_guard_read(t.guard, t.w.device, &r)) {
             assert_true(r.step >= last && r.step <= (uint64_t)i);
             assert_int_equal(r.cells, NX * NY * NZ - 8);
@@ -119,6 +155,7 @@ int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(guard_tells_speed_mass_and_scalars),
         cmocka_unit_test(guard_counts_what_is_no_number),
+        cmocka_unit_test(guard_says_by_what_air_is_spoilt),
         cmocka_unit_test(guard_never_waits),
     };
     return gpu_test_run(tests, COUNT_OF(tests));

@@ -6,8 +6,13 @@
 layout(local_size_x = 256) in;
 uniform uint count;  // of cells, or of records with LAST
 uniform uint stride; // threads of the dispatch
+#ifdef LAST
+uniform float spoilt_speed; // cells a step: faster air is spoilt
+uniform float spoilt_drift; // of the mass, either way: air that gained or lost more of it is, too
+#endif
 
 struct Record {
+    uint spoilt;       // NUMBERS, MASS, SPEED: what it is no air any more by; 0: it is. With LAST only
     uint cells, bad;   // air, and those of it whose values are no numbers
     float speed;       // greatest
     uint where;        // in which cell
@@ -16,7 +21,7 @@ struct Record {
 };
 
 #ifdef LAST
-layout(std430) buffer Parts { Record parts[]; }; // afterwards the first is the only one, for other shaders
+layout(std430) buffer Parts { Record parts[]; }; // afterwards the first is the only one
 layout(r32ui) writeonly uniform uimage2D result; //= output r32ui : the record, word by word
 #else
 layout(std430) readonly buffer Moments { uvec4 moments[]; };
@@ -26,9 +31,10 @@ layout(std430) writeonly buffer Parts { Record parts[]; };
 shared Record shares[64]; // one for each subgroup: these are of 4 threads or more
 
 const float END = 3.0e38;
+const uint NUMBERS = 1u, MASS = 2u, SPEED = 4u; // as lbm_spoilt of src/sim/lbm_guard.h
 
 Record nothing() {
-    return Record(0u, 0u, -1.0, 0u, vec4(0.0), vec4(END), vec4(-END));
+    return Record(0u, 0u, 0u, -1.0, 0u, vec4(0.0), vec4(END), vec4(-END));
 }
 
 void merge(inout Record a, Record b) {
@@ -68,9 +74,17 @@ Record look(uint cell) {
 Record over_subgroup(Record r) {
     float speed = subgroupMax(r.speed);
     uint where = subgroupMin(r.speed == speed ? r.where : 0xffffffffu);
-    return Record(subgroupAdd(r.cells), subgroupAdd(r.bad), speed, where, subgroupAdd(r.sum),
+    return Record(0u, subgroupAdd(r.cells), subgroupAdd(r.bad), speed, where, subgroupAdd(r.sum),
                   subgroupMin(r.least), subgroupMax(r.most));
 }
+
+#ifdef LAST
+uint judge(Record r) {
+    float good = float(r.cells - r.bad);
+    return (r.bad > 0u ? NUMBERS : 0u) | (abs(r.sum.x) > spoilt_drift * good ? MASS : 0u) |
+           (r.speed > spoilt_speed ? SPEED : 0u);
+}
+#endif
 
 void main() {
     Record r = nothing();
@@ -87,13 +101,14 @@ void main() {
     if (gl_LocalInvocationIndex > 0u) return;
     for (uint i = 1u; i < gl_NumSubgroups; i++) merge(r, shares[i]);
 #ifdef LAST
-    const uint words[16] = uint[16](
+    r.spoilt = judge(r);
+    const uint words[17] = uint[17](
         r.cells, r.bad, floatBitsToUint(r.speed), r.where, floatBitsToUint(r.sum.x),
         floatBitsToUint(r.sum.y), floatBitsToUint(r.sum.z), floatBitsToUint(r.sum.w),
         floatBitsToUint(r.least.x), floatBitsToUint(r.least.y), floatBitsToUint(r.least.z),
         floatBitsToUint(r.least.w), floatBitsToUint(r.most.x), floatBitsToUint(r.most.y),
-        floatBitsToUint(r.most.z), floatBitsToUint(r.most.w));
-    for (int i = 0; i < 16; i++) imageStore(result, ivec2(i, 0), uvec4(words[i]));
+        floatBitsToUint(r.most.z), floatBitsToUint(r.most.w), r.spoilt);
+    for (int i = 0; i < 17; i++) imageStore(result, ivec2(i, 0), uvec4(words[i]));
     parts[0] = r;
 #else
     parts[gl_WorkGroupID.x] = r;
