@@ -2,9 +2,10 @@
 // the velocity. The air passes staircases by 18 or 26 links, of which a scalar has six: what these
 // would carry by the velocity does not add up to 0 even where the flow is steady, and smoke that was
 // even grows thick in one cell and thin in the next. A tracer stays even when its fluxes are those of
-// the mass: Lin and Rood, "Multidimensional flux-form semi-Lagrangian transport schemes", 1996. Those
-// are known here, what a cell sends along a link less what comes back by it: Koerner et al., "Lattice
-// Boltzmann model for free surface flow for modeling foaming", 2005, section 3.
+// the mass: Lin and Rood, "Multidimensional flux-form semi-Lagrangian transport schemes", Mon.
+// Weather Rev. 124, 1996. Those are known here, what a cell sends along a link less what comes back by
+// it: Koerner et al., "Lattice Boltzmann model for free surface flow for modeling foaming", J. Stat.
+// Phys. 121, 2005.
 //
 // What goes along an edge or a corner takes axes instead: a half by the one cell between and a half
 // by the other, or all of it by the one that is air. The cell that it leaves answers for the first
