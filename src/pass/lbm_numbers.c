@@ -34,14 +34,24 @@ static bool add_force(const pass *p, const lbm_air *a, float out[3]) {
     return true;
 }
 
-float lbm_air_most_speed(const lbm_air *a) {
-    return a->stops ? 1e6f : (float)(SIM_MACH_MAX / sqrt(3.0));
+static const float out_of_reach = 1e6f; // also of halves, which moments are
+
+static float greatest(void) {
+    return (float)(SIM_MACH_MAX / sqrt(3.0));
 }
 
-// In cells a step; faster wind than the air may be is cut off, as the air is.
+float lbm_air_clamp_speed(const lbm_air *a) {
+    return a->stops ? out_of_reach : greatest();
+}
+
+float lbm_air_spoilt_speed(const lbm_air *a) {
+    return a->stops ? greatest() : out_of_reach;
+}
+
+// In cells a step; faster wind than the air may be is slowed down, as the air is.
 static void find_inflow(const lbm_air *a, const float wind[3], float out[3]) {
     const double speed = sqrt((double)glm_dot((float *)wind, (float *)wind));
-    double k = sim_velocity(&a->units, 1), most = (double)lbm_air_most_speed(a);
+    double k = sim_velocity(&a->units, 1), most = (double)lbm_air_clamp_speed(a);
     if (speed * k > most) k = most / speed;
     for (int i = 0; i < 3; i++) out[i] = (float)((double)wind[i] * k);
 }
@@ -70,7 +80,7 @@ bool lbm_air_numbers(const pass *p, lbm_numbers *out) {
     out->buoyancy[PASS_LBM_DENSITY][2] = (float)sim_acceleration(u, VALUE(LIFT));
     out->buoyancy[PASS_LBM_TEMPERATURE][2] = (float)sim_acceleration(u, VALUE(HEAT_LIFT));
     for (int face = 0; face < 6; face++) find_inflow(a, values[WIND], out->inflow[face]);
-    if (!a->stops) out->max_speed = lbm_air_most_speed(a);
+    if (!a->stops) out->max_speed = lbm_air_clamp_speed(a);
 #undef VALUE
     return add_force(p, a, out->acceleration);
 }

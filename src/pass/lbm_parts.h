@@ -59,7 +59,9 @@ static inline lbm_air *lbm_air_of(const pass *p) {
 // lbm_numbers.c: values as of the host's context
 bool lbm_air_numbers(const pass *p, lbm_numbers *out);
 sim_flow lbm_air_flow(const pass *p);
-float lbm_air_most_speed(const lbm_air *a); // cells a step; what is given to it is cut off there
+// Cells a step. By `guard` one of them is the greatest that is air, the other out of reach.
+float lbm_air_clamp_speed(const lbm_air *a);  // what moves, or is given, is slowed down to it
+float lbm_air_spoilt_speed(const lbm_air *a); // faster air is stopped, and not shown
 bool lbm_air_force_varies(const pass *p);
 
 // lbm_time.c

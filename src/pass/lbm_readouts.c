@@ -10,12 +10,6 @@
 // Of the air's mass, either way: more is not air that was blown or drawn, but a solver that fails.
 static const float spoilt_drift = 0.5f;
 
-// Air that is slowed down is never too fast.
-static lbm_guard_limits spoilt_beyond(const lbm_air *a) {
-    return (lbm_guard_limits){.speed = a->stops ? (float)(SIM_MACH_MAX / sqrt(3)) : 1e30f,
-                              .drift = spoilt_drift};
-}
-
 static double measured(const lbm_air *a) { // m/s
     return (double)a->report.speed * a->units.cell / a->units.step;
 }
@@ -116,7 +110,9 @@ bool lbm_air_watch(pass *p) {
     look(a);
     // A state that was taken over has not been looked at yet.
     if (!a->last_steps && (a->fresh || lbm_guard_newest(a->guard))) return true;
-    return lbm_guard_record(a->guard, p->host->device, a->solver, spoilt_beyond(a));
+    return lbm_guard_record(
+        a->guard, p->host->device, a->solver,
+        (lbm_guard_limits){.speed = lbm_air_spoilt_speed(a), .drift = spoilt_drift});
 }
 
 const char *lbm_air_trouble(const pass *p) {

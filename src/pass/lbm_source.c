@@ -200,14 +200,14 @@ static bool fill_give(const pass *p, source_state *s) {
         !pass_evaluate_vector(p, "velocity_factor", factor))
         return false;
     const float speed = (float)sim_velocity(&a->units, 1);
-    const float most = lbm_air_most_speed(a);
+    const float most = lbm_air_clamp_speed(a);
     const float share = rate[0] > 0 ? (float)sim_decay(&a->units, (double)rate[0]) : 1;
     const float ids[2] = {s->first_id, (float)s->first_id + (float)p->mesh_count - 1};
     const float pascal = (float)(1 / lbm_air_pascals(a));
     const uint32_t parity = lbm_parity(a->solver);
     write_place(s, &s->give, s->block);
     pass_write_member(&s->give, s->block, "step_speed", &speed, sizeof speed);
-    pass_write_member(&s->give, s->block, "most_speed", &most, sizeof most);
+    pass_write_member(&s->give, s->block, "clamp_speed", &most, sizeof most);
     pass_write_member(&s->give, s->block, "velocity_factor", factor, sizeof *factor);
     pass_write_member(&s->give, s->block, "pascal", &pascal, sizeof pascal);
     pass_write_member(&s->give, s->block, "share", &share, sizeof share);

@@ -8,7 +8,7 @@ layout(local_size_x = 32, local_size_y = 2, local_size_z = 1) in;
 uniform vec3 box_min;          // corner of the lattice (m)
 uniform float cell_size;       // m
 uniform float step_speed;      // cells a step of 1 m/s
-uniform float most_speed;      // cells a step: what is faster is cut off, as in the air
+uniform float clamp_speed;     // cells a step: what is faster is slowed down to it, as in the air
 uniform float pascal;          // excess of density of a pascal
 uniform float share;           // of the values that the air takes on in this step
 uniform float velocity_factor; // of a mesh's own motion
@@ -68,7 +68,7 @@ Held held_by(uvec3 at, uint solid) {
         if (b.y > 0.0) v += motion_at(cell);
 #endif
         v *= step_speed;
-        v *= min(1.0, most_speed * inversesqrt(max(dot(v, v), 1e-20)));
+        v *= min(1.0, clamp_speed * inversesqrt(max(dot(v, v), 1e-20)));
         h.some[l] = b.y * share;
         h.density[l] = a.x;
         h.temperature[l] = a.y;
