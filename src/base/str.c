@@ -98,6 +98,13 @@ bool str_ends_with(const char *text, const char *ending) {
     return n >= m && memcmp(text + n - m, ending, m) == 0;
 }
 
+bool str_has_place(const char *text) {
+    size_t n = strcspn(text, ":\n");
+    if (n == 0 || text[n] != ':') return false;
+    size_t digits = strspn(text + n + 1, "0123456789");
+    return digits > 0 && text[n + 1 + digits] == ':';
+}
+
 bool str_is_identifier(const char *text) {
     if (!isalpha((unsigned char)text[0]) && text[0] != '_') return false;
     for (; *text; text++)

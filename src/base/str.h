@@ -20,6 +20,7 @@ const char *strbuf_text(const strbuf *s); // "" when empty
 const char *str_nearest(const char *word, const char *const *candidates, size_t count);
 
 bool str_ends_with(const char *text, const char *ending);
+bool str_has_place(const char *text);     // begins with a file and line, "a.lua:12: "
 bool str_is_identifier(const char *text); // [A-Za-z_][A-Za-z0-9_]*
 // Copies with truncation; always terminated. False when `text` did not fit.
 bool str_copy(char *out, size_t capacity, const char *text);

@@ -226,6 +226,9 @@ pass *effect_add_pass(effect *e, const char *type, const char *shader, const cha
     pass *p =
         traced ? make_reference(e, known, label) : pass_create(&e->host, known, shader, label);
     if (!p) return NULL;
+    char place[96] = "";
+    if (e->hooks.locate) e->hooks.locate(e->hooks.user, place, sizeof place);
+    pass_set_place(p, place);
     MEM_RESERVE(e->passes, e->pass_count + 1, e->pass_capacity);
     e->passes[e->pass_count++] = p;
     return p;

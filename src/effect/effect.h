@@ -146,6 +146,8 @@ typedef struct effect_hooks {                                          // calls 
     bool (*start)(void *user);                          // its systems (events.h), or NULL
     bool (*frame)(void *user, double time, double dt);
     bool (*event)(void *user, const struct effect_happening *what);
+    // Which line runs now: "file:line: ", "" for none.
+    void (*locate)(void *user, char *out, size_t size);
     void (*destroy)(void *user);
     void *user;
 } effect_hooks;

@@ -254,7 +254,7 @@ bool pass_build(pass *p) {
     return p->runs_in || pass_build_part(p);
 }
 
-bool pass_build_part(pass *p) {
+static bool build(pass *p) {
     p->program = generate(p);
     if (!p->program) return err_prefix("%s: ", p->label);
     if (p->type && p->type->build) {
@@ -269,24 +269,36 @@ bool pass_build_part(pass *p) {
     return true;
 }
 
-bool pass_allocate(pass *p) {
+bool pass_build_part(pass *p) {
+    return build(p) || pass_blame(p);
+}
+
+static bool allocate(pass *p) {
     if (p->type && p->type->allocate && !p->type->allocate(p)) return false;
     return make_palettes(p) && make_blanks(p) && make_unread(p) && make_blue_noise(p->host) &&
            make_counters(p);
 }
 
-// What pass_build can find wrong without a device.
-bool pass_check(pass *p) {
-    return p->runs_in || pass_check_part(p);
+bool pass_allocate(pass *p) {
+    return allocate(p) || pass_blame(p);
 }
 
-bool pass_check_part(pass *p) {
+static bool check(pass *p) {
     p->program = generate(p);
     if (!p->program) return err_prefix("%s: ", p->label);
     if (!pass_lamps_check(p)) return false;
     if (p->type && p->type->check) return p->type->check(p);
     shader_stage stage = str_ends_with(p->shader, ".frag") ? SHADER_FRAGMENT : SHADER_COMPUTE;
     return pass_compile(p, p->shader, stage, NULL, 0, &p->binary);
+}
+
+bool pass_check_part(pass *p) {
+    return check(p) || pass_blame(p);
+}
+
+// What pass_build can find wrong without a device.
+bool pass_check(pass *p) {
+    return p->runs_in || pass_check_part(p);
 }
 
 void pass_destroy(pass *p) {

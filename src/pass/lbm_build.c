@@ -19,15 +19,18 @@ static bool each_source(const lbm_air *a, bool (*call)(pass *source)) {
 bool lbm_check(pass *p) {
     lbm_air *a = lbm_air_of(p);
     const pass_host *host = p->host;
-    return compile(p, a) && lbm_compile(a->solver, host->library, host->reader) &&
-           lbm_guard_compile(a->guard, host->library, host->reader) && lbm_air_check_bodies(a) &&
-           each_source(a, pass_check_part);
+    if (!compile(p, a)) return false;
+    if (!lbm_compile(a->solver, host->library, host->reader) ||
+        !lbm_guard_compile(a->guard, host->library, host->reader) || !lbm_air_check_bodies(a))
+        return err_prefix("%s: ", p->label);
+    return each_source(a, pass_check_part);
 }
 
 bool lbm_build_pass(pass *p) {
     lbm_air *a = lbm_air_of(p);
     const pass_host *host = p->host;
-    if (!compile(p, a) || !lbm_build(a->solver, host->device, host->library, host->reader) ||
+    if (!compile(p, a)) return false;
+    if (!lbm_build(a->solver, host->device, host->library, host->reader) ||
         !lbm_guard_compile(a->guard, host->library, host->reader) || !lbm_air_build_bodies(a))
         return err_prefix("%s: ", p->label);
     p->pipeline = pass_create_compute(p, &p->binary);

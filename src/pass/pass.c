@@ -18,6 +18,7 @@ pass *pass_create(pass_host *host, const pass_type *type, const char *shader, co
         .host = host,
         .type = type,
         .label = arena_string(memory, label),
+        .place = "",
         .shader = arena_string(memory, file),
         .face = face,
         .uniforms = arena_alloc(memory, face->uniform_count * sizeof *p->uniforms),
@@ -32,6 +33,14 @@ pass *pass_create(pass_host *host, const pass_type *type, const char *shader, co
     for (size_t i = 0; i < face->option_count; i++) p->options[i] = face->options[i].value;
     for (size_t i = 0; i < face->image_count; i++) p->formats[i] = face->images[i].format;
     return p;
+}
+
+void pass_set_place(pass *p, const char *place) {
+    p->place = arena_string(p->host->memory, place);
+}
+
+bool pass_blame(const pass *p) {
+    return !str_has_place(err_get()) && err_prefix("%s", p->place);
 }
 
 const char *pass_label(const pass *p) {

@@ -115,6 +115,8 @@ pass *pass_create(pass_host *host, const pass_type *type, const char *shader, co
 bool pass_stand_for(pass *p, const pass_type *other);
 bool pass_ignores(const pass *p, const char *name);
 void pass_destroy(pass *p);
+// Where it is made, for messages: "file:line: ", or "", as it is at first.
+void pass_set_place(pass *p, const char *place);
 const char *pass_label(const pass *p);
 const pass *pass_runner(const pass *p);        // the pass that it is a part of, else itself
 bool pass_is(const pass *p, const char *type); // of the built-in type "march"

@@ -13,7 +13,7 @@ typedef struct pass_palette { // a palette's texture, one per pass that uses it
 struct pass {
     pass_host *host;
     const pass_type *type; // NULL: a user's shader
-    const char *label, *shader;
+    const char *label, *shader, *place;
     const shader_interface *face;
     const shader_interface *stands_for; // of the type that it does; NULL: none
 
@@ -49,6 +49,9 @@ struct pass {
     bool completed;
     pass *runs_in; // the pass that builds and runs this one; NULL: the graph does
 };
+
+// Puts the line that made it before the message, unless one stands there. Always returns false.
+bool pass_blame(const pass *p);
 
 // Of a pass that runs in another.
 bool pass_check_part(pass *p);

@@ -82,11 +82,17 @@ static void destroy(void *user) {
     mem_free(s);
 }
 
+static void locate(void *user, char *out, size_t size) {
+    const script *s = user;
+    vm_locate(vm_lua(s->vm), out, size);
+}
+
 static void set_hooks(script *s) {
     effect_set_hooks(s->effect, &(effect_hooks){
                                     .call = script_call,
                                     .update = s->update == LUA_NOREF ? NULL : update,
                                     .start = script_start,
+                                    .locate = locate,
                                     .frame = script_frame,
                                     .event = script_event,
                                     .destroy = destroy,

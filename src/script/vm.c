@@ -14,6 +14,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/str.h"
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -70,7 +71,7 @@ static bool find_line(lua_State *L, lua_Debug *ar) {
     return ours >= 0 && lua_getstack(L, ours, ar) && lua_getinfo(L, "Sl", ar);
 }
 
-static void locate(lua_State *L, char *out, size_t size) {
+void vm_locate(lua_State *L, char *out, size_t size) {
     lua_Debug ar;
     out[0] = 0;
     if (find_line(L, &ar)) snprintf(out, size, "%s:%d: ", ar.short_src, ar.currentline);
@@ -100,7 +101,7 @@ static void tick(lua_State *L, lua_Debug *ar) {
     (void)ar;
     vm *v = vm_of(L);
     if (!v->stop) {
-        locate(L, v->where, sizeof v->where);
+        vm_locate(L, v->where, sizeof v->where);
         v->spent += TICK;
         if (v->spent > v->budget || processor_seconds() > v->deadline) stop(v, STOP_INSTRUCTIONS);
     }
@@ -127,7 +128,7 @@ static void *allocate(void *user, void *block, size_t old, size_t size) {
     if (size > held && !may_grow(v, size, size - held)) {
         // A new object (its type is in `old`): the stack is in order and can say where we are.
         if (!block && old != 0 && v->lua && v->refusals == 0)
-            locate(v->lua, v->where, sizeof v->where);
+            vm_locate(v->lua, v->where, sizeof v->where);
         if (++v->refusals >= 2 && v->depth > 0) stop(v, STOP_MEMORY);
         return NULL;
     }
@@ -143,7 +144,7 @@ void vm_charge(lua_State *L, uint64_t instructions) {
     if (instructions > UINT64_MAX / 2) instructions = UINT64_MAX / 2;
     v->spent += instructions;
     if (v->stop || v->spent > v->budget) {
-        if (!v->stop) locate(L, v->where, sizeof v->where);
+        if (!v->stop) vm_locate(L, v->where, sizeof v->where);
         stop(v, STOP_INSTRUCTIONS);
         raise_stop(L);
     }
@@ -152,7 +153,7 @@ void vm_charge(lua_State *L, uint64_t instructions) {
 void vm_charge_memory(lua_State *L, size_t bytes) {
     vm *v = vm_of(L);
     if (v->stop || v->used > v->desc.memory || bytes > v->desc.memory - v->used) {
-        if (!v->stop) locate(L, v->where, sizeof v->where);
+        if (!v->stop) vm_locate(L, v->where, sizeof v->where);
         stop(v, STOP_MEMORY);
         raise_stop(L);
     }
@@ -167,18 +168,10 @@ void vm_error(lua_State *L, const char *format, ...) {
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    locate(L, where, sizeof where);
+    vm_locate(L, where, sizeof where);
     lua_pushfstring(L, "%s%s", where, text);
     lua_error(L);
     abort();
-}
-
-// "name:12: ..."
-static bool has_position(const char *text) {
-    size_t n = strcspn(text, ":\n");
-    if (n == 0 || text[n] != ':') return false;
-    size_t digits = strspn(text + n + 1, "0123456789");
-    return digits > 0 && text[n + 1 + digits] == ':';
 }
 
 // "lib/spread.lua:12: ...": says where it went wrong, not what the author did.
@@ -204,7 +197,7 @@ static int describe_error(lua_State *L) {
             message = lua_pushfstring(L, "(error object is a %s value)", luaL_typename(L, 1));
     }
     char where[96] = "", text[MESSAGE_MAX];
-    if (!has_position(message) || blames_us(L, message)) locate(L, where, sizeof where);
+    if (!str_has_place(message) || blames_us(L, message)) vm_locate(L, where, sizeof where);
     if (strncmp(message, where, strlen(where)) == 0) where[0] = 0;
     snprintf(text, sizeof text, "%s%s", where, message);
     luaL_traceback(L, L, text, 1);

@@ -39,6 +39,8 @@ bool vm_protect(vm *v, lua_CFunction function, void *argument, uint64_t instruct
 
 // Raises an error at the line of the script that called.
 _Noreturn void vm_error(lua_State *L, const char *format, ...) PRINTF_LIKE(2, 3);
+// "file:line: " of the script that runs now; "": none does.
+void vm_locate(lua_State *L, char *out, size_t size);
 void vm_charge(lua_State *L, uint64_t instructions); // work that no instruction accounts for
 void vm_charge_memory(lua_State *L, size_t bytes);   // memory outside of Lua's, kept until the end
 void vm_set_seed(lua_State *L, uint64_t seed);

@@ -312,6 +312,17 @@ static void what_fails_at_a_step_is_told(void **state) {
     roil_unload(e);
 }
 
+static void a_lattice_that_is_too_large_names_its_line(void **state) {
+    char text[2048];
+    script(text, 24,
+           "size = {1024, 1024, 1024}, velocity_set = 'd3q27', scalar_set = 'd3q27', "
+           "precision = 'f32'",
+           "", "air.density");
+    roil_effect *e = load_text(*state, "air.lua", text);
+    expect_error(roil_prepare(e, WIDE, HIGH), "air.lua:3: lbm: a lattice of 1024 x 1024 x 1024");
+    roil_unload(e);
+}
+
 static uint64_t memory_with(roil *r, const char *more) {
     picture p;
     uint64_t before = roil_get_memory(r).device;
@@ -528,6 +539,7 @@ int main(void) {
         cmocka_unit_test(smoke_is_where_its_source_is_and_rises),
         cmocka_unit_test(a_field_pushes_the_air),
         cmocka_unit_test(what_fails_at_a_step_is_told),
+        cmocka_unit_test(a_lattice_that_is_too_large_names_its_line),
         cmocka_unit_test(air_that_nobody_reads_takes_no_memory),
         cmocka_unit_test(it_tells_of_itself),
         cmocka_unit_test(air_that_is_too_fast_stops_and_says_why),

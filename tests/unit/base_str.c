@@ -69,6 +69,18 @@ static void identifiers_are_told_from_other_text(void **state) {
     assert_false(str_is_identifier("\xc3\xa9t\xc3\xa9"));
 }
 
+static void places_in_files_are_told_from_other_text(void **state) {
+    (void)state;
+    assert_true(str_has_place("a.lua:3: it fails"));
+    assert_true(str_has_place("effects/a b.lua:120: "));
+    assert_false(str_has_place("lbm: a.comp:3: it fails"));
+    assert_false(str_has_place("a.lua:3 fails"));
+    assert_false(str_has_place("a.lua\n:3: "));
+    assert_false(str_has_place(":3: it fails"));
+    assert_false(str_has_place("a.lua::"));
+    assert_false(str_has_place(""));
+}
+
 static void endings_are_compared(void **state) {
     (void)state;
     assert_true(str_ends_with("a.vdb", ".vdb"));
@@ -157,6 +169,7 @@ int main(void) {
         cmocka_unit_test(nearest_name_forgives_typing_errors),
         cmocka_unit_test(nearest_name_does_not_guess_wildly),
         cmocka_unit_test(identifiers_are_told_from_other_text),
+        cmocka_unit_test(places_in_files_are_told_from_other_text),
         cmocka_unit_test(endings_are_compared),
         cmocka_unit_test(copies_are_cut_and_terminated),
         cmocka_unit_test(message_can_be_built_from_itself),

@@ -98,6 +98,18 @@ static void faces_can_be_said_together(void **state) {
     effect_destroy(e);
 }
 
+// No device binds buffers of half of it.
+static void a_lattice_that_is_too_large_names_its_line(void **state) {
+    (void)state;
+    effect *e = load("local air = lbm { size = {1024, 1024, 1024}, voxel_size = 1,\n"
+                     "  velocity_set = 'd3q27', scalar_set = 'd3q27', precision = 'f32' }",
+                     NULL, 0);
+    assert_false(effect_check(e));
+    if (!strstr(err_get(), "e.lua:2: lbm: a lattice of 1024 x 1024 x 1024 cells"))
+        fail_msg("%s", err_get());
+    effect_destroy(e);
+}
+
 static void a_script_knows_its_box_and_step(void **state) {
     (void)state;
     effect *e =
@@ -117,6 +129,7 @@ int main(void) {
         cmocka_unit_test(motion_moves_meshes),
         cmocka_unit_test(all_of_it_can_be_set_by_name),
         cmocka_unit_test(faces_can_be_said_together),
+        cmocka_unit_test(a_lattice_that_is_too_large_names_its_line),
         cmocka_unit_test(a_script_knows_its_box_and_step),
     };
     return cmocka_run_group_tests(tests, helper_setup, helper_teardown);

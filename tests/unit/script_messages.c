@@ -200,6 +200,39 @@ static void a_module_of_the_library_is_not_blamed_alone(void **state) {
     assert_non_null(strstr(err_get(), "e.lua:3: spread: 'at' is missing"));
 }
 
+static void fails_to_build(const char *text, const char *message) {
+    effect *e = helper_load(text);
+    if (!e) fail_msg("%s", err_get());
+    assert_false(effect_check(e));
+    const char *got = strstr(err_get(), "e.lua:");
+    if (!got || strncmp(got, message, strlen(message)) != 0)
+        fail_msg("in: %s\n got: %s\n wanted: %s", text, err_get(), message);
+    effect_destroy(e);
+}
+
+// What is found only when all is declared: by then no line runs any more.
+static void passes_that_cannot_be_built_name_their_line(void **state) {
+    (void)state;
+    helper_put("bad.comp", "writeonly uniform image2D color; //= output rgba16f : a picture\n"
+                           "void main() { imageStore(color, ivec2(0), vec4(tint)); }\n");
+    helper_put("bad.glsl", "float dark(vec3 p) { return -1.0; }\n");
+    fails_to_build("local fx = effect { }\n\nfx.output = shader { 'bad.comp' }", "e.lua:3: bad: ");
+    fails_to_build("local fx = effect { }\nlocal lit =\n"
+                   "  lighting { density = sphere { } * glsl { 'bad.glsl', 'light', 1 } }\n"
+                   "fx.output = march { from = lit }",
+                   "e.lua:3: lighting: ");
+    // Of what stands for a value, and of a part of another pass: their own.
+    fails_to_build("local fx = effect { }\nlocal box = { min = {0, 0, 0}, max = {1, 1, 1} }\n"
+                   "local baked = glsl { 'bad.glsl', 'light', 1 }:bake {\n  box = box }\n"
+                   "fx.output = march { density = baked }",
+                   "e.lua:3: bake: ");
+    fails_to_build("local fx = effect { }\n"
+                   "local air = lbm { size = {16, 16, 16}, voxel_size = 0.1 }\n"
+                   "air:source { shape = sphere { }, density = glsl { 'bad.glsl', 'light', 1 } }\n"
+                   "fx.output = march { density = air.density }",
+                   "e.lua:3: lbm_source: ");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(misspelt_names_get_the_nearest_right_one),
@@ -209,6 +242,7 @@ int main(void) {
         cmocka_unit_test(endless_expressions_are_limited),
         cmocka_unit_test(the_prelude_is_never_blamed),
         cmocka_unit_test(a_module_of_the_library_is_not_blamed_alone),
+        cmocka_unit_test(passes_that_cannot_be_built_name_their_line),
     };
     return cmocka_run_group_tests(tests, helper_setup, helper_teardown);
 }
