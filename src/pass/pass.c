@@ -22,6 +22,7 @@ pass *pass_create(pass_host *host, const pass_type *type, const char *shader, co
         .shader = arena_string(memory, file),
         .face = face,
         .uniforms = arena_alloc(memory, face->uniform_count * sizeof *p->uniforms),
+        .told = arena_alloc(memory, face->uniform_count * sizeof *p->told),
         .options = arena_alloc(memory, face->option_count * sizeof *p->options),
         .chosen = arena_alloc(memory, face->option_count * sizeof *p->chosen),
         .fields = arena_alloc(memory, face->field_count * sizeof *p->fields),

@@ -19,6 +19,7 @@ struct pass {
 
     // As set; one per entry of `face`.
     const field **uniforms; // NULL: the default
+    bool *told;             // of a uniform that went beyond its range
     size_t *options;
     bool *chosen;         // options that were set, or taken from a source
     const field **fields; // NULL: the default
@@ -142,6 +143,11 @@ bool pass_density_box(const pass *p, box3 *box);
 // Into the members box_min and box_max of a block; an empty box is a point.
 void pass_write_box(const shader_binary *binary, unsigned char *block, box3 box);
 
+// Who says that uniform of a pass: the pass itself or a source, whose `*index` it is then. It says
+// nothing either, when nobody does.
+const pass *pass_uniform_owner(const pass *p, size_t *index);
+// The current value of a uniform, within its range; beyond it the user is told, once.
+bool pass_evaluate_at(const pass *p, size_t index, float out[4]);
 float pass_evaluate(const pass *p, const char *uniform); // current value of a scalar uniform
 // Of any uniform, one component in all four; false when a function of the script failed.
 bool pass_evaluate_vector(const pass *p, const char *uniform, float out[4]);

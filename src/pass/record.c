@@ -1,4 +1,4 @@
-// A pass in a frame: uniforms evaluated into their block, every slot bound by its name, work
+// A pass in a frame: uniforms (uniform.c) put into their block, every slot bound by its name, work
 // dispatched.
 #include "base/error.h"
 #include "base/memory.h"
@@ -35,40 +35,12 @@ void pass_write_member(const shader_binary *binary, unsigned char *block, const 
     memcpy(block + member.offset, data, size < member.size ? size : member.size);
 }
 
-// Current value of a uniform, kept within its declared range.
-static bool evaluate(const pass *p, size_t index, float out[4]) {
-    const shader_uniform *uniform = &p->face->uniforms[index], *declared = uniform;
-    const field *node = p->uniforms[index];
-    if (!node) node = pass_inherited_uniform(p, index, &declared);
-    float value[4];
-    memcpy(value, declared->value, sizeof value);
-    if (node && !field_eval(node, p->host->context, (float3){0, 0, 0}, value))
-        return err_prefix("uniform '%s': ", uniform->name);
-    for (int i = 0; i < 4; i++) {
-        float v = node && node->components == 1 ? value[0] : value[i];
-        out[i] = isfinite(v) ? clampf(v, uniform->min, uniform->max) : uniform->value[i];
-    }
-    return true;
-}
-
-bool pass_evaluate_vector(const pass *p, const char *name, float out[4]) {
-    size_t index;
-    memset(out, 0, 4 * sizeof *out);
-    return pass_find_key(p, name, &index) != PASS_UNIFORM || evaluate(p, index, out);
-}
-
-float pass_evaluate(const pass *p, const char *name) {
-    float value[4];
-    pass_evaluate_vector(p, name, value);
-    return value[0];
-}
-
 bool pass_fill_block(pass *p, const shader_binary *binary, unsigned char *block) {
     for (size_t i = 0; i < p->face->uniform_count; i++) {
         shader_member member;
         float value[4];
         if (!pass_find_member(binary, p->face->uniforms[i].name, &member)) continue;
-        if (!evaluate(p, i, value)) return false;
+        if (!pass_evaluate_at(p, i, value)) return false;
         if (member.type == SHADER_INT || member.type == SHADER_BOOL || member.type == SHADER_ENUM) {
             int32_t whole = (int32_t)lrintf(value[0]);
             memcpy(block + member.offset, &whole, sizeof whole);

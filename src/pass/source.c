@@ -72,11 +72,21 @@ static const pass *find_uniform(const pass *p, const shader_uniform *like, size_
     return NULL;
 }
 
+const pass *pass_uniform_owner(const pass *p, size_t *index) {
+    size_t there;
+    const pass *source;
+    while (!p->uniforms[*index] && (source = find_uniform(p, &p->face->uniforms[*index], &there))) {
+        p = source;
+        *index = there;
+    }
+    return p;
+}
+
 const field *pass_inherited_uniform(const pass *p, size_t index, const shader_uniform **declared) {
     *declared = &p->face->uniforms[index];
-    while ((p = find_uniform(p, *declared, &index))) {
-        *declared = &p->face->uniforms[index];
-        if (p->uniforms[index]) return p->uniforms[index];
-    }
-    return NULL;
+    p = find_uniform(p, *declared, &index);
+    if (!p) return NULL;
+    p = pass_uniform_owner(p, &index);
+    *declared = &p->face->uniforms[index];
+    return p->uniforms[index];
 }

@@ -1,0 +1,58 @@
+// What uniforms of a pass are in a frame: by itself or by a source, kept within the range that its
+// shader declares. A constant was refused beyond it; what moves is cut off there, and that is told.
+#include "base/error.h"
+#include "base/log.h"
+#include "pass/pass_impl.h"
+#include <math.h>
+#include <string.h>
+
+// Rounding does not count: a curve may come to 1.0000001.
+static bool is_cut(const shader_uniform *u, float value, float taken) {
+    if (!isfinite(value)) return true;
+    float span = u->max - u->min;
+    if (!isfinite(span)) span = fmaxf(fabsf(taken), fabsf(u->value[0]));
+    return fabsf(value - taken) > 1e-5f * span;
+}
+
+// Once, where it is said: what moves it would be told of in every frame, by every pass that asks.
+static void tell_cut(const pass *owner, size_t index, const shader_uniform *u, float value,
+                     float taken) {
+    if (owner->told[index]) return;
+    owner->told[index] = true;
+    log_write(LOG_WARNING,
+              "%s%s: uniform '%s' is %g at %g s; accepted: %g to %g%s%s; it counts as %g",
+              owner->place, owner->label, u->name, (double)value, owner->host->context->time,
+              (double)u->min, (double)u->max, u->unit[0] ? " " : "", u->unit, (double)taken);
+}
+
+bool pass_evaluate_at(const pass *p, size_t index, float out[4]) {
+    const shader_uniform *uniform = &p->face->uniforms[index];
+    size_t there = index;
+    const pass *owner = pass_uniform_owner(p, &there);
+    const field *node = owner->uniforms[there];
+    float value[4];
+    memcpy(value, owner->face->uniforms[there].value, sizeof value);
+    if (node && !field_eval(node, p->host->context, (float3){0, 0, 0}, value))
+        return err_prefix("uniform '%s': ", uniform->name);
+    const bool moves = node && strcmp(node->kind->name, "constant") != 0;
+    const int count = pass_uniform_components(uniform->type);
+    for (int i = 0; i < 4; i++) {
+        float v = node && node->components == 1 ? value[0] : value[i];
+        out[i] = isfinite(v) ? clampf(v, uniform->min, uniform->max) : uniform->value[i];
+        if (moves && i < count && is_cut(uniform, v, out[i]))
+            tell_cut(owner, there, uniform, v, out[i]);
+    }
+    return true;
+}
+
+bool pass_evaluate_vector(const pass *p, const char *name, float out[4]) {
+    size_t index;
+    memset(out, 0, 4 * sizeof *out);
+    return pass_find_key(p, name, &index) != PASS_UNIFORM || pass_evaluate_at(p, index, out);
+}
+
+float pass_evaluate(const pass *p, const char *name) {
+    float value[4];
+    pass_evaluate_vector(p, name, value);
+    return value[0];
+}
