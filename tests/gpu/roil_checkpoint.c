@@ -91,6 +91,22 @@ static void a_restored_run_is_the_one_that_never_stopped(void **state) {
     roil_unload(e);
 }
 
+// Nothing is stepped for it, so that nothing but the restored state can be looked over and shown.
+static void the_frame_of_a_checkpoint_is_shown_again(void **state) {
+    picture first, fourth, again;
+    roil_effect *e = open(*state, "0.1", FORCE, COLLIDER);
+    draw(e, 1, 1, first);
+    draw(e, 2, 4, fourth);
+    assert_memory_not_equal(first, fourth, sizeof first);
+    ok(roil_checkpoint(e, in_folder("fourth")));
+    roil_unload(e);
+    e = open(*state, "0.1", FORCE, COLLIDER);
+    ok(roil_restore(e, in_folder("fourth"), NULL));
+    draw(e, 4, 4, again);
+    assert_memory_equal(fourth, again, sizeof again);
+    roil_unload(e);
+}
+
 static void what_does_not_fit_is_refused(void **state) {
     picture first, second;
     roil_effect *e = open(*state, "0.1", "", "");
@@ -117,6 +133,7 @@ static void what_does_not_fit_is_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_restored_run_is_the_one_that_never_stopped),
+        cmocka_unit_test(the_frame_of_a_checkpoint_is_shown_again),
         cmocka_unit_test(what_does_not_fit_is_refused),
     };
     return test_run(tests);
