@@ -61,11 +61,9 @@ static uint32_t choose_lanes(const lbm_desc *desc, bool software) {
     return desc->precision == LBM_F16 && !software ? 2 : 4;
 }
 
-// Four elements of two cells side by side, where these are to be had, and where all populations of
-// eight cells fit into registers.
+// Four elements of two cells side by side, where these are to be had.
 static uint32_t choose_bundle(const lbm_desc *desc) {
-    const bool fits = desc->scalars == 0 || desc->scalar_set == LBM_SCALAR_D3Q7;
-    return desc->lanes == 2 && desc->size[2] % 8 == 0 && fits ? 4 : 1;
+    return desc->lanes == 2 && desc->size[2] % 8 == 0 ? 4 : 1;
 }
 
 bool lbm_layout_find(const lbm_desc *desc, uint64_t range, lbm_layout *out) {

@@ -62,7 +62,10 @@ static bool parse(int argc, char **argv, bench *b) {
 
 // Steps in frames; milliseconds of the device, or a negative number.
 static double run(const bench *b, lbm *l, gpu *g, int steps) {
-    lbm_numbers numbers = {.tau = 0.52f, .scalar_tau = {0.52f, 0.52f, 0.52f}, .smagorinsky = 0.1f};
+    lbm_numbers numbers = {.tau = 0.52f,
+                           .scalar_tau = {0.52f, 0.52f, 0.52f},
+                           .smagorinsky = 0.1f,
+                           .buoyancy = {[1] = {0, 0, 1e-6f}}}; // the second one is heat
     double sum = 0;
     while (steps > 0) {
         uint64_t frame = gpu_frame_begin(g);

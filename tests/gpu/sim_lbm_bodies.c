@@ -110,6 +110,9 @@ static void a_ball_leaves_no_trail(void **state) {
     desc.set = LBM_D3Q27;
     desc.scalar_set = LBM_SCALAR_D3Q27;
     fly(*state, &desc, 0.02, 0.015);
+    desc.precision = LBM_F16;
+    desc.lanes = 2;
+    fly(*state, &desc, 0.03, 0.025);
 }
 
 // ---- a ball in a stream -----------------------------------------------------------------------

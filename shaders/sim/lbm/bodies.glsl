@@ -101,6 +101,7 @@ lbm_float lbm_wall_speeds_at(const int i) {
 }
 
 #define LBM_WALL_SPEEDS(x, y, z) lbm_wall_speeds_at(LBM_DIRECTION(x, y, z))
+lbm_float lbm_pushed; // the part by which walls make more of the air of a cell
 
 void lbm_find_walls(uvec3 at, uint near) {
     for (int i = 0; i < 27 * LBM_LANES; i++) lbm_wall_speeds[i] = 0.0;
@@ -121,23 +122,24 @@ void lbm_find_walls(uvec3 at, uint near) {
         }
         lbm_solids[k] = solids;
     }
+    lbm_pushed = lbm_float(0.0);
+#define ADD(i, x, y, z)                                                                            \
+    lbm_pushed += 6.0 * LBM_WEIGHT(x, y, z) * (LBM_WALL_SPEEDS(x, y, z) + LBM_WALL_SPEEDS(-(x), -(y), -(z)));
+    LBM_PAIRS(ADD)
+#undef ADD
 }
-
-lbm_float lbm_pushed; // the part by which walls make more of the air of a cell
 
 void lbm_push_air(inout lbm_float f[LBM_Q]) {
     lbm_float density = 1.0 + f[0];
 #define ADD(i, x, y, z) density += f[i] + f[i + 1];
     LBM_PAIRS(ADD)
 #undef ADD
-    lbm_pushed = lbm_float(0.0);
 #define PUSH(i, x, y, z)                                                                           \
     {                                                                                              \
         lbm_float a = 6.0 * LBM_WEIGHT(x, y, z) * LBM_WALL_SPEEDS(x, y, z);                        \
         lbm_float b = 6.0 * LBM_WEIGHT(x, y, z) * LBM_WALL_SPEEDS(-(x), -(y), -(z));               \
         f[i] += density * a;                                                                       \
         f[i + 1] += density * b;                                                                   \
-        lbm_pushed += a + b;                                                                       \
     }
     LBM_PAIRS(PUSH)
 #undef PUSH

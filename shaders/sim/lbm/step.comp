@@ -18,9 +18,8 @@ uniform uint skin_count;
 #define WALLED (LBM_WALLED && (LBM_BODIES || LBM_REGION != LBM_CORE))
 // Faces or bodies may change what arrives.
 #define MEETS (LBM_BODIES || LBM_RIMS && LBM_REGION != LBM_CORE)
-// Scalars of 27 directions do not fit into registers beside the air: they are summed for their
-// buoyancy, forgotten, and loaded again once the air is sent.
-#define RELOADS (LBM_SCALAR_Q == 27 && !MEETS && !WALLED && !LBM_SOFTWARE && !LBM_BUNDLED)
+// Scalars of 27 directions do not fit into registers beside the air: they go one by one.
+#define ALONE (LBM_SCALAR_Q == 27 && LBM_SCALARS > 0 && LBM_REGION != LBM_SKIN && LBM_SOFTWARE == 0)
 
 uniform float tau;
 uniform float smagorinsky;
@@ -47,13 +46,14 @@ lbm_place place;
 uvec3 at; // x, y, layer
 uint element;
 lbm_site site;
-lbm_element air[LBM_Q], carried[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
+#define HELD (ALONE ? 1 : max(LBM_SCALARS, 1)) // scalars at a time
+lbm_element air[LBM_Q], carried[HELD][LBM_SCALAR_Q];
 
 // What arrives, and then leaves, at once; apart from the element where it is a bundle, or where what arrived is
 // wanted again (processors take both ways of a branch: copies cost them less than loads).
 #define APART (LBM_BUNDLED || WALLED && LBM_SOFTWARE)
 #if APART
-lbm_access all_air[LBM_Q], all_carried[max(LBM_SCALARS, 1)][LBM_SCALAR_Q];
+lbm_access all_air[LBM_Q], all_carried[HELD][LBM_SCALAR_Q];
 #else
 #define all_air air
 #define all_carried carried
@@ -145,67 +145,55 @@ void keep_moments(lbm_air a) {
 
 // ---- what is loaded and stored ---------------------------------------------------------------
 
-void load() {
-#define LOAD(s) lbm_load_scalar(s, place, all_carried[s]);
-    LBM_EACH_SCALAR(LOAD)
-#undef LOAD
-    lbm_load_air(place, all_air);
-}
-
-void take() {
+void take_air() {
 #if APART
     for (int i = 0; i < LBM_Q; i++) air[i] = lbm_take(all_air[i]);
-#define TAKE(s) for (int i = 0; i < LBM_SCALAR_Q; i++) carried[s][i] = lbm_take(all_carried[s][i]);
-    LBM_EACH_SCALAR(TAKE)
-#undef TAKE
 #endif
 }
 
-void give() {
+void take_scalar(const int held) {
+#if APART
+    for (int i = 0; i < LBM_SCALAR_Q; i++) carried[held][i] = lbm_take(all_carried[held][i]);
+#endif
+}
+
+void give_air() {
 #if APART
     for (int i = 0; i < LBM_Q; i++) lbm_give(all_air[i], air[i]);
-#define GIVE(s) for (int i = 0; i < LBM_SCALAR_Q; i++) lbm_give(all_carried[s][i], carried[s][i]);
-    LBM_EACH_SCALAR(GIVE)
-#undef GIVE
 #endif
 }
 
-void send() {
-#if !RELOADS
-    lbm_send_air(place, all_air);
-#define SEND(s) lbm_send_scalar(s, place, all_carried[s]);
-    LBM_EACH_SCALAR(SEND)
-#undef SEND
+void give_scalar(const int held) {
+#if APART
+    for (int i = 0; i < LBM_SCALAR_Q; i++) lbm_give(all_carried[held][i], carried[held][i]);
 #endif
 }
 
 // ---- an element -------------------------------------------------------------------------------
 
 #if MEETS
-void meet() {
-    lbm_float f[LBM_Q], g[LBM_SCALAR_Q];
+void meet_air() {
+    lbm_float f[LBM_Q];
     lbm_unpack_air(air, LBM_AIR_SCALE, f);
     lbm_meet_air(at, site, f);
     lbm_pack_air(f, LBM_AIR_SCALE, air);
-#define MEET(s)                                                                                    \
-    lbm_unpack_scalar(carried[s], LBM_SCALAR_SCALE, g);                                            \
-    lbm_meet_scalar(s, at, site, ambient[s], f, g);                                                \
-    lbm_pack_scalar(g, LBM_SCALAR_SCALE, carried[s]);
-    LBM_EACH_SCALAR(MEET)
-#undef MEET
+}
+
+void meet_scalar(const int s, const int held) {
+    lbm_float g[LBM_SCALAR_Q];
+    lbm_unpack_scalar(carried[held], LBM_SCALAR_SCALE, g);
+    lbm_meet_scalar(s, at, site, ambient[s], g);
+    lbm_pack_scalar(g, LBM_SCALAR_SCALE, carried[held]);
 }
 #endif
 
-void collide() {
-    value[0] = value[1] = value[2] = lbm_float(0.0);
-#define SUM(s) value[s] = lbm_sum_scalar(carried[s]);
-    LBM_EACH_SCALAR(SUM)
-#undef SUM
+// By the scalars' values. `eddies`: what they add to the relaxation time.
+void collide_air(out lbm_vec u, out lbm_float eddies) {
     lbm_air a = find_air();
 #if LBM_KEEP
     keep_moments(a);
 #endif
-    lbm_float eddies = lbm_float(0.0); // what they add to the relaxation time
+    eddies = lbm_float(0.0);
 #if LBM_SUBGRID
     eddies = lbm_eddy_tau(a, tau, smagorinsky) - tau;
 #endif
@@ -215,54 +203,47 @@ void collide() {
     lbm_collide(a, 1.0 / (tau + eddies), air);
 #if LBM_ROUTES
     if (site.reached != 0u) lbm_end_routes(air, 1.0 + a.excess, a.u);
-#define ROUTE(s)                                                                                   \
-    if (site.reached != 0u) lbm_route_scalar(value[s], site.reached, 1.0 - decay[s], ambient[s], g);
-#else
-#define ROUTE(s)
 #endif
-#if RELOADS
-    lbm_send_air(place, air);
-#define LOAD(s) lbm_load_scalar(s, place, carried[s]);
-#define SEND(s) lbm_send_scalar(s, place, carried[s]);
-#else
-#define LOAD(s)
-#define SEND(s)
-#endif
+    u = a.u;
+}
+
+void collide_scalar(const int s, const int held, lbm_vec u, lbm_float eddies) {
     lbm_float g[LBM_SCALAR_Q];
-#define COLLIDE(s)                                                                                 \
-    LOAD(s)                                                                                        \
-    lbm_unpack_scalar(carried[s], LBM_SCALAR_SCALE, g);                                            \
-    lbm_collide_scalar(value[s], a.u,                                                              \
-                       1.0 / (scalar_tau[s] + eddies * (1.0 / (3.0 * SCHMIDT * LBM_SCALAR_SPEED))), \
-                       1.0 - decay[s], ambient[s], g);                                             \
-    ROUTE(s)                                                                                       \
-    lbm_pack_scalar(g, LBM_SCALAR_SCALE, carried[s]);                                              \
-    SEND(s)
-    LBM_EACH_SCALAR(COLLIDE)
-#undef COLLIDE
-#undef ROUTE
-#undef LOAD
-#undef SEND
+    lbm_unpack_scalar(carried[held], LBM_SCALAR_SCALE, g);
+    lbm_collide_scalar(value[s], u,
+                       1.0 / (scalar_tau[s] + eddies * (1.0 / (3.0 * SCHMIDT * LBM_SCALAR_SPEED))),
+                       1.0 - decay[s], ambient[s], g);
+#if LBM_ROUTES
+    if (site.reached != 0u) lbm_route_scalar(value[s], site.reached, 1.0 - decay[s], ambient[s], g);
+#endif
+    lbm_pack_scalar(g, LBM_SCALAR_SCALE, carried[held]);
 }
 
 // In these lanes what arrived stays.
-void keep(uint lanes) {
+void keep_air(uint lanes) {
 #if !LBM_SOFTWARE
     if (lanes == 0u) return;
 #endif
-    lbm_element arrived[LBM_Q], arrived_with[LBM_SCALAR_Q];
+    lbm_element arrived[LBM_Q];
 #if APART
     for (int i = 0; i < LBM_Q; i++) arrived[i] = lbm_take(all_air[i]);
-#define AGAIN(s) for (int i = 0; i < LBM_SCALAR_Q; i++) arrived_with[i] = lbm_take(all_carried[s][i]);
 #else
     lbm_load_air(place, arrived);
-#define AGAIN(s) lbm_load_scalar(s, place, arrived_with);
 #endif
     lbm_keep_air(lanes, arrived, air);
-#define KEEP(s) AGAIN(s) lbm_keep_scalar(lanes, arrived_with, carried[s]);
-    LBM_EACH_SCALAR(KEEP)
-#undef KEEP
-#undef AGAIN
+}
+
+void keep_scalar(const int s, const int held, uint lanes) {
+#if !LBM_SOFTWARE
+    if (lanes == 0u) return;
+#endif
+    lbm_element arrived[LBM_SCALAR_Q];
+#if APART
+    for (int i = 0; i < LBM_SCALAR_Q; i++) arrived[i] = lbm_take(all_carried[held][i]);
+#else
+    lbm_load_scalar(s, place, arrived);
+#endif
+    lbm_keep_scalar(lanes, arrived, carried[held]);
 }
 
 // False: there is no air in it.
@@ -278,19 +259,6 @@ bool find_site() {
     }
 #endif
     return true;
-}
-
-void step_element() {
-#if MEETS
-    if (lbm_meets(at, site)) meet();
-#endif
-    collide();
-#if LBM_KEEP
-    keep_solid();
-#endif
-#if WALLED
-    keep(site.solid);
-#endif
 }
 
 // ---- all ---------------------------------------------------------------------------------------
@@ -320,32 +288,87 @@ bool find() {
 // registers at once.
 #define ROWS (LBM_BUNDLE + (lbm_parity & 2u))
 
-bool in_region() {
-    return LBM_REGION != LBM_CORE || LBM_FACE_4 == 0 || at.z > 0u && at.z < LBM_LAYERS - 1u;
+bool has_air() {
+    bool in_region = LBM_REGION != LBM_CORE || LBM_FACE_4 == 0 || at.z > 0u && at.z < LBM_LAYERS - 1u;
+    return in_region && find_site();
+}
+#else
+#define ROWS 1u
+bool has_air() {
+    return true;
+}
+#endif
+#define EACH_ELEMENT for (uint row = 0u; row < ROWS; row++, at.z += LBM_SPAN)
+
+#if ALONE
+#include "sim/lbm/alone.glsl"
+#else
+void keep(uint lanes) {
+    keep_air(lanes);
+#define KEEP(s) keep_scalar(s, s, lanes);
+    LBM_EACH_SCALAR(KEEP)
+#undef KEEP
 }
 
-void main() {
-    if (!find()) return;
-    place = lbm_place_at(at);
-    load();
-    for (uint row = 0u; row < ROWS; row++, at.z += LBM_SPAN) {
-        take();
-        if (in_region() && find_site())
+void step_element() {
+#if MEETS
+    if (lbm_meets(at, site)) {
+        lbm_find_bodies(at, site);
+        meet_air();
+#define MEET(s) meet_scalar(s, s);
+        LBM_EACH_SCALAR(MEET)
+#undef MEET
+    }
+#endif
+    lbm_vec u;
+    lbm_float eddies;
+    value[0] = value[1] = value[2] = lbm_float(0.0);
+#define SUM(s) value[s] = lbm_sum_scalar(carried[s]);
+    LBM_EACH_SCALAR(SUM)
+#undef SUM
+    collide_air(u, eddies);
+#define COLLIDE(s) collide_scalar(s, s, u, eddies);
+    LBM_EACH_SCALAR(COLLIDE)
+#undef COLLIDE
+#if LBM_KEEP
+    keep_solid();
+#endif
+#if WALLED
+    keep(site.solid);
+#endif
+}
+
+void step_all() {
+#define LOAD(s) lbm_load_scalar(s, place, all_carried[s]);
+    LBM_EACH_SCALAR(LOAD)
+#undef LOAD
+    lbm_load_air(place, all_air);
+    EACH_ELEMENT {
+#define TAKE(s) take_scalar(s);
+        take_air();
+        LBM_EACH_SCALAR(TAKE)
+#undef TAKE
+        if (has_air())
             step_element();
         else
             keep(LBM_ALL_LANES);
-        give();
+#define GIVE(s) give_scalar(s);
+        give_air();
+        LBM_EACH_SCALAR(GIVE)
+#undef GIVE
     }
-    send();
-}
-#else
-void main() {
-    if (!find() || !find_site()) return;
-    place = lbm_place_at(at);
-    load();
-    take();
-    step_element();
-    give();
-    send();
+    lbm_send_air(place, all_air);
+#define SEND(s) lbm_send_scalar(s, place, all_carried[s]);
+    LBM_EACH_SCALAR(SEND)
+#undef SEND
 }
 #endif
+
+void main() {
+    if (!find()) return;
+#if !LBM_BUNDLED
+    if (!find_site()) return;
+#endif
+    place = lbm_place_at(at);
+    step_all();
+}

@@ -275,9 +275,11 @@ void lbm_pass_face(lbm_rim r, uvec3 at, inout lbm_float f[LBM_Q]) {
     for (int i = 0; i < LBM_Q; i++) f[i] = mix(f[i], made[i], r.lanes);
 }
 
-void lbm_pass_face_with(const int s, lbm_rim r, float ambient, lbm_float f[LBM_Q], inout lbm_float g[LBM_SCALAR_Q]) {
+lbm_vec lbm_left; // velocity of the air, as lbm_meet_air leaves it
+
+void lbm_pass_face_with(const int s, lbm_rim r, float ambient, inout lbm_float g[LBM_SCALAR_Q]) {
+    lbm_vec u = lbm_left;
     ivec3 outward = lbm_outward(r.face);
-    lbm_vec u = lbm_velocity(f);
     lbm_float out_ = LBM_ALONG(u, outward.x, outward.y, outward.z);
     lbm_float value = g[0];
 #define LOOK(i, X, Y, Z)                                                                           \
@@ -306,6 +308,13 @@ bool lbm_meets(uvec3 at, lbm_site site) {
     return any_;
 }
 
+// Of an element, before these.
+void lbm_find_bodies(uvec3 at, lbm_site site) {
+#if LBM_BODIES
+    if (site.near != 0u) lbm_find_walls(at, site.near);
+#endif
+}
+
 // Makes what arrives in an element what it should be: of air, of scalar s (a constant).
 void lbm_meet_air(uvec3 at, lbm_site site, inout lbm_float f[LBM_Q]) {
 #if LBM_RIMS && LBM_REGION != LBM_CORE
@@ -316,21 +325,20 @@ void lbm_meet_air(uvec3 at, lbm_site site, inout lbm_float f[LBM_Q]) {
     }
 #endif
 #if LBM_BODIES
-    if (site.near != 0u) {
-        lbm_find_walls(at, site.near);
-        lbm_push_air(f);
-    }
+    if (site.near != 0u) lbm_push_air(f);
+#endif
+#if LBM_RIMS && LBM_REGION != LBM_CORE
+    lbm_left = lbm_velocity(f);
 #endif
 }
 
-// `f` is what lbm_meet_air left.
-void lbm_meet_scalar(const int s, uvec3 at, lbm_site site, float ambient, lbm_float f[LBM_Q],
-                     inout lbm_float g[LBM_SCALAR_Q]) {
+// At faces that air passes after that.
+void lbm_meet_scalar(const int s, uvec3 at, lbm_site site, float ambient, inout lbm_float g[LBM_SCALAR_Q]) {
 #if LBM_RIMS && LBM_REGION != LBM_CORE
     if (lbm_at_rim(at)) {
         lbm_rim r = lbm_rim_at(at);
         lbm_mirror_scalar(r, g);
-        if (r.face >= 0) lbm_pass_face_with(s, r, ambient, f, g);
+        if (r.face >= 0) lbm_pass_face_with(s, r, ambient, g);
     }
 #endif
 #if LBM_BODIES

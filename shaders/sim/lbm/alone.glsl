@@ -1,0 +1,108 @@
+// A step where all populations of a scalar and of the air are more than fit into registers: scalars go
+// one by one, once the air is sent; those that make it rise are summed before, and loaded again. What
+// one needs of the other waits in shared memory. A part of step.comp.
+#ifndef SIM_LBM_ALONE_GLSL
+#define SIM_LBM_ALONE_GLSL
+
+shared lbm_float waiting[LBM_BUNDLE][LBM_SCALARS + 4][LBM_GROUP]; // values, velocity, eddies
+#define WAITING(row, k) waiting[row][k][gl_LocalInvocationIndex]
+
+// The next element of a scalar: what arrives in it, and what it comes to.
+void take_whole_scalar(const int s, bool flows) {
+    take_scalar(0);
+#if MEETS
+    if (flows && lbm_meets(at, site)) {
+        lbm_find_bodies(at, site);
+        meet_scalar(s, 0);
+    }
+#endif
+    value[s] = lbm_sum_scalar(carried[0]);
+}
+
+// Of those that make the air rise, or are kept.
+void sum_scalar(const int s) {
+    const bool wanted = LBM_KEEP == 1 || buoyancy[s] != vec3(0.0);
+    if (wanted) lbm_load_scalar(s, place, all_carried[0]);
+    EACH_ELEMENT {
+        value[s] = lbm_float(0.0);
+        if (wanted) {
+            take_whole_scalar(s, has_air());
+            give_scalar(0);
+        }
+        WAITING(row, s) = value[s];
+    }
+    at.z -= LBM_LAYERS;
+}
+
+void step_air() {
+    lbm_load_air(place, all_air);
+    EACH_ELEMENT {
+        take_air();
+        if (has_air()) {
+            lbm_vec u;
+            lbm_float eddies;
+            value[0] = value[1] = value[2] = lbm_float(0.0);
+#define WAITED(s) value[s] = WAITING(row, s);
+            LBM_EACH_SCALAR(WAITED)
+#undef WAITED
+#if MEETS
+            if (lbm_meets(at, site)) {
+                lbm_find_bodies(at, site);
+                meet_air();
+            }
+#endif
+            collide_air(u, eddies);
+            WAITING(row, LBM_SCALARS) = u.x;
+            WAITING(row, LBM_SCALARS + 1) = u.y;
+            WAITING(row, LBM_SCALARS + 2) = u.z;
+            WAITING(row, LBM_SCALARS + 3) = eddies;
+#if LBM_KEEP
+            keep_solid();
+#endif
+#if WALLED
+            keep_air(site.solid);
+#endif
+        } else {
+            keep_air(LBM_ALL_LANES);
+        }
+        give_air();
+    }
+    at.z -= LBM_LAYERS;
+    lbm_send_air(place, all_air);
+}
+
+void step_scalar(const int s) {
+    lbm_load_scalar(s, place, all_carried[0]);
+    EACH_ELEMENT {
+        const bool flows = has_air();
+        take_whole_scalar(s, flows);
+        if (flows) {
+            lbm_vec u = lbm_vec(WAITING(row, LBM_SCALARS), WAITING(row, LBM_SCALARS + 1), WAITING(row, LBM_SCALARS + 2));
+            collide_scalar(s, 0, u, WAITING(row, LBM_SCALARS + 3));
+#if WALLED
+            keep_scalar(s, 0, site.solid);
+#endif
+        } else {
+            keep_scalar(s, 0, LBM_ALL_LANES);
+        }
+        give_scalar(0);
+    }
+    at.z -= LBM_LAYERS;
+    lbm_send_scalar(s, place, all_carried[0]);
+}
+
+void step_all() {
+#define SUM(s) sum_scalar(s);
+    LBM_EACH_SCALAR(SUM)
+#undef SUM
+    step_air();
+#if LBM_SCALARS > 2 // the last first: it has just been summed, and caches may still know it
+    step_scalar(2);
+#endif
+#if LBM_SCALARS > 1
+    step_scalar(1);
+#endif
+    step_scalar(0);
+}
+
+#endif
