@@ -18,6 +18,13 @@
 
 #include <cmocka.h> // wants the headers above
 
+// Ends the program when it was not told where the source is, as ctest tells it.
+static inline void gpu_test_need_source(void) {
+    if (getenv("ROIL_SOURCE_DIR")) return;
+    fprintf(stderr, "set ROIL_SOURCE_DIR to the root of the source\n");
+    exit(1);
+}
+
 // Ends the program with 77 when there is no device.
 static inline void gpu_test_need_device(void) {
     gpu_info info;
@@ -79,6 +86,7 @@ static inline void gpu_test_keep_driver(void) {}
 static inline int gpu_test_run_group(const char *name, const struct CMUnitTest *tests,
                                      size_t count) {
     gpu_test_keep_driver();
+    gpu_test_need_source();
     gpu_test_need_device();
     int failed = _cmocka_run_group_tests(name, tests, count, gpu_test_setup, gpu_test_teardown);
     if (gpu_test_messages > 0) fprintf(stderr, "%s: validation messages were given\n", name);
