@@ -169,7 +169,9 @@ bool roil_get_playback(const roil_effect *e, roil_playback *out); // false: it h
 
 // ---- pictures ---------------------------------------------------------------------------------
 
-// Picture of the last frame: width * height * 4 bytes, sRGB, opaque or with straight alpha.
+// Picture of the last frame: width * height * 4 bytes, sRGB, opaque or with straight alpha. Values
+// are rounded to the nearest code, for what measures; PNG files of 8 bits and videos are dithered,
+// for eyes.
 bool roil_read(roil_effect *e, bool alpha, uint8_t *out);
 
 typedef struct roil_save_options {

@@ -7,6 +7,7 @@
 #include "media/exr.h"
 #include "media/png.h"
 #include "media/video.h"
+#include "pass/blue_noise.h"
 #include "roil_impl.h"
 #include <math.h>
 #include <string.h>
@@ -91,9 +92,33 @@ const uint8_t *roil_srgb_table(void) {
     return table;
 }
 
-static uint8_t srgb_byte(float linear) {
+// The same with 8 bits behind the point.
+static const uint16_t *fine_table(void) {
+    static uint16_t table[ROIL_SRGB_STEPS + 1];
+    static bool filled;
+    if (!filled) {
+        for (int i = 0; i <= ROIL_SRGB_STEPS; i++) {
+            float root = (float)i / ROIL_SRGB_STEPS;
+            table[i] = (uint16_t)lrintf(srgb_encode(root * root) * (255 << 8));
+        }
+        filled = true;
+    }
+    return table;
+}
+
+static size_t table_index(float linear) {
     linear = linear > 0 ? fminf(linear, 1) : 0;
-    return roil_srgb_table()[lrintf(sqrtf(linear) * ROIL_SRGB_STEPS)];
+    return (size_t)lrintf(sqrtf(linear) * ROIL_SRGB_STEPS);
+}
+
+// Between two codes, which of them is a matter of blue noise, so that the mean is right and dark
+// skies have no bands (Ulichney, "Dithering with blue noise", Proc. IEEE 76, 1988). What is a code
+// already stays it.
+static uint8_t dithered_byte(float linear, size_t x, size_t y, int channel) {
+    const size_t side = BLUE_NOISE_SIZE, step = side / 3; // channels do not err together
+    const uint8_t noise =
+        blue_noise_texels[(x + step * (size_t)channel) % side + side * (y % side)];
+    return (uint8_t)((fine_table()[table_index(linear)] + noise) >> 8);
 }
 
 // Colours are premultiplied: without alpha they lie on black, with it they are divided by it.
@@ -101,11 +126,17 @@ static float straight(const float *pixel, int c, bool alpha) {
     return alpha && pixel[3] > 1e-6f ? pixel[c] / pixel[3] : pixel[c];
 }
 
-static void encode8(const float *pixels, size_t count, bool alpha, int channels, uint8_t *out) {
+// `dithered`: for eyes; otherwise to the nearest code, for what measures.
+static void encode8(const float *pixels, size_t count, size_t width, bool dithered, bool alpha,
+                    int channels, uint8_t *out) {
     for (size_t i = 0; i < count; i++) {
         const float *pixel = pixels + i * 4;
-        for (int c = 0; c < 3; c++)
-            out[i * (size_t)channels + (size_t)c] = srgb_byte(straight(pixel, c, alpha));
+        for (int c = 0; c < 3; c++) {
+            float linear = straight(pixel, c, alpha);
+            out[i * (size_t)channels + (size_t)c] =
+                dithered ? dithered_byte(linear, i % width, i / width, c)
+                         : roil_srgb_table()[table_index(linear)];
+        }
         if (channels == 4)
             out[i * 4 + 3] = alpha ? (uint8_t)lrintf(clampf(pixel[3], 0, 1) * 255) : 255;
     }
@@ -131,16 +162,16 @@ static bool read_output(roil_effect *e, raw_image *out) {
                    out->width, out->height, e->width, e->height);
 }
 
-static void encode_raw(const raw_image *raw, bool alpha, uint8_t *out) {
+static void encode_raw(const raw_image *raw, bool dithered, bool alpha, uint8_t *out) {
     float *pixels = expand_all(raw);
-    encode8(pixels, (size_t)raw->width * raw->height, alpha, 4, out);
+    encode8(pixels, (size_t)raw->width * raw->height, raw->width, dithered, alpha, 4, out);
     mem_free(pixels);
 }
 
 bool roil_read(roil_effect *e, bool alpha, uint8_t *out) {
     raw_image raw = {0};
     if (!read_output(e, &raw)) return false;
-    encode_raw(&raw, alpha, out);
+    encode_raw(&raw, false, alpha, out);
     mem_free(raw.texels);
     return true;
 }
@@ -163,7 +194,7 @@ static bool write_png(const picture *p, const float *pixels) {
     if (p->options.sixteen)
         encode16(pixels, count, p->options.alpha, channels, encoded);
     else
-        encode8(pixels, count, p->options.alpha, channels, encoded);
+        encode8(pixels, count, p->color.width, true, p->options.alpha, channels, encoded);
     bool done = png_write(p->file,
                           &(png_image){.width = p->color.width,
                                        .height = p->color.height,
@@ -274,7 +305,7 @@ roil_writer *roil_writer_create(void) {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
     size_t threads = cores < 1 ? 1 : cores > MAX_THREADS ? MAX_THREADS : (size_t)cores;
     roil_writer *w = mem_alloc(sizeof *w);
-    roil_srgb_table(); // filled before several threads read it
+    fine_table(); // filled before several threads read it
     w->files = jobs_create(threads, threads + QUEUED);
     return w;
 }
@@ -311,6 +342,7 @@ roil_video *roil_video_create(roil_effect *e, const char *file, double fps) {
     video *out = video_create(file, e->width, e->height, fps);
     if (!out) return NULL;
     roil_video *v = mem_alloc(sizeof *v);
+    fine_table(); // filled before another thread reads it
     *v = (roil_video){.effect = e,
                       .video = out,
                       .frames = jobs_create(1, 1 + QUEUED),
@@ -320,7 +352,7 @@ roil_video *roil_video_create(roil_effect *e, const char *file, double fps) {
 
 static bool encode_frame(void *user) {
     const video_frame *frame = user;
-    encode_raw(&frame->raw, false, frame->of->pixels);
+    encode_raw(&frame->raw, true, false, frame->of->pixels);
     return video_add(frame->of->video, frame->of->pixels);
 }
 

@@ -12,6 +12,21 @@ from lib.program import PUFF, SMALL, SOURCE, VOLUME, Case, main
 
 BALL = VOLUME % "sphere { position = {1, 1, 1}, radius = 1 } * 10"
 
+GREY = """// The same everywhere.
+uniform float value; //= 0 [0, 1] : linear
+writeonly uniform image2D color; //= output rgba32f : grey
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (all(lessThan(pixel, imageSize(color)))) imageStore(color, pixel, vec4(vec3(value), 1.0));
+}
+"""
+FLAT = """
+local fx = effect { name = "flat", fps = 24, frames = 2 }
+fx.camera = orbit { target = {0, 0, 0}, distance = 3 }
+fx.output = final { shader { "grey.comp", value = %.9f }, tonemap = "none", format = "rgba32f" }.color
+return fx
+"""
+
 
 class Pictures(Case):
     def png(self, name="out.png"):
@@ -24,6 +39,17 @@ class Pictures(Case):
         self.assertEqual((picture.channels, picture.bits), (3, 8))
         self.assertEqual(picture.rows[0][:3], (0, 0, 0))
         self.assertGreater(max(picture.channel(0)), 20)
+
+    def test_png_between_two_codes_has_both(self):
+        self.write("grey.comp", GREY)
+        for code in (3.25, 50.5, 200):  # of sRGB
+            linear = ((code / 255 + 0.055) / 1.055) ** 2.4 if code > 11 else code / 255 / 12.92
+            self.render(FLAT % linear, "-s", "128x128")
+            seen = self.png().channel(1)
+            self.assertLessEqual({*seen}, {int(code), int(code) + 1})
+            self.assertAlmostEqual(sum(seen) / len(seen), code, delta=0.05)
+            self.render(FLAT % linear, "-s", "128x128", output="again.png")
+            self.assertEqual(self.read("out.png"), self.read("again.png"))
 
     def test_png_keeps_alpha(self):
         self.render(BALL, "--alpha")
