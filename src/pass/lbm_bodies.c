@@ -51,7 +51,7 @@ static uint64_t stride(const lbm_air *a) {
 static bool is_inside(const lbm_air *a, const lbm_meshes *m, const field_context *context) {
     box3 box;
     for (size_t i = 0; i < m->count; i++)
-        if (!lbm_mesh_box(m->bodies[i].mesh, context, &box) ||
+        if (!lbm_mesh_box(a, m->bodies[i].mesh, context, &box) ||
             !box3_is_empty(box3_intersect(box, a->grid.box)))
             return true;
     return false;

@@ -97,7 +97,9 @@ typedef struct lbm_cells { // whole numbers
     float first[3], count[3];
 } lbm_cells;
 const field *lbm_source_shape(const pass *p); // NULL: it has none
-bool lbm_mesh_box(const scene_mesh *mesh, const field_context *context, box3 *out);
+// With a cell around, since a sheet has no size.
+bool lbm_mesh_box(const lbm_air *a, const scene_mesh *mesh, const field_context *context,
+                  box3 *out);
 // From the host's time to `end`.
 bool lbm_source_cells(const lbm_air *a, const pass *p, double end, lbm_cells *out);
 

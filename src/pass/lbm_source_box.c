@@ -7,7 +7,8 @@ const field *lbm_source_shape(const pass *p) {
     return pass_find_key(p, "shape", &index) == PASS_FIELD ? p->fields[index] : NULL;
 }
 
-bool lbm_mesh_box(const scene_mesh *mesh, const field_context *context, box3 *out) {
+bool lbm_mesh_box(const lbm_air *a, const scene_mesh *mesh, const field_context *context,
+                  box3 *out) {
     const float corners[2][3] = {
         {mesh->data.box.min.x, mesh->data.box.min.y, mesh->data.box.min.z},
         {mesh->data.box.max.x, mesh->data.box.max.y, mesh->data.box.max.z}};
@@ -23,17 +24,20 @@ bool lbm_mesh_box(const scene_mesh *mesh, const field_context *context, box3 *ou
         out->max =
             (float3){fmaxf(out->max.x, q[0]), fmaxf(out->max.y, q[1]), fmaxf(out->max.z, q[2])};
     }
+    const float h = (float)a->desc.voxel_size;
+    out->min = (float3){out->min.x - h, out->min.y - h, out->min.z - h};
+    out->max = (float3){out->max.x + h, out->max.y + h, out->max.z + h};
     return true;
 }
 
 // Meshes go on from where they are at the context's time to where they are at `end`.
-static bool meshes_box(const pass *p, double end, box3 *out) {
+static bool meshes_box(const lbm_air *a, const pass *p, double end, box3 *out) {
     field_context then = *p->host->context;
     *out = box3_empty();
     for (size_t i = 0; i < 2 * p->mesh_count; i++) {
         box3 one;
         if (i == p->mesh_count) then.time = end;
-        if (!lbm_mesh_box(p->meshes[i % p->mesh_count], &then, &one)) return false;
+        if (!lbm_mesh_box(a, p->meshes[i % p->mesh_count], &then, &one)) return false;
         *out = i ? box3_union(*out, one) : one;
     }
     return true;
@@ -61,8 +65,8 @@ bool lbm_source_cells(const lbm_air *a, const pass *p, double end, lbm_cells *ou
     const field *shape = lbm_source_shape(p);
     if (shape && !field_bounds(shape, p->host->context, &box)) return false;
     if (p->mesh_count) {
-        if (!meshes_box(p, end, &meshes)) return false;
-        box = box3_intersect(box, box3_grow(meshes, (float)a->desc.voxel_size));
+        if (!meshes_box(a, p, end, &meshes)) return false;
+        box = box3_intersect(box, meshes);
     }
     *out = cells_of(a, box);
     return true;

@@ -297,6 +297,27 @@ static void meshes_give_smoke_and_stand_in_its_way(void **state) {
     roil_unload(e);
 }
 
+// A mesh that lies in one plane has cells too, though its box is of no size.
+static void sheets_give_smoke_and_stand_in_its_way(void **state) {
+    char path[512];
+    picture p;
+    roil_simulation s;
+    write_text("sheet.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n", path);
+    roil_effect *e =
+        open(*state, 24, "buoyancy_density = 3",
+             "air:source { mesh { 'sheet.obj', scale = 0.2, position = {-0.45, 0, 0.45} }, density "
+             "= 1 }\n"
+             "air:collider { mesh { 'sheet.obj', scale = 0.3, position = {-0.45, 0, 1.25} } }");
+    draw(e, 13, p);
+    assert_true(at(p, 3, HIGH - 5) > 200);
+    if (at(p, 3, HIGH - 13) > 2) fail_msg("within the sheet: %d", at(p, 3, HIGH - 13));
+    roil_time times[32];
+    assert_true(roil_times(e, times, 32) > 0); // waits
+    assert_true(roil_get_simulation(e, &s));
+    if (s.trouble) fail_msg("%s", s.trouble);
+    roil_unload(e);
+}
+
 static void what_fails_at_a_step_is_told(void **state) {
     roil_effect *e =
         open(*state, 24, "viscosity = function(t) assert(t < 0.1) return 0.001 end", "");
@@ -538,6 +559,7 @@ int main(void) {
         cmocka_unit_test(what_is_not_in_the_air_is_told),
         cmocka_unit_test(smoke_is_where_its_source_is_and_rises),
         cmocka_unit_test(a_field_pushes_the_air),
+        cmocka_unit_test(sheets_give_smoke_and_stand_in_its_way),
         cmocka_unit_test(what_fails_at_a_step_is_told),
         cmocka_unit_test(a_lattice_that_is_too_large_names_its_line),
         cmocka_unit_test(air_that_nobody_reads_takes_no_memory),
