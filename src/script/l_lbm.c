@@ -195,6 +195,15 @@ static int l_collider(lua_State *L) {
     return 0;
 }
 
+// A field's that is spelt nearly so is meant rather.
+static void refuse_name(lua_State *L, const char *name) {
+    static const char *const own[] = {"source", "collider", "box", "time_step"};
+    const char *near = str_nearest(name, own, COUNT_OF(own));
+    if (near && !str_nearest(name, pass_lbm_names, PASS_LBM_NAMES))
+        vm_error(L, "lbm: no method or field '%s'; did you mean '%s'?", name, near);
+    script_raise(L);
+}
+
 // air.box, air.time_step, air:source, air:collider; every other name is a field's.
 static int l_index(lua_State *L) {
     const lbm_object *air = luaL_checkudata(L, 1, "lbm");
@@ -210,7 +219,7 @@ static int l_index(lua_State *L) {
     } else {
         script_require_loading(L, "a field of simulated air");
         int components, channel = pass_lbm_use(air->pass, name, &components);
-        if (channel < 0) script_raise(L);
+        if (channel < 0) refuse_name(L, name);
         field_push(L, field_grid_channel(script_memory(L), air->grid, channel, components));
     }
     return 1;

@@ -39,6 +39,8 @@ static void mistakes_are_named(void **state) {
             "lbm_source: 'velocity' reads the air that it is given to");
     refused(AIR "boundary = { top = 3 } }", "boundary: 'top' takes a word");
     refused(AIR "}\nlocal a = air.densty", "no field 'densty'; did you mean 'density'?");
+    refused(AIR "}\nair:colider { }", "no method or field 'colider'; did you mean 'collider'?");
+    refused(AIR "}\nlocal a = air.timestep", "did you mean 'time_step'?");
     refused(AIR "}\nair:source { densty = 1 }",
             "source: unknown key 'densty'; did you mean 'density'?");
     refused(AIR "}\nair:source { density = 1 }", "it has no place; give it a mesh, or shape");
