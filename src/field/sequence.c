@@ -41,7 +41,8 @@ static bool list_files(sequence_data *s) {
     if (!file_glob(pattern, &list)) return false;
     bool ok = list.count > 0 && list.count <= SEQUENCE_MAX_FRAMES;
     if (list.count == 0)
-        err_set("%s: no file has such a name", pattern);
+        err_set("%s: no file has such a name%s", pattern,
+                strchr(pattern, '%') ? "; '*' stands for the number of a frame" : "");
     else if (!ok)
         err_set("%s: %zu files; at most %d are accepted", pattern, list.count, SEQUENCE_MAX_FRAMES);
     const char **files = arena_alloc(&s->memory, (list.count + 1) * sizeof *files);

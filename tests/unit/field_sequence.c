@@ -266,6 +266,7 @@ static void times_between_frames_blend(void **state) {
 static void missing_and_damaged_files_are_named(void **state) {
     (void)state;
     refuses((sequence_desc){.pattern = "nothing*.vdb"}, "nothing*.vdb: no file has such a name");
+    refuses((sequence_desc){.pattern = "nothing%04d.vdb"}, "'*' stands for the number of a frame");
     assert_true(file_write(in_folder("bad.vdb"), "not a vdb file", 14));
     refuses((sequence_desc){.pattern = "bad.vdb"}, "bad.vdb");
     refuses((sequence_desc){.pattern = "a1.vdb", .fps = -1}, "frames a second");
