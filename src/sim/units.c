@@ -61,7 +61,8 @@ bool sim_advise_speed(const sim_units *u, const sim_flow *flow, double measured,
     if (said < 0 || (size_t)said >= capacity) return true;
     out += said, capacity -= (size_t)said;
     if (flow->fixed)
-        snprintf(out, capacity, "'time_step' below %.3g s (it is %.3g)", step, u->step);
+        snprintf(out, capacity, "'time_step' below %.3g s (it is %.3g)%s", step, u->step,
+                 measured > flow->speed ? "" : ", or 'speed' to less if it will not be so fast");
     else
         snprintf(out, capacity,
                  "'speed' to %.3g m/s (it is %.3g), or 'time_step' below %.3g s (it is %.3g)",
