@@ -1,4 +1,4 @@
-// Boundaries of a solver against theory: channels, plates that move, faces.
+// Boundaries of a solver against theory: channels, plates that slide, cylinders that turn.
 #include "sim_bodies_test.h"
 
 // ---- channels ---------------------------------------------------------------------------------
@@ -103,10 +103,63 @@ static void a_plate_drags_the_air_along(void **state) {
     sim_close(&w);
 }
 
+// ---- cylinders --------------------------------------------------------------------------------
+
+enum { ROUND = 48, TURNS = 1, STANDS = 2 }; // cells; ids
+static const double inner = 8, outer = 21, middle = 24.2;
+
+static double from_axis(const float p[3]) {
+    return hypot((double)p[0] - middle, (double)p[2] - middle);
+}
+
+static int between_cylinders(const float p[3], const void *user) {
+    (void)user;
+    return from_axis(p) < inner ? TURNS : from_axis(p) > outer ? STANDS : 0;
+}
+
+// Around the axis, relative to that of the inner cylinder's surface: Couette's in the round.
+static double turning(double r) {
+    return inner / (outer * outer - inner * inner) * (outer * outer / r - r);
+}
+
+// A cylinder that turns within one that stands takes the air along, wherever its surface goes.
+static void a_cylinder_turns_the_air(void **state) {
+    sim_world w;
+    sim_bodies b;
+    double error = 0;
+    sim_open(&w, *state,
+             &(lbm_desc){.size = {ROUND, 4, ROUND}, .collision = LBM_TRT, .bodies = true});
+    sim_bodies_open(&w, &b);
+    w.numbers.tau = 0.9f;
+    sim_reset(&w);
+    b.body[TURNS - 1] = (lbm_body){.centre = {(float)middle, 2, (float)middle},
+                                   .angular = {0, (float)(channel_speed / inner), 0}};
+    gpu_test_ok(gpu_frame_begin(w.device));
+    sim_bodies_set(&w, &b, between_cylinders, NULL);
+    gpu_test_ok(gpu_frame_end(w.device));
+    sim_run(&w, 3000);
+    sim_read(&w);
+    for (size_t i = 0; i < w.cells; i++) {
+        float p[3];
+        sim_centre(&w, i, p);
+        double r = from_axis(p), x = (double)p[0] - middle, z = (double)p[2] - middle;
+        if (r < inner + 2 || r > outer - 2) continue; // surfaces are stairs of cells
+        const double *u = w.state[i].u, wanted = turning(r);
+        error = fmax(error, fabs((u[0] * z - u[2] * x) / r / channel_speed - wanted));
+        error = fmax(error, fabs(u[0] * x + u[2] * z) / r / channel_speed);
+        error = fmax(error, fabs(u[1]) / channel_speed);
+    }
+    print_message("cylinder: within %.2f %% of its speed\n", 100 * error);
+    assert_true(error < 0.04);
+    sim_bodies_close(&w, &b);
+    sim_close(&w);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_channel_flows_as_a_parabola),
         cmocka_unit_test(a_plate_drags_the_air_along),
+        cmocka_unit_test(a_cylinder_turns_the_air),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }
