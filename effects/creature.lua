@@ -41,7 +41,7 @@ local flutter = perlin { frequency = 3, speed = 5, octaves = 2, seed = 2 }
 air:source {
   mesh { "data/creature_throat.obj" }, rule = "solid",
   density = breath, temperature = breath * (0.6 + 0.8 * flutter),
-  velocity = vec(9, 0, 1) * breath * (0.6 + 0.8 * flutter), pressure = 0,
+  velocity = vec(9, 0, 1) * breath * min(0.6 + 0.8 * flutter, 1.1), pressure = 0, -- below what `speed` leaves room for
 }
 
 -- What is finer than a cell is not in the air. Noise stands for it, carried along by the air, and eats at

@@ -98,6 +98,7 @@ field_grid *pass_lbm_open(pass *p, const pass_lbm_desc *desc) {
         .givers = {.updated = (double)NAN},
         .solids = {.updated = (double)NAN},
         .force = {.turn = UINT64_MAX},
+        .held = (double)NAN,
         .fresh = true,
         .shown_steps = UINT64_MAX,
     };

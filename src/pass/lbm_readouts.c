@@ -48,15 +48,25 @@ static void tell_burst(lbm_air *a) {
              what, change, sturdy ? "" : ", or 'collision' to \"central_moments\"");
 }
 
-static void tell_held_back(lbm_air *a) {
+// As fast as it may be, and when it was that: now, or in passing.
+static void tell_held_back(lbm_air *a, const char *when) {
     char change[64];
     if (a->desc.time_step > 0)
         snprintf(change, sizeof change, "'time_step' below %.3g s", a->desc.time_step);
     else
         snprintf(change, sizeof change, "'speed' above that (it is %.3g)", a->desc.speed);
     snprintf(a->trouble, sizeof a->trouble,
-             "air is held back at %.3g m/s, Mach %g on the lattice: set %s", measured(a),
-             SIM_MACH_MAX, change);
+             "air %s held back at %.3g m/s, Mach %g on the lattice: set %s", when,
+             SIM_MACH_MAX / sqrt(3) * a->units.cell / a->units.step, SIM_MACH_MAX, change);
+}
+
+// What is over is still in the smoke.
+static bool tell_was_held_back(lbm_air *a) {
+    char when[64];
+    if (isnan(a->held)) return false;
+    snprintf(when, sizeof when, "was, from %.3g s on,", a->held);
+    tell_held_back(a, when);
+    return true;
 }
 
 // What the guard saw; false: nothing.
@@ -65,7 +75,7 @@ static bool tell_report(lbm_air *a, const sim_flow *flow) {
     if (is_ruined(a) || (a->stops && mach(a) > 1))
         tell_burst(a);
     else if (is_held_back(a))
-        tell_held_back(a);
+        tell_held_back(a, "is");
     else
         return sim_advise_speed(&a->units, flow, measured(a), a->trouble, sizeof a->trouble);
     return true;
@@ -90,7 +100,8 @@ static void tell_absent(lbm_air *a) {
 
 static void tell(lbm_air *a) {
     sim_flow flow = lbm_air_flow(a->pass);
-    if (!tell_report(a, &flow) && !sim_advise(&a->units, &flow, a->trouble, sizeof a->trouble))
+    if (!tell_report(a, &flow) && !sim_advise(&a->units, &flow, a->trouble, sizeof a->trouble) &&
+        !tell_was_held_back(a))
         tell_absent(a);
 }
 
@@ -101,6 +112,7 @@ static void look(lbm_air *a) {
         a->report = report;
         a->reported = true;
         a->stopped = report.spoilt != 0;
+        if (is_held_back(a) && isnan(a->held)) a->held = lbm_air_step_time(a, report.step);
     }
     tell(a);
 }

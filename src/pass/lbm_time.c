@@ -52,6 +52,7 @@ void lbm_air_restart(pass *p) {
     a->fresh = true;
     a->stopped = false;
     a->reported = false;
+    a->held = (double)NAN;
     a->trouble[0] = '\0';
     a->givers.updated = a->solids.updated = (double)NAN;
     a->force.turn = UINT64_MAX;

@@ -419,6 +419,28 @@ static void air_that_is_too_fast_is_held_back_by_itself(void **state) {
     roil_unload(e);
 }
 
+// The smoke has been spoilt by then.
+static void air_that_was_held_back_in_passing_is_told(void **state) {
+    picture p;
+    roil_time times[32];
+    roil_simulation s;
+    roil_effect *e = open(*state, 24, "buoyancy_heat = 0",
+                          "air:source { shape = box { position = {0, 0, 0.5} }, temperature = 0,\n"
+                          "  velocity = vec(0, 0, 9 * step(0.1, time) * step(time, 0.2)) }");
+    for (int frame = 1; frame <= 24; frame++) draw(e, frame, p);
+    assert_true(roil_times(e, times, 32) > 0); // waits
+    assert_true(readout(e, "Mach") < 0.25);
+    assert_true(roil_get_simulation(e, &s) && s.trouble);
+    if (!strstr(s.trouble, "was, from 0.1") || !strstr(s.trouble, "'speed'"))
+        fail_msg("%s", s.trouble);
+    roil_restart(e);
+    draw(e, 1, p);
+    assert_true(roil_times(e, times, 32) > 0);
+    assert_true(roil_get_simulation(e, &s));
+    assert_null(s.trouble);
+    roil_unload(e);
+}
+
 // Whatever is given to it, held-back air stays air: its mass, too.
 static void nothing_that_is_given_bursts_it(void **state) {
     static const char *const more[] = {
@@ -553,6 +575,7 @@ int main(void) {
         cmocka_unit_test(meshes_give_smoke_and_stand_in_its_way),
         cmocka_unit_test(a_source_that_holds_the_pressure_blows_new_air_out),
         cmocka_unit_test(air_that_is_too_fast_is_held_back_by_itself),
+        cmocka_unit_test(air_that_was_held_back_in_passing_is_told),
         cmocka_unit_test(nothing_that_is_given_bursts_it),
         cmocka_unit_test(air_that_bursts_stops_and_says_so),
         cmocka_unit_test(what_burst_is_never_shown),
