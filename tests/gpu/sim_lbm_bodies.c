@@ -144,6 +144,7 @@ static void flow(gpu *g, lbm_set set, lbm_precision precision, double near) {
     sim_open(&w, g,
              &(lbm_desc){.size = {40, 28, 24},
                          .set = set,
+                         .scalar_set = set == LBM_D3Q27 ? LBM_SCALAR_D3Q27 : LBM_SCALAR_D3Q7,
                          .collision = LBM_CENTRAL_MOMENTS,
                          .precision = precision,
                          .faces = {LBM_INFLOW, LBM_OPEN},
