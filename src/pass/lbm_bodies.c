@@ -7,7 +7,8 @@
 
 bool lbm_air_add_body(lbm_air *a, lbm_meshes *m, const scene_mesh *mesh, voxels_rule rule) {
     if (m->count == VOXELS_MAX_BODIES)
-        return err_set("%s: more than %d meshes of %s", a->pass->label, VOXELS_MAX_BODIES,
+        return err_set("%s: more than %d meshes of %s; those that move together may be one file",
+                       a->pass->label, VOXELS_MAX_BODIES,
                        m == &a->givers ? "sources" : "colliders");
     MEM_RESERVE(m->bodies, m->count + 1, m->capacity);
     m->bodies[m->count] = (voxels_body){mesh, (uint8_t)(m->count + 1), rule};

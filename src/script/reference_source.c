@@ -132,7 +132,7 @@ const script_object reference_sources[] = {
             "meshes, which come first and may move, each by its own position or all by motion = "
             "curve { ... }; `roil info passes lbm_source` lists the rest"),
         KEY("collider { }", "{ mesh { \"data/ball.obj\" } }",
-            "meshes or instances, which may move, that the air flows around; motion = curve { ... } is the position of "
+            "meshes or instances, 63 in all, which may move, that the air flows around; motion = curve { ... } is the position of "
             "meshes that say none; rule = \"solid\" leaves gaps narrower than two cells open, as of `voxels`"),
         KEY("density", "field", "of smoke"),
         KEY("temperature", "field", "0 is that of the air around"),
