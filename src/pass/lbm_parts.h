@@ -47,7 +47,7 @@ typedef struct lbm_air {
     char trouble[512]; // what it says; "": nothing
     lbm_report report; // the newest
     bool reported;
-    double held; // seconds at which it was first held back; NAN: never
+    double held;          // seconds at which it was first held back; NAN: never
     uint64_t shown_steps; // of the grid's content
     double shown_blend;
     uint64_t last_steps; // that the last record took
