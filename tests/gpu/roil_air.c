@@ -238,6 +238,28 @@ static void smoke_is_where_its_source_is_and_rises(void **state) {
     roil_unload(e);
 }
 
+// Three that the air carries, each by its own name.
+static void smoke_heat_and_dye_are_told_apart(void **state) {
+    static const char *const shown[] = {"air.density", "0.5 * air.temperature", "air.dye"};
+    static const int given[] = {170, 203, 231}; // 0.4, 0.6, 0.8 in sRGB
+    for (int i = 0; i < 3; i++) {
+        char text[2048], path[512];
+        picture p;
+        script(text, 24, "buoyancy_heat = 0",
+               "air:source { shape = box { position = {-0.4, 0, 1.6}, size = {0.4, 0.4, 0.4} },\n"
+               "  density = 0.4, temperature = 1.2, dye = 0.8, velocity = {0, 0, 0} }",
+               shown[i]);
+        write_text("slice.comp", SLICE, path);
+        roil_effect *e = load_text(*state, "air.lua", text);
+        ok(roil_prepare(e, WIDE, HIGH));
+        draw(e, 3, p);
+        int inside = at(p, 4, HIGH - 17);
+        if (abs(inside - given[i]) > 2 || at(p, 14, HIGH - 17) != 0)
+            fail_msg("%s: %d and %d", shown[i], inside, at(p, 14, HIGH - 17));
+        roil_unload(e);
+    }
+}
+
 static void a_field_pushes_the_air(void **state) {
     picture still, pushed;
     roil_effect *a = open(*state, 24, "buoyancy_density = 0", "");
@@ -581,6 +603,7 @@ int main(void) {
         cmocka_unit_test(what_burst_is_never_shown),
         cmocka_unit_test(what_is_not_in_the_air_is_told),
         cmocka_unit_test(smoke_is_where_its_source_is_and_rises),
+        cmocka_unit_test(smoke_heat_and_dye_are_told_apart),
         cmocka_unit_test(a_field_pushes_the_air),
         cmocka_unit_test(sheets_give_smoke_and_stand_in_its_way),
         cmocka_unit_test(what_fails_at_a_step_is_told),
