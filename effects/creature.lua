@@ -49,9 +49,10 @@ air:source {
 local lumps = worley { frequency = 3, octaves = 3, persistence = 0.55, lacunarity = 2.1, seed = 4 }
               :tile():advect(air.velocity, { period = 0.4, mean = 0.48 })
 local folds = curl { frequency = 3, octaves = 3, persistence = 0.6, drift = {-2, 0, 0}, speed = 0.8, seed = 9 }:tile()
-local cover = smoothstep(0.03, 0.42, air.density:warp(folds, folded))
+local spread = folded * smoothstep(0, 1, position.x) -- they need room, which the mouth has not
+local cover = smoothstep(0.03, 0.42, air.density:warp(folds, spread))
 local smoke = cover * smoothstep(0, 0.3, cover - eaten * (1 - lumps) * (1 - 0.7 * cover))
-local hot   = clamp(1.15 * air.temperature:warp(folds, folded) - 0.1, 0, 1.2)
+local hot   = clamp(1.15 * air.temperature:warp(folds, spread) - 0.1, 0, 1.2)
 local fire  = palette { blackbody = {300, 3500}, physical = true, reference = 1500 }
 
 -- Moonlight from behind on the horns, and the light of the fire in the mouth.
