@@ -21,7 +21,7 @@ static bool check_bodies(const voxels_desc *desc) {
         return err_set("voxels: %zu bodies; at most %d are possible", desc->body_count,
                        VOXELS_MAX_BODIES);
     for (size_t i = 0; i < desc->body_count; i++) {
-        uint8_t id = desc->bodies[i].id;
+        const int id = desc->bodies[i].id;
         if (id < 1 || id > VOXELS_MAX_BODIES || taken[id])
             return err_set("voxels: body %zu has the number %d, which is %s; 1 to %d are accepted",
                            i + 1, id, id && id <= VOXELS_MAX_BODIES ? "taken" : "none",

@@ -24,7 +24,7 @@ typedef struct voxels voxels;
 
 typedef enum voxels_rule { VOXELS_AUTO, VOXELS_SOLID, VOXELS_SHELL } voxels_rule;
 
-enum { VOXELS_MAX_BODIES = 63, VOXELS_MAX_SIDE = 1024 };
+enum { VOXELS_MAX_BODIES = 255, VOXELS_MAX_SIDE = 1024 };
 
 typedef struct voxels_body { // the same mesh may be several
     const scene_mesh *mesh;  // where it stands is evaluated with each update

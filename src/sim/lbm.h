@@ -33,8 +33,8 @@ typedef enum lbm_face { LBM_PERIODIC, LBM_WALL, LBM_SLIP, LBM_OPEN, LBM_INFLOW }
 enum {
     LBM_ALONG_Z = 4, // what cells along z are a multiple of
     LBM_MAX_SCALARS = 3,
-    LBM_MAX_BODIES = 63,
-    LBM_WALL_ID = 64,
+    LBM_MAX_BODIES = 255,
+    LBM_WALL_ID = 256,
     LBM_MAX_DEFINES = 32,
     LBM_MAX_BUFFERS = 16
 };

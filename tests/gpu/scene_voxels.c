@@ -303,11 +303,11 @@ static void later_body_has_the_cell(void **state) {
     second.position = triple(&w, 0.5f, 0, 0);
     third.position = triple(&w, -1.5f, 0, 0);
     const voxels_body bodies[] = {
-        {first, 9, VOXELS_AUTO}, {&second, 4, VOXELS_AUTO}, {&third, 63, VOXELS_AUTO}};
+        {first, 9, VOXELS_AUTO}, {&second, 4, VOXELS_AUTO}, {&third, 255, VOXELS_AUTO}};
     uint8_t *ids = voxelise(&w, bodies, 3);
     assert_int_equal(count_ids(ids, 9), 4 * 8 * 8);
     assert_int_equal(count_ids(ids, 4), 8 * 8 * 8);
-    assert_int_equal(count_ids(ids, 63), 8 * 8 * 8);
+    assert_int_equal(count_ids(ids, 255), 8 * 8 * 8);
     mem_free(ids);
     voxels_close(&w);
 }

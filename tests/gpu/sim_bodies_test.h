@@ -6,7 +6,7 @@
 typedef struct sim_bodies {
     gpu_buffer *ids;
     uint8_t *bytes;
-    lbm_body body[2];
+    lbm_body body[LBM_MAX_BODIES];
 } sim_bodies;
 
 static inline void sim_bodies_open(sim_world *w, sim_bodies *b) {

@@ -8,7 +8,7 @@
 #define SIM_LBM_BODIES_GLSL
 #include "sim/lbm/cells.glsl"
 
-#define LBM_WALL_ID 64u // as in src/sim/lbm.h
+#define LBM_WALL_ID 256u // as in src/sim/lbm.h
 
 ivec3 lbm_cell_at(uvec3 at, uint lane) {
     return ivec3(at.xy, at.z + LBM_LAYERS * lane);
@@ -19,7 +19,7 @@ layout(std430) readonly buffer LbmIds { uint lbm_ids[]; }; // a byte a cell, x f
 
 // Rigid motions by id, three each: a point that moves with the second, and 1 if the body moves at
 // all; velocity in a step, and its greatest; radians in a step.
-uniform vec4 lbm_bodies[192];
+uniform vec4 lbm_bodies[768];
 
 bool lbm_body_moves(uint id) {
     return lbm_bodies[3u * id].w != 0.0;
