@@ -31,7 +31,7 @@ void sum_scalar(const int s) {
         }
         WAITING(row, s) = value[s];
     }
-    at.z -= LBM_LAYERS;
+    AGAIN
 }
 
 void step_air() {
@@ -67,7 +67,7 @@ void step_air() {
         }
         give_air();
     }
-    at.z -= LBM_LAYERS;
+    AGAIN
     lbm_send_air(place, all_air);
 }
 
@@ -87,7 +87,7 @@ void step_scalar(const int s) {
         }
         give_scalar(0);
     }
-    at.z -= LBM_LAYERS;
+    AGAIN
     lbm_send_scalar(s, place, all_carried[0]);
 }
 
