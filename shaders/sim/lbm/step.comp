@@ -292,16 +292,17 @@ bool has_air() {
     bool in_region = LBM_REGION != LBM_CORE || LBM_FACE_4 == 0 || at.z > 0u && at.z < LBM_LAYERS - 1u;
     return in_region && find_site();
 }
-#define EACH_ELEMENT for (uint row = 0u; row < ROWS; row++, at.z += LBM_SPAN)
-#define AGAIN at.z -= LBM_LAYERS; // to the first
 #else
+#define ROWS 1u
 bool has_air() {
     return true;
 }
-
-const uint row = 0u;
-#define EACH_ELEMENT // not a loop of one turn, which costs processors a third
-#define AGAIN
+#endif
+#if LBM_SOFTWARE
+#define EACH_ELEMENT // a loop of one turn costs processors a third
+#else
+#define EACH_ELEMENT for (uint row = 0u; row < ROWS; row++, at.z += LBM_SPAN)
+#define AGAIN at.z -= LBM_LAYERS; // to the first
 #endif
 
 #if ALONE
