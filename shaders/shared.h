@@ -147,21 +147,21 @@ struct surface_material { // of a part of a mesh
 
 // What the shaders of scene/voxels read; src/scene/voxels.c writes it. A part is what of a body is
 // voxelised by itself: a run of items (triangles, large ones in strips) with a box of cells.
-#define VOXEL_MAX_PARTS 512
 #define VOXEL_UNIT 256      // steps a cell that corners are rounded to
 #define VOXEL_GROUP 64      // threads of a group of those that prepare and cross
 #define VOXEL_CLEARED 4     // uvec4s of masks that a thread clears
 #define VOXEL_LINES 512     // lines through cells that an item meets, about: larger triangles are cut
 #define VOXEL_STRIPS 64     // into so many at most
-#define VOXEL_ROW 16        // cells that a thread composes; a multiple of 4
+#define VOXEL_ROW 16        // cells that a thread composes, and side of a tile; a multiple of 4
 #define VOXEL_CROSSES 4096u // flags of an item, above its strip and its strips less one, 6 bits each
 #define VOXEL_SHELL 8192u
 #define VOXEL_THIN 1.7321 // cells: triangles with more of the body behind them need no shell
 
 struct voxel_head {
     SHARED_UVEC4 count; // parts; parts that are voxelised now; groups of prepare.comp, of cross.comp
-    SHARED_UVEC4 low;   // xyz: first cell to be composed
+    SHARED_UVEC4 low;   // xyz: first cell to be composed, x a multiple of VOXEL_ROW
     SHARED_UVEC4 size;  // xyz: how many
+    SHARED_UVEC4 tiles; // xyz: tiles that these lie in
     SHARED_UVEC4 grid;  // xyz: cells of the whole box; w: items of all parts
     SHARED_VEC4 corner; // xyz: metres, of the whole box; w: farthest that a distance can be (m)
     SHARED_VEC4 cell;   // xyz: edges (m)

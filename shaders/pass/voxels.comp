@@ -23,10 +23,10 @@ vec3 velocity_at(uint id, vec3 p) {
 void main() {
     uvec3 first = gl_GlobalInvocationID * uvec3(4u, 1u, 1u), cells = uvec3(size);
     if (any(greaterThanEqual(first, cells))) return;
-    uint ids = voxel_ids[first.x / 4u + cells.x / 4u * (first.y + cells.y * first.z)];
+    uint at = first.x + cells.x * (first.y + cells.y * first.z);
     bool shows = imageSize(inside).x > 1, moves = imageSize(velocity).x > 1;
-    for (uint i = 0u; i < 4u; i++, ids >>= 8) {
-        uint id = ids & 255u;
+    for (uint i = 0u; i < 4u; i++) {
+        uint id = voxel_ids[at + i];
         uvec3 cell = first + uvec3(i, 0u, 0u);
         vec3 p = mix(box_min, box_max, (vec3(cell) + 0.5) / size);
         if (shows) imageStore(inside, ivec3(cell), vec4(id == 0u ? 0.0 : 1.0));

@@ -38,4 +38,4 @@ double pass_lbm_time_step(const pass *p); // seconds
 // Before pass_complete: a field of that name is wanted. Its first channel; -1 with a message.
 int pass_lbm_use(pass *p, const char *name, int *components);
 bool pass_lbm_add_source(pass *p, pass *source); // declared before
-bool pass_lbm_add_collider(pass *p, scene_mesh *mesh, voxels_rule rule);
+void pass_lbm_add_collider(pass *p, scene_mesh *mesh, voxels_rule rule);

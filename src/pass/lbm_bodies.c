@@ -5,20 +5,13 @@
 #include <math.h>
 #include <string.h>
 
-bool lbm_air_add_body(lbm_air *a, lbm_meshes *m, const scene_mesh *mesh, voxels_rule rule) {
-    if (m->count == VOXELS_MAX_BODIES)
-        return err_set("%s: more than %d meshes of %s; those that move together may be one file",
-                       a->pass->label, VOXELS_MAX_BODIES,
-                       m == &a->givers ? "sources" : "colliders");
+void lbm_air_add_body(lbm_meshes *m, const scene_mesh *mesh, voxels_rule rule) {
     MEM_RESERVE(m->bodies, m->count + 1, m->capacity);
-    m->bodies[m->count] = (voxels_body){mesh, (uint8_t)(m->count + 1), rule};
-    m->count++;
-    return true;
+    m->bodies[m->count++] = (voxels_body){mesh, rule};
 }
 
-bool pass_lbm_add_collider(pass *p, scene_mesh *mesh, voxels_rule rule) {
-    lbm_air *a = lbm_air_of(p);
-    return lbm_air_add_body(a, &a->solids, mesh, rule);
+void pass_lbm_add_collider(pass *p, scene_mesh *mesh, voxels_rule rule) {
+    lbm_air_add_body(&lbm_air_of(p)->solids, mesh, rule);
 }
 
 static bool make(lbm_air *a, lbm_meshes *m) {
@@ -87,6 +80,7 @@ static void destroy(lbm_air *a, lbm_meshes *m) {
 }
 
 bool lbm_air_make_bodies(lbm_air *a) {
+    a->moving = arena_alloc(a->pass->host->memory, a->solids.count * sizeof *a->moving);
     return make(a, &a->givers) && make(a, &a->solids);
 }
 
@@ -123,14 +117,13 @@ static lbm_body body_of(const lbm_air *a, size_t index) {
 
 bool lbm_air_move_bodies(lbm_air *a, const lbm_numbers *numbers) {
     voxels_change change;
-    lbm_body bodies[VOXELS_MAX_BODIES];
     if (!move(a, &a->givers, &change) || !move(a, &a->solids, &change)) return false;
     if (!a->solids.cells) return true;
-    for (size_t i = 0; i < a->solids.count; i++) bodies[i] = body_of(a, i);
+    for (size_t i = 0; i < a->solids.count; i++) a->moving[i] = body_of(a, i);
     return lbm_set_bodies(a->solver, a->pass->host->device, numbers,
                           &(lbm_bodies){.ids = voxels_ids(a->solids.cells),
                                         .changed = change.cells,
-                                        .bodies = bodies,
+                                        .bodies = a->moving,
                                         .count = (uint32_t)a->solids.count});
 }
 

@@ -35,6 +35,7 @@ typedef struct lbm_air {
     pass **sources;
     size_t source_count, source_capacity;
     lbm_meshes givers, solids; // of sources, of colliders
+    lbm_body *moving;          // of the latter, as they go on
     lbm *solver;               // after pass_complete
     lbm_guard *guard;
 
@@ -105,7 +106,7 @@ bool lbm_mesh_box(const lbm_air *a, const scene_mesh *mesh, const field_context 
 bool lbm_source_cells(const lbm_air *a, const pass *p, double end, lbm_cells *out);
 
 // lbm_bodies.c
-bool lbm_air_add_body(lbm_air *a, lbm_meshes *m, const scene_mesh *mesh, voxels_rule rule);
+void lbm_air_add_body(lbm_meshes *m, const scene_mesh *mesh, voxels_rule rule);
 bool lbm_air_make_bodies(lbm_air *a); // when all are known
 bool lbm_air_check_bodies(lbm_air *a);
 bool lbm_air_build_bodies(lbm_air *a);

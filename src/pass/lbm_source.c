@@ -12,7 +12,7 @@ static const char give_shader[] = "pass/lbm/give.comp";
 
 typedef struct source_state {
     lbm_air *air;
-    uint8_t first_id; // of its meshes; 0: it has none
+    uint32_t first_id; // of its meshes; 0: it has none
     shader_binary give;
     gpu_pipeline *pipeline; // that gives
     unsigned char *block;   // of its uniforms
@@ -58,12 +58,12 @@ bool pass_lbm_add_source(pass *p, pass *source) {
     lbm_air *a = lbm_air_of(p);
     if (reads_itself(a, source)) return false;
     source_state *s = source->state = arena_alloc(p->host->memory, sizeof *s);
-    *s = (source_state){.air = a, .first_id = (uint8_t)(a->givers.count + 1), .turn = UINT64_MAX};
+    *s = (source_state){.air = a, .first_id = (uint32_t)a->givers.count + 1, .turn = UINT64_MAX};
     size_t option;
     pass_find_key(source, "rule", &option);
     voxels_rule rule = (voxels_rule)source->options[option];
     for (size_t i = 0; i < source->mesh_count; i++)
-        if (!lbm_air_add_body(a, &a->givers, source->meshes[i], rule)) return false;
+        lbm_air_add_body(&a->givers, source->meshes[i], rule);
     if (!source->mesh_count) s->first_id = 0;
     source->runs_in = p;
     MEM_RESERVE(a->sources, a->source_count + 1, a->source_capacity);
@@ -202,7 +202,7 @@ static bool fill_give(const pass *p, source_state *s) {
     const float speed = (float)sim_velocity(&a->units, 1);
     const float most = lbm_air_clamp_speed(a);
     const float share = rate[0] > 0 ? (float)sim_decay(&a->units, (double)rate[0]) : 1;
-    const float ids[2] = {s->first_id, (float)s->first_id + (float)p->mesh_count - 1};
+    const uint32_t last_id = s->first_id + (uint32_t)p->mesh_count - 1;
     const float pascal = (float)(1 / lbm_air_pascals(a));
     const uint32_t parity = lbm_parity(a->solver);
     write_place(s, &s->give, s->block);
@@ -211,7 +211,8 @@ static bool fill_give(const pass *p, source_state *s) {
     pass_write_member(&s->give, s->block, "velocity_factor", factor, sizeof *factor);
     pass_write_member(&s->give, s->block, "pascal", &pascal, sizeof pascal);
     pass_write_member(&s->give, s->block, "share", &share, sizeof share);
-    pass_write_member(&s->give, s->block, "ids", ids, sizeof ids);
+    pass_write_member(&s->give, s->block, "first_id", &s->first_id, sizeof s->first_id);
+    pass_write_member(&s->give, s->block, "last_id", &last_id, sizeof last_id);
     pass_write_member(&s->give, s->block, "lbm_parity", &parity, sizeof parity);
     return true;
 }

@@ -251,11 +251,7 @@ bool pass_add_mesh(pass *p, scene_mesh *mesh) {
 
 // As shapes each is a mesh by itself, of the kind that it begins as.
 static bool add_shapes(pass *p, const scene_instances *instances) {
-    uint32_t count = scene_instances_count(instances);
-    if (count > PASS_MAX_SHAPES)
-        return err_set("%s: %u instances of '%s'; as shapes at most %d are possible", p->label,
-                       count, scene_instances_name(instances), PASS_MAX_SHAPES);
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < scene_instances_count(instances); i++) {
         scene_mesh *mesh = scene_instances_mesh(instances, i, p->host->memory);
         if (mesh && !pass_add_mesh(p, mesh)) return false;
     }

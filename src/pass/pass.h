@@ -132,7 +132,6 @@ bool pass_set_scale(pass *p,
 bool pass_set_format(pass *p, const char *output, gpu_format format);
 bool pass_add_mesh(pass *p, scene_mesh *mesh); // of types that take them
 size_t pass_meshes(const pass *p, scene_mesh *const **out);
-enum { PASS_MAX_SHAPES = 256 }; // instances, of types that do not draw
 bool pass_add_instances(pass *p, scene_instances *instances); // of types that take meshes
 size_t pass_instances(const pass *p, scene_instances *const **out);
 // What `p` says nothing about it takes from `source`, a pass declared before, where both have

@@ -218,13 +218,10 @@ bool voxels_declare(pass *p) {
     pass_find_key(p, "rule", &rule);
     voxels_body *bodies = arena_alloc(p->host->memory, p->mesh_count * sizeof *bodies);
     for (size_t i = 0; i < p->mesh_count; i++)
-        bodies[i] = (voxels_body){p->meshes[i], (uint8_t)(i + 1), (voxels_rule)p->options[rule]};
+        bodies[i] = (voxels_body){p->meshes[i], (voxels_rule)p->options[rule]};
     voxels_desc desc = {
         .box = s->grid.box, .bodies = bodies, .body_count = p->mesh_count, .distances = true};
     memcpy(desc.size, s->grid.size, sizeof desc.size);
-    if (p->mesh_count > VOXELS_MAX_BODIES)
-        return err_set("%s: %zu meshes; at most %d are possible", p->label, p->mesh_count,
-                       VOXELS_MAX_BODIES);
     s->cells = voxels_create(p->host->memory, &desc);
     if (!s->cells) return err_prefix("%s: ", p->label);
     return add_image(p, s, "inside", PASS_VOXELS_INSIDE) &&

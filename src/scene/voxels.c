@@ -1,12 +1,12 @@
 // The voxeliser from frame to frame. A body whose transform is what it was costs nothing; for those
 // that moved three dispatches do, whatever they are: prepare.comp, cross.comp, compose.comp. Each
 // part of a body keeps masks of its own, so that what a body uncovers is composed from the masks of
-// those that did not move.
+// those that did not move; a row of cells looks only at the parts near to it (voxels_tiles.c).
 //
 // Cost for T triangles and a box of N cells: 3 T threads that read 64 bytes each, an atomic
 // operation for each word from a crossing to the end of its column (at 128 cells 2.5 on average), 3
-// N / 8 bytes of masks cleared and read, N bytes of ids written. At 128^3 with 20,000 triangles
-// across the box: 60,000 threads, 250,000 atomics, 0.8 MB cleared, 0.8 MB read, 2 MB written.
+// N / 8 bytes of masks cleared and read, 4 N bytes of ids written. At 128^3 with 20,000 triangles
+// across the box: 60,000 threads, 250,000 atomics, 0.8 MB cleared, 0.8 MB read, 8 MB written.
 #include "base/error.h"
 #include "base/memory.h"
 #include "scene/voxels_impl.h"
@@ -14,22 +14,6 @@
 #include <string.h>
 
 // ---- creating ---------------------------------------------------------------------------------
-
-static bool check_bodies(const voxels_desc *desc) {
-    bool taken[VOXELS_MAX_BODIES + 1] = {false};
-    if (desc->body_count > VOXELS_MAX_BODIES)
-        return err_set("voxels: %zu bodies; at most %d are possible", desc->body_count,
-                       VOXELS_MAX_BODIES);
-    for (size_t i = 0; i < desc->body_count; i++) {
-        const int id = desc->bodies[i].id;
-        if (id < 1 || id > VOXELS_MAX_BODIES || taken[id])
-            return err_set("voxels: body %zu has the number %d, which is %s; 1 to %d are accepted",
-                           i + 1, id, id && id <= VOXELS_MAX_BODIES ? "taken" : "none",
-                           VOXELS_MAX_BODIES);
-        taken[id] = true;
-    }
-    return true;
-}
 
 static bool check(const voxels_desc *desc) {
     for (int a = 0; a < 3; a++)
@@ -39,7 +23,7 @@ static bool check(const voxels_desc *desc) {
                            desc->size[0], desc->size[1], desc->size[2], VOXELS_MAX_SIDE);
     if (box3_is_empty(desc->box) || !box3_is_finite(desc->box))
         return err_set("voxels: the box is empty or has no end");
-    return check_bodies(desc);
+    return true;
 }
 
 // Bodies of the same mesh share what was made of it.
@@ -51,16 +35,32 @@ static size_t find_surface(voxels *v, const voxels_body *body) {
         if (v->sources[i].vertices == mesh->vertices && v->sources[i].rule == body->rule) return i;
     voxel_surface *s = &v->surfaces[v->surface_count];
     voxel_surface_create(s, mesh, body->rule, longest);
-    v->sources[v->surface_count] =
-        (struct voxels_source){mesh->vertices, body->rule, v->point_count, v->item_count};
-    v->point_count += (uint32_t)s->point_count;
-    v->item_count += (uint32_t)s->item_count;
+    v->sources[v->surface_count] = (struct voxels_source){
+        mesh->vertices, body->rule, (uint32_t)v->point_count, (uint32_t)v->item_count};
+    v->point_count += s->point_count;
+    v->item_count += s->item_count;
     return v->surface_count++;
 }
 
+static bool are_constant(const field *a, const field *b, const field *c) {
+    const field *const values[] = {a, b, c};
+    for (size_t i = 0; i < COUNT_OF(values); i++)
+        if (strcmp(values[i]->kind->name, "constant") != 0) return false;
+    return true;
+}
+
+static bool is_still(const scene_mesh *mesh) {
+    if (mesh->instances || !are_constant(mesh->position, mesh->rotation, mesh->scale)) return false;
+    for (const scene_node *in = mesh->parent; in; in = in->parent)
+        if (!are_constant(in->position, in->rotation, in->scale)) return false;
+    return true;
+}
+
+// Counts that are too large for their numbers are too large for every buffer (voxels_allocate).
 static void add_body(voxels *v, size_t index, const voxels_body *body) {
     voxels_placed *b = &v->bodies[index];
-    *b = (voxels_placed){.body = *body, .surface = find_surface(v, body)};
+    *b = (voxels_placed){
+        .body = *body, .surface = find_surface(v, body), .still = is_still(body->mesh)};
     const voxel_surface *s = &v->surfaces[b->surface];
     const struct voxels_source *source = &v->sources[b->surface];
     for (size_t i = 0; i < s->group_count; i++) {
@@ -71,12 +71,12 @@ static void add_body(voxels *v, size_t index, const voxels_body *body) {
             .first_point = source->first_point,
             .point_count = i == 0 ? (uint32_t)s->point_count : 0,
             .first_item = source->first_item + (uint32_t)group->first_item,
-            .first_placed = v->placed_count,
-            .first_number = v->number_count,
+            .first_placed = (uint32_t)v->placed_count,
+            .first_number = (uint32_t)v->number_count,
         };
-        v->number_count += (uint32_t)group->item_count;
+        v->number_count += group->item_count;
     }
-    v->placed_count += (uint32_t)s->point_count;
+    v->placed_count += s->point_count;
 }
 
 voxels *voxels_create(arena *memory, const voxels_desc *desc) {
@@ -92,10 +92,12 @@ voxels *voxels_create(arena *memory, const voxels_desc *desc) {
     v->surfaces = arena_alloc(memory, desc->body_count * sizeof *v->surfaces);
     v->sources = arena_alloc(memory, desc->body_count * sizeof *v->sources);
     v->parts = arena_alloc(memory, desc->body_count * VOXEL_GROUPS * sizeof *v->parts);
-    v->state = arena_alloc(memory, sizeof *v->state);
+    v->motions = arena_alloc(memory, (desc->body_count + 1) * sizeof *v->motions);
     v->body_count = desc->body_count;
     v->distances = desc->distances;
     for (size_t i = 0; i < desc->body_count; i++) add_body(v, i, &desc->bodies[i]);
+    v->state = arena_alloc(memory, sizeof *v->state + v->part_count * sizeof *v->state->parts);
+    v->work_list = arena_alloc(memory, v->part_count * sizeof *v->work_list);
     return v;
 }
 
@@ -152,6 +154,8 @@ static bool place_bodies(voxels *v, const field_context *context, double dt, boo
     for (size_t i = 0; i < v->body_count; i++) {
         voxels_placed *b = &v->bodies[i];
         mat4 now;
+        b->moved = false;
+        if (b->placed && b->still) continue;
         if (!scene_mesh_transform(b->body.mesh, context, now))
             return err_prefix("%s: ", b->body.mesh->name);
         if (!is_finite(now)) glm_mat4_zero(now);
@@ -221,17 +225,10 @@ static uint64_t mask_size(const uint32_t size[3], bool shell) {
     return along_x * (shell ? 2 : 1) + (x * z * words[1] + x * y * words[2]) / 4;
 }
 
-static bool is_still(const scene_mesh *mesh) {
-    const field *const values[] = {mesh->position, mesh->rotation, mesh->scale};
-    for (size_t i = 0; i < COUNT_OF(values); i++)
-        if (strcmp(values[i]->kind->name, "constant") != 0) return false;
-    return true;
-}
-
 // What a part needs however it is turned: the masks of a cube around it.
 static uint32_t choose_capacity(const voxels *v, const voxels_part *p) {
     const voxels_placed *b = &v->bodies[p->body];
-    if (is_still(b->body.mesh)) return p->used;
+    if (b->still) return p->used;
     const box3 *box = &p->group->box;
     float x = box->max.x - box->min.x, y = box->max.y - box->min.y, z = box->max.z - box->min.z;
     float scale = cbrtf(fabsf(glm_mat4_det((vec4 *)b->transform)));
@@ -297,13 +294,12 @@ static void place_parts(voxels *v, cell_box *dirty, bool *full) {
     }
 }
 
-static void describe_part(const voxels *v, const voxels_part *p, struct voxel_part *out) {
-    const voxels_placed *b = &v->bodies[p->body];
+static void describe_part(const voxels_part *p, struct voxel_part *out) {
     for (int a = 0; a < 3; a++) {
         out->low.v[a] = p->box.low[a];
         out->size.v[a] = p->box.size[a];
     }
-    out->low.v[3] = b->body.id;
+    out->low.v[3] = (uint32_t)p->body + 1;
     out->size.v[3] = p->shell;
     out->mesh = (shared_uvec4){
         {p->first_point, p->point_count, p->first_item, (uint32_t)p->group->item_count}};
@@ -320,11 +316,11 @@ static void list_work(voxels *v) {
         const voxels_part *p = &v->parts[i];
         if (!p->moved) continue;
         struct voxel_part *out = &v->state->parts[i];
-        describe_part(v, p, out);
+        describe_part(p, out);
         uint32_t clear = voxels_groups((p->used + VOXEL_CLEARED - 1) / VOXEL_CLEARED);
         uint32_t points = voxels_groups(out->mesh.v[1]), prepare = clear > points ? clear : points;
         uint64_t crossing = p->box.size[0] ? (3u + p->shell) * (uint64_t)out->mesh.v[3] : 0;
-        v->state->work[head->count.v[1]++] =
+        v->work_list[head->count.v[1]++] =
             (shared_uvec4){{i, head->count.v[2], head->count.v[3], prepare}};
         head->count.v[2] += prepare;
         head->count.v[3] += voxels_groups(crossing);
@@ -347,12 +343,35 @@ static void describe_grid(voxels *v, const cell_box *dirty) {
     head->corner.v[3] = sqrtf(across);
 }
 
+// From the beginning of a row that a thread composes.
+static void begin_rows(cell_box *dirty) {
+    uint32_t more = dirty->low[0] % VOXEL_ROW;
+    if (dirty->size[0] == 0) return;
+    dirty->low[0] -= more;
+    dirty->size[0] += more;
+}
+
+static bool write_tiles(voxels *v, gpu *g, const cell_box *dirty) {
+    voxels_list_tiles(v, dirty, v->state->head.tiles.v);
+    const uint64_t bytes = v->tiles.count * sizeof *v->tiles.list;
+    gpu_buffer *now = v->buffers[VOXELS_TILES];
+    if (!now || gpu_buffer_size(now) < bytes) {
+        gpu_buffer_destroy(g, now);
+        v->buffers[VOXELS_TILES] = NULL;
+        if (!voxels_make_buffer(v, g, VOXELS_TILES, 2 * bytes)) return false;
+    }
+    return gpu_buffer_write(g, v->buffers[VOXELS_TILES], 0, v->tiles.list, bytes);
+}
+
 static bool run(voxels *v, gpu *g, const cell_box *dirty) {
     const struct voxel_head *head = &v->state->head;
     const uint32_t threads[3] = {(dirty->size[0] + VOXEL_ROW - 1) / VOXEL_ROW, dirty->size[1],
                                  dirty->size[2]};
-    size_t used = offsetof(voxels_state, parts) + v->part_count * sizeof *v->state->parts;
-    return gpu_buffer_write(g, v->buffers[VOXELS_STATE], 0, v->state, used) &&
+    const size_t state = sizeof *v->state + v->part_count * sizeof *v->state->parts;
+    return write_tiles(v, g, dirty) &&
+           gpu_buffer_write(g, v->buffers[VOXELS_STATE], 0, v->state, state) &&
+           gpu_buffer_write(g, v->buffers[VOXELS_WORK], 0, v->work_list,
+                            head->count.v[1] * sizeof *v->work_list) &&
            voxels_dispatch_groups(v, g, VOXELS_PREPARE, head->count.v[2]) &&
            voxels_dispatch_groups(v, g, VOXELS_CROSS, head->count.v[3]) &&
            (dirty->size[0] == 0 ||
@@ -366,13 +385,13 @@ static void put(shared_vec4 *out, float3 v, float w) {
 static bool write_motions(voxels *v, gpu *g) {
     for (size_t i = 0; i < v->body_count; i++) {
         const voxels_motion *m = &v->bodies[i].motion;
-        struct voxel_motion *out = &v->motions[v->bodies[i].body.id];
+        struct voxel_motion *out = &v->motions[i + 1];
         put(&out->centre, m->centre, 0);
         put(&out->linear, m->linear, m->growth);
         put(&out->angular, m->angular, 0);
     }
-    v->motions_written =
-        gpu_buffer_write(g, v->buffers[VOXELS_MOTIONS], 0, v->motions, sizeof v->motions);
+    v->motions_written = gpu_buffer_write(g, v->buffers[VOXELS_MOTIONS], 0, v->motions,
+                                          (v->body_count + 1) * sizeof *v->motions);
     return v->motions_written;
 }
 
@@ -388,6 +407,7 @@ static bool voxelise(voxels *v, gpu *g) {
     if (!v->started) memcpy(dirty.size, v->size, sizeof dirty.size);
     place_parts(v, &dirty, &full);
     if (full && !grow(v, g)) return false;
+    begin_rows(&dirty);
     describe_grid(v, &dirty);
     list_work(v);
     count_work(v, &dirty);

@@ -24,11 +24,10 @@ typedef struct voxels voxels;
 
 typedef enum voxels_rule { VOXELS_AUTO, VOXELS_SOLID, VOXELS_SHELL } voxels_rule;
 
-enum { VOXELS_MAX_BODIES = 255, VOXELS_MAX_SIDE = 1024 };
+enum { VOXELS_MAX_SIDE = 1024 };
 
 typedef struct voxels_body { // the same mesh may be several
     const scene_mesh *mesh;  // where it stands is evaluated with each update
-    uint8_t id;              // 1 to VOXELS_MAX_BODIES, its own
     voxels_rule rule;
 } voxels_body;
 
@@ -36,7 +35,7 @@ typedef struct voxels_desc {
     box3 box;                  // metres
     uint32_t size[3];          // cells; x a multiple of 4
     const voxels_body *bodies; // where two meet, the cell is the later one's
-    size_t body_count;         // 0 is fine
+    size_t body_count;         // 0 is fine, and any number that the device has memory for
     bool distances;            // voxels_write_distance will be called
 } voxels_desc;
 
@@ -65,9 +64,9 @@ typedef struct voxels_motion { // of a body: a point p moves by linear + cross(a
 } voxels_motion;
 void voxels_get_motion(const voxels *v, size_t body, voxels_motion *out);
 
-// A byte a cell, x fastest, four to a uint: the body's id, 0: none.
+// A uint a cell, x fastest: the body's id, which is its place in the list, from 1; 0: none.
 gpu_buffer *voxels_ids(const voxels *v);
-// struct voxel_motion of shared.h by id; VOXELS_MAX_BODIES + 1 of them, zero where none is.
+// struct voxel_motion of shared.h by id; the one of id 0 is zero.
 gpu_buffer *voxels_motions(const voxels *v);
 
 // Inside a frame, after an update, of voxels that were made with `distances`: signed distances in

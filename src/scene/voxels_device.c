@@ -15,6 +15,8 @@ static const struct {
     const char *block, *label;
 } names[VOXELS_BUFFERS] = {
     [VOXELS_STATE] = {"VoxelState", "state of voxels"},
+    [VOXELS_WORK] = {"VoxelWork", "bodies that moved"},
+    [VOXELS_TILES] = {"VoxelTiles", "bodies by tiles of cells"},
     [VOXELS_POINTS] = {"VoxelPoints", "points of bodies"},
     [VOXELS_ITEMS] = {"VoxelItems", "triangles of bodies"},
     [VOXELS_PLACED] = {"VoxelPlaced", "points in cells"},
@@ -66,6 +68,8 @@ void voxels_destroy(voxels *v, gpu *g) {
     for (int i = 0; i < VOXELS_BUFFERS; i++)
         if (v->buffers[i]) gpu_buffer_destroy(g, v->buffers[i]);
     for (size_t i = 0; i < v->surface_count; i++) voxel_surface_free(&v->surfaces[i]);
+    mem_free(v->tiles.list);
+    v->tiles = (voxels_tiles){0};
     v->surface_count = 0;
     memset(v->pipelines, 0, sizeof v->pipelines);
     memset(v->buffers, 0, sizeof v->buffers);
@@ -106,13 +110,16 @@ static bool write_surfaces(voxels *v, gpu *g) {
 bool voxels_allocate(voxels *v, gpu *g) {
     if (v->buffers[VOXELS_MOTIONS]) return true;
     uint64_t cells = (uint64_t)v->size[0] * v->size[1] * v->size[2];
-    return voxels_make_buffer(v, g, VOXELS_STATE, sizeof *v->state) &&
+    uint64_t state = sizeof *v->state + v->part_count * sizeof *v->state->parts;
+    return voxels_make_buffer(v, g, VOXELS_STATE, state) &&
+           voxels_make_buffer(v, g, VOXELS_WORK, v->part_count * sizeof *v->work_list) &&
            voxels_make_buffer(v, g, VOXELS_POINTS, v->point_count * sizeof(shared_vec4)) &&
            voxels_make_buffer(v, g, VOXELS_ITEMS, v->item_count * sizeof(shared_uvec4)) &&
            voxels_make_buffer(v, g, VOXELS_PLACED, v->placed_count * sizeof(shared_vec4)) &&
            voxels_make_buffer(v, g, VOXELS_MASKS, 16) &&
-           voxels_make_buffer(v, g, VOXELS_IDS, cells) &&
-           voxels_make_buffer(v, g, VOXELS_MOTIONS, sizeof v->motions) && write_surfaces(v, g);
+           voxels_make_buffer(v, g, VOXELS_IDS, 4 * cells) &&
+           voxels_make_buffer(v, g, VOXELS_MOTIONS, (v->body_count + 1) * sizeof *v->motions) &&
+           write_surfaces(v, g);
 }
 
 // ---- dispatching ------------------------------------------------------------------------------

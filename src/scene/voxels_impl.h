@@ -16,6 +16,8 @@ typedef enum voxels_stage {
 
 typedef enum voxels_part_buffer { // by the names of their blocks: voxels_device.c
     VOXELS_STATE,
+    VOXELS_WORK,
+    VOXELS_TILES,
     VOXELS_POINTS,
     VOXELS_ITEMS,
     VOXELS_PLACED,
@@ -49,6 +51,7 @@ typedef struct voxels_placed { // a body
     voxels_body body;
     size_t surface; // of `surfaces`
     mat4 transform; // as last voxelised
+    bool still;     // nothing can move it
     bool placed, moved;
     voxels_motion motion;
 } voxels_placed;
@@ -56,9 +59,14 @@ typedef struct voxels_placed { // a body
 // The buffer "VoxelState".
 typedef struct voxels_state {
     struct voxel_head head;
-    shared_uvec4 work[VOXEL_MAX_PARTS];
-    struct voxel_part parts[VOXEL_MAX_PARTS];
+    struct voxel_part parts[];
 } voxels_state;
+
+// The buffer "VoxelTiles", which compose.comp describes.
+typedef struct voxels_tiles {
+    uint32_t *list;
+    size_t count, capacity;
+} voxels_tiles;
 
 struct voxels {
     arena *memory;
@@ -74,19 +82,25 @@ struct voxels {
         uint32_t first_point, first_item; // in the buffers
     } * sources;                          // of the surfaces
     size_t surface_count;
-    uint32_t point_count, item_count;    // of all surfaces
-    uint32_t placed_count, number_count; // points and items of all bodies
+    uint64_t point_count, item_count;    // of all surfaces
+    uint64_t placed_count, number_count; // points and items of all bodies
     voxels_part *parts;
     size_t part_count;
     bool started, distances; // an update was made; distances are wanted
     voxels_state *state;
-    struct voxel_motion motions[VOXELS_MAX_BODIES + 1];
+    shared_uvec4 *work_list; // the buffer "VoxelWork"
+    voxels_tiles tiles;
+    struct voxel_motion *motions; // by id
     bool motions_written;
     voxels_work work;
     shader_binary binaries[VOXELS_STAGES];
     gpu_pipeline *pipelines[VOXELS_STAGES];
     gpu_buffer *buffers[VOXELS_BUFFERS];
 };
+
+// Which parts compose.comp looks at: those whose boxes meet a tile of cells, in order, for each of
+// the tiles that `dirty` lies in. Fills `tiles`, and how many there are along each axis.
+void voxels_list_tiles(voxels *v, const cell_box *dirty, uint32_t count[3]);
 
 // What a stage binds by name besides the buffers.
 typedef struct voxels_images {

@@ -170,7 +170,7 @@ static void add_collider(lua_State *L, pass *air, voxels_rule rule) {
     for (uint32_t i = 0; i < count; i++) {
         vm_charge_memory(L, BODY_COST);
         scene_mesh *one = mesh ? mesh->mesh : scene_instances_mesh(instances, i, script_memory(L));
-        if (one && !pass_lbm_add_collider(air, one, rule)) script_raise(L);
+        if (one) pass_lbm_add_collider(air, one, rule);
     }
 }
 

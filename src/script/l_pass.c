@@ -8,7 +8,7 @@
 #include "script/binding.h"
 #include <string.h>
 
-enum { PASS_COST = 64 << 10 }; // bytes of host memory charged for one
+enum { PASS_COST = 64 << 10, SHAPE_COST = 4 << 10 }; // bytes of host memory charged for one
 
 typedef struct image_object {
     graph_image image;
@@ -138,7 +138,8 @@ static void add_positional(lua_State *L, pass_call *call, int value) {
         vm_charge_memory(L, sizeof mesh);
         if (!pass_add_mesh(call->pass, mesh->mesh)) script_raise(L);
     } else if (instances) {
-        vm_charge_memory(L, PASS_MAX_SHAPES * sizeof(scene_mesh));
+        if (!pass_draws_meshes(call->pass))
+            vm_charge_memory(L, scene_instances_count(instances) * SHAPE_COST);
         if (!pass_add_instances(call->pass, instances)) script_raise(L);
     } else if (value_image(L, value, &image)) {
         add_image(L, call, value);

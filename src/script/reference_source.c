@@ -132,7 +132,7 @@ const script_object reference_sources[] = {
             "meshes, which come first and may move, each by its own position or all by motion = "
             "curve { ... }; `roil info passes lbm_source` lists the rest"),
         KEY("collider { }", "{ mesh { \"data/ball.obj\" } }",
-            "meshes or instances, 255 in all, which may move, that the air flows around; motion = curve { ... } is the position of "
+            "meshes or instances, any number, which may move, that the air flows around; motion = curve { ... } is the position of "
             "meshes that say none; rule = \"solid\" leaves gaps narrower than two cells open, as of `voxels`"),
         KEY("density", "field", "of smoke"),
         KEY("temperature", "field", "0 is that of the air around"),
@@ -237,7 +237,7 @@ const script_object reference_sources[] = {
     {"voxels", "source", "local body = voxels { mesh { \"data/ball.obj\" }, resolution = 64 }",
      "meshes as cells of a box: fields of what is inside of them, how far their surface is, how they "
      "move. Meshes that stand still are computed once",
-     .args = KEYS(KEY("mesh ...", "mesh { \"data/ball.obj\" }", "1 to 255, which may move; instances are as many")),
+     .args = KEYS(KEY("mesh ...", "mesh { \"data/ball.obj\" }", "any number, which may move; of instances each is one")),
      .keys = KEYS(
         KEY("resolution", "64 [8, 1024]", "cells along the longest side of the box"),
         KEY("size", "{x, y, z} [1, 1024]", "instead: cells along each side, x a multiple of 4"),

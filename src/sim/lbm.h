@@ -33,8 +33,6 @@ typedef enum lbm_face { LBM_PERIODIC, LBM_WALL, LBM_SLIP, LBM_OPEN, LBM_INFLOW }
 enum {
     LBM_ALONG_Z = 4, // what cells along z are a multiple of
     LBM_MAX_SCALARS = 3,
-    LBM_MAX_BODIES = 255,
-    LBM_WALL_ID = 256,
     LBM_MAX_DEFINES = 32,
     LBM_MAX_BUFFERS = 16
 };
@@ -93,8 +91,8 @@ bool lbm_step(lbm *l, gpu *g, const lbm_numbers *numbers, bool keep);
 uint64_t lbm_steps(const lbm *l); // since the reset
 
 // Of the last kept state (0) and of the one kept before it (1); NULL: there is none. For each cell,
-// x fastest, then y, then z, a uvec4 of eight halves: velocity, density - 1, scalars, then the id
-// of the body that the cell lies in, or LBM_WALL_ID of a wall's cells, or 0.
+// x fastest, then y, then z, a uvec4 of eight halves: velocity, density - 1, scalars, then 1 where
+// a body or a wall is, else 0.
 gpu_buffer *lbm_moments(const lbm *l, int which);
 
 typedef struct lbm_body { // a rigid motion
@@ -104,10 +102,10 @@ typedef struct lbm_body { // a rigid motion
 } lbm_body;
 
 typedef struct lbm_bodies {
-    gpu_buffer *ids;        // of each cell the body in it or 0: a byte, x fastest, 4 to a word
+    gpu_buffer *ids;        // of each cell the body in it or 0: a uint, x fastest
     bool changed;           // the ids are not those of the last call
-    const lbm_body *bodies; // [id - 1]; those beyond `count` stand still
-    uint32_t count;
+    const lbm_body *bodies; // [id - 1]
+    uint32_t count;         // no id is greater
 } lbm_bodies;
 
 // With desc.bodies, inside a frame, before the first step after a reset and whenever bodies move:

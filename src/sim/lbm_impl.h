@@ -32,13 +32,19 @@ bool lbm_layout_find(const lbm_desc *desc, uint64_t range, lbm_layout *out);
 
 // ---- boundaries -------------------------------------------------------------------------------
 
+typedef struct lbm_motion { // LbmBody of bodies.glsl
+    float centre[3], moves, linear[4], angular[4];
+} lbm_motion;
+
 typedef struct lbm_walls {
     lbm_kernel kernel;           // says what cells are
     gpu_buffer *cells[2];        // what they are, and were: [current], and the other
     bool current, known, filled; // filled: the cells hold something
     bool restored;               // the cells are what they were when a checkpoint was made
     gpu_buffer *waves, *ids;
-    float bodies[3 * (LBM_MAX_BODIES + 1)][4];
+    gpu_buffer *bodies;
+    lbm_motion *motions; // what is in `bodies`, by id
+    size_t motion_count, motion_capacity;
     uint32_t moves;   // any body does
     uint64_t updated; // the step before which it was said last what cells are
 } lbm_walls;

@@ -4,6 +4,7 @@
 // What cells are is found anew (cells.comp) only when bodies have come to lie in other cells: into
 // one of two buffers, so that what a body has left is seen by comparing with the other.
 #include "base/error.h"
+#include "base/memory.h"
 #include "sim/lbm_impl.h"
 #include <string.h>
 
@@ -60,8 +61,12 @@ bool lbm_walls_allocate(lbm *l, gpu *g) {
 void lbm_walls_destroy(lbm *l, gpu *g) {
     sim_kernel_destroy(&l->walls.kernel.base, g);
     gpu_buffer_destroy(g, l->walls.waves);
+    gpu_buffer_destroy(g, l->walls.bodies);
     for (int i = 0; i < 2; i++) gpu_buffer_destroy(g, l->walls.cells[i]);
-    l->walls.waves = l->walls.cells[0] = l->walls.cells[1] = NULL;
+    l->walls.waves = l->walls.bodies = l->walls.cells[0] = l->walls.cells[1] = NULL;
+    mem_free(l->walls.motions);
+    l->walls.motions = NULL;
+    l->walls.motion_count = l->walls.motion_capacity = 0;
 }
 
 void lbm_walls_reset(lbm *l, gpu *g) {
@@ -92,6 +97,7 @@ gpu_buffer *lbm_walls_buffer(const lbm *l, const char *name) {
     const lbm_walls *w = &l->walls;
     if (strcmp(name, "LbmWaves") == 0) return w->waves;
     if (strcmp(name, "LbmIds") == 0) return w->ids;
+    if (strcmp(name, "LbmBodies") == 0) return w->bodies;
     if (strcmp(name, "LbmCells") == 0) return w->cells[w->current];
     if (strcmp(name, "LbmCellsBefore") == 0) return w->cells[!w->current];
     return NULL;
@@ -107,7 +113,8 @@ void lbm_walls_set(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
     lbm_kernel_set(k, "lbm_face_scalar", scalar, sizeof scalar);
     const uint32_t moved = l->walls.updated == l->steps;
     lbm_kernel_set(k, "lbm_moved", &moved, sizeof moved);
-    lbm_kernel_set(k, "lbm_bodies", l->walls.bodies, sizeof l->walls.bodies);
+    const float most = n->max_speed > 0 ? n->max_speed : 1e6f;
+    lbm_kernel_set(k, "lbm_body_speed", &most, sizeof most);
 }
 
 bool lbm_walls_ready(const lbm *l) {
@@ -115,30 +122,51 @@ bool lbm_walls_ready(const lbm *l) {
            err_set("the lattice has bodies, and nothing said yet where they are");
 }
 
-static bool set_motion(lbm_walls *w, const lbm_body *bodies, uint32_t count, float most) {
+static lbm_motion motion_of(const lbm_body *body) {
     static const float still[3] = {0};
-    bool any = false;
-    memset(w->bodies, 0, sizeof w->bodies);
-    for (uint32_t id = 1; id <= count && id <= LBM_MAX_BODIES; id++) {
-        const lbm_body *body = &bodies[id - 1];
-        bool moves = memcmp(body->linear, still, sizeof still) != 0 ||
-                     memcmp(body->angular, still, sizeof still) != 0;
-        float(*out)[4] = &w->bodies[3 * id];
-        memcpy(out[0], body->centre, sizeof body->centre);
-        memcpy(out[1], body->linear, sizeof body->linear);
-        memcpy(out[2], body->angular, sizeof body->angular);
-        out[0][3] = moves;
-        out[1][3] = most;
-        any = any || moves;
+    lbm_motion out = {.moves = memcmp(body->linear, still, sizeof still) != 0 ||
+                               memcmp(body->angular, still, sizeof still) != 0};
+    memcpy(out.centre, body->centre, sizeof body->centre);
+    memcpy(out.linear, body->linear, sizeof body->linear);
+    memcpy(out.angular, body->angular, sizeof body->angular);
+    return out;
+}
+
+// True in `moves` if any does; in `changed` if the device knows them otherwise.
+static void note_motions(lbm_walls *w, const lbm_bodies *bodies, bool *moves, bool *changed) {
+    const size_t count = (size_t)bodies->count + 1, known = w->motion_count;
+    MEM_RESERVE(w->motions, count, w->motion_capacity);
+    w->motions[0] = (lbm_motion){0};
+    w->motion_count = count;
+    *changed = known != count;
+    *moves = false;
+    for (size_t id = 1; id < count; id++) {
+        const lbm_motion now = motion_of(&bodies->bodies[id - 1]);
+        *moves = *moves || now.moves != 0;
+        if (id < known && memcmp(&w->motions[id], &now, sizeof now) == 0) continue;
+        w->motions[id] = now;
+        *changed = true;
     }
-    return any;
+}
+
+static bool write_motions(lbm_walls *w, gpu *g) {
+    const uint64_t size = w->motion_count * sizeof *w->motions;
+    if (!w->bodies || gpu_buffer_size(w->bodies) < size) {
+        gpu_buffer_destroy(g, w->bodies);
+        w->bodies = make(g, "motions of bodies", size);
+    }
+    const bool done = w->bodies && gpu_buffer_write(g, w->bodies, 0, w->motions, size);
+    if (!done) w->motion_count = 0; // they are not there
+    return done;
 }
 
 bool lbm_set_bodies(lbm *l, gpu *g, const lbm_numbers *numbers, const lbm_bodies *bodies) {
     lbm_walls *w = &l->walls;
+    bool any, others;
     if (!l->desc.bodies) return err_set("the lattice was made without bodies");
-    const float most = numbers->max_speed > 0 ? numbers->max_speed : 1e6f;
-    const uint32_t moves = set_motion(w, bodies->bodies, bodies->count, most);
+    note_motions(w, bodies, &any, &others);
+    if (others && !write_motions(w, g)) return false;
+    const uint32_t moves = any;
     bool same = w->known && w->ids == bodies->ids && !bodies->changed && w->moves == moves;
     same = same || (w->restored && !bodies->changed);
     w->known = w->known || same;

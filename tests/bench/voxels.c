@@ -26,7 +26,7 @@ typedef struct bench {
     bool distances;
     arena memory;
     gpu *g;
-    scene_mesh meshes[VOXELS_MAX_BODIES];
+    scene_mesh *meshes;
 } bench;
 
 static int fail(const char *what) {
@@ -46,7 +46,7 @@ static bool parse(int argc, char **argv, bench *b) {
         if (c == 'x') b->distances = true;
         if (c == '?') return false;
     }
-    return b->updates > 0 && b->bodies > 0 && b->bodies <= VOXELS_MAX_BODIES;
+    return b->updates > 0 && b->bodies > 0;
 }
 
 // ---- bodies -----------------------------------------------------------------------------------
@@ -93,6 +93,7 @@ static const field *moving(bench *b, float3 from, float3 to) {
 static void place_bodies(bench *b, voxels_body *out) {
     mesh_data data;
     make_mesh(b, &data);
+    b->meshes = arena_alloc(&b->memory, b->bodies * sizeof *b->meshes);
     uint32_t side = (uint32_t)ceil(cbrt(b->bodies) - 1e-6);
     float size = 1 / (float)side;
     for (uint32_t i = 0; i < b->bodies; i++) {
@@ -105,7 +106,7 @@ static void place_bodies(bench *b, voxels_body *out) {
                                     .position = moving(b, at, drift),
                                     .rotation = moving(b, (float3){0}, (float3){90, 50, 20}),
                                     .scale = field_constant(&b->memory, 1, (float[4]){size})};
-        out[i] = (voxels_body){&b->meshes[i], (uint8_t)(i + 1), b->rule};
+        out[i] = (voxels_body){&b->meshes[i], b->rule};
     }
 }
 
@@ -168,7 +169,7 @@ int main(int argc, char **argv) {
     if (!b.g) return fail("device");
     shader_library *library = shader_library_create(&(shader_library_desc){
         .shader_root = arena_format(&b.memory, "%s/shaders", source ? source : ".")});
-    voxels_body bodies[VOXELS_MAX_BODIES];
+    voxels_body *bodies = arena_alloc(&b.memory, b.bodies * sizeof *bodies);
     place_bodies(&b, bodies);
     voxels_desc desc = {.box = {{-1, -1, -1}, {1, 1, 1}},
                         .size = {b.cells, b.cells, b.cells},

@@ -75,17 +75,17 @@ static void distances_are_those_of_shapes(void **state) {
     scene_mesh *ball = shape_mesh(&w, &s);
     shape_box(&s, (float3){-1, -0.5f, -0.75f}, (float3){1, 0.5f, 0.75f});
     scene_mesh *box = shape_mesh(&w, &s);
-    float *got = distances_of(&w, &(voxels_body){ball, 1, VOXELS_AUTO}, 1);
+    float *got = distances_of(&w, &(voxels_body){ball, VOXELS_AUTO}, 1);
     expect_distance(got, to_sphere, 0.03f * edge, 0.05f * edge); // of facets: 1/650 of the radius
     mem_free(got);
-    got = distances_of(&w, &(voxels_body){box, 1, VOXELS_AUTO}, 1);
+    got = distances_of(&w, &(voxels_body){box, VOXELS_AUTO}, 1);
     expect_distance(got, to_box, 0.01f * edge, 0.05f * edge);
     mem_free(got);
     scene_mesh other = *ball;
     ball->scale = other.scale = number(&w, 0.5f);
     ball->position = triple(&w, 1, 0, 0);
     other.position = triple(&w, -1, 0, 0);
-    const voxels_body both[] = {{ball, 3, VOXELS_AUTO}, {&other, 2, VOXELS_AUTO}};
+    const voxels_body both[] = {{ball, VOXELS_AUTO}, {&other, VOXELS_AUTO}};
     got = distances_of(&w, both, 2);
     expect_distance(got, to_both, 0.03f * edge, 0.05f * edge);
     mem_free(got);
@@ -99,7 +99,7 @@ static void distance_to_a_sheet_has_no_sign_and_to_nothing_no_end(void **state) 
     for (int i = 0; i < 4; i++) shape_vertex(&s, i & 1 ? 3 : -3, i & 2 ? 3 : -3, 0.3f);
     shape_triangle(&s, 0, 1, 3);
     shape_triangle(&s, 0, 3, 2);
-    float *got = distances_of(&w, &(voxels_body){shape_mesh(&w, &s), 1, VOXELS_AUTO}, 1);
+    float *got = distances_of(&w, &(voxels_body){shape_mesh(&w, &s), VOXELS_AUTO}, 1);
     for (int i = 0; i < CELLS; i++)
         assert_true(fabsf(got[i] - fabsf(centre_of(i).z - 0.3f)) < 0.03f * edge);
     mem_free(got);

@@ -3,21 +3,25 @@
 #include "long_test.h"
 #include "sim_test.h"
 
+enum { SIM_BODIES = 70000 }; // more than 16 bits count
+
 typedef struct sim_bodies {
     gpu_buffer *ids;
-    uint8_t *bytes;
-    lbm_body body[LBM_MAX_BODIES];
+    uint32_t *cells; // what is in `ids`
+    lbm_body *body;  // SIM_BODIES
 } sim_bodies;
 
 static inline void sim_bodies_open(sim_world *w, sim_bodies *b) {
-    *b = (sim_bodies){.bytes = mem_alloc(w->cells)};
-    b->ids = gpu_buffer_create(w->device, &(gpu_buffer_desc){.label = "ids", .size = w->cells});
+    *b = (sim_bodies){.cells = mem_alloc(w->cells * sizeof *b->cells),
+                      .body = mem_alloc(SIM_BODIES * sizeof *b->body)};
+    b->ids = gpu_buffer_create(w->device, &(gpu_buffer_desc){.label = "ids", .size = 4 * w->cells});
     gpu_test_ok(b->ids);
 }
 
 static inline void sim_bodies_close(sim_world *w, sim_bodies *b) {
     gpu_buffer_destroy(w->device, b->ids);
-    mem_free(b->bytes);
+    mem_free(b->cells);
+    mem_free(b->body);
 }
 
 static inline void sim_centre(const sim_world *w, size_t cell, float out[3]) {
@@ -34,12 +38,11 @@ static inline void sim_bodies_set(sim_world *w, sim_bodies *b,
     for (size_t c = 0; fill && c < w->cells; c++) {
         float p[3];
         sim_centre(w, c, p);
-        b->bytes[c] = (uint8_t)fill(p, user);
+        b->cells[c] = (uint32_t)fill(p, user);
     }
-    if (fill) gpu_test_ok(gpu_buffer_write(w->device, b->ids, 0, b->bytes, w->cells));
-    gpu_test_ok(lbm_set_bodies(w->lattice, w->device, &w->numbers,
-                               &(lbm_bodies){.ids = b->ids,
-                                             .changed = fill != NULL,
-                                             .bodies = b->body,
-                                             .count = COUNT_OF(b->body)}));
+    if (fill) gpu_test_ok(gpu_buffer_write(w->device, b->ids, 0, b->cells, 4 * w->cells));
+    gpu_test_ok(lbm_set_bodies(
+        w->lattice, w->device, &w->numbers,
+        &(lbm_bodies){
+            .ids = b->ids, .changed = fill != NULL, .bodies = b->body, .count = SIM_BODIES}));
 }

@@ -101,10 +101,10 @@ static double exchanged(sim_world *w, const sim_bodies *b) {
     sim_transfer(w, &m, false);
     for (size_t c = 0; c < w->cells; c++) {
         int x = (int)c % n[0], y = (int)c / n[0] % n[1], z = (int)c / n[0] / n[1];
-        for (int i = 1; !b->bytes[c] && i < part.set.count; i++) {
+        for (int i = 1; !b->cells[c] && i < part.set.count; i++) {
             size_t where;
             const int from[3] = {x - part.set.x[i], y - part.set.y[i], z - part.set.z[i]};
-            if (!b->bytes[sim_index(w, from[0], from[1], from[2])]) continue;
+            if (!b->cells[sim_index(w, from[0], from[1], from[2])]) continue;
             int slot = sim_find(w, &part.set, part.first, part.rest, i, x, y, z, &where);
             sum -= 2 * part.set.x[i] * sim_get(w, &m, slot, where, part.scale);
         }
@@ -135,7 +135,7 @@ static void spheres_hold_the_air_back(void **state) {
     sim_read(&w);
     double flow = 0, air = 0, pi = acos(-1);
     for (size_t i = 0; i < w.cells; i++) {
-        if (b.bytes[i]) continue;
+        if (b.cells[i]) continue;
         flow += w.state[i].u[0] + force / 2;
         air++;
     }

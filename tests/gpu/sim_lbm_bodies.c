@@ -57,7 +57,7 @@ static int in_ball(const float p[3], const void *user) {
 }
 
 static int in_last_ball(const float p[3], const void *user) {
-    return in_ball(p, user) ? LBM_MAX_BODIES : 0;
+    return in_ball(p, user) ? SIM_BODIES : 0;
 }
 
 static bool away_from_ball(const float p[3], const void *user) {
@@ -85,7 +85,7 @@ static void fly(gpu *g, const lbm_desc *desc, double near, double far) {
     ball at = {{8.2, 8.1, 7.7}, 3.7};
     for (int i = 0; at.centre[0] < 26; i++) {
         double now = speed * fmin(1, i / 200.0);
-        lbm_body *body = &b.body[LBM_MAX_BODIES - 1];
+        lbm_body *body = &b.body[SIM_BODIES - 1];
         body->linear[0] = (float)now;
         for (int k = 0; k < 3; k++) body->centre[k] = (float)at.centre[k];
         step_with(&w, &b, in_last_ball, &at);

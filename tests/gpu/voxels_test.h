@@ -198,9 +198,9 @@ static inline voxels_change update_voxels(voxels_world *w, voxels *v, double tim
 }
 
 // A byte a cell; free with mem_free.
-static inline uint8_t *read_ids(voxels_world *w, const voxels *v) {
+static inline uint32_t *read_ids(voxels_world *w, const voxels *v) {
     size_t size = gpu_buffer_size(voxels_ids(v));
-    uint8_t *out = mem_alloc(size);
+    uint32_t *out = mem_alloc(size);
     gpu_test_ok(gpu_buffer_read(w->device, voxels_ids(v), 0, out, size));
     return out;
 }

@@ -65,12 +65,6 @@ static void mistakes_are_named(void **state) {
     refused(TWO "}\nwood:near({0, 0}, -1)", "its radius is -1");
     refused(TWO "}\nwood.set(1, {})", "set is a method of instances");
     refused(TWO "}\nlocal a = final { wood }", "final: takes no instances");
-    refused("local wood = instances { mesh 'a.obj', at = scatter { size = 99, count = 257 } }\n"
-            "local a = voxels { wood, resolution = 8 }",
-            "257 instances of 'wood'; as shapes at most 256 are possible");
-    refused("local wood = instances { mesh 'a.obj', at = scatter { size = 99, count = 256 } }\n"
-            "local a = voxels { wood, resolution = 8 }",
-            "256 meshes; at most 255");
     refused("local wood = node { 3 }", "node takes only named values");
     refused("local wood\nlocal n for i = 1, 70 do n = node { parent = n } end",
             "65 stand in each other");

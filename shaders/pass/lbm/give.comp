@@ -14,7 +14,8 @@ uniform float share;           // of the values that the air takes on in this st
 uniform float velocity_factor; // of a mesh's own motion
 uniform vec3 first;            // cells of the source's box: of the first corner,
 uniform vec3 count;            // and how many
-uniform vec2 ids;              // of its meshes: the first and the last
+uniform uint first_id;             // of its meshes,
+uniform uint last_id;
 layout(std430) readonly buffer SourceValues { uvec4 source_values[]; };
 
 #define EACH_LANE for (int l = 0; l < LBM_LANES; l++)
@@ -30,13 +31,12 @@ layout(std430) readonly buffer SourceIds { uint source_ids[]; };
 layout(std430) readonly buffer SourceMotions { voxel_motion source_motions[]; };
 
 uint body_at(uvec3 cell) {
-    uint at = cell.x + LBM_NX * (cell.y + LBM_NY * cell.z);
-    return source_ids[at >> 2] >> (8u * (at & 3u)) & 0xffu;
+    return source_ids[cell.x + LBM_NX * (cell.y + LBM_NY * cell.z)];
 }
 
 bool is_ours(uvec3 cell) {
     uint id = body_at(cell);
-    return id >= uint(ids.x) && id <= uint(ids.y);
+    return id >= first_id && id <= last_id;
 }
 
 vec3 motion_at(uvec3 cell) {

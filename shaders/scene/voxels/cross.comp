@@ -7,7 +7,7 @@
 // the lower ones are its own. So of two triangles that share an edge a line through it crosses
 // exactly one, and both or none where it is a fold (Pineda, "A parallel algorithm for polygon
 // rasterization", 1988).
-#include "state.glsl"
+#include "work.glsl"
 layout(local_size_x = VOXEL_GROUP) in;
 layout(std430) readonly buffer VoxelItems { uvec4 voxel_items[]; };
 layout(std430) readonly buffer VoxelPlaced { ivec4 voxel_placed[]; };
@@ -176,7 +176,7 @@ float behind_of(uint flags, voxel_part p) {
 void main() {
     uint group = voxel_group();
     if (group >= voxel.count.w) return;
-    uvec4 work = voxel_work[voxel_find_work(group, 2u)];
+    uvec4 work = voxel_find_work(group, 2u);
     voxel_part p = voxel_parts[work.x];
     uint thread = uint(VOXEL_GROUP) * (group - work.z) + gl_LocalInvocationID.x;
     uint axis = thread / p.mesh.w;

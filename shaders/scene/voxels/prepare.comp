@@ -1,7 +1,7 @@
 // First of three dispatches: of each part that moved, the masks are cleared and its points placed:
 // in steps of 1 / VOXEL_UNIT of a cell, from the corner of the box. A point of several triangles is
 // placed once, so that they meet exactly.
-#include "state.glsl"
+#include "work.glsl"
 layout(local_size_x = VOXEL_GROUP) in;
 layout(std430) readonly buffer VoxelPoints { vec4 voxel_points[]; };
 layout(std430) writeonly buffer VoxelPlaced { ivec4 voxel_placed[]; };
@@ -13,7 +13,7 @@ const float farthest = float(1 << 22);
 void main() {
     uint group = voxel_group();
     if (group >= voxel.count.z) return;
-    uvec4 work = voxel_work[voxel_find_work(group, 1u)];
+    uvec4 work = voxel_find_work(group, 1u);
     voxel_part p = voxel_parts[work.x];
     uint threads = uint(VOXEL_GROUP) * work.w;
     uint thread = uint(VOXEL_GROUP) * (group - work.y) + gl_LocalInvocationID.x;

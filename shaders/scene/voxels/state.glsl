@@ -4,8 +4,6 @@
 #include "shared.h"
 layout(std430) readonly buffer VoxelState {
     voxel_head voxel;
-    // Part, its first group of prepare.comp and of cross.comp, how many of the former.
-    uvec4 voxel_work[VOXEL_MAX_PARTS];
     voxel_part voxel_parts[];
 };
 
@@ -47,18 +45,6 @@ uint voxel_word_z(voxel_masks m, uvec3 cell) {
 
 uint voxel_group() {
     return gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
-}
-
-// Which of the parts at work a group belongs to: the last whose first group, `column` of the list,
-// is not beyond it.
-uint voxel_find_work(uint group, uint column) {
-    uint low = 0u, high = voxel.count.y;
-    while (high - low > 1u) {
-        uint middle = (low + high) / 2u;
-        if (voxel_work[middle][column] <= group) low = middle;
-        else high = middle;
-    }
-    return low;
 }
 
 #endif

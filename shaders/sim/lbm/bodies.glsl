@@ -8,21 +8,23 @@
 #define SIM_LBM_BODIES_GLSL
 #include "sim/lbm/cells.glsl"
 
-#define LBM_WALL_ID 256u // as in src/sim/lbm.h
-
 ivec3 lbm_cell_at(uvec3 at, uint lane) {
     return ivec3(at.xy, at.z + LBM_LAYERS * lane);
 }
 
 #if LBM_BODIES
-layout(std430) readonly buffer LbmIds { uint lbm_ids[]; }; // a byte a cell, x fastest; 0: air
+layout(std430) readonly buffer LbmIds { uint lbm_ids[]; }; // of cells, x fastest; 0: air
 
-// Rigid motions by id, three each: a point that moves with the second, and 1 if the body moves at
-// all; velocity in a step, and its greatest; radians in a step.
-uniform vec4 lbm_bodies[768];
+struct LbmBody { // a rigid motion
+    vec4 centre;  // a point that moves with `linear`; w: 1 if the body moves at all
+    vec4 linear;  // in a step
+    vec4 angular; // radians in a step
+};
+layout(std430) readonly buffer LbmBodies { LbmBody lbm_bodies[]; }; // by id
+uniform float lbm_body_speed; // greatest, in a step
 
 bool lbm_body_moves(uint id) {
-    return lbm_bodies[3u * id].w != 0.0;
+    return lbm_bodies[id].centre.w != 0.0;
 }
 
 bool lbm_is_inside(ivec3 cell) { // or beyond a face that leads round
@@ -36,19 +38,16 @@ bool lbm_is_inside(ivec3 cell) { // or beyond a face that leads round
 uint lbm_id_at(ivec3 cell) {
     if (!lbm_is_inside(cell)) return 0u;
     cell = lbm_wrap(cell);
-    uint i = uint(cell.x) + LBM_NX * (uint(cell.y) + LBM_NY * uint(cell.z));
-    return lbm_ids[i >> 2] >> 8u * (i & 3u) & 255u;
+    return lbm_ids[uint(cell.x) + LBM_NX * (uint(cell.y) + LBM_NY * uint(cell.z))];
 }
 
 // The ids of three cells along x, the middle one `at`; `inside`: it has neighbours in its row, and the row is
 // one of the lattice.
-uint lbm_three_ids(bool inside, ivec3 at) {
-    if (!inside)
-        return lbm_id_at(at - ivec3(1, 0, 0)) | lbm_id_at(at) << 8 | lbm_id_at(at + ivec3(1, 0, 0)) << 16;
-    uint first = uint(at.x) - 1u + LBM_NX * (uint(at.y) + LBM_NY * uint(at.z)), shift = 8u * (first & 3u);
-    uint ids = lbm_ids[first >> 2] >> shift;
-    if (shift > 8u) ids |= lbm_ids[(first >> 2) + 1u] << 32u - shift;
-    return ids & 0xffffffu;
+uvec3 lbm_three_ids(bool inside, ivec3 at) {
+    const ivec3 x = ivec3(1, 0, 0);
+    if (!inside) return uvec3(lbm_id_at(at - x), lbm_id_at(at), lbm_id_at(at + x));
+    uint middle = uint(at.x) + LBM_NX * (uint(at.y) + LBM_NY * uint(at.z));
+    return uvec3(lbm_ids[middle - 1u], lbm_ids[middle], lbm_ids[middle + 1u]);
 }
 
 uniform uint lbm_moved; // bodies came to lie in other cells just before this step
@@ -61,9 +60,9 @@ bool lbm_is_new(ivec3 cell) {
 }
 
 vec3 lbm_body_velocity(uint id, vec3 point) {
-    vec4 centre = lbm_bodies[3u * id], linear = lbm_bodies[3u * id + 1u];
-    vec3 v = linear.xyz + cross(lbm_bodies[3u * id + 2u].xyz, point - centre.xyz);
-    return v * min(1.0, linear.w * inversesqrt(max(dot(v, v), 1e-20)));
+    LbmBody b = lbm_bodies[id];
+    vec3 v = b.linear.xyz + cross(b.angular.xyz, point - b.centre.xyz);
+    return v * min(1.0, lbm_body_speed * inversesqrt(max(dot(v, v), 1e-20)));
 }
 
 bool lbm_is_wall(ivec3 cell) { // of a face
@@ -111,12 +110,13 @@ void lbm_find_walls(uvec3 at, uint near) {
         bool new_ = lbm_moved != 0u && lbm_is_new(cell);
         const ivec3 last = ivec3(LBM_NX, LBM_NY, LBM_NZ) - 1;
         bool inside = all(greaterThan(cell, ivec3(0))) && all(lessThan(cell, last));
-        uint solids = 0u, ids[9];
+        uint solids = 0u;
+        uvec3 ids[9];
         for (int i = 0; i < 9; i++) ids[i] = lbm_three_ids(inside, cell + ivec3(0, 1 - i % 3, 1 - i / 3));
         [[dont_unroll]] for (int i = 0; i < 27; i++) {
             int layer = i * 57 >> 9, row = i * 86 >> 8; // i / 9, i / 3
             ivec3 direction = ivec3(i - 3 * row, row - 3 * layer, layer) - 1;
-            uint id = ids[row] >> 8 * (1 - direction.x) & 255u;
+            uint id = ids[row][1 - direction.x];
             if (!new_) lbm_wall_speeds[27 * k + i] = lbm_wall_speed(cell, direction, id);
             if (LBM_ROUTES && (id != 0u || lbm_is_wall(cell - direction))) solids |= 1u << 26 - i;
         }
@@ -164,14 +164,5 @@ void lbm_push_scalar(inout lbm_float g[LBM_SCALAR_Q]) {
 #undef PUSH
 }
 #endif
-
-// Of a solid cell.
-float lbm_body_in(ivec3 cell) {
-    uint id = 0u;
-#if LBM_BODIES
-    id = lbm_id_at(cell);
-#endif
-    return float(id == 0u ? LBM_WALL_ID : id);
-}
 
 #endif

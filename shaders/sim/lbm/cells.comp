@@ -33,11 +33,9 @@ Cell find(ivec3 at) {
 
 // ---- what a cell is ---------------------------------------------------------------------------
 
-bool counts(uint ids) { // one is of a body that moves, or any does
-    if (LBM_ROUTES) return ids != 0u;
-    for (; ids != 0u; ids >>= 8)
-        if (lbm_body_moves(ids & 255u)) return true;
-    return false;
+bool counts(uvec3 ids) { // one is of a body that moves, or, with routes, of any
+    if (ids == uvec3(0u)) return false;
+    return LBM_ROUTES || lbm_body_moves(ids.x) || lbm_body_moves(ids.y) || lbm_body_moves(ids.z);
 }
 
 bool beside_body(bool inside, ivec3 at) {
@@ -50,10 +48,10 @@ bool beside_body(bool inside, ivec3 at) {
 bool one_beyond(bool inside, ivec3 at) {
     for (int k = 0; k < 6; k++) {
         int side = 2 * (k & 1) - 1, across = (k >> 1) - 1;
-        uint ids = lbm_three_ids(inside, at + ivec3(0, 2 * side, across)) |
-                   lbm_three_ids(inside, at + ivec3(0, across, 2 * side));
+        uvec3 ids = lbm_three_ids(inside, at + ivec3(0, 2 * side, across)) |
+                    lbm_three_ids(inside, at + ivec3(0, across, 2 * side));
         for (int z = -1; z <= 1; z++) ids |= lbm_three_ids(inside, at + ivec3(side, across, z));
-        if (ids != 0u) return true;
+        if (ids != uvec3(0u)) return true;
     }
     return false;
 }

@@ -121,13 +121,12 @@ lbm_air find_air() {
 }
 
 #if LBM_KEEP
-// Of solid lanes: none, and the body there.
+// Of solid lanes: none, and that they are.
 void keep_solid() {
 #if WALLED
     for (uint lane = 0u; lane < LBM_LANES; lane++)
         if ((site.solid >> lane & 1u) != 0u)
-            moments[element + lane * LBM_ELEMENTS] =
-                uvec4(0u, 0u, 0u, packHalf2x16(vec2(0.0, lbm_body_in(lbm_cell_at(at, lane)))));
+            moments[element + lane * LBM_ELEMENTS] = uvec4(0u, 0u, 0u, packHalf2x16(vec2(0.0, 1.0)));
 #endif
 }
 
