@@ -238,12 +238,12 @@ static size_t override(const source_state *s, pass_override out[GPU_MAX_SLOTS]) 
 }
 
 static bool give(pass *p, source_state *s) {
-    uint32_t layers = lbm_layers(s->air->solver);
+    const uint32_t depth = lbm_depth(s->air->solver);
     pass_override overrides[GPU_MAX_SLOTS];
     gpu_binding bindings[GPU_MAX_SLOTS];
     gpu_dispatch_desc dispatch = {.pipeline = s->pipeline, .bindings = bindings};
     for (int i = 0; i < 3; i++) dispatch.threads[i] = (uint32_t)s->cells.count[i];
-    if (dispatch.threads[2] > layers) dispatch.threads[2] = layers;
+    if (dispatch.threads[2] > depth) dispatch.threads[2] = depth;
     if (!fill_give(p, s)) return false;
     size_t count = override(s, overrides);
     return pass_bind(p, &s->give, s->block, overrides, count, bindings, &dispatch.binding_count) &&

@@ -103,8 +103,8 @@ const lbm_desc *lbm_get_desc(const lbm *l) {
     return &l->desc;
 }
 
-uint32_t lbm_layers(const lbm *l) {
-    return l->layout.layers;
+uint32_t lbm_depth(const lbm *l) {
+    return l->layout.layers / l->layout.bundle;
 }
 
 // ---- shaders ----------------------------------------------------------------------------------
@@ -263,6 +263,8 @@ bool lbm_reset(lbm *l, gpu *g, const lbm_numbers *numbers) {
     l->steps = l->kept = 0;
     lbm_walls_reset(l, g);
     lbm_kernel_set(&l->reset, "ambient", numbers->ambient, sizeof numbers->ambient);
+    const uint32_t threads[3] = {l->desc.size[0] * l->desc.size[1], 1, lbm_depth(l)};
+    memcpy(l->reset.threads, threads, sizeof threads);
     return lbm_kernel_run(l, &l->reset, g);
 }
 

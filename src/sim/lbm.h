@@ -72,7 +72,7 @@ typedef struct lbm_numbers { // of a step; read anew each step
 
 lbm *lbm_create(arena *memory, const lbm_desc *desc); // NULL with a message
 const lbm_desc *lbm_get_desc(const lbm *l);
-uint32_t lbm_layers(const lbm *l); // of elements, along z; after lbm_build
+uint32_t lbm_depth(const lbm *l); // elements, or bundles of them, along z; after lbm_build
 // Square of the speed of sound of a scalar set: 1/4 (D3Q7) or 1/3.
 float lbm_scalar_speed(lbm_scalar_set set);
 

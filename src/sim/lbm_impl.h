@@ -62,11 +62,14 @@ bool lbm_walls_ready(const lbm *l); // false with a message
 
 // ---- steps ------------------------------------------------------------------------------------
 
+typedef enum lbm_skin_order { LBM_NO_SKIN, LBM_SKIN_FIRST, LBM_SKIN_APART } lbm_skin_order;
+
 typedef struct lbm_stepper {
-    int parts; // dispatches of a step: all; or first what no face touches, then the skin
+    lbm_skin_order order;
+    int parts;                // dispatches of a step
     lbm_kernel kernels[2][2]; // [part][moments are kept]
-    gpu_buffer *skin;         // the elements at faces
-    uint32_t skin_count;
+    gpu_buffer *skin;         // a list of the elements, or bundles, at faces
+    uint32_t skin_count, skin_layers;
 } lbm_stepper;
 
 bool lbm_step_compile(lbm *l, const gpu_info *device, shader_library *library,

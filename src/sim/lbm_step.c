@@ -1,8 +1,10 @@
-// A step: one dispatch over all elements. Or two, where there are faces that air can pass, which
-// take many registers, and on software devices, which take both ways of a branch, time everywhere:
-// over the elements that no face touches, whose shader knows nothing of faces, and over a list of
-// those that one does. Each element has places in memory of its own, so their order does not
-// matter; where a bundle has elements of both, the first leaves those of the second as they are.
+// A step is one dispatch over all elements, or bundles of them, unless there are faces that air can
+// pass: what these touch, the skin, is dear. Then
+// - on GPUs its threads come first, and the others, the core, after them in the same dispatch: the
+//   few that take long are under way while the others work, and no group has some of both;
+// - scalars of 27 directions, whose core is faster without what faces need, and software devices,
+//   which take both ways of a branch, have two dispatches, and shaders that know of one part alone.
+// Each element has places in memory of its own, so their order does not matter.
 #include "base/memory.h"
 #include "sim/lbm_impl.h"
 #include <string.h>
@@ -19,25 +21,31 @@ static bool is_passable(const lbm *l) {
     return false;
 }
 
+static lbm_skin_order find_order(const lbm *l, bool software) {
+    if (!is_passable(l)) return LBM_NO_SKIN;
+    const bool alone = l->desc.scalars > 0 && l->desc.scalar_set == LBM_SCALAR_D3Q27;
+    return software || alone ? LBM_SKIN_APART : LBM_SKIN_FIRST;
+}
+
 bool lbm_step_compile(lbm *l, const gpu_info *device, shader_library *library,
                       const shader_reader *reader) {
-    static const char *const regions[] = {"LBM_WHOLE", "LBM_CORE", "LBM_SKIN"};
+    static const char *const regions[][2] = {
+        [LBM_NO_SKIN] = {"LBM_WHOLE"},
+        [LBM_SKIN_FIRST] = {"LBM_SKIN_FIRST"},
+        [LBM_SKIN_APART] = {"LBM_CORE", "LBM_SKIN"},
+    };
+    const bool software = is_software(device) && l->layout.lanes == 4;
     lbm_stepper *s = &l->stepper;
-    s->parts = is_passable(l) ? 2 : 1;
+    s->order = find_order(l, software);
+    s->parts = s->order == LBM_SKIN_APART ? 2 : 1;
     for (int i = 0; i < 2 * s->parts; i++) {
         lbm_kernel *k = &s->kernels[i / 2][i % 2];
-        const bool bundled = l->layout.bundle > 1 && i < 2; // not those in the list
-        const bool software = is_software(device) && l->layout.lanes == 4;
         const shader_define defines[] = {
             {"LBM_SOFTWARE", software ? "1" : "0"},
             {"LBM_KEEP", i % 2 ? "1" : "0"},
-            {"LBM_REGION", regions[s->parts == 1 ? 0 : 1 + i / 2]},
-            {"LBM_BUNDLED", bundled ? "1" : "0"},
+            {"LBM_REGION", regions[s->order][i / 2]},
         };
-        k->threads[0] = l->desc.size[0] * l->desc.size[1];
-        k->threads[1] = 1;
-        k->threads[2] = l->layout.layers / (bundled ? l->layout.bundle : 1);
-        if (!lbm_kernel_compile(l, k, shader, library, reader, defines, 4)) return false;
+        if (!lbm_kernel_compile(l, k, shader, library, reader, defines, 3)) return false;
     }
     return true;
 }
@@ -48,11 +56,11 @@ bool lbm_step_build(lbm *l, gpu *g) {
     return true;
 }
 
-// ---- the elements at faces --------------------------------------------------------------------
+// ---- what faces touch ---------------------------------------------------------------------------
 
 static bool at_face(const lbm *l, uint32_t x, uint32_t y, uint32_t layer) {
     const uint32_t at[3] = {x, y, layer};
-    const uint32_t last[3] = {l->desc.size[0] - 1, l->desc.size[1] - 1, l->layout.layers - 1};
+    const uint32_t last[3] = {l->desc.size[0] - 1, l->desc.size[1] - 1, lbm_depth(l) - 1};
     for (int i = 0; i < 3; i++)
         if (l->desc.faces[2 * i] != LBM_PERIODIC && (at[i] == 0 || at[i] == last[i])) return true;
     return false;
@@ -60,30 +68,36 @@ static bool at_face(const lbm *l, uint32_t x, uint32_t y, uint32_t layer) {
 
 // In the order of memory, so that neighbours in the list read what is side by side.
 static uint32_t list_skin(const lbm *l, uint32_t *out) {
-    const uint32_t nx = l->desc.size[0], ny = l->desc.size[1];
-    const uint32_t bundle = l->layout.bundle, span = l->layout.layers / bundle;
+    const uint32_t nx = l->desc.size[0], layer = nx * l->desc.size[1];
     uint32_t count = 0;
-    for (uint32_t i = 0; i < l->layout.elements; i++) {
-        const uint32_t column = i / bundle % (nx * ny);
-        const uint32_t z = i / bundle / (nx * ny) + i % bundle * span;
-        if (at_face(l, column % nx, column / nx, z)) out[count++] = column + nx * ny * z;
-    }
+    for (uint32_t i = 0; i < layer * lbm_depth(l); i++)
+        if (at_face(l, i % layer % nx, i % layer / nx, i / layer)) out[count++] = i;
     return count;
+}
+
+// Of threads: of the skin as many as the lattice has columns in a layer, where the core follows.
+static void set_threads(lbm *l) {
+    lbm_stepper *s = &l->stepper;
+    const uint32_t layer = l->desc.size[0] * l->desc.size[1];
+    if (s->order == LBM_SKIN_FIRST) s->skin_layers = (s->skin_count + layer - 1) / layer;
+    const uint32_t threads[2][3] = {{layer, 1, lbm_depth(l) + s->skin_layers},
+                                    {s->skin_count, 1, 1}};
+    for (int i = 0; i < 2 * s->parts; i++)
+        memcpy(s->kernels[i / 2][i % 2].threads, threads[i / 2], sizeof threads[0]);
 }
 
 bool lbm_step_allocate(lbm *l, gpu *g) {
     lbm_stepper *s = &l->stepper;
-    if (s->parts == 1 || s->skin) return true;
-    uint32_t *list = mem_alloc(l->layout.elements * sizeof *list);
-    s->skin_count = list_skin(l, list);
-    s->skin = gpu_buffer_create(
-        g, &(gpu_buffer_desc){.label = "elements at faces", .size = s->skin_count * 4ull});
-    bool done = s->skin && gpu_buffer_write(g, s->skin, 0, list, s->skin_count * 4ull);
-    mem_free(list);
-    for (int kept = 0; kept < 2; kept++) {
-        uint32_t threads[3] = {s->skin_count, 1, 1};
-        memcpy(s->kernels[1][kept].threads, threads, sizeof threads);
+    bool done = true;
+    if (s->order != LBM_NO_SKIN && !s->skin) {
+        uint32_t *list = mem_alloc(l->layout.elements * sizeof *list);
+        s->skin_count = list_skin(l, list);
+        s->skin = gpu_buffer_create(
+            g, &(gpu_buffer_desc){.label = "elements at faces", .size = s->skin_count * 4ull});
+        done = s->skin && gpu_buffer_write(g, s->skin, 0, list, s->skin_count * 4ull);
+        mem_free(list);
     }
+    set_threads(l);
     return done;
 }
 
@@ -110,6 +124,7 @@ static void set_numbers(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
     lbm_kernel_set(k, "decay", n->decay, sizeof n->decay);
     lbm_kernel_set(k, "max_speed", &most, sizeof most);
     lbm_kernel_set(k, "force_scale", &l->force_scale, sizeof l->force_scale);
+    lbm_kernel_set(k, "skin_layers", &l->stepper.skin_layers, sizeof l->stepper.skin_layers);
     lbm_kernel_set(k, "skin_count", &l->stepper.skin_count, sizeof l->stepper.skin_count);
     lbm_walls_set(l, k, n);
 }

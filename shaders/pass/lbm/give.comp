@@ -1,9 +1,10 @@
 // Gives the air what a source holds (pass/lbm_source.comp), as the state of the solver: cells that
 // are inside take on its values, as equilibria. Meshes are where they are at the step.
 //
-// A thread does one element of the state: cells that lie apart along z.
+// A thread does one element of the state, cells that lie apart along z, or the elements of a bundle.
 layout(local_size_x = 32, local_size_y = 2, local_size_z = 1) in;
 #include "shared.h"
+#define LBM_BUNDLED (LBM_BUNDLE > 1)
 #include "sim/lbm/cells.glsl"
 uniform vec3 box_min;          // corner of the lattice (m)
 uniform float cell_size;       // m
@@ -19,6 +20,7 @@ uniform uint last_id;
 layout(std430) readonly buffer SourceValues { uvec4 source_values[]; };
 
 #define EACH_LANE for (int l = 0; l < LBM_LANES; l++)
+#define EACH_ROW for (int row = 0; row < LBM_ROWS; row++)
 
 struct Held { // of the cells of an element
     lbm_float some; // how much they take on
@@ -100,6 +102,22 @@ lbm_float excess_of(lbm_element q[LBM_Q], out lbm_vec u) {
     return excess;
 }
 
+// ---- elements one after the other -------------------------------------------------------------
+
+Held held[LBM_ROWS];
+lbm_vec velocity[LBM_ROWS]; // of the air, then
+
+// False: there is nothing in any.
+bool find_held(uvec3 at) {
+    bool any_ = false;
+    EACH_ROW {
+        held[row] = held_by(at, lbm_site_at(at, lbm_element_at(at)).solid);
+        any_ = any_ || any(greaterThan(held[row].some, lbm_float(0.0)));
+        at.z += LBM_SPAN;
+    }
+    return any_;
+}
+
 // What is not given stays as it is: the pressure, above all, so that as much air is drawn in as is
 // blown out.
 void push(inout lbm_element q[LBM_Q], Held h, out lbm_vec u) {
@@ -117,39 +135,45 @@ void push(inout lbm_element q[LBM_Q], Held h, out lbm_vec u) {
         q[i] = lbm_pack(LBM_AIR_SCALE, mix(lbm_unpack(q[i], LBM_AIR_SCALE), f[i], h.some));
 }
 
-void carry(inout lbm_element q[LBM_SCALAR_Q], lbm_float some, lbm_float value, lbm_vec u) {
-    lbm_float g[LBM_SCALAR_Q];
-    lbm_set_scalar_equilibrium(value, u, g);
-    for (int i = 0; i < LBM_SCALAR_Q; i++)
-        q[i] = lbm_pack(LBM_SCALAR_SCALE, mix(lbm_unpack(q[i], LBM_SCALAR_SCALE), g[i], some));
+void push_air(lbm_place place) {
+    const bool pushes = HAS_VELOCITY == 1 || HAS_PRESSURE == 1 || MESHES == 1 && velocity_factor != 0.0;
+    lbm_access all_[LBM_Q];
+    lbm_element q[LBM_Q];
+    lbm_load_air(place, all_);
+    EACH_ROW {
+        for (int i = 0; i < LBM_Q; i++) q[i] = lbm_take(all_[i]);
+        if (pushes) push(q, held[row], velocity[row]);
+        else excess_of(q, velocity[row]);
+        for (int i = 0; i < LBM_Q; i++) lbm_give(all_[i], q[i]);
+    }
+    if (pushes) lbm_replace_air(place, all_);
+}
+
+lbm_element carry(lbm_element q, lbm_float some, lbm_float g) {
+    return lbm_pack(LBM_SCALAR_SCALE, mix(lbm_unpack(q, LBM_SCALAR_SCALE), g, some));
 }
 
 #define GIVE(s, VALUE)                                                                             \
     {                                                                                              \
-        lbm_element q[LBM_SCALAR_Q];                                                               \
-        lbm_load_scalar(s, place, q);                                                              \
-        carry(q, held.some, held.VALUE, u);                                                        \
-        lbm_replace_scalar(s, place, q);                                                           \
+        lbm_access all_[LBM_SCALAR_Q];                                                             \
+        lbm_float g[LBM_SCALAR_Q];                                                                 \
+        lbm_load_scalar(s, place, all_);                                                           \
+        EACH_ROW {                                                                                 \
+            lbm_set_scalar_equilibrium(held[row].VALUE, velocity[row], g);                         \
+            for (int i = 0; i < LBM_SCALAR_Q; i++)                                                 \
+                lbm_give(all_[i], carry(lbm_take(all_[i]), held[row].some, g[i]));                 \
+        }                                                                                          \
+        lbm_replace_scalar(s, place, all_);                                                        \
     }
 
 void main() {
     uvec3 at = gl_GlobalInvocationID;
-    if (any(greaterThanEqual(vec3(at), min(count, vec3(count.xy, LBM_LAYERS))))) return;
+    if (any(greaterThanEqual(vec3(at), min(count, vec3(count.xy, LBM_DEPTH))))) return;
     at += uvec3(first);
-    at.z %= LBM_LAYERS;
+    at.z %= LBM_DEPTH;
+    if (!find_held(at)) return;
     lbm_place place = lbm_place_at(at);
-    Held held = held_by(at, lbm_site_at(at, lbm_element_at(at)).solid);
-    if (!any(greaterThan(held.some, lbm_float(0.0)))) return;
-    lbm_element air[LBM_Q];
-    lbm_load_air(place, air);
-    lbm_vec u;
-#if HAS_VELOCITY || HAS_PRESSURE || MESHES
-    push(air, held, u);
-    if (HAS_VELOCITY == 1 || HAS_PRESSURE == 1 || velocity_factor != 0.0)
-        lbm_replace_air(place, air);
-#else
-    excess_of(air, u);
-#endif
+    push_air(place);
 #if HAS_DENSITY
     GIVE(0, density)
 #endif

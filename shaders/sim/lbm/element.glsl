@@ -1,8 +1,8 @@
 // Elements, cells that a thread does at once, and what is read and written at once.
 //
 // An element is four cells, or two of halves. Four of the latter can lie side by side, a bundle of the 16
-// bytes that memory is read fastest in; what moves whole bundles (LBM_BUNDLED: a step) takes their elements one
-// after the other. All others read and write elements.
+// bytes that memory is read fastest in; who defines LBM_BUNDLED (LBM_BUNDLE > 1) moves whole bundles, and takes their
+// elements one after the other. All others read and write elements.
 #ifndef SIM_LBM_ELEMENT_GLSL
 #define SIM_LBM_ELEMENT_GLSL
 
@@ -125,6 +125,8 @@ lbm_element lbm_last_lane(lbm_element e) {
 #define lbm_access uvec4
 #define lbm_access_mask bvec4
 #define LBM_STRIDE 1 // accesses from one column to the next
+#define LBM_DEPTH LBM_SPAN // accesses along z
+#define LBM_ROWS LBM_BUNDLE // elements of one
 // The element LBM_SPAN layers above the last of a bundle is its first, one lane on.
 lbm_access lbm_next_row(lbm_access a) {
     return uvec4(a.yzw, lbm_next_lane(a.x));
@@ -142,10 +144,16 @@ lbm_element lbm_take(lbm_access a) {
 void lbm_give(inout lbm_access a, lbm_element e) {
     a = uvec4(a.yzw, e);
 }
+
+lbm_access lbm_in_all_rows(lbm_element e) {
+    return uvec4(e);
+}
 #else
 #define lbm_access lbm_element
 #define lbm_access_mask lbm_mask
 #define LBM_STRIDE LBM_BUNDLE
+#define LBM_DEPTH LBM_LAYERS
+#define LBM_ROWS 1
 lbm_access lbm_next_row(lbm_access a) {
     return lbm_next_lane(a);
 }
@@ -160,6 +168,10 @@ lbm_element lbm_take(lbm_access a) {
 
 void lbm_give(out lbm_access a, lbm_element e) {
     a = e;
+}
+
+lbm_access lbm_in_all_rows(lbm_element e) {
+    return e;
 }
 #endif
 

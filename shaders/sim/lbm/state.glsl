@@ -48,10 +48,11 @@ uniform uint lbm_parity; // of steps
 #define LBM_SCALAR_WEIGHT(x, y, z) LBM_D3Q7_AXIS
 #endif
 
-// What a dispatch does: all, what is not at a face that is not periodic, what is.
+// What a dispatch does: all; what is not at a face that is not periodic; what is; the latter and then the former.
 #define LBM_WHOLE 0
 #define LBM_CORE 1
 #define LBM_SKIN 2
+#define LBM_SKIN_FIRST 3
 #ifndef LBM_REGION
 #define LBM_REGION LBM_WHOLE
 #endif
@@ -130,7 +131,7 @@ uint lbm_home(uvec3 at) {
 }
 
 lbm_place lbm_place_at(uvec3 at) {
-    const uint row = LBM_NX * LBM_STRIDE, layers = LBM_BUNDLED == 1 ? LBM_SPAN : LBM_LAYERS;
+    const uint row = LBM_NX * LBM_STRIDE;
     lbm_place p;
     p.x = at.x * LBM_STRIDE;
     p.x_up = at.x == LBM_NX - 1u ? 0u : p.x + LBM_STRIDE;
@@ -139,7 +140,7 @@ lbm_place lbm_place_at(uvec3 at) {
     p.y_up = at.y == LBM_NY - 1u ? 0u : p.y + row;
     p.y_down = at.y == 0u ? (LBM_NY - 1u) * row : p.y - row;
     p.z = lbm_depth(at.z);
-    p.last = at.z == layers - 1u;
+    p.last = at.z == LBM_DEPTH - 1u;
     p.z_up = p.last ? 0u : lbm_depth(at.z + 1u);
     p.home = p.x + p.y + p.z;
     return p;

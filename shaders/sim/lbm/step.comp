@@ -5,21 +5,26 @@
 #extension GL_ARB_gpu_shader_int64 : require
 #endif
 layout(local_size_x = LBM_GROUP) in;
+#define LBM_BUNDLED (LBM_BUNDLE > 1)
 #include "sim/lbm/state.glsl"
 #include "sim/lbm/collide.glsl"
 #include "sim/lbm/scalar.glsl"
 #include "sim/lbm/walls.glsl"
 
-// All elements; or those without a face that is not periodic, then those with one, in two dispatches.
-#if LBM_REGION == LBM_SKIN
-layout(std430) readonly buffer LbmSkin { uint skin[]; };
+// All elements (bundles); or those that no face touches which is not periodic, the core, and the others, the skin,
+// which are in a list: src/sim/lbm_step.c says when.
+#define SKIN (LBM_REGION == LBM_SKIN || LBM_REGION == LBM_SKIN_FIRST)
+#define CORE (LBM_REGION == LBM_CORE || LBM_REGION == LBM_SKIN_FIRST)
+#if SKIN
+layout(std430) readonly buffer LbmSkin { uint skin[]; }; // as elements are counted
 uniform uint skin_count;
+uniform uint skin_layers; // of threads, with LBM_SKIN_FIRST
 #endif
 #define WALLED (LBM_WALLED && (LBM_BODIES || LBM_REGION != LBM_CORE))
 // Faces or bodies may change what arrives.
 #define MEETS (LBM_BODIES || LBM_RIMS && LBM_REGION != LBM_CORE)
 // Scalars of 27 directions do not fit into registers beside the air: they go one by one.
-#define ALONE (LBM_SCALAR_Q == 27 && LBM_SCALARS > 0 && LBM_REGION != LBM_SKIN && LBM_SOFTWARE == 0)
+#define ALONE (LBM_SCALAR_Q == 27 && LBM_SCALARS > 0 && LBM_SOFTWARE == 0)
 
 uniform float tau;
 uniform float smagorinsky;
@@ -171,10 +176,11 @@ void give_scalar(const int held) {
 // ---- an element -------------------------------------------------------------------------------
 
 #if MEETS
-void meet_air() {
+// `wave`: a step of the waves at open faces, too, which is done once.
+void meet_air(const bool wave) {
     lbm_float f[LBM_Q];
     lbm_unpack_air(air, LBM_AIR_SCALE, f);
-    lbm_meet_air(at, site, f);
+    lbm_meet_air(at, site, wave, f);
     lbm_pack_air(f, LBM_AIR_SCALE, air);
 }
 
@@ -262,34 +268,42 @@ bool find_site() {
 
 // ---- all ---------------------------------------------------------------------------------------
 
-// The thread's element, or the first of its bundle.
-bool find() {
-    uint thread = gl_GlobalInvocationID.x;
-#if LBM_REGION == LBM_SKIN
-    if (thread >= skin_count) return false;
-    uint first = skin[thread], column = first % LBM_LAYER;
+bool find_in_skin(uint i) {
+#if SKIN
+    if (i >= skin_count) return false;
+    uint first = skin[i], column = first % LBM_LAYER;
     at = uvec3(column % LBM_NX, column / LBM_NX, first / LBM_LAYER);
-#elif LBM_REGION == LBM_CORE
-    const uvec3 rim = uvec3(LBM_FACE_0 != 0, LBM_FACE_2 != 0, LBM_FACE_4 != 0 && LBM_BUNDLED == 0);
-    const uvec2 size = uvec2(LBM_NX, LBM_NY) - 2u * rim.xy;
-    if (thread >= size.x * size.y) return false;
-    at = uvec3(thread % size.x, thread / size.x, gl_GlobalInvocationID.z) + rim;
-    if (at.z >= LBM_LAYERS - rim.z) return false;
-#else
-    if (thread >= LBM_LAYER) return false;
-    at = uvec3(thread % LBM_NX, thread / LBM_NX, gl_GlobalInvocationID.z);
 #endif
     return true;
 }
 
+bool find_in_core(uint column, uint layer) {
+    const uvec3 rim = CORE ? uvec3(LBM_FACE_0 != 0, LBM_FACE_2 != 0, LBM_FACE_4 != 0) : uvec3(0u);
+    const uvec3 size = uvec3(LBM_NX, LBM_NY, LBM_DEPTH) - 2u * rim;
+    at = uvec3(column % size.x, column / size.x, layer) + rim;
+    return column < size.x * size.y && layer < size.z;
+}
+
+// The thread's element, or the first of its bundle.
+bool find() {
+    uint thread = gl_GlobalInvocationID.x, layer = gl_GlobalInvocationID.z;
+#if LBM_REGION == LBM_SKIN
+    return find_in_skin(thread);
+#elif LBM_REGION == LBM_SKIN_FIRST
+    if (layer < skin_layers) return thread < LBM_LAYER && find_in_skin(thread + LBM_LAYER * layer);
+    return find_in_core(thread, layer - skin_layers);
+#else
+    return find_in_core(thread, layer);
+#endif
+}
+
 #if LBM_BUNDLED
-// LBM_BUNDLE, but no compiler knows that it is no more: unrolled, the numbers of all rows would want
+// LBM_ROWS, but no compiler knows that it is no more: unrolled, the numbers of all rows would want
 // registers at once.
-#define ROWS (LBM_BUNDLE + (lbm_parity & 2u))
+#define ROWS (LBM_ROWS + (lbm_parity & 2u))
 
 bool has_air() {
-    bool in_region = LBM_REGION != LBM_CORE || LBM_FACE_4 == 0 || at.z > 0u && at.z < LBM_LAYERS - 1u;
-    return in_region && find_site();
+    return find_site();
 }
 #else
 #define ROWS 1u
@@ -318,7 +332,7 @@ void step_element() {
 #if MEETS
     if (lbm_meets(at, site)) {
         lbm_find_bodies(at, site);
-        meet_air();
+        meet_air(true);
 #define MEET(s) meet_scalar(s, s);
         LBM_EACH_SCALAR(MEET)
 #undef MEET

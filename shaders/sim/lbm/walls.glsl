@@ -244,7 +244,7 @@ void lbm_add_stress(ivec3 outward, lbm_float part, lbm_float f[LBM_Q], inout lbm
 #undef ADD
 }
 
-void lbm_pass_face(lbm_rim r, uvec3 at, inout lbm_float f[LBM_Q]) {
+void lbm_pass_face(lbm_rim r, uvec3 at, const bool wave_goes_on, inout lbm_float f[LBM_Q]) {
     ivec3 outward = lbm_outward(r.face);
     vec3 n = vec3(outward), wind = lbm_face_velocity[r.face].xyz;
     const int size[3] = int[3](LBM_NX, LBM_NY, LBM_NZ);
@@ -260,7 +260,7 @@ void lbm_pass_face(lbm_rim r, uvec3 at, inout lbm_float f[LBM_Q]) {
         excess = 2.0 * q / (b + sqrt(max(b * b + 4.0 * LBM_SOUND * q, 0.01)));
         out_ = clamp(wave + LBM_SOUND * excess, -LBM_FACE_SPEED, LBM_FACE_SPEED);
         wave += pull * (wind_out < 0.0 ? wind_out - out_ : LBM_SOUND * excess);
-        lbm_waves[place] = wave;
+        if (wave_goes_on) lbm_waves[place] = wave;
     }
     // Along the face what leaves goes on as it came, what enters brings the wind's.
     lbm_float leaves = lbm_float(greaterThanEqual(out_, lbm_float(0.0))) / w.mass;
@@ -315,13 +315,14 @@ void lbm_find_bodies(uvec3 at, lbm_site site) {
 #endif
 }
 
-// Makes what arrives in an element what it should be: of air, of scalar s (a constant).
-void lbm_meet_air(uvec3 at, lbm_site site, inout lbm_float f[LBM_Q]) {
+// Makes what arrives in an element what it should be: of air, of scalar s (a constant). `step_waves`: those at
+// open faces go a step on.
+void lbm_meet_air(uvec3 at, lbm_site site, const bool step_waves, inout lbm_float f[LBM_Q]) {
 #if LBM_RIMS && LBM_REGION != LBM_CORE
     if (lbm_at_rim(at)) {
         lbm_rim r = lbm_rim_at(at);
         lbm_mirror_air(r, f);
-        if (r.face >= 0) lbm_pass_face(r, at, f);
+        if (r.face >= 0) lbm_pass_face(r, at, step_waves, f);
     }
 #endif
 #if LBM_BODIES
