@@ -161,7 +161,7 @@ struct voxel_head {
     SHARED_UVEC4 count; // parts; parts that are voxelised now; groups of prepare.comp, of cross.comp
     SHARED_UVEC4 low;   // xyz: first cell to be composed, x a multiple of VOXEL_ROW
     SHARED_UVEC4 size;  // xyz: how many
-    SHARED_UVEC4 tiles; // xyz: tiles that these lie in
+    SHARED_UVEC4 tiles; // xyz: tiles that these lie in; w: where their lists are
     SHARED_UVEC4 grid;  // xyz: cells of the whole box; w: items of all parts
     SHARED_VEC4 corner; // xyz: metres, of the whole box; w: farthest that a distance can be (m)
     SHARED_VEC4 cell;   // xyz: edges (m)

@@ -97,7 +97,6 @@ voxels *voxels_create(arena *memory, const voxels_desc *desc) {
     v->distances = desc->distances;
     for (size_t i = 0; i < desc->body_count; i++) add_body(v, i, &desc->bodies[i]);
     v->state = arena_alloc(memory, sizeof *v->state + v->part_count * sizeof *v->state->parts);
-    v->work_list = arena_alloc(memory, v->part_count * sizeof *v->work_list);
     return v;
 }
 
@@ -310,7 +309,9 @@ static void describe_part(const voxels_part *p, struct voxel_part *out) {
 // still placed, for distances.
 static void list_work(voxels *v) {
     struct voxel_head *head = &v->state->head;
+    voxels_lists *l = &v->lists;
     memset(&head->count, 0, sizeof head->count);
+    l->count = 0;
     head->count.v[0] = (uint32_t)v->part_count;
     for (uint32_t i = 0; i < v->part_count; i++) {
         const voxels_part *p = &v->parts[i];
@@ -320,8 +321,11 @@ static void list_work(voxels *v) {
         uint32_t clear = voxels_groups((p->used + VOXEL_CLEARED - 1) / VOXEL_CLEARED);
         uint32_t points = voxels_groups(out->mesh.v[1]), prepare = clear > points ? clear : points;
         uint64_t crossing = p->box.size[0] ? (3u + p->shell) * (uint64_t)out->mesh.v[3] : 0;
-        v->work_list[head->count.v[1]++] =
-            (shared_uvec4){{i, head->count.v[2], head->count.v[3], prepare}};
+        const uint32_t work[] = {i, head->count.v[2], head->count.v[3], prepare};
+        MEM_RESERVE(l->items, l->count + COUNT_OF(work), l->capacity);
+        memcpy(l->items + l->count, work, sizeof work);
+        l->count += COUNT_OF(work);
+        head->count.v[1]++;
         head->count.v[2] += prepare;
         head->count.v[3] += voxels_groups(crossing);
     }
@@ -351,16 +355,15 @@ static void begin_rows(cell_box *dirty) {
     dirty->size[0] += more;
 }
 
-static bool write_tiles(voxels *v, gpu *g, const cell_box *dirty) {
-    voxels_list_tiles(v, dirty, v->state->head.tiles.v);
-    const uint64_t bytes = v->tiles.count * sizeof *v->tiles.list;
-    gpu_buffer *now = v->buffers[VOXELS_TILES];
+static bool write_lists(voxels *v, gpu *g) {
+    const uint64_t bytes = v->lists.count * sizeof *v->lists.items;
+    gpu_buffer *now = v->buffers[VOXELS_LISTS];
     if (!now || gpu_buffer_size(now) < bytes) {
         gpu_buffer_destroy(g, now);
-        v->buffers[VOXELS_TILES] = NULL;
-        if (!voxels_make_buffer(v, g, VOXELS_TILES, 2 * bytes)) return false;
+        v->buffers[VOXELS_LISTS] = NULL;
+        if (!voxels_make_buffer(v, g, VOXELS_LISTS, 2 * bytes)) return false;
     }
-    return gpu_buffer_write(g, v->buffers[VOXELS_TILES], 0, v->tiles.list, bytes);
+    return gpu_buffer_write(g, v->buffers[VOXELS_LISTS], 0, v->lists.items, bytes);
 }
 
 static bool run(voxels *v, gpu *g, const cell_box *dirty) {
@@ -368,10 +371,7 @@ static bool run(voxels *v, gpu *g, const cell_box *dirty) {
     const uint32_t threads[3] = {(dirty->size[0] + VOXEL_ROW - 1) / VOXEL_ROW, dirty->size[1],
                                  dirty->size[2]};
     const size_t state = sizeof *v->state + v->part_count * sizeof *v->state->parts;
-    return write_tiles(v, g, dirty) &&
-           gpu_buffer_write(g, v->buffers[VOXELS_STATE], 0, v->state, state) &&
-           gpu_buffer_write(g, v->buffers[VOXELS_WORK], 0, v->work_list,
-                            head->count.v[1] * sizeof *v->work_list) &&
+    return write_lists(v, g) && gpu_buffer_write(g, v->buffers[VOXELS_STATE], 0, v->state, state) &&
            voxels_dispatch_groups(v, g, VOXELS_PREPARE, head->count.v[2]) &&
            voxels_dispatch_groups(v, g, VOXELS_CROSS, head->count.v[3]) &&
            (dirty->size[0] == 0 ||
@@ -410,6 +410,7 @@ static bool voxelise(voxels *v, gpu *g) {
     begin_rows(&dirty);
     describe_grid(v, &dirty);
     list_work(v);
+    voxels_list_tiles(v, &dirty);
     count_work(v, &dirty);
     v->started = run(v, g, &dirty);
     return v->started;

@@ -15,8 +15,7 @@ static const struct {
     const char *block, *label;
 } names[VOXELS_BUFFERS] = {
     [VOXELS_STATE] = {"VoxelState", "state of voxels"},
-    [VOXELS_WORK] = {"VoxelWork", "bodies that moved"},
-    [VOXELS_TILES] = {"VoxelTiles", "bodies by tiles of cells"},
+    [VOXELS_LISTS] = {"VoxelLists", "bodies by tiles of cells"},
     [VOXELS_POINTS] = {"VoxelPoints", "points of bodies"},
     [VOXELS_ITEMS] = {"VoxelItems", "triangles of bodies"},
     [VOXELS_PLACED] = {"VoxelPlaced", "points in cells"},
@@ -68,8 +67,8 @@ void voxels_destroy(voxels *v, gpu *g) {
     for (int i = 0; i < VOXELS_BUFFERS; i++)
         if (v->buffers[i]) gpu_buffer_destroy(g, v->buffers[i]);
     for (size_t i = 0; i < v->surface_count; i++) voxel_surface_free(&v->surfaces[i]);
-    mem_free(v->tiles.list);
-    v->tiles = (voxels_tiles){0};
+    mem_free(v->lists.items);
+    v->lists = (voxels_lists){0};
     v->surface_count = 0;
     memset(v->pipelines, 0, sizeof v->pipelines);
     memset(v->buffers, 0, sizeof v->buffers);
@@ -112,7 +111,6 @@ bool voxels_allocate(voxels *v, gpu *g) {
     uint64_t cells = (uint64_t)v->size[0] * v->size[1] * v->size[2];
     uint64_t state = sizeof *v->state + v->part_count * sizeof *v->state->parts;
     return voxels_make_buffer(v, g, VOXELS_STATE, state) &&
-           voxels_make_buffer(v, g, VOXELS_WORK, v->part_count * sizeof *v->work_list) &&
            voxels_make_buffer(v, g, VOXELS_POINTS, v->point_count * sizeof(shared_vec4)) &&
            voxels_make_buffer(v, g, VOXELS_ITEMS, v->item_count * sizeof(shared_uvec4)) &&
            voxels_make_buffer(v, g, VOXELS_PLACED, v->placed_count * sizeof(shared_vec4)) &&

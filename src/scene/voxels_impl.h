@@ -16,8 +16,7 @@ typedef enum voxels_stage {
 
 typedef enum voxels_part_buffer { // by the names of their blocks: voxels_device.c
     VOXELS_STATE,
-    VOXELS_WORK,
-    VOXELS_TILES,
+    VOXELS_LISTS,
     VOXELS_POINTS,
     VOXELS_ITEMS,
     VOXELS_PLACED,
@@ -62,11 +61,11 @@ typedef struct voxels_state {
     struct voxel_part parts[];
 } voxels_state;
 
-// The buffer "VoxelTiles", which compose.comp describes.
-typedef struct voxels_tiles {
-    uint32_t *list;
+// The buffer "VoxelLists", which state.glsl describes.
+typedef struct voxels_lists {
+    uint32_t *items;
     size_t count, capacity;
-} voxels_tiles;
+} voxels_lists;
 
 struct voxels {
     arena *memory;
@@ -88,8 +87,7 @@ struct voxels {
     size_t part_count;
     bool started, distances; // an update was made; distances are wanted
     voxels_state *state;
-    shared_uvec4 *work_list; // the buffer "VoxelWork"
-    voxels_tiles tiles;
+    voxels_lists lists;
     struct voxel_motion *motions; // by id
     bool motions_written;
     voxels_work work;
@@ -99,8 +97,8 @@ struct voxels {
 };
 
 // Which parts compose.comp looks at: those whose boxes meet a tile of cells, in order, for each of
-// the tiles that `dirty` lies in. Fills `tiles`, and how many there are along each axis.
-void voxels_list_tiles(voxels *v, const cell_box *dirty, uint32_t count[3]);
+// the tiles that `dirty` lies in. Adds to the lists, and says in the head of the state where.
+void voxels_list_tiles(voxels *v, const cell_box *dirty);
 
 // What a stage binds by name besides the buffers.
 typedef struct voxels_images {

@@ -29,39 +29,47 @@ static tile_range meet(const tile_range *composed, const cell_box *part) {
     return out;
 }
 
-// Counts a part in its tiles; or, the last part first, puts it before what is there.
-static void add_part(uint32_t *list, const tile_range *at, const uint32_t count[3],
-                     const uint32_t *part) {
-    for (uint32_t z = at->low[2]; z < at->end[2]; z++)
-        for (uint32_t y = at->low[1]; y < at->end[1]; y++)
-            for (uint32_t x = at->low[0]; x < at->end[0]; x++) {
-                uint32_t *tile = &list[x + count[0] * (y + (size_t)count[1] * z)];
-                if (part)
-                    list[--*tile] = *part;
-                else
-                    ++*tile;
-            }
+#define EACH_TILE(at, x, y, z)                                                                     \
+    for (uint32_t z = (at)->low[2]; z < (at)->end[2]; z++)                                         \
+        for (uint32_t y = (at)->low[1]; y < (at)->end[1]; y++)                                     \
+            for (uint32_t x = (at)->low[0]; x < (at)->end[0]; x++)
+
+static size_t tile_at(const uint32_t count[3], uint32_t x, uint32_t y, uint32_t z) {
+    return x + count[0] * (y + (size_t)count[1] * z);
 }
 
-void voxels_list_tiles(voxels *v, const cell_box *dirty, uint32_t count[3]) {
+static void count_part(uint32_t *tiles, const tile_range *at, const uint32_t count[3]) {
+    EACH_TILE(at, x, y, z) tiles[tile_at(count, x, y, z)]++;
+}
+
+// Before what is there: the last part comes first.
+static void put_part(voxels_lists *l, size_t first, const tile_range *at, const uint32_t count[3],
+                     uint32_t part) {
+    EACH_TILE(at, x, y, z) l->items[--l->items[first + tile_at(count, x, y, z)]] = part;
+}
+
+void voxels_list_tiles(voxels *v, const cell_box *dirty) {
     const tile_range composed = find_tiles(dirty);
-    voxels_tiles *t = &v->tiles;
-    for (int a = 0; a < 3; a++) count[a] = composed.end[a] - composed.low[a];
-    const size_t tiles = (size_t)count[0] * count[1] * count[2];
-    MEM_RESERVE(t->list, tiles + 1, t->capacity);
-    memset(t->list, 0, (tiles + 1) * sizeof *t->list);
-    for (size_t i = 0; i < v->part_count; i++) {
+    struct voxel_head *head = &v->state->head;
+    voxels_lists *l = &v->lists;
+    const size_t first = l->count;
+    size_t tiles = 1;
+    for (int a = 0; a < 3; a++) tiles *= head->tiles.v[a] = composed.end[a] - composed.low[a];
+    head->tiles.v[3] = (uint32_t)first;
+    MEM_RESERVE(l->items, first + tiles + 1, l->capacity);
+    memset(l->items + first, 0, (tiles + 1) * sizeof *l->items);
+    for (uint32_t i = 0; i < v->part_count; i++) {
         const tile_range at = meet(&composed, &v->parts[i].box);
-        add_part(t->list, &at, count, NULL);
+        count_part(l->items + first, &at, head->tiles.v);
     }
-    t->count = tiles + 1;
-    for (size_t i = 0; i <= tiles; i++) { // of each the end, for now; the last has no parts
-        t->count += t->list[i];
-        t->list[i] = (uint32_t)t->count;
+    l->count += tiles + 1;
+    for (size_t i = first; i <= first + tiles; i++) { // of each the end, for now; the last is empty
+        l->count += l->items[i];
+        l->items[i] = (uint32_t)l->count;
     }
-    MEM_RESERVE(t->list, t->count, t->capacity);
+    MEM_RESERVE(l->items, l->count, l->capacity);
     for (uint32_t i = (uint32_t)v->part_count; i-- > 0;) {
         const tile_range at = meet(&composed, &v->parts[i].box);
-        add_part(t->list, &at, count, &i);
+        put_part(l, first, &at, head->tiles.v, i);
     }
 }

@@ -2,14 +2,12 @@
 layout(local_size_x = 8, local_size_y = 16, local_size_z = 2) in;
 #include "inside.glsl"
 layout(std430) writeonly buffer VoxelIds { uvec4 voxel_ids4[]; };
-// Of each tile where its list begins, and where the last one ends; then the lists: parts that meet it.
-layout(std430) readonly buffer VoxelTiles { uint voxel_tiles[]; };
 
 const uint fours = uint(VOXEL_ROW) / 4u;
 
 uint find_tile(uvec3 at) {
     uvec3 tile = at / uint(VOXEL_ROW) - voxel.low.xyz / uint(VOXEL_ROW);
-    return tile.x + voxel.tiles.x * (tile.y + voxel.tiles.y * tile.z);
+    return voxel.tiles.w + tile.x + voxel.tiles.x * (tile.y + voxel.tiles.y * tile.z);
 }
 
 void main() {
@@ -19,9 +17,9 @@ void main() {
     at += voxel.low.xyz;
     uvec4 ids[fours];
     for (uint k = 0u; k < fours; k++) ids[k] = uvec4(0u);
-    const uint tile = find_tile(at), past = voxel_tiles[tile + 1u];
-    for (uint next = voxel_tiles[tile]; next < past; next++) {
-        uint i = voxel_tiles[next];
+    const uint tile = find_tile(at), past = voxel_lists[tile + 1u];
+    for (uint next = voxel_lists[tile]; next < past; next++) {
+        uint i = voxel_lists[next];
         uvec3 low = voxel_parts[i].low.xyz, end = low + voxel_parts[i].size.xyz;
         if (at.x + 4u * count <= low.x || at.x >= end.x || any(lessThan(at.yz, low.yz)) ||
             any(greaterThanEqual(at.yz, end.yz)))

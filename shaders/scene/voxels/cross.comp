@@ -7,7 +7,7 @@
 // the lower ones are its own. So of two triangles that share an edge a line through it crosses
 // exactly one, and both or none where it is a fold (Pineda, "A parallel algorithm for polygon
 // rasterization", 1988).
-#include "work.glsl"
+#include "state.glsl"
 layout(local_size_x = VOXEL_GROUP) in;
 layout(std430) readonly buffer VoxelItems { uvec4 voxel_items[]; };
 layout(std430) readonly buffer VoxelPlaced { ivec4 voxel_placed[]; };

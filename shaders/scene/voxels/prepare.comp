@@ -1,7 +1,7 @@
 // First of three dispatches: of each part that moved, the masks are cleared and its points placed:
 // in steps of 1 / VOXEL_UNIT of a cell, from the corner of the box. A point of several triangles is
 // placed once, so that they meet exactly.
-#include "work.glsl"
+#include "state.glsl"
 layout(local_size_x = VOXEL_GROUP) in;
 layout(std430) readonly buffer VoxelPoints { vec4 voxel_points[]; };
 layout(std430) writeonly buffer VoxelPlaced { ivec4 voxel_placed[]; };

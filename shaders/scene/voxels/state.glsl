@@ -6,6 +6,10 @@ layout(std430) readonly buffer VoxelState {
     voxel_head voxel;
     voxel_part voxel_parts[];
 };
+// Of each part that is voxelised now: which it is, its first group of prepare.comp and of cross.comp, how many of
+// the former. Then, from voxel.tiles.w on, of each tile that is composed where its list begins, and where the last
+// one ends; then these lists: parts that meet the tile.
+layout(std430) readonly buffer VoxelLists { uint voxel_lists[]; };
 
 // Three masks, a bit a cell: where the number of crossings before is odd, along x, y and z; and the
 // shell's where there is one. Bits of the mask of an axis follow each other along that axis, so that
@@ -45,6 +49,18 @@ uint voxel_word_z(voxel_masks m, uvec3 cell) {
 
 uint voxel_group() {
     return gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
+}
+
+// What is voxelised by a group: the last whose first group, `column` of the list, is not beyond it.
+uvec4 voxel_find_work(uint group, uint column) {
+    uint low = 0u, high = voxel.count.y;
+    while (high - low > 1u) {
+        uint middle = (low + high) / 2u;
+        if (voxel_lists[4u * middle + column] <= group) low = middle;
+        else high = middle;
+    }
+    low *= 4u;
+    return uvec4(voxel_lists[low], voxel_lists[low + 1u], voxel_lists[low + 2u], voxel_lists[low + 3u]);
 }
 
 #endif
