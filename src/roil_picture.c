@@ -53,21 +53,26 @@ static bool read_raw(roil_effect *e, graph_image image, raw_image *out) {
     return false;
 }
 
-static float *expand_all(const raw_image *raw) {
+typedef struct linear_image {
+    float *pixels; // red, green, blue, alpha
+    size_t width, height;
+} linear_image;
+
+static linear_image expand_all(const raw_image *raw) {
     size_t count = (size_t)raw->width * raw->height, texel = gpu_format_size(raw->format);
     float *pixels = mem_alloc(count * 4 * sizeof *pixels);
     for (size_t i = 0; i < count; i++) expand(raw->texels + i * texel, raw->format, pixels + i * 4);
-    return pixels;
+    return (linear_image){pixels, raw->width, raw->height};
 }
 
 float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height) {
     raw_image raw = {0};
     if (!read_raw(e, image, &raw)) return NULL;
-    float *pixels = expand_all(&raw);
+    linear_image linear = expand_all(&raw);
     mem_free(raw.texels);
     *width = raw.width;
     *height = raw.height;
-    return pixels;
+    return linear.pixels;
 }
 
 // ---- display encoding -------------------------------------------------------------------------
@@ -126,29 +131,36 @@ static float straight(const float *pixel, int c, bool alpha) {
     return alpha && pixel[3] > 1e-6f ? pixel[c] / pixel[3] : pixel[c];
 }
 
-// `dithered`: for eyes; otherwise to the nearest code, for what measures.
-static void encode8(const float *pixels, size_t count, size_t width, bool dithered, bool alpha,
-                    int channels, uint8_t *out) {
-    for (size_t i = 0; i < count; i++) {
-        const float *pixel = pixels + i * 4;
-        for (int c = 0; c < 3; c++) {
-            float linear = straight(pixel, c, alpha);
-            out[i * (size_t)channels + (size_t)c] =
-                dithered ? dithered_byte(linear, i % width, i / width, c)
-                         : roil_srgb_table()[table_index(linear)];
+static uint8_t alpha_byte(const float *pixel, bool alpha) {
+    return alpha ? (uint8_t)lrintf(clampf(pixel[3], 0, 1) * 255) : 255;
+}
+
+// For eyes.
+static void encode8_dithered(const linear_image *image, bool alpha, size_t channels, uint8_t *out) {
+    const float *pixel = image->pixels;
+    for (size_t y = 0; y < image->height; y++)
+        for (size_t x = 0; x < image->width; x++, pixel += 4, out += channels) {
+            for (int c = 0; c < 3; c++) out[c] = dithered_byte(straight(pixel, c, alpha), x, y, c);
+            if (channels == 4) out[3] = alpha_byte(pixel, alpha);
         }
-        if (channels == 4)
-            out[i * 4 + 3] = alpha ? (uint8_t)lrintf(clampf(pixel[3], 0, 1) * 255) : 255;
+}
+
+// For what measures: each the code that is nearest.
+static void encode8_nearest(const linear_image *image, bool alpha, uint8_t *out) {
+    const uint8_t *table = roil_srgb_table();
+    const float *end = image->pixels + image->width * image->height * 4;
+    for (const float *pixel = image->pixels; pixel < end; pixel += 4, out += 4) {
+        for (int c = 0; c < 3; c++) out[c] = table[table_index(straight(pixel, c, alpha))];
+        out[3] = alpha_byte(pixel, alpha);
     }
 }
 
-static void encode16(const float *pixels, size_t count, bool alpha, int channels, uint16_t *out) {
-    for (size_t i = 0; i < count; i++) {
-        const float *pixel = pixels + i * 4;
+static void encode16(const linear_image *image, bool alpha, size_t channels, uint16_t *out) {
+    const float *end = image->pixels + image->width * image->height * 4;
+    for (const float *pixel = image->pixels; pixel < end; pixel += 4, out += channels) {
         for (int c = 0; c < 3; c++)
-            out[i * (size_t)channels + (size_t)c] =
-                (uint16_t)lrintf(srgb_encode(straight(pixel, c, alpha)) * 65535);
-        if (channels == 4) out[i * 4 + 3] = (uint16_t)lrintf(clampf(pixel[3], 0, 1) * 65535);
+            out[c] = (uint16_t)lrintf(srgb_encode(straight(pixel, c, alpha)) * 65535);
+        if (channels == 4) out[3] = (uint16_t)lrintf(clampf(pixel[3], 0, 1) * 65535);
     }
 }
 
@@ -162,16 +174,12 @@ static bool read_output(roil_effect *e, raw_image *out) {
                    out->width, out->height, e->width, e->height);
 }
 
-static void encode_raw(const raw_image *raw, bool dithered, bool alpha, uint8_t *out) {
-    float *pixels = expand_all(raw);
-    encode8(pixels, (size_t)raw->width * raw->height, raw->width, dithered, alpha, 4, out);
-    mem_free(pixels);
-}
-
 bool roil_read(roil_effect *e, bool alpha, uint8_t *out) {
     raw_image raw = {0};
     if (!read_output(e, &raw)) return false;
-    encode_raw(&raw, false, alpha, out);
+    linear_image image = expand_all(&raw);
+    encode8_nearest(&image, alpha, out);
+    mem_free(image.pixels);
     mem_free(raw.texels);
     return true;
 }
@@ -187,19 +195,19 @@ typedef struct picture { // all that its file needs, away from the effect and it
     png_text texts[RECIPE_TEXTS];
 } picture;
 
-static bool write_png(const picture *p, const float *pixels) {
-    size_t count = (size_t)p->color.width * p->color.height;
-    int channels = p->options.alpha ? 4 : 3;
-    void *encoded = mem_alloc(count * (size_t)channels * (p->options.sixteen ? 2 : 1));
-    if (p->options.sixteen)
-        encode16(pixels, count, p->options.alpha, channels, encoded);
+static bool write_png(const picture *p, const linear_image *image) {
+    const bool alpha = p->options.alpha, sixteen = p->options.sixteen;
+    const size_t channels = alpha ? 4 : 3;
+    void *encoded = mem_alloc(image->width * image->height * channels * (sixteen ? 2 : 1));
+    if (sixteen)
+        encode16(image, alpha, channels, encoded);
     else
-        encode8(pixels, count, p->color.width, true, p->options.alpha, channels, encoded);
+        encode8_dithered(image, alpha, channels, encoded);
     bool done = png_write(p->file,
                           &(png_image){.width = p->color.width,
                                        .height = p->color.height,
-                                       .channels = channels,
-                                       .bits = p->options.sixteen ? 16 : 8,
+                                       .channels = (int)channels,
+                                       .bits = sixteen ? 16 : 8,
                                        .pixels = encoded},
                           p->texts, RECIPE_TEXTS);
     mem_free(encoded);
@@ -207,30 +215,34 @@ static bool write_png(const picture *p, const float *pixels) {
 }
 
 // Channels one after the other, as EXR wants them.
-static float *split(const float *pixels, size_t count) {
+static float *split(const linear_image *image) {
+    const size_t count = image->width * image->height;
     float *planes = mem_alloc(count * 4 * sizeof *planes);
     for (size_t i = 0; i < count; i++)
-        for (size_t c = 0; c < 4; c++) planes[c * count + i] = pixels[i * 4 + c];
+        for (size_t c = 0; c < 4; c++) planes[c * count + i] = image->pixels[i * 4 + c];
     return planes;
 }
 
-static bool write_exr(const picture *p, const float *pixels) {
-    size_t count = (size_t)p->color.width * p->color.height;
-    float *planes = split(pixels, count), *depth = NULL;
-    bool half = !p->options.full;
-    exr_channel channels[5] = {{"R", planes, half},
-                               {"G", planes + count, half},
-                               {"B", planes + 2 * count, half},
-                               {"A", planes + 3 * count, half}};
-    size_t channel_count = 4;
-    if (p->depth.texels) {
-        float *values = expand_all(&p->depth);
-        depth = split(values, count);
-        mem_free(values);
-        channels[channel_count++] = (exr_channel){"Z", depth, false}; // half has too few digits
-    }
-    bool done =
-        exr_write(p->file, &(exr_image){p->color.width, p->color.height, channels, channel_count});
+static float *split_raw(const raw_image *raw) {
+    linear_image image = expand_all(raw);
+    float *planes = split(&image);
+    mem_free(image.pixels);
+    return planes;
+}
+
+static bool write_exr(const picture *p, const linear_image *image) {
+    const size_t count = image->width * image->height;
+    const bool half = !p->options.full;
+    float *planes = split(image), *depth = p->depth.texels ? split_raw(&p->depth) : NULL;
+    const exr_channel channels[] = {
+        {"R", planes, half},
+        {"G", planes + count, half},
+        {"B", planes + 2 * count, half},
+        {"A", planes + 3 * count, half},
+        {"Z", depth, false}, // half has too few digits
+    };
+    bool done = exr_write(p->file, &(exr_image){p->color.width, p->color.height, channels,
+                                                COUNT_OF(channels) - (depth ? 0 : 1)});
     mem_free(planes);
     mem_free(depth);
     return done;
@@ -239,9 +251,9 @@ static bool write_exr(const picture *p, const float *pixels) {
 static bool write_picture(void *user) {
     const picture *p = user;
     if (!file_make_parent_folders(p->file)) return false;
-    float *pixels = expand_all(&p->color);
-    bool done = p->exr ? write_exr(p, pixels) : write_png(p, pixels);
-    mem_free(pixels);
+    linear_image image = expand_all(&p->color);
+    bool done = p->exr ? write_exr(p, &image) : write_png(p, &image);
+    mem_free(image.pixels);
     return done;
 }
 
@@ -352,7 +364,9 @@ roil_video *roil_video_create(roil_effect *e, const char *file, double fps) {
 
 static bool encode_frame(void *user) {
     const video_frame *frame = user;
-    encode_raw(&frame->raw, true, false, frame->of->pixels);
+    linear_image image = expand_all(&frame->raw);
+    encode8_dithered(&image, false, 4, frame->of->pixels);
+    mem_free(image.pixels);
     return video_add(frame->of->video, frame->of->pixels);
 }
 
