@@ -170,8 +170,8 @@ bool roil_get_playback(const roil_effect *e, roil_playback *out); // false: it h
 // ---- pictures ---------------------------------------------------------------------------------
 
 // Picture of the last frame: width * height * 4 bytes, sRGB, opaque or with straight alpha. Values
-// are rounded to the nearest code, for what measures; PNG files of 8 bits and videos are dithered,
-// for eyes.
+// are rounded to the nearest code, for what measures; PNG files of 8 bits, videos and roil_show are
+// dithered, for eyes.
 bool roil_read(roil_effect *e, bool alpha, uint8_t *out);
 
 typedef struct roil_save_options {
@@ -380,7 +380,7 @@ typedef struct roil_draw {       // triangles of one texture
 typedef struct roil_picture { // what a window shows
     uint32_t width, height;   // pixels
     float background[3];      // sRGB
-    roil_effect *effect;      // its last picture, as roil_read has it without alpha; NULL: none
+    roil_effect *effect;      // its last picture, as a PNG file without alpha has it; NULL: none
     float view[4];            // left, top, right, bottom of where it goes; it keeps its aspect
     const roil_vertex *vertices;
     const uint32_t *indices;

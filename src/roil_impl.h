@@ -36,8 +36,10 @@ void roil_add_lua_key(const char *name, strbuf *out); // "name = ", in brackets 
 float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height);
 graph_image roil_find_image(roil_effect *e, const char *name); // zero with a message
 // sRGB bytes of linear 0 to 1 by its square root: entry i is that of (i / ROIL_SRGB_STEPS)^2.
-enum { ROIL_SRGB_STEPS = 4096 };
+// The fine table has 8 bits behind the point. Filled by the first call, on one thread.
+enum { ROIL_SRGB_STEPS = 4096, ROIL_SRGB_FINE = 255 << 8 };
 const uint8_t *roil_srgb_table(void);
+const uint16_t *roil_srgb_fine_table(void);
 
 void roil_free_view(roil *r);
 void roil_free_templates(roil_effect *e); // after the effect itself

@@ -82,32 +82,28 @@ static float srgb_encode(float linear) {        // IEC 61966-2-1
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
 }
 
-// Linear 0..1 to 8 bits by a table over the square root, which spends its entries where sRGB is
+// Linear 0..1 to sRGB by tables over the square root, which spend their entries where sRGB is
 // steep: within half a code of the formula.
+static float table_value(int index) {
+    float root = (float)index / ROIL_SRGB_STEPS;
+    return srgb_encode(root * root);
+}
+
 const uint8_t *roil_srgb_table(void) {
     static uint8_t table[ROIL_SRGB_STEPS + 1];
     static bool filled;
-    if (!filled) {
-        for (int i = 0; i <= ROIL_SRGB_STEPS; i++) {
-            float root = (float)i / ROIL_SRGB_STEPS;
-            table[i] = (uint8_t)lrintf(srgb_encode(root * root) * 255);
-        }
-        filled = true;
-    }
+    for (int i = 0; !filled && i <= ROIL_SRGB_STEPS; i++)
+        table[i] = (uint8_t)lrintf(table_value(i) * 255);
+    filled = true;
     return table;
 }
 
-// The same with 8 bits behind the point.
-static const uint16_t *fine_table(void) {
+const uint16_t *roil_srgb_fine_table(void) {
     static uint16_t table[ROIL_SRGB_STEPS + 1];
     static bool filled;
-    if (!filled) {
-        for (int i = 0; i <= ROIL_SRGB_STEPS; i++) {
-            float root = (float)i / ROIL_SRGB_STEPS;
-            table[i] = (uint16_t)lrintf(srgb_encode(root * root) * (255 << 8));
-        }
-        filled = true;
-    }
+    for (int i = 0; !filled && i <= ROIL_SRGB_STEPS; i++)
+        table[i] = (uint16_t)lrintf(table_value(i) * ROIL_SRGB_FINE);
+    filled = true;
     return table;
 }
 
@@ -123,7 +119,7 @@ static uint8_t dithered_byte(float linear, size_t x, size_t y, int channel) {
     const size_t side = BLUE_NOISE_SIZE, step = side / 3; // channels do not err together
     const uint8_t noise =
         blue_noise_texels[(x + step * (size_t)channel) % side + side * (y % side)];
-    return (uint8_t)((fine_table()[table_index(linear)] + noise) >> 8);
+    return (uint8_t)((roil_srgb_fine_table()[table_index(linear)] + noise) >> 8);
 }
 
 // Colours are premultiplied: without alpha they lie on black, with it they are divided by it.
@@ -317,7 +313,7 @@ roil_writer *roil_writer_create(void) {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
     size_t threads = cores < 1 ? 1 : cores > MAX_THREADS ? MAX_THREADS : (size_t)cores;
     roil_writer *w = mem_alloc(sizeof *w);
-    fine_table(); // filled before several threads read it
+    roil_srgb_fine_table(); // filled before several threads read it
     w->files = jobs_create(threads, threads + QUEUED);
     return w;
 }
@@ -354,7 +350,7 @@ roil_video *roil_video_create(roil_effect *e, const char *file, double fps) {
     video *out = video_create(file, e->width, e->height, fps);
     if (!out) return NULL;
     roil_video *v = mem_alloc(sizeof *v);
-    fine_table(); // filled before another thread reads it
+    roil_srgb_fine_table(); // filled before another thread reads it
     *v = (roil_video){.effect = e,
                       .video = out,
                       .frames = jobs_create(1, 1 + QUEUED),

@@ -92,7 +92,8 @@ static bool compose(roil *r, view *v, const roil_picture *p) {
     if (picture) fit(picture, p->view, block.place);
     const view_value values[] = {
         {"View", {.uniform = &block, .uniform_size = sizeof block}},
-        {"srgb", {.image = v->srgb, .sampler = GPU_NEAREST_CLAMP}},
+        {"srgb", {.image = v->srgb_fine, .sampler = GPU_NEAREST_CLAMP}},
+        {"BlueNoise", {.image = v->blue_noise, .sampler = GPU_NEAREST_CLAMP}},
         {"picture", {.image = picture ? picture : v->white, .sampler = GPU_LINEAR_CLAMP}},
         {"canvas", {.image = v->canvas}},
     };

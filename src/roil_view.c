@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "pass/blue_noise.h"
 #include <assert.h>
 #include <string.h>
 
@@ -18,6 +19,13 @@ static gpu_image *make_image(gpu *g, const char *label, gpu_format format, uint3
     return NULL;
 }
 
+static gpu_image *make_fine_table(gpu *g) {
+    const uint16_t *table = roil_srgb_fine_table();
+    float values[ROIL_SRGB_STEPS + 1];
+    for (int i = 0; i <= ROIL_SRGB_STEPS; i++) values[i] = (float)table[i] / ROIL_SRGB_FINE;
+    return make_image(g, "srgb, fine", GPU_R32F, COUNT_OF(values), values);
+}
+
 static bool fill(roil *r, view *v) {
     static const uint8_t white[4] = {255, 255, 255, 255};
     char cache[PATH_CAP];
@@ -26,8 +34,10 @@ static bool fill(roil *r, view *v) {
         &(shader_library_desc){.shader_root = r->shaders, .cache_dir = cached ? cache : NULL});
     if (!v->library) return false;
     v->srgb = make_image(r->device, "srgb", GPU_R8, ROIL_SRGB_STEPS + 1, roil_srgb_table());
+    v->srgb_fine = make_fine_table(r->device);
+    v->blue_noise = blue_noise_create(r->device);
     v->white = make_image(r->device, "white", GPU_RGBA8, 1, white);
-    return v->srgb && v->white;
+    return v->srgb && v->srgb_fine && v->blue_noise && v->white;
 }
 
 view *view_get(roil *r) {
@@ -44,7 +54,8 @@ view *view_get(roil *r) {
 void roil_free_view(roil *r) {
     view *v = r->view;
     if (!v) return;
-    gpu_image *images[] = {v->srgb, v->white, v->canvas, v->probe.texel};
+    gpu_image *images[] = {v->srgb,  v->srgb_fine, v->blue_noise,
+                           v->white, v->canvas,    v->probe.texel};
     gpu_buffer *buffers[] = {v->vertices, v->indices, v->probe.readback};
     view_shader *shaders[] = {&v->compose,       &v->overlay,       &v->slices,
                               &v->inspect[0][0], &v->inspect[0][1], &v->inspect[1][0],

@@ -1,6 +1,6 @@
-// Display encoding by the table that roil_read uses, so that a window shows to the bit what a file
-// would hold. It runs across the square root of the value.
-uniform sampler2D srgb;
+// Display encoding by the tables that files are made with, so that a window shows to the bit what one
+// would hold.
+uniform sampler2D srgb; // across the square root of the value: codes / 255, rounded or (compose.comp) not
 
 float encode(float linear) {
     float last = float(textureSize(srgb, 0).x - 1);

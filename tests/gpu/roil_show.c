@@ -1,4 +1,6 @@
 // A window's picture without a window: the effect in its place, and triangles over it.
+#include "media/png.h"
+#include "pass/blue_noise.h"
 #include "roil_test.h"
 
 // Colours over the whole range of display light, alpha below one, its first column dark.
@@ -55,13 +57,23 @@ static void nothing_has_been_shown_at_first(void **state) {
     expect_error(roil_read_shown(*state, pixel), "nothing has been shown");
 }
 
-static void the_picture_is_that_of_roil_read(void **state) {
+// The pixels live as long as `memory`.
+static const uint8_t *read_file(roil_effect *e, arena *memory) {
+    char path[512];
+    png_image file;
+    write_text("show.png", "", path);
+    ok(roil_save(e, path, NULL));
+    ok(png_read(path, memory, &file));
+    return file.pixels;
+}
+
+static void the_picture_is_that_of_a_file(void **state) {
     enum { W = 256, H = 128 };
+    arena memory = {0};
     roil_effect *e = open_effect(*state, ramp_shader, W, H);
-    static uint8_t wanted[W * H * 4];
-    ok(roil_read(e, false, wanted));
+    const uint8_t *wanted = read_file(e, &memory);
     uint8_t *whole = show(*state, W, H, &(roil_picture){.effect = e, .view = {0, 0, W, H}});
-    assert_memory_equal(whole, wanted, sizeof wanted);
+    assert_memory_equal(whole, wanted, 4 * W * H);
     uint8_t *inside =
         show(*state, 2 * W, 2 * H, &(roil_picture){.effect = e, .view = {7, 11, 7 + W, 11 + H}});
     for (uint32_t y = 0; y < H; y++)
@@ -72,7 +84,48 @@ static void the_picture_is_that_of_roil_read(void **state) {
     expect_pixel(inside, 2 * W, 7, 11 + H, 51, 102, 153, 0);
     mem_free(whole);
     mem_free(inside);
+    arena_free(&memory);
     roil_unload(e);
+}
+
+// The mean of a channel in a square as large as the noise.
+static double mean_of(const uint8_t *pixels, uint32_t width, uint32_t left, int channel) {
+    double sum = 0;
+    for (uint32_t y = 0; y < BLUE_NOISE_SIZE; y++)
+        for (uint32_t x = 0; x < BLUE_NOISE_SIZE; x++)
+            sum += pixels[4 * (y * width + left + x) + (uint32_t)channel];
+    return sum / (BLUE_NOISE_SIZE * BLUE_NOISE_SIZE);
+}
+
+// What lies between two codes is shown as the mean of both, at every size, and stands still.
+static void dark_skies_have_no_bands(void **state) {
+    enum { W = 4 * BLUE_NOISE_SIZE, H = BLUE_NOISE_SIZE };
+    static const char sky[] =
+        "// Dark grey in four steps, less than a code of 8 bits from each to the next.\n"
+        "\n"
+        "writeonly uniform image2D color; //= output rgba16f : the picture\n"
+        "void main() {\n"
+        "    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(color);\n"
+        "    float step = float(4 * pixel.x / size.x);\n"
+        "    imageStore(color, pixel, vec4(vec3(0.0042 + 0.0001 * step), 1.0));\n"
+        "}\n";
+    for (uint32_t scale = 1; scale <= 2; scale++) {
+        roil_effect *e = open_effect(*state, sky, W / scale, H / scale);
+        const roil_picture p = {.effect = e, .view = {0, 0, W, H}};
+        uint8_t *first = show(*state, W, H, &p), *second = show(*state, W, H, &p);
+        assert_memory_equal(first, second, 4 * W * H);
+        for (int c = 0; c < 3; c++) {
+            // Away from where a step meets the next, which are mixed when the picture is enlarged.
+            double low = mean_of(first, W, 0, c), high = mean_of(first, W, W - BLUE_NOISE_SIZE, c);
+            float wanted[2] = {255 * srgb_exact(0.0042f), 255 * srgb_exact(0.0045f)};
+            if (fabs(low - (double)wanted[0]) > 0.1 || fabs(high - (double)wanted[1]) > 0.1)
+                fail_msg("means %g and %g, not %g and %g", low, high, (double)wanted[0],
+                         (double)wanted[1]);
+        }
+        mem_free(first);
+        mem_free(second);
+        roil_unload(e);
+    }
 }
 
 // The rectangle that is not background.
@@ -82,7 +135,7 @@ static void expect_place(const uint8_t *pixels, uint32_t width, uint32_t height,
         for (uint32_t x = 0; x < width; x++) {
             bool inside = x >= left && x < right && y >= top && y < bottom;
             if (inside)
-                expect_pixel(pixels, width, x, y, 170, 137, 255, 0);
+                expect_pixel(pixels, width, x, y, 170, 137, 255, 1); // dithered
             else
                 expect_pixel(pixels, width, x, y, 51, 102, 153, 0);
         }
@@ -323,7 +376,8 @@ static void memory_in_use_is_counted(void **state) {
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_has_been_shown_at_first),
-        cmocka_unit_test(the_picture_is_that_of_roil_read),
+        cmocka_unit_test(the_picture_is_that_of_a_file),
+        cmocka_unit_test(dark_skies_have_no_bands),
         cmocka_unit_test(the_picture_keeps_its_aspect_in_the_middle),
         cmocka_unit_test(an_effect_without_a_frame_shows_nothing),
         cmocka_unit_test(the_canvas_follows_the_window),

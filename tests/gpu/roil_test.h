@@ -70,10 +70,13 @@ static inline void expect_pixel(const uint8_t *pixels, uint32_t width, uint32_t 
              blue);
 }
 
-static inline int srgb(float linear) { // IEC 61966-2-1
+static inline float srgb_exact(float linear) { // IEC 61966-2-1
     linear = linear > 0 ? fminf(linear, 1) : 0;
-    float v = linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
-    return (int)lrintf(255 * v);
+    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
+}
+
+static inline int srgb(float linear) {
+    return (int)lrintf(255 * srgb_exact(linear));
 }
 
 // The value that main returns.
