@@ -238,6 +238,10 @@ uint32_t roil_samples(const roil_effect *e) {
     return effect_samples(e->effect);
 }
 
+const char *roil_warning(const roil_effect *e) {
+    return effect_get_warning(e->effect);
+}
+
 bool roil_get_simulation(const roil_effect *e, roil_simulation *out) {
     effect_simulation now;
     bool any = effect_get_simulation(e->effect, &now);

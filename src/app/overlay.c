@@ -1,4 +1,5 @@
-// What is laid over the picture: why the newest file is not good, and short notices.
+// What is laid over the picture: why the newest file is not good or a number not taken as it is,
+// and short notices.
 #include "app/label.h"
 #include "app/live.h"
 #include "app/text_wrap.h"
@@ -37,23 +38,32 @@ static ui_rect card_place(const text_message *m, const char *hint, ui_rect view)
     return (ui_rect){left, bottom - height, left + width, bottom};
 }
 
-static void draw_card(const char *message, const char *hint, ui_rect at) {
+typedef struct card {
+    const char *name;
+    ui_color edge;
+    const char *text, *hint; // may be NULL
+} card;
+
+// At the foot of the view. Returns where there is room for a notice above it.
+static float draw_card(const card *c, ui_rect view) {
     float s = ui_scale();
     char head[MAX_TEXT], rest[MAX_TEXT];
-    text_message m = text_split(message);
+    text_message m = text_split(c->text);
+    ui_rect at = card_place(&m, c->hint, view);
     snprintf(head, sizeof head, "%.*s", (int)m.head_length, m.head);
     snprintf(rest, sizeof rest, "%.*s", (int)m.rest_length, m.rest);
-    ui_card_begin("message", at, ui_rgba(UI_ERROR, 1));
+    ui_card_begin(c->name, at, ui_rgba(c->edge, 1));
     ui_text_wrapped(head);
     if (m.rest_lines) {
         ui_gap(SPACING * s);
         ui_text_mono(UI_TEXT, rest);
     }
-    if (hint) {
+    if (c->hint) {
         ui_gap(SPACING * s);
-        ui_text_color(UI_DIM, "%s", hint);
+        ui_text_color(UI_DIM, "%s", c->hint);
     }
     ui_card_end();
+    return at.top - SPACING * s;
 }
 
 // ---- notice -------------------------------------------------------------------------------------
@@ -98,15 +108,13 @@ static bool say_simulation(const live *l, char *out, size_t capacity) {
 
 void overlay_draw(live *l, ui_rect view) {
     if (!is_room(view)) return;
-    const char *message = message_of(l);
+    const char *message = message_of(l), *warning = l->effect ? roil_warning(l->effect) : NULL;
     float bottom = floorf(view.bottom - MARGIN * ui_scale());
     if (!l->effect) draw_waiting(l, message, view);
-    if (message) {
-        text_message m = text_split(message);
-        ui_rect card = card_place(&m, hint_of(l), view);
-        draw_card(message, hint_of(l), card);
-        bottom = card.top - SPACING * ui_scale();
-    }
+    if (message)
+        bottom = draw_card(&(card){"message", UI_ERROR, message, hint_of(l)}, view);
+    else if (warning)
+        bottom = draw_card(&(card){"warning", UI_WARNING, warning, NULL}, view);
     char simulation[640];
     if (l->notice[0] && clock_seconds() < l->notice_until)
         draw_notice(l->notice, view, bottom);

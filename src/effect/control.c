@@ -193,9 +193,14 @@ static bool set(effect *e, control *c, const char *text) {
     return false;
 }
 
-// What simulates may have gone by its old value; only by the scene's it never does, and by events
-// only since they were.
+const char *effect_get_warning(const effect *e) {
+    return e->host.warning[0] ? e->host.warning : NULL;
+}
+
+// What was warned of may be mended. What simulates may have gone by its old value; only by the
+// scene's it never does, and by events only since they were.
 static void forget_old(effect *e, const control *c) {
+    e->host.warning[0] = '\0';
     if (c->face.kind != EFFECT_CONTROL_SCENE && c->face.kind != EFFECT_CONTROL_LIGHT &&
         c->face.kind != EFFECT_CONTROL_MATERIAL && c->face.kind != EFFECT_CONTROL_EVENTS)
         effect_forget_moments(e);

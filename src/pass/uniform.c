@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "pass/pass_impl.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 // Rounding does not count: a curve may come to 1.0000001.
@@ -14,15 +15,20 @@ static bool is_cut(const shader_uniform *u, float value, float taken) {
     return fabsf(value - taken) > 1e-5f * span;
 }
 
-// Once, where it is said: what moves it would be told of in every frame, by every pass that asks.
+// Once, where it is said: what moves it would be told of in every frame, by every pass that asks. A
+// window shows one warning until it is cleared, and then the next that still holds.
 static void tell_cut(const pass *owner, size_t index, const shader_uniform *u, float value,
                      float taken) {
-    if (owner->told[index]) return;
+    pass_host *host = owner->host;
+    if (owner->told[index] && host->warning[0]) return;
+    char text[sizeof host->warning];
+    snprintf(text, sizeof text,
+             "%s%s: uniform '%s' is %g at %g s; accepted: %g to %g%s%s; it counts as %g",
+             owner->place, owner->label, u->name, (double)value, host->context->time,
+             (double)u->min, (double)u->max, u->unit[0] ? " " : "", u->unit, (double)taken);
+    if (!owner->told[index]) log_write(LOG_WARNING, "%s", text);
+    if (!host->warning[0]) memcpy(host->warning, text, sizeof text);
     owner->told[index] = true;
-    log_write(LOG_WARNING,
-              "%s%s: uniform '%s' is %g at %g s; accepted: %g to %g%s%s; it counts as %g",
-              owner->place, owner->label, u->name, (double)value, owner->host->context->time,
-              (double)u->min, (double)u->max, u->unit[0] ? " " : "", u->unit, (double)taken);
 }
 
 bool pass_evaluate_at(const pass *p, size_t index, float out[4]) {

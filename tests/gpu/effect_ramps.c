@@ -51,10 +51,39 @@ static void camera_changes_the_same_frame(void **state) {
     effect_destroy(e);
 }
 
+// A window shows it until what is set mends it.
+static void what_moves_beyond_its_range_is_told_until_it_does_not(void **state) {
+    effect *e = open_effect(&(effect_desc){.device = *state});
+    pass *march = add_march(e, block(e, number(e, 50)));
+    gpu_test_ok(pass_set_uniform(march, "steps", param(e, "steps", 0, 9)));
+    gpu_test_ok(pass_set_uniform(march, "jitter", param(e, "jitter", 2, 9)));
+    finish(e, march, SIZE, SIZE);
+    assert_null(effect_get_warning(e));
+    static const struct {
+        const char *steps, *jitter, *said;
+    } cases[] = {
+        {"0", "2", "uniform 'steps' is 0 at 0 s; accepted: 1 to 4096; it counts as 1"},
+        {"5", "2", "uniform 'jitter' is 2 at 0 s"},
+        {"5", "1", NULL},
+        {"0", "1", "uniform 'steps' is 0 at 0 s"}, // again, though it was logged before
+    };
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        gpu_test_ok(effect_set(e, "steps", cases[i].steps));
+        gpu_test_ok(effect_set(e, "jitter", cases[i].jitter));
+        gpu_test_ok(effect_render(e, 1, false));
+        const char *said = effect_get_warning(e);
+        if (cases[i].said && (!said || !strstr(said, cases[i].said)))
+            fail_msg("case %zu: '%s'", i, said ? said : "nothing");
+        if (!cases[i].said && said) fail_msg("case %zu: '%s'", i, said);
+    }
+    effect_destroy(e);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(palette_and_curve_change_the_same_frame),
         cmocka_unit_test(camera_changes_the_same_frame),
+        cmocka_unit_test(what_moves_beyond_its_range_is_told_until_it_does_not),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }

@@ -227,6 +227,16 @@ class Files(Case):
         live.wait_until(lambda: "message" not in live.widgets(), "the end of the message")
         live.quit()
 
+    def test_a_number_that_moves_too_far(self):
+        live = self.live(effect=PUFF.replace("steps = steps", "steps = thickness * 0"))
+        card = live.widget("warning")
+        live.expect(r"warning: puff\.lua:\d+: march: uniform 'steps' is 0", mark=0)  # when it was rehearsed
+        self.assertGreater(live.screenshot().crop(*card).colors(), 20)  # letters
+        self.write("puff.lua", PUFF.replace("steps = steps", "steps = thickness - 3"))
+        live.expect("live: took over")
+        live.wait_until(lambda: "warning" not in live.widgets(), "the end of the warning")
+        live.quit()
+
     def test_broken_from_the_start(self):
         self.write("puff.lua", "local x = ")
         from lib.window import Live
