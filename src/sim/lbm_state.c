@@ -11,9 +11,25 @@ typedef struct state_clock { // as it lies in the file
     uint32_t current, filled; // of the cells
 } state_clock;
 
-enum { PARTS = LBM_MAX_BUFFERS + 5 };
+enum {
+    PARTS = LBM_MAX_BUFFERS + 5,
+    // To be raised when values come to lie elsewhere in buffers of the same sizes, or mean
+    // something else there, in a way that describe_layout does not tell.
+    LAYOUT_VERSION = 2
+};
 
-static void describe(const lbm_desc *desc, const char *more, strbuf *out) {
+static void describe_layout(const lbm_layout *l, strbuf *out) {
+    strbuf_add(out, "layout = %d: elements of %u cells, bundles of %u, ", LAYOUT_VERSION, l->lanes,
+               l->bundle);
+    if (l->block)
+        strbuf_add(out, "blocks of %u", l->block);
+    else
+        strbuf_add(out, "directions as a whole");
+    strbuf_add(out, ", up to %u in a buffer\n", l->run);
+}
+
+static void describe(const lbm *l, const char *more, strbuf *out) {
+    const lbm_desc *desc = &l->desc;
     static const char *const sets[] = {"d3q19", "d3q27"}, *const scalar_sets[] = {"d3q7", "d3q27"};
     static const char *const precisions[] = {"f32", "f16"};
     static const char *const faces[] = {"left", "right", "front", "back", "bottom", "top"};
@@ -23,8 +39,7 @@ static void describe(const lbm_desc *desc, const char *more, strbuf *out) {
     strbuf_add(out, "scalar_set = %s\n", scalar_sets[desc->scalar_set]);
     strbuf_add(out, "precision = %s\n", precisions[desc->precision]);
     strbuf_add(out, "scalars = %u\n", desc->scalars);
-    strbuf_add(out, "order = %u cells, %s\n", desc->lanes,
-               desc->order == LBM_BLOCKS ? "blocks of bundles" : "whole");
+    describe_layout(&l->layout, out);
     strbuf_add(out, "colliders = %s\n", desc->bodies ? "yes" : "no");
     for (int i = 0; i < 6; i++)
         strbuf_add(out, "boundary.%s = %s\n", faces[i], kinds[desc->faces[i]]);
@@ -61,7 +76,7 @@ static const char *name(arena *memory, const char *label, const char *part) {
 void lbm_state_list(const lbm *l, const char *label, const char *more, checkpoint_list *out) {
     arena *memory = &out->memory;
     strbuf text = {0};
-    describe(&l->desc, more, &text);
+    describe(l, more, &text);
     state_clock *clock = arena_alloc(memory, sizeof *clock);
     *clock = (state_clock){l->steps, l->kept, l->walls.current, l->walls.filled};
     checkpoint_add(out, &(checkpoint_part){.name = name(memory, label, "lattice"),
@@ -101,7 +116,7 @@ bool lbm_state_load(lbm *l, gpu *g, const char *label, const char *more, checkpo
     strbuf text = {0};
     state_clock clock;
     checkpoint_part buffers[PARTS];
-    describe(&l->desc, more, &text);
+    describe(l, more, &text);
     const checkpoint_part own = {
         .name = name(&memory, label, "clock"), .size = sizeof clock, .bytes = &clock};
     bool done = checkpoint_require(c, name(&memory, label, "lattice"), strbuf_text(&text)) &&

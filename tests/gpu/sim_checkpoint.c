@@ -131,10 +131,100 @@ static void what_is_kept_in_memory_stays_as_it_was(void **state) {
     rmdir(folder);
 }
 
+// ---- layouts ----------------------------------------------------------------------------------
+
+typedef struct saved { // a state in memory, as another program may have left it
+    sim_world w;
+    checkpoint_list parts;
+} saved;
+
+static void save_at_rest(saved *s, gpu *device, uint32_t lanes, lbm_order order) {
+    *s = (saved){0};
+    sim_open(&s->w, device,
+             &(lbm_desc){.size = {16, 8, 16},
+                         .precision = LBM_F16,
+                         .scalars = 1,
+                         .lanes = lanes,
+                         .order = order});
+    sim_reset(&s->w);
+    lbm_state_list(s->w.lattice, "air", "", &s->parts);
+}
+
+static void close_saved(saved *s) {
+    checkpoint_list_free(&s->parts);
+    sim_close(&s->w);
+}
+
+static bool takes(sim_world *w, const checkpoint_list *parts) {
+    checkpoint *c = checkpoint_keep(w->device, parts->parts, parts->count);
+    gpu_test_ok(c);
+    bool done = lbm_state_load(w->lattice, w->device, "air", "", c);
+    checkpoint_close(c);
+    return done;
+}
+
+static void expect_message(const char *part) {
+    if (!strstr(err_get(), part)) fail_msg("'%s' does not say '%s'", err_get(), part);
+}
+
+// Sizes alone would let each pass for the others.
+static void states_that_lie_otherwise_are_refused(void **state) {
+    static const struct {
+        uint32_t lanes;
+        lbm_order order;
+    } ways[] = {{4, LBM_WHOLE}, {4, LBM_BLOCKS}, {2, LBM_WHOLE}, {2, LBM_BLOCKS}};
+    saved all[COUNT_OF(ways)];
+    for (size_t i = 0; i < COUNT_OF(ways); i++)
+        save_at_rest(&all[i], *state, ways[i].lanes, ways[i].order);
+    for (size_t i = 0; i < COUNT_OF(ways); i++)
+        for (size_t k = 0; k < COUNT_OF(ways); k++) {
+            assert_int_equal(all[i].parts.count, all[k].parts.count);
+            for (size_t part = 1; part < all[i].parts.count; part++) // but for the text
+                assert_int_equal(all[i].parts.parts[part].size, all[k].parts.parts[part].size);
+            assert_int_equal(takes(&all[i].w, &all[k].parts), i == k);
+            if (i != k) expect_message("the checkpoint was made with layout = ");
+        }
+    for (size_t i = 0; i < COUNT_OF(ways); i++) close_saved(&all[i]);
+}
+
+// Puts `by` in the place of `what` and all behind it in the line.
+static void edit_text(saved *s, const char *what, const char *by) {
+    checkpoint_part *text = &s->parts.parts[0];
+    assert_string_equal(text->name, "air/lattice");
+    char *begin = strstr(text->bytes, what);
+    assert_non_null(begin);
+    const char *end = begin + strcspn(begin, "\n");
+    text->bytes = arena_format(&s->parts.memory, "%.*s%s%s", (int)(begin - (char *)text->bytes),
+                               (char *)text->bytes, by, end);
+    text->size = strlen(text->bytes);
+}
+
+static void a_state_of_another_version_is_refused(void **state) {
+    static const struct {
+        const char *what, *by, *said;
+    } cases[] = {
+        {"layout = ", "order = 2 cells, blocks of bundles", // before layouts were told in full
+         "made with order = 2 cells, blocks of bundles, the effect has layout = "},
+        {"layout = ", "layout = 1", "made with layout = 1, the effect has layout = "},
+        {"bundles of ", "bundles of 1, blocks of 128", "bundles of 1, blocks of 128, the effect"},
+    };
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        saved s;
+        save_at_rest(&s, *state, 2, LBM_BLOCKS);
+        assert_true(takes(&s.w, &s.parts));
+        edit_text(&s, cases[i].what, cases[i].by);
+        assert_false(takes(&s.w, &s.parts));
+        expect_message(cases[i].said);
+        close_saved(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_restored_state_goes_on_bit_by_bit),
         cmocka_unit_test(what_is_kept_in_memory_stays_as_it_was),
+        cmocka_unit_test(states_that_lie_otherwise_are_refused),
+        cmocka_unit_test(a_state_of_another_version_is_refused),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }
