@@ -299,16 +299,24 @@ static const char CUBE[] =
     "v 1 1 1\nf 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\n"
     "f 2 4 8 6\n";
 
+// A mesh of that name gives smoke at `source` and stands, somewhat larger, at `collider`.
+static roil_effect *open_meshes(roil *r, const char *name, const char *obj, const char *source,
+                                const char *collider) {
+    char path[512], more[512];
+    write_text(name, obj, path);
+    snprintf(more, sizeof more,
+             "air:source { mesh { '%s', scale = 0.2, position = %s }, density = 1 }\n"
+             "air:collider { mesh { '%s', scale = 0.3, position = %s } }",
+             name, source, name, collider);
+    return open(r, 24, "buoyancy_density = 3", more);
+}
+
 // A cube that moves gives smoke where it is at the time of a step; another one keeps it out.
 static void meshes_give_smoke_and_stand_in_its_way(void **state) {
-    char path[512];
     picture p;
-    write_text("cube.obj", CUBE, path);
     roil_effect *e =
-        open(*state, 24, "buoyancy_density = 3",
-             "air:source { mesh { 'cube.obj', scale = 0.2, position = curve { {0, {-0.5, 0, 0.5}}, "
-             "{0.5, {-0.5, 0, 1.5}} } }, density = 1 }\n"
-             "air:collider { mesh { 'cube.obj', scale = 0.3, position = {0.3, 0, 1.2} } }");
+        open_meshes(*state, "cube.obj", CUBE,
+                    "curve { {0, {-0.5, 0, 0.5}}, {0.5, {-0.5, 0, 1.5}} }", "{0.3, 0, 1.2}");
     draw(e, 1, p);
     assert_true(at(p, 3, HIGH - 5) > 200 && at(p, 3, HIGH - 16) == 0);
     draw(e, 13, p);
@@ -321,15 +329,11 @@ static void meshes_give_smoke_and_stand_in_its_way(void **state) {
 
 // A mesh that lies in one plane has cells too, though its box is of no size.
 static void sheets_give_smoke_and_stand_in_its_way(void **state) {
-    char path[512];
+    static const char sheet[] = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
     picture p;
     roil_simulation s;
-    write_text("sheet.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n", path);
     roil_effect *e =
-        open(*state, 24, "buoyancy_density = 3",
-             "air:source { mesh { 'sheet.obj', scale = 0.2, position = {-0.45, 0, 0.45} }, density "
-             "= 1 }\n"
-             "air:collider { mesh { 'sheet.obj', scale = 0.3, position = {-0.45, 0, 1.25} } }");
+        open_meshes(*state, "sheet.obj", sheet, "{-0.45, 0, 0.45}", "{-0.45, 0, 1.25}");
     draw(e, 13, p);
     assert_true(at(p, 3, HIGH - 5) > 200);
     if (at(p, 3, HIGH - 13) > 2) fail_msg("within the sheet: %d", at(p, 3, HIGH - 13));
