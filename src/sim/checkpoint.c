@@ -16,8 +16,9 @@
 enum {
     NAME_CAP = 64,
     MOST_TEXT = 1 << 16,
-    BATCH = 8
-}; // BATCH: chunks that are packed side by side
+    LINE_CAP = 128, // of a text, in messages
+    BATCH = 8,      // chunks that are packed side by side
+};
 static const uint64_t MOST_BYTES = UINT64_C(1) << 40;
 static const char MAGIC[8] = "roilsim";
 
@@ -380,25 +381,24 @@ bool checkpoint_load(checkpoint *c, gpu *g, const checkpoint_part *part) {
     return done;
 }
 
-// Cuts a line off; false at the end.
-static bool next_line(const char **text, char line[128]) {
-    size_t length = strcspn(*text, "\n");
-    snprintf(line, 128, "%.*s", (int)(length < 127 ? length : 127), *text);
-    for (char *c = line; *c; c++)
+// The line that begins there, as a terminal may be given it: a stranger wrote the file.
+static const char *show_line(const char *text, char out[LINE_CAP]) {
+    if (!*text) return "nothing more";
+    snprintf(out, LINE_CAP, "%.*s", (int)strcspn(text, "\n"), text);
+    for (char *c = out; *c; c++)
         if (!isprint((unsigned char)*c)) *c = '?';
-    *text += length + ((*text)[length] == '\n');
-    return length > 0;
+    return out;
 }
 
 static bool matches(const checkpoint *c, const char *theirs, const char *ours) {
-    char a[128], b[128];
-    for (;;) {
-        bool more = next_line(&theirs, a), also = next_line(&ours, b);
-        if (!more && !also) return true;
-        if (strcmp(a, b) != 0)
-            return err_set("%s: the checkpoint was made with %s, the effect has %s", c->path,
-                           more ? a : "nothing more", also ? b : "nothing more");
+    char a[LINE_CAP], b[LINE_CAP];
+    size_t line = 0; // where that one begins in which they differ
+    for (size_t i = 0; theirs[i] == ours[i]; i++) {
+        if (!ours[i]) return true;
+        if (ours[i] == '\n') line = i + 1;
     }
+    return err_set("%s: the checkpoint was made with %s, the effect has %s", c->path,
+                   show_line(theirs + line, a), show_line(ours + line, b));
 }
 
 bool checkpoint_require(checkpoint *c, const char *name, const char *ours) {

@@ -317,6 +317,19 @@ static void the_message_says_what_differs(void **state) {
     require("size = 4", "made with size = ?[2J 4");
 }
 
+static void all_of_a_text_counts(void **state) {
+    char text[201] = "";
+    (void)state;
+    memset(text, 'a', sizeof text - 1);
+    save_text(text);
+    require(text, NULL);
+    text[sizeof text - 2] = 'b'; // beyond what a message shows
+    require(text, "made with aaa");
+    save_text("size = 4\n\nprecision = f32\n");
+    require("size = 4\n\nprecision = f16\n",
+            "made with precision = f32, the effect has precision = f16");
+}
+
 // Solvers that were never built: nothing of them is on a device, and nothing may be touched.
 static void another_lattice_is_refused(void **state) {
     (void)state;
@@ -356,6 +369,7 @@ int main(void) {
         cmocka_unit_test(forged_chunks_are_refused),
         cmocka_unit_test(a_full_disk_keeps_the_old_file),
         cmocka_unit_test(the_message_says_what_differs),
+        cmocka_unit_test(all_of_a_text_counts),
         cmocka_unit_test(another_lattice_is_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
