@@ -2,6 +2,7 @@
 // faces: buffers as they lie, and a clock that says which of them takes its turn.
 #include "sim/lbm_state.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/str.h"
 #include "sim/lbm_impl.h"
 #include <string.h>
@@ -46,11 +47,13 @@ static void describe(const lbm *l, const char *more, strbuf *out) {
     strbuf_add(out, "%s", more);
 }
 
+static const char *name(arena *memory, const char *label, const char *part) {
+    return arena_format(memory, "%s/%s", label, part);
+}
+
 // Those that there are; moments only once states were kept.
-static size_t list_buffers(const lbm *l, checkpoint_part out[PARTS]) {
-    static const char *const states[LBM_MAX_BUFFERS] = {
-        "state0", "state1", "state2",  "state3",  "state4",  "state5",  "state6",  "state7",
-        "state8", "state9", "state10", "state11", "state12", "state13", "state14", "state15"};
+static size_t list_buffers(const lbm *l, arena *memory, const char *label,
+                           checkpoint_part out[PARTS]) {
     const lbm_walls *w = &l->walls;
     const uint32_t wide = l->desc.precision == LBM_F16 ? 2 : 4;
     const checkpoint_part others[] = {
@@ -62,15 +65,16 @@ static size_t list_buffers(const lbm *l, checkpoint_part out[PARTS]) {
     };
     size_t count = 0;
     for (uint32_t i = 0; i < l->layout.buffers; i++)
-        out[count++] = (checkpoint_part){.name = states[i], .width = wide, .buffer = l->state[i]};
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-        if (others[i].buffer) out[count++] = others[i];
+        out[count++] = (checkpoint_part){.name = arena_format(memory, "%s/state%u", label, i),
+                                         .width = wide,
+                                         .buffer = l->state[i]};
+    for (size_t i = 0; i < COUNT_OF(others); i++) {
+        if (!others[i].buffer) continue;
+        out[count] = others[i];
+        out[count++].name = name(memory, label, others[i].name);
+    }
     for (size_t i = 0; i < count; i++) out[i].size = gpu_buffer_size(out[i].buffer);
     return count;
-}
-
-static const char *name(arena *memory, const char *label, const char *part) {
-    return arena_format(memory, "%s/%s", label, part);
 }
 
 void lbm_state_list(const lbm *l, const char *label, const char *more, checkpoint_list *out) {
@@ -89,11 +93,8 @@ void lbm_state_list(const lbm *l, const char *label, const char *more, checkpoin
                                            .bytes = clock});
     strbuf_free(&text);
     checkpoint_part buffers[PARTS];
-    size_t count = list_buffers(l, buffers);
-    for (size_t i = 0; i < count; i++) {
-        buffers[i].name = name(memory, label, buffers[i].name);
-        checkpoint_add(out, &buffers[i]);
-    }
+    size_t count = list_buffers(l, memory, label, buffers);
+    for (size_t i = 0; i < count; i++) checkpoint_add(out, &buffers[i]);
 }
 
 // Makes what a state with this clock has.
@@ -121,11 +122,8 @@ bool lbm_state_load(lbm *l, gpu *g, const char *label, const char *more, checkpo
         .name = name(&memory, label, "clock"), .size = sizeof clock, .bytes = &clock};
     bool done = checkpoint_require(c, name(&memory, label, "lattice"), strbuf_text(&text)) &&
                 checkpoint_load(c, NULL, &own) && take_clock(l, g, &clock);
-    size_t count = done ? list_buffers(l, buffers) : 0;
-    for (size_t i = 0; done && i < count; i++) {
-        buffers[i].name = name(&memory, label, buffers[i].name);
-        done = checkpoint_load(c, g, &buffers[i]);
-    }
+    size_t count = done ? list_buffers(l, &memory, label, buffers) : 0;
+    for (size_t i = 0; done && i < count; i++) done = checkpoint_load(c, g, &buffers[i]);
     strbuf_free(&text);
     arena_free(&memory);
     return done;
