@@ -15,22 +15,29 @@
 
 // ---- reading back -----------------------------------------------------------------------------
 
-// Every format of the graph as four floats; missing channels are 0, alpha 1.
+// Formats of the graph differ in how many bytes a channel has, and in nothing else.
+static float channel_value(const unsigned char *at, uint32_t bytes) {
+    uint16_t half;
+    float full;
+    switch (bytes) {
+    case 1:
+        return (float)*at / 255.0f;
+    case 2:
+        memcpy(&half, at, sizeof half);
+        return half_to_float(half);
+    default:
+        memcpy(&full, at, sizeof full);
+        return full;
+    }
+}
+
+// Missing channels are 0, alpha 1.
 static void expand(const unsigned char *texel, gpu_format format, float out[4]) {
     uint32_t channels = gpu_format_channels(format);
     uint32_t bytes = gpu_format_size(format) / channels;
     out[0] = out[1] = out[2] = 0;
     out[3] = 1;
-    for (uint32_t c = 0; c < channels; c++) {
-        uint16_t half;
-        memcpy(&half, texel + c * bytes, bytes == 2 ? 2 : 0);
-        if (bytes == 2)
-            out[c] = half_to_float(half);
-        else if (bytes == 4)
-            memcpy(&out[c], texel + c * 4, 4);
-        else
-            out[c] = (float)texel[c] / 255.0f;
-    }
+    for (uint32_t c = 0; c < channels; c++) out[c] = channel_value(texel + c * bytes, bytes);
 }
 
 typedef struct raw_image { // as it lies on the device
