@@ -40,6 +40,8 @@ graph_image roil_find_image(roil_effect *e, const char *name); // zero with a me
 enum { ROIL_SRGB_STEPS = 4096, ROIL_SRGB_FINE = 255 << 8 };
 const uint8_t *roil_srgb_table(void);
 const uint16_t *roil_srgb_fine_table(void);
+// What decides between two codes of a pixel; v stands for (v + 0.5) / 256.
+uint8_t roil_dither_noise(size_t x, size_t y, int channel);
 
 void roil_free_view(roil *r);
 void roil_free_templates(roil_effect *e); // after the effect itself

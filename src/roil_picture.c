@@ -119,14 +119,17 @@ static size_t table_index(float linear) {
     return (size_t)lrintf(sqrtf(linear) * ROIL_SRGB_STEPS);
 }
 
+uint8_t roil_dither_noise(size_t x, size_t y, int channel) {
+    const size_t side = BLUE_NOISE_SIZE, step = side / 3; // channels do not err together
+    return blue_noise_texels[(x + step * (size_t)channel) % side + side * (y % side)];
+}
+
 // Between two codes, which of them is a matter of blue noise, so that the mean is right and dark
 // skies have no bands (Ulichney, "Dithering with blue noise", Proc. IEEE 76, 1988). What is a code
 // already stays it.
 static uint8_t dithered_byte(float linear, size_t x, size_t y, int channel) {
-    const size_t side = BLUE_NOISE_SIZE, step = side / 3; // channels do not err together
-    const uint8_t noise =
-        blue_noise_texels[(x + step * (size_t)channel) % side + side * (y % side)];
-    return (uint8_t)((roil_srgb_fine_table()[table_index(linear)] + noise) >> 8);
+    uint16_t fine = roil_srgb_fine_table()[table_index(linear)];
+    return (uint8_t)((fine + roil_dither_noise(x, y, channel)) >> 8);
 }
 
 // Colours are premultiplied: without alpha they lie on black, with it they are divided by it.

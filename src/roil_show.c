@@ -93,7 +93,7 @@ static bool compose(roil *r, view *v, const roil_picture *p) {
     const view_value values[] = {
         {"View", {.uniform = &block, .uniform_size = sizeof block}},
         {"srgb", {.image = v->srgb_fine, .sampler = GPU_NEAREST_CLAMP}},
-        {"BlueNoise", {.image = v->blue_noise, .sampler = GPU_NEAREST_CLAMP}},
+        {"noise", {.image = v->noise, .sampler = GPU_NEAREST_CLAMP}},
         {"picture", {.image = picture ? picture : v->white, .sampler = GPU_LINEAR_CLAMP}},
         {"canvas", {.image = v->canvas}},
     };

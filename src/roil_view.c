@@ -8,13 +8,14 @@
 #include <string.h>
 
 static gpu_image *make_image(gpu *g, const char *label, gpu_format format, uint32_t width,
-                             const void *texels) {
-    gpu_image *image = gpu_image_create(
-        g,
-        &(gpu_image_desc){
-            .label = label, .format = format, .width = width, .height = 1, .use = GPU_USE_SAMPLED});
-    if (image && gpu_image_write(g, image, 0, texels, (size_t)width * gpu_format_size(format)))
-        return image;
+                             uint32_t height, const void *texels) {
+    gpu_image *image = gpu_image_create(g, &(gpu_image_desc){.label = label,
+                                                             .format = format,
+                                                             .width = width,
+                                                             .height = height,
+                                                             .use = GPU_USE_SAMPLED});
+    size_t size = (size_t)width * height * gpu_format_size(format);
+    if (image && gpu_image_write(g, image, 0, texels, size)) return image;
     gpu_image_destroy(g, image);
     return NULL;
 }
@@ -23,7 +24,16 @@ static gpu_image *make_fine_table(gpu *g) {
     const uint16_t *table = roil_srgb_fine_table();
     float values[ROIL_SRGB_STEPS + 1];
     for (int i = 0; i <= ROIL_SRGB_STEPS; i++) values[i] = (float)table[i] / ROIL_SRGB_FINE;
-    return make_image(g, "srgb, fine", GPU_R32F, COUNT_OF(values), values);
+    return make_image(g, "srgb, fine", GPU_R32F, COUNT_OF(values), 1, values);
+}
+
+// The channels of a pixel side by side, for one fetch.
+static gpu_image *make_noise(gpu *g) {
+    const uint32_t side = BLUE_NOISE_SIZE;
+    uint8_t texels[BLUE_NOISE_SIZE * BLUE_NOISE_SIZE][4] = {{0}};
+    for (uint32_t i = 0; i < side * side; i++)
+        for (int c = 0; c < 3; c++) texels[i][c] = roil_dither_noise(i % side, i / side, c);
+    return make_image(g, "noise", GPU_RGBA8, side, side, texels);
 }
 
 static bool fill(roil *r, view *v) {
@@ -33,11 +43,11 @@ static bool fill(roil *r, view *v) {
     v->library = shader_library_create(
         &(shader_library_desc){.shader_root = r->shaders, .cache_dir = cached ? cache : NULL});
     if (!v->library) return false;
-    v->srgb = make_image(r->device, "srgb", GPU_R8, ROIL_SRGB_STEPS + 1, roil_srgb_table());
+    v->srgb = make_image(r->device, "srgb", GPU_R8, ROIL_SRGB_STEPS + 1, 1, roil_srgb_table());
     v->srgb_fine = make_fine_table(r->device);
-    v->blue_noise = blue_noise_create(r->device);
-    v->white = make_image(r->device, "white", GPU_RGBA8, 1, white);
-    return v->srgb && v->srgb_fine && v->blue_noise && v->white;
+    v->noise = make_noise(r->device);
+    v->white = make_image(r->device, "white", GPU_RGBA8, 1, 1, white);
+    return v->srgb && v->srgb_fine && v->noise && v->white;
 }
 
 view *view_get(roil *r) {
@@ -54,8 +64,7 @@ view *view_get(roil *r) {
 void roil_free_view(roil *r) {
     view *v = r->view;
     if (!v) return;
-    gpu_image *images[] = {v->srgb,  v->srgb_fine, v->blue_noise,
-                           v->white, v->canvas,    v->probe.texel};
+    gpu_image *images[] = {v->srgb, v->srgb_fine, v->noise, v->white, v->canvas, v->probe.texel};
     gpu_buffer *buffers[] = {v->vertices, v->indices, v->probe.readback};
     view_shader *shaders[] = {&v->compose,       &v->overlay,       &v->slices,
                               &v->inspect[0][0], &v->inspect[0][1], &v->inspect[1][0],

@@ -23,7 +23,7 @@ typedef struct view_probe {      // values under the cursor on their way back to
 struct view {
     arena memory;
     shader_library *library;
-    gpu_image *srgb, *srgb_fine, *blue_noise, *white;
+    gpu_image *srgb, *srgb_fine, *noise, *white;
     gpu_image *canvas; // what was shown last
     gpu_buffer *vertices, *indices;
     view_shader compose, overlay, slices;

@@ -1,11 +1,11 @@
 // The lowest layer of a window: its background, and the effect's picture in its place.
-#include "lib/random.glsl"
 #include "view/encode.glsl"
 layout(std140) uniform View {
     vec4 background; // sRGB
     ivec4 place;     // of the picture: left, top, width, height in pixels
 };
 uniform sampler2D picture; // display-referred, linear
+uniform sampler2D noise;   // value v of 8 bits stands for (v + 0.5) / 256; goes on without end
 layout(rgba8) writeonly uniform image2D canvas;
 
 vec3 shown(ivec2 at) {
@@ -14,13 +14,11 @@ vec3 shown(ivec2 at) {
     return textureLod(picture, (vec2(at) + 0.5) / vec2(place.zw), 0.0).rgb;
 }
 
-// Between two codes blue noise decides, as in PNG files of 8 bits (roil_picture.c): dark skies would
-// have bands. It stands still, or they would boil.
-vec3 dithered(vec3 linear, uvec2 at) {
-    const uint apart = 64u / 3u; // channels do not err together
-    vec3 noise = vec3(random_blue(at, 0u), random_blue(at + uvec2(apart, 0u), 0u),
-                      random_blue(at + uvec2(2u * apart, 0u), 0u));
-    return floor(encode(linear) * 255.0 + noise) / 255.0;
+// Between two codes noise decides, as in PNG files of 8 bits (roil_picture.c): dark skies would have
+// bands. It stands still, or they would boil.
+vec3 dithered(vec3 linear, ivec2 at) {
+    vec3 texel = texelFetch(noise, at % textureSize(noise, 0), 0).rgb;
+    return floor(encode(linear) * 255.0 + (texel * 255.0 + 0.5) / 256.0) / 255.0;
 }
 
 void main() {
@@ -28,5 +26,5 @@ void main() {
     if (any(greaterThanEqual(pixel, imageSize(canvas)))) return;
     ivec2 at = pixel - place.xy;
     bool inside = all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, place.zw));
-    imageStore(canvas, pixel, vec4(inside ? dithered(shown(at), uvec2(at)) : background.rgb, 1.0));
+    imageStore(canvas, pixel, vec4(inside ? dithered(shown(at), at) : background.rgb, 1.0));
 }
