@@ -30,20 +30,29 @@ def shrunk(keys, side, low, high):
     return tuple((x, max(w - side, 0.01), a + low, b + high) for x, w, a, b in keys)
 
 
+def fang(x, y, z, length, thick, up):
+    return ((x, y, z - up * 0.03, thick), (x + 0.012, y * 1.03, z + up * 0.45 * length, 0.72 * thick),
+            (x - 0.14 * length, y, z + up * length, 0.003))
+
+
 def tooth(x, y, z, length, thick, up):
     """A fang that curves backwards; up: 1 or -1."""
-    root, middle, tip = (x, y, z - up * 0.03), (x + 0.012, y * 1.03, z + up * 0.45 * length), (x - 0.14 * length, y, z + up * length)
-    return near(limb((*root, thick), (*middle, 0.72 * thick), (*tip, 0.003)), middle, length)
+    joints = fang(x, y, z, length, thick, up)
+    return near(limb(*joints), joints[1][:3], length)
 
 
-def row(keys, xs, lengths, level, up):
-    """Teeth along the edge of a jaw."""
-    x0, w0 = np.array(keys)[:, 0], np.array(keys)[:, 1]
-    out = []
-    for x, length in zip(xs, lengths):
-        z = np.interp(x, x0, np.array(keys)[:, level])
-        out.append(tooth(x, 0.86 * np.interp(x, x0, w0), z, length, 0.012 + 0.11 * length, up))
-    return out
+TEETH_ABOVE = tuple(zip((1.225, 1.13, 1.03, 0.93, 0.83, 0.73, 0.63, 0.53, 0.43, 0.34, 0.25),
+                        (0.09, 0.19, 0.10, 0.08, 0.12, 0.13, 0.10, 0.085, 0.075, 0.06, 0.05)))
+TEETH_BELOW = tuple(zip((1.19, 1.08, 0.98, 0.88, 0.78, 0.68, 0.58, 0.48, 0.39, 0.30),
+                        (0.08, 0.155, 0.09, 0.075, 0.10, 0.11, 0.09, 0.075, 0.065, 0.05)))
+
+
+def row(keys, teeth, level):
+    """Teeth (x, length) along the edge of a jaw: (x, y, z, length, thickness) of each."""
+    keys = np.array(keys)
+    for x, length in teeth:
+        y, z = (np.interp(x, keys[:, 0], keys[:, k]) for k in (1, level))
+        yield x, 0.86 * y, z, length, 0.012 + 0.11 * length
 
 
 def horn(joints, rings, depth):
@@ -105,6 +114,22 @@ def neck():
     return distance
 
 
+# Joints (x, y, z, radius), how many rings, how deep these are.
+HORNS = (
+    (((-0.10, 0.150, 0.42, 0.085), (-0.34, 0.225, 0.58, 0.088), (-0.66, 0.32, 0.68, 0.068), (-0.98, 0.40, 0.66, 0.046),
+      (-1.26, 0.42, 0.72, 0.024), (-1.42, 0.40, 0.84, 0.004)), 17, 0.09),
+    (((-0.26, 0.22, 0.30, 0.062), (-0.48, 0.34, 0.36, 0.054), (-0.72, 0.44, 0.34, 0.034), (-0.90, 0.48, 0.38, 0.004)), 9, 0.08),
+    (((-0.24, 0.23, 0.14, 0.052), (-0.42, 0.35, 0.11, 0.042), (-0.60, 0.43, 0.04, 0.024), (-0.72, 0.45, 0.02, 0.004)), 6, 0.08),
+    (((0.98, 0.0, 0.22, 0.052), (1.0, 0.0, 0.30, 0.040), (0.97, 0.0, 0.40, 0.004)), 3, 0.06),
+)
+THORNS = ((((0.72, 0, 0.26, 0.035), (0.67, 0, 0.335, 0.004)), (0.7, 0, 0.3)),
+          (((0.52, 0, 0.32, 0.035), (0.46, 0, 0.405, 0.004)), (0.5, 0, 0.36)))
+# Of the jaw; and a ball around each.
+SPURS = ((((0.30, 0.15, -0.17, 0.04), (0.16, 0.20, -0.29, 0.004)), (0.23, 0.17, -0.23), 0.12),
+         (((0.02, 0.19, -0.16, 0.045), (-0.16, 0.26, -0.27, 0.004)), (-0.07, 0.22, -0.21), 0.15),
+         (((1.12, 0, -0.10, 0.045), (1.06, 0, -0.22, 0.004)), (1.1, 0, -0.16), 0.1))
+
+
 def skull():
     """The upper half: what has skin, what has horn, eyes, and what is cut out."""
     face = join(
@@ -127,17 +152,18 @@ def skull():
     eye = near(ellipsoid((0.195, 0.160, 0.338), (0.072, 0.072, 0.068)), (0.195, 0.16, 0.338), 0.08)
     horns = join(
         0.0,
-        horn(((-0.10, 0.150, 0.42, 0.085), (-0.34, 0.225, 0.58, 0.088), (-0.66, 0.32, 0.68, 0.068), (-0.98, 0.40, 0.66, 0.046),
-              (-1.26, 0.42, 0.72, 0.024), (-1.42, 0.40, 0.84, 0.004)), 17, 0.09),
-        horn(((-0.26, 0.22, 0.30, 0.062), (-0.48, 0.34, 0.36, 0.054), (-0.72, 0.44, 0.34, 0.034), (-0.90, 0.48, 0.38, 0.004)), 9, 0.08),
-        horn(((-0.24, 0.23, 0.14, 0.052), (-0.42, 0.35, 0.11, 0.042), (-0.60, 0.43, 0.04, 0.024), (-0.72, 0.45, 0.02, 0.004)), 6, 0.08),
-        horn(((0.98, 0.0, 0.22, 0.052), (1.0, 0.0, 0.30, 0.040), (0.97, 0.0, 0.40, 0.004)), 3, 0.06),
-        near(limb((0.72, 0, 0.26, 0.035), (0.67, 0, 0.335, 0.004)), (0.7, 0, 0.3), 0.1),
-        near(limb((0.52, 0, 0.32, 0.035), (0.46, 0, 0.405, 0.004)), (0.5, 0, 0.36), 0.1),
+        *(horn(*h) for h in HORNS),
+        *(near(limb(*joints), middle, 0.1) for joints, middle in THORNS),
     )
-    teeth = join(0.0, *row(UPPER, (1.225, 1.13, 1.03, 0.93, 0.83, 0.73, 0.63, 0.53, 0.43, 0.34, 0.25),
-                           (0.09, 0.19, 0.10, 0.08, 0.12, 0.13, 0.10, 0.085, 0.075, 0.06, 0.05), 2, -1))
+    teeth = join(0.0, *(tooth(*t, -1) for t in row(UPPER, TEETH_ABOVE, 2)))
     return mirrored(skin), mirrored(join(0.02, lids)), mirrored(eye), mirrored(horns), mirrored(teeth)
+
+
+def mouth():
+    """What of the upper half is empty."""
+    palate = loft(shrunk(UPPER, 0.085, -0.2, -0.15), 2.2)
+    palate = cut(0.03, palate, lambda p: p[:, 0] + 0.02, lambda p: 1.10 - p[:, 0])  # behind the jaw the gullet is whole
+    return join(0.08, limb(*spline(GULLET, 6)), palate)
 
 
 def upper():
@@ -145,10 +171,7 @@ def upper():
     skin, lids, eye, horns, teeth = skull()
     throat = neck()
     spines = join(0.0, *spikes(NECK, 13, 0.17, 0.045))
-    palate = loft(shrunk(UPPER, 0.085, -0.2, -0.15), 2.2)
-    palate = cut(0.03, palate, lambda p: p[:, 0] + 0.02, lambda p: 1.10 - p[:, 0])  # behind the jaw the gullet is whole
-    hollow = join(0.08, limb(*spline(GULLET, 6)), palate)
-    solid = join(0.10, skin, throat, limb(*spline(POUCH, 6)))
+    hollow, solid = mouth(), join(0.10, skin, throat, limb(*spline(POUCH, 6)))
     body = cut(0.03, solid, hollow)
     body = join(0.012, join(0.02, body, lids), eye)
     whole = join(0.012, join(0.03, body, horns), join(0.015, teeth), spines)
@@ -163,21 +186,22 @@ def upper():
     return whole, materials
 
 
-def jaw():
-    """The lower jaw, closed, in the head's frame."""
+def chin():
+    """The jaw without teeth, closed, in the head's frame: bone and skin, what is cut out, the tongue."""
     bone = join(0.06, loft(LOWER, 2.6), ellipsoid((-0.02, 0.185, -0.06), (0.17, 0.07, 0.15)))
     lip = limb(*spline([(x, 0.92 * w, b - 0.03, 0.022) for x, w, _, b in LOWER[1:-1]], 4))
     bone = join(0.03, bone, lip)
     trough = cut(0.02, loft(shrunk(LOWER, 0.065, 0.07, 0.2), 2.4), lambda p: 1.10 - p[:, 0])
     tongue = limb((-0.02, 0, -0.115, 0.06), (0.40, 0, -0.085, 0.062), (0.75, 0, -0.062, 0.052), (0.95, 0, -0.030, 0.034), (1.04, 0, 0.005, 0.008))
-    flat = lambda p: tongue(p * (1, 0.75, 1.0))
-    teeth = join(0.0, *row(LOWER, (1.19, 1.08, 0.98, 0.88, 0.78, 0.68, 0.58, 0.48, 0.39, 0.30),
-                           (0.08, 0.155, 0.09, 0.075, 0.10, 0.11, 0.09, 0.075, 0.065, 0.05), 3, 1))
-    spurs = join(0.0, near(limb((0.30, 0.15, -0.17, 0.04), (0.16, 0.20, -0.29, 0.004)), (0.23, 0.17, -0.23), 0.12),
-                 near(limb((0.02, 0.19, -0.16, 0.045), (-0.16, 0.26, -0.27, 0.004)), (-0.07, 0.22, -0.21), 0.15),
-                 near(limb((1.12, 0, -0.10, 0.045), (1.06, 0, -0.22, 0.004)), (1.1, 0, -0.16), 0.1))
+    return mirrored(bone), trough, lambda p: tongue(p * (1, 0.75, 1.0))
+
+
+def jaw():
+    """The lower jaw, closed, in the head's frame."""
+    solid, trough, flat = chin()
+    teeth = join(0.0, *(tooth(*t, 1) for t in row(LOWER, TEETH_BELOW, 3)))
+    spurs = join(0.0, *(near(limb(*joints), middle, reach) for joints, middle, reach in SPURS))
     horny = join(0, mirrored(teeth), mirrored(spurs))
-    solid = mirrored(bone)
     whole = cut(0.025, solid, trough)
     whole = join(0.012, join(0.03, whole, flat), join(0.015, horny))
     materials = {"skin": lambda p: np.full(len(p), 0.012), "horn": horny,
@@ -195,14 +219,19 @@ def in_world(mesh, at):
     return vertices @ TILT.T + np.array(at), faces, labels
 
 
-folder, cell = sys.argv[1], float(sys.argv[2]) if len(sys.argv) > 2 else 0.014
-hinge = np.array(HEAD) + TILT @ np.array(HINGE)
-whole, materials = upper()
-write_obj(folder, "creature", "make_creature.py",
-          in_world(build(whole, (-1.65, -0.62, -1.9), (1.42, 0.62, 0.98), cell, 17000, materials), HEAD), COLORS)
-whole, materials = jaw()
-vertices, faces, labels = build(whole, (-0.35, -0.40, -0.45), (1.40, 0.40, 0.25), cell, 6000, materials)
-write_obj(folder, "creature_jaw", "make_creature.py", in_world((vertices - HINGE, faces, labels), (0, 0, 0)), {k: COLORS[k] for k in materials})
-write_obj(folder, "creature_throat", "make_creature.py",
-          in_world(build(breath(), (-0.85, -0.2, -0.35), (0.05, 0.2, 0.25), 0.02, 400), HEAD), {"body": (0.5, 0.5, 0.5)})
-print("the jaw's hinge: %.3f %.3f %.3f" % tuple(hinge))
+def main(folder, cell):
+    hinge = np.array(HEAD) + TILT @ np.array(HINGE)
+    whole, materials = upper()
+    write_obj(folder, "creature", "make_creature.py",
+              in_world(build(whole, (-1.65, -0.62, -1.9), (1.42, 0.62, 0.98), cell, 17000, materials), HEAD), COLORS)
+    whole, materials = jaw()
+    vertices, faces, labels = build(whole, (-0.35, -0.40, -0.45), (1.40, 0.40, 0.25), cell, 6000, materials)
+    write_obj(folder, "creature_jaw", "make_creature.py", in_world((vertices - HINGE, faces, labels), (0, 0, 0)),
+              {k: COLORS[k] for k in materials})
+    write_obj(folder, "creature_throat", "make_creature.py",
+              in_world(build(breath(), (-0.85, -0.2, -0.35), (0.05, 0.2, 0.25), 0.02, 400), HEAD), {"body": (0.5, 0.5, 0.5)})
+    print("the jaw's hinge: %.3f %.3f %.3f" % tuple(hinge))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], float(sys.argv[2]) if len(sys.argv) > 2 else 0.014)

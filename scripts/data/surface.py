@@ -280,11 +280,15 @@ def build(shape, low, high, cell, target, materials=None):
 
 
 def write_obj(folder, name, script, mesh, colors):
-    """NAME.obj and NAME.mtl; colors: {material: (r, g, b)}, linear."""
+    """NAME.obj and NAME.mtl; colors: {material: (r, g, b)}, linear, or ((r, g, b), how much is mirrored,
+    exponent of the highlight)."""
     vertices, faces, labels = mesh
     with open("%s/%s.mtl" % (folder, name), "w") as out:
         for key, color in colors.items():
+            color, *shine = color if isinstance(color[0], tuple) else (color,)
             out.write("newmtl %s\nKd %g %g %g\n" % ((key,) + color))
+            if shine:
+                out.write("Ks %g %g %g\nNs %g\n" % ((shine[0],) * 3 + (shine[1],)))
     with open("%s/%s.obj" % (folder, name), "w") as out:
         out.write("# Made by scripts/data/%s. Z up, metres.\nmtllib %s.mtl\n" % (script, name))
         for v in vertices:

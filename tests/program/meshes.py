@@ -1,9 +1,14 @@
-"""The meshes that smoke meets or comes from are closed, as the voxels of a body need them to be."""
+"""The meshes that smoke meets or comes from are closed, as the voxels of a body need them to be. What is
+seen of them instead lies on them."""
+import itertools
+import math
 import os
 import unittest
 
 DATA = os.path.join(os.environ["ROIL_SOURCE_DIR"], "effects", "data")
 BODIES = ("figure", "creature", "creature_jaw", "creature_throat")
+
+HIDES = {"creature_hide": "creature", "creature_jaw_hide": "creature_jaw"}  # what is seen, and what air meets
 
 
 def read(name):
@@ -39,6 +44,20 @@ class Meshes(unittest.TestCase):
         for name in BODIES:
             with self.subTest(name):
                 self.assertLessEqual(len(read(name)[1]), 20000)
+
+    def test_the_hides_are_small_enough_for_rays_on_any_device(self):
+        self.assertLess(sum(len(read(name)[1]) for name in HIDES), 40000)
+
+    def test_a_hide_lies_on_its_body(self):
+        cell = 0.1  # metres: more than the crest or a scale stands off
+        for name, body in HIDES.items():
+            solid = set()
+            for p in read(body)[0]:
+                at = [math.floor(x / cell) for x in p]
+                solid.update(itertools.product(*((k - 1, k, k + 1) for k in at)))
+            off = [p for p in read(name)[0] if tuple(math.floor(x / cell) for x in p) not in solid]
+            with self.subTest(name):
+                self.assertEqual(off, [])
 
 
 if __name__ == "__main__":
