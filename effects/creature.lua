@@ -21,9 +21,14 @@ local throat  = param { "throat", 45, min = 0, max = 500, unit = "W", help = "of
 local breath = curve { {0, 0}, {0.35, 0}, {0.7, 1}, {2.2, 0.8}, {2.9, 0}, {4, 0}, shape = "ease_in_out", period = 4 }
 local open   = curve { {0, 5}, {0.3, 8}, {0.7, 29}, {2.4, 24}, {3.1, 6}, {4, 5}, shape = "ease_in_out", period = 4 }
 
-local hide = material { specular = 0.6, roughness = 0.45 }
-local head = mesh { "data/creature.obj", material = hide }
-local jaw  = mesh { "data/creature_jaw.obj", material = hide, position = {-0.115, 0, 1.656}, rotation = vec(0, open, 0) }
+-- What the air meets is closed and coarse; what is seen has scales, horns and teeth, far finer than a cell.
+local hinge, gape = {-0.115, 0, 1.656}, vec(0, open, 0)
+local head = mesh { "data/creature.obj" }
+local jaw  = mesh { "data/creature_jaw.obj", position = hinge, rotation = gape }
+local hide = {
+  mesh { "data/creature_hide.obj" },
+  mesh { "data/creature_jaw_hide.obj", position = hinge, rotation = gape },
+}
 
 -- From the middle of the neck to where the breath has spread: 5.6 x 2.24 x 3.36 metres.
 local function cells(count) return math.max(16, 8 * math.floor(count * detail:get() / 8 + 0.5)) end
@@ -33,7 +38,7 @@ local air = lbm {
   buoyancy_heat = lift, cooling_rate = 0.5, dissolve_rate = 0.15, speed = 6,
 }
 
--- Both meshes stand in its way, and the jaw pushes on the air as it moves; "solid": teeth are thinner than
+-- Both bodies stand in its way, and the jaw pushes on the air as it moves; "solid": teeth are thinner than
 -- cells, and would close the mouth if each were made a whole one. The gullet has but one end, so that the
 -- source must hold the pressure: new air comes with the smoke.
 air:collider { head, jaw, rule = "solid" }
@@ -55,11 +60,12 @@ local smoke = cover * smoothstep(0, 0.3, cover - eaten * (1 - lumps) * (1 - 0.7 
 local hot   = clamp(1.15 * air.temperature:warp(folds, spread) - 0.1, 0, 1.2)
 local fire  = palette { blackbody = {300, 3500}, physical = true, reference = 1500 }
 
--- Moonlight from behind on the horns, and the light of the fire in the mouth.
+-- Moonlight from above and behind on horns, brow and crest, a warm light from beside on the scales, and that of the
+-- fire in the mouth.
 fx.sun    = sun { azimuth = 60, elevation = 22, color = {0.5, 0.66, 1}, strength = 1.6 }
 fx.sky    = sky { zenith = {0.006, 0.010, 0.022}, horizon = {0.030, 0.034, 0.05}, strength = 1 }
 fx.lights = {
-  spot_light { position = {-3.0, 2.6, 4.6}, target = {0, 0, 1.7}, color = {0.55, 0.72, 1}, power = 4000, angle = 60, softness = 0.5, radius = 0.2 },
+  spot_light { position = {-2.0, -0.4, 5.2}, target = {0, 0, 1.7}, color = {0.55, 0.72, 1}, power = 3600, angle = 66, softness = 0.8, radius = 0.15 },
   spot_light { position = {-2.2, -4.5, 0.8}, target = {0, 0, 1.5}, color = {1, 0.55, 0.3}, power = 420, angle = 50, softness = 0.6 },
   point_light { position = {0.45, 0, 1.75}, color = {1, 0.42, 0.1}, power = throat * breath },
 }
@@ -69,7 +75,7 @@ local lit = lighting {
   density = smoke * density, emission = fire(hot ^ 0.5 * (0.5 + 0.85 * lumps) * heat) * smoke * smoothstep(0.04, 0.3, hot) * glowing,
   albedo = {0.3, 0.29, 0.28}, anisotropy = 0.35, fire_lights = 1, sampling = "cubic",
 }
-local scene  = geometry { mesh { "data/ground.obj", color = {0.35, 0.37, 0.42} }, head, jaw }
+local scene  = geometry { mesh { "data/ground.obj", color = {0.10, 0.105, 0.12} }, table.unpack(hide) }
 local solid  = shade { from = {scene, lit}, sky_samples = 8, shadow_samples = 8, haze = 0.01 }
 local volume = march { from = {lit, scene}, steps = 128 }
 
