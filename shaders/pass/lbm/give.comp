@@ -106,16 +106,27 @@ lbm_float excess_of(lbm_element q[LBM_Q], out lbm_vec u) {
 
 Held held[LBM_ROWS];
 lbm_vec velocity[LBM_ROWS]; // of the air, then
+uint given = 0u; // rows that take on anything, as bits
 
-// False: there is nothing in any.
-bool find_held(uvec3 at) {
+// Whether cells of an element, whose column is in the box, are in it.
+bool meets_box(uvec3 at) {
     bool any_ = false;
+    EACH_LANE any_ = any_ || at.z + uint(l) * LBM_LAYERS - uint(first.z) < uint(count.z);
+    return any_;
+}
+
+void find_held(uvec3 at) {
     EACH_ROW {
-        held[row] = held_by(at, lbm_site_at(at, lbm_element_at(at)).solid);
-        any_ = any_ || any(greaterThan(held[row].some, lbm_float(0.0)));
+        if (meets_box(at)) {
+            held[row] = held_by(at, lbm_site_at(at, lbm_element_at(at)).solid);
+            given |= uint(any(greaterThan(held[row].some, lbm_float(0.0)))) << row;
+        }
         at.z += LBM_SPAN;
     }
-    return any_;
+}
+
+bool is_given(int row) {
+    return LBM_ROWS == 1 || (given >> row & 1u) != 0u;
 }
 
 // What is not given stays as it is: the pressure, above all, so that as much air is drawn in as is
@@ -142,26 +153,31 @@ void push_air(lbm_place place) {
     lbm_load_air(place, all_);
     EACH_ROW {
         for (int i = 0; i < LBM_Q; i++) q[i] = lbm_take(all_[i]);
-        if (pushes) push(q, held[row], velocity[row]);
-        else excess_of(q, velocity[row]);
+        if (is_given(row)) {
+            if (pushes) push(q, held[row], velocity[row]);
+            else excess_of(q, velocity[row]);
+        }
         for (int i = 0; i < LBM_Q; i++) lbm_give(all_[i], q[i]);
     }
     if (pushes) lbm_replace_air(place, all_);
 }
 
-lbm_element carry(lbm_element q, lbm_float some, lbm_float g) {
-    return lbm_pack(LBM_SCALAR_SCALE, mix(lbm_unpack(q, LBM_SCALAR_SCALE), g, some));
+void carry(inout lbm_element q[LBM_SCALAR_Q], lbm_float some, lbm_float value, lbm_vec u) {
+    lbm_float g[LBM_SCALAR_Q];
+    lbm_set_scalar_equilibrium(value, u, g);
+    for (int i = 0; i < LBM_SCALAR_Q; i++)
+        q[i] = lbm_pack(LBM_SCALAR_SCALE, mix(lbm_unpack(q[i], LBM_SCALAR_SCALE), g[i], some));
 }
 
 #define GIVE(s, VALUE)                                                                             \
     {                                                                                              \
         lbm_access all_[LBM_SCALAR_Q];                                                             \
-        lbm_float g[LBM_SCALAR_Q];                                                                 \
+        lbm_element q[LBM_SCALAR_Q];                                                               \
         lbm_load_scalar(s, place, all_);                                                           \
         EACH_ROW {                                                                                 \
-            lbm_set_scalar_equilibrium(held[row].VALUE, velocity[row], g);                         \
-            for (int i = 0; i < LBM_SCALAR_Q; i++)                                                 \
-                lbm_give(all_[i], carry(lbm_take(all_[i]), held[row].some, g[i]));                 \
+            for (int i = 0; i < LBM_SCALAR_Q; i++) q[i] = lbm_take(all_[i]);                       \
+            if (is_given(row)) carry(q, held[row].some, held[row].VALUE, velocity[row]);           \
+            for (int i = 0; i < LBM_SCALAR_Q; i++) lbm_give(all_[i], q[i]);                        \
         }                                                                                          \
         lbm_replace_scalar(s, place, all_);                                                        \
     }
@@ -171,7 +187,8 @@ void main() {
     if (any(greaterThanEqual(vec3(at), min(count, vec3(count.xy, LBM_DEPTH))))) return;
     at += uvec3(first);
     at.z %= LBM_DEPTH;
-    if (!find_held(at)) return;
+    find_held(at);
+    if (given == 0u) return;
     lbm_place place = lbm_place_at(at);
     push_air(place);
 #if HAS_DENSITY
