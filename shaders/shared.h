@@ -145,6 +145,11 @@ struct surface_material { // of a part of a mesh
     SHARED_VEC4 emission; // rgb: radiance
 };
 
+// By what a simulation is spoilt (src/sim/lbm_guard.h): bits.
+#define LBM_SPOILT_NUMBERS 1u // moments that are no numbers
+#define LBM_SPOILT_MASS 2u
+#define LBM_SPOILT_SPEED 4u
+
 // What the shaders of scene/voxels read; src/scene/voxels.c writes it. A part is what of a body is
 // voxelised by itself: a run of items (triangles, large ones in strips) with a box of cells.
 #define VOXEL_UNIT 256      // steps a cell that corners are rounded to

@@ -1,6 +1,7 @@
 // The guard of a simulation: once per frame the device looks over the moments of a whole state, and
 // some frames later the host reads what they came to, without ever waiting.
 #pragma once
+#include "shared.h"
 #include "sim/lbm.h"
 
 typedef struct lbm_guard lbm_guard;
@@ -10,17 +11,11 @@ typedef struct lbm_guard_limits { // beyond these a state is spoilt: it is no ai
     float drift;                  // of the mass, either way, as a part of it
 } lbm_guard_limits;
 
-typedef enum lbm_spoilt {   // by what; bits
-    LBM_SPOILT_NUMBERS = 1, // moments that are no numbers
-    LBM_SPOILT_MASS = 2,
-    LBM_SPOILT_SPEED = 4,
-} lbm_spoilt;
-
 typedef struct lbm_report { // of one kept state; lattice units
     uint64_t step;          // lbm_steps when it was recorded
     uint32_t cells;         // of air
     uint32_t bad;           // of these, whose moments are no numbers; they are left out below
-    uint32_t spoilt;        // lbm_spoilt; 0: it is not
+    uint32_t spoilt;        // LBM_SPOILT_NUMBERS and others of shared.h; 0: it is not
     float speed;            // greatest; Mach number: times sqrt(3)
     uint32_t where[3];      // the cell in which it is that
     // Density - 1: how far the mass has drifted, and how much it is pressed together.

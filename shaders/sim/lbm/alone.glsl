@@ -128,13 +128,10 @@ void step_all() {
     LBM_EACH_SCALAR(SUM)
 #undef SUM
     step_air();
-#if LBM_SCALARS > 2 // the last first: it has just been summed, and caches may still know it
-    step_scalar(2);
-#endif
-#if LBM_SCALARS > 1
-    step_scalar(1);
-#endif
-    step_scalar(0);
+    // The last first: it has just been summed, and caches may still know it.
+#define STEP(s) step_scalar(s);
+    LBM_EACH_SCALAR_BACK(STEP)
+#undef STEP
 }
 
 #endif

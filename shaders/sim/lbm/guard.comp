@@ -4,6 +4,7 @@
 // and, with LAST, from these to the only one.
 #extension GL_KHR_shader_subgroup_arithmetic : require
 layout(local_size_x = 256) in;
+#include "shared.h"
 uniform uint count;  // of cells, or of records with LAST
 uniform uint stride; // threads of the dispatch
 #ifdef LAST
@@ -12,7 +13,7 @@ uniform float spoilt_drift; // of the mass, either way: air that gained or lost 
 #endif
 
 struct Record {
-    uint spoilt;       // NUMBERS, MASS, SPEED: what it is no air any more by; 0: it is. With LAST only
+    uint spoilt;       // bits LBM_SPOILT_ of shared.h; with LAST only
     uint cells, bad;   // air, and those of it whose values are no numbers
     float speed;       // greatest
     uint where;        // in which cell
@@ -31,7 +32,6 @@ layout(std430) writeonly buffer Parts { Record parts[]; };
 shared Record shares[64]; // one for each subgroup: these are of 4 threads or more
 
 const float END = 3.0e38;
-const uint NUMBERS = 1u, MASS = 2u, SPEED = 4u; // as lbm_spoilt of src/sim/lbm_guard.h
 
 Record nothing() {
     return Record(0u, 0u, 0u, -1.0, 0u, vec4(0.0), vec4(END), vec4(-END));
@@ -81,8 +81,9 @@ Record over_subgroup(Record r) {
 #ifdef LAST
 uint judge(Record r) {
     float good = float(r.cells - r.bad);
-    return (r.bad > 0u ? NUMBERS : 0u) | (abs(r.sum.x) > spoilt_drift * good ? MASS : 0u) |
-           (r.speed > spoilt_speed ? SPEED : 0u);
+    return (r.bad > 0u ? LBM_SPOILT_NUMBERS : 0u) |
+           (abs(r.sum.x) > spoilt_drift * good ? LBM_SPOILT_MASS : 0u) |
+           (r.speed > spoilt_speed ? LBM_SPOILT_SPEED : 0u);
 }
 #endif
 

@@ -57,15 +57,19 @@ uniform uint lbm_parity; // of steps
 #define LBM_REGION LBM_WHOLE
 #endif
 
-// X(s) for each scalar, a constant.
+// X(s) for each scalar, a constant; and the last first.
 #if LBM_SCALARS == 0
 #define LBM_EACH_SCALAR(X)
+#define LBM_EACH_SCALAR_BACK(X)
 #elif LBM_SCALARS == 1
 #define LBM_EACH_SCALAR(X) X(0)
+#define LBM_EACH_SCALAR_BACK(X) X(0)
 #elif LBM_SCALARS == 2
 #define LBM_EACH_SCALAR(X) X(0) X(1)
+#define LBM_EACH_SCALAR_BACK(X) X(1) X(0)
 #else
 #define LBM_EACH_SCALAR(X) X(0) X(1) X(2)
+#define LBM_EACH_SCALAR_BACK(X) X(2) X(1) X(0)
 #endif
 
 // ---- all directions ---------------------------------------------------------------------------
