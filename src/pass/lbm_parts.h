@@ -90,9 +90,10 @@ bool lbm_air_push(lbm_air *a); // the force as of the host's time, which is that
 void lbm_air_destroy_force(lbm_air *a);
 
 // lbm_source.c
-bool lbm_air_run_source(pass *source);       // before a step
-void lbm_air_forget_source(pass *source);    // its values are found anew
-bool lbm_source_is_away(const pass *source); // it ran, and was never in the air's box
+bool lbm_air_run_source(pass *source);         // before a step
+void lbm_air_forget_source(pass *source);      // its values are found anew
+bool lbm_source_is_away(const pass *source);   // it ran, and was never in the air's box
+bool lbm_source_is_buried(const pass *source); // all that it ever held was in solids
 
 // lbm_source_box.c
 typedef struct lbm_cells { // whole numbers

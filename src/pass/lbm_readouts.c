@@ -98,11 +98,24 @@ static void tell_absent(lbm_air *a) {
              (double)box.max.z);
 }
 
+// What gives nothing since solids are where it would.
+static void tell_buried(lbm_air *a) {
+    for (size_t i = 0; i < a->source_count; i++) {
+        if (!lbm_source_is_buried(a->sources[i])) continue;
+        snprintf(a->trouble, sizeof a->trouble,
+                 "%s lies within colliders or walls, and has given the air nothing so far: move "
+                 "it, or them",
+                 pass_label(a->sources[i]));
+        return;
+    }
+}
+
 static void tell(lbm_air *a) {
     sim_flow flow = lbm_air_flow(a->pass);
     if (!tell_report(a, &flow) && !sim_advise(&a->units, &flow, a->trouble, sizeof a->trouble) &&
         !tell_was_held_back(a))
         tell_absent(a);
+    if (!a->trouble[0]) tell_buried(a);
 }
 
 // What has come back from the device by now.

@@ -12,6 +12,7 @@ static const char give_shader[] = "pass/lbm/give.comp";
 
 typedef struct source_state {
     lbm_air *air;
+    uint32_t note;     // its bit of the guard's notes; 0: there was none left
     uint32_t first_id; // of its meshes; 0: it has none
     shader_binary give;
     gpu_pipeline *pipeline; // that gives
@@ -65,6 +66,7 @@ bool pass_lbm_add_source(pass *p, pass *source) {
     for (size_t i = 0; i < source->mesh_count; i++)
         lbm_air_add_body(&a->givers, source->meshes[i], rule);
     if (!source->mesh_count) s->first_id = 0;
+    if (a->source_count < 32) s->note = UINT32_C(1) << a->source_count;
     source->runs_in = p;
     MEM_RESERVE(a->sources, a->source_count + 1, a->source_capacity);
     a->sources[a->source_count++] = source;
@@ -112,6 +114,12 @@ void lbm_source_destroy(pass *p) {
 void lbm_air_forget_source(pass *source) {
     source_state *s = source->state;
     s->turn = UINT64_MAX;
+}
+
+bool lbm_source_is_buried(const pass *source) {
+    const source_state *s = source->state;
+    const uint32_t *notes = s->air->report.notes;
+    return (notes[0] & ~notes[1] & s->note) != 0;
 }
 
 bool lbm_source_is_away(const pass *source) {
@@ -210,6 +218,7 @@ static bool fill_give(const pass *p, source_state *s) {
     pass_write_member(&s->give, s->block, "clamp_speed", &most, sizeof most);
     pass_write_member(&s->give, s->block, "velocity_factor", factor, sizeof *factor);
     pass_write_member(&s->give, s->block, "pascal", &pascal, sizeof pascal);
+    pass_write_member(&s->give, s->block, "note", &s->note, sizeof s->note);
     pass_write_member(&s->give, s->block, "share", &share, sizeof share);
     pass_write_member(&s->give, s->block, "first_id", &s->first_id, sizeof s->first_id);
     pass_write_member(&s->give, s->block, "last_id", &last_id, sizeof last_id);
@@ -220,6 +229,7 @@ static bool fill_give(const pass *p, source_state *s) {
 static gpu_buffer *find_buffer(const source_state *s, const char *name) {
     voxels *meshes = s->air->givers.cells;
     if (strcmp(name, "SourceValues") == 0) return s->values;
+    if (strcmp(name, "SourceNotes") == 0) return lbm_guard_notes(s->air->guard);
     if (meshes && strcmp(name, "SourceIds") == 0) return voxels_ids(meshes);
     return meshes && strcmp(name, "SourceMotions") == 0 ? voxels_motions(meshes) : NULL;
 }

@@ -13,7 +13,8 @@ enum {
     GROUPS = 512,       // most of the first dispatch: enough to fill a large device
     CELLS_A_THREAD = 4, // least, while there are fewer groups
     RECORD = 80,        // bytes of one, as the shader lays it out
-    WORDS = 17,         // of the one that is read
+    NOTES = 17,         // words of the one that is read, before the notes
+    WORDS = NOTES + LBM_NOTES,
     PLACES = GPU_FRAMES_IN_FLIGHT + 1,
 };
 
@@ -25,7 +26,7 @@ struct lbm_guard {
     uint32_t size[3], groups;
     arena *memory;
     sim_kernel kernels[2]; // moments, records
-    gpu_buffer *parts, *found;
+    gpu_buffer *parts, *found, *notes;
     gpu_image *result;
     guard_place places[PLACES];
     uint32_t next;
@@ -67,15 +68,20 @@ bool lbm_guard_allocate(lbm_guard *guard, gpu *g) {
                                                           .width = WORDS,
                                                           .height = 1,
                                                           .use = GPU_USE_STORAGE});
-    return guard->parts && guard->found && guard->result;
+    const uint32_t none[LBM_NOTES] = {0};
+    guard->notes =
+        gpu_buffer_create(g, &(gpu_buffer_desc){.label = "guard's notes", .size = sizeof none});
+    return guard->parts && guard->found && guard->result && guard->notes &&
+           gpu_buffer_write(g, guard->notes, 0, none, sizeof none);
 }
 
 void lbm_guard_destroy(lbm_guard *guard, gpu *g) {
     for (int i = 0; i < 2; i++) sim_kernel_destroy(&guard->kernels[i], g);
     gpu_buffer_destroy(g, guard->parts);
     gpu_buffer_destroy(g, guard->found);
+    gpu_buffer_destroy(g, guard->notes);
     gpu_image_destroy(g, guard->result);
-    guard->parts = guard->found = NULL;
+    guard->parts = guard->found = guard->notes = NULL;
     guard->result = NULL;
     lbm_guard_forget(guard);
 }
@@ -84,11 +90,13 @@ static bool dispatch(lbm_guard *guard, gpu *g, int which, gpu_buffer *moments) {
     sim_kernel *k = &guard->kernels[which];
     const uint32_t groups = which == 0 ? guard->groups : 1, stride = groups * GROUP;
     const uint32_t items = which == 0 ? count_cells(guard) : guard->groups;
-    const sim_slot slots[] = {
-        {"Moments", moments, NULL}, {"Parts", guard->parts, NULL}, {"result", NULL, guard->result}};
+    const sim_slot slots[] = {{"Moments", moments, NULL},
+                              {"Parts", guard->parts, NULL},
+                              {"Notes", guard->notes, NULL},
+                              {"result", NULL, guard->result}};
     sim_kernel_set(k, "count", &items, sizeof items);
     sim_kernel_set(k, "stride", &stride, sizeof stride);
-    return sim_kernel_run(k, g, slots, 3, (const uint32_t[3]){stride, 1, 1});
+    return sim_kernel_run(k, g, slots, 4, (const uint32_t[3]){stride, 1, 1});
 }
 
 bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l, lbm_guard_limits limits) {
@@ -110,6 +118,7 @@ static void unpack(const lbm_guard *guard, const uint32_t words[WORDS], lbm_repo
     memcpy(values, words, sizeof values);
     uint32_t cell = words[3], columns = guard->size[0], good = words[0] - words[1];
     *out = (lbm_report){.cells = words[0], .bad = words[1], .spoilt = words[16]};
+    memcpy(out->notes, words + NOTES, sizeof out->notes);
     if (good == 0) return;
     out->speed = values[2];
     out->where[0] = cell % columns;
@@ -139,6 +148,10 @@ bool lbm_guard_read(lbm_guard *guard, gpu *g, lbm_report *out) {
 
 gpu_buffer *lbm_guard_newest(const lbm_guard *guard) {
     return guard->places[(guard->next + PLACES - 1) % PLACES].frame ? guard->parts : NULL;
+}
+
+gpu_buffer *lbm_guard_notes(const lbm_guard *guard) {
+    return guard->notes;
 }
 
 void lbm_guard_forget(lbm_guard *guard) {

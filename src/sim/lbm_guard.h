@@ -11,6 +11,8 @@ typedef struct lbm_guard_limits { // beyond these a state is spoilt: it is no ai
     float drift;                  // of the mass, either way, as a part of it
 } lbm_guard_limits;
 
+enum { LBM_NOTES = 2 };
+
 typedef struct lbm_report { // of one kept state; lattice units
     uint64_t step;          // lbm_steps when it was recorded
     uint32_t cells;         // of air
@@ -21,6 +23,7 @@ typedef struct lbm_report { // of one kept state; lattice units
     // Density - 1: how far the mass has drifted, and how much it is pressed together.
     float drift, least_density, most_density;
     float sum[LBM_MAX_SCALARS], least[LBM_MAX_SCALARS], most[LBM_MAX_SCALARS];
+    uint32_t notes[LBM_NOTES]; // as they were then
 } lbm_report;
 
 lbm_guard *lbm_guard_create(arena *memory, const uint32_t size[3]);
@@ -34,4 +37,7 @@ bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l, lbm_guard_limits l
 bool lbm_guard_read(lbm_guard *guard, gpu *g, lbm_report *out);
 // On the device: the newest record, whose first word is `spoilt`. NULL: none was recorded.
 gpu_buffer *lbm_guard_newest(const lbm_guard *guard);
+// On the device: LBM_NOTES words, 0 at first, that others may write, and that come back with
+// reports.
+gpu_buffer *lbm_guard_notes(const lbm_guard *guard);
 void lbm_guard_forget(lbm_guard *guard); // what was recorded so far: after a reset

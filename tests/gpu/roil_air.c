@@ -552,6 +552,31 @@ static void what_is_not_in_the_air_is_told(void **state) {
     }
 }
 
+// A source within a collider; the second one comes out of it.
+static void what_solids_keep_from_giving_is_told(void **state) {
+    static const char within[] =
+        "air:source { shape = sphere { position = %s, radius = 0.1 }, density = 1 }\n"
+        "air:collider { mesh { 'cube.obj', scale = 0.3, position = {0.3, 0, 1.2} } }";
+    static const char *const places[] = {"{0.3, 0, 1.2}", "vec(0.3 - 2 * time, 0, 1.2)"};
+    for (int i = 0; i < 2; i++) {
+        picture p;
+        char more[256], path[512];
+        write_text("cube.obj", CUBE, path);
+        snprintf(more, sizeof more, within, places[i]);
+        roil_effect *e = open(*state, 24, "buoyancy_density = 3", more);
+        draw(e, 1, p);
+        draw(e, 2, p);
+        said(e, "lbm_source_2 lies within colliders or walls");
+        draw(e, 9, p);
+        roil_time times[32];
+        roil_simulation s;
+        assert_true(roil_times(e, times, 32) > 0); // waits
+        assert_true(roil_get_simulation(e, &s));
+        assert_true(i == 0 ? s.trouble != NULL : s.trouble == NULL);
+        roil_unload(e);
+    }
+}
+
 // ---- reload -----------------------------------------------------------------------------------
 
 static void count_call(void *user, double done, double whole) {
@@ -606,6 +631,7 @@ int main(void) {
         cmocka_unit_test(air_that_bursts_stops_and_says_so),
         cmocka_unit_test(what_burst_is_never_shown),
         cmocka_unit_test(what_is_not_in_the_air_is_told),
+        cmocka_unit_test(what_solids_keep_from_giving_is_told),
         cmocka_unit_test(smoke_is_where_its_source_is_and_rises),
         cmocka_unit_test(smoke_heat_and_dye_are_told_apart),
         cmocka_unit_test(a_field_pushes_the_air),

@@ -17,7 +17,9 @@ uniform vec3 first;            // cells of the source's box: of the first corner
 uniform vec3 count;            // and how many
 uniform uint first_id;             // of its meshes,
 uniform uint last_id;
+uniform uint note;             // bit of the source, 0: it has none
 layout(std430) readonly buffer SourceValues { uvec4 source_values[]; };
+layout(std430) buffer SourceNotes { uint notes[2]; }; // bits of sources that hold something; that give it to air
 
 #define EACH_LANE for (int l = 0; l < LBM_LANES; l++)
 #define EACH_ROW for (int row = 0; row < LBM_ROWS; row++)
@@ -58,12 +60,22 @@ uvec4 values_at(uvec3 cell) {
     return source_values[at.x + n.x * (at.y + n.y * at.z)];
 }
 
+void tell(int which) {
+    if ((notes[which] & note) != note) atomicOr(notes[which], note);
+}
+
 // `solid`: bits of lanes. Nothing comes out of walls and colliders.
 Held held_by(uvec3 at, uint solid) {
     Held h;
     EACH_LANE {
         uvec3 cell = uvec3(at.xy, at.z + uint(l) * LBM_LAYERS);
-        uvec4 values = (solid >> l & 1u) == 0u ? values_at(cell) : uvec4(0u);
+        uvec4 values = values_at(cell);
+        bool gives = (solid >> l & 1u) == 0u;
+        if (unpackHalf2x16(values.y).y > 0.0) {
+            tell(0);
+            if (gives) tell(1);
+        }
+        if (!gives) values = uvec4(0u);
         vec2 a = unpackHalf2x16(values.x), b = unpackHalf2x16(values.y), d = unpackHalf2x16(values.w);
         vec3 v = vec3(unpackHalf2x16(values.z), d.x);
 #if MESHES

@@ -23,6 +23,7 @@ struct Record {
 
 #ifdef LAST
 layout(std430) buffer Parts { Record parts[]; }; // afterwards the first is the only one
+layout(std430) readonly buffer Notes { uint notes[2]; }; // of others, for the host: LBM_NOTES
 layout(r32ui) writeonly uniform uimage2D result; //= output r32ui : the record, word by word
 #else
 layout(std430) readonly buffer Moments { uvec4 moments[]; };
@@ -110,6 +111,7 @@ void main() {
         floatBitsToUint(r.least.w), floatBitsToUint(r.most.x), floatBitsToUint(r.most.y),
         floatBitsToUint(r.most.z), floatBitsToUint(r.most.w), r.spoilt);
     for (int i = 0; i < 17; i++) imageStore(result, ivec2(i, 0), uvec4(words[i]));
+    for (int i = 0; i < 2; i++) imageStore(result, ivec2(17 + i, 0), uvec4(notes[i]));
     parts[0] = r;
 #else
     parts[gl_WorkGroupID.x] = r;
