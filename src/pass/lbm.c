@@ -95,7 +95,6 @@ field_grid *pass_lbm_open(pass *p, const pass_lbm_desc *desc) {
         .pass = p,
         .desc = *desc,
         .units = sim_units_make(desc->voxel_size, desc->speed, desc->time_step),
-        .givers = {.updated = (double)NAN},
         .solids = {.updated = (double)NAN},
         .force = {.turn = UINT64_MAX},
         .held = (double)NAN,

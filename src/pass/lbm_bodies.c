@@ -5,6 +5,13 @@
 #include <math.h>
 #include <string.h>
 
+lbm_meshes *lbm_air_add_giver(lbm_air *a) {
+    MEM_RESERVE(a->givers, a->giver_count + 1, a->giver_capacity);
+    lbm_meshes *m = &a->givers[a->giver_count++];
+    *m = (lbm_meshes){.updated = (double)NAN};
+    return m;
+}
+
 void lbm_air_add_body(lbm_meshes *m, const scene_mesh *mesh, voxels_rule rule) {
     MEM_RESERVE(m->bodies, m->count + 1, m->capacity);
     m->bodies[m->count++] = (voxels_body){mesh, rule};
@@ -79,21 +86,27 @@ static void destroy(lbm_air *a, lbm_meshes *m) {
     mem_free(m->bodies);
 }
 
+static bool for_each(lbm_air *a, bool (*work)(lbm_air *a, lbm_meshes *m)) {
+    for (size_t i = 0; i < a->giver_count; i++)
+        if (!work(a, &a->givers[i])) return false;
+    return work(a, &a->solids);
+}
+
 bool lbm_air_make_bodies(lbm_air *a) {
     a->moving = arena_alloc(a->pass->host->memory, a->solids.count * sizeof *a->moving);
-    return make(a, &a->givers) && make(a, &a->solids);
+    return for_each(a, make);
 }
 
 bool lbm_air_check_bodies(lbm_air *a) {
-    return compile(a, &a->givers) && compile(a, &a->solids);
+    return for_each(a, compile);
 }
 
 bool lbm_air_build_bodies(lbm_air *a) {
-    return build(a, &a->givers) && build(a, &a->solids);
+    return for_each(a, build);
 }
 
 bool lbm_air_allocate_bodies(lbm_air *a) {
-    return allocate(a, &a->givers) && allocate(a, &a->solids);
+    return for_each(a, allocate);
 }
 
 static float3 in_steps(const lbm_air *a, float3 v) { // from m/s to cells a step
@@ -117,7 +130,9 @@ static lbm_body body_of(const lbm_air *a, size_t index) {
 
 bool lbm_air_move_bodies(lbm_air *a, const lbm_numbers *numbers) {
     voxels_change change;
-    if (!move(a, &a->givers, &change) || !move(a, &a->solids, &change)) return false;
+    for (size_t i = 0; i < a->giver_count; i++)
+        if (!move(a, &a->givers[i], &change)) return false;
+    if (!move(a, &a->solids, &change)) return false;
     if (!a->solids.cells) return true;
     for (size_t i = 0; i < a->solids.count; i++) a->moving[i] = body_of(a, i);
     return lbm_set_bodies(a->solver, a->pass->host->device, numbers,
@@ -128,6 +143,7 @@ bool lbm_air_move_bodies(lbm_air *a, const lbm_numbers *numbers) {
 }
 
 void lbm_air_destroy_bodies(lbm_air *a) {
-    destroy(a, &a->givers);
+    for (size_t i = 0; i < a->giver_count; i++) destroy(a, &a->givers[i]);
+    mem_free(a->givers);
     destroy(a, &a->solids);
 }

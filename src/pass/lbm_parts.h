@@ -34,9 +34,11 @@ typedef struct lbm_air {
 
     pass **sources;
     size_t source_count, source_capacity;
-    lbm_meshes givers, solids; // of sources, of colliders
-    lbm_body *moving;          // of the latter, as they go on
-    lbm *solver;               // after pass_complete
+    lbm_meshes *givers; // of each source that has some: where two meet, both give
+    size_t giver_count, giver_capacity;
+    lbm_meshes solids; // of colliders
+    lbm_body *moving;  // as these go on
+    lbm *solver;       // after pass_complete
     lbm_guard *guard;
 
     lbm_force force;
@@ -107,6 +109,7 @@ bool lbm_mesh_box(const lbm_air *a, const scene_mesh *mesh, const field_context 
 bool lbm_source_cells(const lbm_air *a, const pass *p, double end, lbm_cells *out);
 
 // lbm_bodies.c
+lbm_meshes *lbm_air_add_giver(lbm_air *a); // until the next one is added
 void lbm_air_add_body(lbm_meshes *m, const scene_mesh *mesh, voxels_rule rule);
 bool lbm_air_make_bodies(lbm_air *a); // when all are known
 bool lbm_air_check_bodies(lbm_air *a);

@@ -12,8 +12,8 @@ static const char give_shader[] = "pass/lbm/give.comp";
 
 typedef struct source_state {
     lbm_air *air;
-    uint32_t note;     // its bit of the guard's notes; 0: there was none left
-    uint32_t first_id; // of its meshes; 0: it has none
+    uint32_t note; // its bit of the guard's notes; 0: there was none left
+    size_t giver;  // which of the air's are its meshes, from 1; 0: it has none
     shader_binary give;
     gpu_pipeline *pipeline; // that gives
     unsigned char *block;   // of its uniforms
@@ -59,13 +59,14 @@ bool pass_lbm_add_source(pass *p, pass *source) {
     lbm_air *a = lbm_air_of(p);
     if (reads_itself(a, source)) return false;
     source_state *s = source->state = arena_alloc(p->host->memory, sizeof *s);
-    *s = (source_state){.air = a, .first_id = (uint32_t)a->givers.count + 1, .turn = UINT64_MAX};
+    *s = (source_state){.air = a, .turn = UINT64_MAX};
     size_t option;
     pass_find_key(source, "rule", &option);
     voxels_rule rule = (voxels_rule)source->options[option];
+    lbm_meshes *meshes = source->mesh_count ? lbm_air_add_giver(a) : NULL;
     for (size_t i = 0; i < source->mesh_count; i++)
-        lbm_air_add_body(&a->givers, source->meshes[i], rule);
-    if (!source->mesh_count) s->first_id = 0;
+        lbm_air_add_body(meshes, source->meshes[i], rule);
+    if (meshes) s->giver = a->giver_count;
     if (a->source_count < 32) s->note = UINT32_C(1) << a->source_count;
     source->runs_in = p;
     MEM_RESERVE(a->sources, a->source_count + 1, a->source_capacity);
@@ -84,7 +85,7 @@ static bool compile(pass *p) {
     source_state *s = p->state;
     shader_define defines[LBM_MAX_DEFINES + 2];
     size_t count = lbm_defines(s->air->solver, defines);
-    defines[count++] = (shader_define){"MESHES", s->first_id ? "1" : "0"};
+    defines[count++] = (shader_define){"MESHES", s->giver ? "1" : "0"};
     defines[count++] = (shader_define){"WITHOUT_FIELDS", ""};
     return pass_compile(p, p->shader, SHADER_COMPUTE, NULL, 0, &p->binary) &&
            pass_compile(p, give_shader, SHADER_COMPUTE, defines, count, &s->give);
@@ -210,7 +211,6 @@ static bool fill_give(const pass *p, source_state *s) {
     const float speed = (float)sim_velocity(&a->units, 1);
     const float most = lbm_air_clamp_speed(a);
     const float share = rate[0] > 0 ? (float)sim_decay(&a->units, (double)rate[0]) : 1;
-    const uint32_t last_id = s->first_id + (uint32_t)p->mesh_count - 1;
     const float pascal = (float)(1 / lbm_air_pascals(a));
     const uint32_t parity = lbm_parity(a->solver);
     write_place(s, &s->give, s->block);
@@ -220,14 +220,12 @@ static bool fill_give(const pass *p, source_state *s) {
     pass_write_member(&s->give, s->block, "pascal", &pascal, sizeof pascal);
     pass_write_member(&s->give, s->block, "note", &s->note, sizeof s->note);
     pass_write_member(&s->give, s->block, "share", &share, sizeof share);
-    pass_write_member(&s->give, s->block, "first_id", &s->first_id, sizeof s->first_id);
-    pass_write_member(&s->give, s->block, "last_id", &last_id, sizeof last_id);
     pass_write_member(&s->give, s->block, "lbm_parity", &parity, sizeof parity);
     return true;
 }
 
 static gpu_buffer *find_buffer(const source_state *s, const char *name) {
-    voxels *meshes = s->air->givers.cells;
+    voxels *meshes = s->giver ? s->air->givers[s->giver - 1].cells : NULL;
     if (strcmp(name, "SourceValues") == 0) return s->values;
     if (strcmp(name, "SourceNotes") == 0) return lbm_guard_notes(s->air->guard);
     if (meshes && strcmp(name, "SourceIds") == 0) return voxels_ids(meshes);

@@ -54,7 +54,8 @@ void lbm_air_restart(pass *p) {
     a->reported = false;
     a->held = (double)NAN;
     a->trouble[0] = '\0';
-    a->givers.updated = a->solids.updated = (double)NAN;
+    a->solids.updated = (double)NAN;
+    for (size_t i = 0; i < a->giver_count; i++) a->givers[i].updated = (double)NAN;
     a->force.turn = UINT64_MAX;
     for (size_t i = 0; i < a->source_count; i++) lbm_air_forget_source(a->sources[i]);
     lbm_guard_forget(a->guard);

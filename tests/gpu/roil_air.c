@@ -327,6 +327,22 @@ static void meshes_give_smoke_and_stand_in_its_way(void **state) {
     roil_unload(e);
 }
 
+// Two sources in the same place: one gives smoke, and the other heat, which makes it rise.
+static void meshes_of_sources_may_meet(void **state) {
+    static const char place[] = "mesh { 'cube.obj', scale = 0.2, position = {-0.5, 0, 0.5} }";
+    char path[512], more[512];
+    picture p;
+    write_text("cube.obj", CUBE, path);
+    snprintf(more, sizeof more,
+             "air:source { %s, density = 1 }\nair:source { %s, temperature = 1 }", place, place);
+    roil_effect *e = open(*state, 24, "buoyancy_heat = 6", more);
+    draw(e, 1, p);
+    assert_true(at(p, 3, HIGH - 5) > 200 && at(p, 3, HIGH - 9) < 50);
+    draw(e, 13, p);
+    assert_true(at(p, 3, HIGH - 5) > 200 && at(p, 3, HIGH - 9) > 100);
+    roil_unload(e);
+}
+
 // A mesh that lies in one plane has cells too, though its box is of no size.
 static void sheets_give_smoke_and_stand_in_its_way(void **state) {
     static const char sheet[] = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
@@ -624,6 +640,7 @@ int main(void) {
         cmocka_unit_test(a_window_catches_up_over_several_pictures),
         cmocka_unit_test(a_window_goes_back_by_a_second_at_most),
         cmocka_unit_test(meshes_give_smoke_and_stand_in_its_way),
+        cmocka_unit_test(meshes_of_sources_may_meet),
         cmocka_unit_test(a_source_that_holds_the_pressure_blows_new_air_out),
         cmocka_unit_test(air_that_is_too_fast_is_held_back_by_itself),
         cmocka_unit_test(air_that_was_held_back_in_passing_is_told),

@@ -15,8 +15,6 @@ uniform float share;           // of the values that the air takes on in this st
 uniform float velocity_factor; // of a mesh's own motion
 uniform vec3 first;            // cells of the source's box: of the first corner,
 uniform vec3 count;            // and how many
-uniform uint first_id;             // of its meshes,
-uniform uint last_id;
 uniform uint note;             // bit of the source, 0: it has none
 layout(std430) readonly buffer SourceValues { uvec4 source_values[]; };
 layout(std430) buffer SourceNotes { uint notes[2]; }; // bits of sources that hold something; that give it to air
@@ -31,16 +29,11 @@ struct Held { // of the cells of an element
 };
 
 #if MESHES
-layout(std430) readonly buffer SourceIds { uint source_ids[]; };
+layout(std430) readonly buffer SourceIds { uint source_ids[]; }; // of its own meshes
 layout(std430) readonly buffer SourceMotions { voxel_motion source_motions[]; };
 
 uint body_at(uvec3 cell) {
     return source_ids[cell.x + LBM_NX * (cell.y + LBM_NY * cell.z)];
-}
-
-bool is_ours(uvec3 cell) {
-    uint id = body_at(cell);
-    return id >= first_id && id <= last_id;
 }
 
 vec3 motion_at(uvec3 cell) {
@@ -55,7 +48,7 @@ uvec4 values_at(uvec3 cell) {
     uvec3 at = cell - uvec3(first), n = uvec3(count);
     if (any(lessThan(cell, uvec3(first))) || any(greaterThanEqual(at, n))) return uvec4(0u);
 #if MESHES
-    if (!is_ours(cell)) return uvec4(0u);
+    if (body_at(cell) == 0u) return uvec4(0u);
 #endif
     return source_values[at.x + n.x * (at.y + n.y * at.z)];
 }
