@@ -17,12 +17,29 @@ static int by_place(const void *a, const void *b) {
     return memcmp(((const corner *)a)->at, ((const corner *)b)->at, sizeof((corner *)0)->at);
 }
 
+// What files write of one place differs in the last digits: so much of the mesh's size is no gap.
+static float find_step(const mesh_data *mesh) {
+    float longest = 0;
+    for (int a = 0; a < 3; a++) {
+        float low = INFINITY, high = -INFINITY;
+        for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+            low = fminf(low, mesh->vertices[i].position[a]);
+            high = fmaxf(high, mesh->vertices[i].position[a]);
+        }
+        longest = fmaxf(longest, high - low);
+    }
+    return isfinite(longest) ? 1e-6f * longest : 0;
+}
+
 // Vertices at the same place are one point; `out` has that of each vertex.
 static void weld(voxel_topology *t, const mesh_data *mesh, uint32_t *out) {
     corner *corners = mem_alloc(mesh->vertex_count * sizeof *corners);
+    const float step = find_step(mesh);
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-        for (int a = 0; a < 3; a++)
-            corners[i].at[a] = mesh->vertices[i].position[a] + 0.0f; // no -0
+        for (int a = 0; a < 3; a++) {
+            const float at = mesh->vertices[i].position[a];
+            corners[i].at[a] = (step > 0 ? roundf(at / step) * step : at) + 0.0f; // no -0
+        }
         corners[i].vertex = i;
     }
     qsort(corners, mesh->vertex_count, sizeof *corners, by_place);

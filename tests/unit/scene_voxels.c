@@ -77,6 +77,22 @@ static void corners_at_a_place_are_one_point(void **state) {
     voxel_surface_free(&made);
 }
 
+// What a file says of a corner twice may differ in its last digit.
+static void corners_that_are_all_but_at_a_place_are_one_point(void **state) {
+    (void)state;
+    soup s = {.count = 0};
+    add_cube(&s, 0, 1, false);
+    for (uint32_t i = 0; i < s.count; i += 2) s.vertices[i].position[0] += 2e-7f;
+    voxel_surface made = make(&s, VOXELS_AUTO, 4);
+    assert_int_equal(made.point_count, 8);
+    assert_int_equal(count_flag(&made, VOXEL_SHELL), 0); // it is closed
+    voxel_surface_free(&made);
+    for (uint32_t i = 0; i < s.count; i += 2) s.vertices[i].position[0] += 2e-3f;
+    made = make(&s, VOXELS_AUTO, 4);
+    assert_true(made.point_count > 8); // that is a gap
+    voxel_surface_free(&made);
+}
+
 static void triangles_without_area_and_duplicates_are_left_out(void **state) {
     (void)state;
     soup s = {.count = 0};
@@ -172,6 +188,7 @@ static void nothing_is_made_of_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(corners_at_a_place_are_one_point),
+        cmocka_unit_test(corners_that_are_all_but_at_a_place_are_one_point),
         cmocka_unit_test(triangles_without_area_and_duplicates_are_left_out),
         cmocka_unit_test(open_parts_are_shells_unless_told_otherwise),
         cmocka_unit_test(parts_that_overlap_are_apart_and_cavities_are_not),
