@@ -4,7 +4,7 @@
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 //@ option rule = auto {auto, solid, shell} : which cells its meshes are, as of `voxels`; solid keeps thin parts thin
 //@ field float shape = 0 : the source is where this is above 0.5, and within its meshes if it has any; without it, it is these
-//@ field float density = 0 : smoke
+//@ field float density = 0 : smoke; up to 1e4, as temperature and dye: what is beyond counts as that
 //@ field float temperature = 0 : heat
 //@ field float dye = 0 : a second colour of smoke
 //@ field vec3 velocity = {0, 0, 0} : of the air there (m/s)
@@ -19,10 +19,10 @@ uniform vec3 count;      // and how many
 // Halves: density and temperature, dye and 1 within the shape, velocity, pressure.
 layout(std430) writeonly buffer SourceValues { uvec4 source_values[]; };
 
-// What is no number, or too large for a half, would spoil the air for good: it becomes 0.
-uvec4 numbers_of(uvec4 v) {
-    v = mix(v, v & 0xffff0000u, equal(v & 0x7c00u, uvec4(0x7c00u)));
-    return mix(v, v & 0xffffu, equal(v & 0x7c000000u, uvec4(0x7c000000u)));
+// What is no number would spoil the air for good: it becomes 0. So would what is too large for the halves of its state.
+vec4 numbers_of(vec4 v, float most) {
+    v = mix(v, vec4(0.0), equal(floatBitsToUint(v) & 0x7f800000u, uvec4(0x7f800000u)));
+    return clamp(v, -most, most);
 }
 
 void main() {
@@ -31,10 +31,10 @@ void main() {
     vec3 p = box_min + (first + vec3(at) + 0.5) * cell_size;
     uvec4 values = uvec4(0u);
     if (HAS_SHAPE == 0 || field_shape(p) > 0.5) {
-        vec3 v = field_velocity(p);
-        values = uvec4(packHalf2x16(vec2(field_density(p), field_temperature(p))),
-                       packHalf2x16(vec2(field_dye(p), 1.0)), packHalf2x16(v.xy),
-                       packHalf2x16(vec2(v.z, field_pressure(p))));
+        vec4 carried = numbers_of(vec4(field_density(p), field_temperature(p), field_dye(p), 0.0), 1e4);
+        vec4 flow = numbers_of(vec4(field_velocity(p), field_pressure(p)), 65504.0);
+        values = uvec4(packHalf2x16(carried.xy), packHalf2x16(vec2(carried.z, 1.0)), packHalf2x16(flow.xy),
+                       packHalf2x16(flow.zw));
     }
-    source_values[at.x + n.x * (at.y + n.y * at.z)] = numbers_of(values);
+    source_values[at.x + n.x * (at.y + n.y * at.z)] = values;
 }

@@ -16,7 +16,7 @@ enum {
     PARTS = LBM_MAX_BUFFERS + 5,
     // To be raised when values come to lie elsewhere in buffers of the same sizes, or mean
     // something else there, in a way that describe_layout does not tell.
-    LAYOUT_VERSION = 2
+    LAYOUT_VERSION = 3
 };
 
 static void describe_layout(const lbm_layout *l, strbuf *out) {

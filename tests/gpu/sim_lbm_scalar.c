@@ -125,11 +125,38 @@ static void what_decays_is_gone_in_time(void **state) {
     }
 }
 
+static void warm(int x, int y, int z, sim_cell *cell) {
+    (void)x, (void)y, (void)z;
+    cell->scalar[0] = 10000;
+}
+
+// Heat may be kelvin: 16 bits hold the 10,000 that a source may give.
+static void what_is_large_stays(void **state) {
+    for (int i = 0; i < 4; i++) {
+        sim_world w;
+        sim_open(&w, *state,
+                 &(lbm_desc){.size = {16, 16, 16},
+                             .scalar_set = i % 2 ? LBM_SCALAR_D3Q27 : LBM_SCALAR_D3Q7,
+                             .precision = LBM_F16,
+                             .lanes = i / 2 ? 2 : 4,
+                             .scalars = 1});
+        sim_set_state(&w, warm);
+        sim_run(&w, 20);
+        sim_read(&w);
+        for (size_t c = 0; c < w.cells; c++) {
+            assert_true(fabs(w.state[c].scalar[0] / 10000 - 1) < 2e-3);
+            for (int k = 0; k < 3; k++) assert_true(fabs(w.state[c].u[k]) < 1e-6);
+        }
+        sim_close(&w);
+    }
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_blob_spreads_as_its_diffusion_says),
         cmocka_unit_test(a_blob_goes_where_the_air_goes),
         cmocka_unit_test(what_decays_is_gone_in_time),
+        cmocka_unit_test(what_is_large_stays),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }

@@ -175,7 +175,7 @@ static inline sim_part sim_part_of(const sim_world *w, int scalar) { // -1: the 
     int q = w->desc.scalar_set == LBM_SCALAR_D3Q27 ? 27 : 7, count = (int)w->desc.scalars;
     int rest = air - 1 + count * (q - 1);
     if (scalar < 0) return (sim_part){sim_directions(air), 0, rest, 32768};
-    return (sim_part){sim_directions(q), air - 1 + scalar * (q - 1), rest + 1 + scalar, 1024};
+    return (sim_part){sim_directions(q), air - 1 + scalar * (q - 1), rest + 1 + scalar, 16};
 }
 
 // ---- states -----------------------------------------------------------------------------------

@@ -25,9 +25,9 @@
 #endif
 #define LBM_EACH_LANE(X) X(0) X(1) X(2) X(3)
 #endif
-#if LBM_HALF // times a power of two that keeps small values whole
+#if LBM_HALF // times a power of two that keeps small values whole; scalars may be kelvin: up to 13,800
 #define LBM_AIR_SCALE 32768.0
-#define LBM_SCALAR_SCALE 1024.0
+#define LBM_SCALAR_SCALE 16.0
 #else
 #define LBM_AIR_SCALE 1.0
 #define LBM_SCALAR_SCALE 1.0
