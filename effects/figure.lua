@@ -15,6 +15,7 @@ local lift    = param { "lift", 0.8, min = -5, max = 10, unit = "m/s^2", help = 
 local uneven  = param { "uneven", 0.6, min = 0, max = 1, help = "how patchy the body is" }
 local eaten   = param { "eaten", 0.6, min = 0, max = 2, help = "how much noise finer than a cell eats from the smoke" }
 local folded  = param { "folded", 0.1, min = 0, max = 0.2, unit = "m", help = "how far eddies finer than a cell carry the smoke" }
+local drawn_out = param { "drawn_out", 0.3, min = 0, max = 1, unit = "m", help = "how far the wind draws wisps out of the body" }
 local color   = param { "color", {0.92, 0.95, 1}, color = true, help = "of the smoke" }
 
 -- How much of the runner is there, by the second.
@@ -32,7 +33,7 @@ local runner = mesh { "data/figure.obj" }
 local grain  = worley { frequency = 5, octaves = 2, speed = 1.5, drift = {-0.4, 0, 0}, seed = 4 }:tile()
 air:source {
   runner, rule = "solid", temperature = 1,
-  density = presence * mix(1, smoothstep(0.3, 0.6, grain), uneven) * mix(0.2, 1, smoothstep(0.3, -0.2, position.x)),
+  density = mix(1, smoothstep(0.3, 0.6, grain), uneven) * mix(0.35, 1, smoothstep(0.3, -0.2, position.x)),
   velocity = vec(-0.45 * wind, 0, 0) + curl { frequency = 1.5, speed = 2, seed = 6 },
 }
 
@@ -45,25 +46,29 @@ local cover = smoothstep(0.06, 0.65, air.density:warp(folds, folded))
 local trail = cover * (0.3 + 1.2 * lumps * lumps) * smoothstep(0, 0.35, cover - eaten * (1 - lumps) * (1 - 0.6 * cover))
 
 -- The body itself is sharper than cells of the air could show it: a distance to the mesh, in finer ones.
--- The wind eats at what is behind.
+-- The same noise roughens it, mostly outwards, so that nothing thin is lost; and where that is strong the
+-- wind draws the body out behind itself, into what the air carries on: `drawn` asks for it up the wind.
 local body  = voxels { runner, resolution = 160 }
-local near  = box { position = {-0.05, 0, 1.06}, size = {1.5, 0.75, 1.75} } -- a distance is known everywhere; the smoke ends here
-local behind = 0.02 + 0.12 * smoothstep(0.1, -0.45, position.x)
-local skin  = near * smoothstep(0.012, -0.02, body.distance + 0.03 * (1 - presence) + behind * uneven * (1 - grain))
-local left  = smoothstep(-0.02, 0.1, body.distance) -- what has left it: around it, cells of the air are not seen
-local smoke = max(0.04 * trail * left, skin * presence)
+local near  = box { position = {-0.17, 0, 1.09}, size = {2.0, 0.85, 1.75} } -- a distance is known everywhere; the smoke ends here
+local fine  = worley { frequency = 13, octaves = 2, persistence = 0.6, drift = {-0.8, 0, 0.2}, seed = 12 }:tile()
+local drawn = body.distance:warp(vec(1, 0, -0.15), drawn_out * lumps * lumps)
+local rough = 0.06 * (lumps - 0.5) + 0.05 * (fine - 0.5)
+local edge  = min(body.distance, drawn + 0.04) + 0.012 - uneven * rough + 0.03 * (1 - presence) * (1 - lumps)
+local skin  = near * smoothstep(0.025, -0.05, edge) * mix(0.3, 1, presence)
+local left  = smoothstep(-0.02, 0.05, body.distance) -- what has left it: inside, cells of the air are not seen
+local smoke = max(0.05 * trail * left, skin)
 
 -- The sun has almost set behind the runner, and shines through what is thin; on this side it is night.
-fx.sun    = sun { azimuth = 80, elevation = 14, color = {1, 0.5, 0.2}, strength = 16 }
-fx.sky    = sky { zenith = {0.004, 0.010, 0.030}, horizon = {0.022, 0.034, 0.07}, strength = 1 }
+fx.sun    = sun { azimuth = 52, elevation = 16, color = {1, 0.46, 0.16}, strength = 22 }
+fx.sky    = sky { zenith = {0.002, 0.007, 0.030}, horizon = {0.040, 0.085, 0.15}, strength = 1 }
 fx.lights = {
-  spot_light { position = {4.5, -4, 3.8}, target = {-0.5, 0, 1.1}, color = {0.2, 0.45, 1}, power = 1500, angle = 50, softness = 0.6 },
+  spot_light { position = {4.5, -4, 3.8}, target = {-0.5, 0, 1.1}, color = {0.15, 0.42, 1}, power = 800, angle = 50, softness = 0.6 },
 }
 fx.camera = camera { eye = {-0.3, -9, 0.75}, target = {-0.5, 0, 1.15}, fov = 14, near = 0.1, far = 500 }
 
 local lit    = lighting { density = smoke * density, albedo = {0.8, 0.81, 0.83}, tint = color, anisotropy = 0.3, shadow_resolution = 192, sampling = "cubic" }
 local scene  = geometry { mesh { "data/ground.obj", color = {0.1, 0.14, 0.25} } }
-local solid  = shade { from = {scene, lit}, haze = 0.012 }
+local solid  = shade { from = {scene, lit}, haze = 0.03 }
 local volume = march { from = {lit, scene}, steps = 160 }
 
 local picture = over { volume, solid, from = {volume, scene} }
