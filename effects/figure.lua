@@ -19,7 +19,7 @@ local drawn_out = param { "drawn_out", 0.3, min = 0, max = 1, unit = "m", help =
 local color   = param { "color", {0.92, 0.95, 1}, color = true, help = "of the smoke" }
 
 -- How much of the runner is there, by the second.
-local presence = curve { {0, 1}, {1.4, 1}, {1.8, 0.1}, {2, 1}, shape = "ease_in_out", period = 2 }
+local presence = curve { {0, 1}, {1.4, 1}, {1.8, 0.3}, {2, 1}, shape = "ease_in_out", period = 2 }
 
 -- 4.8 x 1.6 x 2.4 metres: the wind comes in on the right, and leaves where it likes. The mesh's cells are
 -- the source; `rule` keeps wrists and ankles from being fattened to a whole cell.
@@ -52,28 +52,28 @@ local body  = voxels { runner, resolution = 160 }
 local near  = box { position = {-0.17, 0, 1.09}, size = {2.0, 0.85, 1.75} } -- a distance is known everywhere; the smoke ends here
 local fine  = worley { frequency = 13, octaves = 2, persistence = 0.6, drift = {-0.8, 0, 0.2}, seed = 12 }:tile()
 local drawn = body.distance:warp(vec(1, 0, -0.15), drawn_out * lumps * lumps)
-local rough = 0.06 * (lumps - 0.5) + 0.05 * (fine - 0.5)
+local rough = 0.055 * (lumps - 0.5) + 0.04 * (fine - 0.5)
 local edge  = min(body.distance, drawn + 0.04) + 0.012 - uneven * rough + 0.03 * (1 - presence) * (1 - lumps)
 local skin  = near * smoothstep(0.025, -0.05, edge) * mix(0.3, 1, presence)
 local left  = smoothstep(-0.02, 0.05, body.distance) -- what has left it: inside, cells of the air are not seen
-local smoke = max(0.05 * trail * left, skin)
+local smoke = max(0.035 * trail * left, skin)
 
 -- The sun has almost set behind the runner, and shines through what is thin; on this side it is night.
-fx.sun    = sun { azimuth = 52, elevation = 16, color = {1, 0.46, 0.16}, strength = 22 }
-fx.sky    = sky { zenith = {0.002, 0.007, 0.030}, horizon = {0.040, 0.085, 0.15}, strength = 1 }
+fx.sun    = sun { azimuth = 80, elevation = 15, color = {1, 0.37, 0.10}, strength = 15 }
+fx.sky    = sky { zenith = {0.001, 0.004, 0.018}, horizon = {0.034, 0.066, 0.115}, strength = 1 }
 fx.lights = {
-  spot_light { position = {4.5, -4, 3.8}, target = {-0.5, 0, 1.1}, color = {0.15, 0.42, 1}, power = 800, angle = 50, softness = 0.6 },
+  spot_light { position = {4.5, -4, 3.8}, target = {-0.5, 0, 1.1}, color = {0.15, 0.42, 1}, power = 2600, angle = 50, softness = 0.6 },
 }
 fx.camera = camera { eye = {-0.3, -9, 0.75}, target = {-0.5, 0, 1.15}, fov = 14, near = 0.1, far = 500 }
 
-local lit    = lighting { density = smoke * density, albedo = {0.8, 0.81, 0.83}, tint = color, anisotropy = 0.3, shadow_resolution = 192, sampling = "cubic" }
+local lit    = lighting { density = smoke * density, albedo = {0.5, 0.56, 0.66}, tint = color, anisotropy = 0.45, shadow_resolution = 192, sampling = "cubic" }
 local scene  = geometry { mesh { "data/ground.obj", color = {0.1, 0.14, 0.25} } }
 local solid  = shade { from = {scene, lit}, haze = 0.03 }
 local volume = march { from = {lit, scene}, steps = 160 }
 
 local picture = over { volume, solid, from = {volume, scene} }
 local glow    = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }
-local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.2, exposure_ev = 0.5, tonemap = "aces" }
+local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.2, exposure_ev = 0.4, tonemap = "aces" }
 
 fx.output = shown.color
 fx.linear = shown.linear
