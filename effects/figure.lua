@@ -4,7 +4,7 @@
 --   roil render effects/figure.lua --frames 54 -o figure.png
 --   roil render effects/figure.lua --frames 54 --set wind=0.2 --set lift=3 -o ghost.png   -- it rises off the shoulders
 --
--- Play with `wind`, `lift`, `uneven` (how patchy the body is) and `presence`, a curve.
+-- Play with `wind`, `lift`, `uneven` (how rough the body is), `wisps` and `presence`, a curve.
 
 local fx = effect { name = "figure", fps = 24, frames = 192 }
 
@@ -12,13 +12,13 @@ local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along 
 local density = param { "density", 80, min = 0, max = 200, unit = "1/m", help = "how thick the body is; what it leaves is much thinner" }
 local wind    = param { "wind", 3, min = 0, max = 5, unit = "m/s", help = "against which the runner runs" }
 local lift    = param { "lift", 0.8, min = -5, max = 10, unit = "m/s^2", help = "how fast the smoke's heat makes it rise" }
-local uneven  = param { "uneven", 0.6, min = 0, max = 1, help = "how patchy the body is" }
+local uneven  = param { "uneven", 0.6, min = 0, max = 1, help = "how patchy what leaves the body is, and how rough its skin" }
 local eaten   = param { "eaten", 0.6, min = 0, max = 2, help = "how much noise finer than a cell eats from the smoke" }
 local folded  = param { "folded", 0.1, min = 0, max = 0.2, unit = "m", help = "how far eddies finer than a cell carry the smoke" }
-local drawn_out = param { "drawn_out", 0.3, min = 0, max = 1, unit = "m", help = "how far the wind draws wisps out of the body" }
+local wisps   = param { "wisps", 0.3, min = 0, max = 1, unit = "m", help = "how far the wind draws wisps out of the body" }
 local color   = param { "color", {0.92, 0.95, 1}, color = true, help = "of the smoke" }
 
--- How much of the runner is there, by the second.
+-- How much of the runner is there, by the second; what it sheds goes on, so that the trail has no gap.
 local presence = curve { {0, 1}, {1.4, 1}, {1.8, 0.3}, {2, 1}, shape = "ease_in_out", period = 2 }
 
 -- 4.8 x 1.6 x 2.4 metres: the wind comes in on the right, and leaves where it likes. The mesh's cells are
@@ -46,12 +46,12 @@ local cover = smoothstep(0.06, 0.65, air.density:warp(folds, folded))
 local trail = cover * (0.3 + 1.2 * lumps * lumps) * smoothstep(0, 0.35, cover - eaten * (1 - lumps) * (1 - 0.6 * cover))
 
 -- The body itself is sharper than cells of the air could show it: a distance to the mesh, in finer ones.
--- The same noise roughens it, mostly outwards, so that nothing thin is lost; and where that is strong the
--- wind draws the body out behind itself, into what the air carries on: `drawn` asks for it up the wind.
+-- The same noise roughens it, by less than a wrist is thick so that nothing is lost; and where that is
+-- strong the wind draws wisps out of the body, into what the air carries on: `drawn` asks for it upwind.
 local body  = voxels { runner, resolution = 160 }
 local near  = box { position = {-0.17, 0, 1.09}, size = {2.0, 0.85, 1.75} } -- a distance is known everywhere; the smoke ends here
 local fine  = worley { frequency = 13, octaves = 2, persistence = 0.6, drift = {-0.8, 0, 0.2}, seed = 12 }:tile()
-local drawn = body.distance:warp(vec(1, 0, -0.15), drawn_out * lumps * lumps)
+local drawn = body.distance:warp(vec(1, 0, -0.15), wisps * lumps * lumps)
 local rough = 0.055 * (lumps - 0.5) + 0.04 * (fine - 0.5)
 local edge  = min(body.distance, drawn + 0.04) + 0.012 - uneven * rough + 0.03 * (1 - presence) * (1 - lumps)
 local skin  = near * smoothstep(0.025, -0.05, edge) * mix(0.3, 1, presence)
@@ -59,7 +59,7 @@ local left  = smoothstep(-0.02, 0.05, body.distance) -- what has left it: inside
 local smoke = max(0.035 * trail * left, skin)
 
 -- The sun has almost set behind the runner, and shines through what is thin; on this side it is night.
-fx.sun    = sun { azimuth = 80, elevation = 15, color = {1, 0.37, 0.10}, strength = 15 }
+fx.sun    = sun { azimuth = 80, elevation = 15, color = {1, 0.37, 0.10}, strength = 18 }
 fx.sky    = sky { zenith = {0.001, 0.004, 0.018}, horizon = {0.034, 0.066, 0.115}, strength = 1 }
 fx.lights = {
   spot_light { position = {4.5, -4, 3.8}, target = {-0.5, 0, 1.1}, color = {0.15, 0.42, 1}, power = 2600, angle = 50, softness = 0.6 },
