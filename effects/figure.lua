@@ -53,7 +53,7 @@ local near  = box { position = {-0.17, 0, 1.09}, size = {2.0, 0.85, 1.75} } -- a
 local fine  = worley { frequency = 13, octaves = 2, persistence = 0.6, drift = {-0.8, 0, 0.2}, seed = 12 }:tile()
 local drawn = body.distance:warp(vec(1, 0, -0.15), wisps * lumps * lumps)
 local rough = 0.055 * (lumps - 0.5) + 0.04 * (fine - 0.5)
-local edge  = min(body.distance, drawn + 0.04) + 0.012 - uneven * rough + 0.03 * (1 - presence) * (1 - lumps)
+local edge  = min(body.distance, drawn + 0.055) + 0.012 - uneven * rough + 0.03 * (1 - presence) * (1 - lumps)
 local skin  = near * smoothstep(0.025, -0.05, edge) * mix(0.3, 1, presence)
 local left  = smoothstep(-0.02, 0.05, body.distance) -- what has left it: inside, cells of the air are not seen
 local smoke = max(0.035 * trail * left, skin)
