@@ -33,6 +33,8 @@ static void tell_burst(lbm_air *a) {
     char what[128], change[64];
     if (a->report.bad)
         snprintf(what, sizeof what, "in %u cells it is no number any more", a->report.bad);
+    else if (is_ruined(a) && fabsf(a->report.drift) > 1)
+        snprintf(what, sizeof what, "its mass is that of no air any more");
     else if (is_ruined(a))
         snprintf(what, sizeof what, "its mass changed by %.3g %%", 100 * (double)a->report.drift);
     else

@@ -46,14 +46,17 @@ static void read_desc(lua_State *L, pass_lbm_desc *desc) {
     desc->warm_up = value_get_number(L, 1, "lbm", "warm_up", 0);
 }
 
-static void set_face(lua_State *L, pass *p, const char *face) {
+// By the word at the top of the stack, which the author gave as `key`.
+static void set_face(lua_State *L, pass *p, const char *face, const char *key) {
+    static const char *const words[] = {"open", "wall", "slip", "inflow", "periodic"};
     if (lua_type(L, -1) != LUA_TSTRING)
         vm_error(L,
                  "lbm: boundary: '%s' takes a word: \"open\", \"wall\", \"slip\", \"inflow\" or "
                  "\"periodic\"; got %s",
-                 face, object_kind(L, -1));
+                 key, object_kind(L, -1));
+    const char *word = words[value_word(L, -1, "lbm", key, words, COUNT_OF(words))];
     const char *option = lua_pushfstring(L, "boundary_%s", face);
-    if (!pass_set_option(p, option, lua_tostring(L, -2))) script_raise(L);
+    if (!pass_set_option(p, option, word)) script_raise(L);
     lua_pop(L, 1);
 }
 
@@ -64,7 +67,7 @@ static void set_boundary(lua_State *L, pass *p) {
                                       {.name = "front"}, {.name = "back"}, {.name = "bottom"},
                                       {.name = "top"},   {.name = NULL}};
     if (!value_is_plain_table(L, -1)) {
-        for (size_t i = 0; i < COUNT_OF(faces); i++) set_face(L, p, faces[i]);
+        for (size_t i = 0; i < COUNT_OF(faces); i++) set_face(L, p, faces[i], "boundary");
         return;
     }
     int table = lua_gettop(L);
@@ -73,10 +76,10 @@ static void set_boundary(lua_State *L, pass *p) {
         vm_error(L, "lbm: boundary: a value has no name; name the face, as in { top = \"open\", "
                     "sides = \"open\", bottom = \"wall\" }");
     if (value_get(L, table, "sides") != LUA_TNIL)
-        for (size_t i = 0; i < 4; i++) set_face(L, p, faces[i]);
+        for (size_t i = 0; i < 4; i++) set_face(L, p, faces[i], "sides");
     lua_pop(L, 1);
     for (size_t i = 0; i < COUNT_OF(faces); i++) {
-        if (value_get(L, table, faces[i]) != LUA_TNIL) set_face(L, p, faces[i]);
+        if (value_get(L, table, faces[i]) != LUA_TNIL) set_face(L, p, faces[i], faces[i]);
         lua_pop(L, 1);
     }
 }
