@@ -2,7 +2,7 @@
 // given stays as the air has it. Here the fields, cell by cell of the source's box, so many times a
 // second of the simulation; pass/lbm/give.comp gives them to the air.
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
-//@ option rule = auto {auto, solid, shell} : which cells its meshes are, as of `voxels`; solid keeps thin parts thin
+//@ option rule = auto {auto, solid, shell} : which cells its meshes are, as of `voxels`: auto is a shell, hollow, where a mesh is open; solid fills what is inside, even with holes, and keeps thin parts thin
 //@ field float shape = 0 : the source is where this is above 0.5, and within its meshes if it has any; without it, it is these
 //@ field float density = 0 : smoke; up to 1e4, as temperature and dye: what is beyond counts as that
 //@ field float temperature = 0 : heat
