@@ -16,15 +16,16 @@ struct arena_block {
     _Alignas(ALIGN) unsigned char data[];
 };
 
-static arena_block *block_create(size_t size) {
+static arena_block *block_create(arena *a, size_t size) {
     arena_block *block = mem_alloc(sizeof *block + size); // zeroed
+    a->held += sizeof *block + size;
     block->size = size;
     return block;
 }
 
 static void *carve(arena *a, size_t size) {
     if (size > BLOCK_SIZE / 4) {
-        arena_block *own = block_create(size);
+        arena_block *own = block_create(a, size);
         own->used = size;
         if (a->block) {
             own->next = a->block->next;
@@ -35,7 +36,7 @@ static void *carve(arena *a, size_t size) {
         return own->data;
     }
     if (!a->block || a->block->size - a->block->used < size) {
-        arena_block *block = block_create(BLOCK_SIZE);
+        arena_block *block = block_create(a, BLOCK_SIZE);
         block->next = a->block;
         a->block = block;
     }
@@ -81,4 +82,5 @@ void arena_free(arena *a) {
         block = next;
     }
     a->block = NULL;
+    a->held = 0;
 }

@@ -9,6 +9,7 @@
 typedef struct arena_block arena_block;
 typedef struct arena {
     arena_block *block; // newest block first; zero-initialised is an empty arena
+    size_t held;        // bytes of all blocks
     bool taken;         // by a thread that allocates; it is done sooner than one that sleeps wakes
 } arena;
 

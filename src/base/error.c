@@ -1,8 +1,10 @@
 #include "base/error.h"
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { MESSAGE_CAP = 8192 };
 
@@ -39,7 +41,19 @@ void err_clear(void) {
     message[0] = '\0';
 }
 
+static void (*leave_child)(void); // NULL: the program itself
+
+void err_when_out_of_memory(void (*leave)(void)) {
+    leave_child = leave;
+}
+
+// Not by exit(): other threads still use what its handlers take down.
 void err_out_of_memory(size_t size) {
-    fprintf(stderr, "roil: out of memory (%zu bytes wanted)\n", size);
-    exit(1);
+    static atomic_flag ending = ATOMIC_FLAG_INIT;
+    if (leave_child) leave_child();
+    if (!atomic_flag_test_and_set(&ending)) {
+        fprintf(stderr, "roil: out of memory (%zu bytes wanted)\n", size);
+        _exit(EXIT_FAILURE);
+    }
+    for (;;) pause(); // another thread has said so
 }

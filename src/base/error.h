@@ -19,5 +19,7 @@ bool err_prefix(const char *format, ...) PRINTF_LIKE(1, 2);
 const char *err_get(void);
 void err_clear(void);
 
-// One line on stderr, exit status 1.
+// Ends the process: one line on stderr, exit status 1. No handler of exit() runs.
 __attribute__((noreturn)) void err_out_of_memory(size_t size);
+// `leave` is called before: in a child process it ends it, with a status that its parent knows.
+void err_when_out_of_memory(void (*leave)(void));

@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <fnmatch.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,14 +17,8 @@
 
 // ---- whole files ------------------------------------------------------------------------------
 
-static bool read_open(int fd, const char *path, size_t max, void **data, size_t *size) {
-    struct stat info;
-    if (fstat(fd, &info) != 0) return err_set("%s: %s", path, strerror(errno));
-    if (!S_ISREG(info.st_mode)) return err_set("%s: not a regular file", path);
-    if ((uintmax_t)info.st_size > max)
-        return err_set("%s: %jd bytes, more than the %zu accepted", path, (intmax_t)info.st_size,
-                       max);
-    size_t length = (size_t)info.st_size, done = 0;
+static bool read_open(int fd, const char *path, size_t length, void **data, size_t *size) {
+    size_t done = 0;
     char *bytes = mem_alloc(length + 1);
     while (done < length) {
         ssize_t got = read(fd, bytes + done, length - done);
@@ -42,9 +37,14 @@ static bool read_open(int fd, const char *path, size_t max, void **data, size_t 
 }
 
 bool file_read(const char *path, size_t max, void **data, size_t *size) {
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); // a named pipe must not block
-    if (fd < 0) return err_set("%s: %s", path, strerror(errno));
-    bool done = read_open(fd, path, max, data, size);
+    return file_read_inside(NULL, path, max, data, size);
+}
+
+bool file_read_inside(const char *root, const char *path, size_t max, void **data, size_t *size) {
+    size_t length;
+    int fd = file_open_inside(root, path, max, &length);
+    if (fd < 0) return false;
+    bool done = read_open(fd, path, length, data, size);
     close(fd);
     return done;
 }
@@ -75,27 +75,82 @@ static bool write_in_place(const char *path, const void *data, size_t size) {
 }
 
 // It can only be read by setting it, which two threads must not do at once.
-static mode_t read_umask(void) {
+unsigned file_mode(void) {
     static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
     pthread_mutex_lock(&mutex);
     mode_t mask = umask(0);
     umask(mask);
     pthread_mutex_unlock(&mutex);
-    return mask;
+    return 0666 & ~mask;
+}
+
+// A name beside `path` that nobody has; the draft lies there where it cannot be without a name.
+static void make_name(file_draft *d) {
+    static atomic_uint count;
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    snprintf(d->temporary, sizeof d->temporary, ".roil-%lx-%lx-%x", (unsigned long)getpid(),
+             (unsigned long)now.tv_nsec, atomic_fetch_add(&count, 1));
+}
+
+// Without a name it is gone with the process, however that ends.
+static int open_nameless(int folder) {
+    return openat(folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+}
+
+static int open_named(file_draft *d) {
+    int fd;
+    do {
+        make_name(d);
+        fd = openat(d->folder, d->temporary, O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC | O_NOFOLLOW,
+                    0600);
+    } while (fd < 0 && errno == EEXIST);
+    d->named = fd >= 0;
+    return fd;
+}
+
+static bool is_target(const file_draft *d, bool inside) {
+    struct stat info;
+    const char *name = path_name(d->path);
+    if (fstatat(d->folder, name, &info, inside ? AT_SYMLINK_NOFOLLOW : 0) != 0) return true;
+    if (S_ISDIR(info.st_mode)) return err_set("%s: is a folder", d->path);
+    return S_ISREG(info.st_mode) ||
+           err_set("%s: is no regular file, so it is not written", d->path);
+}
+
+static bool begin(file_draft *d, bool inside) {
+    if (!is_target(d, inside)) return false;
+    if (!path_name(d->path)[0]) return err_set("%s: is no name of a file", d->path);
+    d->fd = open_nameless(d->folder);
+    if (d->fd < 0) d->fd = open_named(d);
+    if (d->fd < 0) return err_set("%s: cannot be written: %s", d->path, strerror(errno));
+    if (fchmod(d->fd, file_mode()) != 0) d->reason = errno;
+    return true;
+}
+
+static bool begin_in(file_draft *d, int folder, const char *path, bool inside) {
+    d->fd = -1;
+    d->reason = 0;
+    d->named = false;
+    d->folder = folder;
+    if (folder < 0) return false;
+    if ((str_copy(d->path, sizeof d->path, path) || path_too_long(path)) && begin(d, inside))
+        return true;
+    close(folder);
+    return false;
 }
 
 bool file_draft_begin(file_draft *d, const char *path) {
-    struct stat info;
-    d->reason = 0;
-    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
-        return err_set("%s: is no regular file", path);
-    int length = snprintf(d->temporary, sizeof d->temporary, "%s.XXXXXX", path);
-    if (length >= (int)sizeof d->temporary) return path_too_long(path);
-    memcpy(d->path, path, strlen(path) + 1);
-    d->fd = mkostemp(d->temporary, O_CLOEXEC);
-    if (d->fd < 0) return err_set("%s: cannot be written: %s", path, strerror(errno));
-    if (fchmod(d->fd, 0666 & ~read_umask()) != 0) d->reason = errno;
-    return true;
+    char above[PATH_CAP];
+    if (strlen(path) >= PATH_CAP) return path_too_long(path);
+    path_folder(above, path);
+    int folder = open(above, O_PATH | O_DIRECTORY | O_CLOEXEC);
+    if (folder < 0) return err_set("%s: cannot be written: %s", path, strerror(errno));
+    return begin_in(d, folder, path, false);
+}
+
+bool file_draft_begin_inside(file_draft *d, const char *root, const char *path) {
+    return begin_in(d, file_open_folder_inside(root, path), path, true);
 }
 
 void file_draft_add(file_draft *d, const void *data, size_t size) {
@@ -109,17 +164,37 @@ void file_draft_patch(file_draft *d, uint64_t at, const void *data, size_t size)
     if (lseek(d->fd, 0, SEEK_END) < 0 && !d->reason) d->reason = errno;
 }
 
+static void end(file_draft *d) {
+    if (d->named) unlinkat(d->folder, d->temporary, 0);
+    close(d->folder);
+}
+
 void file_draft_drop(file_draft *d) {
     close(d->fd);
-    unlink(d->temporary);
+    end(d);
+}
+
+// What has no name gets one, since only a name can take the place of another.
+static bool give_name(file_draft *d) {
+    char open_file[64];
+    snprintf(open_file, sizeof open_file, "/proc/self/fd/%d", d->fd);
+    while (!d->named) {
+        make_name(d);
+        d->named = linkat(AT_FDCWD, open_file, d->folder, d->temporary, AT_SYMLINK_FOLLOW) == 0;
+        if (!d->named && errno != EEXIST) return false;
+    }
+    return true;
 }
 
 bool file_draft_end(file_draft *d) {
     if (!d->reason && !reach_disk(d->fd)) d->reason = errno;
+    if (!d->reason && !give_name(d)) d->reason = errno;
     if (close(d->fd) != 0 && !d->reason) d->reason = errno;
-    if (!d->reason && rename(d->temporary, d->path) != 0) d->reason = errno;
+    if (!d->reason && renameat(d->folder, d->temporary, d->folder, path_name(d->path)) != 0)
+        d->reason = errno;
+    if (!d->reason) d->named = false;
+    end(d);
     if (!d->reason) return true;
-    unlink(d->temporary);
     return err_set("%s: cannot be written: %s", d->path, strerror(d->reason));
 }
 
@@ -131,6 +206,13 @@ bool file_write(const char *path, const void *data, size_t size) {
         return write_in_place(path, data, size);
     }
     if (!file_draft_begin(&draft, path)) return false;
+    file_draft_add(&draft, data, size);
+    return file_draft_end(&draft);
+}
+
+bool file_write_inside(const char *root, const char *path, const void *data, size_t size) {
+    file_draft draft;
+    if (!file_draft_begin_inside(&draft, root, path)) return false;
     file_draft_add(&draft, data, size);
     return file_draft_end(&draft);
 }

@@ -28,7 +28,9 @@ jobs *jobs_create(size_t threads, size_t most) {
     pthread_mutex_init(&j->mutex, NULL);
     pthread_cond_init(&j->fewer, NULL);
     j->threads = worker_create(threads);
-    return j;
+    if (j->threads) return j;
+    jobs_finish(j);
+    return NULL;
 }
 
 static void run(void *user) {
@@ -55,6 +57,14 @@ bool jobs_add(jobs *j, bool (*work)(void *user), void (*release)(void *user), vo
     pthread_mutex_unlock(&j->mutex);
     worker_submit(j->threads, (worker_job){run, one});
     return fine;
+}
+
+bool jobs_wait(jobs *j) {
+    pthread_mutex_lock(&j->mutex);
+    bool waited = j->count > 0;
+    while (j->count > 0) pthread_cond_wait(&j->fewer, &j->mutex);
+    pthread_mutex_unlock(&j->mutex);
+    return waited;
 }
 
 bool jobs_finish(jobs *j) {

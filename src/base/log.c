@@ -1,4 +1,5 @@
 #include "base/log.h"
+#include "base/str.h"
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -30,6 +31,7 @@ void log_write(log_level level, const char *format, ...) {
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    str_make_printable(text);
     if (level == LOG_INFO)
         fprintf(stderr, "%s\n", text);
     else

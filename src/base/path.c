@@ -88,6 +88,18 @@ bool path_require_inside(const char *root, const char *path) {
     return lies_inside(real_root, real) || err_set("%s: leads out of %s", path, root);
 }
 
+bool path_split_inside(char real_root[PATH_CAP], char rest[PATH_CAP], const char *root,
+                       const char *path) {
+    char from_here[PATH_CAP], real[PATH_CAP];
+    if (!real_folder(real_root, root)) return false;
+    if (!path_join(from_here, path[0] == '/' ? "" : ".", path) || !resolve(real, from_here))
+        return false;
+    if (!lies_inside(real_root, real)) return err_set("%s: leads out of %s", path, root);
+    size_t length = strcmp(real_root, "/") == 0 ? 0 : strlen(real_root);
+    str_copy(rest, PATH_CAP, real + length + (real[length] == '/'));
+    return true;
+}
+
 bool path_program_folder(char out[PATH_CAP]) {
     char program[PATH_CAP];
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);

@@ -93,6 +93,14 @@ const char *str_nearest(const char *word, const char *const *candidates, size_t 
     return nearest;
 }
 
+void str_make_printable(char *text) {
+    for (unsigned char *c = (unsigned char *)text; *c; c++) {
+        bool ascii = *c < 0x20 || *c == 0x7f, kept = *c == '\n' || *c == '\t';
+        if (ascii && !kept) *c = '?';
+        if (*c == 0xc2 && c[1] >= 0x80 && c[1] <= 0x9f) c[0] = c[1] = '?';
+    }
+}
+
 bool str_ends_with(const char *text, const char *ending) {
     size_t n = strlen(text), m = strlen(ending);
     return n >= m && memcmp(text + n - m, ending, m) == 0;

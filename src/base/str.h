@@ -19,6 +19,10 @@ const char *strbuf_text(const strbuf *s); // "" when empty
 // is near enough to be a likely typing error.
 const char *str_nearest(const char *word, const char *const *candidates, size_t count);
 
+// What terminals obey becomes '?': control characters other than line breaks and tabs, those of
+// Unicode beyond ASCII (U+0080 to U+009F) too. For whatever came from a file and is printed.
+void str_make_printable(char *text);
+
 bool str_ends_with(const char *text, const char *ending);
 bool str_has_place(const char *text);     // begins with a file and line, "a.lua:12: "
 bool str_is_identifier(const char *text); // [A-Za-z_][A-Za-z0-9_]*

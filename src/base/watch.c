@@ -277,6 +277,17 @@ static void *run(void *user) {
 
 // ---- public -----------------------------------------------------------------------------------
 
+static void release(watch *w) { // its thread has ended
+    close(w->events);
+    close(w->stop);
+    pthread_mutex_destroy(&w->reporting);
+    pthread_mutex_destroy(&w->lock);
+    free_list(&w->list);
+    for (size_t i = 0; i < w->given_count; i++) mem_free(w->given[i]);
+    mem_free(w->given);
+    mem_free(w);
+}
+
 watch *watch_create(const watch_desc *desc) {
     int events = inotify_init1(IN_NONBLOCK | IN_CLOEXEC), stop = eventfd(0, EFD_CLOEXEC);
     if (events < 0 || stop < 0) {
@@ -289,22 +300,18 @@ watch *watch_create(const watch_desc *desc) {
     *w = (watch){.desc = *desc, .events = events, .stop = stop};
     pthread_mutex_init(&w->reporting, NULL);
     pthread_mutex_init(&w->lock, NULL);
-    if (pthread_create(&w->thread, NULL, run, w) != 0) err_out_of_memory(0);
-    return w;
+    int failed = pthread_create(&w->thread, NULL, run, w);
+    if (!failed) return w;
+    err_set("files cannot be watched: no thread can be made: %s", strerror(failed));
+    release(w);
+    return NULL;
 }
 
 void watch_destroy(watch *w) {
     if (!w) return;
     eventfd_write(w->stop, 1);
     pthread_join(w->thread, NULL);
-    close(w->events);
-    close(w->stop);
-    pthread_mutex_destroy(&w->reporting);
-    pthread_mutex_destroy(&w->lock);
-    free_list(&w->list);
-    for (size_t i = 0; i < w->given_count; i++) mem_free(w->given[i]);
-    mem_free(w->given);
-    mem_free(w);
+    release(w);
 }
 
 static bool is_given(const watch *w, const char *const *paths, size_t count) {

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include <pthread.h>
+#include <string.h>
 
 struct worker {
     pthread_mutex_t mutex;
@@ -42,7 +43,13 @@ worker *worker_create(size_t threads) {
     pthread_cond_init(&w->idle, NULL);
     w->threads = mem_alloc(threads * sizeof *w->threads);
     for (size_t i = 0; i < threads; i++) {
-        if (pthread_create(&w->threads[i], NULL, thread_main, w) != 0) err_out_of_memory(0);
+        int failed = pthread_create(&w->threads[i], NULL, thread_main, w);
+        if (failed && i > 0) break;
+        if (failed) {
+            worker_destroy(w);
+            err_set("no thread can be made: %s", strerror(failed));
+            return NULL;
+        }
         w->thread_count++;
     }
     return w;

@@ -9,7 +9,8 @@ typedef struct worker_job {
     void *user;
 } worker_job;
 
-worker *worker_create(size_t threads); // threads >= 1
+// `threads`: at least 1; fewer are made where the system gives no more. NULL, with a message: none.
+worker *worker_create(size_t threads);
 void worker_submit(worker *w, worker_job job);
 void worker_submit_first(worker *w, worker_job job); // before all that still wait
 void worker_wait(worker *w);                         // until every submitted job has ended

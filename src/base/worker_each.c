@@ -2,6 +2,7 @@
 // fails was handed out, so that which message is kept does not depend on how fast the threads are.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/time_limit.h"
 #include "base/worker.h"
 #include <pthread.h>
 #include <string.h>
@@ -13,6 +14,7 @@ typedef struct loop {
     bool (*run)(void *user, size_t index);
     void *user;
     size_t count;
+    time_limit *budget;   // of the thread that waits
     pthread_mutex_t lock; // guards what follows
     size_t next, failed;  // failed: the first that was; `count`: none
     char *message;
@@ -37,22 +39,29 @@ static void note_failure(loop *l, size_t index) {
     pthread_mutex_unlock(&l->lock);
 }
 
-static void *go(void *user) {
-    loop *l = user;
+static void go(loop *l) {
     size_t index;
     while (take(l, &index))
         if (!l->run(l->user, index)) note_failure(l, index);
+}
+
+static void *help(void *user) {
+    loop *l = user;
+    time_limit_adopt(l->budget);
+    go(l);
+    time_limit_charge(time_limit_thread_seconds());
     return NULL;
 }
 
 bool worker_each(size_t count, bool (*run)(void *user, size_t index), void *user) {
-    loop l = {.run = run, .user = user, .count = count, .failed = count};
+    loop l = {
+        .run = run, .user = user, .count = count, .budget = time_limit_now(), .failed = count};
     pthread_mutex_init(&l.lock, NULL);
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
     pthread_t threads[MAX_THREADS];
     size_t started = 0; // fewer than wanted do as well
     while (started + 1 < count && started < MAX_THREADS && (long)started + 1 < cores &&
-           pthread_create(&threads[started], NULL, go, &l) == 0)
+           pthread_create(&threads[started], NULL, help, &l) == 0)
         started++;
     go(&l);
     for (size_t i = 0; i < started; i++) pthread_join(threads[i], NULL);

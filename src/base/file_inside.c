@@ -1,0 +1,92 @@
+// Files that were not named by the user: opened one folder after another below a root, where no
+// part may be a symbolic link by then (path_split_inside has followed those that stay inside).
+#include "base/error.h"
+#include "base/file.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static int enter(int folder, const char *part, bool make) {
+    const int flags = O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
+    if (strcmp(part, "..") == 0) { // of a folder that does not exist
+        errno = ENOENT;
+        return -1;
+    }
+    int entered = openat(folder, part, flags);
+    if (entered >= 0 || errno != ENOENT || !make) return entered;
+    if (mkdirat(folder, part, 0777) != 0 && errno != EEXIST) return -1;
+    return openat(folder, part, flags);
+}
+
+// Below `real_root` to the folder `rest`, whose slashes are overwritten.
+static int walk(const char *real_root, char *rest, bool make) {
+    int folder = open(real_root, O_PATH | O_DIRECTORY | O_CLOEXEC);
+    for (char *part = rest; folder >= 0 && *part;) {
+        size_t length = strcspn(part, "/");
+        char *next = part + length + (part[length] == '/');
+        part[length] = '\0';
+        int entered = length ? enter(folder, part, make) : dup(folder);
+        int reason = errno;
+        close(folder);
+        errno = reason;
+        folder = entered;
+        part = next;
+    }
+    return folder;
+}
+
+int file_open_folder_inside(const char *root, const char *path) {
+    char above[PATH_CAP], real_root[PATH_CAP], rest[PATH_CAP];
+    path_folder(above, path);
+    if (!path_split_inside(real_root, rest, root, above)) return -1;
+    int folder = walk(real_root, rest, true);
+    if (folder < 0) err_set("%s: cannot be written: %s", path, strerror(errno));
+    return folder;
+}
+
+static int open_below(const char *root, const char *path) {
+    char real_root[PATH_CAP], rest[PATH_CAP], above[PATH_CAP];
+    if (!path_split_inside(real_root, rest, root, path)) return -1;
+    path_folder(above, rest);
+    int folder = walk(real_root, strchr(rest, '/') ? above : (char[]){""}, false);
+    int fd = folder < 0 ? -1
+                        : openat(folder, rest[0] ? path_name(rest) : ".",
+                                 O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
+    if (fd < 0) err_set("%s: %s", path, strerror(errno));
+    if (folder >= 0) close(folder);
+    return fd;
+}
+
+static bool check(int fd, const char *path, size_t max, size_t *size) {
+    struct stat info;
+    if (fstat(fd, &info) != 0) return err_set("%s: %s", path, strerror(errno));
+    if (!S_ISREG(info.st_mode)) return err_set("%s: not a regular file", path);
+    if ((uintmax_t)info.st_size > max)
+        return err_set("%s: %jd bytes, more than the %zu accepted", path, (intmax_t)info.st_size,
+                       max);
+    *size = (size_t)info.st_size;
+    return true;
+}
+
+// What is opened while standard output is closed must not take its place.
+static int keep_above_standard(int fd) {
+    if (fd < 0 || fd > STDERR_FILENO) return fd;
+    int high = fcntl(fd, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    close(fd);
+    return high;
+}
+
+int file_open_inside(const char *root, const char *path, size_t max, size_t *size) {
+    int fd = root ? open_below(root, path) : open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    bool opened = fd >= 0;
+    fd = keep_above_standard(fd);
+    if (fd < 0) {
+        if (!root || opened) err_set("%s: %s", path, strerror(errno));
+        return -1;
+    }
+    if (check(fd, path, max, size)) return fd;
+    close(fd);
+    return -1;
+}
