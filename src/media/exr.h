@@ -1,6 +1,7 @@
 // OpenEXR pictures: scanline, ZIP, named channels.
 #pragma once
 #include "base/arena.h"
+#include "media/limits.h"
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -17,5 +18,22 @@ typedef struct exr_image {
 } exr_image;
 
 bool exr_write(const char *path, const exr_image *image); // atomic
-// Half, float and uint channels of a scanline or tiled single-part file; at most 16384 x 16384.
-bool exr_read(const char *path, arena *memory, exr_image *out);
+
+// Of all channels those whose name is one of these letters, "RGB"; NULL: all.
+typedef struct exr_wish {
+    const char *letters; // at most 7
+    picture_limits limits;
+} exr_wish;
+
+// Half, float and uint channels of a scanline or tiled single-part file, which may be a stranger's:
+// the reader decodes it. `wish` NULL: all channels within the usual limits.
+bool exr_read(const char *path, const exr_wish *wish, arena *memory, exr_image *out);
+// Below `root` (base/file.h).
+bool exr_read_inside(const char *root, const char *path, const exr_wish *wish, arena *memory,
+                     exr_image *out);
+const float *exr_find(const exr_image *image, const char *channel); // its values, or NULL
+
+// Here and now, the file's bytes; `name` is for messages.
+bool exr_decode(const void *data, size_t size, const char *name, const exr_wish *wish,
+                arena *memory, exr_image *out);
+bool exr_work(const isolate_call *call); // in a worker

@@ -1,10 +1,10 @@
-// Assimp reads the file in a child process (mesh_import); this side trusts nothing that comes back:
-// it checks every length, index and number, and reads the textures.
+// Assimp reads the file in the reader (mesh_import); this side trusts nothing that comes back: it
+// checks every length, index and number, and has the textures read.
 #include "media/mesh.h"
 #include "base/error.h"
+#include "base/isolate.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "media/isolate.h"
 #include "media/mesh_files.h"
 #include "media/mesh_import.h"
 #include "media/png.h"
@@ -158,15 +158,15 @@ static bool load_texture(loader *l, const mesh_blob_texture *t, const void *byte
         if (strcasecmp(path_extension(file), "png") != 0)
             return err_set("%s: is not a PNG file", name);
         mesh_files_note(&l->files, file); // even if it is missing: it may come
-        if (!png_read(file, l->memory, &image)) return false;
+        if (!png_read_inside(l->files.root, file, NULL, l->memory, &image)) return false;
     }
     *out = texture_from_png(l->memory, &image);
     return true;
 }
 
-bool mesh_texture_load(const char *path, arena *memory, mesh_texture *out) {
+bool mesh_texture_load(const char *root, const char *path, arena *memory, mesh_texture *out) {
     png_image image;
-    if (!png_read(path, memory, &image)) return false;
+    if (!png_read_inside(root, path, NULL, memory, &image)) return false;
     *out = texture_from_png(memory, &image);
     return true;
 }
@@ -194,21 +194,6 @@ static bool take_textures(loader *l, const mesh_blob *head, mesh_part *parts, me
     return true;
 }
 
-static bool take_files(loader *l, const mesh_blob *head, mesh_data *out) {
-    for (uint32_t i = 0; i < head->file_count; i++) {
-        uint32_t length;
-        const void *p = take(l, sizeof length);
-        if (p) memcpy(&length, p, sizeof length);
-        if (!p || length >= PATH_CAP || !(p = take(l, length))) return broken(l);
-        char name[PATH_CAP] = "";
-        memcpy(name, p, length);
-        mesh_files_note(&l->files, name);
-    }
-    out->file_count = l->files.opened_count;
-    out->files = arena_copy(l->memory, l->files.opened, out->file_count * sizeof *out->files);
-    return true;
-}
-
 static bool take_mesh(loader *l, mesh_data *out) {
     mesh_blob head;
     const void *p = take(l, sizeof head);
@@ -219,8 +204,26 @@ static bool take_mesh(loader *l, mesh_data *out) {
         head.level_index_count > MESH_INDICES_MAX)
         return broken(l);
     mesh_part *parts = NULL;
-    return take_geometry(l, &head, &parts, out) && take_textures(l, &head, parts, out) &&
-           take_files(l, &head, out);
+    if (!take_geometry(l, &head, &parts, out) || !take_textures(l, &head, parts, out)) return false;
+    out->file_count = l->files.opened_count;
+    out->files = arena_copy(l->memory, l->files.opened, out->file_count * sizeof *out->files);
+    return true;
+}
+
+static bool import(loader *l, isolate_result *blob) {
+    static const isolate_limits limits = {
+        .processor_ms = 60000, .memory = (uint64_t)4 << 30, .result = (uint64_t)2 << 30};
+    const isolate_job job = {.kind = "mesh",
+                             .name = l->path,
+                             .bytes = l->files.first,
+                             .size = strlen(l->files.first),
+                             .open = mesh_files_give,
+                             .user = &l->files,
+                             .limits = limits};
+    bool done = isolate_run(&job, blob);
+    if (!l->files.refused[0]) return done;
+    if (done) isolate_free(blob);
+    return err_set("%s: names a file that it may not read: %s", l->path, l->files.refused);
 }
 
 bool mesh_load(const char *path, const char *root, arena *memory, mesh_data *out) {
@@ -233,13 +236,13 @@ bool mesh_load(const char *path, const char *root, arena *memory, mesh_data *out
     l->path = path;
     l->memory = memory;
     if (!mesh_files_open(&l->files, path, root, memory)) return false;
-    void *data;
-    mesh_import_job job = {path, root};
-    if (!isolate_run(&(isolate_job){path, mesh_import, &job}, &data, &l->size)) return false;
-    l->bytes = data;
+    isolate_result blob;
+    if (!import(l, &blob)) return false;
+    l->bytes = blob.data;
+    l->size = blob.size;
     *out = (mesh_data){0};
     bool done = take_mesh(l, out);
-    mem_free(data);
+    isolate_free(&blob);
     if (!done) *out = (mesh_data){0};
     return done;
 }

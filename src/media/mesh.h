@@ -54,7 +54,7 @@ typedef struct mesh_data {
 } mesh_data;
 
 // A PNG of at most 16384 pixels a side.
-bool mesh_texture_load(const char *path, arena *memory, mesh_texture *out);
+bool mesh_texture_load(const char *root, const char *path, arena *memory, mesh_texture *out);
 
 // `root` confines textures and buffers that the file names. Limits: 64 MiB file, 8 million
 // vertices. Node transforms are applied. Fails on a mesh without faces and on non-finite positions.

@@ -12,78 +12,8 @@
 
 static const size_t FILE_BYTES_MAX = (size_t)64 << 20;
 
-typedef struct open_file {
-    struct aiFile calls; // first, so that a pointer to it is one to all
-    char *data;
-    size_t size, at;
-} open_file;
-
-static size_t on_read(struct aiFile *file, char *out, size_t size, size_t count) {
-    open_file *f = (open_file *)file;
-    if (size == 0) return 0;
-    size_t whole = (f->size - f->at) / size;
-    if (count > whole) count = whole;
-    memcpy(out, f->data + f->at, count * size);
-    f->at += count * size;
-    return count;
-}
-
-static size_t on_write(struct aiFile *file, const char *data, size_t size, size_t count) {
-    (void)file, (void)data, (void)size, (void)count;
-    return 0;
-}
-
-static size_t on_tell(struct aiFile *file) {
-    return ((open_file *)file)->at;
-}
-
-static size_t on_size(struct aiFile *file) {
-    return ((open_file *)file)->size;
-}
-
-static aiReturn on_seek(struct aiFile *file, size_t offset, enum aiOrigin origin) {
-    open_file *f = (open_file *)file;
-    size_t base = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? f->at : f->size;
-    size_t at = base + offset; // a negative offset comes as a large one, and wraps back
-    if (at > f->size) return aiReturn_FAILURE;
-    f->at = at;
-    return aiReturn_SUCCESS;
-}
-
-static void on_flush(struct aiFile *file) {
-    (void)file;
-}
-
-static struct aiFile *on_open(struct aiFileIO *io, const char *name, const char *mode) {
-    mesh_files *files = (mesh_files *)io;
-    char path[PATH_CAP];
-    if (strchr(mode, 'w') || strchr(mode, 'a') || strchr(mode, '+')) return NULL;
-    if (!mesh_files_resolve(files, name, path)) return NULL;
-    void *data;
-    size_t size;
-    if (!file_read(path, FILE_BYTES_MAX, &data, &size)) return NULL;
-    mesh_files_note(files, path);
-    open_file *f = mem_alloc(sizeof *f);
-    f->calls = (struct aiFile){.ReadProc = on_read,
-                               .WriteProc = on_write,
-                               .TellProc = on_tell,
-                               .FileSizeProc = on_size,
-                               .SeekProc = on_seek,
-                               .FlushProc = on_flush};
-    f->data = data;
-    f->size = size;
-    return &f->calls;
-}
-
-static void on_close(struct aiFileIO *io, struct aiFile *file) {
-    (void)io;
-    open_file *f = (open_file *)file;
-    mem_free(f->data);
-    mem_free(f);
-}
-
 bool mesh_files_open(mesh_files *f, const char *path, const char *root, arena *memory) {
-    *f = (mesh_files){.io = {.OpenProc = on_open, .CloseProc = on_close}, .memory = memory};
+    *f = (mesh_files){.memory = memory};
     char real[PATH_MAX];
     if (!realpath(root, real)) return err_set("%s: %s", root, strerror(errno));
     if (!str_copy(f->root, sizeof f->root, real)) return err_set("%s: path too long", root);
@@ -122,7 +52,7 @@ static bool make_plain(const char *name, char out[PATH_CAP]) {
     return length > 0;
 }
 
-bool mesh_files_resolve(mesh_files *f, const char *name, char out[PATH_CAP]) {
+static bool resolve(mesh_files *f, const char *name, char out[PATH_CAP]) {
     char plain[PATH_CAP];
     if (!make_plain(name, plain))
         err_set("%s: leads out of %s", name, f->root);
@@ -132,11 +62,20 @@ bool mesh_files_resolve(mesh_files *f, const char *name, char out[PATH_CAP]) {
     return false;
 }
 
+int mesh_files_give(void *files, const char *name, size_t *size) {
+    mesh_files *f = files;
+    char path[PATH_CAP];
+    if (!resolve(f, name, path)) return -1;
+    int file = file_open_inside(f->root, path, FILE_BYTES_MAX, size);
+    if (file >= 0) mesh_files_note(f, path);
+    return file;
+}
+
 bool mesh_files_resolve_beside(mesh_files *f, const char *name, char out[PATH_CAP]) {
     char folder[PATH_CAP], joined[PATH_CAP];
     path_folder(folder, f->first);
     if (!path_join(joined, folder, name)) return false;
-    return mesh_files_resolve(f, joined, out);
+    return resolve(f, joined, out);
 }
 
 void mesh_files_note(mesh_files *f, const char *path) {

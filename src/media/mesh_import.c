@@ -3,9 +3,9 @@
 // checked on the other side is checked here.
 #include "media/mesh_import.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "base/memory.h"
-#include "media/isolate.h"
-#include "media/mesh_files.h"
+#include "media/mesh_io.h"
 #include "media/mesh_levels.h"
 #include <assimp/cimport.h>
 #include <assimp/config.h>
@@ -20,8 +20,8 @@
 static const float SMOOTH_ANGLE = 60.0f; // degrees: sharper edges stay hard
 
 typedef struct importer {
-    int out;
-    mesh_files files;
+    const isolate_call *call;
+    mesh_io io;
     arena memory;
     const struct aiScene *scene;
     bool y_up;
@@ -29,7 +29,7 @@ typedef struct importer {
     uint32_t texture_count;
 } importer;
 
-static bool read_scene(importer *im, const char *path) {
+static bool read_scene(importer *im) {
     struct aiPropertyStore *options = aiCreatePropertyStore();
     aiSetImportPropertyInteger(options, AI_CONFIG_PP_SBP_REMOVE,
                                aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -37,10 +37,11 @@ static bool read_scene(importer *im, const char *path) {
     unsigned flags = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_GenSmoothNormals |
                      aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices |
                      aiProcess_ValidateDataStructure | aiProcess_FlipUVs;
-    im->scene = aiImportFileExWithProperties(im->files.first, flags, &im->files.io, options);
-    if (im->files.refused[0])
-        return err_set("%s: names a file that it may not read: %s", path, im->files.refused);
-    return im->scene || err_set("%s: cannot be read as a mesh: %s", path, aiGetErrorString());
+    im->scene = aiImportFileExWithProperties(im->call->bytes, flags, &im->io.io, options);
+    aiReleasePropertyStore(options);
+    if (im->io.refused[0]) return err_set("%s: %s", im->call->name, im->io.refused);
+    return im->scene ||
+           err_set("%s: cannot be read as a mesh: %s", im->call->name, aiGetErrorString());
 }
 
 static bool count(const importer *im, const char *path, mesh_blob *out) {
@@ -141,17 +142,16 @@ static bool put_all_geometry(importer *im, mesh_blob *head, const mesh_part *par
     mesh_levels levels;
     mesh_levels_make(&mesh, &im->memory, &levels);
     head->texture_count = im->texture_count;
-    head->file_count = (uint32_t)im->files.opened_count;
     head->level_count = levels.count;
     head->level_index_count = levels.index_count;
     memcpy(head->errors, levels.errors, sizeof head->errors);
-    bool done = isolate_put(im->out, head, sizeof *head) &&
-                isolate_put(im->out, parts, head->part_count * sizeof *parts) &&
-                isolate_put(im->out, vertices, head->vertex_count * sizeof *vertices) &&
-                isolate_put(im->out, indices, head->index_count * sizeof *indices) &&
-                isolate_put(im->out, levels.indices, levels.index_count * sizeof *indices);
+    bool done = isolate_put(im->call, head, sizeof *head) &&
+                isolate_put(im->call, parts, head->part_count * sizeof *parts) &&
+                isolate_put(im->call, vertices, head->vertex_count * sizeof *vertices) &&
+                isolate_put(im->call, indices, head->index_count * sizeof *indices) &&
+                isolate_put(im->call, levels.indices, levels.index_count * sizeof *indices);
     for (uint32_t i = 0; i < levels.count && done; i++)
-        done = isolate_put(im->out, levels.runs[i], head->part_count * sizeof(mesh_run));
+        done = isolate_put(im->call, levels.runs[i], head->part_count * sizeof(mesh_run));
     return done;
 }
 
@@ -180,13 +180,15 @@ static bool put_texels(const importer *im, const struct aiTexture *texture) {
     mesh_blob_texture head = {MESH_TEXTURE_TEXELS, texture->mWidth, texture->mHeight,
                               (uint32_t)(texels * 4)};
     if (texels > UINT32_MAX / 4) return err_set("an embedded texture is too large");
-    if (!isolate_put(im->out, &head, sizeof head)) return false;
+    if (!isolate_put(im->call, &head, sizeof head)) return false;
+    uint8_t *rgba = mem_alloc(texels * 4);
     for (size_t i = 0; i < texels; i++) {
         const struct aiTexel *t = &texture->pcData[i];
-        const uint8_t rgba[4] = {t->r, t->g, t->b, t->a};
-        if (!isolate_put(im->out, rgba, sizeof rgba)) return false;
+        memcpy(rgba + 4 * i, (const uint8_t[4]){t->r, t->g, t->b, t->a}, 4);
     }
-    return true;
+    bool done = isolate_put(im->call, rgba, texels * 4);
+    mem_free(rgba);
+    return done;
 }
 
 // "*3" is the fourth texture in the file; others may be embedded under their file name.
@@ -207,32 +209,27 @@ static bool put_texture(const importer *im, const char *name) {
         head = (mesh_blob_texture){MESH_TEXTURE_FILE, 0, 0, embedded->mWidth};
         bytes = embedded->pcData;
     }
-    return isolate_put(im->out, &head, sizeof head) && isolate_put(im->out, bytes, head.size);
+    return isolate_put(im->call, &head, sizeof head) && isolate_put(im->call, bytes, head.size);
 }
 
-static bool put_all(importer *im, const char *path) {
+static bool put_all(importer *im) {
+    const char *path = im->call->name;
     mesh_blob head = {0};
     if (!count(im, path, &head)) return false;
     if (!put_geometry(im, &head)) return err_prefix("%s: ", path);
     for (uint32_t i = 0; i < im->texture_count; i++)
         if (!put_texture(im, im->textures[i])) return err_prefix("%s: ", path);
-    for (size_t i = 0; i < im->files.opened_count; i++) {
-        uint32_t length = (uint32_t)strlen(im->files.opened[i]);
-        if (!isolate_put(im->out, &length, sizeof length) ||
-            !isolate_put(im->out, im->files.opened[i], length))
-            return err_prefix("%s: ", path);
-    }
     return true;
 }
 
-bool mesh_import(void *user, int out) {
-    const mesh_import_job *job = user;
+bool mesh_import(const isolate_call *call) {
     importer *im = mem_alloc(sizeof *im);
-    im->out = out;
-    im->y_up = strcasecmp(path_extension(job->path), "obj") != 0;
-    bool done = mesh_files_open(&im->files, job->path, job->root, &im->memory) &&
-                read_scene(im, job->path) && put_all(im, job->path);
+    im->call = call;
+    im->y_up = strcasecmp(path_extension(call->bytes), "obj") != 0;
+    mesh_io_open(&im->io, call);
+    bool done = read_scene(im) && put_all(im);
+    if (im->scene) aiReleaseImport(im->scene);
     arena_free(&im->memory);
     mem_free(im);
-    return done; // the scene goes with the process
+    return done;
 }

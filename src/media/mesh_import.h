@@ -1,13 +1,14 @@
-// Assimp's part of reading a mesh. It runs in a child process (isolate.h): assimp 5.2 crashes on
-// many damaged files. The result goes over as bytes, in this order:
+// Assimp's part of reading a mesh. It runs in a worker of the reader (base/isolate.h): assimp 5.2
+// crashes on many damaged files. The result goes over as bytes, in this order:
 //   mesh_blob, mesh_part[part_count], mesh_vertex[vertex_count], uint32_t[index_count and
 //   level_index_count], mesh_run[level_count times part_count], texture_count times
-//   mesh_blob_texture and its bytes, file_count times uint32_t and a name.
+//   mesh_blob_texture and its bytes.
 #pragma once
+#include "base/isolate.h"
 #include "media/mesh.h"
 
 typedef struct mesh_blob {
-    uint32_t part_count, vertex_count, index_count, texture_count, file_count;
+    uint32_t part_count, vertex_count, index_count, texture_count;
     uint32_t level_count, level_index_count;
     float errors[MESH_LEVELS];
 } mesh_blob; // a part's texture is an index into the textures that follow, or -1
@@ -24,8 +25,6 @@ typedef struct mesh_blob_texture {
 
 enum { MESH_VERTICES_MAX = 8 << 20, MESH_INDICES_MAX = 64 << 20, MESH_TEXTURES_MAX = 256 };
 
-typedef struct mesh_import_job {
-    const char *path, *root;
-} mesh_import_job;
-
-bool mesh_import(void *job, int out); // for isolate_run
+// In a worker. The input is the name that assimp shall give the file: "./" and then relative to the
+// root (mesh_files.h); the file itself is asked for like those that it names.
+bool mesh_import(const isolate_call *call);

@@ -3,38 +3,15 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "media/exr.h"
-#include "media/isolate.h"
 #include "media/png.h"
 #include <math.h>
 #include <string.h>
 
-typedef struct task {
-    const char *path;
-    uint32_t side_max;
-} task;
-
-typedef struct head { // what the child sends, before the pixels
-    uint32_t width, height;
-    int bits;
-} head;
-
-static bool fits(const task *t, uint32_t width, uint32_t height) {
-    if (width >= 1 && height >= 1 && width <= t->side_max && height <= t->side_max) return true;
-    return err_set("%s: a picture of %ux%u; up to %ux%u is accepted", t->path, width, height,
-                   t->side_max, t->side_max);
-}
-
-static const float *find_channel(const exr_image *image, const char *name) {
-    for (size_t c = 0; c < image->channel_count; c++)
-        if (strcmp(image->channels[c].name, name) == 0) return image->channels[c].values;
-    return NULL;
-}
-
 // Red, green and blue that are missing are grey, or nothing if there is another colour.
 static bool find_planes(const char *path, const exr_image *image, const float *planes[4]) {
     static const char *const names[4] = {"R", "G", "B", "A"};
-    const float *grey = find_channel(image, "Y");
-    for (int c = 0; c < 4; c++) planes[c] = find_channel(image, names[c]);
+    const float *grey = exr_find(image, "Y");
+    for (int c = 0; c < 4; c++) planes[c] = exr_find(image, names[c]);
     if (!planes[0] && !planes[1] && !planes[2]) {
         if (!grey)
             return err_set("%s: the picture has no channel R, G, B or Y; one at least is needed",
@@ -44,32 +21,42 @@ static bool find_planes(const char *path, const exr_image *image, const float *p
     return true;
 }
 
-static bool decode_exr(const task *t, arena *memory, head *out, float **rgba) {
+static bool read_exr(const char *root, const char *path, const picture_limits *limits,
+                     arena *memory, picture *out) {
+    const exr_wish wish = {"RGBAY", *limits};
     exr_image image;
     const float *planes[4];
-    if (!exr_read(t->path, memory, &image) || !fits(t, image.width, image.height) ||
-        !find_planes(t->path, &image, planes))
-        return false;
-    size_t count = (size_t)image.width * image.height;
-    *out = (head){image.width, image.height, 0};
-    *rgba = arena_alloc(memory, 4 * count * sizeof **rgba);
-    for (size_t i = 0; i < count; i++)
-        for (size_t c = 0; c < 4; c++)
-            (*rgba)[4 * i + c] = planes[c] ? planes[c][i] : c == 3 ? 1 : 0;
-    return true;
+    arena scratch = {0};
+    bool done =
+        exr_read_inside(root, path, &wish, &scratch, &image) && find_planes(path, &image, planes);
+    if (done) {
+        size_t count = (size_t)image.width * image.height;
+        float *rgba = arena_alloc(memory, 4 * count * sizeof *rgba);
+        for (size_t i = 0; i < count; i++)
+            for (size_t c = 0; c < 4; c++)
+                rgba[4 * i + c] = planes[c] ? planes[c][i] : c == 3 ? 1 : 0;
+        *out = (picture){image.width, image.height, 0, rgba};
+    }
+    arena_free(&scratch);
+    return done;
 }
 
-static bool decode_png(const task *t, arena *memory, head *out, float **rgba) {
+static bool read_png(const char *root, const char *path, const picture_limits *limits,
+                     arena *memory, picture *out) {
     png_image image;
-    if (!png_read(t->path, memory, &image) || !fits(t, image.width, image.height)) return false;
-    size_t count = 4 * (size_t)image.width * image.height; // always RGBA
-    const uint8_t *bytes = image.pixels;
-    const uint16_t *words = image.pixels;
-    *out = (head){image.width, image.height, image.bits};
-    *rgba = arena_alloc(memory, count * sizeof **rgba);
-    for (size_t i = 0; i < count; i++)
-        (*rgba)[i] = image.bits == 8 ? (float)bytes[i] / 255.0f : (float)words[i] / 65535.0f;
-    return true;
+    arena scratch = {0};
+    bool done = png_read_inside(root, path, limits, &scratch, &image);
+    if (done) {
+        size_t count = 4 * (size_t)image.width * image.height; // always RGBA
+        const uint8_t *bytes = image.pixels;
+        const uint16_t *words = image.pixels;
+        float *rgba = arena_alloc(memory, count * sizeof *rgba);
+        for (size_t i = 0; i < count; i++)
+            rgba[i] = image.bits == 8 ? (float)bytes[i] / 255.0f : (float)words[i] / 65535.0f;
+        *out = (picture){image.width, image.height, image.bits, rgba};
+    }
+    arena_free(&scratch);
+    return done;
 }
 
 static bool is_png(const char *path) {
@@ -77,48 +64,23 @@ static bool is_png(const char *path) {
     return length >= 4 && strcmp(path + length - 4, ".png") == 0;
 }
 
-static bool decode(void *user, int out) { // in the child
-    const task *t = user;
-    arena memory = {0};
-    head h;
-    float *rgba;
-    if (!(is_png(t->path) ? decode_png : decode_exr)(t, &memory, &h, &rgba)) return false;
-    return isolate_put(out, &h, sizeof h) &&
-           isolate_put(out, rgba, 4 * (size_t)h.width * h.height * sizeof *rgba);
-}
-
-static bool check_values(const task *t, const head *h, const float *rgba) {
-    size_t count = 4 * (size_t)h->width * h->height;
+static bool check_values(const char *path, const picture *p) {
+    size_t count = 4 * (size_t)p->width * p->height;
     for (size_t i = 0; i < count; i++)
-        if (!isfinite(rgba[i]))
+        if (!isfinite(p->rgba[i]))
             return err_set("%s: the picture holds %g at %zu, %zu; finite numbers are accepted",
-                           t->path, (double)rgba[i], i / 4 % h->width, i / 4 / h->width);
+                           path, (double)p->rgba[i], i / 4 % p->width, i / 4 / p->width);
     return true;
 }
 
 bool picture_read(const char *path, const char *root, uint32_t side_max, arena *memory,
                   picture *out) {
-    task t = {path, side_max};
-    void *data;
-    size_t size;
-    if (!path_require_inside(root, path) ||
-        !isolate_run(&(isolate_job){.name = path, .work = decode, .user = &t}, &data, &size))
-        return false;
-    head h = {0};
-    if (size >= sizeof h) memcpy(&h, data, sizeof h);
-    size_t bytes = 4 * (size_t)h.width * h.height * sizeof(float);
-    const float *sent = (const float *)((const char *)data + sizeof h);
-    bool done =
-        fits(&t, h.width, h.height) &&
-        (size == sizeof h + bytes || err_set("%s: damaged: its reader returned nonsense", path)) &&
-        check_values(&t, &h, sent);
-    if (done) {
-        float *rgba = arena_alloc(memory, bytes);
-        memcpy(rgba, sent, bytes);
-        *out = (picture){h.width, h.height, h.bits, rgba};
-    }
-    mem_free(data);
-    return done;
+    enum { CHANNELS = 6 }; // R, G, B, A, Y, and a place for all others
+    const picture_limits limits = {side_max, side_max,
+                                   CHANNELS * sizeof(float) * (uint64_t)side_max * side_max};
+    return path_require_inside(root, path) &&
+           (is_png(path) ? read_png : read_exr)(root, path, &limits, memory, out) &&
+           check_values(path, out);
 }
 
 bool picture_write(const char *path, const picture *image) {

@@ -1,5 +1,5 @@
 // Pictures that effects are made from (templates, obstacles, sprites): OpenEXR or PNG, read as
-// numbers. The file may be a stranger's: it is decoded in a child process.
+// numbers. The file may be a stranger's: the reader decodes it.
 #pragma once
 #include "base/arena.h"
 #include <stdbool.h>

@@ -26,7 +26,6 @@ enum {
     KEY_MAX = 79,
     TEXT_BYTES_MAX = 1 << 20
 };
-static const size_t FILE_BYTES_MAX = (size_t)1 << 30;
 
 typedef struct session {
     const char *name; // for messages
@@ -36,6 +35,7 @@ typedef struct session {
     size_t size, at;
     strbuf output; // writing
     char fault[160];
+    bool refused; // the message is set, and names the file
 } session;
 
 static void fail(png_structp png, const char *message) {
@@ -113,7 +113,9 @@ static bool encode(session *s, const png_image *image, const png_text *texts, si
     return true;
 }
 
-bool png_write(const char *path, const png_image *image, const png_text *texts, size_t text_count) {
+// With a `root` below it, else wherever `path` leads.
+static bool write_picture(const char *root, const char *path, const png_image *image,
+                          const png_text *texts, size_t text_count) {
     assert(image->channels == 3 || image->channels == 4);
     assert(image->bits == 8 || image->bits == 16);
     if (image->width == 0 || image->height == 0 || image->width > SIDE_MAX ||
@@ -127,11 +129,20 @@ bool png_write(const char *path, const png_image *image, const png_text *texts, 
     bool done = encode(&s, image, texts, texts ? text_count : 0);
     png_destroy_write_struct(&s.png, &s.info);
     if (done)
-        done = file_write(path, s.output.text, s.output.length);
+        done = root ? file_write_inside(root, path, s.output.text, s.output.length)
+                    : file_write(path, s.output.text, s.output.length);
     else
         err_set("%s: cannot be encoded: %s", path, s.fault);
     strbuf_free(&s.output);
     return done;
+}
+
+bool png_write(const char *path, const png_image *image, const png_text *texts, size_t text_count) {
+    return write_picture(NULL, path, image, texts, text_count);
+}
+
+bool png_write_inside(const char *root, const char *path, const png_image *image) {
+    return write_picture(root, path, image, NULL, 0);
 }
 
 // Asks libpng to turn every colour type into RGBA of 8 or 16 bits.
@@ -157,10 +168,14 @@ static void read_header(session *s) { // all that stands before the pixels
     png_read_info(s->png, s->info);
 }
 
-static bool decode(session *s, arena *memory, png_image *out) {
+static bool decode(session *s, const picture_limits *limits, arena *memory, png_image *out) {
     if (setjmp(png_jmpbuf(s->png))) return false;
     read_header(s);
     ask_for_rgba(s);
+    s->refused = !picture_limits_allow(limits, s->name, png_get_image_width(s->png, s->info),
+                                       png_get_image_height(s->png, s->info),
+                                       4 * (size_t)png_get_bit_depth(s->png, s->info) / 8);
+    if (s->refused) return false;
     out->width = png_get_image_width(s->png, s->info);
     out->height = png_get_image_height(s->png, s->info);
     out->bits = png_get_bit_depth(s->png, s->info);
@@ -185,25 +200,17 @@ static bool open_input(session *s, const void *data, size_t size, const char *na
     return true;
 }
 
-bool png_read_memory(const void *data, size_t size, const char *name, arena *memory,
-                     png_image *out) {
+bool png_decode(const void *data, size_t size, const char *name, const picture_limits *limits,
+                arena *memory, png_image *out) {
     session s;
+    *out = (png_image){0};
     if (!open_input(&s, data, size, name)) return false;
-    bool done = decode(&s, memory, out);
+    bool done = decode(&s, limits, memory, out);
     png_destroy_read_struct(&s.png, &s.info, NULL);
     if (done) return true;
     *out = (png_image){0};
-    return err_set("%s: cannot be read as PNG (at most %dx%d): %s", name, SIDE_MAX, SIDE_MAX,
-                   s.fault);
-}
-
-bool png_read(const char *path, arena *memory, png_image *out) {
-    void *data;
-    size_t size;
-    if (!file_read(path, FILE_BYTES_MAX, &data, &size)) return false;
-    bool done = png_read_memory(data, size, path, memory, out);
-    mem_free(data);
-    return done;
+    return !s.refused && err_set("%s: cannot be read as PNG (at most %dx%d): %s", name, SIDE_MAX,
+                                 SIDE_MAX, s.fault);
 }
 
 // ---- texts ------------------------------------------------------------------------------------
@@ -225,21 +232,12 @@ static bool decode_texts(session *s, arena *memory, png_text *out, size_t *count
     return true;
 }
 
-bool png_read_texts_memory(const void *data, size_t size, const char *name, arena *memory,
-                           png_text out[PNG_MAX_TEXTS], size_t *count) {
+bool png_decode_texts(const void *data, size_t size, const char *name, arena *memory,
+                      png_text out[PNG_MAX_TEXTS], size_t *count) {
     session s;
     *count = 0;
     if (!open_input(&s, data, size, name)) return false;
     bool done = decode_texts(&s, memory, out, count);
     png_destroy_read_struct(&s.png, &s.info, NULL);
     return done || err_set("%s: cannot be read as PNG: %s", name, s.fault);
-}
-
-bool png_read_texts(const char *path, arena *memory, png_text out[PNG_MAX_TEXTS], size_t *count) {
-    void *data;
-    size_t size;
-    if (!file_read(path, FILE_BYTES_MAX, &data, &size)) return false;
-    bool done = png_read_texts_memory(data, size, path, memory, out, count);
-    mem_free(data);
-    return done;
 }

@@ -224,9 +224,14 @@ bool size_is_fine(const vdb_sample_desc &desc) {
 } // namespace
 
 extern "C" bool vdb_read_info(const char *path, arena *memory, vdb_info *out) {
+    return vdb_read_info_inside(nullptr, path, memory, out);
+}
+
+extern "C" bool vdb_read_info_inside(const char *root, const char *path, arena *memory,
+                                     vdb_info *out) {
     return guarded(path, [&] {
         file f;
-        if (!f.open(path)) return false;
+        if (!f.open(root, path)) return false;
         size_t count = f.layout.count;
         auto grids = static_cast<vdb_grid_info *>(arena_alloc(memory, count * sizeof *out->grids));
         for (size_t i = 0; i < count; i++)
@@ -244,7 +249,7 @@ extern "C" bool vdb_sample(const vdb_sample_desc *desc, uint64_t *bad) {
     if (bad) *bad = 0;
     return guarded(desc->path, [&] {
         file f;
-        if (!f.open(desc->path)) return false;
+        if (!f.open(desc->root, desc->path)) return false;
         const vdb_layout_grid *g = f.find(desc->grid);
         if (!g) return no_such_grid(f, *desc);
         if (!can_sample(*g, *desc) || !size_is_fine(*desc)) return false;

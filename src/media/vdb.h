@@ -31,14 +31,17 @@ typedef struct vdb_info {
 
 // Metadata only: no voxel is read (where the file lacks a box in its metadata, the grid is read).
 bool vdb_read_info(const char *path, arena *memory, vdb_info *out);
+// Of a file below `root` (base/file.h).
+bool vdb_read_info_inside(const char *root, const char *path, arena *memory, vdb_info *out);
 
 typedef struct vdb_sample_desc {
     const char *path;
     const char *grid; // exact name
     box3 box;         // world box to fill, in file units; voxel centres half a voxel inside
     uint32_t size[3];
-    int components; // 1 or 3
-    float *out;     // size[0] * size[1] * size[2] * components, x fastest
+    int components;   // 1 or 3
+    float *out;       // size[0] * size[1] * size[2] * components, x fastest
+    const char *root; // that the file must lie in; NULL: the user named it
 } vdb_sample_desc;
 
 // Resamples (trilinearly; exactly where the lattices coincide) one grid into a dense box. Level
@@ -52,8 +55,8 @@ bool vdb_sample(const vdb_sample_desc *desc, uint64_t *bad);
 enum { VDB_BLOCK = 9 };           // voxels a side: 8, and those that linear filtering needs beyond
 typedef struct vdb_file vdb_file; // several grids of which are wanted: read once
 typedef struct vdb_blocks vdb_blocks;
-vdb_file *vdb_file_open(const char *path);
-void vdb_file_close(vdb_file *f); // NULL is fine
+vdb_file *vdb_file_open(const char *root, const char *path); // `root`: as of a vdb_sample_desc
+void vdb_file_close(vdb_file *f);                            // NULL is fine
 // `desc` may have any size, and its `out` is not used. `opened` is its file, or NULL.
 vdb_blocks *vdb_blocks_open(const vdb_sample_desc *desc, const vdb_file *opened);
 void vdb_blocks_close(vdb_blocks *b); // NULL is fine

@@ -274,9 +274,12 @@ struct vdb_file {
     file contents;
 };
 
-extern "C" vdb_file *vdb_file_open(const char *path) {
-    auto made = std::make_unique<vdb_file>();
-    bool done = guarded(path, [&] { return made->contents.open(path); });
+extern "C" vdb_file *vdb_file_open(const char *root, const char *path) {
+    std::unique_ptr<vdb_file> made;
+    bool done = guarded(path, [&] {
+        made = std::make_unique<vdb_file>();
+        return made->contents.open(root, path);
+    });
     return done ? made.release() : nullptr;
 }
 
@@ -288,7 +291,7 @@ extern "C" vdb_blocks *vdb_blocks_open(const vdb_sample_desc *desc, const vdb_fi
     vdb_blocks *made = nullptr;
     guarded(desc->path, [&] {
         file own;
-        if (!opened && !own.open(desc->path)) return false;
+        if (!opened && !own.open(desc->root, desc->path)) return false;
         const file &f = opened ? opened->contents : own;
         const vdb_layout_grid *g = f.find(desc->grid);
         if (!g) return no_such_grid(f, *desc);

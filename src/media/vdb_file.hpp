@@ -103,9 +103,9 @@ struct file {
         arena_free(&memory);
         mem_free(bytes);
     }
-    bool open(const char *path) {
+    bool open(const char *root, const char *path) {
         size_t size;
-        return file_read(path, file_bytes_max, &bytes, &size) &&
+        return file_read_inside(root, path, file_bytes_max, &bytes, &size) &&
                vdb_layout_read(path, bytes, size, &memory, &layout);
     }
     const vdb_layout_grid *find(const char *name) const {

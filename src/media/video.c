@@ -1,24 +1,22 @@
-// MP4 through libavformat and libavcodec. The film is written under a temporary name beside its
-// own and renamed at the end. Pictures are padded to even sizes, converted to 8-bit 4:2:0 with the
-// BT.709 matrix, and tagged so. Frame n is shown at time n / fps.
+// MP4 through libavformat and libavcodec. The film is a draft that gets its name at the end (base/
+// file.h), so that a process that is killed leaves nothing: libavformat, which opens it again to
+// move the index to its front, reaches it by its descriptor. Pictures are padded to even sizes,
+// converted to 8-bit 4:2:0 with the BT.709 matrix, and tagged so. Frame n is shown at time n / fps.
 #include "media/video.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
 #include "media/av.h"
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 enum { SIDE_MAX = 16384, TIME_BASE_MAX = 1001000, MPEG4_QUANTISER = 3, KEY_SECONDS = 2 };
 
 struct video {
-    char path[PATH_CAP], temporary[PATH_CAP];
+    char path[PATH_CAP];
+    file_draft draft;
+    bool drafting; // `draft` has begun
     uint32_t width, height, even_width, even_height;
     int64_t frames;
     uint8_t *padded; // NULL when both sizes are even
@@ -34,25 +32,6 @@ static bool fault(const video *v, const char *doing, int code) {
     char text[AV_ERROR_MAX_STRING_SIZE] = "";
     av.av_strerror(code, text, sizeof text);
     return err_set("%s: %s: %s", v->path, doing, text);
-}
-
-static bool create_temporary(video *v) {
-    int length = snprintf(v->temporary, sizeof v->temporary, "%s.XXXXXX", v->path);
-    bool fits = length < (int)sizeof v->temporary;
-    int fd = fits && !file_is_folder(v->path) ? mkostemp(v->temporary, O_CLOEXEC) : -1;
-    int reason = errno;
-    if (fd < 0) {
-        v->temporary[0] = '\0'; // there is no file to remove
-        if (!fits) return err_set("%s: path too long", v->path);
-        if (file_is_folder(v->path)) return err_set("%s: is a folder", v->path);
-        return err_set("%s: cannot be written: %s", v->path, strerror(reason));
-    }
-    mode_t mask = umask(0);
-    umask(mask);
-    int changed = fchmod(fd, 0666 & ~mask);
-    reason = errno;
-    close(fd);
-    return changed == 0 || err_set("%s: cannot be written: %s", v->path, strerror(reason));
 }
 
 static bool open_encoder(video *v, double fps) {
@@ -93,7 +72,7 @@ static bool open_file(video *v) {
     v->stream->time_base = v->encoder->time_base;
     v->stream->avg_frame_rate = v->encoder->framerate;
     int code = av.avcodec_parameters_from_context(v->stream->codecpar, v->encoder);
-    if (code >= 0) code = av.avio_open(&v->format->pb, v->temporary, AVIO_FLAG_WRITE);
+    if (code >= 0) code = av.avio_open(&v->format->pb, v->format->url, AVIO_FLAG_WRITE);
     if (code < 0) return fault(v, "cannot be written", code);
     AVDictionary *options = NULL;
     av.av_dict_set(&options, "movflags", "+faststart", 0);
@@ -145,9 +124,11 @@ video *video_create(const char *path, uint32_t width, uint32_t height, double fp
     *v = (video){.width = width, .height = height};
     v->even_width = width + (width & 1);
     v->even_height = height + (height & 1);
-    bool fits = str_copy(v->path, sizeof v->path, path);
-    bool done = fits ? create_temporary(v) : err_set("%s: path too long", path);
-    if (done && av.avformat_alloc_output_context2(&v->format, NULL, "mp4", v->temporary) < 0)
+    char opened[64];
+    bool done = str_copy(v->path, sizeof v->path, path) || path_too_long(path);
+    done = v->drafting = done && file_draft_begin(&v->draft, path);
+    snprintf(opened, sizeof opened, "/proc/self/fd/%d", v->draft.fd);
+    if (done && av.avformat_alloc_output_context2(&v->format, NULL, "mp4", opened) < 0)
         done = err_set("%s: this libavformat writes no MP4", path);
     if (done && open_encoder(v, fps) && open_file(v) && open_converter(v)) return v;
     video_abandon(v);
@@ -201,10 +182,8 @@ static bool close_file(video *v) {
     int closed = av.avio_closep(&v->format->pb);
     if (code >= 0) code = closed;
     if (code < 0) return fault(v, "cannot be written", code);
-    if (rename(v->temporary, v->path) != 0)
-        return err_set("%s: cannot be written: %s", v->path, strerror(errno));
-    v->temporary[0] = '\0';
-    return true;
+    v->drafting = false;
+    return file_draft_end(&v->draft);
 }
 
 bool video_finish(video *v) {
@@ -223,6 +202,6 @@ void video_abandon(video *v) {
     av.av_packet_free(&v->packet);
     av.sws_freeContext(v->scaler);
     mem_free(v->padded);
-    if (v->temporary[0]) unlink(v->temporary);
+    if (v->drafting) file_draft_drop(&v->draft);
     mem_free(v);
 }

@@ -1,11 +1,7 @@
 // Small edits of a SPIR-V module, instruction by instruction. A module is five words of header,
 // then instructions whose first word holds the word count above the opcode (SPIR-V 1.6, 2.3).
-#include "base/memory.h"
 #include "shader/unit.h"
-#include <spirv_cross/spirv.h>
 #include <string.h>
-
-enum { HEADER_WORDS = 5 };
 
 typedef struct ids {
     uint32_t *items;
@@ -18,19 +14,13 @@ static bool contains(const uint32_t *items, size_t count, uint32_t id) {
     return false;
 }
 
-// Words of the instruction at `i`; 0 when the rest is not an instruction.
-static size_t length_at(const spirv *code, size_t i) {
-    size_t length = code->words[i] >> 16;
-    return length <= code->count - i ? length : 0;
-}
-
 static uint32_t opcode_at(const spirv *code, size_t i) {
     return code->words[i] & SpvOpCodeMask;
 }
 
 static void find_dead(const spirv *code, const uint32_t *live, size_t live_count, ids *dead) {
-    for (size_t i = HEADER_WORDS, length; i < code->count; i += length) {
-        length = length_at(code, i);
+    for (size_t i = SPIRV_HEADER, length; i < code->count; i += length) {
+        length = spirv_length(code->words, code->count, i);
         if (!length || opcode_at(code, i) == SpvOpFunction) return;
         if (opcode_at(code, i) != SpvOpVariable || length < 4) continue;
         uint32_t id = code->words[i + 2], storage = code->words[i + 3];
@@ -74,8 +64,9 @@ void spirv_clean(spirv *code, const uint32_t local_size[3], const uint32_t *live
                  size_t live_count) {
     ids dead = {0};
     find_dead(code, live, live_count, &dead);
-    size_t kept = HEADER_WORDS, i = HEADER_WORDS, length;
-    for (; i < code->count && (length = length_at(code, i)) != 0; i += length) {
+    size_t kept = SPIRV_HEADER, i = SPIRV_HEADER, length;
+    for (; i < code->count && (length = spirv_length(code->words, code->count, i)) != 0;
+         i += length) {
         uint32_t *from = &code->words[i], *to = &code->words[kept];
         uint32_t opcode = opcode_at(code, i);
         if (opcode == SpvOpEntryPoint && length > 3) {

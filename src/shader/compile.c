@@ -3,7 +3,7 @@
 // is shared between two compiles but the library's constant paths and its counter, so threads need
 // no lock.
 #include "base/memory.h"
-#include "shader/isolate.h"
+#include "shader/compiler.h"
 #include "shader/unit.h"
 #include <string.h>
 
@@ -48,9 +48,18 @@ static bool reflect(job *j, spirv *code, arena *memory, shader_binary *out) {
     return true;
 }
 
+// A text that the effect brings; what is generated and what the program brings is known to be
+// sound.
+static bool is_strange(const shader_unit *unit) {
+    for (size_t i = 0; i < unit->file_count; i++)
+        if (unit->files[i].where.root == ROOT_EFFECT && unit->files[i].where.path) return true;
+    return false;
+}
+
 static bool run_compiler(job *j, spirv *out) {
     glsl_answer answer;
-    if (!isolate_compile(j->source.text, j->desc->stage, &answer))
+    const compiler_order order = {.stage = j->desc->stage, .strange = is_strange(&j->unit)};
+    if (!compiler_run(j->source.text, &order, &answer))
         return err_prefix("%s: ", j->unit.files[0].where.label);
     bool done = glsl_explain(&j->unit, &answer);
     if (done)

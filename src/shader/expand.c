@@ -3,77 +3,83 @@
 // drivers walk all of them, so such modules are refused.
 //
 // The size of a function is its own words and the sizes of what it calls; each is found once, by
-// a walk in depth over the calls that keeps its own stack.
-#include "base/memory.h"
+// a walk in depth over the calls that keeps its own stack. So is what its arrays take of a thread's
+// memory: a driver that inlines a call twice may give its arrays two places.
 #include "shader/unit.h"
-#include <spirv_cross/spirv.h>
-
-enum { HEADER_WORDS = 5, BOUND = 3 };
 
 typedef struct function {
     size_t at, end; // words not walked yet
-    size_t size;
+    size_t size;    // words
+    size_t arrays;  // bytes
     bool open, done;
 } function;
 
 typedef struct expansion {
-    const spirv *code;
+    const spirv_module *code;
     function *functions;
     size_t count, capacity;
     uint32_t *index_of; // id -> index + 1, 0: no function
-    uint32_t bound;
     uint32_t *stack;
     size_t depth;
 } expansion;
 
-// Words of the instruction at `i`; 0 when the rest is not an instruction.
-static size_t length_at(const spirv *code, size_t i) {
-    size_t length = code->words[i] >> SpvWordCountShift;
-    return length <= code->count - i ? length : 0;
-}
-
-static bool list_functions(expansion *e) {
-    const spirv *code = e->code;
-    for (size_t i = HEADER_WORDS, length; i < code->count; i += length) {
-        length = length_at(code, i);
-        uint32_t opcode = code->words[i] & SpvOpCodeMask;
-        if (!length) return false;
+static void list_functions(expansion *e) {
+    const spirv_module *code = e->code;
+    for (size_t i = SPIRV_HEADER; i < code->count; i += code->words[i] >> SpvWordCountShift) {
+        const uint32_t *w = code->words + i;
+        uint32_t opcode = w[0] & SpvOpCodeMask, length = w[0] >> SpvWordCountShift;
         if (opcode == SpvOpFunction) {
-            if (length != 5 || code->words[i + 2] >= e->bound) return false;
             MEM_RESERVE(e->functions, e->count + 1, e->capacity);
             e->functions[e->count++] = (function){.at = i + length, .end = i + length};
-            e->index_of[code->words[i + 2]] = (uint32_t)e->count;
+            e->index_of[w[2]] = (uint32_t)e->count;
         } else if (opcode == SpvOpFunctionEnd && e->count) {
             e->functions[e->count - 1].end = i;
         }
     }
-    return true;
+}
+
+static size_t array_size(const spirv_module *m, const uint32_t *variable) {
+    const uint32_t *pointer = spirv_find(m, variable[1], SpvOpTypePointer);
+    const spirv_id *type = pointer && pointer[3] < m->bound ? &m->ids[pointer[3]] : NULL;
+    return type && type->array ? type->size : 0;
+}
+
+static bool check(const function *f) {
+    if (f->size > SPIRV_MAX_EXPANDED)
+        return err_set("with every call inlined, the code has more than %d million instruction "
+                       "words",
+                       SPIRV_MAX_EXPANDED >> 20);
+    return f->arrays <= SPIRV_MAX_PRIVATE ||
+           err_set("with every call inlined, a thread has arrays of more than %d KiB",
+                   SPIRV_MAX_PRIVATE >> 10);
 }
 
 // Walks the function on top of the stack up to a call whose size is not known yet.
 static bool walk(expansion *e) {
-    const spirv *code = e->code;
+    const spirv_module *code = e->code;
     function *f = &e->functions[e->stack[e->depth - 1]];
     for (size_t length; f->at < f->end; f->at += length) {
-        length = length_at(code, f->at);
+        const uint32_t *w = code->words + f->at;
+        uint32_t opcode = w[0] & SpvOpCodeMask;
+        length = w[0] >> SpvWordCountShift;
         f->size += length;
-        if ((code->words[f->at] & SpvOpCodeMask) != SpvOpFunctionCall) continue;
-        uint32_t id = length > 3 ? code->words[f->at + 3] : e->bound;
-        uint32_t index = id < e->bound ? e->index_of[id] : 0;
-        if (!index) return err_set("SPIR-V: a call of no function");
-        const function *callee = &e->functions[index - 1];
-        if (callee->open) return err_set("SPIR-V: a function calls itself");
-        if (!callee->done) {
-            f->size -= length; // seen again once the callee is known
-            e->functions[index - 1].open = true;
-            e->stack[e->depth++] = index - 1;
-            return true;
+        if (opcode == SpvOpVariable) f->arrays += array_size(code, w);
+        if (opcode == SpvOpFunctionCall) {
+            uint32_t id = length > 3 ? w[3] : code->bound;
+            uint32_t index = id < code->bound ? e->index_of[id] : 0;
+            if (!index) return err_set("SPIR-V: a call of no function");
+            function *callee = &e->functions[index - 1];
+            if (callee->open) return err_set("SPIR-V: a function calls itself");
+            if (!callee->done) {
+                f->size -= length; // seen again once the callee is known
+                callee->open = true;
+                e->stack[e->depth++] = index - 1;
+                return true;
+            }
+            f->size += callee->size;
+            f->arrays += callee->arrays;
         }
-        f->size += callee->size;
-        if (f->size > SPIRV_MAX_EXPANDED)
-            return err_set("with every call inlined, the code has more than %d million "
-                           "instruction words",
-                           SPIRV_MAX_EXPANDED >> 20);
+        if (!check(f)) return false;
     }
     f->open = false;
     f->done = true;
@@ -92,17 +98,12 @@ static bool walk_all(expansion *e) {
     return true;
 }
 
-bool spirv_can_expand(const spirv *code) {
+bool spirv_can_expand(const spirv_module *code) {
     expansion e = {.code = code};
-    if (code->count <= HEADER_WORDS || code->words[BOUND] > SPIRV_MAX_SIZE / sizeof(uint32_t))
-        return err_set("SPIR-V: not a module");
-    e.bound = code->words[BOUND];
-    e.index_of = mem_alloc(e.bound * sizeof *e.index_of);
-    bool done = list_functions(&e) || err_set("SPIR-V: not a module");
-    if (done) {
-        e.stack = mem_alloc(e.count * sizeof *e.stack);
-        done = walk_all(&e);
-    }
+    e.index_of = mem_alloc(code->bound * sizeof *e.index_of);
+    list_functions(&e);
+    e.stack = mem_alloc(e.count * sizeof *e.stack);
+    bool done = walk_all(&e);
     mem_free(e.stack);
     mem_free(e.index_of);
     mem_free(e.functions);

@@ -1,4 +1,4 @@
-// GLSL to SPIR-V by glslang, in this very process: isolate.c runs it where it can do no harm.
+// GLSL to SPIR-V by glslang, in this very process: compiler.c runs it where it can do no harm.
 //
 // Vulkan's rules are relaxed, so that glslang itself gathers loose uniforms into one block, in
 // order of declaration. Once macros are expanded, statements of absurd length are refused: each

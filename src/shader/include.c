@@ -137,20 +137,21 @@ static int find_known(const shader_unit *unit, const library_file *where) {
     return -1;
 }
 
-static bool read_file(loader *l, const char *path, char **text, size_t *size) {
+static bool read_file(loader *l, const library_file *where, char **text, size_t *size) {
     arena *memory = &l->unit->memory;
-    if (l->library->memo) return memo_read(l->library->memo, path, memory, text, size);
+    const char *root = l->library->roots[where->root];
+    if (l->library->memo) return memo_read(l->library->memo, root, where->path, memory, text, size);
     void *data;
-    if (!file_read(path, UNIT_MAX_SIZE, &data, size)) return false;
+    if (!file_read_inside(root, where->path, UNIT_MAX_SIZE, &data, size)) return false;
     *text = arena_copy(memory, data, *size + 1);
     mem_free(data);
     return true;
 }
 
-static bool read_text(loader *l, place at, const char *path, unit_file *out) {
+static bool read_text(loader *l, place at, unit_file *out) {
     char *text;
     size_t size;
-    if (!read_file(l, path, &text, &size)) return fail(l, at, err_get());
+    if (!read_file(l, &out->where, &text, &size)) return fail(l, at, err_get());
     if (memchr(text, '\0', size)) {
         err_set("%s: holds a zero byte, so it is not a text", out->where.label);
         return fail(l, at, err_get());
@@ -182,7 +183,7 @@ static bool add_name(loader *l, place at, const char *name, int depth) {
     if (known >= 0) return !l->unit->files[known].open || fail_cycle(l, at, known);
     if (depth > UNIT_MAX_DEPTH) return fail(l, at, "includes are nested more than 32 deep");
     if (l->unit->file_count == UNIT_MAX_FILES) return fail(l, at, "more than 1000 files included");
-    if (!text && !read_text(l, at, file.where.path, &file)) return false;
+    if (!text && !read_text(l, at, &file)) return false;
     MEM_RESERVE(l->unit->files, l->unit->file_count + 1, l->unit->file_capacity);
     l->unit->files[l->unit->file_count++] = file;
     return add_file(l, (int)l->unit->file_count - 1, depth);

@@ -82,13 +82,14 @@ void memo_keep(library_memo *m, library_root root, const char *name, int found,
     pthread_mutex_unlock(&m->lock);
 }
 
-bool memo_read(library_memo *m, const char *path, arena *memory, char **text, size_t *size) {
+bool memo_read(library_memo *m, const char *root, const char *path, arena *memory, char **text,
+               size_t *size) {
     pthread_mutex_lock(&m->lock);
     const memo_text *entry = NULL;
     for (size_t i = 0; i < m->text_count && !entry; i++)
         if (strcmp(m->texts[i].path, path) == 0) entry = &m->texts[i];
     void *data = NULL;
-    if (!entry && file_read(path, UNIT_MAX_SIZE, &data, size)) {
+    if (!entry && file_read_inside(root, path, UNIT_MAX_SIZE, &data, size)) {
         MEM_RESERVE(m->texts, m->text_count + 1, m->text_capacity);
         m->texts[m->text_count] = (memo_text){.path = arena_string(&m->memory, path),
                                               .text = arena_copy(&m->memory, data, *size + 1),

@@ -56,6 +56,8 @@ bool glsl_explain(const shader_unit *unit, const glsl_answer *answer) {
         return err_set("%s: a statement has more than %d operators", label, GLSL_MAX_OPERATORS);
     case GLSL_LARGE:
         return err_set("%s: it compiles to more than %d MiB", label, SPIRV_MAX_SIZE >> 20);
+    case GLSL_INVALID:
+        return err_set("%s: %s", label, (const char *)answer->data);
     case GLSL_NO_CODE:
         break;
     }

@@ -247,7 +247,7 @@ static bool reflect(reflector *r, shader_binary *out) {
 bool spirv_reflect(spirv *code, shader_stage stage, arena *memory, shader_binary *out) {
     reflector r = {.code = code, .memory = memory, .stage = stage};
     *out = (shader_binary){0};
-    if (!spirv_can_expand(code)) return false;
+    if (!spirv_gate(code)) return false;
     if (spvc_context_create(&r.context)) return err_set("SPIR-V: cannot be read");
     bool done = reflect(&r, out);
     spvc_context_destroy(r.context);

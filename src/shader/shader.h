@@ -116,9 +116,6 @@ typedef struct shader_library_desc {
 shader_library *shader_library_create(const shader_library_desc *desc);
 void shader_library_destroy(shader_library *library);
 void shader_library_forget(shader_library *library); // files may have changed
-// Forks the process that compilers run in, which then readies itself: the first compile costs
-// 100 ms without. Best called first of all, while the calling process is small. See isolate.c.
-void shader_warm_up(void);
 // glslang runs since the library was created (cache hits do not count).
 uint64_t shader_library_compiles(const shader_library *library);
 

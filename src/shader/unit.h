@@ -1,7 +1,9 @@
 // A shader unit: one shader file with everything it includes, flattened to one text.
 // Private to src/shader.
 #pragma once
+#include "base/stack.h"
 #include "base/str.h"
+#include "gpu/spirv.h"
 #include "shader/shader.h"
 #include <stdatomic.h>
 
@@ -41,7 +43,8 @@ bool memo_find(library_memo *m, library_root root, const char *name, arena *memo
                library_file *out);
 void memo_keep(library_memo *m, library_root root, const char *name, int found,
                const library_file *file);
-bool memo_read(library_memo *m, const char *path, arena *memory, char **text, size_t *size);
+bool memo_read(library_memo *m, const char *root, const char *path, arena *memory, char **text,
+               size_t *size);
 
 // ---- scanning ---------------------------------------------------------------------------------
 
@@ -132,6 +135,7 @@ enum {
     GLSL_MAX_OPERATORS = 20000,   // of a statement; a table of 5000 negative numbers has 10000
     SPIRV_MAX_SIZE = 16 << 20,    // bytes
     SPIRV_MAX_EXPANDED = 4 << 20, // words, every call inlined
+    SPIRV_MAX_PRIVATE = 32 << 10, // bytes of a thread's arrays, every call inlined
 };
 
 typedef enum glsl_outcome {
@@ -141,6 +145,8 @@ typedef enum glsl_outcome {
     GLSL_LONG_STATEMENT, // of more than GLSL_MAX_OPERATORS
     GLSL_LARGE,          // more than SPIRV_MAX_SIZE
     GLSL_NO_CODE,
+    GLSL_INVALID, // the log says why
+    GLSL_LAST = GLSL_INVALID,
 } glsl_outcome;
 
 typedef struct glsl_answer {
@@ -151,15 +157,20 @@ typedef struct glsl_answer {
 
 typedef void glsl_receiver(void *user, const glsl_answer *answer); // which lives for the call
 
-// Runs glslang here and now: the text of a stranger can make it hang or crash. See isolate.h.
+// Runs glslang here and now: the text of a stranger can make it hang or crash. See compiler.h.
 void glsl_run(const char *source, shader_stage stage, glsl_receiver *receive, void *user);
 // True when done, else an error with the true file and line and the source line beneath.
 bool glsl_explain(const shader_unit *unit, const glsl_answer *answer);
 uint32_t glsl_version(void); // of the compiler, for cache keys
 
-// False when the code is no module, or too large once calls are inlined; the message has no
-// position, nor has that of spirv_reflect, which asks this first.
-bool spirv_can_expand(const spirv *code);
+// Whether a driver may see it: see gate.c. The message has no position, nor has that of
+// spirv_reflect, which asks this first.
+bool spirv_gate(const spirv *code);
+// A part of the gate: false when the code is too large once calls are inlined, or recursive.
+bool spirv_can_expand(const spirv_module *code);
+// Whether the module means something (validate.c), which takes 7 ms for a median module of ours and
+// 130 ms for the largest: asked of what holds a stranger's text, in the compiler's process.
+bool spirv_validate(const spirv *code);
 // Assigns bindings in place, removes what is not used, and describes the rest.
 bool spirv_reflect(spirv *code, shader_stage stage, arena *memory, shader_binary *out);
 // Turns LocalSizeId into LocalSize, which needs no device feature, and drops `dead` variables.
@@ -168,6 +179,3 @@ void spirv_clean(spirv *code, const uint32_t local_size[3], const uint32_t *live
 
 bool cache_load(const shader_library *library, hash128 key, spirv *out);
 void cache_store(const shader_library *library, hash128 key, const spirv *code);
-
-// Calls `run` on a thread with room for deep recursion, and waits for it.
-bool run_on_large_stack(void *(*run)(void *), void *user);

@@ -1,0 +1,132 @@
+// PNG by the reader: what goes into a worker and what comes back.
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "media/png.h"
+#include <string.h>
+#include <unistd.h>
+
+static const size_t FILE_BYTES_MAX = (size_t)1 << 30;
+
+// ---- pictures ---------------------------------------------------------------------------------
+
+typedef struct head { // of the result, before the pixels
+    uint32_t width, height;
+    int bits;
+} head;
+
+bool png_work(const isolate_call *call) {
+    picture_limits limits;
+    arena memory = {0};
+    png_image image;
+    if (call->argument_size != sizeof limits) return err_set("no limits");
+    memcpy(&limits, call->arguments, sizeof limits);
+    if (!png_decode(call->bytes, call->size, call->name, &limits, &memory, &image)) return false;
+    const head h = {image.width, image.height, image.bits};
+    size_t pixel = 4 * (size_t)image.bits / 8;
+    bool done = isolate_put(call, &h, sizeof h) &&
+                isolate_put(call, image.pixels, (size_t)h.width * h.height * pixel);
+    arena_free(&memory);
+    return done;
+}
+
+static bool take_image(const isolate_job *job, const picture_limits *limits, arena *memory,
+                       png_image *out) {
+    isolate_result r;
+    head h = {0};
+    *out = (png_image){0};
+    if (!isolate_run(job, &r)) return false;
+    if (r.size >= sizeof h) memcpy(&h, r.data, sizeof h);
+    size_t pixel = 4 * (size_t)h.bits / 8;
+    bool whole = (h.bits == 8 || h.bits == 16) &&
+                 picture_limits_allow(limits, job->name, h.width, h.height, pixel) &&
+                 r.size == sizeof h + (size_t)h.width * h.height * pixel;
+    if (whole) {
+        const char *pixels = (const char *)r.data + sizeof h;
+        *out = (png_image){h.width, h.height, 4, h.bits,
+                           arena_copy(memory, pixels, r.size - sizeof h)};
+    }
+    isolate_free(&r);
+    return whole || err_set("%s: damaged: its reader returned nonsense", job->name);
+}
+
+bool png_read(const char *path, const picture_limits *limits, arena *memory, png_image *out) {
+    return png_read_inside(NULL, path, limits, memory, out);
+}
+
+bool png_read_inside(const char *root, const char *path, const picture_limits *limits,
+                     arena *memory, png_image *out) {
+    size_t size;
+    if (!limits) limits = &picture_limits_default;
+    int file = file_open_inside(root, path, FILE_BYTES_MAX, &size);
+    if (file < 0) return false;
+    const isolate_job job = {.kind = "png",
+                             .name = path,
+                             .arguments = limits,
+                             .argument_size = sizeof *limits,
+                             .file = file,
+                             .size = size,
+                             .limits = picture_limits_of_job(limits, size)};
+    bool done = take_image(&job, limits, memory, out);
+    close(file);
+    return done;
+}
+
+bool png_read_memory(const void *data, size_t size, const char *name, arena *memory,
+                     png_image *out) {
+    const picture_limits *limits = &picture_limits_default;
+    const isolate_job job = {.kind = "png",
+                             .name = name,
+                             .arguments = limits,
+                             .argument_size = sizeof *limits,
+                             .bytes = size ? data : "",
+                             .size = size,
+                             .limits = picture_limits_of_job(limits, size)};
+    return take_image(&job, limits, memory, out);
+}
+
+// ---- texts ------------------------------------------------------------------------------------
+
+// The result: each key and each value, with its zero byte.
+bool png_texts_work(const isolate_call *call) {
+    png_text texts[PNG_MAX_TEXTS];
+    arena memory = {0};
+    size_t count;
+    bool done = png_decode_texts(call->bytes, call->size, call->name, &memory, texts, &count);
+    for (size_t i = 0; done && i < count; i++)
+        done = isolate_put(call, texts[i].key, strlen(texts[i].key) + 1) &&
+               isolate_put(call, texts[i].value, strlen(texts[i].value) + 1);
+    arena_free(&memory);
+    return done;
+}
+
+// The next string; NULL when there is none that ends.
+static const char *take_string(const isolate_result *r, size_t *at) {
+    const char *text = (const char *)r->data + *at;
+    const char *end = *at < r->size ? memchr(text, '\0', r->size - *at) : NULL;
+    if (end) *at += (size_t)(end - text) + 1;
+    return end ? text : NULL;
+}
+
+bool png_read_texts(const char *path, arena *memory, png_text out[PNG_MAX_TEXTS], size_t *count) {
+    isolate_result r;
+    size_t size, at = 0;
+    *count = 0;
+    int file = file_open_inside(NULL, path, FILE_BYTES_MAX, &size);
+    if (file < 0) return false;
+    const isolate_job job = {.kind = "png texts",
+                             .name = path,
+                             .file = file,
+                             .size = size,
+                             .limits = picture_limits_of_job(&picture_limits_default, size)};
+    bool done = isolate_run(&job, &r);
+    close(file);
+    if (!done) return false;
+    while (*count < PNG_MAX_TEXTS) {
+        const char *key = take_string(&r, &at), *value = key ? take_string(&r, &at) : NULL;
+        if (!value) break;
+        out[(*count)++] = (png_text){arena_string(memory, key), arena_string(memory, value)};
+    }
+    isolate_free(&r);
+    return true;
+}

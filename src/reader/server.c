@@ -1,0 +1,217 @@
+// Takes requests and forks a worker for each. One thread works, on a large stack, which workers
+// stand on a copy of; the thread that main() runs on waits for it.
+//
+// Jobs that need something got ready, which takes a compiler 80 ms, have a server of their own: the
+// same loop in a process that the first one forks and hands such requests on to, so that no picture
+// waits behind it.
+#include "base/isolate_wire.h"
+#include "base/memory.h"
+#include "base/stack.h"
+#include "reader/worker.h"
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { MAX_WORKERS = 8, SAID_MAX = 200 }; // at a time; more requests wait
+
+typedef struct worker {
+    pid_t process;
+    int channel; // to who waits
+    int said;    // memory file of its stderr
+    bool alone;  // who waited has gone
+} worker;
+
+typedef struct server {
+    const reader_job *jobs;
+    size_t job_count;
+    bool ready; // this is the process where jobs were got ready
+    int second; // socket of that process, -1: none yet
+    worker workers[MAX_WORKERS];
+    size_t count;
+    pid_t process;
+} server;
+
+static void wake_up(int signal_number) {
+    (void)signal_number;
+}
+
+// Nobody shall notice when a worker dies, and when memory runs out it shall die first.
+static void be_humble(void) {
+    FILE *file = fopen("/proc/self/oom_score_adj", "we");
+    if (file) {
+        fputs("1000", file);
+        fclose(file);
+    }
+    setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
+    prctl(PR_SET_DUMPABLE, 0); // as some systems pipe cores to a program whatever the limit
+}
+
+static void become_second(server *s, int control) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != s->process || dup3(control, WIRE_CONTROL, O_CLOEXEC) < 0) _exit(EXIT_FAILURE);
+    closefrom(WIRE_CONTROL + 1); // channels are those of the first one's workers
+    s->count = 0;
+    s->ready = true;
+    s->process = getpid();
+    for (size_t i = 0; i < s->job_count; i++)
+        if (s->jobs[i].get_ready) s->jobs[i].get_ready();
+}
+
+// False in the second process, which goes on with its loop.
+static bool start_second(server *s) {
+    int ends[2];
+    if (s->ready || s->second >= 0) return true;
+    if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) _exit(EXIT_FAILURE);
+    pid_t process = fork();
+    if (process < 0) _exit(EXIT_FAILURE); // who asks starts a new reader, and says so in the end
+    if (process == 0) {
+        become_second(s, ends[1]);
+        return false;
+    }
+    close(ends[1]);
+    s->second = ends[0];
+    return true;
+}
+
+static void hand_on(server *s, const wire_request *r, const int files[WIRE_FILES]) {
+    if (!start_second(s)) return;
+    // Without it this one is no use either: who waits sees it go, and starts anew.
+    if (!wire_send(s->second, r, sizeof *r, files, WIRE_FILES, 0)) _exit(EXIT_FAILURE);
+    for (size_t i = 0; i < WIRE_FILES; i++) close(files[i]);
+}
+
+static const reader_job *find_job(const server *s, const char *kind) {
+    for (size_t i = 0; i < s->job_count; i++)
+        if (strcmp(s->jobs[i].kind, kind) == 0) return &s->jobs[i];
+    return NULL;
+}
+
+// ---- the end of a worker ----------------------------------------------------------------------
+
+static void report(const worker *w, int status, uint32_t processor_ms) {
+    static wire_news news;
+    news = (wire_news){.word = WIRE_END, .status = status, .processor_ms = processor_ms};
+    if (w->said >= 0 && pread(w->said, news.text, SAID_MAX, 0) < 0) news.text[0] = '\0';
+    wire_send(w->channel, &news, sizeof news, NULL, 0, MSG_DONTWAIT);
+    close(w->channel);
+    if (w->said >= 0) close(w->said);
+}
+
+static uint32_t milliseconds(const struct rusage *used) {
+    return (uint32_t)((used->ru_utime.tv_sec + used->ru_stime.tv_sec) * 1000 +
+                      (used->ru_utime.tv_usec + used->ru_stime.tv_usec) / 1000);
+}
+
+static void reap(server *s) {
+    size_t kept = 0;
+    for (size_t i = 0; i < s->count; i++) {
+        int status = WIRE_NO_WORKER;
+        struct rusage used = {0};
+        pid_t ended = wait4(s->workers[i].process, &status, WNOHANG, &used);
+        if (ended == 0)
+            s->workers[kept++] = s->workers[i];
+        else // a failure of wait4 must not read as success
+            report(&s->workers[i], ended > 0 ? status : WIRE_NO_WORKER, milliseconds(&used));
+    }
+    s->count = kept;
+}
+
+// ---- its beginning ----------------------------------------------------------------------------
+
+static void start_worker(server *s, const reader_job *job, const wire_request *r,
+                         const int files[WIRE_FILES]) {
+    static const wire_news begun = {.word = WIRE_BEGUN};
+    worker w = {.channel = files[WIRE_CHANNEL], .said = memfd_create("roil-said", MFD_CLOEXEC)};
+    wire_send(w.channel, &begun, sizeof begun, NULL, 0, MSG_DONTWAIT);
+    w.process = w.said < 0 ? -1 : fork();
+    if (w.process == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (getppid() != s->process) _exit(EXIT_FAILURE); // it died before that
+        worker_run(job, r, files, w.said);
+    }
+    close(files[WIRE_OUT]);
+    close(files[WIRE_INPUT]);
+    if (w.process < 0)
+        report(&w, WIRE_NO_WORKER, 0);
+    else
+        s->workers[s->count++] = w;
+}
+
+static void serve_request(server *s) {
+    static wire_request r;
+    int files[WIRE_FILES];
+    size_t count;
+    bool whole = wire_receive(WIRE_CONTROL, &r, sizeof r, files, WIRE_FILES, &count);
+    if (!whole && count == 0) _exit(EXIT_SUCCESS); // there will be no more
+    if (whole && count == 0) start_second(s);
+    r.kind[sizeof r.kind - 1] = r.name[sizeof r.name - 1] = '\0';
+    const reader_job *job = find_job(s, r.kind);
+    if (!whole || count != WIRE_FILES || !job || r.argument_size > sizeof r.arguments) {
+        for (size_t i = 0; i < count; i++) close(files[i]);
+        return;
+    }
+    if (job->get_ready && !s->ready)
+        hand_on(s, &r, files);
+    else
+        start_worker(s, job, &r, files);
+}
+
+// Who waits and goes away, takes the worker along.
+static void end_lonely(server *s, const struct pollfd *channels) {
+    for (size_t i = 0; i < s->count; i++) {
+        worker *w = &s->workers[i];
+        if (w->alone || !(channels[i].revents & (POLLHUP | POLLERR))) continue;
+        w->alone = true;
+        kill(w->process, SIGKILL);
+    }
+}
+
+static void *serve(void *user) {
+    server *s = user;
+    sigset_t open;
+    sigemptyset(&open);
+    for (;;) {
+        struct pollfd ready[1 + MAX_WORKERS];
+        bool room = s->count < MAX_WORKERS;
+        for (size_t i = 0; i < s->count; i++)
+            ready[1 + i] = (struct pollfd){.fd = s->workers[i].alone ? -1 : s->workers[i].channel};
+        ready[0] = (struct pollfd){.fd = WIRE_CONTROL, .events = room ? POLLIN : 0};
+        int found = ppoll(ready, 1 + s->count, NULL, &open);
+        if (found > 0 && ready[0].revents & POLLHUP) _exit(EXIT_SUCCESS);
+        if (found > 0) end_lonely(s, ready + 1);
+        bool asked = found > 0 && ready[0].revents & POLLIN;
+        reap(s);
+        if (asked) serve_request(s);
+    }
+}
+
+int reader_serve(const reader_job *jobs, size_t count) {
+    static server s;
+    int type = 0;
+    socklen_t size = sizeof type;
+    if (getsockopt(WIRE_CONTROL, SOL_SOCKET, SO_TYPE, &type, &size) != 0 ||
+        type != SOCK_SEQPACKET) {
+        fprintf(stderr, "roil-reader: roil starts it, to read files and shaders\n");
+        return 2;
+    }
+    s = (server){.jobs = jobs, .job_count = count, .second = -1, .process = getpid()};
+    fcntl(WIRE_CONTROL, F_SETFD, FD_CLOEXEC);
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGCHLD, wake_up);
+    sigset_t blocked;
+    sigemptyset(&blocked);
+    sigaddset(&blocked, SIGCHLD);
+    sigprocmask(SIG_SETMASK, &blocked, NULL); // in all threads: serve() waits with it open
+    be_humble();
+    run_on_large_stack(serve, &s);
+    return EXIT_FAILURE; // too little memory for the stack
+}
