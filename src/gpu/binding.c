@@ -1,7 +1,11 @@
 // Bindings of a dispatch or draw: checked against the slots that reflection found, translated to
-// accesses for the hazard tracker, pushed as descriptors.
+// accesses for the hazard tracker, handed over as descriptors: pushed where the device can, else by
+// a set of the batch that is bound.
+#include "base/memory.h"
 #include "gpu/vk.h"
 #include <inttypes.h>
+
+enum { SETS_OF_POOL = 64 };
 
 static const char *const slot_names[] = {[GPU_SLOT_UNIFORM] = "a uniform block",
                                          [GPU_SLOT_STORAGE_BUFFER] = "a storage buffer",
@@ -128,7 +132,7 @@ bool vk_bindings_use(gpu *g, const gpu_pipeline *pipeline, const gpu_binding *li
     return true;
 }
 
-// ---- push -------------------------------------------------------------------------------------
+// ---- bind -------------------------------------------------------------------------------------
 
 static VkDescriptorImageInfo image_info(gpu *g, const gpu_slot *slot, const gpu_binding *b) {
     bool sampled = slot->kind == GPU_SLOT_SAMPLED_IMAGE;
@@ -159,7 +163,76 @@ VkDescriptorType vk_descriptor_type(gpu_slot_kind kind) {
     return types[kind];
 }
 
-bool vk_bindings_push(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipeline,
+static bool add_pool(gpu *g, vk_sets *sets) {
+    VkDescriptorPoolSize sizes[4];
+    for (uint32_t kind = 0; kind < COUNT_OF(sizes); kind++) {
+        sizes[kind].type = vk_descriptor_type((gpu_slot_kind)kind);
+        sizes[kind].descriptorCount = SETS_OF_POOL * GPU_MAX_SLOTS;
+    }
+    VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                       .maxSets = SETS_OF_POOL,
+                                       .poolSizeCount = COUNT_OF(sizes),
+                                       .pPoolSizes = sizes};
+    VkDescriptorPool pool;
+    if (!vk_check(g, vkCreateDescriptorPool(g->device, &info, NULL, &pool),
+                  "creating a pool of descriptors")) {
+        return false;
+    }
+    MEM_RESERVE(sets->pools, sets->count + 1, sets->capacity);
+    sets->pools[sets->count++] = pool;
+    return true;
+}
+
+// Pools hold as many sets whatever these are like, so that no driver need say that one is full.
+static bool take_set(gpu *g, const gpu_pipeline *pipeline, VkDescriptorSet *out) {
+    vk_sets *sets = g->frame ? &g->frame->batch.sets : &g->batch->sets;
+    size_t pool = sets->taken / SETS_OF_POOL;
+    if (pool == sets->count && !add_pool(g, sets)) return false;
+    VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                        .descriptorPool = sets->pools[pool],
+                                        .descriptorSetCount = 1,
+                                        .pSetLayouts = &pipeline->built->set_layout};
+    sets->taken++;
+    return vk_check(g, vkAllocateDescriptorSets(g->device, &info, out),
+                    "taking descriptors for pipeline '%s'", pipeline->label);
+}
+
+// Pools are kept: a batch that needed them once will do so again.
+bool vk_sets_reset(gpu *g, vk_sets *sets) {
+    for (size_t i = 0; i * SETS_OF_POOL < sets->taken; i++) {
+        if (!vk_check(g, vkResetDescriptorPool(g->device, sets->pools[i], 0),
+                      "emptying a pool of descriptors")) {
+            return false;
+        }
+    }
+    sets->taken = 0;
+    return true;
+}
+
+void vk_sets_free(gpu *g, vk_sets *sets) {
+    for (size_t i = 0; i < sets->count; i++) {
+        vkDestroyDescriptorPool(g->device, sets->pools[i], NULL);
+    }
+    mem_free(sets->pools);
+}
+
+static bool hand_over(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipeline,
+                      VkWriteDescriptorSet *writes) {
+    uint32_t count = pipeline->slot_count;
+    VkPipelineLayout layout = pipeline->built->layout;
+    if (g->push_descriptors) {
+        g->push_descriptors(commands, pipeline->bind_point, layout, 0, count, writes);
+        return true;
+    }
+    VkDescriptorSet set;
+    if (!take_set(g, pipeline, &set)) return false;
+    for (uint32_t i = 0; i < count; i++) writes[i].dstSet = set;
+    vkUpdateDescriptorSets(g->device, count, writes, 0, NULL);
+    vkCmdBindDescriptorSets(commands, pipeline->bind_point, layout, 0, 1, &set, 0, NULL);
+    return true;
+}
+
+bool vk_bindings_bind(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipeline,
                       const gpu_binding *list, size_t count) {
     VkWriteDescriptorSet writes[GPU_MAX_SLOTS];
     VkDescriptorImageInfo images[GPU_MAX_SLOTS];
@@ -179,9 +252,5 @@ bool vk_bindings_push(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipe
             writes[i].pBufferInfo = &buffers[i];
         }
     }
-    if (pipeline->slot_count > 0) {
-        g->push_descriptors(commands, pipeline->bind_point, pipeline->built->layout, 0,
-                            pipeline->slot_count, writes);
-    }
-    return true;
+    return pipeline->slot_count == 0 || hand_over(g, commands, pipeline, writes);
 }

@@ -62,6 +62,13 @@ static void lacks(gpu_info *info, const char *what) {
     info->usable = false;
 }
 
+// The environment may turn them down, so that what stands in for them can be tried on any device.
+static bool can_push(VkPhysicalDevice physical) {
+    const char *set = getenv("ROIL_PUSH_DESCRIPTORS");
+    return has_extension(physical, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME) &&
+           !(set && strcmp(set, "0") == 0);
+}
+
 // A device older than 1.3 does not know the feature structs, so nothing more is asked of it.
 static void list_missing(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t version,
                          gpu_info *info) {
@@ -80,9 +87,6 @@ static void list_missing(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32
     if (surface && !has_extension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) {
         lacks(info, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     }
-    if (!has_extension(physical, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) {
-        lacks(info, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
-    }
     info->int64 = f.core.features.shaderInt64;
     if (!f.v13.dynamicRendering) lacks(info, "dynamicRendering");
     if (!f.v13.synchronization2) lacks(info, "synchronization2");
@@ -95,7 +99,9 @@ static void list_missing(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32
     }
 }
 
-static void describe(VkPhysicalDevice physical, VkSurfaceKHR surface, gpu_info *info) {
+static void describe(vk_choice *choice, VkSurfaceKHR surface) {
+    VkPhysicalDevice physical = choice->physical;
+    gpu_info *info = &choice->info;
     VkPhysicalDeviceVulkan11Properties v11 = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
     VkPhysicalDeviceDriverProperties driver = {
@@ -108,7 +114,8 @@ static void describe(VkPhysicalDevice physical, VkSurfaceKHR surface, gpu_info *
         vkGetPhysicalDeviceProperties2(physical, &two);
     }
 
-    memset(info, 0, sizeof *info);
+    choice->lavapipe = driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
+    choice->pushes = can_push(physical);
     str_copy(info->name, sizeof info->name, p->deviceName);
     snprintf(info->driver, sizeof info->driver, "%.120s %.120s", driver.driverName,
              driver.driverInfo);
@@ -117,6 +124,8 @@ static void describe(VkPhysicalDevice physical, VkSurfaceKHR surface, gpu_info *
     info->api_major = VK_API_VERSION_MAJOR(p->apiVersion);
     info->api_minor = VK_API_VERSION_MINOR(p->apiVersion);
     info->subgroup_size = v11.subgroupSize;
+    info->max_group = p->limits.maxComputeWorkGroupInvocations;
+    info->subpixel_bits = p->limits.subPixelPrecisionBits;
     VkPhysicalDeviceMemoryProperties memory;
     vkGetPhysicalDeviceMemoryProperties(physical, &memory);
     for (uint32_t i = 0; i < memory.memoryHeapCount; i++) {
@@ -157,7 +166,7 @@ int vk_choices_find(VkInstance instance, VkSurfaceKHR surface, vk_choice *out) {
     }
     for (uint32_t i = 0; i < count; i++) {
         vk_choice choice = {.physical = list[i]};
-        describe(list[i], surface, &choice.info);
+        describe(&choice, surface);
         uint32_t at = i;
         for (; at > 0 && rank(out[at - 1].info.kind) > rank(choice.info.kind); at--) {
             out[at] = out[at - 1];

@@ -23,11 +23,12 @@ bool vk_batch_create(gpu *g, vk_batch *out) {
 
 void vk_batch_destroy(gpu *g, vk_batch *batch) {
     vkDestroyCommandPool(g->device, batch->pool, NULL);
+    vk_sets_free(g, &batch->sets);
     memset(batch, 0, sizeof *batch);
 }
 
 bool vk_batch_begin(gpu *g, vk_batch *batch) {
-    if (!vk_wait(g, batch->serial)) return false;
+    if (!vk_wait(g, batch->serial) || !vk_sets_reset(g, &batch->sets)) return false;
     if (!vk_check(g, vkResetCommandPool(g->device, batch->pool, 0), "resetting a command pool")) {
         return false;
     }

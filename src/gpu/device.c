@@ -21,9 +21,9 @@ void vk_features_read(VkPhysicalDevice physical, vk_features *out) {
     vkGetPhysicalDeviceFeatures2(physical, &out->core);
 }
 
-VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, int copies, bool presents) {
+VkDevice vk_device_create(const vk_choice *choice, uint32_t family, int copies, bool presents) {
     vk_features has, want = {0};
-    vk_features_read(physical, &has);
+    vk_features_read(choice->physical, &has);
     chain(&want);
     want.v13.dynamicRendering = VK_TRUE;
     want.v13.synchronization2 = VK_TRUE;
@@ -50,8 +50,10 @@ VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, int copies
     want.v11.storageBuffer16BitAccess = has.v11.storageBuffer16BitAccess;
     want.v11.uniformAndStorageBuffer16BitAccess = has.v11.uniformAndStorageBuffer16BitAccess;
 
-    static const char *const extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME,
-                                             VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+    const char *extensions[2];
+    uint32_t extension_count = 0;
+    if (choice->pushes) extensions[extension_count++] = VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
+    if (presents) extensions[extension_count++] = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
     float priority = 1.0f;
     VkDeviceQueueCreateInfo queues[2] = {{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                           .queueFamilyIndex = family,
@@ -63,10 +65,10 @@ VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, int copies
                                .pNext = &want.core,
                                .queueCreateInfoCount = copies < 0 ? 1 : 2,
                                .pQueueCreateInfos = queues,
-                               .enabledExtensionCount = presents ? 2 : 1,
+                               .enabledExtensionCount = extension_count,
                                .ppEnabledExtensionNames = extensions};
     VkDevice device = VK_NULL_HANDLE;
-    VkResult result = vkCreateDevice(physical, &info, NULL, &device);
+    VkResult result = vkCreateDevice(choice->physical, &info, NULL, &device);
     if (result != VK_SUCCESS) {
         err_set("the device does not start: vkCreateDevice gives error %d", (int)result);
     }
@@ -106,10 +108,11 @@ static void load_limits(gpu *g) {
     g->timestamp_bits = families[g->family].timestampValidBits;
 }
 
-static void load_calls(gpu *g) {
+static void load_calls(gpu *g, bool pushes) {
     VkDevice d = g->device;
-    g->push_descriptors =
-        (PFN_vkCmdPushDescriptorSetKHR)vkGetDeviceProcAddr(d, "vkCmdPushDescriptorSetKHR");
+    if (pushes)
+        g->push_descriptors =
+            (PFN_vkCmdPushDescriptorSetKHR)vkGetDeviceProcAddr(d, "vkCmdPushDescriptorSetKHR");
     if (!g->instance.labels) return;
     g->begin_label =
         (PFN_vkCmdBeginDebugUtilsLabelEXT)vkGetDeviceProcAddr(d, "vkCmdBeginDebugUtilsLabelEXT");
@@ -126,14 +129,16 @@ static bool open_device(gpu *g, const char *name) {
     if (!choice) return false;
     g->info = choice->info;
     g->physical = choice->physical;
+    g->lavapipe = choice->lavapipe;
     g->family = (uint32_t)vk_queue_family_find(g->physical, g->window.surface);
     g->copier.family = vk_transfer_family_find(g->physical);
-    g->device = vk_device_create(g->physical, g->family, g->copier.family,
-                                 g->window.surface != VK_NULL_HANDLE);
+    g->device =
+        vk_device_create(choice, g->family, g->copier.family, g->window.surface != VK_NULL_HANDLE);
     if (!g->device) return false;
     vkGetDeviceQueue(g->device, g->family, 0, &g->queue);
     load_limits(g);
-    load_calls(g);
+    vk_pool_init(g);
+    load_calls(g, choice->pushes);
     return true;
 }
 
@@ -181,6 +186,9 @@ gpu *gpu_create(const gpu_desc *desc) {
         return NULL;
     }
     g->timeout = timeout_of(g, desc->timeout);
+    g->waiting = desc->waiting;
+    g->waiting_user = desc->user;
+    g->owner = pthread_self();
     log_write(LOG_DEBUG, "device: %s, %s%s", g->info.name, g->info.driver,
               g->instance.validating ? ", with validation" : "");
     return g;
@@ -197,7 +205,6 @@ static void close_frame(gpu *g, vk_frame *frame) {
 }
 
 static void close_device(gpu *g) {
-    vkDeviceWaitIdle(g->device); // fails on a lost device, which has nothing to wait for
     for (int i = 0; i < GPU_FRAMES_IN_FLIGHT; i++) close_frame(g, &g->frames[i]);
     for (int i = 0; i < VK_BATCHES; i++) vk_batch_destroy(g, &g->batches[i]);
     gpu_buffer_destroy(g, g->ring.buffer);
@@ -215,12 +222,21 @@ static void close_device(gpu *g) {
 }
 
 // Work that hangs never lets go of what it uses, and drivers wait for it without a limit when the
-// device is destroyed. All of such a device, `g` too, is left to the end of the process: the caller
-// must get on, and can have a new device beside it.
+// device is destroyed; and where waiting fails nobody knows what is still in use. All of such a
+// device, `g` too, is left to the end of the process: the caller must get on, and can have a new
+// device beside it. A lost one has nothing to wait for.
 static bool comes_to_rest(gpu *g) {
     if (!atomic_load(&g->lost)) vk_wait(g, g->submitted);
-    if (g->hung) log_write(LOG_WARNING, "%s; its memory stays in use", g->loss);
-    return !g->hung;
+    if (g->hung) {
+        log_write(LOG_WARNING, "%s; its memory stays in use", g->loss);
+        return false;
+    }
+    VkResult rest = vkDeviceWaitIdle(g->device);
+    if (rest == VK_SUCCESS || rest == VK_ERROR_DEVICE_LOST) return true;
+    log_write(LOG_WARNING,
+              "the device '%s' cannot be waited for (Vulkan result %d); its memory stays in use",
+              g->info.name, (int)rest);
+    return false;
 }
 
 void gpu_destroy(gpu *g) {

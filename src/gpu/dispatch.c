@@ -68,7 +68,7 @@ bool gpu_dispatch(gpu *g, const gpu_dispatch_desc *desc) {
     if (!vk_bindings_use(g, pipeline, desc->bindings, desc->binding_count)) return false;
     vk_uses_flush(g, commands);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline->built->handle);
-    if (!vk_bindings_push(g, commands, pipeline, desc->bindings, desc->binding_count)) return false;
+    if (!vk_bindings_bind(g, commands, pipeline, desc->bindings, desc->binding_count)) return false;
     dispatch(commands, pipeline->built, groups);
     return true;
 }

@@ -199,7 +199,7 @@ static void draw_commands(const gpu *g, VkCommandBuffer commands, const gpu_draw
 
 static bool record(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipeline,
                    const gpu_draw *draw, VkExtent2D size) {
-    if (!vk_bindings_push(g, commands, pipeline, draw->bindings, draw->binding_count)) return false;
+    if (!vk_bindings_bind(g, commands, pipeline, draw->bindings, draw->binding_count)) return false;
     place(commands, draw, size);
     uint32_t instances = draw->instances ? draw->instances : 1;
     if (draw->indices)

@@ -29,6 +29,8 @@ typedef struct gpu_info {
     uint64_t max_storage_range; // bytes of one storage buffer binding
     uint32_t api_major, api_minor;
     uint32_t subgroup_size;
+    uint32_t max_group;     // threads of a work group
+    uint32_t subpixel_bits; // corners of triangles are drawn at places rounded to these
     float timestamp_period; // nanoseconds a tick; 0: no timestamps
     bool int64;             // shaders may use integers of 64 bits
     bool usable;            // has all that roil needs
@@ -52,6 +54,10 @@ typedef struct gpu_desc {
     const gpu_window *window; // NULL: nothing is shown; else the device can present to it
     double timeout; // seconds that submitted work may take before the device counts as lost; 0: 30,
                     // 300 on a software device
+    // Called ten times a second by the thread that created the device, while that waits for work
+    // that takes longer than a second. False gives the device up, as if it hung. May be NULL.
+    bool (*waiting)(void *user, double seconds);
+    void *user;
 } gpu_desc;
 
 // Devices the loader offers, real GPUs before software ones, at most `capacity` written.
@@ -75,6 +81,9 @@ typedef struct gpu_memory_use {
     uint32_t blocks;
 } gpu_memory_use;
 gpu_memory_use gpu_get_memory_use(const gpu *g);
+// What its images and buffers are taken from before they are made (base/budget.h): a budget of its
+// own, or the host's where the device shares the host's memory.
+struct budget *gpu_get_budget(const gpu *g);
 
 // ---- resources --------------------------------------------------------------------------------
 
@@ -113,6 +122,12 @@ typedef struct gpu_image_desc {
     uint32_t use;                  // gpu_image_use bits
 } gpu_image_desc;
 
+// Whether there is memory for all of these, if others were let go; false with a message that has
+// the sum.
+bool gpu_images_fit(gpu *g, const gpu_image_desc *images, size_t count, const gpu_image_desc *freed,
+                    size_t freed_count);
+// These images are about to go: until this is called with none, others may be made beside them.
+void gpu_lend_memory(gpu *g, const gpu_image_desc *going, size_t count);
 gpu_image *gpu_image_create(gpu *g, const gpu_image_desc *desc); // contents undefined
 void gpu_image_destroy(gpu *g, gpu_image *image);                // NULL is fine
 const gpu_image_desc *gpu_image_get_desc(const gpu_image *image);

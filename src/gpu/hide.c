@@ -46,7 +46,8 @@ static const block *find_block(const hider *h, uint32_t id) {
 
 // Whether it uses a block in another way than to reach a member of it.
 static bool is_unforeseen(const hider *h, uint32_t op, const uint32_t *w, uint32_t words) {
-    if (op != OP_LOAD && op != OP_COPY_MEMORY && op != OP_COPY_OBJECT && op != OP_FUNCTION_CALL)
+    if (op != SpvOpLoad && op != SpvOpCopyMemory && op != SpvOpCopyObject &&
+        op != SpvOpFunctionCall)
         return false;
     for (uint32_t i = 1; i < words; i++)
         if (find_block(h, w[i])) return true;
@@ -54,7 +55,7 @@ static bool is_unforeseen(const hider *h, uint32_t op, const uint32_t *w, uint32
 }
 
 static uint32_t built_in(const hider *h) {
-    return h->fragment ? BUILT_IN_FRAG_COORD : BUILT_IN_WORKGROUP;
+    return h->fragment ? SpvBuiltInFragCoord : SpvBuiltInWorkgroupId;
 }
 
 static uint32_t vector_size(const hider *h) {
@@ -62,17 +63,17 @@ static uint32_t vector_size(const hider *h) {
 }
 
 static bool note(hider *h, uint32_t op, const uint32_t *w, uint32_t words) {
-    if (op == OP_ENTRY_POINT) h->fragment = w[1] == MODEL_FRAGMENT;
-    if (op == OP_TYPE_INT && w[2] == 32 && w[3] == 0) h->uint_type = w[1];
-    if (op == OP_TYPE_FLOAT && w[2] == 32 && h->fragment) h->scalar_type = w[1];
+    if (op == SpvOpEntryPoint) h->fragment = w[1] == SpvExecutionModelFragment;
+    if (op == SpvOpTypeInt && w[2] == 32 && w[3] == 0) h->uint_type = w[1];
+    if (op == SpvOpTypeFloat && w[2] == 32 && h->fragment) h->scalar_type = w[1];
     if (!h->fragment) h->scalar_type = h->uint_type;
-    if (op == OP_TYPE_VECTOR && w[2] == h->scalar_type && w[3] == vector_size(h))
+    if (op == SpvOpTypeVector && w[2] == h->scalar_type && w[3] == vector_size(h))
         h->vector_type = w[1];
-    if (op == OP_DECORATE && words == 4 && w[2] == DECORATION_BUILT_IN && w[3] == built_in(h))
+    if (op == SpvOpDecorate && words == 4 && w[2] == SpvDecorationBuiltIn && w[3] == built_in(h))
         h->place = w[1];
-    if (op == OP_TYPE_POINTER && w[2] == STORAGE_UNIFORM && w[1] < h->bound)
+    if (op == SpvOpTypePointer && w[2] == SpvStorageClassUniform && w[1] < h->bound)
         h->pointees[w[1]] = w[3];
-    if (op == OP_VARIABLE && w[3] == STORAGE_UNIFORM) {
+    if (op == SpvOpVariable && w[3] == SpvStorageClassUniform) {
         if (h->block_count == COUNT_OF(h->blocks) || w[1] >= h->bound || !h->pointees[w[1]])
             return false;
         h->blocks[h->block_count++] = (block){w[2], h->pointees[w[1]]};
@@ -82,10 +83,11 @@ static bool note(hider *h, uint32_t op, const uint32_t *w, uint32_t words) {
 
 // The least words of an instruction that is looked at.
 static bool is_whole(uint32_t op, uint32_t words) {
-    if (op == OP_TYPE_FLOAT || op == OP_ENTRY_POINT) return words >= 3;
-    uint32_t least = op == OP_TYPE_INT || op == OP_TYPE_VECTOR || op == OP_TYPE_POINTER ||
-                             op == OP_VARIABLE || op == OP_ACCESS_CHAIN ||
-                             op == OP_IN_BOUNDS_ACCESS_CHAIN
+    if (words == 0xffff) return false; // nothing can be added to it
+    if (op == SpvOpTypeFloat || op == SpvOpEntryPoint) return words >= 3;
+    uint32_t least = op == SpvOpTypeInt || op == SpvOpTypeVector || op == SpvOpTypePointer ||
+                             op == SpvOpVariable || op == SpvOpAccessChain ||
+                             op == SpvOpInBoundsAccessChain
                          ? 4
                          : 1;
     return words >= least;
@@ -118,42 +120,42 @@ static void choose_ids(hider *h) {
 
 // Before the first function: types that are missing, and the blocks.
 static void put_globals(hider *h) {
-    if (!h->uint_type) SPIRV_PUT(&h->out, OP_TYPE_INT, h->own_uint, 32, 0);
-    if (h->fragment && !h->scalar_type) SPIRV_PUT(&h->out, OP_TYPE_FLOAT, h->own_scalar, 32);
+    if (!h->uint_type) SPIRV_PUT(&h->out, SpvOpTypeInt, h->own_uint, 32, 0);
+    if (h->fragment && !h->scalar_type) SPIRV_PUT(&h->out, SpvOpTypeFloat, h->own_scalar, 32);
     if (!h->vector_type)
-        SPIRV_PUT(&h->out, OP_TYPE_VECTOR, h->own_vector, h->own_scalar, vector_size(h));
+        SPIRV_PUT(&h->out, SpvOpTypeVector, h->own_vector, h->own_scalar, vector_size(h));
     if (!h->place) {
         uint32_t pointer = fresh(h);
-        SPIRV_PUT(&h->out, OP_TYPE_POINTER, pointer, STORAGE_INPUT, h->own_vector);
-        SPIRV_PUT(&h->out, OP_VARIABLE, pointer, h->own_place, STORAGE_INPUT);
+        SPIRV_PUT(&h->out, SpvOpTypePointer, pointer, SpvStorageClassInput, h->own_vector);
+        SPIRV_PUT(&h->out, SpvOpVariable, pointer, h->own_place, SpvStorageClassInput);
     }
     uint32_t one = fresh(h);
-    SPIRV_PUT(&h->out, OP_CONSTANT, h->own_uint, one, 1);
-    SPIRV_PUT(&h->out, OP_CONSTANT, h->own_uint, h->top, 31);
+    SPIRV_PUT(&h->out, SpvOpConstant, h->own_uint, one, 1);
+    SPIRV_PUT(&h->out, SpvOpConstant, h->own_uint, h->top, 31);
     for (size_t i = 0; i < h->block_count; i++) {
         uint32_t array = fresh(h), pointer = fresh(h);
-        SPIRV_PUT(&h->out, OP_TYPE_ARRAY, array, h->blocks[i].type, one);
-        SPIRV_PUT(&h->out, OP_TYPE_POINTER, pointer, STORAGE_UNIFORM, array);
-        SPIRV_PUT(&h->out, OP_VARIABLE, pointer, h->blocks[i].id, STORAGE_UNIFORM);
+        SPIRV_PUT(&h->out, SpvOpTypeArray, array, h->blocks[i].type, one);
+        SPIRV_PUT(&h->out, SpvOpTypePointer, pointer, SpvStorageClassUniform, array);
+        SPIRV_PUT(&h->out, SpvOpVariable, pointer, h->blocks[i].id, SpvStorageClassUniform);
     }
 }
 
 // The index, in a function: groups, and pixels, are counted to less than 2^31.
 static uint32_t put_zero(hider *h) {
     uint32_t place = fresh(h), x = fresh(h), zero = fresh(h);
-    SPIRV_PUT(&h->out, OP_LOAD, h->own_vector, place, h->own_place);
-    SPIRV_PUT(&h->out, OP_COMPOSITE_EXTRACT, h->own_scalar, x, place, 0);
+    SPIRV_PUT(&h->out, SpvOpLoad, h->own_vector, place, h->own_place);
+    SPIRV_PUT(&h->out, SpvOpCompositeExtract, h->own_scalar, x, place, 0);
     if (h->fragment) {
         uint32_t whole = fresh(h);
-        SPIRV_PUT(&h->out, OP_CONVERT_F_TO_U, h->own_uint, whole, x);
+        SPIRV_PUT(&h->out, SpvOpConvertFToU, h->own_uint, whole, x);
         x = whole;
     }
-    SPIRV_PUT(&h->out, OP_SHIFT_RIGHT_LOGICAL, h->own_uint, zero, x, h->top);
+    SPIRV_PUT(&h->out, SpvOpShiftRightLogical, h->own_uint, zero, x, h->top);
     return zero;
 }
 
 static void put_entry(hider *h, const uint32_t *w, uint32_t words) {
-    put(h, (words + !h->place) << 16 | OP_ENTRY_POINT);
+    put(h, (words + !h->place) << 16 | SpvOpEntryPoint);
     spirv_put(&h->out, w + 1, words - 1);
     if (!h->place) put(h, h->own_place);
 }
@@ -169,42 +171,42 @@ static void write_module(hider *h) {
     bool globals = true, begins = false; // before all functions; in one, before what it does
     uint32_t zero = 0;
     spirv_put(&h->out, h->in, SPIRV_HEADER);
-    SPIRV_PUT(&h->out, OP_CAPABILITY, CAPABILITY_UNIFORM_INDEXING);
+    SPIRV_PUT(&h->out, SpvOpCapability, SpvCapabilityUniformBufferArrayDynamicIndexing);
     choose_ids(h);
     for (size_t at = SPIRV_HEADER; at < h->in_count;) {
         const uint32_t *w = h->in + at;
         uint32_t words = w[0] >> 16, op = w[0] & 0xffff;
         at += words;
-        if (op >= OP_TYPE_FIRST && op <= OP_TYPE_LAST && !h->decorated) {
+        if (op >= SpvOpTypeVoid && op <= SpvOpTypeForwardPointer && !h->decorated) {
             if (!h->place)
-                SPIRV_PUT(&h->out, OP_DECORATE, h->own_place, DECORATION_BUILT_IN, built_in(h));
+                SPIRV_PUT(&h->out, SpvOpDecorate, h->own_place, SpvDecorationBuiltIn, built_in(h));
             h->decorated = true;
         }
-        if (op == OP_FUNCTION && globals) {
+        if (op == SpvOpFunction && globals) {
             put_globals(h);
             globals = false;
         }
-        if (begins && op != OP_VARIABLE && op != OP_LINE) {
+        if (begins && op != SpvOpVariable && op != SpvOpLine) {
             zero = put_zero(h);
             begins = false;
         }
-        if (op == OP_FUNCTION) zero = 0;
-        bool chain = op == OP_ACCESS_CHAIN || op == OP_IN_BOUNDS_ACCESS_CHAIN;
-        if (op == OP_ENTRY_POINT)
+        if (op == SpvOpFunction) zero = 0;
+        bool chain = op == SpvOpAccessChain || op == SpvOpInBoundsAccessChain;
+        if (op == SpvOpEntryPoint)
             put_entry(h, w, words);
         else if (chain && find_block(h, w[3]))
             put_chain(h, w, words, zero);
-        else if (!globals || op != OP_VARIABLE || !find_block(h, w[2]))
+        else if (!globals || op != SpvOpVariable || !find_block(h, w[2]))
             spirv_put(&h->out, w, words);
-        if (op == OP_LABEL && !zero) begins = true;
+        if (op == SpvOpLabel && !zero) begins = true;
     }
     h->out.words[SPIRV_BOUND] = h->bound;
 }
 
 uint32_t *vk_hide_uniforms(const uint32_t *code, size_t size, size_t *out_size) {
     enum { MOST_IDS = 1 << 24 };
+    if (size < SPIRV_HEADER * sizeof *code || code[SPIRV_BOUND] > MOST_IDS) return NULL;
     hider h = {.in = code, .in_count = size / 4, .bound = code[SPIRV_BOUND]};
-    if (h.bound > MOST_IDS) return NULL;
     h.pointees = mem_alloc(h.bound * sizeof *h.pointees);
     bool known = read_module(&h);
     if (known) write_module(&h);

@@ -44,7 +44,7 @@ typedef struct hoister {
 // ---- reading ----------------------------------------------------------------------------------
 
 static bool is_chain(uint32_t op) {
-    return op == OP_ACCESS_CHAIN || op == OP_IN_BOUNDS_ACCESS_CHAIN;
+    return op == SpvOpAccessChain || op == SpvOpInBoundsAccessChain;
 }
 
 static bool has(const hoister *h, uint32_t id, int flag) {
@@ -74,33 +74,35 @@ static void note_chain(hoister *h, const uint32_t *w, uint32_t words) {
 }
 
 static void note_pointer(hoister *h, const uint32_t *w) {
-    if (w[2] == STORAGE_UNIFORM) h->pointees[w[1]] = w[3];
-    if (w[2] == STORAGE_PRIVATE && w[3] < h->known) h->privates[w[3]] = w[1];
+    if (w[2] == SpvStorageClassUniform) h->pointees[w[1]] = w[3];
+    if (w[2] == SpvStorageClassPrivate && w[3] < h->known) h->privates[w[3]] = w[1];
 }
 
 // False where an instruction is shorter than what is looked at, or names ids beyond the bound.
 static bool note(hoister *h, uint32_t op, const uint32_t *w, uint32_t words) {
-    bool type = op >= OP_TYPE_INT && op <= OP_TYPE_MATRIX, pointer = op == OP_TYPE_POINTER;
-    bool typed = op == OP_CONSTANT || op == OP_VARIABLE || is_chain(op);
-    if (op == OP_ENTRY_POINT) {
-        if (h->entry || words < 4) return false; // of several entry points nothing is known
+    bool type = op >= SpvOpTypeInt && op <= SpvOpTypeMatrix, pointer = op == SpvOpTypePointer;
+    bool typed = op == SpvOpConstant || op == SpvOpVariable || is_chain(op);
+    if (op == SpvOpEntryPoint) {
+        if (h->entry || words < 4) return false;        // of several entry points nothing is known
+        if (words > 0xffff - MOST_CHAINS) return false; // its list must grow
         h->entry = w[2];
     }
+    if (op == SpvOpFunction) return words >= 5;
     if (!type && !pointer && !typed) return true;
     if (words < (type ? 3 : 4) || w[1] >= h->known || (typed && w[2] >= h->known)) return false;
     if (type) h->flags[w[1]] |= PLAIN;
     if (pointer) note_pointer(h, w);
-    if (op == OP_CONSTANT) h->flags[w[2]] |= CONSTANT;
-    if (op == OP_VARIABLE && w[3] == STORAGE_UNIFORM) h->flags[w[2]] |= BLOCK;
+    if (op == SpvOpConstant) h->flags[w[2]] |= CONSTANT;
+    if (op == SpvOpVariable && w[3] == SpvStorageClassUniform) h->flags[w[2]] |= BLOCK;
     if (is_chain(op)) note_chain(h, w, words);
     return true;
 }
 
 // A word that looks like the id of a chain and is none keeps it where it is, no more.
 static void note_uses(hoister *h, uint32_t op, const uint32_t *w, uint32_t words, bool body) {
-    uint32_t end = body ? words : op == OP_NAME || op == OP_DECORATE ? 2 : 0;
-    for (uint32_t i = 1; i < end; i++) {
-        bool made = i == 2 && is_chain(op), read = i == 3 && op == OP_LOAD && words == 4;
+    uint32_t end = body ? words : op == SpvOpName || op == SpvOpDecorate ? 2 : 0;
+    for (uint32_t i = 1; i < end && i < words; i++) {
+        bool made = i == 2 && is_chain(op), read = i == 3 && op == SpvOpLoad && words == 4;
         if (w[i] < h->known && h->numbers[w[i]] && !made && !read) h->flags[w[i]] |= USED;
     }
 }
@@ -114,7 +116,7 @@ static bool read_module(hoister *h) {
     bool body = false;
     for (size_t at = SPIRV_HEADER; at < h->in_count; at += h->in[at] >> 16) {
         uint32_t op = h->in[at] & 0xffff;
-        body = body || op == OP_FUNCTION;
+        body = body || op == SpvOpFunction;
         note_uses(h, op, h->in + at, h->in[at] >> 16, body);
     }
     return h->entry && h->chain_count;
@@ -129,7 +131,7 @@ static uint32_t fresh(hoister *h) {
 static void put_entry(hoister *h, const uint32_t *w, uint32_t words) {
     bool listed = h->in[SPIRV_VERSION] >= LISTS_ALL;
     for (uint32_t i = 0; i < h->chain_count; i++) h->chains[i].variable = fresh(h);
-    const uint32_t first = (words + (listed ? h->chain_count : 0)) << 16 | OP_ENTRY_POINT;
+    const uint32_t first = (words + (listed ? h->chain_count : 0)) << 16 | SpvOpEntryPoint;
     spirv_put(&h->out, &first, 1);
     spirv_put(&h->out, w + 1, words - 1);
     for (uint32_t i = 0; listed && i < h->chain_count; i++)
@@ -142,9 +144,9 @@ static void put_globals(hoister *h) {
         uint32_t type = h->chains[i].type, pointer = h->privates[type];
         if (!pointer) {
             pointer = h->privates[type] = fresh(h);
-            SPIRV_PUT(&h->out, OP_TYPE_POINTER, pointer, STORAGE_PRIVATE, type);
+            SPIRV_PUT(&h->out, SpvOpTypePointer, pointer, SpvStorageClassPrivate, type);
         }
-        SPIRV_PUT(&h->out, OP_VARIABLE, pointer, h->chains[i].variable, STORAGE_PRIVATE);
+        SPIRV_PUT(&h->out, SpvOpVariable, pointer, h->chains[i].variable, SpvStorageClassPrivate);
     }
 }
 
@@ -157,8 +159,8 @@ static void put_reads(hoister *h) {
         spirv_put(&h->out, w, 2);
         spirv_put(&h->out, &pointer, 1);
         spirv_put(&h->out, w + 3, (w[0] >> 16) - 3);
-        SPIRV_PUT(&h->out, OP_LOAD, c->type, value, pointer);
-        SPIRV_PUT(&h->out, OP_STORE, c->variable, value);
+        SPIRV_PUT(&h->out, SpvOpLoad, c->type, value, pointer);
+        SPIRV_PUT(&h->out, SpvOpStore, c->variable, value);
     }
 }
 
@@ -174,30 +176,30 @@ static void write_module(hoister *h) {
         const uint32_t *w = h->in + at;
         uint32_t words = w[0] >> 16, op = w[0] & 0xffff;
         at += words;
-        if (op == OP_FUNCTION) {
+        if (op == SpvOpFunction) {
             if (globals) put_globals(h);
             globals = false;
             entry = w[2] == h->entry;
         }
-        if (begins && op != OP_VARIABLE && op != OP_LINE) {
+        if (begins && op != SpvOpVariable && op != SpvOpLine) {
             put_reads(h);
             begins = entry = false;
         }
-        const chain *read = op == OP_LOAD && words == 4 ? hoisted(h, w[3]) : NULL;
-        if (op == OP_ENTRY_POINT)
+        const chain *read = op == SpvOpLoad && words == 4 ? hoisted(h, w[3]) : NULL;
+        if (op == SpvOpEntryPoint)
             put_entry(h, w, words);
         else if (read)
-            SPIRV_PUT(&h->out, OP_LOAD, w[1], w[2], read->variable);
+            SPIRV_PUT(&h->out, SpvOpLoad, w[1], w[2], read->variable);
         else if (!is_chain(op) || !hoisted(h, w[2]))
             spirv_put(&h->out, w, words);
-        if (op == OP_LABEL && entry) begins = true;
+        if (op == SpvOpLabel && entry) begins = true;
     }
     h->out.words[SPIRV_BOUND] = h->bound;
 }
 
 uint32_t *vk_hoist_uniforms(const uint32_t *code, size_t size, size_t *out_size) {
+    if (size < SPIRV_HEADER * sizeof *code || code[SPIRV_BOUND] > MOST_IDS) return NULL;
     uint32_t known = code[SPIRV_BOUND];
-    if (known > MOST_IDS) return NULL;
     hoister *h = mem_alloc(sizeof *h);
     *h = (hoister){.in = code, .in_count = size / 4, .known = known, .bound = known};
     h->flags = mem_alloc(known * sizeof *h->flags);

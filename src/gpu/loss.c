@@ -63,8 +63,11 @@ bool vk_lose(gpu *g, VkResult how) {
         char why[96] = "a shader that ran too long, or a driver fault";
         if (how == VK_TIMEOUT) {
             g->hung = true;
-            snprintf(why, sizeof why, "it finished no work in %g s, a shader may run endlessly",
-                     (double)g->timeout * 1e-9);
+            if (g->given_up)
+                snprintf(why, sizeof why, "it was given up while it worked");
+            else
+                snprintf(why, sizeof why, "it finished no work in %g s, a shader may run endlessly",
+                         (double)g->timeout * 1e-9);
         }
         snprintf(g->loss, sizeof g->loss, "the device '%s' was lost%s%s%s (%s)", g->info.name,
                  pass ? " in pass '" : "", pass ? pass : "", pass ? "'" : "", why);
@@ -74,16 +77,38 @@ bool vk_lose(gpu *g, VkResult how) {
     return err_set("%s", g->loss);
 }
 
+typedef struct wait {        // nanoseconds
+    uint64_t since_progress; // the device's last
+    uint64_t all;
+} wait;
+
+// Waits for as long as nobody need be asked. A driver that answers a long wait with a short one
+// would make `all` too long, and is not known.
+static VkResult wait_once(gpu *g, uint64_t serial, wait *w) {
+    static const uint64_t tick = 100000000, patience = 1000000000;
+    bool asks = g->waiting && pthread_equal(g->owner, pthread_self());
+    uint64_t left = g->timeout - w->since_progress, before = vk_completed(g);
+    uint64_t time = asks && left > tick ? tick : left;
+    VkSemaphoreWaitInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                .semaphoreCount = 1,
+                                .pSemaphores = &g->timeline,
+                                .pValues = &serial};
+    VkResult result = vkWaitSemaphores(g->device, &info, time);
+    if (result != VK_TIMEOUT) return result;
+    w->all += time;
+    w->since_progress =
+        vk_completed(g) > before ? 0 : w->since_progress + time; // slow, but at work
+    if (asks && w->all >= patience)
+        g->given_up = !g->waiting(g->waiting_user, (double)w->all * 1e-9);
+    return g->given_up || w->since_progress >= g->timeout ? VK_TIMEOUT : VK_NOT_READY;
+}
+
 bool vk_wait(gpu *g, uint64_t serial) {
     if (!vk_alive(g)) return false;
+    wait w = {0};
     while (serial > g->completed) {
-        uint64_t before = vk_completed(g);
-        VkSemaphoreWaitInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
-                                    .semaphoreCount = 1,
-                                    .pSemaphores = &g->timeline,
-                                    .pValues = &serial};
-        VkResult result = vkWaitSemaphores(g->device, &info, g->timeout);
-        if (result == VK_TIMEOUT && vk_completed(g) > before) continue; // slow, but at work
+        VkResult result = wait_once(g, serial, &w);
+        if (result == VK_NOT_READY) continue;
         if (result == VK_TIMEOUT || result == VK_ERROR_DEVICE_LOST) return vk_lose(g, result);
         if (!vk_check(g, result, "waiting for '%s'", g->info.name)) return false;
         if (serial > g->completed) g->completed = serial;

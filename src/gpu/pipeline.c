@@ -1,4 +1,4 @@
-// Pipelines. Descriptors are pushed (set 0), vertices pulled from buffers, rendering is dynamic: a
+// Pipelines. Descriptors are one set (0), vertices pulled from buffers, rendering is dynamic: a
 // pipeline is its shaders, its slots and its target formats. What the driver makes of them is
 // shared (share.c); label and slots, which messages and barriers want, are each pipeline's own.
 //
@@ -22,7 +22,7 @@ static bool create_layout(gpu *g, const gpu_pipeline *pipeline, VkShaderStageFla
     }
     VkDescriptorSetLayoutCreateInfo set = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR,
+        .flags = g->push_descriptors ? VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR : 0,
         .bindingCount = pipeline->slot_count,
         .pBindings = bindings};
     if (!vk_check(g, vkCreateDescriptorSetLayout(g->device, &set, NULL, &out->set_layout),
@@ -109,17 +109,39 @@ static hash128 hash_interface(const gpu_pipeline *pipeline) {
     return hash_bytes(words, count * sizeof *words);
 }
 
-// A software driver fares better where uniforms are read once, and hidden.
+// What a driver gets for a module of ours, for mem_free.
+typedef struct rewritten {
+    uint32_t *clamped, *hoisted, *hidden; // NULL: left as it was
+    const uint32_t *code;
+    size_t size;
+} rewritten;
+
+// A software driver does not check indices into variables.
+static bool clamp(const char *label, rewritten *r) {
+    if (!vk_clamp_indices(r->code, r->size, &r->clamped, &r->size))
+        return err_set("pipeline '%s': the indices in its code cannot be kept in bounds", label);
+    if (r->clamped) r->code = r->clamped;
+    return true;
+}
+
+// Mesa's fares better where uniforms are read once, and hidden.
+static void rewrite_for_lavapipe(rewritten *r) {
+    r->hoisted = vk_hoist_uniforms(r->code, r->size, &r->size);
+    if (r->hoisted) r->code = r->hoisted;
+    r->hidden = vk_hide_uniforms(r->code, r->size, &r->size);
+    if (r->hidden) r->code = r->hidden;
+}
+
+// `vertex`: the shader is short, and keeps its uniforms.
 static bool create_rewritten_module(gpu *g, const char *label, const uint32_t *code, size_t size,
-                                    VkShaderModule *out) {
-    if (g->info.kind != GPU_CPU) return create_module(g, label, code, size, out);
-    uint32_t *hoisted = vk_hoist_uniforms(code, size, &size);
-    if (hoisted) code = hoisted;
-    uint32_t *hidden = vk_hide_uniforms(code, size, &size);
-    if (hidden) code = hidden;
-    bool created = create_module(g, label, code, size, out);
-    mem_free(hidden);
-    mem_free(hoisted);
+                                    bool vertex, VkShaderModule *out) {
+    rewritten r = {.code = code, .size = size};
+    bool created = g->info.kind != GPU_CPU || clamp(label, &r);
+    if (created && g->lavapipe && !vertex) rewrite_for_lavapipe(&r);
+    created = created && create_module(g, label, r.code, r.size, out);
+    mem_free(r.hidden);
+    mem_free(r.hoisted);
+    mem_free(r.clamped);
     return created;
 }
 
@@ -137,6 +159,19 @@ static bool check_local_size(gpu *g, const char *label, const uint32_t size[3]) 
         label, size[0], size[1], size[2], most[0], most[1], most[2], total);
 }
 
+// Asked once for what the driver is to build; groups of more do not start, or end the driver.
+static bool check_shared_memory(gpu *g, const char *label, const uint32_t *code, size_t size) {
+    spirv_module m;
+    bool known = spirv_module_read(&m, code, size / 4);
+    uint32_t bytes = known ? spirv_storage_size(&m, SpvStorageClassWorkgroup) : 0;
+    uint32_t most = g->limits.maxComputeSharedMemorySize;
+    spirv_module_free(&m);
+    if (!known) return err_set("pipeline '%s': the shader code is not SPIR-V", label);
+    if (bytes <= most) return true;
+    return err_set("pipeline '%s' shares %u bytes in a work group; the device allows %u", label,
+                   bytes, most);
+}
+
 // Whether a shader asks how many groups there are (gl_NumWorkGroups): slices have fewer.
 static bool counts_groups(const uint32_t *code, size_t size) {
     size_t count = size / 4, words;
@@ -144,8 +179,8 @@ static bool counts_groups(const uint32_t *code, size_t size) {
         const uint32_t *w = code + at;
         words = w[0] >> 16;
         if (!words || words > count - at) return true;
-        if (words == 4 && (w[0] & 0xffff) == OP_DECORATE && w[2] == DECORATION_BUILT_IN &&
-            w[3] == BUILT_IN_GROUP_COUNT)
+        if (words == 4 && (w[0] & 0xffff) == SpvOpDecorate && w[2] == SpvDecorationBuiltIn &&
+            w[3] == SpvBuiltInNumWorkgroups)
             return true;
     }
     return false;
@@ -154,9 +189,10 @@ static bool counts_groups(const uint32_t *code, size_t size) {
 static bool build_compute(gpu *g, const gpu_pipeline *pipeline, const gpu_compute_desc *desc,
                           vk_built *out) {
     VkShaderModule module;
-    out->sliced = g->info.kind == GPU_CPU && !counts_groups(desc->code, desc->code_size);
+    out->sliced = g->lavapipe && !counts_groups(desc->code, desc->code_size);
+    if (!check_shared_memory(g, pipeline->label, desc->code, desc->code_size)) return false;
     if (!create_layout(g, pipeline, VK_SHADER_STAGE_COMPUTE_BIT, out)) return false;
-    if (!create_rewritten_module(g, pipeline->label, desc->code, desc->code_size, &module))
+    if (!create_rewritten_module(g, pipeline->label, desc->code, desc->code_size, false, &module))
         return false;
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
@@ -290,10 +326,10 @@ static bool build_graphics(gpu *g, const gpu_pipeline *pipeline, const gpu_graph
          .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
          .pName = "main"}};
     bool ok = create_layout(g, pipeline, both, out) &&
-              create_module(g, pipeline->label, desc->vertex_code, desc->vertex_size,
-                            &stages[0].module) &&
+              create_rewritten_module(g, pipeline->label, desc->vertex_code, desc->vertex_size,
+                                      true, &stages[0].module) &&
               create_rewritten_module(g, pipeline->label, desc->fragment_code, desc->fragment_size,
-                                      &stages[1].module) &&
+                                      false, &stages[1].module) &&
               vk_check(g, create_graphics(g, pipeline, desc, stages, out), "creating pipeline '%s'",
                        pipeline->label);
     vkDestroyShaderModule(g->device, stages[0].module, NULL);

@@ -1,52 +1,53 @@
-// Words of SPIR-V 1.6 (section 3), for those files that rewrite modules: hide.c, hoist.c.
+// Modules of SPIR-V as words (SPIR-V 1.6, section 2.3): five words of header, then instructions,
+// whose first word holds their length above their opcode. For those files that read modules as a
+// whole or rewrite them: clamp.c, hide.c, hoist.c, and the gate of src/shader.
 #pragma once
 #include "base/memory.h"
+#include <spirv_cross/spirv.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 enum {
-    SPIRV_HEADER = 5,
-    SPIRV_VERSION = 1,
-    SPIRV_BOUND = 3
-}; // words; where in them: all ids are below the bound
-
-enum {
-    OP_NAME = 5,
-    OP_LINE = 8,
-    OP_ENTRY_POINT = 15,
-    OP_CAPABILITY = 17,
-    OP_TYPE_FIRST = 19, // OpTypeVoid, up to
-    OP_TYPE_LAST = 39,  // OpTypeForwardPointer
-    OP_TYPE_INT = 21,
-    OP_TYPE_FLOAT = 22,
-    OP_TYPE_VECTOR = 23,
-    OP_TYPE_MATRIX = 24,
-    OP_TYPE_ARRAY = 28,
-    OP_TYPE_POINTER = 32,
-    OP_CONSTANT = 43,
-    OP_FUNCTION = 54,
-    OP_FUNCTION_CALL = 57,
-    OP_VARIABLE = 59,
-    OP_LOAD = 61,
-    OP_STORE = 62,
-    OP_COPY_MEMORY = 63,
-    OP_ACCESS_CHAIN = 65,
-    OP_IN_BOUNDS_ACCESS_CHAIN = 66,
-    OP_DECORATE = 71,
-    OP_COMPOSITE_EXTRACT = 81,
-    OP_COPY_OBJECT = 83,
-    OP_CONVERT_F_TO_U = 109,
-    OP_SHIFT_RIGHT_LOGICAL = 194,
-    OP_LABEL = 248,
-    MODEL_FRAGMENT = 4,
-    STORAGE_INPUT = 1,
-    STORAGE_UNIFORM = 2,
-    STORAGE_PRIVATE = 6,
-    CAPABILITY_UNIFORM_INDEXING = 28,
-    DECORATION_BUILT_IN = 11,
-    BUILT_IN_FRAG_COORD = 15,
-    BUILT_IN_GROUP_COUNT = 24,
-    BUILT_IN_WORKGROUP = 26,
+    SPIRV_HEADER = 5,  // words
+    SPIRV_VERSION = 1, // where in them
+    SPIRV_BOUND = 3,   // all ids are below it
+    SPIRV_MOST_IDS = 1 << 22,
 };
+
+// ---- reading ----------------------------------------------------------------------------------
+
+// Words of the instruction at `at`; 0 when what stands there is not one.
+static inline uint32_t spirv_length(const uint32_t *words, size_t count, size_t at) {
+    uint32_t length = words[at] >> SpvWordCountShift;
+    return length <= count - at ? length : 0;
+}
+
+typedef struct spirv_id {
+    uint32_t at;   // first word of the instruction that defines it; 0: none does
+    uint32_t type; // of a value; 0: it is none
+    uint32_t size; // of a type: bytes of its numbers, UINT32_MAX: more than that, or not known
+    bool array;    // of a type: it is an array or holds one
+} spirv_id;
+
+typedef struct spirv_module {
+    const uint32_t *words;
+    size_t count;
+    uint32_t bound;
+    spirv_id *ids;
+} spirv_module;
+
+// False when an instruction is cut off, or when an id is defined twice, lies beyond the bound, or
+// is the type of something before it is defined. `words` must outlive the module.
+bool spirv_module_read(spirv_module *m, const uint32_t *words, size_t count);
+void spirv_module_free(spirv_module *m);
+// The instruction that defines an id; NULL: none does, or one of another opcode.
+const uint32_t *spirv_find(const spirv_module *m, uint32_t id, SpvOp op);
+// Value of an integer constant of 32 bits.
+bool spirv_constant(const spirv_module *m, uint32_t id, uint32_t *value);
+// Bytes of all variables of a storage class, in or out of functions; saturates.
+uint32_t spirv_storage_size(const spirv_module *m, SpvStorageClass storage);
+
+// ---- writing ----------------------------------------------------------------------------------
 
 typedef struct spirv_words {
     uint32_t *words;
@@ -62,7 +63,7 @@ static inline void spirv_put(spirv_words *out, const uint32_t *words, size_t cou
 #define SPIRV_PUT(out, op, ...)                                                                    \
     do {                                                                                           \
         const uint32_t operands[] = {__VA_ARGS__};                                                 \
-        const uint32_t first = (uint32_t)(COUNT_OF(operands) + 1) << 16 | (op);                    \
+        const uint32_t first = (uint32_t)(COUNT_OF(operands) + 1) << SpvWordCountShift | (op);     \
         spirv_put(out, &first, 1);                                                                 \
         spirv_put(out, operands, COUNT_OF(operands));                                              \
     } while (0)

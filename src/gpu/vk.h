@@ -4,6 +4,7 @@
 // the last finished one. At most one command buffer is open at a time: that of the open frame, or a
 // batch of work recorded between frames, which is submitted before the next frame or read.
 #pragma once
+#include "base/budget.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "gpu/allocator.h"
@@ -39,6 +40,8 @@ void vk_instance_destroy(vk_instance *instance);
 typedef struct vk_choice { // a device as found; real GPUs first
     VkPhysicalDevice physical;
     gpu_info info;
+    bool lavapipe; // Mesa's software driver, which likes shaders and dispatches as no other does
+    bool pushes;   // descriptors: VK_KHR_push_descriptor is there, and not turned down
 } vk_choice;
 // At most VK_MAX_DEVICES; -1 with a message when there is none. With a surface, a device that
 // cannot present to it is not usable.
@@ -56,7 +59,7 @@ typedef struct vk_features {
 } vk_features;
 void vk_features_read(VkPhysicalDevice physical, vk_features *out);
 // `copies`: a second family to have a queue of; -1: none.
-VkDevice vk_device_create(VkPhysicalDevice physical, uint32_t family, int copies, bool presents);
+VkDevice vk_device_create(const vk_choice *choice, uint32_t family, int copies, bool presents);
 
 // True for VK_SUCCESS; else false with "what: why", and notes a lost device.
 bool vk_check(gpu *g, VkResult result, const char *what, ...) PRINTF_LIKE(3, 4);
@@ -90,15 +93,21 @@ typedef struct vk_memory {
     vk_block *block; // NULL: none
     allocator_place place;
     uint64_t size;
+    budget_part *part; // of its size
 } vk_memory;
 
 typedef struct vk_pool {
     vk_block **blocks;
     size_t count, capacity;
     uint64_t used, reserved;
+    // By whether the heap is the device's own. Of a device that shares the host's memory both are
+    // the host's budget.
+    budget *budgets[2];
+    budget_part *spare[2]; // of blocks: what no object has
 } vk_pool;
 
-// `label` is for the message.
+void vk_pool_init(gpu *g); // once the device is known
+// `label` is for messages, and for the account of memory.
 bool vk_memory_alloc(gpu *g, const VkMemoryRequirements *needs, vk_memory_kind kind, bool image,
                      const char *label, vk_memory *out);
 void vk_memory_free(gpu *g, vk_memory *memory);
@@ -192,9 +201,19 @@ void vk_collect_all(gpu *g); // the device is idle
 
 // ---- commands ---------------------------------------------------------------------------------
 
+typedef struct vk_sets { // of descriptors; none where these are pushed
+    VkDescriptorPool *pools;
+    size_t count, capacity;
+    size_t taken; // sets, since the last reset
+} vk_sets;
+
+bool vk_sets_reset(gpu *g, vk_sets *sets); // no submission uses them any more
+void vk_sets_free(gpu *g, vk_sets *sets);
+
 typedef struct vk_batch {
     VkCommandPool pool;
     VkCommandBuffer commands;
+    vk_sets sets;             // that the commands use
     uint64_t serial;          // of its last submission
     VkSemaphore wait, signal; // of the next one, beside the timeline; NULL: none. Transfers wait
 } vk_batch;
@@ -236,16 +255,19 @@ typedef struct vk_uses {
 } vk_uses;
 
 VkDescriptorType vk_descriptor_type(gpu_slot_kind kind);
-// The same code for a software driver, for mem_free: with uniforms read once (hoist.c), with their
+// The same code for lavapipe, for mem_free: with uniforms read once (hoist.c), with their
 // blocks hidden (hide.c). NULL: there are none, or it is left as it is. Sizes in bytes; `*out_size`
 // is set with the code only.
 uint32_t *vk_hoist_uniforms(const uint32_t *code, size_t size, size_t *out_size);
 uint32_t *vk_hide_uniforms(const uint32_t *code, size_t size, size_t *out_size);
+// The same with each index into variables kept in bounds (clamp.c). `*out`, for mem_free, is NULL
+// where all are; `*out_size` is set anyway. False, without a message, for what cannot be rewritten.
+bool vk_clamp_indices(const uint32_t *code, size_t size, uint32_t **out, size_t *out_size);
 
 // Validates bindings against the slots of a pipeline; then notes what they touch; then binds them.
 bool vk_bindings_check(gpu *g, const gpu_pipeline *pipeline, const gpu_binding *list, size_t count);
 bool vk_bindings_use(gpu *g, const gpu_pipeline *pipeline, const gpu_binding *list, size_t count);
-bool vk_bindings_push(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipeline,
+bool vk_bindings_bind(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipeline,
                       const gpu_binding *list, size_t count);
 
 typedef struct vk_ring { // staging: positions only grow, the offset is the position modulo size
@@ -349,6 +371,10 @@ struct gpu {
     char loss[512];        // how and where the device was lost
     bool hung;             // work did not finish in time, and may never
     uint64_t timeout;      // nanoseconds
+    bool given_up;         // by `waiting`, sooner than that
+    bool (*waiting)(void *user, double seconds);
+    void *waiting_user;
+    pthread_t owner; // which calls it
 
     vk_window window;
     VkPhysicalDevice physical;
@@ -360,7 +386,8 @@ struct gpu {
     uint64_t max_allocation, max_buffer;
     VkPhysicalDeviceMemoryProperties heaps;
     VkFormatFeatureFlags format_features[GPU_FORMAT_COUNT];
-    PFN_vkCmdPushDescriptorSetKHR push_descriptors;
+    bool lavapipe;
+    PFN_vkCmdPushDescriptorSetKHR push_descriptors; // NULL: sets of the batch are bound
     PFN_vkCmdBeginDebugUtilsLabelEXT begin_label;
     PFN_vkCmdEndDebugUtilsLabelEXT end_label;
     PFN_vkSetDebugUtilsObjectNameEXT set_name;
