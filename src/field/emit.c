@@ -144,9 +144,41 @@ static void compute_here(emitter *e, uint32_t index) {
     if (o->finished == 0) o->finished = ++e->finished;
 }
 
+// What is visible where a function is called is so after the call, though the function may have
+// computed the same for itself.
+typedef struct place {
+    uint32_t index, scope, unit;
+    bool sure;
+} place;
+
+static place *list_visible(const emitter *e, size_t *count) {
+    place *list = NULL;
+    size_t capacity = 0;
+    *count = 0;
+    for (uint32_t i = 0; i < e->op_count; i++) {
+        const op *o = &e->ops[i];
+        if (!emit_is_visible(e, i)) continue;
+        MEM_RESERVE(list, *count + 1, capacity);
+        list[(*count)++] = (place){i, o->scope, o->unit, o->sure};
+    }
+    return list;
+}
+
+static void restore_visible(emitter *e, const place *list, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        op *o = &e->ops[list[i].index];
+        o->round = e->round;
+        o->scope = list[i].scope;
+        o->unit = list[i].unit;
+        o->sure = list[i].sure;
+    }
+}
+
 // Writes the function of a lazy operation, beside the function being written.
 static void write_lazy(emitter *e, uint32_t index) {
     emitter outer = *e;
+    size_t visible_count;
+    place *visible = list_visible(e, &visible_count);
     e->ops[index].function_round = e->round;
     memset(&e->body, 0, sizeof e->body);
     e->unit = e->units++;
@@ -173,6 +205,8 @@ static void write_lazy(emitter *e, uint32_t index) {
     e->current = outer.current;
     e->indent = outer.indent;
     e->level = outer.level;
+    restore_visible(e, visible, visible_count);
+    mem_free(visible);
 }
 
 void emit_op(emitter *e, uint32_t index, char out[EXPR]) {

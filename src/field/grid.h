@@ -37,6 +37,10 @@ typedef struct field_playback { // of data that is read frame by frame, since it
     bool waiting;            // another frame is standing in just now
 } field_playback;
 
+typedef struct field_needs { // bytes of memory
+    uint64_t host, device;
+} field_needs;
+
 struct field_grid {
     const char *name;  // for messages and dumps
     box3 box;          // world box of the texture: texel centres lie half a voxel inside (metres)
@@ -59,6 +63,8 @@ struct field_grid {
     // Gives `other`, a grid with the same hook, all that this one has read and put on the device,
     // and takes what that one has; false when they do not show the same. NULL: nothing to exchange.
     bool (*exchange)(field_grid *grid, field_grid *other);
+    // What its first picture takes at least, as far as nothing of it is there yet. NULL: little.
+    field_needs (*needs)(const field_grid *grid);
     const field_playback *(*playback)(const field_grid *grid); // NULL: nothing is played
     // What it holds, by canonical names ("density", "velocity"); NULL past the last. And where: the
     // first channel of a name with its components, 1 or 3; -1 with a message. Without these hooks

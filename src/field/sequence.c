@@ -31,13 +31,6 @@ const char *sequence_loop_name(sequence_loop loop) {
 static bool list_files(sequence_data *s) {
     const char *pattern = s->desc.pattern;
     file_list list = {0};
-    if (file_exists(pattern)) {
-        const char **one = arena_alloc(&s->memory, sizeof *one);
-        one[0] = arena_string(&s->memory, pattern);
-        s->files = one;
-        s->file_count = 1;
-        return true;
-    }
     if (!file_glob(pattern, &list)) return false;
     bool ok = list.count > 0 && list.count <= SEQUENCE_MAX_FRAMES;
     if (list.count == 0)
@@ -137,13 +130,13 @@ static bool snap(sequence_data *s, const box3 *all, const vdb_grid_info *first) 
 
 // What a file says of itself, kept between loads of the same effect.
 static bool read_info(sequence_data *s, const char *file, vdb_info *out) {
-    if (!s->desc.shelf) return vdb_read_info(file, &s->memory, out);
+    if (!s->desc.shelf) return vdb_read_info_inside(s->desc.root, file, &s->memory, out);
     shelf_item *item = shelf_take(s->desc.shelf, file);
     if (!item) {
         arena memory = {0};
         int64_t begin = file_clock_ns();
         vdb_info *info = arena_alloc(&memory, sizeof *info);
-        if (!vdb_read_info(file, &memory, info)) {
+        if (!vdb_read_info_inside(s->desc.root, file, &memory, info)) {
             arena_free(&memory);
             return false;
         }
@@ -334,6 +327,14 @@ static bool update(field_grid *grid, gpu *g, double time) {
     return true;
 }
 
+// One frame, or the two that are mixed, and the memory that they are copied from one by one.
+static field_needs needs(const field_grid *grid) {
+    const sequence_data *s = ((const sequence *)grid)->data;
+    if (s->cache.slot_count > 0) return (field_needs){0};
+    uint64_t frame = sequence_frame_bytes(s, 0);
+    return (field_needs){.host = frame, .device = grid->blends ? 2 * frame : frame};
+}
+
 static const field_playback *playback(const field_grid *grid) {
     return &((const sequence *)grid)->data->cache.counts;
 }
@@ -385,7 +386,9 @@ sequence *sequence_create(arena *memory, const sequence_desc *desc) {
     sequence_data *d = mem_alloc(sizeof *d);
     d->desc = *desc;
     d->desc.pattern = arena_string(&d->memory, desc->pattern);
+    if (desc->root) d->desc.root = arena_string(&d->memory, desc->root);
     d->name = path_name(d->desc.pattern);
+    d->label = arena_format(&d->memory, "%s, decoded", d->name);
     d->raw = strcmp(path_extension(desc->pattern), "raw") == 0 || desc->raw.type;
     if (!open_files(d)) {
         sequence_data_free(d, NULL);
@@ -402,6 +405,7 @@ sequence *sequence_create(arena *memory, const sequence_desc *desc) {
                            .update = update,
                            .destroy = destroy,
                            .exchange = sequence_exchange,
+                           .needs = needs,
                            .playback = playback,
                            .field_name = sequence_field_name,
                            .find_field = sequence_find_field};

@@ -21,7 +21,7 @@ const char *sequence_storage_name(sequence_storage storage); // "auto", "dense",
 
 typedef struct sequence_desc {
     const char *pattern;      // absolute path or glob of .vdb files, or a .raw file
-    const char *root;         // matches of a glob must lie in this folder; NULL: anywhere
+    const char *root;         // the files must lie in this folder; NULL: anywhere
     double fps;               // frames of the sequence a second of effect time; 0: 24
     double start;             // effect time (s) at which the first frame is shown
     double speed;             // 0: 1

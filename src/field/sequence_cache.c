@@ -49,6 +49,12 @@ static void count_bytes(sequence_data *s) {
     for (size_t i = 0; i < c->slot_count; i++) c->counts.device_bytes += c->slots[i].bytes;
 }
 
+bool sequence_may_prepare(gpu *g, uint64_t bytes) {
+    budget *b = g ? gpu_get_budget(g) : budget_host();
+    uint64_t room = budget_room(b), left = budget_get_limit(b) / 4;
+    return room > left && bytes <= room - left;
+}
+
 static bool all_fit(const sequence_data *s) {
     return s->cache.counts.largest_bytes * s->frame_count <= s->cache.budget;
 }
@@ -81,7 +87,8 @@ static sequence_slot *take_slot(sequence_data *s, gpu *g, uint64_t bytes) {
     sequence_cache *c = &s->cache;
     if (bytes > c->counts.largest_bytes) c->counts.largest_bytes = bytes;
     slots_use use = look_at_slots(c);
-    if (use.unused && (all_fit(s) || use.count < few || !use.oldest)) return use.unused;
+    bool room = sequence_may_prepare(g, bytes);
+    if (use.unused && ((room && (all_fit(s) || use.count < few)) || !use.oldest)) return use.unused;
     while (!all_fit(s) && use.count > few && use.oldest) { // kept while smaller ones would have fit
         sequence_slot *freed = use.oldest;
         sequence_slot_free(freed, g);
@@ -230,6 +237,8 @@ static void step(sequence_data *s, gpu *g, sequence_job *job, bool *busy) {
     }
     if (state != JOB_DECODED && state != JOB_STAGED) return;
     if (state == JOB_STAGED && *busy) return;
+    bool room = sequence_may_prepare(g, sequence_upload_bytes(s, &job->texels));
+    if (state == JOB_DECODED && !room && !look_at_slots(&s->cache).oldest) return;
     *busy = *busy || state == JOB_STAGED;
     if (move_on(s, g, job, state)) return;
     log_write(LOG_WARNING, "%s", err_get());

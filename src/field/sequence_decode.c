@@ -77,6 +77,7 @@ static bool sample(const sequence_data *s, uint32_t frame, const vdb_grid_info *
         .size = {s->file_size[0], s->file_size[1], s->file_size[2]},
         .components = grid->components,
         .out = values,
+        .root = s->desc.root,
     };
     if (!vdb_sample(&desc, &some)) return false;
     *bad += some;
@@ -146,14 +147,59 @@ static bool decode_dense(const sequence_data *s, uint32_t frame, sequence_texels
     return ok;
 }
 
+static uint64_t texel_bytes(const sequence_data *s) { // of a voxel, in all images
+    uint64_t bytes = 0;
+    for (int i = 0; i < FIELD_GRID_IMAGES && sequence_image_channels(s, i) > 0; i++)
+        bytes += (uint64_t)sequence_texel_width(s, i) * sizeof(uint16_t);
+    return bytes;
+}
+
+uint64_t sequence_frame_bytes(const sequence_data *s, uint32_t frame) {
+    uint64_t voxels = (uint64_t)s->size[0] * s->size[1] * s->size[2];
+    if (s->sparse) voxels = (uint64_t)((double)s->most_active / (double)sequence_growth(s, frame));
+    return voxels * texel_bytes(s);
+}
+
+uint64_t sequence_decode_bytes(const sequence_data *s, uint32_t frame) {
+    uint64_t voxels = (uint64_t)s->file_size[0] * s->file_size[1] * s->file_size[2];
+    if (!s->sparse) { // by way of numbers, and of the bytes of the file
+        uint64_t widest = 1;
+        for (size_t i = 0; i < s->channel_count; i++)
+            if (s->channels[i].components > (int)widest)
+                widest = (uint64_t)s->channels[i].components;
+        return voxels * (widest * sizeof(float) + texel_bytes(s)) + s->layout.frame_bytes;
+    }
+    const uint64_t border = 2; // a brick has at most so much more than its voxels
+    uint64_t active = (uint64_t)((double)s->most_active / (double)sequence_growth(s, frame));
+    uint64_t bytes = border * active * texel_bytes(s);
+    if (bytes > s->desc.max_frame_bytes) bytes = s->desc.max_frame_bytes;
+    return bytes + sequence_brick_count(s) * (1 + sizeof(uint32_t));
+}
+
+static void note_kept(const sequence_data *s, const sequence_texels *texels) {
+    const uint64_t brick = (SEQUENCE_BRICK + 1) * (SEQUENCE_BRICK + 1) * (SEQUENCE_BRICK + 1);
+    uint64_t bytes = 0, voxels = (uint64_t)s->size[0] * s->size[1] * s->size[2];
+    for (int i = 0; i < FIELD_GRID_IMAGES && sequence_image_channels(s, i) > 0; i++) {
+        uint64_t count = s->sparse ? texels->bricks[i].count * brick : voxels;
+        bytes += count * (uint64_t)sequence_texel_width(s, i) * sizeof(uint16_t);
+        if (s->sparse) bytes += sequence_brick_count(s) * sizeof(uint32_t);
+    }
+    budget_note(texels->part, bytes);
+}
+
 bool sequence_decode(const sequence_data *s, uint32_t frame, sequence_texels *out) {
     memset(out, 0, sizeof *out);
+    out->part = budget_take(budget_host(), sequence_decode_bytes(s, frame), s->label);
+    if (!out->part) return err_prefix("%s: ", s->name);
     bool ok = s->sparse ? sequence_decode_sparse(s, frame, out) : decode_dense(s, frame, out);
+    if (ok) note_kept(s, out);
     if (!ok) sequence_texels_free(out);
     return ok;
 }
 
 void sequence_texels_drop(sequence_texels *texels) {
+    budget_give(texels->part);
+    texels->part = NULL;
     for (int i = 0; i < FIELD_GRID_IMAGES; i++) {
         mem_free(texels->images[i]);
         mem_free(texels->bricks[i].index);

@@ -63,7 +63,11 @@ static void stage(void *user) {
 
 void sequence_job_stage(sequence_job *job) {
     job->state = JOB_STAGING; // no thread has it now
-    worker_submit_first(job->owner->cache.jobs.pool, (worker_job){stage, job});
+    worker *pool = job->owner->cache.jobs.pool;
+    if (!pool)
+        stage(job); // no thread could be made
+    else
+        worker_submit_first(pool, (worker_job){stage, job});
 }
 
 int sequence_job_state(sequence_job *job) {
@@ -96,12 +100,16 @@ bool sequence_job_add(sequence_data *s, uint32_t frame) {
     sequence_jobs *j = &s->cache.jobs;
     size_t place = 0;
     while (place < SEQUENCE_MAX_JOBS && j->list[place]) place++;
-    if (place == SEQUENCE_MAX_JOBS) return false;
+    if (place == SEQUENCE_MAX_JOBS || !sequence_may_prepare(NULL, sequence_decode_bytes(s, frame)))
+        return false;
     sequence_job *job = mem_alloc(sizeof *job);
     job->owner = s;
     job->frame = frame;
     j->list[place] = job;
-    worker_submit(j->pool, (worker_job){decode, job});
+    if (j->pool)
+        worker_submit(j->pool, (worker_job){decode, job});
+    else
+        decode(job);
     return true;
 }
 

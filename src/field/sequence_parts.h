@@ -6,6 +6,7 @@
 // A sequence is a grid that fields point at, and its data, which another load of the same effect
 // may take over together with the textures and the thread that decodes (field_grid.exchange).
 #pragma once
+#include "base/budget.h"
 #include "base/worker.h"
 #include "field/sequence.h"
 #include "media/vdb.h"
@@ -43,6 +44,7 @@ typedef struct sequence_texels {
                                          // brick, 9^3 texels each; mem_free
     sequence_bricks bricks[FIELD_GRID_IMAGES]; // of a sparse sequence
     box3 active;                               // world
+    budget_part *part;                         // of all this memory
     uint64_t voxels;                           // that are not 0
     uint64_t bad;                              // values that were not finite
 } sequence_texels;
@@ -102,6 +104,7 @@ typedef struct sequence_data {
     arena memory;
     sequence_desc desc; // defaults filled in
     const char *name;   // for messages
+    const char *label;  // of its decoded frames, in the account of memory
     bool raw;
     sequence_raw_layout layout;
     const char *const *files;
@@ -158,6 +161,10 @@ box3 sequence_active_box(const sequence_data *s, const uint32_t low[3], const ui
 
 // Any thread. False with a message; nothing is then left to free.
 bool sequence_decode(const sequence_data *s, uint32_t frame, sequence_texels *out);
+// Bytes that decoding takes at most, and holds after it; of a sparse frame as its file says.
+uint64_t sequence_decode_bytes(const sequence_data *s, uint32_t frame);
+// Of the textures of a dense frame, or of what a sparse one holds as far as its file says.
+uint64_t sequence_frame_bytes(const sequence_data *s, uint32_t frame);
 bool sequence_decode_sparse(const sequence_data *s, uint32_t frame, sequence_texels *out);
 // The atlas of an image, as its texture takes it: any thread.
 void sequence_atlas_write(const sequence_data *s, const sequence_texels *texels, int image,
@@ -185,7 +192,8 @@ void sequence_data_free(sequence_data *d, gpu *g); // `g` may be NULL when nothi
 void sequence_jobs_start(sequence_data *s);
 void sequence_jobs_end(sequence_data *s, gpu *g);
 sequence_job *sequence_job_find(const sequence_data *s, uint32_t frame);
-bool sequence_job_add(sequence_data *s, uint32_t frame); // false: there are enough
+// False: there are enough, or as many as memory allows.
+bool sequence_job_add(sequence_data *s, uint32_t frame);
 int sequence_job_state(sequence_job *job);
 int sequence_job_wait(sequence_job *job);                    // until no thread has it; its state
 void sequence_job_stage(sequence_job *job);                  // its transfer is large enough
@@ -194,6 +202,9 @@ bool sequence_job_drop(sequence_data *s, sequence_job *job); // frees it; false:
 // The slot of a frame, decoded and uploaded if need be; NULL with a message. What is shown in one
 // turn stays until the next.
 void sequence_cache_turn(sequence_data *s);
+// Whether so many more bytes may be taken for what is not shown yet: a quarter of the memory is
+// left for what is.
+bool sequence_may_prepare(gpu *g, uint64_t bytes);
 sequence_slot *sequence_cache_get(sequence_data *s, gpu *g, uint32_t frame);
 sequence_slot *sequence_cache_nearest(sequence_data *s, uint32_t frame); // NULL: there is none yet
 // True with a message when it was decoded ahead and that failed.

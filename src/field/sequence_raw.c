@@ -1,13 +1,12 @@
 // Raw files: frames of one channel, one after another, little-endian. The numbers that describe
 // them come from strangers: every product is checked before it is formed.
 #include "base/error.h"
+#include "base/file.h"
 #include "base/memory.h"
 #include "field/sequence_parts.h"
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum { MAX_SIDE = 4096 };
@@ -70,11 +69,12 @@ static bool check_length(sequence_data *s, uint64_t length) {
 }
 
 bool sequence_raw_open(sequence_data *s) {
-    struct stat info;
-    if (stat(s->files[0], &info) != 0) return err_set("%s: %s", s->files[0], strerror(errno));
-    if (!S_ISREG(info.st_mode)) return err_set("%s: not a regular file", s->files[0]);
+    size_t length;
+    int file = file_open_inside(s->desc.root, s->files[0], SIZE_MAX, &length);
+    if (file < 0) return false;
+    close(file);
     s->layout.changed = file_changed_ns(s->files[0]);
-    if (!check_numbers(s) || !check_length(s, (uint64_t)info.st_size)) return false;
+    if (!check_numbers(s) || !check_length(s, length)) return false;
     s->frame_count = s->layout.frames;
     memcpy(s->file_size, s->desc.raw.size, sizeof s->file_size);
     float voxel = s->desc.raw.voxel_size;
@@ -100,9 +100,11 @@ static float convert(const sequence_data *s, const uint8_t *at) {
     return value;
 }
 
-static bool read_at(const char *path, uint64_t offset, uint8_t *out, size_t size) {
-    int file = open(path, O_RDONLY | O_CLOEXEC);
-    if (file < 0) return err_set("%s: %s", path, strerror(errno));
+static bool read_at(const sequence_data *s, uint64_t offset, uint8_t *out, size_t size) {
+    size_t length;
+    const char *path = s->files[0];
+    int file = file_open_inside(s->desc.root, path, SIZE_MAX, &length);
+    if (file < 0) return false;
     size_t done = 0;
     while (done < size) {
         ssize_t got = pread(file, out + done, size - done, (off_t)(offset + done));
@@ -124,7 +126,7 @@ bool sequence_raw_read(const sequence_data *s, uint32_t frame, float *out, uint6
     size_t size = (size_t)s->layout.frame_bytes, count = size / s->layout.texel;
     uint8_t *bytes = mem_alloc(size);
     // No overflow: the frame lies inside the file.
-    bool ok = read_at(s->files[0], s->layout.offset + frame * s->layout.stride, bytes, size);
+    bool ok = read_at(s, s->layout.offset + frame * s->layout.stride, bytes, size);
     for (size_t i = 0; ok && i < count; i++) {
         float v = convert(s, bytes + i * s->layout.texel) * s->desc.raw.value_scale;
         if (!isfinite(v)) {

@@ -57,7 +57,8 @@ uint64_t sequence_brick_count(const sequence_data *s) { // of the box
 static bool open_source(builder *b, const vdb_grid_info *grid, uint32_t frame, source made) {
     const sequence_data *s = b->s;
     if (!grid || grid->index_min[0] > grid->index_max[0]) return true; // zeros
-    vdb_sample_desc desc = {.path = s->files[frame],
+    vdb_sample_desc desc = {.root = s->desc.root,
+                            .path = s->files[frame],
                             .grid = grid->name,
                             .box = s->file_box,
                             .size = {s->file_size[0], s->file_size[1], s->file_size[2]},
@@ -395,7 +396,7 @@ static bool decode(const sequence_data *s, uint32_t frame, vdb_file *file, seque
 }
 
 bool sequence_decode_sparse(const sequence_data *s, uint32_t frame, sequence_texels *out) {
-    vdb_file *file = vdb_file_open(s->files[frame]);
+    vdb_file *file = vdb_file_open(s->desc.root, s->files[frame]);
     bool ok = file && decode(s, frame, file, out);
     vdb_file_close(file);
     return ok;

@@ -56,6 +56,10 @@ void graph_remove_output(graph *g, graph_image image);
 // and size, lifetimes apart, no history, not an output, not kept). Errors: a cycle (named pass by
 // pass), an image that is read and never written, an image with two writers, a size beyond 16384.
 bool graph_compile(graph *g, uint32_t width, uint32_t height);
+// After compile: whether all images that it lacks can be had at once; false with a message.
+bool graph_fits(const graph *g, gpu *device);
+// What it has is about to go: see gpu_lend_memory.
+void graph_lend(const graph *g, gpu *device);
 bool graph_allocate(graph *g, gpu *device); // after compile; frees what an earlier compile had
 // Exchanges the images of both that match by name, format and size, so that what `from` has drawn,
 // its histories above all, goes on in `g`; the other way round undoes it. `g` is compiled for the

@@ -216,18 +216,44 @@ static void take_over_by_kind(graph *g) {
     arena_free(&p.scratch);
 }
 
-static gpu_image *create_memory(gpu *device, const graph_slot *slot) {
+static gpu_image_desc describe(const graph_slot *slot) {
     uint32_t use = GPU_USE_SAMPLED;
     if (slot->key.target) use |= GPU_USE_TARGET;
     if (slot->key.format != GPU_D32F)
         use |= GPU_USE_STORAGE; // a target may be finished by a dispatch
-    return gpu_image_create(device, &(gpu_image_desc){.label = slot->name,
-                                                      .format = (gpu_format)slot->key.format,
-                                                      .width = slot->key.width,
-                                                      .height = slot->key.height,
-                                                      .depth = slot->key.depth,
-                                                      .mips = slot->key.mips,
-                                                      .use = use});
+    return (gpu_image_desc){.label = slot->name,
+                            .format = (gpu_format)slot->key.format,
+                            .width = slot->key.width,
+                            .height = slot->key.height,
+                            .depth = slot->key.depth,
+                            .mips = slot->key.mips,
+                            .use = use};
+}
+
+// Of the slots that have memory, or of those that have none; mem_free.
+static gpu_image_desc *describe_all(const slot_list *slots, bool have, size_t *count) {
+    gpu_image_desc *all = mem_alloc(slots->count * sizeof *all);
+    *count = 0;
+    for (size_t i = 0; i < slots->count; i++)
+        if ((slots->at[i].memory != NULL) == have) all[(*count)++] = describe(&slots->at[i]);
+    return all;
+}
+
+bool graph_fits(const graph *g, gpu *device) {
+    size_t count, freed_count;
+    gpu_image_desc *images = describe_all(&g->slots, false, &count);
+    gpu_image_desc *freed = describe_all(&g->kept, true, &freed_count);
+    bool fit = gpu_images_fit(device, images, count, freed, freed_count);
+    mem_free(images);
+    mem_free(freed);
+    return fit;
+}
+
+void graph_lend(const graph *g, gpu *device) {
+    size_t count;
+    gpu_image_desc *going = describe_all(&g->slots, true, &count);
+    gpu_lend_memory(device, going, count);
+    mem_free(going);
 }
 
 bool graph_allocate(graph *g, gpu *device) {
@@ -238,7 +264,8 @@ bool graph_allocate(graph *g, gpu *device) {
     for (size_t i = 0; i < g->slots.count; i++) {
         graph_slot *slot = &g->slots.at[i];
         if (slot->memory) continue;
-        slot->memory = create_memory(device, slot);
+        gpu_image_desc desc = describe(slot);
+        slot->memory = gpu_image_create(device, &desc);
         if (!slot->memory) return err_prefix("image '%s': ", slot->name);
     }
     g->allocated = true;

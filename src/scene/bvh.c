@@ -75,6 +75,24 @@ static bool add_trees(scene_bvh *b) {
     return true;
 }
 
+// Before they are made: of items, and of triangles with the nodes over them.
+static uint64_t bytes_of(scene_mesh *const *meshes, size_t count, scene_instances *const *instances,
+                         size_t instances_count) {
+    const uint64_t item = sizeof(struct bvh_instance) + sizeof(struct instance_entry) +
+                          2 * (sizeof(struct bvh_node) + sizeof(struct bvh_wide));
+    const uint64_t triangle = sizeof(struct bvh_triangle) + sizeof(bvh_origin) + sizeof(bvh_piece) +
+                              sizeof(struct bvh_node) + sizeof(struct bvh_wide);
+    uint64_t items = count, triangles = 0;
+    for (size_t i = 0; i < count; i++) triangles += meshes[i]->data.index_count / 3;
+    for (size_t i = 0; i < instances_count; i++) {
+        scene_mesh *const *kinds;
+        size_t n = scene_instances_kinds(instances[i], &kinds);
+        items += scene_instances_count(instances[i]);
+        for (size_t k = 0; k < n; k++) triangles += kinds[k]->data.index_count / 3;
+    }
+    return items * item + triangles * triangle;
+}
+
 scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count,
                             scene_instances *const *instances, size_t instances_count) {
     size_t all = count;
@@ -86,7 +104,12 @@ scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count,
         err_set("%zu meshes; at most %d are possible", all, SCENE_BVH_MAX_MESHES);
         return NULL;
     }
+    budget_part *part =
+        budget_take(budget_host(), bytes_of(meshes, count, instances, instances_count),
+                    "trees over meshes and instances");
+    if (!part) return NULL;
     scene_bvh *b = mem_alloc(sizeof *b);
+    b->part = part;
     b->meshes = mem_alloc(all * sizeof *b->meshes);
     b->trees = mem_alloc(all * sizeof *b->trees);
     b->things = mem_alloc((count + instances_count) * sizeof *b->things);
@@ -130,6 +153,7 @@ void scene_bvh_destroy(scene_bvh *b, gpu *g) {
     mem_free(b->looks);
     mem_free(b->meshes);
     mem_free(b->trees);
+    budget_give(b->part);
     mem_free(b);
 }
 

@@ -1,5 +1,6 @@
 // The inside of the trees that rays meet, for bvh*.c only.
 #pragma once
+#include "base/budget.h"
 #include "scene/bvh.h"
 #include "scene/bvh_tree.h"
 #include "scene/bvh_wide.h"
@@ -36,6 +37,7 @@ struct scene_bvh {
     thing *things;
     size_t thing_count;
     size_t item_count;
+    budget_part *part; // of the host's memory, but for the meshes themselves
 
     struct bvh_wide *wide; // nodes on the device: none, those over the items, then all others
     size_t wide_count, wide_capacity;

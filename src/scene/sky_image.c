@@ -1,12 +1,11 @@
-// Panoramas. The file is decoded in a child process, for it may be a stranger's; this side checks
-// what comes back.
+// Panoramas. The reader decodes the file, for it may be a stranger's; this side checks what comes
+// back.
 #include "scene/sky_image.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/maths.h"
 #include "base/memory.h"
 #include "media/exr.h"
-#include "media/isolate.h"
 #include "scene/sky_table.h"
 #include <math.h>
 #include <string.h>
@@ -32,44 +31,17 @@ struct sky_image {
 
 // ---- reading ----------------------------------------------------------------------------------
 
-typedef struct decoded { // what the child sends, before the picture
-    uint32_t width, height;
-} decoded;
-
-static const float *find_channel(const exr_image *image, const char *name) {
-    for (size_t c = 0; c < image->channel_count; c++)
-        if (strcmp(image->channels[c].name, name) == 0) return image->channels[c].values;
-    return NULL;
-}
-
-static bool fits(const char *path, uint32_t width, uint32_t height) {
-    if (width >= 1 && height >= 1 && width <= SKY_WIDTH_MAX && height <= SKY_HEIGHT_MAX)
-        return true;
-    return err_set("%s: panorama of %ux%u; up to %dx%d is accepted", path, width, height,
-                   SKY_WIDTH_MAX, SKY_HEIGHT_MAX);
-}
-
-// In the child. Rows from the top, red, green and blue; of a grey picture three times the same.
-static bool decode(void *user, int out) {
+// Red, green and blue; of a grey picture three times the same.
+static bool find_planes(const char *path, const exr_image *image, const float *planes[3]) {
     static const char *const names[3] = {"R", "G", "B"};
-    const char *path = user;
-    arena memory = {0};
-    exr_image image;
-    const float *planes[3];
-    if (!exr_read(path, &memory, &image) || !fits(path, image.width, image.height)) return false;
     for (int c = 0; c < 3; c++) {
-        planes[c] = find_channel(&image, names[c]);
-        if (!planes[c]) planes[c] = find_channel(&image, "Y");
+        planes[c] = exr_find(image, names[c]);
+        if (!planes[c]) planes[c] = exr_find(image, "Y");
         if (!planes[c])
             return err_set("%s: the picture has no channel '%s'; R, G and B, or Y are accepted",
                            path, names[c]);
     }
-    size_t count = (size_t)image.width * image.height;
-    float *rgb = arena_alloc(&memory, 3 * count * sizeof *rgb);
-    for (size_t i = 0; i < count; i++)
-        for (size_t c = 0; c < 3; c++) rgb[3 * i + c] = planes[c][i];
-    decoded head = {image.width, image.height};
-    return isolate_put(out, &head, sizeof head) && isolate_put(out, rgb, 3 * count * sizeof *rgb);
+    return true;
 }
 
 static bool check_values(const char *path, const panorama *image) {
@@ -87,21 +59,26 @@ static bool check_values(const char *path, const panorama *image) {
     return light || err_set("%s: the panorama is all black", path);
 }
 
-// In `data`, which is the child's.
-static bool read_panorama(const char *path, void **data, panorama *out) {
-    size_t size;
-    if (!isolate_run(&(isolate_job){.name = path, .work = decode, .user = (void *)(uintptr_t)path},
-                     data, &size))
-        return false;
-    decoded head = {0};
-    if (size >= sizeof head) memcpy(&head, *data, sizeof head);
-    *out = (panorama){head.width, head.height, (float *)((char *)*data + sizeof head)};
-    size_t texels = (size_t)head.width * head.height;
-    bool whole = fits(path, head.width, head.height) &&
-                 (size == sizeof head + 3 * texels * sizeof *out->rgb ||
-                  err_set("%s: damaged: its reader returned nonsense", path));
-    if (whole && check_values(path, out)) return true;
-    mem_free(*data);
+// Rows from the top; free its numbers with mem_free.
+static bool read_panorama(const char *root, const char *path, panorama *out) {
+    enum { CHANNELS = 5 }; // R, G, B, Y, and a place for all others
+    static const exr_wish wish = {
+        "RGBY",
+        {SKY_WIDTH_MAX, SKY_HEIGHT_MAX, CHANNELS * sizeof(float) * SKY_WIDTH_MAX * SKY_HEIGHT_MAX}};
+    arena scratch = {0};
+    exr_image image;
+    const float *planes[3];
+    bool done =
+        exr_read_inside(root, path, &wish, &scratch, &image) && find_planes(path, &image, planes);
+    if (done) {
+        size_t count = (size_t)image.width * image.height;
+        *out = (panorama){image.width, image.height, mem_alloc(3 * count * sizeof *out->rgb)};
+        for (size_t i = 0; i < count; i++)
+            for (size_t c = 0; c < 3; c++) out->rgb[3 * i + c] = planes[c][i];
+    }
+    arena_free(&scratch);
+    if (!done || check_values(path, out)) return done;
+    mem_free(out->rgb);
     return false;
 }
 
@@ -133,13 +110,12 @@ static void make_levels(sky_content *s, const panorama *image, arena *memory) {
 }
 
 sky_image *sky_image_load(const char *path, const char *root, arena *memory) {
-    void *data;
     panorama image;
-    if (!path_require_inside(root, path) || !read_panorama(path, &data, &image)) return NULL;
+    if (!path_require_inside(root, path) || !read_panorama(root, path, &image)) return NULL;
     sky_content *content = arena_alloc(memory, sizeof *content);
     make_levels(content, &image, memory);
     sky_table_fill(&image, &content->table);
-    mem_free(data);
+    mem_free(image.rgb);
     sky_image *s = arena_alloc(memory, sizeof *s);
     s->content = content;
     return s;

@@ -63,7 +63,8 @@ void voxels_list_tiles(voxels *v, const cell_box *dirty) {
         count_part(l->items + first, &at, head->tiles.v);
     }
     l->count += tiles + 1;
-    for (size_t i = first; i <= first + tiles; i++) { // of each the end, for now; the last is empty
+    for (size_t i = first; i <= first + tiles;
+         i++) { // of each the end until it is filled; the last is empty
         l->count += l->items[i];
         l->items[i] = (uint32_t)l->count;
     }

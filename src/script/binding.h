@@ -1,6 +1,7 @@
 // What the files l_<object>.c share: the state behind a script and readers of its values. All raise
 // Lua errors at the script's line, so callers hold nothing that would need freeing.
 #pragma once
+#include "base/time_limit.h"
 #include "effect/effect.h"
 #include "script/reference.h"
 #include "script/script.h"
@@ -10,6 +11,7 @@ typedef struct script {
     effect *effect;
     vm *vm;
     script_limits limits;
+    time_limit frame;    // what this frame has left
     bool acting;         // frames and events run; not functions of time, which others wait for
     bool loading;        // things are declared only while the file runs, not in functions of time
     const char *unsound; // what was left half made by an error that the script caught; or NULL
@@ -28,6 +30,9 @@ void script_require_loading(lua_State *L, const char *what);
 _Noreturn void script_raise(lua_State *L);
 // A function of time, as effect_hooks and field_context call it. `user` is the script.
 bool script_call(void *user, int function, double time, float out[4]);
+// A call from outside: within the frame's budget, or the load's. As vm_call and vm_protect.
+bool script_enter(script *s, int args, int results);
+bool script_protect(script *s, lua_CFunction run, void *argument);
 field_context script_context(lua_State *L); // of time 0, with the parameters' current values
 
 // ---- objects ----------------------------------------------------------------------------------

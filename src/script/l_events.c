@@ -305,7 +305,7 @@ static int run_event(lua_State *L) {
 
 static bool act(script *s, lua_CFunction run, void *call) {
     s->acting = true;
-    bool done = vm_protect(s->vm, run, call, s->limits.frame);
+    bool done = script_protect(s, run, call);
     s->acting = false;
     return done;
 }

@@ -357,7 +357,7 @@ static int run_file(lua_State *L) {
         lua_pushcfunction(L, words[i].func);
         lua_setglobal(L, words[i].name);
     }
-    vm_load_chunk(L, r->out->file, r->out->file, false);
+    vm_load_chunk(L, NULL, r->out->file, r->out->file, false);
     lua_call(L, 0, 1);
     if (!object_test(L, -1, sweep_type))
         vm_error(L, "%s: a sweep's file ends with return sweep { ... }", r->out->file);

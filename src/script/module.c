@@ -68,7 +68,7 @@ static int l_require(lua_State *L) {
     lua_pushvalue(L, 1);
     lua_pushboolean(L, false);
     lua_rawset(L, lua_upvalueindex(1));
-    vm_load_chunk(L, path, shown, ours);
+    vm_load_chunk(L, ours ? desc->library : desc->root, path, shown, ours);
     lua_pushvalue(L, 1);
     lua_call(L, 1, 1);
     if (!lua_toboolean(L, -1)) {

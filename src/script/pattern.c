@@ -64,6 +64,7 @@ static int find_or_match(lua_State *L, bool find) {
     bool anchored = pattern_length > 0 && *pattern == '^';
     const char *s = text + at;
     do {
+        vm_charge(L, 1);
         const char *end = match_at(&m, s, pattern + anchored);
         if (!end) continue;
         if (!find) return push_captures(&m, s, end);
@@ -93,6 +94,7 @@ static int l_gmatch_next(lua_State *L) {
     lua_Integer last = lua_tointeger(L, lua_upvalueindex(4));
     matcher m = begin(L, text, length, pattern, pattern_length);
     for (const char *s = text + lua_tointeger(L, lua_upvalueindex(3)); s <= m.text_end; s++) {
+        vm_charge(L, 1);
         const char *end = match_at(&m, s, pattern);
         if (!end || end - text == last) continue;
         lua_pushinteger(L, end - text);
@@ -182,6 +184,7 @@ static int l_gsub(lua_State *L) {
     luaL_buffinit(L, &b);
     const char *s = text, *last = NULL;
     while (count < most) {
+        vm_charge(L, 1);
         const char *end = match_at(&m, s, pattern + anchored);
         if (end && end != last) {
             count++;

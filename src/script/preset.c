@@ -7,8 +7,8 @@
 
 enum { MEMORY_LIMIT = 8 << 20, INSTRUCTION_LIMIT = 5000000 };
 
-typedef struct reader { // outlives the errors that Lua raises
-    const char *path;
+typedef struct reader {      // outlives the errors that Lua raises
+    const char *root, *path; // root: NULL when the user named the file
     arena *memory;
     effect_setting *settings;
     size_t count;
@@ -18,7 +18,7 @@ typedef struct reader { // outlives the errors that Lua raises
 static int read_preset(lua_State *L) {
     reader *r = lua_touserdata(L, 1);
     luaL_checkstack(L, 16, "preset");
-    vm_load_chunk(L, r->path, r->path, false);
+    vm_load_chunk(L, r->root, r->path, r->path, false);
     lua_call(L, 0, 1);
     if (!value_is_plain_table(L, -1))
         vm_error(L, "%s: a preset returns a table, as in return { density = 30 }", r->path);
@@ -46,12 +46,13 @@ static int read_preset(lua_State *L) {
     return 0;
 }
 
-bool preset_read(const char *path, arena *memory, effect_setting **out, size_t *count) {
+bool preset_read(const char *root, const char *path, arena *memory, effect_setting **out,
+                 size_t *count) {
     char folder[PATH_CAP];
     path_folder(folder, path);
     vm *v = vm_create(&(vm_desc){.root = folder, .memory = MEMORY_LIMIT});
     if (!v) return false;
-    reader r = {.path = path, .memory = memory};
+    reader r = {.root = root, .path = path, .memory = memory};
     bool done = vm_protect(v, read_preset, &r, INSTRUCTION_LIMIT);
     vm_destroy(v);
     strbuf_free(&r.text);

@@ -8,5 +8,6 @@
 
 enum { PRESET_MAX_SETTINGS = 4096 };
 // The settings that it stands for, sorted by name, in `memory`. False with a message that names
-// file and key.
-bool preset_read(const char *path, arena *memory, effect_setting **out, size_t *count);
+// file and key. `root`: as file_open_inside has it.
+bool preset_read(const char *root, const char *path, arena *memory, effect_setting **out,
+                 size_t *count);

@@ -73,7 +73,7 @@ static int write_page(lua_State *L) {
     const request *r = lua_touserdata(L, 1);
     char path[PATH_CAP];
     if (!path_join(path, r->folder, "page.lua")) vm_error(L, "%s", err_get());
-    vm_load_chunk(L, path, "report/page.lua", false);
+    vm_load_chunk(L, NULL, path, "report/page.lua", false);
     lua_call(L, 0, 1);
     push(L, r->data, 0);
     lua_call(L, 1, 1);
@@ -84,7 +84,8 @@ static int write_page(lua_State *L) {
 }
 
 bool script_report(const char *folder, const json_t *data, strbuf *out) {
-    vm *v = vm_create(&(vm_desc){.root = folder, .shown = "report/", .memory = MEMORY_LIMIT});
+    vm *v = vm_create(&(vm_desc){
+        .root = folder, .shown = "report/", .memory = MEMORY_LIMIT, .longest = MEMORY_LIMIT});
     if (!v) return false;
     bool done = vm_protect(v, write_page, &(request){folder, data, out}, INSTRUCTION_LIMIT);
     vm_destroy(v);

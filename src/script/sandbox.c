@@ -2,9 +2,7 @@
 // os, debug, package, load and its kin), that would escape the instruction hook (coroutine,
 // finalizers: Lua runs both without or with a fresh hook), or that differs from run to run
 // (collectgarbage, the order of pairs, unseeded math.random).
-//
-// Functions of `table` that loop in C over ranges their caller names are charged for them before
-// they start.
+// What is left and loops in C: script/library.c.
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"
@@ -23,6 +21,7 @@ static int l_print(lua_State *L) {
     luaL_Buffer b;
     luaL_buffinit(L, &b);
     for (int i = 1; i <= n; i++) {
+        vm_charge(L, 16);
         luaL_tolstring(L, i, NULL);
         if (i > 1) {
             lua_pushliteral(L, "\t");
@@ -90,6 +89,7 @@ static int rank(int type) {
 static int l_before(lua_State *L) {
     int a = lua_type(L, 1), b = lua_type(L, 2);
     bool result;
+    library_charge_comparison(L);
     if (a == b && (a == LUA_TNUMBER || a == LUA_TSTRING))
         result = lua_compare(L, 1, 2, LUA_OPLT);
     else if (a == b && a == LUA_TBOOLEAN)
@@ -125,17 +125,18 @@ static int l_pairs(lua_State *L) {
     }
     luaL_checktype(L, 1, LUA_TTABLE);
     lua_settop(L, 1);
+    vm_look(L);
     lua_newtable(L);
     lua_Integer n = 0;
     bool in_order = true; // the array part comes in order already
     for (lua_pushnil(L); lua_next(L, 1);) {
         lua_pop(L, 1);
+        vm_charge(L, 1);
         n++;
         in_order = in_order && lua_isinteger(L, -1) && lua_tointeger(L, -1) == n;
         lua_pushvalue(L, -1);
         lua_rawseti(L, 2, n);
     }
-    vm_charge(L, (uint64_t)n);
     if (!in_order) {
         vm_charge(L, (uint64_t)((double)n * 4 * log2((double)n + 2)));
         lua_pushvalue(L, lua_upvalueindex(1));
@@ -148,62 +149,6 @@ static int l_pairs(lua_State *L) {
     lua_pushvalue(L, 1);
     lua_pushnil(L);
     return 3;
-}
-
-// ---- table ------------------------------------------------------------------------------------
-
-// Upvalue: Lua's own function, called once its work is paid for.
-static int call_original(lua_State *L) {
-    int n = lua_gettop(L);
-    lua_pushvalue(L, lua_upvalueindex(1));
-    lua_insert(L, 1);
-    lua_call(L, n, LUA_MULTRET);
-    return lua_gettop(L);
-}
-
-static uint64_t plain_length(lua_State *L) {
-    luaL_checktype(L, 1, LUA_TTABLE);
-    if (luaL_getmetafield(L, 1, "__len") != LUA_TNIL)
-        vm_error(L, "table functions take no tables with __len");
-    return lua_rawlen(L, 1);
-}
-
-static void charge_range(lua_State *L, lua_Integer first, lua_Integer last) {
-    if (last >= first) vm_charge(L, (uint64_t)last - (uint64_t)first);
-}
-
-static int l_table_whole(lua_State *L) { // insert, remove
-    vm_charge(L, plain_length(L));
-    return call_original(L);
-}
-
-static int l_table_sort(lua_State *L) {
-    double n = (double)plain_length(L);
-    vm_charge(L, (uint64_t)(n * log2(n + 2)));
-    return call_original(L);
-}
-
-static int l_table_concat(lua_State *L) {
-    uint64_t length = plain_length(L);
-    charge_range(L, luaL_optinteger(L, 3, 1), luaL_optinteger(L, 4, (lua_Integer)length));
-    return call_original(L);
-}
-
-static int l_table_unpack(lua_State *L) {
-    uint64_t length = plain_length(L);
-    charge_range(L, luaL_optinteger(L, 2, 1), luaL_optinteger(L, 3, (lua_Integer)length));
-    return call_original(L);
-}
-
-static int l_table_move(lua_State *L) {
-    charge_range(L, luaL_checkinteger(L, 2), luaL_checkinteger(L, 3));
-    return call_original(L);
-}
-
-static void wrap(lua_State *L, const char *name, lua_CFunction function) {
-    lua_getfield(L, -1, name);
-    lua_pushcclosure(L, function, 1);
-    lua_setfield(L, -2, name);
 }
 
 // ---- math -------------------------------------------------------------------------------------
@@ -299,12 +244,6 @@ void sandbox_open(lua_State *L) {
     lua_getfield(L, -1, "sort");
     lua_pushcclosure(L, l_pairs, 1);
     lua_setglobal(L, "pairs");
-    wrap(L, "insert", l_table_whole);
-    wrap(L, "remove", l_table_whole);
-    wrap(L, "sort", l_table_sort);
-    wrap(L, "concat", l_table_concat);
-    wrap(L, "unpack", l_table_unpack);
-    wrap(L, "move", l_table_move);
     lua_pop(L, 1);
 
     lua_getglobal(L, LUA_MATHLIBNAME);

@@ -33,6 +33,28 @@ void script_raise(lua_State *L) {
     vm_error(L, "%s", err_get());
 }
 
+// ---- time -------------------------------------------------------------------------------------
+
+static void renew(void *user) {
+    script *s = user;
+    s->frame =
+        (time_limit){.what = "frame", .limit = effect_seconds(s->effect) / TIME_LIMIT_FRAMES};
+}
+
+bool script_enter(script *s, int args, int results) {
+    time_limit *before = time_limit_enter(&s->frame);
+    bool done = vm_call(s->vm, args, results, s->limits.frame);
+    time_limit_leave(before);
+    return done;
+}
+
+bool script_protect(script *s, lua_CFunction run, void *argument) {
+    time_limit *before = time_limit_enter(&s->frame);
+    bool done = vm_protect(s->vm, run, argument, s->limits.frame);
+    time_limit_leave(before);
+    return done;
+}
+
 // ---- calls from the effect --------------------------------------------------------------------
 
 static bool read_result(lua_State *L, double time, float out[4]) {
@@ -58,7 +80,7 @@ bool script_call(void *user, int function, double time, float out[4]) {
     lua_pushnumber(L, time);
     bool loading = s->loading, acting = s->acting;
     s->loading = s->acting = false;
-    bool done = vm_call(s->vm, 1, 1, s->limits.frame);
+    bool done = script_enter(s, 1, 1);
     s->loading = loading;
     s->acting = acting;
     return done && read_result(L, time, out);
@@ -71,7 +93,7 @@ static bool update(void *user, double time, double dt) {
     lua_pushnumber(L, time);
     lua_pushnumber(L, dt);
     s->acting = true;
-    bool done = vm_call(s->vm, 2, 0, s->limits.frame);
+    bool done = script_enter(s, 2, 0);
     s->acting = false;
     return done;
 }
@@ -93,6 +115,7 @@ static void set_hooks(script *s) {
                                     .update = s->update == LUA_NOREF ? NULL : update,
                                     .start = script_start,
                                     .locate = locate,
+                                    .renew = renew,
                                     .frame = script_frame,
                                     .event = script_event,
                                     .destroy = destroy,
@@ -181,6 +204,7 @@ bool script_load_limited(effect *e, const char *prelude_folder, const script_lim
         .library = library,
         .shown = shown,
         .memory = s->limits.memory,
+        .objects = effect_memory(s->effect),
         .on_file = add_file,
         .user = s,
     });
@@ -188,6 +212,7 @@ bool script_load_limited(effect *e, const char *prelude_folder, const script_lim
         destroy(s);
         return false;
     }
+    renew(s);
     set_hooks(s); // before the file runs: declaring a pass may ask for values
     bool done = run(s, prelude_folder) && is_complete(s);
     s->loading = false;

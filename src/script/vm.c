@@ -1,59 +1,86 @@
 // The Lua state and its two limits.
 //
 // Memory: Lua's allocator counts bytes and refuses growth beyond the limit; objects that bindings
-// make elsewhere are counted by vm_charge_memory. Time: a count hook adds up instructions; C
-// functions whose work depends on their arguments add theirs by vm_charge, and allocations count
-// too, so that few instructions cannot do much work. Since one long string comparison is a single
-// instruction, processor time is checked as well, with a limit far above what the instructions
-// take.
+// make elsewhere are counted by vm_charge_memory, and those in the arena of all objects are never
+// less than it holds. The same bytes are taken from the host's budget, in steps. Time: a count hook
+// adds up instructions; C functions whose work depends on their arguments add theirs by vm_charge,
+// and allocations count too, so that few instructions cannot do much work. Processor time is
+// limited as well, far above what the instructions take, and so is what the thread's time limit has
+// left (base/time_limit.h).
+//
+// Between two looks at these limits lie at most TICK instructions, or charges and allocations worth
+// as much. What one instruction can touch is bounded by the largest block that the script has: a
+// string is compared or copied (VM_STRING_MAX, at worst 15 ns a byte, where it is full of zeros), a
+// table searched, an argument list copied (1 ns a slot). So the larger the largest block, the fewer
+// instructions lie between two looks: STRING_WORK bytes of strings, 63 ms, or BLOCK_WORK of others,
+// 34 ms. C functions that loop over more than their arguments' length look from within
+// (script/library.c, script/match.c).
 //
 // Invariant: once a limit was hit (`stop`), the hook fails at every instruction, so no pcall of
 // the script can go on; it ends when the outermost vm_call returns.
 #include "script/vm.h"
 #include "base/arena.h"
+#include "base/budget.h"
+#include "base/clock.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include "base/time_limit.h"
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum {
-    TICK = 1000,                // instructions between two calls of the hook
+    TICK = 1000,      // instructions between two looks at the limits, at most
+    STRING_HEAD = 64, // more than Lua puts before a string
+    STRING_WORK = VM_STRING_MAX + STRING_HEAD, // bytes of strings between two looks
+    BLOCK_WORK = 512 << 20,                    // of other blocks
     STOPPED_MARGIN = 1 << 20,   // bytes beyond the limit for the message of a stopped script
     STOPPED_BLOCK = 1 << 16,    // largest block that a stopped script still gets
     SCRIPT_MAX_BYTES = 4 << 20, // of one file
+    BUDGET_STEP = 1 << 20,
     MESSAGE_MAX = 4000,
     BYTES_PER_INSTRUCTION = 256, // allocating so many costs as much as an instruction
 };
 
-typedef enum vm_stop { STOP_NONE, STOP_MEMORY, STOP_INSTRUCTIONS } vm_stop;
+typedef enum vm_stop {
+    STOP_NONE,
+    STOP_MEMORY,
+    STOP_BUDGET,
+    STOP_STRING,
+    STOP_INSTRUCTIONS,
+    STOP_TIME,
+} vm_stop;
 
 struct vm {
     lua_State *lua;
     vm_desc desc;
-    arena memory; // strings of `desc`
-    size_t used;
-    int refusals; // growth requests refused in a row: Lua collects garbage after the first
+    arena memory;      // strings of `desc`
+    size_t used;       // by Lua
+    size_t charged;    // by bindings
+    budget_part *part; // of both, `reserved` bytes
+    size_t reserved;
+    bool over_budget;   // the last refusal was the budget's
+    char refusal[1024]; // of STOP_BUDGET
+    int refusals;       // growth requests refused in a row: Lua collects garbage after the first
     vm_stop stop;
+    size_t stopped_at; // bytes that were taken then, or the limit if that is more
     uint64_t spent, budget;
+    uint64_t seen;   // `spent` at the last look
     double deadline; // processor seconds of the thread
+    double patience; // clock_seconds before which they cannot have come that far
+    int interval;    // instructions between two calls of the hook
+    int passed;      // instructions since `where` was noted
+    bool ours;       // what is allocated is out of the script's reach
     int depth;       // vm_calls that are running
     char where[96];  // "file:line: " of the last tick, or where `stop` was set
     uint64_t random;
 };
 
 // ---- limits -----------------------------------------------------------------------------------
-
-static double processor_seconds(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
 
 static void tick(lua_State *L, lua_Debug *ar);
 
@@ -77,44 +104,106 @@ void vm_locate(lua_State *L, char *out, size_t size) {
     if (find_line(L, &ar)) snprintf(out, size, "%s:%d: ", ar.short_src, ar.currentline);
 }
 
+static size_t taken(const vm *v) { // not Lua's only
+    size_t held = v->desc.objects ? v->desc.objects->held : 0;
+    return v->used + (held > v->charged ? held : v->charged);
+}
+
 static void stop(vm *v, vm_stop reason) {
-    if (!v->stop) v->stop = reason;
+    if (!v->stop) {
+        v->stop = reason;
+        v->stopped_at = taken(v) > v->desc.memory ? taken(v) : v->desc.memory;
+    }
     lua_sethook(v->lua, tick, LUA_MASKCOUNT, 1);
 }
 
 static void stop_message(const vm *v, char *out, size_t size) {
+    char time[160];
+    time_limit_tell(time, sizeof time);
     if (v->stop == STOP_MEMORY)
         snprintf(out, size, "%smemory limit of %zu MiB exceeded", v->where, v->desc.memory >> 20);
+    else if (v->stop == STOP_BUDGET)
+        snprintf(out, size, "%s%s", v->where, v->refusal);
+    else if (v->stop == STOP_STRING)
+        snprintf(out, size, "%smemory limit of %zu MiB for one string exceeded", v->where,
+                 v->desc.longest >> 20);
+    else if (v->stop == STOP_TIME)
+        snprintf(out, size, "%s%s", v->where, time);
     else
         snprintf(out, size, "%sinstruction limit of %llu exceeded: endless loop?", v->where,
                  (unsigned long long)v->budget);
 }
 
 static void raise_stop(lua_State *L) {
-    char text[256];
+    char text[MESSAGE_MAX];
     stop_message(vm_of(L), text, sizeof text);
     lua_pushstring(L, text);
     lua_error(L);
+}
+
+// Whether no limit was hit. The thread's processor time needs a call of the system, and cannot have
+// grown by more than the clock.
+static bool look(vm *v) {
+    v->seen = v->spent;
+    if (v->spent > v->budget) stop(v, STOP_INSTRUCTIONS);
+    if (time_limit_left() <= 0) stop(v, STOP_TIME);
+    double now = clock_seconds();
+    if (now > v->patience) {
+        double left = v->deadline - time_limit_thread_seconds();
+        if (left <= 0) stop(v, STOP_INSTRUCTIONS);
+        v->patience = now + left;
+    }
+    return !v->stop;
 }
 
 static void tick(lua_State *L, lua_Debug *ar) {
     (void)ar;
     vm *v = vm_of(L);
     if (!v->stop) {
-        vm_locate(L, v->where, sizeof v->where);
-        v->spent += TICK;
-        if (v->spent > v->budget || processor_seconds() > v->deadline) stop(v, STOP_INSTRUCTIONS);
+        v->spent += (uint64_t)v->interval;
+        v->passed += v->interval;
+        if (v->passed >= TICK || !look(v)) {
+            v->passed = 0;
+            vm_locate(L, v->where, sizeof v->where);
+            look(v);
+        }
     }
     if (v->stop) raise_stop(L);
 }
 
-static bool may_grow(vm *v, size_t size, size_t grow) {
-    if (v->stop) return size <= STOPPED_BLOCK && v->used + grow <= v->desc.memory + STOPPED_MARGIN;
-    if (v->used > v->desc.memory || grow > v->desc.memory - v->used) return false;
-    v->spent += grow / BYTES_PER_INSTRUCTION;
-    if (v->depth == 0 || v->spent <= v->budget) return true;
-    stop(v, STOP_INSTRUCTIONS);
+// From the budget, which never gets any back before the end: scripts that make garbage from frame
+// to frame do not ask each time. The message of a refusal is kept.
+static bool take(vm *v, size_t bytes) {
+    if (bytes <= v->reserved) return true;
+    size_t wanted = (bytes + BUDGET_STEP - 1) / BUDGET_STEP * BUDGET_STEP;
+    if (budget_resize(v->part, wanted)) {
+        v->reserved = wanted;
+        return true;
+    }
+    str_copy(v->refusal, sizeof v->refusal, err_get());
     return false;
+}
+
+// A block of this size is there from now on: fewer instructions may touch it between two looks.
+static void note_block(vm *v, size_t size, bool string) {
+    if (v->ours || size <= (string ? STRING_WORK : BLOCK_WORK) / TICK) return;
+    int interval = (int)((string ? STRING_WORK : BLOCK_WORK) / size);
+    if (interval < 1) interval = 1;
+    if (interval >= v->interval) return;
+    v->interval = interval;
+    if (v->lua && !v->stop) lua_sethook(v->lua, tick, LUA_MASKCOUNT, interval);
+}
+
+static bool may_grow(vm *v, size_t size, size_t grow) {
+    size_t all = taken(v);
+    if (v->stop) return size <= STOPPED_BLOCK && all + grow <= v->stopped_at + STOPPED_MARGIN;
+    v->over_budget = false;
+    if (all > v->desc.memory || grow > v->desc.memory - all) return false;
+    v->over_budget = !take(v, all + grow);
+    if (v->over_budget) return false;
+    v->spent += grow / BYTES_PER_INSTRUCTION;
+    if (v->depth == 0) return true;
+    return v->spent - v->seen < TICK && v->spent <= v->budget ? true : look(v);
 }
 
 static void *allocate(void *user, void *block, size_t old, size_t size) {
@@ -125,16 +214,25 @@ static void *allocate(void *user, void *block, size_t old, size_t size) {
         v->used -= held;
         return NULL;
     }
+    bool string = !block && old == LUA_TSTRING; // a new object: its type is in `old`
+    if (string && size > v->desc.longest + STRING_HEAD && v->depth > 0) {
+        if (!v->stop && v->lua) vm_locate(v->lua, v->where, sizeof v->where);
+        stop(v, STOP_STRING);
+        return NULL;
+    }
     if (size > held && !may_grow(v, size, size - held)) {
         // A new object (its type is in `old`): the stack is in order and can say where we are.
         if (!block && old != 0 && v->lua && v->refusals == 0)
             vm_locate(v->lua, v->where, sizeof v->where);
-        if (++v->refusals >= 2 && v->depth > 0) stop(v, STOP_MEMORY);
+        if (++v->refusals >= 2 && v->depth > 0) stop(v, v->over_budget ? STOP_BUDGET : STOP_MEMORY);
         return NULL;
     }
     void *result = realloc(block, size);
     if (!result) return NULL;
-    if (size > held) v->refusals = 0;
+    if (size > held) {
+        v->refusals = 0;
+        note_block(v, size, string);
+    }
     v->used = v->used - held + size;
     return result;
 }
@@ -143,21 +241,28 @@ void vm_charge(lua_State *L, uint64_t instructions) {
     vm *v = vm_of(L);
     if (instructions > UINT64_MAX / 2) instructions = UINT64_MAX / 2;
     v->spent += instructions;
-    if (v->stop || v->spent > v->budget) {
-        if (!v->stop) vm_locate(L, v->where, sizeof v->where);
-        stop(v, STOP_INSTRUCTIONS);
-        raise_stop(L);
-    }
+    if (!v->stop && v->spent - v->seen < TICK && v->spent <= v->budget) return;
+    if (!v->stop && look(v)) return;
+    vm_locate(L, v->where, sizeof v->where);
+    raise_stop(L);
+}
+
+void vm_look(lua_State *L) {
+    vm *v = vm_of(L);
+    v->seen = v->spent - TICK;
+    vm_charge(L, 0);
 }
 
 void vm_charge_memory(lua_State *L, size_t bytes) {
     vm *v = vm_of(L);
-    if (v->stop || v->used > v->desc.memory || bytes > v->desc.memory - v->used) {
+    size_t all = taken(v);
+    bool within = !v->stop && all <= v->desc.memory && bytes <= v->desc.memory - all;
+    if (!within || !take(v, all + bytes)) {
         if (!v->stop) vm_locate(L, v->where, sizeof v->where);
-        stop(v, STOP_MEMORY);
+        stop(v, within ? STOP_BUDGET : STOP_MEMORY);
         raise_stop(L);
     }
-    v->used += bytes;
+    v->charged += bytes;
 }
 
 // ---- errors -----------------------------------------------------------------------------------
@@ -221,13 +326,15 @@ static void report(vm *v, int status) {
     const char *text = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;
     if (v->stop) {
         char message[MESSAGE_MAX];
-        stop_message(v, message, 256);
+        stop_message(v, message, sizeof message);
         const char *trace = text ? strstr(text, "\nstack traceback:") : NULL;
         if (trace) {
             size_t n = strlen(message);
             snprintf(message + n, sizeof message - n, "%s", trace);
         }
         set_error(message);
+    } else if (status == LUA_ERRMEM && v->over_budget) {
+        err_set("%s", v->refusal);
     } else if (status == LUA_ERRMEM) {
         err_set("memory limit of %zu MiB exceeded", v->desc.memory >> 20);
     } else {
@@ -247,13 +354,15 @@ bool vm_call(vm *v, int args, int results, uint64_t instructions) {
     if (v->depth == 0) {
         v->stop = STOP_NONE;
         v->refusals = 0;
-        v->spent = 0;
+        v->spent = v->seen = 0;
+        v->passed = 0;
         v->budget = instructions;
         v->where[0] = 0;
         // A common machine runs 100 million a second; 2 million a second is not a slow machine but
         // instructions that each do too much.
-        v->deadline = processor_seconds() + 1 + (double)instructions * 5e-7;
-        lua_sethook(L, tick, LUA_MASKCOUNT, TICK);
+        v->deadline = time_limit_thread_seconds() + 1 + (double)instructions * 5e-7;
+        v->patience = clock_seconds() + 1;
+        lua_sethook(L, tick, LUA_MASKCOUNT, v->interval);
     }
     int function = lua_gettop(L) - args;
     lua_pushcfunction(L, describe_error);
@@ -296,7 +405,9 @@ typedef struct source {
 static int keep_source(lua_State *L) {
     const source *s = lua_touserdata(L, 1);
     luaL_getsubtable(L, LUA_REGISTRYINDEX, sources);
+    vm_of(L)->ours = true;
     lua_pushlstring(L, s->text, s->length);
+    vm_of(L)->ours = false;
     lua_setfield(L, -2, s->name);
     return 0;
 }
@@ -317,11 +428,11 @@ const char *vm_caller_source(lua_State *L, size_t *line) {
     return text;
 }
 
-void vm_load_chunk(lua_State *L, const char *path, const char *shown, bool ours) {
+void vm_load_chunk(lua_State *L, const char *root, const char *path, const char *shown, bool ours) {
     const vm *v = vm_of(L);
     void *data = NULL;
     size_t size = 0;
-    if (!file_read(path, SCRIPT_MAX_BYTES, &data, &size)) vm_error(L, "%s", err_get());
+    if (!file_read_inside(root, path, SCRIPT_MAX_BYTES, &data, &size)) vm_error(L, "%s", err_get());
     if (v->desc.on_file) v->desc.on_file(v->desc.user, path);
     const char *text = data;
     size_t length = size;
@@ -351,7 +462,7 @@ typedef struct run_request {
 
 static int run_chunk(lua_State *L) {
     const run_request *r = lua_touserdata(L, 1);
-    vm_load_chunk(L, r->path, r->shown, r->prelude);
+    vm_load_chunk(L, NULL, r->path, r->shown, r->prelude);
     lua_call(L, 0, 0);
     return 0;
 }
@@ -379,6 +490,7 @@ uint64_t vm_random(lua_State *L) {
 
 static int open_sandbox(lua_State *L) {
     sandbox_open(L);
+    library_open(L);
     pattern_open(L);
     module_open(L);
     return 0;
@@ -392,14 +504,20 @@ static int panic(lua_State *L) {
 vm *vm_create(const vm_desc *desc) {
     vm *v = mem_alloc(sizeof *v);
     v->desc = *desc;
+    if (!desc->longest) v->desc.longest = VM_STRING_MAX;
     v->desc.root = arena_string(&v->memory, desc->root);
     v->desc.library = desc->library ? arena_string(&v->memory, desc->library) : NULL;
     v->desc.shown = arena_string(&v->memory, desc->shown ? desc->shown : "");
     v->random = desc->seed;
+    v->part = budget_take(budget_host(), 0, "the script and what it declares");
+    v->interval = TICK;
     lua_State *L = lua_newstate(allocate, v);
     if (!L) {
+        if (v->over_budget)
+            err_set("%s", v->refusal);
+        else
+            err_set("a memory limit of %zu bytes is too small for a script", desc->memory);
         vm_destroy(v);
-        err_set("a memory limit of %zu bytes is too small for a script", desc->memory);
         return NULL;
     }
     v->lua = L;
@@ -419,6 +537,7 @@ void vm_destroy(vm *v) {
         v->stop = STOP_NONE;
         lua_close(v->lua);
     }
+    budget_give(v->part);
     arena_free(&v->memory);
     mem_free(v);
 }

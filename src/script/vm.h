@@ -1,5 +1,6 @@
 // The Lua state of one effect, with its sandbox and limits. Knows no effect.
 #pragma once
+#include "base/arena.h"
 #include "base/error.h"
 #include <lauxlib.h>
 #include <lua.h>
@@ -7,14 +8,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
+enum { VM_STRING_MAX = 4 << 20 }; // bytes of one string of a script
+
 typedef struct vm vm;
 
 typedef struct vm_desc {
-    const char *root;    // folder that `require` searches first and does not leave
-    const char *library; // folder that it searches next; NULL: none
-    const char *shown;   // how messages name `root`: "" or "effects/"; NULL: ""
-    size_t memory;       // bytes
-    uint64_t seed;       // of math.random
+    const char *root;     // folder that `require` searches first and does not leave
+    const char *library;  // folder that it searches next; NULL: none
+    const char *shown;    // how messages name `root`: "" or "effects/"; NULL: ""
+    size_t memory;        // bytes
+    size_t longest;       // bytes of one string; 0: VM_STRING_MAX
+    const arena *objects; // that bindings make objects in; NULL: none
+    uint64_t seed;        // of math.random
     void (*on_file)(void *user, const char *path); // every file that was read; may be NULL
     void *user;                                    // for vm_user
 } vm_desc;
@@ -41,8 +46,11 @@ bool vm_protect(vm *v, lua_CFunction function, void *argument, uint64_t instruct
 _Noreturn void vm_error(lua_State *L, const char *format, ...) PRINTF_LIKE(2, 3);
 // "file:line: " of the script that runs now; "": none does.
 void vm_locate(lua_State *L, char *out, size_t size);
-void vm_charge(lua_State *L, uint64_t instructions); // work that no instruction accounts for
-void vm_charge_memory(lua_State *L, size_t bytes);   // memory outside of Lua's, kept until the end
+// Work that no instruction accounts for. Looks at the limits whenever enough has come together, so
+// a loop that charges what it does is never long between two looks.
+void vm_charge(lua_State *L, uint64_t instructions);
+void vm_look(lua_State *L);                        // at the limits, now
+void vm_charge_memory(lua_State *L, size_t bytes); // memory outside of Lua's, kept until the end
 void vm_set_seed(lua_State *L, uint64_t seed);
 uint64_t vm_random(lua_State *L);
 
@@ -50,12 +58,16 @@ uint64_t vm_random(lua_State *L);
 // valid as long as the state.
 const char *vm_caller_source(lua_State *L, size_t *line);
 
-// Loads a text chunk and leaves it as a function on the stack. `path` must be confined already.
+// Loads a text chunk and leaves it as a function on the stack. `root`: as file_open_inside has it.
 // `ours`: as `prelude` of vm_run_file.
-void vm_load_chunk(lua_State *L, const char *path, const char *shown, bool ours);
+void vm_load_chunk(lua_State *L, const char *root, const char *path, const char *shown, bool ours);
 const vm_desc *vm_get_desc(lua_State *L);
 
 // The parts of the sandbox; each leaves the stack as it was.
 void sandbox_open(lua_State *L); // libraries and strict globals
 void pattern_open(lua_State *L); // string.find, match, gmatch, gsub
-void module_open(lua_State *L);  // require
+void library_open(lua_State *L); // other functions of Lua's own that loop
+
+// For orders of values: charges for the comparison of the two at the bottom of the stack.
+void library_charge_comparison(lua_State *L);
+void module_open(lua_State *L); // require

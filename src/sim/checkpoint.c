@@ -11,7 +11,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <unistd.h>
 
 enum {
     NAME_CAP = 64,
@@ -251,17 +251,20 @@ static bool check_content(checkpoint *c) {
 }
 
 checkpoint *checkpoint_open(const char *path) {
-    struct stat info;
-    FILE *file = fopen(path, "rbe");
-    if (!file || fstat(fileno(file), &info) != 0 || !S_ISREG(info.st_mode)) {
-        err_set("%s: %s", path, file ? "is no regular file" : strerror(errno));
-        if (file) fclose(file);
+    size_t size;
+    int fd = file_open_inside(NULL, path, SIZE_MAX, &size);
+    FILE *file = fd >= 0 ? fdopen(fd, "rb") : NULL;
+    if (!file) {
+        if (fd >= 0) {
+            err_set("%s: %s", path, strerror(errno));
+            close(fd);
+        }
         return NULL;
     }
     checkpoint *c = mem_alloc(sizeof *c);
     c->file = file;
     c->path = mem_copy(path, strlen(path) + 1);
-    c->size = (uint64_t)info.st_size;
+    c->size = size;
     if (read_table(c) && check_content(c)) return c;
     checkpoint_close(c);
     return NULL;
