@@ -1,7 +1,9 @@
 // libroil: the layers below, as one small interface.
 #include "roil.h"
+#include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/isolate.h"
 #include "base/memory.h"
 #include "effect/events.h"
 #include "roil_impl.h"
@@ -62,14 +64,18 @@ static bool open_device(roil *r, const roil_desc *desc) {
                                        .cache_dir = r->cache,
                                        .validate = desc->validate,
                                        .window = window ? &shown : NULL,
-                                       .timeout = desc->timeout});
+                                       .timeout = desc->timeout,
+                                       .waiting = desc->waiting,
+                                       .user = desc->user});
     return r->device != NULL;
 }
 
 roil *roil_create(const roil_desc *desc) {
     char home[PATH_CAP], cache[PATH_CAP];
-    if (!find_home(home, desc->home)) return NULL;
-    shader_warm_up();
+    if ((desc->memory && !budget_set_share(desc->memory)) || !find_home(home, desc->home))
+        return NULL;
+    if (desc->reader && !isolate_set_reader(desc->reader)) return NULL;
+    isolate_warm_up();
     roil *r = mem_alloc(sizeof *r);
     r->home = mem_copy(home, strlen(home) + 1);
     r->shaders = joined(home, "shaders");
@@ -78,6 +84,7 @@ roil *roil_create(const roil_desc *desc) {
     r->reference = desc->reference;
     r->punctual = desc->punctual;
     r->hands = desc->hands;
+    r->seconds = desc->time_limit > 0 ? desc->time_limit : TIME_LIMIT_LOAD_SECONDS;
     // Without a place for it (no home folder, a read-only one) roil works, only slower.
     if (!desc->no_cache && path_cache_folder(cache, "")) r->cache = joined(cache, "");
     if (desc->no_device || open_device(r, desc)) return r;
@@ -86,7 +93,7 @@ roil *roil_create(const roil_desc *desc) {
 }
 
 void roil_destroy(roil *r) {
-    if (!r) return;
+    if (!r || r->stuck) return;
     roil_free_view(r);
     if (r->device) gpu_destroy(r->device);
     mem_free(r->home);
@@ -125,9 +132,21 @@ bool roil_is_lost(const roil *r) {
 }
 
 roil_memory roil_get_memory(const roil *r) {
-    if (!r->device) return (roil_memory){0};
+    budget_state state = budget_get(r->device ? gpu_get_budget(r->device) : budget_host());
+    roil_memory out = {.sum = state.sum, .limit = state.limit};
+    for (size_t i = 0; i < COUNT_OF(out.largest); i++) {
+        memcpy(out.largest[i].label, state.largest[i].label, sizeof out.largest[i].label);
+        out.largest[i].bytes = state.largest[i].bytes;
+    }
+    if (!r->device) return out;
     gpu_memory_use use = gpu_get_memory_use(r->device);
-    return (roil_memory){.device = use.used, .reserved = use.reserved};
+    out.device = use.used;
+    out.reserved = use.reserved;
+    return out;
+}
+
+time_limit roil_time_limit(const roil *r) {
+    return (time_limit){.what = "load", .limit = r->seconds};
 }
 
 // ---- effects ----------------------------------------------------------------------------------
@@ -147,12 +166,15 @@ roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, 
         .hands = r->hands,
         .reference = r->reference,
         .punctual = r->punctual,
+        .seconds = r->seconds,
         .settings = own,
         .setting_count = count,
     });
     mem_free(own);
-    if (e->effect && script_load(e->effect, r->scripts) && effect_check_settings(e->effect))
-        return e;
+    time_limit time = roil_time_limit(r), *before = time_limit_enter(&time);
+    bool done = e->effect && script_load(e->effect, r->scripts) && effect_check_settings(e->effect);
+    time_limit_leave(before);
+    if (done) return e;
     roil_unload(e);
     return NULL;
 }
@@ -167,7 +189,10 @@ void roil_unload(roil_effect *e) {
 }
 
 bool roil_check(roil_effect *e) {
-    return effect_check(e->effect);
+    time_limit time = roil_time_limit(e->owner), *before = time_limit_enter(&time);
+    bool done = effect_check(e->effect);
+    time_limit_leave(before);
+    return done;
 }
 
 roil_effect_info roil_get_info(const roil_effect *e) {
@@ -219,7 +244,10 @@ bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height) {
     e->height = height;
     e->frame = 0; // images may be new
     roil_apply_kept(e);
-    return effect_build(e->effect, width, height);
+    time_limit time = roil_time_limit(e->owner), *before = time_limit_enter(&time);
+    bool done = effect_build(e->effect, width, height);
+    time_limit_leave(before);
+    return done;
 }
 
 bool roil_render(roil_effect *e, double frame) {
@@ -264,7 +292,7 @@ bool roil_restore(roil_effect *e, const char *file, double *frame) {
     return true;
 }
 
-void roil_on_progress(roil_effect *e, void (*call)(void *user, double done, double whole),
+void roil_on_progress(roil_effect *e, bool (*call)(void *user, double done, double whole),
                       void *user) {
     effect_on_progress(e->effect, call, user);
 }

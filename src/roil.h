@@ -38,14 +38,27 @@ typedef struct roil_desc {
     const char *device; // part of a device's name, or its number; NULL: a real GPU before software
     const char *home; // folder that holds shaders/ and scripts/; NULL: $ROIL_HOME, else found from
                       // where the program lies
-    bool no_device;   // only load and check effects
-    bool no_cache;    // neither read nor write compiled shaders on disk
-    bool validate;    // Vulkan validation layers; also by $ROIL_VALIDATE=1
-    bool counters;    // count samples (see roil_counters); costs a little time
+    const char *reader; // the program roil-reader, a child process that reads shaders, meshes and
+                        // pictures; NULL: $ROIL_READER, else beside the program
+    bool no_device;     // only load and check effects
+    bool no_cache;      // neither read nor write compiled shaders on disk
+    bool validate;      // Vulkan validation layers; also by $ROIL_VALIDATE=1
+    bool counters;      // count samples (see roil_counters); costs a little time
     uint32_t reference; // above 0: passes `march` of effects are traced instead, without
                         // approximations, to that many samples a pixel (roil_samples)
     double timeout; // seconds that a frame may take on the device before it counts as lost; 0: 30,
                     // 300 on a software device
+    // What may be taken of the host's memory, and of the device's: a share, "60%" (NULL), or an
+    // amount, "512M" or "8G". What an effect wants beyond that is refused with a message that has
+    // the sum and its largest parts. Of the whole process: the last roil that says it decides.
+    const char *memory;
+    // Called ten times a second by the thread of roil_create, while that waits for a frame that
+    // takes the device longer than a second. False gives the device up: it is lost. May be NULL.
+    bool (*waiting)(void *user, double seconds);
+    void *user;
+    double time_limit; // seconds that a load may take, and then its compiling: its script and all
+                       // that works for it, by the clock; eight times as many of other threads and
+                       // processes; the script of a frame gets a tenth of both. 0: 120
     const roil_window_desc *window; // NULL: nothing is shown
     bool punctual; // no frame waits for a frame of a sequence that is not decoded yet: the nearest
                    // one that is stands in for it (roil_playback.late)
@@ -66,6 +79,13 @@ bool roil_is_lost(const roil *r); // the device hangs or is gone: only roil_dest
 
 typedef struct roil_memory {
     uint64_t device, reserved; // bytes in use on the device, and taken from the driver
+    // The account that roil_desc.memory limits. Where device and host share their memory it is one;
+    // else these are the device's, unless there is none.
+    uint64_t sum, limit;
+    struct {
+        char label[64];
+        uint64_t bytes; // 0: there are no more
+    } largest[3];
 } roil_memory;
 roil_memory roil_get_memory(const roil *r);
 
@@ -133,8 +153,10 @@ void roil_restart(roil_effect *e); // simulations begin anew with the next frame
 // is refused with a message that says what differs; simulations then begin anew.
 bool roil_checkpoint(roil_effect *e, const char *file);
 bool roil_restore(roil_effect *e, const char *file, double *frame);
-// Is told, while frames that were left out are simulated, of the steps done and wanted.
-void roil_on_progress(roil_effect *e, void (*call)(void *user, double done, double whole),
+// Is told, while frames that were left out are simulated, of the steps done and wanted,
+// or of frames that the script ran. When it returns false the frame is given up, and
+// fails.
+void roil_on_progress(roil_effect *e, bool (*call)(void *user, double done, double whole),
                       void *user);
 
 typedef struct roil_readout { // what a pass tells of itself: "Mach", "time step"
@@ -346,7 +368,9 @@ typedef struct roil_live_desc {
 // Watches the effect's files and builds it in the background whenever one changes. What is broken
 // from the start is watched too: NULL only when the file's folder cannot be watched.
 roil_live *roil_live_create(roil *r, const roil_live_desc *desc);
-void roil_live_destroy(roil_live *l);
+// A build that runs is told to end. False: it hangs, and stays behind with the device, so that a
+// roil_destroy leaves these as they are.
+bool roil_live_destroy(roil_live *l); // NULL is fine
 // Between frames: takes over what the background has finished, prepared for the size of the last
 // one and with its histories. True when the effect or the message changed. `frame` is the one that
 // will be drawn next: an effect whose `update` or functions fail there is not taken.

@@ -24,7 +24,8 @@ static float decode_srgb(float v) {
 
 static bool read_png(const char *path, arena *memory, compare_picture *out) {
     png_image image;
-    if (!png_read(path, memory, &image)) return false;
+    arena scratch = {0};
+    if (!png_read(path, NULL, &scratch, &image)) return false;
     size_t count = (size_t)image.width * image.height;
     float *rgb = arena_alloc(memory, count * 3 * sizeof *rgb);
     for (size_t i = 0; i < count; i++) {
@@ -36,37 +37,40 @@ static bool read_png(const char *path, arena *memory, compare_picture *out) {
             rgb[i * 3 + c] =
                 value[3] < 1 ? encode_srgb(decode_srgb(value[c]) * value[3]) : value[c];
     }
+    arena_free(&scratch);
     *out = (compare_picture){image.width, image.height, rgb};
     return true;
 }
 
-static const float *find_channel(const exr_image *image, const char *name) {
-    for (size_t i = 0; i < image->channel_count; i++)
-        if (strcmp(image->channels[i].name, name) == 0) return image->channels[i].values;
-    return NULL;
+static bool find_planes(const char *path, const exr_image *image, const float *planes[3]) {
+    static const char *const names[3] = {"R", "G", "B"};
+    for (size_t c = 0; c < 3; c++) {
+        planes[c] = exr_find(image, names[c]);
+        if (!planes[c])
+            return err_set("%s: no channel '%s'; R, G and B are compared", path, names[c]);
+        for (size_t i = 0; i < (size_t)image->width * image->height; i++)
+            if (isnan(planes[c][i]))
+                return err_set("%s: pixel %zu, %zu is not a number in channel '%s'", path,
+                               i % image->width, i / image->width, names[c]);
+    }
+    return true;
 }
 
 static bool read_exr(const char *path, float gain, arena *memory, compare_picture *out) {
+    const exr_wish wish = {"RGB", picture_limits_default};
     exr_image image;
-    if (!exr_read(path, memory, &image)) return false;
-    static const char *const names[3] = {"R", "G", "B"};
     const float *planes[3];
-    for (size_t c = 0; c < 3; c++) {
-        planes[c] = find_channel(&image, names[c]);
-        if (!planes[c])
-            return err_set("%s: no channel '%s'; R, G and B are compared", path, names[c]);
+    arena scratch = {0};
+    bool done = exr_read(path, &wish, &scratch, &image) && find_planes(path, &image, planes);
+    if (done) {
+        size_t count = (size_t)image.width * image.height;
+        float *rgb = arena_alloc(memory, count * 3 * sizeof *rgb);
+        for (size_t i = 0; i < count; i++)
+            for (size_t c = 0; c < 3; c++) rgb[i * 3 + c] = encode_srgb(planes[c][i] * gain);
+        *out = (compare_picture){image.width, image.height, rgb};
     }
-    size_t count = (size_t)image.width * image.height;
-    float *rgb = arena_alloc(memory, count * 3 * sizeof *rgb);
-    for (size_t i = 0; i < count; i++)
-        for (size_t c = 0; c < 3; c++) {
-            if (isnan(planes[c][i]))
-                return err_set("%s: pixel %zu, %zu is not a number in channel '%s'", path,
-                               i % image.width, i / image.width, names[c]);
-            rgb[i * 3 + c] = encode_srgb(planes[c][i] * gain);
-        }
-    *out = (compare_picture){image.width, image.height, rgb};
-    return true;
+    arena_free(&scratch);
+    return done;
 }
 
 static bool read_picture(const char *path, float gain, arena *memory, compare_picture *out) {

@@ -1,5 +1,6 @@
 // Exports: an OpenVDB sequence as one raw file, every frame resampled into the box that encloses
 // all of them (Raseta, Lesar and Bohak 2025, section 3.2), for engines that read plain voxels.
+#include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
@@ -130,11 +131,14 @@ char *roil_export_raw(const roil_export *desc) {
         exporter x = {.grid = grid, .name = desc->grid ? desc->grid : "density"};
         x.file_count = sequence_files(s, &x.files);
         x.voxels = (size_t)grid->size[0] * grid->size[1] * grid->size[2];
-        x.values = mem_alloc(x.voxels * sizeof *x.values);
+        budget_part *part = budget_take(
+            budget_host(), (uint64_t)x.voxels * (sizeof *x.values + type->size), "voxels to write");
+        if (part) x.values = mem_alloc(x.voxels * sizeof *x.values);
         float scale;
-        if (find_scale(&x, &scale) && write_file(&x, type, scale, desc->file))
+        if (part && find_scale(&x, &scale) && write_file(&x, type, scale, desc->file))
             text = describe(&x, type, scale, desc->file);
         mem_free(x.values);
+        budget_give(part);
         grid->destroy(grid, NULL);
     }
     arena_free(&memory);

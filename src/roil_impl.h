@@ -1,6 +1,7 @@
 // The inside of libroil's objects, for src/roil*.c only.
 #pragma once
 #include "base/file.h"
+#include "base/time_limit.h"
 #include "effect/effect.h"
 #include "roil.h"
 
@@ -11,8 +12,10 @@ struct roil {
     gpu *device; // NULL: no_device
     char *home, *shaders, *scripts, *cache;
     bool counters, window, punctual, hands;
+    bool stuck; // a thread was left behind that uses it (roil_live_destroy)
     uint32_t reference;
-    view *view; // NULL until something is shown or inspected
+    double seconds; // roil_desc.time_limit
+    view *view;     // NULL until something is shown or inspected
 };
 
 struct roil_effect {
@@ -42,6 +45,8 @@ const uint8_t *roil_srgb_table(void);
 const uint16_t *roil_srgb_fine_table(void);
 // What decides between two codes of a pixel; v stands for (v + 0.5) / 256.
 uint8_t roil_dither_noise(size_t x, size_t y, int channel);
+
+time_limit roil_time_limit(const roil *r); // of a load, unused
 
 void roil_free_view(roil *r);
 void roil_free_templates(roil_effect *e); // after the effect itself

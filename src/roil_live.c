@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double LAST_SECONDS = 1; // that a builder is waited for in the end
+
 static char *copy(const char *text) {
     return mem_copy(text, strlen(text) + 1);
 }
@@ -196,14 +198,17 @@ bool roil_live_update(roil_live *l, uint32_t width, uint32_t height, double fram
         l->result = (live_result){0};
         l->ready = false;
     }
+    bool left = l->left && !l->told;
+    l->told = true;
     pthread_mutex_unlock(&l->lock);
+    if (left) set_message(l, copy("the last load hangs, and was left behind; a new one has begun"));
     if (result.effect && take_over(l, result.effect, width, height)) {
         l->counts.reloads++;
         l->counts.last = clock_seconds() - result.since;
         set_message(l, NULL);
         return true;
     }
-    if (!result.effect && !result.message) return false;
+    if (!result.effect && !result.message) return left;
     l->counts.failures++;
     set_message(l, result.message ? result.message : copy(err_get()));
     return true;
@@ -239,7 +244,7 @@ static void init_locks(roil_live *l) {
     pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
     pthread_mutex_init(&l->lock, NULL);
     pthread_cond_init(&l->news, &monotonic);
-    pthread_cond_init(&l->idle, NULL);
+    pthread_cond_init(&l->idle, &monotonic);
     pthread_condattr_destroy(&monotonic);
 }
 
@@ -284,18 +289,37 @@ roil_live *roil_live_create(roil *r, const roil_live_desc *desc) {
     }
     l->building = true; // until the builder says otherwise
     live_want(l);
-    if (pthread_create(&l->thread, NULL, live_run, l) != 0) err_out_of_memory(0);
-    return l;
+    if (live_start(l)) return l;
+    free_live(l);
+    return NULL;
 }
 
-void roil_live_destroy(roil_live *l) {
-    if (!l) return;
+// With the lock held: whether all builders ended before `until`.
+static bool wait_for_end(roil_live *l, double until) {
+    struct timespec t = {.tv_sec = (time_t)until};
+    t.tv_nsec = (long)((until - (double)t.tv_sec) * 1e9);
+    int late = 0;
+    while ((!l->builder->ended || l->left) && !late)
+        late = pthread_cond_timedwait(&l->idle, &l->lock, &t);
+    return !late;
+}
+
+bool roil_live_destroy(roil_live *l) {
+    if (!l) return true;
     pthread_mutex_lock(&l->lock);
     l->ending = true;
-    pthread_cond_signal(&l->news);
+    time_limit_stop(&l->builder->time);
+    pthread_cond_broadcast(&l->news);
+    bool ended = wait_for_end(l, clock_seconds() + LAST_SECONDS);
     pthread_mutex_unlock(&l->lock);
-    pthread_join(l->thread, NULL);
+    if (!ended) { // what it works on has to stay
+        l->owner->stuck = true;
+        return err_set("a load hangs, and was left behind");
+    }
+    pthread_join(l->builder->thread, NULL);
+    mem_free(l->builder);
     free_live(l);
+    return true;
 }
 
 void roil_live_wait(roil_live *l) {

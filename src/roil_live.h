@@ -1,6 +1,7 @@
 // The inside of roil_live, for src/roil_live*.c only. Three threads: that of the watch notes what
 // changed and wakes the builder; the builder loads and compiles; the caller's takes over.
 #pragma once
+#include "base/time_limit.h"
 #include "base/watch.h"
 #include "roil_impl.h"
 #include <pthread.h>
@@ -17,6 +18,16 @@ typedef struct live_result { // of a build
     double since;            // clock_seconds of the change that it answers
 } live_result;
 
+typedef struct live_builder { // a thread that builds
+    pthread_t thread;
+    roil_live *live;
+    time_limit time; // of its build
+    double begun;    // clock_seconds
+    bool busy;       // with a build
+    bool left;       // behind, while it was: what it makes is thrown away, and it ends
+    bool ended;
+} live_builder;
+
 struct roil_live {
     roil *owner;
     char *file, **presets;
@@ -26,7 +37,6 @@ struct roil_live {
     shader_library *library; // both shared by all loads
     shelf *shelf;
     watch *watch;
-    pthread_t thread;
 
     // Of the caller's thread.
     roil_effect *effect;
@@ -43,6 +53,9 @@ struct roil_live {
     bool wanted;          // something changed since the last build began
     double since, latest; // clock_seconds of the first and last change of these
     bool building, ending;
+    live_builder *builder;
+    size_t left;        // builders that were left behind and have not ended
+    bool told;          // of the last of these
     live_result result; // not taken yet
     bool ready;         // there is one
 
@@ -51,7 +64,8 @@ struct roil_live {
     size_t good_count, watched_count;
 };
 
-void *live_run(void *live); // the builder's thread
+// A builder, with the lock held or before there are others. False with a message: no thread.
+bool live_start(roil_live *l);
 // With the lock held: settings that come from presets.
 void live_drop_preset_settings(roil_live *l);
 void live_add_preset_setting(roil_live *l, const roil_setting *s); // others win over it

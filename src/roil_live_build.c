@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <time.h>
 
+static const double PATIENCE = 10; // seconds after which a build is left behind when there is news
 static const double EMPTY_SECONDS = 0.5; // an empty file is being written, unless it stays so
 
 // ---- files ------------------------------------------------------------------------------------
@@ -147,6 +148,7 @@ static effect *load(roil_live *l, const order *o, file_set *files) {
         .hands = r->hands,
         .reference = r->reference,
         .punctual = r->punctual,
+        .seconds = r->seconds,
         .settings = o->settings,
         .setting_count = o->setting_count,
         .library = l->library,
@@ -187,8 +189,24 @@ void live_note(roil_live *l, double when) {
     pthread_mutex_unlock(&l->lock);
 }
 
+// A build that hangs must not hold up those after it: its thread is left behind.
+static void leave_stuck(roil_live *l) {
+    live_builder *b = l->builder;
+    if (!b || !b->busy || l->ending || clock_seconds() < b->begun + PATIENCE) return;
+    time_limit_stop(&b->time);
+    if (!live_start(l)) {
+        log_write(LOG_WARNING, "%s", err_get());
+        return;
+    }
+    b->left = true;
+    l->told = false;
+    l->left++;
+    pthread_detach(b->thread);
+}
+
 void live_wake(roil_live *l) {
     pthread_mutex_lock(&l->lock);
+    leave_stuck(l);
     pthread_cond_signal(&l->news);
     pthread_mutex_unlock(&l->lock);
 }
@@ -220,30 +238,68 @@ static void hand_over(roil_live *l, live_result result) {
     if (l->wake) l->wake(l->user);
 }
 
-void *live_run(void *live) {
-    roil_live *l = live;
+// With the lock held, but for the build itself. False: it was left behind meanwhile.
+static bool build_next(live_builder *b) {
+    roil_live *l = b->live;
+    l->wanted = false;
+    l->building = b->busy = true;
+    b->time = roil_time_limit(l->owner);
+    b->begun = clock_seconds();
+    double since = l->since;
+    pthread_mutex_unlock(&l->lock);
+
+    file_set files = {0};
+    int64_t begin = file_clock_ns();
+    time_limit *before = time_limit_enter(&b->time);
+    live_result result = build(l, since, &files);
+    time_limit_leave(before);
+    bool good = result.effect != NULL;
+
     pthread_mutex_lock(&l->lock);
-    while (!l->ending) {
+    b->busy = false;
+    bool left = b->left;
+    pthread_mutex_unlock(&l->lock);
+    if (left) {
+        live_free_result(&result);
+        live_free_names(files.paths, files.count);
+    } else {
+        hand_over(l, result);
+        follow_files(l, &files, good, begin);
+    }
+    pthread_mutex_lock(&l->lock);
+    return !left;
+}
+
+static void *run(void *user) {
+    live_builder *b = user;
+    roil_live *l = b->live;
+    pthread_mutex_lock(&l->lock);
+    bool mine = true;
+    while (mine && !l->ending) {
         if (!l->wanted) {
             l->building = false;
             pthread_cond_broadcast(&l->idle);
             pthread_cond_wait(&l->news, &l->lock);
-            continue;
+        } else if (!wait_for_content(l)) {
+            mine = build_next(b);
         }
-        if (wait_for_content(l)) continue;
-        l->wanted = false;
-        l->building = true;
-        double since = l->since;
-        pthread_mutex_unlock(&l->lock);
-
-        file_set files = {0};
-        int64_t begin = file_clock_ns();
-        live_result result = build(l, since, &files);
-        bool good = result.effect != NULL;
-        hand_over(l, result);
-        follow_files(l, &files, good, begin);
-        pthread_mutex_lock(&l->lock);
     }
+    b->ended = true;
+    if (b->left) l->left--;
+    pthread_cond_broadcast(&l->idle);
+    if (b->left) mem_free(b);
     pthread_mutex_unlock(&l->lock);
     return NULL;
+}
+
+bool live_start(roil_live *l) {
+    live_builder *b = mem_alloc(sizeof *b);
+    live_builder *before = l->builder;
+    b->live = l;
+    l->builder = b;
+    int failed = pthread_create(&b->thread, NULL, run, b);
+    if (!failed) return true;
+    l->builder = before;
+    mem_free(b);
+    return err_set("%s: no thread can be made that builds it: %s", l->file, strerror(failed));
 }

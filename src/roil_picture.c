@@ -1,4 +1,5 @@
 // Pictures of the last frame: read back, encoded, saved.
+#include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/jobs.h"
@@ -42,9 +43,20 @@ static void expand(const unsigned char *texel, gpu_format format, float out[4]) 
 
 typedef struct raw_image { // as it lies on the device
     unsigned char *texels; // NULL: none
+    budget_part *part;     // of these, and of what becomes of them
     gpu_format format;
     uint32_t width, height;
 } raw_image;
+
+enum {
+    WORK_BYTES = 32
+}; // a pixel, at most: as numbers, and these by channels or as they are written
+
+static void free_raw(raw_image *raw) {
+    mem_free(raw->texels);
+    budget_give(raw->part);
+    *raw = (raw_image){0};
+}
 
 static bool read_raw(roil_effect *e, graph_image image, raw_image *out) {
     gpu_image *source = graph_get_image(effect_graph(e->effect), image);
@@ -53,10 +65,12 @@ static bool read_raw(roil_effect *e, graph_image image, raw_image *out) {
     if (desc->depth > 1 || desc->format == GPU_R32U)
         return err_set("%s: only two-dimensional pictures can be saved", desc->label);
     size_t size = (size_t)desc->width * desc->height * gpu_format_size(desc->format);
-    *out = (raw_image){mem_alloc(size), desc->format, desc->width, desc->height};
+    uint64_t work = (uint64_t)desc->width * desc->height * WORK_BYTES;
+    budget_part *part = budget_take(budget_host(), size + work, "pictures read back and written");
+    if (!part) return err_prefix("%s: ", desc->label);
+    *out = (raw_image){mem_alloc(size), part, desc->format, desc->width, desc->height};
     if (gpu_image_read(e->owner->device, source, out->texels, size)) return true;
-    mem_free(out->texels);
-    out->texels = NULL;
+    free_raw(out);
     return false;
 }
 
@@ -76,7 +90,7 @@ float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint3
     raw_image raw = {0};
     if (!read_raw(e, image, &raw)) return NULL;
     linear_image linear = expand_all(&raw);
-    mem_free(raw.texels);
+    free_raw(&raw);
     *width = raw.width;
     *height = raw.height;
     return linear.pixels;
@@ -174,10 +188,10 @@ static void encode16(const linear_image *image, bool alpha, size_t channels, uin
 static bool read_output(roil_effect *e, raw_image *out) {
     if (!read_raw(e, effect_get_picture(e->effect, EFFECT_OUTPUT), out)) return false;
     if (out->width == e->width && out->height == e->height) return true;
-    mem_free(out->texels);
-    return err_set("the effect's output is %u x %u, not %u x %u: its last pass has a resolution "
-                   "below 1",
-                   out->width, out->height, e->width, e->height);
+    err_set("the effect's output is %u x %u, not %u x %u: its last pass has a resolution below 1",
+            out->width, out->height, e->width, e->height);
+    free_raw(out);
+    return false;
 }
 
 bool roil_read(roil_effect *e, bool alpha, uint8_t *out) {
@@ -186,7 +200,7 @@ bool roil_read(roil_effect *e, bool alpha, uint8_t *out) {
     linear_image image = expand_all(&raw);
     encode8_nearest(&image, alpha, out);
     mem_free(image.pixels);
-    mem_free(raw.texels);
+    free_raw(&raw);
     return true;
 }
 
@@ -265,19 +279,20 @@ static bool write_picture(void *user) {
 
 static void free_picture(void *user) {
     picture *p = user;
-    mem_free(p->color.texels);
-    mem_free(p->depth.texels);
+    free_raw(&p->color);
+    free_raw(&p->depth);
     arena_free(&p->memory);
     mem_free(p);
 }
 
 // The depth of the scene goes with the effect's own picture, where it is as large.
-static void take_depth(roil_effect *e, picture *p) {
+static bool take_depth(roil_effect *e, picture *p) {
     graph_image z = effect_get_picture(e->effect, EFFECT_DEPTH);
-    if (!p->exr || !z.id || p->options.image || !read_raw(e, z, &p->depth)) return;
-    if (p->depth.width == p->color.width && p->depth.height == p->color.height) return;
-    mem_free(p->depth.texels);
-    p->depth.texels = NULL;
+    if (!p->exr || !z.id || p->options.image) return true;
+    if (!read_raw(e, z, &p->depth)) return false;
+    if (p->depth.width == p->color.width && p->depth.height == p->color.height) return true;
+    free_raw(&p->depth);
+    return true;
 }
 
 static picture *take_picture(roil_effect *e, const char *file, const roil_save_options *options) {
@@ -294,11 +309,10 @@ static picture *take_picture(roil_effect *e, const char *file, const roil_save_o
     graph_image linear = effect_get_picture(e->effect, EFFECT_LINEAR);
     graph_image image = exr && linear.id ? linear : effect_get_picture(e->effect, EFFECT_OUTPUT);
     if (p->options.image) image = roil_find_image(e, p->options.image);
-    if (!image.id || !read_raw(e, image, &p->color)) {
+    if (!image.id || !read_raw(e, image, &p->color) || !take_depth(e, p)) {
         free_picture(p);
         return NULL;
     }
-    take_depth(e, p);
     if (!exr) recipe_write(e->effect, e->shown, e->width, e->height, &p->memory, p->texts);
     return p;
 }
@@ -325,12 +339,16 @@ roil_writer *roil_writer_create(void) {
     roil_writer *w = mem_alloc(sizeof *w);
     roil_srgb_fine_table(); // filled before several threads read it
     w->files = jobs_create(threads, threads + QUEUED);
-    return w;
+    if (w->files) return w;
+    mem_free(w);
+    return NULL;
 }
 
 bool roil_writer_save(roil_writer *w, roil_effect *e, const char *file,
                       const roil_save_options *options) {
     picture *p = take_picture(e, file, options);
+    // Memory that earlier pictures hold comes back once they are written.
+    if (!p && jobs_wait(w->files)) p = take_picture(e, file, options);
     return p && jobs_add(w->files, write_picture, free_picture, p);
 }
 
@@ -355,6 +373,11 @@ typedef struct video_frame {
     raw_image raw;
 } video_frame;
 
+static void release(roil_video *v) {
+    mem_free(v->pixels);
+    mem_free(v);
+}
+
 roil_video *roil_video_create(roil_effect *e, const char *file, double fps) {
     if (!file_make_parent_folders(file)) return NULL;
     video *out = video_create(file, e->width, e->height, fps);
@@ -365,7 +388,10 @@ roil_video *roil_video_create(roil_effect *e, const char *file, double fps) {
                       .video = out,
                       .frames = jobs_create(1, 1 + QUEUED),
                       .pixels = mem_alloc((size_t)e->width * e->height * 4)};
-    return v;
+    if (v->frames) return v;
+    video_abandon(out);
+    release(v);
+    return NULL;
 }
 
 static bool encode_frame(void *user) {
@@ -378,19 +404,15 @@ static bool encode_frame(void *user) {
 
 static void free_frame(void *user) {
     video_frame *frame = user;
-    mem_free(frame->raw.texels);
+    free_raw(&frame->raw);
     mem_free(frame);
 }
 
 bool roil_video_add(roil_video *v) {
     video_frame frame = {.of = v};
-    return read_output(v->effect, &frame.raw) &&
-           jobs_add(v->frames, encode_frame, free_frame, mem_copy(&frame, sizeof frame));
-}
-
-static void release(roil_video *v) {
-    mem_free(v->pixels);
-    mem_free(v);
+    bool read = read_output(v->effect, &frame.raw) ||
+                (jobs_wait(v->frames) && read_output(v->effect, &frame.raw)); // as roil_writer_save
+    return read && jobs_add(v->frames, encode_frame, free_frame, mem_copy(&frame, sizeof frame));
 }
 
 bool roil_video_finish(roil_video *v) {

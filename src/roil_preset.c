@@ -91,10 +91,13 @@ roil_preset *roil_read_preset(roil *r, const char *effect_file, const char *pres
         refuse(effect_file, preset);
         return NULL;
     }
+    char root[PATH_CAP];
+    path_folder(root, effect_file);
     owned_preset *own = mem_alloc(sizeof *own);
     effect_setting *settings;
     size_t count;
-    if (!preset_read(path, &own->memory, &settings, &count)) {
+    if (!preset_read(str_ends_with(preset, ".lua") ? NULL : root, path, &own->memory, &settings,
+                     &count)) {
         roil_free_preset(&own->preset);
         return NULL;
     }
@@ -130,13 +133,14 @@ static void print_preset(const roil_effect *e, const char *name, strbuf *out) {
 }
 
 bool roil_write_preset(roil_effect *e, const char *name) {
-    char path[PATH_CAP];
+    char path[PATH_CAP], root[PATH_CAP];
     if (!is_name(name, strlen(name)))
         return err_set("preset '%.64s' is not a name (letters, digits, _ and -)", name);
     if (!preset_path(path, effect_file(e->effect), name)) return false;
+    path_folder(root, effect_file(e->effect));
     strbuf text = {0};
     print_preset(e, name, &text);
-    bool done = file_make_parent_folders(path) && file_write(path, text.text, text.length);
+    bool done = file_write_inside(root, path, text.text, text.length);
     strbuf_free(&text);
     return done;
 }

@@ -236,8 +236,8 @@ static bool adopt(const roil_effect *e, const char *file) {
     if (!find_file(e, file, root, from) || !place_in(effect_root(e->effect), file, to))
         return false;
     if (file_exists(to)) return true;
-    if (!file_read(from, FILE_MAX, &bytes, &size)) return false;
-    bool done = file_make_parent_folders(to) && file_write(to, bytes, size);
+    if (!file_read_inside(root, from, FILE_MAX, &bytes, &size)) return false;
+    bool done = file_write_inside(effect_root(e->effect), to, bytes, size);
     mem_free(bytes);
     return done;
 }

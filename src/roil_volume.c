@@ -1,5 +1,6 @@
 // Volumes of an effect as OpenVDB files: what bakes hold after a frame is read back as it is, in
 // halves, and written by another thread.
+#include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/jobs.h"
@@ -20,6 +21,7 @@ struct roil_volume {
 typedef struct volume_file { // all that it needs, away from the effect and its device
     char path[PATH_CAP], effect[256];
     vdb_write_grid grids[EFFECT_VOLUME_FIELDS];
+    budget_part *parts[EFFECT_VOLUME_FIELDS];
     uint16_t *halves[EFFECT_VOLUME_FIELDS];
     char names[EFFECT_VOLUME_FIELDS][64];
     size_t count;
@@ -50,7 +52,9 @@ roil_volume *roil_volume_create(roil_effect *e, const roil_volume_desc *desc) {
     }
     if (desc->alone) effect_skip_pictures(e->effect);
     v->files = jobs_create(1, WAITING);
-    return v;
+    if (v->files) return v;
+    mem_free(v);
+    return NULL;
 }
 
 roil_volume_info roil_volume_get_info(const roil_volume *v) {
@@ -79,7 +83,10 @@ static bool write_file(void *user) {
 
 static void free_file(void *user) {
     volume_file *f = user;
-    for (size_t i = 0; i < f->count; i++) mem_free(f->halves[i]);
+    for (size_t i = 0; i < f->count; i++) {
+        mem_free(f->halves[i]);
+        budget_give(f->parts[i]);
+    }
     mem_free(f);
 }
 
@@ -90,6 +97,10 @@ static bool read_field(const roil_volume *v, size_t index, volume_file *f) {
     size_t voxels = (size_t)c->size[0] * c->size[1] * c->size[2];
     int stride = from->components == 1 ? 1 : 4;
     size_t size = voxels * (size_t)stride * sizeof(uint16_t);
+    // Beside the halves: as floats, in the tree that is written.
+    f->parts[index] =
+        budget_take(budget_host(), 3 * (uint64_t)size, "volumes read back and written");
+    if (!f->parts[index]) return err_prefix("%s: ", from->name);
     f->halves[index] = mem_alloc(size);
     f->count = index + 1;
     str_copy(f->names[index], sizeof f->names[index], from->name);

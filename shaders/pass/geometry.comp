@@ -3,7 +3,7 @@
 //
 // This is the way by rays. The other draws triangles (geometry.vert, geometry.frag) and gives the
 // same picture.
-//@ option mode = auto {auto, rays, raster} : rays: by rays through the middles of pixels; raster: drawn; auto: drawn where the device is software or a texture does not fit, else rays
+//@ option mode = auto {auto, rays, raster} : rays: by rays through the middles of pixels; raster: drawn; auto: drawn where the device is software (if it draws precisely) or a texture does not fit, else rays
 #include "lib/frame.glsl"
 #include "lib/surface.glsl"
 uniform uint shown[8];              // a bit for each mesh, and for all instances of an object

@@ -80,9 +80,7 @@ typedef struct columns {
 
 // ---- lines ------------------------------------------------------------------------------------
 
-// Quoted where it must be.
-static void add_text(strbuf *out, const char *text) {
-    if (out->length && out->text[out->length - 1] != '\n') strbuf_append(out, ",", 1);
+static void add_quoted(strbuf *out, const char *text) {
     bool quoted = text[strcspn(text, ",\"\r\n")] != '\0';
     if (!quoted) {
         strbuf_add(out, "%s", text);
@@ -93,6 +91,26 @@ static void add_text(strbuf *out, const char *text) {
     strbuf_append(out, "\"", 1);
 }
 
+// Spreadsheets run what begins so, unless it is a number.
+static bool looks_like_formula(const char *text) {
+    if (!text[0] || !strchr("=+-@\t\r", text[0])) return false;
+    char *end;
+    double value = strtod(text, &end);
+    return end == text || *end || !isfinite(value) || strchr(text, 'x') || strchr(text, 'X');
+}
+
+// Quoted where it must be. An apostrophe before what looks like a formula makes it a text.
+static void add_text(strbuf *out, const char *text) {
+    if (out->length && out->text[out->length - 1] != '\n') strbuf_append(out, ",", 1);
+    strbuf safe = {0};
+    if (looks_like_formula(text)) {
+        strbuf_add(&safe, "'%s", text);
+        add_quoted(out, safe.text);
+    } else {
+        add_quoted(out, text);
+    }
+    strbuf_free(&safe);
+}
 static void add_number(strbuf *out, double value) {
     strbuf_add(out, isinf(value) ? ",inf" : ",%.8g", value);
 }
@@ -186,7 +204,7 @@ bool bench_write_csv(const bench_results *r, const char *folder) {
     strbuf out = {0};
     add_headings(r, &c, &out);
     for (size_t i = 0; i < r->row_count; i++) add_row(r, &c, &r->rows[i], &out);
-    bool done = file_write(path, out.text, out.length);
+    bool done = file_write_inside(folder, path, out.text, out.length);
     strbuf_free(&out);
     for (size_t t = 0; t < COUNT_OF(time_columns); t++) mem_free(c.times[t].items);
     for (size_t n = 0; n < COUNT_OF(number_columns); n++) mem_free(c.numbers[n].items);

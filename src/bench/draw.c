@@ -192,7 +192,8 @@ static bool save_thumbnail(bench_session *s, bench_row *row, const bench_picture
                            arena *memory) {
     char file[PATH_CAP];
     const char *name = arena_format(memory, "rows/%04zu.png", row->index);
-    if (!path_join(file, s->folder, name) || !bench_picture_save_small(p, file)) return false;
+    if (!path_join(file, s->folder, name) || !bench_picture_save_small(p, s->folder, file))
+        return false;
     row->thumbnail = name;
     return true;
 }

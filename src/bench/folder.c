@@ -1,6 +1,7 @@
 // Temporary folders: copies of effects that are edited, caches that begin empty.
 #include "base/error.h"
 #include "base/file.h"
+#include "base/str.h"
 #include "bench/run_parts.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -13,10 +14,30 @@
 
 extern char **environ;
 
+// Those that are in use: a process that runs out of memory ends at once, and removes them first.
+enum { FOLDERS = 8 };
+static char folders[FOLDERS][PATH_CAP];
+
+static void remove_all(void) {
+    for (size_t i = 0; i < FOLDERS; i++)
+        if (folders[i][0]) bench_folder_remove(folders[i]);
+}
+
+static void keep_in_mind(const char *folder) {
+    for (size_t i = 0; i < FOLDERS; i++)
+        if (!folders[i][0]) {
+            str_copy(folders[i], sizeof folders[i], folder);
+            break;
+        }
+    err_when_out_of_memory(remove_all);
+}
+
 bool bench_folder_make(char out[PATH_CAP]) {
     const char *place = getenv("TMPDIR");
     if (!path_join(out, place && place[0] ? place : "/tmp", "roil-bench-XXXXXX")) return false;
-    return mkdtemp(out) || err_set("%s: cannot be made: %s", out, strerror(errno));
+    if (!mkdtemp(out)) return err_set("%s: cannot be made: %s", out, strerror(errno));
+    keep_in_mind(out);
+    return true;
 }
 
 static int remove_one(const char *path, const struct stat *info, int kind, struct FTW *walk) {
@@ -24,8 +45,24 @@ static int remove_one(const char *path, const struct stat *info, int kind, struc
     return remove(path);
 }
 
+// In a process of its own, which has memory where this one has none.
+static bool remove_apart(const char *folder) {
+    static const char *const nothing[] = {NULL};
+    const char *const arguments[] = {"/bin/rm", "-rf", "--", folder, NULL};
+    pid_t child;
+    int status;
+    if (posix_spawn(&child, arguments[0], NULL, NULL, (char *const *)arguments,
+                    (char *const *)nothing) != 0)
+        return false;
+    while (waitpid(child, &status, 0) < 0)
+        if (errno != EINTR) return false;
+    return status == 0;
+}
+
 void bench_folder_remove(const char *folder) {
-    nftw(folder, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+    if (!remove_apart(folder)) nftw(folder, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+    for (size_t i = 0; i < FOLDERS; i++)
+        if (strcmp(folders[i], folder) == 0) folders[i][0] = '\0';
 }
 
 bool bench_spawn(const char *const *arguments, const char *log, int *status) {
@@ -47,7 +84,7 @@ bool bench_folder_copy(const char *from, const char *to) {
     char all[PATH_CAP], log[PATH_CAP];
     int status;
     if (!path_join(all, from, ".") || !path_join(log, to, "copy.log")) return false;
-    const char *const arguments[] = {"cp", "-rL", "--", all, to, NULL};
+    const char *const arguments[] = {"cp", "-rP", "--", all, to, NULL};
     if (!bench_spawn(arguments, log, &status)) return false;
     return status == 0 || err_set("%s: cannot be copied to %s", from, to);
 }

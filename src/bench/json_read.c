@@ -3,9 +3,10 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/str.h"
 #include "bench/json.h"
 #include "bench/results.h"
-#include <ctype.h>
+#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -37,8 +38,7 @@ static void go_to(reader *r, const char *format, ...) {
 
 static const char *clean(const reader *r, const char *text) {
     char *copy = arena_string(r->memory, text);
-    for (char *at = copy; *at; at++)
-        if (iscntrl((unsigned char)*at) && *at != '\n') *at = '?';
+    str_make_printable(copy);
     return copy;
 }
 
@@ -341,11 +341,12 @@ bool bench_from_json(const json_t *root, const char *file, bench_results *out) {
            read_tuned(&r, root, out) && read_rows(&r, root, out);
 }
 
-bool bench_read_file(const char *file, bench_results *out) {
+// Below `folder`, or where that is NULL the file that the user named.
+static bool read_file(const char *folder, const char *file, bench_results *out) {
     void *data;
     size_t size;
     *out = (bench_results){0};
-    if (!file_read(file, FILE_MAX, &data, &size)) return false;
+    if (!file_read_inside(folder, file, FILE_MAX, &data, &size)) return false;
     json_error_t error;
     json_t *root = json_loadb(data, size, JSON_REJECT_DUPLICATES, &error);
     mem_free(data);
@@ -356,8 +357,14 @@ bool bench_read_file(const char *file, bench_results *out) {
     return done;
 }
 
+bool bench_read_file(const char *file, bench_results *out) {
+    return read_file(NULL, file, out);
+}
+
 bool bench_read(const char *folder, bench_results *out) {
     char path[PATH_CAP];
     *out = (bench_results){0};
-    return path_join(path, folder, "results.json") && bench_read_file(path, out);
+    if (!path_join(path, folder, "results.json")) return false;
+    return file_exists(path) ? read_file(folder, path, out)
+                             : err_set("%s: %s", path, strerror(ENOENT));
 }

@@ -162,7 +162,7 @@ bool bench_write(const bench_results *r, const char *folder) {
     if (!path_join(path, folder, "results.json")) return false;
     char *json = bench_to_json(r);
     if (!json) return err_set("%s: the results cannot be written as JSON", path);
-    bool done = file_make_folders(folder) && file_write(path, json, strlen(json));
+    bool done = file_make_folders(folder) && file_write_inside(folder, path, json, strlen(json));
     free(json);
     return done && bench_write_csv(r, folder);
 }

@@ -14,8 +14,8 @@ static bool copy_thumbnail(const bench_row *row, const char *from, const char *t
     if (!row->thumbnail || strcmp(from, to) == 0) return true;
     if (!path_join(source, from, row->thumbnail) || !path_join(target, to, row->thumbnail))
         return false;
-    if (!file_read(source, PICTURE_MAX, &data, &size)) return false;
-    bool done = file_make_parent_folders(target) && file_write(target, data, size);
+    if (!file_read_inside(from, source, PICTURE_MAX, &data, &size)) return false;
+    bool done = file_make_folders(to) && file_write_inside(to, target, data, size);
     mem_free(data);
     return done;
 }

@@ -1,6 +1,5 @@
 // Pictures of rows: small ones to look at, and how far they are from others.
 #include "base/error.h"
-#include "base/file.h"
 #include "base/memory.h"
 #include "bench/run_parts.h"
 #include "media/compare.h"
@@ -19,15 +18,15 @@ bool bench_picture_read(roil_effect *e, uint32_t width, uint32_t height, bench_p
     return false;
 }
 
-bool bench_picture_save(const bench_picture *p, const char *file) {
+bool bench_picture_save(const bench_picture *p, const char *folder, const char *file) {
     png_image image = {p->width, p->height, 4, 8, p->pixels};
-    return file_make_parent_folders(file) && png_write(file, &image, NULL, 0);
+    return png_write_inside(folder, file, &image);
 }
 
-bool bench_picture_load(const char *file, bench_picture *out) {
+bool bench_picture_load(const char *folder, const char *file, bench_picture *out) {
     arena memory = {0};
     png_image image;
-    bool done = png_read(file, &memory, &image);
+    bool done = png_read_inside(folder, file, NULL, &memory, &image);
     if (done && image.bits != 8) done = err_set("%s: 8 bits a channel are expected", file);
     if (done)
         *out = (bench_picture){image.width, image.height,
@@ -54,14 +53,14 @@ static void shrink(const bench_picture *p, uint32_t width, uint32_t height, uint
         }
 }
 
-bool bench_picture_save_small(const bench_picture *p, const char *file) {
+bool bench_picture_save_small(const bench_picture *p, const char *folder, const char *file) {
     uint32_t width = p->width < SMALL_WIDTH ? p->width : SMALL_WIDTH;
     uint32_t height = (uint32_t)fmax(1, round((double)p->height * width / p->width));
     if (height > p->height) height = p->height;
     uint8_t *pixels = mem_alloc((size_t)width * height * 3);
     shrink(p, width, height, pixels);
     png_image image = {width, height, 3, 8, pixels};
-    bool done = file_make_parent_folders(file) && png_write(file, &image, NULL, 0);
+    bool done = png_write_inside(folder, file, &image);
     mem_free(pixels);
     return done;
 }

@@ -45,7 +45,7 @@ static bool save_picture(bench_drawing *d, hash128 h, size_t i) {
     if (!picture_path(path, d->session, h, i) ||
         !bench_picture_read(d->effect, row->width, row->height, &p))
         return false;
-    bool done = bench_picture_save(&p, path);
+    bool done = bench_picture_save(&p, d->session->folder, path);
     mem_free(p.pixels);
     return done;
 }
@@ -106,7 +106,7 @@ bool bench_compare_row(bench_session *s, const bench_job *job, bench_row *row,
         bench_picture wanted;
         char path[PATH_CAP];
         if (!bench_is_compared(s, row, i)) continue;
-        done = picture_path(path, s, h, i) && bench_picture_load(path, &wanted);
+        done = picture_path(path, s, h, i) && bench_picture_load(s->folder, path, &wanted);
         if (!done) break;
         done = bench_picture_compare(&pictures[k++], &wanted, row);
         mem_free(wanted.pixels);

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 enum { SCRIPT_MAX = 16 << 20 };
 static const double PATIENCE = 30; // seconds that a build may take
@@ -121,8 +122,11 @@ static bool start(reload *m) {
     const bench_row *row = m->row;
     void *data;
     size_t size;
-    if (!file_read(m->path, SCRIPT_MAX, &data, &size)) return false;
+    if (!file_read(m->row->effect, SCRIPT_MAX, &data, &size)) return false;
     m->script = data;
+    // The copy may be a link, through which an edit would reach what it leads to.
+    if ((unlink(m->path) != 0 && errno != ENOENT) || !file_write(m->path, data, size))
+        return err_set("%s: cannot be written", m->path);
     m->pixels = mem_alloc((size_t)row->width * row->height * 4);
     m->frame = row->frame_count ? row->frames[0] : 1;
     m->live =

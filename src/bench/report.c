@@ -29,7 +29,8 @@ static json_t *picture(const char *folder, const char *name, size_t *room) {
     char path[PATH_CAP];
     void *data;
     size_t size;
-    if (!path_confine(path, folder, name) || !file_read(path, PICTURE_MAX, &data, &size))
+    if (!path_confine(path, folder, name) ||
+        !file_read_inside(folder, path, PICTURE_MAX, &data, &size))
         return NULL;
     json_t *address = NULL;
     if (size <= *room && size > sizeof magic && memcmp(data, magic, sizeof magic) == 0) {
@@ -65,7 +66,8 @@ bool bench_report(const bench_results *r, const char *folder, const char *home) 
     json_t *tree = bench_to_tree(r);
     add_pictures(tree, folder);
     strbuf page = {0};
-    bool done = script_report(scripts, tree, &page) && file_write(path, page.text, page.length);
+    bool done = script_report(scripts, tree, &page) &&
+                file_write_inside(folder, path, page.text, page.length);
     json_decref(tree);
     strbuf_free(&page);
     return done;

@@ -32,10 +32,11 @@ typedef struct bench_picture { // RGBA, sRGB
     uint8_t *pixels; // mem_free
 } bench_picture;
 bool bench_picture_read(roil_effect *e, uint32_t width, uint32_t height, bench_picture *out);
-// At most 320 pixels wide.
-bool bench_picture_save_small(const bench_picture *p, const char *file);
-bool bench_picture_save(const bench_picture *p, const char *file);
-bool bench_picture_load(const char *file, bench_picture *out);
+// `file` lies below `folder`, that of the results, and no link leads out of it. A small one is at
+// most 320 pixels wide.
+bool bench_picture_save_small(const bench_picture *p, const char *folder, const char *file);
+bool bench_picture_save(const bench_picture *p, const char *folder, const char *file);
+bool bench_picture_load(const char *folder, const char *file, bench_picture *out);
 // Figures of `row` become those of the worst frame so far.
 bool bench_picture_compare(const bench_picture *a, const bench_picture *b, bench_row *row);
 
@@ -43,7 +44,7 @@ bool bench_picture_compare(const bench_picture *a, const bench_picture *b, bench
 
 bool bench_folder_make(char out[PATH_CAP]); // a new one for temporary files
 void bench_folder_remove(const char *folder);
-bool bench_folder_copy(const char *from, const char *to); // what is in it, links followed
+bool bench_folder_copy(const char *from, const char *to); // what is in it; links stay links
 // Runs a program to its end; what it says as errors goes to the file `log`.
 bool bench_spawn(const char *const *arguments, const char *log, int *status);
 

@@ -33,8 +33,13 @@ static bool forget_pictures(const bench_session *s) {
         if (!path_join(pattern, s->folder, patterns[i])) return false;
         path_folder(folder, pattern);
         if (!file_is_folder(folder)) continue;
-        if (!file_glob(pattern, &files)) return false;
-        for (size_t k = 0; k < files.count; k++) unlink(files.paths[k]);
+        int opened = file_open_folder_inside(s->folder, pattern);
+        if (opened < 0) return false;
+        bool listed = file_glob(pattern, &files);
+        for (size_t k = 0; listed && k < files.count; k++)
+            unlinkat(opened, path_name(files.paths[k]), 0);
+        close(opened);
+        if (!listed) return false;
         file_list_free(&files);
     }
     return true;

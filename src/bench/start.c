@@ -35,7 +35,8 @@ static bool build_arguments(starter *m) {
     m->arguments = a;
     a[n++] = program;
     a[n++] = m->job->command;
-    a[n++] = row->effect;
+    // A name that begins with '-' is no option.
+    a[n++] = row->effect[0] == '-' ? arena_format(m->memory, "./%s", row->effect) : row->effect;
     if (strcmp(m->job->command, "render") != 0)
         return row->settings.count == 0 || err_set("roil %s takes no settings", m->job->command);
     a[n++] = "--frames";

@@ -262,7 +262,7 @@ static bool check_names(const sweep *s, const bool *chosen) {
 }
 
 bool bench_read_sweep(const bench_order *order, arena *memory, sweep *out) {
-    roil *r = roil_create(&(roil_desc){.no_device = true});
+    roil *r = roil_create(&(roil_desc){.no_device = true, .memory = order->memory});
     if (!r) return false;
     sweep_options options = order->options;
     options.home = roil_home(r);

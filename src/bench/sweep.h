@@ -25,6 +25,7 @@ typedef struct bench_watcher {                                  // all may be NU
 
 typedef struct bench_order {
     const char *file, *folder, *device; // the sweep; where results go; as roil_desc has it
+    const char *memory;                 // as roil_desc has it
     sweep_options options;
     bench_choice choice;
     bool resume; // keeps the rows that `folder` has, if they are of the same sweep and device

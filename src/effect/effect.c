@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/time_limit.h"
 #include "effect/effect_impl.h"
 #include "media/picture.h"
 #include "scene/bvh.h"
@@ -28,6 +29,7 @@ effect *effect_create(const effect_desc *desc) {
     e->device = desc->device;
     e->reference = desc->reference;
     e->punctual = desc->punctual;
+    e->seconds = desc->seconds > 0 ? desc->seconds : TIME_LIMIT_LOAD_SECONDS;
     e->file = arena_string(&e->memory, desc->file);
     e->root = arena_string(&e->memory, folder);
     e->name = arena_string(&e->memory, path_name(desc->file));
@@ -112,6 +114,10 @@ arena *effect_memory(effect *e) {
 const char *effect_root(const effect *e) {
     return e->root;
 }
+double effect_seconds(const effect *e) {
+    return e->seconds;
+}
+
 const char *effect_file(const effect *e) {
     return e->file;
 }
@@ -324,7 +330,7 @@ const mesh_texture *effect_add_texture(effect *e, const char *file) {
         const char *kept = path;
         int64_t begin = file_clock_ns();
         mesh_texture *texture = arena_alloc(&memory, sizeof *texture);
-        if (!mesh_texture_load(path, &memory, texture)) {
+        if (!mesh_texture_load(e->root, path, &memory, texture)) {
             arena_free(&memory);
             return NULL;
         }

@@ -51,6 +51,8 @@ typedef struct effect_desc {
     uint32_t reference;
     const effect_setting *settings; // applied as what they name is declared
     size_t setting_count;
+    double
+        seconds; // that a load may take, and a part of it a frame's script; 0: as base/time_limit.h
     // Shared with other loads of the same file, which then read nothing twice; NULL: its own.
     shader_library *library;
     shelf *shelf;
@@ -64,6 +66,7 @@ void effect_destroy(effect *e);
 arena *effect_memory(effect *e);          // lives as long as the effect
 const char *effect_root(const effect *e); // folder of its file
 const char *effect_file(const effect *e);
+double effect_seconds(const effect *e); // that a load may take
 scene *effect_scene(effect *e);
 pass_host *effect_pass_host(effect *e);
 
@@ -148,6 +151,7 @@ typedef struct effect_hooks {                                          // calls 
     bool (*event)(void *user, const struct effect_happening *what);
     // Which line runs now: "file:line: ", "" for none.
     void (*locate)(void *user, char *out, size_t size);
+    void (*renew)(void *user); // another frame begins, with time of its own; or NULL
     void (*destroy)(void *user);
     void *user;
 } effect_hooks;
@@ -266,7 +270,7 @@ void effect_restart(effect *e); // simulations begin anew with the next frame
 bool effect_save_state(effect *e, const char *path);
 bool effect_load_state(effect *e, const char *path, double *frame);
 // Is told, while effect_render runs frames that were left out, of the steps done and wanted.
-void effect_on_progress(effect *e, void (*call)(void *user, double done, double whole), void *user);
+void effect_on_progress(effect *e, bool (*call)(void *user, double done, double whole), void *user);
 
 // A number that moved beyond its range, since the effect was made or a control was last set; NULL:
 // none did.

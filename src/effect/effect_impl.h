@@ -156,13 +156,14 @@ struct effect {
     double updated;     // frame that `update` ran for last; NAN: none
     double rendered_at; // clock_seconds at its end
     bool behind;        // simulations have not reached the frame rendered last
-    void (*progress)(void *user, double done, double whole); // effect_on_progress
+    bool (*progress)(void *user, double done, double whole); // effect_on_progress
     void *progress_user;
     shared_mat4 clip, last_clip; // world to clip of the frame being recorded, of the one before
     bool has_last;               // there is one before, of which histories tell
     bool compiled, allocated;
     uint32_t reference;     // effect_desc
     bool punctual;          // effect_desc
+    double seconds;         // of it, as they hold
     bool unseen;            // its pictures are not drawn
     effect_moment *moments; // by frame
     size_t moment_count, moment_capacity;
@@ -176,3 +177,6 @@ struct effect {
     size_t controlled; // passes that have theirs
     size_t ramp_count; // palettes and curves among them
 };
+
+// While frames are run that have no picture. False, with a message: whoever waits has had enough.
+bool effect_tell_progress(effect *e, double done, double whole);

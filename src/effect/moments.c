@@ -5,6 +5,7 @@
 //
 // A moment tells of the numbers that it was computed with: when one is moved by hand, all are
 // forgotten; when an event is, those since then.
+#include "base/budget.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
 #include "sim/checkpoint.h"
@@ -43,6 +44,9 @@ static size_t room_for(const effect *e, const checkpoint_list *list) {
     uint64_t bytes = 1, most = gpu_get_info(e->device)->memory / most_part;
     for (size_t i = 0; i < list->count; i++) bytes += list->parts[i].size;
     if (most > most_bytes) most = most_bytes;
+    // Of what may still be taken, half is left to what is drawn.
+    uint64_t left = budget_room(gpu_get_budget(e->device)) / 2 + e->moment_count * bytes;
+    if (most > left) most = left;
     return most / bytes < MOST_MOMENTS ? (size_t)(most / bytes) : MOST_MOMENTS;
 }
 

@@ -1,7 +1,9 @@
 // An effect at work: built once for a size, then one frame after the other.
+#include "base/budget.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/str.h"
 #include "base/worker.h"
 #include "effect/effect_impl.h"
 #include "scene/bvh.h"
@@ -119,14 +121,36 @@ bool effect_compile(effect *e) {
     return true;
 }
 
+// What the first picture wants of all grids, known before the first of them takes any.
+static bool grids_fit(effect *e) {
+    budget *host = budget_host(), *device = gpu_get_budget(e->device);
+    budget_row *rows = mem_alloc(2 * e->grid_count * sizeof *rows), *other = rows + e->grid_count;
+    for (size_t i = 0; i < e->grid_count; i++) {
+        const field_grid *grid = e->grids[i];
+        field_needs needs = grid->needs ? grid->needs(grid) : (field_needs){0};
+        str_copy(rows[i].label, sizeof rows[i].label, grid->name);
+        other[i] = rows[i];
+        rows[i].bytes = needs.host;
+        other[i].bytes = needs.device;
+    }
+    bool fit = host == device ? budget_ask(host, rows, 2 * e->grid_count, 0)
+                              : budget_ask(host, rows, e->grid_count, 0) &&
+                                    budget_ask(device, other, e->grid_count, 0);
+    mem_free(rows);
+    return fit || err_prefix("%s: its grids: ", e->file);
+}
+
 // The graph is compiled: what it culls needs no memory.
 static bool allocate(effect *e) {
+    if (!graph_fits(e->graph, e->device)) // mostly the most of it
+        return err_prefix("%s: the images of its passes: ", e->file);
     for (size_t i = 0; i < e->pass_count; i++)
         if (effect_runs(e, pass_runner(e->passes[i])) && !pass_allocate(e->passes[i])) return false;
     for (size_t i = 0; i < e->instances_count; i++)
         if (!scene_instances_allocate(e->instances[i], e->device)) return false;
     return scene_bvh_allocate(e->host.bvh, e->device) &&
-           (!e->sky || sky_image_upload(e->sky, e->device)) && graph_allocate(e->graph, e->device);
+           (!e->sky || sky_image_upload(e->sky, e->device)) &&
+           graph_allocate(e->graph, e->device) && grids_fit(e);
 }
 
 bool effect_allocate(effect *e, uint32_t width, uint32_t height) {
@@ -154,6 +178,7 @@ bool effect_evaluate(effect *e, double frame, gpu *device, bool again) {
     double time = (frame - e->first) / e->fps;
     double dt = e->counter ? (frame - e->last_frame) / e->fps : 0;
     e->context.time = time;
+    if (device && e->hooks.renew) e->hooks.renew(e->hooks.user);
     if (!again && !update(e, frame)) return false;
     if (!scene_fill_frame(&e->scene, &e->context, (float)e->width / (float)e->height, &e->frame) ||
         !scene_fill_lights(&e->scene, &e->context, &e->lights))
@@ -267,7 +292,10 @@ static void exchange(effect *e, effect *from) {
 bool effect_adopt(effect *e, effect *from, uint32_t width, uint32_t height) {
     if (!graph_compile(e->graph, width, height)) return false;
     exchange(e, from);
-    if (!allocate(e)) {
+    graph_lend(from->graph, e->device); // what is left to the old effect goes with it
+    bool allocated = allocate(e);
+    gpu_lend_memory(e->device, NULL, 0);
+    if (!allocated) {
         exchange(e, from);
         return false;
     }

@@ -109,7 +109,7 @@ static bool run(effect *e, double frame, bool *again) {
         }
         if (!run_frame(e, next, *again)) return false;
         double done = (double)(whole - left(e, time));
-        if (e->progress) e->progress(e->progress_user, done, (double)whole);
+        if (!effect_tell_progress(e, done, (double)whole)) return false;
         *again = next == frame || left(e, time_of(e, next)) > 0;
         if (!*again) next = fmin(next + 1, frame);
     }
@@ -139,7 +139,12 @@ bool effect_get_simulation(const effect *e, effect_simulation *out) {
     return true;
 }
 
-void effect_on_progress(effect *e, void (*call)(void *user, double done, double whole),
+bool effect_tell_progress(effect *e, double done, double whole) {
+    return !e->progress || e->progress(e->progress_user, done, whole) ||
+           err_set("stopped after %.0f of %.0f steps", done, whole);
+}
+
+void effect_on_progress(effect *e, bool (*call)(void *user, double done, double whole),
                         void *user) {
     e->progress = call;
     e->progress_user = user;

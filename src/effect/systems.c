@@ -286,9 +286,15 @@ static bool tell(effect *e, effect_systems *s) { // what has happened until the 
 static bool step(effect *e, effect_systems *s) {
     double dt = s->frame < e->first ? 0 : 1 / e->fps;
     s->frame++;
+    if (e->hooks.renew) e->hooks.renew(e->hooks.user);
     e->context.time = time_of(e, s->frame);
     if (e->hooks.frame && !e->hooks.frame(e->hooks.user, e->context.time, dt)) return false;
     return tell(e, s);
+}
+
+// Frames that are left out have no picture to show that they go on.
+static bool tell_progress(effect *e, double done, double whole) {
+    return whole <= 1 || effect_tell_progress(e, done, whole);
 }
 
 // A frame whose functions failed is run again by the next picture, from the beginning.
@@ -302,7 +308,9 @@ bool effect_run_systems(effect *e, double frame) {
                        frame, MOST_FRAMES);
     bool done = true;
     if (isnan(s->frame) || target < s->frame) done = begin(e, s);
-    while (done && s->frame < target) done = step(e, s);
+    double left = target - s->frame, began = s->frame;
+    for (; done && s->frame < target; done = done && tell_progress(e, s->frame - began, left))
+        done = step(e, s);
     done = done && tell(e, s);
     e->context.time = time;
     if (!done) s->frame = (double)NAN;

@@ -78,12 +78,13 @@ static const char *word(bool is) {
 static bool compile(pass *p) {
     bloom_state *s = p->state;
     for (int i = s->begin; i < (int)s->end; i++) {
-        shader_define defines[BLOOM_STAGES + 3] = {
+        shader_define defines[BLOOM_STAGES + 4] = {
             {"FROM_BRIGHT", word(s->bright)},
             {"BRIGHT_PAPER", word(s->bright && pass_has_word(s->bright, "mode", "paper"))},
-            {"SAME_SIZE", word(s->same_size)}};
+            {"SAME_SIZE", word(s->same_size)},
+            {"MOST_THREADS", pass_most_threads(p)}};
         for (int k = 0; k < BLOOM_STAGES; k++)
-            defines[3 + k] = (shader_define){stage_names[k], word(i == k)};
+            defines[4 + k] = (shader_define){stage_names[k], word(i == k)};
         if (!pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines), &s->binary[i]))
             return false;
     }

@@ -16,11 +16,10 @@ enum {
     WAYS = 48,             // directions that light is swept in, in lighting/ways.glsl
     AXES = 3,
     COLORS = 3,
-    LEVELS = 2,           // of the buffers, in lighting/level.glsl
-    LOOKS = 64,           // into each direction, in lighting/ways.glsl
-    LOOK_PARTS = 4,       // groups that do them, in lighting/ways.glsl
-    FIRE_SLOTS = 16,      // threads for each of 2 x 2 x 2 voxels, in lighting/fire.glsl
-    GATHER_THREADS = 512, // for a light
+    LEVELS = 2,      // of the buffers, in lighting/level.glsl
+    LOOKS = 64,      // into each direction, in lighting/ways.glsl
+    LOOK_PARTS = 4,  // groups that do them, in lighting/ways.glsl
+    FIRE_SLOTS = 16, // threads for each of 2 x 2 x 2 voxels, in lighting/fire.glsl
 };
 
 typedef enum lighting_stage {
@@ -235,6 +234,7 @@ static bool compile(pass *p, lighting_stage stage, shader_binary *out) {
         {"SHADOW_PARTS", arena_format(memory, "%u", s->shadow_parts)},
         {"GLOW_SIZE", arena_format(memory, "%u", s->glow_size)},
         {"RAYS_APART", arena_format(memory, "%u", s->rays_apart)},
+        {"MOST_THREADS", pass_most_threads(p)},
         {"FIRE_COUNT", arena_format(memory, "%u", s->fire_count)},
         {"LEVEL_SIZE", arena_format(memory, "%u", s->glow_size >> stages[stage].level)},
         {"WITHOUT_FIELDS", "1"}, // last: not of these two
@@ -346,10 +346,13 @@ static bool dispatch_colors(pass *p, lighting_stage stage) {
     return dispatch(p, stage, n, n, COLORS * n);
 }
 
-// A thread for two voxels of a slice.
+static bool dispatch_groups(pass *p, lighting_stage stage, uint32_t groups) {
+    const lighting_state *s = p->state;
+    return dispatch(p, stage, groups * s->binary[stage].local_size[0], 1, 1);
+}
+
 static bool dispatch_sweep(pass *p, lighting_stage stage) {
-    uint32_t n = ((const lighting_state *)p->state)->glow_size >> stages[stage].level;
-    return dispatch(p, stage, WAYS * COLORS * n * n / 2, 1, 1);
+    return dispatch_groups(p, stage, WAYS * COLORS);
 }
 
 // In the first of the parts of a frame: all others read what it writes.
@@ -368,7 +371,7 @@ static bool record_lights(pass *p) {
     uint32_t blocks = s->glow_size / 2;
     return dispatch(p, STAGE_LIGHTS, s->declared, 1, 1) &&
            dispatch(p, STAGE_FIRE, FIRE_SLOTS * blocks, 8 * blocks, blocks) &&
-           dispatch(p, STAGE_GATHER, s->fire_count * GATHER_THREADS, 1, 1);
+           dispatch_groups(p, STAGE_GATHER, s->fire_count);
 }
 
 static bool record_medium(pass *p) {

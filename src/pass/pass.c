@@ -197,6 +197,11 @@ uint32_t pass_number(const pass *p, const char *option) {
     return (uint32_t)strtoul(pass_word(p, option), NULL, 10);
 }
 
+const char *pass_most_threads(const pass *p) {
+    uint32_t most = p->host->device ? gpu_get_info(p->host->device)->max_group : 512;
+    return most >= 512 ? "512" : most >= 256 ? "256" : "128"; // the least of any device
+}
+
 bool pass_set_field(pass *p, const char *name, const field *value) {
     size_t index;
     if (pass_find_key(p, name, &index) != PASS_FIELD) return unknown(p, "field", name);

@@ -65,6 +65,10 @@ const char *pass_word(const pass *p, const char *option);
 bool pass_has_word(const pass *p, const char *option, const char *word);
 uint32_t pass_number(const pass *p, const char *option); // of words that are numbers; else 0
 
+// For the define MOST_THREADS of a shader that would have large groups: 512, or the next smaller
+// power of two that the device allows.
+const char *pass_most_threads(const pass *p);
+
 // Compiles `shader` with the pass's options, fields and the given defines. Where WITHOUT_FIELDS is
 // among these, the fields' GLSL is left out: then the code is the same whatever they are, and need
 // not be compiled again.

@@ -1,6 +1,6 @@
 // All small levels in one work group, in shared memory: `color` is the finest of them. A dispatch for
 // each would take longer to begin than to end.
-#define THREADS 512
+#define THREADS MOST_THREADS
 #define TEXELS 4096 // of all levels together, as in pass/bloom.c
 layout(local_size_x = THREADS) in;
 uniform int tail_levels; // how many times to halve

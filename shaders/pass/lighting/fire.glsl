@@ -61,7 +61,7 @@ void main() {
 #endif
 
 #if defined(STAGE_GATHER)
-const int THREADS = 512, VOXELS = GLOW_SIZE * GLOW_SIZE * GLOW_SIZE, AT_ONCE = 8;
+const int THREADS = MOST_THREADS, VOXELS = GLOW_SIZE * GLOW_SIZE * GLOW_SIZE, AT_ONCE = 8;
 layout(local_size_x = THREADS) in;
 shared vec4 sums[3][THREADS];
 

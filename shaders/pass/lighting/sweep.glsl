@@ -4,8 +4,9 @@
 // propagation maps", 2009.
 //
 // SWEEP: one workgroup for a direction and a colour takes slice after slice across it, each from the
-// one before; a thread has two cells beside each other. RESTRICT and REDUCE (lighting/level.glsl)
-// find the mean of all directions and the first moment, which the next sweep scatters.
+// one before; a thread has two cells beside each other, or several such pairs where the device's
+// groups are too small for a slice. RESTRICT and REDUCE (lighting/level.glsl) find the mean of all
+// directions and the first moment, which the next sweep scatters.
 
 #if defined(STAGE_SWEEP) || defined(STAGE_RESTRICT) || defined(STAGE_REDUCE)
 // The axis that slices of a direction follow each other on.
@@ -37,7 +38,8 @@ vec4 moments_of(ivec3 voxel, int color) {
 #endif
 
 #if defined(STAGE_SWEEP)
-const int ACROSS = LEVEL_SIZE / 2, THREADS = ACROSS * LEVEL_SIZE; // pairs of cells
+const int ACROSS = LEVEL_SIZE / 2, PAIRS = ACROSS * LEVEL_SIZE; // of cells
+const int ROUNDS = (PAIRS + MOST_THREADS - 1) / MOST_THREADS, THREADS = PAIRS / ROUNDS;
 const bool CORRECTS = LEVEL_SIZE < GLOW_SIZE; // what it sweeps is a difference (lighting/level.glsl)
 layout(local_size_x = THREADS) in;
 layout(std430) readonly buffer Source { uvec4 source_slices[]; };
@@ -102,13 +104,27 @@ vec4 halves_of(path on, int before, int at) {
     return mix(from_halves(own), from_halves(side), on.weight.x);
 }
 
+// What a slice has for a pair of cells, and the part of what comes from the slice before that comes
+// from inside of the box.
+struct pair {
+    int here, beside; // in shared memory
+    vec2 inside;
+};
+
+pair make_pair(path on, int index) {
+    ivec2 cell = ivec2(index % ACROSS * 2, index / ACROSS);
+    int here = (cell.y + 1) * ROW + cell.x / 2 + 1;
+    bvec2 in_x = on.side.x ? bvec2(cell.x > 0, true) : bvec2(true, cell.x < LEVEL_SIZE - 2);
+    bool in_y = on.side.y ? cell.y > 0 : cell.y < LEVEL_SIZE - 1;
+    return pair(here, here + (on.side.y ? -ROW : ROW),
+                (1.0 - on.weight.x * vec2(not(in_x))) * (in_y ? 1.0 : 1.0 - on.weight.y));
+}
+
 void main() {
     int index = int(gl_WorkGroupID.x) / 3, color = int(gl_WorkGroupID.x) % 3;
     int thread = int(gl_LocalInvocationIndex);
     path on = make_path(index, color);
     bool forward = on.way[on.axis] > 0.0;
-    ivec2 cell = ivec2(thread % ACROSS * 2, thread / ACROSS);
-    int here = (cell.y + 1) * ROW + cell.x / 2 + 1, beside = here + (on.side.y ? -ROW : ROW);
 
     for (int i = thread; i < ROW * (LEVEL_SIZE + 2); i += THREADS)
         for (int k = 0; k < 2; k++) {
@@ -116,52 +132,57 @@ void main() {
             halves[k][i] = uvec2(0);
         }
 
-    // The part of what comes from the slice before that comes from inside of the box.
-    bvec2 in_x = on.side.x ? bvec2(cell.x > 0, true) : bvec2(true, cell.x < LEVEL_SIZE - 2);
-    bool in_y = on.side.y ? cell.y > 0 : cell.y < LEVEL_SIZE - 1;
-    vec2 inside = (1.0 - on.weight.x * vec2(not(in_x))) * (in_y ? 1.0 : 1.0 - on.weight.y);
-
     vec3 factor = medium_extinction();
     float grey = max(factor.r, max(factor.g, factor.b)), power = factor[color] / max(grey, 1e-9);
     vec4 asked = vec4(1.0, on.way); // of the moments
     int slices = (on.axis * 3 + color) * LEVEL_SIZE, kept = int(gl_WorkGroupID.x) * LEVEL_SIZE;
     int slice = forward ? 0 : LEVEL_SIZE - 1, before = 0;
-    uvec4 next_source = source_slices[(slices + slice) * THREADS + thread];
-    uvec2 next_medium = medium_slices[(slices + slice) * THREADS + thread];
+    uvec4 next_source[ROUNDS];
+    uvec2 next_medium[ROUNDS];
+    pair pairs[ROUNDS];
+    for (int r = 0; r < ROUNDS; r++) {
+        int own = r * THREADS + thread;
+        pairs[r] = make_pair(on, own);
+        next_source[r] = source_slices[(slices + slice) * PAIRS + own];
+        next_medium[r] = medium_slices[(slices + slice) * PAIRS + own];
+    }
     barrier();
 
     for (int k = 0; k < LEVEL_SIZE; k++) {
-        uvec4 source = next_source;
-        vec2 first = unpackHalf2x16(next_medium.x), second = unpackHalf2x16(next_medium.y);
-        int at = (kept + slice) * THREADS + thread;
-        slice = clamp(slice + (forward ? 1 : -1), 0, LEVEL_SIZE - 1);
-        next_source = source_slices[(slices + slice) * THREADS + thread];
-        next_medium = medium_slices[(slices + slice) * THREADS + thread];
+        int after = clamp(slice + (forward ? 1 : -1), 0, LEVEL_SIZE - 1);
+        for (int r = 0; r < ROUNDS; r++) {
+            pair p = pairs[r];
+            uvec4 source = next_source[r];
+            vec2 first = unpackHalf2x16(next_medium[r].x), second = unpackHalf2x16(next_medium[r].y);
+            next_source[r] = source_slices[(slices + after) * PAIRS + r * THREADS + thread];
+            next_medium[r] = medium_slices[(slices + after) * PAIRS + r * THREADS + thread];
 
-        vec2 own = vec2(dot(asked, vec4(unpackHalf2x16(source.x), unpackHalf2x16(source.y))),
-                        dot(asked, vec4(unpackHalf2x16(source.z), unpackHalf2x16(source.w))));
-        if (!CORRECTS) own = max(own, vec2(0.0));
-        vec2 known = k > 0 ? inside : vec2(0.0);
-        vec2 from_light = mix(leaving_of(on, before, here), leaving_of(on, before, beside), on.weight.y);
-        vec4 from = mix(halves_of(on, before, here), halves_of(on, before, beside), on.weight.y);
-        from_light += (1.0 - known) * on.outside;
-        from.xz += (1.0 - known) * own;
+            vec2 own = vec2(dot(asked, vec4(unpackHalf2x16(source.x), unpackHalf2x16(source.y))),
+                            dot(asked, vec4(unpackHalf2x16(source.z), unpackHalf2x16(source.w))));
+            if (!CORRECTS) own = max(own, vec2(0.0));
+            vec2 known = k > 0 ? p.inside : vec2(0.0);
+            vec2 from_light = mix(leaving_of(on, before, p.here), leaving_of(on, before, p.beside), on.weight.y);
+            vec4 from = mix(halves_of(on, before, p.here), halves_of(on, before, p.beside), on.weight.y);
+            from_light += (1.0 - known) * on.outside;
+            from.xz += (1.0 - known) * own;
 
-        // From centre to centre the source changes linearly with what is taken, which keeps the limit
-        // of thick voxels, diffusion; emission is constant in each of the halves.
-        vec2 thickness = on.half_step * vec2(first.x, second.x);
-        vec2 half_depth = thickness * factor[color], through = exp(-half_depth);
-        vec2 given = on.half_step * vec2(first.y, second.y) * mean_through(half_depth, through);
-        // Of the half before only the colour that loses most is known; the others are powers of it.
-        vec2 depth = half_depth - log(max(1.0 - from.yw, vec2(1e-6))) * power, left = exp(-depth);
-        vec2 early = mix(mean_through(depth, left) - left, 0.5 * depth, lessThan(depth, vec2(1e-2)));
-        vec2 late = max(1.0 - left - early, vec2(0.0));
-        vec2 made = from_light * through + given + from.xz * early + own * late;
-        ways[at] = half_pair(made.x, made.y);
+            // From centre to centre the source changes linearly with what is taken, which keeps the limit
+            // of thick voxels, diffusion; emission is constant in each of the halves.
+            vec2 thickness = on.half_step * vec2(first.x, second.x);
+            vec2 half_depth = thickness * factor[color], through = exp(-half_depth);
+            vec2 given = on.half_step * vec2(first.y, second.y) * mean_through(half_depth, through);
+            // Of the half before only the colour that loses most is known; the others are powers of it.
+            vec2 depth = half_depth - log(max(1.0 - from.yw, vec2(1e-6))) * power, left = exp(-depth);
+            vec2 early = mix(mean_through(depth, left) - left, 0.5 * depth, lessThan(depth, vec2(1e-2)));
+            vec2 late = max(1.0 - left - early, vec2(0.0));
+            vec2 made = from_light * through + given + from.xz * early + own * late;
+            ways[(kept + slice) * PAIRS + r * THREADS + thread] = half_pair(made.x, made.y);
 
+            leaving[1 - before][p.here] = made * through + given;
+            halves[1 - before][p.here] = to_halves(own, exp(-thickness * grey));
+        }
+        slice = after;
         before = 1 - before;
-        leaving[before][here] = made * through + given;
-        halves[before][here] = to_halves(own, exp(-thickness * grey));
         barrier();
     }
 }
