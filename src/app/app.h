@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 enum { APP_DONE = 0, APP_BAD_INPUT = 1, APP_BAD_USAGE = 2, APP_DIFFERS = 3 };
 
@@ -20,6 +21,9 @@ int cmd_live(int argc, const char **argv);
 // One line "roil: message" on stderr; returns the status.
 int app_fail(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 int app_fail_input(void); // with roil_error()
+
+// What may hold texts of files: terminals obey none of it (str_make_printable).
+void app_print(FILE *out, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 // ---- options ----------------------------------------------------------------------------------
 
@@ -50,6 +54,9 @@ bool app_parse_size(const char *text, uint32_t *width, uint32_t *height); // "96
 bool app_check_pattern(const char *pattern);
 bool app_has_number(const char *pattern);
 void app_format_pattern(const char *pattern, double frame, char *out, size_t capacity);
+// What cannot be written is said before the work begins, not after it. Devices and pipes are for
+// whoever writes them.
+bool app_can_write(const char *file);
 
 bool app_parse_samples(const char *text, uint32_t *out); // of a reference: 1 to 65536 a pixel
 
@@ -101,7 +108,7 @@ void app_progress_clear(app_progress *p);             // makes way for a line of
 void app_progress_end(app_progress *p);
 // For roil_on_progress: of steps of simulations, for frames that were left out. `user`: an
 // app_progress, zero at first.
-void app_tell_steps(void *user, double done, double whole);
+bool app_tell_steps(void *user, double done, double whole);
 
 // ---- statistics -------------------------------------------------------------------------------
 

@@ -1,5 +1,6 @@
 // What `roil bench` says on the terminal: a line a row, a table at the end, changes.
 #include "app/bench_print.h"
+#include "app/app.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -26,20 +27,20 @@ static int result_width(const bench_results *r) {
 }
 
 static void print_label(const char *label, int width) {
-    printf("%-*.*s", width, width, label);
+    app_print(stdout, "%-*.*s", width, width, label);
 }
 
 // The file has all of the message.
 static void print_failure(const bench_row *row) {
-    printf(" failed: %.*s", (int)strcspn(row->message, "\n"), row->message);
+    app_print(stdout, " failed: %.*s", (int)strcspn(row->message, "\n"), row->message);
 }
 
 static void print_error(const bench_row *row) {
     if (!row->compared) return;
     if (isinf(row->psnr))
-        printf("  equal");
+        app_print(stdout, "  equal");
     else
-        printf("  PSNR %5.2f dB  FLIP %.4f", row->psnr, row->flip);
+        app_print(stdout, "  PSNR %5.2f dB  FLIP %.4f", row->psnr, row->flip);
 }
 
 void bench_print_line(const bench_row *row, int width) {
@@ -47,15 +48,15 @@ void bench_print_line(const bench_row *row, int width) {
     print_label(row->label, width);
     if (row->state == BENCH_FAILED) {
         print_failure(row);
-        printf("\n");
+        app_print(stdout, "\n");
         return;
     }
     const bench_figure *march = bench_get_time(&row->gpu, MARCH);
-    if (march) printf("  march %9.3f", march->median);
-    if (all) printf("  %s %9.3f ms", all->name, all->ms.median);
+    if (march) app_print(stdout, "  march %9.3f", march->median);
+    if (all) app_print(stdout, "  %s %9.3f ms", all->name, all->ms.median);
     print_error(row);
-    if (row->state == BENCH_LIMIT) printf("  %s", row->message);
-    printf("\n");
+    if (row->state == BENCH_LIMIT) app_print(stdout, "  %s", row->message);
+    app_print(stdout, "\n");
 }
 
 // ---- table --------------------------------------------------------------------------------------
@@ -75,38 +76,40 @@ static bool any_compared(const bench_results *r) {
 static void print_samples(const bench_row *row) {
     for (size_t i = 0; i < row->counters.count; i++)
         if (strcmp(row->counters.items[i].name, "march.samples") == 0) {
-            printf(" %9.2f", row->counters.items[i].value * 1e-6);
+            app_print(stdout, " %9.2f", row->counters.items[i].value * 1e-6);
             return;
         }
-    printf(" %9s", "");
+    app_print(stdout, " %9s", "");
 }
 
 static void print_figures(const bench_row *row, bool march, bool compared) {
     const bench_time *all = bench_main_time(row);
     const bench_figure *of_march = bench_get_time(&row->gpu, MARCH);
     if (of_march)
-        printf(" %9.3f", of_march->median);
+        app_print(stdout, " %9.3f", of_march->median);
     else if (march)
-        printf(" %9s", "");
+        app_print(stdout, " %9s", "");
     if (all)
-        printf(" %9.3f %9.3f %9.3f %5zu", all->ms.median, all->ms.p5, all->ms.p95, all->ms.count);
+        app_print(stdout, " %9.3f %9.3f %9.3f %5zu", all->ms.median, all->ms.p5, all->ms.p95,
+                  all->ms.count);
     if (march) print_samples(row);
-    if (row->device_bytes) printf(" %8.1f", (double)row->device_bytes / (1 << 20));
-    if (compared && row->compared) printf(" %7.2f %7.5f %7.5f", row->psnr, row->ssim, row->flip);
-    if (row->state == BENCH_LIMIT) printf("  %s", row->message);
+    if (row->device_bytes) app_print(stdout, " %8.1f", (double)row->device_bytes / (1 << 20));
+    if (compared && row->compared)
+        app_print(stdout, " %7.2f %7.5f %7.5f", row->psnr, row->ssim, row->flip);
+    if (row->state == BENCH_LIMIT) app_print(stdout, "  %s", row->message);
 }
 
 void bench_print_table(const bench_results *r) {
     int width = result_width(r);
     bool march = any_march(r), compared = any_compared(r);
     const bench_time *all = r->row_count ? bench_main_time(&r->rows[0]) : NULL;
-    printf("\n%s, on %s (%s)\n", r->title, r->device, r->driver);
-    printf("%-*s", width, march ? "GPU ms" : "ms");
-    if (march) printf(" %9s", MARCH);
-    printf(" %9s %9s %9s %5s", all ? all->name : "all", "5 %", "95 %", "count");
-    if (march) printf(" %9s %8s", "samples M", "MiB");
-    if (compared) printf(" %7s %7s %7s", "PSNR dB", "SSIM", "FLIP");
-    printf("\n");
+    app_print(stdout, "\n%s, on %s (%s)\n", r->title, r->device, r->driver);
+    app_print(stdout, "%-*s", width, march ? "GPU ms" : "ms");
+    if (march) app_print(stdout, " %9s", MARCH);
+    app_print(stdout, " %9s %9s %9s %5s", all ? all->name : "all", "5 %", "95 %", "count");
+    if (march) app_print(stdout, " %9s %8s", "samples M", "MiB");
+    if (compared) app_print(stdout, " %7s %7s %7s", "PSNR dB", "SSIM", "FLIP");
+    app_print(stdout, "\n");
     for (size_t i = 0; i < r->row_count; i++) {
         const bench_row *row = &r->rows[i];
         print_label(row->label, width);
@@ -114,7 +117,7 @@ void bench_print_table(const bench_results *r) {
             print_failure(row);
         else
             print_figures(row, march, compared);
-        printf("\n");
+        app_print(stdout, "\n");
     }
 }
 
@@ -129,10 +132,11 @@ static void print_change(const bench_change *c, int width) {
         is = bench_get_time(&c->now->times, c->name);
     }
     print_label(c->now->label, width);
-    printf("  %-20.20s %9.3f -> %9.3f ms  x %.3f", c->name, was->median, is->median, c->ratio);
-    if (c->verdict != BENCH_SAME) printf("  %s", words[c->verdict]);
-    if (c->verdict != BENCH_SAME && c->chance >= 0) printf(" (p %.2g)", c->chance);
-    printf("\n");
+    app_print(stdout, "  %-20.20s %9.3f -> %9.3f ms  x %.3f", c->name, was->median, is->median,
+              c->ratio);
+    if (c->verdict != BENCH_SAME) app_print(stdout, "  %s", words[c->verdict]);
+    if (c->verdict != BENCH_SAME && c->chance >= 0) app_print(stdout, " (p %.2g)", c->chance);
+    app_print(stdout, "\n");
 }
 
 static bool is_whole(const bench_change *c) { // what a row is judged by
@@ -145,10 +149,10 @@ size_t bench_print_changes(const bench_results *before, const bench_results *now
     bench_change *changes;
     size_t count = bench_compare(before, now, margin, &memory, &changes), slower = 0, faster = 0;
     int width = result_width(now);
-    printf("\nAgainst %s%s%s, of %s\n", before->sweep, before->commit[0] ? " at " : "",
-           before->commit, before->date);
+    app_print(stdout, "\nAgainst %s%s%s, of %s\n", before->sweep, before->commit[0] ? " at " : "",
+              before->commit, before->date);
     if (strcmp(before->device, now->device) != 0)
-        printf("which was measured on another device: %s\n", before->device);
+        app_print(stdout, "which was measured on another device: %s\n", before->device);
     for (size_t i = 0; i < count; i++) {
         const bench_change *c = &changes[i];
         if (!is_whole(c) && c->verdict == BENCH_SAME) continue;
@@ -157,8 +161,8 @@ size_t bench_print_changes(const bench_results *before, const bench_results *now
         slower += c->verdict == BENCH_SLOWER;
         faster += c->verdict == BENCH_FASTER;
     }
-    printf("%zu rows slower, %zu faster, by more than noise and %g %%\n", slower, faster,
-           100 * margin);
+    app_print(stdout, "%zu rows slower, %zu faster, by more than noise and %g %%\n", slower, faster,
+              100 * margin);
     arena_free(&memory);
     return slower;
 }

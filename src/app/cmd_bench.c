@@ -137,6 +137,7 @@ static bool parse(bench_options *o, int argc, const char **argv, poptContext *co
         {"no-reference", 0, POPT_ARG_NONE, &o->no_reference, 0,
          "draw no references, and compare no pictures", NULL},
         APP_DEVICE_ROW(&o->order.device),
+        APP_MEMORY_ROW(&o->order.memory),
         POPT_AUTOHELP POPT_TABLEEND};
     *context = poptGetContext("roil bench", argc, argv, options, 0);
     poptSetOtherOptionHelp(*context, "SWEEP.lua [options]");
@@ -155,7 +156,7 @@ static bool parse(bench_options *o, int argc, const char **argv, poptContext *co
 
 static void on_begin(void *user, const sweep *s, size_t total) {
     bench_options *o = user;
-    printf("%s: %zu of %zu rows\n", s->title, total, s->row_count);
+    app_print(stdout, "%s: %zu of %zu rows\n", s->title, total, s->row_count);
     app_progress_begin(&o->progress, total, "rows");
     o->label_width = bench_label_width(s->rows, s->row_count);
 }
@@ -163,7 +164,7 @@ static void on_begin(void *user, const sweep *s, size_t total) {
 static void on_row(void *user, const bench_row *row, size_t done) {
     bench_options *o = user;
     app_progress_step(&o->progress, done);
-    if (o->progress.terminal) fprintf(stderr, "  %.40s", row->label);
+    if (o->progress.terminal) app_print(stderr, "  %.40s", row->label);
 }
 
 static void on_result(void *user, const bench_row *row, size_t done) {
@@ -182,7 +183,7 @@ static int list(const bench_options *o) {
     bool *chosen = NULL;
     if (bench_read_sweep(&o->order, &memory, &s)) chosen = bench_choose(&s, &o->order.choice);
     for (size_t i = 0; chosen && i < s.row_count; i++)
-        if (chosen[i]) printf("%s\n", s.rows[i].label);
+        if (chosen[i]) app_print(stdout, "%s\n", s.rows[i].label);
     int status = chosen ? APP_DONE : app_fail_input();
     mem_free(chosen);
     arena_free(&memory);
@@ -221,7 +222,7 @@ static int finish(const bench_options *o, const bench_results *r) {
     bench_print_table(r);
     if (!compare_with_baseline(o, r, &slower) || !write_report(r, o->order.folder))
         return app_fail_input();
-    printf("\nwrote %s/results.json, results.csv, report.html\n", o->order.folder);
+    app_print(stdout, "\nwrote %s/results.json, results.csv, report.html\n", o->order.folder);
     if (failed) return app_fail(APP_BAD_INPUT, "%zu of %zu rows failed", failed, r->row_count);
     if (slower && o->strict)
         return app_fail(APP_DIFFERS, "%zu rows are slower than in %s", slower, o->baseline);
@@ -259,7 +260,7 @@ static int report(const bench_options *o) {
     if (!bench_read(o->report, &results)) return app_fail_input();
     int status = write_report(&results, o->report) ? APP_DONE : app_fail_input();
     bench_results_free(&results);
-    if (status == APP_DONE) printf("wrote %s/report.html\n", o->report);
+    if (status == APP_DONE) app_print(stdout, "wrote %s/report.html\n", o->report);
     return status;
 }
 

@@ -1,17 +1,18 @@
 // roil check EFFECT.lua...: load, compile, validate; render nothing.
 #include "app/app.h"
+#include "app/device_options.h"
 #include <popt.h>
 #include <stdio.h>
 
-static int check(const char **files, app_settings *settings) {
+static int check(const char **files, app_settings *settings, const roil_desc *desc) {
     int status = APP_DONE;
-    roil *r = roil_create(&(roil_desc){.no_device = true});
+    roil *r = roil_create(desc);
     if (!r) return app_fail_input();
     for (; *files; files++) {
         bool collected = app_collect_settings(settings, r, *files, NULL);
         roil_effect *e = collected ? roil_load(r, *files, settings->all, settings->count) : NULL;
         if (e && roil_check(e))
-            printf("%s: good\n", *files);
+            app_print(stdout, "%s: good\n", *files);
         else
             status = app_fail_input();
         roil_unload(e);
@@ -22,9 +23,12 @@ static int check(const char **files, app_settings *settings) {
 
 int cmd_check(int argc, const char **argv) {
     enum { OPTION_PRESET = 1 };
+    roil_desc desc = {.no_device = true};
     const struct poptOption options[] = {{"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET,
                                           "with values kept beside the effect, or in a file",
                                           "NAME|FILE.lua"},
+                                         APP_MEMORY_ROW(&desc.memory),
+                                         APP_TIME_ROW(&desc.time_limit),
                                          POPT_AUTOHELP POPT_TABLEEND};
     app_settings settings = {0};
     poptContext context = poptGetContext("roil check", argc, argv, options, 0);
@@ -38,7 +42,7 @@ int cmd_check(int argc, const char **argv) {
     } else if (!files || !files[0]) {
         status = app_fail(APP_BAD_USAGE, "check: which effect? usage: roil check EFFECT.lua...");
     } else {
-        status = check(files, &settings);
+        status = check(files, &settings, &desc);
     }
     app_free_settings(&settings);
     poptFreeContext(context);

@@ -35,7 +35,7 @@ static int export_raw(int argc, const char **argv) {
     } else if (!job.file) {
         status = usage("-o is missing");
     } else {
-        char *text = roil_export_raw(&job);
+        char *text = app_can_write(job.file) ? roil_export_raw(&job) : NULL;
         if (text)
             fputs(text, stdout);
         else

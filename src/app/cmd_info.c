@@ -1,5 +1,6 @@
 // roil info ...: the reference, from the program's own tables.
 #include "app/app.h"
+#include "app/device_options.h"
 #include "base/str.h"
 #include <popt.h>
 #include <stdio.h>
@@ -7,6 +8,7 @@
 
 static int print(char *text) {
     if (!text) return app_fail_input();
+    str_make_printable(text);
     fputs(text, stdout);
     roil_free(text);
     return APP_DONE;
@@ -19,9 +21,10 @@ static int info_passes(const char *name) {
     return status;
 }
 
-static int info_effect(const char *what, const char *file, app_settings *settings) {
+static int info_effect(const char *what, const char *file, app_settings *settings,
+                       const char *memory) {
     if (!file) return app_fail(APP_BAD_USAGE, "info %s: of which effect?", what);
-    roil *r = roil_create(&(roil_desc){.no_device = true});
+    roil *r = roil_create(&(roil_desc){.no_device = true, .memory = memory});
     bool collected = r && app_collect_settings(settings, r, file, NULL);
     roil_effect *e = collected ? roil_load(r, file, settings->all, settings->count) : NULL;
     int status;
@@ -36,13 +39,13 @@ static int info_effect(const char *what, const char *file, app_settings *setting
     return status;
 }
 
-static int info(const char *what, const char *name, app_settings *settings) {
+static int info(const char *what, const char *name, app_settings *settings, const char *memory) {
     static const char *const topics[] = {"device", "passes", "fields", "params", "graph"};
     if (!what || strcmp(what, "device") == 0) return print(roil_info_devices());
     if (strcmp(what, "passes") == 0) return info_passes(name);
     if (strcmp(what, "fields") == 0) return print(roil_info_fields(name));
     if (strcmp(what, "params") == 0 || strcmp(what, "graph") == 0)
-        return info_effect(what, name, settings);
+        return info_effect(what, name, settings, memory);
     if (str_ends_with(what, ".vdb")) return print(roil_info_vdb(what));
     const char *near = str_nearest(what, topics, 5);
     if (near)
@@ -55,11 +58,13 @@ static int info(const char *what, const char *name, app_settings *settings) {
 
 int cmd_info(int argc, const char **argv) {
     enum { OPTION_PRESET = 1, OPTION_SET };
+    const char *memory = NULL;
     const struct poptOption options[] = {
         {"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET,
          "of params, graph: with values kept beside the effect, or in a file", "NAME|FILE.lua"},
         {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET, "of params, graph: as render takes it",
          "NAME=VALUE"},
+        APP_MEMORY_ROW(&memory),
         POPT_AUTOHELP POPT_TABLEEND};
     app_settings settings = {0};
     poptContext context = poptGetContext("roil info", argc, argv, options, 0);
@@ -81,7 +86,7 @@ int cmd_info(int argc, const char **argv) {
         status = app_fail(APP_BAD_USAGE, "info: %s", roil_error());
     } else {
         const char *what = poptGetArg(context);
-        status = info(what, poptGetArg(context), &settings);
+        status = info(what, poptGetArg(context), &settings, memory);
     }
     app_free_settings(&settings);
     poptFreeContext(context);

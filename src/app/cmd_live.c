@@ -1,6 +1,7 @@
 // roil live EFFECT.lua ...: a window in which an effect is tuned while it runs.
 #include "app/device_options.h"
 #include "app/live.h"
+#include "app/restart.h"
 #include "app/window.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -85,65 +86,15 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
     return check(j, *context);
 }
 
-// ---- after a hang -----------------------------------------------------------------------------
-
-typedef struct arguments {
-    char **list;
-    size_t count, capacity;
-} arguments;
-
-static void add(arguments *a, const char *text) {
-    MEM_RESERVE(a->list, a->count + 2, a->capacity);
-    a->list[a->count++] = mem_copy(text, strlen(text) + 1);
-    a->list[a->count] = NULL;
-}
-
-static void add_number(arguments *a, double number) {
-    char text[32];
-    snprintf(text, sizeof text, "%.9g", number);
-    add(a, text);
-}
-
-static void add_moved(arguments *a, roil_effect *e) {
-    for (size_t i = 0; i < roil_control_count(e); i++) {
-        roil_control c;
-        roil_get_control(e, i, &c);
-        char *text = c.moved ? roil_control_text(e, c.name) : NULL;
-        if (!text) continue;
-        strbuf setting = {0};
-        strbuf_add(&setting, "%s=%s", c.name, text);
-        add(a, "--set");
-        add(a, strbuf_text(&setting));
-        strbuf_free(&setting);
-        roil_free(text);
-    }
-}
-
-static void add_device(arguments *a, const app_device *d) {
-    if (d->name) add(a, "--device");
-    if (d->name) add(a, d->name);
-    if (d->validate) add(a, "--validate");
-    if (d->no_cache) add(a, "--no-cache");
-    if (d->timeout > 0) add(a, "--timeout");
-    if (d->timeout > 0) add_number(a, d->timeout);
-}
-
-// The device is lost, and a thread of its driver may never end: nothing can be freed or joined. The
-// program becomes itself anew, with what the user had set, and holds the effect back.
-static int begin_anew(const job *j, const live *l) {
-    arguments a = {0};
-    const char *const always[] = {"roil",         "live",         l->file,  "--paused",
-                                  "--after-hang", l->broken_text, "--frame"};
-    for (size_t i = 0; i < COUNT_OF(always); i++) add(&a, always[i]);
-    add_number(&a, l->time.frame);
-    add_device(&a, &j->device);
-    if (l->effect) add_moved(&a, l->effect);
-    log_write(LOG_WARNING, "%s; the program starts anew", l->broken_text);
-    execv("/proc/self/exe", a.list);
-    return app_fail(APP_BAD_INPUT, "%s", l->broken_text);
-}
-
 // ---- work -------------------------------------------------------------------------------------
+
+// The device works on a frame that takes long: the window can be closed and the frame given up.
+static bool on_waiting(void *user, double seconds) {
+    live *l = user;
+    window_busy answer = window_wait_busy(l->window, seconds);
+    l->quit = l->quit || answer == WINDOW_QUIT;
+    return answer == WINDOW_GOES_ON;
+}
 
 static void on_key(void *user, int key, int mods, bool again) {
     bool types = !(mods & GLFW_MOD_CONTROL) && key < GLFW_KEY_F1; // or moves in what is typed
@@ -176,9 +127,14 @@ static int run_window(live *l, window *w, const job *j) {
     l->panel = panel_create();
     take_session(l, j);
     bool done = live_loop(l, w);
+    restart_disarm();
     window_keep(w, &l->session);
     session_save(&l->session);
-    if (roil_is_lost(l->r)) return begin_anew(j, l);
+    if (roil_is_lost(l->r) && !window_closing(w) && !l->quit) return restart(l, &j->device);
+    if (roil_is_lost(l->r)) { // its threads may never end
+        fflush(NULL);
+        _exit(APP_DONE);
+    }
     int status = done ? APP_DONE : app_fail_input();
     panel_destroy(l->panel);
     flow_tools_destroy(l->flow_tools, l->r);
@@ -193,6 +149,10 @@ static int run_device(live *l, window *w, job *j) {
     desc.window = &w->desc;
     desc.punctual = true;
     desc.hands = true;
+    desc.waiting = on_waiting;
+    desc.user = l;
+    l->window = w;
+    l->device = &j->device;
     l->r = roil_create(&desc);
     if (!l->r) return app_fail_input();
     l->follow = roil_live_create(l->r, &(roil_live_desc){.file = j->file,
@@ -202,7 +162,12 @@ static int run_device(live *l, window *w, job *j) {
                                                          .setting_count = j->settings.set_count,
                                                          .wake = window_wake});
     int status = l->follow ? run_window(l, w, j) : app_fail_input();
-    roil_live_destroy(l->follow);
+    if (!roil_live_destroy(
+            l->follow)) { // nothing that its thread uses may be freed, by exit either
+        log_write(LOG_WARNING, "live: %s", roil_error());
+        fflush(NULL);
+        _exit(status);
+    }
     uint64_t complaints = roil_validation_messages(l->r);
     roil_destroy(l->r);
     if (status == APP_DONE && complaints)

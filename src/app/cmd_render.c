@@ -171,11 +171,13 @@ static bool complete_from(job *j) {
     if (j->from_file) {
         j->from = roil_read_recipe(j->from_file);
         if (!j->from) return false;
-        if (!j->file) j->file = j->from->effect;
+        bool named = j->file != NULL;
+        if (!named) j->file = j->from->effect;
         if (!j->file)
             return err_set("%s: its effect lies outside of this folder; name it: roil render "
                            "EFFECT.lua --from %s",
                            j->from_file, j->from_file);
+        if (!named && !path_require_inside(".", j->file)) return false;
     }
     if (j->from && !j->frames.count) {
         j->frames.numbers = mem_copy(&j->from->frame, sizeof j->from->frame);
@@ -236,13 +238,19 @@ static bool open_outputs(job *j, roil_effect *e) {
     }
     if (!roil_prepare(e, j->width, j->height) || (j->restore && !restore(j, e))) return false;
     j->writer = roil_writer_create();
+    if (!j->writer) return false;
     for (size_t i = 0; i < j->output_count; i++) {
         output *o = &j->outputs[i];
-        if (!str_ends_with(o->pattern, ".mp4")) continue;
+        bool film = str_ends_with(o->pattern, ".mp4");
+        char file[PATH_CAP];
+        app_format_pattern(o->pattern, j->frames.numbers[0], file, sizeof file);
+        if (!film && !app_can_write(file)) return false;
+        if (!film) continue;
         o->video = roil_video_create(e, o->pattern, j->fps);
         if (!o->video) return false;
     }
-    return true;
+    return (!j->checkpoint || app_can_write(j->checkpoint)) &&
+           (!j->stats || app_can_write(j->stats));
 }
 
 static bool save_frame(job *j, roil_effect *e, double frame) {
@@ -290,7 +298,11 @@ static bool render_frames(job *j, roil_effect *e, app_stats *stats) {
     size_t each = j->reference ? j->reference : 1; // steps of the progress
     app_progress_begin(&progress, each * j->frames.count, j->reference ? "samples" : "frames");
     bool done = true;
+    app_hear_interrupts();
     for (size_t i = 0; done && i < j->frames.count; i++) {
+        if (app_is_interrupted(NULL))
+            done = err_set("stopped after %zu of %zu frames", i, j->frames.count);
+        if (!done) break;
         double frame = j->frames.numbers[i], start = clock_seconds();
         done = warm_up(j, e, i) && render_frame(j, e, i, &progress) && save_frame(j, e, frame);
         if (!done) break;

@@ -19,7 +19,7 @@ typedef struct tune_options {
     tune_order order;
     app_settings settings;
     app_frames frames;
-    const char *frames_text, *error, *preset;
+    const char *frames_text, *error, *preset, *memory;
     double max_ms, max_error;
     const char **axes;
     size_t axis_count, axis_capacity;
@@ -138,6 +138,7 @@ static bool parse(tune_options *o, int argc, const char **argv, poptContext *con
         {"preset", 0, POPT_ARG_STRING, NULL, OPTION_PRESET, "for all that is measured",
          "NAME|FILE.lua"},
         APP_DEVICE_ROW(&o->order.device),
+        APP_MEMORY_ROW(&o->memory),
         POPT_AUTOHELP POPT_TABLEEND};
     *context = poptGetContext("roil tune", argc, argv, options, 0);
     poptSetOtherOptionHelp(*context, "EFFECT.lua --max-ms MS | --max-error E [options]");
@@ -167,19 +168,20 @@ static void on_begin(void *user, const bench_results *r, const tune_axis *axes, 
     double all = 1;
     o->shown = axes;
     o->shown_count = count;
-    printf("%s\n%s\n", r->title, r->device);
+    app_print(stdout, "%s\n%s\n", r->title, r->device);
     for (size_t i = 0; i < count; i++) {
-        printf("  %s:", axes[i].name);
+        app_print(stdout, "  %s:", axes[i].name);
         for (size_t k = 0; k < axes[i].count; k++)
-            printf(k == axes[i].start ? " [%s]" : " %s", axes[i].values[k]);
-        printf("\n");
+            app_print(stdout, k == axes[i].start ? " [%s]" : " %s", axes[i].values[k]);
+        app_print(stdout, "\n");
         all *= (double)axes[i].count;
     }
     if (r->by_process)
-        printf("times are processor time by core, since the device is the processor\n");
-    printf("%.0f combinations, of which few are measured:\n\n", all);
-    for (size_t i = 0; i < count; i++) printf("%*s", width_of(&axes[i]), short_name(&axes[i]));
-    printf("%10s %10s\n", "ms", o->order.goal.error == TUNE_FLIP ? "FLIP" : "PSNR dB");
+        app_print(stdout, "times are processor time by core, since the device is the processor\n");
+    app_print(stdout, "%.0f combinations, of which few are measured:\n\n", all);
+    for (size_t i = 0; i < count; i++)
+        app_print(stdout, "%*s", width_of(&axes[i]), short_name(&axes[i]));
+    app_print(stdout, "%10s %10s\n", "ms", o->order.goal.error == TUNE_FLIP ? "FLIP" : "PSNR dB");
     fflush(stdout);
 }
 
@@ -189,16 +191,16 @@ static void on_result(void *user, const bench_results *r, const bench_row *row, 
     double error = tune_row_error(row, o->order.goal.error);
     o->measured += !earlier;
     for (size_t i = 0; i < o->shown_count; i++)
-        printf("%*s", width_of(&o->shown[i]), bench_axis_value(row, o->shown[i].name));
+        app_print(stdout, "%*s", width_of(&o->shown[i]), bench_axis_value(row, o->shown[i].name));
     if (!isnan(ms))
-        printf("%10.4g %10.4f%s\n", ms, error, earlier ? "  kept" : "");
+        app_print(stdout, "%10.4g %10.4f%s\n", ms, error, earlier ? "  kept" : "");
     else
-        printf("  %s: %s\n", bench_state_name(row->state), row->message);
+        app_print(stdout, "  %s: %s\n", bench_state_name(row->state), row->message);
     fflush(stdout);
 }
 
 static void print_line(const char *name, int width, double before, double after) {
-    printf("%-*s %12.4g %12.4g\n", width, name, before, after);
+    app_print(stdout, "%-*s %12.4g %12.4g\n", width, name, before, after);
 }
 
 static void print_result(const tune_options *o, const bench_results *r, const tune_result *t) {
@@ -207,30 +209,31 @@ static void print_result(const tune_options *o, const bench_results *r, const tu
     int width = 8;
     for (size_t i = 0; i < t->axis_count; i++)
         if ((int)strlen(t->axes[i].name) > width) width = (int)strlen(t->axes[i].name);
-    printf("\n%-*s %12s %12s\n", width, "", "before", "tuned");
+    app_print(stdout, "\n%-*s %12s %12s\n", width, "", "before", "tuned");
     for (size_t i = 0; i < t->axis_count; i++)
-        printf("%-*s %12s %12s\n", width, t->axes[i].name,
-               bench_axis_value(before, t->axes[i].name), bench_axis_value(best, t->axes[i].name));
+        app_print(stdout, "%-*s %12s %12s\n", width, t->axes[i].name,
+                  bench_axis_value(before, t->axes[i].name),
+                  bench_axis_value(best, t->axes[i].name));
     print_line("ms", width, tune_row_ms(r, before), tune_row_ms(r, best));
     print_line(kind == TUNE_FLIP ? "FLIP" : "PSNR dB", width, tune_row_error(before, kind),
                tune_row_error(best, kind));
-    printf("\n%zu rows measured%s\n", o->measured,
-           t->complete ? "" : "; the search was ended early, and --resume goes on");
+    app_print(stdout, "\n%zu rows measured%s\n", o->measured,
+              t->complete ? "" : "; the search was ended early, and --resume goes on");
 }
 
 static int finish(const tune_options *o, const bench_results *r, const tune_result *t) {
     print_result(o, r, t);
-    printf("wrote %s/results.json, results.csv, report.html\n", o->order.folder);
+    app_print(stdout, "wrote %s/results.json, results.csv, report.html\n", o->order.folder);
     if (!t->within)
         return app_fail(APP_DIFFERS, "%s %g cannot be kept with these axes%s; no preset is written",
                         o->order.goal.by_error ? "--max-error" : "--max-ms", o->order.goal.limit,
                         t->complete ? "" : ", as far as was searched");
-    printf("wrote the preset: roil render %s --preset %s\n", o->order.effect, o->preset);
+    app_print(stdout, "wrote the preset: roil render %s --preset %s\n", o->order.effect, o->preset);
     return APP_DONE;
 }
 
 static int run(tune_options *o) {
-    roil *r = roil_create(&(roil_desc){.no_device = true});
+    roil *r = roil_create(&(roil_desc){.no_device = true, .memory = o->memory});
     if (!r || !app_collect_settings(&o->settings, r, o->order.effect, NULL)) {
         roil_destroy(r);
         return app_fail_input();

@@ -1,4 +1,5 @@
 #include "app/device_options.h"
+#include "base/budget.h"
 #include "base/error.h"
 #include <assert.h>
 #include <string.h>
@@ -9,6 +10,8 @@ struct poptOption app_device_rows(app_device *d) {
         {"timeout", '\0', POPT_ARG_DOUBLE, &d->timeout, 0,
          "that a frame may take before the device counts as lost (default: 30, in software 300)",
          "SECONDS"},
+        APP_MEMORY_ROW(&d->memory),
+        APP_TIME_ROW(&d->time_limit),
         {"validate", '\0', POPT_ARG_NONE, &d->validate, 0, "with the Vulkan validation layers",
          NULL},
         {"no-cache", '\0', POPT_ARG_NONE, &d->no_cache, 0,
@@ -20,10 +23,17 @@ struct poptOption app_device_rows(app_device *d) {
 }
 
 bool app_check_device(const app_device *d) {
+    if (d->memory && !budget_set_share(d->memory)) return err_prefix("--");
+    if (!(d->time_limit >= 0))
+        return err_set("--time-limit %g; accepted: 0 or more", d->time_limit);
     return d->timeout >= 0 || err_set("--timeout %g; accepted: 0 or more", d->timeout);
 }
 
 roil_desc app_device_desc(const app_device *d) {
-    return (roil_desc){
-        .device = d->name, .validate = d->validate, .no_cache = d->no_cache, .timeout = d->timeout};
+    return (roil_desc){.device = d->name,
+                       .validate = d->validate,
+                       .no_cache = d->no_cache,
+                       .timeout = d->timeout,
+                       .memory = d->memory,
+                       .time_limit = d->time_limit};
 }

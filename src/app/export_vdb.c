@@ -138,6 +138,9 @@ static bool write_frames(const job *j, roil_effect *e, roil_volume *v) {
 }
 
 static bool export_all(job *j, roil_effect *e) {
+    char file[PATH_CAP];
+    app_format_pattern(j->output, j->frames.numbers[0], file, sizeof file);
+    if (!app_can_write(file)) return false;
     roil_volume *v = roil_volume_create(e, &j->volume);
     if (!v) return false;
     roil_volume_info info = roil_volume_get_info(v);

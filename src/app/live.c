@@ -1,6 +1,7 @@
 // The loop of the live window: follow the files, move time, draw the effect when anything changed,
 // lay the interface over it, show. It sleeps while nothing moves.
 #include "app/live.h"
+#include "app/restart.h"
 #include "app/window.h"
 #include "base/clock.h"
 #include "base/file.h"
@@ -57,6 +58,7 @@ void live_set(live *l, const char *name, const char *value) {
     log_write(LOG_DEBUG, "live: set %s = %s", name, value);
     if (!roil_live_set(l->follow, name, value)) live_notice(l, "%s", roil_error());
     changed(l);
+    restart_arm(l);
 }
 
 void live_reset(live *l, const char *name) {
@@ -64,6 +66,7 @@ void live_reset(live *l, const char *name) {
     if (!roil_live_reset(l->follow, name)) live_notice(l, "%s", roil_error());
     if (!name) l->camera_moved = false;
     changed(l);
+    restart_arm(l);
 }
 
 void live_break(live *l, const char *why) {
@@ -104,6 +107,7 @@ static void follow(live *l, loop *p) {
     if (message) log_write(LOG_DEBUG, "live: %s", message);
     if (reloads != p->reloads) take_over(l, p);
     p->reloads = reloads;
+    restart_arm(l);
 }
 
 // ---- the effect's picture ---------------------------------------------------------------------
@@ -177,6 +181,7 @@ static void advance(live *l, loop *p, double seconds) {
     if (l->held && l->time.playing) {
         l->held = false;
         changed(l);
+        restart_arm(l);
     }
     // Time that a simulation cannot keep up with passes more slowly.
     if (can_draw(l) && simulates(l)) seconds = 0;

@@ -53,7 +53,9 @@ typedef struct live {
     uint32_t width, height; // of the effect's picture, pixels
     ui_rect view;           // where it is shown
     float pointer[2];       // in the picture, 0..1 from its top left
-    float slipped;          // of the pointer, since it was pressed there (pixels)
+    struct window *window;
+    const struct app_device *device;
+    float slipped; // of the pointer, since it was pressed there (pixels)
 } live;
 
 // Sets a control by hand, and has the frame drawn again; what goes wrong becomes a notice.

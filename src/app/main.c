@@ -1,10 +1,15 @@
 // roil COMMAND ...: finds the command and calls it.
 #include "app/app.h"
+#include "base/error.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include <errno.h>
+#include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const struct {
     const char *name;
@@ -23,17 +28,29 @@ static const struct {
 };
 
 int app_fail(int status, const char *format, ...) {
+    char text[8192];
     va_list args;
     va_start(args, format);
-    fputs("roil: ", stderr);
-    vfprintf(stderr, format, args);
-    fputc('\n', stderr);
+    vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    str_make_printable(text);
+    fprintf(stderr, "roil: %s\n", text);
     return status;
 }
 
 int app_fail_input(void) {
     return app_fail(APP_BAD_INPUT, "%s", roil_error());
+}
+
+void app_print(FILE *out, const char *format, ...) {
+    char *text;
+    va_list args;
+    va_start(args, format);
+    if (vasprintf(&text, format, args) < 0) err_out_of_memory(strlen(format));
+    va_end(args);
+    str_make_printable(text);
+    fputs(text, out);
+    free(text);
 }
 
 static void print_help(FILE *out) {
@@ -43,7 +60,24 @@ static void print_help(FILE *out) {
     fprintf(out, "\n`roil COMMAND --help` lists the options of a command.\n");
 }
 
-int main(int argc, char **argv) {
+// Files that are opened later must not become what is printed to.
+static bool open_streams(void) {
+    int fd;
+    do fd = open("/dev/null", O_RDWR);
+    while (fd >= 0 && fd <= STDERR_FILENO);
+    if (fd > STDERR_FILENO) close(fd);
+    return fd >= 0;
+}
+
+// A result that could not be written is no success.
+static int finish(int status) {
+    bool done = fflush(stdout) == 0 && !ferror(stdout);
+    if (done) return status;
+    return app_fail(status ? status : APP_BAD_INPUT, "standard output: cannot be written: %s",
+                    strerror(errno ? errno : EIO));
+}
+
+static int run(int argc, char **argv) {
     if (argc < 2) {
         print_help(stderr);
         return APP_BAD_USAGE;
@@ -71,4 +105,8 @@ int main(int argc, char **argv) {
     app_fail(APP_BAD_USAGE, "unknown command '%s'; accepted: %s", wanted, strbuf_text(&accepted));
     strbuf_free(&accepted);
     return APP_BAD_USAGE;
+}
+
+int main(int argc, char **argv) {
+    return open_streams() ? finish(run(argc, argv)) : APP_BAD_INPUT;
 }

@@ -1,6 +1,7 @@
 // Wrong options; frames, sizes and file patterns, as they stand on the command line.
 #include "app/app.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "base/frames.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -12,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 typedef struct option_names {
     const char *names[64];
@@ -122,4 +124,13 @@ void app_format_pattern(const char *pattern, double frame, char *out, size_t cap
     int width = (int)strtol(mark + 1, &end, 10);
     snprintf(out, capacity, zeros ? "%.*s%0*ld%s" : "%.*s%*ld%s", (int)(mark - pattern), pattern,
              width, lrint(frame), end + 1);
+}
+
+bool app_can_write(const char *file) {
+    struct stat info;
+    file_draft draft;
+    if (stat(file, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) return true;
+    if (!file_make_parent_folders(file) || !file_draft_begin(&draft, file)) return false;
+    file_draft_drop(&draft);
+    return true;
 }

@@ -216,16 +216,28 @@ static void fact(ui_rect *at, const char *name, const char *value) {
     at->top += ROW * s;
 }
 
+static const double MIB = 1024 * 1024;
+
+static void draw_account(ui_rect *at, const roil_memory *memory) {
+    char text[320];
+    int length = snprintf(text, sizeof text, "%.0f of %.0f MiB", (double)memory->sum / MIB,
+                          (double)memory->limit / MIB);
+    for (size_t i = 0; i < 3 && memory->largest[i].bytes; i++)
+        length += snprintf(text + length, sizeof text - (size_t)length, "%s %s %.0f", i ? "," : ":",
+                           memory->largest[i].label, (double)memory->largest[i].bytes / MIB);
+    fact(at, "all memory", text);
+}
+
 static void draw_facts(const live *l) {
-    static const double MIB = 1024 * 1024;
     char text[128], failed[32] = "";
     roil_playback played;
     bool plays = l->effect && roil_get_playback(l->effect, &played);
-    ui_rect at = ui_canvas_begin("facts", 0, (plays ? 5 : 4) * ROW * ui_scale()).area;
+    ui_rect at = ui_canvas_begin("facts", 0, (plays ? 6 : 5) * ROW * ui_scale()).area;
     roil_memory memory = roil_get_memory(l->r);
     snprintf(text, sizeof text, "%.1f MiB, of %.0f MiB taken", (double)memory.device / MIB,
              (double)memory.reserved / MIB);
     fact(&at, "device memory", text);
+    draw_account(&at, &memory);
     if (plays) {
         snprintf(text, sizeof text, "%" PRIu64 " frames, %" PRIu64 " late, %.1f MiB each",
                  played.shown, played.late, (double)played.frame_bytes / MIB);

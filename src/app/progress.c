@@ -45,9 +45,10 @@ void app_progress_end(app_progress *p) {
     if (p->terminal) fputc('\n', stderr);
 }
 
-void app_tell_steps(void *user, double done, double whole) {
+bool app_tell_steps(void *user, double done, double whole) {
     app_progress *steps = user;
     if (steps->total != (size_t)whole) app_progress_begin(steps, (size_t)whole, "steps");
     app_progress_step(steps, (size_t)done);
     if (done >= whole) *steps = (app_progress){0};
+    return !app_is_interrupted(NULL);
 }

@@ -108,35 +108,38 @@ static void print_playback(const app_stats *s) {
     const roil_playback *p = &s->last;
     playback_rate rate = rate_of(s);
     if (!s->plays || p->shown == 0) return;
-    printf("sequences: %" PRIu64
-           " frames shown, %.1f a second; decoded %.0f MB/s, uploaded %.0f MB/s\n",
-           p->shown, rate.shown, rate.decoded, rate.uploaded);
-    printf("           a frame takes %.1f MB, %.1f bytes a voxel that is not 0; all take %.1f MB\n",
-           (double)p->frame_bytes * 1e-6, bytes_a_voxel(p), (double)p->device_bytes * 1e-6);
+    app_print(stdout,
+              "sequences: %" PRIu64
+              " frames shown, %.1f a second; decoded %.0f MB/s, uploaded %.0f MB/s\n",
+              p->shown, rate.shown, rate.decoded, rate.uploaded);
+    app_print(
+        stdout,
+        "           a frame takes %.1f MB, %.1f bytes a voxel that is not 0; all take %.1f MB\n",
+        (double)p->frame_bytes * 1e-6, bytes_a_voxel(p), (double)p->device_bytes * 1e-6);
 }
 
 static void print_readouts(const app_stats *s) {
     for (size_t i = 0; i < s->readout_count; i++) {
         const roil_readout *r = &s->readouts[i];
         bool first = i == 0 || strcmp(r->pass, s->readouts[i - 1].pass) != 0;
-        if (first) printf("%s%s:", i ? "\n" : "", r->pass);
-        printf("%s %s %.6g%s%s", first ? "" : ",", r->name, r->value, r->unit[0] ? " " : "",
-               r->unit);
+        if (first) app_print(stdout, "%s%s:", i ? "\n" : "", r->pass);
+        app_print(stdout, "%s %s %.6g%s%s", first ? "" : ",", r->name, r->value,
+                  r->unit[0] ? " " : "", r->unit);
     }
-    if (s->readout_count) printf("\n");
+    if (s->readout_count) app_print(stdout, "\n");
 }
 
 void app_stats_print(const app_stats *s) {
     if (!s->count) return;
     double *values = mem_alloc(s->count * sizeof *values);
-    printf("%-20s %10s %10s   GPU ms over %zu frame%s\n", "pass", "median", "95 %", s->count,
-           s->count == 1 ? "" : "s");
+    app_print(stdout, "%-20s %10s %10s   GPU ms over %zu frame%s\n", "pass", "median", "95 %",
+              s->count, s->count == 1 ? "" : "s");
     for (size_t i = 0; i < s->frames[0].time_count; i++) {
         stats_summary m = pass_summary(s, i, values);
-        printf("%-20s %10.3f %10.3f\n", s->frames[0].times[i].pass, m.median, m.p95);
+        app_print(stdout, "%-20s %10.3f %10.3f\n", s->frames[0].times[i].pass, m.median, m.p95);
     }
     stats_summary total = total_summary(s, values);
-    printf("%-20s %10.3f %10.3f\n", "all", total.median, total.p95);
+    app_print(stdout, "%-20s %10.3f %10.3f\n", "all", total.median, total.p95);
     mem_free(values);
     print_playback(s);
     print_readouts(s);

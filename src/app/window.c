@@ -3,7 +3,9 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/str.h"
 #include <GLFW/glfw3.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 static const float SHARE = 0.85f; // of the display, at first
@@ -86,6 +88,7 @@ bool window_open(window *w, const live_session *s, const char *title, int width,
     glfwShowWindow(w->handle);
     w->held[2] = width;
     w->held[3] = height;
+    str_copy(w->title, sizeof w->title, title);
     w->desc.extensions = glfwGetRequiredInstanceExtensions(&w->desc.extension_count);
     w->desc.create_surface = create_surface;
     w->desc.user = w;
@@ -127,7 +130,12 @@ float window_scale(const window *w) {
     return x < 0.5f ? 0.5f : x > 4 ? 4 : x;
 }
 
-bool window_closing(const window *w) {
+bool window_closing(window *w) {
+    if (w->busy) {
+        glfwSetWindowTitle(w->handle, w->title);
+        glfwSetInputMode(w->handle, GLFW_STICKY_KEYS, GLFW_FALSE);
+    }
+    w->busy = false;
     return glfwWindowShouldClose(w->handle);
 }
 
@@ -139,6 +147,23 @@ bool window_wait(double seconds) {
     double end = clock_seconds() + seconds;
     glfwWaitEventsTimeout(seconds);
     return clock_seconds() < end - 1e-3;
+}
+
+static bool is_pressed(const window *w, int key) {
+    return glfwGetKey(w->handle, key) == GLFW_PRESS;
+}
+
+window_busy window_wait_busy(window *w, double seconds) {
+    char title[sizeof w->title + 64];
+    snprintf(title, sizeof title, "%s \u2013 busy for %.0f s (Escape stops)", w->title, seconds);
+    glfwSetWindowTitle(w->handle, title);
+    glfwSetInputMode(w->handle, GLFW_STICKY_KEYS, GLFW_TRUE); // a short press is seen, too
+    w->busy = true;
+    glfwPollEvents();
+    bool control = is_pressed(w, GLFW_KEY_LEFT_CONTROL) || is_pressed(w, GLFW_KEY_RIGHT_CONTROL);
+    if (glfwWindowShouldClose(w->handle) || (is_pressed(w, GLFW_KEY_Q) && control))
+        return WINDOW_QUIT;
+    return is_pressed(w, GLFW_KEY_ESCAPE) ? WINDOW_GIVES_UP : WINDOW_GOES_ON;
 }
 
 void window_wake(void *unused) {
