@@ -39,7 +39,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     size_t count;
     put(data, size);
     err_clear();
-    if (!preset_read(file, &memory, &settings, &count) && !err_get()[0]) abort();
+    if (!preset_read(NULL, file, &memory, &settings, &count) && !err_get()[0]) abort();
     for (size_t i = 0; i < count; i++) {
         require_one_line(settings[i].name);
         require_one_line(settings[i].text);

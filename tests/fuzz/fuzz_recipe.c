@@ -21,7 +21,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     size_t count;
     recipe r;
     err_clear();
-    if (png_read_texts_memory(data, size, "fuzz.png", &memory, texts, &count) &&
+    if (png_decode_texts(data, size, "fuzz.png", &memory, texts, &count) &&
         recipe_read(texts, count, &memory, &r))
         check(&r);
     else if (!err_get()[0])
