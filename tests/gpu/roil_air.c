@@ -182,9 +182,10 @@ static void a_window_catches_up_over_several_pictures(void **state) {
     roil_destroy(window);
 }
 
-static void count_steps(void *user, double done, double whole) {
+static bool count_steps(void *user, double done, double whole) {
     (void)done;
     if (whole > *(double *)user) *(double *)user = whole;
+    return true;
 }
 
 static void draw_whole(roil_effect *e, double frame, picture out) {
@@ -595,9 +596,10 @@ static void what_solids_keep_from_giving_is_told(void **state) {
 
 // ---- reload -----------------------------------------------------------------------------------
 
-static void count_call(void *user, double done, double whole) {
+static bool count_call(void *user, double done, double whole) {
     (void)done, (void)whole;
     ++*(int *)user;
+    return true;
 }
 
 static int reload(roil_live *live, const char *keys, const char *shown, double frame) {

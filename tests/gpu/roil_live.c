@@ -1,6 +1,8 @@
 // An effect that follows its files. Every test writes files as an editor does, waits for the
 // background (no sleeps), takes over, draws, and looks at pixels.
+#include "base/clock.h"
 #include "roil_live_test.h"
+#include <unistd.h>
 
 // ---- edits ------------------------------------------------------------------------------------
 
@@ -43,6 +45,35 @@ static void edit_of_an_included_shader_shows(void **state) {
     expect_good(&s);
     draw(&s, 2, 0.5, 0.75);
     end(&s);
+}
+
+// Ends when the script has said "busy" on stderr.
+static void put_endless_module(void) {
+    int ends[2], own = dup(2);
+    char said[4096] = "";
+    assert_true(own >= 0 && pipe(ends) == 0 && dup2(ends[1], 2) == 2);
+    put("more.lua", "local s = ('x'):rep(1 << 22)\n"
+                    "local a, b = s:sub(2), s:sub(2)\n"
+                    "print('busy')\n"
+                    "while true do local c = a < b end");
+    for (size_t n = 0; !strstr(said, "busy") && n < sizeof said - 1;) {
+        ssize_t got = read(ends[0], said + n, sizeof said - 1 - n);
+        assert_true(got > 0);
+        n += (size_t)got;
+    }
+    dup2(own, 2);
+    close(own);
+    close(ends[0]);
+    close(ends[1]);
+}
+
+static void a_build_without_end_does_not_hold_up_the_end(void **state) {
+    session s = begin(*state);
+    put_endless_module();
+    double start = clock_seconds();
+    assert_true(roil_live_destroy(s.live));
+    double took = clock_seconds() - start;
+    if (took > 3) fail_msg("took %g s", took);
 }
 
 static const char MESH_SCRIPT[] = "local fx = effect { name = 'test' }\n"
@@ -315,8 +346,70 @@ static void preset_is_followed(void **state) {
     end(&s);
 }
 
+// ---- memory -----------------------------------------------------------------------------------
+
+enum { LARGE_WIDTH = 4096, LARGE_HEIGHT = 2048 }; // two images of 64 MiB, for the history
+
+static bool update_large(session *s) {
+    roil_live_wait(s->live);
+    return roil_live_update(s->live, LARGE_WIDTH, LARGE_HEIGHT, s->frame);
+}
+
+static void expect_large(session *s, const char *trouble) {
+    assert_true(update_large(s));
+    const char *message = roil_live_message(s->live);
+    if (!trouble && message) fail_msg("%s", message);
+    if (trouble && !(message && strstr(message, trouble)))
+        fail_msg("'%s' does not say '%s'", message ? message : "(no message)", trouble);
+    roil_effect *e = roil_live_effect(s->live);
+    assert_non_null(e);
+    for (int i = 0; i < 6; i++) // until no frame in flight holds what was let go
+        ok(roil_advance(e, s->frame++));
+}
+
+// What may be taken beside what is: as if whoever runs the program had said so from the start.
+static void allow(roil *r, unsigned mebibytes) {
+    char text[32];
+    snprintf(text, sizeof text, "%llum",
+             (unsigned long long)(roil_get_memory(r).sum >> 20) + mebibytes);
+    roil *other = roil_create(
+        &(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .no_device = true, .memory = text});
+    ok(other);
+    roil_destroy(other);
+}
+
+static int allow_as_ever(void **state) {
+    (void)state;
+    roil *other = roil_create(
+        &(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .no_device = true, .memory = "60%"});
+    roil_destroy(other);
+    return other ? 0 : 1;
+}
+
+// A reload whose images cannot be taken over has both for a moment. That is no reason to refuse
+// it; that it alone wants more than it may is.
+static void reload_needs_no_room_for_the_old_effect(void **state) {
+    put_all();
+    session s = {.frame = 1};
+    s.live = roil_live_create(*state, &(roil_live_desc){.file = script_path});
+    ok(s.live);
+    expect_large(&s, NULL);
+    assert_true(roil_get_memory(*state).largest[0].bytes >= UINT64_C(64) << 20);
+    allow(*state, 16);
+    put_script("0.5", "name = 'renamed'", "");
+    expect_large(&s, NULL);
+    put_script("0.5", "name = 'renamed'",
+               "fx.linear = shader { 'count.comp', name = 'more', gain = 1 }.color");
+    expect_large(&s, "--memory");
+    put_script("0.25", "name = 'again'", "");
+    expect_large(&s, NULL);
+    assert_int_equal(roil_live_counts(s.live).failures, 1);
+    end(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(reload_needs_no_room_for_the_old_effect, allow_as_ever),
         cmocka_unit_test(preset_is_followed),
         cmocka_unit_test(number_edit_shows_and_the_simulation_goes_on),
         cmocka_unit_test(structural_edit_shows_and_the_simulation_goes_on),
@@ -335,6 +428,7 @@ int main(void) {
         cmocka_unit_test(moved_value_yields_to_a_changed_default),
         cmocka_unit_test(setting_during_a_build_is_not_lost),
         cmocka_unit_test(structure_is_set_by_a_build),
+        cmocka_unit_test(a_build_without_end_does_not_hold_up_the_end),
         cmocka_unit_test(setting_of_the_command_line_holds),
     };
     return test_run(tests);

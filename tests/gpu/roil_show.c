@@ -63,7 +63,7 @@ static const uint8_t *read_file(roil_effect *e, arena *memory) {
     png_image file;
     write_text("show.png", "", path);
     ok(roil_save(e, path, NULL));
-    ok(png_read(path, memory, &file));
+    ok(png_read(path, NULL, memory, &file));
     return file.pixels;
 }
 

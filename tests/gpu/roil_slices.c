@@ -317,9 +317,10 @@ static void it_tells_of_itself(void **state) {
 
 // ---- going on ---------------------------------------------------------------------------------
 
-static void count_call(void *user, double done, double whole) {
+static bool count_call(void *user, double done, double whole) {
     (void)done, (void)whole;
     ++*(int *)user;
+    return true;
 }
 
 static int reload(roil_live *live, const char *keys, const char *shown, double frame) {

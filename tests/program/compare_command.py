@@ -3,7 +3,7 @@ import json
 import os
 import re
 
-from lib.pictures import Exr, Png, write_png
+from lib.pictures import Exr, Png, exr_header, write_png
 from lib.program import PUFF, SMALL, Case, main
 
 
@@ -93,6 +93,18 @@ class CompareCommand(Case):
         self.fails(1, "accepted: .png, .exr", "compare", "a.png", "b.jpg")
         self.fails(1, "accepted: .png", "compare", "a.png", "b.png", "-o", "out.jpg")
         self.assertFalse(os.path.exists(self.path("out.jpg")))
+
+    def test_a_picture_that_would_fill_the_memory_is_refused_by_its_header(self):
+        self.write("huge.exr", exr_header(16384, 16384, "RGB"))
+        self.fails(1, ["huge.exr: a picture of 16384x16384 with 12 bytes a pixel takes 3072 MiB", "up to 1024 MiB"],
+                   "compare", "huge.exr", "a.png")
+        self.write("wide.exr", exr_header(16385, 1, "RGB"))
+        self.fails(1, "wide.exr", "compare", "wide.exr", "a.png")
+
+    def test_pictures_are_decoded_by_another_program(self):
+        """Which can be named, and without which none is."""
+        self.fails(1, ["a.png", "/nowhere/roil-reader"], "compare", "a.png", "a.png",
+                   environment={"ROIL_READER": "/nowhere/roil-reader"})
 
     def test_mistakes(self):
         self.fails(2, "two pictures", "compare", "a.png")

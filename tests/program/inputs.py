@@ -2,13 +2,37 @@
 import os
 import random
 import shutil
+import signal
 import struct
+import subprocess
 
 from lib.pictures import Exr
-from lib.program import CORPUS, DATA, VOLUME, Case, main
+from lib.program import CORPUS, DATA, PROGRAM, SECONDS, SMALL, VOLUME, Case, main
 
 VDB = VOLUME % 'vdb { "a.vdb" }.density'
 FLOAT = os.path.join(CORPUS, "fuzz_vdb/float.vdb")
+
+
+class Time(Case):
+    """What works for a script in other processes takes of the same time."""
+
+    def test_children_count(self):
+        self.write("broken.gltf", b"v x")
+        self.write("effect.lua", b'local fx = effect { name = "x" }\n'
+                                 b"for i = 1, 1e9 do pcall(mesh, {'broken.gltf'}) end\n")
+        self.fails(1, ["effect.lua:2:", "time limit of 1 s for a load exceeded", "--time-limit"],
+                   "check", "--time-limit", "1", "effect.lua")
+
+    def test_frames_that_are_left_out_show_progress_and_stop(self):
+        self.write("effect.lua", VOLUME.replace("return fx", "fx:on_frame(function() "
+                                                "for i = 1, 1e5 do local x = i end end)\nreturn fx") % "sphere { radius = 1 }")
+        job = subprocess.Popen([PROGRAM, "render", "effect.lua", "--frames", "999999", "-o", "a.png"] + SMALL,
+                               cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        self.assertIn(" steps", next(line for line in job.stderr if " left" in line))
+        job.send_signal(signal.SIGINT)
+        said = job.communicate(timeout=SECONDS)[1]
+        self.assertEqual(job.returncode, 1)
+        self.assertIn("stopped after", said)
 
 
 class Volumes(Case):

@@ -8,7 +8,7 @@ import subprocess
 import unittest
 
 from lib.pictures import Exr, Png
-from lib.program import PUFF, SMALL, SOURCE, VOLUME, Case, main
+from lib.program import DATA, PROGRAM, PUFF, SMALL, SOURCE, VOLUME, Case, main
 
 BALL = VOLUME % "sphere { position = {1, 1, 1}, radius = 1 } * 10"
 
@@ -175,6 +175,48 @@ return fx""")
         self.write("effect.lua", effect)
         self.fails(1, "too late", "render", "effect.lua", "-o", "out.mp4", *SMALL)
         self.assertEqual(sorted(os.listdir(self.folder)), ["effect.lua", "ground.obj"])
+
+
+class Unwritable(Case):
+    """What cannot be written is said before the first frame, which this effect would take too long to draw."""
+    SLOW = PUFF.replace("return fx", "fx.update = function() error('drawn') end\nreturn fx")
+
+    def test_it_is_said_before_the_work(self):
+        self.write("effect.lua", self.SLOW)
+        self.write("file", "")
+        shutil.copy(os.path.join(DATA, "nan.vdb"), self.path("a.vdb"))
+        render = ["render", "effect.lua", "--frames", "1-2", *SMALL]
+        for arguments in (
+                [*render, "-o", "file/%d.png"], [*render, "-o", "file/a.mp4"], [*render, "-o", "file/%d.exr"],
+                [*render, "-o", "%d.png", "--stats", "file/a.json"], [*render, "-o", "%d.png", "--checkpoint", "file/a"],
+                ["export", "vdb", "effect.lua", "--frames", "1-2", "-o", "file/%d.vdb"],
+                ["export", "raw", "a.vdb", "-o", "file/a.raw"], ["bench", "sweep.lua", "-o", "file/a"]):
+            self.write("sweep.lua", 'return sweep { name = "a", effect = "effect.lua", size = {32, 18}, frames = "1" }')
+            with self.subTest(arguments):
+                self.assertNotIn("drawn", self.fails(1, "file", *arguments))
+                self.assertEqual(sorted(os.listdir(self.folder)),
+                                 ["a.vdb", "effect.lua", "file", "ground.obj", "sweep.lua"])
+
+    def test_films_are_files(self):
+        self.write("effect.lua", PUFF)
+        os.symlink("/dev/null", self.path("null.mp4"))
+        self.fails(1, "no regular file", "render", "effect.lua", "--frames", "1", "-o", "null.mp4", *SMALL)
+        self.assertTrue(os.path.islink(self.path("null.mp4")))
+
+
+class Stopped(Case):
+    def test_nothing_is_left_of_a_film(self):
+        self.write("effect.lua", PUFF.replace("frames = 10", "frames = 100000"))
+        before = sorted(os.listdir(self.folder))
+        for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL:
+            with self.subTest(signal=number):
+                child = subprocess.Popen([PROGRAM, "render", "effect.lua", *SMALL, "-o", "out.mp4"], cwd=self.folder,
+                                         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                child.stderr.read(1)  # of the progress: frames are being drawn
+                child.send_signal(number)
+                child.communicate(timeout=60)
+                self.assertEqual(sorted(os.listdir(self.folder)), before)
+                self.assertEqual(child.returncode, -number if number == signal.SIGKILL else 1)
 
 
 class Statistics(Case):

@@ -54,7 +54,8 @@ class Package(Case):
             self.assertIn(b"x264", film.read())
 
     def test_libraries_are_its_own(self):
-        loaded = self.run_hidden("env", "LD_TRACE_LOADED_OBJECTS=1", f"{self.package}/bin/roil").stdout
+        loaded = "".join(self.run_hidden("env", "LD_TRACE_LOADED_OBJECTS=1", f"{self.package}/bin/{program}").stdout
+                         for program in ("roil", "roil-reader"))
         self.assertNotIn("not found", loaded)
         for name in ("libopenvdb", "libassimp", "liblua5.4", "libspirv-cross"):
             path = re.search(rf"{name}\S* => (\S+)", loaded).group(1)

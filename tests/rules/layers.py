@@ -5,14 +5,15 @@ import sys
 sys.dont_write_bytecode = True
 from lib import house
 
-LEVELS = [["base"], ["gpu"], ["media", "shader"], ["graph"], ["field"], ["scene"],
+LEVELS = [["base"], ["gpu"], ["media", "shader"], ["graph", "reader"], ["field"], ["scene"],
           ["sim"], ["pass"], ["effect"], ["script"], ["roil"], ["bench", "ui"], ["app"]]
 LEVEL = {layer: level for level, layers in enumerate(LEVELS) for layer in layers}
 
 # Foreign header -> where it may be included: a layer (all its files), layers, or a file.
 HOMES = [
     (r"vulkan/|vk_|volk\.h|vulkan", "gpu/"),
-    (r"glslang/|SPIRV/|spirv_cross|spirv-cross|spirv", "shader/"),
+    (r"spirv_cross/(spirv|GLSL\.std\.450)\.h", ("shader/", "gpu/")),
+    (r"glslang/|SPIRV/|spirv_cross/(?!spirv\.h|GLSL\.std)|spirv-cross|spirv(?!_cross/)", "shader/"),
     (r"(lua|lauxlib|lualib|luaconf)\.h(pp)?$|lua5\.4/", "script/"),
     (r"openvdb/|nanovdb/|tbb/", ("media/vdb.cpp", "media/vdb_blocks.cpp", "media/vdb_write.cpp",
                                  "media/vdb_file.hpp")),

@@ -3,7 +3,9 @@
 
 #include "base/memory.h"
 #include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 
@@ -21,6 +23,9 @@ static size_t names_in(const char *folder) {
     file_list all;
     assert_true(file_glob(in(folder, "*").text, &all));
     size_t count = all.count;
+    file_list_free(&all);
+    assert_true(file_glob(in(folder, ".roil-*").text, &all)); // drafts
+    count += all.count;
     file_list_free(&all);
     return count;
 }
@@ -249,6 +254,144 @@ static void long_listing_is_sorted(void **state) {
     file_list_free(&found);
 }
 
+// ---- files that a file names -------------------------------------------------------------------
+
+static bool reads_inside(const char *folder, const char *name) {
+    void *data;
+    size_t size;
+    bool done = file_read_inside(in(folder, "root").text, in(folder, name).text, 99, &data, &size);
+    if (done) mem_free(data);
+    return done;
+}
+
+static bool writes_inside(const char *folder, const char *name) {
+    return file_write_inside(in(folder, "root").text, in(folder, name).text, "new", 3);
+}
+
+static void link_to(const char *folder, const char *to, const char *name) {
+    assert_int_equal(symlink(to, in(folder, name).text), 0);
+}
+
+static void make_places(const char *folder) {
+    put(folder, "root/a.txt", "inside");
+    put(folder, "root/sub/b.txt", "inside");
+    put(folder, "out/secret.txt", "outside");
+    link_to(folder, "sub/b.txt", "root/near.txt");
+    link_to(folder, in(folder, "root/sub").text, "root/near");
+    link_to(folder, "../out/secret.txt", "root/far.txt");
+    link_to(folder, in(folder, "out").text, "root/far");
+    link_to(folder, "../out/none.txt", "root/broken.txt");
+    link_to(folder, "/dev/null", "root/device");
+    assert_int_equal(mkfifo(in(folder, "root/pipe").text, 0600), 0);
+}
+
+static void only_what_lies_inside_is_read(void **state) {
+    make_places(*state);
+    assert_true(reads_inside(*state, "root/a.txt"));
+    assert_true(reads_inside(*state, "root/near.txt"));
+    assert_true(reads_inside(*state, "root/near/b.txt"));
+    assert_true(reads_inside(*state, "root/sub/../a.txt"));
+    static const char *const refused[] = {"out/secret.txt",
+                                          "root/../out/secret.txt",
+                                          "root/far.txt",
+                                          "root/far/secret.txt",
+                                          "root/broken.txt",
+                                          "root/device",
+                                          "root/pipe",
+                                          "root/sub",
+                                          "root",
+                                          "root/none.txt",
+                                          "root/no/../../a.txt",
+                                          "root2"};
+    for (size_t i = 0; i < COUNT_OF(refused); i++) {
+        err_clear();
+        if (reads_inside(*state, refused[i])) fail_msg("%s was read", refused[i]);
+        assert_true(err_get()[0]);
+    }
+}
+
+static void only_what_lies_inside_is_written(void **state) {
+    make_places(*state);
+    assert_true(writes_inside(*state, "root/a.txt"));
+    assert_content(in(*state, "root/a.txt").text, "new");
+    assert_true(writes_inside(*state, "root/near/c.txt"));
+    assert_content(in(*state, "root/sub/c.txt").text, "new");
+    assert_true(writes_inside(*state, "root/made/on/demand.txt"));
+    assert_content(in(*state, "root/made/on/demand.txt").text, "new");
+    static const char *const refused[] = {"out/new.txt",     "root/../out/new.txt",
+                                          "root/far.txt",    "root/far/new.txt",
+                                          "root/broken.txt", "root/near.txt",
+                                          "root/device",     "root/pipe",
+                                          "root/sub",        "root/no/../../out/new.txt"};
+    for (size_t i = 0; i < COUNT_OF(refused); i++)
+        if (writes_inside(*state, refused[i])) fail_msg("%s was written", refused[i]);
+    assert_int_equal(names_in(in(*state, "out").text), 1);
+    assert_content(in(*state, "out/secret.txt").text, "outside");
+    assert_content(in(*state, "root/sub/b.txt").text, "inside");
+}
+
+static void no_root_is_anywhere(void **state) {
+    make_places(*state);
+    size_t size;
+    int fd = file_open_inside(NULL, in(*state, "root/far.txt").text, 100, &size);
+    assert_true(fd >= 0);
+    close(fd);
+    assert_int_equal(file_open_inside(NULL, in(*state, "root/pipe").text, 100, &size), -1);
+}
+
+typedef struct swapper {
+    path_text place, folder, link;
+    atomic_bool stop;
+} swapper;
+
+// The folder is now there, now a link that leads out.
+static void *swap(void *user) {
+    swapper *s = user;
+    while (!atomic_load(&s->stop)) {
+        rename(s->place.text, s->folder.text);
+        rename(s->link.text, s->place.text);
+        rename(s->place.text, s->link.text);
+        rename(s->folder.text, s->place.text);
+    }
+    return NULL;
+}
+
+static void a_folder_that_becomes_a_link_leads_nowhere(void **state) {
+    pthread_t thread;
+    swapper s = {in(*state, "root/sub"), in(*state, "aside"), in(*state, "link"), false};
+    path_text root = in(*state, "root"), target = in(*state, "root/sub/secret.txt");
+    make_places(*state);
+    put(*state, "root/sub/secret.txt", "inside");
+    link_to(*state, in(*state, "out").text, "link");
+    assert_int_equal(pthread_create(&thread, NULL, swap, &s), 0);
+    size_t read = 0;
+    for (int i = 0; i < 20000; i++) {
+        void *data;
+        size_t size;
+        if (i % 8 == 0) file_write_inside(root.text, target.text, "inside", 6);
+        if (!file_read_inside(root.text, target.text, 99, &data, &size)) continue;
+        assert_string_equal((const char *)data, "inside");
+        mem_free(data);
+        read++;
+    }
+    atomic_store(&s.stop, true);
+    pthread_join(thread, NULL);
+    assert_true(read > 0);
+    assert_content(in(*state, "out/secret.txt").text, "outside");
+}
+
+static void a_process_that_is_killed_leaves_no_draft(void **state) {
+    path_text path = in(*state, "a.txt");
+    pid_t child = fork();
+    if (child == 0) {
+        file_draft draft;
+        if (file_draft_begin(&draft, path.text)) file_draft_add(&draft, "half", 4);
+        raise(SIGKILL);
+    }
+    assert_int_equal(waitpid(child, NULL, 0), child);
+    assert_int_equal(names_in(*state), 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         SCRATCH_TEST(what_is_written_is_read),
@@ -265,6 +408,11 @@ int main(void) {
         SCRATCH_TEST(matches_come_in_order_of_their_bytes),
         SCRATCH_TEST(wildcards_work_in_the_last_component_only),
         SCRATCH_TEST(long_listing_is_sorted),
+        SCRATCH_TEST(only_what_lies_inside_is_read),
+        SCRATCH_TEST(only_what_lies_inside_is_written),
+        SCRATCH_TEST(no_root_is_anywhere),
+        SCRATCH_TEST(a_folder_that_becomes_a_link_leads_nowhere),
+        SCRATCH_TEST(a_process_that_is_killed_leaves_no_draft),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,8 @@
 // What is found wrong with an effect before any device is there.
 #include "effect_helper.h"
 
+#include "base/isolate.h"
+
 static void set_output(stage *s, pass *p) {
     ok(pass_declare(p));
     ok(effect_set_output(s->e, pass_output(p, "color")));
@@ -232,6 +234,6 @@ int main(void) {
         STAGE_TEST(bake_has_limits),
         STAGE_TEST(meshes_go_to_geometry_only),
     };
-    shader_warm_up(); // as the program does, before it has threads
+    isolate_warm_up(); // as the program does
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,6 +5,7 @@
 #include "field/sequence_parts.h"
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static char folder[64];
@@ -48,6 +49,23 @@ static void refuses(sequence_desc desc, const char *part) {
     err_clear();
     assert_null(sequence_create(build_memory(), &desc));
     assert_error(part);
+}
+
+static void a_file_lies_in_the_root(void **state) {
+    (void)state;
+    write_block("outside.vdb", "density", 0, 0);
+    const char *root = in_folder("root"), *link = in_folder("root/in1.vdb");
+    assert_int_equal(mkdir(root, 0700), 0);
+    assert_int_equal(symlink("../outside.vdb", link), 0);
+    refuses((sequence_desc){.pattern = "root/in1.vdb", .root = root}, "leads out");
+    refuses((sequence_desc){.pattern = "root/in*.vdb", .root = root}, "leads out");
+    refuses((sequence_desc){.pattern = "outside.vdb", .root = root}, "leads out");
+    refuses((sequence_desc){.pattern = "root/in1.vdb",
+                            .raw = {.type = "u8", .size = {1, 1, 1}},
+                            .root = root},
+            "leads out");
+    assert_int_equal(unlink(link), 0);
+    assert_int_equal(rmdir(root), 0);
 }
 
 static float texel(const sequence *s, const sequence_texels *t, int x, int y, int z, int channel) {
@@ -384,6 +402,7 @@ static int remove_folder(void **state) {
 
 int main(void) {
     static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_file_lies_in_the_root),
         cmocka_unit_test(one_box_encloses_all_frames),
         cmocka_unit_test(voxels_on_the_lattice_are_copied_exactly),
         cmocka_unit_test(a_frame_without_the_grid_is_empty),

@@ -273,6 +273,24 @@ static void a_crash_of_the_library_is_a_message(void **state) {
     }
 }
 
+// By which the library's parser would run out of stack.
+static void deep_objects_are_refused(void **state) {
+    enum { DEPTH = 200000 };
+    (void)state;
+    static char text[20 + DEPTH + 1];
+    memset(text, '[', sizeof text - 1);
+    memcpy(text, "{\"a\":\"]]]]\",\"b\":", 16);
+    put_text("deep.gltf", text);
+    assert_false(load("deep.gltf"));
+    assert_message("deep.gltf: objects nested ");
+    assert_message("up to 100 are accepted");
+    const uint32_t head[] = {0x46546c67, 2, sizeof text, DEPTH, 0x4e4f534a};
+    memcpy(text, head, sizeof head);
+    test_put("deep.glb", text, sizeof text - 1);
+    assert_false(load("deep.glb"));
+    assert_message("deep.glb: objects nested 200000 deep");
+}
+
 static int teardown(void **state) {
     arena_free(&memory);
     return test_teardown(state);
@@ -293,6 +311,7 @@ int main(void) {
         cmocka_unit_test(other_formats_and_missing_files_are_errors),
         cmocka_unit_test(random_bytes_never_end_the_program),
         cmocka_unit_test(a_crash_of_the_library_is_a_message),
+        cmocka_unit_test(deep_objects_are_refused),
     };
     return cmocka_run_group_tests(tests, test_setup, teardown);
 }

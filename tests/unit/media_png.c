@@ -17,7 +17,7 @@ static void round_trip(int channels, int bits) {
     png_image in = {WIDTH, HEIGHT, channels, bits, pixels}, out;
     assert_true(png_write(test_path("a.png"), &in, NULL, 0));
     arena memory = {0};
-    assert_true(png_read(test_path("a.png"), &memory, &out));
+    assert_true(png_read(test_path("a.png"), NULL, &memory, &out));
     assert_int_equal(out.width, WIDTH);
     assert_int_equal(out.height, HEIGHT);
     assert_int_equal(out.channels, 4);
@@ -61,7 +61,7 @@ static void palette_and_interlace_become_rgba(void **state) {
     if (!path) skip();
     arena memory = {0};
     png_image out;
-    assert_true(png_read(path, &memory, &out));
+    assert_true(png_read(path, NULL, &memory, &out));
     assert_int_equal(out.bits, 8);
     const uint8_t red[4] = {255, 0, 0, 255};
     assert_memory_equal(out.pixels, red, 4);
@@ -74,7 +74,7 @@ static void gray_with_alpha_becomes_16_bit_rgba(void **state) {
     if (!path) skip();
     arena memory = {0};
     png_image out;
-    assert_true(png_read(path, &memory, &out));
+    assert_true(png_read(path, NULL, &memory, &out));
     assert_int_equal(out.bits, 16);
     const uint16_t *p = out.pixels; // filter "sub" over bytes 0, 1, 2, 3
     assert_int_equal(p[0], 0x0001);
@@ -95,7 +95,7 @@ static void every_truncation_is_an_error(void **state) {
     arena memory = {0};
     for (size_t n = 0; n < size - 1; n++) {
         void *cut = mem_copy(data, n ? n : 1); // so that reading beyond it is seen
-        assert_false(png_read_memory(cut, n, "cut.png", &memory, &out));
+        assert_false(png_decode(cut, n, "cut.png", &picture_limits_default, &memory, &out));
         assert_message("cut.png");
         mem_free(cut);
     }
@@ -109,11 +109,13 @@ static void random_bytes_are_an_error(void **state) {
     fill(bytes, sizeof bytes);
     arena memory = {0};
     png_image out;
-    assert_false(png_read_memory(bytes, sizeof bytes, "noise.png", &memory, &out));
+    assert_false(
+        png_decode(bytes, sizeof bytes, "noise.png", &picture_limits_default, &memory, &out));
     assert_message("is not a PNG file");
     memcpy(bytes, "\x89PNG\r\n\x1a\n", 8);
-    assert_false(png_read_memory(bytes, sizeof bytes, "noise.png", &memory, &out));
-    assert_false(png_read(test_path("absent.png"), &memory, &out));
+    assert_false(
+        png_decode(bytes, sizeof bytes, "noise.png", &picture_limits_default, &memory, &out));
+    assert_false(png_read(test_path("absent.png"), NULL, &memory, &out));
     assert_message("absent.png");
     arena_free(&memory);
 }
@@ -125,7 +127,8 @@ static void a_huge_header_is_refused(void **state) {
                                   "\xb4\xd6\x09\xd9";
     arena memory = {0};
     png_image out;
-    assert_false(png_read_memory(huge, sizeof huge - 1, "huge.png", &memory, &out));
+    assert_false(
+        png_decode(huge, sizeof huge - 1, "huge.png", &picture_limits_default, &memory, &out));
     assert_message("16384");
     arena_free(&memory);
     png_image in = {20000, 1, 3, 8, huge};

@@ -42,7 +42,7 @@ static vdb_info info_of(const char *path) {
 
 static bool sample(const char *path, const char *grid, box3 box, uint32_t x, uint32_t y,
                    uint32_t z) {
-    vdb_sample_desc desc = {path, grid, box, {x, y, z}, 1, out};
+    vdb_sample_desc desc = {path, grid, box, {x, y, z}, 1, out, NULL};
     return vdb_sample(&desc, NULL);
 }
 
@@ -179,7 +179,7 @@ static void vectors_come_back_in_order(void **state) {
     vdb_info info = info_of(test_path("v.vdb"));
     assert_int_equal(info.grids[0].components, 3);
     assert_string_equal(info.grids[0].type, "vec3s");
-    vdb_sample_desc desc = {test_path("v.vdb"), "v", info.grids[0].box, {NX, NY, NZ}, 3, out};
+    vdb_sample_desc desc = {test_path("v.vdb"), "v", info.grids[0].box, {NX, NY, NZ}, 3, out, NULL};
     assert_true(vdb_sample(&desc, NULL));
     assert_memory_equal(out, values, COUNT * 3 * sizeof *out);
     desc.components = 1;
@@ -231,9 +231,13 @@ static void what_is_not_finite_becomes_zero_and_is_counted(void **state) {
                            .grid_class = VDB_FOG};
     assert_true(vdb_write(test_path("n.vdb"), &grid, 1));
     uint64_t bad = 0;
-    vdb_sample_desc desc = {
-        test_path("n.vdb"), "n", {vec(-0.5f, -0.5f, -0.5f), vec(9.5f, 4.5f, 5.5f)},
-        {NX, NY, NZ},       1,   out};
+    vdb_sample_desc desc = {test_path("n.vdb"),
+                            "n",
+                            {vec(-0.5f, -0.5f, -0.5f), vec(9.5f, 4.5f, 5.5f)},
+                            {NX, NY, NZ},
+                            1,
+                            out,
+                            NULL};
     assert_true(vdb_sample(&desc, &bad));
     assert_int_equal(bad, 3);
     assert_float_equal(out[0], 0.0f, 0);
@@ -300,7 +304,8 @@ static float sample_voxel(const char *path, const char *grid, int components, fl
                              vec(centre.x + h, centre.y + h, centre.z + h)},
                             {1, 1, 1},
                             components,
-                            out};
+                            out,
+                            NULL};
     if (!vdb_sample(&desc, NULL)) fail_msg("%s", err_get());
     return out[0];
 }

@@ -16,7 +16,7 @@ static bool read_all(const char *path) {
     for (size_t i = 0; i < info.count; i++) {
         const vdb_grid_info *g = &info.grids[i];
         if (g->components == 0) continue;
-        vdb_sample_desc desc = {path, g->name, g->box, {16, 16, 16}, g->components, out};
+        vdb_sample_desc desc = {path, g->name, g->box, {16, 16, 16}, g->components, out, NULL};
         if (box3_is_empty(desc.box)) desc.box.max = (float3){8, 8, 8};
         good = vdb_sample(&desc, NULL) && good;
     }
@@ -123,8 +123,13 @@ static void absurd_requests_are_refused(void **state) {
     size_t size;
     load("whole.vdb", &data, &size);
     mem_free(data);
-    vdb_sample_desc desc = {test_path("whole.vdb"), "heat", {{0, 0, 0}, {1, 1, 1}},
-                            {65536, 65536, 65536},  1,      out};
+    vdb_sample_desc desc = {test_path("whole.vdb"),
+                            "heat",
+                            {{0, 0, 0}, {1, 1, 1}},
+                            {65536, 65536, 65536},
+                            1,
+                            out,
+                            NULL};
     assert_false(vdb_sample(&desc, NULL));
     assert_message("2^31");
     desc.size[0] = desc.size[1] = desc.size[2] = 0;

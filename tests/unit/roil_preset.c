@@ -127,7 +127,7 @@ static void what_is_no_preset_is_refused(void **state) {
         {"return {", "p.lua:1:"},
         {"param { 'x', 1 } return { }", "param"},
         {"while true do end", "instruction limit"},
-        {"local s = 'x' while true do s = s .. s end", "memory limit of 8 MiB"},
+        {"local s = 'x' while true do s = s .. s end", "memory limit of 4 MiB for one string"},
         {"return setmetatable({ }, { __index = error, __pairs = error, __len = error })", ""},
         {"return { os = os.exit() }", "os"},
     };

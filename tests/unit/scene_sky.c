@@ -103,9 +103,9 @@ static void what_is_no_panorama_is_refused(void **state) {
     float *values = mem_alloc((SKY_WIDTH_MAX + 1) * sizeof *values);
     values[0] = 1;
     write_planes("wide.exr", SKY_WIDTH_MAX + 1, 1, "RGB", values);
-    refused("wide.exr", "wide.exr: panorama of 8193x1; up to 8192x4096 is accepted");
+    refused("wide.exr", "wide.exr: a picture of 8193x1; up to 8192x4096 is accepted");
     write_planes("high.exr", 1, SKY_HEIGHT_MAX + 1, "RGB", values);
-    refused("high.exr", "panorama of 1x4097");
+    refused("high.exr", "a picture of 1x4097");
     write_planes("depth.exr", WIDTH, HEIGHT, "Z", values);
     refused("depth.exr", "the picture has no channel 'R'; R, G and B, or Y are accepted");
     write_planes("half.exr", WIDTH, HEIGHT, "RB", values);

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "base/file.h"
+#include "base/isolate.h"
 #include "base/log.h"
 #include "effect/events.h"
 #include "script/script.h"
@@ -104,7 +105,7 @@ static inline double helper_status(const effect *e, const char *name) {
 static inline int helper_setup(void **state) {
     (void)state;
     log_set_level(LOG_WARNING);
-    shader_warm_up(); // as the program does, before it has threads
+    isolate_warm_up(); // as the program does
     const char *temporary = getenv("TMPDIR");
     snprintf(helper_folder, sizeof helper_folder, "%s/roil-script-XXXXXX",
              temporary ? temporary : "/tmp");

@@ -1,6 +1,7 @@
 // The sandbox: what a script cannot reach, and how it is stopped.
 #include "base/file.h"
 #include "base/log.h"
+#include "base/time_limit.h"
 #include "script/vm.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -194,14 +196,17 @@ static void pcall_cannot_outlive_a_limit(void **state) {
 
 static void memory_bombs_end(void **state) {
     (void)state;
-    fails("\nlocal s = string.rep('x', 1 << 30)", "memory limit of 128 MiB exceeded");
-    fails("string.rep('x', math.maxinteger)", "resulting string too large");
+    fails_with("\nlocal s = string.rep('x', 1 << 30)",
+               "effect.lua:2: string.rep: memory limit of 4 MiB for one string exceeded");
+    fails("string.rep('x', math.maxinteger)", "string.rep: memory limit of 4 MiB");
     fails_with("local s = 'x'\nwhile true do\ns = s .. s\nend",
+               "effect.lua:3: memory limit of 4 MiB for one string exceeded");
+    fails_with("local t = {}\nlocal s = ('x'):rep(1 << 20)\nfor i = 1, 1e9 do t[i] = s .. i end",
                "effect.lua:3: memory limit of 128 MiB exceeded");
     fails("local t = {} while true do t = {t} end", "limit");
     fails("local t = {} for i = 1, 1e9 do t[i] = i end", "limit");
     fails("string.format('%s%s', ('x'):rep(60 << 20), ('x'):rep(60 << 20))", "memory limit");
-    fails("local t = {} for i = 1, 1000 do t[i] = ('x'):rep(99999) end table.concat(t)",
+    fails("local s, t = ('x'):rep(99999), {} for i = 1, 2000 do t[i] = s end table.concat(t)",
           "memory limit");
     fails("local f = ('x'):rep(1 << 20) f:gsub('.', ('y'):rep(1000))", "memory limit");
 }
@@ -213,7 +218,7 @@ static void a_caught_small_refusal_does_not_end_the_script(void **state) {
 
 static void garbage_does_not_count(void **state) {
     (void)state;
-    passes("for i = 1, 20 do local s = ('x'):rep(8 << 20) end");
+    passes("local k = ('x'):rep(1 << 10) for i = 1, 160 do local s = k:rep(1 << 10) end");
 }
 
 static void loops_inside_c_functions_are_charged(void **state) {
@@ -231,9 +236,82 @@ static void loops_inside_c_functions_are_charged(void **state) {
 
 static void long_comparisons_are_stopped_by_processor_time(void **state) {
     (void)state;
-    fails("local a = ('x'):rep(1 << 23) local b = ('x'):rep(1 << 23)\n"
+    fails("local a = ('x'):rep(1 << 22) local b = ('x'):rep(1 << 22)\n"
           "while true do local c = a == b end",
           "instruction limit");
+}
+
+static double processor_seconds(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+// Within a budget that is shorter than all other limits, each ends soon after it: what it can do
+// between two looks at the limits is bounded.
+static void nothing_runs_long_between_two_looks(void **state) {
+    (void)state;
+#define LONG                                                                                       \
+    "local n, s, t, e = 1 << 22, ('x'):rep(1 << 22), {}, setmetatable({}, {__index = rawlen}) "
+    static const char *const attacks[] = {
+        "while true do end",
+        LONG "local a, b = s:sub(2), s:sub(2) while true do local c = a < b end",
+        LONG "local a = ('\\0'):rep(n) local b = a:sub(2) .. 'x' while true do local c = a < b end",
+        LONG "for i = 1, 500000 do t[i] = s end table.sort(t)",
+        LONG "for i = 1, 500000 do t[i] = s end while true do pcall(table.sort, t, rawequal) end",
+        LONG "for i = 1, 1000000 do t[i] = -i end while true do table.sort(t) end",
+        LONG "for i = 1, 20 do t[('\\0'):rep(n // 2) .. i] = i end while true do pairs(t) end",
+        LONG "while true do table.concat(e, '', 1, 1 << 60) end",
+        LONG "table.concat(setmetatable({}, {__index = function() return '' end}), '', 1, 1 << 60)",
+        LONG "while true do pcall(table.move, e, 1, 1 << 60, 1, {}) end",
+        LONG "for i = 1, 2000000 do t[i] = i end while true do table.insert(t, 1, 0) end",
+        LONG "for i = 1, 2000000 do t[i] = i end while true do table.remove(t, 1) end",
+        LONG "while true do pcall(table.unpack, e, 1, 900000) end",
+        LONG "for i = 1, 4000000 do t[i] = i end for i = 1, 4000000 do t[i] = nil end "
+             "while true do next(t) end",
+        LONG
+        "local function f(...) while true do math.max(...) end end f(table.unpack(e, 1, 490000))",
+        LONG
+        "local function f(...) while true do utf8.char(...) end end f(table.unpack(e, 1, 60000))",
+        LONG "while true do pcall(string.pack, 'c2000000000', '') end",
+        LONG "while true do string.pack('c4000000', '') end",
+        LONG "local f = ('%.99f'):rep(9000) for i = 1, 9000 do t[i] = 1e308 end "
+             "while true do f:format(table.unpack(t)) end",
+        LONG "while true do utf8.len(s) end",
+        LONG "while true do tonumber(s, 36) end",
+        LONG "while true do s:gsub('', rawlen) end",
+        LONG "while true do s:find('[' .. s .. 'y]y') end",
+        LONG "while true do s:gsub('x', '%%0%%0') end",
+        LONG "while true do s:rep(1) s:upper() s:reverse() end",
+        LONG "while true do ('x'):rep(n) end",
+        LONG "while true do local q = t[s .. 'x'] end",
+        LONG "while true do pcall(string.rep, '', 1 << 62) end",
+    };
+    for (size_t i = 0; i < sizeof attacks / sizeof *attacks; i++) {
+        time_limit b = {.what = "load", .limit = 0.3};
+        put(folder, "effect.lua", attacks[i], strlen(attacks[i]));
+        char path[PATH_CAP];
+        assert_true(path_join(path, folder, "effect.lua"));
+        vm *v = machine();
+        time_limit *before = time_limit_enter(&b);
+        double start = processor_seconds();
+        bool ended = vm_run_file(v, path, "effect.lua", UINT64_MAX / 2, false);
+        double took = processor_seconds() - start;
+        time_limit_leave(before);
+        vm_destroy(v);
+        if (ended) fail_msg("no error in: %s", attacks[i]);
+        if (took > 0.5) fail_msg("%g s, instead of 0.3 s: %s", took, attacks[i]);
+        // Most end by the time limit; where the machine is fast enough, by one of memory.
+        if (!strstr(err_get(), "time limit of 0.3 s for a load exceeded; --time-limit") &&
+            !strstr(err_get(), "memory limit of"))
+            fail_msg("error \"%s\"\n  in: %s", err_get(), attacks[i]);
+    }
+}
+
+static void repeating_nothing_ends_at_once(void **state) {
+    (void)state;
+    passes("assert(string.rep('', 1 << 62) == '' and string.rep('', 1 << 62, '') == '')");
+    passes("assert(string.rep('ab', 3, '-') == 'ab-ab-ab' and string.rep('x', -1) == '')");
 }
 
 static void deep_recursion_is_an_error(void **state) {
@@ -379,6 +457,8 @@ int main(void) {
         cmocka_unit_test(errors_in_modules_name_their_line),
         cmocka_unit_test(endless_loops_end),
         cmocka_unit_test(pcall_cannot_outlive_a_limit),
+        cmocka_unit_test(nothing_runs_long_between_two_looks),
+        cmocka_unit_test(repeating_nothing_ends_at_once),
         cmocka_unit_test(memory_bombs_end),
         cmocka_unit_test(a_caught_small_refusal_does_not_end_the_script),
         cmocka_unit_test(garbage_does_not_count),

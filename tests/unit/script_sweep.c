@@ -249,7 +249,7 @@ static void what_is_wrong_is_said(void **state) {
         {HEAD "published = function() return 3 end }", "must return a table"},
         {HEAD "published = function() return { a = 'b' } end }", "'a' must be a number"},
         {HEAD "skip = function() while true do end end }", "instruction limit"},
-        {"local s = 'x' while true do s = s .. s end", "memory limit of 64 MiB"},
+        {"local s = 'x' while true do s = s .. s end", "memory limit of 4 MiB for one string"},
         {"return os.exit()", "os"},
         {"return io.open('/etc/passwd')", "io"},
         {HEAD "measure = 'reload', axes = { axis { 'a', 1 } } }", "nothing says what is edited"},

@@ -1,16 +1,12 @@
 // Compiling: options, defines, toggles, counters, stages, messages, threads; the code is valid.
+#include "base/isolate.h"
+#include "shader/unit.h"
 #include "shader_helper.h"
 #include <pthread.h>
-#include <spirv-tools/libspirv.h>
 
 static void assert_valid(const shader_binary *binary) {
-    spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_3);
-    spv_const_binary_t code = {binary->code, binary->size / 4};
-    spv_diagnostic diagnostic = NULL;
-    if (spvValidate(context, &code, &diagnostic) != SPV_SUCCESS)
-        fail_msg("%s", diagnostic ? diagnostic->error : "not valid");
-    spvDiagnosticDestroy(diagnostic);
-    spvContextDestroy(context);
+    const spirv code = {.words = (uint32_t *)binary->code, .count = binary->size / 4};
+    if (!spirv_validate(&code)) fail_msg("%s", err_get());
 }
 
 static const char everything[] = "//@ option mode = fine {coarse, fine} : how\n"
@@ -233,8 +229,8 @@ static void threads_compile_side_by_side(void **state) {
     pthread_t threads[4];
     place_write(p, "program/a.comp", everything);
     place_write(p, "program/wrong.comp", "void main() { x }\n");
-    shader_warm_up();
-    shader_warm_up();
+    isolate_warm_up();
+    isolate_warm_up();
     for (int i = 0; i < 4; i++)
         assert_int_equal(pthread_create(&threads[i], NULL, compile_many, p), 0);
     for (int i = 0; i < 4; i++) {

@@ -71,6 +71,20 @@ ZIP, BLOCK_LINES = 3, 16
 TYPES = {1: "e", 2: "f"}  # half, float
 
 
+def exr_header(width, height, channels):
+    """A file of halves that ends where its pixels would begin."""
+    def attribute(name, kind, body):
+        return name + b"\0" + kind + b"\0" + struct.pack("<I", len(body)) + body
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    listed = b"".join(c.encode() + b"\0" + struct.pack("<i4x2i", 1, 1, 1) for c in sorted(channels)) + b"\0"
+    return struct.pack("<II", 20000630, 2) + b"".join([
+        attribute(b"channels", b"chlist", listed), attribute(b"compression", b"compression", bytes([ZIP])),
+        attribute(b"dataWindow", b"box2i", window), attribute(b"displayWindow", b"box2i", window),
+        attribute(b"lineOrder", b"lineOrder", b"\0"), attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)),
+        attribute(b"screenWindowCenter", b"v2f", struct.pack("<2f", 0, 0)),
+        attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1))]) + b"\0"
+
+
 class Exr:
     """`channels`: a list of values by name; `types`: 1 half, 2 float."""
 

@@ -1,0 +1,86 @@
+"""What a shader does to the driver must not take the window with it."""
+import os
+import signal
+import subprocess
+
+from lib.window import PATIENCE, Case, main, require_tools
+
+EFFECT = """
+local fx = effect { name = "puff", fps = 24, frames = 48 }
+local thickness = param { "thickness", 4, min = 0, max = 20 }
+local ball = march { density = sphere { radius = 1 } * thickness }
+fx.camera = orbit { distance = 5 }
+fx.output = final { %s }.color
+return fx
+"""
+SINES = "sum = sin(sum); " * 64
+ENDLESS = f"""// Takes a quarter of an hour: lavapipe leaves a loop after 65,535 turns.
+uniform float zero; //= 0 [0, 1] : no compiler knows it
+uniform sampler2D input_; //= input : the picture
+uniform writeonly image2D color; //= output rgba16f : the picture
+void main() {{
+    float sum = 0.0;
+    for (float a = 0.0; a < 60000.0 + zero; a += 1.0) {{ sum += a; {SINES} }}
+    imageStore(color, ivec2(gl_GlobalInvocationID.xy), vec4(sum));
+}}
+"""
+
+
+class Faults(Case):
+    def test_a_crash_starts_the_window_anew(self):
+        live = self.live("--set", "thickness=9", effect=EFFECT % "ball")
+        os.kill(live.process.pid, signal.SIGSEGV)
+        live.expect("roil: the process crashed, and starts anew")
+        live.expect("live: the process crashed while it drew this")
+        live.expect("live: shown")
+        with open(f"/proc/{live.process.pid}/cmdline", encoding="utf-8") as f:
+            self.assertIn("thickness=9", f.read())
+        mark = live.mark()
+        self.write("puff.lua", EFFECT % "ball" + "-- mended\n")
+        live.expect("live: drew frame", mark)
+        self.write("puff.lua", "broken(")
+        live.expect("live: .*puff.lua:", mark)
+        live.quit()
+
+    def test_a_second_crash_while_held_ends_it(self):
+        live = self.live(effect=EFFECT % "ball")
+        os.kill(live.process.pid, signal.SIGSEGV)
+        live.expect("live: the process crashed while it drew this")
+        live.expect("live: shown")
+        os.kill(live.process.pid, signal.SIGSEGV)
+        live.process.wait(PATIENCE)
+        self.assertEqual(live.process.returncode, -signal.SIGSEGV)
+
+    def hang(self):
+        live = self.live(effect=EFFECT % "ball")
+        self.write("endless.comp", ENDLESS)
+        self.write("puff.lua", EFFECT % 'shader { "endless.comp", input = ball }')
+        live.wait_until(lambda: "busy for" in self.title(live), "a title that says so")
+        return live
+
+    @staticmethod
+    def title(live):
+        return subprocess.run(["xdotool", "getwindowname", live.window()], check=False,
+                              env=live.case.environment, stdout=subprocess.PIPE, text=True,
+                              timeout=PATIENCE).stdout
+
+    def test_a_frame_without_end_can_be_given_up(self):
+        live = self.hang()
+        live.keys("Escape")
+        live.expect("it was given up while it worked.*the program starts anew")
+        mark = live.mark()
+        live.expect("live: shown", mark)
+        self.write("puff.lua", EFFECT % "ball")
+        live.expect("live: drew frame", mark)
+        live.quit()
+
+    def test_a_window_whose_frame_does_not_end_can_be_closed(self):
+        live = self.hang()
+        live.keys("ctrl+q")
+        live.process.wait(PATIENCE)
+        self.assertEqual(live.process.returncode, 0, live.text())
+
+
+if __name__ == "__main__":
+    require_tools()
+    main()
