@@ -1,6 +1,7 @@
 // Controls as an interface shows them: what they are, their values now, palettes and curves.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/str.h"
 #include "roil_impl.h"
 #include "script/reference.h"
 #include <math.h>
@@ -149,7 +150,7 @@ static void fill_option(const effect_control *c, const pass *p, roil_control *ou
 
 static void fill_scale(const effect_control *c, const pass *p, roil_control *out) {
     out->value[0] = pass_get_scale(p);
-    out->initial[0] = strtof(c->initial, NULL);
+    out->initial[0] = str_float(c->initial, NULL);
     out->min = 0.01f;
     out->max = 1;
     out->help = script_key_find(script_object_find("shader")->keys, "resolution")->help;

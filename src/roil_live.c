@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/str.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -78,7 +79,7 @@ static bool is_structural(const effect *e, const effect_control *c) {
 static bool check_fixed(effect *e, const effect_control *c, const char *text) {
     if (c->kind == EFFECT_CONTROL_SCALE) {
         char *end;
-        float scale = strtof(text, &end);
+        float scale = str_float(text, &end);
         return (end != text && !*end && scale > 0 && scale <= 1) ||
                err_set("'%s' cannot be '%s'; accepted: above 0, up to 1", c->name, text);
     }

@@ -105,7 +105,7 @@ void budget_destroy(budget *b) {
 
 static bool read_share(const char *text, double *out_share, uint64_t *out_bytes) {
     char *end;
-    double value = strtod(text, &end);
+    double value = str_double(text, &end);
     if (end == text || !isfinite(value) || value <= 0) return false;
     *out_share = 0;
     *out_bytes = 0;

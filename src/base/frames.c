@@ -1,6 +1,7 @@
 #include "base/frames.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/str.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +15,7 @@ typedef struct list {
 static bool parse_number(const char **text, double *out) {
     char *end;
     if (!isdigit((unsigned char)**text) || strncasecmp(*text, "0x", 2) == 0) return false;
-    *out = strtod(*text, &end);
+    *out = str_double(*text, &end);
     *text = end;
     return isfinite(*out);
 }

@@ -17,7 +17,29 @@ void strbuf_append(strbuf *s, const char *bytes, size_t length) {
     s->text[s->length] = '\0';
 }
 
+// glibc's and musl's are static objects, which nothing frees.
+static locale_t c_locale(void) {
+    return newlocale(LC_ALL_MASK, "C", (locale_t)0);
+}
+
+locale_t str_enter_c_locale(void) {
+    return uselocale(c_locale());
+}
+
+void str_leave_c_locale(locale_t before) {
+    uselocale(before);
+}
+
+float str_float(const char *text, char **end) {
+    return strtof_l(text, end, c_locale());
+}
+
+double str_double(const char *text, char **end) {
+    return strtod_l(text, end, c_locale());
+}
+
 void strbuf_add(strbuf *s, const char *format, ...) {
+    locale_t before = str_enter_c_locale();
     va_list args, again;
     va_start(args, format);
     va_copy(again, args);
@@ -27,14 +49,17 @@ void strbuf_add(strbuf *s, const char *format, ...) {
     vsnprintf(s->text + s->length, (size_t)length + 1, format, again);
     va_end(again);
     s->length += (size_t)length;
+    str_leave_c_locale(before);
 }
 
 void strbuf_add_float(strbuf *s, float value) {
     char text[32] = "0"; // of both zeros
+    locale_t before = str_enter_c_locale();
     for (int digits = 6; value != 0 && digits <= 9; digits++) {
         snprintf(text, sizeof text, "%.*g", digits, (double)value);
         if (strtof(text, NULL) == value) break;
     }
+    str_leave_c_locale(before);
     strbuf_append(s, text, strlen(text));
 }
 

@@ -1,6 +1,7 @@
 // Growing text, and help with misspelt names.
 #pragma once
 #include "base/error.h"
+#include <locale.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -22,6 +23,13 @@ const char *str_nearest(const char *word, const char *const *candidates, size_t 
 // What terminals obey becomes '?': control characters other than line breaks and tabs, those of
 // Unicode beyond ASCII (U+0080 to U+009F) too. For whatever came from a file and is printed.
 void str_make_printable(char *text);
+
+// As strtof and strtod, of numbers with a point, whatever locale the program has chosen.
+float str_float(const char *text, char **end);
+double str_double(const char *text, char **end);
+// Until str_leave_c_locale(before), the calling thread formats and reads numbers with a point.
+locale_t str_enter_c_locale(void);
+void str_leave_c_locale(locale_t before);
 
 bool str_ends_with(const char *text, const char *ending);
 bool str_has_place(const char *text);     // begins with a file and line, "a.lua:12: "

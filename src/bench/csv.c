@@ -95,7 +95,7 @@ static void add_quoted(strbuf *out, const char *text) {
 static bool looks_like_formula(const char *text) {
     if (!text[0] || !strchr("=+-@\t\r", text[0])) return false;
     char *end;
-    double value = strtod(text, &end);
+    double value = str_double(text, &end);
     return end == text || *end || !isfinite(value) || strchr(text, 'x') || strchr(text, 'X');
 }
 

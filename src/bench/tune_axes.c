@@ -165,7 +165,7 @@ static bool take_values(const roil_control *c, const rule *r, arena *memory, tun
 
 static bool same_value(const roil_control *c, const char *text) {
     char *end;
-    double value = strtod(text, &end);
+    double value = str_double(text, &end);
     if (has_words(c)) {
         size_t now = (size_t)c->value[0];
         const char *word = c->type == ROIL_ENUM ? c->words[now] : now ? "true" : "false";

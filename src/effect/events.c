@@ -2,6 +2,7 @@
 #include "effect/events.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/str.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -66,7 +67,7 @@ static const char *take_place(const char *text, effect_event *out) {
     for (text = skip(text); *text && *text != ';'; text = skip(text)) {
         char *end;
         if (out->numbers == 6) return NULL;
-        out->at[out->numbers] = strtof(text, &end);
+        out->at[out->numbers] = str_float(text, &end);
         if (end == text) return NULL;
         out->numbers++;
         text = end;
@@ -82,7 +83,7 @@ static const char *refuse_event(const char *text) {
 
 static const char *take_event(const char *text, effect_event *out) {
     char word[2 * EFFECT_KEY_SIZE], *end;
-    *out = (effect_event){.time = strtod(text, &end)};
+    *out = (effect_event){.time = str_double(text, &end)};
     if (end == text) return refuse_event(text);
     const char *next = take_word(end, word, sizeof word);
     if (strcmp(word, "key") == 0) {

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/str.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -62,7 +63,7 @@ static bool read_file(const char *text, arena *memory, recipe *out) {
 
 static bool read_frame(const char *text, recipe *out) {
     char *end;
-    out->frame = isdigit((unsigned char)text[0]) ? strtod(text, &end) : -1;
+    out->frame = isdigit((unsigned char)text[0]) ? str_double(text, &end) : -1;
     if (out->frame >= 0 && out->frame <= FRAME_MAX && !*end) return true;
     return err_set("the recipe's frame is '%.32s'; accepted: 0 to %d", text, FRAME_MAX);
 }

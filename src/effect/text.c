@@ -1,5 +1,6 @@
 // Values as text: what `--set`, presets and the panel say, and what is said back.
 #include "base/error.h"
+#include "base/str.h"
 #include "effect/effect_impl.h"
 #include <errno.h>
 #include <math.h>
@@ -11,7 +12,7 @@ int text_numbers(const char *text, float out[4]) {
     while (count < 4) {
         char *end;
         errno = 0;
-        out[count] = strtof(text, &end);
+        out[count] = str_float(text, &end);
         if (end == text || !isfinite(out[count])) return 0;
         count++;
         text = end + strspn(end, ", ");

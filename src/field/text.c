@@ -2,6 +2,7 @@
 // Items stand between semicolons, what belongs to an item between blanks, components of a value
 // between commas.
 #include "base/error.h"
+#include "base/str.h"
 #include "field/curve.h"
 #include "field/palette.h"
 #include <math.h>
@@ -15,7 +16,7 @@ static void skip_blanks(const char **at) {
 static bool read_number(const char **at, float *out) {
     char *end;
     skip_blanks(at);
-    *out = strtof(*at, &end);
+    *out = str_float(*at, &end);
     if (end == *at || !isfinite(*out)) return false;
     *at = end;
     return true;

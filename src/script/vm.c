@@ -368,7 +368,9 @@ bool vm_call(vm *v, int args, int results, uint64_t instructions) {
     lua_pushcfunction(L, describe_error);
     lua_insert(L, function);
     v->depth++;
+    locale_t before = str_enter_c_locale(); // tostring and string.format follow the locale
     int status = lua_pcall(L, args, results, function);
+    str_leave_c_locale(before);
     v->depth--;
     lua_remove(L, function);
     if (status != LUA_OK) {

@@ -1,4 +1,5 @@
 // The tokens of annotations: numbers, words, lists, ranges, units, help.
+#include "base/str.h"
 #include "shader/annotate.h"
 #include <ctype.h>
 #include <math.h>
@@ -53,7 +54,7 @@ bool cursor_is_number(cursor *c) {
 static bool number(cursor *c, float *out) {
     if (!cursor_is_number(c)) return cursor_fail(c, "expected a number at \"%.20s\"", c->at);
     char *end;
-    float value = strtof(c->at, &end);
+    float value = str_float(c->at, &end);
     bool whole_token = !isalnum((unsigned char)*end) && *end != '_' && *end != '.';
     if (!whole_token || !isfinite(value))
         return cursor_fail(c, "\"%.20s\" is not a number of 32 bits", c->at);
