@@ -40,7 +40,7 @@ typedef struct app_frames {
     size_t count;
     double step; // between the first two; 1 for one frame
 } app_frames;
-// "30", "10,30,50", "0-99", "0-99:2", or a list of such. False with a message when it is none.
+// "30", "10,30,50", "1-100", "1-100:2", or a list of such. False with a message when it is none.
 bool app_parse_frames(const char *text, app_frames *out);
 void app_free_frames(app_frames *frames);
 // Frames that the effect says nothing of may be wanted, but are more often a slip.
@@ -90,6 +90,8 @@ void app_add_event(app_settings *s, const char *text); // "2.5 click 0.4 0.6"
             "NAME [X Y]; may be given several times",                                              \
             "EVENT"                                                                                \
     }
+// That a file can be an effect. False, with a message that says what it is instead.
+bool app_check_effect(const char *file);
 // Of an effect; reads the presets. `from` may be NULL, else outlives `s`.
 bool app_collect_settings(app_settings *s, roil *r, const char *effect, const roil_recipe *from);
 void app_free_settings(app_settings *s);

@@ -39,9 +39,21 @@ static int info_effect(const char *what, const char *file, app_settings *setting
     return status;
 }
 
+static int info_index(void) {
+    puts("roil info device                what devices there are\n"
+         "roil info passes [NAME]         the types of passes, or all of one\n"
+         "roil info fields [NAME]         the kinds of fields and their operators, or all of one\n"
+         "roil info params EFFECT.lua     what --set, presets and the window can change in an "
+         "effect\n"
+         "roil info graph EFFECT.lua      its passes in order, their images and memory\n"
+         "roil info FILE.vdb              the grids of a volume\n");
+    return print(roil_info_devices());
+}
+
 static int info(const char *what, const char *name, app_settings *settings, const char *memory) {
     static const char *const topics[] = {"device", "passes", "fields", "params", "graph"};
-    if (!what || strcmp(what, "device") == 0) return print(roil_info_devices());
+    if (!what) return info_index();
+    if (strcmp(what, "device") == 0) return print(roil_info_devices());
     if (strcmp(what, "passes") == 0) return info_passes(name);
     if (strcmp(what, "fields") == 0) return print(roil_info_fields(name));
     if (strcmp(what, "params") == 0 || strcmp(what, "graph") == 0)

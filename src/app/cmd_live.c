@@ -179,6 +179,7 @@ static int run(job *j) {
     live l = {.file = j->file, .start = j->frame};
     l.time.frame = isfinite(j->frame) ? j->frame : 1;
     l.time.playing = !j->paused;
+    if (!j->after_hang && !app_check_effect(j->file)) return app_fail_input();
     session_load(&l.session);
     strbuf title = {0};
     strbuf_add(&title, "%s \u2013 roil", path_name(j->file));

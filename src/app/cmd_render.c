@@ -113,7 +113,7 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
          "out/NAME/%04d.png)",
          "FILE"},
         {"frames", 'f', POPT_ARG_STRING, &j->frames_text, 0,
-         "30, or 10,30,50, or 0-99, or 0-99:2 (default: all)", "FRAMES"},
+         "30, or 10,30,50, or 1-100, or 1-100:2 (default: all)", "FRAMES"},
         {"warmup", '\0', POPT_ARG_INT, &j->warmup, 0,
          "draw N frames before each that does not follow the last, for passes that remember "
          "(default: 0)",

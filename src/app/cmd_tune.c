@@ -128,7 +128,7 @@ static bool parse(tune_options *o, int argc, const char **argv, poptContext *con
         {"budget", 0, POPT_ARG_DOUBLE, &o->order.budget, 0,
          "that the search may take; what is best until then counts", "SECONDS"},
         {"frames", 'f', POPT_ARG_STRING, &o->frames_text, 0,
-         "30, or 10,30,50, or 0-99:20 (default: three places spread over the effect)", "FRAMES"},
+         "30, or 10,30,50, or 1-100:20 (default: three places spread over the effect)", "FRAMES"},
         {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE, "of pictures (default: 960x540)", "WxH"},
         {"repeats", 0, POPT_ARG_INT, &o->repeats, 0, "how often each row is measured (default: 2)",
          "N"},

@@ -75,7 +75,7 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
     const struct poptOption options[] = {
         {"output", 'o', POPT_ARG_STRING, &j->output, 0, "file or pattern", "DIR/%04d.vdb"},
         {"frames", 'f', POPT_ARG_STRING, &j->frames_text, 0,
-         "30, or 0-99, or 0-99:2 (default: all)", "FRAMES"},
+         "30, or 1-100, or 1-100:2 (default: all)", "FRAMES"},
         {"source", '\0', POPT_ARG_STRING, &j->volume.source, 0,
          "a grid by the name of its variable, or a pass whose medium it is (default: the grid that "
          "is simulated, else the medium of the march)",

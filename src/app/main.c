@@ -91,6 +91,8 @@ static int run(int argc, char **argv) {
         printf("roil %s\n", roil_version());
         return APP_DONE;
     }
+    for (int i = 2; i < argc; i++)
+        if (strcmp(argv[i], "-h") == 0) argv[i] = "--help";
     const char *names[COUNT_OF(commands)];
     for (size_t i = 0; i < COUNT_OF(commands); i++) {
         if (strcmp(commands[i].name, wanted) == 0)

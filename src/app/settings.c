@@ -1,7 +1,10 @@
 // What the command line says about an effect: a picture's recipe, presets, single values.
 #include "app/app.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "base/memory.h"
+#include "base/str.h"
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -46,8 +49,41 @@ static void drop(app_settings *s) { // what was collected before
     s->loaded_count = s->count = 0;
 }
 
+static bool refuse_missing(const char *effect) {
+    strbuf pattern = {0};
+    strbuf_append(&pattern, effect, (size_t)(path_name(effect) - effect));
+    strbuf_add(&pattern, "*.lua");
+    file_list beside = {0};
+    const char *near = file_glob(strbuf_text(&pattern), &beside)
+                           ? str_nearest(effect, (const char *const *)beside.paths, beside.count)
+                           : NULL;
+    if (near)
+        err_set("%s: %s; did you mean '%s'?", effect, strerror(ENOENT), near);
+    else
+        err_set("%s: %s", effect, strerror(ENOENT));
+    file_list_free(&beside);
+    strbuf_free(&pattern);
+    return false;
+}
+
+bool app_check_effect(const char *file) {
+    static const struct {
+        const char *ending, *is;
+    } others[] = {
+        {".png", "a picture; `roil render --from` draws one again by what it holds"},
+        {".exr", "a picture; an effect is a .lua file"},
+        {".mp4", "a film; an effect is a .lua file"},
+        {".vdb", "a volume; `roil info` tells about it, and an effect reads it by `vdb`"},
+    };
+    if (file_is_folder(file)) return err_set("%s is a folder; an effect is a .lua file", file);
+    for (size_t i = 0; i < COUNT_OF(others); i++)
+        if (str_ends_with(file, others[i].ending)) return err_set("%s is %s", file, others[i].is);
+    return file_exists(file) || refuse_missing(file);
+}
+
 bool app_collect_settings(app_settings *s, roil *r, const char *effect, const roil_recipe *from) {
     drop(s);
+    if (!app_check_effect(effect)) return false;
     s->loaded = mem_alloc(s->preset_count * sizeof *s->loaded);
     if (from) add_all(s, from->settings, from->setting_count);
     for (size_t i = 0; i < s->preset_count; i++) {

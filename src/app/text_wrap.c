@@ -52,9 +52,7 @@ size_t text_wrap_lines(const char *text, size_t length, float width,
 }
 
 text_message text_split(const char *message) {
-    static const char calls[] = "\nstack traceback:";
-    const char *end = strstr(message, calls);
-    if (!end) end = message + strlen(message);
+    const char *end = message + strlen(message);
     text_message m = {.head = message, .head_length = strcspn(message, "\n")};
     m.rest = m.head + m.head_length;
     while (m.rest < end && *m.rest == '\n') m.rest++;

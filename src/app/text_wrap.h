@@ -10,7 +10,7 @@ size_t text_wrap_lines(const char *text, size_t length, float width,
 typedef struct text_message { // as errors are written; neither part is terminated
     const char *head;         // "explosion.lua:12: no pass 'marsh'"
     size_t head_length;
-    const char *rest; // lines below: source and caret; not the stack of Lua calls
+    const char *rest; // lines below: source and caret, callers in Lua
     size_t rest_length, rest_lines;
 } text_message;
 text_message text_split(const char *message);

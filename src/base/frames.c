@@ -52,7 +52,7 @@ bool frames_parse(const char *text, double **numbers, size_t *count) {
     list l = {0};
     if (!parse_list(text, &l)) {
         mem_free(l.numbers);
-        return err_set("frames '%s'; accepted: 30, or 10,30,50, or 0-99, or 0-99:2", text);
+        return err_set("frames '%s'; accepted: 30, or 10,30,50, or 1-100, or 1-100:2", text);
     }
     *numbers = l.numbers;
     *count = l.count;

@@ -1,4 +1,4 @@
-// Frames as people write them: "30", "10,30,50", "0-99", "0-99:2", or a list of such.
+// Frames as people write them: "30", "10,30,50", "1-100", "1-100:2", or a list of such.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>

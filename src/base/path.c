@@ -67,25 +67,30 @@ static bool lies_inside(const char *real_root, const char *real) {
     return strncmp(real, real_root, length) == 0 && (real[length] == '/' || real[length] == '\0');
 }
 
+static bool refuse(const char *path, const char *real_root) {
+    return err_set("%s: leads out of %s; files must lie in this folder or below it", path,
+                   real_root);
+}
+
 bool path_confine(char out[PATH_CAP], const char *root, const char *name) {
     char real_root[PATH_MAX], joined[PATH_CAP];
     if (!name[0]) return err_set("empty file name");
     if (!real_folder(real_root, root)) return false;
-    if (name[0] == '/') return err_set("%s: must be relative to %s", name, root);
+    if (name[0] == '/') return refuse(name, real_root);
     for (const char *part = name; part; part = strchr(part, '/')) {
         if (*part == '/') part++;
         if (strncmp(part, "..", 2) == 0 && (part[2] == '/' || !part[2]))
-            return err_set("%s: leaves %s", name, root);
+            return refuse(name, real_root);
     }
     if (!path_join(joined, real_root, name) || !resolve(out, joined)) return false;
-    return lies_inside(real_root, out) || err_set("%s: leads out of %s", name, root);
+    return lies_inside(real_root, out) || refuse(name, real_root);
 }
 
 bool path_require_inside(const char *root, const char *path) {
     char real_root[PATH_MAX], real[PATH_MAX];
     if (!real_folder(real_root, root)) return false;
     if (!realpath(path, real)) return err_set("%s: %s", path, strerror(errno));
-    return lies_inside(real_root, real) || err_set("%s: leads out of %s", path, root);
+    return lies_inside(real_root, real) || refuse(path, real_root);
 }
 
 bool path_split_inside(char real_root[PATH_CAP], char rest[PATH_CAP], const char *root,
@@ -94,7 +99,7 @@ bool path_split_inside(char real_root[PATH_CAP], char rest[PATH_CAP], const char
     if (!real_folder(real_root, root)) return false;
     if (!path_join(from_here, path[0] == '/' ? "" : ".", path) || !resolve(real, from_here))
         return false;
-    if (!lies_inside(real_root, real)) return err_set("%s: leads out of %s", path, root);
+    if (!lies_inside(real_root, real)) return refuse(path, real_root);
     size_t length = strcmp(real_root, "/") == 0 ? 0 : strlen(real_root);
     str_copy(rest, PATH_CAP, real + length + (real[length] == '/'));
     return true;

@@ -72,6 +72,27 @@ bool field_bounds(const field *node, const field_context *context, box3 *out) {
     return ok;
 }
 
+const field *field_without_bounds(const field *node, const field_context *context) {
+    boxes b = {.context = context};
+    for (const field *next = node; next;) {
+        node = next;
+        next = NULL;
+        for (size_t i = 0; i < kind_arg_count(node); i++) {
+            box3 box;
+            const field *arg = node->args[i];
+            if (arg->uniform || !find(&b, arg, &box)) continue;
+            if (box3_is_finite(box)) { // this one had bounds, and its owner lost them
+                next = NULL;
+                break;
+            }
+            if (!next) next = arg;
+        }
+    }
+    map_free(&b.places);
+    mem_free(b.values);
+    return node;
+}
+
 // ---- boxes of kinds ---------------------------------------------------------------------------
 
 box3 bounds_grid(const field *node, const field_context *context, const box3 *args) {

@@ -147,6 +147,9 @@ enum { FIELD_ADVECT_COST = 3 * (FIELD_MAX_ADVECTED + 32) * sizeof(field) };
 bool field_eval(const field *node, const field_context *context, float3 p, float out[4]);
 // Box outside of which the field is zero; infinite when unknown.
 bool field_bounds(const field *node, const field_context *context, box3 *out);
+// Of a tree without bounds, the node to blame: one that is not zero although one of its arguments
+// has bounds, else a leaf that has none itself.
+const field *field_without_bounds(const field *node, const field_context *context);
 // Greatest size that a component can have anywhere; INFINITY when unknown.
 float field_longest(const field *node, const field_context *context);
 // Every grid the tree samples, each once; returns the count (writes at most `capacity`).

@@ -1,17 +1,26 @@
 // The box of a volume: where its density can be above 0, as the bounds of the field say.
 #include "base/error.h"
 #include "pass/pass_impl.h"
+#include <string.h>
 
 const field *pass_density(const pass *p) {
     size_t index;
     return pass_find_key(p, "density", &index) == PASS_FIELD ? p->fields[index] : NULL;
 }
 
+// As an author writes it.
+static const char *written(const field *node) {
+    const char *name = node->kind->name;
+    return strcmp(name, "add") == 0 ? "+" : strcmp(name, "sub") == 0 ? "-" : name;
+}
+
 bool pass_density_box(const pass *p, box3 *box) {
     if (!field_bounds(pass_density(p), p->host->context, box)) return err_prefix("%s: ", p->label);
     if (box3_is_finite(*box) || box3_is_empty(*box)) return true;
-    return err_set("%s: field 'density' fills all of space; multiply it by a grid or a shape",
-                   p->label);
+    const field *cause = field_without_bounds(pass_density(p), p->host->context);
+    return err_set("%s: field 'density' fills all of space, because of '%s'; multiply it by a grid "
+                   "or a shape",
+                   p->label, written(cause));
 }
 
 void pass_write_box(const shader_binary *binary, unsigned char *block, box3 box) {

@@ -191,6 +191,13 @@ static const char *const withheld[] = {
     "loadfile", "dofile", "module", "collectgarbage", "loadstring",
 };
 
+static const struct {
+    const char *name, *hint;
+} elsewhere[] = {
+    {"sweep", "this is a sweep; `roil bench` measures it"},
+    {"effect", "this is an effect; `roil render` draws it"},
+};
+
 static int l_unknown_global(lua_State *L) {
     if (lua_type(L, 2) != LUA_TSTRING) vm_error(L, "globals are named by strings");
     const char *name = lua_tostring(L, 2);
@@ -198,6 +205,9 @@ static int l_unknown_global(lua_State *L) {
         if (strcmp(withheld[i], name) == 0)
             vm_error(L, "'%s' is not available in effects: they cannot reach files or the system",
                      name);
+    for (size_t i = 0; i < COUNT_OF(elsewhere); i++)
+        if (strcmp(elsewhere[i].name, name) == 0)
+            vm_error(L, "unknown name '%s': %s", name, elsewhere[i].hint);
     int count = 0;
     lua_settop(L, 2);
     for (lua_pushnil(L); lua_next(L, 1); lua_pop(L, 1))

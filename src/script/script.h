@@ -16,7 +16,7 @@ typedef struct script_limits {
 
 // Runs effect_file(e) and fills the effect. `prelude_folder`: the program's scripts, with
 // prelude.lua and lib/. The effect owns the script state from then on (effect_set_hooks). False
-// with "file:line: message" and a traceback on the lines below; the effect is then only good for
+// with "file:line: message" and its callers on the lines below; the effect is then only good for
 // effect_destroy.
 bool script_load(effect *e, const char *prelude_folder);
 bool script_load_limited(effect *e, const char *prelude_folder, const script_limits *limits);

@@ -143,7 +143,7 @@ static void take_frame_text(lua_State *L, const char *who, sweep_patch *patch) {
 static void take_frame_list(lua_State *L, const char *who, sweep_patch *patch) {
     lua_Unsigned count = lua_type(L, -1) == LUA_TTABLE ? lua_rawlen(L, -1) : 0;
     if (count < 1 || count > SWEEP_MAX_FRAMES)
-        wrong(L, who, "frames", "a number, a text as \"0-99\" or a list {10, 30}");
+        wrong(L, who, "frames", "a number, a text as \"1-100\" or a list {10, 30}");
     patch->frames = reserve(L, count, sizeof *patch->frames);
     patch->frame_count = count;
     for (size_t i = 0; i < count; i++) {

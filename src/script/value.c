@@ -151,6 +151,11 @@ const script_object *value_check_object(lua_State *L, int table, const char *nam
 
 _Noreturn static void wrong(lua_State *L, int index, const char *who, const char *key,
                             const char *accepted) {
+    if (lua_type(L, index) == LUA_TSTRING && strstr(accepted, "#rrggbb"))
+        vm_error(L,
+                 "%s: '%s' must be a colour as \"#rrggbb\", or a number, {x, y, z}, a field, a "
+                 "parameter, a curve or a function of time; got \"%s\"",
+                 who, key, lua_tostring(L, index));
     vm_error(L, "%s: '%s' must be %s; got %s", who, key, accepted, object_kind(L, index));
 }
 
@@ -375,12 +380,14 @@ const field *value_field(lua_State *L, int index, const char *who, const char *k
 
 const field *value_uniform(lua_State *L, int index, const char *who, const char *key,
                            int components) {
+    if (components == 3 && value_is_plain_table(L, index) && lua_rawlen(L, index) == 2)
+        vm_error(L, "%s: '%s' takes three numbers, {x, y, z}; this has two", who, key);
     const field *node = value_field(L, index, who, key, components);
     if (!node->uniform)
         vm_error(L,
                  "%s: '%s' varies in space; a number, a parameter, a curve or a function of time "
-                 "is accepted",
-                 who, key);
+                 "is accepted%s",
+                 who, key, strcmp(key, "albedo") == 0 ? "; 'tint' colours what varies" : "");
     return node;
 }
 

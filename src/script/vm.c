@@ -292,7 +292,21 @@ static bool blames_us(lua_State *L, const char *text) {
     return false;
 }
 
-// Message handler: turns whatever was thrown into text with a traceback below.
+static const char called_from[] = "\ncalled from ";
+
+// The lines of the effect's files that led to the one where it went wrong, a line each.
+static void add_callers(lua_State *L, char *text, size_t capacity) {
+    enum { MOST_CALLERS = 8 };
+    lua_Debug ar;
+    for (int level = 0, own = 0; own <= MOST_CALLERS && lua_getstack(L, level, &ar); level++) {
+        lua_getinfo(L, "Sl", &ar);
+        size_t n = strlen(text);
+        if (ar.source[0] != OF_EFFECT || ar.currentline < 0 || own++ == 0) continue;
+        snprintf(text + n, capacity - n, "%s%s:%d", called_from, ar.short_src, ar.currentline);
+    }
+}
+
+// Message handler: turns whatever was thrown into text, with its callers below.
 static int describe_error(lua_State *L) {
     const char *message = lua_tostring(L, 1);
     if (!message) {
@@ -305,7 +319,8 @@ static int describe_error(lua_State *L) {
     if (!str_has_place(message) || blames_us(L, message)) vm_locate(L, where, sizeof where);
     if (strncmp(message, where, strlen(where)) == 0) where[0] = 0;
     snprintf(text, sizeof text, "%s%s", where, message);
-    luaL_traceback(L, L, text, 1);
+    add_callers(L, text, sizeof text);
+    lua_pushstring(L, text);
     return 1;
 }
 
@@ -327,11 +342,9 @@ static void report(vm *v, int status) {
     if (v->stop) {
         char message[MESSAGE_MAX];
         stop_message(v, message, sizeof message);
-        const char *trace = text ? strstr(text, "\nstack traceback:") : NULL;
-        if (trace) {
-            size_t n = strlen(message);
-            snprintf(message + n, sizeof message - n, "%s", trace);
-        }
+        const char *callers = text ? strstr(text, called_from) : NULL;
+        size_t n = strlen(message);
+        if (callers) snprintf(message + n, sizeof message - n, "%s", callers);
         set_error(message);
     } else if (status == LUA_ERRMEM && v->over_budget) {
         err_set("%s", v->refusal);

@@ -30,7 +30,7 @@ lua_State *vm_lua(vm *v);
 vm *vm_of(lua_State *L);
 void *vm_user(lua_State *L);
 
-// Reads and runs a file in the sandbox. False with "file:line: message" and a traceback.
+// Reads and runs a file in the sandbox. False with "file:line: message", its callers below.
 // `prelude`: errors in its functions name the line of the effect that called them.
 bool vm_run_file(vm *v, const char *path, const char *shown, uint64_t instructions, bool prelude);
 

@@ -18,6 +18,23 @@ class Usage(Case):
         self.assertRegex(self.succeeds("--version"), r"^roil \d+\.\d+\.\d+\n$")
         for command in ("render", "check", "info", "bench", "compare"):
             self.assertIn("Usage:", self.succeeds(command, "--help"))
+            self.assertIn("Usage:", self.succeeds(command, "-h"))
+
+    def test_what_is_no_effect_is_named_as_what_it_is(self):
+        self.write("shot.png", b"")
+        self.write("sweep.lua", 'return sweep { effect = "puff.lua" }\n')
+        for command in ("render", "check", "live"):
+            self.fails(1, "pufff.lua: No such file or directory; did you mean 'puff.lua'?", command, "pufff.lua")
+            self.fails(1, "none/x.lua: No such file or directory", command, "none/x.lua")
+            self.fails(1, ". is a folder; an effect is a .lua file", command, ".")
+            self.fails(1, ["shot.png is a picture", "--from"], command, "shot.png")
+        self.fails(1, ["sweep.lua:1: unknown name 'sweep'", "`roil bench`"], "render", "sweep.lua")
+        self.fails(1, ["unknown name 'effect'", "`roil render`"], "bench", "puff.lua")
+
+    def test_info_alone_is_an_index(self):
+        text = self.succeeds("info")
+        for line in ("roil info passes [NAME]", "roil info params EFFECT.lua", "roil info FILE.vdb"):
+            self.assertIn(line, text)
 
     def test_unknown_command_gets_a_suggestion(self):
         self.fails(2, ["unknown command 'rendr'", "did you mean 'render'?"], "rendr")

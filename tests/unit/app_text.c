@@ -60,13 +60,6 @@ static void messages_have_a_head_and_a_rest(void **state) {
     is_parts("", "", "", 0);
 }
 
-static void the_stack_is_left_out(void **state) {
-    (void)state;
-    is_parts("a.lua:1: no\n    x = y\nstack traceback:\n\t[C]: in ?", "a.lua:1: no", "    x = y",
-             1);
-    is_parts("a.lua:1: no\nstack traceback:\n\t[C]: in ?", "a.lua:1: no", "", 0);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(words_fill_lines),
@@ -74,7 +67,6 @@ int main(void) {
         cmocka_unit_test(no_width_ends_too),
         cmocka_unit_test(only_as_much_as_is_asked_for),
         cmocka_unit_test(messages_have_a_head_and_a_rest),
-        cmocka_unit_test(the_stack_is_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,15 +14,16 @@ static void in_scratch(const char *folder, const char *format, char out[512]) {
     snprintf(out, 512, format, folder);
 }
 
-static void line_of_lua_is_shown_above_the_traceback(void **state) {
+static void line_of_lua_is_shown_above_the_callers(void **state) {
     char message[512], expected[512];
     put(*state, "a.lua", "local x = 1\n   local y = nothing.field\n");
-    in_scratch(*state, "%s/a.lua:2: attempt to index a nil value (global 'nothing')\nstack: more",
+    in_scratch(*state,
+               "%s/a.lua:2: attempt to index a nil value (global 'nothing')\ncalled from b.lua:7",
                message);
     in_scratch(*state,
                "%s/a.lua:2: attempt to index a nil value (global 'nothing')\n"
                "    local y = nothing.field\n"
-               "              ^\nstack: more",
+               "              ^\ncalled from b.lua:7",
                expected);
     explains(message, "", expected);
 }
@@ -71,7 +72,7 @@ static void line_beyond_the_end_is_not_shown(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        SCRATCH_TEST(line_of_lua_is_shown_above_the_traceback),
+        SCRATCH_TEST(line_of_lua_is_shown_above_the_callers),
         SCRATCH_TEST(word_that_the_line_has_twice_gets_no_caret),
         SCRATCH_TEST(part_of_a_word_is_not_the_word),
         SCRATCH_TEST(line_that_the_compiler_showed_gets_its_caret),

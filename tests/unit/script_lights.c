@@ -226,7 +226,7 @@ static void mistakes_in_a_sky_are_named(void **state) {
     refused(HEAD "fx.sky = sky { image = 'below.exr' }" TAIL, "the panorama holds -1 at 0, 0");
     refused(HEAD "fx.sky = sky { image = 'text.exr' }" TAIL, "cannot be read as EXR");
     refused(HEAD "fx.sky = sky { image = 'none.exr' }" TAIL, "none.exr");
-    refused(HEAD "fx.sky = sky { image = '../sky.exr' }" TAIL, "leaves");
+    refused(HEAD "fx.sky = sky { image = '../sky.exr' }" TAIL, "leads out");
     refused(HEAD "fx.sky = sky { image = 3 }" TAIL, "sky: 'image' must be a string");
     refused(HEAD "fx.sky = sky { image = 'black.exr', horizon = 1 }" TAIL,
             "sky: 'image' is given, and 'horizon' too; an image stands for both colours");

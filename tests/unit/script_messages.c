@@ -56,7 +56,7 @@ static void values_of_the_wrong_kind_are_named(void **state) {
     (void)state;
     static const mistake cases[] = {
         {"worley(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18)", "worley"},
-        {"worley { frequency = 'high' }", "worley: 'frequency' must be a number, {x, y, z}"},
+        {"worley { frequency = 'high' }", "worley: 'frequency' must be a colour as"},
         {"worley { frequency = {} }", "worley: 'frequency' must be a number, {x, y, z}"},
         {"worley { frequency = print }", "worley: the function for 'frequency' must return"},
         {"worley { frequency = function() return 0 / 0 end }",

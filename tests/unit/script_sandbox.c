@@ -102,7 +102,8 @@ static void misspelt_globals_get_a_suggestion(void **state) {
     (void)state;
     fails_with("\nlocal s = pritn('x')",
                "effect.lua:2: unknown name 'pritn'; did you mean 'print'?");
-    fails_with("wholly_unlike_anything()", "effect.lua:1: unknown name 'wholly_unlike_anything'\n");
+    fails_with("wholly_unlike_anything()", "effect.lua:1: unknown name 'wholly_unlike_anything'");
+    assert_null(strstr(err_get(), "did you mean"));
     passes("x = 1; assert(x == 1)");
 }
 
@@ -339,12 +340,12 @@ static void memory_too_small_for_lua_is_refused(void **state) {
 
 // ---- messages ---------------------------------------------------------------------------------
 
-static void errors_carry_line_and_traceback(void **state) {
+static void errors_carry_line_and_callers(void **state) {
     (void)state;
     fails_with("local function f()\n  local x = nil + 1\nend\nf()", "effect.lua:2: attempt to");
-    assert_non_null(strstr(err_get(), "stack traceback:"));
-    assert_non_null(strstr(err_get(), "effect.lua:4:"));
+    assert_non_null(strstr(err_get(), "\ncalled from effect.lua:4"));
     fails_with("error('plain', 0)", "effect.lua:1: plain");
+    assert_null(strchr(err_get(), '\n')); // no word of Lua's insides
     fails_with("\ntable.insert({}, 5, 1)", "effect.lua:2: bad argument");
 }
 
@@ -466,7 +467,7 @@ int main(void) {
         cmocka_unit_test(long_comparisons_are_stopped_by_processor_time),
         cmocka_unit_test(deep_recursion_is_an_error),
         cmocka_unit_test(memory_too_small_for_lua_is_refused),
-        cmocka_unit_test(errors_carry_line_and_traceback),
+        cmocka_unit_test(errors_carry_line_and_callers),
         cmocka_unit_test(errors_that_are_no_strings_are_described),
         cmocka_unit_test(messages_are_no_formats_and_no_terminal_codes),
         cmocka_unit_test(random_numbers_repeat),
