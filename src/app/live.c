@@ -215,7 +215,9 @@ static void take_shot(live *l, const loop *p) {
         return;
     }
     log_write(LOG_DEBUG, "live: wrote %s", file);
-    live_notice(l, "Saved %s", file);
+    live_notice(l,
+                "Saved %s, %u x %u pixels (preview: %s); `roil render --from` draws it in any size",
+                file, l->width, l->height, live_previews[l->session.preview].name);
 }
 
 // ---- interface --------------------------------------------------------------------------------

@@ -89,7 +89,7 @@ static void save(live *l, preset_list *list) {
     list->asked = false;
     list->next_look = 0;
     if (roil_write_preset(l->effect, list->name))
-        live_notice(l, "saved preset %s", list->name);
+        live_notice(l, "saved preset %s, without the camera", list->name);
     else
         live_notice(l, "%s", roil_error());
 }

@@ -47,6 +47,15 @@ static bool is_seen(const live_session *s) {
     return false;
 }
 
+// One that was larger than the display is now has to fit it.
+static void fit_session(const live_session *s, int *width, int *height) {
+    int x, y, most_width = 0, most_height = 0;
+    GLFWmonitor *monitor = glfwGetPrimaryMonitor();
+    if (monitor) glfwGetMonitorWorkarea(monitor, &x, &y, &most_width, &most_height);
+    *width = s->width < most_width || !most_width ? s->width : most_width;
+    *height = s->height < most_height || !most_height ? s->height : most_height;
+}
+
 static int smaller(int a, float b) {
     return (float)a < b ? a : (int)b;
 }
@@ -67,8 +76,7 @@ bool window_open(window *w, const live_session *s, const char *title, int width,
     if (!start()) return false;
     bool placed = !width && s->width > 0;
     if (placed) {
-        width = s->width;
-        height = s->height;
+        fit_session(s, &width, &height);
     } else if (!width) {
         first_size(&width, &height);
     }

@@ -324,6 +324,20 @@ class Window(Case):
         self.assertEqual((shot.width, shot.height), (1000, 640))
         again.quit()
 
+    def test_one_that_was_larger_than_the_display_fits_it(self):
+        live = self.live()
+        live.widget("thickness")
+        live.tool("windowsize", "--sync", live.window(), 2000, 1300)
+        live.wait_until(lambda: live.widgets().get(VIEW, [0] * 4)[3] > 1000, "the larger size")
+        live.quit()
+        from lib.window import SCREEN, Live
+        again = Live(self, "puff.lua", "--paused")
+        self.addCleanup(again.kill)
+        again.expect("live: first frame")
+        shot = again.screenshot()
+        self.assertEqual((shot.width, shot.height), SCREEN)
+        again.quit()
+
     def test_without_a_display(self):
         self.write("puff.lua", PUFF)
         environment = {k: v for k, v in self.environment.items() if k != "DISPLAY"}
