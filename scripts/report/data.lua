@@ -134,11 +134,18 @@ local function process_metric(sweep)
   local cores = math.max(sweep.machine.cores, 1)
   return { label = "processor by core", name = "a frame on all cores", get = function(row)
     local ms = row.cpu.process
-    return ms and { median = ms.median / cores, p5 = ms.p5 / cores, p95 = ms.p95 / cores }
+    return ms and { median = ms.median / cores, p5 = ms.p5 / cores, p95 = ms.p95 / cores, count = ms.count }
   end }
 end
 
--- How far a time moves along an axis, all else being equal; without an axis, in all rows.
+-- Within which a time lies: its 5th and 95th percentile, and a tenth where it was measured only once.
+function data.bounds(spread)
+  local slack = (spread.count or 1) > 1 and 0 or 0.1 * spread.median
+  return spread.p5 - slack, spread.p95 + slack
+end
+
+-- How far a time surely moves along an axis, all else being equal; without an axis, in all rows. Not
+-- above 0: not beyond its spread.
 local function movement(sweep, name, axis)
   local least, greatest, most = {}, {}, nil
   for _, row in ipairs(sweep.rows) do
@@ -146,8 +153,9 @@ local function movement(sweep, name, axis)
     if found and (not axis or row.axes[axis.name]) then
       for i, other in ipairs(axis and sweep.axes or {}) do key[i] = other == axis and "" or row.axes[other.name] or "" end
       key = table.concat(key, "\n")
-      least[key] = math.min(least[key] or found.median, found.median)
-      greatest[key] = math.max(greatest[key] or found.median, found.median)
+      local low, high = data.bounds(found)
+      least[key] = math.min(least[key] or high, high)
+      greatest[key] = math.max(greatest[key] or low, low)
       local move = #sweep.rows > 1 and greatest[key] - least[key] or found.median
       most = math.max(most or move, move)
     end
@@ -158,7 +166,7 @@ end
 -- The pass that the sweep moves most (along an axis, if one is given), then the whole frame; or
 -- whatever else was timed.
 function data.metrics(sweep, axis)
-  local out, main, moved = {}, nil, -1
+  local out, main, moved = {}, nil, -math.huge
   if sweep.by_process then return { process_metric(sweep) } end
   for _, name in ipairs(data.names(sweep, "times")) do out[#out + 1] = metric(sweep, "times", name, name) end
   if #out > 0 then return out end

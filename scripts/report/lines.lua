@@ -51,7 +51,7 @@ local function add_point(panels, row, x, series_axis, facets, metric)
   local name = series_axis and (row.axes[series_axis.name] or "-") or ""
   local line = panel.lines[name] or { name = name }
   panel.lines[name] = line
-  line[#line + 1] = { x = x.number[at], y = spread.median, low = spread.p5, high = spread.p95, row = row, at = at }
+  line[#line + 1] = { x = x.number[at], y = spread.median, low = spread.p5, high = spread.p95, row = row, at = at, spread = spread }
 end
 
 local function has_line(panel)
@@ -181,16 +181,28 @@ local function work_of(axis)
   return axis.size and "pixels" or axis.unit and axis.unit .. "s" or axis.label
 end
 
+-- Whether times differ by more than they spread: else an exponent would be one of noise.
+local function moves(line)
+  local least, greatest = math.huge, -math.huge
+  for _, p in ipairs(line) do
+    local low, high = data.bounds(p.spread)
+    least, greatest = math.min(least, high), math.max(greatest, low)
+  end
+  return greatest > least
+end
+
 local function exponents(panels, axis)
-  local all = {}
+  local all, moved = {}, false
   for _, panel in ipairs(panels) do
     for _, line in ipairs(panel.lines) do
-      local exponent = scale.exponent(line)
+      local sure = moves(line)
+      local exponent = sure and scale.exponent(line) or nil
+      moved = moved or sure
       line.exponent = exponent and exponent / axis.dimension
       all[#all + 1] = line.exponent
     end
   end
-  return all
+  return all, moved
 end
 
 local function power(value)
@@ -198,7 +210,11 @@ local function power(value)
 end
 
 -- Whether time grows faster than the work does; 0.05 is within what a fit of noisy times may miss.
-local function growth(metric, axis, all)
+local function growth(metric, axis, panels)
+  local all, moved = exponents(panels, axis)
+  if not moved then
+    return string.format("Time of %s does not change with %s by more than it spreads.", metric.name, work_of(axis))
+  end
   if #all == 0 then return nil end
   local least, greatest = math.min(table.unpack(all)), math.max(table.unpack(all))
   local range = power(least) == power(greatest) and power(least) or power(least) .. " to " .. power(greatest)
@@ -232,7 +248,7 @@ local function group(sweep, axis, metric, first)
   local panels, series_axis = arrange(sweep, axis, metric)
   local b = bounds(panels)
   if #panels == 0 or b.x_high <= b.x_low then return nil end
-  local sentence = growth(metric, axis, exponents(panels, axis))
+  local sentence = growth(metric, axis, panels)
   local shown = { class = "panels" }
   for i, panel in ipairs(panels) do
     if i <= MAX_PANELS then

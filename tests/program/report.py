@@ -77,6 +77,21 @@ class Report(ReportCase):
             r["gpu_ms"]["march"] = figure(1e-3 * int(r["axes"]["steps"]) ** 1.5)
         self.assertIn("to the power of 1.50, faster than linearly.", self.report(content))
 
+    def test_growth_within_the_spread_is_not_told(self):
+        content = grid()
+        for r in content["rows"]:  # march grows with pixels only, and geometry is noise
+            noise = 1 + 0.02 * (r["index"] % 5)
+            r["gpu_ms"]["march"] = figure(4 * float(r["axes"]["march.resolution"]) ** 2)
+            r["gpu_ms"]["geometry"] = figure(40 * noise)
+        page = self.report(content)
+        self.assertIn("Time of march grows with pixels to the power of 1.00, at most linearly.", page)
+        self.assertRegex(page, r"Time of \w+ does not change with steps by more than it spreads\.")
+        for name in ("march", "geometry", "final"):
+            self.assertFalse(f"{name} grows with steps" in page)
+        for r in content["rows"]:  # one measurement each: a tenth is no growth
+            r["gpu_ms"]["march"] = {**figure(4 * (1 - 0.0005 * int(r["axes"]["steps"])), 0), "count": 1}
+        self.assertFalse("march grows with steps" in self.report(content))
+
     def test_failures_are_told(self):
         content = grid()
         content["rows"][3].update(state="failed", message="effects/paper.lua:3: no such noise", gpu_ms={}, error=None)
