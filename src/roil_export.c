@@ -103,6 +103,12 @@ static bool write_file(exporter *x, const voxel_type *type, float scale, const c
     return err_prefix("%s: ", file);
 }
 
+// As an effect names it: from its own folder, beside which files lie that were written elsewhere.
+static const char *named_by_effect(const char *file) {
+    bool below = file[0] != '/' && strncmp(file, "../", 3) != 0 && !strstr(file, "/../");
+    return below ? file : path_name(file);
+}
+
 static char *describe(const exporter *x, const voxel_type *type, float scale, const char *file) {
     const field_grid *g = x->grid;
     strbuf text = {0};
@@ -112,7 +118,7 @@ static char *describe(const exporter *x, const voxel_type *type, float scale, co
         &text,
         "raw { \"%s\", type = \"%s\", size = {%u, %u, %u}, voxel_size = %g, value_scale = %g, "
         "channel = \"%s\", offset = {%g, %g, %g} }\n",
-        file, type->name, g->size[0], g->size[1], g->size[2],
+        named_by_effect(file), type->name, g->size[0], g->size[1], g->size[2],
         (double)((g->box.max.x - g->box.min.x) / (float)g->size[0]),
         type->name[0] == 'u' ? (double)scale : 1.0, x->name, (double)g->box.min.x,
         (double)g->box.min.y, (double)g->box.min.z);

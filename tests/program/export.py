@@ -37,6 +37,11 @@ class Export(Case):
                             for a, b in zip(wanted.channel(c), got.channel(c)))
                 self.assertLessEqual(worst, tolerance)
 
+    def test_what_is_printed_can_be_loaded_from_beside_the_effect(self):
+        told = self.succeeds("export", "raw", FILES, "-o", self.path("out.raw"))
+        self.write("effect.lua", EFFECT % re.search(r"raw \{.*\}", told).group())
+        self.succeeds("check", "effect.lua")
+
     def test_mistakes(self):
         self.fails(2, "which format?", "export")
         self.fails(2, "-o is missing", "export", "raw", FILES)
