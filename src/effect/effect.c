@@ -6,6 +6,7 @@
 #include "base/time_limit.h"
 #include "effect/effect_impl.h"
 #include "media/picture.h"
+#include "media/texture.h"
 #include "scene/bvh.h"
 #include "scene/sky_image.h"
 #include <math.h>
@@ -330,7 +331,7 @@ const mesh_texture *effect_add_texture(effect *e, const char *file) {
         const char *kept = path;
         int64_t begin = file_clock_ns();
         mesh_texture *texture = arena_alloc(&memory, sizeof *texture);
-        if (!mesh_texture_load(e->root, path, &memory, texture)) {
+        if (!texture_read_inside(e->root, path, &memory, texture)) {
             arena_free(&memory);
             return NULL;
         }

@@ -83,7 +83,7 @@ void effect_add_grid(effect *e, field_grid *grid); // owned by the effect from n
 void effect_name_grid(effect *e, field_grid *grid, const char *name);
 bool effect_playback(const effect *e, field_playback *out); // false: no grid is played
 scene_mesh *effect_add_mesh(effect *e, const char *file);   // confined to the effect's folder
-const mesh_texture *effect_add_texture(effect *e, const char *file); // a PNG; the same
+const mesh_texture *effect_add_texture(effect *e, const char *file); // PNG or JPEG; the same
 // One whose numbers can be set by its name, if it has one. It must live as long as the effect.
 void effect_add_material(effect *e, scene_material *material);
 // Owned by the effect; NULL with a message when it has too many.

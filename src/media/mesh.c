@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "media/mesh_files.h"
 #include "media/mesh_import.h"
-#include "media/png.h"
+#include "media/texture.h"
 #include <math.h>
 #include <string.h>
 #include <strings.h>
@@ -129,19 +129,8 @@ static bool take_geometry(loader *l, const mesh_blob *head, mesh_part **parts, m
     return true;
 }
 
-// 16-bit pictures lose their low bytes: textures are shown, not measured.
-static mesh_texture texture_from_png(arena *memory, const png_image *image) {
-    if (image->bits == 8) return (mesh_texture){image->width, image->height, image->pixels};
-    size_t values = (size_t)image->width * image->height * 4;
-    const uint16_t *wide = image->pixels;
-    uint8_t *pixels = arena_alloc(memory, values);
-    for (size_t i = 0; i < values; i++) pixels[i] = (uint8_t)(wide[i] >> 8);
-    return (mesh_texture){image->width, image->height, pixels};
-}
-
 static bool load_texture(loader *l, const mesh_blob_texture *t, const void *bytes,
                          mesh_texture *out) {
-    png_image image;
     if (t->kind == MESH_TEXTURE_TEXELS) {
         if (t->width > TEXEL_SIDE_MAX || t->height > TEXEL_SIDE_MAX || t->width == 0 ||
             t->size != (uint64_t)t->width * t->height * 4)
@@ -149,26 +138,13 @@ static bool load_texture(loader *l, const mesh_blob_texture *t, const void *byte
         *out = (mesh_texture){t->width, t->height, arena_copy(l->memory, bytes, t->size)};
         return true;
     }
-    if (t->kind == MESH_TEXTURE_FILE) {
-        if (!png_read_memory(bytes, t->size, "embedded texture", l->memory, &image)) return false;
-    } else {
-        char *name = arena_alloc(l->memory, (size_t)t->size + 1), file[PATH_CAP];
-        memcpy(name, bytes, t->size);
-        if (!mesh_files_resolve_beside(&l->files, name, file)) return false;
-        if (strcasecmp(path_extension(file), "png") != 0)
-            return err_set("%s: is not a PNG file", name);
-        mesh_files_note(&l->files, file); // even if it is missing: it may come
-        if (!png_read_inside(l->files.root, file, NULL, l->memory, &image)) return false;
-    }
-    *out = texture_from_png(l->memory, &image);
-    return true;
-}
-
-bool mesh_texture_load(const char *root, const char *path, arena *memory, mesh_texture *out) {
-    png_image image;
-    if (!png_read_inside(root, path, NULL, memory, &image)) return false;
-    *out = texture_from_png(memory, &image);
-    return true;
+    if (t->kind == MESH_TEXTURE_FILE)
+        return texture_read_memory(bytes, t->size, "embedded texture", l->memory, out);
+    char *name = arena_alloc(l->memory, (size_t)t->size + 1), file[PATH_CAP];
+    memcpy(name, bytes, t->size);
+    if (!mesh_files_resolve_beside(&l->files, name, file)) return false;
+    mesh_files_note(&l->files, file); // even if it is missing: it may come
+    return texture_read_inside(l->files.root, file, l->memory, out);
 }
 
 // Textures that cannot be read are left out, with a warning; one outside the root is an error.

@@ -53,9 +53,6 @@ typedef struct mesh_data {
     size_t file_count;
 } mesh_data;
 
-// A PNG of at most 16384 pixels a side.
-bool mesh_texture_load(const char *root, const char *path, arena *memory, mesh_texture *out);
-
 // `root` confines textures and buffers that the file names. Limits: 64 MiB file, 8 million
 // vertices. Node transforms are applied. Fails on a mesh without faces and on non-finite positions.
 bool mesh_load(const char *path, const char *root, arena *memory, mesh_data *out);

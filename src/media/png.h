@@ -25,8 +25,6 @@ bool png_write_inside(const char *root, const char *path, const png_image *image
 bool png_read(const char *path, const picture_limits *limits, arena *memory, png_image *out);
 bool png_read_inside(const char *root, const char *path, const picture_limits *limits,
                      arena *memory, png_image *out);
-bool png_read_memory(const void *data, size_t size, const char *name, arena *memory,
-                     png_image *out);
 // Texts that stand before the pixels, into `memory`; those beyond PNG_MAX_TEXTS, or beyond 1 MiB
 // together, are left out.
 enum { PNG_MAX_TEXTS = 64 };

@@ -72,19 +72,6 @@ bool png_read_inside(const char *root, const char *path, const picture_limits *l
     return done;
 }
 
-bool png_read_memory(const void *data, size_t size, const char *name, arena *memory,
-                     png_image *out) {
-    const picture_limits *limits = &picture_limits_default;
-    const isolate_job job = {.kind = "png",
-                             .name = name,
-                             .arguments = limits,
-                             .argument_size = sizeof *limits,
-                             .bytes = size ? data : "",
-                             .size = size,
-                             .limits = picture_limits_of_job(limits, size)};
-    return take_image(&job, limits, memory, out);
-}
-
 // ---- texts ------------------------------------------------------------------------------------
 
 // The result: each key and each value, with its zero byte.

@@ -3,6 +3,7 @@
 #include "media/exr.h"
 #include "media/mesh_import.h"
 #include "media/png.h"
+#include "media/texture.h"
 #include "reader/reader.h"
 #include "shader/compiler.h"
 
@@ -11,6 +12,7 @@ static const reader_job jobs[] = {
     {"mesh", mesh_import, NULL},
     {"exr", exr_work, NULL},
     {"png", png_work, NULL},
+    {"texture", texture_work, NULL},
     {"png texts", png_texts_work, NULL},
 };
 

@@ -26,7 +26,7 @@ const script_object reference_scene[] = {
      "what a surface is like. What is not given is as the file has it; a file that says nothing is matte",
      .keys = KEYS(
         SLOT(scene_material, color, 3, "the file's", "of the whole mesh"),
-        KEY("texture", "\"data/bark.png\"", "its colours, times `color`; by the file's coordinates"),
+        KEY("texture", "\"data/bark.png\"", "PNG or JPEG: its colours, times `color`; by the file's coordinates"),
         SLOT(scene_material, specular, 1, "0.5 with roughness or metallic, else the file's [0, 1]",
              "how much is mirrored: 0.5 is 4 percent of what comes head on, as of most things; 0: matte"),
         SLOT(scene_material, roughness, 1, "the file's [0, 1]", "0: polished; 1: highlights spread over all"),

@@ -1,7 +1,7 @@
 // Runs a fuzz target without libFuzzer: replays every file of the corpus, then mutates them until
 // the time is over. The same seed gives the same inputs in the same order.
 //
-//   fuzz_png [--seconds 10] [--seed 1] FILE_OR_FOLDER...
+//   fuzz_texture [--seconds 10] [--seed 1] FILE_OR_FOLDER...
 //
 // Nothing guides the mutations: the point is that each run of the tests throws some thousand new
 // inputs, near to good ones, at each parser. The input at hand lies in a file that is mapped into

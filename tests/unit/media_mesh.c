@@ -168,6 +168,32 @@ static void an_embedded_texture_is_read(void **state) {
     }
 }
 
+static void a_jpeg_is_a_texture_whatever_its_name_says(void **state) {
+    (void)state;
+    const char *path = test_source("tests/fuzz/corpus/fuzz_texture/red_left_blue_right.jpg");
+    void *data;
+    size_t size;
+    if (!path) skip();
+    assert_true(file_read(path, 1 << 20, &data, &size));
+    static const char *const NAMES[] = {"c.jpg", "c.png"};
+    for (int i = 0; i < 2; i++) {
+        char material[64];
+        snprintf(material, sizeof material, "newmtl m\nmap_Kd %s\n", NAMES[i]);
+        put_text("c.mtl", material);
+        test_put(NAMES[i], data, size);
+        put_text("c.obj", "mtllib c.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+        arena_free(&memory);
+        assert_true(load("c.obj"));
+        assert_int_equal(mesh.texture_count, 1);
+        assert_int_equal(mesh.textures[0].width, 32);
+        assert_int_equal(mesh.textures[0].height, 16);
+        const uint8_t *left = mesh.textures[0].pixels, *right = left + 31 * 4;
+        assert_true(left[0] > 240 && left[2] < 20 && left[3] == 255);
+        assert_true(right[0] < 20 && right[2] > 240 && right[3] == 255);
+    }
+    mem_free(data);
+}
+
 static void a_texture_that_cannot_be_read_is_left_out(void **state) {
     (void)state;
     put_text("b.mtl", "newmtl m\nmap_Kd absent.png\n");
@@ -304,6 +330,7 @@ int main(void) {
         cmocka_unit_test(an_obj_says_how_it_shines),
         cmocka_unit_test(a_gltf_says_how_it_shines),
         cmocka_unit_test(an_embedded_texture_is_read),
+        cmocka_unit_test(a_jpeg_is_a_texture_whatever_its_name_says),
         cmocka_unit_test(a_texture_that_cannot_be_read_is_left_out),
         cmocka_unit_test(files_outside_the_root_are_refused),
         cmocka_unit_test(a_mesh_without_faces_is_an_error),

@@ -57,7 +57,7 @@ static void texts_are_written_as_latin_or_utf8(void **state) {
 
 static void palette_and_interlace_become_rgba(void **state) {
     (void)state;
-    const char *path = test_source("tests/fuzz/corpus/fuzz_png/palette.png");
+    const char *path = test_source("tests/fuzz/corpus/fuzz_texture/palette.png");
     if (!path) skip();
     arena memory = {0};
     png_image out;
@@ -70,7 +70,7 @@ static void palette_and_interlace_become_rgba(void **state) {
 
 static void gray_with_alpha_becomes_16_bit_rgba(void **state) {
     (void)state;
-    const char *path = test_source("tests/fuzz/corpus/fuzz_png/gray_alpha_16.png");
+    const char *path = test_source("tests/fuzz/corpus/fuzz_texture/gray_alpha_16.png");
     if (!path) skip();
     arena memory = {0};
     png_image out;
