@@ -4,6 +4,7 @@
 #include "bench/json.h"
 #include "bench/results.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,9 +24,22 @@ static json_t *text(const char *from) {
     return value;
 }
 
+static bool is_whole(double value) {
+    return fabs(value) < EXACT_WHOLE && value == floor(value);
+}
+
+static double rounded(double value) { // to the digits that are written
+    char text[32];
+    snprintf(text, sizeof text, "%.*g", DIGITS, value);
+    return strtod(text, NULL);
+}
+
 // JSON has no infinity. Whole numbers keep all their digits: samples are counted by the million.
+// What is whole only as it is written is written as such, so that reading and writing again changes
+// nothing.
 static json_t *number(double value) {
-    if (fabs(value) < EXACT_WHOLE && value == floor(value)) return json_integer((json_int_t)value);
+    if (!is_whole(value)) value = rounded(value);
+    if (is_whole(value)) return json_integer((json_int_t)value);
     return isfinite(value) ? json_real(value) : json_null();
 }
 
