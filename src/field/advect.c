@@ -13,10 +13,10 @@
 // Ages, weights and seeds do not vary in space: they are numbers for the host. The rest is made of
 // "warp" and arithmetic, hence there is nothing to generate, evaluate or bound here.
 #include "base/error.h"
+#include "base/map.h"
 #include "base/memory.h"
 #include "field/compose.h"
 #include "field/kinds.h"
-#include "field/map.h"
 #include <math.h>
 #include <string.h>
 

@@ -1,9 +1,9 @@
 // What can be asked of an expression besides its value: where it can differ from zero, which grids
 // it samples, how it reads. Walks visit a shared node once.
+#include "base/map.h"
 #include "base/memory.h"
 #include "field/field.h"
 #include "field/kinds.h"
-#include "field/map.h"
 #include "field/range.h"
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 // Between the two halves of the generator: program.c finds what an expression is made of and where
 // its numbers and textures lie, emit.c writes the functions.
 #pragma once
+#include "base/map.h"
 #include "base/str.h"
-#include "field/map.h"
 #include "field/program.h"
 
 enum { NONE = UINT32_MAX };

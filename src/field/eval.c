@@ -2,10 +2,10 @@
 // large ones remember each node's value at each point, so that the cost is that of the graph, not
 // of the tree it unfolds to. Recursion is bounded by FIELD_MAX_DEPTH.
 #include "base/error.h"
+#include "base/map.h"
 #include "base/memory.h"
 #include "field/field.h"
 #include "field/kinds.h"
-#include "field/map.h"
 #include <math.h>
 #include <string.h>
 

@@ -1,8 +1,8 @@
 // Interval arithmetic, and its walk over an expression. See shaders/lib/range.glsl.
 #include "field/range.h"
+#include "base/map.h"
 #include "base/memory.h"
 #include "field/kinds.h"
-#include "field/map.h"
 #include <math.h>
 
 static const float most = 1e15f, end = 1e30f, rounding = 1e-6f;

@@ -8,8 +8,8 @@
 // GigaVoxels (Crassin, Neyret, Lefebvre and Eisemann, I3D 2009) without its tree: the index of a
 // box of 512^3 takes 1 MiB.
 #include "base/error.h"
+#include "base/map.h"
 #include "base/memory.h"
-#include "field/map.h"
 #include "field/sequence_parts.h"
 #include <assert.h>
 #include <math.h>

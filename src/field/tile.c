@@ -13,9 +13,9 @@
 // 2^3 times as many for each octave more. In an expression of several noises, and where the
 // lacunarity is part of the result (steps of paper's curl), all octaves are in the tile.
 #include "base/error.h"
+#include "base/map.h"
 #include "field/compose.h"
 #include "field/kinds.h"
-#include "field/map.h"
 #include <math.h>
 #include <string.h>
 

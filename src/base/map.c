@@ -1,5 +1,5 @@
 // Open addressing with linear probing, at most half full; the capacity is a power of two.
-#include "field/map.h"
+#include "base/map.h"
 #include "base/memory.h"
 #include <assert.h>
 #include <string.h>
