@@ -97,9 +97,10 @@ static bool read_field(const roil_volume *v, size_t index, volume_file *f) {
     size_t voxels = (size_t)c->size[0] * c->size[1] * c->size[2];
     int stride = from->components == 1 ? 1 : 4;
     size_t size = voxels * (size_t)stride * sizeof(uint16_t);
-    // Beside the halves: as floats, in the tree that is written.
+    // Beside the halves: on their way to the reader, in it, and as floats in the tree that it
+    // writes.
     f->parts[index] =
-        budget_take(budget_host(), 3 * (uint64_t)size, "volumes read back and written");
+        budget_take(budget_host(), 5 * (uint64_t)size, "volumes read back and written");
     if (!f->parts[index]) return err_prefix("%s: ", from->name);
     f->halves[index] = mem_alloc(size);
     f->count = index + 1;

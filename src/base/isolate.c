@@ -256,15 +256,16 @@ static bool fail_status(exchange *x) {
     char *said = x->end.text;
     int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
     bool memory = strstr(said, "bad_alloc") || strstr(said, "out of memory");
-    if (status == WIRE_NO_WORKER) return err_set("%s has no process to work in", who(x));
+    said[strcspn(said, "\r\n")] = '\0';
+    for (char *c = said; *c; c++)
+        if (!isprint((unsigned char)*c)) *c = '?';
+    if (status == WIRE_NO_WORKER)
+        return err_set("%s has no process to work in%s%.200s", who(x), *said ? ": " : "", said);
     if (number == SIGPROF || number == SIGALRM) return fail_time(x);
     if (number == SIGXFSZ)
         return err_set("%s makes more than %u MiB of it", who(x), mebibytes(x->job->limits.result));
     if (memory || (WIFEXITED(status) && WEXITSTATUS(status) == WIRE_EXIT_MEMORY))
         return err_set("%s ran out of memory (%u MiB)", who(x), mebibytes(x->job->limits.memory));
-    said[strcspn(said, "\r\n")] = '\0';
-    for (char *c = said; *c; c++)
-        if (!isprint((unsigned char)*c)) *c = '?';
     return err_set("%s crashed (%s %d)%s%.200s", who(x), number ? "signal" : "status",
                    number ? number : WEXITSTATUS(status), *said ? ": " : "", said);
 }

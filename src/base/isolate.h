@@ -80,3 +80,7 @@ struct isolate_call {
 };
 
 bool isolate_put(const isolate_call *call, const void *data, size_t size); // adds to the result
+// Instead, without a copy: `size` bytes of the result from `at` on, zeroed if they are new; `at` is
+// a multiple of the page's size. NULL with a message. munmap ends it.
+void *isolate_map(const isolate_call *call, size_t at, size_t size);
+bool isolate_cut(const isolate_call *call, size_t size); // the result has so many bytes

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -115,4 +116,17 @@ bool isolate_put(const isolate_call *call, const void *data, size_t size) {
         size -= (size_t)put;
     }
     return true;
+}
+
+bool isolate_cut(const isolate_call *call, size_t size) {
+    return ftruncate(call->out, (off_t)size) == 0 ||
+           err_set("the result cannot be written: %s", strerror(errno));
+}
+
+void *isolate_map(const isolate_call *call, size_t at, size_t size) {
+    if (!isolate_cut(call, at + size)) return NULL;
+    void *data = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, call->out, (off_t)at);
+    if (data != MAP_FAILED) return data;
+    err_set("the result cannot be written: %s", strerror(errno));
+    return NULL;
 }

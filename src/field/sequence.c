@@ -91,7 +91,7 @@ static bool choose_sparse(sequence_data *s, uint64_t voxels) {
         if (here > active) active = here;
     }
     s->most_active = active;
-    double across = cbrt((double)active / (SEQUENCE_BRICK * SEQUENCE_BRICK * SEQUENCE_BRICK));
+    double across = cbrt((double)active / (VDB_BRICK * VDB_BRICK * VDB_BRICK));
     s->atlas_across = (uint32_t)clampf(ceilf((float)across), 1, 64);
     if (s->desc.storage != SEQUENCE_AUTO) return s->desc.storage == SEQUENCE_SPARSE;
     return voxels > small && bricks <= most_bricks && 6 * active + 2 * bricks < voxels;
@@ -128,23 +128,44 @@ static bool snap(sequence_data *s, const box3 *all, const vdb_grid_info *first) 
     return true;
 }
 
-// What a file says of itself, kept between loads of the same effect.
-static bool read_info(sequence_data *s, const char *file, vdb_info *out) {
-    if (!s->desc.shelf) return vdb_read_info_inside(s->desc.root, file, &s->memory, out);
-    shelf_item *item = shelf_take(s->desc.shelf, file);
-    if (!item) {
-        arena memory = {0};
-        int64_t begin = file_clock_ns();
-        vdb_info *info = arena_alloc(&memory, sizeof *info);
-        if (!vdb_read_info_inside(s->desc.root, file, &memory, info)) {
-            arena_free(&memory);
-            return false;
-        }
-        item = shelf_put(s->desc.shelf, file, info, memory, &file, 1, begin);
+// What files say of themselves, kept between loads of the same effect: those that are not yet.
+static bool read_missing(sequence_data *s, vdb_info *infos) {
+    size_t count = 0;
+    const char **paths = mem_alloc(s->file_count * sizeof *paths);
+    arena **memory = mem_alloc(s->file_count * sizeof *memory);
+    arena *made = mem_alloc(s->file_count * sizeof *made);
+    vdb_info *read = mem_alloc(s->file_count * sizeof *read);
+    for (size_t i = 0; i < s->file_count; i++) {
+        if (s->held[i]) continue;
+        memory[count] = s->desc.shelf ? &made[count] : &s->memory;
+        paths[count++] = s->files[i];
     }
-    s->held[s->held_count++] = item;
-    *out = *(const vdb_info *)item->data;
-    return true;
+    int64_t begin = file_clock_ns();
+    bool done = vdb_read_infos(s->desc.root, paths, count, memory, read);
+    for (size_t i = 0, k = 0; done && k < count; i++) {
+        if (s->held[i]) continue;
+        infos[i] = read[k];
+        if (s->desc.shelf) {
+            vdb_info *kept = arena_copy(&made[k], &read[k], sizeof *kept);
+            s->held[i] = shelf_put(s->desc.shelf, paths[k], kept, made[k], &paths[k], 1, begin);
+        }
+        k++;
+    }
+    for (size_t i = 0; !done && i < count; i++) arena_free(&made[i]);
+    mem_free(read);
+    mem_free(made);
+    mem_free(memory);
+    mem_free(paths);
+    return done;
+}
+
+static bool read_infos(sequence_data *s, vdb_info *infos) {
+    s->held_count = s->desc.shelf ? s->file_count : 0;
+    for (size_t i = 0; i < s->held_count; i++) {
+        s->held[i] = shelf_take(s->desc.shelf, s->files[i]);
+        if (s->held[i]) infos[i] = *(const vdb_info *)s->held[i]->data;
+    }
+    return read_missing(s, infos);
 }
 
 static bool open_vdb(sequence_data *s) {
@@ -154,8 +175,8 @@ static bool open_vdb(sequence_data *s) {
     const vdb_grid_info *first = NULL;
     box3 all = box3_empty();
     size_t readable = 0;
+    if (!read_infos(s, infos)) return false;
     for (size_t i = 0; i < s->file_count; i++) {
-        if (!read_info(s, s->files[i], &infos[i])) return false;
         for (size_t k = 0; k < infos[i].count; k++) {
             const vdb_grid_info *grid = &infos[i].grids[k];
             if (grid->components > 0 && grid->linear) readable++;

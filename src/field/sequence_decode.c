@@ -1,115 +1,33 @@
-// One frame as texels. Grids are sampled into a dense box in the file's own axes, then packed: four
-// channels to a texture, halves, axes turned when the file has Y up. Runs on any thread: it reads
-// only what does not change after the channels were chosen.
+// One frame as texels. Those of OpenVDB files are made by the reader (media/vdb.h), which is told
+// which grid goes where. Runs on any thread: it reads only what does not change after the channels
+// were chosen.
 #include "base/error.h"
 #include "base/memory.h"
 #include "field/sequence_parts.h"
-#include <math.h>
+#include <assert.h>
 #include <string.h>
 
-typedef struct packing {
-    const sequence_data *s;
-    sequence_texels *out;
-    uint32_t low[3], high[3]; // texels that are not zero, in the grid's axes; high exclusive
-    uint64_t active;          // of the channel at hand
-} packing;
+static_assert((int)FIELD_GRID_IMAGES == (int)TEXELS_IMAGES, "a frame has the images of a grid");
+
+texels_shape sequence_shape(const sequence_data *s) {
+    texels_shape shape = {.y_up = s->desc.y_up, .width = s->width};
+    memcpy(shape.size, s->file_size, sizeof shape.size);
+    return shape;
+}
 
 int sequence_image_channels(const sequence_data *s, int image) {
-    int count = s->width - 4 * image;
-    return count < 0 ? 0 : count > 4 ? 4 : count;
+    const texels_shape shape = sequence_shape(s);
+    return texels_channels(&shape, image);
 }
 
 int sequence_texel_width(const sequence_data *s, int image) {
-    int count = sequence_image_channels(s, image);
-    return count == 3 ? 4 : count;
+    const texels_shape shape = sequence_shape(s);
+    return texels_width(&shape, image);
 }
 
-static void grow(packing *p, const uint32_t at[3]) {
-    for (int i = 0; i < 3; i++) {
-        if (at[i] < p->low[i]) p->low[i] = at[i];
-        if (at[i] + 1 > p->high[i]) p->high[i] = at[i] + 1;
-    }
-}
-
-// Writes one component of `values` (x fastest, `stride` floats apart) to a channel of the grid.
-static void pack(packing *p, const float *values, int stride, int channel, float gain) {
-    const sequence_data *s = p->s;
-    int image = channel / 4, width = sequence_texel_width(s, image);
-    uint16_t *texels = p->out->images[image];
-    const uint32_t *size = s->size;
-    uint32_t at[3];
-    p->active = 0;
-    for (at[2] = 0; at[2] < size[2]; at[2]++)
-        for (at[1] = 0; at[1] < size[1]; at[1]++) {
-            // With Y up, our Y is the file's -Z and our Z its Y.
-            size_t y = s->desc.y_up ? at[2] : at[1];
-            size_t z = s->desc.y_up ? size[1] - 1 - at[1] : at[2];
-            const float *row =
-                values + (z * s->file_size[1] + y) * s->file_size[0] * (size_t)stride;
-            size_t texel = ((size_t)at[2] * size[1] + at[1]) * size[0];
-            for (at[0] = 0; at[0] < size[0]; at[0]++) {
-                float v = clampf(row[at[0] * (size_t)stride] * gain, -SEQUENCE_HALF_MAX,
-                                 SEQUENCE_HALF_MAX);
-                if (v == 0) continue;
-                texels[(texel + at[0]) * (size_t)width + (size_t)(channel % 4)] =
-                    half_from_float(v);
-                grow(p, at);
-                p->active++;
-            }
-        }
-    if (p->active > p->out->voxels) p->out->voxels = p->active;
-}
-
-static void pack_vector(packing *p, const float *values, int channel, float gain) {
-    bool turned = p->s->desc.y_up;
-    pack(p, values, 3, channel, gain);
-    pack(p, values + (turned ? 2 : 1), 3, channel + 1, turned ? -gain : gain);
-    pack(p, values + (turned ? 1 : 2), 3, channel + 2, gain);
-}
-
-static bool sample(const sequence_data *s, uint32_t frame, const vdb_grid_info *grid, float *values,
-                   uint64_t *bad) {
-    uint64_t some = 0;
-    vdb_sample_desc desc = {
-        .path = s->files[frame],
-        .grid = grid->name,
-        .box = s->file_box,
-        .size = {s->file_size[0], s->file_size[1], s->file_size[2]},
-        .components = grid->components,
-        .out = values,
-        .root = s->desc.root,
-    };
-    if (!vdb_sample(&desc, &some)) return false;
-    *bad += some;
-    return true;
-}
-
-static bool is_empty(const vdb_grid_info *grid) {
-    return grid->index_min[0] > grid->index_max[0];
-}
-
-static bool decode_channel(packing *p, uint32_t frame, const sequence_channel_info *channel,
-                           float *values) {
-    const sequence_data *s = p->s;
-    const vdb_info *info = &s->infos[frame];
-    const vdb_grid_info *grid = sequence_find_grid(info, channel->name, 0);
-    float gain = channel->gain;
-    if (grid && grid->components == 3 && channel->components == 3) {
-        if (is_empty(grid)) return true;
-        if (!sample(s, frame, grid, values, &p->out->bad)) return false;
-        pack_vector(p, values, channel->first, gain);
-        return true;
-    }
-    for (int part = 0; part < channel->components; part++) {
-        grid = sequence_find_grid(info, channel->name, part);
-        if (!grid || is_empty(grid) || grid->components != 1) continue; // zeros
-        if (!sample(s, frame, grid, values, &p->out->bad)) return false;
-        int to = part;
-        if (s->desc.y_up && part > 0) to = 3 - part;
-        bool flipped = s->desc.y_up && part == 2;
-        pack(p, values, 1, channel->first + to, flipped ? -gain : gain);
-    }
-    return true;
+uint64_t sequence_brick_count(const sequence_data *s) {
+    const texels_shape shape = sequence_shape(s);
+    return vdb_brick_count(&shape);
 }
 
 box3 sequence_active_box(const sequence_data *grid, const uint32_t from[3], const uint32_t to[3]) {
@@ -125,33 +43,91 @@ box3 sequence_active_box(const sequence_data *grid, const uint32_t from[3], cons
     return box3_intersect(grid->box, (box3){{low[0], low[1], low[2]}, {high[0], high[1], high[2]}});
 }
 
-static bool decode_dense(const sequence_data *s, uint32_t frame, sequence_texels *out) {
-    packing p = {s, out, {UINT32_MAX, UINT32_MAX, UINT32_MAX}, {0, 0, 0}, 0};
-    size_t voxels = (size_t)s->file_size[0] * s->file_size[1] * s->file_size[2];
-    int widest = 1;
-    for (size_t i = 0; i < s->channel_count; i++)
-        if (s->channels[i].components > widest) widest = s->channels[i].components;
-    float *values = mem_alloc(voxels * (size_t)widest * sizeof *values);
-    for (int i = 0; i < FIELD_GRID_IMAGES && sequence_image_channels(s, i) > 0; i++)
-        out->images[i] = mem_alloc(voxels * (size_t)sequence_texel_width(s, i) * sizeof(uint16_t));
-    bool ok = true;
-    if (s->raw) {
-        ok = sequence_raw_read(s, frame, values, &out->bad);
-        if (ok) pack(&p, values, 1, 0, 1);
-    } else {
-        for (size_t i = 0; ok && i < s->channel_count; i++)
-            ok = decode_channel(&p, frame, &s->channels[i], values);
+// ---- OpenVDB ----------------------------------------------------------------------------------
+
+typedef struct sources {
+    vdb_source list[VDB_SOURCES];
+    size_t count;
+} sources;
+
+static void add_source(sources *out, const vdb_grid_info *grid, vdb_source made) {
+    if (grid->index_min[0] > grid->index_max[0]) return; // zeros
+    made.grid = grid->name;
+    made.components = grid->components;
+    out->list[out->count++] = made;
+}
+
+// With Y up, our Y is the file's -Z and our Z its Y.
+static void add_channel(const sequence_data *s, uint32_t frame,
+                        const sequence_channel_info *channel, sources *out) {
+    const vdb_info *info = &s->infos[frame];
+    bool turned = s->desc.y_up;
+    int first = channel->first;
+    float gain = channel->gain;
+    const vdb_grid_info *grid = sequence_find_grid(info, channel->name, 0);
+    if (grid && grid->components == 3 && channel->components == 3) {
+        add_source(
+            out, grid,
+            (vdb_source){.channels = {first, first + (turned ? 2 : 1), first + (turned ? 1 : 2)},
+                         .gains = {gain, gain, turned ? -gain : gain}});
+        return;
     }
+    for (int part = 0; part < channel->components; part++) {
+        grid = sequence_find_grid(info, channel->name, part);
+        if (!grid || grid->components != 1) continue; // zeros
+        int to = turned && part > 0 ? 3 - part : part;
+        bool flipped = turned && part == 2;
+        add_source(out, grid,
+                   (vdb_source){.channels = {first + to}, .gains = {flipped ? -gain : gain}});
+    }
+}
+
+static bool decode_vdb(const sequence_data *s, uint32_t frame, sequence_texels *out) {
+    sources from = {.count = 0};
+    for (size_t i = 0; i < s->channel_count; i++) add_channel(s, frame, &s->channels[i], &from);
+    const vdb_frame_desc desc = {.path = s->files[frame],
+                                 .root = s->desc.root,
+                                 .box = s->file_box,
+                                 .shape = sequence_shape(s),
+                                 .sparse = s->sparse,
+                                 .max_bytes = s->desc.max_frame_bytes,
+                                 .sources = from.list,
+                                 .count = from.count};
+    if (!vdb_read_frame(&desc, &out->read)) return false;
+    const vdb_frame *read = &out->read;
+    for (int i = 0; i < FIELD_GRID_IMAGES; i++) {
+        out->images[i] = read->images[i].texels;
+        out->bricks[i] = (sequence_bricks){read->images[i].index, read->images[i].bricks, 0, 0};
+        if (s->sparse && out->images[i]) sequence_atlas_place(s, &out->bricks[i]);
+    }
+    out->voxels = read->active.voxels;
+    out->bad = read->bad;
+    out->active = sequence_active_box(s, read->active.low, read->active.high);
+    return true;
+}
+
+// ---- raw files --------------------------------------------------------------------------------
+
+static bool decode_raw(const sequence_data *s, uint32_t frame, sequence_texels *out) {
+    const texels_shape shape = sequence_shape(s);
+    texels_active active = texels_nothing();
+    size_t voxels = (size_t)s->file_size[0] * s->file_size[1] * s->file_size[2];
+    float *values = mem_alloc(voxels * sizeof *values);
+    out->own = mem_alloc((size_t)texels_image_bytes(&shape, 0));
+    out->images[0] = out->own;
+    bool ok = sequence_raw_read(s, frame, values, &out->bad);
+    if (ok) texels_pack(&shape, values, 1, 1, out->own, 0, &active);
     mem_free(values);
-    out->active = sequence_active_box(s, p.low, p.high);
+    out->voxels = active.voxels;
+    out->active = sequence_active_box(s, active.low, active.high);
     return ok;
 }
 
+// ---- both -------------------------------------------------------------------------------------
+
 static uint64_t texel_bytes(const sequence_data *s) { // of a voxel, in all images
-    uint64_t bytes = 0;
-    for (int i = 0; i < FIELD_GRID_IMAGES && sequence_image_channels(s, i) > 0; i++)
-        bytes += (uint64_t)sequence_texel_width(s, i) * sizeof(uint16_t);
-    return bytes;
+    const texels_shape shape = sequence_shape(s);
+    return texels_bytes(&shape);
 }
 
 uint64_t sequence_frame_bytes(const sequence_data *s, uint32_t frame) {
@@ -177,7 +153,7 @@ uint64_t sequence_decode_bytes(const sequence_data *s, uint32_t frame) {
 }
 
 static void note_kept(const sequence_data *s, const sequence_texels *texels) {
-    const uint64_t brick = (SEQUENCE_BRICK + 1) * (SEQUENCE_BRICK + 1) * (SEQUENCE_BRICK + 1);
+    const uint64_t brick = (VDB_BRICK + 1) * (VDB_BRICK + 1) * (VDB_BRICK + 1);
     uint64_t bytes = 0, voxels = (uint64_t)s->size[0] * s->size[1] * s->size[2];
     for (int i = 0; i < FIELD_GRID_IMAGES && sequence_image_channels(s, i) > 0; i++) {
         uint64_t count = s->sparse ? texels->bricks[i].count * brick : voxels;
@@ -191,7 +167,7 @@ bool sequence_decode(const sequence_data *s, uint32_t frame, sequence_texels *ou
     memset(out, 0, sizeof *out);
     out->part = budget_take(budget_host(), sequence_decode_bytes(s, frame), s->label);
     if (!out->part) return err_prefix("%s: ", s->name);
-    bool ok = s->sparse ? sequence_decode_sparse(s, frame, out) : decode_dense(s, frame, out);
+    bool ok = s->raw ? decode_raw(s, frame, out) : decode_vdb(s, frame, out);
     if (ok) note_kept(s, out);
     if (!ok) sequence_texels_free(out);
     return ok;
@@ -200,9 +176,10 @@ bool sequence_decode(const sequence_data *s, uint32_t frame, sequence_texels *ou
 void sequence_texels_drop(sequence_texels *texels) {
     budget_give(texels->part);
     texels->part = NULL;
+    mem_free(texels->own);
+    texels->own = NULL;
+    vdb_frame_free(&texels->read);
     for (int i = 0; i < FIELD_GRID_IMAGES; i++) {
-        mem_free(texels->images[i]);
-        mem_free(texels->bricks[i].index);
         texels->images[i] = NULL;
         texels->bricks[i].index = NULL;
     }

@@ -1,6 +1,6 @@
 // Between the parts of a sequence: sequence.c knows its files and timeline, sequence_channel.c its
 // channels, sequence_raw.c the layout of raw files, sequence_decode.c makes texels of a frame on
-// any thread, sequence_sparse.c makes bricks of one, sequence_upload.c brings them to the device,
+// any thread, sequence_atlas.c places bricks of one, sequence_upload.c brings them to the device,
 // sequence_jobs.c does both ahead of time, sequence_cache.c keeps textures.
 //
 // A sequence is a grid that fields point at, and its data, which another load of the same effect
@@ -16,9 +16,7 @@ enum {
     SEQUENCE_MAX_JOBS = 32,
     SEQUENCE_TRANSFERS = 4,
     SEQUENCE_MAX_FRAMES = 100000,
-    SEQUENCE_BRICK = 8, // voxels a side
 };
-#define SEQUENCE_HALF_MAX 65504.0f
 
 typedef struct sequence_channel_info {
     const char *name; // as asked for
@@ -41,12 +39,14 @@ typedef struct sequence_bricks { // of one image
 
 typedef struct sequence_texels {
     uint16_t *images[FIELD_GRID_IMAGES]; // halves, packed as the textures are; sparse: brick after
-                                         // brick, 9^3 texels each; mem_free
+                                         // brick, 9^3 texels each
     sequence_bricks bricks[FIELD_GRID_IMAGES]; // of a sparse sequence
     box3 active;                               // world
     budget_part *part;                         // of all this memory
     uint64_t voxels;                           // that are not 0
     uint64_t bad;                              // values that were not finite
+    vdb_frame read;                            // what images and bricks lie in: of OpenVDB files,
+    uint16_t *own;                             // of raw ones
 } sequence_texels;
 
 typedef struct sequence_slot { // one frame on the GPU
@@ -150,6 +150,7 @@ float sequence_growth(const sequence_data *s, uint32_t frame);
 // The frames around a time and the share of the second. False when there is nothing to see then.
 bool sequence_frames_at(const sequence_data *s, double time, uint32_t frames[2], float *blend);
 
+texels_shape sequence_shape(const sequence_data *s);
 int sequence_image_channels(const sequence_data *s, int image); // 0..4
 int sequence_texel_width(const sequence_data *s, int image);    // components of the texture
 uint64_t sequence_brick_count(const sequence_data *s);          // of the box
@@ -165,7 +166,7 @@ bool sequence_decode(const sequence_data *s, uint32_t frame, sequence_texels *ou
 uint64_t sequence_decode_bytes(const sequence_data *s, uint32_t frame);
 // Of the textures of a dense frame, or of what a sparse one holds as far as its file says.
 uint64_t sequence_frame_bytes(const sequence_data *s, uint32_t frame);
-bool sequence_decode_sparse(const sequence_data *s, uint32_t frame, sequence_texels *out);
+void sequence_atlas_place(const sequence_data *s, sequence_bricks *bricks);
 // The atlas of an image, as its texture takes it: any thread.
 void sequence_atlas_write(const sequence_data *s, const sequence_texels *texels, int image,
                           void *out);

@@ -5,7 +5,7 @@
 #include "field/sequence_parts.h"
 #include <string.h>
 
-enum { SIDE = SEQUENCE_BRICK + 1 };
+enum { SIDE = VDB_BRICK + 1 };
 
 static const gpu_format formats[] = {GPU_FORMAT_NONE, GPU_R16F, GPU_RG16F, GPU_RGBA16F,
                                      GPU_RGBA16F};
@@ -57,7 +57,7 @@ static bool fit_sparse(const sequence_data *s, gpu *g, const sequence_bricks *br
                        uint32_t largest, sequence_slot *slot) {
     if (!slot->index[image]) {
         uint32_t size[3];
-        for (int i = 0; i < 3; i++) size[i] = (s->size[i] + SEQUENCE_BRICK - 1) / SEQUENCE_BRICK;
+        for (int i = 0; i < 3; i++) size[i] = (s->size[i] + VDB_BRICK - 1) / VDB_BRICK;
         slot->index[image] = create(s, g, GPU_R32U, size[0], size[1], size[2]);
         if (!slot->index[image]) return false;
     }

@@ -1,5 +1,5 @@
-// OpenVDB behind vdb.h: what a file says of itself, and dense sampling. vdb_blocks.cpp reads grids
-// that are not to be spread out, vdb_write.cpp writes.
+// OpenVDB behind vdb_decode.h: what a file says of itself, and dense sampling. vdb_blocks.cpp reads
+// grids that are not to be spread out, vdb_write.cpp writes.
 //
 // Sampling: when the voxel centres of the box lie on the grid's own lattice, values are copied node
 // by node (openvdb::tools::copyToDense: tiles, background and leaves); else every centre goes
@@ -8,10 +8,11 @@
 // voxel faces, half a voxel below the centre on their own axis.
 #include "media/vdb_file.hpp"
 #include <openvdb/tools/Dense.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <sstream>
+#include <memory>
 
 using namespace vdb;
 
@@ -223,15 +224,27 @@ bool size_is_fine(const vdb_sample_desc &desc) {
 
 } // namespace
 
-extern "C" bool vdb_read_info(const char *path, arena *memory, vdb_info *out) {
-    return vdb_read_info_inside(nullptr, path, memory, out);
+extern "C" void vdb_work_alone() {
+    static tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+    initialize();
 }
 
-extern "C" bool vdb_read_info_inside(const char *root, const char *path, arena *memory,
-                                     vdb_info *out) {
-    return guarded(path, [&] {
-        file f;
-        if (!f.open(root, path)) return false;
+extern "C" vdb_file *vdb_file_open(const char *name, const void *bytes, size_t size) {
+    std::unique_ptr<vdb_file> made;
+    bool done = guarded(name, [&] {
+        made = std::make_unique<vdb_file>();
+        return vdb_layout_read(name, bytes, size, &made->contents.memory, &made->contents.layout);
+    });
+    return done ? made.release() : nullptr;
+}
+
+extern "C" void vdb_file_close(vdb_file *f) {
+    delete f;
+}
+
+extern "C" bool vdb_file_info(const vdb_file *opened, arena *memory, vdb_info *out) {
+    const file &f = opened->contents;
+    return guarded(f.layout.path, [&] {
         size_t count = f.layout.count;
         auto grids = static_cast<vdb_grid_info *>(arena_alloc(memory, count * sizeof *out->grids));
         for (size_t i = 0; i < count; i++)
@@ -245,11 +258,11 @@ extern "C" bool vdb_read_info_inside(const char *root, const char *path, arena *
     });
 }
 
-extern "C" bool vdb_sample(const vdb_sample_desc *desc, uint64_t *bad) {
+extern "C" bool vdb_file_sample(const vdb_file *opened, const vdb_sample_desc *desc,
+                                uint64_t *bad) {
+    const file &f = opened->contents;
     if (bad) *bad = 0;
     return guarded(desc->path, [&] {
-        file f;
-        if (!f.open(desc->root, desc->path)) return false;
         const vdb_layout_grid *g = f.find(desc->grid);
         if (!g) return no_such_grid(f, *desc);
         if (!can_sample(*g, *desc) || !size_is_fine(*desc)) return false;

@@ -1,7 +1,10 @@
-// OpenVDB files, behind a C interface. All functions are thread-safe.
+// OpenVDB files. The library works in a process of its own (base/isolate.h), on files that are
+// opened here; nothing of it is in this one. Any thread; false comes with a message.
 #pragma once
 #include "base/arena.h"
+#include "base/isolate.h"
 #include "base/maths.h"
+#include "media/texels.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -31,8 +34,10 @@ typedef struct vdb_info {
 
 // Metadata only: no voxel is read (where the file lacks a box in its metadata, the grid is read).
 bool vdb_read_info(const char *path, arena *memory, vdb_info *out);
-// Of a file below `root` (base/file.h).
-bool vdb_read_info_inside(const char *root, const char *path, arena *memory, vdb_info *out);
+// Of many files below `root` (base/file.h), each in the memory of its number: many times as fast as
+// one by one. False when one of them cannot be read.
+bool vdb_read_infos(const char *root, const char *const *paths, size_t count, arena *const *memory,
+                    vdb_info *out);
 
 typedef struct vdb_sample_desc {
     const char *path;
@@ -50,23 +55,49 @@ typedef struct vdb_sample_desc {
 // moved to the voxels' centres. Frustum transforms are refused, as are types with 0 components.
 bool vdb_sample(const vdb_sample_desc *desc, uint64_t *bad);
 
-// One grid of a file, kept as the file has it and read in blocks; values are those of vdb_sample.
-// For one thread at a time.
-enum { VDB_BLOCK = 9 };           // voxels a side: 8, and those that linear filtering needs beyond
-typedef struct vdb_file vdb_file; // several grids of which are wanted: read once
-typedef struct vdb_blocks vdb_blocks;
-vdb_file *vdb_file_open(const char *root, const char *path); // `root`: as of a vdb_sample_desc
-void vdb_file_close(vdb_file *f);                            // NULL is fine
-// `desc` may have any size, and its `out` is not used. `opened` is its file, or NULL.
-vdb_blocks *vdb_blocks_open(const vdb_sample_desc *desc, const vdb_file *opened);
-void vdb_blocks_close(vdb_blocks *b); // NULL is fine
-// Names boxes of voxels (inclusive, within the size) outside of which all is background.
-typedef void vdb_block_found(void *user, const int32_t low[3], const int32_t high[3]);
-void vdb_blocks_visit(const vdb_blocks *b, vdb_block_found *found, void *user);
-void vdb_blocks_background(const vdb_blocks *b, float out[3]); // its components
-// VDB_BLOCK^3 voxels from `at` on, x fastest; it may lie outside. Returns how many of its first
-// 8^3 values were not finite and became 0.
-uint64_t vdb_blocks_read(vdb_blocks *b, const int32_t at[3], float *out);
+// Where the values of a grid go in a frame.
+typedef struct vdb_source {
+    const char *grid; // exact name
+    int components;   // 1 or 3, of the grid
+    int channels[3];  // of the frame, for each component; all in one texture
+    float gains[3];
+} vdb_source;
+
+// Several grids of a file, sampled like vdb_sample into one box, as texels.
+enum {
+    VDB_BRICK = 8,
+    VDB_BLOCK = VDB_BRICK + 1,
+    VDB_ACROSS = 2048 / VDB_BLOCK, // bricks along a side of an atlas: every device has 2048 texels
+    VDB_MOST_BRICKS = VDB_ACROSS * VDB_ACROSS * VDB_ACROSS,
+    VDB_SOURCES = 4 * TEXELS_IMAGES
+};
+typedef struct vdb_frame_desc {
+    const char *path;
+    const char *root;
+    box3 box;
+    texels_shape shape;
+    // Dense: every voxel. Sparse: bricks of VDB_BRICK^3 voxels, each with the faces that it shares
+    // with its neighbours (VDB_BLOCK^3), x fastest; those that hold one value alike are one brick.
+    bool sparse;
+    uint64_t max_bytes; // of all textures of a sparse frame
+    const vdb_source *sources;
+    size_t count; // at most VDB_SOURCES
+} vdb_frame_desc;
+
+typedef struct vdb_frame {
+    struct {
+        uint16_t *texels; // NULL: there is no such texture
+        uint32_t *index;  // of a sparse one, for each brick of the box, x fastest: its number from
+        uint32_t bricks;  // 1, at most `bricks`; 0: nothing but zeros
+    } images[TEXELS_IMAGES];
+    texels_active active;
+    uint64_t bad; // values that were not finite and became 0
+    isolate_result memory;
+} vdb_frame;
+
+uint64_t vdb_brick_count(const texels_shape *s); // of the box
+bool vdb_read_frame(const vdb_frame_desc *desc, vdb_frame *out);
+void vdb_frame_free(vdb_frame *f);
 
 typedef struct vdb_write_grid {
     const char *name;

@@ -1,5 +1,5 @@
-// Reading a grid in blocks (vdb.h). On the lattice of the grid a block is copied from the at most
-// eight leaves and tiles that it touches; off it, its voxels are interpolated like those of
+// Reading a grid in blocks (vdb_decode.h). On the lattice of the grid a block is copied from the at
+// most eight leaves and tiles that it touches; off it, its voxels are interpolated like those of
 // vdb_sample.
 //
 // Only nodes that hold something else than the background are reported. Where a strange transform
@@ -270,29 +270,10 @@ vdb_blocks *make_any(GridBase::Ptr grid, vdb_value value, const affine &t,
 
 } // namespace
 
-struct vdb_file {
-    file contents;
-};
-
-extern "C" vdb_file *vdb_file_open(const char *root, const char *path) {
-    std::unique_ptr<vdb_file> made;
-    bool done = guarded(path, [&] {
-        made = std::make_unique<vdb_file>();
-        return made->contents.open(root, path);
-    });
-    return done ? made.release() : nullptr;
-}
-
-extern "C" void vdb_file_close(vdb_file *f) {
-    delete f;
-}
-
-extern "C" vdb_blocks *vdb_blocks_open(const vdb_sample_desc *desc, const vdb_file *opened) {
+extern "C" vdb_blocks *vdb_blocks_open(const vdb_file *opened, const vdb_sample_desc *desc) {
     vdb_blocks *made = nullptr;
+    const file &f = opened->contents;
     guarded(desc->path, [&] {
-        file own;
-        if (!opened && !own.open(desc->root, desc->path)) return false;
-        const file &f = opened ? opened->contents : own;
         const vdb_layout_grid *g = f.find(desc->grid);
         if (!g) return no_such_grid(f, *desc);
         affine transform;

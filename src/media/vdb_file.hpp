@@ -1,4 +1,4 @@
-// Shared by the files that use OpenVDB: a file is read into memory, its structure is proved by
+// Shared by the files that use OpenVDB: the structure of a file in memory is proved by
 // vdb_layout.c, and only then does OpenVDB parse the one grid that is wanted. And where the voxels
 // of a box lie among those of a grid.
 #pragma once
@@ -18,9 +18,8 @@
 #define _Noreturn [[noreturn]] // as C++ spells it
 extern "C" {
 #include "base/error.h"
-#include "base/file.h"
 #include "base/memory.h"
-#include "media/vdb.h"
+#include "media/vdb_decode.h"
 #include "media/vdb_layout.h"
 // LeakSanitizer's, absent in other builds.
 __attribute__((weak)) void __lsan_disable(void);
@@ -36,7 +35,6 @@ using openvdb::GridBase;
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 
-constexpr size_t file_bytes_max = size_t(2) << 30;
 constexpr int coord_max = 1 << 24;
 constexpr double box_voxels_max = 68719476736.0; // 4096^3
 constexpr size_t sample_voxels_max = size_t(1) << 31;
@@ -94,20 +92,11 @@ struct archive : openvdb::io::Archive { // opens what the library keeps to its o
 // A VDB file in memory whose structure is known to be sound.
 struct file {
     arena memory = {};
-    void *bytes = nullptr;
     vdb_layout layout = {};
 
     file() = default;
     file(const file &) = delete;
-    ~file() {
-        arena_free(&memory);
-        mem_free(bytes);
-    }
-    bool open(const char *root, const char *path) {
-        size_t size;
-        return file_read_inside(root, path, file_bytes_max, &bytes, &size) &&
-               vdb_layout_read(path, bytes, size, &memory, &layout);
-    }
+    ~file() { arena_free(&memory); }
     const vdb_layout_grid *find(const char *name) const {
         for (size_t i = 0; i < layout.count; i++)
             if (strcmp(layout.grids[i].name, name) == 0) return &layout.grids[i];
@@ -359,3 +348,7 @@ inline bool can_sample(const vdb_layout_grid &g, const vdb_sample_desc &desc) {
 }
 
 } // namespace vdb
+
+struct vdb_file {
+    vdb::file contents;
+};

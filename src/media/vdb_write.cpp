@@ -115,9 +115,9 @@ GridBase::Ptr make_grid(const vdb_write_grid &w) {
 
 } // namespace
 
-extern "C" bool vdb_write_with(const char *path, const vdb_write_grid *grids, size_t count,
-                               const vdb_entry *metadata, size_t entries) {
-    return guarded(path, [&] {
+extern "C" bool vdb_encode(const char *name, const vdb_write_grid *grids, size_t count,
+                           const vdb_entry *metadata, size_t entries, void **data, size_t *size) {
+    return guarded(name, [&] {
         openvdb::GridCPtrVec list;
         for (size_t i = 0; i < count; i++) list.push_back(make_grid(grids[i]));
         openvdb::MetaMap map;
@@ -131,10 +131,8 @@ extern "C" bool vdb_write_with(const char *path, const vdb_write_grid *grids, si
         stream.exceptions(std::ios::failbit | std::ios::badbit);
         archive().write(stream, list, true, map);
         std::string bytes = stream.str();
-        return file_write(path, bytes.data(), bytes.size());
+        *data = mem_copy(bytes.data(), bytes.size());
+        *size = bytes.size();
+        return true;
     });
-}
-
-extern "C" bool vdb_write(const char *path, const vdb_write_grid *grids, size_t count) {
-    return vdb_write_with(path, grids, count, nullptr, 0);
 }

@@ -7,13 +7,19 @@
 #include "reader/reader.h"
 #include "shader/compiler.h"
 
+static const char vdb[] = "roil-reader-vdb"; // main_vdb.c
+
 static const reader_job jobs[] = {
-    {"glsl", compiler_work, compiler_get_ready},
-    {"mesh", mesh_import, NULL},
-    {"exr", exr_work, NULL},
-    {"png", png_work, NULL},
-    {"texture", texture_work, NULL},
-    {"png texts", png_texts_work, NULL},
+    {"glsl", compiler_work, compiler_get_ready, NULL},
+    {"mesh", mesh_import, NULL, NULL},
+    {"exr", exr_work, NULL, NULL},
+    {"png", png_work, NULL, NULL},
+    {"texture", texture_work, NULL, NULL},
+    {"png texts", png_texts_work, NULL, NULL},
+    {"vdb info", NULL, NULL, vdb},
+    {"vdb sample", NULL, NULL, vdb},
+    {"vdb frame", NULL, NULL, vdb},
+    {"vdb write", NULL, NULL, vdb},
 };
 
 int main(void) {

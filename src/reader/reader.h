@@ -8,6 +8,9 @@ typedef struct reader_job {
     // _exit(0) once all is put.
     bool (*work)(const isolate_call *call);
     void (*get_ready)(void); // once, so that workers find it done; may be NULL
+    // Instead of `work`: the name of the program beside this one that does it. Its libraries are
+    // then loaded when they are first needed, and in no other worker.
+    const char *program;
 } reader_job;
 
 // Serves until the socket WIRE_CONTROL is closed on the other side. The exit status of the process:

@@ -3,7 +3,7 @@
 //
 // Jobs that need something got ready, which takes a compiler 80 ms, have a server of their own: the
 // same loop in a process that the first one forks and hands such requests on to, so that no picture
-// waits behind it.
+// waits behind it. So have those of another program, which loads libraries that no other job needs.
 #include "base/isolate_wire.h"
 #include "base/memory.h"
 #include "base/stack.h"
@@ -21,7 +21,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MAX_WORKERS = 8, SAID_MAX = 200 }; // at a time; more requests wait
+enum { MAX_WORKERS = 8, SAID_MAX = 200, MAX_HELPERS = 2 }; // at a time; more requests wait
 
 typedef struct worker {
     pid_t process;
@@ -30,11 +30,18 @@ typedef struct worker {
     bool alone;  // who waited has gone
 } worker;
 
+typedef struct helper {  // another server
+    const char *program; // NULL: this one, where jobs are got ready
+    int control;         // its socket
+    pid_t process;
+} helper;
+
 typedef struct server {
     const reader_job *jobs;
     size_t job_count;
     bool ready; // this is the process where jobs were got ready
-    int second; // socket of that process, -1: none yet
+    helper helpers[MAX_HELPERS];
+    size_t helper_count;
     worker workers[MAX_WORKERS];
     size_t count;
     pid_t process;
@@ -55,37 +62,75 @@ static void be_humble(void) {
     prctl(PR_SET_DUMPABLE, 0); // as some systems pipe cores to a program whatever the limit
 }
 
-static void become_second(server *s, int control) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != s->process || dup3(control, WIRE_CONTROL, O_CLOEXEC) < 0) _exit(EXIT_FAILURE);
+// ---- helpers ----------------------------------------------------------------------------------
+
+static void become_ready(server *s) {
     closefrom(WIRE_CONTROL + 1); // channels are those of the first one's workers
-    s->count = 0;
+    s->count = s->helper_count = 0;
     s->ready = true;
     s->process = getpid();
     for (size_t i = 0; i < s->job_count; i++)
         if (s->jobs[i].get_ready) s->jobs[i].get_ready();
 }
 
-// False in the second process, which goes on with its loop.
-static bool start_second(server *s) {
+static bool find_program(const char *name, char out[PATH_CAP]) { // beside this one
+    char folder[PATH_CAP];
+    return path_program_folder(folder) && path_join(out, folder, name) && access(out, X_OK) == 0;
+}
+
+static _Noreturn void become_program(const char *name) {
+    char path[PATH_CAP], plain[] = "roil-reader", *const arguments[] = {plain, NULL};
+    closefrom(WIRE_CONTROL + 1);
+    fcntl(WIRE_CONTROL, F_SETFD, 0);
+    if (find_program(name, path)) execv(path, arguments);
+    _exit(EXIT_FAILURE);
+}
+
+typedef enum role { FIRST, HELPER } role;
+
+// HELPER in the new process, which goes on with its loop. What fails shows where it is used.
+static role start_helper(server *s, const char *program) {
     int ends[2];
-    if (s->ready || s->second >= 0) return true;
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) _exit(EXIT_FAILURE);
     pid_t process = fork();
     if (process < 0) _exit(EXIT_FAILURE); // who asks starts a new reader, and says so in the end
     if (process == 0) {
-        become_second(s, ends[1]);
-        return false;
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (getppid() != s->process || dup3(ends[1], WIRE_CONTROL, O_CLOEXEC) < 0)
+            _exit(EXIT_FAILURE);
+        if (program) become_program(program);
+        become_ready(s);
+        return HELPER;
     }
     close(ends[1]);
-    s->second = ends[0];
-    return true;
+    s->helpers[s->helper_count++] = (helper){program, ends[0], process};
+    return FIRST;
 }
 
-static void hand_on(server *s, const wire_request *r, const int files[WIRE_FILES]) {
-    if (!start_second(s)) return;
-    // Without it this one is no use either: who waits sees it go, and starts anew.
-    if (!wire_send(s->second, r, sizeof *r, files, WIRE_FILES, 0)) _exit(EXIT_FAILURE);
+static helper *find_helper(server *s, const char *program) {
+    for (size_t i = 0; i < s->helper_count; i++)
+        if (s->helpers[i].program == program) return &s->helpers[i];
+    return NULL;
+}
+
+static void get_ready(server *s) {
+    if (!s->ready && !find_helper(s, NULL)) start_helper(s, NULL);
+}
+
+// A helper that has died since is started anew. A request that one had takes with it closes its
+// channel: who waits asks again.
+static void hand_on(server *s, const char *program, const wire_request *r,
+                    const int files[WIRE_FILES]) {
+    for (int attempt = 0; attempt < 2; attempt++) {
+        helper *h = find_helper(s, program);
+        if (!h && start_helper(s, program) == HELPER) return;
+        h = find_helper(s, program);
+        if (wire_send(h->control, r, sizeof *r, files, WIRE_FILES, 0)) break;
+        close(h->control);
+        kill(h->process, SIGKILL);
+        waitpid(h->process, NULL, 0);
+        *h = s->helpers[--s->helper_count];
+    }
     for (size_t i = 0; i < WIRE_FILES; i++) close(files[i]);
 }
 
@@ -146,21 +191,32 @@ static void start_worker(server *s, const reader_job *job, const wire_request *r
         s->workers[s->count++] = w;
 }
 
+static void refuse(const char *program, const int files[WIRE_FILES]) {
+    worker none = {.channel = files[WIRE_CHANNEL], .said = memfd_create("roil-said", MFD_CLOEXEC)};
+    if (none.said >= 0) dprintf(none.said, "there is no %s beside it", program);
+    close(files[WIRE_OUT]);
+    close(files[WIRE_INPUT]);
+    report(&none, WIRE_NO_WORKER, 0);
+}
+
 static void serve_request(server *s) {
+    char path[PATH_CAP];
     static wire_request r;
     int files[WIRE_FILES];
     size_t count;
     bool whole = wire_receive(WIRE_CONTROL, &r, sizeof r, files, WIRE_FILES, &count);
     if (!whole && count == 0) _exit(EXIT_SUCCESS); // there will be no more
-    if (whole && count == 0) start_second(s);
+    if (whole && count == 0) get_ready(s);
     r.kind[sizeof r.kind - 1] = r.name[sizeof r.name - 1] = '\0';
     const reader_job *job = find_job(s, r.kind);
     if (!whole || count != WIRE_FILES || !job || r.argument_size > sizeof r.arguments) {
         for (size_t i = 0; i < count; i++) close(files[i]);
         return;
     }
-    if (job->get_ready && !s->ready)
-        hand_on(s, &r, files);
+    if (job->program && !find_program(job->program, path))
+        refuse(job->program, files);
+    else if (job->program || (job->get_ready && !s->ready))
+        hand_on(s, job->program, &r, files);
     else
         start_worker(s, job, &r, files);
 }
@@ -203,7 +259,7 @@ int reader_serve(const reader_job *jobs, size_t count) {
         fprintf(stderr, "roil-reader: roil starts it, to read files and shaders\n");
         return 2;
     }
-    s = (server){.jobs = jobs, .job_count = count, .second = -1, .process = getpid()};
+    s = (server){.jobs = jobs, .job_count = count, .process = getpid()};
     fcntl(WIRE_CONTROL, F_SETFD, FD_CLOEXEC);
     signal(SIGPIPE, SIG_IGN);
     signal(SIGCHLD, wake_up);

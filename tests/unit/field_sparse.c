@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { SIDE = SEQUENCE_BRICK + 1 };
+enum { SIDE = VDB_BRICK + 1 };
 
 static char folder[64];
 
@@ -31,7 +31,7 @@ static const uint16_t *brick_texel(const sequence_data *s, const sequence_texels
     static const uint16_t zeros[4];
     const sequence_bricks *bricks = &t->bricks[image];
     uint32_t across[3];
-    for (int i = 0; i < 3; i++) across[i] = (s->size[i] + SEQUENCE_BRICK - 1) / SEQUENCE_BRICK;
+    for (int i = 0; i < 3; i++) across[i] = (s->size[i] + VDB_BRICK - 1) / VDB_BRICK;
     uint32_t place = bricks->index[(brick[2] * across[1] + brick[1]) * across[0] + brick[0]];
     if (place == 0) return zeros;
     uint32_t number = (place & 1023) + (place >> 10 & 1023) * bricks->across +
@@ -46,15 +46,15 @@ static void compare_image(const sequence_data *s, const sequence_texels *dense,
                           const sequence_texels *sparse, int image) {
     size_t width = (size_t)sequence_texel_width(s, image);
     uint32_t b[3], l[3];
-    for (b[2] = 0; b[2] * SEQUENCE_BRICK < s->size[2]; b[2]++)
-        for (b[1] = 0; b[1] * SEQUENCE_BRICK < s->size[1]; b[1]++)
-            for (b[0] = 0; b[0] * SEQUENCE_BRICK < s->size[0]; b[0]++)
+    for (b[2] = 0; b[2] * VDB_BRICK < s->size[2]; b[2]++)
+        for (b[1] = 0; b[1] * VDB_BRICK < s->size[1]; b[1]++)
+            for (b[0] = 0; b[0] * VDB_BRICK < s->size[0]; b[0]++)
                 for (int i = 0; i < SIDE * SIDE * SIDE; i++) {
                     l[0] = (uint32_t)(i % SIDE);
                     l[1] = (uint32_t)(i / SIDE % SIDE);
                     l[2] = (uint32_t)(i / SIDE / SIDE);
-                    size_t x = b[0] * SEQUENCE_BRICK + l[0], y = b[1] * SEQUENCE_BRICK + l[1],
-                           z = b[2] * SEQUENCE_BRICK + l[2];
+                    size_t x = b[0] * VDB_BRICK + l[0], y = b[1] * VDB_BRICK + l[1],
+                           z = b[2] * VDB_BRICK + l[2];
                     if (x >= s->size[0] || y >= s->size[1] || z >= s->size[2]) continue;
                     const uint16_t *wanted =
                         dense->images[image] + ((z * s->size[1] + y) * s->size[0] + x) * width;

@@ -1,25 +1,45 @@
 // OpenVDB files from strangers: cut short, overwritten, absurd. Each gives a message that names it.
 #include "media_test.h"
 
-#include "media/vdb.h"
+#include "media/vdb_decode.h"
 #include <math.h>
+#include <pthread.h>
+#include <sched.h>
 
 static arena memory;
 static float out[16 * 16 * 16 * 3];
 
-// Info, and every grid that can be sampled. True when all of it worked.
+// Of a grid that can be sampled, and of its file.
+static vdb_sample_desc desc_of(const char *path, const vdb_grid_info *g) {
+    vdb_sample_desc desc = {path, g->name, g->box, {16, 16, 16}, g->components, out, NULL};
+    if (box3_is_empty(desc.box)) desc.box.max = (float3){8, 8, 8};
+    return desc;
+}
+
+// By the reader: info, and every grid that can be sampled. True when all of it worked.
 static bool read_all(const char *path) {
     vdb_info info;
     arena_free(&memory);
     if (!vdb_read_info(path, &memory, &info)) return false;
     bool good = true;
     for (size_t i = 0; i < info.count; i++) {
-        const vdb_grid_info *g = &info.grids[i];
-        if (g->components == 0) continue;
-        vdb_sample_desc desc = {path, g->name, g->box, {16, 16, 16}, g->components, out, NULL};
-        if (box3_is_empty(desc.box)) desc.box.max = (float3){8, 8, 8};
-        good = vdb_sample(&desc, NULL) && good;
+        const vdb_sample_desc desc = desc_of(path, &info.grids[i]);
+        if (desc.components) good = vdb_sample(&desc, NULL) && good;
     }
+    return good;
+}
+
+// The same in this process, where a fault of memory shows, and thousands are soon done.
+static bool decode_all(const char *name, const void *bytes, size_t size) {
+    vdb_info info;
+    arena_free(&memory);
+    vdb_file *f = vdb_file_open(name, bytes, size);
+    bool good = f && vdb_file_info(f, &memory, &info);
+    for (size_t i = 0; f && good && i < info.count; i++) {
+        const vdb_sample_desc desc = desc_of(name, &info.grids[i]);
+        if (desc.components) good = vdb_file_sample(f, &desc, NULL) && good;
+    }
+    vdb_file_close(f);
     return good;
 }
 
@@ -45,6 +65,9 @@ static void every_truncation_is_an_error(void **state) {
     size_t size;
     load("whole.vdb", &data, &size);
     for (size_t n = 0; n < size; n += n < 1500 ? 1 : 61) {
+        assert_false(decode_all("cut.vdb", data, n));
+        assert_message("cut.vdb");
+        if (n % 64) continue;
         test_put("cut.vdb", data, n);
         assert_false(read_all(test_path("cut.vdb")));
         assert_message("cut.vdb");
@@ -69,10 +92,14 @@ static void two_thousand_damaged_files_end_in_values_or_messages(void **state) {
             else
                 memcpy(copy + at, &ODD[test_random(&random) % 7], 4);
         }
-        test_put("bad.vdb", copy, size);
-        if (!read_all(test_path("bad.vdb"))) {
+        bool good = decode_all("bad.vdb", copy, size);
+        if (!good) {
             assert_message("bad.vdb");
             refused++;
+        }
+        if (i % 50 == 0) {
+            test_put("bad.vdb", copy, size);
+            assert_int_equal(read_all(test_path("bad.vdb")), good);
         }
         mem_free(copy);
     }
@@ -170,6 +197,102 @@ static void a_full_disk_is_an_error_and_leaves_nothing(void **state) {
     assert_false(vdb_write(test_path("no/such/folder.vdb"), &grid, 1));
 }
 
+// ---- the reader's processes --------------------------------------------------------------------
+
+// The last child of any of its threads; 0: none.
+static pid_t child_of(pid_t parent) {
+    char pattern[64];
+    file_list threads = {0};
+    int child = 0;
+    snprintf(pattern, sizeof pattern, "/proc/%d/task/*", (int)parent);
+    if (parent == 0 || !file_glob(pattern, &threads)) return 0;
+    for (size_t i = 0; i < threads.count; i++) {
+        char path[PATH_CAP];
+        FILE *file = path_join(path, threads.paths[i], "children") ? fopen(path, "r") : NULL;
+        while (file && fscanf(file, "%d", &child) == 1) {
+        }
+        if (file) fclose(file);
+    }
+    file_list_free(&threads);
+    return child;
+}
+
+typedef struct slow { // much to do for a small file
+    pthread_t thread;
+    bool running, done;
+    char message[512];
+    float *out;
+} slow;
+
+static void *sample_slowly(void *user) {
+    slow *s = user;
+    vdb_sample_desc desc = {
+        test_folder, "heat", {{0, 0, 0}, {0.3f, 0.3f, 0.3f}}, {200, 200, 200}, 1, s->out, NULL};
+    char path[PATH_CAP + 16];
+    snprintf(path, sizeof path, "%s/whole.vdb", test_folder);
+    desc.path = path;
+    s->done = vdb_sample(&desc, NULL);
+    snprintf(s->message, sizeof s->message, "%s", err_get());
+    __atomic_store_n(&s->running, false, __ATOMIC_RELEASE);
+    return NULL;
+}
+
+static void start_slowly(slow *s) {
+    *s = (slow){.running = true, .out = mem_alloc((size_t)200 * 200 * 200 * sizeof(float))};
+    assert_int_equal(pthread_create(&s->thread, NULL, sample_slowly, s), 0);
+}
+
+static void end_slowly(slow *s) {
+    pthread_join(s->thread, NULL);
+    mem_free(s->out);
+}
+
+static void a_crash_fails_one_file_only(void **state) {
+    (void)state;
+    void *data;
+    size_t size;
+    load("whole.vdb", &data, &size);
+    mem_free(data);
+    pid_t decoder = child_of(child_of(getpid()));
+    if (!decoder) skip(); // a kernel without lists of children
+    slow s;
+    for (int attempt = 0; attempt < 20; attempt++) { // until a worker was met at its work
+        pid_t worker = 0;
+        start_slowly(&s);
+        while (__atomic_load_n(&s.running, __ATOMIC_ACQUIRE) && !worker) {
+            worker = child_of(decoder);
+            if (worker) kill(worker, SIGSEGV);
+            sched_yield();
+        }
+        end_slowly(&s);
+        if (!s.done) break;
+    }
+    assert_false(s.done);
+    if (!strstr(s.message, "whole.vdb: the reader crashed (signal 11)")) fail_msg("%s", s.message);
+    assert_int_equal(child_of(child_of(getpid())), decoder);
+    assert_true(read_all(test_path("whole.vdb")));
+}
+
+static void a_decoder_that_was_lost_is_replaced(void **state) {
+    (void)state;
+    void *data;
+    size_t size;
+    load("whole.vdb", &data, &size);
+    mem_free(data);
+    pid_t reader = child_of(getpid()), decoder = child_of(reader);
+    if (!decoder) skip();
+    assert_int_equal(kill(decoder, SIGSTOP), 0); // so that the request waits in it
+    slow s;
+    start_slowly(&s);
+    sched_yield();
+    assert_int_equal(kill(decoder, SIGKILL), 0);
+    end_slowly(&s);
+    if (!s.done) fail_msg("%s", s.message);
+    assert_true(read_all(test_path("whole.vdb")));
+    assert_int_not_equal(child_of(reader), decoder);
+    assert_int_equal(child_of(getpid()), reader);
+}
+
 static int teardown(void **state) {
     arena_free(&memory);
     return test_teardown(state);
@@ -182,6 +305,8 @@ int main(void) {
         cmocka_unit_test(random_bytes_are_no_vdb_file),
         cmocka_unit_test(absurd_boxes_are_refused),
         cmocka_unit_test(absurd_requests_are_refused),
+        cmocka_unit_test(a_crash_fails_one_file_only),
+        cmocka_unit_test(a_decoder_that_was_lost_is_replaced),
         cmocka_unit_test(a_full_disk_is_an_error_and_leaves_nothing),
     };
     return cmocka_run_group_tests(tests, test_setup, teardown);

@@ -139,13 +139,21 @@ static bool tell_ready(const isolate_call *call) {
 }
 
 static const reader_job jobs[] = {
-    {"echo", echo, NULL},     {"refuse", refuse, NULL},
-    {"crash", crash, NULL},   {"leave", leave, NULL},
-    {"spin", spin, NULL},     {"beg and spin", beg_and_spin, NULL},
-    {"flood", flood, NULL},   {"want much", want_much, NULL},
-    {"pour", pour, NULL},     {"beg", beg, NULL},
-    {"escape", escape, NULL}, {"lie", lie, NULL},
-    {"burn", burn, NULL},     {"prepared", tell_ready, get_ready},
+    {"echo", echo, NULL, NULL},
+    {"refuse", refuse, NULL, NULL},
+    {"crash", crash, NULL, NULL},
+    {"leave", leave, NULL, NULL},
+    {"spin", spin, NULL, NULL},
+    {"beg and spin", beg_and_spin, NULL, NULL},
+    {"flood", flood, NULL, NULL},
+    {"want much", want_much, NULL, NULL},
+    {"pour", pour, NULL, NULL},
+    {"beg", beg, NULL, NULL},
+    {"escape", escape, NULL, NULL},
+    {"lie", lie, NULL, NULL},
+    {"burn", burn, NULL, NULL},
+    {"prepared", tell_ready, get_ready, NULL},
+    {"elsewhere", NULL, NULL, "no-such-program"},
 };
 
 // ---- asking -----------------------------------------------------------------------------------
@@ -235,6 +243,8 @@ static void failures_come_back_as_messages(void **state) {
     fails(&job, "file.x: the reader ran out of memory (1024 MiB)");
     job = job_of("no such job");
     fails(&job, "");
+    job = job_of("elsewhere");
+    fails(&job, "no process to work in: there is no no-such-program beside it");
     echoes();
 }
 
