@@ -15,6 +15,7 @@
 #include "base/file.h"
 #include "base/isolate_wire.h"
 #include "base/memory.h"
+#include "media/vdb_wire.h"
 #include "reader/reader.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -125,6 +126,49 @@ static bool burn(const isolate_call *call) {
     return call->size == 0;
 }
 
+// What a decoder of volumes would say that was taken over: the number in the file's name says which
+// part of its answer is wrong; 0: none.
+static bool lie_of_a_frame(const isolate_call *call) {
+    enum { INDEX = 512, TEXELS = 1024 };
+    int lie = call->name[strlen(call->name) - 1] - '0';
+    vdb_frame_head head = {.active = {{0, 0, 0}, {8, 8, 8}, 1},
+                           .images[0] = {.texels = TEXELS, .index = INDEX, .bricks = 1}};
+    uint32_t brick = 1;
+    size_t size = TEXELS + VDB_BLOCK * VDB_BLOCK * VDB_BLOCK * sizeof(uint16_t);
+    if (lie == 1) brick = 2;
+    if (lie == 2) head.images[0].bricks = VDB_MOST_BRICKS;
+    if (lie == 3) head.images[0].texels = size;
+    if (lie == 4) head.images[0].index = UINT64_MAX - 3;
+    if (lie == 5) head.images[0].texels = 8;
+    if (lie == 6) head.active.high[1] = 9;
+    if (lie == 7) head.active.low[2] = 8;
+    if (lie == 8) size = sizeof head - 1;
+    if (lie == 9) head.images[0].index = INDEX + 1;
+    char *answer = mem_alloc(TEXELS + size);
+    memcpy(answer, &head, sizeof head);
+    memcpy(answer + INDEX, &brick, sizeof brick);
+    return isolate_put(call, answer, size);
+}
+
+static bool lie_of_a_file(const isolate_call *call) {
+    const char *name = call->bytes;
+    int lie = name[strlen(name) - 1] - '0';
+    vdb_sent_info info = {.count = 1, .text = 1};
+    vdb_sent_grid grid = {.components = 1, .name = 2, .type = 2};
+    char texts[] = "a\0b";
+    if (lie == 1) info.count = 2;
+    if (lie == 2) info.text = UINT32_MAX;
+    if (lie == 3) grid.components = 2;
+    if (lie == 4) grid.grid_class = -1;
+    if (lie == 5) texts[1] = 'x';
+    if (lie == 6) texts[3] = 'x';
+    if (lie == 7) grid.index_max[0] = 1 << 30;
+    if (lie == 8) grid.index_min[1] = 1;
+    if (lie == 9) grid.name = 0;
+    return isolate_put(call, &info, sizeof info) && isolate_put(call, "", 1) &&
+           isolate_put(call, &grid, sizeof grid) && isolate_put(call, texts, sizeof texts);
+}
+
 // Takes until the test opens the gate on its side.
 static bool got_ready;
 
@@ -154,6 +198,8 @@ static const reader_job jobs[] = {
     {"burn", burn, NULL, NULL},
     {"prepared", tell_ready, get_ready, NULL},
     {"elsewhere", NULL, NULL, "no-such-program"},
+    {"vdb frame", lie_of_a_frame, NULL, NULL},
+    {"vdb info", lie_of_a_file, NULL, NULL},
 };
 
 // ---- asking -----------------------------------------------------------------------------------
@@ -313,6 +359,30 @@ static void a_worker_that_lies_is_not_believed(void **state) {
     isolate_job job = job_of("lie");
     fails(&job, "the reader's process is gone");
     echoes();
+}
+
+static void a_decoder_of_volumes_that_lies_is_not_believed(void **state) {
+    (void)state;
+    const vdb_source source = {.grid = "a", .components = 1, .gains = {1, 1, 1}};
+    arena memory = {0};
+    for (int lie = 0; lie <= 9; lie++) {
+        char name[16];
+        snprintf(name, sizeof name, "x.vdb%d", lie);
+        const vdb_frame_desc desc = {.path = name,
+                                     .box = {{0, 0, 0}, {1, 1, 1}},
+                                     .shape = {{8, 8, 8}, false, 1},
+                                     .sparse = true,
+                                     .max_bytes = 1 << 20,
+                                     .sources = &source,
+                                     .count = 1};
+        vdb_frame frame;
+        vdb_info info;
+        bool seen = vdb_read_frame(&desc, &frame), known = vdb_read_info(name, &memory, &info);
+        if (seen != (lie == 0) || known != (lie == 0)) fail_msg("lie %d: %s", lie, err_get());
+        if (lie > 0 && !strstr(err_get(), "returned nonsense")) fail_msg("%s", err_get());
+        vdb_frame_free(&frame);
+    }
+    arena_free(&memory);
 }
 
 static void *kill_reader(void *user) {
@@ -512,6 +582,7 @@ int main(int count, char **arguments) {
         cmocka_unit_test(a_worker_can_do_nothing_else),
         cmocka_unit_test(files_are_opened_by_who_asked),
         cmocka_unit_test(a_worker_that_lies_is_not_believed),
+        cmocka_unit_test(a_decoder_of_volumes_that_lies_is_not_believed),
         cmocka_unit_test(a_reader_that_was_lost_is_replaced),
         cmocka_unit_test(a_host_may_do_what_it_likes_with_its_signals),
         cmocka_unit_test(a_worker_goes_when_nobody_waits),
