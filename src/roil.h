@@ -518,8 +518,8 @@ bool roil_volume_finish(roil_volume *v); // when all is written; frees; NULL is 
 char *roil_info_devices(void);
 char *roil_info_passes(roil *r, const char *name); // NULL: one line each
 char *roil_info_fields(const char *name);          // NULL: one line each
-char *roil_info_params(roil_effect *e);            // parameters, uniforms and options of its passes
-char *roil_info_graph(roil_effect *e);             // Graphviz dot; needs roil_check or roil_prepare
+char *roil_info_params(roil_effect *e); // memory; parameters, uniforms, options of passes
+char *roil_info_graph(roil_effect *e);  // Graphviz dot; needs roil_check or roil_prepare
 char *roil_info_vdb(const char *file);
 void roil_free(void *text);
 

@@ -388,11 +388,23 @@ static const char *section_of(const effect_control *c, const roil_control *shown
     return shown->group;
 }
 
+static void add_memory(strbuf *out, const roil *r) {
+    const double mib = 1 << 20;
+    roil_memory m = roil_get_memory(r);
+    strbuf_add(out, "loaded: %.1f MiB of memory of the %.0f MiB that may be taken",
+               (double)m.sum / mib, (double)m.limit / mib);
+    for (size_t i = 0; i < COUNT_OF(m.largest) && m.largest[i].bytes; i++)
+        strbuf_add(out, "%s%s %.1f MiB", i ? ", " : "; ", m.largest[i].label,
+                   (double)m.largest[i].bytes / mib);
+    strbuf_add(out, "\n");
+}
+
 char *roil_info_params(roil_effect *e) {
     strbuf out = {0};
     effect *fx = e->effect;
     strbuf_add(&out, "%s: %u frames from %u at %g a second\n", effect_name(fx), effect_frames(fx),
                effect_first_frame(fx), effect_fps(fx));
+    add_memory(&out, e->owner);
     const char *section = "";
     for (size_t i = 0; i < roil_control_count(e); i++) {
         roil_control c;

@@ -66,6 +66,12 @@ class Info(Case):
         for name in ("steps", "march.albedo", "march.mode", "final.exposure_ev"):
             self.assertIn(name, shown)
 
+    def test_memory(self):
+        self.write("puff.lua", PUFF)
+        self.assertRegex(self.succeeds("info", "params", "puff.lua", "--memory", "512M"),
+                         r"\nloaded: [\d.]+ MiB of memory of the 512 MiB that may be taken; "
+                         r"the script and what it declares [\d.]+ MiB")
+
     def test_parameters_that_are_shown_can_be_set(self):
         settings = []
         for name, text in self.parameters():
