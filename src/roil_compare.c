@@ -1,5 +1,6 @@
 // Comparison of two picture files, and a picture of where they differ.
 #include "base/arena.h"
+#include "base/budget.h"
 #include "base/file.h"
 #include "base/maths.h"
 #include "base/memory.h"
@@ -74,9 +75,45 @@ static bool read_exr(const char *path, float gain, arena *memory, compare_pictur
 }
 
 static bool read_picture(const char *path, float gain, arena *memory, compare_picture *out) {
-    if (str_ends_with(path, ".png")) return read_png(path, memory, out);
-    if (str_ends_with(path, ".exr")) return read_exr(path, gain, memory, out);
-    return err_set("%s: cannot be compared; accepted: .png, .exr", path);
+    return str_ends_with(path, ".png") ? read_png(path, memory, out)
+                                       : read_exr(path, gain, memory, out);
+}
+
+// ---- memory -----------------------------------------------------------------------------------
+
+// Bytes of a pixel: of a picture as it is kept; and at most while one is read (in the reader, on
+// the way here, as it came), which is more than what two take while they are compared.
+enum { KEPT_BYTES = 12, WORK_BYTES = 48, PARTS = 3 };
+
+static bool take_parts(const roil_comparison *how, const uint64_t pixels[2],
+                       budget_part *parts[PARTS]) {
+    const uint64_t most = pixels[0] > pixels[1] ? pixels[0] : pixels[1];
+    budget_row rows[PARTS] = {{.bytes = KEPT_BYTES * pixels[0]},
+                              {.bytes = KEPT_BYTES * pixels[1]},
+                              {.label = "pictures read and compared", .bytes = WORK_BYTES * most}};
+    str_copy(rows[0].label, sizeof rows[0].label, path_name(how->a));
+    str_copy(rows[1].label, sizeof rows[1].label, path_name(how->b));
+    bool fit = budget_ask(budget_host(), rows, PARTS, 0);
+    for (int i = 0; fit && i < PARTS; i++) {
+        parts[i] = budget_take(budget_host(), rows[i].bytes, rows[i].label);
+        fit = parts[i] != NULL;
+    }
+    return fit;
+}
+
+// Of the whole comparison, known from the headers of both.
+static bool take_memory(const roil_comparison *how, budget_part *parts[PARTS]) {
+    const char *const paths[2] = {how->a, how->b};
+    uint64_t pixels[2];
+    for (int i = 0; i < 2; i++) {
+        picture_size size;
+        bool png = str_ends_with(paths[i], ".png");
+        if (!png && !str_ends_with(paths[i], ".exr"))
+            return err_set("%s: cannot be compared; accepted: .png, .exr", paths[i]);
+        if (!picture_read_size(paths[i], png ? "png size" : "exr size", &size)) return false;
+        pixels[i] = (uint64_t)size.width * size.height;
+    }
+    return take_parts(how, pixels, parts);
 }
 
 // ---- difference picture -----------------------------------------------------------------------
@@ -157,7 +194,9 @@ bool roil_compare(const roil_comparison *how, roil_difference *out) {
         if (pictures[i] && !str_ends_with(pictures[i], ".png"))
             return err_set("%s: a difference cannot be written; accepted: .png", pictures[i]);
     arena memory = {0};
-    bool done = compare_pictures(how, &memory, out);
+    budget_part *parts[PARTS] = {0};
+    bool done = take_memory(how, parts) && compare_pictures(how, &memory, out);
     arena_free(&memory);
+    for (int i = 0; i < PARTS; i++) budget_give(parts[i]);
     return done;
 }

@@ -1,5 +1,7 @@
 // roil compare A B: how different two pictures are, and whether that is too much.
 #include "app/app.h"
+#include "app/device_options.h"
+#include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/str.h"
@@ -68,6 +70,7 @@ static int usage(const char *message) {
 
 int cmd_compare(int argc, const char **argv) {
     compare_job job = {.max_flip = 1, .min_psnr = -INFINITY};
+    const char *memory = NULL;
     const struct poptOption options[] = {
         {"output", 'o', POPT_ARG_STRING, &job.how.difference, 0,
          "picture of FLIP: black where both look the same", "DIFFERENCE.png"},
@@ -84,6 +87,7 @@ int cmd_compare(int argc, const char **argv) {
          "EV"},
         {"ppd", 0, POPT_ARG_DOUBLE, &job.how.pixels_per_degree, 0,
          "pixels per degree of the observer's sight, for FLIP (default: 67)", "X"},
+        APP_MEMORY_ROW(&memory),
         POPT_AUTOHELP POPT_TABLEEND};
     poptContext context = poptGetContext("roil compare", argc, argv, options, 0);
     poptSetOtherOptionHelp(context, "A.png|A.exr B.png|B.exr");
@@ -99,6 +103,8 @@ int cmd_compare(int argc, const char **argv) {
         status = usage("--max-flip is 0 to 1");
     } else if (isnan(job.min_psnr)) {
         status = usage("--min-psnr is a number of dB");
+    } else if (memory && !budget_set_share(memory)) {
+        status = app_fail(APP_BAD_USAGE, "compare: --%s", roil_error());
     } else {
         status = compare(&job);
     }

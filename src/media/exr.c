@@ -236,6 +236,10 @@ static bool make_room(reader *r, const exr_attr_chlist_t *list, arena *memory, e
     int64_t width = (int64_t)r->window.max.x - r->window.min.x + 1;
     int64_t height = (int64_t)r->window.max.y - r->window.min.y + 1;
     if (!picture_limits_allow(&r->wish->limits, r->path, width, height, pixel)) return false;
+    if (!memory) {
+        *out = (exr_image){(uint32_t)width, (uint32_t)height, NULL, 0};
+        return true;
+    }
     r->width = (size_t)width;
     r->height = (size_t)height;
     exr_channel *channels = arena_alloc(memory, count * sizeof *channels);
@@ -280,6 +284,7 @@ static bool read_shape(reader *r, arena *memory, exr_image *out) {
 static bool read_picture(reader *r, arena *memory, exr_image *out) {
     exr_storage_t storage;
     if (!read_shape(r, memory, out)) return false;
+    if (!memory) return true;
     if (exr_get_storage(r->context, 0, &storage) != EXR_ERR_SUCCESS)
         return fault(r->path, "cannot be read as EXR", r->in);
     bool done = false;

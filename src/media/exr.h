@@ -33,7 +33,8 @@ bool exr_read_inside(const char *root, const char *path, const exr_wish *wish, a
                      exr_image *out);
 const float *exr_find(const exr_image *image, const char *channel); // its values, or NULL
 
-// Here and now, the file's bytes; `name` is for messages.
+// Here and now, the file's bytes; `name` is for messages. Without `memory` its size alone.
 bool exr_decode(const void *data, size_t size, const char *name, const exr_wish *wish,
                 arena *memory, exr_image *out);
 bool exr_work(const isolate_call *call); // in a worker
+bool exr_size_work(const isolate_call *call);

@@ -1,13 +1,10 @@
 // OpenEXR by the reader: what goes into a worker and what comes back.
 #include "base/error.h"
-#include "base/file.h"
 #include "base/str.h"
 #include "media/exr.h"
 #include <string.h>
-#include <unistd.h>
 
 enum { CHANNELS_MAX = 64, CHANNEL_NAME = 256 };
-static const size_t FILE_BYTES_MAX = (size_t)4 << 30;
 
 typedef struct task { // the job's argument
     picture_limits limits;
@@ -27,8 +24,7 @@ bool exr_work(const isolate_call *call) {
     task t;
     arena memory = {0};
     exr_image image;
-    if (call->argument_size != sizeof t) return err_set("no limits");
-    memcpy(&t, call->arguments, sizeof t);
+    if (!picture_take_argument(call, &t, sizeof t)) return false;
     const exr_wish wish = {t.letters[0] ? t.letters : NULL, t.limits};
     if (!exr_decode(call->bytes, call->size, call->name, &wish, &memory, &image)) return false;
     const head h = {image.width, image.height, (uint32_t)image.channel_count};
@@ -42,6 +38,15 @@ bool exr_work(const isolate_call *call) {
     }
     arena_free(&memory);
     return done;
+}
+
+bool exr_size_work(const isolate_call *call) {
+    picture_limits limits;
+    exr_image image;
+    if (!picture_take_argument(call, &limits, sizeof limits)) return false;
+    const exr_wish wish = {"RGB", limits};
+    return exr_decode(call->bytes, call->size, call->name, &wish, NULL, &image) &&
+           picture_put_size(call, image.width, image.height);
 }
 
 static bool take_channels(const head *h, const char *sent, arena *memory, exr_image *out) {
@@ -78,23 +83,12 @@ bool exr_read(const char *path, const exr_wish *wish, arena *memory, exr_image *
 bool exr_read_inside(const char *root, const char *path, const exr_wish *wish, arena *memory,
                      exr_image *out) {
     isolate_result result;
-    size_t size;
     task t = {.limits = wish ? wish->limits : picture_limits_default};
     if (wish && wish->letters) str_copy(t.letters, sizeof t.letters, wish->letters);
+    const isolate_job job = {.kind = "exr", .arguments = &t, .argument_size = sizeof t};
     *out = (exr_image){0};
-    int file = file_open_inside(root, path, FILE_BYTES_MAX, &size);
-    if (file < 0) return false;
-    const isolate_job job = {.kind = "exr",
-                             .name = path,
-                             .arguments = &t,
-                             .argument_size = sizeof t,
-                             .file = file,
-                             .size = size,
-                             .limits = picture_limits_of_job(&t.limits, size)};
-    bool done = isolate_run(&job, &result);
-    close(file);
-    if (!done) return false;
-    done = take_image(path, &t.limits, &result, memory, out);
+    if (!picture_run_job(root, path, &t.limits, job, &result)) return false;
+    bool done = take_image(path, &t.limits, &result, memory, out);
     isolate_free(&result);
     return done;
 }

@@ -180,6 +180,7 @@ static bool decode(session *s, const picture_limits *limits, arena *memory, png_
     out->height = png_get_image_height(s->png, s->info);
     out->bits = png_get_bit_depth(s->png, s->info);
     out->channels = 4;
+    if (!memory) return true;
     size_t pitch = (size_t)out->width * 4 * (size_t)(out->bits / 8);
     if (png_get_rowbytes(s->png, s->info) != pitch) png_error(s->png, "unknown pixel layout");
     uint8_t *pixels = arena_alloc(memory, pitch * out->height);

@@ -30,10 +30,11 @@ bool png_read_inside(const char *root, const char *path, const picture_limits *l
 enum { PNG_MAX_TEXTS = 64 };
 bool png_read_texts(const char *path, arena *memory, png_text out[PNG_MAX_TEXTS], size_t *count);
 
-// Here and now, a file's bytes; `name` is for messages.
+// Here and now, a file's bytes; `name` is for messages. Without `memory` its size alone.
 bool png_decode(const void *data, size_t size, const char *name, const picture_limits *limits,
                 arena *memory, png_image *out);
 bool png_decode_texts(const void *data, size_t size, const char *name, arena *memory,
                       png_text out[PNG_MAX_TEXTS], size_t *count);
 bool png_work(const isolate_call *call); // in a worker
+bool png_size_work(const isolate_call *call);
 bool png_texts_work(const isolate_call *call);

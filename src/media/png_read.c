@@ -1,12 +1,8 @@
 // PNG by the reader: what goes into a worker and what comes back.
 #include "base/error.h"
-#include "base/file.h"
 #include "base/memory.h"
 #include "media/png.h"
 #include <string.h>
-#include <unistd.h>
-
-static const size_t FILE_BYTES_MAX = (size_t)1 << 30;
 
 // ---- pictures ---------------------------------------------------------------------------------
 
@@ -19,8 +15,7 @@ bool png_work(const isolate_call *call) {
     picture_limits limits;
     arena memory = {0};
     png_image image;
-    if (call->argument_size != sizeof limits) return err_set("no limits");
-    memcpy(&limits, call->arguments, sizeof limits);
+    if (!picture_take_argument(call, &limits, sizeof limits)) return false;
     if (!png_decode(call->bytes, call->size, call->name, &limits, &memory, &image)) return false;
     const head h = {image.width, image.height, image.bits};
     size_t pixel = 4 * (size_t)image.bits / 8;
@@ -30,24 +25,29 @@ bool png_work(const isolate_call *call) {
     return done;
 }
 
-static bool take_image(const isolate_job *job, const picture_limits *limits, arena *memory,
-                       png_image *out) {
-    isolate_result r;
+bool png_size_work(const isolate_call *call) {
+    picture_limits limits;
+    png_image image;
+    return picture_take_argument(call, &limits, sizeof limits) &&
+           png_decode(call->bytes, call->size, call->name, &limits, NULL, &image) &&
+           picture_put_size(call, image.width, image.height);
+}
+
+static bool take_image(const char *name, const picture_limits *limits, isolate_result *r,
+                       arena *memory, png_image *out) {
     head h = {0};
-    *out = (png_image){0};
-    if (!isolate_run(job, &r)) return false;
-    if (r.size >= sizeof h) memcpy(&h, r.data, sizeof h);
+    if (r->size >= sizeof h) memcpy(&h, r->data, sizeof h);
     size_t pixel = 4 * (size_t)h.bits / 8;
     bool whole = (h.bits == 8 || h.bits == 16) &&
-                 picture_limits_allow(limits, job->name, h.width, h.height, pixel) &&
-                 r.size == sizeof h + (size_t)h.width * h.height * pixel;
+                 picture_limits_allow(limits, name, h.width, h.height, pixel) &&
+                 r->size == sizeof h + (size_t)h.width * h.height * pixel;
     if (whole) {
-        const char *pixels = (const char *)r.data + sizeof h;
+        const char *pixels = (const char *)r->data + sizeof h;
         *out = (png_image){h.width, h.height, 4, h.bits,
-                           arena_copy(memory, pixels, r.size - sizeof h)};
+                           arena_copy(memory, pixels, r->size - sizeof h)};
     }
-    isolate_free(&r);
-    return whole || err_set("%s: damaged: its reader returned nonsense", job->name);
+    isolate_free(r);
+    return whole || err_set("%s: damaged: its reader returned nonsense", name);
 }
 
 bool png_read(const char *path, const picture_limits *limits, arena *memory, png_image *out) {
@@ -56,20 +56,12 @@ bool png_read(const char *path, const picture_limits *limits, arena *memory, png
 
 bool png_read_inside(const char *root, const char *path, const picture_limits *limits,
                      arena *memory, png_image *out) {
-    size_t size;
+    isolate_result r;
     if (!limits) limits = &picture_limits_default;
-    int file = file_open_inside(root, path, FILE_BYTES_MAX, &size);
-    if (file < 0) return false;
-    const isolate_job job = {.kind = "png",
-                             .name = path,
-                             .arguments = limits,
-                             .argument_size = sizeof *limits,
-                             .file = file,
-                             .size = size,
-                             .limits = picture_limits_of_job(limits, size)};
-    bool done = take_image(&job, limits, memory, out);
-    close(file);
-    return done;
+    const isolate_job job = {.kind = "png", .arguments = limits, .argument_size = sizeof *limits};
+    *out = (png_image){0};
+    return picture_run_job(root, path, limits, job, &r) &&
+           take_image(path, limits, &r, memory, out);
 }
 
 // ---- texts ------------------------------------------------------------------------------------
@@ -97,18 +89,11 @@ static const char *take_string(const isolate_result *r, size_t *at) {
 
 bool png_read_texts(const char *path, arena *memory, png_text out[PNG_MAX_TEXTS], size_t *count) {
     isolate_result r;
-    size_t size, at = 0;
+    size_t at = 0;
     *count = 0;
-    int file = file_open_inside(NULL, path, FILE_BYTES_MAX, &size);
-    if (file < 0) return false;
-    const isolate_job job = {.kind = "png texts",
-                             .name = path,
-                             .file = file,
-                             .size = size,
-                             .limits = picture_limits_of_job(&picture_limits_default, size)};
-    bool done = isolate_run(&job, &r);
-    close(file);
-    if (!done) return false;
+    if (!picture_run_job(NULL, path, &picture_limits_default, (isolate_job){.kind = "png texts"},
+                         &r))
+        return false;
     while (*count < PNG_MAX_TEXTS) {
         const char *key = take_string(&r, &at), *value = key ? take_string(&r, &at) : NULL;
         if (!value) break;

@@ -5,6 +5,7 @@ import re
 import resource
 import unittest
 
+from lib.pictures import exr_header
 from lib.program import SMALL, VOLUME, Case, main
 
 HEAD = 'local fx = effect { name = "greedy" }\n'
@@ -88,6 +89,14 @@ class Memory(Case):
 
     def test_small_effect_within_a_small_limit(self):
         self.render(VOLUME % BALL, "--memory", "64M")
+
+    def test_pictures_compared(self):
+        """By what the headers say: neither has any pixels."""
+        self.write("large.exr", exr_header(8000, 8000, "RGB"))
+        self.write("other.exr", exr_header(8000, 7000, "RGB"))
+        total, labels = self.refusal("compare", "large.exr", "other.exr")
+        self.assertGreater(total, (8000 + 7000) * 8000 * 12 / (1 << 20))
+        self.assertEqual(labels, ["pictures read and compared", "large.exr", "other.exr"])
 
     def test_bad_limits(self):
         self.write("effect.lua", VOLUME % BALL)
