@@ -84,6 +84,8 @@ roil *roil_create(const roil_desc *desc) {
     r->reference = desc->reference;
     r->punctual = desc->punctual;
     r->hands = desc->hands;
+    r->loading = desc->loading;
+    r->user = desc->user;
     r->seconds = desc->time_limit > 0 ? desc->time_limit : TIME_LIMIT_LOAD_SECONDS;
     // Without a place for it (no home folder, a read-only one) roil works, only slower.
     if (!desc->no_cache && path_cache_folder(cache, "")) r->cache = joined(cache, "");
@@ -146,7 +148,8 @@ roil_memory roil_get_memory(const roil *r) {
 }
 
 time_limit roil_time_limit(const roil *r) {
-    return (time_limit){.what = "load", .limit = r->seconds};
+    return (time_limit){
+        .what = "load", .limit = r->seconds, .progress = r->loading, .user = r->user};
 }
 
 // ---- effects ----------------------------------------------------------------------------------

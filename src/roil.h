@@ -55,7 +55,10 @@ typedef struct roil_desc {
     // Called ten times a second by the thread of roil_create, while that waits for a frame that
     // takes the device longer than a second. False gives the device up: it is lost. May be NULL.
     bool (*waiting)(void *user, double seconds);
-    void *user;
+    // Called by the thread that loads, while it reads the files of a sequence: how many it has
+    // read, and has to read. False gives the load up, which fails then. May be NULL.
+    bool (*loading)(void *user, double done, double whole);
+    void *user;        // of both
     double time_limit; // seconds that a load may take, and then its compiling: its script and all
                        // that works for it, by the clock; eight times as many of other threads and
                        // processes; the script of a frame gets a tenth of both. 0: 120
@@ -480,6 +483,10 @@ typedef struct roil_export {
     const char *grid;    // exact name of a grid of numbers; NULL: "density"
     const char *type;    // "u8", "u16" (0 to the greatest value), "f16", "f32"; NULL: "u8"
     const char *file;    // one file of all frames, x fastest, little-endian
+    // Is told of the frames that were read, each twice, and of those that will be. False gives the
+    // export up, which fails then. May be NULL.
+    bool (*progress)(void *user, double done, double whole);
+    void *user;
 } roil_export;
 // Resamples every frame into the box that encloses the sequence. Returns a text that says how Lua
 // reads the file back (free with roil_free), or NULL.

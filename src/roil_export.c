@@ -46,10 +46,15 @@ typedef struct exporter {
     size_t file_count, voxels;
     const char *name;
     float *values;
+    const roil_export *desc;
+    size_t read; // frames, each twice in the end
 } exporter;
 
 // One frame; a file without the grid is a frame of zeros. `*present` is left alone then.
 static bool sample_frame(exporter *x, size_t frame, bool *present) {
+    const roil_export *d = x->desc;
+    if (d->progress && !d->progress(d->user, (double)x->read++, 2.0 * (double)x->file_count))
+        return err_set("stopped after %zu of %zu frames", frame, x->file_count);
     arena memory = {0};
     vdb_info info;
     bool done = vdb_read_info(x->files[frame], &memory, &info), found = false;
@@ -134,7 +139,7 @@ char *roil_export_raw(const roil_export *desc) {
     char *text = NULL;
     if (s) {
         field_grid *grid = sequence_grid(s);
-        exporter x = {.grid = grid, .name = desc->grid ? desc->grid : "density"};
+        exporter x = {.grid = grid, .name = desc->grid ? desc->grid : "density", .desc = desc};
         x.file_count = sequence_files(s, &x.files);
         x.voxels = (size_t)grid->size[0] * grid->size[1] * grid->size[2];
         budget_part *part = budget_take(

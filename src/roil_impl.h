@@ -15,7 +15,9 @@ struct roil {
     bool stuck; // a thread was left behind that uses it (roil_live_destroy)
     uint32_t reference;
     double seconds; // roil_desc.time_limit
-    view *view;     // NULL until something is shown or inspected
+    bool (*loading)(void *user, double done, double whole);
+    void *user; // for `loading`
+    view *view; // NULL until something is shown or inspected
 };
 
 struct roil_effect {

@@ -108,9 +108,12 @@ void app_progress_begin(app_progress *p, size_t total, const char *unit);
 void app_progress_step(app_progress *p, size_t done); // shows time left
 void app_progress_clear(app_progress *p);             // makes way for a line of output
 void app_progress_end(app_progress *p);
-// For roil_on_progress: of steps of simulations, for frames that were left out. `user`: an
-// app_progress, zero at first.
+// Whoever works in pieces tells of them by one of these: roil_on_progress of steps of simulations,
+// roil_desc.loading of files of a sequence, roil_export of frames. `user`: an app_progress, zero at
+// first. False after an interrupt.
 bool app_tell_steps(void *user, double done, double whole);
+bool app_tell_files(void *user, double done, double whole);
+bool app_tell_frames(void *user, double done, double whole);
 
 // ---- statistics -------------------------------------------------------------------------------
 

@@ -27,7 +27,7 @@ typedef struct bench_options {
     char folder[PATH_CAP]; // where results go by default
     double margin;         // percent
     int resume, list, merge, strict, no_reference;
-    app_progress progress;
+    app_progress progress, steps;
     int label_width;
 } bench_options;
 
@@ -158,6 +158,7 @@ static void on_begin(void *user, const sweep *s, size_t total) {
     bench_options *o = user;
     app_print(stdout, "%s: %zu of %zu rows\n", s->title, total, s->row_count);
     app_progress_begin(&o->progress, total, "rows");
+    o->progress.printed = 0; // the first row is told of
     o->label_width = bench_label_width(s->rows, s->row_count);
 }
 
@@ -229,9 +230,14 @@ static int finish(const bench_options *o, const bench_results *r) {
     return APP_DONE;
 }
 
+static void on_steps(void *user, double done, double whole) {
+    app_tell_steps(&((bench_options *)user)->steps, done, whole);
+}
+
 static int run(bench_options *o) {
     bench_results results;
-    o->order.watcher = (bench_watcher){on_begin, on_row, on_result, app_is_interrupted, o};
+    o->order.watcher =
+        (bench_watcher){on_begin, on_row, on_result, app_is_interrupted, on_steps, o};
     app_hear_interrupts();
     bool done = bench_run(&o->order, &results);
     if (o->progress.total) app_progress_clear(&o->progress);

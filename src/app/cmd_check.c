@@ -23,7 +23,8 @@ static int check(const char **files, app_settings *settings, const roil_desc *de
 
 int cmd_check(int argc, const char **argv) {
     enum { OPTION_PRESET = 1 };
-    roil_desc desc = {.no_device = true};
+    app_progress progress = {0};
+    roil_desc desc = {.no_device = true, .loading = app_tell_files, .user = &progress};
     const struct poptOption options[] = {{"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET,
                                           "with values kept beside the effect, or in a file",
                                           "NAME|FILE.lua"},

@@ -13,7 +13,8 @@ static int usage(const char *message) {
 }
 
 static int export_raw(int argc, const char **argv) {
-    roil_export job = {0};
+    app_progress progress = {0};
+    roil_export job = {.progress = app_tell_frames, .user = &progress};
     const struct poptOption options[] = {
         {"output", 'o', POPT_ARG_STRING, &job.file, 0, "one file of all frames", "FILE.raw"},
         {"grid", 'g', POPT_ARG_STRING, &job.grid, 0, "which grid (default: density)", "NAME"},

@@ -24,7 +24,9 @@ static int info_passes(const char *name) {
 static int info_effect(const char *what, const char *file, app_settings *settings,
                        const char *memory) {
     if (!file) return app_fail(APP_BAD_USAGE, "info %s: of which effect?", what);
-    roil *r = roil_create(&(roil_desc){.no_device = true, .memory = memory});
+    app_progress files = {0};
+    roil *r = roil_create(&(roil_desc){
+        .no_device = true, .memory = memory, .loading = app_tell_files, .user = &files});
     bool collected = r && app_collect_settings(settings, r, file, NULL);
     roil_effect *e = collected ? roil_load(r, file, settings->all, settings->count) : NULL;
     int status;

@@ -335,6 +335,9 @@ static int run(job *j) {
     roil_desc desc = app_device_desc(&j->device);
     desc.counters = j->stats != NULL;
     desc.reference = j->reference;
+    app_progress files = {0};
+    desc.loading = app_tell_files;
+    desc.user = &files;
     roil *r = roil_create(&desc);
     bool collected = r && app_collect_settings(&j->settings, r, j->file, j->from);
     roil_effect *e = collected ? roil_load(r, j->file, j->settings.all, j->settings.count) : NULL;

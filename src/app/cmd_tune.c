@@ -25,6 +25,7 @@ typedef struct tune_options {
     size_t axis_count, axis_capacity;
     char folder[PATH_CAP]; // where results go by default
     int resume, repeats;
+    app_progress steps;
     const tune_axis *shown; // columns of what is printed
     size_t shown_count, measured;
 } tune_options;
@@ -232,6 +233,10 @@ static int finish(const tune_options *o, const bench_results *r, const tune_resu
     return APP_DONE;
 }
 
+static void on_steps(void *user, double done, double whole) {
+    app_tell_steps(&((tune_options *)user)->steps, done, whole);
+}
+
 static int run(tune_options *o) {
     roil *r = roil_create(&(roil_desc){.no_device = true, .memory = o->memory});
     if (!r || !app_collect_settings(&o->settings, r, o->order.effect, NULL)) {
@@ -241,7 +246,7 @@ static int run(tune_options *o) {
     roil_destroy(r);
     o->order.settings = o->settings.all;
     o->order.setting_count = o->settings.count;
-    o->order.watcher = (tune_watcher){on_begin, on_result, app_is_interrupted, o};
+    o->order.watcher = (tune_watcher){on_begin, on_result, app_is_interrupted, on_steps, o};
     app_hear_interrupts();
     bench_results results;
     tune_result result;

@@ -127,8 +127,13 @@ static bool write_frames(const job *j, roil_effect *e, roil_volume *v) {
     bool done = roil_prepare(e, PICTURE, PICTURE);
     roil_on_progress(e, app_tell_steps, &steps);
     app_progress_begin(&progress, j->frames.count, "frames");
+    app_hear_interrupts();
     for (size_t i = 0; done && i < j->frames.count; i++) {
         char file[PATH_CAP];
+        if (app_is_interrupted(NULL)) {
+            done = err_set("stopped after %zu of %zu frames", i, j->frames.count);
+            break;
+        }
         app_format_pattern(j->output, j->frames.numbers[i], file, sizeof file);
         done = roil_render(e, j->frames.numbers[i]) && roil_volume_save(v, file);
         if (done) app_progress_step(&progress, i + 1);
@@ -153,7 +158,10 @@ static bool export_all(job *j, roil_effect *e) {
 }
 
 static int run(job *j) {
-    const roil_desc desc = app_device_desc(&j->device);
+    roil_desc desc = app_device_desc(&j->device);
+    app_progress files = {0};
+    desc.loading = app_tell_files;
+    desc.user = &files;
     roil *r = roil_create(&desc);
     bool collected = r && app_collect_settings(&j->settings, r, j->file, NULL);
     roil_effect *e = collected ? roil_load(r, j->file, j->settings.all, j->settings.count) : NULL;

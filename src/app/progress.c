@@ -9,8 +9,12 @@ enum { BAR_WIDTH = 24 };
 static const double TERMINAL_SECONDS = 0.1, FILE_SECONDS = 5;
 
 void app_progress_begin(app_progress *p, size_t total, const char *unit) {
-    *p = (app_progress){
-        .start = clock_seconds(), .total = total, .unit = unit, .terminal = isatty(2) == 1};
+    double now = clock_seconds();
+    *p = (app_progress){.start = now,
+                        .printed = now,
+                        .total = total,
+                        .unit = unit,
+                        .terminal = isatty(2) == 1};
 }
 
 // "[#####-----] "
@@ -31,7 +35,11 @@ void app_progress_step(app_progress *p, size_t done) {
     if (done > 0) {
         double each = (now - p->start) / (double)done;
         long left = lround(each * (double)(p->total - done));
-        fprintf(stderr, ", %.2f s each, %ld:%02ld left", each, left / 60, left % 60);
+        if (each < 0.01)
+            fprintf(stderr, ", %.0f a second", 1 / each);
+        else
+            fprintf(stderr, ", %.2f s each", each);
+        fprintf(stderr, ", %ld:%02ld left", left / 60, left % 60);
     }
     fputs(p->terminal ? "\033[K" : "\n", stderr);
 }
@@ -45,10 +53,22 @@ void app_progress_end(app_progress *p) {
     if (p->terminal) fputc('\n', stderr);
 }
 
-bool app_tell_steps(void *user, double done, double whole) {
-    app_progress *steps = user;
-    if (steps->total != (size_t)whole) app_progress_begin(steps, (size_t)whole, "steps");
-    app_progress_step(steps, (size_t)done);
-    if (done >= whole) *steps = (app_progress){0};
+static bool tell(app_progress *p, double done, double whole, const char *unit) {
+    if (p->total != (size_t)whole) app_progress_begin(p, (size_t)whole, unit);
+    bool told = p->printed > p->start; // what is done at once needs no words
+    if (done < whole || told) app_progress_step(p, (size_t)done);
+    if (done >= whole) *p = (app_progress){0};
     return !app_is_interrupted(NULL);
+}
+
+bool app_tell_steps(void *user, double done, double whole) {
+    return tell(user, done, whole, "steps");
+}
+
+bool app_tell_files(void *user, double done, double whole) {
+    return tell(user, done, whole, "files");
+}
+
+bool app_tell_frames(void *user, double done, double whole) {
+    return tell(user, done, whole, "frames");
 }

@@ -67,6 +67,12 @@ bool time_limit_check(void) {
     return err_set("%s", text);
 }
 
+bool time_limit_progress(double done, double whole) {
+    return time_limit_check() &&
+           (!current || !current->progress || current->progress(current->user, done, whole) ||
+            err_set("stopped after %.0f of %.0f", done, whole));
+}
+
 void time_limit_stop(time_limit *b) {
     atomic_store(&b->stopped, true);
 }

@@ -23,6 +23,10 @@ typedef struct time_limit {
     double used, start;      // by the clock: of times that ended, and when this one began
     _Atomic uint64_t others; // nanoseconds of other threads and processes
     atomic_bool stopped;
+    // Is told by the thread that works of work that is done in parts; false: it is not wanted any
+    // more. May be NULL.
+    bool (*progress)(void *user, double done, double whole);
+    void *user;
 } time_limit;
 
 // For the calling thread. Within another budget it changes nothing: that goes on. The result is for
@@ -36,7 +40,9 @@ void time_limit_adopt(time_limit *b); // for a thread that works for another one
 
 double time_limit_left(void); // seconds; INFINITY: no budget
 void time_limit_charge(double processor_seconds);
-double time_limit_thread_seconds(void);       // of the processor, by the calling thread so far
-bool time_limit_check(void);                  // false with a message when nothing is left
+double time_limit_thread_seconds(void); // of the processor, by the calling thread so far
+bool time_limit_check(void);            // false with a message when nothing is left
+// The same where work is done in `whole` parts, of which so many are done: whoever waits is told.
+bool time_limit_progress(double done, double whole);
 void time_limit_tell(char *out, size_t size); // that message
 void time_limit_stop(time_limit *b);          // by any thread: nothing is left

@@ -14,21 +14,29 @@ enum { MAX_PASSES = 256, MAX_COUNTERS = 64, MAX_SETTLING = 10000 };
 
 // ---- frames -------------------------------------------------------------------------------------
 
+static bool may_go_on(bench_drawing *d) {
+    d->stopped = d->stopped || bench_is_stopped(d->session);
+    d->expired = d->deadline > 0 && clock_seconds() > d->deadline;
+    return !d->stopped && !d->expired;
+}
+
+static bool on_progress(void *user, double done, double whole) {
+    const bench_session_desc *desc = &((bench_drawing *)user)->session->desc;
+    if (desc->steps) desc->steps(desc->user, done, whole);
+    return may_go_on(user);
+}
+
 bool bench_drawing_begin(bench_session *s, const bench_row *row, bench_drawing *out) {
     *out = (bench_drawing){.session = s, .row = row};
     out->effect = roil_load(s->r, row->effect, row->settings.items, row->settings.count);
-    return out->effect && roil_prepare(out->effect, row->width, row->height);
+    if (!out->effect) return false;
+    roil_on_progress(out->effect, on_progress, out);
+    return roil_prepare(out->effect, row->width, row->height);
 }
 
 void bench_drawing_end(bench_drawing *d) {
     roil_unload(d->effect);
     d->effect = NULL;
-}
-
-static bool may_go_on(bench_drawing *d) {
-    d->stopped = d->stopped || bench_is_stopped(d->session);
-    d->expired = d->deadline > 0 && clock_seconds() > d->deadline;
-    return !d->stopped && !d->expired;
 }
 
 bool bench_draw(bench_drawing *d, double frame) {

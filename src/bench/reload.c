@@ -63,6 +63,12 @@ static bool take(reload *m, bool *changed) {
     return !message || err_set("%s", message);
 }
 
+static bool draw(reload *m) {
+    roil_effect *e = roil_live_effect(m->live);
+    roil_on_progress(e, bench_go_on, m->session);
+    return roil_advance(e, m->frame++);
+}
+
 // A file that was written a moment before it was read is built twice: what is left of an edit must
 // not be taken for the next one. Nothing is being drawn or built then.
 static bool calm_down(reload *m) {
@@ -94,9 +100,8 @@ static bool time_edit(reload *m, const char *text, bool counts) {
     if (!take(m, &changed)) return false;
     double taken = clock_seconds();
     if (!changed) return err_set("an edit changed nothing");
-    if (!roil_advance(roil_live_effect(m->live), m->frame)) return false;
+    if (!draw(m)) return false;
     double submitted = clock_seconds();
-    m->frame += 1;
     if (!counts) return true;
     bench_collect(&m->times, "reload", 1e3 * (submitted - closed));
     bench_collect(&m->times, "take_over", 1e3 * (taken - woken));
@@ -136,8 +141,7 @@ static bool start(reload *m) {
                                                           .wake = ring,
                                                           .user = &m->news});
     bool changed;
-    return m->live && wait_for_ring(&m->news) && take(m, &changed) && changed &&
-           roil_advance(roil_live_effect(m->live), m->frame++);
+    return m->live && wait_for_ring(&m->news) && take(m, &changed) && changed && draw(m);
 }
 
 static bool run(reload *m) {

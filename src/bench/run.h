@@ -18,7 +18,8 @@ typedef struct bench_session_desc {
     bool counters;      // draws one more frame in which samples are counted
     uint32_t compared;  // frames of a row that are compared, spread evenly; 0: the last
     bool own_cache;     // an empty cache, so that what is new is new in every run
-    bool (*stopped)(void *user); // asked between frames; NULL: never
+    bool (*stopped)(void *user); // asked between frames, files and steps; NULL: never
+    void (*steps)(void *user, double done, double whole); // as roil_on_progress tells; may be NULL
     void *user;
 } bench_session_desc;
 

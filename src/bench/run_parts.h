@@ -10,6 +10,9 @@ struct bench_session {
     bool stopped;
 };
 
+// For roil_desc.loading and roil_on_progress, with the session.
+bool bench_go_on(void *user, double done, double whole);
+
 // ---- series.c: values by name, as they come -----------------------------------------------------
 
 typedef struct bench_series {

@@ -45,13 +45,19 @@ static bool forget_pictures(const bench_session *s) {
     return true;
 }
 
+bool bench_go_on(void *user, double done, double whole) {
+    (void)done, (void)whole;
+    return !bench_is_stopped(user);
+}
+
 bench_session *bench_open(const bench_session_desc *desc) {
     bench_session *s = mem_alloc(sizeof *s);
     s->desc = *desc;
     s->folder = mem_copy(desc->folder, strlen(desc->folder) + 1);
     bool done = file_make_folders(s->folder) && (desc->keep || forget_pictures(s)) &&
                 (!desc->own_cache || make_cache(s));
-    if (done) s->r = roil_create(&(roil_desc){.device = desc->device});
+    if (done)
+        s->r = roil_create(&(roil_desc){.device = desc->device, .loading = bench_go_on, .user = s});
     if (s->r) return s;
     bench_close(s);
     return NULL;

@@ -229,6 +229,7 @@ static bench_session *open_session(const bench_order *order, const sweep *s) {
         .compared = s->compared,
         .own_cache = s->measure == SWEEP_RELOAD,
         .stopped = order->watcher.stopped,
+        .steps = order->watcher.steps,
         .user = order->watcher.user,
     });
 }

@@ -20,6 +20,7 @@ typedef struct bench_watcher {                                  // all may be NU
     void (*row)(void *user, const bench_row *row, size_t done); // `row` is next; `done` before it
     void (*result)(void *user, const bench_row *row, size_t done);
     bool (*stopped)(void *user);
+    void (*steps)(void *user, double done, double whole); // as roil_on_progress tells of them
     void *user;
 } bench_watcher;
 

@@ -391,6 +391,7 @@ bool bench_tune(const tune_order *order, bench_results *out, tune_result *result
                                                      .settle = SETTLE,
                                                      .compared = t.compared,
                                                      .stopped = order->watcher.stopped,
+                                                     .steps = order->watcher.steps,
                                                      .user = order->watcher.user});
     done = t.session != NULL;
     if (done) {

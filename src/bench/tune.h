@@ -32,6 +32,7 @@ typedef struct tune_watcher { // all may be NULL
     // earlier: it was kept
     void (*result)(void *user, const bench_results *r, const bench_row *row, bool earlier);
     bool (*stopped)(void *user);
+    void (*steps)(void *user, double done, double whole); // as roil_on_progress tells of them
     void *user;
 } tune_watcher;
 

@@ -102,6 +102,8 @@ static bool run(effect *e, double frame, bool *again) {
     patience = fmin(fmax(patience, least_patience), most_patience);
     double time = time_of(e, frame);
     int64_t whole = left(e, time);
+    bool far = next < frame || !is_near(e, time);
+    if (far && !effect_tell_progress(e, 0, (double)whole)) return false;
     while (next < frame || !is_near(e, time)) {
         if (e->punctual && clock_seconds() > begin + patience) {
             e->behind = true;

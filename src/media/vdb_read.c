@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include "base/time_limit.h"
 #include "media/vdb_wire.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -149,6 +150,7 @@ static bool read_some(task *t, arena *const *memory, vdb_info *out) {
 bool vdb_read_infos(const char *root, const char *const *paths, size_t count, arena *const *memory,
                     vdb_info *out) {
     for (size_t i = 0; i < count; i += AT_ONCE) {
+        if (!time_limit_progress((double)i, (double)count)) return err_prefix("%s: ", paths[i]);
         task t = {.root = root, .paths = paths + i, .count = count - i};
         if (t.count > AT_ONCE) t.count = AT_ONCE;
         if (!read_some(&t, memory + i, out + i)) return false;

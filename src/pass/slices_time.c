@@ -4,8 +4,7 @@
 #include <math.h>
 
 // Updates of a lattice that one of a cell is worth: the pressure is solved for in several sweeps.
-// And those that fit into the least time of a step on a device, which small slices do not fill.
-static const double dearer = 12, least_updates = 2e6;
+static const double dearer = 12;
 
 // Steps of a frame whose parts are timed apart, for which each takes microseconds more: while
 // counters are off few, else as many as there are times for.
@@ -46,8 +45,7 @@ int64_t slices_most(const pass *p) {
     const slices_flow *f = slices_of(p);
     bool software = gpu_get_info(p->host->device)->kind == GPU_CPU;
     double cells = (double)f->desc.size[0] * f->desc.size[1] * f->desc.count;
-    double updates = software ? cells * dearer : fmax(cells * dearer, least_updates);
-    return pass_steps_most(updates, software, p->host->brief);
+    return pass_steps_most(cells * dearer, software, p->host->brief);
 }
 
 // `apart`: what a step consists of is timed by itself.

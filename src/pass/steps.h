@@ -19,7 +19,7 @@ int64_t pass_steps_wanted(const pass_steps *s, double time);
 double pass_steps_reached(const pass_steps *s, int64_t done);
 // How the last two states are mixed for a time: 0 the earlier one, 1 the later.
 double pass_steps_blend(const pass_steps *s, int64_t done, double time);
-// Steps of one submit, where each takes as long as so many updates of a lattice's cells: about 0.1
-// s of a large device, 2 s of a software one. `brief`: a part of that, so that a window stays
-// awake.
+// Steps of one submit, where each takes as long as so many updates of a lattice's cells, or as long
+// as its dispatches alone: about 0.1 s of a large device, half a second of a software one. `brief`:
+// a part of that, so that a window stays awake.
 int64_t pass_steps_most(double updates, bool software, bool brief);

@@ -2,6 +2,9 @@
 // background (no sleeps), takes over, draws, and looks at pixels.
 #include "base/clock.h"
 #include "roil_live_test.h"
+#include <glob.h>
+#include <poll.h>
+#include <signal.h>
 #include <unistd.h>
 
 // ---- edits ------------------------------------------------------------------------------------
@@ -47,15 +50,12 @@ static void edit_of_an_included_shader_shows(void **state) {
     end(&s);
 }
 
-// Ends when the script has said "busy" on stderr.
-static void put_endless_module(void) {
+// Ends when the script that `edit` writes has said "busy" on stderr.
+static void begin_build(void (*edit)(void)) {
     int ends[2], own = dup(2);
     char said[4096] = "";
     assert_true(own >= 0 && pipe(ends) == 0 && dup2(ends[1], 2) == 2);
-    put("more.lua", "local s = ('x'):rep(1 << 22)\n"
-                    "local a, b = s:sub(2), s:sub(2)\n"
-                    "print('busy')\n"
-                    "while true do local c = a < b end");
+    edit();
     for (size_t n = 0; !strstr(said, "busy") && n < sizeof said - 1;) {
         ssize_t got = read(ends[0], said + n, sizeof said - 1 - n);
         assert_true(got > 0);
@@ -67,13 +67,67 @@ static void put_endless_module(void) {
     close(ends[1]);
 }
 
+static void put_endless_module(void) {
+    put("more.lua", "local s = ('x'):rep(1 << 22)\n"
+                    "local a, b = s:sub(2), s:sub(2)\n"
+                    "print('busy')\n"
+                    "while true do local c = a < b end");
+}
+
 static void a_build_without_end_does_not_hold_up_the_end(void **state) {
     session s = begin(*state);
-    put_endless_module();
+    begin_build(put_endless_module);
     double start = clock_seconds();
     assert_true(roil_live_destroy(s.live));
     double took = clock_seconds() - start;
     if (took > 3) fail_msg("took %g s", took);
+}
+
+// The process that compiles: the child of this one that has that name.
+static pid_t find_reader(void) {
+    glob_t processes;
+    pid_t found = 0;
+    assert_int_equal(glob("/proc/[0-9]*/stat", 0, NULL, &processes), 0);
+    for (size_t i = 0; i < processes.gl_pathc && !found; i++) {
+        int number, parent;
+        FILE *f = fopen(processes.gl_pathv[i], "r");
+        if (f && fscanf(f, "%d (roil-reader) %*c %d", &number, &parent) == 2 && parent == getpid())
+            found = number;
+        if (f) fclose(f);
+    }
+    globfree(&processes);
+    assert_true(found > 0);
+    return found;
+}
+
+static void put_what_no_cache_has(void) {
+    char text[2048];
+    snprintf(text, sizeof text, "%s// %.9f\nconst float new_ = %.9f;\n", SHADER, clock_seconds(),
+             clock_seconds());
+    put("new.comp", text);
+    put_script("0.5", "", "print('busy')\nfx.linear = shader { 'new.comp' }.color");
+}
+
+// As where a file system or a driver hangs: the process that compiles stands still.
+static void a_build_that_hangs_is_left_behind(void **state) {
+    session s = begin(*state);
+    draw(&s, 1, 0.5, 0.25);
+    pid_t reader = find_reader();
+    assert_int_equal(kill(reader, SIGSTOP), 0);
+    begin_build(put_what_no_cache_has);
+    draw(&s, 2, 0.5, 0.25); // meanwhile
+    double begun = clock_seconds();
+    while (!roil_live_update(s.live, WIDTH, HEIGHT, s.frame)) { // after 10 s, when a file changes
+        if (clock_seconds() > begun + 60) fail_msg("nobody left it behind");
+        put_script("0.75", "", "");
+        assert_int_equal(poll(NULL, 0, 250), 0);
+    }
+    const char *message = roil_live_message(s.live); // none: the next build was there as soon
+    if (message && !strstr(message, "was left behind")) fail_msg("%s", message);
+    if (message) expect_good(&s);
+    draw(&s, 3, 0.75, 0.25);
+    assert_int_equal(kill(reader, SIGCONT), 0);
+    assert_true(roil_live_destroy(s.live)); // waits for the one that was left
 }
 
 static const char MESH_SCRIPT[] = "local fx = effect { name = 'test' }\n"
@@ -429,6 +483,7 @@ int main(void) {
         cmocka_unit_test(setting_during_a_build_is_not_lost),
         cmocka_unit_test(structure_is_set_by_a_build),
         cmocka_unit_test(a_build_without_end_does_not_hold_up_the_end),
+        cmocka_unit_test(a_build_that_hangs_is_left_behind),
         cmocka_unit_test(setting_of_the_command_line_holds),
     };
     return test_run(tests);

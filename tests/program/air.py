@@ -74,11 +74,6 @@ class Air(Case):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertEqual("frame 13 is none of the effect's, which are 1 to 12" in done.stderr, is_told)
 
-    def test_an_export_tells_of_steps_before_its_frame(self):
-        self.write("effect.lua", EFFECT % "")
-        done = self.run_program("export", "vdb", "effect.lua", "--frames", "9", "-o", "o.vdb")
-        self.assertRegex(done.stderr, r"of \d+ steps")
-
     def test_velocity_is_exported_though_nothing_draws_it(self):
         self.write("effect.lua", EFFECT % "")
         self.assertIn("of density, temperature, velocity,",

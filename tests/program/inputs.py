@@ -1,16 +1,28 @@
 """Files that an effect reads: volumes, meshes and shaders, missing, damaged or strange."""
 import os
 import random
+import re
+import select
 import shutil
 import signal
 import struct
 import subprocess
+import time
 
 from lib.pictures import Exr
 from lib.program import CORPUS, DATA, PROGRAM, SECONDS, SMALL, VOLUME, Case, main
 
 VDB = VOLUME % 'vdb { "a.vdb" }.density'
 FLOAT = os.path.join(CORPUS, "fuzz_vdb/float.vdb")
+
+# A day of it: some 17 million steps.
+WARM = """
+local fx = effect { name = "air" }
+local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2, collision = "bgk", viscosity = 0.01, warm_up = 86400 }
+air:source { shape = sphere { radius = 0.3 }, density = 1 }
+fx.output = final { march { density = air.density, steps = 4 } }.color
+return fx
+"""
 
 
 class Time(Case):
@@ -23,16 +35,64 @@ class Time(Case):
         self.fails(1, ["effect.lua:2:", "time limit of 1 s for a load exceeded", "--time-limit"],
                    "check", "--time-limit", "1", "effect.lua")
 
-    def test_frames_that_are_left_out_show_progress_and_stop(self):
-        self.write("effect.lua", VOLUME.replace("return fx", "fx:on_frame(function() "
-                                                "for i = 1, 1e5 do local x = i end end)\nreturn fx") % "sphere { radius = 1 }")
-        job = subprocess.Popen([PROGRAM, "render", "effect.lua", "--frames", "999999", "-o", "a.png"] + SMALL,
-                               cwd=self.folder, stderr=subprocess.PIPE, text=True)
-        self.assertIn(" steps", next(line for line in job.stderr if " left" in line))
-        job.send_signal(signal.SIGINT)
-        said = job.communicate(timeout=SECONDS)[1]
-        self.assertEqual(job.returncode, 1)
-        self.assertIn("stopped after", said)
+    def stop(self, told, *arguments):
+        """Interrupts the program, at a terminal, when it has told so of its work; its status, and all it said."""
+        ours, terminal = os.openpty()
+        job = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=terminal,
+                               stderr=terminal)
+        os.close(terminal)
+        said, end = "", time.monotonic() + SECONDS
+        try:
+            while job.returncode is None or select.select([ours], [], [], 0)[0]:
+                if select.select([ours], [], [], 0.05)[0]:
+                    said += os.read(ours, 65536).decode(errors="replace")
+                if told and re.search(told, said):
+                    job.send_signal(signal.SIGINT)
+                    told = None
+                self.assertLess(time.monotonic(), end, said)
+                job.poll()
+        except OSError:  # nobody writes to the terminal any more
+            job.wait(SECONDS)
+        finally:
+            if job.poll() is None:
+                job.kill()
+                job.wait()
+            os.close(ours)
+        self.assertIsNone(told, said)
+        return job.returncode, said
+
+    def test_long_work_shows_progress_and_stops(self):
+        self.write("slow.lua", VOLUME.replace("return fx", "fx:on_frame(function() "
+                                              "for i = 1, 1e5 do local x = i end end)\nreturn fx") % "sphere { radius = 1 }")
+        self.write("warm.lua", WARM)
+        self.write("sweep.lua", 'return sweep { name = "try", effect = "warm.lua", size = {32, 18}, frames = "3",\n'
+                   'settle = 0, axes = { axis { "march.steps", 8 } } }')
+        of_steps = r"of \d+ steps"
+        for arguments, told, says in (
+                (["render", "slow.lua", "--frames", "999999", "-o", "a.png"], of_steps, "stopped after"),
+                (["render", "warm.lua", "--frames", "1", "-o", "a.png"], of_steps, "stopped after"),
+                (["export", "vdb", "warm.lua", "--frames", "1", "-o", "a.vdb"], of_steps, "stopped after"),
+                (["bench", "sweep.lua", "-o", "swept"], of_steps, "interrupted"),
+                (["tune", "warm.lua", "--axes", "march.steps=4:8", "--max-error", "1", "--frames", "1", "-o", "tuned",
+                  *SMALL], of_steps, "")):
+            with self.subTest(arguments):
+                status, said = self.stop(told, *arguments)
+                self.assertEqual(status, 1, said)
+                self.assertIn(says, said)
+                self.assertFalse(os.path.exists(self.path(arguments[-1])) and arguments[-1].startswith("a."))
+
+    def test_a_large_sequence_shows_progress_and_stops(self):
+        self.write("frames.lua", VOLUME % 'vdb { "frames/*.vdb" }.density')
+        os.mkdir(self.path("frames"))
+        shutil.copy(os.path.join(DATA, "nan.vdb"), self.path("frames/x.vdb"))
+        for i in range(9999):
+            os.link(self.path("frames/x.vdb"), self.path(f"frames/{i}.vdb"))
+        for arguments in (["check", "frames.lua"], ["info", "params", "frames.lua"], ["render", "frames.lua"],
+                          ["export", "vdb", "frames.lua", "-o", "%d.vdb"]):
+            with self.subTest(arguments):
+                self.assertEqual(self.stop(r"of 10000 files", *arguments)[0], -signal.SIGINT)
+        self.assertEqual(self.stop(r"of 20000 frames", "export", "raw", "frames/*.vdb", "-o", "a.raw")[0], -signal.SIGINT)
+        self.assertFalse(os.path.exists(self.path("a.raw")))
 
 
 class Volumes(Case):

@@ -2,6 +2,7 @@
 import os
 import signal
 import subprocess
+import time
 
 from lib.window import PATIENCE, Case, main, require_tools
 
@@ -80,6 +81,32 @@ class Faults(Case):
         live.process.wait(PATIENCE)
         self.assertEqual(live.process.returncode, 0, live.text())
 
+    def test_a_load_that_hangs_does_not_keep_a_window_open(self):
+        live = self.live(effect=EFFECT % "ball")
+        found = subprocess.run(["pgrep", "-P", str(live.process.pid), "roil-reader"], check=True, timeout=PATIENCE,
+                               stdout=subprocess.PIPE, text=True)
+        reader = int(found.stdout)
+        os.kill(reader, signal.SIGSTOP)  # as a file system or a driver that hangs
+        self.addCleanup(os.kill, reader, signal.SIGCONT)
+        mark = live.mark()
+        self.write("new.comp", ENDLESS.replace("Takes", str(time.time_ns())))
+        self.write("puff.lua", "print('busy')\n" + EFFECT % 'shader { "new.comp", input = ball }')
+        live.expect("busy", mark)
+        live.quit()
+        live.expect("a load hangs, and was left behind", mark)
+
+    def test_a_long_warm_up_does_not_keep_a_window_busy(self):
+        live = self.live(effect="""
+local fx = effect { name = "air" }
+local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2, collision = "bgk", viscosity = 0.01, warm_up = 86400 }
+air:source { shape = sphere { radius = 0.3 }, density = 1 }
+fx.output = final { march { density = air.density, steps = 4 } }.color
+return fx
+""")
+        mark = live.mark()
+        self.write("puff.lua", EFFECT % "ball")
+        live.expect("live: took over", mark)
+        live.quit()
 
 if __name__ == "__main__":
     require_tools()
