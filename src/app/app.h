@@ -1,5 +1,6 @@
 // The program `roil`: a command each, all of it through roil.h.
 #pragma once
+#include "base/arena.h"
 #include "roil.h"
 #include <stdbool.h>
 #include <stddef.h>
@@ -57,6 +58,12 @@ void app_format_pattern(const char *pattern, double frame, char *out, size_t cap
 // What cannot be written is said before the work begins, not after it. Devices and pipes are for
 // whoever writes them.
 bool app_can_write(const char *file);
+// Where results go by default, the user has named nothing: no link leads them out of the current
+// folder, and no device or pipe stands there.
+bool app_may_write_here(const char *path);
+
+// As a shell takes it: in quotes where it has to be, and never an option.
+char *app_quoted(arena *memory, const char *text);
 
 bool app_parse_samples(const char *text, uint32_t *out); // of a reference: 1 to 65536 a pixel
 

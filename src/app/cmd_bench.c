@@ -236,6 +236,7 @@ static void on_steps(void *user, double done, double whole) {
 
 static int run(bench_options *o) {
     bench_results results;
+    if (o->order.folder == o->folder && !app_may_write_here(o->folder)) return app_fail_input();
     o->order.watcher =
         (bench_watcher){on_begin, on_row, on_result, app_is_interrupted, on_steps, o};
     app_hear_interrupts();

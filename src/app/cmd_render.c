@@ -17,6 +17,7 @@ typedef struct output {
     const char *pattern; // file or pattern
     const char *image;   // --dump-pass: which image; NULL: the picture
     roil_video *video;
+    bool ours; // the default, which nobody named
 } output;
 
 typedef struct job {
@@ -59,7 +60,7 @@ static bool add_output(job *j, const char *pattern, const char *image) {
         return err_set("output '%s'; accepted: .png, .exr%s", pattern, image ? "" : ", .mp4");
     if (!app_check_pattern(pattern)) return false;
     MEM_RESERVE(j->outputs, j->output_count + 1, j->output_capacity);
-    j->outputs[j->output_count++] = (output){pattern, image, NULL};
+    j->outputs[j->output_count++] = (output){.pattern = pattern, .image = image};
     return true;
 }
 
@@ -205,7 +206,8 @@ static bool complete(job *j, roil_effect *e) {
         const char *name = path_name(j->file);
         snprintf(j->default_output, sizeof j->default_output, "out/%.*s/%%04d.png",
                  (int)(strlen(name) - (str_ends_with(name, ".lua") ? 4 : 0)), name);
-        add_output(j, j->default_output, NULL);
+        if (!add_output(j, j->default_output, NULL)) return false;
+        j->outputs[j->output_count - 1].ours = true;
     }
     for (size_t i = 0; i < j->output_count; i++) {
         const output *o = &j->outputs[i];
@@ -231,6 +233,11 @@ static bool restore(job *j, roil_effect *e) {
                                         j->restore, last, numbers[0]);
 }
 
+static bool name_file(const output *o, double frame, char file[PATH_CAP]) {
+    app_format_pattern(o->pattern, frame, file, PATH_CAP);
+    return !o->ours || app_may_write_here(file);
+}
+
 static bool open_outputs(job *j, roil_effect *e) {
     for (size_t i = 0; i < j->output_count; i++) {
         output *o = &j->outputs[i];
@@ -243,7 +250,7 @@ static bool open_outputs(job *j, roil_effect *e) {
         output *o = &j->outputs[i];
         bool film = str_ends_with(o->pattern, ".mp4");
         char file[PATH_CAP];
-        app_format_pattern(o->pattern, j->frames.numbers[0], file, sizeof file);
+        if (!name_file(o, j->frames.numbers[0], file)) return false;
         if (!film && !app_can_write(file)) return false;
         if (!film) continue;
         o->video = roil_video_create(e, o->pattern, j->fps);
@@ -257,7 +264,7 @@ static bool save_frame(job *j, roil_effect *e, double frame) {
     for (size_t i = 0; i < j->output_count; i++) {
         output *o = &j->outputs[i];
         char file[PATH_CAP];
-        app_format_pattern(o->pattern, frame, file, sizeof file);
+        if (!name_file(o, frame, file)) return false;
         roil_save_options options = {o->image, j->alpha, j->sixteen, j->full};
         bool done =
             o->video ? roil_video_add(o->video) : roil_writer_save(j->writer, e, file, &options);

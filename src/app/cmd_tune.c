@@ -229,7 +229,10 @@ static int finish(const tune_options *o, const bench_results *r, const tune_resu
         return app_fail(APP_DIFFERS, "%s %g cannot be kept with these axes%s; no preset is written",
                         o->order.goal.by_error ? "--max-error" : "--max-ms", o->order.goal.limit,
                         t->complete ? "" : ", as far as was searched");
-    app_print(stdout, "wrote the preset: roil render %s --preset %s\n", o->order.effect, o->preset);
+    arena memory = {0};
+    app_print(stdout, "wrote the preset: roil render %s --preset %s\n",
+              app_quoted(&memory, o->order.effect), app_quoted(&memory, o->preset));
+    arena_free(&memory);
     return APP_DONE;
 }
 
@@ -238,6 +241,7 @@ static void on_steps(void *user, double done, double whole) {
 }
 
 static int run(tune_options *o) {
+    if (o->order.folder == o->folder && !app_may_write_here(o->folder)) return app_fail_input();
     roil *r = roil_create(&(roil_desc){.no_device = true, .memory = o->memory});
     if (!r || !app_collect_settings(&o->settings, r, o->order.effect, NULL)) {
         roil_destroy(r);

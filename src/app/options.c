@@ -126,6 +126,28 @@ void app_format_pattern(const char *pattern, double frame, char *out, size_t cap
              width, lrint(frame), end + 1);
 }
 
+bool app_may_write_here(const char *path) {
+    char real[PATH_CAP];
+    struct stat info;
+    if (!path_confine(real, ".", path)) return err_prefix("the default output (-o names another): ");
+    return stat(path, &info) != 0 || S_ISREG(info.st_mode) || S_ISDIR(info.st_mode) ||
+           err_set("%s: not a regular file", path);
+}
+
+char *app_quoted(arena *memory, const char *text) {
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                "_-+=:,./@%";
+    const char *before = text[0] == '-' ? "./" : "";
+    if (text[0] && !text[strspn(text, plain)]) return arena_format(memory, "%s%s", before, text);
+    strbuf out = {0};
+    strbuf_add(&out, "'%s", before);
+    for (; *text; text++) strbuf_add(&out, *text == '\'' ? "'\\''" : "%c", *text);
+    strbuf_add(&out, "'");
+    char *kept = arena_string(memory, strbuf_text(&out));
+    strbuf_free(&out);
+    return kept;
+}
+
 bool app_can_write(const char *file) {
     struct stat info;
     file_draft draft;

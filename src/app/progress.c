@@ -10,11 +10,8 @@ static const double TERMINAL_SECONDS = 0.1, FILE_SECONDS = 5;
 
 void app_progress_begin(app_progress *p, size_t total, const char *unit) {
     double now = clock_seconds();
-    *p = (app_progress){.start = now,
-                        .printed = now,
-                        .total = total,
-                        .unit = unit,
-                        .terminal = isatty(2) == 1};
+    *p = (app_progress){
+        .start = now, .printed = now, .total = total, .unit = unit, .terminal = isatty(2) == 1};
 }
 
 // "[#####-----] "

@@ -1,12 +1,18 @@
 """Where the program runs: other devices, none at all, a copied tree, a foreign folder."""
 import os
+import re
 import resource
+import shlex
 import shutil
 import stat
+import struct
 import subprocess
+import tempfile
+import time
 import unittest
+import zlib
 
-from lib.program import DATA, GROUND, PROGRAM, PUFF, SMALL, SOURCE, VOLUME, Case, main
+from lib.program import CORPUS, DATA, GROUND, PROGRAM, PUFF, SECONDS, SMALL, SOURCE, VOLUME, Case, main
 
 
 class Devices(Case):
@@ -106,16 +112,65 @@ class Trees(Case):
         self.assertEqual(self.read("a.png"), self.read("c.png"))
 
 
-# Each reads the file NAME that its effect names: the end of an effect, made so that only the file fails.
+PNG = open(os.path.join(CORPUS, "fuzz_picture/rgb.png"), "rb").read()
+EXR = open(os.path.join(CORPUS, "fuzz_sky/grey.exr"), "rb").read()
+VDB = open(os.path.join(DATA, "nan.vdb"), "rb").read()
+COMP = """// Nothing.
+writeonly uniform image2D color; //= output rgba8 : picture
+void main() { imageStore(color, ivec2(gl_GlobalInvocationID.xy), vec4(1.0)); }
+"""
+SHADER = 'local fx = effect { name = "s" }\nfx.output = shader { "%s" }.color\nreturn fx\n'
+SKY = 'fx.sky = sky { image = "%s" }\nlocal ball'
+MATERIAL = "newmtl a\nmap_Kd %s\n"
+GLTF = """{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "buffers": [{"byteLength": 36, "uri": "%s"}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}], "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3,
+"type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]}"""
+TRIANGLE = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
+SLICES = """local flow = slices { count = 1, size = {32, 32}, height = 2, variation = 0 }
+%s
+return fx"""
+MESH = "mtllib m.mtl\nusemtl a\n" + GROUND
+
+# Kinds of files that an effect names: one that is good, and the files that name it as %s.
 READERS = {
-    "vdb": ("x.vdb", VOLUME % 'vdb { "%s" }.density'),
-    "vdb frames": ("x1.vdb", (VOLUME % 'vdb { "%s" }.density').replace("%s", "x*.vdb")),
-    "raw": ("x.raw", VOLUME % 'raw { "%s", size = {2, 2, 2}, type = "u8" }.density'),
-    "mesh": ("x.obj", PUFF.replace("ground.obj", "%s")),
-    "texture": ("x.png", PUFF.replace('"ground.obj"', '"ground.obj", material = material { texture = "%s" }')),
-    "panorama": ("x.exr", PUFF.replace("local ball", 'fx.sky = sky { image = "%s" }\nlocal ball')),
-    "shader": ("x.comp", 'local fx = effect { name = "s" }\nfx.output = shader { "%s" }.color\nreturn fx\n'),
-    "module": ("x.lua", 'local m = require "x"\n' + PUFF),
+    "vdb": ("x.vdb", VDB, {"puff.lua": VOLUME % 'vdb { "%s" }.density'}),
+    "vdb frames": ("x*.vdb", VDB, {"puff.lua": VOLUME % 'vdb { "%s" }.density'}),
+    "raw": ("x.raw", b"8 voxels", {"puff.lua": VOLUME % 'raw { "%s", size = {2, 2, 2}, type = "u8" }.density'}),
+    "mesh": ("x.obj", GROUND, {"puff.lua": PUFF.replace("ground.obj", "%s")}),
+    "mesh's materials": ("x.mtl", MATERIAL % "evidence.png",
+                         {"puff.lua": PUFF.replace("ground", "m"), "m.obj": MESH.replace("m.mtl", "%s")}),
+    "mesh's texture": ("x.png", PNG, {"puff.lua": PUFF.replace("ground.obj", "m.obj"), "m.obj": MESH, "m.mtl": MATERIAL}),
+    "mesh's buffer": ("x.bin", TRIANGLE, {"puff.lua": PUFF.replace("ground.obj", "m.gltf"), "m.gltf": GLTF}),
+    "texture": ("x.png", PNG,
+                {"puff.lua": PUFF.replace('"ground.obj"', '"ground.obj", material = material { texture = "%s" }')}),
+    "picture": ("x.png", PNG, {"puff.lua": PUFF.replace("return fx", 'local p = image "%s"\nreturn fx')}),
+    "obstacle": ("x.png", PNG, {"puff.lua": PUFF.replace("return fx", SLICES % 'flow:obstacle { image = image "%s" }')}),
+    "panorama": ("x.exr", EXR, {"puff.lua": PUFF.replace("local ball", SKY)}),
+    "shader": ("x.comp", COMP, {"puff.lua": SHADER}),
+    "include": ("x.glsl", "// nothing\n", {"puff.lua": SHADER % "s.comp", "s.comp": '#include "%s"\n' + COMP}),
+    "module": ("x.lua", "return 1", {"puff.lua": 'local m = require "%s"\n' + PUFF}),
+}
+# What is there, in place of the file or on the way to it; and how the effect names it then. Of `in/`, which is the
+# effect's folder, beside `outside/`, which has a good file.
+WAYS = {
+    "inside": lambda case, name: name,
+    "link that stays inside": lambda case, name: case.link("in/" + name, "other/" + name, "in/other"),
+    "dashes": lambda case, name: "--" + name,
+    "up": lambda case, name: "../outside/" + name,
+    "up and back": lambda case, name: "../in/../outside/" + name,
+    "absolute": lambda case, name: case.path("outside/" + name),
+    "link to a file": lambda case, name: case.link("in/" + name, "../outside/" + name),
+    "link as a folder": lambda case, name: case.link("in/way", "../outside") and "way/" + name,
+    "link to a link": lambda case, name: case.link("in/there", "../outside") and case.link("in/" + name, "there/" + name),
+    "pipe": lambda case, name: os.mkfifo(case.path("in/" + name.replace("*", "1"))) or name,
+    "device": lambda case, name: case.link("in/" + name, "/dev/zero"),
+}
+GOOD = "inside", "link that stays inside", "dashes"
+# A mesh does without these, and goes on: whether one was read shows in what is said.
+WAS_READ = {
+    "mesh's materials": lambda said: "evidence.png" in said,
+    "mesh's texture": lambda said: "without a texture" not in said,
 }
 
 AIR = """
@@ -148,21 +203,113 @@ class Confined(Case):
         if kind == "pipe":
             os.mkfifo(path)
         else:
-            target = {"device": "/dev/zero", "link": self.path("secret"), "pipe out": self.path("pipe")}[kind]
-            os.symlink(target, path)
+            os.symlink("/dev/zero", path)
+
+    def link(self, name, target, good=None):
+        """A link where a file would be; `good`: the folder of a file that it may lead to."""
+        os.symlink(target.replace("*", "1"), self.path(name.replace("*", "1")))
+        return os.path.relpath(name, "in")
+
+    def arrange(self, way, name, content, files):
+        """What the effect calls the file."""
+        shutil.rmtree(self.path("in"), ignore_errors=True)
+        file = name.replace("*", "1")
+        self.write("in/other/" + file, content)
+        self.write("in/ground.obj", GROUND)
+        if way in ("inside", "dashes"):
+            self.write("in/" + ("--" if way == "dashes" else "") + file, content)
+        named = WAYS[way](self, name)
+        if name.endswith(".lua"):
+            named = named[:-len(".lua")]  # of a module
+        for at, text in files.items():
+            self.write("in/" + at, text.replace("%s", named))
+        return named
 
     def test_what_an_effect_names_is_a_file_inside(self):
-        self.write("secret", b"secret" * 99)
-        for reader, (name, effect) in READERS.items():
-            for kind in "pipe", "device", "link":
-                with self.subTest(reader, kind=kind):
-                    path = self.path(f"{reader}-{kind}")
-                    self.write(f"{reader}-{kind}/puff.lua", effect.replace("%s", name))
-                    self.write(f"{reader}-{kind}/ground.obj", GROUND)
-                    self.place(f"{reader}-{kind}/{name}", kind)
-                    says = name if kind == "pipe" else "out"
-                    message = self.fails(1, says, "check", os.path.join(path, "puff.lua"))
-                    self.assertNotIn("secretsecret", message)
+        for reader, (name, content, files) in READERS.items():
+            self.write("outside/" + name.replace("*", "1"), content)
+            for way in WAYS:
+                with self.subTest(reader, way=way):
+                    self.arrange(way, name, content, files)
+                    begin = time.monotonic()
+                    done = self.run_program("check", "in/puff.lua")
+                    self.assertLess(time.monotonic() - begin, 60)
+                    if reader in WAS_READ and done.returncode == 0:
+                        self.assertEqual(WAS_READ[reader](done.stderr), way in GOOD, done.stderr)
+                    elif way in GOOD:
+                        self.assertEqual(done.returncode, 0, done.stderr)
+                    else:
+                        self.assertEqual(done.returncode, 1, done.stdout)
+                        self.assertRegex(done.stderr, r"roil: .*\bx[1*]?\b")  # the file
+
+    def scripts(self, makes):
+        """For each way in which an effect can be named: `makes(name)` has named it."""
+        outside = tempfile.mkdtemp(prefix="roil-outside-")
+        self.addCleanup(shutil.rmtree, outside)
+        for name, content in ("x.lua", PUFF), ("ground.obj", GROUND):
+            shutil.copy(self.write(name, content), outside)
+        scratch = self.folder
+        for way in ("inside", "dashes", "up", "absolute", "link to a file", "link as a folder", "pipe", "device"):
+            self.folder = tempfile.mkdtemp(dir=scratch)
+            self.write("ground.obj", GROUND)
+            name = "--x.lua" if way == "dashes" else "x.lua"
+            named = {"up": f"../../{os.path.basename(outside)}/x.lua", "absolute": outside + "/x.lua",
+                     "link as a folder": "way/x.lua"}.get(way, name)
+            if way in ("inside", "dashes"):
+                self.write(name, PUFF)
+            elif way == "link as a folder":
+                os.symlink(outside, self.path("way"))
+            elif way == "pipe":
+                os.mkfifo(self.path(name))
+            elif way.startswith("link") or way == "device":
+                os.symlink("/dev/zero" if way == "device" else outside + "/x.lua", self.path(name))
+            with self.subTest(way):
+                makes(named)
+                yield way
+        self.folder = scratch
+
+    def test_the_effect_of_a_recipe_lies_inside(self):
+        self.write("x.lua", PUFF)
+        self.succeeds("render", "x.lua", "--frames", "1", "-o", "shot.png", *SMALL)
+        shot = self.read("shot.png")
+        at = shot.index(b"tEXtroil:effect") - 4
+        rest = at + 12 + int.from_bytes(shot[at:at + 4], "big")
+
+        def make(name):
+            chunk = b"tEXtroil:effect\0" + name.encode()
+            self.write("shot.png", shot[:at] + struct.pack(">I", len(chunk) - 4) + chunk
+                       + struct.pack(">I", zlib.crc32(chunk)) + shot[rest:])
+        for way in self.scripts(make):
+            done = self.run_program("render", "--from", "shot.png", "-o", "out.png")
+            self.assertEqual(done.returncode, 0 if way in GOOD else 1, done.stderr)
+            self.assertEqual(os.path.exists(self.path("out.png")), way in GOOD)
+            if way not in GOOD:
+                self.assertRegex(done.stderr, r"roil: .*(x\.lua|shot\.png)")
+
+    def test_the_effect_of_a_sweep_lies_inside(self):
+        for measure in ('frames = "3", settle = 0', 'frames = "3", measure = "start", repeats = 1, '
+                        'axes = { axis { "command", "check" } }'):
+            def make(name, measure=measure):
+                self.write("sweep.lua", 'return sweep { name = "try", effect = "%s", size = {32, 18}, %s }' % (name, measure))
+            for way in self.scripts(make):
+                done = self.run_program("bench", "sweep.lua", "-o", "out")
+                self.assertEqual(done.returncode, 0 if way in GOOD else 1, done.stdout + done.stderr)
+                if way not in GOOD:
+                    self.assertRegex(done.stdout + done.stderr, r"x\.lua")
+
+    def test_a_reload_copies_no_more_than_links(self):
+        self.write("outside/x.png", PNG)
+        effect = READERS["texture"][2]["puff.lua"] + "-- edited\n"
+        self.write("sweep.lua", 'return sweep { name = "try", effect = "in/puff.lua", size = {32, 18}, frames = "3", '
+                   'measure = "reload", repeats = 1, warmup = 0,\n'
+                   'axes = { axis { "edit", { name = "a", edit = {"-- edited", "-- again"} } } } }')
+        for way in WAYS:
+            with self.subTest(way):
+                self.arrange(way, "x.png", PNG, {"puff.lua": effect})
+                done = self.run_program("bench", "sweep.lua", "-o", "out")
+                self.assertEqual(done.returncode, 0 if way in GOOD else 1, done.stdout + done.stderr)
+                if way not in GOOD:
+                    self.assertIn("x.png", done.stdout + done.stderr)
 
     def test_what_the_user_names_is_a_file(self):
         self.write("air.lua", AIR)
@@ -213,18 +360,92 @@ class Confined(Case):
         shutil.copy(self.path("good/results.json"), self.path("pipe.json"))
         os.unlink(self.path("bad/results.json"))
         shutil.copy(self.path("pipe.json"), self.path("bad/results.json"))
-        os.unlink(self.path("bad/rows/0000.png"))
-        os.symlink("../../keep/0000.png", self.path("bad/rows/0000.png"))
+        for target in "../../keep/0000.png", self.path("keep/0000.png"), "/dev/zero", None:
+            with self.subTest(target):
+                os.unlink(self.path("bad/rows/0000.png"))
+                if target:
+                    os.symlink(target, self.path("bad/rows/0000.png"))
+                else:
+                    os.mkfifo(self.path("bad/rows/0000.png"))
+                self.fails(1, "rows/0000.png", "bench", "--merge", "bad", "-o", "merged")
+                self.assertFalse(os.path.exists(self.path("merged/rows/0000.png")))
+        shutil.rmtree(self.path("bad/rows"))
+        os.symlink("../good/rows", self.path("bad/rows"))
         self.fails(1, "leads out", "bench", "--merge", "bad", "-o", "merged")
+        with open(self.path("bad/results.json"), encoding="utf-8") as f:
+            results = f.read()
+        for name in "../good/rows/0000.png", self.path("good/rows/0000.png"), "--help", "rows/../../keep/0000.png":
+            self.write("bad/results.json", results.replace("rows/0000.png", name))
+            self.fails(1, "thumbnail", "bench", "--merge", "bad", "-o", "merged")
+        shutil.rmtree(self.path("bad"))
+        shutil.copytree(self.path("good"), self.path("bad"))
         os.unlink(self.path("bad/report.html"))
         os.mkfifo(self.path("bad/report.html"))
         self.fails(1, "report.html", "bench", "--report", "bad")
 
     def test_presets_do_not_lead_out(self):
         self.write("in/puff.lua", PUFF)
+        self.write("in/ground.obj", GROUND)
         self.write("out/warm.lua", "return {}\n")
         os.symlink("../out", self.path("in/puff.presets"))
-        self.fails(1, "leads out", "info", "params", "in/puff.lua", "--preset", "warm")
+        info = ["info", "params", "in/puff.lua", "--preset"]
+        self.fails(1, "leads out", *info, "warm")
+        os.unlink(self.path("in/puff.presets"))
+        self.write("in/puff.presets/good.lua", "return {}\n")
+        self.succeeds(*info, "good")
+        os.symlink("good.lua", self.path("in/puff.presets/link.lua"))
+        self.succeeds(*info, "link")
+        os.symlink("../../out/warm.lua", self.path("in/puff.presets/warm.lua"))
+        os.symlink("/dev/zero", self.path("in/puff.presets/device.lua"))
+        os.mkfifo(self.path("in/puff.presets/pipe.lua"))
+        for name in "warm", "device", "pipe", "../../out/warm", "--help":
+            with self.subTest(name):
+                self.fails(1, name, *info, name)
+
+    def test_default_outputs_stay_in_the_current_folder(self):
+        """An archive of a stranger may bring an `out` that leads elsewhere."""
+        self.results()
+        outside = tempfile.mkdtemp(prefix="roil-outside-")
+        self.addCleanup(shutil.rmtree, outside)
+        commands = {
+            "puff/0003.png": ["render", "puff.lua", "--frames", "3", *SMALL],
+            "bench/sweep": ["bench", "sweep.lua", "--no-reference"],
+            "tune/puff": ["tune", "puff.lua", "--axes", "steps=8:4", "--max-error", "1", "--frames", "1", "--repeats", "1",
+                          *SMALL],
+        }
+        for place, command in commands.items():
+            for link in "out", os.path.dirname("out/" + place), "out/" + place:
+                for target in outside, "/dev/zero", None:
+                    with self.subTest(command[0], link=link, target=target):
+                        os.makedirs(os.path.dirname(self.path(link)), exist_ok=True)
+                        if target:
+                            os.symlink(target, self.path(link))
+                        else:
+                            os.mkfifo(self.path(link))
+                        try:
+                            self.fails(1, "out", *command)
+                            self.assertEqual(os.listdir(outside), [])
+                        finally:
+                            os.unlink(self.path(link))
+            self.succeeds(*command)
+            os.rename(self.path("out"), self.path("named"))
+            os.symlink("named", self.path("out"))  # one that stays inside
+            self.succeeds(*command)
+            os.unlink(self.path("out"))
+            shutil.rmtree(self.path("named"))
+
+    def test_what_tune_prints_can_be_run(self):
+        for name in "two words.lua", "it's.lua", "--puff.lua", "$(touch bad).lua":
+            with self.subTest(name):
+                self.write(name, PUFF)
+                said = self.succeeds("tune", "--axes", "steps=8:4", "--max-error", "1", "--frames", "1", "--repeats", "1",
+                                     "-o", "tuned", *SMALL, "--", name)
+                command = re.search("wrote the preset: roil (.*)", said)[1]
+                self.assertEqual(shlex.split(command), ["render", ("./" if name[0] == "-" else "") + name, "--preset", "tuned"])
+                done = subprocess.run(["sh", "-c", f'"{PROGRAM}" {command} --frames 1 -o "{self.path("o.png")}" --size 16x9'],
+                                      cwd=self.folder, timeout=SECONDS, check=False, stdout=subprocess.DEVNULL)
+                self.assertEqual(done.returncode, 0)
+                self.assertFalse(os.path.exists(self.path("bad")))
 
 
 class Small(Case):
