@@ -158,7 +158,6 @@ static void on_begin(void *user, const sweep *s, size_t total) {
     bench_options *o = user;
     app_print(stdout, "%s: %zu of %zu rows\n", s->title, total, s->row_count);
     app_progress_begin(&o->progress, total, "rows");
-    o->progress.printed = 0; // the first row is told of
     o->label_width = bench_label_width(s->rows, s->row_count);
 }
 

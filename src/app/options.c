@@ -129,7 +129,8 @@ void app_format_pattern(const char *pattern, double frame, char *out, size_t cap
 bool app_may_write_here(const char *path) {
     char real[PATH_CAP];
     struct stat info;
-    if (!path_confine(real, ".", path)) return err_prefix("the default output (-o names another): ");
+    if (!path_confine(real, ".", path))
+        return err_prefix("the default output (-o names another): ");
     return stat(path, &info) != 0 || S_ISREG(info.st_mode) || S_ISDIR(info.st_mode) ||
            err_set("%s: not a regular file", path);
 }

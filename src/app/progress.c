@@ -9,9 +9,8 @@ enum { BAR_WIDTH = 24 };
 static const double TERMINAL_SECONDS = 0.1, FILE_SECONDS = 5;
 
 void app_progress_begin(app_progress *p, size_t total, const char *unit) {
-    double now = clock_seconds();
     *p = (app_progress){
-        .start = now, .printed = now, .total = total, .unit = unit, .terminal = isatty(2) == 1};
+        .start = clock_seconds(), .total = total, .unit = unit, .terminal = isatty(2) == 1};
 }
 
 // "[#####-----] "
@@ -51,7 +50,10 @@ void app_progress_end(app_progress *p) {
 }
 
 static bool tell(app_progress *p, double done, double whole, const char *unit) {
-    if (p->total != (size_t)whole) app_progress_begin(p, (size_t)whole, unit);
+    if (p->total != (size_t)whole) {
+        app_progress_begin(p, (size_t)whole, unit);
+        p->printed = p->start;
+    }
     bool told = p->printed > p->start; // what is done at once needs no words
     if (done < whole || told) app_progress_step(p, (size_t)done);
     if (done >= whole) *p = (app_progress){0};

@@ -6,6 +6,7 @@
 struct bench_session {
     bench_session_desc desc;
     char *folder, *cache; // cache: a temporary folder, or NULL
+    char *earlier_cache;  // ROIL_CACHE_DIR before it; NULL: unset
     roil *r;
     bool stopped;
 };

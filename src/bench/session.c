@@ -18,8 +18,19 @@ enum { MAX_FRAMES = 100000 };
 static bool make_cache(bench_session *s) {
     char path[PATH_CAP];
     if (!bench_folder_make(path)) return false;
+    const char *earlier = getenv("ROIL_CACHE_DIR");
+    if (earlier) s->earlier_cache = mem_copy(earlier, strlen(earlier) + 1);
     s->cache = mem_copy(path, strlen(path) + 1);
     return setenv("ROIL_CACHE_DIR", path, 1) == 0 || err_set("%s: cannot be used", path);
+}
+
+// Whoever reads the variable later, as the report of a sweep, must not make the folder again.
+static void leave_cache(const bench_session *s) {
+    if (s->earlier_cache)
+        setenv("ROIL_CACHE_DIR", s->earlier_cache, 1);
+    else
+        unsetenv("ROIL_CACHE_DIR");
+    bench_folder_remove(s->cache);
 }
 
 // Pictures of an earlier run: of other rows, or by another program. The folder is the user's: only
@@ -66,8 +77,9 @@ bench_session *bench_open(const bench_session_desc *desc) {
 void bench_close(bench_session *s) {
     if (!s) return;
     roil_destroy(s->r);
-    if (s->cache) bench_folder_remove(s->cache);
+    if (s->cache) leave_cache(s);
     mem_free(s->cache);
+    mem_free(s->earlier_cache);
     mem_free(s->folder);
     mem_free(s);
 }

@@ -5,10 +5,11 @@ import resource
 import shutil
 import signal
 import subprocess
+import time
 import unittest
 
 from lib.pictures import Exr, Png
-from lib.program import DATA, PROGRAM, PUFF, SMALL, SOURCE, VOLUME, Case, main
+from lib.program import DATA, GROUND, PROGRAM, PUFF, SMALL, SOURCE, VOLUME, Case, main
 
 BALL = VOLUME % "sphere { position = {1, 1, 1}, radius = 1 } * 10"
 
@@ -217,6 +218,41 @@ class Stopped(Case):
                 child.communicate(timeout=60)
                 self.assertEqual(sorted(os.listdir(self.folder)), before)
                 self.assertEqual(child.returncode, -number if number == signal.SIGKILL else 1)
+
+
+    def test_nothing_is_left_of_pictures(self):
+        self.write("effect.lua", PUFF.replace("frames = 10", "frames = 100000"))
+        for number in signal.SIGINT, signal.SIGTERM, signal.SIGKILL:
+            with self.subTest(signal=number):
+                child = subprocess.Popen([PROGRAM, "render", "effect.lua", *SMALL, "-o", "shots/%06d.png"], cwd=self.folder,
+                                         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                child.stderr.read(1)
+                child.send_signal(number)
+                child.communicate(timeout=60)
+                for name in os.listdir(self.path("shots")):
+                    self.assertRegex(name, r"^\d{6}\.png$")
+                    Png(self.read("shots/" + name))  # whole
+
+    def test_nothing_is_left_of_a_sweep(self):
+        self.write("fx/effect.lua", PUFF + "-- one\n")
+        self.write("fx/ground.obj", GROUND)
+        os.mkdir(self.path("tmp"))
+        temporary = {"TMPDIR": self.path("tmp")}
+        sweep = ('return sweep { name = "try", effect = "fx/effect.lua", size = {32, 18}, frames = "3", measure = "reload",\n'
+                 'repeats = %d, warmup = 0, axes = { axis { "edit", { name = "a", edit = {"-- one", "-- two", "-- three"} } } } }')
+        self.write("sweep.lua", sweep % 1)
+        self.succeeds("bench", "sweep.lua", "-o", "out", environment=temporary)
+        self.assertEqual(os.listdir(self.path("tmp")), [])
+        self.write("sweep.lua", sweep % 10000)
+        child = subprocess.Popen([PROGRAM, "bench", "sweep.lua", "-o", "out"], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                 stderr=subprocess.PIPE, text=True, env={**os.environ, **temporary})
+        end = time.monotonic() + 60
+        while not os.listdir(self.path("tmp")) and child.poll() is None and time.monotonic() < end:
+            time.sleep(0.01)  # nothing tells of a folder that is made
+        child.send_signal(signal.SIGINT)
+        child.communicate(timeout=60)
+        self.assertEqual(child.returncode, 1)
+        self.assertEqual(os.listdir(self.path("tmp")), [])
 
 
 class Statistics(Case):

@@ -193,6 +193,14 @@ NAMED = {
 KEPT = ["0000.png", "0" * 32 + "-0.png", "results.json"]
 
 
+def with_text(png, key, text):
+    """A picture that says something else of itself."""
+    at = png.index(b"tEXt" + key) - 4
+    chunk = b"tEXt" + key + b"\0" + text
+    return (png[:at] + struct.pack(">I", len(chunk) - 4) + chunk + struct.pack(">I", zlib.crc32(chunk))
+            + png[at + 12 + int.from_bytes(png[at:at + 4], "big"):])
+
+
 class Confined(Case):
     """What is not named on the command line lies below the effect's folder, or that of results, and is a
     regular file; what is named is one, too, where it is read."""
@@ -272,14 +280,7 @@ class Confined(Case):
         self.write("x.lua", PUFF)
         self.succeeds("render", "x.lua", "--frames", "1", "-o", "shot.png", *SMALL)
         shot = self.read("shot.png")
-        at = shot.index(b"tEXtroil:effect") - 4
-        rest = at + 12 + int.from_bytes(shot[at:at + 4], "big")
-
-        def make(name):
-            chunk = b"tEXtroil:effect\0" + name.encode()
-            self.write("shot.png", shot[:at] + struct.pack(">I", len(chunk) - 4) + chunk
-                       + struct.pack(">I", zlib.crc32(chunk)) + shot[rest:])
-        for way in self.scripts(make):
+        for way in self.scripts(lambda name: self.write("shot.png", with_text(shot, b"roil:effect", name.encode()))):
             done = self.run_program("render", "--from", "shot.png", "-o", "out.png")
             self.assertEqual(done.returncode, 0 if way in GOOD else 1, done.stderr)
             self.assertEqual(os.path.exists(self.path("out.png")), way in GOOD)
@@ -467,6 +468,32 @@ class Small(Case):
         self.assert_plain(told)
         self.assert_plain(self.run_program("bench", "--list", "sweep.lua"))
         self.assertNotRegex(self.read("out/results.csv").decode(), '(?m)(^|[,"])=')  # which a table would calculate
+
+    def test_terminals_obey_no_grid(self):
+        for name in b"a\x1b[31m\x07", b"\xc2\x9b31m\r\n", b"\x1b]0;a\x07":
+            with self.subTest(name):
+                self.write("a.vdb", VDB.replace(b"density", (name + b"       ")[:7]))
+                self.write("volume.lua", VOLUME % 'vdb { "a.vdb" }.density')
+                told = self.run_program("info", "a.vdb")
+                self.assertIn("?", told.stdout)
+                self.assert_plain(told)
+                for arguments in ["check", "volume.lua"], ["export", "raw", "a.vdb", "-o", "a.raw"]:
+                    told = self.run_program(*arguments)
+                    self.assertEqual(told.returncode, 1)
+                    self.assert_plain(told)
+
+    def test_terminals_obey_no_recipe(self):
+        self.write("puff.lua", PUFF)
+        self.succeeds("render", "puff.lua", "--frames", "1", "-o", "shot.png", "--set", "steps=9", *SMALL)
+        shot = self.read("shot.png")
+        for key, text in ((b"effect", b"a\x1b[31m.lua"), (b"frame", b"1\x1b[31m"), (b"size", b"9x\x1b[31m9"),
+                          (b"settings", b"ste\x1b[31mps=9\n"), (b"settings", b"steps=\x1b[31m9\n"),
+                          (b"settings", b"look=\x9b31m\x07\n"), (b"settings", b"st\x1b[31meps\n")):
+            with self.subTest(key, text=text):
+                self.write("shot.png", with_text(shot, b"roil:" + key, text))
+                told = self.run_program("render", "--from", "shot.png", "-o", "out.png")
+                self.assertEqual(told.returncode, 1, told.stdout)
+                self.assert_plain(told)
 
     def test_standard_streams_may_be_closed(self):
         self.write("puff.lua", PUFF)
