@@ -75,47 +75,91 @@ static const text texts[] = {
      "bitfieldInsert(i, i, -5 * i, 4000 * i), findMSB(i - i));"},
 };
 
-static void write_source(const text *t, strbuf *out) {
-    strbuf_add(out,
-               "%s\nuniform float zero;\nuniform sampler2D from;\n"
-               "writeonly uniform image2D to; //= output rgba32f : x\n"
-               "void main() {\nivec2 pixel = ivec2(gl_GlobalInvocationID.xy);\n"
-               "int i = pixel.x + 1 + int(zero);\nvec4 c = vec4(0);\n%s\n"
-               "imageStore(to, pixel, c);\n}\n",
-               t->globals, t->body);
+// A text as a shader of some stage, where that makes sense of it.
+typedef struct source {
+    const text *text;
+    shader_stage stage;
+} source;
+
+static const char *const stage_names[] = {"hostile.comp", "hostile.vert", "hostile.frag"};
+static source sources[3 * COUNT_OF(texts)];
+static size_t source_count;
+
+static void list_sources(void) {
+    for (int stage = SHADER_COMPUTE; stage <= SHADER_FRAGMENT; stage++)
+        for (size_t i = 0; i < COUNT_OF(texts); i++) {
+            const text *t = &texts[i];
+            bool computes = strstr(t->globals, "shared") || strstr(t->body, "imageStore");
+            if (stage == SHADER_COMPUTE || !computes)
+                sources[source_count++] = (source){t, (shader_stage)stage};
+        }
 }
 
-static bool compile_source(const char *source, arena *memory, shader_binary *out) {
+static void write_source(const source *s, strbuf *out) {
+    static const char *const frames[][3] = {
+        {"writeonly uniform image2D to; //= output rgba32f : x\n",
+         "ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);\n", "imageStore(to, pixel, c);\n"},
+        {"layout(location = 0) out vec4 color;\n", "ivec2 pixel = ivec2(gl_VertexIndex, 0);\n",
+         "color = c;\nvec2 uv = vec2((gl_VertexIndex << 1) & 2, gl_VertexIndex & 2);\n"
+         "gl_Position = vec4(uv * 2.0 - 1.0, 0.0, 1.0) + zero * c;\n"},
+        {"layout(location = 0) out vec4 image;\n", "ivec2 pixel = ivec2(gl_FragCoord.xy);\n",
+         "image = c;\n"},
+    };
+    const char *const *frame = frames[s->stage];
+    strbuf_add(out,
+               "%s\nuniform float zero;\nuniform sampler2D from;\n%s"
+               "void main() {\n%sint i = pixel.x + 1 + int(zero);\nvec4 c = vec4(0);\n%s\n%s}\n",
+               s->text->globals, frame[0], frame[1], s->text->body, frame[2]);
+}
+
+static bool compile_source(const char *whole, shader_stage stage, arena *memory,
+                           shader_binary *out) {
     shader_library *library = shader_library_create(&(shader_library_desc){0});
-    const shader_text given = {"hostile.comp", source};
-    shader_compile_desc desc = {.name = given.name, .texts = &given, .text_count = 1};
+    const shader_text given = {stage_names[stage], whole};
+    shader_compile_desc desc = {
+        .name = given.name, .stage = stage, .texts = &given, .text_count = 1};
     bool done = shader_compile(library, memory, &desc, out);
     shader_library_destroy(library);
     return done;
 }
 
-static void compile(const text *t, arena *memory, shader_binary *out) {
-    strbuf source = {0};
-    write_source(t, &source);
-    if (!compile_source(source.text, memory, out)) fail_msg("%s: %s", t->name, err_get());
-    strbuf_free(&source);
+static void compile(const source *s, arena *memory, shader_binary *out) {
+    strbuf whole = {0};
+    write_source(s, &whole);
+    if (!compile_source(whole.text, s->stage, memory, out))
+        fail_msg("%s, %s: %s", stage_names[s->stage], s->text->name, err_get());
+    strbuf_free(&whole);
+}
+
+// Of the other stage, for what is drawn.
+static shader_binary plain_vertex, plain_fragment;
+
+static void compile_plain(arena *memory) {
+    gpu_test_ok(compile_source("layout(location = 0) out vec4 color;\nvoid main() {\n"
+                               "vec2 uv = vec2((gl_VertexIndex << 1) & 2, gl_VertexIndex & 2);\n"
+                               "color = uv.xyxy;\n"
+                               "gl_Position = vec4(uv * 2.0 - 1.0, 0.0, 1.0);\n}\n",
+                               SHADER_VERTEX, memory, &plain_vertex));
+    gpu_test_ok(compile_source("layout(location = 0) in vec4 color;\n"
+                               "layout(location = 0) out vec4 image;\n"
+                               "void main() { image = color; }\n",
+                               SHADER_FRAGMENT, memory, &plain_fragment));
 }
 
 // ---- in a child -------------------------------------------------------------------------------
 
 typedef struct canvas {
     gpu *g;
-    gpu_image *from, *to;
+    gpu_image *from, *to, *target;
 } canvas;
 
-static gpu_image *make_image(gpu *g, const char *label) {
-    gpu_image *image =
-        gpu_image_create(g, &(gpu_image_desc){.label = label,
-                                              .format = GPU_RGBA32F,
-                                              .width = SIZE,
-                                              .height = SIZE,
-                                              .mips = 1,
-                                              .use = GPU_USE_SAMPLED | GPU_USE_STORAGE});
+static gpu_image *make_image(gpu *g, const char *label, unsigned use) {
+    gpu_image *image = gpu_image_create(g, &(gpu_image_desc){.label = label,
+                                                             .format = GPU_RGBA32F,
+                                                             .width = SIZE,
+                                                             .height = SIZE,
+                                                             .mips = 1,
+                                                             .use = GPU_USE_SAMPLED | use});
     gpu_test_ok(image);
     return image;
 }
@@ -125,48 +169,89 @@ static gpu_image *make_image(gpu *g, const char *label) {
 static void open_canvas(canvas *c, bool validate) {
     c->g = gpu_create(&(gpu_desc){.validate = validate, .timeout = SECONDS_FOR_A_CHILD});
     gpu_test_ok(c->g);
-    c->from = make_image(c->g, "from");
-    c->to = make_image(c->g, "to");
+    c->from = make_image(c->g, "from", GPU_USE_STORAGE);
+    c->to = make_image(c->g, "to", GPU_USE_STORAGE);
+    c->target = make_image(c->g, "target", GPU_USE_TARGET);
 }
 
 static void close_canvas(canvas *c) {
     gpu_image_destroy(c->g, c->from);
     gpu_image_destroy(c->g, c->to);
+    gpu_image_destroy(c->g, c->target);
     if (gpu_test_finish(c->g)) _exit(2);
 }
 
-// False when it was refused.
-static bool draw(canvas *c, const shader_binary *binary) {
-    static const float zeros[4096];
+typedef struct work { // a pipeline, and what is bound to it
     gpu_slot slots[GPU_MAX_SLOTS];
     gpu_binding bindings[GPU_MAX_SLOTS];
-    for (size_t i = 0; i < binary->slot_count; i++) {
-        const shader_slot *slot = &binary->slots[i];
-        slots[i] = slot->slot;
-        bindings[i] = (gpu_binding){.binding = slot->slot.binding};
+    size_t count;
+    gpu_pipeline *pipeline;
+} work;
+
+static bool bind(const canvas *c, const shader_binary *binary, work *w) {
+    static const float zeros[4096];
+    for (w->count = 0; w->count < binary->slot_count; w->count++) {
+        const shader_slot *slot = &binary->slots[w->count];
+        gpu_binding *b = &w->bindings[w->count];
+        w->slots[w->count] = slot->slot;
+        *b = (gpu_binding){.binding = slot->slot.binding};
         if (slot->slot.kind == GPU_SLOT_UNIFORM) {
             if (slot->size > sizeof zeros) return false;
-            bindings[i].uniform = zeros;
-            bindings[i].uniform_size = slot->size;
+            b->uniform = zeros;
+            b->uniform_size = slot->size;
         } else {
-            bindings[i].image = slot->slot.kind == GPU_SLOT_SAMPLED_IMAGE ? c->from : c->to;
+            b->image = slot->slot.kind == GPU_SLOT_SAMPLED_IMAGE ? c->from : c->to;
         }
     }
-    gpu_compute_desc desc = {.label = "hostile",
-                             .code = binary->code,
-                             .code_size = binary->size,
-                             .slots = slots,
-                             .slot_count = binary->slot_count};
-    memcpy(desc.local_size, binary->local_size, sizeof desc.local_size);
-    gpu_pipeline *pipeline = gpu_pipeline_create_compute(c->g, &desc);
-    if (!pipeline) return false;
-    bool drawn = gpu_frame_begin(c->g) &&
-                 gpu_dispatch(c->g, &(gpu_dispatch_desc){.pipeline = pipeline,
-                                                         .bindings = bindings,
-                                                         .binding_count = binary->slot_count,
-                                                         .threads = {SIZE, SIZE, 1}});
+    return true;
+}
+
+static gpu_pipeline *create(const canvas *c, const shader_binary *binary, shader_stage stage,
+                            const work *w) {
+    if (stage == SHADER_COMPUTE) {
+        gpu_compute_desc desc = {.label = "hostile",
+                                 .code = binary->code,
+                                 .code_size = binary->size,
+                                 .slots = w->slots,
+                                 .slot_count = w->count};
+        memcpy(desc.local_size, binary->local_size, sizeof desc.local_size);
+        return gpu_pipeline_create_compute(c->g, &desc);
+    }
+    const shader_binary *vertex = stage == SHADER_VERTEX ? binary : &plain_vertex;
+    const shader_binary *fragment = stage == SHADER_FRAGMENT ? binary : &plain_fragment;
+    return gpu_pipeline_create_graphics(c->g, &(gpu_graphics_desc){.label = "hostile",
+                                                                   .vertex_code = vertex->code,
+                                                                   .vertex_size = vertex->size,
+                                                                   .fragment_code = fragment->code,
+                                                                   .fragment_size = fragment->size,
+                                                                   .slots = w->slots,
+                                                                   .slot_count = w->count,
+                                                                   .colors = {GPU_RGBA32F}});
+}
+
+static bool submit(const canvas *c, shader_stage stage, const work *w) {
+    if (stage == SHADER_COMPUTE)
+        return gpu_dispatch(c->g, &(gpu_dispatch_desc){.pipeline = w->pipeline,
+                                                       .bindings = w->bindings,
+                                                       .binding_count = w->count,
+                                                       .threads = {SIZE, SIZE, 1}});
+    const gpu_draw one = {.bindings = w->bindings, .binding_count = w->count, .vertices = 30};
+    return gpu_draw_all(c->g, &(gpu_draw_desc){.pipeline = w->pipeline,
+                                               .colors = {c->target},
+                                               .clear = true,
+                                               .draws = &one,
+                                               .draw_count = 1});
+}
+
+// False when it was refused.
+static bool draw(canvas *c, const shader_binary *binary, shader_stage stage) {
+    work w;
+    if (!bind(c, binary, &w)) return false;
+    w.pipeline = create(c, binary, stage, &w);
+    if (!w.pipeline) return false;
+    bool drawn = gpu_frame_begin(c->g) && submit(c, stage, &w);
     drawn = gpu_frame_end(c->g) && drawn && gpu_idle(c->g);
-    gpu_pipeline_destroy(c->g, pipeline);
+    gpu_pipeline_destroy(c->g, w.pipeline);
     return drawn;
 }
 
@@ -186,23 +271,24 @@ static void begin_child(void) { // the library of the tests catches faults
 
 static void hostile_shaders_only_hurt_themselves(void **state) {
     (void)state;
-    for (size_t i = 0; i < COUNT_OF(texts); i++) {
+    for (size_t i = 0; i < source_count; i++) {
         arena memory = {0};
         shader_binary binary;
-        compile(&texts[i], &memory, &binary);
+        const char *name = sources[i].text->name, *stage = stage_names[sources[i].stage];
+        compile(&sources[i], &memory, &binary);
         pid_t child = fork();
         if (child == 0) {
             canvas c;
             begin_child();
             open_canvas(&c, true);
-            bool drawn = draw(&c, &binary);
-            if (!drawn) fprintf(stderr, "%s: %s\n", texts[i].name, err_get());
+            bool drawn = draw(&c, &binary, sources[i].stage);
+            if (!drawn) fprintf(stderr, "%s, %s: %s\n", stage, name, err_get());
             close_canvas(&c);
             _exit(drawn ? 0 : 1);
         }
         int status = wait_for(child);
         if (status)
-            fail_msg("a shader that %s ends its process (status %#x)", texts[i].name, status);
+            fail_msg("%s that %s ends its process (status %#x)", stage, name, (unsigned)status);
         arena_free(&memory);
     }
 }
@@ -254,7 +340,8 @@ static size_t change(uint32_t *words, size_t count, uint64_t *random) {
     return count;
 }
 
-static void try_module(canvas *c, const shader_binary *from, uint64_t number, tally *t) {
+static void try_module(canvas *c, const shader_binary *from, shader_stage stage, uint64_t number,
+                       tally *t) {
     static uint32_t words[MOST_WORDS];
     uint64_t random = seed * 1000003 + number;
     arena memory = {0};
@@ -265,10 +352,10 @@ static void try_module(canvas *c, const shader_binary *from, uint64_t number, ta
     code.count = change(words, code.count, &random);
     if (spirv_gate(&code) && spirv_validate(&code)) {
         t->valid++;
-        if (spirv_reflect(&code, SHADER_COMPUTE, &memory, &binary)) {
+        if (spirv_reflect(&code, stage, &memory, &binary)) {
             binary.code = code.words;
             binary.size = code.count * sizeof *code.words;
-            t->drawn += draw(c, &binary);
+            t->drawn += draw(c, &binary, stage);
         }
     }
     arena_free(&memory);
@@ -310,16 +397,17 @@ static void try_many(const char *what, trial *one) {
     munmap(t, sizeof *t);
 }
 
-static shader_binary binaries[COUNT_OF(texts)];
+static shader_binary binaries[COUNT_OF(sources)];
 
 static void try_binary(canvas *c, uint64_t number, tally *t) {
-    try_module(c, &binaries[number % COUNT_OF(binaries)], number, t);
+    size_t i = number % source_count;
+    try_module(c, &binaries[i], sources[i].stage, number, t);
 }
 
 static void changed_modules_only_hurt_themselves(void **state) {
     (void)state;
     arena memory = {0};
-    for (size_t i = 0; i < COUNT_OF(texts); i++) compile(&texts[i], &memory, &binaries[i]);
+    for (size_t i = 0; i < source_count; i++) compile(&sources[i], &memory, &binaries[i]);
     try_many("modules", try_binary);
     arena_free(&memory);
 }
@@ -327,38 +415,39 @@ static void changed_modules_only_hurt_themselves(void **state) {
 // ---- texts changed word by word ----------------------------------------------------------------
 
 // Numbers become extreme ones, operators others, and words of elsewhere stand in for words.
-static void change_text(char *source, strbuf *out, uint64_t *random) {
+static void change_text(char *from, strbuf *out, uint64_t *random) {
     static const char *const numbers[] = {"0",  "1",    "-1",    "2147483647", "(-2147483647-1)",
                                           "64", "1e38", "1e-38", "0xffffffffu"};
     static const char operators[] = "+-*/%&|^<>";
-    size_t length = strlen(source), main_at = (size_t)(strstr(source, "void main") - source);
+    size_t length = strlen(from), main_at = (size_t)(strstr(from, "void main") - from);
     for (int i = 0; i < 3; i++) { // operators, in place
         size_t at = main_at + next_random(random) % (length - main_at);
-        if (strchr("+-*/&", source[at]) && source[at + 1] == ' ')
-            source[at] = operators[next_random(random) % (sizeof operators - 1)];
+        if (strchr("+-*/&", from[at]) && from[at + 1] == ' ')
+            from[at] = operators[next_random(random) % (sizeof operators - 1)];
     }
     size_t chosen = main_at + next_random(random) % (length - main_at);
-    while (source[chosen] && !(source[chosen] >= '0' && source[chosen] <= '9')) chosen++;
+    while (from[chosen] && !(from[chosen] >= '0' && from[chosen] <= '9')) chosen++;
     size_t end = chosen;
-    while (source[end] >= '0' && source[end] <= '9') end++;
-    strbuf_append(out, source, chosen);
+    while (from[end] >= '0' && from[end] <= '9') end++;
+    strbuf_append(out, from, chosen);
     if (end > chosen) strbuf_add(out, "%s", numbers[next_random(random) % COUNT_OF(numbers)]);
-    strbuf_add(out, "%s", source + end);
+    strbuf_add(out, "%s", from + end);
 }
 
 static void try_text(canvas *c, uint64_t number, tally *t) {
     uint64_t random = seed * 1000033 + number;
-    strbuf source = {0}, changed = {0};
+    strbuf whole = {0}, changed = {0};
     arena memory = {0};
     shader_binary binary;
-    write_source(&texts[number % COUNT_OF(texts)], &source);
-    change_text(source.text, &changed, &random);
-    if (compile_source(changed.text, &memory, &binary)) {
+    shader_stage stage = sources[number % source_count].stage;
+    write_source(&sources[number % source_count], &whole);
+    change_text(whole.text, &changed, &random);
+    if (compile_source(changed.text, stage, &memory, &binary)) {
         t->valid++;
-        t->drawn += draw(c, &binary);
+        t->drawn += draw(c, &binary, stage);
     }
     arena_free(&memory);
-    strbuf_free(&source);
+    strbuf_free(&whole);
     strbuf_free(&changed);
 }
 
@@ -372,10 +461,15 @@ int main(int count, char **words) {
     if (count > 2) seed = strtoull(words[2], NULL, 0);
     if (count > 3) first_number = strtoull(words[3], NULL, 0);
     gpu_test_need_device();
+    arena memory = {0};
+    list_sources();
+    compile_plain(&memory);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hostile_shaders_only_hurt_themselves),
         cmocka_unit_test(changed_modules_only_hurt_themselves),
         cmocka_unit_test(changed_texts_only_hurt_themselves),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    arena_free(&memory);
+    return failed;
 }

@@ -301,7 +301,8 @@ static void nothing_runs_long_between_two_looks(void **state) {
         time_limit_leave(before);
         vm_destroy(v);
         if (ended) fail_msg("no error in: %s", attacks[i]);
-        if (took > 0.5) fail_msg("%g s, instead of 0.3 s: %s", took, attacks[i]);
+        // Of the thread's processor time; what is wrong here takes minutes, or never ends.
+        if (took > 10) fail_msg("%g s, instead of 0.3 s: %s", took, attacks[i]);
         // Most end by the time limit; where the machine is fast enough, by one of memory.
         if (!strstr(err_get(), "time limit of 0.3 s for a load exceeded; --time-limit") &&
             !strstr(err_get(), "memory limit of"))

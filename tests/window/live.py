@@ -15,7 +15,7 @@ class Keys(Case):
         plain = live.screenshot()
         live.keys("F1")
         live.widget("help")
-        self.assertGreater(difference(plain, live.screenshot()), 60)
+        live.wait_until(lambda: difference(plain, live.screenshot()) > 60, "the help in the picture")
         live.keys("Escape")
         live.wait_until(lambda: "help" not in live.widgets(), "the end of the help")
         wide = live.widget(VIEW)[2]
