@@ -1,5 +1,5 @@
-// A step: diffusion where it is much, advection with forces and sources, the projection; and what
-// the state looks like after it.
+// A step: diffusion, advection with forces and sources, the projection; and what the state looks
+// like after it.
 #include "base/error.h"
 #include "sim/flow_impl.h"
 #include <math.h>
@@ -36,7 +36,11 @@ static int count_stages(float diffusion) {
     return stages;
 }
 
-static bool diffuse(flow *f, gpu *g, const flow_numbers *n, float diffusion) {
+// A part of its own, before advection: central differences of a field, added to where that has gone
+// in the step, burst where it goes about a cell.
+static bool diffuse(flow *f, gpu *g, const flow_numbers *n) {
+    float diffusion = n->viscosity > 0 ? n->viscosity * n->dt / (n->cell * n->cell) : 0;
+    if (!(diffusion > 0)) return true;
     sim_kernel *k = &f->kernels.diffuse;
     const int stages = count_stages(diffusion);
     const float parts = (float)(stages * stages + stages) / 2;
@@ -76,7 +80,7 @@ static bool predict(flow *f, gpu *g, const flow_numbers *n) {
     return flow_run(f, g, &call);
 }
 
-static bool advance(flow *f, gpu *g, const flow_numbers *n, float diffusion) {
+static bool advance(flow *f, gpu *g, const flow_numbers *n) {
     sim_kernel *k = &f->kernels.advance;
     const float most = 32 * n->cell / n->dt;
     float kept[3];
@@ -87,7 +91,6 @@ static bool advance(flow *f, gpu *g, const flow_numbers *n, float diffusion) {
     sim_kernel_set(k, "acceleration", n->acceleration, sizeof n->acceleration);
     sim_kernel_set(k, "buoyancy", n->buoyancy, sizeof n->buoyancy);
     set_float(k, "vorticity", n->vorticity);
-    set_float(k, "diffusion", diffusion);
     sim_kernel_set(k, "kept", kept, sizeof kept);
     set_float(k, "max_speed", n->max_speed > 0 && n->max_speed < most ? n->max_speed : most);
     const sim_slot more[] = {
@@ -146,13 +149,9 @@ bool flow_step(flow *f, gpu *g, const flow_numbers *n, bool keep) {
     if (!(n->dt > 0) || !(n->cell > 0))
         return err_set("a step of %g s on cells of %g m; both must be more than 0", (double)n->dt,
                        (double)n->cell);
-    float diffusion = n->viscosity > 0 ? n->viscosity * n->dt / (n->cell * n->cell) : 0;
-    if (diffusion > explicit_limit) {
-        if (!diffuse(f, g, n, diffusion)) return false;
-        diffusion = 0;
-    }
+    if (!diffuse(f, g, n)) return false;
     if (f->desc.advection == FLOW_MACCORMACK && !predict(f, g, n)) return false;
-    if (!advance(f, g, n, diffusion) || !flow_project(f, g, n)) return false;
+    if (!advance(f, g, n) || !flow_project(f, g, n)) return false;
     f->current ^= 1;
     f->steps++;
     return !keep || look(f, g, n);

@@ -6,15 +6,14 @@ layout(local_size_x = 16, local_size_y = 16) in;
 #define FLOW_SOURCES readonly
 #include "sim/flow/state.glsl"
 #include "sim/flow/carry.glsl"
-#include "sim/flow/friction.glsl"
 
 uniform float dt;
 uniform vec2 acceleration; // m/s^2
 uniform vec2 buoyancy;     // by 1 of density, of temperature, m/s^2
 uniform float vorticity;   // 1/s
-uniform float diffusion;   // viscosity dt / cell^2
 uniform vec3 kept;         // of density, temperature, dye
 uniform float max_speed;   // m/s
+uniform vec4 wall_velocity[4]; // of the faces left, right, bottom, top: x, y
 layout(std430) writeonly buffer FlowVelocityTo { vec2 velocity_to[]; };
 layout(std430) writeonly buffer FlowScalarsTo { vec4 scalars_to[]; };
 #if FLOW_WITH_CORRECTION
@@ -24,10 +23,6 @@ layout(std430) readonly buffer FlowFaceFrom { vec4 face_from[]; };
 layout(std430) readonly buffer FlowCellFrom { vec2 cell_from[]; };
 FLOW_SCALAR_QUAD(hat_scalars_at, hat_scalars)
 #endif
-
-FLOW_LAPLACE(laplace_u, flow_velocity, x)
-FLOW_LAPLACE(laplace_v, flow_velocity, y)
-FLOW_LAPLACE_BOTH(laplace, laplace_u, laplace_v)
 
 // ---- what is carried --------------------------------------------------------------------------
 
@@ -116,7 +111,7 @@ vec2 forces(ivec2 cell, int slice) {
     vec2 a = acceleration;
     a.y += dot(0.5 * (here.xy + below.xy), buoyancy);
     if (vorticity != 0.0) a += confine(cell, slice);
-    return dt * a + (diffusion > 0.0 ? diffusion * laplace(cell, slice) : vec2(0.0));
+    return dt * a;
 }
 
 // ---- sources, and what stands in the way ------------------------------------------------------
