@@ -7,28 +7,32 @@ static const double PI = 3.14159265358979;
 
 enum { VORTEX = 64 };
 static const double vortex_speed = 0.02;
+static double wind[2]; // in which vortices drift
 
 static void vortex(int x, int y, int z, sim_cell *cell) {
     double k = 2 * PI / VORTEX, a = k * x, b = k * y;
     (void)z;
-    cell->u[0] = vortex_speed * sin(a) * cos(b);
-    cell->u[1] = -vortex_speed * cos(a) * sin(b);
+    cell->u[0] = wind[0] + vortex_speed * sin(a) * cos(b);
+    cell->u[1] = wind[1] - vortex_speed * cos(a) * sin(b);
     cell->density = 1 + 0.75 * vortex_speed * vortex_speed * (cos(2 * a) + cos(2 * b));
 }
 
 static double energy(const sim_world *w) {
-    double sum = 0;
+    double sum = 0, mean[3] = {0};
     for (size_t i = 0; i < w->cells; i++)
-        for (int k = 0; k < 3; k++) sum += w->state[i].u[k] * w->state[i].u[k];
+        for (int k = 0; k < 3; k++) mean[k] += w->state[i].u[k] / (double)w->cells;
+    for (size_t i = 0; i < w->cells; i++)
+        for (int k = 0; k < 3; k++) sum += pow(w->state[i].u[k] - mean[k], 2);
     return sum;
 }
 
 // The relative error of the rate at which a Taylor-Green vortex decays that is the same all along
 // z.
-static double vortex_error(gpu *g, lbm_set set, lbm_collision collision) {
+static double vortex_error(gpu *g, lbm_desc desc) {
     sim_world w;
-    sim_open(&w, g,
-             &(lbm_desc){.size = {VORTEX, VORTEX, VORTEX}, .set = set, .collision = collision});
+    desc.size[0] = desc.size[1] = VORTEX;
+    desc.size[2] = 16;
+    sim_open(&w, g, &desc);
     w.numbers.tau = 0.65f;
     sim_set_state(&w, vortex);
     sim_run(&w, 60); // what the start had of sound and stress settles
@@ -42,15 +46,29 @@ static double vortex_error(gpu *g, lbm_set set, lbm_collision collision) {
     return rate - 1;
 }
 
+// Where the air stands still on the whole, and in a wind: who goes with it sees the same. But for
+// what directions of length 1 cannot tell, since their third power is the first: stresses along an
+// axis are less by 3 u^2 (Qian and Orszag 1993), of this wind by 1.5 %, of moments half as much
+// again.
 static void a_vortex_decays_as_its_viscosity_says(void **state) {
     static const char *const sets[] = {"D3Q19", "D3Q27"}, *const ways[] = {"BGK", "TRT", "moments"};
-    for (int set = 0; set < 2; set++)
-        for (int way = 0; way < 3; way++) {
-            double error = vortex_error(*state, (lbm_set)set, (lbm_collision)way);
-            print_message("vortex, %s %s: rate off by %.4f %%\n", sets[set], ways[way],
-                          100 * error);
-            assert_true(fabs(error) < 1e-3);
-        }
+    for (int i = 0; i < 12; i++) {
+        const lbm_desc desc = {.set = (lbm_set)(i / 3 % 2), .collision = (lbm_collision)(i % 3)};
+        wind[0] = i < 6 ? 0 : 0.08, wind[1] = i < 6 ? 0 : -0.06;
+        double error = vortex_error(*state, desc);
+        print_message("vortex, %s %s%s: rate off by %.4f %%\n", sets[desc.set],
+                      ways[desc.collision], i < 6 ? "" : ", in a wind", 100 * error);
+        assert_true(fabs(error) < (i < 6 ? 0.0015 : 0.035));
+    }
+    for (int i = 0; i < 3; i++) {
+        wind[0] = i < 2 ? 0 : 0.08, wind[1] = i < 2 ? 0 : -0.06;
+        const lbm_desc desc = {
+            .collision = LBM_CENTRAL_MOMENTS, .precision = LBM_F16, .lanes = i % 2 ? 4 : 2};
+        double error = vortex_error(*state, desc);
+        print_message("vortex, halves, lanes of %d%s: rate off by %.4f %%\n", desc.lanes,
+                      i < 2 ? "" : ", in a wind", 100 * error);
+        assert_true(fabs(error) < (i < 2 ? 0.0035 : 0.06));
+    }
 }
 
 // ---- eddies that are not seen -------------------------------------------------------------------
