@@ -122,12 +122,15 @@ static void drag_leads_to_the_terminal_velocity(void **state) {
         is_near((double)s.move[0][0], 3, 1e-4, "wind");
         swarm_close(&s);
     }
+    // By the square of the speed against the wind, not against the ground.
     swarm s = one(*state, 0, 0);
     swarm_set(&s, "gravity", 9);
     swarm_set(&s, "drag_square", 1);
+    swarm_field(&s, "velocity", triple(s.e, 4, 0, 0));
     swarm_build(&s);
     swarm_run(&s, 300);
     is_near((double)s.move[0][2], -3, 1e-3, "terminal velocity by the square");
+    is_near((double)s.move[0][0], 4, 1e-3, "wind");
     swarm_close(&s);
 }
 

@@ -19,6 +19,25 @@ static void as_many_are_born_as_the_rate_says(void **state) {
     swarm_close(&s);
 }
 
+// However a step lies to the moments: each is where one that flew for as long as it is old would
+// be.
+static void each_is_thrown_at_its_own_moment(void **state) {
+    swarm s = swarm_open(*state, 512, 0);
+    swarm_set(&s, "rate", 410);
+    swarm_live(&s, 100, 100);
+    swarm_set(&s, "gravity", 10);
+    swarm_field(&s, "speed", triple(s.e, 3, 0, 4));
+    swarm_build(&s);
+    swarm_run(&s, 60);
+    for (uint32_t i = 0; i < s.used; i++) {
+        double age = (double)s.at[i][3];
+        is_near((double)s.at[i][0], 3 * age, 1e-4, "x");
+        is_near((double)s.at[i][2], 4 * age - 5 * age * age, 1e-4, "z");
+        is_near((double)s.move[i][2], 4 - 10 * age, 1e-4, "speed");
+    }
+    swarm_close(&s);
+}
+
 static void each_lives_as_long_as_it_should(void **state) {
     swarm s = swarm_open(*state, 4096, 0);
     swarm_set(&s, "rate", 2000);
@@ -279,6 +298,7 @@ static void each_carries_what_is_around_it(void **state) {
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(as_many_are_born_as_the_rate_says),
+        cmocka_unit_test(each_is_thrown_at_its_own_moment),
         cmocka_unit_test(each_lives_as_long_as_it_should),
         cmocka_unit_test(the_oldest_make_room),
         cmocka_unit_test(they_die_where_they_should_not_be),

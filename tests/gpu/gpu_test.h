@@ -4,7 +4,7 @@
 //   static const struct CMUnitTest tests[] = {cmocka_unit_test(image_keeps_its_texels)};
 //   int main(void) { return gpu_test_run(tests, COUNT_OF(tests)); }
 //
-// In a test, `*state` is the device.
+// In a test, `*state` is the device. ROIL_TEST=NAME runs that one alone.
 #pragma once
 #include "base/error.h"
 #include "base/memory.h"
@@ -88,6 +88,7 @@ static inline int gpu_test_run_group(const char *name, const struct CMUnitTest *
     gpu_test_keep_driver();
     gpu_test_need_source();
     gpu_test_need_device();
+    if (getenv("ROIL_TEST")) cmocka_set_test_filter(getenv("ROIL_TEST"));
     int failed = _cmocka_run_group_tests(name, tests, count, gpu_test_setup, gpu_test_teardown);
     if (gpu_test_messages > 0) fprintf(stderr, "%s: validation messages were given\n", name);
     return failed + (gpu_test_messages > 0);

@@ -18,6 +18,8 @@ GOOD = {
     "src/app/main.c": '#include "roil.h"\n#include <GLFW/glfw3.h>\n',
     "shaders/shared.h": "#define SHARED 1\n",
     "scripts/build": "#!/bin/sh\necho built\n",
+    "tests/unit/one.c": "int works; // cmocka_unit_test(works)\n",
+    "tests/mutants/one.txt": "wrong | shaders/shared.h | unit_one works\n- SHARED 1\n+ SHARED 2\n",
 }
 TOO_LONG = "int a;\n" * 801
 BROKEN = [  # rule, file, text
@@ -51,6 +53,12 @@ BROKEN = [  # rule, file, text
     ("shell", "scripts/build", "#!/bin/sh\ncd $1\n"),
     ("words", "scripts/build", "# FIX" "ME\n"),
     ("words", "effects/explosion.lua", "-- XX" "X\n"),
+    ("mutants", "shaders/shared.h", "#define SHARED 3\n"),
+    ("mutants", "shaders/shared.h", "#define SHARED 1 // not SHARED 1\n"),
+    ("mutants", "tests/unit/one.c", "int works;\n"),
+    ("mutants", "tests/mutants/one.txt", "wrong | shaders/shared.h | unit_one works\n- SHARED 1\n"),
+    ("mutants", "tests/mutants/two.txt", "wrong | shaders/shared.h | unit_one works\n- SHARED 1\n+ 2\n"),
+    ("mutants", "tests/mutants/two.txt", "other | shaders/other.h | unit_one works\n- SHARED 1\n+ 2\n"),
 ]
 SUBJECTS = [  # subject, good
     ("graph/compile: name cycles pass by pass", True),
@@ -98,7 +106,7 @@ def try_subject(subject):
 def main():
     wrong, skipped, count = [], set(), 0
     cases = [(rule, None, "", 0) for rule in ("layers", "format", "sizes", "headers", "shell",
-                                                "words")]
+                                                "words", "mutants")]
     cases += [(rule, path, text, 1) for rule, path, text in BROKEN]
     for rule, path, text, expected in cases:
         got = try_tree(rule, path, text)
