@@ -1,11 +1,13 @@
 -- The layered explosion (Avalos 2019): no smoke is simulated and nothing is played back. A ball whose
 -- surface is pushed out by two layers of noise, coloured by how far it was pushed and how old it is;
 -- it dissolves into a globe of smoke that is bright at no rim; a light that flares up and dies; the
--- exposure of the whole picture goes from 0.6 to 1 and back. Every number of it stands in the panel.
+-- exposure of the whole picture goes from 0.6 to 1 and back, or what 1 lacks is subtracted from it.
+-- Every number of it stands in the panel.
 --
 --   roil render effects/layered_explosion.lua --frames 14 -o explosion.png
 --   roil render effects/layered_explosion.lua --frames 14 --set form=mesh -o mesh.png
 --   roil render effects/layered_explosion.lua --frames 14 --set form=volume -o volume.png
+--   roil render effects/layered_explosion.lua --frames 14 --set flash_by=subtraction -o subtracted.png
 --   roil live effects/layered_explosion.lua     -- click on the ground, press x, or throw a bomb with b
 --
 -- One picture, three ways to it. rays: the surface is found by a ray for each pixel. mesh: as
@@ -58,6 +60,7 @@ local light_grow  = param { "light_grow", 0.12, min = 0.01, max = 2, unit = "s",
 local light_fade  = param { "light_fade", 0.75, min = 0.05, max = 5, unit = "s", help = "until it is dark again" }
 local light_power = param { "light_power", 9000, min = 0, max = 100000, unit = "W", help = "when it is brightest" }
 local light_color = param { "light_color", "#ffa24a", help = "colour of the light" }
+local flash_by    = param { "flash_by", "exposure", words = {"exposure", "subtraction"}, help = "what makes the picture darker than the flash: a factor on its light, or an amount taken from what is shown" }
 local flash_low   = param { "flash_low", 0.6, min = 0.05, max = 2, help = "exposure of the picture" }
 local flash_high  = param { "flash_high", 1.0, min = 0.05, max = 4, help = "exposure when it bursts" }
 local flash_time  = param { "flash_time", 0.7, min = 0.05, max = 5, unit = "s", help = "there and back" }
@@ -165,7 +168,7 @@ local function exposure(t)
     local one, age = since(t, which)
     if one and age < flash_time:get() then most = math.max(most, one.size * math.sin(math.pi * age / flash_time:get())) end
   end
-  return math.log(flash_low:get() + (flash_high:get() - flash_low:get()) * math.min(most, 1), 2)
+  return flash_low:get() + (flash_high:get() - flash_low:get()) * math.min(most, 1)
 end
 
 -- A clearing: what stands around is what tells how large a blast is, and where its light comes from.
@@ -273,7 +276,11 @@ end
 
 local picture = form:get() == "volume" and as_volume() or as_shells()
 local glow    = bloom { bright { picture, threshold = 1.2 }, radius = 0.75 }
-local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.3, exposure_ev = exposure, tonemap = "agx", saturation = 1.25 }
+local shown   = final {
+  source = picture, bloom = glow, bloom_intensity = 0.3, tonemap = "agx", saturation = 1.25,
+  exposure_ev = flash_by:get() == "exposure" and function(t) return math.log(exposure(t), 2) end or 0,
+  subtract    = flash_by:get() == "subtraction" and function(t) return math.max(1 - exposure(t), 0) end or 0,
+}
 
 fx.output = shown.color
 fx.linear = shown.linear

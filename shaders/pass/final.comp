@@ -10,10 +10,14 @@ uniform sampler2D exposure;       //= input optional : stops of exposure besides
 uniform float bloom_intensity;    //= 0.8 [0, 10] : factor of the bloom
 uniform float exposure_ev;        //= 0 [-20, 20] EV : stops of exposure
 uniform float saturation;         //= 1 [0, 4] : 0: grey, 1: as it is
+uniform float subtract;           //= 0 [0, 1] : taken from each channel of what a display is given (0 to 1, sRGB), down to black: a flash that is not of light is a moment with less of it
 writeonly uniform image2D color;  //= output rgba16f : display-linear, alpha kept
 writeonly uniform image2D linear; //= output rgba16f : scene-linear with the bloom, alpha kept
 
 vec3 saturate(vec3 c) { return max(mix(vec3(luminance(c)), c, saturation), 0.0); }
+
+vec3 encode(vec3 c) { return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308))); }
+vec3 decode(vec3 c) { return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045))); }
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -49,5 +53,7 @@ void main() {
 #if SATURATE == SATURATE_DISPLAY
     exposed = saturate(max(exposed, 0.0));
 #endif
-    imageStore(color, pixel, vec4(clamp(exposed, 0.0, 1.0), c.a));
+    exposed = clamp(exposed, 0.0, 1.0);
+    if (subtract > 0.0) exposed = decode(max(encode(exposed) - subtract, 0.0));
+    imageStore(color, pixel, vec4(exposed, c.a));
 }

@@ -15,6 +15,7 @@ static pass *add_ramp(pass_world *w, const char *label, float r, float g, float 
 typedef struct look {
     const char *tonemap;
     float tint[3], exposure, saturation, bloom; // bloom 0: none; its picture is twice as bright
+    float subtract;
 } look;
 
 // `input`, `shown` and `linear` hold 4 * PIXELS numbers each and may be NULL.
@@ -26,6 +27,7 @@ static void show(gpu *device, look l, float *input, float *shown, float *linear)
     gpu_test_ok(pass_set_option(final, "tonemap", l.tonemap));
     gpu_test_ok(pass_set_uniform(final, "exposure_ev", number(&w, l.exposure)));
     gpu_test_ok(pass_set_uniform(final, "saturation", number(&w, l.saturation)));
+    gpu_test_ok(pass_set_uniform(final, "subtract", number(&w, l.subtract)));
     gpu_test_ok(pass_set_image(final, "source", pass_output(ramp, "color")));
     if (l.bloom > 0) {
         pass *bright = add_ramp(&w, "bright", 2 * l.tint[0], 2 * l.tint[1], 2 * l.tint[2]);
@@ -50,7 +52,7 @@ static void show(gpu *device, look l, float *input, float *shown, float *linear)
 static void every_tonemap_rises_from_black_to_white(void **state) {
     static float c[4 * PIXELS];
     for (size_t t = 0; t < COUNT_OF(tonemaps); t++) {
-        show(*state, (look){tonemaps[t], {1, 1, 1}, 0, 1, 0}, NULL, c, NULL);
+        show(*state, (look){tonemaps[t], {1, 1, 1}, 0, 1, 0, 0}, NULL, c, NULL);
         for (uint32_t x = 0; x < WIDTH; x++) {
             const float *here = c + 4 * x;
             for (int k = 0; k < 3; k++) {
@@ -72,7 +74,7 @@ static void every_tonemap_rises_from_black_to_white(void **state) {
 static void black_stays_black_and_alpha_is_kept(void **state) {
     static float in[4 * PIXELS], c[4 * PIXELS];
     for (size_t t = 0; t < COUNT_OF(tonemaps); t++) {
-        show(*state, (look){tonemaps[t], {3, 1, 0.2f}, 2.5f, 1.4f, 0}, in, c, NULL);
+        show(*state, (look){tonemaps[t], {3, 1, 0.2f}, 2.5f, 1.4f, 0, 0}, in, c, NULL);
         for (uint32_t i = 0; i < PIXELS; i++) {
             assert_true(c[4 * i + 3] == in[4 * i + 3]);
             if (i % WIDTH == 0)
@@ -83,7 +85,7 @@ static void black_stays_black_and_alpha_is_kept(void **state) {
 
 static void a_stop_of_exposure_doubles(void **state) {
     static float in[4 * PIXELS], c[4 * PIXELS], linear[4 * PIXELS];
-    show(*state, (look){"none", {1, 0.5f, 0.25f}, 1, 1, 0}, in, c, linear);
+    show(*state, (look){"none", {1, 0.5f, 0.25f}, 1, 1, 0, 0}, in, c, linear);
     for (uint32_t i = 0; i < PIXELS; i++)
         for (uint32_t k = 0; k < 3; k++) {
             float want = fminf(2 * in[4 * i + k], 1);
@@ -94,7 +96,7 @@ static void a_stop_of_exposure_doubles(void **state) {
 
 static void bloom_is_added_with_its_factor(void **state) {
     static float in[4 * PIXELS], c[4 * PIXELS], linear[4 * PIXELS];
-    show(*state, (look){"none", {0.01f, 0.02f, 0.03f}, 0, 1, 0.25f}, in, c, linear);
+    show(*state, (look){"none", {0.01f, 0.02f, 0.03f}, 0, 1, 0.25f, 0}, in, c, linear);
     for (uint32_t i = 0; i < PIXELS; i++) {
         for (uint32_t k = 0; k < 3; k++) {
             float want = in[4 * i + k] * (1 + 0.25f * 2);
@@ -107,12 +109,40 @@ static void bloom_is_added_with_its_factor(void **state) {
 
 static void saturation_0_is_grey_of_the_same_luminance(void **state) {
     static float in[4 * PIXELS], c[4 * PIXELS];
-    show(*state, (look){"none", {0.02f, 0.01f, 0.005f}, 0, 0, 0}, in, c, NULL);
+    show(*state, (look){"none", {0.02f, 0.01f, 0.005f}, 0, 0, 0, 0}, in, c, NULL);
     for (uint32_t i = 0; i < PIXELS; i++) {
         const float *p = in + 4 * i;
         float want = 0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2];
         for (uint32_t k = 0; k < 3; k++)
             assert_true(fabsf(c[4 * i + k] - want) <= want / 512 + 1e-6f);
+    }
+}
+
+static float as_shown(float v) {
+    return v <= 0.0031308f ? 12.92f * v : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
+}
+
+static void an_amount_is_subtracted_from_what_is_shown(void **state) {
+    static float whole[4 * PIXELS], less[4 * PIXELS], linear[4 * PIXELS];
+    const float amounts[] = {0.1f, 0.4f, 1};
+    for (size_t t = 0; t < COUNT_OF(tonemaps); t++) {
+        for (size_t a = 0; a < COUNT_OF(amounts); a++) {
+            look l = {tonemaps[t], {1, 0.5f, 0.25f}, -0.5f, 1.2f, 0, 0};
+            static float untouched[4 * PIXELS];
+            show(*state, l, NULL, whole, untouched);
+            l.subtract = amounts[a];
+            show(*state, l, NULL, less, linear);
+            for (uint32_t i = 0; i < 4 * PIXELS; i++) {
+                float want = whole[i];
+                if (i % 4 < 3) {
+                    want = fmaxf(as_shown(whole[i]) - amounts[a], 0);
+                    assert_true(fabsf(as_shown(less[i]) - want) <= 0.001f);
+                } else {
+                    assert_true(less[i] == want);
+                }
+                assert_true(linear[i] == untouched[i]); // the EXR's picture is not what is shown
+            }
+        }
     }
 }
 
@@ -187,6 +217,7 @@ int main(void) {
         cmocka_unit_test(a_stop_of_exposure_doubles),
         cmocka_unit_test(bloom_is_added_with_its_factor),
         cmocka_unit_test(saturation_0_is_grey_of_the_same_luminance),
+        cmocka_unit_test(an_amount_is_subtracted_from_what_is_shown),
         cmocka_unit_test(over_is_premultiplied_compositing),
         cmocka_unit_test(coarse_volume_keeps_its_level),
     };
