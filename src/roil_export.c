@@ -41,6 +41,7 @@ static void encode(const voxel_type *type, const float *values, size_t count, fl
 }
 
 typedef struct exporter {
+    const sequence *sequence;
     const field_grid *grid; // for its box and size
     const char *const *files;
     size_t file_count, voxels;
@@ -55,15 +56,8 @@ static bool sample_frame(exporter *x, size_t frame, bool *present) {
     const roil_export *d = x->desc;
     if (d->progress && !d->progress(d->user, (double)x->read++, 2.0 * (double)x->file_count))
         return err_set("stopped after %zu of %zu frames", frame, x->file_count);
-    arena memory = {0};
-    vdb_info info;
-    bool done = vdb_read_info(x->files[frame], &memory, &info), found = false;
-    for (size_t i = 0; done && i < info.count; i++)
-        found =
-            found || (strcmp(info.grids[i].name, x->name) == 0 && info.grids[i].components == 1);
-    arena_free(&memory);
     memset(x->values, 0, x->voxels * sizeof *x->values);
-    if (!done || !found) return done;
+    if (!sequence_has_numbers(x->sequence, frame, x->name)) return true;
     *present = true;
     vdb_sample_desc desc = {.path = x->files[frame],
                             .grid = x->name,
@@ -139,7 +133,8 @@ char *roil_export_raw(const roil_export *desc) {
     char *text = NULL;
     if (s) {
         field_grid *grid = sequence_grid(s);
-        exporter x = {.grid = grid, .name = desc->grid ? desc->grid : "density", .desc = desc};
+        exporter x = {
+            .sequence = s, .grid = grid, .name = desc->grid ? desc->grid : "density", .desc = desc};
         x.file_count = sequence_files(s, &x.files);
         x.voxels = (size_t)grid->size[0] * grid->size[1] * grid->size[2];
         budget_part *part = budget_take(

@@ -445,6 +445,13 @@ uint32_t sequence_frame_count(const sequence *s) {
     return s->data->frame_count;
 }
 
+bool sequence_has_numbers(const sequence *s, size_t file, const char *grid) {
+    const vdb_info *info = s->data->raw ? NULL : &s->data->infos[file];
+    for (size_t i = 0; info && i < info->count; i++)
+        if (strcmp(info->grids[i].name, grid) == 0 && info->grids[i].components == 1) return true;
+    return false;
+}
+
 double sequence_duration(const sequence *s) {
     return (double)s->data->frame_count / s->data->desc.fps;
 }

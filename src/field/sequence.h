@@ -58,6 +58,8 @@ int sequence_channel(sequence *s, const char *name, int *components);
 field_grid *sequence_grid(sequence *s); // its destroy frees all but `memory`, and must be called
 bool sequence_is_sparse(const sequence *s);
 uint32_t sequence_frame_count(const sequence *s);
+// Whether a file has a grid of numbers of that very name, as it said when the sequence was made.
+bool sequence_has_numbers(const sequence *s, size_t file, const char *grid);
 double sequence_duration(const sequence *s); // seconds at speed 1
 // Every file it reads, for a reload to watch; returns the count.
 size_t sequence_files(const sequence *s, const char *const **out);
