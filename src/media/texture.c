@@ -1,14 +1,12 @@
 #include "media/texture.h"
 #include "base/error.h"
-#include "base/file.h"
 #include "base/isolate.h"
 #include "base/log.h"
 #include "media/png.h"
 #include <string.h>
 #include <turbojpeg.h>
-#include <unistd.h>
 
-enum { FILE_BYTES_MAX = 1 << 30, TEXEL = 4 };
+enum { TEXEL = 4 };
 
 // ---- decoding ---------------------------------------------------------------------------------
 
@@ -82,34 +80,33 @@ bool texture_work(const isolate_call *call) {
     return done;
 }
 
-static bool run(isolate_job *job, arena *memory, mesh_texture *out) {
-    isolate_result r;
+static bool take(const char *name, isolate_result *r, arena *memory, mesh_texture *out) {
     uint32_t head[2] = {0};
-    job->kind = "texture";
-    job->limits = picture_limits_of_job(&picture_limits_default, job->size);
-    if (!isolate_run(job, &r)) return false;
-    if (r.size >= sizeof head) memcpy(head, r.data, sizeof head);
-    bool whole =
-        picture_limits_allow(&picture_limits_default, job->name, head[0], head[1], TEXEL) &&
-        r.size == sizeof head + (size_t)head[0] * head[1] * TEXEL;
+    if (r->size >= sizeof head) memcpy(head, r->data, sizeof head);
+    bool whole = picture_limits_allow(&picture_limits_default, name, head[0], head[1], TEXEL) &&
+                 r->size == sizeof head + (size_t)head[0] * head[1] * TEXEL;
     if (whole)
         *out = (mesh_texture){
             head[0], head[1],
-            arena_copy(memory, (const char *)r.data + sizeof head, r.size - sizeof head)};
-    isolate_free(&r);
-    return whole || err_set("%s: damaged: its reader returned nonsense", job->name);
+            arena_copy(memory, (const char *)r->data + sizeof head, r->size - sizeof head)};
+    isolate_free(r);
+    return whole || err_set("%s: damaged: its reader returned nonsense", name);
 }
 
 bool texture_read_inside(const char *root, const char *path, arena *memory, mesh_texture *out) {
-    size_t size;
-    int file = file_open_inside(root, path, FILE_BYTES_MAX, &size);
-    if (file < 0) return false;
-    bool done = run(&(isolate_job){.name = path, .file = file, .size = size}, memory, out);
-    close(file);
-    return done;
+    isolate_result r;
+    return picture_run_job(root, path, &picture_limits_default, (isolate_job){.kind = "texture"},
+                           &r) &&
+           take(path, &r, memory, out);
 }
 
 bool texture_read_memory(const void *data, size_t size, const char *name, arena *memory,
                          mesh_texture *out) {
-    return run(&(isolate_job){.name = name, .bytes = size ? data : "", .size = size}, memory, out);
+    const isolate_job job = {.kind = "texture",
+                             .name = name,
+                             .bytes = size ? data : "",
+                             .size = size,
+                             .limits = picture_limits_of_job(&picture_limits_default, size)};
+    isolate_result r;
+    return isolate_run(&job, &r) && take(name, &r, memory, out);
 }
