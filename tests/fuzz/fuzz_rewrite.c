@@ -1,6 +1,6 @@
-// SPIR-V as roil itself reads and rewrites it, without a library: any words, such as a damaged
-// cache could hold, give a module whose instructions are whole, or are left as they are. The seeds
-// are modules of small shaders.
+// SPIR-V as roil itself reads and rewrites it: any words, such as a damaged cache could hold, give
+// a module whose instructions are whole, or are left as they are; what passes the gate and is valid
+// is described through SPIRV-Cross. The seeds are modules of small shaders.
 #include "base/error.h"
 #include "base/memory.h"
 #include "gpu/spirv.h"
@@ -64,6 +64,24 @@ static void clamp(const uint32_t *code, size_t count) {
     mem_free(clamped);
 }
 
+// What has also been found valid is described, of whatever stage it is taken for, or refused.
+static void reflect(const uint32_t *code, size_t count) {
+    spirv whole = {.words = (uint32_t *)code, .count = count};
+    if (!spirv_gate(&whole) || !spirv_validate(&whole)) return;
+    for (int stage = SHADER_COMPUTE; stage <= SHADER_FRAGMENT; stage++) {
+        spirv copy = {.words = mem_copy(code, count * 4), .count = count};
+        arena memory = {0};
+        shader_binary out;
+        err_clear();
+        bool done = spirv_reflect(&copy, (shader_stage)stage, &memory, &out);
+        if (done ? out.slot_count > GPU_MAX_SLOTS || !is_whole(copy.words, copy.count)
+                 : !err_get()[0])
+            abort();
+        arena_free(&memory);
+        mem_free(copy.words);
+    }
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     size_t count = size / 4, hoisted_size, hidden_size;
     uint32_t *code = malloc(count ? count * 4 : 1);
@@ -72,6 +90,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (count > SPIRV_BOUND && code[SPIRV_BOUND] > MOST_IDS) code[SPIRV_BOUND] %= MOST_IDS;
     clean(code, count);
     clamp(code, count);
+    reflect(code, count);
     uint32_t *hoisted = rewrite(vk_hoist_uniforms, code, count * 4, &hoisted_size);
     uint32_t *hidden = rewrite(vk_hide_uniforms, code, count * 4, &hidden_size);
     mem_free(hidden);
