@@ -1,38 +1,5 @@
 // Bodies that move through still smoke: what they push, cover and leave.
-#include "sim_bodies_test.h"
-
-typedef struct seen { // over cells of air
-    double least, most, smoke, mass, fastest;
-    size_t count;
-} seen;
-
-// A step that keeps the moments, and what these come to where `wanted` says so. Smoke is a part of
-// the air, which is pressed together before a body.
-static seen look(sim_world *w, bool (*wanted)(const float p[3], const void *user),
-                 const void *user) {
-    gpu_test_ok(gpu_frame_begin(w->device));
-    gpu_test_ok(lbm_step(w->lattice, w->device, &w->numbers, true));
-    gpu_test_ok(gpu_frame_end(w->device));
-    uint16_t(*moments)[8] = mem_alloc(w->cells * sizeof *moments);
-    gpu_test_ok(gpu_buffer_read(w->device, lbm_moments(w->lattice, 0), 0, moments,
-                                w->cells * sizeof *moments));
-    seen s = {.least = 1e9, .most = -1e9};
-    for (size_t i = 0; i < w->cells; i++) {
-        float p[3], v[8];
-        sim_centre(w, i, p);
-        for (int k = 0; k < 8; k++) v[k] = half_to_float(moments[i][k]);
-        if (v[7] != 0 || (wanted && !wanted(p, user))) continue;
-        double smoke = (double)v[4] / (1 + (double)v[3]);
-        s.least = fmin(s.least, smoke);
-        s.most = fmax(s.most, smoke);
-        s.smoke += (double)v[4];
-        s.mass += 1 + (double)v[3];
-        s.fastest = fmax(s.fastest, (double)fmaxf(fabsf(v[0]), fmaxf(fabsf(v[1]), fabsf(v[2]))));
-        s.count++;
-    }
-    mem_free(moments);
-    return s;
-}
+#include "sim_smoke_test.h"
 
 static void step_with(sim_world *w, sim_bodies *b, int (*fill)(const float p[3], const void *user),
                       const void *user) {
@@ -44,31 +11,8 @@ static void step_with(sim_world *w, sim_bodies *b, int (*fill)(const float p[3],
 
 // ---- a ball -----------------------------------------------------------------------------------
 
-typedef struct ball {
-    double centre[3], radius;
-} ball;
-
-static int in_ball(const float p[3], const void *user) {
-    const ball *b = user;
-    double sum = 0;
-    for (int k = 0; k < 3; k++)
-        sum += ((double)p[k] - b->centre[k]) * ((double)p[k] - b->centre[k]);
-    return sum < b->radius * b->radius;
-}
-
 static int in_last_ball(const float p[3], const void *user) {
     return in_ball(p, user) ? SIM_BODIES : 0;
-}
-
-static bool away_from_ball(const float p[3], const void *user) {
-    ball wide = *(const ball *)user;
-    wide.radius += 2;
-    return !in_ball(p, &wide);
-}
-
-static void smoke(int x, int y, int z, sim_cell *cell) {
-    (void)x, (void)y, (void)z;
-    cell->scalar[0] = 1;
 }
 
 // A ball speeds up and flies through smoke that is the same everywhere: so it stays, within `near`
@@ -118,109 +62,6 @@ static void a_ball_leaves_no_trail(void **state) {
     desc.precision = LBM_F16;
     desc.lanes = 2;
     fly(*state, &desc, 0.03, 0.025);
-}
-
-// ---- a ball in a stream -----------------------------------------------------------------------
-
-static const float wind = 0.05f;
-
-static bool beside_ball(const float p[3], const void *user) {
-    return !away_from_ball(p, user);
-}
-
-static void smoke_in_wind(int x, int y, int z, sim_cell *cell) {
-    smoke(x, y, z, cell);
-    cell->u[0] = (double)wind;
-}
-
-// A ball that stands still.
-static void stand(sim_world *w, sim_bodies *b, const ball *at) {
-    sim_bodies_open(w, b);
-    gpu_test_ok(gpu_frame_begin(w->device));
-    sim_bodies_set(w, b, in_ball, at);
-    gpu_test_ok(gpu_frame_end(w->device));
-}
-
-// Smoke that is the same everywhere flows past a ball: so it stays, within `near` beside the ball.
-static void flow(gpu *g, lbm_set set, lbm_precision precision, double near) {
-    sim_world w;
-    sim_bodies b;
-    const ball at = {{14.2, 14.1, 11.7}, 5};
-    sim_open(&w, g,
-             &(lbm_desc){.size = {40, 28, 24},
-                         .set = set,
-                         .scalar_set = set == LBM_D3Q27 ? LBM_SCALAR_D3Q27 : LBM_SCALAR_D3Q7,
-                         .collision = LBM_CENTRAL_MOMENTS,
-                         .precision = precision,
-                         .faces = {LBM_INFLOW, LBM_OPEN},
-                         .scalars = 1,
-                         .bodies = true});
-    w.numbers.tau = 0.52f;
-    w.numbers.scalar_tau[0] = 0.52f;
-    w.numbers.ambient[0] = w.numbers.inflow_scalar[0][0] = 1;
-    w.numbers.inflow[0][0] = w.numbers.inflow[1][0] = wind;
-    sim_set_state(&w, smoke_in_wind);
-    stand(&w, &b, &at);
-    sim_run(&w, 1200);
-    seen by = look(&w, beside_ball, &at);
-    print_message("stream, %s, %d bits: smoke beside the ball %.4f to %.4f, speed %.3f\n",
-                  set == LBM_D3Q27 ? "D3Q27" : "D3Q19", precision == LBM_F16 ? 16 : 32, by.least,
-                  by.most, by.fastest);
-    assert_true(by.least > 1 - near && by.most < 1 + near);
-    assert_true(by.fastest > (double)wind);
-    sim_bodies_close(&w, &b);
-    sim_close(&w);
-}
-
-static void even_smoke_stays_even_beside_a_ball(void **state) {
-    flow(*state, LBM_D3Q19, LBM_F32, 0.02);
-    flow(*state, LBM_D3Q19, LBM_F16, 0.04); // halves round small changes away
-    flow(*state, LBM_D3Q27, LBM_F32, 0.03);
-}
-
-static void smoke_in_half(int x, int y, int z, sim_cell *cell) {
-    (void)y, (void)z;
-    cell->scalar[0] = x < 8;
-    cell->u[0] = (double)wind;
-}
-
-// Of all that is in the lattice: what is on its way back from solids lies in their cells.
-static double sum_of_smoke(sim_world *w) {
-    double sum = 0;
-    sim_read(w);
-    for (size_t i = 0; i < w->cells; i++) sum += w->state[i].scalar[0];
-    return sum;
-}
-
-// A front of smoke goes round and round past a ball between walls.
-static void a_still_ball_keeps_smoke(void **state) {
-    for (int half = 0; half < 2; half++) {
-        sim_world w;
-        sim_bodies b;
-        const ball at = {{12.2, 8.1, 5.7}, 4}; // reaches into a wall
-        sim_open(&w, *state,
-                 &(lbm_desc){.size = {32, 16, 16},
-                             .collision = LBM_CENTRAL_MOMENTS,
-                             .precision = half ? LBM_F16 : LBM_F32,
-                             .faces = {[4] = LBM_WALL, LBM_WALL},
-                             .scalars = 1,
-                             .bodies = true});
-        w.numbers.tau = 0.51f;
-        w.numbers.scalar_tau[0] = 0.501f;
-        w.numbers.acceleration[0] = 1e-5f;
-        sim_set_state(&w, smoke_in_half);
-        stand(&w, &b, &at);
-        double before = sum_of_smoke(&w);
-        sim_run(&w, 600);
-        double change = sum_of_smoke(&w) / before - 1;
-        seen all = look(&w, NULL, NULL);
-        print_message("front, %d bits: %.1e of the smoke more, from %.4f to %.4f\n", half ? 16 : 32,
-                      change, all.least, all.most);
-        assert_true(fabs(change) < (half ? 1e-3 : 1e-6));
-        assert_true(all.least >= 0 && all.most < 1.3);
-        sim_bodies_close(&w, &b);
-        sim_close(&w);
-    }
 }
 
 // ---- a thin plate -----------------------------------------------------------------------------
@@ -301,8 +142,6 @@ static void a_plate_faster_than_air_may_be_bursts_nothing(void **state) {
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ball_leaves_no_trail),
-        cmocka_unit_test(even_smoke_stays_even_beside_a_ball),
-        cmocka_unit_test(a_still_ball_keeps_smoke),
         cmocka_unit_test(nothing_leaks_through_a_thin_fast_plate),
         cmocka_unit_test(a_plate_faster_than_air_may_be_bursts_nothing),
     };

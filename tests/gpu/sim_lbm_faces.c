@@ -42,17 +42,18 @@ static double reflected(gpu *g, int axis, lbm_set set, lbm_face face, double wid
 }
 
 static void open_faces_send_little_back(void **state) {
-    static const double widths[] = {3, 6, 12, 24};
+    static const double widths[] = {3, 6, 12, 24}, bounds[] = {0.02, 0.035, 0.06, 0.06};
     for (int i = 0; i < 4; i++) {
         double open = reflected(*state, 0, LBM_D3Q19, LBM_OPEN, widths[i]);
         print_message("pulse of width %.0f: %.2f %% come back\n", widths[i], 100 * open);
-        assert_true(open < 0.06);
+        assert_true(open < bounds[i]);
     }
     for (int axis = 1; axis < 3; axis++)
-        assert_true(reflected(*state, axis, axis == 1 ? LBM_D3Q27 : LBM_D3Q19, LBM_OPEN, 6) < 0.06);
+        assert_true(reflected(*state, axis, axis == 1 ? LBM_D3Q27 : LBM_D3Q19, LBM_OPEN, 6) <
+                    0.035);
     double wall = reflected(*state, 0, LBM_D3Q19, LBM_WALL, 12);
     print_message("from a wall: %.2f %%\n", 100 * wall);
-    assert_true(wall > 0.5);
+    assert_true(wall > 0.75);
 }
 
 // ---- slip -------------------------------------------------------------------------------------
@@ -103,7 +104,7 @@ static void a_mirror_is_the_middle_of_a_channel(void **state) {
         error = fmax(error, fabs(seen - wanted) / 0.05);
     }
     print_message("half a channel: %.4f %%\n", 100 * error);
-    assert_true(error < 0.002);
+    assert_true(error < 7e-5);
     sim_close(&w);
 }
 
@@ -148,8 +149,8 @@ static void what_flows_in_flows_out(void **state) {
     print_message("duct: %.5f in, %.5f out, parabola within %.2f %%, density off by %.1e, %.4f of "
                   "the scalar\n",
                   in, out, 100 * error, outside, carried);
-    assert_true(fabs(in / out - 1) < 0.005 && error < 0.05 && fabs(outside) < 1e-3);
-    assert_true(fabs(carried - 1) < 0.01);
+    assert_true(fabs(in / out - 1) < 1e-4 && error < 0.05 && fabs(outside) < 1e-3);
+    assert_true(fabs(carried - 1) < 0.008);
     sim_close(&w);
 }
 

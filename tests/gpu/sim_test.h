@@ -242,3 +242,17 @@ static inline void sim_read(sim_world *w) {
     }
     mem_free(m.bytes);
 }
+
+// ---- a state for many tests -------------------------------------------------------------------
+
+static const double swirl_speed = 0.05;
+
+// Around 16 cells along each axis: a flow in all directions, sound, and a scalar.
+static inline void swirl(int x, int y, int z, sim_cell *cell) {
+    const double k = 2 * 3.14159265358979 / 16;
+    cell->u[0] = swirl_speed * (sin(k * y) + cos(k * z));
+    cell->u[1] = swirl_speed * (sin(k * z) + cos(k * x));
+    cell->u[2] = swirl_speed * (sin(k * x) + cos(k * y));
+    cell->density = 1 + 0.01 * sin(k * (x + 2 * y - z));
+    cell->scalar[0] = 1 + sin(k * x) * cos(k * z);
+}
