@@ -3,8 +3,9 @@
 --
 --   roil render effects/figure.lua --frames 54 -o figure.png
 --   roil render effects/figure.lua --frames 54 --set wind=0.2 --set lift=3 -o ghost.png   -- it rises off the shoulders
+--   roil render effects/figure.lua --frames 54 --set rest=1.04 -o burst.png                -- it is blown off on all sides
 --
--- Play with `wind`, `lift`, `uneven` (how rough the body is), `wisps` and `presence`, a curve.
+-- Play with `wind`, `lift`, `rest`, `uneven` (how rough the body is), `wisps` and `presence`, a curve.
 
 local fx = effect { name = "figure", fps = 24, frames = 192 }
 
@@ -12,6 +13,7 @@ local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along 
 local density = param { "density", 80, min = 0, max = 200, unit = "1/m", help = "how thick the body is; what it leaves is much thinner" }
 local wind    = param { "wind", 3, min = 0, max = 5, unit = "m/s", help = "against which the runner runs" }
 local lift    = param { "lift", 0.8, min = -5, max = 10, unit = "m/s^2", help = "how fast the smoke's heat makes it rise" }
+local rest    = param { "rest", 1, min = 1, max = 1.05, help = "density at which the air in the body is held, of that around: above 1 the body blows out air; 1: as the wind has it" }
 local uneven  = param { "uneven", 0.6, min = 0, max = 1, help = "how patchy what leaves the body is, and how rough its skin" }
 local eaten   = param { "eaten", 0.6, min = 0, max = 2, help = "how much noise finer than a cell eats from the smoke" }
 local folded  = param { "folded", 0.1, min = 0, max = 0.2, unit = "m", help = "how far eddies finer than a cell carry the smoke" }
@@ -29,12 +31,14 @@ local air = lbm {
   boundary = { right = "inflow", left = "open", front = "open", back = "open", top = "open", bottom = "wall" },
   wind = vec(-wind, 0, 0), buoyancy_heat = lift, cooling_rate = 0.3, dissolve_rate = 0.6, speed = 4,
 }
+local stiffness = 1.2 * (4.8 / cells(192) / air.time_step) ^ 2 / 3 -- Pa of a density of 1 on this lattice
 local runner = mesh { "data/figure.obj" }
 local grain  = worley { frequency = 5, octaves = 2, speed = 1.5, drift = {-0.4, 0, 0}, seed = 4 }:tile()
 air:source {
   runner, rule = "solid", temperature = 1,
   density = mix(1, smoothstep(0.3, 0.6, grain), uneven) * mix(0.35, 1, smoothstep(0.3, -0.2, position.x)),
   velocity = vec(-0.45 * wind, 0, 0) + curl { frequency = 1.5, speed = 2, seed = 6 },
+  pressure = rest:get() > 1 and (rest - 1) * stiffness or nil,
 }
 
 -- What is finer than a cell is not in the air. Noise stands for it, carried along by the air, and eats at
