@@ -2,6 +2,7 @@
 #include "base/budget.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"
 #include "base/worker.h"
@@ -107,14 +108,24 @@ static bool complete(effect *e) {
     return true;
 }
 
+// Particles that nothing draws show nothing, and nothing else tells their author why.
+static bool compile_graph(effect *e) {
+    if (!graph_compile(e->graph, ANY_SIZE, ANY_SIZE)) return false;
+    for (size_t i = 0; i < e->pass_count && !e->unseen; i++)
+        if (pass_get_simulation(e->passes[i]) && !effect_runs(e, e->passes[i]))
+            log_write(LOG_WARNING, "%s: nothing draws or reads '%s', so it is left out", e->file,
+                      pass_label(e->passes[i]));
+    return true;
+}
+
 bool effect_check(effect *e) {
     return check_reference(e) && add_outputs(e) && complete(e) && make_bvh(e) &&
-           worker_each(e->pass_count, check_one, e) && graph_compile(e->graph, ANY_SIZE, ANY_SIZE);
+           worker_each(e->pass_count, check_one, e) && compile_graph(e);
 }
 
 bool effect_compile(effect *e) {
     if (!check_reference(e) || !add_outputs(e) || !complete(e) || !make_bvh(e) ||
-        !graph_compile(e->graph, ANY_SIZE, ANY_SIZE) || !worker_each(e->pass_count, build_one, e))
+        !compile_graph(e) || !worker_each(e->pass_count, build_one, e))
         return false;
     e->width = e->height = ANY_SIZE;
     e->compiled = true;

@@ -52,6 +52,12 @@ class Effects(Case):
                                ("2 * worley { frequency = 1 }", "because of 'worley'")):
             self.refuses(PASSES + march % density, ["fills all of space", cause])
 
+    def test_particles_that_nothing_draws_are_told(self):
+        self.write("puff.lua", PUFF.replace("return fx", "local sparks = particles { rate = 10 }\nreturn fx"))
+        done = self.run_program("check", "puff.lua")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("puff.lua: nothing draws or reads 'particles'", done.stderr)
+
     def test_unknown_global_gets_a_suggestion(self):
         self.refuses(PASSES + "local f = perlinn { frequency = 2 }\n",
                      ["effect.lua:2:", "perlinn", "did you mean 'perlin'?"])
