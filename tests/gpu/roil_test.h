@@ -84,6 +84,7 @@ static inline int srgb(float linear) {
 static inline int test_run_group(const char *name, const struct CMUnitTest *tests, size_t count) {
     gpu_test_keep_driver();
     gpu_test_need_device();
+    if (getenv("ROIL_TEST")) cmocka_set_test_filter(getenv("ROIL_TEST"));
     int failed = _cmocka_run_group_tests(name, tests, count, test_open, test_close);
     if (test_messages > 0) fprintf(stderr, "%s: validation messages were given\n", name);
     return failed + (test_messages > 0);
