@@ -10,6 +10,7 @@ uniform int shadow_samples;       //= 1 [0, 64] : rays to each light: 1 goes to 
 uniform int sky_samples;          //= 0 [0, 64] : rays to the sky, which find what stands before it; 0: all of it is seen
 uniform float haze;               //= 0 [0, 10] 1/m : how fast distance fades to the colour of the horizon
 uniform float sky_alpha;          //= 1 [0, 1] : opacity of the sky; 0 for pictures to be laid over others
+uniform float max_distance;       //= 0 [0, inf] m : from the camera to the middle of an instance (of `instances`) beyond which it is left out, while its shadow stays; 0: none is
 uniform float lod;                //= 0 [0, 64] px : how far a simplified mesh may be off in the picture; 0: all are in full
 //@ option lamps_by = all {all, tiles} : which lamps of point_lights a pixel looks at: all of them, or (tiles) those that reach into what the eye sees of 16 by 16 pixels, which are found out first
 layout(location = 0) out vec4 color;   //= output rgba16f : the lit scene, premultiplied

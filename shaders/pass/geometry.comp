@@ -7,7 +7,9 @@
 #include "lib/frame.glsl"
 #include "lib/surface.glsl"
 uniform uint shown[8];              // a bit for each mesh, and for all instances of an object
+uniform uint placed[8];             // the same of those that are such instances
 uniform bool holes;                 // textures may be clear in places
+uniform float max_distance;         //= 0 [0, inf] m : from the camera to the middle of an instance (of `instances`) beyond which it is left out, while its shadow stays; 0: none is
 uniform float lod;                  //= 0 [0, 64] px : how far a simplified mesh may be off in the picture, when drawn; 0: all are in full, as rays meet them
 writeonly uniform image2D albedo;   //= output rgba16f : base colour of the surface; alpha 0 where nothing is
 writeonly uniform image2D normal;   //= output rgba16f : its normal in the world, towards the viewer
@@ -19,9 +21,14 @@ bool is_shown(uint mesh) {
     return (shown[mesh >> 5] >> (mesh & 31u) & 1u) != 0u;
 }
 
+bool is_too_far(bvh_instance item) {
+    if (max_distance == 0.0 || (placed[item.what.x >> 5] >> (item.what.x & 31u) & 1u) == 0u) return false;
+    return distance(0.5 * (item.low + item.high), frame.eye.xyz) > max_distance;
+}
+
 // One of what is placed.
 void meet(uint item, int outer_top, inout bvh_ray ray, inout surface_hit hit) {
-    if (!is_shown(bvh_instances[item].what.x)) return;
+    if (!is_shown(bvh_instances[item].what.x) || is_too_far(bvh_instances[item])) return;
     if (!bvh_meets_box(ray, bvh_instances[item].low, bvh_instances[item].high)) return;
     bvh_ray inner = bvh_to_mesh(ray, item);
     int before = hit.triangle;

@@ -44,8 +44,9 @@ void drawn_destroy(drawn *d);  // NULL is fine
 
 // Chooses what is drawn in each view. `views`: storage buffer of view_entry (shared.h), of which
 // `count` are used; NULL: the camera's of this frame, in a picture of `height` pixels. `lod`: how
-// far (pixels) a simplified mesh may be off; 0: all is drawn in full.
-bool drawn_cull(drawn *d, gpu_buffer *views, size_t count, uint32_t height, float lod);
+// far (pixels) a simplified mesh may be off; 0: all is drawn in full. `most`: instances whose
+// middle is farther (m) from the eye of a view are left out; 0: none for that.
+bool drawn_cull(drawn *d, gpu_buffer *views, size_t count, uint32_t height, float lod, float most);
 
 // Draws `count` of those views, from `first` on, to the target, whose pipeline and draws are set
 // here. `places`: x, y, width, height of each in the target; NULL: each has all of it.

@@ -156,7 +156,8 @@ static bool place(drawn *d, drawn_body *body) {
 
 // ---- choosing ---------------------------------------------------------------------------------
 
-static void fill_block(const drawn *d, const drawn_body *body, drawn_step step, float lod) {
+static void fill_block(const drawn *d, const drawn_body *body, drawn_step step, float lod,
+                       float most) {
     const shader_binary *binary = &d->binaries[step];
     unsigned char *block = d->blocks[step];
     mat4 matrix = GLM_MAT4_IDENTITY_INIT;
@@ -171,9 +172,12 @@ static void fill_block(const drawn *d, const drawn_body *body, drawn_step step, 
     pass_write_member(binary, block, "place", matrix, sizeof matrix);
     pass_write_member(binary, block, "scale", &scale, sizeof scale);
     pass_write_member(binary, block, "lod", &lod, sizeof lod);
+    if (!body->instances) most = 0;
+    pass_write_member(binary, block, "most", &most, sizeof most);
 }
 
-static bool run(drawn *d, const drawn_body *body, drawn_step step, uint32_t views, float lod) {
+static bool run(drawn *d, const drawn_body *body, drawn_step step, uint32_t views, float lod,
+                float most) {
     const pass_override overrides[] = {
         {"Views", {.buffer = d->views}},
         {"Instances", {.buffer = drawn_entries(body)}},
@@ -189,7 +193,7 @@ static bool run(drawn *d, const drawn_body *body, drawn_step step, uint32_t view
     gpu_binding bindings[GPU_MAX_SLOTS];
     gpu_dispatch_desc desc = {
         .pipeline = d->pipelines[step], .bindings = bindings, .threads = {threads, views, 1}};
-    fill_block(d, body, step, lod);
+    fill_block(d, body, step, lod, most);
     return pass_bind(d->p, &d->binaries[step], d->blocks[step], overrides, COUNT_OF(overrides),
                      bindings, &desc.binding_count) &&
            gpu_dispatch(d->p->host->device, &desc);
@@ -208,7 +212,7 @@ static bool write_camera(drawn *d, uint32_t height) {
     return gpu_buffer_write(d->p->host->device, d->camera, 0, &view, sizeof view);
 }
 
-bool drawn_cull(drawn *d, gpu_buffer *views, size_t count, uint32_t height, float lod) {
+bool drawn_cull(drawn *d, gpu_buffer *views, size_t count, uint32_t height, float lod, float most) {
     d->views = views;
     d->levels = lod > 0;
     bool done = (views || write_camera(d, height)) && fit_views(d, count);
@@ -221,6 +225,6 @@ bool drawn_cull(drawn *d, gpu_buffer *views, size_t count, uint32_t height, floa
     // Step by step, so that bodies need not wait for each other.
     for (int step = 0; step < DRAWN_STEPS; step++)
         for (size_t i = 0; i < d->body_count && done; i++)
-            done = run(d, &d->bodies[i], (drawn_step)step, (uint32_t)count, lod);
+            done = run(d, &d->bodies[i], (drawn_step)step, (uint32_t)count, lod, most);
     return done || err_prefix("%s: ", d->p->label);
 }

@@ -99,6 +99,7 @@ bool forward_record(pass *p) {
     uint32_t size[3];
     picture_size(p, size);
     return make(p, stages) && pass_prepare(p) &&
-           drawn_cull(s->drawn, NULL, 1, size[1], pass_evaluate(p, "lod")) &&
+           drawn_cull(s->drawn, NULL, 1, size[1], pass_evaluate(p, "lod"),
+                      pass_evaluate(p, "max_distance")) &&
            drawn_record(s->drawn, stages, &target, 0, 1, NULL) && draw_sky(p, &target);
 }

@@ -129,11 +129,15 @@ void geometry_destroy(pass *p) {
 
 bool geometry_fill(pass *p, const shader_binary *binary, unsigned char *block) {
     uint32_t shown[SCENE_BVH_MAX_MESHES / 32], padded[SCENE_BVH_MAX_MESHES / 32][4] = {0};
+    uint32_t placed[SCENE_BVH_MAX_MESHES / 32];
     int32_t holes = scene_bvh_has_holes(p->host->bvh);
     scene_bvh_choose(p->host->bvh, p->meshes, p->mesh_count, p->instances, p->instances_count,
                      shown);
     for (size_t i = 0; i < COUNT_OF(shown); i++) padded[i][0] = shown[i]; // std140
     pass_write_member(binary, block, "shown", padded, sizeof padded);
+    scene_bvh_choose(p->host->bvh, NULL, 0, p->instances, p->instances_count, placed);
+    for (size_t i = 0; i < COUNT_OF(placed); i++) padded[i][0] = placed[i];
+    pass_write_member(binary, block, "placed", padded, sizeof padded);
     pass_write_member(binary, block, "holes", &holes, sizeof holes);
     return true;
 }
@@ -158,6 +162,7 @@ bool geometry_record(pass *p) {
     uint32_t size[3];
     graph_get_size(g, s->z, size);
     return build_variant(p, variant) && pass_prepare(p) &&
-           drawn_cull(s->drawn, NULL, 1, size[1], pass_evaluate(p, "lod")) &&
+           drawn_cull(s->drawn, NULL, 1, size[1], pass_evaluate(p, "lod"),
+                      pass_evaluate(p, "max_distance")) &&
            drawn_record(s->drawn, &s->stages[variant], &target, 0, 1, NULL);
 }

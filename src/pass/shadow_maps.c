@@ -310,7 +310,7 @@ static bool draw(pass *p) {
     if (!place_views_drawn(p) || !gpu_draw_all(p->host->device, &target)) return false;
     if (s->views == 0) return true;
     if (!drawn_cull(s->drawn, s->placed, s->views, p->host->frame->size.v[1],
-                    pass_evaluate(p, "lod")))
+                    pass_evaluate(p, "lod"), 0))
         return false;
     target.clear = false;
     return drawn_record(s->drawn, &s->stages, &target, 0, s->views,

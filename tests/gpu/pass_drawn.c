@@ -173,12 +173,16 @@ static void make_views(stand *s) {
     gpu_test_ok(s->views && gpu_buffer_write(s->w.host.device, s->views, 0, views, sizeof views));
 }
 
-static void cull(stand *s, float lod) {
+static void cull_within(stand *s, float lod, float most) {
     gpu *device = s->w.host.device;
     gpu_test_ok(gpu_frame_begin(device));
     gpu_test_ok(scene_instances_upload(s->instances, device));
-    gpu_test_ok(drawn_cull(s->d, s->views, VIEWS, HEIGHT, lod));
+    gpu_test_ok(drawn_cull(s->d, s->views, VIEWS, HEIGHT, lod, most));
     gpu_test_ok(gpu_frame_end(device));
+}
+
+static void cull(stand *s, float lod) {
+    cull_within(s, lod, 0);
 }
 
 // Draws what was chosen for a view, seen by the camera whatever view that is.
@@ -317,6 +321,61 @@ static void draws_do_not_grow_with_instances(void **state) {
     assert_int_equal(draws[0], draws[1]);
 }
 
+// Of an instance in the world; returns the radius around it, in the mesh's own units.
+static float find_middle(mat4 place, const struct instance_entry *e, const mesh_data *mesh,
+                         mat4 matrix, vec3 out) {
+    scene_instances_matrix(e, matrix);
+    glm_mat4_mul(place, matrix, matrix);
+    const float3 *low = &mesh->box.min, *high = &mesh->box.max;
+    vec3 middle = {(low->x + high->x) / 2, (low->y + high->y) / 2, (low->z + high->z) / 2};
+    glm_mat4_mulv3(matrix, middle, 1, out);
+    return glm_vec3_distance(middle, (vec3){high->x, high->y, high->z});
+}
+
+// What is farther than it may be is left out, of instances alone, and nothing else.
+static void far_instances_are_left_out(void **state) {
+    stand s;
+    open_stand(&s, *state, 3000, 12);
+    make_views(&s);
+    const float most[] = {0.5f, 6, 11, 1000};
+    const uint32_t placed = 3000 - 3000 / 11 - (3000 % 11 > 5);
+    const struct instance_entry *entries = scene_instances_entries(s.instances);
+    uint32_t before = 0;
+    for (size_t m = 0; m < COUNT_OF(most); m++) {
+        cull_within(&s, 0, most[m]);
+        const drawn_body *body = instances_of(&s);
+        mat4 place, matrix;
+        float tint[4];
+        gpu_test_ok(scene_instances_place(s.instances, &s.w.context, place, tint));
+        uint32_t *list, wanted[2] = {0}; // surely, and by rounding
+        shown all = read_shown(&s, ALL, &list);
+        for (uint32_t i = 0; i < 3000; i++) {
+            if (entries[i].kind.v[0] == INSTANCE_HIDDEN) continue;
+            vec3 middle;
+            find_middle(place, &entries[i], &body->kinds[entries[i].kind.v[0]]->data, matrix,
+                        middle);
+            float far = glm_vec3_distance(middle, (vec3){0, -5, 0});
+            wanted[0] += far < most[m] * 0.9999f;
+            wanted[1] += far < most[m] * 1.0001f;
+        }
+        if (all.total < wanted[0] || all.total > wanted[1])
+            fail_msg("%u are nearer than %g m, %u are drawn", wanted[0], (double)most[m],
+                     all.total);
+        assert_true(all.total > before || m == 0);
+        before = all.total;
+        mem_free(list);
+        for (size_t i = 0; i < s.d->body_count; i++) { // the mesh beside them is always there
+            const drawn_body *alone = &s.d->bodies[i];
+            if (alone->instances) continue;
+            gpu_draw_indexed_command *commands = read_buffer(&s, alone->buffers[DRAWN_COMMANDS]);
+            assert_int_equal(commands[ALL * alone->command_count].instances, 1);
+            mem_free(commands);
+        }
+    }
+    assert_int_equal(before, placed);
+    close_stand(&s);
+}
+
 // The level of each is the coarsest whose error is within a pixel where the instance is nearest.
 static void levels_follow_distance(void **state) {
     stand s;
@@ -339,12 +398,7 @@ static void levels_follow_distance(void **state) {
                 &scene_instances_entries(s.instances)[all.list[1][level][i]];
             mat4 inner;
             vec3 centre;
-            scene_instances_matrix(e, inner);
-            glm_mat4_mul(place, inner, inner);
-            const float3 *low = &ball->box.min, *high = &ball->box.max;
-            vec3 middle = {(low->x + high->x) / 2, (low->y + high->y) / 2, (low->z + high->z) / 2};
-            float radius = glm_vec3_distance(middle, (vec3){high->x, high->y, high->z});
-            glm_mat4_mulv3(inner, middle, 1, centre);
+            float radius = find_middle(place, e, ball, inner, centre);
             float scale = glm_vec3_norm(inner[0]);
             float near = glm_vec3_distance(centre, (vec3){0, -5, 0}) - radius * scale;
             uint32_t wanted = 0;
@@ -444,6 +498,7 @@ int main(void) {
         cmocka_unit_test(culling_changes_no_pixel),
         cmocka_unit_test(lists_hold_each_once_and_in_order),
         cmocka_unit_test(draws_do_not_grow_with_instances),
+        cmocka_unit_test(far_instances_are_left_out),
         cmocka_unit_test(levels_follow_distance),
         cmocka_unit_test(an_instance_looks_as_a_mesh_does),
         cmocka_unit_test(a_mesh_is_seen_when_it_comes_into_view),

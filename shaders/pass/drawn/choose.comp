@@ -10,6 +10,7 @@ layout(std430) buffer DrawnCounts { uint counts[]; };
 uniform mat4 place;  // of all instances, to the world
 uniform float scale; // of that
 uniform float lod;   // pixels that a simplified mesh may be off
+uniform float most;  // from the eye to the middle of what is shown at all (m); 0: however far
 
 // Rounding of places and planes is less by far, and this more by far than could be left out.
 const float SLACK = 1.0 / 16384.0;
@@ -46,6 +47,7 @@ uint bucket_of(instance_entry entry, view_entry view) {
     vec4 sphere = buckets[first].sphere;
     vec3 within = turn_vector(entry.turn, sphere.xyz) * entry.place.w + entry.place.xyz;
     vec3 centre = (place * vec4(within, 1.0)).xyz;
+    if (most > 0.0 && distance(centre, view.eye.xyz) > most) return DRAWN_NONE;
     if (!is_seen(view.clip, centre, sphere.w * size)) return DRAWN_NONE;
     return first + level_of(first, view.eye, centre, sphere.w * size, size);
 }
