@@ -119,8 +119,8 @@ typedef struct vdb_entry { // of a file's metadata
     const char *text; // NULL: it is the number
     double number;
 } vdb_entry;
-// Sparse: only 8^3 blocks in which something is active are kept, as one value where it is the same
-// everywhere. The file is there whole or not at all.
+// Sparse: only 8^3 blocks in which something is active are kept, all as leaves. The file is there
+// whole or not at all.
 bool vdb_write_with(const char *path, const vdb_write_grid *grids, size_t count,
                     const vdb_entry *metadata, size_t entries);
 bool vdb_write(const char *path, const vdb_write_grid *grids, size_t count); // without metadata

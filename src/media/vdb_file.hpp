@@ -157,7 +157,7 @@ inline const vdb_layout_grid *tree_owner(const vdb_layout &l, const vdb_layout_g
 
 inline bool load(const vdb_layout &l, const vdb_layout_grid &g, GridBase::Ptr *out) {
     const vdb_layout_grid *owner = tree_owner(l, g);
-    if (!owner || !vdb_layout_check_tree(&l, owner)) return false;
+    if (!owner || !vdb_layout_check_tree(&l, owner, nullptr)) return false;
     *out = read_tree(l, *owner);
     return true;
 }

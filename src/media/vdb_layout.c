@@ -411,7 +411,8 @@ static bool check_leaf(walk *w) {
     return take(&w->c, 3 * sizeof(int32_t) + LEAF_VALUES / 8) ? true : fault(w, "voxels break off");
 }
 
-bool vdb_layout_check_tree(const vdb_layout *layout, const vdb_layout_grid *grid) {
+bool vdb_layout_check_tree(const vdb_layout *layout, const vdb_layout_grid *grid,
+                           uint64_t *leaves) {
     walk w = {.c = {layout->bytes, grid->end, grid->tree}, .value = grid->value};
     w.value_size = vdb_value_size(grid->value);
     w.half = grid->half && VALUES[grid->value].real;
@@ -419,6 +420,7 @@ bool vdb_layout_check_tree(const vdb_layout *layout, const vdb_layout_grid *grid
     w.compression = grid->compression;
     bool good = check_root(&w);
     for (uint64_t i = 0; good && i < w.leaves; i++) good = check_leaf(&w);
+    if (leaves) *leaves = w.leaves;
     if (good) return true;
     return err_set("%s: damaged VDB file: grid '%s', byte %zu: %s", layout->path, grid->name,
                    w.c.at, w.fault);

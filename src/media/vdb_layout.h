@@ -49,7 +49,8 @@ bool vdb_layout_read(const char *path, const void *bytes, size_t size, arena *me
                      vdb_layout *out);
 
 // The nodes and voxels of one grid whose value is not VDB_VALUE_OTHER and that has its own tree.
-bool vdb_layout_check_tree(const vdb_layout *layout, const vdb_layout_grid *grid);
+// `*leaves` (may be NULL): how many it has; what else is active lies in tiles.
+bool vdb_layout_check_tree(const vdb_layout *layout, const vdb_layout_grid *grid, uint64_t *leaves);
 
 size_t vdb_value_size(vdb_value value);    // bytes in memory
 int vdb_value_components(vdb_value value); // 1 or 3; 0 for VDB_VALUE_OTHER

@@ -1,5 +1,6 @@
 // Writing dense grids as sparse ones (vdb.h). Every block of 8^3 voxels becomes a leaf of its own,
-// side by side; leaves that hold nothing are dropped, those of one value become a tile.
+// side by side; those that hold nothing are dropped. What has one value stays a leaf, which takes
+// next to nothing compressed: Blender's Cycles takes a grid of tiles for an empty one.
 #include "media/vdb_file.hpp"
 #include <tbb/parallel_for.h>
 
@@ -76,13 +77,7 @@ template <class Grid> struct leaves {
 
     void hand_over(tree_type &tree) {
         for (auto &leaf : made) {
-            value_type value;
-            bool active;
-            if (!leaf) continue;
-            if (leaf->isConstant(value, active) && active)
-                tree.addTile(1, leaf->origin(), value, true);
-            else
-                tree.addLeaf(leaf.release());
+            if (leaf) tree.addLeaf(leaf.release());
         }
     }
 };
