@@ -1,4 +1,4 @@
-// Sequences: which files, which channels, which frame at which time.
+// Sequences: which files, in which box, and what of them is on the device.
 //
 // All frames share one box: the union of the active voxels of every readable grid of every file,
 // moved outward to the lattice of the first grid that is not empty, so that frames on this lattice
@@ -46,6 +46,7 @@ static bool list_files(sequence_data *s) {
     s->files = files;
     s->file_count = list.count;
     file_list_free(&list);
+    if (ok && !s->raw) sequence_number_files(s);
     return ok;
 }
 
@@ -214,41 +215,6 @@ static void place(sequence_data *s) { // the grid's box and size, from the file'
 
 // ---- playback ---------------------------------------------------------------------------------
 
-static uint32_t fold(const sequence_data *s, int64_t frame) { // into the range, as the loop says
-    int64_t count = s->frame_count;
-    switch (s->desc.loop) {
-    case SEQUENCE_REPEAT:
-        return (uint32_t)(((frame % count) + count) % count);
-    case SEQUENCE_PING_PONG: {
-        int64_t round = count > 1 ? 2 * count - 2 : 1, at = ((frame % round) + round) % round;
-        return (uint32_t)(at < count ? at : round - at);
-    }
-    default:
-        return (uint32_t)(frame < 0 ? 0 : frame >= count ? count - 1 : frame);
-    }
-}
-
-static double position_at(const sequence_data *s, double time) { // in frames, not folded
-    double at = (time - s->desc.start) * s->desc.fps * s->desc.speed;
-    if (!(fabs(at) < 1e15)) at = 0;
-    return at;
-}
-
-// Times are mostly frame / fps: without the slack, rounding would show the frame before.
-static int64_t whole_frame(double position) {
-    return (int64_t)floor(position + 1e-6);
-}
-
-bool sequence_frames_at(const sequence_data *s, double time, uint32_t frames[2], float *blend) {
-    double at = position_at(s, time);
-    int64_t frame = whole_frame(at);
-    frames[0] = fold(s, frame);
-    frames[1] = s->desc.blend ? fold(s, frame + 1) : frames[0];
-    *blend = frames[1] != frames[0] ? clampf((float)(at - (double)frame), 0, 1) : 0;
-    if (*blend < 1e-5f) *blend = 0;
-    return s->desc.loop != SEQUENCE_CLIP || (frame >= 0 && frame < (int64_t)s->frame_count);
-}
-
 // Frames that are decoded or about to be: so many that threads which are done with small ones do
 // not wait for the large, as far as memory allows.
 static uint32_t count_ahead(const sequence_data *s) {
@@ -270,9 +236,11 @@ static void decode_ahead(sequence_data *s, double position, const uint32_t late[
     if (fabs(step) < 1) step = copysign(1, step);
     memcpy(frames, late, count * sizeof *late);
     for (uint32_t i = 1; count < most && i <= most; i++) {
-        int64_t frame = whole_frame(position + step * i);
-        if (s->desc.loop == SEQUENCE_CLIP && (frame < 0 || frame >= (int64_t)s->frame_count)) break;
-        frames[count++] = fold(s, frame + (s->desc.blend && step > 0));
+        uint32_t around[2];
+        float blend;
+        if (!sequence_frames_at(s, position + step * i, around, &blend)) break;
+        uint32_t frame = around[step > 0];
+        if (count == 0 || frames[count - 1] != frame) frames[count++] = frame;
     }
     sequence_cache_ahead(s, frames, count);
 }
@@ -336,12 +304,13 @@ static bool update(field_grid *grid, gpu *g, double time) {
     sequence *s = (sequence *)grid;
     uint32_t frames[2];
     float blend;
-    bool inside = sequence_frames_at(s->data, time, frames, &blend);
+    double position = sequence_position(s->data, time);
+    bool inside = sequence_frames_at(s->data, position, frames, &blend);
     s->sealed = true;
     if (!g) {
         grid->state.active = grid->box;
         grid->state.blend = blend;
-    } else if (!show(s, g, position_at(s->data, time), frames, blend)) {
+    } else if (!show(s, g, position, frames, blend)) {
         return false;
     }
     if (!inside) grid->state.active = box3_empty();
@@ -441,8 +410,8 @@ bool sequence_is_sparse(const sequence *s) {
     return s->data->sparse;
 }
 
-uint32_t sequence_frame_count(const sequence *s) {
-    return s->data->frame_count;
+int64_t sequence_frame_count(const sequence *s) {
+    return s->data->span;
 }
 
 bool sequence_has_numbers(const sequence *s, size_t file, const char *grid) {
@@ -453,7 +422,7 @@ bool sequence_has_numbers(const sequence *s, size_t file, const char *grid) {
 }
 
 double sequence_duration(const sequence *s) {
-    return (double)s->data->frame_count / s->data->desc.fps;
+    return (double)s->data->span / s->data->desc.fps;
 }
 
 size_t sequence_files(const sequence *s, const char *const **out) {

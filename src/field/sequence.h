@@ -49,7 +49,9 @@ typedef struct sequence_desc {
 typedef struct sequence sequence;
 
 // Reads names, boxes and grid names of every file (metadata only, no voxels) and encloses them in
-// one box, so that the volume does not jump from frame to frame. Files are sorted by name.
+// one box, so that the volume does not jump from frame to frame. The last number in a file's name
+// is its frame, where nothing else in the names differs, and the least is the first of the
+// timeline; else files follow by name, a frame each. A warning names the frames that have no file.
 sequence *sequence_create(arena *memory, const sequence_desc *desc);
 // Asks for a channel by canonical name or alias (conventions: "density" also finds "smoke").
 // Returns its first channel index in the grid, and 1 or 3 components; -1 with a message that lists
@@ -57,9 +59,9 @@ sequence *sequence_create(arena *memory, const sequence_desc *desc);
 int sequence_channel(sequence *s, const char *name, int *components);
 field_grid *sequence_grid(sequence *s); // its destroy frees all but `memory`, and must be called
 bool sequence_is_sparse(const sequence *s);
-uint32_t sequence_frame_count(const sequence *s);
 // Whether a file has a grid of numbers of that very name, as it said when the sequence was made.
 bool sequence_has_numbers(const sequence *s, size_t file, const char *grid);
-double sequence_duration(const sequence *s); // seconds at speed 1
+int64_t sequence_frame_count(const sequence *s); // of its timeline, those without a file included
+double sequence_duration(const sequence *s);     // seconds at speed 1
 // Every file it reads, for a reload to watch; returns the count.
 size_t sequence_files(const sequence *s, const char *const **out);

@@ -1,7 +1,8 @@
-// Between the parts of a sequence: sequence.c knows its files and timeline, sequence_channel.c its
-// channels, sequence_raw.c the layout of raw files, sequence_decode.c makes texels of a frame on
-// any thread, sequence_atlas.c places bricks of one, sequence_upload.c brings them to the device,
-// sequence_jobs.c does both ahead of time, sequence_cache.c keeps textures.
+// Between the parts of a sequence: sequence.c knows its files and their box, sequence_timeline.c
+// what is shown when, sequence_channel.c its channels, sequence_raw.c the layout of raw files,
+// sequence_decode.c makes texels of a frame on any thread, sequence_atlas.c places bricks of one,
+// sequence_upload.c brings them to the device, sequence_jobs.c does both ahead of time,
+// sequence_cache.c keeps textures.
 //
 // A sequence is a grid that fields point at, and its data, which another load of the same effect
 // may take over together with the textures and the thread that decodes (field_grid.exchange).
@@ -107,12 +108,14 @@ typedef struct sequence_data {
     const char *label;  // of its decoded frames, in the account of memory
     bool raw;
     sequence_raw_layout layout;
-    const char *const *files;
+    const char **files; // by frame
     size_t file_count;
+    const int64_t *times;  // of every file: its frame since the first; NULL: one after another
+    int64_t span;          // frames of the timeline
     const vdb_info *infos; // of every file
     shelf_item **held;     // the same, of desc.shelf
     size_t held_count;
-    uint32_t frame_count;
+    uint32_t frame_count;  // that there are
     box3 file_box;         // in file units and axes
     uint32_t file_size[3]; // voxels along the file's axes
     box3 box;              // of the grid
@@ -147,8 +150,12 @@ int sequence_find_field(field_grid *grid, const char *name, int *components);
 
 // How many times as full as this frame the fullest one is.
 float sequence_growth(const sequence_data *s, uint32_t frame);
-// The frames around a time and the share of the second. False when there is nothing to see then.
-bool sequence_frames_at(const sequence_data *s, double time, uint32_t frames[2], float *blend);
+// Sorts the files by the numbers in their names; sets times and span.
+void sequence_number_files(sequence_data *s);
+double sequence_position(const sequence_data *s, double time); // in frames since the first
+// What is there around a position, by index, and the share of the second. False when there is
+// nothing to see then.
+bool sequence_frames_at(const sequence_data *s, double position, uint32_t frames[2], float *blend);
 
 texels_shape sequence_shape(const sequence_data *s);
 int sequence_image_channels(const sequence_data *s, int image); // 0..4

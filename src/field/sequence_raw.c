@@ -76,6 +76,7 @@ bool sequence_raw_open(sequence_data *s) {
     s->layout.changed = file_changed_ns(s->files[0]);
     if (!check_numbers(s) || !check_length(s, length)) return false;
     s->frame_count = s->layout.frames;
+    s->span = s->frame_count;
     memcpy(s->file_size, s->desc.raw.size, sizeof s->file_size);
     float voxel = s->desc.raw.voxel_size;
     if (voxel == 0) voxel = 1.0f / (float)s->file_size[0];

@@ -16,7 +16,7 @@
 #define SEQUENCE_MEMBERS KEYS(                                                                     \
     KEY("NAME", "field", "the grid of that name: density, temperature, flame, velocity ..."),      \
     KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "encloses all frames"),                   \
-    KEY("frames", "number", "how many there are"),                                                 \
+    KEY("frames", "number", "of its timeline, those without a file included"),                                                 \
     KEY("duration", "number s", "of all frames at speed 1"))
 
 #define LBM_KEYS KEYS(                                                                             \
@@ -48,7 +48,10 @@
 const script_object reference_sources[] = {
     {"vdb", "source", "local burst = vdb { \"data/burst_*.vdb\", fps = 24 }",
      "a sequence of OpenVDB files; burst.density is a field, 0 outside the box",
-     .args = KEYS(KEY("files", "\"data/burst_*.vdb\"", "one file, or many by *; sorted by name")),
+     .args = KEYS(KEY("files", "\"data/burst_*.vdb\"",
+                    "one file, or many by *. The last number in a name, if all else in the names is the "
+                    "same, is the file's frame, and the least is the first; a frame without a file shows "
+                    "the one before (`blend`: a mix of those around), and a warning names it")),
      .keys = KEYS(
         CHOICE("storage", "auto",
                "on the device: the whole box, or only bricks of 8^3 voxels where there is something; "

@@ -21,9 +21,9 @@ static void play(sequence *s, double time) {
     uint32_t frames[2];
     float blend;
     if (sequence_channel(s, "density", &components) != 0) __builtin_trap();
-    sequence_frames_at(s->data, time, frames, &blend);
+    sequence_frames_at(s->data, sequence_position(s->data, time), frames, &blend);
     for (int i = 0; i < 2; i++) {
-        if (frames[i] >= sequence_frame_count(s)) __builtin_trap();
+        if (frames[i] >= s->data->frame_count) __builtin_trap();
         sequence_texels texels;
         if (sequence_decode(s->data, frames[i], &texels)) sequence_texels_free(&texels);
     }

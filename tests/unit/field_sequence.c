@@ -32,7 +32,7 @@ static void write_block(const char *file, const char *grid, int at, float base) 
     if (!vdb_write(in_folder(file), &desc, 1)) fail_msg("%s", err_get());
 }
 
-static sequence *opened[64]; // destroyed after the tests
+static sequence *opened[128]; // destroyed after the tests
 static size_t opened_count;
 
 static sequence *open_or_fail(sequence_desc desc) {
@@ -218,6 +218,10 @@ static void values_that_are_not_finite_count_as_zero(void **state) {
     sequence_texels_free(&t);
 }
 
+static bool show_at(const sequence *s, double time, uint32_t frames[2], float *blend) {
+    return sequence_frames_at(s->data, sequence_position(s->data, time), frames, blend);
+}
+
 static void loops_fold_time(void **state) {
     (void)state;
     for (int i = 1; i <= 3; i++)
@@ -241,7 +245,7 @@ static void loops_fold_time(void **state) {
             (sequence_desc){.pattern = "loop*.vdb", .fps = 30, .start = 2, .loop = cases[i].loop});
         uint32_t frames[2];
         float blend;
-        bool visible = sequence_frames_at(s->data, 2 + cases[i].frame / 30.0, frames, &blend);
+        bool visible = show_at(s, 2 + cases[i].frame / 30.0, frames, &blend);
         assert_int_equal(frames[0], cases[i].shown);
         assert_int_equal(visible, cases[i].visible);
         assert_true(blend == 0);
@@ -260,7 +264,7 @@ static void frames_are_hit_in_spite_of_rounding(void **state) {
     for (uint32_t i = 0; i < 400; i++) {
         uint32_t frames[2];
         float blend;
-        sequence_frames_at(s->data, i / 24.0, frames, &blend);
+        show_at(s, i / 24.0, frames, &blend);
         assert_int_equal(frames[0], i);
     }
 }
@@ -272,13 +276,132 @@ static void times_between_frames_blend(void **state) {
     assert_true(sequence_grid(s)->blends);
     uint32_t frames[2];
     float blend;
-    sequence_frames_at(s->data, 0.0625, frames, &blend); // frame 1.25
+    show_at(s, 0.0625, frames, &blend); // frame 1.25
     assert_int_equal(frames[0], 1);
     assert_int_equal(frames[1], 2);
     assert_true(fabsf(blend - 0.25f) < 1e-5f);
-    sequence_frames_at(s->data, 0.13, frames, &blend); // the last holds
+    show_at(s, 0.13, frames, &blend); // the last holds
     assert_int_equal(frames[0], 2);
     assert_true(blend == 0);
+}
+
+// What a call writes to stderr.
+static const char *warnings_of(sequence_desc desc, sequence **out) {
+    static char text[4096];
+    fflush(stderr);
+    FILE *file = tmpfile();
+    int kept = dup(STDERR_FILENO);
+    dup2(fileno(file), STDERR_FILENO);
+    *out = open_or_fail(desc);
+    fflush(stderr);
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    rewind(file);
+    text[fread(text, 1, sizeof text - 1, file)] = 0;
+    fclose(file);
+    return text;
+}
+
+static const char *file_shown(const sequence *s, double time) {
+    uint32_t frames[2];
+    float blend;
+    show_at(s, time, frames, &blend);
+    return path_name(s->data->files[frames[0]]);
+}
+
+static void numbers_in_names_are_frames(void **state) {
+    (void)state;
+    static const struct {
+        const char *pattern, *files[4];
+        const char *shown[8]; // at every frame of the timeline
+        const char *warning;  // NULL: none
+    } cases[] = {
+        {"odd*.vdb",
+         {"odd1.vdb", "odd3.vdb", "odd5.vdb"},
+         {"odd1.vdb", "odd1.vdb", "odd3.vdb", "odd3.vdb", "odd5.vdb"},
+         "odd*.vdb: there is no file for frames 2, 4; the file before goes on"},
+        {"wide*.vdb",
+         {"wide10.vdb", "wide8.vdb", "wide9.vdb"},
+         {"wide8.vdb", "wide9.vdb", "wide10.vdb"},
+         NULL},
+        {"zero*.vdb", {"zero.0009.vdb", "zero.0010.vdb"}, {"zero.0009.vdb", "zero.0010.vdb"}, NULL},
+        {"neg*.vdb",
+         {"neg.-002.vdb", "neg.-001.vdb", "neg.0000.vdb", "neg.0003.vdb"},
+         {"neg.-002.vdb", "neg.-001.vdb", "neg.0000.vdb", "neg.0000.vdb", "neg.0000.vdb",
+          "neg.0003.vdb"},
+         "there is no file for frames 1 to 2; the"},
+        {"dash*.vdb", {"dash-2.vdb", "dash-1.vdb"}, {"dash-1.vdb", "dash-2.vdb"}, NULL},
+        {"v2_*.vdb",
+         {"v2_7_high.vdb", "v2_9_high.vdb"},
+         {"v2_7_high.vdb", "v2_7_high.vdb", "v2_9_high.vdb"},
+         "for frame 8; the"},
+        {"word*.vdb", {"word_a.vdb", "word_b.vdb"}, {"word_a.vdb", "word_b.vdb"}, NULL},
+        {"some*.vdb",
+         {"some.vdb", "some_5.vdb"},
+         {"some.vdb", "some_5.vdb"},
+         "'some_5.vdb' and 'some.vdb' do not both have a number"},
+        {"two*.vdb",
+         {"two_a1.vdb", "two_b1.vdb", "two_b7.vdb"},
+         {"two_a1.vdb", "two_b1.vdb", "two_b7.vdb"},
+         "differ in more than their last number"},
+        {"same*.vdb",
+         {"same01.vdb", "same1.vdb", "same2.vdb"},
+         {"same01.vdb", "same1.vdb", "same2.vdb"},
+         "have the same number"},
+        {"long*.vdb",
+         {"long1234567890123456.vdb", "long1234567890123457.vdb"},
+         {"long1234567890123456.vdb", "long1234567890123457.vdb"},
+         NULL},
+    };
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        for (int k = 0; k < 4 && cases[i].files[k]; k++)
+            write_block(cases[i].files[k], "density", 0, 1);
+        sequence *s;
+        const char *told = warnings_of((sequence_desc){.pattern = cases[i].pattern, .fps = 10}, &s);
+        if (cases[i].warning ? !strstr(told, cases[i].warning) : told[0])
+            fail_msg("%s: '%s'", cases[i].pattern, told);
+        int frames = 0;
+        for (; frames < 8 && cases[i].shown[frames]; frames++)
+            assert_string_equal(file_shown(s, frames / 10.0), cases[i].shown[frames]);
+        assert_int_equal(sequence_frame_count(s), frames);
+        assert_true(fabs(sequence_duration(s) - frames / 10.0) < 1e-9);
+    }
+}
+
+// "odd" has the frames 1, 3 and 5; time is in frames since the first.
+static void gaps_are_mixed_by_how_near_their_ends_are(void **state) {
+    (void)state;
+    static const struct {
+        sequence_loop loop;
+        double frame;
+        uint32_t before, after;
+        float blend;
+    } cases[] = {
+        {SEQUENCE_CLIP, 0, 0, 0, 0},
+        {SEQUENCE_CLIP, 0.5, 0, 1, 0.25f},
+        {SEQUENCE_CLIP, 1.5, 0, 1, 0.75f},
+        {SEQUENCE_CLIP, 3, 1, 2, 0.5f},
+        {SEQUENCE_CLIP, 4.5, 2, 2, 0},
+        {SEQUENCE_REPEAT, 4.5, 2, 0, 0.5f},
+        {SEQUENCE_REPEAT, 6, 0, 1, 0.5f},
+        {SEQUENCE_PING_PONG, 4.5, 2, 1, 0.25f},
+        {SEQUENCE_PING_PONG, 5, 2, 1, 0.5f},
+        {SEQUENCE_PING_PONG, 6.5, 1, 0, 0.25f},
+        {SEQUENCE_PING_PONG, -0.5, 1, 0, 0.75f},
+    };
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        sequence *s;
+        const char *told = warnings_of(
+            (sequence_desc){.pattern = "odd*.vdb", .fps = 1, .blend = true, .loop = cases[i].loop},
+            &s);
+        assert_non_null(strstr(told, "the files around are mixed"));
+        uint32_t frames[2];
+        float blend;
+        show_at(s, cases[i].frame, frames, &blend);
+        assert_int_equal(frames[0], cases[i].before);
+        if (cases[i].blend > 0) assert_int_equal(frames[1], cases[i].after);
+        assert_true(fabsf(blend - cases[i].blend) < 1e-5f);
+    }
 }
 
 static void missing_and_damaged_files_are_named(void **state) {
@@ -413,6 +536,8 @@ int main(void) {
         cmocka_unit_test(loops_fold_time),
         cmocka_unit_test(frames_are_hit_in_spite_of_rounding),
         cmocka_unit_test(times_between_frames_blend),
+        cmocka_unit_test(numbers_in_names_are_frames),
+        cmocka_unit_test(gaps_are_mixed_by_how_near_their_ends_are),
         cmocka_unit_test(missing_and_damaged_files_are_named),
         cmocka_unit_test(far_apart_frames_do_not_ask_for_all_memory),
         cmocka_unit_test(raw_types_are_normalised),

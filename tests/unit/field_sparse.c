@@ -78,7 +78,7 @@ static int compare_file(const char *path, sequence_desc desc) {
         assert_int_equal(components, other);
         read++;
     }
-    for (uint32_t frame = 0; read > 0 && frame < sequence_frame_count(dense); frame++) {
+    for (uint32_t frame = 0; read > 0 && (int64_t)frame < sequence_frame_count(dense); frame++) {
         sequence_texels a, b;
         bool can = sequence_decode(dense->data, frame, &a);
         assert_int_equal(sequence_decode(sparse->data, frame, &b), can);
