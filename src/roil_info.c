@@ -426,8 +426,25 @@ char *roil_info_graph(roil_effect *e) {
 
 // ---- OpenVDB ----------------------------------------------------------------------------------
 
+static void print_grid(strbuf *out, const vdb_grid_info *g) {
+    static const char *const classes[] = {
+        "unknown", "fog volume", "level set (read as a solid; level_set = \"fog\": as fog)",
+        "staggered"};
+    strbuf_add(out, "%s: %s%s, %s, ", g->name, g->type, g->saved_half ? " (saved as half)" : "",
+               classes[g->grid_class]);
+    if (!g->linear) {
+        strbuf_add(out, "frustum transform, which roil cannot read: resample it to boxes of voxels "
+                        "first\n");
+        return;
+    }
+    strbuf_add(out, "voxel %g x %g x %g m%s\n", (double)g->voxel_size[0], (double)g->voxel_size[1],
+               (double)g->voxel_size[2],
+               g->sheared        ? ", sheared: it is resampled"
+               : g->axis_aligned ? ""
+                                 : ", rotated: it is resampled");
+}
+
 char *roil_info_vdb(const char *file) {
-    static const char *const classes[] = {"unknown", "fog volume", "level set", "staggered"};
     arena memory = {0};
     vdb_info info;
     if (!vdb_read_info(file, &memory, &info)) {
@@ -437,9 +454,7 @@ char *roil_info_vdb(const char *file) {
     strbuf out = {0};
     for (size_t i = 0; i < info.count; i++) {
         const vdb_grid_info *g = &info.grids[i];
-        strbuf_add(&out, "%s: %s%s, %s, voxel %g x %g x %g m\n", g->name, g->type,
-                   g->saved_half ? " (saved as half)" : "", classes[g->grid_class],
-                   (double)g->voxel_size[0], (double)g->voxel_size[1], (double)g->voxel_size[2]);
+        print_grid(&out, g);
         if (box3_is_empty(g->box))
             strbuf_add(&out, "  empty\n");
         else
@@ -453,6 +468,9 @@ char *roil_info_vdb(const char *file) {
         strbuf_add(&out, "  background %g%s\n", (double)g->background[0],
                    g->components ? "" : "; a type that roil cannot read");
     }
+    if (info.y_up)
+        strbuf_add(&out, "Y up, as its creator makes them: vdb { } turns it to Z up, unless the "
+                         "script says y_up = false\n");
     if (info.metadata[0]) strbuf_add(&out, "%s", info.metadata);
     arena_free(&memory);
     return finish(&out);

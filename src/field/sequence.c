@@ -169,6 +169,17 @@ static bool read_infos(sequence_data *s, vdb_info *infos) {
     return read_missing(s, infos);
 }
 
+static bool refuse_all(const sequence_data *s) {
+    strbuf names = {0};
+    for (size_t i = 0; i < s->file_count && names.length == 0; i++)
+        sequence_list_grids(&s->infos[i], &names);
+    err_set("%s: no grid that can be read in %s%s%s", s->desc.pattern,
+            s->file_count > 1 ? "these files" : "this file", names.length > 0 ? ": " : "",
+            strbuf_text(&names));
+    strbuf_free(&names);
+    return false;
+}
+
 static bool open_vdb(sequence_data *s) {
     vdb_info *infos = arena_alloc(&s->memory, s->file_count * sizeof *infos);
     s->infos = infos;
@@ -187,9 +198,8 @@ static bool open_vdb(sequence_data *s) {
         }
     }
     s->frame_count = (uint32_t)s->file_count;
-    if (readable == 0)
-        return err_set("%s: no grid of numbers or vectors in %s", s->desc.pattern,
-                       s->file_count > 1 ? "these files" : "this file");
+    if (s->desc.up_by_creator) s->desc.y_up = infos[0].y_up;
+    if (readable == 0) return refuse_all(s);
     if (!first) { // nothing but empty grids: a voxel of nothing
         s->file_box = (box3){{0, 0, 0}, {1, 1, 1}};
         for (int i = 0; i < 3; i++) s->file_size[i] = 1;

@@ -3,6 +3,7 @@
 #include "base/arena.h"
 #include "base/shelf.h"
 #include "field/grid.h"
+#include "media/vdb.h"
 
 typedef enum sequence_loop {
     SEQUENCE_CLIP,
@@ -26,9 +27,11 @@ typedef struct sequence_desc {
     double start;             // effect time (s) at which the first frame is shown
     double speed;             // 0: 1
     sequence_storage storage; // of VDB files; raw ones are dense
+    vdb_set level_set;        // of VDB files
     sequence_loop loop; // clip: nothing outside the range; extend: holds the first and last frame
     bool blend;         // mix neighbouring frames at times between them
     bool y_up;          // files have Y up: rotated to our Z up
+    bool up_by_creator; // instead: what the first VDB file says by who made it
     float scale;        // metres a world unit of the file; 0: 1
     float3 offset;      // metres, added after scaling
     shelf *shelf;       // keeps what files say of themselves between loads; NULL: none

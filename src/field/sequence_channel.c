@@ -72,16 +72,26 @@ static int components_of(const sequence_data *s, const char *name) { // 0: there
 static void add_name(strbuf *out, const char *name) {
     char quoted[256];
     str_copy(quoted, sizeof quoted, name);
-    if (out->length > 2000) return;
     strbuf_add(out, "%s%s", out->length > 0 ? ", " : "", quoted);
+}
+
+void sequence_list_grids(const vdb_info *info, strbuf *out) {
+    for (size_t i = 0; i < info->count && out->length < 2000; i++) {
+        const vdb_grid_info *grid = &info->grids[i];
+        add_name(out, grid->name);
+        if (grid->components == 0)
+            strbuf_add(out, " (has values of type %.64s)", grid->type);
+        else if (!grid->linear)
+            strbuf_add(out, " (has a frustum transform; resample it to boxes of voxels first)");
+    }
 }
 
 static int no_channel(const sequence_data *s, const char *name) {
     strbuf names = {0};
     if (s->raw) add_name(&names, s->desc.raw.channel);
     for (size_t i = 0; !s->raw && i < s->file_count && names.length == 0; i++)
-        for (size_t k = 0; k < s->infos[i].count; k++) add_name(&names, s->infos[i].grids[k].name);
-    err_set("%s: no grid is named '%.64s'; there are: %s", s->desc.pattern, name,
+        sequence_list_grids(&s->infos[i], &names);
+    err_set("%s: no grid named '%.64s' can be read; there are: %s", s->desc.pattern, name,
             strbuf_text(&names));
     strbuf_free(&names);
     return -1;

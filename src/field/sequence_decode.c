@@ -92,7 +92,8 @@ static bool decode_vdb(const sequence_data *s, uint32_t frame, sequence_texels *
                                  .sparse = s->sparse,
                                  .max_bytes = s->desc.max_frame_bytes,
                                  .sources = from.list,
-                                 .count = from.count};
+                                 .count = from.count,
+                                 .level_set = s->desc.level_set};
     if (!vdb_read_frame(&desc, &out->read)) return false;
     const vdb_frame *read = &out->read;
     for (int i = 0; i < FIELD_GRID_IMAGES; i++) {

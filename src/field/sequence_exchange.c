@@ -40,9 +40,9 @@ static bool same_raw(const sequence_desc *a, const sequence_desc *b) {
 static bool same_content(const sequence_data *a, const sequence_data *b) {
     const sequence_desc *x = &a->desc, *y = &b->desc;
     return a->raw == b->raw && a->sparse == b->sparse && x->y_up == y->y_up &&
-           x->scale == y->scale && x->offset.x == y->offset.x && x->offset.y == y->offset.y &&
-           x->offset.z == y->offset.z && same_files(a, b) && same_channels(a, b) &&
-           (!a->raw || same_raw(x, y));
+           x->level_set == y->level_set && x->scale == y->scale && x->offset.x == y->offset.x &&
+           x->offset.y == y->offset.y && x->offset.z == y->offset.z && same_files(a, b) &&
+           same_channels(a, b) && (!a->raw || same_raw(x, y));
 }
 
 static void swap_timeline(sequence_desc *a, sequence_desc *b) {

@@ -8,9 +8,9 @@
 // may take over together with the textures and the thread that decodes (field_grid.exchange).
 #pragma once
 #include "base/budget.h"
+#include "base/str.h"
 #include "base/worker.h"
 #include "field/sequence.h"
-#include "media/vdb.h"
 #include <pthread.h>
 
 enum {
@@ -144,6 +144,8 @@ bool sequence_raw_read(const sequence_data *s, uint32_t frame, float *out, uint6
 // Which grid of a file a channel is read from: its name, or an alias; NULL when there is none.
 // Three scalar grids "vel.x", "vel.y", "vel.z" make a vector: `part` 0..2 asks for one of them.
 const vdb_grid_info *sequence_find_grid(const vdb_info *info, const char *channel, int part);
+// "density, heat (has a frustum transform)": names, and why those that are not read are not.
+void sequence_list_grids(const vdb_info *info, strbuf *out);
 // Hooks of its grid: the channels that fields sample, or that were asked for.
 const char *sequence_field_name(const field_grid *grid, size_t index);
 int sequence_find_field(field_grid *grid, const char *name, int *components);

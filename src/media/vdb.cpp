@@ -97,6 +97,14 @@ bool read_extent(const vdb_layout &l, const vdb_layout_grid &g, const openvdb::M
     return true;
 }
 
+// As Blender knows such files too.
+bool has_y_up(const openvdb::MetaMap &map) {
+    for (const char *key : {"creator", "Creator"})
+        if (auto creator = map.getMetadata<openvdb::StringMetadata>(key))
+            return creator->value().rfind("Houdini", 0) == 0;
+    return false;
+}
+
 bool describe(const vdb_layout &l, const vdb_layout_grid &g, arena *memory, vdb_grid_info *out) {
     openvdb::MetaMap map = read_metadata(l, g.metadata, g.end);
     out->name = arena_string(memory, g.name);
@@ -112,6 +120,7 @@ bool describe(const vdb_layout &l, const vdb_layout_grid &g, arena *memory, vdb_
     if (!read_affine(l, g, &t)) return false;
     for (int i = 0; i < 3; i++) out->voxel_size[i] = float(t.axis[i].length());
     out->axis_aligned = is_axis_aligned(t);
+    out->sheared = is_sheared(t);
     const vdb_layout_grid *owner = tree_owner(l, g);
     if (!owner) return false;
     read_background(l, *owner, out->background);
@@ -154,7 +163,7 @@ bool sample(const GridBase &base, const affine &t, const vdb_sample_desc &desc, 
                        desc.grid);
     fill(grid.tree(), place, desc, staggered);
     if (cls == VDB_LEVEL_SET && desc.components == 1) {
-        fog value(grid, t);
+        fog value(grid, t, desc.level_set);
         size_t count = size_t(desc.size[0]) * desc.size[1] * desc.size[2];
         for (size_t i = 0; i < count; i++) desc.out[i] = value(desc.out[i]);
     }
@@ -253,7 +262,7 @@ extern "C" bool vdb_file_info(const vdb_file *opened, arena *memory, vdb_info *o
         std::string text;
         for (auto it = map.beginMeta(); it != map.endMeta(); ++it)
             text += it->first + " = " + it->second->str() + "\n";
-        *out = {grids, count, arena_string(memory, text.c_str())};
+        *out = {grids, count, arena_string(memory, text.c_str()), has_y_up(map)};
         return true;
     });
 }

@@ -24,12 +24,14 @@ typedef struct vdb_grid_info {
     bool saved_half;
     bool linear;       // the transform is affine
     bool axis_aligned; // and without rotation or shear
+    bool sheared;      // its axes are not at right angles
 } vdb_grid_info;
 
 typedef struct vdb_info {
     const vdb_grid_info *grids;
     size_t count;
     const char *metadata; // "key = value" lines of the file, "" when none
+    bool y_up;            // by its "creator": Houdini's files have Y up, those of others Z
 } vdb_info;
 
 // Metadata only: no voxel is read (where the file lacks a box in its metadata, the grid is read).
@@ -39,6 +41,11 @@ bool vdb_read_info(const char *path, arena *memory, vdb_info *out);
 bool vdb_read_infos(const char *root, const char *const *paths, size_t count, arena *const *memory,
                     vdb_info *out);
 
+typedef enum vdb_set { // what a level set of distances to a surface becomes
+    VDB_SET_SOLID,     // 1 inside, falling to 0 across the outer half of the narrow band
+    VDB_SET_FOG,       // 0 outside, rising to 1 across the inner half
+} vdb_set;
+
 typedef struct vdb_sample_desc {
     const char *path;
     const char *grid; // exact name
@@ -47,12 +54,13 @@ typedef struct vdb_sample_desc {
     int components;   // 1 or 3
     float *out;       // size[0] * size[1] * size[2] * components, x fastest
     const char *root; // that the file must lie in; NULL: the user named it
+    vdb_set level_set;
 } vdb_sample_desc;
 
 // Resamples (trilinearly; exactly where the lattices coincide) one grid into a dense box. Level
-// sets become fog: 1 inside, falling to 0 across the narrow band's outer half. NaN and infinity
-// become 0 and are counted in `*bad` (may be NULL). Background is honoured. Staggered vectors are
-// moved to the voxels' centres. Frustum transforms are refused, as are types with 0 components.
+// sets become what `level_set` says. NaN and infinity become 0 and are counted in `*bad` (may be
+// NULL). Background is honoured. Staggered vectors are moved to the voxels' centres. Frustum
+// transforms are refused, as are types with 0 components.
 bool vdb_sample(const vdb_sample_desc *desc, uint64_t *bad);
 
 // Where the values of a grid go in a frame.
@@ -82,6 +90,7 @@ typedef struct vdb_frame_desc {
     uint64_t max_bytes; // of all textures of a sparse frame
     const vdb_source *sources;
     size_t count; // at most VDB_SOURCES
+    vdb_set level_set;
 } vdb_frame_desc;
 
 typedef struct vdb_frame {

@@ -74,7 +74,7 @@ template <class Grid> class blocks : public vdb_blocks {
         : grid_(openvdb::gridPtrCast<Grid>(grid)), place_(t, desc), access_(grid_->tree()),
           staggered_(cls == VDB_STAGGERED && desc.components == 3),
           interpolated_(grid_->tree(), staggered_), exact_(!staggered_ && place_.on_lattice()),
-          foggy_(cls == VDB_LEVEL_SET && desc.components == 1), fog_(*grid_, t) {
+          foggy_(cls == VDB_LEVEL_SET && desc.components == 1), fog_(*grid_, t, desc.level_set) {
         if (exact_) origin_ = place_.origin();
     }
     bool is_near() const { return place_.is_near(); }

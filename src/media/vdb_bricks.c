@@ -45,7 +45,7 @@ typedef struct builder {
 
 static bool open_sources(builder *b) {
     const vdb_frame_desc *d = b->desc;
-    vdb_sample_desc desc = {.path = d->path, .box = d->box};
+    vdb_sample_desc desc = {.path = d->path, .box = d->box, .level_set = d->level_set};
     memcpy(desc.size, d->shape.size, sizeof desc.size);
     for (size_t i = 0; i < d->count; i++) {
         const vdb_source *from = &d->sources[i];

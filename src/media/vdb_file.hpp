@@ -201,6 +201,14 @@ inline bool is_axis_aligned(const affine &t) {
             if (i != k && std::fabs(t.axis[i][k]) > 1e-9 * t.axis[i].length()) return false;
     return true;
 }
+inline bool is_sheared(const affine &t) {
+    for (int i = 0; i < 3; i++) {
+        const Vec3d &a = t.axis[i], &b = t.axis[(i + 1) % 3];
+        if (std::fabs(a.dot(b)) > 1e-6 * a.length() * b.length()) return true;
+    }
+    return false;
+}
+
 inline vdb_class class_of(const openvdb::MetaMap &map) {
     std::string text;
     if (auto value = map.getMetadata<openvdb::StringMetadata>(GridBase::META_GRID_CLASS))
@@ -311,14 +319,17 @@ template <class Real> float first_component(const openvdb::math::Vec3<Real> &v) 
     return float(v[0]);
 }
 
-// Distances of a level set as fog: 1 inside, 0 from the outer end of the narrow band on.
+// Distances of a level set, negative inside, as what fills it (vdb_set).
 struct fog {
-    float band;
+    float band, full; // width of a half of the narrow band; distance of the value 1
     template <class Grid>
-    fog(const Grid &grid, const affine &t) : band(std::fabs(first_component(grid.background()))) {
+    fog(const Grid &grid, const affine &t, vdb_set set)
+        : band(std::fabs(first_component(grid.background()))) {
         if (!(band > 0.0f)) band = 3.0f * float(t.axis[0].length());
+        full = set == VDB_SET_FOG ? -band : 0.0f;
     }
     float operator()(float d) const {
+        d -= full;
         return d <= 0.0f ? 1.0f : d >= band ? 0.0f : 1.0f - d / band;
     }
 };

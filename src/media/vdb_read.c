@@ -107,7 +107,8 @@ static bool take_grid(cursor *c, arena *memory, vdb_grid_info *out) {
                            .box = g.box,
                            .saved_half = g.saved_half != 0,
                            .linear = g.linear != 0,
-                           .axis_aligned = g.axis_aligned != 0};
+                           .axis_aligned = g.axis_aligned != 0,
+                           .sheared = g.sheared != 0};
     memcpy(out->voxel_size, g.voxel_size, sizeof g.voxel_size);
     memcpy(out->background, g.background, sizeof g.background);
     memcpy(out->index_min, g.index_min, sizeof g.index_min);
@@ -123,7 +124,7 @@ static bool take_info(cursor *c, arena *memory, vdb_info *out) {
     const char *metadata = take_text(c, sent.text, memory);
     if (!metadata || sent.count > GRIDS_MAX) return false;
     vdb_grid_info *grids = arena_alloc(memory, sent.count * sizeof *grids);
-    *out = (vdb_info){grids, sent.count, metadata};
+    *out = (vdb_info){grids, sent.count, metadata, sent.y_up != 0};
     for (uint32_t i = 0; i < sent.count; i++)
         if (!take_grid(c, memory, &grids[i])) return false;
     return true;
@@ -174,7 +175,7 @@ bool vdb_sample(const vdb_sample_desc *d, uint64_t *bad) {
                            d->path, d->size[0], d->size[1], d->size[2]);
         voxels *= d->size[i];
     }
-    vdb_sent_sample sent = {.box = d->box, .components = d->components};
+    vdb_sent_sample sent = {.box = d->box, .components = d->components, .level_set = d->level_set};
     memcpy(sent.size, d->size, sizeof sent.size);
     size_t size = (size_t)voxels * (size_t)d->components * sizeof *d->out;
     strbuf bytes = {0};
@@ -208,6 +209,7 @@ static void describe(const vdb_frame_desc *d, strbuf *out) {
                            .y_up = d->shape.y_up,
                            .sparse = d->sparse,
                            .count = (uint32_t)d->count,
+                           .level_set = d->level_set,
                            .width = d->shape.width,
                            .max_bytes = d->max_bytes};
     memcpy(sent.size, d->shape.size, sizeof sent.size);

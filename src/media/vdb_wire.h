@@ -7,14 +7,14 @@
 
 // ---- "vdb info": paths, each with its zero byte; back comes for each file -----------------------
 
-typedef struct vdb_sent_info { // then its metadata, with a zero byte, and the grids
-    uint32_t count, text;      // bytes of the metadata
+typedef struct vdb_sent_info {  // then its metadata, with a zero byte, and the grids
+    uint32_t count, text, y_up; // text: bytes of the metadata
 } vdb_sent_info;
 
 typedef struct vdb_sent_grid { // then name and type, each with its zero byte
     int32_t components, grid_class;
     uint32_t name, type; // bytes
-    uint32_t saved_half, linear, axis_aligned;
+    uint32_t saved_half, linear, axis_aligned, sheared;
     float voxel_size[3], background[3];
     int32_t index_min[3], index_max[3];
     uint64_t active_voxels;
@@ -26,7 +26,7 @@ typedef struct vdb_sent_grid { // then name and type, each with its zero byte
 
 typedef struct vdb_sent_sample {
     box3 box;
-    uint32_t size[3];
+    uint32_t size[3], level_set;
     int32_t components;
 } vdb_sent_sample;
 
@@ -34,7 +34,7 @@ typedef struct vdb_sent_sample {
 
 typedef struct vdb_sent_frame {
     box3 box;
-    uint32_t size[3], y_up, sparse, count;
+    uint32_t size[3], y_up, sparse, count, level_set;
     int32_t width;
     uint64_t max_bytes;
 } vdb_sent_frame;

@@ -51,6 +51,7 @@ static bool put_grid(const isolate_call *call, const vdb_grid_info *g) {
                           .saved_half = g->saved_half,
                           .linear = g->linear,
                           .axis_aligned = g->axis_aligned,
+                          .sheared = g->sheared,
                           .active_voxels = g->active_voxels,
                           .box = g->box};
     memcpy(sent.voxel_size, g->voxel_size, sizeof sent.voxel_size);
@@ -62,7 +63,8 @@ static bool put_grid(const isolate_call *call, const vdb_grid_info *g) {
 }
 
 static bool put_info(const isolate_call *call, const vdb_info *info) {
-    const vdb_sent_info sent = {(uint32_t)info->count, (uint32_t)strlen(info->metadata) + 1};
+    const vdb_sent_info sent = {(uint32_t)info->count, (uint32_t)strlen(info->metadata) + 1,
+                                info->y_up};
     bool done =
         isolate_put(call, &sent, sizeof sent) && isolate_put(call, info->metadata, sent.text);
     for (size_t i = 0; done && i < info->count; i++) done = put_grid(call, &info->grids[i]);
@@ -92,8 +94,11 @@ bool vdb_sample_work(const isolate_call *call) {
     cursor c = {call->bytes};
     vdb_sent_sample sent;
     take(&c, &sent, sizeof sent);
-    vdb_sample_desc desc = {
-        .path = call->name, .grid = c.at, .box = sent.box, .components = sent.components};
+    vdb_sample_desc desc = {.path = call->name,
+                            .grid = c.at,
+                            .box = sent.box,
+                            .components = sent.components,
+                            .level_set = (vdb_set)sent.level_set};
     memcpy(desc.size, sent.size, sizeof desc.size);
     size_t size = (size_t)sent.size[0] * sent.size[1] * sent.size[2] * (size_t)sent.components *
                   sizeof(float);
@@ -129,7 +134,8 @@ static bool pack_source(vdb_build *b, const vdb_source *from, float *values, int
                             .grid = from->grid,
                             .box = b->desc->box,
                             .components = from->components,
-                            .out = values};
+                            .out = values,
+                            .level_set = b->desc->level_set};
     uint64_t bad;
     if (from->channels[0] / 4 != image) return true;
     memcpy(desc.size, shape->size, sizeof desc.size);
@@ -186,7 +192,8 @@ bool vdb_frame_work(const isolate_call *call) {
         .sparse = sent.sparse != 0,
         .max_bytes = sent.max_bytes,
         .sources = sources,
-        .count = sent.count};
+        .count = sent.count,
+        .level_set = (vdb_set)sent.level_set};
     opened f;
     if (!open_file(call, call->name, &f)) return false;
     vdb_build b = {.call = call, .file = f.file, .desc = &desc};

@@ -48,6 +48,8 @@ static void read_playback(lua_State *L, const script_object *row, sequence_desc 
     desc->loop = (sequence_loop)value_get_choice(L, 1, row, "loop");
     desc->blend = value_get_bool(L, 1, who, "blend", false);
     desc->y_up = value_get_bool(L, 1, who, "y_up", false);
+    desc->up_by_creator = value_get(L, 1, "y_up") == LUA_TNIL;
+    lua_pop(L, 1);
     desc->scale = (float)read_factor(L, who, "scale", 1);
     float offset[3] = {0};
     value_get_vector(L, 1, who, "offset", offset);
@@ -75,6 +77,7 @@ static int l_vdb(lua_State *L) {
     const script_object *row = value_check_object(L, 1, "vdb");
     read_playback(L, row, &desc);
     desc.storage = (sequence_storage)value_get_choice(L, 1, row, "storage");
+    desc.level_set = (vdb_set)value_get_choice(L, 1, row, "level_set");
     return push_sequence(L, "vdb", &desc);
 }
 

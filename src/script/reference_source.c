@@ -9,7 +9,6 @@
     CHOICE("loop", "clip", "outside the range clip shows nothing, extend the nearest frame",       \
            "clip", "extend", "repeat", "ping_pong"),                                               \
     KEY("blend", "false", "mixes neighbouring frames at times between them"),                      \
-    KEY("y_up", "false", "the files have Y up: turns them to Z up"),                               \
     KEY("scale", "1 m", "metres a unit of the file"),                                              \
     KEY("offset", "0, 0, 0 m", "added after scaling"),                                             \
     KEY("name", "the variable's", "for `roil export vdb`; numbered when taken")
@@ -57,6 +56,12 @@ const script_object reference_sources[] = {
                "on the device: the whole box, or only bricks of 8^3 voxels where there is something; "
                "auto takes these for large boxes that are mostly empty. The picture is the same",
                "auto", "dense", "sparse"),
+        CHOICE("level_set", "solid",
+               "what a level set becomes, whose values are distances to a surface: solid is 1 inside and "
+               "fades in the outer half of its band; fog is 0 outside and fades in the inner half",
+               "solid", "fog"),
+        KEY("y_up", "by their creator",
+            "the files have Y up, as Houdini's: turns them to Z up; `roil info FILE` says so"),
         PLAYBACK),
      .members = SEQUENCE_MEMBERS},
     {"raw", "source", "local burst = raw { \"data/burst.raw\", size = {32, 32, 32} }",
@@ -71,6 +76,7 @@ const script_object reference_sources[] = {
         KEY("voxel_size", "1 / size.x m", "edge of a voxel"),
         KEY("value_scale", "1", "factor of the values"),
         KEY("channel", "\"density\"", "name of its grid"),
+        KEY("y_up", "false", "the file has Y up: turns it to Z up"),
         PLAYBACK),
      .members = SEQUENCE_MEMBERS},
     {"bake", "source", "bake(worley { 4 } * sphere { }, { size = 128 })",

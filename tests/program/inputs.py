@@ -132,7 +132,7 @@ class Volumes(Case):
 
     def test_grid_of_a_type_that_cannot_be_read(self):
         self.copy(os.path.join(CORPUS, "fuzz_vdb/points.vdb"))
-        self.refuses(VOLUME % 'vdb { "a.vdb" }.points', ["effect.lua:4:", "a.vdb", "no grid of numbers"])
+        self.refuses(VOLUME % 'vdb { "a.vdb" }.points', ["effect.lua:4:", "a.vdb", "no grid that can be read in this file: points (has values of type"])
 
     def test_not_a_number_and_infinity_draw_as_finite_pixels(self):
         self.copy(os.path.join(DATA, "nan.vdb"))

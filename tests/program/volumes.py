@@ -169,6 +169,22 @@ class Volumes(Case):
             self.assertEqual(file["metadata"]["effect"], "raw")
             self.assertRegex(file["metadata"]["creator"], r"roil \d")
 
+    def test_info_says_how_a_file_is_read(self):
+        self.write("effect.lua", BALL % "ball * 3")
+        self.succeeds("export", "vdb", "effect.lua", "-o", "a.vdb", "--frames", "5", "--size", "8")
+        data = self.read("a.vdb")
+        begin = data.index(b"roil ")
+        length = int.from_bytes(data[begin - 4:begin], "little")
+        for creator, turned in ("Houdini", True), ("Blender", False):
+            self.write("by.vdb", data[:begin] + creator.encode().ljust(length) + data[begin + length:])
+            info = self.succeeds("info", "by.vdb")
+            self.assertIn("creator = " + creator, info)
+            self.assertEqual("Y up, as its creator makes them" in info, turned)
+            self.assertNotIn("resampled", info)
+        corpus = os.path.join(SOURCE, "tests", "fuzz", "corpus", "fuzz_vdb")
+        for name, told in ("turned", ", rotated: it is resampled"), ("frustum", "frustum transform, which roil cannot read"):
+            self.assertIn(told, self.succeeds("info", os.path.join(corpus, name + ".vdb")))
+
     def test_mistakes(self):
         self.write_raw()
         export = ["export", "vdb", "effect.lua"]
@@ -180,7 +196,7 @@ class Volumes(Case):
         self.fails(2, "the least and the greatest corner", *export, "-o", "a.vdb", "--box", "1,1,1,0,2,2")
         one = [*export, "--frames", "1", "-o", "a.vdb"]
         self.fails(1, "no grid or medium 'cold'; there are: hot, wind, march", *one, "--source", "cold")
-        self.fails(1, "no grid is named 'fuel'", *one, "--source", "hot", "--fields", "heat,fuel")
+        self.fails(1, "no grid named 'fuel' can be read", *one, "--source", "hot", "--fields", "heat,fuel")
         self.fails(1, "is named twice", *one, "--source", "hot", "--fields", "heat,heat")
         self.fails(1, "'emission' is not given", *one, "--source", "march", "--fields", "emission")
         self.fails(1, "cannot be written", *export, "--frames", "1", "-o", "/proc/a.vdb", "--source", "hot")

@@ -201,6 +201,60 @@ static void y_up_turns_box_and_voxels(void **state) {
     sequence_texels_free(&t);
 }
 
+// Whether voxel (0, 1, 0) of the file comes to lie above voxel (0, 0, 0).
+static bool is_turned(const char *creator, bool said, bool y_up) {
+    const vdb_entry entries[] = {{.key = "creator", .text = creator}};
+    const float values[] = {1, 2};
+    const vdb_write_grid grid = {
+        .name = "density", .size = {1, 2, 1}, .values = values, .components = 1, .voxel_size = 1};
+    assert_true(vdb_write_with(in_folder("by.vdb"), &grid, 1, entries, 1));
+    sequence *s =
+        open_or_fail((sequence_desc){.pattern = "by.vdb", .y_up = y_up, .up_by_creator = !said});
+    int components;
+    sequence_channel(s, "density", &components);
+    sequence_texels t;
+    assert_true(sequence_decode(s->data, 0, &t));
+    bool turned = sequence_grid(s)->size[2] == 4;
+    assert_true(texel(s, &t, 1, 1, 1, 0) == 1);
+    assert_true(texel(s, &t, 1, turned ? 1 : 2, turned ? 2 : 1, 0) == 2);
+    sequence_texels_free(&t);
+    return turned;
+}
+
+static void the_creator_says_what_is_up_unless_the_script_does(void **state) {
+    (void)state;
+    assert_true(is_turned("Houdini 20.5.332/SOP_OpenVDB_Write", false, false));
+    assert_true(is_turned("Houdini/GEO_VDBTranslator", false, false));
+    assert_false(is_turned("Houdini/GEO_VDBTranslator", true, false));
+    assert_false(is_turned("Blender/OpenVDBWriter", false, false));
+    assert_false(is_turned("Not by Houdini", false, false));
+    assert_true(is_turned("Blender/OpenVDBWriter", true, true));
+}
+
+static void grids_that_are_not_read_say_why(void **state) {
+    (void)state;
+    const char *data = getenv("ROIL_TEST_DATA") ? getenv("ROIL_TEST_DATA") : ".";
+    static const char *const cases[][2] = {
+        {"frustum", "frustum (has a frustum transform; resample it to boxes of voxels first)"},
+        {"points", "(has values of type "},
+    };
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        const char *path =
+            arena_format(build_memory(), "%s/fuzz/corpus/fuzz_vdb/%s.vdb", data, cases[i][0]);
+        assert_null(sequence_create(build_memory(), &(sequence_desc){.pattern = path}));
+        assert_error("no grid that can be read in this file");
+        assert_error(cases[i][1]);
+    }
+    const char *types = arena_format(build_memory(), "%s/fuzz/corpus/fuzz_vdb/types.vdb", data);
+    sequence *s = sequence_create(build_memory(), &(sequence_desc){.pattern = types});
+    assert_non_null(s);
+    int components;
+    assert_int_equal(sequence_channel(s, "mask", &components), -1);
+    assert_error("no grid named 'mask' can be read");
+    assert_error("mask (has values of type mask)");
+    sequence_grid(s)->destroy(sequence_grid(s), NULL);
+}
+
 static void values_that_are_not_finite_count_as_zero(void **state) {
     (void)state;
     float values[8] = {1, INFINITY, 2, 3, -INFINITY, 4, 5, 6};
@@ -532,6 +586,8 @@ int main(void) {
         cmocka_unit_test(channels_are_found_by_alias),
         cmocka_unit_test(three_scalar_grids_make_a_vector),
         cmocka_unit_test(y_up_turns_box_and_voxels),
+        cmocka_unit_test(the_creator_says_what_is_up_unless_the_script_does),
+        cmocka_unit_test(grids_that_are_not_read_say_why),
         cmocka_unit_test(values_that_are_not_finite_count_as_zero),
         cmocka_unit_test(loops_fold_time),
         cmocka_unit_test(frames_are_hit_in_spite_of_rounding),

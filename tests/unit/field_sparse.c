@@ -176,7 +176,10 @@ static void random_grids_are_the_same(void **state) {
     for (int i = 0; i < 24; i++) {
         write_random("r1.vdb");
         write_random("r2.vdb");
-        assert_int_equal(compare_file(in_folder("r*.vdb"), (sequence_desc){.y_up = i % 2}), 3);
+        assert_int_equal(
+            compare_file(in_folder("r*.vdb"),
+                         (sequence_desc){.y_up = i % 2, .level_set = (vdb_set)(i / 2 % 2)}),
+            3);
     }
     unlink(in_folder("r1.vdb"));
     unlink(in_folder("r2.vdb"));

@@ -43,7 +43,7 @@ static vdb_info info_of(const char *path) {
 
 static bool sample(const char *path, const char *grid, box3 box, uint32_t x, uint32_t y,
                    uint32_t z) {
-    vdb_sample_desc desc = {path, grid, box, {x, y, z}, 1, out, NULL};
+    vdb_sample_desc desc = {path, grid, box, {x, y, z}, 1, out, NULL, VDB_SET_SOLID};
     return vdb_sample(&desc, NULL);
 }
 
@@ -180,7 +180,8 @@ static void vectors_come_back_in_order(void **state) {
     vdb_info info = info_of(test_path("v.vdb"));
     assert_int_equal(info.grids[0].components, 3);
     assert_string_equal(info.grids[0].type, "vec3s");
-    vdb_sample_desc desc = {test_path("v.vdb"), "v", info.grids[0].box, {NX, NY, NZ}, 3, out, NULL};
+    vdb_sample_desc desc = {test_path("v.vdb"), "v", info.grids[0].box, {NX, NY, NZ}, 3, out, NULL,
+                            VDB_SET_SOLID};
     assert_true(vdb_sample(&desc, NULL));
     assert_memory_equal(out, values, COUNT * 3 * sizeof *out);
     desc.components = 1;
@@ -216,6 +217,13 @@ static void level_sets_become_fog(void **state) {
     }
     assert_float_equal(out[0], 0.0f, 0);
     assert_float_equal(out[(12 * SIDE + 12) * SIDE + 12], 1.0f, 0);
+    vdb_sample_desc desc = {test_path("s.vdb"), "s", box, {SIDE, SIDE, SIDE}, 1, out, NULL,
+                            VDB_SET_FOG};
+    assert_true(vdb_sample(&desc, NULL));
+    for (int i = 0; i < SIDE * SIDE * SIDE; i++) {
+        float wanted = distance[i] >= 0.0f ? 0.0f : -distance[i] / band;
+        assert_float_equal(out[i], wanted, 1e-5f);
+    }
 }
 
 static void what_is_not_finite_becomes_zero_and_is_counted(void **state) {
@@ -238,7 +246,8 @@ static void what_is_not_finite_becomes_zero_and_is_counted(void **state) {
                             {NX, NY, NZ},
                             1,
                             out,
-                            NULL};
+                            NULL,
+                            VDB_SET_SOLID};
     assert_true(vdb_sample(&desc, &bad));
     assert_int_equal(bad, 3);
     assert_float_equal(out[0], 0.0f, 0);
@@ -322,7 +331,8 @@ static float sample_voxel(const char *path, const char *grid, int components, fl
                             {1, 1, 1},
                             components,
                             out,
-                            NULL};
+                            NULL,
+                            VDB_SET_SOLID};
     if (!vdb_sample(&desc, NULL)) fail_msg("%s", err_get());
     return out[0];
 }
@@ -380,6 +390,7 @@ static void turned_grids_are_read_through_their_transform(void **state) {
     vdb_info info = info_of(path);
     assert_true(info.grids[0].linear);
     assert_false(info.grids[0].axis_aligned);
+    assert_false(info.grids[0].sheared);
     // Voxels 0..3 of 0.5 are 1; turned by 30 degrees about Z, then moved to (1, 2, 3).
     const float c = 0.8660254f, s = 0.5f;
     for (int i = 0; i < 4; i++) {

@@ -11,7 +11,8 @@ static float out[16 * 16 * 16 * 3];
 
 // Of a grid that can be sampled, and of its file.
 static vdb_sample_desc desc_of(const char *path, const vdb_grid_info *g) {
-    vdb_sample_desc desc = {path, g->name, g->box, {16, 16, 16}, g->components, out, NULL};
+    vdb_sample_desc desc = {path,          g->name, g->box, {16, 16, 16},
+                            g->components, out,     NULL,   VDB_SET_SOLID};
     if (box3_is_empty(desc.box)) desc.box.max = (float3){8, 8, 8};
     return desc;
 }
@@ -150,13 +151,9 @@ static void absurd_requests_are_refused(void **state) {
     size_t size;
     load("whole.vdb", &data, &size);
     mem_free(data);
-    vdb_sample_desc desc = {test_path("whole.vdb"),
-                            "heat",
-                            {{0, 0, 0}, {1, 1, 1}},
-                            {65536, 65536, 65536},
-                            1,
-                            out,
-                            NULL};
+    vdb_sample_desc desc = {
+        test_path("whole.vdb"), "heat", {{0, 0, 0}, {1, 1, 1}}, {65536, 65536, 65536}, 1, out, NULL,
+        VDB_SET_SOLID};
     assert_false(vdb_sample(&desc, NULL));
     assert_message("2^31");
     desc.size[0] = desc.size[1] = desc.size[2] = 0;
@@ -227,7 +224,8 @@ typedef struct slow { // much to do for a small file
 static void *sample_slowly(void *user) {
     slow *s = user;
     vdb_sample_desc desc = {
-        test_folder, "heat", {{0, 0, 0}, {0.3f, 0.3f, 0.3f}}, {200, 200, 200}, 1, s->out, NULL};
+        test_folder, "heat",       {{0, 0, 0}, {0.3f, 0.3f, 0.3f}}, {200, 200, 200}, 1, s->out,
+        NULL,        VDB_SET_SOLID};
     char path[PATH_CAP + 16];
     snprintf(path, sizeof path, "%s/whole.vdb", test_folder);
     desc.path = path;
