@@ -36,6 +36,8 @@ function rgb(red, green, blue)
 end
 
 -- over_age { {0, 0.01}, {0.2, 0.1}, {1, 0} }: a number or a colour over a particle's life (0..1).
+local ramp_over_age = over_age
+
 function over_age(keys)
   local function wrong(what)
     error("over_age takes 2 to 64 keys {age, value}, as in over_age { {0, 0.01}, {1, 0.1} }; " .. what, 3)
@@ -46,7 +48,7 @@ function over_age(keys)
     if type(key) ~= "table" or #key ~= 2 or (type(key[2]) == "number") ~= number then wrong("number " .. i .. " is none, or no value like the first") end
     stops[i] = { key[1], number and { key[2], key[2], key[2] } or key[2] }
   end
-  local value = palette(stops)(particle_age)
+  local value = ramp_over_age(stops, number)(particle_age)
   return number and value.r or value.rgb
 end
 

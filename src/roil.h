@@ -292,7 +292,7 @@ typedef struct roil_palette {
     bool keyed;                      // moves in time
 } roil_palette;
 typedef struct roil_key {
-    float time; // seconds
+    float time; // seconds, or of a curve over age: 0 to 1
     float value[4];
 } roil_key;
 typedef struct roil_curve {
@@ -301,6 +301,7 @@ typedef struct roil_curve {
     int components;
     const char *shape; // "step", "linear", "cubic", "ease_in", "ease_out", "ease_in_out"
     float period;      // seconds; 0: does not repeat
+    bool over_age;     // over a particle's life, not over time; its shape is "linear"
 } roil_curve;
 bool roil_get_palette(roil_effect *e, const char *name, roil_palette *out);
 bool roil_get_curve(roil_effect *e, const char *name, roil_curve *out);

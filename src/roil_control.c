@@ -157,7 +157,8 @@ static void fill_scale(const effect_control *c, const pass *p, roil_control *out
     out->structural = true;
 }
 
-static const char *const ramp_help[] = {"a number to colour and alpha", "a value over time"};
+static const char *const ramp_help[] = {"a number to colour and alpha", "a value over time",
+                                        "a number over a particle's life (0..1)"};
 
 void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
     const effect_control *c = effect_get_control(e->effect, index);
@@ -185,7 +186,7 @@ void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
     case EFFECT_CONTROL_CURVE:
         out->type = ROIL_CURVE;
         out->components = effect_control_curve(c)->components;
-        out->help = ramp_help[1];
+        out->help = ramp_help[effect_control_is_over_age(c) ? 2 : 1];
         break;
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
@@ -276,7 +277,8 @@ bool roil_get_curve(roil_effect *e, const char *name, roil_curve *out) {
     *out = (roil_curve){.count = c->count,
                         .components = c->components,
                         .shape = curve_shape_name(c->shape),
-                        .period = c->period};
+                        .period = c->period,
+                        .over_age = effect_control_is_over_age(control)};
     for (size_t i = 0; i < c->count; i++) {
         out->keys[i].time = c->keys[i].time;
         memcpy(out->keys[i].value, c->keys[i].value, sizeof out->keys[i].value);

@@ -88,7 +88,7 @@ static void add_palette(strbuf *out, const palette_desc *desc, bool whole) {
     strbuf_add(out, " }");
 }
 
-static void add_curve(strbuf *out, const curve *c, bool whole) {
+static void add_curve(strbuf *out, const curve *c, bool whole, bool over_age) {
     strbuf_add(out, "{ ");
     for (size_t i = 0; i < c->count; i++) {
         strbuf_add(out, i > 0 ? ", {" : "{");
@@ -97,7 +97,7 @@ static void add_curve(strbuf *out, const curve *c, bool whole) {
         add_value(out, c->keys[i].value, c->components, false);
         strbuf_append(out, "}", 1);
     }
-    strbuf_add(out, ", shape = \"%s\"", curve_shape_name(c->shape));
+    if (!(whole && over_age)) strbuf_add(out, ", shape = \"%s\"", curve_shape_name(c->shape));
     if (whole && c->period > 0) add_number_key(out, "period", c->period);
     strbuf_add(out, " }");
 }
@@ -135,7 +135,7 @@ void roil_add_lua(const roil_effect *e, const effect_control *c, bool whole, str
     if (c->kind == EFFECT_CONTROL_PALETTE) {
         add_palette(out, palette_get_desc(effect_control_palette(c)), whole);
     } else if (c->kind == EFFECT_CONTROL_CURVE) {
-        add_curve(out, effect_control_curve(c), whole);
+        add_curve(out, effect_control_curve(c), whole, effect_control_is_over_age(c));
     } else if (c->kind == EFFECT_CONTROL_EVENTS) {
         strbuf text = {0};
         effect_print_control(e->effect, c, &text);
@@ -193,7 +193,7 @@ char *roil_control_lua(roil_effect *e, const char *name) {
     if (c->kind == EFFECT_CONTROL_PALETTE)
         strbuf_add(&out, "palette ");
     else if (c->kind == EFFECT_CONTROL_CURVE)
-        strbuf_add(&out, "curve ");
+        strbuf_add(&out, effect_control_is_over_age(c) ? "over_age " : "curve ");
     else
         roil_add_lua_key(control.label, &out);
     roil_add_lua(e, c, true, &out);

@@ -48,8 +48,9 @@ static float from_y(const editor *e, float y) {
 
 // ---- ranges -----------------------------------------------------------------------------------
 
-// All of the effect, and of the curve if it goes on after it.
+// All of the effect, and of the curve if it goes on after it; or a particle's life.
 static plot_range time_range(const editor *e) {
+    if (e->curve.over_age) return (plot_range){0, 1};
     timeline t = e->l->time;
     t.frame = t.first;
     float low = (float)timeline_seconds(&t);
@@ -106,7 +107,8 @@ static void draw_times(const editor *e) {
         char text[32];
         float x = to_x(e, n * step);
         bool last = (n + 1) * step > r.high;
-        snprintf(text, sizeof text, last ? "%.4g s" : "%.4g", (double)(n * step));
+        snprintf(text, sizeof text, last && !e->curve.over_age ? "%.4g s" : "%.4g",
+                 (double)(n * step));
         float half = 0.5f * ui_text_width(text);
         ui_line(x, e->plot.top, x, e->plot.bottom, ui_rgba(UI_LINE, 0.6f), scale);
         ui_label(fminf(x - half, end + RIGHT * scale - 2 * half), e->plot.bottom + 2 * scale,
@@ -155,7 +157,7 @@ static void draw_plot(const editor *e) {
     ui_fill(e->plot, ui_rgba(UI_FIELD, 1), 2 * ui_scale());
     draw_times(e);
     draw_values(e);
-    draw_playhead(e);
+    if (!e->curve.over_age) draw_playhead(e);
     for (int k = 0; k < e->curve.components; k++) draw_line(e, k);
     for (int k = 0; k < e->curve.components; k++)
         for (size_t i = 0; i < e->curve.count; i++) draw_key(e, i, k);
@@ -255,8 +257,8 @@ static bool edit_key(editor *e) {
     roil_key *key = &e->curve.keys[i];
     float time = key->time;
     bool changed = false;
-    panel_label("Time");
-    if (ui_number("##time", &time, 1, -INFINITY, INFINITY, false, "s")) {
+    panel_label(e->curve.over_age ? "Age" : "Time");
+    if (ui_number("##time", &time, 1, -INFINITY, INFINITY, false, e->curve.over_age ? "" : "s")) {
         curve_keys_move(&e->curve, i, time);
         changed = true;
     }
@@ -284,7 +286,7 @@ static bool draw(editor *e) {
     draw_plot(e);
     ui_canvas_end();
     panel_table_begin("key");
-    changed |= edit_shape(e);
+    if (!e->curve.over_age) changed |= edit_shape(e);
     changed |= edit_key(e);
     ui_table_end();
     if (e->state->selected == ROIL_MAX_STOPS)

@@ -81,6 +81,10 @@ const curve *effect_control_curve(const effect_control *c) {
     return ((const control *)c)->curve;
 }
 
+bool effect_control_is_over_age(const effect_control *c) {
+    return c->kind == EFFECT_CONTROL_CURVE && ((const control *)c)->palette;
+}
+
 const field *effect_control_original(const effect_control *c) {
     return ((const control *)c)->original;
 }

@@ -30,6 +30,15 @@ const char *effect_add_curve(effect *e, curve *c, const char *name) {
     return add(e, own, name);
 }
 
+const char *effect_add_age_curve(effect *e, curve *c, palette *shown, const char *name) {
+    control own = {.face.kind = EFFECT_CONTROL_CURVE,
+                   .curve = c,
+                   .curve_original = *c,
+                   .palette = shown,
+                   .palette_original = *palette_get_desc(shown)};
+    return add(e, own, name);
+}
+
 bool ramp_rename(effect *e, control *c) {
     effect_reset_control(e, c);
     c->face.name = unique_name(e, c->face.name);
@@ -50,27 +59,45 @@ static bool set_palette(control *c, const char *text) {
                                                        .key_count = 1});
 }
 
+static bool show_over_age(const control *c) {
+    palette_stop stops[PALETTE_MAX_STOPS];
+    palette_key key = {.stops = stops, .count = c->curve->count};
+    if (c->curve->shape != CURVE_LINEAR) return err_set("it is linear between its ages");
+    for (size_t i = 0; i < key.count; i++) {
+        float value = c->curve->keys[i].value[0];
+        stops[i] = (palette_stop){c->curve->keys[i].time, {value, value, value, 1}};
+    }
+    return palette_replace(c->palette, &(palette_desc){.keys = &key, .key_count = 1});
+}
+
+static bool replace_over_age(control *c, const curve *desc) {
+    curve_key keys[CURVE_MAX_KEYS];
+    curve before = *c->curve;
+    memcpy(keys, before.keys, before.count * sizeof *keys);
+    before.keys = keys;
+    if (!curve_replace(c->curve, desc)) return false;
+    return show_over_age(c) || (curve_replace(c->curve, &before), false);
+}
+
 static bool set_curve(control *c, const char *text) {
     curve_key keys[CURVE_MAX_KEYS];
     curve desc;
     if (!curve_parse(text, keys, &desc)) return false;
     desc.period = c->curve_original.period;
-    return curve_replace(c->curve, &desc);
+    return c->palette ? replace_over_age(c, &desc) : curve_replace(c->curve, &desc);
 }
 
 bool ramp_set(effect *e, control *c, const char *text) {
     (void)e;
-    bool done = c->palette ? set_palette(c, text) : set_curve(c, text);
+    bool done = c->curve ? set_curve(c, text) : set_palette(c, text);
     return done || err_prefix("%s: ", c->face.name);
 }
 
 void ramp_reset(effect *e, control *c) {
     (void)e;
     if (!c->face.moved) return;
-    if (c->palette)
-        palette_replace(c->palette, &c->palette_original);
-    else
-        curve_replace(c->curve, &c->curve_original);
+    if (c->palette) palette_replace(c->palette, &c->palette_original);
+    if (c->curve) curve_replace(c->curve, &c->curve_original);
 }
 
 // ---- saying -----------------------------------------------------------------------------------
@@ -99,8 +126,8 @@ static void print_palette(const palette_desc *desc, strbuf *out) {
 
 void ramp_print(const effect *e, const control *c, strbuf *out) {
     (void)e;
-    if (c->palette)
-        print_palette(palette_get_desc(c->palette), out);
-    else
+    if (c->curve)
         curve_print(c->curve, out);
+    else
+        print_palette(palette_get_desc(c->palette), out);
 }

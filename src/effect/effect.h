@@ -165,6 +165,9 @@ enum {
 // when there are too many already), or NULL when a setting of that name is wrong.
 const char *effect_add_palette(effect *e, palette *p, const char *name);
 const char *effect_add_curve(effect *e, curve *c, const char *name);
+// A number over a particle's life: a curve whose times are ages, 0 to 1, linear between its keys.
+// `shown`, the palette that a field has of it, becomes what the curve is whenever that changes.
+const char *effect_add_age_curve(effect *e, curve *c, palette *shown, const char *name);
 void effect_mark_structural(effect *e, size_t param);
 
 // ---- asking -----------------------------------------------------------------------------------
@@ -212,6 +215,7 @@ const effect_control *effect_find_control(effect *e, const char *name); // NULL:
 // and what the script gave (NULL: the default).
 const palette *effect_control_palette(const effect_control *c);
 const curve *effect_control_curve(const effect_control *c);
+bool effect_control_is_over_age(const effect_control *c); // a curve of effect_add_age_curve
 const field *effect_control_field(const effect *e, const effect_control *c);
 const field *effect_control_original(const effect_control *c);
 const scene_value *effect_control_value(const effect_control *c); // of the scene, a light ...

@@ -54,7 +54,9 @@ typedef struct control {
     const field *original;
     field *nodes[2];
     int turn;
-    palette *palette; // its state before any setting beside it
+    // Beside each, its state before any setting. A curve over age has both: fields read the
+    // palette.
+    palette *palette;
     palette_desc palette_original;
     curve *curve;
     curve curve_original;

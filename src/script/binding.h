@@ -19,6 +19,7 @@ typedef struct script {
     int update;          // registry reference of fx.update, or LUA_NOREF
     int handlers;        // of the lists of functions of fx:on_frame and the like (l_events.c)
     uint64_t seed;       // of math.random
+    const char *named;   // the call in the script's text that was named last (naming.c), or NULL
     struct scene_explosions *explosions; // all lists of the script, linked; NULL: there is none
 } script;
 

@@ -1,9 +1,11 @@
 // palette { {0, "#000000"}, {0.5, {1, 0.4, 0}}, {1, "#fff3b0", 0.5}, space = "oklab" }
 // palette { blackbody = {500, 3000}, physical = true }
 // palette { keys = { {0, { {0, "#000"}, {1, "#fff"} }}, {2, { ... }} } }
-// A palette is called with a field, and gives a field of four components.
+// over_age { {0, 0.01}, {1, 0.1} } is one over particle_age (prelude.lua); a number of it is edited
+// as a curve. A palette is called with a field, and gives a field of four components.
 #include "base/memory.h"
 #include "script/binding.h"
+#include <math.h>
 #include <string.h>
 
 enum { TEXT_COST = 64 }; // bytes of a stop that is told as text
@@ -91,6 +93,11 @@ static bool read_blackbody(lua_State *L, palette_desc *desc) {
     return true;
 }
 
+static void push_palette(lua_State *L, palette *p) {
+    palette_object *object = object_new(L, who, sizeof *object);
+    object->palette = p;
+}
+
 static int l_palette(lua_State *L) {
     script_require_loading(L, who);
     const script_object *row = value_check_object(L, 1, who);
@@ -117,8 +124,7 @@ static int l_palette(lua_State *L) {
     palette *p = palette_create(script_memory(L), &desc);
     const char *name = p ? value_name_or_variable(L, 1, who) : NULL;
     if (!name || !effect_add_palette(script_of(L)->effect, p, name)) script_raise(L);
-    palette_object *object = object_new(L, who, sizeof *object);
-    object->palette = p;
+    push_palette(L, p);
     return 1;
 }
 
@@ -132,8 +138,45 @@ static int l_apply(lua_State *L) {
     return 1;
 }
 
+// Its stops as a curve. What jumps has two keys at one age: one of a curve is a little later.
+static curve *curve_of(lua_State *L, const palette_key *stops) {
+    curve_key keys[PALETTE_MAX_STOPS];
+    for (size_t i = 0; i < stops->count; i++) {
+        keys[i] = (curve_key){stops->stops[i].at, {stops->stops[i].color[0]}};
+        if (i > 0 && keys[i].time <= keys[i - 1].time)
+            keys[i].time = nextafterf(keys[i - 1].time, INFINITY);
+    }
+    return curve_create(
+        script_memory(L),
+        &(curve){.shape = CURVE_LINEAR, .components = 1, .keys = keys, .count = stops->count});
+}
+
+// What over_age of the prelude makes of its keys: stops, and whether they are numbers.
+static int l_over_age(lua_State *L) {
+    static const char name_of[] = "over_age";
+    script_require_loading(L, name_of);
+    palette_key key = {0};
+    read_stops(L, 1, &key);
+    vm_charge_memory(L, EFFECT_CONTROL_COST + sizeof(palette_desc) + sizeof key +
+                            key.count * sizeof(curve_key));
+    palette *p = palette_create(script_memory(L), &(palette_desc){.keys = &key, .key_count = 1});
+    if (!p) script_raise(L);
+    effect *e = script_of(L)->effect;
+    const char *name = value_name_or_variable(L, 1, name_of);
+    if (lua_toboolean(L, 2)) {
+        curve *c = curve_of(L, &key);
+        name = c ? effect_add_age_curve(e, c, p, name) : NULL;
+    } else {
+        name = effect_add_palette(e, p, name);
+    }
+    if (!name) script_raise(L);
+    push_palette(L, p);
+    return 1;
+}
+
 void l_palette_open(lua_State *L) {
     static const luaL_Reg methods[] = {{"__call", l_apply}, {NULL, NULL}};
     object_type(L, who, methods);
     lua_register(L, who, l_palette);
+    lua_register(L, "over_age", l_over_age);
 }

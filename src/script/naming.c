@@ -1,5 +1,6 @@
 // Names of palettes and curves: what the script calls them. `local fire = palette { ... }` gives
-// "fire", so that it can be set by that name without another word.
+// "fire", and `size = over_age { ... }` "size", so that it can be set by that name without another
+// word.
 #include "script/binding.h"
 #include <ctype.h>
 #include <string.h>
@@ -46,12 +47,24 @@ static bool read_name(const char *text, const char *at, char *out, size_t capaci
     return true;
 }
 
+// The call of `word` in a line that comes after the one that was named last: several in one line
+// are made from left to right.
+static const char *next_call(lua_State *L, const char *text, const char *line, const char *word) {
+    const char *named = script_of(L)->named;
+    const char *call = NULL;
+    if (named && named >= line && named < line + strcspn(line, "\n"))
+        call = find_call(text, named + 1, word);
+    if (!call) call = find_call(text, line, word);
+    if (call) script_of(L)->named = call;
+    return call;
+}
+
 static bool name_by_source(lua_State *L, const char *who, char *out, size_t capacity) {
     size_t begin;
     const char *text = vm_caller_source(L, &begin);
     const char *line = text ? text + begin : NULL;
     for (int i = 0; line && i <= LINES_ABOVE; i++) {
-        const char *call = find_call(text, line, who);
+        const char *call = next_call(L, text, line, who);
         if (call) return read_name(text, call, out, capacity);
         if (line == text) break;
         for (line--; line > text && line[-1] != '\n';) line--;

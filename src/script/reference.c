@@ -42,7 +42,8 @@ static const script_object reference_words[] = {
      .args = KEYS(KEY("a", NULL, "result at t = 0"), KEY("b", NULL, "result at t = 1"),
                   KEY("t", "0.5", "share of b"))},
     {"over_age", "operator", "over_age { {0, 0.01}, {0.2, 0.1}, {1, 0} }",
-     "a number or a colour over a particle's life: that of a palette at particle_age",
+     "a number or a colour over a particle's life: a control, a curve or a palette at particle_age, "
+     "that is called what it is given to",
      .args = KEYS(KEY("key ...", "{age, value}", "2 to 64, of rising age in 0..1; values from 0 to 65504"))},
     {"quantise", "operator", "quantise(value, 4)",
      "the middle of the step that a value lies in: flat bands instead of shades",

@@ -20,10 +20,11 @@ class Splats(Case):
         super().setUp()
         write_png(self.path("cells.png"), 16, 8, lambda x, y: (255, 0, 0) if x < 8 else (0, 255, 0))
 
-    def frame(self, number):
+    def frame(self, number, *settings):
         """The middle of a frame, and how much of it is covered."""
         self.write("effect.lua", DRAWN)
-        self.succeeds("render", "effect.lua", "--frames", str(number), "--size", "64x64", "--alpha", "-o", "o.png")
+        self.succeeds("render", "effect.lua", "--frames", str(number), "--size", "64x64", "--alpha", "-o", "o.png",
+                      *(word for text in settings for word in ("--set", text)))
         picture = Png(self.read("o.png"))
         return picture.rows[32][4 * 32:4 * 32 + 3], sum(alpha > 0 for alpha in picture.channel(3))
 
@@ -37,6 +38,19 @@ class Splats(Case):
         self.assertGreater(young, 8 * old)
         _, gone = self.frame(12)
         self.assertEqual(gone, 0)
+
+    def test_a_number_over_age_is_edited_as_a_curve(self):
+        _, old = self.frame(9)
+        listed = self.succeeds("info", "params", "effect.lua")
+        self.assertIn("a number over a particle's life (0..1)", listed)
+        self.assertNotIn("palette", listed.replace("palettes and curves", ""))
+        self.assertEqual(self.frame(9, "size=linear 0 1; 0.45 1; 0.55 0.2; 1 0.2")[1], old)
+        _, larger = self.frame(9, "size=linear 0 0.2; 1 0.6")
+        self.assertGreater(larger, 2 * old)
+        for text, says in (("cubic 0 1; 1 2", "linear"), ("linear 0 1; 0 2", "does not come after"), ("linear 0 1,1,1; 1 2,2,2", "component"),
+                           ("linear 0 1; 1 -2", "65504"), ("linear 0 1", "2")):
+            with self.subTest(text):
+                self.fails(1, ["size", says], "render", "effect.lua", "--set", "size=" + text, "-o", "o.png")
 
     def test_particles_are_a_density(self):
         self.write("effect.lua", HEAD + """

@@ -23,6 +23,19 @@ static curve *add_curve(stage *s, const char *name, const char *expected) {
     return c;
 }
 
+// {0, 1}, {1, 3} over a particle's life, called "size"; returns what fields read of it.
+static palette *add_age_curve(stage *s) {
+    static const curve_key keys[] = {{0, {1}}, {1, {3}}};
+    static const palette_stop stops[] = {{0, {1, 1, 1, 1}}, {1, {3, 3, 3, 1}}};
+    arena *memory = effect_memory(s->e);
+    palette *p = palette_create(
+        memory, &(palette_desc){.keys = &(palette_key){0, stops, 2}, .key_count = 1});
+    curve *c = curve_create(memory, &(curve){CURVE_LINEAR, 1, keys, 2, 0});
+    ok(p && c);
+    assert_string_equal(effect_add_age_curve(s->e, c, p, "size"), "size");
+    return p;
+}
+
 static const effect_control *control_of(stage *s, const char *name) {
     const effect_control *c = effect_find_control(s->e, name);
     ok(c);
@@ -130,11 +143,13 @@ static void every_kind_is_set_and_reset(void **state) {
     ok(pass_declare(p));
     assert_int_equal(effect_add_param(s->e, &gain), 0);
     add_palette(s, "fire", "fire");
+    add_age_curve(s);
     ok(effect_check_settings(s->e));
     static const char *const cases[][2] = {
         {"gain", "1.25"},
         {"fire", "0 #ff0000; 1 4,2,0.5 0.25"},
         {"motion", "cubic 0 2; 1 0; 3 7"},
+        {"size", "linear 0 2; 0.25 1; 0.5 7"},
         {"camera.fov", "25"},
         {"camera.target", "1,2,3"},
         {"sun.color", "#ff8000"},
@@ -155,6 +170,28 @@ static void every_kind_is_set_and_reset(void **state) {
         assert_null(c->moved);
         says(s, c->name, c->initial);
     }
+}
+
+static void what_is_read_over_age_follows_its_curve(void **state) {
+    stage *s = *state;
+    palette *p = add_age_curve(s);
+    float low, high, value[4];
+    ok(effect_set(s->e, "size", "linear 0.25 5; 0.5 7; 0.75 1"));
+    palette_range(p, &low, &high);
+    assert_true(low == 0.25f && high == 0.75f);
+    palette_eval(p, 0, 0.5f, value);
+    for (int i = 0; i < 3; i++) assert_float_equal(value[i], 7, 0.02);
+    static const char *const refused[] = {"linear 0 1; 1 -2", "linear 0 1", "cubic 0 1; 1 2",
+                                          "linear 1 1; 0 2"};
+    for (size_t i = 0; i < COUNT_OF(refused); i++) {
+        assert_false(effect_set(s->e, "size", refused[i]));
+        says(s, "size", "linear 0.25 5; 0.5 7; 0.75 1");
+        palette_eval(p, 0, 0.5f, value);
+        assert_float_equal(value[0], 7, 0.02);
+    }
+    ok(effect_reset(s->e, "size"));
+    palette_eval(p, 0, 0.5f, value);
+    assert_float_equal(value[0], 2, 0.02);
 }
 
 static void refused_text_changes_nothing(void **state) {
@@ -322,6 +359,7 @@ int main(void) {
         STAGE_TEST(names_are_made_unique),
         STAGE_TEST(names_not_known_get_a_suggestion),
         STAGE_TEST(every_kind_is_set_and_reset),
+        STAGE_TEST(what_is_read_over_age_follows_its_curve),
         STAGE_TEST(refused_text_changes_nothing),
         STAGE_TEST(eye_of_an_orbit_comes_and_goes),
         STAGE_TEST(camera_that_stands_has_no_orbit),

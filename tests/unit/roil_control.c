@@ -19,6 +19,7 @@ static const char script_text[] =
     "'#0f0', 0.5} }} } }\n"
     "local fade = curve { {0, 1}, {2, 0.25}, shape = 'cubic', period = 4 }\n"
     "local way = curve { {0, {0, 0, 0}}, {1, {1, 2, 3}} }\n"
+    "local grown = over_age { {0, 0.125}, {0.5, 1} }\n"
     "fx.camera = orbit { target = {0, 0, 1}, distance = 6, yaw = 30 }\n"
     "local m = march { density = sphere { radius = 1 } * density, emission = fire(sphere { "
     "position = {0, 0, "
@@ -153,6 +154,7 @@ static void every_control_is_lua_that_loads(void **state) {
         {"sun.color", "#123456"},
         {"body", "0 #000000; 2 9,8,7 0.1"},
         {"fade", "step 0 7; 1 8"},
+        {"grown", "linear 0 7; 0.25 8; 1 0"},
         {"march.albedo", "0.1,0.2,0.3"},
     };
     for (size_t i = 0; i < COUNT_OF(sets); i++) need(roil_set(e, sets[i][0], sets[i][1]));
@@ -163,6 +165,9 @@ static void every_control_is_lua_that_loads(void **state) {
     roil_free(lua);
     lua = roil_control_lua(e, "fade");
     assert_string_equal(lua, "curve { {0, 7}, {1, 8}, shape = \"step\", period = 4 }");
+    roil_free(lua);
+    lua = roil_control_lua(e, "grown");
+    assert_string_equal(lua, "over_age { {0, 7}, {0.25, 8}, {1, 0} }");
     roil_free(lua);
     lua = roil_control_lua(e, "march.steps");
     assert_string_equal(lua, "steps = 12");
@@ -213,6 +218,11 @@ static void palette_and_curve_are_taken_apart_and_put_together(void **state) {
     need(roil_get_curve(e, "fade", &c));
     assert_true(c.count == 2 && c.components == 1 && c.period == 4);
     assert_string_equal(c.shape, "cubic");
+    assert_false(c.over_age);
+    roil_curve grown;
+    need(roil_get_curve(e, "grown", &grown));
+    assert_true(grown.over_age && grown.count == 2 && grown.keys[0].value[0] == 0.125f);
+    refused(roil_set(e, "grown", "cubic 0 1; 1 2"), "linear");
     c.keys[1].value[0] = 0.5f;
     text = roil_curve_text(&c);
     assert_string_equal(text, "cubic 0 1; 2 0.5");

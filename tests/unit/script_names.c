@@ -37,6 +37,28 @@ static void variables_and_fields_name_what_they_hold(void **state) {
     expect("local p = palette\nlocal fire = p " STOPS, "palette");
 }
 
+#define AGES "{ {0, 1}, {1, 0.5} }"
+
+static void what_goes_over_age_is_named_as_what_it_is(void **state) {
+    (void)state;
+    expect("local fading = over_age " AGES, "fading");
+    expect("local t = { size = over_age " AGES ", opacity = over_age " AGES " }", "size opacity");
+    expect("local t = { size = 2 * over_age " AGES " }", "over_age");
+    expect("for i = 1, 2 do local t = { a = over_age " AGES ", b = over_age " AGES " } end",
+           "a b a_2 b_2");
+    effect *e = load("local size = over_age " AGES
+                     "\nlocal hue = over_age { {0, '#f00'}, {1, {0, 1, 0}} }\n"
+                     "local edge = over_age { {0, 1}, {0.5, 1}, {0.5, 0} }");
+    const effect_control *size = effect_find_control(e, "size"),
+                         *hue = effect_find_control(e, "hue"),
+                         *edge = effect_find_control(e, "edge");
+    assert_true(effect_control_is_over_age(size) && effect_control_is_over_age(edge));
+    assert_string_equal(size->initial, "linear 0 1; 1 0.5");
+    assert_int_equal(effect_control_curve(edge)->count, 3);
+    assert_true(hue->kind == EFFECT_CONTROL_PALETTE && !effect_control_is_over_age(hue));
+    effect_destroy(e);
+}
+
 static void calls_over_several_lines_are_found(void **state) {
     (void)state;
     expect("local fire = palette {\n  {0, '#000'},\n  {1, '#fff'},\n}", "fire");
@@ -121,6 +143,7 @@ static void parameters_read_while_loading_are_structure(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(variables_and_fields_name_what_they_hold),
+        cmocka_unit_test(what_goes_over_age_is_named_as_what_it_is),
         cmocka_unit_test(calls_over_several_lines_are_found),
         cmocka_unit_test(what_has_no_variable_is_numbered),
         cmocka_unit_test(those_beyond_a_limit_have_no_name),
