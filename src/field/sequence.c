@@ -353,6 +353,7 @@ static bool check(sequence_data *s) {
     if (d->max_frame_bytes == 0) d->max_frame_bytes = (uint64_t)512 << 20;
     if (d->raw.value_scale == 0) d->raw.value_scale = 1;
     if (!d->raw.channel) d->raw.channel = "density";
+    if (!d->raw.axes) d->raw.axes = "xyz";
     if (!isfinite(d->fps) || d->fps < 0)
         return err_set("%s: %g frames a second; more than 0 are accepted", d->pattern, d->fps);
     if (!isfinite(d->speed) || !isfinite(d->start))
@@ -372,6 +373,7 @@ static bool open_files(sequence_data *s) {
     if (!check(s) || !list_files(s)) return false;
     if (s->raw) {
         s->desc.raw.channel = arena_string(&s->memory, s->desc.raw.channel);
+        s->desc.raw.axes = arena_string(&s->memory, s->desc.raw.axes);
         if (s->desc.raw.type) s->desc.raw.type = arena_string(&s->memory, s->desc.raw.type);
         if (s->file_count > 1)
             return err_set("%s: one raw file holds all frames, but %zu have such a name",

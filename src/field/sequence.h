@@ -39,9 +39,14 @@ typedef struct sequence_desc {
     uint64_t max_frame_bytes; // 0: 512 MiB
     // Raw files only:
     struct {
-        const char *type;        // "u8", "u16", "f16", "f32"
-        uint32_t size[3];        // voxels; x varies fastest
-        uint32_t frames;         // 0: as many as the file holds
+        const char *type; // "u8", "u16", "f16", "f32"
+        uint32_t size[3]; // voxels along x, y and z
+        // Along which axes the voxels follow each other, the one that varies fastest first; '-'
+        // before one that runs backwards: "x-yz". NULL: "xyz".
+        const char *axes;
+        box3 box;         // metres that these voxels cover; of no extent: from 0, by voxel_size
+        uint32_t padding; // voxels of nothing around them
+        uint32_t frames;  // 0: as many as the file holds
         uint64_t offset, stride; // bytes to the first frame; from frame to frame (0: tight)
         float voxel_size;        // metres; 0: 1 / size[0]
         float value_scale;       // multiplies values; u8 and u16 are first normalised to 0..1; 0: 1

@@ -29,7 +29,9 @@ static bool same_channels(const sequence_data *a, const sequence_data *b) {
 }
 
 static bool same_raw(const sequence_desc *a, const sequence_desc *b) {
-    return strcmp(a->raw.type, b->raw.type) == 0 && strcmp(a->raw.channel, b->raw.channel) == 0 &&
+    return strcmp(a->raw.axes, b->raw.axes) == 0 && a->raw.padding == b->raw.padding &&
+           memcmp(&a->raw.box, &b->raw.box, sizeof a->raw.box) == 0 &&
+           strcmp(a->raw.type, b->raw.type) == 0 && strcmp(a->raw.channel, b->raw.channel) == 0 &&
            memcmp(a->raw.size, b->raw.size, sizeof a->raw.size) == 0 &&
            a->raw.frames == b->raw.frames && a->raw.offset == b->raw.offset &&
            a->raw.stride == b->raw.stride && a->raw.voxel_size == b->raw.voxel_size &&

@@ -27,6 +27,8 @@ typedef struct sequence_channel_info {
 
 typedef struct sequence_raw_layout { // checked: every frame lies inside the file
     uint32_t texel;                  // bytes a value
+    int axes[3];                     // the fastest first
+    bool backwards[3];               // of these
     uint64_t offset, stride, frame_bytes;
     uint32_t frames;
     int64_t changed; // file_changed_ns
@@ -138,7 +140,8 @@ struct sequence {
 
 // Reads a raw file's length and checks that all frames fit. Sets layout, frame_count, size, box.
 bool sequence_raw_open(sequence_data *s);
-// Values of one frame, x fastest. Any thread. Those that are not finite become 0 and count as bad.
+// Values of one frame, x fastest, into zeros of the size with padding. Any thread. Those that are
+// not finite become 0 and count as bad.
 bool sequence_raw_read(const sequence_data *s, uint32_t frame, float *out, uint64_t *bad);
 
 // Which grid of a file a channel is read from: its name, or an alias; NULL when there is none.

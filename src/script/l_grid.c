@@ -107,6 +107,10 @@ static int l_raw(lua_State *L) {
     desc.raw.offset = bytes_of(L, "skip");
     desc.raw.stride = bytes_of(L, "stride");
     desc.raw.voxel_size = (float)value_get_number(L, 1, "raw", "voxel_size", 0);
+    desc.raw.axes = value_get_string(L, 1, "raw", "axes");
+    if (value_get_box(L, 1, "raw", &desc.raw.box) && desc.raw.voxel_size != 0)
+        vm_error(L, "raw: 'box' and 'voxel_size' both say how large a voxel is; one is accepted");
+    desc.raw.padding = value_get_count(L, 1, "raw", "padding", 0);
     desc.raw.value_scale = (float)read_factor(L, "raw", "value_scale", 1);
     desc.raw.channel = value_get_string(L, 1, "raw", "channel");
     return push_sequence(L, "raw", &desc);

@@ -523,6 +523,55 @@ static void raw_frames_lie_at_their_stride(void **state) {
     sequence_texels_free(&t);
 }
 
+// Voxel (x, y, z) of 2 x 3 x 4 holds 1 + x + 10 y + 100 z, in every order and direction of axes.
+static void raw_axes_go_in_any_order_and_direction(void **state) {
+    (void)state;
+    static const char *const orders[] = {"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"};
+    enum { X = 2, Y = 3, Z = 4, PAD = 2 };
+    const uint32_t size[3] = {X, Y, Z};
+    for (int i = 0; i < 6 * 8; i++) {
+        float values[X * Y * Z];
+        char axes[8] = "";
+        uint32_t n[3], at[3];
+        for (int k = 0; k < 3; k++) {
+            char c = orders[i / 8][k];
+            snprintf(axes + strlen(axes), 3, "%s%c", i >> k & 1 ? "-" : "", c);
+            n[k] = size[c - 'x'];
+        }
+        for (uint32_t v = 0; v < X * Y * Z; v++) {
+            const uint32_t along[3] = {v % n[0], v / n[0] % n[1], v / n[0] / n[1]};
+            for (int k = 0; k < 3; k++)
+                at[orders[i / 8][k] - 'x'] = i >> k & 1 ? n[k] - 1 - along[k] : along[k];
+            values[v] = (float)(1 + at[0] + 10 * at[1] + 100 * at[2]);
+        }
+        assert_true(file_write(in_folder("axes.raw"), values, sizeof values));
+        sequence *s = open_or_fail((sequence_desc){.pattern = "axes.raw",
+                                                   .raw = {.type = "f32",
+                                                           .size = {X, Y, Z},
+                                                           .axes = axes,
+                                                           .padding = PAD,
+                                                           .box = {{1, 2, 3}, {2, 5, 7}}}});
+        int components;
+        sequence_channel(s, "density", &components);
+        sequence_texels t;
+        assert_true(sequence_decode(s->data, 0, &t));
+        const field_grid *g = sequence_grid(s);
+        assert_int_equal(g->size[0], X + 2 * PAD);
+        assert_true(g->box.min.x == 0 && g->box.min.y == 0 && g->box.min.z == 1);
+        assert_true(g->box.max.x == 3 && g->box.max.y == 7 && g->box.max.z == 9);
+        for (int z = 0; z < Z + 2 * PAD; z++)
+            for (int y = 0; y < Y + 2 * PAD; y++)
+                for (int x = 0; x < X + 2 * PAD; x++) {
+                    int p[3] = {x - PAD, y - PAD, z - PAD};
+                    bool inside =
+                        p[0] >= 0 && p[0] < X && p[1] >= 0 && p[1] < Y && p[2] >= 0 && p[2] < Z;
+                    float wanted = inside ? (float)(1 + p[0] + 10 * p[1] + 100 * p[2]) : 0;
+                    assert_true(texel(s, &t, x, y, z, 0) == wanted);
+                }
+        sequence_texels_free(&t);
+    }
+}
+
 static void raw_descriptions_are_checked(void **state) {
     (void)state;
 #define RAW(...)                                                                                   \
@@ -540,6 +589,14 @@ static void raw_descriptions_are_checked(void **state) {
     refuses(RAW(.type = "u8", .size = {2, 2, 2}, .offset = UINT64_MAX), "holds 64 bytes");
     refuses(RAW(.type = "u8", .size = {2, 2, 2}, .stride = UINT64_MAX, .frames = 2), "2 frames");
     refuses(RAW(.type = "u8", .size = {2, 2, 2}, .voxel_size = -1), "voxel size");
+    static const char *const axes[] = {"", "xy", "xxz", "xyzx", "x--yz", "XYZ", "xyz-", "xyw"};
+    for (size_t i = 0; i < COUNT_OF(axes); i++)
+        refuses(RAW(.type = "u8", .size = {2, 2, 2}, .axes = axes[i]), "as in \"x-yz\"");
+    refuses(RAW(.type = "u8", .size = {2, 2, 2}, .padding = 2048), "2048 of padding");
+    refuses(RAW(.type = "u8", .size = {2, 2, 2}, .padding = UINT32_MAX), "of padding");
+    refuses(RAW(.type = "u8", .size = {2, 2, 2}, .padding = 1000), "limit of");
+    refuses(RAW(.type = "u8", .size = {2, 2, 2}, .box = {{0, 0, 0}, {1, 1, 0}}), "along z");
+    refuses(RAW(.type = "u8", .size = {2, 2, 2}, .box = {{NAN, 0, 0}, {1, 1, 1}}), "along x");
     refuses(RAW(.type = "f32", .size = {4096, 4096, 4096}), "limit of");
 }
 
@@ -598,6 +655,7 @@ int main(void) {
         cmocka_unit_test(far_apart_frames_do_not_ask_for_all_memory),
         cmocka_unit_test(raw_types_are_normalised),
         cmocka_unit_test(raw_frames_lie_at_their_stride),
+        cmocka_unit_test(raw_axes_go_in_any_order_and_direction),
         cmocka_unit_test(raw_descriptions_are_checked),
         cmocka_unit_test(a_raw_file_that_shrinks_is_an_error),
     };

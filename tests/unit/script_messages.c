@@ -138,6 +138,8 @@ static void declarations_are_checked(void **state) {
         {"vdb { '../*.vdb' }", ""},
         {"raw { 'x.raw' }", "raw: 'size' is missing"},
         {"raw { 'x.raw', size = {1, 2, 0} }", "raw: 'size' has 0"},
+        {"raw { 'x.raw', size = 8, voxel_size = 1, box = { min = {0, 0, 0}, max = {1, 1, 1} } }",
+         "raw: 'box' and 'voxel_size'"},
         {"raw { 'x.raw', size = 8, type = 'u32' }", "raw: unknown value of 'type' 'u32'"},
         {"mesh { }", "mesh: its file comes first"},
         {"mesh { '/etc/passwd' }", ""},
