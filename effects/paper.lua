@@ -40,21 +40,29 @@ if noise:get() ~= "none" then detail = detail:transform { scale = side } end
 -- Noise is blended in by 50 % into the density and by 30 % into the temperature.
 local density     = burst.density * mix(1, detail, 0.5)
 local temperature = burst.temperature * (1 / 3.5) * mix(1, detail, 0.3)
-local colors = palette { {0.00, "#000000"}, {0.20, "#3b0a00"}, {0.45, "#c43a00"}, {0.70, "#ff9a1f"}, {0.90, "#ffe08a"}, {1.00, "#ffffff"} }
+
+-- Its palette is a texture of six texels, of which the hot ones are brighter than a screen shows: bloom
+-- lives on them. Smoke is grey. A colour is weighed by the density once more than its opacity says.
+local texels = { {0.2, 0.2, 0.2}, {0.3, 0.3, 0.3}, {0.4, 0.4, 0.4}, {1.5, 0.4, 0.4}, {1.8, 1.2, 0.1}, {2, 2, 0.8} }
+local stops = {}
+for i, color in ipairs(texels) do stops[i] = {(i - 0.5) / #texels, color} end
+local colors = palette(stops)(temperature) * density
 
 fx.camera = camera { eye = {4, -12, 3.36}, target = {4, 4, 3.36}, fov = 31.89, near = 0.1, far = 500 }
-fx.sun    = sun { azimuth = 239, elevation = 44, strength = 2.5 }
+-- Values are shown as they are, without the curve of a display: hence so much light.
+fx.sun    = sun { azimuth = 239, elevation = 44, strength = 7 }
+fx.sky    = sky { strength = 1.3 }
 
 local scene  = geometry { mesh { "data/ground.obj" }, mesh { "data/crates.obj" } }
 local solid  = shade { from = scene }
 local volume = march {
   mode = "paper", sampling = "quasi_cubic", view = show:get() and "noise" or "beauty",
-  density = density, radiance = colors(temperature), noise = detail,
+  density = density, radiance = colors, noise = detail,
   steps = steps, opacity = opacity, depth = scene.depth, resolution = 0.25,
 }
 local picture = over { volume = volume.color, source = solid }
 local glow    = bloom { bright { picture, mode = "paper", threshold = 1.0 }, mode = "paper", alpha = 0.8 }
-local shown   = final { source = picture, bloom = glow, bloom_intensity = 1, tonemap = "none" }
+local shown   = final { source = picture, bloom = glow, bloom_intensity = 1, tonemap = "display" }
 
 fx.output = shown.color
 fx.linear = shown.linear

@@ -1,5 +1,10 @@
 // Tone mapping: scene-linear Rec.709 to display-linear Rec.709.
 
+// The light that a display makes of values in 0..1 (IEC 61966-2-1, sRGB): who encodes it has them again.
+vec3 tonemap_decode(vec3 v) {
+    return mix(v / 12.92, pow((v + 0.055) / 1.055, vec3(2.4)), greaterThan(v, vec3(0.04045)));
+}
+
 vec3 tonemap_exponential(vec3 c) { return 1.0 - exp(-c); }
 
 // Reinhard et al. 2002, on luminance, with white at 4.

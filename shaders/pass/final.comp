@@ -1,7 +1,7 @@
 // The last pass: adds the bloom, exposes, tone maps.
 #include "lib/color.glsl"
 #include "lib/tonemap.glsl"
-//@ option tonemap = agx {agx, aces, reinhard, exponential, none} : how scene light becomes display light
+//@ option tonemap = agx {agx, aces, reinhard, exponential, none, display} : how scene light becomes display light: none: light is cut off at 1; display: so are the values, and they are shown as they are, without the curve of a display (sRGB), as by programs that know none
 //@ option bloom_mix = add {add, luminance} : add: all of the bloom; luminance: the less of it, the brighter the picture is already, down to none where that is 2, so that lights keep their colours
 //@ option saturate = scene {scene, display} : which light `saturation` changes: before or after the tone map
 uniform sampler2D source;         //= input : the picture, scene-linear
@@ -17,7 +17,6 @@ writeonly uniform image2D linear; //= output rgba16f : scene-linear with the blo
 vec3 saturate(vec3 c) { return max(mix(vec3(luminance(c)), c, saturation), 0.0); }
 
 vec3 encode(vec3 c) { return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308))); }
-vec3 decode(vec3 c) { return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045))); }
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -54,6 +53,9 @@ void main() {
     exposed = saturate(max(exposed, 0.0));
 #endif
     exposed = clamp(exposed, 0.0, 1.0);
-    if (subtract > 0.0) exposed = decode(max(encode(exposed) - subtract, 0.0));
+#if TONEMAP == TONEMAP_DISPLAY
+    exposed = tonemap_decode(exposed);
+#endif
+    if (subtract > 0.0) exposed = tonemap_decode(max(encode(exposed) - subtract, 0.0));
     imageStore(color, pixel, vec4(exposed, c.a));
 }

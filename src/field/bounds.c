@@ -10,6 +10,7 @@
 
 typedef struct boxes {
     const field_context *context;
+    bool whole; // grids, whatever they hold
     map places; // node -> index of its box
     box3 *values;
     size_t count, capacity;
@@ -37,6 +38,12 @@ static box3 bounds_by_zeros(const field *node, const field_context *context, con
     return is_zero(out, node->components) ? all : box3_infinite();
 }
 
+static box3 bounds_grid(const field *node, bool whole) {
+    const field_grid *grid = node->object;
+    if (grid->repeats) return box3_infinite();
+    return whole ? grid->box : box3_intersect(grid->box, grid->state.active);
+}
+
 static bool find(boxes *b, const field *node, box3 *out) {
     const uint32_t *place = map_find(&b->places, node, 0);
     if (place) {
@@ -52,7 +59,7 @@ static bool find(boxes *b, const field *node, box3 *out) {
         for (size_t i = 0; i < kind_arg_count(node); i++)
             if (!find(b, node->args[i], &args[i])) return false;
         if (kind_of(node) == KIND_GRID)
-            *out = bounds_grid(node, b->context, args);
+            *out = bounds_grid(node, b->whole);
         else if (node->kind->bounds)
             *out = node->kind->bounds(node, b->context, args);
         else
@@ -64,8 +71,8 @@ static bool find(boxes *b, const field *node, box3 *out) {
     return true;
 }
 
-bool field_bounds(const field *node, const field_context *context, box3 *out) {
-    boxes b = {.context = context};
+static bool bounds(const field *node, const field_context *context, bool whole, box3 *out) {
+    boxes b = {.context = context, .whole = whole};
     bool ok = find(&b, node, out);
     map_free(&b.places);
     mem_free(b.values);
@@ -93,13 +100,15 @@ const field *field_without_bounds(const field *node, const field_context *contex
     return node;
 }
 
-// ---- boxes of kinds ---------------------------------------------------------------------------
-
-box3 bounds_grid(const field *node, const field_context *context, const box3 *args) {
-    (void)context, (void)args;
-    const field_grid *grid = node->object;
-    return grid->repeats ? box3_infinite() : box3_intersect(grid->box, grid->state.active);
+bool field_bounds(const field *node, const field_context *context, box3 *out) {
+    return bounds(node, context, false, out);
 }
+
+bool field_bounds_of_grids(const field *node, const field_context *context, box3 *out) {
+    return bounds(node, context, true, out);
+}
+
+// ---- boxes of kinds ---------------------------------------------------------------------------
 
 box3 bounds_mul(const field *node, const field_context *context, const box3 *args) {
     (void)node, (void)context;

@@ -150,6 +150,8 @@ bool field_bounds(const field *node, const field_context *context, box3 *out);
 // Of a tree without bounds, the node to blame: one that is not zero although one of its arguments
 // has bounds, else a leaf that has none itself.
 const field *field_without_bounds(const field *node, const field_context *context);
+// The same where of grids only their boxes are known, and not what lies in them at the time.
+bool field_bounds_of_grids(const field *node, const field_context *context, box3 *out);
 // Greatest size that a component can have anywhere; INFINITY when unknown.
 float field_longest(const field *node, const field_context *context);
 // Every grid the tree samples, each once; returns the count (writes at most `capacity`).

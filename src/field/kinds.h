@@ -49,7 +49,7 @@ kind_ranges ranges_grid, ranges_palette, ranges_unknown, ranges_swizzle, ranges_
 kind_ranges ranges_sphere, ranges_box, ranges_capsule, ranges_torus, ranges_disc;
 kind_ranges ranges_perlin, ranges_simplex, ranges_value, ranges_worley, ranges_curl;
 
-kind_bounds bounds_mul, bounds_div, bounds_mix, bounds_min, bounds_dot, bounds_grid, bounds_warp,
+kind_bounds bounds_mul, bounds_div, bounds_mix, bounds_min, bounds_dot, bounds_warp,
     bounds_transform, bounds_sphere, bounds_box, bounds_capsule, bounds_torus, bounds_disc;
 
 // What a node "advect" stands for, made of other kinds (advect.c). NULL with a message.

@@ -14,13 +14,28 @@ static const char *written(const field *node) {
     return strcmp(name, "add") == 0 ? "+" : strcmp(name, "sub") == 0 ? "-" : name;
 }
 
-bool pass_density_box(const pass *p, box3 *box) {
-    if (!field_bounds(pass_density(p), p->host->context, box)) return err_prefix("%s: ", p->label);
+// Of a box that came from the field's bounds, if these are known.
+static bool has_end(const pass *p, bool known, const box3 *box) {
+    if (!known) return err_prefix("%s: ", p->label);
     if (box3_is_finite(*box) || box3_is_empty(*box)) return true;
     const field *cause = field_without_bounds(pass_density(p), p->host->context);
     return err_set("%s: field 'density' fills all of space, because of '%s'; multiply it by a grid "
                    "or a shape",
                    p->label, written(cause));
+}
+
+bool pass_check_density(const pass *p) {
+    box3 box;
+    return has_end(p, field_bounds_of_grids(pass_density(p), p->host->context, &box), &box);
+}
+
+bool pass_density_box(const pass *p, box3 *box) {
+    return has_end(p, field_bounds(pass_density(p), p->host->context, box), box) || pass_blame(p);
+}
+
+bool pass_density_box_of_grids(const pass *p, box3 *box) {
+    return has_end(p, field_bounds_of_grids(pass_density(p), p->host->context, box), box) ||
+           pass_blame(p);
 }
 
 void pass_write_box(const shader_binary *binary, unsigned char *block, box3 box) {

@@ -213,14 +213,13 @@ static uint32_t choose_rays_apart(const gpu *device) {
 bool lighting_declare(pass *p) {
     const scene *around = p->host->scene;
     lighting_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    box3 box;
     s->declared = around ? (uint32_t)around->light_count + 1 : 1;
     s->shadow_size = pass_number(p, "shadow_resolution");
     s->shadow_parts = choose_shadow_parts(p->host->device, s->shadow_size);
     s->rays_apart = choose_rays_apart(p->host->device);
     s->glow_size = pass_number(p, "glow_resolution");
     s->fire_count = pass_number(p, "fire_lights");
-    return pass_density_box(p, &box) && add_images(p) && add_parts(p);
+    return pass_check_density(p) && add_images(p) && add_parts(p);
 }
 
 // ---- building ---------------------------------------------------------------------------------

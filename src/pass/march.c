@@ -29,9 +29,8 @@ static bool record_bricks(pass *p) {
 
 bool march_declare(pass *p) {
     march_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    box3 box;
     s->skips = pass_has_word(p, "skipping", "on");
-    if (!pass_density_box(p, &box) || !pass_declare_images(p)) return false;
+    if (!pass_check_density(p) || !pass_declare_images(p)) return false;
     if (!s->skips) return pass_add_to_graph(p);
     return bricks_declare(p, &s->bricks, record_bricks) &&
            pass_add_to_graph_after(p, &s->bricks.image, 1);
@@ -94,19 +93,11 @@ void march_destroy(pass *p) {
 
 // ---- in a frame -------------------------------------------------------------------------------
 
-// The paper marches the whole simulation box in every frame (section 3.5); otherwise the box is as
-// tight as what burns just now.
+// The paper marches the whole simulation box in every frame (section 3.5), wherever that was moved;
+// otherwise the box is as tight as what burns just now.
 static bool march_box(const pass *p, box3 *box) {
-    const field *density = pass_density(p);
-    const field_grid *grids[16];
-    size_t count = field_grids(density, grids, 16);
-    if (pass_has_word(p, "mode", "paper") && count) {
-        *box = box3_empty();
-        for (size_t i = 0; i < count && i < 16; i++)
-            if (!grids[i]->repeats) *box = box3_union(*box, grids[i]->box);
-        return true;
-    }
-    return pass_density_box(p, box);
+    if (!pass_has_word(p, "mode", "paper")) return pass_density_box(p, box);
+    return pass_density_box_of_grids(p, box);
 }
 
 // A power of two; one where there are rays enough.

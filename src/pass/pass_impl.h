@@ -141,9 +141,13 @@ typedef struct pass_part {
 } pass_part;
 bool pass_add_part(pass *p, const pass_part *part);
 
-// The box of a volume: of the pass's field "density" as of now. An error when it has no end.
+// The box of a volume: of the pass's field "density" as of now; or whatever the grids hold that it
+// samples. An error when it has no end. `pass_check_density` is for a pass that is being declared,
+// when grids hold nothing yet.
 const field *pass_density(const pass *p);
+bool pass_check_density(const pass *p);
 bool pass_density_box(const pass *p, box3 *box);
+bool pass_density_box_of_grids(const pass *p, box3 *box);
 // Into the members box_min and box_max of a block; an empty box is a point.
 void pass_write_box(const shader_binary *binary, unsigned char *block, box3 box);
 

@@ -21,10 +21,9 @@ typedef struct reference_state {
 } reference_state;
 
 bool reference_declare(pass *p) {
-    box3 box;
     int bounds = pass_find_image(p, "majorants");
     p->state = arena_alloc(p->host->memory, sizeof(reference_state));
-    if (!pass_density_box(p, &box)) return false;
+    if (!pass_check_density(p)) return false;
     p->images[bounds] = graph_add_image(
         p->host->graph,
         &(graph_image_desc){

@@ -32,6 +32,11 @@ static void drop_light(pass *p) {
         p->images[pass_find_image(p, images[i])] = (graph_image){0};
 }
 
+static bool smokes(const pass *p) { // somebody says what dims it
+    size_t index;
+    return pass_find_key(p, "density", &index) == PASS_FIELD && p->fields[index];
+}
+
 bool splats_declare(pass *p) {
     splats_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     s->particles = pass_particles_of(p);
@@ -42,6 +47,7 @@ bool splats_declare(pass *p) {
                        "them, or 'count' of particles at most %d",
                        p->label, pass_particles_count(s->particles), SPLATS_MOST_SORTED);
     if (!option(p, "lit")) drop_light(p);
+    if (smokes(p) && !pass_check_density(p)) return false;
     return pass_declare_images(p) && pass_add_to_graph(p);
 }
 
@@ -165,10 +171,8 @@ static bool make_buffers(pass *p) {
 
 // The box of the smoke that dims.
 static bool write_smoke(pass *p, const shader_binary *binary, unsigned char *block) {
-    size_t index;
     box3 box = {{0, 0, 0}, {0, 0, 0}};
-    bool given = pass_find_key(p, "density", &index) == PASS_FIELD && p->fields[index];
-    if (given && !pass_density_box(p, &box)) return false;
+    if (smokes(p) && !pass_density_box(p, &box)) return false;
     pass_write_box(binary, block, box);
     return true;
 }

@@ -16,9 +16,8 @@ static bool add_image(pass *p, const char *output, uint32_t side) {
 }
 
 bool stack_declare(pass *p) {
-    box3 box;
     uint32_t side = pass_number(p, "target");
-    if (!pass_density_box(p, &box)) return false;
+    if (!pass_check_density(p)) return false;
     if (side && (!add_image(p, "color", side) || !add_image(p, "edge", side))) return false;
     return pass_declare_images(p) && pass_add_to_graph(p);
 }

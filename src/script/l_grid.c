@@ -169,7 +169,8 @@ bool value_get_box(lua_State *L, int table, const char *who, box3 *out) {
 static box3 read_box(lua_State *L, const field *node) {
     box3 box;
     field_context context = script_context(L);
-    if (!value_get_box(L, 2, "bake", &box) && !field_bounds(node, &context, &box)) script_raise(L);
+    if (!value_get_box(L, 2, "bake", &box) && !field_bounds_of_grids(node, &context, &box))
+        script_raise(L);
     return box;
 }
 

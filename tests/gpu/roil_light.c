@@ -54,6 +54,57 @@ static void reference_gathers_until_something_changes(void **state) {
     end(&s);
 }
 
+// Ground up to the horizon, in haze: a reference shows it as the effect does, though only `shade`
+// or `forward` is told of the haze. With neither smoke nor bounces the two are the same picture.
+static void haze_of_surfaces_is_in_the_reference(void **state) {
+    enum { SIDE = 24, PATHS = 64 };
+    static const char FAR[] =
+        "local fx = effect { name = 'test', frames = 2 }\n"
+        "fx.camera = camera { eye = {0, -3, 0.5}, target = {0, 0, 0.4}, fov = 40, far = 4000 }\n"
+        "fx.sun = sun { elevation = 60, strength = 3 }\n"
+        "fx.sky = sky { zenith = {0, 0, 0}, horizon = {0, 0.3, 0.6} }\n"
+        "local plain = mesh { 'quad.obj', scale = 100 }\n"
+        "local scene = geometry { plain }\n"
+        "local solid = %s\n"
+        "local volume = march { density = sphere { radius = 0.1, position = {0, 0, 9} }, %s }\n"
+        "fx.output = final { over { volume, solid }, tonemap = 'none' }.color\n"
+        "return fx\n";
+    static const char *const ways[] = {"shade { from = scene, haze = 0.02 }",
+                                       "forward { plain, haze = 0.02 }"};
+    for (size_t i = 0; i < COUNT_OF(ways); i++) {
+        char text[2048], path[512];
+        uint8_t pixels[2][SIDE * SIDE * 4];
+        put("quad.obj", QUAD);
+        for (uint32_t traced = 0; traced < 2; traced++) {
+            snprintf(text, sizeof text, FAR, ways[i],
+                     traced ? "bounces = 1, filter = 'none'" : "from = scene");
+            write_text("far.lua", text, path);
+            roil_set_reference(*state, traced * PATHS);
+            roil_effect *e = roil_load(*state, path, NULL, 0);
+            roil_set_reference(*state, 0);
+            ok(e);
+            ok(roil_prepare(e, SIDE, SIDE));
+            do ok(roil_advance(e, 1));
+            while (roil_samples(e) < traced * PATHS);
+            ok(roil_read(e, false, pixels[traced]));
+            roil_unload(e);
+        }
+        double hazy = 0;
+        for (uint32_t row = 0; row < 3 * SIDE; row++) { // of each colour
+            double mean[2] = {0}, near_eye = 0;
+            for (uint32_t k = 0; k < SIDE; k++) {
+                for (int t = 0; t < 2; t++)
+                    mean[t] += pixels[t][4 * (SIDE * (row / 3) + k) + row % 3] / (double)SIDE;
+                near_eye += pixels[0][4 * (SIDE * (SIDE - 1) + k) + row % 3] / (double)SIDE;
+            }
+            hazy = fmax(hazy, fabs(mean[0] - near_eye));
+            if (fabs(mean[0] - mean[1]) > 4)
+                fail_msg("%s: row %u is %g, traced %g", ways[i], row / 3, mean[0], mean[1]);
+        }
+        assert_true(hazy > 40);
+    }
+}
+
 // ---- reloads ----------------------------------------------------------------------------------
 
 enum { KINDS = 8, REST = 16, ROUNDS = 40 };
@@ -110,6 +161,7 @@ static void reloads_of_lit_effects_leave_no_memory(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reference_gathers_until_something_changes),
+        cmocka_unit_test(haze_of_surfaces_is_in_the_reference),
         cmocka_unit_test(reloads_of_lit_effects_leave_no_memory),
     };
     return test_run(tests);

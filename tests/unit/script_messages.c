@@ -235,6 +235,26 @@ static void passes_that_cannot_be_built_name_their_line(void **state) {
                    "e.lua:3: lbm_source: ");
 }
 
+// Grids hold nothing before the first frame, which is no end of what is made of them.
+static void smoke_without_an_end_is_refused_where_it_is_said(void **state) {
+    (void)state;
+    helper_put("ones.raw", "11111111");
+#define ENDLESS "raw { 'ones.raw', size = 2 }.density:warp(position)"
+    static const mistake cases[] = {
+        {"march { density = " ENDLESS " }", "march: field 'density' fills all of space"},
+        {"march { mode = 'paper', density = " ENDLESS " }", "march: field 'density' fills"},
+        {"lighting { density = " ENDLESS " }", "lighting: field 'density' fills"},
+        {"stack { density = " ENDLESS " }", "stack: field 'density' fills"},
+        {"reference { density = " ENDLESS " }", "reference: field 'density' fills"},
+        {"local p = particles { count = 8, rate = 1 } splats { particles = p, density = " ENDLESS
+         " }",
+         "splats: field 'density' fills"},
+        {"bake(" ENDLESS ")", "bake: "},
+    };
+    CHECK(cases);
+#undef ENDLESS
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(misspelt_names_get_the_nearest_right_one),
@@ -245,6 +265,7 @@ int main(void) {
         cmocka_unit_test(the_prelude_is_never_blamed),
         cmocka_unit_test(a_module_of_the_library_is_not_blamed_alone),
         cmocka_unit_test(passes_that_cannot_be_built_name_their_line),
+        cmocka_unit_test(smoke_without_an_end_is_refused_where_it_is_said),
     };
     return cmocka_run_group_tests(tests, helper_setup, helper_teardown);
 }
