@@ -102,7 +102,20 @@ static bool build_one(void *user, size_t index) {
     return !is_wanted(e, e->passes[index]) || pass_build(e->passes[index]);
 }
 
+// A reference that was made in place of a march shows the surfaces behind it, too: what they are
+// like from afar is said to the first pass that lights them.
+static void tell_references(effect *e) {
+    size_t lights = 0;
+    while (lights < e->pass_count && !pass_is(e->passes[lights], "shade") &&
+           !pass_is(e->passes[lights], "forward"))
+        lights++;
+    for (size_t i = 0; e->reference && lights < e->pass_count && i < e->pass_count; i++)
+        if (pass_is(e->passes[i], "reference"))
+            pass_add_uniforms_of(e->passes[i], e->passes[lights]);
+}
+
 static bool complete(effect *e) {
+    tell_references(e);
     for (size_t i = 0; i < e->pass_count; i++)
         if (!pass_complete(e->passes[i])) return false;
     return true;

@@ -139,6 +139,8 @@ size_t pass_instances(const pass *p, scene_instances *const **out);
 // something of that name and type: images that it reads and `source` writes; fields, options and
 // uniforms, the latter as they are in each frame. Several sources: the first that has it.
 void pass_add_source(pass *p, pass *source);
+// The same of uniforms alone, for a pass that has been declared; twice does no harm.
+void pass_add_uniforms_of(pass *p, pass *source);
 void pass_set_bake(pass *p, field_grid *grid); // bake only: the grid it fills
 // What `name` may be set as, for the generic setter of Lua and --set.
 typedef enum pass_key { PASS_UNKNOWN, PASS_UNIFORM, PASS_OPTION, PASS_FIELD, PASS_IMAGE } pass_key;

@@ -50,9 +50,15 @@ static void take_options(pass *p, const pass *source) {
     }
 }
 
-void pass_add_source(pass *p, pass *source) {
+void pass_add_uniforms_of(pass *p, pass *source) {
+    for (size_t i = 0; i < p->source_count; i++)
+        if (p->sources[i] == source) return;
     MEM_RESERVE(p->sources, p->source_count + 1, p->source_capacity);
     p->sources[p->source_count++] = source;
+}
+
+void pass_add_source(pass *p, pass *source) {
+    pass_add_uniforms_of(p, source);
     take_images(p, source);
     take_fields(p, source);
     take_options(p, source);
