@@ -231,6 +231,41 @@ static int held(roil *r, const char *keys, const char *inflow) {
     return at(p, SIDE / 2, SIDE / 2);
 }
 
+// Air that is warm and smoky everywhere, with nothing that holds it back, rises by what is said of
+// it, in metres and seconds, each second by as much. Shown is the state after the step that begins
+// at a picture's time: a force has acted in it, what inflow gives acts in the next one.
+static void forces_lift_by_what_they_say(void **state) {
+    static const struct {
+        const char *keys;
+        double lift, ahead; // m/s^2, s
+    } rows[] = {
+        {"buoyancy_heat = 5.2", 2.6, 0},
+        {"buoyancy_heat = 0, buoyancy_density = 14", 2.8, 0},
+        {"buoyancy_heat = 3, buoyancy_density = 4", 2.3, 0},
+        {"buoyancy_heat = 0, force = {0, 2.5, 0}", 2.5, 0.01},
+    };
+    for (size_t i = 0; i < COUNT_OF(rows); i++) {
+        char keys[256];
+        picture p;
+        snprintf(keys, sizeof keys,
+                 "top = 'periodic', bottom = 'periodic', sides = 'periodic', time_step = 1 / 100, "
+                 "variation = 0, %s",
+                 rows[i].keys);
+        roil_effect *e = open(*state, 20, keys,
+                              "flow:inflow { shape = disc { 0.5, 0.5, radius = 4 }, density = 0.2, "
+                              "temperature = 0.5 }",
+                              "flow.velocity.z / 2");
+        for (int frame = 7; frame <= 13; frame += 6) {
+            draw(e, frame, p);
+            const double time = (frame - 1) / 20.0 + rows[i].ahead;
+            const int wanted = srgb((float)(rows[i].lift * time / 2));
+            print_message("%s: %d is shown, wanted %d\n", rows[i].keys, at(p, 12, 12), wanted);
+            assert_true(abs(at(p, 12, 12) - wanted) < 3);
+        }
+        roil_unload(e);
+    }
+}
+
 static void inflow_holds_or_adds(void **state) {
     static const char still[] = "variation = 0";
     assert_int_equal(held(*state, still, "density = 0.4"), srgb(0.4f));
@@ -386,6 +421,7 @@ int main(void) {
         cmocka_unit_test(a_slice_is_what_space_holds_in_its_plane),
         cmocka_unit_test(bricks_leave_nothing_out),
         cmocka_unit_test(velocity_points_outwards_all_round),
+        cmocka_unit_test(forces_lift_by_what_they_say),
         cmocka_unit_test(inflow_holds_or_adds),
         cmocka_unit_test(a_painted_obstacle_stands_in_the_way),
         cmocka_unit_test(an_obstacle_that_moves_pushes),
