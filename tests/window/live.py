@@ -5,6 +5,13 @@ import subprocess
 
 from lib.window import PATIENCE, PROGRAM, PUFF, Case, difference, main, require_tools
 
+SPARKS = """
+local fx = effect { name = "sparks", fps = 24, frames = 480 }
+fx.camera = camera { eye = {0, -5, 0}, target = {0, 0, 0}, fov = 20 }
+local one = particles { count = 4, burst = 4, lifetime = 8, radius = 0.5 }
+fx.output = splats { one, size = over_age { {0, 0.1}, {1, 0.4} } }.image
+return fx
+"""
 VIEW = "view"  # the widget that stands for the picture
 
 
@@ -154,6 +161,18 @@ class Panel(Case):
         live.wait_until(lambda: abs(float(self.last_set(live, "fire").split(";")[1].split()[0]) - 0.15) < 0.05,
                         "the stop where it was dropped")
         self.changes(live, before)
+        live.quit()
+
+    def test_a_number_over_age_is_edited_by_age(self):
+        """As a curve from 0 to 1, however long the effect is."""
+        live = self.live(effect=SPARKS)
+        live.expect("live: shown")
+        left, top, right, bottom = live.widget("size/plot")
+        live.tool("mousemove", round((left + right) / 2), round((top + bottom) / 2), "click", "--repeat", 2, "--delay", 60, 1)
+        keys = live.wait_until(lambda: self.last_set(live, "size"), "the curve's text").split("; ")
+        self.assertEqual(keys[0], "linear 0 0.1")
+        self.assertEqual(keys[2], "1 0.4")
+        self.assertTrue(0.4 < float(keys[1].split()[0]) < 0.65, keys)
         live.quit()
 
     def clipboard(self):
