@@ -18,8 +18,8 @@ layout(local_size_x = 32, local_size_y = 4, local_size_z = 1) in;
 uniform float viscosity;             //= 2e-5 [0, inf] m^2/s : of the air
 uniform float diffusion;             //= 0 [0, inf] m^2/s : of smoke and dye
 uniform float temperature_diffusion; //= 0 [0, inf] m^2/s : of heat
-uniform float buoyancy_density;      //= 0 [-inf, inf] m/s^2 : acceleration upwards by a density of 1
-uniform float buoyancy_heat;         //= 1.2 [-inf, inf] m/s^2 : acceleration upwards by a temperature of 1
+uniform float buoyancy_density;      //= 0 [-inf, inf] m/s^2 : acceleration upwards by a density of 1, in proportion to it
+uniform float buoyancy_heat;         //= 1.2 [-inf, inf] m/s^2 : acceleration upwards by a temperature of 1, in proportion to it
 uniform float dissolve_rate;         //= 0 [0, 10] 1/s : share of the smoke and the dye that goes
 uniform float cooling_rate;          //= 0 [0, 10] 1/s : share of the temperature that goes
 uniform vec3 wind;                   //= {0, 0, 0} [-inf, inf] m/s : of faces that are inflow or open
