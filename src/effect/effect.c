@@ -93,6 +93,7 @@ void effect_destroy(effect *e) {
     shader_library_destroy(e->own_library);
     pass_host_free(&e->host);
     effect_free_systems(e);
+    effect_free_clocks(e);
     pthread_mutex_destroy(&e->reading);
     mem_free(e->params);
     mem_free(e->values);

@@ -79,6 +79,9 @@ int effect_add_param(effect *e, const effect_param *param);
 pass *effect_add_pass(effect *e, const char *type, const char *shader,
                       const char *label);          // label NULL: type's name, numbered
 void effect_add_grid(effect *e, field_grid *grid); // owned by the effect from now on
+// Its time is then `speed` added up over the frames of the effect, from the time `start` (s) on;
+// both are numbers that do not vary in space.
+void effect_add_clock(effect *e, const field_grid *grid, const field *speed, const field *start);
 // By which it is found (effect_add_volume); numbered when it is taken.
 void effect_name_grid(effect *e, field_grid *grid, const char *name);
 bool effect_playback(const effect *e, field_playback *out); // false: no grid is played

@@ -128,6 +128,9 @@ struct effect {
     size_t pass_count, pass_capacity;
     field_grid **grids;
     size_t grid_count, grid_capacity;
+    struct effect_clock *clocks; // of those whose speed or start moves
+    size_t clock_count, clock_capacity;
+    size_t clocked;           // frames since the first that they know
     shelf *shelf, *own_shelf; // as the library
     shelf_item **held;        // data of meshes
     size_t held_count, held_capacity;
@@ -182,3 +185,14 @@ struct effect {
 
 // While frames are run that have no picture. False, with a message: whoever waits has had enough.
 bool effect_tell_progress(effect *e, double done, double whole);
+
+// clock.c: grids that are played at a speed that moves.
+typedef struct effect_clock effect_clock;
+void effect_free_clocks(effect *e);
+void effect_restart_clocks(effect *e);
+// The next frame, up to this one, that clocks do not know yet; INFINITY: none. False with a
+// message.
+bool effect_aim_clocks(effect *e, double frame, double *next);
+bool effect_tick(effect *e); // makes them know one more frame, by what holds now
+// The time that a grid shows at a time of the effect.
+bool effect_grid_time(const effect *e, const field_grid *grid, double now, double *out);

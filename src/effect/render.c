@@ -197,13 +197,41 @@ static bool update(effect *e, double frame) {
            (!e->hooks.update || e->hooks.update(e->hooks.user, e->context.time, dt));
 }
 
+// Frames that were left out: what `update` sets there counts for the speeds of grids.
+static bool run_clocks(effect *e, double frame) {
+    double next;
+    while (effect_aim_clocks(e, frame, &next) && next + 1 <= frame) {
+        if (e->hooks.renew) e->hooks.renew(e->hooks.user);
+        e->context.time = (next - e->first) / e->fps;
+        if (!update(e, next) || !effect_tick(e)) return false;
+    }
+    return effect_aim_clocks(e, frame, &next);
+}
+
+// The frame itself.
+static bool tick(effect *e, double frame) {
+    double next;
+    return effect_aim_clocks(e, frame, &next) && (isinf(next) || effect_tick(e));
+}
+
+static bool update_grids(effect *e, gpu *device) {
+    for (size_t i = 0; i < e->grid_count; i++) {
+        field_grid *grid = e->grids[i];
+        double time;
+        if (!effect_grid_time(e, grid, e->context.time, &time) || !grid->update(grid, device, time))
+            return false;
+    }
+    return true;
+}
+
 // Without a device grids know their bounds only.
 bool effect_evaluate(effect *e, double frame, gpu *device, bool again) {
     double time = (frame - e->first) / e->fps;
     double dt = e->counter ? (frame - e->last_frame) / e->fps : 0;
+    if (!again && !run_clocks(e, frame)) return false;
     e->context.time = time;
     if (device && e->hooks.renew) e->hooks.renew(e->hooks.user);
-    if (!again && !update(e, frame)) return false;
+    if (!again && (!update(e, frame) || !tick(e, frame))) return false;
     if (!scene_fill_frame(&e->scene, &e->context, (float)e->width / (float)e->height, &e->frame) ||
         !scene_fill_lights(&e->scene, &e->context, &e->lights))
         return false;
@@ -211,8 +239,7 @@ bool effect_evaluate(effect *e, double frame, gpu *device, bool again) {
     if (e->has_last) e->frame.last = e->last_clip;
     e->frame.time = (shared_vec4){{(float)time, (float)dt, (float)frame, 0}};
     e->frame.size = (shared_uvec4){{e->width, e->height, (uint32_t)llrint(frame), e->seed}};
-    for (size_t i = 0; i < e->grid_count; i++)
-        if (!e->grids[i]->update(e->grids[i], device, time)) return false;
+    if (!update_grids(e, device)) return false;
     for (size_t i = 0; device && i < e->instances_count; i++)
         if (!scene_instances_upload(e->instances[i], device)) return false;
     return true;

@@ -74,6 +74,7 @@ void effect_restart(effect *e) {
     pass *p;
     effect_forget_moments(e);
     effect_restart_systems(e);
+    effect_restart_clocks(e);
     if (!e->compiled) return;
     for (size_t i = 0; (p = next_simulation(e, &i));) pass_get_simulation(p)->restart(p);
 }

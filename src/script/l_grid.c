@@ -37,14 +37,39 @@ static double read_factor(lua_State *L, const char *who, const char *key, double
     return value;
 }
 
-static void read_playback(lua_State *L, const script_object *row, sequence_desc *desc) {
+// A number, or with `moves` anything that does not vary in space.
+static const field *read_moving(lua_State *L, const char *who, const char *key, float missing,
+                                bool *moves) {
+    const float values[4] = {missing};
+    int type = value_get(L, 1, key);
+    *moves = *moves || (type != LUA_TNIL && type != LUA_TNUMBER);
+    const field *made = type == LUA_TNIL ? field_constant(script_memory(L), 1, values)
+                                         : value_uniform(L, lua_gettop(L), who, key, 1);
+    lua_pop(L, 1);
+    return made;
+}
+
+typedef struct moving {
+    const field *speed, *start; // NULL: neither moves
+} moving;
+
+static moving read_speed(lua_State *L, const char *who, sequence_desc *desc) {
+    bool moves = false;
+    vm_charge_memory(L, 2 * sizeof(field));
+    moving m = {.speed = read_moving(L, who, "speed", 1, &moves),
+                .start = read_moving(L, who, "start", 0, &moves)};
+    if (moves) return m;
+    desc->start = value_get_number(L, 1, who, "start", 0);
+    desc->speed = read_factor(L, who, "speed", 1);
+    return (moving){0};
+}
+
+static moving read_playback(lua_State *L, const script_object *row, sequence_desc *desc) {
     const char *who = row->name;
     desc->pattern = read_pattern(L, who);
     desc->root = effect_root(script_of(L)->effect);
     desc->shelf = effect_shelf(script_of(L)->effect);
     desc->fps = read_factor(L, who, "fps", 24);
-    desc->start = value_get_number(L, 1, who, "start", 0);
-    desc->speed = read_factor(L, who, "speed", 1);
     desc->loop = (sequence_loop)value_get_choice(L, 1, row, "loop");
     desc->blend = value_get_bool(L, 1, who, "blend", false);
     desc->y_up = value_get_bool(L, 1, who, "y_up", false);
@@ -54,9 +79,11 @@ static void read_playback(lua_State *L, const script_object *row, sequence_desc 
     float offset[3] = {0};
     value_get_vector(L, 1, who, "offset", offset);
     desc->offset = (float3){offset[0], offset[1], offset[2]};
+    return read_speed(L, who, desc);
 }
 
-static int push_sequence(lua_State *L, const char *who, const sequence_desc *desc) {
+static int push_sequence(lua_State *L, const char *who, const sequence_desc *desc,
+                         const moving *played) {
     const char *name = value_name_or_variable(L, 1, who);
     sequence_object *object = object_new(L, "sequence", sizeof *object);
     effect *e = script_of(L)->effect;
@@ -65,6 +92,8 @@ static int push_sequence(lua_State *L, const char *who, const sequence_desc *des
     if (!object->sequence) script_raise(L);
     effect_add_grid(e, sequence_grid(object->sequence));
     effect_name_grid(e, sequence_grid(object->sequence), name);
+    if (played->speed)
+        effect_add_clock(e, sequence_grid(object->sequence), played->speed, played->start);
     const char *const *files;
     size_t count = sequence_files(object->sequence, &files);
     for (size_t i = 0; i < count; i++) effect_add_file(e, files[i]);
@@ -75,10 +104,10 @@ static int l_vdb(lua_State *L) {
     script_require_loading(L, "vdb");
     sequence_desc desc = {0};
     const script_object *row = value_check_object(L, 1, "vdb");
-    read_playback(L, row, &desc);
+    const moving played = read_playback(L, row, &desc);
     desc.storage = (sequence_storage)value_get_choice(L, 1, row, "storage");
     desc.level_set = (vdb_set)value_get_choice(L, 1, row, "level_set");
-    return push_sequence(L, "vdb", &desc);
+    return push_sequence(L, "vdb", &desc, &played);
 }
 
 static uint64_t bytes_of(lua_State *L, const char *key) {
@@ -92,7 +121,7 @@ static int l_raw(lua_State *L) {
     script_require_loading(L, "raw");
     const script_object *row = value_check_object(L, 1, "raw");
     sequence_desc desc = {0};
-    read_playback(L, row, &desc);
+    const moving played = read_playback(L, row, &desc);
     float size[3] = {0};
     if (!value_get_vector(L, 1, "raw", "size", size))
         vm_error(L, "raw: 'size' is missing: the voxels of a frame, as in {32, 32, 32}");
@@ -113,7 +142,7 @@ static int l_raw(lua_State *L) {
     desc.raw.padding = value_get_count(L, 1, "raw", "padding", 0);
     desc.raw.value_scale = (float)read_factor(L, "raw", "value_scale", 1);
     desc.raw.channel = value_get_string(L, 1, "raw", "channel");
-    return push_sequence(L, "raw", &desc);
+    return push_sequence(L, "raw", &desc, &played);
 }
 
 // ---- what a sequence has ----------------------------------------------------------------------

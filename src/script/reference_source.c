@@ -4,8 +4,11 @@
 // clang-format off
 #define PLAYBACK                                                                                   \
     KEY("fps", "24 frames/s", "frames of the files a second of effect time"),                      \
-    KEY("start", "0 s", "effect time at which the first frame is shown"),                          \
-    KEY("speed", "1", "factor of the playing speed; negative: backwards"),                         \
+    KEY("start", "0 s", "effect time at which the first frame is shown; may move as `speed`"),      \
+    KEY("speed", "1",                                                                              \
+        "factor of the playing speed; negative: backwards. A parameter, curve or function of time " \
+        "is added up from frame to frame of the effect: playing goes on from where it is, and 0 "   \
+        "stops it"),                                                                               \
     CHOICE("loop", "clip", "outside the range clip shows nothing, extend the nearest frame",       \
            "clip", "extend", "repeat", "ping_pong"),                                               \
     KEY("blend", "false", "mixes neighbouring frames at times between them"),                      \

@@ -47,6 +47,19 @@ local wind = bake(vec(hot.heat, hot.heat * 2, 0), { size = {12, 9, 5}, box = hot
 fx.output = final { march { density = hot.heat + wind.x, steps = 4 } }.color
 return fx
 """
+# Frame f of the file holds 1 + f everywhere: what is exported says which frame is on show.
+COUNTER = """
+local fx = effect { name = "counter", fps = 10, frames = 40, first = 0 }
+fx.camera = orbit { target = {1, 1, 1}, distance = 6 }
+local rate = param { "rate", 100, min = 0, max = 150 }
+local stop = param { "stop", false }
+local late = param { "late", 0 }
+%s
+local count = raw { "count.raw", type = "f32", size = 2, fps = 10, blend = true, loop = "extend", %s }
+fx.output = final { march { density = count.density, steps = 4 } }.color
+return fx
+"""
+SLOWS = "function(t) return t < 1.5 and 1 or 0.5 end"
 # Prints what Blender makes of the files that are named after it.
 LOOK = """
 import json, sys, bpy
@@ -184,6 +197,47 @@ class Volumes(Case):
         corpus = os.path.join(SOURCE, "tests", "fuzz", "corpus", "fuzz_vdb")
         for name, told in ("turned", ", rotated: it is resampled"), ("frustum", "frustum transform, which roil cannot read"):
             self.assertIn(told, self.succeeds("info", os.path.join(corpus, name + ".vdb")))
+
+    def shown(self, script, frames, *options):
+        """What frames of the effect show of `count.raw`, in frames since its first."""
+        self.write("count.raw", array.array("f", (1 + i // 8 for i in range(8 * 80))).tobytes())
+        self.write("effect.lua", COUNTER % script)
+        shutil.rmtree(self.path("count"), ignore_errors=True)
+        self.succeeds("export", "vdb", "effect.lua", "--source", "count", "--frames", frames, "-o", "count/%d.vdb", *options)
+        self.succeeds("export", "raw", "count/*.vdb", "-o", "shown.raw", "--type", "f32")
+        values = array.array("f", self.read("shown.raw"))
+        size = len(values) // len(os.listdir(self.path("count")))
+        return [max(values[i:i + size]) - 1 for i in range(0, len(values), size)]
+
+    def plays(self, script, wanted, *options):
+        frames = range(len(wanted))
+        got = self.shown(script, f"0-{len(wanted) - 1}", *options)
+        for frame in frames:
+            self.assertAlmostEqual(got[frame], wanted[frame], delta=0.02, msg=f"{script}, frame {frame}: {got}")
+        for frame in (frames[-1], frames[len(frames) // 2]): # jumped to
+            alone = self.shown(script, str(frame), *options)[0]
+            self.assertAlmostEqual(alone, wanted[frame], delta=0.02, msg=f"{script}, frame {frame} alone")
+
+    def test_speed_and_start_move(self):
+        slows = [min(k, 15) + max(k - 15, 0) / 2 for k in range(24)]
+        self.plays(("", "speed = " + SLOWS), slows)
+        # From the middle of each frame to the next, also where `update` says it.
+        moved = [0.0]
+        for k in range(1, 16):
+            moved.append(moved[-1] + (1.5 if k < 6 else 0 if k < 11 else 0.5))
+        update = "fx.update = function(t) rate:set(t < 0.55 and 150 or t < 1.05 and 0 or 50) end"
+        self.plays((update, "speed = rate / 100"), moved)
+        back = self.shown((update, "speed = rate / 100"), "12,4") # back in time
+        for got, frame in zip(back, (4, 12)):
+            self.assertAlmostEqual(got, moved[frame], delta=0.02)
+        self.plays(("", "speed = rate / 100"), [k * 1.25 for k in range(8)], "--set", "rate=125")
+        self.plays(("", "speed = 1 - stop"), [0] * 5, "--set", "stop=true")
+        self.plays(("", "speed = 1 - stop"), list(range(5)))
+        # The first frame is shown at the start, whatever the speed was before it.
+        self.plays(("", "start = late, speed = 2"), [max(0, 2 * (k - 3)) for k in range(8)], "--set", "late=0.3")
+        self.plays(("", "start = 1, speed = " + SLOWS), [max(0, slows[k] - slows[10]) for k in range(24)])
+        self.plays(("", "start = -0.5, speed = " + SLOWS), [5 + k for k in range(8)])
+        self.plays(("", "start = function(t) return t / 2 end"), [k / 2 for k in range(8)])
 
     def test_mistakes(self):
         self.write_raw()

@@ -41,6 +41,44 @@ static void declarations_arrive(void **state) {
     effect_destroy(e);
 }
 
+static double grid_time; // that the last frame asked a grid for
+
+static bool note_time(field_grid *grid, gpu *g, double time) {
+    (void)grid, (void)g;
+    grid_time = time;
+    return true;
+}
+
+static void leave_grid(field_grid *grid, gpu *g) {
+    (void)grid, (void)g;
+}
+
+static double played_at(effect *e, double frame) {
+    if (!effect_rehearse(e, frame)) fail_msg("%s", err_get());
+    return grid_time;
+}
+
+static void a_speed_moved_by_hand_changes_what_comes(void **state) {
+    (void)state;
+    effect *e = load("local fx = effect { fps = 10, first = 0 } param { 'rate', 1 }" END);
+    field_grid grid = {.name = "played", .update = note_time, .destroy = leave_grid};
+    effect_add_grid(e, &grid);
+    effect_add_clock(e, &grid, field_param(effect_memory(e), 1, 0),
+                     field_constant(effect_memory(e), 1, (const float[4]){0}));
+    assert_true(fabs(played_at(e, 10) - 1) < 1e-9);
+    assert_true(effect_set_value(e, 0, (const float[4]){0.5f}));
+    assert_true(fabs(played_at(e, 10) - 1) < 1e-9); // what is on show stays
+    assert_true(fabs(played_at(e, 11) - 1.05) < 1e-9);
+    assert_true(fabs(played_at(e, 11.5) - 1.075) < 1e-9);
+    assert_true(fabs(played_at(e, 4) - 0.2) < 1e-9); // back in time: as if it had never been else
+    assert_true(fabs(played_at(e, 10) - 0.5) < 1e-9);
+    assert_true(effect_set_value(e, 0, (const float[4]){0}));
+    assert_true(fabs(played_at(e, 20) - 0.5) < 1e-9); // stopped
+    assert_false(effect_rehearse(e, 1e7));
+    assert_non_null(strstr(err_get(), "at most 1000000 frames"));
+    effect_destroy(e);
+}
+
 static void parameters_take_their_type_from_the_default(void **state) {
     (void)state;
     effect *e =
@@ -249,6 +287,7 @@ static void a_users_shader_is_a_pass_like_the_others(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(declarations_arrive),
+        cmocka_unit_test(a_speed_moved_by_hand_changes_what_comes),
         cmocka_unit_test(parameters_take_their_type_from_the_default),
         cmocka_unit_test(values_move),
         cmocka_unit_test(speed_asks_for_four_dimensions),
