@@ -45,6 +45,7 @@ typedef struct exporter {
     const field_grid *grid; // for its box and size
     const char *const *files;
     size_t file_count, voxels;
+    int64_t frames; // of the timeline
     const char *name;
     float *values;
     const roil_export *desc;
@@ -81,23 +82,36 @@ static bool find_scale(exporter *x, float *scale) {
     return true;
 }
 
-static bool write_frames(exporter *x, const voxel_type *type, float scale, file_draft *out) {
+// A frame without a file is written as it is shown.
+static bool write_frames(exporter *x, const voxel_type *type, float scale, const sequence *s,
+                         file_draft *out) {
     unsigned char *bytes = mem_alloc(x->voxels * type->size);
     bool done = true, present;
-    for (size_t frame = 0; done && frame < x->file_count; frame++) {
-        done = sample_frame(x, frame, &present);
-        if (!done) break;
-        encode(type, x->values, x->voxels, scale, bytes);
+    size_t sampled = SIZE_MAX;
+    for (int64_t frame = 0; done && frame < x->frames; frame++) {
+        size_t file = sequence_file_at(s, frame);
+        if (file != sampled) {
+            done = sample_frame(x, file, &present);
+            if (!done) break;
+            encode(type, x->values, x->voxels, scale, bytes);
+            sampled = file;
+        }
         file_draft_add(out, bytes, x->voxels * type->size);
     }
     mem_free(bytes);
     return done;
 }
 
-static bool write_file(exporter *x, const voxel_type *type, float scale, const char *file) {
+static bool write_file(exporter *x, const voxel_type *type, float scale, const sequence *s,
+                       const char *file) {
+    const int64_t most = 100000; // that `raw` reads
+    if (x->frames > most)
+        return err_set("%s: %lld frames from the least number in the names to the greatest; at "
+                       "most %lld are accepted",
+                       file, (long long)x->frames, (long long)most);
     file_draft draft;
     if (!file_make_parent_folders(file) || !file_draft_begin(&draft, file)) return false;
-    if (write_frames(x, type, scale, &draft)) return file_draft_end(&draft);
+    if (write_frames(x, type, scale, s, &draft)) return file_draft_end(&draft);
     file_draft_drop(&draft);
     return err_prefix("%s: ", file);
 }
@@ -111,16 +125,16 @@ static const char *named_by_effect(const char *file) {
 static char *describe(const exporter *x, const voxel_type *type, float scale, const char *file) {
     const field_grid *g = x->grid;
     strbuf text = {0};
-    strbuf_add(&text, "%s: %zu frames of %u x %u x %u voxels, %s\n", file, x->file_count,
+    const box3 *b = &g->box;
+    strbuf_add(&text, "%s: %lld frames of %u x %u x %u voxels, %s\n", file, (long long)x->frames,
                g->size[0], g->size[1], g->size[2], type->name);
-    strbuf_add(
-        &text,
-        "raw { \"%s\", type = \"%s\", size = {%u, %u, %u}, voxel_size = %g, value_scale = %g, "
-        "channel = \"%s\", offset = {%g, %g, %g} }\n",
-        named_by_effect(file), type->name, g->size[0], g->size[1], g->size[2],
-        (double)((g->box.max.x - g->box.min.x) / (float)g->size[0]),
-        type->name[0] == 'u' ? (double)scale : 1.0, x->name, (double)g->box.min.x,
-        (double)g->box.min.y, (double)g->box.min.z);
+    strbuf_add(&text,
+               "raw { \"%s\", type = \"%s\", size = {%u, %u, %u}, value_scale = %g, channel = "
+               "\"%s\", box = { min = {%g, %g, %g}, max = {%g, %g, %g} }%s }\n",
+               named_by_effect(file), type->name, g->size[0], g->size[1], g->size[2],
+               type->name[0] == 'u' ? (double)scale : 1.0, x->name, (double)b->min.x,
+               (double)b->min.y, (double)b->min.z, (double)b->max.x, (double)b->max.y,
+               (double)b->max.z, sequence_says_y_up(x->sequence) ? ", y_up = true" : "");
     return text.text;
 }
 
@@ -133,15 +147,18 @@ char *roil_export_raw(const roil_export *desc) {
     char *text = NULL;
     if (s) {
         field_grid *grid = sequence_grid(s);
-        exporter x = {
-            .sequence = s, .grid = grid, .name = desc->grid ? desc->grid : "density", .desc = desc};
+        exporter x = {.sequence = s,
+                      .grid = grid,
+                      .name = desc->grid ? desc->grid : "density",
+                      .frames = sequence_frame_count(s),
+                      .desc = desc};
         x.file_count = sequence_files(s, &x.files);
         x.voxels = (size_t)grid->size[0] * grid->size[1] * grid->size[2];
         budget_part *part = budget_take(
             budget_host(), (uint64_t)x.voxels * (sizeof *x.values + type->size), "voxels to write");
         if (part) x.values = mem_alloc(x.voxels * sizeof *x.values);
         float scale;
-        if (part && find_scale(&x, &scale) && write_file(&x, type, scale, desc->file))
+        if (part && find_scale(&x, &scale) && write_file(&x, type, scale, s, desc->file))
             text = describe(&x, type, scale, desc->file);
         mem_free(x.values);
         budget_give(part);

@@ -426,6 +426,10 @@ int64_t sequence_frame_count(const sequence *s) {
     return s->data->span;
 }
 
+bool sequence_says_y_up(const sequence *s) {
+    return !s->data->raw && s->data->infos[0].y_up;
+}
+
 bool sequence_has_numbers(const sequence *s, size_t file, const char *grid) {
     const vdb_info *info = s->data->raw ? NULL : &s->data->infos[file];
     for (size_t i = 0; info && i < info->count; i++)

@@ -67,9 +67,12 @@ sequence *sequence_create(arena *memory, const sequence_desc *desc);
 int sequence_channel(sequence *s, const char *name, int *components);
 field_grid *sequence_grid(sequence *s); // its destroy frees all but `memory`, and must be called
 bool sequence_is_sparse(const sequence *s);
+bool sequence_says_y_up(const sequence *s); // the first file, by its creator
 // Whether a file has a grid of numbers of that very name, as it said when the sequence was made.
 bool sequence_has_numbers(const sequence *s, size_t file, const char *grid);
 int64_t sequence_frame_count(const sequence *s); // of its timeline, those without a file included
 double sequence_duration(const sequence *s);     // seconds at speed 1
-// Every file it reads, for a reload to watch; returns the count.
+// Every file it reads, by frame, for a reload to watch; returns the count.
 size_t sequence_files(const sequence *s, const char *const **out);
+// Which of them is shown at a frame of the timeline.
+size_t sequence_file_at(const sequence *s, int64_t frame);

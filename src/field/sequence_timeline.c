@@ -202,3 +202,7 @@ bool sequence_frames_at(const sequence_data *s, double position, uint32_t frames
     if (s->desc.blend) mix(s, position, frames, blend);
     return s->desc.loop != SEQUENCE_CLIP || (whole >= 0 && whole < s->span);
 }
+
+size_t sequence_file_at(const sequence *s, int64_t frame) {
+    return find(s->data, frame);
+}

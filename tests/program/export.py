@@ -42,6 +42,28 @@ class Export(Case):
         self.write("effect.lua", EFFECT % re.search(r"raw \{.*\}", told).group())
         self.succeeds("check", "effect.lua")
 
+    def test_gaps_and_what_is_up_are_kept(self):
+        os.makedirs(self.path("plain"))
+        for number in "0136":
+            shutil.copy(FILES.replace("*", number), self.path("plain"))
+        self.write("effect.lua", EFFECT % 'vdb { "plain/*.vdb" }')
+        self.succeeds("export", "vdb", "effect.lua", "--source", "burst", "-o", "made/%d.vdb")
+        for number in "1247":
+            data = self.read(f"made/{number}.vdb")
+            begin = data.index(b"roil ")
+            length = int.from_bytes(data[begin - 4:begin], "little")
+            self.write(f"data/{number}.vdb", data[:begin] + b"Houdini".ljust(length) + data[begin + length:])
+        wanted = self.picture('vdb { "data/*.vdb", offset = {4, 4, 2} }')
+        told = self.succeeds("export", "raw", self.path("data/*.vdb"), "-o", "out.raw", "--type", "f32")
+        self.assertIn("7 frames of", told)
+        self.assertIn("y_up = true", told)
+        source = re.search(r"raw \{.*\}", told).group()
+        got = self.picture(source[:-1] + ", offset = {4, 4, 2} }")
+        self.assertLessEqual(max(abs(a - b) for c in range(3) for a, b in zip(wanted.channel(c), got.channel(c))), 1)
+        self.assertGreater(max(wanted.channel(0)), 0)
+        lying = self.picture('vdb { "data/*.vdb", offset = {4, 4, 2}, y_up = false }')
+        self.assertNotEqual(wanted.channel(0), lying.channel(0))
+
     def test_mistakes(self):
         self.fails(2, "which format?", "export")
         self.fails(2, "-o is missing", "export", "raw", FILES)
