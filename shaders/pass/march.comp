@@ -35,7 +35,7 @@ uniform vec3 box_min;
 uniform vec3 box_max;
 uniform sampler2D depth;           //= input optional : depth of the scene (m)
 writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity, the mean of its colours: `transmittance` has each
-writeonly uniform image2D edge;    //= output r32f : depth of the scene that the ray saw (m)
+writeonly uniform image2D edge;    //= output rg32f : up to which depth of the scene (m) the ray would have seen the same: of the one that it saw, 1e9 where nothing more can be behind; and from which: where the last of the volume lies before it
 writeonly uniform image2D reach;   //= output r32f : distance along the ray at which the opacity lies, on average (m); where there is none, that of the scene
 writeonly uniform image2D transmittance; //= output rgba16f optional : part of what is behind that shines through, by colour
 
@@ -88,6 +88,8 @@ uniform vec2 corner; // of the part of the picture at hand
 const vec2 corner = vec2(0.0);
 #endif
 
+const float NOTHING = 1e-6; // m: where the last of a volume lies that the ray does not meet
+
 float scene_depth(vec2 uv) {
 #if HAS_DEPTH
     return texelFetch(depth, ivec2(uv * vec2(textureSize(depth, 0))), 0).r;
@@ -105,7 +107,7 @@ void main() {
     vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
     float stop = scene_depth(uv);
     imageStore(color, pixel, vec4(0.0));
-    imageStore(edge, pixel, vec4(stop));
+    imageStore(edge, pixel, vec4(1e9, NOTHING, 0.0, 0.0));
     imageStore(transmittance, pixel, vec4(1.0));
     imageStore(reach, pixel, vec4(stop * length(frame_ray(uv))));
 }
@@ -149,14 +151,15 @@ void main() {
     float stop = scene_depth(uv);
     float last = HAS_DEPTH != 0 ? stop * metres + depth_bias : 1e30;
     if (!inside) range = vec2(0.0);
+    bool through = range.x >= range.y || range.y <= last; // no more of the box is behind the scene
     float offset = MODE == MODE_PAPER ? 0.0 : 0.5;
     offset = clamp(offset + jitter * (chance(uvec2(pixel)) - 0.5), 0.0, 1.0);
 
     pixel_width = 2.0 * frame.lens.y / float(size.y);
-    ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
+    ray_state ray = ray_begin();
 #if VIEW == VIEW_NOISE
     vec3 front = frame.eye.xyz + range.x * direction;
-    if (min(range.y, last) > range.x) ray = ray_state(vec3(field_noise(front)), vec3(0.0), vec2(range.x, 1.0));
+    if (min(range.y, last) > range.x) ray = ray_state(vec3(field_noise(front)), vec3(0.0), vec2(range.x, 1.0), range.x);
 #elif MODE == MODE_PAPER
     ray = march_paper(frame.eye.xyz, direction, range, last, offset);
 #else
@@ -172,10 +175,12 @@ void main() {
 #if TEAMS
     ray.light = team_sum(ray.light);
     ray.reach = vec2(team_sum(ray.reach.x), team_sum(ray.reach.y));
+    ray.until = team_greatest(ray.until);
 #endif
     if (!inside || team_place() > 0) return;
     imageStore(color, pixel, vec4(ray.light, 1.0 - mean(ray.transmittance)));
-    imageStore(edge, pixel, vec4(stop));
+    bool all = through || mean(ray.transmittance) < early_exit;
+    imageStore(edge, pixel, vec4(all ? 1e9 : stop, clamp(ray.until / metres, NOTHING, stop), 0.0, 0.0));
     imageStore(transmittance, pixel, vec4(ray.transmittance, 1.0));
     imageStore(reach, pixel, vec4(ray.reach.y > 0.0 ? ray.reach.x / ray.reach.y : stop * metres));
 }

@@ -1,11 +1,12 @@
 // Lays a volume over the scene. A volume of lower resolution is scaled up along the edges of the
-// scene: of the texels around a pixel those count whose ray ended at the pixel's own depth.
+// scene: of the texels around a pixel those count whose ray would have seen the same if it had ended
+// at the pixel's own depth: what lies before both, or hides both, has no edge there.
 //
 // over { volume, solid, from = {volume, scene} } takes depth, edge and transmittance from there.
 uniform sampler2D volume;         //= input : premultiplied radiance and opacity
 uniform sampler2D source;         //= input : the scene
 uniform sampler2D depth;          //= input optional : depth of the scene (m)
-uniform sampler2D edge;           //= input optional : depth at which the volume's rays were stopped (m)
+uniform sampler2D edge;           //= input optional : depth at which the volume's rays were stopped (m), and from which on they saw no more of it; 0: they were seeing more
 uniform sampler2D transmittance;  //= input optional : part of the scene that shines through the volume, by colour; without: that of its opacity, grey
 uniform float edge_tolerance;     //= 0.05 [0.001, 1] : relative difference in depth that counts as an edge
 writeonly uniform image2D color;  //= output rgba16f : premultiplied radiance and opacity
@@ -32,6 +33,21 @@ layer fetch(ivec2 texel) {
 #endif
 }
 
+#if HAS_DEPTH && HAS_EDGE
+float inverse_depth(ivec2 pixel) {
+    ivec2 size = textureSize(depth, 0);
+    return 1.0 / max(texelFetch(depth, clamp(pixel, ivec2(0), size - 1), 0).r, 1e-3);
+}
+
+// How the inverse depth of the surface at a pixel changes from pixel to pixel: it is linear over a plane.
+// Towards an edge of the surface it is the other side that tells.
+vec2 inverse_slope(ivec2 pixel, float here) {
+    vec2 before = vec2(here - inverse_depth(pixel - ivec2(1, 0)), here - inverse_depth(pixel - ivec2(0, 1)));
+    vec2 after = vec2(inverse_depth(pixel + ivec2(1, 0)) - here, inverse_depth(pixel + ivec2(0, 1)) - here);
+    return mix(after, before, lessThan(abs(before), abs(after)));
+}
+#endif
+
 layer upsample(ivec2 pixel, vec2 uv) {
     ivec2 low = textureSize(volume, 0);
     if (low == imageSize(color)) return fetch(pixel);
@@ -44,7 +60,8 @@ layer upsample(ivec2 pixel, vec2 uv) {
     if (any == vec4(0.0)) return layer(vec4(0.0), vec3(1.0));
     vec4 wx = mitchell(at.x - float(base.x)), wy = mitchell(at.y - float(base.y));
 #if HAS_DEPTH && HAS_EDGE
-    float here = texelFetch(depth, pixel, 0).r;
+    float here = inverse_depth(pixel);
+    vec2 slope = inverse_slope(pixel, here), texel_pixels = vec2(imageSize(color)) / vec2(low);
 #endif
     layer sum = layer(vec4(0.0), vec3(0.0)), least = layer(vec4(1e9), vec3(1e9)), most = sum;
     layer alike = least; // the texel that is most like the pixel
@@ -53,13 +70,19 @@ layer upsample(ivec2 pixel, vec2 uv) {
         ivec2 offset = ivec2(i & 3, i >> 2);
         ivec2 texel = clamp(base + offset - 1, ivec2(0), low - 1);
         float w = wx[offset.x] * wy[offset.y], same = 1.0;
+        layer c = fetch(texel);
 #if HAS_DEPTH && HAS_EDGE
-        float apart = (texelFetch(edge, texel, 0).r - here) / (edge_tolerance * max(here, 1e-3));
+        // The depth that the pixel's surface has at the texel.
+        vec2 there = (vec2(texel) + 0.5) * texel_pixels - vec2(pixel) - 0.5;
+        float deep = 1.0 / max(here + dot(slope, there), 1e-9);
+        // Of what was not looked for behind, no more can be seen than shines through.
+        vec2 seen = texelFetch(edge, texel, 0).rg;
+        float beyond = max(deep - seen.r, 0.0) * min(2.0 * (1.0 - c.color.a), 1.0);
+        float apart = (beyond + max((seen.g > 0.0 ? seen.g : seen.r) - deep, 0.0)) / (edge_tolerance * deep);
         same = 1.0 / (1.0 + apart * apart) + 1e-6;
         // Across an edge the negative lobes would ring: only what is positive counts.
         w = mix(max(w, 0.0), w, same);
 #endif
-        layer c = fetch(texel);
         sum.color += w * same * c.color;
         sum.through += w * same * c.through;
         total += w * same;

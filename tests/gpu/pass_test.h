@@ -175,13 +175,15 @@ static inline float *world_read(pass_world *w, graph_image image) {
     return out;
 }
 
-// Texels of an r32f image; free with mem_free.
+// Texels of an r32f image, or the first channel of an rg32f one; free with mem_free.
 static inline float *world_read_depth(pass_world *w, graph_image image) {
     gpu_image *source = graph_get_image(w->host.graph, image);
     const gpu_image_desc *desc = gpu_image_get_desc(source);
-    size_t size = (size_t)desc->width * desc->height * sizeof(float);
-    float *out = mem_alloc(size);
-    gpu_test_ok(gpu_image_read(w->host.device, source, out, size));
+    size_t count = (size_t)desc->width * desc->height;
+    size_t channels = desc->format == GPU_RG32F ? 2 : 1;
+    float *out = mem_alloc(count * channels * sizeof *out);
+    gpu_test_ok(gpu_image_read(w->host.device, source, out, count * channels * sizeof *out));
+    for (size_t i = 0; i < count; i++) out[i] = out[channels * i];
     return out;
 }
 

@@ -8,7 +8,10 @@ struct ray_state {
     vec3 light;         // radiance so far
     vec3 transmittance; // what still shines through
     vec2 reach;         // opacities times distances, opacities
+    float until;        // metres to the end of the last step in which there was anything
 };
+
+ray_state ray_begin() { return ray_state(vec3(0.0), vec3(1.0), vec2(0.0), 0.0); }
 
 struct node { // the medium at a point of the ray
     float density;
@@ -48,9 +51,11 @@ void add_stretch(inout ray_state ray, node n, vec3 lit, float length, float at) 
     ray.light += ray.transmittance * whole * length * (n.own + n.scattering * lit);
     ray.transmittance *= exp(-x);
     ray.reach += gained * vec2(at, 1.0);
+    if (n.density > 0.0) ray.until = at + 0.5 * length;
 }
 
 void add_paper(inout ray_state ray, vec3 p, float part, float at) {
+    ray.until = at;
     ray.reach += ray.transmittance.x * part * vec2(at, 1.0);
     ray.light += ray.transmittance * part * field_radiance(p);
     ray.transmittance *= 1.0 - part;
@@ -139,7 +144,7 @@ bool walk_to_smoke(inout walk w, vec3 origin, vec3 direction, inout int taken, o
 }
 
 ray_state march_even(vec3 origin, vec3 direction, vec2 range, float offset) {
-    ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
+    ray_state ray = ray_begin();
     if (range.x >= range.y) return ray;
     walk w = walk_begin(origin, direction, range, range.y, offset);
     site s;
@@ -159,7 +164,7 @@ ray_state march_even(vec3 origin, vec3 direction, vec2 range, float offset) {
 }
 #else
 ray_state march_even(vec3 origin, vec3 direction, vec2 range, float offset) {
-    ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
+    ray_state ray = ray_begin();
     if (range.x >= range.y) return ray;
     walk w = walk_begin(origin, direction, range, range.y, offset);
     site s;
@@ -205,7 +210,7 @@ bool walk_further(inout walk w, inout site s) {
 
 // Section 3.6: `last`, how far samples may lie, weighs them and leaves the steps as they are.
 ray_state march_paper(vec3 origin, vec3 direction, vec2 range, float last, float offset) {
-    ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
+    ray_state ray = ray_begin();
     if (range.x >= range.y) return ray;
     walk w = walk_begin(origin, direction, range, last, offset);
     site s;
@@ -276,7 +281,7 @@ void add_step(inout ray_state ray, step_nodes s, node middle, vec3 lit, float le
 // A step has a sample at each end and one in the middle, and is halved until it is good enough: the
 // middle is then the new end.
 ray_state march_adaptive(vec3 origin, vec3 direction, vec2 range, float offset) {
-    ray_state ray = ray_state(vec3(0.0), vec3(1.0), vec2(0.0));
+    ray_state ray = ray_begin();
     float span = range.y - range.x;
     if (span <= 0.0) return ray;
     float usual = usual_step(span);
