@@ -54,7 +54,12 @@ end
 -- ragged what is finer than they are.
 local turned = bake(vec(flow.density, flow.temperature, 0), { size = {cells(128), cells(128), cells(256)} })
 local ragged = worley { frequency = 3.2, octaves = 3, persistence = 0.55, drift = {0, 0, -2}, speed = 0.6, seed = 11 }
-local hot    = turned.y * (0.5 + 0.8 * ragged)
+
+-- All is gone where the slices end (at 0.9 m) and where there is hardly any soot, so that their edge is not
+-- seen: smoke by its density, flames by their heat, which keeps the round form of a flame that ends there.
+local away   = 1 - smoothstep(0.45, 0.85, length(vec(position.x, position.y, 0)))
+local soot   = smoothstep(0.04, 0.2, turned.x)
+local hot    = turned.y * (0.5 + 0.8 * ragged) * away * sqrt(soot)
 
 -- Flames are thin, and hide nothing: soot that glows, the hotter the brighter.
 local glow  = palette { {0.15, {0, 0, 0}}, {0.3, {0.16, 0.035, 0.004}}, {0.5, {1, 0.30, 0.04}}, {0.8, {1.6, 0.75, 0.16}}, {1.2, {2, 1.3, 0.5}} }
@@ -64,10 +69,8 @@ fx.camera = camera { eye = {0.6, -4.6, 0.85}, target = {0, 0, 0.95}, fov = 32, n
 fx.sun    = sun { azimuth = 60, elevation = 40, color = {0.55, 0.7, 1}, strength = 0.04 } -- the moon
 fx.sky    = sky { zenith = {0.003, 0.005, 0.012}, horizon = {0.010, 0.012, 0.020} }
 
--- Smoke is gone where the slices end, and where it is thin, so that their edge is not seen.
-local out   = (1 - smoothstep(0.2, 0.8, length(vec(position.x, position.y, 0)))) * smoothstep(0.04, 0.2, turned.x)
 local lit = lighting {
-  density = turned.x * out * thickness, emission = flame * brightness,
+  density = turned.x * away * soot * thickness, emission = flame * brightness,
   albedo = {0.5, 0.48, 0.46}, anisotropy = 0.3, sampling = "linear",
 }
 local scene  = geometry { mesh { "data/ground.obj", color = {1.8, 1.7, 1.6} }, mesh { "data/logs.obj" } }
