@@ -131,3 +131,5 @@ bool app_stats_save(const app_stats *s, const char *file, const roil *r, const c
                     uint32_t width, uint32_t height, const roil_setting *settings, size_t count);
 void app_stats_print(const app_stats *s); // a table on stdout: median and 95th percentile by pass
 void app_stats_destroy(app_stats *s);
+// "12.5 m/s", "yes".
+void app_format_readout(const roil_readout *r, char *out, size_t capacity);

@@ -50,7 +50,9 @@ static void draw_readouts(live *l, const char *pass) {
     size_t count = roil_readouts(l->effect, all, PANEL_READOUTS);
     for (size_t i = 0; i < count && i < PANEL_READOUTS; i++) {
         if (strcmp(all[i].pass, pass) != 0) continue;
-        ui_text_color(UI_DIM, "%s  %.6g %s", all[i].name, all[i].value, all[i].unit);
+        char value[96];
+        app_format_readout(&all[i], value, sizeof value);
+        ui_text_color(UI_DIM, "%s  %s", all[i].name, value);
     }
 }
 

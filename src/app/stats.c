@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/statistics.h"
+#include "base/str.h"
 #include <inttypes.h>
 #include <jansson.h>
 #include <math.h>
@@ -118,13 +119,21 @@ static void print_playback(const app_stats *s) {
         (double)p->frame_bytes * 1e-6, bytes_a_voxel(p), (double)p->device_bytes * 1e-6);
 }
 
+void app_format_readout(const roil_readout *r, char *out, size_t capacity) {
+    if (strcmp(r->unit, "bool") == 0)
+        str_copy(out, capacity, r->value != 0 ? "yes" : "no");
+    else
+        snprintf(out, capacity, "%.6g%s%s", r->value, r->unit[0] ? " " : "", r->unit);
+}
+
 static void print_readouts(const app_stats *s) {
     for (size_t i = 0; i < s->readout_count; i++) {
         const roil_readout *r = &s->readouts[i];
         bool first = i == 0 || strcmp(r->pass, s->readouts[i - 1].pass) != 0;
         if (first) app_print(stdout, "%s%s:", i ? "\n" : "", r->pass);
-        app_print(stdout, "%s %s %.6g%s%s", first ? "" : ",", r->name, r->value,
-                  r->unit[0] ? " " : "", r->unit);
+        char value[96];
+        app_format_readout(r, value, sizeof value);
+        app_print(stdout, "%s %s %s", first ? "" : ",", r->name, value);
     }
     if (s->readout_count) app_print(stdout, "\n");
 }

@@ -2,18 +2,10 @@
 #include "app/label.h"
 #include "app/live.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { MOST = 96 };                                     // readouts of an effect that are looked at
 static const float PADDING = 12, GAP = 16, MARGIN = 16; // units
-
-static void print_value(const roil_readout *r, char *out, size_t capacity) {
-    if (strcmp(r->unit, "bool") == 0)
-        snprintf(out, capacity, "%s", r->value != 0 ? "yes" : "no");
-    else
-        snprintf(out, capacity, "%.6g%s%s", r->value, r->unit[0] ? " " : "", r->unit);
-}
 
 void status_draw(const live *l, ui_rect view) {
     roil_readout all[MOST], *told = all;
@@ -24,7 +16,7 @@ void status_draw(const live *l, ui_rect view) {
     float s = ui_scale(), names = 0, values = 0, row = label_height() + 4 * s;
     char text[96];
     for (size_t i = 0; i < count; i++) {
-        print_value(&told[i], text, sizeof text);
+        app_format_readout(&told[i], text, sizeof text);
         names = fmaxf(names, ui_text_width(told[i].name));
         values = fmaxf(values, ui_text_width(text));
     }
@@ -35,7 +27,7 @@ void status_draw(const live *l, ui_rect view) {
     ui_fill((ui_rect){left, top, right, bottom}, ui_rgba(UI_PANEL, 0.8f), 6 * s);
     for (size_t i = 0; i < count; i++) {
         float y = top + PADDING * s + (float)i * row;
-        print_value(&told[i], text, sizeof text);
+        app_format_readout(&told[i], text, sizeof text);
         ui_label(left + PADDING * s, y, ui_rgba(UI_DIM, 1), told[i].name);
         label_right(right - PADDING * s, y, ui_rgba(UI_TEXT, 1), text);
     }

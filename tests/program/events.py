@@ -18,6 +18,7 @@ fx:on_click(function(event)
   clicks = clicks + 1
   way = { event.hit.position[1], event.hit.position[2] }
   fx:status("clicks", clicks)
+  fx:status("moves", true)
 end, "go there")
 fx:on_key("b", function() bright:set(4) end, "brighter")
 fx.events = { { 0.2, click = {0.7, 0.8} } }
@@ -37,6 +38,10 @@ class Events(Case):
     def render(self, folder, *more):
         self.succeeds("render", "ball.lua", *SMALL, "-o", folder + "/%d.png", *more)
         return self.read(folder + "/14.png")
+
+    def test_what_the_script_says_of_itself_is_printed(self):
+        printed = self.succeeds("render", "ball.lua", *SMALL, "-o", "o.png", "--frames", "14")
+        self.assertIn("effect: clicks 1, moves yes\n", printed)
 
     def test_frames_left_out_change_nothing(self):
         whole = self.render("whole")
