@@ -204,10 +204,14 @@ bool roil_get_playback(const roil_effect *e, roil_playback *out); // false: it h
 bool roil_read(roil_effect *e, bool alpha, uint8_t *out);
 
 typedef struct roil_save_options {
-    const char *image; // NULL: the effect's picture; else an image that was kept
-    bool alpha;        // PNG: keep alpha
-    bool sixteen;      // PNG: 16 bits a channel
-    bool full;         // EXR: 32-bit float; else half
+    const char *image;  // NULL: the effect's picture; else an image that was kept
+    bool alpha;         // PNG: keep alpha, colours divided by it (straight), as PNG has it: light
+                        // over little cover, as of fire, is cut off at white
+    bool premultiplied; // PNG: keep alpha, colours as they lie on black, so that nothing is cut
+                        // off; who lays them over something has to be told
+    bool sixteen;       // PNG: 16 bits a channel
+    bool full;          // EXR: 32-bit float; else half
+    bool shown; // EXR: the tone-mapped picture, still linear, in place of the scene-linear one
 } roil_save_options;
 // PNG files hold a recipe (below) of how they were made.
 // .png: display-referred sRGB; .exr: scene-linear with A, and depth as Z where the effect gives it.

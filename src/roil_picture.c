@@ -146,40 +146,43 @@ static uint8_t dithered_byte(float linear, size_t x, size_t y, int channel) {
     return (uint8_t)((fine + roil_dither_noise(x, y, channel)) >> 8);
 }
 
-// Colours are premultiplied: without alpha they lie on black, with it they are divided by it.
-static float straight(const float *pixel, int c, bool alpha) {
-    return alpha && pixel[3] > 1e-6f ? pixel[c] / pixel[3] : pixel[c];
+typedef enum alpha_kind { OPAQUE, STRAIGHT, PREMULTIPLIED } alpha_kind;
+
+// Colours are premultiplied, as they lie on black; straight ones are divided by alpha.
+static float color_of(const float *pixel, int c, alpha_kind alpha) {
+    return alpha == STRAIGHT && pixel[3] > 1e-6f ? pixel[c] / pixel[3] : pixel[c];
 }
 
-static uint8_t alpha_byte(const float *pixel, bool alpha) {
-    return alpha ? (uint8_t)lrintf(clampf(pixel[3], 0, 1) * 255) : 255;
+static uint8_t alpha_byte(const float *pixel, alpha_kind alpha) {
+    return alpha != OPAQUE ? (uint8_t)lrintf(clampf(pixel[3], 0, 1) * 255) : 255;
 }
 
 // For eyes.
-static void encode8_dithered(const linear_image *image, bool alpha, size_t channels, uint8_t *out) {
+static void encode8_dithered(const linear_image *image, alpha_kind alpha, size_t channels,
+                             uint8_t *out) {
     const float *pixel = image->pixels;
     for (size_t y = 0; y < image->height; y++)
         for (size_t x = 0; x < image->width; x++, pixel += 4, out += channels) {
-            for (int c = 0; c < 3; c++) out[c] = dithered_byte(straight(pixel, c, alpha), x, y, c);
+            for (int c = 0; c < 3; c++) out[c] = dithered_byte(color_of(pixel, c, alpha), x, y, c);
             if (channels == 4) out[3] = alpha_byte(pixel, alpha);
         }
 }
 
 // For what measures: each the code that is nearest.
-static void encode8_nearest(const linear_image *image, bool alpha, uint8_t *out) {
+static void encode8_nearest(const linear_image *image, alpha_kind alpha, uint8_t *out) {
     const uint8_t *table = roil_srgb_table();
     const float *end = image->pixels + image->width * image->height * 4;
     for (const float *pixel = image->pixels; pixel < end; pixel += 4, out += 4) {
-        for (int c = 0; c < 3; c++) out[c] = table[table_index(straight(pixel, c, alpha))];
+        for (int c = 0; c < 3; c++) out[c] = table[table_index(color_of(pixel, c, alpha))];
         out[3] = alpha_byte(pixel, alpha);
     }
 }
 
-static void encode16(const linear_image *image, bool alpha, size_t channels, uint16_t *out) {
+static void encode16(const linear_image *image, alpha_kind alpha, size_t channels, uint16_t *out) {
     const float *end = image->pixels + image->width * image->height * 4;
     for (const float *pixel = image->pixels; pixel < end; pixel += 4, out += channels) {
         for (int c = 0; c < 3; c++)
-            out[c] = (uint16_t)lrintf(srgb_encode(straight(pixel, c, alpha)) * 65535);
+            out[c] = (uint16_t)lrintf(srgb_encode(color_of(pixel, c, alpha)) * 65535);
         if (channels == 4) out[3] = (uint16_t)lrintf(clampf(pixel[3], 0, 1) * 65535);
     }
 }
@@ -198,7 +201,7 @@ bool roil_read(roil_effect *e, bool alpha, uint8_t *out) {
     raw_image raw = {0};
     if (!read_output(e, &raw)) return false;
     linear_image image = expand_all(&raw);
-    encode8_nearest(&image, alpha, out);
+    encode8_nearest(&image, alpha ? STRAIGHT : OPAQUE, out);
     mem_free(image.pixels);
     free_raw(&raw);
     return true;
@@ -216,8 +219,11 @@ typedef struct picture { // all that its file needs, away from the effect and it
 } picture;
 
 static bool write_png(const picture *p, const linear_image *image) {
-    const bool alpha = p->options.alpha, sixteen = p->options.sixteen;
-    const size_t channels = alpha ? 4 : 3;
+    const bool sixteen = p->options.sixteen;
+    const alpha_kind alpha = p->options.premultiplied ? PREMULTIPLIED
+                             : p->options.alpha       ? STRAIGHT
+                                                      : OPAQUE;
+    const size_t channels = alpha != OPAQUE ? 4 : 3;
     void *encoded = mem_alloc(image->width * image->height * channels * (sixteen ? 2 : 1));
     if (sixteen)
         encode16(image, alpha, channels, encoded);
@@ -307,7 +313,9 @@ static picture *take_picture(roil_effect *e, const char *file, const roil_save_o
     p->options = options ? *options : defaults;
     str_copy(p->file, sizeof p->file, file);
     graph_image linear = effect_get_picture(e->effect, EFFECT_LINEAR);
-    graph_image image = exr && linear.id ? linear : effect_get_picture(e->effect, EFFECT_OUTPUT);
+    graph_image image = exr && linear.id && !p->options.shown
+                            ? linear
+                            : effect_get_picture(e->effect, EFFECT_OUTPUT);
     if (p->options.image) image = roil_find_image(e, p->options.image);
     if (!image.id || !read_raw(e, image, &p->color) || !take_depth(e, p)) {
         free_picture(p);

@@ -33,7 +33,7 @@ typedef struct job {
     app_frames frames;
     const char *frames_text;
     uint32_t width, height;
-    int alpha, sixteen, full;
+    int alpha, premultiplied, sixteen, full, shown;
     int warmup;         // frames
     bool all;           // frames, as nobody says which
     uint32_t reference; // samples a pixel; 0: as the effect draws it
@@ -140,10 +140,15 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
         {"dump-pass", '\0', POPT_ARG_STRING, NULL, OPTION_DUMP,
          "save an image of the graph as well: a pass, or march.edge", "NAME FILE"},
         {"fps", '\0', POPT_ARG_DOUBLE, &j->fps, 0, "of the video (default: the effect's)", "FPS"},
-        {"alpha", '\0', POPT_ARG_NONE, &j->alpha, 0, "keep alpha in PNG files", NULL},
+        {"alpha", '\0', POPT_ARG_NONE, &j->alpha, 0,
+         "keep alpha in PNG files, straight: light over little cover is cut off at white", NULL},
+        {"premultiplied", '\0', POPT_ARG_NONE, &j->premultiplied, 0,
+         "keep alpha in PNG files, with colours as they lie on black: light stays whole", NULL},
         {"16", '\0', POPT_ARG_NONE, &j->sixteen, 0, "16 bits a channel in PNG files", NULL},
         {"float", '\0', POPT_ARG_NONE, &j->full, 0, "32-bit float in EXR files (default: half)",
          NULL},
+        {"shown", '\0', POPT_ARG_NONE, &j->shown, 0,
+         "EXR files of the tone-mapped picture with alpha, linear and premultiplied", NULL},
         app_device_rows(&j->device),
         POPT_AUTOHELP POPT_TABLEEND};
     *context = poptGetContext("roil render", argc, argv, options, 0);
@@ -159,6 +164,8 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
     if (more) return err_set("'%s': one effect at a time", more);
     if (j->warmup < 0 || j->warmup > 1000)
         return err_set("--warmup %d; accepted: 0 to 1000 frames", j->warmup);
+    if (j->alpha && j->premultiplied)
+        return err_set("--alpha is straight, --premultiplied is not: one of the two");
     if (j->warmup && j->restore)
         return err_set("--warmup goes back, --restore goes on: one of the two");
     return app_check_device(&j->device) &&
@@ -265,7 +272,12 @@ static bool save_frame(job *j, roil_effect *e, double frame) {
         output *o = &j->outputs[i];
         char file[PATH_CAP];
         if (!name_file(o, frame, file)) return false;
-        roil_save_options options = {o->image, j->alpha, j->sixteen, j->full};
+        roil_save_options options = {.image = o->image,
+                                     .alpha = j->alpha,
+                                     .premultiplied = j->premultiplied,
+                                     .sixteen = j->sixteen,
+                                     .full = j->full,
+                                     .shown = j->shown};
         bool done =
             o->video ? roil_video_add(o->video) : roil_writer_save(j->writer, e, file, &options);
         if (!done) return false;

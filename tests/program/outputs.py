@@ -21,6 +21,20 @@ void main() {
     if (all(lessThan(pixel, imageSize(color)))) imageStore(color, pixel, vec4(vec3(value), 1.0));
 }
 """
+GLOW = """// Light that is brighter than what covers it.
+writeonly uniform image2D color; //= output rgba16f : premultiplied
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (all(lessThan(pixel, imageSize(color)))) imageStore(color, pixel, vec4(0.5, 0.25, 0.0625, 0.125));
+}
+"""
+GLOWS = """
+local fx = effect { name = "glows", fps = 24, frames = 2 }
+fx.camera = orbit { target = {0, 0, 0}, distance = 3 }
+local shown = final { shader { "glow.comp" }, tonemap = "none" }
+fx.output, fx.linear = shown.color, shown.linear
+return fx
+"""
 FLAT = """
 local fx = effect { name = "flat", fps = 24, frames = 2 }
 fx.camera = orbit { target = {0, 0, 0}, distance = 3 }
@@ -60,6 +74,27 @@ class Pictures(Case):
         self.assertEqual(alpha[0], 0)
         self.assertGreater(alpha[27 * 96 + 48], 250)
         self.assertTrue(any(20 < a < 235 for a in alpha))
+
+    def test_light_over_little_cover_stays_whole_premultiplied(self):
+        self.write("glow.comp", GLOW)
+        self.render(GLOWS, "--16", "--premultiplied")
+        picture = self.png()
+        self.assertEqual(picture.channels, 4)
+        self.assertAlmostEqual(picture.channel(0)[0] / 65535, 1.055 * 0.5 ** (1 / 2.4) - 0.055, places=3)
+        self.assertAlmostEqual(picture.channel(3)[0] / 65535, 0.125, places=3)
+        self.render(GLOWS, "--16", "--alpha")
+        self.assertEqual(self.png().channel(0)[0], 65535)
+        self.assertAlmostEqual(self.png().channel(2)[0] / 65535, 1.055 * 0.5 ** (1 / 2.4) - 0.055, places=3)
+        self.fails(2, "one of the two", "render", "effect.lua", "--alpha", "--premultiplied")
+
+    def test_exr_of_what_is_shown(self):
+        self.write("glow.comp", GLOW)
+        tone_mapped = GLOWS.replace('"none"', '"exponential"')
+        for arguments, red in (((), 0.5), (("--shown",), 1 - 2.718281828 ** -0.5)):
+            self.render(tone_mapped, *arguments, output="out.exr")
+            picture = Exr(self.read("out.exr"))
+            self.assertAlmostEqual(picture.channels["R"][0], red, delta=1e-3)
+            self.assertAlmostEqual(picture.channels["A"][0], 0.125, delta=1e-3)
 
     def test_png_of_sixteen_bits(self):
         self.render(BALL)
