@@ -49,7 +49,7 @@ struct light_entry {
     SHARED_VEC4 position; // xyz: metres; of the sun: unit, towards it; w: radius in metres, of the sun: sine of its angular radius
     SHARED_VEC4 color;    // rgb: radiant intensity (W/sr); of the sun: irradiance at normal incidence (W/m^2); w: kind
     SHARED_VEC4 axis;     // of a spot: xyz: unit, where it shines; w: cosine of the half angle at which it ends; of fire: xyz: into the direction d its intensity is 1 + dot(axis, d) times the colour
-    SHARED_VEC4 spread;   // of a spot: x: cosine of the half angle up to which it is full
+    SHARED_VEC4 spread;   // of a spot: x: cosine of the half angle up to which it is full; of all but sun and fire: y: range in metres, 0: none; z: 1: falls off linearly
 };
 
 // Uniform block "Lights" of every shader that includes lib/light.glsl. The sun is the first.

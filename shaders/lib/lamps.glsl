@@ -110,15 +110,11 @@ bool lamp_reaches(lamp l, vec3 p, vec3 normal) {
     return !LAMPS_SKIP || (dot(to, to) < l.range * l.range && dot(to, normal) > 0.0);
 }
 
-// As light_at. The inverse square is let down to 0 at the range by (1 - (d / range)^4)^2, which leaves
-// most of it as it is (Karis, "Real shading in Unreal Engine 4", 2013, Lagarde and de Rousiers, "Moving
-// Frostbite to physically based rendering", 2014, section 3.1.1).
+// As light_at.
 light_ray lamp_ray(lamp l, vec3 p) {
     vec3 to = l.position - p;
-    float distance = max(length(to), 1e-4), part = min(distance / max(l.range, 1e-6), 1.0);
-    float least = max(l.radius, 1e-2), square = part * part, window = 1.0 - square * square;
-    float falls = l.linear ? 1.0 - part : window * window / max(distance * distance, least * least);
-    return light_ray(to / distance, distance, l.color * falls);
+    float distance = max(length(to), 1e-4);
+    return light_ray(to / distance, distance, l.color * light_falls(distance, l.radius, l.range, l.linear));
 }
 
 #endif

@@ -18,6 +18,8 @@ struct light {
     vec3 axis;     // of a spot, and of fire
     float outer;   // cosine at which its cone ends
     float inner;   // cosine up to which it is full
+    float range;   // metres; 0: it has none
+    bool linear;   // falls off so, up to its range
 };
 
 struct light_ray {
@@ -51,18 +53,26 @@ light_entry light_entry_of(int index) {
 light light_get(int index) {
     light_entry e = light_entry_of(index);
     return light(e.position.xyz, e.position.w, e.color.rgb, int(e.color.w), e.axis.xyz, e.axis.w,
-                 e.spread.x);
+                 e.spread.x, e.spread.y, e.spread.z == 1.0);
 }
 
-// A sphere's irradiance falls with the square of the distance only outside of it: inside it is that
-// at its surface.
+// Part of a light's intensity that is its irradiance at a distance. A sphere's falls with the square of
+// the distance only outside of it: inside it is that at its surface. The inverse square is let down to 0
+// at the range by (1 - (d / range)^4)^2, which leaves most of it as it is (Karis, "Real shading in Unreal
+// Engine 4", 2013, Lagarde and de Rousiers, "Moving Frostbite to physically based rendering", 2014,
+// section 3.1.1).
+float light_falls(float distance, float radius, float range, bool linear) {
+    float part = min(distance / max(range, 1e-6), 1.0), square = part * part, window = 1.0 - square * square;
+    float least = max(radius, 1e-2);
+    return linear ? 1.0 - part : window * window / max(distance * distance, least * least);
+}
+
 light_ray light_at(light l, vec3 p) {
     if (l.kind == LIGHT_SUN) return light_ray(l.position, 1e9, l.color);
     vec3 to = l.position - p;
     float distance = max(length(to), 1e-4);
     vec3 direction = to / distance;
-    float least = max(l.radius, 1e-2);
-    vec3 irradiance = l.color / max(distance * distance, least * least);
+    vec3 irradiance = l.color * light_falls(distance, l.radius, l.range > 0.0 ? l.range : 1e30, l.linear);
     if (l.kind == LIGHT_SPOT) {
         float cosine = dot(-direction, l.axis);
         float least = clamp(1e-3 * (1.0 - l.outer), 1.2e-7, 1e-4); // an edge, however narrow the cone

@@ -17,11 +17,12 @@ static const scene_value values[] = {
     VALUE(color, 3, 0, INFINITY, "", "multiplies the power", .color = true),
     VALUE(power, 1, 0, INFINITY, "W", "as light into all directions"),
     VALUE(radius, 1, 0, INFINITY, "m", "of the sphere that glows: softens shadows"),
+    VALUE(range, 1, 0, INFINITY, "m", "beyond which nothing is lit; 0: none"),
     VALUE(target, 3, -INFINITY, INFINITY, "m", "where it shines"),
     VALUE(angle, 1, 0.1f, 360, "degrees", "across the cone"),
     VALUE(softness, 1, 0, 1, "", "part of the cone over which it fades"),
 };
-enum { POINT_VALUES = 4 };
+enum { POINT_VALUES = 5 };
 
 const scene_value *scene_light_values(scene_light_kind kind, size_t *count) {
     *count = kind == SCENE_SPOT ? sizeof values / sizeof *values : POINT_VALUES;
@@ -82,14 +83,17 @@ static bool fill_spot(const scene_light *light, const field_context *context,
 
 static bool fill_light(const scene_light *light, const field_context *context,
                        struct light_entry *out) {
-    float radius;
+    float radius, range = 0;
     const float sphere = 4 * GLM_PIf; // W to W/sr
     if (!evaluate_place(light->position, context, out->position.v) ||
         !scene_evaluate_scalar(light->radius, context, &radius) ||
+        (light->range && !scene_evaluate_scalar(light->range, context, &range)) ||
         !evaluate_color(light->color, light->power, 1 / sphere, context, out))
         return false;
     out->position.v[3] = scene_limit(radius, 0, place_max);
     out->color.v[3] = (float)light->kind;
+    out->spread.v[1] = scene_limit(range, 0, place_max);
+    out->spread.v[2] = light->linear && range > 0;
     return light->kind != SCENE_SPOT || fill_spot(light, context, out);
 }
 

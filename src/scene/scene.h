@@ -47,6 +47,8 @@ typedef struct scene_light {
     const field *power;    // watt, into all directions; a spot's is that of the point light that
                            // its cone is cut from, as in Blender
     const field *radius;   // metres; above 0 a glowing sphere
+    const field *range;    // metres, beyond which nothing is lit; NULL or 0: it has none
+    bool linear;           // falls off so, up to its range; else as light does
     const field *target;   // vec3, metres: where a spot shines
     const field *angle;    // degrees across a spot's cone
     const field *softness; // 0..1: part of the cone over which it fades

@@ -24,6 +24,11 @@ static scene_light *make_light(lua_State *L, const char *who, scene_light_kind k
     light->name = value_name_or_variable(L, 1, who);
     set_default(&light->color, constant(L, 3, 1, 1, 1));
     set_default(&light->power, constant(L, 1, 100, 0, 0));
+    bool ends = light->range;
+    set_default(&light->range, constant(L, 1, 0, 0, 0));
+    light->linear = value_get_choice(L, 1, script_object_find(who), "falloff") == 1;
+    if (light->linear && !ends)
+        vm_error(L, "%s: falloff = \"linear\" ends at a 'range', which is missing", who);
     return light;
 }
 
@@ -50,7 +55,7 @@ static int l_spot_light(lua_State *L) {
 }
 
 size_t value_lights(lua_State *L, int index, const char *who, scene_light **out) {
-    enum { MOST = LIGHT_MAX - 1, CONTROLS = 7 };
+    enum { MOST = LIGHT_MAX - 1, CONTROLS = 8 };
     if (!value_is_plain_table(L, index) || value_has_names(L, index))
         vm_error(
             L, "%s: 'lights' takes a list, as in { point_light { position = {0, 0, 3} } }; got %s",

@@ -9,6 +9,11 @@
     SLOT(scene_light, color, 3, "1, 1, 1", "multiplies the power"),                                \
     SLOT(scene_light, power, 1, "100 W",                                                           \
          "as light into all directions, of which a spot's cone is cut out"),                       \
+    SLOT(scene_light, range, 1, "0 m", "beyond which nothing is lit; 0: none"),                    \
+    CHOICE("falloff", "inverse_square",                                                            \
+           "as light does, let down smoothly to 0 at the range; linear: 1 - distance / range, times "  \
+           "what the other gives at a metre",                                                      \
+           "inverse_square", "linear"),                                                            \
     KEY("name", "the variable's", "for --set NAME.power=value and presets; numbered when taken")
 
 const script_object reference_scene[] = {

@@ -105,6 +105,49 @@ static void haze_of_surfaces_is_in_the_reference(void **state) {
     }
 }
 
+// ---- how far lights reach ---------------------------------------------------------------------
+
+// A light by itself ends and falls off as one of hundreds does.
+static void point_light_reaches_as_far_as_a_lamp(void **state) {
+    enum { SIDE = 32, MIDDLE = 4 * (SIDE / 2 * SIDE + SIDE / 2) };
+    static const char TEXT[] =
+        "local fx = effect { name = 'test' }\n"
+        "fx.camera = camera { eye = {0, 0, 8}, target = {0, 0.001, 0}, fov = 50 }\n"
+        "fx.sun = sun { strength = 0 }\n"
+        "fx.sky = sky { strength = 0 }\n"
+        "local scene = geometry { mesh { 'quad.obj' } }\n"
+        "local lamps = nil\n"
+        "%s { %s position = {0, 0, 1}, power = 300, range = 2.5, falloff = '%s' } %s\n"
+        "local solid = shade { from = { scene, lamps } }\n"
+        "fx.output = final { solid, tonemap = 'none' }.color\n"
+        "return fx\n";
+    static const char *const falloffs[] = {"inverse_square", "linear"};
+    for (size_t i = 0; i < COUNT_OF(falloffs); i++) {
+        char text[2048];
+        uint8_t pixels[2][SIDE * SIDE * 4];
+        put("quad.obj", QUAD);
+        for (int lamp = 0; lamp < 2; lamp++) {
+            snprintf(text, sizeof text, TEXT,
+                     lamp ? "lamps = point_lights" : "fx.lights = { point_light",
+                     lamp ? "count = 1," : "", falloffs[i], lamp ? "" : "}");
+            roil_effect *e = load_text(*state, "reach.lua", text);
+            ok(roil_prepare(e, SIDE, SIDE));
+            ok(roil_render(e, 0));
+            ok(roil_read(e, false, pixels[lamp]));
+            roil_unload(e);
+        }
+        int lit = 0, dark = 0;
+        for (size_t k = 0; k < sizeof pixels[0]; k += 4) {
+            lit += pixels[0][k] > 0;
+            dark += pixels[0][k] == 0;
+            if (abs(pixels[0][k] - pixels[1][k]) > 1)
+                fail_msg("%s: byte %zu is %d, of a lamp %d", falloffs[i], k, pixels[0][k],
+                         pixels[1][k]);
+        }
+        assert_true(pixels[0][MIDDLE] > 100 && lit > SIDE && dark > SIDE);
+    }
+}
+
 // ---- reloads ----------------------------------------------------------------------------------
 
 enum { KINDS = 8, REST = 16, ROUNDS = 40 };
@@ -162,6 +205,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reference_gathers_until_something_changes),
         cmocka_unit_test(haze_of_surfaces_is_in_the_reference),
+        cmocka_unit_test(point_light_reaches_as_far_as_a_lamp),
         cmocka_unit_test(reloads_of_lit_effects_leave_no_memory),
     };
     return test_run(tests);

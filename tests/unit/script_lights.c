@@ -76,6 +76,12 @@ static void last_list_counts(void **state) {
 
 static void mistakes_are_named(void **state) {
     (void)state;
+    refused(HEAD "fx.lights = { point_light { position = {0, 0, 1}, range = -1 } }" TAIL,
+            "point_light: 'range' is -1; accepted: 0 m or more");
+    refused(HEAD "fx.lights = { spot_light { position = {0, 0, 1}, falloff = 'square' } }" TAIL,
+            "spot_light: unknown value of 'falloff' 'square'");
+    refused(HEAD "fx.lights = { point_light { position = {0, 0, 1}, falloff = 'linear' } }" TAIL,
+            "point_light: falloff = \"linear\" ends at a 'range', which is missing");
     refused(HEAD "fx.lights = { point_light { } }" TAIL,
             "point_light: 'position' is missing: where it stands, {x, y, z} in metres");
     refused(HEAD "fx.lights = { sphere_light { position = {0, 0, 1} } }" TAIL,
