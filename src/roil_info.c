@@ -444,6 +444,18 @@ static void print_grid(strbuf *out, const vdb_grid_info *g) {
                                  : ", rotated: it is resampled");
 }
 
+// A hint of scale: a ray along the shortest side of the box, through nothing but ones.
+static void print_opacity(strbuf *out, const vdb_grid_info *g) {
+    const float opaque = 3; // optical depth: a twentieth shines through
+    bool fog = g->grid_class != VDB_LEVEL_SET && g->components == 1;
+    if (!fog || strcmp(g->name, "density") != 0 || box3_is_empty(g->box)) return;
+    float side = fminf(fminf(g->box.max.x - g->box.min.x, g->box.max.y - g->box.min.y),
+                       g->box.max.z - g->box.min.z);
+    strbuf_add(
+        out, "  %g m along its shortest side: where it is 1 throughout, density * %.2g is opaque\n",
+        (double)side, (double)(opaque / side));
+}
+
 char *roil_info_vdb(const char *file) {
     arena memory = {0};
     vdb_info info;
@@ -467,6 +479,7 @@ char *roil_info_vdb(const char *file) {
             strbuf_add(&out, "  %llu active voxels\n", (unsigned long long)g->active_voxels);
         strbuf_add(&out, "  background %g%s\n", (double)g->background[0],
                    g->components ? "" : "; a type that roil cannot read");
+        print_opacity(&out, g);
     }
     if (info.y_up)
         strbuf_add(&out, "Y up, as its creator makes them: vdb { } turns it to Z up, unless the "

@@ -95,6 +95,11 @@ class Info(Case):
         text = self.succeeds("info", os.path.join(CORPUS, "fuzz_vdb/float.vdb"))
         self.assertIn("density: float, fog volume, voxel 0.5 x 0.5 x 0.5 m", text)
         self.assertIn("300 active voxels", text)
+        low, high = re.search(r"box \((.*)\) to \((.*)\) m", text).groups()
+        side = min(float(b) - float(a) for a, b in zip(low.split(","), high.split(",")))
+        said = re.search(r"(\S+) m along its shortest side: .* density \* (\S+) is opaque", text)
+        self.assertAlmostEqual(float(said[1]), side, places=4)
+        self.assertAlmostEqual(float(said[2]) * side, 3, delta=0.2)
         self.fails(1, "none.vdb", "info", "none.vdb")
 
     def test_bad_effects(self):
