@@ -272,6 +272,19 @@ static bool judge_entry(gate *g, const uint32_t *w, uint32_t length) {
            err_set("SPIR-V: not one entry point 'main' of a vertex, fragment or compute shader");
 }
 
+// The size of a group by ids is a size by constants: SPIRV-Cross crashes on ids of anything else,
+// of which SPIRV-Tools 2023.1 says nothing.
+static bool judge_mode(const gate *g, const uint32_t *w, uint32_t length) {
+    uint32_t mode = length > 2 ? w[2] : UINT32_MAX, size;
+    bool by_id = (w[0] & SpvOpCodeMask) == SpvOpExecutionModeId;
+    if (!HAS(modes, mode) || by_id != (mode == SpvExecutionModeLocalSizeId))
+        return err_set("execution mode %u of SPIR-V: not accepted in shaders", mode);
+    for (uint32_t i = 3; by_id && i < 6; i++)
+        if (length != 6 || !spirv_constant(&g->module, w[i], &size))
+            return err_set("SPIR-V: the size of a group is no constant");
+    return true;
+}
+
 static uint32_t opcode_of(const gate *g, uint32_t type) { // 0: nothing is defined there
     bool defined = type < g->module.bound && g->module.ids[type].at;
     return defined ? g->module.words[g->module.ids[type].at] & SpvOpCodeMask : 0;
@@ -366,8 +379,7 @@ static bool judge(gate *g, const uint32_t *w, uint32_t length) {
         return judge_entry(g, w, length);
     case SpvOpExecutionMode:
     case SpvOpExecutionModeId:
-        return (length > 2 && HAS(modes, w[2])) ||
-               err_set("execution mode %u of SPIR-V: not accepted in shaders", id);
+        return judge_mode(g, w, length);
     case SpvOpDecorate:
         return length > 2 ? judge_decoration(g, w[1], false, w + 2, length - 2)
                           : err_set("SPIR-V: a decoration is cut off");

@@ -15,6 +15,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h> // wants the headers above
 
@@ -31,6 +32,12 @@ static inline void gpu_test_need_device(void) {
     if (gpu_list(&info, 1) > 0) return;
     fprintf(stderr, "skipped: %s\n", err_get());
     exit(77);
+}
+
+// Its sines, roots and powers are as coarse as Vulkan allows (2^-11 for a sine), others' are finer.
+static inline bool gpu_test_is_coarse(void) {
+    gpu_info info;
+    return gpu_list(&info, 1) > 0 && strstr(info.name, "SwiftShader");
 }
 
 // `cache_dir` may be NULL.

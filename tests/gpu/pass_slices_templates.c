@@ -244,12 +244,12 @@ static void align_turns_the_upper_edge(void **state) {
     templates_build(&t);
     templates_run(&t, 1, false);
     template_seen *seen = templates_read(&t, 0);
+    const float least = gpu_test_is_coarse() ? 0.9995f : 0.9999f;
     double worst = 1, mean = 0, any[2] = {0, 0};
     for (int i = 0; i < 64; i++) {
         assert_true(fabsf(seen[i].cosine - cosf((float)pi / 6)) < 1e-5f);
         assert_true(fabsf(seen[i].sine - 0.5f) < 1e-5f);
-        // Devices know sines to 2^-11.
-        assert_true(outward(&seen[64 + i], 0.2f * 64, 0.9f * 64) > 0.9995f);
+        assert_true(outward(&seen[64 + i], 0.2f * 64, 0.9f * 64) > least);
         double out = (double)outward(&seen[128 + i], 32, 0.4f * 64); // the contour is a circle
         worst = fmin(worst, out), mean += out / 64;
         any[0] += (double)seen[192 + i].cosine, any[1] += (double)seen[192 + i].sine;

@@ -154,6 +154,15 @@ static void words_are_looked_at(void **state) {
     refuses(&m, SpvOpFunction, 2, first(&m, SpvOpTypeVoid)[1], "not a module");
     refuses(&m, SpvOpLoad, 1, first(&m, SpvOpTypePointer)[1], "a pointer that is not to a part");
     refuses(&m, SpvOpBitcast, 3, pointer, "a number made of a pointer");
+    refuses(&m, SpvOpExecutionMode, 2, SpvExecutionModeLocalSizeId, "execution mode 38");
+    refuses(&m, SpvOpExecutionMode, 0, 6u << 16 | SpvOpExecutionModeId, "execution mode 17");
+    module by_id = m; // SPIRV-Cross crashes on a size that is a variable
+    uint32_t *mode = first(&by_id, SpvOpExecutionMode);
+    mode[0] = 6u << 16 | SpvOpExecutionModeId;
+    mode[2] = SpvExecutionModeLocalSizeId;
+    mode[3] = mode[4] = mode[5] = first(&m, SpvOpConstant)[2];
+    refuses(&by_id, SpvOpExecutionModeId, 4, first(&m, SpvOpVariable)[2], "the size of a group");
+    refuses(&by_id, SpvOpExecutionModeId, 5, m.words[SPIRV_BOUND], "the size of a group");
     m.words[SPIRV_BOUND] = UINT32_MAX;
     assert_false(spirv_gate(&m.code));
     m.words[0] = 0;
