@@ -15,6 +15,7 @@
 #include <string.h>
 
 enum { MOST_OFFSET = 1 << 28, MOST_NAME = 4096 };
+enum { MOST_LOCATIONS = 32, MOST_TARGETS = 8 }; // every device has as many, or says so itself
 
 typedef struct range { // of words of one sort, both included
     uint32_t first, last;
@@ -197,7 +198,7 @@ typedef struct gate {
     uint32_t set;     // the id of GLSL.std.450
     uint32_t entries; // entry points
     uint32_t model;   // execution model of the last one
-    bool *located;    // by id: it has a location, or holds built-ins
+    uint8_t *located; // by id: 1 + its location; 1: it holds built-ins or members with a location
     uint8_t *built;   // by id: the built-in that it is, as 1 + index of the table; 0: none
 } gate;
 
@@ -253,9 +254,16 @@ static bool judge_decoration(gate *g, uint32_t id, bool member, const uint32_t *
     if (w[0] == SpvDecorationBuiltIn && !b)
         return err_set("built-in variable %u of SPIR-V: not accepted in shaders",
                        length == 2 ? w[1] : 0);
+    bool location = w[0] == SpvDecorationLocation;
+    if (location && (length != 2 || w[1] >= MOST_LOCATIONS))
+        return err_set("location %u of SPIR-V: 0 to %d are accepted", length == 2 ? w[1] : 0,
+                       MOST_LOCATIONS - 1);
+    bool part = w[0] == SpvDecorationComponent || w[0] == SpvDecorationIndex;
+    if (part && (length != 2 || w[1] > (w[0] == SpvDecorationComponent ? 3 : 1)))
+        return err_set("SPIR-V: a location has no such part");
     if (id >= g->module.bound) return true;
-    if (w[0] == SpvDecorationLocation || (w[0] == SpvDecorationBuiltIn && member))
-        g->located[id] = true;
+    if (location || (w[0] == SpvDecorationBuiltIn && member))
+        g->located[id] = (uint8_t)(location && !member ? 1 + w[1] : 1);
     else if (w[0] == SpvDecorationBuiltIn)
         g->built[id] = (uint8_t)(1 + (b - built_ins));
     return true;
@@ -325,6 +333,17 @@ static bool fits_built_in(const gate *g, const uint32_t *variable, uint32_t type
     return b->scalar == scalar && b->components == components;
 }
 
+// Drivers keep what is handed on in a table by location, and do not ask whether it lies in there.
+// An element of an array takes a location, however small it is.
+static bool fits_locations(const gate *g, const uint32_t *variable, uint32_t type) {
+    uint32_t at = g->located[variable[2]] ? g->located[variable[2]] - 1u : 0;
+    const spirv_id *t = &g->module.ids[type];
+    uint32_t taken = t->array ? t->size / 4 : t->size > 16 ? 4 : 1;
+    bool target = g->model == SpvExecutionModelFragment && variable[3] == SpvStorageClassOutput;
+    uint32_t most = target ? MOST_TARGETS : MOST_LOCATIONS;
+    return at < most && taken <= most - at;
+}
+
 // What a thread or a group has for itself has a size; expand.c adds up that of threads.
 static bool judge_variable(const gate *g, const uint32_t *w, uint32_t length) {
     const uint32_t *pointer = spirv_find(&g->module, w[1], SpvOpTypePointer);
@@ -337,6 +356,8 @@ static bool judge_variable(const gate *g, const uint32_t *w, uint32_t length) {
                       ? fits_built_in(g, w, pointer[3])
                       : located || fits_built_in(g, w, pointer[3]);
     if (handed && !placed) return err_set("SPIR-V: a variable that is handed on has no location");
+    if (handed && located && !fits_locations(g, w, pointer[3]))
+        return err_set("what is handed on takes more than %d locations", MOST_LOCATIONS);
     return !own || is_size(g, pointer[3], SPIRV_MAX_PRIVATE) ||
            err_set("a variable of more than %d KiB; a thread may have as much in arrays",
                    SPIRV_MAX_PRIVATE >> 10);

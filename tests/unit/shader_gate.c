@@ -156,6 +156,12 @@ static void words_are_looked_at(void **state) {
     refuses(&m, SpvOpBitcast, 3, pointer, "a number made of a pointer");
     refuses(&m, SpvOpExecutionMode, 2, SpvExecutionModeLocalSizeId, "execution mode 38");
     refuses(&m, SpvOpExecutionMode, 0, 6u << 16 | SpvOpExecutionModeId, "execution mode 17");
+    module far = m; // lavapipe crashes on a location beyond its table
+    first(&far, SpvOpDecorate)[2] = SpvDecorationLocation;
+    refuses(&far, SpvOpDecorate, 3, 262255, "location 262255");
+    refuses(&far, SpvOpDecorate, 3, 32, "location 32");
+    first(&far, SpvOpDecorate)[2] = SpvDecorationComponent;
+    refuses(&far, SpvOpDecorate, 3, 4, "no such part");
     module by_id = m; // SPIRV-Cross crashes on a size that is a variable
     uint32_t *mode = first(&by_id, SpvOpExecutionMode);
     mode[0] = 6u << 16 | SpvOpExecutionModeId;
