@@ -124,8 +124,9 @@ bool isolate_set_reader(const char *program) {
     return fits || path_too_long(program);
 }
 
-void isolate_warm_up(void) {
-    static const wire_request get_ready;
+void isolate_warm_up(const char *kind) {
+    wire_request get_ready = {0};
+    str_copy(get_ready.kind, sizeof get_ready.kind, kind);
     pthread_mutex_lock(&reader.lock);
     if (!start_reader())
         log_write(LOG_DEBUG, "%s", err_get()); // the first job tries again

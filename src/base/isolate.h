@@ -61,8 +61,9 @@ void isolate_free(isolate_result *r);
 // Where the reader is, for the next one that is started; not said: $ROIL_READER, else beside the
 // running program. False with a message when the path is too long.
 bool isolate_set_reader(const char *program);
-// Starts the reader and lets it get ready for all jobs: the first shader costs 100 ms without.
-void isolate_warm_up(void);
+// Starts the reader and, without waiting, lets it get ready for a kind of job: the first shader
+// costs 100 ms without, the first volume 60.
+void isolate_warm_up(const char *kind);
 
 // ---- the work, in a worker --------------------------------------------------------------------
 

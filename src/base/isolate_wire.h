@@ -13,7 +13,7 @@ enum {
     WIRE_EXIT_MEMORY = 4,
 };
 
-// To the reader, with three files; without files: get ready.
+// To the reader, with three files; without files: get ready for jobs of this kind.
 enum { WIRE_CHANNEL, WIRE_OUT, WIRE_INPUT, WIRE_FILES };
 typedef struct wire_request {
     char kind[ISOLATE_KIND];

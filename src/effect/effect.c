@@ -120,6 +120,10 @@ double effect_seconds(const effect *e) {
     return e->seconds;
 }
 
+bool effect_draws(const effect *e) {
+    return e->device != NULL;
+}
+
 const char *effect_file(const effect *e) {
     return e->file;
 }

@@ -67,6 +67,7 @@ arena *effect_memory(effect *e);          // lives as long as the effect
 const char *effect_root(const effect *e); // folder of its file
 const char *effect_file(const effect *e);
 double effect_seconds(const effect *e); // that a load may take
+bool effect_draws(const effect *e);     // false: it is only checked
 scene *effect_scene(effect *e);
 pass_host *effect_pass_host(effect *e);
 

@@ -18,115 +18,19 @@ using namespace vdb;
 
 namespace {
 
-// World box of an inclusive index box, with the outer halves of its border voxels.
-box3 world_box(const affine &t, const int32_t min[3], const int32_t max[3]) {
-    Vec3d lo(1e300), hi(-1e300);
-    for (int corner = 0; corner < 8; corner++) {
-        Vec3d index;
-        for (int i = 0; i < 3; i++) index[i] = corner >> i & 1 ? max[i] + 0.5 : min[i] - 0.5;
-        Vec3d world = t.to_world(index);
-        lo = openvdb::math::minComponent(lo, world);
-        hi = openvdb::math::maxComponent(hi, world);
-    }
-    return {{float(lo[0]), float(lo[1]), float(lo[2])}, {float(hi[0]), float(hi[1]), float(hi[2])}};
-}
-
-// The background stands at the front of the tree, after a 32-bit count.
-void read_background(const vdb_layout &l, const vdb_layout_grid &g, float out[3]) {
-    const uint8_t *p = l.bytes + g.tree + sizeof(int32_t);
-    if (g.value == VDB_VALUE_OTHER || g.end - g.tree < sizeof(int32_t) + vdb_value_size(g.value))
-        return;
-    auto fill = [&](auto zero) {
-        for (int i = 0; i < vdb_value_components(g.value); i++) {
-            std::memcpy(&zero, p + size_t(i) * sizeof zero, sizeof zero);
-            out[i] = float(zero);
-        }
-    };
-    switch (g.value) {
-    case VDB_VALUE_FLOAT:
-    case VDB_VALUE_VEC3S:
-        return fill(float());
-    case VDB_VALUE_DOUBLE:
-    case VDB_VALUE_VEC3D:
-        return fill(double());
-    case VDB_VALUE_INT32:
-    case VDB_VALUE_VEC3I:
-        return fill(int32_t());
-    case VDB_VALUE_INT64:
-        return fill(int64_t());
-    case VDB_VALUE_BOOL:
-        return fill(uint8_t());
-    case VDB_VALUE_OTHER:
-        return;
-    }
-}
-
-// Active box and count from the metadata, else from the voxels.
-bool read_extent(const vdb_layout &l, const vdb_layout_grid &g, const openvdb::MetaMap &map,
-                 vdb_grid_info *out) {
-    auto min = map.getMetadata<openvdb::Vec3IMetadata>(GridBase::META_FILE_BBOX_MIN);
-    auto max = map.getMetadata<openvdb::Vec3IMetadata>(GridBase::META_FILE_BBOX_MAX);
-    auto count = map.getMetadata<openvdb::Int64Metadata>(GridBase::META_FILE_VOXEL_COUNT);
-    CoordBBox box;
-    if (min && max) {
-        box = CoordBBox(Coord(min->value()), Coord(max->value()));
-        out->active_voxels = count && count->value() > 0 ? uint64_t(count->value()) : 0;
-    } else if (g.value != VDB_VALUE_OTHER && g.linear) {
+// Of a grid whose metadata do not say it. Called from C, which no exception may cross.
+bool read_extent(const vdb_layout *l, const vdb_layout_grid *g, vdb_grid_info *out) {
+    return guarded(l->path, [&] {
         GridBase::Ptr grid;
-        if (!load(l, g, &grid)) return false;
-        box = grid->evalActiveVoxelBoundingBox();
+        if (!load(*l, *g, &grid)) return false;
+        CoordBBox box = grid->evalActiveVoxelBoundingBox();
+        for (int i = 0; i < 3; i++) {
+            out->index_min[i] = box.min()[i];
+            out->index_max[i] = box.max()[i];
+        }
         out->active_voxels = grid->activeVoxelCount();
-    }
-    bool empty = false;
-    double voxels = 1.0;
-    for (int i = 0; i < 3; i++) {
-        empty = empty || box.min()[i] > box.max()[i];
-        voxels *= double(box.max()[i]) - box.min()[i] + 1.0;
-    }
-    for (int i = 0; i < 3; i++) {
-        out->index_min[i] = empty ? 0 : box.min()[i];
-        out->index_max[i] = empty ? -1 : box.max()[i];
-        if (out->index_min[i] < -coord_max || out->index_max[i] > coord_max)
-            return err_set("%s: grid '%s': absurd active box, index %d to %d; +-%d is accepted",
-                           l.path, g.name, out->index_min[i], out->index_max[i], coord_max);
-    }
-    if (!empty && voxels > box_voxels_max)
-        return err_set(
-            "%s: grid '%s': absurd active box of %.3g voxels; at most 4096^3 is accepted", l.path,
-            g.name, voxels);
-    return true;
-}
-
-// As Blender knows such files too.
-bool has_y_up(const openvdb::MetaMap &map) {
-    for (const char *key : {"creator", "Creator"})
-        if (auto creator = map.getMetadata<openvdb::StringMetadata>(key))
-            return creator->value().rfind("Houdini", 0) == 0;
-    return false;
-}
-
-bool describe(const vdb_layout &l, const vdb_layout_grid &g, arena *memory, vdb_grid_info *out) {
-    openvdb::MetaMap map = read_metadata(l, g.metadata, g.end);
-    out->name = arena_string(memory, g.name);
-    out->type = arena_string(memory, g.half && g.value == VDB_VALUE_FLOAT ? "half" : g.type);
-    out->components = vdb_value_components(g.value);
-    out->grid_class = class_of(map);
-    out->saved_half = g.half;
-    out->linear = g.linear;
-    out->box = box3_empty();
-    if (!read_extent(l, g, map, out)) return false;
-    if (!g.linear) return true;
-    affine t;
-    if (!read_affine(l, g, &t)) return false;
-    for (int i = 0; i < 3; i++) out->voxel_size[i] = float(t.axis[i].length());
-    out->axis_aligned = is_axis_aligned(t);
-    out->sheared = is_sheared(t);
-    const vdb_layout_grid *owner = tree_owner(l, g);
-    if (!owner) return false;
-    read_background(l, *owner, out->background);
-    if (out->index_min[0] <= out->index_max[0])
-        out->box = world_box(t, out->index_min, out->index_max);
-    return true;
+        return true;
+    });
 }
 
 template <class Tree>
@@ -252,17 +156,14 @@ extern "C" void vdb_file_close(vdb_file *f) {
 }
 
 extern "C" bool vdb_file_info(const vdb_file *opened, arena *memory, vdb_info *out) {
-    const file &f = opened->contents;
-    return guarded(f.layout.path, [&] {
-        size_t count = f.layout.count;
-        auto grids = static_cast<vdb_grid_info *>(arena_alloc(memory, count * sizeof *out->grids));
-        for (size_t i = 0; i < count; i++)
-            if (!describe(f.layout, f.layout.grids[i], memory, &grids[i])) return false;
-        openvdb::MetaMap map = read_metadata(f.layout, f.layout.metadata, f.layout.size);
+    const vdb_layout &l = opened->contents.layout;
+    return guarded(l.path, [&] {
+        if (!vdb_describe(&l, read_extent, memory, out)) return false;
+        openvdb::MetaMap map = read_metadata(l, l.metadata, l.size);
         std::string text;
         for (auto it = map.beginMeta(); it != map.endMeta(); ++it)
             text += it->first + " = " + it->second->str() + "\n";
-        *out = {grids, count, arena_string(memory, text.c_str()), has_y_up(map)};
+        out->metadata = arena_string(memory, text.c_str());
         return true;
     });
 }
@@ -278,7 +179,7 @@ extern "C" bool vdb_file_sample(const vdb_file *opened, const vdb_sample_desc *d
         affine transform;
         GridBase::Ptr grid;
         if (!read_affine(f.layout, *g, &transform) || !load(f.layout, *g, &grid)) return false;
-        vdb_class cls = class_of(read_metadata(f.layout, g->metadata, g->end));
+        vdb_class cls = vdb_class_read(&f.layout, g);
         if (!sample_any(*grid, g->value, transform, *desc, cls)) return false;
         size_t voxels = size_t(desc->size[0]) * desc->size[1] * desc->size[2];
         uint64_t cleared = clear_bad(desc->out, voxels * size_t(desc->components));

@@ -30,9 +30,12 @@ typedef struct vdb_grid_info {
 typedef struct vdb_info {
     const vdb_grid_info *grids;
     size_t count;
-    const char *metadata; // "key = value" lines of the file, "" when none
+    const char *metadata; // "key = value" lines of the file; of vdb_read_infos perhaps ""
     bool y_up;            // by its "creator": Houdini's files have Y up, those of others Z
 } vdb_info;
+
+// Voxels will be read soon: what reads them starts, beside what the caller goes on to do.
+void vdb_warm_up(void);
 
 // Metadata only: no voxel is read (where the file lacks a box in its metadata, the grid is read).
 bool vdb_read_info(const char *path, arena *memory, vdb_info *out);

@@ -281,7 +281,7 @@ extern "C" vdb_blocks *vdb_blocks_open(const vdb_file *opened, const vdb_sample_
         if (!can_sample(*g, *desc) || !read_affine(f.layout, *g, &transform) ||
             !load(f.layout, *g, &grid))
             return false;
-        vdb_class cls = class_of(read_metadata(f.layout, g->metadata, g->end));
+        vdb_class cls = vdb_class_read(&f.layout, g);
         made = make_any(grid, g->value, transform, *desc, cls);
         return made != nullptr;
     });

@@ -34,7 +34,9 @@ bool vdb_encode(const char *name, const vdb_write_grid *grids, size_t count,
 // symbols to be found, tables to be made) is done.
 void vdb_get_ready(void);
 
-// The work of the jobs "vdb info", "vdb sample", "vdb frame" and "vdb write".
+// The work of the jobs "vdb heads", "vdb info", "vdb sample", "vdb frame" and "vdb write". The
+// first one is done without OpenVDB.
+bool vdb_heads_work(const isolate_call *call);
 bool vdb_info_work(const isolate_call *call);
 bool vdb_sample_work(const isolate_call *call);
 bool vdb_frame_work(const isolate_call *call);

@@ -20,7 +20,7 @@ extern "C" {
 #include "base/error.h"
 #include "base/memory.h"
 #include "media/vdb_decode.h"
-#include "media/vdb_layout.h"
+#include "media/vdb_describe.h"
 // LeakSanitizer's, absent in other builds.
 __attribute__((weak)) void __lsan_disable(void);
 __attribute__((weak)) void __lsan_enable(void);
@@ -35,8 +35,6 @@ using openvdb::GridBase;
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 
-constexpr int coord_max = 1 << 24;
-constexpr double box_voxels_max = 68719476736.0; // 4096^3
 constexpr size_t sample_voxels_max = size_t(1) << 31;
 
 inline void initialize() {
@@ -143,20 +141,8 @@ inline GridBase::Ptr read_tree(const vdb_layout &l, const vdb_layout_grid &g) {
     return grid;
 }
 
-// The grid whose tree holds the voxels of `g`: itself, or the one it shares them with.
-inline const vdb_layout_grid *tree_owner(const vdb_layout &l, const vdb_layout_grid &g) {
-    if (g.parent[0] == '\0') return &g;
-    for (size_t i = 0; i < l.count; i++)
-        if (strcmp(l.grids[i].unique, g.parent) == 0 && l.grids[i].parent[0] == '\0' &&
-            l.grids[i].value == g.value && l.grids[i].linear)
-            return &l.grids[i];
-    err_set("%s: damaged VDB file: grid '%s' shares the voxels of a grid '%s' that is not there",
-            l.path, g.name, g.parent);
-    return nullptr;
-}
-
 inline bool load(const vdb_layout &l, const vdb_layout_grid &g, GridBase::Ptr *out) {
-    const vdb_layout_grid *owner = tree_owner(l, g);
+    const vdb_layout_grid *owner = vdb_tree_owner(&l, &g);
     if (!owner || !vdb_layout_check_tree(&l, owner, nullptr)) return false;
     *out = read_tree(l, *owner);
     return true;
@@ -176,53 +162,14 @@ struct affine {
 };
 
 inline bool read_affine(const vdb_layout &l, const vdb_layout_grid &g, affine *out) {
-    input in(l, g.transform, g.end);
-    openvdb::math::Transform transform;
-    transform.read(in.stream);
-    out->origin = transform.indexToWorld(Vec3d(0.0));
-    for (int i = 0; i < 3; i++) {
-        Vec3d unit(0.0);
-        unit[i] = 1.0;
-        out->axis[i] = transform.indexToWorld(unit) - out->origin;
-    }
+    vdb_affine t;
+    if (!vdb_affine_read(&l, &g, &t)) return false;
+    out->origin = Vec3d(t.origin);
+    for (int i = 0; i < 3; i++) out->axis[i] = Vec3d(t.axis[i]);
     const Vec3d *a = out->axis;
     double volume = a[0].dot(a[1].cross(a[2]));
-    double size = a[0].length() * a[1].length() * a[2].length();
-    if (!std::isfinite(volume) || !std::isfinite(out->origin.lengthSqr()) || !(size > 1e-30) ||
-        size > 1e30 || std::fabs(volume) < 1e-9 * size)
-        return err_set("%s: grid '%s': the transform is singular or not finite", l.path, g.name);
     for (int i = 0; i < 3; i++) out->inverse[i] = a[(i + 1) % 3].cross(a[(i + 2) % 3]) / volume;
     return true;
-}
-
-inline bool is_axis_aligned(const affine &t) {
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            if (i != k && std::fabs(t.axis[i][k]) > 1e-9 * t.axis[i].length()) return false;
-    return true;
-}
-inline bool is_sheared(const affine &t) {
-    for (int i = 0; i < 3; i++) {
-        const Vec3d &a = t.axis[i], &b = t.axis[(i + 1) % 3];
-        if (std::fabs(a.dot(b)) > 1e-6 * a.length() * b.length()) return true;
-    }
-    return false;
-}
-
-inline vdb_class class_of(const openvdb::MetaMap &map) {
-    std::string text;
-    if (auto value = map.getMetadata<openvdb::StringMetadata>(GridBase::META_GRID_CLASS))
-        text = value->value();
-    switch (GridBase::stringToGridClass(text)) {
-    case openvdb::GRID_FOG_VOLUME:
-        return VDB_FOG;
-    case openvdb::GRID_LEVEL_SET:
-        return VDB_LEVEL_SET;
-    case openvdb::GRID_STAGGERED:
-        return VDB_STAGGERED;
-    default:
-        return VDB_UNKNOWN;
-    }
 }
 
 // Where the voxel centres of a box lie in a grid's index space: at first + step[i] * voxel[i].

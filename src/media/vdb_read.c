@@ -121,6 +121,8 @@ static bool take_info(cursor *c, arena *memory, vdb_info *out) {
     const void *p = take(c, sizeof sent);
     if (!p) return false;
     memcpy(&sent, p, sizeof sent);
+    *out = (vdb_info){0};
+    if (sent.count == VDB_UNTOLD) return true;
     const char *metadata = take_text(c, sent.text, memory);
     if (!metadata || sent.count > GRIDS_MAX) return false;
     vdb_grid_info *grids = arena_alloc(memory, sent.count * sizeof *grids);
@@ -130,11 +132,12 @@ static bool take_info(cursor *c, arena *memory, vdb_info *out) {
     return true;
 }
 
-static bool read_some(task *t, arena *const *memory, vdb_info *out) {
+// Those that say too little for this kind of job have no metadata then.
+static bool ask_some(task *t, const char *kind, arena *const *memory, vdb_info *out) {
     strbuf names = {0};
     isolate_result r;
     for (size_t i = 0; i < t->count; i++) add_bytes(&names, t->paths[i], strlen(t->paths[i]) + 1);
-    const isolate_job job = {.kind = "vdb info",
+    const isolate_job job = {.kind = kind,
                              .bytes = names.text,
                              .size = names.length,
                              .limits = limits_of((uint64_t)256 << 20)};
@@ -146,6 +149,24 @@ static bool read_some(task *t, arena *const *memory, vdb_info *out) {
         done = take_info(&c, memory[i], &out[i]) || nonsense(t->paths[i]);
     isolate_free(&r);
     return done;
+}
+
+static bool ask_all(const task *t, arena *const *memory, vdb_info *out) { // by OpenVDB
+    task all = *t;
+    if (!ask_some(&all, "vdb info", memory, out)) return false;
+    for (size_t i = 0; i < t->count; i++)
+        if (!out[i].metadata) return nonsense(t->paths[i]);
+    return true;
+}
+
+static bool read_some(task *t, arena *const *memory, vdb_info *out) {
+    if (!ask_some(t, "vdb heads", memory, out)) return false;
+    for (size_t i = 0, end; i < t->count; i = end + 1) {
+        for (end = i; end < t->count && !out[end].metadata;) end++;
+        const task rest = {.root = t->root, .paths = t->paths + i, .count = end - i};
+        if (rest.count > 0 && !ask_all(&rest, memory + i, out + i)) return false;
+    }
+    return true;
 }
 
 bool vdb_read_infos(const char *root, const char *const *paths, size_t count, arena *const *memory,
@@ -160,7 +181,7 @@ bool vdb_read_infos(const char *root, const char *const *paths, size_t count, ar
 }
 
 bool vdb_read_info(const char *path, arena *memory, vdb_info *out) {
-    return vdb_read_infos(NULL, &path, 1, &memory, out);
+    return ask_all(&(task){.paths = &path, .count = 1}, &memory, out);
 }
 
 // ---- one grid as numbers ------------------------------------------------------------------------
@@ -197,6 +218,8 @@ bool vdb_sample(const vdb_sample_desc *d, uint64_t *bad) {
 }
 
 // ---- frames -------------------------------------------------------------------------------------
+
+static const char frame_kind[] = "vdb frame";
 
 uint64_t vdb_brick_count(const texels_shape *s) {
     uint64_t count = 1;
@@ -278,11 +301,15 @@ static bool take_frame(const vdb_frame_desc *d, vdb_frame *out) {
     return true;
 }
 
+void vdb_warm_up(void) {
+    isolate_warm_up(frame_kind);
+}
+
 bool vdb_read_frame(const vdb_frame_desc *d, vdb_frame *out) {
     strbuf bytes = {0};
     *out = (vdb_frame){0};
     describe(d, &bytes);
-    const isolate_job job = {.kind = "vdb frame",
+    const isolate_job job = {.kind = frame_kind,
                              .bytes = bytes.text,
                              .size = bytes.length,
                              .limits = limits_of(most_bytes(d))};

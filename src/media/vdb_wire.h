@@ -5,8 +5,11 @@
 
 #define VDB_FILE_BYTES_MAX ((size_t)2 << 30)
 
-// ---- "vdb info": paths, each with its zero byte; back comes for each file -----------------------
+// ---- "vdb heads", "vdb info": paths, each with its zero byte; back comes for each file ----------
 
+// "vdb heads" is without OpenVDB, and so without what only it knows: metadata as text, and files
+// that do not say where a grid is active.
+#define VDB_UNTOLD UINT32_MAX   // in place of `count`: such a file, of which no more comes
 typedef struct vdb_sent_info {  // then its metadata, with a zero byte, and the grids
     uint32_t count, text, y_up; // text: bytes of the metadata
 } vdb_sent_info;
@@ -91,3 +94,5 @@ typedef struct vdb_build {
 void *vdb_build_open(vdb_build *b, size_t size, size_t *at);
 bool vdb_build_close(vdb_build *b, void *data, size_t size, size_t at, size_t kept);
 bool vdb_build_bricks(vdb_build *b, int image);
+
+bool vdb_put_info(const isolate_call *call, const vdb_info *info);

@@ -43,34 +43,6 @@ static void close_file(opened *f) {
 
 // ---- what files say of themselves ---------------------------------------------------------------
 
-static bool put_grid(const isolate_call *call, const vdb_grid_info *g) {
-    vdb_sent_grid sent = {.components = g->components,
-                          .grid_class = g->grid_class,
-                          .name = (uint32_t)strlen(g->name) + 1,
-                          .type = (uint32_t)strlen(g->type) + 1,
-                          .saved_half = g->saved_half,
-                          .linear = g->linear,
-                          .axis_aligned = g->axis_aligned,
-                          .sheared = g->sheared,
-                          .active_voxels = g->active_voxels,
-                          .box = g->box};
-    memcpy(sent.voxel_size, g->voxel_size, sizeof sent.voxel_size);
-    memcpy(sent.background, g->background, sizeof sent.background);
-    memcpy(sent.index_min, g->index_min, sizeof sent.index_min);
-    memcpy(sent.index_max, g->index_max, sizeof sent.index_max);
-    return isolate_put(call, &sent, sizeof sent) && isolate_put(call, g->name, sent.name) &&
-           isolate_put(call, g->type, sent.type);
-}
-
-static bool put_info(const isolate_call *call, const vdb_info *info) {
-    const vdb_sent_info sent = {(uint32_t)info->count, (uint32_t)strlen(info->metadata) + 1,
-                                info->y_up};
-    bool done =
-        isolate_put(call, &sent, sizeof sent) && isolate_put(call, info->metadata, sent.text);
-    for (size_t i = 0; done && i < info->count; i++) done = put_grid(call, &info->grids[i]);
-    return done;
-}
-
 bool vdb_info_work(const isolate_call *call) {
     cursor c = {call->bytes};
     const char *end = c.at + call->size;
@@ -81,7 +53,7 @@ bool vdb_info_work(const isolate_call *call) {
         arena memory = {0};
         vdb_info info;
         if (!open_file(call, name, &f)) return false;
-        done = vdb_file_info(f.file, &memory, &info) && put_info(call, &info);
+        done = vdb_file_info(f.file, &memory, &info) && vdb_put_info(call, &info);
         arena_free(&memory);
         close_file(&f);
     }

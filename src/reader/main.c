@@ -4,6 +4,7 @@
 #include "media/mesh_import.h"
 #include "media/png.h"
 #include "media/texture.h"
+#include "media/vdb_decode.h"
 #include "reader/reader.h"
 #include "shader/compiler.h"
 
@@ -18,6 +19,7 @@ static const reader_job jobs[] = {
     {"texture", texture_work, NULL, NULL},
     {"png size", png_size_work, NULL, NULL},
     {"png texts", png_texts_work, NULL, NULL},
+    {"vdb heads", vdb_heads_work, NULL, NULL},
     {"vdb info", NULL, NULL, vdb},
     {"vdb sample", NULL, NULL, vdb},
     {"vdb frame", NULL, NULL, vdb},

@@ -113,8 +113,10 @@ static helper *find_helper(server *s, const char *program) {
     return NULL;
 }
 
-static void get_ready(server *s) {
-    if (!s->ready && !find_helper(s, NULL)) start_helper(s, NULL);
+// Starts what such a job will be handed on to.
+static void get_ready(server *s, const reader_job *job) {
+    bool elsewhere = job->program || (job->get_ready && !s->ready);
+    if (elsewhere && !find_helper(s, job->program)) start_helper(s, job->program);
 }
 
 // A helper that has died since is started anew. A request that one had takes with it closes its
@@ -206,9 +208,9 @@ static void serve_request(server *s) {
     size_t count;
     bool whole = wire_receive(WIRE_CONTROL, &r, sizeof r, files, WIRE_FILES, &count);
     if (!whole && count == 0) _exit(EXIT_SUCCESS); // there will be no more
-    if (whole && count == 0) get_ready(s);
     r.kind[sizeof r.kind - 1] = r.name[sizeof r.name - 1] = '\0';
     const reader_job *job = find_job(s, r.kind);
+    if (whole && count == 0 && job) get_ready(s, job);
     if (!whole || count != WIRE_FILES || !job || r.argument_size > sizeof r.arguments) {
         for (size_t i = 0; i < count; i++) close(files[i]);
         return;

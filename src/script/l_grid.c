@@ -107,6 +107,7 @@ static int l_vdb(lua_State *L) {
     const moving played = read_playback(L, row, &desc);
     desc.storage = (sequence_storage)value_get_choice(L, 1, row, "storage");
     desc.level_set = (vdb_set)value_get_choice(L, 1, row, "level_set");
+    if (effect_draws(script_of(L)->effect)) vdb_warm_up();
     return push_sequence(L, "vdb", &desc, &played);
 }
 

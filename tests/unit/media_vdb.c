@@ -34,10 +34,32 @@ static void write_ramp(const char *path, float voxel, float3 origin, bool half) 
     assert_true(vdb_write(path, &grid, 1));
 }
 
+// Also as sequences ask, of two files at once, of which the first is not this one.
 static vdb_info info_of(const char *path) {
-    vdb_info info;
+    vdb_info info, both[2];
+    arena *const memories[] = {&memory, &memory};
+    const char *paths[] = {test_path("first.vdb"), path};
     arena_free(&memory);
+    if (!file_exists(paths[0])) paths[0] = path;
     if (!vdb_read_info(path, &memory, &info)) fail_msg("%s", err_get());
+    if (!vdb_read_infos(NULL, paths, 2, memories, both)) fail_msg("%s", err_get());
+    assert_int_equal(both[1].count, info.count);
+    assert_int_equal(both[1].y_up, info.y_up);
+    for (size_t i = 0; i < info.count; i++) {
+        const vdb_grid_info *one = &info.grids[i], *other = &both[1].grids[i];
+        assert_string_equal(one->name, other->name);
+        assert_string_equal(one->type, other->type);
+        assert_int_equal(one->components, other->components);
+        assert_int_equal(one->grid_class, other->grid_class);
+        assert_int_equal(one->active_voxels, other->active_voxels);
+        assert_memory_equal(&one->box, &other->box, sizeof one->box);
+        assert_memory_equal(one->voxel_size, other->voxel_size, sizeof one->voxel_size);
+        assert_memory_equal(one->index_min, other->index_min, sizeof one->index_min);
+        assert_memory_equal(one->index_max, other->index_max, sizeof one->index_max);
+        assert_memory_equal(one->background, other->background, sizeof one->background);
+        assert_int_equal(one->linear, other->linear);
+        assert_int_equal(one->sheared, other->sheared);
+    }
     return info;
 }
 
@@ -417,6 +439,7 @@ static void shared_trees_have_their_own_transforms(void **state) {
 static void zlib_and_files_without_boxes_are_read(void **state) {
     (void)state;
     static const char *const NAMES[] = {"float.vdb", "zip_mask.vdb", "no_stats.vdb"};
+    write_ramp(test_path("first.vdb"), 1, vec(0, 0, 0), false);
     for (int i = 0; i < 3; i++) {
         const char *path = corpus(NAMES[i]);
         if (!path) skip();

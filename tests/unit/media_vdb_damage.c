@@ -214,6 +214,27 @@ static pid_t child_of(pid_t parent) {
     return child;
 }
 
+// The first of all: nothing has been read or written by OpenVDB yet.
+static void openvdb_starts_for_voxels_or_when_it_is_told_to(void **state) {
+    (void)state;
+    const char *path = test_source("tests/fuzz/corpus/fuzz_vdb/float.vdb");
+    arena *const memories[] = {&memory};
+    vdb_info info;
+    if (!path) skip();
+    if (!vdb_read_infos(NULL, &path, 1, memories, &info)) fail_msg("%s", err_get());
+    assert_int_equal(info.count, 1);
+    pid_t reader = child_of(getpid());
+    if (!reader) skip(); // a kernel without lists of children
+    assert_int_equal(child_of(reader), 0);
+    vdb_warm_up();
+    assert_true(vdb_read_infos(NULL, &path, 1, memories, &info)); // after that, by the same process
+    pid_t decoder = child_of(reader);
+    assert_int_not_equal(decoder, 0);
+    vdb_warm_up();
+    assert_true(read_all(path));
+    assert_int_equal(child_of(reader), decoder);
+}
+
 typedef struct slow { // much to do for a small file
     pthread_t thread;
     bool running, done;
@@ -298,6 +319,7 @@ static int teardown(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(openvdb_starts_for_voxels_or_when_it_is_told_to),
         cmocka_unit_test(every_truncation_is_an_error),
         cmocka_unit_test(two_thousand_damaged_files_end_in_values_or_messages),
         cmocka_unit_test(random_bytes_are_no_vdb_file),

@@ -105,7 +105,7 @@ static inline double helper_status(const effect *e, const char *name) {
 static inline int helper_setup(void **state) {
     (void)state;
     log_set_level(LOG_WARNING);
-    isolate_warm_up(); // as the program does
+    isolate_warm_up("glsl"); // as the program does
     const char *temporary = getenv("TMPDIR");
     snprintf(helper_folder, sizeof helper_folder, "%s/roil-script-XXXXXX",
              temporary ? temporary : "/tmp");

@@ -229,8 +229,8 @@ static void threads_compile_side_by_side(void **state) {
     pthread_t threads[4];
     place_write(p, "program/a.comp", everything);
     place_write(p, "program/wrong.comp", "void main() { x }\n");
-    isolate_warm_up();
-    isolate_warm_up();
+    isolate_warm_up("glsl");
+    isolate_warm_up("glsl");
     for (int i = 0; i < 4; i++)
         assert_int_equal(pthread_create(&threads[i], NULL, compile_many, p), 0);
     for (int i = 0; i < 4; i++) {
