@@ -5,9 +5,11 @@
 #include "base/file.h"
 #include "base/isolate.h"
 #include "base/memory.h"
+#include "base/str.h"
 #include "effect/events.h"
 #include "roil_impl.h"
 #include "script/script.h"
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,18 +32,24 @@ static bool is_home(const char *folder) {
            path_join(path, folder, "shaders/shared.h") && file_exists(path);
 }
 
+// By its own name: what is found below it is then seen to be there (base/file.h) without asking
+// where links lead.
+static bool take_home(char out[PATH_CAP], const char *folder) {
+    char real[PATH_MAX];
+    return is_home(folder) && realpath(folder, real) && str_copy(out, PATH_CAP, real);
+}
+
 // The program may lie in a build folder, in the home itself, or in bin/ of an installation.
 static bool find_home(char out[PATH_CAP], const char *wanted) {
     if (!wanted) wanted = getenv("ROIL_HOME");
-    if (wanted && wanted[0]) {
-        if (is_home(wanted)) return path_join(out, "", wanted);
-        return err_set("%s: holds no shaders/ and scripts/ of roil", wanted);
-    }
-    char program[PATH_CAP];
+    if (wanted && wanted[0])
+        return take_home(out, wanted) ||
+               err_set("%s: holds no shaders/ and scripts/ of roil", wanted);
+    char program[PATH_CAP], folder[PATH_CAP];
     if (!path_program_folder(program)) return false;
     static const char *const places[] = {"..", ".", "../share/roil", "../.."};
     for (size_t i = 0; i < COUNT_OF(places); i++)
-        if (path_join(out, program, places[i]) && is_home(out)) return true;
+        if (path_join(folder, program, places[i]) && take_home(out, folder)) return true;
     return err_set("shaders/ and scripts/ of roil are not near %s; set ROIL_HOME", program);
 }
 
@@ -75,7 +83,7 @@ roil *roil_create(const roil_desc *desc) {
     if ((desc->memory && !budget_set_share(desc->memory)) || !find_home(home, desc->home))
         return NULL;
     if (desc->reader && !isolate_set_reader(desc->reader)) return NULL;
-    isolate_warm_up();
+    isolate_warm_up("glsl");
     roil *r = mem_alloc(sizeof *r);
     r->home = mem_copy(home, strlen(home) + 1);
     r->shaders = joined(home, "shaders");
@@ -103,6 +111,10 @@ void roil_destroy(roil *r) {
     mem_free(r->scripts);
     mem_free(r->cache);
     mem_free(r);
+}
+
+bool roil_can_exit(void) {
+    return !gpu_left_any();
 }
 
 const char *roil_device_name(const roil *r) {

@@ -110,5 +110,7 @@ static int run(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
-    return open_streams() ? finish(run(argc, argv)) : APP_BAD_INPUT;
+    int status = open_streams() ? finish(run(argc, argv)) : APP_BAD_INPUT;
+    if (!roil_can_exit()) _exit(status);
+    return status;
 }

@@ -221,6 +221,12 @@ static void close_device(gpu *g) {
     vkDestroyDevice(g->device, NULL);
 }
 
+static atomic_bool left_any;
+
+bool gpu_left_any(void) {
+    return atomic_load(&left_any);
+}
+
 // Work that hangs never lets go of what it uses, and drivers wait for it without a limit when the
 // device is destroyed; and where waiting fails nobody knows what is still in use. All of such a
 // device, `g` too, is left to the end of the process: the caller must get on, and can have a new
@@ -241,7 +247,10 @@ static bool comes_to_rest(gpu *g) {
 
 void gpu_destroy(gpu *g) {
     if (!g) return;
-    if (g->device && !comes_to_rest(g)) return;
+    if (g->device && !comes_to_rest(g)) {
+        atomic_store(&left_any, true);
+        return;
+    }
     if (g->device) close_device(g);
     if (g->window.surface) vkDestroySurfaceKHR(g->instance.handle, g->window.surface, NULL);
     vk_instance_destroy(&g->instance);

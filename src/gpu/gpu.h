@@ -68,6 +68,7 @@ gpu *gpu_create(const gpu_desc *desc);
 // Waits for the device; saves the pipeline cache. A device whose work does not end is left as it is
 // to the end of the process.
 void gpu_destroy(gpu *g);
+bool gpu_left_any(void); // such a device; any thread
 const gpu_info *gpu_get_info(const gpu *g);
 // Messages of severity warning or error that the validation layers gave so far.
 uint64_t gpu_validation_messages(const gpu *g);

@@ -4,15 +4,23 @@
 //   LD_PRELOAD=libfault.so ROIL_FAULT_FILE=counts ROIL_FAULT="memory 120 once" roil ...
 //
 // ROIL_FAULT names the class (vulkan: each call that can fail; memory: each allocation), the call
-// that fails, counted from 1, and whether it alone fails (once) or all from it on (always). Without
-// it calls are only counted. ROIL_FAULT_FILE is mapped by the program and by all of its children,
-// which count together; `struct report` is what it holds.
+// that fails, counted from 1 or as the first of a name ("vulkan vkWaitSemaphores once"), and
+// whether it alone fails (once) or all from it on (always). Without it calls are only counted.
+// ROIL_FAULT_FILE is mapped by the program and by all of its children, which count together;
+// `struct report` is what it holds.
+//
+// Calls of a class are many, and most come by a path that another came by, too: a path is the
+// functions that lead to a call, from its caller upwards, in a process that was started or in one
+// that was forked. With ROIL_FAULT_DEPTH="8,4" (eight functions in `roil`, four in the programs
+// that it starts) the report lists them, each with its first call's number, and "memory @9a3f once"
+// makes the first call that comes by the path of that name fail. It is the same in each run.
 //
 // Of allocations those count that the program's own code asks for, and those of the libraries whose
 // names contain one of the words in ROIL_FAULT_LIBRARIES (separated by commas). A driver's and the
 // loader's do not: they end the process as they like.
 #include <dlfcn.h>
 #include <errno.h>
+#include <execinfo.h>
 #include <fcntl.h>
 #include <link.h>
 #include <stdatomic.h>
@@ -33,19 +41,32 @@ void *__libc_realloc(void *block, size_t size);
 void *__libc_memalign(size_t align, size_t size);
 
 typedef enum fault_class { VULKAN, MEMORY, CLASSES } fault_class;
-enum { NAME_CAP = 64, TEXT_CAP = 512, MOST_RANGES = 64 };
+// OWN_FRAMES: path_of, fails, and the function that stands in for the call
+enum { OWN_FRAMES = 3 };
+enum { NAME_CAP = 64, TEXT_CAP = 512, MOST_RANGES = 64, MOST_DEPTH = 32, MOST_PATHS = 1 << 17 };
+
+struct path {
+    _Atomic uint64_t name; // 0: none
+    uint64_t class, number;
+};
 
 struct report {
-    _Atomic uint64_t calls[CLASSES], failed;
+    _Atomic uint64_t calls[CLASSES], failed, after; // after: of the class, since the first failure
     uint64_t place;      // of the caller of the first that failed, in its program or library
+    uint64_t exited;     // roil ended by exit(), which runs the handlers of libraries
     char name[NAME_CAP]; // of the call
+    struct path paths[MOST_PATHS];
 };
 
 static struct {
     struct report *report; // NULL: nothing is counted, nothing fails
     fault_class class;
-    uint64_t number; // 0: none fails
+    uint64_t number, path; // 0: none of them fails
+    char name[NAME_CAP];
     bool always;
+    int depth;   // of a path; 0: none is looked for
+    pid_t begun; // the process that was started
+    bool other;  // not roil
 } plan;
 
 // ---- whose calls ------------------------------------------------------------------------------
@@ -90,6 +111,36 @@ static bool find_range(const void *caller, uint64_t *place) {
     return false;
 }
 
+// ---- paths ------------------------------------------------------------------------------------
+
+// By where each function lies in its program or library, and in the last two bits by the process:
+// 1 for one that was forked, 2 for another program than roil. `own`: frames of this file.
+static __attribute__((noinline)) uint64_t path_of(fault_class class, int own) {
+    void *frames[MOST_DEPTH];
+    int count = backtrace(frames, own + plan.depth);
+    uint64_t name = class + 1;
+    for (int i = own; i < count; i++) {
+        struct dl_find_object found;
+        uintptr_t base = _dl_find_object(frames[i], &found) == 0 ? found.dlfo_link_map->l_addr : 0;
+        name = (name ^ ((uintptr_t)frames[i] - base)) * UINT64_C(0x9e3779b97f4a7c15);
+        name ^= name >> 29;
+    }
+    return (name << 3) | 4 | (plan.other ? 2 : 0) | (getpid() != plan.begun);
+}
+
+static void note_path(uint64_t name, fault_class class, uint64_t number) {
+    for (uint64_t i = 0; i < MOST_PATHS; i++) {
+        struct path *p = &plan.report->paths[(name + i) % MOST_PATHS];
+        uint64_t none = 0;
+        if (atomic_compare_exchange_strong(&p->name, &none, name)) {
+            p->class = class;
+            p->number = number;
+            return;
+        }
+        if (none == name) return;
+    }
+}
+
 // ---- the plan ---------------------------------------------------------------------------------
 
 static void refuse(const char *what) {
@@ -99,11 +150,23 @@ static void refuse(const char *what) {
 
 __attribute__((constructor)) static void begin(void) {
     const char *path = getenv("ROIL_FAULT_FILE"), *fault = getenv("ROIL_FAULT");
+    const char *depth = getenv("ROIL_FAULT_DEPTH");
     if (!path) return;
     char class[16], how[16];
+    if (depth) {
+        int depths[2];
+        if (sscanf(depth, "%d,%d", &depths[0], &depths[1]) != 2) refuse("ROIL_FAULT_DEPTH");
+        plan.other = strcmp(program_invocation_short_name, "roil") != 0;
+        plan.depth = depths[plan.other];
+        if (plan.depth < 1 || plan.depth > MOST_DEPTH - OWN_FRAMES) refuse("ROIL_FAULT_DEPTH");
+        plan.begun = getpid();
+        backtrace(&(void *){NULL}, 1); // loads what it needs
+    }
     if (fault) {
-        if (sscanf(fault, "%15s %lu %15s", class, &plan.number, how) != 3 || !plan.number)
-            refuse("ROIL_FAULT: CLASS NUMBER once|always is accepted");
+        if (sscanf(fault, "%15s %lu %15s", class, &plan.number, how) != 3 &&
+            (sscanf(fault, "%15s @%lx %15s", class, &plan.path, how) != 3 || !plan.depth) &&
+            sscanf(fault, "%15s %63[a-zA-Z0-9_] %15s", class, plan.name, how) != 3)
+            refuse("ROIL_FAULT: CLASS NUMBER|@PATH|NAME once|always is accepted");
         plan.class = strcmp(class, "memory") == 0 ? MEMORY : VULKAN;
         plan.always = strcmp(how, "always") == 0;
     }
@@ -118,16 +181,31 @@ __attribute__((constructor)) static void begin(void) {
     plan.report = (struct report *)map;
 }
 
-static bool fails(fault_class class, const char *name, const void *caller) {
-    uint64_t place;
+__attribute__((destructor)) static void end(void) {
+    if (plan.report && strcmp(program_invocation_short_name, "roil") == 0) plan.report->exited = 1;
+}
+
+static __attribute__((noinline)) bool fails(fault_class class, const char *name,
+                                            const void *caller) {
+    uint64_t place, path = 0;
     if (!plan.report || !find_range(caller, &place)) return false;
     uint64_t number = atomic_fetch_add(&plan.report->calls[class], 1) + 1;
-    if (class != plan.class || !plan.number) return false;
-    if (number != plan.number && !(plan.always && number > plan.number)) return false;
-    if (atomic_fetch_add(&plan.report->failed, 1) == 0) {
-        plan.report->place = place;
-        snprintf(plan.report->name, NAME_CAP, "%s", name);
+    bool wanted = class == plan.class && (plan.number || plan.path || plan.name[0]);
+    if (wanted && atomic_load(&plan.report->failed)) {
+        atomic_fetch_add(&plan.report->after, 1);
+        if (!plan.always) return false;
+        atomic_fetch_add(&plan.report->failed, 1);
+        return true;
     }
+    if (plan.depth && (plan.path ? wanted : !plan.number)) path = path_of(class, OWN_FRAMES);
+    if (path && !plan.path) note_path(path, class, number);
+    if (!wanted || (plan.path      ? path != plan.path
+                    : plan.name[0] ? strcmp(name, plan.name) != 0
+                                   : number != plan.number))
+        return false;
+    if (atomic_fetch_add(&plan.report->failed, 1) > 0) return plan.always; // another was faster
+    plan.report->place = place;
+    snprintf(plan.report->name, NAME_CAP, "%s", name);
     return true;
 }
 

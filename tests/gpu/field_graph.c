@@ -26,6 +26,12 @@ static bool host_value(const field *node, float3 p, float out[4]) {
     return field_eval(node, &moving, p, out);
 }
 
+// Arithmetic of what is no number is the device's own.
+static bool is_number(const field *node, float3 p) {
+    float v[4];
+    return host_value(node, p, v) && !isnan(v[0]);
+}
+
 // Steps, and noise of noise, carry a rounding far: then the values around hold what was got.
 static bool is_explained(const field *node, float3 p, int component, float got, uint32_t *seed) {
     float v[4], low, high;
@@ -81,7 +87,8 @@ static void check_graph(gpu *device, uint32_t seed, tally *t) {
         float v = got[i][0], slack = 1e-4f * fmaxf(1, fabsf(v));
         bool holds = (v >= got[i][1] - slack || got[i][1] <= -1e30f) &&
                      (v <= got[i][2] + slack || got[i][2] >= 1e30f);
-        if (!holds && !isnan(v)) blame(roots[0].node, seed, "out of its range", points[i], got[i]);
+        if (!holds && !isnan(v) && is_number(roots[0].node, p))
+            blame(roots[0].node, seed, "out of its range", points[i], got[i]);
         bool fine = is_explained(roots[0].node, p, 0, v, &random) &&
                     (v == 0 || is_explained(roots[1].node, p, 1, got[i][3], &random));
         if (!fine) worst = i;
