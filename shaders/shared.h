@@ -83,7 +83,17 @@ struct bvh_instance {
     SHARED_VEC3 high;
     SHARED_UINT root;   // of its tree, as the host walks it
     SHARED_VEC4 color;  // rgb: factor of the triangles' colours; w: of what they emit
-    SHARED_UVEC4 what;  // x: the mesh, or the instances that it is one of, as scene_bvh_choose counts them; y: its number among these; z: first of the materials of its mesh
+    SHARED_UVEC4 what;  // x: the mesh, or the instances that it is one of, as scene_bvh_choose counts them; y: its number among these; z: first of the materials of its mesh; w: the mesh, among bvh_levels
+};
+
+// How far a mesh may be simplified (lib/level.glsl), the first level in full.
+#define DRAWN_LEVELS 4
+#define MESH_NO_LEVEL 1e30f // as the error of a level: there is none
+// A mesh at all its levels, as rays meet it: storage buffer "BvhLevels" of lib/surface.glsl.
+struct bvh_levels {
+    SHARED_VEC4 ball;   // around the mesh, in its own space: xyz: metres; w: radius
+    SHARED_VEC4 errors; // of each: metres that it is off at most
+    SHARED_UVEC4 below; // what the root of the tree of each has below it
 };
 
 // One of the instances of meshes that stand in a scene: storage buffer "Instances" of shaders that
@@ -124,12 +134,11 @@ struct drawn_part {
 };
 
 // A mesh at one of its levels, as shaders/pass/drawn/ choose it; src/pass/drawn_cull.c writes them.
-#define DRAWN_LEVELS 4       // of a mesh, at most; the first is in full
 #define DRAWN_BLOCK 128      // instances whose places in the lists are counted together
 #define DRAWN_NONE 0xffffffffu
 struct drawn_bucket {
     SHARED_VEC4 sphere; // around the mesh, in the space of an instance: xyz: metres; w: radius
-    SHARED_UVEC4 draws; // x: first of its commands; y: how many, 0: the mesh has no such level; z: bits of a float: metres that it is off at most; w: how far apart they are
+    SHARED_UVEC4 draws; // x: first of its commands; y: how many, 0: the mesh has no such level; z: bits of a float: metres that it is off at most, MESH_NO_LEVEL where there is none; w: how far apart they are
 };
 
 // What lib/surface.glsl tells of a triangle that was hit; src/scene/surfaces.c makes it.

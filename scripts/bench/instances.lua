@@ -11,7 +11,9 @@ return sweep {
   axes = {
     axis { "count", 10, 100, 1000, 10000, 100000 },
     axis { "way",
-      { name = "rays", mode = "rays" },
+      { name = "rays in full", mode = "rays", lod = 0 },
+      { name = "rays, 1 px", mode = "rays", lod = 1 },
+      { name = "rays, 4 px", mode = "rays", lod = 4 },
       { name = "drawn in full", mode = "raster", lod = 0 },
       { name = "drawn, 1 px", mode = "raster", lod = 1 },
       { name = "drawn, 4 px", mode = "raster", lod = 4 },

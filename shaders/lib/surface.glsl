@@ -4,10 +4,12 @@
 #ifndef LIB_SURFACE_GLSL
 #define LIB_SURFACE_GLSL
 #include "lib/bvh.glsl"
+#include "lib/level.glsl"
 layout(std430) readonly buffer BvhSurfaces { uvec4 surface_triangles[]; };
 layout(std430) readonly buffer BvhVertices { surface_vertex surface_vertices[]; };
 layout(std430) readonly buffer BvhMaterials { surface_material surface_materials[]; };
 layout(std430) readonly buffer BvhTexels { uvec2 surface_texels[]; };
+layout(std430) readonly buffer BvhLevels { bvh_levels surface_levels[]; };
 
 // Radiance that a triangle of what is placed gives off.
 vec3 surface_emission(ivec2 what) {
@@ -68,9 +70,18 @@ struct surface_hit {
     vec3 way;               // of the ray, in the space of the mesh
 };
 
-// The nearest triangle of what is placed; the ray is in its space. `outer_top`: of the walk that found it.
-void surface_find(inout bvh_ray ray, uint instance, int outer_top, bool holes, inout surface_hit hit) {
-    bvh_walk w = bvh_begin(bvh_instances[instance].below, outer_top);
+// What the root of a mesh's tree has below it, of the mesh as simplified as it may be for a ray from the
+// eye, which is in its space. `pixels`: of a metre at 1 m; `lod`: those that it may be off.
+uint surface_level(bvh_ray ray, uint instance, float pixels, float lod) {
+    if (lod <= 0.0) return bvh_instances[instance].below;
+    bvh_levels mesh = surface_levels[bvh_instances[instance].what.w];
+    return mesh.below[level_of(mesh.errors, pixels, lod, distance(ray.origin, mesh.ball.xyz), mesh.ball.w)];
+}
+
+// The nearest triangle of the tree that the root has below it; the ray is in the space of what is placed.
+// `outer_top`: of the walk that found it.
+void surface_find(inout bvh_ray ray, uint instance, uint below, int outer_top, bool holes, inout surface_hit hit) {
+    bvh_walk w = bvh_begin(below, outer_top);
     uint materials = bvh_instances[instance].what.z;
     for (uint leaf; (leaf = bvh_next_leaf(ray, w)) != 0u;) {
         for (uint i = bvh_first(leaf); i < bvh_end(leaf); i++) {

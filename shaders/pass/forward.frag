@@ -48,7 +48,7 @@ void main() {
     normal = vec4(n, 0.0);
     depth = vec4(distance_along);
     n = normalize(as_kept(n));
-    vec3 p = lifted_point(distance_along, along, n);
+    vec3 p = lifted_point(distance_along, along, n, lod, picture.y);
     shaded s = shading_of(p, n, -normalize(along), as_kept(base.rgb), part.surface);
     vec3 lit = surface_light(s, uvec2(gl_FragCoord.xy)) + part.emission.rgb * tint.w;
     color = vec4(mix(frame.sky_horizon.rgb, lit, exp(-haze * away)), 1.0);

@@ -10,7 +10,7 @@ uniform uint shown[8];              // a bit for each mesh, and for all instance
 uniform uint placed[8];             // the same of those that are such instances
 uniform bool holes;                 // textures may be clear in places
 uniform float max_distance;         //= 0 [0, inf] m : from the camera to the middle of an instance (of `instances`) beyond which it is left out, while its shadow stays; 0: none is
-uniform float lod;                  //= 0 [0, 64] px : how far a simplified mesh may be off in the picture, when drawn; 0: all are in full, as rays meet them
+uniform float lod;                  //= 0 [0, 64] px : how far a simplified mesh may be off in the picture; 0: all are in full, as those rays meet them that look for light
 writeonly uniform image2D albedo;   //= output rgba16f : base colour of the surface; alpha 0 where nothing is
 writeonly uniform image2D normal;   //= output rgba16f : its normal in the world, towards the viewer
 writeonly uniform image2D depth;    //= output r32f : distance along the view axis (m); 1e9 where nothing is
@@ -33,7 +33,8 @@ void meet(uint item, int outer_top, inout bvh_ray ray, inout surface_hit hit) {
     bvh_ray inner = bvh_to_mesh(ray, item);
     int before = hit.triangle;
     hit.triangle = -1;
-    surface_find(inner, item, outer_top, holes, hit);
+    float pixels = float(imageSize(depth).y) / (2.0 * frame.lens.y);
+    surface_find(inner, item, surface_level(inner, item, pixels, lod), outer_top, holes, hit);
     if (hit.triangle < 0) {
         hit.triangle = before;
         return;

@@ -3,6 +3,7 @@ uniform sampler2D albedo;  //= input : of the pass shade, as all here
 uniform sampler2D normal;  //= input : of the surface
 uniform sampler2D depth;   //= input : of the surface (m)
 uniform sampler2D surface; //= input optional : its reflection
+uniform float lod;        // px
 #undef HAS_LIGHTS // the reader's table of lights is not read here
 #define HAS_LIGHTS 0
 #include "lib/frame.glsl"

@@ -9,6 +9,7 @@ uniform int shadow_samples;       //= 1 [0, 64] : rays to each light: 1 goes to 
 uniform int sky_samples;          //= 0 [0, 64] : rays to the sky, which find what stands before it; 0: all of it is seen
 uniform float haze;               //= 0 [0, 10] 1/m : how fast distance fades to the colour of the horizon
 //@ option lamps_by = auto {auto, all, tiles, volumes} : which lamps of point_lights light a pixel: all are asked; those that reach what 16 by 16 pixels show, which are found out first (tiles); or those whose sphere, drawn, covers it (volumes); auto: tiles, or all where they are few
+uniform float lod;                //= 0 [0, 64] px : how far a simplified mesh may be off in the picture, as `geometry` has it: shadows are of meshes in full, and begin that far above the surface
 uniform float sky_alpha;          //= 1 [0, 1] : opacity of the sky; 0 for pictures to be laid over others
 writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultiplied
 #include "lib/frame.glsl"

@@ -3,6 +3,7 @@
 uniform sampler2D albedo;
 uniform sampler2D normal;
 uniform sampler2D depth;
+uniform float lod; // px
 uniform int width;  // of the picture
 uniform int height;
 #include "lib/frame.glsl"

@@ -66,7 +66,9 @@ static bool make_bvh(effect *e) {
             found = draws_instances(e->passes[k], e->instances[i]);
         if (found) instances[instances_count++] = e->instances[i];
     }
-    e->host.bvh = scene_bvh_create(meshes, mesh_count, instances, instances_count);
+    bool levels = false;
+    for (size_t k = 0; k < e->pass_count; k++) levels = levels || pass_traces_levels(e->passes[k]);
+    e->host.bvh = scene_bvh_create(meshes, mesh_count, instances, instances_count, levels);
     mem_free(meshes);
     mem_free(instances);
     return e->host.bvh != NULL;

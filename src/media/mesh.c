@@ -202,6 +202,18 @@ static bool import(loader *l, isolate_result *blob) {
     return err_set("%s: names a file that it may not read: %s", l->path, l->files.refused);
 }
 
+mesh_run mesh_get_run(const mesh_data *mesh, uint32_t part, uint32_t level) {
+    if (level > 0) return mesh->levels[level - 1].runs[part];
+    return (mesh_run){mesh->parts[part].first, mesh->parts[part].count};
+}
+
+void mesh_get_ball(const mesh_data *mesh, float out[4]) {
+    const float3 *low = &mesh->box.min, *high = &mesh->box.max;
+    vec3 centre = {(low->x + high->x) / 2, (low->y + high->y) / 2, (low->z + high->z) / 2};
+    glm_vec3_copy(centre, out);
+    out[3] = glm_vec3_distance(centre, (vec3){high->x, high->y, high->z});
+}
+
 bool mesh_load(const char *path, const char *root, arena *memory, mesh_data *out) {
     static const char *const KINDS[] = {"obj", "gltf", "glb"};
     bool known = false;

@@ -56,3 +56,8 @@ typedef struct mesh_data {
 // `root` confines textures and buffers that the file names. Limits: 64 MiB file, 8 million
 // vertices. Node transforms are applied. Fails on a mesh without faces and on non-finite positions.
 bool mesh_load(const char *path, const char *root, arena *memory, mesh_data *out);
+
+// Indices of a part at a level: 0: in full, else below 1 + level_count.
+mesh_run mesh_get_run(const mesh_data *mesh, uint32_t part, uint32_t level);
+// A ball around the box: xyz: metres, in the space of the mesh; w: radius.
+void mesh_get_ball(const mesh_data *mesh, float out[4]);

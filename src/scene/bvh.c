@@ -7,31 +7,56 @@
 #include "scene/surfaces.h"
 #include <string.h>
 
+_Static_assert(DRAWN_LEVELS == MESH_LEVELS + 1, "levels of shaders and of meshes");
+
 static bool same_mesh(const mesh_data *a, const mesh_data *b) {
     return a->vertices == b->vertices && a->indices == b->indices && a->parts == b->parts;
 }
 
-static void widen(scene_bvh *b, tree *t) {
-    if (t->root == t->end) return;
-    MEM_RESERVE(b->wide, b->wide_count + (t->end - t->root) / 2, b->wide_capacity);
+static uint32_t widen(scene_bvh *b, uint32_t root) {
+    size_t nodes = b->forest.node_count - root;
+    if (nodes == 0) return 0;
+    MEM_RESERVE(b->wide, b->wide_count + nodes / 2, b->wide_capacity);
     bvh_widening made = {
         .nodes = b->forest.nodes, .out = b->wide, .count = (uint32_t)b->wide_count};
-    t->below = bvh_widen(&made, t->root);
+    uint32_t below = bvh_widen(&made, root);
     b->wide_count = made.count;
+    return below;
 }
 
-static bool add_tree(scene_bvh *b, size_t index) {
+// A level is met by shaders only: its nodes, as the host walks them, make room for the next.
+static bool add_levels(scene_bvh *b, const mesh_data *data, uint32_t count,
+                       struct bvh_levels *out) {
+    const uint32_t end = (uint32_t)b->forest.node_count;
+    for (uint32_t i = 1; i <= count; i++) {
+        if (!bvh_forest_add(&b->forest, data, i)) return false;
+        out->errors.v[i] = data->levels[i - 1].error;
+        out->below.v[i] = widen(b, end);
+        b->forest.node_count = end;
+    }
+    return true;
+}
+
+static bool add_tree(scene_bvh *b, size_t index, bool levels) {
     const mesh_data *data = &b->meshes[index]->data;
+    tree *t = &b->trees[index];
+    struct bvh_levels *l = &b->levels[index];
     for (size_t i = 0; i < index; i++) {
         if (!same_mesh(&b->meshes[i]->data, data)) continue;
-        b->trees[index] = b->trees[i];
+        *t = b->trees[i];
+        *l = b->levels[i];
         return true;
     }
-    b->trees[index].root = (uint32_t)b->forest.node_count;
-    if (!bvh_forest_add(&b->forest, data)) return err_prefix("%s: ", b->meshes[index]->name);
-    b->trees[index].end = (uint32_t)b->forest.node_count;
-    b->trees[index].triangles = b->forest.triangle_count;
-    widen(b, &b->trees[index]);
+    t->root = (uint32_t)b->forest.node_count;
+    if (!bvh_forest_add(&b->forest, data, 0)) return err_prefix("%s: ", b->meshes[index]->name);
+    t->end = (uint32_t)b->forest.node_count;
+    t->below = widen(b, t->root);
+    *l = (struct bvh_levels){.errors = {{0, MESH_NO_LEVEL, MESH_NO_LEVEL, MESH_NO_LEVEL}},
+                             .below = {{t->below}}};
+    mesh_get_ball(data, l->ball.v);
+    if (!add_levels(b, data, levels ? data->level_count : 0, l))
+        return err_prefix("%s: ", b->meshes[index]->name);
+    t->triangles = b->forest.triangle_count;
     return true;
 }
 
@@ -63,7 +88,7 @@ static void add_things(scene_bvh *b, scene_mesh *const *meshes, size_t count,
     }
 }
 
-static bool add_trees(scene_bvh *b) {
+static bool add_trees(scene_bvh *b, bool levels) {
     MEM_RESERVE(b->forest.nodes, bvh_top_nodes(b->item_count), b->forest.node_capacity);
     b->forest.node_count = bvh_top_nodes(b->item_count);
     memset(b->forest.nodes, 0, b->forest.node_count * sizeof *b->forest.nodes);
@@ -71,30 +96,35 @@ static bool add_trees(scene_bvh *b) {
     MEM_RESERVE(b->wide, b->wide_count, b->wide_capacity);
     memset(b->wide, 0, b->wide_count * sizeof *b->wide);
     for (size_t i = 0; i < b->mesh_count; i++)
-        if (!add_tree(b, i)) return false;
+        if (!add_tree(b, i, levels)) return false;
     return true;
+}
+
+static uint64_t triangles_of(const mesh_data *mesh, bool levels) {
+    return mesh->index_count / 3 + (levels ? mesh->level_index_count / 3 : 0);
 }
 
 // Before they are made: of items, and of triangles with the nodes over them.
 static uint64_t bytes_of(scene_mesh *const *meshes, size_t count, scene_instances *const *instances,
-                         size_t instances_count) {
+                         size_t instances_count, bool levels) {
     const uint64_t item = sizeof(struct bvh_instance) + sizeof(struct instance_entry) +
                           2 * (sizeof(struct bvh_node) + sizeof(struct bvh_wide));
     const uint64_t triangle = sizeof(struct bvh_triangle) + sizeof(bvh_origin) + sizeof(bvh_piece) +
                               sizeof(struct bvh_node) + sizeof(struct bvh_wide);
     uint64_t items = count, triangles = 0;
-    for (size_t i = 0; i < count; i++) triangles += meshes[i]->data.index_count / 3;
+    for (size_t i = 0; i < count; i++) triangles += triangles_of(&meshes[i]->data, levels);
     for (size_t i = 0; i < instances_count; i++) {
         scene_mesh *const *kinds;
         size_t n = scene_instances_kinds(instances[i], &kinds);
         items += scene_instances_count(instances[i]);
-        for (size_t k = 0; k < n; k++) triangles += kinds[k]->data.index_count / 3;
+        for (size_t k = 0; k < n; k++) triangles += triangles_of(&kinds[k]->data, levels);
     }
     return items * item + triangles * triangle;
 }
 
 scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count,
-                            scene_instances *const *instances, size_t instances_count) {
+                            scene_instances *const *instances, size_t instances_count,
+                            bool levels) {
     size_t all = count;
     for (size_t i = 0; i < instances_count; i++) {
         scene_mesh *const *kinds;
@@ -105,13 +135,14 @@ scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count,
         return NULL;
     }
     budget_part *part =
-        budget_take(budget_host(), bytes_of(meshes, count, instances, instances_count),
+        budget_take(budget_host(), bytes_of(meshes, count, instances, instances_count, levels),
                     "trees over meshes and instances");
     if (!part) return NULL;
     scene_bvh *b = mem_alloc(sizeof *b);
     b->part = part;
     b->meshes = mem_alloc(all * sizeof *b->meshes);
     b->trees = mem_alloc(all * sizeof *b->trees);
+    b->levels = mem_alloc(all * sizeof *b->levels);
     b->things = mem_alloc((count + instances_count) * sizeof *b->things);
     add_things(b, meshes, count, instances, instances_count);
     b->items = mem_alloc(b->item_count * sizeof *b->items);
@@ -125,7 +156,7 @@ scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count,
     b->wide_marks = mem_alloc(run_marks(bvh_top_wide(b->item_count)));
     for (uint32_t i = 0; i < b->item_count; i++) b->item_at[i] = i;
     bvh_looks_count(b);
-    if (add_trees(b)) return b;
+    if (add_trees(b, levels)) return b;
     scene_bvh_destroy(b, NULL);
     return NULL;
 }
@@ -153,6 +184,7 @@ void scene_bvh_destroy(scene_bvh *b, gpu *g) {
     mem_free(b->looks);
     mem_free(b->meshes);
     mem_free(b->trees);
+    mem_free(b->levels);
     budget_give(b->part);
     mem_free(b);
 }
@@ -189,7 +221,7 @@ bool scene_bvh_surfaces_fit(const scene_mesh *mesh, gpu *g) {
 }
 
 bool scene_bvh_allocate_surfaces(scene_bvh *b, gpu *g) {
-    if (b->buffers[BVH_TEXELS]) return true;
+    if (b->buffers[BVH_LEVELS]) return true;
     surfaces s = {0};
     for (size_t i = 0; i < b->mesh_count; i++) bvh_looks_add(b, &s, i);
     b->holes = s.holes;
@@ -200,7 +232,9 @@ bool scene_bvh_allocate_surfaces(scene_bvh *b, gpu *g) {
                 make_buffer(b, g, BVH_MATERIALS, "materials of meshes", b->looks,
                             b->material_count * sizeof *b->looks) &&
                 make_buffer(b, g, BVH_TEXELS, "textures of meshes", s.texels,
-                            s.texel_count * sizeof *s.texels);
+                            s.texel_count * sizeof *s.texels) &&
+                make_buffer(b, g, BVH_LEVELS, "levels of meshes", b->levels,
+                            b->mesh_count * sizeof *b->levels);
     surfaces_free(&s);
     return done;
 }

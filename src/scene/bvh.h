@@ -9,9 +9,9 @@ typedef struct scene_bvh scene_bvh;
 enum { SCENE_BVH_MAX_MESHES = 256 }; // with the kinds of instances
 
 // The trees of these meshes, and of the kinds of these instances, in order; a mesh with the same
-// data has the same tree. Needs no device.
+// data has the same tree. With `levels` of meshes as they are simplified, too. Needs no device.
 scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count,
-                            scene_instances *const *instances, size_t instances_count);
+                            scene_instances *const *instances, size_t instances_count, bool levels);
 void scene_bvh_destroy(scene_bvh *b, gpu *g);
 bool scene_bvh_allocate(scene_bvh *b, gpu *g); // trees to the device; again: does nothing
 // Places all as of now, on the host; then, inside a frame and once a frame, on the device.
@@ -21,14 +21,16 @@ bool scene_bvh_update(scene_bvh *b, gpu *g, const field_context *context);
 typedef struct scene_hit {
     float distance;               // in lengths of the direction
     float position[3], normal[3]; // in the world; the normal is a unit vector, towards the origin
+    bool behind;                  // its corners turn to the right there: it is met from behind
     const scene_mesh *mesh;       // whose triangle it is
     scene_instances *instances;   // that it is one of; NULL: a mesh alone
     uint32_t index;               // and its number among these
 } scene_hit;
 
-// The first triangle that a ray meets, as all was placed last; false: none.
+// The first triangle that a ray meets, as all was placed last; false: none. `only`: of this mesh,
+// which stands by itself; NULL: of all that is placed.
 bool scene_pick(const scene_bvh *b, const float origin[3], const float direction[3],
-                scene_hit *out);
+                const scene_mesh *only, scene_hit *out);
 
 // What the triangles look like, for passes that show them by rays. A mesh whose surfaces are larger
 // than the device can read must be drawn instead.
@@ -54,6 +56,7 @@ typedef enum scene_bvh_part {
     BVH_VERTICES,
     BVH_MATERIALS,
     BVH_TEXELS,
+    BVH_LEVELS,
     BVH_PARTS
 } scene_bvh_part;
 gpu_buffer *scene_bvh_buffer(const scene_bvh *b, scene_bvh_part part);

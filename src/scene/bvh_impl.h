@@ -9,7 +9,7 @@
 typedef struct tree { // nodes of the forest
     uint32_t root, end;
     uint32_t below;   // its root, as shaders walk it
-    size_t triangles; // of the forest, up to those of this tree
+    size_t triangles; // of the forest, up to those of this tree and its levels
 } tree;
 
 // A mesh, or instances. What it was placed by last tells what has changed.
@@ -29,9 +29,10 @@ typedef struct thing {
 // All that is placed are items, one behind the other by their things. On the device they lie in the
 // order of the tree over them.
 struct scene_bvh {
-    scene_mesh **meshes; // alone, then the kinds of each of the instances
-    tree *trees;         // per mesh
-    uint32_t *materials; // per mesh: the first of its own
+    scene_mesh **meshes;       // alone, then the kinds of each of the instances
+    tree *trees;               // per mesh
+    uint32_t *materials;       // per mesh: the first of its own
+    struct bvh_levels *levels; // per mesh
     size_t material_count;
     size_t mesh_count;
     thing *things;

@@ -95,11 +95,12 @@ static void tell(const scene_bvh *b, const ray *r, const struct bvh_instance *it
             out->normal[a] += item->inverse[row].v[a] * face[row];
     }
     glm_vec3_normalize(out->normal);
-    if (glm_vec3_dot(out->normal, (float *)r->way) > 0) glm_vec3_negate(out->normal);
+    out->behind = glm_vec3_dot(out->normal, (float *)r->way) > 0;
+    if (out->behind) glm_vec3_negate(out->normal);
 }
 
 bool scene_pick(const scene_bvh *b, const float origin[3], const float direction[3],
-                scene_hit *out) {
+                const scene_mesh *only, scene_hit *out) {
     ray r = make_ray(origin, direction, INFINITY);
     const struct bvh_instance *hit = NULL;
     int64_t triangle = -1;
@@ -110,6 +111,7 @@ bool scene_pick(const scene_bvh *b, const float origin[3], const float direction
         uint32_t first = bvh_leaf_first(node->below), end = bvh_leaf_end(node->below);
         for (uint32_t k = first; inside && k < end; k++) {
             const struct bvh_instance *item = &b->items[k];
+            if (only && b->things[item->what.v[0]].mesh != only) continue;
             if (bvh_is_nowhere(item) || !meets_box(&r, &item->low, &item->high)) continue;
             ray inner = to_item(&r, item);
             int64_t found = walk_item(b, item, &inner);

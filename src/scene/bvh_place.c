@@ -60,6 +60,7 @@ static void place_item(scene_bvh *b, size_t item, size_t mesh, mat4 transform,
     const tree *t = &b->trees[mesh];
     if (t->root != t->end && invert(transform, made)) {
         made->what.v[2] = b->materials[mesh];
+        made->what.v[3] = (uint32_t)mesh;
         made->below = t->below;
         made->root = t->root;
         world_box(&b->forest.nodes[t->root], transform, made);

@@ -30,10 +30,11 @@ static bool has_area(const float *a, const float *b, const float *c) {
     return isfinite(squared) && squared >= FLT_MIN;
 }
 
-static void add_pieces(builder *b, uint32_t part) {
-    const mesh_part *run = &b->mesh->parts[part];
-    if (run->texture < 0 && run->color[3] < 0.5f) return; // clear, as when it is drawn
-    for (uint32_t i = run->first; i + 2 < run->first + run->count; i += 3) {
+static void add_pieces(builder *b, uint32_t part, uint32_t level) {
+    const mesh_part *look = &b->mesh->parts[part];
+    mesh_run run = mesh_get_run(b->mesh, part, level);
+    if (look->texture < 0 && look->color[3] < 0.5f) return; // clear, as when it is drawn
+    for (uint32_t i = run.first; i + 2 < run.first + run.count; i += 3) {
         const float *corners[3];
         for (uint32_t c = 0; c < 3; c++) corners[c] = corner(b->mesh, i + c);
         if (!has_area(corners[0], corners[1], corners[2])) continue;
@@ -97,14 +98,14 @@ static uint32_t add_leaf(void *user, const bvh_piece *pieces, size_t count) {
     return (uint32_t)first;
 }
 
-bool bvh_forest_add(bvh_forest *f, const mesh_data *mesh) {
+bool bvh_forest_add(bvh_forest *f, const mesh_data *mesh, uint32_t level) {
     if (f->triangle_count + mesh->index_count / 3 > BVH_MAX_TRIANGLES)
         return err_set("all meshes together have more than %d triangles", BVH_MAX_TRIANGLES);
     builder b = {.forest = f, .mesh = mesh};
     b.colors = mem_alloc(mesh->part_count * sizeof *b.colors);
     for (uint32_t i = 0; i < mesh->part_count; i++) {
         find_color(mesh, &mesh->parts[i], b.colors[i]);
-        add_pieces(&b, i);
+        add_pieces(&b, i, level);
     }
     bvh_build made = {.nodes = f->nodes,
                       .node_count = f->node_count,

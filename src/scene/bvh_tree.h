@@ -20,7 +20,8 @@ typedef struct bvh_forest { // zero: empty
 
 enum { BVH_MAX_TRIANGLES = (1 << 28) - 1 };
 
-// Adds a tree of all triangles that have an area and are not clear; none: no nodes. Its nodes are
-// those from the count before to that after. False with a message when they are too many.
-bool bvh_forest_add(bvh_forest *f, const mesh_data *mesh);
+// Adds a tree of all triangles of a level (mesh_get_run) that have an area and are not clear; none:
+// no nodes. Its nodes are those from the count before to that after. False with a message when they
+// are too many.
+bool bvh_forest_add(bvh_forest *f, const mesh_data *mesh, uint32_t level);
 void bvh_forest_free(bvh_forest *f);

@@ -46,7 +46,7 @@ void scene_mesh_set_material(scene_mesh *mesh, const scene_material *material, a
 // Zero at all times. A number that has a name can be set at any.
 static bool is_none(const scene_material *m, const field *node) {
     if (m->name) return false;
-    if (strcmp(node->kind->name, "constant") != 0) return false;
+    if (!field_is_constant(node)) return false;
     for (int i = 0; i < node->components; i++)
         if (node->value[i] != 0) return false;
     return true;

@@ -262,7 +262,7 @@ static void instances_are_hit_as_the_host_sees_it(void **state) {
     size_t hits = 0, other = 0;
     for (size_t i = 0; i < 4 * PIXELS; i += 4) {
         scene_hit want;
-        bool hit = scene_pick(w.host.bvh, t.origin + i, t.way + i, &want);
+        bool hit = scene_pick(w.host.bvh, t.origin + i, t.way + i, NULL, &want);
         hits += hit;
         if (hit != (t.way[i + 3] >= 0) || hit != (t.origin[i + 3] != 0) ||
             (hit && fabsf(t.way[i + 3] - want.distance) > 1e-4f * (1 + want.distance))) {

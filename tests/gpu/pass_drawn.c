@@ -1,7 +1,6 @@
 // What is drawn of meshes and instances: culling changes no pixel, lists hold each instance that is
 // seen once and in order, levels follow distance, and the number of draws does not grow with that
 // of instances.
-#include "media/mesh_levels.h"
 #include "pass/drawn.h"
 #include "pass/drawn_parts.h"
 #include "pass_test.h"
@@ -65,16 +64,7 @@ static scene_mesh *make_ball(pass_world *w) {
                              .parts = parts,
                              .part_count = 2,
                              .box = {{-1, -1, -1}, {1, 1, 1}}};
-    mesh_levels levels;
-    mesh_levels_make(&mesh->data, &w->memory, &levels);
-    uint32_t *whole = arena_alloc(&w->memory, (count + levels.index_count) * sizeof *whole);
-    memcpy(whole, indices, count * sizeof *whole);
-    memcpy(whole + count, levels.indices, levels.index_count * sizeof *whole);
-    mesh->data.indices = whole;
-    mesh->data.level_index_count = levels.index_count;
-    mesh->data.level_count = levels.count;
-    for (uint32_t i = 0; i < levels.count; i++)
-        mesh->data.levels[i] = (mesh_level){levels.errors[i], levels.runs[i]};
+    world_make_levels(w, mesh);
     return mesh;
 }
 
@@ -230,7 +220,7 @@ static shown read_shown(stand *s, size_t view, uint32_t **list) {
                 commands + view * body->command_count + body->commands[k] + level;
             for (uint32_t i = 0; i < mesh->part_count; i++) {
                 const gpu_draw_indexed_command *command = first + i * drawn_level_count(mesh);
-                mesh_run run = drawn_run(mesh, i, level);
+                mesh_run run = mesh_get_run(mesh, i, level);
                 assert_true(command->indices == run.count && command->first_index == run.first);
                 assert_true(command->instances == first->instances);
                 assert_true(command->first_instance == first->first_instance);

@@ -7,13 +7,18 @@ typedef struct seen {
     float *albedo, *normal, *depth;
 } seen;
 
-static seen look(gpu *device, const char *mode, scene_mesh *(*make)(pass_world *w), float most) {
+typedef struct limits { // of what is shown: 0: none
+    float distance, lod;
+} limits;
+
+static seen look(gpu *device, const char *mode, scene_mesh *(*make)(pass_world *w), limits most) {
     pass_world w;
     world_open(&w, device);
     scene_mesh *mesh = make(&w);
     pass *p = world_add(&w, "geometry", NULL, "geometry");
     gpu_test_ok(pass_set_option(p, "mode", mode));
-    gpu_test_ok(pass_set_uniform(p, "max_distance", number(&w, most)));
+    gpu_test_ok(pass_set_uniform(p, "max_distance", number(&w, most.distance)));
+    gpu_test_ok(pass_set_uniform(p, "lod", number(&w, most.lod)));
     for (size_t i = 0; i < w.instances_count; i++)
         gpu_test_ok(pass_add_instances(p, w.instances[i]));
     gpu_test_ok((w.instances_count > 0 || pass_add_mesh(p, mesh)) && pass_declare(p));
@@ -140,7 +145,7 @@ static bool is_same(const seen *a, const seen *b, size_t at) {
 
 // Pixels whose middle lies on an edge may differ; elsewhere those between two triangles may.
 // Returns how many show something.
-static size_t assert_same(gpu *device, scene_mesh *(*make)(pass_world *w), float most) {
+static size_t assert_same(gpu *device, scene_mesh *(*make)(pass_world *w), limits most) {
     if (!gpu_test_draws_precisely(device)) {
         print_message("skipped: the device draws corners of triangles at places of %u bits below a "
                       "pixel; 8 are needed\n",
@@ -167,23 +172,84 @@ static size_t assert_same(gpu *device, scene_mesh *(*make)(pass_world *w), float
 }
 
 static void rays_show_what_is_drawn(void **state) {
-    assert_same(*state, make_globe, 0);
+    assert_same(*state, make_globe, (limits){0});
 }
 
 static void rays_show_what_is_drawn_of_a_mirrored_mesh(void **state) {
-    assert_same(*state, make_mirrored, 0);
+    assert_same(*state, make_mirrored, (limits){0});
 }
 
 static void rays_show_what_is_drawn_of_instances(void **state) {
-    assert_same(*state, make_instances, 0);
+    assert_same(*state, make_instances, (limits){0});
 }
 
 // Both leave out the same ones, and no mesh that stands by itself.
 static void what_is_far_is_left_out_of_both(void **state) {
-    size_t all = assert_same(*state, make_instances, 0),
-           near = assert_same(*state, make_instances, 8);
+    size_t all = assert_same(*state, make_instances, (limits){0}),
+           near = assert_same(*state, make_instances, (limits){.distance = 8});
     if (near >= all) fail_msg("%zu pixels are covered, and %zu without what is far", all, near);
-    assert_int_equal(assert_same(*state, make_globe, 0), assert_same(*state, make_globe, 0.1f));
+    assert_int_equal(assert_same(*state, make_globe, (limits){0}),
+                     assert_same(*state, make_globe, (limits){.distance = 0.1f}));
+}
+
+// ---- levels -----------------------------------------------------------------------------------
+
+static scene_mesh *make_simplified(pass_world *w) {
+    scene_mesh *globe = make_instances(w);
+    world_make_levels(w, globe);
+    assert_true(globe->data.level_count > 1);
+    globe->data.box.max.x = 6; // its middle is not where the mesh begins
+    return globe;
+}
+
+// The trees of levels stand beside those in full and change nothing until they are asked for.
+static void rays_meet_levels_that_are_drawn(void **state) {
+    assert_same(*state, make_simplified, (limits){.lod = 1});
+    assert_same(*state, make_simplified, (limits){.lod = 6});
+    seen full = look(*state, "rays", make_instances, (limits){0});
+    seen none = look(*state, "rays", make_simplified, (limits){0});
+    seen some = look(*state, "rays", make_simplified, (limits){.lod = 6});
+    assert_memory_equal(none.normal, full.normal, 4 * PIXELS * sizeof *none.normal);
+    assert_memory_equal(none.depth, full.depth, PIXELS * sizeof *none.depth);
+    size_t other = 0;
+    for (size_t i = 0; i < PIXELS; i++) other += !is_same(&some, &full, i);
+    if (other < PIXELS / 50) fail_msg("levels change %zu pixels", other);
+    release(&full);
+    release(&none);
+    release(&some);
+}
+
+static float lit(gpu *device, const char *mode, float lod) {
+    pass_world w;
+    world_open(&w, device);
+    make_simplified(&w);
+    w.scene.sun.strength = number(&w, 3);
+    w.scene.sun.azimuth = number(&w, 200);
+    w.scene.sun.elevation = number(&w, 40);
+    pass *p = world_add(&w, "geometry", NULL, "geometry");
+    pass *shade = world_add(&w, "shade", NULL, "shade");
+    gpu_test_ok(pass_set_option(p, "mode", mode) && pass_set_uniform(p, "lod", number(&w, lod)) &&
+                pass_add_instances(p, w.instances[0]) && pass_declare(p));
+    pass_add_source(shade, p);
+    gpu_test_ok(pass_set_uniform(shade, "sky_alpha", number(&w, 0)) && pass_declare(shade));
+    world_render(&w, WIDTH, HEIGHT, pass_output(shade, "color"));
+    float *color = world_read(&w, pass_output(shade, "color")), sum = 0, covered = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        sum += color[4 * i] + color[4 * i + 1] + color[4 * i + 2];
+        covered += color[4 * i + 3];
+    }
+    mem_free(color);
+    world_close(&w);
+    return sum / covered;
+}
+
+// Rays to lights meet meshes in full, which may stand out of what is seen of them.
+static void simplified_meshes_stand_in_no_light_of_their_own(void **state) {
+    const float full = lit(*state, "rays", 0), part = lit(*state, "rays", 6),
+                drawn = lit(*state, "raster", 6);
+    if (fabsf(part - full) > 0.08f * full || fabsf(drawn - full) > 0.08f * full)
+        fail_msg("mean light %g in full, simplified %g by rays, %g drawn", (double)full,
+                 (double)part, (double)drawn);
 }
 
 // ---- no gaps -----------------------------------------------------------------------------------
@@ -223,7 +289,7 @@ static scene_mesh *make_sheet(pass_world *w) {
 }
 
 static void no_ray_slips_through_between_triangles(void **state) {
-    seen rays = look(*state, "rays", make_sheet, 0);
+    seen rays = look(*state, "rays", make_sheet, (limits){0});
     for (size_t i = 0; i < PIXELS; i++)
         if (!(fabsf(rays.depth[i] - 5) < 1e-3f))
             fail_msg("pixel (%zu, %zu): %g", i % WIDTH, i / WIDTH, (double)rays.depth[i]);
@@ -236,6 +302,8 @@ int main(void) {
         cmocka_unit_test(rays_show_what_is_drawn_of_a_mirrored_mesh),
         cmocka_unit_test(rays_show_what_is_drawn_of_instances),
         cmocka_unit_test(what_is_far_is_left_out_of_both),
+        cmocka_unit_test(rays_meet_levels_that_are_drawn),
+        cmocka_unit_test(simplified_meshes_stand_in_no_light_of_their_own),
         cmocka_unit_test(no_ray_slips_through_between_triangles),
     };
     return gpu_test_run(tests, COUNT_OF(tests));

@@ -180,7 +180,7 @@ static int depth_of(uint32_t count, void (*place)(uint32_t, float[3], float *)) 
     soup s = make_soup(count, place);
     s.data.parts = &s.part;
     bvh_forest f = {0};
-    assert_true(bvh_forest_add(&f, &s.data));
+    assert_true(bvh_forest_add(&f, &s.data, 0));
     int depth = check_tree(&f, count);
     check_widened(&f, count);
     bvh_forest_free(&f);
@@ -238,14 +238,30 @@ static void triangles_without_area_are_left_out(void **state) {
     s.vertices[0].position[0] = NAN;
     s.vertices[6].position[1] = INFINITY;
     bvh_forest f = {0};
-    assert_true(bvh_forest_add(&f, &s.data));
+    assert_true(bvh_forest_add(&f, &s.data, 0));
     check_tree(&f, 48);
     // Nothing of the second mesh is left: it has no tree, and the first is as it was.
     for (uint32_t i = 0; i < 300; i++) s.indices[i] = 3;
     size_t nodes = f.node_count;
-    assert_true(bvh_forest_add(&f, &s.data));
+    assert_true(bvh_forest_add(&f, &s.data, 0));
     assert_int_equal(f.node_count, nodes);
     check_tree(&f, 48);
+    bvh_forest_free(&f);
+    free_soup(&s);
+}
+
+static void a_level_has_a_tree_of_its_own_triangles(void **state) {
+    (void)state;
+    soup s = make_soup(100, scattered);
+    const mesh_run run = {.first = 40 * 3, .count = 25 * 3};
+    s.data.parts = &s.part;
+    s.data.levels[0] = (mesh_level){.error = 1, .runs = &run};
+    s.data.level_count = 1;
+    bvh_forest f = {0};
+    assert_true(bvh_forest_add(&f, &s.data, 1));
+    check_tree(&f, 25);
+    for (size_t i = 0; i < 25; i++)
+        assert_in_range(f.origins[i].first, run.first, run.first + run.count - 3);
     bvh_forest_free(&f);
     free_soup(&s);
 }
@@ -267,7 +283,7 @@ static void colors_are_those_of_parts_and_textures(void **state) {
     s.data.textures = &texture;
     s.data.texture_count = 1;
     bvh_forest f = {0};
-    assert_true(bvh_forest_add(&f, &s.data));
+    assert_true(bvh_forest_add(&f, &s.data, 0));
     check_tree(&f, 8);
     int plain = 0, textured = 0;
     for (size_t i = 0; i < 8; i++) {
@@ -289,10 +305,10 @@ static void more_meshes_than_can_be_placed_are_refused(void **state) {
     scene_mesh mesh = {.name = "one", .data = s.data};
     scene_mesh *meshes[SCENE_BVH_MAX_MESHES + 1];
     for (size_t i = 0; i < COUNT_OF(meshes); i++) meshes[i] = &mesh;
-    scene_bvh *b = scene_bvh_create(meshes, SCENE_BVH_MAX_MESHES, NULL, 0);
+    scene_bvh *b = scene_bvh_create(meshes, SCENE_BVH_MAX_MESHES, NULL, 0, false);
     assert_non_null(b);
     scene_bvh_destroy(b, NULL);
-    assert_null(scene_bvh_create(meshes, COUNT_OF(meshes), NULL, 0));
+    assert_null(scene_bvh_create(meshes, COUNT_OF(meshes), NULL, 0, false));
     assert_string_equal(err_get(), "257 meshes; at most 256 are possible");
     free_soup(&s);
 }
@@ -302,6 +318,7 @@ int main(void) {
         cmocka_unit_test(scattered_triangles_make_a_flat_tree),
         cmocka_unit_test(hard_triangles_make_trees_of_bounded_depth),
         cmocka_unit_test(triangles_without_area_are_left_out),
+        cmocka_unit_test(a_level_has_a_tree_of_its_own_triangles),
         cmocka_unit_test(colors_are_those_of_parts_and_textures),
         cmocka_unit_test(more_meshes_than_can_be_placed_are_refused),
     };

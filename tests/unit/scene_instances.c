@@ -284,7 +284,7 @@ static void expect_picks(world *w, const scene_bvh *b) {
         uint32_t index = 0;
         float want = search(w, origin, way, &index);
         scene_hit hit;
-        bool found = scene_pick(b, origin, way, &hit);
+        bool found = scene_pick(b, origin, way, NULL, &hit);
         assert_int_equal(found, isfinite(want));
         if (!found) continue;
         hits++;
@@ -305,7 +305,7 @@ static void picks_find_what_is_nearest(void **state) {
     for (size_t i = 0; i < COUNT_OF(counts); i++) {
         world w;
         open_cubes(&w, counts[i], sizes[i], NULL);
-        scene_bvh *b = scene_bvh_create(NULL, 0, &w.instances, 1);
+        scene_bvh *b = scene_bvh_create(NULL, 0, &w.instances, 1, false);
         assert_int_equal(scene_bvh_count(b), counts[i]);
         assert_true(scene_bvh_place(b, &w.context));
         expect_picks(&w, b);
@@ -318,7 +318,7 @@ static void picks_follow_what_moves_hides_and_grows(void **state) {
     (void)state;
     world w;
     open_cubes(&w, 1000, 4, NULL);
-    scene_bvh *b = scene_bvh_create(NULL, 0, &w.instances, 1);
+    scene_bvh *b = scene_bvh_create(NULL, 0, &w.instances, 1, false);
     assert_true(scene_bvh_place(b, &w.context));
     float built = b->top_cost;
     for (uint32_t i = 0; i < 300; i++) { // a few, then so many that the tree is built anew
@@ -380,7 +380,7 @@ static void what_is_shown_is_chosen_by_object(void **state) {
     open_cubes(&b, 30, 2, NULL);
     scene_mesh *mesh = &a.cube;
     scene_instances *both[] = {a.instances, b.instances};
-    scene_bvh *rays = scene_bvh_create(&mesh, 1, both, 2);
+    scene_bvh *rays = scene_bvh_create(&mesh, 1, both, 2, false);
     assert_int_equal(scene_bvh_count(rays), 51);
     scene_bvh_choose(rays, NULL, 0, &b.instances, 1, bits);
     assert_int_equal(bits[0], 4);

@@ -4,7 +4,7 @@ local fx = effect { name = "wood", frames = 600 }
 
 local count = param { "count", 1000, min = 1, max = 100000, integer = true }
 local mode  = param { "mode", "auto", words = {"auto", "rays", "raster"} }
-local lod   = param { "lod", 1, min = 0, max = 64, help = "pixels that simplified meshes may be off, when drawn" }
+local lod   = param { "lod", 1, min = 0, max = 64, help = "pixels that simplified meshes may be off" }
 local moves = param { "moves", 0, min = 0, max = 1, help = "part of the firs that change in each frame" }
 local n     = count:get()
 

@@ -1,5 +1,6 @@
 // A thread for each instance and view: which bucket it is drawn from, if it can be seen.
 #include "drawn.glsl"
+#include "lib/level.glsl"
 #include "lib/turn.glsl"
 layout(std430) readonly buffer Views { view_entry views[]; };
 layout(std430) readonly buffer Instances { instance_entry instances[]; };
@@ -29,17 +30,6 @@ bool is_seen(mat4 clip, vec3 centre, float radius) {
            !is_outside(rows[2], centre, r) && !is_outside(rows[3] - rows[2], centre, r);
 }
 
-// The coarsest level whose errors are small enough where the instance is nearest.
-uint level_of(uint first, vec4 eye, vec3 centre, float radius, float size) {
-    float most = lod * max(distance(centre, eye.xyz) - radius, 0.0);
-    uint level = 0u;
-    for (uint i = 1u; i < DRAWN_LEVELS && lod * eye.w > 0.0; i++) {
-        uvec4 draws = buckets[first + i].draws;
-        if (draws.y != 0u && uintBitsToFloat(draws.z) * size * eye.w <= most) level = i;
-    }
-    return level;
-}
-
 uint bucket_of(instance_entry entry, view_entry view) {
     uint first = entry.kind.x * DRAWN_LEVELS;
     float size = abs(entry.place.w) * scale;
@@ -49,7 +39,9 @@ uint bucket_of(instance_entry entry, view_entry view) {
     vec3 centre = (place * vec4(within, 1.0)).xyz;
     if (most > 0.0 && distance(centre, view.eye.xyz) > most) return DRAWN_NONE;
     if (!is_seen(view.clip, centre, sphere.w * size)) return DRAWN_NONE;
-    return first + level_of(first, view.eye, centre, sphere.w * size, size);
+    vec4 errors = vec4(0.0);
+    for (uint i = 1u; i < DRAWN_LEVELS; i++) errors[i] = uintBitsToFloat(buckets[first + i].draws.z) * size;
+    return first + level_of(errors, view.eye.w, lod, distance(centre, view.eye.xyz), sphere.w * size);
 }
 
 void main() {

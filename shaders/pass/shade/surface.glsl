@@ -12,5 +12,5 @@ surface_point surface_at(vec2 uv) {
     vec3 along = frame_ray(uv);
     float deep = texelFetch(depth, texel, 0).r, distance = deep * length(along);
     vec3 n = normalize(texelFetch(normal, texel, 0).xyz);
-    return surface_point(texelFetch(albedo, texel, 0), n, lifted_point(deep, along, n), distance);
+    return surface_point(texelFetch(albedo, texel, 0), n, lifted_point(deep, along, n, lod, float(textureSize(depth, 0).y)), distance);
 }
