@@ -71,6 +71,9 @@ typedef struct roil_desc {
 
 roil *roil_create(const roil_desc *desc);
 void roil_destroy(roil *r); // after its effects; NULL is fine
+// False once a device was left behind because it hangs or cannot be waited for: exit() may then
+// wait for it without end, or free what it works with. End the process by _exit().
+bool roil_can_exit(void);
 const char *roil_device_name(const roil *r);
 const char *roil_device_driver(const roil *r);
 uint64_t roil_validation_messages(const roil *r);
@@ -327,6 +330,9 @@ typedef struct roil_camera {
 } roil_camera;
 bool roil_get_camera(roil_effect *e, roil_camera *out);
 bool roil_get_bounds(roil_effect *e, float low[3], float high[3]); // of its volumes; false: none
+// Whether a point of the last frame lies under a mesh that is open below, and so is ground (not an
+// instance); then `height` is how high it is there (m).
+bool roil_is_under_ground(roil_effect *e, const float at[3], float *height);
 
 // ---- events: what happens to an effect, where its script hears it -------------------------------
 // They are one control, "effect.events": "2.5 click 0.4 0.6; 3 key f; 4 key f 12 -3 0" (seconds,

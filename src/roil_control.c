@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include "effect/events.h"
 #include "roil_impl.h"
 #include "script/reference.h"
 #include <math.h>
@@ -61,7 +62,7 @@ static void fill_param(const effect_param *p, roil_control *out) {
 }
 
 static bool is_constant(const field *node) {
-    return strcmp(node->kind->name, "constant") == 0;
+    return field_is_constant(node);
 }
 
 // Value of a field that does not vary in space; `otherwise` where there is none.
@@ -363,4 +364,8 @@ bool roil_get_bounds(roil_effect *e, float low[3], float high[3]) {
     memcpy(low, &all.min, sizeof all.min);
     memcpy(high, &all.max, sizeof all.max);
     return true;
+}
+
+bool roil_is_under_ground(roil_effect *e, const float at[3], float *height) {
+    return effect_is_under_ground(e->effect, at, height);
 }

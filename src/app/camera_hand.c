@@ -4,7 +4,9 @@
 #include <math.h>
 #include <stdio.h>
 
-static const float TURN = 0.3f; // degrees a unit
+static const float TURN = 0.3f;   // degrees a unit
+static const float ABOVE = 0.01f; // of the ground, by the distance of what is looked at
+enum { RAISES = 4 };              // at most: ground that slopes is another where the eye then is
 
 // In force is what the hand made last; after a reload or a reset, what the effect was drawn with.
 static bool take_up(live *l) {
@@ -33,17 +35,35 @@ static float aspect_of(const live *l) {
     return (l->view.right - l->view.left) / fmaxf(l->view.bottom - l->view.top, 1);
 }
 
+static bool is_under_ground(const live *l, const orbit *o, float *height) {
+    roil_camera camera;
+    orbit_to(o, &camera);
+    return roil_is_under_ground(l->effect, camera.eye, height);
+}
+
+// After a move, from `before`: the hand takes no camera under the ground that it stood above.
+static void stay_above_ground(live *l, const orbit *before, bool shift) {
+    float height;
+    if (is_under_ground(l, before, &height)) return;
+    for (int i = 0; i < RAISES && is_under_ground(l, &l->camera, &height); i++)
+        orbit_raise(&l->camera, height + ABOVE * l->camera.distance, shift);
+    if (is_under_ground(l, &l->camera, &height)) l->camera = *before;
+}
+
 void camera_hand(live *l, const ui_canvas *view) {
     bool moved = (view->held || view->middle_held) && (view->dx != 0 || view->dy != 0);
     if (view->pressed) moved = false; // that was the way to where it was pressed
     if (view->double_clicked && !event_hears_clicks(l)) camera_frame(l);
     if ((!moved && view->wheel == 0) || !take_up(l)) return;
     float height = fmaxf(view->area.bottom - view->area.top, 1);
+    const orbit before = l->camera;
+    const bool pans = moved && (view->middle_held || view->shift);
     if (view->wheel != 0) orbit_zoom(&l->camera, view->wheel);
-    if (moved && (view->middle_held || view->shift))
+    if (pans)
         orbit_pan(&l->camera, view->dx / height, view->dy / height);
     else if (moved)
         orbit_turn(&l->camera, -view->dx * TURN / ui_scale(), view->dy * TURN / ui_scale());
+    stay_above_ground(l, &before, pans);
     put_down(l);
 }
 

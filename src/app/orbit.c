@@ -55,6 +55,14 @@ void orbit_zoom(orbit *o, float steps) {
     o->distance = clampf(o->distance * powf(ZOOM_STEP, steps), MIN_DISTANCE, MAX_DISTANCE);
 }
 
+void orbit_raise(orbit *o, float height, bool shift) {
+    float rise = (height - o->target[2]) / o->distance; // of the eye above the target
+    float pitch = glm_deg(asinf(clampf(rise, -1, 1)));
+    if (!shift) o->pitch = clampf(fmaxf(o->pitch, pitch), -MAX_PITCH, MAX_PITCH);
+    float eye = o->target[2] + o->distance * sinf(glm_rad(o->pitch));
+    o->target[2] += fmaxf(height - eye, 0);
+}
+
 void orbit_frame(orbit *o, const float low[3], const float high[3], float aspect) {
     float vertical = tanf(glm_rad(o->fov) / 2), horizontal = vertical * fmaxf(aspect, 1e-3f);
     axes a = axes_of(o);

@@ -62,6 +62,9 @@ size_t effect_statuses(const effect *e, const effect_status **out);
 // Along a ray, of any length but 0: meshes that are drawn; the ground, z = 0, where there is none.
 // As of the frame that was evaluated last.
 bool effect_pick(effect *e, const float origin[3], const float direction[3], scene_hit *out);
+// Whether a point lies under the ground: a mesh, not one of instances, whose back is above it,
+// while it is not inside of that. `height`: of the ground straight above it (m).
+bool effect_is_under_ground(effect *e, const float at[3], float *height);
 // The ray of the camera through a place in the picture, as of the same frame.
 bool effect_camera_ray(effect *e, float x, float y, float origin[3], float direction[3]);
 // When the systems ran last (s), -INFINITY: never. What is to happen at that time happens before

@@ -245,12 +245,24 @@ static bool pick_ground(const float origin[3], const float direction[3], scene_h
     return true;
 }
 
+static bool pick_mesh(effect *e, const float origin[3], const float way[3], const scene_mesh *only,
+                      scene_hit *out) {
+    return e->host.bvh && scene_bvh_place(e->host.bvh, &e->context) &&
+           scene_pick(e->host.bvh, origin, way, only, out);
+}
+
 bool effect_pick(effect *e, const float origin[3], const float direction[3], scene_hit *out) {
     vec3 way;
     glm_vec3_normalize_to((float *)(uintptr_t)direction, way);
-    bool met = e->host.bvh && scene_bvh_place(e->host.bvh, &e->context) &&
-               scene_pick(e->host.bvh, origin, way, out);
-    return met || pick_ground(origin, way, out);
+    return pick_mesh(e, origin, way, NULL, out) || pick_ground(origin, way, out);
+}
+
+bool effect_is_under_ground(effect *e, const float at[3], float *height) {
+    static const float up[] = {0, 0, 1}, down[] = {0, 0, -1};
+    scene_hit above, below;
+    if (!pick_mesh(e, at, up, NULL, &above) || !above.behind || above.instances) return false;
+    *height = above.position[2];
+    return !pick_mesh(e, at, down, above.mesh, &below) || !below.behind;
 }
 
 // ---- running ----------------------------------------------------------------------------------

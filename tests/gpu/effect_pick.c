@@ -73,7 +73,63 @@ static void a_pixel_shows_what_its_ray_meets(void **state) {
     effect_destroy(e);
 }
 
-static const struct CMUnitTest tests[] = {cmocka_unit_test(a_pixel_shows_what_its_ray_meets)};
+// A floor of 40 m by 40 m at z = 0.5, that faces up or down; on it a crate, and beside it another
+// one in the air; a roof over the floor at x = 8, that faces down; crates in a ring.
+static effect *open_yard(gpu *device, float turn) {
+    effect *e = open_effect(&(effect_desc){.device = device});
+    pass *p = add(e, "geometry", NULL);
+    scene_mesh *floor = effect_add_mesh(e, "plane.obj"), *roof = effect_add_mesh(e, "plane.obj");
+    scene_mesh *crate = effect_add_mesh(e, "crate.obj"), *lone = effect_add_mesh(e, "crate.obj");
+    scene_mesh *kind = effect_add_mesh(e, "crate.obj");
+    gpu_test_ok(floor && roof && crate && lone && kind);
+    floor->rotation = triple(e, turn, 0, 0);
+    floor->scale = number(e, 20);
+    floor->position = triple(e, 0, 0, 0.5f);
+    roof->rotation = triple(e, 90, 0, 0);
+    roof->position = triple(e, 8, 0, 5);
+    crate->position = triple(e, 0, 0, 1.5f);
+    lone->position = triple(e, 30, 0, 5);
+    gpu_test_ok(pass_add_mesh(p, floor) && pass_add_mesh(p, roof) && pass_add_mesh(p, crate) &&
+                pass_add_mesh(p, lone) && pass_add_instances(p, add_ring(e, kind)));
+    gpu_test_ok(pass_declare(p) && effect_set_output(e, pass_output(p, "depth")));
+    gpu_test_ok(effect_check_settings(e) && effect_build(e, WIDTH, HEIGHT));
+    gpu_test_ok(effect_render(e, 1, false));
+    return e;
+}
+
+static void ground_is_what_is_above_as_its_back(void **state) {
+    static const struct {
+        float at[3];
+        bool under;
+    } points[] = {
+        {{-9, 0, 1}, false},           // above the floor
+        {{-9, 0, 0.4f}, true},         // under it
+        {{-9, 0, -50}, true},          // however far
+        {{0, 0, 1}, false},            // in the crate
+        {{0, 0, -1}, true},            // under the floor that the crate is on
+        {{8, 0, 2}, false},            // under the roof
+        {{30, 0, -1}, false},          // under a crate in the air, beside the floor
+        {{30, 0, 5}, false},           // in it
+        {{3.12f, 1.03f, 0.7f}, false}, // in one of the instances
+        {{60, 0, -1}, false},          // beside everything
+    };
+    effect *e = open_yard(*state, -90);
+    for (size_t i = 0; i < COUNT_OF(points); i++) {
+        float height = -1;
+        const bool under = effect_is_under_ground(e, points[i].at, &height);
+        if (under != points[i].under || (under && fabsf(height - 0.5f) > 1e-4f))
+            fail_msg("point %zu: %d, %g m", i, under, (double)height);
+    }
+    effect_destroy(e);
+    e = open_yard(*state, 90); // a ceiling
+    assert_false(effect_is_under_ground(e, (float[]){-9, 0, 0.4f}, &(float){0}));
+    effect_destroy(e);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_pixel_shows_what_its_ray_meets),
+    cmocka_unit_test(ground_is_what_is_above_as_its_back),
+};
 
 int main(void) {
     return gpu_test_run(tests, COUNT_OF(tests));

@@ -91,6 +91,28 @@ static void panning_moves_by_shares_of_the_picture(void **state) {
     assert_true(fabsf((after[1] - before[1]) + 0.2f) < 1e-4f);
 }
 
+static void a_raised_eye_is_as_high_as_said(void **state) {
+    (void)state;
+    static const roil_camera cameras[] = {{{0, -6, -2}, {0, 0, 1}, 40}, // below what it looks at
+                                          {{3, -1, 0.5f}, {1, 1, 0}, 40},
+                                          {{0, -1, -9}, {0, 0, -8}, 40}, // too near to be turned
+                                          {{0, -6, 4}, {0, 0, 1}, 40}};  // high enough
+    for (size_t i = 0; i < sizeof cameras / sizeof *cameras; i++)
+        for (int shift = 0; shift < 2; shift++) {
+            orbit o, before;
+            roil_camera camera;
+            orbit_from(&o, &cameras[i]);
+            before = o;
+            orbit_raise(&o, 1.5f, shift);
+            orbit_to(&o, &camera);
+            assert_true(fabsf(camera.eye[2] - fmaxf(cameras[i].eye[2], 1.5f)) < 1e-4f);
+            assert_true(o.distance == before.distance && o.yaw == before.yaw);
+            assert_true(o.target[0] == before.target[0] && o.target[1] == before.target[1]);
+            if (shift) assert_true(o.pitch == before.pitch);
+            if (!shift && i != 2) assert_true(o.target[2] == before.target[2]);
+        }
+}
+
 static void zooming_never_reaches_the_target(void **state) {
     (void)state;
     orbit o;
@@ -141,6 +163,7 @@ int main(void) {
         cmocka_unit_test(straight_down_and_nowhere_are_no_accident),
         cmocka_unit_test(turning_keeps_the_distance_and_the_horizon),
         cmocka_unit_test(panning_moves_by_shares_of_the_picture),
+        cmocka_unit_test(a_raised_eye_is_as_high_as_said),
         cmocka_unit_test(zooming_never_reaches_the_target),
         cmocka_unit_test(a_framed_box_is_seen_whole),
     };

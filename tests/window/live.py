@@ -12,6 +12,13 @@ local one = particles { count = 4, burst = 4, lifetime = 8, radius = 0.5 }
 fx.output = splats { one, size = over_age { {0, 0.1}, {1, 0.4} } }.image
 return fx
 """
+FLOOR = "v -40 -40 0\nv 40 -40 0\nv 40 40 0\nv -40 40 0\nf 1 2 3 4\n"
+ON_FLOOR = """
+local fx = effect { name = "floor", fps = 24, frames = 48 }
+fx.camera = orbit { target = {0, 0, 1}, distance = 6, pitch = 20 }
+fx.output = final { shade { from = geometry { mesh { "floor.obj", position = {0, 0, 0.5} } } } }.color
+return fx
+"""
 VIEW = "view"  # the widget that stands for the picture
 
 
@@ -102,6 +109,25 @@ class Camera(Case):
         live.expect(r"live: reset camera")
         live.wait_until(lambda: difference(first, live.screenshot().crop(left, top, right, bottom)) < 3,
                         "the script's view")
+        live.quit()
+
+
+    def eye(self, live, drag):
+        """Where the camera stands after a drag of so many pixels, from the middle."""
+        left, top, right, bottom = live.widget(VIEW)
+        middle = ((left + right) / 2, (top + bottom) / 2)
+        mark = live.mark()
+        live.drag(middle, (middle[0] + drag[0], middle[1] + drag[1]))
+        live.expect(r"live: set camera\.target = ", mark)
+        live.expect(r"live: drew frame", mark)
+        return [float(v) for v in live.expect(r"live: set camera\.eye = (\S+)", mark).group(1).split(",")]
+
+    def test_the_ground_stops_the_camera(self):
+        self.write("floor.obj", FLOOR)
+        live = self.live(effect=ON_FLOOR)
+        live.expect("live: shown")
+        self.assertGreater(self.eye(live, (0, -250))[2], 0.5)
+        self.assertGreater(self.eye(live, (40, -40))[2], 0.5)
         live.quit()
 
 
