@@ -133,7 +133,7 @@ typedef struct inspect_block { // std140, as inspect.comp has it
 
 typedef struct job {
     gpu_image *image, *target;
-    view_shader *shader;
+    kernel *inspector;
     inspect_block block;
     bool cursor; // is on the target
 } job;
@@ -202,29 +202,26 @@ static void fill_block(job *j, const roil_inspection *how) {
 static bool draw(roil *r, const job *j, uint32_t mip) {
     const gpu_image_desc *target = gpu_image_get_desc(j->target);
     view *v = r->view;
-    const view_value values[] = {
-        {"View", {.uniform = &j->block, .uniform_size = sizeof j->block}},
-        {"srgb", {.image = v->srgb, .sampler = GPU_NEAREST_CLAMP}},
-        {"image", {.image = j->image, .mip = mip, .one_mip = true, .sampler = GPU_NEAREST_CLAMP}},
-        {"canvas", {.image = j->target}},
-        {"texel", {.image = v->probe.texel}},
-    };
-    gpu_binding bindings[VIEW_MAX_SLOTS];
-    size_t count = view_bind(j->shader, values, COUNT_OF(values), bindings);
+    kernel *k = j->inspector;
+    kernel_bind(k, N_View, (gpu_binding){.uniform = &j->block, .uniform_size = sizeof j->block});
+    kernel_bind(k, N_srgb, (gpu_binding){.image = v->srgb, .sampler = GPU_NEAREST_CLAMP});
+    kernel_bind(k, N_image,
+                (gpu_binding){
+                    .image = j->image, .mip = mip, .one_mip = true, .sampler = GPU_NEAREST_CLAMP});
+    kernel_bind_image(k, N_canvas, j->target);
+    kernel_bind_image(k, N_texel, v->probe.texel);
     gpu_pass_begin(r->device, "inspect");
-    bool done = gpu_dispatch(
-        r->device, &(gpu_dispatch_desc){
-                       j->shader->pipeline, bindings, count, {target->width, target->height}});
+    bool done = kernel_run(k, r->device, target->width, target->height, 1);
     gpu_pass_end(r->device);
     return done;
 }
 
-static bool make_shader(roil *r, job *j) {
+static bool make_kernel(roil *r, job *j) {
     const gpu_image_desc *desc = gpu_image_get_desc(j->image);
     bool volume = desc->depth > 0, whole = desc->format == GPU_R32U;
     const shader_define defines[] = {{"VOLUME", volume ? "1" : "0"}, {"WHOLE", whole ? "1" : "0"}};
-    j->shader = &r->view->inspect[volume][whole];
-    return view_make_compute(r, j->shader, "view/inspect.comp", defines, COUNT_OF(defines));
+    j->inspector = &r->view->inspect[volume][whole];
+    return view_make_compute(r, j->inspector, "view/inspect.comp", defines, COUNT_OF(defines));
 }
 
 bool roil_inspect(roil_effect *e, const roil_inspection *how, roil_texture *target,
@@ -236,7 +233,7 @@ bool roil_inspect(roil_effect *e, const roil_inspection *how, roil_texture *targ
     *texel = (roil_texel){0};
     if (!v) return false;
     j.image = find_image(e, how, &image);
-    if (!j.image || !check(how, gpu_image_get_desc(j.image)) || !make_shader(r, &j) ||
+    if (!j.image || !check(how, gpu_image_get_desc(j.image)) || !make_kernel(r, &j) ||
         !make_probe(r, &v->probe, e, image))
         return false;
     fill_block(&j, how);

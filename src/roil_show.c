@@ -90,20 +90,14 @@ static bool compose(roil *r, view *v, const roil_picture *p) {
     compose_block block = {.background = {color[0], color[1], color[2], 1}};
     gpu_image *picture = find_picture(p->effect);
     if (picture) fit(picture, p->view, block.place);
-    const view_value values[] = {
-        {"View", {.uniform = &block, .uniform_size = sizeof block}},
-        {"srgb", {.image = v->srgb_fine, .sampler = GPU_NEAREST_CLAMP}},
-        {"noise", {.image = v->noise, .sampler = GPU_NEAREST_CLAMP}},
-        {"picture", {.image = picture ? picture : v->white, .sampler = GPU_LINEAR_CLAMP}},
-        {"canvas", {.image = v->canvas}},
-    };
-    gpu_binding bindings[VIEW_MAX_SLOTS];
-    size_t count = view_bind(&v->compose, values, COUNT_OF(values), bindings);
+    kernel *k = &v->compose;
+    kernel_bind(k, N_View, (gpu_binding){.uniform = &block, .uniform_size = sizeof block});
+    kernel_bind(k, N_srgb, (gpu_binding){.image = v->srgb_fine, .sampler = GPU_NEAREST_CLAMP});
+    kernel_bind(k, N_noise, (gpu_binding){.image = v->noise, .sampler = GPU_NEAREST_CLAMP});
+    kernel_bind_image(k, N_picture, picture ? picture : v->white);
+    kernel_bind_image(k, N_canvas, v->canvas);
     gpu_pass_begin(r->device, "window");
-    bool done = gpu_dispatch(r->device, &(gpu_dispatch_desc){.pipeline = v->compose.pipeline,
-                                                             .bindings = bindings,
-                                                             .binding_count = count,
-                                                             .threads = {p->width, p->height}});
+    bool done = kernel_run(k, r->device, p->width, p->height, 1);
     gpu_pass_end(r->device);
     return done;
 }
@@ -157,27 +151,23 @@ static bool scissor(const roil_picture *p, const float clip[4], uint32_t out[4])
     return true;
 }
 
-static size_t make_draws(const view *v, const roil_picture *p, const float size[4], gpu_draw *out,
-                         gpu_binding (*bindings)[VIEW_MAX_SLOTS]) {
+static size_t make_draws(view *v, const roil_picture *p, const float size[4], gpu_draw *out,
+                         gpu_binding (*bindings)[GPU_MAX_SLOTS]) {
+    kernel *k = &v->overlay;
     size_t count = 0;
+    kernel_bind(k, N_View, (gpu_binding){.uniform = size, .uniform_size = 4 * sizeof *size});
+    kernel_bind_buffer(k, N_Vertices, v->vertices);
+    kernel_bind_buffer(k, N_Indices, v->indices);
     for (size_t i = 0; i < p->draw_count; i++) {
         const roil_draw *d = &p->draws[i];
         uint32_t area[4];
         if (!d->count || !scissor(p, d->clip, area)) continue;
-        gpu_image *image = d->texture ? d->texture->image : v->white;
-        const view_value values[] = {
-            {"View", {.uniform = size, .uniform_size = 4 * sizeof *size}},
-            {"Vertices", {.buffer = v->vertices}},
-            {"Indices", {.buffer = v->indices}},
-            {"image", {.image = image, .sampler = GPU_LINEAR_CLAMP}},
-        };
+        kernel_bind_image(k, N_image, d->texture ? d->texture->image : v->white);
         gpu_draw *draw = &out[count];
-        *draw = (gpu_draw){.bindings = bindings[count],
-                           .vertices = d->count,
-                           .first_vertex = d->first,
-                           .scissor = {area[0], area[1], area[2], area[3]}};
-        draw->binding_count = view_bind(&v->overlay, values, COUNT_OF(values), bindings[count]);
-        count++;
+        *draw = kernel_draw(k, bindings[count++]);
+        draw->vertices = d->count;
+        draw->first_vertex = d->first;
+        memcpy(draw->scissor, area, sizeof area);
     }
     return count;
 }
@@ -187,7 +177,7 @@ static bool draw_overlay(roil *r, view *v, const roil_picture *p) {
     if (!upload(r, v, p)) return false;
     float size[4] = {(float)p->width, (float)p->height};
     gpu_draw *draws = mem_alloc(p->draw_count * sizeof *draws);
-    gpu_binding(*bindings)[VIEW_MAX_SLOTS] = mem_alloc(p->draw_count * sizeof *bindings);
+    gpu_binding(*bindings)[GPU_MAX_SLOTS] = mem_alloc(p->draw_count * sizeof *bindings);
     size_t count = make_draws(v, p, size, draws, bindings);
     gpu_pass_begin(r->device, "interface");
     bool done = !count || gpu_draw_all(r->device, &(gpu_draw_desc){.pipeline = v->overlay.pipeline,
@@ -207,8 +197,8 @@ bool roil_show(roil *r, const roil_picture *p) {
     view *v = view_get(r);
     if (!v || !check_triangles(p) ||
         !view_make_compute(r, &v->compose, "view/compose.comp", NULL, 0) ||
-        !view_make_overlay(r, &v->overlay, "view/overlay") ||
-        !make_canvas(r, v, p->width, p->height) || !gpu_frame_begin(r->device))
+        !view_make_overlay(r, &v->overlay) || !make_canvas(r, v, p->width, p->height) ||
+        !gpu_frame_begin(r->device))
         return false;
     bool done = compose(r, v, p) && draw_overlay(r, v, p) &&
                 (!r->window || gpu_present(r->device, v->canvas));

@@ -67,20 +67,14 @@ typedef struct slices_block { // std140, as slices.comp has it
 } slices_block;
 
 static bool draw(roil *r, gpu_image *image, const slices_block *block, gpu_image *target) {
-    const view_value values[] = {
-        {"View", {.uniform = block, .uniform_size = sizeof *block}},
-        {"image", {.image = image, .sampler = GPU_LINEAR_CLAMP}},
-        {"canvas", {.image = target}},
-    };
     const gpu_image_desc *size = gpu_image_get_desc(target);
-    gpu_binding bindings[VIEW_MAX_SLOTS];
-    const view_shader *shader = &r->view->slices;
-    size_t count = view_bind(shader, values, COUNT_OF(values), bindings);
+    kernel *k = &r->view->slices;
+    kernel_bind(k, N_View, (gpu_binding){.uniform = block, .uniform_size = sizeof *block});
+    kernel_bind_image(k, N_image, image);
+    kernel_bind_image(k, N_canvas, target);
     if (!gpu_frame_begin(r->device)) return false;
     gpu_pass_begin(r->device, "slices.view");
-    bool done = gpu_dispatch(
-        r->device,
-        &(gpu_dispatch_desc){shader->pipeline, bindings, count, {size->width, size->height}});
+    bool done = kernel_run(k, r->device, size->width, size->height, 1);
     gpu_pass_end(r->device);
     bool ended = gpu_frame_end(r->device);
     return done && ended;

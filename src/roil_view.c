@@ -4,8 +4,6 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "pass/blue_noise.h"
-#include <assert.h>
-#include <string.h>
 
 static gpu_image *make_image(gpu *g, const char *label, gpu_format format, uint32_t width,
                              uint32_t height, const void *texels) {
@@ -66,91 +64,48 @@ void roil_free_view(roil *r) {
     if (!v) return;
     gpu_image *images[] = {v->srgb, v->srgb_fine, v->noise, v->white, v->canvas, v->probe.texel};
     gpu_buffer *buffers[] = {v->vertices, v->indices, v->probe.readback};
-    view_shader *shaders[] = {&v->compose,       &v->overlay,       &v->slices,
-                              &v->inspect[0][0], &v->inspect[0][1], &v->inspect[1][0],
-                              &v->inspect[1][1]};
+    kernel *kernels[] = {&v->compose,       &v->overlay,       &v->slices,       &v->inspect[0][0],
+                         &v->inspect[0][1], &v->inspect[1][0], &v->inspect[1][1]};
     for (size_t i = 0; i < COUNT_OF(images); i++) gpu_image_destroy(r->device, images[i]);
     for (size_t i = 0; i < COUNT_OF(buffers); i++) gpu_buffer_destroy(r->device, buffers[i]);
-    for (size_t i = 0; i < COUNT_OF(shaders); i++)
-        gpu_pipeline_destroy(r->device, shaders[i]->pipeline);
+    for (size_t i = 0; i < COUNT_OF(kernels); i++) kernel_destroy(kernels[i], r->device);
     shader_library_destroy(v->library);
     arena_free(&v->memory);
     mem_free(v);
     r->view = NULL;
 }
 
-// ---- pipelines --------------------------------------------------------------------------------
+// ---- kernels ----------------------------------------------------------------------------------
 
-static void add_slots(view_shader *s, const shader_binary *binary, gpu_slot *slots) {
-    for (size_t i = 0; i < binary->slot_count; i++) {
-        assert(s->slot_count < VIEW_MAX_SLOTS);
-        slots[s->slot_count] = binary->slots[i].slot;
-        s->names[s->slot_count] = binary->slots[i].name;
-        s->bindings[s->slot_count++] = binary->slots[i].slot.binding;
-    }
-}
+static const char *const names[] = {VIEW_NAMES(KERNEL_NAME_TEXT)};
+static const char *const files[] = {"view/compose.comp", "view/inspect.comp", "view/slices.comp",
+                                    "view/overlay.vert", "view/overlay.frag"};
+const kernel_table view_kernel_table = {{names, COUNT_OF(names)}, files, COUNT_OF(files)};
 
-bool view_make_compute(roil *r, view_shader *s, const char *file, const shader_define *defines,
+bool view_make_compute(roil *r, kernel *k, const char *file, const shader_define *defines,
                        size_t define_count) {
-    view *v = r->view;
-    shader_binary binary;
-    gpu_slot slots[VIEW_MAX_SLOTS];
-    if (s->pipeline) return true;
-    s->slot_count = 0;
-    if (!shader_compile(v->library, &v->memory,
-                        &(shader_compile_desc){.name = file,
-                                               .stage = SHADER_COMPUTE,
-                                               .defines = defines,
-                                               .define_count = define_count},
-                        &binary))
-        return false;
-    add_slots(s, &binary, slots);
-    gpu_compute_desc desc = {.label = file,
-                             .code = binary.code,
-                             .code_size = binary.size,
-                             .slots = slots,
-                             .slot_count = s->slot_count};
-    memcpy(desc.local_size, binary.local_size, sizeof desc.local_size);
-    s->pipeline = gpu_pipeline_create_compute(r->device, &desc);
-    return s->pipeline != NULL;
+    const kernel_source source = {
+        .label = file,
+        .stages = {{.name = file,
+                    .stage = SHADER_COMPUTE,
+                    .defines = defines,
+                    .define_count = define_count}},
+        .stage_count = 1,
+        .names = view_kernel_table.names,
+    };
+    return k->pipeline || (kernel_compile(k, r->view->library, &r->view->memory, &source) &&
+                           kernel_build(k, r->device));
 }
 
-bool view_make_overlay(roil *r, view_shader *s, const char *file) {
-    view *v = r->view;
-    shader_binary vertex, fragment;
-    gpu_slot slots[VIEW_MAX_SLOTS];
-    if (s->pipeline) return true;
-    s->slot_count = 0;
-    shader_compile_desc first = {.name = arena_format(&v->memory, "%s.vert", file),
-                                 .stage = SHADER_VERTEX};
-    shader_compile_desc second = {.name = arena_format(&v->memory, "%s.frag", file),
-                                  .stage = SHADER_FRAGMENT};
-    if (!shader_compile(v->library, &v->memory, &first, &vertex) ||
-        !shader_compile(v->library, &v->memory, &second, &fragment))
-        return false;
-    add_slots(s, &vertex, slots);
-    add_slots(s, &fragment, slots);
-    s->pipeline =
-        gpu_pipeline_create_graphics(r->device, &(gpu_graphics_desc){.label = file,
-                                                                     .vertex_code = vertex.code,
-                                                                     .vertex_size = vertex.size,
-                                                                     .fragment_code = fragment.code,
-                                                                     .fragment_size = fragment.size,
-                                                                     .slots = slots,
-                                                                     .slot_count = s->slot_count,
-                                                                     .colors = {GPU_RGBA8},
-                                                                     .blend = true});
-    return s->pipeline != NULL;
-}
-
-size_t view_bind(const view_shader *s, const view_value *values, size_t count,
-                 gpu_binding out[VIEW_MAX_SLOTS]) {
-    for (size_t i = 0; i < s->slot_count; i++) {
-        size_t k = 0;
-        while (k < count && strcmp(values[k].name, s->names[i]) != 0) k++;
-        assert(k < count);
-        out[i] = values[k].binding;
-        out[i].binding = s->bindings[i];
-    }
-    return s->slot_count;
+bool view_make_overlay(roil *r, kernel *k) {
+    static const kernel_source source = {
+        .label = "view/overlay",
+        .stages = {{.name = "view/overlay.vert", .stage = SHADER_VERTEX},
+                   {.name = "view/overlay.frag", .stage = SHADER_FRAGMENT}},
+        .stage_count = 2,
+        .names = {names, COUNT_OF(names)},
+    };
+    const gpu_graphics_desc target = {.colors = {GPU_RGBA8}, .blend = true};
+    return k->pipeline || (kernel_compile(k, r->view->library, &r->view->memory, &source) &&
+                           kernel_build_drawn(k, r->device, target));
 }

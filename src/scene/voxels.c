@@ -45,7 +45,7 @@ static size_t find_surface(voxels *v, const voxels_body *body) {
 static bool are_constant(const field *a, const field *b, const field *c) {
     const field *const values[] = {a, b, c};
     for (size_t i = 0; i < COUNT_OF(values); i++)
-        if (strcmp(values[i]->kind->name, "constant") != 0) return false;
+        if (!field_is_constant(values[i])) return false;
     return true;
 }
 

@@ -17,8 +17,8 @@
 // wall within the body, which counts for shells only. Closed parts that overlap are one solid; one
 // turned inside out within another is a cavity in it.
 #pragma once
+#include "kernel/kernel.h"
 #include "scene/scene.h"
-#include "shader/shader.h"
 
 typedef struct voxels voxels;
 
@@ -41,6 +41,7 @@ typedef struct voxels_desc {
 
 // Looks at the meshes; needs no device. NULL with a message.
 voxels *voxels_create(arena *memory, const voxels_desc *desc);
+extern const kernel_table voxels_kernel_table;
 bool voxels_compile(voxels *v, shader_library *library, const shader_reader *reader);
 bool voxels_build(voxels *v, gpu *g);    // pipelines; any thread
 bool voxels_allocate(voxels *v, gpu *g); // buffers, all empty; again: does nothing

@@ -11,20 +11,23 @@ static const char *const shaders[VOXELS_STAGES] = {
     [VOXELS_DISTANCE] = "scene/voxels/distance.comp",
 };
 
-static const struct {
-    const char *block, *label;
-} names[VOXELS_BUFFERS] = {
-    [VOXELS_STATE] = {"VoxelState", "state of voxels"},
-    [VOXELS_LISTS] = {"VoxelLists", "bodies by tiles of cells"},
-    [VOXELS_POINTS] = {"VoxelPoints", "points of bodies"},
-    [VOXELS_ITEMS] = {"VoxelItems", "triangles of bodies"},
-    [VOXELS_PLACED] = {"VoxelPlaced", "points in cells"},
-    [VOXELS_MASKS] = {"VoxelMasks", "masks of bodies"},
-    [VOXELS_IDS] = {"VoxelIds", "ids of cells"},
-    [VOXELS_MOTIONS] = {"VoxelMotions", "motions of bodies"},
-    [VOXELS_KEYS] = {"VoxelKeys", "nearest triangles"},
-    [VOXELS_SEEDS] = {"VoxelSeeds", "nearest points"},
-    [VOXELS_OTHER_SEEDS] = {"VoxelNextSeeds", "nearest points"},
+// In the order of voxels_part_buffer.
+#define NAMES(NAME)                                                                                \
+    NAME(VoxelState), NAME(VoxelLists), NAME(VoxelPoints), NAME(VoxelItems), NAME(VoxelPlaced),    \
+        NAME(VoxelMasks), NAME(VoxelIds), NAME(VoxelKeys), NAME(VoxelSeeds), NAME(VoxelNextSeeds), \
+        NAME(values), NAME(apart)
+enum { NAMES(KERNEL_NAME_ID) };
+static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+
+const kernel_table voxels_kernel_table = {{names, COUNT_OF(names)}, shaders, COUNT_OF(shaders)};
+
+static const char *const labels[VOXELS_BUFFERS] = {
+    [VOXELS_STATE] = "state of voxels",      [VOXELS_LISTS] = "bodies by tiles of cells",
+    [VOXELS_POINTS] = "points of bodies",    [VOXELS_ITEMS] = "triangles of bodies",
+    [VOXELS_PLACED] = "points in cells",     [VOXELS_MASKS] = "masks of bodies",
+    [VOXELS_IDS] = "ids of cells",           [VOXELS_MOTIONS] = "motions of bodies",
+    [VOXELS_KEYS] = "nearest triangles",     [VOXELS_SEEDS] = "nearest points",
+    [VOXELS_OTHER_SEEDS] = "nearest points",
 };
 
 static int stages_of(const voxels *v) {
@@ -32,45 +35,33 @@ static int stages_of(const voxels *v) {
 }
 
 bool voxels_compile(voxels *v, shader_library *library, const shader_reader *reader) {
-    for (int i = 0; i < stages_of(v); i++)
-        if (!shader_compile(library, v->memory,
-                            &(shader_compile_desc){
-                                .name = shaders[i], .stage = SHADER_COMPUTE, .reader = reader},
-                            &v->binaries[i]))
-            return false;
+    for (int i = 0; i < stages_of(v); i++) {
+        const kernel_source source = {
+            .label = shaders[i],
+            .stages = {{.name = shaders[i], .stage = SHADER_COMPUTE, .reader = reader}},
+            .stage_count = 1,
+            .names = voxels_kernel_table.names,
+        };
+        if (!kernel_compile(&v->kernels[i], library, v->memory, &source)) return false;
+    }
     return true;
 }
 
 bool voxels_build(voxels *v, gpu *g) {
-    for (int i = 0; i < stages_of(v); i++) {
-        const shader_binary *binary = &v->binaries[i];
-        gpu_slot slots[GPU_MAX_SLOTS];
-        for (size_t k = 0; k < binary->slot_count; k++) slots[k] = binary->slots[k].slot;
-        gpu_compute_desc desc = {
-            .label = shaders[i],
-            .code = binary->code,
-            .code_size = binary->size,
-            .slots = slots,
-            .slot_count = binary->slot_count,
-        };
-        memcpy(desc.local_size, binary->local_size, sizeof desc.local_size);
-        v->pipelines[i] = gpu_pipeline_create_compute(g, &desc);
-        if (!v->pipelines[i]) return false;
-    }
+    for (int i = 0; i < stages_of(v); i++)
+        if (!kernel_build(&v->kernels[i], g)) return false;
     return true;
 }
 
 void voxels_destroy(voxels *v, gpu *g) {
     if (!v) return;
-    for (int i = 0; i < VOXELS_STAGES; i++)
-        if (v->pipelines[i]) gpu_pipeline_destroy(g, v->pipelines[i]);
+    for (int i = 0; i < VOXELS_STAGES; i++) kernel_destroy(&v->kernels[i], g);
     for (int i = 0; i < VOXELS_BUFFERS; i++)
         if (v->buffers[i]) gpu_buffer_destroy(g, v->buffers[i]);
     for (size_t i = 0; i < v->surface_count; i++) voxel_surface_free(&v->surfaces[i]);
     mem_free(v->lists.items);
     v->lists = (voxels_lists){0};
     v->surface_count = 0;
-    memset(v->pipelines, 0, sizeof v->pipelines);
     memset(v->buffers, 0, sizeof v->buffers);
 }
 
@@ -82,9 +73,9 @@ bool voxels_make_buffer(voxels *v, gpu *g, voxels_part_buffer which, uint64_t by
     if (bytes > most)
         return err_set("voxels: %s take %llu MiB; this device can bind %llu: fewer cells or "
                        "bodies are needed",
-                       names[which].label, (unsigned long long)bytes >> 20,
+                       labels[which], (unsigned long long)bytes >> 20,
                        (unsigned long long)most >> 20);
-    gpu_buffer_desc desc = {.label = names[which].label, .size = bytes, .kind = GPU_BUFFER_DEVICE};
+    gpu_buffer_desc desc = {.label = labels[which], .size = bytes, .kind = GPU_BUFFER_DEVICE};
     v->buffers[which] = gpu_buffer_create(g, &desc);
     return v->buffers[which] != NULL;
 }
@@ -122,39 +113,16 @@ bool voxels_allocate(voxels *v, gpu *g) {
 
 // ---- dispatching ------------------------------------------------------------------------------
 
-static gpu_buffer *find_buffer(const voxels *v, const char *block, bool other) {
-    for (int i = 0; i < VOXELS_BUFFERS; i++) {
-        if (strcmp(names[i].block, block) != 0) continue;
-        if (other && i >= VOXELS_SEEDS) return v->buffers[VOXELS_SEEDS + VOXELS_OTHER_SEEDS - i];
-        return v->buffers[i];
-    }
-    return NULL;
-}
-
 bool voxels_dispatch(voxels *v, gpu *g, voxels_stage stage, const uint32_t threads[3],
                      const voxels_images *more) {
-    const shader_binary *binary = &v->binaries[stage];
-    gpu_binding bindings[GPU_MAX_SLOTS] = {0};
-    const int32_t block[4] = {more->apart}; // the only uniform that there is
-    for (size_t i = 0; i < binary->slot_count; i++) {
-        const shader_slot *slot = &binary->slots[i];
-        gpu_binding *b = &bindings[i];
-        b->binding = slot->slot.binding;
-        if (slot->slot.kind == GPU_SLOT_STORAGE_BUFFER) {
-            b->buffer = find_buffer(v, slot->name, more->other);
-        } else if (slot->slot.kind == GPU_SLOT_UNIFORM) {
-            b->uniform = block;
-            b->uniform_size = slot->size;
-        } else {
-            b->image = more->image;
-        }
+    kernel *k = &v->kernels[stage];
+    for (int i = 0; i < VOXELS_MOTIONS; i++) {
+        const bool turned = more->other && i >= VOXELS_SEEDS;
+        kernel_bind_buffer(k, i, v->buffers[turned ? VOXELS_SEEDS + VOXELS_OTHER_SEEDS - i : i]);
     }
-    return gpu_dispatch(g, &(gpu_dispatch_desc){
-                               .pipeline = v->pipelines[stage],
-                               .bindings = bindings,
-                               .binding_count = binary->slot_count,
-                               .threads = {threads[0], threads[1], threads[2]},
-                           });
+    if (more->image) kernel_bind_image(k, N_values, more->image);
+    kernel_set_int(k, N_apart, more->apart);
+    return kernel_run(k, g, threads[0], threads[1], threads[2]);
 }
 
 uint32_t voxels_groups(uint64_t threads) {

@@ -1,5 +1,6 @@
 // The inside of the voxeliser, for its own files.
 #pragma once
+#include "kernel/kernel.h"
 #include "scene/voxels.h"
 #include "scene/voxels_mesh.h"
 
@@ -22,10 +23,10 @@ typedef enum voxels_part_buffer { // by the names of their blocks: voxels_device
     VOXELS_PLACED,
     VOXELS_MASKS,
     VOXELS_IDS,
-    VOXELS_MOTIONS,
     VOXELS_KEYS,
     VOXELS_SEEDS, // and the other of a pair, which take turns
     VOXELS_OTHER_SEEDS,
+    VOXELS_MOTIONS, // for others
     VOXELS_BUFFERS
 } voxels_part_buffer;
 
@@ -91,8 +92,7 @@ struct voxels {
     struct voxel_motion *motions; // by id
     bool motions_written;
     voxels_work work;
-    shader_binary binaries[VOXELS_STAGES];
-    gpu_pipeline *pipelines[VOXELS_STAGES];
+    kernel kernels[VOXELS_STAGES];
     gpu_buffer *buffers[VOXELS_BUFFERS];
 };
 

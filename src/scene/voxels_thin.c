@@ -104,7 +104,7 @@ void voxel_find_thin(voxel_topology *t) {
                       .index_count = part.count,
                       .parts = &part,
                       .part_count = 1};
-    if (bvh_forest_add(&p.forest, &mesh)) worker_each((p.count + CHUNK - 1) / CHUNK, look, &p);
+    if (bvh_forest_add(&p.forest, &mesh, 0)) worker_each((p.count + CHUNK - 1) / CHUNK, look, &p);
     bvh_forest_free(&p.forest);
     mem_free(p.numbers);
     mem_free(vertices);

@@ -243,3 +243,37 @@ const shader_interface *shader_interface_load(shader_library *library, arena *me
     unit_free(&unit);
     return interface;
 }
+
+static bool is_letter(char c) {
+    return isalnum((unsigned char)c) || c == '_';
+}
+
+// What comments say does not count, unless they are annotations of options and fields.
+static bool is_code(const shader_unit *unit, size_t at, size_t length) {
+    if (memcmp(unit->code.text + at, unit->text.text + at, length) == 0) return true;
+    while (at > 0 && unit->text.text[at - 1] != '\n') at--;
+    return strncmp(unit->text.text + at, "//@", 3) == 0;
+}
+
+// As a word, with or without an underscore behind it.
+static bool has_word(const shader_unit *unit, const char *name) {
+    const size_t length = strlen(name);
+    const char *text = strbuf_text(&unit->text);
+    for (const char *at = text; (at = strstr(at, name)); at += length) {
+        const char *end = at + length;
+        if (*end == '_') end++;
+        if ((at == text || !is_letter(at[-1])) && !is_letter(*end) &&
+            is_code(unit, (size_t)(at - text), length))
+            return true;
+    }
+    return false;
+}
+
+bool shader_mentions(shader_library *library, const char *file, const char *name) {
+    shader_unit unit;
+    if (!unit_load(library, &(unit_desc){.name = file, .without_fields = true}, &unit))
+        return false;
+    const bool found = has_word(&unit, name);
+    unit_free(&unit);
+    return found;
+}

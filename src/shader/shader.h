@@ -132,6 +132,10 @@ typedef struct shader_reader {
 const shader_interface *shader_interface_load(shader_library *library, arena *memory,
                                               const char *name, const shader_reader *reader);
 
+// Whether the file, or one that it includes, has a name in its code or its annotations, with or
+// without the trailing underscore. False also when it cannot be read.
+bool shader_mentions(shader_library *library, const char *file, const char *name);
+
 // ---- compile ----------------------------------------------------------------------------------
 
 typedef enum shader_stage { SHADER_COMPUTE, SHADER_VERTEX, SHADER_FRAGMENT } shader_stage;

@@ -1,6 +1,7 @@
 // A solver of 2D flow: what its shaders are compiled for, and its state on the device.
 #include "sim/flow.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/str.h"
 #include "sim/flow_impl.h"
 #include <string.h>
@@ -86,11 +87,34 @@ size_t flow_defines(const flow *f, shader_define out[FLOW_MAX_DEFINES]) {
     return f->define_count;
 }
 
-typedef struct part { // of what is compiled
-    sim_kernel *kernel;
-    const char *shader, *define; // define: NULL, none of its own
-    bool unused;
-} part;
+static const char *const names[] = {FLOW_NAMES(KERNEL_NAME_TEXT)};
+
+static const char *const shaders[FLOW_KERNELS] = {
+    [FLOW_DIFFUSE] = "sim/flow/diffuse.comp",   [FLOW_PREDICT] = "sim/flow/predict.comp",
+    [FLOW_ADVANCE] = "sim/flow/advance.comp",   [FLOW_LOOK_AT] = "sim/flow/look.comp",
+    [FLOW_BUILD] = "sim/flow/build.comp",       [FLOW_FOLLOW] = "sim/flow/follow.comp",
+    [FLOW_TURN] = "sim/flow/direction.comp",    [FLOW_PROJECT] = "sim/flow/project.comp",
+    [FLOW_DOWN_FINEST] = "sim/flow/down.comp",  [FLOW_DOWN] = "sim/flow/down.comp",
+    [FLOW_COARSEST] = "sim/flow/coarse.comp",   [FLOW_UP] = "sim/flow/up.comp",
+    [FLOW_UP_FINEST] = "sim/flow/up.comp",      [FLOW_TO_MODES] = "sim/flow/transform.comp",
+    [FLOW_SOLVE_LINES] = "sim/flow/lines.comp", [FLOW_FROM_MODES] = "sim/flow/transform.comp",
+    [FLOW_REPORT] = "sim/flow/report.comp",     [FLOW_REPORT_LAST] = "sim/flow/report.comp",
+};
+
+const kernel_table flow_kernel_table = {{names, COUNT_OF(names)}, shaders, COUNT_OF(shaders)};
+
+// What a kernel is compiled with besides; NULL: nothing.
+static const char *define_of(flow_kernel which) {
+    if (which == FLOW_DOWN_FINEST || which == FLOW_UP_FINEST) return "FLOW_FINEST";
+    return which == FLOW_FROM_MODES ? "FLOW_BACK" : which == FLOW_REPORT_LAST ? "LAST" : NULL;
+}
+
+static bool is_used(const flow_desc *desc, flow_kernel which) {
+    if (which == FLOW_PREDICT) return desc->advection == FLOW_MACCORMACK;
+    if (which == FLOW_FOLLOW) return desc->solver != FLOW_MULTIGRID;
+    if (which >= FLOW_DOWN_FINEST && which <= FLOW_UP_FINEST) return desc->solver == FLOW_MULTIGRID;
+    return which < FLOW_TO_MODES || which > FLOW_FROM_MODES || desc->solver == FLOW_TRANSFORM;
+}
 
 static flow_solver choose_solver(const flow_desc *desc, bool software) {
     const bool suits = !desc->obstacles && !desc->templates && desc->size[1] <= FLOW_MOST_LINE &&
@@ -116,37 +140,25 @@ static void choose(flow *f, bool software) {
 // `device`: NULL, none in particular.
 static bool compile(flow *f, const gpu_info *device, shader_library *library,
                     const shader_reader *reader) {
-    flow_kernels *k = &f->kernels;
     choose(f, device && device->kind == GPU_CPU);
-    const flow_solver solver = f->desc.solver;
-    const part parts[] = {
-        {&k->diffuse, "sim/flow/diffuse.comp", NULL, false},
-        {&k->predict, "sim/flow/predict.comp", NULL, f->desc.advection != FLOW_MACCORMACK},
-        {&k->advance, "sim/flow/advance.comp", NULL, false},
-        {&k->build, "sim/flow/build.comp", NULL, false},
-        {&k->follow, "sim/flow/follow.comp", NULL, solver == FLOW_MULTIGRID},
-        {&k->direction, "sim/flow/direction.comp", NULL, false},
-        {&k->project, "sim/flow/project.comp", NULL, false},
-        {&k->down_finest, "sim/flow/down.comp", "FLOW_FINEST", solver != FLOW_MULTIGRID},
-        {&k->down, "sim/flow/down.comp", NULL, solver != FLOW_MULTIGRID},
-        {&k->coarse, "sim/flow/coarse.comp", NULL, solver != FLOW_MULTIGRID},
-        {&k->up, "sim/flow/up.comp", NULL, solver != FLOW_MULTIGRID},
-        {&k->up_finest, "sim/flow/up.comp", "FLOW_FINEST", solver != FLOW_MULTIGRID},
-        {&k->to_modes, "sim/flow/transform.comp", NULL, solver != FLOW_TRANSFORM},
-        {&k->lines, "sim/flow/lines.comp", NULL, solver != FLOW_TRANSFORM},
-        {&k->from_modes, "sim/flow/transform.comp", "FLOW_BACK", solver != FLOW_TRANSFORM},
-        {&k->report, "sim/flow/report.comp", NULL, false},
-        {&k->report_last, "sim/flow/report.comp", "LAST", false},
-        {&k->look, "sim/flow/look.comp", NULL, false},
-    };
     define_all(f);
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-        const shader_define own = {parts[i].define, ""};
-        const sim_defines all = {f->defines, f->define_count};
-        if (!parts[i].unused &&
-            !sim_kernel_compile(parts[i].kernel, parts[i].shader, f->memory, library, reader, all,
-                                (sim_defines){&own, own.name != NULL}))
-            return false;
+    for (int i = 0; i < FLOW_KERNELS; i++) {
+        shader_define defines[FLOW_MAX_DEFINES + 1];
+        size_t count = flow_defines(f, defines);
+        if (!is_used(&f->desc, (flow_kernel)i)) continue;
+        if (define_of((flow_kernel)i))
+            defines[count++] = (shader_define){define_of((flow_kernel)i), ""};
+        const kernel_source source = {
+            .label = shaders[i],
+            .stages = {{.name = shaders[i],
+                        .stage = SHADER_COMPUTE,
+                        .defines = defines,
+                        .define_count = count,
+                        .reader = reader}},
+            .stage_count = 1,
+            .names = flow_kernel_table.names,
+        };
+        if (!kernel_compile(&f->kernels[i], library, f->memory, &source)) return false;
     }
     return true;
 }
@@ -158,7 +170,7 @@ bool flow_compile(flow *f, shader_library *library, const shader_reader *reader)
 bool flow_build(flow *f, gpu *g, shader_library *library, const shader_reader *reader) {
     if (!compile(f, gpu_get_info(g), library, reader)) return false;
     for (int i = 0; i < FLOW_KERNELS; i++)
-        if (f->all[i].shader && !sim_kernel_build(&f->all[i], g)) return false;
+        if (f->kernels[i].stages && !kernel_build(&f->kernels[i], g)) return false;
     return true;
 }
 
@@ -212,7 +224,7 @@ bool flow_allocate(flow *f, gpu *g) {
 }
 
 void flow_destroy(flow *f, gpu *g) {
-    for (int i = 0; i < FLOW_KERNELS; i++) sim_kernel_destroy(&f->all[i], g);
+    for (int i = 0; i < FLOW_KERNELS; i++) kernel_destroy(&f->kernels[i], g);
     for (int i = 0; i < FLOW_MEM_COUNT; i++) gpu_buffer_destroy(g, f->buffers[i]);
     for (int i = 0; i < 2 * FLOW_LOOKS; i++)
         gpu_image_destroy(g, f->looks[i / FLOW_LOOKS][i % FLOW_LOOKS]);
@@ -229,54 +241,53 @@ gpu_buffer *flow_pair(const flow *f, flow_memory pair, uint32_t which) {
 
 // ---- what is bound ----------------------------------------------------------------------------
 
-enum { OWN_SLOTS = 17 };
-
-static void own_slots(const flow *f, sim_slot out[OWN_SLOTS]) {
-    gpu_buffer *const *b = f->buffers;
-    const sim_slot slots[OWN_SLOTS] = {
-        {"FlowScalars", flow_pair(f, FLOW_MEM_SCALARS, 0), NULL},
-        {"FlowVelocity", b[FLOW_MEM_VELOCITY], NULL},
-        {"FlowSources", b[FLOW_MEM_SOURCES], NULL},
-        {"FlowObstacles", b[FLOW_MEM_OBSTACLES], NULL},
-        {"FlowTemplates", b[FLOW_MEM_TEMPLATES], NULL},
-        {"FlowPressure", flow_pair(f, FLOW_MEM_PRESSURE, 0), NULL},
-        {"FlowCoefficients", b[FLOW_MEM_COEFFICIENTS], NULL},
-        {"FlowKnown", b[FLOW_MEM_KNOWN], NULL},
-        {"FlowParts", b[FLOW_MEM_PARTS], NULL},
-        {"FlowZ", b[FLOW_MEM_Z], NULL},
-        {"FlowSwept", b[FLOW_MEM_SWEPT], NULL},
-        {"FlowImage", b[FLOW_MEM_IMAGE], NULL},
-        {"FlowReport", b[FLOW_MEM_REPORT], NULL},
-        {"FlowHatVelocity", b[FLOW_MEM_VELOCITY_HAT], NULL},
-        {"FlowFaceFrom", b[FLOW_MEM_FACE_FROM], NULL},
-        {"FlowCellFrom", b[FLOW_MEM_CELL_FROM], NULL},
-        {"FlowHatScalars", b[FLOW_MEM_SCALARS_HAT], NULL},
+static void list_own(const flow *f, gpu_buffer *out[FLOW_OWN]) {
+    static const flow_memory where[FLOW_OWN] = {
+        [N_FlowVelocity] = FLOW_MEM_VELOCITY,
+        [N_FlowSources] = FLOW_MEM_SOURCES,
+        [N_FlowObstacles] = FLOW_MEM_OBSTACLES,
+        [N_FlowTemplates] = FLOW_MEM_TEMPLATES,
+        [N_FlowCoefficients] = FLOW_MEM_COEFFICIENTS,
+        [N_FlowKnown] = FLOW_MEM_KNOWN,
+        [N_FlowParts] = FLOW_MEM_PARTS,
+        [N_FlowZ] = FLOW_MEM_Z,
+        [N_FlowSwept] = FLOW_MEM_SWEPT,
+        [N_FlowImage] = FLOW_MEM_IMAGE,
+        [N_FlowReport] = FLOW_MEM_REPORT,
+        [N_FlowHatVelocity] = FLOW_MEM_VELOCITY_HAT,
+        [N_FlowFaceFrom] = FLOW_MEM_FACE_FROM,
+        [N_FlowCellFrom] = FLOW_MEM_CELL_FROM,
+        [N_FlowHatScalars] = FLOW_MEM_SCALARS_HAT,
     };
-    memcpy(out, slots, sizeof slots);
+    for (int i = 0; i < FLOW_OWN; i++) out[i] = f->buffers[where[i]];
+    out[N_FlowScalars] = flow_pair(f, FLOW_MEM_SCALARS, 0);
+    out[N_FlowPressure] = flow_pair(f, FLOW_MEM_PRESSURE, 0);
 }
 
-bool flow_bind(const flow *f, const char *name, gpu_binding *out) {
-    sim_slot slots[OWN_SLOTS];
-    own_slots(f, slots);
-    *out = (gpu_binding){0};
-    for (int i = 0; i < OWN_SLOTS; i++)
-        if (strcmp(slots[i].name, name) == 0) out->buffer = slots[i].buffer;
-    return out->buffer != NULL;
+gpu_buffer *flow_find(const flow *f, const char *name) {
+    gpu_buffer *own[FLOW_OWN];
+    list_own(f, own);
+    for (int i = 0; i < FLOW_OWN; i++)
+        if (strcmp(names[i], name) == 0) return own[i];
+    return NULL;
 }
 
-bool flow_run(const flow *f, gpu *g, const flow_call *call) {
-    sim_slot slots[32 + OWN_SLOTS];
-    if (call->count) memcpy(slots, call->more, call->count * sizeof *slots);
-    own_slots(f, slots + call->count);
-    return sim_kernel_run(call->kernel, g, slots, call->count + OWN_SLOTS, call->threads);
+void flow_bind(const flow *f, kernel *k, const kernel_place *places) {
+    gpu_buffer *own[FLOW_OWN];
+    list_own(f, own);
+    for (int i = 0; i < FLOW_OWN; i++)
+        if (own[i]) kernel_bind_at(k, &places[i], (gpu_binding){.buffer = own[i]});
 }
 
-bool flow_run_tiles(const flow *f, gpu *g, sim_kernel *k, const sim_slot *more, size_t count,
-                    const uint32_t size[2]) {
-    flow_call call = {k, more, count, {1, 1, f->desc.slices}};
-    call.threads[0] = (size[0] + f->tile - 1) / f->tile * k->binary.local_size[0];
-    call.threads[1] = (size[1] + f->tile - 1) / f->tile;
-    return flow_run(f, g, &call);
+kernel *flow_use(flow *f, flow_kernel which) {
+    kernel *k = &f->kernels[which];
+    flow_bind(f, k, k->places);
+    return k;
+}
+
+bool flow_run_tiles(const flow *f, gpu *g, kernel *k, const uint32_t size[2]) {
+    return kernel_run(k, g, (size[0] + f->tile - 1) / f->tile * k->binaries[0].local_size[0],
+                      (size[1] + f->tile - 1) / f->tile, f->desc.slices);
 }
 
 size_t flow_buffers(const flow *f, gpu_buffer *out[FLOW_STATE_BUFFERS]) {

@@ -19,7 +19,7 @@
 // and for each step whatever fills the three inputs, and flow_step.
 #pragma once
 #include "base/arena.h"
-#include "shader/shader.h"
+#include "kernel/kernel.h"
 
 typedef struct flow flow;
 
@@ -70,7 +70,7 @@ const flow_desc *flow_get_desc(const flow *f);           // after flow_build wit
 
 // Compiles all that flow_build would, without a device. `reader` may be NULL.
 bool flow_compile(flow *f, shader_library *library, const shader_reader *reader);
-// Shaders and pipelines; any thread. Afterwards flow_defines and flow_bind can be asked.
+// Shaders and pipelines; any thread. Afterwards flow_defines can be asked.
 bool flow_build(flow *f, gpu *g, shader_library *library, const shader_reader *reader);
 // State; contents undefined until flow_reset. What is there, of an exchange too, stays.
 bool flow_allocate(flow *f, gpu *g);
@@ -106,11 +106,15 @@ bool flow_watch(flow *f, gpu *g);
 // The newest report of a frame that has finished; false: there is none yet. Never waits.
 bool flow_read(const flow *f, gpu *g, flow_report *out);
 
-// What a shader that includes sim/flow/state.glsl must be compiled with, and which of its slots are
-// the solver's own; after flow_build. The inputs (FlowSources, FlowObstacles, FlowTemplates) are
-// there when desc says so. They keep what was written to them: for the next step too.
+// What a shader that includes sim/flow/state.glsl must be compiled with; after flow_build. The
+// inputs (FlowSources, FlowObstacles, FlowTemplates) are there when desc says so. They keep what
+// was written to them: for the next step too.
 size_t flow_defines(const flow *f, shader_define out[FLOW_MAX_DEFINES]);
-bool flow_bind(const flow *f, const char *slot_name, gpu_binding *out); // false: not one of its own
+gpu_buffer *flow_find(const flow *f, const char *slot_name); // NULL: not one of its own
+// Binds the solver's own buffers to the slots of a kernel, which kernel_find has found by the names
+// of flow_kernel_table.
+void flow_bind(const flow *f, kernel *k, const kernel_place *places);
+extern const kernel_table flow_kernel_table;
 
 // All that a state consists of besides the count of steps and the inputs.
 enum { FLOW_STATE_BUFFERS = 3 };

@@ -1,7 +1,7 @@
 // The inside of a solver of 2D flow, for the files of this layer only.
 #pragma once
+#include "kernel/kernel.h"
 #include "sim/flow.h"
-#include "sim/kernel.h"
 
 // ---- to be measured on a device ---------------------------------------------------------------
 
@@ -98,14 +98,45 @@ void flow_report_destroy(flow *f, gpu *g);
 
 // ---- the solver -------------------------------------------------------------------------------
 
-typedef struct flow_kernels {
-    sim_kernel diffuse, predict, advance;                // flow_step.c
-    sim_kernel build, follow, direction, project;        // flow_pressure.c
-    sim_kernel down_finest, down, coarse, up, up_finest; // with multigrid
-    sim_kernel to_modes, lines, from_modes;              // flow_transform.c
-    sim_kernel look, report, report_last;
-} flow_kernels;
-enum { FLOW_KERNELS = sizeof(flow_kernels) / sizeof(sim_kernel) };
+typedef enum flow_kernel {
+    FLOW_DIFFUSE, // flow_step.c
+    FLOW_PREDICT,
+    FLOW_ADVANCE,
+    FLOW_LOOK_AT,
+    FLOW_BUILD, // flow_pressure.c
+    FLOW_FOLLOW,
+    FLOW_TURN,
+    FLOW_PROJECT,
+    FLOW_DOWN_FINEST, // with multigrid
+    FLOW_DOWN,
+    FLOW_COARSEST,
+    FLOW_UP,
+    FLOW_UP_FINEST,
+    FLOW_TO_MODES, // flow_transform.c
+    FLOW_SOLVE_LINES,
+    FLOW_FROM_MODES,
+    FLOW_REPORT, // flow_report.c
+    FLOW_REPORT_LAST,
+    FLOW_KERNELS
+} flow_kernel;
+
+// Buffers that are always the same come first: flow_use binds them.
+#define FLOW_OWN_NAMES(NAME)                                                                       \
+    NAME(FlowScalars), NAME(FlowVelocity), NAME(FlowSources), NAME(FlowObstacles),                 \
+        NAME(FlowTemplates), NAME(FlowPressure), NAME(FlowCoefficients), NAME(FlowKnown),          \
+        NAME(FlowParts), NAME(FlowZ), NAME(FlowSwept), NAME(FlowImage), NAME(FlowReport),          \
+        NAME(FlowHatVelocity), NAME(FlowFaceFrom), NAME(FlowCellFrom), NAME(FlowHatScalars)
+#define FLOW_NAMES(NAME)                                                                           \
+    FLOW_OWN_NAMES(NAME), NAME(FlowResidual), NAME(FlowFrom), NAME(FlowTo), NAME(FlowDirection),   \
+        NAME(FlowBefore), NAME(FlowPressureTo), NAME(FlowVelocityFrom), NAME(FlowVelocityLast),    \
+        NAME(FlowVelocityTo), NAME(FlowScalarsTo), NAME(FlowModes), NAME(FlowLines),               \
+        NAME(scalars), NAME(velocity), NAME(result), NAME(level_bits), NAME(coefficients),         \
+        NAME(pressure_unit), NAME(level_cells), NAME(level_at), NAME(coarse_cells), NAME(from_at), \
+        NAME(to_at), NAME(z_at), NAME(coarse_z_at), NAME(iteration), NAME(tolerance),              \
+        NAME(fine_cells), NAME(fine_level_at), NAME(wall_velocity), NAME(friction), NAME(weights), \
+        NAME(fresh), NAME(reach), NAME(dt), NAME(acceleration), NAME(buoyancy), NAME(vorticity),   \
+        NAME(kept), NAME(max_speed), NAME(iterations)
+enum { FLOW_NAMES(KERNEL_NAME_ID), FLOW_OWN = N_FlowHatScalars + 1 };
 
 struct flow {
     arena *memory;
@@ -115,12 +146,9 @@ struct flow {
     size_t define_count;
     flow_level levels[FLOW_MAX_LEVELS];
     uint32_t level_count;
-    uint32_t group, coarse_side; // threads
-    uint32_t tile;               // cells along a side
-    union {
-        flow_kernels kernels;
-        sim_kernel all[FLOW_KERNELS]; // those without a shader are not used
-    };
+    uint32_t group, coarse_side;  // threads
+    uint32_t tile;                // cells along a side
+    kernel kernels[FLOW_KERNELS]; // what its structure does not need is not compiled
     gpu_buffer *buffers[FLOW_MEM_COUNT];
     gpu_buffer *modes; // along x, each of size[0]; then what the equation makes of each
     gpu_image *looks[2][FLOW_LOOKS]; // [kept % 2] is written next
@@ -134,17 +162,10 @@ uint64_t flow_cells(const flow *f); // of all slices
 // A buffer of a pair: the current one (0), the other (1).
 gpu_buffer *flow_pair(const flow *f, flow_memory pair, uint32_t which);
 
-// A dispatch; slots that are not the solver's own, or not what is usual, are `more`.
-typedef struct flow_call {
-    sim_kernel *kernel;
-    const sim_slot *more;
-    size_t count;
-    uint32_t threads[3];
-} flow_call;
-bool flow_run(const flow *f, gpu *g, const flow_call *call);
+// A kernel with the buffers bound that are always the same.
+kernel *flow_use(flow *f, flow_kernel which);
 // A group for each tile of a level of `size` cells.
-bool flow_run_tiles(const flow *f, gpu *g, sim_kernel *k, const sim_slot *more, size_t count,
-                    const uint32_t size[2]);
+bool flow_run_tiles(const flow *f, gpu *g, kernel *k, const uint32_t size[2]);
 
 // The image that kept states of an even or odd number are looked at in, unless it is there.
 bool flow_make_look(flow *f, gpu *g, uint32_t which, flow_look look);

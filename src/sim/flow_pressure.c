@@ -35,21 +35,13 @@ void flow_choose_iterations(flow *f) {
 
 // ---- dispatches -------------------------------------------------------------------------------
 
-static void set_int(sim_kernel *k, const char *name, uint32_t value) {
-    sim_kernel_set(k, name, &value, sizeof value);
-}
-
-static void set_float(sim_kernel *k, const char *name, float value) {
-    sim_kernel_set(k, name, &value, sizeof value);
-}
-
-static void set_size(sim_kernel *k, const char *name, const uint32_t size[2]) {
+static void set_size(kernel *k, int name, const uint32_t size[2]) {
     const float cells[2] = {(float)size[0], (float)size[1]};
-    sim_kernel_set(k, name, cells, sizeof cells);
+    kernel_set(k, name, cells, sizeof cells);
 }
 
 static bool build(flow *f, gpu *g, float unit) {
-    sim_kernel *k = &f->kernels.build;
+    kernel *k = flow_use(f, FLOW_BUILD);
     const bool changes = f->desc.obstacles || f->desc.templates || !f->built;
     int32_t levels[6][4] = {0};
     for (uint32_t i = 0; i + 1 < f->level_count && i < 6; i++) {
@@ -58,16 +50,16 @@ static bool build(flow *f, gpu *g, float unit) {
                                   (int32_t)l->coefficients_at, 1};
         memcpy(levels[i], level, sizeof level);
     }
-    sim_kernel_set(k, "level_bits", levels, sizeof levels);
-    set_int(k, "coefficients", changes);
-    set_float(k, "pressure_unit", unit);
-    const sim_slot more[] = {{"FlowVelocity", f->buffers[FLOW_MEM_VELOCITY_NEXT], NULL},
-                             {"FlowResidual", f->buffers[FLOW_MEM_RESIDUAL], NULL}};
-    flow_call call = {k, more, 2, {1, 1, f->desc.slices}};
+    kernel_set(k, N_level_bits, levels, sizeof levels);
+    kernel_set_int(k, N_coefficients, changes);
+    kernel_set_float(k, N_pressure_unit, unit);
+    kernel_bind_buffer(k, N_FlowVelocity, f->buffers[FLOW_MEM_VELOCITY_NEXT]);
+    kernel_bind_buffer(k, N_FlowResidual, f->buffers[FLOW_MEM_RESIDUAL]);
+    uint32_t threads[2];
     for (int i = 0; i < 2; i++)
-        call.threads[i] = (f->desc.size[i] + FLOW_BUILD_TILE - 1) / FLOW_BUILD_TILE * 16;
+        threads[i] = (f->desc.size[i] + FLOW_BUILD_TILE - 1) / FLOW_BUILD_TILE * 16;
     f->built = true;
-    return flow_run(f, g, &call);
+    return kernel_run(k, g, threads[0], threads[1], f->desc.slices);
 }
 
 // ---- one iteration ----------------------------------------------------------------------------
@@ -83,51 +75,49 @@ static turn turn_of(const flow *f, uint32_t iteration) {
     return (turn){r[even], r[odd], p[odd], p[even]};
 }
 
-static void set_level(const flow *f, sim_kernel *k, uint32_t level) {
+static void set_level(const flow *f, kernel *k, uint32_t level) {
     const flow_level *l = &f->levels[level], *next = l + 1;
-    set_size(k, "level_cells", l->size);
-    set_int(k, "level_at", l->coefficients_at);
-    set_size(k, "coarse_cells", next->size);
-    set_int(k, "from_at", level == 0 ? 0 : l->r_at);
-    set_int(k, "to_at", next->r_at);
-    set_int(k, "z_at", l->z_at);
-    set_int(k, "coarse_z_at", next->z_at);
+    set_size(k, N_level_cells, l->size);
+    kernel_set_int(k, N_level_at, (int32_t)l->coefficients_at);
+    set_size(k, N_coarse_cells, next->size);
+    kernel_set_int(k, N_from_at, level == 0 ? 0 : (int32_t)l->r_at);
+    kernel_set_int(k, N_to_at, (int32_t)next->r_at);
+    kernel_set_int(k, N_z_at, (int32_t)l->z_at);
+    kernel_set_int(k, N_coarse_z_at, (int32_t)next->z_at);
 }
 
 static bool go_down(flow *f, gpu *g, uint32_t level, uint32_t iteration, float tolerance) {
     const turn t = turn_of(f, iteration);
     gpu_buffer *coarse = f->buffers[FLOW_MEM_COARSE_RESIDUAL];
-    sim_kernel *k = level == 0 ? &f->kernels.down_finest : &f->kernels.down;
-    const sim_slot more[] = {{"FlowFrom", level == 0 ? t.from : coarse, NULL},
-                             {"FlowTo", coarse, NULL},
-                             {"FlowResidual", t.residual, NULL},
-                             {"FlowDirection", t.last, NULL}};
+    kernel *k = flow_use(f, level == 0 ? FLOW_DOWN_FINEST : FLOW_DOWN);
+    kernel_bind_buffer(k, N_FlowFrom, level == 0 ? t.from : coarse);
+    kernel_bind_buffer(k, N_FlowTo, coarse);
+    kernel_bind_buffer(k, N_FlowResidual, t.residual);
+    kernel_bind_buffer(k, N_FlowDirection, t.last);
     set_level(f, k, level);
-    set_int(k, "iteration", iteration);
-    set_float(k, "tolerance", tolerance);
-    return flow_run_tiles(f, g, k, more, 4, f->levels[level].size);
+    kernel_set_int(k, N_iteration, (int32_t)iteration);
+    kernel_set_float(k, N_tolerance, tolerance);
+    return flow_run_tiles(f, g, k, f->levels[level].size);
 }
 
 static bool go_up(flow *f, gpu *g, uint32_t level, uint32_t iteration) {
-    sim_kernel *k = level == 0 ? &f->kernels.up_finest : &f->kernels.up;
+    kernel *k = flow_use(f, level == 0 ? FLOW_UP_FINEST : FLOW_UP);
     gpu_buffer *coarse = f->buffers[FLOW_MEM_COARSE_RESIDUAL];
-    const sim_slot more[] = {
-        {"FlowFrom", level == 0 ? turn_of(f, iteration).residual : coarse, NULL}};
+    kernel_bind_buffer(k, N_FlowFrom, level == 0 ? turn_of(f, iteration).residual : coarse);
     set_level(f, k, level);
-    return flow_run_tiles(f, g, k, more, 1, f->levels[level].size);
+    return flow_run_tiles(f, g, k, f->levels[level].size);
 }
 
 static bool do_coarse(flow *f, gpu *g) {
-    sim_kernel *k = &f->kernels.coarse;
+    kernel *k = flow_use(f, FLOW_COARSEST);
     const flow_level *l = &f->levels[f->level_count - 1], *fine = l - 1;
-    const sim_slot more[] = {{"FlowFrom", f->buffers[FLOW_MEM_COARSE_RESIDUAL], NULL}};
-    set_size(k, "level_cells", l->size);
-    set_size(k, "fine_cells", fine->size);
-    set_int(k, "fine_level_at", fine->coefficients_at);
-    set_int(k, "from_at", l->r_at);
-    set_int(k, "z_at", l->z_at);
-    return flow_run(f, g,
-                    &(flow_call){k, more, 1, {f->coarse_side, f->coarse_side, f->desc.slices}});
+    kernel_bind_buffer(k, N_FlowFrom, f->buffers[FLOW_MEM_COARSE_RESIDUAL]);
+    set_size(k, N_level_cells, l->size);
+    set_size(k, N_fine_cells, fine->size);
+    kernel_set_int(k, N_fine_level_at, (int32_t)fine->coefficients_at);
+    kernel_set_int(k, N_from_at, (int32_t)l->r_at);
+    kernel_set_int(k, N_z_at, (int32_t)l->z_at);
+    return kernel_run(k, g, f->coarse_side, f->coarse_side, f->desc.slices);
 }
 
 // The residual of the last direction, and what multigrid makes of it.
@@ -143,29 +133,29 @@ static bool do_levels(flow *f, gpu *g, uint32_t iteration, float tolerance) {
 
 static bool follow(flow *f, gpu *g, uint32_t iteration, float tolerance) {
     const turn t = turn_of(f, iteration);
-    const sim_slot more[] = {{"FlowFrom", t.from, NULL},
-                             {"FlowResidual", t.residual, NULL},
-                             {"FlowDirection", t.last, NULL}};
-    set_int(&f->kernels.follow, "iteration", iteration);
-    set_float(&f->kernels.follow, "tolerance", tolerance);
-    return flow_run_tiles(f, g, &f->kernels.follow, more, 3, f->desc.size);
+    kernel *k = flow_use(f, FLOW_FOLLOW);
+    kernel_bind_buffer(k, N_FlowFrom, t.from);
+    kernel_bind_buffer(k, N_FlowResidual, t.residual);
+    kernel_bind_buffer(k, N_FlowDirection, t.last);
+    kernel_set_int(k, N_iteration, (int32_t)iteration);
+    kernel_set_float(k, N_tolerance, tolerance);
+    return flow_run_tiles(f, g, k, f->desc.size);
 }
 
 static bool iterate(flow *f, gpu *g, uint32_t iteration, float tolerance) {
     const turn t = turn_of(f, iteration);
-    sim_kernel *k = &f->kernels.direction;
     const flow_solver solver = f->desc.solver;
-    const sim_slot more[] = {
-        {"FlowBefore", t.last, NULL},
-        {"FlowResidual", t.residual, NULL},
-        {"FlowDirection", t.direction, NULL},
-        {"FlowZ", solver == FLOW_CG ? t.residual : f->buffers[FLOW_MEM_Z], NULL}};
     if (!(solver == FLOW_MULTIGRID ? do_levels(f, g, iteration, tolerance)
                                    : follow(f, g, iteration, tolerance)) ||
         (solver == FLOW_TRANSFORM && !flow_transform(f, g, t.residual)))
         return false;
-    set_int(k, "iteration", iteration);
-    return flow_run_tiles(f, g, k, more, 4, f->desc.size);
+    kernel *k = flow_use(f, FLOW_TURN);
+    kernel_bind_buffer(k, N_FlowBefore, t.last);
+    kernel_bind_buffer(k, N_FlowResidual, t.residual);
+    kernel_bind_buffer(k, N_FlowDirection, t.direction);
+    if (solver == FLOW_CG) kernel_bind_buffer(k, N_FlowZ, t.residual);
+    kernel_set_int(k, N_iteration, (int32_t)iteration);
+    return flow_run_tiles(f, g, k, f->desc.size);
 }
 
 bool flow_project(flow *f, gpu *g, const flow_numbers *numbers) {
@@ -174,11 +164,11 @@ bool flow_project(flow *f, gpu *g, const flow_numbers *numbers) {
     if (!build(f, g, numbers->dt / numbers->cell)) return false;
     for (uint32_t i = 0; i < iterations; i++)
         if (!iterate(f, g, i, tolerance)) return false;
-    const turn t = turn_of(f, iterations);
-    const sim_slot more[] = {{"FlowDirection", t.last, NULL},
-                             {"FlowPressureTo", flow_pair(f, FLOW_MEM_PRESSURE, 1), NULL},
-                             {"FlowVelocityFrom", f->buffers[FLOW_MEM_VELOCITY_NEXT], NULL},
-                             {"FlowVelocityTo", f->buffers[FLOW_MEM_VELOCITY], NULL}};
-    set_int(&f->kernels.project, "iteration", iterations);
-    return flow_run_tiles(f, g, &f->kernels.project, more, 4, f->desc.size);
+    kernel *k = flow_use(f, FLOW_PROJECT);
+    kernel_bind_buffer(k, N_FlowDirection, turn_of(f, iterations).last);
+    kernel_bind_buffer(k, N_FlowPressureTo, flow_pair(f, FLOW_MEM_PRESSURE, 1));
+    kernel_bind_buffer(k, N_FlowVelocityFrom, f->buffers[FLOW_MEM_VELOCITY_NEXT]);
+    kernel_bind_buffer(k, N_FlowVelocityTo, f->buffers[FLOW_MEM_VELOCITY]);
+    kernel_set_int(k, N_iteration, (int32_t)iterations);
+    return flow_run_tiles(f, g, k, f->desc.size);
 }

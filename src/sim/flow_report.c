@@ -28,13 +28,11 @@ void flow_report_destroy(flow *f, gpu *g) {
 bool flow_watch(flow *f, gpu *g) {
     flow_reporter *r = &f->reporter;
     const uint32_t place = r->next;
-    const int32_t iterations = (int32_t)f->desc.max_iterations;
-    const sim_slot more[] = {{"result", NULL, r->result}};
-    const flow_call last = {&f->kernels.report_last, more, 1, {f->group, 1, 1}};
     if (f->steps == 0) return true;
-    sim_kernel_set(last.kernel, "iterations", &iterations, sizeof iterations);
-    if (!flow_run_tiles(f, g, &f->kernels.report, NULL, 0, f->desc.size) ||
-        !flow_run(f, g, &last) ||
+    kernel *each = flow_use(f, FLOW_REPORT), *last = flow_use(f, FLOW_REPORT_LAST);
+    kernel_bind_image(last, N_result, r->result);
+    kernel_set_int(last, N_iterations, (int32_t)f->desc.max_iterations);
+    if (!flow_run_tiles(f, g, each, f->desc.size) || !kernel_run(last, g, f->group, 1, 1) ||
         !gpu_image_copy_to_buffer(g, r->result, r->found, place * WORDS * 4))
         return false;
     r->places[place] = (flow_place){gpu_frame_open(g), f->steps};

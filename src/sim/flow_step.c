@@ -9,21 +9,17 @@
 static const float explicit_limit = 0.2f;
 enum { MOST_STAGES = 30 };
 
-static void set_float(sim_kernel *k, const char *name, float value) {
-    sim_kernel_set(k, name, &value, sizeof value);
+// A thread for each cell, or for each corner of one.
+static bool run_each(const flow *f, gpu *g, kernel *k, bool corners) {
+    const uint32_t *size = f->desc.size;
+    return kernel_run(k, g, size[0] + corners, size[1] + corners, f->desc.slices);
 }
 
-static void threads_of(const flow *f, bool corners, uint32_t out[3]) {
-    out[0] = f->desc.size[0] + corners;
-    out[1] = f->desc.size[1] + corners;
-    out[2] = f->desc.slices;
-}
-
-static void set_walls(sim_kernel *k, const flow_numbers *n) {
+static void set_walls(kernel *k, const flow_numbers *n) {
     float walls[4][4] = {0};
     for (int i = 0; i < 4; i++) memcpy(walls[i], n->wall_velocity[i], sizeof n->wall_velocity[i]);
-    sim_kernel_set(k, "wall_velocity", walls, sizeof walls);
-    set_float(k, "friction", n->friction);
+    kernel_set(k, N_wall_velocity, walls, sizeof walls);
+    kernel_set_float(k, N_friction, n->friction);
 }
 
 // ---- diffusion --------------------------------------------------------------------------------
@@ -41,7 +37,7 @@ static int count_stages(float diffusion) {
 static bool diffuse(flow *f, gpu *g, const flow_numbers *n) {
     float diffusion = n->viscosity > 0 ? n->viscosity * n->dt / (n->cell * n->cell) : 0;
     if (!(diffusion > 0)) return true;
-    sim_kernel *k = &f->kernels.diffuse;
+    kernel *k = flow_use(f, FLOW_DIFFUSE);
     const int stages = count_stages(diffusion);
     const float parts = (float)(stages * stages + stages) / 2;
     if (diffusion > explicit_limit * parts) diffusion = explicit_limit * parts;
@@ -50,56 +46,49 @@ static bool diffuse(flow *f, gpu *g, const flow_numbers *n) {
         const float own = j == 1 ? 1 : (2 * (float)j - 1) / (float)j;
         const float weights[3] = {own, (1 - (float)j) / (float)j, own * diffusion / parts};
         gpu_buffer *const *v = &f->buffers[FLOW_MEM_VELOCITY];
-        const sim_slot more[] = {{"FlowVelocityFrom", v[(j + 2) % 3], NULL},
-                                 {"FlowVelocityLast", v[(j == 1 ? j + 2 : j + 1) % 3], NULL},
-                                 {"FlowVelocityTo", v[j % 3], NULL}};
-        flow_call call = {.kernel = k, .more = more, .count = 3};
-        threads_of(f, true, call.threads);
-        sim_kernel_set(k, "weights", weights, sizeof weights);
-        if (!flow_run(f, g, &call)) return false;
+        kernel_bind_buffer(k, N_FlowVelocityFrom, v[(j + 2) % 3]);
+        kernel_bind_buffer(k, N_FlowVelocityLast, v[(j == 1 ? j + 2 : j + 1) % 3]);
+        kernel_bind_buffer(k, N_FlowVelocityTo, v[j % 3]);
+        kernel_set(k, N_weights, weights, sizeof weights);
+        if (!run_each(f, g, k, true)) return false;
     }
     return true;
 }
 
 // ---- advection --------------------------------------------------------------------------------
 
-static void set_carry(const flow *f, sim_kernel *k, const flow_numbers *n) {
+static void set_carry(const flow *f, kernel *k, const flow_numbers *n) {
     float fresh[4];
     for (int i = 0; i < 4; i++) {
         const float inward = n->wall_velocity[i][i / 2] * (i % 2 ? -1.0f : 1.0f);
         fresh[i] = f->desc.faces[i] == FLOW_OPEN || (f->desc.faces[i] == FLOW_CLOSED && inward > 0);
     }
-    sim_kernel_set(k, "fresh", fresh, sizeof fresh);
-    set_float(k, "reach", n->dt / n->cell);
+    kernel_set(k, N_fresh, fresh, sizeof fresh);
+    kernel_set_float(k, N_reach, n->dt / n->cell);
 }
 
 static bool predict(flow *f, gpu *g, const flow_numbers *n) {
-    flow_call call = {.kernel = &f->kernels.predict};
-    threads_of(f, true, call.threads);
-    set_carry(f, call.kernel, n);
-    return flow_run(f, g, &call);
+    kernel *k = flow_use(f, FLOW_PREDICT);
+    set_carry(f, k, n);
+    return run_each(f, g, k, true);
 }
 
 static bool advance(flow *f, gpu *g, const flow_numbers *n) {
-    sim_kernel *k = &f->kernels.advance;
+    kernel *k = flow_use(f, FLOW_ADVANCE);
     const float most = 32 * n->cell / n->dt;
     float kept[3];
     for (int i = 0; i < 3; i++) kept[i] = expf(-n->decay[i] * n->dt);
     set_carry(f, k, n);
     set_walls(k, n);
-    set_float(k, "dt", n->dt);
-    sim_kernel_set(k, "acceleration", n->acceleration, sizeof n->acceleration);
-    sim_kernel_set(k, "buoyancy", n->buoyancy, sizeof n->buoyancy);
-    set_float(k, "vorticity", n->vorticity);
-    sim_kernel_set(k, "kept", kept, sizeof kept);
-    set_float(k, "max_speed", n->max_speed > 0 && n->max_speed < most ? n->max_speed : most);
-    const sim_slot more[] = {
-        {"FlowVelocityTo", f->buffers[FLOW_MEM_VELOCITY_NEXT], NULL},
-        {"FlowScalarsTo", flow_pair(f, FLOW_MEM_SCALARS, 1), NULL},
-    };
-    flow_call call = {.kernel = k, .more = more, .count = 2};
-    threads_of(f, true, call.threads);
-    return flow_run(f, g, &call);
+    kernel_set_float(k, N_dt, n->dt);
+    kernel_set(k, N_acceleration, n->acceleration, sizeof n->acceleration);
+    kernel_set(k, N_buoyancy, n->buoyancy, sizeof n->buoyancy);
+    kernel_set_float(k, N_vorticity, n->vorticity);
+    kernel_set(k, N_kept, kept, sizeof kept);
+    kernel_set_float(k, N_max_speed, n->max_speed > 0 && n->max_speed < most ? n->max_speed : most);
+    kernel_bind_buffer(k, N_FlowVelocityTo, f->buffers[FLOW_MEM_VELOCITY_NEXT]);
+    kernel_bind_buffer(k, N_FlowScalarsTo, flow_pair(f, FLOW_MEM_SCALARS, 1));
+    return run_each(f, g, k, true);
 }
 
 // ---- looks ------------------------------------------------------------------------------------
@@ -124,13 +113,12 @@ bool flow_make_look(flow *f, gpu *g, uint32_t which, flow_look look) {
 static bool look(flow *f, gpu *g, const flow_numbers *n) {
     for (flow_look i = 0; i < FLOW_LOOKS; i++)
         if (!flow_make_look(f, g, f->kept % 2, i)) return false;
-    const sim_slot more[] = {{"scalars", NULL, f->looks[f->kept % 2][FLOW_SCALARS]},
-                             {"velocity", NULL, f->looks[f->kept % 2][FLOW_VELOCITY]}};
-    flow_call call = {.kernel = &f->kernels.look, .more = more, .count = 2};
-    threads_of(f, false, call.threads);
-    set_float(call.kernel, "pressure_unit", n->dt / n->cell);
+    kernel *k = flow_use(f, FLOW_LOOK_AT);
+    kernel_bind_image(k, N_scalars, f->looks[f->kept % 2][FLOW_SCALARS]);
+    kernel_bind_image(k, N_velocity, f->looks[f->kept % 2][FLOW_VELOCITY]);
+    kernel_set_float(k, N_pressure_unit, n->dt / n->cell);
     f->kept++;
-    return flow_run(f, g, &call);
+    return run_each(f, g, k, false);
 }
 
 // ---- a step -----------------------------------------------------------------------------------

@@ -60,15 +60,20 @@ bool flow_transform_allocate(flow *f, gpu *g) {
     return done;
 }
 
+static kernel *use(flow *f, flow_kernel which, gpu_buffer *residual) {
+    kernel *k = flow_use(f, which);
+    kernel_bind_buffer(k, N_FlowModes, f->modes);
+    kernel_bind_buffer(k, N_FlowResidual, residual);
+    kernel_bind_buffer(k, N_FlowLines, f->buffers[FLOW_MEM_LINES]);
+    return k;
+}
+
 bool flow_transform(flow *f, gpu *g, gpu_buffer *residual) {
-    const sim_slot more[] = {{"FlowModes", f->modes, NULL},
-                             {"FlowResidual", residual, NULL},
-                             {"FlowLines", f->buffers[FLOW_MEM_LINES], NULL}};
-    const flow_call lines = {
-        &f->kernels.lines, more, 3, {f->desc.size[0] * f->group, f->desc.slices, 1}};
     const uint32_t *size = f->desc.size;
     const bool folds = flow_transform_folds(&f->desc, f->tile);
     const uint32_t back[2] = {folds ? size[0] / 2 : size[0], size[1]}; // a group does both ends
-    return flow_run_tiles(f, g, &f->kernels.to_modes, more, 3, size) && flow_run(f, g, &lines) &&
-           flow_run_tiles(f, g, &f->kernels.from_modes, more, 3, back);
+    return flow_run_tiles(f, g, use(f, FLOW_TO_MODES, residual), size) &&
+           kernel_run(use(f, FLOW_SOLVE_LINES, residual), g, size[0] * f->group, f->desc.slices,
+                      1) &&
+           flow_run_tiles(f, g, use(f, FLOW_FROM_MODES, residual), back);
 }

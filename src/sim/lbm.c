@@ -7,9 +7,7 @@
 #include "sim/lbm.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include "sim/lbm_impl.h"
-#include <stdio.h>
 #include <string.h>
 
 enum {
@@ -113,15 +111,6 @@ static void define(lbm *l, const char *name, uint32_t value) {
     l->defines[l->define_count++] = (shader_define){name, arena_format(l->memory, "%u", value)};
 }
 
-static void define_buffers(lbm *l) {
-    strbuf text = {0};
-    for (uint32_t i = 0; i < l->layout.buffers; i++)
-        strbuf_add(&text, "LBM_BUFFER(%u, LbmState%u, lbm_state_%u) ", i, i, i);
-    l->defines[l->define_count++] =
-        (shader_define){"LBM_EACH_BUFFER", arena_string(l->memory, text.text)};
-    strbuf_free(&text);
-}
-
 static void define_all(lbm *l) {
     const lbm_desc *desc = &l->desc;
     l->define_count = 0;
@@ -144,7 +133,8 @@ static void define_all(lbm *l) {
     define(l, "LBM_SUBGRID", desc->subgrid);
     define(l, "LBM_FORCE", desc->force);
     lbm_walls_define(l, define);
-    define_buffers(l);
+    l->defines[l->define_count++] = (shader_define){
+        "LBM_EACH_BUFFER", arena_format(l->memory, "LBM_BUFFERS_%u", l->layout.buffers)};
 }
 
 // `device`: NULL, none in particular.
@@ -165,7 +155,7 @@ bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader) {
 }
 
 bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader) {
-    return compile(l, gpu_get_info(g), library, reader) && sim_kernel_build(&l->reset.base, g) &&
+    return compile(l, gpu_get_info(g), library, reader) && kernel_build(&l->reset.base, g) &&
            lbm_step_build(l, g) && lbm_walls_build(l, g);
 }
 
@@ -191,7 +181,7 @@ bool lbm_allocate(lbm *l, gpu *g) {
 }
 
 void lbm_destroy(lbm *l, gpu *g) {
-    sim_kernel_destroy(&l->reset.base, g);
+    kernel_destroy(&l->reset.base, g);
     lbm_step_destroy(l, g);
     lbm_walls_destroy(l, g);
     for (int i = 0; i < LBM_MAX_BUFFERS; i++) gpu_buffer_destroy(g, l->state[i]);
@@ -205,17 +195,14 @@ size_t lbm_buffers(const lbm *l, gpu_buffer **out, size_t capacity) {
     return l->layout.buffers;
 }
 
-bool lbm_bind(const lbm *l, const char *name, gpu_binding *out) {
-    *out = (gpu_binding){.sampler = GPU_LINEAR_CLAMP, .buffer = lbm_walls_buffer(l, name)};
-    if (strcmp(name, "LbmSkin") == 0) out->buffer = l->stepper.skin;
-    if (strcmp(name, "LbmMoments") == 0) out->buffer = l->moments[l->kept % 2];
-    if (strcmp(name, "force") == 0) out->image = l->force;
-    for (uint32_t i = 0; i < l->layout.buffers; i++) {
-        char block[32];
-        snprintf(block, sizeof block, "LbmState%u", i);
-        if (strcmp(name, block) == 0) out->buffer = l->state[i];
-    }
-    return out->buffer || out->image;
+void lbm_bind(const lbm *l, kernel *k, const kernel_place *places) {
+    gpu_buffer *own[LBM_OWN] = {
+        [N_LbmSkin] = l->stepper.skin, [N_LbmMoments] = l->moments[l->kept % 2]};
+    lbm_walls_list(l, own);
+    memcpy(&own[N_LbmState0], l->state, sizeof l->state);
+    for (int i = 0; i < LBM_OWN; i++)
+        if (own[i]) kernel_bind_at(k, &places[i], (gpu_binding){.buffer = own[i]});
+    if (l->force) kernel_bind_at(k, &places[N_force], (gpu_binding){.image = l->force});
 }
 
 void lbm_set_force(lbm *l, gpu_image *image, float scale) {
@@ -262,7 +249,7 @@ gpu_buffer *lbm_moments(const lbm *l, int which) {
 bool lbm_reset(lbm *l, gpu *g, const lbm_numbers *numbers) {
     l->steps = l->kept = 0;
     lbm_walls_reset(l, g);
-    lbm_kernel_set(&l->reset, "ambient", numbers->ambient, sizeof numbers->ambient);
+    kernel_set(&l->reset.base, N_ambient, numbers->ambient, sizeof numbers->ambient);
     const uint32_t threads[3] = {l->desc.size[0] * l->desc.size[1], 1, lbm_depth(l)};
     memcpy(l->reset.threads, threads, sizeof threads);
     return lbm_kernel_run(l, &l->reset, g);

@@ -13,7 +13,7 @@
 // lbm_step.
 #pragma once
 #include "base/arena.h"
-#include "shader/shader.h"
+#include "kernel/kernel.h"
 
 typedef struct lbm lbm;
 
@@ -119,10 +119,13 @@ bool lbm_set_bodies(lbm *l, gpu *g, const lbm_numbers *numbers, const lbm_bodies
 void lbm_set_force(lbm *l, gpu_image *image, float scale);
 
 // What a shader that includes sim/lbm/state.glsl must be compiled with, and its uniform
-// "lbm_parity" set to, and which of its slots are the solver's own; all after lbm_build.
+// "lbm_parity" set to; after lbm_build.
 size_t lbm_defines(const lbm *l, shader_define out[LBM_MAX_DEFINES]);
 uint32_t lbm_parity(const lbm *l);
-bool lbm_bind(const lbm *l, const char *slot_name, gpu_binding *out); // false: not one of its slots
+// Binds the solver's own buffers to the slots of a kernel, which kernel_find has found by the names
+// of lbm_kernel_table.
+void lbm_bind(const lbm *l, kernel *k, const kernel_place *places);
+extern const kernel_table lbm_kernel_table;
 // Buffers that hold the populations, in order. All that a state consists of: sim/lbm_state.h.
 size_t lbm_buffers(const lbm *l, gpu_buffer **out, size_t capacity);
 

@@ -3,10 +3,17 @@
 // order is fixed, and so are the sums. The record is copied out as an image, a row of words, into
 // one of as many places as frames can be in flight.
 #include "sim/lbm_guard.h"
-#include "sim/lbm_impl.h"
+#include "base/memory.h"
+#include "kernel/kernel.h"
 #include <string.h>
 
-static const char shader[] = "sim/lbm/guard.comp";
+#define NAMES(NAME)                                                                                \
+    NAME(Moments), NAME(Parts), NAME(Notes), NAME(result), NAME(count), NAME(stride),              \
+        NAME(spoilt_speed), NAME(spoilt_drift)
+enum { NAMES(KERNEL_NAME_ID) };
+static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+static const char *const shader[] = {"sim/lbm/guard.comp"};
+const kernel_table lbm_guard_kernel_table = {{names, COUNT_OF(names)}, shader, 1};
 
 enum {
     GROUP = 256,        // threads, as in the shader
@@ -25,7 +32,7 @@ typedef struct guard_place {
 struct lbm_guard {
     uint32_t size[3], groups;
     arena *memory;
-    sim_kernel kernels[2]; // moments, records
+    kernel kernels[2]; // moments, records
     gpu_buffer *parts, *found, *notes;
     gpu_image *result;
     guard_place places[PLACES];
@@ -47,17 +54,26 @@ lbm_guard *lbm_guard_create(arena *memory, const uint32_t size[3]) {
 
 bool lbm_guard_compile(lbm_guard *guard, shader_library *library, const shader_reader *reader) {
     static const shader_define last = {"LAST", ""};
-    for (size_t i = 0; i < 2; i++)
-        if (!sim_kernel_compile(&guard->kernels[i], shader, guard->memory, library, reader,
-                                (sim_defines){0}, (sim_defines){&last, i}))
-            return false;
+    for (size_t i = 0; i < 2; i++) {
+        const kernel_source source = {
+            .label = shader[0],
+            .stages = {{.name = shader[0],
+                        .stage = SHADER_COMPUTE,
+                        .defines = &last,
+                        .define_count = i,
+                        .reader = reader}},
+            .stage_count = 1,
+            .names = lbm_guard_kernel_table.names,
+        };
+        if (!kernel_compile(&guard->kernels[i], library, guard->memory, &source)) return false;
+    }
     return true;
 }
 
 bool lbm_guard_allocate(lbm_guard *guard, gpu *g) {
     if (guard->result) return true;
     for (int i = 0; i < 2; i++)
-        if (!sim_kernel_build(&guard->kernels[i], g)) return false;
+        if (!kernel_build(&guard->kernels[i], g)) return false;
     guard->parts = gpu_buffer_create(
         g, &(gpu_buffer_desc){.label = "guard", .size = (uint64_t)guard->groups * RECORD});
     guard->found = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "guard's report",
@@ -76,7 +92,7 @@ bool lbm_guard_allocate(lbm_guard *guard, gpu *g) {
 }
 
 void lbm_guard_destroy(lbm_guard *guard, gpu *g) {
-    for (int i = 0; i < 2; i++) sim_kernel_destroy(&guard->kernels[i], g);
+    for (int i = 0; i < 2; i++) kernel_destroy(&guard->kernels[i], g);
     gpu_buffer_destroy(g, guard->parts);
     gpu_buffer_destroy(g, guard->found);
     gpu_buffer_destroy(g, guard->notes);
@@ -87,24 +103,23 @@ void lbm_guard_destroy(lbm_guard *guard, gpu *g) {
 }
 
 static bool dispatch(lbm_guard *guard, gpu *g, int which, gpu_buffer *moments) {
-    sim_kernel *k = &guard->kernels[which];
+    kernel *k = &guard->kernels[which];
     const uint32_t groups = which == 0 ? guard->groups : 1, stride = groups * GROUP;
-    const uint32_t items = which == 0 ? count_cells(guard) : guard->groups;
-    const sim_slot slots[] = {{"Moments", moments, NULL},
-                              {"Parts", guard->parts, NULL},
-                              {"Notes", guard->notes, NULL},
-                              {"result", NULL, guard->result}};
-    sim_kernel_set(k, "count", &items, sizeof items);
-    sim_kernel_set(k, "stride", &stride, sizeof stride);
-    return sim_kernel_run(k, g, slots, 4, (const uint32_t[3]){stride, 1, 1});
+    kernel_bind_buffer(k, N_Moments, moments);
+    kernel_bind_buffer(k, N_Parts, guard->parts);
+    kernel_bind_buffer(k, N_Notes, guard->notes);
+    kernel_bind_image(k, N_result, guard->result);
+    kernel_set_int(k, N_count, (int32_t)(which == 0 ? count_cells(guard) : guard->groups));
+    kernel_set_int(k, N_stride, (int32_t)stride);
+    return kernel_run(k, g, stride, 1, 1);
 }
 
 bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l, lbm_guard_limits limits) {
     gpu_buffer *moments = lbm_moments(l, 0);
     if (!moments) return true;
     uint32_t place = guard->next;
-    sim_kernel_set(&guard->kernels[1], "spoilt_speed", &limits.speed, sizeof limits.speed);
-    sim_kernel_set(&guard->kernels[1], "spoilt_drift", &limits.drift, sizeof limits.drift);
+    kernel_set_float(&guard->kernels[1], N_spoilt_speed, limits.speed);
+    kernel_set_float(&guard->kernels[1], N_spoilt_drift, limits.drift);
     if (!dispatch(guard, g, 0, moments) || !dispatch(guard, g, 1, moments) ||
         !gpu_image_copy_to_buffer(g, guard->result, guard->found, place * WORDS * 4))
         return false;

@@ -12,6 +12,7 @@ typedef struct lbm_guard_limits { // beyond these a state is spoilt: it is no ai
 } lbm_guard_limits;
 
 enum { LBM_NOTES = 2 };
+extern const kernel_table lbm_guard_kernel_table;
 
 typedef struct lbm_report { // of one kept state; lattice units
     uint64_t step;          // lbm_steps when it was recorded

@@ -1,19 +1,31 @@
 // The inside of a lattice Boltzmann solver, for the files of this layer only.
 #pragma once
-#include "sim/kernel.h"
+#include "kernel/kernel.h"
 #include "sim/lbm.h"
 
 // ---- one shader -------------------------------------------------------------------------------
 
+// Buffers, which lbm_bind knows, come first.
+#define LBM_NAMES(NAME)                                                                            \
+    NAME(LbmWaves), NAME(LbmIds), NAME(LbmBodies), NAME(LbmCells), NAME(LbmCellsBefore),           \
+        NAME(LbmSkin), NAME(LbmMoments), NAME(LbmState0), NAME(LbmState1), NAME(LbmState2),        \
+        NAME(LbmState3), NAME(LbmState4), NAME(LbmState5), NAME(LbmState6), NAME(LbmState7),       \
+        NAME(LbmState8), NAME(LbmState9), NAME(LbmState10), NAME(LbmState11), NAME(LbmState12),    \
+        NAME(LbmState13), NAME(LbmState14), NAME(LbmState15), NAME(force), NAME(lbm_parity),       \
+        NAME(lbm_face_velocity), NAME(lbm_face_scalar), NAME(lbm_moved), NAME(lbm_body_speed),     \
+        NAME(any_moves), NAME(ambient), NAME(stage), NAME(tau), NAME(scalar_tau),                  \
+        NAME(smagorinsky), NAME(acceleration), NAME(buoyancy), NAME(decay), NAME(max_speed),       \
+        NAME(force_scale), NAME(skin_layers), NAME(skin_count)
+enum { LBM_NAMES(KERNEL_NAME_ID), LBM_OWN = N_LbmState0 + LBM_MAX_BUFFERS };
+
 typedef struct lbm_kernel {
-    sim_kernel base;
+    kernel base;
     uint32_t threads[3]; // of a dispatch; 0: one for each element, in layers
 } lbm_kernel;
 
 // Compiles with the defines of the solver and `more`; again: replaces what was compiled.
 bool lbm_kernel_compile(lbm *l, lbm_kernel *k, const char *shader, shader_library *library,
                         const shader_reader *reader, const shader_define *more, size_t more_count);
-void lbm_kernel_set(lbm_kernel *k, const char *name, const void *data, size_t size);
 // A dispatch; of a thread for each element x is column x + nx * y, z the layer.
 bool lbm_kernel_run(const lbm *l, lbm_kernel *k, gpu *g);
 
@@ -56,7 +68,7 @@ bool lbm_walls_allocate(lbm *l, gpu *g);
 void lbm_walls_destroy(lbm *l, gpu *g);
 void lbm_walls_reset(lbm *l, gpu *g);
 void lbm_walls_exchange(lbm *a, lbm *b);
-gpu_buffer *lbm_walls_buffer(const lbm *l, const char *slot_name); // NULL: not one of these
+void lbm_walls_list(const lbm *l, gpu_buffer *out[LBM_OWN]); // its buffers, by their names
 void lbm_walls_set(const lbm *l, lbm_kernel *k, const lbm_numbers *numbers);
 bool lbm_walls_ready(const lbm *l); // false with a message
 

@@ -52,7 +52,7 @@ bool lbm_step_compile(lbm *l, const gpu_info *device, shader_library *library,
 
 bool lbm_step_build(lbm *l, gpu *g) {
     for (int i = 0; i < 2 * l->stepper.parts; i++)
-        if (!sim_kernel_build(&l->stepper.kernels[i / 2][i % 2].base, g)) return false;
+        if (!kernel_build(&l->stepper.kernels[i / 2][i % 2].base, g)) return false;
     return true;
 }
 
@@ -103,7 +103,7 @@ bool lbm_step_allocate(lbm *l, gpu *g) {
 
 void lbm_step_destroy(lbm *l, gpu *g) {
     lbm_stepper *s = &l->stepper;
-    for (int i = 0; i < 4; i++) sim_kernel_destroy(&s->kernels[i / 2][i % 2].base, g);
+    for (int i = 0; i < 4; i++) kernel_destroy(&s->kernels[i / 2][i % 2].base, g);
     gpu_buffer_destroy(g, s->skin);
     s->skin = NULL;
 }
@@ -115,17 +115,17 @@ static void set_numbers(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
     float buoyancy[LBM_MAX_SCALARS][4] = {0};
     for (int i = 0; i < LBM_MAX_SCALARS; i++)
         memcpy(buoyancy[i], n->buoyancy[i], sizeof n->buoyancy[i]);
-    lbm_kernel_set(k, "tau", &n->tau, sizeof n->tau);
-    lbm_kernel_set(k, "scalar_tau", n->scalar_tau, sizeof n->scalar_tau);
-    lbm_kernel_set(k, "smagorinsky", &n->smagorinsky, sizeof n->smagorinsky);
-    lbm_kernel_set(k, "acceleration", n->acceleration, sizeof n->acceleration);
-    lbm_kernel_set(k, "buoyancy", buoyancy, sizeof buoyancy);
-    lbm_kernel_set(k, "ambient", n->ambient, sizeof n->ambient);
-    lbm_kernel_set(k, "decay", n->decay, sizeof n->decay);
-    lbm_kernel_set(k, "max_speed", &most, sizeof most);
-    lbm_kernel_set(k, "force_scale", &l->force_scale, sizeof l->force_scale);
-    lbm_kernel_set(k, "skin_layers", &l->stepper.skin_layers, sizeof l->stepper.skin_layers);
-    lbm_kernel_set(k, "skin_count", &l->stepper.skin_count, sizeof l->stepper.skin_count);
+    kernel_set(&k->base, N_tau, &n->tau, sizeof n->tau);
+    kernel_set(&k->base, N_scalar_tau, n->scalar_tau, sizeof n->scalar_tau);
+    kernel_set(&k->base, N_smagorinsky, &n->smagorinsky, sizeof n->smagorinsky);
+    kernel_set(&k->base, N_acceleration, n->acceleration, sizeof n->acceleration);
+    kernel_set(&k->base, N_buoyancy, buoyancy, sizeof buoyancy);
+    kernel_set(&k->base, N_ambient, n->ambient, sizeof n->ambient);
+    kernel_set(&k->base, N_decay, n->decay, sizeof n->decay);
+    kernel_set(&k->base, N_max_speed, &most, sizeof most);
+    kernel_set(&k->base, N_force_scale, &l->force_scale, sizeof l->force_scale);
+    kernel_set(&k->base, N_skin_layers, &l->stepper.skin_layers, sizeof l->stepper.skin_layers);
+    kernel_set(&k->base, N_skin_count, &l->stepper.skin_count, sizeof l->stepper.skin_count);
     lbm_walls_set(l, k, n);
 }
 

@@ -35,7 +35,7 @@ bool lbm_walls_compile(lbm *l, shader_library *library, const shader_reader *rea
 }
 
 bool lbm_walls_build(lbm *l, gpu *g) {
-    return !l->desc.bodies || sim_kernel_build(&l->walls.kernel.base, g);
+    return !l->desc.bodies || kernel_build(&l->walls.kernel.base, g);
 }
 
 static gpu_buffer *make(gpu *g, const char *label, uint64_t size) {
@@ -59,7 +59,7 @@ bool lbm_walls_allocate(lbm *l, gpu *g) {
 }
 
 void lbm_walls_destroy(lbm *l, gpu *g) {
-    sim_kernel_destroy(&l->walls.kernel.base, g);
+    kernel_destroy(&l->walls.kernel.base, g);
     gpu_buffer_destroy(g, l->walls.waves);
     gpu_buffer_destroy(g, l->walls.bodies);
     for (int i = 0; i < 2; i++) gpu_buffer_destroy(g, l->walls.cells[i]);
@@ -93,14 +93,13 @@ void lbm_walls_exchange(lbm *a, lbm *b) {
     y->filled = was.filled;
 }
 
-gpu_buffer *lbm_walls_buffer(const lbm *l, const char *name) {
+void lbm_walls_list(const lbm *l, gpu_buffer *out[LBM_OWN]) {
     const lbm_walls *w = &l->walls;
-    if (strcmp(name, "LbmWaves") == 0) return w->waves;
-    if (strcmp(name, "LbmIds") == 0) return w->ids;
-    if (strcmp(name, "LbmBodies") == 0) return w->bodies;
-    if (strcmp(name, "LbmCells") == 0) return w->cells[w->current];
-    if (strcmp(name, "LbmCellsBefore") == 0) return w->cells[!w->current];
-    return NULL;
+    out[N_LbmWaves] = w->waves;
+    out[N_LbmIds] = w->ids;
+    out[N_LbmBodies] = w->bodies;
+    out[N_LbmCells] = w->cells[w->current];
+    out[N_LbmCellsBefore] = w->cells[!w->current];
 }
 
 void lbm_walls_set(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
@@ -109,12 +108,12 @@ void lbm_walls_set(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
         memcpy(velocity[i], n->inflow[i], sizeof n->inflow[i]);
         memcpy(scalar[i], n->inflow_scalar[i], sizeof n->inflow_scalar[i]);
     }
-    lbm_kernel_set(k, "lbm_face_velocity", velocity, sizeof velocity);
-    lbm_kernel_set(k, "lbm_face_scalar", scalar, sizeof scalar);
+    kernel_set(&k->base, N_lbm_face_velocity, velocity, sizeof velocity);
+    kernel_set(&k->base, N_lbm_face_scalar, scalar, sizeof scalar);
     const uint32_t moved = l->walls.updated == l->steps;
-    lbm_kernel_set(k, "lbm_moved", &moved, sizeof moved);
+    kernel_set(&k->base, N_lbm_moved, &moved, sizeof moved);
     const float most = n->max_speed > 0 ? n->max_speed : 1e6f;
-    lbm_kernel_set(k, "lbm_body_speed", &most, sizeof most);
+    kernel_set(&k->base, N_lbm_body_speed, &most, sizeof most);
 }
 
 bool lbm_walls_ready(const lbm *l) {
@@ -178,12 +177,12 @@ bool lbm_set_bodies(lbm *l, gpu *g, const lbm_numbers *numbers, const lbm_bodies
     w->filled = true;
     w->updated = l->steps;
     w->current = !w->current;
-    lbm_kernel_set(&w->kernel, "any_moves", &moves, sizeof moves);
-    lbm_kernel_set(&w->kernel, "ambient", numbers->ambient, sizeof numbers->ambient);
+    kernel_set(&w->kernel.base, N_any_moves, &moves, sizeof moves);
+    kernel_set(&w->kernel.base, N_ambient, numbers->ambient, sizeof numbers->ambient);
     lbm_walls_set(l, &w->kernel, numbers);
     w->known = true;
     for (uint32_t stage = 0; stage < 3 && w->known; stage++) { // see cells.comp
-        lbm_kernel_set(&w->kernel, "stage", &stage, sizeof stage);
+        kernel_set(&w->kernel.base, N_stage, &stage, sizeof stage);
         w->known = lbm_kernel_run(l, &w->kernel, g);
     }
     return w->known;

@@ -76,8 +76,8 @@ static bool parse(int argc, char **argv, bench *b) {
 // ---- what is given ----------------------------------------------------------------------------
 
 static bool write_input(flow *f, gpu *g, const char *slot, const void *data, size_t size) {
-    gpu_binding binding;
-    return flow_bind(f, slot, &binding) && gpu_buffer_write(g, binding.buffer, 0, data, size);
+    gpu_buffer *buffer = flow_find(f, slot);
+    return buffer && gpu_buffer_write(g, buffer, 0, data, size);
 }
 
 // A disc of hot dye near the lower face, a radius of 1/16 of the width.

@@ -86,12 +86,12 @@ static inline double flow_divergence(flow_world *w, int x, int y, int slice) {
            (double)*flow_face_at(w, x, y + 1, slice, 1) - (double)*flow_face_at(w, x, y, slice, 1);
 }
 
-// Writes one of the inputs: `size` bytes for each cell, as flow_bind finds it.
+// Writes one of the inputs: `size` bytes for each cell, as flow_find finds it.
 static inline void flow_write_input(flow_world *w, const char *slot, const void *data,
                                     size_t size) {
-    gpu_binding binding;
-    assert_true(flow_bind(w->flow, slot, &binding));
-    assert_int_equal(gpu_buffer_size(binding.buffer), w->cells * size);
+    gpu_buffer *buffer = flow_find(w->flow, slot);
+    assert_non_null(buffer);
+    assert_int_equal(gpu_buffer_size(buffer), w->cells * size);
     gpu_test_ok(gpu_idle(w->device));
-    gpu_test_ok(gpu_buffer_write(w->device, binding.buffer, 0, data, w->cells * size));
+    gpu_test_ok(gpu_buffer_write(w->device, buffer, 0, data, w->cells * size));
 }

@@ -5,7 +5,7 @@ import sys
 sys.dont_write_bytecode = True
 from lib import house
 
-LEVELS = [["base"], ["gpu"], ["media", "shader"], ["graph", "reader"], ["field"], ["scene"],
+LEVELS = [["base"], ["gpu"], ["media", "shader"], ["graph", "kernel", "reader"], ["field"], ["scene"],
           ["sim"], ["pass"], ["effect"], ["script"], ["roil"], ["bench", "ui"], ["app"]]
 LEVEL = {layer: level for level, layers in enumerate(LEVELS) for layer in layers}
 

@@ -184,8 +184,24 @@ lbm_memory lbm_to_memory(lbm_element e) {
 #define lbm_to_memory(e) (e)
 #endif
 
-// LBM_EACH_BUFFER is LBM_BUFFER(k, block, array) for k = 0, 1, ...; a buffer holds LBM_RUN slots,
-// an even number, so that no pair is apart.
+// LBM_EACH_BUFFER, one of these, is LBM_BUFFER(k, block, array) for each buffer of the state. A
+// buffer holds LBM_RUN slots, an even number, so that no pair is apart.
+#define LBM_BUFFERS_1 LBM_BUFFER(0, LbmState0, lbm_state_0)
+#define LBM_BUFFERS_2 LBM_BUFFERS_1 LBM_BUFFER(1, LbmState1, lbm_state_1)
+#define LBM_BUFFERS_3 LBM_BUFFERS_2 LBM_BUFFER(2, LbmState2, lbm_state_2)
+#define LBM_BUFFERS_4 LBM_BUFFERS_3 LBM_BUFFER(3, LbmState3, lbm_state_3)
+#define LBM_BUFFERS_5 LBM_BUFFERS_4 LBM_BUFFER(4, LbmState4, lbm_state_4)
+#define LBM_BUFFERS_6 LBM_BUFFERS_5 LBM_BUFFER(5, LbmState5, lbm_state_5)
+#define LBM_BUFFERS_7 LBM_BUFFERS_6 LBM_BUFFER(6, LbmState6, lbm_state_6)
+#define LBM_BUFFERS_8 LBM_BUFFERS_7 LBM_BUFFER(7, LbmState7, lbm_state_7)
+#define LBM_BUFFERS_9 LBM_BUFFERS_8 LBM_BUFFER(8, LbmState8, lbm_state_8)
+#define LBM_BUFFERS_10 LBM_BUFFERS_9 LBM_BUFFER(9, LbmState9, lbm_state_9)
+#define LBM_BUFFERS_11 LBM_BUFFERS_10 LBM_BUFFER(10, LbmState10, lbm_state_10)
+#define LBM_BUFFERS_12 LBM_BUFFERS_11 LBM_BUFFER(11, LbmState11, lbm_state_11)
+#define LBM_BUFFERS_13 LBM_BUFFERS_12 LBM_BUFFER(12, LbmState12, lbm_state_12)
+#define LBM_BUFFERS_14 LBM_BUFFERS_13 LBM_BUFFER(13, LbmState13, lbm_state_13)
+#define LBM_BUFFERS_15 LBM_BUFFERS_14 LBM_BUFFER(14, LbmState14, lbm_state_14)
+#define LBM_BUFFERS_16 LBM_BUFFERS_15 LBM_BUFFER(15, LbmState15, lbm_state_15)
 #define LBM_BUFFER(k, block, array) layout(std430) buffer block { lbm_memory array[]; };
 LBM_EACH_BUFFER
 #undef LBM_BUFFER
