@@ -215,9 +215,9 @@ char *roil_info_passes(roil *r, const char *name) {
         done = print_pass(&out, library, one, true);
     } else {
         size_t count;
-        const pass_type *types = pass_types(&count);
+        const pass_type *const *types = pass_types(&count);
         for (size_t i = 0; done && i < count; i++)
-            done = print_pass(&out, library, &types[i], false);
+            done = print_pass(&out, library, types[i], false);
         if (done)
             strbuf_add(&out,
                        "\n`roil info passes NAME` tells all about one. A GLSL file of your own "

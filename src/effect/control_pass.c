@@ -86,7 +86,7 @@ static void print_uniform(const pass *p, size_t index, strbuf *out) {
     if (!node) node = pass_inherited_uniform(p, index, &declared);
     float value[4];
     memcpy(value, declared->value, sizeof value);
-    if (node && strcmp(node->kind->name, "constant") != 0) {
+    if (node && !field_is_constant(node)) {
         field_print(node, out);
         return;
     }

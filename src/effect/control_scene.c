@@ -167,7 +167,7 @@ void scene_control_reset(effect *e, control *c) {
 }
 
 static void print_field(const field *node, bool color, strbuf *out) {
-    if (strcmp(node->kind->name, "constant") != 0)
+    if (!field_is_constant(node))
         field_print(node, out);
     else if (color && node->components == 3)
         text_add_color(out, node->value);

@@ -7,6 +7,7 @@
 #include "base/maths.h"
 #include "field/palette.h"
 #include <math.h>
+#include <pthread.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -43,16 +44,34 @@ static void match(double nm, double xyz[3]) {
     xyz[2] = 1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8);
 }
 
+// Of all wavelengths: what depends on no temperature, which is most of the work.
+typedef struct sample {
+    double nm, scale, xyz[3];
+} sample;
+
+enum { NM_MIN = 380, NM_MAX = 780, NM_STEP = 5, SAMPLES = (NM_MAX - NM_MIN) / NM_STEP + 1 };
+static sample samples[SAMPLES];
+static pthread_once_t sampled = PTHREAD_ONCE_INIT;
+
+static void find_samples(void) {
+    for (int i = 0; i < SAMPLES; i++) {
+        sample *s = &samples[i];
+        s->nm = NM_MIN + NM_STEP * i;
+        s->scale = pow(560 / s->nm, 5);
+        match(s->nm, s->xyz);
+    }
+}
+
 void palette_blackbody(float kelvin, float out[3]) {
     const double second = 1.438776877e7; // second radiation constant, nm K
     double t = kelvin > 500 ? fmin((double)kelvin, 20000.0) : 500.0;
     double xyz[3] = {0, 0, 0};
-    for (double nm = 380; nm <= 780; nm += 5) {
-        double cie[3], x = second / (nm * t), scale = pow(560 / nm, 5);
+    pthread_once(&sampled, find_samples);
+    for (const sample *s = samples; s < samples + SAMPLES; s++) {
+        double x = second / (s->nm * t);
         // Relative to exp(-second / (780 t)), so that 500 K does not fall below the least double.
-        double radiance = scale * exp(second / (780 * t) - x) / -expm1(-x);
-        match(nm, cie);
-        for (int i = 0; i < 3; i++) xyz[i] += radiance * cie[i];
+        double radiance = s->scale * exp(second / (780 * t) - x) / -expm1(-x);
+        for (int i = 0; i < 3; i++) xyz[i] += radiance * s->xyz[i];
     }
     double rgb[3] = {
         3.2404542 * xyz[0] - 1.5371385 * xyz[1] - 0.4985314 * xyz[2],

@@ -60,6 +60,10 @@ field *field_constant(arena *memory, int components, const float value[4]) {
     return finish(node);
 }
 
+bool field_is_constant(const field *node) {
+    return node->kind == &field_kinds[KIND_CONSTANT];
+}
+
 field *field_param(arena *memory, int components, int index) {
     assert(components_fit(components) && index >= 0);
     field *node = new_node(memory, KIND_PARAM, components);

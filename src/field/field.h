@@ -106,6 +106,7 @@ typedef struct field_glsl { // a user's function: `float name(vec3 p, arg...)`
 // ---- building; all nodes live in `memory` ------------------------------------------------------
 
 field *field_constant(arena *memory, int components, const float value[4]);
+bool field_is_constant(const field *node); // it is such a number, not merely one that stands still
 field *field_param(arena *memory, int components, int index);
 field *field_curve(arena *memory, const curve *c);
 field *field_call(arena *memory, int components, int function);

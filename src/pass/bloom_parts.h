@@ -13,18 +13,21 @@ typedef enum bloom_stage {
     BLOOM_STAGES,
 } bloom_stage;
 
+#define BLOOM_NAMES(NAME)                                                                          \
+    NAME(mode), NAME(source), NAME(picture), NAME(color), NAME(levels), NAME(passes), NAME(width), \
+        NAME(height), NAME(tail_levels), NAME(radius), NAME(alpha), NAME(down), NAME(threshold),   \
+        NAME(knee), NAME(limit), NAME(intensity)
+enum { BLOOM_NAMES(KERNEL_NAME_ID), BLOOM_NAME_COUNT, BLOOM_TAKEN = 4 };
+
 typedef struct bloom_state {
-    pass *bright;           // whose work is done here; NULL: none
-    graph_image picture;    // that is read
-    bool same_size;         // as the bloom
-    bloom_stage begin, end; // stages of the mode
-    graph_image across;     // of mode gaussian: blurred across, not yet down
-    shader_binary binary[BLOOM_STAGES];
-    gpu_pipeline *pipeline[BLOOM_STAGES];
-    unsigned char *block[BLOOM_STAGES];
+    pass *bright; // whose work is done here; NULL: none
+    size_t bright_uniforms[BLOOM_TAKEN];
+    graph_image picture; // that is read
+    bool same_size;      // as the bloom
+    bool gaussian;       // the mode
+    graph_image across;  // of mode gaussian: blurred across, not yet down
 } bloom_state;
 
 // An image of the pass at its scale.
 graph_image bloom_add_image(pass *p, const char *name, uint32_t mips);
-void bloom_write_int(pass *p, bloom_stage stage, const char *name, uint32_t value);
-bool bloom_record_gaussian(pass *p); // its blocks are filled
+bool bloom_record_gaussian(pass *p); // after pass_prepare

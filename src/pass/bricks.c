@@ -3,6 +3,7 @@
 #include "pass/bricks.h"
 #include "base/memory.h"
 #include "field/range.h"
+#include "pass/march_around.h"
 #include <math.h>
 #include <string.h>
 
@@ -59,36 +60,9 @@ bool bricks_declare(pass *p, bricks *b, bool (*record)(pass *p)) {
                                                         .record = record});
 }
 
-// The second stage looks at no field.
-static bool compile(pass *p, int stage, shader_binary *out) {
-    static const shader_define hold[] = {{"STAGE_HOLD", "1"}, {"WITH_RANGES", "1"}};
-    static const shader_define empty[] = {{"STAGE_FREE", "1"}, {"WITHOUT_FIELDS", "1"}};
-    return pass_compile(p, p->shader, SHADER_COMPUTE, stage == 0 ? hold : empty, 2, out);
-}
-
-bool bricks_check(pass *p) {
-    shader_binary binary;
-    return compile(p, 0, &binary) && compile(p, 1, &binary);
-}
-
-bool bricks_build(pass *p, bricks *b) {
-    for (int i = 0; i < BRICKS_STAGES; i++) {
-        if (!compile(p, i, &b->binary[i])) return false;
-        b->pipeline[i] = pass_create_compute(p, &b->binary[i]);
-        if (!b->pipeline[i]) return false;
-        b->block[i] = arena_alloc(p->host->memory, pass_block_size(&b->binary[i]) + 16);
-    }
-    return true;
-}
-
-void bricks_destroy(pass *p, bricks *b) {
-    for (int i = 0; i < BRICKS_STAGES; i++)
-        if (b->pipeline[i]) gpu_pipeline_destroy(p->host->device, b->pipeline[i]);
-}
-
 // Along the longest side; 0: none.
 static float blocks_along(pass *p, const bricks *b, float samples) {
-    float asked = pass_evaluate(p, "bricks");
+    float asked = pass_value(p, N_bricks);
     if (asked > 0) return fminf(ceilf(asked / 3), MOST_BLOCKS);
     if (gpu_get_info(p->host->device)->kind == GPU_CPU)
         return b->dear ? SOFTWARE_BLOCKS : FEW_BLOCKS;
@@ -96,30 +70,27 @@ static float blocks_along(pass *p, const bricks *b, float samples) {
 }
 
 // Bricks are about as long as wide, and three of them are a block.
-void bricks_fill(pass *p, const bricks *b, const shader_binary *binary, unsigned char *block,
-                 box3 box, float samples) {
+void bricks_update(pass *p, bricks *b, box3 box, float samples) {
     const float sides[3] = {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
     float longest = fmaxf(fmaxf(sides[0], sides[1]), sides[2]);
     float most = blocks_along(p, b, samples), blocks[3] = {0};
     for (int i = 0; i < 3 && most > 0; i++)
         blocks[i] = sides[i] > 0 ? fmaxf(ceilf(most * sides[i] / longest - 0.01f), 1) : 1;
-    pass_write_member(binary, block, "brick_blocks", blocks, sizeof blocks);
+    memcpy(b->blocks, blocks, sizeof blocks);
+    pass_set(p, N_brick_blocks, blocks, sizeof blocks);
 }
 
-pass_override bricks_slot(const pass *p, const bricks *b) {
+void bricks_bind(const pass *p, const bricks *b, kernel *k) {
     gpu_image *image = graph_get_image(p->host->graph, b->image);
-    return (pass_override){"brick_words", {.image = image, .sampler = GPU_NEAREST_CLAMP}};
+    kernel_bind(k, N_brick_words, (gpu_binding){.image = image, .sampler = GPU_NEAREST_CLAMP});
 }
 
-static bool dispatch(pass *p, const bricks *b, int stage, const uint32_t threads[3]) {
-    gpu_image *image = graph_get_image(p->host->graph, b->image);
-    const pass_override kept = {"bricks_kept", {.image = image}};
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc desc = {.pipeline = b->pipeline[stage], .bindings = bindings};
-    for (int i = 0; i < 3; i++) desc.threads[i] = threads[i];
-    return pass_bind(p, &b->binary[stage], b->block[stage], &kept, 1, bindings,
-                     &desc.binding_count) &&
-           gpu_dispatch(p->host->device, &desc);
+static bool dispatch(pass *p, const bricks *b, march_kernel which, uint32_t x, uint32_t y,
+                     uint32_t z) {
+    kernel *k = pass_use(p, which);
+    if (!k) return false;
+    kernel_bind_image(k, N_bricks_kept, graph_get_image(p->host->graph, b->image));
+    return kernel_run(k, p->host->device, x, y, z);
 }
 
 static uint32_t groups(float blocks, uint32_t each) {
@@ -127,15 +98,9 @@ static uint32_t groups(float blocks, uint32_t each) {
 }
 
 bool bricks_record(pass *p, bricks *b) {
-    for (int i = 0; i < BRICKS_STAGES; i++)
-        if (!pass_fill_block(p, &b->binary[i], b->block[i])) return false;
-    shader_member member;
-    float n[3] = {1, 1, 1};
-    if (pass_find_member(&b->binary[0], "brick_blocks", &member))
-        memcpy(n, b->block[0] + member.offset, sizeof n);
-    if (n[0] == 0) return true;
-    const uint32_t hold[3] = {HOLD_THREADS, (uint32_t)(n[0] * n[1] * n[2]), 1};
-    const uint32_t empty[3] = {FREE_ROWS * groups(n[0], FREE_WIDE),
-                               FREE_ROWS * groups(n[1], FREE_HIGH), groups(n[2], FREE_HIGH)};
-    return dispatch(p, b, 0, hold) && dispatch(p, b, 1, empty);
+    const float *n = b->blocks;
+    return n[0] == 0 ||
+           (dispatch(p, b, MARCH_HOLD, HOLD_THREADS, (uint32_t)(n[0] * n[1] * n[2]), 1) &&
+            dispatch(p, b, MARCH_FREE, FREE_ROWS * groups(n[0], FREE_WIDE),
+                     FREE_ROWS * groups(n[1], FREE_HIGH), groups(n[2], FREE_HIGH)));
 }

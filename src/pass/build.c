@@ -3,8 +3,6 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/blue_noise.h"
-#include "pass/lamps.h"
-#include "pass/particles.h"
 #include "pass/pass_impl.h"
 #include "pass/ranges.h"
 #include <ctype.h>
@@ -49,49 +47,68 @@ static const size_t *options_of(pass *p, const char *shader) {
     return values;
 }
 
-bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_define *defines,
-                  size_t define_count, shader_binary *out) {
+static bool has_define(const pass_defines *defines, const char *name) {
+    for (size_t i = 0; i < defines->count; i++)
+        if (strcmp(defines->items[i].name, name) == 0) return true;
+    return false;
+}
+
+static void define_interface(pass *p, pass_defines *out) {
     const shader_interface *face = p->face;
     arena *memory = p->host->memory;
-    size_t count = 0;
-    shader_define *all = arena_alloc(memory, (define_count + face->image_count + face->field_count +
-                                              2 + PASS_PARTICLES_DEFINES + PASS_LAMPS_DEFINES) *
-                                                 sizeof *all);
-    for (size_t i = 0; i < define_count; i++) all[count++] = defines[i];
     for (size_t i = 0; i < face->image_count; i++) {
         const shader_image *image = &face->images[i];
+        shader_define d = {0};
         if (!image->output)
-            all[count++] = define(memory, "HAS", image->name, p->images[i].id ? "1" : "0");
+            d = define(memory, "HAS", image->name, p->images[i].id ? "1" : "0");
         else if (p->formats[i] != image->format)
-            all[count++] = define(memory, "FORMAT", image->name, gpu_format_name(p->formats[i]));
+            d = define(memory, "FORMAT", image->name, gpu_format_name(p->formats[i]));
+        if (d.name) pass_define(out, d.name, d.value);
     }
-    for (size_t i = 0; i < face->field_count; i++)
-        all[count++] = define(memory, "HAS", face->fields[i].name, p->fields[i] ? "1" : "0");
-    if (p->particles) count += pass_particles_defines(p->particles, all + count);
-    if (p->lamps) count += pass_lamps_defines(p, all + count);
-    const scene *around = p->host->scene;
-    all[count++] = (shader_define){"SKY_IMAGE", around && around->sky.image ? "1" : "0"};
-    all[count++] = (shader_define){"SKY_NIGHT", around && around->sky.night ? "1" : "0"};
-    bool without = false;
-    for (size_t i = 0; i < define_count; i++)
-        without = without || strcmp(defines[i].name, "WITHOUT_FIELDS") == 0;
-    const char *text = p->program && !without ? field_program_text(p->program) : "";
-    shader_text fields = {"fields.glsl", text};
-    const size_t *options = options_of(p, shader);
-    bool done = options && shader_compile(p->host->library, memory,
-                                          &(shader_compile_desc){
-                                              .name = shader,
-                                              .stage = stage,
-                                              .defines = all,
-                                              .define_count = count,
-                                              .texts = &fields,
-                                              .text_count = 1,
-                                              .options = options,
-                                              .counters = p->host->counters,
-                                              .reader = p->host->reader,
-                                          },
-                                          out);
-    return done || err_prefix("%s: ", p->label);
+    for (size_t i = 0; i < face->field_count; i++) {
+        shader_define d = define(memory, "HAS", face->fields[i].name, p->fields[i] ? "1" : "0");
+        pass_define(out, d.name, d.value);
+    }
+}
+
+bool pass_describe_stage(pass *p, const char *shader, shader_stage stage,
+                         const pass_defines *defines, shader_compile_desc *out) {
+    arena *memory = p->host->memory;
+    pass_defines *all = arena_alloc(memory, sizeof *all);
+    size_t count;
+    const pass_provider *const *rows = pass_providers(&count);
+    if (defines) *all = *defines;
+    define_interface(p, all);
+    for (size_t i = 0; i < count; i++) {
+        shader_define own[PASS_PROVIDER_DEFINES];
+        const size_t added = rows[i]->defines ? rows[i]->defines(p, own) : 0;
+        for (size_t k = 0; k < added; k++) pass_define(all, own[k].name, own[k].value);
+    }
+    if (all->count == COUNT_OF(all->items))
+        return err_set("%s: more than %zu images, fields and defines", p->label, all->count - 1);
+    shader_text *fields = arena_alloc(memory, sizeof *fields);
+    const bool without = !p->program || has_define(all, "WITHOUT_FIELDS");
+    *fields = (shader_text){"fields.glsl", without ? "" : field_program_text(p->program)};
+    *out = (shader_compile_desc){.name = shader,
+                                 .stage = stage,
+                                 .defines = all->items,
+                                 .define_count = all->count,
+                                 .texts = fields,
+                                 .text_count = 1,
+                                 .options = options_of(p, shader),
+                                 .counters = p->host->counters,
+                                 .reader = p->host->reader};
+    return out->options;
+}
+
+bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_define *defines,
+                  size_t define_count, shader_binary *out) {
+    pass_defines own = {.count = 0};
+    shader_compile_desc desc;
+    for (size_t i = 0; i < define_count; i++) pass_define(&own, defines[i].name, defines[i].value);
+    return (pass_describe_stage(p, shader, stage, &own, &desc) &&
+            shader_compile(p->host->library, p->host->memory, &desc, out)) ||
+           err_prefix("%s: ", p->label);
 }
 
 gpu_pipeline *pass_create_compute(pass *p, const shader_binary *binary) {
@@ -234,35 +251,23 @@ static bool make_counters(pass *p) {
     return p->counters != NULL;
 }
 
-static bool make_pipeline(pass *p) {
-    bool drawn = str_ends_with(p->shader, ".frag");
-    shader_stage stage = drawn ? SHADER_FRAGMENT : SHADER_COMPUTE;
-    if (!pass_compile(p, p->shader, stage, NULL, 0, &p->binary)) return false;
-    if (drawn) {
-        gpu_format formats[4];
-        size_t count = 0;
-        for (size_t i = 0; i < p->face->image_count && count < 4; i++)
-            if (p->face->images[i].output) formats[count++] = p->formats[i];
-        p->pipeline = pass_create_fullscreen(p, &p->binary, formats, count);
-    } else {
-        p->pipeline = pass_create_compute(p, &p->binary);
-    }
-    return p->pipeline != NULL;
-}
-
 bool pass_build(pass *p) {
     return p->runs_in || pass_build_part(p);
+}
+
+static bool build_providers(pass *p) {
+    size_t count;
+    const pass_provider *const *rows = pass_providers(&count);
+    for (size_t i = 0; i < count; i++)
+        if (rows[i]->build && !rows[i]->build(p)) return false;
+    return true;
 }
 
 static bool build(pass *p) {
     p->program = generate(p);
     if (!p->program) return err_prefix("%s: ", p->label);
-    if (p->type && p->type->build) {
-        if (!p->type->build(p)) return false;
-    } else if (!make_pipeline(p)) {
-        return false;
-    }
-    if (!pass_lamps_build(p)) return false;
+    if (!(p->type && p->type->build ? p->type->build(p) : pass_build_kernels(p))) return false;
+    if (!build_providers(p)) return false;
     p->block = arena_alloc(p->host->memory, pass_block_size(&p->binary) + 16);
     p->numbers = arena_alloc(p->host->memory, field_program_block_size(p->program) + 16);
     list_palettes(p);
@@ -284,12 +289,13 @@ bool pass_allocate(pass *p) {
 }
 
 static bool check(pass *p) {
+    size_t count;
+    const pass_provider *const *rows = pass_providers(&count);
     p->program = generate(p);
     if (!p->program) return err_prefix("%s: ", p->label);
-    if (!pass_lamps_check(p)) return false;
-    if (p->type && p->type->check) return p->type->check(p);
-    shader_stage stage = str_ends_with(p->shader, ".frag") ? SHADER_FRAGMENT : SHADER_COMPUTE;
-    return pass_compile(p, p->shader, stage, NULL, 0, &p->binary);
+    for (size_t i = 0; i < count; i++)
+        if (rows[i]->check && !rows[i]->check(p)) return false;
+    return p->type && p->type->check ? p->type->check(p) : pass_compile_kernels(p);
 }
 
 bool pass_check_part(pass *p) {
@@ -311,7 +317,11 @@ void pass_destroy(pass *p) {
     for (size_t i = 0; i < p->face->image_count; i++)
         if (p->unread[i]) gpu_image_destroy(device, p->unread[i]);
     if (p->counters) gpu_buffer_destroy(device, p->counters);
-    pass_lamps_destroy(p);
+    size_t count;
+    const pass_provider *const *rows = pass_providers(&count);
+    for (size_t i = 0; i < count; i++)
+        if (rows[i]->destroy) rows[i]->destroy(p);
+    pass_destroy_kernels(p);
     if (p->pipeline) gpu_pipeline_destroy(device, p->pipeline);
     mem_free(p->meshes);
     mem_free(p->instances);

@@ -40,22 +40,6 @@ bool forward_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool forward_record(pass *p);
 void forward_destroy(pass *p);
 
-bool lighting_declare(pass *p);
-bool lighting_check(pass *p);
-bool lighting_build(pass *p);
-bool lighting_fill(pass *p, const shader_binary *binary, unsigned char *block);
-void lighting_destroy(pass *p);
-
-bool march_declare(pass *p);
-bool march_check(pass *p);
-bool march_build(pass *p);
-bool march_fill(pass *p, const shader_binary *binary, unsigned char *block);
-bool march_record(pass *p);
-void march_destroy(pass *p);
-
-bool stack_declare(pass *p);
-bool stack_fill(pass *p, const shader_binary *binary, unsigned char *block);
-
 bool reference_declare(pass *p);
 bool reference_check(pass *p);
 bool reference_build(pass *p);
@@ -63,12 +47,6 @@ bool reference_allocate(pass *p);
 bool reference_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool reference_record(pass *p);
 void reference_destroy(pass *p);
-
-bool bloom_declare(pass *p);
-bool bloom_check(pass *p);
-bool bloom_build(pass *p);
-bool bloom_record(pass *p);
-void bloom_destroy(pass *p);
 
 bool shell_declare(pass *p);
 bool shell_check(pass *p);
@@ -88,28 +66,6 @@ bool bake_build(pass *p);
 bool bake_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool bake_record(pass *p);
 void bake_destroy(pass *p);
-
-bool lbm_declare(pass *p);
-bool lbm_complete(pass *p);
-bool lbm_check(pass *p);
-bool lbm_build_pass(pass *p);
-bool lbm_allocate_pass(pass *p);
-bool lbm_fill(pass *p, const shader_binary *binary, unsigned char *block);
-bool lbm_rehearse(pass *p);
-bool lbm_record(pass *p);
-void lbm_destroy_pass(pass *p);
-extern const pass_simulation lbm_simulation;
-
-bool lbm_source_declare(pass *p);
-bool lbm_source_check(pass *p);
-bool lbm_source_build(pass *p);
-bool lbm_source_fill(pass *p, const shader_binary *binary, unsigned char *block);
-void lbm_source_destroy(pass *p);
-
-bool slices_templates_declare_group(pass *p);
-bool slices_templates_check_group(pass *p);
-bool slices_templates_build_group(pass *p);
-bool slices_templates_fill_group(pass *p, const shader_binary *binary, unsigned char *block);
 
 bool particles_declare(pass *p);
 bool particles_check(pass *p);
@@ -148,24 +104,6 @@ bool splats_build(pass *p);
 bool splats_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool splats_record(pass *p);
 void splats_destroy(pass *p);
-
-bool slices_declare(pass *p);
-bool slices_complete(pass *p);
-bool slices_check(pass *p);
-bool slices_build(pass *p);
-bool slices_allocate(pass *p);
-bool slices_fill(pass *p, const shader_binary *binary, unsigned char *block);
-bool slices_rehearse(pass *p);
-bool slices_record(pass *p);
-void slices_destroy(pass *p);
-extern const pass_simulation slices_simulation;
-
-bool slices_part_declare(pass *p);
-bool slices_part_check(pass *p);
-bool slices_part_build(pass *p);
-bool slices_part_allocate(pass *p);
-bool slices_part_fill(pass *p, const shader_binary *binary, unsigned char *block);
-void slices_part_destroy(pass *p);
 
 bool voxels_declare(pass *p);
 bool voxels_check_pass(pass *p);

@@ -1,8 +1,6 @@
 // From a pass to the graph: its outputs become images, what it reads becomes edges.
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/lamps.h"
-#include "pass/particles.h"
 #include "pass/pass_impl.h"
 #include <string.h>
 
@@ -178,7 +176,10 @@ bool pass_declare(pass *p) {
         if (face->fields[i].required && !p->fields[i])
             return err_set("%s: field '%s' is missing (%s)", p->label, face->fields[i].name,
                            face->fields[i].help);
-    if (!pass_find_particles(p) || !pass_find_lamps(p)) return false;
+    size_t count;
+    const pass_provider *const *rows = pass_providers(&count);
+    for (size_t i = 0; i < count; i++)
+        if (rows[i]->find && !rows[i]->find(p)) return false;
     if (p->type && p->type->declare) return p->type->declare(p);
     return pass_declare_images(p) && pass_add_to_graph(p);
 }

@@ -34,11 +34,6 @@ uint32_t drawn_level_count(const mesh_data *mesh) {
     return 1 + mesh->level_count;
 }
 
-mesh_run drawn_run(const mesh_data *mesh, uint32_t part, uint32_t level) {
-    if (level > 0) return mesh->levels[level - 1].runs[part];
-    return (mesh_run){mesh->parts[part].first, mesh->parts[part].count};
-}
-
 static void add_body(drawn *d, scene_instances *instances, scene_mesh *const *kinds,
                      size_t kind_count) {
     arena *memory = d->p->host->memory;

@@ -45,7 +45,7 @@ static gpu_buffer *make_commands(gpu *device, const drawn_body *body, size_t vie
             const mesh_data *mesh = &body->kinds[k]->data;
             for (uint32_t i = 0; i < mesh->part_count; i++) {
                 for (uint32_t level = 0; level < drawn_level_count(mesh); level++) {
-                    mesh_run run = drawn_run(mesh, i, level);
+                    mesh_run run = mesh_get_run(mesh, i, level);
                     *next++ =
                         (gpu_draw_indexed_command){.indices = run.count, .first_index = run.first};
                 }
@@ -98,18 +98,17 @@ static bool fit_views(drawn *d, size_t count) {
 
 static void fill_buckets(const mesh_data *mesh, const drawn_place *place, uint32_t command,
                          struct drawn_bucket out[DRAWN_LEVELS]) {
-    const float3 *low = &mesh->box.min, *high = &mesh->box.max;
-    vec3 centre = {(low->x + high->x) / 2, (low->y + high->y) / 2, (low->z + high->z) / 2};
-    float radius = glm_vec3_distance(centre, (vec3){high->x, high->y, high->z}), scale = 1;
+    float ball[4], scale = 1;
+    mesh_get_ball(mesh, ball);
     if (place) {
         scale = glm_vec3_norm((float *)place->matrix[0]);
-        glm_mat4_mulv3((vec4 *)place->matrix, centre, 1, centre);
+        glm_mat4_mulv3((vec4 *)place->matrix, ball, 1, ball);
     }
     uint32_t levels = drawn_level_count(mesh);
     for (uint32_t i = 0; i < DRAWN_LEVELS; i++) {
-        float error = i > 0 && i < levels ? mesh->levels[i - 1].error * scale : 0;
+        float error = i == 0 ? 0 : i < levels ? mesh->levels[i - 1].error * scale : MESH_NO_LEVEL;
         out[i] = (struct drawn_bucket){
-            .sphere = {{centre[0], centre[1], centre[2], radius * scale}},
+            .sphere = {{ball[0], ball[1], ball[2], ball[3] * scale}},
             .draws = {{command + i, i < levels ? mesh->part_count : 0, 0, levels}}};
         memcpy(&out[i].draws.v[2], &error, sizeof error);
     }

@@ -57,10 +57,6 @@ struct drawn {
     size_t draw_count, draw_capacity, binding_capacity, part_capacity;
 };
 
-_Static_assert(DRAWN_LEVELS == MESH_LEVELS + 1, "levels of shaders and of meshes");
-
 gpu_buffer *drawn_buffer(gpu *device, const char *label, const void *data, size_t size);
-// Of a part at a level.
-mesh_run drawn_run(const mesh_data *mesh, uint32_t part, uint32_t level);
 uint32_t drawn_level_count(const mesh_data *mesh); // with the full one
 gpu_buffer *drawn_entries(const drawn_body *body); // of its instances

@@ -48,6 +48,10 @@ static bool choose_rays(const pass *p) {
            surfaces_fit(p);
 }
 
+bool pass_traces_levels(const pass *p) {
+    return pass_is(p, "geometry") && ((const geometry_state *)p->state)->rays;
+}
+
 static bool declare_targets(pass *p) {
     for (size_t i = 0; i < p->face->image_count; i++) {
         p->images[i] = graph_add_image(

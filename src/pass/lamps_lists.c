@@ -167,16 +167,31 @@ bool pass_lamps_record(pass *p) {
            (way != LAMPS_VOLUMES || lamps_draw_volumes(p, t.width, t.height));
 }
 
-bool pass_lamps_bind(const pass *p, const char *name, gpu_binding *out) {
-    if (p->lamps && p->lamps->volumes.light && strcmp(name, "LampLight") == 0) {
+enum { LAMP_LIGHT = LAMP_BUFFERS, LAMP_SLOTS };
+static const char *const slots[LAMP_SLOTS] = {"LampRecords", "LampMasks", "LampBounds",
+                                              "LampLight"};
+
+static bool bind(pass *p, int slot, gpu_binding *out) {
+    if (!p->lamps) return false;
+    out->sampler = GPU_NEAREST_CLAMP;
+    if (slot == LAMP_LIGHT)
         out->image = p->lamps->volumes.light;
-        out->sampler = GPU_NEAREST_CLAMP;
-        return true;
-    }
-    for (int i = 0; p->lamps && i < LAMP_BUFFERS; i++) {
-        if (!p->lamps->buffers[i] || strcmp(name, buffer_names[i]) != 0) continue;
-        out->buffer = p->lamps->buffers[i];
-        return true;
-    }
-    return false;
+    else
+        out->buffer = p->lamps->buffers[slot];
+    return out->image || out->buffer;
 }
+
+static size_t defines_of(const pass *p, shader_define out[PASS_PROVIDER_DEFINES]) {
+    return p->lamps ? pass_lamps_defines(p, out) : 0;
+}
+
+const pass_provider pass_lamps_provider = {
+    .slots = {slots, LAMP_SLOTS},
+    .find = pass_find_lamps,
+    .defines = defines_of,
+    .check = pass_lamps_check,
+    .build = pass_lamps_build,
+    .prepare = pass_lamps_record,
+    .bind = bind,
+    .destroy = pass_lamps_destroy,
+};

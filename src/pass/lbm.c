@@ -2,13 +2,15 @@
 #include "pass/lbm.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/lbm_parts.h"
 #include <math.h>
 #include <string.h>
 
 const char *const pass_lbm_names[PASS_LBM_NAMES] = {"density", "temperature", "dye", "pressure",
                                                     "velocity"};
+
+static const char *const names[] = {LBM_AIR_NAMES(KERNEL_NAME_TEXT)};
+static const pass_kernel kernels[LBM_KERNELS] = {[LBM_FORCE] = {.shader = "pass/lbm/force.comp"}};
 
 // ---- the grid ---------------------------------------------------------------------------------
 
@@ -128,59 +130,50 @@ int pass_lbm_use(pass *p, const char *name, int *components) {
 
 // ---- declaring --------------------------------------------------------------------------------
 
-static bool add_image(pass *p, lbm_air *a, const char *output, int index) {
-    int image = pass_find_image(p, output);
-    p->images[image] = graph_add_image(
+static bool add_image(pass *p, lbm_air *a, int output, int index) {
+    graph_image *image = pass_image(p, output);
+    *image = graph_add_image(
         p->host->graph, &(graph_image_desc){
-                            .name = arena_format(p->host->memory, "%s.%s", p->label, output),
-                            .format = p->formats[image],
+                            .name = arena_format(p->host->memory, "%s.%s", p->label, names[output]),
+                            .format = p->formats[p->names[output].image],
                             .width = a->desc.size[0],
                             .height = a->desc.size[1],
                             .depth = a->desc.size[2],
                             .optional = true,
                             .keep = true,
                         });
-    if (!p->images[image].id) return false;
-    pass_host_add_grid_image(p->host, &a->grid, index, p->images[image]);
+    if (!image->id) return false;
+    pass_host_add_grid_image(p->host, &a->grid, index, *image);
     return true;
 }
 
-bool lbm_declare(pass *p) {
+static bool declare(pass *p) {
     lbm_air *a = lbm_air_of(p);
-    return add_image(p, a, "scalars", 0) && add_image(p, a, "velocity", PASS_LBM_VELOCITY / 4);
+    return add_image(p, a, N_scalars, 0) && add_image(p, a, N_velocity, PASS_LBM_VELOCITY / 4);
 }
 
 // ---- options ----------------------------------------------------------------------------------
 
-static size_t option(const pass *p, const char *name) {
-    size_t index;
-    return pass_find_key(p, name, &index) == PASS_OPTION ? p->options[index] : 0;
-}
-
 // A constant that is 0 leaves the subgrid term out.
 static bool has_subgrid(const pass *p) {
-    size_t index;
-    if (pass_find_key(p, "smagorinsky", &index) != PASS_UNIFORM) return false;
-    const field *given = p->uniforms[index];
-    return !given || strcmp(given->kind->name, "constant") != 0 || given->value[0] > 0;
+    const field *given = p->uniforms[p->names[N_smagorinsky].uniform];
+    return !given || !field_is_constant(given) || given->value[0] > 0;
 }
 
 static uint32_t count_scalars(const lbm_air *a) {
     return a->used[PASS_LBM_DYE] ? 3 : a->used[PASS_LBM_TEMPERATURE] ? 2 : 1;
 }
 
-static const char *const faces[] = {"boundary_left", "boundary_right",  "boundary_front",
-                                    "boundary_back", "boundary_bottom", "boundary_top"};
-
 bool pass_lbm_check(const pass *p) {
     for (int i = 0; i < 6; i += 2) {
-        bool periodic = option(p, faces[i]) == LBM_PERIODIC;
-        if (periodic != (option(p, faces[i + 1]) == LBM_PERIODIC))
+        bool periodic = pass_option(p, N_boundary_left + i) == LBM_PERIODIC;
+        if (periodic != (pass_option(p, N_boundary_left + i + 1) == LBM_PERIODIC))
             return err_set("%s: '%s' is periodic and '%s' is not; what leaves one comes in at the "
                            "other, so both are, or none",
-                           p->label, faces[periodic ? i : i + 1], faces[periodic ? i + 1 : i]);
+                           p->label, names[N_boundary_left + (periodic ? i : i + 1)],
+                           names[N_boundary_left + (periodic ? i + 1 : i)]);
     }
-    if (option(p, "forcing") == LBM_WEIGHTS_ONLY && option(p, "collision") != LBM_BGK)
+    if (pass_option(p, N_forcing) == LBM_WEIGHTS_ONLY && pass_option(p, N_collision) != LBM_BGK)
         return err_set("%s: forcing = \"weights_only\" wants collision = \"bgk\"; with another "
                        "collision \"guo\" is accepted",
                        p->label);
@@ -189,31 +182,30 @@ bool pass_lbm_check(const pass *p) {
 
 static lbm_desc structure_of(const pass *p, const lbm_air *a) {
     lbm_desc d = {
-        .set = (lbm_set)option(p, "velocity_set"),
-        .scalar_set = (lbm_scalar_set)option(p, "scalar_set"),
-        .collision = (lbm_collision)option(p, "collision"),
-        .forcing = (lbm_forcing)option(p, "forcing"),
-        .beside_bodies = (lbm_beside)option(p, "beside_bodies"),
-        .precision = (lbm_precision)option(p, "precision"),
+        .set = (lbm_set)pass_option(p, N_velocity_set),
+        .scalar_set = (lbm_scalar_set)pass_option(p, N_scalar_set),
+        .collision = (lbm_collision)pass_option(p, N_collision),
+        .forcing = (lbm_forcing)pass_option(p, N_forcing),
+        .beside_bodies = (lbm_beside)pass_option(p, N_beside_bodies),
+        .precision = (lbm_precision)pass_option(p, N_precision),
         .scalars = count_scalars(a),
         .subgrid = has_subgrid(p),
         .force = lbm_air_force_varies(p),
         .bodies = a->solids.count > 0,
     };
     memcpy(d.size, a->desc.size, sizeof d.size);
-    for (int i = 0; i < 6; i++) d.faces[i] = (lbm_face)option(p, faces[i]);
+    for (int i = 0; i < 6; i++) d.faces[i] = (lbm_face)pass_option(p, N_boundary_left + i);
     return d;
 }
 
-bool lbm_complete(pass *p) {
+static bool complete(pass *p) {
     lbm_air *a = lbm_air_of(p);
     lbm_desc structure = structure_of(p, a);
-    a->stops = option(p, "guard") == 1;
+    a->stops = pass_option(p, N_guard) == 1;
     a->solver = lbm_create(p->host->memory, &structure);
     if (!a->solver || !lbm_air_make_bodies(a)) return err_prefix("%s: ", p->label);
     a->guard = lbm_guard_create(p->host->memory, a->desc.size);
-    const graph_image writes[] = {p->images[pass_find_image(p, "scalars")],
-                                  p->images[pass_find_image(p, "velocity")]};
+    const graph_image writes[] = {*pass_image(p, N_scalars), *pass_image(p, N_velocity)};
     return a->guard && pass_add_part(p, &(pass_part){
                                             .name = "step",
                                             .writes = writes,
@@ -222,6 +214,32 @@ bool lbm_complete(pass *p) {
                                             .with = a->sources,
                                             .with_count = a->source_count,
                                             .simulates = true,
-                                            .record = lbm_record,
+                                            .record = lbm_air_record,
                                         });
 }
+
+static bool defines(pass *p, size_t index, pass_defines *out) {
+    (void)out;
+    return index != LBM_FORCE || lbm_air_force_varies(p);
+}
+
+const pass_type lbm_type = {
+    .name = "lbm",
+    .constructed = true,
+    .shader = "pass/lbm.comp",
+    .kernels = kernels,
+    .kernel_count = LBM_KERNELS,
+    .names = {names, COUNT_OF(names)},
+    .unscaled = true,
+    .simulation = &lbm_simulation,
+    .declare = declare,
+    .complete = complete,
+    .defines = defines,
+    .check = lbm_air_check,
+    .build = lbm_air_build,
+    .allocate = lbm_air_allocate,
+    .update = lbm_air_update,
+    .rehearse = lbm_air_rehearse,
+    .record = lbm_air_record,
+    .destroy = lbm_air_destroy,
+};

@@ -1,14 +1,7 @@
 // Building the pass type `lbm`: the shaders of its own and of the parts that it is made of.
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/lbm_parts.h"
-#include <string.h>
-
-static bool compile(pass *p, lbm_air *a) {
-    return pass_compile(p, p->shader, SHADER_COMPUTE, NULL, 0, &p->binary) &&
-           lbm_air_compile_force(a);
-}
 
 static bool each_source(const lbm_air *a, bool (*call)(pass *source)) {
     for (size_t i = 0; i < a->source_count; i++)
@@ -16,28 +9,27 @@ static bool each_source(const lbm_air *a, bool (*call)(pass *source)) {
     return true;
 }
 
-bool lbm_check(pass *p) {
+bool lbm_air_check(pass *p) {
     lbm_air *a = lbm_air_of(p);
     const pass_host *host = p->host;
-    if (!compile(p, a)) return false;
+    if (!pass_compile_kernels(p)) return false;
     if (!lbm_compile(a->solver, host->library, host->reader) ||
         !lbm_guard_compile(a->guard, host->library, host->reader) || !lbm_air_check_bodies(a))
         return err_prefix("%s: ", p->label);
     return each_source(a, pass_check_part);
 }
 
-bool lbm_build_pass(pass *p) {
+bool lbm_air_build(pass *p) {
     lbm_air *a = lbm_air_of(p);
     const pass_host *host = p->host;
-    if (!compile(p, a)) return false;
+    if (!pass_build_kernels(p)) return false;
     if (!lbm_build(a->solver, host->device, host->library, host->reader) ||
         !lbm_guard_compile(a->guard, host->library, host->reader) || !lbm_air_build_bodies(a))
         return err_prefix("%s: ", p->label);
-    p->pipeline = pass_create_compute(p, &p->binary);
-    return p->pipeline && lbm_air_build_force(a) && each_source(a, pass_build_part);
+    return each_source(a, pass_build_part);
 }
 
-bool lbm_allocate_pass(pass *p) {
+bool lbm_air_allocate(pass *p) {
     lbm_air *a = lbm_air_of(p);
     return (lbm_allocate(a->solver, p->host->device) &&
             lbm_guard_allocate(a->guard, p->host->device) && lbm_air_allocate_bodies(a) &&
@@ -45,7 +37,7 @@ bool lbm_allocate_pass(pass *p) {
            err_prefix("%s: ", p->label);
 }
 
-void lbm_destroy_pass(pass *p) {
+void lbm_air_destroy(pass *p) {
     lbm_air *a = lbm_air_of(p);
     gpu *device = p->host->device;
     if (!a) return;

@@ -1,30 +1,14 @@
 // The force field of simulated air, as an image that steps sample: evaluated anew so many times a
 // second of the simulation, whatever is drawn. A force that is the same everywhere needs none of
 // this (lbm_numbers.c).
-#include "base/memory.h"
 #include "pass/lbm_parts.h"
-#include <string.h>
 
-static const char shader[] = "pass/lbm/force.comp";
 enum { COARSER = 2 }; // cells of the lattice along a side of one of the image's
-
-bool lbm_air_compile_force(lbm_air *a) {
-    return !lbm_air_force_varies(a->pass) ||
-           pass_compile(a->pass, shader, SHADER_COMPUTE, NULL, 0, &a->force.shader);
-}
-
-bool lbm_air_build_force(lbm_air *a) {
-    if (!lbm_air_force_varies(a->pass)) return true;
-    lbm_force *f = &a->force;
-    f->block = arena_alloc(a->pass->host->memory, pass_block_size(&f->shader) + 16);
-    f->pipeline = pass_create_compute(a->pass, &f->shader);
-    return f->pipeline != NULL;
-}
 
 bool lbm_air_allocate_force(lbm_air *a) {
     const uint32_t *n = a->desc.size;
     lbm_force *f = &a->force;
-    if (f->image || !f->pipeline) return true;
+    if (f->image || !pass_has_kernel(a->pass, LBM_FORCE)) return true;
     f->image = gpu_image_create(a->pass->host->device, &(gpu_image_desc){
                                                            .label = "force",
                                                            .format = GPU_RGBA16F,
@@ -39,22 +23,15 @@ bool lbm_air_allocate_force(lbm_air *a) {
 }
 
 void lbm_air_destroy_force(lbm_air *a) {
-    gpu *device = a->pass->host->device;
-    if (a->force.pipeline) gpu_pipeline_destroy(device, a->force.pipeline);
-    if (a->force.image) gpu_image_destroy(device, a->force.image);
+    gpu_image_destroy(a->pass->host->device, a->force.image);
 }
 
 static bool bake(pass *p, lbm_force *f) {
     const gpu_image_desc *size = gpu_image_get_desc(f->image);
-    const pass_override overrides[] = {{"acceleration", {.image = f->image}}};
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc dispatch = {.pipeline = f->pipeline,
-                                  .bindings = bindings,
-                                  .threads = {size->width, size->height, size->depth}};
-    return pass_prepare(p) && pass_fill_block(p, &f->shader, f->block) &&
-           pass_bind(p, &f->shader, f->block, overrides, COUNT_OF(overrides), bindings,
-                     &dispatch.binding_count) &&
-           gpu_dispatch(p->host->device, &dispatch);
+    kernel *k = pass_prepare(p) ? pass_use(p, LBM_FORCE) : NULL;
+    if (!k) return false;
+    kernel_bind_image(k, N_acceleration, f->image);
+    return kernel_run(k, p->host->device, size->width, size->height, size->depth);
 }
 
 bool lbm_air_push(lbm_air *a) {

@@ -12,18 +12,13 @@ static float tau(const lbm_air *a, double diffusivity, double square) {
     return (float)fmax(sim_tau(&a->units, diffusivity, square), least_tau);
 }
 
-static const field *force_of(const pass *p) {
-    size_t index;
-    return pass_find_key(p, "force", &index) == PASS_FIELD ? p->fields[index] : NULL;
-}
-
 bool lbm_air_force_varies(const pass *p) {
-    const field *force = force_of(p);
+    const field *force = pass_given_field(p, N_force);
     return force && !force->uniform;
 }
 
 static bool add_force(const pass *p, const lbm_air *a, float out[3]) {
-    const field *force = force_of(p);
+    const field *force = pass_given_field(p, N_force);
     float value[4] = {0};
     if (!force || !force->uniform) return true;
     if (!field_eval(force, p->host->context, (float3){0, 0, 0}, value)) return false;
@@ -57,29 +52,24 @@ static void find_inflow(const lbm_air *a, const float wind[3], float out[3]) {
 }
 
 bool lbm_air_numbers(const pass *p, lbm_numbers *out) {
-    static const char *const names[] = {
-        "viscosity",        "diffusion",     "temperature_diffusion",
-        "buoyancy_density", "buoyancy_heat", "dissolve_rate",
-        "cooling_rate",     "smagorinsky",   "wind"};
-    enum { VISCOSITY, DIFFUSION, HEAT_DIFFUSION, LIFT, HEAT_LIFT, DISSOLVE, COOL, SUBGRID, WIND };
     const lbm_air *a = lbm_air_of(p);
     const lbm_desc *structure = lbm_get_desc(a->solver);
     const sim_units *u = &a->units;
-    float values[COUNT_OF(names)][4];
-    for (size_t i = 0; i < COUNT_OF(names); i++)
-        if (!pass_evaluate_vector(p, names[i], values[i])) return false;
-#define VALUE(NAME) ((double)values[NAME][0])
+    float values[N_wind + 1][4];
+    for (int i = N_viscosity; i <= N_wind; i++)
+        if (!pass_evaluate_now(p, i, values[i])) return false;
+#define VALUE(NAME) ((double)values[N_##NAME][0])
     double square = (double)lbm_scalar_speed(structure->scalar_set);
-    *out = (lbm_numbers){.tau = tau(a, VALUE(VISCOSITY), 1.0 / 3.0),
-                         .smagorinsky = values[SUBGRID][0]};
+    *out = (lbm_numbers){.tau = tau(a, VALUE(viscosity), 1.0 / 3.0),
+                         .smagorinsky = values[N_smagorinsky][0]};
     for (int s = 0; s < LBM_MAX_SCALARS; s++) {
         bool heat = s == PASS_LBM_TEMPERATURE;
-        out->scalar_tau[s] = tau(a, VALUE(heat ? HEAT_DIFFUSION : DIFFUSION), square);
-        out->decay[s] = (float)sim_decay(u, VALUE(heat ? COOL : DISSOLVE));
+        out->scalar_tau[s] = tau(a, heat ? VALUE(temperature_diffusion) : VALUE(diffusion), square);
+        out->decay[s] = (float)sim_decay(u, heat ? VALUE(cooling_rate) : VALUE(dissolve_rate));
     }
-    out->buoyancy[PASS_LBM_DENSITY][2] = (float)sim_acceleration(u, VALUE(LIFT));
-    out->buoyancy[PASS_LBM_TEMPERATURE][2] = (float)sim_acceleration(u, VALUE(HEAT_LIFT));
-    for (int face = 0; face < 6; face++) find_inflow(a, values[WIND], out->inflow[face]);
+    out->buoyancy[PASS_LBM_DENSITY][2] = (float)sim_acceleration(u, VALUE(buoyancy_density));
+    out->buoyancy[PASS_LBM_TEMPERATURE][2] = (float)sim_acceleration(u, VALUE(buoyancy_heat));
+    for (int face = 0; face < 6; face++) find_inflow(a, values[N_wind], out->inflow[face]);
     if (!a->stops) out->max_speed = lbm_air_clamp_speed(a);
 #undef VALUE
     return add_force(p, a, out->acceleration);
@@ -88,16 +78,19 @@ bool lbm_air_numbers(const pass *p, lbm_numbers *out) {
 sim_flow lbm_air_flow(const pass *p) {
     const lbm_air *a = lbm_air_of(p);
     const lbm_desc *structure = lbm_get_desc(a->solver);
+    float viscosity[4], smagorinsky[4];
+    pass_evaluate_now(p, N_viscosity, viscosity);
+    pass_evaluate_now(p, N_smagorinsky, smagorinsky);
     double length = a->desc.voxel_size;
     uint32_t least = a->desc.size[0];
     for (int i = 1; i < 3; i++)
         if (a->desc.size[i] < least) least = a->desc.size[i];
     return (sim_flow){
-        .viscosity = (double)pass_evaluate(p, "viscosity"),
+        .viscosity = (double)viscosity[0],
         .speed = a->desc.speed,
         .length = length * least,
         .collision = (sim_operator)structure->collision,
-        .subgrid = structure->subgrid && pass_evaluate(p, "smagorinsky") > 0,
+        .subgrid = structure->subgrid && smagorinsky[0] > 0,
         .fixed = a->desc.time_step > 0,
     };
 }

@@ -15,10 +15,21 @@ typedef struct lbm_meshes { // bodies as cells; zero: none
     bool met;       // one of them has been in the air's box
 } lbm_meshes;
 
+enum { LBM_SHOW, LBM_FORCE, LBM_KERNELS }; // of the pass; those of steps are the solver's
+
+// Options of faces in the order of lbm_desc.faces; uniforms in that of lbm_air_numbers.
+#define LBM_AIR_NAMES(NAME)                                                                        \
+    NAME(boundary_left), NAME(boundary_right), NAME(boundary_front), NAME(boundary_back),          \
+        NAME(boundary_bottom), NAME(boundary_top), NAME(viscosity), NAME(diffusion),               \
+        NAME(temperature_diffusion), NAME(buoyancy_density), NAME(buoyancy_heat),                  \
+        NAME(dissolve_rate), NAME(cooling_rate), NAME(smagorinsky), NAME(wind),                    \
+        NAME(velocity_set), NAME(scalar_set), NAME(collision), NAME(forcing), NAME(beside_bodies), \
+        NAME(precision), NAME(guard), NAME(force), NAME(scalars), NAME(velocity), NAME(size),      \
+        NAME(blend), NAME(speed), NAME(pressure), NAME(acceleration), NAME(Moments),               \
+        NAME(MomentsBefore), NAME(Guard)
+enum { LBM_AIR_NAMES(KERNEL_NAME_ID) };
+
 typedef struct lbm_force { // that varies in space; zero: it does not
-    shader_binary shader;
-    gpu_pipeline *pipeline;
-    unsigned char *block;
     gpu_image *image;
     uint64_t turn; // in which it was baked; UINT64_MAX: never
 } lbm_force;
@@ -81,12 +92,19 @@ bool lbm_air_advance(pass *p); // to the host's time, as far as one submit goes
 // How the two kept states are mixed for the host's time.
 double lbm_air_blend(const lbm_air *a, double time);
 
+// lbm_build.c
+bool lbm_air_check(pass *p);
+bool lbm_air_build(pass *p);
+bool lbm_air_allocate(pass *p);
+void lbm_air_destroy(pass *p);
+
 // lbm_frame.c
+bool lbm_air_update(pass *p);
+bool lbm_air_rehearse(pass *p);
+bool lbm_air_record(pass *p);
 double lbm_air_pascals(const lbm_air *a); // of an excess of density of 1
 
 // lbm_force.c
-bool lbm_air_compile_force(lbm_air *a);
-bool lbm_air_build_force(lbm_air *a);
 bool lbm_air_allocate_force(lbm_air *a);
 bool lbm_air_push(lbm_air *a); // the force as of the host's time, which is that of a step
 void lbm_air_destroy_force(lbm_air *a);
@@ -124,6 +142,7 @@ void lbm_air_save(const pass *p, struct checkpoint_list *out);
 bool lbm_air_load(pass *p, struct checkpoint *from);
 
 // lbm_readouts.c
+extern const pass_simulation lbm_simulation;
 bool lbm_air_watch(pass *p); // after steps: what the guard found, and what it is to look at
 size_t lbm_air_readouts(const pass *p, pass_readout *out, size_t capacity);
 double lbm_air_work(const pass *p);

@@ -2,7 +2,6 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"
-#include "pass/builtin.h"
 #include "pass/lbm_parts.h"
 #include <math.h>
 #include <string.h>

@@ -4,23 +4,30 @@
 // meshes are then.
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/lbm_parts.h"
 #include <string.h>
 
-static const char give_shader[] = "pass/lbm/give.comp";
+#define NAMES(NAME)                                                                                \
+    NAME(rate), NAME(velocity_factor), NAME(rule), NAME(cell_size), NAME(first), NAME(count),      \
+        NAME(step_speed), NAME(clamp_speed), NAME(pascal), NAME(note), NAME(share),                \
+        NAME(lbm_parity), NAME(SourceValues), NAME(SourceIds), NAME(SourceMotions),                \
+        NAME(SourceNotes)
+enum { NAMES(KERNEL_NAME_ID) };
+static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+
+enum { EVALUATE, GIVE, KERNELS };
+static const pass_kernel kernels[KERNELS] = {
+    [GIVE] = {.shader = "pass/lbm/give.comp", .without_fields = true},
+};
 
 typedef struct source_state {
     lbm_air *air;
-    uint32_t note; // its bit of the guard's notes; 0: there was none left
-    size_t giver;  // which of the air's are its meshes, from 1; 0: it has none
-    shader_binary give;
-    gpu_pipeline *pipeline; // that gives
-    unsigned char *block;   // of its uniforms
-    uint64_t turn;          // in which the values were found; UINT64_MAX: never
-    lbm_cells cells;        // of its box in this turn
-    gpu_buffer *values;     // of these; NULL: none yet
-    unsigned char *last;    // the numbers that they were found with
+    uint32_t note;       // its bit of the guard's notes; 0: there was none left
+    size_t giver;        // which of the air's are its meshes, from 1; 0: it has none
+    uint64_t turn;       // in which the values were found; UINT64_MAX: never
+    lbm_cells cells;     // of its box in this turn
+    gpu_buffer *values;  // of these; NULL: none yet
+    unsigned char *last; // the numbers that they were found with
     lbm_cells last_cells;
     bool known; // these two
     bool met;   // it has been in the air's box
@@ -34,7 +41,7 @@ static bool gives(const pass *p) {
     return pass_find_key(p, "velocity_factor", &index) == PASS_UNIFORM && p->uniforms[index];
 }
 
-bool lbm_source_declare(pass *p) {
+static bool declare(pass *p) {
     if (!lbm_source_shape(p) && !p->mesh_count)
         return err_set("%s: it has no place; give it a mesh, or shape = sphere { ... }", p->label);
     return gives(p) || err_set("%s: it gives the air nothing; say its density, temperature, dye, "
@@ -60,9 +67,7 @@ bool pass_lbm_add_source(pass *p, pass *source) {
     if (reads_itself(a, source)) return false;
     source_state *s = source->state = arena_alloc(p->host->memory, sizeof *s);
     *s = (source_state){.air = a, .turn = UINT64_MAX};
-    size_t option;
-    pass_find_key(source, "rule", &option);
-    voxels_rule rule = (voxels_rule)source->options[option];
+    voxels_rule rule = (voxels_rule)pass_option(source, N_rule);
     lbm_meshes *meshes = source->mesh_count ? lbm_air_add_giver(a) : NULL;
     for (size_t i = 0; i < source->mesh_count; i++)
         lbm_air_add_body(meshes, source->meshes[i], rule);
@@ -81,35 +86,17 @@ bool pass_lbm_add_source(pass *p, pass *source) {
 
 // ---- building ---------------------------------------------------------------------------------
 
-static bool compile(pass *p) {
-    source_state *s = p->state;
-    shader_define defines[LBM_MAX_DEFINES + 2];
-    size_t count = lbm_defines(s->air->solver, defines);
-    defines[count++] = (shader_define){"MESHES", s->giver ? "1" : "0"};
-    defines[count++] = (shader_define){"WITHOUT_FIELDS", ""};
-    return pass_compile(p, p->shader, SHADER_COMPUTE, NULL, 0, &p->binary) &&
-           pass_compile(p, give_shader, SHADER_COMPUTE, defines, count, &s->give);
+static bool defines(pass *p, size_t index, pass_defines *out) {
+    const source_state *s = p->state;
+    if (index == EVALUATE) return true;
+    out->count += lbm_defines(s->air->solver, out->items + out->count);
+    pass_define_flag(out, "MESHES", s->giver);
+    return true;
 }
 
-bool lbm_source_check(pass *p) {
-    return compile(p);
-}
-
-bool lbm_source_build(pass *p) {
+static void destroy(pass *p) {
     source_state *s = p->state;
-    if (!compile(p)) return false;
-    s->block = arena_alloc(p->host->memory, pass_block_size(&s->give) + 16);
-    s->last = arena_alloc(p->host->memory, field_program_block_size(p->program) + 16);
-    p->pipeline = pass_create_compute(p, &p->binary);
-    s->pipeline = pass_create_compute(p, &s->give);
-    return p->pipeline && s->pipeline;
-}
-
-void lbm_source_destroy(pass *p) {
-    source_state *s = p->state;
-    if (!s) return;
-    if (s->pipeline) gpu_pipeline_destroy(p->host->device, s->pipeline);
-    if (s->values) gpu_buffer_destroy(p->host->device, s->values);
+    if (s) gpu_buffer_destroy(p->host->device, s->values);
 }
 
 void lbm_air_forget_source(pass *source) {
@@ -130,16 +117,12 @@ bool lbm_source_is_away(const pass *source) {
 
 // ---- values -----------------------------------------------------------------------------------
 
-static void write_place(const source_state *s, const shader_binary *binary, unsigned char *block) {
-    const float cell = (float)s->air->units.cell;
-    pass_write_box(binary, block, s->air->grid.box);
-    pass_write_member(binary, block, "cell_size", &cell, sizeof cell);
-    pass_write_member(binary, block, "first", s->cells.first, sizeof s->cells.first);
-    pass_write_member(binary, block, "count", s->cells.count, sizeof s->cells.count);
-}
-
-bool lbm_source_fill(pass *p, const shader_binary *binary, unsigned char *block) {
-    write_place(p->state, binary, block);
+static bool update(pass *p) {
+    const source_state *s = p->state;
+    pass_set_box(p, s->air->grid.box);
+    pass_set_float(p, N_cell_size, (float)s->air->units.cell);
+    pass_set(p, N_first, s->cells.first, sizeof s->cells.first);
+    pass_set(p, N_count, s->cells.count, sizeof s->cells.count);
     return true;
 }
 
@@ -170,15 +153,14 @@ static bool are_known(const pass *p, const source_state *s) {
 static bool find_values(pass *p, source_state *s) {
     if (!make_values(p, s) || !pass_prepare(p)) return false;
     if (are_known(p, s)) return true;
-    memcpy(s->last, p->numbers, field_program_block_size(p->program));
+    const size_t size = field_program_block_size(p->program);
+    if (!s->last) s->last = arena_alloc(p->host->memory, size + 16);
+    memcpy(s->last, p->numbers, size);
     s->last_cells = s->cells;
-    const pass_override overrides[] = {{"SourceValues", {.buffer = s->values}}};
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc dispatch = {.pipeline = p->pipeline, .bindings = bindings};
-    for (int i = 0; i < 3; i++) dispatch.threads[i] = (uint32_t)s->cells.count[i];
-    s->known =
-        pass_bind(p, &p->binary, p->block, overrides, 1, bindings, &dispatch.binding_count) &&
-        gpu_dispatch(p->host->device, &dispatch);
+    kernel *k = pass_use(p, EVALUATE);
+    if (k) kernel_bind_buffer(k, N_SourceValues, s->values);
+    const float *n = s->cells.count;
+    s->known = k && kernel_run(k, p->host->device, (uint32_t)n[0], (uint32_t)n[1], (uint32_t)n[2]);
     return s->known;
 }
 
@@ -202,60 +184,30 @@ static bool begin_turn(pass *p, source_state *s) {
 
 // ---- a step -----------------------------------------------------------------------------------
 
-static bool fill_give(const pass *p, source_state *s) {
-    const lbm_air *a = s->air;
-    float rate[4], factor[4];
-    if (!pass_evaluate_vector(p, "rate", rate) ||
-        !pass_evaluate_vector(p, "velocity_factor", factor))
-        return false;
-    const float speed = (float)sim_velocity(&a->units, 1);
-    const float most = lbm_air_clamp_speed(a);
-    const float share = rate[0] > 0 ? (float)sim_decay(&a->units, (double)rate[0]) : 1;
-    const float pascal = (float)(1 / lbm_air_pascals(a));
-    const uint32_t parity = lbm_parity(a->solver);
-    write_place(s, &s->give, s->block);
-    pass_write_member(&s->give, s->block, "step_speed", &speed, sizeof speed);
-    pass_write_member(&s->give, s->block, "clamp_speed", &most, sizeof most);
-    pass_write_member(&s->give, s->block, "velocity_factor", factor, sizeof *factor);
-    pass_write_member(&s->give, s->block, "pascal", &pascal, sizeof pascal);
-    pass_write_member(&s->give, s->block, "note", &s->note, sizeof s->note);
-    pass_write_member(&s->give, s->block, "share", &share, sizeof share);
-    pass_write_member(&s->give, s->block, "lbm_parity", &parity, sizeof parity);
-    return true;
-}
-
-static gpu_buffer *find_buffer(const source_state *s, const char *name) {
-    voxels *meshes = s->giver ? s->air->givers[s->giver - 1].cells : NULL;
-    if (strcmp(name, "SourceValues") == 0) return s->values;
-    if (strcmp(name, "SourceNotes") == 0) return lbm_guard_notes(s->air->guard);
-    if (meshes && strcmp(name, "SourceIds") == 0) return voxels_ids(meshes);
-    return meshes && strcmp(name, "SourceMotions") == 0 ? voxels_motions(meshes) : NULL;
-}
-
-static size_t override(const source_state *s, pass_override out[GPU_MAX_SLOTS]) {
-    size_t count = 0;
-    for (size_t i = 0; i < s->give.slot_count; i++) {
-        const char *name = s->give.slots[i].name;
-        gpu_binding *binding = &out[count].binding;
-        if (!lbm_bind(s->air->solver, name, binding))
-            *binding = (gpu_binding){.buffer = find_buffer(s, name)};
-        out[count].name = name;
-        count += binding->buffer || binding->image;
-    }
-    return count;
-}
-
 static bool give(pass *p, source_state *s) {
-    const uint32_t depth = lbm_depth(s->air->solver);
-    pass_override overrides[GPU_MAX_SLOTS];
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc dispatch = {.pipeline = s->pipeline, .bindings = bindings};
-    for (int i = 0; i < 3; i++) dispatch.threads[i] = (uint32_t)s->cells.count[i];
-    if (dispatch.threads[2] > depth) dispatch.threads[2] = depth;
-    if (!fill_give(p, s)) return false;
-    size_t count = override(s, overrides);
-    return pass_bind(p, &s->give, s->block, overrides, count, bindings, &dispatch.binding_count) &&
-           gpu_dispatch(p->host->device, &dispatch);
+    const lbm_air *a = s->air;
+    const uint32_t depth = lbm_depth(a->solver);
+    voxels *meshes = s->giver ? a->givers[s->giver - 1].cells : NULL;
+    uint32_t threads[3];
+    kernel *k = pass_use(p, GIVE);
+    if (!k || !pass_evaluate_values(p)) return false;
+    const double rate = (double)pass_value(p, N_rate);
+    update(p);
+    kernel_set_float(k, N_step_speed, (float)sim_velocity(&a->units, 1));
+    kernel_set_float(k, N_clamp_speed, lbm_air_clamp_speed(a));
+    kernel_set_float(k, N_velocity_factor, pass_value(p, N_velocity_factor));
+    kernel_set_float(k, N_pascal, (float)(1 / lbm_air_pascals(a)));
+    kernel_set_int(k, N_note, (int32_t)s->note);
+    kernel_set_float(k, N_share, rate > 0 ? (float)sim_decay(&a->units, rate) : 1);
+    kernel_set_int(k, N_lbm_parity, (int32_t)lbm_parity(a->solver));
+    lbm_bind(a->solver, k, pass_solver_places(p, GIVE));
+    kernel_bind_buffer(k, N_SourceValues, s->values);
+    kernel_bind_buffer(k, N_SourceNotes, lbm_guard_notes(a->guard));
+    if (meshes) kernel_bind_buffer(k, N_SourceIds, voxels_ids(meshes));
+    if (meshes) kernel_bind_buffer(k, N_SourceMotions, voxels_motions(meshes));
+    for (int i = 0; i < 3; i++) threads[i] = (uint32_t)s->cells.count[i];
+    if (threads[2] > depth) threads[2] = depth;
+    return kernel_run(k, p->host->device, threads[0], threads[1], threads[2]);
 }
 
 bool lbm_air_run_source(pass *p) {
@@ -263,3 +215,19 @@ bool lbm_air_run_source(pass *p) {
     if (begin_turn(p, s) && (s->cells.count[0] <= 0 || give(p, s))) return true;
     return err_prefix("%s: ", p->label);
 }
+
+const pass_type lbm_source_type = {
+    .name = "lbm_source",
+    .constructed = true,
+    .shader = "pass/lbm_source.comp",
+    .kernels = kernels,
+    .kernel_count = KERNELS,
+    .names = {names, COUNT_OF(names)},
+    .solver = &lbm_kernel_table,
+    .unscaled = true,
+    .meshes = PASS_USES_MESHES,
+    .declare = declare,
+    .defines = defines,
+    .update = update,
+    .destroy = destroy,
+};

@@ -3,12 +3,9 @@
 // one shader file.
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/worker.h"
-#include "pass/builtin.h"
 #include "pass/pass_impl.h"
 #include "shared.h"
 #include <math.h>
-#include <string.h>
 
 enum {
     ROW_TEXELS = 11,       // of a light in `lights`: SHADOW_MAP_TEXELS of lib/shadow_map.glsl
@@ -38,30 +35,46 @@ typedef enum lighting_stage {
     STAGES
 } lighting_stage;
 
-static const struct {
-    const char *define;
-    uint32_t level;
-} stages[STAGES] = {
-    [STAGE_LIGHTS] = {"STAGE_LIGHTS", 0},      [STAGE_FIRE] = {"STAGE_FIRE", 0},
-    [STAGE_GATHER] = {"STAGE_GATHER", 0},      [STAGE_SHADOW] = {"STAGE_SHADOW", 0},
-    [STAGE_MEDIUM] = {"STAGE_MEDIUM", 0},      [STAGE_AROUND] = {"STAGE_AROUND", 0},
-    [STAGE_FIRST] = {"STAGE_FIRST", 0},        [STAGE_SWEEP] = {"STAGE_SWEEP", 0},
-    [STAGE_RESTRICT] = {"STAGE_RESTRICT", 0},  [STAGE_PROLONG] = {"STAGE_PROLONG", 0},
-    [STAGE_COARSE_SWEEP] = {"STAGE_SWEEP", 1}, [STAGE_COARSE_REDUCE] = {"STAGE_REDUCE", 1},
+static const pass_kernel kernels[STAGES] = {
+    [STAGE_LIGHTS] = {.define = "STAGE_LIGHTS", .without_fields = true},
+    [STAGE_FIRE] = {.define = "STAGE_FIRE", .without_fields = true},
+    [STAGE_GATHER] = {.define = "STAGE_GATHER", .without_fields = true},
+    [STAGE_SHADOW] = {.define = "STAGE_SHADOW"},
+    [STAGE_MEDIUM] = {.define = "STAGE_MEDIUM"},
+    [STAGE_AROUND] = {.define = "STAGE_AROUND", .without_fields = true},
+    [STAGE_FIRST] = {.define = "STAGE_FIRST", .without_fields = true},
+    [STAGE_SWEEP] = {.define = "STAGE_SWEEP", .without_fields = true},
+    [STAGE_RESTRICT] = {.define = "STAGE_RESTRICT", .without_fields = true},
+    [STAGE_PROLONG] = {.define = "STAGE_PROLONG", .without_fields = true},
+    [STAGE_COARSE_SWEEP] = {.define = "STAGE_SWEEP", .without_fields = true},
+    [STAGE_COARSE_REDUCE] = {.define = "STAGE_REDUCE", .without_fields = true},
 };
+
+static uint32_t level_of(lighting_stage stage) {
+    return stage >= STAGE_COARSE_SWEEP;
+}
+
+#define GRID_NAMES(NAME)                                                                           \
+    NAME(medium_kept), NAME(medium_made), NAME(scattering_kept), NAME(scattering_made),            \
+        NAME(around_kept), NAME(around_made), NAME(fire_kept), NAME(fire_made)
+#define BUFFER_NAMES(NAME)                                                                         \
+    NAME(Medium), NAME(Source), NAME(Ways), NAME(First), NAME(Scattered), NAME(Last), NAME(Part)
+#define COARSE_NAMES(NAME)                                                                         \
+    NAME(CoarseMedium), NAME(CoarseSource), NAME(CoarseFirst), NAME(CoarseScattered),              \
+        NAME(CoarsePart)
+#define NAMES(NAME)                                                                                \
+    GRID_NAMES(NAME), BUFFER_NAMES(NAME), COARSE_NAMES(NAME), NAME(lights_made),                   \
+        NAME(shadow_made), NAME(lights), NAME(shadow), NAME(glow), NAME(albedo), NAME(sweeps),     \
+        NAME(hastened), NAME(last_sweep), NAME(shadow_resolution), NAME(glow_resolution),          \
+        NAME(fire_lights)
+enum { NAMES(KERNEL_NAME_ID) };
+static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
 
 // What one stage leaves for others, besides the outputs: the shader writes NAME_kept and reads
-// NAME_made.
+// NAME_made, in the order of GRID_NAMES.
 typedef enum lighting_grid { MEDIUM, SCATTERING, AROUND, FIRE, GRIDS } lighting_grid;
 
-static const struct {
-    const char *name, *kept, *made; // and as the shader names it
-} grids[GRIDS] = {
-    {"medium", "medium_kept", "medium_made"},
-    {"scattering", "scattering_kept", "scattering_made"},
-    {"around", "around_kept", "around_made"},
-    {"fire", "fire_kept", "fire_made"},
-};
+static const char *const grid_names[GRIDS] = {"medium", "scattering", "around", "fire"};
 
 // What the stages of the glow keep for each voxel of a level (lighting/state.glsl).
 typedef enum lighting_buffer {
@@ -76,16 +89,16 @@ typedef enum lighting_buffer {
 } lighting_buffer;
 
 static const struct {
-    const char *name, *coarse; // as the shader names it, and that of the coarser level
-    uint32_t bytes;            // a voxel
+    int name, coarse; // as the shader names it, and that of the coarser level; -1: it reads none
+    uint32_t bytes;   // a voxel
 } buffers[BUFFERS] = {
-    {"Medium", "CoarseMedium", AXES *COLORS * 4},
-    {"Source", "CoarseSource", AXES *COLORS * 8},
-    {"Ways", NULL, WAYS *COLORS * 2},
-    {"First", "CoarseFirst", COLORS * 16},
-    {"Scattered", "CoarseScattered", COLORS * 16},
-    {"Last", NULL, COLORS * 16},
-    {"Part", "CoarsePart", COLORS * 4},
+    {N_Medium, N_CoarseMedium, AXES *COLORS * 4},
+    {N_Source, N_CoarseSource, AXES *COLORS * 8},
+    {N_Ways, -1, WAYS *COLORS * 2},
+    {N_First, N_CoarseFirst, COLORS * 16},
+    {N_Scattered, N_CoarseScattered, COLORS * 16},
+    {N_Last, -1, COLORS * 16},
+    {N_Part, N_CoarsePart, COLORS * 4},
 };
 
 typedef struct lighting_state {
@@ -93,30 +106,23 @@ typedef struct lighting_state {
     uint32_t shadow_size, glow_size, fire_count;
     uint32_t shadow_parts; // threads of a ray, in lighting/shadow.glsl
     uint32_t rays_apart;   // of threads, one traces rays to meshes
-    shader_binary binary[STAGES];
-    gpu_pipeline *pipeline[STAGES];
-    unsigned char *block[STAGES];
     graph_image grids[GRIDS];
     gpu_buffer *buffers[LEVELS][BUFFERS];
 } lighting_state;
 
 // ---- declaring --------------------------------------------------------------------------------
 
-static bool add_image(pass *p, const char *name, const uint32_t size[3]) {
-    int index = pass_find_image(p, name);
-    p->images[index] = graph_add_image(
+static bool add_image(pass *p, int name, const uint32_t size[3]) {
+    graph_image *image = pass_image(p, name);
+    *image = graph_add_image(
         p->host->graph, &(graph_image_desc){
-                            .name = arena_format(p->host->memory, "%s.%s", p->label, name),
-                            .format = p->formats[index],
+                            .name = arena_format(p->host->memory, "%s.%s", p->label, names[name]),
+                            .format = p->formats[p->names[name].image],
                             .width = size[0],
                             .height = size[1],
                             .depth = size[2],
                         });
-    return p->images[index].id != 0;
-}
-
-static graph_image image_of(const pass *p, const char *name) {
-    return p->images[pass_find_image(p, name)];
+    return image->id != 0;
 }
 
 static bool add_grids(pass *p) {
@@ -132,7 +138,7 @@ static bool add_grids(pass *p) {
         s->grids[i] = graph_add_image(
             p->host->graph,
             &(graph_image_desc){
-                .name = arena_format(p->host->memory, "%s.%s", p->label, grids[i].name),
+                .name = arena_format(p->host->memory, "%s.%s", p->label, grid_names[i]),
                 .format = GPU_RGBA32F,
                 .width = sizes[i][0],
                 .height = sizes[i][1],
@@ -150,9 +156,9 @@ static bool add_images(pass *p) {
         return err_set("%s: shadows of %u lights (the sun is one) do not fit at a "
                        "shadow_resolution of %u; at most %u is possible with so many",
                        p->label, s->declared, n, GREATEST_DEPTH / s->declared);
-    return add_image(p, "lights", (uint32_t[3]){ROW_TEXELS, s->declared + s->fire_count, 0}) &&
-           add_image(p, "shadow", (uint32_t[3]){n, n, n * s->declared}) &&
-           add_image(p, "glow", (uint32_t[3]){g, g, 3 * g}) && add_grids(p);
+    return add_image(p, N_lights, (uint32_t[3]){ROW_TEXELS, s->declared + s->fire_count, 0}) &&
+           add_image(p, N_shadow, (uint32_t[3]){n, n, n * s->declared}) &&
+           add_image(p, N_glow, (uint32_t[3]){g, g, 3 * g}) && add_grids(p);
 }
 
 static bool record_lights(pass *p);
@@ -163,10 +169,10 @@ static bool record_glow(pass *p);
 static bool add_parts(pass *p) {
     const lighting_state *s = p->state;
     const graph_image *own = s->grids;
-    graph_image lights = image_of(p, "lights"), shadow = image_of(p, "shadow");
+    graph_image lights = *pass_image(p, N_lights), shadow = *pass_image(p, N_shadow);
     const graph_image none = {0}, lights_writes[] = {lights, own[FIRE]};
     const graph_image glow_reads[] = {lights, shadow, own[MEDIUM], own[SCATTERING]};
-    const graph_image glow_writes[] = {image_of(p, "glow"), own[AROUND]};
+    const graph_image glow_writes[] = {*pass_image(p, N_glow), own[AROUND]};
     const pass_part parts[] = {
         {.name = "lights",
          .reads = s->fire_count ? &own[MEDIUM] : &none,
@@ -210,81 +216,42 @@ static uint32_t choose_rays_apart(const gpu *device) {
     return device && gpu_get_info(device)->kind == GPU_CPU ? 1 : 32;
 }
 
-bool lighting_declare(pass *p) {
+static bool declare(pass *p) {
     const scene *around = p->host->scene;
     lighting_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     s->declared = around ? (uint32_t)around->light_count + 1 : 1;
-    s->shadow_size = pass_number(p, "shadow_resolution");
+    s->shadow_size = pass_option_number(p, N_shadow_resolution);
     s->shadow_parts = choose_shadow_parts(p->host->device, s->shadow_size);
     s->rays_apart = choose_rays_apart(p->host->device);
-    s->glow_size = pass_number(p, "glow_resolution");
-    s->fire_count = pass_number(p, "fire_lights");
+    s->glow_size = pass_option_number(p, N_glow_resolution);
+    s->fire_count = pass_option_number(p, N_fire_lights);
     return pass_check_density(p) && add_images(p) && add_parts(p);
 }
 
 // ---- building ---------------------------------------------------------------------------------
 
-static bool compile(pass *p, lighting_stage stage, shader_binary *out) {
+static bool defines(pass *p, size_t index, pass_defines *out) {
     const lighting_state *s = p->state;
-    arena *memory = p->host->memory;
-    const shader_define defines[] = {
-        {stages[stage].define, "1"},
-        {"SHADOW_SIZE", arena_format(memory, "%u", s->shadow_size)},
-        {"SHADOW_PARTS", arena_format(memory, "%u", s->shadow_parts)},
-        {"GLOW_SIZE", arena_format(memory, "%u", s->glow_size)},
-        {"RAYS_APART", arena_format(memory, "%u", s->rays_apart)},
-        {"MOST_THREADS", pass_most_threads(p)},
-        {"FIRE_COUNT", arena_format(memory, "%u", s->fire_count)},
-        {"LEVEL_SIZE", arena_format(memory, "%u", s->glow_size >> stages[stage].level)},
-        {"WITHOUT_FIELDS", "1"}, // last: not of these two
-    };
-    bool fields = stage == STAGE_MEDIUM || stage == STAGE_SHADOW;
-    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines) - fields, out);
-}
-
-static bool is_used(const lighting_state *s, lighting_stage stage) {
-    return s->fire_count > 0 || (stage != STAGE_FIRE && stage != STAGE_GATHER);
-}
-
-static bool check_stage(void *user, size_t index) {
-    pass *p = user;
-    lighting_stage stage = (lighting_stage)index;
-    shader_binary binary;
-    return !is_used(p->state, stage) || compile(p, stage, &binary);
-}
-
-bool lighting_check(pass *p) {
-    return worker_each(STAGES, check_stage, p);
-}
-
-static bool build_stage(void *user, size_t index) {
-    pass *p = user;
-    lighting_state *s = p->state;
-    if (!is_used(s, (lighting_stage)index)) return true;
-    if (!compile(p, (lighting_stage)index, &s->binary[index])) return false;
-    s->pipeline[index] = pass_create_compute(p, &s->binary[index]);
-    s->block[index] = arena_alloc(p->host->memory, pass_block_size(&s->binary[index]) + 16);
-    return s->pipeline[index] != NULL;
-}
-
-bool lighting_build(pass *p) {
-    lighting_state *s = p->state;
-    if (!worker_each(STAGES, build_stage, p)) return false;
-    p->binary = s->binary[STAGE_LIGHTS];
+    if (s->fire_count == 0 && (index == STAGE_FIRE || index == STAGE_GATHER)) return false;
+    pass_define_number(p, out, "SHADOW_SIZE", s->shadow_size);
+    pass_define_number(p, out, "SHADOW_PARTS", s->shadow_parts);
+    pass_define_number(p, out, "GLOW_SIZE", s->glow_size);
+    pass_define_number(p, out, "RAYS_APART", s->rays_apart);
+    pass_define(out, "MOST_THREADS", pass_most_threads(p));
+    pass_define_number(p, out, "FIRE_COUNT", s->fire_count);
+    pass_define_number(p, out, "LEVEL_SIZE", s->glow_size >> level_of((lighting_stage)index));
     return true;
 }
 
-void lighting_destroy(pass *p) {
+static void destroy(pass *p) {
     lighting_state *s = p->state;
-    for (int i = 0; s && i < STAGES; i++)
-        if (s->pipeline[i]) gpu_pipeline_destroy(p->host->device, s->pipeline[i]);
     for (int i = 0; s && i < LEVELS * BUFFERS; i++)
         gpu_buffer_destroy(p->host->device, s->buffers[i / BUFFERS][i % BUFFERS]);
 }
 
 // ---- in a frame -------------------------------------------------------------------------------
 
-bool lighting_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+static bool update(pass *p) {
     const lighting_state *s = p->state;
     if (p->host->lights->count.v[0] != s->declared)
         return err_set("%s: made for %u lights (the sun is one), but the effect has %u; set "
@@ -292,46 +259,33 @@ bool lighting_fill(pass *p, const shader_binary *binary, unsigned char *block) {
                        p->label, s->declared, p->host->lights->count.v[0]);
     box3 box;
     if (!pass_density_box(p, &box)) return false;
-    pass_write_box(binary, block, box);
+    pass_set_box(p, box);
     return true;
 }
 
-static pass_override slot(const pass *p, const char *name, graph_image image) {
-    return (pass_override){name,
-                           {.image = graph_get_image(p->host->graph, image),
-                            .one_mip = true,
-                            .sampler = GPU_LINEAR_CLAMP}};
+static void bind_image(const pass *p, kernel *k, int name, graph_image image) {
+    kernel_bind(k, name,
+                (gpu_binding){.image = graph_get_image(p->host->graph, image), .one_mip = true});
 }
 
-enum { MOST_OVERRIDES = 2 + 2 * GRIDS + 2 * BUFFERS };
-
 // What the shader may name, as seen from a level.
-static size_t list_slots(const pass *p, uint32_t level, pass_override out[MOST_OVERRIDES]) {
+static void bind(const pass *p, kernel *k, uint32_t level) {
     const lighting_state *s = p->state;
-    size_t count = 0;
-    out[count++] = slot(p, "lights_made", image_of(p, "lights"));
-    out[count++] = slot(p, "shadow_made", image_of(p, "shadow"));
-    for (int i = 0; i < GRIDS; i++) {
-        out[count++] = slot(p, grids[i].kept, s->grids[i]);
-        out[count++] = slot(p, grids[i].made, s->grids[i]);
-    }
+    bind_image(p, k, N_lights_made, *pass_image(p, N_lights));
+    bind_image(p, k, N_shadow_made, *pass_image(p, N_shadow));
+    for (int i = 0; i < 2 * GRIDS; i++) bind_image(p, k, i, s->grids[i / 2]);
     for (int i = 0; i < BUFFERS; i++) {
-        out[count++] = (pass_override){buffers[i].name, {.buffer = s->buffers[level][i]}};
-        if (level + 1 < LEVELS && buffers[i].coarse)
-            out[count++] = (pass_override){buffers[i].coarse, {.buffer = s->buffers[level + 1][i]}};
+        kernel_bind_buffer(k, buffers[i].name, s->buffers[level][i]);
+        if (level + 1 < LEVELS && buffers[i].coarse >= 0)
+            kernel_bind_buffer(k, buffers[i].coarse, s->buffers[level + 1][i]);
     }
-    return count;
 }
 
 static bool dispatch(pass *p, lighting_stage stage, uint32_t x, uint32_t y, uint32_t z) {
-    const lighting_state *s = p->state;
-    pass_override overrides[MOST_OVERRIDES];
-    size_t override_count = list_slots(p, stages[stage].level, overrides), count;
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    return pass_bind(p, &s->binary[stage], s->block[stage], overrides, override_count, bindings,
-                     &count) &&
-           gpu_dispatch(p->host->device,
-                        &(gpu_dispatch_desc){s->pipeline[stage], bindings, count, {x, y, z}});
+    kernel *k = pass_use(p, stage);
+    if (!k) return false;
+    bind(p, k, level_of(stage));
+    return kernel_run(k, p->host->device, x, y, z);
 }
 
 static bool dispatch_voxels(pass *p, lighting_stage stage) {
@@ -341,32 +295,23 @@ static bool dispatch_voxels(pass *p, lighting_stage stage) {
 
 // A thread for each colour.
 static bool dispatch_colors(pass *p, lighting_stage stage) {
-    uint32_t n = ((const lighting_state *)p->state)->glow_size >> stages[stage].level;
+    uint32_t n = ((const lighting_state *)p->state)->glow_size >> level_of(stage);
     return dispatch(p, stage, n, n, COLORS * n);
 }
 
 static bool dispatch_groups(pass *p, lighting_stage stage, uint32_t groups) {
-    const lighting_state *s = p->state;
-    return dispatch(p, stage, groups * s->binary[stage].local_size[0], 1, 1);
+    kernel *k = pass_use(p, stage);
+    return k && dispatch(p, stage, groups * k->binaries[0].local_size[0], 1, 1);
 }
 
 static bool dispatch_sweep(pass *p, lighting_stage stage) {
     return dispatch_groups(p, stage, WAYS * COLORS);
 }
 
-// In the first of the parts of a frame: all others read what it writes.
-static bool prepare(pass *p) {
-    const lighting_state *s = p->state;
-    if (!pass_prepare(p)) return false;
-    for (int i = 0; i < STAGES; i++)
-        if (is_used(s, (lighting_stage)i) && !pass_fill_block(p, &s->binary[i], s->block[i]))
-            return false;
-    return true;
-}
-
+// In the first of the parts of a frame pass_prepare is called: all others read what it writes.
 static bool record_lights(pass *p) {
     const lighting_state *s = p->state;
-    if (!s->fire_count) return prepare(p) && dispatch(p, STAGE_LIGHTS, s->declared, 1, 1);
+    if (!s->fire_count) return pass_prepare(p) && dispatch(p, STAGE_LIGHTS, s->declared, 1, 1);
     uint32_t blocks = s->glow_size / 2;
     return dispatch(p, STAGE_LIGHTS, s->declared, 1, 1) &&
            dispatch(p, STAGE_FIRE, FIRE_SLOTS * blocks, 8 * blocks, blocks) &&
@@ -376,7 +321,7 @@ static bool record_lights(pass *p) {
 static bool record_medium(pass *p) {
     const lighting_state *s = p->state;
     uint32_t points = 2 * s->glow_size;
-    return (!s->fire_count || prepare(p)) && dispatch(p, STAGE_MEDIUM, points, points, points);
+    return (!s->fire_count || pass_prepare(p)) && dispatch(p, STAGE_MEDIUM, points, points, points);
 }
 
 static bool record_shadow(pass *p) {
@@ -387,11 +332,8 @@ static bool record_shadow(pass *p) {
 
 // The greatest part of the light that is scattered (as in lighting/level.glsl).
 static float most_scattered(const pass *p) {
-    const lighting_state *s = p->state;
-    float albedo[3] = {0}, most = 0;
-    shader_member member;
-    if (pass_find_member(&s->binary[STAGE_COARSE_REDUCE], "albedo", &member))
-        memcpy(albedo, s->block[STAGE_COARSE_REDUCE] + member.offset, sizeof albedo);
+    const float *albedo = pass_vector(p, N_albedo);
+    float most = 0;
     for (int i = 0; i < 3; i++) most = fmaxf(most, fminf(albedo[i], 0.98f));
     return most;
 }
@@ -404,7 +346,7 @@ static uint32_t coarse_sweeps(const pass *p) {
 // A sweep with its correction leaves about (most / 2)^2 of what is wrong: no more than half a
 // percent needs to be.
 static uint32_t fine_sweeps(pass *p) {
-    float most = fmaxf(most_scattered(p), 0.1f), asked = pass_evaluate(p, "sweeps");
+    float most = fmaxf(most_scattered(p), 0.1f), asked = pass_value(p, N_sweeps);
     return (uint32_t)fminf(asked, ceilf(logf(0.005f) / (2 * logf(0.5f * most))));
 }
 
@@ -414,7 +356,8 @@ static bool make_buffers(pass *p) {
         uint64_t n = s->glow_size >> level;
         for (int i = 0; i < BUFFERS; i++) {
             if (s->buffers[level][i]) continue;
-            gpu_buffer_desc desc = {.label = buffers[i].name, .size = n * n * n * buffers[i].bytes};
+            gpu_buffer_desc desc = {.label = names[buffers[i].name],
+                                    .size = n * n * n * buffers[i].bytes};
             s->buffers[level][i] = gpu_buffer_create(p->host->device, &desc);
             if (!s->buffers[level][i]) return false;
         }
@@ -422,16 +365,11 @@ static bool make_buffers(pass *p) {
     return true;
 }
 
-static void tell(pass *p, lighting_stage stage, const char *uniform, int32_t value) {
-    lighting_state *s = p->state;
-    pass_write_member(&s->binary[stage], s->block[stage], uniform, &value, sizeof value);
-}
-
 // On the coarser level sweeps are hastened (lighting/level.glsl).
 static bool correct(pass *p) {
     uint32_t sweeps = coarse_sweeps(p);
     for (uint32_t i = 0; i < sweeps; i++) {
-        tell(p, STAGE_COARSE_REDUCE, "hastened", (int32_t)i);
+        pass_set_int(p, N_hastened, (int32_t)i);
         if (!dispatch_sweep(p, STAGE_COARSE_SWEEP) || !dispatch_colors(p, STAGE_COARSE_REDUCE))
             return false;
     }
@@ -447,8 +385,20 @@ static bool record_glow(pass *p) {
         return false;
     for (uint32_t i = 0; i < sweeps || i == 0; i++) {
         if (!dispatch_sweep(p, STAGE_SWEEP) || !dispatch_colors(p, STAGE_RESTRICT)) return false;
-        tell(p, STAGE_PROLONG, "last_sweep", i + 1 >= sweeps);
+        pass_set_int(p, N_last_sweep, i + 1 >= sweeps);
         if (sweeps && !correct(p)) return false;
     }
     return true;
 }
+
+const pass_type lighting_type = {
+    .name = "lighting",
+    .shader = "pass/lighting.comp",
+    .kernels = kernels,
+    .kernel_count = STAGES,
+    .names = {names, COUNT_OF(names)},
+    .declare = declare,
+    .defines = defines,
+    .update = update,
+    .destroy = destroy,
+};

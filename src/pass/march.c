@@ -2,7 +2,6 @@
 // where in it nothing is, bricks tell.
 #include "base/memory.h"
 #include "pass/bricks.h"
-#include "pass/builtin.h"
 #include "pass/march_around.h"
 #include <math.h>
 
@@ -11,15 +10,23 @@ enum { GROUP_SIDE = 16, MOST_TEAM = 16 };
 // Of a device, beyond which more threads make a ray no faster.
 static const float ENOUGH_THREADS = 1.2e6f;
 
+static const char *const names[] = {MARCH_NAMES(KERNEL_NAME_TEXT)};
+static const pass_kernel kernels[MARCH_KERNELS] = {
+    [MARCH_HOLD] = {.define = "STAGE_HOLD"},
+    [MARCH_FREE] = {.define = "STAGE_FREE", .without_fields = true},
+    [MARCH_AROUND] = {.define = "STAGE_AROUND", .without_fields = true},
+};
+
 typedef struct march_state {
     bool skips;    // by bricks
+    bool paper;    // the mode
+    bool noise;    // is what the view shows
     bool adaptive; // has code for a tolerance
     bool teams;    // has code for several threads a ray
     bool software; // the device is: it has no branches
     int32_t team;  // threads a ray, in this frame
     box3 box;      // that rays are cut to, in this frame
     bricks bricks;
-    march_around around; // in software
 } march_state;
 
 static bool record_bricks(pass *p) {
@@ -27,9 +34,13 @@ static bool record_bricks(pass *p) {
     return pass_prepare(p) && bricks_record(p, &s->bricks);
 }
 
-bool march_declare(pass *p) {
+static bool declare(pass *p) {
     march_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    s->skips = pass_has_word(p, "skipping", "on");
+    gpu *device = p->host->device;
+    s->software = !device || gpu_get_info(device)->kind == GPU_CPU;
+    s->skips = pass_option_is(p, N_skipping, "on");
+    s->paper = pass_option_is(p, N_mode, "paper");
+    s->noise = pass_option_is(p, N_view, "noise");
     if (!pass_check_density(p) || !pass_declare_images(p)) return false;
     if (!s->skips) return pass_add_to_graph(p);
     return bricks_declare(p, &s->bricks, record_bricks) &&
@@ -39,56 +50,34 @@ bool march_declare(pass *p) {
 // ---- building ---------------------------------------------------------------------------------
 
 // Whether somebody says what it is.
-static bool gives(const pass *p, const char *uniform) {
-    size_t index;
+static bool gives(const pass *p, int name) {
     const shader_uniform *declared;
-    return pass_find_key(p, uniform, &index) == PASS_UNIFORM &&
-           (p->uniforms[index] || pass_inherited_uniform(p, index, &declared));
+    const size_t index = (size_t)p->names[name].uniform;
+    return p->uniforms[index] || pass_inherited_uniform(p, index, &declared);
 }
 
 // Steps of one length take less code and fewer registers alone: those of variable length are left
 // out as long as nobody gives a tolerance. Likewise rays have one thread where they are as many as
-// the pixels of the output, and where threads are few.
+// the pixels of the output, and where threads are few. What someone moves by hand where the effect
+// says nothing of it is compiled in then.
 static void choose_code(const pass *p) {
     march_state *s = p->state;
-    gpu *device = p->host->device;
-    bool software = !device || gpu_get_info(device)->kind == GPU_CPU;
-    s->adaptive = gives(p, "tolerance");
-    s->teams =
-        !pass_has_word(p, "view", "noise") && ((!software && p->scale < 1) || gives(p, "threads"));
-    s->software = software;
+    s->adaptive = s->adaptive || gives(p, N_tolerance);
+    s->teams = s->teams || (!s->noise && ((!s->software && p->scale < 1) || gives(p, N_threads)));
 }
 
-static bool compile(pass *p, shader_binary *out) {
+static bool defines(pass *p, size_t index, pass_defines *out) {
     const march_state *s = p->state;
-    const shader_define defines[] = {{"ADAPTIVE", s->adaptive ? "1" : "0"},
-                                     {"TEAMS", s->teams ? "1" : "0"},
-                                     {"MARCH_SOFTWARE", s->software && !s->teams ? "1" : "0"}};
-    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines), out);
-}
-
-bool march_check(pass *p) {
-    const march_state *s = p->state;
+    if (index == MARCH_HOLD || index == MARCH_FREE) {
+        if (index == MARCH_HOLD) pass_define(out, "WITH_RANGES", "1");
+        return s->skips;
+    }
+    if (index == MARCH_AROUND) return s->software;
     choose_code(p);
-    return (!s->skips || bricks_check(p)) && (!s->software || march_around_check(p)) &&
-           compile(p, &p->binary);
-}
-
-bool march_build(pass *p) {
-    march_state *s = p->state;
-    if (s->skips && !bricks_build(p, &s->bricks)) return false;
-    choose_code(p);
-    if (s->software && !march_around_build(p, &s->around)) return false;
-    if (!compile(p, &p->binary)) return false;
-    p->pipeline = pass_create_compute(p, &p->binary);
-    return p->pipeline != NULL;
-}
-
-void march_destroy(pass *p) {
-    march_state *s = p->state;
-    if (!s) return;
-    bricks_destroy(p, &s->bricks);
-    march_around_destroy(p, &s->around);
+    pass_define_flag(out, "ADAPTIVE", s->adaptive);
+    pass_define_flag(out, "TEAMS", s->teams);
+    pass_define_flag(out, "MARCH_SOFTWARE", s->software && !s->teams);
+    return true;
 }
 
 // ---- in a frame -------------------------------------------------------------------------------
@@ -96,15 +85,15 @@ void march_destroy(pass *p) {
 // The paper marches the whole simulation box in every frame (section 3.5), wherever that was moved;
 // otherwise the box is as tight as what burns just now.
 static bool march_box(const pass *p, box3 *box) {
-    if (!pass_has_word(p, "mode", "paper")) return pass_density_box(p, box);
+    if (!((const march_state *)p->state)->paper) return pass_density_box(p, box);
     return pass_density_box_of_grids(p, box);
 }
 
 // A power of two; one where there are rays enough.
 static int32_t team_size(pass *p, float rays) {
     const march_state *s = p->state;
-    if (!s->teams || pass_evaluate(p, "tolerance") > 0) return 1;
-    float asked = pass_evaluate(p, "threads");
+    if (!s->teams || pass_value(p, N_tolerance) > 0) return 1;
+    float asked = pass_value(p, N_threads);
     float most = asked > 0 ? asked : ENOUGH_THREADS / fmaxf(rays, 1);
     most = fminf(most, (float)gpu_get_info(p->host->device)->subgroup_size);
     int32_t team = 1;
@@ -112,45 +101,33 @@ static int32_t team_size(pass *p, float rays) {
     return team;
 }
 
-bool march_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+static bool update(pass *p) {
     march_state *s = p->state;
-    box3 box;
     uint32_t size[3];
-    if (!march_box(p, &box)) return false;
-    s->box = box;
-    pass_write_box(binary, block, box);
-    graph_get_size(p->host->graph, pass_output(p, "color"), size);
-    float rays = (float)size[0] * (float)size[1], rows = (float)size[1];
-    pass_write_member(binary, block, "brick_rows", &rows, sizeof rows);
+    if (!march_box(p, &s->box)) return false;
+    graph_get_size(p->host->graph, *pass_image(p, N_color), size);
+    const float rays = (float)size[0] * (float)size[1];
     s->team = team_size(p, rays);
-    pass_write_member(binary, block, "team", &s->team, sizeof s->team);
-    if (!s->skips) return true;
-    bricks_fill(p, &s->bricks, binary, block, box, rays * pass_evaluate(p, "steps"));
+    pass_set_box(p, s->box);
+    pass_set_float(p, N_brick_rows, (float)size[1]);
+    pass_set_int(p, N_team, s->team);
+    if (s->skips) bricks_update(p, &s->bricks, s->box, rays * pass_value(p, N_steps));
     return true;
 }
 
 // A tolerance or threads that someone moves by hand, where the effect says nothing of them.
-static bool compile_again(pass *p) {
-    shader_binary binary;
-    if (!compile(p, &binary)) return false;
-    gpu_pipeline *pipeline = pass_create_compute(p, &binary);
-    if (!pipeline) return false;
-    gpu_pipeline_destroy(p->host->device, p->pipeline);
-    p->pipeline = pipeline;
-    p->binary = binary;
-    p->block = arena_alloc(p->host->memory, pass_block_size(&binary) + 16);
-    return pass_fill_block(p, &p->binary, p->block);
-}
-
 static bool follow_code(pass *p) {
     march_state *s = p->state, before = *s;
-    s->adaptive = s->adaptive || pass_evaluate(p, "tolerance") > 0;
-    s->teams = s->teams || (pass_evaluate(p, "threads") > 1 && !pass_has_word(p, "view", "noise"));
-    return (s->adaptive == before.adaptive && s->teams == before.teams) || compile_again(p);
+    s->adaptive = s->adaptive || pass_value(p, N_tolerance) > 0;
+    s->teams = s->teams || (pass_value(p, N_threads) > 1 && !s->noise);
+    if (s->adaptive == before.adaptive && s->teams == before.teams) return true;
+    if (!pass_make_kernel(p, MARCH_RAYS, true)) return false;
+    pass_copy_values(p);
+    return update(p);
 }
 
 // A group is a square of pixels, or half of one, of 256 threads.
-static void count_threads(const march_state *s, march_part part, uint32_t threads[3]) {
+static void count_threads(const march_state *s, march_part part, uint32_t threads[2]) {
     int bits = 8;
     for (int32_t i = 1; i < s->team; i *= 2) bits--;
     const uint32_t tile[2] = {1u << (bits + 1) / 2, 1u << bits / 2};
@@ -162,21 +139,34 @@ static void count_threads(const march_state *s, march_part part, uint32_t thread
 
 static bool record_part(pass *p, march_part part) {
     march_state *s = p->state;
-    pass_override slot = s->skips ? bricks_slot(p, &s->bricks) : (pass_override){"", {0}};
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc desc = {.pipeline = p->pipeline, .bindings = bindings};
-    count_threads(s, part, desc.threads);
-    if (!desc.threads[0] || !desc.threads[1]) return true;
-    march_write_corner(&p->binary, p->block, part);
-    return pass_bind(p, &p->binary, p->block, &slot, s->skips, bindings, &desc.binding_count) &&
-           gpu_dispatch(p->host->device, &desc);
+    uint32_t threads[2];
+    kernel *k = pass_use(p, MARCH_RAYS);
+    count_threads(s, part, threads);
+    if (!k || !threads[0] || !threads[1]) return k;
+    if (s->skips) bricks_bind(p, &s->bricks, k);
+    march_set_corner(k, part);
+    return kernel_run(k, p->host->device, threads[0], threads[1], 1);
 }
 
-bool march_record(pass *p) {
+static bool record(pass *p) {
     march_state *s = p->state;
-    march_part inside;
+    uint32_t size[3];
     if (!s->skips && !pass_prepare(p)) return false;
     if (!follow_code(p)) return false;
-    march_around *around = s->software && !s->teams ? &s->around : NULL;
-    return march_around_record(p, around, s->box, &inside) && record_part(p, inside);
+    graph_get_size(p->host->graph, *pass_image(p, N_color), size);
+    march_part inside = {{0, 0}, {(int32_t)size[0], (int32_t)size[1]}};
+    if (s->software && !s->teams && !march_around_record(p, s->box, &inside)) return false;
+    return record_part(p, inside);
 }
+
+const pass_type march_type = {
+    .name = "march",
+    .shader = "pass/march.comp",
+    .kernels = kernels,
+    .kernel_count = MARCH_KERNELS,
+    .names = {names, COUNT_OF(names)},
+    .declare = declare,
+    .defines = defines,
+    .update = update,
+    .record = record,
+};

@@ -1,33 +1,10 @@
 #include "pass/march_around.h"
 #include "base/maths.h"
-#include "base/memory.h"
 #include <math.h>
-#include <string.h>
 
 enum { GROUP_SIDE = 16 };
 
 static const float worth = 0.8f; // of a picture: where more of it is inside, all is
-
-static bool compile(pass *p, shader_binary *out) {
-    static const shader_define defines[] = {{"STAGE_AROUND", "1"}, {"WITHOUT_FIELDS", "1"}};
-    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, COUNT_OF(defines), out);
-}
-
-bool march_around_check(pass *p) {
-    shader_binary binary;
-    return compile(p, &binary);
-}
-
-bool march_around_build(pass *p, march_around *a) {
-    if (!compile(p, &a->binary)) return false;
-    a->pipeline = pass_create_compute(p, &a->binary);
-    a->block = arena_alloc(p->host->memory, pass_block_size(&a->binary) + 16);
-    return a->pipeline != NULL;
-}
-
-void march_around_destroy(pass *p, march_around *a) {
-    if (a->pipeline) gpu_pipeline_destroy(p->host->device, a->pipeline);
-}
 
 // ---- in a frame -------------------------------------------------------------------------------
 
@@ -69,36 +46,31 @@ static bool find_inside(const struct frame_block *f, box3 box, const uint32_t si
     return true;
 }
 
-void march_write_corner(const shader_binary *binary, unsigned char *block, march_part part) {
+void march_set_corner(kernel *k, march_part part) {
     const float corner[2] = {(float)part.low[0], (float)part.low[1]};
-    pass_write_member(binary, block, "corner", corner, sizeof corner);
+    kernel_set(k, N_corner, corner, sizeof corner);
 }
 
-static bool fill(pass *p, march_around *a, march_part part) {
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc desc = {.pipeline = a->pipeline, .bindings = bindings};
-    for (int i = 0; i < 2; i++) {
-        if (part.high[i] <= part.low[i]) return true;
-        desc.threads[i] = (uint32_t)(part.high[i] - part.low[i]);
-    }
-    march_write_corner(&a->binary, a->block, part);
-    return pass_bind(p, &a->binary, a->block, NULL, 0, bindings, &desc.binding_count) &&
-           gpu_dispatch(p->host->device, &desc);
+static bool fill(pass *p, march_part part) {
+    const int32_t width = part.high[0] - part.low[0], height = part.high[1] - part.low[1];
+    if (width <= 0 || height <= 0) return true;
+    kernel *k = pass_use(p, MARCH_AROUND);
+    if (!k) return false;
+    march_set_corner(k, part);
+    return kernel_run(k, p->host->device, (uint32_t)width, (uint32_t)height, 1);
 }
 
-bool march_around_record(pass *p, march_around *a, box3 box, march_part *inside) {
+bool march_around_record(pass *p, box3 box, march_part *inside) {
     uint32_t size[3];
-    graph_get_size(p->host->graph, pass_output(p, "color"), size);
+    graph_get_size(p->host->graph, *pass_image(p, N_color), size);
     const int32_t width = (int32_t)size[0], height = (int32_t)size[1];
-    march_part in, all = {{0, 0}, {width, height}};
-    *inside = all;
-    if (!a || box3_is_empty(box) || !find_inside(p->host->frame, box, size, &in)) return true;
+    march_part in;
+    if (box3_is_empty(box) || !find_inside(p->host->frame, box, size, &in)) return true;
     float pixels = (float)(in.high[0] - in.low[0]) * (float)(in.high[1] - in.low[1]);
     if (pixels > worth * (float)width * (float)height) return true;
     *inside = in;
-    return pass_fill_block(p, &a->binary, a->block) &&
-           fill(p, a, (march_part){{0, 0}, {width, in.low[1]}}) &&
-           fill(p, a, (march_part){{0, in.low[1]}, {in.low[0], in.high[1]}}) &&
-           fill(p, a, (march_part){{in.high[0], in.low[1]}, {width, in.high[1]}}) &&
-           fill(p, a, (march_part){{0, in.high[1]}, {width, height}});
+    return fill(p, (march_part){{0, 0}, {width, in.low[1]}}) &&
+           fill(p, (march_part){{0, in.low[1]}, {in.low[0], in.high[1]}}) &&
+           fill(p, (march_part){{in.high[0], in.low[1]}, {width, in.high[1]}}) &&
+           fill(p, (march_part){{0, in.high[1]}, {width, height}});
 }

@@ -244,42 +244,92 @@ uint32_t pass_particles_used(const pass *particles) {
     return born < s->desc.count ? (uint32_t)born : s->desc.count;
 }
 
-void pass_particles_write(const pass *particles, const shader_binary *binary,
-                          unsigned char *block) {
+#define UNIFORMS(NAME)                                                                             \
+    NAME(particle_count), NAME(particle_used), NAME(particle_next), NAME(particle_round),          \
+        NAME(particle_seed), NAME(particle_back)
+enum { UNIFORMS(KERNEL_NAME_ID), UNIFORM_COUNT };
+static const char *const uniforms[] = {UNIFORMS(KERNEL_NAME_TEXT)};
+
+#define SLOTS(NAME)                                                                                \
+    NAME(ParticlePositions), NAME(ParticlePositionsMore), NAME(ParticleVelocities),                \
+        NAME(ParticleVelocitiesMore), NAME(ParticleQuantities), NAME(BirthTriangles),              \
+        NAME(BirthShares), NAME(Instances)
+enum { SLOTS(KERNEL_NAME_ID), SLOT_COUNT };
+static const char *const slots[] = {SLOTS(KERNEL_NAME_TEXT)};
+
+static void find_values(const pass *particles, uint32_t out[UNIFORM_COUNT]) {
     const particles_state *s = particles_of(particles);
     const pass_host *host = particles->host;
     float seed[4];
     pass_evaluate_vector(particles, "seed", seed);
-    uint32_t next = (uint32_t)(s->clock.born % s->desc.count);
-    double back = particles_reached(s) - host->context->time;
-    write_uint(binary, block, "particle_count", s->desc.count);
-    write_uint(binary, block, "particle_used", pass_particles_used(particles));
-    write_uint(binary, block, "particle_next", next);
-    write_uint(binary, block, "particle_round", (uint32_t)(s->clock.born - next));
-    write_uint(binary, block, "particle_seed",
-               (uint32_t)lrintf(seed[0]) + host->frame->size.v[3] * 2654435761u);
-    write_float(binary, block, "particle_back", fmin(fmax(back, 0), s->desc.time_step));
+    const float back =
+        (float)fmin(fmax(particles_reached(s) - host->context->time, 0), s->desc.time_step);
+    out[N_particle_count] = s->desc.count;
+    out[N_particle_used] = pass_particles_used(particles);
+    out[N_particle_next] = (uint32_t)(s->clock.born % s->desc.count);
+    out[N_particle_round] = (uint32_t)(s->clock.born - out[N_particle_next]);
+    out[N_particle_seed] = (uint32_t)lrintf(seed[0]) + host->frame->size.v[3] * 2654435761u;
+    memcpy(&out[N_particle_back], &back, sizeof back);
+}
+
+void pass_particles_write(const pass *particles, const shader_binary *binary,
+                          unsigned char *block) {
+    uint32_t values[UNIFORM_COUNT];
+    find_values(particles, values);
+    for (int i = 0; i < UNIFORM_COUNT; i++)
+        pass_write_member(binary, block, uniforms[i], &values[i], sizeof values[i]);
+}
+
+// The particles that a pass has to do with: those that it is itself, or reads.
+static const pass *source_of(const pass *p) {
+    return pass_is(p, "particles") ? p : p->particles;
+}
+
+static void set_values(const pass *p, kernel *k, const kernel_place *places) {
+    uint32_t values[UNIFORM_COUNT];
+    if (!source_of(p)) return;
+    find_values(source_of(p), values);
+    for (int i = 0; i < UNIFORM_COUNT; i++)
+        kernel_set_at(k, &places[i], &values[i], sizeof values[i]);
+}
+
+static gpu_buffer *find_buffer(const pass *particles, int slot) {
+    const particles_state *s = particles_of(particles);
+    gpu_buffer *const all[SLOT_COUNT] = {
+        [N_ParticlePositions] = s->buffers.positions[0],
+        [N_ParticlePositionsMore] = s->buffers.positions[1],
+        [N_ParticleVelocities] = s->buffers.velocities[0],
+        [N_ParticleVelocitiesMore] = s->buffers.velocities[1],
+        [N_ParticleQuantities] = s->buffers.quantities,
+        [N_BirthTriangles] = s->triangles,
+        [N_BirthShares] = s->at.buffer,
+        [N_Instances] = s->desc.at ? scene_instances_buffer(s->desc.at) : NULL,
+    };
+    return all[slot];
 }
 
 bool pass_particles_bind(const pass *particles, const char *name, gpu_binding *out) {
-    const particles_state *s = particles_of(particles);
-    const struct {
-        const char *name;
-        gpu_buffer *buffer;
-    } all[] = {
-        {"ParticlePositions", s->buffers.positions[0]},
-        {"ParticlePositionsMore", s->buffers.positions[1]},
-        {"ParticleVelocities", s->buffers.velocities[0]},
-        {"ParticleVelocitiesMore", s->buffers.velocities[1]},
-        {"ParticleQuantities", s->buffers.quantities},
-        {"BirthTriangles", s->triangles},
-        {"BirthShares", s->at.buffer},
-        {"Instances", s->desc.at ? scene_instances_buffer(s->desc.at) : NULL},
-    };
-    for (size_t i = 0; i < COUNT_OF(all); i++) {
-        if (!all[i].buffer || strcmp(all[i].name, name) != 0) continue;
-        *out = (gpu_binding){.buffer = all[i].buffer};
-        return true;
-    }
-    return false;
+    *out = (gpu_binding){0};
+    for (int i = 0; i < SLOT_COUNT; i++)
+        if (strcmp(slots[i], name) == 0) out->buffer = find_buffer(particles, i);
+    return out->buffer;
 }
+
+static bool bind(pass *p, int slot, gpu_binding *out) {
+    const pass *from = source_of(p);
+    out->buffer = from ? find_buffer(from, slot) : NULL;
+    return out->buffer;
+}
+
+static size_t defines_of(const pass *p, shader_define out[PASS_PROVIDER_DEFINES]) {
+    return p->particles ? pass_particles_defines(p->particles, out) : 0;
+}
+
+const pass_provider pass_particles_provider = {
+    .slots = {slots, SLOT_COUNT},
+    .uniforms = {uniforms, UNIFORM_COUNT},
+    .find = pass_find_particles,
+    .defines = defines_of,
+    .set = set_values,
+    .bind = bind,
+};

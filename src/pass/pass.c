@@ -31,6 +31,7 @@ pass *pass_create(pass_host *host, const pass_type *type, const char *shader, co
         .unread = arena_alloc(memory, face->image_count * sizeof(gpu_image *)),
         .scale = 1,
     };
+    pass_find_names(p);
     for (size_t i = 0; i < face->option_count; i++) p->options[i] = face->options[i].value;
     for (size_t i = 0; i < face->image_count; i++) p->formats[i] = face->images[i].format;
     return p;

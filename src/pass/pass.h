@@ -7,8 +7,8 @@
 #pragma once
 #include "field/field.h"
 #include "graph/graph.h"
+#include "kernel/kernel.h"
 #include "scene/instances.h"
-#include "shader/shader.h"
 
 typedef struct pass pass;
 
@@ -86,15 +86,38 @@ typedef enum pass_meshes_use { // what a type does with the meshes that it is gi
     PASS_USES_MESHES,  // as shapes that need not be seen
 } pass_meshes_use;
 
+typedef struct pass_kernel { // zero: the type's own shader, as it is
+    const char *shader;      // NULL: the type's own; of what draws the fragment shader
+    const char *vertex;      // of what draws; NULL: `shader` is a compute shader
+    const char *define;      // "1" for this kernel alone; NULL: none
+    bool without_fields;     // it evaluates none: then its code is the same whatever they are
+} pass_kernel;
+
+typedef struct pass_defines { // of a kernel that is being compiled
+    shader_define items[96];
+    size_t count;
+} pass_defines;
+
 typedef struct pass_type {
     const char *name;   // "march"
     const char *shader; // "pass/march.comp"
+    // Its work: the first kernel is the one that user shaders have. NULL: it has hooks of its own.
+    const pass_kernel *kernels;
+    size_t kernel_count;
+    kernel_names names; // that its hooks use: of uniforms, options, fields, images and slots
+    const kernel_table *solver; // whose slots its kernels may have (pass_solver_places); NULL: none
     pass_meshes_use meshes;
     bool unscaled;                     // what it writes has a size of its own
+    bool constructed;                  // by a function or method of Lua of its own, not by NAME { }
     const pass_simulation *simulation; // NULL: it does not simulate
     // Optional hooks.
     bool (*declare)(pass *p);  // instead of one image per output
     bool (*complete)(pass *p); // see pass_complete
+    // What a kernel is compiled with besides; false: it is left out, for now (pass_make_kernel).
+    bool (*defines)(pass *p, size_t index, pass_defines *out);
+    // Of a kernel that draws: what to. Its formats, depth, culling and blending.
+    void (*target)(const pass *p, size_t index, gpu_graphics_desc *out);
+    bool (*update)(pass *p);   // numbers of a frame that the host computes, by pass_set
     bool (*check)(pass *p);    // compile all that build would, without a device
     bool (*build)(pass *p);    // instead of one pipeline; see pass_build
     bool (*allocate)(pass *p); // besides what every pass needs; see pass_allocate
@@ -105,7 +128,7 @@ typedef struct pass_type {
     void (*destroy)(pass *p);
 } pass_type;
 
-const pass_type *pass_types(size_t *count);
+const pass_type *const *pass_types(size_t *count);
 const pass_type *pass_type_find(const char *name); // NULL with a message that suggests
 
 // An instance of a built-in type, or of a shader file in the effect's folder (type NULL). `label`
@@ -151,6 +174,7 @@ bool pass_declare(pass *p); // checks that what is required is there; adds image
 bool pass_complete(pass *p);
 const pass_simulation *pass_get_simulation(const pass *p); // NULL: it does not simulate
 bool pass_draws_meshes(const pass *p);
+bool pass_traces_levels(const pass *p); // its rays meet meshes as they are simplified
 // Compiles the shaders; needs no device. Passes of one effect may be checked, or built, side by
 // side.
 bool pass_check(pass *p);

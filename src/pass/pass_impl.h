@@ -1,6 +1,7 @@
 // The inside of a pass, for the files of this layer only.
 #pragma once
 #include "field/program.h"
+#include "kernel/kernel.h"
 #include "pass/pass.h"
 
 typedef struct pass_palette { // a palette's texture, one per pass that uses it
@@ -9,6 +10,11 @@ typedef struct pass_palette { // a palette's texture, one per pass that uses it
     double time;      // of its content; NAN: none yet
     uint32_t version; // of its content (palette_version)
 } pass_palette;
+
+typedef struct pass_parent { // where a uniform comes from while it is not set
+    const pass *pass;        // NULL: it is its default
+    size_t index;
+} pass_parent;
 
 struct pass {
     pass_host *host;
@@ -48,7 +54,12 @@ struct pass {
     field_grid *baked;   // bake only: the grid it fills
     void *state;         // of the type's hooks
     bool completed;
-    pass *runs_in; // the pass that builds and runs this one; NULL: the graph does
+    const struct pass_name *names; // what the type's names are in `face`
+    pass_parent *parents;          // of uniforms (source.c); NULL: nothing is taken from others
+    struct pass_built *built;      // kernels, as the type lists them
+    float (*values)[4];            // of uniforms, in this frame
+    bool *wanted;                  // of uniforms: a kernel or the type reads it
+    pass *runs_in;                 // the pass that builds and runs this one; NULL: the graph does
 };
 
 // Puts the line that made it before the message, unless one stands there. Always returns false.
@@ -57,6 +68,79 @@ bool pass_blame(const pass *p);
 // Of a pass that runs in another.
 bool pass_check_part(pass *p);
 bool pass_build_part(pass *p);
+
+// ---- kernels ----------------------------------------------------------------------------------
+
+// To a kernel's defines.
+void pass_define(pass_defines *out, const char *name, const char *value);
+void pass_define_number(pass *p, pass_defines *out, const char *name, uint32_t value);
+void pass_define_flag(pass_defines *out, const char *name, bool value); // 1 or 0
+
+// Kernel `index` of the type's list, with all bound that the pass itself knows: blocks, textures of
+// fields, images, and what providers have. The type binds the rest by the numbers of its names.
+// NULL with a message.
+kernel *pass_use(pass *p, size_t index);
+bool pass_dispatch(pass *p, size_t index, uint32_t x, uint32_t y, uint32_t z); // and runs it
+// Inside or outside a frame: compiles and builds it as the type's hooks want it now, if it is not,
+// or `again` all the same.
+bool pass_make_kernel(pass *p, size_t index, bool again);
+bool pass_has_kernel(const pass *p, size_t index); // it is built
+
+// Where the names of the type's solver are in a kernel.
+const kernel_place *pass_solver_places(const pass *p, size_t index);
+
+// Numbers go to all kernels that have a uniform of that name, and names are numbers:
+// KERNEL_NAME_ID.
+void pass_set(pass *p, int name, const void *data, size_t size);
+void pass_set_float(pass *p, int name, float value);
+void pass_set_int(pass *p, int name, int32_t value);
+void pass_set_box(pass *p, box3 box); // uniforms box_min and box_max; an empty box is a point
+
+// Uniforms of the interface as of now, by the context's time: pass_prepare does, once a frame.
+bool pass_evaluate_values(pass *p);
+const float *pass_vector(const pass *p, int name); // as evaluated last: 4 components
+float pass_value(const pass *p, int name);
+// One as of the context's time, whatever was evaluated last. False when a script's function failed.
+bool pass_evaluate_now(const pass *p, int name, float out[4]);
+// What else a type's names may be. A name that the shader does not declare as such is a bug.
+size_t pass_option(const pass *p, int name); // index of the word that it has
+bool pass_option_is(const pass *p, int name, const char *word);
+uint32_t pass_option_number(const pass *p, int name);   // of words that are numbers
+const field *pass_given_field(const pass *p, int name); // NULL: not given
+graph_image *pass_image(const pass *p, int name);
+gpu_image *pass_get_image(const pass *p, int name); // on the device, in a frame; may be NULL
+
+// What shaders may ask for by including a file of lib/: one row for each, in providers.c. A kernel
+// that has a slot or uniform of a row's names is given it.
+enum { PASS_PROVIDER_DEFINES = 4 };
+typedef struct pass_provider {
+    kernel_names slots, uniforms;
+    bool (*find)(pass *p); // when the pass is declared; may be NULL, as all of these
+    size_t (*defines)(const pass *p, shader_define out[PASS_PROVIDER_DEFINES]);
+    bool (*check)(pass *p); // compiles what it runs itself
+    bool (*build)(pass *p);
+    bool (*prepare)(pass *p); // in a frame, before the pass's work
+    void (*set)(const pass *p, kernel *k, const kernel_place *uniforms);
+    bool (*bind)(pass *p, int slot, gpu_binding *out); // false: it has none for this pass
+    void (*destroy)(pass *p);
+} pass_provider;
+const pass_provider *const *pass_providers(size_t *count);
+extern const pass_provider pass_particles_provider, pass_lamps_provider;
+
+// Of build.c and kernels.c.
+typedef struct pass_name { // what a type's name is in the interface; -1: not that
+    int16_t uniform, option, field, image;
+} pass_name;
+bool pass_describe_stage(pass *p, const char *shader, shader_stage stage,
+                         const pass_defines *defines, shader_compile_desc *out);
+void pass_find_names(pass *p);
+bool pass_compile_kernels(pass *p);
+bool pass_build_kernels(pass *p);
+void pass_destroy_kernels(pass *p);
+void pass_copy_values(pass *p); // of uniforms into all kernels
+// What a texture of the fields, or an image of the interface, is now.
+bool pass_bind_texture(pass *p, size_t index, gpu_binding *out);
+bool pass_bind_image(pass *p, size_t index, gpu_binding *out);
 
 // ---- help for hooks ---------------------------------------------------------------------------
 
@@ -104,6 +188,8 @@ bool pass_bind(pass *p, const shader_binary *binary, const unsigned char *block,
 // Of what simulates: whether its images are looked at in this frame, by the picture or by something
 // else that simulates.
 bool pass_is_watched(const pass *p);
+bool pass_has_content(const pass *p); // all its images have, that are there
+bool pass_clear_outputs(pass *p);     // to 0; always true
 
 // An image of a grid that fields sample, as it is now; NULL: there is none just now. A second set
 // is the first when it is not blended.

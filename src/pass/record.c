@@ -2,12 +2,9 @@
 // dispatched.
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/lamps.h"
 #include "pass/particles.h"
 #include "pass/pass_impl.h"
 #include "pass/ranges.h"
-#include "scene/bvh.h"
-#include "scene/sky_image.h"
 #include <math.h>
 #include <string.h>
 
@@ -48,7 +45,7 @@ bool pass_fill_block(pass *p, const shader_binary *binary, unsigned char *block)
             memcpy(block + member.offset, value, member.size < 16 ? member.size : 16);
         }
     }
-    if (p->particles) pass_particles_write(p->particles, binary, block);
+    if (p->particles) pass_particles_write(p->particles, binary, block); // until all list kernels
     return !p->type || !p->type->fill || p->type->fill(p, binary, block);
 }
 
@@ -85,48 +82,48 @@ gpu_image *pass_field_image(const pass *p, const field_texture *t) {
     return image ? image : t->grid->state.images[0][t->image];
 }
 
-// A texture of the fields.
-static bool bind_field_texture(pass *p, const char *name, gpu_binding *out) {
+bool pass_bind_texture(pass *p, size_t index, gpu_binding *out) {
     const field_texture *textures;
-    size_t count = field_program_textures(p->program, &textures);
-    for (size_t i = 0; i < count; i++) {
-        const field_texture *t = &textures[i];
-        if (strcmp(t->glsl_name, name) != 0) continue;
-        if (t->palette) {
-            out->image = palette_image(p, t->palette);
-            out->sampler = GPU_LINEAR_CLAMP;
-            return true;
-        }
-        if (t->ranges) { // these are fetched, not filtered
-            out->image = pass_ranges_get(p, t);
-            out->sampler = GPU_NEAREST_CLAMP;
-            return out->image != NULL;
-        }
-        if (t->index) {
-            out->image = t->grid->state.index[t->set][t->image];
-            out->sampler = GPU_NEAREST_CLAMP;
-            return true;
-        }
+    field_program_textures(p->program, &textures);
+    const field_texture *t = &textures[index];
+    out->sampler = GPU_NEAREST_CLAMP; // of what is fetched
+    if (t->palette) {
+        out->image = palette_image(p, t->palette);
+        out->sampler = GPU_LINEAR_CLAMP;
+    } else if (t->ranges) {
+        out->image = pass_ranges_get(p, t);
+    } else if (t->index) {
+        out->image = t->grid->state.index[t->set][t->image];
+    } else {
         out->image = pass_field_image(p, t);
         if (!out->image) out->image = p->blank[1];
         out->sampler = t->grid->repeats ? GPU_LINEAR_REPEAT : GPU_LINEAR_CLAMP;
-        return true;
     }
+    return out->image || !t->ranges;
+}
+
+static bool bind_field_texture(pass *p, const char *name, gpu_binding *out) {
+    const field_texture *textures;
+    size_t count = field_program_textures(p->program, &textures);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(textures[i].glsl_name, name) == 0) return pass_bind_texture(p, i, out);
     return false;
 }
 
-static bool bind_image(pass *p, const char *glsl_name, gpu_binding *out) {
-    for (size_t i = 0; i < p->face->image_count; i++) {
-        const shader_image *image = &p->face->images[i];
-        if (strcmp(image->glsl_name, glsl_name) != 0) continue;
-        out->image = p->images[i].id ? graph_get_image(p->host->graph, p->images[i])
+bool pass_bind_image(pass *p, size_t index, gpu_binding *out) {
+    const shader_image *image = &p->face->images[index];
+    out->image = p->images[index].id ? graph_get_image(p->host->graph, p->images[index])
                                      : p->blank[image->volume];
-        if (!out->image) out->image = p->unread[i];
-        // Depths are compared, not mixed, and few devices could filter them.
-        bool depth = out->image && gpu_image_get_desc(out->image)->format == GPU_D32F;
-        out->sampler = depth ? GPU_NEAREST_CLAMP : GPU_LINEAR_CLAMP;
-        return true;
-    }
+    if (!out->image) out->image = p->unread[index];
+    // Depths are compared, not mixed, and few devices could filter them.
+    bool depth = out->image && gpu_image_get_desc(out->image)->format == GPU_D32F;
+    out->sampler = depth ? GPU_NEAREST_CLAMP : GPU_LINEAR_CLAMP;
+    return true;
+}
+
+static bool bind_image(pass *p, const char *glsl_name, gpu_binding *out) {
+    for (size_t i = 0; i < p->face->image_count; i++)
+        if (strcmp(p->face->images[i].glsl_name, glsl_name) == 0) return pass_bind_image(p, i, out);
     return false;
 }
 
@@ -151,44 +148,22 @@ static bool bind_block(const pass *p, const shader_binary *binary, const char *n
     return true;
 }
 
-static bool bind_buffer(const pass *p, const char *name, gpu_binding *out) {
-    static const char *const bvh_parts[BVH_PARTS] = {"BvhNodes",    "BvhTriangles", "BvhInstances",
-                                                     "BvhSurfaces", "BvhVertices",  "BvhMaterials",
-                                                     "BvhTexels"};
-    if (p->particles && pass_particles_bind(p->particles, name, out)) return true;
-    if (pass_lamps_bind(p, name, out)) return true;
-    if (strcmp(name, "Counters") == 0) out->buffer = p->counters;
-    for (int i = 0; i < BVH_PARTS; i++)
-        if (strcmp(name, bvh_parts[i]) == 0)
-            out->buffer = scene_bvh_buffer(p->host->bvh, (scene_bvh_part)i);
-    return out->buffer || err_set("%s: storage buffer '%s' is not known", p->label, name);
-}
-
-// Textures that every shader can read by including a file of lib/.
-static bool bind_common_image(const pass *p, const char *name, gpu_binding *out) {
-    const sky_image *sky = p->host->scene->sky.image;
-    out->sampler = GPU_NEAREST_CLAMP;
-    if (strcmp(name, "BlueNoise") == 0) {
-        out->image = p->host->blue_noise;
-    } else if (strcmp(name, "SkyDistribution") == 0) {
-        out->image = sky ? sky_image_distribution(sky) : p->blank[0];
-    } else if (strcmp(name, "Sky") == 0) {
-        out->image = sky ? sky_image_texture(sky) : p->blank[0];
-        out->sampler = GPU_LINEAR_REPEAT;
-    } else {
-        return false;
-    }
-    return true;
+static bool bind_provided(pass *p, const char *name, gpu_binding *out) {
+    size_t count;
+    const pass_provider *const *rows = pass_providers(&count);
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0; k < rows[i]->slots.count; k++)
+            if (strcmp(rows[i]->slots.items[k], name) == 0 && rows[i]->bind(p, (int)k, out))
+                return true;
+    return false;
 }
 
 static bool bind_slot(pass *p, const shader_binary *binary, const shader_slot *slot,
                       const unsigned char *block, gpu_binding *out) {
     if (slot->slot.kind == GPU_SLOT_UNIFORM) return bind_block(p, binary, slot->name, block, out);
-    if (slot->slot.kind == GPU_SLOT_STORAGE_BUFFER) return bind_buffer(p, slot->name, out);
     return bind_field_texture(p, slot->name, out) || bind_image(p, slot->name, out) ||
-           bind_common_image(p, slot->name, out) || pass_lamps_bind(p, slot->name, out) ||
-           err_set("%s: image '%s' has no annotation (//= input or //= output)", p->label,
-                   slot->name);
+           bind_provided(p, slot->name, out) ||
+           err_set("%s: nothing is known to bind to '%s'", p->label, slot->name);
 }
 
 bool pass_bind(pass *p, const shader_binary *binary, const unsigned char *block,
@@ -212,9 +187,23 @@ bool pass_bind(pass *p, const shader_binary *binary, const unsigned char *block,
 
 // ---- recording --------------------------------------------------------------------------------
 
+static bool fill_kernels(pass *p) {
+    if (!pass_evaluate_values(p)) return false;
+    pass_copy_values(p);
+    return !p->type || !p->type->update || p->type->update(p);
+}
+
 static bool fill_numbers(pass *p) {
     return field_program_fill(p->program, p->host->context, p->numbers) &&
-           pass_fill_block(p, &p->binary, p->block);
+           (p->built ? fill_kernels(p) : pass_fill_block(p, &p->binary, p->block));
+}
+
+static bool prepare_providers(pass *p) {
+    size_t count;
+    const pass_provider *const *rows = pass_providers(&count);
+    for (size_t i = 0; i < count; i++)
+        if (rows[i]->prepare && !rows[i]->prepare(p)) return false;
+    return true;
 }
 
 bool pass_is_watched(const pass *p) {
@@ -224,9 +213,27 @@ bool pass_is_watched(const pass *p) {
     return feeds || !p->host->ahead;
 }
 
+bool pass_has_content(const pass *p) {
+    for (size_t i = 0; i < p->face->image_count; i++) {
+        graph_image image = p->images[i];
+        if (graph_get_image(p->host->graph, image) && !graph_has_content(p->host->graph, image))
+            return false;
+    }
+    return true;
+}
+
+bool pass_clear_outputs(pass *p) {
+    static const float zero[4] = {0};
+    for (size_t i = 0; i < p->face->image_count; i++) {
+        gpu_image *image = graph_get_image(p->host->graph, p->images[i]);
+        if (image) gpu_image_clear(p->host->device, image, zero);
+    }
+    return true;
+}
+
 bool pass_prepare(pass *p) {
     if (p->counters) gpu_buffer_fill(p->host->device, p->counters, 0);
-    return update_palettes(p) && fill_numbers(p) && pass_lamps_record(p);
+    return update_palettes(p) && fill_numbers(p) && prepare_providers(p);
 }
 
 bool pass_rehearse(pass *p) {
@@ -244,28 +251,38 @@ bool pass_rehearse(pass *p) {
     return fill_numbers(p) && (!p->type || !p->type->rehearse || p->type->rehearse(p));
 }
 
-static bool draw_fullscreen(pass *p, const gpu_binding *bindings, size_t count) {
-    gpu_draw draw = {.bindings = bindings, .binding_count = count, .vertices = 3};
-    gpu_draw_desc desc = {.pipeline = p->pipeline, .draws = &draw, .draw_count = 1};
+static bool draw_fullscreen(pass *p, const kernel *k) {
+    gpu_binding kept[GPU_MAX_SLOTS];
+    gpu_draw draw = kernel_draw(k, kept);
+    gpu_draw_desc desc = {.pipeline = k->pipeline, .draws = &draw, .draw_count = 1};
     size_t targets = 0;
-    for (size_t i = 0; i < p->face->image_count && targets < 4; i++)
+    draw.vertices = 3;
+    for (size_t i = 0; i < p->face->image_count && targets < GPU_MAX_TARGETS; i++)
         if (p->face->images[i].output)
             desc.colors[targets++] = graph_get_image(p->host->graph, p->images[i]);
     return gpu_draw_all(p->host->device, &desc);
 }
 
-bool pass_run(pass *p) {
+static bool run_old(pass *p) { // until all list kernels
     gpu_binding bindings[GPU_MAX_SLOTS];
     size_t count;
     if (!pass_bind(p, &p->binary, p->block, NULL, 0, bindings, &count)) return false;
-    if (str_ends_with(p->shader, ".frag")) return draw_fullscreen(p, bindings, count);
     gpu_dispatch_desc dispatch = {p->pipeline, bindings, count, {1, 1, 1}};
-    for (size_t i = 0; i < p->face->image_count; i++) {
-        if (!p->face->images[i].output) continue;
-        graph_get_size(p->host->graph, p->images[i], dispatch.threads);
-        break;
-    }
+    for (size_t i = p->face->image_count; i-- > 0;)
+        if (p->face->images[i].output)
+            graph_get_size(p->host->graph, p->images[i], dispatch.threads);
     return gpu_dispatch(p->host->device, &dispatch);
+}
+
+bool pass_run(pass *p) {
+    if (!p->built) return run_old(p);
+    uint32_t size[3] = {1, 1, 1};
+    kernel *k = pass_use(p, 0);
+    if (!k) return false;
+    if (k->stages > 1) return draw_fullscreen(p, k);
+    for (size_t i = p->face->image_count; i-- > 0;)
+        if (p->face->images[i].output) graph_get_size(p->host->graph, p->images[i], size);
+    return kernel_run(k, p->host->device, size[0], size[1], size[2]);
 }
 
 bool pass_record(pass *p) {

@@ -2,14 +2,17 @@
 #include "pass/slices.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
-#include "pass/slices_parts.h"
-#include "pass/slices_templates.h"
+#include "pass/slices_templates_parts.h"
 #include <math.h>
 #include <string.h>
 
 const char *const pass_slices_names[PASS_SLICES_NAMES] = {"density", "temperature", "dye",
                                                           "pressure", "velocity"};
+
+const char *const slices_names[SLICES_NAME_COUNT] = {SLICES_NAMES(KERNEL_NAME_TEXT)};
+static const pass_kernel kernels[SLICES_KERNELS] = {
+    [SLICES_DRAW] = {.shader = "pass/slices/templates_draw.comp", .without_fields = true},
+};
 
 // ---- the grid ---------------------------------------------------------------------------------
 
@@ -139,54 +142,51 @@ int pass_slices_use(pass *p, const char *name, int *components) {
 
 // ---- declaring --------------------------------------------------------------------------------
 
-static bool add_image(pass *p, slices_flow *f, const char *output, int index) {
-    int image = pass_find_image(p, output);
-    p->images[image] = graph_add_image(
-        p->host->graph, &(graph_image_desc){
-                            .name = arena_format(p->host->memory, "%s.%s", p->label, output),
-                            .format = p->formats[image],
-                            .width = f->desc.size[0],
-                            .height = f->desc.size[1],
-                            .depth = f->desc.count + 1,
-                            .optional = true,
-                            .keep = true,
-                        });
-    if (!p->images[image].id) return false;
-    pass_host_add_grid_image(p->host, &f->grid, index, p->images[image]);
+static bool add_image(pass *p, slices_flow *f, int output, int index) {
+    graph_image *image = pass_image(p, output);
+    *image = graph_add_image(
+        p->host->graph,
+        &(graph_image_desc){
+            .name = arena_format(p->host->memory, "%s.%s", p->label, slices_names[output]),
+            .format = p->formats[p->names[output].image],
+            .width = f->desc.size[0],
+            .height = f->desc.size[1],
+            .depth = f->desc.count + 1,
+            .optional = true,
+            .keep = true,
+        });
+    if (!image->id) return false;
+    pass_host_add_grid_image(p->host, &f->grid, index, *image);
     return true;
 }
 
-static size_t option(const pass *p, const char *name) {
-    size_t index;
-    return pass_find_key(p, name, &index) == PASS_OPTION ? p->options[index] : 0;
+static bool gives(const pass *p, int uniform) {
+    return p->uniforms[p->names[uniform].uniform];
 }
 
 static bool check_viscosity(const pass *p) {
-    size_t viscosity, reynolds;
-    pass_find_key(p, "viscosity", &viscosity);
-    pass_find_key(p, "reynolds", &reynolds);
-    return !p->uniforms[viscosity] || !p->uniforms[reynolds] ||
+    return !gives(p, N_viscosity) || !gives(p, N_reynolds) ||
            err_set("%s: 'reynolds' and 'viscosity' say the same; give one of them", p->label);
 }
 
-bool slices_declare(pass *p) {
+static bool declare(pass *p) {
     slices_flow *f = slices_of(p);
-    return check_viscosity(p) && add_image(p, f, "scalars", 0) &&
-           add_image(p, f, "velocity", PASS_SLICES_VELOCITY / 4);
+    return check_viscosity(p) && add_image(p, f, N_scalars, 0) &&
+           add_image(p, f, N_velocity, PASS_SLICES_VELOCITY / 4);
 }
 
 static flow_desc structure_of(const pass *p, const slices_flow *f) {
     flow_desc d = {
         .size = {f->desc.size[0], f->desc.size[1]},
         .slices = f->desc.count,
-        .advection = (flow_advection)option(p, "advection"),
-        .solver = (flow_solver)option(p, "solver"),
+        .advection = (flow_advection)pass_option(p, N_advection),
+        .solver = (flow_solver)pass_option(p, N_solver),
         .templates = f->templates && slices_has_pressing(p),
         .sources = f->templates && slices_has_pushing(p),
         .max_iterations = f->desc.max_iterations,
     };
-    static const char *const faces[4] = {"sides", "sides", "bottom", "top"};
-    for (int i = 0; i < 4; i++) d.faces[i] = (flow_face)option(p, faces[i]);
+    static const int faces[4] = {N_sides, N_sides, N_bottom, N_top};
+    for (int i = 0; i < 4; i++) d.faces[i] = (flow_face)pass_option(p, faces[i]);
     for (size_t i = 0; i < f->part_count; i++) {
         bool template = slices_is_template(f->parts[i]);
         bool obstacle = slices_is_obstacle(f->parts[i]);
@@ -196,15 +196,14 @@ static flow_desc structure_of(const pass *p, const slices_flow *f) {
     return d;
 }
 
-bool slices_complete(pass *p) {
+static bool complete(pass *p) {
     slices_flow *f = slices_of(p);
     if (p->host->hands) slices_take_hand(p);
     if (f->templates && f->templates->complete && !f->templates->complete(f)) return false;
     flow_desc structure = structure_of(p, f);
     f->solver = flow_create(p->host->memory, &structure);
     if (!f->solver) return err_prefix("%s: ", p->label);
-    const graph_image writes[] = {p->images[pass_find_image(p, "scalars")],
-                                  p->images[pass_find_image(p, "velocity")]};
+    const graph_image writes[] = {*pass_image(p, N_scalars), *pass_image(p, N_velocity)};
     return pass_add_part(p, &(pass_part){
                                 .name = "step",
                                 .writes = writes,
@@ -216,3 +215,33 @@ bool slices_complete(pass *p) {
                                 .record = slices_record,
                             });
 }
+
+// Templates are drawn into the flow, if there are any.
+static bool defines(pass *p, size_t index, pass_defines *out) {
+    const slices_flow *f = slices_of(p);
+    if (index != SLICES_DRAW) return true;
+    if (f->templates) slices_templates_define_draw(f, out);
+    return f->templates;
+}
+
+const pass_type slices_type = {
+    .name = "slices",
+    .constructed = true,
+    .shader = "pass/slices.comp",
+    .kernels = kernels,
+    .kernel_count = SLICES_KERNELS,
+    .names = {slices_names, SLICES_NAME_COUNT},
+    .solver = &flow_kernel_table,
+    .unscaled = true,
+    .simulation = &slices_simulation,
+    .declare = declare,
+    .complete = complete,
+    .defines = defines,
+    .check = slices_check,
+    .build = slices_build,
+    .allocate = slices_allocate,
+    .update = slices_update,
+    .rehearse = slices_rehearse,
+    .record = slices_record,
+    .destroy = slices_destroy,
+};

@@ -1,7 +1,6 @@
 // Building the pass type `slices`: its shader, its solver's, and those of the parts that it runs.
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/slices_parts.h"
 
 static bool each_part(const slices_flow *f, bool (*call)(pass *part)) {
@@ -17,19 +16,17 @@ static bool extra(slices_flow *f, bool (*call)(slices_flow *f)) {
 bool slices_check(pass *p) {
     slices_flow *f = slices_of(p);
     const pass_host *host = p->host;
-    return pass_compile(p, p->shader, SHADER_COMPUTE, NULL, 0, &p->binary) &&
-           (flow_compile(f->solver, host->library, host->reader) || err_prefix("%s: ", p->label)) &&
-           each_part(f, pass_check_part) && (!f->templates || extra(f, f->templates->check));
+    return (flow_compile(f->solver, host->library, host->reader) || err_prefix("%s: ", p->label)) &&
+           pass_compile_kernels(p) && each_part(f, pass_check_part) &&
+           (!f->templates || extra(f, f->templates->check));
 }
 
 bool slices_build(pass *p) {
     slices_flow *f = slices_of(p);
     const pass_host *host = p->host;
-    if (!pass_compile(p, p->shader, SHADER_COMPUTE, NULL, 0, &p->binary)) return false;
     if (!flow_build(f->solver, host->device, host->library, host->reader))
         return err_prefix("%s: ", p->label);
-    p->pipeline = pass_create_compute(p, &p->binary);
-    return p->pipeline && each_part(f, pass_build_part) &&
+    return pass_build_kernels(p) && each_part(f, pass_build_part) &&
            (!f->templates || extra(f, f->templates->build));
 }
 

@@ -63,7 +63,7 @@ static void fill_one(const slices_flow *f, const slices_hand *hand, uint32_t til
     memcpy(out, values, sizeof values);
 }
 
-void slices_hand_fill(slices_flow *f, const shader_binary *binary, unsigned char *block) {
+void slices_hand_set(slices_flow *f, kernel *k) {
     slices_templates *t = slices_templates_of(f);
     float values[4 * VALUES * SLICES_HAND_MOST] = {0};
     uint32_t count = 0;
@@ -72,8 +72,8 @@ void slices_hand_fill(slices_flow *f, const shader_binary *binary, unsigned char
         fill_one(f, &t->hand.at[i], t->group_count + i, values + 4 * VALUES * count++);
         t->hand.left[i] = fmax(t->hand.left[i] - f->clock.step, 0);
     }
-    pass_write_member(binary, block, "hand", values, sizeof values);
-    pass_write_member(binary, block, "hand_count", &count, sizeof count);
+    kernel_set(k, N_hand, values, sizeof values);
+    kernel_set_int(k, N_hand_count, (int32_t)count);
 }
 
 void slices_hand_line(const slices_hand *hand, const char *variable, const char *file,

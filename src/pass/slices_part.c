@@ -3,7 +3,6 @@
 // while nothing that they depend on changes, these stay as they are.
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/slices_paint.h"
 #include "pass/slices_parts.h"
 #include "pass/slices_templates.h"
@@ -15,7 +14,8 @@ typedef struct part_state {
     gpu_image *image;    // of it
     bool first;          // of its kind: it writes what others add to
     bool known;          // the input holds what it wrote with
-    unsigned char *last; // these numbers
+    unsigned char *last; // these numbers; NULL: none yet
+    bool is_numbers;     // it depends on numbers alone
 } part_state;
 
 bool slices_is_obstacle(const pass *part) {
@@ -61,40 +61,27 @@ bool pass_slices_add(pass *p, pass *part, const struct picture *painted) {
 
 // ---- building ---------------------------------------------------------------------------------
 
-static bool compile(pass *p) {
+static bool defines(pass *p, size_t index, pass_defines *out) {
     const part_state *s = p->state;
-    shader_define defines[FLOW_MAX_DEFINES + 1];
-    size_t count = flow_defines(s->flow->solver, defines);
-    defines[count++] = (shader_define){"PICTURE", s->painted ? "1" : "0"};
-    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, count, &p->binary);
+    (void)index;
+    out->count += flow_defines(s->flow->solver, out->items + out->count);
+    pass_define_flag(out, "PICTURE", s->painted);
+    return true;
 }
 
-bool slices_part_declare(pass *p) {
+static bool declare(pass *p) {
     (void)p;
     return true;
 }
 
-bool slices_part_check(pass *p) {
-    return compile(p);
-}
-
-bool slices_part_build(pass *p) {
-    part_state *s = p->state;
-    if (!compile(p)) return false;
-    p->pipeline = pass_create_compute(p, &p->binary);
-    s->last = arena_alloc(p->host->memory,
-                          pass_block_size(&p->binary) + field_program_block_size(p->program) + 16);
-    return p->pipeline != NULL;
-}
-
-bool slices_part_allocate(pass *p) {
+static bool allocate(pass *p) {
     part_state *s = p->state;
     if (!s || !s->painted || s->image) return true;
     s->image = slices_paint(p->host->device, s->painted, s->flow->desc.size);
     return s->image || err_prefix("%s: ", p->label);
 }
 
-void slices_part_destroy(pass *p) {
+static void destroy(pass *p) {
     part_state *s = p->state;
     if (s && s->image) gpu_image_destroy(p->host->device, s->image);
 }
@@ -102,19 +89,16 @@ void slices_part_destroy(pass *p) {
 // ---- a step -----------------------------------------------------------------------------------
 
 // Time is written where something varies with it only, so that what stands still is seen to.
-bool slices_part_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+static bool update(pass *p) {
     const part_state *s = p->state;
     const slices_flow *f = s->flow;
     float variation[4];
-    if (!pass_evaluate_vector(f->pass, "variation", variation)) return false;
-    const float now = variation[0] > 0 ? (float)p->host->context->time : 0;
-    const float duration = (float)f->clock.step;
-    const uint32_t first = s->first, variety = slices_seed(f) * (2 * PASS_SLICES_MOST);
-    pass_write_member(binary, block, "now", &now, sizeof now);
-    pass_write_member(binary, block, "duration", &duration, sizeof duration);
-    pass_write_member(binary, block, "is_first", &first, sizeof first);
-    pass_write_member(binary, block, "variety", &variety, sizeof variety);
-    pass_write_member(binary, block, "variation", variation, sizeof *variation);
+    if (!pass_evaluate_now(f->pass, N_variation, variation)) return false;
+    pass_set_float(p, N_now, variation[0] > 0 ? (float)p->host->context->time : 0);
+    pass_set_float(p, N_duration, (float)f->clock.step);
+    pass_set_int(p, N_is_first, s->first);
+    pass_set_int(p, N_variety, (int32_t)(slices_seed(f) * (2 * PASS_SLICES_MOST)));
+    pass_set_float(p, N_variation, variation[0]);
     return true;
 }
 
@@ -123,48 +107,39 @@ void slices_forget_part(pass *part) {
     if (!slices_is_template(part)) s->known = false;
 }
 
-// Whether it depends on numbers alone.
-static bool is_numbers(const pass *p) {
+static bool is_numbers(const pass *p, const kernel *k) {
     const field_texture *textures;
-    for (size_t i = 0; i < p->binary.slot_count; i++)
-        if (strcmp(p->binary.slots[i].name, "Frame") == 0) return false;
+    for (size_t i = 0; i < k->slot_count; i++)
+        if (strcmp(k->slots[i]->name, "Frame") == 0) return false;
     return field_program_textures(p->program, &textures) == 0;
 }
 
 // Evaluates the numbers of the step; `*same`: they are those of the last.
 static bool prepare(pass *p, bool *same) {
     part_state *s = p->state;
-    size_t block = pass_block_size(&p->binary), numbers = field_program_block_size(p->program);
-    if (!pass_prepare(p)) return false;
-    *same = s->known && is_numbers(p) && memcmp(s->last, p->block, block) == 0 &&
+    kernel *k = pass_prepare(p) ? pass_use(p, 0) : NULL;
+    if (!k) return false;
+    const size_t block = k->block_sizes[0], numbers = field_program_block_size(p->program);
+    if (!s->last) {
+        s->last = arena_alloc(p->host->memory, block + numbers + 16);
+        s->is_numbers = is_numbers(p, k);
+    }
+    *same = s->known && s->is_numbers && memcmp(s->last, k->blocks[0], block) == 0 &&
             memcmp(s->last + block, p->numbers, numbers) == 0;
-    memcpy(s->last, p->block, block);
+    memcpy(s->last, k->blocks[0], block);
     memcpy(s->last + block, p->numbers, numbers);
     s->known = true;
     return true;
 }
 
 static bool run(pass *p) {
-    part_state *s = p->state;
+    const part_state *s = p->state;
     const slices_flow *f = s->flow;
-    pass_override overrides[GPU_MAX_SLOTS];
-    size_t count = 0;
-    for (size_t i = 0; i < p->binary.slot_count; i++) {
-        overrides[count] = (pass_override){.name = p->binary.slots[i].name};
-        count += flow_bind(f->solver, overrides[count].name, &overrides[count].binding);
-    }
-    if (s->image)
-        overrides[count++] =
-            (pass_override){"Picture", {.image = s->image, .sampler = GPU_LINEAR_CLAMP}};
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc dispatch = {
-        .pipeline = p->pipeline,
-        .bindings = bindings,
-        .threads = {f->desc.size[0], f->desc.size[1], f->desc.count},
-    };
-    return pass_bind(p, &p->binary, p->block, overrides, count, bindings,
-                     &dispatch.binding_count) &&
-           gpu_dispatch(p->host->device, &dispatch);
+    kernel *k = pass_use(p, 0);
+    if (!k) return false;
+    flow_bind(f->solver, k, pass_solver_places(p, 0));
+    if (s->image) kernel_bind_image(k, N_Picture, s->image);
+    return kernel_run(k, p->host->device, f->desc.size[0], f->desc.size[1], f->desc.count);
 }
 
 static bool is_wanted(const pass *part, bool obstacles) {
@@ -185,3 +160,17 @@ bool slices_run_parts(slices_flow *f, bool obstacles) {
             return err_prefix("%s: ", f->parts[i]->label);
     return true;
 }
+
+static const pass_kernel kernels[1];
+
+#define PART(NAME)                                                                                 \
+    {                                                                                              \
+        .name = NAME, .shader = "pass/" NAME ".comp", .kernels = kernels, .kernel_count = 1,       \
+        .names = {slices_names, SLICES_NAME_COUNT}, .solver = &flow_kernel_table,                  \
+        .unscaled = true, .constructed = true, .declare = declare, .defines = defines,             \
+        .allocate = allocate, .update = update, .destroy = destroy                                 \
+    }
+
+const pass_type slices_inflow_type = PART("slices_inflow");
+const pass_type slices_force_type = PART("slices_force");
+const pass_type slices_obstacle_type = PART("slices_obstacle");

@@ -26,6 +26,23 @@ typedef struct slices_extra {
     void (*destroy)(slices_flow *f);
 } slices_extra;
 
+enum { SLICES_SHOW, SLICES_DRAW, SLICES_KERNELS }; // of the pass; those of steps are the solver's
+
+// Of all types of the family. Uniforms in the order of slices_numbers.
+#define SLICES_NAMES(NAME)                                                                         \
+    NAME(vorticity), NAME(buoyancy_density), NAME(buoyancy_heat), NAME(cooling_rate),              \
+        NAME(dissolve_rate), NAME(friction), NAME(tolerance), NAME(max_speed), NAME(force),        \
+        NAME(viscosity), NAME(reynolds), NAME(speed), NAME(left_velocity), NAME(right_velocity),   \
+        NAME(bottom_velocity), NAME(top_velocity), NAME(seed), NAME(variation), NAME(advection),   \
+        NAME(solver), NAME(sides), NAME(bottom), NAME(top), NAME(scalars), NAME(velocity),         \
+        NAME(size), NAME(blend), NAME(scalars_now), NAME(scalars_before), NAME(velocity_now),      \
+        NAME(velocity_before), NAME(now), NAME(duration), NAME(is_first), NAME(variety),           \
+        NAME(Picture), NAME(kind), NAME(region), NAME(key), NAME(first), NAME(count),              \
+        NAME(parity), NAME(tile), NAME(time_step), NAME(box_min), NAME(box_max), NAME(alone),      \
+        NAME(hand), NAME(hand_count), NAME(Templates), NAME(TemplateMasks), NAME(TemplateImages)
+enum { SLICES_NAMES(KERNEL_NAME_ID), SLICES_NAME_COUNT };
+extern const char *const slices_names[SLICES_NAME_COUNT];
+
 enum { SLICES_STEP, SLICES_SOURCES, SLICES_TEMPLATES, SLICES_FIELDS, SLICES_LABELS };
 
 struct slices_flow {
@@ -59,11 +76,6 @@ static inline slices_flow *slices_of(const pass *p) {
     return p->state;
 }
 
-// The seed of all that is random, as of the host's time.
-static inline uint32_t slices_seed(const slices_flow *f) {
-    return (uint32_t)pass_evaluate(f->pass, "seed");
-}
-
 // slices_part.c: a pass that runs in the slices' own, after what its fields sample. A group of
 // templates too, but all else that is to do with it is for f->templates.
 void slices_add_part(slices_flow *f, pass *part);
@@ -78,7 +90,22 @@ struct checkpoint_list;
 void slices_save(const pass *p, struct checkpoint_list *out);
 bool slices_load(pass *p, struct checkpoint *from);
 
+// slices_build.c
+bool slices_check(pass *p);
+bool slices_build(pass *p);
+bool slices_allocate(pass *p);
+void slices_destroy(pass *p);
+
+// slices_frame.c
+bool slices_update(pass *p);
+bool slices_rehearse(pass *p);
+bool slices_record(pass *p);
+
+// slices_readouts.c
+extern const pass_simulation slices_simulation;
+
 // slices_numbers.c
+uint32_t slices_seed(const slices_flow *f); // of all that is random, as of the host's time
 bool slices_numbers(const pass *p, flow_numbers *out); // as of the host's context
 
 // slices_time.c

@@ -1,7 +1,6 @@
 // What slices tell of themselves: what the device noticed some frames ago.
 #include "base/memory.h"
 #include "base/str.h"
-#include "pass/builtin.h"
 #include "pass/slices_parts.h"
 
 // Cells that the flow may cross in a step before it is told of: beyond it, what is carried is
@@ -17,16 +16,16 @@ static double courant(const slices_flow *f) {
 static void tell(const pass *p, slices_flow *f) {
     char *out = f->trouble;
     const size_t capacity = sizeof f->trouble;
-    const double tolerance = (double)pass_evaluate(p, "tolerance");
+    float tolerance[4];
     *out = '\0';
-    if (!f->reported) return;
+    if (!f->reported || !pass_evaluate_now(p, N_tolerance, tolerance)) return;
     if (courant(f) > most_cells)
         snprintf(
             out, capacity,
             "the flow crosses %.3g cells a step: set 'time_step' below %.2g s (it is %.2g), or "
             "'max_speed'",
             courant(f), f->clock.step * most_cells / courant(f), f->clock.step);
-    else if ((double)f->report.residual > most_left * tolerance)
+    else if ((double)f->report.residual > most_left * (double)tolerance[0])
         snprintf(out, capacity,
                  "the pressure leaves %.2g of the divergence, after %u iterations: set "
                  "'max_iterations' above that, or 'solver' to \"multigrid\"",
@@ -50,7 +49,9 @@ static size_t readouts(const pass *p, pass_readout *out, size_t capacity) {
     flow_numbers now;
     look(p);
     if (!slices_numbers(p, &now)) now = (flow_numbers){0};
-    double speed = (double)pass_evaluate(p, "speed"), viscosity = (double)now.viscosity;
+    float fastest[4];
+    pass_evaluate_now(p, N_speed, fastest);
+    double speed = (double)fastest[0], viscosity = (double)now.viscosity;
     double cells = (double)f->desc.size[0] * f->desc.size[1] * f->desc.count;
     const pass_readout all[] = {
         {"Reynolds", "", viscosity > 0 ? speed * f->desc.height / viscosity : 0},

@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/slices_templates_parts.h"
 
 static const slices_extra hooks;
@@ -25,8 +24,7 @@ gpu_buffer *slices_templates_buffer(const pass *p) {
 // ---- declaring --------------------------------------------------------------------------------
 
 static bool pushes(const pass *group) {
-    size_t index;
-    return pass_find_key(group, "kind", &index) == PASS_OPTION && group->options[index] == 1;
+    return pass_option(group, N_kind) == 1;
 }
 
 static bool has_kind(const pass *p, bool pushing) {
@@ -77,71 +75,52 @@ static uint64_t mask_bytes(const slices_flow *f) {
     return 2 * 4 * tiles * (words ? words : 1) * f->desc.count;
 }
 
-size_t slices_templates_defines(const slices_flow *f, shader_define *out) {
-    arena *memory = f->pass->host->memory;
-    const slices_templates *t = slices_templates_of(f);
-    out[0] = (shader_define){"TEMPLATES_TOTAL", arena_format(memory, "%u", t->total)};
-    out[1] = (shader_define){"TEMPLATES_TILE", arena_format(memory, "%u", tile_side(f))};
-    return SLICES_TEMPLATES_DEFINES;
+void slices_templates_define(const slices_flow *f, pass_defines *out) {
+    out->count += flow_defines(f->solver, out->items + out->count);
+    pass_define_number(f->pass, out, "TEMPLATES_TOTAL", slices_templates_of(f)->total);
+    pass_define_number(f->pass, out, "TEMPLATES_TILE", tile_side(f));
 }
 
-// ---- building: of a group ---------------------------------------------------------------------
+// ---- a group ----------------------------------------------------------------------------------
 
-static bool compile_group(pass *p) {
+static bool defines_of_group(pass *p, size_t index, pass_defines *out) {
     const template_group *g = p->state;
-    shader_define defines[FLOW_MAX_DEFINES + SLICES_TEMPLATES_DEFINES];
-    size_t count = flow_defines(g->flow->solver, defines);
-    count += slices_templates_defines(g->flow, defines + count);
-    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, count, &p->binary);
+    (void)index;
+    slices_templates_define(g->flow, out);
+    return true;
 }
 
-bool slices_templates_declare_group(pass *p) {
+static bool declare_group(pass *p) {
     (void)p;
     return true; // the flow runs it
-}
-
-bool slices_templates_check_group(pass *p) {
-    return compile_group(p);
-}
-
-bool slices_templates_build_group(pass *p) {
-    if (!compile_group(p)) return false;
-    p->pipeline = pass_create_compute(p, &p->binary);
-    return p->pipeline != NULL;
 }
 
 // Where the region may be, in widths of a slice.
 static bool region_box(const pass *p, float low[2], float high[2]) {
     const template_group *g = p->state;
     const uint32_t *size = g->flow->desc.size;
-    size_t index;
     box3 box = box3_infinite();
-    pass_find_key(p, "region", &index);
-    if (p->fields[index] && !field_bounds(p->fields[index], p->host->context, &box)) return false;
+    const field *region = pass_given_field(p, N_region);
+    if (region && !field_bounds(region, p->host->context, &box)) return false;
     float height = (float)size[1] / (float)size[0];
     low[0] = clampf(box.min.x, 0, 1), high[0] = clampf(box.max.x, 0, 1);
     low[1] = clampf(box.min.y, 0, height), high[1] = clampf(box.max.y, 0, height);
     return true;
 }
 
-bool slices_templates_fill_group(pass *p, const shader_binary *binary, unsigned char *block) {
+static bool update_group(pass *p) {
     const template_group *g = p->state;
-    const slices_templates *t = slices_templates_of(g->flow);
-    float own[4];
-    if (!pass_evaluate_vector(p, "seed", own)) return false;
-    const uint32_t seeds[3] = {slices_seed(g->flow), (uint32_t)own[0], g->index};
-    const uint32_t key = (uint32_t)hash64(seeds, sizeof seeds);
-    const float tile = (float)g->index, step = (float)g->flow->clock.step;
+    const uint32_t seeds[3] = {slices_seed(g->flow), (uint32_t)pass_value(p, N_seed), g->index};
     float low[2], high[2];
     if (!region_box(p, low, high)) return false;
-    pass_write_member(binary, block, "key", &key, sizeof key);
-    pass_write_member(binary, block, "first", &g->first, sizeof g->first);
-    pass_write_member(binary, block, "count", &g->count, sizeof g->count);
-    pass_write_member(binary, block, "parity", &t->parity, sizeof t->parity);
-    pass_write_member(binary, block, "tile", &tile, sizeof tile);
-    pass_write_member(binary, block, "time_step", &step, sizeof step);
-    pass_write_member(binary, block, "box_min", low, sizeof low);
-    pass_write_member(binary, block, "box_max", high, sizeof high);
+    pass_set_int(p, N_key, (int32_t)(uint32_t)hash64(seeds, sizeof seeds));
+    pass_set_int(p, N_first, (int32_t)g->first);
+    pass_set_int(p, N_count, (int32_t)g->count);
+    pass_set_int(p, N_parity, (int32_t)slices_templates_of(g->flow)->parity);
+    pass_set_float(p, N_tile, (float)g->index);
+    pass_set_float(p, N_time_step, (float)g->flow->clock.step);
+    pass_set(p, N_box_min, low, sizeof low);
+    pass_set(p, N_box_max, high, sizeof high);
     return true;
 }
 
@@ -154,11 +133,11 @@ static bool each_group(const slices_templates *t, bool (*call)(pass *group)) {
 }
 
 static bool check(slices_flow *f) {
-    return each_group(slices_templates_of(f), pass_check_part) && slices_templates_compile_draw(f);
+    return each_group(slices_templates_of(f), pass_check_part);
 }
 
 static bool build(slices_flow *f) {
-    return each_group(slices_templates_of(f), pass_build_part) && slices_templates_build_draw(f);
+    return each_group(slices_templates_of(f), pass_build_part);
 }
 
 static bool allocate(slices_flow *f) {
@@ -190,11 +169,9 @@ static void destroy(slices_flow *f) {
 
 static bool run_group(const template_group *g) {
     pass *p = g->pass;
-    gpu_dispatch_desc desc = {.pipeline = p->pipeline,
-                              .threads = {g->count, g->flow->desc.count, 1}};
-    if (pass_prepare(p) && slices_templates_dispatch(g->flow, p, &p->binary, p->block, &desc))
-        return true;
-    return err_prefix("%s: ", p->label);
+    kernel *k = pass_prepare(p) ? slices_templates_use(g->flow, p, 0) : NULL;
+    return (k && kernel_run(k, p->host->device, g->count, g->flow->desc.count, 1)) ||
+           err_prefix("%s: ", p->label);
 }
 
 static bool run(slices_flow *f) {
@@ -240,4 +217,20 @@ static const slices_extra hooks = {
     .exchange = exchange,
     .run = run,
     .destroy = destroy,
+};
+
+static const pass_kernel kernel_of_group = {0};
+
+const pass_type slices_templates_type = {
+    .name = "slices_templates",
+    .constructed = true,
+    .shader = "pass/slices_templates.comp",
+    .kernels = &kernel_of_group,
+    .kernel_count = 1,
+    .names = {slices_names, SLICES_NAME_COUNT},
+    .solver = &flow_kernel_table,
+    .unscaled = true,
+    .declare = declare_group,
+    .defines = defines_of_group,
+    .update = update_group,
 };

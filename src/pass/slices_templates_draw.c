@@ -5,8 +5,6 @@
 #include "pass/slices_templates_parts.h"
 #include <string.h>
 
-static const char shader[] = "pass/slices/templates_draw.comp";
-
 // Cells above each other that a thread draws: more look at each template less often, fewer wait for
 // fewer pictures one after the other. The second is for a processor.
 enum { CELLS = 1, SOFTWARE_CELLS = 4 };
@@ -18,34 +16,18 @@ static uint32_t cells_of(const slices_flow *f) {
 
 // ---- building ---------------------------------------------------------------------------------
 
-bool slices_templates_compile_draw(slices_flow *f) {
-    slices_templates *t = slices_templates_of(f);
-    arena *memory = f->pass->host->memory;
-    shader_define defines[FLOW_MAX_DEFINES + SLICES_TEMPLATES_DEFINES + 5];
-    size_t count = flow_defines(f->solver, defines);
-    count += slices_templates_defines(f, defines + count);
-    int hand = t->hand.taken ? SLICES_HAND_MOST : 0;
-    defines[count++] = (shader_define){"TEMPLATES_CELLS", arena_format(memory, "%u", cells_of(f))};
-    defines[count++] = (shader_define){"HAND", arena_format(memory, "%d", hand)};
-    defines[count++] = (shader_define){"PRESSES", slices_has_pressing(f->pass) ? "1" : "0"};
-    defines[count++] = (shader_define){"PUSHES", slices_has_pushing(f->pass) ? "1" : "0"};
-    defines[count++] = (shader_define){"WITHOUT_FIELDS", ""};
-    return pass_compile(f->pass, shader, SHADER_COMPUTE, defines, count, &t->draw);
-}
-
-bool slices_templates_build_draw(slices_flow *f) {
-    slices_templates *t = slices_templates_of(f);
-    if (!slices_templates_compile_draw(f)) return false;
-    t->block = arena_alloc(f->pass->host->memory, pass_block_size(&t->draw) + 16);
-    t->pipeline = pass_create_compute(f->pass, &t->draw);
-    return t->pipeline != NULL;
+void slices_templates_define_draw(const slices_flow *f, pass_defines *out) {
+    const slices_templates *t = slices_templates_of(f);
+    slices_templates_define(f, out);
+    pass_define_number(f->pass, out, "TEMPLATES_CELLS", cells_of(f));
+    pass_define_number(f->pass, out, "HAND", t->hand.taken ? SLICES_HAND_MOST : 0);
+    pass_define_flag(out, "PRESSES", slices_has_pressing(f->pass));
+    pass_define_flag(out, "PUSHES", slices_has_pushing(f->pass));
 }
 
 void slices_templates_destroy_draw(slices_flow *f) {
     slices_templates *t = slices_templates_of(f);
-    gpu *device = f->pass->host->device;
-    if (t->pipeline) gpu_pipeline_destroy(device, t->pipeline);
-    gpu_image_destroy(device, t->images);
+    gpu_image_destroy(f->pass->host->device, t->images);
     mem_free(t->tiles);
 }
 
@@ -102,36 +84,15 @@ bool slices_templates_make_images(slices_flow *f) {
 
 // ---- a step -----------------------------------------------------------------------------------
 
-static size_t override(const slices_flow *f, const shader_binary *binary,
-                       pass_override out[GPU_MAX_SLOTS]) {
+kernel *slices_templates_use(const slices_flow *f, pass *p, size_t index) {
     const slices_templates *t = slices_templates_of(f);
-    size_t count = 0;
-    for (size_t i = 0; i < binary->slot_count; i++) {
-        const char *name = binary->slots[i].name;
-        gpu_binding *binding = &out[count].binding;
-        *binding = (gpu_binding){0};
-        if (strcmp(name, "Templates") == 0)
-            binding->buffer = t->instances;
-        else if (strcmp(name, "TemplateMasks") == 0)
-            binding->buffer = t->masks;
-        else if (strcmp(name, "TemplateImages") == 0)
-            *binding = (gpu_binding){.image = t->images, .sampler = GPU_LINEAR_CLAMP};
-        else
-            flow_bind(f->solver, name, binding);
-        out[count].name = name;
-        count += binding->buffer || binding->image;
-    }
-    return count;
-}
-
-bool slices_templates_dispatch(const slices_flow *f, pass *p, const shader_binary *binary,
-                               const unsigned char *block, gpu_dispatch_desc *desc) {
-    pass_override overrides[GPU_MAX_SLOTS];
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    size_t count = override(f, binary, overrides);
-    desc->bindings = bindings;
-    return pass_bind(p, binary, block, overrides, count, bindings, &desc->binding_count) &&
-           gpu_dispatch(p->host->device, desc);
+    kernel *k = pass_use(p, index);
+    if (!k) return NULL;
+    flow_bind(f->solver, k, pass_solver_places(p, index));
+    kernel_bind_buffer(k, N_Templates, t->instances);
+    kernel_bind_buffer(k, N_TemplateMasks, t->masks);
+    kernel_bind_image(k, N_TemplateImages, t->images);
+    return k;
 }
 
 // Whether others have written what the flow is given in this step.
@@ -144,15 +105,15 @@ static bool has_sources(const slices_flow *f) {
 
 bool slices_templates_draw(slices_flow *f) {
     slices_templates *t = slices_templates_of(f);
-    const uint32_t *size = f->desc.size, cells = cells_of(f), alone = !has_sources(f);
-    const float step = (float)f->clock.step;
-    if (t->repainted && !write_images(t, f->pass->host->device)) return false;
+    const uint32_t *size = f->desc.size, cells = cells_of(f);
+    gpu *device = f->pass->host->device;
+    if (t->repainted && !write_images(t, device)) return false;
     t->repainted = false;
-    pass_write_member(&t->draw, t->block, "alone", &alone, sizeof alone);
-    pass_write_member(&t->draw, t->block, "parity", &t->parity, sizeof t->parity);
-    pass_write_member(&t->draw, t->block, "time_step", &step, sizeof step);
-    slices_hand_fill(f, &t->draw, t->block);
-    gpu_dispatch_desc desc = {.pipeline = t->pipeline,
-                              .threads = {size[0], (size[1] + cells - 1) / cells, f->desc.count}};
-    return slices_templates_dispatch(f, f->pass, &t->draw, t->block, &desc);
+    kernel *k = slices_templates_use(f, f->pass, SLICES_DRAW);
+    if (!k) return false;
+    kernel_set_int(k, N_alone, !has_sources(f));
+    kernel_set_int(k, N_parity, (int32_t)t->parity);
+    kernel_set_float(k, N_time_step, (float)f->clock.step);
+    slices_hand_set(f, k);
+    return kernel_run(k, device, size[0], (size[1] + cells - 1) / cells, f->desc.count);
 }

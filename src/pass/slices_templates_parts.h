@@ -23,12 +23,9 @@ typedef struct slices_templates {
     template_group *groups[SLICES_TEMPLATES_GROUPS];
     uint32_t group_count, total; // templates in each slice
     template_hand hand;
-    shader_binary draw;
-    gpu_pipeline *pipeline; // that draws
-    unsigned char *block;   // of its uniforms
-    float *tiles;           // of groups, then those by hand; NULL: none yet
-    gpu_image *images;      // these, below each other
-    bool repainted;         // tiles are others than those of the image
+    float *tiles;      // of groups, then those by hand; NULL: none yet
+    gpu_image *images; // these, below each other
+    bool repainted;    // tiles are others than those of the image
     gpu_buffer *instances;
     gpu_buffer *masks; // of tiles: which reach there
     uint32_t parity;   // half of the masks, that the next step writes
@@ -41,21 +38,17 @@ static inline slices_templates *slices_templates_of(const slices_flow *f) {
 }
 slices_templates *slices_templates_make(slices_flow *f); // again: those that are there
 
-// What shaders of templates are compiled with, besides what the solver wants.
-enum { SLICES_TEMPLATES_DEFINES = 2 };
-size_t slices_templates_defines(const slices_flow *f, shader_define *out);
+void slices_templates_define(const slices_flow *f, pass_defines *out); // of all their shaders
 
 // slices_templates_draw.c
-bool slices_templates_compile_draw(slices_flow *f);
-bool slices_templates_build_draw(slices_flow *f);
+void slices_templates_define_draw(const slices_flow *f, pass_defines *out);
 bool slices_templates_make_images(slices_flow *f);
 bool slices_templates_draw(slices_flow *f);
 void slices_templates_destroy_draw(slices_flow *f);
-// A dispatch whose slots are templates' own, the solver's, or those of the pass.
-bool slices_templates_dispatch(const slices_flow *f, pass *p, const shader_binary *binary,
-                               const unsigned char *block, gpu_dispatch_desc *desc);
+// A kernel of the pass, with the solver's and the templates' buffers bound, too.
+kernel *slices_templates_use(const slices_flow *f, pass *p, size_t index);
 
 // slices_hand.c
 void slices_hand_tile(const slices_templates *t, uint32_t slot, float out[SLICES_TILE_VALUES]);
-// Writes what is put by hand in this step into the block of the shader that draws, and ages it.
-void slices_hand_fill(slices_flow *f, const shader_binary *binary, unsigned char *block);
+// Tells the kernel that draws what is put by hand in this step, and ages it.
+void slices_hand_set(slices_flow *f, kernel *k);

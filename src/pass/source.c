@@ -50,11 +50,33 @@ static void take_options(pass *p, const pass *source) {
     }
 }
 
+// The first source that has a uniform like this one; NULL: none.
+static pass_parent find_parent(const pass *p, const shader_uniform *like) {
+    for (size_t i = 0; i < p->source_count; i++) {
+        const shader_interface *face = p->sources[i]->face;
+        for (size_t k = 0; k < face->uniform_count; k++) {
+            const shader_uniform *u = &face->uniforms[k];
+            if (u->type == like->type && u->word_count == like->word_count &&
+                strcmp(u->name, like->name) == 0)
+                return (pass_parent){p->sources[i], k};
+        }
+    }
+    return (pass_parent){NULL, 0};
+}
+
+// Names are compared here, once, not in every frame.
+static void find_parents(pass *p) {
+    const size_t count = p->face->uniform_count;
+    if (!p->parents) p->parents = arena_alloc(p->host->memory, (count + 1) * sizeof *p->parents);
+    for (size_t i = 0; i < count; i++) p->parents[i] = find_parent(p, &p->face->uniforms[i]);
+}
+
 void pass_add_uniforms_of(pass *p, pass *source) {
     for (size_t i = 0; i < p->source_count; i++)
         if (p->sources[i] == source) return;
     MEM_RESERVE(p->sources, p->source_count + 1, p->source_capacity);
     p->sources[p->source_count++] = source;
+    find_parents(p);
 }
 
 void pass_add_source(pass *p, pass *source) {
@@ -64,35 +86,21 @@ void pass_add_source(pass *p, pass *source) {
     take_options(p, source);
 }
 
-// The first source that has a uniform like this one; NULL: none.
-static const pass *find_uniform(const pass *p, const shader_uniform *like, size_t *index) {
-    for (size_t i = 0; i < p->source_count; i++) {
-        const shader_interface *face = p->sources[i]->face;
-        for (*index = 0; *index < face->uniform_count; ++*index) {
-            const shader_uniform *u = &face->uniforms[*index];
-            if (u->type == like->type && u->word_count == like->word_count &&
-                strcmp(u->name, like->name) == 0)
-                return p->sources[i];
-        }
-    }
-    return NULL;
-}
-
 const pass *pass_uniform_owner(const pass *p, size_t *index) {
-    size_t there;
-    const pass *source;
-    while (!p->uniforms[*index] && (source = find_uniform(p, &p->face->uniforms[*index], &there))) {
-        p = source;
-        *index = there;
+    while (!p->uniforms[*index] && p->parents && p->parents[*index].pass) {
+        const pass_parent *parent = &p->parents[*index];
+        p = parent->pass;
+        *index = parent->index;
     }
     return p;
 }
 
 const field *pass_inherited_uniform(const pass *p, size_t index, const shader_uniform **declared) {
     *declared = &p->face->uniforms[index];
-    p = find_uniform(p, *declared, &index);
-    if (!p) return NULL;
-    p = pass_uniform_owner(p, &index);
-    *declared = &p->face->uniforms[index];
-    return p->uniforms[index];
+    if (!p->parents || !p->parents[index].pass) return NULL;
+    const pass_parent *parent = &p->parents[index];
+    size_t there = parent->index;
+    p = pass_uniform_owner(parent->pass, &there);
+    *declared = &p->face->uniforms[there];
+    return p->uniforms[there];
 }

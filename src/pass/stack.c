@@ -1,6 +1,5 @@
 // Stack: what it draws into has a size of its own; the box of its slices is the density's.
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/pass_impl.h"
 
 static bool add_image(pass *p, const char *output, uint32_t side) {
@@ -15,16 +14,23 @@ static bool add_image(pass *p, const char *output, uint32_t side) {
     return p->images[image].id != 0;
 }
 
-bool stack_declare(pass *p) {
+static bool declare(pass *p) {
     uint32_t side = pass_number(p, "target");
     if (!pass_check_density(p)) return false;
     if (side && (!add_image(p, "color", side) || !add_image(p, "edge", side))) return false;
     return pass_declare_images(p) && pass_add_to_graph(p);
 }
 
-bool stack_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+static bool update(pass *p) {
     box3 box;
     if (!pass_density_box(p, &box)) return false;
-    pass_write_box(binary, block, box);
+    pass_set_box(p, box);
     return true;
 }
+
+const pass_type stack_type = {
+    .name = "stack",
+    .shader = "pass/stack.comp",
+    .declare = declare,
+    .update = update,
+};

@@ -5,317 +5,278 @@
 #include "pass/pass_impl.h"
 #include <string.h>
 
-static const pass_type types[] = {
-    {
-        .name = "geometry",
-        .shader = "pass/geometry.comp",
-        .meshes = PASS_DRAWS_MESHES,
-        .declare = geometry_declare,
-        .check = geometry_check,
-        .build = geometry_build,
-        .allocate = geometry_allocate,
-        .fill = geometry_fill,
-        .record = geometry_record,
-        .destroy = geometry_destroy,
-    },
-    {
-        .name = "shade",
-        .shader = "pass/shade.comp",
-        .declare = shade_declare,
-        .check = shade_check,
-        .build = shade_build,
-        .record = shade_record,
-        .destroy = shade_destroy,
-    },
-    {
-        .name = "point_lights",
-        .shader = "pass/lamps.comp",
-        .unscaled = true,
-        .declare = lamps_declare,
-        .check = lamps_check,
-        .build = lamps_build,
-        .allocate = lamps_allocate,
-        .fill = lamps_fill,
-        .record = lamps_record,
-    },
-    {
-        .name = "shadow_maps",
-        .shader = "pass/shadow_maps.comp",
-        .meshes = PASS_DRAWS_MESHES,
-        .unscaled = true,
-        .declare = shadow_maps_declare,
-        .complete = shadow_maps_complete,
-        .check = shadow_maps_check,
-        .build = shadow_maps_build,
-        .allocate = shadow_maps_allocate,
-        .fill = shadow_maps_fill,
-        .record = shadow_maps_record,
-        .destroy = shadow_maps_destroy,
-    },
-    {
-        .name = "lamp_glows",
-        .shader = "pass/lamp_glows.comp",
-    },
-    {
-        .name = "forward",
-        .shader = "pass/forward.frag",
-        .meshes = PASS_DRAWS_MESHES,
-        .declare = forward_declare,
-        .check = forward_check,
-        .build = forward_build,
-        .allocate = forward_allocate,
-        .fill = forward_fill,
-        .record = forward_record,
-        .destroy = forward_destroy,
-    },
-    {
-        .name = "lighting",
-        .shader = "pass/lighting.comp",
-        .declare = lighting_declare,
-        .check = lighting_check,
-        .build = lighting_build,
-        .fill = lighting_fill,
-        .destroy = lighting_destroy,
-    },
-    {
-        .name = "march",
-        .shader = "pass/march.comp",
-        .declare = march_declare,
-        .check = march_check,
-        .build = march_build,
-        .fill = march_fill,
-        .record = march_record,
-        .destroy = march_destroy,
-    },
-    {
-        .name = "stack",
-        .shader = "pass/stack.comp",
-        .declare = stack_declare,
-        .fill = stack_fill,
-    },
-    {
-        .name = "reference",
-        .shader = "pass/reference.comp",
-        .declare = reference_declare,
-        .check = reference_check,
-        .build = reference_build,
-        .allocate = reference_allocate,
-        .fill = reference_fill,
-        .record = reference_record,
-        .destroy = reference_destroy,
-    },
-    {
-        .name = "over",
-        .shader = "pass/over.comp",
-    },
-    {
-        .name = "outline",
-        .shader = "pass/outline.comp",
-    },
-    {
-        .name = "bands",
-        .shader = "pass/bands.comp",
-    },
-    {
-        .name = "bright",
-        .shader = "pass/bright.comp",
-    },
-    {
-        .name = "bloom",
-        .shader = "pass/bloom.comp",
-        .declare = bloom_declare,
-        .check = bloom_check,
-        .build = bloom_build,
-        .record = bloom_record,
-        .destroy = bloom_destroy,
-    },
-    {
-        .name = "final",
-        .shader = "pass/final.comp",
-    },
-    {
-        .name = "accumulate",
-        .shader = "pass/accumulate.comp",
-        .declare = accumulate_declare,
-    },
-    {
-        .name = "meter",
-        .shader = "pass/meter.comp",
-        .declare = meter_declare,
-    },
-    {
-        .name = "bake",
-        .shader = "pass/bake.comp",
-        .declare = bake_declare,
-        .check = bake_check,
-        .build = bake_build,
-        .fill = bake_fill,
-        .record = bake_record,
-        .destroy = bake_destroy,
-    },
-    {
-        .name = "slices_templates",
-        .shader = "pass/slices_templates.comp",
-        .declare = slices_templates_declare_group,
-        .check = slices_templates_check_group,
-        .build = slices_templates_build_group,
-        .fill = slices_templates_fill_group,
-        .unscaled = true,
-    },
-    {
-        .name = "voxels",
-        .shader = "pass/voxels.comp",
-        .meshes = PASS_USES_MESHES,
-        .declare = voxels_declare,
-        .check = voxels_check_pass,
-        .build = voxels_build_pass,
-        .allocate = voxels_allocate_pass,
-        .fill = voxels_fill,
-        .record = voxels_record,
-        .destroy = voxels_destroy_pass,
-    },
-    {
-        .name = "particles",
-        .shader = "pass/particles.comp",
-        .meshes = PASS_USES_MESHES,
-        .unscaled = true,
-        .simulation = &particles_simulation,
-        .declare = particles_declare,
-        .check = particles_check,
-        .build = particles_build,
-        .allocate = particles_allocate,
-        .fill = particles_fill,
-        .rehearse = particles_rehearse,
-        .record = particles_record,
-        .destroy = particles_destroy,
-    },
-    {
-        .name = "picture",
-        .shader = "pass/picture.comp",
-        .unscaled = true,
-        .declare = picture_declare,
-        .check = picture_check,
-        .build = picture_build,
-        .record = picture_record,
-    },
-    {
-        .name = "pieces",
-        .shader = "pass/pieces.comp",
-        .meshes = PASS_USES_MESHES,
-        .declare = pieces_declare,
-        .check = pieces_check,
-        .build = pieces_build,
-        .allocate = pieces_allocate,
-        .fill = pieces_fill,
-        .record = pieces_record,
-        .destroy = pieces_destroy,
-    },
-    {
-        .name = "deposit",
-        .shader = "pass/deposit.comp",
-        .unscaled = true,
-        .declare = deposit_declare,
-        .check = deposit_check,
-        .build = deposit_build,
-        .allocate = deposit_allocate,
-        .fill = deposit_fill,
-        .record = deposit_record,
-        .destroy = deposit_destroy,
-    },
-    {
-        .name = "splats",
-        .shader = "pass/splats.comp",
-        .declare = splats_declare,
-        .check = splats_check,
-        .build = splats_build,
-        .fill = splats_fill,
-        .record = splats_record,
-        .destroy = splats_destroy,
-    },
-    {
-        .name = "shell",
-        .shader = "pass/shell.comp",
-        .declare = shell_declare,
-        .check = shell_check,
-        .build = shell_build,
-        .allocate = shell_allocate,
-        .fill = shell_fill,
-        .record = shell_record,
-        .destroy = shell_destroy,
-    },
-    {
-        .name = "slices",
-        .shader = "pass/slices.comp",
-        .unscaled = true,
-        .simulation = &slices_simulation,
-        .declare = slices_declare,
-        .complete = slices_complete,
-        .check = slices_check,
-        .build = slices_build,
-        .allocate = slices_allocate,
-        .fill = slices_fill,
-        .rehearse = slices_rehearse,
-        .record = slices_record,
-        .destroy = slices_destroy,
-    },
-    {
-        .name = "slices_inflow",
-        .shader = "pass/slices_inflow.comp",
-        .unscaled = true,
-        .declare = slices_part_declare,
-        .check = slices_part_check,
-        .build = slices_part_build,
-        .fill = slices_part_fill,
-    },
-    {
-        .name = "slices_force",
-        .shader = "pass/slices_force.comp",
-        .unscaled = true,
-        .declare = slices_part_declare,
-        .check = slices_part_check,
-        .build = slices_part_build,
-        .fill = slices_part_fill,
-    },
-    {
-        .name = "slices_obstacle",
-        .shader = "pass/slices_obstacle.comp",
-        .unscaled = true,
-        .declare = slices_part_declare,
-        .check = slices_part_check,
-        .build = slices_part_build,
-        .allocate = slices_part_allocate,
-        .fill = slices_part_fill,
-        .destroy = slices_part_destroy,
-    },
-    {
-        .name = "lbm",
-        .shader = "pass/lbm.comp",
-        .unscaled = true,
-        .simulation = &lbm_simulation,
-        .declare = lbm_declare,
-        .complete = lbm_complete,
-        .check = lbm_check,
-        .build = lbm_build_pass,
-        .allocate = lbm_allocate_pass,
-        .fill = lbm_fill,
-        .rehearse = lbm_rehearse,
-        .record = lbm_record,
-        .destroy = lbm_destroy_pass,
-    },
-    {
-        .name = "lbm_source",
-        .shader = "pass/lbm_source.comp",
-        .unscaled = true,
-        .meshes = PASS_USES_MESHES,
-        .declare = lbm_source_declare,
-        .check = lbm_source_check,
-        .build = lbm_source_build,
-        .fill = lbm_source_fill,
-        .destroy = lbm_source_destroy,
-    },
+extern const pass_type bloom_type;
+extern const pass_type lbm_source_type;
+extern const pass_type lbm_type;
+extern const pass_type lighting_type;
+extern const pass_type march_type;
+extern const pass_type slices_type;
+extern const pass_type slices_force_type;
+extern const pass_type slices_inflow_type;
+extern const pass_type slices_obstacle_type;
+extern const pass_type slices_templates_type;
+extern const pass_type stack_type;
+
+static const pass_type geometry_type = {
+    .name = "geometry",
+    .shader = "pass/geometry.comp",
+    .meshes = PASS_DRAWS_MESHES,
+    .declare = geometry_declare,
+    .check = geometry_check,
+    .build = geometry_build,
+    .allocate = geometry_allocate,
+    .fill = geometry_fill,
+    .record = geometry_record,
+    .destroy = geometry_destroy,
 };
 
-const pass_type *pass_types(size_t *count) {
+static const pass_type shade_type = {
+    .name = "shade",
+    .shader = "pass/shade.comp",
+    .declare = shade_declare,
+    .check = shade_check,
+    .build = shade_build,
+    .record = shade_record,
+    .destroy = shade_destroy,
+};
+
+static const pass_type point_lights_type = {
+    .name = "point_lights",
+    .constructed = true,
+    .shader = "pass/lamps.comp",
+    .unscaled = true,
+    .declare = lamps_declare,
+    .check = lamps_check,
+    .build = lamps_build,
+    .allocate = lamps_allocate,
+    .fill = lamps_fill,
+    .record = lamps_record,
+};
+
+static const pass_type shadow_maps_type = {
+    .name = "shadow_maps",
+    .shader = "pass/shadow_maps.comp",
+    .meshes = PASS_DRAWS_MESHES,
+    .unscaled = true,
+    .declare = shadow_maps_declare,
+    .complete = shadow_maps_complete,
+    .check = shadow_maps_check,
+    .build = shadow_maps_build,
+    .allocate = shadow_maps_allocate,
+    .fill = shadow_maps_fill,
+    .record = shadow_maps_record,
+    .destroy = shadow_maps_destroy,
+};
+
+static const pass_type lamp_glows_type = {
+    .name = "lamp_glows",
+    .shader = "pass/lamp_glows.comp",
+};
+
+static const pass_type forward_type = {
+    .name = "forward",
+    .shader = "pass/forward.frag",
+    .meshes = PASS_DRAWS_MESHES,
+    .declare = forward_declare,
+    .check = forward_check,
+    .build = forward_build,
+    .allocate = forward_allocate,
+    .fill = forward_fill,
+    .record = forward_record,
+    .destroy = forward_destroy,
+};
+
+static const pass_type reference_type = {
+    .name = "reference",
+    .shader = "pass/reference.comp",
+    .declare = reference_declare,
+    .check = reference_check,
+    .build = reference_build,
+    .allocate = reference_allocate,
+    .fill = reference_fill,
+    .record = reference_record,
+    .destroy = reference_destroy,
+};
+
+static const pass_type over_type = {
+    .name = "over",
+    .shader = "pass/over.comp",
+};
+
+static const pass_type outline_type = {
+    .name = "outline",
+    .shader = "pass/outline.comp",
+};
+
+static const pass_type bands_type = {
+    .name = "bands",
+    .shader = "pass/bands.comp",
+};
+
+static const pass_type bright_type = {
+    .name = "bright",
+    .shader = "pass/bright.comp",
+};
+
+static const pass_type final_type = {
+    .name = "final",
+    .shader = "pass/final.comp",
+};
+
+static const pass_type accumulate_type = {
+    .name = "accumulate",
+    .shader = "pass/accumulate.comp",
+    .declare = accumulate_declare,
+};
+
+static const pass_type meter_type = {
+    .name = "meter",
+    .shader = "pass/meter.comp",
+    .declare = meter_declare,
+};
+
+static const pass_type bake_type = {
+    .name = "bake",
+    .constructed = true,
+    .shader = "pass/bake.comp",
+    .declare = bake_declare,
+    .check = bake_check,
+    .build = bake_build,
+    .fill = bake_fill,
+    .record = bake_record,
+    .destroy = bake_destroy,
+};
+
+static const pass_type voxels_type = {
+    .name = "voxels",
+    .constructed = true,
+    .shader = "pass/voxels.comp",
+    .meshes = PASS_USES_MESHES,
+    .declare = voxels_declare,
+    .check = voxels_check_pass,
+    .build = voxels_build_pass,
+    .allocate = voxels_allocate_pass,
+    .fill = voxels_fill,
+    .record = voxels_record,
+    .destroy = voxels_destroy_pass,
+};
+
+static const pass_type particles_type = {
+    .name = "particles",
+    .constructed = true,
+    .shader = "pass/particles.comp",
+    .meshes = PASS_USES_MESHES,
+    .unscaled = true,
+    .simulation = &particles_simulation,
+    .declare = particles_declare,
+    .check = particles_check,
+    .build = particles_build,
+    .allocate = particles_allocate,
+    .fill = particles_fill,
+    .rehearse = particles_rehearse,
+    .record = particles_record,
+    .destroy = particles_destroy,
+};
+
+static const pass_type picture_type = {
+    .name = "picture",
+    .constructed = true,
+    .shader = "pass/picture.comp",
+    .unscaled = true,
+    .declare = picture_declare,
+    .check = picture_check,
+    .build = picture_build,
+    .record = picture_record,
+};
+
+static const pass_type pieces_type = {
+    .name = "pieces",
+    .shader = "pass/pieces.comp",
+    .meshes = PASS_USES_MESHES,
+    .declare = pieces_declare,
+    .check = pieces_check,
+    .build = pieces_build,
+    .allocate = pieces_allocate,
+    .fill = pieces_fill,
+    .record = pieces_record,
+    .destroy = pieces_destroy,
+};
+
+static const pass_type deposit_type = {
+    .name = "deposit",
+    .constructed = true,
+    .shader = "pass/deposit.comp",
+    .unscaled = true,
+    .declare = deposit_declare,
+    .check = deposit_check,
+    .build = deposit_build,
+    .allocate = deposit_allocate,
+    .fill = deposit_fill,
+    .record = deposit_record,
+    .destroy = deposit_destroy,
+};
+
+static const pass_type splats_type = {
+    .name = "splats",
+    .shader = "pass/splats.comp",
+    .declare = splats_declare,
+    .check = splats_check,
+    .build = splats_build,
+    .fill = splats_fill,
+    .record = splats_record,
+    .destroy = splats_destroy,
+};
+
+static const pass_type shell_type = {
+    .name = "shell",
+    .constructed = true,
+    .shader = "pass/shell.comp",
+    .declare = shell_declare,
+    .check = shell_check,
+    .build = shell_build,
+    .allocate = shell_allocate,
+    .fill = shell_fill,
+    .record = shell_record,
+    .destroy = shell_destroy,
+};
+
+static const pass_type *const types[] = {
+    &geometry_type,
+    &shade_type,
+    &point_lights_type,
+    &shadow_maps_type,
+    &lamp_glows_type,
+    &forward_type,
+    &lighting_type,
+    &march_type,
+    &stack_type,
+    &reference_type,
+    &over_type,
+    &outline_type,
+    &bands_type,
+    &bright_type,
+    &bloom_type,
+    &final_type,
+    &accumulate_type,
+    &meter_type,
+    &bake_type,
+    &slices_templates_type,
+    &voxels_type,
+    &particles_type,
+    &picture_type,
+    &pieces_type,
+    &deposit_type,
+    &splats_type,
+    &shell_type,
+    &slices_type,
+    &slices_inflow_type,
+    &slices_force_type,
+    &slices_obstacle_type,
+    &lbm_type,
+    &lbm_source_type,
+};
+
+const pass_type *const *pass_types(size_t *count) {
     *count = COUNT_OF(types);
     return types;
 }
@@ -323,8 +284,8 @@ const pass_type *pass_types(size_t *count) {
 const pass_type *pass_type_find(const char *name) {
     const char *names[COUNT_OF(types)];
     for (size_t i = 0; i < COUNT_OF(types); i++) {
-        if (strcmp(types[i].name, name) == 0) return &types[i];
-        names[i] = types[i].name;
+        if (strcmp(types[i]->name, name) == 0) return types[i];
+        names[i] = types[i]->name;
     }
     const char *near = str_nearest(name, names, COUNT_OF(types));
     if (near)

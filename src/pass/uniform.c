@@ -40,7 +40,7 @@ bool pass_evaluate_at(const pass *p, size_t index, float out[4]) {
     memcpy(value, owner->face->uniforms[there].value, sizeof value);
     if (node && !field_eval(node, p->host->context, (float3){0, 0, 0}, value))
         return err_prefix("uniform '%s': ", uniform->name);
-    const bool moves = node && strcmp(node->kind->name, "constant") != 0;
+    const bool moves = node && !field_is_constant(node);
     const int count = pass_uniform_components(uniform->type);
     for (int i = 0; i < 4; i++) {
         float v = node && node->components == 1 ? value[0] : value[i];

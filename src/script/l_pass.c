@@ -407,39 +407,18 @@ static int l_shader(lua_State *L) {
     return make_pass(L, NULL, file, direct ? 2 : 1, direct ? 1 : 2);
 }
 
-// Made by a function of its own, or a method: bake(field), lbm { }, air:source { }.
-static bool has_constructor(const char *type) {
-    static const char *const types[] = {"bake",
-                                        "deposit",
-                                        "picture",
-                                        "lbm",
-                                        "lbm_source",
-                                        "particles",
-                                        "point_lights",
-                                        "shell",
-                                        "slices",
-                                        "slices_force",
-                                        "slices_inflow",
-                                        "slices_obstacle",
-                                        "slices_templates",
-                                        "voxels"};
-    for (size_t i = 0; i < COUNT_OF(types); i++)
-        if (strcmp(types[i], type) == 0) return true;
-    return false;
-}
-
 void l_pass_open(lua_State *L) {
     static const luaL_Reg none[] = {{NULL, NULL}};
     static const luaL_Reg result[] = {{"__index", l_result_index}, {NULL, NULL}};
     object_type(L, "image", none);
     object_type(L, "pass result", result);
     size_t count;
-    const pass_type *types = pass_types(&count);
+    const pass_type *const *types = pass_types(&count);
     for (size_t i = 0; i < count; i++) {
-        if (has_constructor(types[i].name)) continue;
-        lua_pushstring(L, types[i].name);
+        if (types[i]->constructed) continue; // bake(field), lbm { }, air:source { }
+        lua_pushstring(L, types[i]->name);
         lua_pushcclosure(L, l_pass, 1);
-        lua_setglobal(L, types[i].name);
+        lua_setglobal(L, types[i]->name);
     }
     lua_register(L, "shader", l_shader);
     lua_register(L, "history", l_history);

@@ -28,7 +28,7 @@ static const scene_value *find_value(const char *who, const char *key) {
 // What moves is limited instead.
 static void check_constant(lua_State *L, const char *who, const char *key, const field *node) {
     const scene_value *value = find_value(who, key);
-    if (!value || strcmp(node->kind->name, "constant") != 0) return;
+    if (!value || !field_is_constant(node)) return;
     for (int c = 0; c < node->components; c++) {
         float v = node->value[c];
         if (v >= value->min && v <= value->max) continue;

@@ -166,8 +166,7 @@ static bool plain_number(lua_State *L, int index, double *out) {
         return true;
     }
     const field_object *object = object_test(L, index, "field");
-    if (!object || object->node->components != 1 || strcmp(object->node->kind->name, "constant"))
-        return false;
+    if (!object || object->node->components != 1 || !field_is_constant(object->node)) return false;
     *out = (double)object->node->value[0];
     return true;
 }

@@ -151,13 +151,13 @@ static void pressure_is_as_firm_on_other_cells_and_steps(void **state) {
 // Gives each cell `value` of density and temperature where it is in the first `columns`.
 static void fill(templates_world *t, int columns, float value) {
     gpu *device = t->w.host.device;
-    gpu_binding scalars = {0};
-    gpu_test_ok(flow_bind(t->f.solver, "FlowScalars", &scalars));
-    size_t size = (size_t)gpu_buffer_size(scalars.buffer);
+    gpu_buffer *scalars = flow_find(t->f.solver, "FlowScalars");
+    assert_non_null(scalars);
+    size_t size = (size_t)gpu_buffer_size(scalars);
     float *values = mem_alloc(size);
     for (int i = 0; i < SIDE * SIDE; i++)
         values[4 * i] = values[4 * i + 1] = i % SIDE < columns ? value : 0;
-    gpu_test_ok(gpu_buffer_write(device, scalars.buffer, 0, values, size));
+    gpu_test_ok(gpu_buffer_write(device, scalars, 0, values, size));
     mem_free(values);
 }
 

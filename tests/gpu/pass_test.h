@@ -3,6 +3,7 @@
 #pragma once
 #include "effect/effect.h"
 #include "gpu_test.h"
+#include "media/mesh_levels.h"
 #include "pass/pass.h"
 #include "scene/bvh.h"
 #include <math.h>
@@ -132,6 +133,23 @@ static inline scene_mesh *world_mesh(pass_world *w, const char *file) {
     return mesh;
 }
 
+// As they are made when a file is read.
+static inline void world_make_levels(pass_world *w, scene_mesh *mesh) {
+    mesh_data *data = &mesh->data;
+    mesh_levels levels;
+    mesh_levels_make(data, &w->memory, &levels);
+    size_t own = data->index_count * sizeof *data->indices;
+    size_t more = levels.index_count * sizeof *data->indices;
+    unsigned char *all = arena_alloc(&w->memory, own + more);
+    memcpy(all, data->indices, own);
+    memcpy(all + own, levels.indices, more);
+    data->indices = (const uint32_t *)(const void *)all;
+    data->level_index_count = levels.index_count;
+    data->level_count = levels.count;
+    for (uint32_t i = 0; i < levels.count; i++)
+        data->levels[i] = (mesh_level){levels.errors[i], levels.runs[i]};
+}
+
 // One more frame of what world_render built.
 static inline void world_frame(pass_world *w, uint32_t width, uint32_t height, uint32_t frame) {
     gpu_test_ok(scene_fill_frame(&w->scene, &w->context, (float)width / (float)height, &w->frame));
@@ -152,7 +170,7 @@ static inline void world_render(pass_world *w, uint32_t width, uint32_t height,
     gpu_test_ok(graph_compile(w->host.graph, width, height));
     scene_mesh *meshes[COUNT_OF(w->meshes)];
     for (size_t i = 0; i < w->mesh_count; i++) meshes[i] = &w->meshes[i];
-    w->host.bvh = scene_bvh_create(meshes, w->mesh_count, w->instances, w->instances_count);
+    w->host.bvh = scene_bvh_create(meshes, w->mesh_count, w->instances, w->instances_count, true);
     gpu_test_ok(w->host.bvh && scene_bvh_allocate(w->host.bvh, w->host.device));
     for (size_t i = 0; i < w->instances_count; i++)
         gpu_test_ok(scene_instances_allocate(w->instances[i], w->host.device));

@@ -29,7 +29,7 @@ static inline void templates_open(templates_world *t, gpu *device, const flow_de
                                   double step) {
     *t = (templates_world){.desc = *desc};
     world_open(&t->w, device);
-    t->f.pass = world_add(&t->w, "final", NULL, "flow");
+    t->f.pass = world_add(&t->w, "slices", NULL, "flow");
     t->f.pass->state = &t->f;
     t->f.desc = (pass_slices_desc){.count = desc->slices,
                                    .size = {desc->size[0], desc->size[1]},
@@ -69,12 +69,8 @@ static inline void templates_build(templates_world *t) {
     t->desc.templates = slices_has_pressing(t->f.pass);
     t->desc.sources = slices_has_pushing(t->f.pass);
     t->f.solver = flow_create(host->memory, &t->desc);
-    gpu_test_ok(t->f.solver && flow_build(t->f.solver, host->device, host->library, NULL) &&
-                flow_allocate(t->f.solver, host->device));
-    gpu_test_ok(pass_build(t->f.pass) && t->f.templates->build(&t->f) &&
-                t->f.templates->allocate(&t->f));
+    gpu_test_ok(t->f.solver && pass_build(t->f.pass) && pass_allocate(t->f.pass));
     for (uint32_t i = 0; i < t->group_count; i++) gpu_test_ok(pass_allocate(t->groups[i]));
-    gpu_test_ok(pass_allocate(t->f.pass));
     templates_reset(t);
 }
 
@@ -109,18 +105,15 @@ static inline template_seen *templates_read(templates_world *t, uint32_t slice) 
 
 // Of the solver, by the slot of its shaders; free with mem_free.
 static inline float *templates_read_flow(templates_world *t, const char *slot) {
-    gpu_binding binding = {0};
-    gpu_test_ok(flow_bind(t->f.solver, slot, &binding));
-    size_t size = (size_t)gpu_buffer_size(binding.buffer);
+    gpu_buffer *buffer = flow_find(t->f.solver, slot);
+    assert_non_null(buffer);
+    size_t size = (size_t)gpu_buffer_size(buffer);
     float *out = mem_alloc(size);
-    gpu_test_ok(gpu_buffer_read(t->w.host.device, binding.buffer, 0, out, size));
+    gpu_test_ok(gpu_buffer_read(t->w.host.device, buffer, 0, out, size));
     return out;
 }
 
 static inline void templates_close(templates_world *t) {
-    t->f.templates->destroy(&t->f);
-    flow_destroy(t->f.solver, t->w.host.device);
-    t->f.pass->state = NULL;
     world_close(&t->w);
 }
 

@@ -234,6 +234,6 @@ int main(void) {
         STAGE_TEST(bake_has_limits),
         STAGE_TEST(meshes_go_to_geometry_only),
     };
-    isolate_warm_up(); // as the program does
+    isolate_warm_up("glsl"); // as the program does
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

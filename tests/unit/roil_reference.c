@@ -20,9 +20,9 @@ static bool is_luas_own(const vm *own, const char *name) {
 
 static bool is_pass(const char *name) {
     size_t count;
-    const pass_type *types = pass_types(&count);
+    const pass_type *const *types = pass_types(&count);
     for (size_t i = 0; i < count; i++)
-        if (strcmp(types[i].name, name) == 0) return true;
+        if (strcmp(types[i]->name, name) == 0) return true;
     return false;
 }
 

@@ -1,0 +1,456 @@
+// Kernels of a pass: compiled with its options, fields and what its type adds, and given by number
+// what the pass knows. Each slot's source is found once, when the kernel is compiled.
+#include "base/error.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/worker.h"
+#include "pass/pass_impl.h"
+#include "pass/ranges.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef enum source_kind {
+    FROM_TYPE, // the type's hooks bind it
+    FROM_KERNEL,
+    FROM_FRAME,
+    FROM_LIGHTS,
+    FROM_NUMBERS,
+    FROM_TEXTURE, // of the fields
+    FROM_IMAGE,   // of the interface
+    FROM_PROVIDER,
+} source_kind;
+
+typedef struct slot_source {
+    source_kind kind;
+    int16_t index, row; // of textures, images or the provider's slots; of providers
+} slot_source;
+
+enum { COMMON_BOX_MIN, COMMON_BOX_MAX, COMMON_NAMES };
+static const char *const common_names[COMMON_NAMES] = {"box_min", "box_max"};
+
+enum { MAX_PROVIDERS = 8 };
+
+typedef struct pass_built {
+    kernel base;
+    const kernel_place *uniforms; // of the interface
+    const kernel_place *common, *solver;
+    const kernel_place *provided[MAX_PROVIDERS]; // NULL: nothing of that row's is in it
+    slot_source sources[GPU_MAX_SLOTS];
+} pass_built;
+
+static const pass_kernel own_shader = {0};
+
+static size_t count_kernels(const pass *p) {
+    return p->type && p->type->kernels ? p->type->kernel_count : 1;
+}
+
+static const pass_kernel *row_of(const pass *p, size_t index) {
+    return p->type && p->type->kernels ? &p->type->kernels[index] : &own_shader;
+}
+
+// ---- names ------------------------------------------------------------------------------------
+
+static kernel_names names_of(const pass *p) {
+    return p->type ? p->type->names : (kernel_names){0};
+}
+
+static pass_name find_name(const pass *p, const char *name) {
+    size_t index;
+    pass_name out = {-1, -1, -1, (int16_t)pass_find_image(p, name)};
+    const pass_key key = pass_find_key(p, name, &index);
+    if (key == PASS_UNIFORM) out.uniform = (int16_t)index;
+    if (key == PASS_OPTION) out.option = (int16_t)index;
+    if (key == PASS_FIELD) out.field = (int16_t)index;
+    return out;
+}
+
+void pass_find_names(pass *p) {
+    const kernel_names names = names_of(p);
+    pass_name *found = arena_alloc(p->host->memory, (names.count + 1) * sizeof *found);
+    for (size_t i = 0; i < names.count; i++) found[i] = find_name(p, names.items[i]);
+    p->names = found;
+}
+
+// A type that asks for what its shader does not declare.
+static size_t known(const pass *p, int name, int index, const char *what) {
+    if (index >= 0) return (size_t)index;
+    log_write(LOG_ERROR, "%s declares no %s '%s'", p->shader, what, names_of(p).items[name]);
+    abort();
+}
+
+const float *pass_vector(const pass *p, int name) {
+    return p->values[known(p, name, p->names[name].uniform, "uniform")];
+}
+
+float pass_value(const pass *p, int name) {
+    return pass_vector(p, name)[0];
+}
+
+bool pass_evaluate_now(const pass *p, int name, float out[4]) {
+    return pass_evaluate_at(p, known(p, name, p->names[name].uniform, "uniform"), out);
+}
+
+size_t pass_option(const pass *p, int name) {
+    return p->options[known(p, name, p->names[name].option, "option")];
+}
+
+static const char *option_word(const pass *p, int name) {
+    const size_t index = known(p, name, p->names[name].option, "option");
+    return p->face->options[index].words[p->options[index]];
+}
+
+bool pass_option_is(const pass *p, int name, const char *word) {
+    return strcmp(option_word(p, name), word) == 0;
+}
+
+uint32_t pass_option_number(const pass *p, int name) {
+    return (uint32_t)strtoul(option_word(p, name), NULL, 10);
+}
+
+const field *pass_given_field(const pass *p, int name) {
+    return p->fields[known(p, name, p->names[name].field, "field")];
+}
+
+graph_image *pass_image(const pass *p, int name) {
+    return &p->images[known(p, name, p->names[name].image, "image")];
+}
+
+gpu_image *pass_get_image(const pass *p, int name) {
+    return graph_get_image(p->host->graph, *pass_image(p, name));
+}
+
+// ---- compiling --------------------------------------------------------------------------------
+
+void pass_define(pass_defines *out, const char *name, const char *value) {
+    if (out->count < COUNT_OF(out->items)) out->items[out->count++] = (shader_define){name, value};
+}
+
+void pass_define_number(pass *p, pass_defines *out, const char *name, uint32_t value) {
+    pass_define(out, name, arena_format(p->host->memory, "%u", value));
+}
+
+void pass_define_flag(pass_defines *out, const char *name, bool value) {
+    pass_define(out, name, value ? "1" : "0");
+}
+
+static int find_string(kernel_names names, const char *name) {
+    for (size_t i = 0; i < names.count; i++)
+        if (strcmp(names.items[i], name) == 0) return (int)i;
+    return -1;
+}
+
+static kernel_names solver_names(const pass *p) {
+    return p->type && p->type->solver ? p->type->solver->names : (kernel_names){0};
+}
+
+static bool is_of_type(const pass *p, const char *name) {
+    return find_string(names_of(p), name) >= 0 || find_string(solver_names(p), name) >= 0;
+}
+
+static int find_texture(const pass *p, const char *name) {
+    const field_texture *textures;
+    size_t count = field_program_textures(p->program, &textures);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(textures[i].glsl_name, name) == 0) return (int)i;
+    return -1;
+}
+
+static int find_glsl_image(const pass *p, const char *name) {
+    for (size_t i = 0; i < p->face->image_count; i++)
+        if (strcmp(p->face->images[i].glsl_name, name) == 0) return (int)i;
+    return -1;
+}
+
+static bool find_provided(const char *name, slot_source *out) {
+    size_t count;
+    const pass_provider *const *rows = pass_providers(&count);
+    for (size_t i = 0; i < count; i++) {
+        const int slot = find_string(rows[i]->slots, name);
+        if (slot < 0) continue;
+        *out = (slot_source){FROM_PROVIDER, (int16_t)slot, (int16_t)i};
+        return true;
+    }
+    return false;
+}
+
+static bool find_block(const pass *p, const char *name, slot_source *out) {
+    static const struct {
+        const char *name;
+        source_kind kind;
+    } blocks[] = {{"Uniforms", FROM_KERNEL},
+                  {"Frame", FROM_FRAME},
+                  {"Lights", FROM_LIGHTS},
+                  {"FieldNumbers", FROM_NUMBERS}};
+    for (size_t i = 0; i < COUNT_OF(blocks); i++) {
+        if (strcmp(blocks[i].name, name) != 0) continue;
+        out->kind = blocks[i].kind;
+        return true;
+    }
+    return err_set("%s: uniform block '%s' is not known; declare loose uniforms instead", p->label,
+                   name);
+}
+
+static bool find_source(const pass *p, const shader_slot *slot, slot_source *out) {
+    int index = -1;
+    *out = (slot_source){FROM_TYPE, 0, 0};
+    if (slot->slot.kind == GPU_SLOT_UNIFORM) return find_block(p, slot->name, out);
+    const bool image = slot->slot.kind != GPU_SLOT_STORAGE_BUFFER;
+    if (image && (index = find_texture(p, slot->name)) >= 0)
+        *out = (slot_source){FROM_TEXTURE, (int16_t)index, 0};
+    else if (image && (index = find_glsl_image(p, slot->name)) >= 0)
+        *out = (slot_source){FROM_IMAGE, (int16_t)index, 0};
+    else if (!is_of_type(p, slot->name) && !find_provided(slot->name, out))
+        return image ? err_set("%s: image '%s' has no annotation (//= input or //= output)",
+                               p->label, slot->name)
+                     : err_set("%s: storage buffer '%s' is not known", p->label, slot->name);
+    return true;
+}
+
+static bool has_any(const kernel_place *places, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (places[i].member[0] >= 0 || places[i].member[1] >= 0) return true;
+    return false;
+}
+
+static void find_places(pass *p, pass_built *b) {
+    arena *memory = p->host->memory;
+    const shader_interface *face = p->face;
+    const char **names = mem_alloc((face->uniform_count + 1) * sizeof *names);
+    for (size_t i = 0; i < face->uniform_count; i++) names[i] = face->uniforms[i].name;
+    b->uniforms = kernel_find(&b->base, memory, (kernel_names){names, face->uniform_count});
+    b->common = kernel_find(&b->base, memory, (kernel_names){common_names, COMMON_NAMES});
+    b->solver = kernel_find(&b->base, memory, solver_names(p));
+    mem_free(names);
+    size_t count;
+    const pass_provider *const *rows = pass_providers(&count);
+    for (size_t i = 0; i < count; i++) {
+        const kernel_place *places = kernel_find(&b->base, memory, rows[i]->uniforms);
+        b->provided[i] = has_any(places, rows[i]->uniforms.count) ? places : NULL;
+    }
+}
+
+static void note_wanted(pass *p, const pass_built *b) {
+    for (size_t i = 0; i < p->face->uniform_count; i++)
+        p->wanted[i] = p->wanted[i] || has_any(&b->uniforms[i], 1);
+}
+
+static bool add_stage(pass *p, kernel_source *source, const char *shader, shader_stage stage,
+                      const pass_defines *defines) {
+    return pass_describe_stage(p, shader, stage, defines, &source->stages[source->stage_count++]);
+}
+
+// `*left_out`: the type wants none.
+static bool compile(pass *p, size_t index, pass_built *b, bool *left_out) {
+    const pass_kernel *row = row_of(p, index);
+    const char *shader = row->shader ? row->shader : p->shader;
+    pass_defines defines = {.count = 0};
+    kernel_source source = {.label = p->label, .names = names_of(p)};
+    *left_out = p->type && p->type->defines && !p->type->defines(p, index, &defines);
+    if (*left_out) return true;
+    if (row->define) pass_define(&defines, row->define, "1");
+    if (row->without_fields) pass_define(&defines, "WITHOUT_FIELDS", "1");
+    bool done;
+    if (row->vertex) {
+        done = add_stage(p, &source, row->vertex, SHADER_VERTEX, &defines) &&
+               add_stage(p, &source, shader, SHADER_FRAGMENT, &defines);
+    } else if (str_ends_with(shader, ".frag")) { // over the whole picture
+        source.stages[source.stage_count++] = (shader_compile_desc){
+            .name = "lib/fullscreen.vert", .stage = SHADER_VERTEX, .reader = p->host->reader};
+        done = add_stage(p, &source, shader, SHADER_FRAGMENT, &defines);
+    } else {
+        done = add_stage(p, &source, shader, SHADER_COMPUTE, &defines);
+    }
+    if (!done || !kernel_compile(&b->base, p->host->library, p->host->memory, &source))
+        return err_prefix("%s: ", p->label);
+    for (size_t i = 0; i < b->base.slot_count; i++)
+        if (!find_source(p, b->base.slots[i], &b->sources[i])) return false;
+    find_places(p, b);
+    return true;
+}
+
+static void describe_target(const pass *p, size_t index, gpu_graphics_desc *out) {
+    if (p->type && p->type->target) {
+        p->type->target(p, index, out);
+        return;
+    }
+    size_t count = 0;
+    for (size_t i = 0; i < p->face->image_count && count < GPU_MAX_TARGETS; i++)
+        if (p->face->images[i].output) out->colors[count++] = p->formats[i];
+}
+
+static bool build(pass *p, size_t index, pass_built *b) {
+    gpu *device = p->host->device;
+    for (int s = 0; s < b->base.stages; s++)
+        if (!pass_ranges_build(p, &b->base.binaries[s])) return false;
+    if (b->base.stages == 1) return kernel_build(&b->base, device);
+    gpu_graphics_desc target = {0};
+    describe_target(p, index, &target);
+    return kernel_build_drawn(&b->base, device, target);
+}
+
+static void allocate(pass *p) {
+    arena *memory = p->host->memory;
+    const size_t uniforms = p->face->uniform_count + 1;
+    if (!p->built) p->built = arena_alloc(memory, count_kernels(p) * sizeof *p->built);
+    if (p->values) return;
+    p->values = arena_alloc(memory, uniforms * sizeof *p->values);
+    p->wanted = arena_alloc(memory, uniforms * sizeof *p->wanted);
+    for (size_t i = 0; i < names_of(p).count; i++)
+        if (p->names[i].uniform >= 0) p->wanted[p->names[i].uniform] = true;
+}
+
+// What is there stays until all of it is made anew.
+static bool make(pass *p, size_t index, bool built) {
+    pass_built made = {.base.pipeline = NULL};
+    bool left_out;
+    if (!compile(p, index, &made, &left_out)) return false;
+    if (built && !left_out && !build(p, index, &made)) return false;
+    kernel_destroy(&p->built[index].base, p->host->device);
+    p->built[index] = made;
+    return true;
+}
+
+static bool compile_one(void *user, size_t index) {
+    return make(user, index, false);
+}
+
+static bool build_one(void *user, size_t index) {
+    return make(user, index, true);
+}
+
+static bool for_each(pass *p, bool (*run)(void *user, size_t index)) {
+    allocate(p);
+    if (!worker_each(count_kernels(p), run, p)) return false;
+    for (size_t i = 0; i < count_kernels(p); i++)
+        if (p->built[i].base.stages) note_wanted(p, &p->built[i]);
+    return true;
+}
+
+bool pass_compile_kernels(pass *p) {
+    return for_each(p, compile_one);
+}
+
+bool pass_build_kernels(pass *p) {
+    return for_each(p, build_one);
+}
+
+bool pass_has_kernel(const pass *p, size_t index) {
+    return p->built[index].base.pipeline;
+}
+
+bool pass_make_kernel(pass *p, size_t index, bool again) {
+    if (pass_has_kernel(p, index) && !again) return true;
+    if (!build_one(p, index)) return false;
+    note_wanted(p, &p->built[index]);
+    return true;
+}
+
+void pass_destroy_kernels(pass *p) {
+    for (size_t i = 0; p->built && i < count_kernels(p); i++)
+        kernel_destroy(&p->built[i].base, p->host->device);
+}
+
+// ---- numbers ----------------------------------------------------------------------------------
+
+bool pass_evaluate_values(pass *p) {
+    for (size_t i = 0; i < p->face->uniform_count; i++)
+        if (p->wanted[i] && !pass_evaluate_at(p, i, p->values[i])) return false;
+    return true;
+}
+
+static void copy_value(kernel *k, const kernel_place *place, const float value[4]) {
+    const int32_t whole = (int32_t)lrintf(value[0]);
+    for (int s = 0; s < k->stages; s++) {
+        if (place->member[s] < 0) continue;
+        const bool is_whole = k->binaries[s].members[place->member[s]].type == SHADER_INT;
+        kernel_set_at(k, place, is_whole ? (const void *)&whole : value,
+                      is_whole ? sizeof whole : 4 * sizeof *value);
+    }
+}
+
+void pass_copy_values(pass *p) {
+    size_t count;
+    const pass_provider *const *rows = pass_providers(&count);
+    for (size_t i = 0; i < count_kernels(p); i++) {
+        pass_built *b = &p->built[i];
+        if (!b->base.stages) continue;
+        for (size_t u = 0; u < p->face->uniform_count; u++)
+            copy_value(&b->base, &b->uniforms[u], p->values[u]);
+        for (size_t r = 0; r < count; r++)
+            if (b->provided[r]) rows[r]->set(p, &b->base, b->provided[r]);
+    }
+}
+
+void pass_set(pass *p, int name, const void *data, size_t size) {
+    for (size_t i = 0; i < count_kernels(p); i++) kernel_set(&p->built[i].base, name, data, size);
+}
+
+void pass_set_float(pass *p, int name, float value) {
+    pass_set(p, name, &value, sizeof value);
+}
+
+void pass_set_int(pass *p, int name, int32_t value) {
+    pass_set(p, name, &value, sizeof value);
+}
+
+void pass_set_box(pass *p, box3 box) {
+    if (box3_is_empty(box)) box = (box3){{0, 0, 0}, {0, 0, 0}};
+    for (size_t i = 0; i < count_kernels(p); i++) {
+        pass_built *b = &p->built[i];
+        if (!b->base.stages) continue;
+        kernel_set_at(&b->base, &b->common[COMMON_BOX_MIN], &box.min, sizeof box.min);
+        kernel_set_at(&b->base, &b->common[COMMON_BOX_MAX], &box.max, sizeof box.max);
+    }
+}
+
+// ---- in a frame -------------------------------------------------------------------------------
+
+static void uniform_of(gpu_binding *out, const void *data, size_t size) {
+    out->uniform = data;
+    out->uniform_size = size;
+}
+
+static bool bind(pass *p, slot_source from, gpu_binding *out) {
+    size_t count;
+    switch (from.kind) {
+    case FROM_FRAME:
+        uniform_of(out, p->host->frame, sizeof *p->host->frame);
+        return true;
+    case FROM_LIGHTS:
+        uniform_of(out, p->host->lights, sizeof *p->host->lights);
+        return true;
+    case FROM_NUMBERS:
+        uniform_of(out, p->numbers, field_program_block_size(p->program));
+        return true;
+    case FROM_TEXTURE:
+        return pass_bind_texture(p, (size_t)from.index, out);
+    case FROM_IMAGE:
+        return pass_bind_image(p, (size_t)from.index, out);
+    case FROM_PROVIDER:
+        return pass_providers(&count)[from.row]->bind(p, from.index, out);
+    default:
+        return true;
+    }
+}
+
+kernel *pass_use(pass *p, size_t index) {
+    pass_built *b = &p->built[index];
+    for (size_t i = 0; i < b->base.slot_count; i++) {
+        if (b->sources[i].kind <= FROM_KERNEL) continue;
+        gpu_binding out = {0};
+        if (!bind(p, b->sources[i], &out)) return NULL;
+        out.binding = b->base.bindings[i].binding;
+        b->base.bindings[i] = out;
+    }
+    return &b->base;
+}
+
+const kernel_place *pass_solver_places(const pass *p, size_t index) {
+    return p->built[index].solver;
+}
+
+bool pass_dispatch(pass *p, size_t index, uint32_t x, uint32_t y, uint32_t z) {
+    kernel *k = pass_use(p, index);
+    return k && kernel_run(k, p->host->device, x, y, z);
+}

@@ -1,0 +1,69 @@
+// What shaders may ask for by including a file of lib/.
+#include "base/memory.h"
+#include "pass/lamps.h"
+#include "pass/particles.h"
+#include "pass/pass_impl.h"
+#include "scene/bvh.h"
+#include "scene/sky_image.h"
+
+// ---- counters ---------------------------------------------------------------------------------
+
+static const char *const counter_slots[] = {"Counters"};
+
+static bool bind_counters(pass *p, int slot, gpu_binding *out) {
+    (void)slot;
+    out->buffer = p->counters;
+    return out->buffer;
+}
+
+static const pass_provider counters = {.slots = {counter_slots, COUNT_OF(counter_slots)},
+                                       .bind = bind_counters};
+
+// ---- trees that rays go through ---------------------------------------------------------------
+
+static const char *const ray_slots[BVH_PARTS] = {"BvhNodes",    "BvhTriangles", "BvhInstances",
+                                                 "BvhSurfaces", "BvhVertices",  "BvhMaterials",
+                                                 "BvhTexels",   "BvhLevels"};
+
+static bool bind_rays(pass *p, int slot, gpu_binding *out) {
+    out->buffer = scene_bvh_buffer(p->host->bvh, (scene_bvh_part)slot);
+    return out->buffer;
+}
+
+static const pass_provider rays = {.slots = {ray_slots, BVH_PARTS}, .bind = bind_rays};
+
+// ---- sky and noise ----------------------------------------------------------------------------
+
+enum { SKY, SKY_DISTRIBUTION, BLUE_NOISE, SKY_SLOTS };
+static const char *const sky_slots[SKY_SLOTS] = {"Sky", "SkyDistribution", "BlueNoise"};
+
+static bool bind_sky(pass *p, int slot, gpu_binding *out) {
+    const sky_image *sky = p->host->scene->sky.image;
+    out->sampler = slot == SKY ? GPU_LINEAR_REPEAT : GPU_NEAREST_CLAMP;
+    if (slot == BLUE_NOISE)
+        out->image = p->host->blue_noise;
+    else
+        out->image = !sky          ? p->blank[0]
+                     : slot == SKY ? sky_image_texture(sky)
+                                   : sky_image_distribution(sky);
+    return out->image;
+}
+
+static size_t define_sky(const pass *p, shader_define out[PASS_PROVIDER_DEFINES]) {
+    const scene *around = p->host->scene;
+    out[0] = (shader_define){"SKY_IMAGE", around && around->sky.image ? "1" : "0"};
+    out[1] = (shader_define){"SKY_NIGHT", around && around->sky.night ? "1" : "0"};
+    return 2;
+}
+
+static const pass_provider sky = {
+    .slots = {sky_slots, SKY_SLOTS}, .defines = define_sky, .bind = bind_sky};
+
+// ---- all --------------------------------------------------------------------------------------
+
+const pass_provider *const *pass_providers(size_t *count) {
+    static const pass_provider *const rows[] = {&pass_particles_provider, &pass_lamps_provider,
+                                                &counters, &rays, &sky};
+    *count = COUNT_OF(rows);
+    return rows;
+}
