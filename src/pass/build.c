@@ -33,12 +33,14 @@ static shader_define define(arena *memory, const char *prefix, const char *name,
 
 // The pass's options as `shader` counts them, which may be another file than the pass's own. One
 // that is of that file alone has its default.
-static const size_t *options_of(pass *p, const char *shader) {
+static const size_t *options_of(pass *p, const char *shader, size_t *count) {
+    *count = p->face->option_count;
     if (strcmp(shader, p->shader) == 0) return p->options;
     const shader_interface *face =
         shader_interface_load(p->host->library, p->host->memory, shader, p->host->reader);
     if (!face) return NULL;
     size_t *values = arena_alloc(p->host->memory, (face->option_count + 1) * sizeof *values), own;
+    *count = face->option_count;
     for (size_t i = 0; i < face->option_count; i++) {
         values[i] = face->options[i].value;
         if (pass_find_key(p, face->options[i].name, &own) == PASS_OPTION)
@@ -95,9 +97,9 @@ bool pass_describe_stage(pass *p, const char *shader, shader_stage stage,
                                  .define_count = all->count,
                                  .texts = fields,
                                  .text_count = 1,
-                                 .options = options_of(p, shader),
                                  .counters = p->host->counters,
                                  .reader = p->host->reader};
+    out->options = options_of(p, shader, &out->option_count);
     return out->options;
 }
 

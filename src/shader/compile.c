@@ -117,6 +117,7 @@ static void *run(void *user) {
 bool shader_compile(shader_library *library, arena *memory, const shader_compile_desc *desc,
                     shader_binary *out) {
     *out = (shader_binary){0};
+    if (library->binaries && binary_memo_find(library, desc, memory, out)) return true;
     job j = {.library = library, .desc = desc, .memory = memory, .out = out};
     unit_desc unit = {.name = desc->name,
                       .texts = desc->texts,
@@ -125,6 +126,7 @@ bool shader_compile(shader_library *library, arena *memory, const shader_compile
     if (!unit_load(library, &unit, &j.unit)) return false;
     bool done = run_on_large_stack(run, &j) ? j.done || err_set("%s", j.message)
                                             : err_prefix("%s: ", desc->name);
+    if (done && library->binaries) binary_memo_keep(library, desc, &j.unit, out);
     strbuf_free(&j.source);
     mem_free(j.inserts.items);
     arena_free(&j.scratch);

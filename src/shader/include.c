@@ -43,25 +43,34 @@ static const shader_text *find_text(const loader *l, const char *name) {
     return NULL;
 }
 
-// Looks for `name` in the folders. 1: found; 0: missing; -1: error set.
-static int find_file(const loader *l, place at, const char *name, library_file *out) {
-    const unit_file *from = at.file < 0 ? NULL : &l->unit->files[at.file];
-    library_root home = from ? from->where.root : ROOT_NONE;
-    arena *memory = &l->unit->memory;
+int unit_find(const shader_library *library, const library_file *from, const char *name,
+              arena *memory, library_file *out) {
+    library_root home = from ? from->root : ROOT_NONE;
     int escaped = 0;
     if (home != ROOT_NONE) {
         char folder[PATH_CAP];
-        path_folder(folder, from->where.name);
-        int found = library_find(l->library, home, folder, name, memory, out);
+        path_folder(folder, from->name);
+        int found = library_find(library, home, folder, name, memory, out);
         if (found > 0) return found;
         if (found < 0) escaped = found;
     }
     for (library_root root = ROOT_EFFECT; root < ROOT_COUNT && !escaped; root++) {
         if (root == ROOT_EFFECT && home == ROOT_PROGRAM) continue;
-        int found = library_find(l->library, root, "", name, memory, out);
+        int found = library_find(library, root, "", name, memory, out);
         if (found) return found;
     }
     return escaped;
+}
+
+static int find_file(const loader *l, place at, const char *name, library_file *out) {
+    const library_file *from = at.file < 0 ? NULL : &l->unit->files[at.file].where;
+    return unit_find(l->library, from, name, &l->unit->memory, out);
+}
+
+static void note_include(shader_unit *unit, place at, const char *name, int target) {
+    MEM_RESERVE(unit->includes, unit->include_count + 1, unit->include_capacity);
+    unit->includes[unit->include_count++] =
+        (unit_include){at.file, target, arena_string(&unit->memory, name)};
 }
 
 static void tell(const loader *l, const char *path) {
@@ -180,6 +189,7 @@ static bool add_name(loader *l, place at, const char *name, int depth) {
     }
     if (file.where.path) tell(l, file.where.path);
     int known = find_known(l->unit, &file.where);
+    if (!text) note_include(l->unit, at, name, known >= 0 ? known : (int)l->unit->file_count);
     if (known >= 0) return !l->unit->files[known].open || fail_cycle(l, at, known);
     if (depth > UNIT_MAX_DEPTH) return fail(l, at, "includes are nested more than 32 deep");
     if (l->unit->file_count == UNIT_MAX_FILES) return fail(l, at, "more than 1000 files included");
@@ -302,6 +312,7 @@ bool unit_load(const shader_library *library, const unit_desc *desc, shader_unit
 
 void unit_free(shader_unit *unit) {
     mem_free(unit->files);
+    mem_free(unit->includes);
     mem_free(unit->lines);
     strbuf_free(&unit->text);
     strbuf_free(&unit->code);

@@ -31,7 +31,10 @@ shader_library *shader_library_create(const shader_library_desc *desc) {
     shader_library *library = mem_alloc(sizeof *library);
     for (int i = 0; i < ROOT_COUNT; i++)
         library->roots[i] = roots[i] ? arena_string(&library->memory, roots[i]) : NULL;
-    if (desc->remembers) library->memo = memo_create();
+    if (desc->remembers) {
+        library->memo = memo_create();
+        library->binaries = binary_memo_create();
+    }
     if (desc->cache_dir) {
         if (file_make_folders(desc->cache_dir) && is_private(desc->cache_dir))
             library->cache_dir = arena_string(&library->memory, desc->cache_dir);
@@ -44,6 +47,7 @@ shader_library *shader_library_create(const shader_library_desc *desc) {
 void shader_library_destroy(shader_library *library) {
     if (!library) return;
     memo_destroy(library->memo);
+    binary_memo_destroy(library->binaries);
     arena memory = library->memory;
     mem_free(library);
     arena_free(&memory);

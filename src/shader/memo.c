@@ -17,6 +17,7 @@ typedef struct memo_name {
 typedef struct memo_text {
     const char *path, *text;
     size_t size;
+    hash128 hash;
 } memo_text;
 
 struct library_memo {
@@ -82,25 +83,39 @@ void memo_keep(library_memo *m, library_root root, const char *name, int found,
     pthread_mutex_unlock(&m->lock);
 }
 
+// With the lock held.
+static const memo_text *read_text(library_memo *m, const char *root, const char *path) {
+    for (size_t i = 0; i < m->text_count; i++)
+        if (strcmp(m->texts[i].path, path) == 0) return &m->texts[i];
+    void *data = NULL;
+    size_t size;
+    if (!file_read_inside(root, path, UNIT_MAX_SIZE, &data, &size)) return NULL;
+    MEM_RESERVE(m->texts, m->text_count + 1, m->text_capacity);
+    memo_text *entry = &m->texts[m->text_count++];
+    *entry = (memo_text){.path = arena_string(&m->memory, path),
+                         .text = arena_copy(&m->memory, data, size + 1),
+                         .size = size,
+                         .hash = hash_bytes(data, size)};
+    mem_free(data);
+    return entry;
+}
+
 bool memo_read(library_memo *m, const char *root, const char *path, arena *memory, char **text,
                size_t *size) {
     pthread_mutex_lock(&m->lock);
-    const memo_text *entry = NULL;
-    for (size_t i = 0; i < m->text_count && !entry; i++)
-        if (strcmp(m->texts[i].path, path) == 0) entry = &m->texts[i];
-    void *data = NULL;
-    if (!entry && file_read_inside(root, path, UNIT_MAX_SIZE, &data, size)) {
-        MEM_RESERVE(m->texts, m->text_count + 1, m->text_capacity);
-        m->texts[m->text_count] = (memo_text){.path = arena_string(&m->memory, path),
-                                              .text = arena_copy(&m->memory, data, *size + 1),
-                                              .size = *size};
-        entry = &m->texts[m->text_count++];
-        mem_free(data);
-    }
+    const memo_text *entry = read_text(m, root, path);
     if (entry) {
         *text = arena_copy(memory, entry->text, entry->size + 1);
         *size = entry->size;
     }
+    pthread_mutex_unlock(&m->lock);
+    return entry != NULL;
+}
+
+bool memo_hash(library_memo *m, const char *root, const char *path, hash128 *out) {
+    pthread_mutex_lock(&m->lock);
+    const memo_text *entry = read_text(m, root, path);
+    if (entry) *out = entry->hash;
     pthread_mutex_unlock(&m->lock);
     return entry != NULL;
 }

@@ -21,7 +21,12 @@ static void define_words(strbuf *out, const char *name, const char *const *words
     }
 }
 
-static bool define_options(const shader_interface *interface, const size_t *values, strbuf *out) {
+static bool define_options(const shader_interface *interface, const shader_compile_desc *desc,
+                           strbuf *out) {
+    const size_t *values = desc->options;
+    if (values && desc->option_count != interface->option_count)
+        return err_set("%s: has %zu options, values of %zu were given", interface->path,
+                       interface->option_count, desc->option_count);
     for (size_t i = 0; i < interface->option_count; i++) {
         const shader_option *option = &interface->options[i];
         size_t value = values ? values[i] : option->value;
@@ -92,7 +97,7 @@ bool unit_prelude(const shader_unit *unit, const shader_interface *interface,
     strbuf_add(out, "#version 460\n"
                     "#extension GL_EXT_control_flow_attributes : require\n"
                     "#define ROIL 1\n");
-    if (!define_options(interface, desc->options, out) || !define_given(desc, out)) return false;
+    if (!define_options(interface, desc, out) || !define_given(desc, out)) return false;
     define_formats(interface, out);
     declare_counters(interface, desc->counters, out);
     if (desc->stage == SHADER_COMPUTE && !unit->has_local_size)

@@ -154,7 +154,8 @@ typedef struct shader_compile_desc {
     size_t define_count;
     const shader_text *texts; // generated include files
     size_t text_count;
-    const size_t *options;       // one value per option of the interface, in order; NULL: defaults
+    const size_t *options; // one value per option of the interface, in order; NULL: defaults
+    size_t option_count;
     bool counters;               // compile the counters in
     const shader_reader *reader; // may be NULL
 } shader_compile_desc;

@@ -12,10 +12,12 @@
 typedef enum library_root { ROOT_EFFECT, ROOT_PROGRAM, ROOT_COUNT, ROOT_NONE } library_root;
 
 typedef struct library_memo library_memo;
+typedef struct binary_memo binary_memo;
 
 struct shader_library {
     arena memory;
     library_memo *memo;            // NULL: nothing is remembered
+    binary_memo *binaries;         // likewise
     const char *roots[ROOT_COUNT]; // NULL: none
     const char *cache_dir;         // NULL: none
     atomic_uint_fast64_t compiles;
@@ -45,6 +47,8 @@ void memo_keep(library_memo *m, library_root root, const char *name, int found,
                const library_file *file);
 bool memo_read(library_memo *m, const char *root, const char *path, arena *memory, char **text,
                size_t *size);
+// Of what memo_read gives.
+bool memo_hash(library_memo *m, const char *root, const char *path, hash128 *out);
 
 // ---- scanning ---------------------------------------------------------------------------------
 
@@ -72,6 +76,11 @@ typedef struct unit_file {
     bool open;    // being included right now
 } unit_file;
 
+typedef struct unit_include { // a name and the file that it led to
+    int file, target;         // `file`: the includer; -1: the unit itself
+    const char *name;         // as written
+} unit_include;
+
 typedef struct unit_line { // a line of the text that came from a file
     int file, number;
     size_t start, length; // in `text` and `code`, without the newline
@@ -82,6 +91,8 @@ typedef struct shader_unit {
     arena memory;
     unit_file *files; // the first is the main file; GLSL knows file i as source string i + 1
     size_t file_count, file_capacity;
+    unit_include *includes;
+    size_t include_count, include_capacity;
     unit_line *lines;
     size_t line_count, line_capacity;
     strbuf text; // as written
@@ -98,6 +109,10 @@ typedef struct unit_desc {
 } unit_desc;
 
 bool unit_load(const shader_library *library, const unit_desc *desc, shader_unit *out);
+// Looks for a name as an #include of `from` does; NULL: as the unit itself is looked for. 1: found;
+// 0: missing; -1: refused, with a message that has no position.
+int unit_find(const shader_library *library, const library_file *from, const char *name,
+              arena *memory, library_file *out);
 void unit_free(shader_unit *unit);
 // Line `number` of file `file` without indentation, at most `capacity` - 1 bytes of it.
 void unit_source_line(const shader_unit *unit, int file, int number, char *out, size_t capacity);
@@ -176,6 +191,17 @@ bool spirv_reflect(spirv *code, shader_stage stage, arena *memory, shader_binary
 // Turns LocalSizeId into LocalSize, which needs no device feature, and drops `dead` variables.
 void spirv_clean(spirv *code, const uint32_t local_size[3], const uint32_t *live,
                  size_t live_count);
+
+// What was compiled before and what it was made of, for a library that remembers: an edit of a
+// number compiles nothing anew, and expanding and reflecting 38 shaders took most of such a reload.
+// Any thread. binary_memo_find is true, with a copy in `memory`, when every name would lead to the
+// same text again.
+binary_memo *binary_memo_create(void);
+void binary_memo_destroy(binary_memo *m); // NULL is fine
+bool binary_memo_find(const shader_library *library, const shader_compile_desc *desc, arena *memory,
+                      shader_binary *out);
+void binary_memo_keep(const shader_library *library, const shader_compile_desc *desc,
+                      const shader_unit *unit, const shader_binary *binary);
 
 bool cache_load(const shader_library *library, hash128 key, spirv *out);
 void cache_store(const shader_library *library, hash128 key, const spirv *code);

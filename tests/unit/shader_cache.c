@@ -62,7 +62,8 @@ static void whatever_changes_the_code_misses(void **state) {
     compile(p, one);
     compile(p, two);
     assert_int_equal(compiles(p), 2);
-    shader_compile_desc desc = {.name = "a.comp", .defines = one, .define_count = 1, .options = b};
+    shader_compile_desc desc = {
+        .name = "a.comp", .defines = one, .define_count = 1, .options = b, .option_count = 1};
     place_compile(p, &desc, &binary);
     assert_int_equal(compiles(p), 3);
     place_write(p, "program/lib/x.glsl", "float x() { return 1.0; }\n");
@@ -166,6 +167,51 @@ static void a_cache_that_others_can_write_to_is_not_used(void **state) {
     assert_int_equal(compiles(p), 2);
 }
 
+static void count_file(void *user, const char *path) {
+    (void)path;
+    ++*(int *)user;
+}
+
+// Without a folder for the cache: what is not remembered is compiled.
+static void a_library_remembers_what_would_be_the_same(void **state) {
+    place *p = *state;
+    int told = 0;
+    const shader_reader reader = {count_file, &told};
+    shader_compile_desc desc = {.name = "a.comp", .reader = &reader};
+    shader_binary first, again;
+    shader_library_destroy(p->library);
+    p->library = shader_library_create(&(shader_library_desc){
+        .shader_root = p->program, .effect_root = p->effect, .remembers = true});
+    place_write(p, "program/lib/x.glsl", "const int X = 1;\n");
+    place_write(p, "effect/a.comp",
+                "writeonly uniform image2D color; //= output rgba16f : x\n#include \"lib/x.glsl\"\n"
+                "void main() { imageStore(color, ivec2(0), vec4(X)); }\n");
+    place_compile(p, &desc, &first);
+    for (int i = 0; i < 2; i++) {
+        shader_library_forget(p->library);
+        place_compile(p, &desc, &again);
+        assert_int_equal(compiles(p), 1);
+        assert_int_equal(told, 2 * (i + 2));
+        assert_int_equal(again.size, first.size);
+        assert_memory_equal(again.code, first.code, first.size);
+        assert_string_equal(again.slots[0].name, "color");
+        assert_int_equal(again.file_count, 2);
+        assert_int_equal(again.local_size[0], 16);
+    }
+    desc.counters = true;
+    place_compile(p, &desc, &again);
+    assert_int_equal(compiles(p), 2);
+    place_write(p, "program/lib/x.glsl", "const int X = 2;\n"); // another text
+    shader_library_forget(p->library);
+    place_compile(p, &desc, &again);
+    assert_int_equal(compiles(p), 3);
+    place_write(p, "effect/lib/x.glsl", "const int X = 2;\n"); // another file
+    shader_library_forget(p->library);
+    place_compile(p, &desc, &again);
+    assert_int_equal(compiles(p), 4);
+    assert_non_null(strstr(again.files[1], p->effect));
+}
+
 static void failures_are_not_cached(void **state) {
     place *p = *state;
     place_write(p, "program/a.comp", "void main() { x }\n");
@@ -199,6 +245,7 @@ int main(void) {
         PLACE_TEST(an_entry_under_a_wrong_name_is_not_used),
         PLACE_TEST(an_unwritable_cache_is_no_error),
         PLACE_TEST(a_cache_that_others_can_write_to_is_not_used),
+        PLACE_TEST(a_library_remembers_what_would_be_the_same),
         PLACE_TEST(failures_are_not_cached),
         PLACE_TEST(a_missing_folder_of_shaders_is_an_error),
     };

@@ -71,6 +71,10 @@ static void options_choose_code(void **state) {
     shader_compile_desc desc = {.name = "a.comp"};
     place_compile(p, &desc, &binary);
     desc.options = other;
+    desc.option_count = 1;
+    assert_false(shader_compile(p->library, &p->memory, &desc, &binary));
+    assert_error("has 2 options, values of 1 were given");
+    desc.option_count = 2;
     place_compile(p, &desc, &binary);
     desc.options = chosen;
     assert_false(shader_compile(p->library, &p->memory, &desc, &binary));
