@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum { LABEL_MIN = 8, LABEL_MAX = 64 };
-static const char *const MARCH = "march";
+static const char *const MARCH = "march", *const HOST = "host";
 
 static int width_of(size_t longest) {
     return (int)(longest < LABEL_MIN ? LABEL_MIN : longest < LABEL_MAX ? longest : LABEL_MAX);
@@ -67,6 +67,12 @@ static bool any_march(const bench_results *r) {
     return false;
 }
 
+static bool any_host(const bench_results *r) {
+    for (size_t i = 0; i < r->row_count; i++)
+        if (bench_get_time(&r->rows[i].cpu, HOST)) return true;
+    return false;
+}
+
 static bool any_compared(const bench_results *r) {
     for (size_t i = 0; i < r->row_count; i++)
         if (r->rows[i].compared) return true;
@@ -85,6 +91,7 @@ static void print_samples(const bench_row *row) {
 static void print_figures(const bench_row *row, bool march, bool compared) {
     const bench_time *all = bench_main_time(row);
     const bench_figure *of_march = bench_get_time(&row->gpu, MARCH);
+    const bench_figure *host = bench_get_time(&row->cpu, HOST);
     if (of_march)
         app_print(stdout, " %9.3f", of_march->median);
     else if (march)
@@ -92,6 +99,7 @@ static void print_figures(const bench_row *row, bool march, bool compared) {
     if (all)
         app_print(stdout, " %9.3f %9.3f %9.3f %5zu", all->ms.median, all->ms.p5, all->ms.p95,
                   all->ms.count);
+    if (host) app_print(stdout, " %8.0f", 1e3 * host->median);
     if (march) print_samples(row);
     if (row->device_bytes) app_print(stdout, " %8.1f", (double)row->device_bytes / (1 << 20));
     if (compared && row->compared)
@@ -107,6 +115,7 @@ void bench_print_table(const bench_results *r) {
     app_print(stdout, "%-*s", width, march ? "GPU ms" : "ms");
     if (march) app_print(stdout, " %9s", MARCH);
     app_print(stdout, " %9s %9s %9s %5s", all ? all->name : "all", "5 %", "95 %", "count");
+    if (any_host(r)) app_print(stdout, " %8s", "host us");
     if (march) app_print(stdout, " %9s %8s", "samples M", "MiB");
     if (compared) app_print(stdout, " %7s %7s %7s", "PSNR dB", "SSIM", "FLIP");
     app_print(stdout, "\n");

@@ -66,7 +66,9 @@ typedef struct bench_row {
     bench_state state;
     const char *message; // of BENCH_FAILED, BENCH_LIMIT; else ""
     bench_times gpu;     // by pass, "all" last
-    bench_times cpu; // a frame "submit"ted, drawn ("frame"), and processor time for it ("process")
+    // Of a frame: until it is "submit"ted and drawn ("frame"), by the clock; processor time of the
+    // thread that submits it ("host") and of all threads until it is drawn ("process").
+    bench_times cpu;
     bench_times times; // of other measures: "reload", "take_over", "start"
     bench_numbers counters;
     uint64_t device_bytes, reserved_bytes, host_bytes;
