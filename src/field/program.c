@@ -1,13 +1,13 @@
 // From fields to GLSL, first half. Nodes are interned: two that compute the same are one. A
 // constant is the same only as itself, since its value may change without a new text. Maximal
 // subtrees that do not vary in space become numbers of a uniform block, in order of first use;
-// single numbers share vec4s. emit.c writes the functions; here lies everything around them.
+// single numbers share vec4s. program_emit.c writes the functions; here lies everything around
+// them.
 #include "field/program.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/memory.h"
-#include "field/emit.h"
-#include "field/kinds.h"
+#include "field/program_parts.h"
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>

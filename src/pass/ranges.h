@@ -1,5 +1,5 @@
 // Ranges of grids: textures of the least and the greatest values over bricks, for fields that are
-// asked for their range (field/emit_range.c). Computed on the device where a shader reads them,
+// asked for their range (field/program_range.c). Computed on the device where a shader reads them,
 // when the grid's content has changed; a grid whose ranges nobody asks for costs nothing.
 #pragma once
 #include "pass/pass_impl.h"

@@ -1,7 +1,7 @@
 // Values of operations: GLSL expressions for nodes, fetches and moved points. Everything that is
-// worth a name becomes an operation (emit.c); numbers, swizzles and grid channels are written where
-// they are used.
-#include "field/emitter.h"
+// worth a name becomes an operation (program_emit.c); numbers, swizzles and grid channels are
+// written where they are used.
+#include "field/program_parts.h"
 #include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>

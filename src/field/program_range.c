@@ -1,11 +1,11 @@
 // From fields to GLSL, ranges: for every root of one component a function
 //   vec2 field_NAME_range(vec3 low, vec3 high)
 // of the least and the greatest value over a box, where a shader says WITH_RANGES before it
-// includes the fields. It goes over the same operations at the same points as emit_value.c, in
+// includes the fields. It goes over the same operations at the same points as program_value.c, in
 // intervals (shaders/lib/range.glsl). It is called for bricks of space, not for samples: everything
 // is computed where it is first wanted, in one function for each root.
 #include "base/memory.h"
-#include "field/emitter.h"
+#include "field/program_parts.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>

@@ -17,7 +17,7 @@
 // them. So the text grows linearly.
 #include "base/error.h"
 #include "base/memory.h"
-#include "field/emitter.h"
+#include "field/program_parts.h"
 #include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 // Samples of grids: the GLSL function that fetches an image of one, whole, in bricks, repeating, or
 // as slices round an axis.
-#include "field/emit.h"
+#include "field/program_parts.h"
 #include <stdio.h>
 
 static void add_repeating_fetch(const program_grid *grid, size_t g, int image, strbuf *out) {
