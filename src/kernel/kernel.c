@@ -97,6 +97,8 @@ void kernel_destroy(kernel *k, gpu *g) {
 
 // ---- in a frame -------------------------------------------------------------------------------
 
+enum { GROUPS_ACROSS = 1024 };
+
 void kernel_set_at(kernel *k, const kernel_place *place, const void *data, size_t size) {
     for (int s = 0; s < k->stages; s++) {
         if (place->member[s] < 0) continue;
@@ -153,6 +155,14 @@ bool kernel_run(kernel *k, gpu *g, uint32_t x, uint32_t y, uint32_t z) {
                                                 .bindings = k->bindings,
                                                 .binding_count = k->slot_count,
                                                 .threads = {x, y, z}});
+}
+
+bool kernel_run_each(kernel *k, gpu *g, uint64_t count) {
+    const uint32_t threads = k->binaries[0].local_size[0];
+    const uint64_t groups = (count + threads - 1) / threads;
+    const uint64_t across = groups < GROUPS_ACROSS ? groups : GROUPS_ACROSS;
+    return groups == 0 || kernel_run(k, g, (uint32_t)across * threads,
+                                     (uint32_t)((groups + across - 1) / across), 1);
 }
 
 gpu_draw kernel_draw(const kernel *k, gpu_binding kept[GPU_MAX_SLOTS]) {

@@ -4,8 +4,7 @@
 #include <string.h>
 
 const field *pass_density(const pass *p) {
-    size_t index;
-    return pass_find_key(p, "density", &index) == PASS_FIELD ? p->fields[index] : NULL;
+    return p->density >= 0 ? p->fields[p->density] : NULL;
 }
 
 // As an author writes it.

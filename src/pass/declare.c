@@ -28,6 +28,16 @@ static bool declare_output(pass *p, size_t index) {
     return p->images[index].id != 0;
 }
 
+bool pass_add_output(pass *p, int name, graph_image_desc desc) {
+    graph_image *image = pass_image(p, name);
+    const size_t index = (size_t)(image - p->images);
+    desc.format = p->formats[index];
+    if (!desc.name)
+        desc.name = arena_format(p->host->memory, "%s.%s", p->label, p->face->images[index].name);
+    *image = graph_add_image(p->host->graph, &desc);
+    return image->id != 0;
+}
+
 bool pass_declare_images(pass *p) {
     const shader_interface *face = p->face;
     for (size_t i = 0; i < face->image_count; i++)

@@ -70,6 +70,7 @@ void pass_find_names(pass *p) {
     pass_name *found = arena_alloc(p->host->memory, (names.count + 1) * sizeof *found);
     for (size_t i = 0; i < names.count; i++) found[i] = find_name(p, names.items[i]);
     p->names = found;
+    p->density = find_name(p, "density").field;
 }
 
 // A type that asks for what its shader does not declare.
@@ -110,6 +111,12 @@ uint32_t pass_option_number(const pass *p, int name) {
 
 const field *pass_given_field(const pass *p, int name) {
     return p->fields[known(p, name, p->names[name].field, "field")];
+}
+
+bool pass_gives(const pass *p, int name) {
+    const size_t index = known(p, name, p->names[name].uniform, "uniform");
+    const shader_uniform *declared;
+    return p->uniforms[index] || pass_inherited_uniform(p, index, &declared);
 }
 
 graph_image *pass_image(const pass *p, int name) {
@@ -337,6 +344,15 @@ bool pass_build_kernels(pass *p) {
 
 bool pass_has_kernel(const pass *p, size_t index) {
     return p->built[index].base.pipeline;
+}
+
+bool pass_reads_frame(const pass *p, size_t index) {
+    const pass_built *b = &p->built[index];
+    for (size_t i = 0; i < b->base.slot_count; i++) {
+        const source_kind kind = b->sources[i].kind;
+        if (kind == FROM_FRAME || kind == FROM_LIGHTS || kind == FROM_PROVIDER) return true;
+    }
+    return false;
 }
 
 bool pass_make_kernel(pass *p, size_t index, bool again) {

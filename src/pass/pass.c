@@ -144,7 +144,7 @@ bool pass_set_uniform(pass *p, const char *name, const field *value) {
     if (!fits)
         return err_set("%s: uniform '%s' takes %d component%s, not %d", p->label, name, wanted,
                        wanted == 1 ? "" : "s", value->components);
-    if (strcmp(value->kind->name, "constant") == 0) {
+    if (field_is_constant(value)) {
         for (int i = 0; i < value->components && i < wanted; i++) {
             float v = value->value[i];
             if (!isfinite(v) || v < uniform->min || v > uniform->max)

@@ -55,6 +55,7 @@ struct pass {
     void *state;         // of the type's hooks
     bool completed;
     const struct pass_name *names; // what the type's names are in `face`
+    int density;                   // of that name, in face->fields; -1: none
     pass_parent *parents;          // of uniforms (source.c); NULL: nothing is taken from others
     struct pass_built *built;      // kernels, as the type lists them
     float (*values)[4];            // of uniforms, in this frame
@@ -85,6 +86,9 @@ bool pass_dispatch(pass *p, size_t index, uint32_t x, uint32_t y, uint32_t z); /
 // or `again` all the same.
 bool pass_make_kernel(pass *p, size_t index, bool again);
 bool pass_has_kernel(const pass *p, size_t index); // it is built
+// Whether it reads more than numbers, fields and images: blocks of the frame, or what a provider
+// has. Once it is compiled.
+bool pass_reads_frame(const pass *p, size_t index);
 
 // Where the names of the type's solver are in a kernel.
 const kernel_place *pass_solver_places(const pass *p, size_t index);
@@ -107,6 +111,7 @@ size_t pass_option(const pass *p, int name); // index of the word that it has
 bool pass_option_is(const pass *p, int name, const char *word);
 uint32_t pass_option_number(const pass *p, int name);   // of words that are numbers
 const field *pass_given_field(const pass *p, int name); // NULL: not given
+bool pass_gives(const pass *p, int name); // it, or a source, says what that uniform is
 graph_image *pass_image(const pass *p, int name);
 gpu_image *pass_get_image(const pass *p, int name); // on the device, in a frame; may be NULL
 
@@ -203,7 +208,9 @@ pass *pass_writer(const pass_host *host, graph_image image); // NULL: of no pass
 int pass_find_image(const pass *p, const char *name);        // index in face->images, -1: none
 // An image of its own that it draws to, at the pass's scale.
 graph_image pass_add_target(pass *p, const char *name, gpu_format format);
-bool pass_declare_images(pass *p); // histories and outputs at the pass's scale
+// An output of a size of its own: all of `desc` but its format, and its name unless it is given.
+bool pass_add_output(pass *p, int name, graph_image_desc desc);
+bool pass_declare_images(pass *p); // histories, and the other outputs at the pass's scale
 // The same, with images of its own that it writes besides.
 bool pass_add_to_graph_with(pass *p, const graph_image *more, size_t more_count);
 // The same, with images of its own that it reads besides.
