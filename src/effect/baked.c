@@ -23,12 +23,6 @@ static bool update(field_grid *grid, gpu *g, double time) {
     return true;
 }
 
-// Memory is the effect's, the image the graph's.
-static void destroy(field_grid *grid, gpu *g) {
-    (void)grid;
-    (void)g;
-}
-
 static bool check(const effect_bake_desc *desc) {
     uint64_t voxels = 1;
     for (int i = 0; i < 3; i++) {
@@ -62,8 +56,7 @@ field_grid *effect_add_bake(effect *e, const field *node, const effect_bake_desc
                  .repeats = desc->repeats,
                  .levels = desc->levels,
                  .state = {.active = desc->box},
-                 .update = update,
-                 .destroy = destroy},
+                 .update = update},
         .owner = e,
         .node = node,
     };

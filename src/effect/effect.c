@@ -82,7 +82,8 @@ void effect_destroy(effect *e) {
     effect_forget_moments(e);
     mem_free(e->moments);
     for (size_t i = 0; i < e->pass_count; i++) pass_destroy(e->passes[i]);
-    for (size_t i = 0; i < e->grid_count; i++) e->grids[i]->destroy(e->grids[i], e->device);
+    for (size_t i = 0; i < e->grid_count; i++)
+        if (e->grids[i]->destroy) e->grids[i]->destroy(e->grids[i], e->device);
     for (size_t i = 0; i < e->mesh_count; i++) scene_mesh_destroy(e->meshes[i], e->device);
     for (size_t i = 0; i < e->instances_count; i++)
         scene_instances_destroy(e->instances[i], e->device);

@@ -220,7 +220,8 @@ static bool update_grids(effect *e, gpu *device) {
     for (size_t i = 0; i < e->grid_count; i++) {
         field_grid *grid = e->grids[i];
         double time;
-        if (!effect_grid_time(e, grid, e->context.time, &time) || !grid->update(grid, device, time))
+        if (grid->update && (!effect_grid_time(e, grid, e->context.time, &time) ||
+                             !grid->update(grid, device, time)))
             return false;
     }
     return true;

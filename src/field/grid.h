@@ -57,9 +57,9 @@ struct field_grid {
     const char *label;               // what the script calls it; NULL: it has no name
     field_grid_state state;          // current; set by update
     // Brings `state` to a time, uploading what is needed. Waits for data that is not decoded yet,
-    // unless it is punctual and has anything to show.
+    // unless it is punctual and has anything to show. NULL: a pass fills the grid.
     bool (*update)(field_grid *grid, gpu *g, double time);
-    void (*destroy)(field_grid *grid, gpu *g); // frees all
+    void (*destroy)(field_grid *grid, gpu *g); // frees all; NULL: its memory is the effect's
     // Gives `other`, a grid with the same hook, all that this one has read and put on the device,
     // and takes what that one has; false when they do not show the same. NULL: nothing to exchange.
     bool (*exchange)(field_grid *grid, field_grid *other);

@@ -28,16 +28,6 @@ static deposit_state *state_of(const pass *p) {
 
 // ---- the grid ---------------------------------------------------------------------------------
 
-static bool update_grid(field_grid *grid, gpu *g, double time) {
-    (void)grid, (void)g, (void)time; // the pass does
-    return true;
-}
-
-static void destroy_grid(field_grid *grid,
-                         gpu *g) { // memory is the effect's, the image the graph's
-    (void)grid, (void)g;
-}
-
 static const char *field_name(const field_grid *grid, size_t index) {
     (void)grid;
     return index == 0 ? "density" : NULL;
@@ -75,8 +65,6 @@ field_grid *pass_deposit_open(pass *p, const pass_deposit_desc *desc) {
         .box = desc->box,
         .channel_count = 1,
         .state = {.active = desc->box},
-        .update = update_grid,
-        .destroy = destroy_grid,
         .field_name = field_name,
         .find_field = find_field,
     };

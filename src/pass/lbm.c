@@ -14,18 +14,6 @@ static const pass_kernel kernels[LBM_KERNELS] = {[LBM_FORCE] = {.shader = "pass/
 
 // ---- the grid ---------------------------------------------------------------------------------
 
-static bool update_grid(field_grid *grid, gpu *g, double time) {
-    (void)grid;
-    (void)g;
-    (void)time;
-    return true; // the pass does
-}
-
-static void destroy_grid(field_grid *grid, gpu *g) { // memory is the effect's, images the graph's
-    (void)grid;
-    (void)g;
-}
-
 static bool same_place(const lbm_air *a, const lbm_air *b) {
     return memcmp(&a->grid.box, &b->grid.box, sizeof a->grid.box) == 0 &&
            a->units.step == b->units.step && a->desc.warm_up == b->desc.warm_up;
@@ -89,8 +77,6 @@ field_grid *pass_lbm_open(pass *p, const pass_lbm_desc *desc) {
                  .channel_count = PASS_LBM_CHANNELS,
                  .simulated = true,
                  .state = {.active = box_of(desc)},
-                 .update = update_grid,
-                 .destroy = destroy_grid,
                  .exchange = exchange_grids,
                  .field_name = field_name,
                  .find_field = find_field},
@@ -131,19 +117,14 @@ int pass_lbm_use(pass *p, const char *name, int *components) {
 // ---- declaring --------------------------------------------------------------------------------
 
 static bool add_image(pass *p, lbm_air *a, int output, int index) {
-    graph_image *image = pass_image(p, output);
-    *image = graph_add_image(
-        p->host->graph, &(graph_image_desc){
-                            .name = arena_format(p->host->memory, "%s.%s", p->label, names[output]),
-                            .format = p->formats[p->names[output].image],
-                            .width = a->desc.size[0],
-                            .height = a->desc.size[1],
-                            .depth = a->desc.size[2],
-                            .optional = true,
-                            .keep = true,
-                        });
-    if (!image->id) return false;
-    pass_host_add_grid_image(p->host, &a->grid, index, *image);
+    if (!pass_add_output(p, output,
+                         (graph_image_desc){.width = a->desc.size[0],
+                                            .height = a->desc.size[1],
+                                            .depth = a->desc.size[2],
+                                            .optional = true,
+                                            .keep = true}))
+        return false;
+    pass_host_add_grid_image(p->host, &a->grid, index, *pass_image(p, output));
     return true;
 }
 

@@ -16,18 +16,6 @@ static const pass_kernel kernels[SLICES_KERNELS] = {
 
 // ---- the grid ---------------------------------------------------------------------------------
 
-static bool update_grid(field_grid *grid, gpu *g, double time) {
-    (void)grid;
-    (void)g;
-    (void)time;
-    return true; // the pass does
-}
-
-static void destroy_grid(field_grid *grid, gpu *g) { // memory is the effect's, images the graph's
-    (void)grid;
-    (void)g;
-}
-
 // Where slices stand in space changes nothing of what flows in them.
 static bool same_flow(const slices_flow *a, const slices_flow *b) {
     return a->desc.height == b->desc.height && a->clock.step == b->clock.step &&
@@ -81,8 +69,6 @@ static field_grid grid_of(const slices_flow *f, const field_extrusion *extrusion
         .simulated = true,
         .extruded = extrusion,
         .state = {.active = box},
-        .update = update_grid,
-        .destroy = destroy_grid,
         .exchange = exchange_grids,
         .field_name = field_name,
         .find_field = find_field,
@@ -143,20 +129,14 @@ int pass_slices_use(pass *p, const char *name, int *components) {
 // ---- declaring --------------------------------------------------------------------------------
 
 static bool add_image(pass *p, slices_flow *f, int output, int index) {
-    graph_image *image = pass_image(p, output);
-    *image = graph_add_image(
-        p->host->graph,
-        &(graph_image_desc){
-            .name = arena_format(p->host->memory, "%s.%s", p->label, slices_names[output]),
-            .format = p->formats[p->names[output].image],
-            .width = f->desc.size[0],
-            .height = f->desc.size[1],
-            .depth = f->desc.count + 1,
-            .optional = true,
-            .keep = true,
-        });
-    if (!image->id) return false;
-    pass_host_add_grid_image(p->host, &f->grid, index, *image);
+    if (!pass_add_output(p, output,
+                         (graph_image_desc){.width = f->desc.size[0],
+                                            .height = f->desc.size[1],
+                                            .depth = f->desc.count + 1,
+                                            .optional = true,
+                                            .keep = true}))
+        return false;
+    pass_host_add_grid_image(p->host, &f->grid, index, *pass_image(p, output));
     return true;
 }
 

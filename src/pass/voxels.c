@@ -26,15 +26,6 @@ static voxels_pass *state_of(const pass *p) {
 
 // ---- the grid ---------------------------------------------------------------------------------
 
-static bool update_grid(field_grid *grid, gpu *g, double time) {
-    (void)grid, (void)g, (void)time; // the pass does
-    return true;
-}
-
-static void destroy_grid(field_grid *grid, gpu *g) { // memory is the effect's, images the graph's
-    (void)grid, (void)g;
-}
-
 static const struct {
     const char *name;
     int channel, components;
@@ -144,8 +135,6 @@ field_grid *pass_voxels_open(pass *p, const pass_voxels_desc *desc, const field_
     s->grid.name = p->label;
     s->grid.channel_count = PASS_VOXELS_CHANNELS;
     s->grid.state.active = s->grid.box;
-    s->grid.update = update_grid;
-    s->grid.destroy = destroy_grid;
     s->grid.field_name = field_name;
     s->grid.find_field = find_field;
     return &s->grid;
