@@ -112,17 +112,9 @@ typedef struct lighting_state {
 
 // ---- declaring --------------------------------------------------------------------------------
 
-static bool add_image(pass *p, int name, const uint32_t size[3]) {
-    graph_image *image = pass_image(p, name);
-    *image = graph_add_image(
-        p->host->graph, &(graph_image_desc){
-                            .name = arena_format(p->host->memory, "%s.%s", p->label, names[name]),
-                            .format = p->formats[p->names[name].image],
-                            .width = size[0],
-                            .height = size[1],
-                            .depth = size[2],
-                        });
-    return image->id != 0;
+static bool add_image(pass *p, int name, uint32_t width, uint32_t height, uint32_t depth) {
+    return pass_add_output(p, name,
+                           (graph_image_desc){.width = width, .height = height, .depth = depth});
 }
 
 static bool add_grids(pass *p) {
@@ -156,9 +148,9 @@ static bool add_images(pass *p) {
         return err_set("%s: shadows of %u lights (the sun is one) do not fit at a "
                        "shadow_resolution of %u; at most %u is possible with so many",
                        p->label, s->declared, n, GREATEST_DEPTH / s->declared);
-    return add_image(p, N_lights, (uint32_t[3]){ROW_TEXELS, s->declared + s->fire_count, 0}) &&
-           add_image(p, N_shadow, (uint32_t[3]){n, n, n * s->declared}) &&
-           add_image(p, N_glow, (uint32_t[3]){g, g, 3 * g}) && add_grids(p);
+    return add_image(p, N_lights, ROW_TEXELS, s->declared + s->fire_count, 0) &&
+           add_image(p, N_shadow, n, n, n * s->declared) && add_image(p, N_glow, g, g, 3 * g) &&
+           add_grids(p);
 }
 
 static bool record_lights(pass *p);

@@ -49,21 +49,15 @@ static bool declare(pass *p) {
 
 // ---- building ---------------------------------------------------------------------------------
 
-// Whether somebody says what it is.
-static bool gives(const pass *p, int name) {
-    const shader_uniform *declared;
-    const size_t index = (size_t)p->names[name].uniform;
-    return p->uniforms[index] || pass_inherited_uniform(p, index, &declared);
-}
-
 // Steps of one length take less code and fewer registers alone: those of variable length are left
 // out as long as nobody gives a tolerance. Likewise rays have one thread where they are as many as
 // the pixels of the output, and where threads are few. What someone moves by hand where the effect
 // says nothing of it is compiled in then.
 static void choose_code(const pass *p) {
     march_state *s = p->state;
-    s->adaptive = s->adaptive || gives(p, N_tolerance);
-    s->teams = s->teams || (!s->noise && ((!s->software && p->scale < 1) || gives(p, N_threads)));
+    s->adaptive = s->adaptive || pass_gives(p, N_tolerance);
+    s->teams =
+        s->teams || (!s->noise && ((!s->software && p->scale < 1) || pass_gives(p, N_threads)));
 }
 
 static bool defines(pass *p, size_t index, pass_defines *out) {

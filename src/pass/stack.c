@@ -2,26 +2,20 @@
 #include "base/memory.h"
 #include "pass/pass_impl.h"
 
-static bool add_image(pass *p, const char *output, uint32_t side) {
-    int image = pass_find_image(p, output);
-    p->images[image] = graph_add_image(
-        p->host->graph, &(graph_image_desc){
-                            .name = arena_format(p->host->memory, "%s.%s", p->label, output),
-                            .format = p->formats[image],
-                            .width = side,
-                            .height = side,
-                        });
-    return p->images[image].id != 0;
-}
+#define NAMES(NAME) NAME(target), NAME(color), NAME(edge)
+enum { NAMES(KERNEL_NAME_ID) };
+static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
 
-static bool declare(pass *p) {
-    uint32_t side = pass_number(p, "target");
+static bool stack_declare(pass *p) {
+    const uint32_t side = pass_option_number(p, N_target); // 0: as the pass's scale says
+    const graph_image_desc size = {.width = side, .height = side};
     if (!pass_check_density(p)) return false;
-    if (side && (!add_image(p, "color", side) || !add_image(p, "edge", side))) return false;
+    if (side && !(pass_add_output(p, N_color, size) && pass_add_output(p, N_edge, size)))
+        return false;
     return pass_declare_images(p) && pass_add_to_graph(p);
 }
 
-static bool update(pass *p) {
+static bool stack_update(pass *p) {
     box3 box;
     if (!pass_density_box(p, &box)) return false;
     pass_set_box(p, box);
@@ -31,6 +25,7 @@ static bool update(pass *p) {
 const pass_type stack_type = {
     .name = "stack",
     .shader = "pass/stack.comp",
-    .declare = declare,
-    .update = update,
+    .names = {names, COUNT_OF(names)},
+    .declare = stack_declare,
+    .update = stack_update,
 };
