@@ -67,43 +67,10 @@ bool bake_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool bake_record(pass *p);
 void bake_destroy(pass *p);
 
-bool particles_declare(pass *p);
-bool particles_check(pass *p);
-bool particles_build(pass *p);
-bool particles_allocate(pass *p);
-bool particles_fill(pass *p, const shader_binary *binary, unsigned char *block);
-bool particles_rehearse(pass *p);
-bool particles_record(pass *p);
-void particles_destroy(pass *p);
-extern const pass_simulation particles_simulation;
-
 bool picture_declare(pass *p);
 bool picture_check(pass *p);
 bool picture_build(pass *p);
 bool picture_record(pass *p);
-
-bool pieces_declare(pass *p);
-bool pieces_check(pass *p);
-bool pieces_build(pass *p);
-bool pieces_allocate(pass *p);
-bool pieces_fill(pass *p, const shader_binary *binary, unsigned char *block);
-bool pieces_record(pass *p);
-void pieces_destroy(pass *p);
-
-bool deposit_declare(pass *p);
-bool deposit_check(pass *p);
-bool deposit_build(pass *p);
-bool deposit_allocate(pass *p);
-bool deposit_fill(pass *p, const shader_binary *binary, unsigned char *block);
-bool deposit_record(pass *p);
-void deposit_destroy(pass *p);
-
-bool splats_declare(pass *p);
-bool splats_check(pass *p);
-bool splats_build(pass *p);
-bool splats_fill(pass *p, const shader_binary *binary, unsigned char *block);
-bool splats_record(pass *p);
-void splats_destroy(pass *p);
 
 bool voxels_declare(pass *p);
 bool voxels_check_pass(pass *p);

@@ -3,21 +3,23 @@
 #include "pass/deposit.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/particles.h"
 #include "pass/pass_impl.h"
 #include <math.h>
 #include <string.h>
 
-enum { GROUP = 256, ACROSS = 1024 }; // threads of a group of particles; such groups side by side
+#define NAMES(NAME) NAME(density), NAME(cells), NAME(DepositSums)
+enum { NAMES(KERNEL_NAME_ID) };
+static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
 
-typedef enum deposit_stage { ADD, SHOW, STAGES } deposit_stage;
+enum { ADD, SHOW, STAGES };
+static const pass_kernel kernels[STAGES] = {
+    [ADD] = {.define = "STAGE_ADD"},
+    [SHOW] = {.define = "STAGE_SHOW", .without_fields = true},
+};
 
 typedef struct deposit_state {
     field_grid grid; // first: the effect has it
-    shader_binary binary[STAGES];
-    gpu_pipeline *pipeline[STAGES];
-    unsigned char *block[STAGES];
     gpu_buffer *sums;
     bool empty; // these are
 } deposit_state;
@@ -74,48 +76,17 @@ field_grid *pass_deposit_open(pass *p, const pass_deposit_desc *desc) {
 
 // ---- life -------------------------------------------------------------------------------------
 
-bool deposit_declare(pass *p) {
+static bool deposit_declare(pass *p) {
     deposit_state *s = state_of(p);
-    int output = pass_find_image(p, "density");
-    p->images[output] = graph_add_image(
-        p->host->graph, &(graph_image_desc){
-                            .name = arena_format(p->host->memory, "%s.density", p->label),
-                            .format = p->formats[output],
-                            .width = s->grid.size[0],
-                            .height = s->grid.size[1],
-                            .depth = s->grid.size[2],
-                        });
-    if (!p->images[output].id) return false;
-    pass_host_add_grid_image(p->host, &s->grid, 0, p->images[output]);
+    const uint32_t *n = s->grid.size;
+    if (!pass_add_output(p, N_density,
+                         (graph_image_desc){.width = n[0], .height = n[1], .depth = n[2]}))
+        return false;
+    pass_host_add_grid_image(p->host, &s->grid, 0, *pass_image(p, N_density));
     return pass_add_to_graph(p);
 }
 
-static bool compile(pass *p, deposit_stage stage) {
-    deposit_state *s = state_of(p);
-    shader_define defines[PASS_PARTICLES_DEFINES + 2];
-    size_t count = pass_particles_defines(pass_particles_of(p), defines);
-    defines[count++] = (shader_define){stage == ADD ? "STAGE_ADD" : "STAGE_SHOW", "1"};
-    if (stage == SHOW) defines[count++] = (shader_define){"WITHOUT_FIELDS", "1"};
-    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, count, &s->binary[stage]);
-}
-
-bool deposit_check(pass *p) {
-    return compile(p, ADD) && compile(p, SHOW);
-}
-
-bool deposit_build(pass *p) {
-    deposit_state *s = state_of(p);
-    for (int i = 0; i < STAGES; i++) {
-        if (!compile(p, (deposit_stage)i)) return false;
-        s->pipeline[i] = pass_create_compute(p, &s->binary[i]);
-        s->block[i] = arena_alloc(p->host->memory, pass_block_size(&s->binary[i]) + 16);
-        if (!s->pipeline[i]) return false;
-    }
-    p->binary = s->binary[ADD];
-    return true;
-}
-
-bool deposit_allocate(pass *p) {
+static bool deposit_allocate(pass *p) {
     deposit_state *s = state_of(p);
     const uint32_t *n = s->grid.size;
     if (!s->sums)
@@ -125,52 +96,55 @@ bool deposit_allocate(pass *p) {
     return s->sums || err_prefix("%s: ", p->label);
 }
 
-void deposit_destroy(pass *p) {
-    deposit_state *s = state_of(p);
-    for (int i = 0; s && i < STAGES; i++)
-        if (s->pipeline[i]) gpu_pipeline_destroy(p->host->device, s->pipeline[i]);
-    if (s && s->sums) gpu_buffer_destroy(p->host->device, s->sums);
+static void deposit_destroy(pass *p) {
+    const deposit_state *s = state_of(p);
+    if (s) gpu_buffer_destroy(p->host->device, s->sums);
 }
 
 // ---- a frame ----------------------------------------------------------------------------------
 
-bool deposit_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+static bool deposit_update(pass *p) {
     const field_grid *grid = &state_of(p)->grid;
     const float cells[3] = {(float)grid->size[0], (float)grid->size[1], (float)grid->size[2]};
-    pass_write_member(binary, block, "cells", cells, sizeof cells);
-    pass_write_box(binary, block, grid->box);
-    pass_particles_write(pass_particles_of(p), binary, block);
+    pass_set(p, N_cells, cells, sizeof cells);
+    pass_set_box(p, grid->box);
     return true;
 }
 
-static bool run(pass *p, deposit_stage stage, const uint32_t threads[3]) {
-    deposit_state *s = state_of(p);
-    const shader_binary *binary = &s->binary[stage];
-    pass_override overrides[GPU_MAX_SLOTS] = {{"DepositSums", {.buffer = s->sums}}};
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc desc = {.pipeline = s->pipeline[stage], .bindings = bindings};
-    memcpy(desc.threads, threads, sizeof desc.threads);
-    size_t count = 1;
-    for (size_t i = 0; i < binary->slot_count && count < GPU_MAX_SLOTS; i++) {
-        overrides[count].name = binary->slots[i].name;
-        count += pass_particles_bind(pass_particles_of(p), overrides[count].name,
-                                     &overrides[count].binding);
-    }
-    return pass_fill_block(p, binary, s->block[stage]) &&
-           pass_bind(p, binary, s->block[stage], overrides, count, bindings, &desc.binding_count) &&
-           gpu_dispatch(p->host->device, &desc);
+static bool add(pass *p, const deposit_state *s) {
+    kernel *k = pass_use(p, ADD);
+    if (k) kernel_bind_buffer(k, N_DepositSums, s->sums);
+    return k && kernel_run_each(k, p->host->device, pass_particles_used(p->particles));
 }
 
-bool deposit_record(pass *p) {
+static bool show(pass *p, const deposit_state *s) {
+    const uint32_t *n = s->grid.size;
+    kernel *k = pass_use(p, SHOW);
+    if (k) kernel_bind_buffer(k, N_DepositSums, s->sums);
+    return k && kernel_run(k, p->host->device, n[0], n[1], n[2]);
+}
+
+static bool deposit_record(pass *p) {
     deposit_state *s = state_of(p);
-    uint32_t groups = (pass_particles_used(pass_particles_of(p)) + GROUP - 1) / GROUP;
-    uint32_t across = groups < ACROSS ? groups : ACROSS;
     if (!pass_prepare(p)) return false;
     if (!s->empty) gpu_buffer_fill(p->host->device, s->sums, 0);
     s->empty = false; // until they are shown
-    if (groups && !run(p, ADD, (uint32_t[3]){across * GROUP, (groups + across - 1) / across, 1}))
-        return false;
-    s->empty = run(p, SHOW, s->grid.size);
+    s->empty = add(p, s) && show(p, s);
     s->grid.state.content++;
     return s->empty;
 }
+
+const pass_type deposit_type = {
+    .name = "deposit",
+    .constructed = true,
+    .shader = "pass/deposit.comp",
+    .kernels = kernels,
+    .kernel_count = STAGES,
+    .names = {names, COUNT_OF(names)},
+    .unscaled = true,
+    .declare = deposit_declare,
+    .allocate = deposit_allocate,
+    .update = deposit_update,
+    .record = deposit_record,
+    .destroy = deposit_destroy,
+};

@@ -2,15 +2,14 @@
 #include "pass/particles.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/particles_parts.h"
 #include <math.h>
 #include <string.h>
 
-const field *particles_field(const pass *p, const char *name) {
-    size_t index;
-    return pass_find_key(p, name, &index) == PASS_FIELD ? p->fields[index] : NULL;
-}
+static const char *const names[] = {PARTICLES_NAMES(KERNEL_NAME_TEXT)};
+static const pass_kernel kernels[PARTICLES_KERNELS] = {
+    [PARTICLES_BIRTH] = {.shader = "pass/particles/birth.comp"},
+};
 
 static uint32_t parts_of(const particles_state *s) {
     return s->desc.count > PASS_PARTICLES_EACH ? 2 : 1;
@@ -18,7 +17,7 @@ static uint32_t parts_of(const particles_state *s) {
 
 // ---- declaring --------------------------------------------------------------------------------
 
-static bool check(const pass *p, const pass_particles_desc *d) {
+static bool particles_check_desc(const pass *p, const pass_particles_desc *d) {
     if (d->count < 1 || d->count > PASS_PARTICLES_MOST)
         return err_set("%s: 'count' is %u; accepted: 1 to %d", p->label, d->count,
                        PASS_PARTICLES_MOST);
@@ -30,82 +29,59 @@ static bool check(const pass *p, const pass_particles_desc *d) {
 }
 
 bool pass_particles_open(pass *p, const pass_particles_desc *desc) {
-    if (!check(p, desc)) return false;
+    if (!particles_check_desc(p, desc)) return false;
     particles_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     *s = (particles_state){.pass = p, .desc = *desc, .fresh = true};
     return particles_open_at(p, s);
 }
 
-static bool has_uniform(const pass *p, const char *name) {
-    size_t index;
-    const shader_uniform *declared;
-    return pass_find_key(p, name, &index) == PASS_UNIFORM &&
-           (p->uniforms[index] || pass_inherited_uniform(p, index, &declared));
-}
-
 static bool is_carried(const pass *p) {
-    static const char *const uniforms[] = {"gravity", "drag", "drag_square", "outward"};
+    static const int uniforms[] = {N_gravity, N_drag, N_drag_square, N_outward};
     enum { AUTO, CARRIED };
-    size_t index;
-    pass_find_key(p, "motion", &index);
-    if (p->options[index] != AUTO) return p->options[index] == CARRIED;
+    const size_t motion = pass_option(p, N_motion);
+    if (motion != AUTO) return motion == CARRIED;
     for (size_t i = 0; i < COUNT_OF(uniforms); i++)
-        if (has_uniform(p, uniforms[i])) return false;
-    return !particles_field(p, "force") && !particles_field(p, "speed");
+        if (pass_gives(p, uniforms[i])) return false;
+    return !pass_given_field(p, N_force) && !pass_given_field(p, N_speed);
 }
 
-bool particles_declare(pass *p) {
+static bool particles_record(pass *p) {
+    particles_of(p)->last_steps = 0;
+    return p->host->hold || particles_advance(p);
+}
+
+static bool particles_declare(pass *p) {
     particles_state *s = particles_of(p);
     if (p->mesh_count > 1)
         return err_set("%s: %zu meshes; one at most, on whose surface they are born", p->label,
                        p->mesh_count);
-    if (!has_uniform(p, "rate") && !has_uniform(p, "burst"))
+    if (!pass_gives(p, N_rate) && !pass_gives(p, N_burst))
         return err_set("%s: neither 'rate' nor 'burst' is given, so none is ever born", p->label);
     s->carried = is_carried(p);
-    s->carries = particles_field(p, "quantity") != NULL;
-    int output = pass_find_image(p, "particles");
-    p->images[output] = graph_add_image(
-        p->host->graph,
-        &(graph_image_desc){.name = arena_format(p->host->memory, "%s.particles", p->label),
-                            .format = p->formats[output],
-                            .width = 1,
-                            .height = 1});
-    const graph_image reads[] = {p->images[pass_find_image(p, "depth")],
-                                 p->images[pass_find_image(p, "normal")]};
-    return p->images[output].id && pass_add_part(p, &(pass_part){
-                                                        .name = "step",
-                                                        .reads = reads,
-                                                        .read_count = COUNT_OF(reads),
-                                                        .writes = &p->images[output],
-                                                        .write_count = 1,
-                                                        .fields = true,
-                                                        .simulates = true,
-                                                        .record = particles_record,
-                                                    });
+    s->carries = pass_given_field(p, N_quantity) != NULL;
+    const graph_image reads[] = {*pass_image(p, N_depth), *pass_image(p, N_normal)};
+    return pass_add_output(p, N_particles, (graph_image_desc){.width = 1, .height = 1}) &&
+           pass_add_part(p, &(pass_part){
+                                .name = "step",
+                                .reads = reads,
+                                .read_count = COUNT_OF(reads),
+                                .writes = pass_image(p, N_particles),
+                                .write_count = 1,
+                                .fields = true,
+                                .simulates = true,
+                                .record = particles_record,
+                            });
 }
 
 // ---- building ---------------------------------------------------------------------------------
 
-static const char birth_shader[] = "pass/particles/birth.comp";
-
-bool particles_check(pass *p) {
-    particles_state *s = particles_of(p);
-    shader_define defines[PASS_PARTICLES_DEFINES + 3];
-    size_t count = pass_particles_defines(p, defines);
-    defines[count++] = (shader_define){"CARRIED", s->carried ? "1" : "0"};
-    defines[count++] = (shader_define){"MESH", p->mesh_count ? "1" : "0"};
-    defines[count++] = (shader_define){"AT", s->desc.at ? "1" : "0"};
-    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, count, &p->binary) &&
-           pass_compile(p, birth_shader, SHADER_COMPUTE, defines, count, &s->birth);
-}
-
-bool particles_build(pass *p) {
-    particles_state *s = particles_of(p);
-    if (!particles_check(p)) return false;
-    s->birth_block = arena_alloc(p->host->memory, pass_block_size(&s->birth) + 16);
-    p->pipeline = pass_create_compute(p, &p->binary);
-    s->birth_pipeline = pass_create_compute(p, &s->birth);
-    return p->pipeline && s->birth_pipeline;
+static bool particles_defines(pass *p, size_t index, pass_defines *out) {
+    const particles_state *s = particles_of(p);
+    (void)index;
+    pass_define_flag(out, "CARRIED", s->carried);
+    pass_define_flag(out, "MESH", p->mesh_count);
+    pass_define_flag(out, "AT", s->desc.at);
+    return true;
 }
 
 static bool make_triangles(pass *p, particles_state *s) {
@@ -145,93 +121,86 @@ static bool make_buffers(const pass *p, particles_state *s) {
     return done;
 }
 
-bool particles_allocate(pass *p) {
+static bool particles_allocate(pass *p) {
     particles_state *s = particles_of(p);
     return (make_buffers(p, s) && make_triangles(p, s) && particles_make_lost(p, s) &&
             particles_make_at(p, s)) ||
            err_prefix("%s: ", p->label);
 }
 
-void particles_destroy(pass *p) {
+static void particles_destroy(pass *p) {
     particles_state *s = particles_of(p);
     if (!s) return;
+    gpu *device = p->host->device;
     particles_destroy_lost(p, s);
-    particles_destroy_at(p, s);
-    if (s->birth_pipeline) gpu_pipeline_destroy(p->host->device, s->birth_pipeline);
-    gpu_buffer *const all[] = {s->buffers.positions[0],  s->buffers.positions[1],
-                               s->buffers.velocities[0], s->buffers.velocities[1],
-                               s->buffers.quantities,    s->triangles};
-    for (size_t i = 0; i < COUNT_OF(all); i++)
-        if (all[i]) gpu_buffer_destroy(p->host->device, all[i]);
+    gpu_buffer *const all[] = {s->buffers.positions[0],
+                               s->buffers.positions[1],
+                               s->buffers.velocities[0],
+                               s->buffers.velocities[1],
+                               s->buffers.quantities,
+                               s->triangles,
+                               s->at.buffer};
+    for (size_t i = 0; i < COUNT_OF(all); i++) gpu_buffer_destroy(device, all[i]);
 }
 
 // ---- a frame ----------------------------------------------------------------------------------
 
-static void write_uint(const shader_binary *binary, unsigned char *block, const char *name,
-                       uint32_t value) {
-    pass_write_member(binary, block, name, &value, sizeof value);
-}
-
-static void write_float(const shader_binary *binary, unsigned char *block, const char *name,
-                        double value) {
-    float rounded = (float)value;
-    pass_write_member(binary, block, name, &rounded, sizeof rounded);
-}
-
-static void write_births(const particles_state *s, const shader_binary *binary,
-                         unsigned char *block) {
-    const particles_births *b = &s->births;
-    write_uint(binary, block, "birth_first", (uint32_t)(b->first % s->desc.count));
-    write_uint(binary, block, "birth_count", b->burst + b->steady);
-    write_uint(binary, block, "birth_burst", b->burst);
-    write_float(binary, block, "birth_burst_rest", b->burst_rest);
-    write_float(binary, block, "birth_first_rest", b->steady_rest);
-    write_float(binary, block, "birth_every", b->every);
-}
-
-bool particles_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+static void set_births(pass *p) {
     const particles_state *s = particles_of(p);
-    pass_particles_write(p, binary, block);
-    write_births(s, binary, block);
-    write_float(binary, block, "time_step", s->desc.time_step);
-    write_uint(binary, block, "mesh_triangles", s->triangle_count);
-    pass_write_member(binary, block, "mesh_from", s->places[0], sizeof s->places[0]);
-    pass_write_member(binary, block, "mesh_to", s->places[1], sizeof s->places[1]);
-    pass_write_box(binary, block, s->box);
-    return particles_fill_at(p, binary, block);
+    const particles_births *b = &s->births;
+    pass_set_int(p, N_birth_first, (int32_t)(b->first % s->desc.count));
+    pass_set_int(p, N_birth_count, (int32_t)(b->burst + b->steady));
+    pass_set_int(p, N_birth_burst, (int32_t)b->burst);
+    pass_set_float(p, N_birth_burst_rest, (float)b->burst_rest);
+    pass_set_float(p, N_birth_first_rest, (float)b->steady_rest);
+    pass_set_float(p, N_birth_every, (float)b->every);
 }
 
-bool particles_rehearse(pass *p) {
+static bool particles_update(pass *p) {
+    const particles_state *s = particles_of(p);
+    set_births(p);
+    pass_set_float(p, N_time_step, (float)s->desc.time_step);
+    pass_set_int(p, N_mesh_triangles, (int32_t)s->triangle_count);
+    pass_set(p, N_mesh_from, s->places[0], sizeof s->places[0]);
+    pass_set(p, N_mesh_to, s->places[1], sizeof s->places[1]);
+    pass_set_box(p, s->box);
+    return particles_set_at(p);
+}
+
+static bool particles_rehearse(pass *p) {
     particles_rates rates;
     return particles_sum_shares(p) && particles_rates_of(p, &rates) && particles_find_places(p);
 }
 
-bool particles_record(pass *p) {
-    particles_of(p)->last_steps = 0;
-    return p->host->hold || particles_advance(p);
-}
+const pass_type particles_type = {
+    .name = "particles",
+    .constructed = true,
+    .shader = "pass/particles.comp",
+    .kernels = kernels,
+    .kernel_count = PARTICLES_KERNELS,
+    .names = {names, COUNT_OF(names)},
+    .meshes = PASS_USES_MESHES,
+    .unscaled = true,
+    .simulation = &particles_simulation,
+    .declare = particles_declare,
+    .defines = particles_defines,
+    .allocate = particles_allocate,
+    .update = particles_update,
+    .rehearse = particles_rehearse,
+    .record = particles_record,
+    .destroy = particles_destroy,
+};
 
 // ---- for passes that read them ----------------------------------------------------------------
 
-bool pass_find_particles(pass *p) {
+static bool find_particles(pass *p) {
     int input = pass_find_image(p, "particles");
     if (input < 0 || p->face->images[input].output) return true;
     p->particles = p->images[input].id ? pass_writer(p->host, p->images[input]) : NULL;
-    if (p->particles && pass_is(p->particles, "particles")) return true;
+    if (p->particles && p->particles->type == &particles_type) return true;
     return err_set("%s: 'particles' is missing: a pass particles { }, as in particles = sparks or "
                    "from = sparks",
                    p->label);
-}
-
-const pass *pass_particles_of(const pass *p) {
-    return p->particles;
-}
-
-size_t pass_particles_defines(const pass *particles, shader_define out[PASS_PARTICLES_DEFINES]) {
-    const particles_state *s = particles_of(particles);
-    out[0] = (shader_define){"PARTICLE_PARTS", parts_of(s) > 1 ? "2" : "1"};
-    out[1] = (shader_define){"PARTICLE_QUANTITY", s->carries ? "1" : "0"};
-    return PASS_PARTICLES_DEFINES;
 }
 
 uint32_t pass_particles_count(const pass *particles) {
@@ -252,16 +221,28 @@ static const char *const uniforms[] = {UNIFORMS(KERNEL_NAME_TEXT)};
 
 #define SLOTS(NAME)                                                                                \
     NAME(ParticlePositions), NAME(ParticlePositionsMore), NAME(ParticleVelocities),                \
-        NAME(ParticleVelocitiesMore), NAME(ParticleQuantities), NAME(BirthTriangles),              \
-        NAME(BirthShares), NAME(Instances)
+        NAME(ParticleVelocitiesMore), NAME(ParticleQuantities)
 enum { SLOTS(KERNEL_NAME_ID), SLOT_COUNT };
 static const char *const slots[] = {SLOTS(KERNEL_NAME_TEXT)};
+
+// The particles that a pass has to do with: those that it is itself, or reads.
+static const pass *source_of(const pass *p) {
+    return p->type == &particles_type ? p : p->particles;
+}
+
+static size_t defines_of(const pass *p, shader_define out[PASS_PROVIDER_DEFINES]) {
+    if (!source_of(p)) return 0;
+    const particles_state *s = particles_of(source_of(p));
+    out[0] = (shader_define){"PARTICLE_PARTS", parts_of(s) > 1 ? "2" : "1"};
+    out[1] = (shader_define){"PARTICLE_QUANTITY", s->carries ? "1" : "0"};
+    return 2;
+}
 
 static void find_values(const pass *particles, uint32_t out[UNIFORM_COUNT]) {
     const particles_state *s = particles_of(particles);
     const pass_host *host = particles->host;
-    float seed[4];
-    pass_evaluate_vector(particles, "seed", seed);
+    float seed[4] = {0};
+    pass_evaluate_now(particles, N_seed, seed);
     const float back =
         (float)fmin(fmax(particles_reached(s) - host->context->time, 0), s->desc.time_step);
     out[N_particle_count] = s->desc.count;
@@ -272,19 +253,6 @@ static void find_values(const pass *particles, uint32_t out[UNIFORM_COUNT]) {
     memcpy(&out[N_particle_back], &back, sizeof back);
 }
 
-void pass_particles_write(const pass *particles, const shader_binary *binary,
-                          unsigned char *block) {
-    uint32_t values[UNIFORM_COUNT];
-    find_values(particles, values);
-    for (int i = 0; i < UNIFORM_COUNT; i++)
-        pass_write_member(binary, block, uniforms[i], &values[i], sizeof values[i]);
-}
-
-// The particles that a pass has to do with: those that it is itself, or reads.
-static const pass *source_of(const pass *p) {
-    return pass_is(p, "particles") ? p : p->particles;
-}
-
 static void set_values(const pass *p, kernel *k, const kernel_place *places) {
     uint32_t values[UNIFORM_COUNT];
     if (!source_of(p)) return;
@@ -293,43 +261,25 @@ static void set_values(const pass *p, kernel *k, const kernel_place *places) {
         kernel_set_at(k, &places[i], &values[i], sizeof values[i]);
 }
 
-static gpu_buffer *find_buffer(const pass *particles, int slot) {
-    const particles_state *s = particles_of(particles);
+static bool bind_buffer(pass *p, int slot, gpu_binding *out) {
+    if (!source_of(p)) return false;
+    const particles_buffers *buffers = &particles_of(source_of(p))->buffers;
     gpu_buffer *const all[SLOT_COUNT] = {
-        [N_ParticlePositions] = s->buffers.positions[0],
-        [N_ParticlePositionsMore] = s->buffers.positions[1],
-        [N_ParticleVelocities] = s->buffers.velocities[0],
-        [N_ParticleVelocitiesMore] = s->buffers.velocities[1],
-        [N_ParticleQuantities] = s->buffers.quantities,
-        [N_BirthTriangles] = s->triangles,
-        [N_BirthShares] = s->at.buffer,
-        [N_Instances] = s->desc.at ? scene_instances_buffer(s->desc.at) : NULL,
+        [N_ParticlePositions] = buffers->positions[0],
+        [N_ParticlePositionsMore] = buffers->positions[1],
+        [N_ParticleVelocities] = buffers->velocities[0],
+        [N_ParticleVelocitiesMore] = buffers->velocities[1],
+        [N_ParticleQuantities] = buffers->quantities,
     };
-    return all[slot];
-}
-
-bool pass_particles_bind(const pass *particles, const char *name, gpu_binding *out) {
-    *out = (gpu_binding){0};
-    for (int i = 0; i < SLOT_COUNT; i++)
-        if (strcmp(slots[i], name) == 0) out->buffer = find_buffer(particles, i);
+    out->buffer = all[slot];
     return out->buffer;
-}
-
-static bool bind(pass *p, int slot, gpu_binding *out) {
-    const pass *from = source_of(p);
-    out->buffer = from ? find_buffer(from, slot) : NULL;
-    return out->buffer;
-}
-
-static size_t defines_of(const pass *p, shader_define out[PASS_PROVIDER_DEFINES]) {
-    return p->particles ? pass_particles_defines(p->particles, out) : 0;
 }
 
 const pass_provider pass_particles_provider = {
     .slots = {slots, SLOT_COUNT},
     .uniforms = {uniforms, UNIFORM_COUNT},
-    .find = pass_find_particles,
+    .find = find_particles,
     .defines = defines_of,
     .set = set_values,
-    .bind = bind,
+    .bind = bind_buffer,
 };

@@ -5,8 +5,8 @@
 // Nothing of it depends on a camera (but collisions with what a picture shows), and no picture
 // comes of it. A pass that reads it has `#include "lib/particles.glsl"`, which declares an input
 // `particles`: given as `particles = sparks` or by `from = sparks`, it orders the passes and names
-// the particles. All else comes by itself, in a user's shader too: pass_compile adds the defines,
-// pass_fill_block writes the members, pass_bind finds the buffers.
+// the particles. All else comes by itself, in a user's shader too: defines, numbers and buffers
+// (pass_particles_provider).
 //
 // Numbers and fields are those of the middle of each step; grids that fields sample are those of
 // the frame. The state is up to a step ahead of the frame; particle_read() goes back along the
@@ -29,16 +29,7 @@ typedef struct pass_particles_desc {
 // Before pass_declare. False with a message.
 bool pass_particles_open(pass *p, const pass_particles_desc *desc);
 
-// ---- for passes that read them ----------------------------------------------------------------
+// ---- for passes that read them: pass.particles, from pass_declare on --------------------------
 
-// The pass behind p's input `particles`, from pass_declare on; NULL: it has none.
-const pass *pass_particles_of(const pass *p);
-bool pass_find_particles(pass *p); // pass_declare does
-enum { PASS_PARTICLES_DEFINES = 2 };
-size_t pass_particles_defines(const pass *particles, shader_define out[PASS_PARTICLES_DEFINES]);
 uint32_t pass_particles_count(const pass *particles); // slots
 uint32_t pass_particles_used(const pass *particles);  // of these, from 0 on, such as may hold one
-// The members of "Uniforms" that the include declares, as of the frame being recorded.
-void pass_particles_write(const pass *particles, const shader_binary *binary, unsigned char *block);
-// The buffer of a slot by its name; false: it is none of theirs. After pass_allocate.
-bool pass_particles_bind(const pass *particles, const char *name, gpu_binding *out);

@@ -25,10 +25,6 @@ bool particles_make_at(pass *p, particles_state *s) {
     return at->buffer && scene_instances_allocate(s->desc.at, p->host->device);
 }
 
-void particles_destroy_at(pass *p, particles_state *s) {
-    if (s->at.buffer) gpu_buffer_destroy(p->host->device, s->at.buffer);
-}
-
 static bool share_of(const pass *p, const field *share, const struct instance_entry *entry,
                      double *out) {
     float value[4] = {1};
@@ -71,13 +67,13 @@ bool particles_write_shares(const pass *p) {
     return at->written;
 }
 
-bool particles_fill_at(const pass *p, const shader_binary *binary, unsigned char *block) {
+bool particles_set_at(pass *p) {
     const particles_state *s = particles_of(p);
     mat4 group;
     float tint[4];
     if (!s->desc.at) return true;
     if (!scene_instances_place(s->desc.at, p->host->context, group, tint)) return false;
-    pass_write_member(binary, block, "birth_group", group, sizeof group);
-    pass_write_member(binary, block, "birth_instances", &s->at.count, sizeof s->at.count);
+    pass_set(p, N_birth_group, group, sizeof group);
+    pass_set_int(p, N_birth_instances, (int32_t)s->at.count);
     return true;
 }

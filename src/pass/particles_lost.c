@@ -6,7 +6,7 @@
 
 bool particles_make_lost(pass *p, particles_state *s) {
     gpu *device = p->host->device;
-    if (!particles_field(p, "shape") || s->lost.count) return true;
+    if (!pass_given_field(p, N_shape) || s->lost.count) return true;
     s->lost.count = gpu_image_create(device, &(gpu_image_desc){.label = "births without a place",
                                                                .format = GPU_R32U,
                                                                .width = 1,
@@ -19,8 +19,8 @@ bool particles_make_lost(pass *p, particles_state *s) {
 }
 
 void particles_destroy_lost(pass *p, particles_state *s) {
-    if (s->lost.count) gpu_image_destroy(p->host->device, s->lost.count);
-    if (s->lost.found) gpu_buffer_destroy(p->host->device, s->lost.found);
+    gpu_image_destroy(p->host->device, s->lost.count);
+    gpu_buffer_destroy(p->host->device, s->lost.found);
 }
 
 bool particles_begin_lost(pass *p, particles_state *s) {

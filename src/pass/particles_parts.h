@@ -81,9 +81,6 @@ typedef struct particles_state {
     particles_buffers buffers;
     gpu_buffer *triangles; // of the mesh; NULL: none, or not yet
     uint32_t triangle_count;
-    shader_binary birth; // runs before a step in which some are born
-    gpu_pipeline *birth_pipeline;
-    unsigned char *birth_block;
     particles_clock clock;
     bool fresh;              // begins anew with the next record
     particles_births births; // of the step being recorded
@@ -95,13 +92,27 @@ typedef struct particles_state {
     char trouble[256];   // "": none
 } particles_state;
 
+enum { PARTICLES_MOVE, PARTICLES_BIRTH, PARTICLES_KERNELS }; // birth before a step that has some
+
+#define PARTICLES_NAMES(NAME)                                                                      \
+    NAME(rate), NAME(burst), NAME(burst_time), NAME(burst_period), NAME(lifetime_min),             \
+        NAME(lifetime_max), NAME(gravity), NAME(drag), NAME(drag_square), NAME(outward),           \
+        NAME(seed), NAME(motion), NAME(shape), NAME(force), NAME(speed), NAME(quantity),           \
+        NAME(depth), NAME(normal), NAME(particles), NAME(lost), NAME(time_step),                   \
+        NAME(birth_first), NAME(birth_count), NAME(birth_burst), NAME(birth_burst_rest),           \
+        NAME(birth_first_rest), NAME(birth_every), NAME(birth_group), NAME(birth_instances),       \
+        NAME(mesh_triangles), NAME(mesh_from), NAME(mesh_to), NAME(BirthTriangles),                \
+        NAME(BirthShares), NAME(Instances)
+enum { PARTICLES_NAMES(KERNEL_NAME_ID) };
+extern const pass_type particles_type;
+
 static inline particles_state *particles_of(const pass *p) {
     return p->state;
 }
-double particles_reached(const particles_state *s);            // seconds
-const field *particles_field(const pass *p, const char *name); // NULL: not given
+double particles_reached(const particles_state *s); // seconds
 
 // particles_time.c
+extern const pass_simulation particles_simulation;
 bool particles_rates_of(const pass *p, particles_rates *out); // as of the host's time
 bool particles_find_places(const pass *p); // where the shape and the mesh are then
 int64_t particles_left(const pass *p, double time);
@@ -117,10 +128,9 @@ double particles_lost_share(const pass *p); // of the births of a frame some fra
 // particles_at.c; all do nothing where there are no instances
 bool particles_open_at(pass *p, particles_state *s);
 bool particles_make_at(pass *p, particles_state *s);
-void particles_destroy_at(pass *p, particles_state *s);
 bool particles_sum_shares(const pass *p); // as of the host's time
 bool particles_write_shares(const pass *p);
-bool particles_fill_at(const pass *p, const shader_binary *binary, unsigned char *block);
+bool particles_set_at(pass *p);
 
 // particles_state.c
 void particles_save(const pass *p, struct checkpoint_list *out);

@@ -2,7 +2,6 @@
 // step in which the time of the frame lies, and what is drawn goes back from there.
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/particles_parts.h"
 #include <math.h>
 #include <string.h>
@@ -14,7 +13,6 @@ enum { BRIEF = 64 };
 
 static const double rounding = 1e-6;  // of a step
 static const double most_lost = 0.05; // share of the births
-enum { ROW = 1 << 16 };               // threads side by side
 
 double particles_reached(const particles_state *s) {
     return (double)s->clock.steps * s->desc.time_step - s->desc.warm_up;
@@ -26,7 +24,7 @@ int64_t particles_left(const pass *p, double time) {
     return (int64_t)fmax(steps, 0) - (s->fresh ? 0 : (int64_t)s->clock.steps);
 }
 
-static int64_t most(const pass *p) {
+static int64_t particles_most(const pass *p) {
     bool software = gpu_get_info(p->host->device)->kind == GPU_CPU;
     double steps = (software ? most_in_software : most_moves) / particles_of(p)->desc.count;
     return (int64_t)fmax(1, p->host->brief ? steps / BRIEF : steps);
@@ -44,13 +42,13 @@ static void restart(pass *p) {
 // ---- a step -----------------------------------------------------------------------------------
 
 bool particles_rates_of(const pass *p, particles_rates *out) {
-    static const char *const names[] = {"rate", "burst", "burst_time", "burst_period"};
+    static const int uniforms[] = {N_rate, N_burst, N_burst_time, N_burst_period};
     const particles_state *s = particles_of(p);
     double *const slots[] = {&out->rate, &out->burst, &out->burst_time, &out->burst_period};
     *out = (particles_rates){.begin = particles_reached(s), .step = s->desc.time_step};
-    for (size_t i = 0; i < COUNT_OF(names); i++) {
+    for (size_t i = 0; i < COUNT_OF(uniforms); i++) {
         float value[4];
-        if (!pass_evaluate_vector(p, names[i], value)) return false;
+        if (!pass_evaluate_now(p, uniforms[i], value)) return false;
         *slots[i] = (double)value[0];
     }
     if (!s->desc.at) return true;
@@ -68,7 +66,7 @@ static bool find_births(const pass *p, particles_state *s) {
 
 bool particles_find_places(const pass *p) {
     particles_state *s = particles_of(p);
-    const field *shape = particles_field(p, "shape");
+    const field *shape = pass_given_field(p, N_shape);
     s->box = (box3){{0, 0, 0}, {0, 0, 0}};
     if (shape && !p->mesh_count) {
         if (!field_bounds(shape, p->host->context, &s->box)) return false;
@@ -86,42 +84,24 @@ bool particles_find_places(const pass *p) {
     return true;
 }
 
-static bool bind(const pass *p, const char *name, gpu_binding *out) {
-    if (strcmp(name, "lost") != 0) return pass_particles_bind(p, name, out);
-    *out = (gpu_binding){.image = particles_of(p)->lost.count};
-    return true;
-}
-
-// One thread for each of `count`, in rows.
-static bool run(pass *p, const shader_binary *binary, gpu_pipeline *pipeline,
-                const unsigned char *block, uint32_t count) {
-    pass_override overrides[GPU_MAX_SLOTS];
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc dispatch = {.pipeline = pipeline, .bindings = bindings};
-    dispatch.threads[0] = count < ROW ? count : ROW;
-    dispatch.threads[1] = (count + ROW - 1) / ROW;
-    size_t known = 0;
-    for (size_t i = 0; i < binary->slot_count; i++) {
-        pass_override *slot = &overrides[known];
-        slot->name = binary->slots[i].name;
-        known += bind(p, slot->name, &slot->binding);
-    }
-    return pass_bind(p, binary, block, overrides, known, bindings, &dispatch.binding_count) &&
-           gpu_dispatch(p->host->device, &dispatch);
-}
-
-static bool give_birth(pass *p, particles_state *s) {
-    s->lost.births += s->births.burst + s->births.steady;
-    return particles_find_places(p) && pass_fill_block(p, &s->birth, s->birth_block) &&
-           run(p, &s->birth, s->birth_pipeline, s->birth_block, s->births.burst + s->births.steady);
+static bool give_birth(pass *p, particles_state *s, uint32_t count) {
+    kernel *k = pass_use(p, PARTICLES_BIRTH);
+    s->lost.births += count;
+    if (!k) return false;
+    kernel_bind_image(k, N_lost, s->lost.count);
+    kernel_bind_buffer(k, N_BirthTriangles, s->triangles);
+    kernel_bind_buffer(k, N_BirthShares, s->at.buffer);
+    if (s->desc.at) kernel_bind_buffer(k, N_Instances, scene_instances_buffer(s->desc.at));
+    return kernel_run_each(k, p->host->device, count);
 }
 
 static bool move(pass *p, particles_state *s) {
-    uint32_t used = pass_particles_used(p);
+    const uint32_t used = pass_particles_used(p), born = s->births.burst + s->births.steady;
     if (!used) return true;
-    bool born = s->births.burst + s->births.steady > 0;
-    return pass_prepare(p) && (!born || give_birth(p, s)) &&
-           run(p, &p->binary, p->pipeline, p->block, used);
+    if (born && !particles_find_places(p)) return false;
+    if (!pass_prepare(p) || (born && !give_birth(p, s, born))) return false;
+    kernel *k = pass_use(p, PARTICLES_MOVE);
+    return k && kernel_run_each(k, p->host->device, used);
 }
 
 static bool step(pass *p, particles_state *s) {
@@ -155,7 +135,8 @@ static bool waits(const pass *p) {
 
 bool particles_advance(pass *p) {
     particles_state *s = particles_of(p);
-    int64_t left = waits(p) ? 0 : particles_left(p, p->host->context->time), limit = most(p);
+    int64_t left = waits(p) ? 0 : particles_left(p, p->host->context->time),
+            limit = particles_most(p);
     if (s->fresh && !particles_find_places(p)) return false; // told before the first birth
     if (!particles_sum_shares(p) || !particles_write_shares(p)) return false;
     if (s->fresh) s->clock = (particles_clock){0};
@@ -197,8 +178,11 @@ static size_t readouts(const pass *p, pass_readout *out, size_t capacity) {
 static double most_alive(const pass *p) {
     particles_rates rates;
     if (!particles_rates_of(p, &rates)) return 0;
-    double life =
-        fmax((double)pass_evaluate(p, "lifetime_min"), (double)pass_evaluate(p, "lifetime_max"));
+    float shortest[4], longest[4];
+    if (!pass_evaluate_now(p, N_lifetime_min, shortest) ||
+        !pass_evaluate_now(p, N_lifetime_max, longest))
+        return 0;
+    double life = (double)fmaxf(shortest[0], longest[0]);
     double bursts = rates.burst_period > 0 ? ceil(life / rates.burst_period) : 1;
     return rates.rate * life + bursts * rates.burst;
 }
@@ -227,7 +211,7 @@ static const char *trouble(const pass *p) {
 
 const pass_simulation particles_simulation = {
     .left = particles_left,
-    .most = most,
+    .most = particles_most,
     .reached = reached,
     .restart = restart,
     .exchange = particles_exchange,

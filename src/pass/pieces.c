@@ -3,23 +3,33 @@
 // so that nothing is left to chance; then each pixel tells of its triangle, or of the scene (show).
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/particles.h"
 #include "pass/pass_impl.h"
 #include "scene/material.h"
 #include "shared.h"
 #include <string.h>
 
-enum { GROUP = 256, ACROSS = 1024, MOST_TRIANGLES = 4096 };
+enum { MOST_TRIANGLES = 4096 };
+
+// The scene's images are named as those of the pass that gives them, after "scene_".
+#define SCENE_NAMES(NAME)                                                                          \
+    NAME(scene_albedo), NAME(scene_normal), NAME(scene_depth), NAME(scene_surface),                \
+        NAME(scene_emission)
+#define NAMES(NAME)                                                                                \
+    SCENE_NAMES(NAME), NAME(depth), NAME(picture), NAME(PieceTriangles), NAME(PieceMaterials),     \
+        NAME(PieceDepths), NAME(PieceNumbers)
+enum { NAMES(KERNEL_NAME_ID) };
+static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
 
 typedef enum pieces_stage { DEPTH, NUMBER, SHOW, STAGES } pieces_stage;
-static const char *const stage_defines[STAGES] = {"STAGE_DEPTH", "STAGE_NUMBER", "STAGE_SHOW"};
+static const pass_kernel kernels[STAGES] = {
+    [DEPTH] = {.define = "STAGE_DEPTH"},
+    [NUMBER] = {.define = "STAGE_NUMBER"},
+    [SHOW] = {.define = "STAGE_SHOW"},
+};
 
 typedef struct pieces_state {
     uint32_t triangle_count; // of the mesh
-    shader_binary binary[STAGES];
-    gpu_pipeline *pipeline[STAGES];
-    unsigned char *block[STAGES];
     gpu_buffer *triangles, *depths, *numbers;
     struct surface_material *looks; // of the triangles, as on the device
     gpu_buffer *materials;
@@ -34,20 +44,15 @@ static pieces_state *state_of(const pass *p) {
 
 // The scene is that of the first pass among the sources that gives one.
 static void find_scene(pass *p) {
-    static const char *const names[][2] = {{"scene_albedo", "albedo"},
-                                           {"scene_normal", "normal"},
-                                           {"scene_depth", "depth"},
-                                           {"scene_surface", "surface"},
-                                           {"scene_emission", "emission"}};
-    for (size_t i = 0; i < COUNT_OF(names); i++) {
-        graph_image *input = &p->images[pass_find_image(p, names[i][0])];
+    for (int i = N_scene_albedo; i <= N_scene_emission; i++) {
+        graph_image *input = pass_image(p, i);
         for (size_t k = 0; k < p->source_count && !input->id; k++)
-            *input = pass_output(p->sources[k], names[i][1]);
+            *input = pass_output(p->sources[k], names[i] + strlen("scene_"));
     }
     pass_drop_matte(p, "scene_surface", "scene_emission");
 }
 
-bool pieces_declare(pass *p) {
+static bool pieces_declare(pass *p) {
     pieces_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     if (p->mesh_count != 1)
         return err_set("%s: %zu meshes; one is needed, as in pieces { shards, mesh { "
@@ -65,31 +70,9 @@ bool pieces_declare(pass *p) {
 
 // ---- building ---------------------------------------------------------------------------------
 
-static bool compile(pass *p, pieces_stage stage) {
-    pieces_state *s = state_of(p);
-    shader_define defines[PASS_PARTICLES_DEFINES + 2];
-    size_t count = pass_particles_defines(pass_particles_of(p), defines);
-    defines[count++] = (shader_define){stage_defines[stage], "1"};
-    defines[count++] =
-        (shader_define){"TRIANGLES", arena_format(p->host->memory, "%u", s->triangle_count)};
-    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, count, &s->binary[stage]);
-}
-
-bool pieces_check(pass *p) {
-    for (int i = 0; i < STAGES; i++)
-        if (!compile(p, (pieces_stage)i)) return false;
-    return true;
-}
-
-bool pieces_build(pass *p) {
-    pieces_state *s = state_of(p);
-    for (int i = 0; i < STAGES; i++) {
-        if (!compile(p, (pieces_stage)i)) return false;
-        s->pipeline[i] = pass_create_compute(p, &s->binary[i]);
-        s->block[i] = arena_alloc(p->host->memory, pass_block_size(&s->binary[i]) + 16);
-        if (!s->pipeline[i]) return false;
-    }
-    p->binary = s->binary[DEPTH];
+static bool pieces_defines(pass *p, size_t index, pass_defines *out) {
+    (void)index;
+    pass_define_number(p, out, "TRIANGLES", state_of(p)->triangle_count);
     return true;
 }
 
@@ -103,7 +86,7 @@ static void write_triangle(const mesh_data *mesh, uint32_t first, struct bvh_tri
     }
 }
 
-bool pieces_allocate(pass *p) {
+static bool pieces_allocate(pass *p) {
     pieces_state *s = state_of(p);
     const mesh_data *mesh = &p->meshes[0]->data;
     if (s->triangles) return true;
@@ -127,36 +110,32 @@ bool pieces_allocate(pass *p) {
     return done || err_prefix("%s: ", p->label);
 }
 
-void pieces_destroy(pass *p) {
+static void pieces_destroy(pass *p) {
     pieces_state *s = state_of(p);
     if (!s) return;
-    for (int i = 0; i < STAGES; i++)
-        if (s->pipeline[i]) gpu_pipeline_destroy(p->host->device, s->pipeline[i]);
     gpu_buffer *const buffers[] = {s->triangles, s->materials, s->depths, s->numbers};
-    for (size_t i = 0; i < COUNT_OF(buffers); i++)
-        if (buffers[i]) gpu_buffer_destroy(p->host->device, buffers[i]);
+    for (size_t i = 0; i < COUNT_OF(buffers); i++) gpu_buffer_destroy(p->host->device, buffers[i]);
     mem_free(s->looks);
 }
 
 // ---- a frame ----------------------------------------------------------------------------------
 
 static void picture_size(const pass *p, uint32_t size[3]) {
-    graph_get_size(p->host->graph, pass_output(p, "depth"), size);
+    graph_get_size(p->host->graph, *pass_image(p, N_depth), size);
 }
 
-bool pieces_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+static bool pieces_update(pass *p) {
     uint32_t size[3];
     picture_size(p, size);
     const float picture[2] = {(float)size[0], (float)size[1]};
-    pass_write_member(binary, block, "picture", picture, sizeof picture);
-    pass_particles_write(pass_particles_of(p), binary, block);
+    pass_set(p, N_picture, picture, sizeof picture);
     return true;
 }
 
 static bool make_buffer(pass *p, gpu_buffer **buffer, const char *label, uint64_t size) {
     gpu *device = p->host->device;
     if (*buffer && gpu_buffer_size(*buffer) == size) return true;
-    if (*buffer) gpu_buffer_destroy(device, *buffer);
+    gpu_buffer_destroy(device, *buffer);
     *buffer = gpu_buffer_create(device, &(gpu_buffer_desc){.label = label, .size = size});
     state_of(p)->empty = false;
     return *buffer || err_prefix("%s: ", p->label);
@@ -184,38 +163,32 @@ static bool write_looks(pass *p) {
     return same || gpu_buffer_write(p->host->device, s->materials, 0, s->looks, size);
 }
 
-static bool run(pass *p, pieces_stage stage, uint32_t x, uint32_t y) {
-    pieces_state *s = state_of(p);
-    const shader_binary *binary = &s->binary[stage];
-    pass_override overrides[GPU_MAX_SLOTS] = {{"PieceTriangles", {.buffer = s->triangles}},
-                                              {"PieceMaterials", {.buffer = s->materials}},
-                                              {"PieceDepths", {.buffer = s->depths}},
-                                              {"PieceNumbers", {.buffer = s->numbers}}};
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc desc = {
-        .pipeline = s->pipeline[stage], .bindings = bindings, .threads = {x, y, 1}};
-    size_t count = 4;
-    for (size_t i = 0; i < binary->slot_count && count < GPU_MAX_SLOTS; i++) {
-        overrides[count].name = binary->slots[i].name;
-        count += pass_particles_bind(pass_particles_of(p), overrides[count].name,
-                                     &overrides[count].binding);
-    }
-    return pass_fill_block(p, binary, s->block[stage]) &&
-           pass_bind(p, binary, s->block[stage], overrides, count, bindings, &desc.binding_count) &&
-           gpu_dispatch(p->host->device, &desc);
+static kernel *use(pass *p, pieces_stage stage) {
+    const pieces_state *s = state_of(p);
+    kernel *k = pass_use(p, stage);
+    if (!k) return NULL;
+    kernel_bind_buffer(k, N_PieceTriangles, s->triangles);
+    kernel_bind_buffer(k, N_PieceMaterials, s->materials);
+    kernel_bind_buffer(k, N_PieceDepths, s->depths);
+    kernel_bind_buffer(k, N_PieceNumbers, s->numbers);
+    return k;
 }
 
 // A thread for each triangle.
 static bool run_triangles(pass *p, pieces_stage stage, uint64_t count) {
-    uint64_t groups = (count + GROUP - 1) / GROUP, across = groups < ACROSS ? groups : ACROSS;
-    return count == 0 ||
-           run(p, stage, (uint32_t)across * GROUP, (uint32_t)((groups + across - 1) / across));
+    kernel *k = use(p, stage);
+    return k && kernel_run_each(k, p->host->device, count);
 }
 
-bool pieces_record(pass *p) {
+static bool show(pass *p, const uint32_t size[3]) {
+    kernel *k = use(p, SHOW);
+    return k && kernel_run(k, p->host->device, size[0], size[1], 1);
+}
+
+static bool pieces_record(pass *p) {
     pieces_state *s = state_of(p);
     uint32_t size[3];
-    uint64_t count = (uint64_t)pass_particles_used(pass_particles_of(p)) * s->triangle_count;
+    uint64_t count = (uint64_t)pass_particles_used(p->particles) * s->triangle_count;
     picture_size(p, size);
     uint64_t bytes = 4ull * size[0] * size[1];
     if (count >= UINT32_MAX)
@@ -230,7 +203,21 @@ bool pieces_record(pass *p) {
         gpu_buffer_fill(p->host->device, s->numbers, UINT32_MAX);
     }
     s->empty = false; // until they are shown
-    s->empty = run_triangles(p, DEPTH, count) && run_triangles(p, NUMBER, count) &&
-               run(p, SHOW, size[0], size[1]);
+    s->empty = run_triangles(p, DEPTH, count) && run_triangles(p, NUMBER, count) && show(p, size);
     return s->empty;
 }
+
+const pass_type pieces_type = {
+    .name = "pieces",
+    .shader = "pass/pieces.comp",
+    .kernels = kernels,
+    .kernel_count = STAGES,
+    .names = {names, COUNT_OF(names)},
+    .meshes = PASS_USES_MESHES,
+    .declare = pieces_declare,
+    .defines = pieces_defines,
+    .allocate = pieces_allocate,
+    .update = pieces_update,
+    .record = pieces_record,
+    .destroy = pieces_destroy,
+};

@@ -2,7 +2,6 @@
 // dispatched.
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/particles.h"
 #include "pass/pass_impl.h"
 #include "pass/ranges.h"
 #include <math.h>
@@ -45,7 +44,6 @@ bool pass_fill_block(pass *p, const shader_binary *binary, unsigned char *block)
             memcpy(block + member.offset, value, member.size < 16 ? member.size : 16);
         }
     }
-    if (p->particles) pass_particles_write(p->particles, binary, block); // until all list kernels
     return !p->type || !p->type->fill || p->type->fill(p, binary, block);
 }
 

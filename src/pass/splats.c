@@ -7,55 +7,46 @@
 // Where the order counts, all are kept and listed, and the lists are sorted (splats_sort.c).
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/particles.h"
 #include "pass/splats_parts.h"
-#include <string.h>
 
-static const char *const stage_defines[SPLATS_STAGES] = {
-    "STAGE_PROJECT", "STAGE_SCAN", "STAGE_LIST", "STAGE_BOUNDS", "STAGE_DRAW"};
-
-static const char *const buffer_names[SPLATS_BUFFERS] = {
-    "SplatRecords", "SplatSums",   "SplatHead",  "SplatTiles",  "SplatEntries",
-    "SplatCounts",  "SplatGroups", "SplatPairs", "SplatSorted", "SplatSortCounts"};
-
-static size_t option(const pass *p, const char *name) {
-    size_t index;
-    pass_find_key(p, name, &index);
-    return p->options[index];
-}
+static const char *const names[] = {SPLATS_NAMES(KERNEL_NAME_TEXT)};
+static const char sort_shader[] = "pass/splats/sort.comp";
+static const pass_kernel kernels[SPLATS_STAGES] = {
+    [SPLATS_PROJECT] = {.define = "STAGE_PROJECT"},
+    [SPLATS_SCAN] = {.define = "STAGE_SCAN", .without_fields = true},
+    [SPLATS_LIST] = {.define = "STAGE_LIST", .without_fields = true},
+    [SPLATS_BOUNDS] = {.define = "STAGE_BOUNDS", .without_fields = true},
+    [SPLATS_DRAW] = {.define = "STAGE_DRAW", .without_fields = true},
+    [SPLATS_SORT_COUNT] = {sort_shader, .define = "STAGE_SORT_COUNT", .without_fields = true},
+    [SPLATS_SORT_SCAN] = {sort_shader, .define = "STAGE_SORT_SCAN", .without_fields = true},
+    [SPLATS_SORT_MOVE] = {sort_shader, .define = "STAGE_SORT_MOVE", .without_fields = true},
+};
 
 // What is not lit by them asks for no light.
 static void drop_light(pass *p) {
-    static const char *const images[] = {"lights", "shadow", "glow"};
-    for (size_t i = 0; i < COUNT_OF(images); i++)
-        p->images[pass_find_image(p, images[i])] = (graph_image){0};
+    static const int images[] = {N_lights, N_shadow, N_glow};
+    for (size_t i = 0; i < COUNT_OF(images); i++) *pass_image(p, images[i]) = (graph_image){0};
 }
 
-static bool smokes(const pass *p) { // somebody says what dims it
-    size_t index;
-    return pass_find_key(p, "density", &index) == PASS_FIELD && p->fields[index];
+static bool is_sorted(const splats_state *s) {
+    return s->blend == SPLATS_SORTED_BLEND;
 }
 
-bool splats_declare(pass *p) {
+static bool splats_declare(pass *p) {
     splats_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    s->particles = pass_particles_of(p);
-    if (!s->particles) return false;
-    s->blend = (splats_blend)option(p, "blend");
-    if (s->blend == SPLATS_SORTED_BLEND && pass_particles_count(s->particles) > SPLATS_MOST_SORTED)
+    s->particles = p->particles;
+    s->blend = (splats_blend)pass_option(p, N_blend);
+    if (is_sorted(s) && pass_particles_count(s->particles) > SPLATS_MOST_SORTED)
         return err_set("%s: %u particles are too many to be sorted; blend = \"weighted\" takes "
                        "them, or 'count' of particles at most %d",
                        p->label, pass_particles_count(s->particles), SPLATS_MOST_SORTED);
-    if (!option(p, "lit")) drop_light(p);
-    if (smokes(p) && !pass_check_density(p)) return false;
+    if (!pass_option(p, N_lit)) drop_light(p);
+    if (pass_density(p) && !pass_check_density(p)) return false;
     return pass_declare_images(p) && pass_add_to_graph(p);
 }
 
 // ---- building ---------------------------------------------------------------------------------
-
-static bool is_used(const splats_state *s, splats_stage stage) {
-    return stage != SPLATS_BOUNDS || s->blend == SPLATS_SORTED_BLEND;
-}
 
 // What suits processors whose threads take turns: no waiting for each other, and a splat's own
 // thread draws it up to that many pixels to each side, since reading a splat for each pixel is dear
@@ -64,60 +55,36 @@ static bool is_software(const pass *p) {
     return p->host->device && gpu_get_info(p->host->device)->kind == GPU_CPU;
 }
 
-static bool compile(pass *p, splats_stage stage) {
-    splats_state *s = splats_of(p);
-    shader_define defines[PASS_PARTICLES_DEFINES + 4];
-    size_t count = pass_particles_defines(s->particles, defines);
-    defines[count++] = (shader_define){stage_defines[stage], "1"};
-    defines[count++] = (shader_define){"GATHERED", is_software(p) ? "0" : "1"};
-    defines[count++] = (shader_define){"DIRECT", is_software(p) ? "24.0" : "0.0"};
-    if (stage != SPLATS_PROJECT) defines[count++] = (shader_define){"WITHOUT_FIELDS", "1"};
-    return pass_compile(p, p->shader, SHADER_COMPUTE, defines, count, &s->binary[stage]);
-}
-
-bool splats_check(pass *p) {
-    splats_state *s = splats_of(p);
-    for (int i = 0; i < SPLATS_STAGES; i++)
-        if (is_used(s, (splats_stage)i) && !compile(p, (splats_stage)i)) return false;
-    return s->blend != SPLATS_SORTED_BLEND || splats_compile_sort(p);
-}
-
-bool splats_build(pass *p) {
-    splats_state *s = splats_of(p);
-    for (int i = 0; i < SPLATS_STAGES; i++) {
-        if (!is_used(s, (splats_stage)i)) continue;
-        if (!compile(p, (splats_stage)i)) return false;
-        s->pipeline[i] = pass_create_compute(p, &s->binary[i]);
-        s->block[i] = arena_alloc(p->host->memory, pass_block_size(&s->binary[i]) + 16);
-        if (!s->pipeline[i]) return false;
+static bool splats_defines(pass *p, size_t index, pass_defines *out) {
+    if ((index == SPLATS_BOUNDS || index > SPLATS_DRAW) && !is_sorted(splats_of(p))) return false;
+    if (index > SPLATS_DRAW) {
+        splats_define_sort(p, out);
+        return true;
     }
-    p->binary = s->binary[SPLATS_PROJECT];
-    return s->blend != SPLATS_SORTED_BLEND || splats_build_sort(p);
+    pass_define_flag(out, "GATHERED", !is_software(p));
+    pass_define(out, "DIRECT", is_software(p) ? "24.0" : "0.0");
+    return true;
 }
 
-void splats_destroy(pass *p) {
+static void splats_destroy(pass *p) {
     splats_state *s = splats_of(p);
-    gpu *device = p->host->device;
-    for (int i = 0; s && i < SPLATS_STAGES; i++)
-        if (s->pipeline[i]) gpu_pipeline_destroy(device, s->pipeline[i]);
-    for (int i = 0; s && i < SPLATS_SORT_STAGES; i++)
-        if (s->sort_pipeline[i]) gpu_pipeline_destroy(device, s->sort_pipeline[i]);
-    for (int i = 0; s && i < SPLATS_BUFFERS; i++) gpu_buffer_destroy(device, s->buffers[i]);
+    for (int i = 0; s && i < SPLATS_BUFFERS; i++)
+        gpu_buffer_destroy(p->host->device, s->buffers[i]);
 }
 
 // ---- memory -----------------------------------------------------------------------------------
 
 static uint32_t record_count(const splats_state *s) {
     uint32_t count = pass_particles_count(s->particles), most = SPLATS_MOST_RECORDS;
-    return s->blend == SPLATS_SORTED_BLEND || count < most ? count : most;
+    return is_sorted(s) || count < most ? count : most;
 }
 
 uint32_t splats_entries(const pass *p) {
-    return record_count(splats_of(p)) * pass_number(p, "entries");
+    return record_count(splats_of(p)) * pass_option_number(p, N_entries);
 }
 
 static void picture_size(const pass *p, uint32_t size[3]) {
-    graph_get_size(p->host->graph, pass_output(p, "image"), size);
+    graph_get_size(p->host->graph, *pass_image(p, N_image), size);
 }
 
 static uint32_t tiles_along(uint32_t pixels) {
@@ -143,9 +110,9 @@ bool splats_make_buffer(pass *p, splats_buffer which, uint64_t size) {
         return err_set("%s: %llu bytes are needed at once, and the device binds %llu at most; "
                        "a smaller 'resolution', fewer 'entries' or particles need less",
                        p->label, (unsigned long long)size, (unsigned long long)most);
-    if (s->buffers[which]) gpu_buffer_destroy(device, s->buffers[which]);
+    gpu_buffer_destroy(device, s->buffers[which]);
     s->buffers[which] =
-        gpu_buffer_create(device, &(gpu_buffer_desc){.label = buffer_names[which], .size = size});
+        gpu_buffer_create(device, &(gpu_buffer_desc){.label = names[which], .size = size});
     s->empty = s->empty && which != SPLATS_SUMS;
     return s->buffers[which] != NULL;
 }
@@ -159,7 +126,7 @@ static bool make_buffers(pass *p) {
         !splats_make_buffer(p, SPLATS_HEAD, 16) ||
         !splats_make_buffer(p, SPLATS_TILES, 8ull * splats_tile_count(p)))
         return false;
-    if (s->blend != SPLATS_SORTED_BLEND)
+    if (!is_sorted(s))
         return splats_make_buffer(p, SPLATS_SUMS, 4 * channels * size[0] * size[1]) &&
                splats_make_buffer(p, SPLATS_ENTRIES, 4ull * splats_entries(p));
     return splats_make_buffer(p, SPLATS_COUNTS, 4 * records) &&
@@ -169,70 +136,39 @@ static bool make_buffers(pass *p) {
 
 // ---- in a frame -------------------------------------------------------------------------------
 
-// The box of the smoke that dims.
-static bool write_smoke(pass *p, const shader_binary *binary, unsigned char *block) {
-    box3 box = {{0, 0, 0}, {0, 0, 0}};
-    if (smokes(p) && !pass_density_box(p, &box)) return false;
-    pass_write_box(binary, block, box);
-    return true;
-}
-
-bool splats_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+static bool splats_update(pass *p) {
     const splats_state *s = splats_of(p);
+    box3 smoke = box3_empty(); // that dims
     uint32_t size[3];
     picture_size(p, size);
     const float picture[2] = {(float)size[0], (float)size[1]};
-    const struct {
-        const char *name;
-        uint32_t value;
-    } counts[] = {
-        {"tiles_across", tiles_along(size[0])},
-        {"tiles_down", tiles_along(size[1])},
-        {"records_most", record_count(s)},
-        {"entries_most", splats_entries(p)},
-        {"group_count", group_count(pass_particles_used(s->particles))},
-        {"depth_bits", splats_depth_bits(p)},
-    };
-    pass_write_member(binary, block, "picture", picture, sizeof picture);
-    for (size_t i = 0; i < COUNT_OF(counts); i++)
-        pass_write_member(binary, block, counts[i].name, &counts[i].value, sizeof(uint32_t));
-    pass_particles_write(s->particles, binary, block);
-    return write_smoke(p, binary, block);
+    if (pass_density(p) && !pass_density_box(p, &smoke)) return false;
+    pass_set(p, N_picture, picture, sizeof picture);
+    pass_set_int(p, N_tiles_across, (int32_t)tiles_along(size[0]));
+    pass_set_int(p, N_tiles_down, (int32_t)tiles_along(size[1]));
+    pass_set_int(p, N_records_most, (int32_t)record_count(s));
+    pass_set_int(p, N_entries_most, (int32_t)splats_entries(p));
+    pass_set_int(p, N_group_count, (int32_t)group_count(pass_particles_used(s->particles)));
+    pass_set_int(p, N_depth_bits, (int32_t)splats_depth_bits(p));
+    pass_set_box(p, smoke);
+    return true;
 }
 
-static size_t list_slots(const pass *p, const shader_binary *binary,
-                         pass_override out[GPU_MAX_SLOTS]) {
+static kernel *use(pass *p, splats_stage stage) {
     const splats_state *s = splats_of(p);
-    size_t count = 0;
-    for (size_t i = 0; i < binary->slot_count && count < GPU_MAX_SLOTS; i++) {
-        pass_override *slot = &out[count];
-        *slot = (pass_override){.name = binary->slots[i].name};
-        for (int b = 0; b < SPLATS_BUFFERS; b++)
-            if (strcmp(buffer_names[b], slot->name) == 0) slot->binding.buffer = s->buffers[b];
-        count +=
-            slot->binding.buffer || pass_particles_bind(s->particles, slot->name, &slot->binding);
-    }
-    return count;
+    kernel *k = pass_use(p, stage);
+    for (int i = 0; k && i < SPLATS_BUFFERS; i++) kernel_bind_buffer(k, i, s->buffers[i]);
+    return k;
 }
 
 static bool dispatch(pass *p, splats_stage stage, uint32_t x, uint32_t y) {
-    splats_state *s = splats_of(p);
-    const shader_binary *binary = &s->binary[stage];
-    pass_override overrides[GPU_MAX_SLOTS];
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc desc = {
-        .pipeline = s->pipeline[stage], .bindings = bindings, .threads = {x, y, 1}};
-    size_t count = list_slots(p, binary, overrides);
-    return pass_fill_block(p, binary, s->block[stage]) &&
-           pass_bind(p, binary, s->block[stage], overrides, count, bindings, &desc.binding_count) &&
-           gpu_dispatch(p->host->device, &desc);
+    kernel *k = use(p, stage);
+    return k && kernel_run(k, p->host->device, x, y, 1);
 }
 
-// A thread for each of `count`, in rows of groups.
 static bool dispatch_each(pass *p, splats_stage stage, uint32_t count) {
-    uint32_t groups = group_count(count);
-    uint32_t across = groups < SPLATS_ACROSS ? groups : SPLATS_ACROSS;
-    return count == 0 || dispatch(p, stage, across * SPLATS_GROUP, (groups + across - 1) / across);
+    kernel *k = use(p, stage);
+    return k && kernel_run_each(k, p->host->device, count);
 }
 
 static bool draw_sorted(pass *p, uint32_t used) {
@@ -256,12 +192,25 @@ static bool draw_sums(pass *p, uint32_t used) {
     return s->empty;
 }
 
-bool splats_record(pass *p) {
+static bool splats_record(pass *p) {
     splats_state *s = splats_of(p);
     gpu *device = p->host->device;
     if (!pass_prepare(p) || !make_buffers(p)) return false;
     gpu_buffer_fill(device, s->buffers[SPLATS_HEAD], 0);
     gpu_buffer_fill(device, s->buffers[SPLATS_TILES], 0);
     uint32_t used = pass_particles_used(s->particles);
-    return s->blend == SPLATS_SORTED_BLEND ? draw_sorted(p, used) : draw_sums(p, used);
+    return is_sorted(s) ? draw_sorted(p, used) : draw_sums(p, used);
 }
+
+const pass_type splats_type = {
+    .name = "splats",
+    .shader = "pass/splats.comp",
+    .kernels = kernels,
+    .kernel_count = SPLATS_STAGES,
+    .names = {names, COUNT_OF(names)},
+    .declare = splats_declare,
+    .defines = splats_defines,
+    .update = splats_update,
+    .record = splats_record,
+    .destroy = splats_destroy,
+};

@@ -5,7 +5,6 @@
 enum {
     SPLATS_TILE = 16,              // pixels along a tile
     SPLATS_GROUP = 256,            // threads of a group that has one for each particle
-    SPLATS_ACROSS = 1024,          // of such groups: a device takes 65535 along each side
     SPLATS_RECORD = 48,            // bytes of a splat that is kept
     SPLATS_MOST_RECORDS = 1 << 20, // kept, where others are drawn by themselves,
     SPLATS_MOST_SORTED = 2097152,  // and where none is
@@ -15,17 +14,22 @@ typedef enum splats_stage {
     SPLATS_PROJECT,
     SPLATS_SCAN,
     SPLATS_LIST,
-    SPLATS_BOUNDS,
+    SPLATS_BOUNDS, // of what is sorted, as the last three
     SPLATS_DRAW,
-    SPLATS_STAGES
-} splats_stage;
-
-typedef enum splats_sort_stage {
     SPLATS_SORT_COUNT,
     SPLATS_SORT_SCAN,
     SPLATS_SORT_MOVE,
-    SPLATS_SORT_STAGES
-} splats_sort_stage;
+    SPLATS_STAGES
+} splats_stage;
+
+// Buffers first: splats_buffer counts as they do.
+#define SPLATS_NAMES(NAME)                                                                         \
+    NAME(SplatRecords), NAME(SplatSums), NAME(SplatHead), NAME(SplatTiles), NAME(SplatEntries),    \
+        NAME(SplatCounts), NAME(SplatGroups), NAME(SplatPairs), NAME(SortTo), NAME(SortCounts),    \
+        NAME(SortFrom), NAME(blend), NAME(lit), NAME(entries), NAME(lights), NAME(shadow),         \
+        NAME(glow), NAME(image), NAME(picture), NAME(tiles_across), NAME(tiles_down),              \
+        NAME(records_most), NAME(entries_most), NAME(group_count), NAME(depth_bits), NAME(shift)
+enum { SPLATS_NAMES(KERNEL_NAME_ID) };
 
 typedef enum splats_buffer {
     SPLATS_RECORDS,
@@ -46,9 +50,6 @@ typedef enum splats_blend { SPLATS_ADDITIVE, SPLATS_WEIGHTED, SPLATS_SORTED_BLEN
 typedef struct splats_state {
     const pass *particles;
     splats_blend blend;
-    shader_binary binary[SPLATS_STAGES], sort_binary[SPLATS_SORT_STAGES];
-    gpu_pipeline *pipeline[SPLATS_STAGES], *sort_pipeline[SPLATS_SORT_STAGES];
-    unsigned char *block[SPLATS_STAGES], *sort_block[SPLATS_SORT_STAGES];
     gpu_buffer *buffers[SPLATS_BUFFERS];
     bool empty; // the sums are
 } splats_state;
@@ -63,8 +64,7 @@ uint32_t splats_tile_count(const pass *p); // as of the picture's size
 bool splats_make_buffer(pass *p, splats_buffer which, uint64_t size);
 
 // splats_sort.c: of blend = "sorted"
-bool splats_compile_sort(pass *p);
-bool splats_build_sort(pass *p);
+void splats_define_sort(pass *p, pass_defines *out);
 bool splats_make_sort(pass *p);
 uint32_t splats_depth_bits(const pass *p); // of a key; the others say which tile
 bool splats_sort(pass *p);                 // the pairs

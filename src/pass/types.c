@@ -6,15 +6,19 @@
 #include <string.h>
 
 extern const pass_type bloom_type;
+extern const pass_type deposit_type;
 extern const pass_type lbm_source_type;
 extern const pass_type lbm_type;
 extern const pass_type lighting_type;
 extern const pass_type march_type;
-extern const pass_type slices_type;
+extern const pass_type particles_type;
+extern const pass_type pieces_type;
 extern const pass_type slices_force_type;
 extern const pass_type slices_inflow_type;
 extern const pass_type slices_obstacle_type;
 extern const pass_type slices_templates_type;
+extern const pass_type slices_type;
+extern const pass_type splats_type;
 extern const pass_type stack_type;
 
 static const pass_type geometry_type = {
@@ -161,23 +165,6 @@ static const pass_type voxels_type = {
     .destroy = voxels_destroy_pass,
 };
 
-static const pass_type particles_type = {
-    .name = "particles",
-    .constructed = true,
-    .shader = "pass/particles.comp",
-    .meshes = PASS_USES_MESHES,
-    .unscaled = true,
-    .simulation = &particles_simulation,
-    .declare = particles_declare,
-    .check = particles_check,
-    .build = particles_build,
-    .allocate = particles_allocate,
-    .fill = particles_fill,
-    .rehearse = particles_rehearse,
-    .record = particles_record,
-    .destroy = particles_destroy,
-};
-
 static const pass_type picture_type = {
     .name = "picture",
     .constructed = true,
@@ -187,44 +174,6 @@ static const pass_type picture_type = {
     .check = picture_check,
     .build = picture_build,
     .record = picture_record,
-};
-
-static const pass_type pieces_type = {
-    .name = "pieces",
-    .shader = "pass/pieces.comp",
-    .meshes = PASS_USES_MESHES,
-    .declare = pieces_declare,
-    .check = pieces_check,
-    .build = pieces_build,
-    .allocate = pieces_allocate,
-    .fill = pieces_fill,
-    .record = pieces_record,
-    .destroy = pieces_destroy,
-};
-
-static const pass_type deposit_type = {
-    .name = "deposit",
-    .constructed = true,
-    .shader = "pass/deposit.comp",
-    .unscaled = true,
-    .declare = deposit_declare,
-    .check = deposit_check,
-    .build = deposit_build,
-    .allocate = deposit_allocate,
-    .fill = deposit_fill,
-    .record = deposit_record,
-    .destroy = deposit_destroy,
-};
-
-static const pass_type splats_type = {
-    .name = "splats",
-    .shader = "pass/splats.comp",
-    .declare = splats_declare,
-    .check = splats_check,
-    .build = splats_build,
-    .fill = splats_fill,
-    .record = splats_record,
-    .destroy = splats_destroy,
 };
 
 static const pass_type shell_type = {

@@ -283,10 +283,9 @@ static void each_carries_what_is_around_it(void **state) {
         if (stays) gpu_test_ok(pass_set_option(s.pass, "quantity_from", "birth"));
         swarm_build(&s);
         swarm_run(&s, 40);
-        gpu_binding binding;
         float carried[256];
-        assert_true(pass_particles_bind(s.pass, "ParticleQuantities", &binding));
-        gpu_test_ok(gpu_buffer_read(*state, binding.buffer, 0, carried, sizeof carried));
+        gpu_buffer *quantities = particles_of(s.pass)->buffers.quantities;
+        gpu_test_ok(gpu_buffer_read(*state, quantities, 0, carried, sizeof carried));
         for (uint32_t i = 0; i < s.used; i++) {
             double wanted = (double)s.at[i][2] - (stays ? 2 * (double)s.at[i][3] : 0);
             is_near((double)carried[i], wanted, 1e-4, "quantity");

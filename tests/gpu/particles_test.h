@@ -2,7 +2,7 @@
 // / 60 s, and a step is as long.
 #pragma once
 #include "effect_test.h"
-#include "pass/particles.h"
+#include "pass/particles_parts.h"
 
 enum { RATE_OF_FRAMES = 60 };
 
@@ -55,12 +55,10 @@ static inline void swarm_build(const swarm *s) {
     gpu_test_ok(effect_build(s->e, 16, 16));
 }
 
-static inline float (*swarm_buffer(const swarm *s, const char *name))[4] {
-    gpu_binding binding;
-    assert_true(pass_particles_bind(s->pass, name, &binding));
+static inline float (*swarm_buffer(const swarm *s, gpu_buffer *buffer))[4] {
     size_t size = (size_t)s->used * 4 * sizeof(float);
     float(*out)[4] = mem_alloc(size + 1);
-    gpu_test_ok(gpu_buffer_read(effect_pass_host(s->e)->device, binding.buffer, 0, out, size));
+    gpu_test_ok(gpu_buffer_read(effect_pass_host(s->e)->device, buffer, 0, out, size));
     return out;
 }
 
@@ -75,8 +73,9 @@ static inline void swarm_run(swarm *s, double frame) {
     swarm_forget(s);
     gpu_test_ok(effect_render(s->e, frame, true));
     s->used = pass_particles_used(s->pass);
-    s->at = swarm_buffer(s, "ParticlePositions");
-    s->move = swarm_buffer(s, "ParticleVelocities");
+    const particles_buffers *buffers = &particles_of(s->pass)->buffers;
+    s->at = swarm_buffer(s, buffers->positions[0]);
+    s->move = swarm_buffer(s, buffers->velocities[0]);
 }
 
 static inline bool swarm_lives(const swarm *s, uint32_t i) {

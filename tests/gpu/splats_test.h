@@ -1,7 +1,7 @@
 // Particles at places that a test says, drawn by the pass `splats` in a small world (pass_test.h).
 // The picture is SIDE pixels wide and high; at the middle of it, 5 m away, a metre is METRE pixels.
 #pragma once
-#include "pass/particles.h"
+#include "pass/particles_parts.h"
 #include "pass_test.h"
 
 enum { SIDE = 64, METRE = 32, MOST_SPOTS = 512 };
@@ -56,10 +56,8 @@ static inline void spots_build(spots *s) {
     s->w.host.hold = true; // from here on they are where the test says
 }
 
-static inline void spots_write(const spots *s, const char *name, const void *data) {
-    gpu_binding binding;
-    assert_true(pass_particles_bind(s->particles, name, &binding));
-    gpu_test_ok(gpu_buffer_write(s->w.host.device, binding.buffer, 0, data, 16ull * s->count));
+static inline void spots_write(const spots *s, gpu_buffer *buffer, const void *data) {
+    gpu_test_ok(gpu_buffer_write(s->w.host.device, buffer, 0, data, 16ull * s->count));
 }
 
 // RGBA of an image of the next frame; free with mem_free. A lifetime of 0 is one of 10 s, of which
@@ -72,8 +70,9 @@ static inline float *spots_draw_other(spots *s, const spot *list, graph_image im
         at[i][3] = list[i].lifetime > 0 ? list[i].age : 5;
         moves[i][3] = list[i].lifetime > 0 ? list[i].lifetime : 10;
     }
-    spots_write(s, "ParticlePositions", at);
-    spots_write(s, "ParticleVelocities", moves);
+    const particles_buffers *buffers = &particles_of(s->particles)->buffers;
+    spots_write(s, buffers->positions[0], at);
+    spots_write(s, buffers->velocities[0], moves);
     world_frame(&s->w, SIDE, SIDE, 2);
     return world_read(&s->w, image);
 }

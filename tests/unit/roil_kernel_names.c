@@ -81,7 +81,6 @@ static void providers_have_what_some_shader_asks_for(void **state) {
     shader_files files = {.count = 0};
     for (size_t i = 0; i < type_count; i++) add_type(&files, types[i]);
     add_file(&files, "pass/lamps_lists.comp");
-    add_file(&files, "pass/particles/birth.comp");
     for (size_t i = 0; i < count; i++) {
         if (strcmp(rows[i]->slots.items[0], "Counters") == 0) continue; // of the compiler's prelude
         check(*state, "slots", &(kernel_table){rows[i]->slots, files.items, files.count});
