@@ -48,14 +48,6 @@ bool reference_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool reference_record(pass *p);
 void reference_destroy(pass *p);
 
-bool shell_declare(pass *p);
-bool shell_check(pass *p);
-bool shell_build(pass *p);
-bool shell_allocate(pass *p);
-bool shell_fill(pass *p, const shader_binary *binary, unsigned char *block);
-bool shell_record(pass *p);
-void shell_destroy(pass *p);
-
 bool accumulate_declare(pass *p);
 
 bool meter_declare(pass *p);

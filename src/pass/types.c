@@ -13,6 +13,7 @@ extern const pass_type lighting_type;
 extern const pass_type march_type;
 extern const pass_type particles_type;
 extern const pass_type pieces_type;
+extern const pass_type shell_type;
 extern const pass_type slices_force_type;
 extern const pass_type slices_inflow_type;
 extern const pass_type slices_obstacle_type;
@@ -174,19 +175,6 @@ static const pass_type picture_type = {
     .check = picture_check,
     .build = picture_build,
     .record = picture_record,
-};
-
-static const pass_type shell_type = {
-    .name = "shell",
-    .constructed = true,
-    .shader = "pass/shell.comp",
-    .declare = shell_declare,
-    .check = shell_check,
-    .build = shell_build,
-    .allocate = shell_allocate,
-    .fill = shell_fill,
-    .record = shell_record,
-    .destroy = shell_destroy,
 };
 
 static const pass_type *const types[] = {
