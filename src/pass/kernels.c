@@ -462,6 +462,10 @@ kernel *pass_use(pass *p, size_t index) {
     return &b->base;
 }
 
+kernel *pass_get_kernel(pass *p, size_t index) {
+    return &p->built[index].base;
+}
+
 const kernel_place *pass_solver_places(const pass *p, size_t index) {
     return p->built[index].solver;
 }

@@ -81,6 +81,7 @@ void pass_define_flag(pass_defines *out, const char *name, bool value); // 1 or 
 // fields, images, and what providers have. The type binds the rest by the numbers of its names.
 // NULL with a message.
 kernel *pass_use(pass *p, size_t index);
+kernel *pass_get_kernel(pass *p, size_t index); // with what was bound last
 bool pass_dispatch(pass *p, size_t index, uint32_t x, uint32_t y, uint32_t z); // and runs it
 // Inside or outside a frame: compiles and builds it as the type's hooks want it now, if it is not,
 // or `again` all the same.
