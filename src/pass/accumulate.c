@@ -1,10 +1,13 @@
 // Accumulate: works at the resolution of what it accumulates.
 #include "base/error.h"
-#include "pass/builtin.h"
+#include "base/memory.h"
 #include "pass/pass_impl.h"
 
-bool accumulate_declare(pass *p) {
-    graph_image source = p->images[pass_find_image(p, "source")];
+enum { N_source };
+static const char *const names[] = {"source"};
+
+static bool accumulate_declare(pass *p) {
+    const graph_image source = *pass_image(p, N_source);
     if (source.id) {
         float scale = graph_get_desc(p->host->graph, source)->scale;
         if (!(scale > 0))
@@ -18,3 +21,10 @@ bool accumulate_declare(pass *p) {
     }
     return pass_declare_images(p) && pass_add_to_graph(p);
 }
+
+const pass_type accumulate_type = {
+    .name = "accumulate",
+    .shader = "pass/accumulate.comp",
+    .names = {names, COUNT_OF(names)},
+    .declare = accumulate_declare,
+};

@@ -8,16 +8,20 @@
 // are not computed again. That is the numbers (uniforms, FieldNumbers), the content of palettes and
 // of grids; the shader cannot change within the life of a pass. A shader that reads anything else
 // (the block Frame, say, by a user's function) runs every frame.
-#include "base/error.h"
-#include "pass/builtin.h"
+#include "base/memory.h"
 #include "pass/pass_impl.h"
 #include <string.h>
 
-static const char level_shader[] = "pass/bake_level.comp";
+#define NAMES(NAME) NAME(values), NAME(finer)
+enum { NAMES(KERNEL_NAME_ID) };
+static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+
+enum { BAKE, LEVEL, KERNELS };
+static const pass_kernel kernels[KERNELS] = {
+    [LEVEL] = {.shader = "pass/bake_level.comp", .without_fields = true}, // from the one before
+};
 
 typedef struct bake_state {
-    shader_binary level; // of one level from the one before
-    gpu_pipeline *level_pipeline;
     unsigned char *now, *last; // what the values depend on: now, and when they were computed
     size_t size;
     bool known; // there is a `last`
@@ -33,77 +37,44 @@ static uint32_t count_levels(const field_grid *grid) {
     return count;
 }
 
-bool bake_declare(pass *p) {
+static bool bake_declare(pass *p) {
     field_grid *grid = p->baked;
-    int output = pass_find_image(p, "values");
+    p->state = arena_alloc(p->host->memory, sizeof(bake_state));
     // Three channels take four: there is no image of three.
-    p->formats[output] = grid->channel_count == 1 ? GPU_R16F : GPU_RGBA16F;
-    p->images[output] = graph_add_image(p->host->graph, &(graph_image_desc){
-                                                            .name = p->label,
-                                                            .format = p->formats[output],
-                                                            .width = grid->size[0],
-                                                            .height = grid->size[1],
-                                                            .depth = grid->size[2],
-                                                            .mips = count_levels(grid),
-                                                            .keep = true,
-                                                        });
-    if (!p->images[output].id) return false;
-    pass_host_add_grid_image(p->host, grid, 0, p->images[output]);
+    p->formats[p->names[N_values].image] = grid->channel_count == 1 ? GPU_R16F : GPU_RGBA16F;
+    if (!pass_add_output(p, N_values,
+                         (graph_image_desc){
+                             .name = p->label,
+                             .width = grid->size[0],
+                             .height = grid->size[1],
+                             .depth = grid->size[2],
+                             .mips = count_levels(grid),
+                             .keep = true,
+                         }))
+        return false;
+    pass_host_add_grid_image(p->host, grid, 0, *pass_image(p, N_values));
     return pass_add_to_graph(p);
 }
 
-bool bake_fill(pass *p, const shader_binary *binary, unsigned char *block) {
-    const field_grid *grid = p->baked;
-    pass_write_member(binary, block, "box_min", &grid->box.min, sizeof grid->box.min);
-    pass_write_member(binary, block, "box_max", &grid->box.max, sizeof grid->box.max);
+static bool bake_defines(pass *p, size_t index, pass_defines *out) {
+    (void)out;
+    return index == BAKE || p->baked->levels;
+}
+
+static bool bake_update(pass *p) {
+    pass_set_box(p, p->baked->box);
     return true;
-}
-
-static bool compile(pass *p, shader_binary *level) {
-    return pass_compile(p, p->shader, SHADER_COMPUTE, NULL, 0, &p->binary) &&
-           (!p->baked->levels || pass_compile(p, level_shader, SHADER_COMPUTE, NULL, 0, level));
-}
-
-bool bake_check(pass *p) {
-    shader_binary level;
-    return compile(p, &level);
-}
-
-bool bake_build(pass *p) {
-    bake_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    if (!compile(p, &s->level)) return false;
-    p->pipeline = pass_create_compute(p, &p->binary);
-    if (p->pipeline && p->baked->levels) s->level_pipeline = pass_create_compute(p, &s->level);
-    return p->pipeline && (!p->baked->levels || s->level_pipeline);
-}
-
-void bake_destroy(pass *p) {
-    bake_state *s = p->state;
-    if (s && s->level_pipeline) gpu_pipeline_destroy(p->host->device, s->level_pipeline);
 }
 
 // ---- what the values depend on ----------------------------------------------------------------
 
-static const field_texture *find_texture(const pass *p, const char *name) {
+// Whether everything that the shader reads can be told to be as it was.
+static bool can_tell(const pass *p) {
     const field_texture *textures;
     size_t count = field_program_textures(p->program, &textures);
     for (size_t i = 0; i < count; i++)
-        if (strcmp(textures[i].glsl_name, name) == 0) return &textures[i];
-    return NULL;
-}
-
-// Whether everything that the shader reads can be told to be as it was.
-static bool can_tell(const pass *p) {
-    for (size_t i = 0; i < p->binary.slot_count; i++) {
-        const shader_slot *slot = &p->binary.slots[i];
-        const field_texture *texture = find_texture(p, slot->name);
-        if (texture
-                ? texture->grid && !texture->grid->state.content
-                : strcmp(slot->name, "Uniforms") != 0 && strcmp(slot->name, "FieldNumbers") != 0 &&
-                      strcmp(slot->name, "values") != 0)
-            return false;
-    }
-    return true;
+        if (textures[i].grid && !textures[i].grid->state.content) return false;
+    return !pass_reads_frame(p, BAKE);
 }
 
 static unsigned char *put(unsigned char *to, const void *data, size_t size) {
@@ -111,8 +82,9 @@ static unsigned char *put(unsigned char *to, const void *data, size_t size) {
     return to + size;
 }
 
-static void list_dependencies(const pass *p, unsigned char *out) {
-    out = put(out, p->block, pass_block_size(&p->binary));
+static void list_dependencies(pass *p, unsigned char *out) {
+    const kernel *k = pass_get_kernel(p, BAKE);
+    out = put(out, k->blocks[0], k->block_sizes[0]);
     out = put(out, p->numbers, field_program_block_size(p->program));
     for (size_t i = 0; i < p->palette_count; i++) {
         out = put(out, &p->palettes[i].time, sizeof p->palettes[i].time);
@@ -126,7 +98,7 @@ static void list_dependencies(const pass *p, unsigned char *out) {
 
 static void make_lists(pass *p, bake_state *s) {
     const field_texture *textures;
-    s->size = pass_block_size(&p->binary) + field_program_block_size(p->program) +
+    s->size = pass_get_kernel(p, BAKE)->block_sizes[0] + field_program_block_size(p->program) +
               p->palette_count * (sizeof(double) + sizeof(uint32_t)) +
               field_program_textures(p->program, &textures) * sizeof(uint64_t);
     s->now = arena_alloc(p->host->memory, s->size);
@@ -134,37 +106,28 @@ static void make_lists(pass *p, bake_state *s) {
 }
 
 static bool is_done(const pass *p, const bake_state *s) {
-    graph_image values = p->images[pass_find_image(p, "values")];
     return s->known && can_tell(p) && memcmp(s->now, s->last, s->size) == 0 &&
-           graph_has_content(p->host->graph, values);
+           graph_has_content(p->host->graph, *pass_image(p, N_values));
 }
 
 // ---- computing --------------------------------------------------------------------------------
 
 static bool run_levels(pass *p) {
-    bake_state *s = p->state;
-    gpu_image *image = graph_get_image(p->host->graph, p->images[pass_find_image(p, "values")]);
+    gpu_image *image = pass_get_image(p, N_values);
     const gpu_image_desc *desc = gpu_image_get_desc(image);
     for (uint32_t level = 1; level < desc->mips; level++) {
-        const pass_override overrides[] = {
-            {"finer",
-             {.image = image, .mip = level - 1, .one_mip = true, .sampler = GPU_LINEAR_CLAMP}},
-            {"values", {.image = image, .mip = level}},
-        };
-        gpu_dispatch_desc dispatch = {
-            .pipeline = s->level_pipeline,
-            .threads = {desc->width >> level, desc->height >> level, desc->depth >> level},
-        };
-        gpu_binding bindings[GPU_MAX_SLOTS];
-        if (!pass_bind(p, &s->level, p->block, overrides, 2, bindings, &dispatch.binding_count))
+        kernel *k = pass_use(p, LEVEL);
+        if (!k) return false;
+        kernel_bind(k, N_finer, (gpu_binding){.image = image, .mip = level - 1, .one_mip = true});
+        kernel_bind(k, N_values, (gpu_binding){.image = image, .mip = level});
+        if (!kernel_run(k, p->host->device, desc->width >> level, desc->height >> level,
+                        desc->depth >> level))
             return false;
-        dispatch.bindings = bindings;
-        if (!gpu_dispatch(p->host->device, &dispatch)) return false;
     }
     return true;
 }
 
-bool bake_record(pass *p) {
+static bool bake_record(pass *p) {
     bake_state *s = p->state;
     if (!s->now) make_lists(p, s);
     if (!pass_prepare(p)) return false;
@@ -177,3 +140,16 @@ bool bake_record(pass *p) {
     p->baked->state.content++;
     return true;
 }
+
+const pass_type bake_type = {
+    .name = "bake",
+    .constructed = true,
+    .shader = "pass/bake.comp",
+    .kernels = kernels,
+    .kernel_count = KERNELS,
+    .names = {names, COUNT_OF(names)},
+    .declare = bake_declare,
+    .defines = bake_defines,
+    .update = bake_update,
+    .record = bake_record,
+};

@@ -47,27 +47,3 @@ bool reference_allocate(pass *p);
 bool reference_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool reference_record(pass *p);
 void reference_destroy(pass *p);
-
-bool accumulate_declare(pass *p);
-
-bool meter_declare(pass *p);
-
-bool bake_declare(pass *p);
-bool bake_check(pass *p);
-bool bake_build(pass *p);
-bool bake_fill(pass *p, const shader_binary *binary, unsigned char *block);
-bool bake_record(pass *p);
-void bake_destroy(pass *p);
-
-bool picture_declare(pass *p);
-bool picture_check(pass *p);
-bool picture_build(pass *p);
-bool picture_record(pass *p);
-
-bool voxels_declare(pass *p);
-bool voxels_check_pass(pass *p);
-bool voxels_build_pass(pass *p);
-bool voxels_allocate_pass(pass *p);
-bool voxels_fill(pass *p, const shader_binary *binary, unsigned char *block);
-bool voxels_record(pass *p);
-void voxels_destroy_pass(pass *p);

@@ -3,36 +3,23 @@
 #include "base/maths.h"
 #include "base/memory.h"
 #include "media/picture.h"
-#include "pass/builtin.h"
 #include "pass/pass_impl.h"
 #include <math.h>
+
+enum { N_color };
+static const char *const names[] = {"color"};
+static const pass_kernel kernels[1]; // of which it has none
 
 void pass_picture_open(pass *p, const struct picture *from) {
     p->state = (void *)(uintptr_t)from; // is only read
 }
 
-bool picture_declare(pass *p) {
+static bool picture_declare(pass *p) {
     const picture *from = p->state;
-    int output = pass_find_image(p, "color");
-    p->images[output] = graph_add_image(
-        p->host->graph, &(graph_image_desc){
-                            .name = arena_format(p->host->memory, "%s.color", p->label),
-                            .format = p->formats[output],
-                            .width = from->width,
-                            .height = from->height,
-                            .keep = true,
-                        });
-    return p->images[output].id && pass_add_to_graph(p);
-}
-
-bool picture_check(pass *p) {
-    (void)p;
-    return true;
-}
-
-bool picture_build(pass *p) {
-    (void)p;
-    return true;
+    return pass_add_output(
+               p, N_color,
+               (graph_image_desc){.width = from->width, .height = from->height, .keep = true}) &&
+           pass_add_to_graph(p);
 }
 
 static float linear(float v) { // IEC 61966-2-1
@@ -48,15 +35,25 @@ static void convert(const picture *from, uint16_t *out) {
     }
 }
 
-bool picture_record(pass *p) {
+static bool picture_record(pass *p) {
     const picture *from = p->state;
-    graph_image output = p->images[pass_find_image(p, "color")];
-    if (graph_has_content(p->host->graph, output)) return true;
+    if (graph_has_content(p->host->graph, *pass_image(p, N_color))) return true;
     size_t size = (size_t)8 * from->width * from->height;
     uint16_t *halves = mem_alloc(size);
     convert(from, halves);
-    bool done =
-        gpu_image_write(p->host->device, graph_get_image(p->host->graph, output), 0, halves, size);
+    bool done = gpu_image_write(p->host->device, pass_get_image(p, N_color), 0, halves, size);
     mem_free(halves);
     return done;
 }
+
+const pass_type picture_type = {
+    .name = "picture",
+    .constructed = true,
+    .shader = "pass/picture.comp",
+    .kernels = kernels,
+    .kernel_count = 0,
+    .names = {names, COUNT_OF(names)},
+    .unscaled = true,
+    .declare = picture_declare,
+    .record = picture_record,
+};

@@ -5,13 +5,17 @@
 #include "pass/pass_impl.h"
 #include <string.h>
 
+extern const pass_type accumulate_type;
+extern const pass_type bake_type;
 extern const pass_type bloom_type;
 extern const pass_type deposit_type;
 extern const pass_type lbm_source_type;
 extern const pass_type lbm_type;
 extern const pass_type lighting_type;
 extern const pass_type march_type;
+extern const pass_type meter_type;
 extern const pass_type particles_type;
+extern const pass_type picture_type;
 extern const pass_type pieces_type;
 extern const pass_type shell_type;
 extern const pass_type slices_force_type;
@@ -21,6 +25,7 @@ extern const pass_type slices_templates_type;
 extern const pass_type slices_type;
 extern const pass_type splats_type;
 extern const pass_type stack_type;
+extern const pass_type voxels_type;
 
 static const pass_type geometry_type = {
     .name = "geometry",
@@ -126,55 +131,6 @@ static const pass_type bright_type = {
 static const pass_type final_type = {
     .name = "final",
     .shader = "pass/final.comp",
-};
-
-static const pass_type accumulate_type = {
-    .name = "accumulate",
-    .shader = "pass/accumulate.comp",
-    .declare = accumulate_declare,
-};
-
-static const pass_type meter_type = {
-    .name = "meter",
-    .shader = "pass/meter.comp",
-    .declare = meter_declare,
-};
-
-static const pass_type bake_type = {
-    .name = "bake",
-    .constructed = true,
-    .shader = "pass/bake.comp",
-    .declare = bake_declare,
-    .check = bake_check,
-    .build = bake_build,
-    .fill = bake_fill,
-    .record = bake_record,
-    .destroy = bake_destroy,
-};
-
-static const pass_type voxels_type = {
-    .name = "voxels",
-    .constructed = true,
-    .shader = "pass/voxels.comp",
-    .meshes = PASS_USES_MESHES,
-    .declare = voxels_declare,
-    .check = voxels_check_pass,
-    .build = voxels_build_pass,
-    .allocate = voxels_allocate_pass,
-    .fill = voxels_fill,
-    .record = voxels_record,
-    .destroy = voxels_destroy_pass,
-};
-
-static const pass_type picture_type = {
-    .name = "picture",
-    .constructed = true,
-    .shader = "pass/picture.comp",
-    .unscaled = true,
-    .declare = picture_declare,
-    .check = picture_check,
-    .build = picture_build,
-    .record = picture_record,
 };
 
 static const pass_type *const types[] = {

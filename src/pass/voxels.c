@@ -4,13 +4,19 @@
 #include "pass/voxels.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/pass_impl.h"
 #include "scene/voxels.h"
 #include <math.h>
 #include <string.h>
 
 enum { MARGIN = 2, MOST_CELLS = 1 << 27 }; // cells around meshes; in all
+
+#define NAMES(NAME)                                                                                \
+    NAME(rule), NAME(inside), NAME(distance), NAME(velocity), NAME(size), NAME(VoxelIds),          \
+        NAME(VoxelMotions)
+enum { NAMES(KERNEL_NAME_ID) };
+static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+static const pass_kernel kernels[1];
 
 typedef struct voxels_pass {
     field_grid grid; // first: the effect has it
@@ -39,14 +45,14 @@ static const char *field_name(const field_grid *grid, size_t index) {
 }
 
 static int find_field(field_grid *grid, const char *name, int *components) {
-    const char *names[COUNT_OF(fields)];
+    const char *all[COUNT_OF(fields)];
     for (size_t i = 0; i < COUNT_OF(fields); i++) {
-        names[i] = fields[i].name;
+        all[i] = fields[i].name;
         if (strcmp(fields[i].name, name) != 0) continue;
         *components = fields[i].components;
         return fields[i].channel;
     }
-    const char *near = str_nearest(name, names, COUNT_OF(fields));
+    const char *near = str_nearest(name, all, COUNT_OF(fields));
     if (near)
         err_set("%s: no field '%s'; did you mean '%s'?", grid->name, name, near);
     else
@@ -183,101 +189,84 @@ const field *pass_voxels_field(pass *p, const char *name) {
 
 // ---- life -------------------------------------------------------------------------------------
 
-static bool add_image(pass *p, voxels_pass *s, const char *output, int channel) {
-    int image = pass_find_image(p, output);
-    p->formats[image] = p->face->images[image].format; // as other shaders write it
-    p->images[image] = graph_add_image(
-        p->host->graph, &(graph_image_desc){
-                            .name = arena_format(p->host->memory, "%s.%s", p->label, output),
-                            .format = p->formats[image],
-                            .width = s->grid.size[0],
-                            .height = s->grid.size[1],
-                            .depth = s->grid.size[2],
-                            .optional = true,
-                            .keep = true,
-                        });
-    if (!p->images[image].id) return false;
-    pass_host_add_grid_image(p->host, &s->grid, channel / 4, p->images[image]);
+static bool add_image(pass *p, voxels_pass *s, int output, int channel) {
+    const int index = p->names[output].image;
+    p->formats[index] = p->face->images[index].format; // as other shaders write it
+    if (!pass_add_output(p, output,
+                         (graph_image_desc){.width = s->grid.size[0],
+                                            .height = s->grid.size[1],
+                                            .depth = s->grid.size[2],
+                                            .optional = true,
+                                            .keep = true}))
+        return false;
+    pass_host_add_grid_image(p->host, &s->grid, channel / 4, *pass_image(p, output));
     return true;
 }
 
-bool voxels_declare(pass *p) {
+static bool voxels_pass_declare(pass *p) {
     voxels_pass *s = state_of(p);
-    size_t rule;
-    pass_find_key(p, "rule", &rule);
+    const voxels_rule rule = (voxels_rule)pass_option(p, N_rule);
     voxels_body *bodies = arena_alloc(p->host->memory, p->mesh_count * sizeof *bodies);
-    for (size_t i = 0; i < p->mesh_count; i++)
-        bodies[i] = (voxels_body){p->meshes[i], (voxels_rule)p->options[rule]};
+    for (size_t i = 0; i < p->mesh_count; i++) bodies[i] = (voxels_body){p->meshes[i], rule};
     voxels_desc desc = {
         .box = s->grid.box, .bodies = bodies, .body_count = p->mesh_count, .distances = true};
     memcpy(desc.size, s->grid.size, sizeof desc.size);
     s->cells = voxels_create(p->host->memory, &desc);
     if (!s->cells) return err_prefix("%s: ", p->label);
-    return add_image(p, s, "inside", PASS_VOXELS_INSIDE) &&
-           add_image(p, s, "distance", PASS_VOXELS_DISTANCE) &&
-           add_image(p, s, "velocity", PASS_VOXELS_VELOCITY) && pass_add_to_graph(p);
+    return add_image(p, s, N_inside, PASS_VOXELS_INSIDE) &&
+           add_image(p, s, N_distance, PASS_VOXELS_DISTANCE) &&
+           add_image(p, s, N_velocity, PASS_VOXELS_VELOCITY) && pass_add_to_graph(p);
 }
 
-bool voxels_check_pass(pass *p) {
-    return pass_compile(p, p->shader, SHADER_COMPUTE, NULL, 0, &p->binary) &&
+static bool voxels_pass_check(pass *p) {
+    return pass_compile_kernels(p) &&
            voxels_compile(state_of(p)->cells, p->host->library, p->host->reader);
 }
 
-bool voxels_build_pass(pass *p) {
-    if (!voxels_check_pass(p)) return false;
-    p->pipeline = pass_create_compute(p, &p->binary);
-    return p->pipeline && voxels_build(state_of(p)->cells, p->host->device);
+static bool voxels_pass_build(pass *p) {
+    return voxels_compile(state_of(p)->cells, p->host->library, p->host->reader) &&
+           pass_build_kernels(p) && voxels_build(state_of(p)->cells, p->host->device);
 }
 
-bool voxels_allocate_pass(pass *p) {
+static bool voxels_pass_allocate(pass *p) {
     return voxels_allocate(state_of(p)->cells, p->host->device);
 }
 
-void voxels_destroy_pass(pass *p) {
+static void voxels_pass_destroy(pass *p) {
     voxels_pass *s = state_of(p);
     if (s && s->cells) voxels_destroy(s->cells, p->host->device);
 }
 
 // ---- a frame ----------------------------------------------------------------------------------
 
-bool voxels_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+static bool voxels_pass_update(pass *p) {
     const field_grid *grid = &state_of(p)->grid;
-    pass_write_member(binary, block, "box_min", &grid->box.min, sizeof grid->box.min);
-    pass_write_member(binary, block, "box_max", &grid->box.max, sizeof grid->box.max);
     const float size[3] = {(float)grid->size[0], (float)grid->size[1], (float)grid->size[2]};
-    pass_write_member(binary, block, "size", size, sizeof size);
+    pass_set_box(p, grid->box);
+    pass_set(p, N_size, size, sizeof size);
     return true;
 }
 
-static gpu_image *image_of(const pass *p, const char *output) { // NULL: nobody reads it
-    return graph_get_image(p->host->graph, p->images[pass_find_image(p, output)]);
-}
-
-static bool has_content(const pass *p, const char *output) {
-    return graph_has_content(p->host->graph, p->images[pass_find_image(p, output)]);
+static bool has_content(const pass *p, int output) {
+    return graph_has_content(p->host->graph, *pass_image(p, output));
 }
 
 // Whether there is a body in a cell, and how it moves.
 static bool show_cells(pass *p, const voxels_pass *s) {
-    const pass_override buffers[] = {{"VoxelIds", {.buffer = voxels_ids(s->cells)}},
-                                     {"VoxelMotions", {.buffer = voxels_motions(s->cells)}}};
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc desc = {
-        .pipeline = p->pipeline,
-        .bindings = bindings,
-        .threads = {s->grid.size[0] / 4, s->grid.size[1], s->grid.size[2]},
-    };
-    return pass_bind(p, &p->binary, p->block, buffers, COUNT_OF(buffers), bindings,
-                     &desc.binding_count) &&
-           gpu_dispatch(p->host->device, &desc);
+    const uint32_t *n = s->grid.size;
+    kernel *k = pass_use(p, 0);
+    if (!k) return false;
+    kernel_bind_buffer(k, N_VoxelIds, voxels_ids(s->cells));
+    kernel_bind_buffer(k, N_VoxelMotions, voxels_motions(s->cells));
+    return kernel_run(k, p->host->device, n[0] / 4, n[1], n[2]);
 }
 
 static bool show(pass *p, voxels_pass *s, const voxels_change *change) {
-    gpu_image *inside = image_of(p, "inside"), *velocity = image_of(p, "velocity");
-    gpu_image *distance = image_of(p, "distance");
-    bool kept = (!inside || has_content(p, "inside")) && (!velocity || has_content(p, "velocity"));
+    gpu_image *inside = pass_get_image(p, N_inside), *velocity = pass_get_image(p, N_velocity);
+    gpu_image *distance = pass_get_image(p, N_distance); // NULL: nobody reads it
+    bool kept = (!inside || has_content(p, N_inside)) && (!velocity || has_content(p, N_velocity));
     s->shown[0] = s->shown[0] && kept && !change->cells && (!change->motion || !velocity);
-    s->shown[1] = s->shown[1] && has_content(p, "distance") && !change->cells;
+    s->shown[1] = s->shown[1] && has_content(p, N_distance) && !change->cells;
     if ((inside || velocity) && !s->shown[0]) {
         if (!show_cells(p, s)) return false;
         s->shown[0] = true;
@@ -291,7 +280,7 @@ static bool show(pass *p, voxels_pass *s, const voxels_change *change) {
     return true;
 }
 
-bool voxels_record(pass *p) {
+static bool voxels_pass_record(pass *p) {
     voxels_pass *s = state_of(p);
     const field_context *context = p->host->context;
     double passed = context->time - s->updated; // a jump puts bodies where they are
@@ -301,3 +290,20 @@ bool voxels_record(pass *p) {
     return pass_prepare(p) && voxels_update(s->cells, p->host->device, context, passed, &change) &&
            show(p, s, &change);
 }
+
+const pass_type voxels_type = {
+    .name = "voxels",
+    .constructed = true,
+    .shader = "pass/voxels.comp",
+    .kernels = kernels,
+    .kernel_count = 1,
+    .names = {names, COUNT_OF(names)},
+    .meshes = PASS_USES_MESHES,
+    .declare = voxels_pass_declare,
+    .check = voxels_pass_check,
+    .build = voxels_pass_build,
+    .allocate = voxels_pass_allocate,
+    .update = voxels_pass_update,
+    .record = voxels_pass_record,
+    .destroy = voxels_pass_destroy,
+};
