@@ -6,14 +6,18 @@
 #include <pthread.h>
 #include <string.h>
 
-static const char shader[] = "pass/grid_ranges.comp";
+#define NAMES(NAME)                                                                                \
+    NAME(values), NAME(index), NAME(ranges), NAME(size), NAME(count), NAME(from), NAME(level),     \
+        NAME(repeats), NAME(x), NAME(from_x)
+enum { NAMES(KERNEL_NAME_ID) };
+static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+static const char *const shaders[] = {"pass/grid_ranges.comp"};
+const kernel_table ranges_kernel_table = {{names, COUNT_OF(names)}, shaders, COUNT_OF(shaders)};
 
-typedef struct ranges_kind { // of grids that one shader does for
+typedef struct ranges_kind { // of grids that one kernel does for
     gpu_format format;
     bool sparse;
-    shader_binary binary;
-    gpu_pipeline *pipeline;
-    unsigned char *block;
+    kernel kernel;
 } ranges_kind;
 
 typedef struct ranges_texture { // one for each image of each set of a grid
@@ -46,21 +50,23 @@ static ranges_kind *find_kind(struct pass_ranges *r, gpu_format format, bool spa
 
 static bool build_kind(pass *p, gpu_format format, bool sparse) {
     struct pass_ranges *r = p->host->ranges;
-    shader_define defines[] = {
+    const shader_define defines[] = {
         {"FORMAT", gpu_format_name(format)}, {"BRICK", sparse ? "8" : "4"}, {"SPARSE", ""}};
-    ranges_kind made = {.format = format, .sparse = sparse};
-    if (!shader_compile(p->host->library, p->host->memory,
-                        &(shader_compile_desc){.name = shader,
-                                               .stage = SHADER_COMPUTE,
-                                               .defines = defines,
-                                               .define_count = sparse ? 3 : 2,
-                                               .reader = p->host->reader},
-                        &made.binary))
+    const kernel_source source = {.label = "ranges",
+                                  .stages = {{.name = shaders[0],
+                                              .stage = SHADER_COMPUTE,
+                                              .defines = defines,
+                                              .define_count = sparse ? 3 : 2,
+                                              .reader = p->host->reader}},
+                                  .stage_count = 1,
+                                  .names = ranges_kernel_table.names};
+    ranges_kind *made = &r->kinds[r->kind_count];
+    *made = (ranges_kind){.format = format, .sparse = sparse};
+    if (!kernel_compile(&made->kernel, p->host->library, p->host->memory, &source) ||
+        !kernel_build(&made->kernel, p->host->device))
         return false;
-    made.pipeline = pass_create_compute(p, &made.binary);
-    made.block = arena_alloc(p->host->memory, pass_block_size(&made.binary) + 16);
-    if (made.pipeline) r->kinds[r->kind_count++] = made;
-    return made.pipeline != NULL;
+    r->kind_count++;
+    return true;
 }
 
 static pthread_mutex_t building = PTHREAD_MUTEX_INITIALIZER; // passes are built side by side
@@ -135,20 +141,19 @@ typedef struct ranges_level {
     int32_t level, x, from_x;
 } ranges_level;
 
-static void write_size(const ranges_kind *kind, const char *name, const uint32_t size[3]) {
+static void set_size(kernel *k, int name, const uint32_t size[3]) {
     const float v[3] = {(float)size[0], (float)size[1], (float)size[2]};
-    pass_write_member(&kind->binary, kind->block, name, v, sizeof v);
+    kernel_set(k, name, v, sizeof v);
 }
 
-static void fill(const ranges_kind *kind, const field_grid *grid, const ranges_level *at) {
-    const int32_t repeats = grid->repeats;
-    write_size(kind, "size", grid->size);
-    write_size(kind, "count", at->count);
-    write_size(kind, "from", at->from);
-    pass_write_member(&kind->binary, kind->block, "repeats", &repeats, sizeof repeats);
-    pass_write_member(&kind->binary, kind->block, "level", &at->level, sizeof at->level);
-    pass_write_member(&kind->binary, kind->block, "x", &at->x, sizeof at->x);
-    pass_write_member(&kind->binary, kind->block, "from_x", &at->from_x, sizeof at->from_x);
+static void set_numbers(kernel *k, const field_grid *grid, const ranges_level *at) {
+    set_size(k, N_size, grid->size);
+    set_size(k, N_count, at->count);
+    set_size(k, N_from, at->from);
+    kernel_set_int(k, N_repeats, grid->repeats);
+    kernel_set_int(k, N_level, at->level);
+    kernel_set_int(k, N_x, at->x);
+    kernel_set_int(k, N_from_x, at->from_x);
 }
 
 // Groups of 256, for 16^3 texels each; at higher levels a thread for each brick.
@@ -160,39 +165,27 @@ static void count_threads(const field_grid *grid, const ranges_level *at, uint32
     out[0] *= 256;
 }
 
-static bool run_level(pass *p, ranges_kind *kind, const field_texture *t, const ranges_texture *to,
+static bool run_level(pass *p, kernel *k, const field_texture *t, const ranges_texture *to,
                       const ranges_level *at) {
-    fill(kind, t->grid, at);
-    gpu_binding bindings[8];
-    size_t count = 0;
-    for (size_t i = 0; i < kind->binary.slot_count; i++) {
-        const shader_slot *slot = &kind->binary.slots[i];
-        gpu_binding *b = &bindings[count++];
-        *b = (gpu_binding){.binding = slot->slot.binding, .sampler = GPU_NEAREST_CLAMP};
-        if (slot->slot.kind == GPU_SLOT_UNIFORM) {
-            b->uniform = kind->block;
-            b->uniform_size = pass_block_size(&kind->binary);
-        } else if (strcmp(slot->name, "ranges") == 0) {
-            b->image = to->made;
-        } else if (strcmp(slot->name, "index") == 0) {
-            b->image = t->grid->state.index[t->set][t->image];
-        } else {
-            b->image = pass_field_image(p, t);
-        }
-    }
-    gpu_dispatch_desc desc = {
-        .pipeline = kind->pipeline, .bindings = bindings, .binding_count = count};
-    count_threads(t->grid, at, desc.threads);
-    return gpu_dispatch(p->host->device, &desc);
+    const gpu_binding of = {.image = pass_field_image(p, t), .sampler = GPU_NEAREST_CLAMP};
+    const gpu_binding index = {.image = t->grid->state.index[t->set][t->image],
+                               .sampler = GPU_NEAREST_CLAMP};
+    uint32_t threads[3];
+    set_numbers(k, t->grid, at);
+    count_threads(t->grid, at, threads);
+    kernel_bind(k, N_values, of);
+    kernel_bind(k, N_index, index);
+    kernel_bind_image(k, N_ranges, to->made);
+    return kernel_run(k, p->host->device, threads[0], threads[1], threads[2]);
 }
 
 static bool compute(pass *p, const field_texture *t, const ranges_texture *to) {
-    ranges_kind *kind = find_kind(p->host->ranges, format_of(t), t->grid->sparse);
+    kernel *k = &find_kind(p->host->ranges, format_of(t), t->grid->sparse)->kernel;
     ranges_level at = {.level = 0};
     count_bricks(t->grid, at.count);
     bool more = true;
     while (more) {
-        if (!run_level(p, kind, t, to, &at)) return false;
+        if (!run_level(p, k, t, to, &at)) return false;
         memcpy(at.from, at.count, sizeof at.from);
         at.from_x = at.x;
         at.x += (int32_t)at.count[0];
@@ -220,8 +213,7 @@ void pass_ranges_free(pass_host *host) {
     struct pass_ranges *r = host->ranges;
     if (!r) return;
     for (size_t i = 0; i < r->count; i++) gpu_image_destroy(host->device, r->textures[i].made);
-    for (size_t i = 0; i < r->kind_count; i++)
-        gpu_pipeline_destroy(host->device, r->kinds[i].pipeline);
+    for (size_t i = 0; i < r->kind_count; i++) kernel_destroy(&r->kinds[i].kernel, host->device);
     mem_free(r->textures);
     mem_free(r);
     host->ranges = NULL;

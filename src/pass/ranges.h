@@ -10,3 +10,4 @@ bool pass_ranges_build(pass *p, const shader_binary *binary);
 // message.
 gpu_image *pass_ranges_get(pass *p, const field_texture *texture);
 void pass_ranges_free(pass_host *host);
+extern const kernel_table ranges_kernel_table;

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "pass/pass_impl.h"
+#include "pass/ranges.h"
 #include "roil_view.h"
 #include "scene/voxels.h"
 #include "sim/flow.h"
@@ -59,6 +59,7 @@ static void solvers_say_what_their_shaders_declare(void **state) {
     check(library, "lbm_guard", &lbm_guard_kernel_table);
     check(library, "voxels", &voxels_kernel_table);
     check(library, "view", &view_kernel_table);
+    check(library, "ranges", &ranges_kernel_table);
 }
 
 static void passes_say_what_their_shaders_declare(void **state) {
