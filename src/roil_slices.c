@@ -9,9 +9,9 @@
 #include <assert.h>
 #include <math.h>
 
-_Static_assert((int)ROIL_SLICES_DENSITY == PASS_SLICES_DENSITY &&
-                   (int)ROIL_SLICES_VELOCITY == PASS_SLICES_VELOCITY &&
-                   (int)ROIL_SLICES_FIELDS == PASS_SLICES_NAMES,
+_Static_assert((int)ROIL_SLICES_DENSITY == PASS_FLUID_DENSITY &&
+                   (int)ROIL_SLICES_VELOCITY == PASS_FLUID_VELOCITY &&
+                   (int)ROIL_SLICES_FIELDS == PASS_FLUID_NAMES,
                "views are those of the pass's fields");
 const char *const roil_slices_fields[ROIL_SLICES_FIELDS] = {"density", "temperature", "dye",
                                                             "pressure", "velocity"};

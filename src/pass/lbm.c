@@ -6,10 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-const char *const pass_lbm_names[PASS_LBM_NAMES] = {"density", "temperature", "dye", "pressure",
-                                                    "velocity"};
-
-static const char *const names[] = {LBM_AIR_NAMES(KERNEL_NAME_TEXT)};
+const char *const lbm_names[LBM_NAME_COUNT] = {LBM_NAMES(KERNEL_NAME_TEXT)};
 static const pass_kernel kernels[LBM_KERNELS] = {[LBM_FORCE] = {.shader = "pass/lbm/force.comp"}};
 
 // ---- the grid ---------------------------------------------------------------------------------
@@ -33,8 +30,8 @@ static bool exchange_grids(field_grid *grid, field_grid *other) {
 
 static const char *field_name(const field_grid *grid, size_t index) {
     const lbm_air *a = (const lbm_air *)grid;
-    for (int i = 0; i < PASS_LBM_NAMES; i++)
-        if ((a->used[i] || i == PASS_LBM_VELOCITY) && index-- == 0) return pass_lbm_names[i];
+    for (int i = 0; i < PASS_FLUID_NAMES; i++)
+        if ((a->used[i] || i == PASS_FLUID_VELOCITY) && index-- == 0) return pass_fluid_names[i];
     return NULL;
 }
 
@@ -74,7 +71,7 @@ field_grid *pass_lbm_open(pass *p, const pass_lbm_desc *desc) {
         .grid = {.name = p->label,
                  .box = box_of(desc),
                  .size = {desc->size[0], desc->size[1], desc->size[2]},
-                 .channel_count = PASS_LBM_CHANNELS,
+                 .channel_count = PASS_FLUID_CHANNELS,
                  .simulated = true,
                  .state = {.active = box_of(desc)},
                  .exchange = exchange_grids,
@@ -89,7 +86,7 @@ field_grid *pass_lbm_open(pass *p, const pass_lbm_desc *desc) {
         .fresh = true,
         .shown_steps = UINT64_MAX,
     };
-    a->used[PASS_LBM_DENSITY] = true;
+    a->used[PASS_FLUID_DENSITY] = true;
     static const char *const parts[LBM_LABELS] = {"step", "voxels", "sources", "fields"};
     for (int i = 0; i < LBM_LABELS; i++)
         a->labels[i] = arena_format(p->host->memory, "%s.%s", p->label, parts[i]);
@@ -101,17 +98,7 @@ double pass_lbm_time_step(const pass *p) {
 }
 
 int pass_lbm_use(pass *p, const char *name, int *components) {
-    for (int i = 0; i < PASS_LBM_NAMES; i++) {
-        if (strcmp(pass_lbm_names[i], name) != 0) continue;
-        lbm_air_of(p)->used[i] = true;
-        *components = i == PASS_LBM_VELOCITY ? 3 : 1;
-        return i;
-    }
-    const char *near = str_nearest(name, pass_lbm_names, PASS_LBM_NAMES);
-    err_set("%s: no field '%s'; %s%s%s", p->label, name, near ? "did you mean '" : "",
-            near ? near : "it has density, temperature, dye, velocity and pressure",
-            near ? "'?" : "");
-    return -1;
+    return pass_fluid_use(p->label, lbm_air_of(p)->used, name, components);
 }
 
 // ---- declaring --------------------------------------------------------------------------------
@@ -130,7 +117,7 @@ static bool add_image(pass *p, lbm_air *a, int output, int index) {
 
 static bool declare(pass *p) {
     lbm_air *a = lbm_air_of(p);
-    return add_image(p, a, N_scalars, 0) && add_image(p, a, N_velocity, PASS_LBM_VELOCITY / 4);
+    return add_image(p, a, N_scalars, 0) && add_image(p, a, N_velocity, PASS_FLUID_VELOCITY / 4);
 }
 
 // ---- options ----------------------------------------------------------------------------------
@@ -142,7 +129,7 @@ static bool has_subgrid(const pass *p) {
 }
 
 static uint32_t count_scalars(const lbm_air *a) {
-    return a->used[PASS_LBM_DYE] ? 3 : a->used[PASS_LBM_TEMPERATURE] ? 2 : 1;
+    return a->used[PASS_FLUID_DYE] ? 3 : a->used[PASS_FLUID_TEMPERATURE] ? 2 : 1;
 }
 
 bool pass_lbm_check(const pass *p) {
@@ -151,8 +138,8 @@ bool pass_lbm_check(const pass *p) {
         if (periodic != (pass_option(p, N_boundary_left + i + 1) == LBM_PERIODIC))
             return err_set("%s: '%s' is periodic and '%s' is not; what leaves one comes in at the "
                            "other, so both are, or none",
-                           p->label, names[N_boundary_left + (periodic ? i : i + 1)],
-                           names[N_boundary_left + (periodic ? i + 1 : i)]);
+                           p->label, lbm_names[N_boundary_left + (periodic ? i : i + 1)],
+                           lbm_names[N_boundary_left + (periodic ? i + 1 : i)]);
     }
     if (pass_option(p, N_forcing) == LBM_WEIGHTS_ONLY && pass_option(p, N_collision) != LBM_BGK)
         return err_set("%s: forcing = \"weights_only\" wants collision = \"bgk\"; with another "
@@ -210,7 +197,7 @@ const pass_type lbm_type = {
     .shader = "pass/lbm.comp",
     .kernels = kernels,
     .kernel_count = LBM_KERNELS,
-    .names = {names, COUNT_OF(names)},
+    .names = {lbm_names, LBM_NAME_COUNT},
     .unscaled = true,
     .simulation = &lbm_simulation,
     .declare = declare,

@@ -8,6 +8,7 @@
 // step, fields of sources and the force at times of their own (lbm_air_turn); grids that fields
 // sample, and what `update` sets, are those of the frame.
 #pragma once
+#include "pass/fluid.h"
 #include "pass/pass.h"
 #include "scene/voxels.h"
 
@@ -19,17 +20,6 @@ typedef struct pass_lbm_desc {
     double time_step;  // seconds; 0: by the speed
     double warm_up;    // seconds that are simulated before time 0
 } pass_lbm_desc;
-
-enum { // channels of the grid
-    PASS_LBM_DENSITY,
-    PASS_LBM_TEMPERATURE,
-    PASS_LBM_DYE,
-    PASS_LBM_PRESSURE,
-    PASS_LBM_VELOCITY,
-    PASS_LBM_NAMES, // of these
-    PASS_LBM_CHANNELS = 8,
-};
-extern const char *const pass_lbm_names[PASS_LBM_NAMES];
 
 // Before pass_declare; then the grid is the effect's. NULL with a message.
 field_grid *pass_lbm_open(pass *p, const pass_lbm_desc *desc);

@@ -63,12 +63,12 @@ bool lbm_air_numbers(const pass *p, lbm_numbers *out) {
     *out = (lbm_numbers){.tau = tau(a, VALUE(viscosity), 1.0 / 3.0),
                          .smagorinsky = values[N_smagorinsky][0]};
     for (int s = 0; s < LBM_MAX_SCALARS; s++) {
-        bool heat = s == PASS_LBM_TEMPERATURE;
+        bool heat = s == PASS_FLUID_TEMPERATURE;
         out->scalar_tau[s] = tau(a, heat ? VALUE(temperature_diffusion) : VALUE(diffusion), square);
         out->decay[s] = (float)sim_decay(u, heat ? VALUE(cooling_rate) : VALUE(dissolve_rate));
     }
-    out->buoyancy[PASS_LBM_DENSITY][2] = (float)sim_acceleration(u, VALUE(buoyancy_density));
-    out->buoyancy[PASS_LBM_TEMPERATURE][2] = (float)sim_acceleration(u, VALUE(buoyancy_heat));
+    out->buoyancy[PASS_FLUID_DENSITY][2] = (float)sim_acceleration(u, VALUE(buoyancy_density));
+    out->buoyancy[PASS_FLUID_TEMPERATURE][2] = (float)sim_acceleration(u, VALUE(buoyancy_heat));
     for (int face = 0; face < 6; face++) find_inflow(a, values[N_wind], out->inflow[face]);
     if (!a->stops) out->max_speed = lbm_air_clamp_speed(a);
 #undef VALUE

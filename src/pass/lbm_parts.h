@@ -17,8 +17,9 @@ typedef struct lbm_meshes { // bodies as cells; zero: none
 
 enum { LBM_SHOW, LBM_FORCE, LBM_KERNELS }; // of the pass; those of steps are the solver's
 
-// Options of faces in the order of lbm_desc.faces; uniforms in that of lbm_air_numbers.
-#define LBM_AIR_NAMES(NAME)                                                                        \
+// Of `lbm` and `lbm_source`. Options of faces in the order of lbm_desc.faces; uniforms in that of
+// lbm_air_numbers.
+#define LBM_NAMES(NAME)                                                                            \
     NAME(boundary_left), NAME(boundary_right), NAME(boundary_front), NAME(boundary_back),          \
         NAME(boundary_bottom), NAME(boundary_top), NAME(viscosity), NAME(diffusion),               \
         NAME(temperature_diffusion), NAME(buoyancy_density), NAME(buoyancy_heat),                  \
@@ -26,8 +27,13 @@ enum { LBM_SHOW, LBM_FORCE, LBM_KERNELS }; // of the pass; those of steps are th
         NAME(velocity_set), NAME(scalar_set), NAME(collision), NAME(forcing), NAME(beside_bodies), \
         NAME(precision), NAME(guard), NAME(force), NAME(scalars), NAME(velocity), NAME(size),      \
         NAME(blend), NAME(speed), NAME(pressure), NAME(acceleration), NAME(Moments),               \
-        NAME(MomentsBefore), NAME(Guard)
-enum { LBM_AIR_NAMES(KERNEL_NAME_ID) };
+        NAME(MomentsBefore), NAME(Guard), NAME(shape), NAME(density), NAME(temperature),           \
+        NAME(dye), NAME(rate), NAME(velocity_factor), NAME(rule), NAME(cell_size), NAME(first),    \
+        NAME(count), NAME(step_speed), NAME(clamp_speed), NAME(pascal), NAME(note), NAME(share),   \
+        NAME(lbm_parity), NAME(SourceValues), NAME(SourceIds), NAME(SourceMotions),                \
+        NAME(SourceNotes)
+enum { LBM_NAMES(KERNEL_NAME_ID), LBM_NAME_COUNT };
+extern const char *const lbm_names[LBM_NAME_COUNT];
 
 typedef struct lbm_force { // that varies in space; zero: it does not
     gpu_image *image;
@@ -41,7 +47,7 @@ typedef struct lbm_air {
     pass *pass;
     pass_lbm_desc desc;
     sim_units units;
-    bool used[PASS_LBM_NAMES]; // by a field or a source
+    bool used[PASS_FLUID_NAMES]; // by a field or a source
 
     pass **sources;
     size_t source_count, source_capacity;
@@ -119,7 +125,6 @@ bool lbm_source_is_buried(const pass *source); // all that it ever held was in s
 typedef struct lbm_cells { // whole numbers
     float first[3], count[3];
 } lbm_cells;
-const field *lbm_source_shape(const pass *p); // NULL: it has none
 // With a cell around, since a sheet has no size.
 bool lbm_mesh_box(const lbm_air *a, const scene_mesh *mesh, const field_context *context,
                   box3 *out);

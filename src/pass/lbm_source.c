@@ -7,13 +7,8 @@
 #include "pass/lbm_parts.h"
 #include <string.h>
 
-#define NAMES(NAME)                                                                                \
-    NAME(rate), NAME(velocity_factor), NAME(rule), NAME(cell_size), NAME(first), NAME(count),      \
-        NAME(step_speed), NAME(clamp_speed), NAME(pascal), NAME(note), NAME(share),                \
-        NAME(lbm_parity), NAME(SourceValues), NAME(SourceIds), NAME(SourceMotions),                \
-        NAME(SourceNotes)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+static const int fields[PASS_FLUID_NAMES] = {N_density, N_temperature, N_dye, N_pressure,
+                                             N_velocity};
 
 enum { EVALUATE, GIVE, KERNELS };
 static const pass_kernel kernels[KERNELS] = {
@@ -34,15 +29,13 @@ typedef struct source_state {
 } source_state;
 
 static bool gives(const pass *p) {
-    size_t index;
-    for (int i = 0; i < PASS_LBM_NAMES; i++)
-        if (pass_find_key(p, pass_lbm_names[i], &index) == PASS_FIELD && p->fields[index])
-            return true;
-    return pass_find_key(p, "velocity_factor", &index) == PASS_UNIFORM && p->uniforms[index];
+    for (int i = 0; i < PASS_FLUID_NAMES; i++)
+        if (pass_given_field(p, fields[i])) return true;
+    return pass_gives(p, N_velocity_factor);
 }
 
 static bool declare(pass *p) {
-    if (!lbm_source_shape(p) && !p->mesh_count)
+    if (!pass_given_field(p, N_shape) && !p->mesh_count)
         return err_set("%s: it has no place; give it a mesh, or shape = sphere { ... }", p->label);
     return gives(p) || err_set("%s: it gives the air nothing; say its density, temperature, dye, "
                                "velocity or pressure",
@@ -76,11 +69,8 @@ bool pass_lbm_add_source(pass *p, pass *source) {
     source->runs_in = p;
     MEM_RESERVE(a->sources, a->source_count + 1, a->source_capacity);
     a->sources[a->source_count++] = source;
-    for (int i = 0; i < PASS_LBM_NAMES; i++) {
-        size_t index;
-        if (pass_find_key(source, pass_lbm_names[i], &index) == PASS_FIELD && source->fields[index])
-            a->used[i] = true;
-    }
+    for (int i = 0; i < PASS_FLUID_NAMES; i++)
+        if (pass_given_field(source, fields[i])) a->used[i] = true;
     return true;
 }
 
@@ -222,7 +212,7 @@ const pass_type lbm_source_type = {
     .shader = "pass/lbm_source.comp",
     .kernels = kernels,
     .kernel_count = KERNELS,
-    .names = {names, COUNT_OF(names)},
+    .names = {lbm_names, LBM_NAME_COUNT},
     .solver = &lbm_kernel_table,
     .unscaled = true,
     .meshes = PASS_USES_MESHES,

@@ -2,11 +2,6 @@
 #include "pass/lbm_parts.h"
 #include <math.h>
 
-const field *lbm_source_shape(const pass *p) {
-    size_t index;
-    return pass_find_key(p, "shape", &index) == PASS_FIELD ? p->fields[index] : NULL;
-}
-
 bool lbm_mesh_box(const lbm_air *a, const scene_mesh *mesh, const field_context *context,
                   box3 *out) {
     const float corners[2][3] = {
@@ -62,7 +57,7 @@ static lbm_cells cells_of(const lbm_air *a, box3 box) {
 
 bool lbm_source_cells(const lbm_air *a, const pass *p, double end, lbm_cells *out) {
     box3 box = box3_infinite(), meshes;
-    const field *shape = lbm_source_shape(p);
+    const field *shape = pass_given_field(p, N_shape);
     if (shape && !field_bounds(shape, p->host->context, &box)) return false;
     if (p->mesh_count) {
         if (!meshes_box(a, p, end, &meshes)) return false;

@@ -292,8 +292,8 @@ static bool dispatch_colors(pass *p, lighting_stage stage) {
 }
 
 static bool dispatch_groups(pass *p, lighting_stage stage, uint32_t groups) {
-    kernel *k = pass_use(p, stage);
-    return k && dispatch(p, stage, groups * k->binaries[0].local_size[0], 1, 1);
+    const uint32_t threads = pass_get_kernel(p, stage)->binaries[0].local_size[0];
+    return dispatch(p, stage, groups * threads, 1, 1);
 }
 
 static bool dispatch_sweep(pass *p, lighting_stage stage) {

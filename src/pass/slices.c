@@ -6,9 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-const char *const pass_slices_names[PASS_SLICES_NAMES] = {"density", "temperature", "dye",
-                                                          "pressure", "velocity"};
-
 const char *const slices_names[SLICES_NAME_COUNT] = {SLICES_NAMES(KERNEL_NAME_TEXT)};
 static const pass_kernel kernels[SLICES_KERNELS] = {
     [SLICES_DRAW] = {.shader = "pass/slices/templates_draw.comp", .without_fields = true},
@@ -37,8 +34,8 @@ static bool exchange_grids(field_grid *grid, field_grid *other) {
 
 static const char *field_name(const field_grid *grid, size_t index) {
     const slices_flow *f = (const slices_flow *)grid;
-    for (int i = 0; i < PASS_SLICES_NAMES; i++)
-        if (f->used[i] && index-- == 0) return pass_slices_names[i];
+    for (int i = 0; i < PASS_FLUID_NAMES; i++)
+        if (f->used[i] && index-- == 0) return pass_fluid_names[i];
     return NULL;
 }
 
@@ -65,7 +62,7 @@ static field_grid grid_of(const slices_flow *f, const field_extrusion *extrusion
         .name = f->pass->label,
         .box = box,
         .size = {f->desc.size[0], f->desc.size[1], f->desc.count + 1},
-        .channel_count = PASS_SLICES_CHANNELS,
+        .channel_count = PASS_FLUID_CHANNELS,
         .simulated = true,
         .extruded = extrusion,
         .state = {.active = box},
@@ -90,9 +87,9 @@ field_grid *pass_slices_open(pass *p, const pass_slices_desc *desc) {
     };
     f->extrusion = field_extrusion_make(desc->position, desc->axis, (float)f->width,
                                         (float)desc->height, desc->count);
-    f->extrusion.vectors = 1u << PASS_SLICES_VELOCITY / 4;
+    f->extrusion.vectors = 1u << PASS_FLUID_VELOCITY / 4;
     f->grid = grid_of(f, &f->extrusion);
-    f->used[PASS_SLICES_DENSITY] = true;
+    f->used[PASS_FLUID_DENSITY] = true;
     static const char *const parts[SLICES_LABELS] = {"step", "sources", "templates", "fields"};
     for (int i = 0; i < SLICES_LABELS; i++)
         f->labels[i] = arena_format(p->host->memory, "%s.%s", p->label, parts[i]);
@@ -107,23 +104,13 @@ const field_grid *pass_slices_only(pass *p, uint32_t slice) {
     extrusion->only = (int)slice;
     field_grid *grid = f->only[slice] = arena_alloc(p->host->memory, sizeof *grid);
     *grid = grid_of(f, extrusion);
-    for (int i = 0; i < PASS_SLICES_CHANNELS / 4; i++)
+    for (int i = 0; i < PASS_FLUID_CHANNELS / 4; i++)
         pass_host_add_grid_image(p->host, grid, i, pass_grid_image(p->host, &f->grid, i));
     return grid;
 }
 
 int pass_slices_use(pass *p, const char *name, int *components) {
-    for (int i = 0; i < PASS_SLICES_NAMES; i++) {
-        if (strcmp(pass_slices_names[i], name) != 0) continue;
-        slices_of(p)->used[i] = true;
-        *components = i == PASS_SLICES_VELOCITY ? 3 : 1;
-        return i;
-    }
-    const char *near = str_nearest(name, pass_slices_names, PASS_SLICES_NAMES);
-    err_set("%s: no field '%s'; %s%s%s", p->label, name, near ? "did you mean '" : "",
-            near ? near : "it has density, temperature, dye, velocity and pressure",
-            near ? "'?" : "");
-    return -1;
+    return pass_fluid_use(p->label, slices_of(p)->used, name, components);
 }
 
 // ---- declaring --------------------------------------------------------------------------------
@@ -152,7 +139,7 @@ static bool check_viscosity(const pass *p) {
 static bool declare(pass *p) {
     slices_flow *f = slices_of(p);
     return check_viscosity(p) && add_image(p, f, N_scalars, 0) &&
-           add_image(p, f, N_velocity, PASS_SLICES_VELOCITY / 4);
+           add_image(p, f, N_velocity, PASS_FLUID_VELOCITY / 4);
 }
 
 static flow_desc structure_of(const pass *p, const slices_flow *f) {

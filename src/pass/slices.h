@@ -10,6 +10,7 @@
 // Time: a step is a fixed part of a second (pass/steps.h); uniforms and fields are those of the
 // step's own time. What is seen at a time is what the step that begins then has made.
 #pragma once
+#include "pass/fluid.h"
 #include "pass/pass.h"
 
 struct picture; // media/picture.h
@@ -27,17 +28,6 @@ typedef struct pass_slices_desc {
     uint32_t max_iterations; // of the pressure, each step; 0: what suits
 } pass_slices_desc;
 
-enum { // channels of the grid
-    PASS_SLICES_DENSITY,
-    PASS_SLICES_TEMPERATURE,
-    PASS_SLICES_DYE,
-    PASS_SLICES_PRESSURE,
-    PASS_SLICES_VELOCITY,
-    PASS_SLICES_NAMES, // of these
-    PASS_SLICES_CHANNELS = 8,
-};
-extern const char *const pass_slices_names[PASS_SLICES_NAMES];
-
 // Before pass_declare; then the grid is the effect's. NULL with a message.
 field_grid *pass_slices_open(pass *p, const pass_slices_desc *desc);
 // The grid of one slice, 0 to count - 1, whose plane goes on along its normal; it is the pass's.
@@ -53,7 +43,7 @@ bool pass_slices_add(pass *p, pass *part, const struct picture *painted);
 
 const pass_slices_desc *pass_slices_get_desc(const pass *p);
 const char *pass_slices_variable(const pass *p); // of the script
-// The state after the last kept step, of the field of that index in pass_slices_names: an image of
+// The state after the last kept step, of the field of that index in pass_fluid_names: an image of
 // (x, y, slice) and the channel where it lies, of a velocity the first of two. NULL with a message:
 // nothing has flowed yet.
 gpu_image *pass_slices_look(const pass *p, int index, int *channel);

@@ -19,11 +19,11 @@ typedef struct part_state {
 } part_state;
 
 bool slices_is_obstacle(const pass *part) {
-    return pass_is(part, "slices_obstacle");
+    return part->type == &slices_obstacle_type;
 }
 
 bool slices_is_template(const pass *part) {
-    return pass_is(part, "slices_templates");
+    return part->type == &slices_templates_type;
 }
 
 void slices_add_part(slices_flow *f, pass *part) {
@@ -33,19 +33,20 @@ void slices_add_part(slices_flow *f, pass *part) {
 }
 
 static void note_used(slices_flow *f, const pass *part) {
-    for (int i = 0; i < PASS_SLICES_NAMES; i++) {
-        size_t index;
-        if (pass_find_key(part, pass_slices_names[i], &index) == PASS_FIELD && part->fields[index])
-            f->used[i] = true;
+    static const int names[][2] = {{PASS_FLUID_DENSITY, N_density},
+                                   {PASS_FLUID_TEMPERATURE, N_temperature},
+                                   {PASS_FLUID_DYE, N_dye},
+                                   {PASS_FLUID_VELOCITY, N_velocity}};
+    for (size_t i = 0; i < COUNT_OF(names); i++) {
+        const int own = part->names[names[i][1]].field; // a force has none of them
+        if (own >= 0 && part->fields[own]) f->used[names[i][0]] = true;
     }
 }
 
 bool pass_slices_add(pass *p, pass *part, const struct picture *painted) {
     slices_flow *f = slices_of(p);
-    size_t shape;
     bool obstacle = slices_is_obstacle(part), first = true;
-    if (obstacle && !painted && pass_find_key(part, "shape", &shape) == PASS_FIELD &&
-        !part->fields[shape])
+    if (obstacle && !painted && !pass_given_field(part, N_shape))
         return err_set("%s: nothing stands there; give it shape = disc { ... }, or image = "
                        "image \"obstacle.png\"",
                        part->label);
@@ -107,22 +108,17 @@ void slices_forget_part(pass *part) {
     if (!slices_is_template(part)) s->known = false;
 }
 
-static bool is_numbers(const pass *p, const kernel *k) {
-    const field_texture *textures;
-    for (size_t i = 0; i < k->slot_count; i++)
-        if (strcmp(k->slots[i]->name, "Frame") == 0) return false;
-    return field_program_textures(p->program, &textures) == 0;
-}
-
 // Evaluates the numbers of the step; `*same`: they are those of the last.
 static bool prepare(pass *p, bool *same) {
     part_state *s = p->state;
-    kernel *k = pass_prepare(p) ? pass_use(p, 0) : NULL;
-    if (!k) return false;
+    const kernel *k = pass_get_kernel(p, 0);
+    const field_texture *textures;
+    if (!pass_prepare(p)) return false;
     const size_t block = k->block_sizes[0], numbers = field_program_block_size(p->program);
     if (!s->last) {
         s->last = arena_alloc(p->host->memory, block + numbers + 16);
-        s->is_numbers = is_numbers(p, k);
+        s->is_numbers =
+            !pass_reads_frame(p, 0) && field_program_textures(p->program, &textures) == 0;
     }
     *same = s->known && s->is_numbers && memcmp(s->last, k->blocks[0], block) == 0 &&
             memcmp(s->last + block, p->numbers, numbers) == 0;

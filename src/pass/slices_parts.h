@@ -39,9 +39,11 @@ enum { SLICES_SHOW, SLICES_DRAW, SLICES_KERNELS }; // of the pass; those of step
         NAME(velocity_before), NAME(now), NAME(duration), NAME(is_first), NAME(variety),           \
         NAME(Picture), NAME(kind), NAME(region), NAME(key), NAME(first), NAME(count),              \
         NAME(parity), NAME(tile), NAME(time_step), NAME(box_min), NAME(box_max), NAME(alone),      \
-        NAME(hand), NAME(hand_count), NAME(Templates), NAME(TemplateMasks), NAME(TemplateImages)
+        NAME(hand), NAME(hand_count), NAME(Templates), NAME(TemplateMasks), NAME(TemplateImages),  \
+        NAME(shape), NAME(density), NAME(temperature), NAME(dye)
 enum { SLICES_NAMES(KERNEL_NAME_ID), SLICES_NAME_COUNT };
 extern const char *const slices_names[SLICES_NAME_COUNT];
+extern const pass_type slices_obstacle_type, slices_templates_type;
 
 enum { SLICES_STEP, SLICES_SOURCES, SLICES_TEMPLATES, SLICES_FIELDS, SLICES_LABELS };
 
@@ -53,7 +55,7 @@ struct slices_flow {
     pass_slices_desc desc;
     double width, cell; // of a slice, of a cell; metres
     pass_steps clock;
-    bool used[PASS_SLICES_NAMES]; // by a field or a part
+    bool used[PASS_FLUID_NAMES]; // by a field or a part
 
     pass **parts; // inflow, obstacles, forces, templates, in the order of their declaration
     size_t part_count, part_capacity;

@@ -98,8 +98,7 @@ kernel *slices_templates_use(const slices_flow *f, pass *p, size_t index) {
 // Whether others have written what the flow is given in this step.
 static bool has_sources(const slices_flow *f) {
     for (size_t i = 0; i < f->part_count; i++)
-        if (pass_is(f->parts[i], "slices_inflow") || pass_is(f->parts[i], "slices_force"))
-            return true;
+        if (!slices_is_template(f->parts[i]) && !slices_is_obstacle(f->parts[i])) return true;
     return false;
 }
 

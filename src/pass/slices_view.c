@@ -16,7 +16,7 @@ const char *pass_slices_variable(const pass *p) {
 
 gpu_image *pass_slices_look(const pass *p, int index, int *channel) {
     const slices_flow *f = slices_of(p);
-    bool velocity = index == PASS_SLICES_VELOCITY;
+    bool velocity = index == PASS_FLUID_VELOCITY;
     *channel = velocity ? 0 : index;
     gpu_image *image = f->fresh || !f->solver
                            ? NULL
@@ -30,7 +30,7 @@ bool pass_slices_greatest(const pass *p, int index, uint32_t slice, float *out) 
     int channel;
     gpu_image *image = pass_slices_look(p, index, &channel);
     if (!image) return false;
-    bool velocity = index == PASS_SLICES_VELOCITY;
+    bool velocity = index == PASS_FLUID_VELOCITY;
     size_t cells = (size_t)f->desc.size[0] * f->desc.size[1], channels = velocity ? 2 : 4;
     size_t size = cells * f->desc.count * channels * sizeof(uint16_t);
     uint16_t *halves = mem_alloc(size);

@@ -202,7 +202,7 @@ static int l_collider(lua_State *L) {
 static void refuse_name(lua_State *L, const char *name) {
     static const char *const own[] = {"source", "collider", "box", "time_step"};
     const char *near = str_nearest(name, own, COUNT_OF(own));
-    if (near && !str_nearest(name, pass_lbm_names, PASS_LBM_NAMES))
+    if (near && !str_nearest(name, pass_fluid_names, PASS_FLUID_NAMES))
         vm_error(L, "lbm: no method or field '%s'; did you mean '%s'?", name, near);
     script_raise(L);
 }
