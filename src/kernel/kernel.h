@@ -88,8 +88,9 @@ void kernel_bind_image(kernel *k, int name, gpu_image *image); // mip 0, GPU_LIN
 // False with a message when a slot has nothing bound.
 bool kernel_is_bound(const kernel *k);
 bool kernel_run(kernel *k, gpu *g, uint32_t x, uint32_t y, uint32_t z); // threads
-// A thread for each of `count`, of groups in a row, in rows of groups, since a device takes 65535
-// along each side: group gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x is the shader's.
+// A thread for each of `count`; 0: does nothing. Groups stand in rows, since a device takes 65535
+// along a side: the shader's is gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, and some
+// threads of the last ones are beyond `count`.
 bool kernel_run_each(kernel *k, gpu *g, uint64_t count);
 // A draw, still without numbers, of what is bound now, which is copied to `kept`.
 gpu_draw kernel_draw(const kernel *k, gpu_binding kept[GPU_MAX_SLOTS]);

@@ -55,7 +55,7 @@ graph_image bloom_add_image(pass *p, const char *name, uint32_t mips) {
                            });
 }
 
-static bool declare(pass *p) {
+static bool bloom_declare(pass *p) {
     bloom_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     graph_image *source = pass_image(p, N_source), *color = pass_image(p, N_color);
     s->gaussian = pass_option_is(p, N_mode, "gaussian");
@@ -67,7 +67,7 @@ static bool declare(pass *p) {
     return pass_add_to_graph_with(p, &s->across, s->gaussian ? 1 : 0);
 }
 
-static bool defines(pass *p, size_t index, pass_defines *out) {
+static bool bloom_defines(pass *p, size_t index, pass_defines *out) {
     const bloom_state *s = p->state;
     if ((index >= BLOOM_BLUR_FIRST) != s->gaussian) return false;
     pass_define_flag(out, "FROM_BRIGHT", s->bright);
@@ -85,7 +85,7 @@ static uint32_t mip_size(uint32_t size, uint32_t mip) {
 }
 
 // Numbers of the pass `bright` whose work is done here, if any is.
-static bool update(pass *p) {
+static bool bloom_update(pass *p) {
     const bloom_state *s = p->state;
     for (size_t i = 0; s->bright && i < COUNT_OF(taken); i++) {
         float value[4];
@@ -138,7 +138,7 @@ static levels find_levels(pass *p) {
     return l;
 }
 
-static bool record(pass *p) {
+static bool bloom_record(pass *p) {
     const bloom_state *s = p->state;
     if (!pass_prepare(p)) return false;
     if (s->gaussian) return bloom_record_gaussian(p);
@@ -157,8 +157,8 @@ const pass_type bloom_type = {
     .kernels = kernels,
     .kernel_count = BLOOM_STAGES,
     .names = {names, COUNT_OF(names)},
-    .declare = declare,
-    .defines = defines,
-    .update = update,
-    .record = record,
+    .declare = bloom_declare,
+    .defines = bloom_defines,
+    .update = bloom_update,
+    .record = bloom_record,
 };

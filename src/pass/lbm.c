@@ -46,7 +46,7 @@ static box3 box_of(const pass_lbm_desc *d) {
                   {d->position.x + w[0] / 2, d->position.y + w[1] / 2, d->position.z + w[2]}};
 }
 
-static bool check(const pass *p, const pass_lbm_desc *d) {
+static bool lbm_air_check_desc(const pass *p, const pass_lbm_desc *d) {
     if (!(d->voxel_size >= 1e-6 && d->voxel_size <= 1e6))
         return err_set("%s: 'voxel_size' is %g m; accepted: 1e-6 to 1e6", p->label, d->voxel_size);
     const float at[3] = {d->position.x, d->position.y, d->position.z};
@@ -65,7 +65,7 @@ static bool check(const pass *p, const pass_lbm_desc *d) {
 }
 
 field_grid *pass_lbm_open(pass *p, const pass_lbm_desc *desc) {
-    if (!check(p, desc)) return NULL;
+    if (!lbm_air_check_desc(p, desc)) return NULL;
     lbm_air *a = p->state = arena_alloc(p->host->memory, sizeof *a);
     *a = (lbm_air){
         .grid = {.name = p->label,
@@ -115,7 +115,7 @@ static bool add_image(pass *p, lbm_air *a, int output, int index) {
     return true;
 }
 
-static bool declare(pass *p) {
+static bool lbm_air_declare(pass *p) {
     lbm_air *a = lbm_air_of(p);
     return add_image(p, a, N_scalars, 0) && add_image(p, a, N_velocity, PASS_FLUID_VELOCITY / 4);
 }
@@ -166,7 +166,7 @@ static lbm_desc structure_of(const pass *p, const lbm_air *a) {
     return d;
 }
 
-static bool complete(pass *p) {
+static bool lbm_air_complete(pass *p) {
     lbm_air *a = lbm_air_of(p);
     lbm_desc structure = structure_of(p, a);
     a->stops = pass_option(p, N_guard) == 1;
@@ -186,7 +186,7 @@ static bool complete(pass *p) {
                                         });
 }
 
-static bool defines(pass *p, size_t index, pass_defines *out) {
+static bool lbm_air_defines(pass *p, size_t index, pass_defines *out) {
     (void)out;
     return index != LBM_FORCE || lbm_air_force_varies(p);
 }
@@ -200,9 +200,9 @@ const pass_type lbm_type = {
     .names = {lbm_names, LBM_NAME_COUNT},
     .unscaled = true,
     .simulation = &lbm_simulation,
-    .declare = declare,
-    .complete = complete,
-    .defines = defines,
+    .declare = lbm_air_declare,
+    .complete = lbm_air_complete,
+    .defines = lbm_air_defines,
     .check = lbm_air_check,
     .build = lbm_air_build,
     .allocate = lbm_air_allocate,

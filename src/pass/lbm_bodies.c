@@ -21,23 +21,23 @@ void pass_lbm_add_collider(pass *p, scene_mesh *mesh, voxels_rule rule) {
     lbm_air_add_body(&lbm_air_of(p)->solids, mesh, rule);
 }
 
-static bool make(lbm_air *a, lbm_meshes *m) {
+static bool bodies_make(lbm_air *a, lbm_meshes *m) {
     voxels_desc desc = {.box = a->grid.box, .bodies = m->bodies, .body_count = m->count};
     memcpy(desc.size, a->desc.size, sizeof desc.size);
     if (m->count) m->cells = voxels_create(a->pass->host->memory, &desc);
     return !m->count || m->cells;
 }
 
-static bool compile(lbm_air *a, lbm_meshes *m) {
+static bool bodies_compile(lbm_air *a, lbm_meshes *m) {
     const pass_host *host = a->pass->host;
     return !m->cells || voxels_compile(m->cells, host->library, host->reader);
 }
 
-static bool build(lbm_air *a, lbm_meshes *m) {
-    return compile(a, m) && (!m->cells || voxels_build(m->cells, a->pass->host->device));
+static bool bodies_build(lbm_air *a, lbm_meshes *m) {
+    return bodies_compile(a, m) && (!m->cells || voxels_build(m->cells, a->pass->host->device));
 }
 
-static bool allocate(lbm_air *a, lbm_meshes *m) {
+static bool bodies_allocate(lbm_air *a, lbm_meshes *m) {
     return !m->cells || voxels_allocate(m->cells, a->pass->host->device);
 }
 
@@ -81,7 +81,7 @@ static bool move(lbm_air *a, lbm_meshes *m, voxels_change *change) {
     return done;
 }
 
-static void destroy(lbm_air *a, lbm_meshes *m) {
+static void bodies_destroy(lbm_air *a, lbm_meshes *m) {
     if (m->cells) voxels_destroy(m->cells, a->pass->host->device);
     mem_free(m->bodies);
 }
@@ -94,19 +94,19 @@ static bool for_each(lbm_air *a, bool (*work)(lbm_air *a, lbm_meshes *m)) {
 
 bool lbm_air_make_bodies(lbm_air *a) {
     a->moving = arena_alloc(a->pass->host->memory, a->solids.count * sizeof *a->moving);
-    return for_each(a, make);
+    return for_each(a, bodies_make);
 }
 
 bool lbm_air_check_bodies(lbm_air *a) {
-    return for_each(a, compile);
+    return for_each(a, bodies_compile);
 }
 
 bool lbm_air_build_bodies(lbm_air *a) {
-    return for_each(a, build);
+    return for_each(a, bodies_build);
 }
 
 bool lbm_air_allocate_bodies(lbm_air *a) {
-    return for_each(a, allocate);
+    return for_each(a, bodies_allocate);
 }
 
 static float3 in_steps(const lbm_air *a, float3 v) { // from m/s to cells a step
@@ -143,7 +143,7 @@ bool lbm_air_move_bodies(lbm_air *a, const lbm_numbers *numbers) {
 }
 
 void lbm_air_destroy_bodies(lbm_air *a) {
-    for (size_t i = 0; i < a->giver_count; i++) destroy(a, &a->givers[i]);
+    for (size_t i = 0; i < a->giver_count; i++) bodies_destroy(a, &a->givers[i]);
     mem_free(a->givers);
-    destroy(a, &a->solids);
+    bodies_destroy(a, &a->solids);
 }

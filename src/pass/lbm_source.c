@@ -34,7 +34,7 @@ static bool gives(const pass *p) {
     return pass_gives(p, N_velocity_factor);
 }
 
-static bool declare(pass *p) {
+static bool lbm_source_declare(pass *p) {
     if (!pass_given_field(p, N_shape) && !p->mesh_count)
         return err_set("%s: it has no place; give it a mesh, or shape = sphere { ... }", p->label);
     return gives(p) || err_set("%s: it gives the air nothing; say its density, temperature, dye, "
@@ -76,7 +76,7 @@ bool pass_lbm_add_source(pass *p, pass *source) {
 
 // ---- building ---------------------------------------------------------------------------------
 
-static bool defines(pass *p, size_t index, pass_defines *out) {
+static bool lbm_source_defines(pass *p, size_t index, pass_defines *out) {
     const source_state *s = p->state;
     if (index == EVALUATE) return true;
     out->count += lbm_defines(s->air->solver, out->items + out->count);
@@ -84,7 +84,7 @@ static bool defines(pass *p, size_t index, pass_defines *out) {
     return true;
 }
 
-static void destroy(pass *p) {
+static void lbm_source_destroy(pass *p) {
     source_state *s = p->state;
     if (s) gpu_buffer_destroy(p->host->device, s->values);
 }
@@ -107,7 +107,7 @@ bool lbm_source_is_away(const pass *source) {
 
 // ---- values -----------------------------------------------------------------------------------
 
-static bool update(pass *p) {
+static bool lbm_source_update(pass *p) {
     const source_state *s = p->state;
     pass_set_box(p, s->air->grid.box);
     pass_set_float(p, N_cell_size, (float)s->air->units.cell);
@@ -174,7 +174,7 @@ static bool begin_turn(pass *p, source_state *s) {
 
 // ---- a step -----------------------------------------------------------------------------------
 
-static bool give(pass *p, source_state *s) {
+static bool lbm_source_give(pass *p, source_state *s) {
     const lbm_air *a = s->air;
     const uint32_t depth = lbm_depth(a->solver);
     voxels *meshes = s->giver ? a->givers[s->giver - 1].cells : NULL;
@@ -182,7 +182,7 @@ static bool give(pass *p, source_state *s) {
     kernel *k = pass_use(p, GIVE);
     if (!k || !pass_evaluate_values(p)) return false;
     const double rate = (double)pass_value(p, N_rate);
-    update(p);
+    lbm_source_update(p);
     kernel_set_float(k, N_step_speed, (float)sim_velocity(&a->units, 1));
     kernel_set_float(k, N_clamp_speed, lbm_air_clamp_speed(a));
     kernel_set_float(k, N_velocity_factor, pass_value(p, N_velocity_factor));
@@ -202,7 +202,7 @@ static bool give(pass *p, source_state *s) {
 
 bool lbm_air_run_source(pass *p) {
     source_state *s = p->state;
-    if (begin_turn(p, s) && (s->cells.count[0] <= 0 || give(p, s))) return true;
+    if (begin_turn(p, s) && (s->cells.count[0] <= 0 || lbm_source_give(p, s))) return true;
     return err_prefix("%s: ", p->label);
 }
 
@@ -216,8 +216,8 @@ const pass_type lbm_source_type = {
     .solver = &lbm_kernel_table,
     .unscaled = true,
     .meshes = PASS_USES_MESHES,
-    .declare = declare,
-    .defines = defines,
-    .update = update,
-    .destroy = destroy,
+    .declare = lbm_source_declare,
+    .defines = lbm_source_defines,
+    .update = lbm_source_update,
+    .destroy = lbm_source_destroy,
 };

@@ -208,7 +208,7 @@ static uint32_t choose_rays_apart(const gpu *device) {
     return device && gpu_get_info(device)->kind == GPU_CPU ? 1 : 32;
 }
 
-static bool declare(pass *p) {
+static bool lighting_declare(pass *p) {
     const scene *around = p->host->scene;
     lighting_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     s->declared = around ? (uint32_t)around->light_count + 1 : 1;
@@ -222,7 +222,7 @@ static bool declare(pass *p) {
 
 // ---- building ---------------------------------------------------------------------------------
 
-static bool defines(pass *p, size_t index, pass_defines *out) {
+static bool lighting_defines(pass *p, size_t index, pass_defines *out) {
     const lighting_state *s = p->state;
     if (s->fire_count == 0 && (index == STAGE_FIRE || index == STAGE_GATHER)) return false;
     pass_define_number(p, out, "SHADOW_SIZE", s->shadow_size);
@@ -235,7 +235,7 @@ static bool defines(pass *p, size_t index, pass_defines *out) {
     return true;
 }
 
-static void destroy(pass *p) {
+static void lighting_destroy(pass *p) {
     lighting_state *s = p->state;
     for (int i = 0; s && i < LEVELS * BUFFERS; i++)
         gpu_buffer_destroy(p->host->device, s->buffers[i / BUFFERS][i % BUFFERS]);
@@ -243,7 +243,7 @@ static void destroy(pass *p) {
 
 // ---- in a frame -------------------------------------------------------------------------------
 
-static bool update(pass *p) {
+static bool lighting_update(pass *p) {
     const lighting_state *s = p->state;
     if (p->host->lights->count.v[0] != s->declared)
         return err_set("%s: made for %u lights (the sun is one), but the effect has %u; set "
@@ -389,8 +389,8 @@ const pass_type lighting_type = {
     .kernels = kernels,
     .kernel_count = STAGES,
     .names = {names, COUNT_OF(names)},
-    .declare = declare,
-    .defines = defines,
-    .update = update,
-    .destroy = destroy,
+    .declare = lighting_declare,
+    .defines = lighting_defines,
+    .update = lighting_update,
+    .destroy = lighting_destroy,
 };

@@ -34,7 +34,7 @@ static bool record_bricks(pass *p) {
     return pass_prepare(p) && bricks_record(p, &s->bricks);
 }
 
-static bool declare(pass *p) {
+static bool march_declare(pass *p) {
     march_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     gpu *device = p->host->device;
     s->software = !device || gpu_get_info(device)->kind == GPU_CPU;
@@ -60,7 +60,7 @@ static void choose_code(const pass *p) {
         s->teams || (!s->noise && ((!s->software && p->scale < 1) || pass_gives(p, N_threads)));
 }
 
-static bool defines(pass *p, size_t index, pass_defines *out) {
+static bool march_defines(pass *p, size_t index, pass_defines *out) {
     const march_state *s = p->state;
     if (index == MARCH_HOLD || index == MARCH_FREE) {
         if (index == MARCH_HOLD) pass_define(out, "WITH_RANGES", "1");
@@ -95,7 +95,7 @@ static int32_t team_size(pass *p, float rays) {
     return team;
 }
 
-static bool update(pass *p) {
+static bool march_update(pass *p) {
     march_state *s = p->state;
     uint32_t size[3];
     if (!march_box(p, &s->box)) return false;
@@ -117,7 +117,7 @@ static bool follow_code(pass *p) {
     if (s->adaptive == before.adaptive && s->teams == before.teams) return true;
     if (!pass_make_kernel(p, MARCH_RAYS, true)) return false;
     pass_copy_values(p);
-    return update(p);
+    return march_update(p);
 }
 
 // A group is a square of pixels, or half of one, of 256 threads.
@@ -142,7 +142,7 @@ static bool record_part(pass *p, march_part part) {
     return kernel_run(k, p->host->device, threads[0], threads[1], 1);
 }
 
-static bool record(pass *p) {
+static bool march_record(pass *p) {
     march_state *s = p->state;
     uint32_t size[3];
     if (!s->skips && !pass_prepare(p)) return false;
@@ -159,8 +159,8 @@ const pass_type march_type = {
     .kernels = kernels,
     .kernel_count = MARCH_KERNELS,
     .names = {names, COUNT_OF(names)},
-    .declare = declare,
-    .defines = defines,
-    .update = update,
-    .record = record,
+    .declare = march_declare,
+    .defines = march_defines,
+    .update = march_update,
+    .record = march_record,
 };

@@ -102,6 +102,7 @@ typedef struct pass_type {
     const char *name;   // "march"
     const char *shader; // "pass/march.comp"
     // Its work: the first kernel is the one that user shaders have. NULL: it has hooks of its own.
+    // A count of 0: the device runs nothing.
     const pass_kernel *kernels;
     size_t kernel_count;
     kernel_names names; // that its hooks use: of uniforms, options, fields, images and slots

@@ -8,7 +8,7 @@
 
 enum { N_color };
 static const char *const names[] = {"color"};
-static const pass_kernel kernels[1]; // of which it has none
+static const pass_kernel kernels[1]; // it runs none
 
 void pass_picture_open(pass *p, const struct picture *from) {
     p->state = (void *)(uintptr_t)from; // is only read

@@ -31,11 +31,13 @@ void pass_shell_open(pass *p, const scene_explosions *list) {
 static bool shell_declare(pass *p) {
     shell_state *s = shell_state_of(p);
     s->drawn = pass_option_is(p, N_mode, "mesh");
+    s->both_sides = pass_option_is(p, N_sides, "both");
+    s->corners = pass_option_number(p, N_corners);
     return s->drawn ? shell_declare_mesh(p) : pass_declare_images(p) && pass_add_to_graph(p);
 }
 
 static bool shell_defines(pass *p, size_t index, pass_defines *out) {
-    pass_define_number(p, out, "SHELL_CORNERS", pass_option_number(p, N_corners));
+    pass_define_number(p, out, "SHELL_CORNERS", shell_state_of(p)->corners);
     return index == SHELL_GATHER || (index >= SHELL_VERTICES) == shell_state_of(p)->drawn;
 }
 

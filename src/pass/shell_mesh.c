@@ -7,16 +7,12 @@
 
 enum { FACES = 6, SIDES = 2, CORNERS_OF_SQUARE = 6 }; // a square is two triangles
 
-static uint32_t corners(const pass *p) {
-    return pass_option_number(p, N_corners);
+static uint32_t vertex_count(const shell_state *s) { // that are pushed out
+    return FACES * s->corners * s->corners;
 }
 
-static uint32_t vertex_count(const pass *p) { // that are pushed out
-    return FACES * corners(p) * corners(p);
-}
-
-static uint32_t drawn_count(const pass *p) {
-    return FACES * CORNERS_OF_SQUARE * (corners(p) - 1) * (corners(p) - 1);
+static uint32_t drawn_count(const shell_state *s) {
+    return FACES * CORNERS_OF_SQUARE * (s->corners - 1) * (s->corners - 1);
 }
 
 // ---- declaring and building -------------------------------------------------------------------
@@ -46,7 +42,7 @@ void shell_target(const pass *p, size_t index, gpu_graphics_desc *out) {
 static bool make_vertices(pass *p) {
     shell_state *s = shell_state_of(p);
     gpu *device = p->host->device;
-    uint64_t size = (uint64_t)s->count * vertex_count(p) * SHELL_VERTEX;
+    uint64_t size = (uint64_t)s->count * vertex_count(s) * SHELL_VERTEX;
     if (s->vertices && gpu_buffer_size(s->vertices) >= size) return true;
     gpu_buffer_destroy(device, s->vertices);
     s->vertices =
@@ -75,7 +71,7 @@ static bool draw_side(pass *p, kernel *k, gpu_draw_desc *target, uint32_t shell,
     kernel_set_int(k, N_shell_at, (int32_t)shell);
     kernel_set_int(k, N_far_side, far_side);
     gpu_draw draw = kernel_draw(k, kept);
-    draw.vertices = drawn_count(p);
+    draw.vertices = drawn_count(shell_state_of(p));
     target->draws = &draw;
     target->draw_count = 1;
     return gpu_draw_all(p->host->device, target);
@@ -84,7 +80,7 @@ static bool draw_side(pass *p, kernel *k, gpu_draw_desc *target, uint32_t shell,
 static bool draw_shells(pass *p, gpu_draw_desc *target) {
     const shell_state *s = shell_state_of(p);
     uint32_t order[PASS_SHELL_MOST];
-    const int32_t first = pass_option_is(p, N_sides, "front") ? 0 : 1;
+    const int32_t first = s->both_sides ? 1 : 0;
     kernel *k = shell_use(p, SHELL_DRAW);
     if (!k) return false;
     sort(p, order);
@@ -111,7 +107,7 @@ bool shell_record_mesh(pass *p) {
     if (!gpu_draw_all(p->host->device, &target)) return false;
     target.clear = false;
     if (s->count > 0 &&
-        !(make_vertices(p) && shell_run(p, SHELL_VERTICES, vertex_count(p), s->count) &&
+        !(make_vertices(p) && shell_run(p, SHELL_VERTICES, vertex_count(s), s->count) &&
           draw_shells(p, &target)))
         return false;
     graph_get_size(g, *pass_image(p, N_image), size);

@@ -24,7 +24,9 @@ enum { SHELL_NAMES(KERNEL_NAME_ID) };
 
 typedef struct shell_state {
     const scene_explosions *list;     // NULL: one from time 0 on
-    bool drawn;                       // as meshes
+    bool drawn;                       // as meshes,
+    bool both_sides;                  // of them
+    uint32_t corners;                 // along a side of the cube that a mesh is made of
     uint32_t count;                   // of the frame being recorded,
     float places[PASS_SHELL_MOST][3]; // and where they are
     gpu_buffer *records, *vertices;

@@ -43,7 +43,7 @@ static int find_field(field_grid *grid, const char *name, int *components) {
     return pass_slices_use(((slices_flow *)grid)->pass, name, components);
 }
 
-static bool check(const pass *p, const pass_slices_desc *d) {
+static bool slices_check_desc(const pass *p, const pass_slices_desc *d) {
     float length = d->axis.x * d->axis.x + d->axis.y * d->axis.y + d->axis.z * d->axis.z;
     if (!(d->height >= 1e-6 && d->height <= 1e6))
         return err_set("%s: 'height' is %g m; accepted: 1e-6 to 1e6", p->label, d->height);
@@ -73,7 +73,7 @@ static field_grid grid_of(const slices_flow *f, const field_extrusion *extrusion
 }
 
 field_grid *pass_slices_open(pass *p, const pass_slices_desc *desc) {
-    if (!check(p, desc)) return NULL;
+    if (!slices_check_desc(p, desc)) return NULL;
     slices_flow *f = p->state = arena_alloc(p->host->memory, sizeof *f);
     double cell = desc->height / desc->size[1];
     *f = (slices_flow){
@@ -136,7 +136,7 @@ static bool check_viscosity(const pass *p) {
            err_set("%s: 'reynolds' and 'viscosity' say the same; give one of them", p->label);
 }
 
-static bool declare(pass *p) {
+static bool slices_declare(pass *p) {
     slices_flow *f = slices_of(p);
     return check_viscosity(p) && add_image(p, f, N_scalars, 0) &&
            add_image(p, f, N_velocity, PASS_FLUID_VELOCITY / 4);
@@ -163,7 +163,7 @@ static flow_desc structure_of(const pass *p, const slices_flow *f) {
     return d;
 }
 
-static bool complete(pass *p) {
+static bool slices_complete(pass *p) {
     slices_flow *f = slices_of(p);
     if (p->host->hands) slices_take_hand(p);
     if (f->templates && f->templates->complete && !f->templates->complete(f)) return false;
@@ -184,7 +184,7 @@ static bool complete(pass *p) {
 }
 
 // Templates are drawn into the flow, if there are any.
-static bool defines(pass *p, size_t index, pass_defines *out) {
+static bool slices_defines(pass *p, size_t index, pass_defines *out) {
     const slices_flow *f = slices_of(p);
     if (index != SLICES_DRAW) return true;
     if (f->templates) slices_templates_define_draw(f, out);
@@ -201,9 +201,9 @@ const pass_type slices_type = {
     .solver = &flow_kernel_table,
     .unscaled = true,
     .simulation = &slices_simulation,
-    .declare = declare,
-    .complete = complete,
-    .defines = defines,
+    .declare = slices_declare,
+    .complete = slices_complete,
+    .defines = slices_defines,
     .check = slices_check,
     .build = slices_build,
     .allocate = slices_allocate,

@@ -62,7 +62,7 @@ bool pass_slices_add(pass *p, pass *part, const struct picture *painted) {
 
 // ---- building ---------------------------------------------------------------------------------
 
-static bool defines(pass *p, size_t index, pass_defines *out) {
+static bool part_defines(pass *p, size_t index, pass_defines *out) {
     const part_state *s = p->state;
     (void)index;
     out->count += flow_defines(s->flow->solver, out->items + out->count);
@@ -70,19 +70,19 @@ static bool defines(pass *p, size_t index, pass_defines *out) {
     return true;
 }
 
-static bool declare(pass *p) {
+static bool part_declare(pass *p) {
     (void)p;
     return true;
 }
 
-static bool allocate(pass *p) {
+static bool part_allocate(pass *p) {
     part_state *s = p->state;
     if (!s || !s->painted || s->image) return true;
     s->image = slices_paint(p->host->device, s->painted, s->flow->desc.size);
     return s->image || err_prefix("%s: ", p->label);
 }
 
-static void destroy(pass *p) {
+static void part_destroy(pass *p) {
     part_state *s = p->state;
     if (s && s->image) gpu_image_destroy(p->host->device, s->image);
 }
@@ -90,7 +90,7 @@ static void destroy(pass *p) {
 // ---- a step -----------------------------------------------------------------------------------
 
 // Time is written where something varies with it only, so that what stands still is seen to.
-static bool update(pass *p) {
+static bool part_update(pass *p) {
     const part_state *s = p->state;
     const slices_flow *f = s->flow;
     float variation[4];
@@ -109,7 +109,7 @@ void slices_forget_part(pass *part) {
 }
 
 // Evaluates the numbers of the step; `*same`: they are those of the last.
-static bool prepare(pass *p, bool *same) {
+static bool part_prepare(pass *p, bool *same) {
     part_state *s = p->state;
     const kernel *k = pass_get_kernel(p, 0);
     const field_texture *textures;
@@ -128,7 +128,7 @@ static bool prepare(pass *p, bool *same) {
     return true;
 }
 
-static bool run(pass *p) {
+static bool part_run(pass *p) {
     const part_state *s = p->state;
     const slices_flow *f = s->flow;
     kernel *k = pass_use(p, 0);
@@ -147,12 +147,12 @@ bool slices_run_parts(slices_flow *f, bool obstacles) {
     bool same = obstacles || !f->templates || !slices_has_pushing(f->pass);
     for (size_t i = 0; i < f->part_count; i++) {
         bool one = true;
-        if (is_wanted(f->parts[i], obstacles) && !prepare(f->parts[i], &one))
+        if (is_wanted(f->parts[i], obstacles) && !part_prepare(f->parts[i], &one))
             return err_prefix("%s: ", f->parts[i]->label);
         same = same && one;
     }
     for (size_t i = 0; i < f->part_count && !same; i++)
-        if (is_wanted(f->parts[i], obstacles) && !run(f->parts[i]))
+        if (is_wanted(f->parts[i], obstacles) && !part_run(f->parts[i]))
             return err_prefix("%s: ", f->parts[i]->label);
     return true;
 }
@@ -163,8 +163,8 @@ static const pass_kernel kernels[1];
     {                                                                                              \
         .name = NAME, .shader = "pass/" NAME ".comp", .kernels = kernels, .kernel_count = 1,       \
         .names = {slices_names, SLICES_NAME_COUNT}, .solver = &flow_kernel_table,                  \
-        .unscaled = true, .constructed = true, .declare = declare, .defines = defines,             \
-        .allocate = allocate, .update = update, .destroy = destroy                                 \
+        .unscaled = true, .constructed = true, .declare = part_declare, .defines = part_defines,   \
+        .allocate = part_allocate, .update = part_update, .destroy = part_destroy                  \
     }
 
 const pass_type slices_inflow_type = PART("slices_inflow");

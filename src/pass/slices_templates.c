@@ -132,15 +132,15 @@ static bool each_group(const slices_templates *t, bool (*call)(pass *group)) {
     return true;
 }
 
-static bool check(slices_flow *f) {
+static bool templates_check(slices_flow *f) {
     return each_group(slices_templates_of(f), pass_check_part);
 }
 
-static bool build(slices_flow *f) {
+static bool templates_build(slices_flow *f) {
     return each_group(slices_templates_of(f), pass_build_part);
 }
 
-static bool allocate(slices_flow *f) {
+static bool templates_allocate(slices_flow *f) {
     slices_templates *t = slices_templates_of(f);
     gpu *device = f->pass->host->device;
     uint32_t count = t->total ? t->total : 1; // there are none but by hand
@@ -157,7 +157,7 @@ static bool allocate(slices_flow *f) {
     return t->instances != NULL;
 }
 
-static void destroy(slices_flow *f) {
+static void templates_destroy(slices_flow *f) {
     slices_templates *t = slices_templates_of(f);
     slices_templates_destroy_draw(f);
     gpu_buffer_destroy(f->pass->host->device, t->instances);
@@ -174,7 +174,7 @@ static bool run_group(const template_group *g) {
            err_prefix("%s: ", p->label);
 }
 
-static bool run(slices_flow *f) {
+static bool templates_run(slices_flow *f) {
     slices_templates *t = slices_templates_of(f);
     if (t->fresh) gpu_buffer_fill(f->pass->host->device, t->instances, 0);
     if (t->unmarked) gpu_buffer_fill(f->pass->host->device, t->masks, 0);
@@ -185,15 +185,15 @@ static bool run(slices_flow *f) {
     return slices_templates_draw(f);
 }
 
-static void restart(slices_flow *f) {
+static void templates_restart(slices_flow *f) {
     slices_templates_of(f)->fresh = true;
 }
 
-static void loaded(slices_flow *f) {
+static void templates_loaded(slices_flow *f) {
     slices_templates_of(f)->fresh = false;
 }
 
-static void exchange(slices_flow *f, slices_flow *other) {
+static void templates_exchange(slices_flow *f, slices_flow *other) {
     slices_templates *a = slices_templates_of(f), *b = slices_templates_of(other), own = *a;
     bool same = a->total == b->total && a->group_count == b->group_count;
     for (uint32_t i = 0; i < a->group_count && same; i++)
@@ -203,20 +203,20 @@ static void exchange(slices_flow *f, slices_flow *other) {
     b->instances = own.instances, b->fresh = own.fresh;
 }
 
-static bool rehearse(slices_flow *f) {
+static bool templates_rehearse(slices_flow *f) {
     return each_group(slices_templates_of(f), pass_rehearse);
 }
 
 static const slices_extra hooks = {
-    .check = check,
-    .build = build,
-    .allocate = allocate,
-    .rehearse = rehearse,
-    .restart = restart,
-    .loaded = loaded,
-    .exchange = exchange,
-    .run = run,
-    .destroy = destroy,
+    .check = templates_check,
+    .build = templates_build,
+    .allocate = templates_allocate,
+    .rehearse = templates_rehearse,
+    .restart = templates_restart,
+    .loaded = templates_loaded,
+    .exchange = templates_exchange,
+    .run = templates_run,
+    .destroy = templates_destroy,
 };
 
 static const pass_kernel kernel_of_group = {0};

@@ -29,18 +29,18 @@ static void drop_light(pass *p) {
     for (size_t i = 0; i < COUNT_OF(images); i++) *pass_image(p, images[i]) = (graph_image){0};
 }
 
-static bool is_sorted(const splats_state *s) {
-    return s->blend == SPLATS_SORTED_BLEND;
+static bool is_sorted(const pass *p) {
+    return splats_of(p)->blend == SPLATS_SORTED_BLEND;
 }
 
 static bool splats_declare(pass *p) {
     splats_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    s->particles = p->particles;
     s->blend = (splats_blend)pass_option(p, N_blend);
-    if (is_sorted(s) && pass_particles_count(s->particles) > SPLATS_MOST_SORTED)
+    s->places = pass_option_number(p, N_entries);
+    if (is_sorted(p) && pass_particles_count(p->particles) > SPLATS_MOST_SORTED)
         return err_set("%s: %u particles are too many to be sorted; blend = \"weighted\" takes "
                        "them, or 'count' of particles at most %d",
-                       p->label, pass_particles_count(s->particles), SPLATS_MOST_SORTED);
+                       p->label, pass_particles_count(p->particles), SPLATS_MOST_SORTED);
     if (!pass_option(p, N_lit)) drop_light(p);
     if (pass_density(p) && !pass_check_density(p)) return false;
     return pass_declare_images(p) && pass_add_to_graph(p);
@@ -56,7 +56,7 @@ static bool is_software(const pass *p) {
 }
 
 static bool splats_defines(pass *p, size_t index, pass_defines *out) {
-    if ((index == SPLATS_BOUNDS || index > SPLATS_DRAW) && !is_sorted(splats_of(p))) return false;
+    if ((index == SPLATS_BOUNDS || index > SPLATS_DRAW) && !is_sorted(p)) return false;
     if (index > SPLATS_DRAW) {
         splats_define_sort(p, out);
         return true;
@@ -74,13 +74,13 @@ static void splats_destroy(pass *p) {
 
 // ---- memory -----------------------------------------------------------------------------------
 
-static uint32_t record_count(const splats_state *s) {
-    uint32_t count = pass_particles_count(s->particles), most = SPLATS_MOST_RECORDS;
-    return is_sorted(s) || count < most ? count : most;
+static uint32_t record_count(const pass *p) {
+    uint32_t count = pass_particles_count(p->particles), most = SPLATS_MOST_RECORDS;
+    return is_sorted(p) || count < most ? count : most;
 }
 
 uint32_t splats_entries(const pass *p) {
-    return record_count(splats_of(p)) * pass_option_number(p, N_entries);
+    return record_count(p) * splats_of(p)->places;
 }
 
 static void picture_size(const pass *p, uint32_t size[3]) {
@@ -120,13 +120,13 @@ bool splats_make_buffer(pass *p, splats_buffer which, uint64_t size) {
 static bool make_buffers(pass *p) {
     const splats_state *s = splats_of(p);
     uint32_t size[3];
-    uint64_t records = record_count(s), channels = s->blend == SPLATS_WEIGHTED ? 5 : 3;
+    uint64_t records = record_count(p), channels = s->blend == SPLATS_WEIGHTED ? 5 : 3;
     picture_size(p, size);
     if (!splats_make_buffer(p, SPLATS_RECORDS, records * SPLATS_RECORD) ||
         !splats_make_buffer(p, SPLATS_HEAD, 16) ||
         !splats_make_buffer(p, SPLATS_TILES, 8ull * splats_tile_count(p)))
         return false;
-    if (!is_sorted(s))
+    if (!is_sorted(p))
         return splats_make_buffer(p, SPLATS_SUMS, 4 * channels * size[0] * size[1]) &&
                splats_make_buffer(p, SPLATS_ENTRIES, 4ull * splats_entries(p));
     return splats_make_buffer(p, SPLATS_COUNTS, 4 * records) &&
@@ -137,7 +137,6 @@ static bool make_buffers(pass *p) {
 // ---- in a frame -------------------------------------------------------------------------------
 
 static bool splats_update(pass *p) {
-    const splats_state *s = splats_of(p);
     box3 smoke = box3_empty(); // that dims
     uint32_t size[3];
     picture_size(p, size);
@@ -146,9 +145,9 @@ static bool splats_update(pass *p) {
     pass_set(p, N_picture, picture, sizeof picture);
     pass_set_int(p, N_tiles_across, (int32_t)tiles_along(size[0]));
     pass_set_int(p, N_tiles_down, (int32_t)tiles_along(size[1]));
-    pass_set_int(p, N_records_most, (int32_t)record_count(s));
+    pass_set_int(p, N_records_most, (int32_t)record_count(p));
     pass_set_int(p, N_entries_most, (int32_t)splats_entries(p));
-    pass_set_int(p, N_group_count, (int32_t)group_count(pass_particles_used(s->particles)));
+    pass_set_int(p, N_group_count, (int32_t)group_count(pass_particles_used(p->particles)));
     pass_set_int(p, N_depth_bits, (int32_t)splats_depth_bits(p));
     pass_set_box(p, smoke);
     return true;
@@ -182,7 +181,7 @@ static bool draw_sorted(pass *p, uint32_t used) {
 
 static bool draw_sums(pass *p, uint32_t used) {
     splats_state *s = splats_of(p);
-    uint32_t size[3], kept = used < record_count(s) ? used : record_count(s);
+    uint32_t size[3], kept = used < record_count(p) ? used : record_count(p);
     picture_size(p, size);
     if (!s->empty) gpu_buffer_fill(p->host->device, s->buffers[SPLATS_SUMS], 0);
     s->empty = false; // until they are drawn
@@ -198,8 +197,8 @@ static bool splats_record(pass *p) {
     if (!pass_prepare(p) || !make_buffers(p)) return false;
     gpu_buffer_fill(device, s->buffers[SPLATS_HEAD], 0);
     gpu_buffer_fill(device, s->buffers[SPLATS_TILES], 0);
-    uint32_t used = pass_particles_used(s->particles);
-    return is_sorted(s) ? draw_sorted(p, used) : draw_sums(p, used);
+    uint32_t used = pass_particles_used(p->particles);
+    return is_sorted(p) ? draw_sorted(p, used) : draw_sums(p, used);
 }
 
 const pass_type splats_type = {

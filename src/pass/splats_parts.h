@@ -48,8 +48,8 @@ typedef enum splats_buffer {
 typedef enum splats_blend { SPLATS_ADDITIVE, SPLATS_WEIGHTED, SPLATS_SORTED_BLEND } splats_blend;
 
 typedef struct splats_state {
-    const pass *particles;
     splats_blend blend;
+    uint32_t places; // in the lists, for each particle
     gpu_buffer *buffers[SPLATS_BUFFERS];
     bool empty; // the sums are
 } splats_state;

@@ -43,7 +43,7 @@ uint32_t splats_depth_bits(const pass *p) {
     return left < DEPTH_BITS ? left : DEPTH_BITS;
 }
 
-static bool run(pass *p, splats_stage stage, uint32_t threads) {
+static bool sort_run(pass *p, splats_stage stage, uint32_t threads) {
     splats_state *s = splats_of(p);
     kernel *k = pass_use(p, stage);
     if (!k) return false;
@@ -59,9 +59,9 @@ bool splats_sort(pass *p) {
     uint32_t threads = group_threads(p), bits = splats_depth_bits(p) + tile_bits(p);
     for (uint32_t shift = 0; shift < bits; shift += DIGIT_BITS) {
         pass_set_int(p, N_shift, (int32_t)shift);
-        if (!run(p, SPLATS_SORT_COUNT, threads * block_count(p)) ||
-            !run(p, SPLATS_SORT_SCAN, threads) ||
-            !run(p, SPLATS_SORT_MOVE, threads * block_count(p)))
+        if (!sort_run(p, SPLATS_SORT_COUNT, threads * block_count(p)) ||
+            !sort_run(p, SPLATS_SORT_SCAN, threads) ||
+            !sort_run(p, SPLATS_SORT_MOVE, threads * block_count(p)))
             return false;
         gpu_buffer *sorted = s->buffers[SPLATS_SORTED];
         s->buffers[SPLATS_SORTED] = s->buffers[SPLATS_PAIRS];
