@@ -385,6 +385,16 @@ static void copy_value(kernel *k, const kernel_place *place, const float value[4
     }
 }
 
+static void copy_provided(pass *p, const pass_provider *row, size_t index) {
+    uint32_t values[PASS_PROVIDER_VALUES];
+    if (!row->values || !row->values(p, values)) return;
+    for (size_t i = 0; i < count_kernels(p); i++) {
+        const kernel_place *places = p->built[i].provided[index];
+        for (size_t u = 0; places && u < row->uniforms.count; u++)
+            kernel_set_at(&p->built[i].base, &places[u], &values[u], sizeof values[u]);
+    }
+}
+
 void pass_copy_values(pass *p) {
     size_t count;
     const pass_provider *const *rows = pass_providers(&count);
@@ -393,9 +403,8 @@ void pass_copy_values(pass *p) {
         if (!b->base.stages) continue;
         for (size_t u = 0; u < p->face->uniform_count; u++)
             copy_value(&b->base, &b->uniforms[u], p->values[u]);
-        for (size_t r = 0; r < count; r++)
-            if (b->provided[r]) rows[r]->set(p, &b->base, b->provided[r]);
     }
+    for (size_t r = 0; r < count; r++) copy_provided(p, rows[r], r);
 }
 
 void pass_set(pass *p, int name, const void *data, size_t size) {

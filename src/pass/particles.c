@@ -217,6 +217,7 @@ uint32_t pass_particles_used(const pass *particles) {
     NAME(particle_count), NAME(particle_used), NAME(particle_next), NAME(particle_round),          \
         NAME(particle_seed), NAME(particle_back)
 enum { UNIFORMS(KERNEL_NAME_ID), UNIFORM_COUNT };
+_Static_assert((int)UNIFORM_COUNT <= PASS_PROVIDER_VALUES, "a provider has room for these");
 static const char *const uniforms[] = {UNIFORMS(KERNEL_NAME_TEXT)};
 
 #define SLOTS(NAME)                                                                                \
@@ -238,7 +239,9 @@ static size_t defines_of(const pass *p, shader_define out[PASS_PROVIDER_DEFINES]
     return 2;
 }
 
-static void find_values(const pass *particles, uint32_t out[UNIFORM_COUNT]) {
+static bool find_values(const pass *p, uint32_t out[PASS_PROVIDER_VALUES]) {
+    const pass *particles = source_of(p);
+    if (!particles) return false;
     const particles_state *s = particles_of(particles);
     const pass_host *host = particles->host;
     float seed[4] = {0};
@@ -251,14 +254,7 @@ static void find_values(const pass *particles, uint32_t out[UNIFORM_COUNT]) {
     out[N_particle_round] = (uint32_t)(s->clock.born - out[N_particle_next]);
     out[N_particle_seed] = (uint32_t)lrintf(seed[0]) + host->frame->size.v[3] * 2654435761u;
     memcpy(&out[N_particle_back], &back, sizeof back);
-}
-
-static void set_values(const pass *p, kernel *k, const kernel_place *places) {
-    uint32_t values[UNIFORM_COUNT];
-    if (!source_of(p)) return;
-    find_values(source_of(p), values);
-    for (int i = 0; i < UNIFORM_COUNT; i++)
-        kernel_set_at(k, &places[i], &values[i], sizeof values[i]);
+    return true;
 }
 
 static bool bind_buffer(pass *p, int slot, gpu_binding *out) {
@@ -280,6 +276,6 @@ const pass_provider pass_particles_provider = {
     .uniforms = {uniforms, UNIFORM_COUNT},
     .find = find_particles,
     .defines = defines_of,
-    .set = set_values,
+    .values = find_values,
     .bind = bind_buffer,
 };

@@ -118,7 +118,7 @@ gpu_image *pass_get_image(const pass *p, int name); // on the device, in a frame
 
 // What shaders may ask for by including a file of lib/: one row for each, in providers.c. A kernel
 // that has a slot or uniform of a row's names is given it.
-enum { PASS_PROVIDER_DEFINES = 4 };
+enum { PASS_PROVIDER_DEFINES = 4, PASS_PROVIDER_VALUES = 8 };
 typedef struct pass_provider {
     kernel_names slots, uniforms;
     bool (*find)(pass *p); // when the pass is declared; may be NULL, as all of these
@@ -126,7 +126,9 @@ typedef struct pass_provider {
     bool (*check)(pass *p); // compiles what it runs itself
     bool (*build)(pass *p);
     bool (*prepare)(pass *p); // in a frame, before the pass's work
-    void (*set)(const pass *p, kernel *k, const kernel_place *uniforms);
+    // Of the uniforms, 32 bits each, once a frame for all kernels; false: it has none for this
+    // pass.
+    bool (*values)(const pass *p, uint32_t out[PASS_PROVIDER_VALUES]);
     bool (*bind)(pass *p, int slot, gpu_binding *out); // false: it has none for this pass
     void (*destroy)(pass *p);
 } pass_provider;
