@@ -121,6 +121,10 @@ const char *roil_device_name(const roil *r) {
     return r->device ? gpu_get_info(r->device)->name : "none";
 }
 
+bool roil_wants_preview(const roil *r) {
+    return gpu_get_profile(r->device)->previews;
+}
+
 const char *roil_device_driver(const roil *r) {
     return r->device ? gpu_get_info(r->device)->driver : "";
 }

@@ -76,6 +76,7 @@ void roil_destroy(roil *r); // after its effects; NULL is fine
 bool roil_can_exit(void);
 const char *roil_device_name(const roil *r);
 const char *roil_device_driver(const roil *r);
+bool roil_wants_preview(const roil *r); // its live pictures had better begin at less than full size
 uint64_t roil_validation_messages(const roil *r);
 const char *roil_home(const roil *r); // the folder with shaders/ and scripts/
 // For effects that are loaded from now on: as `counters` and `reference` of roil_desc.

@@ -101,14 +101,9 @@ static void on_key(void *user, int key, int mods, bool again) {
     if (!(types && ui_wants_keys())) live_press(user, key, mods, again);
 }
 
-static bool is_software(const roil *r) {
-    const char *name = roil_device_name(r);
-    return strstr(name, "llvmpipe") || strstr(name, "SwiftShader");
-}
-
 static void take_session(live *l, const job *j) {
     if (j->preview) l->session.preview = preview_of(j->preview);
-    if (l->session.preview < 0) l->session.preview = is_software(l->r) ? 1 : 0;
+    if (l->session.preview < 0) l->session.preview = roil_wants_preview(l->r) ? 1 : 0;
     if (j->hidden_panel) l->session.panel_hidden = true;
     if (!j->after_hang) return;
     l->held = true;

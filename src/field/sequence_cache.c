@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "field/sequence_parts.h"
+#include "gpu/profile.h"
 #include <assert.h>
 #include <string.h>
 
@@ -23,8 +24,7 @@ enum {
 
 static void start(sequence_data *s, gpu *g) {
     sequence_cache *c = &s->cache;
-    const uint64_t mebi = 1 << 20;
-    c->budget = (gpu_get_info(g)->kind == GPU_CPU ? 192 : 512) * mebi;
+    c->budget = gpu_get_profile(g)->sequence_bytes;
     c->slot_count = s->frame_count < MOST_SLOTS ? s->frame_count : MOST_SLOTS;
     if (c->slot_count < SHOWN + UPLOAD_AHEAD) c->slot_count = SHOWN + UPLOAD_AHEAD;
     c->slots = mem_alloc(c->slot_count * sizeof *c->slots);

@@ -93,10 +93,19 @@ static void list_missing(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32
     if (!f.v13.maintenance4) lacks(info, "maintenance4");
     if (!f.v12.timelineSemaphore) lacks(info, "timelineSemaphore");
     if (!f.v12.scalarBlockLayout) lacks(info, "scalarBlockLayout");
-    if (!f.core.features.drawIndirectFirstInstance) lacks(info, "drawIndirectFirstInstance");
     if (!f.core.features.shaderStorageImageExtendedFormats) {
         lacks(info, "shaderStorageImageExtendedFormats");
     }
+}
+
+static gpu_limits limits_of(VkPhysicalDevice physical, const VkPhysicalDeviceLimits *l) {
+    VkPhysicalDeviceFeatures features;
+    vkGetPhysicalDeviceFeatures(physical, &features);
+    return (gpu_limits){.group_threads = l->maxComputeWorkGroupInvocations,
+                        .shared_bytes = l->maxComputeSharedMemorySize,
+                        .storage_buffers = l->maxPerStageDescriptorStorageBuffers,
+                        .storage_images = l->maxPerStageDescriptorStorageImages,
+                        .first_instance = features.drawIndirectFirstInstance};
 }
 
 static void describe(vk_choice *choice, VkSurfaceKHR surface) {
@@ -114,7 +123,6 @@ static void describe(vk_choice *choice, VkSurfaceKHR surface) {
         vkGetPhysicalDeviceProperties2(physical, &two);
     }
 
-    choice->lavapipe = driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
     choice->pushes = can_push(physical);
     str_copy(info->name, sizeof info->name, p->deviceName);
     snprintf(info->driver, sizeof info->driver, "%.120s %.120s", driver.driverName,
@@ -124,7 +132,6 @@ static void describe(vk_choice *choice, VkSurfaceKHR surface) {
     info->api_major = VK_API_VERSION_MAJOR(p->apiVersion);
     info->api_minor = VK_API_VERSION_MINOR(p->apiVersion);
     info->subgroup_size = v11.subgroupSize;
-    info->max_group = p->limits.maxComputeWorkGroupInvocations;
     info->subpixel_bits = p->limits.subPixelPrecisionBits;
     VkPhysicalDeviceMemoryProperties memory;
     vkGetPhysicalDeviceMemoryProperties(physical, &memory);
@@ -144,6 +151,8 @@ static void describe(vk_choice *choice, VkSurfaceKHR surface) {
         }
     }
     list_missing(physical, surface, p->apiVersion, info);
+    const gpu_limits limits = limits_of(physical, &p->limits);
+    choice->profile = vk_profile_find(info, driver.driverID, driver.driverInfo, &limits);
 }
 
 static int rank(gpu_kind kind) {

@@ -21,7 +21,8 @@ void vk_features_read(VkPhysicalDevice physical, vk_features *out) {
     vkGetPhysicalDeviceFeatures2(physical, &out->core);
 }
 
-VkDevice vk_device_create(const vk_choice *choice, uint32_t family, int copies, bool presents) {
+VkDevice vk_device_create(const vk_choice *choice, const gpu_limits *limits, uint32_t family,
+                          int copies, bool presents) {
     vk_features has, want = {0};
     vk_features_read(choice->physical, &has);
     chain(&want);
@@ -31,7 +32,6 @@ VkDevice vk_device_create(const vk_choice *choice, uint32_t family, int copies, 
     want.v12.timelineSemaphore = VK_TRUE;
     want.v12.scalarBlockLayout = VK_TRUE;
     want.core.features.shaderStorageImageExtendedFormats = VK_TRUE;
-    want.core.features.drawIndirectFirstInstance = VK_TRUE;
     // Shaders are written by strangers: an index out of bounds must stay inside its own binding.
     want.core.features.robustBufferAccess = has.core.features.robustBufferAccess;
     want.v13.robustImageAccess = has.v13.robustImageAccess;
@@ -45,6 +45,7 @@ VkDevice vk_device_create(const vk_choice *choice, uint32_t family, int copies, 
     want.core.features.fragmentStoresAndAtomics = has.core.features.fragmentStoresAndAtomics;
     want.core.features.shaderUniformBufferArrayDynamicIndexing =
         has.core.features.shaderUniformBufferArrayDynamicIndexing; // hide.c
+    want.core.features.drawIndirectFirstInstance = limits->first_instance;
     want.core.features.shaderInt64 = has.core.features.shaderInt64;
     want.core.features.multiDrawIndirect = has.core.features.multiDrawIndirect;
     want.v11.storageBuffer16BitAccess = has.v11.storageBuffer16BitAccess;
@@ -122,18 +123,19 @@ static void load_calls(gpu *g, bool pushes) {
         (PFN_vkSetDebugUtilsObjectNameEXT)vkGetDeviceProcAddr(d, "vkSetDebugUtilsObjectNameEXT");
 }
 
-static bool open_device(gpu *g, const char *name) {
+static bool open_device(gpu *g, const gpu_desc *desc) {
     vk_choice choices[VK_MAX_DEVICES];
     int count = vk_choices_find(g->instance.handle, g->window.surface, choices);
-    const vk_choice *choice = count > 0 ? vk_choice_pick(choices, count, name) : NULL;
+    const vk_choice *choice = count > 0 ? vk_choice_pick(choices, count, desc->device) : NULL;
     if (!choice) return false;
     g->info = choice->info;
     g->physical = choice->physical;
-    g->lavapipe = choice->lavapipe;
+    g->profile = choice->profile;
+    if (desc->small || vk_small_device_wanted()) vk_profile_make_small(&g->profile);
     g->family = (uint32_t)vk_queue_family_find(g->physical, g->window.surface);
     g->copier.family = vk_transfer_family_find(g->physical);
-    g->device =
-        vk_device_create(choice, g->family, g->copier.family, g->window.surface != VK_NULL_HANDLE);
+    g->device = vk_device_create(choice, &g->profile.limits, g->family, g->copier.family,
+                                 g->window.surface != VK_NULL_HANDLE);
     if (!g->device) return false;
     vkGetDeviceQueue(g->device, g->family, 0, &g->queue);
     load_limits(g);
@@ -167,9 +169,9 @@ static bool validation_wanted(const gpu_desc *desc) {
     return desc->validate || (set && strcmp(set, "1") == 0);
 }
 
-// In nanoseconds. Software devices are slow, and a hang of theirs freezes no desktop.
+// In nanoseconds.
 static uint64_t timeout_of(const gpu *g, double seconds) {
-    if (!(seconds > 0.0)) seconds = g->info.kind == GPU_CPU ? 300.0 : 30.0;
+    if (!(seconds > 0.0)) seconds = g->profile.timeout;
     return seconds < 1e9 ? (uint64_t)(seconds * 1e9) : UINT64_MAX;
 }
 
@@ -180,7 +182,7 @@ gpu *gpu_create(const gpu_desc *desc) {
     pthread_mutex_init(&g->retire_lock, NULL);
     pthread_mutex_init(&g->built_lock, NULL);
     if (!vk_instance_create(&g->instance, validation_wanted(desc), desc->window, &g->messages) ||
-        !vk_window_open(g, desc->window) || !open_device(g, desc->device) || !open_commands(g) ||
+        !vk_window_open(g, desc->window) || !open_device(g, desc) || !open_commands(g) ||
         !vk_samplers_create(g) || !vk_cache_create(g, desc->cache_dir)) {
         gpu_destroy(g);
         return NULL;

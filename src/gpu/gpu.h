@@ -29,7 +29,6 @@ typedef struct gpu_info {
     uint64_t max_storage_range; // bytes of one storage buffer binding
     uint32_t api_major, api_minor;
     uint32_t subgroup_size;
-    uint32_t max_group;     // threads of a work group
     uint32_t subpixel_bits; // corners of triangles are drawn at places rounded to these
     float timestamp_period; // nanoseconds a tick; 0: no timestamps
     bool int64;             // shaders may use integers of 64 bits
@@ -52,6 +51,7 @@ typedef struct gpu_desc {
     const char *cache_dir; // folder of the pipeline cache; NULL: no cache
     bool validate; // Khronos validation with synchronization validation; also $ROIL_VALIDATE=1
     const gpu_window *window; // NULL: nothing is shown; else the device can present to it
+    bool small;     // it has the limits of a small device (profile.h); also $ROIL_SMALL_DEVICE=1
     double timeout; // seconds that submitted work may take before the device counts as lost; 0: 30,
                     // 300 on a software device
     // Called ten times a second by the thread that created the device, while that waits for work
@@ -195,10 +195,13 @@ typedef enum gpu_slot_kind {
 
 enum { GPU_MAX_SLOTS = 32, GPU_MAX_TARGETS = 8 };
 
+typedef enum gpu_stage { GPU_STAGE_ALL, GPU_STAGE_VERTEX, GPU_STAGE_FRAGMENT } gpu_stage;
+
 typedef struct gpu_slot { // one binding of descriptor set 0, as reflection found it
     uint32_t binding;
     gpu_slot_kind kind;
     bool reads, writes; // of storage slots; uniform and sampled slots read
+    gpu_stage stage;    // of a pipeline that draws: which stage sees it
 } gpu_slot;
 
 typedef struct gpu_compute_desc {
@@ -286,7 +289,8 @@ typedef struct gpu_dispatch_desc {
 } gpu_dispatch_desc;
 bool gpu_dispatch(gpu *g, const gpu_dispatch_desc *desc);
 
-// What the device reads where the numbers of a draw are left to it.
+// What the device reads where the numbers of a draw are left to it. `first_instance` is 0 where
+// gpu_limits.first_instance (profile.h) is false.
 typedef struct gpu_draw_command { // without indices
     uint32_t vertices, instances, first_vertex, first_instance;
 } gpu_draw_command;

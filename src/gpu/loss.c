@@ -117,7 +117,7 @@ bool vk_wait(gpu *g, uint64_t serial) {
 }
 
 bool vk_wait_where_driver_would(gpu *g) {
-    return g->info.kind != GPU_CPU || vk_wait(g, g->submitted);
+    return !g->profile.waits_in_calls || vk_wait(g, g->submitted);
 }
 
 uint64_t vk_completed(gpu *g) {

@@ -178,7 +178,7 @@ void *vk_memory_map(const vk_memory *memory) {
 }
 
 void vk_pool_init(gpu *g) {
-    bool shared = g->info.kind == GPU_CPU || g->info.kind == GPU_INTEGRATED;
+    bool shared = g->profile.shares_memory;
     g->pool.budgets[0] = budget_host();
     g->pool.budgets[1] = shared ? budget_host() : budget_create("device memory", g->info.memory);
     for (int side = 0; side < 2; side++)

@@ -12,13 +12,16 @@
 
 static bool create_layout(gpu *g, const gpu_pipeline *pipeline, VkShaderStageFlags stages,
                           vk_built *out) {
+    const VkShaderStageFlags flags[] = {[GPU_STAGE_ALL] = stages,
+                                        [GPU_STAGE_VERTEX] = VK_SHADER_STAGE_VERTEX_BIT,
+                                        [GPU_STAGE_FRAGMENT] = VK_SHADER_STAGE_FRAGMENT_BIT};
     VkDescriptorSetLayoutBinding bindings[GPU_MAX_SLOTS];
     for (uint32_t i = 0; i < pipeline->slot_count; i++) {
         bindings[i] = (VkDescriptorSetLayoutBinding){
             .binding = pipeline->slots[i].binding,
             .descriptorType = vk_descriptor_type(pipeline->slots[i].kind),
             .descriptorCount = 1,
-            .stageFlags = stages};
+            .stageFlags = flags[pipeline->slots[i].stage]};
     }
     VkDescriptorSetLayoutCreateInfo set = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
@@ -36,36 +39,43 @@ static bool create_layout(gpu *g, const gpu_pipeline *pipeline, VkShaderStageFla
                     "creating the layout of pipeline '%s'", pipeline->label);
 }
 
+static bool check_count(const char *label, const char *limit, const char *what, uint32_t wanted,
+                        uint32_t most) {
+    return wanted <= most ||
+           err_set("pipeline '%s' has %u %s in a stage; the device allows %u (%s)", label, wanted,
+                   what, most, limit);
+}
+
+// Of a compute shader all slots are of both.
+static bool check_stage(gpu *g, const char *label, const gpu_slot *slots, size_t count,
+                        gpu_stage stage) {
+    uint32_t kinds[4] = {0};
+    for (size_t i = 0; i < count; i++)
+        if (slots[i].stage == GPU_STAGE_ALL || slots[i].stage == stage) kinds[slots[i].kind]++;
+    const gpu_demand demand = {.storage_buffers = kinds[GPU_SLOT_STORAGE_BUFFER],
+                               .storage_images = kinds[GPU_SLOT_STORAGE_IMAGE]};
+    return check_count(label, "maxPerStageDescriptorUniformBuffers", "uniform blocks",
+                       kinds[GPU_SLOT_UNIFORM], g->limits.maxPerStageDescriptorUniformBuffers) &&
+           check_count(label, "maxPerStageDescriptorSampledImages", "sampled images",
+                       kinds[GPU_SLOT_SAMPLED_IMAGE],
+                       g->limits.maxPerStageDescriptorSampledImages) &&
+           gpu_meets_limits(&g->profile.limits, label, &demand);
+}
+
 static bool check_slots(gpu *g, const char *label, const gpu_slot *slots, size_t count) {
     if (count > GPU_MAX_SLOTS) {
         return err_set("pipeline '%s' has %zu bindings; at most %d are accepted", label, count,
                        GPU_MAX_SLOTS);
     }
-    uint32_t kinds[4] = {0};
     for (size_t i = 0; i < count; i++) {
         for (size_t j = 0; j < i; j++) {
             if (slots[i].binding == slots[j].binding) {
                 return err_set("pipeline '%s' has binding %u twice", label, slots[i].binding);
             }
         }
-        kinds[slots[i].kind]++;
     }
-    const uint32_t most[4] = {
-        [GPU_SLOT_UNIFORM] = g->limits.maxPerStageDescriptorUniformBuffers,
-        [GPU_SLOT_STORAGE_BUFFER] = g->limits.maxPerStageDescriptorStorageBuffers,
-        [GPU_SLOT_SAMPLED_IMAGE] = g->limits.maxPerStageDescriptorSampledImages,
-        [GPU_SLOT_STORAGE_IMAGE] = g->limits.maxPerStageDescriptorStorageImages};
-    static const char *const names[4] = {[GPU_SLOT_UNIFORM] = "uniform blocks",
-                                         [GPU_SLOT_STORAGE_BUFFER] = "storage buffers",
-                                         [GPU_SLOT_SAMPLED_IMAGE] = "sampled images",
-                                         [GPU_SLOT_STORAGE_IMAGE] = "storage images"};
-    for (int i = 0; i < 4; i++) {
-        if (kinds[i] > most[i]) {
-            return err_set("pipeline '%s' has %u %s; the device allows %u", label, kinds[i],
-                           names[i], most[i]);
-        }
-    }
-    return true;
+    return check_stage(g, label, slots, count, GPU_STAGE_VERTEX) &&
+           check_stage(g, label, slots, count, GPU_STAGE_FRAGMENT);
 }
 
 static gpu_pipeline *pipeline_new(const char *label, const gpu_slot *slots, size_t count) {
@@ -98,13 +108,14 @@ static bool create_module(gpu *g, const char *label, const uint32_t *code, size_
 // Of all but the shaders and the rasteriser's settings: what slots read and write does not matter
 // to the driver.
 static hash128 hash_interface(const gpu_pipeline *pipeline) {
-    uint32_t words[2 + GPU_MAX_TARGETS + 2 * GPU_MAX_SLOTS] = {pipeline->bind_point,
+    uint32_t words[2 + GPU_MAX_TARGETS + 3 * GPU_MAX_SLOTS] = {pipeline->bind_point,
                                                                pipeline->depth};
     uint32_t count = 2;
     for (uint32_t i = 0; i < GPU_MAX_TARGETS; i++) words[count++] = pipeline->colors[i];
     for (uint32_t i = 0; i < pipeline->slot_count; i++) {
         words[count++] = pipeline->slots[i].binding;
         words[count++] = pipeline->slots[i].kind;
+        words[count++] = pipeline->slots[i].stage;
     }
     return hash_bytes(words, count * sizeof *words);
 }
@@ -116,7 +127,6 @@ typedef struct rewritten {
     size_t size;
 } rewritten;
 
-// A software driver does not check indices into variables.
 static bool clamp(const char *label, rewritten *r) {
     if (!vk_clamp_indices(r->code, r->size, &r->clamped, &r->size))
         return err_set("pipeline '%s': the indices in its code cannot be kept in bounds", label);
@@ -124,11 +134,10 @@ static bool clamp(const char *label, rewritten *r) {
     return true;
 }
 
-// Mesa's fares better where uniforms are read once, and hidden.
-static void rewrite_for_lavapipe(rewritten *r) {
-    r->hoisted = vk_hoist_uniforms(r->code, r->size, &r->size);
+static void rewrite_uniforms(const gpu_profile *profile, rewritten *r) {
+    if (profile->hoists_uniforms) r->hoisted = vk_hoist_uniforms(r->code, r->size, &r->size);
     if (r->hoisted) r->code = r->hoisted;
-    r->hidden = vk_hide_uniforms(r->code, r->size, &r->size);
+    if (profile->hides_uniforms) r->hidden = vk_hide_uniforms(r->code, r->size, &r->size);
     if (r->hidden) r->code = r->hidden;
 }
 
@@ -136,8 +145,8 @@ static void rewrite_for_lavapipe(rewritten *r) {
 static bool create_rewritten_module(gpu *g, const char *label, const uint32_t *code, size_t size,
                                     bool vertex, VkShaderModule *out) {
     rewritten r = {.code = code, .size = size};
-    bool created = g->info.kind != GPU_CPU || clamp(label, &r);
-    if (created && g->lavapipe && !vertex) rewrite_for_lavapipe(&r);
+    bool created = !g->profile.clamps_indices || clamp(label, &r);
+    if (created && !vertex) rewrite_uniforms(&g->profile, &r);
     created = created && create_module(g, label, r.code, r.size, out);
     mem_free(r.hidden);
     mem_free(r.hoisted);
@@ -149,27 +158,22 @@ static bool create_rewritten_module(gpu *g, const char *label, const uint32_t *c
 
 static bool check_local_size(gpu *g, const char *label, const uint32_t size[3]) {
     const uint32_t *most = g->limits.maxComputeWorkGroupSize;
-    uint32_t total = g->limits.maxComputeWorkGroupInvocations;
     bool fits = true;
     for (int i = 0; i < 3; i++) fits = fits && size[i] > 0 && size[i] <= most[i];
-    if (fits && (uint64_t)size[0] * size[1] * size[2] <= total) return true;
-    return err_set(
-        "pipeline '%s' has groups of %ux%ux%u threads; the device allows %ux%ux%u and %u "
-        "in all",
-        label, size[0], size[1], size[2], most[0], most[1], most[2], total);
+    if (!fits)
+        return err_set("pipeline '%s' has groups of %ux%ux%u threads; the device allows %ux%ux%u "
+                       "(maxComputeWorkGroupSize)",
+                       label, size[0], size[1], size[2], most[0], most[1], most[2]);
+    const gpu_demand demand = {.threads = size[0] * size[1] * size[2]};
+    return gpu_meets_limits(&g->profile.limits, label, &demand);
 }
 
 // Asked once for what the driver is to build; groups of more do not start, or end the driver.
 static bool check_shared_memory(gpu *g, const char *label, const uint32_t *code, size_t size) {
-    spirv_module m;
-    bool known = spirv_module_read(&m, code, size / 4);
-    uint32_t bytes = known ? spirv_storage_size(&m, SpvStorageClassWorkgroup) : 0;
-    uint32_t most = g->limits.maxComputeSharedMemorySize;
-    spirv_module_free(&m);
-    if (!known) return err_set("pipeline '%s': the shader code is not SPIR-V", label);
-    if (bytes <= most) return true;
-    return err_set("pipeline '%s' shares %u bytes in a work group; the device allows %u", label,
-                   bytes, most);
+    gpu_demand demand = {0};
+    if (!spirv_shared_bytes(code, size / 4, &demand.shared_bytes))
+        return err_set("pipeline '%s': the shader code is not SPIR-V", label);
+    return gpu_meets_limits(&g->profile.limits, label, &demand);
 }
 
 // Whether a shader asks how many groups there are (gl_NumWorkGroups): slices have fewer.
@@ -189,7 +193,7 @@ static bool counts_groups(const uint32_t *code, size_t size) {
 static bool build_compute(gpu *g, const gpu_pipeline *pipeline, const gpu_compute_desc *desc,
                           vk_built *out) {
     VkShaderModule module;
-    out->sliced = g->lavapipe && !counts_groups(desc->code, desc->code_size);
+    out->sliced = g->profile.slices_dispatches && !counts_groups(desc->code, desc->code_size);
     if (!check_shared_memory(g, pipeline->label, desc->code, desc->code_size)) return false;
     if (!create_layout(g, pipeline, VK_SHADER_STAGE_COMPUTE_BIT, out)) return false;
     if (!create_rewritten_module(g, pipeline->label, desc->code, desc->code_size, false, &module))

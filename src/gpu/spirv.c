@@ -106,3 +106,11 @@ uint32_t spirv_storage_size(const spirv_module *m, SpvStorageClass storage) {
     }
     return sum;
 }
+
+bool spirv_shared_bytes(const uint32_t *words, size_t count, uint32_t *out) {
+    spirv_module m;
+    const bool known = spirv_module_read(&m, words, count);
+    *out = known ? spirv_storage_size(&m, SpvStorageClassWorkgroup) : 0;
+    spirv_module_free(&m);
+    return known;
+}

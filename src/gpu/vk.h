@@ -10,6 +10,7 @@
 #include "gpu/allocator.h"
 #include "gpu/gpu.h"
 #include "gpu/hazard.h"
+#include "gpu/profile.h"
 #include <pthread.h>
 #include <stdatomic.h>
 #include <vulkan/vulkan.h>
@@ -40,8 +41,8 @@ void vk_instance_destroy(vk_instance *instance);
 typedef struct vk_choice { // a device as found; real GPUs first
     VkPhysicalDevice physical;
     gpu_info info;
-    bool lavapipe; // Mesa's software driver, which likes shaders and dispatches as no other does
-    bool pushes;   // descriptors: VK_KHR_push_descriptor is there, and not turned down
+    gpu_profile profile;
+    bool pushes; // descriptors: VK_KHR_push_descriptor is there, and not turned down
 } vk_choice;
 // At most VK_MAX_DEVICES; -1 with a message when there is none. With a surface, a device that
 // cannot present to it is not usable.
@@ -49,6 +50,12 @@ int vk_choices_find(VkInstance instance, VkSurfaceKHR surface, vk_choice *out);
 const vk_choice *vk_choice_pick(const vk_choice *choices, int count, const char *device);
 // Graphics and compute, and presenting when there is a surface. -1: none.
 int vk_queue_family_find(VkPhysicalDevice physical, VkSurfaceKHR surface);
+
+gpu_profile vk_profile_find(const gpu_info *info, VkDriverId driver, const char *driver_info,
+                            const gpu_limits *limits);
+bool vk_small_device_wanted(void); // by the environment
+// Its limits are at most those of a small device.
+void vk_profile_make_small(gpu_profile *p);
 
 // Features that roil requires and those it takes when they are there (device.c lists them).
 typedef struct vk_features {
@@ -59,7 +66,8 @@ typedef struct vk_features {
 } vk_features;
 void vk_features_read(VkPhysicalDevice physical, vk_features *out);
 // `copies`: a second family to have a queue of; -1: none.
-VkDevice vk_device_create(const vk_choice *choice, uint32_t family, int copies, bool presents);
+VkDevice vk_device_create(const vk_choice *choice, const gpu_limits *limits, uint32_t family,
+                          int copies, bool presents);
 
 // True for VK_SUCCESS; else false with "what: why", and notes a lost device.
 bool vk_check(gpu *g, VkResult result, const char *what, ...) PRINTF_LIKE(3, 4);
@@ -255,9 +263,9 @@ typedef struct vk_uses {
 } vk_uses;
 
 VkDescriptorType vk_descriptor_type(gpu_slot_kind kind);
-// The same code for lavapipe, for mem_free: with uniforms read once (hoist.c), with their
-// blocks hidden (hide.c). NULL: there are none, or it is left as it is. Sizes in bytes; `*out_size`
-// is set with the code only.
+// The same code for a driver that gains by it, for mem_free: with uniforms read once (hoist.c),
+// with their blocks hidden (hide.c). NULL: there are none, or it is left as it is. Sizes in bytes;
+// `*out_size` is set with the code only.
 uint32_t *vk_hoist_uniforms(const uint32_t *code, size_t size, size_t *out_size);
 uint32_t *vk_hide_uniforms(const uint32_t *code, size_t size, size_t *out_size);
 // The same with each index into variables kept in bounds (clamp.c). `*out`, for mem_free, is NULL
@@ -386,7 +394,7 @@ struct gpu {
     uint64_t max_allocation, max_buffer;
     VkPhysicalDeviceMemoryProperties heaps;
     VkFormatFeatureFlags format_features[GPU_FORMAT_COUNT];
-    bool lavapipe;
+    gpu_profile profile;
     PFN_vkCmdPushDescriptorSetKHR push_descriptors; // NULL: sets of the batch are bound
     PFN_vkCmdBeginDebugUtilsLabelEXT begin_label;
     PFN_vkCmdEndDebugUtilsLabelEXT end_label;

@@ -61,7 +61,11 @@ static bool replace(kernel *k, gpu *g, gpu_pipeline *pipeline) {
 }
 
 static void list_slots(const kernel *k, gpu_slot out[GPU_MAX_SLOTS]) {
-    for (size_t i = 0; i < k->slot_count; i++) out[i] = k->slots[i]->slot;
+    static const gpu_stage drawn[KERNEL_STAGES] = {GPU_STAGE_VERTEX, GPU_STAGE_FRAGMENT};
+    for (size_t i = 0; i < k->slot_count; i++) {
+        out[i] = k->slots[i]->slot;
+        if (k->stages == 2) out[i].stage = drawn[i >= k->binaries[0].slot_count];
+    }
 }
 
 bool kernel_build(kernel *k, gpu *g) {

@@ -9,9 +9,6 @@
 
 enum {
     MOST_BLOCKS = 43,
-    USUAL_BLOCKS = 15,
-    SOFTWARE_BLOCKS = 11, // where threads are few, looking for what is empty costs more
-    FEW_BLOCKS = 5,
     FREE_WIDE = 24,
     FREE_HIGH = 8,
     FREE_ROWS = 16,
@@ -19,7 +16,6 @@ enum {
     MANY_NODES = 200, // of an expression: more are dear
 };
 
-// On hardware, below which cheap samples of nothing cost less than bricks do.
 static const float many_samples = 4e7f;
 static const float dear = 45; // operations: more than one fetch from a grid
 
@@ -64,9 +60,9 @@ bool bricks_declare(pass *p, bricks *b, bool (*record)(pass *p)) {
 static float blocks_along(pass *p, const bricks *b, float samples) {
     float asked = pass_value(p, N_bricks);
     if (asked > 0) return fminf(ceilf(asked / 3), MOST_BLOCKS);
-    if (gpu_get_info(p->host->device)->kind == GPU_CPU)
-        return b->dear ? SOFTWARE_BLOCKS : FEW_BLOCKS;
-    return b->dear || samples > many_samples ? USUAL_BLOCKS : 0;
+    const gpu_profile *device = gpu_get_profile(p->host->device);
+    if (b->dear) return device->bricks_dear;
+    return samples > many_samples ? device->bricks_many : device->bricks_cheap;
 }
 
 // Bricks are about as long as wide, and three of them are a block.

@@ -143,8 +143,13 @@ gpu_pipeline *pass_create_graphics(pass *p, const shader_binary *vertex,
                 vertex->slot_count + fragment->slot_count, GPU_MAX_SLOTS);
         return NULL;
     }
-    for (size_t s = 0; s < COUNT_OF(both); s++)
-        for (size_t i = 0; i < both[s]->slot_count; i++) slots[count++] = both[s]->slots[i].slot;
+    static const gpu_stage stages[] = {GPU_STAGE_VERTEX, GPU_STAGE_FRAGMENT};
+    for (size_t s = 0; s < COUNT_OF(both); s++) {
+        for (size_t i = 0; i < both[s]->slot_count; i++) {
+            slots[count] = both[s]->slots[i].slot;
+            slots[count++].stage = stages[s];
+        }
+    }
     desc.label = p->label;
     desc.vertex_code = vertex->code;
     desc.vertex_size = vertex->size;

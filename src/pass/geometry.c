@@ -8,7 +8,6 @@
 #include <string.h>
 
 // When drawn: what is shown of materials, as what is read of it is a target or not.
-enum { ENOUGH_BITS = 8 }; // of where corners are drawn, as most devices have
 enum { WITH_SURFACE = 1, WITH_EMISSION = 2, VARIANTS = 4 };
 
 typedef struct geometry_state {
@@ -36,16 +35,9 @@ static bool surfaces_fit(const pass *p) {
     return fit;
 }
 
-// Mesa's software device draws triangles many times faster than it traces rays. SwiftShader rounds
-// corners to 1/16 of a pixel and tilts a triangle by that: in a small picture what is shown by it
-// lies as deep below its surface as rays for shadows begin above. Of the others, those for
-// computing have few processors that draw, and none was seen to trace slowly, among 100,000
-// instances neither (scripts/bench/README.md).
 static bool choose_rays(const pass *p) {
     if (!pass_has_word(p, "mode", "auto")) return pass_has_word(p, "mode", "rays");
-    const gpu_info *device = p->host->device ? gpu_get_info(p->host->device) : NULL;
-    return device && (device->kind != GPU_CPU || device->subpixel_bits < ENOUGH_BITS) &&
-           surfaces_fit(p);
+    return gpu_get_profile(p->host->device)->geometry_traces && surfaces_fit(p);
 }
 
 bool pass_traces_levels(const pass *p) {

@@ -63,9 +63,8 @@ void lbm_air_restart(pass *p) {
 
 int64_t lbm_air_most(const pass *p) {
     const lbm_air *a = lbm_air_of(p);
-    bool software = gpu_get_info(p->host->device)->kind == GPU_CPU;
     double cells = (double)a->desc.size[0] * a->desc.size[1] * a->desc.size[2];
-    return pass_steps_most(cells, software, p->host->brief);
+    return pass_steps_most(cells, gpu_get_profile(p->host->device), p->host->brief);
 }
 
 // `apart`: what a step consists of is timed by itself.

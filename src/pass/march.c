@@ -36,8 +36,7 @@ static bool record_bricks(pass *p) {
 
 static bool march_declare(pass *p) {
     march_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    gpu *device = p->host->device;
-    s->software = !device || gpu_get_info(device)->kind == GPU_CPU;
+    s->software = gpu_get_profile(p->host->device)->march_by_sides;
     s->skips = pass_option_is(p, N_skipping, "on");
     s->paper = pass_option_is(p, N_mode, "paper");
     s->noise = pass_option_is(p, N_view, "noise");

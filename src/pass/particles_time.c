@@ -6,10 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-// Particles that one submit may move: about 0.1 s of a large device, 2 s of a software one. In a
-// window it is a part of that.
-static const double most_moves = 1e9, most_in_software = 2e7;
-enum { BRIEF = 64 };
+enum { BRIEF = 64 }; // of what a submit may move, in a window: one part of so many
 
 static const double rounding = 1e-6;  // of a step
 static const double most_lost = 0.05; // share of the births
@@ -25,8 +22,8 @@ int64_t particles_left(const pass *p, double time) {
 }
 
 static int64_t particles_most(const pass *p) {
-    bool software = gpu_get_info(p->host->device)->kind == GPU_CPU;
-    double steps = (software ? most_in_software : most_moves) / particles_of(p)->desc.count;
+    double moves = gpu_get_profile(p->host->device)->particle_moves;
+    double steps = moves / particles_of(p)->desc.count;
     return (int64_t)fmax(1, p->host->brief ? steps / BRIEF : steps);
 }
 

@@ -199,7 +199,7 @@ uint32_t pass_number(const pass *p, const char *option) {
 }
 
 const char *pass_most_threads(const pass *p) {
-    uint32_t most = p->host->device ? gpu_get_info(p->host->device)->max_group : 512;
+    uint32_t most = gpu_get_profile(p->host->device)->limits.group_threads;
     return most >= 512 ? "512" : most >= 256 ? "256" : "128"; // the least of any device
 }
 

@@ -6,6 +6,7 @@
 // and pipeline), pass_allocate, then per frame the graph records it.
 #pragma once
 #include "field/field.h"
+#include "gpu/profile.h"
 #include "graph/graph.h"
 #include "kernel/kernel.h"
 #include "scene/instances.h"

@@ -130,12 +130,10 @@ static bool dispatch(pass *p, gpu_pipeline *pipeline, const shader_binary *binar
            gpu_dispatch(p->host->device, &desc);
 }
 
-// A GPU is busy longest with all paths of a pixel in one thread. llvmpipe ends all loops of a
-// thread once they have made 65535 turns together, so that each path gets a thread of its own.
 static bool trace(pass *p) {
     const reference_state *s = p->state;
     int32_t samples = (int32_t)pass_evaluate(p, "samples");
-    int32_t paths = gpu_get_info(p->host->device)->kind == GPU_CPU ? 1 : samples;
+    int32_t paths = gpu_get_profile(p->host->device)->reference_single_paths ? 1 : samples;
     for (int32_t part = 0; part < samples / paths; part++) {
         write_progress(&p->binary, p->block, (int32_t[]){s->executed, paths, part});
         if (!dispatch(p, p->pipeline, &p->binary, p->block, "color")) return false;

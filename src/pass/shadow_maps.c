@@ -336,22 +336,6 @@ bool shadow_maps_record(pass *p) {
 
 // ---- for passes that look ---------------------------------------------------------------------
 
-// Whether to look is faster than a ray to each light, by device. Drawing the maps counts, too: on a
-// processor they cost as much as rays in a small picture, and win in a large one, or among many
-// trees. On an H200 maps that are kept beat rays (a forest: 0.3 ms against 1.0), those that
-// something moves in do not (3.3): drawing them takes 3 ms.
-static const struct {
-    gpu_kind kind;
-    bool maps;
-} faster[] = {{GPU_CPU, true}, {GPU_DISCRETE, false}, {GPU_INTEGRATED, true}, {GPU_VIRTUAL, false}};
-
-static bool maps_are_faster(const gpu *device) {
-    gpu_kind kind = device ? gpu_get_info(device)->kind : GPU_CPU;
-    for (size_t i = 0; i < COUNT_OF(faster); i++)
-        if (faster[i].kind == kind) return faster[i].maps;
-    return true;
-}
-
 // Whether there are lights, besides lamps, that may have no maps.
 static bool leaves_lights_out(const pass *maps) {
     const shadow_state *s = state_of(maps);
@@ -377,7 +361,7 @@ static bool asks_for_lamps(pass *p, const pass *maps) {
 }
 
 static const char *choose_way(const pass *p, const pass *maps) {
-    if (!maps || !maps_are_faster(p->host->device)) return "rays";
+    if (!maps || !gpu_get_profile(p->host->device)->shadow_maps_win) return "rays";
     return leaves_lights_out(maps) ? "both" : "maps";
 }
 

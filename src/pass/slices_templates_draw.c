@@ -5,13 +5,8 @@
 #include "pass/slices_templates_parts.h"
 #include <string.h>
 
-// Cells above each other that a thread draws: more look at each template less often, fewer wait for
-// fewer pictures one after the other. The second is for a processor.
-enum { CELLS = 1, SOFTWARE_CELLS = 4 };
-
 static uint32_t cells_of(const slices_flow *f) {
-    gpu *device = f->pass->host->device;
-    return device && gpu_get_info(device)->kind == GPU_CPU ? SOFTWARE_CELLS : CELLS;
+    return gpu_get_profile(f->pass->host->device)->templates_cells;
 }
 
 // ---- building ---------------------------------------------------------------------------------

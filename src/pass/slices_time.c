@@ -43,9 +43,8 @@ void slices_restart(pass *p) {
 
 int64_t slices_most(const pass *p) {
     const slices_flow *f = slices_of(p);
-    bool software = gpu_get_info(p->host->device)->kind == GPU_CPU;
     double cells = (double)f->desc.size[0] * f->desc.size[1] * f->desc.count;
-    return pass_steps_most(cells * dearer, software, p->host->brief);
+    return pass_steps_most(cells * dearer, gpu_get_profile(p->host->device), p->host->brief);
 }
 
 // `apart`: what a step consists of is timed by itself.

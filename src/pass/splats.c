@@ -48,21 +48,16 @@ static bool splats_declare(pass *p) {
 
 // ---- building ---------------------------------------------------------------------------------
 
-// What suits processors whose threads take turns: no waiting for each other, and a splat's own
-// thread draws it up to that many pixels to each side, since reading a splat for each pixel is dear
-// there.
-static bool is_software(const pass *p) {
-    return p->host->device && gpu_get_info(p->host->device)->kind == GPU_CPU;
-}
-
 static bool splats_defines(pass *p, size_t index, pass_defines *out) {
     if ((index == SPLATS_BOUNDS || index > SPLATS_DRAW) && !is_sorted(p)) return false;
     if (index > SPLATS_DRAW) {
         splats_define_sort(p, out);
         return true;
     }
-    pass_define_flag(out, "GATHERED", !is_software(p));
-    pass_define(out, "DIRECT", is_software(p) ? "24.0" : "0.0");
+    const gpu_profile *device = gpu_get_profile(p->host->device);
+    pass_define_flag(out, "GATHERED", device->splats_gather);
+    pass_define(out, "DIRECT",
+                arena_format(p->host->memory, "%.1f", (double)device->splats_direct));
     return true;
 }
 

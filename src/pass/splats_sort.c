@@ -4,16 +4,13 @@
 
 enum {
     DIGIT_BITS = 4,
-    ITEMS = 16,            // of a thread, as in splats/sort.comp
-    THREADS = 256,         // of a group
-    SOFTWARE_THREADS = 32, // where threads of a group take turns
+    ITEMS = 16, // of a thread, as in splats/sort.comp
     KEY_BITS = 32,
     DEPTH_BITS = 16, // unless tiles need more of the key
 };
 
 static uint32_t group_threads(const pass *p) {
-    const gpu *device = p->host->device;
-    return device && gpu_get_info(device)->kind == GPU_CPU ? SOFTWARE_THREADS : THREADS;
+    return gpu_get_profile(p->host->device)->sort_threads;
 }
 
 void splats_define_sort(pass *p, pass_defines *out) {

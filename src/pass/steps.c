@@ -1,10 +1,7 @@
 #include "pass/steps.h"
 #include <math.h>
 
-static const double most_updates = 2e9, most_in_software = 1.5e7;
-static const double least_updates = 2e6, least_in_software = 2e4; // of a small lattice's step
-static const double rounding = 1e-6;                              // of a step
-enum { BRIEF = 64, BRIEF_IN_SOFTWARE = 20 };
+static const double rounding = 1e-6; // of a step
 
 static double steps_at(const pass_steps *s, double time) { // from the beginning, with a fraction
     return fmax((time + s->warm_up) / s->step, 0);
@@ -27,9 +24,8 @@ double pass_steps_blend(const pass_steps *s, int64_t done, double time) {
     return blend < rounding ? 0 : fmin(blend, 1);
 }
 
-int64_t pass_steps_most(double updates, bool software, bool brief) {
-    double most = software ? most_in_software / fmax(updates, least_in_software)
-                           : most_updates / fmax(updates, least_updates);
-    if (brief) most /= software ? BRIEF_IN_SOFTWARE : BRIEF;
+int64_t pass_steps_most(double updates, const gpu_profile *device, bool brief) {
+    double most = device->lattice_updates / fmax(updates, device->least_updates);
+    if (brief) most /= device->brief_updates;
     return (int64_t)fmax(1, most);
 }

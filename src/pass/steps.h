@@ -2,6 +2,7 @@
 // is drawn. The state stands a step ahead: the time of a picture lies between the states that the
 // last two steps left behind, and is a mixture of these.
 #pragma once
+#include "gpu/profile.h"
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -22,4 +23,4 @@ double pass_steps_blend(const pass_steps *s, int64_t done, double time);
 // Steps of one submit, where each takes as long as so many updates of a lattice's cells, or as long
 // as its dispatches alone: about 0.1 s of a large device, half a second of a software one. `brief`:
 // a part of that, so that a window stays awake.
-int64_t pass_steps_most(double updates, bool software, bool brief);
+int64_t pass_steps_most(double updates, const gpu_profile *device, bool brief);

@@ -3,6 +3,8 @@
 // is shared between two compiles but the library's constant paths and its counter, so threads need
 // no lock.
 #include "base/memory.h"
+#include "gpu/profile.h"
+#include "gpu/spirv.h"
 #include "shader/compiler.h"
 #include "shader/unit.h"
 #include <string.h>
@@ -114,6 +116,21 @@ static void *run(void *user) {
     return NULL;
 }
 
+// Without a device as much as with one: what is compiled to be checked is refused here.
+static bool meets_limits(const shader_compile_desc *desc, const shader_binary *out) {
+    const gpu_limits *limits = &gpu_get_profile(NULL)->limits;
+    gpu_demand demand = {0};
+    for (size_t i = 0; i < out->slot_count; i++) {
+        demand.storage_buffers += out->slots[i].slot.kind == GPU_SLOT_STORAGE_BUFFER;
+        demand.storage_images += out->slots[i].slot.kind == GPU_SLOT_STORAGE_IMAGE;
+    }
+    if (desc->stage == SHADER_COMPUTE && limits->shared_bytes < UINT32_MAX) {
+        demand.threads = out->local_size[0] * out->local_size[1] * out->local_size[2];
+        spirv_shared_bytes(out->code, out->size / 4, &demand.shared_bytes);
+    }
+    return gpu_meets_limits(limits, desc->name, &demand);
+}
+
 bool shader_compile(shader_library *library, arena *memory, const shader_compile_desc *desc,
                     shader_binary *out) {
     *out = (shader_binary){0};
@@ -131,5 +148,5 @@ bool shader_compile(shader_library *library, arena *memory, const shader_compile
     mem_free(j.inserts.items);
     arena_free(&j.scratch);
     unit_free(&j.unit);
-    return done;
+    return done && meets_limits(desc, out);
 }

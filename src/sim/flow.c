@@ -44,7 +44,6 @@ flow *flow_create(arena *memory, const flow_desc *desc) {
     f->chooses_iterations = desc->max_iterations == 0;
     f->chooses_sweeps = desc->sweeps == 0;
     f->chooses_solver = desc->solver == FLOW_AUTO;
-    flow_levels_find(f);
     return f;
 }
 
@@ -80,6 +79,7 @@ static void define_all(flow *f) {
     define(f, "FLOW_GROUP", f->group);
     define(f, "FLOW_FOLDS", flow_transform_folds(desc, f->tile));
     define(f, "FLOW_COARSE_SIDE", f->coarse_side);
+    define(f, "FLOW_COARSE", f->coarse);
 }
 
 size_t flow_defines(const flow *f, shader_define out[FLOW_MAX_DEFINES]) {
@@ -116,9 +116,9 @@ static bool is_used(const flow_desc *desc, flow_kernel which) {
     return which < FLOW_TO_MODES || which > FLOW_FROM_MODES || desc->solver == FLOW_TRANSFORM;
 }
 
-static flow_solver choose_solver(const flow_desc *desc, bool software) {
+static flow_solver choose_solver(const flow_desc *desc, const gpu_profile *device) {
     const bool suits = !desc->obstacles && !desc->templates && desc->size[1] <= FLOW_MOST_LINE &&
-                       (!software || desc->size[0] <= FLOW_SOFTWARE_TRANSFORM);
+                       desc->size[0] <= device->flow_transform;
     return suits ? FLOW_TRANSFORM : FLOW_MULTIGRID;
 }
 
@@ -127,20 +127,21 @@ static uint64_t tiles(const flow_desc *desc, uint32_t side) {
 }
 
 // What suits the device.
-static void choose(flow *f, bool software) {
+static void choose(flow *f, const gpu_profile *device) {
     const bool few = tiles(&f->desc, FLOW_LARGE_TILE) * f->desc.slices < FLOW_FEW_TILES;
-    f->tile = few && !software ? FLOW_SMALL_TILE : FLOW_LARGE_TILE;
-    f->group = software ? FLOW_SOFTWARE_GROUP : FLOW_GROUP;
-    f->coarse_side = software ? FLOW_SOFTWARE_COARSE_SIDE : FLOW_COARSE_SIDE;
-    if (f->chooses_solver) f->desc.solver = choose_solver(&f->desc, software);
-    if (f->chooses_sweeps) f->desc.sweeps = software ? FLOW_SOFTWARE_SWEEPS : FLOW_SWEEPS;
+    f->tile = few && device->flow_small_tiles ? FLOW_SMALL_TILE : FLOW_LARGE_TILE;
+    f->group = device->flow_group;
+    f->coarse_side = device->flow_coarse_side;
+    f->coarse = device->flow_coarse;
+    flow_levels_find(f);
+    if (f->chooses_solver) f->desc.solver = choose_solver(&f->desc, device);
+    if (f->chooses_sweeps) f->desc.sweeps = device->flow_sweeps;
     if (f->chooses_iterations) flow_choose_iterations(f);
 }
 
-// `device`: NULL, none in particular.
-static bool compile(flow *f, const gpu_info *device, shader_library *library,
+static bool compile(flow *f, const gpu_profile *device, shader_library *library,
                     const shader_reader *reader) {
-    choose(f, device && device->kind == GPU_CPU);
+    choose(f, device);
     define_all(f);
     for (int i = 0; i < FLOW_KERNELS; i++) {
         shader_define defines[FLOW_MAX_DEFINES + 1];
@@ -164,11 +165,11 @@ static bool compile(flow *f, const gpu_info *device, shader_library *library,
 }
 
 bool flow_compile(flow *f, shader_library *library, const shader_reader *reader) {
-    return compile(f, NULL, library, reader);
+    return compile(f, gpu_get_profile(NULL), library, reader);
 }
 
 bool flow_build(flow *f, gpu *g, shader_library *library, const shader_reader *reader) {
-    if (!compile(f, gpu_get_info(g), library, reader)) return false;
+    if (!compile(f, gpu_get_profile(g), library, reader)) return false;
     for (int i = 0; i < FLOW_KERNELS; i++)
         if (f->kernels[i].stages && !kernel_build(&f->kernels[i], g)) return false;
     return true;
@@ -191,12 +192,11 @@ static void find_sizes(const flow *f, uint64_t out[FLOW_MEM_COUNT]) {
     for (int i = 0; i < 2; i++) {
         out[FLOW_MEM_SCALARS + i] = cells * 16;
         out[FLOW_MEM_PRESSURE + i] = out[FLOW_MEM_RESIDUAL + i] = cells * 4;
-        out[FLOW_MEM_DIRECTION + i] = cells * 4;
+        out[FLOW_MEM_DIRECTION + i] = cells * 8;
     }
     if (desc->advection == FLOW_MACCORMACK) {
         out[FLOW_MEM_SCALARS_HAT] = cells * 16;
-        out[FLOW_MEM_FACE_FROM] = corners * 16;
-        out[FLOW_MEM_CELL_FROM] = cells * 8;
+        out[FLOW_MEM_TRACED] = corners * 16 + cells * 8;
     }
     if (desc->sources) out[FLOW_MEM_SOURCES] = cells * 48;
     if (desc->obstacles) out[FLOW_MEM_OBSTACLES] = cells * 16;
@@ -206,7 +206,6 @@ static void find_sizes(const flow *f, uint64_t out[FLOW_MEM_COUNT]) {
     out[FLOW_MEM_Z] = multigrid ? (last->z_at + end) * 4 : cells * 4;
     if (desc->solver == FLOW_TRANSFORM) out[FLOW_MEM_LINES] = cells * 4;
     if (multigrid && desc->sweeps > 1) out[FLOW_MEM_SWEPT] = out[FLOW_MEM_Z];
-    out[FLOW_MEM_IMAGE] = cells * 4;
     out[FLOW_MEM_KNOWN] = desc->slices * FLOW_KNOWN_WORDS * 4ull;
     out[FLOW_MEM_REPORT] = desc->slices * tiles(desc, f->tile) * 32;
     out[FLOW_MEM_PARTS] = desc->slices * FLOW_PART_KINDS * parts * 16;
@@ -252,11 +251,9 @@ static void list_own(const flow *f, gpu_buffer *out[FLOW_OWN]) {
         [N_FlowParts] = FLOW_MEM_PARTS,
         [N_FlowZ] = FLOW_MEM_Z,
         [N_FlowSwept] = FLOW_MEM_SWEPT,
-        [N_FlowImage] = FLOW_MEM_IMAGE,
         [N_FlowReport] = FLOW_MEM_REPORT,
         [N_FlowHatVelocity] = FLOW_MEM_VELOCITY_HAT,
-        [N_FlowFaceFrom] = FLOW_MEM_FACE_FROM,
-        [N_FlowCellFrom] = FLOW_MEM_CELL_FROM,
+        [N_FlowTraced] = FLOW_MEM_TRACED,
         [N_FlowHatScalars] = FLOW_MEM_SCALARS_HAT,
     };
     for (int i = 0; i < FLOW_OWN; i++) out[i] = f->buffers[where[i]];

@@ -1,5 +1,6 @@
 // The inside of a solver of 2D flow, for the files of this layer only.
 #pragma once
+#include "gpu/profile.h"
 #include "kernel/kernel.h"
 #include "sim/flow.h"
 
@@ -13,16 +14,6 @@ enum {
     FLOW_LARGE_TILE = 32,
     FLOW_SMALL_TILE = 16,
     FLOW_FEW_TILES = 128,
-    // Defaults of sweeps. Two take about half of the iterations, and a wider border around each
-    // tile: dispatches are saved for work.
-    FLOW_SWEEPS = 2,
-    FLOW_SOFTWARE_SWEEPS = 1,
-    // Threads of a group, and along a side of the one that does all coarser levels; on a
-    // processor, where each eight threads cost to begin and at every barrier.
-    FLOW_GROUP = 256,
-    FLOW_SOFTWARE_GROUP = 64,
-    FLOW_COARSE_SIDE = 16,
-    FLOW_SOFTWARE_COARSE_SIDE = 8,
     // Defaults of max_iterations, by sweeps: those that are not needed still cost what a dispatch
     // costs. With obstacles, whose shapes coarse levels cannot see, more.
     FLOW_ITERATIONS = 6,
@@ -33,7 +24,6 @@ enum {
     // templates change takes it many.
     FLOW_TRANSFORM_ITERATIONS = 2,
     FLOW_TRANSFORM_ITERATIONS_AROUND = 32,
-    FLOW_SOFTWARE_TRANSFORM = 128, // cells along x up to which a processor does it in less time
 };
 
 // ---- memory -----------------------------------------------------------------------------------
@@ -43,8 +33,7 @@ typedef enum flow_memory {
     FLOW_MEM_VELOCITY, // of the state
     FLOW_MEM_VELOCITY_NEXT,
     FLOW_MEM_VELOCITY_HAT,
-    FLOW_MEM_FACE_FROM, // where what the predictor traced back was
-    FLOW_MEM_CELL_FROM,
+    FLOW_MEM_TRACED,  // where what the predictor traced back was
     FLOW_MEM_SCALARS, // two
     FLOW_MEM_SCALARS_HAT = FLOW_MEM_SCALARS + 2,
     FLOW_MEM_PRESSURE,                        // two: times dt / cell
@@ -57,9 +46,8 @@ typedef enum flow_memory {
     FLOW_MEM_Z,                                       // of all levels
     FLOW_MEM_SWEPT,     // with more than one sweep: the same before the coarser levels are known
     FLOW_MEM_LINES,     // with a transform: of modes, along y
-    FLOW_MEM_DIRECTION, // two
-    FLOW_MEM_IMAGE = FLOW_MEM_DIRECTION + 2,
-    FLOW_MEM_KNOWN,
+    FLOW_MEM_DIRECTION, // two, each with its image under the equation
+    FLOW_MEM_KNOWN = FLOW_MEM_DIRECTION + 2,
     FLOW_MEM_PARTS,
     FLOW_MEM_REPORT,
     FLOW_MEM_COUNT
@@ -71,7 +59,7 @@ enum { FLOW_KNOWN_WORDS = 8, FLOW_PART_KINDS = 4, FLOW_BUILD_TILE = 32 };
 // ---- levels -----------------------------------------------------------------------------------
 
 // The last one, and those after it, are done by one group (shaders/sim/flow/coarse.comp).
-enum { FLOW_MAX_LEVELS = 7, FLOW_COARSE = 32 };
+enum { FLOW_MAX_LEVELS = 7 };
 
 typedef struct flow_level {
     uint32_t size[2];
@@ -124,8 +112,8 @@ typedef enum flow_kernel {
 #define FLOW_OWN_NAMES(NAME)                                                                       \
     NAME(FlowScalars), NAME(FlowVelocity), NAME(FlowSources), NAME(FlowObstacles),                 \
         NAME(FlowTemplates), NAME(FlowPressure), NAME(FlowCoefficients), NAME(FlowKnown),          \
-        NAME(FlowParts), NAME(FlowZ), NAME(FlowSwept), NAME(FlowImage), NAME(FlowReport),          \
-        NAME(FlowHatVelocity), NAME(FlowFaceFrom), NAME(FlowCellFrom), NAME(FlowHatScalars)
+        NAME(FlowParts), NAME(FlowZ), NAME(FlowSwept), NAME(FlowReport), NAME(FlowHatVelocity),    \
+        NAME(FlowTraced), NAME(FlowHatScalars)
 #define FLOW_NAMES(NAME)                                                                           \
     FLOW_OWN_NAMES(NAME), NAME(FlowResidual), NAME(FlowFrom), NAME(FlowTo), NAME(FlowDirection),   \
         NAME(FlowBefore), NAME(FlowPressureTo), NAME(FlowVelocityFrom), NAME(FlowVelocityLast),    \
@@ -147,6 +135,7 @@ struct flow {
     flow_level levels[FLOW_MAX_LEVELS];
     uint32_t level_count;
     uint32_t group, coarse_side;  // threads
+    uint32_t coarse;              // cells along a side of the first level of that group, at most
     uint32_t tile;                // cells along a side
     kernel kernels[FLOW_KERNELS]; // what its structure does not need is not compiled
     gpu_buffer *buffers[FLOW_MEM_COUNT];

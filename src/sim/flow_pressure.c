@@ -7,7 +7,12 @@
 // ---- levels -----------------------------------------------------------------------------------
 
 void flow_levels_find(flow *f) {
+    // Seven levels are possible, of which the first six have coefficients of their own.
+    const uint32_t side = f->desc.size[0] > f->desc.size[1] ? f->desc.size[0] : f->desc.size[1];
+    if (f->coarse << (FLOW_MAX_LEVELS - 1) < side)
+        f->coarse = (side + (1u << (FLOW_MAX_LEVELS - 1)) - 1) >> (FLOW_MAX_LEVELS - 1);
     flow_level l = {.size = {f->desc.size[0], f->desc.size[1]}};
+    f->level_count = 0;
     do {
         const uint32_t cells = l.size[0] * l.size[1] * f->desc.slices;
         f->levels[f->level_count++] = l;
@@ -16,8 +21,8 @@ void flow_levels_find(flow *f) {
         l.coefficients_at += cells;
         if (f->level_count > 1) l.r_at += cells; // those of the finest lie apart
         l.z_at += cells;
-    } while (f->levels[f->level_count - 1].size[0] > FLOW_COARSE ||
-             f->levels[f->level_count - 1].size[1] > FLOW_COARSE || f->level_count == 1);
+    } while (f->levels[f->level_count - 1].size[0] > f->coarse ||
+             f->levels[f->level_count - 1].size[1] > f->coarse || f->level_count == 1);
 }
 
 void flow_choose_iterations(flow *f) {

@@ -54,9 +54,8 @@ static bool check(const lbm_desc *desc) {
     return true;
 }
 
-// A processor reads halves in a way of its own.
-static uint32_t choose_lanes(const lbm_desc *desc, bool software) {
-    return desc->precision == LBM_F16 && !software ? 2 : 4;
+static uint32_t choose_lanes(const lbm_desc *desc, const gpu_profile *device) {
+    return desc->precision == LBM_F16 ? device->lbm_half_lanes : 4;
 }
 
 // Four elements of two cells side by side, where these are to be had.
@@ -137,13 +136,12 @@ static void define_all(lbm *l) {
         "LBM_EACH_BUFFER", arena_format(l->memory, "LBM_BUFFERS_%u", l->layout.buffers)};
 }
 
-// `device`: NULL, none in particular.
-static bool compile(lbm *l, const gpu_info *device, shader_library *library,
-                    const shader_reader *reader) {
-    const bool software = device && device->kind == GPU_CPU;
-    if (l->chooses_lanes) l->desc.lanes = choose_lanes(&l->desc, software);
-    if (l->chooses_order) l->desc.order = software ? LBM_WHOLE : LBM_BLOCKS;
-    if (!lbm_layout_find(&l->desc, device ? device->max_storage_range : UINT32_MAX, &l->layout))
+// `g`: NULL, none in particular.
+static bool compile(lbm *l, const gpu *g, shader_library *library, const shader_reader *reader) {
+    const gpu_profile *device = gpu_get_profile(g);
+    if (l->chooses_lanes) l->desc.lanes = choose_lanes(&l->desc, device);
+    if (l->chooses_order) l->desc.order = device->lbm_whole ? LBM_WHOLE : LBM_BLOCKS;
+    if (!lbm_layout_find(&l->desc, g ? gpu_get_info(g)->max_storage_range : UINT32_MAX, &l->layout))
         return false;
     define_all(l);
     return lbm_kernel_compile(l, &l->reset, "sim/lbm/reset.comp", library, reader, NULL, 0) &&
@@ -155,7 +153,7 @@ bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader) {
 }
 
 bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader) {
-    return compile(l, gpu_get_info(g), library, reader) && kernel_build(&l->reset.base, g) &&
+    return compile(l, g, library, reader) && kernel_build(&l->reset.base, g) &&
            lbm_step_build(l, g) && lbm_walls_build(l, g);
 }
 

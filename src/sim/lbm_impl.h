@@ -1,5 +1,6 @@
 // The inside of a lattice Boltzmann solver, for the files of this layer only.
 #pragma once
+#include "gpu/profile.h"
 #include "kernel/kernel.h"
 #include "sim/lbm.h"
 
@@ -84,8 +85,8 @@ typedef struct lbm_stepper {
     uint32_t skin_count, skin_layers;
 } lbm_stepper;
 
-bool lbm_step_compile(lbm *l, const gpu_info *device, shader_library *library,
-                      const shader_reader *reader); // `device` NULL: none in particular
+bool lbm_step_compile(lbm *l, const gpu_profile *device, shader_library *library,
+                      const shader_reader *reader);
 bool lbm_step_build(lbm *l, gpu *g);
 bool lbm_step_allocate(lbm *l, gpu *g);
 void lbm_step_destroy(lbm *l, gpu *g);

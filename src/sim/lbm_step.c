@@ -11,10 +11,6 @@
 
 static const char shader[] = "sim/lbm/step.comp";
 
-static bool is_software(const gpu_info *device) {
-    return device && device->kind == GPU_CPU && device->int64;
-}
-
 static bool is_passable(const lbm *l) {
     for (int i = 0; i < 6; i++)
         if (l->desc.faces[i] >= LBM_OPEN) return true;
@@ -27,14 +23,14 @@ static lbm_skin_order find_order(const lbm *l, bool software) {
     return software || alone ? LBM_SKIN_APART : LBM_SKIN_FIRST;
 }
 
-bool lbm_step_compile(lbm *l, const gpu_info *device, shader_library *library,
+bool lbm_step_compile(lbm *l, const gpu_profile *device, shader_library *library,
                       const shader_reader *reader) {
     static const char *const regions[][2] = {
         [LBM_NO_SKIN] = {"LBM_WHOLE"},
         [LBM_SKIN_FIRST] = {"LBM_SKIN_FIRST"},
         [LBM_SKIN_APART] = {"LBM_CORE", "LBM_SKIN"},
     };
-    const bool software = is_software(device) && l->layout.lanes == 4;
+    const bool software = device->lbm_software_step && l->layout.lanes == 4;
     lbm_stepper *s = &l->stepper;
     s->order = find_order(l, software);
     s->parts = s->order == LBM_SKIN_APART ? 2 : 1;

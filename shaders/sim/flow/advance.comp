@@ -19,8 +19,7 @@ layout(std430) writeonly buffer FlowScalarsTo { vec4 scalars_to[]; };
 #if FLOW_WITH_CORRECTION
 layout(std430) readonly buffer FlowHatVelocity { vec2 hat_velocity[]; };
 layout(std430) readonly buffer FlowHatScalars { vec4 hat_scalars[]; };
-layout(std430) readonly buffer FlowFaceFrom { vec4 face_from[]; };
-layout(std430) readonly buffer FlowCellFrom { vec2 cell_from[]; };
+layout(std430) readonly buffer FlowTraced { vec2 flow_traced[]; };
 FLOW_SCALAR_QUAD(hat_scalars_at, hat_scalars)
 #endif
 
@@ -44,7 +43,7 @@ FLOW_SCALAR_QUAD(hat_scalars_at, hat_scalars)
 
 vec4 carry_scalars(ivec2 cell, int slice) {
     uint at = flow_cell(cell, slice);
-    vec2 from = cell_from[at];
+    vec2 from = flow_traced[flow_traced_cell(cell, slice)];
     vec2 to = flow_trace(vec2(cell) + 0.5, flow_velocity_of(cell, slice), 1.0, slice);
     vec4 first = hat_scalars[at], own = flow_scalars[at];
     if (flow_is_near(from, slice) || flow_is_near(to, slice)) return first;
@@ -67,8 +66,8 @@ vec4 carry_scalars(ivec2 cell, int slice) {
 }
 #endif
 
-CARRY(carry_u, x, flow_quad_u, face_from[at].xy, flow_velocity_left)
-CARRY(carry_v, y, flow_quad_v, face_from[at].zw, flow_velocity_bottom)
+CARRY(carry_u, x, flow_quad_u, flow_traced[flow_traced_left(face, slice)], flow_velocity_left)
+CARRY(carry_v, y, flow_quad_v, flow_traced[flow_traced_bottom(face, slice)], flow_velocity_bottom)
 
 // ---- forces -----------------------------------------------------------------------------------
 

@@ -4,6 +4,17 @@
 #define SIM_FLOW_CARRY_GLSL
 #include "sim/flow/sample.glsl"
 
+// Where the predictor leaves what it traced back: of left and bottom faces by turns, then of cells.
+uint flow_traced_left(ivec2 face, int slice) {
+    return 2u * flow_corner(face, slice);
+}
+uint flow_traced_bottom(ivec2 face, int slice) {
+    return 2u * flow_corner(face, slice) + 1u;
+}
+uint flow_traced_cell(ivec2 cell, int slice) {
+    return 2u * flow_corner(ivec2(0), FLOW_SLICES) + flow_cell(cell, slice);
+}
+
 uniform float reach; // cells in a step, by 1 m/s
 // Of the faces left, right, bottom, top: 1 where clean air comes in.
 uniform vec4 fresh;

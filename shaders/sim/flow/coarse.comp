@@ -1,4 +1,4 @@
-// All levels of at most 32 x 32 cells, in one group for each slice, in shared memory. The same
+// All levels of at most FLOW_COARSE cells along a side, in one group for each slice, in shared memory. The same
 // sweeps as in down.comp and up.comp.
 layout(local_size_x = FLOW_COARSE_SIDE, local_size_y = FLOW_COARSE_SIDE) in;
 #include "sim/flow/state.glsl"
@@ -15,7 +15,7 @@ layout(std430) readonly buffer FlowCoefficients { uvec2 flow_coefficients[]; };
 layout(std430) readonly buffer FlowFrom { float from[]; };
 layout(std430) writeonly buffer FlowZ { float z_out[]; };
 
-const int MOST = 32 * 32 * 4 / 3 + 16;
+const int MOST = FLOW_COARSE * FLOW_COARSE * 4 / 3 + 16;
 shared float r[MOST], z[MOST], d[MOST]; // d: the cell's own coefficient
 shared float left[MOST];                // of red cells, after the sweeps down
 shared uint a[MOST];

@@ -11,8 +11,7 @@ layout(std430) readonly buffer FlowCoefficients { uvec2 flow_coefficients[]; };
 layout(std430) readonly buffer FlowZ { float z[]; };
 layout(std430) readonly buffer FlowResidual { float r[]; };
 layout(std430) readonly buffer FlowBefore { float before[]; };
-layout(std430) writeonly buffer FlowDirection { float direction[]; };
-layout(std430) writeonly buffer FlowImage { float image[]; };
+layout(std430) writeonly buffer FlowDirection { float direction[]; }; // of all cells, then its image
 
 // Along the way: beta, of the last direction.
 float direction_of(ivec2 cell, int slice, float beta) {
@@ -34,7 +33,7 @@ vec4 follow(ivec2 cell, int slice, float beta) {
                        direction_of(cell + ivec2(0, 1), slice, beta));
     float q = dot(faces, own - others) + uintBitsToFloat(c.y) * own;
     direction[at] = own;
-    image[at] = q;
+    direction[flow_cell_behind(cell, slice)] = q;
     float d = dot(faces, vec4(1.0)) + uintBitsToFloat(c.y), weight = d > 0.0 ? 4.0 / d : 0.0;
     float scaled = weight * weight * q;
     return vec4(own * q, scaled * r[at], scaled * q, weight * weight * r[at] * r[at]);

@@ -23,15 +23,15 @@ layout(std430) writeonly buffer FlowSwept { float swept[]; };
 #ifdef FLOW_FINEST
 uniform int iteration;
 uniform float tolerance;
-layout(std430) readonly buffer FlowDirection { float direction[]; };
-layout(std430) readonly buffer FlowImage { float image[]; }; // of the direction
+layout(std430) readonly buffer FlowDirection { float direction[]; }; // then its image
 layout(std430) buffer FlowPressure { float pressure[]; };
 layout(std430) writeonly buffer FlowResidual { float residual[]; };
 
 // r of a cell once the direction is followed.
-float follow(uint at, bool is_air, bool own, flow_way way, float mean) {
+float follow(ivec2 cell, int slice, bool is_air, bool own, flow_way way, float mean) {
+    uint at = flow_cell(cell, slice);
     float r = from[at];
-    r = way.leads ? r - way.stride * image[at] : is_air ? r - mean : 0.0;
+    r = way.leads ? r - way.stride * direction[flow_cell_behind(cell, slice)] : is_air ? r - mean : 0.0;
     if (!own) return r;
     residual[at] = r;
     if (way.leads) pressure[at] += way.stride * direction[at];
@@ -57,11 +57,10 @@ void load(int slice, flow_way way, float mean) {
         flow_tile_r[i] = flow_tile_z[i] = 0.0;
         if (!flow_within(cell, level_size)) continue;
         float d = flow_own(flow_coefficients_of(cell, slice));
-        uint at = flow_level_cell(cell, slice);
 #ifdef FLOW_FINEST
-        float r = follow(at, d > 0.0, flow_tile_owns(p), way, mean);
+        float r = follow(cell, slice, d > 0.0, flow_tile_owns(p), way, mean);
 #else
-        float r = from[uint(from_at) + at];
+        float r = from[uint(from_at) + flow_level_cell(cell, slice)];
 #endif
         flow_tile_r[i] = r;
         if (((p.x + p.y) & 1) == 0) flow_tile_z[i] = r * d;

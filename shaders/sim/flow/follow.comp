@@ -9,8 +9,7 @@ uniform int iteration;
 uniform float tolerance;
 layout(std430) readonly buffer FlowCoefficients { uvec2 flow_coefficients[]; };
 layout(std430) readonly buffer FlowFrom { float from[]; };
-layout(std430) readonly buffer FlowDirection { float direction[]; };
-layout(std430) readonly buffer FlowImage { float image[]; };
+layout(std430) readonly buffer FlowDirection { float direction[]; }; // then its image
 layout(std430) buffer FlowPressure { float pressure[]; };
 layout(std430) writeonly buffer FlowResidual { float residual[]; };
 
@@ -26,7 +25,7 @@ void main() {
         uvec2 c = flow_coefficients[at];
         float r = from[at];
         if (way.leads) {
-            r -= way.stride * image[at];
+            r -= way.stride * direction[flow_cell_behind(cell, slice)];
             pressure[at] += way.stride * direction[at];
         } else {
             r = c.x != 0u ? r - mean : 0.0;

@@ -8,8 +8,7 @@ layout(local_size_x = 16, local_size_y = 16) in;
 
 layout(std430) writeonly buffer FlowHatVelocity { vec2 hat_velocity[]; };
 layout(std430) writeonly buffer FlowHatScalars { vec4 hat_scalars[]; };
-layout(std430) writeonly buffer FlowFaceFrom { vec4 face_from[]; }; // left; bottom
-layout(std430) writeonly buffer FlowCellFrom { vec2 cell_from[]; };
+layout(std430) writeonly buffer FlowTraced { vec2 flow_traced[]; };
 
 void main() {
     ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
@@ -31,11 +30,12 @@ void main() {
         v.y = flow_mix(FLOW_FOUR(flow_velocity, y, q, slice), q.t);
     }
     hat_velocity[flow_corner(cell, slice)] = v;
-    face_from[flow_corner(cell, slice)] = from;
+    flow_traced[flow_traced_left(cell, slice)] = from.xy;
+    flow_traced[flow_traced_bottom(cell, slice)] = from.zw;
     if (!flow_inside(cell)) return;
     uint at = flow_cell(cell, slice);
     vec2 was = flow_trace(corner + 0.5, flow_velocity_of(cell, slice), -1.0, slice);
     flow_scalar_quad q = flow_scalars_before(was, slice);
-    cell_from[at] = was;
+    flow_traced[flow_traced_cell(cell, slice)] = was;
     hat_scalars[at] = flow_scalars_mean(q, flow_scalars[at]);
 }

@@ -33,6 +33,11 @@ uint flow_cell(ivec2 cell, int slice) {
     return uint((slice * FLOW_NY + cell.y) * FLOW_NX + cell.x);
 }
 
+// The same behind what a buffer has of all cells.
+uint flow_cell_behind(ivec2 cell, int slice) {
+    return uint(FLOW_SLICES * FLOW_NY * FLOW_NX) + flow_cell(cell, slice);
+}
+
 uint flow_corner(ivec2 cell, int slice) { // of velocities: up to and with FLOW_SIZE
     return uint((slice * (FLOW_NY + 1) + cell.y) * FLOW_ROW + cell.x);
 }
