@@ -130,7 +130,7 @@ struct drawn_part {
     SHARED_VEC4 color;  // base colour, linear, with the factor of all instances; w: alpha
     SHARED_VEC4 surface;  // as of surface_material
     SHARED_VEC4 emission; // the same
-    SHARED_UVEC4 flags; // x: 1 where it is textured; y: the view
+    SHARED_UVEC4 flags; // x: 1 where it is textured; y: the view; z: where the list of its bucket begins, among those of all (WITHOUT_FIRST_INSTANCE)
 };
 
 // A mesh at one of its levels, as shaders/pass/drawn/ choose it; src/pass/drawn_cull.c writes them.

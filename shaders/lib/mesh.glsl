@@ -5,6 +5,12 @@
 layout(std430) readonly buffer Vertices { surface_vertex mesh_vertices[]; };
 layout(std430) readonly buffer Instances { instance_entry mesh_instances[]; };
 layout(std430) readonly buffer InstanceList { uint mesh_list[]; };
+#if WITHOUT_FIRST_INSTANCE // a draw is of one bucket, and its instances are counted from 0
+layout(std430) readonly buffer DrawnFirsts { uint mesh_firsts[]; };
+uint mesh_listed() { return mesh_list[mesh_firsts[part.flags.z] + uint(gl_InstanceIndex)]; }
+#else
+uint mesh_listed() { return mesh_list[gl_InstanceIndex]; }
+#endif
 
 struct mesh_point {
     vec3 position; // in the world (m)
@@ -15,7 +21,7 @@ struct mesh_point {
 };
 
 mesh_point mesh_pull() {
-    uint number = mesh_list[gl_InstanceIndex];
+    uint number = mesh_listed();
     surface_vertex v = mesh_vertices[gl_VertexIndex];
     vec4 place = mesh_instances[number].place, turn = mesh_instances[number].turn;
     vec3 within = turn_vector(turn, v.position_u.xyz) * place.w + place.xyz;

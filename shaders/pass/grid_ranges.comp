@@ -7,6 +7,9 @@
 #ifndef BRICK // texels a side: 4 or 8
 #define BRICK 4
 #endif
+#ifndef PACKED
+#define PACKED 0
+#endif
 #ifndef FORMAT
 #define FORMAT rgba16f
 #endif
@@ -25,7 +28,17 @@ uniform int from_x;        // and the one before
 #define END uintBitsToFloat(0x7f800000u) // of a value that is no number nothing is known
 const int BRICKS = 16 / BRICK, BLOCKS = 10, OWN = BRICK / 2, REACH = OWN + 2; // a side
 
-shared vec4 least[BLOCKS * BLOCKS * BLOCKS], most[BLOCKS * BLOCKS * BLOCKS]; // not packed: that takes longer
+// Packed where they would not fit, which takes longer. What is stored are halves all the same.
+#if PACKED
+#define BOUND uvec2
+BOUND bound_put(vec4 v) { return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw)); }
+vec4 bound_get(BOUND b) { return vec4(unpackHalf2x16(b.x), unpackHalf2x16(b.y)); }
+#else
+#define BOUND vec4
+#define bound_put(v) (v)
+#define bound_get(b) (b)
+#endif
+shared BOUND least[BLOCKS * BLOCKS * BLOCKS], most[BLOCKS * BLOCKS * BLOCKS];
 
 #ifdef SPARSE
 vec4 value(ivec3 at) {
@@ -58,8 +71,8 @@ void find_block(int i, ivec3 corner) {
         low = min(low, mix(vec4(-END), v, number));
         high = max(high, mix(vec4(END), v, number));
     }
-    least[i] = low;
-    most[i] = high;
+    least[i] = bound_put(low);
+    most[i] = bound_put(high);
 }
 
 #ifdef SPARSE
@@ -99,8 +112,8 @@ void from_values() {
     for (int k = 0; k < REACH * REACH * REACH; k++) {
         ivec3 block = OWN * brick + place(k, REACH);
         int b = block.x + BLOCKS * (block.y + BLOCKS * block.z);
-        low = min(low, least[b]);
-        high = max(high, most[b]);
+        low = min(low, bound_get(least[b]));
+        high = max(high, bound_get(most[b]));
     }
     store(own, low, high);
 }

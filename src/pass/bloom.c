@@ -8,9 +8,7 @@
 #include "pass/bloom_parts.h"
 #include <string.h>
 
-// Levels of so few texels are done in one dispatch; with those below they fit
-// into its shared memory (bloom/tail.glsl).
-enum { TAIL_TEXELS = 2560 };
+enum { TAIL_ROOM = 4096, TAIL_BYTES = 8 }; // texels in shared memory, of one (bloom/tail.glsl)
 
 static const char *const names[] = {BLOOM_NAMES(KERNEL_NAME_TEXT)};
 static const char *const stage_names[BLOOM_STAGES] = {
@@ -24,6 +22,12 @@ typedef struct levels { // of the bloom
     uint32_t last; // the widest that is added
     uint32_t tail; // the finest that BLOOM_TAIL does; `last`: it does none
 } levels;
+
+// Texels of all levels that one dispatch does.
+static uint32_t tail_room(const pass *p) {
+    const uint32_t most = gpu_get_profile(p->host->device)->limits.shared_bytes / TAIL_BYTES;
+    return most < TAIL_ROOM ? most : TAIL_ROOM;
+}
 
 // ---- declaring --------------------------------------------------------------------------------
 
@@ -73,6 +77,7 @@ static bool bloom_defines(pass *p, size_t index, pass_defines *out) {
     pass_define_flag(out, "FROM_BRIGHT", s->bright);
     pass_define_flag(out, "BRIGHT_PAPER", s->bright && pass_has_word(s->bright, "mode", "paper"));
     pass_define_flag(out, "SAME_SIZE", s->same_size);
+    pass_define_number(p, out, "TAIL_ROOM", tail_room(p));
     pass_define(out, "MOST_THREADS", pass_most_threads(p));
     for (size_t i = 0; i < BLOOM_STAGES; i++) pass_define_flag(out, stage_names[i], i == index);
     return true;
@@ -132,8 +137,9 @@ static levels find_levels(pass *p) {
     l.last = desc->mips - 1;
     if (wanted && wanted < l.last) l.last = wanted;
     l.tail = l.last < 1 ? l.last : 1;
-    while (l.tail < l.last &&
-           mip_size(l.size[0], l.tail) * mip_size(l.size[1], l.tail) > TAIL_TEXELS)
+    // With those below it a level of so many texels has room.
+    const uint32_t most = tail_room(p) / 8 * 5;
+    while (l.tail < l.last && mip_size(l.size[0], l.tail) * mip_size(l.size[1], l.tail) > most)
         l.tail++;
     return l;
 }

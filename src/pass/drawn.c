@@ -124,9 +124,18 @@ void drawn_destroy(drawn *d) {
 // ---- bindings ---------------------------------------------------------------------------------
 
 // Slots that are another's for each draw, by name.
-enum { SLOT_PART, SLOT_VERTICES, SLOT_INSTANCES, SLOT_LIST, SLOT_TEXTURE, SLOT_VIEWS, SLOT_NAMES };
-static const char *const slot_names[SLOT_NAMES] = {"Part",         "Vertices",     "Instances",
-                                                   "InstanceList", "mesh_texture", "Views"};
+enum {
+    SLOT_PART,
+    SLOT_VERTICES,
+    SLOT_INSTANCES,
+    SLOT_LIST,
+    SLOT_FIRSTS,
+    SLOT_TEXTURE,
+    SLOT_VIEWS,
+    SLOT_NAMES
+};
+static const char *const slot_names[SLOT_NAMES] = {
+    "Part", "Vertices", "Instances", "InstanceList", "DrawnFirsts", "mesh_texture", "Views"};
 
 typedef struct drawn_slots { // of both stages
     gpu_binding bindings[GPU_MAX_SLOTS];
@@ -188,6 +197,9 @@ static void bind_part(const drawn *d, const drawn_body *body, const scene_mesh *
         case SLOT_LIST:
             out[i].buffer = body->buffers[DRAWN_LIST];
             break;
+        case SLOT_FIRSTS:
+            out[i].buffer = body->buffers[DRAWN_FIRSTS];
+            break;
         case SLOT_TEXTURE:
             out[i].image = part->texture >= 0 ? mesh->textures[part->texture] : d->p->blank[0];
             out[i].sampler = GPU_LINEAR_REPEAT;
@@ -206,14 +218,22 @@ typedef struct recording {
     size_t view;
     const uint32_t *viewport; // NULL: the whole target
     bool alike;
+    bool apart; // each level is a draw of its own: commands cannot say where their lists begin
 } recording;
 
-static size_t count_draws(const drawn *d, bool alike) { // of a view
+static bool draws_apart(const drawn *d) {
+    return !gpu_get_profile(d->p->host->device)->limits.first_instance;
+}
+
+static size_t count_draws(const drawn *d, bool alike) { // of a view, at most
     size_t count = 0;
     for (size_t i = 0; i < d->body_count; i++)
         for (size_t k = 0; k < d->bodies[i].kind_count; k++) {
             const mesh_data *mesh = &d->bodies[i].kinds[k]->data;
-            count += alike ? 1 : mesh->part_count;
+            if (draws_apart(d))
+                count += mesh->part_count * drawn_level_count(mesh);
+            else
+                count += alike ? 1 : mesh->part_count;
         }
     return count;
 }
@@ -226,17 +246,25 @@ static void reserve(drawn *d, size_t draws, size_t slots) {
     d->draw_count = 0;
 }
 
-// The part at all its levels; `count`: commands, which may go on to the parts behind it.
+// Of a level of a kind, in the view: where its list begins, among the firsts.
+static uint32_t find_first(const recording *r, const drawn_body *body, size_t kind,
+                           uint32_t level) {
+    const size_t bucket = (r->view * body->kind_count + kind) * DRAWN_LEVELS + level;
+    return (uint32_t)bucket * ((body->count + DRAWN_BLOCK - 1) / DRAWN_BLOCK);
+}
+
+// The part from a level on; `count`: commands, which may go on to the parts behind it.
 static void add_draw(const recording *r, const drawn_body *body, size_t kind, uint32_t part,
-                     uint32_t count) {
+                     uint32_t level, uint32_t count) {
     drawn *d = r->d;
     size_t i = d->draw_count++;
     const scene_mesh *mesh = body->kinds[kind];
     gpu_binding *bindings = d->bindings + i * r->slots->count;
     fill_part(&body->places[kind], &mesh->data.parts[part], r->view, &d->parts[i]);
+    d->parts[i].flags.v[2] = find_first(r, body, kind, level);
     bind_part(d, body, mesh, &mesh->data.parts[part], &d->parts[i], r->slots, bindings);
     uint64_t command = (uint64_t)r->view * body->command_count + body->commands[kind] +
-                       part * drawn_level_count(&mesh->data);
+                       part * drawn_level_count(&mesh->data) + level;
     d->draws[i] = (gpu_draw){
         .bindings = bindings,
         .binding_count = r->slots->count,
@@ -252,9 +280,11 @@ static void add_body_draws(const recording *r, const drawn_body *body) {
     for (size_t k = 0; k < body->kind_count; k++) {
         const mesh_data *mesh = &body->kinds[k]->data;
         uint32_t levels = drawn_level_count(mesh);
-        if (r->alike) add_draw(r, body, k, 0, levels * mesh->part_count);
-        for (uint32_t i = 0; i < mesh->part_count && !r->alike; i++)
-            add_draw(r, body, k, i, r->d->levels ? levels : 1);
+        if (r->alike && !r->apart) add_draw(r, body, k, 0, 0, levels * mesh->part_count);
+        for (uint32_t i = 0; i < mesh->part_count && !r->alike && !r->apart; i++)
+            add_draw(r, body, k, i, 0, r->d->levels ? levels : 1);
+        for (uint32_t i = 0; i < mesh->part_count * levels && r->apart; i++)
+            add_draw(r, body, k, i / levels, i % levels, 1);
     }
 }
 
@@ -264,7 +294,8 @@ bool drawn_record(drawn *d, drawn_stages *stages, gpu_draw_desc *target, size_t 
     if (!bind_stages(d, stages, &slots)) return false;
     reserve(d, count * count_draws(d, stages->alike), slots.count);
     for (size_t v = 0; v < count; v++) {
-        const recording r = {d, &slots, first + v, places ? places[v] : NULL, stages->alike};
+        const recording r = {
+            d, &slots, first + v, places ? places[v] : NULL, stages->alike, draws_apart(d)};
         for (size_t i = 0; i < d->body_count; i++) add_body_draws(&r, &d->bodies[i]);
     }
     target->pipeline = stages->pipeline;

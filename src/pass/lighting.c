@@ -106,6 +106,7 @@ typedef struct lighting_state {
     uint32_t shadow_size, glow_size, fire_count;
     uint32_t shadow_parts; // threads of a ray, in lighting/shadow.glsl
     uint32_t rays_apart;   // of threads, one traces rays to meshes
+    uint32_t slices_kept;  // in shared memory, of a sweep
     graph_image grids[GRIDS];
     gpu_buffer *buffers[LEVELS][BUFFERS];
 } lighting_state;
@@ -198,14 +199,17 @@ static bool add_parts(pass *p) {
     return true;
 }
 
-// A GPU wants many threads, each with little to do; on a processor each thread costs by itself.
-static uint32_t choose_shadow_parts(const gpu *device, uint32_t size) {
-    return device && gpu_get_info(device)->kind == GPU_CPU ? 8 : size / 4;
+// Threads of a ray, of which a group has 16, or 32 where they are few (lighting/shadow.glsl).
+static uint32_t choose_shadow_parts(const gpu_profile *device, uint32_t size) {
+    uint32_t parts = device->lighting_parts ? device->lighting_parts : size / 4;
+    while (parts * (parts > 8 ? 16 : 32) > device->limits.group_threads) parts /= 2;
+    return parts;
 }
 
-// Rays of one subgroup wait for each other; on a processor threads that wait for one cost the same.
-static uint32_t choose_rays_apart(const gpu *device) {
-    return device && gpu_get_info(device)->kind == GPU_CPU ? 1 : 32;
+// That a sweep keeps in shared memory: two, where that has room for them (lighting/sweep.glsl).
+static uint32_t choose_slices(const gpu_profile *device, uint32_t size) {
+    const uint32_t pairs = (size + 2) * (size / 2 + 2); // of cells, with a border
+    return 2 * 16 * pairs <= device->limits.shared_bytes ? 2 : 1;
 }
 
 static bool lighting_declare(pass *p) {
@@ -213,9 +217,12 @@ static bool lighting_declare(pass *p) {
     lighting_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     s->declared = around ? (uint32_t)around->light_count + 1 : 1;
     s->shadow_size = pass_option_number(p, N_shadow_resolution);
-    s->shadow_parts = choose_shadow_parts(p->host->device, s->shadow_size);
-    s->rays_apart = choose_rays_apart(p->host->device);
+    const gpu_profile *device = gpu_get_profile(p->host->device);
+    s->shadow_parts = choose_shadow_parts(device, s->shadow_size);
+    s->rays_apart = device->lighting_apart;
+    while (LOOKS / LOOK_PARTS * s->rays_apart > device->limits.group_threads) s->rays_apart /= 2;
     s->glow_size = pass_option_number(p, N_glow_resolution);
+    s->slices_kept = choose_slices(device, s->glow_size);
     s->fire_count = pass_option_number(p, N_fire_lights);
     return pass_check_density(p) && add_images(p) && add_parts(p);
 }
@@ -229,6 +236,7 @@ static bool lighting_defines(pass *p, size_t index, pass_defines *out) {
     pass_define_number(p, out, "SHADOW_PARTS", s->shadow_parts);
     pass_define_number(p, out, "GLOW_SIZE", s->glow_size);
     pass_define_number(p, out, "RAYS_APART", s->rays_apart);
+    pass_define_number(p, out, "SLICES_KEPT", s->slices_kept);
     pass_define(out, "MOST_THREADS", pass_most_threads(p));
     pass_define_number(p, out, "FIRE_COUNT", s->fire_count);
     pass_define_number(p, out, "LEVEL_SIZE", s->glow_size >> level_of((lighting_stage)index));

@@ -59,11 +59,21 @@ static size_t define_sky(const pass *p, shader_define out[PASS_PROVIDER_DEFINES]
 static const pass_provider sky = {
     .slots = {sky_slots, SKY_SLOTS}, .defines = define_sky, .bind = bind_sky};
 
+// ---- what is drawn ----------------------------------------------------------------------------
+
+static size_t define_drawn(const pass *p, shader_define out[PASS_PROVIDER_DEFINES]) {
+    const bool counts = gpu_get_profile(p->host->device)->limits.first_instance;
+    out[0] = (shader_define){"WITHOUT_FIRST_INSTANCE", counts ? "0" : "1"};
+    return 1;
+}
+
+static const pass_provider drawn = {.defines = define_drawn};
+
 // ---- all --------------------------------------------------------------------------------------
 
 const pass_provider *const *pass_providers(size_t *count) {
-    static const pass_provider *const rows[] = {&pass_particles_provider, &pass_lamps_provider,
-                                                &counters, &rays, &sky};
+    static const pass_provider *const rows[] = {
+        &pass_particles_provider, &pass_lamps_provider, &counters, &rays, &sky, &drawn};
     *count = COUNT_OF(rows);
     return rows;
 }

@@ -13,6 +13,7 @@ enum { NAMES(KERNEL_NAME_ID) };
 static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
 static const char *const shaders[] = {"pass/grid_ranges.comp"};
 const kernel_table ranges_kernel_table = {{names, COUNT_OF(names)}, shaders, COUNT_OF(shaders)};
+enum { WHOLE_BYTES = 32004 }; // that its groups share where blocks are not packed
 
 typedef struct ranges_kind { // of grids that one kernel does for
     gpu_format format;
@@ -50,13 +51,16 @@ static ranges_kind *find_kind(struct pass_ranges *r, gpu_format format, bool spa
 
 static bool build_kind(pass *p, gpu_format format, bool sparse) {
     struct pass_ranges *r = p->host->ranges;
-    const shader_define defines[] = {
-        {"FORMAT", gpu_format_name(format)}, {"BRICK", sparse ? "8" : "4"}, {"SPARSE", ""}};
+    const bool fits = gpu_get_profile(p->host->device)->limits.shared_bytes >= WHOLE_BYTES;
+    const shader_define defines[] = {{"FORMAT", gpu_format_name(format)},
+                                     {"BRICK", sparse ? "8" : "4"},
+                                     {"PACKED", fits ? "0" : "1"},
+                                     {"SPARSE", ""}};
     const kernel_source source = {.label = "ranges",
                                   .stages = {{.name = shaders[0],
                                               .stage = SHADER_COMPUTE,
                                               .defines = defines,
-                                              .define_count = sparse ? 3 : 2,
+                                              .define_count = sparse ? 4 : 3,
                                               .reader = p->host->reader}},
                                   .stage_count = 1,
                                   .names = ranges_kernel_table.names};

@@ -1,10 +1,9 @@
 // All small levels in one work group, in shared memory: `color` is the finest of them. A dispatch for
 // each would take longer to begin than to end.
 #define THREADS MOST_THREADS
-#define TEXELS 4096 // of all levels together, as in pass/bloom.c
 layout(local_size_x = THREADS) in;
 uniform int tail_levels; // how many times to halve
-shared uvec2 tail_texels[TEXELS]; // half floats
+shared uvec2 tail_texels[TAIL_ROOM]; // half floats, of all levels together
 
 struct tail_level {
     ivec2 size;

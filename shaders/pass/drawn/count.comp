@@ -27,6 +27,6 @@ void main() {
     for (uint i = 0u; i < draws.y; i++) {
         uint command = 5u * (view * command_count + draws.x + i * draws.w);
         commands[command + 1u] = at - first;
-        commands[command + 4u] = first;
+        commands[command + 4u] = WITHOUT_FIRST_INSTANCE != 0 ? 0u : first;
     }
 }

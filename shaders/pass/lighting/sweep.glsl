@@ -47,11 +47,12 @@ layout(std430) readonly buffer Medium { uvec2 medium_slices[]; };
 layout(std430) writeonly buffer Ways { uint ways[]; };
 
 // What leaves the cells of the slice before, and of the one at hand; around it a border of nothing.
+// With SLICES_KEPT 1 the latter takes the place of the former once nobody reads that any more.
 const int ROW = ACROSS + 2;
-shared vec2 leaving[2][(LEVEL_SIZE + 2) * ROW];
+shared vec2 leaving[SLICES_KEPT][(LEVEL_SIZE + 2) * ROW];
 // Of both cells the source function, light per part of the light that is taken, and the part of the
 // light that half a voxel takes; of more than a half that it lets through, below 0.
-shared uvec2 halves[2][(LEVEL_SIZE + 2) * ROW];
+shared uvec2 halves[SLICES_KEPT][(LEVEL_SIZE + 2) * ROW];
 
 struct path { // of a direction through the grid
     vec3 way;
@@ -127,7 +128,7 @@ void main() {
     bool forward = on.way[on.axis] > 0.0;
 
     for (int i = thread; i < ROW * (LEVEL_SIZE + 2); i += THREADS)
-        for (int k = 0; k < 2; k++) {
+        for (int k = 0; k < SLICES_KEPT; k++) {
             leaving[k][i] = vec2(0.0);
             halves[k][i] = uvec2(0);
         }
@@ -140,6 +141,10 @@ void main() {
     uvec4 next_source[ROUNDS];
     uvec2 next_medium[ROUNDS];
     pair pairs[ROUNDS];
+#if SLICES_KEPT == 1
+    vec2 own_leaving[ROUNDS];
+    uvec2 own_halves[ROUNDS];
+#endif
     for (int r = 0; r < ROUNDS; r++) {
         int own = r * THREADS + thread;
         pairs[r] = make_pair(on, own);
@@ -178,11 +183,22 @@ void main() {
             vec2 made = from_light * through + given + from.xz * early + own * late;
             ways[(kept + slice) * PAIRS + r * THREADS + thread] = half_pair(made.x, made.y);
 
+#if SLICES_KEPT == 1
+            own_leaving[r] = made * through + given;
+            own_halves[r] = to_halves(own, exp(-thickness * grey));
+        }
+        barrier();
+        for (int r = 0; r < ROUNDS; r++) {
+            leaving[0][pairs[r].here] = own_leaving[r];
+            halves[0][pairs[r].here] = own_halves[r];
+        }
+#else
             leaving[1 - before][p.here] = made * through + given;
             halves[1 - before][p.here] = to_halves(own, exp(-thickness * grey));
         }
-        slice = after;
         before = 1 - before;
+#endif
+        slice = after;
         barrier();
     }
 }
