@@ -287,6 +287,30 @@ void budget_move(budget_part *from, budget_part *to, uint64_t bytes) {
     pthread_mutex_unlock(&from->owner->lock);
 }
 
+// ---- lists ------------------------------------------------------------------------------------
+
+void budget_list_add(budget_list *list, const char *label, uint64_t bytes) {
+    if (bytes == 0) return;
+    MEM_RESERVE(list->rows, list->count + 1, list->capacity);
+    budget_row *row = &list->rows[list->count++];
+    *row = (budget_row){.bytes = bytes};
+    str_copy(row->label, sizeof row->label, label);
+}
+
+bool budget_list_first(budget_list *list, const void *owner) {
+    for (size_t i = 0; i < list->owner_count; i++)
+        if (list->owners[i] == owner) return false;
+    MEM_RESERVE(list->owners, list->owner_count + 1, list->owner_capacity);
+    list->owners[list->owner_count++] = owner;
+    return true;
+}
+
+void budget_list_free(budget_list *list) {
+    mem_free(list->rows);
+    mem_free(list->owners);
+    *list = (budget_list){0};
+}
+
 // ---- questions --------------------------------------------------------------------------------
 
 bool budget_ask(budget *b, const budget_row *rows, size_t count, uint64_t freed) {

@@ -20,6 +20,18 @@ typedef struct budget_row { // one label
     uint64_t bytes;
 } budget_row;
 
+typedef struct budget_list { // zero: empty
+    budget_row *rows;        // mem_free, by budget_list_free
+    size_t count, capacity;
+    const void **owners; // that were asked about
+    size_t owner_count, owner_capacity;
+} budget_list;
+
+void budget_list_add(budget_list *list, const char *label, uint64_t bytes); // `label` is copied
+// Whether it is asked for the first time about this object, so that what is shared counts once.
+bool budget_list_first(budget_list *list, const void *owner);
+void budget_list_free(budget_list *list); // empty afterwards
+
 // What may be taken of each budget: "60%" of what there is of it, or an amount as "8G" or "512M".
 // NULL: 60 %. Of the whole process, from now on; false with a message when it is none of these.
 bool budget_set_share(const char *text);

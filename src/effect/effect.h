@@ -249,6 +249,11 @@ bool effect_check(effect *e);
 // Compiles shaders and pipelines. With the graph of another effect in use by other threads: any
 // thread may do this, one at a time for a library.
 bool effect_compile(effect *e);
+// After graph_compile: adds what the first picture lacks of memory, of the host's and the device's,
+// but for single texels and what is known only when numbers are. Returns the bytes of images that
+// it does not need any more.
+uint64_t effect_list_memory(const effect *e, budget_list *host, budget_list *device);
+// All of that is asked for before the first part of it is taken.
 bool effect_allocate(effect *e, uint32_t width, uint32_t height); // after compile, or again
 bool effect_build(effect *e, uint32_t width, uint32_t height);    // both
 // Evaluates all that a frame needs (update, functions, curves) and draws nothing. Any thread.

@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include "base/worker.h"
 #include "effect/effect_impl.h"
 #include "scene/bvh.h"
@@ -147,36 +146,43 @@ bool effect_compile(effect *e) {
     return true;
 }
 
-// What the first picture wants of all grids, known before the first of them takes any.
-static bool grids_fit(effect *e) {
-    budget *host = budget_host(), *device = gpu_get_budget(e->device);
-    budget_row *rows = mem_alloc(2 * e->grid_count * sizeof *rows), *other = rows + e->grid_count;
+uint64_t effect_list_memory(const effect *e, budget_list *host, budget_list *device) {
+    for (size_t i = 0; i < e->pass_count; i++)
+        if (effect_runs(e, pass_runner(e->passes[i]))) pass_list_memory(e->passes[i], device);
+    for (size_t i = 0; i < e->instances_count; i++)
+        if (budget_list_first(device, e->instances[i]))
+            scene_instances_list_memory(e->instances[i], device);
+    scene_bvh_list_memory(e->host.bvh, device);
+    if (e->sky) sky_image_list_memory(e->sky, device);
     for (size_t i = 0; i < e->grid_count; i++) {
         const field_grid *grid = e->grids[i];
-        field_needs needs = grid->needs ? grid->needs(grid) : (field_needs){0};
-        str_copy(rows[i].label, sizeof rows[i].label, grid->name);
-        other[i] = rows[i];
-        rows[i].bytes = needs.host;
-        other[i].bytes = needs.device;
+        const field_needs needs = grid->needs ? grid->needs(grid) : (field_needs){0};
+        budget_list_add(host, grid->name, needs.host);
+        budget_list_add(device, grid->name, needs.device);
     }
-    bool fit = host == device ? budget_ask(host, rows, 2 * e->grid_count, 0)
-                              : budget_ask(host, rows, e->grid_count, 0) &&
-                                    budget_ask(device, other, e->grid_count, 0);
-    mem_free(rows);
-    return fit || err_prefix("%s: its grids: ", e->file);
+    return graph_list_memory(e->graph, device);
+}
+
+static bool fits(effect *e) {
+    budget *const host = budget_host();
+    const bool shared = gpu_get_budget(e->device) == host;
+    budget_list lists[2] = {0};
+    const uint64_t freed = effect_list_memory(e, &lists[0], &lists[shared ? 0 : 1]);
+    const bool fit = gpu_memory_fits(e->device, &lists[shared ? 0 : 1], freed) &&
+                     (shared || budget_ask(host, lists[0].rows, lists[0].count, 0));
+    for (int i = 0; i < 2; i++) budget_list_free(&lists[i]);
+    return fit || err_prefix("%s: ", e->file);
 }
 
 // The graph is compiled: what it culls needs no memory.
 static bool allocate(effect *e) {
-    if (!graph_fits(e->graph, e->device)) // mostly the most of it
-        return err_prefix("%s: the images of its passes: ", e->file);
+    if (!fits(e)) return false;
     for (size_t i = 0; i < e->pass_count; i++)
         if (effect_runs(e, pass_runner(e->passes[i])) && !pass_allocate(e->passes[i])) return false;
     for (size_t i = 0; i < e->instances_count; i++)
         if (!scene_instances_allocate(e->instances[i], e->device)) return false;
     return scene_bvh_allocate(e->host.bvh, e->device) &&
-           (!e->sky || sky_image_upload(e->sky, e->device)) &&
-           graph_allocate(e->graph, e->device) && grids_fit(e);
+           (!e->sky || sky_image_upload(e->sky, e->device)) && graph_allocate(e->graph, e->device);
 }
 
 bool effect_allocate(effect *e, uint32_t width, uint32_t height) {

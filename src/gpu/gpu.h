@@ -8,6 +8,7 @@
 //
 // Errors (bad input, missing device, no device memory) are NULL or false plus err_get().
 #pragma once
+#include "base/budget.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -82,9 +83,9 @@ typedef struct gpu_memory_use {
     uint32_t blocks;
 } gpu_memory_use;
 gpu_memory_use gpu_get_memory_use(const gpu *g);
-// What its images and buffers are taken from before they are made (base/budget.h): a budget of its
-// own, or the host's where the device shares the host's memory.
-struct budget *gpu_get_budget(const gpu *g);
+// What its images and buffers are taken from before they are made: a budget of its own, or the
+// host's where the device shares the host's memory.
+budget *gpu_get_budget(const gpu *g);
 
 // ---- resources --------------------------------------------------------------------------------
 
@@ -123,10 +124,10 @@ typedef struct gpu_image_desc {
     uint32_t use;                  // gpu_image_use bits
 } gpu_image_desc;
 
-// Whether there is memory for all of these, if others were let go; false with a message that has
-// the sum.
-bool gpu_images_fit(gpu *g, const gpu_image_desc *images, size_t count, const gpu_image_desc *freed,
-                    size_t freed_count);
+uint64_t gpu_image_bytes(const gpu_image_desc *desc); // of all mip levels
+// Whether the device's memory has room for all of these, if `freed` bytes were let go before; false
+// with a message that has the sum.
+bool gpu_memory_fits(gpu *g, const budget_list *wanted, uint64_t freed);
 // These images are about to go: until this is called with none, others may be made beside them.
 void gpu_lend_memory(gpu *g, const gpu_image_desc *going, size_t count);
 gpu_image *gpu_image_create(gpu *g, const gpu_image_desc *desc); // contents undefined

@@ -194,7 +194,7 @@ void vk_pool_deinit(gpu *g) {
     g->pool = (vk_pool){0};
 }
 
-static uint64_t bytes_of(const gpu_image_desc *d) {
+uint64_t gpu_image_bytes(const gpu_image_desc *d) {
     uint64_t bytes = 0, width = d->width, height = d->height, depth = d->depth ? d->depth : 1;
     for (uint32_t i = 0; i < (d->mips ? d->mips : 1); i++) {
         bytes += width * height * depth * gpu_format_size(d->format);
@@ -205,25 +205,16 @@ static uint64_t bytes_of(const gpu_image_desc *d) {
     return bytes;
 }
 
-bool gpu_images_fit(gpu *g, const gpu_image_desc *images, size_t count, const gpu_image_desc *freed,
-                    size_t freed_count) {
-    budget_row *rows = mem_alloc(count * sizeof *rows);
-    uint64_t less = 0;
-    for (size_t i = 0; i < freed_count; i++) less += bytes_of(&freed[i]);
-    for (size_t i = 0; i < count; i++) {
-        str_copy(rows[i].label, sizeof rows[i].label, images[i].label);
-        rows[i].bytes = bytes_of(&images[i]);
-    }
-    // Retired images may still count.
-    bool fit = budget_ask(g->pool.budgets[1], rows, count, less) ||
-               (!g->frame && gpu_idle(g) && budget_ask(g->pool.budgets[1], rows, count, less));
-    mem_free(rows);
-    return fit;
+bool gpu_memory_fits(gpu *g, const budget_list *wanted, uint64_t freed) {
+    budget *all = g->pool.budgets[1];
+    if (budget_ask(all, wanted->rows, wanted->count, freed)) return true;
+    // Retired objects may still count.
+    return !g->frame && gpu_idle(g) && budget_ask(all, wanted->rows, wanted->count, freed);
 }
 
 void gpu_lend_memory(gpu *g, const gpu_image_desc *going, size_t count) {
     uint64_t bytes = 0;
-    for (size_t i = 0; i < count; i++) bytes += bytes_of(&going[i]);
+    for (size_t i = 0; i < count; i++) bytes += gpu_image_bytes(&going[i]);
     budget_lend(g->pool.budgets[1], bytes);
 }
 

@@ -56,8 +56,9 @@ void graph_remove_output(graph *g, graph_image image);
 // and size, lifetimes apart, no history, not an output, not kept). Errors: a cycle (named pass by
 // pass), an image that is read and never written, an image with two writers, a size beyond 16384.
 bool graph_compile(graph *g, uint32_t width, uint32_t height);
-// After compile: whether all images that it lacks can be had at once; false with a message.
-bool graph_fits(const graph *g, gpu *device);
+// After compile: adds all images that it lacks. Returns the bytes of those that graph_allocate may
+// take over or frees.
+uint64_t graph_list_memory(const graph *g, budget_list *out);
 // What it has is about to go: see gpu_lend_memory.
 void graph_lend(const graph *g, gpu *device);
 bool graph_allocate(graph *g, gpu *device); // after compile; frees what an earlier compile had

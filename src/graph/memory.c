@@ -230,28 +230,24 @@ static gpu_image_desc describe(const graph_slot *slot) {
                             .use = use};
 }
 
-// Of the slots that have memory, or of those that have none; mem_free.
-static gpu_image_desc *describe_all(const slot_list *slots, bool have, size_t *count) {
-    gpu_image_desc *all = mem_alloc(slots->count * sizeof *all);
-    *count = 0;
-    for (size_t i = 0; i < slots->count; i++)
-        if ((slots->at[i].memory != NULL) == have) all[(*count)++] = describe(&slots->at[i]);
-    return all;
-}
-
-bool graph_fits(const graph *g, gpu *device) {
-    size_t count, freed_count;
-    gpu_image_desc *images = describe_all(&g->slots, false, &count);
-    gpu_image_desc *freed = describe_all(&g->kept, true, &freed_count);
-    bool fit = gpu_images_fit(device, images, count, freed, freed_count);
-    mem_free(images);
-    mem_free(freed);
-    return fit;
+uint64_t graph_list_memory(const graph *g, budget_list *out) {
+    uint64_t had = 0;
+    for (size_t i = 0; i < g->slots.count; i++) {
+        const gpu_image_desc desc = describe(&g->slots.at[i]);
+        if (!g->slots.at[i].memory) budget_list_add(out, desc.label, gpu_image_bytes(&desc));
+    }
+    for (size_t i = 0; i < g->kept.count; i++) {
+        const gpu_image_desc desc = describe(&g->kept.at[i]);
+        if (g->kept.at[i].memory) had += gpu_image_bytes(&desc);
+    }
+    return had;
 }
 
 void graph_lend(const graph *g, gpu *device) {
-    size_t count;
-    gpu_image_desc *going = describe_all(&g->slots, true, &count);
+    gpu_image_desc *going = mem_alloc(g->slots.count * sizeof *going);
+    size_t count = 0;
+    for (size_t i = 0; i < g->slots.count; i++)
+        if (g->slots.at[i].memory) going[count++] = describe(&g->slots.at[i]);
     gpu_lend_memory(device, going, count);
     mem_free(going);
 }

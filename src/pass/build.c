@@ -285,6 +285,10 @@ bool pass_build_part(pass *p) {
     return build(p) || pass_blame(p);
 }
 
+void pass_list_memory(const pass *p, budget_list *out) {
+    if (p->type && p->type->list_memory) p->type->list_memory(p, out);
+}
+
 static bool allocate(pass *p) {
     if (p->type && p->type->allocate && !p->type->allocate(p)) return false;
     return make_palettes(p) && make_blanks(p) && make_unread(p) && make_blue_noise(p->host) &&

@@ -86,13 +86,21 @@ static bool deposit_declare(pass *p) {
     return pass_add_to_graph(p);
 }
 
+static uint64_t sums_bytes(const deposit_state *s) {
+    return 4ull * s->grid.size[0] * s->grid.size[1] * s->grid.size[2];
+}
+
+static void deposit_list_memory(const pass *p, budget_list *out) {
+    const deposit_state *s = state_of(p);
+    if (!s->sums) budget_list_add(out, "sums of particles", sums_bytes(s));
+}
+
 static bool deposit_allocate(pass *p) {
     deposit_state *s = state_of(p);
-    const uint32_t *n = s->grid.size;
     if (!s->sums)
-        s->sums = gpu_buffer_create(
-            p->host->device,
-            &(gpu_buffer_desc){.label = "sums of particles", .size = 4ull * n[0] * n[1] * n[2]});
+        s->sums =
+            gpu_buffer_create(p->host->device, &(gpu_buffer_desc){.label = "sums of particles",
+                                                                  .size = sums_bytes(s)});
     return s->sums || err_prefix("%s: ", p->label);
 }
 
@@ -144,6 +152,7 @@ const pass_type deposit_type = {
     .unscaled = true,
     .declare = deposit_declare,
     .allocate = deposit_allocate,
+    .list_memory = deposit_list_memory,
     .update = deposit_update,
     .record = deposit_record,
     .destroy = deposit_destroy,

@@ -106,6 +106,20 @@ bool drawn_allocate(drawn *d) {
     return done || err_prefix("%s: ", d->p->label);
 }
 
+void drawn_list_memory(const drawn *d, size_t views, budget_list *out) {
+    for (size_t i = 0; i < d->body_count; i++) {
+        const drawn_body *body = &d->bodies[i];
+        if (body->instances && budget_list_first(out, body->instances))
+            scene_instances_list_memory(body->instances, out);
+        if (!body->instances && !body->entries)
+            budget_list_add(out, "meshes as instances",
+                            body->count * sizeof(struct instance_entry));
+        for (size_t k = 0; k < body->kind_count; k++)
+            if (budget_list_first(out, body->kinds[k])) scene_mesh_list_memory(body->kinds[k], out);
+        if (views > d->capacity) drawn_list_lists(body, views, out);
+    }
+}
+
 void drawn_destroy(drawn *d) {
     if (!d) return;
     gpu *device = d->p->host->device;

@@ -40,7 +40,9 @@ drawn *drawn_create(pass *p);    // of all meshes and instances that the pass wa
 bool drawn_check_cull(drawn *d); // compiles what chooses; needs no device
 bool drawn_build_cull(drawn *d);
 bool drawn_allocate(drawn *d); // again: does nothing
-void drawn_destroy(drawn *d);  // NULL is fine
+// Memory of the device that drawn_allocate will take, and drawing for so many views.
+void drawn_list_memory(const drawn *d, size_t views, budget_list *out);
+void drawn_destroy(drawn *d); // NULL is fine
 
 // Chooses what is drawn in each view. `views`: storage buffer of view_entry (shared.h), of which
 // `count` are used; NULL: the camera's of this frame, in a picture of `height` pixels. `lod`: how

@@ -57,18 +57,25 @@ static gpu_buffer *make_commands(gpu *device, const drawn_body *body, size_t vie
     return buffer;
 }
 
+static const char *const labels[DRAWN_BUFFERS] = {
+    [DRAWN_CHOICES] = "choices of draws", [DRAWN_TOTALS] = "totals of draws",
+    [DRAWN_COUNTS] = "counts of draws",   [DRAWN_FIRSTS] = "firsts of draws",
+    [DRAWN_LIST] = "lists of draws",
+};
+
+static uint64_t bytes_of(const drawn_body *body, size_t views, int which) {
+    const uint64_t buckets = views * bucket_count(body);
+    if (which == DRAWN_CHOICES || which == DRAWN_LIST) return 4 * views * body->count;
+    return 4 * (which == DRAWN_TOTALS ? buckets : buckets * block_count(body));
+}
+
+void drawn_list_lists(const drawn_body *body, size_t views, budget_list *out) {
+    for (int i = 0; i < DRAWN_BUFFERS; i++)
+        if (labels[i]) budget_list_add(out, labels[i], bytes_of(body, views, i));
+    budget_list_add(out, "draws", views * body->command_count * sizeof(gpu_draw_indexed_command));
+}
+
 static bool make_buffers(gpu *device, drawn_body *body, size_t views) {
-    uint64_t instances = views * body->count, buckets = views * bucket_count(body);
-    const struct {
-        const char *label;
-        uint64_t words;
-    } sizes[DRAWN_BUFFERS] = {
-        [DRAWN_CHOICES] = {"choices of draws", instances},
-        [DRAWN_TOTALS] = {"totals of draws", buckets},
-        [DRAWN_COUNTS] = {"counts of draws", buckets * block_count(body)},
-        [DRAWN_FIRSTS] = {"firsts of draws", buckets * block_count(body)},
-        [DRAWN_LIST] = {"lists of draws", instances},
-    };
     bool done = true;
     for (int i = 0; i < DRAWN_BUFFERS && done; i++) {
         if (i == DRAWN_BUCKETS) continue;
@@ -76,8 +83,8 @@ static bool make_buffers(gpu *device, drawn_body *body, size_t views) {
         body->buffers[i] =
             i == DRAWN_COMMANDS
                 ? make_commands(device, body, views)
-                : gpu_buffer_create(device, &(gpu_buffer_desc){.label = sizes[i].label,
-                                                               .size = sizes[i].words * 4});
+                : gpu_buffer_create(device, &(gpu_buffer_desc){.label = labels[i],
+                                                               .size = bytes_of(body, views, i)});
         done = body->buffers[i] != NULL;
     }
     return done;

@@ -58,5 +58,6 @@ struct drawn {
 };
 
 gpu_buffer *drawn_buffer(gpu *device, const char *label, const void *data, size_t size);
-uint32_t drawn_level_count(const mesh_data *mesh); // with the full one
-gpu_buffer *drawn_entries(const drawn_body *body); // of its instances
+void drawn_list_lists(const drawn_body *body, size_t views, budget_list *out); // of drawn_cull
+uint32_t drawn_level_count(const mesh_data *mesh);                             // with the full one
+gpu_buffer *drawn_entries(const drawn_body *body);                             // of its instances

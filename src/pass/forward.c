@@ -52,6 +52,10 @@ bool forward_allocate(pass *p) {
     return drawn_allocate(((forward_state *)p->state)->drawn);
 }
 
+void forward_list_memory(const pass *p, budget_list *out) {
+    drawn_list_memory(((const forward_state *)p->state)->drawn, 1, out);
+}
+
 void forward_destroy(pass *p) {
     forward_state *s = p->state;
     if (!s) return;

@@ -116,6 +116,14 @@ bool geometry_allocate(pass *p) {
     return drawn_allocate(state_of(p)->drawn);
 }
 
+void geometry_list_memory(const pass *p, budget_list *out) {
+    const geometry_state *s = p->state; // there since it was declared
+    if (!s->rays)
+        drawn_list_memory(s->drawn, 1, out);
+    else if (budget_list_first(out, p->host->bvh))
+        scene_bvh_list_surfaces(p->host->bvh, out);
+}
+
 void geometry_destroy(pass *p) {
     geometry_state *s = p->state;
     if (!s || s->rays) return;

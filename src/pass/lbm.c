@@ -206,6 +206,7 @@ const pass_type lbm_type = {
     .check = lbm_air_check,
     .build = lbm_air_build,
     .allocate = lbm_air_allocate,
+    .list_memory = lbm_air_list_memory,
     .update = lbm_air_update,
     .rehearse = lbm_air_rehearse,
     .record = lbm_air_record,

@@ -109,6 +109,12 @@ bool lbm_air_allocate_bodies(lbm_air *a) {
     return for_each(a, bodies_allocate);
 }
 
+void lbm_air_list_bodies(const lbm_air *a, budget_list *out) {
+    for (size_t i = 0; i < a->giver_count; i++)
+        if (a->givers[i].cells) voxels_list_memory(a->givers[i].cells, false, out);
+    if (a->solids.cells) voxels_list_memory(a->solids.cells, false, out);
+}
+
 static float3 in_steps(const lbm_air *a, float3 v) { // from m/s to cells a step
     float k = (float)sim_velocity(&a->units, 1);
     return (float3){v.x * k, v.y * k, v.z * k};

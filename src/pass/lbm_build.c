@@ -37,6 +37,13 @@ bool lbm_air_allocate(pass *p) {
            err_prefix("%s: ", p->label);
 }
 
+void lbm_air_list_memory(const pass *p, budget_list *out) {
+    const lbm_air *a = lbm_air_of(p);
+    lbm_list_memory(a->solver, out);
+    lbm_air_list_bodies(a, out);
+    lbm_air_list_force(a, out);
+}
+
 void lbm_air_destroy(pass *p) {
     lbm_air *a = lbm_air_of(p);
     gpu *device = p->host->device;

@@ -5,18 +5,32 @@
 
 enum { COARSER = 2 }; // cells of the lattice along a side of one of the image's
 
-bool lbm_air_allocate_force(lbm_air *a) {
+static gpu_image_desc describe(const lbm_air *a) {
     const uint32_t *n = a->desc.size;
+    return (gpu_image_desc){
+        .label = "force",
+        .format = GPU_RGBA16F,
+        .width = (n[0] + COARSER - 1) / COARSER,
+        .height = (n[1] + COARSER - 1) / COARSER,
+        .depth = (n[2] + COARSER - 1) / COARSER,
+        .use = GPU_USE_SAMPLED | GPU_USE_STORAGE,
+    };
+}
+
+static bool lacks_image(const lbm_air *a) {
+    return !a->force.image && pass_has_kernel(a->pass, LBM_FORCE);
+}
+
+void lbm_air_list_force(const lbm_air *a, budget_list *out) {
+    const gpu_image_desc desc = describe(a);
+    if (lacks_image(a)) budget_list_add(out, desc.label, gpu_image_bytes(&desc));
+}
+
+bool lbm_air_allocate_force(lbm_air *a) {
+    const gpu_image_desc desc = describe(a);
     lbm_force *f = &a->force;
-    if (f->image || !pass_has_kernel(a->pass, LBM_FORCE)) return true;
-    f->image = gpu_image_create(a->pass->host->device, &(gpu_image_desc){
-                                                           .label = "force",
-                                                           .format = GPU_RGBA16F,
-                                                           .width = (n[0] + COARSER - 1) / COARSER,
-                                                           .height = (n[1] + COARSER - 1) / COARSER,
-                                                           .depth = (n[2] + COARSER - 1) / COARSER,
-                                                           .use = GPU_USE_SAMPLED | GPU_USE_STORAGE,
-                                                       });
+    if (!lacks_image(a)) return true;
+    f->image = gpu_image_create(a->pass->host->device, &desc);
     if (!f->image) return false;
     lbm_set_force(a->solver, f->image, (float)sim_acceleration(&a->units, 1));
     return true;

@@ -102,6 +102,7 @@ double lbm_air_blend(const lbm_air *a, double time);
 bool lbm_air_check(pass *p);
 bool lbm_air_build(pass *p);
 bool lbm_air_allocate(pass *p);
+void lbm_air_list_memory(const pass *p, budget_list *out);
 void lbm_air_destroy(pass *p);
 
 // lbm_frame.c
@@ -112,6 +113,7 @@ double lbm_air_pascals(const lbm_air *a); // of an excess of density of 1
 
 // lbm_force.c
 bool lbm_air_allocate_force(lbm_air *a);
+void lbm_air_list_force(const lbm_air *a, budget_list *out); // its memory
 bool lbm_air_push(lbm_air *a); // the force as of the host's time, which is that of a step
 void lbm_air_destroy_force(lbm_air *a);
 
@@ -138,6 +140,7 @@ bool lbm_air_make_bodies(lbm_air *a); // when all are known
 bool lbm_air_check_bodies(lbm_air *a);
 bool lbm_air_build_bodies(lbm_air *a);
 bool lbm_air_allocate_bodies(lbm_air *a);
+void lbm_air_list_bodies(const lbm_air *a, budget_list *out); // their memory
 // To the host's time, which is that of a step.
 bool lbm_air_move_bodies(lbm_air *a, const lbm_numbers *numbers);
 void lbm_air_destroy_bodies(lbm_air *a);

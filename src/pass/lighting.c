@@ -350,14 +350,27 @@ static uint32_t fine_sweeps(pass *p) {
     return (uint32_t)fminf(asked, ceilf(logf(0.005f) / (2 * logf(0.5f * most))));
 }
 
+static uint64_t buffer_bytes(const lighting_state *s, uint32_t level, int buffer) {
+    const uint64_t n = s->glow_size >> level;
+    return n * n * n * buffers[buffer].bytes;
+}
+
+static void lighting_list_memory(const pass *p, budget_list *out) {
+    const lighting_state *s = p->state;
+    const bool glows = graph_is_read(p->host->graph, *pass_image(p, N_glow));
+    for (uint32_t level = 0; level < LEVELS && glows; level++)
+        for (int i = 0; i < BUFFERS; i++)
+            if (!s->buffers[level][i])
+                budget_list_add(out, names[buffers[i].name], buffer_bytes(s, level, i));
+}
+
 static bool make_buffers(pass *p) {
     lighting_state *s = p->state;
     for (uint32_t level = 0; level < LEVELS; level++) {
-        uint64_t n = s->glow_size >> level;
         for (int i = 0; i < BUFFERS; i++) {
             if (s->buffers[level][i]) continue;
             gpu_buffer_desc desc = {.label = names[buffers[i].name],
-                                    .size = n * n * n * buffers[i].bytes};
+                                    .size = buffer_bytes(s, level, i)};
             s->buffers[level][i] = gpu_buffer_create(p->host->device, &desc);
             if (!s->buffers[level][i]) return false;
         }
@@ -400,5 +413,6 @@ const pass_type lighting_type = {
     .declare = lighting_declare,
     .defines = lighting_defines,
     .update = lighting_update,
+    .list_memory = lighting_list_memory,
     .destroy = lighting_destroy,
 };

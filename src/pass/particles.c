@@ -121,6 +121,21 @@ static bool make_buffers(const pass *p, particles_state *s) {
     return done;
 }
 
+static void particles_list_memory(const pass *p, budget_list *out) {
+    const particles_state *s = particles_of(p);
+    const uint64_t count = s->desc.count;
+    if (s->carries && !s->buffers.quantities) budget_list_add(out, "quantities", 4 * count);
+    for (uint32_t i = 0; i < parts_of(s); i++) {
+        const uint64_t left = count - i * (uint64_t)PASS_PARTICLES_EACH;
+        const uint64_t here = left < PASS_PARTICLES_EACH ? left : PASS_PARTICLES_EACH;
+        if (!s->buffers.positions[i]) budget_list_add(out, "positions", 16 * here);
+        if (!s->buffers.velocities[i]) budget_list_add(out, "velocities", 16 * here);
+    }
+    if (p->mesh_count && !s->triangles)
+        budget_list_add(out, "triangles",
+                        p->meshes[0]->data.index_count / 3 * sizeof(particles_triangle));
+}
+
 static bool particles_allocate(pass *p) {
     particles_state *s = particles_of(p);
     return (make_buffers(p, s) && make_triangles(p, s) && particles_make_lost(p, s) &&
@@ -185,6 +200,7 @@ const pass_type particles_type = {
     .declare = particles_declare,
     .defines = particles_defines,
     .allocate = particles_allocate,
+    .list_memory = particles_list_memory,
     .update = particles_update,
     .rehearse = particles_rehearse,
     .record = particles_record,

@@ -123,6 +123,7 @@ typedef struct pass_type {
     bool (*check)(pass *p);    // compile all that build would, without a device
     bool (*build)(pass *p);    // instead of one pipeline; see pass_build
     bool (*allocate)(pass *p); // besides what every pass needs; see pass_allocate
+    void (*list_memory)(const pass *p, budget_list *out); // see pass_list_memory
     // Uniforms that the host computes, written into a block of `binary`'s layout.
     bool (*fill)(pass *p, const shader_binary *binary, unsigned char *block);
     bool (*rehearse)(pass *p); // besides what every pass evaluates
@@ -181,6 +182,10 @@ bool pass_traces_levels(const pass *p); // its rays meet meshes as they are simp
 // side.
 bool pass_check(pass *p);
 bool pass_build(pass *p); // shaders and pipelines: needs a device, but any thread may do it
+// After pass_build: adds what it lacks of the device's memory, for pass_allocate and the first
+// frames, as far as that is known now and grows with what the effect asks for. Of its own only: the
+// graph has its images, and the scene what `budget_list_first` is asked about.
+void pass_list_memory(const pass *p, budget_list *out);
 // After pass_build, on the device's thread: what the pass itself keeps on the device.
 bool pass_allocate(pass *p);
 // After pass_build: evaluates the numbers of a frame as recording it would. Any thread.

@@ -124,6 +124,24 @@ static void picture_size(const pass *p, uint32_t size[3]) {
     graph_get_size(p->host->graph, *pass_image(p, N_depth), size);
 }
 
+static uint64_t pixels_bytes(const pass *p) {
+    uint32_t size[3];
+    picture_size(p, size);
+    return 4ull * size[0] * size[1];
+}
+
+static void pieces_list_memory(const pass *p, budget_list *out) {
+    const pieces_state *s = state_of(p);
+    const uint64_t triangles = s->triangle_count, pixels = pixels_bytes(p);
+    if (!s->triangles)
+        budget_list_add(out, "triangles of pieces", triangles * sizeof(struct bvh_triangle));
+    if (!s->materials) budget_list_add(out, "materials of pieces", triangles * sizeof *s->looks);
+    if (!s->depths || gpu_buffer_size(s->depths) != pixels)
+        budget_list_add(out, "depths of pieces", pixels);
+    if (!s->numbers || gpu_buffer_size(s->numbers) != pixels)
+        budget_list_add(out, "numbers of pieces", pixels);
+}
+
 static bool pieces_update(pass *p) {
     uint32_t size[3];
     picture_size(p, size);
@@ -190,7 +208,7 @@ static bool pieces_record(pass *p) {
     uint32_t size[3];
     uint64_t count = (uint64_t)pass_particles_used(p->particles) * s->triangle_count;
     picture_size(p, size);
-    uint64_t bytes = 4ull * size[0] * size[1];
+    const uint64_t bytes = pixels_bytes(p);
     if (count >= UINT32_MAX)
         return err_set("%s: %llu triangles; at most 4294967294 are drawn", p->label,
                        (unsigned long long)count);
@@ -217,6 +235,7 @@ const pass_type pieces_type = {
     .declare = pieces_declare,
     .defines = pieces_defines,
     .allocate = pieces_allocate,
+    .list_memory = pieces_list_memory,
     .update = pieces_update,
     .record = pieces_record,
     .destroy = pieces_destroy,

@@ -64,6 +64,11 @@ bool reference_allocate(pass *p) {
     return !meshes_glow(p) || scene_bvh_allocate_surfaces(p->host->bvh, p->host->device);
 }
 
+void reference_list_memory(const pass *p, budget_list *out) {
+    if (meshes_glow(p) && budget_list_first(out, p->host->bvh))
+        scene_bvh_list_surfaces(p->host->bvh, out);
+}
+
 // Members that say how far the picture is.
 static const char *const progress[] = {"executed", "paths", "part"};
 

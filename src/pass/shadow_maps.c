@@ -206,6 +206,11 @@ bool shadow_maps_allocate(pass *p) {
     return s->placed && drawn_allocate(s->drawn);
 }
 
+void shadow_maps_list_memory(const pass *p, budget_list *out) {
+    const shadow_state *s = state_of(p);
+    drawn_list_memory(s->drawn, s->views, out);
+}
+
 void shadow_maps_destroy(pass *p) {
     shadow_state *s = state_of(p);
     if (!s) return;

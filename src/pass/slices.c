@@ -207,6 +207,7 @@ const pass_type slices_type = {
     .check = slices_check,
     .build = slices_build,
     .allocate = slices_allocate,
+    .list_memory = slices_list_memory,
     .update = slices_update,
     .rehearse = slices_rehearse,
     .record = slices_record,

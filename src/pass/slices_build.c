@@ -36,6 +36,12 @@ bool slices_allocate(pass *p) {
            (!f->templates || extra(f, f->templates->allocate));
 }
 
+void slices_list_memory(const pass *p, budget_list *out) {
+    const slices_flow *f = slices_of(p);
+    flow_list_memory(f->solver, out);
+    if (f->templates) f->templates->list_memory(f, out);
+}
+
 void slices_destroy(pass *p) {
     slices_flow *f = slices_of(p);
     if (!f) return;

@@ -14,6 +14,7 @@ typedef struct slices_extra {
     bool (*check)(slices_flow *f);    // the solver has been compiled
     bool (*build)(slices_flow *f);    // the solver has been built
     bool (*allocate)(slices_flow *f);
+    void (*list_memory)(const slices_flow *f, budget_list *out);
     bool (*rehearse)(slices_flow *f);
     void (*restart)(slices_flow *f); // the flow begins anew
     void (*loaded)(slices_flow *f);  // slices_templates_buffer holds what a checkpoint did
@@ -96,6 +97,7 @@ bool slices_load(pass *p, struct checkpoint *from);
 bool slices_check(pass *p);
 bool slices_build(pass *p);
 bool slices_allocate(pass *p);
+void slices_list_memory(const pass *p, budget_list *out);
 void slices_destroy(pass *p);
 
 // slices_frame.c

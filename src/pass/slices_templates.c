@@ -140,19 +140,28 @@ static bool templates_build(slices_flow *f) {
     return each_group(slices_templates_of(f), pass_build_part);
 }
 
+static uint64_t instance_bytes(const slices_flow *f) {
+    const uint64_t total = slices_templates_of(f)->total;
+    return 16 * ROWS * (total ? total : 1) * f->desc.count; // there are none but by hand
+}
+
+static void templates_list_memory(const slices_flow *f, budget_list *out) {
+    const slices_templates *t = slices_templates_of(f);
+    if (!t->masks) budget_list_add(out, "tiles of templates", mask_bytes(f));
+    if (!t->instances) budget_list_add(out, "templates", instance_bytes(f));
+}
+
 static bool templates_allocate(slices_flow *f) {
     slices_templates *t = slices_templates_of(f);
     gpu *device = f->pass->host->device;
-    uint32_t count = t->total ? t->total : 1; // there are none but by hand
     if (!slices_templates_make_images(f)) return false;
     if (!t->masks)
         t->masks = gpu_buffer_create(
             device, &(gpu_buffer_desc){.label = "tiles of templates", .size = mask_bytes(f)});
     t->unmarked = true;
     if (!t->masks || t->instances) return t->masks != NULL;
-    t->instances =
-        gpu_buffer_create(device, &(gpu_buffer_desc){.label = "templates",
-                                                     .size = 16ull * ROWS * count * f->desc.count});
+    t->instances = gpu_buffer_create(
+        device, &(gpu_buffer_desc){.label = "templates", .size = instance_bytes(f)});
     t->fresh = true;
     return t->instances != NULL;
 }
@@ -211,6 +220,7 @@ static const slices_extra hooks = {
     .check = templates_check,
     .build = templates_build,
     .allocate = templates_allocate,
+    .list_memory = templates_list_memory,
     .rehearse = templates_rehearse,
     .restart = templates_restart,
     .loaded = templates_loaded,

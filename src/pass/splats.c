@@ -96,7 +96,7 @@ static uint32_t group_count(uint32_t particles) {
     return (particles + SPLATS_GROUP - 1) / SPLATS_GROUP;
 }
 
-bool splats_make_buffer(pass *p, splats_buffer which, uint64_t size) {
+static bool make_buffer(pass *p, splats_buffer which, uint64_t size) {
     splats_state *s = splats_of(p);
     gpu *device = p->host->device;
     if (s->buffers[which] && gpu_buffer_size(s->buffers[which]) == size) return true;
@@ -112,21 +112,41 @@ bool splats_make_buffer(pass *p, splats_buffer which, uint64_t size) {
     return s->buffers[which] != NULL;
 }
 
-static bool make_buffers(pass *p) {
+// Bytes; 0: not needed.
+static void find_sizes(const pass *p, uint64_t out[SPLATS_BUFFERS]) {
     const splats_state *s = splats_of(p);
+    const uint64_t records = record_count(p), channels = s->blend == SPLATS_WEIGHTED ? 5 : 3;
     uint32_t size[3];
-    uint64_t records = record_count(p), channels = s->blend == SPLATS_WEIGHTED ? 5 : 3;
     picture_size(p, size);
-    if (!splats_make_buffer(p, SPLATS_RECORDS, records * SPLATS_RECORD) ||
-        !splats_make_buffer(p, SPLATS_HEAD, 16) ||
-        !splats_make_buffer(p, SPLATS_TILES, 8ull * splats_tile_count(p)))
-        return false;
-    if (!is_sorted(p))
-        return splats_make_buffer(p, SPLATS_SUMS, 4 * channels * size[0] * size[1]) &&
-               splats_make_buffer(p, SPLATS_ENTRIES, 4ull * splats_entries(p));
-    return splats_make_buffer(p, SPLATS_COUNTS, 4 * records) &&
-           splats_make_buffer(p, SPLATS_GROUPS, 4ull * group_count((uint32_t)records)) &&
-           splats_make_sort(p);
+    memset(out, 0, SPLATS_BUFFERS * sizeof *out);
+    out[SPLATS_RECORDS] = records * SPLATS_RECORD;
+    out[SPLATS_HEAD] = 16;
+    out[SPLATS_TILES] = 8ull * splats_tile_count(p);
+    if (!is_sorted(p)) {
+        out[SPLATS_SUMS] = 4 * channels * size[0] * size[1];
+        out[SPLATS_ENTRIES] = 4ull * splats_entries(p);
+        return;
+    }
+    out[SPLATS_COUNTS] = 4 * records;
+    out[SPLATS_GROUPS] = 4ull * group_count((uint32_t)records);
+    splats_find_sort_sizes(p, out);
+}
+
+static bool make_buffers(pass *p) {
+    uint64_t sizes[SPLATS_BUFFERS];
+    find_sizes(p, sizes);
+    for (int i = 0; i < SPLATS_BUFFERS; i++)
+        if (sizes[i] && !make_buffer(p, (splats_buffer)i, sizes[i])) return false;
+    return true;
+}
+
+static void splats_list_memory(const pass *p, budget_list *out) {
+    const splats_state *s = splats_of(p);
+    uint64_t sizes[SPLATS_BUFFERS];
+    find_sizes(p, sizes);
+    for (int i = 0; i < SPLATS_BUFFERS; i++)
+        if (!s->buffers[i] || gpu_buffer_size(s->buffers[i]) != sizes[i])
+            budget_list_add(out, names[i], sizes[i]);
 }
 
 // ---- in a frame -------------------------------------------------------------------------------
@@ -204,6 +224,7 @@ const pass_type splats_type = {
     .names = {names, COUNT_OF(names)},
     .declare = splats_declare,
     .defines = splats_defines,
+    .list_memory = splats_list_memory,
     .update = splats_update,
     .record = splats_record,
     .destroy = splats_destroy,

@@ -61,10 +61,9 @@ static inline splats_state *splats_of(const pass *p) {
 // splats.c
 uint32_t splats_entries(const pass *p);    // places in the lists
 uint32_t splats_tile_count(const pass *p); // as of the picture's size
-bool splats_make_buffer(pass *p, splats_buffer which, uint64_t size);
 
 // splats_sort.c: of blend = "sorted"
 void splats_define_sort(pass *p, pass_defines *out);
-bool splats_make_sort(pass *p);
+void splats_find_sort_sizes(const pass *p, uint64_t out[SPLATS_BUFFERS]); // bytes
 uint32_t splats_depth_bits(const pass *p); // of a key; the others say which tile
 bool splats_sort(pass *p);                 // the pairs

@@ -22,11 +22,9 @@ static uint32_t block_count(const pass *p) {
     return (splats_entries(p) + each - 1) / each;
 }
 
-bool splats_make_sort(pass *p) {
-    uint64_t pairs = 8ull * splats_entries(p), counts = (4ull << DIGIT_BITS) * block_count(p);
-    return splats_make_buffer(p, SPLATS_PAIRS, pairs) &&
-           splats_make_buffer(p, SPLATS_SORTED, pairs) &&
-           splats_make_buffer(p, SPLATS_SORT_COUNTS, counts);
+void splats_find_sort_sizes(const pass *p, uint64_t out[SPLATS_BUFFERS]) {
+    out[SPLATS_PAIRS] = out[SPLATS_SORTED] = 8ull * splats_entries(p);
+    out[SPLATS_SORT_COUNTS] = (4ull << DIGIT_BITS) * block_count(p);
 }
 
 static uint32_t tile_bits(const pass *p) {

@@ -232,6 +232,11 @@ static bool voxels_pass_allocate(pass *p) {
     return voxels_allocate(state_of(p)->cells, p->host->device);
 }
 
+static void voxels_pass_list_memory(const pass *p, budget_list *out) {
+    const graph_image distance = *pass_image(p, N_distance);
+    voxels_list_memory(state_of(p)->cells, graph_is_read(p->host->graph, distance), out);
+}
+
 static void voxels_pass_destroy(pass *p) {
     voxels_pass *s = state_of(p);
     if (s && s->cells) voxels_destroy(s->cells, p->host->device);
@@ -303,6 +308,7 @@ const pass_type voxels_type = {
     .check = voxels_pass_check,
     .build = voxels_pass_build,
     .allocate = voxels_pass_allocate,
+    .list_memory = voxels_pass_list_memory,
     .update = voxels_pass_update,
     .record = voxels_pass_record,
     .destroy = voxels_pass_destroy,

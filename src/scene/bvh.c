@@ -204,14 +204,40 @@ static bool make_buffer(scene_bvh *b, gpu *g, scene_bvh_part part, const char *l
            (!data || size == 0 || gpu_buffer_write(g, b->buffers[part], 0, data, size));
 }
 
+static const char nodes_label[] = "boxes of meshes", triangles_label[] = "triangles of meshes",
+                  instances_label[] = "placed meshes", surfaces_label[] = "surfaces of meshes",
+                  vertices_label[] = "vertices of meshes", texels_label[] = "textures of meshes";
+
+void scene_bvh_list_memory(const scene_bvh *b, budget_list *out) {
+    const bvh_forest *f = &b->forest;
+    if (b->buffers[BVH_INSTANCES]) return;
+    budget_list_add(out, nodes_label, b->wide_count * sizeof *b->wide);
+    budget_list_add(out, triangles_label, f->triangle_count * sizeof *f->triangles);
+    budget_list_add(out, instances_label, BVH_HEAD + b->item_count * sizeof *b->items);
+}
+
+void scene_bvh_list_surfaces(const scene_bvh *b, budget_list *out) {
+    uint64_t triangles = 0, vertices = 0, texels = 0;
+    for (size_t i = 0; i < b->mesh_count && !b->buffers[BVH_LEVELS]; i++) {
+        const mesh_data *mesh = &b->meshes[i]->data;
+        const tree *t = &b->trees[i];
+        if (t->root == t->end || t->triangles <= triangles) continue; // as bvh_looks_add does
+        triangles = t->triangles;
+        vertices += mesh->vertex_count;
+        texels += surfaces_texels(mesh);
+    }
+    budget_list_add(out, surfaces_label, triangles * sizeof(shared_uvec4));
+    budget_list_add(out, vertices_label, vertices * sizeof(struct surface_vertex));
+    budget_list_add(out, texels_label, texels * sizeof(uint16_t[4]));
+}
+
 bool scene_bvh_allocate(scene_bvh *b, gpu *g) {
     if (b->buffers[BVH_INSTANCES]) return true;
     const bvh_forest *f = &b->forest;
-    return make_buffer(b, g, BVH_NODES, "boxes of meshes", b->wide,
-                       b->wide_count * sizeof *b->wide) &&
-           make_buffer(b, g, BVH_TRIANGLES, "triangles of meshes", f->triangles,
+    return make_buffer(b, g, BVH_NODES, nodes_label, b->wide, b->wide_count * sizeof *b->wide) &&
+           make_buffer(b, g, BVH_TRIANGLES, triangles_label, f->triangles,
                        f->triangle_count * sizeof *f->triangles) &&
-           make_buffer(b, g, BVH_INSTANCES, "placed meshes", NULL,
+           make_buffer(b, g, BVH_INSTANCES, instances_label, NULL,
                        BVH_HEAD + b->item_count * sizeof *b->items) &&
            gpu_buffer_write(g, b->buffers[BVH_INSTANCES], 0, (uint32_t[4]){0}, BVH_HEAD);
 }
@@ -225,16 +251,16 @@ bool scene_bvh_allocate_surfaces(scene_bvh *b, gpu *g) {
     surfaces s = {0};
     for (size_t i = 0; i < b->mesh_count; i++) bvh_looks_add(b, &s, i);
     b->holes = s.holes;
-    bool done = make_buffer(b, g, BVH_SURFACES, "surfaces of meshes", s.triangles,
-                            s.triangle_count * sizeof *s.triangles) &&
-                make_buffer(b, g, BVH_VERTICES, "vertices of meshes", s.vertices,
-                            s.vertex_count * sizeof *s.vertices) &&
-                make_buffer(b, g, BVH_MATERIALS, "materials of meshes", b->looks,
-                            b->material_count * sizeof *b->looks) &&
-                make_buffer(b, g, BVH_TEXELS, "textures of meshes", s.texels,
-                            s.texel_count * sizeof *s.texels) &&
-                make_buffer(b, g, BVH_LEVELS, "levels of meshes", b->levels,
-                            b->mesh_count * sizeof *b->levels);
+    bool done =
+        make_buffer(b, g, BVH_SURFACES, surfaces_label, s.triangles,
+                    s.triangle_count * sizeof *s.triangles) &&
+        make_buffer(b, g, BVH_VERTICES, vertices_label, s.vertices,
+                    s.vertex_count * sizeof *s.vertices) &&
+        make_buffer(b, g, BVH_MATERIALS, "materials of meshes", b->looks,
+                    b->material_count * sizeof *b->looks) &&
+        make_buffer(b, g, BVH_TEXELS, texels_label, s.texels, s.texel_count * sizeof *s.texels) &&
+        make_buffer(b, g, BVH_LEVELS, "levels of meshes", b->levels,
+                    b->mesh_count * sizeof *b->levels);
     surfaces_free(&s);
     return done;
 }

@@ -13,6 +13,7 @@ enum { SCENE_BVH_MAX_MESHES = 256 }; // with the kinds of instances
 scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count,
                             scene_instances *const *instances, size_t instances_count, bool levels);
 void scene_bvh_destroy(scene_bvh *b, gpu *g);
+void scene_bvh_list_memory(const scene_bvh *b, budget_list *out); // of scene_bvh_allocate
 bool scene_bvh_allocate(scene_bvh *b, gpu *g); // trees to the device; again: does nothing
 // Places all as of now, on the host; then, inside a frame and once a frame, on the device.
 bool scene_bvh_place(scene_bvh *b, const field_context *context);
@@ -35,7 +36,8 @@ bool scene_pick(const scene_bvh *b, const float origin[3], const float direction
 // What the triangles look like, for passes that show them by rays. A mesh whose surfaces are larger
 // than the device can read must be drawn instead.
 bool scene_bvh_surfaces_fit(const scene_mesh *mesh, gpu *g);
-bool scene_bvh_allocate_surfaces(scene_bvh *b, gpu *g); // again: does nothing
+void scene_bvh_list_surfaces(const scene_bvh *b, budget_list *out); // memory of the next
+bool scene_bvh_allocate_surfaces(scene_bvh *b, gpu *g);             // again: does nothing
 // Another one when something has moved or looks different.
 uint64_t scene_bvh_version(const scene_bvh *b);
 bool scene_bvh_glows(const scene_bvh *b);     // materials may give off light

@@ -150,6 +150,10 @@ size_t scene_instances_near(scene_instances *s, const float point[3], float radi
 
 // ---- on the device ----------------------------------------------------------------------------
 
+void scene_instances_list_memory(const scene_instances *s, budget_list *out) {
+    if (!s->buffer) budget_list_add(out, s->desc.name, s->desc.count * sizeof *s->now);
+}
+
 bool scene_instances_allocate(scene_instances *s, gpu *g) {
     if (s->buffer) return true;
     s->buffer = gpu_buffer_create(g, &(gpu_buffer_desc){.label = s->desc.name,

@@ -55,6 +55,7 @@ scene_mesh *scene_instances_mesh(const scene_instances *s, uint32_t index, arena
 
 // The storage buffer "Instances". Allocate on the device's thread, again: does nothing; upload
 // inside a frame, once a frame: only what changed.
+void scene_instances_list_memory(const scene_instances *s, budget_list *out); // that it lacks
 bool scene_instances_allocate(scene_instances *s, gpu *g);
 bool scene_instances_upload(scene_instances *s, gpu *g);
 gpu_buffer *scene_instances_buffer(const scene_instances *s);

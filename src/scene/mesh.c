@@ -33,14 +33,27 @@ static gpu_image *upload_texture(gpu *g, const char *label, const mesh_texture *
     return image;
 }
 
+static size_t index_bytes(const mesh_data *data) {
+    return ((size_t)data->index_count + data->level_index_count) * sizeof *data->indices;
+}
+
+void scene_mesh_list_memory(const scene_mesh *mesh, budget_list *out) {
+    const mesh_data *data = &mesh->data;
+    if (mesh->vertices) return;
+    budget_list_add(out, mesh->name, data->vertex_count * sizeof *data->vertices);
+    budget_list_add(out, mesh->name, index_bytes(data));
+    for (uint32_t i = 0; i < data->texture_count; i++)
+        budget_list_add(out, mesh->name,
+                        4 * (uint64_t)data->textures[i].width * data->textures[i].height);
+}
+
 bool scene_mesh_upload(scene_mesh *mesh, gpu *g) {
     if (mesh->vertices) return true;
     const mesh_data *data = &mesh->data;
     mesh->textures = mem_alloc(data->texture_count * sizeof *mesh->textures);
     mesh->vertices =
         upload(g, mesh->name, data->vertices, data->vertex_count * sizeof *data->vertices);
-    size_t index_count = (size_t)data->index_count + data->level_index_count;
-    mesh->indices = upload(g, mesh->name, data->indices, index_count * sizeof *data->indices);
+    mesh->indices = upload(g, mesh->name, data->indices, index_bytes(data));
     bool done = mesh->vertices && mesh->indices;
     for (uint32_t i = 0; done && i < data->texture_count; i++) {
         mesh->textures[i] = upload_texture(g, mesh->name, &data->textures[i]);

@@ -124,6 +124,7 @@ bool scene_fill_lights(const scene *s, const field_context *context, struct ligh
 // Where the camera stands and what it looks at, metres.
 bool scene_camera_eye(const scene_camera *c, const field_context *context, vec3 eye, vec3 target);
 
+void scene_mesh_list_memory(const scene_mesh *mesh, budget_list *out); // of what is not uploaded
 bool scene_mesh_upload(scene_mesh *mesh, gpu *g);
 // Exchanges what both have on the device; false when they are not made of the same data.
 bool scene_mesh_exchange(scene_mesh *mesh, scene_mesh *other);

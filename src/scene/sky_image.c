@@ -134,16 +134,27 @@ void sky_image_means(const sky_image *s, float zenith[3], float horizon[3]) {
 
 // ---- on the device ----------------------------------------------------------------------------
 
+static gpu_image_desc describe_texture(const sky_image *s) {
+    const sky_content *content = s->content;
+    return (gpu_image_desc){
+        .label = "sky",
+        .format = GPU_RGBA16F,
+        .width = content->levels[0].width,
+        .height = content->levels[0].height,
+        .mips = content->level_count,
+        .use = GPU_USE_SAMPLED,
+    };
+}
+
+void sky_image_list_memory(const sky_image *s, budget_list *out) {
+    const gpu_image_desc desc = describe_texture(s);
+    if (!s->texture) budget_list_add(out, desc.label, gpu_image_bytes(&desc));
+}
+
 static bool upload_texture(sky_image *s, gpu *g) {
     const sky_content *content = s->content;
-    s->texture = gpu_image_create(g, &(gpu_image_desc){
-                                         .label = "sky",
-                                         .format = GPU_RGBA16F,
-                                         .width = content->levels[0].width,
-                                         .height = content->levels[0].height,
-                                         .mips = content->level_count,
-                                         .use = GPU_USE_SAMPLED,
-                                     });
+    const gpu_image_desc desc = describe_texture(s);
+    s->texture = gpu_image_create(g, &desc);
     bool done = s->texture != NULL;
     for (uint32_t i = 0; done && i < content->level_count; i++) {
         const sky_level *level = &content->levels[i];

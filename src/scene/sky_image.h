@@ -19,8 +19,9 @@ enum {
 sky_image *sky_image_load(const char *path, const char *root, arena *memory);
 // The same picture with nothing on the device, for another effect; `s` must outlive it.
 sky_image *sky_image_share(const sky_image *s, arena *memory);
-void sky_image_destroy(sky_image *s, gpu *g); // what it has on the device
-bool sky_image_upload(sky_image *s, gpu *g);  // again: does nothing
+void sky_image_destroy(sky_image *s, gpu *g);                     // what it has on the device
+void sky_image_list_memory(const sky_image *s, budget_list *out); // of what is not uploaded
+bool sky_image_upload(sky_image *s, gpu *g);                      // again: does nothing
 // Exchanges what both have on the device; false when they are not the same picture.
 bool sky_image_exchange(sky_image *s, sky_image *other);
 gpu_image *sky_image_texture(const sky_image *s); // rgba16f with mips, sampler repeats in x

@@ -73,10 +73,16 @@ void surfaces_add(surfaces *s, const bvh_forest *f, size_t end, const mesh_data 
     }
 }
 
-uint64_t surfaces_largest(const mesh_data *mesh) {
-    uint64_t texels = 0, vertices = mesh->vertex_count * (uint64_t)sizeof *mesh->vertices;
+uint64_t surfaces_texels(const mesh_data *mesh) {
+    uint64_t texels = 0;
     for (uint32_t i = 0; i < mesh->texture_count; i++)
-        texels += (uint64_t)mesh->textures[i].width * mesh->textures[i].height * 8;
+        texels += (uint64_t)mesh->textures[i].width * mesh->textures[i].height;
+    return texels;
+}
+
+uint64_t surfaces_largest(const mesh_data *mesh) {
+    const uint64_t vertices = mesh->vertex_count * (uint64_t)sizeof *mesh->vertices;
+    const uint64_t texels = 8 * surfaces_texels(mesh);
     return texels > vertices ? texels : vertices;
 }
 

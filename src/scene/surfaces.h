@@ -20,5 +20,6 @@ bool surface_has_holes(const mesh_data *mesh, const mesh_part *part);
 // The triangles of the forest up to `end` that have no surface yet are those of `mesh`.
 void surfaces_add(surfaces *s, const bvh_forest *f, size_t end, const mesh_data *mesh);
 void surfaces_free(surfaces *s);
+uint64_t surfaces_texels(const mesh_data *mesh); // of all its textures
 // Bytes of the largest array that surfaces of this mesh are made of.
 uint64_t surfaces_largest(const mesh_data *mesh);

@@ -45,7 +45,10 @@ extern const kernel_table voxels_kernel_table;
 bool voxels_compile(voxels *v, shader_library *library, const shader_reader *reader);
 bool voxels_build(voxels *v, gpu *g);    // pipelines; any thread
 bool voxels_allocate(voxels *v, gpu *g); // buffers, all empty; again: does nothing
-void voxels_destroy(voxels *v, gpu *g);  // g may be NULL when nothing was built
+// Adds what voxels_allocate will take, and voxels_write_distance. How much the masks of bodies need
+// is known when they stand somewhere.
+void voxels_list_memory(const voxels *v, bool distances, budget_list *out);
+void voxels_destroy(voxels *v, gpu *g); // g may be NULL when nothing was built
 
 typedef struct voxels_change { // against the update before
     bool cells;                // some cells may be another body's, or none's

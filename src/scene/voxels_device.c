@@ -97,18 +97,47 @@ static bool write_surfaces(voxels *v, gpu *g) {
     return true;
 }
 
+uint64_t voxels_bytes(const voxels *v, voxels_part_buffer which) {
+    const uint64_t cells = (uint64_t)v->size[0] * v->size[1] * v->size[2];
+    switch (which) {
+    case VOXELS_STATE:
+        return sizeof *v->state + v->part_count * sizeof *v->state->parts;
+    case VOXELS_POINTS:
+        return v->point_count * sizeof(shared_vec4);
+    case VOXELS_ITEMS:
+        return v->item_count * sizeof(shared_uvec4);
+    case VOXELS_PLACED:
+        return v->placed_count * sizeof(shared_vec4);
+    case VOXELS_IDS:
+        return 4 * cells;
+    case VOXELS_MOTIONS:
+        return (v->body_count + 1) * sizeof *v->motions;
+    case VOXELS_KEYS:
+        return 4 * cells;
+    case VOXELS_SEEDS:
+    case VOXELS_OTHER_SEEDS:
+        return 16 * cells;
+    default:
+        return 0; // grown when bodies are placed
+    }
+}
+
 bool voxels_allocate(voxels *v, gpu *g) {
+    static const voxels_part_buffer first[] = {VOXELS_STATE,  VOXELS_POINTS, VOXELS_ITEMS,
+                                               VOXELS_PLACED, VOXELS_MASKS,  VOXELS_IDS,
+                                               VOXELS_MOTIONS};
     if (v->buffers[VOXELS_MOTIONS]) return true;
-    uint64_t cells = (uint64_t)v->size[0] * v->size[1] * v->size[2];
-    uint64_t state = sizeof *v->state + v->part_count * sizeof *v->state->parts;
-    return voxels_make_buffer(v, g, VOXELS_STATE, state) &&
-           voxels_make_buffer(v, g, VOXELS_POINTS, v->point_count * sizeof(shared_vec4)) &&
-           voxels_make_buffer(v, g, VOXELS_ITEMS, v->item_count * sizeof(shared_uvec4)) &&
-           voxels_make_buffer(v, g, VOXELS_PLACED, v->placed_count * sizeof(shared_vec4)) &&
-           voxels_make_buffer(v, g, VOXELS_MASKS, 16) &&
-           voxels_make_buffer(v, g, VOXELS_IDS, 4 * cells) &&
-           voxels_make_buffer(v, g, VOXELS_MOTIONS, (v->body_count + 1) * sizeof *v->motions) &&
-           write_surfaces(v, g);
+    for (size_t i = 0; i < COUNT_OF(first); i++)
+        if (!voxels_make_buffer(v, g, first[i], voxels_bytes(v, first[i]))) return false;
+    return write_surfaces(v, g);
+}
+
+void voxels_list_memory(const voxels *v, bool distances, budget_list *out) {
+    for (voxels_part_buffer i = 0; i < VOXELS_BUFFERS; i++) {
+        const bool far = i >= VOXELS_KEYS && i <= VOXELS_OTHER_SEEDS;
+        if (!v->buffers[i] && (distances || !far))
+            budget_list_add(out, labels[i], voxels_bytes(v, i));
+    }
 }
 
 // ---- dispatching ------------------------------------------------------------------------------

@@ -5,12 +5,10 @@
 #include "scene/voxels_impl.h"
 
 static bool make_buffers(voxels *v, gpu *g) {
-    uint64_t cells = (uint64_t)v->size[0] * v->size[1] * v->size[2];
-    if (v->buffers[VOXELS_OTHER_SEEDS]) return true;
-    return (voxels_make_buffer(v, g, VOXELS_KEYS, 4 * cells) &&
-            voxels_make_buffer(v, g, VOXELS_SEEDS, 16 * cells) &&
-            voxels_make_buffer(v, g, VOXELS_OTHER_SEEDS, 16 * cells)) ||
-           err_prefix("distances: ");
+    for (voxels_part_buffer i = VOXELS_KEYS; i <= VOXELS_OTHER_SEEDS; i++)
+        if (!v->buffers[i] && !voxels_make_buffer(v, g, i, voxels_bytes(v, i)))
+            return err_prefix("distances: ");
+    return true;
 }
 
 static bool flood_once(voxels *v, gpu *g, int32_t apart, bool *other) {

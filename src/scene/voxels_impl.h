@@ -113,4 +113,5 @@ bool voxels_dispatch(voxels *v, gpu *g, voxels_stage stage, const uint32_t threa
 uint32_t voxels_groups(uint64_t threads);
 bool voxels_dispatch_groups(voxels *v, gpu *g, voxels_stage stage, uint32_t groups);
 // Of `bytes`; too much for the device: a message that says so.
+uint64_t voxels_bytes(const voxels *v, voxels_part_buffer which); // 0: not known before an update
 bool voxels_make_buffer(voxels *v, gpu *g, voxels_part_buffer which, uint64_t bytes);

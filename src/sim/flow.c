@@ -222,6 +222,20 @@ bool flow_allocate(flow *f, gpu *g) {
     return flow_transform_allocate(f, g) && flow_report_allocate(f, g);
 }
 
+void flow_list_memory(const flow *f, budget_list *out) {
+    uint64_t sizes[FLOW_MEM_COUNT];
+    find_sizes(f, sizes);
+    for (int i = 0; i < FLOW_MEM_COUNT; i++)
+        if (!f->buffers[i]) budget_list_add(out, "flow", sizes[i]);
+    if (f->desc.solver == FLOW_TRANSFORM && !f->modes)
+        budget_list_add(out, "modes of a flow", flow_transform_bytes(f));
+    for (int i = 0; i < 2 * FLOW_LOOKS; i++) {
+        const gpu_image_desc desc = flow_describe_look(f, (flow_look)(i % FLOW_LOOKS));
+        if (!f->looks[i / FLOW_LOOKS][i % FLOW_LOOKS])
+            budget_list_add(out, desc.label, gpu_image_bytes(&desc));
+    }
+}
+
 void flow_destroy(flow *f, gpu *g) {
     for (int i = 0; i < FLOW_KERNELS; i++) kernel_destroy(&f->kernels[i], g);
     for (int i = 0; i < FLOW_MEM_COUNT; i++) gpu_buffer_destroy(g, f->buffers[i]);

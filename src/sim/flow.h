@@ -74,6 +74,8 @@ bool flow_compile(flow *f, shader_library *library, const shader_reader *reader)
 bool flow_build(flow *f, gpu *g, shader_library *library, const shader_reader *reader);
 // State; contents undefined until flow_reset. What is there, of an exchange too, stays.
 bool flow_allocate(flow *f, gpu *g);
+// After flow_build: adds what flow_allocate, and the first two steps, will take.
+void flow_list_memory(const flow *f, budget_list *out);
 void flow_destroy(flow *f, gpu *g);
 
 // Inside a frame: air at rest, scalars 0, the inputs 0 (no source, no obstacle, no template).

@@ -97,16 +97,19 @@ gpu_image *flow_image(const flow *f, flow_look look, int which) {
     return f->kept > (uint64_t)which ? f->looks[(f->kept + 1 + (uint64_t)which) % 2][look] : NULL;
 }
 
+gpu_image_desc flow_describe_look(const flow *f, flow_look look) {
+    return (gpu_image_desc){.label = look == FLOW_SCALARS ? "flow's scalars" : "flow's velocity",
+                            .format = look == FLOW_SCALARS ? GPU_RGBA16F : GPU_RG16F,
+                            .width = f->desc.size[0],
+                            .height = f->desc.size[1],
+                            .depth = f->desc.slices,
+                            .use = GPU_USE_SAMPLED | GPU_USE_STORAGE};
+}
+
 bool flow_make_look(flow *f, gpu *g, uint32_t which, flow_look look) {
     gpu_image **image = &f->looks[which][look];
-    if (*image) return true;
-    *image = gpu_image_create(
-        g, &(gpu_image_desc){.label = look == FLOW_SCALARS ? "flow's scalars" : "flow's velocity",
-                             .format = look == FLOW_SCALARS ? GPU_RGBA16F : GPU_RG16F,
-                             .width = f->desc.size[0],
-                             .height = f->desc.size[1],
-                             .depth = f->desc.slices,
-                             .use = GPU_USE_SAMPLED | GPU_USE_STORAGE});
+    const gpu_image_desc desc = flow_describe_look(f, look);
+    if (!*image) *image = gpu_image_create(g, &desc);
     return *image != NULL;
 }
 

@@ -48,9 +48,13 @@ void flow_transform_modes(const flow_desc *desc, bool folds, float *out) {
     }
 }
 
+uint64_t flow_transform_bytes(const flow *f) {
+    const uint64_t n = f->desc.size[0];
+    return n * (n + 1) * sizeof(float);
+}
+
 bool flow_transform_allocate(flow *f, gpu *g) {
-    const uint32_t n = f->desc.size[0];
-    const uint64_t size = (uint64_t)n * (n + 1) * sizeof(float);
+    const uint64_t size = flow_transform_bytes(f);
     if (f->desc.solver != FLOW_TRANSFORM || f->modes) return true;
     float *modes = mem_alloc(size);
     flow_transform_modes(&f->desc, flow_transform_folds(&f->desc, f->tile), modes);

@@ -164,18 +164,34 @@ size_t lbm_defines(const lbm *l, shader_define out[LBM_MAX_DEFINES]) {
 
 // ---- state ------------------------------------------------------------------------------------
 
-bool lbm_allocate(lbm *l, gpu *g) {
+static uint64_t state_bytes(const lbm *l, uint32_t buffer) {
     const lbm_layout *layout = &l->layout;
-    for (uint32_t i = 0; i < layout->buffers; i++) {
-        uint32_t left = layout->slots - i * layout->run;
-        uint64_t slots = left < layout->run ? left : layout->run;
-        uint64_t size = slots * layout->places * layout->element;
+    uint32_t left = layout->slots - buffer * layout->run;
+    uint64_t slots = left < layout->run ? left : layout->run;
+    return slots * layout->places * layout->element;
+}
+
+static uint64_t moments_bytes(const lbm *l) {
+    return 16ull * l->desc.size[0] * l->desc.size[1] * l->desc.size[2];
+}
+
+bool lbm_allocate(lbm *l, gpu *g) {
+    for (uint32_t i = 0; i < l->layout.buffers; i++) {
         if (!l->state[i])
-            l->state[i] =
-                gpu_buffer_create(g, &(gpu_buffer_desc){.label = "lattice", .size = size});
+            l->state[i] = gpu_buffer_create(
+                g, &(gpu_buffer_desc){.label = "lattice", .size = state_bytes(l, i)});
         if (!l->state[i]) return false;
     }
     return lbm_step_allocate(l, g) && lbm_walls_allocate(l, g);
+}
+
+void lbm_list_memory(const lbm *l, budget_list *out) {
+    for (uint32_t i = 0; i < l->layout.buffers; i++)
+        if (!l->state[i]) budget_list_add(out, "lattice", state_bytes(l, i));
+    for (int i = 0; i < 2; i++)
+        if (!l->moments[i]) budget_list_add(out, "lattice's moments", moments_bytes(l));
+    lbm_step_list_memory(l, out);
+    lbm_walls_list_memory(l, out);
 }
 
 void lbm_destroy(lbm *l, gpu *g) {
@@ -254,7 +270,7 @@ bool lbm_reset(lbm *l, gpu *g, const lbm_numbers *numbers) {
 }
 
 bool lbm_make_moments(lbm *l, gpu *g, uint32_t which) {
-    const uint64_t size = 16ull * l->desc.size[0] * l->desc.size[1] * l->desc.size[2];
+    const uint64_t size = moments_bytes(l);
     const uint64_t range = gpu_get_info(g)->max_storage_range;
     if (size > range)
         return err_set("moments of %u x %u x %u cells take %llu MiB; the device can bind %llu",

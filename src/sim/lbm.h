@@ -82,6 +82,8 @@ bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader);
 bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader);
 // State; contents undefined until lbm_reset. What is there, of an exchange too, stays.
 bool lbm_allocate(lbm *l, gpu *g);
+// After lbm_build: adds what lbm_allocate, and the first two steps that are kept, will take.
+void lbm_list_memory(const lbm *l, budget_list *out);
 void lbm_destroy(lbm *l, gpu *g);
 
 // Inside a frame: air at rest, scalars at ambient, step 0.

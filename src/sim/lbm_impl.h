@@ -66,6 +66,7 @@ void lbm_walls_define(lbm *l, void (*define)(lbm *l, const char *name, uint32_t 
 bool lbm_walls_compile(lbm *l, shader_library *library, const shader_reader *reader);
 bool lbm_walls_build(lbm *l, gpu *g);
 bool lbm_walls_allocate(lbm *l, gpu *g);
+void lbm_walls_list_memory(const lbm *l, budget_list *out);
 void lbm_walls_destroy(lbm *l, gpu *g);
 void lbm_walls_reset(lbm *l, gpu *g);
 void lbm_walls_exchange(lbm *a, lbm *b);
@@ -89,6 +90,7 @@ bool lbm_step_compile(lbm *l, const gpu_profile *device, shader_library *library
                       const shader_reader *reader);
 bool lbm_step_build(lbm *l, gpu *g);
 bool lbm_step_allocate(lbm *l, gpu *g);
+void lbm_step_list_memory(const lbm *l, budget_list *out);
 void lbm_step_destroy(lbm *l, gpu *g);
 
 // ---- moments ----------------------------------------------------------------------------------

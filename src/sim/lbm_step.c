@@ -97,6 +97,17 @@ bool lbm_step_allocate(lbm *l, gpu *g) {
     return done;
 }
 
+void lbm_step_list_memory(const lbm *l, budget_list *out) {
+    uint64_t inner = 1;
+    for (int i = 0; i < 3; i++) {
+        const uint64_t size = i < 2 ? l->desc.size[i] : lbm_depth(l);
+        inner *= l->desc.faces[2 * i] == LBM_PERIODIC ? size : size > 2 ? size - 2 : 0;
+    }
+    const uint64_t all = (uint64_t)l->desc.size[0] * l->desc.size[1] * lbm_depth(l);
+    if (l->stepper.order != LBM_NO_SKIN && !l->stepper.skin)
+        budget_list_add(out, "elements at faces", (all - inner) * 4);
+}
+
 void lbm_step_destroy(lbm *l, gpu *g) {
     lbm_stepper *s = &l->stepper;
     for (int i = 0; i < 4; i++) kernel_destroy(&s->kernels[i / 2][i % 2].base, g);

@@ -42,20 +42,36 @@ static gpu_buffer *make(gpu *g, const char *label, uint64_t size) {
     return gpu_buffer_create(g, &(gpu_buffer_desc){.label = label, .size = size});
 }
 
+static uint64_t waves_bytes(const lbm *l) { // as lbm_wave_at of walls.glsl counts them
+    const uint64_t nx = l->desc.size[0], ny = l->desc.size[1];
+    return 16 * (2 * (nx + ny) * l->layout.layers + 2 * nx * ny);
+}
+
+static uint64_t cells_bytes(const lbm *l) {
+    return (uint64_t)l->layout.elements * 4;
+}
+
+static const char waves_label[] = "waves at open faces", cells_label[] = "kinds of cells";
+
 bool lbm_walls_allocate(lbm *l, gpu *g) {
     lbm_walls *w = &l->walls;
-    const uint64_t nx = l->desc.size[0], ny = l->desc.size[1];
-    if (has_rims(&l->desc) && !w->waves) { // as lbm_wave_at of walls.glsl counts them
-        const uint64_t count = 2 * (nx + ny) * l->layout.layers + 2 * nx * ny;
-        w->waves = make(g, "waves at open faces", count * 16);
+    if (has_rims(&l->desc) && !w->waves) {
+        w->waves = make(g, waves_label, waves_bytes(l));
         if (!w->waves) return false;
     }
     for (int i = 0; l->desc.bodies && i < 2; i++) {
         if (w->cells[i]) continue;
-        w->cells[i] = make(g, "kinds of cells", (uint64_t)l->layout.elements * 4);
+        w->cells[i] = make(g, cells_label, cells_bytes(l));
         if (!w->cells[i]) return false;
     }
     return true;
+}
+
+void lbm_walls_list_memory(const lbm *l, budget_list *out) {
+    const lbm_walls *w = &l->walls;
+    if (has_rims(&l->desc) && !w->waves) budget_list_add(out, waves_label, waves_bytes(l));
+    for (int i = 0; l->desc.bodies && i < 2; i++)
+        if (!w->cells[i]) budget_list_add(out, cells_label, cells_bytes(l));
 }
 
 void lbm_walls_destroy(lbm *l, gpu *g) {

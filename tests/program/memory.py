@@ -60,6 +60,15 @@ class Memory(Case):
         self.assertEqual(labels[0], "march.color")
         self.assertIn("march.edge", labels)
 
+    def test_lattice_and_pictures(self):
+        """Each of them would fit by itself; what all passes and pictures take is known before any of it is made."""
+        effect = HEAD + ("local air = lbm { size = {128, 128, 128}, voxel_size = 0.02, speed = 2 }\n"
+                         "air:source { shape = sphere { radius = 0.3 }, density = 1 }\n"
+                         "fx.output = march { density = air.density }.color\nreturn fx\n")
+        total, labels = self.draw(effect, "--size", "3840x2160")
+        self.assertEqual(labels, ["lattice", "lattice's moments", "march.color"])
+        self.assertGreater(total, 76 + 64 + 16 + 2 * 63)  # the state, its moments, the grid, two of the pictures
+
     def test_declarations(self):
         self.write("effect.lua", HEAD + "local t = {}\nfor i = 1, 1e7 do t[i] = perlin { frequency = i } end\n")
         message = self.fails(1, ["effect.lua:3:", "--memory", "the script and what it declares"],

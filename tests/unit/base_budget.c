@@ -66,6 +66,28 @@ static void sums_do_not_overflow(void **state) {
     budget_destroy(b);
 }
 
+static void a_list_counts_what_is_shared_once(void **state) {
+    (void)state;
+    budget *b = make("100M");
+    int shared, other;
+    budget_list list = {0};
+    assert_true(budget_list_first(&list, &shared));
+    assert_true(budget_list_first(&list, &other));
+    assert_false(budget_list_first(&list, &shared));
+    budget_list_add(&list, "nothing", 0);
+    budget_list_add(&list, "a", 60 * MIB);
+    assert_true(budget_ask(b, list.rows, list.count, 0));
+    budget_list_add(&list, "b", 41 * MIB);
+    assert_int_equal(list.count, 2);
+    assert_false(budget_ask(b, list.rows, list.count, 0));
+    assert_non_null(strstr(err_get(), "parts: a 60.0 MiB, b 41.0 MiB"));
+    assert_int_equal(budget_get(b).sum, 0);
+    budget_list_free(&list);
+    assert_true(list.count == 0 && budget_list_first(&list, &shared));
+    budget_list_free(&list);
+    budget_destroy(b);
+}
+
 static void a_part_changes_its_size_and_moves(void **state) {
     (void)state;
     budget *b = make("100M");
@@ -199,6 +221,7 @@ int main(void) {
         cmocka_unit_test_teardown(takes_up_to_the_limit_and_no_further, put_back),
         cmocka_unit_test_teardown(a_refusal_says_the_sum_and_the_three_largest_parts, put_back),
         cmocka_unit_test_teardown(sums_do_not_overflow, put_back),
+        cmocka_unit_test_teardown(a_list_counts_what_is_shared_once, put_back),
         cmocka_unit_test_teardown(a_part_changes_its_size_and_moves, put_back),
         cmocka_unit_test_teardown(what_is_asked_for_takes_nothing, put_back),
         cmocka_unit_test_teardown(a_loan_ends_below_what_there_is, put_back),

@@ -27,10 +27,8 @@ gpu_image *gpu_image_create(gpu *g, const gpu_image_desc *desc) {
     return made;
 }
 
-bool gpu_images_fit(gpu *g, const gpu_image_desc *images, size_t count, const gpu_image_desc *freed,
-                    size_t freed_count) {
-    (void)g, (void)images, (void)count, (void)freed, (void)freed_count;
-    return true;
+uint64_t gpu_image_bytes(const gpu_image_desc *desc) {
+    return (uint64_t)desc->width * desc->height * (desc->depth ? desc->depth : 1);
 }
 
 void gpu_lend_memory(gpu *g, const gpu_image_desc *going, size_t count) {

@@ -1,0 +1,194 @@
+// What effects ask of the device's memory before they take any: as much as they take then, and
+// nothing at all where it is refused.
+#include "base/memory.h"
+#include "roil_impl.h"
+#include "roil_test.h"
+
+// What is asked for may miss what is taken by this: single texels, what depends on where things
+// stand, and how drivers round.
+enum { WIDTH = 640, HEIGHT = 360, SLACK = 1 << 20, LAST = 3 };
+
+static const char crate[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+                            "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+static const char head[] = "local fx = effect { name = 'asks', fps = 60, frames = 10 }\n"
+                           "fx.camera = orbit { target = {0, 0, 0.5}, distance = 5 }\n";
+
+// A lattice with all that its state has: faces that air passes, bodies, a force that varies.
+static const char air[] =
+    "local air = lbm { size = {64, 64, 64}, voxel_size = 0.03, speed = 2, boundary = 'open',\n"
+    "                  force = position * 0.1 }\n"
+    "air:source { mesh { 'crate.obj', scale = 0.4 }, density = 1 }\n"
+    "air:collider { mesh { 'crate.obj', scale = 0.4 } }\n"
+    "fx.output = final { march { density = air.density * 30, steps = 4 } }.color\n"
+    "return fx\n";
+
+static const char fire[] =
+    "local flow = slices { count = 4, size = {128, 192}, height = 2 }\n"
+    "flow:inflow { shape = disc { 0.5, 0.15, radius = 0.12 }, density = 0.8, temperature = 2 }\n"
+    "fx.output = final { march { density = flow.density * 3, steps = 4 } }.color\n"
+    "return fx\n";
+
+// Of splats of each kind, and of pieces; what particles leave in a grid.
+static const char swarm[] =
+    "local p = particles { count = 1 << 16, rate = 1e4, lifetime = 1, velocity = {0, 0, 1} }\n"
+    "local air = deposit { p, box = { min = {-1, -1, -1}, max = {1, 1, 1} }, resolution = 96,\n"
+    "                      size = 0.1 }\n"
+    "local added = splats { name = 'added', from = p, size = 0.1 }\n"
+    "local weighed = splats { name = 'weighed', from = p, size = 0.1, blend = 'weighted' }\n"
+    "local sorted = splats { name = 'sorted', from = p, size = 0.1, blend = 'sorted' }\n"
+    "local solid = pieces { mesh { 'crate.obj' }, from = p, size = 0.1 }\n"
+    "local volume = march { density = air.density, steps = 4 }\n"
+    "fx.output = final { shader { 'all.comp', a = added.image, b = weighed.image,\n"
+    "                    c = sorted.image, d = solid.albedo, e = volume.color }.color }.color\n"
+    "return fx\n";
+
+static const char all_shader[] =
+    "// All of them.\n"
+    "uniform sampler2D a; //= input : an image\n"
+    "uniform sampler2D b; //= input : an image\n"
+    "uniform sampler2D c; //= input : an image\n"
+    "uniform sampler2D d; //= input : an image\n"
+    "uniform sampler2D e; //= input : an image\n"
+    "writeonly uniform image2D color; //= output rgba16f : their sum\n"
+    "void main() {\n"
+    "    ivec2 at = ivec2(gl_GlobalInvocationID.xy);\n"
+    "    imageStore(color, at, texelFetch(a, at, 0) + texelFetch(b, at, 0) +\n"
+    "               texelFetch(c, at, 0) + texelFetch(d, at, 0) + texelFetch(e, at, 0));\n"
+    "}\n";
+
+// Many bodies, drawn into many views; the body as cells, its distance and its light.
+static const char crates[] =
+    "local at = {}\n"
+    "for i = 1, 20000 do at[i] = {i % 100 - 50, i // 100, 0} end\n"
+    "local rows = instances { mesh { 'crate.obj' }, at = at }\n"
+    "local body = voxels { mesh { 'crate.obj' }, resolution = 64 }\n"
+    "local inside = box { size = {2, 2, 2} } * smoothstep(0.1, 0, body.distance)\n"
+    "local lit = lighting { density = inside, glow_resolution = 32 }\n"
+    "local seen = geometry { rows, mode = 'raster' }\n"
+    "local maps = shadow_maps { from = seen, points = 2, point_size = 128 }\n"
+    "local solid = shade { from = {seen, lit, maps} }\n"
+    "local smoke = march { from = lit, depth = seen.depth, steps = 4 }\n"
+    "fx.output = final { over { volume = smoke, source = solid, depth = seen.depth } }.color\n"
+    "return fx\n";
+
+static void list_all(roil_effect *e, budget_list *out) {
+    ok(effect_compile(e->effect));
+    ok(graph_compile(effect_graph(e->effect), WIDTH, HEIGHT));
+    assert_int_equal(effect_list_memory(e->effect, out, out), 0);
+}
+
+static uint64_t sum_of(const budget_list *list) {
+    uint64_t sum = 0;
+    for (size_t i = 0; i < list->count; i++) sum += list->rows[i].bytes;
+    return sum;
+}
+
+static uint64_t used(const roil *r) { // without what was let go
+    assert_true(gpu_idle(r->device));
+    return gpu_get_memory_use(r->device).used;
+}
+
+static void show(const budget_list *list) {
+    for (size_t i = 0; i < list->count; i++)
+        print_message("%12llu %s\n", (unsigned long long)list->rows[i].bytes, list->rows[i].label);
+}
+
+static roil_effect *open(roil *r, const char *body) {
+    char text[4096], path[512];
+    write_text("crate.obj", crate, path);
+    snprintf(text, sizeof text, "%s%s", head, body);
+    return load_text(r, "asks.lua", text);
+}
+
+// `rows`: labels that must be among them, up to NULL.
+static void expect_asked(roil *r, const char *body, const char *const *rows) {
+    budget_list list = {0};
+    roil_effect *e = open(r, body);
+    list_all(e, &list);
+    const uint64_t before = used(r), asked = sum_of(&list);
+    ok(roil_prepare(e, WIDTH, HEIGHT));
+    for (int i = 1; i <= LAST; i++) ok(roil_render(e, i));
+    const uint64_t taken = used(r) - before;
+    if (taken > asked + SLACK || asked > taken + SLACK) {
+        show(&list);
+        fail_msg("%llu bytes were asked for, %llu are taken", (unsigned long long)asked,
+                 (unsigned long long)taken);
+    }
+    for (; *rows; rows++) {
+        size_t i = 0;
+        while (i < list.count && strcmp(list.rows[i].label, *rows) != 0) i++;
+        if (i == list.count) fail_msg("'%s' is not asked for", *rows);
+    }
+    budget_list_free(&list);
+    roil_unload(e);
+}
+
+static void air_asks_for_its_state(void **state) {
+    expect_asked(*state, air,
+                 (const char *const[]){"lattice", "lattice's moments", "waves at open faces",
+                                       "kinds of cells", "elements at faces", "force",
+                                       "ids of cells", NULL});
+}
+
+static void slices_ask_for_their_state(void **state) {
+    expect_asked(*state, fire,
+                 (const char *const[]){"flow", "flow's scalars", "flow's velocity", NULL});
+}
+
+static void particles_ask_for_theirs_and_for_what_draws_them(void **state) {
+    char path[512];
+    write_text("all.comp", all_shader, path);
+    expect_asked(*state, swarm,
+                 (const char *const[]){"positions", "velocities", "sums of particles",
+                                       "depths of pieces", "triangles of pieces", NULL});
+}
+
+static void scenes_ask_for_what_is_drawn(void **state) {
+    expect_asked(*state, crates,
+                 (const char *const[]){"lists of draws", "draws", "nearest points", "ids of cells",
+                                       "crate.obj", "boxes of meshes", NULL});
+}
+
+// Half of it could be had: the state without the pictures, or these without it.
+static void nothing_is_taken_where_all_does_not_fit(void **state) {
+    roil *r = *state;
+    char limit[32];
+    budget_list list = {0};
+    roil_effect *e = open(r, air);
+    list_all(e, &list);
+    const uint64_t before = used(r), sum = budget_get(gpu_get_budget(r->device)).sum;
+    snprintf(limit, sizeof limit, "%lluK", (unsigned long long)((sum + sum_of(&list) / 2) >> 10));
+    assert_true(budget_set_share(limit));
+    expect_error(roil_prepare(e, WIDTH, HEIGHT), "asks.lua: ");
+    assert_non_null(strstr(roil_error(), "; the largest parts: "));
+    assert_non_null(strstr(roil_error(), " lattice 13.0 MiB"));
+    assert_int_equal(used(r), before);
+    assert_true(budget_set_share(NULL));
+    ok(roil_prepare(e, WIDTH, HEIGHT)); // nothing is left over that would be in the way
+    budget_list_free(&list);
+    roil_unload(e);
+}
+
+// What the device itself keeps is there before the first of the others is measured.
+static void plain_effects_are_drawn(void **state) {
+    roil_effect *e = load_text(*state, "plain.lua",
+                               "local fx = effect { name = 'plain' }\n"
+                               "fx.output = final { march { density = sphere {} } }.color\n"
+                               "return fx\n");
+    ok(roil_prepare(e, WIDTH, HEIGHT));
+    for (int i = 1; i <= LAST; i++) ok(roil_render(e, i));
+    roil_unload(e);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(plain_effects_are_drawn),
+        cmocka_unit_test(air_asks_for_its_state),
+        cmocka_unit_test(slices_ask_for_their_state),
+        cmocka_unit_test(particles_ask_for_theirs_and_for_what_draws_them),
+        cmocka_unit_test(scenes_ask_for_what_is_drawn),
+        cmocka_unit_test(nothing_is_taken_where_all_does_not_fit),
+    };
+    return test_run(tests);
+}
