@@ -171,6 +171,11 @@ time_limit roil_time_limit(const roil *r) {
 // ---- effects ----------------------------------------------------------------------------------
 
 roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, size_t count) {
+    return roil_load_inside(r, NULL, file, settings, count);
+}
+
+roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
+                              const roil_setting *settings, size_t count) {
     effect_setting *own = mem_alloc(count * sizeof *own);
     for (size_t i = 0; i < count; i++)
         own[i] = (effect_setting){.name = settings[i].name, .text = settings[i].value};
@@ -179,6 +184,7 @@ roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, 
     e->effect = effect_create(&(effect_desc){
         .device = r->device,
         .file = file,
+        .inside = folder,
         .shader_root = r->shaders,
         .cache_dir = r->cache,
         .counters = r->counters,

@@ -105,6 +105,10 @@ typedef struct roil_setting { // "steps" = "64", "march.mode" = "paper", "tint" 
 // Runs the effect file. Settings override what it declares, structure included; a name that the
 // effect does not have is an error.
 roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, size_t count);
+// The same of a file that its user did not name: when it is opened it lies in `folder`, wherever
+// links lead by then. NULL: roil_load.
+roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
+                              const roil_setting *settings, size_t count);
 void roil_unload(roil_effect *e); // NULL is fine
 // Compiles every shader and checks the graph, without a device.
 bool roil_check(roil_effect *e);

@@ -22,6 +22,7 @@ typedef struct output {
 
 typedef struct job {
     const char *file, *stats;
+    const char *inside; // the folder that the effect of a recipe lies in; NULL: its user named it
     const char *checkpoint, *restore;
     output *outputs;
     size_t output_count, output_capacity;
@@ -185,7 +186,7 @@ static bool complete_from(job *j) {
             return err_set("%s: its effect lies outside of this folder; name it: roil render "
                            "EFFECT.lua --from %s",
                            j->from_file, j->from_file);
-        if (!named && !path_require_inside(".", j->file)) return false;
+        if (!named && !path_require_inside(j->inside = ".", j->file)) return false;
     }
     if (j->from && !j->frames.count) {
         j->frames.numbers = mem_copy(&j->from->frame, sizeof j->from->frame);
@@ -359,7 +360,9 @@ static int run(job *j) {
     desc.user = &files;
     roil *r = roil_create(&desc);
     bool collected = r && app_collect_settings(&j->settings, r, j->file, j->from);
-    roil_effect *e = collected ? roil_load(r, j->file, j->settings.all, j->settings.count) : NULL;
+    roil_effect *e = collected ? roil_load_inside(r, j->inside, j->file, j->settings.all,
+                                                  j->settings.count)
+                               : NULL;
     app_stats *stats = app_stats_create();
     int status = APP_DONE;
     if (!e) {

@@ -127,7 +127,7 @@ static bool start(reload *m) {
     const bench_row *row = m->row;
     void *data;
     size_t size;
-    if (!file_read(m->row->effect, SCRIPT_MAX, &data, &size)) return false;
+    if (!file_read_inside(row->inside, row->effect, SCRIPT_MAX, &data, &size)) return false;
     m->script = data;
     // The copy may be a link, through which an edit would reach what it leads to.
     if ((unlink(m->path) != 0 && errno != ENOENT) || !file_write(m->path, data, size))

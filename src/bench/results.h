@@ -56,6 +56,7 @@ typedef struct bench_row {
     const char *label;
     bench_settings axes; // by name; values as text
     const char *effect;  // file
+    const char *inside;  // of a sweep: the folder that it must lie in when it is opened, else NULL
     uint32_t width, height;
     double *frames;
     size_t frame_count;

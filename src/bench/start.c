@@ -91,6 +91,8 @@ static bool run_once(starter *m, double *milliseconds) {
     int status;
     if (m->job->empty_cache) bench_folder_remove(m->cache);
     if (!file_make_folders(m->cache)) return false;
+    // The process will take it for named by its user.
+    if (m->row->inside && !path_require_inside(m->row->inside, m->row->effect)) return false;
     double begin = clock_seconds();
     if (!bench_spawn(m->arguments, m->log, &status)) return false;
     *milliseconds = 1e3 * (clock_seconds() - begin);

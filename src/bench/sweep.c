@@ -26,6 +26,7 @@ static bench_row plan_row(const sweep_row *from, size_t index, arena *memory) {
         .label = from->label,
         .axes = copy_pairs(from->axes, from->axis_count, memory),
         .effect = from->effect,
+        .inside = from->inside,
         .width = from->width,
         .height = from->height,
         .frames = from->frames,
@@ -65,7 +66,7 @@ static hash128 add_effect(hash128 h, const sweep_row *row) {
     void *data;
     size_t size;
     h = add_text(h, path_name(row->effect));
-    if (!file_read(row->effect, EFFECT_MAX, &data, &size)) return h;
+    if (!file_read_inside(row->inside, row->effect, EFFECT_MAX, &data, &size)) return h;
     h = hash_combine(h, hash_bytes(data, size));
     mem_free(data);
     return h;
@@ -253,7 +254,7 @@ static bool check_names(const sweep *s, const bool *chosen) {
         if (!chosen[i] || (last && last->effect == row->effect && same_names(last, row))) continue;
         last = row;
         bench_settings all = copy_pairs(row->settings, row->setting_count, &memory);
-        roil_effect *e = roil_load(r, row->effect, all.items, all.count);
+        roil_effect *e = roil_load_inside(r, row->inside, row->effect, all.items, all.count);
         good = e != NULL;
         roil_unload(e);
     }

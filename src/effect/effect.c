@@ -32,6 +32,7 @@ effect *effect_create(const effect_desc *desc) {
     e->punctual = desc->punctual;
     e->seconds = desc->seconds > 0 ? desc->seconds : TIME_LIMIT_LOAD_SECONDS;
     e->file = arena_string(&e->memory, desc->file);
+    e->inside = desc->inside ? arena_string(&e->memory, desc->inside) : NULL;
     e->root = arena_string(&e->memory, folder);
     e->name = arena_string(&e->memory, path_name(desc->file));
     e->fps = 24;
@@ -123,6 +124,10 @@ double effect_seconds(const effect *e) {
 
 bool effect_draws(const effect *e) {
     return e->device != NULL;
+}
+
+const char *effect_inside(const effect *e) {
+    return e->inside;
 }
 
 const char *effect_file(const effect *e) {

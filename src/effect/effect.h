@@ -41,6 +41,7 @@ typedef struct effect_setting { // see effect_set
 typedef struct effect_desc {
     gpu *device;             // NULL: check only
     const char *file;        // the effect's .lua file
+    const char *inside;      // folder that it must lie in when it is opened; NULL: its user named it
     const char *shader_root; // the program's shaders
     const char *cache_dir;   // NULL: no caches
     bool counters;
@@ -66,6 +67,7 @@ void effect_destroy(effect *e);
 arena *effect_memory(effect *e);          // lives as long as the effect
 const char *effect_root(const effect *e); // folder of its file
 const char *effect_file(const effect *e);
+const char *effect_inside(const effect *e); // effect_desc.inside
 double effect_seconds(const effect *e); // that a load may take
 bool effect_draws(const effect *e);     // false: it is only checked
 scene *effect_scene(effect *e);

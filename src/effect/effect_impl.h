@@ -113,6 +113,7 @@ struct effect {
     arena memory;
     gpu *device;
     const char *file, *root, *name;
+    const char *inside; // effect_desc
     shader_library *library, *own_library; // the latter NULL when it is shared
     scene scene;
     graph *graph;

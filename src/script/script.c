@@ -172,7 +172,7 @@ static bool run(script *s, const char *prelude_folder) {
     return vm_protect(s->vm, open_bindings, NULL, s->limits.load) &&
            path_join(prelude, prelude_folder, "prelude.lua") &&
            vm_run_file(s->vm, prelude, "prelude.lua", s->limits.load, true) &&
-           vm_run_file(s->vm, file, file, s->limits.load, false);
+           vm_run_file_inside(s->vm, effect_inside(s->effect), file, s->limits.load);
 }
 
 static bool is_complete(const script *s) {

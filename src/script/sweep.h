@@ -42,6 +42,7 @@ typedef struct sweep_axis {
 typedef struct sweep_row {
     const char *label;
     const char *effect; // path, allowed by the rule below
+    const char *inside; // the folder that allows it
     uint32_t width, height;
     double *frames; // NULL: by `first` and `last`, which are seconds
     size_t frame_count;

@@ -34,7 +34,10 @@ static void set(sweep_row *row, const sweep_pair *setting) {
 
 // The row's settings have room for those of the patch.
 static void apply(sweep_row *row, const sweep_patch *p) {
-    if (p->effect) row->effect = p->effect;
+    if (p->effect) {
+        row->effect = p->effect;
+        row->inside = p->inside;
+    }
     if (p->width) row->width = p->width;
     if (p->height) row->height = p->height;
     if (p->frames || p->last > p->first) {

@@ -7,7 +7,7 @@
 // What a value of an axis, a reference or the sweep itself says of rows; what it does not say is
 // zero, or below zero where zero says something.
 typedef struct sweep_patch {
-    const char *effect;
+    const char *effect, *inside; // the latter is there with the former
     uint32_t width, height;
     double *frames;
     size_t frame_count;

@@ -86,13 +86,9 @@ static int take_word(lua_State *L, const char *who, const char *key, const char 
 
 // ---- special keys -----------------------------------------------------------------------------
 
-static bool lies_inside(const char *folder, const char *path) {
-    return folder && path_require_inside(folder, path);
-}
-
 // Strangers' sweeps open no effects but those beside them, those of the folder that the user works
 // in, and the program's own. Shown relative to the current folder where it lies there.
-static const char *take_effect(lua_State *L, const char *who) {
+static void take_effect(lua_State *L, const char *who, sweep_patch *patch) {
     sweep_reader *r = sweep_reader_of(L);
     const char *name = sweep_take_text(L, who, "effect");
     char path[PATH_CAP], real[PATH_CAP], here[PATH_CAP];
@@ -100,15 +96,18 @@ static const char *take_effect(lua_State *L, const char *who) {
     if (!file_exists(path) || !realpath(path, real) || !realpath(".", here))
         vm_error(L, "%s: effect '%.256s': there is no file %s (paths begin at the sweep's folder)",
                  who, name, path);
-    if (!lies_inside(r->folder, path) && !lies_inside(".", path) &&
-        !lies_inside(r->options->home, path))
+    const char *const folders[] = {r->folder, here, r->options->home};
+    patch->inside = NULL;
+    for (size_t i = 0; i < COUNT_OF(folders) && !patch->inside; i++)
+        if (folders[i] && path_require_inside(folders[i], real)) patch->inside = keep(L, folders[i]);
+    if (!patch->inside)
         vm_error(L,
                  "%s: effect '%.256s' lies neither in the sweep's folder nor in the current one "
                  "(run roil where both are)",
                  who, name);
     size_t length = strlen(here);
     bool below = strncmp(real, here, length) == 0 && real[length] == '/';
-    return keep(L, below ? real + length + 1 : real);
+    patch->effect = keep(L, below ? real + length + 1 : real);
 }
 
 static void take_size(lua_State *L, const char *who, sweep_patch *patch) {
@@ -203,7 +202,7 @@ static void take_edits(lua_State *L, const char *who, sweep_patch *patch) {
 static void take_special(lua_State *L, const char *who, const char *key, sweep_patch *patch) {
     static const char *const commands[] = {"check", "render"}, *const caches[] = {"warm", "empty"};
     if (strcmp(key, "effect") == 0)
-        patch->effect = take_effect(L, who);
+        take_effect(L, who, patch);
     else if (strcmp(key, "size") == 0)
         take_size(L, who, patch);
     else if (strcmp(key, "frames") == 0)

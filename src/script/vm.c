@@ -471,19 +471,24 @@ void vm_load_chunk(lua_State *L, const char *root, const char *path, const char 
 }
 
 typedef struct run_request {
-    const char *path, *shown;
+    const char *root, *path, *shown;
     bool prelude;
 } run_request;
 
 static int run_chunk(lua_State *L) {
     const run_request *r = lua_touserdata(L, 1);
-    vm_load_chunk(L, NULL, r->path, r->shown, r->prelude);
+    vm_load_chunk(L, r->root, r->path, r->shown, r->prelude);
     lua_call(L, 0, 0);
     return 0;
 }
 
 bool vm_run_file(vm *v, const char *path, const char *shown, uint64_t instructions, bool prelude) {
-    run_request request = {path, shown, prelude};
+    run_request request = {NULL, path, shown, prelude};
+    return vm_protect(v, run_chunk, &request, instructions);
+}
+
+bool vm_run_file_inside(vm *v, const char *root, const char *path, uint64_t instructions) {
+    run_request request = {root, path, path, false};
     return vm_protect(v, run_chunk, &request, instructions);
 }
 

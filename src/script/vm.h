@@ -33,6 +33,8 @@ void *vm_user(lua_State *L);
 // Reads and runs a file in the sandbox. False with "file:line: message", its callers below.
 // `prelude`: errors in its functions name the line of the effect that called them.
 bool vm_run_file(vm *v, const char *path, const char *shown, uint64_t instructions, bool prelude);
+// The same of a file that must lie in `root` when it is opened; NULL: anywhere.
+bool vm_run_file_inside(vm *v, const char *root, const char *path, uint64_t instructions);
 
 // Calls what lies on the stack below `args` arguments. False: message set, nothing is pushed.
 // A call made while another one runs spends the budget of the outer one.
