@@ -360,9 +360,9 @@ static int run(job *j) {
     desc.user = &files;
     roil *r = roil_create(&desc);
     bool collected = r && app_collect_settings(&j->settings, r, j->file, j->from);
-    roil_effect *e = collected ? roil_load_inside(r, j->inside, j->file, j->settings.all,
-                                                  j->settings.count)
-                               : NULL;
+    roil_effect *e =
+        collected ? roil_load_inside(r, j->inside, j->file, j->settings.all, j->settings.count)
+                  : NULL;
     app_stats *stats = app_stats_create();
     int status = APP_DONE;
     if (!e) {

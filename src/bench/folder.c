@@ -6,11 +6,13 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <ftw.h>
+#include <limits.h>
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 extern char **environ;
 
@@ -65,12 +67,14 @@ void bench_folder_remove(const char *folder) {
         if (strcmp(folders[i], folder) == 0) folders[i][0] = '\0';
 }
 
-bool bench_spawn(const char *const *arguments, const char *log, int *status) {
+// `folder`: where it runs; below 0: here.
+static bool spawn_in(int folder, const char *const *arguments, const char *log, int *status) {
     posix_spawn_file_actions_t actions;
     pid_t child;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_addopen(&actions, 2, log, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    if (folder >= 0) posix_spawn_file_actions_addfchdir_np(&actions, folder);
     int failed =
         posix_spawnp(&child, arguments[0], &actions, NULL, (char *const *)arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
@@ -80,11 +84,19 @@ bool bench_spawn(const char *const *arguments, const char *log, int *status) {
     return true;
 }
 
-bool bench_folder_copy(const char *from, const char *to) {
-    char all[PATH_CAP], log[PATH_CAP];
+bool bench_spawn(const char *const *arguments, const char *log, int *status) {
+    return spawn_in(-1, arguments, log, status);
+}
+
+bool bench_folder_copy(const char *inside, const char *file, const char *to) {
+    char real_to[PATH_MAX], log[PATH_CAP];
     int status;
-    if (!path_join(all, from, ".") || !path_join(log, to, "copy.log")) return false;
-    const char *const arguments[] = {"cp", "-rP", "--", all, to, NULL};
-    if (!bench_spawn(arguments, log, &status)) return false;
-    return status == 0 || err_set("%s: cannot be copied to %s", from, to);
+    if (!realpath(to, real_to) || !path_join(log, to, "copy.log"))
+        return err_set("%s: %s", to, strerror(errno));
+    int folder = file_open_folder_inside(inside, file);
+    if (folder < 0) return false;
+    const char *const arguments[] = {"cp", "-rP", "--", ".", real_to, NULL};
+    bool done = spawn_in(folder, arguments, log, &status);
+    close(folder);
+    return done && (status == 0 || err_set("%s: its folder cannot be copied to %s", file, real_to));
 }

@@ -159,13 +159,12 @@ static bool run(reload *m) {
 
 bool bench_measure_reload(bench_session *s, const bench_job *job, bench_row *row, arena *memory) {
     reload m = {.session = s, .job = job, .row = row};
-    char folder[PATH_CAP], from[PATH_CAP];
+    char folder[PATH_CAP];
     if (job->edit_count < 2) return err_set("nothing says what is edited");
     if (!bench_folder_make(folder)) return false;
     pthread_mutex_init(&m.news.mutex, NULL);
     pthread_cond_init(&m.news.rung, NULL);
-    path_folder(from, row->effect);
-    bool done = bench_folder_copy(from, folder) &&
+    bool done = bench_folder_copy(row->inside, row->effect, folder) &&
                 path_join(m.path, folder, path_name(row->effect)) && run(&m);
     row->times = bench_summarise(&m.times, memory);
     roil_live_destroy(m.live);

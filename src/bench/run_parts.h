@@ -48,7 +48,8 @@ bool bench_picture_compare(const bench_picture *a, const bench_picture *b, bench
 
 bool bench_folder_make(char out[PATH_CAP]); // a new one for temporary files
 void bench_folder_remove(const char *folder);
-bool bench_folder_copy(const char *from, const char *to); // what is in it; links stay links
+// What is in the folder of `file`, which lies in `inside`, to another folder; links stay links.
+bool bench_folder_copy(const char *inside, const char *file, const char *to);
 // Runs a program to its end; what it says as errors goes to the file `log`.
 bool bench_spawn(const char *const *arguments, const char *log, int *status);
 

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "pass/particles.h"
 #include "pass/splats_parts.h"
+#include <string.h>
 
 static const char *const names[] = {SPLATS_NAMES(KERNEL_NAME_TEXT)};
 static const char sort_shader[] = "pass/splats/sort.comp";

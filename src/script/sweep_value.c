@@ -99,7 +99,8 @@ static void take_effect(lua_State *L, const char *who, sweep_patch *patch) {
     const char *const folders[] = {r->folder, here, r->options->home};
     patch->inside = NULL;
     for (size_t i = 0; i < COUNT_OF(folders) && !patch->inside; i++)
-        if (folders[i] && path_require_inside(folders[i], real)) patch->inside = keep(L, folders[i]);
+        if (folders[i] && path_require_inside(folders[i], real))
+            patch->inside = keep(L, folders[i]);
     if (!patch->inside)
         vm_error(L,
                  "%s: effect '%.256s' lies neither in the sweep's folder nor in the current one "

@@ -8,10 +8,13 @@ import struct
 import tempfile
 
 from lib.program import BINARY, GROUND, PUFF, SMALL, Case, main
-from places import PNG, READERS, with_text
+from places import EXR, READERS, with_text
 
 LIBRARY = os.path.join(BINARY, "libswap.so")
-IN_OPEN, MOST = 0x20, 12  # looks at one file, of one process
+IN_OPEN, MOST = 0x20, 24  # looks at one file, of one process
+KINDS = {**READERS, "picture, EXR": ("x.exr", EXR, READERS["picture"][2])}
+DRAWN = "raw", "vdb frames"  # whose frames are read when they are shown
+RENDER = ["render", "in/puff.lua", "--frames", "1", "-o", "out.png", *SMALL]
 LIBC = ctypes.CDLL(None, use_errno=True)
 
 
@@ -34,6 +37,11 @@ class Watch:
 
 
 class Swapped(Case):
+    def run_and_swap(self, at, seen, thing, target, *args):
+        return self.run_program(*args, environment={
+            "LD_PRELOAD": LIBRARY, "ROIL_SWAP_AT": str(at), "ROIL_SWAP_TARGET": target,
+            "ROIL_SWAP_SEEN": os.path.realpath(seen), "ROIL_SWAP_THING": os.path.realpath(thing)})
+
     def swap_everywhere(self, name, content, arrange, *args):
         """Runs a command once for each time that it looks at the file in/sub/NAME, which is another one then.
         `arrange()` writes all that the command reads but that file. How many looks there were."""
@@ -48,9 +56,7 @@ class Swapped(Case):
                 self.write("in/sub/" + name, content)
                 arrange()
                 watch = Watch(target)
-                done = self.run_program(*args, environment={
-                    "LD_PRELOAD": LIBRARY, "ROIL_SWAP_AT": str(at), "ROIL_SWAP_TARGET": to,
-                    "ROIL_SWAP_SEEN": os.path.realpath(file), "ROIL_SWAP_THING": os.path.realpath(thing)})
+                done = self.run_and_swap(at, file, thing, to, *args)
                 opened = watch.opened()
                 watch.close()
                 self.assertIn(done.returncode, (0, 1), done.stderr)
@@ -64,8 +70,9 @@ class Swapped(Case):
         return looks
 
     def test_what_an_effect_names(self):
-        for reader, (name, content, files) in READERS.items():
+        for reader, (name, content, files) in KINDS.items():
             with self.subTest(reader):
+                command = RENDER if reader in DRAWN else ["check", "in/puff.lua"]
                 file = name.replace("*", "1")
                 named = "sub/" + (name[:-len(".lua")] if name.endswith(".lua") else name)
 
@@ -74,7 +81,7 @@ class Swapped(Case):
                     for at, text in files.items():
                         self.write("in/" + at, text.replace("%s", named))
 
-                self.assertGreater(self.swap_everywhere(file, content, arrange, "check", "in/puff.lua"), 0)
+                self.assertGreater(self.swap_everywhere(file, content, arrange, *command), 0)
 
     def test_the_effect_of_a_recipe(self):
         self.write("in/sub/x.lua", PUFF)
@@ -124,6 +131,23 @@ class Swapped(Case):
         for command in ["bench", "--report", "in"], ["bench", "--merge", "in", "-o", "merged"]:
             with self.subTest(command[1]):
                 self.swap_everywhere("0000.png", picture, arrange, *command)
+
+    def test_results_are_written_below_their_folder(self):
+        self.write("puff.lua", PUFF)
+        self.write("sweep.lua", 'return sweep { name = "try", effect = "puff.lua", size = {32, 18}, frames = "3",\n'
+                   'settle = 0, axes = { axis { "steps", 8 } } }')
+        rows, outside = self.path("out/rows"), tempfile.mkdtemp(prefix="roil-outside-")
+        self.addCleanup(shutil.rmtree, outside)
+        for at in range(1, MOST):
+            shutil.rmtree(self.path("out"), ignore_errors=True)
+            os.makedirs(rows)
+            done = self.run_and_swap(at, rows, rows, outside, "bench", "sweep.lua", "-o", "out", "--no-reference")
+            self.assertIn(done.returncode, (0, 1), done.stderr)
+            self.assertEqual(os.listdir(outside), [], f"swapped after look {at}")
+            if not os.path.islink(rows):
+                self.assertGreater(at, 1)
+                return
+        self.fail("more looks than expected")
 
 
 if __name__ == "__main__":
