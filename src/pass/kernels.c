@@ -194,6 +194,7 @@ static bool find_block(const pass *p, const char *name, slot_source *out) {
         out->kind = blocks[i].kind;
         return true;
     }
+    if (is_of_type(p, name)) return true;
     return err_set("%s: uniform block '%s' is not known; declare loose uniforms instead", p->label,
                    name);
 }
@@ -323,7 +324,9 @@ static bool compile_one(void *user, size_t index) {
 }
 
 static bool build_one(void *user, size_t index) {
-    return make(user, index, true);
+    pass *p = user;
+    const bool later = p->type && p->type->foresees && !p->type->foresees(p, index);
+    return later || make(p, index, true);
 }
 
 static bool for_each(pass *p, bool (*run)(void *user, size_t index)) {
@@ -357,7 +360,7 @@ bool pass_reads_frame(const pass *p, size_t index) {
 
 bool pass_make_kernel(pass *p, size_t index, bool again) {
     if (pass_has_kernel(p, index) && !again) return true;
-    if (!build_one(p, index)) return false;
+    if (!make(p, index, true)) return false;
     note_wanted(p, &p->built[index]);
     return true;
 }
@@ -438,6 +441,7 @@ static void uniform_of(gpu_binding *out, const void *data, size_t size) {
 
 static bool bind(pass *p, slot_source from, gpu_binding *out) {
     size_t count;
+    const pass_provider *provider;
     switch (from.kind) {
     case FROM_FRAME:
         uniform_of(out, p->host->frame, sizeof *p->host->frame);
@@ -453,7 +457,10 @@ static bool bind(pass *p, slot_source from, gpu_binding *out) {
     case FROM_IMAGE:
         return pass_bind_image(p, (size_t)from.index, out);
     case FROM_PROVIDER:
-        return pass_providers(&count)[from.row]->bind(p, from.index, out);
+        provider = pass_providers(&count)[from.row];
+        return provider->bind(p, from.index, out) ||
+               err_set("%s: there is nothing to bind to '%s'", p->label,
+                       provider->slots.items[from.index]);
     default:
         return true;
     }

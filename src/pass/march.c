@@ -113,10 +113,8 @@ static bool follow_code(pass *p) {
     march_state *s = p->state, before = *s;
     s->adaptive = s->adaptive || pass_value(p, N_tolerance) > 0;
     s->teams = s->teams || (pass_value(p, N_threads) > 1 && !s->noise);
-    if (s->adaptive == before.adaptive && s->teams == before.teams) return true;
-    if (!pass_make_kernel(p, MARCH_RAYS, true)) return false;
-    pass_copy_values(p);
-    return march_update(p);
+    const bool same = s->adaptive == before.adaptive && s->teams == before.teams;
+    return same || pass_make_late(p, MARCH_RAYS, true);
 }
 
 // A group is a square of pixels, or half of one, of 256 threads.

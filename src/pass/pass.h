@@ -117,6 +117,9 @@ typedef struct pass_type {
     bool (*complete)(pass *p); // see pass_complete
     // What a kernel is compiled with besides; false: it is left out, for now (pass_make_kernel).
     bool (*defines)(pass *p, size_t index, pass_defines *out);
+    // Whether frames may need a kernel, as far as that is known before the first. One that they may
+    // not is compiled by pass_check alone, and built by pass_make_late. NULL: they need all.
+    bool (*foresees)(const pass *p, size_t index);
     // Of a kernel that draws: what to. Its formats, depth, culling and blending.
     void (*target)(const pass *p, size_t index, gpu_graphics_desc *out);
     bool (*update)(pass *p);   // numbers of a frame that the host computes, by pass_set

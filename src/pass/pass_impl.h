@@ -86,6 +86,8 @@ bool pass_dispatch(pass *p, size_t index, uint32_t x, uint32_t y, uint32_t z); /
 // Inside or outside a frame: compiles and builds it as the type's hooks want it now, if it is not,
 // or `again` all the same.
 bool pass_make_kernel(pass *p, size_t index, bool again);
+// The same after pass_prepare: it has the numbers of the frame then.
+bool pass_make_late(pass *p, size_t index, bool again);
 bool pass_has_kernel(const pass *p, size_t index); // it is built
 // Whether it reads more than numbers, fields and images: blocks of the frame, or what a provider
 // has. Once it is compiled.

@@ -191,6 +191,11 @@ static bool fill_kernels(pass *p) {
     return !p->type || !p->type->update || p->type->update(p);
 }
 
+bool pass_make_late(pass *p, size_t index, bool again) {
+    if (pass_has_kernel(p, index) && !again) return true;
+    return pass_make_kernel(p, index, again) && fill_kernels(p);
+}
+
 static bool fill_numbers(pass *p) {
     return field_program_fill(p->program, p->host->context, p->numbers) &&
            (p->built ? fill_kernels(p) : pass_fill_block(p, &p->binary, p->block));
