@@ -17,13 +17,6 @@ bool shade_build(pass *p);
 bool shade_record(pass *p);
 void shade_destroy(pass *p);
 
-bool lamps_declare(pass *p);
-bool lamps_check(pass *p);
-bool lamps_build(pass *p);
-bool lamps_allocate(pass *p);
-bool lamps_fill(pass *p, const shader_binary *binary, unsigned char *block);
-bool lamps_record(pass *p);
-
 bool shadow_maps_declare(pass *p);
 bool shadow_maps_complete(pass *p);
 bool shadow_maps_check(pass *p);
@@ -42,12 +35,3 @@ void forward_list_memory(const pass *p, budget_list *out);
 bool forward_fill(pass *p, const shader_binary *binary, unsigned char *block);
 bool forward_record(pass *p);
 void forward_destroy(pass *p);
-
-bool reference_declare(pass *p);
-bool reference_check(pass *p);
-bool reference_build(pass *p);
-bool reference_allocate(pass *p);
-void reference_list_memory(const pass *p, budget_list *out);
-bool reference_fill(pass *p, const shader_binary *binary, unsigned char *block);
-bool reference_record(pass *p);
-void reference_destroy(pass *p);

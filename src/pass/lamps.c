@@ -1,11 +1,15 @@
 // Lamps: their fields, evaluated once for each and frame into an image.
 #include "pass/lamps.h"
 #include "base/error.h"
-#include "pass/builtin.h"
+#include "base/memory.h"
 #include "pass/pass_impl.h"
 #include <string.h>
 
 enum { TEXELS = 4 }; // of a light_entry
+
+#define NAMES(NAME) NAME(lamps), NAME(lamp_total), NAME(lamp_group), NAME(Instances)
+enum { NAMES(KERNEL_NAME_ID) };
+static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
 
 typedef struct lamps_state {
     uint32_t count;
@@ -43,58 +47,62 @@ static bool check_constants(const pass *p) {
     return true;
 }
 
-bool lamps_declare(pass *p) {
+static bool lamps_declare(pass *p) {
     if (!check_constants(p)) return false;
-    int output = pass_find_image(p, "lamps");
-    p->images[output] = graph_add_image(
-        p->host->graph, &(graph_image_desc){
-                            .name = arena_format(p->host->memory, "%s.lamps", p->label),
-                            .format = p->formats[output],
-                            .width = TEXELS,
-                            .height = state_of(p)->count,
-                        });
-    return p->images[output].id && pass_declare_images(p) && pass_add_to_graph(p);
+    graph_image *lamps = pass_image(p, N_lamps);
+    *lamps = graph_add_image(p->host->graph,
+                             &(graph_image_desc){
+                                 .name = arena_format(p->host->memory, "%s.lamps", p->label),
+                                 .format = p->formats[p->names[N_lamps].image],
+                                 .width = TEXELS,
+                                 .height = state_of(p)->count,
+                             });
+    return lamps->id && pass_declare_images(p) && pass_add_to_graph(p);
 }
 
-static bool compile(pass *p) {
-    const shader_define at = {"LAMPS_AT", state_of(p)->at ? "1" : "0"};
-    return pass_compile(p, p->shader, SHADER_COMPUTE, &at, 1, &p->binary);
+static bool lamps_defines(pass *p, size_t index, pass_defines *out) {
+    (void)index;
+    pass_define_flag(out, "LAMPS_AT", state_of(p)->at);
+    return true;
 }
 
-bool lamps_check(pass *p) {
-    return compile(p);
-}
-
-bool lamps_build(pass *p) {
-    if (!compile(p)) return false;
-    p->pipeline = pass_create_compute(p, &p->binary);
-    return p->pipeline != NULL;
-}
-
-bool lamps_allocate(pass *p) {
+static bool lamps_allocate(pass *p) {
     scene_instances *at = state_of(p)->at;
     return !at || scene_instances_allocate(at, p->host->device);
 }
 
-bool lamps_fill(pass *p, const shader_binary *binary, unsigned char *block) {
+static bool lamps_update(pass *p) {
     const lamps_state *s = state_of(p);
     mat4 group;
     float tint[4];
-    pass_write_member(binary, block, "lamp_total", &s->count, sizeof s->count);
+    pass_set(p, N_lamp_total, &s->count, sizeof s->count);
     if (!s->at) return true;
     if (!scene_instances_place(s->at, p->host->context, group, tint)) return false;
-    pass_write_member(binary, block, "lamp_group", group, sizeof group);
+    pass_set(p, N_lamp_group, group, sizeof group);
     return true;
 }
 
-bool lamps_record(pass *p) {
+static bool lamps_record(pass *p) {
     const lamps_state *s = state_of(p);
-    const pass_override at = {.name = "Instances",
-                              .binding = {.buffer = s->at ? scene_instances_buffer(s->at) : NULL}};
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc desc = {
-        .pipeline = p->pipeline, .bindings = bindings, .threads = {s->count, 1, 1}};
-    return pass_prepare(p) &&
-           pass_bind(p, &p->binary, p->block, &at, 1, bindings, &desc.binding_count) &&
-           gpu_dispatch(p->host->device, &desc);
+    kernel *k = pass_prepare(p) ? pass_use(p, 0) : NULL;
+    if (!k) return false;
+    if (s->at) kernel_bind_buffer(k, N_Instances, scene_instances_buffer(s->at));
+    return kernel_run(k, p->host->device, s->count, 1, 1);
 }
+
+static const pass_kernel kernels[1];
+
+const pass_type point_lights_type = {
+    .name = "point_lights",
+    .constructed = true,
+    .shader = "pass/lamps.comp",
+    .kernels = kernels,
+    .kernel_count = COUNT_OF(kernels),
+    .names = {names, COUNT_OF(names)},
+    .unscaled = true,
+    .declare = lamps_declare,
+    .defines = lamps_defines,
+    .allocate = lamps_allocate,
+    .update = lamps_update,
+    .record = lamps_record,
+};

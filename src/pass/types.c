@@ -17,12 +17,14 @@ extern const pass_type meter_type;
 extern const pass_type particles_type;
 extern const pass_type picture_type;
 extern const pass_type pieces_type;
+extern const pass_type point_lights_type;
+extern const pass_type reference_type;
 extern const pass_type shell_type;
+extern const pass_type slices_type;
 extern const pass_type slices_force_type;
 extern const pass_type slices_inflow_type;
 extern const pass_type slices_obstacle_type;
 extern const pass_type slices_templates_type;
-extern const pass_type slices_type;
 extern const pass_type splats_type;
 extern const pass_type stack_type;
 extern const pass_type voxels_type;
@@ -49,19 +51,6 @@ static const pass_type shade_type = {
     .build = shade_build,
     .record = shade_record,
     .destroy = shade_destroy,
-};
-
-static const pass_type point_lights_type = {
-    .name = "point_lights",
-    .constructed = true,
-    .shader = "pass/lamps.comp",
-    .unscaled = true,
-    .declare = lamps_declare,
-    .check = lamps_check,
-    .build = lamps_build,
-    .allocate = lamps_allocate,
-    .fill = lamps_fill,
-    .record = lamps_record,
 };
 
 static const pass_type shadow_maps_type = {
@@ -97,19 +86,6 @@ static const pass_type forward_type = {
     .fill = forward_fill,
     .record = forward_record,
     .destroy = forward_destroy,
-};
-
-static const pass_type reference_type = {
-    .name = "reference",
-    .shader = "pass/reference.comp",
-    .declare = reference_declare,
-    .check = reference_check,
-    .build = reference_build,
-    .allocate = reference_allocate,
-    .list_memory = reference_list_memory,
-    .fill = reference_fill,
-    .record = reference_record,
-    .destroy = reference_destroy,
 };
 
 static const pass_type over_type = {
