@@ -169,7 +169,7 @@ bool kernel_run_each(kernel *k, gpu *g, uint64_t count) {
                                      (uint32_t)((groups + across - 1) / across), 1);
 }
 
-gpu_draw kernel_draw(const kernel *k, gpu_binding kept[GPU_MAX_SLOTS]) {
+gpu_draw kernel_draw(const kernel *k, gpu_binding *kept) {
     memcpy(kept, k->bindings, k->slot_count * sizeof *kept);
     return (gpu_draw){.bindings = kept, .binding_count = k->slot_count};
 }

@@ -92,8 +92,8 @@ bool kernel_run(kernel *k, gpu *g, uint32_t x, uint32_t y, uint32_t z); // threa
 // along a side: the shader's is gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, and some
 // threads of the last ones are beyond `count`.
 bool kernel_run_each(kernel *k, gpu *g, uint64_t count);
-// A draw, still without numbers, of what is bound now, which is copied to `kept`.
-gpu_draw kernel_draw(const kernel *k, gpu_binding kept[GPU_MAX_SLOTS]);
+// A draw, still without numbers, of what is bound now, which is copied to `kept` (k->slot_count).
+gpu_draw kernel_draw(const kernel *k, gpu_binding *kept);
 
 // ---- names ------------------------------------------------------------------------------------
 

@@ -5,28 +5,11 @@
 #include "pass/drawn_parts.h"
 #include <string.h>
 
-// ---- stages -----------------------------------------------------------------------------------
-
-bool drawn_check(pass *p, const char *vertex, const char *fragment, const shader_define *defines,
-                 size_t define_count, drawn_stages *out) {
-    return pass_compile(p, vertex, SHADER_VERTEX, defines, define_count, &out->vertex) &&
-           pass_compile(p, fragment, SHADER_FRAGMENT, defines, define_count, &out->fragment);
-}
-
-bool drawn_build(pass *p, const drawn_target *target, drawn_stages *stages) {
-    const shader_binary *both[] = {&stages->vertex, &stages->fragment};
-    gpu_graphics_desc desc = {.depth = GPU_D32F, .cull = target->cull};
-    for (int s = 0; s < 2; s++)
-        stages->blocks[s] = arena_alloc(p->host->memory, pass_block_size(both[s]) + 16);
-    memcpy(desc.colors, target->colors, sizeof desc.colors);
-    stages->pipeline = pass_create_graphics(p, &stages->vertex, &stages->fragment, desc);
-    return stages->pipeline != NULL;
-}
-
-void drawn_stages_destroy(pass *p, drawn_stages *stages) {
-    if (stages->pipeline) gpu_pipeline_destroy(p->host->device, stages->pipeline);
-    stages->pipeline = NULL;
-}
+static const char *const names[] = {DRAWN_NAMES(KERNEL_NAME_TEXT)};
+static const char *const files[] = {"pass/drawn/choose.comp", "pass/drawn/count.comp",
+                                    "pass/drawn/list.comp", "pass/geometry.vert",
+                                    "pass/geometry.frag"};
+const kernel_table drawn_kernel_table = {{names, COUNT_OF(names)}, files, COUNT_OF(files)};
 
 // ---- what there is ----------------------------------------------------------------------------
 
@@ -51,9 +34,11 @@ static void add_body(drawn *d, scene_instances *instances, scene_mesh *const *ki
     }
 }
 
-drawn *drawn_create(pass *p) {
+drawn *drawn_create(pass *p, size_t first, bool alike) {
     drawn *d = arena_alloc(p->host->memory, sizeof *d);
     d->p = p;
+    d->first = first;
+    d->alike = alike;
     d->bodies = arena_alloc(p->host->memory, (1 + p->instances_count) * sizeof *d->bodies);
     if (p->mesh_count > 0) add_body(d, NULL, p->meshes, p->mesh_count);
     for (size_t i = 0; i < p->instances_count; i++) {
@@ -128,60 +113,12 @@ void drawn_destroy(drawn *d) {
         gpu_buffer_destroy(device, d->bodies[i].entries);
         for (int k = 0; k < DRAWN_BUFFERS; k++) gpu_buffer_destroy(device, d->bodies[i].buffers[k]);
     }
-    for (int i = 0; i < DRAWN_STEPS; i++)
-        if (d->pipelines[i]) gpu_pipeline_destroy(device, d->pipelines[i]);
     mem_free(d->draws);
     mem_free(d->bindings);
     mem_free(d->parts);
 }
 
-// ---- bindings ---------------------------------------------------------------------------------
-
-// Slots that are another's for each draw, by name.
-enum {
-    SLOT_PART,
-    SLOT_VERTICES,
-    SLOT_INSTANCES,
-    SLOT_LIST,
-    SLOT_FIRSTS,
-    SLOT_TEXTURE,
-    SLOT_VIEWS,
-    SLOT_NAMES
-};
-static const char *const slot_names[SLOT_NAMES] = {
-    "Part", "Vertices", "Instances", "InstanceList", "DrawnFirsts", "mesh_texture", "Views"};
-
-typedef struct drawn_slots { // of both stages
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    int names[GPU_MAX_SLOTS]; // in slot_names; -1: the pass's own
-    size_t count;
-} drawn_slots;
-
-static int name_of(const shader_slot *slot) {
-    for (int i = 0; i < SLOT_NAMES; i++)
-        if (strcmp(slot->name, slot_names[i]) == 0) return i;
-    return -1;
-}
-
-static bool bind_stages(drawn *d, drawn_stages *stages, drawn_slots *out) {
-    const shader_binary *both[] = {&stages->vertex, &stages->fragment};
-    pass_override overrides[SLOT_NAMES];
-    for (int i = 0; i < SLOT_NAMES; i++) overrides[i] = (pass_override){slot_names[i], {0}};
-    overrides[SLOT_VIEWS].binding.buffer = d->views;
-    out->count = 0;
-    for (int s = 0; s < 2; s++) {
-        gpu_binding bindings[GPU_MAX_SLOTS];
-        size_t count;
-        if (!pass_fill_block(d->p, both[s], stages->blocks[s]) ||
-            !pass_bind(d->p, both[s], stages->blocks[s], overrides, SLOT_NAMES, bindings, &count))
-            return false;
-        for (size_t i = 0; i < count; i++) {
-            out->names[out->count] = name_of(&both[s]->slots[i]);
-            out->bindings[out->count++] = bindings[i];
-        }
-    }
-    return true;
-}
+// ---- recording --------------------------------------------------------------------------------
 
 static void fill_part(const drawn_place *place, const mesh_part *part, size_t view,
                       struct drawn_part *out) {
@@ -192,46 +129,30 @@ static void fill_part(const drawn_place *place, const mesh_part *part, size_t vi
     out->color.v[3] = part->color[3];
 }
 
-static void bind_part(const drawn *d, const drawn_body *body, const scene_mesh *mesh,
-                      const mesh_part *part, const struct drawn_part *block,
-                      const drawn_slots *slots, gpu_binding *out) {
-    memcpy(out, slots->bindings, slots->count * sizeof *out);
-    for (size_t i = 0; i < slots->count; i++) {
-        switch (slots->names[i]) {
-        case SLOT_PART:
-            out[i].uniform = block;
-            out[i].uniform_size = sizeof *block;
-            break;
-        case SLOT_VERTICES:
-            out[i].buffer = mesh->vertices;
-            break;
-        case SLOT_INSTANCES:
-            out[i].buffer = drawn_entries(body);
-            break;
-        case SLOT_LIST:
-            out[i].buffer = body->buffers[DRAWN_LIST];
-            break;
-        case SLOT_FIRSTS:
-            out[i].buffer = body->buffers[DRAWN_FIRSTS];
-            break;
-        case SLOT_TEXTURE:
-            out[i].image = part->texture >= 0 ? mesh->textures[part->texture] : d->p->blank[0];
-            out[i].sampler = GPU_LINEAR_REPEAT;
-            break;
-        default:
-            break;
-        }
-    }
+// The list of what stands in a view is bound part by part.
+static void bind_part(const drawn *d, kernel *k, const kernel_place *places, const drawn_body *body,
+                      const scene_mesh *mesh, const mesh_part *part,
+                      const struct drawn_part *block) {
+    const gpu_binding bindings[] = {
+        [N_Views] = {.buffer = d->views},
+        [N_Instances] = {.buffer = drawn_entries(body)},
+        [N_DrawnFirsts] = {.buffer = body->buffers[DRAWN_FIRSTS]},
+        [N_InstanceList] = {.buffer = body->buffers[DRAWN_LIST]},
+        [N_Part] = {.uniform = block, .uniform_size = sizeof *block},
+        [N_Vertices] = {.buffer = mesh->vertices},
+        [N_mesh_texture] = {.image =
+                                part->texture >= 0 ? mesh->textures[part->texture] : d->p->blank[0],
+                            .sampler = GPU_LINEAR_REPEAT},
+    };
+    for (size_t i = 0; i < COUNT_OF(bindings); i++) kernel_bind_at(k, &places[i], bindings[i]);
 }
-
-// ---- recording --------------------------------------------------------------------------------
 
 typedef struct recording {
     drawn *d;
-    const drawn_slots *slots;
+    kernel *k;
+    const kernel_place *places; // of drawn_kernel_table
     size_t view;
     const uint32_t *viewport; // NULL: the whole target
-    bool alike;
     bool apart; // each level is a draw of its own: commands cannot say where their lists begin
 } recording;
 
@@ -239,7 +160,7 @@ static bool draws_apart(const drawn *d) {
     return !gpu_get_profile(d->p->host->device)->limits.first_instance;
 }
 
-static size_t count_draws(const drawn *d, bool alike) { // of a view, at most
+static size_t count_draws(const drawn *d) { // of a view, at most
     size_t count = 0;
     for (size_t i = 0; i < d->body_count; i++)
         for (size_t k = 0; k < d->bodies[i].kind_count; k++) {
@@ -247,7 +168,7 @@ static size_t count_draws(const drawn *d, bool alike) { // of a view, at most
             if (draws_apart(d))
                 count += mesh->part_count * drawn_level_count(mesh);
             else
-                count += alike ? 1 : mesh->part_count;
+                count += d->alike ? 1 : mesh->part_count;
         }
     return count;
 }
@@ -273,47 +194,48 @@ static void add_draw(const recording *r, const drawn_body *body, size_t kind, ui
     drawn *d = r->d;
     size_t i = d->draw_count++;
     const scene_mesh *mesh = body->kinds[kind];
-    gpu_binding *bindings = d->bindings + i * r->slots->count;
     fill_part(&body->places[kind], &mesh->data.parts[part], r->view, &d->parts[i]);
     d->parts[i].flags.v[2] = find_first(r, body, kind, level);
-    bind_part(d, body, mesh, &mesh->data.parts[part], &d->parts[i], r->slots, bindings);
+    bind_part(d, r->k, r->places, body, mesh, &mesh->data.parts[part], &d->parts[i]);
     uint64_t command = (uint64_t)r->view * body->command_count + body->commands[kind] +
                        part * drawn_level_count(&mesh->data) + level;
-    d->draws[i] = (gpu_draw){
-        .bindings = bindings,
-        .binding_count = r->slots->count,
-        .indices = mesh->indices,
-        .commands = body->buffers[DRAWN_COMMANDS],
-        .command = command * sizeof(gpu_draw_indexed_command),
-        .commands_drawn = count,
-    };
-    if (r->viewport) memcpy(d->draws[i].viewport, r->viewport, sizeof d->draws[i].viewport);
+    gpu_draw *draw = &d->draws[i];
+    *draw = kernel_draw(r->k, d->bindings + i * r->k->slot_count);
+    draw->indices = mesh->indices;
+    draw->commands = body->buffers[DRAWN_COMMANDS];
+    draw->command = command * sizeof(gpu_draw_indexed_command);
+    draw->commands_drawn = count;
+    if (r->viewport) memcpy(draw->viewport, r->viewport, sizeof draw->viewport);
 }
 
 static void add_body_draws(const recording *r, const drawn_body *body) {
     for (size_t k = 0; k < body->kind_count; k++) {
         const mesh_data *mesh = &body->kinds[k]->data;
         uint32_t levels = drawn_level_count(mesh);
-        if (r->alike && !r->apart) add_draw(r, body, k, 0, 0, levels * mesh->part_count);
-        for (uint32_t i = 0; i < mesh->part_count && !r->alike && !r->apart; i++)
+        if (r->d->alike && !r->apart) add_draw(r, body, k, 0, 0, levels * mesh->part_count);
+        for (uint32_t i = 0; i < mesh->part_count && !r->d->alike && !r->apart; i++)
             add_draw(r, body, k, i, 0, r->d->levels ? levels : 1);
         for (uint32_t i = 0; i < mesh->part_count * levels && r->apart; i++)
             add_draw(r, body, k, i / levels, i % levels, 1);
     }
 }
 
-bool drawn_record(drawn *d, drawn_stages *stages, gpu_draw_desc *target, size_t first, size_t count,
+bool drawn_record(drawn *d, size_t index, gpu_draw_desc *target, size_t first, size_t count,
                   const uint32_t (*places)[4]) {
-    drawn_slots slots;
-    if (!bind_stages(d, stages, &slots)) return false;
-    reserve(d, count * count_draws(d, stages->alike), slots.count);
+    kernel *k = pass_use(d->p, index);
+    if (!k) return false;
+    reserve(d, count * count_draws(d), k->slot_count);
     for (size_t v = 0; v < count; v++) {
-        const recording r = {
-            d, &slots, first + v, places ? places[v] : NULL, stages->alike, draws_apart(d)};
+        const recording r = {d,
+                             k,
+                             pass_solver_places(d->p, index),
+                             first + v,
+                             places ? places[v] : NULL,
+                             draws_apart(d)};
         for (size_t i = 0; i < d->body_count; i++) add_body_draws(&r, &d->bodies[i]);
     }
-    target->pipeline = stages->pipeline;
+    target->pipeline = k->pipeline;
     target->draws = d->draws;
     target->draw_count = d->draw_count;
-    return gpu_draw_all(d->p->host->device, target);
+    return (d->draw_count == 0 || kernel_is_bound(k)) && gpu_draw_all(d->p->host->device, target);
 }

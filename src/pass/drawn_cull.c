@@ -5,27 +5,6 @@
 #include "pass/drawn_parts.h"
 #include <string.h>
 
-static const char *const shaders[DRAWN_STEPS] = {"pass/drawn/choose.comp", "pass/drawn/count.comp",
-                                                 "pass/drawn/list.comp"};
-
-bool drawn_check_cull(drawn *d) {
-    static const shader_define none = {"WITHOUT_FIELDS", "1"};
-    for (int i = 0; i < DRAWN_STEPS; i++)
-        if (!pass_compile(d->p, shaders[i], SHADER_COMPUTE, &none, 1, &d->binaries[i]))
-            return false;
-    return true;
-}
-
-bool drawn_build_cull(drawn *d) {
-    if (!drawn_check_cull(d)) return false;
-    for (int i = 0; i < DRAWN_STEPS; i++) {
-        d->pipelines[i] = pass_create_compute(d->p, &d->binaries[i]);
-        d->blocks[i] = arena_alloc(d->p->host->memory, pass_block_size(&d->binaries[i]) + 16);
-        if (!d->pipelines[i]) return false;
-    }
-    return true;
-}
-
 // ---- buffers ----------------------------------------------------------------------------------
 
 static uint32_t bucket_count(const drawn_body *body) {
@@ -162,47 +141,44 @@ static bool place(drawn *d, drawn_body *body) {
 
 // ---- choosing ---------------------------------------------------------------------------------
 
-static void fill_block(const drawn *d, const drawn_body *body, drawn_step step, float lod,
-                       float most) {
-    const shader_binary *binary = &d->binaries[step];
-    unsigned char *block = d->blocks[step];
+static void set_numbers(const drawn_body *body, kernel *k, const kernel_place *places, float most) {
     mat4 matrix = GLM_MAT4_IDENTITY_INIT;
     if (body->instances) glm_mat4_copy(body->places[0].matrix, matrix);
     const float scale = glm_vec3_norm(matrix[0]);
-    const uint32_t numbers[] = {body->count, bucket_count(body), block_count(body),
-                                body->command_count};
-    static const char *const names[COUNT_OF(numbers)] = {"instance_count", "bucket_count",
-                                                         "block_count", "command_count"};
-    for (size_t i = 0; i < COUNT_OF(numbers); i++)
-        pass_write_member(binary, block, names[i], &numbers[i], sizeof numbers[i]);
-    pass_write_member(binary, block, "place", matrix, sizeof matrix);
-    pass_write_member(binary, block, "scale", &scale, sizeof scale);
-    pass_write_member(binary, block, "lod", &lod, sizeof lod);
+    const uint32_t buckets = bucket_count(body), blocks = block_count(body);
     if (!body->instances) most = 0;
-    pass_write_member(binary, block, "most", &most, sizeof most);
+    kernel_set_at(k, &places[N_instance_count], &body->count, sizeof body->count);
+    kernel_set_at(k, &places[N_bucket_count], &buckets, sizeof buckets);
+    kernel_set_at(k, &places[N_block_count], &blocks, sizeof blocks);
+    kernel_set_at(k, &places[N_command_count], &body->command_count, sizeof body->command_count);
+    kernel_set_at(k, &places[N_place], matrix, sizeof matrix);
+    kernel_set_at(k, &places[N_scale], &scale, sizeof scale);
+    kernel_set_at(k, &places[N_most], &most, sizeof most);
 }
 
-static bool run(drawn *d, const drawn_body *body, drawn_step step, uint32_t views, float lod,
-                float most) {
-    const pass_override overrides[] = {
-        {"Views", {.buffer = d->views}},
-        {"Instances", {.buffer = drawn_entries(body)}},
-        {"DrawnBuckets", {.buffer = body->buffers[DRAWN_BUCKETS]}},
-        {"DrawnChoices", {.buffer = body->buffers[DRAWN_CHOICES]}},
-        {"DrawnTotals", {.buffer = body->buffers[DRAWN_TOTALS]}},
-        {"DrawnCounts", {.buffer = body->buffers[DRAWN_COUNTS]}},
-        {"DrawnFirsts", {.buffer = body->buffers[DRAWN_FIRSTS]}},
-        {"DrawnCommands", {.buffer = body->buffers[DRAWN_COMMANDS]}},
-        {"InstanceList", {.buffer = body->buffers[DRAWN_LIST]}},
+static void bind_buffers(const drawn *d, const drawn_body *body, kernel *k,
+                         const kernel_place *places) {
+    static const int buffer_names[DRAWN_BUFFERS] = {
+        [DRAWN_BUCKETS] = N_DrawnBuckets,   [DRAWN_CHOICES] = N_DrawnChoices,
+        [DRAWN_TOTALS] = N_DrawnTotals,     [DRAWN_COUNTS] = N_DrawnCounts,
+        [DRAWN_FIRSTS] = N_DrawnFirsts,     [DRAWN_LIST] = N_InstanceList,
+        [DRAWN_COMMANDS] = N_DrawnCommands,
     };
+    kernel_bind_at(k, &places[N_Views], (gpu_binding){.buffer = d->views});
+    kernel_bind_at(k, &places[N_Instances], (gpu_binding){.buffer = drawn_entries(body)});
+    for (int i = 0; i < DRAWN_BUFFERS; i++)
+        kernel_bind_at(k, &places[buffer_names[i]], (gpu_binding){.buffer = body->buffers[i]});
+}
+
+static bool run(drawn *d, const drawn_body *body, drawn_step step, uint32_t views, float most) {
+    const size_t index = d->first + step;
+    const kernel_place *places = pass_solver_places(d->p, index);
+    kernel *k = pass_use(d->p, index);
+    if (!k) return false;
+    set_numbers(body, k, places, most);
+    bind_buffers(d, body, k, places);
     uint32_t threads = step == DRAWN_COUNT ? bucket_count(body) : body->count;
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc desc = {
-        .pipeline = d->pipelines[step], .bindings = bindings, .threads = {threads, views, 1}};
-    fill_block(d, body, step, lod, most);
-    return pass_bind(d->p, &d->binaries[step], d->blocks[step], overrides, COUNT_OF(overrides),
-                     bindings, &desc.binding_count) &&
-           gpu_dispatch(d->p->host->device, &desc);
+    return kernel_run(k, d->p->host->device, threads, views, 1);
 }
 
 static bool write_camera(drawn *d, uint32_t height) {
@@ -231,6 +207,6 @@ bool drawn_cull(drawn *d, gpu_buffer *views, size_t count, uint32_t height, floa
     // Step by step, so that bodies need not wait for each other.
     for (int step = 0; step < DRAWN_STEPS; step++)
         for (size_t i = 0; i < d->body_count && done; i++)
-            done = run(d, &d->bodies[i], (drawn_step)step, (uint32_t)count, lod, most);
+            done = run(d, &d->bodies[i], (drawn_step)step, (uint32_t)count, most);
     return done || err_prefix("%s: ", d->p->label);
 }

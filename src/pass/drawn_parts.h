@@ -36,15 +36,22 @@ typedef struct drawn_body {
     struct drawn_bucket *buckets; // as they were written last; NULL: never
 } drawn_body;
 
-typedef enum drawn_step { DRAWN_CHOOSE, DRAWN_COUNT, DRAWN_PUT, DRAWN_STEPS } drawn_step;
+typedef enum drawn_step { DRAWN_CHOOSE, DRAWN_COUNT, DRAWN_PUT } drawn_step;
+
+#define DRAWN_NAMES(NAME)                                                                          \
+    NAME(Views), NAME(Instances), NAME(InstanceList), NAME(DrawnFirsts), NAME(Part),               \
+        NAME(Vertices), NAME(mesh_texture), NAME(DrawnBuckets), NAME(DrawnChoices),                \
+        NAME(DrawnTotals), NAME(DrawnCounts), NAME(DrawnCommands), NAME(instance_count),           \
+        NAME(bucket_count), NAME(block_count), NAME(command_count), NAME(place), NAME(scale),      \
+        NAME(most)
+enum { DRAWN_NAMES(KERNEL_NAME_ID) };
 
 struct drawn {
     pass *p;
     drawn_body *bodies;
     size_t body_count;
-    shader_binary binaries[DRAWN_STEPS];
-    gpu_pipeline *pipelines[DRAWN_STEPS];
-    unsigned char *blocks[DRAWN_STEPS];
+    size_t first;       // of the kernels that choose
+    bool alike;         // parts are drawn as one
     gpu_buffer *camera; // the view of the camera
     gpu_buffer *views;  // of this frame
     size_t capacity;    // of views that there are buffers for

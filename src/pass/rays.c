@@ -3,32 +3,31 @@
 // nothing cost three times the rest.
 #include "pass/rays.h"
 #include "pass/pass_impl.h"
-#include <string.h>
 
-const shader_define pass_rays_variants[2] = {{"MANY_RAYS", "0"}, {"MANY_RAYS", "1"}};
+enum { RAYS_NAMES(KERNEL_NAME_ID) };
 
-// Whether a number can be above `limit`, as far as that is known before a frame: passes are built
-// side by side, where no Lua may run.
-static void foresee(const pass *p, const char *name, float limit, bool can[2]) {
-    size_t index;
-    pass_find_key(p, name, &index);
+void pass_rays_define(pass_defines *out, size_t index) {
+    pass_define_flag(out, "MANY_RAYS", index == RAYS_MANY);
+}
+
+// Whether a number can be above `limit`, or can be no more than that, as far as that is known
+// before a frame: passes are built side by side, where no Lua may run.
+static bool can_be(const pass *p, int name, float limit, bool above) {
+    const size_t index = (size_t)p->names[name].uniform;
     const shader_uniform *declared = &p->face->uniforms[index];
     const field *node = p->uniforms[index];
     if (!node) node = pass_inherited_uniform(p, index, &declared);
-    bool moves = node && strcmp(node->kind->name, "constant") != 0;
-    float value = node && !moves ? node->value[0] : declared->value[0];
-    can[0] = moves || value <= limit;
-    can[1] = moves || value > limit;
+    if (node && !field_is_constant(node)) return true; // it moves
+    return ((node ? node->value[0] : declared->value[0]) > limit) == above;
 }
 
-void pass_rays_foresee(const pass *p, bool can[2]) {
-    bool shadow[2], sky[2];
-    foresee(p, "shadow_samples", 1, shadow);
-    foresee(p, "sky_samples", 0, sky);
-    can[0] = shadow[0] && sky[0];
-    can[1] = shadow[1] || sky[1];
+bool pass_rays_foresee(const pass *p, size_t index) {
+    if (index == RAYS_FEW)
+        return can_be(p, N_shadow_samples, 1, false) && can_be(p, N_sky_samples, 0, false);
+    return can_be(p, N_shadow_samples, 1, true) || can_be(p, N_sky_samples, 0, true);
 }
 
-bool pass_rays_many(const pass *p) {
-    return pass_evaluate(p, "shadow_samples") > 1 || pass_evaluate(p, "sky_samples") > 0;
+size_t pass_rays_choose(const pass *p) {
+    const bool many = pass_value(p, N_shadow_samples) > 1 || pass_value(p, N_sky_samples) > 0;
+    return many ? RAYS_MANY : RAYS_FEW;
 }

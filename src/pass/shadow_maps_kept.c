@@ -1,6 +1,5 @@
 // Whether maps are still what they were: where neither a light, nor what stands before it, nor the
 // camera has moved, they need not be drawn again.
-#include "pass/pass_impl.h"
 #include "pass/shadow_maps_parts.h"
 #include <string.h>
 
@@ -32,10 +31,9 @@ static void add_camera(const pass *p, hash128 *sum) {
     add(sum, p->host->lights, sizeof *p->host->lights);
 }
 
-bool shadow_maps_content(const pass *p, bool choice, hash128 *out) {
-    bool moves = p->images[pass_find_image(p, "lights")].id != 0 ||
-                 p->images[pass_find_image(p, "lamps")].id != 0;
-    *out = hash_bytes(p->block, pass_block_size(&p->binary));
-    if (choice || pass_evaluate(p, "lod") > 0) add_camera(p, out);
+bool shadow_maps_content(const pass *p, const kernel *places, bool choice, hash128 *out) {
+    bool moves = pass_image(p, N_lights)->id != 0 || pass_image(p, N_lamps)->id != 0;
+    *out = hash_bytes(places->blocks[0], places->block_sizes[0]);
+    if (choice || pass_value(p, N_lod) > 0) add_camera(p, out);
     return !(choice && moves) && add_meshes(p, out);
 }

@@ -1,8 +1,15 @@
 // The inside of the pass shadow_maps: where its views stand, and where in the atlas they lie.
 #pragma once
 #include "base/hash.h"
-#include "pass/pass.h"
+#include "pass/pass_impl.h"
 #include "shared.h"
+
+#define SHADOW_MAPS_NAMES(NAME)                                                                    \
+    NAME(cascades), NAME(points), NAME(size), NAME(spot_size), NAME(point_size), NAME(distance),   \
+        NAME(split), NAME(shadow_radius), NAME(lod), NAME(lights), NAME(lamps),                    \
+        NAME(shadow_atlas), NAME(shadow_views), NAME(places), NAME(fixed_views), NAME(margin),     \
+        NAME(pixels), NAME(fixed_lights), NAME(Views)
+enum { SHADOW_MAPS_NAMES(KERNEL_NAME_ID) };
 
 // From how far meshes cast shadows into a cascade, in distances up to which there are cascades.
 #define SHADOW_REACH 4.0f
@@ -29,6 +36,7 @@ bool shadow_maps_spot(const struct light_entry *light, float far, uint32_t size,
 bool shadow_maps_pack(const uint32_t *sizes, uint32_t count, uint32_t most, uint32_t (*places)[4],
                       uint32_t atlas[2]);
 
-// What the maps of this frame follow from, after pass_prepare; `choice`: also from which lights are
-// chosen for them. False: the device alone knows.
-bool shadow_maps_content(const pass *p, bool choice, hash128 *out);
+// What the maps of this frame follow from, after pass_prepare: the numbers of `places`, the kernel
+// that places views, and more; `choice`: also from which lights are chosen for them. False: the
+// device alone knows.
+bool shadow_maps_content(const pass *p, const kernel *places, bool choice, hash128 *out);

@@ -1,7 +1,6 @@
 // The built-in pass types. A type without hooks is its shader and nothing else.
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/builtin.h"
 #include "pass/pass_impl.h"
 #include <string.h>
 
@@ -9,6 +8,8 @@ extern const pass_type accumulate_type;
 extern const pass_type bake_type;
 extern const pass_type bloom_type;
 extern const pass_type deposit_type;
+extern const pass_type forward_type;
+extern const pass_type geometry_type;
 extern const pass_type lbm_source_type;
 extern const pass_type lbm_type;
 extern const pass_type lighting_type;
@@ -20,6 +21,8 @@ extern const pass_type pieces_type;
 extern const pass_type point_lights_type;
 extern const pass_type reference_type;
 extern const pass_type shell_type;
+extern const pass_type shade_type;
+extern const pass_type shadow_maps_type;
 extern const pass_type slices_type;
 extern const pass_type slices_force_type;
 extern const pass_type slices_inflow_type;
@@ -29,63 +32,9 @@ extern const pass_type splats_type;
 extern const pass_type stack_type;
 extern const pass_type voxels_type;
 
-static const pass_type geometry_type = {
-    .name = "geometry",
-    .shader = "pass/geometry.comp",
-    .meshes = PASS_DRAWS_MESHES,
-    .declare = geometry_declare,
-    .check = geometry_check,
-    .build = geometry_build,
-    .allocate = geometry_allocate,
-    .list_memory = geometry_list_memory,
-    .fill = geometry_fill,
-    .record = geometry_record,
-    .destroy = geometry_destroy,
-};
-
-static const pass_type shade_type = {
-    .name = "shade",
-    .shader = "pass/shade.comp",
-    .declare = shade_declare,
-    .check = shade_check,
-    .build = shade_build,
-    .record = shade_record,
-    .destroy = shade_destroy,
-};
-
-static const pass_type shadow_maps_type = {
-    .name = "shadow_maps",
-    .shader = "pass/shadow_maps.comp",
-    .meshes = PASS_DRAWS_MESHES,
-    .unscaled = true,
-    .declare = shadow_maps_declare,
-    .complete = shadow_maps_complete,
-    .check = shadow_maps_check,
-    .build = shadow_maps_build,
-    .allocate = shadow_maps_allocate,
-    .list_memory = shadow_maps_list_memory,
-    .fill = shadow_maps_fill,
-    .record = shadow_maps_record,
-    .destroy = shadow_maps_destroy,
-};
-
 static const pass_type lamp_glows_type = {
     .name = "lamp_glows",
     .shader = "pass/lamp_glows.comp",
-};
-
-static const pass_type forward_type = {
-    .name = "forward",
-    .shader = "pass/forward.frag",
-    .meshes = PASS_DRAWS_MESHES,
-    .declare = forward_declare,
-    .check = forward_check,
-    .build = forward_build,
-    .allocate = forward_allocate,
-    .list_memory = forward_list_memory,
-    .fill = forward_fill,
-    .record = forward_record,
-    .destroy = forward_destroy,
 };
 
 static const pass_type over_type = {

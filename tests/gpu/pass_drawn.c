@@ -12,7 +12,7 @@ typedef struct stand {
     pass *p;
     scene_instances *instances;
     drawn *d;
-    drawn_stages stages;
+    size_t kernel; // of the pass: draws without surface and emission, which nothing reads
     gpu_image *colors[TARGETS], *depth;
     gpu_buffer *views;
 } stand;
@@ -91,6 +91,16 @@ static void scatter(struct instance_entry *all, uint32_t count, float reach) {
     }
 }
 
+// Of the pass's kernels, the first with that shader.
+static size_t find_kernel(const pass *p, const char *shader) {
+    size_t i = 0;
+    while (!p->type->kernels[i].shader || strcmp(p->type->kernels[i].shader, shader) != 0) {
+        i++;
+        assert_true(i < p->type->kernel_count);
+    }
+    return i;
+}
+
 static void open_stand(stand *s, gpu *device, uint32_t count, float reach) {
     *s = (stand){0};
     pass_world *w = &s->w;
@@ -119,14 +129,9 @@ static void open_stand(stand *s, gpu *device, uint32_t count, float reach) {
     gpu_test_ok(pass_declare(s->p));
     gpu_test_ok(scene_instances_allocate(s->instances, device));
     world_render(w, WIDTH, HEIGHT, pass_output(s->p, "albedo"));
-    s->d = drawn_create(s->p);
-    drawn_target target = {0};
-    memcpy(target.colors, formats, sizeof formats);
-    const shader_define defines[] = {{"WITH_SURFACE", "0"}, {"WITH_EMISSION", "0"}};
-    gpu_test_ok(drawn_check(s->p, "pass/geometry.vert", "pass/geometry.frag", defines,
-                            COUNT_OF(defines), &s->stages));
-    gpu_test_ok(drawn_build(s->p, &target, &s->stages));
-    gpu_test_ok(drawn_build_cull(s->d) && drawn_allocate(s->d));
+    s->d = drawn_create(s->p, find_kernel(s->p, "pass/drawn/choose.comp"), false);
+    s->kernel = find_kernel(s->p, "pass/geometry.frag");
+    gpu_test_ok(drawn_allocate(s->d));
     for (int i = 0; i < TARGETS; i++) s->colors[i] = make_target(device, formats[i]);
     s->depth = make_target(device, GPU_D32F);
 }
@@ -136,7 +141,6 @@ static void close_stand(stand *s) {
     for (int i = 0; i < TARGETS; i++) gpu_image_destroy(device, s->colors[i]);
     gpu_image_destroy(device, s->depth);
     gpu_buffer_destroy(device, s->views);
-    drawn_stages_destroy(s->p, &s->stages);
     drawn_destroy(s->d);
     scene_instances_destroy(s->instances, device);
     world_close(&s->w);
@@ -163,8 +167,17 @@ static void make_views(stand *s) {
     gpu_test_ok(s->views && gpu_buffer_write(s->w.host.device, s->views, 0, views, sizeof views));
 }
 
+// As if the pass had been given it: the kernels that choose have the uniforms of the pass.
+static void set_lod(stand *s, float lod) {
+    size_t index;
+    assert_int_equal(pass_find_key(s->p, "lod", &index), PASS_UNIFORM);
+    s->p->values[index][0] = lod;
+    pass_copy_values(s->p);
+}
+
 static void cull_within(stand *s, float lod, float most) {
     gpu *device = s->w.host.device;
+    set_lod(s, lod);
     gpu_test_ok(gpu_frame_begin(device));
     gpu_test_ok(scene_instances_upload(s->instances, device));
     gpu_test_ok(drawn_cull(s->d, s->views, VIEWS, HEIGHT, lod, most));
@@ -181,7 +194,7 @@ static void draw(stand *s, size_t view, void *pixels[TARGETS]) {
     gpu_draw_desc target = {.depth = s->depth, .clear = true, .clear_depth = 1};
     memcpy(target.colors, s->colors, sizeof s->colors);
     gpu_test_ok(gpu_frame_begin(device));
-    gpu_test_ok(drawn_record(s->d, &s->stages, &target, view, 1, NULL));
+    gpu_test_ok(drawn_record(s->d, s->kernel, &target, view, 1, NULL));
     gpu_test_ok(gpu_frame_end(device));
     for (int i = 0; i < TARGETS; i++) {
         size_t size = (size_t)PIXELS * gpu_format_size(formats[i]);
