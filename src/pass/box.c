@@ -36,9 +36,3 @@ bool pass_density_box_of_grids(const pass *p, box3 *box) {
     return has_end(p, field_bounds_of_grids(pass_density(p), p->host->context, box), box) ||
            pass_blame(p);
 }
-
-void pass_write_box(const shader_binary *binary, unsigned char *block, box3 box) {
-    if (box3_is_empty(box)) box = (box3){{0, 0, 0}, {0, 0, 0}};
-    pass_write_member(binary, block, "box_min", &box.min, sizeof box.min);
-    pass_write_member(binary, block, "box_max", &box.max, sizeof box.max);
-}

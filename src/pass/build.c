@@ -103,81 +103,6 @@ bool pass_describe_stage(pass *p, const char *shader, shader_stage stage,
     return out->options;
 }
 
-bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_define *defines,
-                  size_t define_count, shader_binary *out) {
-    pass_defines own = {.count = 0};
-    shader_compile_desc desc;
-    for (size_t i = 0; i < define_count; i++) pass_define(&own, defines[i].name, defines[i].value);
-    return (pass_describe_stage(p, shader, stage, &own, &desc) &&
-            shader_compile(p->host->library, p->host->memory, &desc, out)) ||
-           err_prefix("%s: ", p->label);
-}
-
-gpu_pipeline *pass_create_compute(pass *p, const shader_binary *binary) {
-    gpu_slot slots[GPU_MAX_SLOTS];
-    if (binary->slot_count > GPU_MAX_SLOTS) {
-        err_set("%s: %zu bindings; at most %d are possible", p->label, binary->slot_count,
-                GPU_MAX_SLOTS);
-        return NULL;
-    }
-    if (!pass_ranges_build(p, binary)) return NULL;
-    for (size_t i = 0; i < binary->slot_count; i++) slots[i] = binary->slots[i].slot;
-    gpu_compute_desc desc = {
-        .label = p->label,
-        .code = binary->code,
-        .code_size = binary->size,
-        .slots = slots,
-        .slot_count = binary->slot_count,
-    };
-    memcpy(desc.local_size, binary->local_size, sizeof desc.local_size);
-    return gpu_pipeline_create_compute(p->host->device, &desc);
-}
-
-gpu_pipeline *pass_create_graphics(pass *p, const shader_binary *vertex,
-                                   const shader_binary *fragment, gpu_graphics_desc desc) {
-    const shader_binary *both[] = {vertex, fragment};
-    gpu_slot slots[GPU_MAX_SLOTS];
-    size_t count = 0;
-    if (vertex->slot_count + fragment->slot_count > GPU_MAX_SLOTS) {
-        err_set("%s: %zu bindings to draw with; at most %d are possible", p->label,
-                vertex->slot_count + fragment->slot_count, GPU_MAX_SLOTS);
-        return NULL;
-    }
-    static const gpu_stage stages[] = {GPU_STAGE_VERTEX, GPU_STAGE_FRAGMENT};
-    for (size_t s = 0; s < COUNT_OF(both); s++) {
-        for (size_t i = 0; i < both[s]->slot_count; i++) {
-            slots[count] = both[s]->slots[i].slot;
-            slots[count++].stage = stages[s];
-        }
-    }
-    desc.label = p->label;
-    desc.vertex_code = vertex->code;
-    desc.vertex_size = vertex->size;
-    desc.fragment_code = fragment->code;
-    desc.fragment_size = fragment->size;
-    desc.slots = slots;
-    desc.slot_count = count;
-    return gpu_pipeline_create_graphics(p->host->device, &desc);
-}
-
-gpu_pipeline *pass_create_fullscreen(pass *p, const shader_binary *fragment,
-                                     const gpu_format *formats, size_t count) {
-    shader_binary vertex;
-    if (!shader_compile(p->host->library, p->host->memory,
-                        &(shader_compile_desc){.name = "lib/fullscreen.vert",
-                                               .stage = SHADER_VERTEX,
-                                               .reader = p->host->reader},
-                        &vertex))
-        return NULL;
-    gpu_graphics_desc desc = {0};
-    if (count > COUNT_OF(desc.colors)) {
-        err_set("%s: %zu outputs; at most %d are drawn to", p->label, count, GPU_MAX_TARGETS);
-        return NULL;
-    }
-    for (size_t i = 0; i < count; i++) desc.colors[i] = formats[i];
-    return pass_create_graphics(p, &vertex, fragment, desc);
-}
-
 static void list_palettes(pass *p) {
     const field_texture *textures;
     size_t count = field_program_textures(p->program, &textures);
@@ -262,20 +187,10 @@ bool pass_build(pass *p) {
     return p->runs_in || pass_build_part(p);
 }
 
-static bool build_providers(pass *p) {
-    size_t count;
-    const pass_provider *const *rows = pass_providers(&count);
-    for (size_t i = 0; i < count; i++)
-        if (rows[i]->build && !rows[i]->build(p)) return false;
-    return true;
-}
-
 static bool build(pass *p) {
     p->program = generate(p);
     if (!p->program) return err_prefix("%s: ", p->label);
     if (!(p->type && p->type->build ? p->type->build(p) : pass_build_kernels(p))) return false;
-    if (!build_providers(p)) return false;
-    p->block = arena_alloc(p->host->memory, pass_block_size(&p->binary) + 16);
     p->numbers = arena_alloc(p->host->memory, field_program_block_size(p->program) + 16);
     list_palettes(p);
     return true;
@@ -300,12 +215,8 @@ bool pass_allocate(pass *p) {
 }
 
 static bool check(pass *p) {
-    size_t count;
-    const pass_provider *const *rows = pass_providers(&count);
     p->program = generate(p);
     if (!p->program) return err_prefix("%s: ", p->label);
-    for (size_t i = 0; i < count; i++)
-        if (rows[i]->check && !rows[i]->check(p)) return false;
     return p->type && p->type->check ? p->type->check(p) : pass_compile_kernels(p);
 }
 
@@ -333,7 +244,6 @@ void pass_destroy(pass *p) {
     for (size_t i = 0; i < count; i++)
         if (rows[i]->destroy) rows[i]->destroy(p);
     pass_destroy_kernels(p);
-    if (p->pipeline) gpu_pipeline_destroy(device, p->pipeline);
     mem_free(p->meshes);
     mem_free(p->instances);
     mem_free(p->sources);

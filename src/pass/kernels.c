@@ -41,90 +41,43 @@ typedef struct pass_built {
 
 static const pass_kernel own_shader = {0};
 
-static size_t count_kernels(const pass *p) {
+static size_t count_own(const pass *p) { // of the type
     return p->type && p->type->kernels ? p->type->kernel_count : 1;
 }
 
-static const pass_kernel *row_of(const pass *p, size_t index) {
-    return p->type && p->type->kernels ? &p->type->kernels[index] : &own_shader;
+// Those of providers stand behind those of the type.
+typedef struct kernel_row {
+    const pass_kernel *kernel;
+    const pass_provider *provider; // NULL: it is the type's
+    size_t index;                  // in the list of either
+} kernel_row;
+
+// The kernels of providers up to one that is not used, or NULL.
+static size_t count_provided(const pass *p, const pass_provider *until) {
+    size_t count, found = 0;
+    const pass_provider *const *rows = pass_providers(&count);
+    for (size_t i = 0; i < count && rows[i] != until; i++)
+        if (rows[i]->uses && rows[i]->uses(p)) found += rows[i]->kernel_count;
+    return found;
 }
 
-// ---- names ------------------------------------------------------------------------------------
-
-static kernel_names names_of(const pass *p) {
-    return p->type ? p->type->names : (kernel_names){0};
+static size_t count_kernels(const pass *p) {
+    return count_own(p) + count_provided(p, NULL);
 }
 
-static pass_name find_name(const pass *p, const char *name) {
-    size_t index;
-    pass_name out = {-1, -1, -1, (int16_t)pass_find_image(p, name)};
-    const pass_key key = pass_find_key(p, name, &index);
-    if (key == PASS_UNIFORM) out.uniform = (int16_t)index;
-    if (key == PASS_OPTION) out.option = (int16_t)index;
-    if (key == PASS_FIELD) out.field = (int16_t)index;
-    return out;
-}
-
-void pass_find_names(pass *p) {
-    const kernel_names names = names_of(p);
-    pass_name *found = arena_alloc(p->host->memory, (names.count + 1) * sizeof *found);
-    for (size_t i = 0; i < names.count; i++) found[i] = find_name(p, names.items[i]);
-    p->names = found;
-    p->density = find_name(p, "density").field;
-}
-
-// A type that asks for what its shader does not declare.
-static size_t known(const pass *p, int name, int index, const char *what) {
-    if (index >= 0) return (size_t)index;
-    log_write(LOG_ERROR, "%s declares no %s '%s'", p->shader, what, names_of(p).items[name]);
-    abort();
-}
-
-const float *pass_vector(const pass *p, int name) {
-    return p->values[known(p, name, p->names[name].uniform, "uniform")];
-}
-
-float pass_value(const pass *p, int name) {
-    return pass_vector(p, name)[0];
-}
-
-bool pass_evaluate_now(const pass *p, int name, float out[4]) {
-    return pass_evaluate_at(p, known(p, name, p->names[name].uniform, "uniform"), out);
-}
-
-size_t pass_option(const pass *p, int name) {
-    return p->options[known(p, name, p->names[name].option, "option")];
-}
-
-static const char *option_word(const pass *p, int name) {
-    const size_t index = known(p, name, p->names[name].option, "option");
-    return p->face->options[index].words[p->options[index]];
-}
-
-bool pass_option_is(const pass *p, int name, const char *word) {
-    return strcmp(option_word(p, name), word) == 0;
-}
-
-uint32_t pass_option_number(const pass *p, int name) {
-    return (uint32_t)strtoul(option_word(p, name), NULL, 10);
-}
-
-const field *pass_given_field(const pass *p, int name) {
-    return p->fields[known(p, name, p->names[name].field, "field")];
-}
-
-bool pass_gives(const pass *p, int name) {
-    const size_t index = known(p, name, p->names[name].uniform, "uniform");
-    const shader_uniform *declared;
-    return p->uniforms[index] || pass_inherited_uniform(p, index, &declared);
-}
-
-graph_image *pass_image(const pass *p, int name) {
-    return &p->images[known(p, name, p->names[name].image, "image")];
-}
-
-gpu_image *pass_get_image(const pass *p, int name) {
-    return graph_get_image(p->host->graph, *pass_image(p, name));
+static kernel_row find_row(const pass *p, size_t index) {
+    size_t count, left = index - count_own(p);
+    const pass_provider *const *rows = pass_providers(&count);
+    if (index < count_own(p))
+        return (kernel_row){p->type && p->type->kernels ? &p->type->kernels[index] : &own_shader,
+                            NULL, index};
+    for (size_t i = 0; i < count; i++) {
+        if (!rows[i]->uses || !rows[i]->uses(p)) continue;
+        if (left < rows[i]->kernel_count)
+            return (kernel_row){&rows[i]->kernels[left], rows[i], left};
+        left -= rows[i]->kernel_count;
+    }
+    return (kernel_row){&own_shader, NULL, 0};
 }
 
 // ---- compiling --------------------------------------------------------------------------------
@@ -152,7 +105,7 @@ static kernel_names solver_names(const pass *p) {
 }
 
 static bool is_of_type(const pass *p, const char *name) {
-    return find_string(names_of(p), name) >= 0 || find_string(solver_names(p), name) >= 0;
+    return find_string(pass_names_of(p), name) >= 0 || find_string(solver_names(p), name) >= 0;
 }
 
 static int find_texture(const pass *p, const char *name) {
@@ -248,13 +201,20 @@ static bool add_stage(pass *p, kernel_source *source, const char *shader, shader
     return pass_describe_stage(p, shader, stage, defines, &source->stages[source->stage_count++]);
 }
 
-// `*left_out`: the type wants none.
+static bool is_left_out(pass *p, const kernel_row *at, pass_defines *out) {
+    if (at->provider) return at->provider->wants && !at->provider->wants(p, at->index);
+    return p->type && p->type->defines && !p->type->defines(p, at->index, out);
+}
+
+// `*left_out`: the type or the provider wants none.
 static bool compile(pass *p, size_t index, pass_built *b, bool *left_out) {
-    const pass_kernel *row = row_of(p, index);
+    const kernel_row at = find_row(p, index);
+    const pass_kernel *row = at.kernel;
     const char *shader = row->shader ? row->shader : p->shader;
     pass_defines defines = {.count = 0};
-    kernel_source source = {.label = p->label, .names = names_of(p)};
-    *left_out = p->type && p->type->defines && !p->type->defines(p, index, &defines);
+    kernel_source source = {.label = p->label,
+                            .names = at.provider ? at.provider->names : pass_names_of(p)};
+    *left_out = is_left_out(p, &at, &defines);
     if (*left_out) return true;
     if (row->define) pass_define(&defines, row->define, "1");
     if (row->without_fields) pass_define(&defines, "WITHOUT_FIELDS", "1");
@@ -278,6 +238,11 @@ static bool compile(pass *p, size_t index, pass_built *b, bool *left_out) {
 }
 
 static void describe_target(const pass *p, size_t index, gpu_graphics_desc *out) {
+    const kernel_row at = find_row(p, index);
+    if (at.provider) {
+        at.provider->target(p, at.index, out);
+        return;
+    }
     if (p->type && p->type->target) {
         p->type->target(p, index, out);
         return;
@@ -304,7 +269,7 @@ static void allocate(pass *p) {
     if (p->values) return;
     p->values = arena_alloc(memory, uniforms * sizeof *p->values);
     p->wanted = arena_alloc(memory, uniforms * sizeof *p->wanted);
-    for (size_t i = 0; i < names_of(p).count; i++)
+    for (size_t i = 0; i < pass_names_of(p).count; i++)
         if (p->names[i].uniform >= 0) p->wanted[p->names[i].uniform] = true;
 }
 
@@ -325,7 +290,8 @@ static bool compile_one(void *user, size_t index) {
 
 static bool build_one(void *user, size_t index) {
     pass *p = user;
-    const bool later = p->type && p->type->foresees && !p->type->foresees(p, index);
+    const bool later =
+        index < count_own(p) && p->type && p->type->foresees && !p->type->foresees(p, index);
     return later || make(p, index, true);
 }
 
@@ -411,7 +377,7 @@ void pass_copy_values(pass *p) {
 }
 
 void pass_set(pass *p, int name, const void *data, size_t size) {
-    for (size_t i = 0; i < count_kernels(p); i++) kernel_set(&p->built[i].base, name, data, size);
+    for (size_t i = 0; i < count_own(p); i++) kernel_set(&p->built[i].base, name, data, size);
 }
 
 void pass_set_float(pass *p, int name, float value) {
@@ -476,6 +442,10 @@ kernel *pass_use(pass *p, size_t index) {
         b->base.bindings[i] = out;
     }
     return &b->base;
+}
+
+kernel *pass_use_provided(pass *p, const pass_provider *provider, size_t index) {
+    return pass_use(p, count_own(p) + count_provided(p, provider) + index);
 }
 
 kernel *pass_get_kernel(pass *p, size_t index) {

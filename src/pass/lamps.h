@@ -4,8 +4,7 @@
 // A pass that reads it has `#include "lib/lamps.glsl"`, which declares an input `lamps`: given by
 // name or by `from`, it orders the passes. Before such a pass runs, its picture is divided into
 // tiles, and which lamps may light something in each is found out (shaders/pass/lamps_lists.comp).
-// All that comes by itself, in a user's shader too: pass_compile adds the defines, pass_bind finds
-// the buffers, pass_prepare runs the lists' shaders.
+// All that comes by itself, in a user's shader too, by pass_lamps_provider.
 //
 // An option `lamps_by` of the reader says how: auto, all (every lamp for every pixel), tiles, and
 // volumes where the reader draws them itself (lamps_volumes.c).
@@ -22,15 +21,6 @@ bool pass_lamps_open(pass *p, uint32_t count, scene_instances *at);
 
 typedef struct pass_lamps pass_lamps; // of a pass that reads them
 typedef enum lamps_way { LAMPS_ALL, LAMPS_TILES, LAMPS_VOLUMES } lamps_way;
-enum { PASS_LAMPS_DEFINES = 3 };
 
-bool pass_find_lamps(pass *p);            // pass_declare does
 uint32_t pass_lamps_count(const pass *p); // that it reads; 0: it reads none
 lamps_way pass_lamps_way(const pass *p);
-size_t pass_lamps_defines(const pass *p, shader_define out[PASS_LAMPS_DEFINES]);
-bool pass_lamps_check(pass *p); // compiles the lists' shaders
-bool pass_lamps_build(pass *p);
-void pass_lamps_destroy(pass *p);
-bool pass_lamps_record(pass *p); // the lists of a frame
-// The buffer or image of a slot by its name; false: it is none of theirs.
-bool pass_lamps_bind(const pass *p, const char *name, gpu_binding *out);

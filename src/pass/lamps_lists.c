@@ -16,8 +16,18 @@ enum {
     FEW = 4, // lamps, up to which every pixel may as well look at all
 };
 
-static const char shader[] = "pass/lamps_lists.comp";
-static const char *const stages[LISTS_STAGES] = {"STAGE_RECORDS", "STAGE_MASKS"};
+static const pass_kernel kernels[LAMPS_KERNELS] = {
+    [LAMPS_RECORDS] = {.shader = "pass/lamps_lists.comp",
+                       .define = "STAGE_RECORDS",
+                       .without_fields = true},
+    [LAMPS_MASKS] = {.shader = "pass/lamps_lists.comp",
+                     .define = "STAGE_MASKS",
+                     .without_fields = true},
+    [LAMPS_DRAW] = {.shader = "pass/lamps_volume.frag",
+                    .vertex = "pass/lamps_volume.vert",
+                    .without_fields = true},
+};
+static const char *const names[] = {LAMPS_NAMES(KERNEL_NAME_TEXT)};
 static const char *const buffer_names[LAMP_BUFFERS] = {"LampRecords", "LampMasks", "LampBounds"};
 
 static lamps_way choose_way(const pass *p, uint32_t count) {
@@ -27,7 +37,7 @@ static lamps_way choose_way(const pass *p, uint32_t count) {
     return count <= FEW ? LAMPS_ALL : LAMPS_TILES;
 }
 
-bool pass_find_lamps(pass *p) {
+static bool find_lamps(pass *p) {
     int input = pass_find_image(p, "lamps");
     if (input < 0 || p->face->images[input].output || !p->images[input].id) return true;
     const pass *writer = pass_writer(p->host, p->images[input]);
@@ -49,48 +59,29 @@ lamps_way pass_lamps_way(const pass *p) {
     return p->lamps ? p->lamps->way : LAMPS_ALL;
 }
 
-size_t pass_lamps_defines(const pass *p, shader_define out[PASS_LAMPS_DEFINES]) {
+static size_t lamps_defines(const pass *p, shader_define out[PASS_PROVIDER_DEFINES]) {
+    if (!p->lamps) return 0;
     out[0] = (shader_define){"LAMPS_TILES", pass_lamps_way(p) == LAMPS_TILES ? "1" : "0"};
     out[1] = (shader_define){"LAMPS_VOLUMES", pass_lamps_way(p) == LAMPS_VOLUMES ? "1" : "0"};
     out[2] = (shader_define){"LAMPS_BETWEEN", pass_is(p, "lamp_glows") ? "1" : "0"};
-    return PASS_LAMPS_DEFINES;
+    return 3;
 }
 
 // ---- building ---------------------------------------------------------------------------------
 
-static bool is_used(const pass_lamps *l, int stage) {
-    return stage != LISTS_MASKS || l->way == LAMPS_TILES;
+static bool uses_lamps(const pass *p) {
+    return p->lamps != NULL;
 }
 
-bool pass_lamps_check(pass *p) {
-    for (int i = 0; p->lamps && i < LISTS_STAGES; i++) {
-        const shader_define defines[] = {{stages[i], "1"}, {"WITHOUT_FIELDS", "1"}};
-        if (is_used(p->lamps, i) && !pass_compile(p, shader, SHADER_COMPUTE, defines,
-                                                  COUNT_OF(defines), &p->lamps->binary[i]))
-            return false;
-    }
-    return pass_lamps_way(p) != LAMPS_VOLUMES || lamps_check_volumes(p);
+static bool wants_kernel(const pass *p, size_t index) {
+    if (index == LAMPS_RECORDS) return true;
+    return p->lamps->way == (index == LAMPS_MASKS ? LAMPS_TILES : LAMPS_VOLUMES);
 }
 
-bool pass_lamps_build(pass *p) {
-    if (!pass_lamps_check(p)) return false;
-    for (int i = 0; p->lamps && i < LISTS_STAGES; i++) {
-        const shader_binary *binary = &p->lamps->binary[i];
-        if (!is_used(p->lamps, i)) continue;
-        p->lamps->block[i] = arena_alloc(p->host->memory, pass_block_size(binary) + 16);
-        p->lamps->pipeline[i] = pass_create_compute(p, binary);
-        if (!p->lamps->pipeline[i]) return false;
-    }
-    return pass_lamps_way(p) != LAMPS_VOLUMES || lamps_build_volumes(p);
-}
-
-void pass_lamps_destroy(pass *p) {
-    gpu *device = p->host->device;
-    for (int i = 0; p->lamps && i < LISTS_STAGES; i++)
-        if (p->lamps->pipeline[i]) gpu_pipeline_destroy(device, p->lamps->pipeline[i]);
+static void lamps_destroy(pass *p) {
     for (int i = 0; p->lamps && i < LAMP_BUFFERS; i++)
-        gpu_buffer_destroy(device, p->lamps->buffers[i]);
-    if (p->lamps) lamps_destroy_volumes(p);
+        gpu_buffer_destroy(p->host->device, p->lamps->buffers[i]);
+    if (p->lamps) gpu_image_destroy(p->host->device, p->lamps->light);
 }
 
 // ---- in a frame -------------------------------------------------------------------------------
@@ -136,34 +127,25 @@ static bool make_buffers(pass *p, const tiling *t) {
             make_buffer(p, LAMP_BOUNDS, 8ull * t->across * t->height));
 }
 
-static bool run(pass *p, lists_stage stage, const tiling *t, uint32_t x, uint32_t y) {
-    const shader_binary *binary = &p->lamps->binary[stage];
-    unsigned char *block = p->lamps->block[stage];
-    const struct {
-        const char *name;
-        uint32_t value;
-    } members[] = {{"width", t->width},
-                   {"height", t->height},
-                   {"lamp_count", p->lamps->count},
-                   {"lamp_words", t->words},
-                   {"lamp_tiles_across", t->across}};
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    gpu_dispatch_desc desc = {
-        .pipeline = p->lamps->pipeline[stage], .bindings = bindings, .threads = {x, y, 1}};
-    for (size_t i = 0; i < COUNT_OF(members); i++)
-        pass_write_member(binary, block, members[i].name, &members[i].value, sizeof(uint32_t));
-    return pass_bind(p, binary, block, NULL, 0, bindings, &desc.binding_count) &&
-           gpu_dispatch(p->host->device, &desc);
+static bool run_lists(pass *p, lamps_kernel index, const tiling *t, uint32_t x, uint32_t y) {
+    kernel *k = pass_use_provided(p, &pass_lamps_provider, index);
+    if (!k) return false;
+    kernel_set_int(k, N_width, (int32_t)t->width);
+    kernel_set_int(k, N_height, (int32_t)t->height);
+    kernel_set_int(k, N_lamp_count, (int32_t)p->lamps->count);
+    kernel_set_int(k, N_lamp_words, (int32_t)t->words);
+    kernel_set_int(k, N_lamp_tiles_across, (int32_t)t->across);
+    return kernel_run(k, p->host->device, x, y, 1);
 }
 
-bool pass_lamps_record(pass *p) {
+static bool lamps_prepare(pass *p) {
     if (!p->lamps) return true;
     const tiling t = tiling_of(p);
     uint32_t x = (t.across + GROUP - 1) / GROUP * GROUP, rows = (p->lamps->count + x - 1) / x;
     lamps_way way = p->lamps->way;
     if (way == LAMPS_TILES && rows < t.height) rows = t.height;
-    return make_buffers(p, &t) && run(p, LISTS_RECORDS, &t, x, rows) &&
-           (way != LAMPS_TILES || run(p, LISTS_MASKS, &t, t.across * t.words, t.down)) &&
+    return make_buffers(p, &t) && run_lists(p, LAMPS_RECORDS, &t, x, rows) &&
+           (way != LAMPS_TILES || run_lists(p, LAMPS_MASKS, &t, t.across * t.words, t.down)) &&
            (way != LAMPS_VOLUMES || lamps_draw_volumes(p, t.width, t.height));
 }
 
@@ -171,27 +153,27 @@ enum { LAMP_LIGHT = LAMP_BUFFERS, LAMP_SLOTS };
 static const char *const slots[LAMP_SLOTS] = {"LampRecords", "LampMasks", "LampBounds",
                                               "LampLight"};
 
-static bool bind(pass *p, int slot, gpu_binding *out) {
+static bool lamps_bind(pass *p, int slot, gpu_binding *out) {
     if (!p->lamps) return false;
     out->sampler = GPU_NEAREST_CLAMP;
     if (slot == LAMP_LIGHT)
-        out->image = p->lamps->volumes.light;
+        out->image = p->lamps->light;
     else
         out->buffer = p->lamps->buffers[slot];
     return out->image || out->buffer;
 }
 
-static size_t defines_of(const pass *p, shader_define out[PASS_PROVIDER_DEFINES]) {
-    return p->lamps ? pass_lamps_defines(p, out) : 0;
-}
-
 const pass_provider pass_lamps_provider = {
     .slots = {slots, LAMP_SLOTS},
-    .find = pass_find_lamps,
-    .defines = defines_of,
-    .check = pass_lamps_check,
-    .build = pass_lamps_build,
-    .prepare = pass_lamps_record,
-    .bind = bind,
-    .destroy = pass_lamps_destroy,
+    .find = find_lamps,
+    .defines = lamps_defines,
+    .kernels = kernels,
+    .kernel_count = LAMPS_KERNELS,
+    .names = {names, COUNT_OF(names)},
+    .uses = uses_lamps,
+    .wants = wants_kernel,
+    .target = lamps_target,
+    .prepare = lamps_prepare,
+    .bind = lamps_bind,
+    .destroy = lamps_destroy,
 };

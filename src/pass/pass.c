@@ -194,10 +194,6 @@ bool pass_has_word(const pass *p, const char *option, const char *word) {
     return strcmp(pass_word(p, option), word) == 0;
 }
 
-uint32_t pass_number(const pass *p, const char *option) {
-    return (uint32_t)strtoul(pass_word(p, option), NULL, 10);
-}
-
 const char *pass_most_threads(const pass *p) {
     uint32_t most = gpu_get_profile(p->host->device)->limits.group_threads;
     return most >= 512 ? "512" : most >= 256 ? "256" : "128"; // the least of any device

@@ -127,10 +127,8 @@ typedef struct pass_type {
     bool (*build)(pass *p);    // instead of one pipeline; see pass_build
     bool (*allocate)(pass *p); // besides what every pass needs; see pass_allocate
     void (*list_memory)(const pass *p, budget_list *out); // see pass_list_memory
-    // Uniforms that the host computes, written into a block of `binary`'s layout.
-    bool (*fill)(pass *p, const shader_binary *binary, unsigned char *block);
-    bool (*rehearse)(pass *p); // besides what every pass evaluates
-    bool (*record)(pass *p);   // instead of one dispatch over the first output
+    bool (*rehearse)(pass *p);                            // besides what every pass evaluates
+    bool (*record)(pass *p); // instead of one dispatch over the first output
     void (*destroy)(pass *p);
 } pass_type;
 

@@ -4,6 +4,8 @@
 #include "kernel/kernel.h"
 #include "pass/pass.h"
 
+typedef struct pass_provider pass_provider;
+
 typedef struct pass_palette { // a palette's texture, one per pass that uses it
     const palette *source;
     gpu_image *image;
@@ -43,9 +45,7 @@ struct pass {
 
     // After pass_build.
     field_program *program;
-    shader_binary binary;
-    gpu_pipeline *pipeline;
-    unsigned char *block, *numbers; // host copies of "Uniforms" and "FieldNumbers"
+    unsigned char *numbers; // the host's copy of "FieldNumbers"
     pass_palette *palettes;
     size_t palette_count;
     gpu_buffer *counters;
@@ -82,6 +82,8 @@ void pass_define_flag(pass_defines *out, const char *name, bool value); // 1 or 
 // NULL with a message.
 kernel *pass_use(pass *p, size_t index);
 kernel *pass_get_kernel(pass *p, size_t index); // with what was bound last
+// The same of kernel `index` of a provider that the pass uses; its names are the provider's.
+kernel *pass_use_provided(pass *p, const pass_provider *provider, size_t index);
 bool pass_dispatch(pass *p, size_t index, uint32_t x, uint32_t y, uint32_t z); // and runs it
 // Inside or outside a frame: compiles and builds it as the type's hooks want it now, if it is not,
 // or `again` all the same.
@@ -121,19 +123,25 @@ gpu_image *pass_get_image(const pass *p, int name); // on the device, in a frame
 // What shaders may ask for by including a file of lib/: one row for each, in providers.c. A kernel
 // that has a slot or uniform of a row's names is given it.
 enum { PASS_PROVIDER_DEFINES = 4, PASS_PROVIDER_VALUES = 8 };
-typedef struct pass_provider {
+struct pass_provider {
     kernel_names slots, uniforms;
     bool (*find)(pass *p); // when the pass is declared; may be NULL, as all of these
     size_t (*defines)(const pass *p, shader_define out[PASS_PROVIDER_DEFINES]);
-    bool (*check)(pass *p); // compiles what it runs itself
-    bool (*build)(pass *p);
+    // Kernels of its own, with their names, that a pass has besides its type's where `uses` says
+    // so. They are run by `prepare`, with pass_use_provided.
+    const pass_kernel *kernels;
+    size_t kernel_count;
+    kernel_names names;
+    bool (*uses)(const pass *p);
+    bool (*wants)(const pass *p, size_t index); // false: that kernel is left out
+    void (*target)(const pass *p, size_t index, gpu_graphics_desc *out);
     bool (*prepare)(pass *p); // in a frame, before the pass's work
     // Of the uniforms, 32 bits each, once a frame for all kernels; false: it has none for this
     // pass.
     bool (*values)(const pass *p, uint32_t out[PASS_PROVIDER_VALUES]);
     bool (*bind)(pass *p, int slot, gpu_binding *out); // false: it has none for this pass
     void (*destroy)(pass *p);
-} pass_provider;
+};
 const pass_provider *const *pass_providers(size_t *count);
 extern const pass_provider pass_particles_provider, pass_lamps_provider;
 
@@ -143,6 +151,7 @@ typedef struct pass_name { // what a type's name is in the interface; -1: not th
 } pass_name;
 bool pass_describe_stage(pass *p, const char *shader, shader_stage stage,
                          const pass_defines *defines, shader_compile_desc *out);
+kernel_names pass_names_of(const pass *p); // the type's; none of a user's shader
 void pass_find_names(pass *p);
 bool pass_compile_kernels(pass *p);
 bool pass_build_kernels(pass *p);
@@ -157,43 +166,10 @@ bool pass_bind_image(pass *p, size_t index, gpu_binding *out);
 // The word that an option has now; "": the pass has no such option.
 const char *pass_word(const pass *p, const char *option);
 bool pass_has_word(const pass *p, const char *option, const char *word);
-uint32_t pass_number(const pass *p, const char *option); // of words that are numbers; else 0
 
 // For the define MOST_THREADS of a shader that would have large groups: 512, or the next smaller
 // power of two that the device allows.
 const char *pass_most_threads(const pass *p);
-
-// Compiles `shader` with the pass's options, fields and the given defines. Where WITHOUT_FIELDS is
-// among these, the fields' GLSL is left out: then the code is the same whatever they are, and need
-// not be compiled again.
-bool pass_compile(pass *p, const char *shader, shader_stage stage, const shader_define *defines,
-                  size_t define_count, shader_binary *out);
-gpu_pipeline *pass_create_compute(pass *p, const shader_binary *binary);
-// All of `desc` but its label, code and slots, which are those of both stages: they share one set,
-// in which their bindings are numbered apart.
-gpu_pipeline *pass_create_graphics(pass *p, const shader_binary *vertex,
-                                   const shader_binary *fragment, gpu_graphics_desc desc);
-// A full-screen triangle drawn with a fragment shader to targets of these formats.
-gpu_pipeline *pass_create_fullscreen(pass *p, const shader_binary *fragment,
-                                     const gpu_format *formats, size_t count);
-
-// Where a uniform lies in a block; false when the compiler dropped it as unused.
-bool pass_find_member(const shader_binary *binary, const char *name, shader_member *out);
-void pass_write_member(const shader_binary *binary, unsigned char *block, const char *name,
-                       const void *data, size_t size);
-// Evaluates all uniforms of the pass into `block` (laid out by `binary`) and calls the fill hook.
-bool pass_fill_block(pass *p, const shader_binary *binary, unsigned char *block);
-uint32_t pass_block_size(const shader_binary *binary);
-
-// Binds every slot by its name: blocks, fields' textures, images of the interface. `overrides`
-// (may be NULL) are matched first, by slot name.
-typedef struct pass_override {
-    const char *name;
-    gpu_binding binding; // its `binding` number is filled in
-} pass_override;
-bool pass_bind(pass *p, const shader_binary *binary, const unsigned char *block,
-               const pass_override *overrides, size_t override_count,
-               gpu_binding out[GPU_MAX_SLOTS], size_t *count);
 
 // Of what simulates: whether its images are looked at in this frame, by the picture or by something
 // else that simulates.
@@ -246,14 +222,9 @@ const field *pass_density(const pass *p);
 bool pass_check_density(const pass *p);
 bool pass_density_box(const pass *p, box3 *box);
 bool pass_density_box_of_grids(const pass *p, box3 *box);
-// Into the members box_min and box_max of a block; an empty box is a point.
-void pass_write_box(const shader_binary *binary, unsigned char *block, box3 box);
 
 // Who says that uniform of a pass: the pass itself or a source, whose `*index` it is then. It says
 // nothing either, when nobody does.
 const pass *pass_uniform_owner(const pass *p, size_t *index);
 // The current value of a uniform, within its range; beyond it the user is told, once.
 bool pass_evaluate_at(const pass *p, size_t index, float out[4]);
-float pass_evaluate(const pass *p, const char *uniform); // current value of a scalar uniform
-// Of any uniform, one component in all four; false when a function of the script failed.
-bool pass_evaluate_vector(const pass *p, const char *uniform, float out[4]);

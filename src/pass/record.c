@@ -1,51 +1,10 @@
-// A pass in a frame: uniforms (uniform.c) put into their block, every slot bound by its name, work
-// dispatched.
+// A pass in a frame: what its kernels are given, and its work.
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/pass_impl.h"
 #include "pass/ranges.h"
 #include <math.h>
 #include <string.h>
-
-// ---- uniforms ---------------------------------------------------------------------------------
-
-uint32_t pass_block_size(const shader_binary *binary) {
-    for (size_t i = 0; i < binary->slot_count; i++)
-        if (strcmp(binary->slots[i].name, "Uniforms") == 0) return binary->slots[i].size;
-    return 0;
-}
-
-bool pass_find_member(const shader_binary *binary, const char *name, shader_member *out) {
-    for (size_t i = 0; i < binary->member_count; i++) {
-        if (strcmp(binary->members[i].name, name) != 0) continue;
-        *out = binary->members[i];
-        return true;
-    }
-    return false;
-}
-
-void pass_write_member(const shader_binary *binary, unsigned char *block, const char *name,
-                       const void *data, size_t size) {
-    shader_member member;
-    if (!pass_find_member(binary, name, &member)) return;
-    memcpy(block + member.offset, data, size < member.size ? size : member.size);
-}
-
-bool pass_fill_block(pass *p, const shader_binary *binary, unsigned char *block) {
-    for (size_t i = 0; i < p->face->uniform_count; i++) {
-        shader_member member;
-        float value[4];
-        if (!pass_find_member(binary, p->face->uniforms[i].name, &member)) continue;
-        if (!pass_evaluate_at(p, i, value)) return false;
-        if (member.type == SHADER_INT || member.type == SHADER_BOOL || member.type == SHADER_ENUM) {
-            int32_t whole = (int32_t)lrintf(value[0]);
-            memcpy(block + member.offset, &whole, sizeof whole);
-        } else {
-            memcpy(block + member.offset, value, member.size < 16 ? member.size : 16);
-        }
-    }
-    return !p->type || !p->type->fill || p->type->fill(p, binary, block);
-}
 
 // ---- bindings ---------------------------------------------------------------------------------
 
@@ -100,14 +59,6 @@ bool pass_bind_texture(pass *p, size_t index, gpu_binding *out) {
     return out->image || !t->ranges;
 }
 
-static bool bind_field_texture(pass *p, const char *name, gpu_binding *out) {
-    const field_texture *textures;
-    size_t count = field_program_textures(p->program, &textures);
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(textures[i].glsl_name, name) == 0) return pass_bind_texture(p, i, out);
-    return false;
-}
-
 bool pass_bind_image(pass *p, size_t index, gpu_binding *out) {
     const shader_image *image = &p->face->images[index];
     out->image = p->images[index].id ? graph_get_image(p->host->graph, p->images[index])
@@ -116,70 +67,6 @@ bool pass_bind_image(pass *p, size_t index, gpu_binding *out) {
     // Depths are compared, not mixed, and few devices could filter them.
     bool depth = out->image && gpu_image_get_desc(out->image)->format == GPU_D32F;
     out->sampler = depth ? GPU_NEAREST_CLAMP : GPU_LINEAR_CLAMP;
-    return true;
-}
-
-static bool bind_image(pass *p, const char *glsl_name, gpu_binding *out) {
-    for (size_t i = 0; i < p->face->image_count; i++)
-        if (strcmp(p->face->images[i].glsl_name, glsl_name) == 0) return pass_bind_image(p, i, out);
-    return false;
-}
-
-static bool bind_block(const pass *p, const shader_binary *binary, const char *name,
-                       const unsigned char *block, gpu_binding *out) {
-    if (strcmp(name, "Uniforms") == 0) {
-        out->uniform = block;
-        out->uniform_size = pass_block_size(binary);
-    } else if (strcmp(name, "Frame") == 0) {
-        out->uniform = p->host->frame;
-        out->uniform_size = sizeof *p->host->frame;
-    } else if (strcmp(name, "Lights") == 0) {
-        out->uniform = p->host->lights;
-        out->uniform_size = sizeof *p->host->lights;
-    } else if (strcmp(name, "FieldNumbers") == 0) {
-        out->uniform = p->numbers;
-        out->uniform_size = field_program_block_size(p->program);
-    } else {
-        return err_set("%s: uniform block '%s' is not known; declare loose uniforms instead",
-                       p->label, name);
-    }
-    return true;
-}
-
-static bool bind_provided(pass *p, const char *name, gpu_binding *out) {
-    size_t count;
-    const pass_provider *const *rows = pass_providers(&count);
-    for (size_t i = 0; i < count; i++)
-        for (size_t k = 0; k < rows[i]->slots.count; k++)
-            if (strcmp(rows[i]->slots.items[k], name) == 0 && rows[i]->bind(p, (int)k, out))
-                return true;
-    return false;
-}
-
-static bool bind_slot(pass *p, const shader_binary *binary, const shader_slot *slot,
-                      const unsigned char *block, gpu_binding *out) {
-    if (slot->slot.kind == GPU_SLOT_UNIFORM) return bind_block(p, binary, slot->name, block, out);
-    return bind_field_texture(p, slot->name, out) || bind_image(p, slot->name, out) ||
-           bind_provided(p, slot->name, out) ||
-           err_set("%s: nothing is known to bind to '%s'", p->label, slot->name);
-}
-
-bool pass_bind(pass *p, const shader_binary *binary, const unsigned char *block,
-               const pass_override *overrides, size_t override_count,
-               gpu_binding out[GPU_MAX_SLOTS], size_t *count) {
-    *count = 0;
-    for (size_t i = 0; i < binary->slot_count; i++) {
-        const shader_slot *slot = &binary->slots[i];
-        gpu_binding *binding = &out[(*count)++];
-        *binding = (gpu_binding){0};
-        bool found = false;
-        for (size_t o = 0; o < override_count && !found; o++) {
-            found = strcmp(overrides[o].name, slot->name) == 0;
-            if (found) *binding = overrides[o].binding;
-        }
-        if (!found && !bind_slot(p, binary, slot, block, binding)) return false;
-        binding->binding = slot->slot.binding;
-    }
     return true;
 }
 
@@ -198,7 +85,7 @@ bool pass_make_late(pass *p, size_t index, bool again) {
 
 static bool fill_numbers(pass *p) {
     return field_program_fill(p->program, p->host->context, p->numbers) &&
-           (p->built ? fill_kernels(p) : pass_fill_block(p, &p->binary, p->block));
+           (!p->built || fill_kernels(p));
 }
 
 static bool prepare_providers(pass *p) {
@@ -266,19 +153,7 @@ static bool draw_fullscreen(pass *p, const kernel *k) {
     return gpu_draw_all(p->host->device, &desc);
 }
 
-static bool run_old(pass *p) { // until all list kernels
-    gpu_binding bindings[GPU_MAX_SLOTS];
-    size_t count;
-    if (!pass_bind(p, &p->binary, p->block, NULL, 0, bindings, &count)) return false;
-    gpu_dispatch_desc dispatch = {p->pipeline, bindings, count, {1, 1, 1}};
-    for (size_t i = p->face->image_count; i-- > 0;)
-        if (p->face->images[i].output)
-            graph_get_size(p->host->graph, p->images[i], dispatch.threads);
-    return gpu_dispatch(p->host->device, &dispatch);
-}
-
 bool pass_run(pass *p) {
-    if (!p->built) return run_old(p);
     uint32_t size[3] = {1, 1, 1};
     kernel *k = pass_use(p, 0);
     if (!k) return false;

@@ -50,15 +50,3 @@ bool pass_evaluate_at(const pass *p, size_t index, float out[4]) {
     }
     return true;
 }
-
-bool pass_evaluate_vector(const pass *p, const char *name, float out[4]) {
-    size_t index;
-    memset(out, 0, 4 * sizeof *out);
-    return pass_find_key(p, name, &index) != PASS_UNIFORM || pass_evaluate_at(p, index, out);
-}
-
-float pass_evaluate(const pass *p, const char *name) {
-    float value[4];
-    pass_evaluate_vector(p, name, value);
-    return value[0];
-}
