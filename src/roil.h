@@ -143,8 +143,9 @@ bool roil_advance(roil_effect *e, double frame);
 // frame adds to them. 0: nothing in the picture is.
 uint32_t roil_samples(const roil_effect *e);
 
-// A number that moved beyond its range, since the load or since a control was last set; NULL: none.
-// It was logged too, once.
+// A number that moved beyond its range, or lengths that do not fit together, as where a file's unit
+// is no metre, since the load or since a control was last set; NULL: nothing. It was logged too,
+// once.
 const char *roil_warning(const roil_effect *e);
 
 typedef struct roil_simulation { // what goes on from frame to frame in steps of its own

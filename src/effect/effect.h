@@ -287,8 +287,8 @@ bool effect_load_state(effect *e, const char *path, double *frame);
 // Is told, while effect_render runs frames that were left out, of the steps done and wanted.
 void effect_on_progress(effect *e, bool (*call)(void *user, double done, double whole), void *user);
 
-// A number that moved beyond its range, since the effect was made or a control was last set; NULL:
-// none did.
+// A number that moved beyond its range, or lengths that do not fit together (hints.c), since the
+// effect was made or a control was last set; NULL: nothing.
 const char *effect_get_warning(const effect *e);
 
 // Samples a pixel of the last frame, of that pass `reference` which has the fewest; 0: the picture

@@ -10,6 +10,7 @@ bool effect_apply_settings(void *user, pass *p);
 // ---- a frame ------------------------------------------------------------------------------------
 
 bool effect_runs(const effect *e, const pass *p); // some part of it; after the graph was compiled
+void effect_tell_hints(effect *e);                // once, then: lengths that do not fit together
 // Evaluates a frame. `again`: the same as the last, for which `update` ran.
 bool effect_evaluate(effect *e, double frame, gpu *device, bool again);
 void effect_reset_instances(effect *e); // to how they began: time has gone back

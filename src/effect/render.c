@@ -129,6 +129,7 @@ static bool compile_graph(effect *e) {
         if (pass_get_simulation(e->passes[i]) && !effect_runs(e, e->passes[i]))
             log_write(LOG_WARNING, "%s: nothing draws or reads '%s', so it is left out", e->file,
                       pass_label(e->passes[i]));
+    if (!e->unseen) effect_tell_hints(e);
     return true;
 }
 

@@ -53,6 +53,7 @@ typedef struct field_context { // what values depend on besides space
     bool (*call)(void *user, int function, double time, float out[4]); // Lua functions of time
     void *user;
     const struct instance_entry *instance; // that it is evaluated for; NULL: none
+    float unread; // of ranges alone: values that grids are taken to have before any is read; 0: any
 } field_context;
 
 struct field_kind {

@@ -217,17 +217,18 @@ intervals ranges_position(const field *node, const field_context *context, const
 // Nothing outside of the grid's box; within, its values are on the device.
 intervals ranges_grid(const field *node, const field_context *context, const intervals *at,
                       const intervals *args) {
-    (void)context, (void)args;
+    (void)args;
     const field_grid *grid = node->object;
     box3 box = {{at->c[0].low, at->c[1].low, at->c[2].low},
                 {at->c[0].high, at->c[1].high, at->c[2].high}};
-    box3 active = box3_intersect(grid->box, grid->state.active);
+    bool unread = context->unread > 0;
+    box3 active = unread ? grid->box : box3_intersect(grid->box, grid->state.active);
     bool inside = grid->repeats || !(box.min.x > active.max.x || box.max.x < active.min.x ||
                                      box.min.y > active.max.y || box.max.y < active.min.y ||
                                      box.min.z > active.max.z || box.max.z < active.min.z);
     intervals out = {0};
-    interval values =
-        grid->longest > 0 ? (interval){-grid->longest, grid->longest} : range_unknown();
+    float size = grid->longest > 0 ? grid->longest : context->unread;
+    interval values = size > 0 ? (interval){-size, size} : range_unknown();
     for (int i = 0; inside && i < 4; i++) out.c[i] = values;
     return out;
 }

@@ -44,7 +44,7 @@ typedef struct pass_host { // what all passes of one effect share
     size_t grid_image_count, grid_image_capacity;
     pass **declared; // owned: freed by pass_host_free
     size_t declared_count, declared_capacity;
-    char warning[512]; // the first uniform that moved beyond its range; "": none has
+    char warning[512]; // the first: a uniform beyond its range, lengths that do not fit; "": none
 } pass_host;
 
 // Passes whose fields sample that image of `grid` run after the pass that writes `image`.

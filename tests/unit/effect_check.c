@@ -51,6 +51,19 @@ static void effect_of_all_built_in_passes_is_sound(void **state) {
     assert_int_equal(effect_pass_count(e), 8);
 }
 
+static void volume_in_other_units_is_told_of(void **state) {
+    stage *s = *state;
+    set_output(s, add_march(s, "ball"));
+    ok(effect_check(s->e));
+    assert_null(effect_get_warning(s->e));
+    open_with(s, NULL, 0);
+    set_output(s, add_march(s, "ball"));
+    effect_scene(s->e)->camera.distance = number(s, 1e4f);
+    ok(effect_check(s->e));
+    assert_non_null(effect_get_warning(s->e));
+    assert_non_null(strstr(effect_get_warning(s->e), "'ball' is only 2 m long"));
+}
+
 static void mistake_in_a_users_shader_is_found_without_a_device(void **state) {
     stage *s = *state;
     write_file(s, "tinted.comp",
@@ -221,6 +234,7 @@ static void meshes_go_to_geometry_only(void **state) {
 int main(void) {
     static const struct CMUnitTest tests[] = {
         STAGE_TEST(effect_of_all_built_in_passes_is_sound),
+        STAGE_TEST(volume_in_other_units_is_told_of),
         STAGE_TEST(mistake_in_a_users_shader_is_found_without_a_device),
         STAGE_TEST(mistake_in_an_annotation_is_found_when_the_pass_is_added),
         STAGE_TEST(users_function_that_is_not_there_is_found),
