@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "bench/sweep.h"
+#include "whole_way.h"
 #include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,8 +54,7 @@ static void prepare(void) {
 static void put(const char *folder, const char *name, const void *data, size_t size) {
     char path[PATH_CAP];
     if (!path_join(path, folder, name) || !file_make_parent_folders(path)) abort();
-    FILE *out = fopen(path, "wb"); // not by file_write: it need not reach the disk
-    if (!out || (size && fwrite(data, 1, size, out) != size) || fclose(out)) abort();
+    fuzz_write(path, data, size);
 }
 
 static void put_part(const char *folder, const uint8_t *data, size_t size) {

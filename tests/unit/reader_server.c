@@ -17,6 +17,7 @@
 #include "base/memory.h"
 #include "media/vdb_wire.h"
 #include "reader/reader.h"
+#include "reader_child.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -235,17 +236,6 @@ static void echoes(void) {
     assert_memory_equal(r.data, "arguments and bytes", 19);
     ((char *)r.data)[0] = 'A'; // may be written to
     isolate_free(&r);
-}
-
-static pid_t find_reader(void) { // the only child
-    char path[64];
-    int child = 0;
-    snprintf(path, sizeof path, "/proc/self/task/%d/children", (int)getpid());
-    FILE *file = fopen(path, "r");
-    if (!file) return 0; // a kernel without this file
-    if (fscanf(file, "%d", &child) != 1) child = 0;
-    fclose(file);
-    return child;
 }
 
 static void results_come_back(void **state) {

@@ -1,6 +1,7 @@
 // Shaders that are made to hang, exhaust or crash a compiler fail with a message; all others
 // compile as they would in process.
 #include "base/memory.h"
+#include "reader_child.h"
 #include "shader/compiler.h"
 #include "shader_helper.h"
 #include <pthread.h>
@@ -177,18 +178,6 @@ static void threads_do_not_suffer_from_each_others_shaders(void **state) {
         pthread_join(threads[i], &failed);
         assert_null(failed);
     }
-}
-
-// The reader: the only child of this one.
-static pid_t find_reader(void) {
-    char path[64];
-    int child = 0;
-    snprintf(path, sizeof path, "/proc/self/task/%d/children", (int)getpid());
-    FILE *file = fopen(path, "r");
-    if (!file) return 0; // a kernel without this file
-    if (fscanf(file, "%d", &child) != 1) child = 0;
-    fclose(file);
-    return child;
 }
 
 static void a_reader_that_was_killed_is_replaced(void **state) {
