@@ -32,21 +32,35 @@ char *realpath(const char *restrict path, char *restrict resolved) {
     return found;
 }
 
+static void look_at(long file) {
+    char link[64], found[4096];
+    snprintf(link, sizeof link, "/proc/self/fd/%ld", file);
+    ssize_t length = readlink(link, found, sizeof found - 1);
+    if (length <= 0) return;
+    found[length] = '\0';
+    look(found);
+}
+
 long syscall(long number, ...) {
     static long (*_Atomic real)(long, ...);
     long a[6];
-    char link[64], found[4096];
     va_list all;
     va_start(all, number);
     for (int i = 0; i < 6; i++) a[i] = va_arg(all, long);
     va_end(all);
     if (!real) real = (long (*)(long, ...))dlsym(RTLD_NEXT, "syscall");
     long result = real(number, a[0], a[1], a[2], a[3], a[4], a[5]);
-    if (number != SYS_openat2 || result < 0) return result;
-    snprintf(link, sizeof link, "/proc/self/fd/%ld", result);
-    ssize_t length = readlink(link, found, sizeof found - 1);
-    if (length <= 0) return result;
-    found[length] = '\0';
-    look(found);
+    if (number == SYS_openat2 && result >= 0) look_at(result);
+    return result;
+}
+
+int openat(int folder, const char *path, int flags, ...) {
+    static int (*_Atomic real)(int, const char *, int, ...);
+    va_list mode;
+    va_start(mode, flags);
+    if (!real) real = (int (*)(int, const char *, int, ...))dlsym(RTLD_NEXT, "openat");
+    int result = real(folder, path, flags, va_arg(mode, unsigned));
+    va_end(mode);
+    if (result >= 0) look_at(result);
     return result;
 }
