@@ -4,7 +4,7 @@ uniform sampler2D after;         //= input : where it has been
 uniform float share;             //= 0 [0, 1] : how far it has come
 uniform float slant;             //= 0.35 [-2, 2] : how much the line leans, as a part of the picture's height
 uniform float edge;              //= 7 [0, 100] pixels : thickness of the line, of a picture of 1080 rows
-uniform vec3 paper;              //= {0.9, 0.82, 0.66} [0, 1] : its colour
+uniform vec3 paper;              //= {0.9, 0.82, 0.66} [0, 1] color : its colour
 writeonly uniform image2D color; //= output rgba16f : the mixed picture
 
 void main() {

@@ -1,12 +1,9 @@
 // Controls as an interface shows them: what they are, their values now, palettes and curves.
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include "effect/events.h"
 #include "roil_impl.h"
-#include "script/reference.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const field_context *context_of(const roil_effect *e) { // of the last frame, or the first
@@ -15,54 +12,16 @@ static const field_context *context_of(const roil_effect *e) { // of the last fr
 
 // ---- what a control is --------------------------------------------------------------------------
 
-static bool named_as_color(const char *name) {
-    static const char *const endings[] = {"color", "colour", "albedo", "tint"};
-    for (size_t i = 0; i < COUNT_OF(endings); i++)
-        if (str_ends_with(name, endings[i])) return true;
-    return false;
-}
-
-static roil_type type_of_uniform(const shader_uniform *u) {
-    switch (u->type) {
-    case SHADER_INT:
-        return ROIL_INT;
-    case SHADER_BOOL:
-        return ROIL_BOOL;
-    case SHADER_ENUM:
-        return ROIL_ENUM;
-    case SHADER_VEC3:
-        return named_as_color(u->name) ? ROIL_COLOR : ROIL_VECTOR;
-    case SHADER_VEC2:
-    case SHADER_VEC4:
-        return ROIL_VECTOR;
-    default:
-        return ROIL_FLOAT;
-    }
-}
-
-static void fill_param(const effect_param *p, roil_control *out) {
+static roil_type type_of(const effect_control *c) {
     static const roil_type types[] = {
-        [EFFECT_FLOAT] = ROIL_FLOAT, [EFFECT_INT] = ROIL_INT,     [EFFECT_BOOL] = ROIL_BOOL,
-        [EFFECT_ENUM] = ROIL_ENUM,   [EFFECT_VEC3] = ROIL_VECTOR, [EFFECT_COLOR] = ROIL_COLOR,
+        [VALUE_NUMBER] = ROIL_FLOAT, [VALUE_WHOLE] = ROIL_INT,   [VALUE_BOOL] = ROIL_BOOL,
+        [VALUE_WORD] = ROIL_ENUM,    [VALUE_COLOR] = ROIL_COLOR,
     };
-    out->parameter = true;
-    out->type = types[p->type];
-    out->components = p->type == EFFECT_VEC3 || p->type == EFFECT_COLOR ? 3 : 1;
-    memcpy(out->value, p->value, sizeof out->value);
-    memcpy(out->initial, p->initial, sizeof out->initial);
-    out->min = p->min;
-    out->max = p->max;
-    out->unit = p->unit;
-    out->help = p->help;
-    out->group = p->group;
-    out->words = p->words;
-    out->word_count = p->word_count;
-    out->log_scale = p->log_scale;
-    out->structural = p->structural;
-}
-
-static bool is_constant(const field *node) {
-    return field_is_constant(node);
+    if (c->kind == EFFECT_CONTROL_PALETTE) return ROIL_PALETTE;
+    if (c->kind == EFFECT_CONTROL_CURVE) return ROIL_CURVE;
+    if (c->kind == EFFECT_CONTROL_EVENTS) return ROIL_EVENTS;
+    bool vector = c->desc->type == VALUE_NUMBER && c->desc->components > 1;
+    return vector ? ROIL_VECTOR : types[c->desc->type];
 }
 
 // Value of a field that does not vary in space; `otherwise` where there is none.
@@ -74,142 +33,66 @@ static void evaluate(const roil_effect *e, const field *node, const float otherw
     for (int i = 0; i < 4; i++) out[i] = value[node->components == 1 ? 0 : i];
 }
 
-static void fill_moving(const roil_effect *e, const effect_control *c, const float otherwise[4],
-                        roil_control *out) {
+static void fill_field(const roil_effect *e, const effect_control *c, roil_control *out) {
+    const scene_camera *camera = &effect_scene(e->effect)->camera;
     const field *now = effect_control_field(e->effect, c);
+    float otherwise[4], target[3];
+    memcpy(otherwise, effect_control_default(e->effect, c), sizeof otherwise);
+    if (strcmp(c->name, "camera.eye") == 0) { // where an orbit has the camera stand
+        scene_camera script = *camera;
+        script.eye = effect_control_original(c);
+        scene_camera_eye(&script, context_of(e), otherwise, target);
+        for (int i = 0; i < 3; i++)
+            otherwise[i] = roundf(otherwise[i] * 1e6f) / 1e6f + 0.0f; // no -1e-7
+    }
     evaluate(e, now, otherwise, out->value);
-    out->driven = now && !is_constant(now);
-    if (c->moved)
-        evaluate(e, effect_control_original(c), otherwise, out->initial);
-    else
-        memcpy(out->initial, out->value, sizeof out->initial);
-}
-
-static void clamp_to_range(roil_control *out) { // as passes do
-    for (int i = 0; i < 4; i++) {
+    evaluate(e, c->moved ? effect_control_original(c) : now, otherwise, out->initial);
+    out->driven = now && !field_is_constant(now);
+    for (int i = 0; c->kind == EFFECT_CONTROL_UNIFORM && i < 4; i++) { // as passes do
         out->value[i] = clampf(out->value[i], out->min, out->max);
         out->initial[i] = clampf(out->initial[i], out->min, out->max);
     }
 }
 
-static void fill_uniform(const roil_effect *e, const effect_control *c, const pass *p,
-                         roil_control *out) {
-    const shader_uniform *u = &pass_interface(p)->uniforms[c->index], *declared;
-    const field *inherited = pass_inherited_uniform(p, c->index, &declared);
-    float otherwise[4];
-    evaluate(e, inherited, declared->value, otherwise);
-    out->type = type_of_uniform(u);
-    out->components = pass_uniform_components(u->type);
-    out->min = u->min;
-    out->max = u->max;
-    out->unit = u->unit;
-    out->help = u->help;
-    out->words = u->words;
-    out->word_count = u->word_count;
-    if (u->type == SHADER_BOOL || u->type == SHADER_ENUM) {
-        out->min = 0;
-        out->max = u->type == SHADER_BOOL ? 1 : (float)u->word_count - 1;
-    }
-    fill_moving(e, c, otherwise, out);
-    clamp_to_range(out);
+static void fill_param(const effect_param *p, roil_control *out) {
+    out->parameter = true;
+    memcpy(out->value, p->value, sizeof out->value);
+    memcpy(out->initial, p->desc.value, sizeof out->initial);
+    out->log_scale = p->log_scale;
+    out->structural = p->structural;
 }
 
-static void fill_scene(const roil_effect *e, const effect_control *c, roil_control *out) {
-    static const char *const groups[] = {"camera", "sun", "sky"};
-    const scene_value *v = effect_control_value(c);
-    if (c->kind != EFFECT_CONTROL_SCENE) out->group = effect_control_owner(e->effect, c);
-    for (size_t i = 0; c->kind == EFFECT_CONTROL_SCENE && i < COUNT_OF(groups); i++)
-        if (strncmp(v->name, groups[i], strlen(groups[i])) == 0) out->group = groups[i];
-    out->type = v->color ? ROIL_COLOR : v->components == 3 ? ROIL_VECTOR : ROIL_FLOAT;
-    out->components = v->components;
-    out->min = v->min;
-    out->max = v->max;
-    out->unit = v->unit;
-    out->help = v->help;
-    float eye[4] = {0}, target[3]; // where an orbit has the camera stand
-    scene_camera camera = effect_scene(e->effect)->camera;
-    if (strcmp(v->name, "camera.eye") == 0) {
-        camera.eye = effect_control_original(c);
-        scene_camera_eye(&camera, context_of(e), eye, target);
-        for (int i = 0; i < 3; i++) eye[i] = roundf(eye[i] * 1e6f) / 1e6f + 0.0f; // no -1e-7
-    }
-    fill_moving(e, c, eye, out);
-}
-
-static void fill_option(const effect_control *c, const pass *p, roil_control *out) {
-    const shader_option *o = &pass_interface(p)->options[c->index];
-    out->type = ROIL_ENUM;
-    out->value[0] = (float)pass_get_option(p, c->index);
-    for (size_t i = 0; i < o->word_count; i++)
-        if (strcmp(o->words[i], c->initial) == 0) out->initial[0] = (float)i;
-    out->max = (float)o->word_count - 1;
-    out->help = o->help;
-    out->words = o->words;
-    out->word_count = o->word_count;
+static void fill_structure(const roil_effect *e, const effect_control *c, roil_control *out) {
+    const pass *p = effect_get_pass(e->effect, c->pass);
+    bool scale = c->kind == EFFECT_CONTROL_SCALE;
+    out->value[0] = scale ? pass_get_scale(p) : (float)pass_get_option(p, c->index);
+    value_parse(c->desc, c->name, c->initial, out->initial);
     out->structural = true;
 }
-
-static void fill_scale(const effect_control *c, const pass *p, roil_control *out) {
-    out->value[0] = pass_get_scale(p);
-    out->initial[0] = str_float(c->initial, NULL);
-    out->min = 0.01f;
-    out->max = 1;
-    out->help = script_key_find(script_object_find("shader")->keys, "resolution")->help;
-    out->structural = true;
-}
-
-static const char *const ramp_help[] = {"a number to colour and alpha", "a value over time",
-                                        "a number over a particle's life (0..1)"};
 
 void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
     const effect_control *c = effect_get_control(e->effect, index);
+    const value_desc *desc = c->desc;
     const char *dot = strrchr(c->name, '.');
+    bool limited = desc->min != 0 || desc->max != 0 || desc->type == VALUE_WORD;
     *out = (roil_control){.name = c->name,
                           .label = dot ? dot + 1 : c->name,
-                          .group = "",
-                          .unit = "",
-                          .help = "",
-                          .components = 1,
+                          .group = c->group,
+                          .type = type_of(c),
+                          .components = desc->components,
+                          .min = limited ? desc->min : -INFINITY,
+                          .max = limited ? desc->max : INFINITY,
+                          .unit = desc->unit,
+                          .help = desc->help,
+                          .words = desc->words,
+                          .word_count = desc->word_count,
                           .moved = c->moved != NULL};
-    bool of_pass = c->kind == EFFECT_CONTROL_UNIFORM || c->kind == EFFECT_CONTROL_OPTION ||
-                   c->kind == EFFECT_CONTROL_SCALE;
-    pass *p = of_pass ? effect_get_pass(e->effect, c->pass) : NULL;
-    if (p) out->group = pass_label(p);
-    switch (c->kind) {
-    case EFFECT_CONTROL_PARAM:
+    if (c->kind == EFFECT_CONTROL_PARAM)
         fill_param(effect_get_param(e->effect, c->index), out);
-        break;
-    case EFFECT_CONTROL_PALETTE:
-        out->type = ROIL_PALETTE;
-        out->components = 4;
-        out->help = ramp_help[0];
-        break;
-    case EFFECT_CONTROL_CURVE:
-        out->type = ROIL_CURVE;
-        out->components = effect_control_curve(c)->components;
-        out->help = ramp_help[effect_control_is_over_age(c) ? 2 : 1];
-        break;
-    case EFFECT_CONTROL_SCENE:
-    case EFFECT_CONTROL_LIGHT:
-    case EFFECT_CONTROL_MATERIAL:
-        fill_scene(e, c, out);
-        break;
-    case EFFECT_CONTROL_EVENTS:
-        out->type = ROIL_EVENTS;
-        out->components = 0;
-        out->group = "effect";
-        out->help = "what happens to it: seconds, click or key and its name, where";
-        break;
-    case EFFECT_CONTROL_UNIFORM:
-        fill_uniform(e, c, p, out);
-        break;
-    case EFFECT_CONTROL_OPTION:
-        fill_option(c, p, out);
-        break;
-    case EFFECT_CONTROL_SCALE:
-        fill_scale(c, p, out);
-        break;
-    }
+    else if (c->kind == EFFECT_CONTROL_OPTION || c->kind == EFFECT_CONTROL_SCALE)
+        fill_structure(e, c, out);
+    else if (desc->type != VALUE_OTHER)
+        fill_field(e, c, out);
 }
 
 size_t roil_control_count(const roil_effect *e) {

@@ -40,20 +40,13 @@ static void entry(strbuf *out, const char *name, const char *help) {
     add_flowing(out, HELP_COLUMN, HELP_COLUMN, help);
 }
 
-static void add_words(strbuf *out, const char *const *words, size_t count, size_t chosen) {
-    for (size_t i = 0; i < count; i++)
-        strbuf_add(out, "%s%s%s", i ? " | " : "", words[i], i == chosen ? "*" : "");
-}
-
-static void add_numbers(strbuf *out, const float *value, int count) {
-    for (int i = 0; i < count; i++) strbuf_add(out, "%s%g", i ? ", " : "", (double)value[i]);
-}
-
-static void add_range(strbuf *out, float min, float max, const char *unit) {
-    if (isfinite(min) || isfinite(max)) {
-        if (min != max) strbuf_add(out, " [%g, %g]", (double)min, (double)max);
-    }
-    if (unit[0]) strbuf_add(out, " %s", unit);
+static void describe(strbuf *out, const value_desc *desc) {
+    strbuf name = {0}, help = {0};
+    value_show(desc, NULL, NULL, &name);
+    strbuf_add(&help, "%s%s", desc->help, desc->required ? "; required" : "");
+    entry(out, strbuf_text(&name), strbuf_text(&help));
+    strbuf_free(&name);
+    strbuf_free(&help);
 }
 
 static void add_first_sentence(strbuf *out, const char *text) {
@@ -61,32 +54,9 @@ static void add_first_sentence(strbuf *out, const char *text) {
     strbuf_append(out, text, end ? (size_t)(end - text) : strlen(text));
 }
 
-static void print_key(strbuf *out, const script_key *key) {
-    strbuf name = {0};
-    strbuf_add(&name, "%s", key->name);
-    if (key->words[0]) {
-        size_t count = 0, chosen = 0;
-        for (; count < COUNT_OF(key->words) && key->words[count]; count++)
-            if (strcmp(key->words[count], key->value) == 0) chosen = count;
-        strbuf_add(&name, " = ");
-        add_words(&name, key->words, count, chosen);
-    } else if (key->value) {
-        strbuf_add(&name, " = %s", key->value);
-    }
-    entry(out, strbuf_text(&name), key->help);
-    strbuf_free(&name);
-}
-
-static void print_keys(strbuf *out, const char *title, const script_key *keys) {
-    if (!keys) return;
-    bool choice = false;
-    for (const script_key *key = keys; key->name; key++) choice |= key->words[0] != NULL;
-    strbuf_add(out, "\n%s%s\n", title, choice ? " (* is the default)" : "");
-    for (; keys->name; keys++) print_key(out, keys);
-}
-
-static const script_key *pass_keys(void) { // that every pass has
-    return script_object_find("shader")->keys;
+static void print_keys(strbuf *out, const char *title, const value_desc *keys) {
+    if (keys) strbuf_add(out, "\n%s\n", title);
+    for (; keys && keys->name; keys++) describe(out, keys);
 }
 
 // ---- devices ----------------------------------------------------------------------------------
@@ -115,31 +85,11 @@ char *roil_info_devices(void) {
 
 // ---- passes -----------------------------------------------------------------------------------
 
-static int components(shader_type type) {
-    return type == SHADER_VEC2 ? 2 : type == SHADER_VEC3 ? 3 : type == SHADER_VEC4 ? 4 : 1;
-}
-
-static void print_uniform(strbuf *out, const shader_uniform *u) {
-    strbuf name = {0};
-    strbuf_add(&name, "%s = ", u->name);
-    if (u->word_count)
-        add_words(&name, u->words, u->word_count, (size_t)u->value[0]);
-    else if (u->type == SHADER_BOOL)
-        strbuf_add(&name, "%s", u->value[0] != 0 ? "true" : "false");
-    else
-        add_numbers(&name, u->value, components(u->type));
-    if (!u->word_count && u->type != SHADER_BOOL) add_range(&name, u->min, u->max, u->unit);
-    entry(out, strbuf_text(&name), u->help);
-    strbuf_free(&name);
-}
-
 static void print_field(strbuf *out, const shader_field *f) {
     strbuf name = {0};
-    strbuf_add(&name, "%s %s", f->glsl_type, f->name);
-    if (!f->required) {
-        strbuf_add(&name, " = ");
-        add_numbers(&name, f->value, f->components);
-    }
+    value_desc desc = {.components = f->components, .required = f->required, .unit = ""};
+    strbuf_add(&name, "%s ", f->glsl_type);
+    value_show(&desc, f->name, f->value, &name);
     entry(out, strbuf_text(&name), f->help);
     strbuf_free(&name);
 }
@@ -161,17 +111,10 @@ static void print_interface(strbuf *out, const shader_interface *face) {
     if (face->field_count) strbuf_add(out, "\nfields\n");
     for (size_t i = 0; i < face->field_count; i++) print_field(out, &face->fields[i]);
     if (face->option_count) strbuf_add(out, "\noptions (structure; * is the default)\n");
-    for (size_t i = 0; i < face->option_count; i++) {
-        const shader_option *o = &face->options[i];
-        strbuf name = {0};
-        strbuf_add(&name, "%s = ", o->name);
-        add_words(&name, o->words, o->word_count, o->value);
-        entry(out, strbuf_text(&name), o->help);
-        strbuf_free(&name);
-    }
+    for (size_t i = 0; i < face->option_count; i++) describe(out, &face->options[i]);
     strbuf_add(out, "\nuniforms (numbers; constants, parameters, curves or functions of time)\n");
-    for (size_t i = 0; i < face->uniform_count; i++) print_uniform(out, &face->uniforms[i]);
-    print_keys(out, "keys of every pass", pass_keys());
+    for (size_t i = 0; i < face->uniform_count; i++) describe(out, &face->uniforms[i]);
+    print_keys(out, "keys of every pass", script_object_find("shader")->keys);
     strbuf_add(out, "\noutputs\n");
     for (size_t i = 0; i < face->image_count; i++) {
         if (!face->images[i].output) continue;
@@ -234,29 +177,15 @@ char *roil_info_passes(roil *r, const char *name) {
 static void print_kind(strbuf *out, const field_kind *kind) {
     strbuf_add(out, "%s (%s)\n\n", kind->name, kind->group);
     add_flowing(out, 0, 0, kind->summary);
-    if (kind->args[0].name) strbuf_add(out, "\narguments\n");
-    for (int i = 0; i < FIELD_MAX_ARGS && kind->args[i].name; i++) {
-        const field_arg *a = &kind->args[i];
-        strbuf name = {0};
-        strbuf_add(&name, "%s", a->name);
-        if (!a->required) {
-            strbuf_add(&name, " = ");
-            add_numbers(&name, a->value, a->components ? a->components : 1);
-        }
-        add_range(&name, a->min, a->max, a->unit);
-        entry(out, strbuf_text(&name), a->help);
-        strbuf_free(&name);
-    }
+    if (kind->args[0].desc.name) strbuf_add(out, "\narguments\n");
+    for (int i = 0; i < FIELD_MAX_ARGS && kind->args[i].desc.name; i++)
+        describe(out, &kind->args[i].desc);
     for (int i = 0; i < FIELD_MAX_OPTIONS && kind->options[i].name; i++) {
         const field_option *o = &kind->options[i];
         if (i == 0) strbuf_add(out, "\noptions (structure; * is the default)\n");
-        size_t count = 0;
-        while (count < COUNT_OF(o->words) && o->words[count]) count++;
-        strbuf name = {0};
-        strbuf_add(&name, "%s = ", o->name);
-        add_words(&name, o->words, count, 0);
-        entry(out, strbuf_text(&name), o->help);
-        strbuf_free(&name);
+        value_desc desc = {.name = o->name, .type = VALUE_WORD, .words = o->words, .help = o->help};
+        while (desc.word_count < COUNT_OF(o->words) && o->words[desc.word_count]) desc.word_count++;
+        describe(out, &desc);
     }
 }
 
@@ -265,7 +194,13 @@ static void print_object(strbuf *out, const script_object *object) {
     add_flowing(out, 0, 0, object->summary);
     strbuf_add(out, "\n  %s\n", object->form);
     print_keys(out, "arguments (by place)", object->args);
-    print_keys(out, "keys", object->keys);
+    const value_desc *key;
+    bool choice = false;
+    for (size_t i = 0; (key = script_object_key(object, i)); i++) choice |= key->words != NULL;
+    for (size_t i = 0; (key = script_object_key(object, i)); i++) {
+        if (i == 0) strbuf_add(out, "\nkeys%s\n", choice ? " (* is the default)" : "");
+        describe(out, key);
+    }
     print_keys(out, "members", object->members);
 }
 
@@ -333,49 +268,25 @@ char *roil_info_fields(const char *name) {
 
 // ---- one effect -------------------------------------------------------------------------------
 
-static void print_range_of(strbuf *out, const roil_control *c) {
-    bool number = c->type == ROIL_FLOAT || c->type == ROIL_INT || c->type == ROIL_VECTOR ||
-                  c->type == ROIL_COLOR;
-    if (number) add_range(out, c->min, c->max, c->unit);
-}
-
-static void print_value(strbuf *out, const roil_control *c, const float *value) {
-    if (c->type == ROIL_BOOL)
-        strbuf_add(out, "%s", value[0] != 0 ? "true" : "false");
-    else if (c->type == ROIL_ENUM)
-        strbuf_add(out, "%s", c->words[(size_t)value[0]]);
-    else
-        add_numbers(out, value, c->components);
-}
-
 // "density = 30 [0, 200] 1/m", and in the help's column what there is to know besides.
 static void print_control(roil_effect *e, size_t index, strbuf *out) {
     roil_control c;
     roil_get_control(e, index, &c);
     const effect_control *own = effect_get_control(e->effect, index);
-    bool ramp = c.type == ROIL_PALETTE || c.type == ROIL_CURVE;
-    bool text = ramp || c.type == ROIL_EVENTS;
+    bool text = own->desc->type == VALUE_OTHER;
     strbuf name = {0}, help = {0};
-    strbuf_add(&name, "%s = ", c.parameter || ramp ? c.name : c.label);
-    if (text)
+    const char *shown = c.parameter || !c.group[0] ? c.name : c.label;
+    value_show(own->desc, shown, c.value, &name);
+    if (text) {
+        strbuf_add(&name, " = ");
         effect_print_control(e->effect, own, &name);
-    else if (c.type == ROIL_ENUM)
-        add_words(&name, c.words, c.word_count, (size_t)c.value[0]);
-    else
-        print_value(&name, &c, c.value);
-    print_range_of(&name, &c);
+    }
     strbuf_add(&help, "%s", c.help);
     if (c.structural && c.parameter)
         strbuf_add(&help, "%s(structure: read while the effect loads)", help.length ? " " : "");
     if (c.driven) strbuf_add(&help, "%s(the script moves it)", help.length ? " " : "");
-    if (c.moved) {
-        strbuf_add(&help, "%s(moved; the script says ", help.length ? " " : "");
-        if (text)
-            strbuf_add(&help, "%s", own->initial);
-        else
-            print_value(&help, &c, c.initial);
-        strbuf_add(&help, ")");
-    }
+    if (c.moved)
+        strbuf_add(&help, "%s(moved; the script says %s)", help.length ? " " : "", own->initial);
     entry(out, strbuf_text(&name), strbuf_text(&help));
     strbuf_free(&name);
     strbuf_free(&help);

@@ -75,34 +75,14 @@ static bool is_structural(const effect *e, const effect_control *c) {
            (c->kind == EFFECT_CONTROL_PARAM && effect_get_param(e, c->index)->structural);
 }
 
-// So that what no load can take is refused at once.
-static bool check_fixed(effect *e, const effect_control *c, const char *text) {
-    if (c->kind == EFFECT_CONTROL_SCALE) {
-        char *end;
-        float scale = str_float(text, &end);
-        return (end != text && !*end && scale > 0 && scale <= 1) ||
-               err_set("'%s' cannot be '%s'; accepted: above 0, up to 1", c->name, text);
-    }
-    const shader_option *option = &pass_interface(effect_get_pass(e, c->pass))->options[c->index];
-    strbuf words = {0};
-    for (size_t i = 0; i < option->word_count; i++) {
-        if (strcmp(option->words[i], text) == 0) {
-            strbuf_free(&words);
-            return true;
-        }
-        strbuf_add(&words, "%s%s", i ? ", " : "", option->words[i]);
-    }
-    err_set("'%s' cannot be '%s'; accepted: %s", c->name, text, strbuf_text(&words));
-    strbuf_free(&words);
-    return false;
-}
-
 bool roil_live_set(roil_live *l, const char *name, const char *value) {
     if (!l->effect) return err_set("'%s' cannot be set: no effect is loaded", name);
     effect *e = l->effect->effect;
     const effect_control *c = effect_find_control(e, name);
     if (!c) return false;
-    bool done = is_fixed(c) ? check_fixed(e, c, value) : effect_set(e, name, value);
+    float parsed[4]; // what no load can take is refused at once
+    bool done =
+        is_fixed(c) ? value_parse(c->desc, c->name, value, parsed) : effect_set(e, name, value);
     if (!done) return false;
     if (strcmp(value, c->initial) == 0)
         drop_setting(l, name, c->initial);

@@ -1,6 +1,7 @@
 // Controls as Lua: what "Copy as Lua" gives, and what presets are written in.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/value.h"
 #include "roil_impl.h"
 #include <ctype.h>
 #include <math.h>
@@ -26,7 +27,7 @@ static void add_value(strbuf *out, const float *value, int components, bool colo
         strbuf_add_float(out, value[0]);
         return;
     }
-    if (color && palette_color_hex(value, hex)) {
+    if (color && value_color_hex(value, hex)) {
         strbuf_add(out, "\"%s\"", hex);
         return;
     }
@@ -170,8 +171,7 @@ static void add_param(strbuf *out, const roil_control *c) {
     if (ranged && isfinite(c->min)) add_number_key(out, "min", c->min);
     if (ranged && isfinite(c->max)) add_number_key(out, "max", c->max);
     if (c->type == ROIL_INT) strbuf_add(out, ", integer = true");
-    if (c->type == ROIL_COLOR && !palette_color_hex(c->value, hex))
-        strbuf_add(out, ", color = true");
+    if (c->type == ROIL_COLOR && !value_color_hex(c->value, hex)) strbuf_add(out, ", color = true");
     if (c->log_scale) strbuf_add(out, ", log = true");
     if (c->type == ROIL_ENUM) add_words(out, c);
     add_text_key(out, "unit", c->unit);

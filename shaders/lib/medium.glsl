@@ -13,12 +13,12 @@
 //@ field float temperature after density = 0 : of what glows as a black body (K)
 //@ field float blackbody_intensity after density = 0 : how much of it glows: 1 is physical as in Blender, whose unit is the megawatt: 5.67e-14 T^4 / pi a metre
 uniform vec3 extinction;           //= {1, 1, 1} [0, 1000] : factor of the density, by colour
-uniform vec3 albedo;               //= {0.5, 0.5, 0.5} [0, 1] : part of the light that is scattered, by colour
-uniform vec3 absorption_color;     //= {0, 0, 0} [0, 1] : what the light that is not scattered is dyed to; black: it is lost
+uniform vec3 albedo;               //= {0.5, 0.5, 0.5} [0, 1] color : part of the light that is scattered, by colour
+uniform vec3 absorption_color;     //= {0, 0, 0} [0, 1] color : what the light that is not scattered is dyed to; black: it is lost
 uniform float anisotropy;          //= 0.2 [-0.95, 0.95] : g of the phase function: 0 all directions, above 0 forward
 uniform vec4 lobe_weights;         //= {0, 0, 0, 0} [0, 1000] : of up to four lobes, of any sum; all 0: one lobe, of `anisotropy`. In Lua, lobes = { {2, 0.8}, {1, -0.3} } sets them and their g
 uniform vec4 lobe_anisotropies;    //= {0, 0, 0, 0} [-0.95, 0.95] : g of each of them
-uniform vec3 blackbody_tint;       //= {1, 1, 1} [0, 100] : factor of a black body's light
+uniform vec3 blackbody_tint;       //= {1, 1, 1} [0, 100] color : factor of a black body's light
 
 #ifndef LIB_MEDIUM_GLSL
 #define LIB_MEDIUM_GLSL

@@ -9,7 +9,7 @@
 //@ option side = both {both, outside} : of an edge: outside: on what is behind only, so that thin things keep their colour; of mode planes
 uniform sampler2D depth;         //= input : depth of the scene (m)
 uniform sampler2D normal;        //= input optional : normals of its surfaces
-uniform vec3 color;              //= {0, 0, 0} [0, 1000] : of the lines
+uniform vec3 color;              //= {0, 0, 0} [0, 1000] color : of the lines
 uniform float opacity;           //= 1 [0, 1] : of the lines
 uniform float thickness;         //= 2.5 [0, 64] : of the lines, in pixels of a picture of 1080 rows
 uniform float depth_threshold;   //= 0.02 [0, 1] : jump that makes a line, as a part of the distance; 1: none

@@ -28,8 +28,8 @@ uniform vec2 flipbook;             //= {1, 1} [1, 64] : columns and rows of imag
 uniform float ambient;             //= 1 [0, 10] : factor of the light from the sky, if lit without `glow`
 uniform float anisotropy;          //= 0.2 [-0.95, 0.95] : if lit: whether light goes on forward or back, as in smoke
 uniform vec3 extinction;           //= {1, 1, 1} [0, 1000] : of the smoke: factor of the density, by colour
-uniform vec3 albedo;               //= {0.5, 0.5, 0.5} [0, 1] : of the smoke
-uniform vec3 absorption_color;     //= {0, 0, 0} [0, 1] : of the smoke
+uniform vec3 albedo;               //= {0.5, 0.5, 0.5} [0, 1] color : of the smoke
+uniform vec3 absorption_color;     //= {0, 0, 0} [0, 1] color : of the smoke
 uniform int view_steps;            //= 8 [0, 64] : samples of the smoke between the eye and each particle; 0: none dims it
 uniform float weight_distance;     //= 5 [0.01, 10000] m : of blend = weighted: about how far away the particles are
 #include "lib/particles.glsl"

@@ -25,12 +25,12 @@ static void print(const effect *e, const control *c, strbuf *out) {
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
     case EFFECT_CONTROL_MATERIAL:
-        scene_control_print(e, c, out);
+    case EFFECT_CONTROL_UNIFORM:
+        field_control_print(e, c, out);
         break;
     case EFFECT_CONTROL_EVENTS:
         events_control_print(e, out);
         break;
-    case EFFECT_CONTROL_UNIFORM:
     case EFFECT_CONTROL_OPTION:
     case EFFECT_CONTROL_SCALE:
         pass_control_print(e, c, out);
@@ -65,6 +65,13 @@ control *effect_add_control(effect *e, const control *own) {
     return c;
 }
 
+control *effect_add_member(effect *e, const char *group, const value_desc *desc, control own) {
+    own.face.name = arena_format(&e->memory, "%s.%s", group, desc->name);
+    own.face.group = group;
+    own.face.desc = desc;
+    return effect_add_control(e, &own);
+}
+
 size_t effect_control_count(const effect *e) {
     return e->control_count;
 }
@@ -83,10 +90,6 @@ const curve *effect_control_curve(const effect_control *c) {
 
 bool effect_control_is_over_age(const effect_control *c) {
     return c->kind == EFFECT_CONTROL_CURVE && ((const control *)c)->palette;
-}
-
-const field *effect_control_original(const effect_control *c) {
-    return ((const control *)c)->original;
 }
 
 void effect_print_control(const effect *e, const effect_control *c, strbuf *out) {
@@ -152,14 +155,6 @@ const effect_control *effect_find_control(effect *e, const char *name) {
 
 // ---- setting ----------------------------------------------------------------------------------
 
-field *control_node(effect *e, control *c, int components, const float value[4]) {
-    field **node = &c->nodes[!c->turn];
-    if (!*node) *node = field_constant(&e->memory, 4, (float[4]){0});
-    (*node)->components = components;
-    memcpy((*node)->value, value, sizeof(*node)->value);
-    return *node;
-}
-
 // Keeps what was set, on one line. The buffer grows with the longest text only.
 static void note_moved(effect *e, control *c, const char *text) {
     size_t size = strlen(text) + 1;
@@ -186,10 +181,10 @@ static bool set(effect *e, control *c, const char *text) {
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
     case EFFECT_CONTROL_MATERIAL:
-        return scene_control_set(e, c, text);
+    case EFFECT_CONTROL_UNIFORM:
+        return field_control_set(e, c, text);
     case EFFECT_CONTROL_EVENTS:
         return events_control_set(e, c, text);
-    case EFFECT_CONTROL_UNIFORM:
     case EFFECT_CONTROL_OPTION:
     case EFFECT_CONTROL_SCALE:
         return pass_control_set(e, c, text);
@@ -214,7 +209,7 @@ void effect_reset_control(effect *e, control *c) {
     forget_old(e, c);
     switch (c->face.kind) {
     case EFFECT_CONTROL_PARAM:
-        effect_set_value(e, c->face.index, e->params[c->face.index].initial);
+        effect_set_value(e, c->face.index, e->params[c->face.index]->desc.value);
         effect_forget_moved(e, c->face.index);
         break;
     case EFFECT_CONTROL_PALETTE:
@@ -224,15 +219,14 @@ void effect_reset_control(effect *e, control *c) {
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
     case EFFECT_CONTROL_MATERIAL:
-        scene_control_reset(e, c);
+    case EFFECT_CONTROL_UNIFORM:
+        *c->slot = c->original;
         break;
     case EFFECT_CONTROL_EVENTS:
         events_control_reset(e);
         break;
-    case EFFECT_CONTROL_UNIFORM:
-    case EFFECT_CONTROL_OPTION:
+    case EFFECT_CONTROL_OPTION: // structure
     case EFFECT_CONTROL_SCALE:
-        pass_control_reset(e, c);
         break;
     }
     c->face.moved = NULL;
@@ -304,7 +298,7 @@ bool effect_apply_settings(void *user, pass *p) {
     for (size_t i = 0; i < e->control_count; i++) {
         control *c = e->controls[i];
         if (rank(c->face.kind) != EFFECT_CONTROL_UNIFORM || e->passes[c->face.pass] != p) continue;
-        pass_control_declare(e, c);
+        if (c->slot && !c->face.moved) c->original = *c->slot; // the script has said all about it
         note_initial(e, c);
         if (!effect_apply_to(e, c)) return false;
     }

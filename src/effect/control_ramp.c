@@ -14,24 +14,40 @@ static const char *add(effect *e, control own, const char *name) {
     if (e->ramp_count == EFFECT_MAX_RAMPS) return "";
     e->ramp_count++;
     own.face.name = unique_name(e, name);
+    own.face.group = "";
     control *c = effect_add_control(e, &own);
     return effect_apply_to(e, c) ? c->face.name : NULL;
 }
 
+static const value_desc shown_palette = {
+    .type = VALUE_OTHER, .components = 4, .unit = "", .help = "a number to colour and alpha"};
+
+// Of a curve over time, or over a particle's life.
+static const value_desc *describe(effect *e, const curve *c, bool over_age) {
+    value_desc desc = {.type = VALUE_OTHER,
+                       .components = c->components,
+                       .unit = "",
+                       .help = over_age ? "a number over a particle's life (0..1)"
+                                        : "a value over time"};
+    return arena_copy(&e->memory, &desc, sizeof desc);
+}
+
 const char *effect_add_palette(effect *e, palette *p, const char *name) {
-    control own = {.face.kind = EFFECT_CONTROL_PALETTE,
+    control own = {.face = {.kind = EFFECT_CONTROL_PALETTE, .desc = &shown_palette},
                    .palette = p,
                    .palette_original = *palette_get_desc(p)};
     return add(e, own, name);
 }
 
 const char *effect_add_curve(effect *e, curve *c, const char *name) {
-    control own = {.face.kind = EFFECT_CONTROL_CURVE, .curve = c, .curve_original = *c};
+    control own = {.face = {.kind = EFFECT_CONTROL_CURVE, .desc = describe(e, c, false)},
+                   .curve = c,
+                   .curve_original = *c};
     return add(e, own, name);
 }
 
 const char *effect_add_age_curve(effect *e, curve *c, palette *shown, const char *name) {
-    control own = {.face.kind = EFFECT_CONTROL_CURVE,
+    control own = {.face = {.kind = EFFECT_CONTROL_CURVE, .desc = describe(e, c, true)},
                    .curve = c,
                    .curve_original = *c,
                    .palette = shown,

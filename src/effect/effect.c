@@ -301,10 +301,7 @@ scene_mesh *effect_add_mesh(effect *e, const char *file) {
     mesh->data = *data;
     for (size_t i = 0; i < mesh->data.file_count; i++) effect_add_file(e, mesh->data.files[i]);
     mesh->name = arena_string(memory, file);
-    mesh->position = field_constant(memory, 3, (float[4]){0});
-    mesh->rotation = field_constant(memory, 3, (float[4]){0});
-    mesh->scale = field_constant(memory, 1, (float[4]){1});
-    mesh->color = field_constant(memory, 3, (float[4]){1, 1, 1});
+    scene_set_defaults(scene_mesh_values, SCENE_ALL, mesh, memory);
     MEM_RESERVE(e->meshes, e->mesh_count + 1, e->mesh_capacity);
     e->meshes[e->mesh_count++] = mesh;
     return mesh;

@@ -9,24 +9,10 @@
 typedef struct effect effect;
 struct effect_happening; // events.h
 
-typedef enum effect_param_type {
-    EFFECT_FLOAT,
-    EFFECT_INT,
-    EFFECT_BOOL,
-    EFFECT_ENUM,
-    EFFECT_VEC3,
-    EFFECT_COLOR,
-} effect_param_type;
-
 typedef struct effect_param {
-    const char *name;
-    effect_param_type type;
-    float value[4];   // current; bool 0/1; enum: index
-    float initial[4]; // default
-    float min, max;   // of each component; -INFINITY, INFINITY when not given
-    const char *unit, *help, *group;
-    const char *const *words; // enumerations
-    size_t word_count;
+    value_desc desc;
+    float value[4]; // of now
+    const char *group;
     bool log_scale;
     bool structural; // the script read its value while it ran (p:get()): changing it is a reload
 } effect_param;
@@ -208,25 +194,27 @@ typedef enum effect_control_kind {
 typedef struct effect_control {
     effect_control_kind kind;
     const char *name;
-    size_t pass,
-        index; // of the pass, light or material, and of the thing itself (scene_value; uniform)
-    const char *initial; // as text, before any setting
-    const char *moved;   // the setting that holds, as text; NULL: the script's own value
+    const char *group;      // "camera", the name of a light, a pass ...; of a parameter as declared
+    const value_desc *desc; // of a palette, a curve and events only what it is for
+    size_t pass, index;     // of a pass, and of its uniform or option; of a parameter
+    const char *initial;    // as text, before any setting
+    const char *moved;      // the setting that holds, as text; NULL: the script's own value
 } effect_control;
 // Parameters, palettes and curves, the scene, then pass by pass; complete once the script has run.
 size_t effect_control_count(const effect *e);
 const effect_control *effect_get_control(const effect *e, size_t index);
 const effect_control *effect_find_control(effect *e, const char *name); // NULL: suggests
-// The palette or curve of a control of that kind; what holds a uniform or a value of the scene now
-// and what the script gave (NULL: the default).
+// The palette or curve of a control of that kind.
 const palette *effect_control_palette(const effect_control *c);
 const curve *effect_control_curve(const effect_control *c);
 bool effect_control_is_over_age(const effect_control *c); // a curve of effect_add_age_curve
+// The field that holds a uniform or a value of the scene now, and what the script gave (NULL: the
+// default). Both NULL for other kinds.
 const field *effect_control_field(const effect *e, const effect_control *c);
 const field *effect_control_original(const effect_control *c);
-const scene_value *effect_control_value(const effect_control *c); // of the scene, a light ...
-// The name that the values of a light or material begin with.
-const char *effect_control_owner(const effect *e, const effect_control *c);
+// What counts where there is no field: the default of a uniform, here or in the pass that it is
+// taken from.
+const float *effect_control_default(const effect *e, const effect_control *c);
 // The value of now, as effect_set takes it; of what the script moves how it does.
 void effect_print_control(const effect *e, const effect_control *c, strbuf *out);
 

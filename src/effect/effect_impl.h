@@ -50,9 +50,9 @@ typedef struct control {
     effect_control face; // first: effect_get_control gives it out
     char *text;          // of face.moved
     size_t text_capacity;
-    // Of a uniform and a value of the scene: what the script gave (NULL: the default), and two
-    // constants that settings take in turn, so that one that is refused changes nothing.
-    const field *original;
+    // Of a uniform and a value of the scene: where its field is held, what the script gave (NULL:
+    // the default), and two constants that settings take in turn.
+    const field **slot, *original;
     field *nodes[2];
     int turn;
     // Beside each, its state before any setting. A curve over age has both: fields read the
@@ -71,21 +71,21 @@ bool effect_apply_to(effect *e, control *c);
 bool effect_set_control(effect *e, control *c, const char *text); // structure too
 void effect_reset_control(effect *e, control *c);                 // but for structure
 
-// By kind: param.c, control_pass.c, control_scene.c (lights too), control_ramp.c (palettes,
-// curves). `set` changes nothing when it fails; `print` says the value of now as `set` takes it, or
-// how the script moves it.
+// Names a control "GROUP.NAME" by its description, and adds it.
+control *effect_add_member(effect *e, const char *group, const value_desc *desc, control own);
+
+// By kind: param.c, control_field.c (all that has a slot), control_pass.c (what else passes have),
+// control_scene.c, control_ramp.c (palettes, curves). `set` changes nothing when it fails; `print`
+// says the value of now as `set` takes it, or how the script moves it.
 bool param_set(effect *e, control *c, const char *text);
 void param_print(const effect *e, const control *c, strbuf *out);
+bool field_control_set(effect *e, control *c, const char *text);
+void field_control_print(const effect *e, const control *c, strbuf *out);
 void pass_control_add_all(effect *e, size_t pass);
-void pass_control_declare(effect *e, control *c); // the script has said all about its pass
 bool pass_control_set(effect *e, control *c, const char *text);
-void pass_control_reset(effect *e, control *c);
 void pass_control_print(const effect *e, const control *c, strbuf *out);
-bool scene_control_add_all(effect *e);                         // the lights' too
+bool scene_control_add_all(effect *e);                         // lights and materials too
 bool scene_control_unknown(const effect *e, const char *name); // true with a message of its own
-bool scene_control_set(effect *e, control *c, const char *text);
-void scene_control_reset(effect *e, control *c);
-void scene_control_print(const effect *e, const control *c, strbuf *out);
 bool ramp_set(effect *e, control *c, const char *text);
 void ramp_reset(effect *e, control *c);
 void ramp_print(const effect *e, const control *c, strbuf *out);
@@ -94,21 +94,6 @@ bool events_add_control(effect *e);      // of one that hears any; systems.c
 bool events_control_set(effect *e, control *c, const char *text);
 void events_control_reset(effect *e);
 void events_control_print(const effect *e, strbuf *out);
-
-// The constant that a setting becomes; `c->turn` says which of the two is in force.
-field *control_node(effect *e, control *c, int components, const float value[4]);
-
-// ---- values as text ---------------------------------------------------------------------------
-
-// "1.5", "1,2,3" or "1 2 3". Returns how many numbers, 0 when it is anything else.
-int text_numbers(const char *text, float out[4]);
-bool text_bool(const char *text, float *out);
-int text_word(const char *const *words, size_t count, const char *text); // -1: not among them
-// Messages; they return false.
-bool text_wrong(const char *name, const char *text, const char *accepted);
-bool text_wrong_word(const char *name, const char *text, const char *const *words, size_t count);
-void text_add_numbers(strbuf *out, const float *value, int count);
-void text_add_color(strbuf *out, const float value[3]); // "#rrggbb" where that is exact
 
 struct effect {
     arena memory;
@@ -123,7 +108,7 @@ struct effect {
     double fps;
     uint32_t frames, first, seed;
 
-    effect_param *params;
+    effect_param **params;
     float (*values)[4]; // of the params, as field_context wants them
     size_t param_count, param_capacity, value_capacity;
     pass **passes;

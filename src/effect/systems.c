@@ -129,7 +129,7 @@ bool effect_set_events(effect *e, const effect_event *list, size_t count) {
 bool effect_move_param(effect *e, size_t param, const float value[4]) {
     effect_systems *s = e->systems;
     moved_param now = {.param = param};
-    memcpy(now.before, e->params[param].value, sizeof now.before);
+    memcpy(now.before, e->params[param]->value, sizeof now.before);
     if (!effect_set_value(e, param, value)) return false;
     for (size_t i = 0; s && i < s->moved_count; i++)
         if (s->moved[i].param == param) return true;
@@ -357,8 +357,13 @@ static bool is_heard(const effect_systems *s, const effect_event *event) {
 
 bool events_add_control(effect *e) {
     static const char name[] = "effect.events";
+    static const value_desc desc = {
+        .type = VALUE_OTHER,
+        .unit = "",
+        .help = "what happens to it: seconds, click or key and its name, where"};
     if (!e->systems || effect_control_of(e, name)) return true;
-    control own = {.face = {.kind = EFFECT_CONTROL_EVENTS, .name = name}};
+    control own = {
+        .face = {.kind = EFFECT_CONTROL_EVENTS, .name = name, .group = "effect", .desc = &desc}};
     for (size_t i = 0; i < e->systems->own_count; i++)
         if (!is_heard(e->systems, &e->systems->own[i])) return err_prefix("%s: ", name);
     return effect_apply_to(e, effect_add_control(e, &own));

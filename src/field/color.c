@@ -3,13 +3,10 @@
 // the piecewise Gaussian fits of Wyman, Sloan and Shirley ("Simple analytic approximations to the
 // CIE XYZ color matching functions", JCGT 2013).
 #include "field/color.h"
-#include "base/error.h"
 #include "base/maths.h"
 #include "field/palette.h"
 #include <math.h>
 #include <pthread.h>
-#include <stdint.h>
-#include <string.h>
 
 void color_to_oklab(const float c[3], float lab[3]) {
     float l = cbrtf(0.4122214708f * c[0] + 0.5363325363f * c[1] + 0.0514459929f * c[2]);
@@ -81,50 +78,4 @@ void palette_blackbody(float kelvin, float out[3]) {
     for (int i = 0; i < 3; i++) rgb[i] = fmax(rgb[i], 0); // deep reds leave the gamut
     double luminance = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
     for (int i = 0; i < 3; i++) out[i] = (float)(rgb[i] / luminance);
-}
-
-static int digit(char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    return -1;
-}
-
-static float linear_from_srgb(float v) {
-    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
-}
-
-bool palette_parse_color(const char *text, float out[4]) {
-    size_t length = strlen(text);
-    bool right = text[0] == '#' && (length == 4 || length == 7 || length == 9);
-    for (size_t i = 1; right && i < length; i++) right = digit(text[i]) >= 0;
-    if (!right)
-        return err_set("'%.32s' is not a colour; accepted: \"#rgb\", \"#rrggbb\", \"#rrggbbaa\"",
-                       text);
-    float rgba[4] = {0, 0, 0, 1};
-    int per = length == 4 ? 1 : 2;
-    for (size_t i = 0; i < (length - 1) / (size_t)per; i++) {
-        const char *at = text + 1 + i * (size_t)per;
-        int value = per == 1 ? digit(at[0]) * 17 : digit(at[0]) * 16 + digit(at[1]);
-        rgba[i] = (float)value / 255.0f;
-    }
-    for (int i = 0; i < 3; i++) out[i] = linear_from_srgb(rgba[i]);
-    out[3] = rgba[3];
-    return true;
-}
-
-bool palette_color_hex(const float linear[3], char out[8]) {
-    static const char digits[] = "0123456789abcdef";
-    out[0] = '#';
-    out[7] = '\0';
-    for (int i = 0; i < 3; i++) {
-        float v = linear[i];
-        if (!(v >= 0 && v <= 1)) return false;
-        float encoded = v <= 0.0031308f ? 12.92f * v : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
-        long byte = lrintf(encoded * 255);
-        if (linear_from_srgb((float)byte / 255.0f) != v) return false;
-        out[1 + 2 * i] = digits[byte >> 4];
-        out[2 + 2 * i] = digits[byte & 15];
-    }
-    return true;
 }

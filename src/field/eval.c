@@ -30,11 +30,11 @@ size_t kind_arg_count(const field *node) {
 
 int kind_arg_width(const field *node, size_t arg) {
     if (kind_of(node) == KIND_GLSL) return node->args[arg]->components;
-    if (node->kind->args[arg].name && node->kind->args[arg].components > 0)
-        return node->kind->args[arg].components;
+    if (node->kind->args[arg].desc.name && node->kind->args[arg].desc.components > 0)
+        return node->kind->args[arg].desc.components;
     int width = 1;
     for (size_t i = 0; i < FIELD_MAX_ARGS && node->args[i]; i++) {
-        bool fixed = node->kind->args[i].name && node->kind->args[i].components > 0;
+        bool fixed = node->kind->args[i].desc.name && node->kind->args[i].desc.components > 0;
         if (!fixed && node->args[i]->components > width) width = node->args[i]->components;
     }
     return width;

@@ -146,36 +146,32 @@ field *field_user(arena *memory, const field_glsl *glsl, const field *const *arg
 
 // ---- any kind of the table --------------------------------------------------------------------
 
-static bool check_range(const field_kind *kind, const field_arg *spec, const field *arg) {
-    bool limited = spec->min != 0 || spec->max != 0;
-    for (int c = 0; c < arg->components; c++) {
-        float v = arg->value[c];
-        if (!isfinite(v)) return err_set("%s: '%s' is not a finite number", kind->name, spec->name);
-        if (limited && (v < spec->min || v > spec->max))
-            return err_set("%s: '%s' is %g; it must lie in %g..%g", kind->name, spec->name,
-                           (double)v, (double)spec->min, (double)spec->max);
-    }
-    return true;
-}
-
 static bool check_arg(const field_kind *kind, const field_arg *spec, const field *arg) {
-    if (spec->components > 0 && arg->components != 1 && arg->components != spec->components)
-        return err_set("%s: '%s' has %d components; %d %s accepted", kind->name, spec->name,
-                       arg->components, spec->components,
-                       spec->components == 1 ? "is" : "or a single one are");
+    if (spec->desc.components > 0 && arg->components != 1 &&
+        arg->components != spec->desc.components)
+        return err_set("%s: '%s' has %d components; %d %s accepted", kind->name, spec->desc.name,
+                       arg->components, spec->desc.components,
+                       spec->desc.components == 1 ? "is" : "or a single one are");
     if (spec->uniform && !arg->uniform)
         return err_set("%s: '%s' varies in space; a number, a parameter, a curve or a function of "
                        "the time is accepted",
-                       kind->name, spec->name);
-    return kind_of(arg) != KIND_CONSTANT || check_range(kind, spec, arg);
+                       kind->name, spec->desc.name);
+    int wrong = kind_of(arg) == KIND_CONSTANT
+                    ? value_find_wrong(&spec->desc, arg->value, arg->components)
+                    : -1;
+    return wrong < 0 ||
+           value_refuse(&spec->desc, arg->value[wrong], "%s: '%s'", kind->name, spec->desc.name);
 }
 
 static bool make_arg(arena *memory, field *node, size_t i, const field *given) {
     const field_arg *spec = &node->kind->args[i];
-    if (!given && spec->required)
-        return err_set("%s: '%s' is missing (%s)", node->kind->name, spec->name, spec->help);
+    if (!given && spec->desc.required)
+        return err_set("%s: '%s' is missing (%s)", node->kind->name, spec->desc.name,
+                       spec->desc.help);
     const field *arg = given;
-    if (!arg) arg = field_constant(memory, spec->components ? spec->components : 1, spec->value);
+    if (!arg)
+        arg = field_constant(memory, spec->desc.components ? spec->desc.components : 1,
+                             spec->desc.value);
     if (!check_arg(node->kind, spec, arg)) return false;
     if (spec->rate) {
         const field *factors[] = {arg, field_time(memory)};
@@ -189,15 +185,15 @@ static bool make_arg(arena *memory, field *node, size_t i, const field *given) {
 static bool find_width(const field *node, int *width) {
     *width = 1;
     const char *widest = "";
-    for (size_t i = 0; node->kind->args[i].name; i++) {
+    for (size_t i = 0; node->kind->args[i].desc.name; i++) {
         const field_arg *spec = &node->kind->args[i];
         int components = node->args[i]->components;
-        if (spec->components != 0 || components == 1) continue;
+        if (spec->desc.components != 0 || components == 1) continue;
         if (*width != 1 && *width != components)
             return err_set("%s: '%s' has %d components but '%s' has %d", node->kind->name, widest,
-                           *width, spec->name, components);
+                           *width, spec->desc.name, components);
         *width = components;
-        widest = spec->name;
+        widest = spec->desc.name;
     }
     return true;
 }
@@ -231,7 +227,7 @@ field *field_make(arena *memory, const char *kind, const field *const *args,
         return NULL;
     }
     field *node = new_node(memory, index, row->components);
-    for (size_t i = 0; i < FIELD_MAX_ARGS && row->args[i].name; i++)
+    for (size_t i = 0; i < FIELD_MAX_ARGS && row->args[i].desc.name; i++)
         if (!make_arg(memory, node, i, args ? args[i] : NULL)) return NULL;
     int width;
     if (!find_width(node, &width) || !set_options(node, options)) return NULL;

@@ -9,7 +9,7 @@
 #pragma once
 #include "base/arena.h"
 #include "base/maths.h"
-#include "base/str.h"
+#include "base/value.h"
 #include "field/curve.h"
 #include "field/grid.h"
 #include "field/palette.h"
@@ -29,15 +29,9 @@ typedef struct field field;
 typedef struct field_kind field_kind;
 
 typedef struct field_arg {
-    const char *name;
-    int components; // 1, 3, 4; 0: any
-    bool required;
-    bool uniform;     // must not vary in space
-    bool rate;        // given per second: the node's argument is it times the time
-    float value[4];   // default
-    float min, max;   // of each component, checked for constants; both 0: any finite number
-    const char *unit; // "" when none
-    const char *help;
+    value_desc desc; // whose range is checked for constants
+    bool uniform;    // must not vary in space
+    bool rate;       // given per second: the node's argument is it times the time
 } field_arg;
 
 typedef struct field_option {

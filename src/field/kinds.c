@@ -2,11 +2,19 @@
 // the enumeration in kinds.h.
 #include "field/kinds.h"
 
+// An argument; one that must not vary in space; one of these that is given per second.
+#define ARG(...)                                                                                   \
+    {                                                                                              \
+        .desc = { __VA_ARGS__ }                                                                    \
+    }
+#define STILL(...)                                                                                 \
+    { .desc = {__VA_ARGS__}, .uniform = true }
+#define RATE(...)                                                                                  \
+    { .desc = {__VA_ARGS__}, .uniform = true, .rate = true }
 #define ANY .components = 0, .required = true, .unit = ""
 #define SAME .components = 0, .unit = ""
 #define SCALAR(UNIT) .components = 1, .unit = UNIT
 #define VECTOR(UNIT) .components = 3, .unit = UNIT
-#define SPACELESS .uniform = true
 
 #define RANGE(NAME) .ranges = ranges_##NAME, .range_function = "range_" #NAME
 
@@ -37,68 +45,33 @@
     .ranges = ranges_unknown, .range_function = "range_nowhere" #COMPONENTS
 
 #define UNARY                                                                                      \
-    {                                                                                              \
-        { "value", ANY, .help = "what it works on" }                                               \
-    }
+    { ARG("value", ANY, .help = "what it works on") }
 #define BINARY                                                                                     \
-    {                                                                                              \
-        {"a", ANY, .help = "first"}, {                                                             \
-            "b", ANY, .help = "second"                                                             \
-        }                                                                                          \
-    }
+    { ARG("a", ANY, .help = "first"), ARG("b", ANY, .help = "second") }
 
+// clang-format off
 #define OCTAVE_ARGS(OCTAVES)                                                                       \
-    {"frequency",                                                                                  \
-     SCALAR("1/m"),                                                                                \
-     SPACELESS,                                                                                    \
-     .value = {1},                                                                                 \
-     .min = 1e-6f,                                                                                 \
-     .max = 1e6f,                                                                                  \
-     .help = "lattice cells a metre, of the first octave"},                                        \
-        {"octaves",                                                                                \
-         SCALAR(""),                                                                               \
-         SPACELESS,                                                                                \
-         .value = {OCTAVES},                                                                       \
-         .min = 1,                                                                                 \
-         .max = 12,                                                                                \
-         .help = "layers of rising frequency, exactly so many"},                                   \
-        {"persistence",                                                                            \
-         SCALAR(""),                                                                               \
-         SPACELESS,                                                                                \
-         .value = {0.5f},                                                                          \
-         .min = 0,                                                                                 \
-         .max = 1,                                                                                 \
-         .help = "weight of an octave relative to the one before (gain)"},                         \
-        {"lacunarity",                                                                             \
-         SCALAR(""),                                                                               \
-         SPACELESS,                                                                                \
-         .value = {2},                                                                             \
-         .min = 1,                                                                                 \
-         .max = 8,                                                                                 \
-         .help = "frequency of an octave relative to the one before"},                             \
-    {                                                                                              \
-        "seed", SCALAR(""), SPACELESS, .value = {0}, .min = 0, .max = 16777215,                    \
-                                       .help = "whole number; another one gives another pattern"   \
-    }
+    STILL("frequency", SCALAR("1/m"), .value = {1}, .min = 1e-6f, .max = 1e6f,                     \
+          .help = "lattice cells a metre, of the first octave"),                                   \
+    STILL("octaves", SCALAR(""), .value = {OCTAVES}, .min = 1, .max = 12,                          \
+          .help = "layers of rising frequency, exactly so many"),                                  \
+    STILL("persistence", SCALAR(""), .value = {0.5f}, .min = 0, .max = 1,                          \
+          .help = "weight of an octave relative to the one before (gain)"),                        \
+    STILL("lacunarity", SCALAR(""), .value = {2}, .min = 1, .max = 8,                              \
+          .help = "frequency of an octave relative to the one before"),                            \
+    STILL("seed", SCALAR(""), .min = 0, .max = 16777215,                                           \
+          .help = "whole number; another one gives another pattern")
 #define MOTION_ARGS                                                                                \
-    {"drift", VECTOR("m/s"), SPACELESS, .rate = true,                                              \
-     .help = "the noise is taken at p + drift * time"},                                            \
-        {"speed", SCALAR("1/s"), SPACELESS, .rate = true,                                          \
-         .help = "rate of the fourth coordinate, in cells: the pattern boils; giving it "          \
-                 "chooses dimensions = 4"},                                                        \
-    {                                                                                              \
-        "w", SCALAR("cells"), SPACELESS,                                                           \
-            .help = "added to the fourth coordinate; giving it chooses dimensions = 4"             \
-    }
-#define AMPLITUDE_ARG                                                                              \
-    { "amplitude", SCALAR(""), .value = {1}, .help = "factor of the result" }
+    RATE("drift", VECTOR("m/s"), .help = "the noise is taken at p + drift * time"),                \
+    RATE("speed", SCALAR("1/s"), .help = "rate of the fourth coordinate, in cells: the pattern "   \
+                                         "boils; giving it chooses dimensions = 4"),               \
+    STILL("w", SCALAR("cells"),                                                                    \
+          .help = "added to the fourth coordinate; giving it chooses dimensions = 4")
+#define AMPLITUDE_ARG ARG("amplitude", SCALAR(""), .value = {1}, .help = "factor of the result")
 #define PERIOD_ARG                                                                                 \
-    {                                                                                              \
-        "period", SCALAR("cells"), SPACELESS,                                                      \
-            .min = 0, .max = 65536,                                                                \
-            .help =                                                                                \
-                "repeats after so many cells of the first octave, in every dimension; 0: never"    \
-    }
+    STILL("period", SCALAR("cells"), .min = 0, .max = 65536,                                       \
+          .help = "repeats after so many cells of the first octave, in every dimension; 0: never")
+// clang-format on
 #define FRACTAL_OPTION                                                                             \
     {                                                                                              \
         "fractal", {"fbm", "ridged", "billow"},                                                    \
@@ -127,7 +100,7 @@ const field_kind field_kinds[] = {
         .summary = "a channel of a sequence, bake or solver; 0 outside its box"},
     [KIND_PALETTE] = {"palette", .group = "source", .components = 4, .cost = 20,
         .summary = "colour and alpha of a palette at a number",
-        .args = {{"at", SCALAR(""), .required = true, .help = "position, in the palette's range"}},
+        .args = {ARG("at", SCALAR(""), .required = true, .help = "position, in the palette's range")},
         .eval = eval_palette, .ranges = ranges_palette},
     [KIND_GLSL] = {"glsl", .group = "source", .spatial = true, .cost = 50, .ranges = ranges_unknown,
         .summary = "a user's GLSL function of the point"},
@@ -137,28 +110,28 @@ const field_kind field_kinds[] = {
         .summary = "some components of a vector or colour, in any order", .eval = eval_swizzle, .ranges = ranges_swizzle},
     [KIND_WARP] = {"warp", .group = "operator",
         .summary = "takes a field at p + amount * by(p)",
-        .args = {{"value", ANY, .help = "the field to bend"},
-                 {"by", VECTOR(""), .required = true, .help = "offset"},
-                 {"amount", SCALAR(""), .value = {1}, .help = "factor of the offset"}},
+        .args = {ARG("value", ANY, .help = "the field to bend"),
+                 ARG("by", VECTOR(""), .required = true, .help = "offset"),
+                 ARG("amount", SCALAR(""), .value = {1}, .help = "factor of the offset")},
         .bounds = bounds_warp},
     [KIND_TRANSFORM] = {"transform", .group = "operator",
         .summary = "scales, then rotates (about X, then Y, then Z), then moves a field",
-        .args = {{"value", ANY, .help = "the field to place"},
-                 {"translate", VECTOR("m"), SPACELESS, .help = "where its origin goes"},
-                 {"rotate", VECTOR("degrees"), SPACELESS, .help = "Euler angles"},
-                 {"scale", VECTOR(""), SPACELESS, .value = {1, 1, 1}, .min = 1e-6f, .max = 1e6f,
-                  .help = "factor of its size"}},
+        .args = {ARG("value", ANY, .help = "the field to place"),
+                 STILL("translate", VECTOR("m"), .help = "where its origin goes"),
+                 STILL("rotate", VECTOR("degrees"), .help = "Euler angles"),
+                 STILL("scale", VECTOR(""), .value = {1, 1, 1}, .min = 1e-6f, .max = 1e6f,
+                  .help = "factor of its size")},
         .bounds = bounds_transform},
     [KIND_ADVECT] = {"advect", .group = "operator",
         .summary = "noise that a flow carries: blends patterns that are made anew before it tears "
                    "them apart, at full contrast (Max and Becker 1995, Neyret 2003). Shape its "
                    "result, not its value; it may leave the value's range a little",
-        .args = {{"value", ANY, .help = "what is carried; its noises get other seeds again and again"},
-                 {"velocity", VECTOR("m/s"), .required = true, .help = "of the flow"},
-                 {"period", SCALAR("s"), SPACELESS, .value = {1}, .min = 1e-3f, .max = 1e6f,
+        .args = {ARG("value", ANY, .help = "what is carried; its noises get other seeds again and again"),
+                 ARG("velocity", VECTOR("m/s"), .required = true, .help = "of the flow"),
+                 STILL("period", SCALAR("s"), .value = {1}, .min = 1e-3f, .max = 1e6f,
                   .help = "how long a pattern is carried: longer follows the flow longer, shorter "
-                          "is torn less"},
-                 {"mean", SAME, .value = {0.5f}, .help = "what the value varies around"}},
+                          "is torn less"),
+                 ARG("mean", SAME, .value = {0.5f}, .help = "what the value varies around")},
         .options = {{"phases", {"2", "3"}, "patterns at a time; 3 is dearer and steadier"},
                     {"path", {"straight", "curved"},
                      "along which the past is sought; curved asks for the velocity twice"}}},
@@ -179,33 +152,33 @@ const field_kind field_kinds[] = {
         .bounds = bounds_min},
     {"max", BUILTIN("max"), .summary = "the greater", .args = BINARY, .eval = eval_max, RANGE(max)},
     {"mix", BUILTIN("mix"), .summary = "a + (b - a) * t",
-        .args = {{"a", ANY, .help = "result at t = 0"}, {"b", ANY, .help = "result at t = 1"},
-                 {"t", SAME, .value = {0.5f}, .help = "share of b"}},
+        .args = {ARG("a", ANY, .help = "result at t = 0"), ARG("b", ANY, .help = "result at t = 1"),
+                 ARG("t", SAME, .value = {0.5f}, .help = "share of b")},
         .eval = eval_mix, RANGE(mix), .bounds = bounds_mix},
     {"clamp", BUILTIN("clamp"), .summary = "limits a value to a range",
-        .args = {{"value", ANY, .help = "what it limits"},
-                 {"low", SAME, .help = "least result"},
-                 {"high", SAME, .value = {1}, .help = "greatest result"}},
+        .args = {ARG("value", ANY, .help = "what it limits"),
+                 ARG("low", SAME, .help = "least result"),
+                 ARG("high", SAME, .value = {1}, .help = "greatest result")},
         .eval = eval_clamp, RANGE(clamp)},
     {"remap", LIBRARY("operator_remap"), .summary = "one range to another, linearly, unlimited",
-        .args = {{"value", ANY, .help = "what it maps"},
-                 {"in_min", SAME, .help = "becomes out_min"},
-                 {"in_max", SAME, .value = {1}, .help = "becomes out_max"},
-                 {"out_min", SAME, .help = "result at in_min"},
-                 {"out_max", SAME, .value = {1}, .help = "result at in_max"}},
+        .args = {ARG("value", ANY, .help = "what it maps"),
+                 ARG("in_min", SAME, .help = "becomes out_min"),
+                 ARG("in_max", SAME, .value = {1}, .help = "becomes out_max"),
+                 ARG("out_min", SAME, .help = "result at in_min"),
+                 ARG("out_max", SAME, .value = {1}, .help = "result at in_max")},
         .eval = eval_remap, RANGE(remap)},
     {"smoothstep", LIBRARY("operator_smoothstep"),
         .summary = "0 up to low, 1 from high, t * t * (3 - 2 * t) between. The method takes the "
                    "arguments in this order, f:smoothstep(low, high); the function in GLSL's, "
                    "smoothstep(low, high, value)",
-        .args = {{"value", ANY, .help = "what it maps"},
-                 {"low", SAME, .help = "end of 0"},
-                 {"high", SAME, .value = {1}, .help = "start of 1"}},
+        .args = {ARG("value", ANY, .help = "what it maps"),
+                 ARG("low", SAME, .help = "end of 0"),
+                 ARG("high", SAME, .value = {1}, .help = "start of 1")},
         .eval = eval_smoothstep, RANGE(smoothstep)},
     {"step", LIBRARY("operator_step"), .summary = "1 from the edge on, 0 below. The method takes the arguments in this order, "
                    "f:step(edge); the function in GLSL's, step(edge, value)",
-        .args = {{"value", ANY, .help = "what it tests"},
-                 {"edge", SAME, .value = {0.5f}, .help = "least value that gives 1"}},
+        .args = {ARG("value", ANY, .help = "what it tests"),
+                 ARG("edge", SAME, .value = {0.5f}, .help = "least value that gives 1")},
         .eval = eval_step, RANGE(step)},
     {"pow", LIBRARY("operator_pow"), .summary = "a ^ b; 0 where a is negative", .args = BINARY,
         .eval = eval_pow, RANGE(pow)},
@@ -226,40 +199,40 @@ const field_kind field_kinds[] = {
     {"atan", LIBRARY("operator_atan"), .components = 1,
         .summary = "angle from the axis of x to the point (x, y), in radians, -pi to pi; 0 where both are 0. "
                    "In GLSL's order: atan(y, x)",
-        .args = {{"y", SCALAR(""), .required = true, .help = "of the point"}, {"x", SCALAR(""), .value = {1}, .help = "of the point"}},
+        .args = {ARG("y", SCALAR(""), .required = true, .help = "of the point"), ARG("x", SCALAR(""), .value = {1}, .help = "of the point")},
         .eval = eval_atan, RANGE(atan)},
     {"vec", BUILTIN("vec3"), .components = 3, .summary = "a vector of three numbers",
-        .args = {{"x", SCALAR(""), .help = "first"}, {"y", SCALAR(""), .help = "second"},
-                 {"z", SCALAR(""), .help = "third"}},
+        .args = {ARG("x", SCALAR(""), .help = "first"), ARG("y", SCALAR(""), .help = "second"),
+                 ARG("z", SCALAR(""), .help = "third")},
         .eval = eval_vec, RANGE(vec)},
 
     // ---- shapes
     {"sphere", SHAPE("shape_sphere"), .summary = "a ball; 0 outside, 1 from `falloff` below the surface",
-        .args = {{"position", VECTOR("m"), .help = "centre"},
-                 {"radius", SCALAR("m"), .value = {1}, .min = 0, .max = 1e6f, .help = "to the surface"},
-                 {"falloff", SCALAR("m"), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge"}},
+        .args = {ARG("position", VECTOR("m"), .help = "centre"),
+                 ARG("radius", SCALAR("m"), .value = {1}, .min = 0, .max = 1e6f, .help = "to the surface"),
+                 ARG("falloff", SCALAR("m"), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge")},
         .eval = eval_sphere, RANGE(sphere), .bounds = bounds_sphere},
     {"box", SHAPE("shape_box"), .summary = "a box along the axes; 0 outside, 1 from `falloff` below the surface",
-        .args = {{"position", VECTOR("m"), .help = "centre"},
-                 {"size", VECTOR("m"), .value = {1, 1, 1}, .min = 0, .max = 1e6f, .help = "edge lengths"},
-                 {"falloff", SCALAR("m"), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge"}},
+        .args = {ARG("position", VECTOR("m"), .help = "centre"),
+                 ARG("size", VECTOR("m"), .value = {1, 1, 1}, .min = 0, .max = 1e6f, .help = "edge lengths"),
+                 ARG("falloff", SCALAR("m"), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge")},
         .eval = eval_box, RANGE(box), .bounds = bounds_box},
     {"capsule", SHAPE("shape_capsule"), .summary = "a line with round ends; 0 outside, 1 from `falloff` below the surface",
-        .args = {{"from", VECTOR("m"), .help = "centre of one end"},
-                 {"to", VECTOR("m"), .value = {0, 0, 1}, .help = "centre of the other end"},
-                 {"radius", SCALAR("m"), .value = {0.5f}, .min = 0, .max = 1e6f, .help = "around the line"},
-                 {"falloff", SCALAR("m"), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge"}},
+        .args = {ARG("from", VECTOR("m"), .help = "centre of one end"),
+                 ARG("to", VECTOR("m"), .value = {0, 0, 1}, .help = "centre of the other end"),
+                 ARG("radius", SCALAR("m"), .value = {0.5f}, .min = 0, .max = 1e6f, .help = "around the line"),
+                 ARG("falloff", SCALAR("m"), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge")},
         .eval = eval_capsule, RANGE(capsule), .bounds = bounds_capsule},
     {"torus", SHAPE("shape_torus"), .summary = "a ring about Z; 0 outside, 1 from `falloff` below the surface",
-        .args = {{"position", VECTOR("m"), .help = "centre"},
-                 {"radius", SCALAR("m"), .value = {1}, .min = 0, .max = 1e6f, .help = "from the centre to the middle of the tube"},
-                 {"thickness", SCALAR("m"), .value = {0.25f}, .min = 0, .max = 1e6f, .help = "radius of the tube"},
-                 {"falloff", SCALAR("m"), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge"}},
+        .args = {ARG("position", VECTOR("m"), .help = "centre"),
+                 ARG("radius", SCALAR("m"), .value = {1}, .min = 0, .max = 1e6f, .help = "from the centre to the middle of the tube"),
+                 ARG("thickness", SCALAR("m"), .value = {0.25f}, .min = 0, .max = 1e6f, .help = "radius of the tube"),
+                 ARG("falloff", SCALAR("m"), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge")},
         .eval = eval_torus, RANGE(torus), .bounds = bounds_torus},
     {"disc", SHAPE("shape_disc"), .summary = "a disc in X and Y, the same at every Z: for slices; 0 outside, 1 from `falloff` below the edge",
-        .args = {{"x", SCALAR(""), .value = {0.5f}, .help = "centre"}, {"y", SCALAR(""), .value = {0.5f}, .help = "centre"},
-                 {"radius", SCALAR(""), .value = {0.1f}, .min = 0, .max = 1e6f, .help = "to the edge"},
-                 {"falloff", SCALAR(""), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge"}},
+        .args = {ARG("x", SCALAR(""), .value = {0.5f}, .help = "centre"), ARG("y", SCALAR(""), .value = {0.5f}, .help = "centre"),
+                 ARG("radius", SCALAR(""), .value = {0.1f}, .min = 0, .max = 1e6f, .help = "to the edge"),
+                 ARG("falloff", SCALAR(""), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge")},
         .eval = eval_disc, RANGE(disc), .bounds = bounds_disc},
 
     // ---- noise; arguments and options in the order of the GLSL functions
@@ -271,8 +244,8 @@ const field_kind field_kinds[] = {
         .summary = "gradient noise on simplices, 0..1, mean 0.5; a period becomes a multiple of 3 (Perlin 2001, Gustavson 2005)"},
     {"worley", NOISE("noise_worley"), .components = 1, .cost = 500,
         .args = {OCTAVE_ARGS(1), AMPLITUDE_ARG, MOTION_ARGS, PERIOD_ARG,
-                 {"power", SCALAR(""), SPACELESS, .value = {1}, .min = 0.01f, .max = 16,
-                  .help = "exponent of the distance: below 1 softer, above 1 sharper"}},
+                 STILL("power", SCALAR(""), .value = {1}, .min = 0.01f, .max = 16,
+                  .help = "exponent of the distance: below 1 softer, above 1 sharper")},
         .options = {FRACTAL_OPTION, DIMENSIONS_OPTION,
                     {"distance", {"f1", "f2", "f2_f1"}, "to the nearest feature point, the second, or their difference"},
                     {"mode", {"default", "paper"}, "paper: the fract hash of Raseta et al., section 3.7.2"}},
@@ -280,9 +253,9 @@ const field_kind field_kinds[] = {
         .summary = "cells, 0..1, high near feature points: 1 - distance^power, for f2_f1 distance^power (Worley 1996)"},
     {"curl", NOISE("noise_curl"), .components = 3, .cost = 300,
         .args = {OCTAVE_ARGS(1),
-                 {"amount", SCALAR(""), .value = {1}, .help = "factor of the result"}, MOTION_ARGS, PERIOD_ARG,
-                 {"step", SCALAR("m"), SPACELESS, .value = {0.01f}, .min = 1e-6f, .max = 1e3f,
-                  .help = "half distance of the paper's differences"}},
+                 ARG("amount", SCALAR(""), .value = {1}, .help = "factor of the result"), MOTION_ARGS, PERIOD_ARG,
+                 STILL("step", SCALAR("m"), .value = {0.01f}, .min = 1e-6f, .max = 1e3f,
+                  .help = "half distance of the paper's differences")},
         .options = {{"mode", {"default", "paper"},
                      "default: exact curl, free of divergence; paper: its differences of one scalar, section 3.7.3"},
                     DIMENSIONS_OPTION},

@@ -53,9 +53,5 @@ bool palette_is_animated(const palette *p);
 void palette_bake(const palette *p, double time, uint16_t out[PALETTE_SIZE * 4]);
 void palette_eval(const palette *p, double time, float at, float out[4]); // as the texture gives it
 
-// "#rgb", "#rrggbb", "#rrggbbaa" in sRGB to linear Rec.709. False with a message.
-bool palette_parse_color(const char *text, float out[4]);
-// The "#rrggbb" that palette_parse_color makes exactly this colour of; false when there is none.
-bool palette_color_hex(const float linear[3], char out[8]);
 // Linear Rec.709 colour of a black body of luminance 1, 500..20000 K (clamped).
 void palette_blackbody(float kelvin, float out[3]);

@@ -2,7 +2,7 @@
 // Items stand between semicolons, what belongs to an item between blanks, components of a value
 // between commas.
 #include "base/error.h"
-#include "base/str.h"
+#include "base/value.h"
 #include "field/curve.h"
 #include "field/palette.h"
 #include <math.h>
@@ -53,7 +53,7 @@ static bool read_color(const char **at, float out[4]) {
     memcpy(hex, *at, length);
     hex[length] = '\0';
     *at += length;
-    return palette_parse_color(hex, out);
+    return value_parse_color(hex, out);
 }
 
 static bool read_stop(const char **at, palette_stop *out) {
@@ -84,7 +84,7 @@ void palette_print(const palette_stop *stops, size_t count, strbuf *out) {
         if (i > 0) strbuf_add(out, "; ");
         strbuf_add_float(out, stop->at);
         strbuf_add(out, " ");
-        if (palette_color_hex(stop->color, hex)) {
+        if (value_color_hex(stop->color, hex)) {
             strbuf_add(out, "%s", hex);
         } else {
             for (int c = 0; c < 3; c++) {

@@ -42,7 +42,7 @@ static const size_t *options_of(pass *p, const char *shader, size_t *count) {
     size_t *values = arena_alloc(p->host->memory, (face->option_count + 1) * sizeof *values), own;
     *count = face->option_count;
     for (size_t i = 0; i < face->option_count; i++) {
-        values[i] = face->options[i].value;
+        values[i] = (size_t)face->options[i].value[0];
         if (pass_find_key(p, face->options[i].name, &own) == PASS_OPTION)
             values[i] = p->options[own];
     }

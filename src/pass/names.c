@@ -69,7 +69,7 @@ const field *pass_given_field(const pass *p, int name) {
 
 bool pass_gives(const pass *p, int name) {
     const size_t index = known(p, name, p->names[name].uniform, "uniform");
-    const shader_uniform *declared;
+    const value_desc *declared;
     return p->uniforms[index] || pass_inherited_uniform(p, index, &declared);
 }
 

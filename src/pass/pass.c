@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "pass/pass_impl.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,7 +33,8 @@ pass *pass_create(pass_host *host, const pass_type *type, const char *shader, co
         .scale = 1,
     };
     pass_find_names(p);
-    for (size_t i = 0; i < face->option_count; i++) p->options[i] = face->options[i].value;
+    for (size_t i = 0; i < face->option_count; i++)
+        p->options[i] = (size_t)face->options[i].value[0];
     for (size_t i = 0; i < face->image_count; i++) p->formats[i] = face->images[i].format;
     return p;
 }
@@ -120,45 +122,27 @@ static bool unknown(const pass *p, const char *what, const char *name) {
 
 // ---- setting ----------------------------------------------------------------------------------
 
-int pass_uniform_components(shader_type type) {
-    switch (type) {
-    case SHADER_VEC2:
-        return 2;
-    case SHADER_VEC3:
-        return 3;
-    case SHADER_VEC4:
-        return 4;
-    default:
-        return 1;
-    }
-}
-
 bool pass_set_uniform(pass *p, const char *name, const field *value) {
     size_t index;
     if (pass_find_key(p, name, &index) != PASS_UNIFORM) return unknown(p, "uniform", name);
-    const shader_uniform *uniform = &p->face->uniforms[index];
+    const value_desc *uniform = &p->face->uniforms[index];
     if (!value->uniform) return err_set("%s: uniform '%s' must not vary in space", p->label, name);
-    int wanted = pass_uniform_components(uniform->type);
+    int wanted = uniform->components;
     bool fits = value->components == wanted || value->components == 1 ||
                 (wanted == 3 && value->components == 4) || (wanted == 2 && value->components == 3);
     if (!fits)
         return err_set("%s: uniform '%s' takes %d component%s, not %d", p->label, name, wanted,
                        wanted == 1 ? "" : "s", value->components);
-    if (field_is_constant(value)) {
-        for (int i = 0; i < value->components && i < wanted; i++) {
-            float v = value->value[i];
-            if (!isfinite(v) || v < uniform->min || v > uniform->max)
-                return err_set("%s: uniform '%s' is %g; accepted: %g to %g%s%s", p->label, name,
-                               (double)v, (double)uniform->min, (double)uniform->max,
-                               uniform->unit[0] ? " " : "", uniform->unit);
-        }
-    }
+    int count = value->components < wanted ? value->components : wanted;
+    int wrong = field_is_constant(value) ? value_find_wrong(uniform, value->value, count) : -1;
+    if (wrong >= 0)
+        return value_refuse(uniform, value->value[wrong], "%s: uniform '%s'", p->label, name);
     p->uniforms[index] = value;
     return true;
 }
 
-void pass_restore_uniform(pass *p, size_t index, const field *value) {
-    p->uniforms[index] = value;
+const field **pass_uniform_slot(pass *p, size_t index) {
+    return &p->uniforms[index];
 }
 
 bool pass_refuse_uniform(const pass *p, const char *name) {
@@ -168,20 +152,14 @@ bool pass_refuse_uniform(const pass *p, const char *name) {
 bool pass_set_option(pass *p, const char *name, const char *word) {
     size_t index;
     if (pass_find_key(p, name, &index) != PASS_OPTION) return unknown(p, "option", name);
-    const shader_option *option = &p->face->options[index];
-    for (size_t i = 0; i < option->word_count; i++) {
-        if (strcmp(option->words[i], word) != 0) continue;
-        p->options[index] = i;
-        p->chosen[index] = true;
-        return true;
-    }
-    strbuf list = {0};
-    for (size_t i = 0; i < option->word_count; i++)
-        strbuf_add(&list, "%s%s", i ? ", " : "", option->words[i]);
-    err_set("%s: option '%s' cannot be '%s'; accepted: %s", p->label, name, word,
-            strbuf_text(&list));
-    strbuf_free(&list);
-    return false;
+    const value_desc *option = &p->face->options[index];
+    float value[4];
+    char who[192];
+    snprintf(who, sizeof who, "%s: option '%s'", p->label, name);
+    if (!value_parse(option, who, word, value)) return false;
+    p->options[index] = (size_t)value[0];
+    p->chosen[index] = true;
+    return true;
 }
 
 const char *pass_word(const pass *p, const char *option) {
@@ -222,9 +200,17 @@ bool pass_set_image(pass *p, const char *name, graph_image image) {
     return true;
 }
 
+const value_desc pass_scale_desc = {"resolution",
+                                    .components = 1,
+                                    .value = {1},
+                                    .min = 0.001f,
+                                    .max = 1,
+                                    .unit = "",
+                                    .help = "size of its outputs relative to the picture"};
+
 bool pass_set_scale(pass *p, float scale) {
-    if (!(scale > 0 && scale <= 1))
-        return err_set("%s: resolution is %g; accepted: above 0, up to 1", p->label, (double)scale);
+    if (value_find_wrong(&pass_scale_desc, &scale, 1) >= 0)
+        return value_refuse(&pass_scale_desc, scale, "%s: resolution", p->label);
     if (!p->stands_for) p->scale = scale;
     return true;
 }

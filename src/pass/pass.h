@@ -155,6 +155,7 @@ bool pass_set_uniform(pass *p, const char *name, const field *value); // must no
 bool pass_set_option(pass *p, const char *name, const char *word);
 bool pass_set_field(pass *p, const char *name, const field *value);
 bool pass_set_image(pass *p, const char *name, graph_image image);
+extern const value_desc pass_scale_desc; // what pass_set_scale takes
 bool pass_set_scale(pass *p,
                     float scale); // of its outputs, relative to the effect's output; (0, 1]
 bool pass_set_format(pass *p, const char *output, gpu_format format);
@@ -195,9 +196,8 @@ graph_image pass_output(const pass *p, const char *name);   // after pass_declar
 const field *pass_get_uniform(const pass *p, size_t index); // NULL: not set
 // What a uniform is while it is not set: as `*declared` of this pass or of a source has it, whose
 // default counts when the result is NULL.
-const field *pass_inherited_uniform(const pass *p, size_t index, const shader_uniform **declared);
-void pass_restore_uniform(pass *p, size_t index, const field *value); // one that it had, or NULL
-int pass_uniform_components(shader_type type);
+const field *pass_inherited_uniform(const pass *p, size_t index, const value_desc **declared);
+const field **pass_uniform_slot(pass *p, size_t index);    // where it is held, to be set unchecked
 bool pass_refuse_uniform(const pass *p, const char *name); // the message for a name not known
 const field *pass_get_field(const pass *p, size_t index);  // NULL: not given
 size_t pass_get_option(const pass *p, size_t index);       // index of the chosen word

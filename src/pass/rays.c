@@ -14,7 +14,7 @@ void pass_rays_define(pass_defines *out, size_t index) {
 // before a frame: passes are built side by side, where no Lua may run.
 static bool can_be(const pass *p, int name, float limit, bool above) {
     const size_t index = (size_t)p->names[name].uniform;
-    const shader_uniform *declared = &p->face->uniforms[index];
+    const value_desc *declared = &p->face->uniforms[index];
     const field *node = p->uniforms[index];
     if (!node) node = pass_inherited_uniform(p, index, &declared);
     if (node && !field_is_constant(node)) return true; // it moves

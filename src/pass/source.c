@@ -31,19 +31,15 @@ static void take_fields(pass *p, const pass *source) {
 
 // The word of an option there, if it is one here too.
 static bool take_word(pass *p, size_t index, const char *word) {
-    const shader_option *option = &p->face->options[index];
-    for (size_t i = 0; i < option->word_count; i++) {
-        if (strcmp(option->words[i], word) != 0) continue;
-        p->options[index] = i;
-        return true;
-    }
-    return false;
+    int found = value_find_word(&p->face->options[index], word);
+    if (found >= 0) p->options[index] = (size_t)found;
+    return found >= 0;
 }
 
 static void take_options(pass *p, const pass *source) {
     for (size_t i = 0; i < p->face->option_count; i++) {
         for (size_t k = 0; k < source->face->option_count && !p->chosen[i]; k++) {
-            const shader_option *other = &source->face->options[k];
+            const value_desc *other = &source->face->options[k];
             if (strcmp(other->name, p->face->options[i].name) == 0)
                 p->chosen[i] = take_word(p, i, other->words[source->options[k]]);
         }
@@ -51,11 +47,11 @@ static void take_options(pass *p, const pass *source) {
 }
 
 // The first source that has a uniform like this one; NULL: none.
-static pass_parent find_parent(const pass *p, const shader_uniform *like) {
+static pass_parent find_parent(const pass *p, const value_desc *like) {
     for (size_t i = 0; i < p->source_count; i++) {
         const shader_interface *face = p->sources[i]->face;
         for (size_t k = 0; k < face->uniform_count; k++) {
-            const shader_uniform *u = &face->uniforms[k];
+            const value_desc *u = &face->uniforms[k];
             if (u->type == like->type && u->word_count == like->word_count &&
                 strcmp(u->name, like->name) == 0)
                 return (pass_parent){p->sources[i], k};
@@ -95,7 +91,7 @@ const pass *pass_uniform_owner(const pass *p, size_t *index) {
     return p;
 }
 
-const field *pass_inherited_uniform(const pass *p, size_t index, const shader_uniform **declared) {
+const field *pass_inherited_uniform(const pass *p, size_t index, const value_desc **declared) {
     *declared = &p->face->uniforms[index];
     if (!p->parents || !p->parents[index].pass) return NULL;
     const pass_parent *parent = &p->parents[index];

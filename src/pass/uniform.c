@@ -8,7 +8,7 @@
 #include <string.h>
 
 // Rounding does not count: a curve may come to 1.0000001.
-static bool is_cut(const shader_uniform *u, float value, float taken) {
+static bool is_cut(const value_desc *u, float value, float taken) {
     if (!isfinite(value)) return true;
     float span = u->max - u->min;
     if (!isfinite(span)) span = fmaxf(fabsf(taken), fabsf(u->value[0]));
@@ -17,22 +17,22 @@ static bool is_cut(const shader_uniform *u, float value, float taken) {
 
 // Once, where it is said: what moves it would be told of in every frame, by every pass that asks. A
 // window shows one warning until it is cleared, and then the next that still holds.
-static void tell_cut(const pass *owner, size_t index, const shader_uniform *u, float value,
+static void tell_cut(const pass *owner, size_t index, const value_desc *u, float value,
                      float taken) {
     pass_host *host = owner->host;
     if (owner->told[index] && host->warning[0]) return;
-    char text[sizeof host->warning];
-    snprintf(text, sizeof text,
-             "%s%s: uniform '%s' is %g at %g s; accepted: %g to %g%s%s; it counts as %g",
-             owner->place, owner->label, u->name, (double)value, host->context->time,
-             (double)u->min, (double)u->max, u->unit[0] ? " " : "", u->unit, (double)taken);
+    char text[sizeof host->warning], range[VALUE_RANGE];
+    value_range(u, range);
+    snprintf(text, sizeof text, "%s%s: uniform '%s' is %g at %g s; accepted: %s; it counts as %g",
+             owner->place, owner->label, u->name, (double)value, host->context->time, range,
+             (double)taken);
     if (!owner->told[index]) log_write(LOG_WARNING, "%s", text);
     if (!host->warning[0]) memcpy(host->warning, text, sizeof text);
     owner->told[index] = true;
 }
 
 bool pass_evaluate_at(const pass *p, size_t index, float out[4]) {
-    const shader_uniform *uniform = &p->face->uniforms[index];
+    const value_desc *uniform = &p->face->uniforms[index];
     size_t there = index;
     const pass *owner = pass_uniform_owner(p, &there);
     const field *node = owner->uniforms[there];
@@ -41,7 +41,7 @@ bool pass_evaluate_at(const pass *p, size_t index, float out[4]) {
     if (node && !field_eval(node, p->host->context, (float3){0, 0, 0}, value))
         return err_prefix("uniform '%s': ", uniform->name);
     const bool moves = node && !field_is_constant(node);
-    const int count = pass_uniform_components(uniform->type);
+    const int count = uniform->components;
     for (int i = 0; i < 4; i++) {
         float v = node && node->components == 1 ? value[0] : value[i];
         out[i] = isfinite(v) ? clampf(v, uniform->min, uniform->max) : uniform->value[i];

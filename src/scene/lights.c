@@ -2,32 +2,7 @@
 #include "base/error.h"
 #include "scene/scene_impl.h"
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
-
-#define VALUE(NAME, COMPONENTS, MIN, MAX, UNIT, HELP, ...)                                         \
-    {                                                                                              \
-#NAME, offsetof(scene_light, NAME), COMPONENTS, .min = MIN, .max = MAX, .unit = UNIT,      \
-                                                        .help = HELP, __VA_ARGS__                  \
-    }
-
-// What they mean is said in the words of script/reference.c; first those that every kind has.
-static const scene_value values[] = {
-    VALUE(position, 3, -INFINITY, INFINITY, "m", "where it stands"),
-    VALUE(color, 3, 0, INFINITY, "", "multiplies the power", .color = true),
-    VALUE(power, 1, 0, INFINITY, "W", "as light into all directions"),
-    VALUE(radius, 1, 0, INFINITY, "m", "of the sphere that glows: softens shadows"),
-    VALUE(range, 1, 0, INFINITY, "m", "beyond which nothing is lit; 0: none"),
-    VALUE(target, 3, -INFINITY, INFINITY, "m", "where it shines"),
-    VALUE(angle, 1, 0.1f, 360, "degrees", "across the cone"),
-    VALUE(softness, 1, 0, 1, "", "part of the cone over which it fades"),
-};
-enum { POINT_VALUES = 5 };
-
-const scene_value *scene_light_values(scene_light_kind kind, size_t *count) {
-    *count = kind == SCENE_SPOT ? sizeof values / sizeof *values : POINT_VALUES;
-    return values;
-}
 
 static const float place_max = 1e9f;
 

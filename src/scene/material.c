@@ -4,30 +4,9 @@
 #include "base/error.h"
 #include "scene/scene_impl.h"
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 static const float emission_max = 1e4f; // that a half float holds several times over
-
-#define VALUE(NAME, COMPONENTS, MAX, HELP, ...)                                                    \
-    {                                                                                              \
-#NAME, offsetof(scene_material, NAME), COMPONENTS, .max = MAX, .unit = "", .help = HELP,   \
-                                                           __VA_ARGS__                             \
-    }
-
-// What they mean is said in the words of script/reference*.c.
-static const scene_value values[] = {
-    VALUE(color, 3, INFINITY, "of the whole mesh", .color = true),
-    VALUE(specular, 1, 1, "how much is mirrored"),
-    VALUE(roughness, 1, 1, "0: polished; 1: highlights spread over all"),
-    VALUE(metallic, 1, 1, "1: mirrors in its colour"),
-    VALUE(emission, 3, INFINITY, "radiance that it gives off", .color = true),
-};
-
-const scene_value *scene_material_values(size_t *count) {
-    *count = sizeof values / sizeof *values;
-    return values;
-}
 
 void scene_mesh_set_material(scene_mesh *mesh, const scene_material *material, arena *memory) {
     mesh_data *data = &mesh->data;

@@ -12,10 +12,6 @@ struct scene_material {
     bool no_toon;                                 // light comes in no bands
 };
 
-// Those of a material, whose names are "roughness" and the like; their offsets are in a
-// scene_material.
-const scene_value *scene_material_values(size_t *count);
-
 // Gives a mesh the material, before anything else is done with it. What it colours anew no longer
 // shares its parts with meshes of the same file. `memory` holds what that takes.
 void scene_mesh_set_material(scene_mesh *mesh, const scene_material *material, arena *memory);

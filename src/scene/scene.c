@@ -3,108 +3,15 @@
 #include "scene/sky_image.h"
 #include <cglm/clipspace/persp_rh_zo.h>
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
-static const field *scalar(arena *memory, float value) {
-    return field_constant(memory, 1, (float[4]){value});
-}
-
-static const field *vector(arena *memory, float x, float y, float z) {
-    return field_constant(memory, 3, (float[4]){x, y, z});
-}
-
 void scene_init(scene *s, arena *memory) {
-    s->camera = (scene_camera){
-        .target = vector(memory, 0, 0, 1),
-        .distance = scalar(memory, 6),
-        .yaw = scalar(memory, 0),
-        .pitch = scalar(memory, 10),
-        .fov = scalar(memory, 40),
-        .near = scalar(memory, 0.1f),
-        .far = scalar(memory, 1000),
-    };
-    s->sun = (scene_sun){
-        .azimuth = scalar(memory, 240),
-        .elevation = scalar(memory, 44),
-        .color = vector(memory, 1, 1, 1),
-        .strength = scalar(memory, 2.5f),
-        .angle = scalar(memory, 0.53f),
-    };
-    s->sky = (scene_sky){
-        .zenith = vector(memory, 0.22f, 0.32f, 0.48f),
-        .horizon = vector(memory, 0.22f, 0.32f, 0.48f),
-        .strength = scalar(memory, 0.6f),
-        .rotation = scalar(memory, 0),
-        .night_zenith = vector(memory, 0.003f, 0.006f, 0.016f),
-        .night_horizon = vector(memory, 0.012f, 0.018f, 0.034f),
-        .stars = scalar(memory, 1),
-        .moon = scalar(memory, 0),
-    };
-}
-
-#define VALUE(PART, NAME, COMPONENTS, MIN, MAX, UNIT, HELP, ...)                                   \
-    {                                                                                              \
-#PART "." #NAME, offsetof(scene, PART.NAME), COMPONENTS,                                   \
-            .min = MIN, .max = MAX, .unit = UNIT, .help = HELP, __VA_ARGS__                        \
-    }
-
-// What they mean is said in the words of script/reference.c.
-static const scene_value values[] = {
-    VALUE(camera, eye, 3, -INFINITY, INFINITY, "m", "where it stands"),
-    VALUE(camera, target, 3, -INFINITY, INFINITY, "m", "what it looks at"),
-    VALUE(camera, distance, 1, 0.001f, INFINITY, "m", "from the target", .need = SCENE_ORBIT),
-    VALUE(camera, yaw, 1, -360, 360, "degrees", "about +Z; 0 looks along +Y", .need = SCENE_ORBIT),
-    VALUE(camera, pitch, 1, -89.9f, 89.9f, "degrees",
-          "height of the eye above the target's horizon", .need = SCENE_ORBIT),
-    VALUE(camera, fov, 1, 1, 170, "degrees", "vertical field of view"),
-    VALUE(camera, near, 1, 0.0001f, INFINITY, "m", "nothing nearer is seen"),
-    VALUE(camera, far, 1, 0.001f, INFINITY, "m", "nothing solid farther away is seen"),
-    VALUE(sun, azimuth, 1, -360, 360, "degrees", "where it stands: about +Z, from +X"),
-    VALUE(sun, elevation, 1, -90, 90, "degrees", "above the horizon"),
-    VALUE(sun, color, 3, 0, INFINITY, "", "multiplies the strength", .color = true),
-    VALUE(sun, strength, 1, 0, INFINITY, "", "irradiance of what faces it"),
-    VALUE(sun, angle, 1, 0, 180, "degrees", "how wide it looks: softens shadows"),
-    VALUE(sky, zenith, 3, 0, INFINITY, "", "radiance straight up", .color = true,
-          .need = SCENE_GRADIENT),
-    VALUE(sky, horizon, 3, 0, INFINITY, "", "radiance at the horizon and below", .color = true,
-          .need = SCENE_GRADIENT),
-    VALUE(sky, strength, 1, 0, INFINITY, "", "factor of its light"),
-    VALUE(sky, rotation, 1, -360, 360, "degrees", "of the image, about +Z", .need = SCENE_IMAGE),
-    VALUE(sky, night, 1, 0, 1, "", "how much of the sky is night", .need = SCENE_NIGHT),
-    VALUE(sky, night_zenith, 3, 0, INFINITY, "", "radiance of the night straight up", .color = true,
-          .need = SCENE_NIGHT),
-    VALUE(sky, night_horizon, 3, 0, INFINITY, "", "radiance of the night at the horizon",
-          .color = true, .need = SCENE_NIGHT),
-    VALUE(sky, stars, 1, 0, INFINITY, "", "factor of what stars and moon shine",
-          .need = SCENE_NIGHT),
-    VALUE(sky, moon, 1, 0, 90, "degrees",
-          "how wide the moon looks, which stands where the sun does; 0: none", .need = SCENE_NIGHT),
-};
-
-const scene_value *scene_values(size_t *count) {
-    *count = sizeof values / sizeof *values;
-    return values;
-}
-
-const field **scene_slot(scene *s, const scene_value *value) {
-    return (const field **)(void *)((char *)s + value->offset);
-}
-
-bool scene_has(const scene *s, scene_need need) {
-    switch (need) {
-    case SCENE_ALWAYS:
-        return true;
-    case SCENE_ORBIT:
-        return !s->camera.eye;
-    case SCENE_GRADIENT:
-        return !s->sky.image;
-    case SCENE_IMAGE:
-        return s->sky.image;
-    case SCENE_NIGHT:
-        return s->sky.night;
-    }
-    return false;
+    s->camera = (scene_camera){0};
+    s->sun = (scene_sun){0};
+    s->sky = (scene_sky){0};
+    scene_set_defaults(scene_camera_values, SCENE_ALL, &s->camera, memory);
+    scene_set_defaults(scene_sun_values, SCENE_ALL, &s->sun, memory);
+    scene_set_defaults(scene_sky_values, SCENE_ALL, &s->sky, memory);
 }
 
 bool scene_evaluate(const field *node, const field_context *context, float out[4]) {

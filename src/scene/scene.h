@@ -1,6 +1,7 @@
 // What stands around the volume: camera, sun, sky and meshes. Every number is a field that does
 // not vary in space, so that it can be a constant, a parameter, a curve or a Lua function.
 #pragma once
+#include "base/value.h"
 #include "field/field.h"
 #include "media/mesh.h"
 #include "shared.h"
@@ -87,28 +88,29 @@ typedef struct scene {
     size_t light_count;  // less than LIGHT_MAX
 } scene;
 
-typedef enum scene_need { // where a scene has a value at all
-    SCENE_ALWAYS,
-    SCENE_ORBIT,    // of a camera that circles its target
-    SCENE_GRADIENT, // of a sky without an image
-    SCENE_IMAGE,    // of a sky with one
-    SCENE_NIGHT,    // of a sky that has a night
+typedef enum scene_need { // where a value is at all
+    SCENE_ALWAYS = 0,
+    SCENE_ORBIT = 1,    // of a camera that circles its target
+    SCENE_GRADIENT = 2, // of a sky without an image
+    SCENE_IMAGE = 4,    // of a sky with one
+    SCENE_NIGHT = 8,    // of a sky that has a night
+    SCENE_SPHERE = 16,  // of a light that may be a glowing sphere
+    SCENE_CONE = 32,    // of a spot light
+    SCENE_ALL = 63,
 } scene_need;
 
-typedef struct scene_value { // one value of camera, sun, sky or a light
-    const char *name;        // "camera.fov"
-    size_t offset;           // of its field in the scene
-    int components;
-    bool color;
+typedef struct scene_value { // a field that a structure of the scene holds
+    value_desc desc;
+    size_t offset; // of the field in the structure
     scene_need need;
-    float min, max; // of what a user sets; -INFINITY, INFINITY: any
-    const char *unit, *help;
 } scene_value;
-const scene_value *scene_values(size_t *count);
-const field **scene_slot(scene *s, const scene_value *value);
+// By structure; a NULL name ends each.
+extern const scene_value scene_camera_values[], scene_sun_values[], scene_sky_values[],
+    scene_light_values[], scene_material_values[], scene_mesh_values[], scene_node_values[];
+const field **scene_slot(void *structure, const scene_value *value);
+// Constants in `memory` for all fields that are NULL, have a default and no other needs.
+void scene_set_defaults(const scene_value *values, unsigned needs, void *structure, arena *memory);
 bool scene_has(const scene *s, scene_need need);
-// Those of a light, whose names are "power" and the like; their offsets are in a scene_light.
-const scene_value *scene_light_values(scene_light_kind kind, size_t *count);
 
 // A scene with the defaults of the documentation, made of constants in `memory`.
 void scene_init(scene *s, arena *memory);

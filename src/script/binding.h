@@ -109,9 +109,11 @@ bool value_has_names(lua_State *L, int index);      // has a key that is a strin
 int value_get(lua_State *L, int table, const char *key);
 // Keys of a table that are strings, sorted. The array is kept alive by a value that is pushed.
 const char **value_names(lua_State *L, int table, const char *who, size_t *count);
-// Raises on a key that is not among `keys`, with the nearest one that is.
-void value_check_keys(lua_State *L, int table, const char *who, const script_key *keys);
-// The row of a constructor, whose keys those of the table must be among.
+// Raises on a key that is not among those known, with the nearest one that is.
+void value_check_keys(lua_State *L, int table, const char *who, const char *const *known,
+                      size_t count);
+// The same of what a constructor's row says; and that of the constructor itself.
+void value_check_row(lua_State *L, int table, const char *who, const script_object *object);
 const script_object *value_check_object(lua_State *L, int table, const char *name);
 _Noreturn void value_unknown(lua_State *L, const char *who, const char *what, const char *name,
                              const char *const *known, size_t count);
@@ -156,7 +158,7 @@ size_t value_lights(lua_State *L, int index, const char *who, scene_light **out)
 
 // A pass of a built-in type by the table at `table`, not declared yet. Keys among `own` are left to
 // the caller. script.unsound is `who` until the caller has declared it.
-pass *pass_make(lua_State *L, const char *type, const char *who, int table, const script_key *own);
+pass *pass_make(lua_State *L, const char *type, const char *who, int table, const value_desc *own);
 // What stands for a pass that is declared: `from` takes it, and its outputs are images by name.
 void pass_push(lua_State *L, pass *p);
 

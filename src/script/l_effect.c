@@ -94,8 +94,8 @@ _Noreturn static void refuse_member(lua_State *L, const char *name, bool keys) {
     const script_object *row = script_object_find(who);
     const char *known[32];
     size_t count = 0;
-    for (const script_key *k = row->members; k->name; k++) known[count++] = k->name;
-    for (const script_key *k = row->keys; keys && k->name; k++) known[count++] = k->name;
+    for (const value_desc *k = row->members; k->name; k++) known[count++] = k->name;
+    for (const value_desc *k = row->keys; keys && k->name; k++) known[count++] = k->name;
     value_unknown(L, who, "field", name, known, count);
 }
 

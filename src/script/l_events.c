@@ -141,10 +141,9 @@ static void read_place(lua_State *L, int number, int index, effect_event *out) {
 
 static void read_event(lua_State *L, int number, effect_event *out) {
     int table = lua_gettop(L);
-    static const script_key keys[] = {
-        {.name = "click"}, {.name = "key"}, {.name = "at"}, {.name = NULL}};
+    static const char *const keys[] = {"click", "key", "at"};
     if (!value_is_plain_table(L, table)) refuse_event(L, number, "is no table");
-    value_check_keys(L, table, "effect: an event", keys);
+    value_check_keys(L, table, "effect: an event", keys, COUNT_OF(keys));
     *out = (effect_event){0};
     lua_rawgeti(L, table, 1);
     if (lua_type(L, -1) != LUA_TNUMBER) refuse_event(L, number, "has no time");

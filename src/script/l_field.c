@@ -51,8 +51,8 @@ static void take_arg(lua_State *L, kind_call *call, size_t i, int index) {
         vm_error(L, "%s takes at most %d arguments", kind->name, (int)call->arg_count);
     if (lua_isnil(L, index)) return;
     const field_arg *arg = &kind->args[i];
-    if (call->args[i]) vm_error(L, "%s: '%s' is given twice", kind->name, arg->name);
-    call->args[i] = value_field(L, index, kind->name, arg->name, arg->components);
+    if (call->args[i]) vm_error(L, "%s: '%s' is given twice", kind->name, arg->desc.name);
+    call->args[i] = value_field(L, index, kind->name, arg->desc.name, arg->desc.components);
 }
 
 static size_t word_count(const field_option *option) {
@@ -64,13 +64,13 @@ static size_t word_count(const field_option *option) {
 static void take_named(lua_State *L, kind_call *call, const char *name) {
     const field_kind *kind = call->kind;
     for (size_t i = 0; i < call->arg_count; i++)
-        if (strcmp(kind->args[i].name, name) == 0) {
+        if (strcmp(kind->args[i].desc.name, name) == 0) {
             take_arg(L, call, i, lua_gettop(L));
             return;
         }
     const char *known[FIELD_MAX_ARGS + FIELD_MAX_OPTIONS];
     size_t count = 0;
-    for (size_t i = 0; i < call->arg_count; i++) known[count++] = kind->args[i].name;
+    for (size_t i = 0; i < call->arg_count; i++) known[count++] = kind->args[i].desc.name;
     for (size_t i = 0; i < FIELD_MAX_OPTIONS && kind->options[i].name; i++) {
         const field_option *option = &kind->options[i];
         known[count++] = option->name;
@@ -104,7 +104,7 @@ static void take_table(lua_State *L, kind_call *call, int table) {
 // `speed` and `w` move through a fourth dimension, so they ask for one.
 static void imply_dimensions(kind_call *call) {
     for (size_t a = 0; a < call->arg_count; a++) {
-        const char *name = call->kind->args[a].name;
+        const char *name = call->kind->args[a].desc.name;
         if (!call->args[a] || (strcmp(name, "speed") != 0 && strcmp(name, "w") != 0)) continue;
         for (size_t i = 0; i < FIELD_MAX_OPTIONS && call->kind->options[i].name; i++)
             if (!call->chosen[i] && strcmp(call->kind->options[i].name, "dimensions") == 0)
@@ -117,7 +117,8 @@ static bool push_number(lua_State *L, const field_kind *kind, int count) {
     if (strcmp(kind->group, "operator") != 0 || kind->spatial || count == 0) return false;
     for (int i = 1; i <= count; i++)
         if (lua_type(L, i) != LUA_TNUMBER) return false;
-    if (count > FIELD_MAX_ARGS || kind->components > 1 || !kind->args[count - 1].name) return false;
+    if (count > FIELD_MAX_ARGS || kind->components > 1 || !kind->args[count - 1].desc.name)
+        return false;
     arena scratch = {0};
     field_context context = script_context(L);
     const field *args[FIELD_MAX_ARGS] = {0};
@@ -138,7 +139,8 @@ static bool push_number(lua_State *L, const field_kind *kind, int count) {
 static int l_kind(lua_State *L) {
     const field_kind *kind = lua_touserdata(L, lua_upvalueindex(1));
     kind_call call = {.kind = kind};
-    while (call.arg_count < FIELD_MAX_ARGS && kind->args[call.arg_count].name) call.arg_count++;
+    while (call.arg_count < FIELD_MAX_ARGS && kind->args[call.arg_count].desc.name)
+        call.arg_count++;
     int n = lua_gettop(L);
     if (push_number(L, kind, n)) return 1;
     script_require_loading(L, kind->name);
@@ -222,12 +224,12 @@ static int l_get(lua_State *L) {
     const field_object *object = self(L);
     const effect_param *param = field_param_of(L, 1);
     mark_structural(script_of(L), object->node);
-    if (param && param->type == EFFECT_ENUM) {
+    if (param && param->desc.type == VALUE_WORD) {
         size_t word = (size_t)param->value[0];
-        lua_pushstring(L, param->words[word < param->word_count ? word : 0]);
+        lua_pushstring(L, param->desc.words[word]);
         return 1;
     }
-    if (param && param->type == EFFECT_BOOL) {
+    if (param && param->desc.type == VALUE_BOOL) {
         lua_pushboolean(L, param->value[0] != 0);
         return 1;
     }
@@ -254,12 +256,14 @@ static int l_set(lua_State *L) {
     const effect_param *param = field_param_of(L, 1);
     if (!param) vm_error(L, "set: only a parameter can be set");
     float value[4] = {0};
-    if (param->type == EFFECT_ENUM && lua_type(L, 2) == LUA_TSTRING) {
-        value[0] = (float)value_word(L, 2, param->name, "value", param->words, param->word_count);
+    if (param->desc.type == VALUE_WORD && lua_type(L, 2) == LUA_TSTRING) {
+        value[0] = (float)value_word(L, 2, param->desc.name, "value", param->desc.words,
+                                     param->desc.word_count);
     } else {
         int wanted = object->node->components, count = value_numbers(L, 2, value);
         if (count != wanted)
-            vm_error(L, "set: '%s' takes %d number%s", param->name, wanted, wanted > 1 ? "s" : "");
+            vm_error(L, "set: '%s' takes %d number%s", param->desc.name, wanted,
+                     wanted > 1 ? "s" : "");
     }
     if (!effect_move_param(script_of(L)->effect, (size_t)object->param, value)) script_raise(L);
     return 0;
@@ -269,9 +273,9 @@ static int l_set(lua_State *L) {
 static int l_toggle(lua_State *L) {
     const field_object *object = self(L);
     const effect_param *param = field_param_of(L, 1);
-    if (!param || (param->type != EFFECT_BOOL && param->type != EFFECT_ENUM))
+    if (!param || (param->desc.type != VALUE_BOOL && param->desc.type != VALUE_WORD))
         vm_error(L, "toggle: only a parameter of true and false, or of words, has another value");
-    float value[4] = {param->value[0] < param->max ? param->value[0] + 1 : 0};
+    float value[4] = {param->value[0] < param->desc.max ? param->value[0] + 1 : 0};
     if (!effect_move_param(script_of(L)->effect, (size_t)object->param, value)) script_raise(L);
     return 0;
 }
@@ -331,7 +335,7 @@ static int l_glsl(lua_State *L) {
 static void open_kinds(lua_State *L, int methods) {
     for (const field_kind *kind = field_kinds; kind->name; kind++) {
         if (!script_has_kind(kind)) continue;
-        if (!kind->args[0].name) {
+        if (!kind->args[0].desc.name) {
             field_push(L, field_make(script_memory(L), kind->name, NULL, NULL));
             lua_setglobal(L, kind->name);
             continue;

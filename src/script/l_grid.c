@@ -184,11 +184,11 @@ static float3 corner(lua_State *L, const char *who, const char *key) {
 }
 
 bool value_get_box(lua_State *L, int table, const char *who, box3 *out) {
-    static const script_key corners[] = {{.name = "min"}, {.name = "max"}, {.name = NULL}};
+    static const char *const corners[] = {"min", "max"};
     bool given = value_get(L, table, "box") != LUA_TNIL;
     if (given) {
         int box = lua_gettop(L);
-        value_check_keys(L, box, lua_pushfstring(L, "%s: box", who), corners);
+        value_check_keys(L, box, lua_pushfstring(L, "%s: box", who), corners, COUNT_OF(corners));
         lua_pop(L, 1);
         *out = (box3){corner(L, who, "min"), corner(L, who, "max")};
     }

@@ -14,8 +14,7 @@ const picture_object *value_picture(lua_State *L, int index) {
 static int l_image(lua_State *L) {
     script_require_loading(L, "image");
     if (value_is_plain_table(L, 1)) {
-        static const script_key none[] = {{.name = NULL}};
-        value_check_keys(L, 1, "image", none);
+        value_check_keys(L, 1, "image", NULL, 0);
         if (lua_rawlen(L, 1) == 1) lua_rawgeti(L, 1, 1);
     }
     size_t length;

@@ -62,23 +62,21 @@ static void set_face(lua_State *L, pass *p, const char *face, const char *key) {
 
 // Stands at the top of the stack: a word, or a table of them.
 static void set_boundary(lua_State *L, pass *p) {
-    static const char *const faces[] = {"left", "right", "front", "back", "bottom", "top"};
-    static const script_key keys[] = {{.name = "sides"}, {.name = "left"}, {.name = "right"},
-                                      {.name = "front"}, {.name = "back"}, {.name = "bottom"},
-                                      {.name = "top"},   {.name = NULL}};
+    static const char *const faces[] = {"left", "right", "front", "back", "bottom", "top", "sides"};
+    enum { FACES = 6 };
     if (!value_is_plain_table(L, -1)) {
-        for (size_t i = 0; i < COUNT_OF(faces); i++) set_face(L, p, faces[i], "boundary");
+        for (size_t i = 0; i < FACES; i++) set_face(L, p, faces[i], "boundary");
         return;
     }
     int table = lua_gettop(L);
-    value_check_keys(L, table, "lbm: boundary", keys);
+    value_check_keys(L, table, "lbm: boundary", faces, COUNT_OF(faces));
     if (lua_rawlen(L, table) > 0)
         vm_error(L, "lbm: boundary: a value has no name; name the face, as in { top = \"open\", "
                     "sides = \"open\", bottom = \"wall\" }");
     if (value_get(L, table, "sides") != LUA_TNIL)
         for (size_t i = 0; i < 4; i++) set_face(L, p, faces[i], "sides");
     lua_pop(L, 1);
-    for (size_t i = 0; i < COUNT_OF(faces); i++) {
+    for (size_t i = 0; i < FACES; i++) {
         if (value_get(L, table, faces[i]) != LUA_TNIL) set_face(L, p, faces[i], faces[i]);
         lua_pop(L, 1);
     }
@@ -152,7 +150,7 @@ static void move_meshes(lua_State *L, const char *who) {
 
 static int l_source(lua_State *L) {
     const lbm_object *air = self(L, "source");
-    static const script_key own[] = {{.name = "motion"}, {.name = NULL}};
+    static const value_desc own[] = {{.name = "motion"}, {.name = NULL}};
     script *s = script_of(L);
     const char *unsound = s->unsound;
     pass *source = pass_make(L, "lbm_source", "source", 2, own);
@@ -179,9 +177,9 @@ static void add_collider(lua_State *L, pass *air, voxels_rule rule) {
 
 static int l_collider(lua_State *L) {
     const lbm_object *air = self(L, "collider");
-    static const script_key keys[] = {{.name = "rule"}, {.name = "motion"}, {.name = NULL}};
+    static const char *const keys[] = {"rule", "motion"};
     static const char *const rules[] = {"auto", "solid", "shell"};
-    value_check_keys(L, 2, "collider", keys);
+    value_check_keys(L, 2, "collider", keys, COUNT_OF(keys));
     voxels_rule rule = VOXELS_AUTO;
     if (value_get(L, 2, "rule") != LUA_TNIL)
         rule = (voxels_rule)value_word(L, -1, "collider", "rule", rules, COUNT_OF(rules));

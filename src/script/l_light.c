@@ -4,16 +4,7 @@
 #include "script/binding.h"
 #include <string.h>
 
-static const field *constant(lua_State *L, int components, float x, float y, float z) {
-    vm_charge_memory(L, sizeof(field));
-    return field_constant(script_memory(L), components, (float[4]){x, y, z});
-}
-
-static void set_default(const field **slot, const field *otherwise) {
-    if (!*slot) *slot = otherwise;
-}
-
-static scene_light *make_light(lua_State *L, const char *who, scene_light_kind kind) {
+static int make_light(lua_State *L, const char *who, scene_light_kind kind) {
     value_refuse_array(L, who);
     light_object *object = object_new(L, "light", sizeof *object);
     scene_light *light = &object->light;
@@ -22,36 +13,28 @@ static scene_light *make_light(lua_State *L, const char *who, scene_light_kind k
         vm_error(L, "%s: 'position' is missing: where it stands, {x, y, z} in metres", who);
     light->kind = kind;
     light->name = value_name_or_variable(L, 1, who);
-    set_default(&light->color, constant(L, 3, 1, 1, 1));
-    set_default(&light->power, constant(L, 1, 100, 0, 0));
-    bool ends = light->range;
-    set_default(&light->range, constant(L, 1, 0, 0, 0));
     light->linear = value_get_choice(L, 1, script_object_find(who), "falloff") == 1;
-    if (light->linear && !ends)
+    if (light->linear && !light->range)
         vm_error(L, "%s: falloff = \"linear\" ends at a 'range', which is missing", who);
-    return light;
+    if (!light->radius && strcmp(who, "sphere_light") == 0)
+        vm_error(L, "sphere_light: 'radius' is missing: of the sphere that glows, in metres; "
+                    "point_light { } has none");
+    vm_charge_memory(L, 7 * sizeof(field));
+    unsigned needs = SCENE_SPHERE | (kind == SCENE_SPOT ? SCENE_CONE : 0);
+    scene_set_defaults(scene_light_values, needs, light, script_memory(L));
+    return 1;
 }
 
 static int l_point_light(lua_State *L) {
-    scene_light *light = make_light(L, "point_light", SCENE_POINT);
-    light->radius = constant(L, 1, 0, 0, 0);
-    return 1;
+    return make_light(L, "point_light", SCENE_POINT);
 }
 
 static int l_sphere_light(lua_State *L) {
-    if (!make_light(L, "sphere_light", SCENE_POINT)->radius)
-        vm_error(L, "sphere_light: 'radius' is missing: of the sphere that glows, in metres; "
-                    "point_light { } has none");
-    return 1;
+    return make_light(L, "sphere_light", SCENE_POINT);
 }
 
 static int l_spot_light(lua_State *L) {
-    scene_light *light = make_light(L, "spot_light", SCENE_SPOT);
-    set_default(&light->radius, constant(L, 1, 0, 0, 0));
-    set_default(&light->target, constant(L, 3, 0, 0, 0));
-    set_default(&light->angle, constant(L, 1, 45, 0, 0));
-    set_default(&light->softness, constant(L, 1, 0.15f, 0, 0));
-    return 1;
+    return make_light(L, "spot_light", SCENE_SPOT);
 }
 
 size_t value_lights(lua_State *L, int index, const char *who, scene_light **out) {

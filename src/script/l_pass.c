@@ -24,7 +24,7 @@ typedef struct pass_call {
     const char *who;       // type or file, for messages
     size_t next_input;     // image that the next positional value is for
     bool *taken;           // of the interface's images
-    const script_key *own; // of the constructor, which reads them itself; NULL: none
+    const value_desc *own; // of the constructor, which reads them itself; NULL: none
 } pass_call;
 
 // ---- images -----------------------------------------------------------------------------------
@@ -152,18 +152,18 @@ static void add_positional(lua_State *L, pass_call *call, int value) {
 }
 
 static void set_uniform(lua_State *L, pass_call *call, size_t index, int value) {
-    const shader_uniform *uniform = &call->face->uniforms[index];
+    const value_desc *uniform = &call->face->uniforms[index];
     const char *name = uniform->name;
     const effect_param *param = field_param_of(L, value);
     const field *node;
-    if (uniform->type == SHADER_ENUM && lua_type(L, value) == LUA_TSTRING) {
+    if (uniform->type == VALUE_WORD && lua_type(L, value) == LUA_TSTRING) {
         int word = value_word(L, value, call->who, name, uniform->words, uniform->word_count);
         vm_charge_memory(L, sizeof(field));
         node = field_constant(script_memory(L), 1, (float[4]){(float)word});
     } else {
-        if (uniform->type == SHADER_ENUM && param && param->word_count != uniform->word_count)
+        if (uniform->type == VALUE_WORD && param && param->desc.word_count != uniform->word_count)
             vm_error(L, "%s: '%s' has %d words, but parameter '%s' has %d", call->who, name,
-                     (int)uniform->word_count, param->name, (int)param->word_count);
+                     (int)uniform->word_count, param->desc.name, (int)param->desc.word_count);
         node = value_uniform(L, value, call->who, name, 0);
     }
     if (!pass_set_uniform(call->pass, name, node)) script_raise(L);
@@ -174,10 +174,10 @@ static void set_option(lua_State *L, pass_call *call, size_t index, int value) {
     const char *name = call->face->options[index].name;
     const effect_param *param = field_param_of(L, value);
     const char *word;
-    if (param && param->type == EFFECT_ENUM) {
+    if (param && param->desc.type == VALUE_WORD) {
         const field_object *object = object_test(L, value, "field");
         effect_mark_structural(script_of(L)->effect, (size_t)object->param);
-        word = param->words[(size_t)param->value[0]];
+        word = param->desc.words[(size_t)param->value[0]];
     } else if (lua_isstring(L, value)) { // or a number: words like 64
         word = lua_tostring(L, value);
     } else if (lua_isboolean(L, value)) { // of off and on
@@ -190,15 +190,15 @@ static void set_option(lua_State *L, pass_call *call, size_t index, int value) {
 }
 
 // The keys that every pass has stand in the row of `shader`.
-static const script_key *reserved_keys(void) {
+static const value_desc *reserved_keys(void) {
     return script_object_find("shader")->keys;
 }
 
 static void unknown_key(lua_State *L, const pass_call *call, const char *key) {
     const shader_interface *face = call->face;
     size_t total = face->uniform_count + face->option_count + face->field_count + face->image_count;
-    for (const script_key *k = reserved_keys(); k->name; k++) total++;
-    for (const script_key *k = call->own; k && k->name; k++) total++;
+    for (const value_desc *k = reserved_keys(); k->name; k++) total++;
+    for (const value_desc *k = call->own; k && k->name; k++) total++;
     const char **known = lua_newuserdatauv(L, total * sizeof *known, 0);
     size_t count = 0;
     for (size_t i = 0; i < face->uniform_count; i++) known[count++] = face->uniforms[i].name;
@@ -206,8 +206,8 @@ static void unknown_key(lua_State *L, const pass_call *call, const char *key) {
     for (size_t i = 0; i < face->field_count; i++) known[count++] = face->fields[i].name;
     for (size_t i = 0; i < face->image_count; i++)
         if (!face->images[i].output) known[count++] = face->images[i].name;
-    for (const script_key *k = reserved_keys(); k->name; k++) known[count++] = k->name;
-    for (const script_key *k = call->own; k && k->name; k++)
+    for (const value_desc *k = reserved_keys(); k->name; k++) known[count++] = k->name;
+    for (const value_desc *k = call->own; k && k->name; k++)
         if (!script_key_find(reserved_keys(), k->name)) known[count++] = k->name;
     value_unknown(L, call->who, "key", key, known, count);
 }
@@ -360,7 +360,7 @@ void pass_push(lua_State *L, pass *p) {
     result->pass = p;
 }
 
-pass *pass_make(lua_State *L, const char *type, const char *who, int table, const script_key *own) {
+pass *pass_make(lua_State *L, const char *type, const char *who, int table, const value_desc *own) {
     pass_call call = {.who = who, .own = own};
     begin_pass(L, &call, type, NULL, table);
     read_table(L, &call, table, 1);

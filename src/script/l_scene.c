@@ -3,59 +3,30 @@
 #include "base/memory.h"
 #include "scene/material.h"
 #include "script/binding.h"
-#include <math.h>
-#include <stdio.h>
 #include <string.h>
-
-// What may be said for it; NULL: anything.
-static const scene_value *find_value(const char *who, const char *key) {
-    static const char *const groups[] = {"camera", "sun", "sky"};
-    char name[64];
-    size_t count;
-    const scene_value *values = scene_values(&count);
-    if (strcmp(who, "material") == 0) values = scene_material_values(&count);
-    if (strstr(who, "_light")) values = scene_light_values(SCENE_SPOT, &count);
-    const char *group = strcmp(who, "orbit") == 0 ? "camera" : who;
-    bool grouped = false;
-    for (size_t i = 0; i < COUNT_OF(groups); i++)
-        grouped = grouped || strcmp(group, groups[i]) == 0;
-    snprintf(name, sizeof name, "%s%s%s", grouped ? group : "", grouped ? "." : "", key);
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(values[i].name, name) == 0) return &values[i];
-    return NULL;
-}
-
-// What moves is limited instead.
-static void check_constant(lua_State *L, const char *who, const char *key, const field *node) {
-    const scene_value *value = find_value(who, key);
-    if (!value || !field_is_constant(node)) return;
-    for (int c = 0; c < node->components; c++) {
-        float v = node->value[c];
-        if (v >= value->min && v <= value->max) continue;
-        const char *unit = value->unit && value->unit[0] ? value->unit : "";
-        if (value->max < INFINITY)
-            vm_error(L, "%s: '%s' is %g; accepted: %g to %g%s%s", who, key, (double)v,
-                     (double)value->min, (double)value->max, unit[0] ? " " : "", unit);
-        vm_error(L, "%s: '%s' is %g; accepted: %g%s%s or more", who, key, (double)v,
-                 (double)value->min, unit[0] ? " " : "", unit);
-    }
-}
 
 void value_read_slots(lua_State *L, const char *who, void *out) {
     script_require_loading(L, who);
-    for (const script_key *key = value_check_object(L, 1, who)->keys; key->name; key++) {
-        if (!key->components) continue; // no number
-        const field *node = value_get_uniform(L, 1, who, key->name, key->components, NULL);
+    const script_object *object = value_check_object(L, 1, who);
+    for (const scene_value *v = NULL; (v = script_object_value(object, v));) {
+        const value_desc *desc = &v->desc;
+        const field *node = value_get_uniform(L, 1, who, desc->name, desc->components, NULL);
         if (!node) continue;
-        check_constant(L, who, key->name, node);
-        memcpy((char *)out + key->offset, &node, sizeof node);
+        int wrong = field_is_constant(node) // what moves is limited instead
+                        ? value_find_wrong(desc, node->value, node->components)
+                        : -1;
+        if (wrong >= 0) {
+            value_refuse(desc, node->value[wrong], "%s: '%s'", who, desc->name);
+            script_raise(L);
+        }
+        *scene_slot(out, v) = node;
     }
 }
 
 void value_refuse_array(lua_State *L, const char *who) {
     if (value_is_plain_table(L, 1) && lua_rawlen(L, 1) > 0)
         vm_error(L, "%s takes only named values, as in %s { %s = ... }", who, who,
-                 script_object_find(who)->keys->name);
+                 script_object_key(script_object_find(who), 0)->name);
 }
 
 static int l_orbit(lua_State *L) {
@@ -126,15 +97,13 @@ static int l_node(lua_State *L) {
     arena *memory = script_memory(L);
     scene_node *node = arena_alloc(memory, sizeof *node);
     *node = (scene_node){.name = value_name_or_variable(L, 1, "node"),
-                         .position = field_constant(memory, 3, (float[4]){0}),
-                         .rotation = field_constant(memory, 3, (float[4]){0}),
-                         .scale = field_constant(memory, 1, (float[4]){1}),
                          .parent = value_get_node(L, 1, "node", "parent")};
     int depth = 1;
     for (const scene_node *n = node->parent; n; n = n->parent) depth++;
     if (depth > MOST_NODES)
         vm_error(L, "node: %d stand in each other; at most %d are possible", depth, MOST_NODES);
     value_read_slots(L, "node", node);
+    scene_set_defaults(scene_node_values, SCENE_ALL, node, memory);
     object->node = node;
     return 1;
 }

@@ -44,7 +44,7 @@ static scene_explosion read_one(lua_State *L, int number, double time, uint32_t 
     if (!value_is_plain_table(L, table))
         vm_error(L, "%s is %s; a table is accepted, as in { 0.5, position = {0, 0, 1} }", name,
                  object_kind(L, table));
-    value_check_keys(L, table, name, script_object_find(who)->keys);
+    value_check_row(L, table, name, script_object_find(who));
     value_get_vector(L, table, name, "position", place);
     scene_explosion one = {
         .time = first_number(L, table, name, time),

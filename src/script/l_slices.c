@@ -130,7 +130,7 @@ static const struct picture *read_painted(lua_State *L) {
 }
 
 static int l_obstacle(lua_State *L) {
-    static const script_key own[] = {{.name = "image"}, {.name = NULL}};
+    static const value_desc own[] = {{.name = "image"}, {.name = NULL}};
     const slices_object *flow =
         slices_self(L, "obstacle", "shape = disc { 0.5, 0.5, radius = 0.1 }");
     script *s = script_of(L);

@@ -7,7 +7,7 @@
 
 static const char example[] = "image \"templates/source.exr\", count = 40";
 
-static const script_key own[] = {
+static const value_desc own[] = {
     {.name = "count"}, {.name = "size"}, {.name = "lifetime"}, {.name = "center"}, {.name = NULL}};
 
 // {a, b}, each a number that may move, for two uniforms; or one number for both, if `single`.

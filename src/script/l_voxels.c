@@ -39,7 +39,7 @@ static int l_voxels(lua_State *L) {
     script *s = script_of(L);
     const char *unsound = s->unsound, *variable = value_name_or_variable(L, 1, "voxels");
     field_context context = script_context(L);
-    static const script_key own[] = {
+    static const value_desc own[] = {
         {.name = "resolution"}, {.name = "size"}, {.name = "box"}, {.name = NULL}};
     voxels_object *object = object_new(L, "voxels", sizeof *object);
     int result = lua_gettop(L);

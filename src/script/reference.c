@@ -29,7 +29,7 @@ static const script_object reference_words[] = {
      "keys over time: a number, vector or colour that moves",
      .args = KEYS(KEY("key ...", "{time, value}", "1 to 4096, of rising time (s)")),
      .keys = KEYS(
-        CHOICE("shape", "linear", "between keys; cubic never overshoots (Fritsch and Carlson 1980)",
+        CHOICE("shape", 1, "between keys; cubic never overshoots (Fritsch and Carlson 1980)",
                "step", "linear", "cubic", "ease_in", "ease_out", "ease_in_out"),
         KEY("period", "0 s", "starts again after so long; 0: holds its first and last value"),
         KEY("name", "the variable's", "for --set and presets; numbered when taken"))},
@@ -114,7 +114,7 @@ static const script_object reference_words[] = {
         KEY("burn", "{4, 6} s", "that one burns: the shortest and the longest"),
         KEY("fuel", "1", "a list or function(i): factor of that; 0: it is never lit"),
         KEY("variation", "0.3 [0, 1]", "by how much times differ"),
-        CHOICE("pass", "ignite", "when it is passed on: ignite: while one burns; burned: when it has, as of what bursts", "ignite", "burned"),
+        CHOICE("pass", 0, "when it is passed on: ignite: while one burns; burned: when it has, as of what bursts", "ignite", "burned"),
         KEY("late", "0.5 s", "before its end, at which on_late runs"),
         KEY("most", "64", "changes in a frame; others come in the next"),
         KEY("seed", "0", "of chance")),
@@ -163,9 +163,24 @@ const script_object *script_object_find(const char *name) {
     return NULL;
 }
 
-const script_key *script_key_find(const script_key *keys, const char *name) {
+const value_desc *script_key_find(const value_desc *keys, const char *name) {
     for (; keys && keys->name; keys++)
         if (strcmp(keys->name, name) == 0) return keys;
+    return NULL;
+}
+
+const scene_value *script_object_value(const script_object *object, const scene_value *last) {
+    const scene_value *next = last ? last + 1 : object->values;
+    while (next && next->desc.name && (next->need & ~object->takes)) next++;
+    return next && next->desc.name ? next : NULL;
+}
+
+const value_desc *script_object_key(const script_object *object, size_t index) {
+    const scene_value *v = NULL;
+    while ((v = script_object_value(object, v)))
+        if (index-- == 0) return &v->desc;
+    for (const value_desc *key = object->keys; key && key->name; key++)
+        if (index-- == 0) return key;
     return NULL;
 }
 

@@ -2,17 +2,8 @@
 // bindings check and read keys by these rows, and `roil info fields` prints them, so neither can
 // say what the other does not.
 #pragma once
-#include "field/field.h"
+#include "scene/scene.h"
 #include <stddef.h>
-
-typedef struct script_key {
-    const char *name;
-    const char *value; // default with range and unit, else the form that is accepted, or NULL
-    const char *help;
-    const char *words[8]; // of a choice; `value` is the default among them
-    int components;       // of a scene object's value,
-    size_t offset;        // and where its structure holds the field
-} script_key;
 
 typedef struct script_object {
     const char *name;
@@ -20,12 +11,18 @@ typedef struct script_object {
     const char *form;    // how it is written
     const char *summary; // the first sentence stands alone
     // By place; by name; of what it gives. Each list ends with a NULL name; NULL: none.
-    const script_key *args, *keys, *members;
+    const value_desc *args, *keys, *members;
+    const scene_value *values; // of a scene object: the fields that are keys, too, or NULL,
+    unsigned takes;            // and what these may need (scene_need)
 } script_object;
 
 const script_object *script_object_at(size_t index);       // NULL: there are no more
 const script_object *script_object_find(const char *name); // NULL when unknown
-const script_key *script_key_find(const script_key *keys, const char *name);
+const value_desc *script_key_find(const value_desc *keys, const char *name); // NULL: not there
+// One of all that it takes by name, the fields first; NULL: there are no more.
+const value_desc *script_object_key(const script_object *object, size_t index);
+// The field after `last`, or the first after NULL, that the object takes; NULL: none.
+const scene_value *script_object_value(const script_object *object, const scene_value *last);
 
 // Whether Lua has the kind under its own name, made from its row. The others are what objects,
 // numbers and functions become.

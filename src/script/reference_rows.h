@@ -6,11 +6,11 @@
 extern const script_object reference_sources[], reference_scene[];
 
 // clang-format off
-#define KEYS(...) (const script_key[]){__VA_ARGS__, {.name = NULL}}
-#define KEY(NAME, VALUE, HELP) {.name = NAME, .value = VALUE, .help = HELP}
-#define CHOICE(NAME, VALUE, HELP, ...)                                                             \
-    {.name = NAME, .value = VALUE, .help = HELP, .words = {__VA_ARGS__}}
-#define SLOT(TYPE, NAME, COMPONENTS, VALUE, HELP)                                                  \
-    {.name = #NAME, .value = VALUE, .help = HELP, .components = COMPONENTS,                        \
-     .offset = offsetof(TYPE, NAME)}
+#define KEYS(...) (const value_desc[]){__VA_ARGS__, {.name = NULL}}
+// No number: `FORM` says how it is written.
+#define KEY(NAME, FORM, HELP) {.name = NAME, .type = VALUE_OTHER, .form = FORM, .help = HELP}
+#define WORDS(...) (const char *const[]){__VA_ARGS__}
+#define CHOICE(NAME, CHOSEN, HELP, ...)                                                            \
+    {.name = NAME, .type = VALUE_WORD, .components = 1, .value = {CHOSEN}, .help = HELP,           \
+     .words = WORDS(__VA_ARGS__), .word_count = sizeof(WORDS(__VA_ARGS__)) / sizeof(char *)}
 // clang-format on

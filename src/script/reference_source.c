@@ -9,7 +9,7 @@
         "factor of the playing speed; negative: backwards. A parameter, curve or function of time " \
         "is added up from frame to frame of the effect: playing goes on from where it is, and 0 "   \
         "stops it"),                                                                               \
-    CHOICE("loop", "clip", "outside the range clip shows nothing, extend the nearest frame",       \
+    CHOICE("loop", 0, "outside the range clip shows nothing, extend the nearest frame",       \
            "clip", "extend", "repeat", "ping_pong"),                                               \
     KEY("blend", "false", "mixes neighbouring frames at times between them"),                      \
     KEY("scale", "1 m", "metres a unit of the file"),                                              \
@@ -55,11 +55,11 @@ const script_object reference_sources[] = {
                     "same, is the file's frame, and the least is the first; a frame without a file shows "
                     "the one before (`blend`: a mix of those around), and a warning names it")),
      .keys = KEYS(
-        CHOICE("storage", "auto",
+        CHOICE("storage", 0,
                "on the device: the whole box, or only bricks of 8^3 voxels where there is something; "
                "auto takes these for large boxes that are mostly empty. The picture is the same",
                "auto", "dense", "sparse"),
-        CHOICE("level_set", "solid",
+        CHOICE("level_set", 0,
                "what a level set becomes, whose values are distances to a surface: solid is 1 inside and "
                "fades in the outer half of its band; fog is 0 outside and fades in the inner half",
                "solid", "fog"),
@@ -75,7 +75,7 @@ const script_object reference_sources[] = {
         KEY("axes", "\"xyz\"",
             "along which voxels follow each other in the file, the fastest first; '-' before one that "
             "runs backwards: \"zyx\", \"x-yz\""),
-        CHOICE("type", "u8", "of a voxel; u8 and u16 become 0..1", "u8", "u16", "f16", "f32"),
+        CHOICE("type", 0, "of a voxel; u8 and u16 become 0..1", "u8", "u16", "f16", "f32"),
         KEY("frames", "0", "how many there are; 0: as many as the file holds"),
         KEY("skip", "0 bytes", "before the first frame"),
         KEY("stride", "0 bytes", "from frame to frame; 0: without gaps"),
@@ -119,7 +119,7 @@ const script_object reference_sources[] = {
                    "2 to 64 of rising position; \"#rrggbb\" is sRGB, {r, g, b} linear; alpha is 1 "
                    "if not given")),
      .keys = KEYS(
-        CHOICE("space", "linear", "in which stops are mixed", "linear", "oklab"),
+        CHOICE("space", 0, "in which stops are mixed", "linear", "oklab"),
         KEY("min", "number", "position of its lower end; without: the first stop's"),
         KEY("max", "number", "position of its upper end; without: the last stop's"),
         KEY("keys", "{ {time, {stops}}, ... }", "1 to 64 palettes over time (s), mixed between"),
@@ -261,7 +261,7 @@ const script_object reference_sources[] = {
         KEY("size", "{x, y, z} [1, 1024]", "instead: cells along each side, x a multiple of 4"),
         KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m",
             "what the cells cover, at least; without: the meshes as they stand at first, and a margin"),
-        CHOICE("rule", "auto",
+        CHOICE("rule", 0,
                "solid fills what is inside, even where a mesh has holes; shell is every cell that a "
                "triangle touches; auto is solid where a mesh is closed, shell where it is open or thin",
                "auto", "solid", "shell"),

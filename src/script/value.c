@@ -1,7 +1,7 @@
 // Reading what a script passes: every table is checked key by key, every value against what is
 // accepted, and the message says which.
+#include "base/value.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include "script/binding.h"
 #include <assert.h>
 #include <math.h>
@@ -123,27 +123,37 @@ const char **value_names(lua_State *L, int table, const char *who, size_t *count
     return names;
 }
 
-static void refuse_key(lua_State *L, const char *who, const char *name, const script_key *keys) {
-    const char *known[64];
-    size_t count = 0;
-    for (; count < COUNT_OF(known) && keys[count].name; count++) known[count] = keys[count].name;
-    value_unknown(L, who, "key", name, known, count);
+static bool is_known(const char *name, const char *const *known, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(known[i], name) == 0) return true;
+    return false;
 }
 
-void value_check_keys(lua_State *L, int table, const char *who, const script_key *keys) {
+void value_check_keys(lua_State *L, int table, const char *who, const char *const *known,
+                      size_t count) {
     if (!value_is_plain_table(L, table))
         vm_error(L, "%s takes a table, as in %s { ... }; got %s", who, who, object_kind(L, table));
     size_t n;
     const char **names = value_names(L, table, who, &n);
     for (size_t i = 0; i < n; i++)
-        if (!script_key_find(keys, names[i])) refuse_key(L, who, names[i], keys);
+        if (!is_known(names[i], known, count)) value_unknown(L, who, "key", names[i], known, count);
     lua_pop(L, 1);
+}
+
+void value_check_row(lua_State *L, int table, const char *who, const script_object *object) {
+    const char *known[64];
+    const value_desc *key;
+    size_t count = 0;
+    for (; (key = script_object_key(object, count)); count++) {
+        assert(count < COUNT_OF(known));
+        known[count] = key->name;
+    }
+    value_check_keys(L, table, who, known, count);
 }
 
 const script_object *value_check_object(lua_State *L, int table, const char *name) {
     const script_object *object = script_object_find(name);
-    assert(object && object->keys);
-    value_check_keys(L, table, name, object->keys);
+    value_check_row(L, table, name, object);
     return object;
 }
 
@@ -242,14 +252,11 @@ int value_word(lua_State *L, int index, const char *who, const char *key, const 
 }
 
 int value_get_choice(lua_State *L, int table, const script_object *object, const char *key) {
-    const script_key *row = script_key_find(object->keys, key);
-    assert(row && row->words[0]);
-    size_t count = 0;
-    int value = 0;
-    for (; count < COUNT_OF(row->words) && row->words[count]; count++)
-        if (strcmp(row->words[count], row->value) == 0) value = (int)count;
+    const value_desc *row = script_key_find(object->keys, key);
+    assert(row && row->words);
+    int value = (int)row->value[0];
     if (value_get(L, table, key) != LUA_TNIL)
-        value = value_word(L, -1, object->name, key, row->words, count);
+        value = value_word(L, -1, object->name, key, row->words, row->word_count);
     lua_pop(L, 1);
     return value;
 }
@@ -267,7 +274,7 @@ int value_numbers(lua_State *L, int index, float out[4]) {
         return 1;
     case LUA_TSTRING: {
         const char *text = lua_tostring(L, index);
-        if (text[0] != '#' || !palette_parse_color(text, out)) return 0;
+        if (text[0] != '#' || !value_parse_color(text, out)) return 0;
         size_t length = strlen(text);
         return length == 5 || length == 9 ? 4 : 3;
     }

@@ -7,36 +7,38 @@
 
 static const struct {
     const char *glsl;
-    shader_type type;
+    value_type type;
     int components;
 } uniform_types[] = {
-    {"float", SHADER_FLOAT, 1}, {"vec2", SHADER_VEC2, 2}, {"vec3", SHADER_VEC3, 3},
-    {"vec4", SHADER_VEC4, 4},   {"int", SHADER_INT, 1},   {"uint", SHADER_INT, 1},
-    {"bool", SHADER_BOOL, 1},
+    {"float", VALUE_NUMBER, 1}, {"vec2", VALUE_NUMBER, 2}, {"vec3", VALUE_NUMBER, 3},
+    {"vec4", VALUE_NUMBER, 4},  {"int", VALUE_WHOLE, 1},   {"uint", VALUE_WHOLE, 1},
+    {"bool", VALUE_BOOL, 1},
 };
 
-static bool read_enum(cursor *c, const declaration *d, shader_uniform *out) {
-    char word[NAME_CAP];
+// After the default's first word.
+static bool read_words(cursor *c, const char *word, value_desc *out) {
     size_t chosen;
-    out->type = SHADER_ENUM;
-    if (!cursor_name(c, word, "a number or a word") ||
-        !cursor_words(c, word, &out->words, &out->word_count, &chosen))
-        return false;
-    if (d->type[0] == 'u') return cursor_fail(c, "%s: an enumeration is an int", d->name);
+    if (!cursor_words(c, word, &out->words, &out->word_count, &chosen)) return false;
+    out->type = VALUE_WORD;
+    out->components = 1;
     out->value[0] = (float)chosen;
-    out->min = 0;
     out->max = (float)(out->word_count - 1);
     return true;
 }
 
-static bool read_bool(cursor *c, shader_uniform *out) {
+static bool read_enum(cursor *c, const declaration *d, value_desc *out) {
+    char word[NAME_CAP];
+    if (!cursor_name(c, word, "a number or a word") || !read_words(c, word, out)) return false;
+    return d->type[0] != 'u' || cursor_fail(c, "%s: an enumeration is an int", d->name);
+}
+
+static bool read_bool(cursor *c, value_desc *out) {
     char word[NAME_CAP];
     if (!cursor_word(c, word, "true or false")) return false;
     bool on = strcmp(word, "true") == 0;
     if (!on && strcmp(word, "false") != 0)
         return cursor_fail(c, "expected true or false, not \"%s\"", word);
     out->value[0] = on ? 1 : 0;
-    out->min = 0;
     out->max = 1;
     return true;
 }
@@ -46,25 +48,32 @@ static bool is_exact(float value) {
     return isinf(value) || (floorf(value) == value && fabsf(value) <= 0x1p24f);
 }
 
-static bool read_number(cursor *c, const declaration *d, int components, shader_uniform *out) {
-    if (!cursor_value(c, components, out->value) || !cursor_range(c, &out->min, &out->max))
+static bool read_number(cursor *c, const declaration *d, value_desc *out) {
+    if (!cursor_value(c, out->components, out->value) || !cursor_range(c, &out->min, &out->max))
         return false;
     if (strcmp(d->type, "uint") == 0 && out->min < 0) {
         if (isfinite(out->min)) return cursor_fail(c, "%s: a uint cannot be negative", d->name);
         out->min = 0;
     }
     bool whole = is_exact(out->value[0]) && is_exact(out->min) && is_exact(out->max);
-    if (out->type == SHADER_INT && !whole)
+    if (out->type == VALUE_WHOLE && !whole)
         return cursor_fail(c, "%s: whole numbers up to 2^24 are accepted", d->name);
-    for (int i = 0; i < components; i++) {
-        if (out->value[i] < out->min || out->value[i] > out->max)
-            return cursor_fail(c, "%s: the default %g is outside its range [%g, %g]", d->name,
-                               (double)out->value[i], (double)out->min, (double)out->max);
-    }
+    int wrong = value_find_wrong(out, out->value, out->components);
+    return wrong < 0 || cursor_fail(c, "%s: the default %g is outside its range [%g, %g]", d->name,
+                                    (double)out->value[wrong], (double)out->min, (double)out->max);
+}
+
+// A unit, or that three numbers are a colour.
+static bool read_unit(cursor *c, const declaration *d, value_desc *out) {
+    cursor_unit(c, &out->unit);
+    if (strcmp(out->unit, "color") != 0) return true;
+    if (out->components != 3) return cursor_fail(c, "%s: a color is a vec3", d->name);
+    out->type = VALUE_COLOR;
+    out->unit = "";
     return true;
 }
 
-bool annotation_uniform(cursor *c, const declaration *d, shader_uniform *out) {
+bool annotation_uniform(cursor *c, const declaration *d, value_desc *out) {
     const size_t count = sizeof uniform_types / sizeof *uniform_types;
     size_t i = 0;
     while (i < count && strcmp(uniform_types[i].glsl, d->type) != 0) i++;
@@ -73,14 +82,14 @@ bool annotation_uniform(cursor *c, const declaration *d, shader_uniform *out) {
                            "%s: only uniforms of type float, vec2, vec3, vec4, int, uint, bool, "
                            "no arrays, take a value",
                            d->name);
-    *out = (shader_uniform){.name = declaration_public_name(c->memory, d->name),
-                            .type = uniform_types[i].type,
-                            .line = c->line};
-    bool read = out->type == SHADER_BOOL ? read_bool(c, out)
-                : out->type == SHADER_INT && !cursor_is_number(c)
-                    ? read_enum(c, d, out)
-                    : read_number(c, d, uniform_types[i].components, out);
-    return read && cursor_unit(c, &out->unit) && cursor_help(c, &out->help);
+    *out = (value_desc){.name = declaration_public_name(c->memory, d->name),
+                        .type = uniform_types[i].type,
+                        .components = uniform_types[i].components};
+    bool words = out->type == VALUE_WHOLE && !cursor_is_number(c);
+    bool read = words                     ? read_enum(c, d, out)
+                : out->type == VALUE_BOOL ? read_bool(c, out)
+                                          : read_number(c, d, out);
+    return read && read_unit(c, d, out) && cursor_help(c, &out->help);
 }
 
 // ---- images -----------------------------------------------------------------------------------
@@ -166,15 +175,13 @@ bool annotation_image(cursor *c, const declaration *d, shader_image *out) {
 
 // ---- directives -------------------------------------------------------------------------------
 
-bool annotation_option(cursor *c, shader_option *out) {
+bool annotation_option(cursor *c, value_desc *out) {
     char name[NAME_CAP], word[NAME_CAP];
     if (!cursor_name(c, name, "the option's name")) return false;
     if (!cursor_take(c, '=')) return cursor_fail(c, "expected = and the option's default");
-    if (!cursor_word(c, word, "the option's default") ||
-        !cursor_words(c, word, &out->words, &out->word_count, &out->value))
-        return false;
-    out->name = arena_string(c->memory, name);
-    return cursor_help(c, &out->help);
+    *out = (value_desc){.name = arena_string(c->memory, name), .unit = ""};
+    return cursor_word(c, word, "the option's default") && read_words(c, word, out) &&
+           cursor_help(c, &out->help);
 }
 
 bool annotation_field(cursor *c, shader_field *out) {

@@ -38,8 +38,8 @@ bool declaration_read(const cursor *c, const char *code, declaration *out);
 const char *declaration_public_name(arena *memory, const char *glsl_name);
 
 // The parts that say what a shader declares; `kind` selects what is filled in.
-bool annotation_uniform(cursor *c, const declaration *d, shader_uniform *out);
+bool annotation_uniform(cursor *c, const declaration *d, value_desc *out);
 bool annotation_image(cursor *c, const declaration *d, shader_image *out);
-bool annotation_option(cursor *c, shader_option *out);
+bool annotation_option(cursor *c, value_desc *out);
 bool annotation_field(cursor *c, shader_field *out);
 bool annotation_counter(cursor *c, shader_counter *out);

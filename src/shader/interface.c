@@ -13,8 +13,8 @@ typedef struct reader {
     const shader_unit *unit;
     arena *memory;
     unit_inserts *inserts;
-    shader_uniform *uniforms;
-    shader_option *options;
+    value_desc *uniforms;
+    value_desc *options;
     shader_field *fields;
     shader_image *images;
     shader_counter *counters;
@@ -54,7 +54,7 @@ static bool after_is_known(const reader *r, const cursor *c, const shader_field 
 // ---- annotations ------------------------------------------------------------------------------
 
 static bool add_option(reader *r, cursor *c) {
-    shader_option option = {0};
+    value_desc option = {0};
     if (!annotation_option(c, &option) || !name_is_free(r, c, option.name)) return false;
     MEM_RESERVE(r->options, r->option_count + 1, r->option_capacity);
     r->options[r->option_count++] = option;
@@ -119,7 +119,7 @@ static bool add_image(reader *r, cursor *c, const declaration *d, size_t offset)
 }
 
 static bool add_uniform(reader *r, cursor *c, const declaration *d) {
-    shader_uniform uniform;
+    value_desc uniform;
     if (!annotation_uniform(c, d, &uniform) || !name_is_free(r, c, uniform.name)) return false;
     MEM_RESERVE(r->uniforms, r->uniform_count + 1, r->uniform_capacity);
     r->uniforms[r->uniform_count++] = uniform;

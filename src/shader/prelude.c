@@ -28,8 +28,8 @@ static bool define_options(const shader_interface *interface, const shader_compi
         return err_set("%s: has %zu options, values of %zu were given", interface->path,
                        interface->option_count, desc->option_count);
     for (size_t i = 0; i < interface->option_count; i++) {
-        const shader_option *option = &interface->options[i];
-        size_t value = values ? values[i] : option->value;
+        const value_desc *option = &interface->options[i];
+        size_t value = values ? values[i] : (size_t)option->value[0];
         if (value >= option->word_count)
             return err_set("%s: option %s has %zu words, number %zu was asked for", interface->path,
                            option->name, option->word_count, value);
@@ -39,7 +39,7 @@ static bool define_options(const shader_interface *interface, const shader_compi
         strbuf_add(out, " %zu\n", value);
     }
     for (size_t i = 0; i < interface->uniform_count; i++) {
-        const shader_uniform *uniform = &interface->uniforms[i];
+        const value_desc *uniform = &interface->uniforms[i];
         define_words(out, uniform->name, uniform->words, uniform->word_count);
     }
     return true;

@@ -7,7 +7,7 @@
 //   //@ field float heat = 0 : excess temperature at a point (K)
 //   //@ counter samples : field evaluations
 //   uniform float strength;             //= 0.2 [0, 1] m : how far a ray is bent
-//   uniform vec3 tint;                  //= {1, 0.9, 0.8} : colour of hot air
+//   uniform vec3 tint;                  //= {1, 0.9, 0.8} color : of hot air
 //   uniform int kind;                   //= soft {hard, soft} : an enumeration
 //   uniform bool invert;                //= false : a toggle
 //   uniform sampler2D input_;           //= input : the picture
@@ -24,6 +24,7 @@
 #pragma once
 #include "base/arena.h"
 #include "base/hash.h"
+#include "base/value.h"
 #include "gpu/gpu.h"
 #include <stdbool.h>
 #include <stddef.h>
@@ -37,30 +38,8 @@ typedef enum shader_type {
     SHADER_VEC3,
     SHADER_VEC4,
     SHADER_INT,
-    SHADER_BOOL,
-    SHADER_ENUM,
     SHADER_MAT4, // set by the program only (no annotation)
 } shader_type;
-
-typedef struct shader_uniform {
-    const char *name; // public name
-    shader_type type;
-    float value[4];   // default, as floats (bool 0/1, enum its index)
-    float min, max;   // -INFINITY, INFINITY when not given; applies to each component
-    const char *unit; // "" when none
-    const char *help;
-    const char *const *words; // enumerations: their words, in order of value
-    size_t word_count;
-    int line;
-} shader_uniform;
-
-typedef struct shader_option { // structure: chosen when the shader is compiled
-    const char *name;
-    const char *const *words;
-    size_t word_count;
-    size_t value; // default
-    const char *help;
-} shader_option;
 
 typedef struct shader_field { // GLSL may call `float field_heat(vec3 p)`
     const char *name;
@@ -90,9 +69,9 @@ typedef struct shader_counter { // `count_samples(n)` in GLSL adds to it, when c
 typedef struct shader_interface {
     const char *path;
     const char *summary;
-    const shader_uniform *uniforms;
+    const value_desc *uniforms; // of vec2 to vec4 numbers of so many components
     size_t uniform_count;
-    const shader_option *options;
+    const value_desc *options; // words; structure: chosen when the shader is compiled
     size_t option_count;
     const shader_field *fields;
     size_t field_count;

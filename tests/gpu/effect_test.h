@@ -30,13 +30,12 @@ static inline const field *block(effect *e, const field *value) {
 }
 
 static inline const field *param(effect *e, const char *name, float value, float max) {
-    int index = effect_add_param(e, &(effect_param){.name = name,
-                                                    .type = EFFECT_FLOAT,
-                                                    .initial = {value},
-                                                    .min = 0,
-                                                    .max = max,
-                                                    .unit = "",
-                                                    .help = ""});
+    int index = effect_add_param(e, &(effect_param){.desc = {.name = name,
+                                                             .components = 1,
+                                                             .value = {value},
+                                                             .max = max,
+                                                             .unit = "",
+                                                             .help = ""}});
     gpu_test_ok(index >= 0);
     return field_param(effect_memory(e), 1, index);
 }

@@ -68,8 +68,9 @@ static inline const field *pass_row(arena *memory, const char *name, const pass_
     uint8_t options[FIELD_MAX_OPTIONS] = {0};
     for (size_t s = 0; s < count; s++) {
         bool found = false;
-        for (size_t i = 0; settings[s].value && i < FIELD_MAX_ARGS && kind->args[i].name; i++) {
-            if (strcmp(kind->args[i].name, settings[s].name) != 0) continue;
+        for (size_t i = 0; settings[s].value && i < FIELD_MAX_ARGS && kind->args[i].desc.name;
+             i++) {
+            if (strcmp(kind->args[i].desc.name, settings[s].name) != 0) continue;
             args[i] = settings[s].value;
             found = true;
         }

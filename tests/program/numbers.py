@@ -52,7 +52,7 @@ class Numbers(Case):
     def test_numbers_of_steps_are_told_of_too(self):
         said = self.warnings(AIR, frames="3")
         self.assertEqual(len(said), 2, said)
-        self.assertRegex(said[0] + said[1], "effect.lua:3: lbm: uniform 'viscosity' is -.* accepted: 0 to inf m\\^2/s")
+        self.assertRegex(said[0] + said[1], "effect.lua:3: lbm: uniform 'viscosity' is -.* accepted: 0 m\\^2/s or more")
         self.assertRegex(said[0] + said[1], "effect.lua:4: lbm_source: uniform 'rate' is -")
 
 

@@ -1,10 +1,10 @@
 // Controls: the list of all that can be set by name, and settings that come and go.
 #include "effect_helper.h"
 
-static const effect_param gain = {"gain",   EFFECT_FLOAT, .initial = {0.5f}, .min = 0,
-                                  .max = 2, .unit = "",   .help = ""};
-static const effect_param tint = {
-    "tint", EFFECT_COLOR, .initial = {1, 1, 1}, .min = 0, .max = 9, .unit = "", .help = ""};
+static const effect_param gain = {
+    .desc = {"gain", VALUE_NUMBER, 1, .value = {0.5f}, .min = 0, .max = 2, .unit = "", .help = ""}};
+static const effect_param tint = {.desc = {"tint", VALUE_COLOR, 3, .value = {1, 1, 1}, .min = 0,
+                                           .max = 9, .unit = "", .help = ""}};
 
 static palette *add_palette(stage *s, const char *name, const char *expected) {
     static const palette_stop stops[] = {{0, {0, 0, 0, 1}}, {2, {1, 1, 1, 0.5f}}};
@@ -115,7 +115,7 @@ static void names_are_made_unique(void **state) {
     add_palette(s, "fire", "fire_2");
     add_curve(s, "fire", "fire_3");
     effect_param fire = gain;
-    fire.name = "fire";
+    fire.desc.name = "fire";
     ok(effect_set(s->e, "fire", "0 #ff0000; 1 #00ff00"));
     assert_int_equal(effect_add_param(s->e, &fire), 0); // a parameter keeps its name
     assert_true(effect_control_palette(control_of(s, "fire_4")) == p);
@@ -207,10 +207,10 @@ static void refused_text_changes_nothing(void **state) {
         {"fade", "cubic 0 1,2", "fade: curve: its values have 1 component"},
         {"fade", "cubic 0 1; 9 2", "outside the period of 4 s"},
         {"camera.fov", "0", "camera.fov is 0; accepted: 1 to 170 degrees"},
-        {"camera.fov", "wide", "'camera.fov' cannot be 'wide'; accepted: a number"},
+        {"camera.fov", "wide", "camera.fov cannot be 'wide'; accepted: a number"},
         {"camera.eye", "1,2", "accepted: three numbers, as 1,0,2.5"},
         {"sun.color", "red", "accepted: #rrggbb or three numbers"},
-        {"sun.strength", "-1", "sun.strength is -1; accepted: 0 to inf"},
+        {"sun.strength", "-1", "sun.strength is -1; accepted: 0 W/m^2 or more"},
         {"march.steps", "0", "accepted: 1 to 4096"},
     };
     for (size_t i = 0; i < COUNT_OF(cases); i++) {

@@ -3,8 +3,8 @@
 
 #include "effect/recipe.h"
 
-static const effect_param gain = {"gain",   EFFECT_FLOAT, .initial = {0.5f}, .min = 0,
-                                  .max = 2, .unit = "",   .help = ""};
+static const effect_param gain = {
+    .desc = {"gain", VALUE_NUMBER, 1, .value = {0.5f}, .min = 0, .max = 2, .unit = "", .help = ""}};
 
 static void what_is_written_is_read(void **state) {
     stage *s = *state;

@@ -4,13 +4,16 @@
 static const char *const words[] = {"low", "middle", "high"};
 
 static const effect_param examples[] = {
-    {"gain", EFFECT_FLOAT, .initial = {0.5f}, .min = 0, .max = 2, .unit = "1/m", .help = ""},
-    {"count", EFFECT_INT, .initial = {8}, .min = 1, .max = 64, .unit = "", .help = ""},
-    {"lit", EFFECT_BOOL, .initial = {0}, .min = 0, .max = 1, .unit = "", .help = ""},
-    {"quality", EFFECT_ENUM, .initial = {1}, .min = 0, .max = 2, .unit = "", .help = "",
-     .words = words, .word_count = 3},
-    {"wind", EFFECT_VEC3, .initial = {1, 0, 0}, .min = -10, .max = 10, .unit = "m/s", .help = ""},
-    {"tint", EFFECT_COLOR, .initial = {1, 1, 1}, .min = 0, .max = 100, .unit = "", .help = ""},
+    {.desc = {"gain", VALUE_NUMBER, 1, .value = {0.5f}, .min = 0, .max = 2, .unit = "1/m",
+              .help = ""}},
+    {.desc = {"count", VALUE_WHOLE, 1, .value = {8}, .min = 1, .max = 64, .unit = "", .help = ""}},
+    {.desc = {"lit", VALUE_BOOL, 1, .value = {0}, .min = 0, .max = 1, .unit = "", .help = ""}},
+    {.desc = {"quality", VALUE_WORD, 1, .value = {1}, .min = 0, .max = 2, .unit = "", .help = "",
+              .words = words, .word_count = 3}},
+    {.desc = {"wind", VALUE_NUMBER, 3, .value = {1, 0, 0}, .min = -10, .max = 10, .unit = "m/s",
+              .help = ""}},
+    {.desc = {"tint", VALUE_COLOR, 3, .value = {1, 1, 1}, .min = 0, .max = 100, .unit = "",
+              .help = ""}},
 };
 
 static void add_examples(stage *s) {
@@ -20,7 +23,7 @@ static void add_examples(stage *s) {
 
 static const float *value_of(stage *s, const char *name) {
     for (size_t i = 0; i < effect_param_count(s->e); i++)
-        if (strcmp(effect_get_param(s->e, i)->name, name) == 0)
+        if (strcmp(effect_get_param(s->e, i)->desc.name, name) == 0)
             return effect_get_param(s->e, i)->value;
     fail_msg("no parameter %s", name);
     return NULL;
@@ -33,8 +36,8 @@ static void parameter_begins_with_its_default(void **state) {
     add_examples(s);
     assert_int_equal(effect_param_count(s->e), COUNT_OF(examples));
     for (size_t i = 0; i < COUNT_OF(examples); i++)
-        assert_memory_equal(effect_get_param(s->e, i)->value, examples[i].initial,
-                            sizeof examples[i].initial);
+        assert_memory_equal(effect_get_param(s->e, i)->value, examples[i].desc.value,
+                            sizeof examples[i].desc.value);
 }
 
 static void parameter_is_set_from_text_of_its_type(void **state) {
@@ -75,14 +78,14 @@ static void text_of_another_type_is_refused_and_changes_nothing(void **state) {
     static const struct {
         const char *name, *text, *part;
     } cases[] = {
-        {"gain", "much", "'gain' cannot be 'much'; accepted: a number"},
+        {"gain", "much", "gain cannot be 'much'; accepted: a number"},
         {"gain", "", "accepted: a number"},
         {"gain", "1,2", "accepted: a number"},
         {"gain", "nan", "accepted: a number"},
         {"gain", "inf", "accepted: a number"},
         {"gain", "1e99", "accepted: a number"},
         {"gain", "0.5m", "accepted: a number"},
-        {"gain", "3", "parameter 'gain' is 3; accepted: 0 to 2 1/m"},
+        {"gain", "3", "gain is 3; accepted: 0 to 2 1/m"},
         {"gain", "-0.1", "accepted: 0 to 2 1/m"},
         {"count", "1.5", "accepted: a whole number"},
         {"count", "65", "accepted: 1 to 64"},
@@ -92,7 +95,7 @@ static void text_of_another_type_is_refused_and_changes_nothing(void **state) {
         {"quality", "1", "accepted: low, middle, high"},
         {"wind", "1,2", "accepted: three numbers"},
         {"wind", "1,2,3,4,5", "accepted: three numbers"},
-        {"wind", "1,2,30", "parameter 'wind' is 30; accepted: -10 to 10 m/s"},
+        {"wind", "1,2,30", "wind is 30; accepted: -10 to 10 m/s"},
         {"tint", "red", "accepted: #rrggbb or three numbers"},
         {"tint", "#ff00", "tint: "},
         {"tint", "#gg0000", "tint: "},
@@ -105,36 +108,36 @@ static void text_of_another_type_is_refused_and_changes_nothing(void **state) {
         assert_error(cases[i].part);
     }
     for (size_t i = 0; i < COUNT_OF(examples); i++)
-        assert_memory_equal(effect_get_param(s->e, i)->value, examples[i].initial,
-                            sizeof examples[i].initial);
+        assert_memory_equal(effect_get_param(s->e, i)->value, examples[i].desc.value,
+                            sizeof examples[i].desc.value);
 }
 
 static void bad_declaration_is_refused(void **state) {
     stage *s = *state;
     add_examples(s);
-    const effect_param good = {"x",      EFFECT_FLOAT, .initial = {1}, .min = 0,
-                               .max = 2, .unit = "",   .help = ""};
+    const effect_param good = {
+        .desc = {"x", VALUE_NUMBER, 1, .value = {1}, .min = 0, .max = 2, .unit = "", .help = ""}};
     effect_param bad = good;
-    bad.name = "two words";
+    bad.desc.name = "two words";
     assert_int_equal(effect_add_param(s->e, &bad), -1);
     assert_error("parameter name 'two words' is not a name");
     bad = good;
-    bad.name = "gain";
+    bad.desc.name = "gain";
     assert_int_equal(effect_add_param(s->e, &bad), -1);
     assert_error("parameter 'gain' is declared twice");
     bad = good;
-    bad.min = 3;
+    bad.desc.min = 3;
     assert_int_equal(effect_add_param(s->e, &bad), -1);
     assert_error("parameter 'x': min 3 is above max 2");
     bad = good;
-    bad.initial[0] = 5;
+    bad.desc.value[0] = 5;
     assert_int_equal(effect_add_param(s->e, &bad), -1);
     assert_error("parameter 'x' is 5; accepted: 0 to 2");
     bad = good;
-    bad.min = NAN;
+    bad.desc.min = NAN;
     assert_int_equal(effect_add_param(s->e, &bad), -1);
     bad = good;
-    bad.initial[0] = NAN;
+    bad.desc.value[0] = NAN;
     assert_int_equal(effect_add_param(s->e, &bad), -1);
     assert_int_equal(effect_param_count(s->e), COUNT_OF(examples));
 }
@@ -148,7 +151,7 @@ static void field_of_a_parameter_has_its_current_value(void **state) {
         char name[16];
         snprintf(name, sizeof name, "more_%d", i);
         effect_param more = examples[0];
-        more.name = arena_string(effect_memory(s->e), name);
+        more.desc.name = arena_string(effect_memory(s->e), name);
         assert_true(effect_add_param(s->e, &more) > 0);
     }
     ok(effect_set(s->e, "wind", "7,8,9"));
@@ -198,12 +201,12 @@ static void uniform_out_of_range_or_of_another_type_is_refused(void **state) {
     static const struct {
         const char *name, *text, *part;
     } cases[] = {
-        {"march.steps", "0", "march: uniform 'steps' is 0; accepted: 1 to 4096"},
-        {"march.steps", "many", "'steps' cannot be 'many'; accepted: a number"},
+        {"march.steps", "0", "march.steps is 0; accepted: 1 to 4096"},
+        {"march.steps", "many", "march.steps cannot be 'many'; accepted: a whole number"},
         {"march.anisotropy", "-1", "accepted: -0.95 to 0.95"},
         {"march.density", "1", "march.density is a field; only the effect file can set it"},
         {"march.depth", "1", "march.depth is an image; only the effect file can set it"},
-        {"march.albedo", "0.1,0.2,3", "uniform 'albedo' is 3; accepted: 0 to 1"},
+        {"march.albedo", "0.1,0.2,3", "march.albedo is 3; accepted: 0 to 1"},
         {"march.mode", "paper", "march.mode is structure"},
         {"march.resolution", "0.5", "march.resolution is structure"},
     };
@@ -230,9 +233,9 @@ static void words_and_toggles_of_a_users_shader_are_set_by_word(void **state) {
     ok(effect_set(s->e, "shades.invert", "on"));
     assert_true(uniform_of(p, "kind", 0) == 2 && uniform_of(p, "invert", 0) == 1);
     assert_false(effect_set(s->e, "shades.kind", "sofd"));
-    assert_error("'kind' cannot be 'sofd'; accepted: hard, soft, none");
+    assert_error("shades.kind cannot be 'sofd'; accepted: hard, soft, none");
     assert_false(effect_set(s->e, "shades.invert", "perhaps"));
-    assert_error("'invert' cannot be 'perhaps'; accepted: true, false");
+    assert_error("shades.invert cannot be 'perhaps'; accepted: true, false");
 }
 
 // ---- settings given beforehand ------------------------------------------------------------------
@@ -251,7 +254,7 @@ static void settings_apply_when_what_they_name_is_declared(void **state) {
     assert_false(effect_check_settings(s->e)); // nothing is declared yet
     add_examples(s);
     assert_true(value_of(s, "gain")[0] == 1.5f && value_of(s, "quality")[0] == 0);
-    assert_true(effect_get_param(s->e, 0)->initial[0] == 0.5f);
+    assert_true(effect_get_param(s->e, 0)->desc.value[0] == 0.5f);
     pass *p = add_march(s, NULL);
     ok(pass_set_uniform(p, "steps", number(s, 5))); // the effect's own, which a setting replaces
     ok(pass_declare(p));
@@ -269,11 +272,11 @@ static void bad_setting_fails_what_it_names(void **state) {
         effect_setting setting;
         const char *part;
     } cases[] = {
-        {{"march.steps", "0", NULL}, "uniform 'steps' is 0; accepted: 1 to 4096"},
-        {{"march.mode", "papre", NULL},
-         "option 'mode' cannot be 'papre'; accepted: physical, paper"},
-        {{"march.resolution", "2", NULL}, "resolution is 2; accepted: above 0, up to 1"},
-        {{"march.resolution", "half", NULL}, "accepted: a number, as 0.25"},
+        {{"march.steps", "0", NULL}, "march.steps is 0; accepted: 1 to 4096"},
+        {{"march.mode", "papre", NULL}, "march.mode cannot be 'papre'; accepted: physical, paper"},
+        {{"march.resolution", "2", NULL}, "march.resolution is 2; accepted: 0.001 to 1"},
+        {{"march.resolution", "half", NULL},
+         "march.resolution cannot be 'half'; accepted: a number"},
         {{"march.density", "3", NULL}, "march.density is a field"},
         {{"march.sampling_", "linear", NULL}, "did you mean 'sampling'?"},
     };
@@ -286,7 +289,7 @@ static void bad_setting_fails_what_it_names(void **state) {
     const effect_setting gain = {"gain", "200", NULL};
     open_with(s, &gain, 1);
     assert_int_equal(effect_add_param(s->e, &examples[0]), -1);
-    assert_error("parameter 'gain' is 200; accepted: 0 to 2 1/m");
+    assert_error("gain is 200; accepted: 0 to 2 1/m");
 }
 
 static void setting_that_names_nothing_is_reported_with_the_nearest(void **state) {

@@ -49,8 +49,8 @@ static inline field *build_row(const char *kind, const named *settings, size_t c
     uint8_t options[FIELD_MAX_OPTIONS] = {0};
     for (size_t s = 0; s < count; s++) {
         bool found = false;
-        for (size_t i = 0; settings[s].value && i < FIELD_MAX_ARGS && row->args[i].name; i++) {
-            if (strcmp(row->args[i].name, settings[s].name) != 0) continue;
+        for (size_t i = 0; settings[s].value && i < FIELD_MAX_ARGS && row->args[i].desc.name; i++) {
+            if (strcmp(row->args[i].desc.name, settings[s].name) != 0) continue;
             args[i] = settings[s].value;
             found = true;
         }

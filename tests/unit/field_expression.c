@@ -40,12 +40,13 @@ static void every_row_is_complete(void **state) {
         if (kind->function) assert_true(kind->ranges && kind->range_function);
         if (kind->spatial || kind->eval) // all that can vary in space
             assert_true(kind->ranges || strcmp(kind->name, "constant") == 0);
-        for (size_t i = 0; i < FIELD_MAX_ARGS && kind->args[i].name; i++) {
+        for (size_t i = 0; i < FIELD_MAX_ARGS && kind->args[i].desc.name; i++) {
             const field_arg *arg = &kind->args[i];
-            assert_true(arg->help && arg->unit);
-            bool limited = arg->min != 0 || arg->max != 0;
-            for (int c = 0; c < arg->components && limited; c++)
-                assert_true(arg->value[c] >= arg->min && arg->value[c] <= arg->max);
+            assert_true(arg->desc.help && arg->desc.unit);
+            bool limited = arg->desc.min != 0 || arg->desc.max != 0;
+            for (int c = 0; c < arg->desc.components && limited; c++)
+                assert_true(arg->desc.value[c] >= arg->desc.min &&
+                            arg->desc.value[c] <= arg->desc.max);
         }
         for (size_t i = 0; i < FIELD_MAX_OPTIONS && kind->options[i].name; i++)
             assert_true(kind->options[i].words[0] && kind->options[i].words[1] &&
@@ -75,8 +76,9 @@ static void bad_arguments_are_named(void **state) {
     (void)state;
     field *p = make("position", NULL);
     refuses(row_or_null("perlin", SET("octaves", number(13))),
-            "perlin: 'octaves' is 13; it must lie in 1..12");
-    refuses(row_or_null("perlin", SET("frequency", number(NAN))), "not a finite number");
+            "perlin: 'octaves' is 13; accepted: 1 to 12");
+    refuses(row_or_null("perlin", SET("frequency", number(NAN))),
+            "'frequency' is nan; accepted: 1e-06 to 1e+06 1/m");
     refuses(row_or_null("perlin", SET("seed", p)), "'seed' has 3 components; 1 is accepted");
     refuses(row_or_null("perlin", SET("frequency", make("length", p))),
             "'frequency' varies in space");

@@ -61,12 +61,14 @@ static inline const field *graph_part(graph *g) {
     const field *args[FIELD_MAX_ARGS] = {NULL};
     uint8_t options[FIELD_MAX_OPTIONS] = {0};
     int any = kind->components ? kind->components : graph_chance(g, 3) ? 3 : 1;
-    for (size_t i = 0; i < FIELD_MAX_ARGS && kind->args[i].name; i++) {
+    for (size_t i = 0; i < FIELD_MAX_ARGS && kind->args[i].desc.name; i++) {
         const field_arg *arg = &kind->args[i];
-        int width = arg->components ? arg->components : i > 0 && graph_chance(g, 4) ? 1 : any;
+        int width = arg->desc.components          ? arg->desc.components
+                    : i > 0 && graph_chance(g, 4) ? 1
+                                                  : any;
         if (arg->uniform)
             args[i] = random_uniform(&g->seed, arg);
-        else if (arg->required || arg->components == 0 || graph_chance(g, 3))
+        else if (arg->desc.required || arg->desc.components == 0 || graph_chance(g, 3))
             args[i] = graph_pick(g, width);
     }
     for (size_t i = 0; i < FIELD_MAX_OPTIONS && kind->options[i].name; i++) {

@@ -210,17 +210,17 @@ static void bad_stops_are_refused(void **state) {
 static void colours_are_read_as_srgb(void **state) {
     (void)state;
     float c[4];
-    assert_true(palette_parse_color("#fff", c));
+    assert_true(value_parse_color("#fff", c));
     for (int i = 0; i < 4; i++) assert_true(c[i] == 1);
-    assert_true(palette_parse_color("#80Ff0040", c));
+    assert_true(value_parse_color("#80Ff0040", c));
     assert_true(fabsf(c[0] - 0.21586f) < 1e-4f && c[1] == 1 && c[2] == 0);
     assert_true(fabsf(c[3] - 64.0f / 255) < 1e-6f);
-    assert_true(palette_parse_color("#010101", c));
+    assert_true(value_parse_color("#010101", c));
     assert_true(fabsf(c[0] - 1 / 255.0f / 12.92f) < 1e-7f && c[3] == 1);
     static const char *const bad[] = {"",        "#",      "fff",     "#ff", "#ffff",
                                       "#gggggg", "#12345", "#ff88 0", "red"};
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
-        assert_false(palette_parse_color(bad[i], c));
+        assert_false(value_parse_color(bad[i], c));
         assert_error("#rrggbb");
     }
 }
@@ -356,13 +356,13 @@ static void hex_is_given_only_where_it_is_exact(void **state) {
     for (int byte = 0; byte < 256; byte++) {
         char text[8];
         snprintf(text, sizeof text, "#%02x%02x%02x", byte, 255 - byte, byte / 2);
-        assert_true(palette_parse_color(text, color));
-        assert_true(palette_color_hex(color, hex));
+        assert_true(value_parse_color(text, color));
+        assert_true(value_color_hex(color, hex));
         assert_string_equal(hex, text);
     }
-    assert_false(palette_color_hex((float[3]){0.5f, 0, 0}, hex));
-    assert_false(palette_color_hex((float[3]){0, 1.5f, 0}, hex));
-    assert_false(palette_color_hex((float[3]){0, 0, NAN}, hex));
+    assert_false(value_color_hex((float[3]){0.5f, 0, 0}, hex));
+    assert_false(value_color_hex((float[3]){0, 1.5f, 0}, hex));
+    assert_false(value_color_hex((float[3]){0, 0, NAN}, hex));
 }
 
 int main(void) {

@@ -42,15 +42,16 @@ static inline field *random_leaf(uint32_t *seed, int components) {
 // A number that the argument takes and that does not vary in space.
 static inline field *random_uniform(uint32_t *seed, const field_arg *arg) {
     float v[4];
-    bool limited = arg->min != 0 || arg->max != 0;
+    bool limited = arg->desc.min != 0 || arg->desc.max != 0;
     for (int i = 0; i < 4; i++) {
-        float width = 0.5f + fabsf(arg->value[i]);
-        v[i] = arg->value[i] + width * (2 * random_float(seed) - 1);
-        if (random_below(seed, 3) == 0) v[i] = arg->value[i];
-        float least = arg->min > 0 ? fmaxf(arg->min, 0.2f * arg->value[i]) : arg->min;
-        if (limited) v[i] = clampf(v[i], least, fminf(arg->max, 8));
+        float width = 0.5f + fabsf(arg->desc.value[i]);
+        v[i] = arg->desc.value[i] + width * (2 * random_float(seed) - 1);
+        if (random_below(seed, 3) == 0) v[i] = arg->desc.value[i];
+        float least =
+            arg->desc.min > 0 ? fmaxf(arg->desc.min, 0.2f * arg->desc.value[i]) : arg->desc.min;
+        if (limited) v[i] = clampf(v[i], least, fminf(arg->desc.max, 8));
     }
-    return field_constant(build_memory(), arg->components, v);
+    return field_constant(build_memory(), arg->desc.components, v);
 }
 
 static inline field *random_tree(uint32_t *seed, int depth, int components);
@@ -60,13 +61,13 @@ static inline field *random_kind(uint32_t *seed, const field_kind *kind, int dep
     const field *args[FIELD_MAX_ARGS] = {NULL};
     uint8_t options[FIELD_MAX_OPTIONS] = {0};
     int any = kind->components == 0 ? components : random_below(seed, 2) ? 1 : 3;
-    for (size_t i = 0; i < FIELD_MAX_ARGS && kind->args[i].name; i++) {
+    for (size_t i = 0; i < FIELD_MAX_ARGS && kind->args[i].desc.name; i++) {
         const field_arg *arg = &kind->args[i];
         if (arg->uniform) {
             args[i] = random_uniform(seed, arg);
             continue;
         }
-        int width = arg->components ? arg->components : any;
+        int width = arg->desc.components ? arg->desc.components : any;
         if (i > 0 && random_below(seed, 4) == 0) width = 1;
         args[i] = random_below(seed, 3) == 0 ? random_leaf(seed, width)
                                              : random_tree(seed, depth - 1, width);

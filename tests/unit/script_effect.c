@@ -87,18 +87,18 @@ static void parameters_take_their_type_from_the_default(void **state) {
              "param { 'b', 4, integer = true } param { 'c', true }"
              "param { 'd', '#ff0000' } param { 'e', {1, 2, 3} }"
              "param { 'f', 'two', words = {'one', 'two'} }" END);
-    static const effect_param_type types[] = {EFFECT_FLOAT, EFFECT_INT,  EFFECT_BOOL,
-                                              EFFECT_COLOR, EFFECT_VEC3, EFFECT_ENUM};
+    static const value_type types[] = {VALUE_NUMBER, VALUE_WHOLE,  VALUE_BOOL,
+                                       VALUE_COLOR,  VALUE_NUMBER, VALUE_WORD};
     assert_int_equal(effect_param_count(e), 6);
-    for (size_t i = 0; i < 6; i++) assert_int_equal(effect_get_param(e, i)->type, types[i]);
+    for (size_t i = 0; i < 6; i++) assert_int_equal(effect_get_param(e, i)->desc.type, types[i]);
     const effect_param *a = effect_get_param(e, 0), *f = effect_get_param(e, 5);
-    assert_string_equal(a->name, "a");
-    assert_string_equal(a->unit, "m");
-    assert_string_equal(a->help, "h");
+    assert_string_equal(a->desc.name, "a");
+    assert_string_equal(a->desc.unit, "m");
+    assert_string_equal(a->desc.help, "h");
     assert_string_equal(a->group, "g");
-    assert_true(a->log_scale && a->min == 1 && a->max == 3 && a->value[0] == 2);
+    assert_true(a->log_scale && a->desc.min == 1 && a->desc.max == 3 && a->value[0] == 2);
     assert_float_equal(effect_get_param(e, 3)->value[0], 1, 0);
-    assert_int_equal(f->word_count, 2);
+    assert_int_equal(f->desc.word_count, 2);
     assert_float_equal(f->value[0], 1, 0);
     effect_destroy(e);
 }

@@ -23,7 +23,7 @@ static void mistakes_are_named(void **state) {
     refused("local air = lbm { size = {16, 2, 24}, voxel_size = 1 }", "'size' has 2");
     refused(AIR "viscosty = 1 }", "lbm: unknown key 'viscosty'; did you mean 'viscosity'?");
     refused(AIR "warmup = 1 }", "lbm: unknown key 'warmup'; did you mean 'warm_up'?");
-    refused(AIR "viscosity = -1 }", "uniform 'viscosity' is -1; accepted: 0 to");
+    refused(AIR "viscosity = -1 }", "uniform 'viscosity' is -1; accepted: 0 m^2/s or more");
     refused(AIR "speed = 0 }", "'speed' is 0 m/s");
     refused(AIR "collision = 'trt2' }", "option 'collision' cannot be 'trt2'");
     refused(AIR "boundary = { tpo = 'open' } }",

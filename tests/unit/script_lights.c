@@ -153,9 +153,9 @@ static void wrong_settings_are_named(void **state) {
     effect *e = load(named);
     assert_true(effect_check_settings(e));
     assert_false(effect_set(e, "lamp.power", "-1"));
-    assert_string_equal(err_get(), "lamp.power is -1; accepted: 0 to inf W");
-    assert_false(effect_set(e, "lamp.color", "2"));
-    assert_string_equal(err_get(), "'lamp.color' cannot be '2'; accepted: #rrggbb or three "
+    assert_string_equal(err_get(), "lamp.power is -1; accepted: 0 W or more");
+    assert_false(effect_set(e, "lamp.color", "red"));
+    assert_string_equal(err_get(), "lamp.color cannot be 'red'; accepted: #rrggbb or three "
                                    "numbers, as 1,0.5,0.1");
     assert_false(effect_set(e, "lamp.powr", "1"));
     assert_string_equal(err_get(), "nothing is named 'lamp.powr'; did you mean 'lamp.power'?");

@@ -116,7 +116,7 @@ static void declarations_are_checked(void **state) {
         {"param { 'x' }", "param 'x': the default must be"},
         {"param { 'x', {1, 2} }", "param 'x': the default must be"},
         {"param { 'x', 1.5, integer = true }", "param 'x': integer = true needs a whole number"},
-        {"param { 'x', 5, max = 3 }", "parameter 'x' is 5; accepted: -inf to 3"},
+        {"param { 'x', 5, max = 3 }", "parameter 'x' is 5; accepted: 3 or less"},
         {"param { 'x', 'c', words = {'a', 'b'} }", "x: unknown value of 'default' 'c'"},
         {"param { 'x', 1, log = true }", "param 'x': log = true needs min above 0"},
         {"param { 'a b', 1 }", "parameter name 'a b'"},

@@ -122,7 +122,7 @@ static void settings_reach_what_a_script_names(void **state) {
 
 static bool structural(effect *e, const char *name) {
     for (size_t i = 0; i < effect_param_count(e); i++)
-        if (strcmp(effect_get_param(e, i)->name, name) == 0)
+        if (strcmp(effect_get_param(e, i)->desc.name, name) == 0)
             return effect_get_param(e, i)->structural;
     fail_msg("no parameter %s", name);
     return false;

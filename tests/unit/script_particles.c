@@ -31,7 +31,7 @@ static void mistakes_are_named(void **state) {
     refused(SPARKS "lifetimes = 1 }", "unknown key 'lifetimes'; did you mean 'lifetime'?");
     refused(SPARKS "lifetime = {1, 2, 3} }", "'lifetime' takes 1 component; this has 3");
     refused(SPARKS "lifetime = position.x }", "'lifetime' varies in space");
-    refused(SPARKS "lifetime = -1 }", "'lifetime_min' is -1; accepted: 0 to");
+    refused(SPARKS "lifetime = -1 }", "'lifetime_min' is -1; accepted: 0 s or more");
     refused(SPARKS "above = position.x }", "'above' takes a field and a number");
     refused(SPARKS "above = {position.x, 1}, shape = sphere { } }", "beside 'shape'");
     refused(SPARKS "motion = 'fixed' }", "option 'motion' cannot be 'fixed'");

@@ -236,7 +236,7 @@ static void mistakes_of_a_frame_are_named(void **state) {
 static void the_reference_has_its_keys(void **state) {
     (void)state;
     helper_refuses(HEAD, "spread { fx = fx, at = { {0, 0} }, x = 1 }", END, "unknown key 'x'");
-    const script_key *keys = script_object_find("spread")->keys;
+    const value_desc *keys = script_object_find("spread")->keys;
     size_t count = 0;
     for (const char *at = strstr(err_get(), "known are "); (at = strchr(at, ',')); at++) count++;
     for (size_t i = 0; keys[i].name; i++)

@@ -1,0 +1,67 @@
+// Controls that are fields in a slot: uniforms of passes, values of the scene, lights, materials.
+#include "base/error.h"
+#include "base/memory.h"
+#include "effect/effect_impl.h"
+#include <string.h>
+
+const field *effect_control_field(const effect *e, const effect_control *c) {
+    const control *own = (const control *)c;
+    if (!own->slot || *own->slot || c->kind != EFFECT_CONTROL_UNIFORM)
+        return own->slot ? *own->slot : NULL;
+    const value_desc *declared;
+    return pass_inherited_uniform(e->passes[c->pass], c->index, &declared);
+}
+
+const field *effect_control_original(const effect_control *c) {
+    return ((const control *)c)->original;
+}
+
+const float *effect_control_default(const effect *e, const effect_control *c) {
+    const value_desc *declared = c->desc;
+    if (c->kind == EFFECT_CONTROL_UNIFORM)
+        pass_inherited_uniform(e->passes[c->pass], c->index, &declared);
+    return declared->value;
+}
+
+bool field_control_set(effect *e, control *c, const char *text) {
+    const value_desc *desc = c->face.desc;
+    float value[4];
+    if (!value_parse(desc, c->face.name, text, value)) return false;
+    field **node = &c->nodes[!c->turn];
+    if (!*node) *node = field_constant(&e->memory, 4, value);
+    (*node)->components = desc->components == 2 ? 3 : desc->components; // of a field: 1, 3 or 4
+    memcpy((*node)->value, value, sizeof value);
+    *c->slot = *node;
+    c->turn = !c->turn;
+    return true;
+}
+
+static void print_field(const value_desc *desc, const field *node, strbuf *out) {
+    float value[4];
+    for (int i = 0; i < 4; i++) value[i] = node->value[node->components == 1 ? 0 : i];
+    if (field_is_constant(node))
+        value_print(desc, value, out);
+    else
+        field_print(node, out);
+}
+
+// Where the eye of an orbit stands follows from these.
+static void print_orbit(const scene_camera *camera, strbuf *out) {
+    static const value_desc number = {.components = 1};
+    const field *const parts[] = {camera->distance, camera->yaw, camera->pitch};
+    strbuf_add(out, "orbit");
+    for (size_t i = 0; i < COUNT_OF(parts); i++) {
+        strbuf_add(out, " ");
+        print_field(&number, parts[i], out);
+    }
+}
+
+void field_control_print(const effect *e, const control *c, strbuf *out) {
+    const field *node = effect_control_field(e, &c->face);
+    if (node)
+        print_field(c->face.desc, node, out);
+    else if (c->slot == &e->scene.camera.eye)
+        print_orbit(&e->scene.camera, out);
+    else
+        value_print(c->face.desc, effect_control_default(e, &c->face), out);
+}
