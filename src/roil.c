@@ -90,8 +90,8 @@ roil *roil_create(const roil_desc *desc) {
     r->scripts = joined(home, "scripts");
     r->counters = desc->counters;
     r->reference = desc->reference;
-    r->punctual = desc->punctual;
-    r->hands = desc->hands;
+    r->never_waits = desc->never_waits;
+    r->interaction = desc->interaction;
     r->loading = desc->loading;
     r->user = desc->user;
     r->seconds = desc->time_limit > 0 ? desc->time_limit : TIME_LIMIT_LOAD_SECONDS;
@@ -188,9 +188,9 @@ roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
         .shader_root = r->shaders,
         .cache_dir = r->cache,
         .counters = r->counters,
-        .hands = r->hands,
+        .interaction = r->interaction,
         .reference = r->reference,
-        .punctual = r->punctual,
+        .never_waits = r->never_waits,
         .seconds = r->seconds,
         .settings = own,
         .setting_count = count,

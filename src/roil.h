@@ -63,10 +63,10 @@ typedef struct roil_desc {
                        // that works for it, by the clock; eight times as many of other threads and
                        // processes; the script of a frame gets a tenth of both. 0: 120
     const roil_window_desc *window; // NULL: nothing is shown
-    bool punctual; // no frame waits for a frame of a sequence that is not decoded yet: the nearest
-                   // one that is stands in for it (roil_playback.late)
-    bool hands;    // flows in slices can be touched (roil_slices.h); each of their steps takes a
-                   // little longer then
+    bool never_waits; // no frame waits for a frame of a sequence that is not decoded yet: the
+                      // nearest one that is stands in for it (roil_playback.late)
+    bool interaction; // flows in slices can be touched (roil_slices.h); each of their steps takes a
+                      // little longer then
 } roil_desc;
 
 roil *roil_create(const roil_desc *desc);
@@ -149,14 +149,15 @@ uint32_t roil_samples(const roil_effect *e);
 const char *roil_warning(const roil_effect *e);
 
 typedef struct roil_simulation { // what goes on from frame to frame in steps of its own
-    bool waiting;   // the last rendered frame shows an earlier state: render it again (punctual)
+    bool waiting;   // the last rendered frame shows an earlier state: render it again (never_waits)
     double reached; // seconds of the effect; -INFINITY: nothing yet
     const char *trouble; // which key to change; NULL: none
     const char *pass;    // of the trouble
 } roil_simulation;
 // A frame that does not follow the last has the frames between simulated first: from the last one
-// on, or, back in time, from the beginning. A punctual roil does that over several frames, and goes
-// back to one of the moments that it keeps, about a second apart, while numbers stay as they are.
+// on, or, back in time, from the beginning. One that never waits does that over several frames, and
+// goes back to one of the snapshots that it keeps, about a second apart, while numbers stay as they
+// are.
 bool roil_get_simulation(const roil_effect *e, roil_simulation *out); // false: nothing simulates
 void roil_restart(roil_effect *e); // simulations begin anew with the next frame
 // The state of all that simulates, after the last frame, as one file: there whole or not at all.
@@ -194,7 +195,7 @@ size_t roil_counters(roil_effect *e, roil_counter *out, size_t capacity);
 
 typedef struct roil_playback {  // of all sequences of an effect, since they were opened
     uint64_t shown;             // frames of theirs that came on
-    uint64_t late;              // rendered frames that show another one instead (punctual)
+    uint64_t late;              // rendered frames that show another one instead (never_waits)
     uint64_t decoded, uploaded; // frames
     uint64_t decoded_bytes, uploaded_bytes; // as they lie on the device
     double decode_seconds;                  // of processor time, all threads together

@@ -11,7 +11,7 @@ typedef struct template_file template_file; // roil_template.c
 struct roil {
     gpu *device; // NULL: no_device
     char *home, *shaders, *scripts, *cache;
-    bool counters, window, punctual, hands;
+    bool counters, window, never_waits, interaction;
     bool stuck; // a thread was left behind that uses it (roil_live_destroy)
     uint32_t reference;
     double seconds; // roil_desc.time_limit

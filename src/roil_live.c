@@ -234,7 +234,7 @@ static void free_live(roil_live *l) { // its threads have ended
     live_free_result(&l->result);
     roil_unload(l->effect);
     shader_library_destroy(l->library);
-    shelf_destroy(l->shelf);
+    content_cache_destroy(l->contents);
     while (l->setting_count) remove_setting(l, &l->settings[l->setting_count - 1]);
     live_free_names(l->good, l->good_count);
     live_free_names(l->watched, l->watched_count);
@@ -256,7 +256,7 @@ roil_live *roil_live_create(roil *r, const roil_live_desc *desc) {
     roil_live *l = mem_alloc(sizeof *l);
     *l = (roil_live){.owner = r, .file = copy(desc->file), .wake = desc->wake, .user = desc->user};
     init_locks(l);
-    l->shelf = shelf_create();
+    l->contents = content_cache_create();
     l->presets = mem_alloc(desc->preset_count * sizeof *l->presets);
     for (size_t i = 0; i < desc->preset_count; i++)
         l->presets[l->preset_count++] = copy(desc->presets[i]);

@@ -35,7 +35,7 @@ struct roil_live {
     void (*wake)(void *user);
     void *user;
     shader_library *library; // both shared by all loads
-    shelf *shelf;
+    content_cache *contents;
     watch *watch;
 
     // Of the caller's thread.

@@ -145,14 +145,14 @@ static effect *load(roil_live *l, const order *o, file_set *files) {
         .shader_root = r->shaders,
         .cache_dir = r->cache,
         .counters = r->counters,
-        .hands = r->hands,
+        .interaction = r->interaction,
         .reference = r->reference,
-        .punctual = r->punctual,
+        .never_waits = r->never_waits,
         .seconds = r->seconds,
         .settings = o->settings,
         .setting_count = o->setting_count,
         .library = l->library,
-        .shelf = l->shelf,
+        .contents = l->contents,
     });
     bool done = e && script_load(e, r->scripts) && effect_check_settings(e) && effect_compile(e) &&
                 effect_rehearse(e, o->framed ? o->frame : effect_first_frame(e));

@@ -1,5 +1,5 @@
 // Flows in slices in a user's hands: seen, pushed, taken out of as templates, and given templates.
-// Part of roil.h, which includes it. For what changes a flow its roil is made with `hands`.
+// Part of roil.h, which includes it. For what changes a flow its roil is made with `interaction`.
 //
 // Places in a slice are as in an effect's file: x from 0 at the left edge to 1, y from 0 at the
 // lower edge on in the same unit, the slice's width; so are sizes. Between frames, all of it.

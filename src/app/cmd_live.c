@@ -142,8 +142,8 @@ static int run_window(live *l, window *w, const job *j) {
 static int run_device(live *l, window *w, job *j) {
     roil_desc desc = app_device_desc(&j->device);
     desc.window = &w->desc;
-    desc.punctual = true;
-    desc.hands = true;
+    desc.never_waits = true;
+    desc.interaction = true;
     desc.waiting = on_waiting;
     desc.user = l;
     l->window = w;

@@ -202,7 +202,7 @@ static void forget_old(effect *e, const control *c) {
     e->host.warning[0] = '\0';
     if (c->face.kind != EFFECT_CONTROL_SCENE && c->face.kind != EFFECT_CONTROL_LIGHT &&
         c->face.kind != EFFECT_CONTROL_MATERIAL && c->face.kind != EFFECT_CONTROL_EVENTS)
-        effect_forget_moments(e);
+        effect_forget_snapshots(e);
 }
 
 void effect_reset_control(effect *e, control *c) {

@@ -29,7 +29,7 @@ effect *effect_create(const effect_desc *desc) {
     path_folder(folder, desc->file);
     e->device = desc->device;
     e->reference = desc->reference;
-    e->punctual = desc->punctual;
+    e->never_waits = desc->never_waits;
     e->seconds = desc->seconds > 0 ? desc->seconds : TIME_LIMIT_LOAD_SECONDS;
     e->file = arena_string(&e->memory, desc->file);
     e->inside = desc->inside ? arena_string(&e->memory, desc->inside) : NULL;
@@ -40,7 +40,7 @@ effect *effect_create(const effect_desc *desc) {
     e->frames = 1;
     e->first = 1;
     scene_init(&e->scene, &e->memory);
-    e->shelf = desc->shelf ? desc->shelf : (e->own_shelf = shelf_create());
+    e->contents = desc->contents ? desc->contents : (e->own_contents = content_cache_create());
     e->library = desc->library;
     if (!e->library) {
         bool cached = desc->cache_dir && path_join(shader_cache, desc->cache_dir, "spirv");
@@ -68,7 +68,7 @@ effect *effect_create(const effect_desc *desc) {
         .lights = &e->lights,
         .scene = &e->scene,
         .counters = desc->counters,
-        .hands = desc->hands,
+        .interaction = desc->interaction,
         .reader = &e->reader,
         .before_declare = effect_apply_settings,
         .user = e,
@@ -80,8 +80,8 @@ effect *effect_create(const effect_desc *desc) {
 
 void effect_destroy(effect *e) {
     if (!e) return;
-    effect_forget_moments(e);
-    mem_free(e->moments);
+    effect_forget_snapshots(e);
+    mem_free(e->snapshots);
     for (size_t i = 0; i < e->pass_count; i++) pass_destroy(e->passes[i]);
     for (size_t i = 0; i < e->grid_count; i++)
         if (e->grids[i]->destroy) e->grids[i]->destroy(e->grids[i], e->device);
@@ -101,8 +101,8 @@ void effect_destroy(effect *e) {
     mem_free(e->values);
     mem_free(e->passes);
     mem_free(e->grids);
-    for (size_t i = 0; i < e->held_count; i++) shelf_release(e->shelf, e->held[i]);
-    shelf_destroy(e->own_shelf);
+    for (size_t i = 0; i < e->held_count; i++) content_cache_release(e->contents, e->held[i]);
+    content_cache_destroy(e->own_contents);
     mem_free(e->held);
     mem_free(e->meshes);
     mem_free(e->materials);
@@ -160,8 +160,8 @@ pass *effect_get_pass(effect *e, size_t index) {
 graph *effect_graph(effect *e) {
     return e->graph;
 }
-shelf *effect_shelf(effect *e) {
-    return e->shelf;
+content_cache *effect_content_cache(effect *e) {
+    return e->contents;
 }
 shader_library *effect_library(effect *e) {
     return e->library;
@@ -255,7 +255,7 @@ pass *effect_add_pass(effect *e, const char *type, const char *shader, const cha
 void effect_add_grid(effect *e, field_grid *grid) {
     MEM_RESERVE(e->grids, e->grid_count + 1, e->grid_capacity);
     e->grids[e->grid_count++] = grid;
-    grid->punctual = e->punctual;
+    grid->never_waits = e->never_waits;
 }
 
 static bool grid_named(const effect *e, const char *name) {
@@ -274,7 +274,7 @@ void effect_name_grid(effect *e, field_grid *grid, const char *name) {
 
 // The mesh of a file, which loads of the same effect share; NULL with a message.
 static const mesh_data *load_mesh(effect *e, const char *path) {
-    shelf_item *item = shelf_take(e->shelf, path);
+    content_cache_item *item = content_cache_take(e->contents, path);
     if (!item) {
         arena memory = {0};
         int64_t begin = file_clock_ns();
@@ -283,7 +283,8 @@ static const mesh_data *load_mesh(effect *e, const char *path) {
             arena_free(&memory);
             return NULL;
         }
-        item = shelf_put(e->shelf, path, data, memory, data->files, data->file_count, begin);
+        item = content_cache_put(e->contents, path, data, memory, data->files, data->file_count,
+                                 begin);
     }
     MEM_RESERVE(e->held, e->held_count + 1, e->held_capacity);
     e->held[e->held_count++] = item;
@@ -333,7 +334,7 @@ const mesh_texture *effect_add_texture(effect *e, const char *file) {
     if (!path_confine(path, e->root, file)) return NULL;
     effect_add_file(e, path); // even if it cannot be read
     const char *key = arena_format(&e->memory, "texture %s", path);
-    shelf_item *item = shelf_take(e->shelf, key);
+    content_cache_item *item = content_cache_take(e->contents, key);
     if (!item) {
         arena memory = {0};
         const char *kept = path;
@@ -343,7 +344,7 @@ const mesh_texture *effect_add_texture(effect *e, const char *file) {
             arena_free(&memory);
             return NULL;
         }
-        item = shelf_put(e->shelf, key, texture, memory, &kept, 1, begin);
+        item = content_cache_put(e->contents, key, texture, memory, &kept, 1, begin);
     }
     MEM_RESERVE(e->held, e->held_count + 1, e->held_capacity);
     e->held[e->held_count++] = item;
@@ -351,7 +352,7 @@ const mesh_texture *effect_add_texture(effect *e, const char *file) {
 }
 
 static sky_image *load_sky_image(effect *e, const char *path) {
-    shelf_item *item = shelf_take(e->shelf, path);
+    content_cache_item *item = content_cache_take(e->contents, path);
     if (!item) {
         arena memory = {0};
         int64_t begin = file_clock_ns();
@@ -360,7 +361,7 @@ static sky_image *load_sky_image(effect *e, const char *path) {
             arena_free(&memory);
             return NULL;
         }
-        item = shelf_put(e->shelf, path, image, memory, &path, 1, begin);
+        item = content_cache_put(e->contents, path, image, memory, &path, 1, begin);
     }
     MEM_RESERVE(e->held, e->held_count + 1, e->held_capacity);
     e->held[e->held_count++] = item;
@@ -384,7 +385,7 @@ const sky_image *effect_add_sky_image(effect *e, const char *file) {
 // A picture of a file, which loads of the same effect share; NULL with a message.
 static const picture *load_picture(effect *e, const char *path, uint32_t side_max) {
     const char *key = arena_format(&e->memory, "picture up to %u: %s", side_max, path);
-    shelf_item *item = shelf_take(e->shelf, key);
+    content_cache_item *item = content_cache_take(e->contents, key);
     if (!item) {
         arena memory = {0};
         int64_t begin = file_clock_ns();
@@ -393,7 +394,7 @@ static const picture *load_picture(effect *e, const char *path, uint32_t side_ma
             arena_free(&memory);
             return NULL;
         }
-        item = shelf_put(e->shelf, key, data, memory, &path, 1, begin);
+        item = content_cache_put(e->contents, key, data, memory, &path, 1, begin);
     }
     MEM_RESERVE(e->held, e->held_count + 1, e->held_capacity);
     e->held[e->held_count++] = item;

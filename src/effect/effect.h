@@ -3,7 +3,7 @@
 //
 // Life: effect_create, declarations, effect_set (command line), effect_build, effect_render...
 #pragma once
-#include "base/shelf.h"
+#include "base/content_cache.h"
 #include "pass/pass.h"
 
 typedef struct effect effect;
@@ -31,8 +31,8 @@ typedef struct effect_desc {
     const char *shader_root; // the program's shaders
     const char *cache_dir;   // NULL: no caches
     bool counters;
-    bool hands;    // pass_host.hands
-    bool punctual; // field_grid.punctual, of all grids
+    bool interaction; // pass_host.interaction
+    bool never_waits; // field_grid.never_waits, of all grids
     // Above 0: each pass `march` becomes a `reference`, and this is what effect_samples shall come
     // to.
     uint32_t reference;
@@ -42,7 +42,7 @@ typedef struct effect_desc {
         seconds; // that a load may take, and a part of it a frame's script; 0: as base/time_limit.h
     // Shared with other loads of the same file, which then read nothing twice; NULL: its own.
     shader_library *library;
-    shelf *shelf;
+    content_cache *contents;
 } effect_desc;
 
 effect *effect_create(const effect_desc *desc);
@@ -174,7 +174,7 @@ size_t effect_pass_count(const effect *e);
 pass *effect_get_pass(effect *e, size_t index);
 graph *effect_graph(effect *e);
 shader_library *effect_library(effect *e);
-shelf *effect_shelf(effect *e);
+content_cache *effect_content_cache(effect *e);
 
 // ---- controls: all that can be set by name ----------------------------------------------------
 
@@ -261,7 +261,7 @@ size_t effect_files(const effect *e, const char *const **out); // all that were 
 uint64_t effect_render(effect *e, double frame, bool jump);
 
 typedef struct effect_simulation {
-    bool waiting;        // they have not reached the last frame yet: render it again (punctual)
+    bool waiting;        // they have not reached the last frame yet: render it again (never_waits)
     double reached;      // seconds; -INFINITY: nothing
     const char *trouble; // of the pass `where`: which key to change; NULL: none
     const char *where;

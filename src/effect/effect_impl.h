@@ -25,15 +25,15 @@ bool effect_can_save(const effect *e); // all that simulates, as of now
 void effect_list_state(const effect *e, struct checkpoint_list *out);
 bool effect_take_state(effect *e, struct checkpoint *c); // false: all begins anew
 
-// Moments of a window that plays, to which it can go back (moments.c).
-void effect_keep_moment(effect *e);                      // after a frame
-bool effect_go_back(effect *e, double frame);            // to the last one until then; false: none
-void effect_forget_moments(effect *e);                   // numbers have changed
-void effect_forget_moments_from(effect *e, double time); // events of this time or later (s)
-typedef struct effect_moment {
+// Snapshots of simulations while a window plays, for going back in time (snapshots.c).
+void effect_keep_snapshot(effect *e);         // after a frame
+bool effect_go_back(effect *e, double frame); // to the last one until then; false: none
+void effect_forget_snapshots(effect *e);      // numbers have changed
+void effect_forget_snapshots_from(effect *e, double time); // events of this time or later (s)
+typedef struct effect_snapshot {
     double frame;
     struct checkpoint *state;
-} effect_moment;
+} effect_snapshot;
 
 // ---- systems.c: what goes on in the script from frame to frame (events.h) -----------------------
 
@@ -117,9 +117,9 @@ struct effect {
     size_t grid_count, grid_capacity;
     struct effect_clock *clocks; // of those whose speed or start moves
     size_t clock_count, clock_capacity;
-    size_t clocked;           // frames since the first that they know
-    shelf *shelf, *own_shelf; // as the library
-    shelf_item **held;        // data of meshes
+    size_t clocked;                         // frames since the first that they know
+    content_cache *contents, *own_contents; // as the library
+    content_cache_item **held;              // data of meshes
     size_t held_count, held_capacity;
     scene_material **materials;
     size_t material_count, material_capacity;
@@ -153,13 +153,13 @@ struct effect {
     shared_mat4 clip, last_clip; // world to clip of the frame being recorded, of the one before
     bool has_last;               // there is one before, of which histories tell
     bool compiled, allocated;
-    uint32_t reference;     // effect_desc
-    bool punctual;          // effect_desc
-    double seconds;         // of it, as they hold
-    bool unseen;            // its pictures are not drawn
-    effect_moment *moments; // by frame
-    size_t moment_count, moment_capacity;
-    double moment_gap; // frames from one to the next at least; 0: a second
+    uint32_t reference;         // effect_desc
+    bool never_waits;           // effect_desc
+    double seconds;             // of it, as they hold
+    bool unseen;                // its pictures are not drawn
+    effect_snapshot *snapshots; // by frame
+    size_t snapshot_count, snapshot_capacity;
+    double snapshot_gap; // frames from one to the next at least; 0: a second
     const effect_setting *settings;
     bool *applied; // one per setting
     size_t setting_count;

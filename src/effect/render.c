@@ -297,7 +297,7 @@ uint64_t effect_render(effect *e, double frame, bool jump) {
     e->last_clip = e->clip;
     e->last_frame = frame;
     e->rendered_at = clock_seconds();
-    if (e->punctual) effect_keep_moment(e);
+    if (e->never_waits) effect_keep_snapshot(e);
     return number;
 }
 

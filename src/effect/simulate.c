@@ -61,7 +61,7 @@ static bool is_past(const effect *e, double time) {
     return false;
 }
 
-// Those that are past the frame begin anew, or all go on from a moment before it.
+// Those that are past the frame begin anew, or all continue from a snapshot before it.
 static void turn_back(effect *e, double frame) {
     double time = time_of(e, frame);
     if (!is_past(e, time) || effect_go_back(e, frame)) return;
@@ -72,7 +72,7 @@ static void turn_back(effect *e, double frame) {
 
 void effect_restart(effect *e) {
     pass *p;
-    effect_forget_moments(e);
+    effect_forget_snapshots(e);
     effect_restart_systems(e);
     effect_restart_clocks(e);
     if (!e->compiled) return;
@@ -106,7 +106,7 @@ static bool run(effect *e, double frame, bool *again) {
     bool far = next < frame || !is_near(e, time);
     if (far && !effect_tell_progress(e, 0, (double)whole)) return false;
     while (next < frame || !is_near(e, time)) {
-        if (e->punctual && clock_seconds() > begin + patience) {
+        if (e->never_waits && clock_seconds() > begin + patience) {
             e->behind = true;
             break;
         }
@@ -122,7 +122,7 @@ static bool run(effect *e, double frame, bool *again) {
 bool effect_simulate(effect *e, double frame, bool *again) {
     *again = e->behind = e->host.hold = false;
     if (!graph_simulates(e->graph)) return true;
-    e->host.brief = e->punctual;
+    e->host.brief = e->never_waits;
     turn_back(e, frame);
     if (!run(e, frame, again)) return false;
     e->host.hold = e->behind;

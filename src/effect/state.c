@@ -86,7 +86,7 @@ bool effect_load_state(effect *e, const char *path, double *frame) {
     checkpoint *c = checkpoint_open(path);
     bool done = c && effect_take_state(e, c);
     checkpoint_close(c);
-    effect_forget_moments(e);
+    effect_forget_snapshots(e);
     if (done) *frame = e->last_frame;
     return done;
 }

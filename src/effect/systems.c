@@ -107,7 +107,7 @@ static void take(effect *e, const effect_event *list, size_t count) {
         s->frame = (double)NAN;
         s->next = 0;
     }
-    effect_forget_moments_from(e, from);
+    effect_forget_snapshots_from(e, from);
     mem_free(s->events);
     s->events = taken;
     s->count = count;

@@ -51,13 +51,13 @@ struct field_grid {
     bool levels;       // has mip levels: sampled at that of `grid_width` (lib/grid.glsl)
     bool sparse;       // images hold bricks where there is something; lib/grid.glsl says how
     bool blends;       // may ever have blend > 0: the shader then samples both sets
-    bool punctual;     // never waits for data: another frame stands in for one that is late
+    bool never_waits;  // never waits for data: another frame stands in for one that is late
     bool simulated;    // each frame follows from the one before
     const field_extrusion *extruded; // images are slices round an axis; NULL: they fill the box
     const char *label;               // what the script calls it; NULL: it has no name
     field_grid_state state;          // current; set by update
     // Brings `state` to a time, uploading what is needed. Waits for data that is not decoded yet,
-    // unless it is punctual and has anything to show. NULL: a pass fills the grid.
+    // unless it never waits and has anything to show. NULL: a pass fills the grid.
     bool (*update)(field_grid *grid, gpu *g, double time);
     void (*destroy)(field_grid *grid, gpu *g); // frees all; NULL: its memory is the effect's
     // Gives `other`, a grid with the same hook, all that this one has read and put on the device,

@@ -138,7 +138,7 @@ static bool read_missing(sequence_data *s, vdb_info *infos) {
     vdb_info *read = mem_alloc(s->file_count * sizeof *read);
     for (size_t i = 0; i < s->file_count; i++) {
         if (s->held[i]) continue;
-        memory[count] = s->desc.shelf ? &made[count] : &s->memory;
+        memory[count] = s->desc.contents ? &made[count] : &s->memory;
         paths[count++] = s->files[i];
     }
     int64_t begin = file_clock_ns();
@@ -146,9 +146,10 @@ static bool read_missing(sequence_data *s, vdb_info *infos) {
     for (size_t i = 0, k = 0; done && k < count; i++) {
         if (s->held[i]) continue;
         infos[i] = read[k];
-        if (s->desc.shelf) {
+        if (s->desc.contents) {
             vdb_info *kept = arena_copy(&made[k], &read[k], sizeof *kept);
-            s->held[i] = shelf_put(s->desc.shelf, paths[k], kept, made[k], &paths[k], 1, begin);
+            s->held[i] =
+                content_cache_put(s->desc.contents, paths[k], kept, made[k], &paths[k], 1, begin);
         }
         k++;
     }
@@ -161,9 +162,9 @@ static bool read_missing(sequence_data *s, vdb_info *infos) {
 }
 
 static bool read_infos(sequence_data *s, vdb_info *infos) {
-    s->held_count = s->desc.shelf ? s->file_count : 0;
+    s->held_count = s->desc.contents ? s->file_count : 0;
     for (size_t i = 0; i < s->held_count; i++) {
-        s->held[i] = shelf_take(s->desc.shelf, s->files[i]);
+        s->held[i] = content_cache_take(s->desc.contents, s->files[i]);
         if (s->held[i]) infos[i] = *(const vdb_info *)s->held[i]->data;
     }
     return read_missing(s, infos);
@@ -292,7 +293,7 @@ static bool show(sequence *s, gpu *g, double position, const uint32_t frames[2],
     uint32_t late[2] = {0};
     size_t count = 0;
     sequence_cache_turn(s->data);
-    if (s->grid.punctual) {
+    if (s->grid.never_waits) {
         sequence_cache_pump(s->data, g);
         count = show_punctual(s, g, frames, blend, late);
         if (count == SIZE_MAX) return false;
@@ -306,7 +307,7 @@ static bool show(sequence *s, gpu *g, double position, const uint32_t frames[2],
     s->data->cache.counts.waiting = count > 0;
     s->data->cache.counts.threads = s->data->cache.jobs.threads;
     decode_ahead(s->data, position, late, count);
-    if (!s->grid.punctual) sequence_cache_pump(s->data, g);
+    if (!s->grid.never_waits) sequence_cache_pump(s->data, g);
     return true;
 }
 

@@ -1,7 +1,7 @@
 // Sequences of volume files played back as a grid: OpenVDB files or one raw file of many frames.
 #pragma once
 #include "base/arena.h"
-#include "base/shelf.h"
+#include "base/content_cache.h"
 #include "field/grid.h"
 #include "media/vdb.h"
 
@@ -34,7 +34,7 @@ typedef struct sequence_desc {
     bool up_by_creator; // instead: what the first VDB file says by who made it
     float scale;        // metres a world unit of the file; 0: 1
     float3 offset;      // metres, added after scaling
-    shelf *shelf;       // keeps what files say of themselves between loads; NULL: none
+    content_cache *contents; // keeps what files say of themselves between loads; NULL: none
     // Memory limits, checked before anything is read.
     uint64_t max_frame_bytes; // 0: 512 MiB
     // Raw files only:

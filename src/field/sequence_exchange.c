@@ -6,7 +6,7 @@
 
 void sequence_data_free(sequence_data *d, gpu *g) {
     sequence_cache_free(d, g);
-    for (size_t i = 0; i < d->held_count; i++) shelf_release(d->desc.shelf, d->held[i]);
+    for (size_t i = 0; i < d->held_count; i++) content_cache_release(d->desc.contents, d->held[i]);
     arena_free(&d->memory);
     mem_free(d);
 }

@@ -112,10 +112,10 @@ typedef struct sequence_data {
     sequence_raw_layout layout;
     const char **files; // by frame
     size_t file_count;
-    const int64_t *times;  // of every file: its frame since the first; NULL: one after another
-    int64_t span;          // frames of the timeline
-    const vdb_info *infos; // of every file
-    shelf_item **held;     // the same, of desc.shelf
+    const int64_t *times;      // of every file: its frame since the first; NULL: one after another
+    int64_t span;              // frames of the timeline
+    const vdb_info *infos;     // of every file
+    content_cache_item **held; // the same, of desc.content_cache
     size_t held_count;
     uint32_t frame_count;  // that there are
     box3 file_box;         // in file units and axes

@@ -32,11 +32,11 @@ typedef struct pass_host { // what all passes of one effect share
     struct pass_ranges *ranges;       // owned: of grids (pass/ranges.h)
     gpu_image *blue_noise;            // texture "BlueNoise" of lib/random.glsl
     bool fresh;                       // histories begin with the frame being recorded
-    bool ahead;    // the frame being recorded is not drawn: what simulates goes on alone
-    bool hold;     // what simulates stays as it is
-    bool brief;    // a submit is to be short, so that a window stays awake
-    bool counters; // compile counters in and read them
-    bool hands;    // flows can be touched (pass/slices_templates.h)
+    bool ahead;       // the frame being recorded is not drawn: what simulates goes on alone
+    bool hold;        // what simulates stays as it is
+    bool brief;       // a submit is to be short, so that a window stays awake
+    bool counters;    // compile counters in and read them
+    bool interaction; // flows can be touched (pass/slices_templates.h)
     const shader_reader *reader;                 // of all files of shaders; may be NULL
     bool (*before_declare)(void *user, pass *p); // last chance to change a pass; may be NULL
     void *user;

@@ -165,7 +165,7 @@ static flow_desc structure_of(const pass *p, const slices_flow *f) {
 
 static bool slices_complete(pass *p) {
     slices_flow *f = slices_of(p);
-    if (p->host->hands) slices_take_hand(p);
+    if (p->host->interaction) slices_take_hand(p);
     if (f->templates && f->templates->complete && !f->templates->complete(f)) return false;
     flow_desc structure = structure_of(p, f);
     f->solver = flow_create(p->host->memory, &structure);

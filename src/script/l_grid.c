@@ -68,7 +68,7 @@ static moving read_playback(lua_State *L, const script_object *row, sequence_des
     const char *who = row->name;
     desc->pattern = read_pattern(L, who);
     desc->root = effect_root(script_of(L)->effect);
-    desc->shelf = effect_shelf(script_of(L)->effect);
+    desc->contents = effect_content_cache(script_of(L)->effect);
     desc->fps = read_factor(L, who, "fps", 24);
     desc->loop = (sequence_loop)value_get_choice(L, 1, row, "loop");
     desc->blend = value_get_bool(L, 1, who, "blend", false);

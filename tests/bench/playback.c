@@ -64,8 +64,8 @@ static roil_playback playback_of(roil_effect *e) {
     return now;
 }
 
-static roil_effect *open_effect(bench *b, roil **r, bool punctual) {
-    *r = roil_create(&(roil_desc){.punctual = punctual});
+static roil_effect *open_effect(bench *b, roil **r, bool never_waits) {
+    *r = roil_create(&(roil_desc){.never_waits = never_waits});
     if (!*r) fail("no device");
     roil_effect *e = roil_load(*r, b->file, b->settings, b->setting_count);
     if (!e || !roil_prepare(e, b->width, b->height)) fail(b->file);

@@ -71,16 +71,16 @@ static void failure_leaves_the_old_effect_as_it_was(void **state) {
 
 // ---- sequences --------------------------------------------------------------------------------
 
-static shelf *kept;
+static content_cache *kept;
 
 static effect *open_player(gpu *device, float offset, field_grid **grid) {
     char pattern[4096];
     snprintf(pattern, sizeof pattern, "%s/effects/data/explosion-32/000*.vdb",
              getenv("ROIL_SOURCE_DIR"));
-    effect *e = open_effect(&(effect_desc){.device = device, .shelf = kept});
+    effect *e = open_effect(&(effect_desc){.device = device, .contents = kept});
     sequence *s = sequence_create(
         effect_memory(e),
-        &(sequence_desc){.pattern = pattern, .offset = {offset, 0, 0}, .shelf = kept});
+        &(sequence_desc){.pattern = pattern, .offset = {offset, 0, 0}, .contents = kept});
     gpu_test_ok(s);
     *grid = sequence_grid(s);
     effect_add_grid(e, *grid);
@@ -96,7 +96,7 @@ static effect *open_player(gpu *device, float offset, field_grid **grid) {
 // The texture shown before and after another effect took over, and again.
 static void play(gpu *device, float offset, bool same) {
     field_grid *old_grid, *next_grid;
-    kept = shelf_create();
+    kept = content_cache_create();
     effect *old = open_player(device, 0, &old_grid);
     gpu_test_ok(effect_allocate(old, SIZE, SIZE) && effect_render(old, 1, true));
     float *before = read_picture(old);
@@ -113,7 +113,7 @@ static void play(gpu *device, float offset, bool same) {
     mem_free(before);
     mem_free(after);
     effect_destroy(next);
-    shelf_destroy(kept);
+    content_cache_destroy(kept);
 }
 
 static void decoded_frames_are_handed_on(void **state) {
@@ -127,7 +127,7 @@ static void frames_that_lie_elsewhere_are_not(void **state) {
 // ---- meshes -----------------------------------------------------------------------------------
 
 static effect *open_mesh(gpu *device, scene_mesh **mesh) {
-    effect *e = open_effect(&(effect_desc){.device = device, .shelf = kept});
+    effect *e = open_effect(&(effect_desc){.device = device, .contents = kept});
     *mesh = effect_add_mesh(e, "crate.obj");
     gpu_test_ok(*mesh);
     pass *p = add(e, "geometry", NULL);
@@ -140,7 +140,7 @@ static effect *open_mesh(gpu *device, scene_mesh **mesh) {
 
 static void mesh_is_imported_and_uploaded_once(void **state) {
     scene_mesh *first, *second;
-    kept = shelf_create();
+    kept = content_cache_create();
     effect *old = open_mesh(*state, &first);
     gpu_test_ok(effect_allocate(old, SIZE, SIZE) && effect_render(old, 1, true));
     gpu_buffer *vertices = first->vertices;
@@ -153,13 +153,13 @@ static void mesh_is_imported_and_uploaded_once(void **state) {
     effect_destroy(old);
     gpu_test_ok(effect_render(next, 2, true));
     effect_destroy(next);
-    shelf_destroy(kept);
+    content_cache_destroy(kept);
 }
 
 // ---- sky --------------------------------------------------------------------------------------
 
 static effect *open_sky(gpu *device) {
-    effect *e = open_effect(&(effect_desc){.device = device, .shelf = kept});
+    effect *e = open_effect(&(effect_desc){.device = device, .contents = kept});
     scene *s = effect_scene(e);
     s->sky.image = effect_add_sky_image(e, "sky.exr");
     s->sky.strength = number(e, 1);
@@ -171,7 +171,7 @@ static effect *open_sky(gpu *device) {
 }
 
 static void sky_is_read_and_uploaded_once(void **state) {
-    kept = shelf_create();
+    kept = content_cache_create();
     effect *old = open_sky(*state);
     gpu_test_ok(effect_allocate(old, SIZE, SIZE));
     float before = middle(old, 1, SIZE, 0);
@@ -183,7 +183,7 @@ static void sky_is_read_and_uploaded_once(void **state) {
     effect_destroy(old);
     assert_true(before > 0 && middle(next, 2, SIZE, 0) == before);
     effect_destroy(next);
-    shelf_destroy(kept);
+    content_cache_destroy(kept);
 }
 
 // ---- rehearsal --------------------------------------------------------------------------------

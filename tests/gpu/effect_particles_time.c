@@ -67,7 +67,7 @@ static void how_often_is_drawn_changes_no_byte(void **state) {
 
 // What a window keeps now and then, so that a jump back is a short way.
 static void a_window_goes_back(void **state) {
-    swarm window = fountain_as(&(effect_desc){.device = *state, .punctual = true}, 60, 700);
+    swarm window = fountain_as(&(effect_desc){.device = *state, .never_waits = true}, 60, 700);
     swarm anew = fountain(*state, 60, 700);
     swarm_build(&window);
     swarm_build(&anew);

@@ -39,7 +39,7 @@ typedef struct player {
     field *density;
 } player;
 
-static player open_player(sequence_desc desc, bool punctual) {
+static player open_player(sequence_desc desc, bool never_waits) {
     player p;
     int components;
     desc.pattern = arena_format(build_memory(), "%s/f*.vdb", folder);
@@ -47,7 +47,7 @@ static player open_player(sequence_desc desc, bool punctual) {
     p.sequence = sequence_create(build_memory(), &desc);
     gpu_test_ok(p.sequence);
     p.grid = sequence_grid(p.sequence);
-    p.grid->punctual = punctual;
+    p.grid->never_waits = never_waits;
     assert_int_equal(sequence_channel(p.sequence, "density", &components), 0);
     p.density = field_grid_channel(build_memory(), p.grid, 0, 1);
     return p;
@@ -117,8 +117,8 @@ static size_t frames_kept(const player *p) {
 }
 
 static void few_frames_are_kept_of_what_does_not_fit(void **state) {
-    for (int punctual = 0; punctual < 2; punctual++) {
-        player p = open_player((sequence_desc){.storage = SEQUENCE_SPARSE}, punctual);
+    for (int never_waits = 0; never_waits < 2; never_waits++) {
+        player p = open_player((sequence_desc){.storage = SEQUENCE_SPARSE}, never_waits);
         const field_playback *counts = p.grid->playback(p.grid);
         for (int i = 0; i < FRAMES; i++) come_to(*state, &p, i);
         assert_int_equal(frames_kept(&p), FRAMES);
@@ -151,8 +151,8 @@ static void frames_blend_when_both_are_there(void **state) {
 
 static void broken_frames_are_told(void **state) {
     char kept[PATH_CAP];
-    for (int punctual = 0; punctual < 2; punctual++) {
-        player p = open_player((sequence_desc){.storage = SEQUENCE_SPARSE}, punctual);
+    for (int never_waits = 0; never_waits < 2; never_waits++) {
+        player p = open_player((sequence_desc){.storage = SEQUENCE_SPARSE}, never_waits);
         snprintf(kept, sizeof kept, "%s.kept", file_of(7));
         assert_int_equal(rename(file_of(7), kept), 0);
         gpu_test_ok(file_write(file_of(7), "no longer", 9));

@@ -78,7 +78,7 @@ static void a_window_catches_up_over_several_pictures(void **state) {
     draw(a, 30, whole);
     roil_unload(a);
     roil *window = roil_create(
-        &(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true, .punctual = true});
+        &(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true, .never_waits = true});
     ok(window);
     roil_effect *b = open(window, 24, "warm_up = 3600", UPDATE);
     draw(b, 1, parts);
@@ -116,7 +116,7 @@ static void a_window_goes_back_by_a_second_at_most(void **state) {
     double steps = 0;
     (void)state;
     roil *window = roil_create(
-        &(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true, .punctual = true});
+        &(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true, .never_waits = true});
     ok(window);
     roil_effect *e = open(window, FPS, "", UPDATE);
     for (int frame = 1; frame <= SHOWN; frame++) draw_whole(e, frame, was[frame]);

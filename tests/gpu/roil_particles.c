@@ -76,7 +76,7 @@ static void short_submits_change_nothing(void **state) {
     draw(a, 4, whole);
     roil_unload(a);
     roil *window = roil_create(
-        &(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true, .punctual = true});
+        &(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true, .never_waits = true});
     ok(window);
     roil_effect *b = open(window, 1.3);
     do {

@@ -213,6 +213,6 @@ int main(void) {
         cmocka_unit_test(its_line_can_be_pasted),
         cmocka_unit_test(a_checkpoint_is_taken_up),
     };
-    test_hands = true;
+    test_interaction = true;
     return test_run(tests);
 }

@@ -15,15 +15,15 @@
 
 static char test_folder[256];
 static uint64_t test_messages;
-static bool test_hands; // to be set before test_run: roil_desc.hands
+static bool test_interaction; // to be set before test_run: roil_desc.interaction
 
 static inline int test_open(void **state) {
     const char *temporary = getenv("TMPDIR");
     snprintf(test_folder, sizeof test_folder, "%s/roil-test-XXXXXX",
              temporary ? temporary : "/tmp");
     assert_non_null(mkdtemp(test_folder));
-    roil *r = roil_create(
-        &(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true, .hands = test_hands});
+    roil *r = roil_create(&(roil_desc){
+        .home = getenv("ROIL_SOURCE_DIR"), .validate = true, .interaction = test_interaction});
     ok(r);
     *state = r;
     return 0;

@@ -1,42 +1,42 @@
-#include "base/shelf.h"
+#include "base/content_cache.h"
 #include "base/hash.h"
 #include "base/memory.h"
 #include <pthread.h>
 #include <string.h>
 #include <sys/stat.h>
 
-typedef struct stamp { // of a file: differs once it is written or another takes its place
+typedef struct stamp { // of a file; it changes when the file is written or replaced
     const char *path;
     struct stat info;
 } stamp;
 
 typedef struct entry {
-    shelf_item item; // first: an item's address is its entry's
+    content_cache_item item; // first: an item's address is its entry's
     const char *key;
     uint64_t hash;
     stamp *stamps;
     size_t stamp_count, holders;
-    bool stale; // of files that may have changed while they were read
+    bool stale; // the files may have changed while they were read
     struct entry *next;
 } entry;
 
 enum { BUCKETS = 1024 };
 
-struct shelf {
+struct content_cache {
     pthread_mutex_t lock;
     entry *buckets[BUCKETS];
 };
 
-shelf *shelf_create(void) {
-    shelf *s = mem_alloc(sizeof *s);
-    pthread_mutex_init(&s->lock, NULL);
-    return s;
+content_cache *content_cache_create(void) {
+    content_cache *c = mem_alloc(sizeof *c);
+    pthread_mutex_init(&c->lock, NULL);
+    return c;
 }
 
-void shelf_destroy(shelf *s) {
-    if (!s) return;
-    pthread_mutex_destroy(&s->lock);
-    mem_free(s);
+void content_cache_destroy(content_cache *c) {
+    if (!c) return;
+    pthread_mutex_destroy(&c->lock);
+    mem_free(c);
 }
 
 static bool is_same(const struct stat *a, const struct stat *b) {
@@ -55,14 +55,14 @@ static bool is_current(const entry *e) {
     return true;
 }
 
-shelf_item *shelf_take(shelf *s, const char *key) {
+content_cache_item *content_cache_take(content_cache *c, const char *key) {
     uint64_t hash = hash64(key, strlen(key));
     entry *found = NULL;
-    pthread_mutex_lock(&s->lock);
-    for (entry *e = s->buckets[hash % BUCKETS]; e && !found; e = e->next)
+    pthread_mutex_lock(&c->lock);
+    for (entry *e = c->buckets[hash % BUCKETS]; e && !found; e = e->next)
         if (e->hash == hash && strcmp(e->key, key) == 0 && is_current(e)) found = e;
     if (found) found->holders++;
-    pthread_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&c->lock);
     return found ? &found->item : NULL;
 }
 
@@ -76,31 +76,32 @@ static void stamp_files(entry *e, const char *const *files, size_t count, int64_
     }
 }
 
-shelf_item *shelf_put(shelf *s, const char *key, const void *data, arena memory,
-                      const char *const *files, size_t file_count, int64_t begin) {
+content_cache_item *content_cache_put(content_cache *c, const char *key, const void *data,
+                                      arena memory, const char *const *files, size_t file_count,
+                                      int64_t begin) {
     entry *e = mem_alloc(sizeof *e);
-    e->item = (shelf_item){data, memory};
+    e->item = (content_cache_item){data, memory};
     e->key = arena_string(&e->item.memory, key);
     e->hash = hash64(key, strlen(key));
     e->holders = 1;
     stamp_files(e, files, file_count, begin);
-    entry **bucket = &s->buckets[e->hash % BUCKETS];
-    pthread_mutex_lock(&s->lock);
+    entry **bucket = &c->buckets[e->hash % BUCKETS];
+    pthread_mutex_lock(&c->lock);
     e->next = *bucket;
     *bucket = e;
-    pthread_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&c->lock);
     return &e->item;
 }
 
-void shelf_release(shelf *s, shelf_item *item) {
+void content_cache_release(content_cache *c, content_cache_item *item) {
     if (!item) return;
     entry *e = (entry *)item;
-    pthread_mutex_lock(&s->lock);
+    pthread_mutex_lock(&c->lock);
     bool last = --e->holders == 0;
-    entry **at = &s->buckets[e->hash % BUCKETS];
+    entry **at = &c->buckets[e->hash % BUCKETS];
     while (last && *at != e) at = &(*at)->next;
     if (last) *at = e->next;
-    pthread_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&c->lock);
     if (!last) return;
     arena_free(&e->item.memory);
     mem_free(e);
