@@ -384,8 +384,8 @@ size_t roil_readouts(roil_effect *e, roil_readout *out, size_t capacity) {
         if (found && count++ < capacity) out[count - 1] = speed_of(e, p);
     }
     const effect_status *status;
-    size_t told = effect_statuses(e->effect, &status);
-    for (size_t i = 0; i < told; i++, count++)
+    size_t reported = effect_statuses(e->effect, &status);
+    for (size_t i = 0; i < reported; i++, count++)
         if (count < capacity)
             out[count] = (roil_readout){"effect", status[i].name, status[i].unit, status[i].value};
     return count;

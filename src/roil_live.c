@@ -179,8 +179,8 @@ bool roil_live_update(roil_live *l, uint32_t width, uint32_t height, double fram
         l->result = (live_result){0};
         l->ready = false;
     }
-    bool left = l->left && !l->told;
-    l->told = true;
+    bool left = l->left && !l->left_reported;
+    l->left_reported = true;
     pthread_mutex_unlock(&l->lock);
     if (left) set_message(l, copy("the last load hangs, and was left behind; a new one has begun"));
     if (result.effect && take_over(l, result.effect, width, height)) {

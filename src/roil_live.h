@@ -55,7 +55,7 @@ struct roil_live {
     bool building, ending;
     live_builder *builder;
     size_t left;        // builders that were left behind and have not ended
-    bool told;          // of the last of these
+    bool left_reported; // of the last of these
     live_result result; // not taken yet
     bool ready;         // there is one
 

@@ -199,7 +199,7 @@ static void leave_stuck(roil_live *l) {
         return;
     }
     b->left = true;
-    l->told = false;
+    l->left_reported = false;
     l->left++;
     pthread_detach(b->thread);
 }

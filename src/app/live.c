@@ -35,7 +35,7 @@ typedef struct loop {
     uint64_t reloads;
     bool drawn;   // the effect has a picture
     double frame; // of it
-    bool told;    // that the first frame was shown
+    bool logged;  // that the first frame was shown
     bool minimized;
 } loop;
 
@@ -247,8 +247,8 @@ static layout lay_out(live *l, uint32_t width, uint32_t height) {
 static void draw_interface(live *l, const layout *at, uint32_t width) {
     ui_canvas view = ui_bare(l->view);
     ui_mark("view", l->view);
-    camera_hand(l, &view);
-    event_hand(l, &view);
+    camera_input(l, &view);
+    event_input(l, &view);
     status_draw(l, l->view);
     if (!l->session.panel_hidden) {
         timeline_draw(l, at->bar);
@@ -291,8 +291,8 @@ static bool show(live *l, loop *p, uint32_t width, uint32_t height) {
     memcpy(out->view, &l->view, sizeof out->view);
     if (!roil_show(l->r, out)) return false;
     log_write(LOG_DEBUG, "live: shown");
-    if (p->drawn && !p->told) log_write(LOG_DEBUG, "live: first frame after %.2f s", age());
-    p->told = p->told || p->drawn;
+    if (p->drawn && !p->logged) log_write(LOG_DEBUG, "live: first frame after %.2f s", age());
+    p->logged = p->logged || p->drawn;
     return true;
 }
 

@@ -67,13 +67,14 @@ void live_break(live *l, const char *why); // no frame until something changes
 typedef struct window window; // window.h
 bool live_loop(live *l, window *w);
 
-// ---- camera_hand.c: the camera in the user's hands ----------------------------------------------
+// ---- camera_input.c: the camera in the user's hands
+// ----------------------------------------------
 
-void camera_hand(live *l, const ui_canvas *view); // what the pointer does over the picture
-void camera_frame(live *l);                       // so that the volume fills the picture
-void camera_reset(live *l);                       // to the script's
+void camera_input(live *l, const ui_canvas *view); // what the pointer does over the picture
+void camera_frame(live *l);                        // so that the volume fills the picture
+void camera_reset(live *l);                        // to the script's
 
-// ---- event_hand.c: what the effect hears
+// ---- event_input.c: what the effect hears
 // ----------------------------------------------------------
 
 enum { LIVE_HOTKEYS = 64 };
@@ -81,7 +82,7 @@ size_t event_hotkeys(const live *l, roil_hotkey out[LIVE_HOTKEYS]);
 bool event_hears_key(const live *l, int key); // of GLFW
 bool event_hears_clicks(const live *l);
 bool event_press(live *l, int key, int mods, bool repeated); // true: the key was the effect's
-void event_hand(live *l, const ui_canvas *view);
+void event_input(live *l, const ui_canvas *view);
 
 // ---- parts, in the order in which they are drawn ----------------------------------------------
 

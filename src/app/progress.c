@@ -54,8 +54,8 @@ static bool tell(app_progress *p, double done, double whole, const char *unit) {
         app_progress_begin(p, (size_t)whole, unit);
         p->printed = p->start;
     }
-    bool told = p->printed > p->start; // what is done at once needs no words
-    if (done < whole || told) app_progress_step(p, (size_t)done);
+    bool shown = p->printed > p->start; // what is done at once needs no words
+    if (done < whole || shown) app_progress_step(p, (size_t)done);
     if (done >= whole) *p = (app_progress){0};
     return !app_is_interrupted(NULL);
 }

@@ -16,7 +16,7 @@ typedef enum grab { GRAB_NONE, GRAB_FRAME, GRAB_FROM, GRAB_TO, GRAB_RANGE } grab
 static struct {
     grab what;
     double from; // of a range that is being drawn
-} hand;
+} grabbed;
 
 // ---- scrubbing --------------------------------------------------------------------------------
 
@@ -38,7 +38,7 @@ static grab grab_at(const timeline *t, const track *bar, const ui_canvas *c) {
 static void drag(live *l, const track *bar, const ui_canvas *c) {
     timeline *t = &l->time;
     double frame = track_frame(bar, c->x), whole = round(frame);
-    switch (hand.what) {
+    switch (grabbed.what) {
     case GRAB_FRAME:
         seek(l, frame);
         break;
@@ -49,7 +49,7 @@ static void drag(live *l, const track *bar, const ui_canvas *c) {
         timeline_set_loop(t, t->from, fmax(whole, t->from));
         break;
     case GRAB_RANGE: // a click alone is too short to mean one
-        if (whole != hand.from) timeline_set_loop(t, hand.from, whole);
+        if (whole != grabbed.from) timeline_set_loop(t, grabbed.from, whole);
         break;
     case GRAB_NONE:
         break;
@@ -60,11 +60,11 @@ static void scrub(live *l, const track *bar, const ui_canvas *c) {
     bool strip = c->y < c->area.top + STRIP * ui_scale();
     if (c->double_clicked && strip) timeline_set_loop(&l->time, l->time.first, l->time.last);
     if (c->pressed) {
-        hand.what = grab_at(&l->time, bar, c);
-        hand.from = round(track_frame(bar, c->x));
+        grabbed.what = grab_at(&l->time, bar, c);
+        grabbed.from = round(track_frame(bar, c->x));
     }
     if (c->held) drag(l, bar, c);
-    if (!c->held) hand.what = GRAB_NONE;
+    if (!c->held) grabbed.what = GRAB_NONE;
 }
 
 // ---- drawing of the track -----------------------------------------------------------------------
@@ -106,7 +106,9 @@ static void draw_range(const timeline *t, const track *bar, ui_rect strip, ui_re
     uint32_t outside = ui_rgba(UI_PANEL, 0.7f);
     if (t->from > t->first) ui_fill((ui_rect){body.left, body.top, from, body.bottom}, outside, 0);
     if (t->to < t->last) ui_fill((ui_rect){to, body.top, body.right, body.bottom}, outside, 0);
-    grab near = hand.what != GRAB_NONE ? hand.what : c->hovered ? grab_at(t, bar, c) : GRAB_NONE;
+    grab near = grabbed.what != GRAB_NONE ? grabbed.what
+                : c->hovered              ? grab_at(t, bar, c)
+                                          : GRAB_NONE;
     draw_handle(from, strip, near == GRAB_FROM);
     draw_handle(to, strip, near == GRAB_TO);
 }

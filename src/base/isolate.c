@@ -104,7 +104,7 @@ static bool start_reader(void) {
 
 // Unless another thread did and started a new one. A host that ignores SIGCHLD, or waits for any
 // child, has taken the status already; nobody needs it.
-static void bury_reader(uint64_t number) {
+static void stop_reader(uint64_t number) {
     siginfo_t info;
     if (reader.number != number) return;
     if (reader.control >= 0) close(reader.control);
@@ -182,7 +182,7 @@ static bool send_request(exchange *x, const int files[WIRE_FILES]) {
         if (error == EAGAIN)
             full = fcntl(reader.control, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
         else if (error)
-            bury_reader(x->number), attempt++;
+            stop_reader(x->number), attempt++;
         pthread_mutex_unlock(&reader.lock);
         if (!started) return false;
         if (!error) return true;
@@ -235,7 +235,7 @@ static bool ask(exchange *x, verdict *how) {
     if (ends[0] >= 0) close(ends[0]);
     if (!sent || *how != LATE) return sent;
     pthread_mutex_lock(&reader.lock);
-    bury_reader(x->number);
+    stop_reader(x->number);
     pthread_mutex_unlock(&reader.lock);
     return true;
 }

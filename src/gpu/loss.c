@@ -39,7 +39,7 @@ bool vk_check(gpu *g, VkResult result, const char *what, ...) {
 
 bool vk_alive(gpu *g) {
     if (!atomic_load(&g->lost)) return true;
-    if (atomic_load(&g->loss_told)) return err_set("%s", g->loss);
+    if (atomic_load(&g->loss_written)) return err_set("%s", g->loss);
     return err_set("the device '%s' was lost; it must be created anew", g->info.name);
 }
 
@@ -58,7 +58,7 @@ static const char *running_pass(gpu *g) {
 }
 
 bool vk_lose(gpu *g, VkResult how) {
-    if (!atomic_load(&g->loss_told)) {
+    if (!atomic_load(&g->loss_written)) {
         const char *pass = running_pass(g);
         char why[96] = "a shader that ran too long, or a driver fault";
         if (how == VK_TIMEOUT) {
@@ -71,7 +71,7 @@ bool vk_lose(gpu *g, VkResult how) {
         }
         snprintf(g->loss, sizeof g->loss, "the device '%s' was lost%s%s%s (%s)", g->info.name,
                  pass ? " in pass '" : "", pass ? pass : "", pass ? "'" : "", why);
-        atomic_store(&g->loss_told, true);
+        atomic_store(&g->loss_written, true);
         atomic_store(&g->lost, true);
     }
     return err_set("%s", g->loss);

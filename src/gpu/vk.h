@@ -375,11 +375,11 @@ struct gpu {
     vk_instance instance;
     _Atomic uint64_t messages;
     atomic_bool lost;
-    atomic_bool loss_told; // `loss` is written
-    char loss[512];        // how and where the device was lost
-    bool hung;             // work did not finish in time, and may never
-    uint64_t timeout;      // nanoseconds
-    bool given_up;         // by `waiting`, sooner than that
+    atomic_bool loss_written; // `loss` is written
+    char loss[512];           // how and where the device was lost
+    bool hung;                // work did not finish in time, and may never
+    uint64_t timeout;         // nanoseconds
+    bool given_up;            // by `waiting`, sooner than that
     bool (*waiting)(void *user, double seconds);
     void *waiting_user;
     pthread_t owner; // which calls it

@@ -35,9 +35,9 @@ bool vdb_put_info(const isolate_call *call, const vdb_info *info) {
 }
 
 static bool put_head(const isolate_call *call, const vdb_layout *l, arena *memory) {
-    const vdb_sent_info untold = {.count = VDB_UNTOLD};
+    const vdb_sent_info without = {.count = VDB_NO_EXTENTS};
     vdb_info info;
-    if (!vdb_tells_extents(l)) return isolate_put(call, &untold, sizeof untold);
+    if (!vdb_tells_extents(l)) return isolate_put(call, &without, sizeof without);
     return vdb_describe(l, NULL, memory, &info) && vdb_put_info(call, &info);
 }
 

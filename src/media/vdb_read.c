@@ -122,7 +122,7 @@ static bool take_info(cursor *c, arena *memory, vdb_info *out) {
     if (!p) return false;
     memcpy(&sent, p, sizeof sent);
     *out = (vdb_info){0};
-    if (sent.count == VDB_UNTOLD) return true;
+    if (sent.count == VDB_NO_EXTENTS) return true;
     const char *metadata = take_text(c, sent.text, memory);
     if (!metadata || sent.count > GRIDS_MAX) return false;
     vdb_grid_info *grids = arena_alloc(memory, sent.count * sizeof *grids);

@@ -9,9 +9,9 @@
 
 // "vdb heads" is without OpenVDB, and so without what only it knows: metadata as text, and files
 // that do not say where a grid is active.
-#define VDB_UNTOLD UINT32_MAX   // in place of `count`: such a file, of which no more comes
-typedef struct vdb_sent_info {  // then its metadata, with a zero byte, and the grids
-    uint32_t count, text, y_up; // text: bytes of the metadata
+#define VDB_NO_EXTENTS UINT32_MAX // in place of `count`: such a file, of which no more comes
+typedef struct vdb_sent_info {    // then its metadata, with a zero byte, and the grids
+    uint32_t count, text, y_up;   // text: bytes of the metadata
 } vdb_sent_info;
 
 typedef struct vdb_sent_grid { // then name and type, each with its zero byte

@@ -29,10 +29,11 @@ bool pass_check_density(const pass *p) {
 }
 
 bool pass_density_box(const pass *p, box3 *box) {
-    return has_end(p, field_bounds(pass_density(p), p->host->context, box), box) || pass_blame(p);
+    return has_end(p, field_bounds(pass_density(p), p->host->context, box), box) ||
+           pass_locate_error(p);
 }
 
 bool pass_density_box_of_grids(const pass *p, box3 *box) {
     return has_end(p, field_bounds_of_grids(pass_density(p), p->host->context, box), box) ||
-           pass_blame(p);
+           pass_locate_error(p);
 }

@@ -197,7 +197,7 @@ static bool build(pass *p) {
 }
 
 bool pass_build_part(pass *p) {
-    return build(p) || pass_blame(p);
+    return build(p) || pass_locate_error(p);
 }
 
 void pass_list_memory(const pass *p, budget_list *out) {
@@ -211,7 +211,7 @@ static bool allocate(pass *p) {
 }
 
 bool pass_allocate(pass *p) {
-    return allocate(p) || pass_blame(p);
+    return allocate(p) || pass_locate_error(p);
 }
 
 static bool check(pass *p) {
@@ -221,7 +221,7 @@ static bool check(pass *p) {
 }
 
 bool pass_check_part(pass *p) {
-    return check(p) || pass_blame(p);
+    return check(p) || pass_locate_error(p);
 }
 
 // What pass_build can find wrong without a device.

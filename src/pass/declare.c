@@ -197,7 +197,7 @@ bool pass_declare(pass *p) {
 bool pass_complete(pass *p) {
     if (p->completed) return true;
     p->completed = true;
-    return !p->type || !p->type->complete || p->type->complete(p) || pass_blame(p);
+    return !p->type || !p->type->complete || p->type->complete(p) || pass_locate_error(p);
 }
 
 void pass_host_add_grid_image(pass_host *host, const field_grid *grid, int index,

@@ -23,7 +23,7 @@ pass *pass_create(pass_host *host, const pass_type *type, const char *shader, co
         .shader = arena_string(memory, file),
         .face = face,
         .uniforms = arena_alloc(memory, face->uniform_count * sizeof *p->uniforms),
-        .told = arena_alloc(memory, face->uniform_count * sizeof *p->told),
+        .warned = arena_alloc(memory, face->uniform_count * sizeof *p->warned),
         .options = arena_alloc(memory, face->option_count * sizeof *p->options),
         .chosen = arena_alloc(memory, face->option_count * sizeof *p->chosen),
         .fields = arena_alloc(memory, face->field_count * sizeof *p->fields),
@@ -43,7 +43,7 @@ void pass_set_place(pass *p, const char *place) {
     p->place = arena_string(p->host->memory, place);
 }
 
-bool pass_blame(const pass *p) {
+bool pass_locate_error(const pass *p) {
     return !str_has_place(err_get()) && err_prefix("%s", p->place);
 }
 

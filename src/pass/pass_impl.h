@@ -27,7 +27,7 @@ struct pass {
 
     // As set; one per entry of `face`.
     const field **uniforms; // NULL: the default
-    bool *told;             // of a uniform that went beyond its range
+    bool *warned;           // of a uniform that went beyond its range
     size_t *options;
     bool *chosen;         // options that were set, or taken from a source
     const field **fields; // NULL: the default
@@ -64,7 +64,7 @@ struct pass {
 };
 
 // Puts the line that made it before the message, unless one stands there. Always returns false.
-bool pass_blame(const pass *p);
+bool pass_locate_error(const pass *p);
 
 // Of a pass that runs in another.
 bool pass_check_part(pass *p);

@@ -20,15 +20,15 @@ static bool is_cut(const value_desc *u, float value, float taken) {
 static void tell_cut(const pass *owner, size_t index, const value_desc *u, float value,
                      float taken) {
     pass_host *host = owner->host;
-    if (owner->told[index] && host->warning[0]) return;
+    if (owner->warned[index] && host->warning[0]) return;
     char text[sizeof host->warning], range[VALUE_RANGE];
     value_range(u, range);
     snprintf(text, sizeof text, "%s%s: uniform '%s' is %g at %g s; accepted: %s; it counts as %g",
              owner->place, owner->label, u->name, (double)value, host->context->time, range,
              (double)taken);
-    if (!owner->told[index]) log_write(LOG_WARNING, "%s", text);
+    if (!owner->warned[index]) log_write(LOG_WARNING, "%s", text);
     if (!host->warning[0]) memcpy(host->warning, text, sizeof text);
-    owner->told[index] = true;
+    owner->warned[index] = true;
 }
 
 bool pass_evaluate_at(const pass *p, size_t index, float out[4]) {

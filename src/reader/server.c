@@ -52,7 +52,7 @@ static void wake_up(int signal_number) {
 }
 
 // Nobody shall notice when a worker dies, and when memory runs out it shall die first.
-static void be_humble(void) {
+static void set_kill_policy(void) {
     FILE *file = fopen("/proc/self/oom_score_adj", "we");
     if (file) {
         fputs("1000", file);
@@ -269,7 +269,7 @@ int reader_serve(const reader_job *jobs, size_t count) {
     sigemptyset(&blocked);
     sigaddset(&blocked, SIGCHLD);
     sigprocmask(SIG_SETMASK, &blocked, NULL); // in all threads: serve() waits with it open
-    be_humble();
+    set_kill_policy();
     run_on_large_stack(serve, &s);
     return EXIT_FAILURE; // too little memory for the stack
 }

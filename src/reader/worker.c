@@ -39,9 +39,9 @@ static const void *read_input(size_t size) {
 
 static _Noreturn void refuse(const isolate_call *call) {
     const char *message = err_get();
-    bool told = ftruncate(OUT, 0) == 0 && lseek(OUT, 0, SEEK_SET) == 0 &&
+    bool sent = ftruncate(OUT, 0) == 0 && lseek(OUT, 0, SEEK_SET) == 0 &&
                 isolate_put(call, message, strlen(message));
-    _exit(told ? WIRE_EXIT_REFUSED : EXIT_FAILURE);
+    _exit(sent ? WIRE_EXIT_REFUSED : EXIT_FAILURE);
 }
 
 void worker_run(const reader_job *job, const wire_request *r, const int files[WIRE_FILES],

@@ -280,7 +280,7 @@ void vm_error(lua_State *L, const char *format, ...) {
 }
 
 // "lib/spread.lua:12: ...": says where it went wrong, not what the author did.
-static bool blames_us(lua_State *L, const char *text) {
+static bool is_in_library(lua_State *L, const char *text) {
     lua_Debug ar;
     for (int level = 0; level < 32 && lua_getstack(L, level, &ar); level++) {
         lua_getinfo(L, "S", &ar);
@@ -316,7 +316,7 @@ static int describe_error(lua_State *L) {
             message = lua_pushfstring(L, "(error object is a %s value)", luaL_typename(L, 1));
     }
     char where[96] = "", text[MESSAGE_MAX];
-    if (!str_has_place(message) || blames_us(L, message)) vm_locate(L, where, sizeof where);
+    if (!str_has_place(message) || is_in_library(L, message)) vm_locate(L, where, sizeof where);
     if (strncmp(message, where, strlen(where)) == 0) where[0] = 0;
     snprintf(text, sizeof text, "%s%s", where, message);
     add_callers(L, text, sizeof text);

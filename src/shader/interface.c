@@ -235,9 +235,9 @@ const shader_interface *unit_annotations(const shader_unit *unit, arena *memory,
 }
 
 const shader_interface *shader_interface_load(shader_library *library, arena *memory,
-                                              const char *name, const shader_reader *told) {
+                                              const char *name, const shader_reader *report) {
     shader_unit unit;
-    unit_desc desc = {.name = name, .without_fields = true, .reader = told};
+    unit_desc desc = {.name = name, .without_fields = true, .reader = report};
     if (!unit_load(library, &desc, &unit)) return NULL;
     const shader_interface *interface = unit_annotations(&unit, memory, NULL);
     unit_free(&unit);

@@ -66,7 +66,7 @@ bool event_hears_clicks(const live *l) {
     return is_heard(l, "");
 }
 
-void event_hand(live *l, const ui_canvas *view) {
+void event_input(live *l, const ui_canvas *view) {
     float width = view->area.right - view->area.left, height = view->area.bottom - view->area.top;
     if (view->hovered || view->held) {
         l->pointer[0] = fminf(fmaxf((view->x - view->area.left) / fmaxf(width, 1), 0), 1);

@@ -50,7 +50,7 @@ static void stay_above_ground(live *l, const orbit *before, bool shift) {
     if (is_under_ground(l, &l->camera, &height)) l->camera = *before;
 }
 
-void camera_hand(live *l, const ui_canvas *view) {
+void camera_input(live *l, const ui_canvas *view) {
     bool moved = (view->held || view->middle_held) && (view->dx != 0 || view->dy != 0);
     if (view->pressed) moved = false; // that was the way to where it was pressed
     if (view->double_clicked && !event_hears_clicks(l)) camera_frame(l);
