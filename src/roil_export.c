@@ -25,8 +25,8 @@ static const voxel_type *find_type(const char *name) {
 }
 
 // Whole numbers stand for 0 to `scale`; halves and floats for themselves.
-static void encode(const voxel_type *type, const float *values, size_t count, float scale,
-                   unsigned char *out) {
+static void encode_voxels(const voxel_type *type, const float *values, size_t count, float scale,
+                          unsigned char *out) {
     for (size_t i = 0; i < count; i++) {
         float part = clampf(values[i] / scale, 0, 1);
         uint16_t word =
@@ -93,7 +93,7 @@ static bool write_frames(exporter *x, const voxel_type *type, float scale, const
         if (file != sampled) {
             done = sample_frame(x, file, &present);
             if (!done) break;
-            encode(type, x->values, x->voxels, scale, bytes);
+            encode_voxels(type, x->values, x->voxels, scale, bytes);
             sampled = file;
         }
         file_draft_add(out, bytes, x->voxels * type->size);
@@ -122,7 +122,8 @@ static const char *named_by_effect(const char *file) {
     return below ? file : path_name(file);
 }
 
-static char *describe(const exporter *x, const voxel_type *type, float scale, const char *file) {
+static char *describe_export(const exporter *x, const voxel_type *type, float scale,
+                             const char *file) {
     const field_grid *g = x->grid;
     strbuf text = {0};
     const box3 *b = &g->box;
@@ -159,7 +160,7 @@ char *roil_export_raw(const roil_export *desc) {
         if (part) x.values = mem_alloc(x.voxels * sizeof *x.values);
         float scale;
         if (part && find_scale(&x, &scale) && write_file(&x, type, scale, s, desc->file))
-            text = describe(&x, type, scale, desc->file);
+            text = describe_export(&x, type, scale, desc->file);
         mem_free(x.values);
         budget_give(part);
         grid->destroy(grid, NULL);

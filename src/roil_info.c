@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-static char *finish(strbuf *text) {
+static char *text_finish(strbuf *text) {
     if (!text->text) strbuf_append(text, "", 0);
     return text->text;
 }
@@ -80,7 +80,7 @@ char *roil_info_devices(void) {
         if (!d->usable) strbuf_add(&out, "   cannot be used: %s\n", d->missing);
     }
     if (!count) strbuf_add(&out, "no Vulkan device\n");
-    return finish(&out);
+    return text_finish(&out);
 }
 
 // ---- passes -----------------------------------------------------------------------------------
@@ -167,7 +167,7 @@ char *roil_info_passes(roil *r, const char *name) {
                        "is a pass too:\n`roil info fields shader`.\n");
     }
     shader_library_destroy(library);
-    if (done) return finish(&out);
+    if (done) return text_finish(&out);
     strbuf_free(&out);
     return NULL;
 }
@@ -255,7 +255,7 @@ char *roil_info_fields(const char *name) {
             print_kind(&out, kind);
         else
             print_object(&out, object);
-        return finish(&out);
+        return text_finish(&out);
     }
     for (size_t i = 0; i < COUNT_OF(groups); i++) print_group(&out, groups[i]);
     strbuf_add(&out, "\n`roil info fields NAME` tells all about one. Arguments go by place or by "
@@ -263,7 +263,7 @@ char *roil_info_fields(const char *name) {
                      "f.x and f.rgb are components.\nAs in GLSL, the value is the last argument of "
                      "the functions smoothstep(low, high, value) and\nstep(edge, value); it is the "
                      "first of their methods, as of every other operator.\n");
-    return finish(&out);
+    return text_finish(&out);
 }
 
 // ---- one effect -------------------------------------------------------------------------------
@@ -326,13 +326,13 @@ char *roil_info_params(roil_effect *e) {
         section = own;
         print_control(e, i, &out);
     }
-    return finish(&out);
+    return text_finish(&out);
 }
 
 char *roil_info_graph(roil_effect *e) {
     strbuf out = {0};
     graph_print_dot(effect_graph(e->effect), effect_name(e->effect), &out);
-    return finish(&out);
+    return text_finish(&out);
 }
 
 // ---- OpenVDB ----------------------------------------------------------------------------------
@@ -397,5 +397,5 @@ char *roil_info_vdb(const char *file) {
                          "script says y_up = false\n");
     if (info.metadata[0]) strbuf_add(&out, "%s", info.metadata);
     arena_free(&memory);
-    return finish(&out);
+    return text_finish(&out);
 }

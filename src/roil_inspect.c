@@ -155,7 +155,7 @@ static gpu_image *find_image(roil_effect *e, const roil_inspection *how, graph_i
     return image;
 }
 
-static bool check(const roil_inspection *how, const gpu_image_desc *desc) {
+static bool inspection_check(const roil_inspection *how, const gpu_image_desc *desc) {
     if (how->mip >= desc->mips)
         return err_set("image '%s' has no level %u, only %u levels", how->image, how->mip,
                        desc->mips);
@@ -199,7 +199,7 @@ static void fill_block(job *j, const roil_inspection *how) {
     j->block.cursor[1] = (int32_t)at[1];
 }
 
-static bool draw(roil *r, const job *j, uint32_t mip) {
+static bool inspection_draw(roil *r, const job *j, uint32_t mip) {
     const gpu_image_desc *target = gpu_image_get_desc(j->target);
     view *v = r->view;
     kernel *k = j->inspector;
@@ -233,14 +233,14 @@ bool roil_inspect(roil_effect *e, const roil_inspection *how, roil_texture *targ
     *texel = (roil_texel){0};
     if (!v) return false;
     j.image = find_image(e, how, &image);
-    if (!j.image || !check(how, gpu_image_get_desc(j.image)) || !make_kernel(r, &j) ||
+    if (!j.image || !inspection_check(how, gpu_image_get_desc(j.image)) || !make_kernel(r, &j) ||
         !make_probe(r, &v->probe, e, image))
         return false;
     fill_block(&j, how);
     uint64_t frame = gpu_frame_begin(r->device);
     if (!frame) return false;
     if (j.cursor) read_probe(&v->probe, frame, texel);
-    bool done = draw(r, &j, how->mip) && (!j.cursor || send_probe(r, &v->probe, frame));
+    bool done = inspection_draw(r, &j, how->mip) && (!j.cursor || send_probe(r, &v->probe, frame));
     bool ended = gpu_frame_end(r->device);
     return done && ended;
 }

@@ -9,7 +9,7 @@
 
 static const double LAST_SECONDS = 1; // that a builder is waited for in the end
 
-static char *copy(const char *text) {
+static char *copy_text(const char *text) {
     return mem_copy(text, strlen(text) + 1);
 }
 
@@ -34,8 +34,8 @@ static void add_setting(roil_live *l, const roil_setting *s, const char *initial
     live_setting *old = find_setting(l, s->name);
     if (old) remove_setting(l, old);
     MEM_RESERVE(l->settings, l->setting_count + 1, l->setting_capacity);
-    l->settings[l->setting_count++] =
-        (live_setting){copy(s->name), copy(s->value), initial ? copy(initial) : NULL, preset};
+    l->settings[l->setting_count++] = (live_setting){copy_text(s->name), copy_text(s->value),
+                                                     initial ? copy_text(initial) : NULL, preset};
 }
 
 static void put_setting(roil_live *l, const char *name, const char *text, const char *initial) {
@@ -97,7 +97,7 @@ bool roil_live_reset(roil_live *l, const char *name) {
         bool done = true;
         for (size_t i = l->setting_count;
              i-- > 0 && done;) { // each is removed, or stays as the last
-            char *each = copy(l->settings[i].name);
+            char *each = copy_text(l->settings[i].name);
             done = roil_live_reset(l, each);
             mem_free(each);
         }
@@ -117,7 +117,7 @@ static bool holds(const live_setting *s, const effect_control *c) {
 }
 
 // Brings a new effect to the settings of now, which may be newer than its load.
-static void settle(roil_live *l, effect *e) {
+static void apply_settings(roil_live *l, effect *e) {
     for (size_t i = 0; i < effect_control_count(e); i++) {
         const effect_control *c = effect_get_control(e, i);
         const live_setting *s = find_setting(l, c->name);
@@ -142,7 +142,7 @@ static void forget_stale(roil_live *l, effect *e) {
 
 // ---- taking over ------------------------------------------------------------------------------
 
-static bool prepare(roil_effect *e, const roil_effect *old) {
+static bool prepare_effect(roil_effect *e, const roil_effect *old) {
     if (!old) return effect_allocate(e->effect, e->width, e->height);
     for (size_t i = 0; i < old->kept_count; i++) roil_keep(e, old->kept[i]); // if it is there still
     roil_apply_kept(e);
@@ -153,13 +153,13 @@ static bool prepare(roil_effect *e, const roil_effect *old) {
 static bool take_over(roil_live *l, effect *made, uint32_t width, uint32_t height) {
     roil_effect *e = mem_alloc(sizeof *e);
     *e = (roil_effect){.owner = l->owner, .effect = made, .width = width, .height = height};
-    if (!prepare(e, l->effect)) {
+    if (!prepare_effect(e, l->effect)) {
         roil_unload(e);
         return false;
     }
     roil_unload(l->effect);
     l->effect = e;
-    settle(l, made);
+    apply_settings(l, made);
     forget_stale(l, made);
     return true;
 }
@@ -182,7 +182,8 @@ bool roil_live_update(roil_live *l, uint32_t width, uint32_t height, double fram
     bool left = l->left && !l->left_reported;
     l->left_reported = true;
     pthread_mutex_unlock(&l->lock);
-    if (left) set_message(l, copy("the last load hangs, and was left behind; a new one has begun"));
+    if (left)
+        set_message(l, copy_text("the last load hangs, and was left behind; a new one has begun"));
     if (result.effect && take_over(l, result.effect, width, height)) {
         l->counts.reloads++;
         l->counts.last = clock_seconds() - result.since;
@@ -191,7 +192,7 @@ bool roil_live_update(roil_live *l, uint32_t width, uint32_t height, double fram
     }
     if (!result.effect && !result.message) return left;
     l->counts.failures++;
-    set_message(l, result.message ? result.message : copy(err_get()));
+    set_message(l, result.message ? result.message : copy_text(err_get()));
     return true;
 }
 
@@ -254,12 +255,13 @@ roil_live *roil_live_create(roil *r, const roil_live_desc *desc) {
         return NULL;
     }
     roil_live *l = mem_alloc(sizeof *l);
-    *l = (roil_live){.owner = r, .file = copy(desc->file), .wake = desc->wake, .user = desc->user};
+    *l = (roil_live){
+        .owner = r, .file = copy_text(desc->file), .wake = desc->wake, .user = desc->user};
     init_locks(l);
     l->contents = content_cache_create();
     l->presets = mem_alloc(desc->preset_count * sizeof *l->presets);
     for (size_t i = 0; i < desc->preset_count; i++)
-        l->presets[l->preset_count++] = copy(desc->presets[i]);
+        l->presets[l->preset_count++] = copy_text(desc->presets[i]);
     for (size_t i = 0; i < desc->setting_count; i++)
         put_setting(l, desc->settings[i].name, desc->settings[i].value, NULL);
     l->watch = make_library(l) ? watch_create(&(watch_desc){on_changed, on_settled, l}) : NULL;

@@ -136,7 +136,7 @@ static order take_order(roil_live *l) {
     return o;
 }
 
-static effect *load(roil_live *l, const order *o, file_set *files) {
+static effect *builder_load(roil_live *l, const order *o, file_set *files) {
     const roil *r = l->owner;
     const char *const *read;
     effect *e = effect_create(&(effect_desc){
@@ -162,11 +162,11 @@ static effect *load(roil_live *l, const order *o, file_set *files) {
     return NULL;
 }
 
-static live_result build(roil_live *l, double since, file_set *files) {
+static live_result builder_build(roil_live *l, double since, file_set *files) {
     live_result result = {.since = since};
     if (apply_presets(l, files)) {
         order o = take_order(l);
-        result.effect = load(l, &o, files);
+        result.effect = builder_load(l, &o, files);
         arena_free(&o.memory);
     }
     if (!result.effect) result.message = live_explain(err_get(), l->owner->scripts);
@@ -251,7 +251,7 @@ static bool build_next(live_builder *b) {
     file_set files = {0};
     int64_t begin = file_clock_ns();
     time_limit *before = time_limit_enter(&b->time);
-    live_result result = build(l, since, &files);
+    live_result result = builder_build(l, since, &files);
     time_limit_leave(before);
     bool good = result.effect != NULL;
 
@@ -270,7 +270,7 @@ static bool build_next(live_builder *b) {
     return !left;
 }
 
-static void *run(void *user) {
+static void *builder_run(void *user) {
     live_builder *b = user;
     roil_live *l = b->live;
     pthread_mutex_lock(&l->lock);
@@ -297,7 +297,7 @@ bool live_start(roil_live *l) {
     live_builder *before = l->builder;
     b->live = l;
     l->builder = b;
-    int failed = pthread_create(&b->thread, NULL, run, b);
+    int failed = pthread_create(&b->thread, NULL, builder_run, b);
     if (!failed) return true;
     l->builder = before;
     mem_free(b);

@@ -125,7 +125,7 @@ static void add_control_value(strbuf *out, const roil_control *c, const float va
         add_value(out, value, c->components, c->type == ROIL_COLOR);
 }
 
-static void get(const roil_effect *e, const char *name, roil_control *out) {
+static void find_and_get(const roil_effect *e, const char *name, roil_control *out) {
     size_t index = 0;
     roil_find_control((roil_effect *)(uintptr_t)e, name, &index);
     roil_get_control((roil_effect *)(uintptr_t)e, index, out);
@@ -143,7 +143,7 @@ void roil_add_lua(const roil_effect *e, const effect_control *c, bool whole, str
         add_quoted(out, strbuf_text(&text));
         strbuf_free(&text);
     } else {
-        get(e, c->name, &control);
+        find_and_get(e, c->name, &control);
         add_control_value(out, &control, control.value);
     }
 }
@@ -184,7 +184,7 @@ char *roil_control_lua(roil_effect *e, const char *name) {
     const effect_control *c = effect_find_control(e->effect, name);
     if (!c) return NULL;
     roil_control control;
-    get(e, name, &control);
+    find_and_get(e, name, &control);
     strbuf out = {0};
     if (c->kind == EFFECT_CONTROL_PARAM) {
         add_param(&out, &control);

@@ -33,7 +33,7 @@ static float channel_value(const unsigned char *at, uint32_t bytes) {
 }
 
 // Missing channels are 0, alpha 1.
-static void expand(const unsigned char *texel, gpu_format format, float out[4]) {
+static void expand_texel(const unsigned char *texel, gpu_format format, float out[4]) {
     uint32_t channels = gpu_format_channels(format);
     uint32_t bytes = gpu_format_size(format) / channels;
     out[0] = out[1] = out[2] = 0;
@@ -82,7 +82,8 @@ typedef struct linear_image {
 static linear_image expand_all(const raw_image *raw) {
     size_t count = (size_t)raw->width * raw->height, texel = gpu_format_size(raw->format);
     float *pixels = mem_alloc(count * 4 * sizeof *pixels);
-    for (size_t i = 0; i < count; i++) expand(raw->texels + i * texel, raw->format, pixels + i * 4);
+    for (size_t i = 0; i < count; i++)
+        expand_texel(raw->texels + i * texel, raw->format, pixels + i * 4);
     return (linear_image){pixels, raw->width, raw->height};
 }
 
@@ -241,7 +242,7 @@ static bool write_png(const picture *p, const linear_image *image) {
 }
 
 // Channels one after the other, as EXR wants them.
-static float *split(const linear_image *image) {
+static float *split_channels(const linear_image *image) {
     const size_t count = image->width * image->height;
     float *planes = mem_alloc(count * 4 * sizeof *planes);
     for (size_t i = 0; i < count; i++)
@@ -251,7 +252,7 @@ static float *split(const linear_image *image) {
 
 static float *split_raw(const raw_image *raw) {
     linear_image image = expand_all(raw);
-    float *planes = split(&image);
+    float *planes = split_channels(&image);
     mem_free(image.pixels);
     return planes;
 }
@@ -259,7 +260,7 @@ static float *split_raw(const raw_image *raw) {
 static bool write_exr(const picture *p, const linear_image *image) {
     const size_t count = image->width * image->height;
     const bool half = !p->options.full;
-    float *planes = split(image), *depth = p->depth.texels ? split_raw(&p->depth) : NULL;
+    float *planes = split_channels(image), *depth = p->depth.texels ? split_raw(&p->depth) : NULL;
     const exr_channel channels[] = {
         {"R", planes, half},
         {"G", planes + count, half},
@@ -381,7 +382,7 @@ typedef struct video_frame {
     raw_image raw;
 } video_frame;
 
-static void release(roil_video *v) {
+static void video_free(roil_video *v) {
     mem_free(v->pixels);
     mem_free(v);
 }
@@ -398,7 +399,7 @@ roil_video *roil_video_create(roil_effect *e, const char *file, double fps) {
                       .pixels = mem_alloc((size_t)e->width * e->height * 4)};
     if (v->frames) return v;
     video_abandon(out);
-    release(v);
+    video_free(v);
     return NULL;
 }
 
@@ -429,7 +430,7 @@ bool roil_video_finish(roil_video *v) {
         done = video_finish(v->video);
     else
         video_abandon(v->video);
-    release(v);
+    video_free(v);
     return done;
 }
 
@@ -437,5 +438,5 @@ void roil_video_abandon(roil_video *v) {
     if (!v) return;
     jobs_finish(v->frames);
     video_abandon(v->video);
-    release(v);
+    video_free(v);
 }

@@ -54,7 +54,7 @@ size_t roil_presets(const char *effect_file, char (*names)[64], size_t capacity)
 
 // ---- reading ------------------------------------------------------------------------------------
 
-static void refuse(const char *effect_file, const char *name) {
+static void refuse_preset(const char *effect_file, const char *name) {
     enum { MOST = 256 };
     char(*names)[64] = mem_alloc(MOST * sizeof *names);
     const char *known[MOST];
@@ -88,7 +88,7 @@ roil_preset *roil_read_preset(roil *r, const char *effect_file, const char *pres
     char path[PATH_CAP];
     if (!roil_preset_path(path, effect_file, preset)) return NULL;
     if (!str_ends_with(preset, ".lua") && !file_exists(path)) {
-        refuse(effect_file, preset);
+        refuse_preset(effect_file, preset);
         return NULL;
     }
     char root[PATH_CAP];

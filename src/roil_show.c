@@ -68,7 +68,7 @@ static gpu_image *find_picture(roil_effect *e) {
 
 // As large as fits into the view with the picture's aspect, in its middle: left, top, width,
 // height in whole pixels. A width of 0 where there is no room.
-static void fit(const gpu_image *picture, const float space[4], int32_t out[4]) {
+static void fit_picture(const gpu_image *picture, const float space[4], int32_t out[4]) {
     const gpu_image_desc *size = gpu_image_get_desc(picture);
     float width = space[2] - space[0], height = space[3] - space[1];
     float scale = fminf(width / (float)size->width, height / (float)size->height);
@@ -85,11 +85,11 @@ typedef struct compose_block { // std140, as compose.comp has it
     int32_t place[4];
 } compose_block;
 
-static bool compose(roil *r, view *v, const roil_picture *p) {
+static bool compose_picture(roil *r, view *v, const roil_picture *p) {
     const float *color = p->background;
     compose_block block = {.background = {color[0], color[1], color[2], 1}};
     gpu_image *picture = find_picture(p->effect);
-    if (picture) fit(picture, p->view, block.place);
+    if (picture) fit_picture(picture, p->view, block.place);
     kernel *k = &v->compose;
     kernel_bind(k, N_View, (gpu_binding){.uniform = &block, .uniform_size = sizeof block});
     kernel_bind(k, N_srgb, (gpu_binding){.image = v->srgb_fine, .sampler = GPU_NEAREST_CLAMP});
@@ -120,7 +120,7 @@ static bool check_triangles(const roil_picture *p) {
 }
 
 // Room for more than is asked, so that a growing interface does not allocate in every frame.
-static bool reserve(roil *r, gpu_buffer **buffer, const char *label, size_t size) {
+static bool reserve_buffer(roil *r, gpu_buffer **buffer, const char *label, size_t size) {
     if (*buffer && gpu_buffer_size(*buffer) >= size) return true;
     uint64_t most = gpu_get_info(r->device)->max_storage_range, wanted = size + size / 2 + 65536;
     gpu_buffer_destroy(r->device, *buffer);
@@ -130,11 +130,11 @@ static bool reserve(roil *r, gpu_buffer **buffer, const char *label, size_t size
     return *buffer != NULL;
 }
 
-static bool upload(roil *r, view *v, const roil_picture *p) {
+static bool upload_triangles(roil *r, view *v, const roil_picture *p) {
     size_t vertices = p->vertex_count * sizeof *p->vertices;
     size_t indices = p->index_count * sizeof *p->indices;
-    return reserve(r, &v->vertices, "vertices of the window", vertices) &&
-           reserve(r, &v->indices, "indices of the window", indices) &&
+    return reserve_buffer(r, &v->vertices, "vertices of the window", vertices) &&
+           reserve_buffer(r, &v->indices, "indices of the window", indices) &&
            gpu_buffer_write(r->device, v->vertices, 0, p->vertices, vertices) &&
            gpu_buffer_write(r->device, v->indices, 0, p->indices, indices);
 }
@@ -174,7 +174,7 @@ static size_t make_draws(view *v, const roil_picture *p, const float size[4], gp
 
 static bool draw_overlay(roil *r, view *v, const roil_picture *p) {
     if (!p->draw_count || !p->index_count) return true;
-    if (!upload(r, v, p)) return false;
+    if (!upload_triangles(r, v, p)) return false;
     float size[4] = {(float)p->width, (float)p->height};
     gpu_draw *draws = mem_alloc(p->draw_count * sizeof *draws);
     gpu_binding(*bindings)[GPU_MAX_SLOTS] = mem_alloc(p->draw_count * sizeof *bindings);
@@ -200,7 +200,7 @@ bool roil_show(roil *r, const roil_picture *p) {
         !view_make_overlay(r, &v->overlay) || !make_canvas(r, v, p->width, p->height) ||
         !gpu_frame_begin(r->device))
         return false;
-    bool done = compose(r, v, p) && draw_overlay(r, v, p) &&
+    bool done = compose_picture(r, v, p) && draw_overlay(r, v, p) &&
                 (!r->window || gpu_present(r->device, v->canvas));
     bool ended = gpu_frame_end(r->device);
     return done && ended;

@@ -66,7 +66,8 @@ typedef struct slices_block { // std140, as slices.comp has it
     int32_t field[4];
 } slices_block;
 
-static bool draw(roil *r, gpu_image *image, const slices_block *block, gpu_image *target) {
+static bool slices_view_draw(roil *r, gpu_image *image, const slices_block *block,
+                             gpu_image *target) {
     const gpu_image_desc *size = gpu_image_get_desc(target);
     kernel *k = &r->view->slices;
     kernel_bind(k, N_View, (gpu_binding){.uniform = block, .uniform_size = sizeof *block});
@@ -80,7 +81,7 @@ static bool draw(roil *r, gpu_image *image, const slices_block *block, gpu_image
     return done && ended;
 }
 
-static bool check(const roil_slices_view *v) {
+static bool slices_view_check(const roil_slices_view *v) {
     if (!(v->range > 0 && isfinite(v->range)))
         return err_set("range is %g; accepted: above 0", (double)v->range);
     assert(v->field < ROIL_SLICES_FIELDS);
@@ -92,7 +93,8 @@ bool roil_slices_draw(roil_effect *e, const roil_slices_view *how, roil_texture 
     roil *r = e->owner;
     int channel;
     const pass *p = roil_slices_find(e, how->flow, how->slice);
-    gpu_image *image = p && check(how) ? pass_slices_look(p, (int)how->field, &channel) : NULL;
+    gpu_image *image =
+        p && slices_view_check(how) ? pass_slices_look(p, (int)how->field, &channel) : NULL;
     if (!image || !view_get(r) ||
         !view_make_compute(r, &r->view->slices, "view/slices.comp", NULL, 0))
         return false;
@@ -101,7 +103,7 @@ bool roil_slices_draw(roil_effect *e, const roil_slices_view *how, roil_texture 
         .scale = {1 / how->range, ((float)how->slice + 0.5f) / count, how->arrows},
         .field = {(int32_t)how->field, channel},
     };
-    return draw(r, image, &block, target->image);
+    return slices_view_draw(r, image, &block, target->image);
 }
 
 bool roil_slices_greatest(roil_effect *e, const roil_slices_view *how, float *out) {

@@ -86,7 +86,7 @@ typedef struct listing {
     size_t count, capacity;
 } listing;
 
-static bool has(const listing *l, const char *file) {
+static bool listing_has(const listing *l, const char *file) {
     size_t known = l->count < l->capacity ? l->count : l->capacity;
     for (size_t i = 0; i < known; i++)
         if (strcmp(l->out[i].file, file) == 0) return true;
@@ -101,7 +101,7 @@ static void add_folder(listing *l, const char *root, const char *kind, bool libr
     strbuf_free(&pattern);
     for (size_t i = 0; done && i < files.count; i++) {
         const char *file = path_name(files.paths[i]);
-        if (!is_file(file) || has(l, file)) continue;
+        if (!is_file(file) || listing_has(l, file)) continue;
         if (l->count < l->capacity) {
             roil_template *t = &l->out[l->count];
             *t = (roil_template){.library = library, .changed = file_changed_ns(files.paths[i])};
@@ -229,7 +229,7 @@ bool roil_template_put(roil_effect *e, const roil_template_use *use) {
 }
 
 // So that the effect's file can name it.
-static bool adopt(const roil_effect *e, const char *file) {
+static bool adopt_template(const roil_effect *e, const char *file) {
     char root[PATH_CAP], from[PATH_CAP], to[PATH_CAP];
     void *bytes;
     size_t size;
@@ -244,7 +244,7 @@ static bool adopt(const roil_effect *e, const char *file) {
 
 char *roil_template_lua(roil_effect *e, const roil_template_use *use) {
     const pass *p = roil_slices_find(e, use->where.flow, use->where.slice);
-    if (!p || !adopt(e, use->file)) return NULL;
+    if (!p || !adopt_template(e, use->file)) return NULL;
     const slices_hand hand = hand_of(use, NULL);
     strbuf line = {0}, file = {0};
     strbuf_add(&file, "templates/%s", use->file);

@@ -34,7 +34,7 @@ static gpu_image *make_noise(gpu *g) {
     return make_image(g, "noise", GPU_RGBA8, side, side, texels);
 }
 
-static bool fill(roil *r, view *v) {
+static bool view_fill(roil *r, view *v) {
     static const uint8_t white[4] = {255, 255, 255, 255};
     char cache[PATH_CAP];
     bool cached = r->cache && path_join(cache, r->cache, "spirv");
@@ -55,7 +55,7 @@ view *view_get(roil *r) {
         return NULL;
     }
     r->view = mem_alloc(sizeof *r->view);
-    if (!fill(r, r->view)) roil_free_view(r);
+    if (!view_fill(r, r->view)) roil_free_view(r);
     return r->view;
 }
 

@@ -104,7 +104,7 @@ static bool take_inputs(bench_options *o, poptContext context) {
     return true;
 }
 
-static bool parse(bench_options *o, int argc, const char **argv, poptContext *context) {
+static bool bench_parse(bench_options *o, int argc, const char **argv, poptContext *context) {
     sweep_options *s = &o->order.options;
     const struct poptOption options[] = {
         {"output", 'o', POPT_ARG_STRING, &o->order.folder, 0,
@@ -177,7 +177,7 @@ static void on_result(void *user, const bench_row *row, size_t done) {
 
 // ---- work ---------------------------------------------------------------------------------------
 
-static int list(const bench_options *o) {
+static int bench_list_rows(const bench_options *o) {
     arena memory = {0};
     sweep s;
     bool *chosen = NULL;
@@ -217,7 +217,7 @@ static bool write_report(const bench_results *results, const char *folder) {
     return done;
 }
 
-static int finish(const bench_options *o, const bench_results *r) {
+static int bench_finish(const bench_options *o, const bench_results *r) {
     size_t failed = count_failed(r), slower;
     bench_print_table(r);
     if (!compare_with_baseline(o, r, &slower) || !write_report(r, o->order.folder))
@@ -233,7 +233,7 @@ static void on_steps(void *user, double done, double whole) {
     app_tell_steps(&((bench_options *)user)->steps, done, whole);
 }
 
-static int run(bench_options *o) {
+static int bench_run_sweep(bench_options *o) {
     bench_results results;
     if (o->order.folder == o->folder && !app_may_write_here(o->folder)) return app_fail_input();
     o->order.watcher =
@@ -243,7 +243,7 @@ static int run(bench_options *o) {
     if (o->progress.total) app_progress_clear(&o->progress);
     int status;
     if (done)
-        status = finish(o, &results);
+        status = bench_finish(o, &results);
     else if (app_is_interrupted(NULL) && results.content)
         status = app_fail(APP_BAD_INPUT, "interrupted; %s has %zu rows, and --resume goes on",
                           o->order.folder, results.row_count);
@@ -253,15 +253,15 @@ static int run(bench_options *o) {
     return status;
 }
 
-static int merge(const bench_options *o) {
+static int bench_merge_files(const bench_options *o) {
     bench_results results;
     bool done = bench_merge(o->inputs, o->input_count, o->order.folder, &results);
-    int status = done ? finish(o, &results) : app_fail_input();
+    int status = done ? bench_finish(o, &results) : app_fail_input();
     bench_results_free(&results);
     return status;
 }
 
-static int report(const bench_options *o) {
+static int bench_write_report(const bench_options *o) {
     bench_results results;
     if (!bench_read(o->report, &results)) return app_fail_input();
     int status = write_report(&results, o->report) ? APP_DONE : app_fail_input();
@@ -275,10 +275,13 @@ int cmd_bench(int argc, const char **argv) {
     o.order.options = (sweep_options){.warmup = -1, .repeats = -1, .limit = -1, .settle = -1};
     poptContext context;
     int status;
-    if (!parse(&o, argc, argv, &context))
+    if (!bench_parse(&o, argc, argv, &context))
         status = app_fail(APP_BAD_USAGE, "bench: %s", roil_error());
     else
-        status = o.report ? report(&o) : o.merge ? merge(&o) : o.list ? list(&o) : run(&o);
+        status = o.report  ? bench_write_report(&o)
+                 : o.merge ? bench_merge_files(&o)
+                 : o.list  ? bench_list_rows(&o)
+                           : bench_run_sweep(&o);
     poptFreeContext(context);
     app_free_frames(&o.frames);
     mem_free(o.only);

@@ -4,7 +4,7 @@
 #include <popt.h>
 #include <stdio.h>
 
-static int check(const char **files, app_settings *settings, const roil_desc *desc) {
+static int check_files(const char **files, app_settings *settings, const roil_desc *desc) {
     int status = APP_DONE;
     roil *r = roil_create(desc);
     if (!r) return app_fail_input();
@@ -43,7 +43,7 @@ int cmd_check(int argc, const char **argv) {
     } else if (!files || !files[0]) {
         status = app_fail(APP_BAD_USAGE, "check: which effect? usage: roil check EFFECT.lua...");
     } else {
-        status = check(files, &settings, &desc);
+        status = check_files(files, &settings, &desc);
     }
     app_free_settings(&settings);
     poptFreeContext(context);

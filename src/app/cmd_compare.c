@@ -55,7 +55,7 @@ static int check_limits(const compare_job *job, const roil_difference *d) {
     return status;
 }
 
-static int compare(const compare_job *job) {
+static int compare_pictures(const compare_job *job) {
     roil_difference d;
     if (!roil_compare(&job->how, &d)) return app_fail_input();
     print_difference(&d);
@@ -106,7 +106,7 @@ int cmd_compare(int argc, const char **argv) {
     } else if (memory && !budget_set_share(memory)) {
         status = app_fail(APP_BAD_USAGE, "compare: --%s", roil_error());
     } else {
-        status = compare(&job);
+        status = compare_pictures(&job);
     }
     poptFreeContext(context);
     return status;

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static int print(char *text) {
+static int info_print(char *text) {
     if (!text) return app_fail_input();
     str_make_printable(text);
     fputs(text, stdout);
@@ -16,7 +16,7 @@ static int print(char *text) {
 
 static int info_passes(const char *name) {
     roil *r = roil_create(&(roil_desc){.no_device = true});
-    int status = r ? print(roil_info_passes(r, name)) : app_fail_input();
+    int status = r ? info_print(roil_info_passes(r, name)) : app_fail_input();
     roil_destroy(r);
     return status;
 }
@@ -33,9 +33,9 @@ static int info_effect(const char *what, const char *file, app_settings *setting
     if (!e)
         status = app_fail_input();
     else if (strcmp(what, "params") == 0)
-        status = print(roil_info_params(e));
+        status = info_print(roil_info_params(e));
     else
-        status = roil_check(e) ? print(roil_info_graph(e)) : app_fail_input();
+        status = roil_check(e) ? info_print(roil_info_graph(e)) : app_fail_input();
     roil_unload(e);
     roil_destroy(r);
     return status;
@@ -49,18 +49,18 @@ static int info_index(void) {
          "effect\n"
          "roil info graph EFFECT.lua      its passes in order, their images and memory\n"
          "roil info FILE.vdb              the grids of a volume\n");
-    return print(roil_info_devices());
+    return info_print(roil_info_devices());
 }
 
 static int info(const char *what, const char *name, app_settings *settings, const char *memory) {
     static const char *const topics[] = {"device", "passes", "fields", "params", "graph"};
     if (!what) return info_index();
-    if (strcmp(what, "device") == 0) return print(roil_info_devices());
+    if (strcmp(what, "device") == 0) return info_print(roil_info_devices());
     if (strcmp(what, "passes") == 0) return info_passes(name);
-    if (strcmp(what, "fields") == 0) return print(roil_info_fields(name));
+    if (strcmp(what, "fields") == 0) return info_print(roil_info_fields(name));
     if (strcmp(what, "params") == 0 || strcmp(what, "graph") == 0)
         return info_effect(what, name, settings, memory);
-    if (str_ends_with(what, ".vdb")) return print(roil_info_vdb(what));
+    if (str_ends_with(what, ".vdb")) return info_print(roil_info_vdb(what));
     const char *near = str_nearest(what, topics, 5);
     if (near)
         return app_fail(APP_BAD_USAGE, "info: unknown topic '%s'; did you mean '%s'?", what, near);

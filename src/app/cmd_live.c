@@ -48,7 +48,7 @@ static int preview_of(const char *name) {
     return -1;
 }
 
-static bool check(const job *j, poptContext context) {
+static bool live_check_options(const job *j, poptContext context) {
     if (!j->file) return err_set("which effect? usage: roil live EFFECT.lua [options]");
     const char *more = poptGetArg(context);
     if (more) return err_set("'%s': one effect at a time", more);
@@ -57,7 +57,7 @@ static bool check(const job *j, poptContext context) {
     return app_check_device(&j->device);
 }
 
-static bool parse(job *j, int argc, const char **argv, poptContext *context) {
+static bool live_parse(job *j, int argc, const char **argv, poptContext *context) {
     const struct poptOption options[] = {
         {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE,
          "size of the window (default: as it was left)", "WxH"},
@@ -83,7 +83,7 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
         if (!take_option(j, *context, option)) return false;
     if (option < -1) return app_refuse_option(*context, options, option);
     j->file = poptGetArg(*context);
-    return check(j, *context);
+    return live_check_options(j, *context);
 }
 
 // ---- work -------------------------------------------------------------------------------------
@@ -170,7 +170,7 @@ static int run_device(live *l, window *w, job *j) {
     return status;
 }
 
-static int run(job *j) {
+static int live_run_window(job *j) {
     live l = {.file = j->file, .start = j->frame};
     l.time.frame = isfinite(j->frame) ? j->frame : 1;
     l.time.playing = !j->paused;
@@ -190,8 +190,8 @@ static int run(job *j) {
 int cmd_live(int argc, const char **argv) {
     job j = {.frame = (double)NAN};
     poptContext context;
-    int status = parse(&j, argc, argv, &context)
-                     ? run(&j)
+    int status = live_parse(&j, argc, argv, &context)
+                     ? live_run_window(&j)
                      : app_fail(APP_BAD_USAGE, "live: %s", roil_error());
     poptFreeContext(context);
     app_free_settings(&j.settings);

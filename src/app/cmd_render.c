@@ -108,7 +108,7 @@ static const char **join_dump(int *argc, const char **argv, arena *memory) {
     return joined;
 }
 
-static bool parse(job *j, int argc, const char **argv, poptContext *context) {
+static bool render_parse(job *j, int argc, const char **argv, poptContext *context) {
     const struct poptOption options[] = {
         {"output", 'o', POPT_ARG_STRING, NULL, OPTION_OUTPUT,
          "PNG or EXR file or pattern, or MP4; may be given several times (default: "
@@ -200,7 +200,7 @@ static bool complete_from(job *j) {
 }
 
 // What the effect itself decides: all of its frames, and where they go by default.
-static bool complete(job *j, roil_effect *e) {
+static bool render_complete(job *j, roil_effect *e) {
     roil_effect_info info = roil_get_info(e);
     char range[64];
     snprintf(range, sizeof range, "%u-%u", info.first_frame, info.first_frame + info.frames - 1);
@@ -229,7 +229,7 @@ static bool complete(job *j, roil_effect *e) {
 }
 
 // Of all frames, those that come after the checkpoint's are left.
-static bool restore(job *j, roil_effect *e) {
+static bool render_restore(job *j, roil_effect *e) {
     double last, *numbers = j->frames.numbers;
     size_t left = 0;
     if (!roil_restore(e, j->restore, &last)) return false;
@@ -251,7 +251,8 @@ static bool open_outputs(job *j, roil_effect *e) {
         output *o = &j->outputs[i];
         if (o->image && !roil_keep(e, o->image)) return false;
     }
-    if (!roil_prepare(e, j->width, j->height) || (j->restore && !restore(j, e))) return false;
+    if (!roil_prepare(e, j->width, j->height) || (j->restore && !render_restore(j, e)))
+        return false;
     j->writer = roil_writer_create();
     if (!j->writer) return false;
     for (size_t i = 0; i < j->output_count; i++) {
@@ -350,7 +351,7 @@ static bool close_outputs(job *j, bool done) {
     return done;
 }
 
-static int run(job *j) {
+static int render_run(job *j) {
     if (!complete_from(j)) return app_fail_input();
     roil_desc desc = app_device_desc(&j->device);
     desc.counters = j->stats != NULL;
@@ -367,7 +368,7 @@ static int run(job *j) {
     int status = APP_DONE;
     if (!e) {
         status = app_fail_input();
-    } else if (!complete(j, e)) {
+    } else if (!render_complete(j, e)) {
         status = app_fail(APP_BAD_USAGE, "render: %s", roil_error());
     } else {
         bool done = open_outputs(j, e) && render_frames(j, e, stats) &&
@@ -399,8 +400,8 @@ int cmd_render(int argc, const char **argv) {
     arena memory = {0};
     poptContext context;
     argv = join_dump(&argc, argv, &memory);
-    int status = parse(&j, argc, argv, &context)
-                     ? run(&j)
+    int status = render_parse(&j, argc, argv, &context)
+                     ? render_run(&j)
                      : app_fail(APP_BAD_USAGE, "render: %s", roil_error());
     poptFreeContext(context);
     app_free_frames(&j.frames);

@@ -105,7 +105,7 @@ static bool take_numbers(tune_options *o) {
     return true;
 }
 
-static bool parse(tune_options *o, int argc, const char **argv, poptContext *context) {
+static bool tune_parse(tune_options *o, int argc, const char **argv, poptContext *context) {
     const struct poptOption options[] = {
         {"max-ms", 0, POPT_ARG_DOUBLE, &o->max_ms, 0,
          "the best picture whose median frame takes no longer on the device", "MS"},
@@ -222,7 +222,7 @@ static void print_result(const tune_options *o, const bench_results *r, const tu
               t->complete ? "" : "; the search was ended early, and --resume goes on");
 }
 
-static int finish(const tune_options *o, const bench_results *r, const tune_result *t) {
+static int tune_finish(const tune_options *o, const bench_results *r, const tune_result *t) {
     print_result(o, r, t);
     app_print(stdout, "wrote %s/results.json, results.csv, report.html\n", o->order.folder);
     if (!t->within)
@@ -240,7 +240,7 @@ static void on_steps(void *user, double done, double whole) {
     app_tell_steps(&((tune_options *)user)->steps, done, whole);
 }
 
-static int run(tune_options *o) {
+static int tune_search(tune_options *o) {
     if (o->order.folder == o->folder && !app_may_write_here(o->folder)) return app_fail_input();
     roil *r = roil_create(&(roil_desc){.no_device = true, .memory = o->memory});
     if (!r || !app_collect_settings(&o->settings, r, o->order.effect, NULL)) {
@@ -254,8 +254,8 @@ static int run(tune_options *o) {
     app_hear_interrupts();
     bench_results results;
     tune_result result;
-    int status =
-        bench_tune(&o->order, &results, &result) ? finish(o, &results, &result) : app_fail_input();
+    int status = bench_tune(&o->order, &results, &result) ? tune_finish(o, &results, &result)
+                                                          : app_fail_input();
     bench_results_free(&results);
     return status;
 }
@@ -266,8 +266,8 @@ int cmd_tune(int argc, const char **argv) {
     o.order.height = 540;
     o.order.limit = 120;
     poptContext context;
-    int status = parse(&o, argc, argv, &context)
-                     ? run(&o)
+    int status = tune_parse(&o, argc, argv, &context)
+                     ? tune_search(&o)
                      : app_fail(APP_BAD_USAGE, "tune: %s", roil_error());
     poptFreeContext(context);
     app_free_settings(&o.settings);

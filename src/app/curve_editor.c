@@ -64,7 +64,7 @@ static plot_range time_range(const editor *e) {
     return (plot_range){low, high > low ? high : low + 1};
 }
 
-static bool sample(editor *e) {
+static bool curve_sample(editor *e) {
     double times[SAMPLES];
     plot_range r = e->state->time;
     for (size_t i = 0; i < SAMPLES; i++)
@@ -82,10 +82,10 @@ static plot_range value_range(const editor *e) {
     return plot_range_of(values, count);
 }
 
-static bool prepare(editor *e) {
+static bool curve_prepare(editor *e) {
     bool held = e->state->dragging;
     if (!held) e->state->time = time_range(e);
-    if (!sample(e)) return false;
+    if (!curve_sample(e)) return false;
     if (!held) e->state->value = value_range(e);
     return true;
 }
@@ -181,7 +181,7 @@ static size_t key_under(const editor *e, int *component) {
     return found;
 }
 
-static void press(editor *e) {
+static void curve_press(editor *e) {
     shape_state *s = e->state;
     s->component = 0;
     s->selected = key_under(e, &s->component);
@@ -192,7 +192,7 @@ static void press(editor *e) {
     s->grab_y = to_y(e, key->value[s->component]) - e->canvas.y;
 }
 
-static bool drag(editor *e) {
+static bool curve_drag(editor *e) {
     const shape_state *s = e->state;
     if (e->canvas.dx == 0 && e->canvas.dy == 0) return false;
     roil_key *key = &e->curve.keys[s->selected], before = *key;
@@ -236,9 +236,9 @@ static bool handle_pointer(editor *e) {
     size_t under = key_under(e, &component);
     if (c->double_clicked && under == ROIL_MAX_STOPS) return add_key(e);
     if (c->right_pressed) return under != ROIL_MAX_STOPS && remove_key(e, under);
-    if (c->pressed) press(e);
+    if (c->pressed) curve_press(e);
     if (!c->held) s->dragging = false;
-    return s->dragging && drag(e);
+    return s->dragging && curve_drag(e);
 }
 
 static bool edit_shape(editor *e) {
@@ -280,7 +280,7 @@ static void open_canvas(editor *e) {
     e->plot.bottom -= BOTTOM * scale;
 }
 
-static bool draw(editor *e) {
+static bool curve_paint(editor *e) {
     open_canvas(e);
     bool changed = handle_pointer(e);
     draw_plot(e);
@@ -296,7 +296,7 @@ static bool draw(editor *e) {
     return changed;
 }
 
-static void send(editor *e) {
+static void curve_send(editor *e) {
     char *text = roil_curve_text(&e->curve);
     live_set(e->l, e->state->name, text);
     roil_free(text);
@@ -305,13 +305,13 @@ static void send(editor *e) {
 bool curve_draw(live *l, const char *name) {
     shape_state state = shape_state_take(&l->panel->curve, name);
     editor e = {.l = l, .state = &state};
-    if (!roil_get_curve(l->effect, name, &e.curve) || !prepare(&e)) {
+    if (!roil_get_curve(l->effect, name, &e.curve) || !curve_prepare(&e)) {
         ui_text_color(UI_ERROR, "%s", roil_error());
         return false;
     }
     ui_push(name);
-    bool changed = draw(&e);
-    if (changed) send(&e);
+    bool changed = curve_paint(&e);
+    if (changed) curve_send(&e);
     panel_shape_buttons(l, name);
     ui_pop();
     shape_state_give(&l->panel->curve, &state);

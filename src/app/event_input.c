@@ -45,7 +45,7 @@ bool event_hears_key(const live *l, int key) {
     return name_key(key, name) && is_heard(l, name);
 }
 
-static void send(live *l, const char *key) {
+static void event_send(live *l, const char *key) {
     char *text = roil_event_text(l->effect, key, l->pointer[0], l->pointer[1]);
     if (text)
         live_set(l, "effect.events", text);
@@ -58,7 +58,7 @@ bool event_press(live *l, int key, int mods, bool repeated) {
     const int used = GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT | GLFW_MOD_SUPER;
     char name[8];
     if ((mods & used) || !name_key(key, name) || !is_heard(l, name)) return false;
-    if (!repeated) send(l, name);
+    if (!repeated) event_send(l, name);
     return true;
 }
 
@@ -76,5 +76,6 @@ void event_input(live *l, const ui_canvas *view) {
         l->slipped = 0;
     else if (view->held)
         l->slipped += fabsf(view->dx) + fabsf(view->dy);
-    if (view->released && l->slipped <= STILL * ui_scale() && event_hears_clicks(l)) send(l, "");
+    if (view->released && l->slipped <= STILL * ui_scale() && event_hears_clicks(l))
+        event_send(l, "");
 }

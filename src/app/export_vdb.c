@@ -56,7 +56,7 @@ static bool take_option(job *j, poptContext context, int option) {
     return true;
 }
 
-static bool check(job *j, poptContext context) {
+static bool export_check_options(job *j, poptContext context) {
     j->file = poptGetArg(context);
     if (!j->file)
         return err_set("which effect? usage: roil export vdb EFFECT.lua -o DIR/%%04d.vdb");
@@ -71,7 +71,7 @@ static bool check(job *j, poptContext context) {
            (!j->frames_text || app_parse_frames(j->frames_text, &j->frames));
 }
 
-static bool parse(job *j, int argc, const char **argv, poptContext *context) {
+static bool export_parse(job *j, int argc, const char **argv, poptContext *context) {
     const struct poptOption options[] = {
         {"output", 'o', POPT_ARG_STRING, &j->output, 0, "file or pattern", "DIR/%04d.vdb"},
         {"frames", 'f', POPT_ARG_STRING, &j->frames_text, 0,
@@ -99,14 +99,14 @@ static bool parse(job *j, int argc, const char **argv, poptContext *context) {
     while ((option = poptGetNextOpt(*context)) > 0)
         if (!take_option(j, *context, option)) return false;
     if (option < -1) return app_refuse_option(*context, options, option);
-    return check(j, *context);
+    return export_check_options(j, *context);
 }
 
 // ---- work -------------------------------------------------------------------------------------
 
 enum { PICTURE = 16 }; // pixels a side of what is not drawn
 
-static bool complete(job *j, roil_effect *e) {
+static bool export_complete(job *j, roil_effect *e) {
     roil_effect_info info = roil_get_info(e);
     char range[64];
     snprintf(range, sizeof range, "%u-%u", info.first_frame, info.first_frame + info.frames - 1);
@@ -157,7 +157,7 @@ static bool export_all(job *j, roil_effect *e) {
     return true;
 }
 
-static int run(job *j) {
+static int export_frames(job *j) {
     roil_desc desc = app_device_desc(&j->device);
     app_progress files = {0};
     desc.loading = app_tell_files;
@@ -168,7 +168,7 @@ static int run(job *j) {
     int status = APP_DONE;
     if (!e)
         status = app_fail_input();
-    else if (!complete(j, e))
+    else if (!export_complete(j, e))
         status = app_fail(APP_BAD_USAGE, "export: %s", roil_error());
     else if (!export_all(j, e))
         status = app_fail_input();
@@ -184,8 +184,8 @@ static int run(job *j) {
 int export_vdb(int argc, const char **argv) {
     job j = {.frames.step = 1};
     poptContext context;
-    int status = parse(&j, argc, argv, &context)
-                     ? run(&j)
+    int status = export_parse(&j, argc, argv, &context)
+                     ? export_frames(&j)
                      : app_fail(APP_BAD_USAGE, "export: %s", roil_error());
     poptFreeContext(context);
     app_free_frames(&j.frames);

@@ -51,7 +51,7 @@ static roil_slices_square square_at(const flow_tools *t, const float middle[2], 
 // ---- pushing ------------------------------------------------------------------------------------
 
 // What lies where the pointer went takes up a part of its speed in one step.
-static void push(live *l, flow_tools *t, const sheet *s, const ui_canvas *c) {
+static void flow_push(live *l, flow_tools *t, const sheet *s, const ui_canvas *c) {
     const roil_slices *flow = &t->flows[t->view.flow];
     float now[2], force[2];
     place_of(s, c->x, c->y, now);
@@ -105,7 +105,7 @@ static void select_square(flow_tools *t, const sheet *s, const ui_canvas *c) {
 
 // ---- putting ------------------------------------------------------------------------------------
 
-static void put(live *l, flow_tools *t, const sheet *s, const ui_canvas *c) {
+static void flow_put(live *l, flow_tools *t, const sheet *s, const ui_canvas *c) {
     if (!is_inside(s, c) || !t->file[0]) return;
     roil_template_use *use = &t->use;
     if (c->wheel != 0 && c->shift) use->angle = remainderf(use->angle + TURN * c->wheel, 360);
@@ -152,8 +152,8 @@ void flow_canvas_draw(live *l, flow_tools *t, float height) {
     if (t->failure[0])
         label_within(c.area.left + 12 * ui_scale(), c.area.top + 12 * ui_scale(),
                      c.area.right - c.area.left - 24 * ui_scale(), ui_rgba(UI_DIM, 1), t->failure);
-    if (t->tool == FLOW_PUSH) push(l, t, &s, &c);
+    if (t->tool == FLOW_PUSH) flow_push(l, t, &s, &c);
     if (t->tool == FLOW_SELECT) select_square(t, &s, &c);
-    if (t->tool == FLOW_PUT) put(l, t, &s, &c);
+    if (t->tool == FLOW_PUT) flow_put(l, t, &s, &c);
     ui_canvas_end();
 }

@@ -21,7 +21,7 @@ static bool is_same(const flow_icon *icon, const roil_template *of, bool velocit
 }
 
 // Icons of files that are still there are kept.
-static void list(flow_tools *t, live *l) {
+static void flow_list_templates(flow_tools *t, live *l) {
     roil_template *found = mem_alloc(FLOW_TEMPLATES * sizeof *found);
     size_t count = roil_templates(l->effect, found, FLOW_TEMPLATES);
     if (count > FLOW_TEMPLATES) count = FLOW_TEMPLATES;
@@ -51,7 +51,7 @@ static void make_icon(flow_icon *icon, live *l) {
 
 void flow_list_look(flow_tools *t, live *l) {
     if (clock_seconds() >= t->next_look) {
-        list(t, l);
+        flow_list_templates(t, l);
         t->next_look = clock_seconds() + LOOK;
     }
     int made = 0;

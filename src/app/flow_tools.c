@@ -53,7 +53,7 @@ static float round_up(float value) {
 }
 
 // A field that comes into view is seen whole: its range is what it reaches by then.
-static bool fit(flow_tools *t, live *l) {
+static bool flow_fit_range(flow_tools *t, live *l) {
     size_t wanted = t->view.flow * ROIL_SLICES_FIELDS + (size_t)t->view.field;
     float most;
     if (t->fitted == wanted) return true;
@@ -69,8 +69,8 @@ void flow_tools_update(live *l) {
     list_flows(t, l);
     flow_list_look(t, l);
     if (!t->flow_count || !t->wanted[0]) return;
-    bool done =
-        resize_texture(t, l->r) && fit(t, l) && roil_slices_draw(l->effect, &t->view, t->texture);
+    bool done = resize_texture(t, l->r) && flow_fit_range(t, l) &&
+                roil_slices_draw(l->effect, &t->view, t->texture);
     str_copy(t->failure, sizeof t->failure, done ? "" : roil_error());
 }
 
@@ -138,7 +138,7 @@ static void draw_kind(flow_tools *t) {
     t->line[0] = '\0';
 }
 
-static void capture(live *l, flow_tools *t) {
+static void flow_capture(live *l, flow_tools *t) {
     float scale[2];
     char file[64];
     const roil_slices_square where = {
@@ -167,7 +167,7 @@ static void draw_select(live *l, flow_tools *t) {
     draw_kind(t);
     ui_input("##template name", "Name of the template", t->name, sizeof t->name);
     ui_disable_begin(t->side <= 0 || !t->name[0]);
-    if (ui_button("Capture")) capture(l, t);
+    if (ui_button("Capture")) flow_capture(l, t);
     ui_disable_end();
     ui_tooltip("Writes templates/NAME.exr beside the effect's file");
 }

@@ -81,14 +81,14 @@ size_t history_list(const history *h, size_t ago, size_t out[HISTORY_PASSES]) {
 
 // ---- medians ----------------------------------------------------------------------------------
 
-static int compare(const void *a, const void *b) {
+static int compare_entries(const void *a, const void *b) {
     float x = *(const float *)a, y = *(const float *)b;
     return (x > y) - (x < y);
 }
 
 static float median(float *values, size_t count) {
     if (count == 0) return 0;
-    qsort(values, count, sizeof *values, compare);
+    qsort(values, count, sizeof *values, compare_entries);
     return count % 2 ? values[count / 2] : 0.5f * (values[count / 2 - 1] + values[count / 2]);
 }
 

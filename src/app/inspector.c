@@ -105,7 +105,7 @@ static bool prepare_again(live *l) {
 }
 
 // False with `failure` when the effect cannot be drawn so.
-static bool keep(live *l, const char *image) {
+static bool inspector_keep(live *l, const char *image) {
     inspector *p = l->inspector;
     uint64_t reloads = roil_live_counts(l->follow).reloads;
     if (p->reloads != reloads && !find_image(p, p->kept)) p->kept[0] = '\0'; // else kept on
@@ -132,7 +132,7 @@ void inspector_update(live *l) {
     list_images(p, l->effect);
     bool open = l->session.inspector;
     const roil_image_info *image = open ? find_chosen(p, &l->session) : NULL;
-    if (!keep(l, image ? image->name : "") || !image) return;
+    if (!inspector_keep(l, image ? image->name : "") || !image) return;
     if (!p->wanted[0] || !resize_texture(p, l->r)) return;
     p->how.image = p->kept;
     roil_texel texel;
@@ -215,7 +215,7 @@ static void draw_rows(inspector *p, const roil_image_info *image) {
 
 // ---- the picture --------------------------------------------------------------------------------
 
-static void look(inspector *p, const roil_image_info *image, const ui_canvas *c) {
+static void inspector_move(inspector *p, const roil_image_info *image, const ui_canvas *c) {
     float plane[2];
     const float size[2] = {(float)p->wanted[0], (float)p->wanted[1]};
     image_view_plane(image, p->how.mip, p->how.axis, plane);
@@ -249,7 +249,7 @@ static void draw_picture(inspector *p, const roil_image_info *image) {
     p->wanted[1] = (uint32_t)fmaxf(c.area.bottom - c.area.top, 1);
     ui_fill(c.area, ui_rgba(UI_FIELD, 1), 0);
     if (image) {
-        look(p, image, &c);
+        inspector_move(p, image, &c);
         if (p->texture) ui_image(c.area, p->texture);
     }
     if (p->failure[0]) draw_text_in(&c, UI_ERROR, p->failure);

@@ -8,14 +8,14 @@
 
 // ---- what they do -----------------------------------------------------------------------------
 
-static void play(live *l) {
+static void key_play(live *l) {
     l->time.playing = !l->time.playing;
     l->dirty = true; // what was broken is tried again
     l->held = false;
     l->broken = NULL;
 }
 
-static void seek(live *l, double frame) {
+static void key_seek(live *l, double frame) {
     timeline_seek(&l->time, frame);
     l->dirty = true;
 }
@@ -31,14 +31,14 @@ static void step_on(live *l) {
 }
 
 static void go_first(live *l) {
-    seek(l, l->time.from);
+    key_seek(l, l->time.from);
 }
 
 static void go_last(live *l) {
-    seek(l, l->time.to);
+    key_seek(l, l->time.to);
 }
 
-static void restart(live *l) {
+static void key_restart(live *l) {
     roil_simulation simulation;
     bool hears = l->effect && roil_hotkeys(l->effect, NULL, 0) > 0;
     if (!l->effect || (!hears && !roil_get_simulation(l->effect, &simulation))) return;
@@ -53,7 +53,7 @@ static void loop(live *l) {
     live_notice(l, l->time.loop ? "Starts again at the end" : "Stops at the end");
 }
 
-static void preview(live *l) {
+static void key_preview(live *l) {
     l->session.preview = (l->session.preview + 1) % LIVE_PREVIEWS;
     live_notice(l, "Picture at %s size", live_previews[l->session.preview].name);
 }
@@ -62,7 +62,7 @@ static void panels(live *l) {
     l->session.panel_hidden = !l->session.panel_hidden;
 }
 
-static void inspect(live *l) {
+static void key_inspect(live *l) {
     l->session.inspector = !l->session.inspector;
 }
 
@@ -82,7 +82,7 @@ static void shot(live *l) {
     l->shot = true;
 }
 
-static void quit(live *l) {
+static void key_quit(live *l) {
     l->quit = true;
 }
 
@@ -120,25 +120,25 @@ static void save_preset(live *l) {
 // ---- table ------------------------------------------------------------------------------------
 
 static const live_key keys[] = {
-    {GLFW_KEY_SPACE, 0, "Space", "play, pause", play},
+    {GLFW_KEY_SPACE, 0, "Space", "play, pause", key_play},
     {GLFW_KEY_LEFT, 0, "Left", "one frame back", step_back},
     {GLFW_KEY_RIGHT, 0, "Right", "one frame on", step_on},
     {GLFW_KEY_HOME, 0, "Home", "first frame of the range", go_first},
     {GLFW_KEY_END, 0, "End", "last frame of the range", go_last},
     {GLFW_KEY_L, 0, "L", "start again at the end, or stop", loop},
-    {GLFW_KEY_BACKSPACE, 0, "Backspace", "begin anew, without clicks and keys", restart},
+    {GLFW_KEY_BACKSPACE, 0, "Backspace", "begin anew, without clicks and keys", key_restart},
     {GLFW_KEY_F, 0, "F", "frame the volume", camera_frame},
     {GLFW_KEY_R, 0, "R", "camera of the effect file", camera_reset},
-    {GLFW_KEY_V, 0, "V", "picture at full, half, quarter size", preview},
+    {GLFW_KEY_V, 0, "V", "picture at full, half, quarter size", key_preview},
     {GLFW_KEY_TAB, 0, "Tab", "show the picture alone", panels},
-    {GLFW_KEY_I, 0, "I", "inspect the images of passes", inspect},
+    {GLFW_KEY_I, 0, "I", "inspect the images of passes", key_inspect},
     {GLFW_KEY_S, 0, "S", "see, push and capture the flow of slices", slices},
     {GLFW_KEY_P, 0, "P", "performance", performance_key},
     {GLFW_KEY_F12, 0, "F12", "save the picture as PNG", shot},
     {GLFW_KEY_S, GLFW_MOD_CONTROL, "Ctrl+S", "save a preset", save_preset},
     {GLFW_KEY_F1, 0, "F1", "this help", help},
     {GLFW_KEY_ESCAPE, 0, "Esc", "close what lies on top", close_top},
-    {GLFW_KEY_Q, GLFW_MOD_CONTROL, "Ctrl+Q", "quit", quit},
+    {GLFW_KEY_Q, GLFW_MOD_CONTROL, "Ctrl+Q", "quit", key_quit},
 };
 
 const live_key *live_keys(size_t *count) {

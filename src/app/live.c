@@ -100,7 +100,7 @@ static void take_over(live *l, loop *p) {
               roil_live_counts(l->follow).last * 1000);
 }
 
-static void follow(live *l, loop *p) {
+static void loop_follow_files(live *l, loop *p) {
     if (!roil_live_update(l->follow, l->width, l->height, l->time.frame)) return;
     const char *message = roil_live_message(l->follow);
     uint64_t reloads = roil_live_counts(l->follow).reloads;
@@ -118,7 +118,7 @@ static uint32_t picture_size(float view, float scale) {
 }
 
 // While a window is being resized its old picture is stretched: making it anew takes time.
-static void resize(live *l, loop *p, double now) {
+static void loop_resize(live *l, loop *p, double now) {
     float scale = live_previews[l->session.preview].scale;
     uint32_t width = picture_size(l->view.right - l->view.left, scale);
     uint32_t height = picture_size(l->view.bottom - l->view.top, scale);
@@ -177,7 +177,7 @@ static bool can_draw(const live *l) {
     return l->effect && !l->broken && !l->held;
 }
 
-static void advance(live *l, loop *p, double seconds) {
+static void loop_advance(live *l, loop *p, double seconds) {
     if (l->held && l->time.playing) {
         l->held = false;
         changed(l);
@@ -282,7 +282,7 @@ static double age(void) {
     return (double)now.tv_sec + (double)now.tv_nsec * 1e-9 - start;
 }
 
-static bool show(live *l, loop *p, uint32_t width, uint32_t height) {
+static bool loop_show(live *l, loop *p, uint32_t width, uint32_t height) {
     roil_picture *out = &p->picture;
     out->width = width;
     out->height = height;
@@ -315,7 +315,7 @@ static double time_to_sleep(const live *l, const loop *p, double now) {
     return fmax(most, 0);
 }
 
-static bool turn(live *l, loop *p) {
+static bool loop_turn(live *l, loop *p) {
     double most = time_to_sleep(l, p, clock_seconds());
     bool woken = window_wait(most) && most > 0;
     if (woken || ui_pending()) {
@@ -330,7 +330,7 @@ static bool turn(live *l, loop *p) {
 bool live_loop(live *l, window *w) {
     loop p = {.w = w, .last = clock_seconds()};
     bool playing = false;
-    while (turn(l, &p)) {
+    while (loop_turn(l, &p)) {
         double now = clock_seconds(), passed = playing ? now - p.last : 0;
         uint32_t width, height;
         p.last = now;
@@ -342,9 +342,9 @@ bool live_loop(live *l, window *w) {
         }
         ui_set_scale(window_scale(w));
         layout at = lay_out(l, width, height);
-        resize(l, &p, now);
-        follow(l, &p);
-        advance(l, &p, passed);
+        loop_resize(l, &p, now);
+        loop_follow_files(l, &p);
+        loop_advance(l, &p, passed);
         playing = l->time.playing;
         if (p.drawn) inspector_update(l);
         if (p.drawn) flow_tools_update(l);
@@ -352,7 +352,7 @@ bool live_loop(live *l, window *w) {
         ui_begin();
         draw_interface(l, &at, width);
         ui_end(&p.picture);
-        if (roil_is_lost(l->r) || !show(l, &p, width, height)) {
+        if (roil_is_lost(l->r) || !loop_show(l, &p, width, height)) {
             if (!l->broken) live_break(l, roil_error());
             return false;
         }

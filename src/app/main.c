@@ -70,14 +70,14 @@ static bool open_streams(void) {
 }
 
 // A result that could not be written is no success.
-static int finish(int status) {
+static int main_finish(int status) {
     bool done = fflush(stdout) == 0 && !ferror(stdout);
     if (done) return status;
     return app_fail(status ? status : APP_BAD_INPUT, "standard output: cannot be written: %s",
                     strerror(errno ? errno : EIO));
 }
 
-static int run(int argc, char **argv) {
+static int main_run_command(int argc, char **argv) {
     if (argc < 2) {
         print_help(stderr);
         return APP_BAD_USAGE;
@@ -110,7 +110,7 @@ static int run(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
-    int status = open_streams() ? finish(run(argc, argv)) : APP_BAD_INPUT;
+    int status = open_streams() ? main_finish(main_run_command(argc, argv)) : APP_BAD_INPUT;
     if (!roil_can_exit()) _exit(status);
     return status;
 }

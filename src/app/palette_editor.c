@@ -153,7 +153,7 @@ static bool add_stop(editor *e) {
     return true;
 }
 
-static bool press(editor *e) {
+static bool palette_press(editor *e) {
     bool on_rail = fabsf(e->canvas.y - e->rail) <= 0.5f * RAIL * ui_scale(), added = false;
     e->state->selected = stop_under(e);
     if (e->state->selected == ROIL_MAX_STOPS && on_rail) added = add_stop(e);
@@ -164,7 +164,7 @@ static bool press(editor *e) {
     return added;
 }
 
-static bool drag(editor *e) {
+static bool palette_drag(editor *e) {
     shape_state *s = e->state;
     float over = e->canvas.area.top - e->canvas.y, under = e->canvas.y - e->canvas.area.bottom;
     s->leaving = fmaxf(over, under) > LEAVE * ui_scale() && e->palette.count > 2;
@@ -186,13 +186,13 @@ static bool handle_pointer(editor *e) {
         e->state->selected = ROIL_MAX_STOPS;
         e->state->dragging = false;
     }
-    if (c->pressed) return press(e);
+    if (c->pressed) return palette_press(e);
     if (c->right_pressed) {
         size_t under = stop_under(e);
         return under != ROIL_MAX_STOPS && remove_stop(e, under);
     }
     if (!e->state->dragging) return false;
-    return c->held ? drag(e) : let_go(e);
+    return c->held ? palette_drag(e) : let_go(e);
 }
 
 static bool edit_stop(editor *e) {
@@ -221,7 +221,7 @@ static bool edit_stop(editor *e) {
 
 // ---- whole ------------------------------------------------------------------------------------
 
-static bool send(editor *e) {
+static bool palette_send(editor *e) {
     char *text = roil_palette_text(&e->palette);
     live_set(e->l, e->state->name, text);
     roil_free(text);
@@ -255,10 +255,10 @@ static bool draw_law(editor *e) {
     palette_stops_fit(&e->palette, (const float(*)[4])e->samples, SAMPLES, MADE_STOPS);
     for (size_t i = 0; i < e->palette.count; i++)
         e->palette.stops[i].at = plot_round(e->state->value, e->palette.stops[i].at);
-    return send(e);
+    return palette_send(e);
 }
 
-static bool draw(editor *e) {
+static bool palette_paint(editor *e) {
     bool changed = false, stops = open_canvas(e);
     if (stops) changed = handle_pointer(e);
     draw_ramp(e);
@@ -270,7 +270,7 @@ static bool draw(editor *e) {
         return false;
     }
     changed |= edit_stop(e);
-    return changed && send(e);
+    return changed && palette_send(e);
 }
 
 bool palette_draw(live *l, const char *name) {
@@ -283,7 +283,7 @@ bool palette_draw(live *l, const char *name) {
         return false;
     }
     ui_push(name);
-    bool changed = draw(&e);
+    bool changed = palette_paint(&e);
     panel_shape_buttons(l, name);
     ui_pop();
     shape_state_give(&l->panel->palette, &state);

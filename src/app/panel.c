@@ -22,7 +22,7 @@ void panel_destroy(panel *p) {
     mem_free(p);
 }
 
-static void gather(panel *p, roil_effect *e) {
+static void panel_gather(panel *p, roil_effect *e) {
     p->control_count = roil_control_count(e);
     MEM_RESERVE(p->controls, p->control_count, p->control_capacity);
     size_t count = p->control_count;
@@ -173,7 +173,7 @@ void panel_draw(live *l, ui_rect where) {
         ui_panel_end();
         return;
     }
-    gather(p, l->effect);
+    panel_gather(p, l->effect);
     draw_list(l, middle);
     ui_panel_begin("presets", foot);
     presets_draw(l);

@@ -17,7 +17,7 @@ void panel_table_begin(const char *id) {
 
 // ---- what happens to it -----------------------------------------------------------------------
 
-static void set(live *l, const roil_control *c, const float value[4]) {
+static void row_set_value(live *l, const roil_control *c, const float value[4]) {
     strbuf text = {0};
     panel_value_text(c, value, &text);
     live_set(l, c->name, strbuf_text(&text));
@@ -42,7 +42,7 @@ void panel_copy_lua(live *l, const char *name) {
 
 static void menu(live *l, const roil_control *c, const char *id) {
     if (!ui_menu_begin(id)) return;
-    if (c->driven && ui_item("Override")) set(l, c, c->value);
+    if (c->driven && ui_item("Override")) row_set_value(l, c, c->value);
     if (c->moved && ui_item("Reset")) panel_reset(l, c->name);
     if (ui_item("Copy as Lua")) panel_copy_lua(l, c->name);
     if (ui_item("Copy name")) ui_copy(c->name);
@@ -183,7 +183,7 @@ static void structural_widget(live *l, const roil_control *c) {
     if (v->sent || strcmp(v->name, c->name) != 0 || (ui_active() && !at_once)) return;
     v->sent = true;
     v->until = clock_seconds() + PENDING;
-    set(l, c, v->value);
+    row_set_value(l, c, v->value);
 }
 
 static void driven_value(const roil_control *c) {
@@ -204,7 +204,7 @@ static void value_cell(live *l, const roil_control *c) {
     else if (c->structural)
         structural_widget(l, c);
     else if (widget(c, value))
-        set(l, c, value);
+        row_set_value(l, c, value);
     help(c);
     menu(l, c, "value menu");
 }

@@ -7,7 +7,7 @@
 static const double LOOK = 2;    // seconds between looks at the folder
 static const float BUTTON = 104; // units that a button at the right takes
 
-static void look(live *l, preset_list *list) {
+static void preset_list_refresh(live *l, preset_list *list) {
     if (clock_seconds() < list->next_look) return;
     size_t count = roil_presets(l->file, list->names, PANEL_PRESETS);
     list->count = count < PANEL_PRESETS ? count : PANEL_PRESETS;
@@ -33,7 +33,7 @@ static void reset_others(live *l, const roil_preset *preset) {
     }
 }
 
-static void apply(live *l, const roil_preset *preset, const char *name) {
+static void preset_apply(live *l, const roil_preset *preset, const char *name) {
     strbuf unknown = {0};
     size_t index;
     l->panel->pending = (pending_value){.sent = true};
@@ -50,10 +50,10 @@ static void apply(live *l, const roil_preset *preset, const char *name) {
     strbuf_free(&unknown);
 }
 
-static void load(live *l, const char *name) {
+static void preset_load(live *l, const char *name) {
     roil_preset *preset = roil_read_preset(l->r, l->file, name);
     if (preset)
-        apply(l, preset, name);
+        preset_apply(l, preset, name);
     else
         live_notice(l, "%s", roil_error());
     roil_free_preset(preset);
@@ -69,7 +69,7 @@ static void draw_choice(live *l, preset_list *list) {
     for (size_t i = 0; i < list->count; i++) words[i + 1] = list->names[i];
     ui_width(-BUTTON * ui_scale());
     if (ui_choice("##preset", &index, words, list->count + 1) && index > 0)
-        load(l, list->names[index - 1]);
+        preset_load(l, list->names[index - 1]);
     ui_tooltip("what a preset does not name returns to what the effect file says");
 }
 
@@ -81,7 +81,7 @@ static bool exists(const preset_list *list) {
     return false;
 }
 
-static void save(live *l, preset_list *list) {
+static void preset_save(live *l, preset_list *list) {
     if (exists(list) && !list->asked) {
         list->asked = true;
         return;
@@ -104,14 +104,14 @@ static void draw_saving(live *l, preset_list *list) {
     button.bottom = button.top + ui_line_height();
     ui_mark("preset save", button);
     ui_disable_begin(!list->name[0]);
-    if (ui_button(list->asked ? "Overwrite?###save" : "Save###save")) save(l, list);
+    if (ui_button(list->asked ? "Overwrite?###save" : "Save###save")) preset_save(l, list);
     ui_disable_end();
     ui_tooltip("keeps all that was changed, but not the camera");
 }
 
 void presets_draw(live *l) {
     preset_list *list = &l->panel->presets;
-    look(l, list);
+    preset_list_refresh(l, list);
     draw_choice(l, list);
     ui_same_line();
     ui_width(0);

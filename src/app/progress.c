@@ -49,7 +49,7 @@ void app_progress_end(app_progress *p) {
     if (p->terminal) fputc('\n', stderr);
 }
 
-static bool tell(app_progress *p, double done, double whole, const char *unit) {
+static bool progress_report(app_progress *p, double done, double whole, const char *unit) {
     if (p->total != (size_t)whole) {
         app_progress_begin(p, (size_t)whole, unit);
         p->printed = p->start;
@@ -61,13 +61,13 @@ static bool tell(app_progress *p, double done, double whole, const char *unit) {
 }
 
 bool app_tell_steps(void *user, double done, double whole) {
-    return tell(user, done, whole, "steps");
+    return progress_report(user, done, whole, "steps");
 }
 
 bool app_tell_files(void *user, double done, double whole) {
-    return tell(user, done, whole, "files");
+    return progress_report(user, done, whole, "files");
 }
 
 bool app_tell_frames(void *user, double done, double whole) {
-    return tell(user, done, whole, "frames");
+    return progress_report(user, done, whole, "frames");
 }

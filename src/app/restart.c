@@ -12,7 +12,7 @@ typedef struct arguments {
     size_t count, capacity;
 } arguments;
 
-static void add(arguments *a, const char *text) {
+static void argument_add(arguments *a, const char *text) {
     MEM_RESERVE(a->list, a->count + 2, a->capacity);
     a->list[a->count++] = mem_copy(text, strlen(text) + 1);
     a->list[a->count] = NULL;
@@ -21,7 +21,7 @@ static void add(arguments *a, const char *text) {
 static void add_number(arguments *a, double number) {
     char text[32];
     snprintf(text, sizeof text, "%.9g", number);
-    add(a, text);
+    argument_add(a, text);
 }
 
 static void add_moved(arguments *a, roil_effect *e) {
@@ -32,8 +32,8 @@ static void add_moved(arguments *a, roil_effect *e) {
         if (!text) continue;
         strbuf setting = {0};
         strbuf_add(&setting, "%s=%s", c.name, text);
-        add(a, "--set");
-        add(a, strbuf_text(&setting));
+        argument_add(a, "--set");
+        argument_add(a, strbuf_text(&setting));
         strbuf_free(&setting);
         roil_free(text);
     }
@@ -41,17 +41,17 @@ static void add_moved(arguments *a, roil_effect *e) {
 
 static void add_option(arguments *a, const char *name, double number) {
     if (!(number > 0)) return;
-    add(a, name);
+    argument_add(a, name);
     add_number(a, number);
 }
 
 static void add_device(arguments *a, const app_device *d) {
-    if (d->name) add(a, "--device");
-    if (d->name) add(a, d->name);
-    if (d->memory) add(a, "--memory");
-    if (d->memory) add(a, d->memory);
-    if (d->validate) add(a, "--validate");
-    if (d->no_cache) add(a, "--no-cache");
+    if (d->name) argument_add(a, "--device");
+    if (d->name) argument_add(a, d->name);
+    if (d->memory) argument_add(a, "--memory");
+    if (d->memory) argument_add(a, d->memory);
+    if (d->validate) argument_add(a, "--validate");
+    if (d->no_cache) argument_add(a, "--no-cache");
     add_option(a, "--timeout", d->timeout);
     add_option(a, "--time-limit", d->time_limit);
 }
@@ -59,12 +59,12 @@ static void add_device(arguments *a, const app_device *d) {
 static arguments list_arguments(const live *l, const app_device *device, const char *why) {
     arguments a = {0};
     const char *const always[] = {"roil", "live", "--paused", "--after-hang", why, "--frame"};
-    for (size_t i = 0; i < COUNT_OF(always); i++) add(&a, always[i]);
+    for (size_t i = 0; i < COUNT_OF(always); i++) argument_add(&a, always[i]);
     add_number(&a, l->time.frame);
     add_device(&a, device);
     if (l->effect) add_moved(&a, l->effect);
-    add(&a, "--");
-    add(&a, l->file);
+    argument_add(&a, "--");
+    argument_add(&a, l->file);
     return a;
 }
 
@@ -103,7 +103,7 @@ static void on_fault(int number) {
     _exit(APP_BAD_INPUT);
 }
 
-static void handle(bool handled) {
+static void set_fault_handler(bool handled) {
     if (REPORTED) return;
     struct sigaction action = {.sa_handler = handled ? on_fault : SIG_DFL,
                                .sa_flags = SA_RESETHAND | SA_NODEFER};
@@ -113,7 +113,7 @@ static void handle(bool handled) {
 
 void restart_disarm(void) {
     ready = NULL;
-    handle(false);
+    set_fault_handler(false);
     for (size_t i = 0; i < COUNT_OF(prepared); i++) free_arguments(&prepared[i]);
 }
 
@@ -128,5 +128,5 @@ void restart_arm(const live *l) {
     prepared[current] = list_arguments(
         l, l->device, "the process crashed while it drew this: a shader or a fault of the driver");
     ready = prepared[current].list;
-    handle(true);
+    set_fault_handler(true);
 }

@@ -48,7 +48,7 @@ static bool flag(const json_t *root, const char *key) {
     return json_is_true(json_object_get(root, key));
 }
 
-static void take(live_session *s, const json_t *root) {
+static void session_read_json(live_session *s, const json_t *root) {
     s->x = whole(root, "x", -MAX_SIZE, MAX_SIZE, 0);
     s->y = whole(root, "y", -MAX_SIZE, MAX_SIZE, 0);
     s->width = whole(root, "width", 1, MAX_SIZE, 0);
@@ -74,7 +74,7 @@ void session_load(live_session *s) {
         !file_read(path, MAX_BYTES, &text, &size))
         return;
     json_t *root = json_loadb(text, size, 0, NULL);
-    if (json_is_object(root)) take(s, root);
+    if (json_is_object(root)) session_read_json(s, root);
     json_decref(root);
     mem_free(text);
 }

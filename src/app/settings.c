@@ -42,7 +42,7 @@ static void add_all(app_settings *s, const roil_setting *settings, size_t count)
     for (size_t i = 0; i < count; i++) s->all[s->count++] = settings[i];
 }
 
-static void drop(app_settings *s) { // what was collected before
+static void settings_clear(app_settings *s) { // what was collected before
     for (size_t i = 0; i < s->loaded_count; i++) roil_free_preset(s->loaded[i]);
     mem_free(s->loaded);
     s->loaded = NULL;
@@ -82,7 +82,7 @@ bool app_check_effect(const char *file) {
 }
 
 bool app_collect_settings(app_settings *s, roil *r, const char *effect, const roil_recipe *from) {
-    drop(s);
+    settings_clear(s);
     if (!app_check_effect(effect)) return false;
     s->loaded = mem_alloc(s->preset_count * sizeof *s->loaded);
     if (from) add_all(s, from->settings, from->setting_count);
@@ -97,7 +97,7 @@ bool app_collect_settings(app_settings *s, roil *r, const char *effect, const ro
 }
 
 void app_free_settings(app_settings *s) {
-    drop(s);
+    settings_clear(s);
     mem_free(s->presets);
     mem_free(s->sets);
     mem_free(s->events);

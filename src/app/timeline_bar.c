@@ -20,7 +20,7 @@ static struct {
 
 // ---- scrubbing --------------------------------------------------------------------------------
 
-static void seek(live *l, double frame) {
+static void bar_seek(live *l, double frame) {
     double before = l->time.frame;
     timeline_seek(&l->time, l->time.smooth ? frame : round(frame));
     if (l->time.frame != before) l->dirty = true;
@@ -35,12 +35,12 @@ static grab grab_at(const timeline *t, const track *bar, const ui_canvas *c) {
     return from < to ? GRAB_FROM : GRAB_TO;
 }
 
-static void drag(live *l, const track *bar, const ui_canvas *c) {
+static void bar_drag(live *l, const track *bar, const ui_canvas *c) {
     timeline *t = &l->time;
     double frame = track_frame(bar, c->x), whole = round(frame);
     switch (grabbed.what) {
     case GRAB_FRAME:
-        seek(l, frame);
+        bar_seek(l, frame);
         break;
     case GRAB_FROM:
         timeline_set_loop(t, fmin(whole, t->to), t->to);
@@ -63,7 +63,7 @@ static void scrub(live *l, const track *bar, const ui_canvas *c) {
         grabbed.what = grab_at(&l->time, bar, c);
         grabbed.from = round(track_frame(bar, c->x));
     }
-    if (c->held) drag(l, bar, c);
+    if (c->held) bar_drag(l, bar, c);
     if (!c->held) grabbed.what = GRAB_NONE;
 }
 
@@ -150,7 +150,7 @@ static void draw_track(live *l) {
 
 static void draw_buttons(live *l) {
     timeline *t = &l->time;
-    if (ui_icon_button("start", UI_ICON_START, false, "To the start (Home)")) seek(l, t->from);
+    if (ui_icon_button("start", UI_ICON_START, false, "To the start (Home)")) bar_seek(l, t->from);
     ui_same_line();
     double before = t->frame;
     if (ui_icon_button("back", UI_ICON_BACK, false, "One frame back (Left)")) timeline_step(t, -1);
@@ -163,7 +163,7 @@ static void draw_buttons(live *l) {
         timeline_step(t, 1);
     if (t->frame != before) l->dirty = true;
     ui_same_line();
-    if (ui_icon_button("end", UI_ICON_END, false, "To the end (End)")) seek(l, t->to);
+    if (ui_icon_button("end", UI_ICON_END, false, "To the end (End)")) bar_seek(l, t->to);
     ui_same_line();
     if (ui_icon_button("loop", UI_ICON_LOOP, t->loop, "Start again at the end of the range"))
         t->loop = !t->loop;
@@ -219,7 +219,7 @@ static void draw_switches(live *l) {
     ui_tooltip("Show every frame, however long each takes; else frames are left out to keep the "
                "time");
     ui_same_line();
-    if (label_switch("smooth", &t->smooth, ui_rgba(UI_ACCENT, 1))) seek(l, t->frame);
+    if (label_switch("smooth", &t->smooth, ui_rgba(UI_ACCENT, 1))) bar_seek(l, t->frame);
     ui_tooltip("Show times between frames, as often as the window is drawn");
 }
 

@@ -25,7 +25,7 @@ static bool create_surface(void *user, void *instance, void *surface) {
     return err_set("the window has no surface for Vulkan: %s", why ? why : "unknown reason");
 }
 
-static bool start(void) {
+static bool glfw_start(void) {
     glfwSetErrorCallback(on_error);
     if (glfwInit()) return true;
     const char *why = NULL;
@@ -73,7 +73,7 @@ static void first_size(int *width, int *height) {
 
 bool window_open(window *w, const live_session *s, const char *title, int width, int height) {
     *w = (window){.handle = NULL};
-    if (!start()) return false;
+    if (!glfw_start()) return false;
     bool placed = !width && s->width > 0;
     if (placed) {
         fit_session(s, &width, &height);

@@ -23,7 +23,7 @@ static arena_block *block_create(arena *a, size_t size) {
     return block;
 }
 
-static void *carve(arena *a, size_t size) {
+static void *arena_carve(arena *a, size_t size) {
     if (size > BLOCK_SIZE / 4) {
         arena_block *own = block_create(a, size);
         own->used = size;
@@ -48,7 +48,7 @@ static void *carve(arena *a, size_t size) {
 void *arena_alloc(arena *a, size_t size) {
     if (size > SIZE_MAX / 2) err_out_of_memory(size);
     while (__atomic_exchange_n(&a->taken, true, __ATOMIC_ACQUIRE)) sched_yield();
-    void *object = carve(a, (size + ALIGN - 1) & ~(size_t)(ALIGN - 1));
+    void *object = arena_carve(a, (size + ALIGN - 1) & ~(size_t)(ALIGN - 1));
     __atomic_store_n(&a->taken, false, __ATOMIC_RELEASE);
     return object;
 }

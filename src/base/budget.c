@@ -195,7 +195,7 @@ static void add_amount(strbuf *out, uint64_t bytes) {
 }
 
 // Under the lock; always false.
-static bool refuse(const budget *b, const budget_row *rows, size_t count, uint64_t sum) {
+static bool budget_refuse(const budget *b, const budget_row *rows, size_t count, uint64_t sum) {
     budget_row largest[BUDGET_LARGEST];
     find_largest(b, rows, count, largest);
     strbuf text = {0};
@@ -228,7 +228,7 @@ budget_part *budget_take(budget *b, uint64_t bytes, const char *label) {
     str_copy(row.label, sizeof row.label, label);
     pthread_mutex_lock(&b->lock);
     // Nothing can be had of no bytes, so that a part of them is only a name.
-    bool done = bytes == 0 || is_free(b, bytes) || refuse(b, &row, 1, plus(b->sum, bytes));
+    bool done = bytes == 0 || is_free(b, bytes) || budget_refuse(b, &row, 1, plus(b->sum, bytes));
     budget_part *part = NULL;
     if (done) {
         part = mem_alloc(sizeof *part);
@@ -267,7 +267,7 @@ bool budget_resize(budget_part *part, uint64_t bytes) {
     } else {
         budget_row row = {.bytes = more};
         memcpy(row.label, part->label, sizeof row.label);
-        refuse(b, &row, 1, plus(b->sum, more));
+        budget_refuse(b, &row, 1, plus(b->sum, more));
     }
     pthread_mutex_unlock(&b->lock);
     return done;
@@ -317,7 +317,7 @@ bool budget_ask(budget *b, const budget_row *rows, size_t count, uint64_t freed)
     pthread_mutex_lock(&b->lock);
     uint64_t sum = b->sum > freed ? b->sum - freed : 0;
     for (size_t i = 0; i < count; i++) sum = plus(sum, rows[i].bytes);
-    bool done = sum <= limit_of(b) || sum <= b->sum || refuse(b, rows, count, sum);
+    bool done = sum <= limit_of(b) || sum <= b->sum || budget_refuse(b, rows, count, sum);
     pthread_mutex_unlock(&b->lock);
     return done;
 }

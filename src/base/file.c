@@ -118,7 +118,7 @@ static bool is_target(const file_draft *d, bool inside) {
            err_set("%s: is no regular file, so it is not written", d->path);
 }
 
-static bool begin(file_draft *d, bool inside) {
+static bool draft_begin(file_draft *d, bool inside) {
     if (!is_target(d, inside)) return false;
     if (!path_name(d->path)[0]) return err_set("%s: is no name of a file", d->path);
     d->fd = open_nameless(d->folder);
@@ -134,7 +134,7 @@ static bool begin_in(file_draft *d, int folder, const char *path, bool inside) {
     d->named = false;
     d->folder = folder;
     if (folder < 0) return false;
-    if ((str_copy(d->path, sizeof d->path, path) || path_too_long(path)) && begin(d, inside))
+    if ((str_copy(d->path, sizeof d->path, path) || path_too_long(path)) && draft_begin(d, inside))
         return true;
     close(folder);
     return false;
@@ -164,14 +164,14 @@ void file_draft_patch(file_draft *d, uint64_t at, const void *data, size_t size)
     if (lseek(d->fd, 0, SEEK_END) < 0 && !d->reason) d->reason = errno;
 }
 
-static void end(file_draft *d) {
+static void draft_end(file_draft *d) {
     if (d->named) unlinkat(d->folder, d->temporary, 0);
     close(d->folder);
 }
 
 void file_draft_drop(file_draft *d) {
     close(d->fd);
-    end(d);
+    draft_end(d);
 }
 
 // What has no name gets one, since only a name can take the place of another.
@@ -193,7 +193,7 @@ bool file_draft_end(file_draft *d) {
     if (!d->reason && renameat(d->folder, d->temporary, d->folder, path_name(d->path)) != 0)
         d->reason = errno;
     if (!d->reason) d->named = false;
-    end(d);
+    draft_end(d);
     if (!d->reason) return true;
     return err_set("%s: cannot be written: %s", d->path, strerror(d->reason));
 }

@@ -10,7 +10,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-static int enter(int folder, const char *part, bool make) {
+static int enter_folder(int folder, const char *part, bool make) {
     const int flags = O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
     if (strcmp(part, "..") == 0) { // of a folder that does not exist
         errno = ENOENT;
@@ -23,13 +23,13 @@ static int enter(int folder, const char *part, bool make) {
 }
 
 // Below `real_root` to the folder `rest`, whose slashes are overwritten.
-static int walk(const char *real_root, char *rest, bool make) {
+static int walk_folders(const char *real_root, char *rest, bool make) {
     int folder = open(real_root, O_PATH | O_DIRECTORY | O_CLOEXEC);
     for (char *part = rest; folder >= 0 && *part;) {
         size_t length = strcspn(part, "/");
         char *next = part + length + (part[length] == '/');
         part[length] = '\0';
-        int entered = length ? enter(folder, part, make) : dup(folder);
+        int entered = length ? enter_folder(folder, part, make) : dup(folder);
         int reason = errno;
         close(folder);
         errno = reason;
@@ -43,7 +43,7 @@ int file_open_folder_inside(const char *root, const char *path) {
     char above[PATH_CAP], real_root[PATH_CAP], rest[PATH_CAP];
     path_folder(above, path);
     if (!path_split_inside(real_root, rest, root, above)) return -1;
-    int folder = walk(real_root, rest, true);
+    int folder = walk_folders(real_root, rest, true);
     if (folder < 0) err_set("%s: cannot be written: %s", path, strerror(errno));
     return folder;
 }
@@ -68,7 +68,7 @@ static int open_below(const char *root, const char *path) {
     if (at_once >= 0) return at_once;
     if (!path_split_inside(real_root, rest, root, path)) return -1;
     path_folder(above, rest);
-    int folder = walk(real_root, strchr(rest, '/') ? above : (char[]){""}, false);
+    int folder = walk_folders(real_root, strchr(rest, '/') ? above : (char[]){""}, false);
     int fd = folder < 0 ? -1
                         : openat(folder, rest[0] ? path_name(rest) : ".",
                                  O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
@@ -77,7 +77,7 @@ static int open_below(const char *root, const char *path) {
     return fd;
 }
 
-static bool check(int fd, const char *path, size_t max, size_t *size) {
+static bool check_regular(int fd, const char *path, size_t max, size_t *size) {
     struct stat info;
     if (fstat(fd, &info) != 0) return err_set("%s: %s", path, strerror(errno));
     if (!S_ISREG(info.st_mode)) return err_set("%s: not a regular file", path);
@@ -104,7 +104,7 @@ int file_open_inside(const char *root, const char *path, size_t max, size_t *siz
         if (!root || opened) err_set("%s: %s", path, strerror(errno));
         return -1;
     }
-    if (check(fd, path, max, size)) return fd;
+    if (check_regular(fd, path, max, size)) return fd;
     close(fd);
     return -1;
 }

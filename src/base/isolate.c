@@ -57,7 +57,7 @@ static bool find_reader(char out[PATH_CAP]) {
 
 // The reader gets its socket and nothing else of this process: no file, no signal that is blocked
 // or ignored, no terminal (Ctrl-C is this process's affair).
-static int spawn(const char *program, int end, pid_t *process) {
+static int reader_spawn(const char *program, int end, pid_t *process) {
     posix_spawn_file_actions_t files;
     posix_spawnattr_t how;
     sigset_t none, all;
@@ -90,7 +90,7 @@ static bool start_reader(void) {
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
         return err_set("no socket to the reader: %s", strerror(errno));
     for (int i = 0; i < 2; i++) ends[i] = wire_keep(ends[i]);
-    int error = spawn(program, ends[1], &process);
+    int error = reader_spawn(program, ends[1], &process);
     if (ends[1] >= 0) close(ends[1]);
     if (!error) {
         reader.control = ends[0];
@@ -222,7 +222,7 @@ static verdict wait_for_end(exchange *x, int channel) {
 }
 
 // False with an error; else how it went.
-static bool ask(exchange *x, verdict *how) {
+static bool exchange_run(exchange *x, verdict *how) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
         return err_set("no socket to the reader: %s", strerror(errno));
@@ -334,7 +334,7 @@ static bool empty(int file) { // of what a worker left whose reader was lost
 static bool exchange_all(exchange *x, isolate_result *out) {
     verdict how = LOST;
     for (int attempt = 0; attempt < ATTEMPTS && how == LOST; attempt++)
-        if (!empty(x->out) || !ask(x, &how)) return false;
+        if (!empty(x->out) || !exchange_run(x, &how)) return false;
     if (how == LATE) return fail_time(x);
     if (how == LOST) return err_set("the reader's process is gone");
     return take_result(x, out);

@@ -33,7 +33,7 @@ jobs *jobs_create(size_t threads, size_t most) {
     return NULL;
 }
 
-static void run(void *user) {
+static void jobs_run_next(void *user) {
     job *one = user;
     jobs *j = one->of;
     bool done = one->run(one->user);
@@ -55,7 +55,7 @@ bool jobs_add(jobs *j, bool (*work)(void *user), void (*release)(void *user), vo
     j->count++;
     bool fine = !j->failed || err_set("%s", j->message);
     pthread_mutex_unlock(&j->mutex);
-    worker_submit(j->threads, (worker_job){run, one});
+    worker_submit(j->threads, (worker_job){jobs_run_next, one});
     return fine;
 }
 

@@ -41,7 +41,7 @@ const char *path_extension(const char *path) {
 
 // realpath of the longest existing part of `path`; the rest, which holds no "..", is kept as it is.
 // A broken link is refused: nobody can say where it will lead once its target exists.
-static bool resolve(char out[PATH_CAP], const char *path) {
+static bool path_resolve(char out[PATH_CAP], const char *path) {
     char head[PATH_CAP], real[PATH_MAX];
     if (!str_copy(head, sizeof head, path)) return path_too_long(path);
     const char *rest = "";
@@ -67,7 +67,7 @@ static bool lies_inside(const char *real_root, const char *real) {
     return strncmp(real, real_root, length) == 0 && (real[length] == '/' || real[length] == '\0');
 }
 
-static bool refuse(const char *path, const char *real_root) {
+static bool path_refuse(const char *path, const char *real_root) {
     return err_set("%s: leads out of %s; files must lie in this folder or below it", path,
                    real_root);
 }
@@ -76,30 +76,30 @@ bool path_confine(char out[PATH_CAP], const char *root, const char *name) {
     char real_root[PATH_MAX], joined[PATH_CAP];
     if (!name[0]) return err_set("empty file name");
     if (!real_folder(real_root, root)) return false;
-    if (name[0] == '/') return refuse(name, real_root);
+    if (name[0] == '/') return path_refuse(name, real_root);
     for (const char *part = name; part; part = strchr(part, '/')) {
         if (*part == '/') part++;
         if (strncmp(part, "..", 2) == 0 && (part[2] == '/' || !part[2]))
-            return refuse(name, real_root);
+            return path_refuse(name, real_root);
     }
-    if (!path_join(joined, real_root, name) || !resolve(out, joined)) return false;
-    return lies_inside(real_root, out) || refuse(name, real_root);
+    if (!path_join(joined, real_root, name) || !path_resolve(out, joined)) return false;
+    return lies_inside(real_root, out) || path_refuse(name, real_root);
 }
 
 bool path_require_inside(const char *root, const char *path) {
     char real_root[PATH_MAX], real[PATH_MAX];
     if (!real_folder(real_root, root)) return false;
     if (!realpath(path, real)) return err_set("%s: %s", path, strerror(errno));
-    return lies_inside(real_root, real) || refuse(path, real_root);
+    return lies_inside(real_root, real) || path_refuse(path, real_root);
 }
 
 bool path_split_inside(char real_root[PATH_CAP], char rest[PATH_CAP], const char *root,
                        const char *path) {
     char from_here[PATH_CAP], real[PATH_CAP];
     if (!real_folder(real_root, root)) return false;
-    if (!path_join(from_here, path[0] == '/' ? "" : ".", path) || !resolve(real, from_here))
+    if (!path_join(from_here, path[0] == '/' ? "" : ".", path) || !path_resolve(real, from_here))
         return false;
-    if (!lies_inside(real_root, real)) return refuse(path, real_root);
+    if (!lies_inside(real_root, real)) return path_refuse(path, real_root);
     size_t length = strcmp(real_root, "/") == 0 ? 0 : strlen(real_root);
     str_copy(rest, PATH_CAP, real + length + (real[length] == '/'));
     return true;

@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void reserve(strbuf *s, size_t more) {
+static void strbuf_reserve(strbuf *s, size_t more) {
     s->text = mem_reserve(s->text, 1, s->length + more + 1, &s->capacity);
 }
 
 void strbuf_append(strbuf *s, const char *bytes, size_t length) {
-    reserve(s, length);
+    strbuf_reserve(s, length);
     if (length) memcpy(s->text + s->length, bytes, length);
     s->length += length;
     s->text[s->length] = '\0';
@@ -45,7 +45,7 @@ void strbuf_add(strbuf *s, const char *format, ...) {
     va_copy(again, args);
     int length = vsnprintf(NULL, 0, format, args);
     va_end(args);
-    reserve(s, (size_t)length);
+    strbuf_reserve(s, (size_t)length);
     vsnprintf(s->text + s->length, (size_t)length + 1, format, again);
     va_end(again);
     s->length += (size_t)length;

@@ -106,7 +106,7 @@ static void free_list(watch_list *list) {
     arena_free(&list->memory);
 }
 
-static void mark(watch_list *list, const char *key) {
+static void list_mark(watch_list *list, const char *key) {
     size_t low = 0, high = list->file_count;
     while (low < high) {
         size_t middle = (low + high) / 2;
@@ -148,7 +148,7 @@ static int watch_above(const watch *w, const char *path) {
 }
 
 // What appears between the two looks for a folder is seen by the third.
-static bool arm(const watch *w, watch_folder *folder) {
+static bool folder_arm(const watch *w, watch_folder *folder) {
     folder->above = NO_WATCH;
     for (int looks = 0; looks < 2; looks++) {
         folder->number = inotify_add_watch(w->events, folder->path, FOLDER_MASK);
@@ -173,11 +173,11 @@ static void drop_unused(const watch *w, const watch_list *list, int number) {
 }
 
 // Sets all watches again; files of folders that are not what they were have changed.
-static void refresh(watch *w) {
+static void watch_refresh(watch *w) {
     watch_list *list = &w->list;
     for (size_t i = 0; i < list->folder_count; i++) {
         watch_folder *folder = &list->folders[i], old = *folder;
-        arm(w, folder); // at a limit some folders stay unwatched, which watch_set told
+        folder_arm(w, folder); // at a limit some folders stay unwatched, which watch_set told
         if (folder->number != old.number) mark_folder(list, i);
         drop_unused(w, list, old.number);
         drop_unused(w, list, old.above);
@@ -200,7 +200,7 @@ static void take_name(watch *w, const struct inotify_event *event) {
             !path_join(path, w->list.folders[i].path, event->name))
             continue;
         if ((event->mask & IN_CREATE) && !is_complete(path)) continue;
-        mark(&w->list, path);
+        list_mark(&w->list, path);
         mark_patterns(&w->list, i, event->name);
     }
 }
@@ -236,11 +236,11 @@ static void take_all(watch *w) {
             at += (ssize_t)(sizeof *event + event->len);
         }
     }
-    if (folders) refresh(w);
+    if (folders) watch_refresh(w);
 }
 
 // The callbacks run without the lock, so that they may call watch_set.
-static void report(watch *w) {
+static void watch_report(watch *w) {
     arena memory = {0};
     const char **paths = NULL;
     size_t count = 0, capacity = 0;
@@ -263,7 +263,7 @@ static void report(watch *w) {
     arena_free(&memory);
 }
 
-static void *run(void *user) {
+static void *watch_run(void *user) {
     watch *w = user;
     struct pollfd ready[] = {{.fd = w->events, .events = POLLIN},
                              {.fd = w->stop, .events = POLLIN}};
@@ -271,13 +271,13 @@ static void *run(void *user) {
         int found = poll(ready, COUNT_OF(ready), -1);
         if (found < 0 && errno == EINTR) continue;
         if (found < 0 || ready[1].revents) return NULL;
-        report(w);
+        watch_report(w);
     }
 }
 
 // ---- public -----------------------------------------------------------------------------------
 
-static void release(watch *w) { // its thread has ended
+static void watch_release(watch *w) { // its thread has ended
     close(w->events);
     close(w->stop);
     pthread_mutex_destroy(&w->reporting);
@@ -300,10 +300,10 @@ watch *watch_create(const watch_desc *desc) {
     *w = (watch){.desc = *desc, .events = events, .stop = stop};
     pthread_mutex_init(&w->reporting, NULL);
     pthread_mutex_init(&w->lock, NULL);
-    int failed = pthread_create(&w->thread, NULL, run, w);
+    int failed = pthread_create(&w->thread, NULL, watch_run, w);
     if (!failed) return w;
     err_set("files cannot be watched: no thread can be made: %s", strerror(failed));
-    release(w);
+    watch_release(w);
     return NULL;
 }
 
@@ -311,7 +311,7 @@ void watch_destroy(watch *w) {
     if (!w) return;
     eventfd_write(w->stop, 1);
     pthread_join(w->thread, NULL);
-    release(w);
+    watch_release(w);
 }
 
 static bool is_given(const watch *w, const char *const *paths, size_t count) {
@@ -331,7 +331,7 @@ static void keep_given(watch *w, const char *const *paths, size_t count) {
 
 // What was seen of a folder that stays on the list, so that a change since is not missed. An event
 // of it is still to be read then, with which its files are reported.
-static void compare(watch_list *list, const watch_list *old) {
+static void list_compare(watch_list *list, const watch_list *old) {
     for (size_t i = 0; i < list->folder_count; i++)
         for (size_t k = 0; k < old->folder_count; k++)
             if (strcmp(list->folders[i].path, old->folders[k].path) == 0 &&
@@ -347,8 +347,8 @@ bool watch_set(watch *w, const char *const *paths, size_t count) {
         w->list = make_list(paths, count);
         keep_given(w, paths, count);
         for (size_t i = 0; i < w->list.folder_count; i++)
-            done = arm(w, &w->list.folders[i]) && done;
-        compare(&w->list, &old);
+            done = folder_arm(w, &w->list.folders[i]) && done;
+        list_compare(&w->list, &old);
         for (size_t i = 0; i < old.folder_count; i++) {
             drop_unused(w, &w->list, old.folders[i].number);
             drop_unused(w, &w->list, old.folders[i].above);
@@ -360,5 +360,5 @@ bool watch_set(watch *w, const char *const *paths, size_t count) {
 }
 
 void watch_catch_up(watch *w) {
-    report(w);
+    watch_report(w);
 }

@@ -55,7 +55,7 @@ worker *worker_create(size_t threads) {
     return w;
 }
 
-static void grow(worker *w) {
+static void worker_grow(worker *w) {
     size_t capacity = w->capacity ? w->capacity * 2 : 16;
     worker_job *jobs = mem_alloc(capacity * sizeof *jobs);
     for (size_t i = 0; i < w->count; i++) jobs[i] = w->jobs[(w->first + i) % w->capacity];
@@ -65,9 +65,9 @@ static void grow(worker *w) {
     w->capacity = capacity;
 }
 
-static void submit(worker *w, worker_job job, bool first) {
+static void worker_put(worker *w, worker_job job, bool first) {
     pthread_mutex_lock(&w->mutex);
-    if (w->count == w->capacity) grow(w);
+    if (w->count == w->capacity) worker_grow(w);
     size_t place = w->first + w->count++;
     if (first) place = w->first = (w->first + w->capacity - 1) % w->capacity;
     w->jobs[place % w->capacity] = job;
@@ -76,11 +76,11 @@ static void submit(worker *w, worker_job job, bool first) {
 }
 
 void worker_submit(worker *w, worker_job job) {
-    submit(w, job, false);
+    worker_put(w, job, false);
 }
 
 void worker_submit_first(worker *w, worker_job job) {
-    submit(w, job, true);
+    worker_put(w, job, true);
 }
 
 void worker_wait(worker *w) {

@@ -20,7 +20,7 @@ typedef struct loop {
     char *message;
 } loop;
 
-static bool take(loop *l, size_t *index) {
+static bool loop_take(loop *l, size_t *index) {
     pthread_mutex_lock(&l->lock);
     bool more = l->next < l->count && l->failed == l->count;
     if (more) *index = l->next++;
@@ -39,16 +39,16 @@ static void note_failure(loop *l, size_t index) {
     pthread_mutex_unlock(&l->lock);
 }
 
-static void go(loop *l) {
+static void loop_work(loop *l) {
     size_t index;
-    while (take(l, &index))
+    while (loop_take(l, &index))
         if (!l->run(l->user, index)) note_failure(l, index);
 }
 
 static void *help(void *user) {
     loop *l = user;
     time_limit_adopt(l->budget);
-    go(l);
+    loop_work(l);
     time_limit_charge(time_limit_thread_seconds());
     return NULL;
 }
@@ -63,7 +63,7 @@ bool worker_each(size_t count, bool (*run)(void *user, size_t index), void *user
     while (started + 1 < count && started < MAX_THREADS && (long)started + 1 < cores &&
            pthread_create(&threads[started], NULL, help, &l) == 0)
         started++;
-    go(&l);
+    loop_work(&l);
     for (size_t i = 0; i < started; i++) pthread_join(threads[i], NULL);
     pthread_mutex_destroy(&l.lock);
     bool done = l.failed == count || err_set("%s", l.message);

@@ -26,8 +26,8 @@ static double chance_of(const bench_figure *a, const bench_figure *b) {
     return chance;
 }
 
-static void judge(bench_change *c, const bench_figure *before, const bench_figure *now,
-                  double margin) {
+static void change_judge(bench_change *c, const bench_figure *before, const bench_figure *now,
+                         double margin) {
     c->ratio = before->median > 0 ? now->median / before->median : 1;
     c->chance = has_pairs(c, before, now) ? chance_of(before, now) : -1;
     bool apart =
@@ -62,7 +62,7 @@ static void add_times(changes *all, const bench_row *before, const bench_row *no
         const bench_figure *old = bench_get_time(a, b->items[i].name);
         if (!old) continue;
         bench_change c = {.before = before, .now = now, .name = b->items[i].name};
-        judge(&c, old, &b->items[i].ms, margin);
+        change_judge(&c, old, &b->items[i].ms, margin);
         MEM_RESERVE(all->items, all->count + 1, all->capacity);
         all->items[all->count++] = c;
     }

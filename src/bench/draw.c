@@ -61,7 +61,7 @@ bool bench_draw_warmup(bench_drawing *d) {
 
 // The row's frames over and over, one at least: the first frame of an effect uploads and compiles
 // what the driver has put off, and clocks rise only under load.
-static bool settle(bench_drawing *d) {
+static bool drawing_settle(bench_drawing *d) {
     double end = clock_seconds() + d->session->desc.settle;
     size_t drawn = 0;
     do {
@@ -144,7 +144,7 @@ static bool keep_picture(bench_drawing *d, record *r) {
 
 static bool record_frames(bench_drawing *d, record *r) {
     const bench_row *row = d->row;
-    bool done = settle(d);
+    bool done = drawing_settle(d);
     for (uint32_t repeat = 0; done && repeat < row->repeats; repeat++) {
         done = bench_draw_warmup(d);
         free_pictures(r);

@@ -36,7 +36,7 @@ static void go_to(reader *r, const char *format, ...) {
 
 // ---- values -----------------------------------------------------------------------------------
 
-static const char *clean(const reader *r, const char *text) {
+static const char *clean_text(const reader *r, const char *text) {
     char *copy = arena_string(r->memory, text);
     str_make_printable(copy);
     return copy;
@@ -47,7 +47,7 @@ static bool get_text(const reader *r, const json_t *from, const char *key, const
     *out = "";
     if (!value || json_is_null(value)) return true;
     if (!json_is_string(value)) return wrong(r, key, "a text");
-    *out = clean(r, json_string_value(value));
+    *out = clean_text(r, json_string_value(value));
     return true;
 }
 
@@ -112,7 +112,7 @@ static bool get_settings(const reader *r, const json_t *from, const char *key,
     json_object_foreach(all, name, value) {
         if (!json_is_string(value)) return wrong(r, key, "an object of texts");
         out->items[out->count++] =
-            (roil_setting){clean(r, name), clean(r, json_string_value(value))};
+            (roil_setting){clean_text(r, name), clean_text(r, json_string_value(value))};
     }
     return true;
 }
@@ -126,7 +126,7 @@ static bool get_named(const reader *r, const json_t *from, const char *key, benc
     out->items = arena_alloc(r->memory, size * sizeof *out->items);
     json_object_foreach(all, name, value) {
         bench_number *n = &out->items[out->count];
-        n->name = clean(r, name);
+        n->name = clean_text(r, name);
         if (!number_of(r, value, key, &n->value)) return false;
         out->count++;
     }
@@ -150,7 +150,7 @@ static bool get_times(const reader *r, const json_t *from, const char *key, benc
         bench_time *t = &out->items[out->count++];
         double *values;
         uint64_t count;
-        t->name = clean(r, name);
+        t->name = clean_text(r, name);
         if (!json_is_object(value)) return wrong(r, key, "an object of figures");
         if (!get_number(r, value, "median", &t->ms.median) ||
             !get_number(r, value, "p5", &t->ms.p5) || !get_number(r, value, "p95", &t->ms.p95) ||
@@ -264,7 +264,7 @@ static bool get_texts(const reader *r, const json_t *from, const char *key, size
     for (; *count < json_array_size(list); (*count)++) {
         const char *text = json_string_value(json_array_get(list, *count));
         if (!text) return wrong(r, key, "a list of texts");
-        (*out)[*count] = clean(r, text);
+        (*out)[*count] = clean_text(r, text);
     }
     return true;
 }

@@ -36,7 +36,7 @@ bool bench_picture_load(const char *folder, const char *file, bench_picture *out
 }
 
 // Mean of the pixels that a small one covers. Of sRGB values: it is looked at, not measured.
-static void shrink(const bench_picture *p, uint32_t width, uint32_t height, uint8_t *out) {
+static void picture_shrink(const bench_picture *p, uint32_t width, uint32_t height, uint8_t *out) {
     for (uint32_t y = 0; y < height; y++)
         for (uint32_t x = 0; x < width; x++) {
             uint32_t sum[3] = {0}, count = 0;
@@ -58,7 +58,7 @@ bool bench_picture_save_small(const bench_picture *p, const char *folder, const 
     uint32_t height = (uint32_t)fmax(1, round((double)p->height * width / p->width));
     if (height > p->height) height = p->height;
     uint8_t *pixels = mem_alloc((size_t)width * height * 3);
-    shrink(p, width, height, pixels);
+    picture_shrink(p, width, height, pixels);
     png_image image = {width, height, 3, 8, pixels};
     bool done = png_write_inside(folder, file, &image);
     mem_free(pixels);

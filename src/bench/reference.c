@@ -51,7 +51,7 @@ static bool save_picture(bench_drawing *d, hash128 h, size_t i) {
 }
 
 // The effect stands still until the frame has its samples.
-static bool trace(bench_drawing *d, double frame, uint32_t samples) {
+static bool reference_trace(bench_drawing *d, double frame, uint32_t samples) {
     bool done = bench_draw(d, frame);
     while (done && roil_samples(d->effect) < samples) {
         if (!roil_samples(d->effect))
@@ -77,7 +77,7 @@ static bool draw_reference(bench_drawing *d, uint32_t samples, hash128 h) {
         if (samples == 0)
             done = bench_draw(d, row->frames[i]);
         else if (wanted)
-            done = trace(d, row->frames[i], samples);
+            done = reference_trace(d, row->frames[i], samples);
         if (done && wanted) done = save_picture(d, h, i);
     }
     return done;

@@ -37,7 +37,7 @@ static bool same_place(const walk *w, const search_point *a, const search_point 
 }
 
 // Fills cost and error; false when the search has to end.
-static bool visit(walk *w, search_point *p) {
+static bool walk_visit(walk *w, search_point *p) {
     for (size_t i = 0; i < w->count; i++)
         if (same_place(w, &w->points[i], p)) {
             *p = w->points[i];
@@ -84,10 +84,10 @@ typedef struct candidate {
 } candidate;
 
 // A rung that changes nothing may lead to one that does.
-static void look(walk *w, size_t axis, bool up, bool until_within, candidate *c) {
+static void walk_look(walk *w, size_t axis, bool up, bool until_within, candidate *c) {
     c->worth = 0;
     for (int far = 1; far <= LONGEST_STEP && c->worth <= 0; far++) {
-        if (!step_to(w, &w->at, axis, up ? far : -far, &c->to) || !visit(w, &c->to)) return;
+        if (!step_to(w, &w->at, axis, up ? far : -far, &c->to) || !walk_visit(w, &c->to)) return;
         if (!until_within && !within(w, &c->to)) return;
         c->worth = worth(w, &c->to, up);
     }
@@ -95,7 +95,7 @@ static void look(walk *w, size_t axis, bool up, bool until_within, candidate *c)
 }
 
 // Steps in one direction: until the limit is kept, or as long as it is.
-static void go(walk *w, bool up, bool until_within) {
+static void walk_go(walk *w, bool up, bool until_within) {
     candidate all[SEARCH_MAX_AXES];
     size_t count = w->desc->axis_count;
     for (size_t i = 0; i < count; i++) all[i] = (candidate){.worth = INFINITY};
@@ -105,7 +105,7 @@ static void go(walk *w, bool up, bool until_within) {
             if (all[i].worth > all[best].worth) best = i;
         if (all[best].worth <= 0) return;
         if (!all[best].fresh) {
-            look(w, best, up, until_within, &all[best]);
+            walk_look(w, best, up, until_within, &all[best]);
             continue;
         }
         w->at = all[best].to;
@@ -159,8 +159,8 @@ typedef struct exchange {
     double promise; // by how much the part of what is minimised would fall
 } exchange;
 
-static void consider(walk *w, size_t up, int far_up, size_t down, int far_down, exchange *all,
-                     size_t *count) {
+static void walk_consider(walk *w, size_t up, int far_up, size_t down, int far_down, exchange *all,
+                          size_t *count) {
     difference a, b;
     if (*count == MAX_EXCHANGES || !known_steps(w, up, far_up, &a) ||
         !known_steps(w, down, -far_down, &b))
@@ -193,7 +193,7 @@ static void look_around(walk *w) {
         search_point p;
         difference d;
         int by = w->desc->by_error ? 1 : -1;
-        if (!known_steps(w, i, by, &d) && step_to(w, &w->at, i, by, &p)) visit(w, &p);
+        if (!known_steps(w, i, by, &d) && step_to(w, &w->at, i, by, &p)) walk_visit(w, &p);
     }
 }
 
@@ -205,12 +205,13 @@ static bool take_exchange(walk *w) {
     for (size_t up = 0; up < w->desc->axis_count; up++)
         for (size_t down = 0; down < w->desc->axis_count; down++)
             for (int far = 0; up != down && far < LONGEST_STEP * LONGEST_STEP; far++)
-                consider(w, up, far % LONGEST_STEP + 1, down, far / LONGEST_STEP + 1, all, &count);
+                walk_consider(w, up, far % LONGEST_STEP + 1, down, far / LONGEST_STEP + 1, all,
+                              &count);
     for (; tries > 0 && count > 0 && !w->stopped; tries--) {
         size_t best = 0;
         for (size_t i = 1; i < count; i++)
             if (all[i].promise > all[best].promise) best = i;
-        if (visit(w, &all[best].to) && improves(w, &all[best].to)) {
+        if (walk_visit(w, &all[best].to) && improves(w, &all[best].to)) {
             w->at = all[best].to;
             return true;
         }
@@ -237,7 +238,7 @@ static bool preferred(const walk *w, const search_point *a, const search_point *
 }
 
 // The best of what was measured. Where nothing keeps the limit, what comes nearest to it.
-static search_point choose(const walk *w, bool *kept) {
+static search_point walk_choose(const walk *w, bool *kept) {
     double least = (double)INFINITY;
     for (size_t i = 0; i < w->count; i++) *kept = *kept || within(w, &w->points[i]);
     bool by_cost = w->desc->by_error == *kept;
@@ -257,28 +258,28 @@ static search_point choose(const walk *w, bool *kept) {
 // Steps to where the limit is kept; from the end of all axes when it is not on the way.
 static void reach_limit(walk *w) {
     bool up = w->desc->by_error;
-    go(w, up, true);
+    walk_go(w, up, true);
     if (within(w, &w->at)) return;
     search_point end = w->at;
     for (size_t i = 0; i < w->desc->axis_count; i++)
         end.rungs[i] = up ? w->desc->axes[i].count - 1 : 0;
-    if (visit(w, &end) && within(w, &end)) w->at = end;
+    if (walk_visit(w, &end) && within(w, &end)) w->at = end;
 }
 
 bool search_run(const search_desc *desc, search_result *out) {
     walk *w = mem_alloc(sizeof *w);
     w->desc = desc;
     for (size_t i = 0; i < desc->axis_count; i++) w->at.rungs[i] = desc->axes[i].start;
-    bool begun = visit(w, &w->at);
+    bool begun = walk_visit(w, &w->at);
     *out = (search_result){.start = w->at};
     if (begun) {
         reach_limit(w);
         bool more = within(w, &w->at);
         while (more) {
-            go(w, !desc->by_error, false);
+            walk_go(w, !desc->by_error, false);
             more = take_exchange(w);
         }
-        out->best = choose(w, &out->within);
+        out->best = walk_choose(w, &out->within);
         out->complete = !w->stopped;
         out->count = w->count;
     }

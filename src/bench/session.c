@@ -118,7 +118,7 @@ static bool measure_drawing(bench_drawing *d, const bench_job *job, bench_row *r
     return bench_measure_frames(d, job, row, memory);
 }
 
-static bool measure(bench_drawing *d, const bench_job *job, bench_row *row, arena *memory) {
+static bool session_measure(bench_drawing *d, const bench_job *job, bench_row *row, arena *memory) {
     bench_session *s = d->session;
     switch (job->measure) {
     case BENCH_FRAMES:
@@ -134,7 +134,7 @@ static bool measure(bench_drawing *d, const bench_job *job, bench_row *row, aren
 bool bench_measure_row(bench_session *s, const bench_job *job, bench_row *row, arena *memory) {
     bench_drawing d = {.session = s};
     row->message = "";
-    bool done = measure(&d, job, row, memory);
+    bool done = session_measure(&d, job, row, memory);
     bench_drawing_end(&d);
     if (!done && (d.stopped || bench_is_stopped(s))) return err_set("interrupted");
     row->state = done ? BENCH_DONE : BENCH_FAILED;

@@ -101,7 +101,7 @@ static const char *content_of(const sweep *s, arena *memory) {
 
 // ---- results ------------------------------------------------------------------------------------
 
-static const char *keep(bench_results *r, const char *text) {
+static const char *results_keep(bench_results *r, const char *text) {
     return arena_string(&r->memory, text);
 }
 
@@ -110,9 +110,9 @@ static void describe_axes(bench_results *r, const sweep *s) {
     for (; r->axis_count < s->axis_count; r->axis_count++) {
         const sweep_axis *from = &s->axes[r->axis_count];
         const char **values = arena_alloc(&r->memory, from->value_count * sizeof *values);
-        for (size_t i = 0; i < from->value_count; i++) values[i] = keep(r, from->values[i]);
-        r->axes[r->axis_count] =
-            (bench_axis){keep(r, from->name), keep(r, from->label), values, from->value_count};
+        for (size_t i = 0; i < from->value_count; i++) values[i] = results_keep(r, from->values[i]);
+        r->axes[r->axis_count] = (bench_axis){
+            results_keep(r, from->name), results_keep(r, from->label), values, from->value_count};
     }
 }
 
@@ -123,24 +123,24 @@ static void describe_reference(bench_results *r, const sweep *s) {
     r->reference.settings.items =
         arena_alloc(&r->memory, s->reference_setting_count * sizeof(roil_setting));
     for (size_t i = 0; i < s->reference_setting_count; i++)
-        r->reference.settings.items[r->reference.settings.count++] =
-            (roil_setting){keep(r, s->reference[i].name), keep(r, s->reference[i].text)};
+        r->reference.settings.items[r->reference.settings.count++] = (roil_setting){
+            results_keep(r, s->reference[i].name), results_keep(r, s->reference[i].text)};
 }
 
-static void describe(bench_results *r, const sweep *s, roil *device) {
+static void results_describe(bench_results *r, const sweep *s, roil *device) {
     *r = (bench_results){0};
-    r->version = keep(r, roil_version());
+    r->version = results_keep(r, roil_version());
     r->commit = bench_commit(roil_home(device), &r->memory);
-    r->sweep = keep(r, s->name);
-    r->title = keep(r, s->title);
-    r->file = keep(r, s->file);
+    r->sweep = results_keep(r, s->name);
+    r->title = results_keep(r, s->title);
+    r->file = results_keep(r, s->file);
     r->content = content_of(s, &r->memory);
     const char **notes = arena_alloc(&r->memory, s->note_count * sizeof *notes);
-    for (size_t i = 0; i < s->note_count; i++) notes[i] = keep(r, s->notes[i]);
+    for (size_t i = 0; i < s->note_count; i++) notes[i] = results_keep(r, s->notes[i]);
     r->notes = notes;
     r->note_count = s->note_count;
-    r->device = keep(r, roil_device_name(device));
-    r->driver = keep(r, roil_device_driver(device));
+    r->device = results_keep(r, roil_device_name(device));
+    r->driver = results_keep(r, roil_device_driver(device));
     bench_describe_machine(r);
     describe_axes(r, s);
     describe_reference(r, s);
@@ -164,7 +164,7 @@ static bool take_earlier(bench_results *r, const char *folder) {
     else if (strcmp(old.commit, r->commit) != 0)
         same = err_set("%s was measured at commit %s, this is %s", path, old.commit, r->commit);
     for (size_t i = 0; same && i < old.row_count; i++) bench_add(r, &old.rows[i]);
-    if (same) r->date = keep(r, old.date);
+    if (same) r->date = results_keep(r, old.date);
     bench_results_free(&old);
     return same;
 }
@@ -285,7 +285,7 @@ bool bench_run(const bench_order *order, bench_results *out) {
         u.references = arena_alloc(&memory, s.reference_count * sizeof *u.references);
         for (size_t i = 0; i < s.reference_count; i++)
             u.references[i] = plan_row(&s.references[i], i, &memory);
-        describe(out, &s, bench_roil(u.session));
+        results_describe(out, &s, bench_roil(u.session));
         done = (!order->resume || take_earlier(out, order->folder)) &&
                bench_write(out, order->folder) && run_rows(&u);
     } else {

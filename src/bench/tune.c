@@ -159,7 +159,7 @@ static double noise_of(const bench_results *r, const bench_row *row) {
 }
 
 // Every row tells how noisy times are here; the first, whether there is anything to search.
-static bool learn(tuning *t, const bench_row *row) {
+static bool tuning_learn(tuning *t, const bench_row *row) {
     bool good = row->compared && !isnan(tune_row_ms(t->results, row));
     if (good) {
         t->noise += noise_of(t->results, row);
@@ -172,7 +172,7 @@ static bool learn(tuning *t, const bench_row *row) {
     return err_set("%s", row->message[0] ? row->message : "the device does not tell times");
 }
 
-static bool measure(void *user, search_point *p) {
+static bool tuning_measure(void *user, search_point *p) {
     tuning *t = user;
     const tune_watcher *w = &t->order->watcher;
     const tune_error kind = t->order->goal.error;
@@ -187,7 +187,7 @@ static bool measure(void *user, search_point *p) {
         p->error = error_size(tune_row_error(row, kind), kind);
     }
     if (w->result) w->result(w->user, t->results, row, earlier);
-    return learn(t, row);
+    return tuning_learn(t, row);
 }
 
 // ---- what is measured ---------------------------------------------------------------------------
@@ -232,7 +232,7 @@ static void plan_reference(tuning *t) {
     t->reference = plan_row(t, rungs, &t->memory);
 }
 
-static bool plan(tuning *t) {
+static bool tuning_plan(tuning *t) {
     const tune_order *o = t->order;
     roil *r = roil_create(&(roil_desc){.no_device = true});
     roil_effect *e = r ? roil_load(r, o->effect, o->settings, o->setting_count) : NULL;
@@ -247,7 +247,7 @@ static bool plan(tuning *t) {
                               .by_error = o->goal.by_error,
                               .limit = o->goal.limit,
                               .noise = LEAST_NOISE,
-                              .measure = measure,
+                              .measure = tuning_measure,
                               .user = t};
     if (o->goal.by_error) t->search.limit = error_size(o->goal.limit, o->goal.error);
     for (size_t i = 0; i < t->result->axis_count; i++)
@@ -302,7 +302,7 @@ static void describe_axes(tuning *t) {
     }
 }
 
-static void describe(tuning *t) {
+static void tuning_describe(tuning *t) {
     bench_results *r = t->results;
     roil *device = bench_roil(t->session);
     arena *memory = &r->memory;
@@ -360,7 +360,7 @@ static bool write_preset(tuning *t, const size_t *rungs) {
     return done;
 }
 
-static bool search(tuning *t) {
+static bool tuning_search(tuning *t) {
     const tune_watcher *w = &t->order->watcher;
     tune_result *result = t->result;
     if (w->begin) w->begin(w->user, t->results, result->axes, result->axis_count);
@@ -383,7 +383,7 @@ bool bench_tune(const tune_order *order, bench_results *out, tune_result *result
     tuning t = {.order = order, .result = result, .results = out, .start = clock_seconds()};
     *out = (bench_results){0};
     *result = (tune_result){0};
-    bool done = plan(&t);
+    bool done = tuning_plan(&t);
     if (done)
         t.session = bench_open(&(bench_session_desc){.device = order->device,
                                                      .folder = order->folder,
@@ -395,9 +395,9 @@ bool bench_tune(const tune_order *order, bench_results *out, tune_result *result
                                                      .user = order->watcher.user});
     done = t.session != NULL;
     if (done) {
-        describe(&t);
-        done =
-            (!order->resume || take_earlier(&t)) && bench_write(out, order->folder) && search(&t);
+        tuning_describe(&t);
+        done = (!order->resume || take_earlier(&t)) && bench_write(out, order->folder) &&
+               tuning_search(&t);
     }
     bench_close(t.session);
     arena_free(&t.memory);

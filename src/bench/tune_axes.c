@@ -125,7 +125,7 @@ static void take_words(const roil_control *c, truth t, tune_axis *out) {
     out->reference = t == TRUTH_NOW ? out->start : out->count - 1;
 }
 
-static void swap(tune_axis *a, size_t i, size_t k) {
+static void axis_swap(tune_axis *a, size_t i, size_t k) {
     const char *text = a->values[i];
     a->values[i] = a->values[k];
     a->values[k] = text;
@@ -137,7 +137,7 @@ static void put_exact_last(tune_axis *a) {
     static const char *const words[] = {"false", "off", "none", "exact"};
     for (size_t i = 0; i + 1 < a->count; i++)
         for (size_t k = 0; k < COUNT_OF(words); k++)
-            if (strcmp(a->values[i], words[k]) == 0) swap(a, i, i + 1);
+            if (strcmp(a->values[i], words[k]) == 0) axis_swap(a, i, i + 1);
 }
 
 static bool has_words(const roil_control *c) {

@@ -50,13 +50,13 @@ bool events_check(const effect_event *event) {
 
 // ---- reading ----------------------------------------------------------------------------------
 
-static const char *skip(const char *text) {
+static const char *skip_spaces(const char *text) {
     return text + strspn(text, " \t,");
 }
 
 // The next word, as far as there is room for it; it ends where the event does.
 static const char *take_word(const char *text, char *out, size_t capacity) {
-    text = skip(text);
+    text = skip_spaces(text);
     size_t length = strcspn(text, " \t,;");
     snprintf(out, capacity, "%.*s", (int)(length < capacity ? length : capacity), text);
     return text + length;
@@ -64,7 +64,7 @@ static const char *take_word(const char *text, char *out, size_t capacity) {
 
 // NULL: what stands there is no list of 0, 2, 3 or 6 numbers.
 static const char *take_place(const char *text, effect_event *out) {
-    for (text = skip(text); *text && *text != ';'; text = skip(text)) {
+    for (text = skip_spaces(text); *text && *text != ';'; text = skip_spaces(text)) {
         char *end;
         if (out->numbers == 6) return NULL;
         out->at[out->numbers] = str_float(text, &end);
@@ -100,7 +100,7 @@ static const char *take_event(const char *text, effect_event *out) {
 
 bool events_parse(const char *text, effect_event *out, size_t *count) {
     *count = 0;
-    for (text = skip(text); *text; text = skip(text)) {
+    for (text = skip_spaces(text); *text; text = skip_spaces(text)) {
         effect_event event;
         const char *end = take_event(text, &event);
         if (!end || !events_check(&event)) return false;

@@ -32,7 +32,7 @@ void recipe_write(const effect *e, double frame, uint32_t width, uint32_t height
 
 // ---- reading ----------------------------------------------------------------------------------
 
-static const char *find(const png_text *texts, size_t count, const char *key) {
+static const char *find_text(const png_text *texts, size_t count, const char *key) {
     for (size_t i = 0; i < count; i++)
         if (strcmp(texts[i].key, key) == 0) return texts[i].value;
     return NULL;
@@ -108,8 +108,10 @@ static bool read_settings(const char *text, arena *memory, recipe *out) {
 
 bool recipe_read(const png_text *texts, size_t count, arena *memory, recipe *out) {
     *out = (recipe){0};
-    const char *file = find(texts, count, key_effect), *frame = find(texts, count, key_frame);
-    const char *size = find(texts, count, key_size), *settings = find(texts, count, key_settings);
+    const char *file = find_text(texts, count, key_effect),
+               *frame = find_text(texts, count, key_frame);
+    const char *size = find_text(texts, count, key_size),
+               *settings = find_text(texts, count, key_settings);
     if (!file || !frame || !size)
         return err_set("the picture says nothing of how it was made; pictures of `roil render` "
                        "and of the window do");

@@ -97,7 +97,7 @@ static bool run_frame(effect *e, double frame, bool again) {
     return done;
 }
 
-static bool run(effect *e, double frame, bool *again) {
+static bool simulate_until(effect *e, double frame, bool *again) {
     double next = next_frame(e, frame), begin = clock_seconds();
     double patience = e->counter ? begin - e->rendered_at : 0;
     patience = fmin(fmax(patience, least_patience), most_patience);
@@ -124,7 +124,7 @@ bool effect_simulate(effect *e, double frame, bool *again) {
     if (!graph_simulates(e->graph)) return true;
     e->host.brief = e->never_waits;
     turn_back(e, frame);
-    if (!run(e, frame, again)) return false;
+    if (!simulate_until(e, frame, again)) return false;
     e->host.hold = e->behind;
     *again = *again || e->behind; // what frames before it set is not to be set after it
     return true;

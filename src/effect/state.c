@@ -12,7 +12,7 @@ typedef struct effect_clock { // as it lies in the file
 static const char clock_name[] = "effect/clock";
 
 // The next pass that simulates and runs, from `*index` on; NULL: no more.
-static pass *next(const effect *e, size_t *index, const pass_simulation **out) {
+static pass *next_simulation(const effect *e, size_t *index, const pass_simulation **out) {
     while (*index < e->pass_count) {
         pass *p = e->passes[(*index)++];
         *out = pass_get_simulation(p);
@@ -24,7 +24,7 @@ static pass *next(const effect *e, size_t *index, const pass_simulation **out) {
 bool effect_can_save(const effect *e) {
     const pass_simulation *simulation;
     pass *p;
-    for (size_t i = 0; (p = next(e, &i, &simulation));)
+    for (size_t i = 0; (p = next_simulation(e, &i, &simulation));)
         if (!simulation->save || !simulation->load || !isfinite(simulation->reached(p)))
             return false;
     return true;
@@ -42,7 +42,7 @@ void effect_list_state(const effect *e, checkpoint_list *out) {
     checkpoint_add(out, &(checkpoint_part){
                             .name = clock_name, .size = sizeof *clock, .width = 8, .bytes = clock});
     pass *p;
-    for (size_t i = 0; (p = next(e, &i, &simulation));) simulation->save(p, out);
+    for (size_t i = 0; (p = next_simulation(e, &i, &simulation));) simulation->save(p, out);
 }
 
 bool effect_save_state(effect *e, const char *path) {
@@ -50,7 +50,7 @@ bool effect_save_state(effect *e, const char *path) {
     checkpoint_list list = {0};
     if (!is_ready(e)) return false;
     pass *p;
-    for (size_t i = 0; (p = next(e, &i, &simulation));) {
+    for (size_t i = 0; (p = next_simulation(e, &i, &simulation));) {
         if (!isfinite(simulation->reached(p)))
             return err_set("%s: nothing is simulated yet: render a frame first", pass_label(p));
     }
@@ -60,14 +60,14 @@ bool effect_save_state(effect *e, const char *path) {
     return done;
 }
 
-static bool load(effect *e, checkpoint *c) {
+static bool state_load(effect *e, checkpoint *c) {
     const pass_simulation *simulation;
     effect_clock clock;
     const checkpoint_part own = {.name = clock_name, .size = sizeof clock, .bytes = &clock};
     if (!checkpoint_load(c, NULL, &own)) return false;
     if (!isfinite(clock.frame)) return err_set("the checkpoint's frame is no number");
     pass *p;
-    for (size_t i = 0; (p = next(e, &i, &simulation));)
+    for (size_t i = 0; (p = next_simulation(e, &i, &simulation));)
         if (!simulation->load(p, c)) return false;
     graph_reset_history(e->graph);
     e->has_last = false;
@@ -76,7 +76,7 @@ static bool load(effect *e, checkpoint *c) {
 }
 
 bool effect_take_state(effect *e, checkpoint *c) {
-    bool done = load(e, c);
+    bool done = state_load(e, c);
     if (!done) effect_restart(e); // not half of one and half of another
     return done;
 }

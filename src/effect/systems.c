@@ -72,7 +72,7 @@ bool effect_add_hearing(effect *e, const char *key, const char *help) {
     return true;
 }
 
-static void sort(effect_event *list, size_t count) { // by time; who came first stays first
+static void events_sort(effect_event *list, size_t count) { // by time; who came first stays first
     for (size_t i = 1; i < count; i++) {
         effect_event event = list[i];
         size_t at = i;
@@ -97,10 +97,10 @@ static size_t first_difference(const effect_event *a, size_t a_count, const effe
 }
 
 // Events in force from now on. Where that changes what has happened already, all begins anew.
-static void take(effect *e, const effect_event *list, size_t count) {
+static void events_take(effect *e, const effect_event *list, size_t count) {
     effect_systems *s = e->systems;
     effect_event *taken = mem_copy(list, count * sizeof *list);
-    sort(taken, count);
+    events_sort(taken, count);
     double from;
     size_t first = first_difference(taken, count, s->events, s->count, &from);
     if (first < s->next || from <= time_of(e, s->frame - 1) + SOON) {
@@ -121,8 +121,8 @@ bool effect_set_events(effect *e, const effect_event *list, size_t count) {
     mem_free(s->own);
     s->own = mem_copy(list, count * sizeof *list);
     s->own_count = count;
-    sort(s->own, count);
-    take(e, s->own, count);
+    events_sort(s->own, count);
+    events_take(e, s->own, count);
     return true;
 }
 
@@ -213,7 +213,7 @@ static bool picture_place(const struct frame_block *f, const float point[3], flo
     return p[2] < 0 && isfinite(*x) && isfinite(*y);
 }
 
-static bool aim(effect *e, effect_happening *h) {
+static bool event_aim(effect *e, effect_happening *h) {
     const effect_event *event = h->event;
     struct frame_block f;
     vec3 seen;
@@ -267,7 +267,7 @@ bool effect_is_under_ground(effect *e, const float at[3], float *height) {
 
 // ---- running ----------------------------------------------------------------------------------
 
-static bool begin(effect *e, effect_systems *s) {
+static bool systems_begin(effect *e, effect_systems *s) {
     for (size_t i = 0; i < s->moved_count; i++)
         effect_set_value(e, s->moved[i].param, s->moved[i].before);
     effect_reset_instances(e);
@@ -277,31 +277,31 @@ static bool begin(effect *e, effect_systems *s) {
     return !e->hooks.start || e->hooks.start(e->hooks.user);
 }
 
-static bool happen(effect *e, const effect_event *event) {
+static bool event_happen(effect *e, const effect_event *event) {
     effect_happening h = {.event = event};
     if (!e->hooks.event) return true;
-    if (!aim(e, &h)) return false;
+    if (!event_aim(e, &h)) return false;
     h.met = h.placed && effect_pick(e, h.origin, h.direction, &h.hit);
     return e->hooks.event(e->hooks.user, &h);
 }
 
-static bool tell(effect *e, effect_systems *s) { // what has happened until the last frame
+static bool events_tell(effect *e, effect_systems *s) { // what has happened until the last frame
     double now = time_of(e, s->frame) + SOON;
     e->context.time = time_of(e, s->frame);
     while (s->next < s->count && s->events[s->next].time <= now) {
         effect_event event = s->events[s->next++];
-        if (!happen(e, &event)) return false;
+        if (!event_happen(e, &event)) return false;
     }
     return true;
 }
 
-static bool step(effect *e, effect_systems *s) {
+static bool systems_step(effect *e, effect_systems *s) {
     double dt = s->frame < e->first ? 0 : 1 / e->fps;
     s->frame++;
     if (e->hooks.renew) e->hooks.renew(e->hooks.user);
     e->context.time = time_of(e, s->frame);
     if (e->hooks.frame && !e->hooks.frame(e->hooks.user, e->context.time, dt)) return false;
-    return tell(e, s);
+    return events_tell(e, s);
 }
 
 // Frames that are left out have no picture to show that they go on.
@@ -319,11 +319,11 @@ bool effect_run_systems(effect *e, double frame) {
                        "of them",
                        frame, MOST_FRAMES);
     bool done = true;
-    if (isnan(s->frame) || target < s->frame) done = begin(e, s);
+    if (isnan(s->frame) || target < s->frame) done = systems_begin(e, s);
     double left = target - s->frame, began = s->frame;
     for (; done && s->frame < target; done = done && tell_progress(e, s->frame - began, left))
-        done = step(e, s);
-    done = done && tell(e, s);
+        done = systems_step(e, s);
+    done = done && events_tell(e, s);
     e->context.time = time;
     if (!done) s->frame = (double)NAN;
     return done;
@@ -374,13 +374,13 @@ bool events_control_set(effect *e, control *c, const char *text) {
     size_t count;
     bool done = events_parse(text, list, &count);
     for (size_t i = 0; done && i < count; i++) done = is_heard(e->systems, &list[i]);
-    if (done) take(e, list, count);
+    if (done) events_take(e, list, count);
     mem_free(list);
     return done || err_prefix("%s: ", c->face.name);
 }
 
 void events_control_reset(effect *e) {
-    take(e, e->systems->own, e->systems->own_count);
+    events_take(e, e->systems->own, e->systems->own_count);
 }
 
 void events_control_print(const effect *e, strbuf *out) {

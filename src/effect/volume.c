@@ -84,7 +84,8 @@ static const field *medium_field(effect *e, const pass *p, const char *name) {
     return node->components == 4 ? field_swizzle(&e->memory, node, "rgb") : node;
 }
 
-static bool choose(effect *e, const source *s, const char *name, chosen *list, size_t *count) {
+static bool choose_field(effect *e, const source *s, const char *name, chosen *list,
+                         size_t *count) {
     for (size_t i = 0; i < *count; i++)
         if (strcmp(list[i].name, name) == 0) return err_set("field '%s' is named twice", name);
     if (*count == EFFECT_VOLUME_FIELDS) return err_set("more than %d fields", EFFECT_VOLUME_FIELDS);
@@ -97,12 +98,12 @@ static bool choose(effect *e, const source *s, const char *name, chosen *list, s
 static bool choose_all(effect *e, const source *s, chosen *list, size_t *count) {
     const shader_interface *face = s->p ? pass_interface(s->p) : NULL;
     const char *name;
-    if (s->grid && !s->grid->field_name) return choose(e, s, s->grid->label, list, count);
+    if (s->grid && !s->grid->field_name) return choose_field(e, s, s->grid->label, list, count);
     for (size_t i = 0; s->grid && (name = s->grid->field_name(s->grid, i)); i++)
-        if (!choose(e, s, name, list, count)) return false;
+        if (!choose_field(e, s, name, list, count)) return false;
     for (size_t i = 0; face && i < face->field_count; i++) {
         const field *node = pass_get_field(s->p, i);
-        if (node && !node->uniform && !choose(e, s, face->fields[i].name, list, count))
+        if (node && !node->uniform && !choose_field(e, s, face->fields[i].name, list, count))
             return false;
     }
     return *count || err_set("%s: none of its fields varies in space; name them",
@@ -118,7 +119,7 @@ static bool choose_named(effect *e, const source *s, const char *names, chosen *
             return err_set("fields '%s'; accepted: names with commas between", names);
         memcpy(name, at, length);
         name[length] = '\0';
-        if (!choose(e, s, name, list, count)) return false;
+        if (!choose_field(e, s, name, list, count)) return false;
         at += length;
         if (!*at) return true;
     }

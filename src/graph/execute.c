@@ -35,7 +35,7 @@ static void settle_kept(graph *g, const graph_node_pass *pass) {
     }
 }
 
-static bool execute(graph *g, gpu *device, bool all) {
+static bool graph_run(graph *g, gpu *device, bool all) {
     for (size_t i = 0; i < g->order_count; i++) {
         const graph_node_pass *pass = &g->passes[g->order[i]];
         if (!all && !pass->needed) continue;
@@ -53,12 +53,12 @@ bool graph_execute(graph *g, gpu *device) {
     assert(g->compiled && g->allocated);
     for (size_t i = 0; i < g->image_count; i++)
         if (g->images[i].history_used) turn_history(g, device, &g->images[i]);
-    return execute(g, device, true);
+    return graph_run(g, device, true);
 }
 
 bool graph_execute_simulation(graph *g, gpu *device) {
     assert(g->compiled && g->allocated);
-    return execute(g, device, false);
+    return graph_run(g, device, false);
 }
 
 bool graph_simulates(const graph *g) {

@@ -56,7 +56,7 @@ static bool check_image(const graph *g, const graph_image_desc *d) {
     return true;
 }
 
-static graph_image append(graph *g, const graph_image_desc *desc, uint32_t of) {
+static graph_image image_append(graph *g, const graph_image_desc *desc, uint32_t of) {
     assert(g->image_count < NONE - 1);
     MEM_RESERVE(g->images, g->image_count + 1, g->image_capacity);
     graph_node_image *image = &g->images[g->image_count++];
@@ -77,7 +77,7 @@ graph_image graph_add_image(graph *g, const graph_image_desc *desc) {
     if (!check_image(g, desc)) return (graph_image){0};
     graph_image_desc copy = *desc;
     copy.name = arena_string(&g->names, desc->name);
-    return append(g, &copy, NONE);
+    return image_append(g, &copy, NONE);
 }
 
 graph_image graph_add_history(graph *g, graph_image image) {
@@ -97,7 +97,7 @@ graph_image graph_add_history(graph *g, graph_image image) {
                 node->desc.name);
         return (graph_image){0};
     }
-    graph_image history = append(g, &desc, index);
+    graph_image history = image_append(g, &desc, index);
     g->images[index].history = history.id - 1;
     return history;
 }

@@ -13,7 +13,7 @@ static void link_entry(lookup *l, uint32_t number) {
     *bucket = number;
 }
 
-static void grow(lookup *l) {
+static void lookup_grow(lookup *l) {
     l->bucket_count = l->bucket_count ? l->bucket_count * 2 : 16;
     l->buckets = mem_resize(l->buckets, l->bucket_count * sizeof *l->buckets);
     memset(l->buckets, 0xff, l->bucket_count * sizeof *l->buckets);
@@ -34,7 +34,7 @@ uint32_t lookup_find(const lookup *l, const void *key, size_t size) {
 uint32_t lookup_add(lookup *l, const void *key, size_t size) {
     assert(lookup_find(l, key, size) == NONE);
     assert(l->count < NONE);
-    if (l->count == l->bucket_count) grow(l);
+    if (l->count == l->bucket_count) lookup_grow(l);
     MEM_RESERVE(l->entries, l->count + 1, l->capacity);
     uint32_t number = (uint32_t)l->count++;
     l->entries[number] = (lookup_entry){.key = key, .size = size, .hash = hash64(key, size)};

@@ -5,7 +5,7 @@
 
 // ---- building ---------------------------------------------------------------------------------
 
-static kernel_place find(const kernel *k, const char *name) {
+static kernel_place find_place(const kernel *k, const char *name) {
     kernel_place out = {{-1, -1}, {-1, -1}};
     for (int s = 0; s < k->stages; s++)
         for (size_t i = 0; i < k->binaries[s].member_count; i++)
@@ -18,7 +18,7 @@ static kernel_place find(const kernel *k, const char *name) {
 
 const kernel_place *kernel_find(const kernel *k, arena *memory, kernel_names names) {
     kernel_place *places = arena_alloc(memory, (names.count + 1) * sizeof *places);
-    for (size_t i = 0; i < names.count; i++) places[i] = find(k, names.items[i]);
+    for (size_t i = 0; i < names.count; i++) places[i] = find_place(k, names.items[i]);
     return places;
 }
 
@@ -53,7 +53,7 @@ bool kernel_compile(kernel *k, shader_library *library, arena *memory,
     return true;
 }
 
-static bool replace(kernel *k, gpu *g, gpu_pipeline *pipeline) {
+static bool kernel_replace(kernel *k, gpu *g, gpu_pipeline *pipeline) {
     if (!pipeline) return false;
     kernel_destroy(k, g);
     k->pipeline = pipeline;
@@ -78,7 +78,7 @@ bool kernel_build(kernel *k, gpu *g) {
                              .slots = slots,
                              .slot_count = k->slot_count};
     memcpy(desc.local_size, binary->local_size, sizeof desc.local_size);
-    return replace(k, g, gpu_pipeline_create_compute(g, &desc));
+    return kernel_replace(k, g, gpu_pipeline_create_compute(g, &desc));
 }
 
 bool kernel_build_drawn(kernel *k, gpu *g, gpu_graphics_desc desc) {
@@ -91,7 +91,7 @@ bool kernel_build_drawn(kernel *k, gpu *g, gpu_graphics_desc desc) {
     desc.fragment_size = k->binaries[1].size;
     desc.slots = slots;
     desc.slot_count = k->slot_count;
-    return replace(k, g, gpu_pipeline_create_graphics(g, &desc));
+    return kernel_replace(k, g, gpu_pipeline_create_graphics(g, &desc));
 }
 
 void kernel_destroy(kernel *k, gpu *g) {

@@ -27,7 +27,7 @@ av_functions av;
 static char problem[512]; // "" when all was found
 
 // `target` is a pointer to a function, which C does not let a void pointer be assigned to.
-static void find(av_library *library, const char *name, void *target, size_t size) {
+static void find_symbol(av_library *library, const char *name, void *target, size_t size) {
     if (problem[0]) return;
     if (!library->handle) library->handle = dlopen(library->name, RTLD_NOW | RTLD_LOCAL);
     void *found = library->handle ? dlsym(library->handle, name) : NULL;
@@ -37,13 +37,13 @@ static void find(av_library *library, const char *name, void *target, size_t siz
         snprintf(problem, sizeof problem, "%s", dlerror());
 }
 
-static void load(void) {
-#define FIND(library, name) find(&libraries.library, #name, &av.name, sizeof av.name);
+static void load_libraries(void) {
+#define FIND(library, name) find_symbol(&libraries.library, #name, &av.name, sizeof av.name);
     AV_FUNCTIONS(FIND)
 }
 
 bool av_load(void) {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
-    pthread_once(&once, load);
+    pthread_once(&once, load_libraries);
     return !problem[0] || err_set("films need FFmpeg's libraries: %s", problem);
 }

@@ -97,8 +97,8 @@ static void filter_columns(void *user, size_t first, size_t end) {
 }
 
 // `across` along rows, then `down` along columns. `out` may be `in`.
-static void filter(const compare_picture *shape, const kernel *across, const kernel *down,
-                   const float *in, float *out) {
+static void filter_rows_columns(const compare_picture *shape, const kernel *across,
+                                const kernel *down, const float *in, float *out) {
     size_t margin = 2 * (size_t)(across->radius > down->radius ? across->radius : down->radius);
     filtering f = {shape->width, shape->height, margin, across, down, in, out};
     share_out(f.height, ROWS_EACH, filter_rows, &f);
@@ -139,7 +139,8 @@ static float *make_means(const compare_picture *a, const compare_picture *b) {
     }
     double sum;
     kernel k = make_gaussian(SSIM_RADIUS, 1 / (2 * 1.5 * 1.5), &sum);
-    for (size_t m = 0; m < MEAN_COUNT; m++) filter(a, &k, &k, means + m * count, means + m * count);
+    for (size_t m = 0; m < MEAN_COUNT; m++)
+        filter_rows_columns(a, &k, &k, means + m * count, means + m * count);
     mem_free(k.weights);
     return means;
 }
@@ -181,7 +182,7 @@ static const double xyz_to_srgb[3][3] = {{3.24100326, -1.53739899, -0.49861587},
                                          {-0.96922426, 1.87592999, 0.04155422},
                                          {0.05563942, -0.20401120, 1.05714897}};
 
-static color transform(const double m[3][3], color c) {
+static color color_transform(const double m[3][3], color c) {
     return (color){m[0][0] * c.x + m[0][1] * c.y + m[0][2] * c.z,
                    m[1][0] * c.x + m[1][1] * c.y + m[1][2] * c.z,
                    m[2][0] * c.x + m[2][1] * c.y + m[2][2] * c.z};
@@ -193,7 +194,8 @@ static double decode_srgb(double v) {
 
 // Linear RGB as XYZ relative to white.
 static color relative_xyz(color rgb) {
-    color c = transform(srgb_to_xyz, rgb), white = transform(srgb_to_xyz, (color){1, 1, 1});
+    color c = color_transform(srgb_to_xyz, rgb),
+          white = color_transform(srgb_to_xyz, (color){1, 1, 1});
     return (color){c.x / white.x, c.y / white.y, c.z / white.z};
 }
 
@@ -209,9 +211,9 @@ static double clamp01(double v) {
 }
 
 static color rgb_of_ycxcz(color c) {
-    color white = transform(srgb_to_xyz, (color){1, 1, 1});
+    color white = color_transform(srgb_to_xyz, (color){1, 1, 1});
     double y = (c.x + 16) / 116;
-    color rgb = transform(
+    color rgb = color_transform(
         xyz_to_srgb, (color){(y + c.y / 500) * white.x, y * white.y, (y - c.z / 200) * white.z});
     return (color){clamp01(rgb.x), clamp01(rgb.y), clamp01(rgb.z)};
 }
@@ -251,7 +253,7 @@ static void filter_by_sensitivity(const compare_picture *shape, double ppd, cons
         double line;
         kernel k = make_gaussian(radius, M_PI * M_PI / (b[g] * ppd * ppd), &line);
         double weight = a[g] * sqrt(M_PI / b[g]) * line * line;
-        filter(shape, &k, &k, plane, part);
+        filter_rows_columns(shape, &k, &k, plane, part);
         for (size_t i = 0; i < count; i++) sum[i] += (float)weight * part[i];
         total += weight;
         mem_free(k.weights);
@@ -267,7 +269,7 @@ typedef struct conversion {
     size_t count;
 } conversion;
 
-static void convert(void *user, size_t first, size_t end) {
+static void convert_rows(void *user, size_t first, size_t end) {
     const conversion *v = user;
     for (size_t i = first; i < end; i++) {
         color c = ycxcz(v->rgb + i * 3);
@@ -283,7 +285,7 @@ static float *make_seen(const compare_picture *p, double ppd) {
     static const double b[3][2] = {{0.0047, 1e-5}, {0.0053, 1e-5}, {0.04, 0.025}};
     size_t count = pixels_of(p);
     float *planes = mem_alloc(count * 3 * sizeof *planes);
-    share_out(count, PIXELS_EACH, convert, &(conversion){p->rgb, planes, count});
+    share_out(count, PIXELS_EACH, convert_rows, &(conversion){p->rgb, planes, count});
     for (size_t c = 0; c < 3; c++) filter_by_sensitivity(p, ppd, a[c], b[c], planes + c * count);
     return planes;
 }
@@ -345,8 +347,8 @@ static void find_features(const compare_picture *p, const float *plane, double p
     kernel smooth = make_gaussian(radius, 1 / (2 * sigma * sigma), &sum);
     kernel derivative = make_derivative(radius, sigma, second);
     float *down = mem_alloc(count * sizeof *down);
-    filter(p, &derivative, &smooth, plane, out);
-    filter(p, &smooth, &derivative, plane, down);
+    filter_rows_columns(p, &derivative, &smooth, plane, out);
+    filter_rows_columns(p, &smooth, &derivative, plane, down);
     for (size_t i = 0; i < count; i++) out[i] = hypotf(out[i], down[i]);
     mem_free(down);
     mem_free(derivative.weights);

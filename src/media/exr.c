@@ -19,7 +19,7 @@ typedef struct stream {
     char fault[200]; // the library's first message
 } stream;
 
-static void note(exr_const_context_t context, exr_result_t code, const char *message) {
+static void note_error(exr_const_context_t context, exr_result_t code, const char *message) {
     (void)code;
     void *user = NULL;
     if (exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user) return;
@@ -56,7 +56,7 @@ static int64_t stream_write(exr_const_context_t context, void *user, const void 
 
 static exr_context_initializer_t settings(stream *s) {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    init.error_handler_fn = note;
+    init.error_handler_fn = note_error;
     init.user_data = s;
     init.max_image_width = SIDE_MAX;
     init.max_image_height = SIDE_MAX;

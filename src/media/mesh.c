@@ -25,7 +25,7 @@ typedef struct loader {
     size_t size, at;
 } loader;
 
-static const void *take(loader *l, size_t count) {
+static const void *blob_take(loader *l, size_t count) {
     if (count > l->size - l->at) return NULL;
     const void *p = l->bytes + l->at;
     l->at += count;
@@ -38,7 +38,7 @@ static bool broken(const loader *l) {
 
 // A copy in the arena of the next `count` elements.
 static void *take_array(loader *l, size_t count, size_t element) {
-    const void *p = take(l, count * element);
+    const void *p = blob_take(l, count * element);
     return p ? arena_copy(l->memory, p, count * element) : NULL;
 }
 
@@ -153,9 +153,9 @@ static bool take_textures(loader *l, const mesh_blob *head, mesh_part *parts, me
     int *place = arena_alloc(l->memory, head->texture_count * sizeof *place);
     for (uint32_t i = 0; i < head->texture_count; i++) {
         mesh_blob_texture t;
-        const void *p = take(l, sizeof t);
+        const void *p = blob_take(l, sizeof t);
         if (p) memcpy(&t, p, sizeof t);
-        if (!p || !(p = take(l, t.size))) return broken(l);
+        if (!p || !(p = blob_take(l, t.size))) return broken(l);
         place[i] = -1;
         if (load_texture(l, &t, p, &textures[out->texture_count]))
             place[i] = (int)out->texture_count++;
@@ -172,7 +172,7 @@ static bool take_textures(loader *l, const mesh_blob *head, mesh_part *parts, me
 
 static bool take_mesh(loader *l, mesh_data *out) {
     mesh_blob head;
-    const void *p = take(l, sizeof head);
+    const void *p = blob_take(l, sizeof head);
     if (!p) return broken(l);
     memcpy(&head, p, sizeof head);
     if (head.vertex_count > MESH_VERTICES_MAX || head.index_count > MESH_INDICES_MAX ||
@@ -186,7 +186,7 @@ static bool take_mesh(loader *l, mesh_data *out) {
     return true;
 }
 
-static bool import(loader *l, isolate_result *blob) {
+static bool import_mesh(loader *l, isolate_result *blob) {
     static const isolate_limits limits = {
         .processor_ms = 60000, .memory = (uint64_t)4 << 30, .result = (uint64_t)2 << 30};
     const isolate_job job = {.kind = "mesh",
@@ -225,7 +225,7 @@ bool mesh_load(const char *path, const char *root, arena *memory, mesh_data *out
     l->memory = memory;
     if (!mesh_files_open(&l->files, path, root, memory)) return false;
     isolate_result blob;
-    if (!import(l, &blob)) return false;
+    if (!import_mesh(l, &blob)) return false;
     l->bytes = blob.data;
     l->size = blob.size;
     *out = (mesh_data){0};

@@ -52,7 +52,7 @@ static bool make_plain(const char *name, char out[PATH_CAP]) {
     return length > 0;
 }
 
-static bool resolve(mesh_files *f, const char *name, char out[PATH_CAP]) {
+static bool resolve_name(mesh_files *f, const char *name, char out[PATH_CAP]) {
     char plain[PATH_CAP];
     if (!make_plain(name, plain))
         err_set("%s: leads out of %s", name, f->root);
@@ -65,7 +65,7 @@ static bool resolve(mesh_files *f, const char *name, char out[PATH_CAP]) {
 int mesh_files_give(void *files, const char *name, size_t *size) {
     mesh_files *f = files;
     char path[PATH_CAP];
-    if (!resolve(f, name, path)) return -1;
+    if (!resolve_name(f, name, path)) return -1;
     int file = file_open_inside(f->root, path, FILE_BYTES_MAX, size);
     if (file >= 0) mesh_files_note(f, path);
     return file;
@@ -75,7 +75,7 @@ bool mesh_files_resolve_beside(mesh_files *f, const char *name, char out[PATH_CA
     char folder[PATH_CAP], joined[PATH_CAP];
     path_folder(folder, f->first);
     if (!path_join(joined, folder, name)) return false;
-    return resolve(f, joined, out);
+    return resolve_name(f, joined, out);
 }
 
 void mesh_files_note(mesh_files *f, const char *path) {

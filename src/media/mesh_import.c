@@ -44,7 +44,7 @@ static bool read_scene(importer *im) {
            err_set("%s: cannot be read as a mesh: %s", im->call->name, aiGetErrorString());
 }
 
-static bool count(const importer *im, const char *path, mesh_blob *out) {
+static bool count_elements(const importer *im, const char *path, mesh_blob *out) {
     uint64_t vertices = 0, faces = 0;
     for (unsigned m = 0; m < im->scene->mNumMeshes; m++) {
         vertices += im->scene->mMeshes[m]->mNumVertices;
@@ -215,7 +215,7 @@ static bool put_texture(const importer *im, const char *name) {
 static bool put_all(importer *im) {
     const char *path = im->call->name;
     mesh_blob head = {0};
-    if (!count(im, path, &head)) return false;
+    if (!count_elements(im, path, &head)) return false;
     if (!put_geometry(im, &head)) return err_prefix("%s: ", path);
     for (uint32_t i = 0; i < im->texture_count; i++)
         if (!put_texture(im, im->textures[i])) return err_prefix("%s: ", path);

@@ -38,7 +38,7 @@ typedef struct session {
     bool refused; // the message is set, and names the file
 } session;
 
-static void fail(png_structp png, const char *message) {
+static void png_on_error(png_structp png, const char *message) {
     session *s = png_get_error_ptr(png);
     str_copy(s->fault, sizeof s->fault, message);
     png_longjmp(png, 1);
@@ -49,16 +49,16 @@ static void warn(png_structp png, const char *message) {
     log_write(LOG_DEBUG, "%s: %s", s->name, message);
 }
 
-static void put(png_structp png, png_bytep bytes, size_t count) {
+static void png_on_write(png_structp png, png_bytep bytes, size_t count) {
     session *s = png_get_io_ptr(png);
     strbuf_append(&s->output, (const char *)bytes, count);
 }
 
-static void flush(png_structp png) {
+static void png_on_flush(png_structp png) {
     (void)png;
 }
 
-static void get(png_structp png, png_bytep bytes, size_t count) {
+static void png_on_read(png_structp png, png_bytep bytes, size_t count) {
     session *s = png_get_io_ptr(png);
     if (count > s->size - s->at) png_error(png, "the file ends too early");
     memcpy(bytes, s->input + s->at, count);
@@ -90,9 +90,10 @@ static void add_texts(session *s, const png_text *texts, size_t count) {
     }
 }
 
-static bool encode(session *s, const png_image *image, const png_text *texts, size_t text_count) {
+static bool session_encode(session *s, const png_image *image, const png_text *texts,
+                           size_t text_count) {
     if (setjmp(png_jmpbuf(s->png))) return false;
-    png_set_write_fn(s->png, s, put, flush);
+    png_set_write_fn(s->png, s, png_on_write, png_on_flush);
     png_set_user_limits(s->png, SIDE_MAX, SIDE_MAX);
     // Render sequences are written often and looked at once: speed before the last tenth of size.
     png_set_compression_level(s->png, 4);
@@ -123,10 +124,10 @@ static bool write_picture(const char *root, const char *path, const png_image *i
         return err_set("%s: cannot write a picture of %ux%u; 1x1 to %dx%d is accepted", path,
                        image->width, image->height, SIDE_MAX, SIDE_MAX);
     session s = {.name = path};
-    s.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &s, fail, warn);
+    s.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &s, png_on_error, warn);
     s.info = s.png ? png_create_info_struct(s.png) : NULL;
     if (!s.info) err_out_of_memory(sizeof s);
-    bool done = encode(&s, image, texts, texts ? text_count : 0);
+    bool done = session_encode(&s, image, texts, texts ? text_count : 0);
     png_destroy_write_struct(&s.png, &s.info);
     if (done)
         done = root ? file_write_inside(root, path, s.output.text, s.output.length)
@@ -161,14 +162,15 @@ static void ask_for_rgba(session *s) {
 }
 
 static void read_header(session *s) { // all that stands before the pixels
-    png_set_read_fn(s->png, s, get);
+    png_set_read_fn(s->png, s, png_on_read);
     png_set_user_limits(s->png, SIDE_MAX, SIDE_MAX);
     png_set_chunk_malloc_max(s->png, CHUNK_BYTES_MAX);
     png_set_chunk_cache_max(s->png, CHUNKS_MAX);
     png_read_info(s->png, s->info);
 }
 
-static bool decode(session *s, const picture_limits *limits, arena *memory, png_image *out) {
+static bool session_decode(session *s, const picture_limits *limits, arena *memory,
+                           png_image *out) {
     if (setjmp(png_jmpbuf(s->png))) return false;
     read_header(s);
     ask_for_rgba(s);
@@ -195,7 +197,7 @@ static bool decode(session *s, const picture_limits *limits, arena *memory, png_
 static bool open_input(session *s, const void *data, size_t size, const char *name) {
     if (size < 8 || png_sig_cmp(data, 0, 8) != 0) return err_set("%s: is not a PNG file", name);
     *s = (session){.name = name, .input = data, .size = size};
-    s->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, s, fail, warn);
+    s->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, s, png_on_error, warn);
     s->info = s->png ? png_create_info_struct(s->png) : NULL;
     if (!s->info) err_out_of_memory(sizeof *s);
     return true;
@@ -206,7 +208,7 @@ bool png_decode(const void *data, size_t size, const char *name, const picture_l
     session s;
     *out = (png_image){0};
     if (!open_input(&s, data, size, name)) return false;
-    bool done = decode(&s, limits, memory, out);
+    bool done = session_decode(&s, limits, memory, out);
     png_destroy_read_struct(&s.png, &s.info, NULL);
     if (done) return true;
     *out = (png_image){0};

@@ -35,7 +35,7 @@ texels_active texels_nothing(void) {
     return (texels_active){.low = {UINT32_MAX, UINT32_MAX, UINT32_MAX}};
 }
 
-static void grow(texels_active *a, const uint32_t at[3]) {
+static void active_grow(texels_active *a, const uint32_t at[3]) {
     for (int i = 0; i < 3; i++) {
         if (at[i] < a->low[i]) a->low[i] = at[i];
         if (at[i] + 1 > a->high[i]) a->high[i] = at[i] + 1;
@@ -60,7 +60,7 @@ void texels_pack(const texels_shape *s, const float *values, int stride, float g
                 if (v == 0) continue;
                 texels[(texel + at[0]) * (size_t)width + (size_t)(channel % 4)] =
                     half_from_float(v);
-                grow(active, at);
+                active_grow(active, at);
                 count++;
             }
         }

@@ -80,7 +80,7 @@ bool texture_work(const isolate_call *call) {
     return done;
 }
 
-static bool take(const char *name, isolate_result *r, arena *memory, mesh_texture *out) {
+static bool texture_take(const char *name, isolate_result *r, arena *memory, mesh_texture *out) {
     uint32_t head[2] = {0};
     if (r->size >= sizeof head) memcpy(head, r->data, sizeof head);
     bool whole = picture_limits_allow(&picture_limits_default, name, head[0], head[1], TEXEL) &&
@@ -97,7 +97,7 @@ bool texture_read_inside(const char *root, const char *path, arena *memory, mesh
     isolate_result r;
     return picture_run_job(root, path, &picture_limits_default, (isolate_job){.kind = "texture"},
                            &r) &&
-           take(path, &r, memory, out);
+           texture_take(path, &r, memory, out);
 }
 
 bool texture_read_memory(const void *data, size_t size, const char *name, arena *memory,
@@ -108,5 +108,5 @@ bool texture_read_memory(const void *data, size_t size, const char *name, arena 
                              .size = size,
                              .limits = picture_limits_of_job(&picture_limits_default, size)};
     isolate_result r;
-    return isolate_run(&job, &r) && take(name, &r, memory, out);
+    return isolate_run(&job, &r) && texture_take(name, &r, memory, out);
 }

@@ -178,8 +178,8 @@ static inline uint16_t half_of(float value) {
 }
 
 // One component of a block, `step` floats apart, to halves `width` apart; notes which are not 0.
-static void convert(const float *restrict values, int step, float gain, uint16_t *restrict out,
-                    int width, uint8_t *restrict active) {
+static void block_convert(const float *restrict values, int step, float gain,
+                          uint16_t *restrict out, int width, uint8_t *restrict active) {
     uint16_t halves[VOXELS];
     for (int i = 0; i < VOXELS; i++) {
         float v = values[i * step] * gain;
@@ -192,7 +192,7 @@ static void convert(const float *restrict values, int step, float gain, uint16_t
 }
 
 // With Y up, the rows of the block that was read lie otherwise along our Y and Z.
-static void turn(float *block, int components) {
+static void block_turn(float *block, int components) {
     float turned[VOXELS * 3];
     size_t row = SIDE * (size_t)components;
     for (int z = 0; z < SIDE; z++)
@@ -214,10 +214,10 @@ static void read_brick(builder *b, const uint32_t at[3], uint16_t *texels) {
     for (size_t i = 0; i < b->source_count; i++) {
         const vdb_source *from = b->sources[i].from;
         *b->bad += vdb_blocks_read(b->sources[i].blocks, corner, block);
-        if (shape->y_up) turn(block, from->components);
+        if (shape->y_up) block_turn(block, from->components);
         for (int c = 0; c < from->components; c++)
-            convert(block + c, from->components, from->gains[c], texels + from->channels[c] % 4,
-                    b->width, active);
+            block_convert(block + c, from->components, from->gains[c],
+                          texels + from->channels[c] % 4, b->width, active);
     }
     note_voxels(b, at, active);
 }
@@ -310,7 +310,7 @@ static bool fill_image(builder *b, vdb_build *made) {
     return done;
 }
 
-static void join(texels_active *all, const texels_active *one) {
+static void active_join(texels_active *all, const texels_active *one) {
     for (int i = 0; i < 3; i++) {
         if (one->low[i] < all->low[i]) all->low[i] = one->low[i];
         if (one->high[i] > all->high[i]) all->high[i] = one->high[i];
@@ -334,7 +334,7 @@ bool vdb_build_bricks(vdb_build *made, int image) {
     for (size_t i = 0; done && i < b.source_count; i++)
         vdb_blocks_visit(b.sources[i].blocks, want, &b);
     done = done && fill_image(&b, made);
-    join(&made->head.active, &b.active);
+    active_join(&made->head.active, &b.active);
     for (size_t i = 0; i < b.source_count; i++) vdb_blocks_close(b.sources[i].blocks);
     mem_free(b.wanted);
     map_free(&b.constants);

@@ -31,19 +31,19 @@ static text take_text(const uint8_t **at) {
     return t;
 }
 
-static bool is(text t, const char *word) {
+static bool text_is(text t, const char *word) {
     return strlen(word) == t.length && memcmp(word, t.at, t.length) == 0;
 }
 
 // The value of an entry, of which the last counts; false when there is none of this type.
-static bool find(const vdb_layout *l, size_t metadata, const char *name, const char *type,
-                 text *out) {
+static bool find_entry(const vdb_layout *l, size_t metadata, const char *name, const char *type,
+                       text *out) {
     const uint8_t *at = l->bytes + metadata;
     bool found = false;
     for (uint32_t left = take_u32(&at); left > 0; left--) {
         text key = take_text(&at), kind = take_text(&at), value = take_text(&at);
-        if (!is(key, name)) continue;
-        found = is(kind, type);
+        if (!text_is(key, name)) continue;
+        found = text_is(kind, type);
         *out = value;
     }
     return found;
@@ -53,7 +53,7 @@ vdb_class vdb_class_read(const vdb_layout *l, const vdb_layout_grid *g) {
     static const char *const words[] = {
         [VDB_FOG] = "fog volume", [VDB_LEVEL_SET] = "level set", [VDB_STAGGERED] = "staggered"};
     text t;
-    if (!find(l, g->metadata, "class", "string", &t)) return VDB_UNKNOWN;
+    if (!find_entry(l, g->metadata, "class", "string", &t)) return VDB_UNKNOWN;
     for (; t.length > 0 && *t.at == ' '; t.length--) t.at++;
     while (t.length > 0 && t.at[t.length - 1] == ' ') t.length--;
     for (int i = VDB_UNKNOWN + 1; i < (int)COUNT_OF(words); i++)
@@ -66,8 +66,8 @@ vdb_class vdb_class_read(const vdb_layout *l, const vdb_layout_grid *g) {
 static bool has_y_up(const vdb_layout *l) {
     static const char houdini[] = "Houdini";
     text by;
-    return (find(l, l->metadata, "creator", "string", &by) ||
-            find(l, l->metadata, "Creator", "string", &by)) &&
+    return (find_entry(l, l->metadata, "creator", "string", &by) ||
+            find_entry(l, l->metadata, "Creator", "string", &by)) &&
            by.length >= strlen(houdini) && memcmp(by.at, houdini, strlen(houdini)) == 0;
 }
 
@@ -86,9 +86,9 @@ static void read_map(const vdb_layout *l, const vdb_layout_grid *g, double rows[
     const uint8_t *at = l->bytes + g->transform;
     double numbers[16];
     text kind = take_text(&at);
-    bool moves = is(kind, "TranslationMap");
-    bool both = is(kind, "ScaleTranslateMap") || is(kind, "UniformScaleTranslateMap");
-    bool matrix = is(kind, "AffineMap") || is(kind, "UnitaryMap");
+    bool moves = text_is(kind, "TranslationMap");
+    bool both = text_is(kind, "ScaleTranslateMap") || text_is(kind, "UniformScaleTranslateMap");
+    bool matrix = text_is(kind, "AffineMap") || text_is(kind, "UnitaryMap");
     memcpy(numbers, at, (matrix ? 16 : both ? 6 : 3) * sizeof *numbers);
     const double *origin = matrix ? numbers + 12 : numbers, *scale = numbers + (both ? 3 : 0);
     for (int i = 0; i < 3; i++) {
@@ -205,11 +205,11 @@ static void read_background(const vdb_layout *l, const vdb_layout_grid *g, float
 // False when the metadata do not say it.
 static bool find_extent(const vdb_layout *l, const vdb_layout_grid *g, vdb_grid_info *out) {
     text min, max, count;
-    if (!find(l, g->metadata, "file_bbox_min", "vec3i", &min) ||
-        !find(l, g->metadata, "file_bbox_max", "vec3i", &max))
+    if (!find_entry(l, g->metadata, "file_bbox_min", "vec3i", &min) ||
+        !find_entry(l, g->metadata, "file_bbox_max", "vec3i", &max))
         return false;
     int64_t active = 0;
-    if (find(l, g->metadata, "file_voxel_count", "int64", &count))
+    if (find_entry(l, g->metadata, "file_voxel_count", "int64", &count))
         memcpy(&active, count.at, sizeof active);
     memcpy(out->index_min, min.at, sizeof out->index_min);
     memcpy(out->index_max, max.at, sizeof out->index_max);
@@ -250,8 +250,8 @@ static bool check_extent(const vdb_layout *l, const vdb_layout_grid *g, vdb_grid
                    l->path, g->name, voxels);
 }
 
-static bool describe(const vdb_layout *l, const vdb_layout_grid *g, vdb_extent_reader *read,
-                     arena *memory, vdb_grid_info *out) {
+static bool describe_grid(const vdb_layout *l, const vdb_layout_grid *g, vdb_extent_reader *read,
+                          arena *memory, vdb_grid_info *out) {
     const bool half = g->half && g->value == VDB_VALUE_FLOAT;
     vdb_affine t;
     *out = (vdb_grid_info){.name = arena_string(memory, g->name),
@@ -280,7 +280,7 @@ static bool describe(const vdb_layout *l, const vdb_layout_grid *g, vdb_extent_r
 bool vdb_describe(const vdb_layout *l, vdb_extent_reader *read, arena *memory, vdb_info *out) {
     vdb_grid_info *grids = arena_alloc(memory, l->count * sizeof *grids);
     for (size_t i = 0; i < l->count; i++)
-        if (!describe(l, &l->grids[i], read, memory, &grids[i])) return false;
+        if (!describe_grid(l, &l->grids[i], read, memory, &grids[i])) return false;
     *out = (vdb_info){grids, l->count, "", has_y_up(l)};
     return true;
 }

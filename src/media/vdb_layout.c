@@ -34,7 +34,7 @@ typedef struct cursor {
     size_t size, at;
 } cursor;
 
-static const uint8_t *take(cursor *c, size_t count) {
+static const uint8_t *take_bytes(cursor *c, size_t count) {
     if (count > c->size - c->at) return NULL;
     const uint8_t *p = c->bytes + c->at;
     c->at += count;
@@ -42,13 +42,13 @@ static const uint8_t *take(cursor *c, size_t count) {
 }
 
 static bool take_u32(cursor *c, uint32_t *out) {
-    const uint8_t *p = take(c, sizeof *out);
+    const uint8_t *p = take_bytes(c, sizeof *out);
     if (p) memcpy(out, p, sizeof *out);
     return p != NULL;
 }
 
 static bool take_i64(cursor *c, int64_t *out) {
-    const uint8_t *p = take(c, sizeof *out);
+    const uint8_t *p = take_bytes(c, sizeof *out);
     if (p) memcpy(out, p, sizeof *out);
     return p != NULL;
 }
@@ -56,7 +56,7 @@ static bool take_i64(cursor *c, int64_t *out) {
 static char *take_name(cursor *c, arena *memory) {
     uint32_t length;
     if (!take_u32(c, &length) || length > NAME_MAX_BYTES) return NULL;
-    const uint8_t *p = take(c, length);
+    const uint8_t *p = take_bytes(c, length);
     if (!p || memchr(p, 0, length)) return NULL;
     char *name = arena_alloc(memory, length + 1);
     memcpy(name, p, length);
@@ -82,8 +82,8 @@ static const named_size MAPS[] = {
     {"TranslationMap", 24},
 };
 
-static const named_size *find(const named_size *list, size_t count, const uint8_t *name,
-                              uint32_t length) {
+static const named_size *find_size(const named_size *list, size_t count, const uint8_t *name,
+                                   uint32_t length) {
     for (size_t i = 0; i < count; i++)
         if (strlen(list[i].name) == length && memcmp(list[i].name, name, length) == 0)
             return &list[i];
@@ -98,13 +98,13 @@ static bool skip_metadata(cursor *c, bool *half) {
     if (!take_u32(c, &count)) return false;
     for (uint32_t i = 0; i < count; i++) {
         if (!take_u32(c, &name_length)) return false;
-        const uint8_t *name = take(c, name_length);
+        const uint8_t *name = take_bytes(c, name_length);
         if (!name || !take_u32(c, &length)) return false;
-        const uint8_t *type = take(c, length);
+        const uint8_t *type = take_bytes(c, length);
         if (!type || !take_u32(c, &size)) return false;
-        const named_size *known = find(METADATA, COUNT_OF(METADATA), type, length);
+        const named_size *known = find_size(METADATA, COUNT_OF(METADATA), type, length);
         if (known && size != known->size) return false;
-        const uint8_t *value = take(c, size);
+        const uint8_t *value = take_bytes(c, size);
         if (!value) return false;
         if (name_length != strlen(HALF) || memcmp(name, HALF, name_length) != 0) continue;
         if (!known || strcmp(known->name, "bool") != 0) return false;
@@ -191,15 +191,15 @@ static bool read_grid_head(const vdb_layout *l, vdb_layout_grid *g) {
     g->transform = c.at;
     uint32_t length;
     const uint8_t *name = NULL;
-    if (good && take_u32(&c, &length)) name = take(&c, length);
+    if (good && take_u32(&c, &length)) name = take_bytes(&c, length);
     if (!name)
         return err_set("%s: damaged VDB file: the metadata of grid '%s' break off at byte %zu",
                        l->path, g->name, c.at);
     if (half != g->half)
         return err_set("%s: damaged VDB file: grid '%s' is half and is not", l->path, g->name);
-    const named_size *map = find(MAPS, COUNT_OF(MAPS), name, length);
+    const named_size *map = find_size(MAPS, COUNT_OF(MAPS), name, length);
     if (!map) return true;
-    if (!take(&c, map->size))
+    if (!take_bytes(&c, map->size))
         return err_set("%s: damaged VDB file: the transform of grid '%s' breaks off", l->path,
                        g->name);
     g->linear = true;
@@ -208,12 +208,12 @@ static bool read_grid_head(const vdb_layout *l, vdb_layout_grid *g) {
 }
 
 static bool read_header(vdb_layout *l, cursor *c) {
-    const uint8_t *magic = take(c, sizeof MAGIC);
+    const uint8_t *magic = take_bytes(c, sizeof MAGIC);
     if (!magic || memcmp(magic, MAGIC, sizeof MAGIC) != 0)
         return err_set("%s: is not a VDB file", l->path);
     const uint8_t *offsets = NULL;
     if (!take_u32(c, &l->version) || !take_u32(c, &l->library_major) ||
-        !take_u32(c, &l->library_minor) || !(offsets = take(c, 1)) || !take(c, 36))
+        !take_u32(c, &l->library_minor) || !(offsets = take_bytes(c, 1)) || !take_bytes(c, 36))
         return err_set("%s: damaged VDB file: the header breaks off", l->path);
     if (l->version < VERSION_MIN || l->version > VERSION_MAX)
         return err_set("%s: VDB file format %u is not supported; %d to %d are (OpenVDB 1.2 and "
@@ -280,16 +280,16 @@ static bool check_block(walk *w, uint32_t count) {
     size_t expected = count * w->block_size;
     if (count == 0 && w->half) return true; // OpenVDB stores nothing at all
     if (!(w->compression & (COMPRESS_BLOSC | COMPRESS_ZIP)))
-        return take(&w->c, expected) ? true : fault(w, "voxels break off");
+        return take_bytes(&w->c, expected) ? true : fault(w, "voxels break off");
     int64_t length;
     if (!take_i64(&w->c, &length)) return fault(w, "voxels break off");
     if (length <= 0) {
         if (length < -(int64_t)expected || (uint64_t)-length != expected)
             return fault(w, "a block of voxels has a wrong length");
-        return take(&w->c, expected) ? true : fault(w, "voxels break off");
+        return take_bytes(&w->c, expected) ? true : fault(w, "voxels break off");
     }
     if ((uint64_t)length > w->c.size) return fault(w, "a block of voxels has a wrong length");
-    const uint8_t *data = take(&w->c, (size_t)length);
+    const uint8_t *data = take_bytes(&w->c, (size_t)length);
     if (!data) return fault(w, "voxels break off");
     if (!(w->compression & COMPRESS_BLOSC)) return true; // zlib gets both lengths
     // Blosc believes its own header, which must therefore agree with what surrounds it.
@@ -305,14 +305,14 @@ static bool check_block(walk *w, uint32_t count) {
 // The values of a node, of which those in `mask` are active.
 static bool check_values(walk *w, uint32_t count, const uint8_t *mask) {
     enum { ONE_INACTIVE = 2, MASK_ONLY, MASK_ONE_INACTIVE, MASK_TWO_INACTIVE, ALL_VALUES };
-    const uint8_t *kind = take(&w->c, 1);
+    const uint8_t *kind = take_bytes(&w->c, 1);
     if (!kind) return fault(w, "a node breaks off");
     if (*kind > ALL_VALUES) return fault(w, "a node is of an unknown kind");
     size_t inactive = 0, selection = 0;
     if (*kind == ONE_INACTIVE || *kind == MASK_ONE_INACTIVE) inactive = w->value_size;
     if (*kind == MASK_TWO_INACTIVE) inactive = 2 * w->value_size;
     if (*kind >= MASK_ONLY && *kind <= MASK_TWO_INACTIVE) selection = count / 8;
-    if (!take(&w->c, inactive + selection)) return fault(w, "a node breaks off");
+    if (!take_bytes(&w->c, inactive + selection)) return fault(w, "a node breaks off");
     bool packed = (w->compression & COMPRESS_ACTIVE_MASK) && *kind != ALL_VALUES;
     return check_block(w, packed ? count_bits(mask, count) : count);
 }
@@ -327,20 +327,21 @@ static size_t slot_size(const walk *w) {
 }
 
 static bool check_lower(walk *w) {
-    const uint8_t *children = take(&w->c, LOWER_VALUES / 8);
-    const uint8_t *active = take(&w->c, LOWER_VALUES / 8);
+    const uint8_t *children = take_bytes(&w->c, LOWER_VALUES / 8);
+    const uint8_t *active = take_bytes(&w->c, LOWER_VALUES / 8);
     if (!children || !active) return fault(w, "a node breaks off");
     if (!add_memory(w, LOWER_VALUES * slot_size(w)) || !check_values(w, LOWER_VALUES, active))
         return false;
     uint32_t count = count_bits(children, LOWER_VALUES);
     w->leaves += count;
     if (!add_memory(w, count * (LEAF_VALUES * w->value_size + 128))) return false;
-    return take(&w->c, count * (size_t)(LEAF_VALUES / 8)) ? true : fault(w, "a node breaks off");
+    return take_bytes(&w->c, count * (size_t)(LEAF_VALUES / 8)) ? true
+                                                                : fault(w, "a node breaks off");
 }
 
 static bool check_upper(walk *w) {
-    const uint8_t *children = take(&w->c, UPPER_VALUES / 8);
-    const uint8_t *active = take(&w->c, UPPER_VALUES / 8);
+    const uint8_t *children = take_bytes(&w->c, UPPER_VALUES / 8);
+    const uint8_t *active = take_bytes(&w->c, UPPER_VALUES / 8);
     if (!children || !active) return fault(w, "a node breaks off");
     if (!add_memory(w, UPPER_VALUES * slot_size(w)) || !check_values(w, UPPER_VALUES, active))
         return false;
@@ -362,7 +363,7 @@ static int compare_keys(const void *a, const void *b) {
 }
 
 static bool take_key(walk *w, root_key *out) {
-    const uint8_t *p = take(&w->c, sizeof *out);
+    const uint8_t *p = take_bytes(&w->c, sizeof *out);
     if (!p) return fault(w, "the root node breaks off");
     memcpy(out, p, sizeof *out);
     for (int i = 0; i < 3; i++) {
@@ -377,7 +378,8 @@ static bool check_root_entries(walk *w, root_key *keys, uint32_t tiles, uint32_t
     for (uint32_t i = 0; i < tiles; i++) {
         const uint8_t *tile;
         if (!take_key(w, &keys[i])) return false;
-        if (!(tile = take(&w->c, w->value_size + 1))) return fault(w, "the root node breaks off");
+        if (!(tile = take_bytes(&w->c, w->value_size + 1)))
+            return fault(w, "the root node breaks off");
         if (tile[w->value_size] > 1) return fault(w, "a tile is neither active nor inactive");
     }
     for (uint32_t i = 0; i < children; i++)
@@ -391,8 +393,8 @@ static bool check_root_entries(walk *w, root_key *keys, uint32_t tiles, uint32_t
 
 static bool check_root(walk *w) {
     uint32_t buffers, tiles, children;
-    if (!take_u32(&w->c, &buffers) || !take(&w->c, w->value_size) || !take_u32(&w->c, &tiles) ||
-        !take_u32(&w->c, &children))
+    if (!take_u32(&w->c, &buffers) || !take_bytes(&w->c, w->value_size) ||
+        !take_u32(&w->c, &tiles) || !take_u32(&w->c, &children))
         return fault(w, "the root node breaks off");
     if (buffers != 1) return fault(w, "more than one buffer a voxel");
     size_t left = w->c.size - w->c.at;
@@ -405,10 +407,11 @@ static bool check_root(walk *w) {
 }
 
 static bool check_leaf(walk *w) {
-    const uint8_t *mask = take(&w->c, LEAF_VALUES / 8);
+    const uint8_t *mask = take_bytes(&w->c, LEAF_VALUES / 8);
     if (!mask) return fault(w, "voxels break off");
     if (w->value != VDB_VALUE_BOOL) return check_values(w, LEAF_VALUES, mask);
-    return take(&w->c, 3 * sizeof(int32_t) + LEAF_VALUES / 8) ? true : fault(w, "voxels break off");
+    return take_bytes(&w->c, 3 * sizeof(int32_t) + LEAF_VALUES / 8) ? true
+                                                                    : fault(w, "voxels break off");
 }
 
 bool vdb_layout_check_tree(const vdb_layout *layout, const vdb_layout_grid *grid,

@@ -25,7 +25,7 @@ typedef struct task {
     char message[1024]; // why it could not be opened, or ""
 } task;
 
-static int give(void *user, const char *name, size_t *size) {
+static int task_give_file(void *user, const char *name, size_t *size) {
     task *t = user;
     for (size_t i = 0; i < t->count; i++) {
         if (strcmp(t->paths[i], name) != 0) continue;
@@ -46,8 +46,8 @@ static isolate_limits limits_of(uint64_t result) {
                             .result = result + message};
 }
 
-static bool run(task *t, isolate_job job, isolate_result *out) {
-    job.open = give;
+static bool task_run(task *t, isolate_job job, isolate_result *out) {
+    job.open = task_give_file;
     job.user = t;
     job.name = t->count == 1 ? t->paths[0] : NULL;
     if (isolate_run(&job, out)) return true;
@@ -71,7 +71,7 @@ typedef struct cursor {
     size_t left;
 } cursor;
 
-static const void *take(cursor *c, size_t size) {
+static const void *take_bytes(cursor *c, size_t size) {
     const char *p = c->at;
     if (size > c->left) return NULL;
     c->at += size;
@@ -80,7 +80,7 @@ static const void *take(cursor *c, size_t size) {
 }
 
 static const char *take_text(cursor *c, size_t size, arena *memory) {
-    const char *text = take(c, size);
+    const char *text = take_bytes(c, size);
     return text && size > 0 && text[size - 1] == '\0' ? arena_string(memory, text) : NULL;
 }
 
@@ -96,7 +96,7 @@ static bool is_sound(const vdb_sent_grid *g) {
 
 static bool take_grid(cursor *c, arena *memory, vdb_grid_info *out) {
     vdb_sent_grid g;
-    const void *sent = take(c, sizeof g);
+    const void *sent = take_bytes(c, sizeof g);
     if (!sent) return false;
     memcpy(&g, sent, sizeof g);
     *out = (vdb_grid_info){.name = take_text(c, g.name, memory),
@@ -118,7 +118,7 @@ static bool take_grid(cursor *c, arena *memory, vdb_grid_info *out) {
 
 static bool take_info(cursor *c, arena *memory, vdb_info *out) {
     vdb_sent_info sent;
-    const void *p = take(c, sizeof sent);
+    const void *p = take_bytes(c, sizeof sent);
     if (!p) return false;
     memcpy(&sent, p, sizeof sent);
     *out = (vdb_info){0};
@@ -141,7 +141,7 @@ static bool ask_some(task *t, const char *kind, arena *const *memory, vdb_info *
                              .bytes = names.text,
                              .size = names.length,
                              .limits = limits_of((uint64_t)256 << 20)};
-    bool done = run(t, job, &r);
+    bool done = task_run(t, job, &r);
     strbuf_free(&names);
     if (!done) return false;
     cursor c = {r.data, r.size};
@@ -207,7 +207,7 @@ bool vdb_sample(const vdb_sample_desc *d, uint64_t *bad) {
                              .size = bytes.length,
                              .limits = limits_of(size + sizeof *bad)};
     isolate_result r;
-    bool done = run(&(task){.root = d->root, .paths = &d->path, .count = 1}, job, &r);
+    bool done = task_run(&(task){.root = d->root, .paths = &d->path, .count = 1}, job, &r);
     strbuf_free(&bytes);
     if (!done) return false;
     done = r.size == size + sizeof *bad || nonsense(d->path);
@@ -227,7 +227,7 @@ uint64_t vdb_brick_count(const texels_shape *s) {
     return count;
 }
 
-static void describe(const vdb_frame_desc *d, strbuf *out) {
+static void frame_describe(const vdb_frame_desc *d, strbuf *out) {
     vdb_sent_frame sent = {.box = d->box,
                            .y_up = d->shape.y_up,
                            .sparse = d->sparse,
@@ -308,12 +308,13 @@ void vdb_warm_up(void) {
 bool vdb_read_frame(const vdb_frame_desc *d, vdb_frame *out) {
     strbuf bytes = {0};
     *out = (vdb_frame){0};
-    describe(d, &bytes);
+    frame_describe(d, &bytes);
     const isolate_job job = {.kind = frame_kind,
                              .bytes = bytes.text,
                              .size = bytes.length,
                              .limits = limits_of(most_bytes(d))};
-    bool done = run(&(task){.root = d->root, .paths = &d->path, .count = 1}, job, &out->memory);
+    bool done =
+        task_run(&(task){.root = d->root, .paths = &d->path, .count = 1}, job, &out->memory);
     strbuf_free(&bytes);
     if (!done) return false;
     if (take_frame(d, out)) return true;
@@ -335,7 +336,7 @@ static bool put_padding(const isolate_call *to, size_t *at) {
     return isolate_put(to, zeros, missing);
 }
 
-static bool put(const isolate_call *to, const void *data, size_t size, size_t *at) {
+static bool put_bytes(const isolate_call *to, const void *data, size_t size, size_t *at) {
     *at += size;
     return isolate_put(to, data, size);
 }
@@ -343,20 +344,21 @@ static bool put(const isolate_call *to, const void *data, size_t size, size_t *a
 static bool put_all(const isolate_call *to, const vdb_write_grid *grids, size_t count,
                     const vdb_entry *metadata, size_t entries, size_t *at) {
     const vdb_sent_write sent = {(uint32_t)count, (uint32_t)entries};
-    bool done = put(to, &sent, sizeof sent, at) && put(to, grids, count * sizeof *grids, at);
+    bool done =
+        put_bytes(to, &sent, sizeof sent, at) && put_bytes(to, grids, count * sizeof *grids, at);
     for (size_t i = 0; done && i < count; i++) {
         const vdb_write_grid *g = &grids[i];
         const void *values = g->halves ? (const void *)g->halves : g->values;
-        done = put_padding(to, at) && put(to, values, vdb_values_size(g), at) &&
-               put(to, g->name, strlen(g->name) + 1, at);
+        done = put_padding(to, at) && put_bytes(to, values, vdb_values_size(g), at) &&
+               put_bytes(to, g->name, strlen(g->name) + 1, at);
     }
     for (size_t i = 0; done && i < entries; i++) {
         const vdb_entry *e = &metadata[i];
         const vdb_sent_entry one = {.key = (uint32_t)strlen(e->key) + 1,
                                     .text = e->text ? (uint32_t)strlen(e->text) + 1 : 0,
                                     .number = e->number};
-        done = put(to, &one, sizeof one, at) && put(to, e->key, one.key, at) &&
-               put(to, e->text, one.text, at);
+        done = put_bytes(to, &one, sizeof one, at) && put_bytes(to, e->key, one.key, at) &&
+               put_bytes(to, e->text, one.text, at);
     }
     return done;
 }

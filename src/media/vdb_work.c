@@ -11,7 +11,7 @@ typedef struct cursor {
     const char *at;
 } cursor;
 
-static void take(cursor *c, void *out, size_t size) {
+static void take_bytes(cursor *c, void *out, size_t size) {
     memcpy(out, c->at, size);
     c->at += size;
 }
@@ -65,7 +65,7 @@ bool vdb_info_work(const isolate_call *call) {
 bool vdb_sample_work(const isolate_call *call) {
     cursor c = {call->bytes};
     vdb_sent_sample sent;
-    take(&c, &sent, sizeof sent);
+    take_bytes(&c, &sent, sizeof sent);
     vdb_sample_desc desc = {.path = call->name,
                             .grid = c.at,
                             .box = sent.box,
@@ -130,7 +130,7 @@ static bool build_dense(vdb_build *b, float *values, int image) {
     return done;
 }
 
-static bool build(vdb_build *b) {
+static bool frame_build(vdb_build *b) {
     const texels_shape *s = &b->desc->shape;
     size_t voxels = (size_t)s->size[0] * s->size[1] * s->size[2], widest = 1;
     for (size_t i = 0; i < b->desc->count; i++)
@@ -149,10 +149,10 @@ bool vdb_frame_work(const isolate_call *call) {
     cursor c = {call->bytes};
     vdb_sent_frame sent;
     vdb_source sources[VDB_SOURCES];
-    take(&c, &sent, sizeof sent);
+    take_bytes(&c, &sent, sizeof sent);
     for (uint32_t i = 0; i < sent.count; i++) {
         vdb_sent_source one;
-        take(&c, &one, sizeof one);
+        take_bytes(&c, &one, sizeof one);
         sources[i] = (vdb_source){.components = one.components, .grid = take_text(&c, one.name)};
         memcpy(sources[i].channels, one.channels, sizeof one.channels);
         memcpy(sources[i].gains, one.gains, sizeof one.gains);
@@ -169,7 +169,7 @@ bool vdb_frame_work(const isolate_call *call) {
     opened f;
     if (!open_file(call, call->name, &f)) return false;
     vdb_build b = {.call = call, .file = f.file, .desc = &desc};
-    bool done = build(&b);
+    bool done = frame_build(&b);
     close_file(&f);
     return done;
 }
@@ -187,10 +187,10 @@ bool vdb_write_work(const isolate_call *call) {
     vdb_sent_write sent;
     void *data;
     size_t size;
-    take(&c, &sent, sizeof sent);
+    take_bytes(&c, &sent, sizeof sent);
     vdb_write_grid *grids = mem_alloc(sent.grids * sizeof *grids);
     vdb_entry *entries = mem_alloc(sent.entries * sizeof *entries);
-    take(&c, grids, sent.grids * sizeof *grids);
+    take_bytes(&c, grids, sent.grids * sizeof *grids);
     for (uint32_t i = 0; i < sent.grids; i++) {
         vdb_write_grid *g = &grids[i];
         const void *values = take_padded(&c, call->bytes, vdb_values_size(g));
@@ -202,7 +202,7 @@ bool vdb_write_work(const isolate_call *call) {
     }
     for (uint32_t i = 0; i < sent.entries; i++) {
         vdb_sent_entry one;
-        take(&c, &one, sizeof one);
+        take_bytes(&c, &one, sizeof one);
         entries[i].key = take_text(&c, one.key);
         entries[i].text = one.text ? take_text(&c, one.text) : NULL;
         entries[i].number = one.number;

@@ -136,7 +136,7 @@ video *video_create(const char *path, uint32_t width, uint32_t height, double fp
 }
 
 // Takes what the encoder has ready. `frame` NULL ends the film.
-static bool encode(video *v, const AVFrame *frame) {
+static bool video_encode(video *v, const AVFrame *frame) {
     int code = av.avcodec_send_frame(v->encoder, frame);
     if (code < 0) return fault(v, "cannot be encoded", code);
     for (;;) {
@@ -173,7 +173,7 @@ bool video_add(video *v, const uint8_t *rgba) {
     av.sws_scale(v->scaler, planes, pitches, 0, (int)v->even_height, v->frame->data,
                  v->frame->linesize);
     v->frame->pts = v->frames++;
-    return encode(v, v->frame);
+    return video_encode(v, v->frame);
 }
 
 static bool close_file(video *v) {
@@ -188,7 +188,7 @@ static bool close_file(video *v) {
 
 bool video_finish(video *v) {
     bool done = v->frames > 0 || err_set("%s: a film needs at least one frame", v->path);
-    done = done && encode(v, NULL) && close_file(v);
+    done = done && video_encode(v, NULL) && close_file(v);
     video_abandon(v);
     return done;
 }

@@ -24,7 +24,7 @@
 
 enum { FILES_MAX = 32 };
 
-static void limit(int what, rlim_t most) {
+static void set_limit(int what, rlim_t most) {
     struct rlimit now;
     if (getrlimit(what, &now) != 0) return;
     if (most > now.rlim_max) most = now.rlim_max;
@@ -50,9 +50,9 @@ static void set_timer(int which, uint64_t milliseconds) {
 
 void worker_limit(const isolate_limits *limits) {
     rlim_t used = SANITIZED ? 0 : address_space(); // terabytes, kept for the sanitizer
-    if (used) limit(RLIMIT_AS, used + limits->memory);
-    limit(RLIMIT_FSIZE, limits->result);
-    limit(RLIMIT_NOFILE, FILES_MAX);
+    if (used) set_limit(RLIMIT_AS, used + limits->memory);
+    set_limit(RLIMIT_FSIZE, limits->result);
+    set_limit(RLIMIT_NOFILE, FILES_MAX);
     set_timer(ITIMER_PROF, limits->processor_ms);
     set_timer(ITIMER_REAL, wire_real_limit(limits));
 }

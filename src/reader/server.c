@@ -144,7 +144,7 @@ static const reader_job *find_job(const server *s, const char *kind) {
 
 // ---- the end of a worker ----------------------------------------------------------------------
 
-static void report(const worker *w, int status, uint32_t processor_ms) {
+static void worker_report(const worker *w, int status, uint32_t processor_ms) {
     static wire_news news;
     news = (wire_news){.word = WIRE_END, .status = status, .processor_ms = processor_ms};
     if (w->said >= 0 && pread(w->said, news.text, SAID_MAX, 0) < 0) news.text[0] = '\0';
@@ -158,7 +158,7 @@ static uint32_t milliseconds(const struct rusage *used) {
                       (used->ru_utime.tv_usec + used->ru_stime.tv_usec) / 1000);
 }
 
-static void reap(server *s) {
+static void workers_reap(server *s) {
     size_t kept = 0;
     for (size_t i = 0; i < s->count; i++) {
         int status = WIRE_NO_WORKER;
@@ -167,7 +167,7 @@ static void reap(server *s) {
         if (ended == 0)
             s->workers[kept++] = s->workers[i];
         else // a failure of wait4 must not read as success
-            report(&s->workers[i], ended > 0 ? status : WIRE_NO_WORKER, milliseconds(&used));
+            worker_report(&s->workers[i], ended > 0 ? status : WIRE_NO_WORKER, milliseconds(&used));
     }
     s->count = kept;
 }
@@ -188,17 +188,17 @@ static void start_worker(server *s, const reader_job *job, const wire_request *r
     close(files[WIRE_OUT]);
     close(files[WIRE_INPUT]);
     if (w.process < 0)
-        report(&w, WIRE_NO_WORKER, 0);
+        worker_report(&w, WIRE_NO_WORKER, 0);
     else
         s->workers[s->count++] = w;
 }
 
-static void refuse(const char *program, const int files[WIRE_FILES]) {
+static void server_refuse(const char *program, const int files[WIRE_FILES]) {
     worker none = {.channel = files[WIRE_CHANNEL], .said = memfd_create("roil-said", MFD_CLOEXEC)};
     if (none.said >= 0) dprintf(none.said, "there is no %s beside it", program);
     close(files[WIRE_OUT]);
     close(files[WIRE_INPUT]);
-    report(&none, WIRE_NO_WORKER, 0);
+    worker_report(&none, WIRE_NO_WORKER, 0);
 }
 
 static void serve_request(server *s) {
@@ -216,7 +216,7 @@ static void serve_request(server *s) {
         return;
     }
     if (job->program && !find_program(job->program, path))
-        refuse(job->program, files);
+        server_refuse(job->program, files);
     else if (job->program || (job->get_ready && !s->ready))
         hand_on(s, job->program, &r, files);
     else
@@ -233,7 +233,7 @@ static void end_lonely(server *s, const struct pollfd *channels) {
     }
 }
 
-static void *serve(void *user) {
+static void *server_serve(void *user) {
     server *s = user;
     sigset_t open;
     sigemptyset(&open);
@@ -247,7 +247,7 @@ static void *serve(void *user) {
         if (found > 0 && ready[0].revents & POLLHUP) _exit(EXIT_SUCCESS);
         if (found > 0) end_lonely(s, ready + 1);
         bool asked = found > 0 && ready[0].revents & POLLIN;
-        reap(s);
+        workers_reap(s);
         if (asked) serve_request(s);
     }
 }
@@ -270,6 +270,6 @@ int reader_serve(const reader_job *jobs, size_t count) {
     sigaddset(&blocked, SIGCHLD);
     sigprocmask(SIG_SETMASK, &blocked, NULL); // in all threads: serve() waits with it open
     set_kill_policy();
-    run_on_large_stack(serve, &s);
+    run_on_large_stack(server_serve, &s);
     return EXIT_FAILURE; // too little memory for the stack
 }

@@ -11,7 +11,7 @@
 
 enum { CHANNEL = WIRE_CONTROL, OUT, INPUT, FILES_END };
 
-static void leave(void) { // exit() here means that memory ran out (base/error.h)
+static void worker_leave(void) { // exit() here means that memory ran out (base/error.h)
     _exit(WIRE_EXIT_MEMORY);
 }
 
@@ -37,7 +37,7 @@ static const void *read_input(size_t size) {
     return bytes;
 }
 
-static _Noreturn void refuse(const isolate_call *call) {
+static _Noreturn void worker_refuse(const isolate_call *call) {
     const char *message = err_get();
     bool sent = ftruncate(OUT, 0) == 0 && lseek(OUT, 0, SEEK_SET) == 0 &&
                 isolate_put(call, message, strlen(message));
@@ -58,16 +58,16 @@ void worker_run(const reader_job *job, const wire_request *r, const int files[WI
     sigset_t none;
     sigemptyset(&none);
     sigprocmask(SIG_SETMASK, &none, NULL);
-    atexit(leave);
-    err_when_out_of_memory(leave);
+    atexit(worker_leave);
+    err_when_out_of_memory(worker_leave);
     worker_limit(&r->limits);
     worker_confine();
     err_clear();
     call.bytes = read_input(call.size);
     if (!call.bytes) {
         err_prefix("%s: ", call.name);
-        refuse(&call);
+        worker_refuse(&call);
     }
     if (job->work(&call)) _exit(EXIT_SUCCESS);
-    refuse(&call);
+    worker_refuse(&call);
 }

@@ -273,7 +273,7 @@ bool scene_bvh_has_holes(const scene_bvh *b) {
     return b->holes;
 }
 
-static void choose(const scene_bvh *b, const void *what, uint32_t *bits) {
+static void bvh_choose(const scene_bvh *b, const void *what, uint32_t *bits) {
     for (size_t i = 0; i < b->thing_count; i++)
         if (b->things[i].mesh == what || b->things[i].instances == what)
             bits[i / 32] |= 1u << i % 32;
@@ -283,8 +283,8 @@ void scene_bvh_choose(const scene_bvh *b, scene_mesh *const *meshes, size_t coun
                       scene_instances *const *instances, size_t instances_count,
                       uint32_t bits[SCENE_BVH_MAX_MESHES / 32]) {
     memset(bits, 0, SCENE_BVH_MAX_MESHES / 8);
-    for (size_t i = 0; i < count; i++) choose(b, meshes[i], bits);
-    for (size_t i = 0; i < instances_count; i++) choose(b, instances[i], bits);
+    for (size_t i = 0; i < count; i++) bvh_choose(b, meshes[i], bits);
+    for (size_t i = 0; i < instances_count; i++) bvh_choose(b, instances[i], bits);
 }
 
 size_t scene_bvh_count(const scene_bvh *b) {

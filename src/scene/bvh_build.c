@@ -105,8 +105,8 @@ static bool is_free(size_t count, int depth) {
 }
 
 // How many of the pieces, then the first ones, go to the first child; 0: they are a leaf.
-static size_t split(const bvh_build *b, bvh_piece *pieces, size_t count, const bvh_bounds *box,
-                    int depth) {
+static size_t bvh_split(const bvh_build *b, bvh_piece *pieces, size_t count, const bvh_bounds *box,
+                        int depth) {
     if (count == 1) return 0;
     plane best = {.axis = -1, .cost = INFINITY};
     if (is_free(count, depth)) best = best_plane(b, pieces, count, bvh_bounds_area(box));
@@ -123,7 +123,7 @@ static void fill_node(bvh_build *b, size_t index, bvh_piece *pieces, size_t coun
     struct bvh_node node = {.next = next};
     glm_vec3_copy(box.low, node.low.v);
     glm_vec3_copy(box.high, node.high.v);
-    size_t left = split(b, pieces, count, &box, depth), first = b->node_count;
+    size_t left = bvh_split(b, pieces, count, &box, depth), first = b->node_count;
     if (left == 0) {
         node.below = bvh_leaf(b->add_leaf(b->user, pieces, count), count);
     } else {

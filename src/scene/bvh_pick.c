@@ -75,8 +75,8 @@ static ray to_item(const ray *r, const struct bvh_instance *item) {
     return make_ray(origin, way, r->far);
 }
 
-static void tell(const scene_bvh *b, const ray *r, const struct bvh_instance *item,
-                 const struct bvh_triangle *t, scene_hit *out) {
+static void pick_report(const scene_bvh *b, const ray *r, const struct bvh_instance *item,
+                        const struct bvh_triangle *t, scene_hit *out) {
     const thing *what = &b->things[item->what.v[0]];
     *out = (scene_hit){.distance = r->far, .mesh = what->mesh, .instances = what->instances};
     if (what->instances) {
@@ -121,6 +121,6 @@ bool scene_pick(const scene_bvh *b, const float origin[3], const float direction
             r.far = inner.far;
         }
     }
-    if (hit) tell(b, &r, hit, &b->forest.triangles[triangle], out);
+    if (hit) pick_report(b, &r, hit, &b->forest.triangles[triangle], out);
     return hit != NULL;
 }

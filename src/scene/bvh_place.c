@@ -29,7 +29,7 @@ static void world_box(const struct bvh_node *root, mat4 transform, struct bvh_in
 }
 
 // False where nothing would be seen of it: scaled to nothing, or out of all numbers.
-static bool invert(mat4 transform, struct bvh_instance *out) {
+static bool invert_transform(mat4 transform, struct bvh_instance *out) {
     mat4 inverse;
     float size = glm_mat4_det(transform);
     if (!isfinite(size) || size == 0) return false;
@@ -43,7 +43,7 @@ static bool invert(mat4 transform, struct bvh_instance *out) {
     return true;
 }
 
-static void put(scene_bvh *b, size_t item, const struct bvh_instance *made) {
+static void item_put(scene_bvh *b, size_t item, const struct bvh_instance *made) {
     struct bvh_instance *now = &b->items[b->item_at[item]];
     if (memcmp(now, made, sizeof *now) == 0) return;
     if (memcmp(&now->low, &made->low, sizeof now->low) != 0 ||
@@ -58,7 +58,7 @@ static void put(scene_bvh *b, size_t item, const struct bvh_instance *made) {
 static void place_item(scene_bvh *b, size_t item, size_t mesh, mat4 transform,
                        struct bvh_instance *made) {
     const tree *t = &b->trees[mesh];
-    if (t->root != t->end && invert(transform, made)) {
+    if (t->root != t->end && invert_transform(transform, made)) {
         made->what.v[2] = b->materials[mesh];
         made->what.v[3] = (uint32_t)mesh;
         made->below = t->below;
@@ -68,7 +68,7 @@ static void place_item(scene_bvh *b, size_t item, size_t mesh, mat4 transform,
         *made =
             (struct bvh_instance){.low = {{1e30f, 1e30f, 1e30f}}, .high = {{1e30f, 1e30f, 1e30f}}};
     }
-    put(b, item, made);
+    item_put(b, item, made);
 }
 
 static void place_mesh(scene_bvh *b, thing *t) {

@@ -66,7 +66,7 @@ void bvh_top_moved(scene_bvh *b, size_t place) {
 }
 
 // Children lie behind their parents.
-static void fit(scene_bvh *b) {
+static void top_fit(scene_bvh *b) {
     struct bvh_node *nodes = b->forest.nodes;
     for (uint32_t i = b->top_count; i-- > 0;) {
         if (!b->stale[i]) continue;
@@ -132,7 +132,7 @@ static bvh_piece *make_pieces(const scene_bvh *b) {
     return pieces;
 }
 
-static void reorder(scene_bvh *b, const uint32_t *order) {
+static void top_reorder(scene_bvh *b, const uint32_t *order) {
     struct bvh_instance *before = mem_copy(b->items, b->item_count * sizeof *before);
     uint32_t *place = mem_copy(b->item_at, b->item_count * sizeof *place);
     for (uint32_t k = 0; k < b->item_count; k++) {
@@ -145,7 +145,7 @@ static void reorder(scene_bvh *b, const uint32_t *order) {
 }
 
 // Where everything is in it; all of it is new.
-static void link(scene_bvh *b) {
+static void top_link(scene_bvh *b) {
     for (uint32_t i = 0; i < b->top_count; i++) {
         const struct bvh_node *node = &b->forest.nodes[i];
         for (uint32_t k = bvh_leaf_first(node->below); k < bvh_leaf_end(node->below); k++)
@@ -161,7 +161,7 @@ static void link(scene_bvh *b) {
     b->headed = false;
 }
 
-static void build(scene_bvh *b) {
+static void top_rebuild(scene_bvh *b) {
     if (b->item_count <= ONE_LEAF) {
         b->top_count = 1;
         b->forest.nodes[0] =
@@ -173,23 +173,23 @@ static void build(scene_bvh *b) {
         bvh_build_tree(&made, pieces, b->item_count);
         memcpy(b->forest.nodes, made.nodes, made.node_count * sizeof *made.nodes);
         b->top_count = (uint32_t)made.node_count;
-        reorder(b, t.order);
+        top_reorder(b, t.order);
         mem_free(pieces);
         mem_free(made.nodes);
         mem_free(t.order);
     }
-    link(b);
-    fit(b);
+    top_link(b);
+    top_fit(b);
     b->top_cost = cost(b);
     b->top_moved = 0;
 }
 
 void bvh_top_update(scene_bvh *b) {
     if (b->item_count == 0) return;
-    if (b->top_count == 0) build(b);
+    if (b->top_count == 0) top_rebuild(b);
     if (b->top_moved == 0) return;
-    fit(b);
+    top_fit(b);
     if (b->top_moved < b->item_count / LOOK || b->item_count <= ONE_LEAF) return;
     b->top_moved = 0;
-    if (cost(b) > worn_out * b->top_cost) build(b);
+    if (cost(b) > worn_out * b->top_cost) top_rebuild(b);
 }

@@ -19,7 +19,7 @@ static float area(const struct bvh_node *node) {
 }
 
 // The largest that has children of its own; -1: none has.
-static int choose(const struct bvh_node *nodes, const uint32_t *children, int count) {
+static int choose_child(const struct bvh_node *nodes, const uint32_t *children, int count) {
     int chosen = -1;
     float largest = -1;
     for (int i = 0; i < count; i++) {
@@ -36,7 +36,7 @@ static int list_children(const attempt *a, const struct bvh_node *node, uint32_t
     children[0] = node->below;
     children[1] = node->below + 1;
     while (count < a->lanes) {
-        int i = choose(a->w->nodes, children, count);
+        int i = choose_child(a->w->nodes, children, count);
         if (i < 0) break;
         uint32_t first = a->w->nodes[children[i]].below;
         children[i] = first;

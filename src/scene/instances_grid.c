@@ -20,7 +20,7 @@ static uint32_t cell_of(const instances_grid *g, const float place[3]) {
     return cell_along(g, 1, place[1]) * g->size[0] + cell_along(g, 0, place[0]);
 }
 
-static void fit(instances_grid *g, const struct instance_entry *places, size_t count) {
+static void grid_fit(instances_grid *g, const struct instance_entry *places, size_t count) {
     float high[2] = {0}, side[2];
     for (size_t i = 0; i < count; i++) {
         for (int a = 0; a < 2; a++) {
@@ -39,7 +39,7 @@ static void fit(instances_grid *g, const struct instance_entry *places, size_t c
 void instances_grid_make(instances_grid *g, const struct instance_entry *places, size_t count) {
     if (g->made) return;
     instances_grid_free(g);
-    fit(g, places, count);
+    grid_fit(g, places, count);
     size_t cells = (size_t)g->size[0] * g->size[1];
     g->first = mem_alloc((cells + 1) * sizeof *g->first);
     g->order = mem_alloc(count * sizeof *g->order);

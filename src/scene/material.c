@@ -63,7 +63,8 @@ static bool evaluate_share(const field *node, const field_context *context, floa
     return true;
 }
 
-static bool evaluate(const scene_material *m, const field_context *context, scene_look *out) {
+static bool material_evaluate(const scene_material *m, const field_context *context,
+                              scene_look *out) {
     float color[4] = {1, 1, 1, 1}, emission[4] = {-1, -1, -1, -1};
     if ((m->color && !scene_evaluate(m->color, context, color)) ||
         (m->emission && !scene_evaluate(m->emission, context, emission)) ||
@@ -85,7 +86,7 @@ bool scene_mesh_look(const scene_mesh *mesh, const field_context *context, scene
         .specular = -1, .roughness = -1, .metallic = -1, .emission = {-1, -1, -1}, .toon = 1};
     if (!scene_evaluate(mesh->color, context, tint)) return err_prefix("%s: ", mesh->name);
     for (int i = 0; i < 3; i++) out->tint[i] = scene_limit_light(tint[i]);
-    return !mesh->material || evaluate(mesh->material, context, out) ||
+    return !mesh->material || material_evaluate(mesh->material, context, out) ||
            err_prefix("%s: material: ", mesh->name);
 }
 

@@ -32,7 +32,7 @@ float scatter_chance(uint32_t seed, uint32_t index, uint32_t what) {
     return (float)(h >> 8) / 16777216.0f;
 }
 
-static board open(const scatter_desc *desc, float (*out)[3]) {
+static board board_open(const scatter_desc *desc, float (*out)[3]) {
     board b = {.desc = desc, .places = out};
     double area = (double)desc->size[0] * (double)desc->size[1];
     // A cell's diagonal is the distance.
@@ -44,7 +44,7 @@ static board open(const scatter_desc *desc, float (*out)[3]) {
 }
 
 size_t scatter_cells(const scatter_desc *desc) {
-    board b = open(desc, NULL);
+    board b = board_open(desc, NULL);
     return (size_t)b.size[0] * (size_t)b.size[1];
 }
 
@@ -70,7 +70,7 @@ static bool has_room(const board *b, const float at[2]) {
     return true;
 }
 
-static void add(board *b, const float at[3]) {
+static void board_add(board *b, const float at[3]) {
     for (int a = 0; a < 3; a++) b->places[b->count][a] = at[a];
     b->count++;
     if (b->desc->distance == 0) return; // cells would hold several, and nobody asks
@@ -78,7 +78,7 @@ static void add(board *b, const float at[3]) {
     b->desc->cells[(size_t)y * (size_t)b->size[0] + (size_t)x] = (uint32_t)b->count;
 }
 
-static bool throw(board * b, uint32_t dart, bool *stays) {
+static bool board_throw(board *b, uint32_t dart, bool *stays) {
     const scatter_desc *d = b->desc;
     float at[3] = {0, 0, d->middle[2]};
     for (uint32_t a = 0; a < 2; a++)
@@ -86,19 +86,19 @@ static bool throw(board * b, uint32_t dart, bool *stays) {
     *stays = has_room(b, at);
     if (*stays && d->accept && !d->accept(d->user, at, scatter_chance(d->seed, dart, 2), stays))
         return false;
-    if (*stays) add(b, at);
+    if (*stays) board_add(b, at);
     return true;
 }
 
 bool scatter_places(const scatter_desc *desc, float (*out)[3], size_t *found) {
-    board b = open(desc, out);
+    board b = board_open(desc, out);
     bool fine = true;
     int misses = 0;
     size_t most = MOST_DARTS * desc->count + MOST_MISSES;
     for (uint32_t dart = 0; fine && b.count < desc->count && misses < MOST_MISSES && dart < most;
          dart++) {
         bool stays;
-        fine = throw(&b, dart, &stays);
+        fine = board_throw(&b, dart, &stays);
         misses = stays ? 0 : misses + 1;
     }
     *found = b.count;

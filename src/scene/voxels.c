@@ -15,7 +15,7 @@
 
 // ---- creating ---------------------------------------------------------------------------------
 
-static bool check(const voxels_desc *desc) {
+static bool voxels_check_desc(const voxels_desc *desc) {
     for (int a = 0; a < 3; a++)
         if (desc->size[a] < 1 || desc->size[a] > VOXELS_MAX_SIDE || (a == 0 && desc->size[a] % 4))
             return err_set("voxels: size is %u x %u x %u; accepted: 1 to %d each, the first a "
@@ -80,7 +80,7 @@ static void add_body(voxels *v, size_t index, const voxels_body *body) {
 }
 
 voxels *voxels_create(arena *memory, const voxels_desc *desc) {
-    if (!check(desc)) return NULL;
+    if (!voxels_check_desc(desc)) return NULL;
     voxels *v = arena_alloc(memory, sizeof *v);
     v->memory = memory;
     v->box = desc->box;
@@ -243,7 +243,7 @@ static uint32_t choose_capacity(const voxels *v, const voxels_part *p) {
 }
 
 // Some part has outgrown its masks: all get new ones, and are voxelised anew.
-static bool grow(voxels *v, gpu *g) {
+static bool voxels_grow(voxels *v, gpu *g) {
     uint64_t count = 0;
     for (size_t i = 0; i < v->part_count; i++) {
         voxels_part *p = &v->parts[i];
@@ -366,7 +366,7 @@ static bool write_lists(voxels *v, gpu *g) {
     return gpu_buffer_write(g, v->buffers[VOXELS_LISTS], 0, v->lists.items, bytes);
 }
 
-static bool run(voxels *v, gpu *g, const cell_box *dirty) {
+static bool voxels_run(voxels *v, gpu *g, const cell_box *dirty) {
     const struct voxel_head *head = &v->state->head;
     const uint32_t threads[3] = {(dirty->size[0] + VOXEL_ROW - 1) / VOXEL_ROW, dirty->size[1],
                                  dirty->size[2]};
@@ -378,7 +378,7 @@ static bool run(voxels *v, gpu *g, const cell_box *dirty) {
             voxels_dispatch(v, g, VOXELS_COMPOSE, threads, &(voxels_images){0}));
 }
 
-static void put(shared_vec4 *out, float3 v, float w) {
+static void put_vec4(shared_vec4 *out, float3 v, float w) {
     *out = (shared_vec4){{v.x, v.y, v.z, w}};
 }
 
@@ -386,9 +386,9 @@ static bool write_motions(voxels *v, gpu *g) {
     for (size_t i = 0; i < v->body_count; i++) {
         const voxels_motion *m = &v->bodies[i].motion;
         struct voxel_motion *out = &v->motions[i + 1];
-        put(&out->centre, m->centre, 0);
-        put(&out->linear, m->linear, m->growth);
-        put(&out->angular, m->angular, 0);
+        put_vec4(&out->centre, m->centre, 0);
+        put_vec4(&out->linear, m->linear, m->growth);
+        put_vec4(&out->angular, m->angular, 0);
     }
     v->motions_written = gpu_buffer_write(g, v->buffers[VOXELS_MOTIONS], 0, v->motions,
                                           (v->body_count + 1) * sizeof *v->motions);
@@ -406,13 +406,13 @@ static bool voxelise(voxels *v, gpu *g) {
     bool full = false;
     if (!v->started) memcpy(dirty.size, v->size, sizeof dirty.size);
     place_parts(v, &dirty, &full);
-    if (full && !grow(v, g)) return false;
+    if (full && !voxels_grow(v, g)) return false;
     begin_rows(&dirty);
     describe_grid(v, &dirty);
     list_work(v);
     voxels_list_tiles(v, &dirty);
     count_work(v, &dirty);
-    v->started = run(v, g, &dirty);
+    v->started = voxels_run(v, g, &dirty);
     return v->started;
 }
 

@@ -19,7 +19,7 @@ static bool flood_once(voxels *v, gpu *g, int32_t apart, bool *other) {
 
 // Rounds of flooding: from half of the box down to neighbours, and these once more, which mends
 // most of what the others got wrong. `other`: which of the two buffers is read next.
-static bool flood(voxels *v, gpu *g, bool *other) {
+static bool distance_flood(voxels *v, gpu *g, bool *other) {
     int32_t longest = 1, apart = 1;
     for (int a = 0; a < 3; a++)
         longest = (int32_t)v->size[a] > longest ? (int32_t)v->size[a] : longest;
@@ -36,7 +36,7 @@ bool voxels_write_distance(voxels *v, gpu *g, gpu_image *distance) {
     gpu_buffer_fill(g, v->buffers[VOXELS_KEYS], UINT32_MAX);
     return voxels_dispatch_groups(v, g, VOXELS_NEAR, voxels_groups(v->number_count)) &&
            voxels_dispatch(v, g, VOXELS_START, v->size, &(voxels_images){.other = !other}) &&
-           flood(v, g, &other) &&
+           distance_flood(v, g, &other) &&
            voxels_dispatch(v, g, VOXELS_DISTANCE, fours,
                            &(voxels_images){.image = distance, .other = other});
 }

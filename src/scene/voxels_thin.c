@@ -46,7 +46,7 @@ static float leaves(const struct bvh_triangle *t, const vec3 from, const vec3 wa
     return u >= 0 && v >= 0 && u + v <= 1 && distance > 0 ? distance : INFINITY;
 }
 
-static float walk(const bvh_forest *f, const vec3 from, const vec3 way, bool inverted) {
+static float thin_walk(const bvh_forest *f, const vec3 from, const vec3 way, bool inverted) {
     float nearest = INFINITY;
     for (uint32_t node = f->node_count ? 0 : BVH_DONE; node != BVH_DONE;) {
         const struct bvh_node *n = &f->nodes[node];
@@ -59,7 +59,7 @@ static float walk(const bvh_forest *f, const vec3 from, const vec3 way, bool inv
     return nearest;
 }
 
-static bool look(void *user, size_t index) {
+static bool thin_look(void *user, size_t index) {
     probe *p = user;
     const voxel_topology *t = p->t;
     size_t end = (index + 1) * CHUNK < p->count ? (index + 1) * CHUNK : p->count;
@@ -76,7 +76,7 @@ static bool look(void *user, size_t index) {
         glm_vec3_add(corners[0], corners[1], from);
         glm_vec3_add(from, corners[2], from);
         glm_vec3_scale(from, 1.0f / 3, from);
-        tri->behind = walk(&p->forest, from, inwards, p->inverted);
+        tri->behind = thin_walk(&p->forest, from, inwards, p->inverted);
     }
     return true;
 }
@@ -104,7 +104,8 @@ void voxel_find_thin(voxel_topology *t) {
                       .index_count = part.count,
                       .parts = &part,
                       .part_count = 1};
-    if (bvh_forest_add(&p.forest, &mesh, 0)) worker_each((p.count + CHUNK - 1) / CHUNK, look, &p);
+    if (bvh_forest_add(&p.forest, &mesh, 0))
+        worker_each((p.count + CHUNK - 1) / CHUNK, thin_look, &p);
     bvh_forest_free(&p.forest);
     mem_free(p.numbers);
     mem_free(vertices);

@@ -18,7 +18,7 @@ static tile_range find_tiles(const cell_box *box) {
 }
 
 // Of the tiles that are composed, those that a part meets, counted from the first of them.
-static tile_range meet(const tile_range *composed, const cell_box *part) {
+static tile_range tiles_intersect(const tile_range *composed, const cell_box *part) {
     tile_range out = find_tiles(part);
     for (int a = 0; a < 3; a++) {
         uint32_t low = composed->low[a], end = composed->end[a];
@@ -59,7 +59,7 @@ void voxels_list_tiles(voxels *v, const cell_box *dirty) {
     MEM_RESERVE(l->items, first + tiles + 1, l->capacity);
     memset(l->items + first, 0, (tiles + 1) * sizeof *l->items);
     for (uint32_t i = 0; i < v->part_count; i++) {
-        const tile_range at = meet(&composed, &v->parts[i].box);
+        const tile_range at = tiles_intersect(&composed, &v->parts[i].box);
         count_part(l->items + first, &at, head->tiles.v);
     }
     l->count += tiles + 1;
@@ -70,7 +70,7 @@ void voxels_list_tiles(voxels *v, const cell_box *dirty) {
     }
     MEM_RESERVE(l->items, l->count, l->capacity);
     for (uint32_t i = (uint32_t)v->part_count; i-- > 0;) {
-        const tile_range at = meet(&composed, &v->parts[i].box);
+        const tile_range at = tiles_intersect(&composed, &v->parts[i].box);
         put_part(l, first, &at, head->tiles.v, i);
     }
 }

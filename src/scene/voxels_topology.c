@@ -118,7 +118,7 @@ static uint32_t find_root(uint32_t *parents, uint32_t point) {
 }
 
 // Triangles that share points are of one component; numbered in the order of the mesh.
-static void join(voxel_topology *t) {
+static void topology_join(voxel_topology *t) {
     uint32_t *parents = mem_alloc(t->point_count * sizeof *parents);
     uint32_t *numbers = mem_alloc(t->point_count * sizeof *numbers); // from 1
     for (uint32_t i = 0; i < t->point_count; i++) parents[i] = i;
@@ -199,7 +199,7 @@ void voxel_add_box(box3 *to, box3 box) {
                        fmaxf(to->max.z, box.max.z)};
 }
 
-static void measure(voxel_topology *t) {
+static void topology_measure(voxel_topology *t) {
     t->box = voxel_no_box();
     for (size_t i = 0; i < t->component_count; i++) t->components[i].box = voxel_no_box();
     for (size_t i = 0; i < t->triangle_count; i++) {
@@ -232,11 +232,11 @@ void voxel_topology_create(voxel_topology *out, const mesh_data *mesh) {
     }
     mem_free(faces);
     mem_free(points);
-    join(t);
+    topology_join(t);
     find_walls(t);
     t->components = mem_alloc(t->component_count * sizeof *t->components);
     find_closed(t);
-    measure(t);
+    topology_measure(t);
 }
 
 void voxel_topology_free(voxel_topology *t) {

@@ -31,8 +31,8 @@ static const char *shown(lua_State *L, int index) {
     return lua_pushfstring(L, "{%s}", list);
 }
 
-static _Noreturn void refuse(lua_State *L, int index, const char *who, instance_key key,
-                             const char *accepted) {
+static _Noreturn void refuse_value(lua_State *L, int index, const char *who, instance_key key,
+                                   const char *accepted) {
     luaL_checkstack(L, 2 * LUA_MINSTACK, NULL);
     index = lua_absindex(L, index);
     vm_error(L, "%s: '%s' of an instance is %s; got %s", who, instance_key_names[key], accepted,
@@ -44,7 +44,7 @@ static int read_numbers(lua_State *L, int index, const char *who, instance_key k
     int count = value_numbers(L, index, out);
     bool fine = count >= least && count <= most;
     for (int i = 0; i < count; i++) fine = fine && fabsf(out[i]) <= (float)FARTHEST;
-    if (!fine) refuse(L, index, who, key, accepted);
+    if (!fine) refuse_value(L, index, who, key, accepted);
     return count;
 }
 
@@ -77,9 +77,9 @@ static void read_kind(lua_State *L, int index, const char *who, size_t kinds,
     index = lua_absindex(L, index);
     lua_Number kind = lua_type(L, index) == LUA_TNUMBER ? lua_tonumber(L, index) : -1;
     if (!(kind >= 0 && kind <= (lua_Number)kinds && kind == floor(kind)))
-        refuse(L, index, who, INSTANCE_KIND,
-               lua_pushfstring(L, "a whole number from 1 to %d, by its meshes; 0: not shown",
-                               (int)kinds));
+        refuse_value(L, index, who, INSTANCE_KIND,
+                     lua_pushfstring(L, "a whole number from 1 to %d, by its meshes; 0: not shown",
+                                     (int)kinds));
     out->kind.v[0] = kind > 0 ? (uint32_t)kind - 1 : INSTANCE_HIDDEN;
 }
 
@@ -89,7 +89,8 @@ static void read_color(lua_State *L, int index, const char *who, struct instance
     for (int i = 0; i < count; i++) count = value[i] >= 0 && value[i] <= 1e4f ? count : 0;
     if (count == 1) value[1] = value[2] = value[0];
     if (count != 1 && count != 3)
-        refuse(L, index, who, INSTANCE_COLOR, "\"#rrggbb\" or {r, g, b} of numbers from 0 to 1e4");
+        refuse_value(L, index, who, INSTANCE_COLOR,
+                     "\"#rrggbb\" or {r, g, b} of numbers from 0 to 1e4");
     memcpy(out->color.v, value, 3 * sizeof *value);
 }
 
@@ -122,7 +123,7 @@ void instance_read(lua_State *L, int index, const char *who, instance_key key, s
         break;
     case INSTANCE_GLOW:
         read_numbers(L, index, who, key, 1, 1, "a number from 0 on, up to 1e6", v);
-        if (v[0] < 0) refuse(L, index, who, key, "a number from 0 on, up to 1e6");
+        if (v[0] < 0) refuse_value(L, index, who, key, "a number from 0 on, up to 1e6");
         out->color.v[3] = v[0];
         break;
     case INSTANCE_STATE:

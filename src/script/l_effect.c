@@ -48,7 +48,7 @@ static void set_picture(lua_State *L, const char *key, bool (*set)(effect *, gra
 }
 
 // Copies the fields that are set: the rest keeps its default. `count` pointers each.
-static void merge(const field **to, const field *const *from, size_t count) {
+static void merge_fields(const field **to, const field *const *from, size_t count) {
     for (size_t i = 0; i < count; i++)
         if (from[i]) to[i] = from[i];
 }
@@ -63,14 +63,14 @@ static void set_scene(lua_State *L, const char *key) {
                  object_kind(L, 3));
     if (strcmp(key, "camera") == 0) {
         s->camera.eye = NULL; // an orbit has none
-        merge((const field **)&s->camera, (const field *const *)value,
-              sizeof s->camera / sizeof(field *));
+        merge_fields((const field **)&s->camera, (const field *const *)value,
+                     sizeof s->camera / sizeof(field *));
     } else if (strcmp(key, "sun") == 0) {
-        merge((const field **)&s->sun, (const field *const *)value,
-              sizeof s->sun / sizeof(field *));
+        merge_fields((const field **)&s->sun, (const field *const *)value,
+                     sizeof s->sun / sizeof(field *));
     } else {
-        merge((const field **)&s->sky, (const field *const *)value,
-              offsetof(scene_sky, image) / sizeof(field *));
+        merge_fields((const field **)&s->sky, (const field *const *)value,
+                     offsetof(scene_sky, image) / sizeof(field *));
         s->sky.image = ((const sky_object *)value)->sky.image;
     }
 }

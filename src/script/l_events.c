@@ -302,7 +302,7 @@ static int run_event(lua_State *L) {
     return 0;
 }
 
-static bool act(script *s, lua_CFunction run, void *call) {
+static bool events_act(script *s, lua_CFunction run, void *call) {
     s->acting = true;
     bool done = script_protect(s, run, call);
     s->acting = false;
@@ -313,19 +313,19 @@ bool script_start(void *user) {
     script *s = user;
     vm_set_seed(vm_lua(s->vm), s->seed);
     explosions_reset(s);
-    return act(s, run_start, s);
+    return events_act(s, run_start, s);
 }
 
 bool script_frame(void *user, double time, double dt) {
     script *s = user;
     frame_call call = {s, time, dt};
-    return act(s, run_frame, &call);
+    return events_act(s, run_frame, &call);
 }
 
 bool script_event(void *user, const effect_happening *what) {
     script *s = user;
     event_call call = {s, what};
-    return act(s, run_event, &call);
+    return events_act(s, run_event, &call);
 }
 
 void l_events_open(lua_State *L) {

@@ -158,7 +158,7 @@ static int l_kind(lua_State *L) {
 
 // ---- arithmetic -------------------------------------------------------------------------------
 
-static int combine(lua_State *L, const char *kind, const char *sign, int count) {
+static int combine_fields(lua_State *L, const char *kind, const char *sign, int count) {
     const field *args[FIELD_MAX_ARGS] = {0};
     script_require_loading(L, "arithmetic on a field or parameter");
     for (int i = 0; i < count; i++)
@@ -168,22 +168,22 @@ static int combine(lua_State *L, const char *kind, const char *sign, int count) 
 }
 
 static int l_add(lua_State *L) {
-    return combine(L, "add", "+", 2);
+    return combine_fields(L, "add", "+", 2);
 }
 static int l_sub(lua_State *L) {
-    return combine(L, "sub", "-", 2);
+    return combine_fields(L, "sub", "-", 2);
 }
 static int l_mul(lua_State *L) {
-    return combine(L, "mul", "*", 2);
+    return combine_fields(L, "mul", "*", 2);
 }
 static int l_div(lua_State *L) {
-    return combine(L, "div", "/", 2);
+    return combine_fields(L, "div", "/", 2);
 }
 static int l_pow(lua_State *L) {
-    return combine(L, "pow", "^", 2);
+    return combine_fields(L, "pow", "^", 2);
 }
 static int l_unm(lua_State *L) {
-    return combine(L, "negate", "-", 1);
+    return combine_fields(L, "negate", "-", 1);
 }
 
 static int l_compare(lua_State *L) {

@@ -24,7 +24,7 @@ static bool value_at(const chooser *c, const field *node, const float place[3], 
     return true;
 }
 
-static bool accept(void *user, float place[3], float chance, bool *stays) {
+static bool scatter_accept(void *user, float place[3], float chance, bool *stays) {
     const chooser *c = user;
     float inside = 1, density = 1, height = 0;
     if (c->height && !value_at(c, c->height, place, &height)) return false;
@@ -97,7 +97,7 @@ static int l_scatter(lua_State *L) {
                  .density = get_field(L, "density"),
                  .height = get_field(L, "height")};
     vm_charge(L, desc.count * (uint64_t)DART_COST);
-    desc.accept = c.inside || c.density || c.height ? accept : NULL;
+    desc.accept = c.inside || c.density || c.height ? scatter_accept : NULL;
     desc.user = &c;
     size_t cells = scatter_cells(&desc) * sizeof *desc.cells;
     desc.cells = memset(lua_newuserdatauv(L, cells, 0), 0, cells); // an error may end it all

@@ -19,7 +19,7 @@ sweep_reader *sweep_reader_of(lua_State *L) {
     return vm_user(L);
 }
 
-static void *reserve(lua_State *L, size_t count, size_t size) {
+static void *sweep_reserve(lua_State *L, size_t count, size_t size) {
     vm_charge_memory(L, count * size);
     return arena_alloc(sweep_reader_of(L)->memory, count * size);
 }
@@ -61,7 +61,7 @@ static int l_axis(lua_State *L) {
     if (count > SWEEP_MAX_VALUES)
         vm_error(L, "%s: has %d values; at most %d are accepted", who, (int)count,
                  SWEEP_MAX_VALUES);
-    axis.values = reserve(L, count, sizeof *axis.values);
+    axis.values = sweep_reserve(L, count, sizeof *axis.values);
     for (; axis.count < count; axis.count++) {
         lua_rawgeti(L, 1, (lua_Integer)axis.count + 2);
         sweep_value_take(L, who, &axis, &axis.values[axis.count]);
@@ -79,12 +79,12 @@ static int l_zip(lua_State *L) {
     if (count < 2 || count > SWEEP_MAX_AXES || value_has_names(L, 1))
         vm_error(L, "zip takes 2 to %d axes, as zip { axis { ... }, axis { ... } }",
                  SWEEP_MAX_AXES);
-    const sweep_list **lists = reserve(L, count, sizeof *lists);
+    const sweep_list **lists = sweep_reserve(L, count, sizeof *lists);
     for (size_t i = 0; i < count; i++) {
         lua_rawgeti(L, 1, (lua_Integer)i + 1);
         const sweep_list *axis = object_test(L, -1, axis_type);
         if (!axis) vm_error(L, "zip: part %d is no axis { }", (int)i + 1);
-        lists[i] = memcpy(reserve(L, 1, sizeof *axis), axis, sizeof *axis);
+        lists[i] = memcpy(sweep_reserve(L, 1, sizeof *axis), axis, sizeof *axis);
         if (axis->count != lists[0]->count)
             vm_error(L, "zip: '%s' has %d values and '%s' %d; axes that go together have as many",
                      lists[0]->name, (int)lists[0]->count, axis->name, (int)axis->count);
@@ -130,7 +130,7 @@ static void read_notes(lua_State *L, sweep *s) {
         lua_Unsigned count = lua_type(L, -1) == LUA_TTABLE ? lua_rawlen(L, -1) : 0;
         if (count < 1 || count > MAX_NOTES)
             vm_error(L, "sweep: 'notes' is a list of 1 to %d texts", MAX_NOTES);
-        s->notes = reserve(L, count, sizeof *s->notes);
+        s->notes = sweep_reserve(L, count, sizeof *s->notes);
         for (; s->note_count < count; s->note_count++) {
             lua_rawgeti(L, -1, (lua_Integer)s->note_count + 1);
             s->notes[s->note_count] = sweep_take_text(L, "sweep", "notes");
@@ -206,8 +206,8 @@ static sweep_group group_at(lua_State *L, int number) {
     const sweep_group *zip = object_test(L, -1, zip_type);
     if (zip) return *zip;
     if (!axis) vm_error(L, "sweep: part %d of 'axes' is no axis { } and no zip { }", number);
-    const sweep_list **lists = reserve(L, 1, sizeof *lists);
-    lists[0] = memcpy(reserve(L, 1, sizeof *axis), axis, sizeof *axis);
+    const sweep_list **lists = sweep_reserve(L, 1, sizeof *lists);
+    lists[0] = memcpy(sweep_reserve(L, 1, sizeof *axis), axis, sizeof *axis);
     return (sweep_group){lists, 1};
 }
 
@@ -216,7 +216,7 @@ static size_t read_axes(lua_State *L, sweep_reader *r) {
     lua_Unsigned count = type == LUA_TTABLE ? lua_rawlen(L, -1) : 0;
     if (type != LUA_TNIL && (count < 1 || count > SWEEP_MAX_AXES || value_has_names(L, -1)))
         vm_error(L, "sweep: 'axes' is a list of 1 to %d axis { } and zip { }", SWEEP_MAX_AXES);
-    sweep_group *groups = reserve(L, count, sizeof *groups);
+    sweep_group *groups = sweep_reserve(L, count, sizeof *groups);
     size_t axes = 0;
     for (size_t i = 0; i < count; i++) {
         lua_rawgeti(L, -1, (lua_Integer)i + 1);
@@ -294,15 +294,15 @@ static void read_reference_key(lua_State *L, sweep_reader *r, const char *name, 
 }
 
 static void read_reference(lua_State *L, sweep_reader *r, size_t axes) {
-    r->reference_axes = reserve(L, axes, sizeof *r->reference_axes);
-    r->reference_drops = reserve(L, axes, sizeof *r->reference_drops);
+    r->reference_axes = sweep_reserve(L, axes, sizeof *r->reference_axes);
+    r->reference_drops = sweep_reserve(L, axes, sizeof *r->reference_drops);
     if (value_get(L, 1, "reference") != LUA_TNIL) {
         int table = lua_gettop(L);
         size_t count;
         if (!value_is_plain_table(L, table) || lua_rawlen(L, table) > 0)
             vm_error(L, "sweep: 'reference' is a table, as { steps = 1024 } or { samples = 512 }");
         const char **names = value_names(L, table, "reference", &count);
-        r->out->reference = reserve(L, count, sizeof *r->out->reference);
+        r->out->reference = sweep_reserve(L, count, sizeof *r->out->reference);
         for (size_t i = 0; i < count; i++) {
             value_get(L, table, names[i]);
             read_reference_key(L, r, names[i], axes);

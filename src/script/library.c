@@ -208,7 +208,7 @@ static int l_utf8_char(lua_State *L) {
 
 // ---- opening ----------------------------------------------------------------------------------
 
-static void wrap(lua_State *L, const char *library, const luaL_Reg *functions) {
+static void library_wrap(lua_State *L, const char *library, const luaL_Reg *functions) {
     lua_getglobal(L, library);
     for (; functions->name; functions++) {
         lua_getfield(L, -1, functions->name);
@@ -226,7 +226,7 @@ void library_open(lua_State *L) {
         {"rep", l_rep}, {"format", l_format}, {"pack", l_pack}, {NULL, NULL}};
     static const luaL_Reg utf8[] = {{"char", l_utf8_char}, {NULL, NULL}};
     lua_register(L, "next", l_next);
-    wrap(L, "table", table);
-    wrap(L, "string", string);
-    wrap(L, "utf8", utf8);
+    library_wrap(L, "table", table);
+    library_wrap(L, "string", string);
+    library_wrap(L, "utf8", utf8);
 }

@@ -10,9 +10,9 @@ enum {
     STEPS_CHARGED = 64, // at once
 };
 
-static const char *match(matcher *m, const char *s, const char *p);
+static const char *match_pattern(matcher *m, const char *s, const char *p);
 
-static void step(matcher *m) {
+static void matcher_step(matcher *m) {
     if (++m->steps < STEPS_CHARGED) return;
     m->steps = 0;
     vm_charge(m->L, STEPS_CHARGED);
@@ -98,7 +98,7 @@ static bool in_set(int c, const char *p, const char *last) {
 
 // Whether the character at s is one that the item [p, end) stands for.
 static bool item_matches(matcher *m, const char *s, const char *p, const char *end) {
-    step(m);
+    matcher_step(m);
     if (s >= m->text_end) return false;
     int c = (unsigned char)*s;
     switch (*p) {
@@ -120,7 +120,7 @@ static const char *match_longest(matcher *m, const char *s, const char *p, const
     ptrdiff_t i = 0;
     while (item_matches(m, s + i, p, end)) i++;
     for (; i >= 0; i--) {
-        const char *result = match(m, s + i, end + 1);
+        const char *result = match_pattern(m, s + i, end + 1);
         if (result) return result;
     }
     return NULL;
@@ -128,7 +128,7 @@ static const char *match_longest(matcher *m, const char *s, const char *p, const
 
 static const char *match_shortest(matcher *m, const char *s, const char *p, const char *end) {
     for (;;) {
-        const char *result = match(m, s, end + 1);
+        const char *result = match_pattern(m, s, end + 1);
         if (result) return result;
         if (!item_matches(m, s, p, end)) return NULL;
         s++;
@@ -141,7 +141,7 @@ static const char *match_balance(matcher *m, const char *s, const char *p) {
     if (s >= m->text_end || *s != *p) return NULL;
     int nested = 1;
     while (++s < m->text_end) {
-        step(m);
+        matcher_step(m);
         if (*s == p[1]) {
             if (--nested == 0) return s + 1;
         } else if (*s == *p) {
@@ -163,7 +163,7 @@ static bool at_frontier(matcher *m, const char *s, const char *p, const char **e
 static const char *start_capture(matcher *m, const char *s, const char *p, ptrdiff_t kind) {
     if (m->level >= MATCH_MAX_CAPTURES) vm_error(m->L, "too many captures");
     m->captures[m->level++] = (match_capture){s, kind};
-    const char *result = match(m, s, p);
+    const char *result = match_pattern(m, s, p);
     if (!result) m->level--;
     return result;
 }
@@ -173,7 +173,7 @@ static const char *end_capture(matcher *m, const char *s, const char *p) {
     while (i >= 0 && m->captures[i].length != MATCH_OPEN) i--;
     if (i < 0) vm_error(m->L, "invalid pattern capture");
     m->captures[i].length = s - m->captures[i].start;
-    const char *result = match(m, s, p);
+    const char *result = match_pattern(m, s, p);
     if (!result) m->captures[i].length = MATCH_OPEN;
     return result;
 }
@@ -200,7 +200,7 @@ static bool match_item(matcher *m, const char **s, const char **p) {
     switch (suffix) {
     case '?':
         if (item_matches(m, *s, item, end)) {
-            const char *result = match(m, *s + 1, end + 1);
+            const char *result = match_pattern(m, *s + 1, end + 1);
             if (result) {
                 *s = result;
                 return false;
@@ -263,10 +263,10 @@ static bool match_special(matcher *m, const char **s, const char **p) {
 }
 
 // End of the match of pattern p at s, or NULL.
-static const char *match(matcher *m, const char *s, const char *p) {
+static const char *match_pattern(matcher *m, const char *s, const char *p) {
     if (++m->depth > MAX_DEPTH) vm_error(m->L, "pattern too complex");
     while (s && p < m->pattern_end) {
-        step(m);
+        matcher_step(m);
         if (*p == '(') {
             bool position = p + 1 < m->pattern_end && p[1] == ')';
             s = position ? start_capture(m, s, p + 2, MATCH_POSITION)
@@ -291,5 +291,5 @@ static const char *match(matcher *m, const char *s, const char *p) {
 const char *match_at(matcher *m, const char *s, const char *p) {
     m->level = 0;
     m->depth = 0;
-    return match(m, s, p);
+    return match_pattern(m, s, p);
 }

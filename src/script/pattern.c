@@ -24,8 +24,8 @@ static int push_captures(matcher *m, const char *s, const char *end) {
     return count;
 }
 
-static matcher begin(lua_State *L, const char *text, size_t length, const char *pattern,
-                     size_t pattern_length) {
+static matcher matcher_begin(lua_State *L, const char *text, size_t length, const char *pattern,
+                             size_t pattern_length) {
     return (matcher){
         .L = L, .text = text, .text_end = text + length, .pattern_end = pattern + pattern_length};
 }
@@ -60,7 +60,7 @@ static int find_or_match(lua_State *L, bool find) {
         lua_pushinteger(L, found - text + (lua_Integer)pattern_length);
         return 2;
     }
-    matcher m = begin(L, text, length, pattern, pattern_length);
+    matcher m = matcher_begin(L, text, length, pattern, pattern_length);
     bool anchored = pattern_length > 0 && *pattern == '^';
     const char *s = text + at;
     do {
@@ -92,7 +92,7 @@ static int l_gmatch_next(lua_State *L) {
     const char *text = lua_tolstring(L, lua_upvalueindex(1), &length);
     const char *pattern = lua_tolstring(L, lua_upvalueindex(2), &pattern_length);
     lua_Integer last = lua_tointeger(L, lua_upvalueindex(4));
-    matcher m = begin(L, text, length, pattern, pattern_length);
+    matcher m = matcher_begin(L, text, length, pattern, pattern_length);
     for (const char *s = text + lua_tointeger(L, lua_upvalueindex(3)); s <= m.text_end; s++) {
         vm_charge(L, 1);
         const char *end = match_at(&m, s, pattern);
@@ -179,7 +179,7 @@ static int l_gsub(lua_State *L) {
                      3, "string/function/table");
     lua_Integer most = luaL_optinteger(L, 4, (lua_Integer)length + 1), count = 0;
     bool anchored = pattern_length > 0 && *pattern == '^', changed = false;
-    matcher m = begin(L, text, length, pattern, pattern_length);
+    matcher m = matcher_begin(L, text, length, pattern, pattern_length);
     luaL_Buffer b;
     luaL_buffinit(L, &b);
     const char *s = text, *last = NULL;

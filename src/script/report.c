@@ -15,7 +15,7 @@ typedef struct request {
     strbuf *out;
 } request;
 
-static void push(lua_State *L, const json_t *value, int depth);
+static void push_json(lua_State *L, const json_t *value, int depth);
 
 // Tables have no order: the names stand in the file's at 1, 2, 3 ... as well.
 static void push_object(lua_State *L, const json_t *object, int depth) {
@@ -25,7 +25,7 @@ static void push_object(lua_State *L, const json_t *object, int depth) {
     lua_Integer i = 0;
     lua_createtable(L, count, count);
     json_object_foreach((json_t *)object, name, value) {
-        push(L, value, depth);
+        push_json(L, value, depth);
         lua_setfield(L, -2, name);
         lua_pushstring(L, name);
         lua_rawseti(L, -2, ++i);
@@ -36,12 +36,12 @@ static void push_array(lua_State *L, const json_t *array, int depth) {
     size_t count = json_array_size(array);
     lua_createtable(L, (int)count, 0);
     for (size_t i = 0; i < count; i++) {
-        push(L, json_array_get(array, i), depth);
+        push_json(L, json_array_get(array, i), depth);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
 }
 
-static void push(lua_State *L, const json_t *value, int depth) {
+static void push_json(lua_State *L, const json_t *value, int depth) {
     if (depth > MAX_DEPTH) vm_error(L, "values within values, more than %d deep", MAX_DEPTH);
     luaL_checkstack(L, 4, "report");
     switch (json_typeof(value)) {
@@ -75,7 +75,7 @@ static int write_page(lua_State *L) {
     if (!path_join(path, r->folder, "page.lua")) vm_error(L, "%s", err_get());
     vm_load_chunk(L, NULL, path, "report/page.lua", false);
     lua_call(L, 0, 1);
-    push(L, r->data, 0);
+    push_json(L, r->data, 0);
     lua_call(L, 1, 1);
     size_t length;
     const char *text = luaL_checklstring(L, -1, &length);

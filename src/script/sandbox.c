@@ -82,7 +82,7 @@ static int l_setmetatable(lua_State *L) {
 // ---- pairs in a fixed order -------------------------------------------------------------------
 
 // Numbers before strings before the rest; Lua's own order depends on addresses and the clock.
-static int rank(int type) {
+static int type_rank(int type) {
     return type == LUA_TNUMBER ? -2 : type == LUA_TSTRING ? -1 : type;
 }
 
@@ -95,7 +95,7 @@ static int l_before(lua_State *L) {
     else if (a == b && a == LUA_TBOOLEAN)
         result = !lua_toboolean(L, 1) && lua_toboolean(L, 2);
     else
-        result = rank(a) < rank(b);
+        result = type_rank(a) < type_rank(b);
     lua_pushboolean(L, result);
     return 1;
 }

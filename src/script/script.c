@@ -35,7 +35,7 @@ void script_raise(lua_State *L) {
 
 // ---- time -------------------------------------------------------------------------------------
 
-static void renew(void *user) {
+static void script_renew(void *user) {
     script *s = user;
     s->frame =
         (time_limit){.what = "frame", .limit = effect_seconds(s->effect) / TIME_LIMIT_FRAMES};
@@ -86,7 +86,7 @@ bool script_call(void *user, int function, double time, float out[4]) {
     return done && read_result(L, time, out);
 }
 
-static bool update(void *user, double time, double dt) {
+static bool script_update(void *user, double time, double dt) {
     script *s = user;
     lua_State *L = vm_lua(s->vm);
     lua_rawgeti(L, LUA_REGISTRYINDEX, s->update);
@@ -98,13 +98,13 @@ static bool update(void *user, double time, double dt) {
     return done;
 }
 
-static void destroy(void *user) {
+static void script_destroy(void *user) {
     script *s = user;
     vm_destroy(s->vm);
     mem_free(s);
 }
 
-static void locate(void *user, char *out, size_t size) {
+static void script_locate(void *user, char *out, size_t size) {
     const script *s = user;
     vm_locate(vm_lua(s->vm), out, size);
 }
@@ -112,13 +112,13 @@ static void locate(void *user, char *out, size_t size) {
 static void set_hooks(script *s) {
     effect_set_hooks(s->effect, &(effect_hooks){
                                     .call = script_call,
-                                    .update = s->update == LUA_NOREF ? NULL : update,
+                                    .update = s->update == LUA_NOREF ? NULL : script_update,
                                     .start = script_start,
-                                    .locate = locate,
-                                    .renew = renew,
+                                    .locate = script_locate,
+                                    .renew = script_renew,
                                     .frame = script_frame,
                                     .event = script_event,
-                                    .destroy = destroy,
+                                    .destroy = script_destroy,
                                     .user = s,
                                 });
 }
@@ -166,7 +166,7 @@ static void shown_folder(const char *file, char out[PATH_CAP]) {
     snprintf(out, PATH_CAP, "%.*s", (int)length, file);
 }
 
-static bool run(script *s, const char *prelude_folder) {
+static bool script_run_file(script *s, const char *prelude_folder) {
     char prelude[PATH_CAP];
     const char *file = effect_file(s->effect);
     return vm_protect(s->vm, open_bindings, NULL, s->limits.load) &&
@@ -209,12 +209,12 @@ bool script_load_limited(effect *e, const char *prelude_folder, const script_lim
         .user = s,
     });
     if (!s->vm) {
-        destroy(s);
+        script_destroy(s);
         return false;
     }
-    renew(s);
+    script_renew(s);
     set_hooks(s); // before the file runs: declaring a pass may ask for values
-    bool done = run(s, prelude_folder) && is_complete(s);
+    bool done = script_run_file(s, prelude_folder) && is_complete(s);
     s->loading = false;
     if (done) set_hooks(s);
     return done;

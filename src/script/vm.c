@@ -82,7 +82,7 @@ struct vm {
 
 // ---- limits -----------------------------------------------------------------------------------
 
-static void tick(lua_State *L, lua_Debug *ar);
+static void vm_tick(lua_State *L, lua_Debug *ar);
 
 enum { OF_EFFECT = '@', OF_ROIL = '=' }; // first letters of chunk names; OF_ROIL: prelude, library
 
@@ -109,12 +109,12 @@ static size_t taken(const vm *v) { // not Lua's only
     return v->used + (held > v->charged ? held : v->charged);
 }
 
-static void stop(vm *v, vm_stop reason) {
+static void vm_stop_for(vm *v, vm_stop reason) {
     if (!v->stop) {
         v->stop = reason;
         v->stopped_at = taken(v) > v->desc.memory ? taken(v) : v->desc.memory;
     }
-    lua_sethook(v->lua, tick, LUA_MASKCOUNT, 1);
+    lua_sethook(v->lua, vm_tick, LUA_MASKCOUNT, 1);
 }
 
 static void stop_message(const vm *v, char *out, size_t size) {
@@ -143,29 +143,29 @@ static void raise_stop(lua_State *L) {
 
 // Whether no limit was hit. The thread's processor time needs a call of the system, and cannot have
 // grown by more than the clock.
-static bool look(vm *v) {
+static bool vm_check_limits(vm *v) {
     v->seen = v->spent;
-    if (v->spent > v->budget) stop(v, STOP_INSTRUCTIONS);
-    if (time_limit_left() <= 0) stop(v, STOP_TIME);
+    if (v->spent > v->budget) vm_stop_for(v, STOP_INSTRUCTIONS);
+    if (time_limit_left() <= 0) vm_stop_for(v, STOP_TIME);
     double now = clock_seconds();
     if (now > v->patience) {
         double left = v->deadline - time_limit_thread_seconds();
-        if (left <= 0) stop(v, STOP_INSTRUCTIONS);
+        if (left <= 0) vm_stop_for(v, STOP_INSTRUCTIONS);
         v->patience = now + left;
     }
     return !v->stop;
 }
 
-static void tick(lua_State *L, lua_Debug *ar) {
+static void vm_tick(lua_State *L, lua_Debug *ar) {
     (void)ar;
     vm *v = vm_of(L);
     if (!v->stop) {
         v->spent += (uint64_t)v->interval;
         v->passed += v->interval;
-        if (v->passed >= TICK || !look(v)) {
+        if (v->passed >= TICK || !vm_check_limits(v)) {
             v->passed = 0;
             vm_locate(L, v->where, sizeof v->where);
-            look(v);
+            vm_check_limits(v);
         }
     }
     if (v->stop) raise_stop(L);
@@ -173,7 +173,7 @@ static void tick(lua_State *L, lua_Debug *ar) {
 
 // From the budget, which never gets any back before the end: scripts that make garbage from frame
 // to frame do not ask each time. The message of a refusal is kept.
-static bool take(vm *v, size_t bytes) {
+static bool vm_take(vm *v, size_t bytes) {
     if (bytes <= v->reserved) return true;
     size_t wanted = (bytes + BUDGET_STEP - 1) / BUDGET_STEP * BUDGET_STEP;
     if (budget_resize(v->part, wanted)) {
@@ -191,7 +191,7 @@ static void note_block(vm *v, size_t size, bool string) {
     if (interval < 1) interval = 1;
     if (interval >= v->interval) return;
     v->interval = interval;
-    if (v->lua && !v->stop) lua_sethook(v->lua, tick, LUA_MASKCOUNT, interval);
+    if (v->lua && !v->stop) lua_sethook(v->lua, vm_tick, LUA_MASKCOUNT, interval);
 }
 
 static bool may_grow(vm *v, size_t size, size_t grow) {
@@ -199,14 +199,14 @@ static bool may_grow(vm *v, size_t size, size_t grow) {
     if (v->stop) return size <= STOPPED_BLOCK && all + grow <= v->stopped_at + STOPPED_MARGIN;
     v->over_budget = false;
     if (all > v->desc.memory || grow > v->desc.memory - all) return false;
-    v->over_budget = !take(v, all + grow);
+    v->over_budget = !vm_take(v, all + grow);
     if (v->over_budget) return false;
     v->spent += grow / BYTES_PER_INSTRUCTION;
     if (v->depth == 0) return true;
-    return v->spent - v->seen < TICK && v->spent <= v->budget ? true : look(v);
+    return v->spent - v->seen < TICK && v->spent <= v->budget ? true : vm_check_limits(v);
 }
 
-static void *allocate(void *user, void *block, size_t old, size_t size) {
+static void *vm_allocate(void *user, void *block, size_t old, size_t size) {
     vm *v = user;
     size_t held = block ? old : 0;
     if (size == 0) {
@@ -217,14 +217,15 @@ static void *allocate(void *user, void *block, size_t old, size_t size) {
     bool string = !block && old == LUA_TSTRING; // a new object: its type is in `old`
     if (string && size > v->desc.longest + STRING_HEAD && v->depth > 0) {
         if (!v->stop && v->lua) vm_locate(v->lua, v->where, sizeof v->where);
-        stop(v, STOP_STRING);
+        vm_stop_for(v, STOP_STRING);
         return NULL;
     }
     if (size > held && !may_grow(v, size, size - held)) {
         // A new object (its type is in `old`): the stack is in order and can say where we are.
         if (!block && old != 0 && v->lua && v->refusals == 0)
             vm_locate(v->lua, v->where, sizeof v->where);
-        if (++v->refusals >= 2 && v->depth > 0) stop(v, v->over_budget ? STOP_BUDGET : STOP_MEMORY);
+        if (++v->refusals >= 2 && v->depth > 0)
+            vm_stop_for(v, v->over_budget ? STOP_BUDGET : STOP_MEMORY);
         return NULL;
     }
     void *result = realloc(block, size);
@@ -242,7 +243,7 @@ void vm_charge(lua_State *L, uint64_t instructions) {
     if (instructions > UINT64_MAX / 2) instructions = UINT64_MAX / 2;
     v->spent += instructions;
     if (!v->stop && v->spent - v->seen < TICK && v->spent <= v->budget) return;
-    if (!v->stop && look(v)) return;
+    if (!v->stop && vm_check_limits(v)) return;
     vm_locate(L, v->where, sizeof v->where);
     raise_stop(L);
 }
@@ -257,9 +258,9 @@ void vm_charge_memory(lua_State *L, size_t bytes) {
     vm *v = vm_of(L);
     size_t all = taken(v);
     bool within = !v->stop && all <= v->desc.memory && bytes <= v->desc.memory - all;
-    if (!within || !take(v, all + bytes)) {
+    if (!within || !vm_take(v, all + bytes)) {
         if (!v->stop) vm_locate(L, v->where, sizeof v->where);
-        stop(v, within ? STOP_BUDGET : STOP_MEMORY);
+        vm_stop_for(v, within ? STOP_BUDGET : STOP_MEMORY);
         raise_stop(L);
     }
     v->charged += bytes;
@@ -336,7 +337,7 @@ static void set_error(const char *text) {
     err_set("%s", clean);
 }
 
-static void report(vm *v, int status) {
+static void vm_report(vm *v, int status) {
     lua_State *L = v->lua;
     const char *text = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;
     if (v->stop) {
@@ -375,7 +376,7 @@ bool vm_call(vm *v, int args, int results, uint64_t instructions) {
         // instructions that each do too much.
         v->deadline = time_limit_thread_seconds() + 1 + (double)instructions * 5e-7;
         v->patience = clock_seconds() + 1;
-        lua_sethook(L, tick, LUA_MASKCOUNT, v->interval);
+        lua_sethook(L, vm_tick, LUA_MASKCOUNT, v->interval);
     }
     int function = lua_gettop(L) - args;
     lua_pushcfunction(L, describe_error);
@@ -387,7 +388,7 @@ bool vm_call(vm *v, int args, int results, uint64_t instructions) {
     v->depth--;
     lua_remove(L, function);
     if (status != LUA_OK) {
-        report(v, status);
+        vm_report(v, status);
         return false;
     }
     return true;
@@ -516,7 +517,7 @@ static int open_sandbox(lua_State *L) {
     return 0;
 }
 
-static int panic(lua_State *L) {
+static int vm_panic(lua_State *L) {
     log_write(LOG_ERROR, "script error outside of a call: %s", lua_tostring(L, -1));
     return 0; // Lua aborts
 }
@@ -531,7 +532,7 @@ vm *vm_create(const vm_desc *desc) {
     v->random = desc->seed;
     v->part = budget_take(budget_host(), 0, "the script and what it declares");
     v->interval = TICK;
-    lua_State *L = lua_newstate(allocate, v);
+    lua_State *L = lua_newstate(vm_allocate, v);
     if (!L) {
         if (v->over_budget)
             err_set("%s", v->refusal);
@@ -542,7 +543,7 @@ vm *vm_create(const vm_desc *desc) {
     }
     v->lua = L;
     memcpy(lua_getextraspace(L), &v, sizeof v);
-    lua_atpanic(L, panic);
+    lua_atpanic(L, vm_panic);
     if (!vm_protect(v, open_sandbox, NULL, 1000000)) {
         vm_destroy(v);
         return NULL;

@@ -53,7 +53,7 @@ typedef struct task {
     compiler_order order;
 } task;
 
-static void rehearse(const glsl_answer *answer, shader_stage stage) {
+static void compiler_rehearse(const glsl_answer *answer, shader_stage stage) {
     arena memory = {0};
     shader_binary binary;
     spirv code = {.words = mem_copy(answer->data, answer->size),
@@ -63,7 +63,7 @@ static void rehearse(const glsl_answer *answer, shader_stage stage) {
     arena_free(&memory);
 }
 
-static _Noreturn void leave(const isolate_call *call, const glsl_answer *answer) {
+static _Noreturn void compiler_leave(const isolate_call *call, const glsl_answer *answer) {
     const answer_head head = {.outcome = answer->outcome, .size = answer->size};
     bool done =
         isolate_put(call, &head, sizeof head) && isolate_put(call, answer->data, answer->size);
@@ -76,10 +76,10 @@ static void answer_and_leave(void *user, const glsl_answer *answer) {
     const spirv code = {.words = answer->data, .count = answer->size / sizeof *code.words};
     if (done && t->order.strange && !spirv_validate(&code)) {
         const char *why = err_get();
-        leave(t->call, &(glsl_answer){GLSL_INVALID, (char *)why, strlen(why)});
+        compiler_leave(t->call, &(glsl_answer){GLSL_INVALID, (char *)why, strlen(why)});
     }
-    if (done) rehearse(answer, t->order.stage);
-    if (t->call) leave(t->call, answer);
+    if (done) compiler_rehearse(answer, t->order.stage);
+    if (t->call) compiler_leave(t->call, answer);
 }
 
 bool compiler_work(const isolate_call *call) {

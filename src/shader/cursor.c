@@ -17,19 +17,19 @@ bool cursor_fail(const cursor *c, const char *format, ...) {
     return err_set("%s:%d: %s", c->label, c->line, text);
 }
 
-static void skip(cursor *c) {
+static void cursor_skip(cursor *c) {
     while (*c->at == ' ' || *c->at == '\t') c->at++;
 }
 
 bool cursor_take(cursor *c, char symbol) {
-    skip(c);
+    cursor_skip(c);
     if (*c->at != symbol) return false;
     c->at++;
     return true;
 }
 
 bool cursor_word(cursor *c, char out[NAME_CAP], const char *what) {
-    skip(c);
+    cursor_skip(c);
     size_t length = 0;
     while (isalnum((unsigned char)c->at[length]) || c->at[length] == '_') length++;
     if (!length) return cursor_fail(c, "expected %s at \"%.20s\"", what, c->at);
@@ -46,7 +46,7 @@ bool cursor_name(cursor *c, char out[NAME_CAP], const char *what) {
 }
 
 bool cursor_is_number(cursor *c) {
-    skip(c);
+    cursor_skip(c);
     const char *at = c->at + (*c->at == '-' || *c->at == '+');
     return isdigit((unsigned char)at[at[0] == '.']);
 }
@@ -81,8 +81,8 @@ bool cursor_value(cursor *c, int components, float out[4]) {
     }
 }
 
-static bool bound(cursor *c, float infinity, const char *word, float *out) {
-    skip(c);
+static bool cursor_bound(cursor *c, float infinity, const char *word, float *out) {
+    cursor_skip(c);
     size_t length = strlen(word);
     if (strncmp(c->at, word, length) != 0) return number(c, out);
     c->at += length;
@@ -94,16 +94,16 @@ bool cursor_range(cursor *c, float *min, float *max) {
     *min = -INFINITY;
     *max = INFINITY;
     if (!cursor_take(c, '[')) return true;
-    if (!bound(c, -INFINITY, "-inf", min)) return false;
+    if (!cursor_bound(c, -INFINITY, "-inf", min)) return false;
     if (!cursor_take(c, ',')) return cursor_fail(c, "expected , at \"%.20s\"", c->at);
-    if (!bound(c, INFINITY, "inf", max)) return false;
+    if (!cursor_bound(c, INFINITY, "inf", max)) return false;
     if (!cursor_take(c, ']')) return cursor_fail(c, "expected ] at \"%.20s\"", c->at);
     if (*min > *max) return cursor_fail(c, "the range is empty: its first number is the larger");
     return true;
 }
 
 bool cursor_unit(cursor *c, const char **out) {
-    skip(c);
+    cursor_skip(c);
     size_t length = strcspn(c->at, " \t:");
     *out = arena_format(c->memory, "%.*s", (int)length, c->at);
     c->at += length;
@@ -138,7 +138,7 @@ bool cursor_words(cursor *c, const char *word, const char *const **words, size_t
 
 bool cursor_help(cursor *c, const char **out) {
     if (!cursor_take(c, ':')) return cursor_fail(c, "expected \": help\" at \"%.20s\"", c->at);
-    skip(c);
+    cursor_skip(c);
     size_t length = strlen(c->at);
     while (length && isspace((unsigned char)c->at[length - 1])) length--;
     if (!length) return cursor_fail(c, "the help after the colon is missing");

@@ -8,7 +8,7 @@ enum { SYMBOL_CAP = 64 };
 
 // Next identifier, number or symbol of the code; "" at its end. Long ones are cut, which no
 // keyword is.
-static const char *next(const char *code, char out[SYMBOL_CAP]) {
+static const char *next_symbol(const char *code, char out[SYMBOL_CAP]) {
     size_t length = 0;
     while (isspace((unsigned char)*code)) code++;
     if (isalnum((unsigned char)*code) || *code == '_') {
@@ -21,11 +21,11 @@ static const char *next(const char *code, char out[SYMBOL_CAP]) {
     return code;
 }
 
-static const char *layout(const char *code, gpu_format *format) {
+static const char *read_layout(const char *code, gpu_format *format) {
     char symbol[SYMBOL_CAP];
     int depth = 0;
     do {
-        code = next(code, symbol);
+        code = next_symbol(code, symbol);
         depth += symbol[0] == '(' ? 1 : symbol[0] == ')' ? -1 : 0;
         gpu_format named = gpu_format_from_name(symbol);
         if (named != GPU_FORMAT_NONE) *format = named;
@@ -47,9 +47,9 @@ bool declaration_read(const cursor *c, const char *code, declaration *out) {
     bool stored = false;
     *out = (declaration){0};
     for (;;) {
-        code = next(code, symbol);
+        code = next_symbol(code, symbol);
         if (strcmp(symbol, "layout") == 0) {
-            code = layout(code, &out->format);
+            code = read_layout(code, &out->format);
         } else if (strcmp(symbol, "uniform") == 0 || strcmp(symbol, "out") == 0) {
             out->uniform = symbol[0] == 'u';
             stored = true;
@@ -60,20 +60,20 @@ bool declaration_read(const cursor *c, const char *code, declaration *out) {
     if (!stored || !str_is_identifier(symbol))
         return cursor_fail(c, "the annotation must follow `uniform TYPE NAME;` on its line");
     str_copy(out->type, sizeof out->type, symbol);
-    code = next(code, symbol);
+    code = next_symbol(code, symbol);
     if (!str_is_identifier(symbol))
         return cursor_fail(c, "the annotation must follow `uniform TYPE NAME;` on its line");
     if (strlen(symbol) + 1 == SYMBOL_CAP)
         return cursor_fail(c, "the name is longer than 62 letters: %s...", symbol);
     str_copy(out->name, sizeof out->name, symbol);
-    code = next(code, symbol);
+    code = next_symbol(code, symbol);
     if (symbol[0] == '[') out->array = true;
     if (symbol[0] == ',' || symbol[0] == '=')
         return cursor_fail(c, "%s: an annotated line declares one name, without initialiser",
                            out->name);
     if (out->array) return true;
     if (symbol[0] != ';') return cursor_fail(c, "expected ; after %s", out->name);
-    next(code, symbol);
+    next_symbol(code, symbol);
     return !symbol[0] || cursor_fail(c, "%s: the annotation must follow its ;", out->name);
 }
 

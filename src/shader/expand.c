@@ -44,7 +44,7 @@ static size_t array_size(const spirv_module *m, const uint32_t *variable) {
     return type && type->array ? type->size : 0;
 }
 
-static bool check(const function *f) {
+static bool expand_check(const function *f) {
     if (f->size > SPIRV_MAX_EXPANDED)
         return err_set("with every call inlined, the code has more than %d million instruction "
                        "words",
@@ -55,7 +55,7 @@ static bool check(const function *f) {
 }
 
 // Walks the function on top of the stack up to a call whose size is not known yet.
-static bool walk(expansion *e) {
+static bool expand_walk(expansion *e) {
     const spirv_module *code = e->code;
     function *f = &e->functions[e->stack[e->depth - 1]];
     for (size_t length; f->at < f->end; f->at += length) {
@@ -79,7 +79,7 @@ static bool walk(expansion *e) {
             f->size += callee->size;
             f->arrays += callee->arrays;
         }
-        if (!check(f)) return false;
+        if (!expand_check(f)) return false;
     }
     f->open = false;
     f->done = true;
@@ -93,7 +93,7 @@ static bool walk_all(expansion *e) {
         e->functions[i].open = true;
         e->stack[e->depth++] = (uint32_t)i;
         while (e->depth)
-            if (!walk(e)) return false;
+            if (!expand_walk(e)) return false;
     }
     return true;
 }

@@ -21,9 +21,9 @@ typedef struct range { // of words of one sort, both included
     uint32_t first, last;
 } range;
 
-#define HAS(table, value) has(table, COUNT_OF(table), value)
+#define HAS(table, value) table_has(table, COUNT_OF(table), value)
 
-static bool has(const range *table, size_t count, uint32_t value) {
+static bool table_has(const range *table, size_t count, uint32_t value) {
     for (size_t i = 0; i < count; i++)
         if (value >= table[i].first && value <= table[i].last) return true;
     return false;
@@ -374,7 +374,7 @@ static bool judge_value(const gate *g, const uint32_t *w, uint32_t length) {
            err_set("an array of more than %d KiB is copied", SPIRV_MAX_PRIVATE >> 10);
 }
 
-static bool judge(gate *g, const uint32_t *w, uint32_t length) {
+static bool gate_judge(gate *g, const uint32_t *w, uint32_t length) {
     uint32_t op = w[0] & SpvOpCodeMask;
     if (!HAS(instructions, op))
         return err_set("instruction %u of SPIR-V: not accepted in shaders", op);
@@ -422,7 +422,7 @@ bool spirv_gate(const spirv *code) {
     g.built = mem_alloc(g.module.bound * sizeof *g.built);
     for (size_t at = SPIRV_HEADER; passed && at < code->count;) {
         uint32_t length = code->words[at] >> SpvWordCountShift;
-        passed = judge(&g, code->words + at, length);
+        passed = gate_judge(&g, code->words + at, length);
         at += length;
     }
     passed = passed && spirv_can_expand(&g.module);

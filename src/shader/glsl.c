@@ -19,7 +19,7 @@ enum {
 
 static pthread_once_t started = PTHREAD_ONCE_INIT;
 
-static void start(void) {
+static void glslang_start(void) {
     glslang_initialize_process();
 }
 
@@ -43,7 +43,7 @@ static size_t longest_statement(const char *code) {
     return longest;
 }
 
-static glsl_answer parse(glslang_shader_t *shader, const glslang_input_t *input) {
+static glsl_answer glsl_parse(glslang_shader_t *shader, const glslang_input_t *input) {
     static const char initialiser[] = "Ignoring initializer for uniform";
     glslang_shader_set_options(shader, OPTIONS);
     if (!glslang_shader_preprocess(shader, input))
@@ -59,7 +59,7 @@ static glsl_answer parse(glslang_shader_t *shader, const glslang_input_t *input)
     return with_log(GLSL_INITIALISER, ignored);
 }
 
-static glsl_answer generate(glslang_program_t *program, glslang_stage_t stage) {
+static glsl_answer glsl_generate(glslang_program_t *program, glslang_stage_t stage) {
     if (!glslang_program_link(program, MESSAGES) || !glslang_program_map_io(program))
         return with_log(GLSL_REFUSED, glslang_program_get_info_log(program));
     glslang_spv_options_t options = {.disable_optimizer = true};
@@ -76,7 +76,7 @@ void glsl_run(const char *source, shader_stage stage, glsl_receiver *receive, vo
     static const glslang_stage_t stages[] = {[SHADER_COMPUTE] = GLSLANG_STAGE_COMPUTE,
                                              [SHADER_VERTEX] = GLSLANG_STAGE_VERTEX,
                                              [SHADER_FRAGMENT] = GLSLANG_STAGE_FRAGMENT};
-    pthread_once(&started, start);
+    pthread_once(&started, glslang_start);
     glslang_input_t input = {.language = GLSLANG_SOURCE_GLSL,
                              .stage = stages[stage],
                              .client = GLSLANG_CLIENT_VULKAN,
@@ -90,10 +90,10 @@ void glsl_run(const char *source, shader_stage stage, glsl_receiver *receive, vo
                              .resource = glslang_default_resource()};
     glslang_shader_t *shader = glslang_shader_create(&input);
     glslang_program_t *program = glslang_program_create();
-    glsl_answer answer = parse(shader, &input);
+    glsl_answer answer = glsl_parse(shader, &input);
     if (answer.outcome == GLSL_DONE) {
         glslang_program_add_shader(program, shader);
-        answer = generate(program, input.stage);
+        answer = glsl_generate(program, input.stage);
     }
     receive(user, &answer);
     glslang_program_delete(program);

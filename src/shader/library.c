@@ -83,8 +83,8 @@ static bool normalise(char out[PATH_CAP], const char *name) {
     return true;
 }
 
-static int find(const char *top, const char *normal, library_root root, arena *memory,
-                library_file *out) {
+static int find_file(const char *top, const char *normal, library_root root, arena *memory,
+                     library_file *out) {
     char path[PATH_CAP], label[PATH_CAP];
     if (!path_confine(path, top, normal)) return -1;
     if (!file_exists(path) || file_is_folder(path)) return 0;
@@ -114,7 +114,7 @@ int library_find(const shader_library *library, library_root root, const char *f
     if (!normal[0]) return 0;
     int found;
     if (library->memo && memo_find(library->memo, root, normal, memory, &found, out)) return found;
-    found = find(top, normal, root, memory, out);
+    found = find_file(top, normal, root, memory, out);
     if (library->memo && found >= 0) memo_keep(library->memo, root, normal, found, out);
     return found;
 }

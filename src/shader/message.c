@@ -7,7 +7,7 @@
 #include <string.h>
 
 // "'' : text " and "'x' : text " -> "text" and "'x': text", one line.
-static void tidy(const char *text, char *out, size_t capacity) {
+static void message_tidy(const char *text, char *out, size_t capacity) {
     size_t length = strcspn(text, "\r\n");
     if (strncmp(text, "'' : ", 5) == 0) {
         text += 5;
@@ -30,10 +30,10 @@ static bool fail_log(const shader_unit *unit, const char *log, const char *mark)
     int file, line, begin = 0;
     const char *text = found ? found + strlen(mark) : log;
     if (sscanf(text, "%d:%d: %n", &file, &line, &begin) < 2 || !begin) {
-        tidy(text, message, sizeof message);
+        message_tidy(text, message, sizeof message);
         return err_set("%s: %s", label, message[0] ? message : "the compiler gave no reason");
     }
-    tidy(text + begin, message, sizeof message);
+    message_tidy(text + begin, message, sizeof message);
     if (file < 1 || (size_t)file > unit->file_count)
         return err_set("%s: in what roil puts before it: %s", label, message);
     unit_source_line(unit, file - 1, line, source, sizeof source);

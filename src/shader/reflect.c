@@ -30,16 +30,17 @@ typedef struct reflector {
     size_t count;
 } reflector;
 
-static bool fail(const reflector *r) {
+static bool reflect_fail(const reflector *r) {
     return err_set("SPIR-V: %s", spvc_context_get_last_error_string(r->context));
 }
 
 // ---- resources --------------------------------------------------------------------------------
 
-static bool collect(reflector *r, spvc_resources resources, spvc_resource_type kind) {
+static bool reflect_collect(reflector *r, spvc_resources resources, spvc_resource_type kind) {
     const spvc_reflected_resource *list;
     size_t count;
-    if (spvc_resources_get_resource_list_for_type(resources, kind, &list, &count)) return fail(r);
+    if (spvc_resources_get_resource_list_for_type(resources, kind, &list, &count))
+        return reflect_fail(r);
     bool bindable =
         kind == SPVC_RESOURCE_TYPE_UNIFORM_BUFFER || kind == SPVC_RESOURCE_TYPE_STORAGE_BUFFER ||
         kind == SPVC_RESOURCE_TYPE_SAMPLED_IMAGE || kind == SPVC_RESOURCE_TYPE_STORAGE_IMAGE;
@@ -72,14 +73,15 @@ static bool collect_all(reflector *r) {
     spvc_resources resources;
     if (spvc_compiler_get_active_interface_variables(r->compiler, &used) ||
         spvc_compiler_create_shader_resources_for_active_variables(r->compiler, &resources, used))
-        return fail(r);
+        return reflect_fail(r);
     for (size_t i = 0; i < COUNT_OF(kinds); i++)
-        if (!collect(r, resources, kinds[i])) return false;
+        if (!reflect_collect(r, resources, kinds[i])) return false;
     qsort(r->found, r->count, sizeof *r->found, by_id);
     return true;
 }
 
-static bool patch(reflector *r, spvc_variable_id id, SpvDecoration decoration, uint32_t value) {
+static bool reflect_patch(reflector *r, spvc_variable_id id, SpvDecoration decoration,
+                          uint32_t value) {
     unsigned offset;
     bool known =
         spvc_compiler_get_binary_offset_for_decoration(r->compiler, id, decoration, &offset);
@@ -109,7 +111,8 @@ static void access_of(const reflector *r, const resource *found, gpu_slot *slot)
     slot->writes = storage && !no_write;
 }
 
-static bool describe(reflector *r, const resource *found, uint32_t binding, shader_slot *out) {
+static bool reflect_describe(reflector *r, const resource *found, uint32_t binding,
+                             shader_slot *out) {
     spvc_type type = spvc_compiler_get_type_handle(r->compiler, found->spvc->type_id);
     const char *name = found->spvc->name;
     if (spvc_type_get_num_array_dimensions(type))
@@ -120,7 +123,8 @@ static bool describe(reflector *r, const resource *found, uint32_t binding, shad
     case SPVC_RESOURCE_TYPE_UNIFORM_BUFFER: {
         size_t size;
         spvc_type block = spvc_compiler_get_type_handle(r->compiler, found->spvc->base_type_id);
-        if (spvc_compiler_get_declared_struct_size(r->compiler, block, &size)) return fail(r);
+        if (spvc_compiler_get_declared_struct_size(r->compiler, block, &size))
+            return reflect_fail(r);
         out->slot.kind = GPU_SLOT_UNIFORM;
         out->size = (uint32_t)((size + 15) & ~(size_t)15); // std140 rounds blocks to a vec4
         break;
@@ -174,7 +178,7 @@ static bool describe_member(reflector *r, spvc_type_id block_id, spvc_type block
     unsigned offset;
     if (spvc_compiler_type_struct_member_offset(r->compiler, block, i, &offset) ||
         spvc_compiler_get_declared_struct_member_size(r->compiler, block, i, &size))
-        return fail(r);
+        return reflect_fail(r);
     out->name = declaration_public_name(r->memory, name);
     out->offset = offset;
     out->size = (uint32_t)size;
@@ -201,7 +205,7 @@ static bool describe_members(reflector *r, const resource *found, shader_binary 
 static bool local_size(reflector *r, uint32_t out[3]) {
     const SpvExecutionMode *modes;
     size_t count;
-    if (spvc_compiler_get_execution_modes(r->compiler, &modes, &count)) return fail(r);
+    if (spvc_compiler_get_execution_modes(r->compiler, &modes, &count)) return reflect_fail(r);
     for (size_t i = 0; i < count; i++) {
         if (modes[i] != SpvExecutionModeLocalSize && modes[i] != SpvExecutionModeLocalSizeId)
             continue;
@@ -217,12 +221,12 @@ static bool local_size(reflector *r, uint32_t out[3]) {
     return true;
 }
 
-static bool reflect(reflector *r, shader_binary *out) {
+static bool reflect_all(reflector *r, shader_binary *out) {
     spvc_parsed_ir ir;
     if (spvc_context_parse_spirv(r->context, r->code->words, r->code->count, &ir) ||
         spvc_context_create_compiler(r->context, SPVC_BACKEND_NONE, ir,
                                      SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &r->compiler))
-        return fail(r);
+        return reflect_fail(r);
     if (!collect_all(r) || !local_size(r, out->local_size)) return false;
     shader_slot *slots = arena_alloc(r->memory, r->count * sizeof *slots);
     uint32_t live[GPU_MAX_SLOTS];
@@ -230,9 +234,9 @@ static bool reflect(reflector *r, shader_binary *out) {
         uint32_t binding = (uint32_t)i + (r->stage == SHADER_FRAGMENT ? FRAGMENT_BASE : 0);
         const resource *found = &r->found[i];
         live[i] = found->spvc->id;
-        if (!patch(r, live[i], SpvDecorationBinding, binding) ||
-            !patch(r, live[i], SpvDecorationDescriptorSet, 0) ||
-            !describe(r, found, binding, &slots[i]))
+        if (!reflect_patch(r, live[i], SpvDecorationBinding, binding) ||
+            !reflect_patch(r, live[i], SpvDecorationDescriptorSet, 0) ||
+            !reflect_describe(r, found, binding, &slots[i]))
             return false;
         if (slots[i].slot.kind == GPU_SLOT_UNIFORM && strcmp(slots[i].name, UNIFORMS) == 0 &&
             !describe_members(r, found, out))
@@ -249,7 +253,7 @@ bool spirv_reflect(spirv *code, shader_stage stage, arena *memory, shader_binary
     *out = (shader_binary){0};
     if (!spirv_gate(code)) return false;
     if (spvc_context_create(&r.context)) return err_set("SPIR-V: cannot be read");
-    bool done = reflect(&r, out);
+    bool done = reflect_all(&r, out);
     spvc_context_destroy(r.context);
     return done;
 }

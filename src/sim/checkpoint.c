@@ -271,7 +271,7 @@ checkpoint *checkpoint_open(const char *path) {
 }
 
 // Of what is in memory.
-static void release(checkpoint *c) {
+static void checkpoint_release(checkpoint *c) {
     for (size_t i = 0; i < c->count; i++) {
         if (c->device) gpu_buffer_destroy(c->device, c->kept[i].buffer);
         mem_free(c->kept[i].bytes);
@@ -281,21 +281,21 @@ static void release(checkpoint *c) {
 
 void checkpoint_close(checkpoint *c) {
     if (!c) return;
-    if (c->kept) release(c);
+    if (c->kept) checkpoint_release(c);
     if (c->file) fclose(c->file);
     mem_free(c->path);
     mem_free(c->table);
     mem_free(c);
 }
 
-static const file_entry *find(const checkpoint *c, const char *name) {
+static const file_entry *find_entry(const checkpoint *c, const char *name) {
     for (size_t i = 0; i < c->count; i++)
         if (strcmp(c->table[i].name, name) == 0) return &c->table[i];
     return NULL;
 }
 
 bool checkpoint_has(const checkpoint *c, const char *name, uint64_t *size) {
-    const file_entry *e = find(c, name);
+    const file_entry *e = find_entry(c, name);
     if (e) *size = e->size;
     return e != NULL;
 }
@@ -369,7 +369,7 @@ static bool load_batch(checkpoint *c, gpu *g, const checkpoint_part *part, uint6
 }
 
 bool checkpoint_load(checkpoint *c, gpu *g, const checkpoint_part *part) {
-    const file_entry *e = find(c, part->name);
+    const file_entry *e = find_entry(c, part->name);
     if (!e) return err_set("%s: the checkpoint has no part '%s'", c->path, part->name);
     if (e->size != part->size)
         return err_set("%s: part '%s' has %" PRIu64 " bytes; %" PRIu64 " are accepted", c->path,
@@ -405,7 +405,7 @@ static bool matches(const checkpoint *c, const char *theirs, const char *ours) {
 }
 
 bool checkpoint_require(checkpoint *c, const char *name, const char *ours) {
-    const file_entry *e = find(c, name);
+    const file_entry *e = find_entry(c, name);
     if (e && e->size > MOST_TEXT) return damaged(c, "a text is too long");
     char *theirs = mem_alloc(e ? e->size + 1 : 1);
     const checkpoint_part part = {.name = name, .size = e ? e->size : 0, .bytes = theirs};

@@ -45,7 +45,7 @@ static void set_size(kernel *k, int name, const uint32_t size[2]) {
     kernel_set(k, name, cells, sizeof cells);
 }
 
-static bool build(flow *f, gpu *g, float unit) {
+static bool pressure_build(flow *f, gpu *g, float unit) {
     kernel *k = flow_use(f, FLOW_BUILD);
     const bool changes = f->desc.obstacles || f->desc.templates || !f->built;
     int32_t levels[6][4] = {0};
@@ -136,7 +136,7 @@ static bool do_levels(flow *f, gpu *g, uint32_t iteration, float tolerance) {
     return true;
 }
 
-static bool follow(flow *f, gpu *g, uint32_t iteration, float tolerance) {
+static bool pressure_follow(flow *f, gpu *g, uint32_t iteration, float tolerance) {
     const turn t = turn_of(f, iteration);
     kernel *k = flow_use(f, FLOW_FOLLOW);
     kernel_bind_buffer(k, N_FlowFrom, t.from);
@@ -147,11 +147,11 @@ static bool follow(flow *f, gpu *g, uint32_t iteration, float tolerance) {
     return flow_run_tiles(f, g, k, f->desc.size);
 }
 
-static bool iterate(flow *f, gpu *g, uint32_t iteration, float tolerance) {
+static bool pressure_iterate(flow *f, gpu *g, uint32_t iteration, float tolerance) {
     const turn t = turn_of(f, iteration);
     const flow_solver solver = f->desc.solver;
     if (!(solver == FLOW_MULTIGRID ? do_levels(f, g, iteration, tolerance)
-                                   : follow(f, g, iteration, tolerance)) ||
+                                   : pressure_follow(f, g, iteration, tolerance)) ||
         (solver == FLOW_TRANSFORM && !flow_transform(f, g, t.residual)))
         return false;
     kernel *k = flow_use(f, FLOW_TURN);
@@ -166,9 +166,9 @@ static bool iterate(flow *f, gpu *g, uint32_t iteration, float tolerance) {
 bool flow_project(flow *f, gpu *g, const flow_numbers *numbers) {
     const float tolerance = numbers->tolerance > 0 ? numbers->tolerance : 1e-3f;
     const uint32_t iterations = f->desc.max_iterations;
-    if (!build(f, g, numbers->dt / numbers->cell)) return false;
+    if (!pressure_build(f, g, numbers->dt / numbers->cell)) return false;
     for (uint32_t i = 0; i < iterations; i++)
-        if (!iterate(f, g, i, tolerance)) return false;
+        if (!pressure_iterate(f, g, i, tolerance)) return false;
     kernel *k = flow_use(f, FLOW_PROJECT);
     kernel_bind_buffer(k, N_FlowDirection, turn_of(f, iterations).last);
     kernel_bind_buffer(k, N_FlowPressureTo, flow_pair(f, FLOW_MEM_PRESSURE, 1));

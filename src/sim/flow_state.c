@@ -13,7 +13,7 @@ static const char *const buffer_names[FLOW_STATE_BUFFERS] = {"velocity", "scalar
 static const char *const look_names[2][FLOW_LOOKS] = {{"scalars0", "velocity0"},
                                                       {"scalars1", "velocity1"}};
 
-static void describe(const flow_desc *desc, const char *more, strbuf *out) {
+static void flow_describe(const flow_desc *desc, const char *more, strbuf *out) {
     static const char *const faces[] = {"left", "right", "bottom", "top"};
     static const char *const kinds[] = {"closed", "open", "periodic"};
     strbuf_add(out, "size = %u x %u\n", desc->size[0], desc->size[1]);
@@ -61,7 +61,7 @@ bool flow_state_list(const flow *f, gpu *g, const char *label, const char *more,
                      checkpoint_list *out) {
     arena *memory = &out->memory;
     strbuf text = {0};
-    describe(&f->desc, more, &text);
+    flow_describe(&f->desc, more, &text);
     state_clock *clock = arena_alloc(memory, sizeof *clock);
     *clock = (state_clock){f->steps, f->kept};
     checkpoint_add(out, &(checkpoint_part){.name = name(memory, label, "flow"),
@@ -81,7 +81,7 @@ bool flow_state_list(const flow *f, gpu *g, const char *label, const char *more,
 
 // ---- loading ----------------------------------------------------------------------------------
 
-static bool clear(flow *f, gpu *g) {
+static bool flow_clear(flow *f, gpu *g) {
     if (!gpu_frame_begin(g)) return false;
     bool done = flow_reset(f, g);
     return gpu_frame_end(g) && done;
@@ -101,7 +101,7 @@ static bool load_look(flow *f, gpu *g, uint32_t which, flow_look look, arena *me
     return done;
 }
 
-static bool load(flow *f, gpu *g, arena *memory, const char *label, checkpoint *c) {
+static bool flow_load(flow *f, gpu *g, arena *memory, const char *label, checkpoint *c) {
     state_clock clock;
     const checkpoint_part own = {
         .name = name(memory, label, "clock"), .size = sizeof clock, .bytes = &clock};
@@ -109,7 +109,7 @@ static bool load(flow *f, gpu *g, arena *memory, const char *label, checkpoint *
     if (!checkpoint_load(c, NULL, &own)) return false;
     if (clock.steps > UINT64_C(1) << 60 || clock.kept > clock.steps)
         return err_set("the checkpoint's clock is damaged");
-    if (!clear(f, g)) return false;
+    if (!flow_clear(f, g)) return false;
     size_t count = list_buffers(f, memory, label, buffers);
     for (size_t i = 0; i < count; i++)
         if (!checkpoint_load(c, g, &buffers[i])) return false;
@@ -124,9 +124,9 @@ static bool load(flow *f, gpu *g, arena *memory, const char *label, checkpoint *
 bool flow_state_load(flow *f, gpu *g, const char *label, const char *more, checkpoint *c) {
     arena memory = {0};
     strbuf text = {0};
-    describe(&f->desc, more, &text);
+    flow_describe(&f->desc, more, &text);
     bool done = checkpoint_require(c, name(&memory, label, "flow"), strbuf_text(&text)) &&
-                load(f, g, &memory, label, c);
+                flow_load(f, g, &memory, label, c);
     strbuf_free(&text);
     arena_free(&memory);
     return done;

@@ -67,13 +67,13 @@ static void set_carry(const flow *f, kernel *k, const flow_numbers *n) {
     kernel_set_float(k, N_reach, n->dt / n->cell);
 }
 
-static bool predict(flow *f, gpu *g, const flow_numbers *n) {
+static bool flow_predict(flow *f, gpu *g, const flow_numbers *n) {
     kernel *k = flow_use(f, FLOW_PREDICT);
     set_carry(f, k, n);
     return run_each(f, g, k, true);
 }
 
-static bool advance(flow *f, gpu *g, const flow_numbers *n) {
+static bool flow_advance(flow *f, gpu *g, const flow_numbers *n) {
     kernel *k = flow_use(f, FLOW_ADVANCE);
     const float most = 32 * n->cell / n->dt;
     float kept[3];
@@ -113,7 +113,7 @@ bool flow_make_look(flow *f, gpu *g, uint32_t which, flow_look look) {
     return *image != NULL;
 }
 
-static bool look(flow *f, gpu *g, const flow_numbers *n) {
+static bool flow_inspect(flow *f, gpu *g, const flow_numbers *n) {
     for (flow_look i = 0; i < FLOW_LOOKS; i++)
         if (!flow_make_look(f, g, f->kept % 2, i)) return false;
     kernel *k = flow_use(f, FLOW_LOOK_AT);
@@ -141,9 +141,9 @@ bool flow_step(flow *f, gpu *g, const flow_numbers *n, bool keep) {
         return err_set("a step of %g s on cells of %g m; both must be more than 0", (double)n->dt,
                        (double)n->cell);
     if (!diffuse(f, g, n)) return false;
-    if (f->desc.advection == FLOW_MACCORMACK && !predict(f, g, n)) return false;
-    if (!advance(f, g, n) || !flow_project(f, g, n)) return false;
+    if (f->desc.advection == FLOW_MACCORMACK && !flow_predict(f, g, n)) return false;
+    if (!flow_advance(f, g, n) || !flow_project(f, g, n)) return false;
     f->current ^= 1;
     f->steps++;
-    return !keep || look(f, g, n);
+    return !keep || flow_inspect(f, g, n);
 }

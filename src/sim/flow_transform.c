@@ -64,7 +64,7 @@ bool flow_transform_allocate(flow *f, gpu *g) {
     return done;
 }
 
-static kernel *use(flow *f, flow_kernel which, gpu_buffer *residual) {
+static kernel *transform_use(flow *f, flow_kernel which, gpu_buffer *residual) {
     kernel *k = flow_use(f, which);
     kernel_bind_buffer(k, N_FlowModes, f->modes);
     kernel_bind_buffer(k, N_FlowResidual, residual);
@@ -76,8 +76,8 @@ bool flow_transform(flow *f, gpu *g, gpu_buffer *residual) {
     const uint32_t *size = f->desc.size;
     const bool folds = flow_transform_folds(&f->desc, f->tile);
     const uint32_t back[2] = {folds ? size[0] / 2 : size[0], size[1]}; // a group does both ends
-    return flow_run_tiles(f, g, use(f, FLOW_TO_MODES, residual), size) &&
-           kernel_run(use(f, FLOW_SOLVE_LINES, residual), g, size[0] * f->group, f->desc.slices,
-                      1) &&
-           flow_run_tiles(f, g, use(f, FLOW_FROM_MODES, residual), back);
+    return flow_run_tiles(f, g, transform_use(f, FLOW_TO_MODES, residual), size) &&
+           kernel_run(transform_use(f, FLOW_SOLVE_LINES, residual), g, size[0] * f->group,
+                      f->desc.slices, 1) &&
+           flow_run_tiles(f, g, transform_use(f, FLOW_FROM_MODES, residual), back);
 }

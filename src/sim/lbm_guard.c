@@ -102,7 +102,7 @@ void lbm_guard_destroy(lbm_guard *guard, gpu *g) {
     lbm_guard_forget(guard);
 }
 
-static bool dispatch(lbm_guard *guard, gpu *g, int which, gpu_buffer *moments) {
+static bool guard_dispatch(lbm_guard *guard, gpu *g, int which, gpu_buffer *moments) {
     kernel *k = &guard->kernels[which];
     const uint32_t groups = which == 0 ? guard->groups : 1, stride = groups * GROUP;
     kernel_bind_buffer(k, N_Moments, moments);
@@ -120,7 +120,7 @@ bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l, lbm_guard_limits l
     uint32_t place = guard->next;
     kernel_set_float(&guard->kernels[1], N_spoilt_speed, limits.speed);
     kernel_set_float(&guard->kernels[1], N_spoilt_drift, limits.drift);
-    if (!dispatch(guard, g, 0, moments) || !dispatch(guard, g, 1, moments) ||
+    if (!guard_dispatch(guard, g, 0, moments) || !guard_dispatch(guard, g, 1, moments) ||
         !gpu_image_copy_to_buffer(g, guard->result, guard->found, place * WORDS * 4))
         return false;
     guard->places[place] = (guard_place){gpu_frame_open(g), lbm_steps(l)};
@@ -128,7 +128,7 @@ bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l, lbm_guard_limits l
     return true;
 }
 
-static void unpack(const lbm_guard *guard, const uint32_t words[WORDS], lbm_report *out) {
+static void guard_unpack(const lbm_guard *guard, const uint32_t words[WORDS], lbm_report *out) {
     float values[WORDS];
     memcpy(values, words, sizeof values);
     uint32_t cell = words[3], columns = guard->size[0], good = words[0] - words[1];
@@ -154,7 +154,7 @@ bool lbm_guard_read(lbm_guard *guard, gpu *g, lbm_report *out) {
         uint32_t place = (guard->next + PLACES - age) % PLACES;
         const guard_place *at = &guard->places[place];
         if (at->frame == 0 || !gpu_frame_done(g, at->frame)) continue;
-        unpack(guard, (const uint32_t *)gpu_buffer_map(guard->found) + place * WORDS, out);
+        guard_unpack(guard, (const uint32_t *)gpu_buffer_map(guard->found) + place * WORDS, out);
         out->step = at->step;
         return true;
     }

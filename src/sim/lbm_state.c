@@ -29,7 +29,7 @@ static void describe_layout(const lbm_layout *l, strbuf *out) {
     strbuf_add(out, ", up to %u in a buffer\n", l->run);
 }
 
-static void describe(const lbm *l, const char *more, strbuf *out) {
+static void lbm_describe(const lbm *l, const char *more, strbuf *out) {
     const lbm_desc *desc = &l->desc;
     static const char *const sets[] = {"d3q19", "d3q27"}, *const scalar_sets[] = {"d3q7", "d3q27"};
     static const char *const precisions[] = {"f32", "f16"};
@@ -80,7 +80,7 @@ static size_t list_buffers(const lbm *l, arena *memory, const char *label,
 void lbm_state_list(const lbm *l, const char *label, const char *more, checkpoint_list *out) {
     arena *memory = &out->memory;
     strbuf text = {0};
-    describe(l, more, &text);
+    lbm_describe(l, more, &text);
     state_clock *clock = arena_alloc(memory, sizeof *clock);
     *clock = (state_clock){l->steps, l->kept, l->walls.current, l->walls.filled};
     checkpoint_add(out, &(checkpoint_part){.name = name(memory, label, "lattice"),
@@ -117,7 +117,7 @@ bool lbm_state_load(lbm *l, gpu *g, const char *label, const char *more, checkpo
     strbuf text = {0};
     state_clock clock;
     checkpoint_part buffers[PARTS];
-    describe(l, more, &text);
+    lbm_describe(l, more, &text);
     const checkpoint_part own = {
         .name = name(&memory, label, "clock"), .size = sizeof clock, .bytes = &clock};
     bool done = checkpoint_require(c, name(&memory, label, "lattice"), strbuf_text(&text)) &&

@@ -16,11 +16,11 @@ static struct {
     float intensity;
 } chosen = {.linear = {-1, -1, -1}};
 
-static float encode(float v) {
+static float srgb_encode(float v) {
     return v <= 0.0031308f ? v * 12.92f : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
 }
 
-static float decode(float v) {
+static float srgb_decode(float v) {
     return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
 }
 
@@ -52,19 +52,19 @@ static float intensity_of(const float linear[3]) {
     return fmaxf(1, fmaxf(linear[0], fmaxf(linear[1], linear[2])));
 }
 
-static void choose(const float linear[3]) {
+static void picker_choose(const float linear[3]) {
     if (memcmp(chosen.linear, linear, sizeof chosen.linear) == 0) return;
     memcpy(chosen.linear, linear, sizeof chosen.linear);
     chosen.intensity = intensity_of(linear);
     float rgb[3];
-    for (int i = 0; i < 3; i++) rgb[i] = encode(fmaxf(linear[i], 0) / chosen.intensity);
+    for (int i = 0; i < 3; i++) rgb[i] = srgb_encode(fmaxf(linear[i], 0) / chosen.intensity);
     hsv_from_rgb(rgb, chosen.hsv);
 }
 
-static void give(float linear[3]) {
+static void picker_give(float linear[3]) {
     float rgb[3];
     rgb_from_hsv(chosen.hsv, rgb);
-    for (int i = 0; i < 3; i++) linear[i] = decode(rgb[i]) * chosen.intensity;
+    for (int i = 0; i < 3; i++) linear[i] = srgb_decode(rgb[i]) * chosen.intensity;
     memcpy(chosen.linear, linear, sizeof chosen.linear);
 }
 
@@ -72,7 +72,7 @@ void color_text(const float linear[3], char *out, size_t capacity) {
     float intensity = intensity_of(linear);
     int rgb[3];
     for (int i = 0; i < 3; i++)
-        rgb[i] = (int)lroundf(encode(clampf(linear[i] / intensity, 0, 1)) * 255);
+        rgb[i] = (int)lroundf(srgb_encode(clampf(linear[i] / intensity, 0, 1)) * 255);
     int length = snprintf(out, capacity, "#%02x%02x%02x", (unsigned)rgb[0], (unsigned)rgb[1],
                           (unsigned)rgb[2]);
     if (intensity > 1.0001f && length > 0 && (size_t)length < capacity)
@@ -82,7 +82,7 @@ void color_text(const float linear[3], char *out, size_t capacity) {
 static uint32_t of_hsv(float hue, float saturation, float value) {
     float rgb[3], linear[3];
     rgb_from_hsv((float[3]){hue, saturation, value}, rgb);
-    for (int i = 0; i < 3; i++) linear[i] = decode(rgb[i]);
+    for (int i = 0; i < 3; i++) linear[i] = srgb_decode(rgb[i]);
     return ui_pack(linear, 1);
 }
 
@@ -115,7 +115,7 @@ static bool square(void) {
     return c.held;
 }
 
-static void mark(const ui_canvas *c, float share) {
+static void picker_mark(const ui_canvas *c, float share) {
     float s = ui_scale(), x = c->area.left + (c->area.right - c->area.left) * share;
     x = clampf(x, c->area.left + 2 * s, c->area.right - 2 * s);
     ui_rect box = {x - 2 * s, c->area.top, x + 2 * s, c->area.bottom};
@@ -137,7 +137,7 @@ static bool hue_strip(void) {
         part_changed();
         chosen.hsv[0] = fminf(share_x(&c), 0.9999f);
     }
-    mark(&c, chosen.hsv[0]);
+    picker_mark(&c, chosen.hsv[0]);
     ui_canvas_end();
     return c.held;
 }
@@ -146,14 +146,14 @@ static bool alpha_strip(float *alpha) {
     ui_canvas c = ui_canvas_begin("alpha", SIDE * ui_scale(), STRIP * ui_scale());
     float rgb[3], linear[3];
     rgb_from_hsv(chosen.hsv, rgb);
-    for (int i = 0; i < 3; i++) linear[i] = decode(rgb[i]);
+    for (int i = 0; i < 3; i++) linear[i] = srgb_decode(rgb[i]);
     ui_checkers(c.area, STRIP / 2 * ui_scale());
     ui_gradient(c.area, ui_pack(linear, 0), ui_pack(linear, 1));
     if (c.held) {
         part_changed();
         *alpha = share_x(&c);
     }
-    mark(&c, clampf(*alpha, 0, 1));
+    picker_mark(&c, clampf(*alpha, 0, 1));
     ui_canvas_end();
     return c.held;
 }
@@ -173,18 +173,18 @@ static bool hex_input(float *linear) {
     if (*digits == '#') digits++;
     if (!typed || strlen(digits) != 6 || sscanf(digits, "%2x%2x%2x", &r, &g, &b) != 3) return false;
     const unsigned parts[3] = {r, g, b};
-    for (int i = 0; i < 3; i++) linear[i] = decode((float)parts[i] / 255) * chosen.intensity;
+    for (int i = 0; i < 3; i++) linear[i] = srgb_decode((float)parts[i] / 255) * chosen.intensity;
     memcpy(shown, linear, sizeof shown);
     return true;
 }
 
 bool color_picker(float *linear, int components) {
-    choose(linear);
+    picker_choose(linear);
     bool changed = square();
     changed = hue_strip() || changed;
     ui_width(SIDE * ui_scale());
     changed = ui_number("Intensity", &chosen.intensity, 1, 1, MAX_INTENSITY, true, NULL) || changed;
-    if (changed) give(linear);
+    if (changed) picker_give(linear);
     if (components == 4) changed = alpha_strip(&linear[3]) || changed;
     changed = hex_input(linear) || changed;
     ui_width(SIDE * ui_scale());

@@ -17,7 +17,7 @@ static const struct {
     [FONT_MONO] = {"DejaVu Sans Mono", "monospace", FC_WEIGHT_REGULAR},
 };
 
-static FcPattern *find(font_kind kind) {
+static FcPattern *font_find(font_kind kind) {
     FcPattern *pattern = FcPatternCreate();
     FcPatternAddString(pattern, FC_FAMILY, (const FcChar8 *)wanted[kind].family);
     FcPatternAddString(pattern, FC_FAMILY, (const FcChar8 *)wanted[kind].fallback);
@@ -43,7 +43,7 @@ static bool is_outline(const font_file *file) {
 
 font_file font_read(font_kind kind) {
     font_file file = {0};
-    FcPattern *match = find(kind);
+    FcPattern *match = font_find(kind);
     FcChar8 *path = NULL;
     if (match && FcPatternGetString(match, FC_FILE, 0, &path) == FcResultMatch &&
         file_read((const char *)path, MAX_FONT_BYTES, &file.data, &file.size)) {

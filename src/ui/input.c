@@ -4,12 +4,12 @@
 
 // ---- queue ------------------------------------------------------------------------------------
 
-static input_event *last(input_queue *q) {
+static input_event *queue_last(input_queue *q) {
     return q->count ? &q->events[(q->first + q->count - 1) % INPUT_EVENTS] : NULL;
 }
 
 void input_push(input_queue *q, const input_event *e) {
-    input_event *before = last(q);
+    input_event *before = queue_last(q);
     if (before && before->kind == e->kind && e->kind == INPUT_MOVE) {
         *before = *e;
     } else if (before && before->kind == e->kind && e->kind == INPUT_WHEEL) {
@@ -49,7 +49,7 @@ static bool fits(input_frame *frame, const input_event *e) {
     return true;
 }
 
-static void note(input_frame *frame, const input_event *e) {
+static void frame_note(input_frame *frame, const input_event *e) {
     uint64_t bit;
     if (e->kind == INPUT_MOVE) frame->moved = true;
     if (e->kind == INPUT_WHEEL) frame->wheeled = true;
@@ -62,7 +62,7 @@ bool input_take(input_queue *q, input_frame *frame, input_event *out) {
     *out = q->events[q->first];
     q->first = (q->first + 1) % INPUT_EVENTS;
     q->count--;
-    note(frame, out);
+    frame_note(frame, out);
     return true;
 }
 

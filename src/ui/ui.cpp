@@ -109,7 +109,7 @@ bool load_atlas() {
 
 // ---- input ------------------------------------------------------------------------------------
 
-static void apply(const input_event *e) {
+static void input_apply(const input_event *e) {
     switch (e->kind) {
     case INPUT_MOVE:
         ui.pointer = ImVec2((float)e->x, (float)e->y);
@@ -204,7 +204,7 @@ bool ui_pending(void) {
 static void take_input(ImGuiIO &io) {
     input_frame frame = {};
     input_event e;
-    while (input_take(&ui.input, &frame, &e)) apply(&e);
+    while (input_take(&ui.input, &frame, &e)) input_apply(&e);
     ImGui_ImplGlfw_NewFrame();
     io.MousePos = ui.pointer;
     for (int i = 0; i < BUTTONS; i++) io.MouseDown[i] = ui.buttons[i];
