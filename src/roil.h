@@ -1,5 +1,5 @@
-// roil: a runtime for volumetric effects. This is, with roil_slices.h, which it includes, the whole
-// public interface of libroil; the program `roil` does everything through it.
+// roil: a runtime for volumetric effects. This header and roil_slices.h, which it includes, are the
+// whole public interface of libroil. The program `roil` is built on it and uses nothing else.
 //
 //   roil *r = roil_create(&(roil_desc){0});
 //   roil_effect *e = r ? roil_load(r, "effects/explosion.lua", NULL, 0) : NULL;
@@ -8,8 +8,18 @@
 //   roil_unload(e);
 //   roil_destroy(r);
 //
-// Functions that can fail return NULL, false or a negative number; roil_error() then says why, in
-// one message that names file, line and object. A roil and its effects belong to one thread.
+// Errors: a function that can fail returns NULL or false. roil_error() then gives the reason in one
+// message that names the file, the line and the object.
+//
+// Threads: a roil, its effects and all objects made from them belong to the thread that called
+// roil_create. Functions that take none of these may be called from any thread.
+//
+// Memory: strings and arrays passed to a function are only read during the call, unless a comment
+// says otherwise. Functions that fill an array take its capacity, write at most that many elements
+// and return how many there are, so that a call with a capacity of 0 counts them. Every *_desc and
+// *_options struct may be zero; what 0 means is written at each field.
+//
+// Units: metres, seconds, degrees; z points up. Colours are linear Rec.709 unless sRGB is named.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -18,61 +28,77 @@
 extern "C" {
 #endif
 
-typedef struct roil roil;               // a device, and where things are found
+typedef struct roil roil;               // a device and the folders of the library's files
 typedef struct roil_effect roil_effect; // one loaded effect file
 
-const char *roil_version(void);
-const char *roil_error(void); // of the calling thread; "" when there was none
+const char *roil_version(void); // such as "1.2.3"; static
+
+// Returns the message of the last error of the calling thread, or "" when there was none. It is
+// valid until the thread's next call of a roil function.
+const char *roil_error(void);
 
 // ---- device -----------------------------------------------------------------------------------
 
-typedef struct roil_window_desc {  // a window to show effects in, whichever library made it
-    const char *const *extensions; // of the Vulkan instance, that its surface needs
+typedef struct roil_window_desc {  // a window to show pictures in; any window library can make it
+    const char *const *extensions; // instance extensions that its Vulkan surface needs
     uint32_t extension_count;
-    // Makes the VkSurfaceKHR `*surface` for the VkInstance `instance`; false when it cannot.
+    // Creates a VkSurfaceKHR for the VkInstance `instance` and writes it to `*surface`. Returns
+    // false when that fails. Called once, by roil_create.
     bool (*create_surface)(void *user, void *instance, void *surface);
-    void *user;
+    void *user; // passed to create_surface
 } roil_window_desc;
 
 typedef struct roil_desc {
-    const char *device; // part of a device's name, or its number; NULL: a real GPU before software
-    const char *home; // folder that holds shaders/ and scripts/; NULL: $ROIL_HOME, else found from
-                      // where the program lies
-    const char *reader; // the program roil-reader, a child process that reads shaders, meshes and
-                        // pictures; NULL: $ROIL_READER, else beside the program
-    bool no_device;     // only load and check effects
-    bool no_cache;      // neither read nor write compiled shaders on disk
-    bool validate;      // Vulkan validation layers; also by $ROIL_VALIDATE=1
-    bool counters;      // count samples (see roil_counters); costs a little time
-    uint32_t reference; // above 0: passes `march` of effects are traced instead, without
-                        // approximations, to that many samples a pixel (roil_samples)
-    double timeout; // seconds that a frame may take on the device before it counts as lost; 0: 30,
-                    // 300 on a software device
-    // What may be taken of the host's memory, and of the device's: a share, "60%" (NULL), or an
-    // amount, "512M" or "8G". What an effect wants beyond that is refused with a message that has
-    // the sum and its largest parts. Of the whole process: the last roil that says it decides.
+    // Part of a device's name, or its number in the list of roil_info_devices. NULL: the first real
+    // GPU, or a software device where there is none.
+    const char *device;
+    // Folder with shaders/ and scripts/. NULL: $ROIL_HOME, or else a folder found from where the
+    // program lies.
+    const char *home;
+    // Path of the program roil-reader. It runs as a child process and reads shaders, meshes and
+    // pictures. NULL: $ROIL_READER, or else the one beside the program.
+    const char *reader;
+    bool no_device;     // use no device: effects can only be loaded and checked
+    bool no_cache;      // do not read or write compiled shaders on disk
+    bool validate;      // enable Vulkan's validation layers; $ROIL_VALIDATE=1 does too
+    bool counters;      // count samples (roil_counters); costs a little time
+    uint32_t reference; // above 0: passes `march` of effects are replaced by a path tracer without
+                        // approximations, up to this many samples per pixel (roil_samples)
+    // Seconds that a frame may take on the device before the device counts as lost. 0: 30, or 300
+    // on a software device.
+    double timeout;
+    // Limit on the memory taken from the host, and from the device where it has its own: a share
+    // such as "60%", or an amount such as "512M" or "8G". NULL: "60%". An effect that needs more is
+    // refused with a message that names the sum and its three largest parts. The limit belongs to
+    // the process: the last roil_create that sets it decides.
     const char *memory;
-    // Called ten times a second by the thread of roil_create, while that waits for a frame that
-    // takes the device longer than a second. False gives the device up: it is lost. May be NULL.
+    // Called ten times a second, on the thread of roil_create, while that thread waits for a frame
+    // that has taken more than a second. `seconds` is the time waited so far. Returning false gives
+    // up the device, which is then lost. May be NULL.
     bool (*waiting)(void *user, double seconds);
-    // Called by the thread that loads, while it reads the files of a sequence: how many it has
-    // read, and has to read. False gives the load up, which fails then. May be NULL.
+    // Called on the thread that loads an effect, while it reads the files of a sequence, with the
+    // number of files read and to be read. Returning false cancels the load, which then fails. May
+    // be NULL.
     bool (*loading)(void *user, double done, double whole);
-    void *user;        // of both
-    double time_limit; // seconds that a load may take, and then its compiling: its script and all
-                       // that works for it, by the clock; eight times as many of other threads and
-                       // processes; the script of a frame gets a tenth of both. 0: 120
-    const roil_window_desc *window; // NULL: nothing is shown
-    bool never_waits; // no frame waits for a frame of a sequence that is not decoded yet: the
-                      // nearest one that is stands in for it (roil_playback.late)
-    bool interaction; // flows in slices can be touched (roil_slices.h); each of their steps takes a
-                      // little longer then
+    void *user; // passed to waiting and loading
+    // Seconds that a load may take, and again its compilation, by the clock; other threads and
+    // processes that work for it may use eight times as much in sum. The script of one frame may
+    // use a tenth of both. 0: 120.
+    double time_limit;
+    const roil_window_desc *window; // NULL: no window
+    // A frame never waits for data. Where a sequence has not decoded its frame yet, the nearest
+    // decoded one is drawn instead (roil_playback.late); where a simulation has not caught up, an
+    // earlier state is drawn (roil_simulation.waiting). For players.
+    bool never_waits;
+    // Flows in slices can be changed by roil_slices.h. Each of their steps takes a little longer.
+    bool interaction;
 } roil_desc;
 
-roil *roil_create(const roil_desc *desc);
-void roil_destroy(roil *r); // after its effects; NULL is fine
-// False once a device was left behind because it hangs or cannot be waited for: exit() may then
-// wait for it without end, or free what it works with. End the process by _exit().
+roil *roil_create(const roil_desc *desc); // NULL with a message
+void roil_destroy(roil *r);               // its effects must be unloaded before; NULL is allowed
+
+// Returns false once a device was abandoned because it hangs. exit() could then wait for it forever
+// or free memory that it still uses, so the process must end with _exit().
 bool roil_can_exit(void);
 const char *roil_device_name(const roil *r);
 const char *roil_device_driver(const roil *r);
@@ -82,16 +108,18 @@ const char *roil_home(const roil *r); // the folder with shaders/ and scripts/
 // For effects that are loaded from now on: as `counters` and `reference` of roil_desc.
 void roil_set_counters(roil *r, bool counters);
 void roil_set_reference(roil *r, uint32_t samples);
-bool roil_is_lost(const roil *r); // the device hangs or is gone: only roil_destroy is left to do
+// Returns true when the device hangs or is gone. Nothing can be drawn any more: unload the effects
+// and call roil_destroy.
+bool roil_is_lost(const roil *r);
 
 typedef struct roil_memory {
-    uint64_t device, reserved; // bytes in use on the device, and taken from the driver
-    // The account that roil_desc.memory limits. Where device and host share their memory it is one;
-    // else these are the device's, unless there is none.
+    uint64_t device, reserved; // bytes in use on the device, and allocated from the driver
+    // Bytes counted against roil_desc.memory, and the limit. They are the device's where it has
+    // memory of its own; else device and host share one account. Without a device: the host's.
     uint64_t sum, limit;
     struct {
         char label[64];
-        uint64_t bytes; // 0: there are no more
+        uint64_t bytes; // 0: fewer parts than three
     } largest[3];
 } roil_memory;
 roil_memory roil_get_memory(const roil *r);
@@ -102,8 +130,9 @@ typedef struct roil_setting { // "steps" = "64", "march.mode" = "paper", "tint" 
     const char *name, *value;
 } roil_setting;
 
-// Runs the effect file. Settings override what it declares, structure included; a name that the
-// effect does not have is an error.
+// Runs an effect file and returns the effect, or NULL with a message. `settings` (may be NULL when
+// `count` is 0) replace values that the script declares, including those that change its structure.
+// A name that the effect does not have is an error.
 roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, size_t count);
 // The same of a file that its user did not name: when it is opened it lies in `folder`, wherever
 // links lead by then. NULL: roil_load.
@@ -114,33 +143,35 @@ void roil_unload(roil_effect *e); // NULL is fine
 bool roil_check(roil_effect *e);
 
 typedef struct roil_effect_info {
-    const char *name;
-    double fps;
+    const char *name; // lives as long as the effect
+    double fps;       // frames per second
     uint32_t first_frame, frames;
 } roil_effect_info;
 roil_effect_info roil_get_info(const roil_effect *e);
 
-// Sets a control (below); takes effect with the next frame. What is structure ("march.mode") can
-// only be set when the effect is loaded.
+// Sets a control (see below) from the next frame on. A structural one, such as "march.mode", can
+// only be set by roil_load or roil_live_set. On failure nothing changes.
 bool roil_set(roil_effect *e, const char *name, const char *value);
-bool roil_reset(roil_effect *e, const char *name); // to what the script says
+bool roil_reset(roil_effect *e, const char *name); // back to the script's own value
 
-// Keeps an image of the graph ("march.color", or "march" for its first) so that it can be saved or
-// inspected. Takes effect with the next roil_prepare, which keeps histories.
+// Keeps an image of the graph, so that it can be saved or inspected: "march.color", or "march" for
+// the pass's first output. Takes effect with the next roil_prepare, which preserves histories.
 bool roil_keep(roil_effect *e, const char *image);
-void roil_keep_only(roil_effect *e, const char *image); // no others any more; NULL: none at all
-// Compiles and allocates for a picture size, 1 to 16384 each; again for a new size. What was
-// rendered before cannot be read any more.
+// Keeps this image and no other. NULL: none.
+void roil_keep_only(roil_effect *e, const char *image);
+
+// Compiles the effect and allocates its images for a picture size in pixels, 1 to 16384 each. Call
+// it again to change the size. Pictures rendered before cannot be read any more.
 bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height);
-// Renders one frame; returns when it is submitted. Histories (what passes keep from frame to frame)
-// start anew unless `frame` is the one after the last.
+// Renders one frame and returns once it is submitted. Histories (images that passes keep from frame
+// to frame) are cleared unless `frame` follows the last rendered frame.
 bool roil_render(roil_effect *e, double frame);
-// The same for a player, whose steps are uneven: histories go on; `frame` may be the last one
-// again.
+// Renders one frame for a player, whose steps are uneven: histories are preserved. `frame` may be
+// the last one again.
 bool roil_advance(roil_effect *e, double frame);
 
-// Samples a pixel that the last frame has gathered where it is traced; roil_advance to the same
-// frame adds to them. 0: nothing in the picture is.
+// Returns the samples per pixel that the last frame has gathered, where it is path traced; another
+// roil_advance to the same frame adds more. 0: the picture is not path traced.
 uint32_t roil_samples(const roil_effect *e);
 
 // A number that moved beyond its range, or lengths that do not fit together, as where a file's unit
@@ -148,111 +179,119 @@ uint32_t roil_samples(const roil_effect *e);
 // once.
 const char *roil_warning(const roil_effect *e);
 
-typedef struct roil_simulation { // what goes on from frame to frame in steps of its own
+// Simulations advance from frame to frame in steps of their own. When a rendered frame does not
+// follow the last one, the skipped frames are simulated first: from the last frame on, or from the
+// beginning when time went back. With roil_desc.never_waits this work is spread over several calls
+// of roil_advance, and going back starts from the nearest of the snapshots that are kept about
+// every second, as long as no number was changed since it was taken.
+typedef struct roil_simulation {
     bool waiting;   // the last rendered frame shows an earlier state: render it again (never_waits)
-    double reached; // seconds of the effect; -INFINITY: nothing yet
-    const char *trouble; // which key to change; NULL: none
-    const char *pass;    // of the trouble
+    double reached; // time of the effect that is simulated, seconds; -INFINITY: none yet
+    const char *trouble; // what went wrong and which key to change; NULL: nothing
+    const char *pass;    // the pass in trouble
 } roil_simulation;
-// A frame that does not follow the last has the frames between simulated first: from the last one
-// on, or, back in time, from the beginning. One that never waits does that over several frames, and
-// goes back to one of the snapshots that it keeps, about a second apart, while numbers stay as they
-// are.
 bool roil_get_simulation(const roil_effect *e, roil_simulation *out); // false: nothing simulates
-void roil_restart(roil_effect *e); // simulations begin anew with the next frame
-// The state of all that simulates, after the last frame, as one file: there whole or not at all.
-// And back, after roil_prepare: the next frames are then those of a run that never stopped. `frame`
-// (NULL is fine) is the one rendered last before it was saved. A file that does not fit the effect
-// is refused with a message that says what differs; simulations then begin anew.
+void roil_restart(roil_effect *e); // simulations start from the beginning with the next frame
+
+// Writes the state of all simulations after the last frame to a file. On failure there is no file,
+// or the previous one.
 bool roil_checkpoint(roil_effect *e, const char *file);
+// Loads such a state, after roil_prepare. The frames that follow are those of a run that was never
+// interrupted. `frame` (may be NULL) receives the frame that was rendered last before the state was
+// saved. A file that does not fit the effect is refused with a message that names the difference;
+// simulations then start from the beginning.
 bool roil_restore(roil_effect *e, const char *file, double *frame);
-// Is told, while frames that were left out are simulated, of the steps done and wanted,
-// or of frames that the script ran. When it returns false the frame is given up, and
-// fails.
+
+// Sets a callback, or removes it (NULL). Called while skipped frames are simulated, with the steps
+// done and the steps needed, and while the script runs skipped frames, with the frames done and the
+// frames needed. Returning false cancels the frame, whose rendering then fails.
 void roil_on_progress(roil_effect *e, bool (*call)(void *user, double done, double whole),
                       void *user);
 
-typedef struct roil_readout { // what a pass tells of itself: "Mach", "time step"
+typedef struct roil_readout { // a value that a pass reports: "Mach", "time step"
     const char *pass, *name, *unit;
     double value;
 } roil_readout;
-// After roil_prepare; returns how many there are. At most `capacity` are written. What the script
-// says by its fx:status comes last, as of the pass "effect".
+// After roil_prepare. Values that the script reports by fx:status come last, with the pass
+// "effect". Strings live until the next frame.
 size_t roil_readouts(roil_effect *e, roil_readout *out, size_t capacity);
 
-typedef struct roil_time { // GPU time of a pass in the last frame
+typedef struct roil_time { // time of a pass on the GPU in the last frame
     char pass[64];
     double milliseconds;
 } roil_time;
-typedef struct roil_counter { // what a pass counted in the last frame, if counters are on
+typedef struct roil_counter { // a counter of a pass in the last frame (roil_desc.counters)
     char pass[64], name[64];
     uint64_t value;
 } roil_counter;
-// A pass that is several pieces of work under one name counts as one. Both wait for the frame and
-// return how many there are; at most `capacity` are written.
+// Both wait for the last frame. Parts of a pass that have one name are added up.
 size_t roil_times(roil_effect *e, roil_time *out, size_t capacity);
 size_t roil_counters(roil_effect *e, roil_counter *out, size_t capacity);
 
-typedef struct roil_playback {  // of all sequences of an effect, since they were opened
-    uint64_t shown;             // frames of theirs that came on
-    uint64_t late;              // rendered frames that show another one instead (never_waits)
+typedef struct roil_playback {  // all sequences of an effect, since they were opened
+    uint64_t shown;             // how often a new frame of a sequence was shown
+    uint64_t late;              // rendered frames that show another frame instead (never_waits)
     uint64_t decoded, uploaded; // frames
-    uint64_t decoded_bytes, uploaded_bytes; // as they lie on the device
-    double decode_seconds;                  // of processor time, all threads together
-    uint32_t threads;                       // that decode ahead
-    uint64_t device_bytes;                  // of their textures now
-    uint64_t frame_bytes, frame_voxels;     // of the largest frame: what it takes, what is not 0
-    bool waiting; // the last rendered frame shows another one: render it again
+    uint64_t decoded_bytes, uploaded_bytes; // size as stored on the device
+    double decode_seconds;                  // processor time of all threads together
+    uint32_t threads;                       // threads that decode ahead
+    uint64_t device_bytes;                  // size of their textures now
+    uint64_t frame_bytes, frame_voxels;     // bytes and nonzero voxels of the largest frame
+    bool waiting; // the last rendered frame shows another frame: render it again
 } roil_playback;
 bool roil_get_playback(const roil_effect *e, roil_playback *out); // false: it has no sequence
 
 // ---- pictures ---------------------------------------------------------------------------------
 
-// Picture of the last frame: width * height * 4 bytes, sRGB, opaque or with straight alpha. Values
-// are rounded to the nearest code, for what measures; PNG files of 8 bits, videos and roil_show are
-// dithered, for eyes.
+// Reads the picture of the last frame, rows from the top: `out` must hold width * height * 4 bytes,
+// sRGB, opaque or with straight alpha. Values are rounded to the nearest code, for measurements;
+// PNG files of 8 bits, videos and roil_show are dithered. Waits for the device.
 bool roil_read(roil_effect *e, bool alpha, uint8_t *out);
 
 typedef struct roil_save_options {
-    const char *image;  // NULL: the effect's picture; else an image that was kept
-    bool alpha;         // PNG: keep alpha, colours divided by it (straight), as PNG has it: light
-                        // over little cover, as of fire, is cut off at white
-    bool premultiplied; // PNG: keep alpha, colours as they lie on black, so that nothing is cut
-                        // off; who lays them over something has to be told
-    bool sixteen;       // PNG: 16 bits a channel
-    bool full;          // EXR: 32-bit float; else half
-    bool shown; // EXR: the tone-mapped picture, still linear, in place of the scene-linear one
+    const char *image; // an image that was kept; NULL: the effect's picture
+    bool alpha;        // PNG: write straight alpha, colours divided by it. Bright light with little
+                       // alpha, such as fire, is clipped at white
+    bool premultiplied; // PNG: write alpha with colours as they appear on black. Nothing is
+                        // clipped, but whoever composes the picture must know. Wins over `alpha`
+    bool sixteen;       // PNG: 16 bits per channel instead of 8
+    bool full;          // EXR: 32-bit float instead of half
+    bool shown; // EXR: the tone-mapped picture, still linear, instead of the scene-linear one
 } roil_save_options;
-// PNG files hold a recipe (below) of how they were made.
-// .png: display-referred sRGB; .exr: scene-linear with A, and depth as Z where the effect gives it.
+// Saves the last frame and returns when the file is written. A .png file is display-referred sRGB
+// and holds a recipe (see below) of how it was made. An .exr file is scene-linear, with alpha in A,
+// and depth (m) in Z where the effect has it. Missing folders are created. `options` may be NULL.
 bool roil_save(roil_effect *e, const char *file, const roil_save_options *options);
 
-// The same for many pictures: reads the last frame back and leaves the file to other threads, while
-// the next frame is drawn. Waits while many pictures wait. False also when an earlier one failed.
+// Saves many pictures: roil_writer_save reads the last frame back, and other threads encode and
+// write the file while the next frame is drawn. It blocks while many pictures wait for that, and
+// also returns false when an earlier picture failed.
 typedef struct roil_writer roil_writer;
 roil_writer *roil_writer_create(void);
 bool roil_writer_save(roil_writer *w, roil_effect *e, const char *file,
                       const roil_save_options *options);
-bool roil_writer_finish(roil_writer *w); // when all is written; frees; NULL is fine
+bool roil_writer_finish(roil_writer *w); // waits for all files and frees `w`; NULL is allowed
 
-typedef struct roil_recipe { // what made a picture
-    const char *effect; // its file, as it was given; NULL: outside of the current folder, so that
-                        // a stranger's picture has it opened only by a user who names it
+typedef struct roil_recipe { // how a picture was made
+    // The effect's file as it was given. NULL: it lies outside of the current folder; a picture
+    // from a stranger must not open a file that the user did not name.
+    const char *effect;
     double frame;
     uint32_t width, height;
-    const roil_setting *settings; // all that differs from the script
+    const roil_setting *settings; // every control that differs from the script
     size_t setting_count;
 } roil_recipe;
-roil_recipe *roil_read_recipe(const char *png); // NULL when the file holds none
-void roil_free_recipe(roil_recipe *r);          // NULL is fine
+roil_recipe *roil_read_recipe(const char *png); // free with roil_free_recipe; NULL: it holds none
+void roil_free_recipe(roil_recipe *r);          // NULL is allowed
 
 typedef struct roil_video roil_video;
-roil_video *roil_video_create(roil_effect *e, const char *file, double fps); // .mp4
-bool roil_video_add(roil_video *v);     // the last frame of its effect; encoded on another thread
-bool roil_video_finish(roil_video *v);  // writes the file; frees
-void roil_video_abandon(roil_video *v); // frees, leaves no file; NULL is fine
+// Begins an .mp4 file of the effect's pictures in their size now.
+roil_video *roil_video_create(roil_effect *e, const char *file, double fps);
+bool roil_video_add(roil_video *v);     // adds the last frame; another thread encodes it
+bool roil_video_finish(roil_video *v);  // completes the file and frees `v`
+void roil_video_abandon(roil_video *v); // frees `v` and leaves no file; NULL is allowed
 
-// ---- controls: all of an effect that can be turned --------------------------------------------
+// ---- controls: everything of an effect that can be set by name --------------------------------
 
 typedef enum roil_type {
     ROIL_FLOAT,
@@ -285,94 +324,106 @@ typedef struct roil_control { // strings live as long as the effect
     bool moved;  // differs from the script, by a setting
 } roil_control;
 
-// Parameters in order of declaration, palettes and curves of the script, then camera, sun, sky and
-// lights, then uniforms and options pass by pass.
+// Controls are listed in this order: parameters as declared; palettes and curves; camera, sun, sky
+// and lights; then the uniforms and options of each pass.
 size_t roil_control_count(const roil_effect *e);
-void roil_get_control(roil_effect *e, size_t index, roil_control *out);
-bool roil_find_control(roil_effect *e, const char *name, size_t *index); // false with a message
-// As roil_set takes it; and as Lua to be pasted into the effect. Free with roil_free.
+void roil_get_control(roil_effect *e, size_t index, roil_control *out); // index below the count
+// Finds a control by name. Returns false with a message, which suggests a similar name.
+bool roil_find_control(roil_effect *e, const char *name, size_t *index);
+// Return the value of now as text: as roil_set takes it, and as Lua to be pasted into the effect.
+// Free it with roil_free. NULL with a message: there is no such control.
 char *roil_control_text(roil_effect *e, const char *name);
 char *roil_control_lua(roil_effect *e, const char *name);
 
 enum { ROIL_MAX_STOPS = 64 };
 typedef struct roil_stop {
-    float at;       // position, in the palette's range
-    float color[4]; // linear Rec.709, any brightness; alpha
+    float at;       // position in the palette's range
+    float color[4]; // linear Rec.709, may exceed 1; then alpha, 0 to 1
 } roil_stop;
 typedef struct roil_palette {
-    roil_stop stops[ROIL_MAX_STOPS]; // rising; of a keyed palette those of its first key
-    size_t count;                    // 0: blackbody
+    roil_stop stops[ROIL_MAX_STOPS]; // in rising order; of a palette with keys, those of the first
+    size_t count;                    // 0: a blackbody palette
     float min, max;                  // the range that it covers
-    bool keyed;                      // moves in time
+    bool keyed;                      // it changes over time
 } roil_palette;
 typedef struct roil_key {
-    float time; // seconds, or of a curve over age: 0 to 1
+    float time; // seconds; of a curve over age 0 (birth) to 1 (death)
     float value[4];
 } roil_key;
 typedef struct roil_curve {
-    roil_key keys[ROIL_MAX_STOPS]; // strictly rising in time
+    roil_key keys[ROIL_MAX_STOPS]; // in strictly rising order of time
     size_t count;
-    int components;
-    const char *shape; // "step", "linear", "cubic", "ease_in", "ease_out", "ease_in_out"
-    float period;      // seconds; 0: does not repeat
-    bool over_age;     // over a particle's life, not over time; its shape is "linear"
+    int components;    // used of each value, 1 to 4
+    const char *shape; // "step", "linear", "cubic", "ease_in", "ease_out", "ease_in_out"; static
+    float period;      // seconds after which it repeats; 0: it does not
+    bool over_age;     // its times are a particle's age; its shape is "linear"
 } roil_curve;
+// False with a message: there is no palette or curve of that name.
 bool roil_get_palette(roil_effect *e, const char *name, roil_palette *out);
 bool roil_get_curve(roil_effect *e, const char *name, roil_curve *out);
-// `count` colours across its range at a time, and values of a curve at `count` times.
+// Evaluate `count` colours evenly spaced over the palette's range at a time (s), and a curve at
+// `count` times.
 bool roil_sample_palette(roil_effect *e, const char *name, double time, float (*out)[4],
                          size_t count);
 bool roil_sample_curve(roil_effect *e, const char *name, const double *times, float (*out)[4],
                        size_t count);
-// The text that roil_set takes: "0 #000000; 0.5 #7a1500 0.5; 1 4,2,0.5" (position, colour as sRGB
-// or three linear numbers, alpha), and "cubic 0 1; 2.5 0,1,0" (shape, then time and value of each
-// key).
+// Return the text that roil_set takes: "0 #000000; 0.5 #7a1500 0.5; 1 4,2,0.5" (position, then a
+// colour as sRGB or as three linear numbers, then alpha), and "cubic 0 1; 2.5 0,1,0" (shape, then
+// time and value of each key). Free it with roil_free.
 char *roil_palette_text(const roil_palette *palette);
 char *roil_curve_text(const roil_curve *curve);
 
-// Camera of the last frame, metres; "camera.eye", "camera.target", "camera.fov" are its controls.
 typedef struct roil_camera {
-    float eye[3], target[3];
-    float fov; // vertical, degrees
+    float eye[3], target[3]; // metres
+    float fov;               // vertical, degrees
 } roil_camera;
+// Returns the camera of the last frame. Its controls are "camera.eye", "camera.target" and
+// "camera.fov".
 bool roil_get_camera(roil_effect *e, roil_camera *out);
-bool roil_get_bounds(roil_effect *e, float low[3], float high[3]); // of its volumes; false: none
-// Whether a point of the last frame lies under a mesh that is open below, and so is ground (not an
-// instance); then `height` is how high it is there (m).
+// Returns the box that encloses the effect's volumes (m). False: it has none.
+bool roil_get_bounds(roil_effect *e, float low[3], float high[3]);
+// Returns whether a point (m) of the last frame lies below the ground: a mesh that is open below
+// and not an instance. `height` receives the height (m) of the ground there.
 bool roil_is_under_ground(roil_effect *e, const float at[3], float *height);
 
-// ---- events: what happens to an effect, where its script hears it -------------------------------
-// They are one control, "effect.events": "2.5 click 0.4 0.6; 3 key f; 4 key f 12 -3 0" (seconds,
-// what, and where: 0 to 1 from the top left of the picture, a point in metres, or the six numbers
-// of a ray). So they are set, undone and kept like any other, and a picture's recipe has them. What
-// the script makes of them is the same whichever frames are drawn: frames that were left out are
-// run by it, and back in time is from the beginning. A checkpoint holds none of it; after
-// roil_restore the script runs from the first frame again.
+// ---- events: key presses and clicks that an effect's script handles ----------------------------
+// All events of an effect form one control, "effect.events", in rising order of time:
+// "2.5 click 0.4 0.6; 3 key f; 4 key f 12 -3 0". Each has a time (s), a name, and a place: two
+// numbers are a position in the picture, 0 to 1 from the top left; three a point (m); six the
+// origin and direction of a ray. Like any control they can be set and reset, and a picture's recipe
+// holds them.
+//
+// The result of an event does not depend on which frames are drawn: the script also runs the frames
+// that are skipped, and going back in time runs it from the beginning. A checkpoint holds no
+// events; after roil_restore the script runs from the first frame on.
 
 typedef struct roil_hotkey { // strings live as long as the effect
     const char *key;         // "f", "space"; "": clicks
     const char *help;
 } roil_hotkey;
-// What the script hears; returns how many there are. At most `capacity` are written.
+// Lists what the script handles.
 size_t roil_hotkeys(const roil_effect *e, roil_hotkey *out, size_t capacity);
-// The events with one more, at the time of the last frame and along the ray through a place in it,
-// as roil_set takes them; key "": a click. Free with roil_free. NULL when there can be no more.
+// Returns the text of all events with one more, as roil_set takes it: at the time of the last
+// frame, along the camera's ray through x, y (0 to 1 from the top left). key "": a click. Free it
+// with roil_free. NULL with a message: there is no room for another event.
 char *roil_event_text(roil_effect *e, const char *key, float x, float y);
 
 // ---- presets: named values in a small Lua file, "explosion.presets/NAME.lua" beside the effect --
 
-typedef struct roil_preset { // what a preset sets; free with roil_free_preset
+typedef struct roil_preset { // what a preset sets
     roil_setting *settings;
     size_t count;
 } roil_preset;
-// `preset`: a name, or a path to a .lua file.
+// Reads a preset, given by its name or by the path of a .lua file. Free it with roil_free_preset.
 roil_preset *roil_read_preset(roil *r, const char *effect_file, const char *preset);
-void roil_free_preset(roil_preset *preset);
-bool roil_write_preset(roil_effect *e, const char *name); // all that is moved, and not the camera
-size_t roil_presets(const char *effect_file, char (*names)[64],
-                    size_t capacity); // sorted; the count
+void roil_free_preset(roil_preset *preset); // NULL is allowed
+// Writes every control that was changed, except for the camera and the events. Replaces a preset of
+// that name. A name has letters, digits, _ and -.
+bool roil_write_preset(roil_effect *e, const char *name);
+// Lists the names of an effect's presets, sorted. Any thread.
+size_t roil_presets(const char *effect_file, char (*names)[64], size_t capacity);
 
-// ---- live: an effect that follows its files ---------------------------------------------------
+// ---- live: an effect that is rebuilt when its files change -------------------------------------
 
 typedef struct roil_live roil_live;
 
@@ -382,146 +433,157 @@ typedef struct roil_live_desc {
     size_t preset_count;
     const roil_setting *settings; // win over presets
     size_t setting_count;
-    void (*wake)(void *user); // from another thread: roil_live_update has something to do; or NULL
-    void *user;
+    // Called on another thread when roil_live_update has something to do. May be NULL.
+    void (*wake)(void *user);
+    void *user; // passed to wake
 } roil_live_desc;
 
-// Watches the effect's files and builds it in the background whenever one changes. What is broken
-// from the start is watched too: NULL only when the file's folder cannot be watched.
+// Starts to watch the effect's files and to build it, on threads of its own, whenever one changes.
+// A file that is broken is watched until it is mended: NULL is returned only without a device, or
+// when the file's folder cannot be watched.
 roil_live *roil_live_create(roil *r, const roil_live_desc *desc);
-// A build that runs is told to end. False: it hangs, and stays behind with the device, so that a
-// roil_destroy leaves these as they are.
-bool roil_live_destroy(roil_live *l); // NULL is fine
-// Between frames: takes over what the background has finished, prepared for the size of the last
-// one and with its histories. True when the effect or the message changed. `frame` is the one that
-// will be drawn next: an effect whose `update` or functions fail there is not taken.
+// Cancels a build that is running, waits for it a second and frees `l`. Returns false when the
+// build hangs: it keeps using the device and the memory, and roil_destroy then frees nothing. NULL
+// is allowed.
+bool roil_live_destroy(roil_live *l);
+// Call it between frames: swaps in the effect that was built last, prepared for this size and with
+// the histories of the old one. Returns true when the effect or the message has changed; handles of
+// the old effect are then invalid. A size of 0 (a minimised window) swaps nothing in. `frame` is
+// the frame that will be drawn next: an effect whose script fails at it is refused.
 bool roil_live_update(roil_live *l, uint32_t width, uint32_t height, double frame);
-void roil_live_wait(roil_live *l);           // until the background has nothing left to do
-roil_effect *roil_live_effect(roil_live *l); // the last good one; NULL: none yet
-const char *roil_live_message(roil_live *l); // why the newest is not good; NULL when it is
-// Sets a control for this effect and those that follow, until the script's own value changes. What
-// is structural is built in the background.
+void roil_live_wait(roil_live *l); // blocks until every change has been built
+// Returns the last effect that could be built, owned by `l`; valid until roil_live_update returns
+// true. NULL: none yet.
+roil_effect *roil_live_effect(roil_live *l);
+// Returns why the newest version could not be built, with the source line; NULL: it could. Valid
+// until roil_live_update returns true.
+const char *roil_live_message(roil_live *l);
+// Sets a control of this effect and of those that are built later, until the script's own value of
+// it changes. A structural control causes a build.
 bool roil_live_set(roil_live *l, const char *name, const char *value);
-bool roil_live_reset(roil_live *l, const char *name); // NULL: everything
+bool roil_live_reset(roil_live *l, const char *name); // NULL: all controls
 typedef struct roil_live_count {
-    uint64_t reloads, failures; // builds that were taken over, and that were not
-    double last; // seconds from the event of the file to the take-over of the last build
+    uint64_t reloads, failures; // builds that were swapped in, and that failed
+    double last; // seconds from the change of the file until its build was swapped in
 } roil_live_count;
 roil_live_count roil_live_counts(const roil_live *l);
 
 // ---- window -----------------------------------------------------------------------------------
 
-typedef struct roil_texture roil_texture; // 8-bit sRGB with alpha
-// `rgba`: rows from the top; NULL: transparent.
+typedef struct roil_texture roil_texture; // 8-bit sRGB with alpha, on the device
+// `rgba` has width * height * 4 bytes, rows from the top. NULL: transparent.
 roil_texture *roil_texture_create(roil *r, uint32_t width, uint32_t height, const uint8_t *rgba);
-void roil_texture_destroy(roil *r, roil_texture *t); // NULL is fine
+void roil_texture_destroy(roil *r, roil_texture *t); // NULL is allowed
 
 typedef struct roil_vertex {
     float x, y;     // pixels from the top left
-    float u, v;     // of the texture, 0 to 1
+    float u, v;     // texture coordinates, 0 to 1
     uint32_t color; // sRGB with straight alpha, red in the lowest byte; multiplies the texture
 } roil_vertex;
-typedef struct roil_draw {       // triangles of one texture
+typedef struct roil_draw {       // triangles with one texture
     const roil_texture *texture; // NULL: white
-    uint32_t first, count;       // indices
+    uint32_t first, count;       // range of `indices`
     float clip[4];               // left, top, right, bottom in pixels
 } roil_draw;
-typedef struct roil_picture { // what a window shows
+typedef struct roil_picture { // the content of a window
     uint32_t width, height;   // pixels
-    float background[3];      // sRGB
-    roil_effect *effect;      // its last picture, as a PNG file without alpha has it; NULL: none
-    float view[4];            // left, top, right, bottom of where it goes; it keeps its aspect
+    float background[3];      // sRGB, 0 to 1
+    roil_effect *effect;      // its last picture is shown; NULL: none
+    float view[4]; // left, top, right, bottom (pixels) of the area for it; its aspect ratio is kept
     const roil_vertex *vertices;
     const uint32_t *indices;
-    const roil_draw *draws; // in order, over the effect
+    const roil_draw *draws; // drawn in order over the effect
     size_t vertex_count, index_count, draw_count;
 } roil_picture;
-// Draws and, when there is a window, shows it; waits for the display's turn. A width or height of 0
-// (minimised) shows nothing. False on indices that do not exist, and when the device is lost.
+// Draws the picture and presents it when there is a window, which waits for the display. A width or
+// height of 0 (a minimised window) shows nothing. Returns false when an index is out of range, and
+// when the device is lost.
 bool roil_show(roil *r, const roil_picture *picture);
-// What was shown last: width * height * 4 bytes.
+// Reads the picture shown last: `out` must hold its width * height * 4 bytes. Waits for the device.
 bool roil_read_shown(roil *r, uint8_t *out);
 
-// Volumes are seen as slices with +z upwards, along z with +y. Outside of the image lies a dark
-// field; what is infinite or no number is magenta; behind alpha, with other channels, are checkers.
-typedef struct roil_inspection { // how an image of the graph is looked at
-    const char *image;           // must be kept (roil_keep), unless it shares no memory
-    uint32_t mip;
-    int axis;          // of a volume: 0 x, 1 y, 2 z is the direction of sight
-    float slice;       // of a volume: 0 to 1 along it
+// A view of an image of the graph. Volumes are shown in slices with z up, or y up when seen along
+// z. Pixels outside of the image are dark; infinities and NaN are magenta; a checkerboard shows
+// through alpha.
+typedef struct roil_inspection {
+    const char *image; // it must be kept (roil_keep), unless it shares its memory with no other
+    uint32_t mip;      // mip level, from 0
+    int axis;          // of a volume: the viewing direction, 0: x, 1: y, 2: z
+    float slice;       // of a volume: position along the axis, 0 to 1
     float exposure;    // stops
-    unsigned channels; // bits: 1 red, 2 green, 4 blue, 8 alpha; one alone is shown in grey, also
-                       // when the image has no other
+    unsigned channels; // bits: 1 red, 2 green, 4 blue, 8 alpha; a single channel is shown in grey
     bool negative;     // show the sign of the largest channel: positive orange, negative blue
-    float center[2];   // of the view in the image or slice, 0 to 1 from the top left
-    float zoom;        // pixels of the texture for one of the image
-    float cursor[2];   // pixel of the texture whose value is wanted; negative: none
+    float center[2];   // centre of the view in the image or slice, 0 to 1 from the top left
+    float zoom;        // pixels of the target per pixel of the image, above 0
+    float cursor[2];   // pixel of the target whose value is read; negative: none
 } roil_inspection;
 typedef struct roil_texel {
-    bool valid;     // false: no value yet, or the cursor is beside the image
-    uint32_t at[3]; // texel of the level
-    float value[4]; // as stored; missing channels 0, alpha 1
+    bool valid;     // false: there is no value yet, or the cursor is outside of the image
+    uint32_t at[3]; // texel of the mip level
+    float value[4]; // as stored; missing channels are 0, and alpha 1
 } roil_texel;
 typedef struct roil_image_info {
     char name[96];
-    const char *format;     // "rgba16f"
-    uint32_t size[3], mips; // depth 1: 2D
-    bool volume, culled;    // culled: nothing needs it, so it is not drawn
+    const char *format;     // "rgba16f"; static
+    uint32_t size[3], mips; // size[2] 1: two-dimensional
+    bool volume, culled;    // culled: nothing reads it, so it is not computed
 } roil_image_info;
-// After roil_prepare; returns how many there are, 0 before. At most `capacity` are written.
+// Lists the images of the graph, after roil_prepare; before it there are 0.
 size_t roil_images(roil_effect *e, roil_image_info *out, size_t capacity);
-// Draws it into `target`. `texel`: under the cursor, of an earlier call whose frame has finished.
+// Draws the view into `target`. `texel` receives the value under the cursor, which is that of an
+// earlier call whose frame has finished, so that nothing waits.
 bool roil_inspect(roil_effect *e, const roil_inspection *how, roil_texture *target,
                   roil_texel *texel);
 
 // ---- comparison -------------------------------------------------------------------------------
 
 typedef struct roil_comparison {
-    const char *a, *b;        // .png or .exr, of one size
-    float exposure;           // stops, -64 to 64, of what is .exr
-    double pixels_per_degree; // of the observer whom FLIP imitates, 1 to 1000; 0: 67
-    const char *difference; // .png: FLIP at each pixel, from black (0) to pale yellow (1); or NULL
-    const char *beside;     // .png: a, b and that picture next to each other; or NULL
+    const char *a, *b;        // .png or .exr files of the same size
+    float exposure;           // applied to .exr files, stops, -64 to 64
+    double pixels_per_degree; // FLIP's viewing distance, 1 to 1000; 0: 67
+    // .png file to write: FLIP of each pixel, from black (0) to pale yellow (1). May be NULL.
+    const char *difference;
+    const char *beside; // .png file to write: a, b and that picture side by side. May be NULL
 } roil_comparison;
 typedef struct roil_difference {
     uint32_t width, height;
-    double psnr; // dB over R, G and B, with a peak of 1; INFINITY: equal
-    double ssim; // of luma, mean; 1: equal
-    double flip; // LDR-FLIP, mean; 0: equal, 1: the greatest
+    double psnr; // dB over R, G and B with a peak of 1; INFINITY: equal
+    double ssim; // mean over the luma; 1: equal
+    double flip; // mean of LDR-FLIP; 0: equal, 1: the maximum
 } roil_difference;
-// Of sRGB as a display gets it: EXR pictures are exposed, clamped to 0 to 1 and encoded, without
-// the tone mapping of an effect; behind the alpha of PNG pictures is black, as it is in EXR. Needs
-// no device.
+// Compares two files as sRGB pictures on a display. EXR files are exposed, clamped to 0 to 1 and
+// encoded, without an effect's tone mapping; PNG files with alpha are shown on black, as EXR files
+// are. Needs no device. Any thread.
 bool roil_compare(const roil_comparison *how, roil_difference *out);
 
 // ---- export -----------------------------------------------------------------------------------
 
 typedef struct roil_export {
-    const char *pattern; // .vdb file, or a glob of a sequence
-    const char *grid;    // exact name of a grid of numbers; NULL: "density"
-    const char *type;    // "u8", "u16" (0 to the greatest value), "f16", "f32"; NULL: "u8"
-    const char *file;    // one file of all frames, x fastest, little-endian
-    // Is told of the frames that were read, each twice, and of those that will be. False gives the
-    // export up, which fails then. May be NULL.
+    const char *pattern; // a .vdb file, or a glob of a sequence
+    const char *grid;    // exact name of a scalar grid; NULL: "density"
+    const char *type;    // "u8", "u16" (both scaled to the maximum), "f16" or "f32"; NULL: "u8"
+    const char *file;    // output: all frames in one file, x fastest, little-endian
+    // Called with the number of frames read and to be read; each is read twice. Returning false
+    // cancels the export, which then fails. May be NULL.
     bool (*progress)(void *user, double done, double whole);
-    void *user;
+    void *user; // passed to progress
 } roil_export;
-// Resamples every frame into the box that encloses the sequence. Returns a text that says how Lua
-// reads the file back (free with roil_free), or NULL.
+// Resamples every frame into the box that encloses the sequence. Returns a text that says how a
+// script reads the file (free it with roil_free), or NULL with a message. Any thread.
 char *roil_export_raw(const roil_export *desc);
 
-// What fills space in an effect, voxel by voxel, as OpenVDB files.
+// Export of what fills space in an effect, sampled at voxels, as OpenVDB files.
 typedef struct roil_volume_desc {
-    const char *source; // a grid by the name of its variable ("air", "burst"), or a pass whose
-                        // medium it is ("march"); NULL: the grid that is simulated, else the medium
-                        // of the first pass `march`
-    const char *fields; // "density,velocity"; NULL: all that it has, or that the effect samples
-    uint32_t size;   // voxels along the longest side, 1 to 1024; 0: of the grids that are sampled
-    float box[2][3]; // least and greatest corner, metres; equal: the grid's, or where there is
-                     // something in the frames `first` to `last`
-    double first, last;
-    float tolerance; // values that are no greater are left out of the files
-    bool alone;      // draw no picture
+    // The name of a grid's variable ("air", "burst"), or of a pass whose medium it is ("march").
+    // NULL: the simulated grid, or else the medium of the first pass `march`.
+    const char *source;
+    const char *fields; // "density,velocity"; NULL: every field that it has or the effect samples
+    uint32_t size;      // voxels along the longest side, 1 to 1024; 0: that of the sampled grids
+    float box[2][3];    // minimum and maximum corner (m); equal: the grid's box, or the box that is
+                        // not empty in the frames `first` to `last`
+    double first, last; // frames
+    float tolerance;    // values up to it count as empty and are not stored
+    bool alone;         // do not draw the effect's pictures
 } roil_volume_desc;
 typedef struct roil_volume roil_volume;
 typedef struct roil_volume_info {
@@ -529,27 +591,29 @@ typedef struct roil_volume_info {
     float voxel_size; // metres
     char fields[256]; // "density, velocity"
 } roil_volume_info;
-// After roil_load, before roil_prepare; to be finished before roil_unload.
+// Call it after roil_load and before roil_prepare. The volume must be finished before roil_unload.
 roil_volume *roil_volume_create(roil_effect *e, const roil_volume_desc *desc);
 roil_volume_info roil_volume_get_info(const roil_volume *v);
-// The last frame as a .vdb file: fog volumes in halves, Z up, metres, metres a second. Reads it
-// back and leaves the file to another thread; false also when an earlier one failed.
+// Saves the last frame as a .vdb file: fog volumes of 16-bit floats, z up, metres, metres per
+// second. Reads the data back; another thread writes the file. Also returns false when an earlier
+// file failed.
 bool roil_volume_save(roil_volume *v, const char *file);
-bool roil_volume_finish(roil_volume *v); // when all is written; frees; NULL is fine
+bool roil_volume_finish(roil_volume *v); // waits for all files and frees `v`; NULL is allowed
 
 // ---- reference --------------------------------------------------------------------------------
-// Text for people, made from the tables that the program itself uses. Free with roil_free.
+// Texts for people, printed from the tables that the library itself uses. Each returns NULL with a
+// message on failure. Free them with roil_free.
 
-char *roil_info_devices(void);
-char *roil_info_passes(roil *r, const char *name); // NULL: one line each
-char *roil_info_fields(const char *name);          // NULL: one line each
-char *roil_info_params(roil_effect *e); // memory; parameters, uniforms, options of passes
-char *roil_info_graph(roil_effect *e);  // Graphviz dot; needs roil_check or roil_prepare
-char *roil_info_vdb(const char *file);
-void roil_free(void *text);
+char *roil_info_devices(void);                     // any thread
+char *roil_info_passes(roil *r, const char *name); // NULL: one line for each
+char *roil_info_fields(const char *name);          // NULL: one line for each; any thread
+char *roil_info_params(roil_effect *e); // memory; parameters; uniforms and options of passes
+char *roil_info_graph(roil_effect *e);  // Graphviz dot; after roil_check or roil_prepare
+char *roil_info_vdb(const char *file);  // any thread
+void roil_free(void *text);             // NULL is allowed
 
 #ifdef __cplusplus
 }
 #endif
 
-#include "roil_slices.h" // flows in a user's hands
+#include "roil_slices.h" // flows in slices, shown and changed

@@ -1,4 +1,4 @@
-// What roil_show and roil_inspect draw with. For src/roil*.c only.
+// Kernels and images that roil_show and roil_inspect draw with. For src/roil*.c only.
 #pragma once
 #include "kernel/kernel.h"
 #include "roil_impl.h"
@@ -11,12 +11,12 @@ enum { VIEW_READS = GPU_FRAMES_IN_FLIGHT + 1 };
 enum { VIEW_NAMES(KERNEL_NAME_ID) };
 extern const kernel_table view_kernel_table;
 
-typedef struct view_probe {      // values under the cursor on their way back to the host
-    gpu_image *texel;            // the shader writes the value, and where it is
+typedef struct view_probe {      // reads values under the cursor back to the host
+    gpu_image *texel;            // the shader writes the value and its position here
     gpu_buffer *readback;        // VIEW_READS of them
-    uint64_t frames[VIEW_READS]; // of the GPU; 0: nothing was written
+    uint64_t frames[VIEW_READS]; // GPU frame that wrote each; 0: nothing was written
     uint32_t next;
-    const roil_effect *effect; // whose image it is
+    const roil_effect *effect; // the effect that `image` belongs to
     graph_image image;
 } view_probe;
 
@@ -24,10 +24,10 @@ struct view {
     arena memory;
     shader_library *library;
     gpu_image *srgb, *srgb_fine, *noise, *white;
-    gpu_image *canvas; // what was shown last
+    gpu_image *canvas; // the picture shown last
     gpu_buffer *vertices, *indices;
     kernel compose, overlay, slices; // each is built when it is first used
-    kernel inspect[2][2];            // of volumes, of whole numbers
+    kernel inspect[2][2];            // [of volumes][of integers]
     view_probe probe;
 };
 
@@ -35,8 +35,8 @@ struct roil_texture {
     gpu_image *image;
 };
 
-view *view_get(roil *r); // makes it; NULL with a message
-// `defines` may be NULL. Once made, these cost nothing.
+view *view_get(roil *r); // creates it on the first call; NULL with a message
+// Build a kernel on the first call and return at once on later ones. `defines` may be NULL.
 bool view_make_compute(roil *r, kernel *k, const char *file, const shader_define *defines,
                        size_t define_count);
-bool view_make_overlay(roil *r, kernel *k); // draws over an RGBA8 target
+bool view_make_overlay(roil *r, kernel *k); // it draws over an RGBA8 target
