@@ -1,4 +1,4 @@
-// libroil: the layers below, as one small interface.
+// libroil: the public functions for devices, effects and frames, over the layers below.
 #include "roil.h"
 #include "base/budget.h"
 #include "base/error.h"
@@ -32,8 +32,8 @@ static bool is_home(const char *folder) {
            path_join(path, folder, "shaders/shared.h") && file_exists(path);
 }
 
-// By its own name: what is found below it is then seen to be there (base/file.h) without asking
-// where links lead.
+// Takes the folder's real path. Names below it can then be checked to lie inside it (base/file.h)
+// without resolving links.
 static bool take_home(char out[PATH_CAP], const char *folder) {
     char real[PATH_MAX];
     return is_home(folder) && realpath(folder, real) && str_copy(out, PATH_CAP, real);
@@ -246,7 +246,7 @@ static void suggest_image(roil_effect *e, const char *name) {
     mem_free(names);
 }
 
-// "march.color", or the label of a pass for its first output.
+// Finds "march.color", or the first output of a pass by its label.
 graph_image roil_find_image(roil_effect *e, const char *name) {
     graph *g = effect_graph(e->effect);
     graph_image found = graph_find_image(g, name);
@@ -322,7 +322,7 @@ void roil_on_progress(roil_effect *e, bool (*call)(void *user, double done, doub
     effect_on_progress(e->effect, call, user);
 }
 
-// A pass may have been timed in parts, each several times: those of one name are added up.
+// Adds up the times of parts that have one label. A pass may be timed in parts, each several times.
 static size_t add_up(gpu_pass_time *times, size_t count) {
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {
@@ -348,8 +348,8 @@ size_t roil_times(roil_effect *e, roil_time *out, size_t capacity) {
     return count;
 }
 
-// Of the last frame that did any, in millions a second: `work` by the time of the parts of a pass
-// besides its grids.
+// Returns millions of units of work per second in the last frame: `work` divided by the time of the
+// pass's parts, without that of its grids.
 static double rate_of(roil_effect *e, const pass *p, double work) {
     roil_time times[GPU_MAX_PASSES];
     size_t count = roil_times(e, times, GPU_MAX_PASSES), length = strlen(pass_label(p));

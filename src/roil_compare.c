@@ -1,4 +1,4 @@
-// Comparison of two picture files, and a picture of where they differ.
+// Compares two picture files, and draws a picture of their differences.
 #include "base/arena.h"
 #include "base/budget.h"
 #include "base/file.h"
@@ -81,8 +81,8 @@ static bool read_picture(const char *path, float gain, arena *memory, compare_pi
 
 // ---- memory -----------------------------------------------------------------------------------
 
-// Bytes of a pixel: of a picture as it is kept; and at most while one is read (in the reader, on
-// the way here, as it came), which is more than what two take while they are compared.
+// Bytes per pixel: of a picture that is kept; and at most while one is read (in the reader, on the
+// way to this process, as decoded), which exceeds what the comparison of two needs.
 enum { KEPT_BYTES = 12, WORK_BYTES = 48, PARTS = 3 };
 
 static bool take_parts(const roil_comparison *how, const uint64_t pixels[2],
@@ -101,7 +101,7 @@ static bool take_parts(const roil_comparison *how, const uint64_t pixels[2],
     return fit;
 }
 
-// Of the whole comparison, known from the headers of both.
+// Takes the memory of the whole comparison; the headers of both files give their sizes.
 static bool take_memory(const roil_comparison *how, budget_part *parts[PARTS]) {
     const char *const paths[2] = {how->a, how->b};
     uint64_t pixels[2];
@@ -118,7 +118,7 @@ static bool take_memory(const roil_comparison *how, budget_part *parts[PARTS]) {
 
 // ---- difference picture -----------------------------------------------------------------------
 
-// Colour of an error of 0 to 1: sRGB stops of a ramp whose lightness rises evenly, from black over
+// Returns the colour of an error of 0 to 1. The ramp's lightness rises evenly, from black over
 // purple and orange to pale yellow.
 static void ramp(float error, uint8_t out[3]) {
     static const float stops[][3] = {{0, 0, 4},      {28, 16, 68},    {79, 18, 123},
@@ -140,7 +140,7 @@ static bool write_difference(const char *path, const compare_picture *shape, con
            png_write(path, &(png_image){shape->width, shape->height, 3, 8, pixels}, NULL, 0);
 }
 
-// A, B and the errors, next to each other.
+// Writes A, B and the errors side by side.
 static bool write_beside(const char *path, const compare_picture *a, const compare_picture *b,
                          const float *map, arena *memory) {
     uint32_t width = a->width, height = a->height;

@@ -1,4 +1,4 @@
-// Controls as an interface shows them: what they are, their values now, palettes and curves.
+// Controls for user interfaces: their descriptions, their values now, palettes and curves.
 #include "base/error.h"
 #include "base/memory.h"
 #include "effect/events.h"

@@ -1,4 +1,4 @@
-// Events by hand: what a script hears, and one more of it.
+// Events of a user: the keys that a script handles, and the text of all events with one more.
 #include "base/error.h"
 #include "base/memory.h"
 #include "effect/events.h"
@@ -14,7 +14,8 @@ size_t roil_hotkeys(const roil_effect *e, roil_hotkey *out, size_t capacity) {
     return count;
 }
 
-// By the ray: the camera may be elsewhere when it happens again.
+// Stores the ray and not the position in the picture, since the camera may be elsewhere when the
+// event is replayed.
 char *roil_event_text(roil_effect *e, const char *key, float x, float y) {
     double now = effect_systems_time(e->effect);
     effect_event event = {.time = isfinite(now) ? now : 0, .numbers = 6};

@@ -1,5 +1,5 @@
-// Exports: an OpenVDB sequence as one raw file, every frame resampled into the box that encloses
-// all of them (Raseta, Lesar and Bohak 2025, section 3.2), for engines that read plain voxels.
+// Exports an OpenVDB sequence as one raw file, for engines that read plain voxels. Every frame is
+// resampled into the box that encloses all of them (Raseta, Lesar and Bohak 2025, section 3.2).
 #include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -24,7 +24,8 @@ static const voxel_type *find_type(const char *name) {
     return NULL;
 }
 
-// Whole numbers stand for 0 to `scale`; halves and floats for themselves.
+// Encodes values as the type says. Integers cover the range 0 to `scale`; halves and floats are
+// stored as they are.
 static void encode_voxels(const voxel_type *type, const float *values, size_t count, float scale,
                           unsigned char *out) {
     for (size_t i = 0; i < count; i++) {
@@ -52,7 +53,7 @@ typedef struct exporter {
     size_t read; // frames, each twice in the end
 } exporter;
 
-// One frame; a file without the grid is a frame of zeros. `*present` is left alone then.
+// Samples one frame. A file without the grid gives a frame of zeros and leaves `*present` as it is.
 static bool sample_frame(exporter *x, size_t frame, bool *present) {
     const roil_export *d = x->desc;
     if (d->progress && !d->progress(d->user, (double)x->read++, 2.0 * (double)x->file_count))
@@ -69,7 +70,7 @@ static bool sample_frame(exporter *x, size_t frame, bool *present) {
     return vdb_sample(&desc, NULL);
 }
 
-// The greatest value of all frames, so that whole numbers use their range.
+// Finds the maximum over all frames, so that integers use their whole range.
 static bool find_scale(exporter *x, float *scale) {
     bool present = false;
     *scale = 0;
@@ -82,7 +83,7 @@ static bool find_scale(exporter *x, float *scale) {
     return true;
 }
 
-// A frame without a file is written as it is shown.
+// Writes all frames. A frame that has no file of its own is written as the sequence shows it.
 static bool write_frames(exporter *x, const voxel_type *type, float scale, const sequence *s,
                          file_draft *out) {
     unsigned char *bytes = mem_alloc(x->voxels * type->size);
@@ -116,7 +117,8 @@ static bool write_file(exporter *x, const voxel_type *type, float scale, const s
     return err_prefix("%s: ", file);
 }
 
-// As an effect names it: from its own folder, beside which files lie that were written elsewhere.
+// Returns the file's name as an effect in the current folder can give it; a file outside of it by
+// its last component.
 static const char *named_by_effect(const char *file) {
     bool below = file[0] != '/' && strncmp(file, "../", 3) != 0 && !strstr(file, "/../");
     return below ? file : path_name(file);

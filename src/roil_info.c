@@ -1,4 +1,4 @@
-// The reference, as text, from the tables that the program itself uses.
+// Reference texts, printed from the tables that the library itself uses.
 #include "base/error.h"
 #include "base/memory.h"
 #include "media/vdb.h"
@@ -14,7 +14,8 @@ static char *text_finish(strbuf *text) {
 
 enum { HELP_COLUMN = 34, LINE_WIDTH = 100 };
 
-// Adds text that begins at `column` and a newline; lines break at words and go on at `indent`.
+// Appends text that starts at `column`, and a newline. Lines are broken between words and continue
+// at `indent`.
 static void add_flowing(strbuf *out, size_t indent, size_t column, const char *text) {
     bool first = true;
     while (*text) {
@@ -355,7 +356,8 @@ static void print_grid(strbuf *out, const vdb_grid_info *g) {
                                  : ", rotated: it is resampled");
 }
 
-// A hint of scale: a ray along the shortest side of the box, through nothing but ones.
+// Prints the opacity of a ray along the shortest side of the box through a density of one, as a
+// hint of scale.
 static void print_opacity(strbuf *out, const vdb_grid_info *g) {
     const float opaque = 3; // optical depth: a twentieth shines through
     bool fog = g->grid_class != VDB_LEVEL_SET && g->components == 1;

@@ -1,10 +1,10 @@
-// Looking into an effect: which images its graph has, which are kept, and one of them drawn for a
+// Inspection of an effect: lists the images of its graph, keeps some of them, and draws one for a
 // person to read.
 //
-// The value under the cursor comes back without waiting: the shader writes it to two texels, which
-// are copied into the next of VIEW_READS places of a readback buffer. A frame that begins has
-// waited for all but the GPU_FRAMES_IN_FLIGHT - 1 before it, so an older place can be read, and
-// places outnumber the frames in flight.
+// The value under the cursor is read without waiting. The shader writes it to two texels, which are
+// copied to the next of VIEW_READS places of a readback buffer. When a frame begins, all frames but
+// the last GPU_FRAMES_IN_FLIGHT - 1 have finished, so an older place can be read. There are more
+// places than frames in flight.
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/str.h"
@@ -97,7 +97,7 @@ static bool make_probe(roil *r, view_probe *probe, const roil_effect *e, graph_i
     return probe->texel && probe->readback;
 }
 
-// The newest value whose frame has finished, now that `frame` has begun.
+// Reads the newest value whose frame has finished. `frame` has just begun.
 static void read_probe(view_probe *probe, uint64_t frame, roil_texel *out) {
     uint64_t newest = 0;
     uint32_t place = 0;
@@ -169,14 +169,15 @@ static bool inspection_check(const roil_inspection *how, const gpu_image_desc *d
     return true;
 }
 
-// Slice of a volume's level that lies at `at`, 0 to 1.
+// Returns the slice of a volume's mip level at the position `at`, 0 to 1.
 static int32_t slice_at(const gpu_image_desc *desc, uint32_t mip, int axis, float at) {
     uint32_t size = (axis == 0 ? desc->width : axis == 1 ? desc->height : desc->depth) >> mip;
     float last = (float)(size ? size - 1 : 0);
     return (int32_t)clampf(floorf(at * (float)size), 0, last);
 }
 
-// Channels that the image does not have show nothing: one that has a single one is seen in grey.
+// Leaves out channels that the image does not have; an image with a single channel is then shown in
+// grey.
 static int32_t channels_of(const gpu_image_desc *desc, unsigned wanted) {
     unsigned there = (1u << gpu_format_channels(desc->format)) - 1;
     return (int32_t)(wanted & there ? wanted & there : wanted & 15);

@@ -1,4 +1,4 @@
-// An effect that follows its files: what the caller's thread does.
+// Effects that follow their files: the functions that the caller's thread runs.
 #include "roil_live.h"
 #include "base/clock.h"
 #include "base/file.h"
@@ -54,7 +54,8 @@ void live_add_preset_setting(roil_live *l, const roil_setting *s) {
     if (!there || there->preset) add_setting(l, s, NULL, true);
 }
 
-// Back to the script's own value `initial`. Where a preset says otherwise, that has to be said.
+// Drops a setting, so that the script's value `initial` holds again. Where a preset sets another
+// value, the script's value must become a setting of its own.
 static void drop_setting(roil_live *l, const char *name, const char *initial) {
     pthread_mutex_lock(&l->lock);
     live_setting *old = find_setting(l, name);
@@ -65,7 +66,7 @@ static void drop_setting(roil_live *l, const char *name, const char *initial) {
     pthread_mutex_unlock(&l->lock);
 }
 
-// An option or a resolution: only a load can set it.
+// Returns whether only a load can set the control: an option or a resolution.
 static bool is_fixed(const effect_control *c) {
     return c->kind == EFFECT_CONTROL_OPTION || c->kind == EFFECT_CONTROL_SCALE;
 }
@@ -116,7 +117,7 @@ static bool holds(const live_setting *s, const effect_control *c) {
     return !s->initial || strcmp(s->initial, c->initial) == 0;
 }
 
-// Brings a new effect to the settings of now, which may be newer than its load.
+// Applies the settings of now to a new effect, whose load may have begun before some of them.
 static void apply_settings(roil_live *l, effect *e) {
     for (size_t i = 0; i < effect_control_count(e); i++) {
         const effect_control *c = effect_get_control(e, i);
@@ -129,7 +130,7 @@ static void apply_settings(roil_live *l, effect *e) {
     }
 }
 
-// Settings by hand whose control is gone, or has another value in the script now.
+// Drops a user's settings whose control is gone, or whose value in the script has changed.
 static void forget_stale(roil_live *l, effect *e) {
     pthread_mutex_lock(&l->lock);
     for (size_t i = l->setting_count; i-- > 0;) {
@@ -277,7 +278,7 @@ roil_live *roil_live_create(roil *r, const roil_live_desc *desc) {
     return NULL;
 }
 
-// With the lock held: whether all builders ended before `until`.
+// Returns whether all builders ended before `until`. Call it with the lock held.
 static bool wait_for_end(roil_live *l, double until) {
     struct timespec t = {.tv_sec = (time_t)until};
     t.tv_nsec = (long)((until - (double)t.tv_sec) * 1e9);

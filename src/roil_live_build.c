@@ -1,6 +1,6 @@
-// The builder: loads the effect from scratch whenever something changed, while the old one is still
-// drawn. What is dear is not done again: shaders and all that comes from files is kept, as long as
-// the files are the same, by what all loads share.
+// The builder: loads the whole effect anew whenever something changed, while the old one is still
+// drawn. Costly results are shared by all loads: compiled shaders and content of files, as long as
+// the files are the same.
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/log.h"
@@ -52,7 +52,7 @@ static bool is_watched(const roil_live *l, char *path) {
            bsearch(&path, l->watched, l->watched_count, sizeof path, by_name) != NULL;
 }
 
-// True when a file that was not watched yet may have changed after it was read.
+// Returns whether a file that was not watched yet may have changed after it was read.
 static bool was_missed(const roil_live *l, const file_set *set, int64_t begin) {
     for (size_t i = 0; i < set->count; i++) {
         if (!is_watched(l, set->paths[i]) && file_changed_ns(set->paths[i]) >= begin) return true;
@@ -60,8 +60,8 @@ static bool was_missed(const roil_live *l, const file_set *set, int64_t begin) {
     return false;
 }
 
-// Follows the files of this build, and those of the last good one if it failed: to put back what
-// was there mends it. `begin`: file_clock_ns() when it began.
+// Watches the files of this build, and after a failure those of the last good build too, since
+// restoring them may repair the effect. `begin` is file_clock_ns() when the build began.
 static void follow_files(roil_live *l, file_set *set, bool good, int64_t begin) {
     if (good) {
         live_free_names(l->good, l->good_count);
@@ -94,8 +94,7 @@ static bool read_presets(const roil_live *l, roil_preset **out, file_set *files)
     return true;
 }
 
-// What the presets say takes the place of what they said before, except where a setting of another
-// origin stands.
+// Replaces the settings of the presets by what their files say now. Settings from elsewhere win.
 static bool apply_presets(roil_live *l, file_set *files) {
     roil_preset **read = mem_alloc(l->preset_count * sizeof *read);
     bool done = read_presets(l, read, files);
@@ -189,7 +188,7 @@ void live_note(roil_live *l, double when) {
     pthread_mutex_unlock(&l->lock);
 }
 
-// A build that hangs must not hold up those after it: its thread is left behind.
+// Abandons a build that hangs, and starts another builder, so that later builds can run.
 static void leave_stuck(roil_live *l) {
     live_builder *b = l->builder;
     if (!b || !b->busy || l->ending || clock_seconds() < b->begun + PATIENCE) return;
@@ -216,8 +215,8 @@ void live_want(roil_live *l) {
     live_wake(l);
 }
 
-// An editor may be between truncating the file and writing it. True when that was waited for, or
-// more news.
+// Waits while the effect's file is empty, since an editor may be between truncating and writing it.
+// True when it waited, or when there is more news.
 static bool wait_for_content(roil_live *l) {
     struct stat info;
     double end = l->latest + EMPTY_SECONDS;
@@ -238,7 +237,8 @@ static void hand_over(roil_live *l, live_result result) {
     if (l->wake) l->wake(l->user);
 }
 
-// With the lock held, but for the build itself. False: it was left behind meanwhile.
+// Runs one build. Called with the lock held, which is released during the build itself. False: the
+// builder was abandoned meanwhile.
 static bool build_next(live_builder *b) {
     roil_live *l = b->live;
     l->wanted = false;

@@ -1,5 +1,5 @@
-// Messages for the one who edits: the line that is named stands beneath, and a caret beneath what
-// the message quotes, where the line has it only once.
+// Messages for people who edit an effect: adds the line of source that a message names and, where
+// the line contains the quoted word exactly once, a caret below it.
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
@@ -29,7 +29,8 @@ static bool find_place(const char *message, char path[PATH_CAP], int *line) {
     return false;
 }
 
-// Of a file as a message names it: as the user gave it, or "lib/..." of the program's scripts.
+// Reads a file by the name in a message: as the user gave it, or "lib/..." for the library's
+// scripts.
 static bool read_source(const char *path, const char *scripts, char **out) {
     char other[PATH_CAP];
     void *data;
@@ -41,7 +42,8 @@ static bool read_source(const char *path, const char *scripts, char **out) {
     return true;
 }
 
-// Line `number` without its indentation; false when there is none such, or nothing on it.
+// Returns line `number` without its indentation. False when there is no such line, or when it is
+// empty.
 static bool source_line(const char *path, const char *scripts, int number, char out[LINE_MAX]) {
     char *text;
     if (!read_source(path, scripts, &text)) return false;
@@ -75,7 +77,7 @@ static const char *find_word(const char *from, const char *line, const char *wor
     return NULL;
 }
 
-// Column of the first word in quotes that `line` has exactly once; -1: there is none.
+// Returns the column of the first quoted word that `line` contains exactly once; -1: there is none.
 static int find_column(const char *message, const char *line) {
     const char *end = message + strcspn(message, "\n");
     for (const char *open = strchr(message, '\''); open && open < end;) {

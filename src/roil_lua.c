@@ -1,4 +1,4 @@
-// Controls as Lua: what "Copy as Lua" gives, and what presets are written in.
+// Prints controls as Lua, for "Copy as Lua" and for presets.
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/value.h"

@@ -1,4 +1,4 @@
-// Pictures of the last frame: read back, encoded, saved.
+// Pictures of the last frame: read back, encoded and saved.
 #include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -16,7 +16,7 @@
 
 // ---- reading back -----------------------------------------------------------------------------
 
-// Formats of the graph differ in how many bytes a channel has, and in nothing else.
+// Formats of the graph differ only in the bytes of a channel.
 static float channel_value(const unsigned char *at, uint32_t bytes) {
     uint16_t half;
     float full;
@@ -32,7 +32,7 @@ static float channel_value(const unsigned char *at, uint32_t bytes) {
     }
 }
 
-// Missing channels are 0, alpha 1.
+// Converts a texel to four floats. Missing channels are 0, and alpha 1.
 static void expand_texel(const unsigned char *texel, gpu_format format, float out[4]) {
     uint32_t channels = gpu_format_channels(format);
     uint32_t bytes = gpu_format_size(format) / channels;
@@ -104,8 +104,8 @@ static float srgb_encode(float linear) {        // IEC 61966-2-1
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
 }
 
-// Linear 0..1 to sRGB by tables over the square root, which spend their entries where sRGB is
-// steep: within half a code of the formula.
+// Linear values 0 to 1 are encoded by tables over the square root, which have most entries where
+// sRGB is steep. They are within half a code of the formula.
 static float table_value(int index) {
     float root = (float)index / ROIL_SRGB_STEPS;
     return srgb_encode(root * root);
@@ -139,9 +139,9 @@ uint8_t roil_dither_noise(size_t x, size_t y, int channel) {
     return blue_noise_texels[(x + step * (size_t)channel) % side + side * (y % side)];
 }
 
-// Between two codes, which of them is a matter of blue noise, so that the mean is right and dark
-// skies have no bands (Ulichney, "Dithering with blue noise", Proc. IEEE 76, 1988). What is a code
-// already stays it.
+// Chooses between the two nearest codes by blue noise, so that the mean is right and dark skies
+// have no bands (Ulichney, "Dithering with blue noise", Proc. IEEE 76, 1988). A value that is a
+// code already stays the same.
 static uint8_t dithered_byte(float linear, size_t x, size_t y, int channel) {
     uint16_t fine = roil_srgb_fine_table()[table_index(linear)];
     return (uint8_t)((fine + roil_dither_noise(x, y, channel)) >> 8);
@@ -149,7 +149,7 @@ static uint8_t dithered_byte(float linear, size_t x, size_t y, int channel) {
 
 typedef enum alpha_kind { OPAQUE, STRAIGHT, PREMULTIPLIED } alpha_kind;
 
-// Colours are premultiplied, as they lie on black; straight ones are divided by alpha.
+// Colours are premultiplied, as they appear on black. Straight colours are divided by alpha.
 static float color_of(const float *pixel, int c, alpha_kind alpha) {
     return alpha == STRAIGHT && pixel[3] > 1e-6f ? pixel[c] / pixel[3] : pixel[c];
 }
@@ -158,7 +158,7 @@ static uint8_t alpha_byte(const float *pixel, alpha_kind alpha) {
     return alpha != OPAQUE ? (uint8_t)lrintf(clampf(pixel[3], 0, 1) * 255) : 255;
 }
 
-// For eyes.
+// Encodes a picture for viewing.
 static void encode8_dithered(const linear_image *image, alpha_kind alpha, size_t channels,
                              uint8_t *out) {
     const float *pixel = image->pixels;
@@ -169,7 +169,7 @@ static void encode8_dithered(const linear_image *image, alpha_kind alpha, size_t
         }
 }
 
-// For what measures: each the code that is nearest.
+// Encodes a picture for measurements: each value becomes the nearest code.
 static void encode8_nearest(const linear_image *image, alpha_kind alpha, uint8_t *out) {
     const uint8_t *table = roil_srgb_table();
     const float *end = image->pixels + image->width * image->height * 4;
@@ -188,7 +188,7 @@ static void encode16(const linear_image *image, alpha_kind alpha, size_t channel
     }
 }
 
-// The effect's picture, if it is as large as was asked for.
+// Reads the effect's picture. False when it does not have the size that was asked for.
 static bool read_output(roil_effect *e, raw_image *out) {
     if (!read_raw(e, effect_get_picture(e->effect, EFFECT_OUTPUT), out)) return false;
     if (out->width == e->width && out->height == e->height) return true;
@@ -241,7 +241,7 @@ static bool write_png(const picture *p, const linear_image *image) {
     return done;
 }
 
-// Channels one after the other, as EXR wants them.
+// Separates the channels into planes, as EXR stores them.
 static float *split_channels(const linear_image *image) {
     const size_t count = image->width * image->height;
     float *planes = mem_alloc(count * 4 * sizeof *planes);
@@ -292,7 +292,7 @@ static void free_picture(void *user) {
     mem_free(p);
 }
 
-// The depth of the scene goes with the effect's own picture, where it is as large.
+// Reads the depth of the scene for the effect's own picture, if it has the same size.
 static bool take_depth(roil_effect *e, picture *p) {
     graph_image z = effect_get_picture(e->effect, EFFECT_DEPTH);
     if (!p->exr || !z.id || p->options.image) return true;

@@ -1,4 +1,4 @@
-// Recipes of pictures, for who embeds roil.
+// Recipes of pictures, for the public interface.
 #include "base/error.h"
 #include "base/memory.h"
 #include "effect/recipe.h"

@@ -1,9 +1,9 @@
-// A window's picture: the effect's last one in its place, the triangles of a user interface over
-// it.
+// The picture of a window: the effect's last picture in its area, and the triangles of a user
+// interface over it.
 //
-// All of it lands in one canvas, encoded as sRGB, which is presented and can be read back; so what
-// tests and screenshots see is what a display gets. Interfaces are mixed in encoded space, as those
-// who chose their colours expect.
+// Both are drawn into one canvas, encoded as sRGB, which is presented and can be read back. Tests
+// and screenshots therefore see what a display gets. Interfaces are blended in encoded space, which
+// is what designers of their colours expect.
 #include "base/error.h"
 #include "base/memory.h"
 #include "roil_view.h"
@@ -58,7 +58,7 @@ static bool make_canvas(roil *r, view *v, uint32_t width, uint32_t height) {
     return v->canvas != NULL;
 }
 
-// The picture of the effect, NULL when none was rendered or when it is one of whole numbers.
+// Returns the picture of the effect. NULL when none was rendered, or when its texels are integers.
 static gpu_image *find_picture(roil_effect *e) {
     if (!e || !e->frame) return NULL;
     graph_image output = effect_get_picture(e->effect, EFFECT_OUTPUT);
@@ -66,8 +66,8 @@ static gpu_image *find_picture(roil_effect *e) {
     return picture && gpu_image_get_desc(picture)->format != GPU_R32U ? picture : NULL;
 }
 
-// As large as fits into the view with the picture's aspect, in its middle: left, top, width,
-// height in whole pixels. A width of 0 where there is no room.
+// Fits the picture into the middle of the view with its aspect ratio: left, top, width, height in
+// whole pixels. The width is 0 when there is no room.
 static void fit_picture(const gpu_image *picture, const float space[4], int32_t out[4]) {
     const gpu_image_desc *size = gpu_image_get_desc(picture);
     float width = space[2] - space[0], height = space[3] - space[1];
@@ -104,7 +104,7 @@ static bool compose_picture(roil *r, view *v, const roil_picture *p) {
 
 // ---- the overlay ------------------------------------------------------------------------------
 
-// The device would read beyond the buffers.
+// Checks all indices, since the device would read outside of the buffers.
 static bool check_triangles(const roil_picture *p) {
     for (size_t i = 0; i < p->draw_count; i++) {
         const roil_draw *d = &p->draws[i];
@@ -119,7 +119,8 @@ static bool check_triangles(const roil_picture *p) {
     return true;
 }
 
-// Room for more than is asked, so that a growing interface does not allocate in every frame.
+// Makes the buffer at least `size` bytes. It gets more than that, so that a growing interface does
+// not allocate in every frame.
 static bool reserve_buffer(roil *r, gpu_buffer **buffer, const char *label, size_t size) {
     if (*buffer && gpu_buffer_size(*buffer) >= size) return true;
     uint64_t most = gpu_get_info(r->device)->max_storage_range, wanted = size + size / 2 + 65536;
@@ -139,7 +140,7 @@ static bool upload_triangles(roil *r, view *v, const roil_picture *p) {
            gpu_buffer_write(r->device, v->indices, 0, p->indices, indices);
 }
 
-// Whole pixels of the clip that lie on the canvas; false when there are none.
+// Clips a rectangle to the canvas in whole pixels. False when nothing is left.
 static bool scissor(const roil_picture *p, const float clip[4], uint32_t out[4]) {
     float right = fminf(rintf(clip[2]), (float)p->width), left = fmaxf(rintf(clip[0]), 0);
     float bottom = fminf(rintf(clip[3]), (float)p->height), top = fmaxf(rintf(clip[1]), 0);

@@ -1,4 +1,4 @@
-// Flows in slices, seen and touched: roil_slices.h.
+// Flows in slices, shown and changed: the functions of roil_slices.h but for templates.
 #include "roil_slices.h"
 #include "base/error.h"
 #include "base/memory.h"

@@ -1,6 +1,6 @@
-// Templates as files: in `templates/` of the effect's folder, and in that of the library, which is
-// the program's own effects/templates. What was read stays until the effect is unloaded: the flow
-// holds on to it.
+// Templates as files: in `templates/` of the effect's folder, and in effects/templates of the
+// library. A file that was read is kept until the effect is unloaded, because the flow refers to
+// it.
 #include "roil_template.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -34,7 +34,8 @@ static bool is_name(const char *text, size_t length) {
     return true;
 }
 
-// "source.exr": a name and an ending, so that it cannot lead anywhere else.
+// Returns whether `file` is a name with a known ending, such as "source.exr". It then cannot lead
+// to another folder.
 static bool is_file(const char *file) {
     size_t length = strlen(file);
     for (size_t i = 0; i < COUNT_OF(kinds) && length < sizeof((roil_template *)NULL)->file; i++)
@@ -46,7 +47,7 @@ static bool library_root(const roil_effect *e, char out[PATH_CAP]) {
     return path_join(out, e->owner->home, "effects");
 }
 
-// A file of that name in templates/ of a root; it need not exist.
+// Returns the path of a file in templates/ of a root. It need not exist.
 static bool place_in(const char *root, const char *file, char out[PATH_CAP]) {
     char inside[PATH_CAP];
     return path_join(inside, "templates", file) && path_confine(out, root, inside);
@@ -134,7 +135,7 @@ void roil_free_templates(roil_effect *e) {
     mem_free(e->templates);
 }
 
-// As a tile, which as a picture becomes the same tile again.
+// Makes the tile that the flow takes; read as a picture again, it gives the same tile.
 static void take_tile(template_file *t, const picture *read) {
     t->square = read->width == read->height;
     slices_tile(read, t->rgba);
@@ -174,7 +175,8 @@ static uint8_t byte_of(float value) {
     return (uint8_t)(clampf(value, 0, 1) * 255 + 0.5f);
 }
 
-// As shaders/view/slices.comp has it, times the root of alpha: as much as one sees of it.
+// Colours as in shaders/view/slices.comp, times the square root of alpha, which is how visible they
+// are.
 static void color_of(const float texel[4], bool velocity, uint8_t out[4]) {
     const float third = 2.0943951f, ground = 0.08f;
     float rgb[3] = {ground, ground, ground};
@@ -228,7 +230,7 @@ bool roil_template_put(roil_effect *e, const roil_template_use *use) {
     return slices_put(p, &hand);
 }
 
-// So that the effect's file can name it.
+// Copies a template of the library into the effect's folder, so that the effect's file can name it.
 static bool adopt_template(const roil_effect *e, const char *file) {
     char root[PATH_CAP], from[PATH_CAP], to[PATH_CAP];
     void *bytes;

@@ -1,4 +1,4 @@
-// The shaders of windows, and images that they share.
+// The kernels that draw windows, and images that they share.
 #include "roil_view.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -25,7 +25,7 @@ static gpu_image *make_fine_table(gpu *g) {
     return make_image(g, "srgb, fine", GPU_R32F, COUNT_OF(values), 1, values);
 }
 
-// The channels of a pixel side by side, for one fetch.
+// Stores the noise of all channels of a pixel in one texel, so that one fetch reads it.
 static gpu_image *make_noise(gpu *g) {
     const uint32_t side = BLUE_NOISE_SIZE;
     uint8_t texels[BLUE_NOISE_SIZE * BLUE_NOISE_SIZE][4] = {{0}};

@@ -1,5 +1,5 @@
-// Volumes of an effect as OpenVDB files: what bakes hold after a frame is read back as it is, in
-// halves, and written by another thread.
+// Volumes of an effect as OpenVDB files. After a frame the baked images are read back as halves;
+// another thread has the file written.
 #include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"

@@ -26,7 +26,7 @@ struct budget {
 
 static const double DEFAULT_SHARE = 0.6;
 
-// What may be taken: bytes, or where they are 0 a share. Guarded by `share_lock`.
+// The share that may be taken: bytes, or a percentage where they are 0. Guarded by `share_lock`.
 static pthread_mutex_t share_lock = PTHREAD_MUTEX_INITIALIZER;
 static double share = DEFAULT_SHARE;
 static uint64_t share_bytes;
@@ -45,8 +45,8 @@ static void lower_by_file(uint64_t *limit, const char *path) {
     fclose(f);
 }
 
-// Of the control group that this process is in and of all above it; inside of a container its own
-// group is the root of what can be seen.
+// Lowers the limit to that of the process's control group and of all groups above it. Inside of a
+// container the process's own group is the root of what is visible.
 static void lower_by_groups(uint64_t *limit) {
     char line[512], path[640];
     FILE *f = fopen("/proc/self/cgroup", "re");
@@ -168,7 +168,7 @@ static void put_in_order(budget_row largest[BUDGET_LARGEST], budget_row row) {
     }
 }
 
-// Of the parts that there are and of those asked for; under the lock.
+// Finds the largest of the existing parts and the requested ones. Call it under the lock.
 static void find_largest(const budget *b, const budget_row *asked, size_t count,
                          budget_row largest[BUDGET_LARGEST]) {
     size_t all = count;
@@ -194,7 +194,7 @@ static void add_amount(strbuf *out, uint64_t bytes) {
     strbuf_add(out, "%.1f MiB", (double)bytes / (1 << 20));
 }
 
-// Under the lock; always false.
+// Sets the message of a refusal. Call it under the lock. Always returns false.
 static bool budget_refuse(const budget *b, const budget_row *rows, size_t count, uint64_t sum) {
     budget_row largest[BUDGET_LARGEST];
     find_largest(b, rows, count, largest);

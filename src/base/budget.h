@@ -1,9 +1,10 @@
-// One account of memory: what is taken of the machine, by whom, and how much may be.
+// Budgets of memory: how much is taken, for what, and how much may be taken.
 //
-// A budget is a kind of memory: the host's, of which a process has one, and that of a device with
-// memory of its own. What a file can ask for in size is taken here before it is allocated, under a
-// label; beyond a share of the machine it is refused with the sum and its three largest parts.
-// Parts of the same label count as one there. Any thread may call all of this.
+// There is a budget for each kind of memory: the host's, one for the process, and one for each
+// device with memory of its own. Memory whose size a file decides is taken from a budget, under a
+// label, before it is allocated. Beyond a share of what the machine has it is refused, with a
+// message that names the sum and its three largest parts. Parts with the same label count as one
+// there. Any thread may call these functions.
 #pragma once
 #include "base/error.h"
 #include <stdbool.h>
@@ -15,7 +16,7 @@ typedef struct budget_part budget_part;
 
 enum { BUDGET_LABEL = 64, BUDGET_LARGEST = 3 };
 
-typedef struct budget_row { // one label
+typedef struct budget_row { // the bytes taken under one label
     char label[BUDGET_LABEL];
     uint64_t bytes;
 } budget_row;
@@ -36,32 +37,35 @@ void budget_list_free(budget_list *list); // empty afterwards
 // NULL: 60 %. Of the whole process, from now on; false with a message when it is none of these.
 bool budget_set_share(const char *text);
 
-// The host's: as much as the machine has, or what its control group and address space allow.
+// Returns the host's budget: the memory of the machine, or less where the process's control group
+// or address space is limited.
 budget *budget_host(void);
-budget *budget_create(const char *name, uint64_t total); // "device memory"; bytes that there are
-void budget_destroy(budget *b);                          // after its parts; NULL is fine
+// Creates a budget of `total` bytes. `name` appears in messages: "device memory".
+budget *budget_create(const char *name, uint64_t total);
+void budget_destroy(budget *b); // its parts must be given back before; NULL is allowed
 
-// NULL with a message; nothing is taken then. `label` is copied.
+// Takes bytes from a budget. NULL with a message, and nothing is taken, when they are too many.
+// `label` is copied.
 budget_part *budget_take(budget *b, uint64_t bytes, const char *label);
-void budget_give(budget_part *part); // NULL is fine
-// To another size; false with a message, and it is as it was.
+void budget_give(budget_part *part); // gives a part back; NULL is allowed
+// Changes the size of a part. False with a message, and the part is unchanged.
 bool budget_resize(budget_part *part, uint64_t bytes);
-// What is taken already and cannot be refused any more, such as many small objects.
+// Adds memory that is taken already and cannot be refused, such as many small objects.
 void budget_note(budget_part *part, uint64_t bytes);
-// From one part to another of the same budget: the sum stays as it is.
+// Moves bytes between two parts of the same budget. The sum does not change.
 void budget_move(budget_part *from, budget_part *to, uint64_t bytes);
 
-// Whether all rows could be taken, if `freed` bytes were given before: for what is known as a whole
-// before its first part is. False with the message of a refusal.
+// Returns whether all rows could be taken after `freed` bytes were given back. For plans whose
+// parts are taken one by one. False with the message of a refusal.
 bool budget_ask(budget *b, const budget_row *rows, size_t count, uint64_t freed);
-// For a while the limit is so much higher, but not above nine tenths of what there is: two states
-// live at once, one of which is about to go. 0 ends it.
+// Raises the limit by so many bytes, at most to nine tenths of the memory that exists, while an old
+// and a new state exist side by side. 0 ends it.
 void budget_lend(budget *b, uint64_t bytes);
 uint64_t budget_room(budget *b); // bytes that could be taken now
 uint64_t budget_get_limit(budget *b);
 
 typedef struct budget_state {
     uint64_t sum, limit, total;
-    budget_row largest[BUDGET_LARGEST]; // bytes 0: there are no more
+    budget_row largest[BUDGET_LARGEST]; // bytes 0: there are fewer
 } budget_state;
 budget_state budget_get(budget *b);

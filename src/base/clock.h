@@ -1,3 +1,3 @@
-// Monotonic time.
+// Monotonic time. Any thread.
 #pragma once
-double clock_seconds(void); // since an arbitrary start, nanosecond steps
+double clock_seconds(void); // seconds since an arbitrary start, in steps of a nanosecond

@@ -47,7 +47,7 @@ void err_when_out_of_memory(void (*leave)(void)) {
     leave_child = leave;
 }
 
-// Not by exit(): other threads still use what its handlers take down.
+// Does not use exit(), because other threads still use what its handlers free.
 void err_out_of_memory(size_t size) {
     static atomic_flag ending = ATOMIC_FLAG_INIT;
     if (leave_child) leave_child();

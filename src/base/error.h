@@ -1,8 +1,8 @@
-// Errors caused by input: one message per thread, set where the fault is seen.
+// Errors caused by input: each thread has one message, which is set where the fault is found.
 //
-// Three kinds of error are never mixed. A bug: assert. Bad input: a function returns false or NULL
-// and leaves a message here that names file, line and object, and says what is accepted. Host out
-// of memory: one line on stderr, exit.
+// There are three kinds of error, which are never mixed. A bug fails an assert. Bad input makes a
+// function return false or NULL and set a message here, which names file, line and object and says
+// what is accepted. When the host is out of memory, the process prints one line and exits.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -21,5 +21,6 @@ void err_clear(void);
 
 // Ends the process: one line on stderr, exit status 1. No handler of exit() runs.
 __attribute__((noreturn)) void err_out_of_memory(size_t size);
-// `leave` is called before: in a child process it ends it, with a status that its parent knows.
+// Sets a function that err_out_of_memory calls first. A child process ends itself there, with a
+// status that its parent knows.
 void err_when_out_of_memory(void (*leave)(void));

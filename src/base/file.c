@@ -64,7 +64,7 @@ static bool reach_disk(int fd) {
     return fsync(fd) == 0 || errno == EINVAL;
 }
 
-// Devices and pipes ("/dev/stdout") cannot be renamed over: they are written in place.
+// Devices and pipes ("/dev/stdout") cannot be replaced by a rename, so they are written in place.
 static bool write_in_place(const char *path, const void *data, size_t size) {
     int fd = open(path, O_WRONLY | O_CLOEXEC);
     if (fd < 0) return err_set("%s: %s", path, strerror(errno));
@@ -74,7 +74,7 @@ static bool write_in_place(const char *path, const void *data, size_t size) {
     return done;
 }
 
-// It can only be read by setting it, which two threads must not do at once.
+// The umask can only be read by setting it, which two threads must not do at once.
 unsigned file_mode(void) {
     static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
     pthread_mutex_lock(&mutex);
@@ -84,7 +84,7 @@ unsigned file_mode(void) {
     return 0666 & ~mask;
 }
 
-// A name beside `path` that nobody has; the draft lies there where it cannot be without a name.
+// Makes an unused name beside `path`, for file systems where a file cannot be without a name.
 static void make_name(file_draft *d) {
     static atomic_uint count;
     struct timespec now;
@@ -93,7 +93,7 @@ static void make_name(file_draft *d) {
              (unsigned long)now.tv_nsec, atomic_fetch_add(&count, 1));
 }
 
-// Without a name it is gone with the process, however that ends.
+// Opens a file without a name. It disappears with the process, however that ends.
 static int open_nameless(int folder) {
     return openat(folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
 }
@@ -174,7 +174,7 @@ void file_draft_drop(file_draft *d) {
     draft_end(d);
 }
 
-// What has no name gets one, since only a name can take the place of another.
+// Gives a nameless file a temporary name, since only a named file can replace another.
 static bool give_name(file_draft *d) {
     char open_file[64];
     snprintf(open_file, sizeof open_file, "/proc/self/fd/%d", d->fd);
@@ -281,7 +281,8 @@ static int by_bytes(const void *a, const void *b) {
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-// Not glob(): folders are taken literally, so that an effect works below "[drafts]" as well.
+// Does not use glob(), because folders are taken literally: an effect must also work below
+// "[drafts]".
 bool file_glob(const char *pattern, file_list *out) {
     *out = (file_list){0};
     size_t capacity = 0;

@@ -1,5 +1,5 @@
-// Files that were not named by the user: opened one folder after another below a root, where no
-// part may be a symbolic link by then (path_split_inside has followed those that stay inside).
+// Files that the user did not name. They are opened folder by folder below a root. No part of the
+// path may be a symbolic link by then, as path_split_inside has followed those that stay inside.
 #include "base/error.h"
 #include "base/file.h"
 #include <errno.h>
@@ -22,7 +22,7 @@ static int enter_folder(int folder, const char *part, bool make) {
     return openat(folder, part, flags);
 }
 
-// Below `real_root` to the folder `rest`, whose slashes are overwritten.
+// Opens the folder `rest` below `real_root`. Overwrites the slashes of `rest`.
 static int walk_folders(const char *real_root, char *rest, bool make) {
     int folder = open(real_root, O_PATH | O_DIRECTORY | O_CLOEXEC);
     for (char *part = rest; folder >= 0 && *part;) {
@@ -48,8 +48,8 @@ int file_open_folder_inside(const char *root, const char *path) {
     return folder;
 }
 
-// Nearly all: below the root by their names, without a link on the way, which the kernel makes sure
-// of in one call. -1: it is to be found out part by part.
+// Opens the file in one system call, in which the kernel ensures that no part of the path is a
+// link. This is nearly always possible. -1: the parts must be opened one by one.
 static int open_at_once(const char *root, const char *path) {
     const struct open_how how = {.flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK,
                                  .resolve = RESOLVE_BENEATH | RESOLVE_NO_SYMLINKS};
@@ -88,7 +88,7 @@ static bool check_regular(int fd, const char *path, size_t max, size_t *size) {
     return true;
 }
 
-// What is opened while standard output is closed must not take its place.
+// A file that is opened while standard output is closed must not take its number.
 static int keep_above_standard(int fd) {
     if (fd < 0 || fd > STDERR_FILENO) return fd;
     int high = fcntl(fd, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);

@@ -1,4 +1,4 @@
-// 128-bit content hashes (XXH3), for caches on disk: not for secrets.
+// 128-bit content hashes (XXH3), for caches on disk. They are not cryptographic.
 #pragma once
 #include <stddef.h>
 #include <stdint.h>

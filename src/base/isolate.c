@@ -1,5 +1,5 @@
-// The side of who has work: starting the reader, asking it, and taking what comes back. Nothing
-// that comes over a job's channel is trusted, since a worker that was taken over may have sent it.
+// The client's side: starts the reader, sends it jobs and receives their results. Nothing that
+// comes over a job's channel is trusted, since a compromised worker may have sent it.
 #include "base/isolate.h"
 #include "base/error.h"
 #include "base/isolate_wire.h"
@@ -55,8 +55,8 @@ static bool find_reader(char out[PATH_CAP]) {
                    folder);
 }
 
-// The reader gets its socket and nothing else of this process: no file, no signal that is blocked
-// or ignored, no terminal (Ctrl-C is this process's affair).
+// The reader gets its socket and nothing else of this process: no files, no blocked or ignored
+// signals, no terminal (Ctrl-C concerns this process only).
 static int reader_spawn(const char *program, int end, pid_t *process) {
     posix_spawn_file_actions_t files;
     posix_spawnattr_t how;
@@ -80,7 +80,7 @@ static int reader_spawn(const char *program, int end, pid_t *process) {
     return error;
 }
 
-// With the lock held, like all that touches the reader.
+// Call it with the lock held, like every function that uses the reader.
 static bool start_reader(void) {
     char program[PATH_CAP];
     int ends[2];
@@ -102,8 +102,8 @@ static bool start_reader(void) {
     return err_set("%s: cannot be run: %s", program, strerror(error));
 }
 
-// Unless another thread did and started a new one. A host that ignores SIGCHLD, or waits for any
-// child, has taken the status already; nobody needs it.
+// Ends the reader of this number, unless another thread has replaced it already. A host that
+// ignores SIGCHLD, or waits for any child, may have taken its status, which nobody needs.
 static void stop_reader(uint64_t number) {
     siginfo_t info;
     if (reader.number != number) return;
@@ -168,7 +168,8 @@ static const char *who(const exchange *x) {
     return x->job->who ? x->job->who : "the reader";
 }
 
-// Sends the request without keeping other threads from their reader while its socket is full.
+// Sends the request. While the socket is full, the lock is released so that other threads can use
+// their reader.
 static bool send_request(exchange *x, const int files[WIRE_FILES]) {
     int64_t end = now() + QUEUE_MS;
     for (int attempt = 0; attempt < ATTEMPTS;) {
@@ -203,7 +204,8 @@ static void open_for_worker(const exchange *x, int channel, const char *name) {
     if (file >= 0) close(file);
 }
 
-// A worker's own timers end it, so being late means that the reader is stuck, or the machine.
+// Waits until the worker ends. Its own timers end it, so if it is late, the reader or the machine
+// is stuck.
 static verdict wait_for_end(exchange *x, int channel) {
     int64_t end = now() + QUEUE_MS;
     bool begun = false;
@@ -221,7 +223,7 @@ static verdict wait_for_end(exchange *x, int channel) {
     }
 }
 
-// False with an error; else how it went.
+// Runs one exchange. False with a message; else `*how` says how it went.
 static bool exchange_run(exchange *x, verdict *how) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
@@ -251,7 +253,8 @@ static unsigned mebibytes(uint64_t bytes) {
     return (unsigned)(bytes >> 20);
 }
 
-// Why a worker left no result. What it said is the stranger's text, perhaps: one printable line.
+// Sets the message of a worker that left no result. What it wrote may be a stranger's text, so it
+// becomes one printable line.
 static bool fail_status(exchange *x) {
     int status = x->end.status;
     char *said = x->end.text;
@@ -271,7 +274,7 @@ static bool fail_status(exchange *x) {
                    number ? number : WEXITSTATUS(status), *said ? ": " : "", said);
 }
 
-// A worker that has ended cannot write any more; the seals make sure of it.
+// Maps the result. Seals ensure that no worker writes to it any more.
 static bool map_result(const exchange *x, isolate_result *out) {
     struct stat info;
     if (fcntl(x->out, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE) != 0 ||
@@ -300,7 +303,7 @@ static bool take_result(exchange *x, isolate_result *out) {
     return false;
 }
 
-// Of every job, the one place where they are set: it may take what the
+// Makes the request. This is the one place where the limits of a job are set: it may take what the
 // thread's time limit leaves. `name` is for the messages of the work.
 static bool make_request(exchange *x) {
     const isolate_job *job = x->job;

@@ -1,71 +1,71 @@
-// Work on what strangers wrote, by libraries that do not stand it: GLSL that keeps a compiler busy
-// for years, meshes and pictures that crash their importer. It is done by a process of its own,
-// `roil-reader`, so that a crash, a hang or a flood of memory ends there.
+// Runs libraries on files of strangers that they may not withstand: GLSL that keeps a compiler busy
+// for years, meshes and pictures that crash their importer. The work is done in another process,
+// `roil-reader`, where a crash, a hang or a lack of memory does no harm.
 //
 //   this process (isolate.c)        the reader (reader/server.c)   a worker (reader/worker.c)
 //   the input: a file, or bytes
 //   in a memory file; a memory
-//   file for the result  ---------> fork -----------------------> limits, no system calls but a
-//   wait                                                          few, the work; its result
+//   file for the result  ---------> fork -----------------------> limits and a filter of system
+//   wait                                                          calls, the work, its result
 //   open a file that it asks for <------------------------------- by name
-//   wait              <------------ how the worker ended
+//   wait              <------------ status of the worker
 //   map the result
 //
-// The reader is another program, started once with posix_spawn: a host that embeds the library is
-// never forked, which from many threads leaves locks locked for ever and costs 0.1 ms for each MB
-// in use. The reader has one thread that works and little memory, so its workers are sound and
-// cheap. It has no handler, file or memory of the host's, and ends when the host does. A worker can
-// open nothing: what it reads beside its input this process opens for it, if it may.
+// The reader is another program, started once with posix_spawn. The host is never forked, because a
+// fork of a process with many threads leaves locks locked forever and costs 0.1 ms for each MB in
+// use. The reader has one working thread and little memory, so forking it is safe and cheap. It has
+// no signal handler, file or memory of the host, and ends when the host does. A worker can open no
+// file: this process opens those that it may read and passes them on.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-// ---- who has work -----------------------------------------------------------------------------
+// ---- the client -------------------------------------------------------------------------------
 
 typedef struct isolate_limits { // of one job
-    uint32_t processor_ms;      // of processor time; three times as much, and 10 s, of real time
-    uint64_t memory;            // bytes, beyond what the reader has anyway
+    uint32_t processor_ms;      // processor time; the limit of real time is 10 s plus thrice this
+    uint64_t memory;            // bytes, in addition to the reader's own
     uint64_t result;            // bytes
 } isolate_limits;
 
 enum { ISOLATE_ARGUMENTS = 64, ISOLATE_KIND = 16 };
 
 typedef struct isolate_job {
-    const char *kind; // a name of the table in reader/main.c
-    const char
-        *name;       // the file that is read, for messages; NULL: whoever asked puts it before them
-    const char *who; // for messages: "the compiler"; NULL: "the reader"
+    const char *kind;      // a name of the table in reader/main.c
+    const char *name;      // the file that is read, for messages; NULL: the caller adds it to them
+    const char *who;       // for messages: "the compiler"; NULL: "the reader"
     const void *arguments; // at most ISOLATE_ARGUMENTS bytes
     size_t argument_size;
     int file; // the input, from its beginning; used when `bytes` is NULL
     const void *bytes;
-    size_t size; // of either
-    // Opens a file that the work asks for and gives its size; -1: it may not have it, or there is
-    // none. NULL: it gets none.
+    size_t size; // bytes of the input
+    // Opens a file that the work asks for and returns its descriptor and size; -1: there is none,
+    // or it must not be read. NULL: the work gets no files.
     int (*open)(void *user, const char *name, size_t *size);
-    void *user;
+    void *user; // passed to open
     isolate_limits limits;
 } isolate_job;
 
 typedef struct isolate_result {
     void *data; // may be written to
     size_t size;
-    uint32_t processor_ms; // that the worker took, also when it failed
+    uint32_t processor_ms; // time that the worker took, also when it failed
 } isolate_result;
 
-// False with a message: the work's own, or how it ended. Any thread.
+// Runs a job and waits for its result, to be freed with isolate_free. False with the message of the
+// work, or with one that says how the worker ended. Any thread.
 bool isolate_run(const isolate_job *job, isolate_result *out);
 void isolate_free(isolate_result *r);
 
-// Where the reader is, for the next one that is started; not said: $ROIL_READER, else beside the
-// running program. False with a message when the path is too long.
+// Sets the path of the reader for the next one that is started. Default: $ROIL_READER, or else the
+// one beside the running program. False with a message when the path is too long.
 bool isolate_set_reader(const char *program);
-// Starts the reader and, without waiting, lets it get ready for a kind of job: the first shader
-// costs 100 ms without, the first volume 60.
+// Starts the reader and makes it prepare for a kind of job, without waiting for it. The first
+// shader is then 100 ms faster, the first volume 60 ms.
 void isolate_warm_up(const char *kind);
 
-// ---- the work, in a worker --------------------------------------------------------------------
+// ---- the worker -------------------------------------------------------------------------------
 
 typedef struct isolate_call isolate_call;
 struct isolate_call {
@@ -74,14 +74,14 @@ struct isolate_call {
     size_t argument_size;
     const void *bytes; // the input, and a zero byte
     size_t size;
-    int out, channel; // -1 without
-    // Reads a whole file of at most `max` bytes, which is opened on the other side; free `*data`
-    // with mem_free. False when it may not be read, with a message.
+    int out, channel; // -1: none
+    // Reads a whole file of at most `max` bytes, which the client opens. Free `*data` with
+    // mem_free. False with a message when it must not be read.
     bool (*ask)(const isolate_call *call, const char *name, size_t max, void **data, size_t *size);
 };
 
-bool isolate_put(const isolate_call *call, const void *data, size_t size); // adds to the result
-// Instead, without a copy: `size` bytes of the result from `at` on, zeroed if they are new; `at` is
-// a multiple of the page's size. NULL with a message. munmap ends it.
+bool isolate_put(const isolate_call *call, const void *data, size_t size); // appends to the result
+// Maps `size` bytes of the result from `at` on, to write it without a copy. New bytes are zero.
+// `at` must be a multiple of the page size. NULL with a message. Unmap it with munmap.
 void *isolate_map(const isolate_call *call, size_t at, size_t size);
-bool isolate_cut(const isolate_call *call, size_t size); // the result has so many bytes
+bool isolate_cut(const isolate_call *call, size_t size); // sets the size of the result

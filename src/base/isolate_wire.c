@@ -1,4 +1,5 @@
-// Messages with files attached, over sockets that keep messages apart. See isolate.h.
+// Messages with attached files, over sockets that preserve the boundaries of messages. See
+// isolate.h.
 #include "base/isolate_wire.h"
 #include "base/memory.h"
 #include "base/str.h"

@@ -1,4 +1,4 @@
-// A worker whose jobs are counted: in waiting and at work.
+// Jobs on a worker, which are counted while they wait or run.
 #include "base/jobs.h"
 #include "base/error.h"
 #include "base/memory.h"

@@ -1,4 +1,5 @@
-// Messages to people, on stderr. Results go to stdout, by the program, never through here.
+// Messages to people, on stderr. Any thread. The program's results never go through here: it prints
+// them to stdout.
 #pragma once
 #include "base/error.h"
 

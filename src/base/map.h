@@ -1,5 +1,5 @@
-// Map from (pointer, number) to a number, for walks over expression graphs that must visit shared
-// nodes once. Zero-initialised is empty; free with map_free.
+// A map from (pointer, number) to a number, for walks over expression graphs that must visit shared
+// nodes once. A zero-initialised map is empty. Free it with map_free.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -15,7 +15,7 @@ typedef struct map {
     size_t count, capacity;
 } map;
 
-// The value stored for a key, which is never NULL; NULL when there is none. Valid until map_set.
+// Returns the value of a key, or NULL when there is none. `key` is not NULL. Valid until map_set.
 uint32_t *map_find(const map *m, const void *key, uint32_t sub);
 void map_set(map *m, const void *key, uint32_t sub, uint32_t value); // the key must be new
 void map_free(map *m);

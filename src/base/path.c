@@ -1,4 +1,4 @@
-// Paths: text only, but for path_confine, which asks the file system where links lead.
+// Paths as text. Only path_confine and its relatives ask the file system where links lead.
 #include "base/error.h"
 #include "base/file.h"
 #include "base/str.h"
@@ -39,8 +39,9 @@ const char *path_extension(const char *path) {
     return dot && dot != name ? dot + 1 : "";
 }
 
-// realpath of the longest existing part of `path`; the rest, which holds no "..", is kept as it is.
-// A broken link is refused: nobody can say where it will lead once its target exists.
+// Returns realpath of the longest existing part of `path`; the rest, which holds no "..", is kept
+// as it is. A broken link is refused, because nobody can say where it will lead once its target
+// exists.
 static bool path_resolve(char out[PATH_CAP], const char *path) {
     char head[PATH_CAP], real[PATH_MAX];
     if (!str_copy(head, sizeof head, path)) return path_too_long(path);

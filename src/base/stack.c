@@ -1,5 +1,5 @@
-// glslang and SPIRV-Cross recurse over expressions and calls. A shader is a stranger's text, so
-// they run on a stack that is large enough for all that shader/glsl.c lets through.
+// glslang and SPIRV-Cross recurse over expressions and calls of a shader, which a stranger may have
+// written. They run on a stack that is large enough for everything that shader/glsl.c lets through.
 #include "base/stack.h"
 #include "base/error.h"
 #include <pthread.h>

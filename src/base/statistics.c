@@ -9,7 +9,8 @@ static int by_size(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-// Nearest rank: the smallest value that `percent` of all are not above.
+// Returns the percentile by nearest rank: the smallest value that at least `percent` of all values
+// do not exceed.
 static double percentile(const double *sorted, size_t count, size_t percent) {
     size_t rank = (count * percent + 99) / 100;
     return sorted[rank ? rank - 1 : 0];
@@ -28,7 +29,8 @@ static int by_magnitude(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-// Twice the sum of the ranks of positive differences; twice, so that mean ranks are whole.
+// Returns twice the sum of the ranks of positive differences. It is doubled so that mean ranks are
+// integers.
 static size_t positive_ranks(const double *sorted, size_t count, double *ties) {
     size_t sum = 0;
     *ties = 0;
@@ -42,8 +44,8 @@ static size_t positive_ranks(const double *sorted, size_t count, double *ties) {
     return sum;
 }
 
-// Every one of the 2^count ways to give signs is as likely. How many give a sum of twice the ranks
-// of at most `sum`: one rank after the other is taken or not. Ties keep their mean ranks.
+// Each of the 2^count assignments of signs is equally likely. Counts those whose doubled rank sum
+// is at most `sum`, by taking or leaving one rank after the other. Ties keep their mean ranks.
 static double exact(const double *sorted, size_t count, size_t sum) {
     double ways[2 * STATS_EXACT * (STATS_EXACT + 1) / 2 + 1] = {1}, below = 0;
     size_t most = 0;

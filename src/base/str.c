@@ -17,7 +17,7 @@ void strbuf_append(strbuf *s, const char *bytes, size_t length) {
     s->text[s->length] = '\0';
 }
 
-// glibc's and musl's are static objects, which nothing frees.
+// glibc's and musl's C locales are static objects, which nothing frees.
 static locale_t c_locale(void) {
     return newlocale(LC_ALL_MASK, "C", (locale_t)0);
 }
@@ -72,7 +72,7 @@ const char *strbuf_text(const strbuf *s) {
     return s->text ? s->text : "";
 }
 
-// Optimal string alignment distance, letters compared without case, at most WORD_CAP letters.
+// The optimal string alignment distance. Case is ignored, and words have at most WORD_CAP letters.
 enum { WORD_CAP = 64 };
 
 static size_t smallest(size_t a, size_t b) {

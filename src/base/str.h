@@ -1,4 +1,4 @@
-// Growing text, and help with misspelt names.
+// Text buffers, suggestions for misspelt names, and numbers as text.
 #pragma once
 #include "base/error.h"
 #include <locale.h>
@@ -16,18 +16,19 @@ void strbuf_add_float(strbuf *s, float value); // the shortest number that reads
 void strbuf_free(strbuf *s);
 const char *strbuf_text(const strbuf *s); // "" when empty
 
-// The candidate nearest to `word` by edit distance (transpositions count one), or NULL when none
-// is near enough to be a likely typing error.
+// Returns the candidate nearest to `word` by edit distance (a transposition counts as one edit), or
+// NULL when none is near enough for a likely typing error.
 const char *str_nearest(const char *word, const char *const *candidates, size_t count);
 
-// What terminals obey becomes '?': control characters other than line breaks and tabs, those of
-// Unicode beyond ASCII (U+0080 to U+009F) too. For whatever came from a file and is printed.
+// Replaces what a terminal would obey by '?': control characters other than line breaks and tabs,
+// including U+0080 to U+009F. For text that comes from a file and is printed.
 void str_make_printable(char *text);
 
-// As strtof and strtod, of numbers with a point, whatever locale the program has chosen.
+// Like strtof and strtod, but with a decimal point in every locale.
 float str_float(const char *text, char **end);
 double str_double(const char *text, char **end);
-// Until str_leave_c_locale(before), the calling thread formats and reads numbers with a point.
+// Makes the calling thread format and read numbers with a decimal point, until it calls
+// str_leave_c_locale with the result.
 locale_t str_enter_c_locale(void);
 void str_leave_c_locale(locale_t before);
 

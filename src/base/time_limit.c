@@ -1,5 +1,5 @@
-// One pointer for each thread. Only the thread that entered writes `used` and `start`, and not
-// while others work for it.
+// Each thread has one pointer to its limit. Only the thread that entered the limit writes `used`
+// and `start`, and not while other threads work for it.
 #include "base/time_limit.h"
 #include "base/clock.h"
 #include "base/error.h"

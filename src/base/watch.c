@@ -1,9 +1,9 @@
-// One inotify descriptor, one thread. Files are looked up by "folder/name", folders by the number
-// that inotify gave their watch; two names of one folder share a number.
+// One inotify descriptor and one thread. Files are looked up by "folder/name", folders by the
+// number that inotify gave their watch; two names of one folder share a number.
 //
-// A folder that is gone has its nearest living ancestor watched instead. Whenever a folder comes,
-// goes or moves, all watches are set again: inotify answers with the number it has for a folder
-// that is still the same, so what differs is what changed.
+// Instead of a missing folder, its nearest existing ancestor is watched. Whenever a folder appears,
+// disappears or is moved, all watches are set again. For an unchanged folder inotify returns the
+// number that it has already, so a different number reveals what changed.
 #include "base/watch.h"
 #include "base/arena.h"
 #include "base/clock.h"
@@ -135,7 +135,7 @@ static void mark_folder(watch_list *list, size_t folder) { // SIZE_MAX: all
 
 // ---- folders ----------------------------------------------------------------------------------
 
-// Of the nearest ancestor that exists.
+// Watches the nearest ancestor that exists.
 static int watch_above(const watch *w, const char *path) {
     char folder[PATH_CAP], above[PATH_CAP];
     path_folder(folder, path);
@@ -147,7 +147,7 @@ static int watch_above(const watch *w, const char *path) {
     }
 }
 
-// What appears between the two looks for a folder is seen by the third.
+// Looks for the folder three times, so that one that appears between two looks is still seen.
 static bool folder_arm(const watch *w, watch_folder *folder) {
     folder->above = NO_WATCH;
     for (int looks = 0; looks < 2; looks++) {
@@ -172,7 +172,7 @@ static void drop_unused(const watch *w, const watch_list *list, int number) {
     if (number >= 0 && !is_used(list, number)) inotify_rm_watch(w->events, number);
 }
 
-// Sets all watches again; files of folders that are not what they were have changed.
+// Sets all watches again. Files in folders that are not the same any more count as changed.
 static void watch_refresh(watch *w) {
     watch_list *list = &w->list;
     for (size_t i = 0; i < list->folder_count; i++) {
@@ -186,8 +186,8 @@ static void watch_refresh(watch *w) {
 
 // ---- events -----------------------------------------------------------------------------------
 
-// A name that appeared: of a file that is being written, its closing is waited for; a link is
-// complete at once.
+// Returns whether a name that appeared is complete. A file that is being written is complete once
+// it is closed; a link is complete at once.
 static bool is_complete(const char *path) {
     struct stat info;
     return lstat(path, &info) != 0 || !S_ISREG(info.st_mode) || info.st_nlink > 1;
@@ -205,7 +205,7 @@ static void take_name(watch *w, const struct inotify_event *event) {
     }
 }
 
-// True when folders must be looked for again.
+// Handles one event. True when folders must be looked for again.
 static bool take_event(watch *w, const struct inotify_event *event) {
     if (event->mask & IN_Q_OVERFLOW) { // events were lost
         mark_folder(&w->list, SIZE_MAX);
@@ -239,7 +239,7 @@ static void take_all(watch *w) {
     if (folders) watch_refresh(w);
 }
 
-// The callbacks run without the lock, so that they may call watch_set.
+// Calls the callbacks without the lock, so that they may call watch_set.
 static void watch_report(watch *w) {
     arena memory = {0};
     const char **paths = NULL;
@@ -329,8 +329,8 @@ static void keep_given(watch *w, const char *const *paths, size_t count) {
     w->given_count = count;
 }
 
-// What was seen of a folder that stays on the list, so that a change since is not missed. An event
-// of it is still to be read then, with which its files are reported.
+// Copies what was seen of a folder that stays on the list, so that a change since then is not
+// missed: its event is still to be read, and its files are then reported.
 static void list_compare(watch_list *list, const watch_list *old) {
     for (size_t i = 0; i < list->folder_count; i++)
         for (size_t k = 0; k < old->folder_count; k++)

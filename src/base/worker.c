@@ -1,4 +1,5 @@
-// A mutex, a ring of jobs and two conditions: "there is a job (or an end)", "all is done".
+// A mutex, a ring of jobs and two conditions: "there is a job (or the end)" and "all jobs are
+// done".
 #include "base/worker.h"
 #include "base/error.h"
 #include "base/memory.h"

@@ -1,4 +1,4 @@
-// A few threads that run queued jobs in order; and a loop over all cores.
+// Threads that run queued jobs in order, and a loop over all cores.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -9,14 +9,15 @@ typedef struct worker_job {
     void *user;
 } worker_job;
 
-// `threads`: at least 1; fewer are made where the system gives no more. NULL, with a message: none.
+// Creates `threads` threads, at least 1; fewer when the system refuses more. NULL with a message
+// when it refuses all.
 worker *worker_create(size_t threads);
-void worker_submit(worker *w, worker_job job);
-void worker_submit_first(worker *w, worker_job job); // before all that still wait
+void worker_submit(worker *w, worker_job job);       // any thread
+void worker_submit_first(worker *w, worker_job job); // the same, before all jobs that wait
 void worker_wait(worker *w);                         // until every submitted job has ended
-void worker_destroy(worker *w); // runs what is queued, then joins; NULL is fine
+void worker_destroy(worker *w); // runs the queued jobs and joins the threads; NULL is allowed
 
-// Calls run(user, 0) to run(user, count - 1), shared out over the machine's cores, this thread
-// among them; returns when all calls have. False when one was, with the message of the first by
-// index; later ones may then not have been called.
+// Calls run(user, 0) to run(user, count - 1) on all cores, this thread among them, and returns when
+// all calls have ended. When a call returns false, so does this function, with the message of the
+// lowest such index; later calls may then be left out.
 bool worker_each(size_t count, bool (*run)(void *user, size_t index), void *user);

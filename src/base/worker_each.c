@@ -1,5 +1,6 @@
-// Indices are handed out in order, and none after a failure: every index before the first that
-// fails was handed out, so that which message is kept does not depend on how fast the threads are.
+// Indices are handed out in rising order, and none after a failure. Every index before the first
+// that fails was therefore handed out, so that the message does not depend on the speed of the
+// threads.
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/time_limit.h"

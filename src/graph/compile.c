@@ -1,13 +1,13 @@
-// From declarations to an order of passes.
+// Compiles declarations into an order of passes.
 //
-// Order: Kahn's algorithm (Communications of the ACM 5, 1962) where, of the passes that could run,
-// the one declared first runs; so an order that was right as written stays as written, and the
-// result does not depend on addresses or hashes. What Kahn leaves over depends on a cycle: every
-// leftover has a leftover among those it reads from, so walking back from any of them must come
-// round. A history image is written by nobody: reading it orders nothing, but keeps the writer of
-// its image from being culled.
+// The order is that of Kahn's algorithm (Communications of the ACM 5, 1962). Of the passes that
+// could run, the one declared first runs. An order that was right as written is therefore kept, and
+// the result does not depend on addresses or hashes. What Kahn leaves over depends on a cycle:
+// every leftover pass reads from another leftover pass, so walking back from any of them finds the
+// cycle. A history image has no writer: reading it orders nothing, but keeps the writer of its
+// image from being culled.
 //
-// Cost O(images + passes log passes + uses).
+// The cost is O(images + passes log passes + uses).
 #include "base/memory.h"
 #include "graph/internal.h"
 #include <assert.h>
@@ -34,7 +34,7 @@ static bool find_writers(graph *g) {
     return true;
 }
 
-// The pass whose work image `index` shows, this frame's or last frame's.
+// Returns the pass that writes image `index`, or writes the image whose history it is.
 static uint32_t source(const graph *g, uint32_t index) {
     const graph_node_image *image = &g->images[index];
     return image->of == NONE ? image->writer : g->images[image->of].writer;
@@ -113,7 +113,7 @@ static void sorting_begin(sorting *s, const graph *g) {
         }
 }
 
-// A pass that `pass` reads from and that could not be placed.
+// Returns a pass that `pass` reads from and that could not be placed.
 static uint32_t blocker(const graph *g, const sorting *s, uint32_t pass) {
     for (size_t i = 0; i < g->passes[pass].read_count; i++) {
         uint32_t writer = g->images[g->passes[pass].reads[i]].writer;
@@ -190,7 +190,7 @@ static void mark_image(graph *g, marking *m, uint32_t image) {
     mark_pass(g, m, source(g, image));
 }
 
-// Readers come after what they read, so that one walk against the order is enough.
+// Readers come after the passes they read from, so one walk against the order is enough.
 static void mark_needed(graph *g) {
     for (size_t p = 0; p < g->pass_count; p++) g->passes[p].needed = false;
     for (size_t i = 0; i < g->image_count; i++) g->images[i].feeds = false;
@@ -230,7 +230,8 @@ void graph_cull(graph *g) {
 
 // ---- sizes ------------------------------------------------------------------------------------
 
-// Rounded up, but 1920 * 0.1 is 192 although 0.1f is a little more than a tenth.
+// Rounds up, except for the error of floats: 1920 * 0.1 is 192, although 0.1f is a little more than
+// a tenth.
 static double scaled(uint32_t size, float scale) {
     double exact = (double)size * (double)scale;
     return fmax(1, ceil(exact - exact * 0x1p-23));

@@ -1,4 +1,5 @@
-// The graph as Graphviz text: passes are boxes, images ellipses, outputs have a double line.
+// Prints the graph as Graphviz text. Passes are boxes, images are ellipses, outputs have a double
+// line.
 #include "graph/internal.h"
 #include <ctype.h>
 

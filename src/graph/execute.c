@@ -1,7 +1,7 @@
-// Running a compiled graph: histories change places, then the passes record in order.
+// Runs a compiled graph: swaps the histories, then records the passes in order.
 //
-// The two images behind an image with history swap before the first pass, so that between two
-// executions the handles show the frame that was just made and the one before it.
+// The two images behind an image with history are swapped before the first pass. Between two
+// executions the handles therefore show the frame that was just made and the one before it.
 #include "graph/internal.h"
 #include <assert.h>
 

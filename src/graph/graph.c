@@ -1,6 +1,7 @@
-// Declaring a graph, and asking about it.
+// Declares a graph, and answers questions about it.
 //
-// Every declaration makes the last compile stale: handles stay valid, order and memory do not.
+// Every declaration invalidates the last compilation: handles stay valid, the order and the memory
+// do not.
 #include "graph/graph.h"
 #include "base/memory.h"
 #include "graph/internal.h"

@@ -1,4 +1,4 @@
-// What the files of the graph layer share: the graph's own data. Not for other layers.
+// Data of a graph, shared by the files of this layer only.
 #pragma once
 #include "base/arena.h"
 #include "graph/graph.h"
@@ -6,7 +6,7 @@
 
 #define NONE UINT32_MAX
 
-// Everything that must be equal for two images to use the same memory one after the other.
+// Two images can use the same memory one after the other only if their keys are equal.
 typedef struct slot_key { // all uint32_t: no padding, so it can be compared as bytes
     uint32_t format, width, height, depth, mips, target; // depth 0: 2D
 } slot_key;
@@ -16,19 +16,19 @@ typedef struct graph_slot {
     slot_key key;
     const char *name;  // of the first image that uses it
     gpu_image *memory; // NULL until allocated
-    bool paired;       // half of an image with history: belongs to one image, contents survive
-    bool kept;         // belongs to one image, whose writer need not write it every time
-    bool fresh;        // paired or kept, and never cleared nor written
+    bool paired;       // half of an image with history; it is never shared and keeps its content
+    bool kept;         // of a kept image; it is never shared, and not written in every frame
+    bool fresh;        // paired or kept, and neither cleared nor written yet
 } graph_slot;
 
 typedef struct graph_node_image {
     graph_image_desc desc; // name in the arena; mips resolved by graph_compile
     uint32_t mips;         // as declared
-    uint32_t of;           // history image: index of the image whose past it is; else NONE
+    uint32_t of;           // of a history: index of its image; else NONE
     uint32_t history;      // index of its history image or NONE
     bool output;
     // from here: results of graph_compile
-    bool read;         // it or its history, by a pass that runs or as an output
+    bool read;         // it or its history is an output or read by a pass that runs
     bool history_used; // its history is read by a pass that runs, or is an output
     bool feeds;        // read by a pass that is needed
     uint32_t writer;   // index of a pass or NONE
@@ -43,8 +43,8 @@ typedef struct graph_node_pass {
     bool keep, simulates;
     bool (*record)(void *user, graph *g, gpu *device);
     void *user;
-    bool live;   // result of graph_compile
-    bool needed; // by a pass that simulates, or is one; result of graph_compile
+    bool live;   // it runs; result of graph_compile
+    bool needed; // it simulates, or a pass that simulates needs it; result of graph_compile
 } graph_node_pass;
 
 typedef struct slot_list {
@@ -59,7 +59,7 @@ struct graph {
     graph_node_pass *passes;
     size_t image_count, image_capacity, pass_count, pass_capacity;
 
-    bool compiled;   // `order` and `slots` fit what is declared
+    bool compiled;   // `order` and `slots` match the declarations
     bool allocated;  // every slot has memory
     uint32_t *order; // passes that run
     size_t order_count;

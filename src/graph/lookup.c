@@ -1,4 +1,5 @@
-// Chained hash table. Buckets double when there are as many entries, so that chains stay short.
+// A hash table with chains. The number of buckets doubles when there are as many entries, so that
+// chains stay short.
 #include "graph/lookup.h"
 #include "base/hash.h"
 #include "base/memory.h"

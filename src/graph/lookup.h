@@ -1,4 +1,4 @@
-// Byte strings numbered in order of addition, found by hash. The keys stay the caller's.
+// A set of byte strings, numbered in order of addition and found by hash. The caller owns the keys.
 #pragma once
 #include <stddef.h>
 #include <stdint.h>
@@ -17,5 +17,5 @@ typedef struct lookup { // zero-initialised: empty
 } lookup;
 
 uint32_t lookup_find(const lookup *l, const void *key, size_t size); // UINT32_MAX when absent
-uint32_t lookup_add(lookup *l, const void *key, size_t size); // its number; it must be absent
+uint32_t lookup_add(lookup *l, const void *key, size_t size); // returns its number; must be absent
 void lookup_free(lookup *l);

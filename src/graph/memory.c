@@ -1,12 +1,12 @@
-// Lifetimes, and the GPU images behind the images of a graph.
+// Lifetimes of images, and the GPU images behind them.
 //
-// An image lives from the pass that writes it to the last pass that reads it. Walking the order
-// once, a written image takes a slot of its kind (slot_key) that is free, or a new one; after a
-// pass the images that it read last give theirs back. Invariant: two images of one slot never live
-// at the same time. Outputs, images with a history and kept ones live for ever and never
+// An image lives from the pass that writes it to the last pass that reads it. The order is walked
+// once: a written image takes a free slot of its kind (slot_key), or a new one; after a pass, the
+// images that it was the last to read free their slots. Invariant: two images of one slot never
+// live at the same time. Outputs, kept images and images with a history live forever and never
 // share.
 //
-// Allocation takes over what an earlier plan had: first by name and kind, so that contents
+// An allocation takes over images of an earlier plan: first by name and kind, so that contents
 // survive, then by kind alone.
 #include "base/memory.h"
 #include "graph/internal.h"
@@ -163,7 +163,7 @@ static void take_over(graph_slot *to, graph_slot *from) {
     from->memory = NULL;
 }
 
-// Numbers the slots of a list by name; `slots` (mem_free) gives the slot of a number.
+// Numbers the slots of a list by name. `slots` (free with mem_free) gives the slot of a number.
 static lookup index_names(const slot_list *list, uint32_t **slots) {
     lookup names = {0};
     *slots = mem_alloc(list->count * sizeof **slots);

@@ -1,10 +1,10 @@
-// Kernels: what the device runs. A kernel is one compute shader, or a vertex and a fragment shader
-// that draw together, with its pipeline, the block of its loose uniforms and what its slots are
-// bound to. All that compiles, builds, fills, binds and runs shaders does it here.
+// Kernels are what the device runs. A kernel is one compute shader, or a vertex and a fragment
+// shader that draw together, with its pipeline, the block of its loose uniforms and the bindings of
+// its slots. All code that compiles, builds, fills, binds and runs shaders uses this header.
 //
-// The host names uniforms and slots by number: an index into a table of names that the kernels of
-// one user have in common. Names are looked up once, when a kernel is compiled. One that the
-// compiler dropped from a kernel as unused is passed over there; one that no shader of the table's
+// The host refers to uniforms and slots by number: an index into a table of names that is common to
+// the kernels of one user. Names are looked up once, when a kernel is compiled. A name that the
+// compiler removed from a kernel as unused is ignored there. A name that no shader of the table's
 // user declares is a bug, which kernel_undeclared finds.
 //
 //     #define NAMES(NAME) NAME(size), NAME(weights), NAME(FlowVelocity)
@@ -21,33 +21,33 @@
 #define KERNEL_NAME_ID(NAME) N_##NAME
 #define KERNEL_NAME_TEXT(NAME) #NAME
 
-enum { KERNEL_STAGES = 2 }; // vertex and fragment; of a compute shader the first
+enum { KERNEL_STAGES = 2 }; // vertex and fragment; a compute shader uses the first
 
-typedef struct kernel_names { // as the shaders have them; of blocks the block's name
+typedef struct kernel_names { // names in the shaders; a block is found by the block's name
     const char *const *items;
     size_t count;
 } kernel_names;
 
-typedef struct kernel_table { // what a user's kernels are made of
+typedef struct kernel_table { // names and shader files of a user's kernels
     kernel_names names;
     const char *const *files;
     size_t file_count;
 } kernel_table;
 
-typedef struct kernel_place { // of a name in each stage; -1: it is not there
+typedef struct kernel_place { // where a name is in each stage; -1: the stage does not have it
     int16_t member[KERNEL_STAGES], slot[KERNEL_STAGES];
 } kernel_place;
 
 typedef struct kernel kernel;
 struct kernel {
-    const char *label; // in messages and GPU times
+    const char *label; // used in messages and GPU times
     int stages;        // 0: not compiled
     shader_binary binaries[KERNEL_STAGES];
-    unsigned char *blocks[KERNEL_STAGES]; // "Uniforms"; NULL: the stage has none
+    unsigned char *blocks[KERNEL_STAGES]; // data of block "Uniforms"; NULL: the stage has none
     size_t block_sizes[KERNEL_STAGES];    // bytes
     const kernel_place *places;           // one for each name
     const shader_slot *slots[GPU_MAX_SLOTS];
-    gpu_binding bindings[GPU_MAX_SLOTS]; // of the slots; what was bound stays bound
+    gpu_binding bindings[GPU_MAX_SLOTS]; // of the slots; a binding stays until it is replaced
     size_t slot_count;
     gpu_pipeline *pipeline; // NULL: not built
 };
@@ -59,33 +59,34 @@ typedef struct kernel_source {
     kernel_names names;
 } kernel_source;
 
-// Needs no device. All that it makes lives in `memory`. Again: replaces what was compiled; the
-// pipeline stays until the next kernel_build. False with a message, and all is as it was.
+// Compiles the shaders. Needs no device. The results live in `memory`. A second call replaces them;
+// the pipeline stays until the next kernel_build. False with a message, and nothing has changed.
 bool kernel_compile(kernel *k, shader_library *library, arena *memory, const kernel_source *source);
-// Of a compute shader.
+// Builds the pipeline of a compute shader.
 bool kernel_build(kernel *k, gpu *g);
-// Of two stages. All of `desc` but its label, code and slots.
+// Builds the pipeline of a vertex and a fragment shader. The kernel sets the label, the code and
+// the slots of `desc`.
 bool kernel_build_drawn(kernel *k, gpu *g, gpu_graphics_desc desc);
-void kernel_destroy(kernel *k, gpu *g); // the pipeline; again: does nothing
+void kernel_destroy(kernel *k, gpu *g); // destroys the pipeline, if there is one
 
-// Where other names than those of its table are in it.
+// Looks up names that are not in the kernel's table. The result lives in `memory`.
 const kernel_place *kernel_find(const kernel *k, arena *memory, kernel_names names);
 
 // ---- in a frame -------------------------------------------------------------------------------
 
-// A uniform, in each stage that has it. Arrays are std140: each element has 16 bytes.
+// Set a uniform in each stage that has it. Arrays are std140: each element takes 16 bytes.
 void kernel_set(kernel *k, int name, const void *data, size_t size);
 void kernel_set_float(kernel *k, int name, float value);
 void kernel_set_int(kernel *k, int name, int32_t value);
 void kernel_set_at(kernel *k, const kernel_place *place, const void *data, size_t size);
 
-// All of `what` but its number.
+// Bind a slot. The number of `what` is ignored.
 void kernel_bind(kernel *k, int name, gpu_binding what);
 void kernel_bind_at(kernel *k, const kernel_place *place, gpu_binding what);
 void kernel_bind_buffer(kernel *k, int name, gpu_buffer *buffer);
 void kernel_bind_image(kernel *k, int name, gpu_image *image); // mip 0, GPU_LINEAR_CLAMP
 
-// False with a message when a slot has nothing bound.
+// Returns false with a message when a slot has no binding.
 bool kernel_is_bound(const kernel *k);
 bool kernel_run(kernel *k, gpu *g, uint32_t x, uint32_t y, uint32_t z); // threads
 // A thread for each of `count`; 0: does nothing. Groups stand in rows, since a device takes 65535
@@ -97,5 +98,6 @@ gpu_draw kernel_draw(const kernel *k, gpu_binding *kept);
 
 // ---- names ------------------------------------------------------------------------------------
 
-// The first name that none of the table's shader files mentions: a bug. NULL: there is none.
+// Returns the first name that none of the table's shader files mentions, which is a bug. NULL: all
+// are mentioned.
 const char *kernel_undeclared(shader_library *library, const kernel_table *table);

@@ -1,5 +1,5 @@
-// What a worker can still do. The limits hold against faults; the filter of system calls also
-// against bytes that take a worker over.
+// Restricts what a worker can do. The limits protect against faults, the filter of system calls
+// also against bytes that take over a worker.
 #include "reader/worker.h"
 #include <errno.h>
 #include <linux/audit.h>
@@ -41,7 +41,7 @@ static rlim_t address_space(void) { // in use, bytes; 0: unknown
     return pages * (rlim_t)sysconf(_SC_PAGESIZE);
 }
 
-// Timers of signals that nothing here catches: they end the process whatever it does.
+// Sets a timer whose signal is never caught, so that it ends the process in any case.
 static void set_timer(int which, uint64_t milliseconds) {
     struct itimerval timer = {.it_value = {.tv_sec = (time_t)(milliseconds / 1000),
                                            .tv_usec = (suseconds_t)(milliseconds % 1000 * 1000)}};

@@ -1,4 +1,4 @@
-// roil-reader: reads what strangers wrote. See base/isolate.h.
+// roil-reader: reads files of strangers for another process. See base/isolate.h.
 #include "base/memory.h"
 #include "media/exr.h"
 #include "media/mesh_import.h"

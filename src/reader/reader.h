@@ -1,18 +1,18 @@
-// The process that does the work on what strangers wrote: see base/isolate.h.
+// The process that reads files of strangers: see base/isolate.h.
 #pragma once
 #include "base/isolate.h"
 
 typedef struct reader_job {
     const char *kind;
-    // In a worker. True: what was put is the result. False: the error is err_get(). It may leave by
-    // _exit(0) once all is put.
+    // Does the job, in a worker. True: the result is what was put. False: the error is err_get().
+    // It may call _exit(0) once the result is complete.
     bool (*work)(const isolate_call *call);
-    void (*get_ready)(void); // once, so that workers find it done; may be NULL
-    // Instead of `work`: the name of the program beside this one that does it. Its libraries are
-    // then loaded when they are first needed, and in no other worker.
+    void (*get_ready)(void); // prepares once for all workers; may be NULL
+    // Instead of `work`: the name of the program beside this one that does the job. Its libraries
+    // are then loaded only when they are first needed, and in no other worker.
     const char *program;
 } reader_job;
 
-// Serves until the socket WIRE_CONTROL is closed on the other side. The exit status of the process:
-// it returns only when there is no such socket.
+// Serves requests until the client closes the socket WIRE_CONTROL, and then ends the process. It
+// returns, with an exit status, only when there is no such socket.
 int reader_serve(const reader_job *jobs, size_t count);

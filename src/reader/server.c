@@ -1,9 +1,10 @@
-// Takes requests and forks a worker for each. One thread works, on a large stack, which workers
-// stand on a copy of; the thread that main() runs on waits for it.
+// Receives requests and forks a worker for each. One thread works, on a large stack, of which each
+// worker gets a copy; the thread of main() waits for it.
 //
-// Jobs that need something got ready, which takes a compiler 80 ms, have a server of their own: the
-// same loop in a process that the first one forks and hands such requests on to, so that no picture
-// waits behind it. So have those of another program, which loads libraries that no other job needs.
+// Some jobs need preparation, which takes a compiler 80 ms. They have a server of their own, so
+// that no picture waits for it: the same loop in a process that the first server forks, and to
+// which it forwards such requests. Jobs of another program, which loads libraries that no other job
+// needs, have one too.
 #include "base/isolate_wire.h"
 #include "base/memory.h"
 #include "base/stack.h"
@@ -51,7 +52,7 @@ static void wake_up(int signal_number) {
     (void)signal_number;
 }
 
-// Nobody shall notice when a worker dies, and when memory runs out it shall die first.
+// The death of a worker must not be noticed, and when memory runs out workers must be killed first.
 static void set_kill_policy(void) {
     FILE *file = fopen("/proc/self/oom_score_adj", "we");
     if (file) {
@@ -88,7 +89,8 @@ static _Noreturn void become_program(const char *name) {
 
 typedef enum role { FIRST, HELPER } role;
 
-// HELPER in the new process, which goes on with its loop. What fails shows where it is used.
+// Returns HELPER in the new process, which continues with its own loop. A failure shows when the
+// helper is used.
 static role start_helper(server *s, const char *program) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) _exit(EXIT_FAILURE);
@@ -113,14 +115,14 @@ static helper *find_helper(server *s, const char *program) {
     return NULL;
 }
 
-// Starts what such a job will be handed on to.
+// Starts the helper that such jobs will be forwarded to.
 static void get_ready(server *s, const reader_job *job) {
     bool elsewhere = job->program || (job->get_ready && !s->ready);
     if (elsewhere && !find_helper(s, job->program)) start_helper(s, job->program);
 }
 
-// A helper that has died since is started anew. A request that one had takes with it closes its
-// channel: who waits asks again.
+// Forwards a request. A helper that has ended is started again. A request that is lost with a
+// helper closes its channel, and its client asks again.
 static void hand_on(server *s, const char *program, const wire_request *r,
                     const int files[WIRE_FILES]) {
     for (int attempt = 0; attempt < 2; attempt++) {
@@ -223,7 +225,7 @@ static void serve_request(server *s) {
         start_worker(s, job, &r, files);
 }
 
-// Who waits and goes away, takes the worker along.
+// Ends workers whose client has gone away.
 static void end_lonely(server *s, const struct pollfd *channels) {
     for (size_t i = 0; i < s->count; i++) {
         worker *w = &s->workers[i];

@@ -1,4 +1,5 @@
-// Everything that goes wrong here ends here: the process leaves with a status that says how.
+// A worker. Every failure ends in this file: the process exits with a status that says what
+// happened.
 #include "reader/worker.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -15,7 +16,8 @@ static void worker_leave(void) { // exit() here means that memory ran out (base/
     _exit(WIRE_EXIT_MEMORY);
 }
 
-// In an order of which none is overwritten before it is moved: copies above all first.
+// Moves the files to their numbers. All are first copied above these numbers, so that none is
+// overwritten before it was moved.
 static void take_files(const int files[WIRE_FILES], int said) {
     const int from[] = {said, files[WIRE_CHANNEL], files[WIRE_OUT], files[WIRE_INPUT]};
     const int to[] = {STDERR_FILENO, CHANNEL, OUT, INPUT};
