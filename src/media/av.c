@@ -5,7 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// The versions whose headers this was compiled with: others have structures of another layout.
+// Loads the versions whose headers this file was compiled with, since other versions have
+// structures of another layout.
 #define SONAME(library, major) "lib" library ".so." AV_STRINGIFY(major)
 
 typedef struct av_library {
@@ -26,7 +27,7 @@ static av_libraries libraries = {
 av_functions av;
 static char problem[512]; // "" when all was found
 
-// `target` is a pointer to a function, which C does not let a void pointer be assigned to.
+// `target` is a pointer to a function pointer, which C cannot assign from a void pointer.
 static void find_symbol(av_library *library, const char *name, void *target, size_t size) {
     if (problem[0]) return;
     if (!library->handle) library->handle = dlopen(library->name, RTLD_NOW | RTLD_LOCAL);

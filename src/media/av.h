@@ -1,5 +1,5 @@
-// libavformat, libavcodec, libavutil and libswscale, loaded when the first film is begun: they
-// bring a hundred libraries along, which would cost every start of the program 30 ms.
+// libavformat, libavcodec, libavutil and libswscale, loaded when the first video is begun. They
+// depend on a hundred libraries, which would cost every start of the program 30 ms.
 #pragma once
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
@@ -48,7 +48,7 @@ typedef struct av_functions {
     AV_FUNCTIONS(AV_MEMBER)
 } av_functions;
 
-extern av_functions av; // after av_load
+extern av_functions av; // valid after av_load
 
-// False with a message when they are not installed. Any thread.
+// Loads the libraries. False with a message when they are not installed. Any thread.
 bool av_load(void);

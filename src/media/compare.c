@@ -13,8 +13,8 @@ static size_t pixels_of(const compare_picture *p) {
 
 // ---- over all cores ---------------------------------------------------------------------------
 
-// What is done for rows (or columns, or pixels) `first` up to `end`; each of them by itself, so
-// that the result does not depend on how they are shared out.
+// Handles rows (or columns, or pixels) `first` up to `end`. Each is handled by itself, so that the
+// result does not depend on how they are divided among threads.
 typedef void stretch(void *user, size_t first, size_t end);
 
 typedef struct stretches {
@@ -48,7 +48,8 @@ static kernel make_kernel(int radius) {
     return (kernel){radius, mem_alloc((size_t)(2 * radius + 1) * sizeof(float))};
 }
 
-// exp(-falloff * x * x) at whole pixels, of sum 1. Gives the sum that it had before.
+// Samples exp(-falloff * x * x) at integers and normalises the sum to 1. `*sum` receives the sum
+// before that.
 static kernel make_gaussian(int radius, double falloff, double *sum) {
     kernel k = make_kernel(radius);
     *sum = 0;
@@ -58,7 +59,7 @@ static kernel make_gaussian(int radius, double falloff, double *sum) {
     return k;
 }
 
-// One line; what lies beyond its ends is as the ends are. `padded`: room for count + 2 * radius.
+// Filters one line; its ends are repeated beyond it. `padded` has room for count + 2 * radius.
 static void filter_line(const kernel *k, const float *line, size_t count, size_t stride,
                         float *padded, float *out) {
     size_t radius = (size_t)k->radius;
@@ -96,7 +97,7 @@ static void filter_columns(void *user, size_t first, size_t end) {
     mem_free(padded);
 }
 
-// `across` along rows, then `down` along columns. `out` may be `in`.
+// Filters by `across` along rows, then by `down` along columns. `out` may be `in`.
 static void filter_rows_columns(const compare_picture *shape, const kernel *across,
                                 const kernel *down, const float *in, float *out) {
     size_t margin = 2 * (size_t)(across->radius > down->radius ? across->radius : down->radius);
@@ -145,7 +146,7 @@ static float *make_means(const compare_picture *a, const compare_picture *b) {
     return means;
 }
 
-// Equation 13 at a pixel: `means` as make_means has it, `count` apart.
+// Equation 13 at a pixel. `means` are as in make_means, `count` apart.
 static double similarity(const float *means, size_t count) {
     const double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
     double u = (double)means[MEAN_A * count], v = (double)means[MEAN_B * count];
@@ -192,14 +193,14 @@ static double decode_srgb(double v) {
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
-// Linear RGB as XYZ relative to white.
+// Converts linear RGB to XYZ relative to white.
 static color relative_xyz(color rgb) {
     color c = color_transform(srgb_to_xyz, rgb),
           white = color_transform(srgb_to_xyz, (color){1, 1, 1});
     return (color){c.x / white.x, c.y / white.y, c.z / white.z};
 }
 
-// The opponent space in which the contrast sensitivity of the eye is known.
+// Converts to the opponent space in which the contrast sensitivity of the eye is known.
 static color ycxcz(const float *rgb) {
     color c = relative_xyz((color){decode_srgb((double)rgb[0]), decode_srgb((double)rgb[1]),
                                    decode_srgb((double)rgb[2])});
@@ -223,26 +224,27 @@ static double lab_curve(double t) {
     return t > d * d * d ? cbrt(t) : t / (3 * d * d) + 4.0 / 29;
 }
 
-// CIELab with the Hunt adjustment: dark colours look less colourful.
+// Converts to CIELab with the Hunt adjustment: dark colours look less colourful.
 static color hunt_lab(color rgb) {
     color c = relative_xyz(rgb);
     double x = lab_curve(c.x), y = lab_curve(c.y), z = lab_curve(c.z), l = 116 * y - 16;
     return (color){l, 0.01 * l * 500 * (x - y), 0.01 * l * 200 * (y - z)};
 }
 
-// HyAB to the power that compresses large distances.
+// Returns the HyAB distance to the power that compresses large distances.
 static double color_distance(color a, color b) {
     return pow(fabs(a.x - b.x) + hypot(a.y - b.y, a.z - b.z), 0.7);
 }
 
-// 0 to 1 of a distance: those up to 0.4 of `greatest` take 0.95 of it.
+// Maps a distance to 0 to 1. Distances up to 0.4 of `greatest` get 0.95 of the range.
 static double redistribute(double distance, double greatest) {
     double knee = 0.4 * greatest;
     return distance < knee ? 0.95 / knee * distance
                            : 0.95 + (distance - knee) / (greatest - knee) * 0.05;
 }
 
-// Sum of two Gaussians exp(-pi^2 z / b), weighed by a * sqrt(pi / b); z in degrees squared.
+// Filters by the sum of two Gaussians exp(-pi^2 z / b), weighted by a * sqrt(pi / b); z is in
+// degrees squared.
 static void filter_by_sensitivity(const compare_picture *shape, double ppd, const double a[2],
                                   const double b[2], float *plane) {
     size_t count = pixels_of(shape);
@@ -279,7 +281,7 @@ static void convert_rows(void *user, size_t first, size_t end) {
     }
 }
 
-// Three planes of YCxCz as an eye at that distance resolves them.
+// Returns three planes of YCxCz as an eye at that distance resolves them.
 static float *make_seen(const compare_picture *p, double ppd) {
     static const double a[3][2] = {{1, 0}, {1, 0}, {34.1, 13.5}};
     static const double b[3][2] = {{0.0047, 1e-5}, {0.0053, 1e-5}, {0.04, 0.025}};
@@ -322,7 +324,8 @@ static void color_errors(const compare_picture *a, const compare_picture *b, dou
 
 // ---- FLIP: features, section 4.2 --------------------------------------------------------------
 
-// First or second derivative of a Gaussian; its positive weights sum to 1, its negative to -1.
+// Samples the first or second derivative of a Gaussian. Its positive weights sum to 1, its negative
+// ones to -1.
 static kernel make_derivative(int radius, double sigma, bool second) {
     kernel k = make_kernel(radius);
     double sums[2] = {0, 0};
@@ -338,7 +341,7 @@ static kernel make_derivative(int radius, double sigma, bool second) {
     return k;
 }
 
-// Strength of edges (or, with `second`, of points) at each pixel.
+// Finds the strength of edges (or, with `second`, of points) at each pixel.
 static void find_features(const compare_picture *p, const float *plane, double ppd, bool second,
                           float *out) {
     size_t count = pixels_of(p);
@@ -368,7 +371,7 @@ static float *make_brightness(const compare_picture *p) {
     return plane;
 }
 
-// The greater one of both differences, 0 to 1 of each pixel.
+// Returns the greater of both differences, 0 to 1, at each pixel.
 static float *make_feature_errors(const compare_picture *a, const compare_picture *b, double ppd) {
     size_t count = pixels_of(a), size = count * sizeof(float);
     float *bright_a = make_brightness(a), *bright_b = make_brightness(b);

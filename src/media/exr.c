@@ -1,6 +1,6 @@
 // OpenEXR through OpenEXRCore, the C library. Both directions go through memory: a file is complete
 // before it appears under its name, and cannot change while it is read. Chunks (16 lines for ZIP,
-// or one tile) pass through the library's pipeline, which is told where each channel's plane lies.
+// or one tile) pass through the library's pipeline, which gets the address of each channel's plane.
 #include "media/exr.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -71,7 +71,7 @@ static bool fault(const char *path, const char *doing, const stream *s) {
     return err_set("%s: %s: %s", path, doing, s->fault[0] ? s->fault : "OpenEXR failed");
 }
 
-// A channel's plane in the form in which the file keeps it.
+// A channel's plane in the format of the file.
 typedef struct plane {
     const char *name;
     const uint8_t *values;
@@ -227,8 +227,8 @@ static bool is_wanted(const exr_wish *wish, const char *name) {
     return !wish->letters || (name[0] && !name[1] && strchr(wish->letters, name[0]));
 }
 
-// Makes room for those that are wanted, and one plane for all others: OpenEXR 3.1 says that it
-// leaves out a channel without a place, and crashes where all channels are halves.
+// Makes room for the wanted channels, and one plane for all others. OpenEXR 3.1 says that it skips
+// a channel without an address, but crashes when all channels are halves.
 static bool make_room(reader *r, const exr_attr_chlist_t *list, arena *memory, exr_image *out) {
     size_t count = (size_t)list->num_channels, wanted = 0;
     for (size_t c = 0; c < count; c++) wanted += is_wanted(r->wish, list->entries[c].name.str);
@@ -260,7 +260,7 @@ static bool make_room(reader *r, const exr_attr_chlist_t *list, arena *memory, e
     return true;
 }
 
-// Size and channels; allocates the planes.
+// Reads the size and the channels, and allocates the planes.
 static bool read_shape(reader *r, arena *memory, exr_image *out) {
     int parts = 0;
     const exr_attr_chlist_t *list = NULL;

@@ -19,22 +19,22 @@ typedef struct exr_image {
 
 bool exr_write(const char *path, const exr_image *image); // atomic
 
-// Of all channels those whose name is one of these letters, "RGB"; NULL: all.
-typedef struct exr_wish {
-    const char *letters; // at most 7
+typedef struct exr_wish { // what to read of a file
+    const char *letters;  // names of channels, each a letter, at most 7: "RGB"; NULL: all channels
     picture_limits limits;
 } exr_wish;
 
-// Half, float and uint channels of a scanline or tiled single-part file, which may be a stranger's:
-// the reader decodes it. `wish` NULL: all channels within the usual limits.
+// Reads half, float and uint channels of a scanline or tiled single-part file into `memory`. The
+// file may be a stranger's: the reader decodes it. `wish` NULL: all channels, default limits.
 bool exr_read(const char *path, const exr_wish *wish, arena *memory, exr_image *out);
-// Below `root` (base/file.h).
+// Reads a file that must lie below `root` (base/file.h).
 bool exr_read_inside(const char *root, const char *path, const exr_wish *wish, arena *memory,
                      exr_image *out);
-const float *exr_find(const exr_image *image, const char *channel); // its values, or NULL
+const float *exr_find(const exr_image *image, const char *channel); // its values; NULL: none
 
-// Here and now, the file's bytes; `name` is for messages. Without `memory` its size alone.
+// Decodes the bytes of a file in this process. `name` is for messages. `memory` NULL: reads only
+// the size.
 bool exr_decode(const void *data, size_t size, const char *name, const exr_wish *wish,
                 arena *memory, exr_image *out);
-bool exr_work(const isolate_call *call); // in a worker
+bool exr_work(const isolate_call *call); // this and the next run in a worker
 bool exr_size_work(const isolate_call *call);

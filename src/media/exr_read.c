@@ -1,4 +1,4 @@
-// OpenEXR by the reader: what goes into a worker and what comes back.
+// OpenEXR by the reader: the data of its jobs and of their results.
 #include "base/error.h"
 #include "base/str.h"
 #include "media/exr.h"

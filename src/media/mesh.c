@@ -1,5 +1,5 @@
-// Assimp reads the file in the reader (mesh_import); this side trusts nothing that comes back: it
-// checks every length, index and number, and has the textures read.
+// Loads a mesh. Assimp reads the file in the reader (mesh_import). This side trusts nothing that
+// comes back: it checks every length, index and number, and has the textures read.
 #include "media/mesh.h"
 #include "base/error.h"
 #include "base/isolate.h"
@@ -36,7 +36,7 @@ static bool broken(const loader *l) {
     return err_set("%s: damaged: its reader returned nonsense", l->path);
 }
 
-// A copy in the arena of the next `count` elements.
+// Copies the next `count` elements to the arena.
 static void *take_array(loader *l, size_t count, size_t element) {
     const void *p = blob_take(l, count * element);
     return p ? arena_copy(l->memory, p, count * element) : NULL;
@@ -89,7 +89,7 @@ static bool check_parts(const loader *l, mesh_part *parts, const mesh_blob *head
     return index == head->index_count || broken(l);
 }
 
-// Their runs follow each other, behind the mesh's own indices.
+// Runs of the levels follow each other, after the mesh's own indices.
 static bool take_levels(loader *l, const mesh_blob *head, mesh_data *out) {
     uint32_t index = head->index_count, last = head->index_count + head->level_index_count;
     for (uint32_t i = 0; i < head->level_count; i++) {
@@ -147,7 +147,7 @@ static bool load_texture(loader *l, const mesh_blob_texture *t, const void *byte
     return texture_read_inside(l->files.root, file, l->memory, out);
 }
 
-// Textures that cannot be read are left out, with a warning; one outside the root is an error.
+// A texture that cannot be read is left out with a warning; one outside of the root is an error.
 static bool take_textures(loader *l, const mesh_blob *head, mesh_part *parts, mesh_data *out) {
     mesh_texture *textures = arena_alloc(l->memory, head->texture_count * sizeof *textures);
     int *place = arena_alloc(l->memory, head->texture_count * sizeof *place);

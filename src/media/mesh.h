@@ -1,11 +1,12 @@
-// Meshes from OBJ and glTF files, by assimp. Right-handed; Z up (glTF's Y up is rotated).
+// Meshes from OBJ and glTF files, read by assimp. Coordinates are right-handed with Z up; glTF's Y
+// up is rotated. Lengths are metres.
 #pragma once
 #include "base/arena.h"
 #include "base/maths.h"
 #include <stdbool.h>
 #include <stdint.h>
 
-typedef struct mesh_vertex { // as the vertex shader reads it: 32 bytes
+typedef struct mesh_vertex { // 32 bytes, as the vertex shader reads it
     float position[3], u;
     float normal[3], v;
 } mesh_vertex;
@@ -19,19 +20,19 @@ typedef struct mesh_part { // a run of indices with one material
     uint32_t first, count; // indices
     float color[4];        // base colour, linear
     int texture;           // index, -1: none
-    float specular;        // 0..1, 0.5: reflects 4 percent head on; 0: matte
-    float roughness;       // 0..1
-    float metallic;        // 0..1
-    float emission[3];     // radiance that it gives off
+    float specular;        // 0 to 1; 0.5 reflects 4 percent at normal incidence, 0 is matte
+    float roughness;       // 0 to 1
+    float metallic;        // 0 to 1
+    float emission[3];     // emitted radiance
 } mesh_part;
 
-typedef struct mesh_run { // of indices
+typedef struct mesh_run { // a range of indices
     uint32_t first, count;
 } mesh_run;
 
-typedef struct mesh_level { // the mesh with fewer triangles, of the same vertices
-    float error;            // metres that it is off, at most, about
-    const mesh_run *runs;   // for each part
+typedef struct mesh_level { // the mesh with fewer triangles and the same vertices
+    float error;            // about the greatest distance from the full mesh (m)
+    const mesh_run *runs;   // one for each part
 } mesh_level;
 
 enum { MESH_LEVELS = 3 };
@@ -48,16 +49,17 @@ typedef struct mesh_data {
     uint32_t part_count;
     const mesh_texture *textures;
     uint32_t texture_count;
-    box3 box;                 // around all vertices: what it says is out of sight is not drawn
-    const char *const *files; // all files read, and textures that are missing
+    box3 box;                 // encloses all vertices; used for culling
+    const char *const *files; // all files that were read, and textures that are missing
     size_t file_count;
 } mesh_data;
 
-// `root` confines textures and buffers that the file names. Limits: 64 MiB file, 8 million
-// vertices. Node transforms are applied. Fails on a mesh without faces and on non-finite positions.
+// Loads a mesh into `memory`. Textures and buffers that the file names must lie below `root`.
+// Limits: files of 64 MiB, 8 million vertices. Node transforms are applied. False with a message,
+// also for a mesh without faces or with non-finite positions.
 bool mesh_load(const char *path, const char *root, arena *memory, mesh_data *out);
 
-// Indices of a part at a level: 0: in full, else below 1 + level_count.
+// Returns the indices of a part at a level, 0 (the full mesh) to level_count.
 mesh_run mesh_get_run(const mesh_data *mesh, uint32_t part, uint32_t level);
-// A ball around the box: xyz: metres, in the space of the mesh; w: radius.
+// Returns a sphere around the box: centre (m, in the space of the mesh) and radius (w).
 void mesh_get_ball(const mesh_data *mesh, float out[4]);

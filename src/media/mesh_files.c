@@ -1,5 +1,6 @@
-// Names are made plain first ("a/../b" becomes "b", '\' becomes '/'), so that what leaves the root
-// by text is refused before the file system is asked; path_confine then follows symbolic links.
+// Names are first normalised as text ("a/../b" becomes "b", '\' becomes '/'), so that a name that
+// leaves the root is refused before the file system is asked. path_confine then follows symbolic
+// links.
 #include "media/mesh_files.h"
 #include "base/error.h"
 #include "base/memory.h"

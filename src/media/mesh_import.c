@@ -1,6 +1,6 @@
-// Assimp returns triangles with node transforms applied and normals filled in; glTF's Y up becomes
-// Z up here. Texture coordinates run from the top left, as Vulkan samples. Nothing that can be
-// checked on the other side is checked here.
+// Assimp returns triangles with node transforms applied and normals filled in. Here glTF's Y up
+// becomes Z up, and texture coordinates start at the top left, as in Vulkan. What the other side
+// can check is not checked here.
 #include "media/mesh_import.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -69,8 +69,8 @@ static int find_texture(importer *im, const char *name) {
     return (int)im->texture_count++;
 }
 
-// Leaves `out` as it is when the material has no such number. A key of assimp's stands for three
-// arguments.
+// Reads a number of a material; `out` is unchanged when there is none. A key of assimp's stands for
+// three arguments.
 static bool get_number(const struct aiMaterial *material, const char *key, unsigned type,
                        unsigned index, float *out) {
     float value;
@@ -79,9 +79,9 @@ static bool get_number(const struct aiMaterial *material, const char *key, unsig
     return true;
 }
 
-// By roughness and metallic where the file has them (glTF, and MTL's Pr and Pm), else by a
-// highlight (MTL's Ks and Ns). Both at 1 is what a glTF file means that says nothing, or has it in
-// a texture: matte.
+// Uses roughness and metallic where the file has them (glTF, and MTL's Pr and Pm), else a highlight
+// (MTL's Ks and Ns). Both are 1 in a glTF file that does not set them, or sets them by a texture:
+// such a part is matte.
 static void set_reflection(const struct aiMaterial *material, mesh_part *part) {
     struct aiColor4D c;
     float exponent;
@@ -191,7 +191,7 @@ static bool put_texels(const importer *im, const struct aiTexture *texture) {
     return done;
 }
 
-// "*3" is the fourth texture in the file; others may be embedded under their file name.
+// "*3" is the fourth texture of the file. Others may be embedded under their file name.
 static const struct aiTexture *find_embedded(const struct aiScene *scene, const char *name) {
     unsigned long index = name[0] == '*' ? strtoul(name + 1, NULL, 10) : scene->mNumTextures;
     if (index < scene->mNumTextures) return scene->mTextures[index];

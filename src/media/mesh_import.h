@@ -1,5 +1,5 @@
-// Assimp's part of reading a mesh. It runs in a worker of the reader (base/isolate.h): assimp 5.2
-// crashes on many damaged files. The result goes over as bytes, in this order:
+// Imports a mesh by assimp. It runs in a worker of the reader (base/isolate.h), because assimp 5.2
+// crashes on many damaged files. The result is sent as bytes, in this order:
 //   mesh_blob, mesh_part[part_count], mesh_vertex[vertex_count], uint32_t[index_count and
 //   level_index_count], mesh_run[level_count times part_count], texture_count times
 //   mesh_blob_texture and its bytes.
@@ -25,6 +25,6 @@ typedef struct mesh_blob_texture {
 
 enum { MESH_VERTICES_MAX = 8 << 20, MESH_INDICES_MAX = 64 << 20, MESH_TEXTURES_MAX = 256 };
 
-// In a worker. The input is the name that assimp shall give the file: "./" and then relative to the
-// root (mesh_files.h); the file itself is asked for like those that it names.
+// Runs in a worker. The input is the name that assimp uses for the file: "./" and its path below
+// the root (mesh_files.h). The file itself is asked for like those that it names.
 bool mesh_import(const isolate_call *call);

@@ -51,8 +51,8 @@ static void on_flush(struct aiFile *file) {
     (void)file;
 }
 
-// How deep objects and arrays of a glTF file are nested; of a binary one, in its first chunk, which
-// ends where the number at 12 says.
+// Returns how deeply objects and arrays of a glTF file are nested. In a binary file they are in the
+// first chunk, whose length is at byte 12.
 static size_t json_depth(const char *data, size_t size) {
     size_t depth = 0, deepest = 0, at = 0;
     if (size >= 20 && memcmp(data, "glTF", 4) == 0) {
@@ -71,7 +71,7 @@ static size_t json_depth(const char *data, size_t size) {
     return deepest;
 }
 
-// The parser of assimp 5.2 recurses over them.
+// Checks the depth of nesting, because the parser of assimp 5.2 recurses.
 static bool is_safe(mesh_io *io, const char *name, const char *data, size_t size) {
     bool json = str_ends_with(name, ".gltf") || str_ends_with(name, ".glb");
     size_t depth = json ? json_depth(data, size) : 0;

@@ -1,4 +1,4 @@
-// The only window that assimp has on files: whole ones, read-only, asked for over a worker's
+// Assimp's access to files: it can only read whole files, which are asked for over the worker's
 // channel.
 #pragma once
 #include "base/isolate.h"

@@ -1,19 +1,21 @@
-// By meshoptimizer: edges are collapsed by quadric errors (Garland and Heckbert 1997, "Surface
-// Simplification Using Quadric Error Metrics"); where that leaves too much, of leaves and other
-// loose pieces, vertices that lie in one cell of a grid are merged (Rossignac and Borrel 1993).
+// Makes levels by meshoptimizer: edges are collapsed by quadric errors (Garland and Heckbert 1997,
+// "Surface Simplification Using Quadric Error Metrics"). Where that leaves too many triangles, as
+// for leaves and other loose pieces, vertices in one cell of a grid are merged (Rossignac and
+// Borrel 1993).
 //
-// What has no texture is simplified as one, its corners welded: meshes of flat faces are nothing
-// but seams, and materials may differ from face to face. The triangles that are left then look for
-// the vertices and the part whose normals fit theirs. A textured part is simplified by itself, with
-// its seams. Where colours that differ much have spread or shrunk, a level is off by as much as
-// their edges have moved, whatever its shape.
+// Parts without a texture are simplified together, with their corners welded, because meshes of
+// flat faces consist of seams, and materials may differ from face to face. Each remaining triangle
+// then chooses the vertices and the part whose normals fit its own. A textured part is simplified
+// by itself, with its seams. Where areas of clearly different colours have grown or shrunk, the
+// error of a level is how far their edges have moved, whatever its shape.
 #include "media/mesh_levels.h"
 #include "base/memory.h"
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
 
-// Triangles of a mesh: fewer are drawn as fast as they are chosen, more would hold a load up.
+// Limits on the triangles of a mesh: a smaller one is drawn as fast as a level is chosen, a larger
+// one would delay a load.
 enum { LEAST = 96, MOST = 1000000, MOST_PARTS = 256 };
 static const double shares[] = {0.5, 0.2, 0.08}; // of the triangles, that levels aim at
 static const double least_gain = 0.3;    // a level leaves out this much of the one before it
@@ -49,7 +51,7 @@ static void add_slots(simplifier *s, const mesh_part *part) {
     for (uint32_t i = 0; i < part->count; i++) s->slots[s->count++] = part->first + i;
 }
 
-// The group that begins with a part: it alone if it has a texture, else all that have none.
+// Begins the group of a part: the part alone if it has a texture, else all parts without one.
 static void begin_group(simplifier *s, uint32_t index) {
     const mesh_data *mesh = s->mesh;
     bool textured = mesh->parts[index].texture >= 0;
@@ -67,7 +69,7 @@ static void begin_group(simplifier *s, uint32_t index) {
     }
 }
 
-// Whether a group begins with this part: it is textured, or the first that is not.
+// Returns whether a group begins with this part: it has a texture, or is the first without one.
 static bool begins_group(const mesh_data *mesh, uint32_t index) {
     for (uint32_t i = 0; i < index; i++)
         if (mesh->parts[i].texture < 0 && mesh->parts[index].texture < 0) return false;
@@ -76,7 +78,7 @@ static bool begins_group(const mesh_data *mesh, uint32_t index) {
 
 // ---- triangles --------------------------------------------------------------------------------
 
-// As long as twice its area.
+// Returns the normal, whose length is twice the triangle's area.
 static void face_normal(const mesh_data *mesh, const uint32_t corners[3], vec3 out) {
     const mesh_vertex *v = mesh->vertices;
     vec3 a, b;
@@ -85,9 +87,9 @@ static void face_normal(const mesh_data *mesh, const uint32_t corners[3], vec3 o
     glm_vec3_cross(a, b, out);
 }
 
-// Of the slots at a corner's place, the one whose vertex has the nearest normal; and the owner of
-// the triangle there that lies most alike, if it does so more than `*most`; of vertices that were
-// merged, that covers most of what is seen along the normal.
+// Of the slots at a corner's position, chooses the one whose vertex has the nearest normal. Also
+// finds the owner of the triangle there with the most similar normal, if it exceeds `*most`; among
+// merged vertices, of the one that covers most of the area seen along the normal.
 static uint32_t choose_vertex(const simplifier *s, uint32_t corner, const vec3 normal, bool merged,
                               float *most, uint32_t *owner) {
     const mesh_data *mesh = s->mesh;
@@ -109,7 +111,7 @@ static uint32_t choose_vertex(const simplifier *s, uint32_t corner, const vec3 n
     return best;
 }
 
-// What lies at the corners of a triangle faces this way, on the whole.
+// Returns the mean direction that the surface at the corners of a triangle faces.
 static void find_outward(const simplifier *s, const unsigned corners[3], vec3 out) {
     glm_vec3_zero(out);
     for (int k = 0; k < 3; k++) {
@@ -122,7 +124,7 @@ static void find_outward(const simplifier *s, const unsigned corners[3], vec3 ou
     }
 }
 
-// Of vertices that were merged, triangles may be turned either way: outwards is right.
+// Adds a triangle. Merged vertices may leave it facing either way, so it is turned outwards.
 static void add_triangle(simplifier *s, const unsigned corners[3], bool merged) {
     unsigned *out = s->made + 3 * s->made_count;
     uint32_t owner = s->owners[s->heads[corners[0]] / 3];
@@ -196,8 +198,8 @@ static void add_areas(const simplifier *s, const uint32_t *indices, const uint32
     }
 }
 
-// How far edges of shades have moved, as if each was round: what a shade has won or lost, by its
-// circumference. Of the extent; 0: there is only one.
+// Estimates how far the edges of colours have moved, as if each area was round: its gain or loss,
+// divided by its circumference. The result is relative to the extent; 0: there is one colour.
 static float color_error(simplifier *s) {
     float most = 0;
     uint32_t shades = 0;
@@ -224,8 +226,8 @@ static void make_level(simplifier *s, double share) {
     s->error = fmaxf(s->error, color_error(s));
 }
 
-// Appends what was made, sorted by parts, where it is worth it. One before it that is no better
-// goes.
+// Appends a level, sorted by parts, if it is worth it. An earlier level that is no better is
+// removed.
 static void keep_level(const simplifier *s, arena *memory, mesh_levels *out) {
     const mesh_data *mesh = s->mesh;
     uint32_t at = out->count;
@@ -252,7 +254,7 @@ static void keep_level(const simplifier *s, arena *memory, mesh_levels *out) {
     out->index_count = end;
 }
 
-// It comes from a file that nobody has checked yet.
+// Checks the mesh, which comes from a file that nobody has checked yet.
 static bool is_usable(const mesh_data *mesh) {
     uint32_t triangles = mesh->index_count / 3;
     bool usable = triangles >= LEAST && triangles <= MOST && mesh->part_count <= MOST_PARTS;

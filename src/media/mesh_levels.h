@@ -1,4 +1,4 @@
-// Simplified copies of a mesh, for where it is small in a picture.
+// Levels of detail: simplified copies of a mesh, drawn where it is small in the picture.
 #pragma once
 #include "media/mesh.h"
 
@@ -11,6 +11,6 @@ typedef struct mesh_levels {
     uint32_t index_count;
 } mesh_levels;
 
-// Of the mesh's vertices, indices and parts; results lie in `memory`. A small mesh has no levels,
-// nor has one that would take long.
+// Makes levels from the mesh's vertices, indices and parts, in `memory`. A small mesh gets none,
+// and neither does one that would take long.
 void mesh_levels_make(const mesh_data *mesh, arena *memory, mesh_levels *out);

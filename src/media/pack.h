@@ -1,4 +1,4 @@
-// Numbers made smaller, and as they were: Blosc, which comes with OpenVDB.
+// Lossless compression of arrays of numbers, by Blosc, which comes with OpenVDB. Any thread.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -6,8 +6,8 @@
 
 enum { PACK_MOST = 1 << 30 }; // bytes at once
 
-// Packs `size` bytes, numbers of `width` bytes each, into at most as many at `out`. Returns how
-// many it took; 0 when it does not get smaller. Any thread.
+// Compresses `size` bytes, numbers of `width` bytes each, to `out`, which must hold as many.
+// Returns the compressed size; 0 when it is not smaller.
 size_t pack_bytes(const void *data, size_t size, uint32_t width, void *out);
-// The other way; false when `packed` was not made by it from so many bytes.
+// Decompresses to `size` bytes. False when `packed` does not hold so many.
 bool pack_open(const void *packed, size_t length, void *out, size_t size);

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-// Red, green and blue that are missing are grey, or nothing if there is another colour.
+// Missing colour channels are taken from a grey channel, or are 0 if there is another colour.
 static bool find_planes(const char *path, const exr_image *image, const float *planes[4]) {
     static const char *const names[4] = {"R", "G", "B", "A"};
     const float *grey = exr_find(image, "Y");

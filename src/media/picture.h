@@ -1,5 +1,5 @@
-// Pictures that effects are made from (templates, obstacles, sprites): OpenEXR or PNG, read as
-// numbers. The file may be a stranger's: the reader decodes it.
+// Pictures that effects use as data (templates, obstacles, sprites), from OpenEXR or PNG files. The
+// file may be a stranger's: the reader decodes it.
 #pragma once
 #include "base/arena.h"
 #include <stdbool.h>
@@ -7,14 +7,14 @@
 
 typedef struct picture {
     uint32_t width, height;
-    int bits;          // a channel of a PNG, 8 or 16, whose whole numbers became 0 to 1; 0: EXR
-    const float *rgba; // rows from the top; without alpha in the file that is 1, grey is all three
+    int bits;          // bits of a PNG's channels, 8 or 16, which are scaled to 0 to 1; 0: EXR
+    const float *rgba; // rows from the top; alpha is 1 where the file has none, grey is repeated
 } picture;
 
-// At most `side_max` pixels a side; `root` is the folder that the file must lie in. All numbers are
-// finite. False with a message.
+// Reads a picture of at most `side_max` pixels a side into `memory`. The file must lie below
+// `root`. All values are finite. False with a message.
 bool picture_read(const char *path, const char *root, uint32_t side_max, arena *memory,
                   picture *out);
 
-// As OpenEXR of halves with alpha. Atomic.
+// Writes an OpenEXR file of halves with alpha. Atomic (base/file.h).
 bool picture_write(const char *path, const picture *image);

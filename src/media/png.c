@@ -1,7 +1,7 @@
-// PNG through libpng. A picture is compressed into memory and then handed to file_write, so a
-// reader never sees half a file; a picture is read from memory, so a hostile file can only ask for
-// what the limits below allow. libpng reports errors by longjmp: everything that must survive one
-// lives in `session`, which the caller of setjmp owns and never keeps in a register.
+// PNG through libpng. A picture is compressed into memory and then written by file_write, so nobody
+// reads half a file. A picture is read from memory, so a hostile file can only ask for what the
+// limits below allow. libpng reports errors by longjmp: everything that must survive one is in
+// `session`, which the caller of setjmp owns and never keeps in a register.
 #include "media/png.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -71,7 +71,7 @@ static bool is_ascii(const char *text) {
     return true;
 }
 
-// Plain text where that can hold the value, else UTF-8 text (iTXt).
+// Writes tEXt where that can hold the value, else UTF-8 text (iTXt).
 static void add_texts(session *s, const png_text *texts, size_t count) {
     for (size_t i = 0; i < count; i++) {
         char key[KEY_MAX + 1], language[1] = "";
@@ -114,7 +114,7 @@ static bool session_encode(session *s, const png_image *image, const png_text *t
     return true;
 }
 
-// With a `root` below it, else wherever `path` leads.
+// Writes below `root`, or without one wherever `path` leads.
 static bool write_picture(const char *root, const char *path, const png_image *image,
                           const png_text *texts, size_t text_count) {
     assert(image->channels == 3 || image->channels == 4);

@@ -1,4 +1,4 @@
-// PNG by the reader: what goes into a worker and what comes back.
+// PNG by the reader: the data of its jobs and of their results.
 #include "base/error.h"
 #include "base/memory.h"
 #include "media/png.h"
@@ -66,7 +66,7 @@ bool png_read_inside(const char *root, const char *path, const picture_limits *l
 
 // ---- texts ------------------------------------------------------------------------------------
 
-// The result: each key and each value, with its zero byte.
+// The result is each key and each value, with its zero byte.
 bool png_texts_work(const isolate_call *call) {
     png_text texts[PNG_MAX_TEXTS];
     arena memory = {0};
@@ -79,7 +79,7 @@ bool png_texts_work(const isolate_call *call) {
     return done;
 }
 
-// The next string; NULL when there is none that ends.
+// Returns the next string; NULL when there is none that is terminated.
 static const char *take_string(const isolate_result *r, size_t *at) {
     const char *text = (const char *)r->data + *at;
     const char *end = *at < r->size ? memchr(text, '\0', r->size - *at) : NULL;

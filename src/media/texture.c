@@ -23,7 +23,7 @@ static bool refuse_jpeg(tjhandle jpeg, const char *name) {
     return err_set("%s: %s", name, tjGetErrorStr2(jpeg));
 }
 
-// A warning is no failure: many cameras and editors write what libjpeg warns of.
+// A warning is no failure: libjpeg warns about files of many cameras and editors.
 static bool decode_jpeg(tjhandle jpeg, const void *data, size_t size, const char *name,
                         const picture_limits *limits, arena *memory, mesh_texture *out) {
     int width, height, sampling, space;

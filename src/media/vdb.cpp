@@ -1,11 +1,11 @@
-// OpenVDB behind vdb_decode.h: what a file says of itself, and dense sampling. vdb_blocks.cpp reads
-// grids that are not to be spread out, vdb_write.cpp writes.
+// OpenVDB behind vdb_decode.h: metadata and dense sampling. vdb_blocks.cpp reads grids that stay
+// sparse, vdb_write.cpp writes files.
 //
 // Sampling: when the voxel centres of the box lie on the grid's own lattice, values are copied node
-// by node (openvdb::tools::copyToDense: tiles, background and leaves); else every centre goes
-// through the inverse of the grid's affine transform and is interpolated between 8 voxels. Index
-// coordinates name voxel centres, so voxel i covers i - 0.5 to i + 0.5. Staggered vectors sit on
-// voxel faces, half a voxel below the centre on their own axis.
+// by node (openvdb::tools::copyToDense: tiles, background and leaves). Else every centre is
+// transformed by the inverse of the grid's affine transform, and interpolated between 8 voxels.
+// Index coordinates are voxel centres, so voxel i covers i - 0.5 to i + 0.5. Staggered vectors are
+// located on voxel faces, half a voxel below the centre on their own axis.
 #include "media/vdb_file.hpp"
 #include <openvdb/tools/Dense.h>
 #include <tbb/global_control.h>
@@ -18,7 +18,8 @@ using namespace vdb;
 
 namespace {
 
-// Of a grid whose metadata do not say it. Called from C, which no exception may cross.
+// Reads the extent of a grid whose metadata lack it. It is called from C, so no exception may leave
+// it.
 bool read_extent(const vdb_layout *l, const vdb_layout_grid *g, vdb_grid_info *out) {
     return guarded(l->path, [&] {
         GridBase::Ptr grid;
@@ -74,7 +75,8 @@ bool sample(const GridBase &base, const affine &t, const vdb_sample_desc &desc, 
     return true;
 }
 
-// Blocks without a fault, nearly all, are only looked at: bits, so that the loop is vectorised.
+// Nearly all blocks have no fault and need only this check. It tests bits, so that the loop is
+// vectorised.
 bool has_bad(const float *values) {
     uint32_t bad = 0;
     for (size_t i = 0; i < 1024; i++) {

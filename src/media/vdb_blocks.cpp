@@ -1,10 +1,10 @@
-// Reading a grid in blocks (vdb_decode.h). On the lattice of the grid a block is copied from the at
-// most eight leaves and tiles that it touches; off it, its voxels are interpolated like those of
+// Reads a grid in blocks (vdb_decode.h). On the lattice of the grid a block is copied from the at
+// most eight leaves and tiles that it touches. Elsewhere its voxels are interpolated as by
 // vdb_sample.
 //
-// Only nodes that hold something else than the background are reported. Where a strange transform
-// makes their boxes overlap so much that walking them would take longer than reading everything,
-// the whole box is reported instead.
+// Only nodes with values other than the background are reported. When an unusual transform makes
+// their boxes overlap so much that visiting them would take longer than reading everything, the
+// whole box is reported instead.
 #include "media/vdb_file.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct vdb_blocks {
 
 namespace {
 
-// Voxels of the box from index coordinates: the inverse of a placing.
+// Maps index coordinates to voxels of the box: the inverse of a placement.
 class from_index {
   public:
     explicit from_index(const placing &p) : first_(p.first) {

@@ -1,12 +1,12 @@
-// One frame in bricks: what of a grid is not empty, and where it lies.
+// Stores one frame in bricks.
 //
 // The box is divided into bricks of 8^3 voxels. A brick is stored with the voxels of its neighbours
-// that linear filtering reaches, 9^3: neighbours share a face, so one side of each suffices. Bricks
-// lie in an atlas, a 3D texture; an index texture says where (shaders/lib/grid.glsl). What does not
-// vary inside a brick and on those faces (space outside, the inside of a level set, tiles of a
-// constant) is stored once for each value, and not at all where it is zero. The layout is that of
-// GigaVoxels (Crassin, Neyret, Lefebvre and Eisemann, I3D 2009) without its tree: the index of a
-// box of 512^3 takes 1 MiB.
+// that linear filtering reaches, 9^3: neighbours share a face, so one side of each is enough.
+// Bricks are stored in an atlas, a 3D texture; an index texture gives their positions
+// (shaders/lib/grid.glsl). A brick that is constant inside and on those faces (space outside, the
+// inside of a level set, constant tiles) is stored once for each value, and not at all when it is
+// zero. The layout is that of GigaVoxels (Crassin, Neyret, Lefebvre and Eisemann, I3D 2009) without
+// its tree: the index of a box of 512^3 takes 1 MiB.
 #include "base/error.h"
 #include "base/map.h"
 #include "base/maths.h"
@@ -61,7 +61,8 @@ static bool open_sources(builder *b) {
 
 // ---- which bricks -----------------------------------------------------------------------------
 
-// Bricks that hold one of the voxels, on their own or on the faces shared with their neighbours.
+// Marks bricks that contain one of the voxels, or have one on a face that they share with a
+// neighbour.
 static void want(void *user, const int32_t file_low[3], const int32_t file_high[3]) {
     builder *b = user;
     const texels_shape *shape = &b->desc->shape;
@@ -92,7 +93,7 @@ static float valued(const vdb_source *from, int component, float value) {
     return clampf(value * from->gains[component], -TEXELS_HALF_MAX, TEXELS_HALF_MAX);
 }
 
-// False when it is nothing at all.
+// Reads the background. False when it is zero.
 static bool read_background(const builder *b, uint16_t texel[4]) {
     bool any = false;
     for (size_t i = 0; i < b->source_count; i++) {
@@ -111,8 +112,7 @@ static bool read_background(const builder *b, uint16_t texel[4]) {
 
 // ---- values -----------------------------------------------------------------------------------
 
-// Voxels that are not zero, of values before they are rounded to halves: their count, and their
-// box.
+// Counts voxels that are not zero, before values are rounded to halves, and extends their box.
 static void note_active(builder *b, const uint32_t low[3], const uint32_t high[3], uint64_t count) {
     texels_active *a = &b->active;
     for (int i = 0; i < 3; i++) {
@@ -122,7 +122,7 @@ static void note_active(builder *b, const uint32_t low[3], const uint32_t high[3
     a->voxels += count;
 }
 
-// The same, of a brick's own voxels inside the box: a row is eight bytes, which are 0 or 1.
+// The same for a brick's own voxels inside of the box. A row is eight bytes of 0 or 1.
 static void note_voxels(builder *b, const uint32_t at[3], const uint8_t *active) {
     uint32_t own[3], low[3], high[3];
     for (int i = 0; i < 3; i++) {
@@ -162,8 +162,8 @@ static void note_brick(builder *b, const uint32_t brick[3]) {
     note_active(b, low, high, count);
 }
 
-// half_from_float of what is at most TEXELS_HALF_MAX, and 0 of -0: without branches, so that the
-// compiler makes vectors of it.
+// Equals half_from_float for values up to TEXELS_HALF_MAX, and gives 0 for -0. It has no branches,
+// so that the compiler vectorises it.
 static inline uint16_t half_of(float value) {
     uint32_t bits, rounded;
     memcpy(&bits, &value, sizeof bits);
@@ -177,7 +177,8 @@ static inline uint16_t half_of(float value) {
     return (uint16_t)(magnitude == 0 ? 0 : sign | half);
 }
 
-// One component of a block, `step` floats apart, to halves `width` apart; notes which are not 0.
+// Converts one component of a block, `step` floats apart, to halves `width` apart, and notes which
+// values are not 0.
 static void block_convert(const float *restrict values, int step, float gain,
                           uint16_t *restrict out, int width, uint8_t *restrict active) {
     uint16_t halves[VOXELS];
@@ -191,7 +192,7 @@ static void block_convert(const float *restrict values, int step, float gain,
     for (int i = 0; i < VOXELS; i++) out[i * width] = halves[i];
 }
 
-// With Y up, the rows of the block that was read lie otherwise along our Y and Z.
+// Rotates a block of a file with Y up, whose rows are along other axes than ours.
 static void block_turn(float *block, int components) {
     float turned[VOXELS * 3];
     size_t row = SIDE * (size_t)components;
@@ -224,7 +225,8 @@ static void read_brick(builder *b, const uint32_t at[3], uint16_t *texels) {
 
 // ---- bricks -----------------------------------------------------------------------------------
 
-// There is room for one more than b->room, and one that is about to be given back.
+// Returns room for a brick. There is always room for one more than b->room, for a brick that is
+// about to be given back.
 static uint16_t *add_brick(builder *b) {
     return b->texels + b->bricks++ * VOXELS * (size_t)b->width;
 }
@@ -235,7 +237,7 @@ static bool is_constant(const uint16_t *texels, int width) {
     return true;
 }
 
-// The number of the brick that holds nothing but this texel, from 1; 0: of zeros.
+// Returns the number, from 1, of the brick that holds only this texel; 0: it is zero.
 static uint32_t find_constant(builder *b, const uint16_t *texel) {
     uint16_t all[4] = {0};
     memcpy(all, texel, (size_t)b->width * sizeof *texel);

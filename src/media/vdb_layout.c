@@ -68,14 +68,14 @@ typedef struct named_size {
     size_t size;
 } named_size;
 
-// Metadata whose size OpenVDB takes from the type and not from the file.
+// Metadata whose size OpenVDB takes from their type and not from the file.
 static const named_size METADATA[] = {
     {"bool", 1},   {"double", 8}, {"float", 4},  {"int32", 4},   {"int64", 8},  {"vec2d", 16},
     {"vec2i", 8},  {"vec2s", 8},  {"vec3d", 24}, {"vec3i", 12},  {"vec3s", 12}, {"vec4d", 32},
     {"vec4i", 16}, {"vec4s", 16}, {"mat4s", 64}, {"mat4d", 128},
 };
 
-// Affine transforms. Frustum maps are variable in length, and not for boxes of voxels.
+// Affine transforms. Frustum maps have a variable length and do not suit boxes of voxels.
 static const named_size MAPS[] = {
     {"UniformScaleMap", 120},   {"ScaleMap", 120},  {"UniformScaleTranslateMap", 144},
     {"ScaleTranslateMap", 144}, {"AffineMap", 128}, {"UnitaryMap", 128},
@@ -90,7 +90,8 @@ static const named_size *find_size(const named_size *list, size_t count, const u
     return NULL;
 }
 
-// `half` becomes what the metadata say about 16-bit storage: that is what OpenVDB goes by.
+// Skips metadata. `half` receives whether they say that numbers have 16 bits, which is what OpenVDB
+// uses.
 static bool skip_metadata(cursor *c, bool *half) {
     static const char HALF[] = "is_saved_as_half_float";
     uint32_t count, name_length, length, size;
@@ -138,7 +139,7 @@ int vdb_value_components(vdb_value value) {
     return VALUES[value].components;
 }
 
-// "Tree_float_5_4_3_HalfFloat" -> value, half, "float" and the type without the suffix.
+// Splits "Tree_float_5_4_3_HalfFloat" into value, half, "float" and the type without the suffix.
 static void name_type(vdb_layout_grid *g, char *type, arena *memory) {
     static const char HALF[] = "_HalfFloat";
     g->half = str_ends_with(type, HALF);
@@ -275,7 +276,8 @@ static uint32_t count_bits(const uint8_t *mask, uint32_t bits) {
     return sum;
 }
 
-// A block of `count` values: raw, or a signed length and then compressed (> 0) or raw (<= 0).
+// Checks a block of `count` values: raw, or a signed length and then compressed (> 0) or raw (<= 0)
+// data.
 static bool check_block(walk *w, uint32_t count) {
     size_t expected = count * w->block_size;
     if (count == 0 && w->half) return true; // OpenVDB stores nothing at all
@@ -302,7 +304,7 @@ static bool check_block(walk *w, uint32_t count) {
     return true;
 }
 
-// The values of a node, of which those in `mask` are active.
+// Checks the values of a node, of which those in `mask` are active.
 static bool check_values(walk *w, uint32_t count, const uint8_t *mask) {
     enum { ONE_INACTIVE = 2, MASK_ONLY, MASK_ONE_INACTIVE, MASK_TWO_INACTIVE, ALL_VALUES };
     const uint8_t *kind = take_bytes(&w->c, 1);

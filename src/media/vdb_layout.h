@@ -1,14 +1,15 @@
-// The skeleton of an OpenVDB file, checked byte by byte. OpenVDB believes every length that it
-// reads: a damaged file makes it allocate gigabytes, write past a buffer, or free a pointer that
-// it never set. So no byte goes to OpenVDB before this walk has proved that all lengths fit.
+// The structure of an OpenVDB file, checked byte by byte. OpenVDB trusts every length that it
+// reads: a damaged file makes it allocate gigabytes, write past a buffer, or free a pointer that it
+// never set. No byte is therefore passed to OpenVDB before this check has shown that all lengths
+// fit.
 #pragma once
 #include "base/arena.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-typedef enum vdb_value { // of one voxel
-    VDB_VALUE_OTHER,     // a type that we do not read
+typedef enum vdb_value { // type of a voxel
+    VDB_VALUE_OTHER,     // a type that is not read
     VDB_VALUE_FLOAT,
     VDB_VALUE_DOUBLE,
     VDB_VALUE_INT32,
@@ -20,17 +21,17 @@ typedef enum vdb_value { // of one voxel
 } vdb_value;
 
 typedef struct vdb_layout_grid {
-    const char *name;      // without the suffix that tells equal names apart
-    const char *unique;    // with it
+    const char *name;      // without the suffix that makes equal names unique
+    const char *unique;    // with that suffix
     const char *tree_type; // "Tree_float_5_4_3"
     const char *type;      // "float"
-    const char *parent;    // unique name of the grid whose tree this one shares; "" when its own
+    const char *parent;    // unique name of the grid whose tree this one shares; "": it has its own
     vdb_value value;
     bool half;                        // reals are stored with 16 bits
-    bool linear;                      // the transform is one that we read (affine)
+    bool linear;                      // the transform is affine
     uint32_t compression;             // OpenVDB's flags
-    size_t start;                     // of compression flags, metadata, transform, tree
-    size_t metadata, transform, tree; // starts; tree is 0 when the transform is not linear
+    size_t start;                     // offset of the compression flags, with which it begins
+    size_t metadata, transform, tree; // offsets; tree is 0 when the transform is not linear
     size_t end;
 } vdb_layout_grid;
 
@@ -39,17 +40,19 @@ typedef struct vdb_layout {
     const uint8_t *bytes;
     size_t size;
     uint32_t version, library_major, library_minor;
-    size_t metadata; // of the file
+    size_t metadata; // offset of the file's metadata
     vdb_layout_grid *grids;
     size_t count;
 } vdb_layout;
 
-// Header, table of grids, metadata and transforms; `bytes` and `path` must outlive `out`.
+// Checks the header, the table of grids, metadata and transforms. `bytes` and `path` must outlive
+// `out`.
 bool vdb_layout_read(const char *path, const void *bytes, size_t size, arena *memory,
                      vdb_layout *out);
 
-// The nodes and voxels of one grid whose value is not VDB_VALUE_OTHER and that has its own tree.
-// `*leaves` (may be NULL): how many it has; what else is active lies in tiles.
+// Checks the nodes and voxels of one grid whose value is not VDB_VALUE_OTHER and that has its own
+// tree. `*leaves` (may be NULL) receives the number of its leaves; other active voxels are in
+// tiles.
 bool vdb_layout_check_tree(const vdb_layout *layout, const vdb_layout_grid *grid, uint64_t *leaves);
 
 size_t vdb_value_size(vdb_value value);    // bytes in memory

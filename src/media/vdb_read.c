@@ -1,4 +1,4 @@
-// OpenVDB by the reader: what goes into a worker and what comes back, which is not trusted.
+// OpenVDB by the reader: the data of its jobs and of their results, which are not trusted.
 #include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -16,7 +16,7 @@ enum { GRIDS_MAX = 4096, AT_ONCE = 64 }; // AT_ONCE: files of one job
 
 static const uint64_t COORD_MAX = 1 << 24;
 
-// The files of a job, opened when it asks for them, one after another.
+// The files of a job, which are opened one after another when it asks for them.
 typedef struct task {
     const char *root;
     const char *const *paths;
@@ -37,8 +37,8 @@ static int task_give_file(void *user, const char *name, size_t *size) {
     return -1;
 }
 
-// What a decoder takes beside its result (the file, its tree) is not known before; what all memory
-// together may come to is the most that can be right.
+// The memory that a decoder needs besides its result (for the file and its tree) is not known
+// before, so the limit is the most that can be valid.
 static isolate_limits limits_of(uint64_t result) {
     const uint64_t beside = (uint64_t)1 << 30, message = 1 << 20;
     return (isolate_limits){.processor_ms = 120000,
@@ -132,7 +132,7 @@ static bool take_info(cursor *c, arena *memory, vdb_info *out) {
     return true;
 }
 
-// Those that say too little for this kind of job have no metadata then.
+// Asks again about files that have too little metadata for "vdb heads".
 static bool ask_some(task *t, const char *kind, arena *const *memory, vdb_info *out) {
     strbuf names = {0};
     isolate_result r;
@@ -247,7 +247,7 @@ static void frame_describe(const vdb_frame_desc *d, strbuf *out) {
     }
 }
 
-// Beside the textures: the head, the room for two bricks of each, and the rounding to pages.
+// Adds to the textures the head, the room for two bricks of each, and the rounding to pages.
 static uint64_t most_bytes(const vdb_frame_desc *d) {
     uint64_t bytes = (uint64_t)1 << 17;
     for (int i = 0; i < TEXELS_IMAGES && texels_width(&d->shape, i) > 0; i++)

@@ -1,5 +1,5 @@
-// What goes into the jobs that read and write OpenVDB files, and what comes back: between
-// vdb_read.c on this side, and vdb_work.c and vdb_bricks.c on the reader's.
+// The data of jobs that read and write OpenVDB files, and of their results: between vdb_read.c in
+// this process, and vdb_work.c and vdb_bricks.c in the reader.
 #pragma once
 #include "media/vdb_decode.h"
 
@@ -7,9 +7,9 @@
 
 // ---- "vdb heads", "vdb info": paths, each with its zero byte; back comes for each file ----------
 
-// "vdb heads" is without OpenVDB, and so without what only it knows: metadata as text, and files
-// that do not say where a grid is active.
-#define VDB_NO_EXTENTS UINT32_MAX // in place of `count`: such a file, of which no more comes
+// "vdb heads" does not use OpenVDB. It returns no metadata as text, and nothing about files whose
+// metadata lack the box of a grid's active voxels.
+#define VDB_NO_EXTENTS UINT32_MAX // as `count`: such a file; nothing else follows for it
 typedef struct vdb_sent_info {    // then its metadata, with a zero byte, and the grids
     uint32_t count, text, y_up;   // text: bytes of the metadata
 } vdb_sent_info;
@@ -69,7 +69,7 @@ typedef struct vdb_sent_entry { // then its texts, each with its zero byte
     double number;
 } vdb_sent_entry;
 
-static inline size_t vdb_padded(size_t at) { // where values begin that come next
+static inline size_t vdb_padded(size_t at) { // values begin at multiples of 16 bytes
     return (at + 15) / 16 * 16;
 }
 static inline size_t vdb_values_size(const vdb_write_grid *g) {
@@ -78,9 +78,9 @@ static inline size_t vdb_values_size(const vdb_write_grid *g) {
                      : voxels * (size_t)g->components * sizeof *g->values;
 }
 
-// ---- in the reader ------------------------------------------------------------------------------
+// ---- the reader ---------------------------------------------------------------------------------
 
-// The frame that is made, in the memory of the result.
+// A frame that is being made, in the memory of the result.
 typedef struct vdb_build {
     const isolate_call *call;
     const vdb_file *file;
@@ -89,8 +89,8 @@ typedef struct vdb_build {
     size_t used; // bytes of the result
 } vdb_build;
 
-// `size` zeroed bytes at the end of the result, from `*at` on; NULL with a message. To be closed
-// before others are opened; the first ones are then kept.
+// Appends `size` zeroed bytes to the result, from `*at` on. NULL with a message. They must be
+// closed before others are opened; the first `kept` bytes are then kept.
 void *vdb_build_open(vdb_build *b, size_t size, size_t *at);
 bool vdb_build_close(vdb_build *b, void *data, size_t size, size_t at, size_t kept);
 bool vdb_build_bricks(vdb_build *b, int image);

@@ -1,4 +1,4 @@
-// OpenVDB in the reader: what comes in, what is done with it, what goes back.
+// OpenVDB in the reader: receives jobs, does them, and sends results.
 #include "base/error.h"
 #include "base/memory.h"
 #include "media/vdb_wire.h"
@@ -6,7 +6,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-// Of what the other side sent, which is trusted; of a file it is not, and vdb_layout.c reads it.
+// Reads what the client sent, which is trusted. Files are not trusted: vdb_layout.c reads them.
 typedef struct cursor {
     const char *at;
 } cursor;

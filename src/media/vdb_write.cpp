@@ -1,6 +1,6 @@
-// Writing dense grids as sparse ones (vdb.h). Every block of 8^3 voxels becomes a leaf of its own,
-// side by side; those that hold nothing are dropped. What has one value stays a leaf, which takes
-// next to nothing compressed: Blender's Cycles takes a grid of tiles for an empty one.
+// Writes dense grids as sparse ones (vdb.h). Every block of 8^3 voxels becomes a leaf, in parallel;
+// empty blocks are dropped. A constant block stays a leaf, which takes almost nothing when
+// compressed, because Blender's Cycles takes a grid of tiles for an empty one.
 #include "media/vdb_file.hpp"
 #include <tbb/parallel_for.h>
 

@@ -1,7 +1,8 @@
-// MP4 through libavformat and libavcodec. The film is a draft that gets its name at the end (base/
-// file.h), so that a process that is killed leaves nothing: libavformat, which opens it again to
-// move the index to its front, reaches it by its descriptor. Pictures are padded to even sizes,
-// converted to 8-bit 4:2:0 with the BT.709 matrix, and tagged so. Frame n is shown at time n / fps.
+// MP4 through libavformat and libavcodec. The file is a draft that gets its name at the end
+// (base/file.h), so that a process that is killed leaves nothing. libavformat, which opens the file
+// again to move the index to its front, reaches it by its descriptor. Pictures are padded to even
+// sizes, converted to 8-bit 4:2:0 with the BT.709 matrix, and tagged so. Frame n is shown at time n
+// / fps.
 #include "media/video.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -135,7 +136,7 @@ video *video_create(const char *path, uint32_t width, uint32_t height, double fp
     return NULL;
 }
 
-// Takes what the encoder has ready. `frame` NULL ends the film.
+// Sends a frame and writes the packets that are ready. `frame` NULL ends the video.
 static bool video_encode(video *v, const AVFrame *frame) {
     int code = av.avcodec_send_frame(v->encoder, frame);
     if (code < 0) return fault(v, "cannot be encoded", code);

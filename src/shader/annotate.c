@@ -1,4 +1,4 @@
-// What each kind of annotation may say. The grammar is in README.md; tokens are read by cursor.c.
+// Parses each kind of annotation. The grammar is in README.md; cursor.c reads the tokens.
 #include "shader/annotate.h"
 #include <math.h>
 #include <string.h>
@@ -43,7 +43,7 @@ static bool read_bool(cursor *c, value_desc *out) {
     return true;
 }
 
-// Integers are kept as floats, which hold every one up to 2^24.
+// Integers are stored as floats, which represent all of them up to 2^24.
 static bool is_exact(float value) {
     return isinf(value) || (floorf(value) == value && fabsf(value) <= 0x1p24f);
 }

@@ -1,4 +1,4 @@
-// Reading one annotation. Private to src/shader/annotate*.c.
+// Parses one annotation. Private to src/shader.
 #pragma once
 #include "shader/unit.h"
 
@@ -20,12 +20,12 @@ typedef struct cursor { // over the text of one annotation, NUL-terminated
 } cursor;
 
 bool cursor_fail(const cursor *c, const char *format, ...) PRINTF_LIKE(2, 3);
-// Each skips blanks first. Takes `symbol` if it comes next.
+// All cursor functions skip blanks first. Takes `symbol` if it comes next.
 bool cursor_take(cursor *c, char symbol);
 bool cursor_name(cursor *c, char out[NAME_CAP], const char *what); // identifier, or error
 bool cursor_word(cursor *c, char out[NAME_CAP], const char *what); // letters, digits, _: or error
 bool cursor_is_number(cursor *c);
-// One number for all `components`, or {one for each}. Finite.
+// Reads one number for all `components`, or {one for each}. They must be finite.
 bool cursor_value(cursor *c, int components, float out[4]);
 bool cursor_range(cursor *c, float *min, float *max); // "[a, b]", may be absent
 bool cursor_unit(cursor *c, const char **out);        // up to the colon, may be absent

@@ -1,6 +1,6 @@
-// Compiled SPIR-V on disk, one file for each key. The key is a hash of everything the code depends
-// on, so entries are never stale. A file whose header does not match its content is as good as
-// none. The cache only saves time: no failure here is an error.
+// Compiled SPIR-V on disk, one file for each key. The key is a hash of everything that the code
+// depends on, so entries are never stale. A file whose header does not match its content is
+// ignored. The cache only saves time: no failure here is an error.
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"

@@ -1,7 +1,7 @@
-// From a shader file to a binary: flatten, read annotations, put the prelude in front, then take
-// the code from the cache or from glslang, which runs in a process of its own, and reflect. Nothing
-// is shared between two compiles but the library's constant paths and its counter, so threads need
-// no lock.
+// Compiles a shader file: it is flattened, its annotations are read and the prelude is put before
+// it. The code then comes from the cache or from glslang, which runs in another process, and is
+// reflected. Two compilations share only the library's constant paths and its counter, so threads
+// need no lock.
 #include "base/memory.h"
 #include "gpu/profile.h"
 #include "gpu/spirv.h"
@@ -50,8 +50,8 @@ static bool reflect(job *j, spirv *code, arena *memory, shader_binary *out) {
     return true;
 }
 
-// A text that the effect brings; what is generated and what the program brings is known to be
-// sound.
+// Returns whether the effect brings a part of the text. Generated texts and those of the program
+// are known to be valid.
 static bool is_strange(const shader_unit *unit) {
     for (size_t i = 0; i < unit->file_count; i++)
         if (unit->files[i].where.root == ROOT_EFFECT && unit->files[i].where.path) return true;

@@ -1,13 +1,13 @@
-// The one line of GLSL before an annotation: `layout(...) qualifiers uniform|out TYPE NAME[..];`.
-// Only as much is understood as annotations need; the compiler checks the rest.
+// Parses the line of GLSL before an annotation: `layout(...) qualifiers uniform|out TYPE
+// NAME[..];`. It understands only what annotations need; the compiler checks the rest.
 #include "shader/annotate.h"
 #include <ctype.h>
 #include <string.h>
 
 enum { SYMBOL_CAP = 64 };
 
-// Next identifier, number or symbol of the code; "" at its end. Long ones are cut, which no
-// keyword is.
+// Returns the next identifier, number or symbol of the code; "" at its end. Long ones are
+// truncated, which no keyword is.
 static const char *next_symbol(const char *code, char out[SYMBOL_CAP]) {
     size_t length = 0;
     while (isspace((unsigned char)*code)) code++;

@@ -1,10 +1,11 @@
-// How large a module is once every call is inlined, which is what drivers do. Thirty functions
-// that call each other twice are a few hundred bytes of SPIR-V and a billion calls: SPIRV-Cross and
-// drivers walk all of them, so such modules are refused.
+// Finds how large a module is once every call is inlined, which is what drivers do. Thirty
+// functions that call each other twice are a few hundred bytes of SPIR-V and a billion calls:
+// SPIRV-Cross and drivers walk all of them, so such modules are refused.
 //
-// The size of a function is its own words and the sizes of what it calls; each is found once, by
-// a walk in depth over the calls that keeps its own stack. So is what its arrays take of a thread's
-// memory: a driver that inlines a call twice may give its arrays two places.
+// The size of a function is its own words and the sizes of the functions that it calls. Each is
+// found once, by a depth-first walk over the calls with a stack of its own. The memory of a
+// thread's arrays is found in the same way, because a driver that inlines a call twice may allocate
+// its arrays twice.
 #include "shader/unit.h"
 
 typedef struct function {

@@ -1,15 +1,15 @@
-// What SPIR-V may contain before a driver sees it.
+// Decides what SPIR-V may contain before a driver sees it.
 //
 // A driver trusts its input, and a shader may come from a stranger: through physical pointers, for
-// one, it would read and write the memory of this process. So only what is listed here passes, and
-// each row says why. What is missing is refused, whatever it is: extensions to come, too.
+// example, it could read and write the memory of this process. Only what is listed here passes, and
+// each row gives the reason. Everything else is refused, including future extensions.
 //
-// The size of what a shader keeps to itself is bounded as well. Drivers give each thread its arrays
-// on a stack or in registers, and take seconds to compile large ones (lavapipe 22.3: 6 s for 16
-// KiB).
+// The memory that a shader keeps for itself is bounded as well. Drivers allocate each thread's
+// arrays on a stack or in registers, and take seconds to compile large ones (lavapipe 22.3: 6 s for
+// 16 KiB).
 //
-// The rules are those of the module's words; whether the module means anything is the validator's
-// question, which the compiler's process asks (glsl.c).
+// The rules concern single instructions; whether the module is valid as a whole is checked by the
+// validator, in the compiler's process (glsl.c).
 #include "shader/unit.h"
 #include <spirv_cross/GLSL.std.450.h>
 #include <string.h>
@@ -149,7 +149,7 @@ static const built_in *find_built_in(uint32_t word) {
     return NULL;
 }
 
-// Only these make pointers: of the module's own variables, inside of their bounds.
+// Only these make pointers: to the module's own variables, within their bounds.
 static const range pointer_makers[] = {
     {SpvOpFunctionParameter, SpvOpFunctionParameter},
     {SpvOpVariable, SpvOpImageTexelPointer},
@@ -213,7 +213,7 @@ static bool judge_capability(uint32_t capability) {
     return err_set("capability %u of SPIR-V: not accepted in shaders", capability);
 }
 
-// A literal string at `w`, of at most `words`. "" when it does not end.
+// Reads a literal string at `w`, of at most `words`. "" when it is not terminated.
 static const char *string_at(const uint32_t *w, uint32_t words, char out[MOST_NAME]) {
     size_t size = (size_t)words * sizeof *w;
     if (size > MOST_NAME) size = MOST_NAME;
@@ -239,7 +239,7 @@ static bool judge_extension(const uint32_t *w, uint32_t length) {
                    string_at(w + 1, length - 1, name));
 }
 
-// Of `id`, or of a member of it; `w` is from the decoration on.
+// Checks a decoration of `id`, or of a member of it. `w` begins at the decoration.
 static bool judge_decoration(gate *g, uint32_t id, bool member, const uint32_t *w,
                              uint32_t length) {
     if (w[0] == SpvDecorationSpecId)
@@ -280,8 +280,8 @@ static bool judge_entry(gate *g, const uint32_t *w, uint32_t length) {
            err_set("SPIR-V: not one entry point 'main' of a vertex, fragment or compute shader");
 }
 
-// The size of a group by ids is a size by constants: SPIRV-Cross crashes on ids of anything else,
-// of which SPIRV-Tools 2023.1 says nothing.
+// A group size given by ids must be given by constants: SPIRV-Cross crashes on other ids, which
+// SPIRV-Tools 2023.1 accepts.
 static bool judge_mode(const gate *g, const uint32_t *w, uint32_t length) {
     uint32_t mode = length > 2 ? w[2] : UINT32_MAX, size;
     bool by_id = (w[0] & SpvOpCodeMask) == SpvOpExecutionModeId;
@@ -298,7 +298,8 @@ static uint32_t opcode_of(const gate *g, uint32_t type) { // 0: nothing is defin
     return defined ? g->module.words[g->module.ids[type].at] & SpvOpCodeMask : 0;
 }
 
-// Members of structs and elements of arrays are numbers, or hold such: no pointers, no images.
+// Members of structs and elements of arrays must be numbers, or contain such: no pointers, no
+// images.
 static bool is_plain(const gate *g, uint32_t type) {
     uint32_t op = opcode_of(g, type);
     return (op >= SpvOpTypeBool && op <= SpvOpTypeMatrix) ||
@@ -333,8 +334,8 @@ static bool fits_built_in(const gate *g, const uint32_t *variable, uint32_t type
     return b->scalar == scalar && b->components == components;
 }
 
-// Drivers keep what is handed on in a table by location, and do not ask whether it lies in there.
-// An element of an array takes a location, however small it is.
+// Drivers store outputs in a table by location, and do not check whether a location lies in it. An
+// element of an array takes a location, however small it is.
 static bool fits_locations(const gate *g, const uint32_t *variable, uint32_t type) {
     uint32_t at = g->located[variable[2]] ? g->located[variable[2]] - 1u : 0;
     const spirv_id *t = &g->module.ids[type];
@@ -344,7 +345,7 @@ static bool fits_locations(const gate *g, const uint32_t *variable, uint32_t typ
     return at < most && taken <= most - at;
 }
 
-// What a thread or a group has for itself has a size; expand.c adds up that of threads.
+// The variables of a thread or a group must have a size; expand.c adds up those of threads.
 static bool judge_variable(const gate *g, const uint32_t *w, uint32_t length) {
     const uint32_t *pointer = spirv_find(&g->module, w[1], SpvOpTypePointer);
     if (length < 4 || !pointer || pointer[2] != w[3] || pointer[3] >= g->module.bound)

@@ -1,8 +1,8 @@
-// GLSL to SPIR-V by glslang, in this very process: compiler.c runs it where it can do no harm.
+// GLSL to SPIR-V by glslang, in this process: compiler.c runs it where it can do no harm.
 //
 // Vulkan's rules are relaxed, so that glslang itself gathers loose uniforms into one block, in
-// order of declaration. Once macros are expanded, statements of absurd length are refused: each
-// operator is one more level of glslang's recursion.
+// order of declaration. Once macros are expanded, statements of extreme length are refused, because
+// each operator is one more level of glslang's recursion.
 #include "shader/unit.h"
 #include <ctype.h>
 #include <glslang/Include/glslang_c_interface.h>
@@ -31,7 +31,8 @@ static glsl_answer with_log(glsl_outcome outcome, const char *log) {
     return (glsl_answer){.outcome = outcome, .data = (char *)log, .size = strlen(log)};
 }
 
-// Operators between one `;` or brace and the next, at most. Dots of numbers do not count.
+// Returns the greatest number of operators between two of `;` and braces. Dots of numbers do not
+// count.
 static size_t longest_statement(const char *code) {
     size_t longest = 0, count = 0;
     for (; *code; code++) {

@@ -77,7 +77,7 @@ static void tell(const loader *l, const char *path) {
     if (l->desc->reader) l->desc->reader->read(l->desc->reader->user, path);
 }
 
-// Where a user may put what is missing.
+// Sets a message that says where a user may put the missing file.
 static void tell_missing(const loader *l, place at, const char *name) {
     const char *top = l->library->roots[ROOT_EFFECT];
     char folder[PATH_CAP], beside[PATH_CAP], path[PATH_CAP];
@@ -124,7 +124,7 @@ static bool fail_cycle(const loader *l, place at, int target) {
     return false;
 }
 
-// Every way to end a line becomes a newline.
+// Turns every kind of line end into a newline.
 static size_t unify_newlines(char *text, size_t size) {
     size_t kept = 0;
     for (size_t i = 0; i < size; i++) {
@@ -235,7 +235,7 @@ static void add_line(shader_unit *unit, place at, const char *line, const char *
     strbuf_append(&unit->code, "\n", 1);
 }
 
-// The directive's name, copied; "" for a lone #; NULL when the code is no directive.
+// Returns a copy of the directive's name; "" for a lone #; NULL when the code is no directive.
 static const char *directive(const char *code, char out[16]) {
     code += strspn(code, BLANKS);
     if (*code != '#') return NULL;

@@ -1,4 +1,4 @@
-// From the lines of a unit to its shader_interface: finds annotations, checks names against each
+// Turns the lines of a unit into its shader_interface: finds annotations, checks names against each
 // other, and notes which image declarations still need a format.
 //
 // `//@ ` and `//= ` with the blank are annotations; `//===` and the like are ordinary comments.
@@ -95,7 +95,7 @@ static bool add_directive(reader *r, cursor *c) {
     return cursor_fail(c, "unknown //@ %s; accepted are option, field, counter", word);
 }
 
-// The format stands in a macro, so that a pass can ask for another one.
+// Writes the format as a macro, so that a pass can choose another one.
 static void insert_format(reader *r, const shader_image *image, size_t offset) {
     if (!r->inserts) return;
     strbuf text = {0};
@@ -161,7 +161,7 @@ static bool read_line(reader *r, const unit_line *line) {
 
 // ---- the whole --------------------------------------------------------------------------------
 
-// The comment that the main file begins with, up to its first empty line.
+// Returns the comment at the beginning of the main file, up to its first empty line.
 static const char *summary(const shader_unit *unit, arena *memory) {
     const char *text = unit->files[0].text;
     strbuf joined = {0};
@@ -182,7 +182,7 @@ static const char *summary(const shader_unit *unit, arena *memory) {
     return copy;
 }
 
-// A history input may stand above the output it remembers, so it is checked at the end.
+// Checks history inputs at the end, because one may stand above the output that it refers to.
 static bool check_history(const reader *r) {
     for (size_t i = 0; i < r->image_count; i++) {
         const shader_image *image = &r->images[i];
@@ -248,14 +248,14 @@ static bool is_letter(char c) {
     return isalnum((unsigned char)c) || c == '_';
 }
 
-// What comments say does not count, unless they are annotations of options and fields.
+// Returns whether the text is no comment, or is an annotation of an option or a field.
 static bool is_code(const shader_unit *unit, size_t at, size_t length) {
     if (memcmp(unit->code.text + at, unit->text.text + at, length) == 0) return true;
     while (at > 0 && unit->text.text[at - 1] != '\n') at--;
     return strncmp(unit->text.text + at, "//@", 3) == 0;
 }
 
-// As a word, with or without an underscore behind it.
+// Finds the name as a word, with or without a trailing underscore.
 static bool has_word(const shader_unit *unit, const char *name) {
     const size_t length = strlen(name);
     const char *text = strbuf_text(&unit->text);

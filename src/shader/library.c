@@ -1,6 +1,6 @@
-// Two folders of shaders: the effect's and the program's. A name is brought to its shortest form
-// as text first, so that "pass/../lib/a.glsl" works and "../a.glsl" does not; then path_confine
-// makes sure that no symbolic link leads out of the folder.
+// Two folders of shaders: the effect's and the program's. A name is first normalised as text, so
+// that "pass/../lib/a.glsl" works and "../a.glsl" does not; then path_confine ensures that no
+// symbolic link leads out of the folder.
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -10,7 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// Code from the cache goes to the driver as it is, so nobody else may put files there.
+// Code from the cache is passed to the driver unchanged, so nobody else may be able to put files
+// there.
 static bool is_private(const char *folder) {
     struct stat info;
     if (stat(folder, &info) != 0) return err_set("%s: %s", folder, strerror(errno));

@@ -1,6 +1,6 @@
-// What a library found and read, so that the shaders of one load, which include the same files over
-// and over, look for each file and read it once: asking the file system for every part of every
-// path took two thirds of a reload.
+// Remembers what a library found and read, so that the shaders of one load, which include the same
+// files again and again, look for each file and read it once. Asking the file system for every part
+// of every path took two thirds of a reload.
 #include "base/file.h"
 #include "base/memory.h"
 #include "shader/unit.h"

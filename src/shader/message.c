@@ -1,12 +1,12 @@
-// What the compiler did not like, as one error with the true file and line and the source line
-// beneath.
+// Turns the compiler's log into one message with the real file and line, and the source line below
+// it.
 #include "base/memory.h"
 #include "shader/unit.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
-// "'' : text " and "'x' : text " -> "text" and "'x': text", one line.
+// Turns "'' : text " and "'x' : text " into "text" and "'x': text", in one line.
 static void message_tidy(const char *text, char *out, size_t capacity) {
     size_t length = strcspn(text, "\r\n");
     if (strncmp(text, "'' : ", 5) == 0) {
@@ -23,7 +23,7 @@ static void message_tidy(const char *text, char *out, size_t capacity) {
     if (out[0] == '\'' && colon) memmove(colon + 1, colon + 2, strlen(colon + 2) + 1);
 }
 
-// Of the first message in `log` that contains `mark` ("ERROR: ").
+// Sets the message from the first line of `log` that contains `mark` ("ERROR: ").
 static bool fail_log(const shader_unit *unit, const char *log, const char *mark) {
     const char *label = unit->files[0].where.label, *found = strstr(log, mark);
     char message[1024], source[240];

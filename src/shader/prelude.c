@@ -1,4 +1,4 @@
-// What stands before a shader's own text: the version, extensions, macros of options,
+// Prints what comes before a shader's own text: the version, extensions, macros of options,
 // enumerations and formats, the default group size, and the functions that count.
 #include "shader/unit.h"
 #include <ctype.h>
@@ -70,8 +70,8 @@ static void define_formats(const shader_interface *interface, strbuf *out) {
     }
 }
 
-// A counter is two words, low and high. One lane adds for its whole subgroup, and whoever makes
-// the low word wrap carries into the high one.
+// A counter is two words, low and high. One lane adds for its whole subgroup. The lane that makes
+// the low word wrap around increments the high one.
 static void declare_counters(const shader_interface *interface, bool on, strbuf *out) {
     strbuf_add(out, "#define ROIL_COUNTERS %d\n", on);
     if (on && interface->counter_count)

@@ -1,9 +1,9 @@
-// What a SPIR-V module binds, by SPIRV-Cross.
+// Describes what a SPIR-V module binds, by SPIRV-Cross.
 //
-// Only resources that the entry point uses count. They are numbered in order of first use, so
-// that one module has no two resources at one binding whatever its text said; fragment shaders
-// count from 16, so that a vertex and a fragment shader never collide. Unused resources are then
-// removed from the code: what remains is exactly what `slots` lists.
+// Only resources that the entry point uses count. They are numbered in order of first use, so that
+// a module never has two resources at one binding, whatever its text says. Fragment shaders count
+// from 16, so that they do not collide with a vertex shader. Unused resources are then removed from
+// the code: what remains is exactly what `slots` lists.
 #include "base/memory.h"
 #include "shader/annotate.h"
 #include <spirv_cross/spirv_cross_c.h>

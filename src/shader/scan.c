@@ -1,4 +1,4 @@
-// Comments, the only thing that must be known about GLSL to find directives and annotations.
+// Finds comments, the only part of GLSL that must be understood to find directives and annotations.
 #include "shader/unit.h"
 
 size_t scan_line(strbuf *code, const char *line, size_t length, bool *in_comment) {

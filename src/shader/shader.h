@@ -1,6 +1,6 @@
-// GLSL in, SPIR-V and a description out. Needs no device.
+// Compiles GLSL to SPIR-V and describes it. Needs no device.
 //
-// A shader file says everything about itself once, in its own text:
+// A shader file describes itself in annotations:
 //
 //   // Bends the picture where air is hot.                      <- leading comment: summary
 //   //@ option mode = fine {coarse, fine} : how the bend is found
@@ -98,8 +98,8 @@ void shader_library_forget(shader_library *library); // files may have changed
 // glslang runs since the library was created (cache hits do not count).
 uint64_t shader_library_compiles(const shader_library *library);
 
-// Is told of every file that is read, and of those looked for in vain: what a reload watches. Paths
-// are absolute where the library's folders are.
+// Called with the path of every file that is read, and of every missing file that was looked for,
+// so that a reload can watch them. Paths are absolute if the library's folders are.
 typedef struct shader_reader {
     void (*read)(void *user, const char *path);
     void *user;
@@ -111,8 +111,8 @@ typedef struct shader_reader {
 const shader_interface *shader_interface_load(shader_library *library, arena *memory,
                                               const char *name, const shader_reader *reader);
 
-// Whether the file, or one that it includes, has a name in its code or its annotations, with or
-// without the trailing underscore. False also when it cannot be read.
+// Returns whether the code or the annotations of the file, or of one that it includes, contain a
+// name, with or without the trailing underscore. False also when the file cannot be read.
 bool shader_mentions(shader_library *library, const char *file, const char *name);
 
 // ---- compile ----------------------------------------------------------------------------------
@@ -139,19 +139,19 @@ typedef struct shader_compile_desc {
     const shader_reader *reader; // may be NULL
 } shader_compile_desc;
 
-typedef struct shader_member { // of the block "Uniforms"
+typedef struct shader_member { // a member of the block "Uniforms"
     const char *name;          // public name
     uint32_t offset, size;     // bytes
     shader_type type;          // SHADER_INT for enums, bools and ints alike; SHADER_MAT4 too
     uint32_t array;            // elements, 0: not an array
 } shader_member;
 
-// Only what the entry point uses has a slot. Bindings of fragment shaders begin at
-// GPU_MAX_SLOTS / 2, so that those of a vertex shader beside it differ.
+// Only resources that the entry point uses have a slot. Bindings of fragment shaders begin at
+// GPU_MAX_SLOTS / 2, so that they differ from those of the vertex shader.
 typedef struct shader_slot {
-    const char *name; // GLSL name: of a block its block name, else the variable's
+    const char *name; // GLSL name: the block's name, or else the variable's
     gpu_slot slot;
-    uint32_t size; // uniform blocks: bytes
+    uint32_t size; // bytes of a uniform block
     bool volume;   // image is 3D
 } shader_slot;
 
@@ -167,6 +167,7 @@ typedef struct shader_binary {
     size_t file_count;
 } shader_binary;
 
-// All results live in `memory`. False with "file:line: message" and, below it, the source line.
+// Compiles a shader. All results live in `memory`. False with "file:line: message" and, below it,
+// the source line. Any thread, also several at once for one library.
 bool shader_compile(shader_library *library, arena *memory, const shader_compile_desc *desc,
                     shader_binary *out);

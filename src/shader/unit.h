@@ -23,7 +23,7 @@ struct shader_library {
     atomic_uint_fast64_t compiles;
 };
 
-typedef struct library_file { // where a name led
+typedef struct library_file { // the file that a name stands for
     library_root root;
     const char *name;  // inside the root, without "." and ".."
     const char *path;  // absolute, symbolic links followed
@@ -35,11 +35,11 @@ typedef struct library_file { // where a name led
 int library_find(const shader_library *library, library_root root, const char *folder,
                  const char *name, arena *memory, library_file *out);
 
-// What was found (or not: `found` 0) and read since the last memo_forget. Results are copied to
-// `memory`. Any thread. memo_find is false for what is not known; memo_read reads it then, and is
-// false with a message when that fails.
+// A memo remembers which files were found (or not: `found` 0) and read since the last memo_forget.
+// Results are copied to `memory`. memo_find returns false for a name that is not known. memo_read
+// reads a file that is not known; false with a message when that fails. Any thread.
 library_memo *memo_create(void);
-void memo_destroy(library_memo *m); // NULL is fine
+void memo_destroy(library_memo *m); // NULL is allowed
 void memo_forget(library_memo *m);
 bool memo_find(library_memo *m, library_root root, const char *name, arena *memory, int *found,
                library_file *out);
@@ -64,8 +64,8 @@ enum {
     UNIT_MAX_FILES = 1000,
 };
 
-// The text of a pass's fields. It exists only once an effect is built, so reading an interface
-// goes on without.
+// The generated text of a pass's fields. It exists only once an effect is built, so an interface is
+// read without it.
 #define UNIT_FIELDS "fields.glsl"
 
 typedef struct unit_file {
@@ -137,7 +137,7 @@ void unit_add_upper(strbuf *out, const char *name);
 
 // ---- from text to SPIR-V ----------------------------------------------------------------------
 
-// What stands before the unit's text: version, extensions, macros, counters.
+// Prints the text before the unit's own: version, extensions, macros, counters.
 bool unit_prelude(const shader_unit *unit, const shader_interface *interface,
                   const shader_compile_desc *desc, strbuf *out);
 
@@ -147,7 +147,7 @@ typedef struct spirv {
 } spirv;
 
 enum {
-    GLSL_MAX_OPERATORS = 20000,   // of a statement; a table of 5000 negative numbers has 10000
+    GLSL_MAX_OPERATORS = 20000,   // per statement; a table of 5000 negative numbers has 10000
     SPIRV_MAX_SIZE = 16 << 20,    // bytes
     SPIRV_MAX_EXPANDED = 4 << 20, // words, every call inlined
     SPIRV_MAX_PRIVATE = 32 << 10, // bytes of a thread's arrays, every call inlined
@@ -170,25 +170,30 @@ typedef struct glsl_answer {
     size_t size;
 } glsl_answer;
 
-typedef void glsl_receiver(void *user, const glsl_answer *answer); // which lives for the call
+typedef void glsl_receiver(void *user, const glsl_answer *answer); // valid during the call
 
-// Runs glslang here and now: the text of a stranger can make it hang or crash. See compiler.h.
+// Runs glslang in this process, where the text of a stranger can make it hang or crash. See
+// compiler.h.
 void glsl_run(const char *source, shader_stage stage, glsl_receiver *receive, void *user);
-// True when done, else an error with the true file and line and the source line beneath.
+// Returns true for GLSL_DONE. Else sets a message with the real file and line, and the source line
+// below it, and returns false.
 bool glsl_explain(const shader_unit *unit, const glsl_answer *answer);
-uint32_t glsl_version(void); // of the compiler, for cache keys
+uint32_t glsl_version(void); // version of the compiler, for cache keys
 
-// Whether a driver may see it: see gate.c. The message has no position, nor has that of
-// spirv_reflect, which asks this first.
+// Returns whether the code may be given to a driver: see gate.c. The message has no position, nor
+// has that of spirv_reflect, which calls this first.
 bool spirv_gate(const spirv *code);
-// A part of the gate: false when the code is too large once calls are inlined, or recursive.
+// A part of the gate: returns false when the code is recursive, or too large once calls are
+// inlined.
 bool spirv_can_expand(const spirv_module *code);
-// Whether the module means something (validate.c), which takes 7 ms for a median module of ours and
-// 130 ms for the largest: asked of what holds a stranger's text, in the compiler's process.
+// Returns whether the module is valid (validate.c). This takes 7 ms for the median of our modules
+// and 130 ms for the largest. It is called for code with a stranger's text, in the compiler's
+// process.
 bool spirv_validate(const spirv *code);
-// Assigns bindings in place, removes what is not used, and describes the rest.
+// Assigns bindings in place, removes unused resources, and describes the others.
 bool spirv_reflect(spirv *code, shader_stage stage, arena *memory, shader_binary *out);
-// Turns LocalSizeId into LocalSize, which needs no device feature, and drops `dead` variables.
+// Turns LocalSizeId into LocalSize, which needs no device feature, and removes all resources but
+// the `live` ones.
 void spirv_clean(spirv *code, const uint32_t local_size[3], const uint32_t *live,
                  size_t live_count);
 

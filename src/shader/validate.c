@@ -1,6 +1,5 @@
-// Whether SPIR-V means something, by the validator of SPIRV-Tools. A driver does not ask: what
-// glslang makes of odd texts, or of instructions that a shader names by number
-// (GL_EXT_spirv_intrinsics), can crash it.
+// Validates SPIR-V with SPIRV-Tools. A driver does not do this: what glslang makes of unusual
+// texts, or of instructions that a shader gives by number (GL_EXT_spirv_intrinsics), can crash it.
 #include "shader/unit.h"
 #include <spirv-tools/libspirv.h>
 
