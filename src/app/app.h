@@ -1,4 +1,4 @@
-// The program `roil`: a command each, all of it through roil.h.
+// The program `roil`. Each command is a function cmd_*, which uses the library through roil.h.
 #pragma once
 #include "base/arena.h"
 #include "roil.h"
@@ -21,17 +21,17 @@ int cmd_live(int argc, const char **argv);
 
 // One line "roil: message" on stderr; returns the status.
 int app_fail(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
-int app_fail_input(void); // with roil_error()
+int app_fail_input(void); // the same with roil_error()
 
-// What may hold texts of files: terminals obey none of it (str_make_printable).
+// Prints text that may come from a file, without what a terminal would obey (str_make_printable).
 void app_print(FILE *out, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 // ---- options ----------------------------------------------------------------------------------
 
 struct poptOption;
 struct poptContext_s;
-// False, with a message for the error `code` of poptGetNextOpt: an unknown option gets the nearest
-// of `options`, or all of them.
+// Prints a message for the error `code` of poptGetNextOpt and returns false. For an unknown option
+// it suggests the nearest of `options`, or lists all of them.
 bool app_refuse_option(struct poptContext_s *context, const struct poptOption *options, int code);
 
 // ---- frames -----------------------------------------------------------------------------------
@@ -39,50 +39,50 @@ bool app_refuse_option(struct poptContext_s *context, const struct poptOption *o
 typedef struct app_frames {
     double *numbers;
     size_t count;
-    double step; // between the first two; 1 for one frame
+    double step; // distance of the first two; 1 for a single frame
 } app_frames;
-// "30", "10,30,50", "1-100", "1-100:2", or a list of such. False with a message when it is none.
+// Parses "30", "10,30,50", "1-100", "1-100:2", or a list of these. False with a message.
 bool app_parse_frames(const char *text, app_frames *out);
 void app_free_frames(app_frames *frames);
-// Frames that the effect says nothing of may be wanted, but are more often a slip.
+// Warns of frames outside of the effect's timeline, which are more often a mistake than wanted.
 void app_warn_of_frames(const app_frames *frames, const roil_effect_info *info);
-void app_warn_of_trouble(const roil_effect *e); // that a simulation is in
+void app_warn_of_trouble(const roil_effect *e); // warns of the trouble of a simulation
 
 bool app_parse_size(const char *text, uint32_t *width, uint32_t *height); // "960x540"
 
-// "out/%04d.png" with a frame number; a pattern without a % stays as it is. Patterns are checked by
-// app_check_pattern first: at most one %, of the form %d or %04d.
+// Inserts a frame number into a pattern such as "out/%04d.png"; a pattern without a % stays the
+// same. app_check_pattern must accept it first: at most one %, of the form %d or %04d.
 bool app_check_pattern(const char *pattern);
 bool app_has_number(const char *pattern);
 void app_format_pattern(const char *pattern, double frame, char *out, size_t capacity);
-// What cannot be written is said before the work begins, not after it. Devices and pipes are for
-// whoever writes them.
+// Checks before the work begins whether a file can be written. False with a message. Devices and
+// pipes are not checked.
 bool app_can_write(const char *file);
-// Where results go by default, the user has named nothing: no link leads them out of the current
-// folder, and no device or pipe stands there.
+// Checks a default path of results, which the user has not named: no link may lead out of the
+// current folder, and the path must not be a device or a pipe.
 bool app_may_write_here(const char *path);
 
-// As a shell takes it: in quotes where it has to be, and never an option.
+// Quotes a text for a shell where necessary, so that it is never taken as an option.
 char *app_quoted(arena *memory, const char *text);
 
-bool app_parse_samples(const char *text, uint32_t *out); // of a reference: 1 to 65536 a pixel
+bool app_parse_samples(const char *text, uint32_t *out); // samples per pixel, 1 to 65536
 
 // ---- interrupts -------------------------------------------------------------------------------
 
-// From now on Ctrl-C is only noted, once; a second one ends the program.
+// From now on the first Ctrl-C is only noted; a second one ends the program.
 void app_hear_interrupts(void);
-bool app_is_interrupted(void *user); // `user` is for those who want a function of one
+bool app_is_interrupted(void *user); // `user` is ignored; it makes this usable as a callback
 
 // ---- settings ---------------------------------------------------------------------------------
 
-typedef struct app_settings { // --from, then --preset, then --set: what comes later wins
+typedef struct app_settings { // --from, then --preset, then --set: later ones win
     const char **presets;
     size_t preset_count, preset_capacity;
     roil_setting *sets;
     size_t set_count, set_capacity;
     roil_preset **loaded;
     size_t loaded_count;
-    char *events;      // of --event, as one setting of `sets`
+    char *events;      // all --event, as one setting of `sets`
     roil_setting *all; // after app_collect_settings
     size_t count, capacity;
 } app_settings;
@@ -92,14 +92,14 @@ void app_add_event(app_settings *s, const char *text); // "2.5 click 0.4 0.6"
 #define APP_EVENT_ROW(VALUE)                                                                       \
     {                                                                                              \
         "event", '\0', POPT_ARG_STRING, NULL, VALUE,                                               \
-            "what happens to the effect instead of its own events: SECONDS click X Y, or SECONDS " \
-            "key "                                                                                 \
+            "an event that replaces the effect's own events: SECONDS click X Y, or SECONDS key "   \
             "NAME [X Y]; may be given several times",                                              \
             "EVENT"                                                                                \
     }
-// That a file can be an effect. False, with a message that says what it is instead.
+// Checks that a file can be an effect. False with a message that says what it is instead.
 bool app_check_effect(const char *file);
-// Of an effect; reads the presets. `from` may be NULL, else outlives `s`.
+// Reads the presets and collects all settings of an effect. `from` may be NULL; else it must
+// outlive `s`.
 bool app_collect_settings(app_settings *s, roil *r, const char *effect, const roil_recipe *from);
 void app_free_settings(app_settings *s);
 
@@ -112,12 +112,12 @@ typedef struct app_progress {
     bool terminal;
 } app_progress;
 void app_progress_begin(app_progress *p, size_t total, const char *unit);
-void app_progress_step(app_progress *p, size_t done); // shows time left
-void app_progress_clear(app_progress *p);             // makes way for a line of output
+void app_progress_step(app_progress *p, size_t done); // shows the time left
+void app_progress_clear(app_progress *p);             // clears the line for other output
 void app_progress_end(app_progress *p);
-// Whoever works in pieces tells of them by one of these: roil_on_progress of steps of simulations,
-// roil_desc.loading of files of a sequence, roil_export of frames. `user`: an app_progress, zero at
-// first. False after an interrupt.
+// Callbacks that show progress: for roil_on_progress (steps), roil_desc.loading (files of a
+// sequence) and roil_export (frames). `user` is an app_progress, zero at first. They return false
+// after an interrupt.
 bool app_tell_steps(void *user, double done, double whole);
 bool app_tell_files(void *user, double done, double whole);
 bool app_tell_frames(void *user, double done, double whole);
@@ -129,7 +129,7 @@ app_stats *app_stats_create(void);
 void app_stats_add(app_stats *s, roil_effect *e, double frame, double seconds); // of the CPU clock
 bool app_stats_save(const app_stats *s, const char *file, const roil *r, const char *effect,
                     uint32_t width, uint32_t height, const roil_setting *settings, size_t count);
-void app_stats_print(const app_stats *s); // a table on stdout: median and 95th percentile by pass
+void app_stats_print(const app_stats *s); // prints median and 95th percentile of each pass
 void app_stats_destroy(app_stats *s);
-// "12.5 m/s", "yes".
+// Prints a value with its unit: "12.5 m/s", "yes".
 void app_format_readout(const roil_readout *r, char *out, size_t capacity);

@@ -1,4 +1,5 @@
-// What `roil bench` says on the terminal: a line a row, a table at the end, changes.
+// Prints what `roil bench` writes to the terminal: a line for each row, a table at the end, and
+// changes.
 #include "app/bench_print.h"
 #include "app/app.h"
 #include <math.h>
@@ -30,7 +31,7 @@ static void print_label(const char *label, int width) {
     app_print(stdout, "%-*.*s", width, width, label);
 }
 
-// The file has all of the message.
+// Prints the first line of the message; the file has all of it.
 static void print_failure(const bench_row *row) {
     app_print(stdout, " failed: %.*s", (int)strcspn(row->message, "\n"), row->message);
 }

@@ -1,5 +1,5 @@
-// The camera in the user's hands: drags and the wheel over the picture become values of the
-// controls camera.eye and camera.target, which outlive a reload like any other.
+// Lets the user move the camera: dragging and the wheel over the picture set the controls
+// camera.eye and camera.target, which survive a reload like any other control.
 #include "app/live.h"
 #include <math.h>
 #include <stdio.h>
@@ -8,7 +8,8 @@ static const float TURN = 0.3f;   // degrees a unit
 static const float ABOVE = 0.01f; // of the ground, by the distance of what is looked at
 enum { RAISES = 4 };              // at most: ground that slopes is another where the eye then is
 
-// In force is what the hand made last; after a reload or a reset, what the effect was drawn with.
+// Starts from the camera that the user moved last; after a reload or a reset, from the one that the
+// effect was drawn with.
 static bool take_up(live *l) {
     roil_camera camera;
     if (l->camera_moved) return true;
@@ -41,7 +42,7 @@ static bool is_under_ground(const live *l, const orbit *o, float *height) {
     return roil_is_under_ground(l->effect, camera.eye, height);
 }
 
-// After a move, from `before`: the hand takes no camera under the ground that it stood above.
+// After a move from `before`: a camera that stood above the ground is kept above it.
 static void stay_above_ground(live *l, const orbit *before, bool shift) {
     float height;
     if (is_under_ground(l, before, &height)) return;

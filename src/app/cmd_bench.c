@@ -190,7 +190,7 @@ static int bench_list_rows(const bench_options *o) {
     return status;
 }
 
-// `*slower`: how many rows became slower than the baseline, if there is one.
+// `*slower` receives how many rows became slower than the baseline, if there is one.
 static bool compare_with_baseline(const bench_options *o, const bench_results *now,
                                   size_t *slower) {
     bench_results before;

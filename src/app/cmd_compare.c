@@ -1,4 +1,4 @@
-// roil compare A B: how different two pictures are, and whether that is too much.
+// roil compare A B: measures the difference of two pictures, and checks it against limits.
 #include "app/app.h"
 #include "app/device_options.h"
 #include "base/budget.h"
@@ -39,7 +39,7 @@ static bool save_difference(const compare_job *job, const roil_difference *d) {
     return done;
 }
 
-// One message of every limit that is not kept.
+// Prints one message with every limit that is exceeded.
 static int check_limits(const compare_job *job, const roil_difference *d) {
     strbuf why = {0};
     if (d->flip > job->max_flip)

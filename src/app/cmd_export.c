@@ -1,5 +1,5 @@
-// roil export raw 'FILES*.vdb' -o FILE.raw: a VDB sequence as plain voxels. And `roil export vdb`,
-// which is in export_vdb.c.
+// roil export raw 'FILES*.vdb' -o FILE.raw: writes a VDB sequence as plain voxels. `roil export
+// vdb` is in export_vdb.c.
 #include "app/app.h"
 #include <popt.h>
 #include <stdio.h>

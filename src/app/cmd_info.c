@@ -1,4 +1,4 @@
-// roil info ...: the reference, from the program's own tables.
+// roil info ...: prints the reference from the program's own tables.
 #include "app/app.h"
 #include "app/device_options.h"
 #include "base/str.h"

@@ -88,7 +88,7 @@ static bool live_parse(job *j, int argc, const char **argv, poptContext *context
 
 // ---- work -------------------------------------------------------------------------------------
 
-// The device works on a frame that takes long: the window can be closed and the frame given up.
+// Called while the device works on a long frame: the user can close the window or cancel the frame.
 static bool on_waiting(void *user, double seconds) {
     live *l = user;
     window_busy answer = window_wait_busy(l->window, seconds);

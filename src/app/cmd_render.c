@@ -93,8 +93,8 @@ static bool take_option(job *j, poptContext context, int option) {
     return true;
 }
 
-// popt knows options with one argument only: "--dump-pass NAME FILE" becomes one text with a line
-// break between the two.
+// popt only knows options with one argument, so "--dump-pass NAME FILE" becomes one text with a
+// line break between the two.
 static const char **join_dump(int *argc, const char **argv, arena *memory) {
     const char **joined = arena_alloc(memory, ((size_t)*argc + 1) * sizeof *joined);
     int count = 0;
@@ -175,7 +175,7 @@ static bool render_parse(job *j, int argc, const char **argv, poptContext *conte
 
 // ---- work -------------------------------------------------------------------------------------
 
-// What --from decides where the command line does not.
+// Takes from --from what the command line does not say.
 static bool complete_from(job *j) {
     if (j->from_file) {
         j->from = roil_read_recipe(j->from_file);
@@ -199,7 +199,7 @@ static bool complete_from(job *j) {
     return true;
 }
 
-// What the effect itself decides: all of its frames, and where they go by default.
+// Takes from the effect what the user does not say: all of its frames, and the default output.
 static bool render_complete(job *j, roil_effect *e) {
     roil_effect_info info = roil_get_info(e);
     char range[64];
@@ -228,7 +228,7 @@ static bool render_complete(job *j, roil_effect *e) {
     return true;
 }
 
-// Of all frames, those that come after the checkpoint's are left.
+// Restores the checkpoint, and skips the frames that it already contains.
 static bool render_restore(job *j, roil_effect *e) {
     double last, *numbers = j->frames.numbers;
     size_t left = 0;
@@ -287,8 +287,8 @@ static bool save_frame(job *j, roil_effect *e, double frame) {
     return true;
 }
 
-// Draws the frames before number `index` of the job, as many as asked and as there are, unless they
-// were drawn just now.
+// Draws the frames before number `index` of the job, as many as were asked for and exist, unless
+// they were drawn just now.
 static bool warm_up(const job *j, roil_effect *e, size_t index) {
     const double *frames = j->frames.numbers;
     if (index > 0 && frames[index] == frames[index - 1] + 1) return true;
@@ -299,7 +299,7 @@ static bool warm_up(const job *j, roil_effect *e, size_t index) {
     return true;
 }
 
-// The effect stands still until a reference has its samples.
+// Draws a frame; of a reference, until it has its samples.
 static bool render_frame(const job *j, roil_effect *e, size_t index, app_progress *progress) {
     double frame = j->frames.numbers[index];
     size_t before = index * j->reference;
@@ -335,7 +335,7 @@ static bool render_frames(job *j, roil_effect *e, app_stats *stats) {
     return done;
 }
 
-// Waits until all is written.
+// Waits until all files are written.
 static bool close_outputs(job *j, bool done) {
     if (!roil_writer_finish(j->writer)) done = false;
     j->writer = NULL;

@@ -1,4 +1,5 @@
-// roil tune EFFECT.lua: searches the settings of its quality, and writes what it finds as a preset.
+// roil tune EFFECT.lua: searches settings of quality that are fast enough, and writes them as a
+// preset.
 #include "app/app.h"
 #include "app/device_options.h"
 #include "base/clock.h"

@@ -1,4 +1,5 @@
-// Editor of a curve: a plot over time with the keys as handles, and the selected key as numbers.
+// The editor of a curve: a plot over time with the keys as handles, and the selected key as
+// numbers.
 #include "app/panel_parts.h"
 #include "base/maths.h"
 #include "base/memory.h"
@@ -48,7 +49,8 @@ static float from_y(const editor *e, float y) {
 
 // ---- ranges -----------------------------------------------------------------------------------
 
-// All of the effect, and of the curve if it goes on after it; or a particle's life.
+// Returns the time of the whole effect, and of the curve if it continues after it; or a particle's
+// life.
 static plot_range time_range(const editor *e) {
     if (e->curve.over_age) return (plot_range){0, 1};
     timeline t = e->l->time;

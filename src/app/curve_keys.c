@@ -1,4 +1,4 @@
-// Edits of a curve's keys. They stay strictly rising in time.
+// Edits a curve's keys, which stay in strictly rising order of time.
 #include "app/curve_keys.h"
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-// Keys and clicks that the script of the effect hears. By hand they become events of the control
-// "effect.events", so that a jump in time, a reload and a picture's recipe know them.
+// Keys and clicks that the script of the effect handles. They become events of the control
+// "effect.events", so that a jump in time, a reload and a picture's recipe have them.
 #include "app/live.h"
 #include <GLFW/glfw3.h>
 #include <math.h>
@@ -12,7 +12,7 @@ typedef struct key_name {
     char name[8];
 } key_name;
 
-// False: no effect can hear it.
+// Returns the name of a key. False: no effect can handle it.
 static bool name_key(int key, char out[8]) {
     static const key_name names[] = {
         {GLFW_KEY_ENTER, "enter"}, {GLFW_KEY_UP, "up"}, {GLFW_KEY_DOWN, "down"}};

@@ -1,5 +1,5 @@
-// The slice that one works in: it is pushed where the pointer goes, squares are drawn on it, and
-// templates are put where it is clicked.
+// The slice that a user works in: dragging pushes the flow or selects squares, and clicks put
+// templates into it.
 #include "app/flow_tools.h"
 #include "app/label.h"
 #include "base/clock.h"
@@ -50,7 +50,7 @@ static roil_slices_square square_at(const flow_tools *t, const float middle[2], 
 
 // ---- pushing ------------------------------------------------------------------------------------
 
-// What lies where the pointer went takes up a part of its speed in one step.
+// Accelerates the flow under the pointer by a part of the pointer's speed, in one step.
 static void flow_push(live *l, flow_tools *t, const sheet *s, const ui_canvas *c) {
     const roil_slices *flow = &t->flows[t->view.flow];
     float now[2], force[2];
@@ -75,7 +75,7 @@ static void flow_push(live *l, flow_tools *t, const sheet *s, const ui_canvas *c
 
 // ---- selecting ----------------------------------------------------------------------------------
 
-// A square from the corner where it was begun, toward the pointer, within the slice.
+// Draws a square from its first corner towards the pointer, within the slice.
 static void draw_out(flow_tools *t, const sheet *s, const ui_canvas *c) {
     const roil_slices *flow = &t->flows[t->view.flow];
     const float high[2] = {1, flow->height / flow->width};

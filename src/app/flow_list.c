@@ -20,7 +20,7 @@ static bool is_same(const flow_icon *icon, const roil_template *of, bool velocit
            icon->of.library == of->library && strcmp(icon->of.file, of->file) == 0;
 }
 
-// Icons of files that are still there are kept.
+// Lists the templates again; icons of files that still exist are kept.
 static void flow_list_templates(flow_tools *t, live *l) {
     roil_template *found = mem_alloc(FLOW_TEMPLATES * sizeof *found);
     size_t count = roil_templates(l->effect, found, FLOW_TEMPLATES);

@@ -1,5 +1,5 @@
-// The window "Slices": a flow in slices is seen, pushed, and given templates; what pleases in it is
-// captured as a template (Krueger and Westermann 2005, section 3).
+// The window "Slices": shows a flow in slices, lets the user push it and put templates into it, and
+// captures parts of it as templates (Krueger and Westermann 2005, section 3).
 #include "app/flow_tools.h"
 #include "app/label.h"
 #include "base/log.h"
@@ -46,13 +46,13 @@ static bool resize_texture(flow_tools *t, roil *r) {
     return t->texture != NULL;
 }
 
-// To two digits, upwards.
+// Rounds up to two digits.
 static float round_up(float value) {
     double unit = pow(10, floor(log10((double)value)) - 1);
     return (float)(ceil((double)value / unit) * unit);
 }
 
-// A field that comes into view is seen whole: its range is what it reaches by then.
+// Fits the range of a field to its values when it is first shown.
 static bool flow_fit_range(flow_tools *t, live *l) {
     size_t wanted = t->view.flow * ROIL_SLICES_FIELDS + (size_t)t->view.field;
     float most;

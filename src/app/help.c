@@ -1,4 +1,4 @@
-// F1: what the keys and the mouse do.
+// F1: lists the keys and what the mouse does.
 #include "app/live.h"
 #include "base/memory.h"
 #include <ctype.h>
@@ -84,7 +84,7 @@ static void draw_entry(entry e, float left, float top, float name) {
     ui_label(left + name, top + 3 * s, ui_rgba(UI_TEXT, 0.8f), e.help);
 }
 
-// Columns of all blocks are as wide. Returns where the block ends.
+// Draws a block; the columns of all blocks have the same width. Returns where the block ends.
 static float draw_block(const block *b, float left, float top, float column) {
     float s = ui_scale(), name = name_width(b);
     ui_label(left, top, ui_rgba(UI_ACCENT, 1), b->heading);

@@ -1,5 +1,5 @@
-// A ring of times. Passes keep their place while any of their frames is in it, so that a curve goes
-// on through a reload and another pass does not inherit it.
+// A ring buffer of times. A pass keeps its place while any of its frames is in the buffer, so that
+// its curve survives a reload and another pass does not continue it.
 #include "app/history.h"
 #include "base/str.h"
 #include <math.h>
@@ -22,7 +22,7 @@ size_t history_length(const history *h) {
 
 // ---- adding -----------------------------------------------------------------------------------
 
-// Its own place, else a free one, else that of the pass which has been away for longest.
+// Returns the pass's place, else a free one, else that of the pass that has not run for longest.
 static history_pass *place_of(history *h, const char *name) {
     history_pass *oldest = h->passes;
     for (size_t i = 0; i < HISTORY_PASSES; i++) {

@@ -1,24 +1,26 @@
-// How an image lies in the view of the inspector: panned, zoomed, fitted. Knows no window.
+// Pan, zoom and fit of an image in the inspector's view. Needs no window.
 #pragma once
 #include "roil.h"
 
 typedef struct image_view {
-    float center[2]; // of the view in the image, 0 to 1
-    float zoom;      // pixels of the view for a texel of the level that is seen
-    bool fit;        // the whole image, however large the view
+    float center[2]; // centre of the view in the image, 0 to 1
+    float zoom;      // pixels of the view per texel of the shown mip level
+    bool fit;        // show the whole image, whatever the size of the view
 } image_view;
 
-// Texels across and down of what is seen: a level, of a volume along an axis (0 x, 1 y, 2 z).
+// Returns the size in texels of the shown plane: a mip level, of a volume along an axis (0 x, 1 y,
+// 2 z).
 void image_view_plane(const roil_image_info *image, uint32_t mip, int axis, float size[2]);
-// Slices of that level along the axis; 1 of what is no volume.
+// Returns the slices of that level along the axis; 1 unless it is a volume.
 uint32_t image_view_slices(const roil_image_info *image, uint32_t mip, int axis);
 
-// `view` is its size in pixels, `image` its own in texels. Does nothing unless `fit`.
+// Fits the image if `fit` is set. `view` is the view's size in pixels, `image` the image's in
+// texels.
 void image_view_fit(image_view *v, const float view[2], const float image[2]);
 void image_view_pan(image_view *v, float dx, float dy, const float image[2]); // pixels
-// What lies under (x, y), pixels from the centre of the view, stays there.
+// Zooms around (x, y), pixels from the centre of the view.
 void image_view_zoom(image_view *v, float factor, float x, float y, const float image[2]);
-void image_view_level(image_view *v, int change); // the same part of the image, of another level
+void image_view_level(image_view *v, int change); // keeps the view when the mip level changes
 
-// Channels of a format by its name: "rgba16f" has 4.
+// Returns the number of channels of a format by its name: 4 for "rgba16f".
 int image_channels(const char *format);

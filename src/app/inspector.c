@@ -1,8 +1,8 @@
-// A window onto any image of the graph: with exposure, single channels, levels, slices, and the
-// value under the pointer.
+// A window that shows any image of the graph: with exposure, single channels, mip levels, slices,
+// and the value under the pointer.
 //
-// An image can be seen only if the graph keeps it: it then has memory of its own, and is drawn even
-// if nothing else uses it. So choosing one prepares the effect anew.
+// An image can be shown only if the graph keeps it: it then has memory of its own, and is drawn
+// even if nothing else uses it. Choosing an image therefore prepares the effect again.
 #include "app/image_view.h"
 #include "app/label.h"
 #include "app/live.h"
@@ -78,7 +78,8 @@ static const roil_image_info *find_image(const inspector *p, const char *name) {
     return NULL;
 }
 
-// The one that was chosen, now or in an earlier session; at first the last one that is drawn.
+// Returns the image that was chosen, now or in an earlier session; at first the last one that is
+// drawn.
 static const roil_image_info *find_chosen(const inspector *p, live_session *session) {
     if (session->image[0]) return find_image(p, session->image);
     for (size_t i = p->count; i-- > 0;) {
@@ -89,7 +90,7 @@ static const roil_image_info *find_chosen(const inspector *p, live_session *sess
     return NULL;
 }
 
-// Levels and slices are those of the image that is chosen now.
+// Limits the mip level and the slice to those of the chosen image.
 static void fit_choice(inspector *p, const roil_image_info *image) {
     if (p->how.mip >= image->mips) {
         image_view_level(&p->view, (int)p->how.mip);
@@ -104,7 +105,7 @@ static bool prepare_again(live *l) {
            roil_advance(l->effect, l->time.frame); // else there is nothing to be seen
 }
 
-// False with `failure` when the effect cannot be drawn so.
+// Keeps an image. False, and a message in `failure`, when the effect cannot be drawn with it.
 static bool inspector_keep(live *l, const char *image) {
     inspector *p = l->inspector;
     uint64_t reloads = roil_live_counts(l->follow).reloads;
@@ -116,7 +117,7 @@ static bool inspector_keep(live *l, const char *image) {
     return prepare_again(l) || !str_copy(p->failure, sizeof p->failure, roil_error());
 }
 
-// As large as the place where it was drawn last.
+// Makes the texture as large as its area in the last frame.
 static bool resize_texture(inspector *p, roil *r) {
     if (p->texture && p->width == p->wanted[0] && p->height == p->wanted[1]) return true;
     roil_texture_destroy(r, p->texture);

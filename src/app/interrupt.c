@@ -1,5 +1,5 @@
-// Ctrl-C, or a terminal that closes, where work is done in pieces: the piece in hand is given up,
-// and what is done is kept.
+// Handles Ctrl-C, or a terminal that closes, for work that is done in parts: the current part is
+// cancelled, and finished ones are kept.
 #include "app/app.h"
 #include <signal.h>
 

@@ -1,4 +1,4 @@
-// The keys of the live window: one table that is obeyed, and that F1 shows.
+// The keys of the live window: one table, which F1 shows.
 #include "app/live.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -97,8 +97,8 @@ static void close_top(live *l) {
         l->session.performance = false;
 }
 
-// Under the first name of a series that is free: a key cannot ask, and must not overwrite. The
-// panel saves under a name.
+// Saves under the first free name of a series, since a key cannot ask and must not replace a file.
+// The panel saves under a chosen name.
 static void save_preset(live *l) {
     char names[64][64], name[64];
     if (!l->effect) return;
@@ -146,7 +146,7 @@ const live_key *live_keys(size_t *count) {
     return keys;
 }
 
-// What an effect hears comes before what the window does by it, which Alt gets at then.
+// Keys that an effect handles come first; with Alt they do what they do in the window.
 void live_press(live *l, int key, int mods, bool repeated) {
     const int used = GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT | GLFW_MOD_SUPER;
     if (event_press(l, key, mods, repeated)) return;

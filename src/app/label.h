@@ -1,5 +1,5 @@
-// What the views of the live window share: text on a canvas that ends, is centred, or has no more
-// room than it is given; a switch that is its own label; where a window is opened.
+// Helpers of the live window's views: text on a canvas that is aligned or shortened, a switch, and
+// the places of new windows.
 #pragma once
 #include "ui/ui.h"
 
@@ -8,12 +8,12 @@ float label_row(void);    // of a row of widgets
 
 void label_right(float right, float y, uint32_t color, const char *text);
 void label_center(float x, float y, uint32_t color, const char *text);
-// From `left`; what does not fit into `width` is left out, with "..." in its place.
+// Draws text from `left`. What does not fit into `width` is replaced by "...".
 void label_within(float left, float y, float width, uint32_t color, const char *text);
 
-// True when it was switched. `color`: its own while it is on.
+// Draws a switch. True when the user switched it. `color` is used while it is on.
 bool label_switch(const char *label, bool *on, uint32_t color);
 
-// For a window of that size, in units, in the upper left or right corner of the view; smaller when
-// the view is.
+// Returns the area of a new window of that size (units) in the upper left or right corner of the
+// view. It is smaller when the view is.
 ui_rect label_place(ui_rect view, float width, float height, bool right);

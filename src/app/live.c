@@ -1,5 +1,5 @@
-// The loop of the live window: follow the files, move time, draw the effect when anything changed,
-// lay the interface over it, show. It sleeps while nothing moves.
+// The loop of the live window: takes changed files, advances time, draws the effect when anything
+// changed, draws the interface over it, and presents the result. It sleeps while nothing moves.
 #include "app/live.h"
 #include "app/restart.h"
 #include "app/window.h"
@@ -117,7 +117,8 @@ static uint32_t picture_size(float view, float scale) {
     return size < 1 ? 1 : size > MAX_PICTURE ? MAX_PICTURE : (uint32_t)size;
 }
 
-// While a window is being resized its old picture is stretched: making it anew takes time.
+// While the user resizes the window the old picture is stretched, because preparing a new one takes
+// time.
 static void loop_resize(live *l, loop *p, double now) {
     float scale = live_previews[l->session.preview].scale;
     uint32_t width = picture_size(l->view.right - l->view.left, scale);
@@ -139,19 +140,20 @@ static void loop_resize(live *l, loop *p, double now) {
         live_break(l, roil_error());
 }
 
-// Whether the next picture of the same frame has more samples of a reference; not without end.
+// Returns whether another picture of the same frame would have more samples of a reference, up to a
+// limit.
 static bool gathers(const live *l) {
     uint32_t samples = roil_samples(l->effect);
     return samples > 0 && samples < MOST_SAMPLES;
 }
 
-// Whether a simulation has not come as far as the picture.
+// Returns whether a simulation has not reached the picture's time.
 static bool simulates(const live *l) {
     roil_simulation simulation;
     return roil_get_simulation(l->effect, &simulation) && simulation.waiting;
 }
 
-// Whether that, or a frame of a sequence, came too late for the picture.
+// Returns whether a simulation, or a frame of a sequence, was too late for the picture.
 static bool waits(const live *l) {
     roil_playback playback;
     return simulates(l) || (roil_get_playback(l->effect, &playback) && playback.waiting);
@@ -266,7 +268,8 @@ static void draw_interface(live *l, const layout *at, uint32_t width) {
     help_draw(l);
 }
 
-// Seconds since the program was started, to a hundredth; 0 when the system does not tell.
+// Returns the seconds since the program was started, to a hundredth; 0 when the system does not
+// say.
 static double age(void) {
     struct timespec now;
     long long ticks;

@@ -60,7 +60,7 @@ static void print_help(FILE *out) {
     fprintf(out, "\n`roil COMMAND --help` lists the options of a command.\n");
 }
 
-// Files that are opened later must not become what is printed to.
+// Opens closed standard streams, so that files opened later do not become standard output.
 static bool open_streams(void) {
     int fd;
     do fd = open("/dev/null", O_RDWR);
@@ -69,7 +69,7 @@ static bool open_streams(void) {
     return fd >= 0;
 }
 
-// A result that could not be written is no success.
+// Returns an error when the output could not be written.
 static int main_finish(int status) {
     bool done = fflush(stdout) == 0 && !ferror(stdout);
     if (done) return status;

@@ -1,4 +1,4 @@
-// Wrong options; frames, sizes and file patterns, as they stand on the command line.
+// Parses the command line: unknown options, frames, sizes and file patterns.
 #include "app/app.h"
 #include "base/error.h"
 #include "base/file.h"

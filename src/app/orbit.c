@@ -6,7 +6,7 @@ static const float MAX_PITCH = 89, ZOOM_STEP = 0.88f; // share of the distance t
 static const float MIN_DISTANCE = 1e-3f, MAX_DISTANCE = 1e6f;
 static const float MARGIN = 1.08f; // around a framed box
 
-// The camera's axes, as the renderer has them: at yaw 0 it looks along +Y, and Z is up.
+// The camera's axes, as in the renderer: at yaw 0 it looks along +Y, and Z is up.
 typedef struct axes {
     vec3 right, up, back;
 } axes;

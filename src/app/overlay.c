@@ -1,5 +1,5 @@
-// What is laid over the picture: why the newest file is not good or a number not taken as it is,
-// and short notices.
+// Messages over the picture: why the newest file cannot be shown or a number was clamped, and short
+// notices.
 #include "app/label.h"
 #include "app/live.h"
 #include "app/text_wrap.h"
@@ -44,7 +44,7 @@ typedef struct card {
     const char *text, *hint; // may be NULL
 } card;
 
-// At the foot of the view. Returns where there is room for a notice above it.
+// Draws a card at the bottom of the view. Returns where there is room for a notice above it.
 static float draw_card(const card *c, ui_rect view) {
     float s = ui_scale();
     char head[MAX_TEXT], rest[MAX_TEXT];
@@ -86,13 +86,13 @@ static void draw_waiting(const live *l, bool broken, ui_rect view) {
                  ui_rgba(UI_DIM, 1), text);
 }
 
-// What goes on meanwhile, or how to go on; NULL: there is nothing to say.
+// Returns what the user can do, or what continues meanwhile; NULL: nothing.
 static const char *hint_of(const live *l) {
     if (l->held) return "Nothing is drawn until a file is saved, or time is played.";
     return l->effect ? "The last good effect goes on." : NULL;
 }
 
-// How far a simulation is behind, or what is wrong with it. False: there is nothing to say.
+// Prints how far a simulation is behind, or what is wrong with it. False: neither.
 static bool say_simulation(const live *l, char *out, size_t capacity) {
     roil_simulation s;
     if (!l->effect || !roil_get_simulation(l->effect, &s)) return false;

@@ -1,4 +1,5 @@
-// Editor of a palette: its ramp, the stops below it as handles, and what is selected as numbers.
+// The editor of a palette: its ramp, the stops below it as handles, and the selected stop as
+// numbers.
 #include "app/palette_stops.h"
 #include "app/panel_parts.h"
 #include "base/maths.h"
@@ -22,8 +23,8 @@ typedef struct editor {
 
 // ---- places -----------------------------------------------------------------------------------
 
-// The ramp shows a range that is held while a stop is dragged: where none is declared, the
-// outermost stops are the range.
+// The ramp's range is fixed while a stop is dragged. Where no range is declared, the outermost
+// stops define it.
 static float to_x(const editor *e, float at) {
     plot_range view = e->state->value;
     float share = view.high > view.low ? (at - view.low) / (view.high - view.low) : 0;
@@ -47,7 +48,7 @@ static void sample_at(const editor *e, float at, float out[4]) {
         out[k] = mixf(e->samples[i][k], e->samples[i + 1][k], place - (float)i);
 }
 
-// The stop under the pointer; the selected one where several lie together.
+// Returns the stop under the pointer; of several at one place, the selected one.
 static size_t stop_under(const editor *e) {
     float best = REACH * ui_scale();
     size_t found = ROIL_MAX_STOPS;
@@ -67,13 +68,13 @@ static float peak(const float color[4]) {
     return fmaxf(color[0], fmaxf(color[1], color[2]));
 }
 
-// What is brighter than white keeps its hue.
+// Reduces colours brighter than white so that they keep their hue.
 static uint32_t shown_color(const float color[4], float alpha) {
     float scale = 1 / fmaxf(peak(color), 1);
     return ui_pack((const float[]){color[0] * scale, color[1] * scale, color[2] * scale}, alpha);
 }
 
-// How bright the colours beyond white are: a line over the ramp, logarithmic, up to the brightest.
+// Shows how bright colours beyond white are: a logarithmic line over the ramp, up to the brightest.
 static void draw_brightness(const editor *e) {
     float xy[SAMPLES * 2], most = 1, height = e->ramp.bottom - e->ramp.top;
     for (size_t i = 0; i < SAMPLES; i++) most = fmaxf(most, peak(e->samples[i]));
@@ -244,7 +245,7 @@ static bool open_canvas(editor *e) {
     return stops;
 }
 
-// A black body has a law instead of stops.
+// Draws the settings of a blackbody palette, which has no stops.
 static bool draw_law(editor *e) {
     ui_text_color(UI_DIM, "Black body, %.4g to %.4g K.", (double)e->palette.min,
                   (double)e->palette.max);

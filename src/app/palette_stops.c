@@ -1,4 +1,4 @@
-// Edits of a palette's stops. They stay in rising order; equal positions are a hard edge.
+// Edits a palette's stops, which stay in rising order; equal positions make a hard edge.
 #include "app/palette_stops.h"
 #include "base/maths.h"
 #include <math.h>
@@ -30,8 +30,8 @@ void palette_stops_move(roil_palette *p, size_t index, float at) {
 
 // ---- fitting ------------------------------------------------------------------------------------
 
-// How far a sample lies from the straight line between two others, relative to how bright it is:
-// what is bright may differ by more.
+// Returns the distance of a sample from the straight line between two others, relative to its
+// brightness, since bright colours may differ by more.
 static float bend(const float (*samples)[4], size_t i, size_t from, size_t to) {
     const float *s = samples[i];
     float t = (float)(i - from) / (float)(to - from), worst = 0;
@@ -41,7 +41,8 @@ static float bend(const float (*samples)[4], size_t i, size_t from, size_t to) {
     return worst / (0.1f + peak);
 }
 
-// The sample that lies farthest from the lines between the chosen ones; 0 when all are chosen.
+// Returns the sample that is farthest from the lines between the chosen ones; 0 when all are
+// chosen.
 static size_t farthest(const float (*samples)[4], const size_t *chosen, size_t count) {
     size_t found = 0;
     float worst = -1;

@@ -1,4 +1,4 @@
-// The panel: all that the effect lets one turn, in sections, behind a search.
+// The panel: all controls of the effect in sections, with a search.
 #include "app/panel_parts.h"
 #include "base/memory.h"
 #include <math.h>
@@ -44,7 +44,7 @@ static void draw_rows(live *l, const panel_section *s) {
     ui_table_end();
 }
 
-// What a pass tells of itself, under what it lets one turn.
+// Draws the values that a pass reports, below its controls.
 static void draw_readouts(live *l, const char *pass) {
     roil_readout all[PANEL_READOUTS];
     size_t count = roil_readouts(l->effect, all, PANEL_READOUTS);
@@ -71,7 +71,7 @@ static void draw_content(live *l, const panel_section *s) {
     if (s->part == PANEL_PASS) draw_readouts(l, s->title);
 }
 
-// What a run of sections has in common, where it is worth saying.
+// Returns the common title of successive sections; NULL: they have none.
 static const char *chapter(panel_part part) {
     switch (part) {
     case PANEL_SHAPE:
@@ -96,7 +96,7 @@ static bool opens_at_first(panel_part part) {
     return part == PANEL_PARAMETERS || part == PANEL_GROUP || part == PANEL_SHAPE;
 }
 
-// `id` stays the same while what is counted changes.
+// `id` stays the same when the count in the heading changes.
 static bool section_heading(const panel_section *s, const char *id) {
     char label[320], changed[32] = "";
     if (s->moved && s->part == PANEL_SHAPE)

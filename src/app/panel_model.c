@@ -1,4 +1,4 @@
-// What the panel shows, without a window: sections, search, text.
+// The content of the panel, without a window: sections, search, text.
 #include "app/panel_model.h"
 #include "base/memory.h"
 #include <math.h>

@@ -1,12 +1,12 @@
-// What the panel shows: the controls of an effect in sections, those that match a search, and
-// values as text. Knows no window.
+// The content of the panel: the controls of an effect in sections, those that match a search, and
+// values as text. Needs no window.
 #pragma once
 #include "base/str.h"
 #include "roil.h"
 
 typedef enum panel_part {
-    PANEL_PARAMETERS, // those without a group
-    PANEL_GROUP,      // of parameters
+    PANEL_PARAMETERS, // parameters without a group
+    PANEL_GROUP,      // a group of parameters
     PANEL_SHAPE,      // one palette or curve
     PANEL_CAMERA,
     PANEL_SUN,
@@ -18,8 +18,8 @@ typedef enum panel_part {
 typedef struct panel_section {
     panel_part part;
     const char *title;
-    size_t first, count; // of the rows
-    size_t moved;        // of its rows, those that differ from the script
+    size_t first, count; // range of rows
+    size_t moved;        // number of its rows that differ from the script
 } panel_section;
 
 typedef struct panel_model { // zero at first
@@ -31,26 +31,27 @@ typedef struct panel_model { // zero at first
     size_t shown_capacity;
 } panel_model;
 
-// Of the controls that match `search`; sections without any are left out. Titles live as long as
-// the controls.
+// Fills the model with the controls that match `search`. Empty sections are left out. Titles live
+// as long as the controls.
 void panel_model_fill(panel_model *m, const roil_control *controls, size_t count,
                       const char *search);
 void panel_model_free(panel_model *m);
 
-// Whether each word of `search` is part of name, label, help or group, upper case or lower.
+// Returns whether each word of `search` is part of the name, label, help or group, ignoring case.
 bool panel_matches(const roil_control *c, const char *search);
 
 // ---- text -------------------------------------------------------------------------------------
 
 enum { PANEL_NUMBER = 24 };
-void panel_number(float value, char out[PANEL_NUMBER]); // as short as reads back the same
-// As roil_set takes it; nothing of palettes and curves.
+void panel_number(float value,
+                  char out[PANEL_NUMBER]); // the shortest text that reads back the same
+// Prints a value as roil_set takes it; nothing for palettes and curves.
 void panel_value_text(const roil_control *c, const float value[4], strbuf *out);
-// For people: four digits, with the unit.
+// Prints a value for people: four digits and the unit.
 void panel_value_shown(const roil_control *c, const float value[4], strbuf *out);
 void panel_help_text(const roil_control *c, strbuf *out); // help; name, range, default, unit
 
-// Copies what fits into `width` as `measure` counts it, with "..." for what does not. False when it
-// was shortened.
+// Copies the text, and shortens it with "..." to fit into `width` as measured by `measure`. False
+// when it was shortened.
 bool panel_shorten(const char *text, float width, float (*measure)(const char *text), char *out,
                    size_t capacity);

@@ -1,4 +1,4 @@
-// What the parts of the panel share: panel.c, panel_row.c, presets_panel.c and the two editors.
+// Shared by the parts of the panel: panel.c, panel_row.c, presets_panel.c and the two editors.
 #pragma once
 #include "app/curve_keys.h"
 #include "app/live.h"
@@ -6,14 +6,15 @@
 
 enum { PANEL_NAME = 96, PANEL_PRESETS = 64 };
 
-typedef struct shape_state { // what is selected in the editor of a palette or a curve
+typedef struct shape_state { // the selection in the editor of a palette or a curve
     char name[PANEL_NAME];
     size_t selected; // stop or key; ROIL_MAX_STOPS: none
     int component;   // of the key
     bool dragging;
-    bool leaving;           // dragged so far away that it goes when it is let go
-    float grab_x, grab_y;   // from the pointer to the middle of the handle, pixels
-    plot_range time, value; // of the plot, held while dragging; of a palette `value` is positions
+    bool leaving;         // dragged so far away that releasing removes it
+    float grab_x, grab_y; // from the pointer to the middle of the handle, pixels
+    plot_range time,
+        value; // ranges of the plot, fixed while dragging; `value` of a palette: positions
 } shape_state;
 
 typedef struct preset_list {
@@ -21,15 +22,15 @@ typedef struct preset_list {
     size_t count;
     double next_look; // clock_seconds at which the folder is read again
     char name[64];    // typed, or loaded last
-    bool asked;       // whether it may be written over
+    bool asked;       // the user was asked whether to replace it
 } preset_list;
 
-// A structural value that is shown though the effect does not have it yet.
+// A structural value that is shown before the effect has it.
 typedef struct pending_value {
     char name[PANEL_NAME];
     float value[4];
-    bool sent;    // being built; else its widget is still held
-    double until; // clock_seconds at which it is given up: it may never be built
+    bool sent;    // it is being built; else its widget is still held
+    double until; // clock_seconds when it is given up, since it may never be built
 } pending_value;
 
 struct panel {
@@ -44,15 +45,15 @@ struct panel {
 
 // ---- panel_row.c ------------------------------------------------------------------------------
 
-// Two cells of a table: the label, and the widget of the control's type.
+// Draws two cells of a table: the label, and the widget for the control's type.
 void panel_row(live *l, const roil_control *c);
-// A row of an editor: leaves its second cell to be drawn.
+// Draws the label of an editor's row; the caller draws the second cell.
 void panel_label(const char *label);
-void panel_reset(live *l, const char *name); // NULL: all
+void panel_reset(live *l, const char *name); // NULL: all controls
 void panel_copy_lua(live *l, const char *name);
-// Buttons that reset a palette or a curve, and copy it.
+// Draws the buttons that reset a palette or a curve, and copy it.
 void panel_shape_buttons(live *l, const char *name);
-void panel_table_begin(const char *id); // of rows; end with ui_table_end
+void panel_table_begin(const char *id); // begins a table of rows; end it with ui_table_end
 
 // ---- presets_panel.c --------------------------------------------------------------------------
 
@@ -60,7 +61,7 @@ void presets_draw(live *l); // two lines of widgets
 
 // ---- editors ----------------------------------------------------------------------------------
 
-// Several editors are drawn, and one of them was used last: its state is kept, the others have a
-// fresh one. Given back when the editor is drawn.
+// Several editors are drawn. Only the state of the one that was used last is kept; the others get a
+// new one. Each gives its state back when it was drawn.
 shape_state shape_state_take(const shape_state *kept, const char *name);
 void shape_state_give(shape_state *kept, const shape_state *state);

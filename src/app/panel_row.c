@@ -1,4 +1,4 @@
-// One row of the panel: a control's name, what it needs to know, and the widget that turns it.
+// A row of the panel: a control's name, hints, and the widget that sets it.
 #include "app/panel_parts.h"
 #include "base/clock.h"
 #include "base/str.h"
@@ -59,7 +59,7 @@ static void help(const roil_control *c) {
 
 // ---- label ------------------------------------------------------------------------------------
 
-// Text in the middle of a line as high as the widgets beside it; an item that takes clicks.
+// Draws text in the middle of a line as high as the widgets beside it; it takes clicks.
 static ui_rect text_cell(const char *id, const char *text, ui_color color, float width) {
     ui_canvas cell = ui_canvas_begin(id, width, ROW * ui_scale());
     float spare = ROW - TEXT;
@@ -158,7 +158,7 @@ static bool widget(const roil_control *c, float value[4]) {
     }
 }
 
-// What the widget shows: what it was set to, until the effect has it or never will.
+// Returns the value to show: the one that was set, until the effect has it or it is given up.
 static const float *structural_value(pending_value *v, const roil_control *c) {
     if (strcmp(v->name, c->name) != 0) return c->value;
     bool over = memcmp(v->value, c->value, sizeof c->value) == 0 || clock_seconds() > v->until;
@@ -173,7 +173,8 @@ static void keep_pending(pending_value *v, const char *name, const float value[4
     v->sent = false;
 }
 
-// A build for each step of a drag would be too many: it is built when the widget is let go.
+// Builds the effect when the widget is released, since a build for each step of a drag would be too
+// many.
 static void structural_widget(live *l, const roil_control *c) {
     pending_value *v = &l->panel->pending;
     float value[4];

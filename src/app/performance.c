@@ -1,4 +1,4 @@
-// Where the time goes: GPU time by pass, as bars and over the last frames; what the host adds.
+// The window of times: GPU time by pass, as bars and over the last frames, and what the host adds.
 #include "app/history.h"
 #include "app/label.h"
 #include "app/live.h"
@@ -35,7 +35,7 @@ double performance_rate(const performance *p) {
     return history_rate(&p->past);
 }
 
-// Passes keep their place in the history, so they keep their colour.
+// Passes keep their place in the history, and therefore their colour.
 static uint32_t pass_color(size_t pass, float alpha) {
     static const uint8_t colors[][3] = {
         {232, 126, 60},  {86, 148, 214}, {226, 184, 76}, {74, 170, 132},  {206, 90, 126},
@@ -54,7 +54,7 @@ typedef struct plot {
     float step; // pixels for a frame
 } plot;
 
-// 1, 2 or 5 times a power of ten: the scale jumps seldom.
+// Rounds up to 1, 2 or 5 times a power of ten, so that the scale rarely changes.
 static float round_up(float ms) {
     float power = powf(10, floorf(log10f(fmaxf(ms, 0.01f))));
     if (ms <= power) return power;
@@ -70,14 +70,14 @@ static float plot_left(const plot *p, size_t ago) { // of the column of a frame
     return p->area.right - (float)(ago + 1) * p->step;
 }
 
-// The frame under the pointer; false when there is none.
+// Returns the frame under the pointer. False: there is none.
 static bool plot_frame(const plot *p, const ui_canvas *c, size_t *ago) {
     if (!c->hovered || c->x < p->area.left || c->x >= p->area.right) return false;
     *ago = (size_t)((p->area.right - c->x) / p->step);
     return *ago < history_length(p->past);
 }
 
-// What is thinner than half a pixel is drawn with what follows.
+// Bars thinner than half a pixel are drawn together with the next one.
 static void draw_column(const plot *p, size_t ago, float alpha) {
     size_t list[HISTORY_PASSES], count = history_list(p->past, ago, list);
     float left = plot_left(p, ago), below = p->area.bottom, sum = 0;
@@ -90,7 +90,7 @@ static void draw_column(const plot *p, size_t ago, float alpha) {
     }
 }
 
-// Readable over what is plotted.
+// Draws text that is readable over the plot.
 static void plot_label(float left, float top, ui_color color, const char *text) {
     float s = ui_scale();
     ui_rect behind = {left - 3 * s, top, left + ui_text_width(text) + 3 * s, top + label_height()};

@@ -1,4 +1,4 @@
-// Presets: named values beside the effect file, to be loaded and saved.
+// Presets: named values beside the effect's file, which can be loaded and saved.
 #include "app/panel_parts.h"
 #include "base/clock.h"
 #include "base/str.h"
@@ -22,8 +22,8 @@ static bool sets(const roil_preset *preset, const char *name) {
     return false;
 }
 
-// A preset is all that was moved when it was saved: what it does not name is as the script has it.
-// Where the camera stands is no part of it.
+// A preset has every control that was changed when it was saved, so all others are reset. The
+// camera is not part of it.
 static void reset_others(live *l, const roil_preset *preset) {
     const panel *p = l->panel;
     for (size_t i = 0; i < p->control_count; i++) {
@@ -62,7 +62,7 @@ static void preset_load(live *l, const char *name) {
     list->asked = false;
 }
 
-// It goes back to its first word, so that the same one can be loaded again.
+// The choice returns to its first word, so that the same preset can be loaded again.
 static void draw_choice(live *l, preset_list *list) {
     const char *words[PANEL_PRESETS + 1] = {list->count ? "Load a preset" : "No presets yet"};
     size_t index = 0;

@@ -1,4 +1,4 @@
-// Progress with time left: one line that renews itself on a terminal, else a line now and then.
+// Progress and the time left: a line that is redrawn on a terminal, else a line from time to time.
 #include "app/app.h"
 #include "base/clock.h"
 #include <math.h>

@@ -1,5 +1,5 @@
-// What the live window finds again at the next start: a small JSON file in the user's folder of
-// state. It is written by programs alone: what is invalid is ignored, value by value.
+// Stores the state of the live window for the next start: a small JSON file in the user's state
+// folder. Only programs write it; invalid values are ignored one by one.
 #include "app/live.h"
 #include "base/error.h"
 #include "base/file.h"

@@ -1,4 +1,4 @@
-// What the command line says about an effect: a picture's recipe, presets, single values.
+// Settings of an effect from the command line: a picture's recipe, presets, single values.
 #include "app/app.h"
 #include "base/error.h"
 #include "base/file.h"

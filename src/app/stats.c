@@ -1,4 +1,4 @@
-// Statistics of a render: GPU time by pass and frame, counters, the machine.
+// Statistics of a rendering: GPU time by pass and frame, counters, the machine.
 #include "app/app.h"
 #include "base/clock.h"
 #include "base/error.h"
@@ -70,7 +70,7 @@ void app_stats_destroy(app_stats *s) {
 
 // ---- summary ----------------------------------------------------------------------------------
 
-// Every frame runs the same passes: the first names them.
+// Every frame runs the same passes, so the first frame's names are used.
 static stats_summary pass_summary(const app_stats *s, size_t pass, double *values) {
     for (size_t i = 0; i < s->count; i++)
         values[i] = pass < s->frames[i].time_count ? s->frames[i].times[pass].milliseconds : 0;
@@ -86,7 +86,7 @@ static stats_summary total_summary(const app_stats *s, double *values) {
     return stats_summarise(values, s->count);
 }
 
-// What the sequences did since the first frame, by the second.
+// Rates of the sequences since the first frame, per second.
 typedef struct playback_rate {
     double shown, decoded, uploaded; // frames, MB, MB
 } playback_rate;

@@ -1,4 +1,4 @@
-// What the script of the effect says of itself (fx:status), in a corner of the picture.
+// Values that the script of the effect reports (fx:status), in a corner of the picture.
 #include "app/label.h"
 #include "app/live.h"
 #include <math.h>

@@ -1,4 +1,4 @@
-// Breaking of text into lines.
+// Breaks text into lines.
 #include "app/text_wrap.h"
 #include <stdbool.h>
 #include <string.h>
@@ -24,8 +24,8 @@ static size_t letter_end(const char *text, size_t from, size_t length) { // UTF-
     return from;
 }
 
-// What goes into the first line of `text`: as many words as fit, or else as many letters, at least
-// one.
+// Returns the end of the first line of `text`: as many words as fit, or else as many letters, at
+// least one.
 static size_t line_end(const char *text, size_t length, float width,
                        float (*measure)(const char *text)) {
     size_t end = 0, next;

@@ -38,7 +38,7 @@ void timeline_step(timeline *t, int frames) {
     t->owed = 0;
 }
 
-// Frames to go on by now, from those owed; the rest stays owed.
+// Takes the whole frames from those that have passed; the rest stays for later.
 static double take_owed(timeline *t) {
     if (t->smooth) {
         double all = t->owed;
@@ -51,8 +51,8 @@ static double take_owed(timeline *t) {
     return whole;
 }
 
-// Where the range's other end is passed it begins anew: frame `from` follows `to`. Times between
-// frames end at `to`, since nothing lies behind the last frame.
+// Beyond one end of the range, time continues at the other: frame `from` follows `to`. Times
+// between frames end at `to`, since nothing follows the last frame.
 static double wrapped(const timeline *t, double frame, bool backwards) {
     double period = t->smooth ? t->to - t->from : t->to - t->from + 1;
     if (!(period > 0)) return t->from;

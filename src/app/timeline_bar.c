@@ -1,7 +1,7 @@
-// The bar of time at the foot of the window: a track to scrub in, buttons, speed.
+// The timeline at the bottom of the window: a track to scrub in, buttons, speed.
 //
-// Of the track the upper strip is the range that is looped, with a handle at each end; below it,
-// anywhere, the pointer moves the current frame.
+// The upper strip of the track is the range that is looped, with a handle at each end. Below it,
+// the pointer moves the current frame.
 #include "app/label.h"
 #include "app/live.h"
 #include "app/track.h"
@@ -122,7 +122,7 @@ static void draw_playhead(const timeline *t, const track *bar, ui_rect body) {
     ui_triangle(x - 5 * s, body.top, x + 5 * s, body.top, x, body.top + 6 * s, color);
 }
 
-// Where a press would seek to.
+// Marks the frame that a click would go to.
 static void draw_pointer(const track *bar, ui_rect body, const ui_canvas *c) {
     if (!c->hovered || c->held || c->y < body.top) return;
     float x = track_x(bar, round(track_frame(bar, c->x)));
@@ -169,7 +169,7 @@ static void draw_buttons(live *l) {
         t->loop = !t->loop;
 }
 
-// As wide for every frame, so that what stands beside it stays.
+// All frames take the same width, so that what is beside them does not move.
 static void draw_numbers(const timeline *t) {
     float s = ui_scale(), space = ui_text_width(" ");
     char frame[32], widest[32], last[32], seconds[32];
@@ -201,7 +201,7 @@ static void draw_speed(timeline *t) {
     ui_tooltip("Speed of time");
 }
 
-// Pictures drawn while time stands still say nothing about speed.
+// Pictures drawn while time stands still do not count for the speed.
 static void draw_rate(const live *l) {
     double rate = performance_rate(l->performance);
     char text[32] = "";
@@ -223,7 +223,7 @@ static void draw_switches(live *l) {
     ui_tooltip("Show times between frames, as often as the window is drawn");
 }
 
-// What does not fit into a narrow window is left out.
+// Leaves out what does not fit into a narrow window.
 static void draw_row(live *l) {
     timeline *t = &l->time;
     ui_rect space = ui_space();

@@ -33,7 +33,7 @@ static bool glfw_start(void) {
     return err_set("there is no display (%s); `roil render` needs none", why ? why : "GLFW failed");
 }
 
-// A place that was good yesterday may lie on a display that is gone.
+// A stored position may be on a display that no longer exists.
 static bool is_seen(const live_session *s) {
     int count;
     GLFWmonitor **monitors = glfwGetMonitors(&count);
@@ -47,7 +47,7 @@ static bool is_seen(const live_session *s) {
     return false;
 }
 
-// One that was larger than the display is now has to fit it.
+// A stored size that exceeds the display is reduced.
 static void fit_session(const live_session *s, int *width, int *height) {
     int x, y, most_width = 0, most_height = 0;
     GLFWmonitor *monitor = glfwGetPrimaryMonitor();

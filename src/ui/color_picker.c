@@ -1,5 +1,5 @@
-// The popup that chooses a colour. What is stored is linear and of any brightness; what one edits
-// is a colour as displays show it (hue, saturation, value in sRGB) times an intensity.
+// The popup that chooses a colour. The stored colour is linear and of any brightness; the user
+// edits a colour as displays show it (hue, saturation, value in sRGB) and an intensity.
 #include "base/maths.h"
 #include "ui/parts.h"
 #include <math.h>
@@ -9,7 +9,7 @@
 enum { HUE_STEPS = 6 };
 static const float SIDE = 220, STRIP = 14, MAX_INTENSITY = 64;
 
-// Black has no hue and grey none either: what was chosen last stays while the colour is the same.
+// Black and grey have no hue, so the last one chosen is kept while the colour stays the same.
 static struct {
     float linear[3];
     float hsv[3]; // 0 to 1
@@ -92,7 +92,7 @@ static float share_x(const ui_canvas *c) {
     return clampf((c->x - c->area.left) / (c->area.right - c->area.left), 0, 1);
 }
 
-// Saturation to the right, value upwards: two gradients over each other, row by row.
+// Saturation increases to the right, value upwards: two gradients, drawn row by row.
 static bool square(void) {
     enum { ROWS = 52 };
     ui_canvas c = ui_canvas_begin("square", SIDE * ui_scale(), SIDE * 0.72f * ui_scale());

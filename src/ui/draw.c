@@ -1,4 +1,4 @@
-// What widgets look like: one place for colours, fills and edges.
+// The look of widgets: colours, fills and edges in one place.
 #include "ui/parts.h"
 #include <math.h>
 
@@ -77,7 +77,7 @@ void draw_switch(ui_rect area, bool on, bool hovered) {
             draw_enabled(on ? draw_grey(24) : ui_rgba(UI_TEXT, 1)));
 }
 
-// The part up to the value is filled, with a mark where it ends.
+// The bar is filled up to the value, with a mark at its end.
 static void bar_share(ui_rect area, float share, bool hovered, bool held) {
     float s = ui_scale(), x = area.left + (area.right - area.left) * share;
     uint32_t fill =
@@ -111,7 +111,7 @@ void draw_bar(ui_rect area, double value, const number_range *range, const char 
         draw_text((ui_rect){end + gap, area.top, area.right, area.bottom}, UI_DIM, unit, 0);
 }
 
-// The left half is opaque, the right one shows the alpha.
+// The left half is opaque, the right half shows the alpha.
 void draw_swatch(ui_rect area, const float *linear, int components) {
     float s = ui_scale(), round = 4 * s, middle = floorf((area.left + area.right) / 2);
     float opacity = components == 4 ? linear[3] : 1;

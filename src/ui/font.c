@@ -1,4 +1,4 @@
-// Fonts of the window, as fontconfig finds them among those installed.
+// The window's fonts, which fontconfig finds among those installed.
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"

@@ -1,4 +1,4 @@
-// Icons: a few triangles, bars and arcs each, on a grid of 16 units.
+// Icons, each of a few triangles, bars and arcs on a grid of 16 units.
 #include "ui/parts.h"
 #include <math.h>
 
@@ -19,7 +19,7 @@ static void bar(const grid *g, float left, float top, float right, float bottom)
             g->unit * 0.6f);
 }
 
-// Points right from x to x + width, or left when the width is negative.
+// Points right, from x to x + width; left when the width is negative.
 static void arrow(const grid *g, float x, float width, float half) {
     ui_triangle(at_x(g, x), at_y(g, 8 - half), at_x(g, x + width), at_y(g, 8), at_x(g, x),
                 at_y(g, 8 + half), g->color);

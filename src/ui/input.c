@@ -30,8 +30,9 @@ static uint64_t *word_of(input_frame *frame, const input_event *e, uint64_t *bit
     return &frame->keys[key / 64];
 }
 
-// After a click the pointer stays where it is for the rest of the frame, and nothing else happens:
-// what follows may depend on what the click did. What is dragged gets to where it is let go first.
+// After a click the pointer stays where it is for the rest of the frame, and nothing else happens,
+// since what follows may depend on what the click did. A dragged item first moves to where it is
+// released.
 static bool fits(input_frame *frame, const input_event *e) {
     uint64_t bit;
     if (frame->clicked) return false;

@@ -1,6 +1,6 @@
-// What keys and pointer did, in order, so that a slow frame loses none of it: each frame takes as
-// much as it can tell apart. Where the pointer was when a button went down is kept, and a button or
-// key that goes down and up between two frames is seen down for one.
+// A queue of input events, so that a slow frame loses none. Each frame takes as many events as it
+// can distinguish. The position of the pointer when a button went down is preserved, and a button
+// or key that goes down and up between two frames is seen down for one frame.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -27,17 +27,17 @@ typedef struct input_queue {
     size_t first, count;
 } input_queue;
 
-typedef struct input_frame { // what a frame has taken; zero at its begin
+typedef struct input_frame { // events that a frame has taken; zero at its beginning
     bool moved, wheeled, clicked;
-    uint64_t keys[INPUT_KEYS / 64]; // that changed
+    uint64_t keys[INPUT_KEYS / 64]; // keys that changed
 } input_frame;
 
 typedef struct GLFWwindow GLFWwindow;
-// Puts into the queue what comes to the window from now on. One window can be listened to.
+// Adds the window's events to the queue from now on. Only one window can be listened to.
 void input_listen(GLFWwindow *window, input_queue *q);
 
-// Moves that follow each other become one, and so do turns of the wheel. A full queue forgets what
-// is oldest.
+// Adds an event. Successive moves are merged, and so are turns of the wheel. A full queue drops its
+// oldest event.
 void input_push(input_queue *q, const input_event *e);
-// The next event that the frame may see. False: there is none, or it is for the next frame.
+// Takes the next event for this frame. False: there is none, or it is for the next frame.
 bool input_take(input_queue *q, input_frame *frame, input_event *out);

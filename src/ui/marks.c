@@ -1,6 +1,6 @@
-// Where widgets are, for programs that work the window: a JSON file of rectangles by name. A name
-// is the innermost ui_push and the widget's own id, as far as it is not "##value": "density",
-// "fire/ramp", "search"; in lower case.
+// Writes the areas of widgets for programs that operate the window: a JSON file of rectangles by
+// name. A name is the innermost ui_push and the widget's own id, except for "##value", in lower
+// case: "density", "fire/ramp", "search".
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"

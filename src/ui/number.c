@@ -1,4 +1,4 @@
-// Numbers in sliders: where they stand on the bar, how round they are, how they are written.
+// Numbers in sliders: their position on the bar, their rounding, their text.
 #include "base/str.h"
 #include "ui/parts.h"
 #include <ctype.h>
@@ -34,8 +34,8 @@ double number_from_share(const number_range *r, double share) {
     return r->min + span * LINEAR_SHARE * expm1(s * log1p(1 / LINEAR_SHARE));
 }
 
-// Digits behind the point: a 500th of the range can be seen; of a logarithmic or an unbounded one,
-// three digits of the value.
+// Returns the digits after the point: a 500th of the range is visible; of a logarithmic or an
+// unbounded range, three digits of the value.
 static int decimals(const number_range *r, double value) {
     if (r->whole) return 0;
     bool linear = number_is_bounded(r) && !r->log_scale;
@@ -57,7 +57,7 @@ double number_drag(const number_range *r, double value, double pixels, double wi
     return clamped(r, value + pixels * DRAG_SHARE * fmax(fabs(value), least));
 }
 
-// Those that were typed may be finer than what dragging gives; they are shown in full.
+// A typed number may be finer than dragging allows; it is shown in full.
 void number_text(const number_range *r, double value, char *out, size_t capacity) {
     int digits = decimals(r, value);
     double scale = pow(10, digits), seen = round(value * scale) / scale;

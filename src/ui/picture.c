@@ -1,4 +1,4 @@
-// Triangles of one frame of the interface, gathered for roil_show.
+// Collects the triangles of one frame of the interface for roil_show.
 #include "base/memory.h"
 #include "ui/parts.h"
 #include <string.h>

@@ -1,7 +1,7 @@
-// ui.h over Dear ImGui: what the window looks like, what a user did, a frame's beginning and end.
-// Widgets that an artist looks at all day (bars of numbers, toggles, headings, icons) are drawn by
-// hand (ui_widgets.cpp, widgets.c); the rest is ImGui's, restyled. Input comes through ImGui's GLFW
-// backend, triangles leave as a roil_picture.
+// ui.h over Dear ImGui: the style of the window, the user's input, and the begin and end of a
+// frame. Widgets that an artist looks at all day (bars of numbers, toggles, headings, icons) are
+// drawn by ui_widgets.cpp and widgets.c; the rest is ImGui's, with another style. Input comes
+// through ImGui's GLFW backend, triangles leave as a roil_picture.
 #include "ui/ui_state.hpp"
 #include <backends/imgui_impl_glfw.h>
 
@@ -179,8 +179,8 @@ float ui_scale(void) {
     return ui.scale;
 }
 
-// GLFW counts the pointer in screen coordinates, which a display of high density makes coarser than
-// pixels. Everything here is in pixels.
+// GLFW reports the pointer in screen coordinates, which are coarser than pixels on a display of
+// high density. Everything here uses pixels.
 static void use_pixels(ImGuiIO &io) {
     int width, height;
     glfwGetFramebufferSize(ui.window, &width, &height);
@@ -200,7 +200,7 @@ bool ui_pending(void) {
     return ui.input.count > 0;
 }
 
-// The backend asks GLFW how things are now; this frame sees them as they were in its turn.
+// The backend asks GLFW for the state of now; this frame uses the state at its place in the queue.
 static void take_input(ImGuiIO &io) {
     input_frame frame = {};
     input_event e;

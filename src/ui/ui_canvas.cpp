@@ -1,4 +1,4 @@
-// Places to draw in and to be clicked (ui.h), over Dear ImGui.
+// Canvases (ui.h): areas that are drawn to and take clicks, over Dear ImGui.
 #include "ui/ui_state.hpp"
 
 using namespace face;

@@ -1,4 +1,4 @@
-// Windows, layout and widgets of ui.h, and the parts that widgets.c is made of, over Dear ImGui.
+// Windows, layout and widgets of ui.h, and the parts that widgets.c uses, over Dear ImGui.
 #include "ui/ui_state.hpp"
 
 using namespace face;
@@ -134,7 +134,7 @@ void ui_text_wrapped(const char *text) {
     ImGui::PopTextWrapPos();
 }
 
-// After the pointer has rested for a moment, so that nothing flickers along its way.
+// Shows the tooltip only after the pointer has rested, so that nothing flickers as it moves.
 void ui_tooltip(const char *text) {
     if (!text || !text[0] || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
     ImVec2 at = ImGui::GetItemRectMin();
@@ -299,8 +299,7 @@ bool ui_input(const char *label, const char *hint, char *text, size_t capacity) 
 
 // ---- numbers ----------------------------------------------------------------------------------
 
-// The text takes the bar's place until Return or a click elsewhere; Escape leaves the number as it
-// was.
+// The text replaces the bar until Return or a click elsewhere; Escape keeps the old number.
 static void bar_type(const ImRect &box, ImGuiID id, const char *name) {
     number_typing *t = &ui.typing;
     ImGui::TempInputText(box, id, name, t->text, (int)sizeof t->text,

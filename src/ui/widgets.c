@@ -1,5 +1,5 @@
-// Widgets that ImGui has not, or not as an artist wants them: headings, icons, toggles, numbers,
-// colours.
+// Widgets that ImGui does not have, or not as an artist wants them: headings, icons, toggles,
+// numbers, colours.
 #include "ui/parts.h"
 #include <limits.h>
 #include <math.h>
