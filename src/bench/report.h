@@ -1,5 +1,5 @@
-// The report of a sweep: report.html, one page with tables, plots and pictures that needs no other
-// file, no network and no scripts to be read.
+// The report of a sweep: report.html, one page with tables, plots and pictures. It needs no other
+// file, no network and no JavaScript.
 #pragma once
 #include "bench/results.h"
 

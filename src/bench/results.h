@@ -1,8 +1,7 @@
-// Results of a sweep: what was measured, row by row, in memory and as files.
+// Results of a sweep, row by row, in memory and as files.
 //
-// results.json is what everything else is made of (CSV, reports, comparisons, further rows), and
-// strangers may have written it: whatever a file contains, reading gives sound results or a
-// message.
+// Everything else is made from results.json (CSV, reports, comparisons, further rows). Strangers
+// may have written it: whatever a file contains, reading it gives valid results or a message.
 #pragma once
 #include "base/arena.h"
 #include "roil.h"
@@ -15,7 +14,7 @@ enum { BENCH_MAX_ROWS = 4096, BENCH_MAX_AXES = 16, BENCH_MAX_VALUES = 4096 };
 typedef struct bench_figure {
     double median, p5, p95; // percentiles by nearest rank
     size_t count;
-    const double *values; // as they were measured, in order; NULL: not kept
+    const double *values; // single measurements in their order; NULL: not kept
 } bench_figure;
 
 typedef struct bench_time {
@@ -44,14 +43,14 @@ typedef struct bench_settings {
 } bench_settings;
 
 typedef enum bench_state {
-    BENCH_PLANNED, // not measured; never stands in a file
+    BENCH_PLANNED, // not measured; never in a file
     BENCH_DONE,
     BENCH_FAILED,
-    BENCH_LIMIT, // stopped because it took longer than it may; what was measured is there
+    BENCH_LIMIT, // stopped at its time limit; measurements until then are kept
 } bench_state;
 
 typedef struct bench_row {
-    // What is measured.
+    // The input.
     size_t index; // in the whole sweep
     const char *label;
     bench_settings axes; // by name; values as text
@@ -63,7 +62,7 @@ typedef struct bench_row {
     uint32_t warmup, repeats;
     double limit; // seconds; 0: none
     bench_settings settings;
-    // What came out.
+    // The result.
     bench_state state;
     const char *message; // of BENCH_FAILED, BENCH_LIMIT; else ""
     bench_times gpu;     // by pass, "all" last
@@ -73,10 +72,10 @@ typedef struct bench_row {
     bench_times times; // of other measures: "reload", "take_over", "start"
     bench_numbers counters;
     uint64_t device_bytes, reserved_bytes, host_bytes;
-    bool compared;           // the three below are there, of the worst frame
+    bool compared;           // the three below are valid, for the worst frame
     double psnr, ssim, flip; // psnr INFINITY: equal
     const char *thumbnail;   // PNG, relative to the folder of the results; NULL: none
-    bench_numbers published; // what others report for this row, milliseconds
+    bench_numbers published; // times that others report for this row, milliseconds
 } bench_row;
 
 typedef struct bench_axis {
@@ -85,17 +84,17 @@ typedef struct bench_axis {
     size_t value_count;
 } bench_axis;
 
-typedef struct bench_reference { // what pictures are compared with
+typedef struct bench_reference { // the reference that pictures are compared with
     bool traced;                 // path traced; else a row with other settings
-    uint32_t samples;            // a pixel, when it is traced
+    uint32_t samples;            // per pixel, when it is traced
     bench_settings settings;
 } bench_reference;
 
 typedef struct bench_results {
-    arena memory;                 // holds all that the rest points to
-    const char *version, *commit; // of roil; "" when it is not known
+    arena memory;                 // holds everything that the other members point to
+    const char *version, *commit; // of roil; "" when unknown
     const char *sweep, *title, *file;
-    const char *content; // hash of what is to be measured: equal for parts of one sweep
+    const char *content; // hash of the sweep's input, equal for all parts of one sweep
     const char **notes;
     size_t note_count;
     const char *device, *driver;
@@ -106,28 +105,29 @@ typedef struct bench_results {
     size_t axis_count;
     bool has_reference;
     bench_reference reference;
-    bool tuned;            // of a search (tune.h), these are two of its rows:
-    size_t before, chosen; // their indices
-    bool by_process;       // which went by processor time: the device is the processor
-    bench_row *rows;       // by rising index; only those that were measured
+    bool tuned;            // from a search (tune.h):
+    size_t before, chosen; // indices of two of its rows
+    bool by_process;       // it used processor time, since the device is the processor
+    bench_row *rows;       // measured rows, by rising index
     size_t row_count, row_capacity;
 } bench_results;
 
-void bench_results_free(bench_results *r); // zero is fine
+void bench_results_free(bench_results *r); // zeroed results are allowed
 
-// `folder`/results.json. False with a message that names the file and what is wrong in it; `out` is
+// Reads `folder`/results.json. False with a message that names the file and the fault; `out` is
 // then empty.
 bool bench_read(const char *folder, bench_results *out);
 bool bench_read_file(const char *file, bench_results *out);
-// Writes results.json and results.csv, each at once: a reader sees the old or the new one.
+// Writes results.json and results.csv, each atomically: a reader sees the old or the new file.
 bool bench_write(const bench_results *r, const char *folder);
 
 bench_row *bench_find(const bench_results *r, size_t index); // NULL: not measured
-// Adds a copy of what `row` points to; a row of that index is replaced.
+// Adds a deep copy of `row`, or replaces the row of that index.
 void bench_add(bench_results *r, const bench_row *row);
 
 const bench_figure *bench_get_time(const bench_times *t, const char *name); // NULL: none
-// What a row is judged by: GPU time of all passes, else its first other time. NULL: nothing.
+// Returns the time by which rows are compared: GPU time of all passes, else its first other time.
+// NULL: there is none.
 const bench_time *bench_main_time(const bench_row *row);
-const char *bench_axis_value(const bench_row *row, const char *name); // NULL: has no such axis
+const char *bench_axis_value(const bench_row *row, const char *name); // NULL: no such axis
 const char *bench_state_name(bench_state state);

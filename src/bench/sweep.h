@@ -1,18 +1,18 @@
-// Whole sweeps: which of their rows, one after the other, with results that are written as they
-// come.
+// Measures sweeps: chooses rows, measures them one after the other, and writes the results after
+// each.
 #pragma once
 #include "bench/run.h"
 #include "script/sweep.h"
 
 typedef struct bench_choice { // zero: all rows
     const char *rows;         // pattern of labels (*, ?, [..]); NULL: any
-    const roil_setting *only; // axis (name or label) and value; of one axis any of those that are
-    size_t only_count;        // named will do
-    uint32_t shard, shards;   // 1 of 4; 0: all
+    const roil_setting *only; // axis (name or label) and value; several values of one axis are
+    size_t only_count;        // alternatives
+    uint32_t shard, shards;   // 1 of 4; 0: all rows
 } bench_choice;
 
-// True for each row that is chosen, mem_free; NULL with a message on an axis or a value that the
-// sweep does not have, or when nothing is left.
+// Returns an array that is true for each chosen row; free it with mem_free. NULL with a message for
+// an axis or a value that the sweep does not have, or when no row is left.
 bool *bench_choose(const sweep *s, const bench_choice *choice);
 
 typedef struct bench_watcher {                                  // all may be NULL
@@ -25,22 +25,22 @@ typedef struct bench_watcher {                                  // all may be NU
 } bench_watcher;
 
 typedef struct bench_order {
-    const char *file, *folder, *device; // the sweep; where results go; as roil_desc has it
-    const char *memory;                 // as roil_desc has it
+    const char *file, *folder, *device; // the sweep; folder of the results; as in roil_desc
+    const char *memory;                 // as in roil_desc
     sweep_options options;
     bench_choice choice;
-    bool resume; // keeps the rows that `folder` has, if they are of the same sweep and device
+    bool resume; // keeps the rows in `folder`, if they are of the same sweep and device
     bench_watcher watcher;
 } bench_order;
 
-// Fills `out`, which holds what was measured also when it ends before all is done: false then, with
-// a message. bench_results_free it either way.
+// Measures a sweep. False with a message when it ends early; `out` then has the rows measured so
+// far. Free it with bench_results_free in either case.
 bool bench_run(const bench_order *order, bench_results *out);
 
-// Reads the sweep of an order; needs no device. `memory` holds it.
+// Reads the sweep of an order into `memory`. Needs no device.
 bool bench_read_sweep(const bench_order *order, arena *memory, sweep *out);
 
-// One sweep measured in parts (shards, choices), put together in `folder`.
+// Combines results of one sweep that was measured in parts (shards, choices) in `folder`.
 bool bench_merge(const char *const *folders, size_t count, const char *folder, bench_results *out);
 
 // ---- comparing two runs -------------------------------------------------------------------------
@@ -55,23 +55,23 @@ typedef struct bench_change {
     const bench_row *before, *now;
     const char *name; // of a pass, "all", or another time
     double ratio;     // of medians, now to before
-    double chance;    // of such a difference by noise alone; below 0: not known
+    double chance;    // probability of such a difference by noise alone; below 0: unknown
     bench_verdict verdict;
 } bench_change;
 
-// All times of all rows that both have, matched by their axes; in `memory`.
+// Compares all times of the rows that both have, matched by their axes. The result is in `memory`.
 //
-// Where both kept the same frames, 8 or more, differences frame by frame are put to the signed-rank
-// test (base/statistics.h): a time has changed when they arise by chance in less than 1 of 100
-// cases. Else when the two bands from the 5th to the 95th percentile do not meet. And in both cases
-// only when the medians are apart by more than `margin` (0.03 is 3 %): what clocks and neighbours
-// shift from run to run is not in the frames of one.
+// Where both have the same 8 or more frames, the differences frame by frame are tested by the
+// signed-rank test (base/statistics.h): a time has changed when they arise by chance in less than 1
+// of 100 cases. Else it has changed when the ranges from the 5th to the 95th percentile do not
+// overlap. In both cases the medians must differ by more than `margin` (0.03 is 3 %), since clocks
+// and other programs change times from run to run, which the frames of one run do not show.
 size_t bench_compare(const bench_results *before, const bench_results *now, double margin,
                      arena *memory, bench_change **out);
 
 // ---- the machine --------------------------------------------------------------------------------
 
 void bench_describe_machine(bench_results *r); // cpu, cores, os, date
-// First digits of the commit that `home` says in its file `commit` (scripts/package) or has checked
-// out; "" when it does neither.
+// Returns the first digits of the commit in the file `commit` of `home` (scripts/package), or of
+// the one checked out there; "" when there is neither.
 const char *bench_commit(const char *home, arena *memory);

@@ -1,7 +1,8 @@
-// One loaded effect: parameters, fields' objects, passes, timeline, outputs. The script layer fills
-// it; everything else (program, tests, an engine) drives it. Needs no Lua.
+// A loaded effect: parameters, objects of fields, passes, timeline, outputs. The script layer fills
+// it; everything else (program, tests, an engine) renders it. Needs no Lua.
 //
-// Life: effect_create, declarations, effect_set (command line), effect_build, effect_render...
+// Order of calls: effect_create, declarations, effect_set (command line), effect_build,
+// effect_render ... An effect belongs to one thread at a time.
 #pragma once
 #include "base/content_cache.h"
 #include "pass/pass.h"
@@ -33,14 +34,14 @@ typedef struct effect_desc {
     bool counters;
     bool interaction; // pass_host.interaction
     bool never_waits; // field_grid.never_waits, of all grids
-    // Above 0: each pass `march` becomes a `reference`, and this is what effect_samples shall come
-    // to.
+    // Above 0: each pass `march` is replaced by a `reference`, up to so many samples per pixel
+    // (effect_samples).
     uint32_t reference;
-    const effect_setting *settings; // applied as what they name is declared
+    const effect_setting *settings; // each is applied when what it names is declared
     size_t setting_count;
     double
         seconds; // that a load may take, and a part of it a frame's script; 0: as base/time_limit.h
-    // Shared with other loads of the same file, which then read nothing twice; NULL: its own.
+    // Shared with other loads of the same file, so that nothing is read twice; NULL: its own.
     shader_library *library;
     content_cache *contents;
 } effect_desc;
@@ -67,68 +68,71 @@ void effect_set_seed(effect *e, uint32_t seed);
 int effect_add_param(effect *e, const effect_param *param);
 pass *effect_add_pass(effect *e, const char *type, const char *shader,
                       const char *label);          // label NULL: type's name, numbered
-void effect_add_grid(effect *e, field_grid *grid); // owned by the effect from now on
-// Its time is then `speed` added up over the frames of the effect, from the time `start` (s) on;
-// both are numbers that do not vary in space.
+void effect_add_grid(effect *e, field_grid *grid); // the effect owns it from now on
+// Makes a grid's time the sum of `speed` over the frames of the effect, beginning at `start` (s).
+// Both are numbers that do not vary in space.
 void effect_add_clock(effect *e, const field_grid *grid, const field *speed, const field *start);
-// By which it is found (effect_add_volume); numbered when it is taken.
+// Names a grid, for effect_add_volume. A name that is taken gets a number.
 void effect_name_grid(effect *e, field_grid *grid, const char *name);
 bool effect_playback(const effect *e, field_playback *out); // false: no grid is played
-scene_mesh *effect_add_mesh(effect *e, const char *file);   // confined to the effect's folder
-const mesh_texture *effect_add_texture(effect *e, const char *file); // PNG or JPEG; the same
-// One whose numbers can be set by its name, if it has one. It must live as long as the effect.
+// The files of these and the next functions must lie in the effect's folder. NULL with a message.
+scene_mesh *effect_add_mesh(effect *e, const char *file);
+const mesh_texture *effect_add_texture(effect *e, const char *file); // PNG or JPEG
+// Adds a material. If it has a name, its numbers become controls. It must live as long as the
+// effect.
 void effect_add_material(effect *e, scene_material *material);
-// Owned by the effect; NULL with a message when it has too many.
+// The effect owns the result. NULL with a message when it has too many instances.
 scene_instances *effect_add_instances(effect *e, const scene_instances_desc *desc);
-// The panorama of a sky, confined too; an effect has one.
+// Reads the panorama of the sky; an effect has one.
 const struct sky_image *effect_add_sky_image(effect *e, const char *file);
-// A picture as numbers (media/picture.h), confined too; lives as long as the effect. `side_max`:
-// pixels a side that are accepted.
+// Reads a picture as data (media/picture.h), of at most `side_max` pixels a side. It lives as long
+// as the effect.
 const struct picture *effect_read_picture(effect *e, const char *file, uint32_t side_max);
 typedef struct effect_bake_desc {
     uint32_t size[3];     // voxels
-    box3 box;             // that they cover
-    bool repeats;         // beyond the box the grid goes on as within, in all directions
+    box3 box;             // the box that they cover
+    bool repeats;         // the grid repeats outside of the box, in all directions
     bool levels;          // with mip levels; for a grid that repeats
-    const char *sampling; // of grids, a word of the pass `bake`; NULL: its default
+    const char *sampling; // of grids: a word of the pass `bake`; NULL: its default
 } effect_bake_desc;
-// A field baked to a grid (pass type "bake"), again whenever it has changed; returns the grid.
+// Bakes a field to a grid (pass type "bake"), again whenever it changes. Returns the grid.
 field_grid *effect_add_bake(effect *e, const field *node, const effect_bake_desc *desc);
 typedef struct effect_tile_desc {
     uint32_t size;  // voxels along each side
     uint32_t cells; // of the noise, along each side
-    int octaves;    // of a lone noise that are in the tile
+    int octaves;    // of a single noise, how many are in the tile
     bool levels;    // with mip levels
 } effect_tile_desc;
-// An expression of noises by samples of a baked tile that repeats (field_tile).
+// Replaces an expression of noises by samples of a baked tile that repeats (field_tile).
 const field *effect_add_tile(effect *e, const field *noise, const effect_tile_desc *desc);
-// ---- volumes: what fills space, voxel by voxel, to be read back -------------------------------
+// ---- volumes: what fills space, sampled at voxels and read back -------------------------------
 
 typedef struct effect_volume_desc {
-    const char *source; // a grid by its name, or a pass whose medium it is by its label; NULL: the
-                        // grid that is simulated, else the medium of the first pass `march`
-    const char *fields; // "density,velocity"; NULL: all that it has
-    uint32_t size;      // voxels along the longest side, at most 1024; 0: as large as those of the
-                        // source's grids, or 64
-    box3 box;           // empty: where the source is not zero in these frames
+    const char *source; // name of a grid, or label of a pass whose medium it is; NULL: the
+                        // simulated grid, or else the medium of the first pass `march`
+    const char *fields; // "density,velocity"; NULL: all fields
+    uint32_t size;      // voxels along the longest side, at most 1024; 0: voxels as large as those
+                        // of the source's grids, or 64
+    box3 box;           // empty: the box in which the source is not zero in these frames
     double first, last; // frames
 } effect_volume_desc;
 typedef struct effect_volume_field {
     const char *name;
     int components;    // 1: an image of halves; 3: of four halves a voxel
-    graph_image image; // to be kept (graph_add_output)
+    graph_image image; // the caller must keep it (graph_add_output)
 } effect_volume_field;
 enum { EFFECT_VOLUME_FIELDS = 16 };
 typedef struct effect_volume {
-    box3 box;         // of voxels that are cubes
-    uint32_t size[3]; // how many
-    float voxel;      // their side (m)
+    box3 box;         // box of all voxels
+    uint32_t size[3]; // number of voxels
+    float voxel;      // side of a voxel, which is a cube (m)
     effect_volume_field fields[EFFECT_VOLUME_FIELDS];
     size_t count;
 } effect_volume;
-// Adds passes that compute it in every frame. Once the script has run, before the effect is built.
+// Adds passes that compute the volume in every frame. Call it after the script has run and before
+// the effect is built.
 bool effect_add_volume(effect *e, const effect_volume_desc *desc, effect_volume *out);
-// Before it is built: its pictures are not drawn, but only what is kept of the graph.
+// Makes the effect draw only kept images and no pictures. Call it before the effect is built.
 void effect_skip_pictures(effect *e);
 
 bool effect_set_output(effect *e, graph_image image); // the picture, display-referred
@@ -141,24 +145,24 @@ typedef struct effect_hooks {                                          // calls 
     bool (*start)(void *user);                          // its systems (events.h), or NULL
     bool (*frame)(void *user, double time, double dt);
     bool (*event)(void *user, const struct effect_happening *what);
-    // Which line runs now: "file:line: ", "" for none.
+    // Writes the line that is running, "file:line: "; "" for none.
     void (*locate)(void *user, char *out, size_t size);
-    void (*renew)(void *user); // another frame begins, with time of its own; or NULL
+    void (*renew)(void *user); // a new frame begins, with a new time limit; or NULL
     void (*destroy)(void *user);
     void *user;
 } effect_hooks;
 void effect_set_hooks(effect *e, const effect_hooks *hooks);
 void effect_add_file(effect *e, const char *path); // a file a reload should watch
 enum {
-    EFFECT_MAX_RAMPS = 256,    // palettes and curves that get a name; those after them get none
-    EFFECT_CONTROL_COST = 512, // bytes that a control takes, about
+    EFFECT_MAX_RAMPS = 256,    // palettes and curves that get a name; later ones get none
+    EFFECT_CONTROL_COST = 512, // approximate bytes of a control
 };
-// Palettes and curves that can be edited by name. `name` is made unique; returns what it became (""
-// when there are too many already), or NULL when a setting of that name is wrong.
+// Add palettes and curves that can be edited by name. `name` is made unique. Return the final name
+// ("" when there are too many), or NULL with a message when a setting of that name is wrong.
 const char *effect_add_palette(effect *e, palette *p, const char *name);
 const char *effect_add_curve(effect *e, curve *c, const char *name);
-// A number over a particle's life: a curve whose times are ages, 0 to 1, linear between its keys.
-// `shown`, the palette that a field has of it, becomes what the curve is whenever that changes.
+// Adds a number over a particle's life: a curve over age, 0 to 1, linear between its keys. `shown`,
+// the palette that fields read, is updated whenever the curve changes.
 const char *effect_add_age_curve(effect *e, curve *c, palette *shown, const char *name);
 void effect_mark_structural(effect *e, size_t param);
 
@@ -228,16 +232,16 @@ bool effect_set(effect *e, const char *name, const char *text);
 bool effect_reset(effect *e, const char *name); // to what the script says
 bool effect_set_value(effect *e, size_t param, const float value[4]);
 
-// To be called when the script has run: sets what the command line says about the scene. False
-// when one of the settings is wrong, or names nothing that the script declared.
+// Call it when the script has run: applies the settings of the command line about the scene. False
+// with a message when a setting is wrong, or names nothing that the script declared.
 bool effect_check_settings(effect *e);
 
-// ---- driving ----------------------------------------------------------------------------------
+// ---- rendering --------------------------------------------------------------------------------
 
-// What effect_build can find wrong without a device: shaders, fields, the graph.
+// Checks without a device what effect_build needs: shaders, fields, the graph.
 bool effect_check(effect *e);
-// Compiles shaders and pipelines. With the graph of another effect in use by other threads: any
-// thread may do this, one at a time for a library.
+// Compiles shaders and pipelines. Any thread may call it, also while another effect is rendered,
+// but only one at a time for a library.
 bool effect_compile(effect *e);
 // After graph_compile: adds what the first picture lacks of memory, of the host's and the device's,
 // but for single texels and what is known only when numbers are. Returns the bytes of images that
@@ -248,39 +252,40 @@ bool effect_allocate(effect *e, uint32_t width, uint32_t height); // after compi
 bool effect_build(effect *e, uint32_t width, uint32_t height);    // both
 // Evaluates all that a frame needs (update, functions, curves) and draws nothing. Any thread.
 bool effect_rehearse(effect *e, double frame);
-// Instead of the first effect_allocate: takes over what `from` has on the device and `e` would make
-// again: images that match by name, format and size, with their contents, so that histories go on;
-// decoded grids; meshes. `from` is then good for effect_destroy only. On failure `from` is as it
-// was.
+// Call it instead of the first effect_allocate: takes over from `from` what `e` would otherwise
+// make again: images that match by name, format and size, with their contents, so that histories
+// continue; decoded grids; meshes. `from` can then only be destroyed. On failure `from` is
+// unchanged.
 bool effect_adopt(effect *e, effect *from, uint32_t width, uint32_t height);
-size_t effect_files(const effect *e, const char *const **out); // all that were read, absolute
+size_t effect_files(const effect *e, const char *const **out); // absolute paths of all files read
 
-// Records and submits one frame. Frame numbers start at effect_first_frame; time = (frame -
-// first) / fps. Histories start anew when `frame` is not the one after the last and `jump` is not
-// set. Returns the GPU's frame number, 0 on error.
+// Records and submits one frame. Frame numbers start at effect_first_frame; time = (frame - first)
+// / fps. Histories are cleared when `frame` does not follow the last one, unless `jump` is set.
+// Returns the GPU's frame number; 0 with a message.
 uint64_t effect_render(effect *e, double frame, bool jump);
 
 typedef struct effect_simulation {
-    bool waiting;        // they have not reached the last frame yet: render it again (never_waits)
-    double reached;      // seconds; -INFINITY: nothing
-    const char *trouble; // of the pass `where`: which key to change; NULL: none
+    bool waiting;        // they have not reached the last frame: render it again (never_waits)
+    double reached;      // time that they have reached (s); -INFINITY: none
+    const char *trouble; // trouble of the pass `where`, and the key to change; NULL: none
     const char *where;
 } effect_simulation;
 bool effect_get_simulation(const effect *e, effect_simulation *out); // false: nothing simulates
-void effect_restart(effect *e); // simulations begin anew with the next frame
-// The state of all that simulates, to a file and back, between frames. After effect_allocate; a
-// state that does not load leaves them to begin anew. `frame`: that was rendered last.
+void effect_restart(effect *e); // simulations start from the beginning with the next frame
+// Save and load the state of all simulations, between frames, after effect_allocate. When a state
+// cannot be loaded, they start from the beginning. `frame` is the one that was rendered last.
 bool effect_save_state(effect *e, const char *path);
 bool effect_load_state(effect *e, const char *path, double *frame);
-// Is told, while effect_render runs frames that were left out, of the steps done and wanted.
+// Sets a callback, which effect_render calls while skipped frames are simulated, with the steps
+// done and the steps needed. Returning false cancels the frame.
 void effect_on_progress(effect *e, bool (*call)(void *user, double done, double whole), void *user);
 
 // A number that moved beyond its range, or lengths that do not fit together (hints.c), since the
 // effect was made or a control was last set; NULL: nothing.
 const char *effect_get_warning(const effect *e);
 
-// Samples a pixel of the last frame, of that pass `reference` which has the fewest; 0: the picture
-// needs none.
+// Returns the samples per pixel of the last frame, of the pass `reference` that has the fewest; 0:
+// there is no such pass.
 uint32_t effect_samples(const effect *e);
 
 typedef enum effect_picture { EFFECT_OUTPUT, EFFECT_LINEAR, EFFECT_DEPTH } effect_picture;

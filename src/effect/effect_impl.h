@@ -1,4 +1,4 @@
-// The inside of an effect, for the files of this layer only.
+// Data of an effect, for the files of this layer only.
 #pragma once
 #include "effect/effect.h"
 #include <pthread.h>
@@ -13,17 +13,17 @@ bool effect_runs(const effect *e, const pass *p); // some part of it; after the 
 void effect_tell_hints(effect *e);                // once, then: lengths that do not fit together
 // Evaluates a frame. `again`: the same as the last, for which `update` ran.
 bool effect_evaluate(effect *e, double frame, gpu *device, bool again);
-void effect_reset_instances(effect *e); // to how they began: time has gone back
-// Brings simulations to the frame. `*again`: `update` need not run for it.
+void effect_reset_instances(effect *e); // to their initial state, since time has gone back
+// Simulates up to the frame. `*again`: `update` need not run for it.
 bool effect_simulate(effect *e, double frame, bool *again);
 
 // ---- states -----------------------------------------------------------------------------------
 
 struct checkpoint;
 struct checkpoint_list;
-bool effect_can_save(const effect *e); // all that simulates, as of now
+bool effect_can_save(const effect *e); // all simulations have a state now
 void effect_list_state(const effect *e, struct checkpoint_list *out);
-bool effect_take_state(effect *e, struct checkpoint *c); // false: all begins anew
+bool effect_take_state(effect *e, struct checkpoint *c); // false: all start from the beginning
 
 // Snapshots of simulations while a window plays, for going back in time (snapshots.c).
 void effect_keep_snapshot(effect *e);         // after a frame
@@ -35,12 +35,12 @@ typedef struct effect_snapshot {
     struct checkpoint *state;
 } effect_snapshot;
 
-// ---- systems.c: what goes on in the script from frame to frame (events.h) -----------------------
+// ---- systems.c: functions of the script that run from frame to frame (events.h) -----------------
 
 typedef struct effect_systems effect_systems;
 void effect_free_systems(effect *e);
-bool effect_run_systems(effect *e, double frame); // up to it; again: only what is new
-void effect_restart_systems(effect *e);           // from the first frame on, with the next one
+bool effect_run_systems(effect *e, double frame); // runs what has not run yet, up to the frame
+void effect_restart_systems(effect *e);           // the next frame starts from the first one
 void effect_resize_systems(effect *e, uint32_t width, uint32_t height); // before the effect is
 void effect_forget_moved(effect *e, size_t param);                      // a user has set it
 
@@ -170,16 +170,16 @@ struct effect {
     size_t ramp_count; // palettes and curves among them
 };
 
-// While frames are run that have no picture. False, with a message: whoever waits has had enough.
+// Reports progress while frames without a picture run. False with a message: the user cancelled.
 bool effect_tell_progress(effect *e, double done, double whole);
 
 // clock.c: grids that are played at a speed that moves.
 typedef struct effect_clock effect_clock;
 void effect_free_clocks(effect *e);
 void effect_restart_clocks(effect *e);
-// The next frame, up to this one, that clocks do not know yet; INFINITY: none. False with a
-// message.
+// Returns the next frame, up to this one, that the clocks have not counted; INFINITY: none. False
+// with a message.
 bool effect_aim_clocks(effect *e, double frame, double *next);
-bool effect_tick(effect *e); // makes them know one more frame, by what holds now
-// The time that a grid shows at a time of the effect.
+bool effect_tick(effect *e); // counts one more frame with the speeds of now
+// Returns the time that a grid shows at a time of the effect.
 bool effect_grid_time(const effect *e, const field_grid *grid, double now, double *out);

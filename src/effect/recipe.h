@@ -1,14 +1,15 @@
-// Recipe: what made a picture, kept in the texts of its PNG file. It may come from a stranger.
+// Recipes: how a picture was made, stored in the texts of its PNG file. It may come from a
+// stranger.
 #pragma once
 #include "effect/effect.h"
 #include "media/png.h"
 
 typedef struct recipe {
-    const char *file; // of the effect, as it was given; NULL: not one to be opened unasked, for it
-                      // lies outside of the current folder
+    const char *file; // the effect's file as it was given; NULL: it lies outside of the current
+                      // folder and must not be opened unless the user names it
     double frame;
     uint32_t width, height;
-    effect_setting *settings; // all that differs from the script
+    effect_setting *settings; // every control that differs from the script
     size_t setting_count;
 } recipe;
 

@@ -1,5 +1,5 @@
-// What the files l_<object>.c share: the state behind a script and readers of its values. All raise
-// Lua errors at the script's line, so callers hold nothing that would need freeing.
+// Shared by the files l_<object>.c: the state of a script, and functions that read its values. They
+// raise Lua errors at the script's line, so callers must not hold anything that needs to be freed.
 #pragma once
 #include "base/time_limit.h"
 #include "effect/effect.h"
@@ -11,15 +11,15 @@ typedef struct script {
     effect *effect;
     vm *vm;
     script_limits limits;
-    time_limit frame;    // what this frame has left
-    bool acting;         // frames and events run; not functions of time, which others wait for
-    bool loading;        // things are declared only while the file runs, not in functions of time
-    const char *unsound; // what was left half made by an error that the script caught; or NULL
+    time_limit frame;    // the limit of this frame
+    bool acting;         // functions of frames or events are running, not functions of time
+    bool loading;        // the file is running: only then can things be declared
+    const char *unsound; // what an error that the script caught left incomplete; or NULL
     bool declared;       // effect { } was called
     int update;          // registry reference of fx.update, or LUA_NOREF
     int handlers;        // of the lists of functions of fx:on_frame and the like (l_events.c)
-    uint64_t seed;       // of math.random
-    const char *named;   // the call in the script's text that was named last (naming.c), or NULL
+    uint64_t seed;       // seed of math.random
+    const char *named;   // the last call in the script's text that got a name (naming.c), or NULL
     struct scene_explosions *explosions; // all lists of the script, linked; NULL: there is none
 } script;
 
@@ -29,12 +29,13 @@ arena *script_memory(lua_State *L);
 void script_require_loading(lua_State *L, const char *what);
 // Raises the current error message.
 _Noreturn void script_raise(lua_State *L);
-// A function of time, as effect_hooks and field_context call it. `user` is the script.
+// Calls a function of time, for effect_hooks and field_context. `user` is the script.
 bool script_call(void *user, int function, double time, float out[4]);
-// A call from outside: within the frame's budget, or the load's. As vm_call and vm_protect.
+// Call the script from outside, within the limit of the frame or the load. Like vm_call and
+// vm_protect.
 bool script_enter(script *s, int args, int results);
 bool script_protect(script *s, lua_CFunction run, void *argument);
-field_context script_context(lua_State *L); // of time 0, with the parameters' current values
+field_context script_context(lua_State *L); // for time 0, with the parameters' current values
 
 // ---- objects ----------------------------------------------------------------------------------
 
@@ -42,9 +43,9 @@ field_context script_context(lua_State *L); // of time 0, with the parameters' c
 void object_type(lua_State *L, const char *name, const luaL_Reg *methods);
 void *object_new(lua_State *L, const char *name, size_t size);
 void *object_test(lua_State *L, int index, const char *name); // NULL when it is something else
-// What stands there, for messages: "a number", "an image", "instances", "nil". Leaves values above.
+// Describes a value for messages: "a number", "an image", "instances", "nil". May push values.
 const char *object_kind(lua_State *L, int index);
-// __index of an object that has nothing but methods: pushes the one that 2 names.
+// __index of an object that has only methods: pushes the one whose name is at 2.
 int object_method(lua_State *L, const char *type, const luaL_Reg *methods);
 
 typedef struct field_object {
@@ -74,16 +75,16 @@ typedef struct mesh_object {
     bool placed; // it has a place or a colour of its own
     bool at;     // a position
 } mesh_object;
-typedef struct picture_object { // a file's: image "templates/source.exr"
+typedef struct picture_object { // the picture of a file: image "templates/source.exr"
     const struct picture *picture;
-    const char *file; // as the script says it
-    pass *pass;       // that gives it as an image of the graph; NULL: nobody asked yet
+    const char *file; // as the script names it
+    pass *pass;       // makes it an image of the graph; NULL: not needed yet
 } picture_object;
 const picture_object *value_picture(lua_State *L, int index); // NULL: something else
 typedef struct slices_object {                                // l_slices.c
     pass *pass;
     field_grid *grid;
-    const field *offset; // of points, for what is turned round the axis; NULL: none
+    const field *offset; // moves points before they are rotated around the axis; NULL: none
     uint32_t count;
     double time_step;
 } slices_object;
@@ -93,21 +94,21 @@ typedef struct light_object {
 
 // ---- values -----------------------------------------------------------------------------------
 
-// A number, {x, y, z}, "#rrggbb", a field, a parameter, a curve, a function of time. `components`:
-// wanted, 0: any. `who` and `key` name the value in messages.
+// Reads a field: a number, {x, y, z}, "#rrggbb", a field, a parameter, a curve, a function of time.
+// `components` are required; 0: any number. `who` and `key` name the value in messages.
 const field *value_field(lua_State *L, int index, const char *who, const char *key, int components);
-// As above, and it must not vary in space.
+// The same, but the field must not vary in space.
 const field *value_uniform(lua_State *L, int index, const char *who, const char *key,
                            int components);
-// Numbers and colours only. Returns the count of components, 0 for anything else.
+// Reads numbers or a colour. Returns the number of components, 0 for anything else.
 int value_numbers(lua_State *L, int index, float out[4]);
 bool value_image(lua_State *L, int index, graph_image *out);
-bool value_is_plain_table(lua_State *L, int index); // no object
-bool value_has_names(lua_State *L, int index);      // has a key that is a string
+bool value_is_plain_table(lua_State *L, int index); // it is a table and no object
+bool value_has_names(lua_State *L, int index);      // it has a key that is a string
 
-// Pushes table[key] and returns its type. Never runs code of the script, as metamethods would.
+// Pushes table[key] and returns its type, without metamethods, which would run code of the script.
 int value_get(lua_State *L, int table, const char *key);
-// Keys of a table that are strings, sorted. The array is kept alive by a value that is pushed.
+// Returns the string keys of a table, sorted. Pushes a value that keeps the array alive.
 const char **value_names(lua_State *L, int table, const char *who, size_t *count);
 // Raises on a key that is not among those known, with the nearest one that is.
 void value_check_keys(lua_State *L, int table, const char *who, const char *const *known,
@@ -118,42 +119,43 @@ const script_object *value_check_object(lua_State *L, int table, const char *nam
 _Noreturn void value_unknown(lua_State *L, const char *who, const char *what, const char *name,
                              const char *const *known, size_t count);
 
-// Fields of a table; absent ones give `otherwise`.
+// Read a key of a table; `otherwise` when it is absent.
 double value_get_number(lua_State *L, int table, const char *who, const char *key,
                         double otherwise);
 uint32_t value_get_count(lua_State *L, int table, const char *who, const char *key,
                          uint32_t otherwise);
 bool value_get_bool(lua_State *L, int table, const char *who, const char *key, bool otherwise);
-// In the effect's memory. NULL when absent.
+// Returns a copy in the effect's memory. NULL when absent.
 const char *value_get_string(lua_State *L, int table, const char *who, const char *key);
-// The key `name`; without one, the variable that the script assigns the call to; else `who`.
+// Returns the key `name`; without one, the variable that the script assigns the call to; else
+// `who`.
 const char *value_name_or_variable(lua_State *L, int table, const char *who); // naming.c
-// NULL when absent.
+// Returns NULL when the key is absent.
 const scene_node *value_get_node(lua_State *L, int table, const char *who, const char *key);
 scene_instances *value_instances(lua_State *L, int index);           // NULL: something else
 void instances_push(lua_State *L, const scene_instances *instances); // the object of the script
 bool value_get_vector(lua_State *L, int table, const char *who, const char *key, float out[3]);
-// The table's box = { min, max }; false when absent.
+// Reads box = { min, max }; false when absent.
 bool value_get_box(lua_State *L, int table, const char *who, box3 *out);
 void value_push_box(lua_State *L, box3 box); // { min = {x, y, z}, max = {x, y, z} }
-// key = number, key = {number, ...} of the table at the top of the stack.
+// Set a key of the table at the top of the stack to a number, or to a list of numbers.
 void value_put_number(lua_State *L, const char *key, double value);
 void value_put_numbers(lua_State *L, const char *key, const float *values, int count);
 int value_word(lua_State *L, int index, const char *who, const char *key, const char *const *words,
                size_t count);
-// Index among the words of the object's key; that of its default when absent.
+// Returns an index in the words of the object's key; that of its default when the key is absent.
 int value_get_choice(lua_State *L, int table, const script_object *object, const char *key);
 const field *value_get_uniform(lua_State *L, int table, const char *who, const char *key,
                                int components, const field *otherwise);
-// Of a scene object's call: sets what the table at 1 holds in the structure at `out`, as its row
-// says where. And raises when the table holds values without a name.
+// Reads the table of a scene object at 1 into the structure at `out`, as its row describes. The
+// second raises an error when the table has values without a name.
 void value_read_slots(lua_State *L, const char *who, void *out);
 void value_refuse_array(lua_State *L, const char *who);
-// The key `material` of a mesh's call, the table at 1 (l_material.c).
+// Reads the key `material` of a mesh's table at 1 (l_material.c).
 void value_read_material(lua_State *L, const char *who, scene_mesh *mesh);
-// The slices that a method is called of, with a table at 2; raises when it is anything else.
+// Returns the slices whose method is called with a table at 2. Raises an error for anything else.
 const slices_object *slices_self(lua_State *L, const char *method, const char *example);
-// A list of lights, in the effect's memory; returns how many.
+// Reads a list of lights into the effect's memory. Returns how many there are.
 size_t value_lights(lua_State *L, int index, const char *who, scene_light **out);
 
 // A pass of a built-in type by the table at `table`, not declared yet. Keys among `own` are left to
@@ -162,16 +164,16 @@ pass *pass_make(lua_State *L, const char *type, const char *who, int table, cons
 // What stands for a pass that is declared: `from` takes it, and its outputs are images by name.
 void pass_push(lua_State *L, pass *p);
 
-// ---- the objects' globals ---------------------------------------------------------------------
+// ---- globals of the objects -------------------------------------------------------------------
 
-int l_bake(lua_State *L); // functions, and methods of fields
+int l_bake(lua_State *L); // functions, also used as methods of fields
 int l_tile(lua_State *L);
 int l_slices_templates(lua_State *L); // a method of slices
 
-bool events_push_method(lua_State *L, const char *name); // of the effect; false: it has none
-void events_assign(lua_State *L);                        // of the list at 3 to the effect
-void explosions_reset(script *s);                        // of all lists; l_shell.c
-bool script_start(void *user);                           // as effect_hooks has them
+bool events_push_method(lua_State *L, const char *name); // a method of the effect; false: none
+void events_assign(lua_State *L);                        // assigns the list at 3 to the effect
+void explosions_reset(script *s);                        // resets all lists; l_shell.c
+bool script_start(void *user);                           // these three are in effect_hooks
 bool script_frame(void *user, double time, double dt);
 bool script_event(void *user, const struct effect_happening *what);
 

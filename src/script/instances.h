@@ -1,4 +1,4 @@
-// What l_instances.c and l_instances_make.c share: numbers of single instances.
+// Values of single instances, shared by l_instances.c and l_instances_make.c.
 #pragma once
 #include "scene/instances.h"
 #include "script/binding.h"
@@ -7,7 +7,7 @@ typedef struct instances_object {
     scene_instances *instances;
 } instances_object;
 
-// What may be said of an instance, in the order in which it counts: a rotation before a yaw.
+// Values of an instance, in the order in which they are applied: a rotation before a yaw.
 typedef enum instance_key {
     INSTANCE_POSITION,
     INSTANCE_ROTATION,
@@ -22,12 +22,13 @@ typedef enum instance_key {
 
 extern const char *const instance_key_names[INSTANCE_KEYS];
 
-// Sets one of them by the value at `index` of the stack; raises when it is none. `kinds`: how many.
+// Sets one of them from the value at `index` of the stack. Raises an error when it is not valid.
+// `kinds` is the number of kinds.
 void instance_read(lua_State *L, int index, const char *who, instance_key key, size_t kinds,
                    struct instance_entry *out);
-bool instance_is_list(lua_State *L, int index, instance_key key); // of several such values
+bool instance_is_list(lua_State *L, int index, instance_key key); // a list of such values
 
-// A turn about +Z after whatever else it is turned by, in degrees.
+// The yaw is a rotation about +Z after all other rotations, in degrees.
 float instance_yaw(const struct instance_entry *entry);
 void instance_set_yaw(struct instance_entry *entry, float degrees);
 int l_instances(lua_State *L); // the constructor

@@ -1,12 +1,12 @@
-// Matching of Lua's patterns (Reference Manual 6.4.1) under the instruction budget.
+// Matches Lua's patterns (Reference Manual 6.4.1) within the limit of instructions.
 #pragma once
 #include "script/vm.h"
 
 enum { MATCH_MAX_CAPTURES = 32 };
 
-typedef enum match_length { // in place of a capture's length
+typedef enum match_length { // special lengths of captures
     MATCH_OPEN = -1,        // its ')' was not reached
-    MATCH_POSITION = -2,    // "()": stands for its position
+    MATCH_POSITION = -2,    // "()": the capture is a position
 } match_length;
 
 typedef struct match_capture {
@@ -14,7 +14,7 @@ typedef struct match_capture {
     ptrdiff_t length; // or a match_length
 } match_capture;
 
-typedef struct matcher { // the first four are the caller's, the rest zero
+typedef struct matcher { // the caller sets the first four members, the rest is zero
     lua_State *L;
     const char *text, *text_end, *pattern_end;
     int depth, steps;
@@ -22,6 +22,6 @@ typedef struct matcher { // the first four are the caller's, the rest zero
     match_capture captures[MATCH_MAX_CAPTURES];
 } matcher;
 
-// End of the match of the pattern that begins at p, if there is one exactly at s; else NULL. Raises
-// an error when the pattern is malformed or the budget is spent.
+// Matches the pattern at p exactly at s. Returns the end of the match, or NULL. Raises an error
+// when the pattern is malformed or no instructions are left.
 const char *match_at(matcher *m, const char *s, const char *p);

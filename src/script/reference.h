@@ -1,6 +1,6 @@
-// The vocabulary of effect files beside the table of kinds: a row for each constructor. The
-// bindings check and read keys by these rows, and `roil info fields` prints them, so neither can
-// say what the other does not.
+// The constructors of effect files, except for those in the table of kinds: a row for each. The
+// bindings check and read keys by these rows, and `roil info fields` prints them, so the two cannot
+// differ.
 #pragma once
 #include "scene/scene.h"
 #include <stddef.h>
@@ -24,6 +24,6 @@ const value_desc *script_object_key(const script_object *object, size_t index);
 // The field after `last`, or the first after NULL, that the object takes; NULL: none.
 const scene_value *script_object_value(const script_object *object, const scene_value *last);
 
-// Whether Lua has the kind under its own name, made from its row. The others are what objects,
-// numbers and functions become.
+// Returns whether Lua has a constructor of the kind, made from its row. Other kinds are made from
+// objects, numbers and functions.
 bool script_has_kind(const field_kind *kind);

@@ -1,4 +1,4 @@
-// How rows of the tables of constructors are written. For reference*.c only.
+// Macros for rows of the tables of constructors. For reference*.c only.
 #pragma once
 #include "script/reference.h"
 

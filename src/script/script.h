@@ -1,8 +1,8 @@
-// Effect files: Lua 5.4 in a sandbox. The only layer that knows Lua.
+// Effect files: Lua 5.4 in a sandbox. Only this layer uses Lua.
 //
-// A script may compute, declare and be asked for values of a time; nothing else. It reads no files
-// but modules and data inside the effect's folder and the program's library, cannot reach the
-// system, and is stopped when it takes too much memory or time.
+// A script can compute, declare, and return values for a time. It reads only modules and data
+// inside of the effect's folder and the program's library, has no access to the system, and is
+// stopped when it takes too much memory or time.
 #pragma once
 #include "effect/effect.h"
 #include <stddef.h>
@@ -14,9 +14,8 @@ typedef struct script_limits {
     uint64_t frame; // instructions of one function of time or `update`; 0: 20 million
 } script_limits;
 
-// Runs effect_file(e) and fills the effect. `prelude_folder`: the program's scripts, with
-// prelude.lua and lib/. The effect owns the script state from then on (effect_set_hooks). False
-// with "file:line: message" and its callers on the lines below; the effect is then only good for
-// effect_destroy.
+// Runs effect_file(e) and fills the effect. `prelude_folder` has the program's scripts, prelude.lua
+// and lib/. The effect owns the state of the script from then on (effect_set_hooks). False with
+// "file:line: message" and its callers on the lines below; the effect can then only be destroyed.
 bool script_load(effect *e, const char *prelude_folder);
 bool script_load_limited(effect *e, const char *prelude_folder, const script_limits *limits);

@@ -1,4 +1,4 @@
-// Sweeps: a Lua file that says what is to be measured, run in a sandbox that knows no effects.
+// Sweeps: Lua files that say what to measure. They run in a sandbox without effects.
 //
 //   return sweep {
 //     name = "paper", effect = "../../effects/paper.lua", size = {1920, 1080}, frames = "28-34",
@@ -7,7 +7,7 @@
 //     } }, reference = { steps = 1024 },
 //   }
 //
-// It is expanded here: what comes out is one row after the other, each complete.
+// Reading a sweep expands it to a list of complete rows.
 #pragma once
 #include "base/arena.h"
 #include "base/file.h"
@@ -54,7 +54,7 @@ typedef struct sweep_row {
     size_t reference; // in sweep.references, or SWEEP_NO_REFERENCE
     sweep_number *published;
     size_t published_count;
-    const char **edits; // of measure "reload": the text that is replaced, then by what
+    const char **edits; // of measure "reload": a text, then the texts that replace it
     size_t edit_count;
     const char *command; // of measure "start": "check", "render"
     bool empty_cache;
@@ -75,24 +75,24 @@ typedef struct sweep { // lives in the arena
     sweep_row *rows;
     size_t row_count;
     uint32_t samples;      // above 0: references are path traced
-    sweep_pair *reference; // what the file says of it
+    sweep_pair *reference; // settings of the reference in the file
     size_t reference_setting_count;
-    sweep_row *references; // each once
+    sweep_row *references; // each different one once
     size_t reference_count;
 } sweep;
 
-typedef struct sweep_options { // of the command line, in place of what the file says
+typedef struct sweep_options { // options of the command line, which replace those of the file
     uint32_t width, height; // 0: the file's. Sizes of an axis are scaled: the largest becomes this
-    const double *frames;   // NULL: the file's. An axis of frames stays
+    const double *frames;   // NULL: the file's. An axis of frames is not replaced
     size_t frame_count;
     int warmup, repeats; // below 0: the file's
     double limit;        // below 0: the file's
     double settle;       // below 0: the file's
     bool no_reference;   // pictures are not compared
-    // Effect files may lie in the sweep's own folder and below, in the current folder and below,
-    // and in this one (the program's home) and below. NULL: not there.
+    // Effect files must lie in the sweep's own folder, in the current folder, or in this one (the
+    // program's home), or below them. NULL: not in the latter.
     const char *home;
 } sweep_options;
 
-// False with "file:line: message".
+// Reads a sweep into `memory`. False with "file:line: message".
 bool sweep_read(const char *file, const sweep_options *options, arena *memory, sweep *out);

@@ -1,11 +1,11 @@
-// What the parts of the sweep reader share: values of axes before they are crossed.
+// Shared by the parts of the sweep reader: values of axes before they are combined.
 #pragma once
 #include "base/str.h"
 #include "script/sweep.h"
 #include "script/vm.h"
 
-// What a value of an axis, a reference or the sweep itself says of rows; what it does not say is
-// zero, or below zero where zero says something.
+// What a value of an axis, a reference or the sweep itself sets in rows. Members that are not set
+// are zero, or negative where zero has a meaning.
 typedef struct sweep_patch {
     const char *effect, *inside; // the latter is there with the former
     uint32_t width, height;
@@ -24,10 +24,10 @@ typedef struct sweep_patch {
 
 typedef struct sweep_value {
     const char *text, *label; // "16", "steps 16"
-    const char *said;         // the text that functions of the file see
-    bool named;               // the text is a name that the file gives
+    const char *said;         // the text that functions of the file get
+    bool named;               // the text is a name given by the file
     sweep_patch patch;
-    int type; // of Lua: what functions of the file get to see, a number, a boolean, else the text
+    int type; // Lua type of what functions of the file get: a number, a boolean, else the text
     double number;
 } sweep_value;
 
@@ -37,12 +37,12 @@ typedef struct sweep_list { // axis { }
     size_t count;
 } sweep_list;
 
-typedef struct sweep_group { // axes that go together: zip { }, or one alone
+typedef struct sweep_group { // axes that advance together: zip { }, or a single one
     const sweep_list *const *lists;
     size_t list_count;
 } sweep_group;
 
-typedef struct sweep_reader { // outlives the errors that Lua raises
+typedef struct sweep_reader { // owned outside of Lua, so that errors do not lose it
     arena *memory;
     const sweep_options *options;
     char folder[PATH_CAP]; // of the file
@@ -52,10 +52,10 @@ typedef struct sweep_reader { // outlives the errors that Lua raises
     const sweep_group *groups;
     size_t group_count;
     bool has_reference;
-    sweep_patch reference;              // over a row's own
-    const sweep_value **reference_axes; // by number of the axis: the value that stands in; NULL:
-                                        // the row's own
-    bool *reference_drops; // by number of the axis: a setting of the reference stands in
+    sweep_patch reference;              // replaces a row's own
+    const sweep_value **reference_axes; // by number of the axis: the reference's value; NULL: the
+                                        // row's own
+    bool *reference_drops; // by number of the axis: a setting of the reference replaces it
     int skip, published;   // functions: registry references, or LUA_NOREF
 } sweep_reader;
 
@@ -64,12 +64,12 @@ sweep_reader *sweep_reader_of(lua_State *L);
 // ---- sweep_value.c: all raise errors ----------------------------------------------------------
 
 sweep_patch sweep_patch_empty(void);
-bool sweep_is_special(const char *key); // is no setting, but what a row has beside them
-// Takes the value at the top of the stack for `key`, a special key or a setting.
+bool sweep_is_special(const char *key); // a key of a row that is not a setting
+// Reads the value at the top of the stack as `key`, a special key or a setting.
 void sweep_patch_take(lua_State *L, const char *who, const char *key, sweep_patch *patch);
-// Takes the table of settings at `table`.
+// Reads the table of settings at `table`.
 void sweep_patch_take_settings(lua_State *L, int table, const char *who, sweep_patch *patch);
-// One value of an axis, at the top of the stack.
+// Reads one value of an axis at the top of the stack.
 void sweep_value_take(lua_State *L, const char *who, const sweep_list *of, sweep_value *out);
 double sweep_take_number(lua_State *L, const char *who, const char *key, double min, double max);
 uint32_t sweep_take_count(lua_State *L, const char *who, const char *key, uint32_t min,
@@ -78,6 +78,6 @@ const char *sweep_take_text(lua_State *L, const char *who, const char *key);
 
 // ---- sweep_expand.c ---------------------------------------------------------------------------
 
-// Crosses the groups: fills rows and references. Raises errors, those of `skip` and `published`
-// included.
+// Combines the groups and fills rows and references. Raises errors, including those of `skip` and
+// `published`.
 void sweep_expand(lua_State *L, sweep_reader *r);
