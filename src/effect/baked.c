@@ -1,4 +1,4 @@
-// Fields baked to grids: a grid whose image a pass "bake" of the effect fills.
+// Fields baked to grids: a grid whose image is filled by a pass "bake" of the effect.
 #include "base/error.h"
 #include "effect/effect_impl.h"
 #include <math.h>

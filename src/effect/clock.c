@@ -1,7 +1,7 @@
-// Grids that are played at a speed, or from a start, that moves. What has been played is the speed
-// added up, frame by frame of the effect: a frame that is jumped to shows what it would have shown
-// had all been drawn, and a speed that is moved by hand changes what comes, not what is on show.
-// When time goes back all begins anew, with the speeds of then.
+// Grids that are played at a speed, or from a start, that changes. The time played is the sum of
+// the speed over the frames of the effect. A frame after a jump therefore shows what it would have
+// shown if all frames had been drawn, and a speed that a user changes affects only what follows.
+// When time goes back, the sum starts from the beginning, with the speeds at that time.
 #include "base/error.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
@@ -39,7 +39,7 @@ static bool value_at(const effect *e, const field *node, double time, double *ou
     return true;
 }
 
-// The speed on the way to a frame is that of its middle.
+// The speed between two frames is that of the middle.
 bool effect_tick(effect *e) {
     size_t k = e->clocked;
     for (size_t i = 0; i < e->clock_count; i++) {
@@ -65,8 +65,8 @@ bool effect_aim_clocks(effect *e, double frame, double *next) {
     return true;
 }
 
-// What has been played at a time, as seen from now on: beyond it, and before the first frame,
-// speeds stay as they are there.
+// Returns what has been played at a time, as known now. Beyond the known time, and before the first
+// frame, the speed is constant.
 static bool played_at(const effect *e, const effect_clock *c, double now, double time,
                       double *out) {
     double speed, from = fmin(fmax(time, 0), now);

@@ -1,4 +1,4 @@
-// Controls: the list of all that can be set by name, and what sets it.
+// The list of all controls, and how they are set.
 #include "base/error.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
@@ -109,7 +109,7 @@ control *effect_control_of(effect *e, const char *name) {
     return NULL;
 }
 
-// Why a pass has no control of that name.
+// Sets a message that says why a pass has no control of that name.
 static bool unknown_in_pass(pass *p, const char *name) {
     size_t index;
     pass_key key = pass_find_key(p, name, &index);
@@ -196,8 +196,9 @@ const char *effect_get_warning(const effect *e) {
     return e->host.warning[0] ? e->host.warning : NULL;
 }
 
-// What was warned of may be mended. What simulates may have gone by its old value; only by the
-// scene's it never does, and by events only since they were.
+// A setting may remove the cause of a warning. Simulations may have used the old value, so
+// snapshots are dropped: none when it is a value of the scene, and those since then when it is an
+// event.
 static void forget_old(effect *e, const control *c) {
     e->host.warning[0] = '\0';
     if (c->face.kind != EFFECT_CONTROL_SCENE && c->face.kind != EFFECT_CONTROL_LIGHT &&

@@ -1,4 +1,4 @@
-// Controls of palettes and curves, which settings replace in place.
+// Controls of palettes and curves, which settings change in place.
 #include "base/error.h"
 #include "effect/effect_impl.h"
 #include <string.h>
@@ -63,7 +63,8 @@ bool ramp_rename(effect *e, control *c) {
 
 // ---- setting ----------------------------------------------------------------------------------
 
-// One that moves in time, or a black body, becomes one of plain stops over the same range.
+// A palette that changes over time, or a blackbody palette, becomes one of plain stops over the
+// same range.
 static bool set_palette(control *c, const char *text) {
     palette_stop stops[PALETTE_MAX_STOPS];
     palette_key key = {.stops = stops};

@@ -1,4 +1,4 @@
-// An effect while it is declared: what the script says is checked here and kept.
+// Declarations of an effect: checks and stores what the script declares.
 #include "effect/effect.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -14,7 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-// Shaders of several passes are read side by side.
+// Several threads may call it, since shaders of several passes are read in parallel.
 static void add_read_file(void *user, const char *path) {
     effect *e = user;
     pthread_mutex_lock(&e->reading);
@@ -212,7 +212,7 @@ static bool label_taken(const effect *e, const char *label) {
     return false;
 }
 
-// "march", then "march_2", ...; of a shader file its name without the extension.
+// Makes "march", then "march_2", ...; for a shader file, from its name without the extension.
 static const char *make_label(effect *e, const char *stem) {
     int length = (int)strcspn(stem, ".");
     const char *label = arena_format(&e->memory, "%.*s", length, stem);
@@ -221,8 +221,8 @@ static const char *make_label(effect *e, const char *stem) {
     return label;
 }
 
-// In place of a march. The other passes run with each execution, which is to give several samples
-// therefore, but not so many that one takes long.
+// Makes a reference in place of a march. The other passes also run in each execution, which
+// therefore computes several samples, but not so many that one takes long.
 static pass *make_reference(effect *e, const pass_type *march, const char *label) {
     pass *p = pass_create(&e->host, pass_type_find("reference"), NULL, label);
     uint32_t samples = 8;
@@ -272,7 +272,7 @@ void effect_name_grid(effect *e, field_grid *grid, const char *name) {
 
 // ---- scene and outputs ------------------------------------------------------------------------
 
-// The mesh of a file, which loads of the same effect share; NULL with a message.
+// Returns the mesh of a file, which is shared by loads of the same effect. NULL with a message.
 static const mesh_data *load_mesh(effect *e, const char *path) {
     content_cache_item *item = content_cache_take(e->contents, path);
     if (!item) {
@@ -382,7 +382,7 @@ const sky_image *effect_add_sky_image(effect *e, const char *file) {
     return e->sky;
 }
 
-// A picture of a file, which loads of the same effect share; NULL with a message.
+// Returns the picture of a file, which is shared by loads of the same effect. NULL with a message.
 static const picture *load_picture(effect *e, const char *path, uint32_t side_max) {
     const char *key = arena_format(&e->memory, "picture up to %u: %s", side_max, path);
     content_cache_item *item = content_cache_take(e->contents, key);

@@ -1,4 +1,4 @@
-// Events as text: what `--event`, settings and pictures' recipes say, and what is said back.
+// Events as text, for `--event`, settings and recipes.
 #include "effect/events.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -11,7 +11,7 @@
 
 static const char form[] = "SECONDS click X Y, or SECONDS key NAME, as 2.5 click 0.4 0.6";
 
-// Others are the live window's own.
+// Other keys belong to the live window.
 static bool is_key(const char *name) {
     static const char *const long_names[] = {"enter", "up", "down"};
     for (size_t i = 0; i < COUNT_OF(long_names); i++)
@@ -54,7 +54,7 @@ static const char *skip_spaces(const char *text) {
     return text + strspn(text, " \t,");
 }
 
-// The next word, as far as there is room for it; it ends where the event does.
+// Reads the next word, as far as there is room for it, up to the end of the event.
 static const char *take_word(const char *text, char *out, size_t capacity) {
     text = skip_spaces(text);
     size_t length = strcspn(text, " \t,;");
@@ -62,7 +62,7 @@ static const char *take_word(const char *text, char *out, size_t capacity) {
     return text + length;
 }
 
-// NULL: what stands there is no list of 0, 2, 3 or 6 numbers.
+// Reads a list of 0, 2, 3 or 6 numbers; NULL when there is something else.
 static const char *take_place(const char *text, effect_event *out) {
     for (text = skip_spaces(text); *text && *text != ';'; text = skip_spaces(text)) {
         char *end;

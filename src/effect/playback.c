@@ -1,4 +1,4 @@
-// How well the data of an effect's grids keeps up: all sequences together.
+// Statistics of all sequences of an effect together.
 #include "effect/effect_impl.h"
 
 bool effect_playback(const effect *e, field_playback *out) {

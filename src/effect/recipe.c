@@ -1,4 +1,4 @@
-// Recipes: written for every picture, read with suspicion.
+// Recipes, which are written for every picture, and checked when they are read.
 #include "effect/recipe.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -44,7 +44,7 @@ static bool is_plain(const char *text) { // one line, without what terminals obe
     return true;
 }
 
-// Below the current folder, whatever lies there.
+// Returns whether a path stays below the current folder.
 static bool stays_below(const char *path) {
     if (path[0] == '/') return false;
     for (const char *part = path; part; part = strchr(part, '/')) {

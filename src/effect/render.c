@@ -1,4 +1,5 @@
-// An effect at work: built once for a size, then one frame after the other.
+// Rendering of an effect: it is built once for a size, then frames are rendered one after the
+// other.
 #include "base/budget.h"
 #include "base/clock.h"
 #include "base/error.h"
@@ -47,7 +48,7 @@ static bool draws_instances(const pass *p, const scene_instances *instances) {
     return false;
 }
 
-// The trees that rays are shot at: of all that a pass draws.
+// Builds the trees for rays, over everything that a pass draws.
 static bool make_bvh(effect *e) {
     if (e->host.bvh) return true;
     scene_mesh **meshes = mem_alloc(e->mesh_count * sizeof *meshes);
@@ -73,7 +74,7 @@ static bool make_bvh(effect *e) {
     return e->host.bvh != NULL;
 }
 
-// Whether a pass of the graph is the pass `label` or "label.name", a part of it.
+// Returns whether a pass of the graph is the pass `label` or a part of it, "label.name".
 static bool is_part(const char *name, const char *label) {
     size_t length = strlen(label);
     return strncmp(name, label, length) == 0 && (name[length] == '\0' || name[length] == '.');
@@ -87,7 +88,7 @@ bool effect_runs(const effect *e, const pass *p) {
     return false;
 }
 
-// What draws pictures that are not wanted needs no shaders.
+// Passes that only draw unwanted pictures need no shaders.
 static bool is_wanted(const effect *e, const pass *p) {
     return !e->unseen || effect_runs(e, p);
 }
@@ -103,8 +104,8 @@ static bool build_one(void *user, size_t index) {
     return !is_wanted(e, e->passes[index]) || pass_build(e->passes[index]);
 }
 
-// A reference that was made in place of a march shows the surfaces behind it, too: what they are
-// like from afar is said to the first pass that lights them.
+// A reference that replaces a march also shows the surfaces behind it. Their uniforms come from the
+// first pass that lights them.
 static void tell_references(effect *e) {
     size_t lights = 0;
     while (lights < e->pass_count && !pass_is(e->passes[lights], "shade") &&
@@ -122,7 +123,7 @@ static bool complete(effect *e) {
     return true;
 }
 
-// Particles that nothing draws show nothing, and nothing else tells their author why.
+// Warns about particles that nothing draws, since nothing else tells their author.
 static bool compile_graph(effect *e) {
     if (!graph_compile(e->graph, ANY_SIZE, ANY_SIZE)) return false;
     for (size_t i = 0; i < e->pass_count && !e->unseen; i++)
@@ -206,7 +207,7 @@ static bool update(effect *e, double frame) {
            (!e->hooks.update || e->hooks.update(e->hooks.user, e->context.time, dt));
 }
 
-// Frames that were left out: what `update` sets there counts for the speeds of grids.
+// Runs `update` for skipped frames, since it may set speeds of grids.
 static bool run_clocks(effect *e, double frame) {
     double next;
     while (effect_aim_clocks(e, frame, &next) && next + 1 <= frame) {
@@ -234,7 +235,7 @@ static bool update_grids(effect *e, gpu *device) {
     return true;
 }
 
-// Without a device grids know their bounds only.
+// Without a device grids only know their bounds.
 bool effect_evaluate(effect *e, double frame, gpu *device, bool again) {
     double time = (frame - e->first) / e->fps;
     double dt = e->counter ? (frame - e->last_frame) / e->fps : 0;
@@ -303,7 +304,8 @@ uint64_t effect_render(effect *e, double frame, bool jump) {
 
 // ---- taking over from another effect ----------------------------------------------------------
 
-// The k-th of a kind here is exchanged with the k-th there, so that a second time undoes it.
+// Exchanges the k-th grid of a kind with the k-th of the other effect, so that a second call undoes
+// it.
 static void exchange_grids(effect *e, effect *from) {
     bool *taken = mem_alloc(from->grid_count * sizeof *taken);
     for (size_t i = 0; i < e->grid_count; i++) {

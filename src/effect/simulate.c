@@ -1,24 +1,24 @@
-// Simulations brought to the time of a frame before it is drawn. Where frames were left out (a
-// jump, the first frame, seconds of warming up), they run all the same, with `update` and the
-// numbers of their own time, but without pictures: each in a submit of its own, or in several where
-// it is long.
+// Brings simulations to the time of a frame before it is drawn. Skipped frames (after a jump,
+// before the first frame, for warming up) are simulated too, with `update` and the numbers of their
+// own time, but without pictures: each in a submission of its own, or in several if it is long.
 //
-// A live window waits for this no longer than a moment. It shows the simulation as far as it has
-// come, and goes on with the next picture.
+// A live window waits only briefly for this. It shows the state that the simulation has reached,
+// and continues with the next picture.
 #include "base/clock.h"
 #include "base/error.h"
 #include "effect/effect_impl.h"
 #include "scene/bvh.h"
 #include <math.h>
 
-// Seconds that a live window waits: as long as the rest of a frame takes, within these.
+// Limits of the time that a live window waits, seconds. Within these it waits as long as the rest
+// of a frame takes.
 static const double least_patience = 0.03, most_patience = 0.25;
 
 static double time_of(const effect *e, double frame) {
     return (frame - e->first) / e->fps;
 }
 
-// The next pass that simulates and runs, from `*index` on; NULL: no more.
+// Returns the next pass that simulates and runs, from `*index` on; NULL: there are no more.
 static pass *next_simulation(const effect *e, size_t *index) {
     while (*index < e->pass_count) {
         pass *p = e->passes[(*index)++];
@@ -27,7 +27,7 @@ static pass *next_simulation(const effect *e, size_t *index) {
     return NULL;
 }
 
-// Steps of all simulations until they show a time.
+// Returns how many steps all simulations need to reach a time.
 static int64_t left(const effect *e, double time) {
     int64_t sum = 0;
     pass *p;
@@ -38,7 +38,7 @@ static int64_t left(const effect *e, double time) {
     return sum;
 }
 
-// Whether the record of a frame does all that is left.
+// Returns whether recording a frame does all remaining steps.
 static bool is_near(const effect *e, double time) {
     pass *p;
     for (size_t i = 0; (p = next_simulation(e, &i));)
@@ -61,7 +61,7 @@ static bool is_past(const effect *e, double time) {
     return false;
 }
 
-// Those that are past the frame begin anew, or all continue from a snapshot before it.
+// Simulations that are beyond the frame restart, or all continue from a snapshot before it.
 static void turn_back(effect *e, double frame) {
     double time = time_of(e, frame);
     if (!is_past(e, time) || effect_go_back(e, frame)) return;
@@ -79,7 +79,7 @@ void effect_restart(effect *e) {
     for (size_t i = 0; (p = next_simulation(e, &i));) pass_get_simulation(p)->restart(p);
 }
 
-// The first frame that has not been simulated, not after `frame`.
+// Returns the first frame that has not been simulated, at most `frame`.
 static double next_frame(const effect *e, double frame) {
     double shown = reached(e);
     double next = isfinite(shown) ? floor(shown * e->fps + 1e-6) + e->first + 1 : (double)e->first;

@@ -1,5 +1,5 @@
-// What goes on from frame to frame, to disk and back: the states of all that simulates. Histories
-// of pictures are not kept, they begin anew.
+// Saves and loads the states of all simulations. Histories of pictures are not saved; they start
+// again.
 #include "base/error.h"
 #include "effect/effect_impl.h"
 #include "sim/checkpoint.h"
@@ -11,7 +11,7 @@ typedef struct effect_clock { // as it lies in the file
 
 static const char clock_name[] = "effect/clock";
 
-// The next pass that simulates and runs, from `*index` on; NULL: no more.
+// Returns the next pass that simulates and runs, from `*index` on; NULL: there are no more.
 static pass *next_simulation(const effect *e, size_t *index, const pass_simulation **out) {
     while (*index < e->pass_count) {
         pass *p = e->passes[(*index)++];

@@ -1,4 +1,5 @@
-// Systems of an effect: run frame by frame, told of events, begun anew when time goes back.
+// Systems of an effect: functions of the script that run frame by frame, handle events, and restart
+// when time goes back.
 #include "base/error.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
@@ -86,7 +87,8 @@ static bool is_same(const effect_event *a, const effect_event *b) {
            memcmp(a->at, b->at, sizeof a->at) == 0;
 }
 
-// Of the first that two lists have not in common: its index, and when it is (s); INFINITY: never.
+// Returns the index of the first event that two lists do not share, and its time (s); INFINITY: the
+// lists are equal.
 static size_t first_difference(const effect_event *a, size_t a_count, const effect_event *b,
                                size_t b_count, double *time) {
     size_t i = 0;
@@ -96,7 +98,7 @@ static size_t first_difference(const effect_event *a, size_t a_count, const effe
     return i;
 }
 
-// Events in force from now on. Where that changes what has happened already, all begins anew.
+// Takes a new list of events. If it changes what has happened already, everything restarts.
 static void events_take(effect *e, const effect_event *list, size_t count) {
     effect_systems *s = e->systems;
     effect_event *taken = mem_copy(list, count * sizeof *list);
@@ -202,7 +204,7 @@ bool effect_camera_ray(effect *e, float x, float y, float origin[3], float direc
     return true;
 }
 
-// Where a point is seen. False: behind the camera.
+// Returns the position in the picture of a point. False: it is behind the camera.
 static bool picture_place(const struct frame_block *f, const float point[3], float *x, float *y) {
     mat4 view;
     vec3 p;
@@ -304,12 +306,12 @@ static bool systems_step(effect *e, effect_systems *s) {
     return events_tell(e, s);
 }
 
-// Frames that are left out have no picture to show that they go on.
+// Reports progress, since skipped frames have no picture that shows it.
 static bool tell_progress(effect *e, double done, double whole) {
     return whole <= 1 || effect_tell_progress(e, done, whole);
 }
 
-// A frame whose functions failed is run again by the next picture, from the beginning.
+// A frame whose functions failed runs again for the next picture, from the beginning.
 bool effect_run_systems(effect *e, double frame) {
     effect_systems *s = e->systems;
     if (!s) return true;

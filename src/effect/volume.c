@@ -1,6 +1,6 @@
 // Volumes: fields of an effect on a lattice of cubes, to be read back. A grid of the effect gives
-// its voxels as they are, where they are cubes and no other size is wanted; the medium of a pass is
-// sampled as finely as the finest grid below it. Each field is a bake of its own.
+// its own voxels if they are cubes and no other size is asked for. The medium of a pass is sampled
+// as finely as the finest grid below it. Each field is a bake of its own.
 #include "base/error.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
@@ -94,7 +94,7 @@ static bool choose_field(effect *e, const source *s, const char *name, chosen *l
     return node && ++*count;
 }
 
-// Of a medium what varies in space: the rest is a number, not a grid.
+// Of a medium, only what varies in space is exported; the rest is a number, not a grid.
 static bool choose_all(effect *e, const source *s, chosen *list, size_t *count) {
     const shader_interface *face = s->p ? pass_interface(s->p) : NULL;
     const char *name;
@@ -136,7 +136,8 @@ static float finest_side(const field_grid *grid) {
     return side;
 }
 
-// Where the density of a medium can be at one of these times, whatever frame its grids show now.
+// Returns the box in which the density of a medium can be nonzero at one of these times, whatever
+// frame its grids show now.
 static bool medium_box(effect *e, const field *density, const effect_volume_desc *desc, box3 *out) {
     for (size_t i = 0; i < e->grid_count; i++) e->grids[i]->state.active = e->grids[i]->box;
     double step = fmax(1, (desc->last - desc->first) / MOST_FRAMES);
@@ -197,7 +198,7 @@ static bool make_lattice(effect *e, const source *s, const effect_volume_desc *d
 
 // ---- all of it --------------------------------------------------------------------------------
 
-// Whether its voxels are those of the grid.
+// Returns whether the volume's voxels are those of the grid.
 static bool is_same(const effect_volume *v, const field_grid *grid) {
     return grid && !grid->extruded && memcmp(v->size, grid->size, sizeof v->size) == 0 &&
            memcmp(&v->box.min, &grid->box.min, sizeof v->box.min) == 0 &&

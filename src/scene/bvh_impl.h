@@ -1,4 +1,4 @@
-// The inside of the trees that rays meet, for bvh*.c only.
+// Data of the trees that rays traverse, for bvh*.c only.
 #pragma once
 #include "base/budget.h"
 #include "scene/bvh.h"
@@ -12,7 +12,7 @@ typedef struct tree { // nodes of the forest
     size_t triangles; // of the forest, up to those of this tree and its levels
 } tree;
 
-// A mesh, or instances. What it was placed by last tells what has changed.
+// A mesh, or an instances object, with its last placement, which shows what has changed.
 typedef struct thing {
     scene_mesh *mesh;           // NULL: instances
     scene_instances *instances; // NULL: a mesh
@@ -26,8 +26,8 @@ typedef struct thing {
     struct instance_entry *entries;
 } thing;
 
-// All that is placed are items, one behind the other by their things. On the device they lie in the
-// order of the tree over them.
+// Every placed mesh and instance is an item; the items of a thing are successive. On the device
+// they are in the order of the tree over them.
 struct scene_bvh {
     scene_mesh **meshes;       // alone, then the kinds of each of the instances
     tree *trees;               // per mesh

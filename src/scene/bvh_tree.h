@@ -1,4 +1,4 @@
-// Trees of boxes over the triangles of meshes, one behind the other.
+// Bounding volume hierarchies over the triangles of meshes, one after the other.
 #pragma once
 #include "media/mesh.h"
 #include "scene/bvh_build.h"
@@ -20,8 +20,7 @@ typedef struct bvh_forest { // zero: empty
 
 enum { BVH_MAX_TRIANGLES = (1 << 28) - 1 };
 
-// Adds a tree of all triangles of a level (mesh_get_run) that have an area and are not clear; none:
-// no nodes. Its nodes are those from the count before to that after. False with a message when they
-// are too many.
+// Appends a tree of the triangles of a level (mesh_get_run), without those that have no area or are
+// transparent; when none is left there are no nodes. False with a message when there are too many.
 bool bvh_forest_add(bvh_forest *f, const mesh_data *mesh, uint32_t level);
 void bvh_forest_free(bvh_forest *f);

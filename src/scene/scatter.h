@@ -1,25 +1,26 @@
-// Places spread by chance over a rectangle, none nearer to another than a distance.
+// Random places in a rectangle with a minimum distance between them.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 typedef struct scatter_desc {
-    size_t count;    // at most
-    float middle[3]; // of the rectangle, metres
-    float size[2];   // its sides
-    float distance;  // between places, at least
+    size_t count;    // maximum number of places
+    float middle[3]; // middle of the rectangle (m)
+    float size[2];   // sides of the rectangle (m)
+    float distance;  // minimum distance between places (m)
     uint32_t seed;
-    // Whether a place may stay; it may lift it. Called for those that have room; it need not
-    // return. False of the result: an error, with a message. NULL: all stay.
+    // Called for each place with enough room: sets `*stays`, and may change the height of the
+    // place. It may leave by longjmp. Returns false with a message on an error. NULL: all places
+    // stay.
     bool (*accept)(void *user, float place[3], float chance, bool *stays);
-    void *user;
-    uint32_t *cells; // scatter_cells of them, all zero: memory to work in
+    void *user;      // passed to accept
+    uint32_t *cells; // working memory: scatter_cells() elements, all zero
 } scatter_desc;
 
-size_t scatter_cells(const scatter_desc *desc); // that it takes, at most SCATTER_MAX_CELLS
+size_t scatter_cells(const scatter_desc *desc); // at most SCATTER_MAX_CELLS
 enum { SCATTER_MAX_CELLS = 1 << 22 };
-// Fewer than asked for when no more find room. The same for the same description.
+// Finds places, fewer than `count` when there is no more room. The result depends only on the desc.
 bool scatter_places(const scatter_desc *desc, float (*out)[3], size_t *found);
-// Evenly spread over [0, 1): the same for the same three.
+// Returns a random number, uniform in [0, 1), which depends only on the arguments.
 float scatter_chance(uint32_t seed, uint32_t index, uint32_t what);

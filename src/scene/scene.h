@@ -1,5 +1,5 @@
-// What stands around the volume: camera, sun, sky and meshes. Every number is a field that does
-// not vary in space, so that it can be a constant, a parameter, a curve or a Lua function.
+// The scene around the volume: camera, sun, sky, lights and meshes. Every number is a field that
+// does not vary in space, so that it can be a constant, a parameter, a curve or a Lua function.
 #pragma once
 #include "base/value.h"
 #include "field/field.h"
@@ -55,12 +55,12 @@ typedef struct scene_light {
     const field *softness; // 0..1: part of the cone over which it fades
 } scene_light;
 
-typedef struct scene_node { // a place that meshes and instances may stand in
+typedef struct scene_node { // a transform that meshes and instances can be placed in
     const char *name;
     const field *position;           // vec3, metres
     const field *rotation;           // vec3, degrees about X, then Y, then Z
     const field *scale;              // factor
-    const struct scene_node *parent; // that this stands in; NULL: the world
+    const struct scene_node *parent; // NULL: the world
 } scene_node;
 
 typedef struct scene_material scene_material;
@@ -71,9 +71,9 @@ typedef struct scene_mesh {
     const field *position;                   // vec3, metres
     const field *rotation;                   // vec3, degrees about X, then Y, then Z
     const field *scale;                      // factor
-    const scene_node *parent;                // that it stands in; NULL: the world
-    const struct scene_instances *instances; // instead of all that, one of these; NULL: none
-    uint32_t index, kind;                    // which, as long as it is of this kind
+    const scene_node *parent;                // NULL: the world
+    const struct scene_instances *instances; // the mesh is one of these instances; NULL: it is not
+    uint32_t index, kind;                    // number of the instance, shown while of this kind
     const field *color;                      // vec3, multiplies the material's
     const scene_material *material;          // material.h; NULL: the file's
     gpu_buffer *vertices, *indices;          // made on first use
@@ -114,24 +114,24 @@ bool scene_has(const scene *s, scene_need need);
 
 // A scene with the defaults of the documentation, made of constants in `memory`.
 void scene_init(scene *s, arena *memory);
-// Evaluates camera, sun and sky into the block that shaders read (time and size of the block are
-// the caller's; `last` is as in a first frame). `aspect`: width over height. False when a Lua
-// function failed.
+// Evaluates camera, sun and sky into the block that shaders read. The caller sets the block's time
+// and size; `last` is set as in a first frame. `aspect`: width over height. False with a message
+// when a Lua function failed.
 bool scene_fill_frame(const scene *s, const field_context *context, float aspect,
                       struct frame_block *out);
 
 // Evaluates sun and lights; the sun is the first, whatever its strength.
 bool scene_fill_lights(const scene *s, const field_context *context, struct light_block *out);
 
-// Where the camera stands and what it looks at, metres.
+// Returns the camera's position and target (m).
 bool scene_camera_eye(const scene_camera *c, const field_context *context, vec3 eye, vec3 target);
 
 void scene_mesh_list_memory(const scene_mesh *mesh, budget_list *out); // of what is not uploaded
 bool scene_mesh_upload(scene_mesh *mesh, gpu *g);
-// Exchanges what both have on the device; false when they are not made of the same data.
+// Exchanges the device memory of two meshes. False when they do not have the same data.
 bool scene_mesh_exchange(scene_mesh *mesh, scene_mesh *other);
 void scene_mesh_destroy(scene_mesh *mesh, gpu *g);
 bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, mat4 out);
-// The same and its colour; an error names the mesh.
+// Returns the transform and the colour. False with a message that names the mesh.
 bool scene_mesh_place(const scene_mesh *mesh, const field_context *context, mat4 transform,
                       float tint[4]);

@@ -1,23 +1,23 @@
-// What the triangles of a forest (bvh_tree.h) look like, as lib/surface.glsl reads it: corners with
-// normals, materials, and the texels of all textures one behind the other.
+// Surfaces of the triangles of a forest (bvh_tree.h), for lib/surface.glsl: vertices with normals,
+// materials, and the texels of all textures one after the other.
 #pragma once
 #include "scene/bvh_tree.h"
 
 typedef struct surfaces {    // zero: empty
-    shared_uvec4 *triangles; // of each of the forest: its three vertices and the part it is of
+    shared_uvec4 *triangles; // for each triangle of the forest: its three vertices and its part
     size_t triangle_count, triangle_capacity;
     struct surface_vertex *vertices;
     size_t vertex_count, vertex_capacity;
-    struct surface_material *materials; // of the parts of each mesh
+    struct surface_material *materials; // one for each part of each mesh
     size_t material_count, material_capacity;
     uint16_t (*texels)[4]; // linear, half floats
     size_t texel_count, texel_capacity;
-    bool holes; // some material has
+    bool holes; // a material is transparent in places
 } surfaces;
 
-// Whether something shows through: its colour or its texture is clear in places.
+// Returns whether the part's colour or texture is transparent in places.
 bool surface_has_holes(const mesh_data *mesh, const mesh_part *part);
-// The triangles of the forest up to `end` that have no surface yet are those of `mesh`.
+// Adds surfaces for the forest's triangles up to `end` that have none yet; they belong to `mesh`.
 void surfaces_add(surfaces *s, const bvh_forest *f, size_t end, const mesh_data *mesh);
 void surfaces_free(surfaces *s);
 uint64_t surfaces_texels(const mesh_data *mesh); // of all its textures

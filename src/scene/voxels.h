@@ -1,5 +1,5 @@
-// Meshes as cells of a box, on the device: which body the centre of a cell lies in, how the bodies
-// move, how far away their surface is.
+// Voxelisation of meshes on the device: which body contains the centre of each cell of a box, how
+// the bodies move, and the distance to their surface.
 //
 // Inside is decided per axis by the parity of the crossings before a cell's centre, and by two of
 // the three axes: so a hole in a mesh leaves no streak. What decides ties: corners are rounded to
@@ -27,19 +27,19 @@ typedef enum voxels_rule { VOXELS_AUTO, VOXELS_SOLID, VOXELS_SHELL } voxels_rule
 enum { VOXELS_MAX_SIDE = 1024 };
 
 typedef struct voxels_body { // the same mesh may be several
-    const scene_mesh *mesh;  // where it stands is evaluated with each update
+    const scene_mesh *mesh;  // its transform is evaluated in each update
     voxels_rule rule;
 } voxels_body;
 
 typedef struct voxels_desc {
     box3 box;                  // metres
     uint32_t size[3];          // cells; x a multiple of 4
-    const voxels_body *bodies; // where two meet, the cell is the later one's
-    size_t body_count;         // 0 is fine, and any number that the device has memory for
+    const voxels_body *bodies; // where two overlap, the cell belongs to the later one
+    size_t body_count;         // from 0 to what the device has memory for
     bool distances;            // voxels_write_distance will be called
 } voxels_desc;
 
-// Looks at the meshes; needs no device. NULL with a message.
+// Prepares the meshes. Needs no device. NULL with a message.
 voxels *voxels_create(arena *memory, const voxels_desc *desc);
 extern const kernel_table voxels_kernel_table;
 bool voxels_compile(voxels *v, shader_library *library, const shader_reader *reader);
@@ -50,35 +50,36 @@ bool voxels_allocate(voxels *v, gpu *g); // buffers, all empty; again: does noth
 void voxels_list_memory(const voxels *v, bool distances, budget_list *out);
 void voxels_destroy(voxels *v, gpu *g); // g may be NULL when nothing was built
 
-typedef struct voxels_change { // against the update before
-    bool cells;                // some cells may be another body's, or none's
-    bool motion;               // some body moves otherwise
+typedef struct voxels_change { // changes since the last update
+    bool cells;                // some cells may belong to another body, or to none
+    bool motion;               // the motion of some body has changed
 } voxels_change;
 
-// Inside a frame: brings cells and motion to the context's time. `dt`: seconds since the last
-// update, by which bodies that stand elsewhere now have moved; 0: they were put there, at rest.
+// Updates cells and motions for the context's time, inside a frame. `dt` is the seconds since the
+// last update, from which velocities follow; 0: bodies that have moved are at rest.
 bool voxels_update(voxels *v, gpu *g, const field_context *context, double dt, voxels_change *out);
 
 typedef struct voxels_motion { // of a body: a point p moves by linear + cross(angular, p - centre)
                                // + growth * (p - centre)
-    float3 centre;             // of the mesh's box, metres
+    float3 centre;             // middle of the mesh's box (m)
     float3 linear;             // m/s
     float3 angular;            // rad/s
     float growth;              // 1/s, of a body that is scaled
 } voxels_motion;
 void voxels_get_motion(const voxels *v, size_t body, voxels_motion *out);
 
-// A uint a cell, x fastest: the body's id, which is its place in the list, from 1; 0: none.
+// One uint for each cell, x fastest: the body's number in the list, from 1; 0: none.
 gpu_buffer *voxels_ids(const voxels *v);
 // struct voxel_motion of shared.h by id; the one of id 0 is zero.
 gpu_buffer *voxels_motions(const voxels *v);
 
-// Inside a frame, after an update, of voxels that were made with `distances`: signed distances in
-// metres from the centres of cells to the nearest body, negative within solids, into an image of
-// the cells' size, r16f. Within three cells of a surface exact to 1/100 of a cell, beyond to 1/20.
+// Writes signed distances (m) from the centres of cells to the nearest body, negative within
+// solids, to an r16f image with a texel for each cell. Call it inside a frame after an update;
+// needs voxels_desc.distances. The error is 1/100 of a cell within three cells of a surface, else
+// 1/20.
 bool voxels_write_distance(voxels *v, gpu *g, gpu_image *distance);
 
-// What was done so far, for tests and statistics.
+// Amount of work done so far, for tests and statistics.
 typedef struct voxels_work {
     uint64_t updates; // that found something moved
     uint64_t bodies;  // voxelised, in all

@@ -1,4 +1,4 @@
-// The inside of the voxeliser, for its own files.
+// Data of the voxeliser, for its own files only.
 #pragma once
 #include "kernel/kernel.h"
 #include "scene/voxels.h"

@@ -1,12 +1,12 @@
-// What the voxeliser makes of a mesh, once: points and triangles as its shaders read them, cleared
-// of what would be counted twice, in groups that are voxelised by themselves.
+// Prepares a mesh for voxelisation: points and triangles for the shaders, without duplicates, in
+// groups that are voxelised separately.
 #pragma once
 #include "media/mesh.h"
 #include "scene/voxels.h"
 
-enum { VOXEL_GROUPS = 8 }; // of a mesh, at most
+enum { VOXEL_GROUPS = 8 }; // maximum per mesh
 
-typedef struct voxel_group { // closed parts that do not overlap, or all that is open
+typedef struct voxel_group { // closed parts that do not overlap, or all open parts
     size_t first_item, item_count;
     box3 box;
     float thinnest; // of its triangles: how much of the body is behind them, as part of the mesh's

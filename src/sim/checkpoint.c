@@ -52,7 +52,7 @@ typedef struct batch {
     unsigned char *plain, *packed; // of all, one after the other
 } batch;
 
-// For a part of so many bytes.
+// Makes a batch for a part of `part` bytes.
 static void batch_create(batch *b, uint32_t width, uint64_t part) {
     size_t size = (size_t)BATCH * CHECKPOINT_CHUNK, count = BATCH;
     if (part < size) {
@@ -100,7 +100,7 @@ static bool pack_one(void *user, size_t index) {
     return true;
 }
 
-// Returns the bytes that were added to the file, 0 on failure.
+// Returns the bytes that were added to the file; 0 on failure.
 static uint64_t save_batch(file_draft *file, gpu *g, const checkpoint_part *part, uint64_t at,
                            batch *b) {
     uint64_t left = part->size - at, whole = (uint64_t)BATCH * CHECKPOINT_CHUNK, added = 0;
@@ -219,7 +219,7 @@ static bool read_table(checkpoint *c) {
     return true;
 }
 
-// The next chunk where the file stands, of a part of which `left` bytes are left.
+// Reads the next chunk of a part, of which `left` bytes are left.
 static bool read_chunk(checkpoint *c, uint64_t left, chunk *out) {
     file_chunk *head = &out->head;
     if (!read_bytes(c, head, sizeof *head)) return false;
@@ -270,7 +270,7 @@ checkpoint *checkpoint_open(const char *path) {
     return NULL;
 }
 
-// Of what is in memory.
+// Frees the memory of a checkpoint that is in memory.
 static void checkpoint_release(checkpoint *c) {
     for (size_t i = 0; i < c->count; i++) {
         if (c->device) gpu_buffer_destroy(c->device, c->kept[i].buffer);
@@ -384,7 +384,7 @@ bool checkpoint_load(checkpoint *c, gpu *g, const checkpoint_part *part) {
     return done;
 }
 
-// The line that begins there, as a terminal may be given it: a stranger wrote the file.
+// Copies a line for a terminal, since a stranger may have written the file.
 static const char *show_line(const char *text, char out[LINE_CAP]) {
     if (!*text) return "nothing more";
     snprintf(out, LINE_CAP, "%.*s", (int)strcspn(text, "\n"), text);

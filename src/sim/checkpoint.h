@@ -1,9 +1,9 @@
-// States of simulations, on disk or in memory: named parts, each bytes of the host or a buffer of
+// States of simulations, on disk or in memory: named parts, each bytes on the host or a buffer on
 // the device.
 //
-// The file: a head, a table of the parts, then their content in chunks of CHECKPOINT_CHUNK bytes,
-// each with its hash and, where that makes it smaller, packed. Numbers are little-endian. It is
-// there whole or not at all, and it is read with suspicion: whoever wrote it.
+// A file has a header, a table of the parts, then their content in chunks of CHECKPOINT_CHUNK
+// bytes, each with its hash, and compressed where that makes it smaller. Numbers are little-endian.
+// A file appears complete or not at all. A stranger may have written it, so all of it is checked.
 #pragma once
 #include "base/arena.h"
 #include "gpu/gpu.h"
@@ -13,8 +13,8 @@ enum { CHECKPOINT_VERSION = 1, CHECKPOINT_PARTS = 256, CHECKPOINT_CHUNK = 1 << 2
 typedef struct checkpoint_part {
     const char *name;   // unique, at most 63 letters, digits and _./-
     uint64_t size;      // bytes; 0 to 2^40
-    uint32_t width;     // of a number in it: 1, 2, 4 or 8; packs better
-    gpu_buffer *buffer; // of at least that size; NULL: `bytes`
+    uint32_t width;     // bytes of a number in it: 1, 2, 4 or 8; improves compression
+    gpu_buffer *buffer; // of at least that size; NULL: the content is `bytes`
     void *bytes;
 } checkpoint_part;
 
@@ -26,19 +26,20 @@ typedef struct checkpoint_list { // zero: empty
 void checkpoint_add(checkpoint_list *list, const checkpoint_part *part);
 void checkpoint_list_free(checkpoint_list *list);
 
-// Between frames. `g` may be NULL when no part is a buffer.
+// Saves the parts. Call it between frames. `g` may be NULL when no part is a buffer.
 bool checkpoint_save(const char *path, gpu *g, const checkpoint_part *parts, size_t count);
 
 typedef struct checkpoint checkpoint;
-// Reads the whole file once and checks all hashes, so that what is damaged is known before anything
-// is overwritten.
+// Opens a file, reads all of it and checks all hashes, so that damage is found before anything is
+// overwritten. NULL with a message.
 checkpoint *checkpoint_open(const char *path);
-// The parts as they are now, in memory: what is a buffer stays on the device. Between frames.
+// Copies the parts in memory; copies of buffers stay on the device. Call it between frames.
 checkpoint *checkpoint_keep(gpu *g, const checkpoint_part *parts, size_t count);
-void checkpoint_close(checkpoint *c); // NULL is fine
+void checkpoint_close(checkpoint *c); // NULL is allowed
 bool checkpoint_has(const checkpoint *c, const char *name, uint64_t *size);
-// Between frames: fills the part, whose size must be the file's. On failure its content is lost.
+// Loads a part, whose size must be the file's. Call it between frames. On failure the part's
+// content is undefined.
 bool checkpoint_load(checkpoint *c, gpu *g, const checkpoint_part *part);
-// What must be the same in the file, as text: a part of lines "key = value". The message says which
+// Compares a part of lines "key = value" with `ours`. False with a message that names the key that
 // differs.
 bool checkpoint_require(checkpoint *c, const char *name, const char *ours);

@@ -1,4 +1,4 @@
-// A solver of 2D flow: what its shaders are compiled for, and its state on the device.
+// A solver of 2D flow: the defines of its shaders, and its state on the device.
 #include "sim/flow.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -103,7 +103,7 @@ static const char *const shaders[FLOW_KERNELS] = {
 
 const kernel_table flow_kernel_table = {{names, COUNT_OF(names)}, shaders, COUNT_OF(shaders)};
 
-// What a kernel is compiled with besides; NULL: nothing.
+// Returns the additional define of a kernel; NULL: none.
 static const char *define_of(flow_kernel which) {
     if (which == FLOW_DOWN_FINEST || which == FLOW_UP_FINEST) return "FLOW_FINEST";
     return which == FLOW_FROM_MODES ? "FLOW_BACK" : which == FLOW_REPORT_LAST ? "LAST" : NULL;
@@ -177,7 +177,7 @@ bool flow_build(flow *f, gpu *g, shader_library *library, const shader_reader *r
 
 // ---- state ------------------------------------------------------------------------------------
 
-// Bytes; 0: not needed.
+// Returns the bytes of each buffer; 0: it is not needed.
 static void find_sizes(const flow *f, uint64_t out[FLOW_MEM_COUNT]) {
     const flow_desc *desc = &f->desc;
     const flow_level *last = &f->levels[f->level_count - 1];

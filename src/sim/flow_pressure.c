@@ -1,6 +1,6 @@
-// The pressure of a step: conjugate gradients, preconditioned by a cycle of multigrid, by a
-// transform or by nothing. All that the host decides is how many iterations are recorded; whether
-// they still do anything is decided on the device (flow_begin in shaders/sim/flow/solve.glsl).
+// The pressure of a step: conjugate gradients, preconditioned by a multigrid cycle, by a transform
+// or by nothing. The host only decides how many iterations are recorded; the device decides whether
+// they still do anything (flow_begin in shaders/sim/flow/solve.glsl).
 #include "sim/flow_impl.h"
 #include <string.h>
 

@@ -1,5 +1,5 @@
-// Two dispatches a frame, and a copy of what they came to into one of as many places as frames can
-// be in flight (the same way as lbm_guard.c).
+// Two dispatches per frame, and a copy of their result to one of as many places as frames can be in
+// flight (as in lbm_guard.c).
 #include "sim/flow_impl.h"
 #include <string.h>
 

@@ -1,4 +1,5 @@
-// Velocities, scalars and pressure as they lie, the looks of the last two kept states, and a clock.
+// The state: velocities, scalars and pressure as they are in memory, the images of the last two
+// kept states, and a clock.
 #include "sim/flow_state.h"
 #include "base/error.h"
 #include "base/memory.h"

@@ -1,15 +1,15 @@
-// A step: diffusion, advection with forces and sources, the projection; and what the state looks
-// like after it.
+// A step: diffusion, advection with forces and sources, the projection; then the images of the
+// state.
 #include "base/error.h"
 #include "sim/flow_impl.h"
 #include <math.h>
 #include <string.h>
 
-// Central differences are stable up to 1/4 of a cell's square in a step.
+// Central differences are stable up to 1/4 of the square of a cell per step.
 static const float explicit_limit = 0.2f;
 enum { MOST_STAGES = 30 };
 
-// A thread for each cell, or for each corner of one.
+// Runs a thread for each cell, or for each corner of a cell.
 static bool run_each(const flow *f, gpu *g, kernel *k, bool corners) {
     const uint32_t *size = f->desc.size;
     return kernel_run(k, g, size[0] + corners, size[1] + corners, f->desc.slices);
@@ -32,8 +32,8 @@ static int count_stages(float diffusion) {
     return stages;
 }
 
-// A part of its own, before advection: central differences of a field, added to where that has gone
-// in the step, burst where it goes about a cell.
+// Diffusion is separate from advection: central differences of a field are added where the field
+// was advected to. Within advection it would diverge where the field moves about a cell.
 static bool diffuse(flow *f, gpu *g, const flow_numbers *n) {
     float diffusion = n->viscosity > 0 ? n->viscosity * n->dt / (n->cell * n->cell) : 0;
     if (!(diffusion > 0)) return true;

@@ -1,26 +1,25 @@
-// The pressure without iterations: along x the equation's solutions are sums of modes, which are
-// known and do not disturb each other, so that one equation along y is left for each (Hockney, "A
-// fast direct solution of Poisson's equation using Fourier analysis", 1965). Modes are as the faces
-// are: cosines between closed ones, sines between open ones, quarters of waves between the two.
+// Solves for the pressure without iterations. Along x the solutions are sums of modes, which are
+// known and independent, so that one equation along y is left for each (Hockney, "A fast direct
+// solution of Poisson's equation using Fourier analysis", 1965). The modes depend on the faces:
+// cosines between closed ones, sines between open ones, quarter waves between the two.
 //
-// Sums of modes are products of matrices here, not fast transforms: that takes any faces and any
-// number of cells, and up to 1024 of them it is a matter of microseconds. What obstacles and
-// templates change is not in the modes: with those this is a preconditioner, and multigrid a better
-// one.
+// Sums of modes are products of matrices here, not fast transforms. This works for any faces and
+// any number of cells, and takes microseconds for up to 1024 cells. Obstacles and templates are not
+// represented in the modes: with those this is a preconditioner, and multigrid a better one.
 #include "base/memory.h"
 #include "sim/flow_impl.h"
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
 
-// Where both faces are of a kind, modes look the same, or the same but for their sign, from both
-// ends: halves of the rows say all, and halves of the products are left.
+// With two faces of the same kind, modes are symmetric or antisymmetric: half of each row is
+// enough, and half of the products.
 bool flow_transform_folds(const flow_desc *desc, uint32_t tile) {
     return desc->faces[0] == desc->faces[1] && desc->size[0] % (2 * tile) == 0;
 }
 
-// Mode k of n cells, in cell i, not yet of length 1; and how many waves it has in 2 n cells. Those
-// of even k are the same from both ends, if any are.
+// Returns mode k of n cells at cell i, not normalised, and how many waves it has in 2 n cells.
+// Modes of even k are the symmetric ones, if any are.
 static double mode_of(const flow_desc *desc, uint32_t k, double i, double *waves) {
     const double n = desc->size[0], middle = pi * (i + 0.5) / n;
     const bool open[2] = {desc->faces[0] == FLOW_OPEN, desc->faces[1] == FLOW_OPEN};

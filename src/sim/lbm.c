@@ -1,9 +1,10 @@
-// A solver: what its shaders are compiled for, and its state on the device.
+// A lattice Boltzmann solver: the defines of its shaders, and its state on the device.
 //
-// The state is one row of slots, each a direction of all elements: those of pairs first, then those
-// at rest; first the air's, then each scalar's. Slots go into as few buffers as the device can bind
-// whole, an even number into each, so that the two directions of a pair, which change places in
-// each step, are never in two buffers: then a shader knows the buffer while it is compiled.
+// The state is one row of slots, each of which is a direction of all elements: first those of
+// pairs, then those at rest; first the air's, then each scalar's. Slots are stored in as few
+// buffers as the device can bind as a whole, an even number in each. The two directions of a pair,
+// which change places in each step, are therefore always in the same buffer, and a shader knows
+// that buffer when it is compiled.
 #include "sim/lbm.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -58,7 +59,7 @@ static uint32_t choose_lanes(const lbm_desc *desc, const gpu_profile *device) {
     return desc->precision == LBM_F16 ? device->lbm_half_lanes : 4;
 }
 
-// Four elements of two cells side by side, where these are to be had.
+// Uses bundles of four elements of two cells where possible.
 static uint32_t choose_bundle(const lbm_desc *desc) {
     return desc->lanes == 2 && desc->size[2] % 8 == 0 ? 4 : 1;
 }

@@ -1,5 +1,6 @@
-// Lattice Boltzmann: air that moves, and up to three scalars that it carries, on a regular lattice
-// on the device. Lattice units only: a cell is 1 long, a step 1 of time, air at rest has density 1.
+// A lattice Boltzmann solver on the device: air that moves on a regular lattice, and up to three
+// scalars that it carries. All units are lattice units: a cell has length 1, a step takes time 1,
+// air at rest has density 1.
 //
 // Layout, which shaders/sim/lbm/state.glsl reads: an element is n = 4 cells that lie nz / n apart
 // along z, so that cell (x, y, z) is lane z / (nz / n) of element x + nx * (y + ny * (z % (nz /
@@ -31,7 +32,7 @@ typedef enum lbm_order {                                       // of the state i
 typedef enum lbm_face { LBM_PERIODIC, LBM_WALL, LBM_SLIP, LBM_OPEN, LBM_INFLOW } lbm_face;
 
 enum {
-    LBM_ALONG_Z = 4, // what cells along z are a multiple of
+    LBM_ALONG_Z = 4, // the number of cells along z is a multiple of this
     LBM_MAX_SCALARS = 3,
     LBM_MAX_DEFINES = 32,
     LBM_MAX_BUFFERS = 16
@@ -44,70 +45,70 @@ typedef struct lbm_desc { // structure: what shaders are compiled for
     lbm_set set;
     lbm_scalar_set scalar_set;
     lbm_collision collision;
-    lbm_forcing forcing;      // LBM_WEIGHTS_ONLY wants LBM_BGK
-    lbm_beside beside_bodies; // what carries scalars on D3Q7 there
+    lbm_forcing forcing;      // LBM_WEIGHTS_ONLY requires LBM_BGK
+    lbm_beside beside_bodies; // how scalars on D3Q7 are carried beside bodies
     lbm_precision precision;
     lbm_face faces[6]; // -x +x -y +y -z +z
     uint32_t scalars;  // smoke, temperature, second species: in this order
     bool subgrid;      // Smagorinsky
-    bool force;        // an image says where what force acts: lbm_set_force
+    bool force;        // an image gives a force that varies in space: lbm_set_force
     bool bodies;       // there are solids, which may move
-    // How the state lies; left 0: as suits the device.
+    // Layout of the state in memory. 0: chosen by the device.
     uint32_t lanes;  // cells of an element, 4; or 2, with LBM_F16
     lbm_order order; // directions by turns, in blocks of a few elements, or each as a whole
 } lbm_desc;
 
-typedef struct lbm_numbers { // of a step; read anew each step
-    float tau;               // relaxation time of the air: viscosity (tau - 1/2) / 3; above 1/2
+typedef struct lbm_numbers { // parameters of a step; they may change with each step
+    float tau;               // relaxation time of the air, above 1/2: viscosity (tau - 1/2) / 3
     float scalar_tau[LBM_MAX_SCALARS]; // diffusion (tau - 1/2) * lbm_scalar_speed
     float smagorinsky;                 // constant of the subgrid term, about 0.1 to 0.2
     float acceleration[3];
-    float buoyancy[LBM_MAX_SCALARS][3]; // acceleration by 1 of a scalar above ambient
+    float buoyancy[LBM_MAX_SCALARS][3]; // acceleration by a scalar that is 1 above ambient
     float inflow[6][3];                 // velocity at faces LBM_INFLOW and LBM_OPEN
     float inflow_scalar[6][LBM_MAX_SCALARS];
-    float ambient[LBM_MAX_SCALARS]; // what scalars begin with, and decay to
-    float decay[LBM_MAX_SCALARS];   // part of the difference to ambient that goes in a step
-    float max_speed;                // velocities are kept below; 0: they are not
+    float ambient[LBM_MAX_SCALARS]; // initial value of scalars, to which they decay
+    float decay[LBM_MAX_SCALARS];   // part of the difference to ambient that is lost in a step
+    float max_speed;                // limit of velocities; 0: none
 } lbm_numbers;
 
 lbm *lbm_create(arena *memory, const lbm_desc *desc); // NULL with a message
 const lbm_desc *lbm_get_desc(const lbm *l);
 uint32_t lbm_depth(const lbm *l); // elements, or bundles of them, along z; after lbm_build
-// Square of the speed of sound of a scalar set: 1/4 (D3Q7) or 1/3.
+// Returns the square of the speed of sound of a scalar set: 1/4 (D3Q7) or 1/3.
 float lbm_scalar_speed(lbm_scalar_set set);
 
-// Compiles all that lbm_build would, without a device. `reader` may be NULL.
+// Compiles everything that lbm_build needs, without a device. `reader` may be NULL.
 bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader);
-// Shaders and pipelines; any thread. Afterwards lbm_defines and lbm_bind can be asked.
+// Builds shaders and pipelines. Any thread. lbm_defines and lbm_bind are valid afterwards.
 bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader);
-// State; contents undefined until lbm_reset. What is there, of an exchange too, stays.
+// Allocates the state. Its content is undefined until lbm_reset; an existing state is kept.
 bool lbm_allocate(lbm *l, gpu *g);
 // After lbm_build: adds what lbm_allocate, and the first two steps that are kept, will take.
 void lbm_list_memory(const lbm *l, budget_list *out);
 void lbm_destroy(lbm *l, gpu *g);
 
-// Inside a frame: air at rest, scalars at ambient, step 0.
+// Sets air at rest, scalars at ambient, and step 0. Call it inside a frame.
 bool lbm_reset(lbm *l, gpu *g, const lbm_numbers *numbers);
-// Inside a frame: records one step. `keep`: leaves the moments of the state before the step.
+// Records one step, inside a frame. `keep`: writes the moments of the state before the step.
 bool lbm_step(lbm *l, gpu *g, const lbm_numbers *numbers, bool keep);
-uint64_t lbm_steps(const lbm *l); // since the reset
+uint64_t lbm_steps(const lbm *l); // since lbm_reset
 
-// Of the last kept state (0) and of the one kept before it (1); NULL: there is none. For each cell,
-// x fastest, then y, then z, a uvec4 of eight halves: velocity, density - 1, scalars, then 1 where
-// a body or a wall is, else 0.
+// Returns the moments of the last kept state (0) or of the one kept before it (1). NULL: there is
+// none. Each cell, x fastest, then y, then z, has a uvec4 of eight halves: velocity, density - 1,
+// scalars, then 1 for a body or a wall, else 0.
 gpu_buffer *lbm_moments(const lbm *l, int which);
 
 typedef struct lbm_body { // a rigid motion
-    float centre[3];      // cells from the lattice's corner: a point that moves with `linear`
-    float linear[3];      // in a step
-    float angular[3];     // radians in a step
+    float centre[3];      // cells from the lattice's corner: the point that moves with `linear`
+    float linear[3];      // per step
+    float angular[3];     // radians per step
 } lbm_body;
 
 typedef struct lbm_bodies {
-    gpu_buffer *ids;        // of each cell the body in it or 0: a uint, x fastest
-    bool changed;           // the ids are not those of the last call
-    const lbm_body *bodies; // [id - 1]
-    uint32_t count;         // no id is greater
+    gpu_buffer *ids;        // one uint for each cell, x fastest: the body in it, or 0
+    bool changed;           // the ids differ from those of the last call
+    const lbm_body *bodies; // indexed by id - 1
+    uint32_t count;         // the greatest possible id
 } lbm_bodies;
 
 // With desc.bodies, inside a frame, before the first step after a reset and whenever bodies move:
@@ -120,17 +121,17 @@ bool lbm_set_bodies(lbm *l, gpu *g, const lbm_numbers *numbers, const lbm_bodies
 // whole lattice, sampled linearly. It must be set before the first step.
 void lbm_set_force(lbm *l, gpu_image *image, float scale);
 
-// What a shader that includes sim/lbm/state.glsl must be compiled with, and its uniform
-// "lbm_parity" set to; after lbm_build.
+// Return the defines for a shader that includes sim/lbm/state.glsl, and the value of its uniform
+// "lbm_parity"; after lbm_build.
 size_t lbm_defines(const lbm *l, shader_define out[LBM_MAX_DEFINES]);
 uint32_t lbm_parity(const lbm *l);
-// Binds the solver's own buffers to the slots of a kernel, which kernel_find has found by the names
-// of lbm_kernel_table.
+// Binds the solver's buffers to the slots of a kernel. `places` comes from kernel_find with the
+// names of lbm_kernel_table.
 void lbm_bind(const lbm *l, kernel *k, const kernel_place *places);
 extern const kernel_table lbm_kernel_table;
-// Buffers that hold the populations, in order. All that a state consists of: sim/lbm_state.h.
+// Lists the buffers of the populations, in order. sim/lbm_state.h has the whole state.
 size_t lbm_buffers(const lbm *l, gpu_buffer **out, size_t capacity);
 
-// Gives each the state, moments and count of steps of the other; false when their structure is not
-// the same.
+// Exchanges the states, moments and counts of steps of two solvers. False when their structures
+// differ.
 bool lbm_exchange(lbm *a, lbm *b);

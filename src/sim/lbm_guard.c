@@ -1,6 +1,6 @@
-// A thread looks at every stride-th cell, its group adds up what its threads saw, and one more
-// group what the groups did: two dispatches that read each moment once, 16 bytes a cell. Their
-// order is fixed, and so are the sums. The record is copied out as an image, a row of words, into
+// A thread checks every stride-th cell, its group adds up the results of its threads, and one more
+// group those of the groups: two dispatches that read each moment once, 16 bytes per cell. The
+// order is fixed, and therefore the sums are. The record is copied as an image, a row of words, to
 // one of as many places as frames can be in flight.
 #include "sim/lbm_guard.h"
 #include "base/memory.h"

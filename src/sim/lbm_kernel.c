@@ -1,4 +1,4 @@
-// Kernels of a solver: compiled with its structure, bound to its buffers.
+// Kernels of a solver: compiled with its structure, and bound to its buffers.
 #include "base/memory.h"
 #include "sim/lbm_impl.h"
 

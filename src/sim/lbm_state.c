@@ -1,5 +1,6 @@
-// Populations, the moments of the last two kept states, what cells are and were, waves at open
-// faces: buffers as they lie, and a clock that says which of them takes its turn.
+// The state: populations, the moments of the last two kept states, present and earlier kinds of
+// cells, and waves at open faces. Buffers are saved as they are in memory, with a clock that says
+// which of them is next.
 #include "sim/lbm_state.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -51,7 +52,7 @@ static const char *name(arena *memory, const char *label, const char *part) {
     return arena_format(memory, "%s/%s", label, part);
 }
 
-// Those that there are; moments only once states were kept.
+// Lists the buffers that exist; moments exist only once states were kept.
 static size_t list_buffers(const lbm *l, arena *memory, const char *label,
                            checkpoint_part out[PARTS]) {
     const lbm_walls *w = &l->walls;
@@ -97,7 +98,7 @@ void lbm_state_list(const lbm *l, const char *label, const char *more, checkpoin
     for (size_t i = 0; i < count; i++) checkpoint_add(out, &buffers[i]);
 }
 
-// Makes what a state with this clock has.
+// Allocates what a state with this clock needs.
 static bool take_clock(lbm *l, gpu *g, const state_clock *clock) {
     if (clock->steps > UINT64_C(1) << 60 || clock->kept > clock->steps || clock->current > 1)
         return err_set("the checkpoint's clock is damaged");

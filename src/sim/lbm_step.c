@@ -1,10 +1,10 @@
 // A step is one dispatch over all elements, or bundles of them, unless there are faces that air can
-// pass: what these touch, the skin, is dear. Then
-// - on GPUs its threads come first, and the others, the core, after them in the same dispatch: the
-//   few that take long are under way while the others work, and no group has some of both;
-// - scalars of 27 directions, whose core is faster without what faces need, and software devices,
-//   which take both ways of a branch, have two dispatches, and shaders that know of one part alone.
-// Each element has places in memory of its own, so their order does not matter.
+// pass. The elements that touch these, the skin, are expensive. Then |- on GPUs the threads of the
+// skin come first, and the others, the core, follow in the same dispatch: | the few slow ones run
+// while the others work, and no group has both kinds; |- scalars of 27 directions, whose core is
+// faster without the code for faces, and software devices, | which execute both sides of a branch,
+// use two dispatches, with a shader for each part. |Each element has its own memory, so the order
+// does not matter.
 #include "base/memory.h"
 #include "sim/lbm_impl.h"
 #include <string.h>
@@ -62,7 +62,7 @@ static bool at_face(const lbm *l, uint32_t x, uint32_t y, uint32_t layer) {
     return false;
 }
 
-// In the order of memory, so that neighbours in the list read what is side by side.
+// Lists the skin in the order of memory, so that neighbours in the list read adjacent memory.
 static uint32_t list_skin(const lbm *l, uint32_t *out) {
     const uint32_t nx = l->desc.size[0], layer = nx * l->desc.size[1];
     uint32_t count = 0;
@@ -71,7 +71,8 @@ static uint32_t list_skin(const lbm *l, uint32_t *out) {
     return count;
 }
 
-// Of threads: of the skin as many as the lattice has columns in a layer, where the core follows.
+// Where the core follows in the same dispatch, the skin gets as many threads as the lattice has
+// columns in a layer.
 static void set_threads(lbm *l) {
     lbm_stepper *s = &l->stepper;
     const uint32_t layer = l->desc.size[0] * l->desc.size[1];

@@ -1,8 +1,9 @@
-// Boundaries of a solver on the host's side: what its shaders are compiled for, the bytes that say
-// what cells are, the waves that open faces remember, and the motions of bodies.
+// Boundaries of a solver on the host: defines of its shaders, the kinds of cells, the waves that
+// open faces store, and the motions of bodies.
 //
-// What cells are is found anew (cells.comp) only when bodies have come to lie in other cells: into
-// one of two buffers, so that what a body has left is seen by comparing with the other.
+// The kinds of cells are computed again (cells.comp) only when bodies have moved to other cells:
+// into one of two buffers, so that a comparison with the other finds the cells that a body has
+// left.
 #include "base/error.h"
 #include "base/memory.h"
 #include "sim/lbm_impl.h"
@@ -94,7 +95,7 @@ void lbm_walls_reset(lbm *l, gpu *g) {
     w->filled = true;
 }
 
-// Where bodies are must be said anew.
+// The positions of bodies must be set again afterwards.
 void lbm_walls_exchange(lbm *a, lbm *b) {
     lbm_walls *x = &a->walls, *y = &b->walls, was = *x;
     x->known = y->known = false;
@@ -147,7 +148,7 @@ static lbm_motion motion_of(const lbm_body *body) {
     return out;
 }
 
-// True in `moves` if any does; in `changed` if the device knows them otherwise.
+// Sets `moves` if any body moves, and `changed` if the device has other motions.
 static void note_motions(lbm_walls *w, const lbm_bodies *bodies, bool *moves, bool *changed) {
     const size_t count = (size_t)bodies->count + 1, known = w->motion_count;
     MEM_RESERVE(w->motions, count, w->motion_capacity);

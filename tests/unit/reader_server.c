@@ -154,7 +154,7 @@ static bool lie_of_a_frame(const isolate_call *call) {
 static bool lie_of_a_file(const isolate_call *call) {
     const char *name = call->bytes;
     int lie = name[strlen(name) - 1] - '0';
-    const vdb_sent_info untold = {.count = VDB_UNTOLD};
+    const vdb_sent_info untold = {.count = VDB_NO_EXTENTS};
     if (lie == 10) return isolate_put(call, &untold, sizeof untold);
     vdb_sent_info info = {.count = 1, .text = 1};
     vdb_sent_grid grid = {.components = 1, .name = 2, .type = 2};
