@@ -1,0 +1,95 @@
+"""A device with small limits (ROIL_SMALL_DEVICE): every shipped effect draws what it draws otherwise,
+or is refused when it is loaded, with a line that names the limit."""
+import os
+import re
+from concurrent.futures import ThreadPoolExecutor
+
+from lib.program import SOURCE, Case, main
+
+SMALL_DEVICE = {"ROIL_SMALL_DEVICE": "1"}
+EFFECTS = os.path.join(SOURCE, "effects")
+LATEST, SIMULATED = 8, 2  # frames: later ones take long, with air that is simulated much longer
+# What a variant of its kernels would have to be made for, and what the line says.
+REFUSED = {
+    "barrel_chain.lua": ["pieces: ", "has 5 storage images in a stage; the device allows 4",
+                         "(maxPerStageDescriptorStorageImages)"],
+}
+# Their air takes 20 s of a processor to its first frame, with the kernels of smoke.lua and slices.lua:
+# drawn in long runs alone.
+SLOW = {"cigarette.lua", "creature.lua", "cube.lua", "cumulus.lua", "dye.lua", "figure.lua", "plumes.lua"}
+LONG = os.environ.get("ROIL_LONG_TESTS") == "1"
+# Results of another order of sums, seen in pictures of 8 bits.
+MOST_FLIP = "0.005"
+
+
+def list_effects():
+    return sorted(name for name in os.listdir(EFFECTS) if name.endswith(".lua"))
+
+
+def latest_frame(name):
+    with open(os.path.join(EFFECTS, name), encoding="utf-8") as script:
+        return SIMULATED if re.search(r"\b(lbm|slices) *\{", script.read()) else LATEST
+
+
+def find_pictures():
+    """Of each effect: a frame, and the settings of its first golden picture."""
+    found = {}
+    with open(os.path.join(SOURCE, "tests/golden/pictures.txt"), encoding="utf-8") as lines:
+        for line in lines:
+            words = line.split()
+            if words and words[0][0] != "#":
+                found.setdefault(words[1], (min(int(words[2]), latest_frame(words[1])), words[3:]))
+    return found
+
+
+class SmallDevice(Case):
+    def draw(self, name, frame, settings, output, environment=None):
+        return self.run_program("render", os.path.join(EFFECTS, name), "--frames", str(frame), "--size",
+                                "64x36", "-o", output, *settings, environment=environment)
+
+    def compare(self, name, frame, settings):
+        small, usual = f"{name}.small.png", f"{name}.png"
+        for output, environment in ((small, SMALL_DEVICE), (usual, {"ROIL_VALIDATE": "0"})):
+            done = self.draw(name, frame, settings, output, environment)
+            if done.returncode != 0:
+                return f"{name}: {done.stderr}"
+        done = self.run_program("compare", usual, small, "--max-flip", MOST_FLIP)
+        return None if done.returncode == 0 else f"{name}: {done.stdout}{done.stderr}"
+
+    def test_every_effect_is_checked(self):
+        good = [name for name in list_effects() if name not in REFUSED]
+        told = self.succeeds("check", *(os.path.join(EFFECTS, name) for name in good), environment=SMALL_DEVICE)
+        self.assertEqual(told.count(": good\n"), len(good), told)
+
+    def test_what_does_not_fit_is_refused_when_it_is_loaded(self):
+        for name, says in REFUSED.items():
+            path = os.path.join(EFFECTS, name)
+            for command in (["check", path], ["render", path, "--frames", "1", "--size", "64x36", "-o", "out.png"]):
+                message = self.fails(1, [name, *says], *command, environment=SMALL_DEVICE)
+                self.assertTrue(re.match(rf"roil: .*{name}:\d+: ", message), message)
+            self.assertFalse(os.path.exists(self.path("out.png")))
+            self.succeeds("check", path)
+
+    def test_every_other_effect_draws_the_same(self):
+        pictures = find_pictures()
+        drawn = [name for name in list_effects() if name not in REFUSED]
+        self.assertEqual([name for name in drawn if name not in pictures], [])
+        drawn = [name for name in drawn if LONG or name not in SLOW]
+        with ThreadPoolExecutor(2) as pool:
+            found = pool.map(lambda name: self.compare(name, *pictures[name]), drawn)
+        self.assertEqual([wrong for wrong in found if wrong], [])
+
+    def test_a_shader_of_a_user_is_refused(self):
+        self.write("wide.comp", "writeonly uniform image2D color; //= output rgba16f : what is drawn\n"
+                                "layout(local_size_x = 32, local_size_y = 16) in;\n"
+                                "void main() { imageStore(color, ivec2(gl_GlobalInvocationID.xy), vec4(1.0)); }\n")
+        effect = ('local fx = effect { name = "wide" }\n'
+                  'fx.output = shader { "wide.comp" }.color\nreturn fx\n')
+        self.write("effect.lua", effect)
+        self.succeeds("check", "effect.lua")
+        self.fails(1, ["effect.lua:2: ", "has 512 threads in a work group; the device allows 256",
+                       "(maxComputeWorkGroupInvocations)"], "check", "effect.lua", environment=SMALL_DEVICE)
+
+
+if __name__ == "__main__":
+    main()
