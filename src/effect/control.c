@@ -233,16 +233,22 @@ void effect_reset_control(effect *e, control *c) {
     c->face.moved = NULL;
 }
 
-bool effect_set_control(effect *e, control *c, const char *text) {
-    if (strcmp(text, c->face.initial) == 0 && !is_structure(c)) {
-        effect_reset_control(e, c);
-        return true;
-    }
+static bool control_take(effect *e, control *c, const char *text) {
     forget_old(e, c);
     if (!set(e, c, text)) return false;
     if (c->face.kind == EFFECT_CONTROL_PARAM) effect_forget_moved(e, c->face.index);
     note_moved(e, c, text);
-    if (strcmp(text, c->face.initial) == 0) c->face.moved = NULL;
+    return true;
+}
+
+bool effect_set_control(effect *e, control *c, const char *text) {
+    bool same = strcmp(text, c->face.initial) == 0;
+    if (same && !is_structure(c)) {
+        effect_reset_control(e, c);
+        return true;
+    }
+    if (!control_take(e, c, text)) return false;
+    if (same) c->face.moved = NULL;
     return true;
 }
 
@@ -281,13 +287,20 @@ void effect_copy_settings(effect *e, const effect_setting *settings, size_t coun
     e->applied = arena_alloc(&e->memory, count * sizeof *e->applied);
 }
 
+// What the command line says of a uniform that the script leaves open is said, even where it is
+// what the uniform is now: a source may give it another value later.
+static bool control_apply(effect *e, control *c, const char *text) {
+    bool open = c->face.kind == EFFECT_CONTROL_UNIFORM && !c->original;
+    return open ? control_take(e, c, text) : effect_set_control(e, c, text);
+}
+
 bool effect_apply_to(effect *e, control *c) {
     for (size_t i = 0; i < e->setting_count; i++) {
         const effect_setting *s = &e->settings[i];
         if (strcmp(s->name, c->face.name) != 0) continue;
         e->applied[i] = true;
         if (s->initial && strcmp(s->initial, c->face.initial) != 0) continue;
-        if (!effect_set_control(e, c, s->text) && !s->initial) return false;
+        if (!control_apply(e, c, s->text) && !s->initial) return false;
     }
     return true;
 }

@@ -266,6 +266,28 @@ static void settings_apply_when_what_they_name_is_declared(void **state) {
     ok(effect_check_settings(s->e));
 }
 
+// A source that is added later, as `shade` to a `reference`, does not take its place.
+static void setting_that_is_the_default_is_not_inherited_over(void **state) {
+    stage *s = *state;
+    for (int given = 0; given < 2; given++) {
+        const effect_setting settings[] = {{"second.steps", "128", NULL}};
+        open_with(s, settings, given ? 1 : 0);
+        pass *first = add_march(s, "first");
+        ok(pass_set_uniform(first, "steps", number(s, 16)) && pass_declare(first));
+        pass *second = add_march(s, "second");
+        ok(pass_declare(second));
+        const effect_control *steps = effect_find_control(s->e, "second.steps");
+        assert_string_equal(steps->initial, "128");
+        assert_true(given ? steps->moved && strcmp(steps->moved, "128") == 0 : !steps->moved);
+        pass_add_uniforms_of(second, first);
+        const shader_uniform *declared;
+        const field *own = pass_get_uniform(second, steps->index);
+        const field *inherited = pass_inherited_uniform(second, steps->index, &declared);
+        assert_true(inherited && inherited->value[0] == 16);
+        assert_true(given ? own && own->value[0] == 128 : !own);
+    }
+}
+
 static void bad_setting_fails_what_it_names(void **state) {
     stage *s = *state;
     static const struct {
@@ -325,6 +347,7 @@ int main(void) {
         STAGE_TEST(uniform_out_of_range_or_of_another_type_is_refused),
         STAGE_TEST(words_and_toggles_of_a_users_shader_are_set_by_word),
         STAGE_TEST(settings_apply_when_what_they_name_is_declared),
+        STAGE_TEST(setting_that_is_the_default_is_not_inherited_over),
         STAGE_TEST(bad_setting_fails_what_it_names),
         STAGE_TEST(setting_that_names_nothing_is_reported_with_the_nearest),
         STAGE_TEST(settings_are_copied),
