@@ -1,4 +1,4 @@
-// Which rows of a sweep are measured.
+// Chooses which rows of a sweep are measured.
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/str.h"
@@ -44,7 +44,7 @@ static const char *value_of(const sweep_row *row, const char *axis) {
     return "";
 }
 
-// Of every axis that is named, the row has one of the values that are.
+// Returns whether the row has one of the named values of every named axis.
 static bool is_among(const sweep_row *row, const bench_choice *c, const char *const *axes) {
     for (size_t i = 0; i < c->only_count; i++) {
         bool found = false;

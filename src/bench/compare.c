@@ -1,4 +1,4 @@
-// Two runs of a sweep: what became faster or slower by more than noise.
+// Compares two runs of a sweep: what became faster or slower by more than noise.
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "bench/sweep.h"
@@ -36,7 +36,7 @@ static void change_judge(bench_change *c, const bench_figure *before, const benc
     if (apart && c->ratio < 1 / (1 + margin)) c->verdict = BENCH_FASTER;
 }
 
-// The row with the same values of the axes; numbers of rows differ where a sweep has grown.
+// Returns the row with the same values of the axes; numbers of rows differ when a sweep has grown.
 static const bench_row *find_match(const bench_results *r, const bench_row *row) {
     for (size_t i = 0; i < r->row_count; i++) {
         const bench_row *other = &r->rows[i];

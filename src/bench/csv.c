@@ -1,4 +1,5 @@
-// Results as results.csv (RFC 4180): a line a row, and a column for whatever any row has.
+// Results as results.csv (RFC 4180): a line for each row, and a column for everything that any row
+// has.
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
@@ -23,7 +24,7 @@ static void add_name(names *n, const char *name) {
     n->items[n->count++] = name;
 }
 
-// "all" stands behind the passes also where a later row brings another pass.
+// "all" comes after the passes, even when a later row has another pass.
 static names time_names(const bench_results *r, bench_times (*get)(const bench_row *row)) {
     names n = {0};
     bool all = false;
@@ -91,7 +92,7 @@ static void add_quoted(strbuf *out, const char *text) {
     strbuf_append(out, "\"", 1);
 }
 
-// Spreadsheets run what begins so, unless it is a number.
+// Spreadsheets execute texts that begin so, unless they are numbers.
 static bool looks_like_formula(const char *text) {
     if (!text[0] || !strchr("=+-@\t\r", text[0])) return false;
     char *end;
@@ -99,7 +100,7 @@ static bool looks_like_formula(const char *text) {
     return end == text || *end || !isfinite(value) || strchr(text, 'x') || strchr(text, 'X');
 }
 
-// Quoted where it must be. An apostrophe before what looks like a formula makes it a text.
+// Quotes a text if necessary. An apostrophe before what looks like a formula makes it a text.
 static void add_text(strbuf *out, const char *text) {
     if (out->length && out->text[out->length - 1] != '\n') strbuf_append(out, ",", 1);
     strbuf safe = {0};

@@ -1,4 +1,4 @@
-// Drawing an effect for a row: time by pass and frame, samples counted, pictures kept.
+// Draws an effect for a row: times of passes and frames, counted samples, pictures.
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -44,7 +44,7 @@ bool bench_draw(bench_drawing *d, double frame) {
     return may_go_on(d) && roil_render(d->effect, frame);
 }
 
-// Waits: what is submitted without end would run long after a limit is over.
+// Waits for the frame, because an unlimited queue of frames would run long after a time limit.
 static bool draw_and_wait(bench_drawing *d, double frame) {
     roil_time times[MAX_PASSES];
     if (!bench_draw(d, frame)) return false;
@@ -59,8 +59,8 @@ bool bench_draw_warmup(bench_drawing *d) {
     return true;
 }
 
-// The row's frames over and over, one at least: the first frame of an effect uploads and compiles
-// what the driver has put off, and clocks rise only under load.
+// Draws the row's frames again and again, at least one: the first frame of an effect uploads data
+// and compiles what the driver has postponed, and clocks rise only under load.
 static bool drawing_settle(bench_drawing *d) {
     double end = clock_seconds() + d->session->desc.settle;
     size_t drawn = 0;
@@ -189,7 +189,7 @@ static bool read_counters(bench_drawing *d, bench_row *row, arena *memory) {
     return true;
 }
 
-// Counting takes time, so it is done in a frame of its own.
+// Counts in a frame of its own, since counting takes time.
 static bool count_samples(bench_drawing *timed, bench_row *row, arena *memory) {
     bench_session *s = timed->session;
     bench_drawing d;

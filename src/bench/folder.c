@@ -1,4 +1,4 @@
-// Temporary folders: copies of effects that are edited, caches that begin empty.
+// Temporary folders: copies of effects that are edited, and empty caches.
 #include "base/error.h"
 #include "base/file.h"
 #include "base/str.h"
@@ -16,7 +16,7 @@
 
 extern char **environ;
 
-// Those that are in use: a process that runs out of memory ends at once, and removes them first.
+// Folders in use: a process that runs out of memory removes them before it ends.
 enum { FOLDERS = 8 };
 static char folders[FOLDERS][PATH_CAP];
 
@@ -47,7 +47,7 @@ static int remove_one(const char *path, const struct stat *info, int kind, struc
     return remove(path);
 }
 
-// In a process of its own, which has memory where this one has none.
+// Removes a folder in another process, which has memory when this one has none.
 static bool remove_apart(const char *folder) {
     static const char *const nothing[] = {NULL};
     const char *const arguments[] = {"/bin/rm", "-rf", "--", folder, NULL};

@@ -1,5 +1,5 @@
-// results.json read back. Strangers may have written it: every value is checked for its type and
-// its range, texts lose control characters, and counts are limited.
+// Reads results.json. Strangers may have written it: every value is checked for its type and its
+// range, texts lose control characters, and counts are limited.
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
@@ -90,7 +90,7 @@ static bool get_numbers(const reader *r, const json_t *from, const char *key, do
     return true;
 }
 
-// An object, or an empty one where there is none. `size`: how many members it has.
+// Returns an object, or an empty one where there is none. `size`: the number of its members.
 static bool get_object(const reader *r, const json_t *from, const char *key, json_t **out,
                        size_t *size) {
     *out = json_object_get(from, key);
@@ -189,7 +189,7 @@ static bool get_error(const reader *r, const json_t *from, bench_row *row) {
            get_number(r, error, "ssim", &row->ssim) && get_number(r, error, "flip", &row->flip);
 }
 
-// Only names that we give: they are opened.
+// Accepts only names that this program gives, because the files are opened.
 static bool get_thumbnail(const reader *r, const json_t *from, bench_row *row) {
     const char *name;
     if (!get_text(r, from, "thumbnail", &name)) return false;
@@ -341,7 +341,7 @@ bool bench_from_json(const json_t *root, const char *file, bench_results *out) {
            read_tuned(&r, root, out) && read_rows(&r, root, out);
 }
 
-// Below `folder`, or where that is NULL the file that the user named.
+// Reads a file below `folder`; without one, the file that the user named.
 static bool read_file(const char *folder, const char *file, bench_results *out) {
     void *data;
     size_t size;

@@ -11,7 +11,7 @@
 enum { DIGITS = 8 };
 static const double EXACT_WHOLE = 9007199254740992; // 2^53
 
-// Names of files and devices need not be UTF-8; JSON must.
+// Converts to UTF-8, which JSON requires: names of files and devices can be anything.
 static json_t *text(const char *from) {
     json_t *value = json_string(from ? from : "");
     if (value) return value;

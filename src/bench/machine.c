@@ -1,4 +1,4 @@
-// Where and when something was measured.
+// Describes where and when something was measured.
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
@@ -12,7 +12,8 @@
 
 enum { FILE_MAX = 1 << 20, SHOWN_DIGITS = 7 };
 
-// Value of a line "name : value" or NAME="value" of a file of the system; "" when it is not there.
+// Returns the value of a line "name : value" or NAME="value" of a system file; "" when it is
+// missing.
 static const char *line_of(const char *file, const char *name, arena *memory) {
     char line[1024];
     const char *found = "";

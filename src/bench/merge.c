@@ -1,4 +1,4 @@
-// Parts of one sweep, measured apart, become one.
+// Combines parts of one sweep that were measured separately.
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"

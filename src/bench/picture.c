@@ -1,4 +1,4 @@
-// Pictures of rows: small ones to look at, and how far they are from others.
+// Pictures of rows: thumbnails, and their difference from other pictures.
 #include "base/error.h"
 #include "base/memory.h"
 #include "bench/run_parts.h"
@@ -35,7 +35,8 @@ bool bench_picture_load(const char *folder, const char *file, bench_picture *out
     return done;
 }
 
-// Mean of the pixels that a small one covers. Of sRGB values: it is looked at, not measured.
+// Averages the pixels that a small one covers. It averages sRGB values, since thumbnails are looked
+// at and not measured.
 static void picture_shrink(const bench_picture *p, uint32_t width, uint32_t height, uint8_t *out) {
     for (uint32_t y = 0; y < height; y++)
         for (uint32_t x = 0; x < width; x++) {

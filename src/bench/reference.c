@@ -1,5 +1,5 @@
-// Pictures of references: drawn once, kept as files, so that the next row and the next run of the
-// same sweep find them.
+// Pictures of references: drawn once and stored as files, so that the next row and the next run of
+// the same sweep find them.
 #include "base/error.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -50,7 +50,7 @@ static bool save_picture(bench_drawing *d, hash128 h, size_t i) {
     return done;
 }
 
-// The effect stands still until the frame has its samples.
+// Draws the same frame until it has its samples.
 static bool reference_trace(bench_drawing *d, double frame, uint32_t samples) {
     bool done = bench_draw(d, frame);
     while (done && roil_samples(d->effect) < samples) {

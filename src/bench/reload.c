@@ -1,6 +1,6 @@
-// How soon an edit is seen: from the close of the file to the submission of the first frame that
-// shows it. Drawing is left out: the device is idle when the file is written, and is not waited for
-// after. A copy of the effect's folder is edited.
+// Measures how soon an edit is visible: from the close of the file to the submission of the first
+// frame that shows it. Drawing is not included: the device is idle when the file is written, and is
+// not waited for afterwards. A copy of the effect's folder is edited.
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -82,7 +82,7 @@ static bool calm_down(reload *m) {
     return roil_read(roil_live_effect(m->live), false, m->pixels);
 }
 
-// In place, as most editors write.
+// Writes in place, as most editors do.
 static bool write_script(const reload *m, const char *text) {
     FILE *file = fopen(m->path, "we");
     if (!file) return err_set("%s: %s", m->path, strerror(errno));

@@ -1,5 +1,5 @@
-// Results become the tree of results.json with pictures in the place of their names, and that a
-// page (scripts/report).
+// Makes a page from results: the tree of results.json with pictures instead of their names is
+// passed to scripts/report.
 #include "bench/report.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -23,7 +23,7 @@ static void add_base64(strbuf *out, const unsigned char *bytes, size_t size) {
     }
 }
 
-// A PNG file as an address that holds it; NULL where there is none. `*room`: bytes that are left.
+// Returns a PNG file as a data URL; NULL when there is none. `*room`: bytes that are left.
 static json_t *picture(const char *folder, const char *name, size_t *room) {
     static const unsigned char magic[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     char path[PATH_CAP];

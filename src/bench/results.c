@@ -1,4 +1,4 @@
-// Results in memory: rows are copied in, so that an arena holds all of them.
+// Results in memory: rows are copied, so that one arena holds all of them.
 #include "bench/results.h"
 #include "base/error.h"
 #include "base/memory.h"

@@ -36,7 +36,7 @@ static bool same_place(const walk *w, const search_point *a, const search_point 
     return memcmp(a->rungs, b->rungs, w->desc->axis_count * sizeof *a->rungs) == 0;
 }
 
-// Fills cost and error; false when the search has to end.
+// Measures a point. False when the search must end.
 static bool walk_visit(walk *w, search_point *p) {
     for (size_t i = 0; i < w->count; i++)
         if (same_place(w, &w->points[i], p)) {
@@ -55,7 +55,7 @@ static bool within(const walk *w, const search_point *p) {
     return (w->desc->by_error ? p->error : p->cost) <= w->desc->limit;
 }
 
-// The place `by` rungs away; false where there is none.
+// Returns the point `by` rungs away. False when there is none.
 static bool step_to(const walk *w, const search_point *from, size_t axis, int by,
                     search_point *out) {
     *out = *from;
@@ -67,7 +67,7 @@ static bool step_to(const walk *w, const search_point *from, size_t axis, int by
 
 // ---- greedy steps -------------------------------------------------------------------------------
 
-// What a step gains for what it spends; 0 when it gains nothing.
+// Returns the gain of a step relative to its cost; 0 when it gains nothing.
 static double worth(const walk *w, const search_point *to, bool up) {
     double saved = w->at.cost - to->cost, lost = to->error - w->at.error;
     double gain = up ? -lost : saved, spent = up ? -saved : lost;
@@ -83,7 +83,7 @@ typedef struct candidate {
     bool fresh;   // measured from where the walk is now
 } candidate;
 
-// A rung that changes nothing may lead to one that does.
+// A rung that changes nothing may be on the way to one that does.
 static void walk_look(walk *w, size_t axis, bool up, bool until_within, candidate *c) {
     c->worth = 0;
     for (int far = 1; far <= LONGEST_STEP && c->worth <= 0; far++) {
@@ -94,7 +94,7 @@ static void walk_look(walk *w, size_t axis, bool up, bool until_within, candidat
     c->fresh = true;
 }
 
-// Steps in one direction: until the limit is kept, or as long as it is.
+// Takes steps in one direction: until the limit is kept, or as long as it is.
 static void walk_go(walk *w, bool up, bool until_within) {
     candidate all[SEARCH_MAX_AXES];
     size_t count = w->desc->axis_count;
@@ -121,7 +121,7 @@ static bool differ_only(const walk *w, const search_point *a, const search_point
     return true;
 }
 
-// What a step did where it was measured last.
+// Returns the effect of a step where it was measured last.
 static bool known_step(const walk *w, size_t axis, size_t from, size_t to, difference *out) {
     for (size_t i = w->count; i-- > 0;)
         for (size_t k = w->count; k-- > 0;) {
@@ -136,7 +136,7 @@ static bool known_step(const walk *w, size_t axis, size_t from, size_t to, diffe
     return false;
 }
 
-// The sum of known steps; one that is not known is taken to do what its neighbour does.
+// Returns the sum of known steps; an unknown one is assumed to equal its neighbour.
 static bool known_steps(const walk *w, size_t axis, int by, difference *out) {
     size_t from = w->at.rungs[axis];
     search_point to;
@@ -187,7 +187,7 @@ static bool improves(const walk *w, const search_point *p) {
                              : p->error < w->at.error * (1 - SAME_ERROR);
 }
 
-// What lies beside the end of the walk, on the side where it did not come from.
+// Measures the neighbours of the walk's end, on the side that it did not come from.
 static void look_around(walk *w) {
     for (size_t i = 0; i < w->desc->axis_count && !w->stopped; i++) {
         search_point p;
@@ -228,8 +228,8 @@ static size_t changes(const walk *w, const search_point *p) {
     return count;
 }
 
-// Of two that are as good in what is minimised: the one that is better otherwise, else the one that
-// changes less.
+// Of two points that are equally good in what is minimised, prefers the one that is better
+// otherwise, or else the one that changes less.
 static bool preferred(const walk *w, const search_point *a, const search_point *b, bool by_cost) {
     double x = by_cost ? a->error : a->cost, y = by_cost ? b->error : b->cost;
     double same = by_cost ? SAME_ERROR : w->desc->noise;
@@ -237,7 +237,7 @@ static bool preferred(const walk *w, const search_point *a, const search_point *
     return changes(w, a) < changes(w, b);
 }
 
-// The best of what was measured. Where nothing keeps the limit, what comes nearest to it.
+// Returns the best measured point; when none keeps the limit, the nearest to it.
 static search_point walk_choose(const walk *w, bool *kept) {
     double least = (double)INFINITY;
     for (size_t i = 0; i < w->count; i++) *kept = *kept || within(w, &w->points[i]);
@@ -255,7 +255,7 @@ static search_point walk_choose(const walk *w, bool *kept) {
     return best ? *best : w->points[0];
 }
 
-// Steps to where the limit is kept; from the end of all axes when it is not on the way.
+// Steps to where the limit is kept, starting at the end of all axes when it is not on the way.
 static void reach_limit(walk *w) {
     bool up = w->desc->by_error;
     walk_go(w, up, true);

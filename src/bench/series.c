@@ -1,4 +1,4 @@
-// Values that are measured, by name, and what they come to.
+// Collects measured values by name, and summarises them.
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "base/str.h"

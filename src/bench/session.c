@@ -1,4 +1,4 @@
-// A session: one device through which all rows go.
+// A session: one device that measures all rows.
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -24,7 +24,8 @@ static bool make_cache(bench_session *s) {
     return setenv("ROIL_CACHE_DIR", path, 1) == 0 || err_set("%s: cannot be used", path);
 }
 
-// Whoever reads the variable later, as the report of a sweep, must not make the folder again.
+// Restores the variable, so that later readers, such as the report of a sweep, do not create the
+// folder again.
 static void leave_cache(const bench_session *s) {
     if (s->earlier_cache)
         setenv("ROIL_CACHE_DIR", s->earlier_cache, 1);
@@ -33,8 +34,8 @@ static void leave_cache(const bench_session *s) {
     bench_folder_remove(s->cache);
 }
 
-// Pictures of an earlier run: of other rows, or by another program. The folder is the user's: only
-// names that we give.
+// Removes pictures of an earlier run, of other rows or by another program. The folder is the
+// user's, so only names that this program gives are removed.
 static bool forget_pictures(const bench_session *s) {
     static const char *const patterns[] = {"rows/[0-9][0-9][0-9][0-9].png",
                                            "reference/" HEX_8 HEX_8 HEX_8 HEX_8 "-*.png"};
@@ -94,7 +95,7 @@ bool bench_is_stopped(const bench_session *s) {
 
 // ---- one row ------------------------------------------------------------------------------------
 
-// Frames of a range of seconds: those whose time lies in it.
+// Returns the frames whose time is within a range of seconds.
 static bool resolve_frames(const bench_drawing *d, const bench_job *job, bench_row *row,
                            arena *memory) {
     roil_effect_info info = roil_get_info(d->effect);

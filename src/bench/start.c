@@ -1,6 +1,6 @@
-// How soon a new process of this program is done: `roil check` of an effect, or its first frame.
-// Caches of roil and of the driver lie in a folder of their own, warmed by a run that does not
-// count, or emptied before each.
+// Measures how soon a new process of this program is done: `roil check` of an effect, or its first
+// frame. Caches of roil and of the driver are in a folder of their own, which is filled by a first
+// run that does not count, or emptied before each run.
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -14,7 +14,7 @@
 
 static const char program[] = "/proc/self/exe";
 
-// Where roil, Mesa and NVIDIA's driver keep what they compiled.
+// Variables that set the cache folders of roil, Mesa and NVIDIA's driver.
 static const char *const cache_variables[] = {
     "ROIL_CACHE_DIR", "XDG_CACHE_HOME", "MESA_SHADER_CACHE_DIR", "__GL_SHADER_DISK_CACHE_PATH"};
 
@@ -57,7 +57,7 @@ static bool build_arguments(starter *m) {
     return true;
 }
 
-// Processes that are started inherit the environment.
+// Child processes inherit the environment.
 static void enter_cache(starter *m) {
     for (size_t i = 0; i < COUNT_OF(cache_variables); i++) {
         const char *value = getenv(cache_variables[i]);

@@ -1,4 +1,4 @@
-// A sweep from its file to its results.
+// Measures a sweep, from its file to its results.
 #include "bench/sweep.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -61,7 +61,8 @@ static hash128 add_text(hash128 h, const char *text) {
     return hash_combine(h, hash_bytes(text, strlen(text)));
 }
 
-// Content of the effect's file, so that rows of before and after an edit are not mixed.
+// Hashes the content of the effect's file, so that rows from before and after an edit are not
+// mixed.
 static hash128 add_effect(hash128 h, const sweep_row *row) {
     void *data;
     size_t size;
@@ -146,7 +147,7 @@ static void results_describe(bench_results *r, const sweep *s, roil *device) {
     describe_reference(r, s);
 }
 
-// Rows of an earlier run that was interrupted.
+// Takes rows of an earlier run that was interrupted.
 static bool take_earlier(bench_results *r, const char *folder) {
     bench_results old;
     char path[PATH_CAP];
@@ -242,8 +243,8 @@ static bool same_names(const sweep_row *a, const sweep_row *b) {
     return same;
 }
 
-// A name that no row's effect has is said before anything is measured. What is wrong in some rows
-// only shows when their turn comes.
+// Reports a name that no row's effect has before anything is measured. A name that is wrong in some
+// rows is only found when these are measured.
 static bool check_names(const sweep *s, const bool *chosen) {
     roil *r = roil_create(&(roil_desc){.no_device = true});
     arena memory = {0};

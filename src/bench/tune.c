@@ -1,8 +1,8 @@
-// A search (search.h) whose points are rows: settings are measured as a sweep's are, against the
+// A search (search.h) whose points are rows: settings are measured as those of a sweep, against the
 // effect at its highest quality or path traced.
 //
-// What is measured has a hash without the goal: a second search for another goal takes over what
-// the first has measured.
+// The hash of what is measured does not include the goal, so a second search for another goal takes
+// over what the first has measured.
 #include "bench/tune.h"
 #include "base/clock.h"
 #include "base/error.h"
@@ -16,7 +16,7 @@
 #include <string.h>
 
 enum { PLACES = 3, RUN = 1, LONG_RUN = 8, MOST_COMPARED = 8, EFFECT_MAX = 16 << 20 };
-// What times may differ by themselves, part of them: measured, but not below and above these.
+// Limits of the measured relative noise of times.
 static const double LEAST_NOISE = 0.01, MOST_NOISE = 0.2;
 static const double SURE = 2.5;    // two rows are apart by so many times that by chance, rarely
 static const double SETTLE = 0.25; // seconds that a row is drawn before it is timed
@@ -38,8 +38,8 @@ typedef struct tuning {
     bool failed;
 } tuning;
 
-// Where the device is the processor, its time a core: what a frame takes when nothing else runs.
-// There the clock tells as much of the neighbours.
+// Where the device is the processor, uses its time per core, which is what a frame takes when
+// nothing else runs. The clock would also measure other programs.
 static const bench_figure *figure_of(const bench_results *r, const bench_row *row) {
     const bench_time *time = bench_main_time(row);
     return r->by_process ? bench_get_time(&row->cpu, "process") : time ? &time->ms : NULL;
@@ -56,7 +56,7 @@ double tune_row_error(const bench_row *row, tune_error error) {
     return error == TUNE_FLIP ? row->flip : row->psnr;
 }
 
-// PSNR as a size of what is wrong, which falls to 0.
+// Converts PSNR to an error that falls to 0.
 static double error_size(double value, tune_error error) {
     return error == TUNE_FLIP ? value : pow(10, -value / 20);
 }
@@ -67,7 +67,7 @@ static void add_setting(bench_settings *s, const char *name, const char *value) 
     s->items[s->count++] = (roil_setting){name, value};
 }
 
-// The settings of all rows, then those axes that are not where the effect has them.
+// Returns the settings of all rows, then those of the axes that differ from the effect's.
 static bench_settings settings_at(const tuning *t, const size_t *rungs, arena *memory) {
     const tune_order *o = t->order;
     bench_settings s = {arena_alloc(memory, (o->setting_count + SEARCH_MAX_AXES) * sizeof *s.items),
@@ -144,8 +144,8 @@ static bool measure_row(tuning *t, const size_t *rungs) {
     return done;
 }
 
-// By how much the time of one frame differs from one repeat to the next, for the median of all;
-// 0: not known.
+// Returns how much the time of one frame differs between repeats, as the median of all frames; 0:
+// unknown.
 static double noise_of(const bench_results *r, const bench_row *row) {
     const bench_figure *ms = figure_of(r, row);
     size_t frames = row->frame_count;
@@ -158,7 +158,7 @@ static double noise_of(const bench_results *r, const bench_row *row) {
     return sum / (double)frames / sqrt((double)ms->count);
 }
 
-// Every row tells how noisy times are here; the first, whether there is anything to search.
+// Every row shows how noisy times are; the first one shows whether there is anything to search.
 static bool tuning_learn(tuning *t, const bench_row *row) {
     bool good = row->compared && !isnan(tune_row_ms(t->results, row));
     if (good) {
@@ -201,7 +201,8 @@ static bool has_memory(roil_effect *e) { // passes that need the frames before
     return false;
 }
 
-// Runs of frames that end at places spread over the effect, whose last ones are compared.
+// Chooses runs of frames that end at frames spread over the effect; the last frame of each is
+// compared.
 static void choose_frames(tuning *t, roil_effect *e) {
     const tune_order *o = t->order;
     t->frames = o->frames;

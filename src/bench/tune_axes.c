@@ -1,4 +1,4 @@
-// Which controls of an effect are of its quality, and the values that are worth trying.
+// Chooses the controls that affect an effect's quality, and values to try.
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/str.h"
@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What is more of it: nearer to the truth, or only what the effect happens to have, as the octaves
-// of a noise, which are its look.
+// What the reference has: the best value, or the effect's own, as for the octaves of a noise, which
+// are a matter of its look.
 typedef enum truth { TRUTH_MORE, TRUTH_NOW } truth;
 
 typedef struct rule {
@@ -27,7 +27,7 @@ static const float octaves[] = {1, 2, 3, 4, 5, 6, 7, 8, -1};
 static const float amounts[] = {0, 0.5f, 1, -1};
 static const float powers[] = {1, 2, 4, 8, 16, -1};
 
-// A march that takes its light from `lighting` looks neither for shadows nor for what is scattered.
+// A march that takes its light from `lighting` computes neither shadows nor scattering.
 static const rule rules[] = {
     {"steps", NULL, NULL, true, TRUTH_MORE, parts},
     {"resolution", "march", NULL, false, TRUTH_MORE, scales},
@@ -82,7 +82,7 @@ static const char *number_text(float value, arena *memory) {
     return kept;
 }
 
-// Rising and without repeats; the value of now is among them.
+// Adds a number in rising order, if it is not in the list. The value of now is always in it.
 static void add_number(float *all, size_t *count, float value) {
     size_t at = *count;
     while (at > 0 && all[at - 1] > value) at--;
@@ -111,8 +111,8 @@ static void take_numbers(const roil_control *c, const float *values, bool factor
     out->reference = t == TRUTH_NOW ? out->start : count - 1;
 }
 
-// Words in their order, which is from cheap to dear; numbers up to the second above that of now,
-// since what doubles in three dimensions is soon too much for any device.
+// Takes words in their order, from cheap to expensive, and numbers up to the second above that of
+// now, since what doubles in three dimensions soon exceeds any device.
 static void take_words(const roil_control *c, truth t, tune_axis *out) {
     static const char *const truths[] = {"false", "true"};
     const char *const *words = c->type == ROIL_BOOL ? truths : c->words;
@@ -132,7 +132,7 @@ static void axis_swap(tune_axis *a, size_t i, size_t k) {
     a->start = a->start == i ? k : a->start == k ? i : a->start;
 }
 
-// Baking is cheaper than not to: the word for that it is not done goes last.
+// Baking is cheaper than not baking, so the word for the latter is moved to the end.
 static void put_exact_last(tune_axis *a) {
     static const char *const words[] = {"false", "off", "none", "exact"};
     for (size_t i = 0; i + 1 < a->count; i++)
@@ -174,7 +174,8 @@ static bool same_value(const roil_control *c, const char *text) {
     return end != text && !*end && (float)value == c->value[0];
 }
 
-// "16:32:64". Where what the effect has now is not among them, the search begins with the best.
+// Parses "16:32:64". When the effect's value is not in the list, the search begins with the best
+// one.
 static bool take_given(const roil_control *c, const char *text, arena *memory, tune_axis *out) {
     *out = (tune_axis){.name = arena_string(memory, c->name), .start = SEARCH_MAX_RUNGS};
     char *at = arena_string(memory, text), *colon;

@@ -1,4 +1,4 @@
-// The meshes as rays see them: their trees, and what their surfaces are like.
+// Meshes for rays: their trees and their surfaces.
 #include "scene/bvh.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -24,7 +24,8 @@ static uint32_t widen(scene_bvh *b, uint32_t root) {
     return below;
 }
 
-// A level is met by shaders only: its nodes, as the host walks them, make room for the next.
+// Only shaders trace levels of detail, so the host's nodes of one level are replaced by those of
+// the next.
 static bool add_levels(scene_bvh *b, const mesh_data *data, uint32_t count,
                        struct bvh_levels *out) {
     const uint32_t end = (uint32_t)b->forest.node_count;
@@ -104,7 +105,8 @@ static uint64_t triangles_of(const mesh_data *mesh, bool levels) {
     return mesh->index_count / 3 + (levels ? mesh->level_index_count / 3 : 0);
 }
 
-// Before they are made: of items, and of triangles with the nodes over them.
+// Estimates the bytes of all items, and of triangles with the nodes over them, before they are
+// allocated.
 static uint64_t bytes_of(scene_mesh *const *meshes, size_t count, scene_instances *const *instances,
                          size_t instances_count, bool levels) {
     const uint64_t item = sizeof(struct bvh_instance) + sizeof(struct instance_entry) +

@@ -1,5 +1,5 @@
-// What the parts of all meshes look like in a frame, for passes that show them by rays: what their
-// files say, and on top of it what scripts say of them.
+// The look of the parts of all meshes in a frame, for passes that show them by rays: from their
+// files, changed by what the script sets.
 #include "base/memory.h"
 #include "scene/bvh_impl.h"
 #include "scene/material.h"
@@ -20,7 +20,7 @@ bool scene_bvh_glows(const scene_bvh *b) {
     return false;
 }
 
-// The first mesh that has the tree of another.
+// Returns the first mesh that has the same tree as another.
 static size_t first_of_tree(const scene_bvh *b, size_t mesh) {
     size_t i = 0;
     while (b->trees[i].root != b->trees[mesh].root || b->trees[i].end != b->trees[mesh].end) i++;

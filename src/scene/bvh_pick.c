@@ -1,4 +1,4 @@
-// A single ray on the host, through the trees that shaders walk; the twin of lib/bvh.glsl.
+// Traces a single ray on the host, through the trees that shaders trace; the twin of lib/bvh.glsl.
 #include "scene/bvh_impl.h"
 #include <math.h>
 #include <string.h>
@@ -46,7 +46,7 @@ static bool meet_triangle(ray *r, const struct bvh_triangle *t) {
     return true;
 }
 
-// The triangle of an item that the ray meets first, -1: none.
+// Returns the first triangle of an item that the ray hits; -1: none.
 static int64_t walk_item(const scene_bvh *b, const struct bvh_instance *item, ray *r) {
     int64_t found = -1;
     for (uint32_t i = item->root; i != BVH_DONE;) {
@@ -60,7 +60,7 @@ static int64_t walk_item(const scene_bvh *b, const struct bvh_instance *item, ra
     return found;
 }
 
-// As in the space of an item: its direction is not made a unit vector again.
+// Transforms a ray to the space of an item. Its direction is not normalised again.
 static ray to_item(const ray *r, const struct bvh_instance *item) {
     vec3 origin, way;
     for (int row = 0; row < 3; row++) {

@@ -1,5 +1,5 @@
-// Where all that rays can meet stands in a frame. A thing that is as it was is left alone; of
-// instances, those whose entries are.
+// Places everything that rays can hit in a frame. Things that have not changed are left alone, and
+// so are single instances.
 #include "base/error.h"
 #include "base/memory.h"
 #include "scene/bvh_impl.h"
@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-// The box of a tree's root, moved into the world: all eight corners, and a little more for
+// Transforms the box of a tree's root to the world: all eight corners, enlarged a little for
 // rounding.
 static void world_box(const struct bvh_node *root, mat4 transform, struct bvh_instance *out) {
     vec3 box[2];
@@ -28,7 +28,7 @@ static void world_box(const struct bvh_node *root, mat4 transform, struct bvh_in
     }
 }
 
-// False where nothing would be seen of it: scaled to nothing, or out of all numbers.
+// False when nothing would be visible: the scale is zero, or a number is not finite.
 static bool invert_transform(mat4 transform, struct bvh_instance *out) {
     mat4 inverse;
     float size = glm_mat4_det(transform);
@@ -54,7 +54,7 @@ static void item_put(scene_bvh *b, size_t item, const struct bvh_instance *made)
     run_mark(b->changed, b->item_at[item]);
 }
 
-// `mesh`: among those of the trees.
+// `mesh` is an index among the meshes of the trees.
 static void place_item(scene_bvh *b, size_t item, size_t mesh, mat4 transform,
                        struct bvh_instance *made) {
     const tree *t = &b->trees[mesh];
@@ -107,7 +107,7 @@ static void place_instances(scene_bvh *b, thing *t, bool all) {
     }
 }
 
-// What multiplies the colours of each kind. `same`: becomes false where it has changed.
+// Returns the colour factor of each kind. `same` becomes false when one has changed.
 static bool tint_kinds(thing *t, const field_context *context, bool *same) {
     scene_mesh *const *kinds;
     size_t count = t->instances ? scene_instances_kinds(t->instances, &kinds) : 0;

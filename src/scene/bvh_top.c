@@ -1,6 +1,6 @@
-// The tree over all that is placed. When something has moved its boxes are fitted anew; when they
-// have come to cost more than they did it is built anew (Lauterbach et al., "RT-DEFORM: Interactive
-// ray tracing of dynamic scenes using BVHs", 2006, section 3.3). A few items are one leaf.
+// The tree over everything that is placed. When something has moved, its boxes are refitted. When
+// their cost has grown too much, the tree is rebuilt (Lauterbach et al., "RT-DEFORM: Interactive
+// ray tracing of dynamic scenes using BVHs", 2006, section 3.3). A few items form a single leaf.
 #include "base/memory.h"
 #include "scene/bvh_impl.h"
 #include "scene/runs.h"
@@ -34,7 +34,7 @@ static bvh_bounds item_box(const struct bvh_instance *item) {
     return box;
 }
 
-// A box of nothing is where no ray goes.
+// An empty box is placed where no ray goes.
 static void set_box(struct bvh_node *node, const bvh_bounds *box) {
     for (int a = 0; a < 3; a++) {
         bool empty = box->low[a] > box->high[a];
@@ -65,7 +65,7 @@ void bvh_top_moved(scene_bvh *b, size_t place) {
     if (b->top_count) b->stale[b->leaf_of[place]] = 1;
 }
 
-// Children lie behind their parents.
+// Children are stored after their parents, so the order is walked backwards.
 static void top_fit(scene_bvh *b) {
     struct bvh_node *nodes = b->forest.nodes;
     for (uint32_t i = b->top_count; i-- > 0;) {
@@ -90,8 +90,8 @@ static void top_fit(scene_bvh *b) {
     }
 }
 
-// The area of all boxes of the tree by that of the items': what does not change when all moves, or
-// one item moves far away.
+// Returns the area of all boxes relative to that of the items. It does not change when everything
+// moves, or when one item moves far away.
 static float cost(const scene_bvh *b) {
     double nodes = 0, items = 0;
     for (uint32_t i = 0; i < b->top_count; i++) {
@@ -119,7 +119,7 @@ static uint32_t add_leaf(void *user, const bvh_piece *pieces, size_t count) {
     return first;
 }
 
-// An item that is nowhere has its place in the tree all the same, in the middle of the others.
+// An item that is not visible still has a place in the tree, in the middle of the others.
 static bvh_piece *make_pieces(const scene_bvh *b) {
     bvh_piece *pieces = mem_alloc(b->item_count * sizeof *pieces);
     for (size_t i = 0; i < b->item_count; i++) {
@@ -144,7 +144,7 @@ static void top_reorder(scene_bvh *b, const uint32_t *order) {
     memset(b->changed, 1, run_marks(b->item_count));
 }
 
-// Where everything is in it; all of it is new.
+// Records the position of every node and item. All of the tree is new.
 static void top_link(scene_bvh *b) {
     for (uint32_t i = 0; i < b->top_count; i++) {
         const struct bvh_node *node = &b->forest.nodes[i];

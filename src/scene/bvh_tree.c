@@ -1,4 +1,4 @@
-// Triangles that can be seen become pieces of a tree, and its leaves runs of triangles.
+// Makes trees: visible triangles become pieces, and leaves become ranges of triangles.
 #include "scene/bvh_tree.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -51,7 +51,7 @@ static void add_pieces(builder *b, uint32_t part, uint32_t level) {
     }
 }
 
-// Mean of a texture, linear. Rays see no more of it than that.
+// Returns the mean of a texture, linear. Rays use no more of it than that.
 static void mean_color(const mesh_texture *texture, float out[3]) {
     float linear[256]; // of sRGB: IEC 61966-2-1
     for (int i = 0; i < 256; i++) {

@@ -1,4 +1,4 @@
-// Of the children of a node those that rays meet most often, the largest, give way to their own
+// The children of a node that rays visit most often, the largest, are replaced by their own
 // children until there are four.
 #include "scene/bvh_wide.h"
 #include <string.h>
@@ -18,7 +18,7 @@ static float area(const struct bvh_node *node) {
     return bvh_bounds_area(&box);
 }
 
-// The largest that has children of its own; -1: none has.
+// Returns the largest child that has children of its own; -1: none has.
 static int choose_child(const struct bvh_node *nodes, const uint32_t *children, int count) {
     int chosen = -1;
     float largest = -1;

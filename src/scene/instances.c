@@ -1,4 +1,4 @@
-// Entries lie as the device reads them; those that have changed are marked.
+// Instances are stored as the device reads them; changed ones are marked.
 #include "scene/instances.h"
 #include "base/error.h"
 #include "base/memory.h"

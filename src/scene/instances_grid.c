@@ -1,5 +1,5 @@
-// About one place a cell, by counting sort. What is found is gathered whole and then sorted, since
-// the nearest come first.
+// A counting sort into cells with about one place each. Results are collected completely and then
+// sorted, since the nearest come first.
 #include "scene/instances_grid.h"
 #include "base/memory.h"
 #include <math.h>

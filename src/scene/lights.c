@@ -13,7 +13,7 @@ static bool evaluate_place(const field *node, const field_context *context, vec3
     return true;
 }
 
-// A colour times a number.
+// Evaluates a colour times a number.
 static bool evaluate_color(const field *color, const field *factor, float scale,
                            const field_context *context, struct light_entry *out) {
     float value[4], strength;
@@ -37,7 +37,7 @@ static bool fill_sun(const scene_sun *sun, const field_context *context, struct 
     return true;
 }
 
-// The cone's edge is soft by the cosine, as that of Blender's spot lights.
+// The edge of the cone is smoothed in the cosine, as Blender's spot lights are.
 static bool fill_spot(const scene_light *light, const field_context *context,
                       struct light_entry *out) {
     vec3 target, axis;

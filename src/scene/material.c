@@ -1,5 +1,6 @@
-// A material's colour and texture become those of the mesh's parts, made for it alone: whatever
-// reads parts sees them. Its colour is white there, and the field is a factor of all it shows.
+// A material's colour and texture become those of the mesh's parts, which are copied for it, so
+// that everything that reads parts sees them. The colour is then white there, and the field
+// multiplies all of it.
 #include "scene/material.h"
 #include "base/error.h"
 #include "scene/scene_impl.h"
@@ -22,7 +23,7 @@ void scene_mesh_set_material(scene_mesh *mesh, const scene_material *material, a
     data->texture_count = material->texture ? 1 : 0;
 }
 
-// Zero at all times. A number that has a name can be set at any.
+// Returns whether a number is zero at all times. A number with a name can be set at any time.
 static bool is_none(const scene_material *m, const field *node) {
     if (m->name) return false;
     if (!field_is_constant(node)) return false;

@@ -88,7 +88,7 @@ bool scene_mesh_exchange(scene_mesh *mesh, scene_mesh *other) {
     return true;
 }
 
-// One place, within what it stands in.
+// Returns the transform of one placement within its parent.
 static bool place_matrix(const field *const place[3], const field_context *context, mat4 out) {
     float position[4], rotation[4], scale[4];
     if (!scene_evaluate(place[0], context, position) ||

@@ -1,10 +1,10 @@
-// A copy takes about as long as a few hundred bytes more of the one before it.
+// A copy takes about as long as a few hundred more bytes in the copy before it.
 #include "scene/runs.h"
 #include <string.h>
 
 enum { GAP = 4 }; // unmarked blocks that a copy goes on over
 
-// The block behind a run that begins with a marked one.
+// Returns the block after a run that begins with a marked block.
 static size_t run_end(const uint8_t *marks, size_t first, size_t blocks) {
     size_t end = first + 1;
     for (size_t i = end; i < blocks && i < end + GAP; i++)

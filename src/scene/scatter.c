@@ -1,6 +1,7 @@
-// Dart throwing: a place by chance stays if no other is too near, which a grid tells whose cells
-// hold one place at most (Bridson, "Fast Poisson disk sampling in arbitrary dimensions", 2007,
-// section 2). Unlike his, places do not grow out of each other: a few are as evenly spread as many.
+// Dart throwing: a random place is kept if no other is too near. This is tested with a grid whose
+// cells hold at most one place (Bridson, "Fast Poisson disk sampling in arbitrary dimensions",
+// 2007, section 2). Unlike in his method, places do not grow from each other, so that a few are
+// spread as evenly as many.
 #include "scene/scatter.h"
 #include <math.h>
 

@@ -118,8 +118,7 @@ static bool fill_sun(const scene_sun *sun, const field_context *context, struct 
     return true;
 }
 
-// What is said of the sky's two colours is of both the day and the night, mixed: an image is mixed
-// by shaders.
+// Mixes the sky's two colours between day and night. Shaders mix an image.
 static bool fill_night(const scene_sky *sky, const field_context *context,
                        struct frame_block *out) {
     float night, zenith[4], horizon[4], stars, moon;

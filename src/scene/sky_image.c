@@ -1,5 +1,5 @@
-// Panoramas. The reader decodes the file, for it may be a stranger's; this side checks what comes
-// back.
+// Panoramas of the sky. The reader decodes the file, since it may be a stranger's; this side checks
+// the result.
 #include "scene/sky_image.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -31,7 +31,7 @@ struct sky_image {
 
 // ---- reading ----------------------------------------------------------------------------------
 
-// Red, green and blue; of a grey picture three times the same.
+// Finds red, green and blue; a grey picture gives its channel three times.
 static bool find_planes(const char *path, const exr_image *image, const float *planes[3]) {
     static const char *const names[3] = {"R", "G", "B"};
     for (int c = 0; c < 3; c++) {
@@ -59,7 +59,7 @@ static bool check_values(const char *path, const panorama *image) {
     return light || err_set("%s: the panorama is all black", path);
 }
 
-// Rows from the top; free its numbers with mem_free.
+// Reads rows from the top. Free the numbers with mem_free.
 static bool read_panorama(const char *root, const char *path, panorama *out) {
     enum { CHANNELS = 5 }; // R, G, B, Y, and a place for all others
     static const exr_wish wish = {

@@ -1,4 +1,4 @@
-// Means over parts of the sphere, and sums of those.
+// Means over parts of the sphere, and their sums.
 #include "scene/sky_table.h"
 #include "base/memory.h"
 #include <math.h>
@@ -6,12 +6,12 @@
 
 static const double pi = 3.14159265358979323846;
 
-// Height (z) of a line between rows on the unit sphere.
+// Returns the height (z) of the line between two rows on the unit sphere.
 static double line_height(double row, uint32_t rows) {
     return cos(pi * row / rows);
 }
 
-// Every texel of `from` wide rows becomes a mean of those of `to` that it covers.
+// Each of the `wanted` texels becomes the mean of the `count` texels that it covers.
 static void resize_row(const float *from, uint32_t count, float *to, uint32_t wanted) {
     for (uint32_t x = 0; x < wanted; x++) {
         double begin = (double)x * count / wanted, end = (double)(x + 1) * count / wanted;
@@ -24,7 +24,7 @@ static void resize_row(const float *from, uint32_t count, float *to, uint32_t wa
     }
 }
 
-// Adds rows that lie between two lines of the picture, by what they cover of the sphere.
+// Adds the rows between two lines of the picture, weighted by their area on the sphere.
 static void resize_column(const panorama *from, double begin, double end, float *to) {
     size_t width = 3 * (size_t)from->width;
     double whole = line_height(begin, from->height) - line_height(end, from->height);
@@ -54,8 +54,8 @@ panorama panorama_resize(const panorama *from, uint32_t width, uint32_t height, 
 
 // ---- cumulative shares --------------------------------------------------------------------------
 
-// What a texture's filter spreads into a dark cell must be found there too: each cell has at least
-// this part of the mean.
+// The texture's filter spreads light into dark cells, which must be sampled too, so each cell has
+// at least this part of the mean.
 static const double least_share = 0.05;
 
 static double luminance(const float rgb[3]) {
@@ -92,7 +92,7 @@ static void fill_shares(const panorama *cells, sky_table *out) {
 
 // ---- light as polynomials -----------------------------------------------------------------------
 
-// Direction of the middle of a cell; the middle column is +Y.
+// Returns the direction of the middle of a cell. The middle column is +Y.
 static void cell_direction(uint32_t x, uint32_t y, double out[3]) {
     double azimuth = 2 * pi * ((x + 0.5) / SKY_CELLS_X - 0.5);
     double z = (line_height(y, SKY_CELLS_Y) + line_height(y + 1, SKY_CELLS_Y)) / 2;
@@ -115,9 +115,9 @@ static void polynomials(const double d[3], double out[9]) {
     memcpy(out, values, sizeof values);
 }
 
-// Nine coefficients for each colour: of the spherical harmonics up to degree 2, times what each
-// loses when the light is spread by the cosine (Ramamoorthi and Hanrahan 2001, equations 8 and 12,
-// over pi), with both of its factors.
+// Computes nine coefficients for each colour: of the spherical harmonics up to degree 2, times the
+// factor of each for light that is spread by the cosine (Ramamoorthi and Hanrahan 2001, equations 8
+// and 12, over pi), including the normalisation of both.
 static void fill_polynomials(const panorama *cells, float *out) {
     static const double factors[9] = {
         1 / (4 * pi),           2.0 / 3 * 3 / (4 * pi), 2.0 / 3 * 3 / (4 * pi),
@@ -138,7 +138,7 @@ static void fill_polynomials(const panorama *cells, float *out) {
         for (int c = 0; c < 3; c++) out[3 * i + c] = (float)(factors[i] * sums[i][c]);
 }
 
-// Mean of the rows from `begin` to `end`.
+// Returns the mean of the rows from `begin` to `end`.
 static void mean_of_rows(const panorama *cells, uint32_t begin, uint32_t end, float out[3]) {
     double sum[3] = {0}, area = 0;
     for (uint32_t y = begin; y < end; y++)

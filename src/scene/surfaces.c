@@ -1,5 +1,5 @@
-// Copies what a mesh looks like into arrays over all meshes. Texels become linear half floats: they
-// are blended four at a time, and decoding sRGB for each would cost more than their memory.
+// Copies the surfaces of meshes to arrays over all meshes. Texels become linear half floats, since
+// four are blended at a time, and decoding sRGB for each would cost more than their memory.
 #include "scene/surfaces.h"
 #include "base/memory.h"
 #include <math.h>
@@ -36,7 +36,7 @@ bool surface_has_holes(const mesh_data *mesh, const mesh_part *part) {
     return false;
 }
 
-// `first`: where the texels of each texture begin.
+// `first`: the index of each texture's first texel.
 static void add_material(surfaces *s, const mesh_data *mesh, const mesh_part *part,
                          const uint32_t *first) {
     MEM_RESERVE(s->materials, s->material_count + 1, s->material_capacity);

@@ -1,4 +1,4 @@
-// The voxeliser on the device: its shaders, buffers, and what each dispatch binds.
+// The voxeliser on the device: its shaders, its buffers, and the bindings of each dispatch.
 #include "base/error.h"
 #include "base/memory.h"
 #include "scene/voxels_impl.h"
@@ -11,7 +11,7 @@ static const char *const shaders[VOXELS_STAGES] = {
     [VOXELS_DISTANCE] = "scene/voxels/distance.comp",
 };
 
-// In the order of voxels_part_buffer.
+// The order is that of voxels_part_buffer.
 #define NAMES(NAME)                                                                                \
     NAME(VoxelState), NAME(VoxelLists), NAME(VoxelPoints), NAME(VoxelItems), NAME(VoxelPlaced),    \
         NAME(VoxelMasks), NAME(VoxelIds), NAME(VoxelKeys), NAME(VoxelSeeds), NAME(VoxelNextSeeds), \
@@ -80,7 +80,7 @@ bool voxels_make_buffer(voxels *v, gpu *g, voxels_part_buffer which, uint64_t by
     return v->buffers[which] != NULL;
 }
 
-// Points and items of all surfaces, one behind the other.
+// Writes the points and items of all surfaces, one after the other.
 static bool write_surfaces(voxels *v, gpu *g) {
     for (size_t i = 0; i < v->surface_count; i++) {
         const voxel_surface *s = &v->surfaces[i];

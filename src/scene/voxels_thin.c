@@ -1,5 +1,5 @@
-// How much of a body is behind each of its triangles: along a ray from the triangle's middle
-// inwards, to where it leaves the body.
+// Measures how much of a body is behind each of its triangles: along a ray from the triangle's
+// middle inwards to where it leaves the body.
 #include "base/memory.h"
 #include "base/worker.h"
 #include "scene/bvh_tree.h"
@@ -16,8 +16,8 @@ typedef struct probe {
     bool inverted; // the mesh as a whole is turned inside out
 } probe;
 
-// Length of the part of a ray, whose direction is no unit vector, before a box; INFINITY: it
-// misses.
+// Returns the length of the part of a ray before it enters a box, in lengths of its direction;
+// INFINITY: it misses.
 static float enters(const struct bvh_node *n, const vec3 from, const vec3 way) {
     float near = 0, far = INFINITY;
     for (int a = 0; a < 3; a++) {
@@ -29,7 +29,7 @@ static float enters(const struct bvh_node *n, const vec3 from, const vec3 way) {
     return near <= far ? near : INFINITY;
 }
 
-// Where a ray leaves through a triangle; INFINITY: it misses, or enters there.
+// Returns where a ray leaves through a triangle; INFINITY: it misses, or enters there.
 static float leaves(const struct bvh_triangle *t, const vec3 from, const vec3 way, bool inverted) {
     vec3 first, second, corner, across, turned, off;
     glm_vec3_copy((float *)t->first.v, first);

@@ -1,4 +1,4 @@
-// Numbers of a single instance, as a script says them.
+// Reads values of a single instance from a script.
 #include "base/memory.h"
 #include "script/instances.h"
 #include <math.h>
@@ -10,7 +10,7 @@ const char *const instance_key_names[INSTANCE_KEYS] = {"position", "rotation", "
 
 enum { FARTHEST = 1000000 }; // metres from the origin, as of most numbers here
 
-// A number, text or list of numbers as it stands, else what it is.
+// Returns a number, a text or a list of numbers as it is written, else the type of the value.
 static const char *shown(lua_State *L, int index) {
     if (lua_isnumber(L, index)) {
         char text[32];
@@ -52,7 +52,7 @@ float instance_yaw(const struct instance_entry *entry) {
     return 2 * atan2f(entry->turn.v[2], entry->turn.v[3]) * 57.29577951f;
 }
 
-// A turn is a lean after a turn about +Z: the latter is what of it turns about that axis.
+// A rotation is a yaw followed by a tilt; the yaw is its part about +Z.
 void instance_set_yaw(struct instance_entry *entry, float degrees) {
     versor turn, yaw, lean;
     memcpy(turn, entry->turn.v, sizeof entry->turn.v);

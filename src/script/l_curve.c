@@ -11,7 +11,7 @@ enum {
 
 static const char who[] = "curve";
 
-// The value of key i lies at the top of the stack.
+// Reads the value of key i at the top of the stack.
 static int read_value(lua_State *L, int i, float out[4]) {
     int count = value_numbers(L, -1, out);
     if (count == 0)

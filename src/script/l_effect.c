@@ -47,7 +47,7 @@ static void set_picture(lua_State *L, const char *key, bool (*set)(effect *, gra
     if (!set(script_of(L)->effect, image)) script_raise(L);
 }
 
-// Copies the fields that are set: the rest keeps its default. `count` pointers each.
+// Copies the fields that are set; the others keep their default. Both arrays have `count` pointers.
 static void merge_fields(const field **to, const field *const *from, size_t count) {
     for (size_t i = 0; i < count; i++)
         if (from[i]) to[i] = from[i];
@@ -89,7 +89,7 @@ static void set_update(lua_State *L) {
     s->update = luaL_ref(L, LUA_REGISTRYINDEX);
 }
 
-// Keys: of the call too, which can be read only.
+// `keys`: the name is a key of the call, which can only be read.
 _Noreturn static void refuse_member(lua_State *L, const char *name, bool keys) {
     const script_object *row = script_object_find(who);
     const char *known[32];

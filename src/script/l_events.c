@@ -1,5 +1,5 @@
-// What a script does from frame to frame: fx:on_start, fx:on_frame, fx:on_key, fx:on_click, and
-// fx.events, the list of what happens to it. effect/events.h says when they run.
+// Functions that a script runs from frame to frame: fx:on_start, fx:on_frame, fx:on_key,
+// fx:on_click; and fx.events, the list of its events. effect/events.h says when they run.
 #include "base/memory.h"
 #include "effect/events.h"
 #include "script/instances.h"
@@ -12,7 +12,7 @@ static const char key_list[] = "key ";          // and its name
 
 // ---- declaring --------------------------------------------------------------------------------
 
-// Pushes the list of functions of that kind, made when there is none.
+// Pushes the list of functions of a kind, which is created if there is none.
 static void push_list(lua_State *L, const char *kind) {
     script *s = script_of(L);
     if (s->handlers == LUA_NOREF) {
@@ -57,7 +57,7 @@ static int l_on_frame(lua_State *L) {
     return 0;
 }
 
-// What it is good for: a text after the function.
+// Reads the help: a text after the function.
 static const char *read_help(lua_State *L, int index, const char *method) {
     if (lua_isnoneornil(L, index)) return "";
     if (lua_type(L, index) != LUA_TSTRING)
@@ -89,7 +89,8 @@ static int l_on_key(lua_State *L) {
     return 0;
 }
 
-// fx:status("burning", n, "trees"): a number, or true or false, for users to see while it runs.
+// fx:status("burning", n, "trees"): shows a number, or true or false, to users while the effect
+// runs.
 static int l_status(lua_State *L) {
     luaL_checkudata(L, 1, "effect");
     size_t length;
@@ -126,7 +127,7 @@ _Noreturn static void refuse_event(lua_State *L, int number, const char *why) {
              number, why);
 }
 
-// {x, y} in the picture, {x, y, z} in the world, six numbers of a ray.
+// Reads a place: {x, y} in the picture, {x, y, z} in the world, six numbers of a ray.
 static void read_place(lua_State *L, int number, int index, effect_event *out) {
     size_t count = value_is_plain_table(L, index) ? (size_t)lua_rawlen(L, index) : 0;
     if (count != 2 && count != 3 && count != 6) refuse_event(L, number, "is at no place");
@@ -207,7 +208,7 @@ static void read_vector(lua_State *L, int table, int number, const char *name, f
     memcpy(out, value, 3 * sizeof *out);
 }
 
-// pick(x, y), pick { origin, direction }, pick(event.ray): what is met there, or nil.
+// pick(x, y), pick { origin, direction }, pick(event.ray): returns what the ray hits, or nil.
 static int l_pick(lua_State *L) {
     effect *e = script_of(L)->effect;
     float origin[3], direction[3];
@@ -247,8 +248,8 @@ typedef struct event_call {
     const effect_happening *what;
 } event_call;
 
-// Calls all functions of a kind, in the order of their declaration, with what lies at the top:
-// `args` values, which it pops.
+// Calls all functions of a kind, in order of declaration, with the `args` values at the top of the
+// stack, and pops these.
 static void call_all(lua_State *L, const script *s, const char *kind, int args) {
     int first = lua_gettop(L) - args + 1;
     if (s->handlers == LUA_NOREF) return;

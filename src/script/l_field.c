@@ -1,5 +1,5 @@
 // Fields: one object over the expression trees of the field layer. Constructors, functions and
-// methods all come from the table of kinds, so a new kind is there by itself.
+// methods are made from the table of kinds, so a new kind needs no code here.
 #include "base/memory.h"
 #include "base/str.h"
 #include "effect/events.h"
@@ -101,7 +101,7 @@ static void take_table(lua_State *L, kind_call *call, int table) {
     lua_pop(L, 1);
 }
 
-// `speed` and `w` move through a fourth dimension, so they ask for one.
+// `speed` and `w` move through a fourth dimension, so they imply one.
 static void imply_dimensions(kind_call *call) {
     for (size_t a = 0; a < call->arg_count; a++) {
         const char *name = call->kind->args[a].desc.name;
@@ -112,7 +112,7 @@ static void imply_dimensions(kind_call *call) {
     }
 }
 
-// Functions of numbers give numbers, so that functions of time can use them every frame.
+// Functions of numbers return numbers, so that functions of time can use them in every frame.
 static bool push_number(lua_State *L, const field_kind *kind, int count) {
     if (strcmp(kind->group, "operator") != 0 || kind->spatial || count == 0) return false;
     for (int i = 1; i <= count; i++)
@@ -135,7 +135,7 @@ static bool push_number(lua_State *L, const field_kind *kind, int count) {
     return true;
 }
 
-// Upvalue: the kind. A last table with names holds arguments and options by name.
+// Upvalue: the kind. If the last argument is a table with names, it holds arguments and options.
 static int l_kind(lua_State *L) {
     const field_kind *kind = lua_touserdata(L, lua_upvalueindex(1));
     kind_call call = {.kind = kind};
@@ -208,7 +208,7 @@ static void mark_params(effect *e, const field *node) {
     for (size_t i = 0; i < FIELD_MAX_ARGS && node->args[i]; i++) mark_params(e, node->args[i]);
 }
 
-// What the file reads while it loads may decide what it declares.
+// A value that the file reads while it loads may decide what it declares.
 static void mark_structural(script *s, const field *node) {
     if (!s->loading) return;
     if (node->size <= WALK_MAX)
@@ -218,8 +218,7 @@ static void mark_structural(script *s, const field *node) {
             effect_mark_structural(s->effect, i);
 }
 
-// Value now: while the file loads its value at time 0, later what it is set to. Parameters of words
-// give the word.
+// Returns the value of now; at time 0 while the file loads. A parameter of words returns its word.
 static int l_get(lua_State *L) {
     const field_object *object = self(L);
     const effect_param *param = field_param_of(L, 1);
@@ -250,7 +249,7 @@ static int l_get(lua_State *L) {
     return 1;
 }
 
-// p:set(value): for `update` and what runs by events. Until time goes back.
+// p:set(value), for `update` and handlers of events. It holds until time goes back.
 static int l_set(lua_State *L) {
     const field_object *object = self(L);
     const effect_param *param = field_param_of(L, 1);
@@ -269,7 +268,7 @@ static int l_set(lua_State *L) {
     return 0;
 }
 
-// p:toggle(): of true and false the other one, of words the next.
+// p:toggle() inverts true and false, and goes to the next word.
 static int l_toggle(lua_State *L) {
     const field_object *object = self(L);
     const effect_param *param = field_param_of(L, 1);
@@ -280,7 +279,7 @@ static int l_toggle(lua_State *L) {
     return 0;
 }
 
-// Upvalue: methods by name. Else letters choose components: f.x, f.rgb.
+// Upvalue: methods by name. Other names choose components: f.x, f.rgb.
 static int l_index(lua_State *L) {
     const field_object *object = self(L);
     if (lua_type(L, 2) != LUA_TSTRING)
@@ -331,7 +330,8 @@ static int l_glsl(lua_State *L) {
 
 // ---- globals ----------------------------------------------------------------------------------
 
-// A function for each kind, a value for kinds without arguments; methods for operators.
+// Makes a function for each kind, a value for each kind without arguments, and methods for
+// operators.
 static void open_kinds(lua_State *L, int methods) {
     for (const field_kind *kind = field_kinds; kind->name; kind++) {
         if (!script_has_kind(kind)) continue;

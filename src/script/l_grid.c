@@ -30,14 +30,14 @@ static const char *read_pattern(lua_State *L, const char *who) {
     return arena_string(script_memory(L), path);
 }
 
-// A number that cannot be zero, which a sequence_desc takes for not given.
+// Reads a number that must not be zero, which a sequence_desc takes for its default.
 static double read_factor(lua_State *L, const char *who, const char *key, double missing) {
     double value = value_get_number(L, 1, who, key, missing);
     if (value == 0) vm_error(L, "%s: '%s' is 0; any other number is accepted", who, key);
     return value;
 }
 
-// A number, or with `moves` anything that does not vary in space.
+// Reads a number, or with `moves` anything that does not vary in space.
 static const field *read_moving(lua_State *L, const char *who, const char *key, float missing,
                                 bool *moves) {
     const float values[4] = {missing};
@@ -154,7 +154,7 @@ void value_push_box(lua_State *L, box3 box) {
     value_put_numbers(L, "max", (const float[]){box.max.x, box.max.y, box.max.z}, 3);
 }
 
-// burst.box, burst.frames, burst.duration; every other name is a grid's.
+// burst.box, burst.frames, burst.duration; every other name is a grid.
 static int l_sequence_index(lua_State *L) {
     const sequence_object *object = luaL_checkudata(L, 1, "sequence");
     const char *name = luaL_checkstring(L, 2);
@@ -204,7 +204,7 @@ static box3 read_box(lua_State *L, const field *node) {
     return box;
 }
 
-// Both take a field and a table, which may be missing.
+// Reads a field and a table, which may be missing.
 static const field *read_arguments(lua_State *L, const char *who, const char *argument) {
     script_require_loading(L, who);
     lua_settop(L, 2);
@@ -226,7 +226,7 @@ static uint32_t read_whole(lua_State *L, const char *who, const char *key, uint3
     return value;
 }
 
-// What an error in between leaves half made makes the effect unsound.
+// An error before the object is complete makes the effect invalid.
 static const char *begin_making(lua_State *L, const char *who) {
     script *s = script_of(L);
     const char *before = s->unsound;

@@ -1,4 +1,5 @@
-// Pictures from files: image "templates/source.exr". What takes one says what its numbers mean.
+// Pictures from files: image "templates/source.exr". The function that takes one says what its
+// numbers mean.
 #include "base/memory.h"
 #include "media/picture.h"
 #include "script/binding.h"

@@ -64,7 +64,7 @@ static _Noreturn void refuse_key(lua_State *L, const char *who, const char *name
     value_unknown(L, who, "key", name, instance_key_names, INSTANCE_KEYS);
 }
 
-// The values of the table at `table`, pushed in the order of instance_key; nil: not given.
+// Pushes the values of the table at `table` in the order of instance_key; nil: not given.
 static int push_values(lua_State *L, int table, const char *who) {
     if (!value_is_plain_table(L, table))
         vm_error(L, "%s: what is set is a table, as in { kind = 2, scale = 1 }; got %s", who,
@@ -116,7 +116,7 @@ static int l_set(lua_State *L) {
     return 0;
 }
 
-// Lists have a value for each instance, and stand at `base`; they are replaced one by one.
+// Lists, which start at `base`, have a value for each instance; they are replaced one by one.
 static int l_set_all(lua_State *L) {
     scene_instances *s = self(L, "set_all");
     const char *who = scene_instances_name(s);

@@ -1,6 +1,6 @@
-// instances { mesh { ... }, mesh { ... }, at = scatter { ... }, kind = {0.3, 0.7}, scale =
-// {0.5, 1.3} }: what each of them begins as. A number may be said for all, as a range that chance
-// picks from, as a list, or by a function(i, place).
+// instances { mesh { ... }, mesh { ... }, at = scatter { ... }, kind = {0.3, 0.7}, scale = {0.5,
+// 1.3} }: sets the initial state of instances. A value can be given once for all, as a range for
+// random numbers, as a list, or by a function(i, place).
 #include "base/memory.h"
 #include "scene/scatter.h"
 #include "script/instances.h"
@@ -79,7 +79,7 @@ static void read_list(const maker *m, instance_key key) {
     }
 }
 
-// Between the two values of a list of two.
+// Chooses values between the two numbers of a list.
 static void read_range(const maker *m, instance_key key) {
     lua_State *L = m->L;
     struct instance_entry ends[2] = {{.turn = {{0, 0, 0, 1}}}, {.turn = {{0, 0, 0, 1}}}};
@@ -101,7 +101,7 @@ static void read_range(const maker *m, instance_key key) {
     }
 }
 
-// How many of a hundred, say, are of each kind.
+// Reads how many instances of each kind there are, as relative numbers.
 static void read_shares(const maker *m) {
     lua_State *L = m->L;
     double upto[SCENE_INSTANCES_MAX_KINDS] = {0}, sum = 0;
@@ -158,7 +158,7 @@ static void read_key(const maker *m, instance_key key) {
     lua_pop(L, 1);
 }
 
-// Each into a direction of its own.
+// Tilts each instance in a random direction.
 static void read_lean(const maker *m) {
     double most = value_get_number(m->L, 1, who, "lean", 0);
     if (!(most >= 0 && most <= 180))

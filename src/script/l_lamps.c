@@ -1,10 +1,10 @@
-// Point lights by the hundred: point_lights { count = 200, position = vec(...) }. It gives what
-// passes that are lit by them name by `from`. How one shines, fields say that the device evaluates;
-// those that the script moves one by one are point_light { }.
+// Hundreds of point lights: point_lights { count = 200, position = vec(...) }. Passes that they
+// light name the result by `from`. Fields that the device evaluates describe them; lights that the
+// script moves one by one are point_light { }.
 #include "pass/lamps.h"
 #include "script/binding.h"
 
-// at = forest: one for each; else `count` says how many.
+// at = forest: one light for each instance; else `count` is the number.
 static scene_instances *read_at(lua_State *L) {
     bool counted = value_get(L, 1, "count") != LUA_TNIL, given = value_get(L, 1, "at") != LUA_TNIL;
     scene_instances *at = given ? value_instances(L, -1) : NULL;

@@ -1,5 +1,5 @@
-// Simulated air: lbm { size = {64, 64, 96}, voxel_size = 0.05 } gives fields by name (air.density);
-// air:source { } gives it smoke, air:collider { } stands in its way.
+// Simulated air: lbm { size = {64, 64, 96}, voxel_size = 0.05 } has fields by name (air.density).
+// air:source { } adds smoke, air:collider { } adds an obstacle.
 #include "base/memory.h"
 #include "pass/lbm.h"
 #include "script/binding.h"
@@ -46,7 +46,7 @@ static void read_desc(lua_State *L, pass_lbm_desc *desc) {
     desc->warm_up = value_get_number(L, 1, "lbm", "warm_up", 0);
 }
 
-// By the word at the top of the stack, which the author gave as `key`.
+// Sets a face from the word at the top of the stack, which the author gave as `key`.
 static void set_face(lua_State *L, pass *p, const char *face, const char *key) {
     static const char *const words[] = {"open", "wall", "slip", "inflow", "periodic"};
     if (lua_type(L, -1) != LUA_TSTRING)
@@ -60,7 +60,7 @@ static void set_face(lua_State *L, pass *p, const char *face, const char *key) {
     lua_pop(L, 1);
 }
 
-// Stands at the top of the stack: a word, or a table of them.
+// Reads a word, or a table of words, at the top of the stack.
 static void set_boundary(lua_State *L, pass *p) {
     static const char *const faces[] = {"left", "right", "front", "back", "bottom", "top", "sides"};
     enum { FACES = 6 };
@@ -117,7 +117,7 @@ static const lbm_object *self(lua_State *L, const char *method) {
     return object;
 }
 
-// motion = curve { ... }: where the meshes of the table at 2 go, said here instead of in each.
+// motion = curve { ... }: the movement of all meshes of the table at 2.
 static const field *read_motion(lua_State *L, const char *who) {
     return value_get_uniform(L, 2, who, "motion", 3, NULL);
 }
@@ -161,7 +161,7 @@ static int l_source(lua_State *L) {
     return 0;
 }
 
-// What lies at the top of the stack.
+// Adds the mesh at the top of the stack.
 static void add_collider(lua_State *L, pass *air, voxels_rule rule) {
     const mesh_object *mesh = object_test(L, -1, "mesh");
     const scene_instances *instances = value_instances(L, -1);
@@ -196,7 +196,7 @@ static int l_collider(lua_State *L) {
     return 0;
 }
 
-// A field's that is spelt nearly so is meant rather.
+// Suggests a field with a similar name.
 static void refuse_name(lua_State *L, const char *name) {
     static const char *const own[] = {"source", "collider", "box", "time_step"};
     const char *near = str_nearest(name, own, COUNT_OF(own));
@@ -205,7 +205,7 @@ static void refuse_name(lua_State *L, const char *name) {
     script_raise(L);
 }
 
-// air.box, air.time_step, air:source, air:collider; every other name is a field's.
+// air.box, air.time_step, air:source, air:collider; every other name is a field.
 static int l_index(lua_State *L) {
     const lbm_object *air = luaL_checkudata(L, 1, "lbm");
     const char *name = luaL_checkstring(L, 2);
@@ -226,7 +226,7 @@ static int l_index(lua_State *L) {
     return 1;
 }
 
-// What air holds follows from its keys and its sources.
+// The content of air follows from its keys and its sources, so it cannot be assigned.
 static int l_newindex(lua_State *L) {
     vm_error(L,
              "air.%s cannot be set; say it in lbm { } or --set, or give it to the air with "

@@ -1,5 +1,5 @@
 // Lights besides the sun: point_light { }, spot_light { }, sphere_light { }, and the list of them
-// that is assigned to fx.lights. Every number may move.
+// that is assigned to fx.lights. Every number may change over time.
 #include "base/memory.h"
 #include "script/binding.h"
 #include <string.h>

@@ -1,5 +1,5 @@
-// What a mesh's surface is like: material { color = "#8a4a20", specular = 0.5, roughness = 0.4 },
-// for mesh { "data/barrel.obj", material = rust }. Every number may move.
+// The surface of a mesh: material { color = "#8a4a20", specular = 0.5, roughness = 0.4 }, for mesh
+// { "data/barrel.obj", material = rust }. Every number may change over time.
 #include "base/memory.h"
 #include "scene/material.h"
 #include "script/binding.h"

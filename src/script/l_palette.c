@@ -16,7 +16,7 @@ typedef struct palette_object {
     const palette *palette;
 } palette_object;
 
-// {position, colour [, alpha]} at the top of the stack.
+// Reads {position, colour [, alpha]} at the top of the stack.
 static palette_stop read_stop(lua_State *L, int i) {
     palette_stop stop = {.color = {0, 0, 0, 1}};
     lua_Unsigned length = lua_type(L, -1) == LUA_TTABLE ? lua_rawlen(L, -1) : 0;
@@ -44,7 +44,7 @@ static palette_stop read_stop(lua_State *L, int i) {
     return stop;
 }
 
-// The list of stops at `index`.
+// Reads the list of stops at `index`.
 static void read_stops(lua_State *L, int index, palette_key *key) {
     index = lua_absindex(L, index);
     lua_Unsigned count = lua_rawlen(L, index);
@@ -62,7 +62,7 @@ static void read_stops(lua_State *L, int index, palette_key *key) {
     lua_pop(L, 1);
 }
 
-// `keys = { {time, {stops}}, ... }`, which lies at the top of the stack.
+// Reads `keys = { {time, {stops}}, ... }` at the top of the stack.
 static void read_keys(lua_State *L, palette_key keys[PALETTE_MAX_KEYS], size_t *key_count) {
     lua_Unsigned count = lua_type(L, -1) == LUA_TTABLE ? lua_rawlen(L, -1) : 0;
     if (count < 1 || count > PALETTE_MAX_KEYS)
@@ -138,7 +138,7 @@ static int l_apply(lua_State *L) {
     return 1;
 }
 
-// Its stops as a curve. What jumps has two keys at one age: one of a curve is a little later.
+// Converts stops to a curve. Two stops at one age become two keys, the second a little later.
 static curve *curve_of(lua_State *L, const palette_key *stops) {
     curve_key keys[PALETTE_MAX_STOPS];
     for (size_t i = 0; i < stops->count; i++) {
@@ -151,7 +151,7 @@ static curve *curve_of(lua_State *L, const palette_key *stops) {
         &(curve){.shape = CURVE_LINEAR, .components = 1, .keys = keys, .count = stops->count});
 }
 
-// What over_age of the prelude makes of its keys: stops, and whether they are numbers.
+// The prelude's over_age calls it with stops, and whether they are numbers.
 static int l_over_age(lua_State *L) {
     static const char name_of[] = "over_age";
     script_require_loading(L, name_of);

@@ -1,5 +1,5 @@
-// Points that are born, move and die: particles { count = 4096, rate = 2000, shape = sphere { } }.
-// It gives what passes that draw them name by `from`.
+// Particles that are born, move and die: particles { count = 4096, rate = 2000, shape = sphere { }
+// }. Passes that draw them name the result by `from`.
 #include "base/memory.h"
 #include "pass/particles.h"
 #include "script/binding.h"

@@ -40,7 +40,7 @@ static const shader_image *first_output(const shader_interface *face) {
     return NULL;
 }
 
-// A file's, by a pass that all share who ask for it.
+// Makes an image from a picture; all calls that use the picture share one pass.
 static bool picture_image(lua_State *L, int index, graph_image *out) {
     script *s = script_of(L);
     picture_object *object = object_test(L, index, "picture");
@@ -118,7 +118,7 @@ static bool is_input(const shader_image *image) {
     return !image->output && !image->history;
 }
 
-// The next positional image: inputs in the order in which the shader declares them.
+// Adds the next positional image. Inputs are in the order of declaration in the shader.
 static void add_image(lua_State *L, pass_call *call, int value) {
     const shader_interface *face = call->face;
     size_t i = call->next_input;
@@ -169,7 +169,7 @@ static void set_uniform(lua_State *L, pass_call *call, size_t index, int value) 
     if (!pass_set_uniform(call->pass, name, node)) script_raise(L);
 }
 
-// An option is structure: a parameter gives the word that it has while the file loads.
+// An option is structural: a parameter gives the word that it has while the file loads.
 static void set_option(lua_State *L, pass_call *call, size_t index, int value) {
     const char *name = call->face->options[index].name;
     const effect_param *param = field_param_of(L, value);
@@ -286,7 +286,7 @@ static void add_source(lua_State *L, pass_call *call, int value) {
     pass_add_source(call->pass, source->pass);
 }
 
-// from = {lit, scene}, or one pass: what this call says nothing about.
+// from = {lit, scene}, or one pass: provides what this call does not set.
 static void add_sources(lua_State *L, pass_call *call, int table) {
     int type = value_get(L, table, "from");
     int list = lua_gettop(L);
@@ -333,13 +333,13 @@ static void read_table(lua_State *L, pass_call *call, int table, lua_Integer fir
 
 // ---- calling ----------------------------------------------------------------------------------
 
-// The arguments: images, then at most one table of settings. Returns the table's index or 0.
+// Reads the arguments: images, then at most one table of settings. Returns the table's index or 0.
 static int settings_table(lua_State *L) {
     int n = lua_gettop(L);
     return n > 0 && value_is_plain_table(L, n) ? n : 0;
 }
 
-// The pass itself; the effect is unsound until it is declared.
+// Creates the pass. The effect is invalid until it is declared.
 static void begin_pass(lua_State *L, pass_call *call, const char *type, const char *file,
                        int table) {
     script *s = script_of(L);

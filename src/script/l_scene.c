@@ -1,5 +1,5 @@
-// What stands around the volume: mesh { "file" }, orbit { } and camera { }, sun { }, sky { }. Every
-// number may move. What is not given keeps the scene's default.
+// The scene around the volume: mesh { "file" }, orbit { } and camera { }, sun { }, sky { }. Every
+// number may change over time. Keys that are not given keep the scene's default.
 #include "base/memory.h"
 #include "scene/material.h"
 #include "script/binding.h"
@@ -89,7 +89,7 @@ const scene_node *value_get_node(lua_State *L, int table, const char *who, const
     return node;
 }
 
-// node { position = {0, 0, 2}, parent = ... }: what meshes and instances may stand in.
+// node { position = {0, 0, 2}, parent = ... }: a transform for meshes and instances.
 static int l_node(lua_State *L) {
     value_refuse_array(L, "node");
     node_object *object = object_new(L, "node", sizeof *object);

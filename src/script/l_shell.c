@@ -1,5 +1,5 @@
-// Balls of fire that burst: explosions { {0.5, position = {0, 0, 1}}, ... } is a list of when and
-// where, shell { at = list, ... } draws them. While the effect runs, list:add { } adds one.
+// Fireballs: explosions { {0.5, position = {0, 0, 1}}, ... } is a list of times and places, shell {
+// at = list, ... } draws them. While the effect runs, list:add { } adds one.
 #include "base/memory.h"
 #include "effect/events.h"
 #include "pass/shell.h"
@@ -36,7 +36,8 @@ static double first_number(lua_State *L, int table, const char *name, double oth
     return time;
 }
 
-// { time, position = ... } at the top of the stack. `number`: in the list, 0: of `add`.
+// Reads { time, position = ... } at the top of the stack. `number`: its place in the list; 0: it
+// comes from `add`.
 static scene_explosion read_one(lua_State *L, int number, double time, uint32_t seed) {
     int table = lua_gettop(L);
     const char *name = name_of(L, number);
@@ -86,7 +87,7 @@ static int l_explosions(lua_State *L) {
     return 1;
 }
 
-// list:add { position = {0, 0, 1}, size = 2 }: from now on, or from a time on.
+// list:add { position = {0, 0, 1}, size = 2 }: adds an explosion now, or at a later time.
 static int l_add(lua_State *L) {
     scene_explosions *list = self(L, "add");
     if (script_of(L)->loading)
@@ -114,7 +115,7 @@ static void push_one(lua_State *L, const scene_explosion *one) {
     value_put_number(L, "seed", one->seed);
 }
 
-// list:get(2): the second of the list. Nil: there is none.
+// list:get(2): returns the second of the list, or nil.
 static int l_get(lua_State *L) {
     const scene_explosions *list = self(L, "get");
     lua_Integer i = luaL_checkinteger(L, 2);
@@ -123,7 +124,7 @@ static int l_get(lua_State *L) {
     return 1;
 }
 
-// list:latest(t, 2): of those that have begun by then, the second youngest. Nil: there is none.
+// list:latest(t, 2): of those that have begun by then, returns the second youngest, or nil.
 static int l_latest(lua_State *L) {
     const scene_explosions *list = self(L, "latest");
     double time = luaL_checknumber(L, 2);

@@ -1,6 +1,6 @@
-// A few planes of simulated flow round an axis: slices { count = 2, size = {128, 128}, height = 4 }
-// gives fields by name (flow.density); flow:inflow { }, flow:obstacle { } and flow:force { } say
-// what happens in the planes; flow:slice(1) is one of them, as it is.
+// A few planes of simulated flow around an axis: slices { count = 2, size = {128, 128}, height = 4
+// } has fields by name (flow.density). flow:inflow { }, flow:obstacle { } and flow:force { } act in
+// the planes; flow:slice(1) is one of them.
 #include "base/memory.h"
 #include "pass/slices.h"
 #include "script/binding.h"
@@ -167,7 +167,7 @@ static const field *find_field(lua_State *L, pass *p, const field_grid *grid, co
     return field_grid_channel(script_memory(L), grid, channel, components);
 }
 
-// Taken where the offset leads to, so that what is turned round the axis is not the same all round.
+// Samples at offset places, so that the result of rotating the slices is not the same all around.
 static const field *perturbed(lua_State *L, const field *node, const field *offset) {
     const field *args[FIELD_MAX_ARGS] = {node, offset};
     if (!offset) return node;
@@ -175,7 +175,7 @@ static const field *perturbed(lua_State *L, const field *node, const field *offs
     return field_make(script_memory(L), "warp", args, NULL);
 }
 
-// flow.box, flow.time_step, the methods; every other name is a field's.
+// flow.box, flow.time_step, the methods; every other name is a field.
 static int l_index(lua_State *L) {
     static const luaL_Reg methods[] = {{"inflow", l_inflow}, {"obstacle", l_obstacle},
                                        {"force", l_force},   {"templates", l_slices_templates},

@@ -10,7 +10,8 @@ static const char example[] = "image \"templates/source.exr\", count = 40";
 static const value_desc own[] = {
     {.name = "count"}, {.name = "size"}, {.name = "lifetime"}, {.name = "center"}, {.name = NULL}};
 
-// {a, b}, each a number that may move, for two uniforms; or one number for both, if `single`.
+// Reads {a, b}, each a number that may change over time, for two uniforms; or one number for both,
+// if `single`.
 static void set_pair(lua_State *L, pass *p, const char *key, const char *first, const char *second,
                      bool single) {
     const char *names[2] = {first, second};
@@ -32,7 +33,8 @@ static void set_pair(lua_State *L, pass *p, const char *key, const char *first, 
     lua_pop(L, 1);
 }
 
-// Comes first, without a name; taken out of the table, whose other values without a name are wrong.
+// Takes the picture, the first value without a name, out of the table; other values without a name
+// are errors.
 static const picture *take_image(lua_State *L) {
     lua_rawgeti(L, 2, 1);
     const picture_object *image = value_picture(L, -1);

@@ -1,4 +1,4 @@
-// Sweeps: the words of their files, axis { }, zip { } and sweep { }, and reading one.
+// Sweeps: the functions of their files, axis { }, zip { } and sweep { }, and reading a file.
 #include "base/memory.h"
 #include "script/binding.h"
 #include "script/sweep_parts.h"
@@ -254,7 +254,7 @@ static void refuse_value(lua_State *L, const sweep_list *axis, const char *text)
                   axis->count);
 }
 
-// The value at the top of the stack stands in for those of an axis.
+// Reads the value at the top of the stack, which replaces those of an axis in the reference.
 static void read_reference_axis(lua_State *L, sweep_reader *r, size_t index) {
     const sweep_list *axis = axis_at(r, index);
     lua_pushvalue(L, -1);

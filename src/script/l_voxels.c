@@ -1,4 +1,4 @@
-// Meshes as fields: voxels { mesh { "data/ball.obj" }, resolution = 64 } gives body.inside,
+// Meshes as fields: voxels { mesh { "data/ball.obj" }, resolution = 64 } has body.inside,
 // body.distance and body.velocity.
 #include "pass/voxels.h"
 #include "script/binding.h"
@@ -55,7 +55,7 @@ static int l_voxels(lua_State *L) {
     return 1;
 }
 
-// body.box; every other name is a field's.
+// body.box; every other name is a field.
 static int l_index(lua_State *L) {
     const voxels_object *body = luaL_checkudata(L, 1, "voxels");
     const char *name = luaL_checkstring(L, 2);

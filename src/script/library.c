@@ -1,7 +1,7 @@
-// Functions of Lua's own libraries that loop in C, where the instruction hook does not come: over
-// ranges and repetitions that their caller names, or once for each of a table's items. They are
-// written anew, or wrapped, so that they charge what they do, and look at the limits on the way.
-// Those left as they are loop over a string or their arguments once, which script/vm.c bounds.
+// Functions of Lua's own libraries that loop in C, where the instruction hook is not called: over
+// ranges and repetitions given by their caller, or once for each item of a table. They are written
+// again, or wrapped, so that they charge their work and check the limits meanwhile. Functions that
+// loop once over a string or their arguments are left unchanged; script/vm.c bounds them.
 #include "script/vm.h"
 #include <math.h>
 #include <stdint.h>
@@ -15,7 +15,7 @@ enum {
     BYTES_COMPARED = 8, // the same; strings full of zeros take long
 };
 
-// Upvalue 1: Lua's own function, called once its work is paid for.
+// Upvalue 1: Lua's own function, which is called once its work is charged.
 static int call_original(lua_State *L) {
     int n = lua_gettop(L);
     lua_pushvalue(L, lua_upvalueindex(1));

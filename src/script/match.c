@@ -1,6 +1,6 @@
-// The matcher of Lua's own library backtracks inside one C call, where no hook can stop it: n
-// repetitions in a pattern take the n-th power of the text's length. This one has the same
-// semantics and charges the budget for every step. Recursion is bounded by MAX_DEPTH, as in Lua.
+// The matcher of Lua's own library backtracks inside of one C call, where no hook can stop it: n
+// repetitions in a pattern take the n-th power of the text's length. This matcher has the same
+// semantics and charges every step. Recursion is bounded by MAX_DEPTH, as in Lua.
 #include "script/match.h"
 #include <ctype.h>
 #include <string.h>
@@ -96,7 +96,7 @@ static bool in_set(int c, const char *p, const char *last) {
     return !found;
 }
 
-// Whether the character at s is one that the item [p, end) stands for.
+// Returns whether the item [p, end) matches the character at s.
 static bool item_matches(matcher *m, const char *s, const char *p, const char *end) {
     matcher_step(m);
     if (s >= m->text_end) return false;
@@ -178,7 +178,7 @@ static const char *end_capture(matcher *m, const char *s, const char *p) {
     return result;
 }
 
-// The text that %1 .. %9 stand for.
+// Matches the text of an earlier capture, %1 to %9.
 static const char *match_back(matcher *m, const char *s, char digit) {
     int i = digit - '1';
     if (i < 0 || i >= m->level || m->captures[i].length == MATCH_OPEN)
@@ -192,8 +192,8 @@ static const char *match_back(matcher *m, const char *s, char digit) {
 
 // ---- the matcher ------------------------------------------------------------------------------
 
-// One item and its suffix. True: go on with the rest of the pattern at *s, *p. False: *s is the
-// result of the whole match.
+// Matches one item and its suffix. True: continue with the rest of the pattern at *s, *p. False: *s
+// is the result of the whole match.
 static bool match_item(matcher *m, const char **s, const char **p) {
     const char *item = *p, *end = item_end(m, item);
     char suffix = end < m->pattern_end ? *end : 0;
@@ -228,8 +228,8 @@ static bool match_item(matcher *m, const char **s, const char **p) {
     }
 }
 
-// Items that begin with '%' and are not a single character. Sets *s to where the match goes on, or
-// NULL; returns false when the item is a plain one.
+// Matches items that begin with '%' and are not a single character. Sets *s to where the match
+// continues, or NULL. Returns false when the item is a plain one.
 static bool match_special(matcher *m, const char **s, const char **p) {
     const char *after = *p + 2;
     if (*p + 1 >= m->pattern_end) return false;

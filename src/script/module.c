@@ -1,12 +1,13 @@
-// `require "name"`: name.lua in the effect's folder, else in the library's. Each module runs once;
-// what it returns (or true) is remembered.
+// `require "name"`: runs name.lua of the effect's folder, or else of the library's. Each module
+// runs once; its result (or true) is remembered.
 #include "base/file.h"
 #include "script/vm.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
-// Words of letters, digits, '_' and '-', separated by '.' or '/'; so no "..", no absolute path.
+// Accepts words of letters, digits, '_' and '-', separated by '.' or '/'; so no "..", no absolute
+// path.
 static bool is_module_name(const char *name, size_t length) {
     if (length == 0 || length > 200) return false;
     for (size_t i = 0; i < length; i++) {
@@ -18,7 +19,7 @@ static bool is_module_name(const char *name, size_t length) {
     return true;
 }
 
-// False when the folder has no such file; an error when it lies outside by a symbolic link.
+// False when the folder has no such file. Raises an error when a symbolic link leads out of it.
 static bool find_in(lua_State *L, const char *folder, const char *file, char out[PATH_CAP]) {
     char plain[PATH_CAP];
     if (!folder || !path_join(plain, folder, file) || !file_exists(plain)) return false;
@@ -26,7 +27,7 @@ static bool find_in(lua_State *L, const char *folder, const char *file, char out
     return true;
 }
 
-// A reload watches for the file to come.
+// Adds the missing file to those that a reload watches.
 static void fail_missing(lua_State *L, const char *name, const char *file) {
     const vm_desc *desc = vm_get_desc(L);
     char path[PATH_CAP];

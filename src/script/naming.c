@@ -1,6 +1,5 @@
-// Names of palettes and curves: what the script calls them. `local fire = palette { ... }` gives
-// "fire", and `size = over_age { ... }` "size", so that it can be set by that name without another
-// word.
+// Names of palettes and curves, taken from the script: `local fire = palette { ... }` gives "fire",
+// and `size = over_age { ... }` gives "size", so that they can be set by that name.
 #include "script/binding.h"
 #include <ctype.h>
 #include <string.h>
@@ -11,7 +10,7 @@ static bool is_part(char c) { // of an identifier
     return isalnum((unsigned char)c) || c == '_';
 }
 
-// The first call of `word` in the line that begins at `line`; NULL when there is none.
+// Returns the first call of `word` in the line that begins at `line`; NULL when there is none.
 static const char *find_call(const char *text, const char *line, const char *word) {
     size_t length = strlen(word);
     const char *end = line + strcspn(line, "\n");
@@ -28,7 +27,7 @@ static const char *skip_back(const char *text, const char *at) {
     return at;
 }
 
-// The name that the value of the call at `at` is assigned to.
+// Returns the name that the value of the call at `at` is assigned to.
 static bool read_name(const char *text, const char *at, char *out, size_t capacity) {
     at = skip_back(text, at);
     if (at == text || *--at != '=') return false;
@@ -47,8 +46,8 @@ static bool read_name(const char *text, const char *at, char *out, size_t capaci
     return true;
 }
 
-// The call of `word` in a line that comes after the one that was named last: several in one line
-// are made from left to right.
+// Returns the next call of `word` in a line after the one that was named last: calls in one line
+// run from left to right.
 static const char *next_call(lua_State *L, const char *text, const char *line, const char *word) {
     const char *named = script_of(L)->named;
     const char *call = NULL;

@@ -30,7 +30,7 @@ static matcher matcher_begin(lua_State *L, const char *text, size_t length, cons
         .L = L, .text = text, .text_end = text + length, .pattern_end = pattern + pattern_length};
 }
 
-// The optional argument `init` as an offset; more than `length` when it lies behind the text.
+// Returns the optional argument `init` as an offset; more than `length` when it is after the text.
 static size_t start_offset(lua_State *L, int arg, size_t length) {
     lua_Integer at = luaL_optinteger(L, arg, 1);
     if (at > 0) return (size_t)at - 1;
@@ -142,7 +142,7 @@ static void add_template(matcher *m, luaL_Buffer *b, const char *s, const char *
     luaL_addlstring(b, text, (size_t)(last - text));
 }
 
-// Adds what replaces the match [s, end); false when it stays as it is.
+// Appends the replacement of the match [s, end). False when the match is kept.
 static bool add_replacement(matcher *m, luaL_Buffer *b, const char *s, const char *end, int type) {
     lua_State *L = m->L;
     switch (type) {

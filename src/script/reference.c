@@ -1,5 +1,5 @@
-// The table of constructors: values, operators and the effect. What a kind's row can say stands in
-// field/kinds.c.
+// The table of constructors: values, operators and the effect. field/kinds.c describes kinds of
+// fields.
 #include "base/memory.h"
 #include "script/reference_rows.h"
 #include <string.h>

@@ -1,4 +1,4 @@
-// Reports: JSON becomes tables, a table becomes a page.
+// Reports: converts JSON to tables, and a table to a page.
 #include "script/report.h"
 #include "base/file.h"
 #include "script/vm.h"
@@ -17,7 +17,7 @@ typedef struct request {
 
 static void push_json(lua_State *L, const json_t *value, int depth);
 
-// Tables have no order: the names stand in the file's at 1, 2, 3 ... as well.
+// Lua tables have no order, so the names are also stored at 1, 2, 3 ... in the order of the file.
 static void push_object(lua_State *L, const json_t *object, int depth) {
     int count = (int)json_object_size(object);
     const char *name;

@@ -1,4 +1,4 @@
-// Values of a script as the texts that settings are.
+// Values of a script as texts of settings.
 #include "script/setting.h"
 #include "script/binding.h"
 #include <ctype.h>
@@ -29,7 +29,7 @@ static void add_word(lua_State *L, const setting_text *r, int index) {
     strbuf_append(r->text, text, length);
 }
 
-// Number `i` of the entry at the top of the stack.
+// Appends number `i` of the entry at the top of the stack.
 static void add_number_at(lua_State *L, const setting_text *r, int i) {
     if (lua_rawgeti(L, -1, i) != LUA_TNUMBER) wrong(L, r, accepted_values);
     float value = (float)lua_tonumber(L, -1);
@@ -37,7 +37,7 @@ static void add_number_at(lua_State *L, const setting_text *r, int i) {
     add_numbers(L, r, &value, 1);
 }
 
-// One stop or key, at the top of the stack.
+// Appends one stop or key at the top of the stack.
 static void add_entry(lua_State *L, const setting_text *r, bool keys) {
     lua_Unsigned length = lua_type(L, -1) == LUA_TTABLE ? lua_rawlen(L, -1) : 0;
     float value[4];
@@ -64,7 +64,7 @@ static bool first_value_is_number(lua_State *L) {
     return number;
 }
 
-// The list of stops or keys at the top of the stack.
+// Appends the list of stops or keys at the top of the stack.
 static void add_entries(lua_State *L, const setting_text *r) {
     size_t names;
     const char **name = value_names(L, -1, r->who, &names);

@@ -1,5 +1,5 @@
-// Sweeps: axes are crossed, and each combination becomes a row; so do the rows that pictures are
-// compared with.
+// Expands sweeps: axes are combined, and each combination becomes a row; so do the rows that
+// pictures are compared with.
 #include "base/hash.h"
 #include "base/memory.h"
 #include "script/binding.h"
@@ -72,7 +72,7 @@ static void require_complete(lua_State *L, const sweep_reader *r, const sweep_ro
                     "does");
 }
 
-// What the values say one after the other, over what the sweep says of all rows.
+// Applies the values one after the other to what the sweep sets for all rows.
 static sweep_row make_row(lua_State *L, sweep_reader *r, const combination *c, bool reference) {
     const sweep_options *o = r->options;
     sweep_row row = {.width = 960,
@@ -114,7 +114,7 @@ static void name_row(lua_State *L, sweep_reader *r, const combination *c, sweep_
 
 // ---- functions of the file --------------------------------------------------------------------
 
-// A table of the combination's values, by name and by label.
+// Pushes a table of the combination's values, by name and by label.
 static void push_combination(lua_State *L, const combination *c) {
     lua_createtable(L, 0, (int)c->count * 2);
     for (size_t i = 0; i < c->count; i++) {
@@ -141,7 +141,7 @@ static bool is_skipped(lua_State *L, const sweep_reader *r, const combination *c
     return skipped;
 }
 
-// { ["GTX 1650"] = 7.21 }: figures of others, in milliseconds.
+// Reads { ["GTX 1650"] = 7.21 }: times that others report, in milliseconds.
 static void ask_published(lua_State *L, sweep_reader *r, const combination *c, sweep_row *row) {
     if (r->published == LUA_NOREF) return;
     int top = lua_gettop(L);
@@ -179,7 +179,7 @@ static hash128 add_text(hash128 h, const char *text) {
     return hash_combine(h, hash_bytes(text, strlen(text)));
 }
 
-// Of what decides a row's pictures.
+// Hashes everything that the row's pictures depend on.
 static hash128 row_hash(const sweep_row *row) {
     double numbers[] = {row->width, row->height, row->first, row->last, row->warmup};
     hash128 h = hash_combine(hash_bytes(numbers, sizeof numbers),
@@ -190,7 +190,7 @@ static hash128 row_hash(const sweep_row *row) {
     return h;
 }
 
-// Number of the reference of a combination; each is kept once.
+// Returns the number of a combination's reference; equal ones are stored once.
 static size_t find_reference(lua_State *L, sweep_reader *r, const combination *c, hash128 *known) {
     sweep *s = r->out;
     sweep_row row = make_row(L, r, c, true);
@@ -256,8 +256,8 @@ static void scale_value(lua_State *L, const sweep_list *of, sweep_value *v, scal
         arena_format(sweep_reader_of(L)->memory, "%ux%u", v->patch.width, v->patch.height);
 }
 
-// All sizes are scaled so that the largest is the one that the user asks for. Functions of the file
-// go on seeing what the file says.
+// Scales all sizes so that the largest is the one that the user asks for. Functions of the file
+// still get the sizes in the file.
 static void scale_sizes(lua_State *L, sweep_reader *r) {
     uint32_t width = r->base.width, height = r->base.height;
     if (!r->options->width) return;

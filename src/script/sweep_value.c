@@ -1,4 +1,4 @@
-// Sweeps: what the values of a file say of rows.
+// Sweeps: reads what the values of a file set in rows.
 #include "base/frames.h"
 #include "base/memory.h"
 #include "script/binding.h"
@@ -58,7 +58,7 @@ static void *reserve(lua_State *L, size_t count, size_t size) {
     return arena_alloc(sweep_reader_of(L)->memory, count * size);
 }
 
-// Text of a file is shown on terminals and in tables: `lines` says whether it may break.
+// Texts of a file are shown on terminals and in tables. `lines`: it may contain line breaks.
 static const char *take_text(lua_State *L, const char *who, const char *key, bool lines) {
     size_t length;
     if (lua_type(L, -1) != LUA_TSTRING) wrong(L, who, key, "a text in quotes");
@@ -124,7 +124,7 @@ static void take_size(lua_State *L, const char *who, sweep_patch *patch) {
     patch->height = side[1];
 }
 
-// Frames of a text are parsed into memory that an error of Lua would lose: they are copied at once.
+// Frames are parsed into memory that a Lua error would lose, so they are copied at once.
 static void take_frame_text(lua_State *L, const char *who, sweep_patch *patch) {
     const char *text = sweep_take_text(L, who, "frames");
     double *numbers;

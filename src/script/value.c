@@ -1,4 +1,4 @@
-// Reading what a script passes: every table is checked key by key, every value against what is
+// Reads the arguments of a script: every table is checked key by key, every value against what is
 // accepted, and the message says which.
 #include "base/value.h"
 #include "base/memory.h"
@@ -169,7 +169,7 @@ _Noreturn static void wrong(lua_State *L, int index, const char *who, const char
     vm_error(L, "%s: '%s' must be %s; got %s", who, key, accepted, object_kind(L, index));
 }
 
-// Number of a constant; fields that move are no numbers.
+// Reads a constant; a field that changes is not a number.
 static bool plain_number(lua_State *L, int index, double *out) {
     if (lua_type(L, index) == LUA_TNUMBER) {
         *out = lua_tonumber(L, index);
@@ -263,7 +263,8 @@ int value_get_choice(lua_State *L, int table, const script_object *object, const
 
 // ---- numbers, vectors, colours ----------------------------------------------------------------
 
-// Neither raises nor allocates: the result of a function of time is read outside of any call.
+// Neither raises errors nor allocates, because the result of a function of time is read outside of
+// any call.
 int value_numbers(lua_State *L, int index, float out[4]) {
     index = lua_absindex(L, index);
     memset(out, 0, 4 * sizeof *out);
@@ -308,7 +309,7 @@ static const field *constant(lua_State *L, const char *who, const char *key, int
     return field_constant(script_memory(L), count == 2 ? 3 : count, value);
 }
 
-// The function is called once, for time 0, to learn how many components it gives.
+// Calls the function once, for time 0, to learn how many components it returns.
 static const field *function_of_time(lua_State *L, int index, const char *who, const char *key) {
     script_require_loading(L, "a function of time");
     script *s = script_of(L);
@@ -336,7 +337,7 @@ static const field *function_of_time(lua_State *L, int index, const char *who, c
     return field_call(script_memory(L), count == 2 ? 3 : count, reference);
 }
 
-// {x, y, z}, or {x, y}, of which some are fields.
+// Reads {x, y, z} or {x, y} in which some values are fields.
 static const field *mixed_vector(lua_State *L, int index, const char *who, const char *key) {
     const field *parts[FIELD_MAX_ARGS] = {0};
     lua_Unsigned count = lua_rawlen(L, index);

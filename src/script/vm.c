@@ -86,7 +86,7 @@ static void vm_tick(lua_State *L, lua_Debug *ar);
 
 enum { OF_EFFECT = '@', OF_ROIL = '=' }; // first letters of chunk names; OF_ROIL: prelude, library
 
-// The innermost line that the effect's author wrote, else one of ours; none in C.
+// Returns the innermost line of the effect's author, else one of the library's; none in C.
 static bool find_line(lua_State *L, lua_Debug *ar) {
     int ours = -1;
     for (int level = 0; lua_getstack(L, level, ar); level++) {
@@ -141,8 +141,8 @@ static void raise_stop(lua_State *L) {
     lua_error(L);
 }
 
-// Whether no limit was hit. The thread's processor time needs a call of the system, and cannot have
-// grown by more than the clock.
+// Returns whether all limits are kept. The thread's processor time needs a system call, and cannot
+// have grown by more than the clock.
 static bool vm_check_limits(vm *v) {
     v->seen = v->spent;
     if (v->spent > v->budget) vm_stop_for(v, STOP_INSTRUCTIONS);
@@ -171,8 +171,8 @@ static void vm_tick(lua_State *L, lua_Debug *ar) {
     if (v->stop) raise_stop(L);
 }
 
-// From the budget, which never gets any back before the end: scripts that make garbage from frame
-// to frame do not ask each time. The message of a refusal is kept.
+// Takes memory from the budget, which gets none back before the end, so that scripts that make
+// garbage in every frame do not ask each time. The message of a refusal is kept.
 static bool vm_take(vm *v, size_t bytes) {
     if (bytes <= v->reserved) return true;
     size_t wanted = (bytes + BUDGET_STEP - 1) / BUDGET_STEP * BUDGET_STEP;
@@ -184,7 +184,8 @@ static bool vm_take(vm *v, size_t bytes) {
     return false;
 }
 
-// A block of this size is there from now on: fewer instructions may touch it between two looks.
+// Notes the size of a new block: the larger it is, the fewer instructions may run between two
+// checks.
 static void note_block(vm *v, size_t size, bool string) {
     if (v->ours || size <= (string ? STRING_WORK : BLOCK_WORK) / TICK) return;
     int interval = (int)((string ? STRING_WORK : BLOCK_WORK) / size);
@@ -280,7 +281,8 @@ void vm_error(lua_State *L, const char *format, ...) {
     abort();
 }
 
-// "lib/spread.lua:12: ...": says where it went wrong, not what the author did.
+// Returns whether a message has a place in the library, such as "lib/spread.lua:12: ...". It says
+// where the error occurred, but not what the author did.
 static bool is_in_library(lua_State *L, const char *text) {
     lua_Debug ar;
     for (int level = 0; level < 32 && lua_getstack(L, level, &ar); level++) {
@@ -295,7 +297,7 @@ static bool is_in_library(lua_State *L, const char *text) {
 
 static const char called_from[] = "\ncalled from ";
 
-// The lines of the effect's files that led to the one where it went wrong, a line each.
+// Appends the lines of the effect's files that led to the error, one per line.
 static void add_callers(lua_State *L, char *text, size_t capacity) {
     enum { MOST_CALLERS = 8 };
     lua_Debug ar;
@@ -325,7 +327,7 @@ static int describe_error(lua_State *L) {
     return 1;
 }
 
-// Scripts come from strangers and terminals obey control characters.
+// Removes control characters, since scripts come from strangers and terminals obey them.
 static void set_error(const char *text) {
     char clean[MESSAGE_MAX];
     size_t n = 0;

@@ -7,11 +7,11 @@
 // n))): a vec4 (LBM_F32) or a uvec2 of four halves in order (LBM_F16). The neighbours of a whole
 // element are a whole element again; where z goes round, its lanes rotate by one. On GPUs n is 2
 // in half precision, and four elements that lie nz / 8 apart are side by side in memory, if nz is
-// a multiple of 8: a bundle of 16 bytes, whose neighbours are whole bundles. Populations are kept
-// less their weights (air) and streamed in place.
+// a multiple of 8: a bundle of 16 bytes, whose neighbours are whole bundles. Populations of
+// the air are stored minus their weights, and streamed in place.
 //
-// Life: lbm_create, lbm_compile (or not), lbm_build, lbm_allocate, then in frames lbm_reset and
-// lbm_step.
+// Order of calls: lbm_create, lbm_compile (optional), lbm_build, lbm_allocate; then in frames
+// lbm_reset and lbm_step.
 #pragma once
 #include "base/arena.h"
 #include "kernel/kernel.h"
