@@ -144,7 +144,7 @@ static bool start(reload *m) {
     return m->live && wait_for_ring(&m->news) && take(m, &changed) && changed && draw(m);
 }
 
-static bool run(reload *m) {
+static bool reload_run(reload *m) {
     if (!start(m)) return false;
     size_t count = m->row->warmup + m->row->repeats;
     double begin = clock_seconds();
@@ -165,7 +165,7 @@ bool bench_measure_reload(bench_session *s, const bench_job *job, bench_row *row
     pthread_mutex_init(&m.news.mutex, NULL);
     pthread_cond_init(&m.news.rung, NULL);
     bool done = bench_folder_copy(row->inside, row->effect, folder) &&
-                path_join(m.path, folder, path_name(row->effect)) && run(&m);
+                path_join(m.path, folder, path_name(row->effect)) && reload_run(&m);
     row->times = bench_summarise(&m.times, memory);
     roil_live_destroy(m.live);
     pthread_cond_destroy(&m.news.rung);

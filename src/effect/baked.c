@@ -23,7 +23,7 @@ static bool update(field_grid *grid, gpu *g, double time) {
     return true;
 }
 
-static bool check(const effect_bake_desc *desc) {
+static bool bake_check(const effect_bake_desc *desc) {
     uint64_t voxels = 1;
     for (int i = 0; i < 3; i++) {
         if (desc->size[i] < 1 || desc->size[i] > MOST_SIDE)
@@ -41,7 +41,7 @@ static bool check(const effect_bake_desc *desc) {
 }
 
 field_grid *effect_add_bake(effect *e, const field *node, const effect_bake_desc *desc) {
-    if (!check(desc)) return NULL;
+    if (!bake_check(desc)) return NULL;
     // A grid of three channels has four: the first is written once more.
     const field *value = node->components == 3 ? field_swizzle(&e->memory, node, "rgbr") : node;
     pass *p = effect_add_pass(e, "bake", NULL, NULL);

@@ -16,7 +16,7 @@ const char *curve_shape_name(curve_shape shape) {
     return (unsigned)shape < CURVE_SHAPE_COUNT ? names[shape] : "?";
 }
 
-static bool check(const curve *desc) {
+static bool curve_check(const curve *desc) {
     if ((unsigned)desc->shape >= CURVE_SHAPE_COUNT)
         return err_set("curve: unknown shape %d", (int)desc->shape);
     if (desc->components < 1 || desc->components > 4)
@@ -49,7 +49,7 @@ typedef struct owned_curve { // a curve first: what curve_create makes
 } owned_curve;
 
 curve *curve_create(arena *memory, const curve *desc) {
-    if (!check(desc)) return NULL;
+    if (!curve_check(desc)) return NULL;
     owned_curve *c = arena_alloc(memory, sizeof *c);
     *c = (owned_curve){.curve = *desc, .memory = memory};
     c->curve.keys = arena_copy(memory, desc->keys, desc->count * sizeof *desc->keys);
@@ -59,7 +59,7 @@ curve *curve_create(arena *memory, const curve *desc) {
 
 bool curve_replace(curve *c, const curve *desc) {
     owned_curve *own = (owned_curve *)c;
-    if (!check(desc)) return false;
+    if (!curve_check(desc)) return false;
     if (desc->components != c->components)
         return err_set("curve: its values have %d component%s, not %d", c->components,
                        c->components == 1 ? "" : "s", desc->components);

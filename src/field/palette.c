@@ -78,7 +78,7 @@ static bool find_range(const palette_desc *desc, float *min, float *max) {
                    (double)*min, (double)*max);
 }
 
-static bool check(const palette_desc *desc, float *min, float *max) {
+static bool palette_check(const palette_desc *desc, float *min, float *max) {
     if (!desc->blackbody && desc->key_count == 0)
         return err_set("palette: no stops; at least two, or blackbody, are needed");
     if (desc->blackbody && desc->key_count > 0)
@@ -133,7 +133,7 @@ static void take(palette *p, const palette_desc *desc, key_room given, key_room 
 
 palette *palette_create(arena *memory, const palette_desc *desc) {
     float min, max;
-    if (!check(desc, &min, &max)) return NULL;
+    if (!palette_check(desc, &min, &max)) return NULL;
     palette *p = arena_alloc(memory, sizeof *p);
     size_t stops = count_stops(desc);
     *p = (palette){.memory = memory, .min = min, .max = max};
@@ -146,7 +146,7 @@ palette *palette_create(arena *memory, const palette_desc *desc) {
 
 bool palette_replace(palette *p, const palette_desc *desc) {
     float min, max;
-    if (!check(desc, &min, &max)) return false;
+    if (!palette_check(desc, &min, &max)) return false;
     if (count_stops(desc) > p->most_stops)
         return err_set("palette: %zu stops; at most %zu are accepted", count_stops(desc),
                        p->most_stops);

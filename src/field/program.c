@@ -267,7 +267,7 @@ static bool check_root(const field_root *roots, size_t i) {
                    root->after);
 }
 
-static bool build(arena *memory, field_program *p) {
+static bool program_build(arena *memory, field_program *p) {
     interner in = {.program = p};
     bool ok = true;
     for (size_t i = 0; i < p->root_count && ok; i++) {
@@ -321,7 +321,7 @@ field_program *field_program_create(arena *memory, const field_root *roots, size
     p->root_nodes = arena_alloc(memory, (count + 1) * sizeof *p->root_nodes);
     p->scalars = NONE;
     for (size_t i = 0; i < count; i++) copy[i].name = arena_string(memory, roots[i].name);
-    bool ok = build(memory, p);
+    bool ok = program_build(memory, p);
     if (ok)
         settle(memory, p);
     else {

@@ -346,7 +346,7 @@ static void destroy(field_grid *grid, gpu *g) {
 
 // ---- public -----------------------------------------------------------------------------------
 
-static bool check(sequence_data *s) {
+static bool sequence_check(sequence_data *s) {
     sequence_desc *d = &s->desc;
     if (d->fps == 0) d->fps = 24;
     if (d->speed == 0) d->speed = 1;
@@ -371,7 +371,7 @@ static bool check(sequence_data *s) {
 }
 
 static bool open_files(sequence_data *s) {
-    if (!check(s) || !list_files(s)) return false;
+    if (!sequence_check(s) || !list_files(s)) return false;
     if (s->raw) {
         s->desc.raw.channel = arena_string(&s->memory, s->desc.raw.channel);
         s->desc.raw.axes = arena_string(&s->memory, s->desc.raw.axes);

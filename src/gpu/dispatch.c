@@ -9,7 +9,7 @@
 
 enum { MOST_SLICES = 16, GROUPS_A_CORE = 8 }; // of a slice, at least
 
-static bool check(gpu *g, const gpu_dispatch_desc *desc) {
+static bool dispatch_check(gpu *g, const gpu_dispatch_desc *desc) {
     if (!vk_alive(g)) return false;
     const gpu_pipeline *pipeline = desc->pipeline;
     if (!g->frame) return err_set("pipeline '%s': no frame is open", pipeline->label);
@@ -61,7 +61,7 @@ static void dispatch(VkCommandBuffer commands, const vk_built *built, const uint
 
 bool gpu_dispatch(gpu *g, const gpu_dispatch_desc *desc) {
     uint32_t groups[3];
-    if (!check(g, desc) || !count_groups(g, desc, groups)) return false;
+    if (!dispatch_check(g, desc) || !count_groups(g, desc, groups)) return false;
     VkCommandBuffer commands = g->frame->batch.commands;
     const gpu_pipeline *pipeline = desc->pipeline;
     vk_uses_begin(g);

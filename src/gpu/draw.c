@@ -73,7 +73,7 @@ static bool check_buffers(const gpu_pipeline *p, const gpu_draw *draw) {
     return true;
 }
 
-static bool check(gpu *g, const gpu_draw_desc *desc) {
+static bool draw_check(gpu *g, const gpu_draw_desc *desc) {
     if (!vk_alive(g)) return false;
     if (!g->frame) return err_set("drawing: no frame is open");
     uint32_t colors = color_count(desc);
@@ -214,7 +214,7 @@ static bool record(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipelin
 }
 
 bool gpu_draw_all(gpu *g, const gpu_draw_desc *desc) {
-    if (!check(g, desc)) return false;
+    if (!draw_check(g, desc)) return false;
     VkCommandBuffer commands = g->frame->batch.commands;
     vk_uses_begin(g);
     if (!use_all(g, desc)) return false;

@@ -137,7 +137,7 @@ static bool create_views(gpu *g, gpu_image *image) {
     return true;
 }
 
-static bool build(gpu *g, gpu_image *image) {
+static bool image_build(gpu *g, gpu_image *image) {
     const gpu_image_desc *d = &image->desc;
     VkImageCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
                               .imageType = d->depth ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D,
@@ -175,7 +175,7 @@ gpu_image *gpu_image_create(gpu *g, const gpu_image_desc *desc) {
     image->desc = d;
     image->desc.label = mem_copy(d.label, strlen(d.label) + 1);
     image->aspect = d.format == GPU_D32F ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
-    if (!build(g, image)) {
+    if (!image_build(g, image)) {
         image_free(g, image);
         return NULL;
     }

@@ -78,7 +78,7 @@ static void copy_scaled(gpu *g, VkCommandBuffer commands, gpu_image *image) {
              VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, true);
 }
 
-static bool check(gpu *g, const gpu_image *image) {
+static bool present_check(gpu *g, const gpu_image *image) {
     if (!vk_alive(g)) return false;
     const gpu_image_desc *d = &image->desc;
     if (!g->window.maker.create_surface) {
@@ -100,7 +100,7 @@ static bool check(gpu *g, const gpu_image *image) {
 }
 
 bool gpu_present(gpu *g, gpu_image *image) {
-    if (!check(g, image) || !vk_window_revive(g)) return false;
+    if (!present_check(g, image) || !vk_window_revive(g)) return false;
     if (!g->window.surface) return true;
     VkResult result = obtain(g, (VkExtent2D){image->desc.width, image->desc.height});
     if (result == VK_NOT_READY) return true;

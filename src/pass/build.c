@@ -187,7 +187,7 @@ bool pass_build(pass *p) {
     return p->runs_in || pass_build_part(p);
 }
 
-static bool build(pass *p) {
+static bool build_one(pass *p) {
     p->program = generate(p);
     if (!p->program) return err_prefix("%s: ", p->label);
     if (!(p->type && p->type->build ? p->type->build(p) : pass_build_kernels(p))) return false;
@@ -197,7 +197,7 @@ static bool build(pass *p) {
 }
 
 bool pass_build_part(pass *p) {
-    return build(p) || pass_locate_error(p);
+    return build_one(p) || pass_locate_error(p);
 }
 
 void pass_list_memory(const pass *p, budget_list *out) {
@@ -214,14 +214,14 @@ bool pass_allocate(pass *p) {
     return allocate(p) || pass_locate_error(p);
 }
 
-static bool check(pass *p) {
+static bool check_one(pass *p) {
     p->program = generate(p);
     if (!p->program) return err_prefix("%s: ", p->label);
     return p->type && p->type->check ? p->type->check(p) : pass_compile_kernels(p);
 }
 
 bool pass_check_part(pass *p) {
-    return check(p) || pass_locate_error(p);
+    return check_one(p) || pass_locate_error(p);
 }
 
 // What pass_build can find wrong without a device.

@@ -39,9 +39,8 @@ void drawn_destroy(drawn *d); // NULL is fine
 
 // Chooses what is drawn in each view. `views`: storage buffer of view_entry (shared.h), of which
 // `count` are used; NULL: the camera's of this frame, in a picture of `height` pixels. `lod`: how
-// far (pixels) a simplified mesh may be off, as the uniform of that name has it; 0: all is drawn in
-// full. `most`: instances whose middle is farther (m) from the eye of a view are left out; 0: none
-// for that.
+// far (pixels) a simplified mesh may be off; 0: all is drawn in full. `most`: instances whose
+// middle is farther (m) from the eye of a view are left out; 0: none for that.
 bool drawn_cull(drawn *d, gpu_buffer *views, size_t count, uint32_t height, float lod, float most);
 
 // Draws `count` of those views with the pass's kernel `index`, from view `first` on, to the target,

@@ -141,7 +141,8 @@ static bool place(drawn *d, drawn_body *body) {
 
 // ---- choosing ---------------------------------------------------------------------------------
 
-static void set_numbers(const drawn_body *body, kernel *k, const kernel_place *places, float most) {
+static void set_numbers(const drawn_body *body, kernel *k, const kernel_place *places, float lod,
+                        float most) {
     mat4 matrix = GLM_MAT4_IDENTITY_INIT;
     if (body->instances) glm_mat4_copy(body->places[0].matrix, matrix);
     const float scale = glm_vec3_norm(matrix[0]);
@@ -153,6 +154,7 @@ static void set_numbers(const drawn_body *body, kernel *k, const kernel_place *p
     kernel_set_at(k, &places[N_command_count], &body->command_count, sizeof body->command_count);
     kernel_set_at(k, &places[N_place], matrix, sizeof matrix);
     kernel_set_at(k, &places[N_scale], &scale, sizeof scale);
+    kernel_set_at(k, &places[N_lod], &lod, sizeof lod);
     kernel_set_at(k, &places[N_most], &most, sizeof most);
 }
 
@@ -170,12 +172,13 @@ static void bind_buffers(const drawn *d, const drawn_body *body, kernel *k,
         kernel_bind_at(k, &places[buffer_names[i]], (gpu_binding){.buffer = body->buffers[i]});
 }
 
-static bool run(drawn *d, const drawn_body *body, drawn_step step, uint32_t views, float most) {
+static bool drawn_run(drawn *d, const drawn_body *body, drawn_step step, uint32_t views, float lod,
+                      float most) {
     const size_t index = d->first + step;
     const kernel_place *places = pass_solver_places(d->p, index);
     kernel *k = pass_use(d->p, index);
     if (!k) return false;
-    set_numbers(body, k, places, most);
+    set_numbers(body, k, places, lod, most);
     bind_buffers(d, body, k, places);
     uint32_t threads = step == DRAWN_COUNT ? bucket_count(body) : body->count;
     return kernel_run(k, d->p->host->device, threads, views, 1);
@@ -207,6 +210,6 @@ bool drawn_cull(drawn *d, gpu_buffer *views, size_t count, uint32_t height, floa
     // Step by step, so that bodies need not wait for each other.
     for (int step = 0; step < DRAWN_STEPS; step++)
         for (size_t i = 0; i < d->body_count && done; i++)
-            done = run(d, &d->bodies[i], (drawn_step)step, (uint32_t)count, most);
+            done = drawn_run(d, &d->bodies[i], (drawn_step)step, (uint32_t)count, lod, most);
     return done || err_prefix("%s: ", d->p->label);
 }

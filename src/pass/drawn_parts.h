@@ -43,7 +43,7 @@ typedef enum drawn_step { DRAWN_CHOOSE, DRAWN_COUNT, DRAWN_PUT } drawn_step;
         NAME(Vertices), NAME(mesh_texture), NAME(DrawnBuckets), NAME(DrawnChoices),                \
         NAME(DrawnTotals), NAME(DrawnCounts), NAME(DrawnCommands), NAME(instance_count),           \
         NAME(bucket_count), NAME(block_count), NAME(command_count), NAME(place), NAME(scale),      \
-        NAME(most)
+        NAME(lod), NAME(most)
 enum { DRAWN_NAMES(KERNEL_NAME_ID) };
 
 struct drawn {

@@ -207,7 +207,7 @@ static bool is_left_out(pass *p, const kernel_row *at, pass_defines *out) {
 }
 
 // `*left_out`: the type or the provider wants none.
-static bool compile(pass *p, size_t index, pass_built *b, bool *left_out) {
+static bool compile_kernel(pass *p, size_t index, pass_built *b, bool *left_out) {
     const kernel_row at = find_row(p, index);
     const pass_kernel *row = at.kernel;
     const char *shader = row->shader ? row->shader : p->shader;
@@ -252,7 +252,7 @@ static void describe_target(const pass *p, size_t index, gpu_graphics_desc *out)
         if (p->face->images[i].output) out->colors[count++] = p->formats[i];
 }
 
-static bool build(pass *p, size_t index, pass_built *b) {
+static bool build_kernel(pass *p, size_t index, pass_built *b) {
     gpu *device = p->host->device;
     for (int s = 0; s < b->base.stages; s++)
         if (!pass_ranges_build(p, &b->base.binaries[s])) return false;
@@ -277,8 +277,8 @@ static void allocate(pass *p) {
 static bool make(pass *p, size_t index, bool built) {
     pass_built made = {.base.pipeline = NULL};
     bool left_out;
-    if (!compile(p, index, &made, &left_out)) return false;
-    if (built && !left_out && !build(p, index, &made)) return false;
+    if (!compile_kernel(p, index, &made, &left_out)) return false;
+    if (built && !left_out && !build_kernel(p, index, &made)) return false;
     kernel_destroy(&p->built[index].base, p->host->device);
     p->built[index] = made;
     return true;

@@ -100,7 +100,7 @@ static void list_files(const shader_unit *unit, arena *memory, shader_binary *ou
     out->file_count = count;
 }
 
-static bool compile(job *j) {
+static bool compile_job(job *j) {
     const shader_interface *interface = unit_annotations(&j->unit, &j->scratch, &j->inserts);
     if (!interface || !unit_prelude(&j->unit, interface, j->desc, &j->source)) return false;
     add_text(j);
@@ -109,9 +109,9 @@ static bool compile(job *j) {
     return true;
 }
 
-static void *run(void *user) {
+static void *job_run(void *user) {
     job *j = user;
-    j->done = compile(j);
+    j->done = compile_job(j);
     if (!j->done) j->message = arena_string(&j->scratch, err_get()); // messages are per thread
     return NULL;
 }
@@ -141,8 +141,8 @@ bool shader_compile(shader_library *library, arena *memory, const shader_compile
                       .text_count = desc->text_count,
                       .reader = desc->reader};
     if (!unit_load(library, &unit, &j.unit)) return false;
-    bool done = run_on_large_stack(run, &j) ? j.done || err_set("%s", j.message)
-                                            : err_prefix("%s: ", desc->name);
+    bool done = run_on_large_stack(job_run, &j) ? j.done || err_set("%s", j.message)
+                                                : err_prefix("%s: ", desc->name);
     if (done && library->binaries) binary_memo_keep(library, desc, &j.unit, out);
     strbuf_free(&j.source);
     mem_free(j.inserts.items);

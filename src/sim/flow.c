@@ -22,7 +22,7 @@ static bool check_faces(const flow_desc *desc) {
     return true;
 }
 
-static bool check(const flow_desc *desc) {
+static bool flow_check(const flow_desc *desc) {
     for (int i = 0; i < 2; i++)
         if (desc->size[i] < FLOW_LEAST_SIZE || desc->size[i] > FLOW_MOST_SIZE)
             return err_set("a slice of %u x %u cells; %d to %d along each axis are accepted",
@@ -38,7 +38,7 @@ static bool check(const flow_desc *desc) {
 }
 
 flow *flow_create(arena *memory, const flow_desc *desc) {
-    if (!check(desc)) return NULL;
+    if (!flow_check(desc)) return NULL;
     flow *f = arena_alloc(memory, sizeof *f);
     *f = (flow){.memory = memory, .desc = *desc};
     f->chooses_iterations = desc->max_iterations == 0;
@@ -139,8 +139,8 @@ static void choose(flow *f, const gpu_profile *device) {
     if (f->chooses_iterations) flow_choose_iterations(f);
 }
 
-static bool compile(flow *f, const gpu_profile *device, shader_library *library,
-                    const shader_reader *reader) {
+static bool flow_compile_kernels(flow *f, const gpu_profile *device, shader_library *library,
+                                 const shader_reader *reader) {
     choose(f, device);
     define_all(f);
     for (int i = 0; i < FLOW_KERNELS; i++) {
@@ -165,11 +165,11 @@ static bool compile(flow *f, const gpu_profile *device, shader_library *library,
 }
 
 bool flow_compile(flow *f, shader_library *library, const shader_reader *reader) {
-    return compile(f, gpu_get_profile(NULL), library, reader);
+    return flow_compile_kernels(f, gpu_get_profile(NULL), library, reader);
 }
 
 bool flow_build(flow *f, gpu *g, shader_library *library, const shader_reader *reader) {
-    if (!compile(f, gpu_get_profile(g), library, reader)) return false;
+    if (!flow_compile_kernels(f, gpu_get_profile(g), library, reader)) return false;
     for (int i = 0; i < FLOW_KERNELS; i++)
         if (f->kernels[i].stages && !kernel_build(&f->kernels[i], g)) return false;
     return true;

@@ -30,7 +30,7 @@ float lbm_scalar_speed(lbm_scalar_set set) {
     return set == LBM_SCALAR_D3Q27 ? 1.0f / 3 : 1.0f / 4;
 }
 
-static bool check(const lbm_desc *desc) {
+static bool lbm_check(const lbm_desc *desc) {
     const uint32_t *size = desc->size;
     static const char *const axes[3] = {"x", "y", "z"};
     if (size[0] < 4 || size[1] < 4 || size[2] < 16)
@@ -88,7 +88,7 @@ bool lbm_layout_find(const lbm_desc *desc, uint64_t range, lbm_layout *out) {
 }
 
 lbm *lbm_create(arena *memory, const lbm_desc *desc) {
-    if (!check(desc)) return NULL;
+    if (!lbm_check(desc)) return NULL;
     lbm *l = arena_alloc(memory, sizeof *l);
     *l = (lbm){.memory = memory,
                .desc = *desc,
@@ -138,7 +138,8 @@ static void define_all(lbm *l) {
 }
 
 // `g`: NULL, none in particular.
-static bool compile(lbm *l, const gpu *g, shader_library *library, const shader_reader *reader) {
+static bool lbm_compile_kernels(lbm *l, const gpu *g, shader_library *library,
+                                const shader_reader *reader) {
     const gpu_profile *device = gpu_get_profile(g);
     if (l->chooses_lanes) l->desc.lanes = choose_lanes(&l->desc, device);
     if (l->chooses_order) l->desc.order = device->lbm_whole ? LBM_WHOLE : LBM_BLOCKS;
@@ -150,11 +151,11 @@ static bool compile(lbm *l, const gpu *g, shader_library *library, const shader_
 }
 
 bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader) {
-    return compile(l, NULL, library, reader);
+    return lbm_compile_kernels(l, NULL, library, reader);
 }
 
 bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader) {
-    return compile(l, g, library, reader) && kernel_build(&l->reset.base, g) &&
+    return lbm_compile_kernels(l, g, library, reader) && kernel_build(&l->reset.base, g) &&
            lbm_step_build(l, g) && lbm_walls_build(l, g);
 }
 

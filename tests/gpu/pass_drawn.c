@@ -167,17 +167,8 @@ static void make_views(stand *s) {
     gpu_test_ok(s->views && gpu_buffer_write(s->w.host.device, s->views, 0, views, sizeof views));
 }
 
-// As if the pass had been given it: the kernels that choose have the uniforms of the pass.
-static void set_lod(stand *s, float lod) {
-    size_t index;
-    assert_int_equal(pass_find_key(s->p, "lod", &index), PASS_UNIFORM);
-    s->p->values[index][0] = lod;
-    pass_copy_values(s->p);
-}
-
 static void cull_within(stand *s, float lod, float most) {
     gpu *device = s->w.host.device;
-    set_lod(s, lod);
     gpu_test_ok(gpu_frame_begin(device));
     gpu_test_ok(scene_instances_upload(s->instances, device));
     gpu_test_ok(drawn_cull(s->d, s->views, VIEWS, HEIGHT, lod, most));

@@ -280,7 +280,7 @@ static void setting_that_is_the_default_is_not_inherited_over(void **state) {
         assert_string_equal(steps->initial, "128");
         assert_true(given ? steps->moved && strcmp(steps->moved, "128") == 0 : !steps->moved);
         pass_add_uniforms_of(second, first);
-        const shader_uniform *declared;
+        const value_desc *declared;
         const field *own = pass_get_uniform(second, steps->index);
         const field *inherited = pass_inherited_uniform(second, steps->index, &declared);
         assert_true(inherited && inherited->value[0] == 16);
