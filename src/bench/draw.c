@@ -28,8 +28,8 @@ static bool on_progress(void *user, double done, double whole) {
 
 bool bench_drawing_begin(bench_session *s, const bench_row *row, bench_drawing *out) {
     *out = (bench_drawing){.session = s, .row = row};
-    out->effect = roil_load_inside(s->r, row->inside, row->effect, row->settings.items,
-                                   row->settings.count);
+    out->effect =
+        roil_load_inside(s->r, row->inside, row->effect, row->settings.items, row->settings.count);
     if (!out->effect) return false;
     roil_on_progress(out->effect, on_progress, out);
     return roil_prepare(out->effect, row->width, row->height);

@@ -26,9 +26,9 @@ typedef struct effect_setting { // see effect_set
 } effect_setting;
 
 typedef struct effect_desc {
-    gpu *device;             // NULL: check only
-    const char *file;        // the effect's .lua file
-    const char *inside;      // folder that it must lie in when it is opened; NULL: its user named it
+    gpu *device;        // NULL: check only
+    const char *file;   // the effect's .lua file
+    const char *inside; // folder that it must lie in when it is opened; NULL: its user named it
     const char *shader_root; // the program's shaders
     const char *cache_dir;   // NULL: no caches
     bool counters;
@@ -55,8 +55,8 @@ arena *effect_memory(effect *e);          // lives as long as the effect
 const char *effect_root(const effect *e); // folder of its file
 const char *effect_file(const effect *e);
 const char *effect_inside(const effect *e); // effect_desc.inside
-double effect_seconds(const effect *e); // that a load may take
-bool effect_draws(const effect *e);     // false: it is only checked
+double effect_seconds(const effect *e);     // that a load may take
+bool effect_draws(const effect *e);         // false: it is only checked
 scene *effect_scene(effect *e);
 pass_host *effect_pass_host(effect *e);
 

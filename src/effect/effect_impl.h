@@ -99,7 +99,7 @@ struct effect {
     arena memory;
     gpu *device;
     const char *file, *root, *name;
-    const char *inside; // effect_desc
+    const char *inside;                    // effect_desc
     shader_library *library, *own_library; // the latter NULL when it is shared
     scene scene;
     graph *graph;
