@@ -1,19 +1,31 @@
-"""The README's words: its effects load and draw, its commands and options exist."""
+"""The words of the documents: the effects that README.md shows draw, the commands and options that any of
+them names exist."""
 import os
 import re
 import shutil
 
 from lib.program import SMALL, SOURCE, Case, main
 
+FOLDERS = ("src", "effects", "scripts", "tests")
 
-def readme():
-    with open(os.path.join(SOURCE, "README.md"), encoding="utf-8") as f:
+
+def text_of(path):
+    with open(os.path.join(SOURCE, path), encoding="utf-8") as f:
         return f.read()
+
+
+def documents():
+    """Paths, relative to the source, of README.md and of the documents in its folders."""
+    found = ["README.md"]
+    for folder in FOLDERS:
+        for here, _, names in os.walk(os.path.join(SOURCE, folder)):
+            found += [os.path.relpath(os.path.join(here, name), SOURCE) for name in names if name.endswith(".md")]
+    return found
 
 
 class Readme(Case):
     def test_effects_in_it_draw(self):
-        blocks = re.findall(r"```lua\n(.*?)```", readme(), re.S)
+        blocks = re.findall(r"```lua\n(.*?)```", text_of("README.md"), re.S)
         self.assertTrue(blocks)
         shutil.copytree(os.path.join(SOURCE, "effects", "data"), self.path("data"))
         for block in blocks:
@@ -21,19 +33,28 @@ class Readme(Case):
             self.succeeds("render", "shown.lua", "--frames", "12", "-o", "out.png", *SMALL)
 
     def test_options_in_it_exist(self):
-        options = set(re.findall(r"--[a-z-]+", readme()))
+        options = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text_of("README.md")))
         offered = "".join(self.succeeds(*c.split(), "--help") for c in (
             "render", "live", "export raw", "export vdb", "compare", "bench", "tune")) + "--help"
         for option in options:
             self.assertIn(option, offered)
 
-    def test_files_in_it_exist(self):
-        for name in re.findall(r"\]\(([^)#:]+)\)", readme()):
-            self.assertTrue(os.path.exists(os.path.join(SOURCE, name)), name)
+    def test_commands_in_documents_exist(self):
+        helps = {}
+        for path in documents():
+            for verb, rest in re.findall(r"\broil (export \w+|[a-z]+)( [^`\n]*--[^`\n]*)", text_of(path)):
+                if verb not in helps:
+                    helps[verb] = self.succeeds(*verb.split(), "--help") + "--help"
+                for option in re.findall(r"(?<![\w-])--[a-z][a-z-]*", rest):
+                    with self.subTest(path, command=f"roil {verb}{rest}"):
+                        self.assertIn(option, helps[verb])
+        self.assertIn("render", helps)
 
-    def test_info_topics_in_it_exist(self):
-        for words in re.findall(r"`roil info ([a-z ]+)`", readme()):
-            self.succeeds("info", *words.split())
+    def test_info_topics_in_documents_exist(self):
+        for path in documents():
+            for words in re.findall(r"\broil info ((?:passes|fields)(?: \w+)?)\b", text_of(path)):
+                if words.split()[-1].islower():  # not NAME
+                    self.succeeds("info", *words.split())
 
 
 if __name__ == "__main__":

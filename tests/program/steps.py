@@ -15,8 +15,7 @@ def text_of(name):
 
 def chapters():
     """(its file, text) of each step, by the file that its heading links to."""
-    parts = re.split(r"^## \[[^\]]*\]\(([^)]*)\)$", text_of("README.md"), flags=re.M)
-    return list(zip(parts[1::2], parts[2::2]))
+    return re.findall(r"^## \[[^\]]*\]\(([^)]*)\)\n(.*?)(?=^#{1,2} |\Z)", text_of("README.md"), re.M | re.S)
 
 
 class Steps(Case):
