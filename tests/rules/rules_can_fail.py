@@ -19,6 +19,7 @@ GOOD = {
     "shaders/shared.h": "#define SHARED 1\n",
     "scripts/build": "#!/bin/sh\necho built\n",
     "tests/unit/one.c": "int works; // cmocka_unit_test(works)\n",
+    "README.md": "# One house\nThe [error](src/base/error.h) of `base/error.c` is [here](#one-house).\n",
     "tests/mutants/one.txt": "wrong | shaders/shared.h | unit_one works\n- SHARED 1\n+ SHARED 2\n",
 }
 TOO_LONG = "int a;\n" * 801
@@ -53,6 +54,12 @@ BROKEN = [  # rule, file, text
     ("shell", "scripts/build", "#!/bin/sh\ncd $1\n"),
     ("words", "scripts/build", "# FIX" "ME\n"),
     ("words", "effects/explosion.lua", "-- XX" "X\n"),
+    ("documents", "README.md", "a " * 60 + "\n"),
+    ("documents", "src/README.md", "[error](base/errors.h)\n"),
+    ("documents", "README.md", "# One house\n[here](#two-houses)\n"),
+    ("documents", "README.md", "`base/errors.c`\n"),
+    ("documents", "README.md", "`base/{error,errors}.c`\n"),
+    ("documents", "README.md", "`errors.c`\n"),
     ("mutants", "shaders/shared.h", "#define SHARED 3\n"),
     ("mutants", "shaders/shared.h", "#define SHARED 1 // not SHARED 1\n"),
     ("mutants", "tests/unit/one.c", "int works;\n"),
@@ -106,7 +113,7 @@ def try_subject(subject):
 def main():
     wrong, skipped, count = [], set(), 0
     cases = [(rule, None, "", 0) for rule in ("layers", "format", "sizes", "headers", "shell",
-                                                "words", "mutants")]
+                                                "words", "documents", "mutants")]
     cases += [(rule, path, text, 1) for rule, path, text in BROKEN]
     for rule, path, text, expected in cases:
         got = try_tree(rule, path, text)
