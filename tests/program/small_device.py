@@ -20,6 +20,8 @@ SLOW = {"cigarette.lua", "creature.lua", "cube.lua", "cumulus.lua", "dye.lua", "
 LONG = os.environ.get("ROIL_LONG_TESTS") == "1"
 # Results of another order of sums, seen in pictures of 8 bits.
 MOST_FLIP = "0.005"
+# The grids of its pressure end at another size, so that its flow differs a little in each step: 0.0072 (54 dB) was seen.
+OWN_FLIP = {"log_fire.lua": "0.01"}
 
 
 def list_effects():
@@ -53,7 +55,7 @@ class SmallDevice(Case):
             done = self.draw(name, frame, settings, output, environment)
             if done.returncode != 0:
                 return f"{name}: {done.stderr}"
-        done = self.run_program("compare", usual, small, "--max-flip", MOST_FLIP)
+        done = self.run_program("compare", usual, small, "--max-flip", OWN_FLIP.get(name, MOST_FLIP))
         return None if done.returncode == 0 else f"{name}: {done.stdout}{done.stderr}"
 
     def test_every_effect_is_checked(self):
