@@ -115,7 +115,7 @@ typedef struct pass_type {
     // Optional hooks.
     bool (*declare)(pass *p);  // instead of one image per output
     bool (*complete)(pass *p); // see pass_complete
-    // What a kernel is compiled with besides; false: it is left out, for now (pass_make_kernel).
+    // What a kernel is compiled with besides; false: it is left out, until pass_make_kernel.
     bool (*defines)(pass *p, size_t index, pass_defines *out);
     // Whether frames may need a kernel, as far as that is known before the first. One that they may
     // not is compiled by pass_check alone, and built by pass_make_late. NULL: they need all.
