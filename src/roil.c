@@ -129,6 +129,10 @@ const char *roil_device_driver(const roil *r) {
     return r->device ? gpu_get_info(r->device)->driver : "";
 }
 
+bool roil_is_software(const roil *r) {
+    return r->device && gpu_get_info(r->device)->kind == GPU_CPU;
+}
+
 const char *roil_home(const roil *r) {
     return r->home;
 }

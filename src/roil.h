@@ -103,6 +103,7 @@ bool roil_can_exit(void);
 const char *roil_device_name(const roil *r);
 const char *roil_device_driver(const roil *r);
 bool roil_wants_preview(const roil *r); // its live pictures had better begin at less than full size
+bool roil_is_software(const roil *r);   // the device is the processor; false without one
 uint64_t roil_validation_messages(const roil *r);
 const char *roil_home(const roil *r); // the folder with shaders/ and scripts/
 // For effects that are loaded from now on: as `counters` and `reference` of roil_desc.

@@ -316,7 +316,7 @@ static void tuning_describe(tuning *t) {
     r->content = content_of(t);
     r->device = arena_string(memory, roil_device_name(device));
     r->driver = arena_string(memory, roil_device_driver(device));
-    r->by_process = strstr(r->device, "llvmpipe") != NULL;
+    r->by_process = roil_is_software(device);
     bench_describe_machine(r);
     describe_axes(t);
     r->has_reference = true;

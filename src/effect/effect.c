@@ -272,33 +272,60 @@ void effect_name_grid(effect *e, field_grid *grid, const char *name) {
 
 // ---- scene and outputs ------------------------------------------------------------------------
 
-// Returns the mesh of a file, which is shared by loads of the same effect. NULL with a message.
-static const mesh_data *load_mesh(effect *e, const char *path) {
-    content_cache_item *item = content_cache_take(e->contents, path);
+// The load of a file whose content loads of the same effect share.
+typedef struct shared_load {
+    const char *path, *root;
+    uint32_t side_max;        // of a picture, in pixels
+    arena *memory;            // for what is made of the file
+    const char *const *files; // all files that were read; before the load, the file alone
+    size_t file_count;
+} shared_load;
+
+typedef const void *loader(shared_load *load); // NULL with a message
+
+// Returns what is cached under the key, or else loaded now; NULL with a message.
+static const void *load_shared(effect *e, const char *key, const char *path, uint32_t side_max,
+                               loader *read) {
+    content_cache_item *item = content_cache_take(e->contents, key);
     if (!item) {
         arena memory = {0};
+        shared_load load = {path, e->root, side_max, &memory, &path, 1};
         int64_t begin = file_clock_ns();
-        mesh_data *data = arena_alloc(&memory, sizeof *data);
-        if (!mesh_load(path, e->root, &memory, data)) {
+        const void *data = read(&load);
+        if (!data) {
             arena_free(&memory);
             return NULL;
         }
-        item = content_cache_put(e->contents, path, data, memory, data->files, data->file_count,
-                                 begin);
+        item =
+            content_cache_put(e->contents, key, data, memory, load.files, load.file_count, begin);
     }
     MEM_RESERVE(e->held, e->held_count + 1, e->held_capacity);
     e->held[e->held_count++] = item;
     return item->data;
 }
 
+// Sets the path of a file of the effect, which is watched from now on even if it cannot be read.
+static bool find_file(effect *e, const char *file, char path[PATH_CAP]) {
+    if (!path_confine(path, e->root, file)) return false;
+    effect_add_file(e, path);
+    return true;
+}
+
+static const void *load_mesh(shared_load *l) {
+    mesh_data *data = arena_alloc(l->memory, sizeof *data);
+    if (!mesh_load(l->path, l->root, l->memory, data)) return NULL;
+    l->files = data->files;
+    l->file_count = data->file_count;
+    return data;
+}
+
 scene_mesh *effect_add_mesh(effect *e, const char *file) {
     char path[PATH_CAP];
-    if (!path_confine(path, e->root, file)) return NULL;
-    effect_add_file(e, path); // even if it cannot be read
     arena *memory = &e->memory;
-    scene_mesh *mesh = arena_alloc(memory, sizeof *mesh);
-    const mesh_data *data = load_mesh(e, path);
+    if (!find_file(e, file, path)) return NULL;
+    const mesh_data *data = load_shared(e, path, path, 0, load_mesh);
     if (!data) return NULL;
+    scene_mesh *mesh = arena_alloc(memory, sizeof *mesh);
     mesh->data = *data;
     for (size_t i = 0; i < mesh->data.file_count; i++) effect_add_file(e, mesh->data.files[i]);
     mesh->name = arena_string(memory, file);
@@ -329,43 +356,19 @@ void effect_add_material(effect *e, scene_material *material) {
     e->materials[e->material_count++] = material;
 }
 
-const mesh_texture *effect_add_texture(effect *e, const char *file) {
-    char path[PATH_CAP];
-    if (!path_confine(path, e->root, file)) return NULL;
-    effect_add_file(e, path); // even if it cannot be read
-    const char *key = arena_format(&e->memory, "texture %s", path);
-    content_cache_item *item = content_cache_take(e->contents, key);
-    if (!item) {
-        arena memory = {0};
-        const char *kept = path;
-        int64_t begin = file_clock_ns();
-        mesh_texture *texture = arena_alloc(&memory, sizeof *texture);
-        if (!texture_read_inside(e->root, path, &memory, texture)) {
-            arena_free(&memory);
-            return NULL;
-        }
-        item = content_cache_put(e->contents, key, texture, memory, &kept, 1, begin);
-    }
-    MEM_RESERVE(e->held, e->held_count + 1, e->held_capacity);
-    e->held[e->held_count++] = item;
-    return item->data;
+static const void *load_texture(shared_load *l) {
+    mesh_texture *texture = arena_alloc(l->memory, sizeof *texture);
+    return texture_read_inside(l->root, l->path, l->memory, texture) ? texture : NULL;
 }
 
-static sky_image *load_sky_image(effect *e, const char *path) {
-    content_cache_item *item = content_cache_take(e->contents, path);
-    if (!item) {
-        arena memory = {0};
-        int64_t begin = file_clock_ns();
-        const sky_image *image = sky_image_load(path, e->root, &memory);
-        if (!image) {
-            arena_free(&memory);
-            return NULL;
-        }
-        item = content_cache_put(e->contents, path, image, memory, &path, 1, begin);
-    }
-    MEM_RESERVE(e->held, e->held_count + 1, e->held_capacity);
-    e->held[e->held_count++] = item;
-    return sky_image_share(item->data, &e->memory);
+const mesh_texture *effect_add_texture(effect *e, const char *file) {
+    char path[PATH_CAP];
+    if (!find_file(e, file, path)) return NULL;
+    return load_shared(e, arena_format(&e->memory, "texture %s", path), path, 0, load_texture);
+}
+
+static const void *load_sky(shared_load *l) {
+    return sky_image_load(l->path, l->root, l->memory);
 }
 
 const sky_image *effect_add_sky_image(effect *e, const char *file) {
@@ -377,35 +380,22 @@ const sky_image *effect_add_sky_image(effect *e, const char *file) {
         err_set("%s: a second image for the sky; an effect has one", file);
         return NULL;
     }
-    e->sky = load_sky_image(e, path);
+    const sky_image *image = load_shared(e, path, path, 0, load_sky);
+    e->sky = image ? sky_image_share(image, &e->memory) : NULL;
     e->sky_file = arena_string(&e->memory, path);
     return e->sky;
 }
 
-// Returns the picture of a file, which is shared by loads of the same effect. NULL with a message.
-static const picture *load_picture(effect *e, const char *path, uint32_t side_max) {
-    const char *key = arena_format(&e->memory, "picture up to %u: %s", side_max, path);
-    content_cache_item *item = content_cache_take(e->contents, key);
-    if (!item) {
-        arena memory = {0};
-        int64_t begin = file_clock_ns();
-        picture *data = arena_alloc(&memory, sizeof *data);
-        if (!picture_read(path, e->root, side_max, &memory, data)) {
-            arena_free(&memory);
-            return NULL;
-        }
-        item = content_cache_put(e->contents, key, data, memory, &path, 1, begin);
-    }
-    MEM_RESERVE(e->held, e->held_count + 1, e->held_capacity);
-    e->held[e->held_count++] = item;
-    return item->data;
+static const void *load_picture(shared_load *l) {
+    picture *data = arena_alloc(l->memory, sizeof *data);
+    return picture_read(l->path, l->root, l->side_max, l->memory, data) ? data : NULL;
 }
 
 const picture *effect_read_picture(effect *e, const char *file, uint32_t side_max) {
     char path[PATH_CAP];
-    if (!path_confine(path, e->root, file)) return NULL;
-    effect_add_file(e, path); // even if it cannot be read
-    return load_picture(e, path, side_max);
+    if (!find_file(e, file, path)) return NULL;
+    const char *key = arena_format(&e->memory, "picture up to %u: %s", side_max, path);
+    return load_shared(e, key, path, side_max, load_picture);
 }
 
 static bool set_picture(effect *e, effect_picture which, graph_image image) {

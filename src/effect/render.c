@@ -19,7 +19,7 @@ static bool add_outputs(effect *e) {
         return err_set("%s: the effect has no output; set `output` of the effect to an image",
                        e->file);
     for (int i = 0; i < 3; i++)
-        if (e->pictures[i].id && !graph_add_output(e->graph, e->pictures[i])) return false;
+        if (e->pictures[i].id) graph_add_output(e->graph, e->pictures[i]);
     return true;
 }
 

@@ -16,12 +16,6 @@
 
 static const char *const loop_names[] = {"clip", "extend", "repeat", "ping_pong"};
 
-static const char *const storage_names[] = {"auto", "dense", "sparse"};
-
-const char *sequence_storage_name(sequence_storage storage) {
-    return (unsigned)storage < COUNT_OF(storage_names) ? storage_names[storage] : "?";
-}
-
 const char *sequence_loop_name(sequence_loop loop) {
     return (unsigned)loop < COUNT_OF(loop_names) ? loop_names[loop] : "?";
 }
@@ -363,7 +357,7 @@ static bool sequence_check(sequence_data *s) {
         return err_set("%s: scale %g; more than 0 is accepted", d->pattern, (double)d->scale);
     if (!isfinite(d->offset.x) || !isfinite(d->offset.y) || !isfinite(d->offset.z))
         return err_set("%s: the offset is not finite", d->pattern);
-    if ((unsigned)d->storage >= COUNT_OF(storage_names))
+    if ((unsigned)d->storage > SEQUENCE_SPARSE)
         return err_set("%s: unknown storage %d", d->pattern, (int)d->storage);
     if ((unsigned)d->loop >= COUNT_OF(loop_names))
         return err_set("%s: unknown loop mode %d", d->pattern, (int)d->loop);

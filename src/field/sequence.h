@@ -18,7 +18,6 @@ typedef enum sequence_storage { // of a frame on the device
     SEQUENCE_DENSE,             // every voxel of the box
     SEQUENCE_SPARSE,            // bricks of voxels where there is something
 } sequence_storage;
-const char *sequence_storage_name(sequence_storage storage); // "auto", "dense", "sparse"
 
 typedef struct sequence_desc {
     const char *pattern;      // absolute path or glob of .vdb files, or a .raw file

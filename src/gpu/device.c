@@ -273,7 +273,3 @@ const gpu_info *gpu_get_info(const gpu *g) {
 uint64_t gpu_validation_messages(const gpu *g) {
     return atomic_load(&g->messages);
 }
-
-bool gpu_validation_enabled(const gpu *g) {
-    return g->instance.validating;
-}

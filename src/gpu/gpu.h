@@ -73,7 +73,6 @@ bool gpu_left_any(void); // such a device; any thread
 const gpu_info *gpu_get_info(const gpu *g);
 // Messages of severity warning or error that the validation layers gave so far.
 uint64_t gpu_validation_messages(const gpu *g);
-bool gpu_validation_enabled(const gpu *g); // false too when the layer is not installed
 // The device is gone, or did not finish in time; all that can be done is gpu_destroy. The message
 // of the call that found it out names the pass that was running, where that is known.
 bool gpu_is_lost(const gpu *g);

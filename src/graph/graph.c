@@ -103,10 +103,9 @@ graph_image graph_add_history(graph *g, graph_image image) {
     return history;
 }
 
-bool graph_add_output(graph *g, graph_image image) {
+void graph_add_output(graph *g, graph_image image) {
     g->images[index_of(g, image)].output = true;
     make_stale(g);
-    return true;
 }
 
 void graph_remove_output(graph *g, graph_image image) {
