@@ -184,7 +184,7 @@ bool roil_live_update(roil_live *l, uint32_t width, uint32_t height, double fram
     l->left_reported = true;
     pthread_mutex_unlock(&l->lock);
     if (left)
-        set_message(l, copy_text("the last load hangs, and was left behind; a new one has begun"));
+        set_message(l, copy_text("the last load hangs and was abandoned; a new one has begun"));
     if (result.effect && take_over(l, result.effect, width, height)) {
         l->counts.reloads++;
         l->counts.last = clock_seconds() - result.since;
@@ -298,7 +298,7 @@ bool roil_live_destroy(roil_live *l) {
     pthread_mutex_unlock(&l->lock);
     if (!ended) { // what it works on has to stay
         l->owner->stuck = true;
-        return err_set("a load hangs, and was left behind");
+        return err_set("a load hangs and was abandoned");
     }
     pthread_join(l->builder->thread, NULL);
     mem_free(l->builder);

@@ -196,7 +196,7 @@ bool roil_template_icon(roil_effect *e, const char *file, bool velocity, uint32_
                         uint8_t *out) {
     const template_file *t = read_template(e, file);
     if (!t) return false;
-    if (!t->square) return err_set("%s is no template: it is no square", file);
+    if (!t->square) return err_set("%s is no template: it is not square", file);
     for (uint32_t y = 0; y < side; y++)
         for (uint32_t x = 0; x < side; x++) {
             uint32_t i = x * SLICES_TILE / side, j = y * SLICES_TILE / side;

@@ -74,9 +74,9 @@ int cmd_compare(int argc, const char **argv) {
     const struct poptOption options[] = {
         {"output", 'o', POPT_ARG_STRING, &job.how.difference, 0,
          "picture of FLIP: black where both look the same", "DIFFERENCE.png"},
-        {"beside", 0, POPT_ARG_STRING, &job.how.beside, 0,
-         "A, B and that picture next to each other", "FILE.png"},
-        {"json", 0, POPT_ARG_STRING, &job.json, 0, "the figures as a file", "FILE"},
+        {"beside", 0, POPT_ARG_STRING, &job.how.beside, 0, "A, B and that picture side by side",
+         "FILE.png"},
+        {"json", 0, POPT_ARG_STRING, &job.json, 0, "write the figures to a file", "FILE"},
         {"max-flip", 0, POPT_ARG_DOUBLE, &job.max_flip, 0,
          "end with status 3 when FLIP is above (0 to 1)", "X"},
         {"min-psnr", 0, POPT_ARG_DOUBLE, &job.min_psnr, 0,

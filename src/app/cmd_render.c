@@ -117,7 +117,7 @@ static bool render_parse(job *j, int argc, const char **argv, poptContext *conte
         {"frames", 'f', POPT_ARG_STRING, &j->frames_text, 0,
          "30, or 10,30,50, or 1-100, or 1-100:2 (default: all)", "FRAMES"},
         {"warmup", '\0', POPT_ARG_INT, &j->warmup, 0,
-         "draw N frames before each that does not follow the last, for passes that remember "
+         "draw N frames before each that does not follow the last, for passes with histories "
          "(default: 0)",
          "N"},
         {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE, "size of the picture (default: 960x540)",
@@ -125,26 +125,28 @@ static bool render_parse(job *j, int argc, const char **argv, poptContext *conte
         {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET,
          "a parameter, or a uniform or option of a pass (march.steps=64)", "NAME=VALUE"},
         {"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET,
-         "values kept beside the effect, or in a file; --set goes before them", "NAME|FILE.lua"},
+         "values saved beside the effect, or in a file; --set wins over them", "NAME|FILE.lua"},
         APP_EVENT_ROW(OPTION_EVENT),
         {"from", '\0', POPT_ARG_STRING, &j->from_file, 0,
-         "as this picture was made: its effect, frame, size and settings, where no other are given",
+         "use the effect, frame, size and settings of this picture where no others are given",
          "SHOT.png"},
         {"restore", '\0', POPT_ARG_STRING, &j->restore, 0,
-         "go on with the simulation from this file: by default with the frame after it", "FILE"},
+         "continue the simulation from this file, by default with the frame after it", "FILE"},
         {"checkpoint", '\0', POPT_ARG_STRING, &j->checkpoint, 0,
          "write the state of the simulation after the last frame", "FILE"},
         {"reference", '\0', POPT_ARG_STRING, NULL, OPTION_REFERENCE,
-         "trace paths of light instead of each pass march, so many for each pixel", "SPP"},
+         "replace each pass march by a path tracer with so many samples per pixel", "SPP"},
         {"stats", '\0', POPT_ARG_STRING, &j->stats, 0,
          "write GPU milliseconds by pass, samples taken and the device as JSON", "FILE.json"},
         {"dump-pass", '\0', POPT_ARG_STRING, NULL, OPTION_DUMP,
-         "save an image of the graph as well: a pass, or march.edge", "NAME FILE"},
-        {"fps", '\0', POPT_ARG_DOUBLE, &j->fps, 0, "of the video (default: the effect's)", "FPS"},
+         "also save an image of the graph: a pass, or march.edge", "NAME FILE"},
+        {"fps", '\0', POPT_ARG_DOUBLE, &j->fps, 0,
+         "frames per second of the video (default: the effect's)", "FPS"},
         {"alpha", '\0', POPT_ARG_NONE, &j->alpha, 0,
-         "keep alpha in PNG files, straight: light over little cover is cut off at white", NULL},
+         "keep straight alpha in PNG files: bright light with little alpha is clipped at white",
+         NULL},
         {"premultiplied", '\0', POPT_ARG_NONE, &j->premultiplied, 0,
-         "keep alpha in PNG files, with colours as they lie on black: light stays whole", NULL},
+         "keep alpha in PNG files, with colours as they appear on black: nothing is clipped", NULL},
         {"16", '\0', POPT_ARG_NONE, &j->sixteen, 0, "16 bits a channel in PNG files", NULL},
         {"float", '\0', POPT_ARG_NONE, &j->full, 0, "32-bit float in EXR files (default: half)",
          NULL},
@@ -167,8 +169,7 @@ static bool render_parse(job *j, int argc, const char **argv, poptContext *conte
         return err_set("--warmup %d; accepted: 0 to 1000 frames", j->warmup);
     if (j->alpha && j->premultiplied)
         return err_set("--alpha is straight, --premultiplied is not: one of the two");
-    if (j->warmup && j->restore)
-        return err_set("--warmup goes back, --restore goes on: one of the two");
+    if (j->warmup && j->restore) return err_set("--warmup and --restore exclude each other");
     return app_check_device(&j->device) &&
            (!j->frames_text || app_parse_frames(j->frames_text, &j->frames));
 }

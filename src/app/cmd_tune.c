@@ -68,7 +68,7 @@ static bool take_goal(tune_options *o) {
         return err_set("--error '%s'; accepted: flip, psnr", o->error);
     bool time = o->max_ms >= 0, error = o->max_error >= 0;
     if (time == error)
-        return err_set("what shall be kept? --max-ms MS for the best picture within a time, or "
+        return err_set("a limit is missing: --max-ms MS for the best picture within a time, or "
                        "--max-error E for the least time within an error");
     g->by_error = error;
     g->limit = error ? o->max_error : o->max_ms;
@@ -109,36 +109,38 @@ static bool take_numbers(tune_options *o) {
 static bool tune_parse(tune_options *o, int argc, const char **argv, poptContext *context) {
     const struct poptOption options[] = {
         {"max-ms", 0, POPT_ARG_DOUBLE, &o->max_ms, 0,
-         "the best picture whose median frame takes no longer on the device", "MS"},
+         "find the best picture whose median frame takes no longer on the device", "MS"},
         {"max-error", 0, POPT_ARG_DOUBLE, &o->max_error, 0,
-         "the least time whose worst frame is no further from the reference", "E"},
+         "find the least time whose worst frame has no greater error", "E"},
         {"error", 0, POPT_ARG_STRING, &o->error, 0,
-         "what errors are: flip (default), or psnr, in dB, which then is the least", "KIND"},
+         "measure of error: flip (default), or psnr in dB, of which E is the minimum", "KIND"},
         {"axes", 0, POPT_ARG_STRING, NULL, OPTION_AXES,
-         "what is turned: controls, or controls and their values from cheap to dear "
-         "(default: what the effect has of steps, resolutions, octaves, ...)",
+         "controls to vary, or controls and their values from cheap to expensive "
+         "(default: the effect's steps, resolutions, octaves, ...)",
          "NAME[=V:V...],..."},
         {"reference", 0, POPT_ARG_STRING, NULL, OPTION_REFERENCE,
-         "errors are against paths of light, so many for each pixel (default: the effect with all "
+         "compare with a path tracer with so many samples per pixel (default: the effect with all "
          "axes at their best)",
          "SPP"},
-        {"name", 0, POPT_ARG_STRING, &o->preset, 0, "of the preset (default: tuned)", "NAME"},
+        {"name", 0, POPT_ARG_STRING, &o->preset, 0, "name of the preset (default: tuned)", "NAME"},
         {"output", 'o', POPT_ARG_STRING, &o->order.folder, 0,
-         "where results and report go (default: out/tune/EFFECT)", "DIR"},
+         "folder of the results and the report (default: out/tune/EFFECT)", "DIR"},
         {"resume", 0, POPT_ARG_NONE, &o->resume, 0,
-         "keep what DIR has measured, for this goal or another", NULL},
+         "keep what was measured in DIR, for this goal or another", NULL},
         {"budget", 0, POPT_ARG_DOUBLE, &o->order.budget, 0,
-         "that the search may take; what is best until then counts", "SECONDS"},
+         "time limit of the search; the best result until then counts", "SECONDS"},
         {"frames", 'f', POPT_ARG_STRING, &o->frames_text, 0,
          "30, or 10,30,50, or 1-100:20 (default: three places spread over the effect)", "FRAMES"},
-        {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE, "of pictures (default: 960x540)", "WxH"},
+        {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE, "size of pictures (default: 960x540)",
+         "WxH"},
         {"repeats", 0, POPT_ARG_INT, &o->repeats, 0, "how often each row is measured (default: 2)",
          "N"},
-        {"limit", 0, POPT_ARG_DOUBLE, &o->order.limit, 0, "that a row may take (default: 120)",
+        {"limit", 0, POPT_ARG_DOUBLE, &o->order.limit, 0, "time limit of a row (default: 120)",
          "SECONDS"},
-        {"set", 0, POPT_ARG_STRING, NULL, OPTION_SET, "for all that is measured", "NAME=VALUE"},
-        {"preset", 0, POPT_ARG_STRING, NULL, OPTION_PRESET, "for all that is measured",
-         "NAME|FILE.lua"},
+        {"set", 0, POPT_ARG_STRING, NULL, OPTION_SET, "applies to everything that is measured",
+         "NAME=VALUE"},
+        {"preset", 0, POPT_ARG_STRING, NULL, OPTION_PRESET,
+         "applies to everything that is measured", "NAME|FILE.lua"},
         APP_DEVICE_ROW(&o->order.device),
         APP_MEMORY_ROW(&o->memory),
         POPT_AUTOHELP POPT_TABLEEND};

@@ -8,14 +8,14 @@ struct poptOption app_device_rows(app_device *d) {
     const struct poptOption rows[] = {
         APP_DEVICE_ROW(&d->name),
         {"timeout", '\0', POPT_ARG_DOUBLE, &d->timeout, 0,
-         "that a frame may take before the device counts as lost (default: 30, in software 300)",
+         "time limit of a frame, after which the device counts as lost (default: 30, software 300)",
          "SECONDS"},
         APP_MEMORY_ROW(&d->memory),
         APP_TIME_ROW(&d->time_limit),
-        {"validate", '\0', POPT_ARG_NONE, &d->validate, 0, "with the Vulkan validation layers",
+        {"validate", '\0', POPT_ARG_NONE, &d->validate, 0, "enable the Vulkan validation layers",
          NULL},
         {"no-cache", '\0', POPT_ARG_NONE, &d->no_cache, 0,
-         "neither read nor write compiled shaders on disk", NULL},
+         "do not read or write compiled shaders on disk", NULL},
         POPT_TABLEEND};
     static_assert(sizeof rows == sizeof d->rows, "app_device has a place for each row");
     memcpy(d->rows, rows, sizeof rows);

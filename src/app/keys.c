@@ -45,7 +45,7 @@ static void key_restart(live *l) {
     if (hears) live_reset(l, "effect.events"); // what hands have done
     roil_restart(l->effect);
     l->dirty = true;
-    live_notice(l, hears ? "Begun anew, without what was done by hand" : "Simulated anew");
+    live_notice(l, hears ? "Restarted without clicks and keys" : "Simulation restarted");
 }
 
 static void loop(live *l) {
@@ -126,7 +126,7 @@ static const live_key keys[] = {
     {GLFW_KEY_HOME, 0, "Home", "first frame of the range", go_first},
     {GLFW_KEY_END, 0, "End", "last frame of the range", go_last},
     {GLFW_KEY_L, 0, "L", "start again at the end, or stop", loop},
-    {GLFW_KEY_BACKSPACE, 0, "Backspace", "begin anew, without clicks and keys", key_restart},
+    {GLFW_KEY_BACKSPACE, 0, "Backspace", "restart without clicks and keys", key_restart},
     {GLFW_KEY_F, 0, "F", "frame the volume", camera_frame},
     {GLFW_KEY_R, 0, "R", "camera of the effect file", camera_reset},
     {GLFW_KEY_V, 0, "V", "picture at full, half, quarter size", key_preview},

@@ -171,7 +171,7 @@ void panel_help_text(const roil_control *c, strbuf *out) {
     }
     strbuf_add(out, ", default ");
     panel_value_shown(c, c->initial, out);
-    if (c->structural) strbuf_add(out, "\nread while the effect loads: a change builds it anew");
+    if (c->structural) strbuf_add(out, "\nread while the effect loads: a change rebuilds it");
 }
 
 bool panel_shorten(const char *text, float width, float (*measure)(const char *text), char *out,

@@ -76,7 +76,7 @@ static void free_arguments(arguments *a) {
 
 int restart(const live *l, const app_device *device) {
     arguments a = list_arguments(l, device, l->broken_text);
-    log_write(LOG_WARNING, "%s; the program starts anew", l->broken_text);
+    log_write(LOG_WARNING, "%s; the program restarts", l->broken_text);
     execv("/proc/self/exe", a.list);
     free_arguments(&a);
     return app_fail(APP_BAD_INPUT, "%s", l->broken_text);
@@ -95,7 +95,7 @@ static arguments prepared[2];        // of which the handler uses
 static char **volatile ready = NULL; // one; NULL: the fault ends the process
 
 static void on_fault(int number) {
-    static const char text[] = "roil: the process crashed, and starts anew\n";
+    static const char text[] = "roil: the process crashed and restarts\n";
     (void)number;
     if (!ready) return; // and meets the fault again, without a handler
     if (write(STDERR_FILENO, text, sizeof text - 1) < 0) _exit(APP_BAD_INPUT);

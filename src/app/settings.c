@@ -72,7 +72,7 @@ bool app_check_effect(const char *file) {
     } others[] = {
         {".png", "a picture; `roil render --from` draws one again by what it holds"},
         {".exr", "a picture; an effect is a .lua file"},
-        {".mp4", "a film; an effect is a .lua file"},
+        {".mp4", "a video; an effect is a .lua file"},
         {".vdb", "a volume; `roil info` tells about it, and an effect reads it by `vdb`"},
     };
     if (file_is_folder(file)) return err_set("%s is a folder; an effect is a .lua file", file);

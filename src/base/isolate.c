@@ -264,7 +264,7 @@ static bool fail_status(exchange *x) {
     for (char *c = said; *c; c++)
         if (!isprint((unsigned char)*c)) *c = '?';
     if (status == WIRE_NO_WORKER)
-        return err_set("%s has no process to work in%s%.200s", who(x), *said ? ": " : "", said);
+        return err_set("%s could not start a process%s%.200s", who(x), *said ? ": " : "", said);
     if (number == SIGPROF || number == SIGALRM) return fail_time(x);
     if (number == SIGXFSZ)
         return err_set("%s makes more than %u MiB of it", who(x), mebibytes(x->job->limits.result));

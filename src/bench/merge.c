@@ -46,7 +46,7 @@ static bool add_part(bench_results *all, const bench_results *part, const char *
 }
 
 bool bench_merge(const char *const *folders, size_t count, const char *folder, bench_results *out) {
-    if (count < 1) return err_set("no folder is named whose results are to be merged");
+    if (count < 1) return err_set("no folder with results to merge is named");
     if (!bench_read(folders[0], out)) return false;
     for (size_t i = 0; i < out->row_count; i++)
         if (!copy_thumbnail(&out->rows[i], folders[0], folder)) return false;

@@ -133,7 +133,7 @@ static bool unknown(effect *e, const char *name) {
     if (p) return unknown_in_pass(p, dot + 1);
     if (scene_control_unknown(e, name)) return false;
     if (strcmp(name, "effect.events") == 0)
-        return err_set("the effect hears no events: its script has no fx:on_key, fx:on_click");
+        return err_set("the effect handles no events: its script has no fx:on_key, fx:on_click");
     const char **names = mem_alloc((e->control_count + 1) * sizeof *names);
     for (size_t i = 0; i < e->control_count; i++) names[i] = e->controls[i]->face.name;
     const char *near = str_nearest(name, names, e->control_count);

@@ -113,7 +113,7 @@ bool recipe_read(const png_text *texts, size_t count, arena *memory, recipe *out
     const char *size = find_text(texts, count, key_size),
                *settings = find_text(texts, count, key_settings);
     if (!file || !frame || !size)
-        return err_set("the picture says nothing of how it was made; pictures of `roil render` "
+        return err_set("the picture has no recipe of how it was made; pictures of `roil render` "
                        "and of the window do");
     return read_file(file, memory, out) && read_frame(frame, out) && read_size(size, out) &&
            (!settings || read_settings(settings, memory, out));

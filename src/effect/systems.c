@@ -351,8 +351,8 @@ static bool is_heard(const effect_systems *s, const effect_event *event) {
     for (size_t i = 0; i < s->hearing_count; i++)
         strbuf_add(&keys, "%s%s%s", keys.length ? ", " : "", s->hearings[i].key[0] ? "key " : "",
                    s->hearings[i].key[0] ? s->hearings[i].key : "click");
-    err_set("the effect hears no %s%s; it hears: %s", event->key[0] ? "key " : "clicks", event->key,
-            keys.length ? strbuf_text(&keys) : "nothing");
+    err_set("the effect handles no %s%s; it handles: %s", event->key[0] ? "key " : "clicks",
+            event->key, keys.length ? strbuf_text(&keys) : "nothing");
     strbuf_free(&keys);
     return false;
 }

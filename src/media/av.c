@@ -46,5 +46,5 @@ static void load_libraries(void) {
 bool av_load(void) {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, load_libraries);
-    return !problem[0] || err_set("films need FFmpeg's libraries: %s", problem);
+    return !problem[0] || err_set("videos need FFmpeg's libraries: %s", problem);
 }

@@ -243,11 +243,12 @@ static bool check_extent(const vdb_layout *l, const vdb_layout_grid *g, vdb_grid
     }
     for (int i = 0; i < 3; i++)
         if (out->index_min[i] < -COORD_MAX || out->index_max[i] > COORD_MAX)
-            return err_set("%s: grid '%s': absurd active box, index %d to %d; +-%d is accepted",
+            return err_set("%s: grid '%s': impossible active box, index %d to %d; +-%d is accepted",
                            l->path, g->name, out->index_min[i], out->index_max[i], (int)COORD_MAX);
     return voxels <= BOX_VOXELS_MAX ||
-           err_set("%s: grid '%s': absurd active box of %.3g voxels; at most 4096^3 is accepted",
-                   l->path, g->name, voxels);
+           err_set(
+               "%s: grid '%s': impossible active box of %.3g voxels; at most 4096^3 is accepted",
+               l->path, g->name, voxels);
 }
 
 static bool describe_grid(const vdb_layout *l, const vdb_layout_grid *g, vdb_extent_reader *read,

@@ -107,12 +107,12 @@ static bool open_converter(video *v) {
 
 video *video_create(const char *path, uint32_t width, uint32_t height, double fps) {
     if (width == 0 || height == 0 || width > SIDE_MAX || height > SIDE_MAX) {
-        err_set("%s: cannot write a film of %ux%u; 1x1 to %dx%d is accepted", path, width, height,
+        err_set("%s: cannot write a video of %ux%u; 1x1 to %dx%d is accepted", path, width, height,
                 SIDE_MAX, SIDE_MAX);
         return NULL;
     }
     if (!(fps >= 0.01 && fps <= 1000.0)) {
-        err_set("%s: cannot write a film of %g frames a second; 0.01 to 1000 is accepted", path,
+        err_set("%s: cannot write a video of %g frames a second; 0.01 to 1000 is accepted", path,
                 fps);
         return NULL;
     }
@@ -188,7 +188,7 @@ static bool close_file(video *v) {
 }
 
 bool video_finish(video *v) {
-    bool done = v->frames > 0 || err_set("%s: a film needs at least one frame", v->path);
+    bool done = v->frames > 0 || err_set("%s: a video needs at least one frame", v->path);
     done = done && video_encode(v, NULL) && close_file(v);
     video_abandon(v);
     return done;

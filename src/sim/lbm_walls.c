@@ -135,7 +135,7 @@ void lbm_walls_set(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
 
 bool lbm_walls_ready(const lbm *l) {
     return !l->desc.bodies || l->walls.known ||
-           err_set("the lattice has bodies, and nothing said yet where they are");
+           err_set("the lattice has bodies whose cells were never set");
 }
 
 static lbm_motion motion_of(const lbm_body *body) {

@@ -134,7 +134,7 @@ static void templates_are_of_the_effect_and_of_the_library(void **state) {
     uint8_t icon[8 * 8 * 4];
     ok(roil_template_icon(e, "source.exr", false, 8, icon));
     assert_true(icon[4 * (4 * 8 + 4) + 1] > 120 && icon[1] < 60); // green in the middle
-    expect_error(roil_template_icon(e, "sheet.png", false, 8, icon), "no square");
+    expect_error(roil_template_icon(e, "sheet.png", false, 8, icon), "not square");
     expect_error(roil_template_icon(e, "../step.png", false, 8, icon), "is not a name");
     expect_error(roil_template_icon(e, "nothing.exr", false, 8, icon), "there is no template");
     roil_unload(e);

@@ -30,7 +30,7 @@ class Checkpoint(Case):
         self.fails(1, "is of frame 5, the last", *render, "--restore", "end.state")
         self.fails(1, "is of frame 3; frames after it are accepted, not 2", *render, "--restore", "middle.state",
                    "--frames", "2", "-o", "a.png")
-        self.fails(2, "one of the two", *render, "--restore", "middle.state", "--warmup", "2")
+        self.fails(2, "exclude each other", *render, "--restore", "middle.state", "--warmup", "2")
         self.write("air.lua", AIR % 0.2)
         self.fails(1, "made with voxel_size = 0.1, the effect has voxel_size = 0.2", *render, "--restore", "middle.state")
 

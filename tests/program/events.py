@@ -59,7 +59,7 @@ class Events(Case):
         self.assertEqual(readouts["effect.clicks"], 1)
         self.succeeds("render", "--from", "first/14.png", "-o", "from.png")
         self.assertEqual(first, self.read("from.png"))
-        self.fails(1, "the effect hears no key x; it hears: click, key b", "render", "ball.lua", "--event", "1 key x")
+        self.fails(1, "the effect handles no key x; it handles: click, key b", "render", "ball.lua", "--event", "1 key x")
         self.fails(1, "event '1 tap'; accepted: SECONDS click X Y", "render", "ball.lua", "--event", "1 tap")
         self.fails(1, "key 'space'; accepted: a letter as f, a digit, enter", "render", "ball.lua", "--event", "1 key space")
         info = self.succeeds("info", "params", "ball.lua")

@@ -146,7 +146,7 @@ class Volumes(Case):
     def test_absurd_boxes(self):
         for name in ("far", "wide"):
             self.copy(os.path.join(CORPUS, f"fuzz_vdb/{name}.vdb"))
-            self.refuses(VOLUME % f'vdb {{ "a.vdb" }}.{name}', ["effect.lua:4:", "absurd"])
+            self.refuses(VOLUME % f'vdb {{ "a.vdb" }}.{name}', ["effect.lua:4:", "impossible active box"])
 
     def test_empty_grid_draws_nothing(self):
         self.copy(os.path.join(CORPUS, "fuzz_vdb/empty.vdb"))

@@ -72,7 +72,7 @@ class Presets(Case):
         length = int.from_bytes(data[at:at + 4], "big")
         with open(self.path("plain.png"), "wb") as f:
             f.write(data[:at] + data[at + 12 + length:])
-        self.fails(1, "plain.png: the picture says nothing", "render", "--from", "plain.png")
+        self.fails(1, "plain.png: the picture has no recipe", "render", "--from", "plain.png")
 
     def test_preset_is_what_its_settings_are(self):
         self.write("fx/puff.presets/warm.lua", PRESET)

@@ -236,7 +236,7 @@ static void help_gives_name_range_default_and_unit(void **state) {
     expect_help(&c, "how thick it is\ndensity, 0 to 200 1/m, default 20 1/m");
     c.structural = true;
     expect_help(&c, "how thick it is\ndensity, 0 to 200 1/m, default 20 1/m\n"
-                    "read while the effect loads: a change builds it anew");
+                    "read while the effect loads: a change rebuilds it");
     c.driven = true;
     expect_help(&c, "how thick it is\ndensity, 0 to 200 1/m\n"
                     "moved by the effect file; right click to override");

@@ -104,7 +104,7 @@ static void damaged_recipes_are_refused(void **state) {
     assert_error("more than 4096 settings");
     strbuf_free(&many);
     assert_false(recipe_read(NULL, 0, &memory, &r));
-    assert_error("says nothing of how it was made");
+    assert_error("has no recipe of how it was made");
     arena_free(&memory);
 }
 

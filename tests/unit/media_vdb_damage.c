@@ -141,7 +141,7 @@ static void absurd_boxes_are_refused(void **state) {
         const char *path = test_source(name);
         if (!path) skip();
         assert_false(read_all(path));
-        assert_message("absurd active box");
+        assert_message("impossible active box");
     }
 }
 

@@ -283,7 +283,7 @@ static void failures_come_back_as_messages(void **state) {
     job = job_of("no such job");
     fails(&job, "");
     job = job_of("elsewhere");
-    fails(&job, "no process to work in: there is no no-such-program beside it");
+    fails(&job, "could not start a process: there is no no-such-program beside it");
     echoes();
 }
 

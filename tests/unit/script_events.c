@@ -165,7 +165,7 @@ static void the_scripts_own_events_are_a_control(void **state) {
     is(e, "keys", 1);
     assert_false(effect_set(e, "effect.events", "1 key g"));
     assert_string_equal(err_get(),
-                        "effect.events: the effect hears no key g; it hears: key f, click");
+                        "effect.events: the effect handles no key g; it handles: key f, click");
     effect_destroy(e);
 }
 
@@ -276,7 +276,7 @@ static void what_is_wrong_is_said(void **state) {
     effect *e = helper_accepts(
         HEAD, "fx:on_key('f', function() end) fx.events = { { 1, key = 'g' } }", SCENE, NULL, 0);
     assert_false(effect_check_settings(e));
-    assert_string_equal(err_get(), "effect.events: the effect hears no key g; it hears: key f");
+    assert_string_equal(err_get(), "effect.events: the effect handles no key g; it handles: key f");
     effect_destroy(e);
     static const char *const texts[] = {"x",
                                         "1",

@@ -31,7 +31,7 @@ class Faults(Case):
     def test_a_crash_starts_the_window_anew(self):
         live = self.live("--set", "thickness=9", effect=EFFECT % "ball")
         os.kill(live.process.pid, signal.SIGSEGV)
-        live.expect("roil: the process crashed, and starts anew")
+        live.expect("roil: the process crashed and restarts")
         live.expect("live: the process crashed while it drew this")
         live.expect("live: shown")
         with open(f"/proc/{live.process.pid}/cmdline", encoding="utf-8") as f:
@@ -68,7 +68,7 @@ class Faults(Case):
     def test_a_frame_without_end_can_be_given_up(self):
         live = self.hang()
         live.keys("Escape")
-        live.expect("it was given up while it worked.*the program starts anew")
+        live.expect("it was given up while it worked.*the program restarts")
         mark = live.mark()
         live.expect("live: shown", mark)
         self.write("puff.lua", EFFECT % "ball")
@@ -93,7 +93,7 @@ class Faults(Case):
         self.write("puff.lua", "print('busy')\n" + EFFECT % 'shader { "new.comp", input = ball }')
         live.expect("busy", mark)
         live.quit()
-        live.expect("a load hangs, and was left behind", mark)
+        live.expect("a load hangs and was abandoned", mark)
 
     def test_a_long_warm_up_does_not_keep_a_window_busy(self):
         live = self.live(effect="""

@@ -331,7 +331,7 @@ class Hang(Case):
         live.keys("Right")
         live.expect(r"live: drew frame 2\b")
         self.write("puff.lua", spinning % 60000)
-        live.expect(r"was lost in pass 'spin'.*starts anew")
+        live.expect(r"was lost in pass 'spin'.*restarts")
         live.expect("live: took over")
         live.widget("message")
         self.write("puff.lua", spinning % 0)
