@@ -6,7 +6,7 @@
 //         ... ray.irradiance ...
 //     }
 //
-// What the loop goes over is made before the shader runs (src/pass/lamps_lists.c): all lamps that are
+// What the loop goes over is made before the shader runs (src/pass/light/lamps_lists.c): all lamps that are
 // on, or (LAMPS_TILES) those that reach what the tile of the pixel shows. Both give the same light,
 // but for rounding; lamps come in the order of their numbers.
 uniform sampler2D lamps; //= input optional : point lights by the hundred (of the pass point_lights)

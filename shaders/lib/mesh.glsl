@@ -1,5 +1,5 @@
 // How a vertex shader gets at its vertex: out of storage buffers, by gl_VertexIndex, of the instance
-// that the list names at gl_InstanceIndex (src/pass/drawn.h).
+// that the list names at gl_InstanceIndex (src/pass/surfaces/drawn.h).
 #include "lib/mesh_part.glsl"
 #include "lib/turn.glsl"
 layout(std430) readonly buffer Vertices { surface_vertex mesh_vertices[]; };

@@ -1,4 +1,4 @@
-// The base colour of a mesh that is drawn, for fragment shaders (src/pass/drawn.h).
+// The base colour of a mesh that is drawn, for fragment shaders (src/pass/surfaces/drawn.h).
 #include "lib/mesh_part.glsl"
 uniform sampler2D mesh_texture;
 

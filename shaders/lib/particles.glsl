@@ -1,5 +1,5 @@
 // Reads what the pass `particles` keeps, as of the time of the frame. How a pass binds it:
-// src/pass/particles.h.
+// src/pass/particles/particles.h.
 //
 //     for each slot below particle_used:
 //         particle p;

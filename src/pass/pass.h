@@ -36,7 +36,7 @@ typedef struct pass_host { // what all passes of one effect share
     bool hold;        // what simulates stays as it is
     bool brief;       // a submit is to be short, so that a window stays awake
     bool counters;    // compile counters in and read them
-    bool interaction; // flows can be touched (pass/slices_templates.h)
+    bool interaction; // flows can be touched (pass/slices/slices_templates.h)
     const shader_reader *reader;                 // of all files of shaders; may be NULL
     bool (*before_declare)(void *user, pass *p); // last chance to change a pass; may be NULL
     void *user;
@@ -101,7 +101,7 @@ typedef struct pass_defines { // of a kernel that is being compiled
 
 typedef struct pass_type {
     const char *name;   // "march"
-    const char *shader; // "pass/march.comp"
+    const char *shader; // "pass/march/march.comp"
     // Its work: the first kernel is the one that user shaders have. NULL: it has hooks of its own.
     // A count of 0: the device runs nothing.
     const pass_kernel *kernels;

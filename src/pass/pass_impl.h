@@ -41,7 +41,7 @@ struct pass {
     pass **sources; // asked, in order, for what this pass says nothing about
     size_t source_count, source_capacity;
     const pass *particles;    // behind the input of that name; NULL: it has none
-    struct pass_lamps *lamps; // of the input of that name (pass/lamps.h); NULL: it has none
+    struct pass_lamps *lamps; // of the input of that name (pass/light/lamps.h); NULL: it has none
 
     // After pass_build.
     field_program *program;

@@ -1,7 +1,5 @@
 // What shaders may ask for by including a file of lib/.
 #include "base/memory.h"
-#include "pass/lamps.h"
-#include "pass/particles.h"
 #include "pass/pass_impl.h"
 #include "scene/bvh.h"
 #include "scene/sky_image.h"

@@ -34,32 +34,32 @@ extern const pass_type voxels_type;
 
 static const pass_type lamp_glows_type = {
     .name = "lamp_glows",
-    .shader = "pass/lamp_glows.comp",
+    .shader = "pass/light/lamp_glows.comp",
 };
 
 static const pass_type over_type = {
     .name = "over",
-    .shader = "pass/over.comp",
+    .shader = "pass/picture/over.comp",
 };
 
 static const pass_type outline_type = {
     .name = "outline",
-    .shader = "pass/outline.comp",
+    .shader = "pass/picture/outline.comp",
 };
 
 static const pass_type bands_type = {
     .name = "bands",
-    .shader = "pass/bands.comp",
+    .shader = "pass/picture/bands.comp",
 };
 
 static const pass_type bright_type = {
     .name = "bright",
-    .shader = "pass/bright.comp",
+    .shader = "pass/picture/bright.comp",
 };
 
 static const pass_type final_type = {
     .name = "final",
-    .shader = "pass/final.comp",
+    .shader = "pass/picture/final.comp",
 };
 
 static const pass_type *const types[] = {

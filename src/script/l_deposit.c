@@ -1,5 +1,5 @@
 // Particles as a field: dust = deposit { chaff, box = { min, max } } gives dust.density.
-#include "pass/deposit.h"
+#include "pass/particles/deposit.h"
 #include "script/binding.h"
 #include <string.h>
 

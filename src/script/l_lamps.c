@@ -1,7 +1,7 @@
 // Hundreds of point lights: point_lights { count = 200, position = vec(...) }. Passes that they
 // light name the result by `from`. Fields that the device evaluates describe them; lights that the
 // script moves one by one are point_light { }.
-#include "pass/lamps.h"
+#include "pass/light/lamps.h"
 #include "script/binding.h"
 
 // at = forest: one light for each instance; else `count` is the number.

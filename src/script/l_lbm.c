@@ -1,7 +1,7 @@
 // Simulated air: lbm { size = {64, 64, 96}, voxel_size = 0.05 } has fields by name (air.density).
 // air:source { } adds smoke, air:collider { } adds an obstacle.
 #include "base/memory.h"
-#include "pass/lbm.h"
+#include "pass/air/lbm.h"
 #include "script/binding.h"
 #include <math.h>
 #include <string.h>

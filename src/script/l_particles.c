@@ -1,7 +1,7 @@
 // Particles that are born, move and die: particles { count = 4096, rate = 2000, shape = sphere { }
 // }. Passes that draw them name the result by `from`.
 #include "base/memory.h"
-#include "pass/particles.h"
+#include "pass/particles/particles.h"
 #include "script/binding.h"
 
 enum { BODY_COST = 4 << 10, COUNT = 65536 }; // bytes of host memory charged for a mesh

@@ -4,7 +4,7 @@
 // The result stands for the pass's first output where an image is wanted; result.name is the output
 // of that name. history(image) is its content in the last frame.
 #include "base/memory.h"
-#include "pass/picture.h"
+#include "pass/picture/picture.h"
 #include "script/binding.h"
 #include <string.h>
 

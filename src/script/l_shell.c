@@ -2,7 +2,7 @@
 // at = list, ... } draws them. While the effect runs, list:add { } adds one.
 #include "base/memory.h"
 #include "effect/events.h"
-#include "pass/shell.h"
+#include "pass/shell/shell.h"
 #include "script/binding.h"
 #include <math.h>
 

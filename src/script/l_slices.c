@@ -2,7 +2,7 @@
 // } has fields by name (flow.density). flow:inflow { }, flow:obstacle { } and flow:force { } act in
 // the planes; flow:slice(1) is one of them.
 #include "base/memory.h"
-#include "pass/slices.h"
+#include "pass/slices/slices.h"
 #include "script/binding.h"
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // flow:templates { image "templates/source.exr", kind = "pressure", count = 40, ... }: pictures
 // that are put into the flow of slices for a while, again and again.
 #include "base/memory.h"
-#include "pass/slices_templates.h"
+#include "pass/slices/slices_templates.h"
 #include "script/binding.h"
 #include <string.h>
 

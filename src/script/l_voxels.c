@@ -1,6 +1,6 @@
 // Meshes as fields: voxels { mesh { "data/ball.obj" }, resolution = 64 } has body.inside,
 // body.distance and body.velocity.
-#include "pass/voxels.h"
+#include "pass/grids/voxels.h"
 #include "script/binding.h"
 #include <math.h>
 #include <string.h>

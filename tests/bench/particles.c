@@ -7,7 +7,7 @@
 // of a step by the device's clock, million particles a second by it and by the processor time of
 // this process (of interest for a software device alone), and the bytes a second of the state
 // itself.
-#include "pass/particles.h"
+#include "pass/particles/particles.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/statistics.h"

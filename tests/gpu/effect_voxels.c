@@ -1,6 +1,6 @@
 // Meshes as cells, as fields of an effect: what they show, and when they are computed.
 #include "effect_test.h"
-#include "pass/voxels.h"
+#include "pass/grids/voxels.h"
 #include "scene/voxels.h"
 
 enum { SIZE = 45, PIXELS = SIZE * SIZE };

@@ -2,7 +2,7 @@
 // / 60 s, and a step is as long.
 #pragma once
 #include "effect_test.h"
-#include "pass/particles_parts.h"
+#include "pass/particles/particles_parts.h"
 
 enum { RATE_OF_FRAMES = 60 };
 

@@ -1,6 +1,6 @@
 // Particles as the density of a volume: nothing is lost, whatever the order, and light is taken as
 // it should be.
-#include "pass/deposit.h"
+#include "pass/particles/deposit.h"
 #include "splats_test.h"
 
 static const double spot_area =

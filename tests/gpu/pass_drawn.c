@@ -1,8 +1,8 @@
 // What is drawn of meshes and instances: culling changes no pixel, lists hold each instance that is
 // seen once and in order, levels follow distance, and the number of draws does not grow with that
 // of instances.
-#include "pass/drawn.h"
-#include "pass/drawn_parts.h"
+#include "pass/surfaces/drawn.h"
+#include "pass/surfaces/drawn_parts.h"
 #include "pass_test.h"
 
 enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT, KINDS = 2, TARGETS = 3 };
@@ -129,8 +129,8 @@ static void open_stand(stand *s, gpu *device, uint32_t count, float reach) {
     gpu_test_ok(pass_declare(s->p));
     gpu_test_ok(scene_instances_allocate(s->instances, device));
     world_render(w, WIDTH, HEIGHT, pass_output(s->p, "albedo"));
-    s->d = drawn_create(s->p, find_kernel(s->p, "pass/drawn/choose.comp"), false);
-    s->kernel = find_kernel(s->p, "pass/geometry.frag");
+    s->d = drawn_create(s->p, find_kernel(s->p, "pass/surfaces/drawn/choose.comp"), false);
+    s->kernel = find_kernel(s->p, "pass/surfaces/geometry.frag");
     gpu_test_ok(drawn_allocate(s->d));
     for (int i = 0; i < TARGETS; i++) s->colors[i] = make_target(device, formats[i]);
     s->depth = make_target(device, GPU_D32F);

@@ -1,7 +1,7 @@
 // Materials from meshes to the picture: by rays and drawn, lit by `geometry` and `shade` and by
 // `forward`. A ball stands before a wall at y = 0 that faces the camera, which stands at (0, -5,
 // 0).
-#include "pass/lamps.h"
+#include "pass/light/lamps.h"
 #include "pass_test.h"
 #include "scene/material.h"
 

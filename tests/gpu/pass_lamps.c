@@ -1,5 +1,5 @@
 // Lamps of `point_lights` on a wall at y = 0 that faces the camera, which stands at (0, -5, 0).
-#include "pass/lamps.h"
+#include "pass/light/lamps.h"
 #include "pass_test.h"
 
 enum { SIZE = 48, PIXELS = SIZE * SIZE };

@@ -1,5 +1,6 @@
-// Rays that miss the volume's box: what a software device fills in for them (pass/march_around.h)
-// is what they would find. Rays of one thread out of a team are all marched.
+// Rays that miss the volume's box: what a software device fills in for them
+// (pass/march/march_around.h) is what they would find. Rays of one thread out of a team are all
+// marched.
 #include "pass_test.h"
 
 enum { WIDTH = 91, HEIGHT = 70, PIXELS = WIDTH * HEIGHT };

@@ -1,6 +1,6 @@
 // Which point lights get maps of shadows, and what of a lamp's light these let through. The scene
 // is a wall at y = 0 that faces the camera, which stands at (0, -5, 0).
-#include "pass/lamps.h"
+#include "pass/light/lamps.h"
 #include "pass_test.h"
 
 enum { SIZE = 64, PIXELS = SIZE * SIZE, FACES = 6 };

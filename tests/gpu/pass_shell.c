@@ -1,5 +1,5 @@
 // Shells: where their surface is, what it looks like, which is before which; by rays and as meshes.
-#include "pass/shell.h"
+#include "pass/shell/shell.h"
 #include "pass_test.h"
 
 enum { SIDE = 64, CENTRE = SIDE / 2 * SIDE + SIDE / 2 };

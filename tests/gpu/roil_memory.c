@@ -1,7 +1,7 @@
 // What effects ask of the device's memory before they take any: as much as they take then, and
 // nothing at all where it is refused.
 #include "base/memory.h"
-#include "roil_impl.h"
+#include "roil/roil_impl.h"
 #include "roil_test.h"
 
 // What is asked for may miss what is taken by this: single texels, what depends on where things

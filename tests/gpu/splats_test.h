@@ -1,7 +1,7 @@
 // Particles at places that a test says, drawn by the pass `splats` in a small world (pass_test.h).
 // The picture is SIDE pixels wide and high; at the middle of it, 5 m away, a metre is METRE pixels.
 #pragma once
-#include "pass/particles_parts.h"
+#include "pass/particles/particles_parts.h"
 #include "pass_test.h"
 
 enum { SIDE = 64, METRE = 32, MOST_SPOTS = 512 };

@@ -1,8 +1,8 @@
 // A flow with templates and nothing else, without the pass `slices`: groups by name, steps, and
 // what then lies on the device.
 #pragma once
-#include "pass/slices_parts.h"
-#include "pass/slices_templates.h"
+#include "pass/slices/slices_parts.h"
+#include "pass/slices/slices_templates.h"
 #include "pass_test.h"
 #include "sim/flow.h"
 

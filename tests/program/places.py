@@ -63,7 +63,7 @@ class Trees(Case):
 
     def test_copied_tree_is_used_and_not_the_built_one(self):
         program = self.copy_tree()
-        path = self.path("copy/shaders/pass/final.comp")
+        path = self.path("copy/shaders/pass/picture/final.comp")
         with open(path, "a", encoding="utf-8") as f:
             f.write("broken\n")
         self.fails(1, "final.comp", "check", "copy/effects/puff.lua", program=program)

@@ -27,6 +27,7 @@ HOMES = [
 ]
 CPP = ["src/media/vdb.cpp", "src/media/vdb_blocks.cpp", "src/media/vdb_write.cpp",
        "src/ui/ui.cpp", "src/ui/ui_canvas.cpp", "src/ui/ui_widgets.cpp"]
+PUBLIC = ("roil.h", "roil_slices.h")  # of the layer roil
 INCLUDE = re.compile(r'^\s*#\s*(?:include|import)\b\s*(?:"([^"]*)"|<([^>]*)>|(.*))')
 
 
@@ -35,16 +36,24 @@ def layer_of(path):  # relative to src
     return folder if slash else "roil"
 
 
+def room_of(path):
+    """A folder of a layer: pass/march/. What stands beside such folders is the layer's core, which they
+    may include; it includes none of them, and they do not include each other."""
+    return path.rpartition("/")[0].partition("/")[2]
+
+
 def judge_own(path, target):
     """A quoted include; `path` and `target` are relative to src."""
     mine = layer_of(path)
     if target == "shared.h":
         return None  # shaders/shared.h: constants that C and GLSL share
     theirs = layer_of(target)
-    if "/" not in target and not re.match(r"roil\w*\.h$", target) or theirs not in LEVEL:
+    if "/" not in target and target not in PUBLIC or theirs not in LEVEL:
         return f'"{target}": write "layer/file.h", relative to src'
-    if theirs == "roil" != mine and target != "roil.h":
+    if theirs == "roil" != mine and target not in PUBLIC:
         return f'"{target}" is private to the library; use roil.h'
+    if theirs == mine and room_of(target) not in ("", room_of(path)):
+        return f'"{target}": {room_of(path) or "the core of " + mine} may not include {room_of(target)}'
     if theirs == mine or LEVEL[theirs] < LEVEL[mine]:
         return None
     return f'"{target}": {mine} may not include {theirs}'

@@ -1,6 +1,6 @@
 // What the host knows of particles: when they are born, and where on a mesh.
 #include "base/memory.h"
-#include "pass/particles_parts.h"
+#include "pass/particles/particles_parts.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

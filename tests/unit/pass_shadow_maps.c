@@ -1,6 +1,6 @@
 // Where the views of shadow maps stand, and where they lie in the atlas.
 #include "base/memory.h"
-#include "pass/shadow_maps_parts.h"
+#include "pass/surfaces/shadow_maps_parts.h"
 #include "scene/scene.h"
 #include <math.h>
 #include <setjmp.h>

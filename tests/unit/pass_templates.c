@@ -1,7 +1,7 @@
 // Pictures of templates as tiles.
 #include "base/arena.h"
 #include "base/memory.h"
-#include "pass/slices_templates.h"
+#include "pass/slices/slices_templates.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -12,7 +12,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "pass/ranges.h"
-#include "roil_view.h"
+#include "roil/view.h"
 #include "scene/voxels.h"
 #include "sim/flow.h"
 #include "sim/lbm_guard.h"
@@ -81,7 +81,7 @@ static void providers_have_what_some_shader_asks_for(void **state) {
     const pass_provider *const *rows = pass_providers(&count);
     shader_files files = {.count = 0};
     for (size_t i = 0; i < type_count; i++) add_type(&files, types[i]);
-    add_file(&files, "pass/lamps_lists.comp");
+    add_file(&files, "pass/light/lamps_lists.comp");
     for (size_t i = 0; i < count; i++) {
         const bool counts =
             rows[i]->slots.count && strcmp(rows[i]->slots.items[0], "Counters") == 0;
@@ -93,13 +93,13 @@ static void providers_have_what_some_shader_asks_for(void **state) {
 
 static void a_name_that_is_misspelt_is_found(void **state) {
     static const char *const names[] = {"steps", "stpes"};
-    static const char *const files[] = {"pass/march.comp"};
+    static const char *const files[] = {"pass/march/march.comp"};
     const kernel_table table = {{names, COUNT_OF(names)}, files, 1};
     assert_string_equal(kernel_undeclared(*state, &table), "stpes");
 }
 
 static void words_count_whole(void **state) {
-    static const char *const files[] = {"pass/bloom.comp"};
+    static const char *const files[] = {"pass/picture/bloom.comp"};
     static const char *const part[] = {"evels"}, *const comment[] = {"halves"};
     const kernel_table parts = {{part, 1}, files, 1}, comments = {{comment, 1}, files, 1};
     assert_string_equal(kernel_undeclared(*state, &parts), "evels");

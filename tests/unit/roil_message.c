@@ -2,7 +2,7 @@
 #include "base_test.h"
 
 #include "base/memory.h"
-#include "roil_live.h"
+#include "roil/live.h"
 
 static void explains(const char *message, const char *scripts, const char *expected) {
     char *text = live_explain(message, scripts);

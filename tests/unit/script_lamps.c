@@ -1,5 +1,5 @@
 // Point lights by the hundred as an effect file says them.
-#include "pass/lamps.h"
+#include "pass/light/lamps.h"
 #include "script_helper.h"
 
 #define HEAD "local fx = effect { name = 'lamps' }\n"

@@ -1,12 +1,12 @@
 // Birth of particles, before the step that it lies in: when, where and how fast. The host knows how
-// many are born (src/pass/particles_birth.c); all else is random by the particle's number. Apart
+// many are born (src/pass/particles/particles_birth.c); all else is random by the particle's number. Apart
 // from the step, since few are born in it, and software devices go through all of a branch.
 layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 #define PARTICLES_ACCESS
 #include "lib/particles_state.glsl"
 #include "fields.glsl"
 #include "put.glsl"
-// Those of pass/particles.comp:
+// Those of pass/particles/particles.comp:
 uniform float lifetime_min;
 uniform float lifetime_max;
 uniform float threshold;

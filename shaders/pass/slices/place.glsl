@@ -1,4 +1,4 @@
-// Where a thread of a part of the slices stands (src/pass/slices.h says how places are counted).
+// Where a thread of a part of the slices stands (src/pass/slices/slices.h says how places are counted).
 #include "sim/flow/state.glsl"
 uniform float now;       // of the step (s)
 uniform float duration;  // of it (s)

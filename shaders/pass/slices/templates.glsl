@@ -1,4 +1,4 @@
-// Templates at work in a flow, as they lie on the device (src/pass/slices_templates.c): for each
+// Templates at work in a flow, as they lie on the device (src/pass/slices/slices_templates.c): for each
 // slice those of all groups one after the other, and four rows of these.
 //
 //   0  middle (cells), half of its side (cells; 0: nothing is drawn), what its picture is times

@@ -1,0 +1,44 @@
+// Light volumes: a sphere around each lamp, as far as it reaches, drawn over the picture; its
+// fragments add the lamp's light to what is seen there (Hargreaves and Harris, "Deferred shading",
+// 2004). The far side is drawn, without a test of depth, so that a sphere that the eye is in
+// counts, too. One draw for all.
+#include "pass/light/lamps_parts.h"
+
+enum { SPHERE_VERTICES = 240 }; // as in lamps_volume.vert
+
+void lamps_target(const pass *p, size_t index, gpu_graphics_desc *out) {
+    (void)p;
+    (void)index; // the only one that draws
+    *out = (gpu_graphics_desc){.colors = {GPU_RGBA32F}, .cull = GPU_CULL_BACK, .blend = true};
+}
+
+static bool make_light(pass *p, uint32_t width, uint32_t height) {
+    gpu_image **light = &p->lamps->light;
+    const gpu_image_desc *now = *light ? gpu_image_get_desc(*light) : NULL;
+    if (now && now->width == width && now->height == height) return true;
+    gpu_image_destroy(p->host->device, *light);
+    *light = gpu_image_create(p->host->device,
+                              &(gpu_image_desc){.label = "light of lamps",
+                                                .format = GPU_RGBA32F,
+                                                .width = width,
+                                                .height = height,
+                                                .use = GPU_USE_TARGET | GPU_USE_SAMPLED});
+    return *light != NULL;
+}
+
+bool lamps_draw_volumes(pass *p, uint32_t width, uint32_t height) {
+    const float picture[2] = {(float)width, (float)height};
+    gpu_binding kept[GPU_MAX_SLOTS];
+    kernel *k = pass_use_provided(p, &pass_lamps_provider, LAMPS_DRAW);
+    if (!k || !make_light(p, width, height)) return false;
+    kernel_set(k, N_lamp_picture, picture, sizeof picture);
+    gpu_draw draw = kernel_draw(k, kept);
+    draw.vertices = SPHERE_VERTICES;
+    draw.instances = p->lamps->count;
+    return kernel_is_bound(k) &&
+           gpu_draw_all(p->host->device, &(gpu_draw_desc){.pipeline = k->pipeline,
+                                                          .colors = {p->lamps->light},
+                                                          .clear = true,
+                                                          .draws = &draw,
+                                                          .draw_count = 1});
+}

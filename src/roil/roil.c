@@ -1,0 +1,434 @@
+// libroil: the public functions for devices, effects and frames, over the layers below.
+#include "roil.h"
+#include "base/budget.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/isolate.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include "effect/events.h"
+#include "roil/roil_impl.h"
+#include "script/script.h"
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *roil_version(void) {
+    return ROIL_VERSION;
+}
+const char *roil_error(void) {
+    return err_get();
+}
+void roil_free(void *text) {
+    mem_free(text);
+}
+
+// ---- device -----------------------------------------------------------------------------------
+
+static bool is_home(const char *folder) {
+    char path[PATH_CAP];
+    return path_join(path, folder, "scripts/prelude.lua") && file_exists(path) &&
+           path_join(path, folder, "shaders/shared.h") && file_exists(path);
+}
+
+// Takes the folder's real path. Names below it can then be checked to lie inside it (base/file.h)
+// without resolving links.
+static bool take_home(char out[PATH_CAP], const char *folder) {
+    char real[PATH_MAX];
+    return is_home(folder) && realpath(folder, real) && str_copy(out, PATH_CAP, real);
+}
+
+// The program may lie in a build folder, in the home itself, or in bin/ of an installation.
+static bool find_home(char out[PATH_CAP], const char *wanted) {
+    if (!wanted) wanted = getenv("ROIL_HOME");
+    if (wanted && wanted[0])
+        return take_home(out, wanted) ||
+               err_set("%s: holds no shaders/ and scripts/ of roil", wanted);
+    char program[PATH_CAP], folder[PATH_CAP];
+    if (!path_program_folder(program)) return false;
+    static const char *const places[] = {"..", ".", "../share/roil", "../.."};
+    for (size_t i = 0; i < COUNT_OF(places); i++)
+        if (path_join(folder, program, places[i]) && take_home(out, folder)) return true;
+    return err_set("shaders/ and scripts/ of roil are not near %s; set ROIL_HOME", program);
+}
+
+static char *joined(const char *folder, const char *name) {
+    char path[PATH_CAP];
+    if (!path_join(path, folder, name)) return NULL;
+    return mem_copy(path, strlen(path) + 1);
+}
+
+static bool open_device(roil *r, const roil_desc *desc) {
+    const roil_window_desc *window = desc->window;
+    gpu_window shown = {0};
+    if (window)
+        shown = (gpu_window){.extensions = window->extensions,
+                             .extension_count = window->extension_count,
+                             .create_surface = window->create_surface,
+                             .user = window->user};
+    r->window = window != NULL;
+    r->device = gpu_create(&(gpu_desc){.device = desc->device,
+                                       .cache_dir = r->cache,
+                                       .validate = desc->validate,
+                                       .window = window ? &shown : NULL,
+                                       .timeout = desc->timeout,
+                                       .waiting = desc->waiting,
+                                       .user = desc->user});
+    return r->device != NULL;
+}
+
+roil *roil_create(const roil_desc *desc) {
+    char home[PATH_CAP], cache[PATH_CAP];
+    if ((desc->memory && !budget_set_share(desc->memory)) || !find_home(home, desc->home))
+        return NULL;
+    if (desc->reader && !isolate_set_reader(desc->reader)) return NULL;
+    isolate_warm_up("glsl");
+    roil *r = mem_alloc(sizeof *r);
+    r->home = mem_copy(home, strlen(home) + 1);
+    r->shaders = joined(home, "shaders");
+    r->scripts = joined(home, "scripts");
+    r->counters = desc->counters;
+    r->reference = desc->reference;
+    r->never_waits = desc->never_waits;
+    r->interaction = desc->interaction;
+    r->loading = desc->loading;
+    r->user = desc->user;
+    r->seconds = desc->time_limit > 0 ? desc->time_limit : TIME_LIMIT_LOAD_SECONDS;
+    // Without a place for it (no home folder, a read-only one) roil works, only slower.
+    if (!desc->no_cache && path_cache_folder(cache, "")) r->cache = joined(cache, "");
+    if (desc->no_device || open_device(r, desc)) return r;
+    roil_destroy(r);
+    return NULL;
+}
+
+void roil_destroy(roil *r) {
+    if (!r || r->stuck) return;
+    roil_free_view(r);
+    if (r->device) gpu_destroy(r->device);
+    mem_free(r->home);
+    mem_free(r->shaders);
+    mem_free(r->scripts);
+    mem_free(r->cache);
+    mem_free(r);
+}
+
+bool roil_can_exit(void) {
+    return !gpu_left_any();
+}
+
+const char *roil_device_name(const roil *r) {
+    return r->device ? gpu_get_info(r->device)->name : "none";
+}
+
+bool roil_wants_preview(const roil *r) {
+    return gpu_get_profile(r->device)->previews;
+}
+
+const char *roil_device_driver(const roil *r) {
+    return r->device ? gpu_get_info(r->device)->driver : "";
+}
+
+bool roil_is_software(const roil *r) {
+    return r->device && gpu_get_info(r->device)->kind == GPU_CPU;
+}
+
+const char *roil_home(const roil *r) {
+    return r->home;
+}
+
+void roil_set_counters(roil *r, bool counters) {
+    r->counters = counters;
+}
+
+void roil_set_reference(roil *r, uint32_t samples) {
+    r->reference = samples;
+}
+
+uint64_t roil_validation_messages(const roil *r) {
+    return r->device ? gpu_validation_messages(r->device) : 0;
+}
+
+bool roil_is_lost(const roil *r) {
+    return r->device && gpu_is_lost(r->device);
+}
+
+roil_memory roil_get_memory(const roil *r) {
+    budget_state state = budget_get(r->device ? gpu_get_budget(r->device) : budget_host());
+    roil_memory out = {.sum = state.sum, .limit = state.limit};
+    for (size_t i = 0; i < COUNT_OF(out.largest); i++) {
+        memcpy(out.largest[i].label, state.largest[i].label, sizeof out.largest[i].label);
+        out.largest[i].bytes = state.largest[i].bytes;
+    }
+    if (!r->device) return out;
+    gpu_memory_use use = gpu_get_memory_use(r->device);
+    out.device = use.used;
+    out.reserved = use.reserved;
+    return out;
+}
+
+time_limit roil_time_limit(const roil *r) {
+    return (time_limit){
+        .what = "load", .limit = r->seconds, .progress = r->loading, .user = r->user};
+}
+
+// ---- effects ----------------------------------------------------------------------------------
+
+roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, size_t count) {
+    return roil_load_inside(r, NULL, file, settings, count);
+}
+
+roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
+                              const roil_setting *settings, size_t count) {
+    effect_setting *own = mem_alloc(count * sizeof *own);
+    for (size_t i = 0; i < count; i++)
+        own[i] = (effect_setting){.name = settings[i].name, .text = settings[i].value};
+    roil_effect *e = mem_alloc(sizeof *e);
+    e->owner = r;
+    e->effect = effect_create(&(effect_desc){
+        .device = r->device,
+        .file = file,
+        .inside = folder,
+        .shader_root = r->shaders,
+        .cache_dir = r->cache,
+        .counters = r->counters,
+        .interaction = r->interaction,
+        .reference = r->reference,
+        .never_waits = r->never_waits,
+        .seconds = r->seconds,
+        .settings = own,
+        .setting_count = count,
+    });
+    mem_free(own);
+    time_limit time = roil_time_limit(r), *before = time_limit_enter(&time);
+    bool done = e->effect && script_load(e->effect, r->scripts) && effect_check_settings(e->effect);
+    time_limit_leave(before);
+    if (done) return e;
+    roil_unload(e);
+    return NULL;
+}
+
+void roil_unload(roil_effect *e) {
+    if (!e) return;
+    effect_destroy(e->effect);
+    roil_free_templates(e);
+    roil_keep_only(e, NULL);
+    mem_free(e->kept);
+    mem_free(e);
+}
+
+bool roil_check(roil_effect *e) {
+    time_limit time = roil_time_limit(e->owner), *before = time_limit_enter(&time);
+    bool done = effect_check(e->effect);
+    time_limit_leave(before);
+    return done;
+}
+
+roil_effect_info roil_get_info(const roil_effect *e) {
+    return (roil_effect_info){
+        .name = effect_name(e->effect),
+        .fps = effect_fps(e->effect),
+        .first_frame = effect_first_frame(e->effect),
+        .frames = effect_frames(e->effect),
+    };
+}
+
+static void suggest_image(roil_effect *e, const char *name) {
+    graph *g = effect_graph(e->effect);
+    size_t passes = effect_pass_count(e->effect), images = graph_images(g, NULL, 0);
+    graph_image *handles = mem_alloc(images * sizeof *handles);
+    const char **names = mem_alloc((passes + images) * sizeof *names);
+    graph_images(g, handles, images);
+    for (size_t i = 0; i < passes; i++) names[i] = pass_label(effect_get_pass(e->effect, i));
+    for (size_t i = 0; i < images; i++) names[passes + i] = graph_get_desc(g, handles[i])->name;
+    const char *near = str_nearest(name, names, passes + images);
+    if (near)
+        err_set("no image '%s'; did you mean '%s'?", name, near);
+    else
+        err_set("no image '%s'; `roil info graph` shows them", name);
+    mem_free(handles);
+    mem_free(names);
+}
+
+// Finds "march.color", or the first output of a pass by its label.
+graph_image roil_find_image(roil_effect *e, const char *name) {
+    graph *g = effect_graph(e->effect);
+    graph_image found = graph_find_image(g, name);
+    for (size_t i = 0; !found.id && i < effect_pass_count(e->effect); i++) {
+        pass *p = effect_get_pass(e->effect, i);
+        if (strcmp(pass_label(p), name) != 0) continue;
+        const shader_interface *face = pass_interface(p);
+        for (size_t k = 0; !found.id && k < face->image_count; k++)
+            if (face->images[k].output) found = pass_output(p, face->images[k].name);
+    }
+    if (!found.id) suggest_image(e, name);
+    return found;
+}
+
+bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height) {
+    if (width < 1 || height < 1 || width > 16384 || height > 16384)
+        return err_set("picture size %u x %u; accepted: 1 to 16384 each", width, height);
+    if (!e->owner->device) return err_set("no device: this effect can only be checked");
+    e->width = width;
+    e->height = height;
+    e->frame = 0; // images may be new
+    roil_apply_kept(e);
+    time_limit time = roil_time_limit(e->owner), *before = time_limit_enter(&time);
+    bool done = effect_build(e->effect, width, height);
+    time_limit_leave(before);
+    return done;
+}
+
+bool roil_render(roil_effect *e, double frame) {
+    e->shown = frame;
+    e->frame = effect_render(e->effect, frame, false);
+    return e->frame != 0;
+}
+
+bool roil_advance(roil_effect *e, double frame) {
+    e->shown = frame;
+    e->frame = effect_render(e->effect, frame, true);
+    return e->frame != 0;
+}
+
+uint32_t roil_samples(const roil_effect *e) {
+    return effect_samples(e->effect);
+}
+
+const char *roil_warning(const roil_effect *e) {
+    return effect_get_warning(e->effect);
+}
+
+bool roil_get_simulation(const roil_effect *e, roil_simulation *out) {
+    effect_simulation now;
+    bool any = effect_get_simulation(e->effect, &now);
+    *out = (roil_simulation){now.waiting, now.reached, now.trouble, now.where};
+    return any;
+}
+
+void roil_restart(roil_effect *e) {
+    effect_restart(e->effect);
+}
+
+bool roil_checkpoint(roil_effect *e, const char *file) {
+    return effect_save_state(e->effect, file);
+}
+
+bool roil_restore(roil_effect *e, const char *file, double *frame) {
+    double last;
+    if (!effect_load_state(e->effect, file, &last)) return false;
+    if (frame) *frame = last;
+    return true;
+}
+
+void roil_on_progress(roil_effect *e, bool (*call)(void *user, double done, double whole),
+                      void *user) {
+    effect_on_progress(e->effect, call, user);
+}
+
+// Adds up the times of parts that have one label. A pass may be timed in parts, each several times.
+static size_t add_up(gpu_pass_time *times, size_t count) {
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        size_t k = 0;
+        while (k < kept && strcmp(times[k].label, times[i].label) != 0) k++;
+        if (k < kept)
+            times[k].milliseconds += times[i].milliseconds;
+        else
+            times[kept++] = times[i];
+    }
+    return kept;
+}
+
+size_t roil_times(roil_effect *e, roil_time *out, size_t capacity) {
+    gpu_pass_time *times = mem_alloc(GPU_MAX_PASSES * sizeof *times);
+    size_t count =
+        add_up(times, gpu_frame_times(e->owner->device, e->frame, times, GPU_MAX_PASSES));
+    for (size_t i = 0; i < count && i < capacity; i++) {
+        str_copy(out[i].pass, sizeof out[i].pass, times[i].label);
+        out[i].milliseconds = times[i].milliseconds;
+    }
+    mem_free(times);
+    return count;
+}
+
+// Returns millions of units of work per second in the last frame: `work` divided by the time of the
+// pass's parts, without that of its grids.
+static double rate_of(roil_effect *e, const pass *p, double work) {
+    roil_time times[GPU_MAX_PASSES];
+    size_t count = roil_times(e, times, GPU_MAX_PASSES), length = strlen(pass_label(p));
+    double sum = 0;
+    for (size_t i = 0; i < count && i < GPU_MAX_PASSES; i++) {
+        const char *part = times[i].pass + length;
+        if (strncmp(times[i].pass, pass_label(p), length) == 0 && part[0] == '.' &&
+            strcmp(part, ".fields") != 0)
+            sum += times[i].milliseconds;
+    }
+    return sum > 0 ? work / sum * 1e-3 : 0;
+}
+
+static roil_readout speed_of(roil_effect *e, const pass *p) {
+    double work = pass_get_simulation(p)->work(p);
+    if (work > 0 && e->frame) e->speed = rate_of(e, p, work);
+    const char *name = pass_get_simulation(p)->work_name;
+    return (roil_readout){pass_label(p), name ? name : "cell updates", "million/s", e->speed};
+}
+
+size_t roil_readouts(roil_effect *e, roil_readout *out, size_t capacity) {
+    size_t count = 0;
+    for (size_t i = 0; i < effect_pass_count(e->effect); i++) {
+        const pass *p = effect_get_pass(e->effect, i);
+        const pass_simulation *simulation = pass_get_simulation(p);
+        pass_readout values[16];
+        size_t found = simulation && e->width ? simulation->readouts(p, values, 16) : 0;
+        for (size_t k = 0; k < found && k < 16; k++, count++)
+            if (count < capacity)
+                out[count] =
+                    (roil_readout){pass_label(p), values[k].name, values[k].unit, values[k].value};
+        if (found && count++ < capacity) out[count - 1] = speed_of(e, p);
+    }
+    const effect_status *status;
+    size_t reported = effect_statuses(e->effect, &status);
+    for (size_t i = 0; i < reported; i++, count++)
+        if (count < capacity)
+            out[count] = (roil_readout){"effect", status[i].name, status[i].unit, status[i].value};
+    return count;
+}
+
+bool roil_get_playback(const roil_effect *e, roil_playback *out) {
+    field_playback all;
+    bool any = effect_playback(e->effect, &all);
+    *out = (roil_playback){
+        .shown = all.shown,
+        .late = all.late,
+        .decoded = all.decoded,
+        .uploaded = all.uploaded,
+        .decoded_bytes = all.decoded_bytes,
+        .uploaded_bytes = all.uploaded_bytes,
+        .decode_seconds = all.decode_seconds,
+        .threads = all.threads,
+        .device_bytes = all.device_bytes,
+        .frame_bytes = all.largest_bytes,
+        .frame_voxels = all.largest_voxels,
+        .waiting = all.waiting,
+    };
+    return any;
+}
+
+size_t roil_counters(roil_effect *e, roil_counter *out, size_t capacity) {
+    size_t count = 0;
+    for (size_t i = 0; i < effect_pass_count(e->effect); i++) {
+        pass *p = effect_get_pass(e->effect, i);
+        const shader_interface *face = pass_interface(p);
+        uint64_t values[64];
+        if (!face->counter_count || face->counter_count > 64 || !pass_read_counters(p, values))
+            continue;
+        for (size_t k = 0; k < face->counter_count; k++, count++) {
+            if (count >= capacity) continue;
+            str_copy(out[count].pass, sizeof out->pass, pass_label(p));
+            str_copy(out[count].name, sizeof out->name, face->counters[k].name);
+            out[count].value = values[k];
+        }
+    }
+    return count;
+}

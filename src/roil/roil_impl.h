@@ -1,0 +1,61 @@
+// The inside of libroil's objects, for src/roil*.c only.
+#pragma once
+#include "base/file.h"
+#include "base/time_limit.h"
+#include "effect/effect.h"
+#include "roil.h"
+
+typedef struct view view;                   // roil/view.h
+typedef struct template_file template_file; // roil/template.c
+
+struct roil {
+    gpu *device; // NULL: no_device
+    char *home, *shaders, *scripts, *cache;
+    bool counters, window, never_waits, interaction;
+    bool stuck; // an abandoned thread still uses it (roil_live_destroy)
+    uint32_t reference;
+    double seconds; // roil_desc.time_limit
+    bool (*loading)(void *user, double done, double whole);
+    void *user; // for `loading`
+    view *view; // NULL until something is shown or inspected
+};
+
+struct roil_effect {
+    roil *owner;
+    effect *effect;
+    uint32_t width, height;
+    uint64_t frame; // number of the last GPU frame; 0: none
+    double speed;   // of simulations in the last frame that had steps (roil_readouts)
+    double shown;   // number of the effect's frame that is shown
+    char **kept;    // names given to roil_keep, for roil_apply_kept
+    size_t kept_count, kept_capacity;
+    template_file **templates; // that were read so far
+    size_t template_count, template_capacity;
+};
+
+// Appends the value of a control as Lua. `whole`: of palettes and curves also what no setting can
+// change, such as the period. (roil/lua.c)
+void roil_add_lua(const roil_effect *e, const effect_control *c, bool whole, strbuf *out);
+void roil_add_lua_key(const char *name, strbuf *out); // "name = ", in brackets where it must be
+// Reads an image of the graph as RGBA floats, rows from the top; free with mem_free.
+float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height);
+graph_image roil_find_image(roil_effect *e, const char *name); // zero with a message
+// Tables from linear values to sRGB codes, indexed by the square root: entry i is the code of
+// (i / ROIL_SRGB_STEPS)^2. Values of the fine table have 8 fractional bits. The first call fills
+// them and must not run on two threads at once.
+enum { ROIL_SRGB_STEPS = 4096, ROIL_SRGB_FINE = 255 << 8 };
+const uint8_t *roil_srgb_table(void);
+const uint16_t *roil_srgb_fine_table(void);
+// Returns the dither threshold of a pixel; v stands for (v + 0.5) / 256.
+uint8_t roil_dither_noise(size_t x, size_t y, int channel);
+
+time_limit roil_time_limit(const roil *r); // a new limit for a load
+
+void roil_free_view(roil *r);
+void roil_free_templates(roil_effect *e); // after the effect itself
+// Marks the outputs of the graph: the effect's pictures, and those images of roil_keep that exist.
+// Call it before the graph is compiled for a size.
+void roil_apply_kept(roil_effect *e);
+// Returns the path of a preset, which need not exist: a name stands for a file beside the effect, a
+// path for itself.
+bool roil_preset_path(char out[PATH_CAP], const char *effect_file, const char *preset);
