@@ -201,7 +201,12 @@ bool pass_build_part(pass *p) {
 }
 
 void pass_list_memory(const pass *p, budget_list *out) {
+    size_t count;
+    const pass_provider *const *rows = pass_providers(&count);
     if (p->type && p->type->list_memory) p->type->list_memory(p, out);
+    for (size_t i = 0; i < count; i++)
+        if (rows[i]->list_memory) rows[i]->list_memory(p, out);
+    pass_ranges_list_memory(p, out);
 }
 
 static bool allocate(pass *p) {

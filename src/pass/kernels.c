@@ -324,6 +324,16 @@ bool pass_reads_frame(const pass *p, size_t index) {
     return false;
 }
 
+bool pass_reads_texture(const pass *p, size_t texture) {
+    for (size_t k = 0; p->built && k < count_kernels(p); k++) {
+        const pass_built *b = &p->built[k];
+        for (size_t i = 0; i < b->base.slot_count; i++)
+            if (b->sources[i].kind == FROM_TEXTURE && b->sources[i].index == (int16_t)texture)
+                return true;
+    }
+    return false;
+}
+
 bool pass_make_kernel(pass *p, size_t index, bool again) {
     if (pass_has_kernel(p, index) && !again) return true;
     if (!make(p, index, true)) return false;

@@ -184,9 +184,11 @@ bool pass_traces_levels(const pass *p); // its rays meet meshes as they are simp
 // side.
 bool pass_check(pass *p);
 bool pass_build(pass *p); // shaders and pipelines: needs a device, but any thread may do it
-// After pass_build: adds what it lacks of the device's memory, for pass_allocate and the first
-// frames, as far as that is known now and grows with what the effect asks for. Of its own only: the
-// graph has its images, and the scene what `budget_list_first` is asked about.
+// After pass_build: adds what it lacks of the device's memory, for pass_allocate and for frames. Of
+// its own only: the graph has its images, and the scene what `budget_list_first` is asked about.
+// Left out is what takes some texels, and what frames alone decide and are refused with the same
+// message: masks of a body and values of a source that grow beyond what they are at first, and what
+// a kernel reads that is built late (pass_make_late): ranges of grids, lists of shafts.
 void pass_list_memory(const pass *p, budget_list *out);
 // After pass_build, on the device's thread: what the pass itself keeps on the device.
 bool pass_allocate(pass *p);

@@ -94,6 +94,8 @@ bool pass_has_kernel(const pass *p, size_t index); // it is built
 // Whether it reads more than numbers, fields and images: blocks of the frame, or what a provider
 // has. Once it is compiled.
 bool pass_reads_frame(const pass *p, size_t index);
+// Whether a kernel that is compiled reads that texture of the fields.
+bool pass_reads_texture(const pass *p, size_t texture);
 
 // Where the names of the type's solver are in a kernel.
 const kernel_place *pass_solver_places(const pass *p, size_t index);
@@ -135,7 +137,8 @@ struct pass_provider {
     bool (*uses)(const pass *p);
     bool (*wants)(const pass *p, size_t index); // false: that kernel is left out
     void (*target)(const pass *p, size_t index, gpu_graphics_desc *out);
-    bool (*prepare)(pass *p); // in a frame, before the pass's work
+    void (*list_memory)(const pass *p, budget_list *out); // see pass_list_memory
+    bool (*prepare)(pass *p);                             // in a frame, before the pass's work
     // Of the uniforms, 32 bits each, once a frame for all kernels; false: it has none for this
     // pass.
     bool (*values)(const pass *p, uint32_t out[PASS_PROVIDER_VALUES]);

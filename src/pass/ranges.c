@@ -110,19 +110,23 @@ static bool halve(uint32_t size[3]) { // false: it is a single brick already
     return more;
 }
 
-static gpu_image *make_texture(pass *p, const field_grid *grid, gpu_format format) {
+static gpu_image_desc describe_texture(const field_grid *grid, gpu_format format) {
     uint32_t size[3], level[3];
     count_bricks(grid, size);
     memcpy(level, size, sizeof level);
     uint32_t width = size[0];
     while (halve(level)) width += level[0];
-    gpu_image *made = gpu_image_create(p->host->device,
-                                       &(gpu_image_desc){.label = "ranges",
-                                                         .format = format,
-                                                         .width = width,
-                                                         .height = size[1],
-                                                         .depth = 2 * size[2],
-                                                         .use = GPU_USE_SAMPLED | GPU_USE_STORAGE});
+    return (gpu_image_desc){.label = "ranges",
+                            .format = format,
+                            .width = width,
+                            .height = size[1],
+                            .depth = 2 * size[2],
+                            .use = GPU_USE_SAMPLED | GPU_USE_STORAGE};
+}
+
+static gpu_image *make_texture(pass *p, const field_grid *grid, gpu_format format) {
+    const gpu_image_desc desc = describe_texture(grid, format);
+    gpu_image *made = gpu_image_create(p->host->device, &desc);
     if (!made) err_prefix("%s: ranges of '%s': ", p->label, grid->name ? grid->name : "?");
     return made;
 }
@@ -136,6 +140,30 @@ static ranges_texture *find_texture(struct pass_ranges *r, const field_texture *
     MEM_RESERVE(r->textures, r->count + 1, r->capacity);
     r->textures[r->count] = (ranges_texture){.grid = t->grid, .set = t->set, .image = t->image};
     return &r->textures[r->count++];
+}
+
+static bool is_made(const struct pass_ranges *r, const field_texture *t) {
+    for (size_t i = 0; i < r->count; i++) {
+        const ranges_texture *known = &r->textures[i];
+        if (known->grid == t->grid && known->set == t->set && known->image == t->image)
+            return known->made;
+    }
+    return false;
+}
+
+void pass_ranges_list_memory(const pass *p, budget_list *out) {
+    const field_texture *textures;
+    if (!p->host->ranges || !p->program) return;
+    size_t count = field_program_textures(p->program, &textures);
+    for (size_t i = 0; i < count; i++) {
+        const field_texture *t = &textures[i];
+        const field_grid_state *state = t->ranges ? &t->grid->state : NULL;
+        if (!state || !pass_reads_texture(p, i) || is_made(p->host->ranges, t) ||
+            !budget_list_first(out, &state->images[t->set][t->image]))
+            continue;
+        const gpu_image_desc desc = describe_texture(t->grid, format_of(t));
+        budget_list_add(out, desc.label, gpu_image_bytes(&desc));
+    }
 }
 
 // ---- computing --------------------------------------------------------------------------------

@@ -9,5 +9,8 @@ bool pass_ranges_build(pass *p, const shader_binary *binary);
 // The texture for an image of a grid as it is now; records what brings it up to date. NULL with a
 // message.
 gpu_image *pass_ranges_get(pass *p, const field_texture *texture);
+// Adds the textures that its kernels read and that are not there. One for a kernel that is built in
+// a later frame (pass_make_late) is made in that frame.
+void pass_ranges_list_memory(const pass *p, budget_list *out);
 void pass_ranges_free(pass_host *host);
 extern const kernel_table ranges_kernel_table;

@@ -13,6 +13,8 @@
 #include <math.h>
 #include <string.h>
 
+enum { LISTS_SPARE = 2 }; // times what lists hold, so that they are seldom made anew
+
 // ---- creating ---------------------------------------------------------------------------------
 
 static bool voxels_check_desc(const voxels_desc *desc) {
@@ -224,14 +226,16 @@ static uint64_t mask_size(const uint32_t size[3], bool shell) {
     return along_x * (shell ? 2 : 1) + (x * z * words[1] + x * y * words[2]) / 4;
 }
 
+static float scale_of(const voxels_placed *b) {
+    return cbrtf(fabsf(glm_mat4_det((vec4 *)(uintptr_t)b->transform)));
+}
+
 // What a part needs however it is turned: the masks of a cube around it.
-static uint32_t choose_capacity(const voxels *v, const voxels_part *p) {
-    const voxels_placed *b = &v->bodies[p->body];
+static uint32_t choose_capacity(const voxels *v, const voxels_placed *b, const voxels_part *p) {
     if (b->still) return p->used;
     const box3 *box = &p->group->box;
     float x = box->max.x - box->min.x, y = box->max.y - box->min.y, z = box->max.z - box->min.z;
-    float scale = cbrtf(fabsf(glm_mat4_det((vec4 *)b->transform)));
-    float across = sqrtf(x * x + y * y + z * z) * scale;
+    float across = sqrtf(x * x + y * y + z * z) * scale_of(b);
     uint32_t size[3];
     for (int a = 0; a < 3; a++) {
         float cells = ceilf(across / v->cell[a]) + 8;
@@ -247,7 +251,7 @@ static bool voxels_grow(voxels *v, gpu *g) {
     uint64_t count = 0;
     for (size_t i = 0; i < v->part_count; i++) {
         voxels_part *p = &v->parts[i];
-        p->capacity = choose_capacity(v, p);
+        p->capacity = choose_capacity(v, &v->bodies[p->body], p);
         p->masks = (uint32_t)count;
         p->moved = true;
         count += p->capacity;
@@ -271,6 +275,36 @@ static void add_cells(cell_box *all, const cell_box *more) {
     if (all->size[0] == 0) *all = *more;
 }
 
+// Where a part is, and how much of masks it uses there.
+static void place_part(const voxels *v, const voxels_placed *b, voxels_part *p,
+                       struct voxel_part *out) {
+    const float widest = fmaxf(v->cell[0], fmaxf(v->cell[1], v->cell[2]));
+    find_rows(v, b, out->rows);
+    p->box = find_box(v, p, out->rows);
+    out->scale.v[0] = scale_of(b) * v->surfaces[b->surface].size / widest;
+    p->shell = p->group->thinnest * out->scale.v[0] < (float)VOXEL_THIN;
+    p->used = (uint32_t)mask_size(p->box.size, p->shell);
+}
+
+void voxels_expect(const voxels *v, const field_context *context, uint64_t *masks,
+                   uint64_t *lists) {
+    enum { WORK = 4 }; // words of a part in list_work
+    const cell_box all = {{0}, {v->size[0], v->size[1], v->size[2]}};
+    uint64_t count = 0, words = voxels_count_tiles(&all) + 1;
+    for (size_t i = 0; i < v->part_count; i++) {
+        voxels_part p = v->parts[i];
+        voxels_placed b = v->bodies[p.body];
+        struct voxel_part place;
+        if (!scene_mesh_transform(b.body.mesh, context, b.transform) || !is_finite(b.transform))
+            glm_mat4_zero(b.transform);
+        place_part(v, &b, &p, &place);
+        count += choose_capacity(v, &b, &p);
+        words += WORK + voxels_count_tiles(&p.box);
+    }
+    *masks = 16 * count;
+    *lists = LISTS_SPARE * words * sizeof *v->lists.items;
+}
+
 // Where parts are now; what has to be composed anew. True in `full` when masks do not suffice.
 static void place_parts(voxels *v, cell_box *dirty, bool *full) {
     for (size_t i = 0; i < v->part_count; i++) {
@@ -278,18 +312,10 @@ static void place_parts(voxels *v, cell_box *dirty, bool *full) {
         const voxels_placed *b = &v->bodies[p->body];
         p->moved = b->moved;
         if (!p->moved) continue;
-        struct voxel_part *out = &v->state->parts[i];
-        find_rows(v, b, out->rows);
-        cell_box box = find_box(v, p, out->rows);
-        float scale = cbrtf(fabsf(glm_mat4_det((vec4 *)b->transform)));
-        float widest = fmaxf(v->cell[0], fmaxf(v->cell[1], v->cell[2]));
-        out->scale.v[0] = scale * v->surfaces[b->surface].size / widest;
-        p->shell = p->group->thinnest * out->scale.v[0] < (float)VOXEL_THIN;
-        p->used = (uint32_t)mask_size(box.size, p->shell);
-        *full = *full || p->used > p->capacity;
         add_cells(dirty, &p->box);
-        add_cells(dirty, &box);
-        p->box = box;
+        place_part(v, b, p, &v->state->parts[i]);
+        add_cells(dirty, &p->box);
+        *full = *full || p->used > p->capacity;
     }
 }
 
@@ -361,7 +387,7 @@ static bool write_lists(voxels *v, gpu *g) {
     if (!now || gpu_buffer_size(now) < bytes) {
         gpu_buffer_destroy(g, now);
         v->buffers[VOXELS_LISTS] = NULL;
-        if (!voxels_make_buffer(v, g, VOXELS_LISTS, 2 * bytes)) return false;
+        if (!voxels_make_buffer(v, g, VOXELS_LISTS, LISTS_SPARE * bytes)) return false;
     }
     return gpu_buffer_write(g, v->buffers[VOXELS_LISTS], 0, v->lists.items, bytes);
 }

@@ -45,9 +45,11 @@ extern const kernel_table voxels_kernel_table;
 bool voxels_compile(voxels *v, shader_library *library, const shader_reader *reader);
 bool voxels_build(voxels *v, gpu *g);    // pipelines; any thread
 bool voxels_allocate(voxels *v, gpu *g); // buffers, all empty; again: does nothing
-// Adds what voxels_allocate will take, and voxels_write_distance. How much the masks of bodies need
-// is known when they stand somewhere.
-void voxels_list_memory(const voxels *v, bool distances, budget_list *out);
+// Adds what voxels_allocate and the first update will take, and voxels_write_distance. Bodies are
+// taken as they are at the context's time, and however they turn from there; one that is scaled up
+// later gets its memory in that frame, or is refused it there.
+void voxels_list_memory(const voxels *v, const field_context *context, bool distances,
+                        budget_list *out);
 void voxels_destroy(voxels *v, gpu *g); // g may be NULL when nothing was built
 
 typedef struct voxels_change { // changes since the last update

@@ -118,7 +118,7 @@ uint64_t voxels_bytes(const voxels *v, voxels_part_buffer which) {
     case VOXELS_OTHER_SEEDS:
         return 16 * cells;
     default:
-        return 0; // grown when bodies are placed
+        return 0; // made when bodies are placed: voxels_expect
     }
 }
 
@@ -132,12 +132,18 @@ bool voxels_allocate(voxels *v, gpu *g) {
     return write_surfaces(v, g);
 }
 
-void voxels_list_memory(const voxels *v, bool distances, budget_list *out) {
+void voxels_list_memory(const voxels *v, const field_context *context, bool distances,
+                        budget_list *out) {
+    uint64_t masks, lists;
     for (voxels_part_buffer i = 0; i < VOXELS_BUFFERS; i++) {
         const bool far = i >= VOXELS_KEYS && i <= VOXELS_OTHER_SEEDS;
         if (!v->buffers[i] && (distances || !far))
             budget_list_add(out, labels[i], voxels_bytes(v, i));
     }
+    if (v->started) return; // these are there
+    voxels_expect(v, context, &masks, &lists);
+    budget_list_add(out, labels[VOXELS_MASKS], masks);
+    budget_list_add(out, labels[VOXELS_LISTS], lists);
 }
 
 // ---- dispatching ------------------------------------------------------------------------------

@@ -100,6 +100,12 @@ struct voxels {
 // the tiles that `dirty` lies in. Adds to the lists, and says in the head of the state where.
 void voxels_list_tiles(voxels *v, const cell_box *dirty);
 
+// Bytes of the masks and of the lists that the first update makes, with bodies as they are at the
+// context's time. A body whose place cannot be evaluated counts as nowhere.
+void voxels_expect(const voxels *v, const field_context *context, uint64_t *masks, uint64_t *lists);
+// How many tiles a box of cells meets, along all axes together.
+size_t voxels_count_tiles(const cell_box *box);
+
 // What a stage binds by name besides the buffers.
 typedef struct voxels_images {
     gpu_image *image; // the one it writes

@@ -17,6 +17,13 @@ static tile_range find_tiles(const cell_box *box) {
     return out;
 }
 
+size_t voxels_count_tiles(const cell_box *box) {
+    const tile_range at = find_tiles(box);
+    size_t count = box->size[0] > 0;
+    for (int a = 0; a < 3; a++) count *= at.end[a] - at.low[a];
+    return count;
+}
+
 // Of the tiles that are composed, those that a part meets, counted from the first of them.
 static tile_range tiles_intersect(const tile_range *composed, const cell_box *part) {
     tile_range out = find_tiles(part);

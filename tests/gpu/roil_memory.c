@@ -1,12 +1,16 @@
 // What effects ask of the device's memory before they take any: as much as they take then, and
 // nothing at all where it is refused.
 #include "base/memory.h"
+#include "long_test.h"
 #include "roil/roil_impl.h"
 #include "roil_test.h"
 
 // What is asked for may miss what is taken by this: single texels, what depends on where things
 // stand, and how drivers round.
 enum { WIDTH = 640, HEIGHT = 360, SLACK = 1 << 20, LAST = 3 };
+// Of a shipped effect that plays files, frames besides that are read and copied ahead of their
+// time.
+enum { SHIPPED_WIDTH = 320, SHIPPED_HEIGHT = 180, AHEAD = 4 << 20 };
 
 static const char crate[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
                             "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -72,9 +76,27 @@ static const char crates[] =
     "fx.output = final { over { volume = smoke, source = solid, depth = seen.depth } }.color\n"
     "return fx\n";
 
-static void list_all(roil_effect *e, budget_list *out) {
+// Bursts as meshes, of which there is one now and may be many; lamps by tiles and as spheres.
+static const char bursts[] =
+    "local all = explosions { {0, position = {0, 0, 1}} }\n"
+    "local ball = shell { at = all, mode = 'mesh', life = 2, displacement = 0.1 }\n"
+    "local lamps = point_lights { count = 3000, position = light_random * 4, range = 0.5,\n"
+    "                             power = 2 }\n"
+    "local seen = geometry { mesh { 'crate.obj' } }\n"
+    "local near = shade { name = 'near', from = {seen, lamps}, lamps_by = 'tiles',\n"
+    "                     shadow_samples = 4 }\n"
+    "local far = shade { name = 'far', from = {seen, lamps}, lamps_by = 'volumes' }\n"
+    "fx.output = final { shader { 'all.comp', a = ball.image, b = near.color,\n"
+    "                    c = far.color, d = near.color, e = near.color }.color }.color\n"
+    "return fx\n";
+
+typedef struct extent {
+    uint32_t width, height;
+} extent;
+
+static void list_all(roil_effect *e, extent size, budget_list *out) {
     ok(effect_compile(e->effect));
-    ok(graph_compile(effect_graph(e->effect), WIDTH, HEIGHT));
+    ok(graph_compile(effect_graph(e->effect), size.width, size.height));
     assert_int_equal(effect_list_memory(e->effect, out, out), 0);
 }
 
@@ -101,20 +123,24 @@ static roil_effect *open(roil *r, const char *body) {
     return load_text(r, "asks.lua", text);
 }
 
+// What an effect asks for, added to `list`, is what it has taken once its first pictures are drawn.
+static void expect_taken(roil *r, roil_effect *e, extent size, uint64_t ahead, budget_list *list) {
+    list_all(e, size, list);
+    const uint64_t before = used(r), asked = sum_of(list);
+    ok(roil_prepare(e, size.width, size.height));
+    for (int i = 1; i <= LAST; i++) ok(roil_render(e, i));
+    const uint64_t taken = used(r) - before;
+    if (taken <= asked + ahead + SLACK && asked <= taken + SLACK) return;
+    show(list);
+    fail_msg("%llu bytes were asked for, %llu are taken", (unsigned long long)asked,
+             (unsigned long long)taken);
+}
+
 // `rows`: labels that must be among them, up to NULL.
 static void expect_asked(roil *r, const char *body, const char *const *rows) {
     budget_list list = {0};
     roil_effect *e = open(r, body);
-    list_all(e, &list);
-    const uint64_t before = used(r), asked = sum_of(&list);
-    ok(roil_prepare(e, WIDTH, HEIGHT));
-    for (int i = 1; i <= LAST; i++) ok(roil_render(e, i));
-    const uint64_t taken = used(r) - before;
-    if (taken > asked + SLACK || asked > taken + SLACK) {
-        show(&list);
-        fail_msg("%llu bytes were asked for, %llu are taken", (unsigned long long)asked,
-                 (unsigned long long)taken);
-    }
+    expect_taken(r, e, (extent){WIDTH, HEIGHT}, 0, &list);
     for (; *rows; rows++) {
         size_t i = 0;
         while (i < list.count && strcmp(list.rows[i].label, *rows) != 0) i++;
@@ -128,7 +154,8 @@ static void air_asks_for_its_state(void **state) {
     expect_asked(*state, air,
                  (const char *const[]){"lattice", "lattice's moments", "waves at open faces",
                                        "kinds of cells", "elements at faces", "force",
-                                       "ids of cells", NULL});
+                                       "ids of cells", "masks of bodies", "values of a source",
+                                       NULL});
 }
 
 static void slices_ask_for_their_state(void **state) {
@@ -147,7 +174,55 @@ static void particles_ask_for_theirs_and_for_what_draws_them(void **state) {
 static void scenes_ask_for_what_is_drawn(void **state) {
     expect_asked(*state, crates,
                  (const char *const[]){"lists of draws", "draws", "nearest points", "ids of cells",
-                                       "crate.obj", "boxes of meshes", NULL});
+                                       "masks of bodies", "bodies by tiles of cells", "crate.obj",
+                                       "boxes of meshes", "ranges", NULL});
+}
+
+static void bursts_and_lamps_ask_for_their_lists(void **state) {
+    char path[512];
+    write_text("all.comp", all_shader, path);
+    expect_asked(*state, bursts,
+                 (const char *const[]){"vertices of shells", "shafts", "records of lamps",
+                                       "lamps by tiles", "depths of tiles", "light of lamps",
+                                       NULL});
+}
+
+// A body that turns gets masks for however it is turned: more than where it stands first.
+static void what_turns_asks_for_all_turns(void **state) {
+    static const char body[] =
+        "local stick = mesh { 'stick.obj', rotation = function(t) return {0, 45 * t, 0} end }\n"
+        "local cells = voxels { stick, box = { min = {-2, -2, -2}, max = {2, 2, 2} },\n"
+        "                       resolution = 128 }\n"
+        "fx.output = final { march { density = cells.inside, steps = 4 } }.color\n"
+        "return fx\n";
+    static const char stick[] = "v -1.5 0 0\nv 1.5 0.1 0\nv -1.5 0.1 0.1\nv 1.5 0 0.1\n"
+                                "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    char path[512];
+    write_text("stick.obj", stick, path);
+    expect_asked(*state, body, (const char *const[]){"masks of bodies", NULL});
+}
+
+static void expect_shipped(roil *r, const char *name) {
+    char path[512];
+    budget_list list = {0};
+    snprintf(path, sizeof path, "%s/effects/%s.lua", getenv("ROIL_SOURCE_DIR"), name);
+    roil_effect *e = roil_load(r, path, NULL, 0);
+    ok(e);
+    expect_taken(r, e, (extent){SHIPPED_WIDTH, SHIPPED_HEIGHT}, AHEAD, &list);
+    budget_list_free(&list);
+    roil_unload(e);
+}
+
+static void shipped_effects_ask_for_what_they_take(void **state) {
+    static const char *const few[] = {"deferred_lights", "containers", "sparks", "explosion",
+                                      "layered_explosion"};
+    static const char *const others[] = {"night",       "slices",       "plume",
+                                         "forest_fire", "barrel_chain", "templates",
+                                         "comic_blast", "log_fire",     "step-10-explosion",
+                                         "cigarette",   "materials",    "figure"};
+    for (size_t i = 0; i < COUNT_OF(few); i++) expect_shipped(*state, few[i]);
+    if (!sim_long_tests("twelve more shipped effects")) return;
+    for (size_t i = 0; i < COUNT_OF(others); i++) expect_shipped(*state, others[i]);
 }
 
 // Half of it could be had: the state without the pictures, or these without it.
@@ -156,7 +231,7 @@ static void nothing_is_taken_where_all_does_not_fit(void **state) {
     char limit[32];
     budget_list list = {0};
     roil_effect *e = open(r, air);
-    list_all(e, &list);
+    list_all(e, (extent){WIDTH, HEIGHT}, &list);
     const uint64_t before = used(r), sum = budget_get(gpu_get_budget(r->device)).sum;
     snprintf(limit, sizeof limit, "%lluK", (unsigned long long)((sum + sum_of(&list) / 2) >> 10));
     assert_true(budget_set_share(limit));
@@ -188,6 +263,9 @@ int main(void) {
         cmocka_unit_test(slices_ask_for_their_state),
         cmocka_unit_test(particles_ask_for_theirs_and_for_what_draws_them),
         cmocka_unit_test(scenes_ask_for_what_is_drawn),
+        cmocka_unit_test(bursts_and_lamps_ask_for_their_lists),
+        cmocka_unit_test(what_turns_asks_for_all_turns),
+        cmocka_unit_test(shipped_effects_ask_for_what_they_take),
         cmocka_unit_test(nothing_is_taken_where_all_does_not_fit),
     };
     return test_run(tests);

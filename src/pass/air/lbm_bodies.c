@@ -110,9 +110,10 @@ bool lbm_air_allocate_bodies(lbm_air *a) {
 }
 
 void lbm_air_list_bodies(const lbm_air *a, budget_list *out) {
+    const field_context *context = a->pass->host->context;
     for (size_t i = 0; i < a->giver_count; i++)
-        if (a->givers[i].cells) voxels_list_memory(a->givers[i].cells, false, out);
-    if (a->solids.cells) voxels_list_memory(a->solids.cells, false, out);
+        if (a->givers[i].cells) voxels_list_memory(a->givers[i].cells, context, false, out);
+    if (a->solids.cells) voxels_list_memory(a->solids.cells, context, false, out);
 }
 
 static float3 in_steps(const lbm_air *a, float3 v) { // from m/s to cells a step

@@ -130,8 +130,9 @@ typedef struct lbm_cells { // whole numbers
 // With a cell around, since a sheet has no size.
 bool lbm_mesh_box(const lbm_air *a, const scene_mesh *mesh, const field_context *context,
                   box3 *out);
-// From the host's time to `end`.
-bool lbm_source_cells(const lbm_air *a, const pass *p, double end, lbm_cells *out);
+// From the host's time to `end`. `most`, which may be NULL: the cells that a box of that size has
+// at most, wherever in the air it is.
+bool lbm_source_cells(const lbm_air *a, const pass *p, double end, lbm_cells *out, uint64_t *most);
 
 // lbm_bodies.c
 lbm_meshes *lbm_air_add_giver(lbm_air *a); // until the next one is added

@@ -21,7 +21,8 @@ typedef struct source_state {
     size_t giver;        // which of the air's are its meshes, from 1; 0: it has none
     uint64_t turn;       // in which the values were found; UINT64_MAX: never
     lbm_cells cells;     // of its box in this turn
-    gpu_buffer *values;  // of these; NULL: none yet
+    uint64_t most;       // cells that the box has, wherever it is
+    gpu_buffer *values;  // of as many; NULL: none yet
     unsigned char *last; // the numbers that they were found with
     lbm_cells last_cells;
     bool known; // these two
@@ -116,18 +117,29 @@ static bool lbm_source_update(pass *p) {
     return true;
 }
 
+enum { SOURCE_VALUE = 16 }; // bytes of a cell
+static const char values_label[] = "values of a source";
+
+// As much as wherever the box may move, so that frames seldom take any. One that grows gets more.
+static uint64_t values_bytes(const pass *p, uint64_t cells) {
+    const uint64_t most = gpu_get_info(p->host->device)->max_storage_range;
+    return SOURCE_VALUE * cells < most ? SOURCE_VALUE * cells : most;
+}
+
 static bool make_values(pass *p, source_state *s) {
     const float *n = s->cells.count;
-    uint64_t size = 16 * (uint64_t)n[0] * (uint64_t)n[1] * (uint64_t)n[2];
+    uint64_t size = SOURCE_VALUE * (uint64_t)n[0] * (uint64_t)n[1] * (uint64_t)n[2];
     uint64_t most = gpu_get_info(p->host->device)->max_storage_range;
     if (s->values && gpu_buffer_size(s->values) >= size) return true;
     if (size > most)
         return err_set("its box has %.0f x %.0f x %.0f cells, of which the device can bind %llu at "
                        "most; give 'shape' an end, as by the product with a box",
-                       (double)n[0], (double)n[1], (double)n[2], (unsigned long long)(most / 16));
+                       (double)n[0], (double)n[1], (double)n[2],
+                       (unsigned long long)(most / SOURCE_VALUE));
     if (s->values) gpu_buffer_destroy(p->host->device, s->values);
-    s->values = gpu_buffer_create(p->host->device,
-                                  &(gpu_buffer_desc){.label = "values of a source", .size = size});
+    s->values =
+        gpu_buffer_create(p->host->device, &(gpu_buffer_desc){.label = values_label,
+                                                              .size = values_bytes(p, s->most)});
     s->known = false;
     return s->values != NULL;
 }
@@ -154,6 +166,22 @@ static bool find_values(pass *p, source_state *s) {
     return s->known;
 }
 
+// What the first turn takes; of a box that cannot be evaluated, which its frame will tell, nothing.
+static void lbm_source_list_memory(const pass *p, budget_list *out) {
+    const source_state *s = p->state;
+    pass_host *host = p->host;
+    const field_context *now = host->context;
+    field_context first = *now;
+    double end;
+    lbm_cells cells;
+    uint64_t most;
+    lbm_air_turn(s->air, &first.time, &end);
+    host->context = &first;
+    if (!s->values && lbm_source_cells(s->air, p, end, &cells, &most))
+        budget_list_add(out, values_label, values_bytes(p, most));
+    host->context = now;
+}
+
 // As of the beginning of the turn, whenever in it that is.
 static bool begin_turn(pass *p, source_state *s) {
     double begin, end;
@@ -164,7 +192,7 @@ static bool begin_turn(pass *p, source_state *s) {
     field_context first = *now;
     first.time = begin;
     host->context = &first;
-    bool done = lbm_source_cells(s->air, p, end, &s->cells) &&
+    bool done = lbm_source_cells(s->air, p, end, &s->cells, &s->most) &&
                 (s->cells.count[0] <= 0 || find_values(p, s));
     host->context = now;
     s->turn = done ? turn : UINT64_MAX;
@@ -218,6 +246,7 @@ const pass_type lbm_source_type = {
     .meshes = PASS_USES_MESHES,
     .declare = lbm_source_declare,
     .defines = lbm_source_defines,
+    .list_memory = lbm_source_list_memory,
     .update = lbm_source_update,
     .destroy = lbm_source_destroy,
 };

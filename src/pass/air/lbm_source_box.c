@@ -55,7 +55,16 @@ static lbm_cells cells_of(const lbm_air *a, box3 box) {
     return out;
 }
 
-bool lbm_source_cells(const lbm_air *a, const pass *p, double end, lbm_cells *out) {
+static uint64_t most_cells_of(const lbm_air *a, box3 box) {
+    const float h = (float)a->desc.voxel_size;
+    const float wide[3] = {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
+    uint64_t most = !box3_is_empty(box);
+    for (int i = 0; i < 3; i++) // a half and a whole cell more on each side, as above
+        most *= (uint64_t)fminf(floorf(wide[i] / h) + 3, (float)a->desc.size[i]);
+    return most;
+}
+
+bool lbm_source_cells(const lbm_air *a, const pass *p, double end, lbm_cells *out, uint64_t *most) {
     box3 box = box3_infinite(), meshes;
     const field *shape = pass_given_field(p, N_shape);
     if (shape && !field_bounds(shape, p->host->context, &box)) return false;
@@ -64,5 +73,6 @@ bool lbm_source_cells(const lbm_air *a, const pass *p, double end, lbm_cells *ou
         box = box3_intersect(box, meshes);
     }
     *out = cells_of(a, box);
+    if (most) *most = most_cells_of(a, box);
     return true;
 }

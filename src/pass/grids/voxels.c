@@ -234,7 +234,8 @@ static bool voxels_pass_allocate(pass *p) {
 
 static void voxels_pass_list_memory(const pass *p, budget_list *out) {
     const graph_image distance = *pass_image(p, N_distance);
-    voxels_list_memory(state_of(p)->cells, graph_is_read(p->host->graph, distance), out);
+    voxels_list_memory(state_of(p)->cells, p->host->context,
+                       graph_is_read(p->host->graph, distance), out);
 }
 
 static void voxels_pass_destroy(pass *p) {

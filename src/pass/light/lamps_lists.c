@@ -28,7 +28,9 @@ static const pass_kernel kernels[LAMPS_KERNELS] = {
                     .without_fields = true},
 };
 static const char *const names[] = {LAMPS_NAMES(KERNEL_NAME_TEXT)};
-static const char *const buffer_names[LAMP_BUFFERS] = {"LampRecords", "LampMasks", "LampBounds"};
+static const char *const labels[LAMP_BUFFERS] = {[LAMP_RECORDS] = "records of lamps",
+                                                 [LAMP_MASKS] = "lamps by tiles",
+                                                 [LAMP_BOUNDS] = "depths of tiles"};
 
 static lamps_way choose_way(const pass *p, uint32_t count) {
     static const char *const words[] = {"all", "tiles", "volumes"};
@@ -103,10 +105,28 @@ static tiling tiling_of(const pass *p) {
     };
 }
 
+static uint64_t bytes_of(const pass *p, const tiling *t, lists_buffer which) { // 0: none
+    if (which == LAMP_RECORDS) return HEAD + (uint64_t)RECORD * p->lamps->count;
+    if (p->lamps->way != LAMPS_TILES) return 0;
+    return which == LAMP_MASKS ? 4ull * t->across * t->down * t->words
+                               : 8ull * t->across * t->height;
+}
+
+static void lamps_list_memory(const pass *p, budget_list *out) {
+    if (!p->lamps) return;
+    const tiling t = tiling_of(p);
+    for (lists_buffer i = 0; i < LAMP_BUFFERS; i++) {
+        const gpu_buffer *now = p->lamps->buffers[i];
+        const uint64_t bytes = bytes_of(p, &t, i);
+        if (!now || gpu_buffer_size(now) != bytes) budget_list_add(out, labels[i], bytes);
+    }
+    if (p->lamps->way == LAMPS_VOLUMES) lamps_list_light(p, t.width, t.height, out);
+}
+
 static bool make_buffer(pass *p, lists_buffer which, uint64_t size) {
     gpu *device = p->host->device;
     gpu_buffer **buffer = &p->lamps->buffers[which];
-    if (*buffer && gpu_buffer_size(*buffer) == size) return true;
+    if (size == 0 || (*buffer && gpu_buffer_size(*buffer) == size)) return true;
     uint64_t most = gpu_get_info(device)->max_storage_range;
     if (size > most)
         return err_set("%s: lists of %u lamps for %llu bytes of tiles are more than the device "
@@ -115,16 +135,14 @@ static bool make_buffer(pass *p, lists_buffer which, uint64_t size) {
                        p->label, p->lamps->count, (unsigned long long)size,
                        (unsigned long long)most);
     gpu_buffer_destroy(device, *buffer);
-    *buffer =
-        gpu_buffer_create(device, &(gpu_buffer_desc){.label = buffer_names[which], .size = size});
+    *buffer = gpu_buffer_create(device, &(gpu_buffer_desc){.label = labels[which], .size = size});
     return *buffer != NULL;
 }
 
 static bool make_buffers(pass *p, const tiling *t) {
-    if (!make_buffer(p, LAMP_RECORDS, HEAD + (uint64_t)RECORD * p->lamps->count)) return false;
-    return p->lamps->way != LAMPS_TILES ||
-           (make_buffer(p, LAMP_MASKS, 4ull * t->across * t->down * t->words) &&
-            make_buffer(p, LAMP_BOUNDS, 8ull * t->across * t->height));
+    for (lists_buffer i = 0; i < LAMP_BUFFERS; i++)
+        if (!make_buffer(p, i, bytes_of(p, t, i))) return false;
+    return true;
 }
 
 static bool run_lists(pass *p, lamps_kernel index, const tiling *t, uint32_t x, uint32_t y) {
@@ -173,6 +191,7 @@ const pass_provider pass_lamps_provider = {
     .uses = uses_lamps,
     .wants = wants_kernel,
     .target = lamps_target,
+    .list_memory = lamps_list_memory,
     .prepare = lamps_prepare,
     .bind = lamps_bind,
     .destroy = lamps_destroy,

@@ -21,3 +21,4 @@ struct pass_lamps {
 // lamps_volumes.c: where the way is LAMPS_VOLUMES
 void lamps_target(const pass *p, size_t index, gpu_graphics_desc *out);
 bool lamps_draw_volumes(pass *p, uint32_t width, uint32_t height); // after the records are made
+void lamps_list_light(const pass *p, uint32_t width, uint32_t height, budget_list *out);

@@ -12,18 +12,31 @@ void lamps_target(const pass *p, size_t index, gpu_graphics_desc *out) {
     *out = (gpu_graphics_desc){.colors = {GPU_RGBA32F}, .cull = GPU_CULL_BACK, .blend = true};
 }
 
+static gpu_image_desc describe_light(uint32_t width, uint32_t height) {
+    return (gpu_image_desc){.label = "light of lamps",
+                            .format = GPU_RGBA32F,
+                            .width = width,
+                            .height = height,
+                            .use = GPU_USE_TARGET | GPU_USE_SAMPLED};
+}
+
+static bool has_light(const pass *p, uint32_t width, uint32_t height) {
+    const gpu_image *light = p->lamps->light;
+    const gpu_image_desc *now = light ? gpu_image_get_desc(light) : NULL;
+    return now && now->width == width && now->height == height;
+}
+
+void lamps_list_light(const pass *p, uint32_t width, uint32_t height, budget_list *out) {
+    const gpu_image_desc desc = describe_light(width, height);
+    if (!has_light(p, width, height)) budget_list_add(out, desc.label, gpu_image_bytes(&desc));
+}
+
 static bool make_light(pass *p, uint32_t width, uint32_t height) {
-    gpu_image **light = &p->lamps->light;
-    const gpu_image_desc *now = *light ? gpu_image_get_desc(*light) : NULL;
-    if (now && now->width == width && now->height == height) return true;
-    gpu_image_destroy(p->host->device, *light);
-    *light = gpu_image_create(p->host->device,
-                              &(gpu_image_desc){.label = "light of lamps",
-                                                .format = GPU_RGBA32F,
-                                                .width = width,
-                                                .height = height,
-                                                .use = GPU_USE_TARGET | GPU_USE_SAMPLED});
-    return *light != NULL;
+    const gpu_image_desc desc = describe_light(width, height);
+    if (has_light(p, width, height)) return true;
+    gpu_image_destroy(p->host->device, p->lamps->light);
+    p->lamps->light = gpu_image_create(p->host->device, &desc);
+    return p->lamps->light != NULL;
 }
 
 bool lamps_draw_volumes(pass *p, uint32_t width, uint32_t height) {

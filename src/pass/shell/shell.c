@@ -41,13 +41,33 @@ static bool shell_defines(pass *p, size_t index, pass_defines *out) {
     return index == SHELL_GATHER || (index >= SHELL_VERTICES) == shell_state_of(p)->drawn;
 }
 
+// For as many shells as there may ever be, so that frames take none.
+static void list_buffers(shell_state *s, gpu_buffer **buffers[2], gpu_buffer_desc out[2]) {
+    buffers[0] = &s->records;
+    buffers[1] = &s->vertices;
+    out[0] =
+        (gpu_buffer_desc){.label = "records of shells", .size = PASS_SHELL_MOST * SHELL_RECORD};
+    out[1] = (gpu_buffer_desc){.label = "vertices of shells", .size = shell_vertices_bytes(s)};
+}
+
+static void shell_list_memory(const pass *p, budget_list *out) {
+    gpu_buffer **buffers[2];
+    gpu_buffer_desc descs[2];
+    list_buffers(p->state, buffers, descs);
+    for (int i = 0; i < 2; i++)
+        if (!*buffers[i]) budget_list_add(out, descs[i].label, descs[i].size);
+}
+
 static bool shell_allocate(pass *p) {
-    shell_state *s = shell_state_of(p);
-    if (!s->records)
-        s->records = gpu_buffer_create(
-            p->host->device,
-            &(gpu_buffer_desc){.label = "ShellRecords", .size = PASS_SHELL_MOST * SHELL_RECORD});
-    return s->records || err_prefix("%s: ", p->label);
+    gpu_buffer **buffers[2];
+    gpu_buffer_desc descs[2];
+    list_buffers(shell_state_of(p), buffers, descs);
+    for (int i = 0; i < 2; i++) {
+        if (*buffers[i] || descs[i].size == 0) continue;
+        *buffers[i] = gpu_buffer_create(p->host->device, &descs[i]);
+        if (!*buffers[i]) return err_prefix("%s: ", p->label);
+    }
+    return true;
 }
 
 static void shell_destroy(pass *p) {
@@ -151,6 +171,7 @@ const pass_type shell_type = {
     .defines = shell_defines,
     .target = shell_target,
     .allocate = shell_allocate,
+    .list_memory = shell_list_memory,
     .update = shell_update,
     .record = shell_record,
     .destroy = shell_destroy,

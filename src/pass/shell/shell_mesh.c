@@ -1,7 +1,6 @@
 // Shells as meshes: the vertices of a sphere are pushed out in compute, then drawn. Shells are laid
 // over each other from the farthest centre to the nearest, of each the far side first, so that what
 // shines through one is behind it.
-#include "base/error.h"
 #include "base/memory.h"
 #include "pass/shell/shell_parts.h"
 
@@ -37,18 +36,12 @@ void shell_target(const pass *p, size_t index, gpu_graphics_desc *out) {
     };
 }
 
-// ---- a frame ----------------------------------------------------------------------------------
-
-static bool make_vertices(pass *p) {
-    shell_state *s = shell_state_of(p);
-    gpu *device = p->host->device;
-    uint64_t size = (uint64_t)s->count * vertex_count(s) * SHELL_VERTEX;
-    if (s->vertices && gpu_buffer_size(s->vertices) >= size) return true;
-    gpu_buffer_destroy(device, s->vertices);
-    s->vertices =
-        gpu_buffer_create(device, &(gpu_buffer_desc){.label = "ShellVertices", .size = size});
-    return s->vertices || err_prefix("%s: ", p->label);
+uint64_t shell_vertices_bytes(const shell_state *s) {
+    const uint64_t most = s->list ? PASS_SHELL_MOST : 1;
+    return s->drawn ? most * vertex_count(s) * SHELL_VERTEX : 0;
 }
+
+// ---- a frame ----------------------------------------------------------------------------------
 
 static float distance_of(const pass *p, const float place[3]) {
     return glm_vec3_distance2((float *)(uintptr_t)place, (float *)(uintptr_t)p->host->frame->eye.v);
@@ -107,8 +100,7 @@ bool shell_record_mesh(pass *p) {
     if (!gpu_draw_all(p->host->device, &target)) return false;
     target.clear = false;
     if (s->count > 0 &&
-        !(make_vertices(p) && shell_run(p, SHELL_VERTICES, vertex_count(s), s->count) &&
-          draw_shells(p, &target)))
+        !(shell_run(p, SHELL_VERTICES, vertex_count(s), s->count) && draw_shells(p, &target)))
         return false;
     graph_get_size(g, *pass_image(p, N_image), size);
     return !pass_get_image(p, N_front) || shell_run(p, SHELL_FRONT, size[0], size[1]);

@@ -40,5 +40,6 @@ bool shell_run(pass *p, shell_stage stage, uint32_t x, uint32_t y);
 // ---- shell_mesh.c: drawn ------------------------------------------------------------------------
 
 bool shell_declare_mesh(pass *p);
+uint64_t shell_vertices_bytes(const shell_state *s); // of as many shells as there may be
 void shell_target(const pass *p, size_t index, gpu_graphics_desc *out);
 bool shell_record_mesh(pass *p);

@@ -47,34 +47,50 @@ static void shade_destroy(pass *p) {
     if (s) gpu_buffer_destroy(p->host->device, s->lists);
 }
 
-// ---- in a frame -------------------------------------------------------------------------------
+// ---- lists of what casts shadows --------------------------------------------------------------
 
-static uint32_t lights_to_list(pass *p) {
+static const char lists_label[] = "shafts";
+
+// How many lights get lists. The sun and all of the scene's always count as lights.
+static uint64_t count_listed(const pass *p, uint64_t each) {
     const graph_image lights = *pass_image(p, N_lights);
-    uint32_t size[3];
-    if (pass_value(p, N_shadow_samples) < 2) return 0;
-    if (!lights.id) return p->host->lights->count.v[0];
-    graph_get_size(p->host->graph, lights, size);
-    return size[1];
+    const uint64_t most = gpu_get_info(p->host->device)->max_storage_range / each;
+    uint32_t size[3] = {1, (uint32_t)p->host->scene->light_count + 1, 1};
+    if (lights.id) graph_get_size(p->host->graph, lights, size);
+    const uint64_t wanted = size[1] < MAX_LISTED ? size[1] : MAX_LISTED;
+    return wanted < most ? wanted : most;
 }
 
-// How many lights get lists, and memory for these.
-static bool make_lists(pass *p, uint32_t tiles, int32_t *lights) {
+// Bytes of the lists of one light.
+static uint64_t list_bytes(const pass *p) {
+    uint32_t size[3];
+    graph_get_size(p->host->graph, *pass_image(p, N_color), size);
+    const uint64_t across = (size[0] + TILE - 1) / TILE, down = (size[1] + TILE - 1) / TILE;
+    return across * down * LIST_WORDS * sizeof(uint32_t);
+}
+
+static void shade_list_memory(const pass *p, budget_list *out) {
+    const shade_state *s = p->state;
+    const uint64_t each = list_bytes(p), size = count_listed(p, each) * each;
+    if (!pass_has_kernel(p, SHADE_SHAFTS)) return;
+    if (!s->lists || gpu_buffer_size(s->lists) < size) budget_list_add(out, lists_label, size);
+}
+
+static bool make_lists(pass *p, int32_t *lights) {
     shade_state *s = p->state;
-    uint64_t each = (uint64_t)tiles * LIST_WORDS * sizeof(uint32_t);
-    uint64_t most = gpu_get_info(p->host->device)->max_storage_range / each, wanted;
-    wanted = lights_to_list(p);
-    if (wanted > MAX_LISTED) wanted = MAX_LISTED;
-    if (wanted > most) wanted = most;
-    *lights = (int32_t)wanted;
-    uint64_t size = wanted ? wanted * each : LIST_WORDS * sizeof(uint32_t);
+    const uint64_t each = list_bytes(p);
+    const uint64_t listed = pass_value(p, N_shadow_samples) < 2 ? 0 : count_listed(p, each);
+    *lights = (int32_t)listed;
+    uint64_t size = listed ? listed * each : LIST_WORDS * sizeof(uint32_t);
     if (s->lists && gpu_buffer_size(s->lists) >= size) return true;
     gpu_buffer_destroy(p->host->device, s->lists);
     s->lists = gpu_buffer_create(
         p->host->device,
-        &(gpu_buffer_desc){.label = "shafts", .size = size, .kind = GPU_BUFFER_DEVICE});
+        &(gpu_buffer_desc){.label = lists_label, .size = size, .kind = GPU_BUFFER_DEVICE});
     return s->lists != NULL;
 }
+
+// ---- in a frame -------------------------------------------------------------------------------
 
 static bool shade_run(pass *p, size_t index, uint32_t width, uint32_t height) {
     kernel *k = pass_use(p, index);
@@ -89,7 +105,7 @@ static bool shade_record(pass *p) {
     graph_get_size(p->host->graph, *pass_image(p, N_color), size);
     across = (size[0] + TILE - 1) / TILE;
     down = (size[1] + TILE - 1) / TILE;
-    if (!pass_prepare(p) || !make_lists(p, across * down, &listed)) return false;
+    if (!pass_prepare(p) || !make_lists(p, &listed)) return false;
     const size_t index = pass_rays_choose(p);
     if (!pass_make_late(p, index, false)) return false;
     if (listed && !pass_make_late(p, SHADE_SHAFTS, false)) return false;
@@ -109,6 +125,7 @@ const pass_type shade_type = {
     .declare = shade_declare,
     .defines = shade_defines,
     .foresees = shade_foresees,
+    .list_memory = shade_list_memory,
     .record = shade_record,
     .destroy = shade_destroy,
 };
