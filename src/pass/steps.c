@@ -12,15 +12,15 @@ double pass_steps_time(const pass_steps *s, uint64_t step) {
 }
 
 int64_t pass_steps_wanted(const pass_steps *s, double time) {
-    return (int64_t)floor(steps_at(s, time) + rounding) + 2;
+    return (int64_t)floor(steps_at(s, time) + rounding) + 1 + s->late;
 }
 
 double pass_steps_reached(const pass_steps *s, int64_t done) {
-    return done < 2 ? -(double)INFINITY : pass_steps_time(s, (uint64_t)done - 1);
+    return done <= s->late ? -(double)INFINITY : pass_steps_time(s, (uint64_t)(done - s->late));
 }
 
 double pass_steps_blend(const pass_steps *s, int64_t done, double time) {
-    double blend = steps_at(s, time) - (double)(done - 2);
+    double blend = steps_at(s, time) - (double)(done - 1 - s->late);
     return blend < rounding ? 0 : fmin(blend, 1);
 }
 

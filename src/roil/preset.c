@@ -67,8 +67,11 @@ static void refuse_preset(const char *effect_file, const char *name) {
     } else {
         strbuf list = {0};
         for (size_t i = 0; i < count; i++) strbuf_add(&list, "%s%s", i ? ", " : "", known[i]);
-        err_set("%s has no preset '%.64s'; accepted: %s%sa .lua file", effect_file, name,
-                strbuf_text(&list), count ? ", or " : "");
+        if (count)
+            err_set("%s has no preset '%.64s'; it has %s", effect_file, name, strbuf_text(&list));
+        else
+            err_set("%s has no presets, so no '%.64s'; a .lua file of settings can be named, too",
+                    effect_file, name);
         strbuf_free(&list);
     }
     mem_free(names);

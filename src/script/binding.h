@@ -97,7 +97,9 @@ typedef struct light_object {
 // Reads a field: a number, {x, y, z}, "#rrggbb", a field, a parameter, a curve, a function of time.
 // `components` are required; 0: any number. `who` and `key` name the value in messages.
 const field *value_field(lua_State *L, int index, const char *who, const char *key, int components);
-// The same, but the field must not vary in space.
+// Refuses {x, y} where `components` is 3.
+void value_refuse_two(lua_State *L, int index, const char *who, const char *key, int components);
+// As value_field, but the field must not vary in space, and {x, y} is refused.
 const field *value_uniform(lua_State *L, int index, const char *who, const char *key,
                            int components);
 // Reads numbers or a colour. Returns the number of components, 0 for anything else.

@@ -52,6 +52,7 @@ static void take_arg(lua_State *L, kind_call *call, size_t i, int index) {
     if (lua_isnil(L, index)) return;
     const field_arg *arg = &kind->args[i];
     if (call->args[i]) vm_error(L, "%s: '%s' is given twice", kind->name, arg->desc.name);
+    value_refuse_two(L, index, kind->name, arg->desc.name, arg->desc.components);
     call->args[i] = value_field(L, index, kind->name, arg->desc.name, arg->desc.components);
 }
 

@@ -385,10 +385,14 @@ const field *value_field(lua_State *L, int index, const char *who, const char *k
     return node;
 }
 
-const field *value_uniform(lua_State *L, int index, const char *who, const char *key,
-                           int components) {
+void value_refuse_two(lua_State *L, int index, const char *who, const char *key, int components) {
     if (components == 3 && value_is_plain_table(L, index) && lua_rawlen(L, index) == 2)
         vm_error(L, "%s: '%s' takes three numbers, {x, y, z}; this has two", who, key);
+}
+
+const field *value_uniform(lua_State *L, int index, const char *who, const char *key,
+                           int components) {
+    value_refuse_two(L, index, who, key, components);
     const field *node = value_field(L, index, who, key, components);
     if (!node->uniform)
         vm_error(L,

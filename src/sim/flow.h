@@ -81,12 +81,15 @@ void flow_destroy(flow *f, gpu *g);
 // Sets air at rest, scalars 0 and inputs 0 (no source, no obstacle, no template). Call it inside a
 // frame.
 bool flow_reset(flow *f, gpu *g);
+// Writes the state as it is to images (flow_image), as a step does that is kept. Call it inside a
+// frame.
+bool flow_keep(flow *f, gpu *g, const flow_numbers *numbers);
 // Records one step, inside a frame. `keep`: the state after it is written to images (flow_image),
 // which is done for the last step of a frame, and sometimes for the last two.
 bool flow_step(flow *f, gpu *g, const flow_numbers *numbers, bool keep);
 uint64_t flow_steps(const flow *f); // since flow_reset
 
-// Returns the state after the last kept step (0) or the one kept before it (1) as a 3D image (x, y,
+// Returns the state that was kept last (0) or the one kept before it (1) as a 3D image (x, y,
 // slice). Sample it linearly along x and y, in the middle of a slice. NULL: there is none.
 typedef enum flow_look {
     FLOW_SCALARS,  // rgba16f: density, temperature, dye, pressure (m^2/s^2)

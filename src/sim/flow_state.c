@@ -108,7 +108,7 @@ static bool flow_load(flow *f, gpu *g, arena *memory, const char *label, checkpo
         .name = name(memory, label, "clock"), .size = sizeof clock, .bytes = &clock};
     checkpoint_part buffers[FLOW_STATE_BUFFERS];
     if (!checkpoint_load(c, NULL, &own)) return false;
-    if (clock.steps > UINT64_C(1) << 60 || clock.kept > clock.steps)
+    if (clock.steps > UINT64_C(1) << 60 || clock.kept > clock.steps + 1)
         return err_set("the checkpoint's clock is damaged");
     if (!flow_clear(f, g)) return false;
     size_t count = list_buffers(f, memory, label, buffers);

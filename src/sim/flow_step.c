@@ -113,7 +113,7 @@ bool flow_make_look(flow *f, gpu *g, uint32_t which, flow_look look) {
     return *image != NULL;
 }
 
-static bool flow_inspect(flow *f, gpu *g, const flow_numbers *n) {
+bool flow_keep(flow *f, gpu *g, const flow_numbers *n) {
     for (flow_look i = 0; i < FLOW_LOOKS; i++)
         if (!flow_make_look(f, g, f->kept % 2, i)) return false;
     kernel *k = flow_use(f, FLOW_LOOK_AT);
@@ -145,5 +145,5 @@ bool flow_step(flow *f, gpu *g, const flow_numbers *n, bool keep) {
     if (!flow_advance(f, g, n) || !flow_project(f, g, n)) return false;
     f->current ^= 1;
     f->steps++;
-    return !keep || flow_inspect(f, g, n);
+    return !keep || flow_keep(f, g, n);
 }

@@ -101,6 +101,10 @@ def main():
     if offences:
         sys.exit("\n".join(offences))
     chosen = [m for m in listed if not args.names or m.name in args.names]
+    missing = {m.program for m in chosen if not m.path.endswith(".c")
+               and not os.path.exists(os.path.join(args.build, m.program))}
+    if missing:
+        sys.exit(f"not in {args.build}, build first: {' '.join(sorted(missing))}")
     shop = Workshop(args.build)
     as_it_is, counts = {}, {"caught": 0, "SURVIVED": 0, "FAULTY": 0}
     for m in chosen:

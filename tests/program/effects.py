@@ -47,6 +47,7 @@ class Effects(Case):
         self.refuses(lit % '"red"', ["'albedo' must be a colour as \"#rrggbb\", or", 'got "red"'])
         self.refuses(lit % "worley { frequency = 1 }", ["'albedo' varies in space", "'tint'"])
         self.refuses(PASSES + "fx.camera = orbit { target = {0, 1} }\n", "'target' takes three numbers, {x, y, z}")
+        self.refuses(PASSES + march % "sphere { position = {0, 1} }", "'position' takes three numbers, {x, y, z}")
         for density, cause in (("sphere { radius = 1 } - worley { frequency = 1 }", "because of '-'"),
                                ("clamp(sphere { radius = 1 } + 0.5, 0, 2)", "because of '+'"),
                                ("2 * worley { frequency = 1 }", "because of 'worley'")):

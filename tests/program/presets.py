@@ -100,9 +100,12 @@ class Presets(Case):
         for command in (["render"], ["check"], ["info", "params"]):
             run = [*command, "fx/puff.lua", "--preset"]
             self.fails(1, ["has no preset 'wram'", "did you mean 'warm'?"], *run, "wram")
+            self.fails(1, "has no preset 'cold'; it has broken, warm, wrong\n", *run, "cold")
             self.fails(1, "did you mean 'density'?", *run, "wrong")
             self.fails(1, "broken.lua:1:", *run, "broken")
             self.fails(1, "is not a name", *run, "../warm")
+        self.write("plain.lua", EFFECT)
+        self.fails(1, "plain.lua has no presets, so no 'cold'", "check", "plain.lua", "--preset", "cold")
 
     def test_info_says_what_there_is(self):
         text = self.succeeds("info", "params", "fx/puff.lua", "--set", "march.steps=31")

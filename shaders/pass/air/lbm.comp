@@ -5,7 +5,7 @@ layout(local_size_x = 32, local_size_y = 4, local_size_z = 1) in;
 //@ option scalar_set = d3q7 {d3q7, d3q27} : directions that smoke, heat and dye move in; d3q27 is as published
 //@ option collision = central_moments {bgk, trt, central_moments} : how air settles; bgk is as published, central_moments stays stable without viscosity
 //@ option forcing = guo {guo, weights_only} : how buoyancy and force push; weights_only is as published, and wants bgk
-//@ option precision = f16 {f32, f16} : of what is stored; f16 takes half the memory and time
+//@ option precision = f16 {f32, f16} : of what is stored; f16 takes half the memory and time, but smoke, heat or dye that changes by less than 1/4096 of itself in a step, as by a slow decay, stands still: then take f32, or a longer time_step
 //@ option beside_bodies = links {links, velocity} : what carries smoke on d3q7 there: links leaves even smoke even, velocity keeps what passes a narrow throat sharper, and is up to 10 % off
 //@ option boundary_left = open {periodic, wall, slip, open, inflow} : face at -x
 //@ option boundary_right = open {periodic, wall, slip, open, inflow} : face at +x

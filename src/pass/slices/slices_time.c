@@ -52,7 +52,8 @@ static bool step(pass *p, slices_flow *f, bool keep, bool apart) {
     gpu *device = p->host->device;
     flow_numbers numbers;
     if (!slices_numbers(p, &numbers)) return false;
-    if (f->fresh && !flow_reset(f->solver, device)) return false;
+    if (f->fresh && (!flow_reset(f->solver, device) || !flow_keep(f->solver, device, &numbers)))
+        return false;
     f->fresh = false;
     if (apart) gpu_pass_next(device, f->labels[SLICES_SOURCES]);
     if (!slices_run_parts(f, true) || !slices_run_parts(f, false)) return false;

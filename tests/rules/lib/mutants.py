@@ -5,7 +5,9 @@
     + text after
 
 with as many lines of either as wanted, and an empty line after it. The text before stands in the
-file once. The test, of tests/gpu or tests/unit, fails with the text after."""
+file once; a file that is not there any more is the one of its name elsewhere in src or shaders. The
+test, of tests/gpu or tests/unit, fails with the text after."""
+import functools
 import os
 from collections import namedtuple
 
@@ -15,9 +17,22 @@ Mutant = namedtuple("Mutant", "name path program test before after where")
 FOLDER = "tests/mutants"
 
 
+def locate(top, path, known):
+    """The path, or the only one below its first folder with the same name."""
+    if os.path.isfile(os.path.join(top, path)):
+        return path
+    same = [other for other in known(path.split("/")[0]) if os.path.basename(other) == os.path.basename(path)]
+    return same[0] if len(same) == 1 else path
+
+
 def read(top):
     """(mutants, offences of how they are written)"""
     mutants, offences = [], []
+
+    @functools.cache
+    def known(folder):
+        return house.files(top, folder)
+
     for path in house.files(top, FOLDER, ".txt"):
         head, before, after = None, [], []
         for number, line in enumerate(house.lines(top, path) + [""], 1):
@@ -33,7 +48,7 @@ def read(top):
                 parts = [part.strip() for part in head[0].split(" | ")]
                 test = parts[-1].split()
                 if len(parts) == 3 and len(test) == 2 and before and after:
-                    mutants.append(Mutant(parts[0], parts[1], *test, "\n".join(before),
+                    mutants.append(Mutant(parts[0], locate(top, parts[1], known), *test, "\n".join(before),
                                           "\n".join(after), head[1]))
                 else:
                     offences.append(f"{head[1]}: wanted 'name | file | program test', lines "
