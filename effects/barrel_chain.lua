@@ -90,7 +90,7 @@ local shards = particles {
 local ground = mesh { "data/ground.obj", color = {0.6, 0.6, 0.65}, material = material { specular = 0.09, roughness = 0.42 } } -- damp
 local scene = geometry { ground, mesh { "data/yard.obj" }, barrels }
 local drawn = pieces { shards, mesh { "data/shard.obj" }, from = scene, size = 0.35 + 0.75 * particle_random, angle = 1300 * (particle_random - 0.5) * over_age { {0, 0}, {0.35, 1}, {1, 1.1} } }
-local solid = shade { from = {drawn, scene, lamps}, lamp_shadows = "rays", haze = 0.004 }
+local solid = shade { from = {drawn, scene, lamps}, point_light_shadows = "rays", haze = 0.004 }
 
 -- ---- the bursts -------------------------------------------------------------------------------------
 

@@ -5,7 +5,7 @@
 --
 -- What each pixel shows is found once (`geometry`) and lit afterwards (`shade`): a light then costs what
 -- it lights, whatever the scene is made of. `point_lights` says how they move and shine, by fields that
--- the device evaluates for each of them: light_index and light_random tell them apart. lamps_by chooses
+-- the device evaluates for each of them: light_index and light_random tell them apart. point_lights_by chooses
 -- how a pixel finds those that reach it: by lists for tiles of the picture, by spheres that are drawn
 -- around the lights as published, or by asking all of them; path = "forward" lights triangles where they
 -- are drawn instead. The picture is the same.
@@ -18,7 +18,7 @@ local reach  = param { "reach", 2.9, min = 0.5, max = 20, unit = "m", help = "ho
 local power  = param { "power", 7, min = 0, max = 200, unit = "W", help = "of each" }
 local mist   = param { "mist", 0.012, min = 0, max = 0.2, unit = "1/m", help = "how much the air scatters" }
 local turn   = param { "turn", 1.2, min = 0, max = 30, unit = "degrees/s", help = "of the camera around the ruin" }
-local way    = param { "lamps_by", "auto", words = {"auto", "all", "tiles", "volumes"}, help = "how a pixel finds the lights that reach it" }
+local way    = param { "point_lights_by", "auto", words = {"auto", "all", "tiles", "volumes"}, help = "how a pixel finds the lights that reach it" }
 local path   = param { "path", "deferred", words = {"deferred", "forward"}, help = "whether light comes after all is drawn, or with it" }
 local model  = param { "model", "physical", words = {"physical", "lambert", "blinn_phong", "toon"}, help = "what stone makes of light" }
 
@@ -58,12 +58,12 @@ local dragon = mesh { "data/creature.obj", scale = 1.5, position = {-0.2, 0, 0.3
 local scene, lit
 if path:get() == "deferred" then
   scene = geometry { ruin, paving, dragon, woods }
-  lit   = shade { from = {scene, lamps}, lamps_by = way, model = model }
+  lit   = shade { from = {scene, lamps}, point_lights_by = way, model = model }
 else
-  scene = forward { ruin, paving, dragon, woods, from = lamps, lamps_by = way:get() == "all" and "all" or "tiles", model = model }
+  scene = forward { ruin, paving, dragon, woods, from = lamps, point_lights_by = way:get() == "all" and "all" or "tiles", model = model }
   lit   = scene.color
 end
-local seen    = lamp_glows { from = {scene, lamps}, mist = mist }
+local seen    = point_light_glows { from = {scene, lamps}, mist = mist }
 local picture = over { seen, lit, from = scene }
 local glow    = bloom { bright { picture, threshold = 1.2 }, radius = 0.7 }
 local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.10, exposure_ev = 2.6, tonemap = "agx", saturation = 1.25 }

@@ -22,7 +22,7 @@ struct shadow_maps {
     float dark;       // 1: its shadows are whole
 };
 
-// Texels of the table: shadow_maps/views.glsl. Lights come first, then lamps.
+// Texels of the table: shadow_maps/views.glsl. Lights come first, then point_lights.
 shadow_maps shadow_maps_at(int place, int views) {
     vec4 v = texelFetch(shadow_views, ivec2(place & 7, 1 + views + (place >> 3)), 0);
     return shadow_maps(int(v.x), int(v.y), v.z);
@@ -35,8 +35,8 @@ shadow_maps shadow_maps_of(int index) {
     return shadow_maps_at(index, int(all.w));
 }
 
-// Of the lamp `index` of lib/lamps.glsl.
-shadow_maps shadow_maps_of_lamp(int index) {
+// Of the point light `index` of lib/point_lights.glsl.
+shadow_maps shadow_maps_of_point_light(int index) {
     vec4 all = texelFetch(shadow_views, ivec2(0), 0);
     return shadow_maps_at(int(all.z) + index, int(all.w));
 }

@@ -105,7 +105,7 @@ static const field *density_of(const pass *p) {
 }
 
 static bool is_unbounded(const pass *p) {
-    static const char *const names[] = {"splats", "pieces", "shell", "lamp_glows", "stack"};
+    static const char *const names[] = {"splats", "pieces", "shell", "point_light_glows", "stack"};
     size_t count, i = 0;
     const pass_type *const *types = pass_types(&count);
     for (size_t k = 0; k < COUNT_OF(names); k++)

@@ -34,9 +34,9 @@
     .group = "source", .include = "lib/shell.glsl", .function = "shell_said_" NAME,                \
     .components = COMPONENTS, .spatial = true, .cost = 1, .eval = eval_zero,                       \
     .ranges = ranges_##RANGES, .range_function = "range_" #RANGES #COMPONENTS
-#define LAMP(NAME)                                                                                 \
-    .group = "source", .include = "lib/lamp.glsl", .function = "lamp_said_" NAME, .components = 1, \
-    .spatial = true, .cost = 1, .eval = eval_zero, .ranges = ranges_unknown,                       \
+#define POINT_LIGHT(NAME)                                                                          \
+    .group = "source", .include = "lib/point_light.glsl", .function = "point_light_current_" NAME, \
+    .components = 1, .spatial = true, .cost = 1, .eval = eval_zero, .ranges = ranges_unknown,      \
     .range_function = "range_nowhere1"
 
 #define INSTANCE(NAME, EVAL, COMPONENTS)                                                           \
@@ -275,8 +275,8 @@ const field_kind field_kinds[] = {
     {"instance_glow", INSTANCE("glow", glow, 1), .summary = "factor of what an instance emits"},
 
     // ---- of the light of `point_lights` that a field is evaluated for; where there is none, 0
-    {"light_index", LAMP("index"), .summary = "number of a light of point_lights, from 0 on"},
-    {"light_random", LAMP("random"), .summary = "a number of a light's own, evenly spread over 0..1"},
+    {"light_index", POINT_LIGHT("index"), .summary = "number of a light of point_lights, from 0 on"},
+    {"light_random", POINT_LIGHT("random"), .summary = "a number of a light's own, evenly spread over 0..1"},
 
     // ---- of the shell, and its point, that a field is evaluated for; where there is none, 0
     {"shell_age", SHELL("age", 1, share), .summary = "part of a shell's life that has passed, 0..1"},

@@ -40,8 +40,9 @@ struct pass {
     size_t instances_count, instances_capacity;
     pass **sources; // asked, in order, for what this pass says nothing about
     size_t source_count, source_capacity;
-    const pass *particles;    // behind the input of that name; NULL: it has none
-    struct pass_lamps *lamps; // of the input of that name (pass/light/lamps.h); NULL: it has none
+    const pass *particles; // behind the input of that name; NULL: it has none
+    struct pass_point_lights
+        *point_lights; // of the input of that name (pass/light/point_lights.h); NULL: it has none
 
     // After pass_build.
     field_program *program;
@@ -146,7 +147,7 @@ struct pass_provider {
     void (*destroy)(pass *p);
 };
 const pass_provider *const *pass_providers(size_t *count);
-extern const pass_provider pass_particles_provider, pass_lamps_provider;
+extern const pass_provider pass_particles_provider, pass_point_lights_provider;
 
 // Of build.c and kernels.c.
 typedef struct pass_name { // what a type's name is in the interface; -1: not that

@@ -71,7 +71,7 @@ static const pass_provider drawn = {.defines = define_drawn};
 
 const pass_provider *const *pass_providers(size_t *count) {
     static const pass_provider *const rows[] = {
-        &pass_particles_provider, &pass_lamps_provider, &counters, &rays, &sky, &drawn};
+        &pass_particles_provider, &pass_point_lights_provider, &counters, &rays, &sky, &drawn};
     *count = COUNT_OF(rows);
     return rows;
 }

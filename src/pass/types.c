@@ -32,9 +32,9 @@ extern const pass_type splats_type;
 extern const pass_type stack_type;
 extern const pass_type voxels_type;
 
-static const pass_type lamp_glows_type = {
-    .name = "lamp_glows",
-    .shader = "pass/light/lamp_glows.comp",
+static const pass_type point_light_glows_type = {
+    .name = "point_light_glows",
+    .shader = "pass/light/point_light_glows.comp",
 };
 
 static const pass_type over_type = {
@@ -67,7 +67,7 @@ static const pass_type *const types[] = {
     &shade_type,
     &point_lights_type,
     &shadow_maps_type,
-    &lamp_glows_type,
+    &point_light_glows_type,
     &forward_type,
     &lighting_type,
     &march_type,

@@ -194,7 +194,7 @@ void l_scatter_open(lua_State *L);
 void l_pass_open(lua_State *L);
 void l_lbm_open(lua_State *L);
 void l_slices_open(lua_State *L);
-void l_lamps_open(lua_State *L);
+void l_point_lights_open(lua_State *L);
 void l_particles_open(lua_State *L);
 void l_shell_open(lua_State *L);
 void l_voxels_open(lua_State *L);

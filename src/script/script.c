@@ -153,7 +153,7 @@ static int open_bindings(lua_State *L) {
     l_slices_open(L);
     l_particles_open(L);
     l_shell_open(L);
-    l_lamps_open(L);
+    l_point_lights_open(L);
     l_voxels_open(L);
     l_deposit_open(L);
     l_image_open(L);

@@ -1,7 +1,7 @@
 // Materials from meshes to the picture: by rays and drawn, lit by `geometry` and `shade` and by
 // `forward`. A ball stands before a wall at y = 0 that faces the camera, which stands at (0, -5,
 // 0).
-#include "pass/light/lamps.h"
+#include "pass/light/point_lights.h"
 #include "pass_test.h"
 #include "scene/material.h"
 
@@ -110,7 +110,7 @@ static const field *spread(pass_world *w) { // of lamps: {-2, -1, -2} to {2, -1,
 
 static pass *add_lamps(pass_world *w) {
     pass *lamps = world_add(w, "point_lights", NULL, "lamps");
-    gpu_test_ok(pass_lamps_open(lamps, 20, NULL));
+    gpu_test_ok(pass_point_lights_open(lamps, 20, NULL));
     gpu_test_ok(pass_set_field(lamps, "position", spread(w)));
     gpu_test_ok(pass_set_field(lamps, "power", number(w, 4)));
     gpu_test_ok(pass_set_field(lamps, "range", number(w, 2)));

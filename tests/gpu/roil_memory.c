@@ -83,9 +83,9 @@ static const char bursts[] =
     "local lamps = point_lights { count = 3000, position = light_random * 4, range = 0.5,\n"
     "                             power = 2 }\n"
     "local seen = geometry { mesh { 'crate.obj' } }\n"
-    "local near = shade { name = 'near', from = {seen, lamps}, lamps_by = 'tiles',\n"
+    "local near = shade { name = 'near', from = {seen, lamps}, point_lights_by = 'tiles',\n"
     "                     shadow_samples = 4 }\n"
-    "local far = shade { name = 'far', from = {seen, lamps}, lamps_by = 'volumes' }\n"
+    "local far = shade { name = 'far', from = {seen, lamps}, point_lights_by = 'volumes' }\n"
     "fx.output = final { shader { 'all.comp', a = ball.image, b = near.color,\n"
     "                    c = far.color, d = near.color, e = near.color }.color }.color\n"
     "return fx\n";

@@ -81,7 +81,7 @@ static void providers_have_what_some_shader_asks_for(void **state) {
     const pass_provider *const *rows = pass_providers(&count);
     shader_files files = {.count = 0};
     for (size_t i = 0; i < type_count; i++) add_type(&files, types[i]);
-    add_file(&files, "pass/light/lamps_lists.comp");
+    add_file(&files, "pass/light/point_lights_lists.comp");
     for (size_t i = 0; i < count; i++) {
         const bool counts =
             rows[i]->slots.count && strcmp(rows[i]->slots.items[0], "Counters") == 0;

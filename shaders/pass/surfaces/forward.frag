@@ -4,7 +4,7 @@
 // and is lit as shade. Each triangle is lit where it is drawn, whether or not another hides it then: good
 // for few lights and few layers. Numbers of its own are those of shade.
 #include "lib/lighting.glsl"
-#include "lib/lamps.glsl"
+#include "lib/point_lights.glsl"
 #include "lib/shadows.glsl"
 uniform int shadow_samples;       //= 1 [0, 64] : rays to each light: 1 goes to its middle, for hard shadows; more go all over its disc, for soft ones; 0: meshes cast no shadows
 uniform int sky_samples;          //= 0 [0, 64] : rays to the sky, which find what stands before it; 0: all of it is seen
@@ -12,7 +12,7 @@ uniform float haze;               //= 0 [0, 10] 1/m : how fast distance fades to
 uniform float sky_alpha;          //= 1 [0, 1] : opacity of the sky; 0 for pictures to be laid over others
 uniform float max_distance;       //= 0 [0, inf] m : from the camera to the middle of an instance (of `instances`) beyond which it is left out, while its shadow stays; 0: none is
 uniform float lod;                //= 0 [0, 64] px : how far a simplified mesh may be off in the picture; 0: all are in full
-//@ option lamps_by = all {all, tiles} : which lamps of point_lights a pixel looks at: all of them, or (tiles) those that reach into what the eye sees of 16 by 16 pixels, which are found out first
+//@ option point_lights_by = all {all, tiles} : which point lights a pixel looks at: all of them, or (tiles) those that reach into what the eye sees of 16 by 16 pixels, which are found out first
 layout(location = 0) out vec4 color;   //= output rgba16f : the lit scene, premultiplied
 layout(location = 1) out vec4 normal;  //= output rgba16f : its normal in the world, towards the viewer
 layout(location = 2) out vec4 depth;   //= output r32f : distance along the view axis (m); 1e9 where nothing is

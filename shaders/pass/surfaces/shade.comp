@@ -8,7 +8,7 @@ uniform sampler2D emission;       //= input optional : radiance that the surface
 uniform int shadow_samples;       //= 1 [0, 64] : rays to each light: 1 goes to its middle, for hard shadows; more go all over its disc, for soft ones; 0: meshes cast no shadows
 uniform int sky_samples;          //= 0 [0, 64] : rays to the sky, which find what stands before it; 0: all of it is seen
 uniform float haze;               //= 0 [0, 10] 1/m : how fast distance fades to the colour of the horizon
-//@ option lamps_by = auto {auto, all, tiles, volumes} : which lamps of point_lights light a pixel: all are asked; those that reach what 16 by 16 pixels show, which are found out first (tiles); or those whose sphere, drawn, covers it (volumes); auto: tiles, or all where they are few
+//@ option point_lights_by = auto {auto, all, tiles, volumes} : which point lights light a pixel: all are asked; those that reach what 16 by 16 pixels show, which are found out first (tiles); or those whose sphere, drawn, covers it (volumes); auto: tiles, or all where they are few
 uniform float lod;                //= 0 [0, 64] px : how far a simplified mesh may be off in the picture, as `geometry` has it: shadows are of meshes in full, and begin that far above the surface
 uniform float sky_alpha;          //= 1 [0, 1] : opacity of the sky; 0 for pictures to be laid over others
 writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultiplied
@@ -19,7 +19,7 @@ writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultipl
 #include "lib/night.glsl"
 #include "lib/bvh.glsl"
 #include "lib/lighting.glsl"
-#include "lib/lamps.glsl"
+#include "lib/point_lights.glsl"
 #include "lib/shadows.glsl"
 #include "lib/shading.glsl"
 #include "shade/surface.glsl"
@@ -31,8 +31,8 @@ writeonly uniform image2D color;  //= output rgba16f : the lit scene, premultipl
 
 #include "shade/light.glsl"
 #include "shade/shaded.glsl"
-#if LAMPS_VOLUMES
-uniform sampler2D LampLight; // what spheres that were drawn around the lamps have added up
+#if POINT_LIGHTS_VOLUMES
+uniform sampler2D PointLightLight; // what spheres that were drawn around the point lights have added up
 #endif
 
 void main() {
@@ -46,8 +46,8 @@ void main() {
         return;
     }
     vec3 lit = surface_light(shaded_at(s, uv), uvec2(pixel));
-#if LAMPS_VOLUMES
-    lit += texelFetch(LampLight, pixel, 0).rgb;
+#if POINT_LIGHTS_VOLUMES
+    lit += texelFetch(PointLightLight, pixel, 0).rgb;
 #endif
 #if HAS_EMISSION
     lit += texelFetch(emission, ivec2(uv * vec2(textureSize(emission, 0))), 0).rgb;

@@ -15,7 +15,7 @@ uniform float bias;                //= 1 [0, 10] : factor of how far points are 
 uniform float point_fade;          //= 0.1 [0, 1] : a light that is stronger than the first without maps by less than this part of its strength has lighter shadows, so that none appear suddenly
 uniform float lod;                 //= 0 [0, 16] : pixels of the camera's picture by which a simplified mesh may be off that casts a shadow; 0: none is simplified
 uniform sampler2D lights;          //= input optional : the lights, the volume's fire among them (of the pass lighting)
-uniform sampler2D lamps;           //= input optional : point lights by the hundred (of the pass point_lights)
+uniform sampler2D point_lights;           //= input optional : many point lights (of the pass point_lights)
 writeonly uniform image2D shadow_atlas; //= output r32f : depths of what is nearest to each light, as drawn
 writeonly uniform image2D shadow_views; //= output rgba32f : where the views stand and lie, and which light has which
 #include "lib/frame.glsl"

@@ -1,6 +1,6 @@
 // Maps of what stands before the lights: views are placed (those of sun and spots on the host,
-// those of the point lights that matter most on the device, where lamps move), then meshes and
-// instances are drawn in each, into one atlas.
+// those of the point lights that matter most on the device, where point lights move), then meshes
+// and instances are drawn in each, into one atlas.
 #include "pass/surfaces/shadow_maps.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -35,7 +35,7 @@ typedef struct shadow_state {
     struct shadow_view now[DRAWN_MAX_VIEWS]; // the fixed ones of this frame
     bool wide[LIGHT_MAX];                    // spots too wide for a view
     bool holes;                              // a fragment may be one
-    bool lights;                             // somebody looks for other lights than lamps
+    bool lights;                             // somebody looks for other lights than point lights
     drawn *drawn;
     gpu_buffer *placed; // the views, as the device has placed them
     bool known;         // what the maps hold follows from `content`
@@ -54,10 +54,11 @@ static void add_views(shadow_state *s, uint32_t count, uint32_t size) {
 
 // Rows of the images that say so.
 static uint32_t count_lights(const pass *p) {
-    const graph_image lights = *pass_image(p, N_lights), lamps = *pass_image(p, N_lamps);
+    const graph_image lights = *pass_image(p, N_lights),
+                      point_lights = *pass_image(p, N_point_lights);
     const graph *g = p->host->graph;
     return (lights.id ? graph_get_desc(g, lights)->height : state_of(p)->declared) +
-           (lamps.id ? graph_get_desc(g, lamps)->height : 0);
+           (point_lights.id ? graph_get_desc(g, point_lights)->height : 0);
 }
 
 // Spots that there is no room for have no map.
@@ -151,7 +152,7 @@ static bool draws_holes(const pass *p) {
 
 static bool maps_declare(pass *p) {
     shadow_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    p->lamps = NULL; // of lamps the image is all that is read
+    p->point_lights = NULL; // of point lights the image is all that is read
     list_views(p);
     if (!check_formats(p) || !place_views(p) || !take_meshes(p)) return false;
     uint32_t rows = 1 + s->views + (count_lights(p) + TABLE_WIDTH - 1) / TABLE_WIDTH;
@@ -351,7 +352,7 @@ const pass_type shadow_maps_type = {
 
 // ---- for passes that look ---------------------------------------------------------------------
 
-// Whether there are lights, besides lamps, that may have no maps.
+// Whether there are lights, besides point lights, that may have no maps.
 static bool leaves_lights_out(const pass *maps) {
     const shadow_state *s = state_of(maps);
     return s->cascades == 0 || s->declared > 1 || pass_image(maps, N_lights)->id;
@@ -364,13 +365,13 @@ static const pass *maps_of(const pass *p) {
     return maps && maps->type == &shadow_maps_type ? maps : NULL;
 }
 
-// A lamp that can have no map need not be asked for one.
-static bool asks_for_lamps(pass *p, const pass *maps) {
-    bool can = maps && state_of(maps)->points > 0 && pass_image(maps, N_lamps)->id;
-    if (!can && pass_has_word(p, "lamp_shadows", "maps"))
-        pass_set_option(p, "lamp_shadows", "none");
-    return can && p->images[pass_find_image(p, "lamps")].id &&
-           !pass_has_word(p, "lamp_shadows", "none");
+// A point light that can have no map need not be asked for one.
+static bool asks_for_point_lights(pass *p, const pass *maps) {
+    bool can = maps && state_of(maps)->points > 0 && pass_image(maps, N_point_lights)->id;
+    if (!can && pass_has_word(p, "point_light_shadows", "maps"))
+        pass_set_option(p, "point_light_shadows", "none");
+    return can && p->images[pass_find_image(p, "point_lights")].id &&
+           !pass_has_word(p, "point_light_shadows", "none");
 }
 
 static const char *choose_way(const pass *p, const pass *maps) {
@@ -388,7 +389,7 @@ bool pass_choose_shadows(pass *p) {
                        p->label);
     if (pass_has_word(p, "shadows_by", "auto"))
         pass_set_option(p, "shadows_by", choose_way(p, maps));
-    if (asks_for_lamps(p, maps) || !pass_has_word(p, "shadows_by", "rays")) return true;
+    if (asks_for_point_lights(p, maps) || !pass_has_word(p, "shadows_by", "rays")) return true;
     for (size_t i = 0; i < COUNT_OF(looked_at); i++)
         p->images[pass_find_image(p, looked_at[i])] = (graph_image){0};
     return true;

@@ -32,7 +32,7 @@ static void add_camera(const pass *p, hash128 *sum) {
 }
 
 bool shadow_maps_content(const pass *p, const kernel *places, bool choice, hash128 *out) {
-    bool moves = pass_image(p, N_lights)->id != 0 || pass_image(p, N_lamps)->id != 0;
+    bool moves = pass_image(p, N_lights)->id != 0 || pass_image(p, N_point_lights)->id != 0;
     *out = hash_bytes(places->blocks[0], places->block_sizes[0]);
     if (choice || pass_value(p, N_lod) > 0) add_camera(p, out);
     return !(choice && moves) && add_meshes(p, out);

@@ -6,7 +6,7 @@
 
 #define SHADOW_MAPS_NAMES(NAME)                                                                    \
     NAME(cascades), NAME(points), NAME(size), NAME(spot_size), NAME(point_size), NAME(distance),   \
-        NAME(split), NAME(shadow_radius), NAME(lod), NAME(lights), NAME(lamps),                    \
+        NAME(split), NAME(shadow_radius), NAME(lod), NAME(lights), NAME(point_lights),             \
         NAME(shadow_atlas), NAME(shadow_views), NAME(places), NAME(fixed_views), NAME(margin),     \
         NAME(pixels), NAME(fixed_lights), NAME(Views)
 enum { SHADOW_MAPS_NAMES(KERNEL_NAME_ID) };

@@ -100,7 +100,7 @@ vec3 sky_mirrored(shaded s) {
     return shading_mirrored(s) * mix(given, wide, s.roughness);
 }
 
-#include "lamps.glsl"
+#include "point_lights.glsl"
 
 // Radiance towards the viewer, of all light but what the surface itself gives off.
 vec3 surface_light(shaded s, uvec2 pixel) {
@@ -126,8 +126,8 @@ vec3 surface_light(shaded s, uvec2 pixel) {
         if (matters) shading_dim(given, vec3(light_seen(l, i, ray, s, chance)));
         shading_add(sum, given);
     }
-#if HAS_LAMPS && !LAMPS_VOLUMES
-    add_lamps(sum, s, ivec2(pixel));
+#if HAS_POINT_LIGHTS && !POINT_LIGHTS_VOLUMES
+    add_point_lights(sum, s, ivec2(pixel));
 #endif
     return shading_total(s, sum);
 }

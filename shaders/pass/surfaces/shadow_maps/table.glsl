@@ -8,25 +8,25 @@ uniform vec4 fixed_lights[LIGHT_MAX];      // x: first view; y: how many; below 
 uniform float margin;                      // texels at the edges of a view
 uniform float pixels;                      // of a metre at 1 m of the camera
 
-#ifndef HAS_LAMPS
-#define HAS_LAMPS 0
+#ifndef HAS_POINT_LIGHTS
+#define HAS_POINT_LIGHTS 0
 #endif
 
-// Lights come first, then lamps.
+// Lights come first, then point_lights.
 int shadow_candidates() {
-#if HAS_LAMPS
-    return light_count() + textureSize(lamps, 0).y;
+#if HAS_POINT_LIGHTS
+    return light_count() + textureSize(point_lights, 0).y;
 #else
     return light_count();
 #endif
 }
 
 light_entry candidate_of(int index) {
-#if HAS_LAMPS
-    int lamp = index - light_count();
-    if (lamp >= 0)
-        return light_entry(texelFetch(lamps, ivec2(0, lamp), 0), texelFetch(lamps, ivec2(1, lamp), 0),
-                           texelFetch(lamps, ivec2(2, lamp), 0), texelFetch(lamps, ivec2(3, lamp), 0));
+#if HAS_POINT_LIGHTS
+    int point_light = index - light_count();
+    if (point_light >= 0)
+        return light_entry(texelFetch(point_lights, ivec2(0, point_light), 0), texelFetch(point_lights, ivec2(1, point_light), 0),
+                           texelFetch(point_lights, ivec2(2, point_light), 0), texelFetch(point_lights, ivec2(3, point_light), 0));
 #endif
     return light_entry_of(index);
 }

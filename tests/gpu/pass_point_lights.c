@@ -1,5 +1,5 @@
 // Lamps of `point_lights` on a wall at y = 0 that faces the camera, which stands at (0, -5, 0).
-#include "pass/light/lamps.h"
+#include "pass/light/point_lights.h"
 #include "pass_test.h"
 
 enum { SIZE = 48, PIXELS = SIZE * SIZE };
@@ -29,7 +29,7 @@ static const field *vector(pass_world *w, const field *x, const field *y, const 
 
 static pass *add_lamps(pass_world *w, uint32_t count) {
     pass *p = world_add(w, "point_lights", NULL, "lamps");
-    gpu_test_ok(pass_lamps_open(p, count, NULL));
+    gpu_test_ok(pass_point_lights_open(p, count, NULL));
     return p;
 }
 
@@ -42,7 +42,7 @@ static pass *add_forward(pass_world *w, pass *lamps, const char *way) {
     gpu_test_ok(pass_declare(lamps));
     pass *p = world_add(w, "forward", NULL, "forward");
     for (size_t i = 0; i < w->mesh_count; i++) gpu_test_ok(pass_add_mesh(p, &w->meshes[i]));
-    gpu_test_ok(pass_set_option(p, "lamps_by", way));
+    gpu_test_ok(pass_set_option(p, "point_lights_by", way));
     pass_add_source(p, lamps);
     return p;
 }
@@ -54,7 +54,7 @@ static pass *add_shade(pass_world *w, pass *lamps, const char *way) {
     for (size_t i = 0; i < w->mesh_count; i++) gpu_test_ok(pass_add_mesh(geometry, &w->meshes[i]));
     gpu_test_ok(pass_declare(geometry));
     pass *p = world_add(w, "shade", NULL, "shade");
-    gpu_test_ok(pass_set_option(p, "lamps_by", way));
+    gpu_test_ok(pass_set_option(p, "point_lights_by", way));
     pass_add_source(p, geometry);
     pass_add_source(p, lamps);
     return p;
@@ -194,7 +194,7 @@ static void thousands_of_lamps_are_lit(void **state) {
 static float *light_user(gpu *device, uint32_t count) {
     pass_world w;
     world_open(&w, device);
-    pass *lamps = add_lamps(&w, count), *user = world_add(&w, NULL, "lamps.comp", "user");
+    pass *lamps = add_lamps(&w, count), *user = world_add(&w, NULL, "point_lights.comp", "user");
     const field *first = of(&w, "sub", number(&w, 3), of(&w, "light_index", NULL, NULL));
     set(lamps, "power", of(&w, "min", of(&w, "max", first, number(&w, 0)), number(&w, 1)));
     set(lamps, "position",
@@ -222,7 +222,7 @@ static void a_shader_of_a_users_own_is_lit(void **state) {
 // ---- of instances -----------------------------------------------------------------------------
 
 static float *read_lamps(pass_world *w, pass *lamps, size_t count) {
-    gpu_image *image = graph_get_image(w->host.graph, pass_output(lamps, "lamps"));
+    gpu_image *image = graph_get_image(w->host.graph, pass_output(lamps, "point_lights"));
     float *texels = mem_alloc(count * sizeof(struct light_entry));
     gpu_test_ok(gpu_image_read(w->host.device, image, texels, count * sizeof(struct light_entry)));
     return texels;
@@ -251,7 +251,7 @@ static void lamps_move_with_their_instances(void **state) {
                                                        .color = triple(&w, 1, 1, 1)});
     gpu_test_ok(trees);
     pass *lamps = world_add(&w, "point_lights", NULL, "lamps");
-    gpu_test_ok(pass_lamps_open(lamps, 0, trees));
+    gpu_test_ok(pass_point_lights_open(lamps, 0, trees));
     set(lamps, "position", triple(&w, 0.5f, 0, 1));
     set(lamps, "power",
         of(&w, "dot", of(&w, "instance_state", NULL, NULL),
@@ -259,7 +259,7 @@ static void lamps_move_with_their_instances(void **state) {
     gpu_test_ok(pass_declare(lamps));
     gpu_test_ok(scene_instances_allocate(trees, *state) && gpu_frame_begin(*state) &&
                 scene_instances_upload(trees, *state) && gpu_frame_end(*state));
-    world_render(&w, SIZE, SIZE, pass_output(lamps, "lamps"));
+    world_render(&w, SIZE, SIZE, pass_output(lamps, "point_lights"));
     float *texels = read_lamps(&w, lamps, 2);
     const float first[] = {3 * 1, 3 * (2 + 2 * 0.5f), 10 + 3 * (3 + 2)};
     const float second[] = {3 * -0.5f, 0, 10 + 3};
@@ -287,7 +287,7 @@ static void spheres_give_the_light_of_their_lamps(void **state) {
         set(lamps, "radius", number(&w, radii[k]));
         set(lamps, "power", number(&w, 4 * GLM_PIf));
         gpu_test_ok(pass_declare(lamps));
-        pass *glows = world_add(&w, "lamp_glows", NULL, "glows");
+        pass *glows = world_add(&w, "point_light_glows", NULL, "glows");
         pass_add_source(glows, lamps);
         gpu_test_ok(pass_declare(glows));
         world_render(&w, 64, 64, pass_output(glows, "image"));
@@ -336,8 +336,8 @@ static void mist_is_lit_by_the_integral(void **state) {
         gpu_test_ok(pass_set_uniform(lamps, "falloff", number(&w, (float)linear)));
         add_wall(&w);
         pass *shade = add_shade(&w, lamps, "tiles"), *glows;
-        glows = world_add(&w, "lamp_glows", NULL, "glows");
-        gpu_test_ok(pass_set_option(glows, "lamps_by", "tiles"));
+        glows = world_add(&w, "point_light_glows", NULL, "glows");
+        gpu_test_ok(pass_set_option(glows, "point_lights_by", "tiles"));
         gpu_test_ok(pass_set_uniform(glows, "mist", number(&w, 1)));
         gpu_test_ok(pass_set_uniform(glows, "size", number(&w, 0)));
         gpu_test_ok(pass_declare(shade));

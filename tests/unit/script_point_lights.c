@@ -1,12 +1,13 @@
 // Point lights by the hundred as an effect file says them.
-#include "pass/light/lamps.h"
+#include "pass/light/point_lights.h"
 #include "script_helper.h"
 
 #define HEAD "local fx = effect { name = 'lamps' }\n"
 #define LIT                                                                                        \
     "\nlocal scene = geometry { }\n"                                                               \
-    "local lit = shade { from = {scene, lamps}, lamps_by = 'tiles' }\n"                            \
-    "fx.output = final { over { lamp_glows { from = {scene, lamps}, mist = 0.1 }, lit } }.color\n" \
+    "local lit = shade { from = {scene, lamps}, point_lights_by = 'tiles' }\n"                     \
+    "fx.output = final { over { point_light_glows { from = {scene, lamps}, mist = 0.1 }, lit } "   \
+    "}.color\n"                                                                                    \
     "return fx\n"
 
 static effect *load(const char *text) {
@@ -58,8 +59,8 @@ static void what_is_wrong_is_said(void **state) {
     refused(HEAD "point_lights { count = 2, color = {1, -1, 1} }", "'color' is -1; accepted: 0");
     refused(HEAD "point_lights(3)", "point_lights takes named values");
     refused(HEAD "local scene = geometry { }\n"
-                 "shade { from = scene, lamps = scene.albedo }",
-            "'lamps' takes a pass point_lights { }");
+                 "shade { from = scene, point_lights = scene.albedo }",
+            "'point_lights' takes a pass point_lights { }");
 }
 
 int main(void) {

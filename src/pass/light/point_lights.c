@@ -1,5 +1,5 @@
-// Lamps: their fields, evaluated once for each and frame into an image.
-#include "pass/light/lamps.h"
+// Point lights: their fields, evaluated once for each and frame into an image.
+#include "pass/light/point_lights.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/pass_impl.h"
@@ -7,25 +7,27 @@
 
 enum { TEXELS = 4 }; // of a light_entry
 
-#define NAMES(NAME) NAME(lamps), NAME(lamp_total), NAME(lamp_group), NAME(Instances)
+#define NAMES(NAME)                                                                                \
+    NAME(point_lights), NAME(point_light_total), NAME(point_light_group), NAME(Instances)
 enum { NAMES(KERNEL_NAME_ID) };
 static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
 
-typedef struct lamps_state {
+typedef struct point_lights_state {
     uint32_t count;
     scene_instances *at; // NULL: they stand for themselves
-} lamps_state;
+} point_lights_state;
 
-static lamps_state *state_of(const pass *p) {
+static point_lights_state *state_of(const pass *p) {
     return p->state;
 }
 
-bool pass_lamps_open(pass *p, uint32_t count, scene_instances *at) {
+bool pass_point_lights_open(pass *p, uint32_t count, scene_instances *at) {
     if (at) count = scene_instances_count(at);
-    if (count < 1 || count > PASS_LAMPS_MOST)
+    if (count < 1 || count > PASS_POINT_LIGHTS_MOST)
         return err_set("%s: %s %u; 1 to %d are accepted", p->label,
-                       at ? "the instances of 'at' are" : "'count' is", count, PASS_LAMPS_MOST);
-    lamps_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
+                       at ? "the instances of 'at' are" : "'count' is", count,
+                       PASS_POINT_LIGHTS_MOST);
+    point_lights_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     s->count = count;
     s->at = at;
     return true;
@@ -47,43 +49,43 @@ static bool check_constants(const pass *p) {
     return true;
 }
 
-static bool lamps_declare(pass *p) {
+static bool point_lights_declare(pass *p) {
     if (!check_constants(p)) return false;
-    graph_image *lamps = pass_image(p, N_lamps);
-    *lamps = graph_add_image(p->host->graph,
-                             &(graph_image_desc){
-                                 .name = arena_format(p->host->memory, "%s.lamps", p->label),
-                                 .format = p->formats[p->names[N_lamps].image],
-                                 .width = TEXELS,
-                                 .height = state_of(p)->count,
-                             });
-    return lamps->id && pass_declare_images(p) && pass_add_to_graph(p);
+    graph_image *point_lights = pass_image(p, N_point_lights);
+    *point_lights = graph_add_image(
+        p->host->graph, &(graph_image_desc){
+                            .name = arena_format(p->host->memory, "%s.point_lights", p->label),
+                            .format = p->formats[p->names[N_point_lights].image],
+                            .width = TEXELS,
+                            .height = state_of(p)->count,
+                        });
+    return point_lights->id && pass_declare_images(p) && pass_add_to_graph(p);
 }
 
-static bool lamps_defines(pass *p, size_t index, pass_defines *out) {
+static bool point_lights_defines(pass *p, size_t index, pass_defines *out) {
     (void)index;
-    pass_define_flag(out, "LAMPS_AT", state_of(p)->at);
+    pass_define_flag(out, "POINT_LIGHTS_AT", state_of(p)->at);
     return true;
 }
 
-static bool lamps_allocate(pass *p) {
+static bool point_lights_allocate(pass *p) {
     scene_instances *at = state_of(p)->at;
     return !at || scene_instances_allocate(at, p->host->device);
 }
 
-static bool lamps_update(pass *p) {
-    const lamps_state *s = state_of(p);
+static bool point_lights_update(pass *p) {
+    const point_lights_state *s = state_of(p);
     mat4 group;
     float tint[4];
-    pass_set(p, N_lamp_total, &s->count, sizeof s->count);
+    pass_set(p, N_point_light_total, &s->count, sizeof s->count);
     if (!s->at) return true;
     if (!scene_instances_place(s->at, p->host->context, group, tint)) return false;
-    pass_set(p, N_lamp_group, group, sizeof group);
+    pass_set(p, N_point_light_group, group, sizeof group);
     return true;
 }
 
-static bool lamps_record(pass *p) {
-    const lamps_state *s = state_of(p);
+static bool point_lights_record(pass *p) {
+    const point_lights_state *s = state_of(p);
     kernel *k = pass_prepare(p) ? pass_use(p, 0) : NULL;
     if (!k) return false;
     if (s->at) kernel_bind_buffer(k, N_Instances, scene_instances_buffer(s->at));
@@ -95,14 +97,14 @@ static const pass_kernel kernels[1];
 const pass_type point_lights_type = {
     .name = "point_lights",
     .constructed = true,
-    .shader = "pass/light/lamps.comp",
+    .shader = "pass/light/point_lights.comp",
     .kernels = kernels,
     .kernel_count = COUNT_OF(kernels),
     .names = {names, COUNT_OF(names)},
     .unscaled = true,
-    .declare = lamps_declare,
-    .defines = lamps_defines,
-    .allocate = lamps_allocate,
-    .update = lamps_update,
-    .record = lamps_record,
+    .declare = point_lights_declare,
+    .defines = point_lights_defines,
+    .allocate = point_lights_allocate,
+    .update = point_lights_update,
+    .record = point_lights_record,
 };

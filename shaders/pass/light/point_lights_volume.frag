@@ -1,4 +1,4 @@
-// The light of one lamp on what its sphere covers, which is added up.
+// The light of one point light on what its sphere covers, which is added up.
 uniform sampler2D albedo;  //= input : of the pass shade, as all here
 uniform sampler2D normal;  //= input : of the surface
 uniform sampler2D depth;   //= input : of the surface (m)
@@ -9,21 +9,21 @@ uniform float lod;        // px
 #include "lib/frame.glsl"
 #include "lib/light.glsl"
 #include "lib/bvh.glsl"
-#include "lib/lamps.glsl"
+#include "lib/point_lights.glsl"
 #include "lib/shadows.glsl"
 #include "lib/shading.glsl"
 #include "pass/surfaces/shade/surface.glsl"
 #include "pass/surfaces/shade/shaded.glsl"
-#include "pass/surfaces/shade/lamps.glsl"
-uniform vec2 lamp_picture; // pixels
+#include "pass/surfaces/shade/point_lights.glsl"
+uniform vec2 point_light_picture; // pixels
 layout(location = 0) flat in int number;
 layout(location = 0) out vec4 added;
 
 void main() {
-    vec2 uv = gl_FragCoord.xy / lamp_picture;
+    vec2 uv = gl_FragCoord.xy / point_light_picture;
     surface_point at = surface_at(uv);
-    lamp l = lamp_of(uint(number));
+    point_light l = point_light_of(uint(number));
     if (at.base.a == 0.0 || distance(at.p, l.position) >= l.range) discard;
     shaded s = shaded_at(at, uv);
-    added = vec4(shading_total(s, lamp_reflected(l, s)), 0.0);
+    added = vec4(shading_total(s, point_light_reflected(l, s)), 0.0);
 }

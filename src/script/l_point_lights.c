@@ -1,7 +1,7 @@
 // Hundreds of point lights: point_lights { count = 200, position = vec(...) }. Passes that they
 // light name the result by `from`. Fields that the device evaluates describe them; lights that the
 // script moves one by one are point_light { }.
-#include "pass/light/lamps.h"
+#include "pass/light/point_lights.h"
 #include "script/binding.h"
 
 // at = forest: one light for each instance; else `count` is the number.
@@ -14,7 +14,7 @@ static scene_instances *read_at(lua_State *L) {
         vm_error(L,
                  "point_lights: one of 'count' (1 to %d) and 'at' (instances) is to be given: how "
                  "many there are",
-                 (int)PASS_LAMPS_MOST);
+                 (int)PASS_POINT_LIGHTS_MOST);
     lua_pop(L, 2);
     return at;
 }
@@ -30,12 +30,12 @@ static int l_point_lights(lua_State *L) {
         pass_make(L, "point_lights", "point_lights", 1, script_object_find("point_lights")->keys);
     scene_instances *at = read_at(L);
     uint32_t count = value_get_count(L, 1, "point_lights", "count", 0);
-    if (!pass_lamps_open(p, count, at) || !pass_declare(p)) script_raise(L);
+    if (!pass_point_lights_open(p, count, at) || !pass_declare(p)) script_raise(L);
     s->unsound = unsound;
     pass_push(L, p);
     return 1;
 }
 
-void l_lamps_open(lua_State *L) {
+void l_point_lights_open(lua_State *L) {
     lua_register(L, "point_lights", l_point_lights);
 }

@@ -1,10 +1,10 @@
-// A sphere around each lamp, as far as it reaches: an icosahedron of which each face is divided into
+// A sphere around each point light, as far as it reaches: an icosahedron of which each face is divided into
 // four, large enough to hold the sphere. Corners turn so that the far side is what is drawn: it is seen
 // from inside, too.
 #undef HAS_LIGHTS // the reader's table of lights is not read here
 #define HAS_LIGHTS 0
 #include "lib/frame.glsl"
-#include "lib/lamps.glsl"
+#include "lib/point_lights.glsl"
 layout(location = 0) flat out int number;
 
 const float OUTER = 1.0709; // over the radius of what it must hold
@@ -23,7 +23,7 @@ vec3 corner_of(ivec3 face, int part, int corner) {
 }
 
 void main() {
-    lamp l = lamp_of(uint(gl_InstanceIndex));
+    point_light l = point_light_of(uint(gl_InstanceIndex));
     int corner = 2 - gl_VertexIndex % 3;
     vec3 out_to = corner_of(FACES[gl_VertexIndex / 12], (gl_VertexIndex / 3) % 4, corner);
     vec4 seen = frame.view * vec4(l.position + OUTER * l.range * out_to, 1.0);

@@ -1,6 +1,6 @@
 // Which point lights get maps of shadows, and what of a lamp's light these let through. The scene
 // is a wall at y = 0 that faces the camera, which stands at (0, -5, 0).
-#include "pass/light/lamps.h"
+#include "pass/light/point_lights.h"
 #include "pass_test.h"
 
 enum { SIZE = 64, PIXELS = SIZE * SIZE, FACES = 6 };
@@ -152,7 +152,7 @@ static float *shade_lamps(pass_world *w, bool maps) {
     crate->scale = number(w, 0.2f);
     crate->position = triple(w, 0.1f, -0.7f, 0.2f);
     pass *lamps = world_add(w, "point_lights", NULL, "lamps");
-    gpu_test_ok(pass_lamps_open(lamps, 2, NULL));
+    gpu_test_ok(pass_point_lights_open(lamps, 2, NULL));
     const field *args[FIELD_MAX_ARGS] = {NULL};
     const field *index = field_make(&w->memory, "light_index", args, NULL);
     const field *places[FIELD_MAX_ARGS] = {index, number(w, -1.5f), number(w, 0.5f)};
@@ -175,7 +175,7 @@ static float *shade_lamps(pass_world *w, bool maps) {
         pass_add_source(p, shadows);
         gpu_test_ok(pass_set_option(p, "shadows_by", "rays")); // but lamps have their maps
     } else {
-        gpu_test_ok(pass_set_option(p, "lamp_shadows", "rays"));
+        gpu_test_ok(pass_set_option(p, "point_light_shadows", "rays"));
     }
     gpu_test_ok(pass_declare(p));
     world_render(w, SIZE, SIZE, pass_output(p, "color"));
