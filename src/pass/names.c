@@ -34,6 +34,13 @@ static size_t known(const pass *p, int name, int index, const char *what) {
     abort();
 }
 
+size_t pass_image_index(const pass *p, const char *name) {
+    const int index = pass_find_image(p, name);
+    if (index >= 0) return (size_t)index;
+    log_write(LOG_ERROR, "%s declares no image '%s'", p->shader, name);
+    abort();
+}
+
 const float *pass_vector(const pass *p, int name) {
     return p->values[known(p, name, p->names[name].uniform, "uniform")];
 }

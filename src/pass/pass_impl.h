@@ -191,6 +191,7 @@ bool pass_record(pass *p);  // both
 graph_image pass_grid_image(const pass_host *host, const field_grid *grid, int index);
 pass *pass_writer(const pass_host *host, graph_image image); // NULL: of no pass declared before
 int pass_find_image(const pass *p, const char *name);        // index in face->images, -1: none
+size_t pass_image_index(const pass *p, const char *name);    // the same; aborts where there is none
 // An image of its own that it draws to, at the pass's scale.
 graph_image pass_add_target(pass *p, const char *name, gpu_format format);
 // An output of a size of its own: all of `desc` but its format, and its name unless it is given.

@@ -38,12 +38,12 @@ static void find_picture(pass *p) {
     s->picture = *pass_image(p, N_source);
     pass *writer = pass_writer(p->host, s->picture);
     bool bright = writer && pass_is(writer, "bright") && writer->scale == p->scale &&
-                  writer->formats[pass_find_image(writer, "color")] == GPU_RGBA16F;
+                  writer->formats[pass_image_index(writer, "color")] == GPU_RGBA16F;
     if (bright) {
         s->bright = writer;
         for (size_t i = 0; i < COUNT_OF(taken); i++)
             pass_find_key(writer, names[taken[i]], &s->bright_uniforms[i]);
-        s->picture = writer->images[pass_find_image(writer, "source")];
+        s->picture = writer->images[pass_image_index(writer, "source")];
     }
     const graph_image_desc *desc = graph_get_desc(p->host->graph, s->picture);
     s->same_size = desc->scale == p->scale;

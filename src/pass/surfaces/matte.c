@@ -26,7 +26,7 @@ static bool is_matte(const pass *p) {
 void pass_drop_matte(pass *p, const char *surface, const char *emission) {
     const char *const names[] = {surface, emission};
     for (size_t i = 0; i < COUNT_OF(names); i++) {
-        graph_image *image = &p->images[pass_find_image(p, names[i])];
+        graph_image *image = &p->images[pass_image_index(p, names[i])];
         const pass *writer = image->id ? pass_writer(p->host, *image) : NULL;
         if (writer && is_matte(writer)) *image = (graph_image){0};
     }

@@ -360,7 +360,7 @@ static bool leaves_lights_out(const pass *maps) {
 
 // The pass behind the maps; NULL: there are none.
 static const pass *maps_of(const pass *p) {
-    graph_image atlas = p->images[pass_find_image(p, "shadow_atlas")];
+    graph_image atlas = p->images[pass_image_index(p, "shadow_atlas")];
     const pass *maps = atlas.id ? pass_writer(p->host, atlas) : NULL;
     return maps && maps->type == &shadow_maps_type ? maps : NULL;
 }
@@ -370,7 +370,7 @@ static bool asks_for_point_lights(pass *p, const pass *maps) {
     bool can = maps && state_of(maps)->points > 0 && pass_image(maps, N_point_lights)->id;
     if (!can && pass_has_word(p, "point_light_shadows", "maps"))
         pass_set_option(p, "point_light_shadows", "none");
-    return can && p->images[pass_find_image(p, "point_lights")].id &&
+    return can && p->images[pass_image_index(p, "point_lights")].id &&
            !pass_has_word(p, "point_light_shadows", "none");
 }
 
@@ -383,7 +383,7 @@ bool pass_choose_shadows(pass *p) {
     static const char *const looked_at[] = {"shadow_atlas", "shadow_views"};
     const pass *maps = maps_of(p);
     bool asks = pass_has_word(p, "shadows_by", "maps") || pass_has_word(p, "shadows_by", "both");
-    if (asks && !p->images[pass_find_image(p, looked_at[0])].id)
+    if (asks && !p->images[pass_image_index(p, looked_at[0])].id)
         return err_set("%s: 'shadows_by' asks for maps of shadows; give it some, as in 'from = "
                        "{scene, shadow_maps { from = scene }}'",
                        p->label);
@@ -391,6 +391,6 @@ bool pass_choose_shadows(pass *p) {
         pass_set_option(p, "shadows_by", choose_way(p, maps));
     if (asks_for_point_lights(p, maps) || !pass_has_word(p, "shadows_by", "rays")) return true;
     for (size_t i = 0; i < COUNT_OF(looked_at); i++)
-        p->images[pass_find_image(p, looked_at[i])] = (graph_image){0};
+        p->images[pass_image_index(p, looked_at[i])] = (graph_image){0};
     return true;
 }
