@@ -117,6 +117,8 @@ static int l_newindex(lua_State *L) {
         set_update(L);
     else if (strcmp(key, "events") == 0)
         events_assign(L);
+    else if (events_push_method(L, key))
+        vm_error(L, "effect: '%s' is a method, which is called: fx:%s(...)", key, key);
     else
         refuse_member(L, key, false);
     lua_settop(L, 3);

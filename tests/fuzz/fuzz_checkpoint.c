@@ -49,6 +49,8 @@ static void seal(uint8_t *data, size_t size) {
 
 static void load(checkpoint *c, const char *name) {
     uint64_t size;
+    err_clear();
+    if (!checkpoint_require(c, name, "lattice 64 64 64\nstep 0.01\n") && !err_get()[0]) abort();
     if (!checkpoint_has(c, name, &size) || size > MOST) return;
     uint8_t *bytes = malloc(size ? size : 1); // of the exact size: an overrun is caught
     if (!bytes) abort();

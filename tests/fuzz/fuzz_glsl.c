@@ -1,9 +1,12 @@
 // The whole way from hostile text to SPIR-V and its description: every failure has a message that
 // names the shader. The compiler runs in the reader, where it may run out of time or memory, since
-// no check before it can tell what a macro will become; a crash there is one here.
+// no check before it can tell what a macro will become; a crash there is one here. Text that
+// defines no macro is compiled in this process besides, as it is, so that what it reaches guides
+// the fuzzer.
 #include "base/error.h"
 #include "base/memory.h"
 #include "shader/compiler.h"
+#include "shader/unit.h"
 #include "whole_way.h"
 #include <stdlib.h>
 #include <string.h>
@@ -22,6 +25,31 @@ static void check(const shader_binary *binary) {
     }
 }
 
+// What the reader does with an answer (shader/compiler.c).
+static void check_answer(void *user, const glsl_answer *answer) {
+    const spirv code = {.words = answer->data, .count = answer->size / sizeof *code.words};
+    arena memory = {0};
+    shader_binary binary;
+    if (answer->outcome > GLSL_LAST) abort();
+    if (answer->outcome != GLSL_DONE || !spirv_validate(&code)) return;
+    spirv copy = {.words = mem_copy(answer->data, answer->size), .count = code.count};
+    if (spirv_reflect(&copy, *(const shader_stage *)user, &memory, &binary)) {
+        binary.size = answer->size;
+        check(&binary);
+    }
+    mem_free(copy.words);
+    arena_free(&memory);
+}
+
+static void compile_here(const char *text) {
+    strbuf source = {0};
+    if (strstr(text, "define") || strchr(text, '\\')) return;
+    strbuf_add(&source, "#version 460\n%s", text);
+    for (shader_stage stage = SHADER_COMPUTE; stage <= SHADER_FRAGMENT; stage++)
+        glsl_run(strbuf_text(&source), stage, check_answer, &stage);
+    strbuf_free(&source);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (fuzz_has_word_of_crash(data, size)) return 0;
     static shader_library *library;
@@ -31,6 +59,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     char *copy = mem_alloc(size + 1);
     if (size) memcpy(copy, data, size);
+    compile_here(copy);
     const shader_text text = {"fuzz.comp", copy};
     arena memory = {0};
     shader_binary binary;

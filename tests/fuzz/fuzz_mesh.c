@@ -1,8 +1,8 @@
 // Mesh import: any bytes, as the kind of file that their beginning suggests. What a worker of the
 // reader runs is called in this process, so that a crash of assimp is a crash. Left out is what
 // mesh_import refuses before assimp sees it: a glTF file whose objects are nested more than 100
-// deep. One input in sixteen goes the whole way, through the reader, and gives a mesh whose indices
-// are in range or a message.
+// deep. The corpus and one input in sixteen go the whole way, through the reader, and give a mesh
+// whose indices are in range or a message.
 #include "base/error.h"
 #include "base/file.h"
 #include "base/log.h"
@@ -16,6 +16,8 @@
 #include <unistd.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+enum { SEEDS = 32 }; // the first inputs, which are the corpus
 
 static char folder[PATH_CAP], files[3][PATH_CAP];
 static const char *const NAMES[3] = {"./a.obj", "./a.gltf", "./a.glb"};
@@ -91,7 +93,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     current = data;
     current_size = size;
     import_here(kind);
-    if (count++ % 16 == 0) import_whole_way(files[kind], data, size);
+    if (count++ % 16 == 0 || count < SEEDS) import_whole_way(files[kind], data, size);
     err_clear();
     return 0;
 }

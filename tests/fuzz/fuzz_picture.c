@@ -1,7 +1,7 @@
 // Pictures that effects are made from, by what the reader runs, and then the whole way: any bytes,
 // as the kind of file that their beginning suggests, give finite numbers or a message. What the
-// reader runs is called here, so that its crash is seen, and then through the reader, one input in
-// sixteen, as that takes a process each.
+// reader runs is called here, so that its crash is seen, and then through the reader, the corpus
+// and one input in sixteen, as that takes a process each.
 #include "base/error.h"
 #include "base/file.h"
 #include "media/exr.h"
@@ -15,6 +15,8 @@
 #include <unistd.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+enum { SEEDS = 32 }; // the first inputs, which are the corpus
 
 enum { SIDE_MAX = 512 };
 static char folder[PATH_CAP], files[2][PATH_CAP];
@@ -63,7 +65,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     arena memory = {0};
     if (!decode(png, data, size, &memory) && !err_get()[0]) __builtin_trap();
     arena_free(&memory);
-    if (count++ % 16 == 0) read_whole_way(png, data, size);
+    if (count++ % 16 == 0 || count < SEEDS) read_whole_way(png, data, size);
     err_clear();
     return 0;
 }

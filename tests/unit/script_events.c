@@ -268,7 +268,7 @@ static void what_is_wrong_is_said(void **state) {
         {"fx.events = { { 0/0, key = 'f' } }", "accepted: 0 to 1e6"},
         {"fx.events = { { 1, click = {0, 0, 0, 0, 0, 0} } }", "has no direction"},
         {"pick(0.5, 0.5)", "nothing stands anywhere while the file loads"},
-        {"fx.on_frame = 3", "unknown field 'on_frame'"},
+        {"fx.on_frame = 3", "'on_frame' is a method, which is called: fx:on_frame(...)"},
         {"fx:status('', 3)", "accepted: 1 to 48"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)

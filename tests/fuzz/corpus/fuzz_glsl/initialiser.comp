@@ -1,0 +1,2 @@
+uniform float a = 1;
+void main() {}

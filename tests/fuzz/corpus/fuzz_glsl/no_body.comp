@@ -1,0 +1,2 @@
+float f(float x);
+void main() { float a = f(1); }

@@ -1,0 +1,2 @@
+local fx = effect { name = "a" }
+os.execute("a")
