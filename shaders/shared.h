@@ -31,21 +31,21 @@ typedef struct shared_mat4 {
 
 // Uniform block "Frame" of every shader that includes lib/frame.glsl.
 struct frame_block {
-    SHARED_MAT4 view;          // world to camera; the camera looks along -z
-    SHARED_MAT4 projection;    // camera to clip; depth 0 near, 1 far
-    SHARED_MAT4 view_inverse;  // camera to world
-    SHARED_MAT4 last;          // world to clip of the frame before; of this one in the first
-    SHARED_VEC4 eye;           // xyz: metres; w: 0
-    SHARED_VEC4 lens;          // tan(half width), tan(half height), near, far (metres)
-    SHARED_VEC4 time;          // seconds, seconds since the last frame, frame number, 0
-    SHARED_UVEC4 size;         // output width, height, frame counter, seed
+    SHARED_MAT4 view;         // world to camera; the camera looks along -z
+    SHARED_MAT4 projection;   // camera to clip; depth 0 near, 1 far
+    SHARED_MAT4 view_inverse; // camera to world
+    SHARED_MAT4 last;         // world to clip of the frame before; of this one in the first
+    SHARED_VEC4 eye;          // xyz: metres; w: 0
+    SHARED_VEC4 lens;         // tan(half width), tan(half height), near, far (metres)
+    SHARED_VEC4 time;         // seconds, seconds since the last frame, number of the frame shown, 0
+    SHARED_UVEC4 size;        // output width, height, frames drawn so far (for noise), seed
     SHARED_VEC4 sun_direction; // xyz: towards the sun, unit; w: angular radius of the moon that is
                                // seen there, radians
     SHARED_VEC4 sun_radiance;  // rgb: irradiance at normal incidence over pi
     SHARED_VEC4 sky_zenith;    // rgb: radiance straight up, about; w: factor of the sky's image, 0:
                                // there is none
     SHARED_VEC4
-        sky_horizon; // rgb: radiance at the horizon, about; w: how far the image is turned, radians
+    sky_horizon; // rgb: radiance at the horizon, about; w: how far the image is turned, radians
     SHARED_VEC4 night_zenith;  // rgb: radiance of the night sky straight up; w: how much of the sky
                                // is night, 0..1
     SHARED_VEC4 night_horizon; // rgb: at the horizon; w: factor of what stars and the moon shine
@@ -200,7 +200,7 @@ struct surface_material { // of a part of a mesh
 
 struct voxel_head {
     SHARED_UVEC4
-        count;         // parts; parts that are voxelised now; groups of prepare.comp, of cross.comp
+    count;             // parts; parts that are voxelised now; groups of prepare.comp, of cross.comp
     SHARED_UVEC4 low;  // xyz: first cell to be composed, x a multiple of VOXEL_ROW
     SHARED_UVEC4 size; // xyz: how many
     SHARED_UVEC4 tiles; // xyz: tiles that these lie in; w: where their lists are
@@ -213,7 +213,7 @@ struct voxel_part {
     SHARED_VEC4 rows[3]; // mesh to cells
     SHARED_UVEC4 low;    // xyz: first cell of its box, x a multiple of 4; w: id
     SHARED_UVEC4
-        size; // xyz: cells of its box, x a multiple of 4; 0: none; w: 1 where it has a shell
+    size; // xyz: cells of its box, x a multiple of 4; 0: none; w: 1 where it has a shell
     SHARED_UVEC4 mesh;  // first of its points, how many; first of its items, how many
     SHARED_UVEC4 place; // first of its placed points; its masks (in uvec4) and their size; its
                         // items among those of all parts

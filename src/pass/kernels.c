@@ -164,7 +164,9 @@ static bool find_source(const pass *p, const shader_slot *slot, slot_source *out
     else if (!is_of_type(p, slot->name) && !find_provided(slot->name, out))
         return image ? err_set("%s: image '%s' has no annotation (//= input or //= output)",
                                p->label, slot->name)
-                     : err_set("%s: storage buffer '%s' is not known", p->label, slot->name);
+                     : err_set("%s: storage buffer '%s' is neither a provider's nor among the "
+                               "names of the pass's type",
+                               p->label, slot->name);
     return true;
 }
 
@@ -230,7 +232,8 @@ static bool compile_kernel(pass *p, size_t index, pass_built *b, bool *left_out)
         done = add_stage(p, &source, shader, SHADER_COMPUTE, &defines);
     }
     if (!done || !kernel_compile(&b->base, p->host->library, p->host->memory, &source))
-        return err_prefix("%s: ", p->label);
+        return row->define ? err_prefix("%s (%s): ", p->label, row->define)
+                           : err_prefix("%s: ", p->label);
     for (size_t i = 0; i < b->base.slot_count; i++)
         if (!find_source(p, b->base.slots[i], &b->sources[i])) return false;
     find_places(p, b);

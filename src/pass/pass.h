@@ -90,7 +90,7 @@ typedef enum pass_meshes_use { // what a type does with the meshes that it is gi
 typedef struct pass_kernel { // zero: the type's own shader, as it is
     const char *shader;      // NULL: the type's own; of what draws the fragment shader
     const char *vertex;      // of what draws; NULL: `shader` is a compute shader
-    const char *define;      // "1" for this kernel alone; NULL: none
+    const char *define;      // defined as 1 in this kernel, and in no other of the type; NULL: none
     bool without_fields;     // it evaluates none: then its code is the same whatever they are
 } pass_kernel;
 

@@ -30,20 +30,31 @@ static bool bind_rays(pass *p, int slot, gpu_binding *out) {
 
 static const pass_provider rays = {.slots = {ray_slots, BVH_PARTS}, .bind = bind_rays};
 
-// ---- sky and noise ----------------------------------------------------------------------------
+// ---- blue noise -------------------------------------------------------------------------------
 
-enum { SKY, SKY_DISTRIBUTION, BLUE_NOISE, SKY_SLOTS };
-static const char *const sky_slots[SKY_SLOTS] = {"Sky", "SkyDistribution", "BlueNoise"};
+static const char *const noise_slots[] = {"BlueNoise"};
+
+static bool bind_noise(pass *p, int slot, gpu_binding *out) {
+    (void)slot;
+    out->sampler = GPU_NEAREST_CLAMP;
+    out->image = p->host->blue_noise;
+    return out->image;
+}
+
+static const pass_provider blue_noise = {.slots = {noise_slots, COUNT_OF(noise_slots)},
+                                         .bind = bind_noise};
+
+// ---- sky --------------------------------------------------------------------------------------
+
+enum { SKY, SKY_DISTRIBUTION, SKY_SLOTS };
+static const char *const sky_slots[SKY_SLOTS] = {"Sky", "SkyDistribution"};
 
 static bool bind_sky(pass *p, int slot, gpu_binding *out) {
     const sky_image *sky = p->host->scene->sky.image;
     out->sampler = slot == SKY ? GPU_LINEAR_REPEAT : GPU_NEAREST_CLAMP;
-    if (slot == BLUE_NOISE)
-        out->image = p->host->blue_noise;
-    else
-        out->image = !sky          ? p->blank[0]
-                     : slot == SKY ? sky_image_texture(sky)
-                                   : sky_image_distribution(sky);
+    out->image = !sky          ? p->blank[0]
+                 : slot == SKY ? sky_image_texture(sky)
+                               : sky_image_distribution(sky);
     return out->image;
 }
 
@@ -70,8 +81,13 @@ static const pass_provider drawn = {.defines = define_drawn};
 // ---- all --------------------------------------------------------------------------------------
 
 const pass_provider *const *pass_providers(size_t *count) {
-    static const pass_provider *const rows[] = {
-        &pass_particles_provider, &pass_point_lights_provider, &counters, &rays, &sky, &drawn};
+    static const pass_provider *const rows[] = {&pass_particles_provider,
+                                                &pass_point_lights_provider,
+                                                &counters,
+                                                &rays,
+                                                &blue_noise,
+                                                &sky,
+                                                &drawn};
     *count = COUNT_OF(rows);
     return rows;
 }

@@ -91,6 +91,46 @@ static void providers_have_what_some_shader_asks_for(void **state) {
     }
 }
 
+// A kernel whose define is misspelt would run as another one.
+static void check_define(shader_library *library, const char *whose, const pass_kernel *row,
+                         const char *shader) {
+    const char *const files[] = {shader, row->vertex ? row->vertex : shader};
+    if (!row->define) return;
+    if (!shader_mentions(library, files[0], row->define) &&
+        !shader_mentions(library, files[1], row->define))
+        fail_msg("%s: %s does not mention the define '%s'", whose, shader, row->define);
+}
+
+// Numbers reach a kernel through the interface of the type's own shader alone.
+static void check_uniforms(shader_library *library, const pass_type *type, const char *shader) {
+    arena memory = {0};
+    const shader_interface *whole = shader_interface_load(library, &memory, type->shader, NULL);
+    const shader_interface *part = shader_interface_load(library, &memory, shader, NULL);
+    if (!whole || !part) fail_msg("%s", err_get());
+    for (size_t i = 0; i < part->uniform_count; i++) {
+        bool found = false;
+        for (size_t k = 0; k < whole->uniform_count && !found; k++)
+            found = strcmp(whole->uniforms[k].name, part->uniforms[i].name) == 0;
+        if (!found)
+            fail_msg("%s: %s declares the uniform '%s', which %s does not", type->name, shader,
+                     part->uniforms[i].name, type->shader);
+    }
+    arena_free(&memory);
+}
+
+static void kernels_are_parts_of_their_types(void **state) {
+    size_t count;
+    const pass_type *const *types = pass_types(&count);
+    for (size_t i = 0; i < count; i++) {
+        for (size_t k = 0; k < types[i]->kernel_count; k++) {
+            const pass_kernel *row = &types[i]->kernels[k];
+            const char *shader = row->shader ? row->shader : types[i]->shader;
+            check_define(*state, types[i]->name, row, shader);
+            if (row->shader) check_uniforms(*state, types[i], row->shader);
+        }
+    }
+}
+
 static void a_name_that_is_misspelt_is_found(void **state) {
     static const char *const names[] = {"steps", "stpes"};
     static const char *const files[] = {"pass/march/march.comp"};
@@ -121,6 +161,7 @@ int main(void) {
         cmocka_unit_test(solvers_say_what_their_shaders_declare),
         cmocka_unit_test(passes_say_what_their_shaders_declare),
         cmocka_unit_test(providers_have_what_some_shader_asks_for),
+        cmocka_unit_test(kernels_are_parts_of_their_types),
         cmocka_unit_test(a_name_that_is_misspelt_is_found),
         cmocka_unit_test(words_count_whole),
     };

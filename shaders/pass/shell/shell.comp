@@ -17,6 +17,6 @@ writeonly uniform image2D front;   //= output r32f optional : depth of the scene
 #include "vertices.glsl"
 #elif defined(STAGE_FRONT)
 #include "front.glsl"
-#else
+#elif defined(STAGE_RAYS)
 #include "rays.glsl"
 #endif
