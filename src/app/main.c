@@ -5,6 +5,7 @@
 #include "base/str.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <jansson.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -110,6 +111,8 @@ static int main_run_command(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
+    // A tree of JSON that misses what had no memory would be written as if it were whole.
+    json_set_alloc_funcs(mem_alloc, mem_free);
     int status = open_streams() ? main_finish(main_run_command(argc, argv)) : APP_BAD_INPUT;
     if (!roil_can_exit()) _exit(status);
     return status;

@@ -232,8 +232,7 @@ static bool compile_kernel(pass *p, size_t index, pass_built *b, bool *left_out)
         done = add_stage(p, &source, shader, SHADER_COMPUTE, &defines);
     }
     if (!done || !kernel_compile(&b->base, p->host->library, p->host->memory, &source))
-        return row->define ? err_prefix("%s (%s): ", p->label, row->define)
-                           : err_prefix("%s: ", p->label);
+        return err_prefix("%s: ", p->label);
     for (size_t i = 0; i < b->base.slot_count; i++)
         if (!find_source(p, b->base.slots[i], &b->sources[i])) return false;
     find_places(p, b);

@@ -76,7 +76,8 @@ static const char crates[] =
     "fx.output = final { over { volume = smoke, source = solid, depth = seen.depth } }.color\n"
     "return fx\n";
 
-// Bursts as meshes, of which there is one now and may be many; lamps by tiles and as spheres.
+// Bursts as meshes, of which there is one now and may be many; point lights by tiles and as
+// spheres.
 static const char bursts[] =
     "local all = explosions { {0, position = {0, 0, 1}} }\n"
     "local ball = shell { at = all, mode = 'mesh', life = 2, displacement = 0.1 }\n"
@@ -178,13 +179,13 @@ static void scenes_ask_for_what_is_drawn(void **state) {
                                        "boxes of meshes", "ranges", NULL});
 }
 
-static void bursts_and_lamps_ask_for_their_lists(void **state) {
+static void bursts_and_point_lights_ask_for_their_lists(void **state) {
     char path[512];
     write_text("all.comp", all_shader, path);
     expect_asked(*state, bursts,
-                 (const char *const[]){"vertices of shells", "shafts", "records of lamps",
-                                       "lamps by tiles", "depths of tiles", "light of lamps",
-                                       NULL});
+                 (const char *const[]){"vertices of shells", "shafts", "records of point lights",
+                                       "point lights by tiles", "depths of tiles",
+                                       "light of point lights", NULL});
 }
 
 // A body that turns gets masks for however it is turned: more than where it stands first.
@@ -263,7 +264,7 @@ int main(void) {
         cmocka_unit_test(slices_ask_for_their_state),
         cmocka_unit_test(particles_ask_for_theirs_and_for_what_draws_them),
         cmocka_unit_test(scenes_ask_for_what_is_drawn),
-        cmocka_unit_test(bursts_and_lamps_ask_for_their_lists),
+        cmocka_unit_test(bursts_and_point_lights_ask_for_their_lists),
         cmocka_unit_test(what_turns_asks_for_all_turns),
         cmocka_unit_test(shipped_effects_ask_for_what_they_take),
         cmocka_unit_test(nothing_is_taken_where_all_does_not_fit),

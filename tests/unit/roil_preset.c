@@ -72,7 +72,8 @@ static void presets_are_listed_and_suggested(void **state) {
     assert_int_equal(roil_presets(path, names, 1), 2);
     assert_int_equal(roil_presets("/none/none.lua", names, 8), 0);
     refused(roil_read_preset(helper_roil, path, "a_1"), "did you mean 'a-1'?");
-    refused(roil_read_preset(helper_roil, path, "zzz"), "accepted: a-1, b, or a .lua file");
+    refused(roil_read_preset(helper_roil, path, "zzz"),
+            "many.lua has no preset 'zzz'; it has a-1, b");
     refused(roil_read_preset(helper_roil, path, "../b"), "is not a name");
     refused(roil_read_preset(helper_roil, path, "none.lua"), "none.lua");
     helper_path(path, "many.presets/b.lua");
