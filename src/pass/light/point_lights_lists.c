@@ -29,8 +29,8 @@ static const pass_kernel kernels[POINT_LIGHTS_KERNELS] = {
 };
 static const char *const names[] = {POINT_LIGHTS_NAMES(KERNEL_NAME_TEXT)};
 static const char *const labels[POINT_LIGHT_BUFFERS] = {
-    [POINT_LIGHT_RECORDS] = "records of point_lights",
-    [POINT_LIGHT_MASKS] = "point_lights by tiles",
+    [POINT_LIGHT_RECORDS] = "records of point lights",
+    [POINT_LIGHT_MASKS] = "point lights by tiles",
     [POINT_LIGHT_BOUNDS] = "depths of tiles"};
 
 static point_lights_way choose_way(const pass *p, uint32_t count) {

@@ -13,7 +13,7 @@ void point_lights_target(const pass *p, size_t index, gpu_graphics_desc *out) {
 }
 
 static gpu_image_desc describe_light(uint32_t width, uint32_t height) {
-    return (gpu_image_desc){.label = "light of point_lights",
+    return (gpu_image_desc){.label = "light of point lights",
                             .format = GPU_RGBA32F,
                             .width = width,
                             .height = height,
