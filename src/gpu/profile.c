@@ -148,6 +148,10 @@ static void choose_lattice(gpu_profile *p, bool software, bool int64) {
     p->lbm_software_step = software && int64;
 }
 
+static void choose_pyro(gpu_profile *p, bool software) {
+    p->pyro_half = !software;
+}
+
 // ---- limits -----------------------------------------------------------------------------------
 
 static const gpu_limits small_device = {.group_threads = 256,
@@ -228,6 +232,7 @@ gpu_profile vk_profile_find(const gpu_info *info, VkDriverId driver, const char 
     choose_points(&p, software);
     choose_flow(&p, software);
     choose_lattice(&p, software, info->int64);
+    choose_pyro(&p, software);
     fit_limits(&p);
     return p;
 }
@@ -242,6 +247,7 @@ static void find_of_none(void) {
     choose_points(&of_none, false);
     choose_flow(&of_none, false);
     choose_lattice(&of_none, false, false);
+    choose_pyro(&of_none, false);
     fit_limits(&of_none);
     if (vk_small_device_wanted()) vk_profile_make_small(&of_none);
 }

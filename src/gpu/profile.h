@@ -63,6 +63,9 @@ typedef struct gpu_profile {
     bool lbm_whole;          // each direction lies in memory as a whole, else in blocks
     bool lbm_software_step;  // the step's skin is a dispatch of its own, and so written that a
                              // processor's wide registers are filled
+
+    // ---- gas that burns (src/sim/pyro.h) ----
+    bool pyro_half; // its state is in half precision by default
 } gpu_profile;
 
 // NULL: of no device in particular, for what is compiled to be checked. Any thread.

@@ -1,0 +1,52 @@
+// The coarsest level, by one group: sweeps of red-black Gauss-Seidel with overrelaxation, until all
+// of it has heard of all of it.
+layout(local_size_x = 256) in;
+#include "sim/pyro/state.glsl"
+#include "sim/pyro/levels.glsl"
+
+uniform int sweeps;
+uniform float relaxation;
+layout(std430) coherent buffer PyroCoarsePressure { float coarse_pressure[]; };
+layout(std430) readonly buffer PyroCoarseRight { float coarse_right[]; };
+LEVEL_AROUND(pressure_around, coarse_pressure)
+
+shared float sums[256];
+
+// In a closed box what flows in and out cannot be balanced by pressure that varies: all of the gas
+// becomes denser or thinner, and pressure takes what is left.
+float mean_of_right() {
+#if PYRO_CLOSED
+    int count = LEVEL_SIZE.x * LEVEL_SIZE.y * LEVEL_SIZE.z;
+    float sum = 0.0;
+    for (int i = int(gl_LocalInvocationIndex); i < count; i += 256) sum += coarse_right[level_first + i];
+    sums[gl_LocalInvocationIndex] = sum;
+    for (uint step_ = 128u; step_ > 0u; step_ >>= 1) {
+        barrier();
+        if (gl_LocalInvocationIndex < step_)
+            sums[gl_LocalInvocationIndex] += sums[gl_LocalInvocationIndex + step_];
+    }
+    barrier();
+    return sums[0] / float(count);
+#else
+    return 0.0;
+#endif
+}
+
+void main() {
+    ivec3 size = LEVEL_SIZE;
+    int count = size.x * size.y * size.z;
+    float mean = mean_of_right();
+    for (int half_ = 0; half_ < 2 * sweeps; half_++) {
+        for (int i = int(gl_LocalInvocationIndex); i < count; i += 256) {
+            ivec3 c = ivec3(i % size.x, i / size.x % size.y, i / (size.x * size.y));
+            if (((c.x + c.y + c.z + half_) & 1) != 0) continue;
+            vec2 around = pressure_around(c);
+            int at = level_first + i;
+            float own = coarse_pressure[at];
+            if (around.y > 0.0)
+                coarse_pressure[at] = own + relaxation * ((around.x - coarse_right[at] + mean) / around.y - own);
+        }
+        memoryBarrierBuffer();
+        barrier();
+    }
+}

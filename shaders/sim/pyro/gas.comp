@@ -1,0 +1,80 @@
+// What the gas carries in a step, warmth, fuel, what has burnt, and soot: it moves, burns and cools.
+// Its expansion goes to the pressure's right-hand side. As velocity.comp, in one dispatch or two.
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
+#include "sim/pyro/state.glsl"
+#include "sim/pyro/trace.glsl"
+
+layout(std430) readonly buffer PyroGas { PYRO_REAL4 gas[]; };
+#ifdef PYRO_PREDICT
+layout(std430) writeonly buffer PyroGasHat { PYRO_REAL4 gas_hat[]; };
+#else
+#include "sim/pyro/burn.glsl"
+uniform float cell; // m
+layout(std430) writeonly buffer PyroGasTo { PYRO_REAL4 gas_to[]; };
+layout(std430) writeonly buffer PyroRight { float right[]; }; // m/s: expansion across a cell
+#if PYRO_CORRECTS
+layout(std430) readonly buffer PyroGasHat { PYRO_REAL4 gas_hat[]; };
+#endif
+#endif
+
+// The eight values around a place.
+#define GAS_EIGHT(from, s, v)                                                                      \
+    {                                                                                              \
+        int a_ = s.low[1] + s.low[2], b_ = s.high[1] + s.low[2];                                   \
+        int c_ = s.low[1] + s.high[2], d_ = s.high[1] + s.high[2];                                 \
+        v[0] = vec4(from[a_ + s.low[0]]), v[1] = vec4(from[a_ + s.high[0]]);                       \
+        v[2] = vec4(from[b_ + s.low[0]]), v[3] = vec4(from[b_ + s.high[0]]);                       \
+        v[4] = vec4(from[c_ + s.low[0]]), v[5] = vec4(from[c_ + s.high[0]]);                       \
+        v[6] = vec4(from[d_ + s.low[0]]), v[7] = vec4(from[d_ + s.high[0]]);                       \
+    }
+
+vec4 gas_mix(vec4 v[8], vec3 t) {
+    vec4 low = mix(mix(v[0], v[1], t.x), mix(v[2], v[3], t.x), t.y);
+    return mix(low, mix(mix(v[4], v[5], t.x), mix(v[6], v[7], t.x), t.y), t.z);
+}
+
+// What comes through a face is clean air.
+vec4 gas_back(vec3 from, out vec4 least, out vec4 most) {
+    vec4 v[8];
+    pyro_span s = pyro_span_at(pyro_into(from), 3);
+    GAS_EIGHT(gas, s, v)
+    least = most = v[0];
+    for (int i = 1; i < 8; i++) {
+        least = min(least, v[i]);
+        most = max(most, v[i]);
+    }
+    return pyro_is_beyond(from) ? vec4(0.0) : gas_mix(v, s.t);
+}
+
+#ifdef PYRO_PREDICT
+void main() {
+    vec4 least, most;
+    ivec3 c = ivec3(gl_GlobalInvocationID);
+    vec3 from = pyro_middle(3, c) - reach * pyro_velocity_cell(c);
+    gas_hat[pyro_at(c)] = PYRO_REAL4(gas_back(from, least, most));
+}
+#else
+vec4 carried(ivec3 c, int at) {
+    vec4 least, most;
+    vec3 p = pyro_middle(3, c), way = reach * pyro_velocity_cell(c);
+    vec4 first = gas_back(p - way, least, most);
+#if PYRO_CORRECTS
+    if (pyro_is_beyond(p - way) || pyro_is_beyond(p + way)) return first;
+    vec4 v[8];
+    pyro_span s = pyro_span_at(pyro_into(p + way), 3);
+    GAS_EIGHT(gas_hat, s, v)
+    return clamp(first + 0.5 * (vec4(gas[at]) - gas_mix(v, s.t)), least, most);
+#else
+    return first;
+#endif
+}
+
+void main() {
+    ivec3 c = ivec3(gl_GlobalInvocationID);
+    int at = pyro_at(c);
+    vec4 g = pyro_clean(carried(c, at));
+    float grown = pyro_burn(g); // expansion, 1/s
+    gas_to[at] = PYRO_REAL4(g);
+    right[at] = cell * pyro_clean(grown);
+}
+#endif

@@ -1,0 +1,82 @@
+// What a state comes to, for the host to read some frames later. Twice: each group its cells, and,
+// with LAST, one group all of that.
+#ifdef LAST
+layout(local_size_x = 256) in;
+#else
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
+#endif
+#include "sim/pyro/state.glsl"
+#ifdef LAST
+uniform int groups; // that found something
+layout(std430) readonly buffer PyroReport { vec4 report[]; };
+layout(r32ui) writeonly uniform uimage2D result;
+#else
+#define PYRO_FINEST
+#include "sim/pyro/levels.glsl"
+#include "sim/pyro/trace.glsl"
+#include "sim/pyro/burn.glsl"
+uniform float mass; // kg of the air of a cell, times its temperature
+layout(std430) readonly buffer PyroGas { PYRO_REAL4 gas[]; };
+layout(std430) readonly buffer PyroPressure { float pressure[]; };
+layout(std430) readonly buffer PyroRight { float right[]; };
+layout(std430) writeonly buffer PyroReport { vec4 report[]; };
+LEVEL_AROUND(pressure_around, pressure)
+#endif
+
+// The greatest speed squared, divergence that is not wanted, temperature, and 0; sums of fuel, what
+// has burnt, soot (kg) and power (W); how many cells are no numbers.
+struct Record {
+    vec4 most, sum;
+    float bad;
+};
+
+shared vec4 most_of[256], sum_of[256];
+shared float bad_of[256];
+
+Record over_group(Record r) {
+    uint i = gl_LocalInvocationIndex;
+    most_of[i] = r.most, sum_of[i] = r.sum, bad_of[i] = r.bad;
+    for (uint step_ = 128u; step_ > 0u; step_ >>= 1) {
+        barrier();
+        if (i >= step_) continue;
+        most_of[i] = max(most_of[i], most_of[i + step_]);
+        sum_of[i] += sum_of[i + step_];
+        bad_of[i] += bad_of[i + step_];
+    }
+    return Record(most_of[0], sum_of[0], bad_of[0]);
+}
+
+#ifdef LAST
+void main() {
+    Record r = Record(vec4(0.0), vec4(0.0), 0.0);
+    for (int i = int(gl_LocalInvocationIndex); i < groups; i += 256) {
+        vec4 most = report[2 * i];
+        r = Record(max(r.most, vec4(most.xyz, 0.0)), r.sum + report[2 * i + 1], r.bad + most.w);
+    }
+    r = over_group(r);
+    if (gl_LocalInvocationIndex > 0u) return;
+    const float words[8] = float[8](r.bad, sqrt(r.most.x), r.most.y, r.most.z, r.sum.x, r.sum.y,
+                                    r.sum.z, r.sum.w);
+    for (int i = 0; i < 8; i++) imageStore(result, ivec2(i, 0), uvec4(floatBitsToUint(words[i])));
+}
+#else
+void main() {
+    ivec3 c = ivec3(gl_GlobalInvocationID);
+    int at = pyro_at(c);
+    vec4 raw = vec4(gas[at]), g = pyro_clean(raw);
+    vec3 v = pyro_velocity_cell(c);
+    vec2 around = pressure_around(c);
+    float left = abs(right[at] - (around.x - around.y * pressure[at])), square = dot(v, v);
+    float air = mass / pyro_temperature(g); // kg
+    bool bad = raw != g || pyro_clean(square) != square || pyro_clean(left) != left;
+    vec4 sum = air * g.yzwx;
+    sum.w = air * pyro_burning(g);
+    Record r = Record(vec4(square, left, pyro_temperature(g), 0.0), sum, 0.0);
+    if (bad) r = Record(vec4(0.0), vec4(0.0), 1.0);
+    r = over_group(r);
+    uint group = (gl_WorkGroupID.z * gl_NumWorkGroups.y + gl_WorkGroupID.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (gl_LocalInvocationIndex > 0u) return;
+    report[2u * group] = vec4(r.most.xyz, r.bad);
+    report[2u * group + 1u] = r.sum;
+}
+#endif

@@ -1,0 +1,93 @@
+// The state of a combustion solver (src/sim/pyro.h), for its own shaders and those of others:
+// pyro_defines and pyro_bind in src/sim/pyro.h give what this needs.
+//
+// Cells lie in bricks of 8^3, bricks along x, then y, then z: what is near in space is near in
+// memory. Places are separable: that of a cell is the sum of what its three coordinates give.
+//
+// Velocities are staggered (Harlow and Welch 1965): component a of cell c is that across the face
+// between c and its lower neighbour along a. What crosses the last face of an axis is not stored: it
+// is 0 (or the wind's) at a wall, that of the first face at a periodic one, and at an open face that
+// of the face one cell inside.
+#ifndef SIM_PYRO_STATE_GLSL
+#define SIM_PYRO_STATE_GLSL
+#if PYRO_HALF
+#extension GL_EXT_shader_16bit_storage : require
+#define PYRO_REAL float16_t
+#define PYRO_REAL4 f16vec4
+#else
+#define PYRO_REAL float
+#define PYRO_REAL4 vec4
+#endif
+
+// PYRO_NX, PYRO_NY, PYRO_NZ: cells, multiples of 8; PYRO_LOW_X to PYRO_HIGH_Z: faces, one of
+#define PYRO_OPEN 0
+#define PYRO_WALL 1
+#define PYRO_INFLOW 2
+#define PYRO_PERIODIC 3
+
+const ivec3 PYRO_SIZE = ivec3(PYRO_NX, PYRO_NY, PYRO_NZ);
+const int PYRO_CELLS = PYRO_NX * PYRO_NY * PYRO_NZ;
+const ivec3 PYRO_LOW = ivec3(PYRO_LOW_X, PYRO_LOW_Y, PYRO_LOW_Z);
+const ivec3 PYRO_HIGH = ivec3(PYRO_HIGH_X, PYRO_HIGH_Y, PYRO_HIGH_Z);
+const bvec3 PYRO_AROUND = bvec3(PYRO_LOW_X == PYRO_PERIODIC, PYRO_LOW_Y == PYRO_PERIODIC,
+                                PYRO_LOW_Z == PYRO_PERIODIC);
+
+// ---- where things are -------------------------------------------------------------------------
+
+int pyro_place(const int axis, int i) {
+    const int bricks[3] = int[3](512, 64 * PYRO_NX, 8 * PYRO_NX * PYRO_NY);
+    return (i >> 3) * bricks[axis] + ((i & 7) << (3 * axis));
+}
+
+int pyro_at(ivec3 cell) {
+    return pyro_place(0, cell.x) + pyro_place(1, cell.y) + pyro_place(2, cell.z);
+}
+
+bool pyro_inside(ivec3 cell) {
+    return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, PYRO_SIZE));
+}
+
+// A coordinate of a cell, brought into the box.
+int pyro_into(const int axis, int i) {
+    if (PYRO_AROUND[axis]) return i < 0 ? i + PYRO_SIZE[axis] : i >= PYRO_SIZE[axis] ? i - PYRO_SIZE[axis] : i;
+    return clamp(i, 0, PYRO_SIZE[axis] - 1);
+}
+
+ivec3 pyro_into(ivec3 cell) {
+    return ivec3(pyro_into(0, cell.x), pyro_into(1, cell.y), pyro_into(2, cell.z));
+}
+
+// ---- numbers ----------------------------------------------------------------------------------
+
+// What is no number, or beyond all reason, is 0. By its bits: compilers may take it that there are
+// no such values.
+float pyro_clean(float v) {
+    return (floatBitsToUint(v) & 0x7fffffffu) < 0x60000000u ? v : 0.0;
+}
+vec4 pyro_clean(vec4 v) {
+    return vec4(pyro_clean(v.x), pyro_clean(v.y), pyro_clean(v.z), pyro_clean(v.w));
+}
+
+// ---- the gas ----------------------------------------------------------------------------------
+
+// What a cell holds: kelvin above the surroundings, and by mass of air the fuel, the fuel that has
+// burnt, and soot.
+#define PYRO_WARMTH x
+#define PYRO_FUEL y
+#define PYRO_BURNT z
+#define PYRO_SOOT w
+
+uniform float ambient; // temperature of the surroundings, K
+uniform float lightness; // of the fuel's vapour: molar mass of air by that of the fuel
+const float PYRO_AIR = 353.0; // density of air times its temperature, kg K/m^3, at 101,325 Pa
+
+float pyro_temperature(vec4 gas) {
+    return max(ambient + gas.PYRO_WARMTH, 1.0);
+}
+
+// Density by that of the surroundings: an ideal gas of air and vapour.
+float pyro_density(vec4 gas) {
+    float vapour = max(gas.PYRO_FUEL, 0.0);
+    return ambient / pyro_temperature(gas) * (1.0 + vapour) / (1.0 + lightness * vapour);
+}
+#endif

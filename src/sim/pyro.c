@@ -1,0 +1,273 @@
+// A combustion solver: the defines of its shaders, and its state on the device.
+#include "sim/pyro.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include "sim/pyro_impl.h"
+#include <string.h>
+
+// ---- structure --------------------------------------------------------------------------------
+
+static bool pyro_check(const pyro_desc *desc) {
+    for (int i = 0; i < 3; i++) {
+        const uint32_t n = desc->size[i];
+        if (n < PYRO_LEAST_SIZE || n > PYRO_MOST_SIZE || n % PYRO_BRICK != 0)
+            return err_set("a box of %u x %u x %u cells; multiples of %d from %d to %d are accepted",
+                           desc->size[0], desc->size[1], desc->size[2], PYRO_BRICK,
+                           PYRO_LEAST_SIZE, PYRO_MOST_SIZE);
+        if ((desc->faces[2 * i] == PYRO_PERIODIC) != (desc->faces[2 * i + 1] == PYRO_PERIODIC))
+            return err_set("one face along %c is periodic and the other is not", "xyz"[i]);
+    }
+    return true;
+}
+
+pyro *pyro_create(arena *memory, const pyro_desc *desc) {
+    if (!pyro_check(desc)) return NULL;
+    pyro *p = arena_alloc(memory, sizeof *p);
+    *p = (pyro){.memory = memory, .desc = *desc};
+    p->chooses_precision = desc->precision == PYRO_AUTO;
+    if (p->desc.cycles == 0) p->desc.cycles = PYRO_CYCLES;
+    return pyro_find_levels(p) ? p : NULL;
+}
+
+const pyro_desc *pyro_get_desc(const pyro *p) {
+    return &p->desc;
+}
+
+uint64_t pyro_cells(const pyro *p) {
+    return (uint64_t)p->desc.size[0] * p->desc.size[1] * p->desc.size[2];
+}
+
+// ---- shaders ----------------------------------------------------------------------------------
+
+static void define(pyro *p, const char *name, uint32_t value) {
+    p->defines[p->define_count++] = (shader_define){name, arena_format(p->memory, "%u", value)};
+}
+
+static bool is_closed(const pyro_desc *desc) {
+    for (int i = 0; i < 6; i++)
+        if (desc->faces[i] == PYRO_OPEN) return false;
+    return true;
+}
+
+static void define_all(pyro *p) {
+    static const char *const sizes[3] = {"PYRO_NX", "PYRO_NY", "PYRO_NZ"};
+    static const char *const faces[6] = {"PYRO_LOW_X",  "PYRO_HIGH_X", "PYRO_LOW_Y",
+                                         "PYRO_HIGH_Y", "PYRO_LOW_Z",  "PYRO_HIGH_Z"};
+    p->define_count = 0;
+    for (int i = 0; i < 3; i++) define(p, sizes[i], p->desc.size[i]);
+    for (int i = 0; i < 6; i++) define(p, faces[i], p->desc.faces[i]);
+    define(p, "PYRO_HALF", p->desc.precision == PYRO_F16);
+    define(p, "PYRO_CORRECTS", p->desc.advection == PYRO_MACCORMACK);
+    define(p, "PYRO_CONFINES", p->desc.confinement);
+    define(p, "PYRO_CLOSED", is_closed(&p->desc));
+}
+
+size_t pyro_defines(const pyro *p, shader_define out[PYRO_MAX_DEFINES]) {
+    memcpy(out, p->defines, p->define_count * sizeof *out);
+    return p->define_count;
+}
+
+static const char *const names[] = {PYRO_NAMES(KERNEL_NAME_TEXT)};
+
+static const char *const shaders[PYRO_KERNELS] = {
+    [PYRO_K_RESET] = "sim/pyro/reset.comp",
+    [PYRO_K_GAS_PREDICT] = "sim/pyro/gas.comp",
+    [PYRO_K_GAS] = "sim/pyro/gas.comp",
+    [PYRO_K_VORTICITY] = "sim/pyro/curl.comp",
+    [PYRO_K_CURL] = "sim/pyro/curl.comp",
+    [PYRO_K_VELOCITY_PREDICT] = "sim/pyro/velocity.comp",
+    [PYRO_K_VELOCITY] = "sim/pyro/velocity.comp",
+    [PYRO_K_DIVERGENCE] = "sim/pyro/divergence.comp",
+    [PYRO_K_SMOOTH_FINEST] = "sim/pyro/smooth.comp",
+    [PYRO_K_SMOOTH] = "sim/pyro/smooth.comp",
+    [PYRO_K_RESTRICT_FINEST] = "sim/pyro/restrict.comp",
+    [PYRO_K_RESTRICT] = "sim/pyro/restrict.comp",
+    [PYRO_K_COARSEST] = "sim/pyro/coarsest.comp",
+    [PYRO_K_PROLONG] = "sim/pyro/prolong.comp",
+    [PYRO_K_PROLONG_FINEST] = "sim/pyro/prolong.comp",
+    [PYRO_K_PROJECT] = "sim/pyro/project.comp",
+    [PYRO_K_LOOK] = "sim/pyro/look.comp",
+    [PYRO_K_REPORT] = "sim/pyro/report.comp",
+    [PYRO_K_REPORT_LAST] = "sim/pyro/report.comp",
+};
+
+const kernel_table pyro_kernel_table = {{names, COUNT_OF(names)}, shaders, COUNT_OF(shaders)};
+
+// The additional define of a kernel; NULL: none.
+static const char *const more_defines[PYRO_KERNELS] = {
+    [PYRO_K_GAS_PREDICT] = "PYRO_PREDICT",      [PYRO_K_CURL] = "PYRO_CURL_LAST",
+    [PYRO_K_VELOCITY_PREDICT] = "PYRO_PREDICT", [PYRO_K_SMOOTH_FINEST] = "PYRO_FINEST",
+    [PYRO_K_RESTRICT_FINEST] = "PYRO_FINEST",   [PYRO_K_PROLONG_FINEST] = "PYRO_FINEST",
+    [PYRO_K_REPORT_LAST] = "LAST",
+};
+
+static bool is_used(const pyro_desc *desc, pyro_kernel which) {
+    if (which == PYRO_K_GAS_PREDICT || which == PYRO_K_VELOCITY_PREDICT)
+        return desc->advection == PYRO_MACCORMACK;
+    if (which == PYRO_K_VORTICITY || which == PYRO_K_CURL) return desc->confinement;
+    return true;
+}
+
+static bool pyro_compile_kernels(pyro *p, const gpu_profile *device, shader_library *library,
+                                 const shader_reader *reader) {
+    if (p->chooses_precision) p->desc.precision = device->pyro_half ? PYRO_F16 : PYRO_F32;
+    define_all(p);
+    for (int i = 0; i < PYRO_KERNELS; i++) {
+        shader_define defines[PYRO_MAX_DEFINES + 1];
+        size_t count = pyro_defines(p, defines);
+        if (!is_used(&p->desc, (pyro_kernel)i)) continue;
+        if (more_defines[i]) defines[count++] = (shader_define){more_defines[i], "1"};
+        const kernel_source source = {
+            .label = shaders[i],
+            .stages = {{.name = shaders[i],
+                        .stage = SHADER_COMPUTE,
+                        .defines = defines,
+                        .define_count = count,
+                        .reader = reader}},
+            .stage_count = 1,
+            .names = pyro_kernel_table.names,
+        };
+        if (!kernel_compile(&p->kernels[i], library, p->memory, &source)) return false;
+    }
+    return true;
+}
+
+bool pyro_compile(pyro *p, shader_library *library, const shader_reader *reader) {
+    return pyro_compile_kernels(p, gpu_get_profile(NULL), library, reader);
+}
+
+bool pyro_build(pyro *p, gpu *g, shader_library *library, const shader_reader *reader) {
+    if (!pyro_compile_kernels(p, gpu_get_profile(g), library, reader)) return false;
+    for (int i = 0; i < PYRO_KERNELS; i++)
+        if (p->kernels[i].stages && !kernel_build(&p->kernels[i], g)) return false;
+    return true;
+}
+
+// ---- state ------------------------------------------------------------------------------------
+
+// Returns the bytes of each buffer; 0: it is not needed.
+static void find_sizes(const pyro *p, uint64_t out[PYRO_MEM_COUNT]) {
+    const uint64_t cells = pyro_cells(p), real = p->desc.precision == PYRO_F16 ? 2 : 4;
+    const bool corrects = p->desc.advection == PYRO_MACCORMACK;
+    memset(out, 0, PYRO_MEM_COUNT * sizeof *out);
+    for (int i = 0; i < 2; i++) {
+        out[PYRO_MEM_VELOCITY + i] = 3 * cells * real;
+        out[PYRO_MEM_GAS + i] = 4 * cells * real;
+    }
+    if (corrects) out[PYRO_MEM_VELOCITY_HAT] = 3 * cells * real;
+    if (corrects || p->desc.confinement) out[PYRO_MEM_GAS_HAT] = 4 * cells * real;
+    if (p->desc.confinement) out[PYRO_MEM_CURL] = 4 * cells * real;
+    out[PYRO_MEM_PRESSURE] = out[PYRO_MEM_RIGHT] = 4 * cells;
+    out[PYRO_MEM_COARSE_PRESSURE] = out[PYRO_MEM_COARSE_RIGHT] = 4 * pyro_coarse_cells(p);
+    out[PYRO_MEM_REPORT] = cells / 256 * 32;
+}
+
+static const char *const memory_labels[PYRO_MEM_COUNT] = {
+    "velocity of burning gas", "velocity of burning gas", "burning gas", "burning gas",
+    "velocity traced back",    "gas traced back",         "vorticity",   "pressure of burning gas",
+    "divergence",              "coarse pressure",         "coarse divergence",
+    "report of burning gas"};
+
+bool pyro_allocate(pyro *p, gpu *g) {
+    uint64_t sizes[PYRO_MEM_COUNT];
+    find_sizes(p, sizes);
+    for (int i = 0; i < PYRO_MEM_COUNT; i++) {
+        if (p->buffers[i] || sizes[i] == 0) continue;
+        p->buffers[i] =
+            gpu_buffer_create(g, &(gpu_buffer_desc){.label = memory_labels[i], .size = sizes[i]});
+        if (!p->buffers[i]) return false;
+    }
+    return pyro_report_allocate(p, g);
+}
+
+void pyro_list_memory(const pyro *p, budget_list *out) {
+    uint64_t sizes[PYRO_MEM_COUNT];
+    find_sizes(p, sizes);
+    for (int i = 0; i < PYRO_MEM_COUNT; i++)
+        if (!p->buffers[i] && sizes[i]) budget_list_add(out, memory_labels[i], sizes[i]);
+    for (int i = 0; i < 2 * PYRO_LOOKS; i++) {
+        const gpu_image_desc desc = pyro_describe_image(p, (pyro_look)(i % PYRO_LOOKS));
+        if (!p->looks[i / PYRO_LOOKS][i % PYRO_LOOKS])
+            budget_list_add(out, desc.label, gpu_image_bytes(&desc));
+    }
+}
+
+void pyro_destroy(pyro *p, gpu *g) {
+    for (int i = 0; i < PYRO_KERNELS; i++) kernel_destroy(&p->kernels[i], g);
+    for (int i = 0; i < PYRO_MEM_COUNT; i++) gpu_buffer_destroy(g, p->buffers[i]);
+    for (int i = 0; i < 2 * PYRO_LOOKS; i++)
+        gpu_image_destroy(g, p->looks[i / PYRO_LOOKS][i % PYRO_LOOKS]);
+    pyro_report_destroy(p, g);
+    memset(p->buffers, 0, sizeof p->buffers);
+    memset(p->looks, 0, sizeof p->looks);
+}
+
+gpu_buffer *pyro_pair(const pyro *p, pyro_memory pair, uint32_t which) {
+    return p->buffers[pair + (p->current ^ which)];
+}
+
+// ---- what is bound ----------------------------------------------------------------------------
+
+void pyro_bind(const pyro *p, kernel *k, const kernel_place *places) {
+    gpu_buffer *const own[PYRO_OWN] = {
+        [N_PyroGas] = pyro_pair(p, PYRO_MEM_GAS, 0),
+        [N_PyroVelocity] = pyro_pair(p, PYRO_MEM_VELOCITY, 0),
+        [N_PyroPressure] = p->buffers[PYRO_MEM_PRESSURE],
+        [N_PyroRight] = p->buffers[PYRO_MEM_RIGHT],
+        [N_PyroGasTo] = pyro_pair(p, PYRO_MEM_GAS, 1),
+        [N_PyroVelocityTo] = pyro_pair(p, PYRO_MEM_VELOCITY, 1),
+        [N_PyroGasHat] = p->buffers[PYRO_MEM_GAS_HAT],
+        [N_PyroVelocityHat] = p->buffers[PYRO_MEM_VELOCITY_HAT],
+        [N_PyroCurl] = p->buffers[PYRO_MEM_CURL],
+        [N_PyroCoarsePressure] = p->buffers[PYRO_MEM_COARSE_PRESSURE],
+        [N_PyroCoarseRight] = p->buffers[PYRO_MEM_COARSE_RIGHT],
+        [N_PyroReport] = p->buffers[PYRO_MEM_REPORT],
+    };
+    for (int i = 0; i < PYRO_OWN; i++)
+        if (own[i]) kernel_bind_at(k, &places[i], (gpu_binding){.buffer = own[i]});
+}
+
+kernel *pyro_use(pyro *p, pyro_kernel which) {
+    kernel *k = &p->kernels[which];
+    pyro_bind(p, k, k->places);
+    return k;
+}
+
+bool pyro_run(const pyro *p, gpu *g, kernel *k) {
+    return kernel_run(k, g, p->desc.size[0], p->desc.size[1], p->desc.size[2]);
+}
+
+size_t pyro_buffers(const pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]) {
+    out[0] = pyro_pair(p, PYRO_MEM_VELOCITY, 0);
+    out[1] = pyro_pair(p, PYRO_MEM_GAS, 0);
+    out[2] = p->buffers[PYRO_MEM_PRESSURE];
+    return PYRO_STATE_BUFFERS;
+}
+
+uint64_t pyro_steps(const pyro *p) {
+    return p->steps;
+}
+
+static void swap_state(pyro *a, pyro *b) {
+    static const pyro_memory state[] = {PYRO_MEM_VELOCITY, PYRO_MEM_VELOCITY + 1, PYRO_MEM_GAS,
+                                        PYRO_MEM_GAS + 1, PYRO_MEM_PRESSURE};
+    const pyro was = *a;
+    for (size_t i = 0; i < COUNT_OF(state); i++) {
+        a->buffers[state[i]] = b->buffers[state[i]];
+        b->buffers[state[i]] = was.buffers[state[i]];
+    }
+    memcpy(a->looks, b->looks, sizeof a->looks);
+    memcpy(b->looks, was.looks, sizeof b->looks);
+    a->current = b->current, b->current = was.current;
+    a->kept = b->kept, b->kept = was.kept;
+    a->steps = b->steps, b->steps = was.steps;
+}
+
+bool pyro_exchange(pyro *a, pyro *b) {
+    if (memcmp(a->desc.size, b->desc.size, sizeof a->desc.size) != 0 ||
+        a->desc.precision != b->desc.precision)
+        return false;
+    swap_state(a, b);
+    return true;
+}

@@ -1,0 +1,123 @@
+// A solver of gas that burns, on the device: fuel burns where it is hot and finds oxygen, what burns
+// becomes warmer and expands, what is warm rises, and soot and radiation take their part. Low Mach
+// number: no sound, no shock.
+//
+// The gas is in a box of cells. Velocities are staggered (Harlow and Welch 1965), all else is in the
+// middle of cells. A step (pyro_step) carries what the gas holds (Selle et al. 2008), burns it,
+// carries the velocity and pushes it, then makes it as divergent as the expansion wants (Chorin
+// 1968; pressure by multigrid, a fixed number of cycles that begin with the last step's pressure).
+//
+// Units: metres, seconds, kelvin, kilograms. Fuel, what has burnt, and soot are by mass of air where
+// they are carried, so that gas that expands takes them along; pyro_image has kg/m^3.
+//
+// Order of calls: pyro_create, pyro_compile (optional), pyro_build, pyro_allocate; then in frames
+// pyro_reset, and pyro_step.
+#pragma once
+#include "base/arena.h"
+#include "kernel/kernel.h"
+
+typedef struct pyro pyro;
+
+// Open air; a wall that air slips along; a face through which air comes in; around to the other side.
+typedef enum pyro_face { PYRO_OPEN, PYRO_WALL, PYRO_INFLOW, PYRO_PERIODIC } pyro_face;
+typedef enum pyro_advection { PYRO_SEMI_LAGRANGIAN, PYRO_MACCORMACK } pyro_advection;
+typedef enum pyro_precision { PYRO_F32, PYRO_F16, PYRO_AUTO } pyro_precision;
+
+enum {
+    PYRO_LEAST_SIZE = 16,
+    PYRO_MOST_SIZE = 1024,
+    PYRO_BRICK = 8,
+    PYRO_MAX_DEFINES = 24,
+};
+
+typedef struct pyro_desc { // structure: what shaders are compiled for
+    uint32_t size[3];      // cells, multiples of PYRO_BRICK
+    pyro_face faces[6];    // -x +x -y +y -z +z; opposite ones are both periodic or neither is
+    pyro_advection advection;
+    pyro_precision precision; // of velocities and the gas; auto: by the device
+    bool confinement;         // numbers may have some
+    uint32_t cycles;          // of multigrid, per step; 0: 2
+} pyro_desc;
+
+typedef struct pyro_numbers { // parameters of a step; they may change with each step
+    float dt;                 // s
+    float cell;               // side of a cell, m
+    float ambient;            // temperature of the surroundings, K
+    float gravity;            // m/s^2, downwards along z
+    float acceleration[3];    // m/s^2
+    float inflow[3];          // velocity across faces that are PYRO_INFLOW, m/s
+    float confinement;        // acceleration by 1 m/s of difference across a cell, 1/s
+    float max_speed;          // limit of each component, m/s; 0: 16 cells per step
+    float ignition;           // temperature above which fuel burns, K
+    float burn_time;          // that fuel and oxygen in a cell take to mix, s; 0: at once
+    float heat;               // of combustion, less what the flame radiates, J/kg
+    float oxygen;             // kg that 1 kg of fuel takes
+    float molar_mass;         // of the fuel's vapour, kg/kmol
+    float soot_yield;         // kg of 1 kg of fuel
+    float soot_burn_time;     // of soot in hot fresh air, s; 0: soot does not burn
+    float cooling;            // by which gas of 1500 K cools at first, K/s; as T^4
+    float expansion;          // share of what gases do; 1
+} pyro_numbers;
+
+pyro *pyro_create(arena *memory, const pyro_desc *desc); // NULL with a message
+const pyro_desc *pyro_get_desc(const pyro *p);           // after pyro_build with its choices
+
+// Compiles everything that pyro_build needs, without a device. `reader` may be NULL.
+bool pyro_compile(pyro *p, shader_library *library, const shader_reader *reader);
+// Builds shaders and pipelines. Any thread. pyro_defines is valid afterwards.
+bool pyro_build(pyro *p, gpu *g, shader_library *library, const shader_reader *reader);
+// Allocates the state. Its content is undefined until pyro_reset; an existing state is kept.
+bool pyro_allocate(pyro *p, gpu *g);
+// After pyro_build: adds what pyro_allocate, and the first two steps, will take.
+void pyro_list_memory(const pyro *p, budget_list *out);
+void pyro_destroy(pyro *p, gpu *g);
+
+// Sets air of the surroundings, as fast as the inflow. Call it inside a frame.
+bool pyro_reset(pyro *p, gpu *g, const pyro_numbers *numbers);
+// Writes the state as it is to images (pyro_image), as a step does that is kept. Call it inside a
+// frame.
+bool pyro_keep(pyro *p, gpu *g, const pyro_numbers *numbers);
+// Records one step, inside a frame. `keep`: the state after it is written to images (pyro_image),
+// which is done for the last step of a frame, and sometimes for the last two.
+bool pyro_step(pyro *p, gpu *g, const pyro_numbers *numbers, bool keep);
+uint64_t pyro_steps(const pyro *p); // since pyro_reset
+
+// Returns the state that was kept last (0) or the one kept before it (1) as a 3D image of half
+// floats. NULL: there is none.
+typedef enum pyro_look {
+    PYRO_GAS,  // temperature (K), and density (kg/m^3) of fuel, soot, fuel that has burnt
+    PYRO_FLOW, // velocity in the middle of cells (m/s), pressure (Pa)
+    PYRO_LOOKS
+} pyro_look;
+gpu_image *pyro_image(const pyro *p, pyro_look look, int which);
+gpu_image_desc pyro_describe_image(const pyro *p, pyro_look look);
+
+typedef struct pyro_report { // a report on the state after a step
+    uint64_t step;           // pyro_steps at that time
+    uint32_t bad;            // cells that hold what is no number
+    float speed;             // greatest, m/s
+    float residual;          // greatest divergence that is not wanted, times the side of a cell, m/s
+    float hottest;           // K
+    float fuel, burnt, soot; // sums over all cells of the air's mass times what it holds, kg
+    float power;             // heat that burning gives, W, radiation left out
+} pyro_report;
+
+// Records a report. Call it once inside a frame, after its last step.
+bool pyro_watch(pyro *p, gpu *g, const pyro_numbers *numbers);
+// Reads the newest report of a frame that has finished. False: there is none yet. Never waits.
+bool pyro_read(const pyro *p, gpu *g, pyro_report *out);
+
+// Returns the defines for a shader that includes sim/pyro/state.glsl; after pyro_build.
+size_t pyro_defines(const pyro *p, shader_define out[PYRO_MAX_DEFINES]);
+// Binds the state's buffers (PyroGas, PyroVelocity, PyroPressure, PyroRight) to the slots of a
+// kernel. `places` comes from kernel_find with the names of pyro_kernel_table.
+void pyro_bind(const pyro *p, kernel *k, const kernel_place *places);
+extern const kernel_table pyro_kernel_table;
+
+// Returns the buffers of the state, without the count of steps.
+enum { PYRO_STATE_BUFFERS = 3 };
+size_t pyro_buffers(const pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]);
+
+// Exchanges the states, images and counts of steps of two solvers. False when their cells or
+// precisions differ.
+bool pyro_exchange(pyro *a, pyro *b);

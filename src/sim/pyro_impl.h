@@ -1,0 +1,118 @@
+// The inside of a combustion solver, for the files of this layer only.
+#pragma once
+#include "gpu/profile.h"
+#include "kernel/kernel.h"
+#include "sim/pyro.h"
+
+enum {
+    PYRO_CYCLES = 2,
+    PYRO_MAX_LEVELS = 10,
+    PYRO_COARSEST = 8192, // cells at most of the level that one group solves
+};
+
+typedef enum pyro_memory {
+    PYRO_MEM_VELOCITY,                       // two: of the state, and the next
+    PYRO_MEM_GAS = PYRO_MEM_VELOCITY + 2,    // two
+    PYRO_MEM_VELOCITY_HAT = PYRO_MEM_GAS + 2, // with MacCormack; also where confinement is made
+    PYRO_MEM_GAS_HAT,
+    PYRO_MEM_CURL, // with confinement
+    PYRO_MEM_PRESSURE,
+    PYRO_MEM_RIGHT,
+    PYRO_MEM_COARSE_PRESSURE, // of all levels but the finest
+    PYRO_MEM_COARSE_RIGHT,
+    PYRO_MEM_REPORT,
+    PYRO_MEM_COUNT
+} pyro_memory;
+
+typedef struct pyro_level {
+    uint32_t size[3];
+    uint32_t coarser[3]; // cells along each axis for one of the next level: 1 or 2
+    uint32_t first;      // of its cells in the coarse buffers
+    float weights[3];    // of differences along each axis
+} pyro_level;
+
+enum { PYRO_REPORT_PLACES = GPU_FRAMES_IN_FLIGHT + 1, PYRO_REPORT_WORDS = 8 };
+
+typedef struct pyro_reporter {
+    gpu_buffer *found;
+    gpu_image *result;
+    struct {
+        uint64_t frame, step; // frame 0: nothing was recorded
+    } places[PYRO_REPORT_PLACES];
+    uint32_t next;
+} pyro_reporter;
+
+typedef enum pyro_kernel {
+    PYRO_K_RESET,
+    PYRO_K_GAS_PREDICT,
+    PYRO_K_GAS,
+    PYRO_K_VORTICITY,
+    PYRO_K_CURL,
+    PYRO_K_VELOCITY_PREDICT,
+    PYRO_K_VELOCITY,
+    PYRO_K_DIVERGENCE,
+    PYRO_K_SMOOTH_FINEST,
+    PYRO_K_SMOOTH,
+    PYRO_K_RESTRICT_FINEST,
+    PYRO_K_RESTRICT,
+    PYRO_K_COARSEST,
+    PYRO_K_PROLONG,
+    PYRO_K_PROLONG_FINEST,
+    PYRO_K_PROJECT,
+    PYRO_K_LOOK,
+    PYRO_K_REPORT,
+    PYRO_K_REPORT_LAST,
+    PYRO_KERNELS
+} pyro_kernel;
+
+// Buffers that are always the same come first: pyro_use binds them.
+#define PYRO_OWN_NAMES(NAME)                                                                       \
+    NAME(PyroGas), NAME(PyroVelocity), NAME(PyroPressure), NAME(PyroRight), NAME(PyroGasTo),       \
+        NAME(PyroVelocityTo), NAME(PyroGasHat), NAME(PyroVelocityHat), NAME(PyroCurl),             \
+        NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroReport)
+#define PYRO_NAMES(NAME)                                                                           \
+    PYRO_OWN_NAMES(NAME), NAME(PyroVorticity), NAME(scalars), NAME(flow), NAME(result), NAME(dt),  \
+        NAME(cell), NAME(reach), NAME(ambient), NAME(lightness), NAME(inflow), NAME(gravity),      \
+        NAME(acceleration), NAME(confinement), NAME(max_speed), NAME(ignition), NAME(burn_share),  \
+        NAME(oxygen_need), NAME(heat), NAME(soot_yield), NAME(soot_share), NAME(soot_heat),        \
+        NAME(cooling), NAME(expansion), NAME(weights), NAME(level_size), NAME(level_first),        \
+        NAME(colour), NAME(coarse_size), NAME(coarser), NAME(coarse_first), NAME(sweeps),          \
+        NAME(relaxation), NAME(pressure_unit), NAME(groups), NAME(mass)
+enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
+
+struct pyro {
+    arena *memory;
+    pyro_desc desc;
+    bool chooses_precision;
+    shader_define defines[PYRO_MAX_DEFINES];
+    size_t define_count;
+    pyro_level levels[PYRO_MAX_LEVELS];
+    uint32_t level_count;
+    kernel kernels[PYRO_KERNELS]; // what its structure does not need is not compiled
+    gpu_buffer *buffers[PYRO_MEM_COUNT];
+    gpu_image *looks[2][PYRO_LOOKS]; // [kept % 2] is written next
+    uint32_t current;                // of pairs that are the state's
+    uint64_t kept, steps;
+    pyro_reporter reporter;
+};
+
+uint64_t pyro_cells(const pyro *p);
+gpu_buffer *pyro_pair(const pyro *p, pyro_memory pair, uint32_t which); // the current one (0), the other
+// A kernel with the buffers bound that are always the same.
+kernel *pyro_use(pyro *p, pyro_kernel which);
+bool pyro_run(const pyro *p, gpu *g, kernel *k); // a thread for each cell
+
+// pyro_numbers.c
+void pyro_set_gas(kernel *k, const pyro_numbers *n); // what all that reads the gas is told
+void pyro_set_burning(kernel *k, const pyro_numbers *n);
+
+// pyro_pressure.c
+bool pyro_find_levels(pyro *p); // false with a message
+uint64_t pyro_coarse_cells(const pyro *p);
+// Of the next velocity, whose expansion is in PyroRight.
+bool pyro_project(pyro *p, gpu *g, const pyro_numbers *numbers);
+void pyro_set_level(const pyro *p, kernel *k, uint32_t level);
+
+// pyro_report.c
+bool pyro_report_allocate(pyro *p, gpu *g);
+void pyro_report_destroy(pyro *p, gpu *g);

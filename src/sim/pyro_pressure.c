@@ -1,0 +1,138 @@
+// The pressure of a combustion solver: V-cycles of multigrid, red-black Gauss-Seidel on each level.
+#include "base/error.h"
+#include "sim/pyro_impl.h"
+
+// Sweeps on the coarsest level: as many as bring news from one end to the other twice.
+static uint32_t coarsest_sweeps(const pyro_level *l) {
+    uint32_t longest = l->size[0];
+    for (int i = 1; i < 3; i++)
+        if (l->size[i] > longest) longest = l->size[i];
+    return 2 * longest + 8;
+}
+
+static float coarsest_relaxation(const pyro_level *l) {
+    const float n = (float)(coarsest_sweeps(l) - 8) / 2;
+    return 2 / (1 + 3.14159265f / (n + 1)); // of Young (1954), for so many cells along an axis
+}
+
+// ---- levels -----------------------------------------------------------------------------------
+
+// Axes of an even number of cells are halved, down to 2. Where some are odd, the others go on alone
+// only until one group can solve what is left.
+static bool level_coarsen(const pyro_level *l, pyro_level *next) {
+    bool any = false;
+    const uint64_t cells = (uint64_t)l->size[0] * l->size[1] * l->size[2];
+    uint32_t odd = 0;
+    for (int i = 0; i < 3; i++) odd += l->size[i] % 2;
+    *next = (pyro_level){.first = l->first};
+    for (int i = 0; i < 3; i++) {
+        const bool halves = l->size[i] % 2 == 0 && l->size[i] > 2;
+        next->size[i] = halves ? l->size[i] / 2 : l->size[i];
+        next->weights[i] = halves ? l->weights[i] / 4 : l->weights[i];
+        any |= halves;
+    }
+    return any && !(odd > 0 && cells <= PYRO_COARSEST);
+}
+
+bool pyro_find_levels(pyro *p) {
+    pyro_level *l = p->levels;
+    uint32_t first = 0;
+    *l = (pyro_level){.weights = {1, 1, 1}};
+    for (int i = 0; i < 3; i++) l->size[i] = p->desc.size[i];
+    p->level_count = 1;
+    for (pyro_level next; p->level_count < PYRO_MAX_LEVELS && level_coarsen(l, &next); l++) {
+        for (int i = 0; i < 3; i++) l->coarser[i] = l->size[i] / next.size[i];
+        next.first = first;
+        first += next.size[0] * next.size[1] * next.size[2];
+        p->levels[p->level_count++] = next;
+    }
+    const uint64_t cells = (uint64_t)l->size[0] * l->size[1] * l->size[2];
+    return cells <= PYRO_COARSEST ||
+           err_set("a box of %u x %u x %u cells cannot be halved often enough; take multiples of 16 "
+                   "or 32",
+                   p->desc.size[0], p->desc.size[1], p->desc.size[2]);
+}
+
+uint64_t pyro_coarse_cells(const pyro *p) {
+    const pyro_level *last = &p->levels[p->level_count - 1];
+    return last->first + (uint64_t)last->size[0] * last->size[1] * last->size[2];
+}
+
+static void set_size(kernel *k, int name, const uint32_t size[3]) {
+    const float value[3] = {(float)size[0], (float)size[1], (float)size[2]};
+    kernel_set(k, name, value, sizeof value);
+}
+
+void pyro_set_level(const pyro *p, kernel *k, uint32_t level) {
+    const pyro_level *l = &p->levels[level];
+    kernel_set(k, N_weights, l->weights, sizeof l->weights);
+    set_size(k, N_level_size, l->size);
+    kernel_set_int(k, N_level_first, (int32_t)l->first);
+    if (level + 1 == p->level_count) return;
+    set_size(k, N_coarse_size, l[1].size);
+    set_size(k, N_coarser, l->coarser);
+    kernel_set_int(k, N_coarse_first, (int32_t)l[1].first);
+}
+
+// ---- a cycle ----------------------------------------------------------------------------------
+
+// A kernel of a level: the finest has its own, whose pressure lies in bricks.
+static kernel *use_level(pyro *p, pyro_kernel finest, pyro_kernel coarse, uint32_t level) {
+    kernel *k = pyro_use(p, level == 0 ? finest : coarse);
+    pyro_set_level(p, k, level);
+    if (level > 0) {
+        kernel_bind_buffer(k, N_PyroPressure, p->buffers[PYRO_MEM_COARSE_PRESSURE]);
+        kernel_bind_buffer(k, N_PyroRight, p->buffers[PYRO_MEM_COARSE_RIGHT]);
+    }
+    return k;
+}
+
+static bool pressure_smooth(pyro *p, gpu *g, uint32_t level) {
+    const uint32_t *size = p->levels[level].size;
+    for (int colour = 0; colour < 2; colour++) {
+        kernel *k = use_level(p, PYRO_K_SMOOTH_FINEST, PYRO_K_SMOOTH, level);
+        kernel_set_int(k, N_colour, colour);
+        if (!kernel_run(k, g, (size[0] + 1) / 2, size[1], size[2])) return false;
+    }
+    return true;
+}
+
+static bool pressure_restrict(pyro *p, gpu *g, uint32_t level) {
+    const uint32_t *size = p->levels[level + 1].size;
+    kernel *k = use_level(p, PYRO_K_RESTRICT_FINEST, PYRO_K_RESTRICT, level);
+    return kernel_run(k, g, size[0], size[1], size[2]);
+}
+
+static bool pressure_prolong(pyro *p, gpu *g, uint32_t level) {
+    const uint32_t *size = p->levels[level].size;
+    kernel *k = use_level(p, PYRO_K_PROLONG_FINEST, PYRO_K_PROLONG, level);
+    return kernel_run(k, g, (size[0] + 1) / 2, size[1], size[2]);
+}
+
+static bool pressure_end(pyro *p, gpu *g) {
+    const uint32_t last = p->level_count - 1;
+    kernel *k = pyro_use(p, PYRO_K_COARSEST);
+    pyro_set_level(p, k, last);
+    kernel_set_int(k, N_sweeps, (int32_t)coarsest_sweeps(&p->levels[last]));
+    kernel_set_float(k, N_relaxation, coarsest_relaxation(&p->levels[last]));
+    return kernel_run(k, g, k->binaries[0].local_size[0], 1, 1);
+}
+
+static bool pressure_cycle(pyro *p, gpu *g) {
+    const uint32_t last = p->level_count - 1;
+    for (uint32_t i = 0; i < last; i++)
+        if (!pressure_smooth(p, g, i) || !pressure_restrict(p, g, i)) return false;
+    if (!pressure_end(p, g)) return false;
+    for (uint32_t i = last; i-- > 0;)
+        if (!pressure_prolong(p, g, i) || !pressure_smooth(p, g, i)) return false;
+    return true;
+}
+
+bool pyro_project(pyro *p, gpu *g, const pyro_numbers *n) {
+    kernel *divergence = pyro_use(p, PYRO_K_DIVERGENCE);
+    kernel_set(divergence, N_inflow, n->inflow, sizeof n->inflow);
+    if (!pyro_run(p, g, divergence)) return false;
+    for (uint32_t i = 0; i < p->desc.cycles; i++)
+        if (!pressure_cycle(p, g)) return false;
+    return pyro_run(p, g, pyro_use(p, PYRO_K_PROJECT));
+}

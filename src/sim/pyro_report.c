@@ -1,0 +1,70 @@
+// Two dispatches per frame, and a copy of their result to one of as many places as frames can be in
+// flight (as in flow_report.c).
+#include "sim/pyro_impl.h"
+#include <string.h>
+
+enum { CELLS_A_GROUP = 256 };
+
+bool pyro_report_allocate(pyro *p, gpu *g) {
+    pyro_reporter *r = &p->reporter;
+    const uint64_t record = PYRO_REPORT_WORDS * sizeof(float);
+    if (r->result) return true;
+    r->found = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "report of burning gas",
+                                                       .size = PYRO_REPORT_PLACES * record,
+                                                       .kind = GPU_BUFFER_READBACK});
+    r->result = gpu_image_create(g, &(gpu_image_desc){.label = "report of burning gas",
+                                                      .format = GPU_R32U,
+                                                      .width = PYRO_REPORT_WORDS,
+                                                      .height = 1,
+                                                      .use = GPU_USE_STORAGE});
+    return r->found && r->result;
+}
+
+void pyro_report_destroy(pyro *p, gpu *g) {
+    gpu_buffer_destroy(g, p->reporter.found);
+    gpu_image_destroy(g, p->reporter.result);
+    p->reporter = (pyro_reporter){0};
+}
+
+bool pyro_watch(pyro *p, gpu *g, const pyro_numbers *n) {
+    pyro_reporter *r = &p->reporter;
+    const uint32_t place = r->next;
+    const float weights[3] = {1, 1, 1};
+    if (p->steps == 0) return true;
+    kernel *each = pyro_use(p, PYRO_K_REPORT), *last = pyro_use(p, PYRO_K_REPORT_LAST);
+    pyro_set_burning(each, n);
+    kernel_set(each, N_inflow, n->inflow, sizeof n->inflow);
+    kernel_set(each, N_weights, weights, sizeof weights);
+    kernel_set_float(each, N_mass, 353 * n->cell * n->cell * n->cell);
+    kernel_bind_image(last, N_result, r->result);
+    kernel_set_int(last, N_groups, (int32_t)(pyro_cells(p) / CELLS_A_GROUP));
+    if (!pyro_run(p, g, each) || !kernel_run(last, g, CELLS_A_GROUP, 1, 1) ||
+        !gpu_image_copy_to_buffer(g, r->result, r->found,
+                                  place * PYRO_REPORT_WORDS * sizeof(float)))
+        return false;
+    r->places[place].frame = gpu_frame_open(g);
+    r->places[place].step = p->steps;
+    r->next = (place + 1) % PYRO_REPORT_PLACES;
+    return true;
+}
+
+bool pyro_read(const pyro *p, gpu *g, pyro_report *out) {
+    const pyro_reporter *r = &p->reporter;
+    for (uint32_t age = 1; age <= PYRO_REPORT_PLACES; age++) {
+        const uint32_t place = (r->next + PYRO_REPORT_PLACES - age) % PYRO_REPORT_PLACES;
+        if (r->places[place].frame == 0 || !gpu_frame_done(g, r->places[place].frame)) continue;
+        float w[PYRO_REPORT_WORDS];
+        memcpy(w, (const char *)gpu_buffer_map(r->found) + place * sizeof w, sizeof w);
+        *out = (pyro_report){.step = r->places[place].step,
+                             .bad = (uint32_t)w[0],
+                             .speed = w[1],
+                             .residual = w[2],
+                             .hottest = w[3],
+                             .fuel = w[4],
+                             .burnt = w[5],
+                             .soot = w[6],
+                             .power = w[7]};
+        return true;
+    }
+    return false;
+}

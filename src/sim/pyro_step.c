@@ -1,0 +1,158 @@
+// A step of a combustion solver: what the gas carries and burns, its velocity, the projection; then
+// the images of the state.
+#include "base/error.h"
+#include "sim/fuels.h"
+#include "sim/pyro_impl.h"
+#include <math.h>
+#include <string.h>
+
+static const float air_molar_mass = 28.97f; // kg/kmol
+static const float air_heat_capacity = 1150; // J/(kg K), between the surroundings and a flame
+static const float soot_heat = 32.8e6f;      // of combustion, J/kg
+static const float least_oxygen = 1e-4f;     // that fuel takes, by mass: powder brings its own
+static const float cooling_at = 1500;        // K, at which `cooling` is given
+
+enum { MOST_CELLS_A_STEP = 16 };
+
+static float share(float dt, float time, float at_zero) {
+    return time > 0 ? 1 - expf(-dt / time) : at_zero;
+}
+
+// ---- numbers ----------------------------------------------------------------------------------
+
+void pyro_set_gas(kernel *k, const pyro_numbers *n) {
+    kernel_set_float(k, N_ambient, n->ambient);
+    kernel_set_float(k, N_lightness, air_molar_mass / fmaxf(n->molar_mass, 1));
+}
+
+void pyro_set_burning(kernel *k, const pyro_numbers *n) {
+    pyro_set_gas(k, n);
+    kernel_set_float(k, N_dt, n->dt);
+    kernel_set_float(k, N_ignition, n->ignition);
+    kernel_set_float(k, N_burn_share, share(n->dt, n->burn_time, 1));
+    kernel_set_float(k, N_oxygen_need, fmaxf(n->oxygen, least_oxygen));
+    kernel_set_float(k, N_heat, n->heat / air_heat_capacity);
+    kernel_set_float(k, N_soot_yield, n->soot_yield);
+    kernel_set_float(k, N_soot_share, share(n->dt, n->soot_burn_time, 0));
+    kernel_set_float(k, N_soot_heat, soot_heat / air_heat_capacity);
+    kernel_set_float(k, N_cooling, 3 * n->cooling * n->dt / powf(cooling_at, 4));
+    kernel_set_float(k, N_expansion, n->expansion);
+}
+
+static void set_carrying(kernel *k, const pyro_numbers *n) {
+    kernel_set_float(k, N_reach, n->dt / n->cell);
+    kernel_set(k, N_inflow, n->inflow, sizeof n->inflow);
+}
+
+// ---- a step -----------------------------------------------------------------------------------
+
+static bool corrects(const pyro *p) {
+    return p->desc.advection == PYRO_MACCORMACK;
+}
+
+static bool gas_advance(pyro *p, gpu *g, const pyro_numbers *n) {
+    if (corrects(p)) {
+        kernel *first = pyro_use(p, PYRO_K_GAS_PREDICT);
+        set_carrying(first, n);
+        if (!pyro_run(p, g, first)) return false;
+    }
+    kernel *k = pyro_use(p, PYRO_K_GAS);
+    set_carrying(k, n);
+    pyro_set_burning(k, n);
+    kernel_set_float(k, N_cell, n->cell);
+    return pyro_run(p, g, k);
+}
+
+// Of the velocity before the step: where vorticity is confined. The gas's prediction is not needed
+// any more, and vorticity stands in its place.
+static bool curl_find(pyro *p, gpu *g, const pyro_numbers *n) {
+    for (pyro_kernel i = PYRO_K_VORTICITY; i <= PYRO_K_CURL; i++) {
+        kernel *k = pyro_use(p, i);
+        set_carrying(k, n);
+        kernel_bind_buffer(k, N_PyroVorticity, p->buffers[PYRO_MEM_GAS_HAT]);
+        if (!pyro_run(p, g, k)) return false;
+    }
+    return true;
+}
+
+static bool velocity_advance(pyro *p, gpu *g, const pyro_numbers *n) {
+    if (p->desc.confinement && !curl_find(p, g, n)) return false;
+    if (corrects(p)) {
+        kernel *first = pyro_use(p, PYRO_K_VELOCITY_PREDICT);
+        set_carrying(first, n);
+        if (!pyro_run(p, g, first)) return false;
+    }
+    kernel *k = pyro_use(p, PYRO_K_VELOCITY);
+    const float most = MOST_CELLS_A_STEP * n->cell / n->dt;
+    set_carrying(k, n);
+    pyro_set_gas(k, n);
+    kernel_set_float(k, N_dt, n->dt);
+    kernel_set_float(k, N_gravity, n->gravity);
+    kernel_set(k, N_acceleration, n->acceleration, sizeof n->acceleration);
+    kernel_set_float(k, N_confinement, n->confinement * n->dt);
+    kernel_set_float(k, N_max_speed, n->max_speed > 0 && n->max_speed < most ? n->max_speed : most);
+    kernel_bind_buffer(k, N_PyroGas, pyro_pair(p, PYRO_MEM_GAS, 1));
+    return pyro_run(p, g, k);
+}
+
+static bool check_numbers(const pyro_numbers *n) {
+    return (n->dt > 0 && n->cell > 0 && n->ambient > 0) ||
+           err_set("a step of %g s on cells of %g m in air of %g K; each must be more than 0",
+                   (double)n->dt, (double)n->cell, (double)n->ambient);
+}
+
+bool pyro_step(pyro *p, gpu *g, const pyro_numbers *n, bool keep) {
+    if (!check_numbers(n) || !gas_advance(p, g, n) || !velocity_advance(p, g, n) ||
+        !pyro_project(p, g, n))
+        return false;
+    p->current ^= 1;
+    p->steps++;
+    return !keep || pyro_keep(p, g, n);
+}
+
+bool pyro_reset(pyro *p, gpu *g, const pyro_numbers *n) {
+    p->kept = p->steps = 0;
+    p->current = 0;
+    memset(p->reporter.places, 0, sizeof p->reporter.places);
+    for (int which = 0; which < 2; which++) {
+        kernel *k = pyro_use(p, PYRO_K_RESET);
+        kernel_set(k, N_inflow, n->inflow, sizeof n->inflow);
+        kernel_bind_buffer(k, N_PyroGasTo, p->buffers[PYRO_MEM_GAS + which]);
+        kernel_bind_buffer(k, N_PyroVelocityTo, p->buffers[PYRO_MEM_VELOCITY + which]);
+        if (!pyro_run(p, g, k)) return false;
+    }
+    return true;
+}
+
+// ---- looks ------------------------------------------------------------------------------------
+
+gpu_image *pyro_image(const pyro *p, pyro_look look, int which) {
+    return p->kept > (uint64_t)which ? p->looks[(p->kept + 1 + (uint64_t)which) % 2][look] : NULL;
+}
+
+gpu_image_desc pyro_describe_image(const pyro *p, pyro_look look) {
+    return (gpu_image_desc){.label = look == PYRO_GAS ? "burning gas" : "its flow",
+                            .format = GPU_RGBA16F,
+                            .width = p->desc.size[0],
+                            .height = p->desc.size[1],
+                            .depth = p->desc.size[2],
+                            .use = GPU_USE_SAMPLED | GPU_USE_STORAGE};
+}
+
+bool pyro_keep(pyro *p, gpu *g, const pyro_numbers *n) {
+    static const int names[PYRO_LOOKS] = {[PYRO_GAS] = N_scalars, [PYRO_FLOW] = N_flow};
+    kernel *k = pyro_use(p, PYRO_K_LOOK);
+    for (pyro_look i = 0; i < PYRO_LOOKS; i++) {
+        gpu_image **image = &p->looks[p->kept % 2][i];
+        const gpu_image_desc desc = pyro_describe_image(p, i);
+        if (!*image) *image = gpu_image_create(g, &desc);
+        if (!*image) return false;
+        kernel_bind_image(k, names[i], *image);
+    }
+    set_carrying(k, n);
+    pyro_set_gas(k, n);
+    const float density = 353 / n->ambient; // of the surroundings, kg/m^3
+    kernel_set_float(k, N_pressure_unit, density * n->cell / n->dt);
+    p->kept++;
+    return pyro_run(p, g, k);
+}

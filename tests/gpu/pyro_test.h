@@ -1,0 +1,112 @@
+// Burning gas for tests: made, set to a state by the host, stepped, and read back in full precision.
+#pragma once
+#include "gpu_test.h"
+#include "sim/pyro.h"
+#include <math.h>
+#include <string.h>
+
+typedef struct pyro_world {
+    gpu *device;
+    arena memory;
+    shader_library *library;
+    pyro *solver;
+    pyro_desc desc;
+    pyro_numbers numbers;
+    size_t cells;
+    float *velocity;  // three components, one after the other; pyro_at of each
+    float (*gas)[4];  // warmth, fuel, burnt, soot
+    float *pressure;  // m/s
+} pyro_world;
+
+static inline void pyro_open(pyro_world *w, gpu *device, const pyro_desc *desc) {
+    char shaders[4096];
+    snprintf(shaders, sizeof shaders, "%s/shaders", getenv("ROIL_SOURCE_DIR"));
+    *w = (pyro_world){.device = device, .desc = *desc};
+    w->desc.precision = PYRO_F32;
+    w->library = shader_library_create(&(shader_library_desc){.shader_root = shaders});
+    w->solver = pyro_create(&w->memory, &w->desc);
+    gpu_test_ok(w->solver);
+    gpu_test_ok(pyro_build(w->solver, device, w->library, NULL));
+    gpu_test_ok(pyro_allocate(w->solver, device));
+    w->numbers = (pyro_numbers){.dt = 1.0f / 60,
+                                .cell = 0.05f,
+                                .ambient = 300,
+                                .ignition = 600,
+                                .heat = 3e7f,
+                                .oxygen = 3.5f,
+                                .molar_mass = 29,
+                                .expansion = 1};
+    w->cells = (size_t)desc->size[0] * desc->size[1] * desc->size[2];
+    w->velocity = mem_alloc(3 * w->cells * sizeof *w->velocity);
+    w->gas = mem_alloc(w->cells * sizeof *w->gas);
+    w->pressure = mem_alloc(w->cells * sizeof *w->pressure);
+    memset(w->velocity, 0, 3 * w->cells * sizeof *w->velocity);
+    memset(w->gas, 0, w->cells * sizeof *w->gas);
+    memset(w->pressure, 0, w->cells * sizeof *w->pressure);
+    gpu_test_ok(gpu_frame_begin(device));
+    gpu_test_ok(pyro_reset(w->solver, device, &w->numbers));
+    gpu_test_ok(gpu_frame_end(device));
+}
+
+static inline void pyro_close(pyro_world *w) {
+    pyro_destroy(w->solver, w->device);
+    shader_library_destroy(w->library);
+    arena_free(&w->memory);
+    mem_free(w->velocity);
+    mem_free(w->gas);
+    mem_free(w->pressure);
+}
+
+static inline void pyro_run_steps(pyro_world *w, int steps) {
+    while (steps > 0) {
+        gpu_test_ok(gpu_frame_begin(w->device));
+        for (int i = 0; i < 10 && steps > 0; i++, steps--)
+            gpu_test_ok(pyro_step(w->solver, w->device, &w->numbers, false));
+        gpu_test_ok(gpu_frame_end(w->device));
+    }
+}
+
+static inline pyro_report pyro_look_at(pyro_world *w) {
+    pyro_report report = {0};
+    gpu_test_ok(gpu_frame_begin(w->device));
+    gpu_test_ok(pyro_watch(w->solver, w->device, &w->numbers));
+    gpu_test_ok(gpu_frame_end(w->device));
+    gpu_test_ok(gpu_idle(w->device));
+    assert_true(pyro_read(w->solver, w->device, &report));
+    assert_int_equal(report.step, pyro_steps(w->solver));
+    return report;
+}
+
+static inline void pyro_transfer(pyro_world *w, bool write) {
+    gpu_buffer *buffers[PYRO_STATE_BUFFERS];
+    void *const bytes[PYRO_STATE_BUFFERS] = {w->velocity, w->gas, w->pressure};
+    pyro_buffers(w->solver, buffers);
+    gpu_test_ok(gpu_idle(w->device));
+    for (int i = 0; i < PYRO_STATE_BUFFERS; i++) {
+        const size_t size = gpu_buffer_size(buffers[i]);
+        gpu_test_ok(write ? gpu_buffer_write(w->device, buffers[i], 0, bytes[i], size)
+                          : gpu_buffer_read(w->device, buffers[i], 0, bytes[i], size));
+    }
+}
+
+// Where a cell lies in memory.
+static inline size_t pyro_cell_at(const pyro_world *w, const int c[3]) {
+    const size_t bricks[3] = {w->desc.size[0] / 8, w->desc.size[1] / 8, w->desc.size[2] / 8};
+    const size_t b[3] = {(size_t)c[0] / 8, (size_t)c[1] / 8, (size_t)c[2] / 8};
+    const size_t brick = b[0] + bricks[0] * (b[1] + bricks[1] * b[2]);
+    return 512 * brick + (size_t)(c[0] % 8 + 8 * (c[1] % 8) + 64 * (c[2] % 8));
+}
+
+// Component `axis` of the face at the lower end of a cell.
+static inline float *pyro_face_at(pyro_world *w, int axis, const int c[3]) {
+    return &w->velocity[(size_t)axis * w->cells + pyro_cell_at(w, c)];
+}
+
+// Calls `each` for all cells.
+typedef void pyro_visit(pyro_world *w, const int c[3], void *data);
+static inline void pyro_for_each(pyro_world *w, pyro_visit *each, void *data) {
+    int c[3];
+    for (c[2] = 0; c[2] < (int)w->desc.size[2]; c[2]++)
+        for (c[1] = 0; c[1] < (int)w->desc.size[1]; c[1]++)
+            for (c[0] = 0; c[0] < (int)w->desc.size[0]; c[0]++) each(w, c, data);
+}

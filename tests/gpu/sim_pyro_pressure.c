@@ -1,0 +1,74 @@
+// The projection of burning gas: what divergence is left after a step, and how fast cycles shrink it.
+#include "pyro_test.h"
+
+static float noise(uint32_t *seed) {
+    *seed = *seed * 1664525u + 1013904223u;
+    return (float)(*seed >> 8) / 8388608.0f - 1;
+}
+
+// Velocities so small that hardly anything is carried in a step: what is projected is known.
+static void rough(pyro_world *w, const int c[3], void *seed) {
+    for (int axis = 0; axis < 3; axis++)
+        if (c[axis] > 0 || w->desc.faces[2 * axis] != PYRO_WALL)
+            *pyro_face_at(w, axis, c) = 1e-4f * noise(seed);
+}
+
+// One wave in each direction.
+static void smooth(pyro_world *w, const int c[3], void *data) {
+    (void)data;
+    for (int axis = 0; axis < 3; axis++) {
+        const double k = 3.14159265358979 / w->desc.size[axis];
+        const double wave = sin(k * c[axis]) * cos(2 * k * (c[(axis + 1) % 3] + 0.5));
+        if (c[axis] > 0) *pyro_face_at(w, axis, c) = (float)(1e-4 * wave);
+    }
+}
+
+typedef struct row {
+    const char *name;
+    uint32_t size[3];
+    pyro_face faces[6];
+} row;
+
+static const row rows[] = {
+    {"open over ground", {32, 32, 48}, {[4] = PYRO_WALL}},
+    {"open", {24, 40, 32}, {0}},
+    {"closed", {32, 32, 32}, {PYRO_WALL, PYRO_WALL, PYRO_WALL, PYRO_WALL, PYRO_WALL, PYRO_WALL}},
+    {"around", {32, 32, 32}, {3, 3, 3, 3, 3, 3}},
+    {"a duct", {64, 16, 24}, {PYRO_INFLOW, PYRO_OPEN, PYRO_WALL, PYRO_WALL, PYRO_WALL, PYRO_WALL}},
+    {"odd", {72, 56, 40}, {[4] = PYRO_WALL}},
+};
+
+// The greatest divergence that is left, by the greatest that there was.
+static double left_after(gpu *g, const row *r, uint32_t cycles, pyro_visit *state) {
+    pyro_world w;
+    pyro_desc desc = {.cycles = cycles};
+    uint32_t seed = 1;
+    memcpy(desc.size, r->size, sizeof desc.size);
+    memcpy(desc.faces, r->faces, sizeof desc.faces);
+    pyro_open(&w, g, &desc);
+    pyro_for_each(&w, state, &seed);
+    pyro_transfer(&w, true);
+    pyro_run_steps(&w, 1);
+    const pyro_report report = pyro_look_at(&w);
+    assert_int_equal(report.bad, 0);
+    pyro_close(&w);
+    return (double)report.residual / 1e-4;
+}
+
+static void cycles_shrink_what_is_left(void **state) {
+    for (size_t i = 0; i < COUNT_OF(rows); i++) {
+        double even[4], uneven[4];
+        for (uint32_t n = 0; n < 4; n++) {
+            even[n] = left_after(*state, &rows[i], n + 1, smooth);
+            uneven[n] = left_after(*state, &rows[i], n + 1, rough);
+        }
+        print_message("%s: waves %.1e %.1e %.1e %.1e; noise %.1e %.1e %.1e %.1e\n", rows[i].name,
+                      even[0], even[1], even[2], even[3], uneven[0], uneven[1], uneven[2],
+                      uneven[3]);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(cycles_shrink_what_is_left)};
+    return gpu_test_run(tests, COUNT_OF(tests));
+}
