@@ -19,6 +19,8 @@ extern const pass_type particles_type;
 extern const pass_type picture_type;
 extern const pass_type pieces_type;
 extern const pass_type point_lights_type;
+extern const pass_type pyro_source_type;
+extern const pass_type pyro_type;
 extern const pass_type reference_type;
 extern const pass_type shell_type;
 extern const pass_type shade_type;
@@ -96,6 +98,8 @@ static const pass_type *const types[] = {
     &slices_obstacle_type,
     &lbm_type,
     &lbm_source_type,
+    &pyro_source_type,
+    &pyro_type,
 };
 
 const pass_type *const *pass_types(size_t *count) {

@@ -192,7 +192,7 @@ void l_material_open(lua_State *L);
 void l_instances_open(lua_State *L);
 void l_scatter_open(lua_State *L);
 void l_pass_open(lua_State *L);
-void l_lbm_open(lua_State *L);
+void l_air_open(lua_State *L);
 void l_slices_open(lua_State *L);
 void l_point_lights_open(lua_State *L);
 void l_particles_open(lua_State *L);

@@ -34,6 +34,18 @@
         "the first four"),                                                                         \
     KEY("name", "\"lbm\"", "for --set NAME.key=value and statistics; numbered when taken"))
 
+#define PYRO_KEYS KEYS(                                                                            \
+    KEY("size", "{x, y, z} cells", "of the box: multiples of 8 from 16 to 1024; required"),        \
+    KEY("voxel_size", "m", "edge of a cell; required"),                                            \
+    KEY("position", "0, 0, 0 m", "middle of the lowest face"),                                     \
+    KEY("speed", "12 m/s", "that the gas is expected to reach: a step is the shorter for it"),     \
+    KEY("time_step", "0 s", "that a step takes; 0: in which the speed crosses 1.5 cells"),         \
+    KEY("warm_up", "0 s", "that are simulated before the first frame"),                            \
+    KEY("boundary", "{ sides = \"open\", bottom = \"wall\", top = \"open\" }",                     \
+        "a word for all faces, or one each for left, right, front, back, bottom, top; sides are "  \
+        "the first four"),                                                                         \
+    KEY("name", "\"pyro\"", "for --set NAME.key=value and statistics; numbered when taken"))
+
 #define SLICES_KEYS KEYS(                                                                          \
     KEY("count", "2 [1, 32]", "slices; they stand at equal angles round the axis"),                \
     KEY("size", "{128, 128} cells [16, 2048]", "of a slice"),                                      \
@@ -157,6 +169,26 @@ const script_object reference_sources[] = {
         KEY("dye", "field", "a second colour of smoke"),
         KEY("velocity", "field m/s", "three components"),
         KEY("pressure", "field Pa", "beyond that of the air around"),
+        KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "in which it is simulated"),
+        KEY("time_step", "number s", "that a step takes"))},
+
+    {"pyro", "source", "local fire = pyro { size = {64, 64, 96}, voxel_size = 0.05, fuel = \"petrol\" }",
+     "gas that burns in a box: fuel that is hot and finds air becomes fire, which expands, rises and "
+     "leaves soot; fire.soot is a field, 0 outside the box. What else it takes is what `roil info "
+     "passes pyro` lists: burn_time, cooling, vorticity ... Time passes as in `lbm`",
+     .keys = PYRO_KEYS,
+     .members = KEYS(
+        KEY("source { }", "{ shape = field, fuel = 2, temperature = 900, during = {0, 0.15} }",
+            "where the gas is given fuel, heat, soot and speed: where the shape is above 0.5, or within "
+            "meshes, as of `lbm`; `roil info passes pyro_source` lists the rest"),
+        KEY("temperature", "field K", "0 outside the box"),
+        KEY("fuel", "field kg/m^3", "that has not burnt"),
+        KEY("soot", "field kg/m^3", "black smoke; 1 kg hides 8700 m^2"),
+        KEY("burn", "field MW/m^3", "heat of burning"),
+        KEY("velocity", "field m/s", "three components"),
+        KEY("pressure", "field Pa", "beyond that of the air around"),
+        KEY("divergence", "field 1/s", "how fast the gas expands"),
+        KEY("vorticity", "field 1/s", "how fast it turns"),
         KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "in which it is simulated"),
         KEY("time_step", "number s", "that a step takes"))},
 

@@ -149,7 +149,7 @@ static int open_bindings(lua_State *L) {
     l_instances_open(L);
     l_scatter_open(L);
     l_pass_open(L);
-    l_lbm_open(L);
+    l_air_open(L);
     l_slices_open(L);
     l_particles_open(L);
     l_shell_open(L);

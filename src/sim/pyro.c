@@ -152,10 +152,10 @@ static void find_sizes(const pyro *p, uint64_t out[PYRO_MEM_COUNT]) {
     const bool corrects = p->desc.advection == PYRO_MACCORMACK;
     memset(out, 0, PYRO_MEM_COUNT * sizeof *out);
     for (int i = 0; i < 2; i++) {
-        out[PYRO_MEM_VELOCITY + i] = 3 * cells * real;
+        out[PYRO_MEM_VELOCITY + i] = 4 * cells * real;
         out[PYRO_MEM_GAS + i] = 4 * cells * real;
     }
-    if (corrects) out[PYRO_MEM_VELOCITY_HAT] = 3 * cells * real;
+    if (corrects) out[PYRO_MEM_VELOCITY_HAT] = 4 * cells * real;
     if (corrects || p->desc.confinement) out[PYRO_MEM_GAS_HAT] = 4 * cells * real;
     if (p->desc.confinement) out[PYRO_MEM_CURL] = 4 * cells * real;
     out[PYRO_MEM_PRESSURE] = out[PYRO_MEM_RIGHT] = 4 * cells;

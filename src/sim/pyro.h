@@ -55,6 +55,7 @@ typedef struct pyro_numbers { // parameters of a step; they may change with each
     float molar_mass;         // of the fuel's vapour, kg/kmol
     float soot_yield;         // kg of 1 kg of fuel
     float soot_burn_time;     // of soot in hot fresh air, s; 0: soot does not burn
+    float dissolve;           // share of the soot that goes, 1/s
     float cooling;            // by which gas of 1500 K cools at first, K/s; as T^4
     float expansion;          // share of what gases do; 1
 } pyro_numbers;

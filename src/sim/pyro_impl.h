@@ -74,7 +74,7 @@ typedef enum pyro_kernel {
     PYRO_OWN_NAMES(NAME), NAME(PyroVorticity), NAME(scalars), NAME(flow), NAME(result), NAME(dt),  \
         NAME(cell), NAME(reach), NAME(ambient), NAME(lightness), NAME(inflow), NAME(gravity),      \
         NAME(acceleration), NAME(confinement), NAME(max_speed), NAME(ignition), NAME(burn_share),  \
-        NAME(oxygen_need), NAME(heat), NAME(soot_yield), NAME(soot_share), NAME(soot_heat),        \
+        NAME(oxygen_need), NAME(heat), NAME(soot_yield), NAME(soot_share), NAME(soot_heat), NAME(soot_kept),        \
         NAME(cooling), NAME(expansion), NAME(weights), NAME(level_size), NAME(level_first),        \
         NAME(colour), NAME(coarse_size), NAME(coarser), NAME(coarse_first), NAME(sweeps),          \
         NAME(relaxation), NAME(pressure_unit), NAME(groups), NAME(mass)

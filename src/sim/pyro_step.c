@@ -34,6 +34,7 @@ void pyro_set_burning(kernel *k, const pyro_numbers *n) {
     kernel_set_float(k, N_heat, n->heat / air_heat_capacity);
     kernel_set_float(k, N_soot_yield, n->soot_yield);
     kernel_set_float(k, N_soot_share, share(n->dt, n->soot_burn_time, 0));
+    kernel_set_float(k, N_soot_kept, expf(-n->dissolve * n->dt));
     kernel_set_float(k, N_soot_heat, soot_heat / air_heat_capacity);
     kernel_set_float(k, N_cooling, 3 * n->cooling * n->dt / powf(cooling_at, 4));
     kernel_set_float(k, N_expansion, n->expansion);

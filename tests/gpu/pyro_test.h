@@ -13,7 +13,7 @@ typedef struct pyro_world {
     pyro_desc desc;
     pyro_numbers numbers;
     size_t cells;
-    float *velocity;  // three components, one after the other; pyro_at of each
+    float (*velocity)[4]; // of the faces at the lower ends of each cell
     float (*gas)[4];  // warmth, fuel, burnt, soot
     float *pressure;  // m/s
 } pyro_world;
@@ -37,10 +37,10 @@ static inline void pyro_open(pyro_world *w, gpu *device, const pyro_desc *desc) 
                                 .molar_mass = 29,
                                 .expansion = 1};
     w->cells = (size_t)desc->size[0] * desc->size[1] * desc->size[2];
-    w->velocity = mem_alloc(3 * w->cells * sizeof *w->velocity);
+    w->velocity = mem_alloc(w->cells * sizeof *w->velocity);
     w->gas = mem_alloc(w->cells * sizeof *w->gas);
     w->pressure = mem_alloc(w->cells * sizeof *w->pressure);
-    memset(w->velocity, 0, 3 * w->cells * sizeof *w->velocity);
+    memset(w->velocity, 0, w->cells * sizeof *w->velocity);
     memset(w->gas, 0, w->cells * sizeof *w->gas);
     memset(w->pressure, 0, w->cells * sizeof *w->pressure);
     gpu_test_ok(gpu_frame_begin(device));
@@ -99,7 +99,7 @@ static inline size_t pyro_cell_at(const pyro_world *w, const int c[3]) {
 
 // Component `axis` of the face at the lower end of a cell.
 static inline float *pyro_face_at(pyro_world *w, int axis, const int c[3]) {
-    return &w->velocity[(size_t)axis * w->cells + pyro_cell_at(w, c)];
+    return &w->velocity[pyro_cell_at(w, c)][axis];
 }
 
 // Calls `each` for all cells.

@@ -10,6 +10,7 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 //@ field vec3 velocity = {0, 0, 0} : of the air there (m/s)
 //@ field float pressure = 0 : beyond that of the air around (Pa): a source that holds it blows new air out where otherwise it only pushes on what is there
 uniform float rate;            //= 0 [0, 1e4] 1/s : how fast the air takes on these values; 0: at once
+uniform vec2 during;           //= {-1e6, 1e6} [-1e6, 1e6] s : from when to when it gives
 uniform float velocity_factor; //= 0 [-10, 10] : share of the meshes' own motion that is added to the velocity
 #include "fields.glsl"
 uniform vec3 box_min;    // corner of the lattice (m)

@@ -12,6 +12,7 @@ uniform float heat;        // K by which air is warmer when as much fuel has bur
 uniform float soot_yield;  // kg of 1 kg of burnt fuel
 uniform float soot_share;  // of the soot that burns in this step where it is hot and in fresh air
 uniform float soot_heat;   // as `heat`
+uniform float soot_kept;   // share of the soot that does not dissolve in this step
 uniform float cooling;     // of the third power of the temperature's inverse in this step, 1/K^3
 uniform float expansion;   // 1: as gases do
 
@@ -39,7 +40,7 @@ float pyro_burn(inout vec4 gas) {
     gas.PYRO_BURNT += burnt;
     float soot = gas.PYRO_SOOT + soot_yield * burnt;
     float oxidized = soot * soot_share * smoothstep(1200.0, 1600.0, before) * oxygen / PYRO_OXYGEN;
-    gas.PYRO_SOOT = soot - oxidized;
+    gas.PYRO_SOOT = soot_kept * (soot - oxidized);
     float mass = 1.0 + gas.PYRO_FUEL + gas.PYRO_BURNT; // which is warmed
     float hot = before + (heat * burnt + soot_heat * oxidized) / mass;
     // Radiation to surroundings that radiate back: dT/dt = -k (T^4 - ambient^4).

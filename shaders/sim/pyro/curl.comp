@@ -4,10 +4,10 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #include "sim/pyro/state.glsl"
 #include "sim/pyro/trace.glsl"
 #ifdef PYRO_CURL_LAST
-layout(std430) readonly buffer PyroVorticity { PYRO_REAL4 vorticity[]; };
-layout(std430) writeonly buffer PyroCurl { PYRO_REAL4 curl[]; };
+layout(std430) readonly buffer PyroVorticity { PYRO_FOUR vorticity[]; };
+layout(std430) writeonly buffer PyroCurl { PYRO_FOUR curl[]; };
 #else
-layout(std430) writeonly buffer PyroVorticity { PYRO_REAL4 vorticity[]; };
+layout(std430) writeonly buffer PyroVorticity { PYRO_FOUR vorticity[]; };
 #endif
 
 vec3 around(ivec3 c, const int axis) { // difference of velocities two cells apart
@@ -26,14 +26,14 @@ void main() {
         ivec3 low = c, high = c;
         low[axis] = pyro_into(axis, c[axis] - 1);
         high[axis] = pyro_into(axis, c[axis] + 1);
-        towards[axis] = float(vorticity[pyro_at(high)].w) - float(vorticity[pyro_at(low)].w);
+        towards[axis] = pyro_load(vorticity[pyro_at(high)], 3) - pyro_load(vorticity[pyro_at(low)], 3);
     }
     float length_ = length(towards);
-    vec3 force = length_ > 1e-6 ? cross(towards / length_, vec4(vorticity[at]).xyz) : vec3(0.0);
-    curl[at] = PYRO_REAL4(vec4(force, 0.0));
+    vec3 force = length_ > 1e-6 ? cross(towards / length_, pyro_load(vorticity[at]).xyz) : vec3(0.0);
+    curl[at] = pyro_store(vec4(force, 0.0));
 #else
     vec3 x = around(c, 0), y = around(c, 1), z = around(c, 2);
     vec3 w = vec3(y.z - z.y, z.x - x.z, x.y - y.x);
-    vorticity[at] = PYRO_REAL4(vec4(w, length(w)));
+    vorticity[at] = pyro_store(vec4(w, length(w)));
 #endif
 }

@@ -3,7 +3,7 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #include "sim/pyro/state.glsl"
 #include "sim/pyro/sample.glsl"
 
-layout(std430) readonly buffer PyroVelocityTo { PYRO_REAL velocity_to[]; };
+layout(std430) readonly buffer PyroVelocityTo { PYRO_FOUR velocity_to[]; };
 layout(std430) buffer PyroRight { float right[]; };
 PYRO_FACE(face_to, velocity_to)
 

@@ -4,16 +4,16 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #include "sim/pyro/state.glsl"
 #include "sim/pyro/trace.glsl"
 
-layout(std430) readonly buffer PyroGas { PYRO_REAL4 gas[]; };
+layout(std430) readonly buffer PyroGas { PYRO_FOUR gas[]; };
 #ifdef PYRO_PREDICT
-layout(std430) writeonly buffer PyroGasHat { PYRO_REAL4 gas_hat[]; };
+layout(std430) writeonly buffer PyroGasHat { PYRO_FOUR gas_hat[]; };
 #else
 #include "sim/pyro/burn.glsl"
 uniform float cell; // m
-layout(std430) writeonly buffer PyroGasTo { PYRO_REAL4 gas_to[]; };
+layout(std430) writeonly buffer PyroGasTo { PYRO_FOUR gas_to[]; };
 layout(std430) writeonly buffer PyroRight { float right[]; }; // m/s: expansion across a cell
 #if PYRO_CORRECTS
-layout(std430) readonly buffer PyroGasHat { PYRO_REAL4 gas_hat[]; };
+layout(std430) readonly buffer PyroGasHat { PYRO_FOUR gas_hat[]; };
 #endif
 #endif
 
@@ -22,10 +22,10 @@ layout(std430) readonly buffer PyroGasHat { PYRO_REAL4 gas_hat[]; };
     {                                                                                              \
         int a_ = s.low[1] + s.low[2], b_ = s.high[1] + s.low[2];                                   \
         int c_ = s.low[1] + s.high[2], d_ = s.high[1] + s.high[2];                                 \
-        v[0] = vec4(from[a_ + s.low[0]]), v[1] = vec4(from[a_ + s.high[0]]);                       \
-        v[2] = vec4(from[b_ + s.low[0]]), v[3] = vec4(from[b_ + s.high[0]]);                       \
-        v[4] = vec4(from[c_ + s.low[0]]), v[5] = vec4(from[c_ + s.high[0]]);                       \
-        v[6] = vec4(from[d_ + s.low[0]]), v[7] = vec4(from[d_ + s.high[0]]);                       \
+        v[0] = pyro_load(from[a_ + s.low[0]]), v[1] = pyro_load(from[a_ + s.high[0]]);                       \
+        v[2] = pyro_load(from[b_ + s.low[0]]), v[3] = pyro_load(from[b_ + s.high[0]]);                       \
+        v[4] = pyro_load(from[c_ + s.low[0]]), v[5] = pyro_load(from[c_ + s.high[0]]);                       \
+        v[6] = pyro_load(from[d_ + s.low[0]]), v[7] = pyro_load(from[d_ + s.high[0]]);                       \
     }
 
 vec4 gas_mix(vec4 v[8], vec3 t) {
@@ -51,7 +51,7 @@ void main() {
     vec4 least, most;
     ivec3 c = ivec3(gl_GlobalInvocationID);
     vec3 from = pyro_middle(3, c) - reach * pyro_velocity_cell(c);
-    gas_hat[pyro_at(c)] = PYRO_REAL4(gas_back(from, least, most));
+    gas_hat[pyro_at(c)] = pyro_store(gas_back(from, least, most));
 }
 #else
 vec4 carried(ivec3 c, int at) {
@@ -63,7 +63,7 @@ vec4 carried(ivec3 c, int at) {
     vec4 v[8];
     pyro_span s = pyro_span_at(pyro_into(p + way), 3);
     GAS_EIGHT(gas_hat, s, v)
-    return clamp(first + 0.5 * (vec4(gas[at]) - gas_mix(v, s.t)), least, most);
+    return clamp(first + 0.5 * (pyro_load(gas[at]) - gas_mix(v, s.t)), least, most);
 #else
     return first;
 #endif
@@ -74,7 +74,7 @@ void main() {
     int at = pyro_at(c);
     vec4 g = pyro_clean(carried(c, at));
     float grown = pyro_burn(g); // expansion, 1/s
-    gas_to[at] = PYRO_REAL4(g);
+    gas_to[at] = pyro_store(g);
     right[at] = cell * pyro_clean(grown);
 }
 #endif

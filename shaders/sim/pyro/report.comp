@@ -16,7 +16,7 @@ layout(r32ui) writeonly uniform uimage2D result;
 #include "sim/pyro/trace.glsl"
 #include "sim/pyro/burn.glsl"
 uniform float mass; // kg of the air of a cell, times its temperature
-layout(std430) readonly buffer PyroGas { PYRO_REAL4 gas[]; };
+layout(std430) readonly buffer PyroGas { PYRO_FOUR gas[]; };
 layout(std430) readonly buffer PyroPressure { float pressure[]; };
 layout(std430) readonly buffer PyroRight { float right[]; };
 layout(std430) writeonly buffer PyroReport { vec4 report[]; };
@@ -63,7 +63,7 @@ void main() {
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
     int at = pyro_at(c);
-    vec4 raw = vec4(gas[at]), g = pyro_clean(raw);
+    vec4 raw = pyro_load(gas[at]), g = pyro_clean(raw);
     vec3 v = pyro_velocity_cell(c);
     vec2 around = pressure_around(c);
     float left = abs(right[at] - (around.x - around.y * pressure[at])), square = dot(v, v);

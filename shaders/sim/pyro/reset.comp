@@ -3,18 +3,18 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #include "sim/pyro/state.glsl"
 
 uniform vec3 inflow; // m/s
-layout(std430) writeonly buffer PyroGasTo { PYRO_REAL4 gas_to[]; };
-layout(std430) writeonly buffer PyroVelocityTo { PYRO_REAL velocity_to[]; };
+layout(std430) writeonly buffer PyroGasTo { PYRO_FOUR gas_to[]; };
+layout(std430) writeonly buffer PyroVelocityTo { PYRO_FOUR velocity_to[]; };
 layout(std430) writeonly buffer PyroPressure { float pressure[]; };
 layout(std430) writeonly buffer PyroRight { float right[]; };
 
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
     int at = pyro_at(c);
-    gas_to[at] = PYRO_REAL4(vec4(0.0));
+    gas_to[at] = pyro_store(vec4(0.0));
     pressure[at] = right[at] = 0.0;
-    for (int axis = 0; axis < 3; axis++) {
-        bool closed = PYRO_LOW[axis] == PYRO_WALL || PYRO_HIGH[axis] == PYRO_WALL;
-        velocity_to[axis * PYRO_CELLS + at] = PYRO_REAL(closed ? 0.0 : inflow[axis]);
-    }
+    vec3 v = inflow;
+    for (int axis = 0; axis < 3; axis++)
+        if (PYRO_LOW[axis] == PYRO_WALL || PYRO_HIGH[axis] == PYRO_WALL) v[axis] = 0.0;
+    velocity_to[at] = pyro_store(vec4(v, 0.0));
 }

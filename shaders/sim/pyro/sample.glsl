@@ -36,15 +36,15 @@ pyro_span pyro_span_at(vec3 p, const int face) {
     return s;
 }
 
-// The eight values of `from`, an array, at `base`: those that are low along x first.
-#define PYRO_EIGHT(from, base, s, low4, high4)                                                     \
+// The eight values of one component of an array: those that are low along x first.
+#define PYRO_EIGHT(from, axis, s, low4, high4)                                                     \
     {                                                                                              \
-        int a_ = base + s.low[1] + s.low[2], b_ = base + s.high[1] + s.low[2];                     \
-        int c_ = base + s.low[1] + s.high[2], d_ = base + s.high[1] + s.high[2];                   \
-        low4 = vec4(from[a_ + s.low[0]], from[b_ + s.low[0]], from[c_ + s.low[0]],                 \
-                    from[d_ + s.low[0]]);                                                          \
-        high4 = vec4(from[a_ + s.high[0]], from[b_ + s.high[0]], from[c_ + s.high[0]],             \
-                     from[d_ + s.high[0]]);                                                        \
+        int a_ = s.low[1] + s.low[2], b_ = s.high[1] + s.low[2];                                   \
+        int c_ = s.low[1] + s.high[2], d_ = s.high[1] + s.high[2];                                 \
+        low4 = vec4(pyro_load(from[a_ + s.low[0]], axis), pyro_load(from[b_ + s.low[0]], axis),    \
+                    pyro_load(from[c_ + s.low[0]], axis), pyro_load(from[d_ + s.low[0]], axis));   \
+        high4 = vec4(pyro_load(from[a_ + s.high[0]], axis), pyro_load(from[b_ + s.high[0]], axis), \
+                     pyro_load(from[c_ + s.high[0]], axis), pyro_load(from[d_ + s.high[0]], axis));\
     }
 
 float pyro_mix(vec4 low, vec4 high, vec3 t) {
@@ -78,7 +78,7 @@ void pyro_close(const int axis, pyro_span s, inout vec4 low, inout vec4 high) {
             }                                                                                      \
             if (PYRO_LOW[axis] == PYRO_OPEN) f[axis] = max(f[axis], 1);                            \
         }                                                                                          \
-        return float(from[axis * PYRO_CELLS + pyro_at(f)]);                                        \
+        return pyro_load(from[pyro_at(f)], axis);                                        \
     }
 
 // Whether a place that is not in the box is beyond a face that air can pass.

@@ -7,16 +7,33 @@
 // Velocities are staggered (Harlow and Welch 1965): component a of cell c is that across the face
 // between c and its lower neighbour along a. What crosses the last face of an axis is not stored: it
 // is 0 (or the wind's) at a wall, that of the first face at a periodic one, and at an open face that
-// of the face one cell inside.
+// of the face one cell inside. The fourth number of a velocity is 0.
 #ifndef SIM_PYRO_STATE_GLSL
 #define SIM_PYRO_STATE_GLSL
+
+// Four numbers of a cell as they are stored, in full or half precision.
 #if PYRO_HALF
-#extension GL_EXT_shader_16bit_storage : require
-#define PYRO_REAL float16_t
-#define PYRO_REAL4 f16vec4
+#define PYRO_FOUR uvec2
+vec4 pyro_load(uvec2 stored) {
+    return vec4(unpackHalf2x16(stored.x), unpackHalf2x16(stored.y));
+}
+float pyro_load(uvec2 stored, const int which) {
+    return unpackHalf2x16(which < 2 ? stored.x : stored.y)[which & 1];
+}
+uvec2 pyro_store(vec4 v) {
+    return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
+}
 #else
-#define PYRO_REAL float
-#define PYRO_REAL4 vec4
+#define PYRO_FOUR vec4
+vec4 pyro_load(vec4 stored) {
+    return stored;
+}
+float pyro_load(vec4 stored, const int which) {
+    return stored[which];
+}
+vec4 pyro_store(vec4 v) {
+    return v;
+}
 #endif
 
 // PYRO_NX, PYRO_NY, PYRO_NZ: cells, multiples of 8; PYRO_LOW_X to PYRO_HIGH_Z: faces, one of

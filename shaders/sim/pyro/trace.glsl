@@ -4,7 +4,7 @@
 #include "sim/pyro/sample.glsl"
 
 uniform float reach; // cells in a step, by 1 m/s
-layout(std430) readonly buffer PyroVelocity { PYRO_REAL velocity[]; };
+layout(std430) readonly buffer PyroVelocity { PYRO_FOUR velocity[]; };
 PYRO_FACE(pyro_face, velocity)
 
 // In the middle of a cell, m/s.

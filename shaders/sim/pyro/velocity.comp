@@ -6,27 +6,27 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #include "sim/pyro/trace.glsl"
 
 #ifdef PYRO_PREDICT
-layout(std430) writeonly buffer PyroVelocityHat { PYRO_REAL velocity_hat[]; };
+layout(std430) writeonly buffer PyroVelocityHat { PYRO_FOUR velocity_hat[]; };
 #else
 uniform float dt;
 uniform float gravity;      // m/s^2, downwards along z
 uniform vec3 acceleration;  // m/s^2
 uniform float confinement;  // m/s of a step, by 1 m/s of difference across a cell
 uniform float max_speed;    // m/s
-layout(std430) readonly buffer PyroGas { PYRO_REAL4 gas[]; }; // as it is after the step
-layout(std430) writeonly buffer PyroVelocityTo { PYRO_REAL velocity_to[]; };
+layout(std430) readonly buffer PyroGas { PYRO_FOUR gas[]; }; // as it is after the step
+layout(std430) writeonly buffer PyroVelocityTo { PYRO_FOUR velocity_to[]; };
 #if PYRO_CORRECTS
-layout(std430) readonly buffer PyroVelocityHat { PYRO_REAL velocity_hat[]; };
+layout(std430) readonly buffer PyroVelocityHat { PYRO_FOUR velocity_hat[]; };
 #endif
 #if PYRO_CONFINES
-layout(std430) readonly buffer PyroCurl { PYRO_REAL4 curl[]; };
+layout(std430) readonly buffer PyroCurl { PYRO_FOUR curl[]; };
 #endif
 #endif
 
 float pyro_back(const int axis, ivec3 c, vec3 from, out float least, out float most) {
     pyro_span s = pyro_span_at(pyro_into(from), axis);
     vec4 low, high;
-    PYRO_EIGHT(velocity, axis * PYRO_CELLS, s, low, high)
+    PYRO_EIGHT(velocity, axis, s, low, high)
     pyro_close(axis, s, low, high);
     vec4 a = min(low, high), b = max(low, high);
     least = min(min(a.x, a.y), min(a.z, a.w));
@@ -35,17 +35,15 @@ float pyro_back(const int axis, ivec3 c, vec3 from, out float least, out float m
 }
 
 #ifdef PYRO_PREDICT
-void carry(const int axis, ivec3 c) {
+float carried(const int axis, ivec3 c) {
     float least, most;
     vec3 from = pyro_middle(axis, c) - reach * pyro_velocity_face(axis, c);
-    velocity_hat[axis * PYRO_CELLS + pyro_at(c)] = PYRO_REAL(pyro_back(axis, c, from, least, most));
+    return pyro_back(axis, c, from, least, most);
 }
 
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
-    carry(0, c);
-    carry(1, c);
-    carry(2, c);
+    velocity_hat[pyro_at(c)] = pyro_store(vec4(carried(0, c), carried(1, c), carried(2, c), 0.0));
 }
 #else
 float carried(const int axis, ivec3 c) {
@@ -56,7 +54,7 @@ float carried(const int axis, ivec3 c) {
     if (pyro_is_beyond(p - way) || pyro_is_beyond(p + way)) return first;
     pyro_span s = pyro_span_at(pyro_into(p + way), axis);
     vec4 low, high;
-    PYRO_EIGHT(velocity_hat, axis * PYRO_CELLS, s, low, high)
+    PYRO_EIGHT(velocity_hat, axis, s, low, high)
     pyro_close(axis, s, low, high);
     first += 0.5 * (pyro_face(axis, c) - pyro_mix(low, high, s.t));
     return clamp(first, least, most);
@@ -67,7 +65,7 @@ float carried(const int axis, ivec3 c) {
 
 // Upwards acceleration of a cell, m/s^2: lighter gas rises, and moves what it pushes aside, too.
 float buoyancy(int at) {
-    float density = pyro_density(vec4(gas[at]));
+    float density = pyro_density(pyro_load(gas[at]));
     return gravity * 2.0 * (1.0 - density) / (1.0 + density);
 }
 
@@ -81,18 +79,18 @@ void main() {
     vec3 v = vec3(carried(0, c), carried(1, c), carried(2, c)) + dt * acceleration;
     v.z += 0.5 * dt * (buoyancy(at) + buoyancy(pyro_at(ivec3(c.xy, pyro_into(2, c.z - 1)))));
 #if PYRO_CONFINES
-    vec3 here = vec4(curl[at]).xyz;
+    vec3 here = pyro_load(curl[at]).xyz;
     for (int axis = 0; axis < 3; axis++) {
         ivec3 below = c;
         below[axis] = pyro_into(axis, c[axis] - 1);
-        v[axis] += confinement * 0.5 * (here[axis] + vec4(curl[pyro_at(below)])[axis]);
+        v[axis] += confinement * 0.5 * (here[axis] + pyro_load(curl[pyro_at(below)], axis));
     }
 #endif
     for (int axis = 0; axis < 3; axis++) {
-        float value = limit(v[axis]);
-        if (c[axis] == 0 && PYRO_LOW[axis] == PYRO_WALL) value = 0.0;
-        if (c[axis] == 0 && PYRO_LOW[axis] == PYRO_INFLOW) value = inflow[axis];
-        velocity_to[axis * PYRO_CELLS + at] = PYRO_REAL(value);
+        v[axis] = limit(v[axis]);
+        if (c[axis] == 0 && PYRO_LOW[axis] == PYRO_WALL) v[axis] = 0.0;
+        if (c[axis] == 0 && PYRO_LOW[axis] == PYRO_INFLOW) v[axis] = inflow[axis];
     }
+    velocity_to[at] = pyro_store(vec4(v, 0.0));
 }
 #endif

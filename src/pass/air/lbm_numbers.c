@@ -9,23 +9,14 @@
 static const double least_tau = 0.5 + 1e-5;
 
 static float tau(const lbm_air *a, double diffusivity, double square) {
-    return (float)fmax(sim_tau(&a->units, diffusivity, square), least_tau);
-}
-
-bool lbm_air_force_varies(const pass *p) {
-    const field *force = pass_given_field(p, N_force);
-    return force && !force->uniform;
+    return (float)fmax(sim_tau(&a->air.units, diffusivity, square), least_tau);
 }
 
 static bool add_force(const pass *p, const lbm_air *a, float out[3]) {
-    const field *force = pass_given_field(p, N_force);
-    float value[4] = {0};
-    if (!force || !force->uniform) return true;
-    if (!field_eval(force, p->host->context, (float3){0, 0, 0}, value)) return false;
-    for (int i = 0; i < 3; i++) {
-        float v = value[force->components == 1 ? 0 : i];
-        if (isfinite(v)) out[i] = (float)sim_acceleration(&a->units, (double)v);
-    }
+    float force[3];
+    if (!air_constant_force(p, force)) return false;
+    for (int i = 0; i < 3; i++)
+        out[i] = (float)sim_acceleration(&a->air.units, (double)force[i]);
     return true;
 }
 
@@ -46,7 +37,7 @@ float lbm_air_spoilt_speed(const lbm_air *a) {
 // In cells a step; faster wind than the air may be is slowed down, as the air is.
 static void find_inflow(const lbm_air *a, const float wind[3], float out[3]) {
     const double speed = sqrt((double)glm_dot((float *)wind, (float *)wind));
-    double k = sim_velocity(&a->units, 1), most = (double)lbm_air_clamp_speed(a);
+    double k = sim_velocity(&a->air.units, 1), most = (double)lbm_air_clamp_speed(a);
     if (speed * k > most) k = most / speed;
     for (int i = 0; i < 3; i++) out[i] = (float)((double)wind[i] * k);
 }
@@ -54,7 +45,7 @@ static void find_inflow(const lbm_air *a, const float wind[3], float out[3]) {
 bool lbm_air_numbers(const pass *p, lbm_numbers *out) {
     const lbm_air *a = lbm_air_of(p);
     const lbm_desc *structure = lbm_get_desc(a->solver);
-    const sim_units *u = &a->units;
+    const sim_units *u = &a->air.units;
     float values[N_wind + 1][4];
     for (int i = N_viscosity; i <= N_wind; i++)
         if (!pass_evaluate_now(p, i, values[i])) return false;
@@ -81,16 +72,16 @@ sim_flow lbm_air_flow(const pass *p) {
     float viscosity[4], smagorinsky[4];
     pass_evaluate_now(p, N_viscosity, viscosity);
     pass_evaluate_now(p, N_smagorinsky, smagorinsky);
-    double length = a->desc.voxel_size;
-    uint32_t least = a->desc.size[0];
+    double length = a->air.desc.voxel_size;
+    uint32_t least = a->air.desc.size[0];
     for (int i = 1; i < 3; i++)
-        if (a->desc.size[i] < least) least = a->desc.size[i];
+        if (a->air.desc.size[i] < least) least = a->air.desc.size[i];
     return (sim_flow){
         .viscosity = (double)viscosity[0],
-        .speed = a->desc.speed,
+        .speed = a->air.desc.speed,
         .length = length * least,
         .collision = (sim_operator)structure->collision,
         .subgrid = structure->subgrid && smagorinsky[0] > 0,
-        .fixed = a->desc.time_step > 0,
+        .fixed = a->air.desc.time_step > 0,
     };
 }

@@ -10,7 +10,7 @@
 static const float spoilt_drift = 0.5f;
 
 static double measured(const lbm_air *a) { // m/s
-    return (double)a->report.speed * a->units.cell / a->units.step;
+    return (double)a->report.speed * a->air.units.cell / a->air.units.step;
 }
 
 static double mach(const lbm_air *a) {
@@ -38,12 +38,12 @@ static void tell_burst(lbm_air *a) {
         snprintf(what, sizeof what, "its mass changed by %.3g %%", 100 * (double)a->report.drift);
     else
         snprintf(what, sizeof what, "it became Mach %.2g on the lattice", mach(a));
-    if (a->desc.time_step > 0)
-        snprintf(change, sizeof change, "'time_step' below %.3g s", a->desc.time_step);
+    if (a->air.desc.time_step > 0)
+        snprintf(change, sizeof change, "'time_step' below %.3g s", a->air.desc.time_step);
     else
-        snprintf(change, sizeof change, "'speed' above %.3g m/s", a->desc.speed);
+        snprintf(change, sizeof change, "'speed' above %.3g m/s", a->air.desc.speed);
     bool sturdy = lbm_get_desc(a->solver)->collision == LBM_CENTRAL_MOMENTS;
-    snprintf(a->trouble, sizeof a->trouble,
+    snprintf(a->air.trouble, sizeof a->air.trouble,
              "the air burst and has stopped, %s: set %s, for the fastest that sources, forces and "
              "meshes make it%s",
              what, change, sturdy ? "" : ", or 'collision' to \"central_moments\"");
@@ -52,13 +52,13 @@ static void tell_burst(lbm_air *a) {
 // As fast as it may be, and when it was that: now, or in passing.
 static void tell_held_back(lbm_air *a, const char *when) {
     char change[64];
-    if (a->desc.time_step > 0)
-        snprintf(change, sizeof change, "'time_step' below %.3g s", a->desc.time_step);
+    if (a->air.desc.time_step > 0)
+        snprintf(change, sizeof change, "'time_step' below %.3g s", a->air.desc.time_step);
     else
-        snprintf(change, sizeof change, "'speed' above that (it is %.3g)", a->desc.speed);
-    snprintf(a->trouble, sizeof a->trouble,
+        snprintf(change, sizeof change, "'speed' above that (it is %.3g)", a->air.desc.speed);
+    snprintf(a->air.trouble, sizeof a->air.trouble,
              "air %s held back at %.3g m/s, Mach %g on the lattice: set %s", when,
-             SIM_MACH_MAX / sqrt(3) * a->units.cell / a->units.step, SIM_MACH_MAX, change);
+             SIM_MACH_MAX / sqrt(3) * a->air.units.cell / a->air.units.step, SIM_MACH_MAX, change);
 }
 
 // What is over is still in the smoke.
@@ -72,61 +72,54 @@ static bool tell_was_held_back(lbm_air *a) {
 
 // What the guard saw; false: nothing.
 static bool tell_report(lbm_air *a, const sim_flow *flow) {
-    if (!a->reported) return false;
+    if (!a->air.reported) return false;
     if (is_ruined(a) || (a->stops && mach(a) > 1))
         tell_burst(a);
     else if (is_held_back(a))
         tell_held_back(a, "is");
     else
-        return sim_advise_speed(&a->units, flow, measured(a), a->trouble, sizeof a->trouble);
+        return sim_advise_speed(&a->air.units, flow, measured(a), a->air.trouble, sizeof a->air.trouble);
     return true;
 }
 
 // What the air never met is most likely in the wrong place.
 static void tell_absent(lbm_air *a) {
-    const box3 box = a->grid.box;
-    const char *who =
-        a->solids.count && !a->solids.met && !isnan(a->solids.updated) ? "no collider" : NULL;
-    for (size_t i = 0; i < a->source_count && !who; i++)
-        if (lbm_source_is_away(a->sources[i])) who = pass_label(a->sources[i]);
-    a->trouble[0] = '\0';
-    if (!who) return;
-    snprintf(a->trouble, sizeof a->trouble,
-             "%s has%s been in the air so far, which is from {%.3g, %.3g, %.3g} to {%.3g, %.3g, "
-             "%.3g}: move it there, or the air by 'position'",
-             who, strcmp(who, "no collider") == 0 ? "" : " not", (double)box.min.x,
-             (double)box.min.y, (double)box.min.z, (double)box.max.x, (double)box.max.y,
-             (double)box.max.z);
+    if (!air_tell_absent(&a->air)) a->air.trouble[0] = '\0';
+}
+
+static bool is_buried(const lbm_air *a, const pass *source) {
+    const uint32_t *notes = a->report.notes;
+    return (notes[0] & ~notes[1] & air_source_of(source)->note) != 0;
 }
 
 // What gives nothing since solids are where it would.
 static void tell_buried(lbm_air *a) {
-    for (size_t i = 0; i < a->source_count; i++) {
-        if (!lbm_source_is_buried(a->sources[i])) continue;
-        snprintf(a->trouble, sizeof a->trouble,
+    for (size_t i = 0; i < a->air.source_count; i++) {
+        if (!is_buried(a, a->air.sources[i])) continue;
+        snprintf(a->air.trouble, sizeof a->air.trouble,
                  "%s lies within colliders or walls, and has given the air nothing so far: move "
                  "it, or them",
-                 pass_label(a->sources[i]));
+                 pass_label(a->air.sources[i]));
         return;
     }
 }
 
 static void tell(lbm_air *a) {
-    sim_flow flow = lbm_air_flow(a->pass);
-    if (!tell_report(a, &flow) && !sim_advise(&a->units, &flow, a->trouble, sizeof a->trouble) &&
+    sim_flow flow = lbm_air_flow(a->air.pass);
+    if (!tell_report(a, &flow) && !sim_advise(&a->air.units, &flow, a->air.trouble, sizeof a->air.trouble) &&
         !tell_was_held_back(a))
         tell_absent(a);
-    if (!a->trouble[0]) tell_buried(a);
+    if (!a->air.trouble[0]) tell_buried(a);
 }
 
 // What has come back from the device by now.
 static void look(lbm_air *a) {
     lbm_report report;
-    if (lbm_guard_read(a->guard, a->pass->host->device, &report)) {
+    if (lbm_guard_read(a->guard, a->air.pass->host->device, &report)) {
         a->report = report;
-        a->reported = true;
-        a->stopped = report.spoilt != 0;
-        if (is_held_back(a) && isnan(a->held)) a->held = lbm_air_step_time(a, report.step);
+        a->air.reported = true;
+        a->air.stopped = report.spoilt != 0;
+        if (is_held_back(a) && isnan(a->held)) a->held = air_step_time(&a->air, report.step);
     }
     tell(a);
 }
@@ -135,52 +128,47 @@ bool lbm_air_watch(pass *p) {
     lbm_air *a = lbm_air_of(p);
     look(a);
     // A state that was taken over has not been looked at yet.
-    if (!a->last_steps && (a->fresh || lbm_guard_newest(a->guard))) return true;
+    if (!a->air.last_steps && (a->air.fresh || lbm_guard_newest(a->guard))) return true;
     return lbm_guard_record(
         a->guard, p->host->device, a->solver,
         (lbm_guard_limits){.speed = lbm_air_spoilt_speed(a), .drift = spoilt_drift});
 }
 
-const char *lbm_air_trouble(const pass *p) {
+static const char *lbm_air_trouble(const pass *p) {
     lbm_air *a = lbm_air_of(p);
     look(a);
-    return a->trouble[0] ? a->trouble : NULL;
+    return a->air.trouble[0] ? a->air.trouble : NULL;
 }
 
-double lbm_air_work(const pass *p) {
-    const lbm_air *a = lbm_air_of(p);
-    return (double)a->last_steps * a->desc.size[0] * a->desc.size[1] * a->desc.size[2];
-}
-
-size_t lbm_air_readouts(const pass *p, pass_readout *out, size_t capacity) {
+static size_t lbm_air_readouts(const pass *p, pass_readout *out, size_t capacity) {
     lbm_air *a = lbm_air_of(p);
     look(a);
     sim_flow flow = lbm_air_flow(p);
-    if (a->reported) flow.speed = measured(a);
-    sim_readout now = sim_judge(&a->units, &flow);
-    double cells = (double)a->desc.size[0] * a->desc.size[1] * a->desc.size[2];
+    if (a->air.reported) flow.speed = measured(a);
+    sim_readout now = sim_judge(&a->air.units, &flow);
+    double cells = (double)a->air.desc.size[0] * a->air.desc.size[1] * a->air.desc.size[2];
     const pass_readout all[] = {
         {"tau", "", now.tau},
         {"Mach", "", now.mach},
         {"Reynolds", "", now.reynolds},
         {"speed", "m/s", flow.speed},
-        {"time step", "s", a->units.step},
+        {"time step", "s", a->air.units.step},
         {"steps", "", (double)lbm_steps(a->solver)},
         {"cells", "", cells},
-        {"mass drift", "%", a->reported ? 100 * (double)a->report.drift : 0},
+        {"mass drift", "%", a->air.reported ? 100 * (double)a->report.drift : 0},
     };
     for (size_t i = 0; i < COUNT_OF(all) && i < capacity; i++) out[i] = all[i];
     return COUNT_OF(all);
 }
 
 const pass_simulation lbm_simulation = {
-    .left = lbm_air_left,
-    .most = lbm_air_most,
-    .reached = lbm_air_reached,
-    .restart = lbm_air_restart,
+    .left = air_left,
+    .most = air_most,
+    .reached = air_reached,
+    .restart = air_restart,
     .save = lbm_air_save,
     .load = lbm_air_load,
     .readouts = lbm_air_readouts,
-    .work = lbm_air_work,
+    .work = air_work,
     .trouble = lbm_air_trouble,
 };

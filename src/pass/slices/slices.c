@@ -35,7 +35,7 @@ static bool exchange_grids(field_grid *grid, field_grid *other) {
 static const char *field_name(const field_grid *grid, size_t index) {
     const slices_flow *f = (const slices_flow *)grid;
     for (int i = 0; i < PASS_FLUID_NAMES; i++)
-        if (f->used[i] && index-- == 0) return pass_fluid_names[i];
+        if (f->used[i] && index-- == 0) return pass_fluid_fields[i].name;
     return NULL;
 }
 
@@ -110,7 +110,8 @@ const field_grid *pass_slices_only(pass *p, uint32_t slice) {
 }
 
 int pass_slices_use(pass *p, const char *name, int *components) {
-    return pass_fluid_use(p->label, slices_of(p)->used, name, components);
+    return pass_fluid_use(p->label, pass_fluid_fields, PASS_FLUID_NAMES, slices_of(p)->used, name,
+                          components);
 }
 
 // ---- declaring --------------------------------------------------------------------------------

@@ -44,7 +44,7 @@ bool pass_slices_add(pass *p, pass *part, const struct picture *painted);
 
 const pass_slices_desc *pass_slices_get_desc(const pass *p);
 const char *pass_slices_variable(const pass *p); // of the script
-// The state after the last kept step, of the field of that index in pass_fluid_names: an image of
+// The state after the last kept step, of the field of that index in pass_fluid_fields: an image of
 // (x, y, slice) and the channel where it lies, of a velocity the first of two. NULL with a message:
 // nothing has flowed yet.
 gpu_image *pass_slices_look(const pass *p, int index, int *channel);

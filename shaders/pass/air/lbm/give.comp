@@ -3,20 +3,15 @@
 //
 // A thread does one element of the state, cells that lie apart along z, or the elements of a bundle.
 layout(local_size_x = 32, local_size_y = 2, local_size_z = 1) in;
-#include "shared.h"
 #define LBM_BUNDLED (LBM_BUNDLE > 1)
 #include "sim/lbm/cells.glsl"
-uniform vec3 box_min;          // corner of the lattice (m)
-uniform float cell_size;       // m
+#define AIR_NX LBM_NX
+#define AIR_NY LBM_NY
+#include "pass/air/source.glsl"
 uniform float step_speed;      // cells a step of 1 m/s
 uniform float clamp_speed;     // cells a step: what is faster is slowed down to it, as in the air
 uniform float pascal;          // excess of density of a pascal
-uniform float share;           // of the values that the air takes on in this step
-uniform float velocity_factor; // of a mesh's own motion
-uniform vec3 first;            // cells of the source's box: of the first corner,
-uniform vec3 count;            // and how many
 uniform uint note;             // bit of the source, 0: it has none
-layout(std430) readonly buffer SourceValues { uvec4 source_values[]; };
 layout(std430) buffer SourceNotes { uint notes[2]; }; // bits of sources that hold something; that give it to air
 
 #define EACH_LANE for (int l = 0; l < LBM_LANES; l++)
@@ -27,31 +22,6 @@ struct Held { // of the cells of an element
     lbm_float density, temperature, dye, pressure;
     lbm_vec velocity; // cells a step
 };
-
-#if MESHES
-layout(std430) readonly buffer SourceIds { uint source_ids[]; }; // of its own meshes
-layout(std430) readonly buffer SourceMotions { voxel_motion source_motions[]; };
-
-uint body_at(uvec3 cell) {
-    return source_ids[cell.x + LBM_NX * (cell.y + LBM_NY * cell.z)];
-}
-
-vec3 motion_at(uvec3 cell) {
-    voxel_motion body = source_motions[body_at(cell)];
-    vec3 r = box_min + (vec3(cell) + 0.5) * cell_size - body.centre.xyz;
-    return velocity_factor * (body.linear.xyz + cross(body.angular.xyz, r) + body.linear.w * r);
-}
-#endif
-
-// A cell's values; nothing outside of the box.
-uvec4 values_at(uvec3 cell) {
-    uvec3 at = cell - uvec3(first), n = uvec3(count);
-    if (any(lessThan(cell, uvec3(first))) || any(greaterThanEqual(at, n))) return uvec4(0u);
-#if MESHES
-    if (body_at(cell) == 0u) return uvec4(0u);
-#endif
-    return source_values[at.x + n.x * (at.y + n.y * at.z)];
-}
 
 void tell(int which) {
     if ((notes[which] & note) != note) atomicOr(notes[which], note);

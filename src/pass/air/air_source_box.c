@@ -1,8 +1,8 @@
 // Where a source of simulated air is: the cells of its box while its values hold.
-#include "pass/air/lbm_parts.h"
+#include "pass/air/air_parts.h"
 #include <math.h>
 
-bool lbm_mesh_box(const lbm_air *a, const scene_mesh *mesh, const field_context *context,
+bool air_mesh_box(const air *a, const scene_mesh *mesh, const field_context *context,
                   box3 *out) {
     const float corners[2][3] = {
         {mesh->data.box.min.x, mesh->data.box.min.y, mesh->data.box.min.z},
@@ -26,21 +26,21 @@ bool lbm_mesh_box(const lbm_air *a, const scene_mesh *mesh, const field_context 
 }
 
 // Meshes go on from where they are at the context's time to where they are at `end`.
-static bool meshes_box(const lbm_air *a, const pass *p, double end, box3 *out) {
+static bool meshes_box(const air *a, const pass *p, double end, box3 *out) {
     field_context then = *p->host->context;
     *out = box3_empty();
     for (size_t i = 0; i < 2 * p->mesh_count; i++) {
         box3 one;
         if (i == p->mesh_count) then.time = end;
-        if (!lbm_mesh_box(a, p->meshes[i % p->mesh_count], &then, &one)) return false;
+        if (!air_mesh_box(a, p->meshes[i % p->mesh_count], &then, &one)) return false;
         *out = i ? box3_union(*out, one) : one;
     }
     return true;
 }
 
 // Cells whose middle the box may hold; none: of no size.
-static lbm_cells cells_of(const lbm_air *a, box3 box) {
-    lbm_cells out = {{0, 0, 0}, {0, 0, 0}};
+static air_cells cells_of(const air *a, box3 box) {
+    air_cells out = {{0, 0, 0}, {0, 0, 0}};
     box = box3_intersect(box, a->grid.box);
     if (box3_is_empty(box)) return out;
     const float h = (float)a->desc.voxel_size;
@@ -55,7 +55,7 @@ static lbm_cells cells_of(const lbm_air *a, box3 box) {
     return out;
 }
 
-static uint64_t most_cells_of(const lbm_air *a, box3 box) {
+static uint64_t most_cells_of(const air *a, box3 box) {
     const float h = (float)a->desc.voxel_size;
     const float wide[3] = {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
     uint64_t most = !box3_is_empty(box);
@@ -64,7 +64,7 @@ static uint64_t most_cells_of(const lbm_air *a, box3 box) {
     return most;
 }
 
-bool lbm_source_cells(const lbm_air *a, const pass *p, double end, lbm_cells *out, uint64_t *most) {
+bool air_source_cells(const air *a, const pass *p, double end, air_cells *out, uint64_t *most) {
     box3 box = box3_infinite(), meshes;
     const field *shape = pass_given_field(p, N_shape);
     if (shape && !field_bounds(shape, p->host->context, &box)) return false;

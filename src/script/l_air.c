@@ -1,60 +1,78 @@
-// Simulated air: lbm { size = {64, 64, 96}, voxel_size = 0.05 } has fields by name (air.density).
-// air:source { } adds smoke, air:collider { } adds an obstacle.
+// Simulated air: lbm { size = {64, 64, 96}, voxel_size = 0.05 } and pyro { ... }, which burns, have
+// fields by name (air.density). air:source { } adds smoke or fuel, air:collider { } adds an obstacle.
 #include "base/memory.h"
-#include "pass/air/lbm.h"
+#include "pass/air/air.h"
 #include "script/binding.h"
 #include <math.h>
 #include <string.h>
 
 enum { BODY_COST = 4 << 10 }; // bytes of host memory charged for a mesh in the air
 
-typedef struct lbm_object {
+typedef struct air_type {
+    const char *name, *source; // of the passes
+    field_grid *(*open)(pass *p, const pass_air_desc *desc);
+    uint32_t least, multiple[3]; // of cells along an axis, and by axis
+    double speed;                // default, m/s
+} air_type;
+
+static const air_type air_types[] = {
+    {"lbm", "lbm_source", pass_lbm_open, 4, {4, 1, 8}, 4},
+    {"pyro", "pyro_source", pass_pyro_open, 16, {8, 8, 8}, 12},
+};
+
+// Functions of a type have it as their first upvalue.
+static const air_type *type_of(lua_State *L) {
+    return lua_touserdata(L, lua_upvalueindex(1));
+}
+
+typedef struct air_object {
     pass *pass;
     field_grid *grid;
     double time_step;
-} lbm_object;
+} air_object;
 
 // ---- reading ----------------------------------------------------------------------------------
 
-static void read_size(lua_State *L, pass_lbm_desc *desc) {
+static void read_size(lua_State *L, const air_type *type, pass_air_desc *desc) {
+    const char *who = type->name;
     float size[3];
-    if (!value_get_vector(L, 1, "lbm", "size", size))
-        vm_error(L, "lbm: 'size' is missing: the cells of its box, as in {64, 64, 96}");
+    if (!value_get_vector(L, 1, who, "size", size))
+        vm_error(L, "%s: 'size' is missing: the cells of its box, as in {64, 64, 96}", who);
     for (int i = 0; i < 3; i++) {
-        if (!(size[i] >= 4 && size[i] <= 1024 && size[i] == floorf(size[i])))
-            vm_error(L, "lbm: 'size' has %g; whole numbers from 4 to 1024 are accepted",
-                     (double)size[i]);
+        if (!(size[i] >= (float)type->least && size[i] <= 1024 && size[i] == floorf(size[i])))
+            vm_error(L, "%s: 'size' has %g; whole numbers from %d to 1024 are accepted", who,
+                     (double)size[i], (int)type->least);
         desc->size[i] = (uint32_t)size[i];
+        if (desc->size[i] % type->multiple[i] != 0)
+            vm_error(L, "%s: 'size' has %c = %d; a multiple of %d is needed", who, "xyz"[i],
+                     (int)desc->size[i], (int)type->multiple[i]);
     }
-    if (desc->size[0] % 4 != 0)
-        vm_error(L, "lbm: 'size' has x = %d; a multiple of 4 is needed", (int)desc->size[0]);
-    if (desc->size[2] % 8 != 0 || desc->size[2] < 16)
-        vm_error(L, "lbm: 'size' has z = %d; a multiple of 8 from 16 on is needed",
-                 (int)desc->size[2]);
 }
 
-static void read_desc(lua_State *L, pass_lbm_desc *desc) {
+static void read_desc(lua_State *L, const air_type *type, pass_air_desc *desc) {
+    const char *who = type->name;
     float position[3] = {0};
-    read_size(L, desc);
-    desc->voxel_size = value_get_number(L, 1, "lbm", "voxel_size", (double)NAN);
+    read_size(L, type, desc);
+    desc->voxel_size = value_get_number(L, 1, who, "voxel_size", (double)NAN);
     if (isnan(desc->voxel_size))
-        vm_error(L, "lbm: 'voxel_size' is missing: the edge of a cell in metres");
-    value_get_vector(L, 1, "lbm", "position", position);
+        vm_error(L, "%s: 'voxel_size' is missing: the edge of a cell in metres", who);
+    value_get_vector(L, 1, who, "position", position);
     desc->position = (float3){position[0], position[1], position[2]};
-    desc->speed = value_get_number(L, 1, "lbm", "speed", 4);
-    desc->time_step = value_get_number(L, 1, "lbm", "time_step", 0);
-    desc->warm_up = value_get_number(L, 1, "lbm", "warm_up", 0);
+    desc->speed = value_get_number(L, 1, who, "speed", type->speed);
+    desc->time_step = value_get_number(L, 1, who, "time_step", 0);
+    desc->warm_up = value_get_number(L, 1, who, "warm_up", 0);
 }
 
 // Sets a face from the word at the top of the stack, which the author gave as `key`.
 static void set_face(lua_State *L, pass *p, const char *face, const char *key) {
     static const char *const words[] = {"open", "wall", "slip", "inflow", "periodic"};
+    const char *who = type_of(L)->name;
     if (lua_type(L, -1) != LUA_TSTRING)
         vm_error(L,
-                 "lbm: boundary: '%s' takes a word: \"open\", \"wall\", \"slip\", \"inflow\" or "
+                 "%s: boundary: '%s' takes a word: \"open\", \"wall\", \"slip\", \"inflow\" or "
                  "\"periodic\"; got %s",
-                 key, object_kind(L, -1));
-    const char *word = words[value_word(L, -1, "lbm", key, words, COUNT_OF(words))];
+                 who, key, object_kind(L, -1));
+    const char *word = words[value_word(L, -1, who, key, words, COUNT_OF(words))];
     const char *option = lua_pushfstring(L, "boundary_%s", face);
     if (!pass_set_option(p, option, word)) script_raise(L);
     lua_pop(L, 1);
@@ -69,10 +87,12 @@ static void set_boundary(lua_State *L, pass *p) {
         return;
     }
     int table = lua_gettop(L);
-    value_check_keys(L, table, "lbm: boundary", faces, COUNT_OF(faces));
+    const char *who = lua_pushfstring(L, "%s: boundary", type_of(L)->name);
+    value_check_keys(L, table, who, faces, COUNT_OF(faces));
     if (lua_rawlen(L, table) > 0)
-        vm_error(L, "lbm: boundary: a value has no name; name the face, as in { top = \"open\", "
-                    "sides = \"open\", bottom = \"wall\" }");
+        vm_error(L, "%s: a value has no name; name the face, as in { top = \"open\", "
+                    "sides = \"open\", bottom = \"wall\" }", who);
+    lua_pop(L, 1);
     if (value_get(L, table, "sides") != LUA_TNIL)
         for (size_t i = 0; i < 4; i++) set_face(L, p, faces[i], "sides");
     lua_pop(L, 1);
@@ -82,25 +102,28 @@ static void set_boundary(lua_State *L, pass *p) {
     }
 }
 
-static int l_lbm(lua_State *L) {
-    script_require_loading(L, "lbm");
+static int l_air(lua_State *L) {
+    const air_type *type = type_of(L);
+    const char *who = type->name;
+    script_require_loading(L, who);
     if (lua_gettop(L) != 1 || !value_is_plain_table(L, 1))
-        vm_error(L, "lbm takes named values, as in lbm { size = {64, 64, 96}, voxel_size = 0.05 }");
+        vm_error(L, "%s takes named values, as in %s { size = {64, 64, 96}, voxel_size = 0.05 }",
+                 who, who);
     script *s = script_of(L);
-    const char *unsound = s->unsound, *variable = value_name_or_variable(L, 1, "lbm");
-    lbm_object *object = object_new(L, "lbm", sizeof *object);
+    const char *unsound = s->unsound, *variable = value_name_or_variable(L, 1, who);
+    air_object *object = object_new(L, who, sizeof *object);
     int result = lua_gettop(L);
-    pass *p = pass_make(L, "lbm", "lbm", 1, script_object_find("lbm")->keys);
-    pass_lbm_desc desc = {{0}, 0, {0, 0, 0}, 0, 0, 0};
-    read_desc(L, &desc); // after keys that are not known, which may be those that are missing
+    pass *p = pass_make(L, who, who, 1, script_object_find(who)->keys);
+    pass_air_desc desc = {{0}, 0, {0, 0, 0}, 0, 0, 0};
+    read_desc(L, type, &desc); // after keys that are not known, which may be those that are missing
     if (value_get(L, 1, "boundary") != LUA_TNIL) set_boundary(L, p);
     object->pass = p;
-    object->grid = pass_lbm_open(p, &desc);
+    object->grid = type->open(p, &desc);
     if (!object->grid) script_raise(L);
-    object->time_step = pass_lbm_time_step(p);
+    object->time_step = pass_air_time_step(p);
     effect_add_grid(s->effect, object->grid);
     effect_name_grid(s->effect, object->grid, variable);
-    if (!pass_declare(p) || !pass_lbm_check(p)) script_raise(L);
+    if (!pass_declare(p) || !pass_air_check(p)) script_raise(L);
     s->unsound = unsound;
     lua_pushvalue(L, result);
     return 1;
@@ -108,8 +131,8 @@ static int l_lbm(lua_State *L) {
 
 // ---- methods ----------------------------------------------------------------------------------
 
-static const lbm_object *self(lua_State *L, const char *method) {
-    const lbm_object *object = object_test(L, 1, "lbm");
+static const air_object *self(lua_State *L, const char *method) {
+    const air_object *object = object_test(L, 1, type_of(L)->name);
     if (!object || lua_gettop(L) != 2 || !value_is_plain_table(L, 2))
         vm_error(L, "%s takes a table, as in air:%s { mesh { \"data/ball.obj\" } }: mind the ':'",
                  method, method);
@@ -149,14 +172,14 @@ static void move_meshes(lua_State *L, const char *who) {
 }
 
 static int l_source(lua_State *L) {
-    const lbm_object *air = self(L, "source");
+    const air_object *air = self(L, "source");
     static const value_desc own[] = {{.name = "motion"}, {.name = NULL}};
     script *s = script_of(L);
     const char *unsound = s->unsound;
-    pass *source = pass_make(L, "lbm_source", "source", 2, own);
+    pass *source = pass_make(L, type_of(L)->source, "source", 2, own);
     move_meshes(L, "source");
     vm_charge_memory(L, lua_rawlen(L, 2) * BODY_COST);
-    if (!pass_declare(source) || !pass_lbm_add_source(air->pass, source)) script_raise(L);
+    if (!pass_declare(source) || !pass_air_add_source(air->pass, source)) script_raise(L);
     s->unsound = unsound;
     return 0;
 }
@@ -171,12 +194,12 @@ static void add_collider(lua_State *L, pass *air, voxels_rule rule) {
     for (uint32_t i = 0; i < count; i++) {
         vm_charge_memory(L, BODY_COST);
         scene_mesh *one = mesh ? mesh->mesh : scene_instances_mesh(instances, i, script_memory(L));
-        if (one) pass_lbm_add_collider(air, one, rule);
+        if (one) pass_air_add_collider(air, one, rule);
     }
 }
 
 static int l_collider(lua_State *L) {
-    const lbm_object *air = self(L, "collider");
+    const air_object *air = self(L, "collider");
     static const char *const keys[] = {"rule", "motion"};
     static const char *const rules[] = {"auto", "solid", "shell"};
     value_check_keys(L, 2, "collider", keys, COUNT_OF(keys));
@@ -197,30 +220,37 @@ static int l_collider(lua_State *L) {
 }
 
 // Suggests a field with a similar name.
-static void refuse_name(lua_State *L, const char *name) {
+static void refuse_name(lua_State *L, const pass *air, const char *name) {
     static const char *const own[] = {"source", "collider", "box", "time_step"};
     const char *near = str_nearest(name, own, COUNT_OF(own));
-    if (near && !str_nearest(name, pass_fluid_names, PASS_FLUID_NAMES))
-        vm_error(L, "lbm: no method or field '%s'; did you mean '%s'?", name, near);
+    size_t count;
+    const pass_fluid_field *fields = pass_air_fields(air, &count);
+    if (near && !pass_fluid_nearest(fields, count, name))
+        vm_error(L, "%s: no method or field '%s'; did you mean '%s'?", type_of(L)->name, name, near);
     script_raise(L);
+}
+
+static void push_method(lua_State *L, lua_CFunction method) {
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_pushcclosure(L, method, 1);
 }
 
 // air.box, air.time_step, air:source, air:collider; every other name is a field.
 static int l_index(lua_State *L) {
-    const lbm_object *air = luaL_checkudata(L, 1, "lbm");
+    const air_object *air = luaL_checkudata(L, 1, type_of(L)->name);
     const char *name = luaL_checkstring(L, 2);
     if (strcmp(name, "source") == 0) {
-        lua_pushcfunction(L, l_source);
+        push_method(L, l_source);
     } else if (strcmp(name, "collider") == 0) {
-        lua_pushcfunction(L, l_collider);
+        push_method(L, l_collider);
     } else if (strcmp(name, "time_step") == 0) {
         lua_pushnumber(L, air->time_step);
     } else if (strcmp(name, "box") == 0) {
         value_push_box(L, air->grid->box);
     } else {
         script_require_loading(L, "a field of simulated air");
-        int components, channel = pass_lbm_use(air->pass, name, &components);
-        if (channel < 0) refuse_name(L, name);
+        int components, channel = pass_air_use(air->pass, name, &components);
+        if (channel < 0) refuse_name(L, air->pass, name);
         field_push(L, field_grid_channel(script_memory(L), air->grid, channel, components));
     }
     return 1;
@@ -229,14 +259,26 @@ static int l_index(lua_State *L) {
 // The content of air follows from its keys and its sources, so it cannot be assigned.
 static int l_newindex(lua_State *L) {
     vm_error(L,
-             "air.%s cannot be set; say it in lbm { } or --set, or give it to the air with "
+             "air.%s cannot be set; say it in %s { } or --set, or give it to the air with "
              "air:source { }",
-             luaL_tolstring(L, 2, NULL));
+             luaL_tolstring(L, 2, NULL), type_of(L)->name);
 }
 
-void l_lbm_open(lua_State *L) {
+static void open_type(lua_State *L, const air_type *type) {
     static const luaL_Reg methods[] = {
         {"__index", l_index}, {"__newindex", l_newindex}, {NULL, NULL}};
-    object_type(L, "lbm", methods);
-    lua_register(L, "lbm", l_lbm);
+    void *upvalue = (void *)(uintptr_t)type;
+    luaL_newmetatable(L, type->name);
+    lua_pushlightuserdata(L, upvalue);
+    luaL_setfuncs(L, methods, 1);
+    lua_pushboolean(L, false);
+    lua_setfield(L, -2, "__metatable");
+    lua_pop(L, 1);
+    lua_pushlightuserdata(L, upvalue);
+    lua_pushcclosure(L, l_air, 1);
+    lua_setglobal(L, type->name);
+}
+
+void l_air_open(lua_State *L) {
+    for (size_t i = 0; i < COUNT_OF(air_types); i++) open_type(L, &air_types[i]);
 }

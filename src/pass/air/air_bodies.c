@@ -1,43 +1,43 @@
 // Meshes in simulated air: those of sources and those that it flows around, each as cells.
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/air/lbm_parts.h"
+#include "pass/air/air_parts.h"
 #include <math.h>
 #include <string.h>
 
-lbm_meshes *lbm_air_add_giver(lbm_air *a) {
+air_meshes *air_add_giver(air *a) {
     MEM_RESERVE(a->givers, a->giver_count + 1, a->giver_capacity);
-    lbm_meshes *m = &a->givers[a->giver_count++];
-    *m = (lbm_meshes){.updated = (double)NAN};
+    air_meshes *m = &a->givers[a->giver_count++];
+    *m = (air_meshes){.updated = (double)NAN};
     return m;
 }
 
-void lbm_air_add_body(lbm_meshes *m, const scene_mesh *mesh, voxels_rule rule) {
+void air_add_body(air_meshes *m, const scene_mesh *mesh, voxels_rule rule) {
     MEM_RESERVE(m->bodies, m->count + 1, m->capacity);
     m->bodies[m->count++] = (voxels_body){mesh, rule};
 }
 
-void pass_lbm_add_collider(pass *p, scene_mesh *mesh, voxels_rule rule) {
-    lbm_air_add_body(&lbm_air_of(p)->solids, mesh, rule);
+void pass_air_add_collider(pass *p, scene_mesh *mesh, voxels_rule rule) {
+    air_add_body(&air_of(p)->solids, mesh, rule);
 }
 
-static bool bodies_make(lbm_air *a, lbm_meshes *m) {
+static bool bodies_make(air *a, air_meshes *m) {
     voxels_desc desc = {.box = a->grid.box, .bodies = m->bodies, .body_count = m->count};
     memcpy(desc.size, a->desc.size, sizeof desc.size);
     if (m->count) m->cells = voxels_create(a->pass->host->memory, &desc);
     return !m->count || m->cells;
 }
 
-static bool bodies_compile(lbm_air *a, lbm_meshes *m) {
+static bool bodies_compile(air *a, air_meshes *m) {
     const pass_host *host = a->pass->host;
     return !m->cells || voxels_compile(m->cells, host->library, host->reader);
 }
 
-static bool bodies_build(lbm_air *a, lbm_meshes *m) {
+static bool bodies_build(air *a, air_meshes *m) {
     return bodies_compile(a, m) && (!m->cells || voxels_build(m->cells, a->pass->host->device));
 }
 
-static bool bodies_allocate(lbm_air *a, lbm_meshes *m) {
+static bool bodies_allocate(air *a, air_meshes *m) {
     return !m->cells || voxels_allocate(m->cells, a->pass->host->device);
 }
 
@@ -45,24 +45,24 @@ static bool bodies_allocate(lbm_air *a, lbm_meshes *m) {
 // goes half a cell meanwhile. Its motion pushes the air in all of them.
 static const double farthest = 0.5;
 
-static uint64_t stride(const lbm_air *a) {
+static uint64_t stride(const air *a) {
     return (uint64_t)fmax(1, floor(farthest / sim_velocity(&a->units, a->desc.speed)));
 }
 
-static bool is_inside(const lbm_air *a, const lbm_meshes *m, const field_context *context) {
+static bool is_inside(const air *a, const air_meshes *m, const field_context *context) {
     box3 box;
     for (size_t i = 0; i < m->count; i++)
-        if (!lbm_mesh_box(a, m->bodies[i].mesh, context, &box) ||
+        if (!air_mesh_box(a, m->bodies[i].mesh, context, &box) ||
             !box3_is_empty(box3_intersect(box, a->grid.box)))
             return true;
     return false;
 }
 
 // As before a step: moved on from where they were placed last, or put there.
-static bool place(lbm_air *a, lbm_meshes *m, uint64_t step, voxels_change *change) {
+static bool place(air *a, air_meshes *m, uint64_t step, voxels_change *change) {
     const pass_host *host = a->pass->host;
     field_context then = *host->context;
-    then.time = lbm_air_step_time(a, step);
+    then.time = air_step_time(a, step);
     double passed = isnan(m->updated) ? 0 : then.time - m->updated;
     m->updated = then.time;
     m->met = m->met || is_inside(a, m, &then);
@@ -70,8 +70,8 @@ static bool place(lbm_air *a, lbm_meshes *m, uint64_t step, voxels_change *chang
 }
 
 // Those of a state that was taken over go on from where they were placed before.
-static bool move(lbm_air *a, lbm_meshes *m, voxels_change *change) {
-    const uint64_t step = lbm_steps(a->solver), each = stride(a), last = step - step % each;
+static bool move(air *a, air_meshes *m, voxels_change *change) {
+    const uint64_t step = a->kind->steps(a), each = stride(a), last = step - step % each;
     *change = (voxels_change){false, false};
     if (!m->cells) return true;
     bool known = !isnan(m->updated), done = true;
@@ -81,75 +81,49 @@ static bool move(lbm_air *a, lbm_meshes *m, voxels_change *change) {
     return done;
 }
 
-static void bodies_destroy(lbm_air *a, lbm_meshes *m) {
+static void bodies_destroy(air *a, air_meshes *m) {
     if (m->cells) voxels_destroy(m->cells, a->pass->host->device);
     mem_free(m->bodies);
 }
 
-static bool for_each(lbm_air *a, bool (*work)(lbm_air *a, lbm_meshes *m)) {
+static bool for_each(air *a, bool (*work)(air *a, air_meshes *m)) {
     for (size_t i = 0; i < a->giver_count; i++)
         if (!work(a, &a->givers[i])) return false;
     return work(a, &a->solids);
 }
 
-bool lbm_air_make_bodies(lbm_air *a) {
-    a->moving = arena_alloc(a->pass->host->memory, a->solids.count * sizeof *a->moving);
+bool air_make_bodies(air *a) {
     return for_each(a, bodies_make);
 }
 
-bool lbm_air_check_bodies(lbm_air *a) {
+bool air_check_bodies(air *a) {
     return for_each(a, bodies_compile);
 }
 
-bool lbm_air_build_bodies(lbm_air *a) {
+bool air_build_bodies(air *a) {
     return for_each(a, bodies_build);
 }
 
-bool lbm_air_allocate_bodies(lbm_air *a) {
+bool air_allocate_bodies(air *a) {
     return for_each(a, bodies_allocate);
 }
 
-void lbm_air_list_bodies(const lbm_air *a, budget_list *out) {
+void air_list_bodies(const air *a, budget_list *out) {
     const field_context *context = a->pass->host->context;
     for (size_t i = 0; i < a->giver_count; i++)
         if (a->givers[i].cells) voxels_list_memory(a->givers[i].cells, context, false, out);
     if (a->solids.cells) voxels_list_memory(a->solids.cells, context, false, out);
 }
 
-static float3 in_steps(const lbm_air *a, float3 v) { // from m/s to cells a step
-    float k = (float)sim_velocity(&a->units, 1);
-    return (float3){v.x * k, v.y * k, v.z * k};
-}
-
-// How a body goes on. One that grows does not push the air.
-static lbm_body body_of(const lbm_air *a, size_t index) {
-    voxels_motion m;
-    voxels_get_motion(a->solids.cells, index, &m);
-    float3 corner = a->grid.box.min, v = in_steps(a, m.linear);
-    float cell = (float)a->units.cell, step = (float)a->units.step;
-    return (lbm_body){
-        .centre = {(m.centre.x - corner.x) / cell, (m.centre.y - corner.y) / cell,
-                   (m.centre.z - corner.z) / cell},
-        .linear = {v.x, v.y, v.z},
-        .angular = {m.angular.x * step, m.angular.y * step, m.angular.z * step},
-    };
-}
-
-bool lbm_air_move_bodies(lbm_air *a, const lbm_numbers *numbers) {
+bool air_move_bodies(air *a) {
     voxels_change change;
     for (size_t i = 0; i < a->giver_count; i++)
         if (!move(a, &a->givers[i], &change)) return false;
     if (!move(a, &a->solids, &change)) return false;
-    if (!a->solids.cells) return true;
-    for (size_t i = 0; i < a->solids.count; i++) a->moving[i] = body_of(a, i);
-    return lbm_set_bodies(a->solver, a->pass->host->device, numbers,
-                          &(lbm_bodies){.ids = voxels_ids(a->solids.cells),
-                                        .changed = change.cells,
-                                        .bodies = a->moving,
-                                        .count = (uint32_t)a->solids.count});
+    return !a->solids.cells || a->kind->move_solids(a, change.cells);
 }
 
-void lbm_air_destroy_bodies(lbm_air *a) {
+void air_destroy_bodies(air *a) {
     for (size_t i = 0; i < a->giver_count; i++) bodies_destroy(a, &a->givers[i]);
     mem_free(a->givers);
     bodies_destroy(a, &a->solids);

@@ -1,0 +1,49 @@
+-- A petrol bomb: a cloud of burning petrol is thrown up from the ground, rolls, mushrooms, and leaves
+-- black smoke with fire inside. Nothing is played back: fuel burns where it is hot and finds air, what
+-- burns expands and rises.
+--
+--   roil render effects/pyro_burst.lua --frames 20 -o burst.png
+
+local fx = effect { name = "pyro burst", fps = 24, frames = 96 }
+
+local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
+local fuel    = param { "fuel", 1.5, min = 0, max = 10, unit = "kg/m^3", help = "of the cloud" }
+local smoke   = param { "smoke", 2000, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides; soot hides 8700" }
+local glow    = param { "glow", 1.5, min = 0, max = 50, help = "factor of the fire's light" }
+
+local cells = ({ draft = {64, 64, 80}, shot = {128, 128, 160}, film = {256, 256, 320} })[quality:get()]
+local h = 8 / cells[1]
+
+local fire = pyro { size = cells, voxel_size = h, fuel = "petrol", speed = 14, vorticity = 4 }
+
+local lumps = worley { frequency = 2.5, octaves = 2, seed = 3 }
+fire:source {
+  shape = sphere { position = {0, 0, 0.55}, radius = 0.55 } * lumps:remap(0, 0.5, 0.6, 1.4),
+  fuel = fuel, temperature = 1100, velocity = {0, 0, 5}, during = {0, 0.12},
+}
+
+fx.camera = orbit { target = {0, 0, 2.6}, distance = 13, yaw = 25, pitch = 4, fov = 38 }
+fx.sun    = sun { azimuth = 215, elevation = 30, color = {1, 0.92, 0.8}, strength = 3 }
+fx.sky    = sky { zenith = {0.06, 0.12, 0.30}, horizon = {0.30, 0.38, 0.48}, strength = 0.6 }
+
+local light = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
+local hot   = smoothstep(900, 1300, fire.temperature)
+local lit = lighting {
+  density  = fire.soot * smoke + hot * 0.5,
+  emission = light(fire.temperature) * hot * glow,
+  albedo   = {0.30, 0.28, 0.27},
+  anisotropy = 0.2,
+}
+
+local scene  = geometry { mesh { "data/ground.obj" } }
+local solid  = shade { from = {scene, lit}, haze = 0.002 }
+local volume = march { from = {lit, scene}, steps = 160, jitter = 0.5 }
+
+local picture = over { volume, solid, from = {volume, scene} }
+local blooms  = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }
+local shown   = final { source = picture, bloom = blooms, bloom_intensity = 0.3, tonemap = "aces" }
+
+fx.output = shown.color
+fx.linear = shown.linear
+fx.depth  = scene.depth
+return fx

@@ -1,0 +1,59 @@
+// Gives burning gas what a source holds (pass/air/pyro_source.comp): cells that are inside take on its
+// values, faces the mean of the cells on both sides that are. Meshes are where they are at the step.
+// A thread does a cell and the faces at its lower ends.
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
+#include "sim/pyro/state.glsl"
+#define AIR_NX uint(PYRO_NX)
+#define AIR_NY uint(PYRO_NY)
+#include "pass/air/source.glsl"
+layout(std430) buffer PyroGas { PYRO_FOUR gas[]; };
+layout(std430) buffer PyroVelocity { PYRO_FOUR velocity[]; };
+
+// The velocity that a cell is given, and 1 where it is.
+vec4 push_of(uvec3 cell) {
+    uvec4 values = values_at(cell);
+    float inside = unpackHalf2x16(values.y).y;
+    if (inside == 0.0) return vec4(0.0);
+    vec3 v = vec3(unpackHalf2x16(values.z), unpackHalf2x16(values.w).x);
+#if MESHES
+    v += motion_at(cell);
+#endif
+    return vec4(v, 1.0);
+}
+
+void give_gas(uvec3 cell, int at) {
+    uvec4 values = values_at(cell);
+    vec2 a = unpackHalf2x16(values.x), b = unpackHalf2x16(values.y);
+    if (b.y == 0.0) return;
+    vec4 g = pyro_load(gas[at]);
+#if HAS_TEMPERATURE
+    g.PYRO_WARMTH = mix(g.PYRO_WARMTH, a.y - ambient, share);
+#endif
+    float air = PYRO_AIR / pyro_temperature(g); // kg/m^3
+#if HAS_FUEL
+    g.PYRO_FUEL = mix(g.PYRO_FUEL, a.x / air, share);
+    g.PYRO_BURNT = mix(g.PYRO_BURNT, 0.0, share);
+#endif
+#if HAS_SOOT
+    g.PYRO_SOOT = mix(g.PYRO_SOOT, b.x / air, share);
+#endif
+    gas[at] = pyro_store(g);
+}
+
+void main() {
+    uvec3 cell = gl_GlobalInvocationID + uvec3(first);
+    if (any(greaterThanEqual(cell, uvec3(PYRO_SIZE)))) return;
+    int at = pyro_at(ivec3(cell));
+    give_gas(cell, at);
+    if (HAS_VELOCITY == 0 && velocity_factor == 0.0) return;
+    vec4 here = push_of(cell), v = pyro_load(velocity[at]);
+    for (int axis = 0; axis < 3; axis++) {
+        uvec3 below = cell;
+        below[axis]--; // beyond the box: of no source
+        vec4 there = push_of(below);
+        float sum = here.w + there.w;
+        if (sum == 0.0 || (cell[axis] == 0u && PYRO_LOW[axis] != PYRO_PERIODIC)) continue;
+        v[axis] = mix(v[axis], (here[axis] + there[axis]) / sum, share);
+    }
+    velocity[at] = pyro_store(v);
+}

@@ -1,0 +1,151 @@
+// Life of the pass type `pyro`: gas that burns, as a grid.
+#include "base/error.h"
+#include "pass/air/pyro_parts.h"
+
+field_grid *pass_pyro_open(pass *p, const pass_air_desc *desc) {
+    static const double courant = 1.5; // cells a step of the expected speed
+    if (!air_check_desc(p, desc)) return NULL;
+    pyro_air *a = p->state = arena_alloc(p->host->memory, sizeof *a);
+    *a = (pyro_air){0};
+    const double step = desc->time_step > 0 ? desc->time_step : courant * desc->voxel_size / desc->speed;
+    return air_open(&a->air, &pyro_kind, p, desc, (sim_units){desc->voxel_size, step});
+}
+
+// A constant that is 0 leaves confinement out.
+static bool has_confinement(const pass *p) {
+    const field *given = p->uniforms[p->names[N_vorticity].uniform];
+    return given && (!field_is_constant(given) || given->value[0] > 0);
+}
+
+static bool pyro_air_complete(pass *p) {
+    pyro_air *a = pyro_air_of(p);
+    pyro_desc d = {
+        .advection = (pyro_advection)pass_option(p, N_advection),
+        .precision = (pyro_precision)pass_option(p, N_precision),
+        .confinement = has_confinement(p),
+    };
+    for (int i = 0; i < 3; i++) d.size[i] = a->air.desc.size[i];
+    for (int i = 0; i < 6; i++) d.faces[i] = (pyro_face)pass_option(p, N_boundary_left + i);
+    if (air_force_varies(p))
+        return err_set("%s: 'force' varies in space; a force that is the same everywhere is accepted",
+                       p->label);
+    a->fuel = &sim_fuels[pass_option(p, N_fuel)];
+    a->solver = pyro_create(p->host->memory, &d);
+    if (!a->solver || !air_make_bodies(&a->air)) return err_prefix("%s: ", p->label);
+    return air_add_part(p, p->type->record);
+}
+
+// ---- building ---------------------------------------------------------------------------------
+
+static bool pyro_air_check(pass *p) {
+    pyro_air *a = pyro_air_of(p);
+    const pass_host *host = p->host;
+    if (!pass_compile_kernels(p)) return false;
+    if (!pyro_compile(a->solver, host->library, host->reader) || !air_check_bodies(&a->air))
+        return err_prefix("%s: ", p->label);
+    return air_each_source(&a->air, pass_check_part);
+}
+
+static bool pyro_air_build(pass *p) {
+    pyro_air *a = pyro_air_of(p);
+    const pass_host *host = p->host;
+    if (!pass_build_kernels(p)) return false;
+    if (!pyro_build(a->solver, host->device, host->library, host->reader) ||
+        !air_build_bodies(&a->air))
+        return err_prefix("%s: ", p->label);
+    return air_each_source(&a->air, pass_build_part);
+}
+
+static bool pyro_air_allocate(pass *p) {
+    pyro_air *a = pyro_air_of(p);
+    return (pyro_allocate(a->solver, p->host->device) && air_allocate_bodies(&a->air)) ||
+           err_prefix("%s: ", p->label);
+}
+
+static void pyro_air_list_memory(const pass *p, budget_list *out) {
+    const pyro_air *a = pyro_air_of(p);
+    pyro_list_memory(a->solver, out);
+    air_list_bodies(&a->air, out);
+}
+
+static void pyro_air_destroy(pass *p) {
+    pyro_air *a = pyro_air_of(p);
+    if (!a) return;
+    if (a->solver) pyro_destroy(a->solver, p->host->device);
+    air_destroy(p);
+}
+
+// ---- a frame ----------------------------------------------------------------------------------
+
+static bool pyro_air_update(pass *p) {
+    const pyro_air *a = pyro_air_of(p);
+    pyro_numbers n;
+    if (!pyro_air_numbers(p, &n)) return false;
+    air_set_frame(p, &a->air);
+    pass_set_float(p, N_cell_size, n.cell);
+    pass_set_float(p, N_burn_power, n.heat / 1e6f / (n.burn_time > n.dt ? n.burn_time : n.dt));
+    pass_set_float(p, N_oxygen_need, n.oxygen > 1e-4f ? n.oxygen : 1e-4f);
+    pass_set_float(p, N_burns_above, n.ignition);
+    return true;
+}
+
+static bool pyro_air_rehearse(pass *p) {
+    pyro_numbers numbers;
+    return pyro_air_numbers(p, &numbers) && air_rehearse_sources(air_of(p));
+}
+
+// The images of the last two states.
+static void bind_looks(const pyro_air *a, kernel *k) {
+    static const int names[PYRO_LOOKS][2] = {{N_gas_now, N_gas_before}, {N_flow_now, N_flow_before}};
+    for (int look = 0; look < PYRO_LOOKS; look++) {
+        gpu_image *now = pyro_image(a->solver, (pyro_look)look, 0);
+        gpu_image *before = pyro_image(a->solver, (pyro_look)look, 1);
+        gpu_image *both[2] = {now, before ? before : now};
+        for (int i = 0; i < 2; i++)
+            kernel_bind(k, names[look][i],
+                        (gpu_binding){.image = both[i], .sampler = GPU_NEAREST_CLAMP});
+    }
+}
+
+static bool show(pass *p, pyro_air *a) {
+    if (air_is_shown(p, &a->air)) return true;
+    if (a->air.fresh || !pyro_image(a->solver, PYRO_GAS, 0)) return pass_clear_outputs(p);
+    kernel *k = pass_use(p, AIR_SHOW);
+    if (!k) return false;
+    const uint32_t *n = a->air.desc.size;
+    bind_looks(a, k);
+    return kernel_run(k, p->host->device, n[0], n[1], n[2]);
+}
+
+static bool pyro_air_record(pass *p) {
+    pyro_air *a = pyro_air_of(p);
+    gpu *device = p->host->device;
+    a->air.last_steps = 0;
+    if (!p->host->hold && !a->air.stopped && !air_advance(p)) return false;
+    if (a->air.last_steps && !pyro_watch(a->solver, device, &a->numbers)) return false;
+    pyro_air_look(a);
+    gpu_pass_next(device, a->air.labels[AIR_FIELDS]);
+    return !pass_is_watched(p) || (pass_prepare(p) && show(p, a));
+}
+
+const pass_type pyro_type = {
+    .name = "pyro",
+    .constructed = true,
+    .shader = "pass/air/pyro.comp",
+    .kernels = air_kernels,
+    .kernel_count = AIR_KERNELS,
+    .names = {air_names, AIR_NAME_COUNT},
+    .unscaled = true,
+    .simulation = &pyro_simulation,
+    .declare = air_declare,
+    .complete = pyro_air_complete,
+    .defines = air_defines,
+    .check = pyro_air_check,
+    .build = pyro_air_build,
+    .allocate = pyro_air_allocate,
+    .list_memory = pyro_air_list_memory,
+    .update = pyro_air_update,
+    .rehearse = pyro_air_rehearse,
+    .record = pyro_air_record,
+    .destroy = pyro_air_destroy,
+};
