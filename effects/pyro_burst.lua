@@ -7,8 +7,8 @@
 local fx = effect { name = "pyro burst", fps = 24, frames = 96 }
 
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
-local fuel    = param { "fuel", 1.5, min = 0, max = 10, unit = "kg/m^3", help = "of the cloud" }
-local smoke   = param { "smoke", 2000, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides; soot hides 8700" }
+local fuel    = param { "fuel", 2, min = 0, max = 10, unit = "kg/m^3", help = "of the cloud" }
+local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides; soot hides 8700" }
 local glow    = param { "glow", 1.5, min = 0, max = 50, help = "factor of the fire's light" }
 
 local cells = ({ draft = {64, 64, 80}, shot = {128, 128, 160}, film = {256, 256, 320} })[quality:get()]
@@ -18,8 +18,8 @@ local fire = pyro { size = cells, voxel_size = h, fuel = "petrol", speed = 14, v
 
 local lumps = worley { frequency = 2.5, octaves = 2, seed = 3 }
 fire:source {
-  shape = sphere { position = {0, 0, 0.55}, radius = 0.55 } * lumps:remap(0, 0.5, 0.6, 1.4),
-  fuel = fuel, temperature = 1100, velocity = {0, 0, 5}, during = {0, 0.12},
+  shape = sphere { position = {0, 0, 0.5}, radius = 0.5 },
+  fuel = fuel * (0.4 + 1.2 * lumps), temperature = 1200, velocity = {0, 0, 6}, during = {0, 0.02},
 }
 
 fx.camera = orbit { target = {0, 0, 2.6}, distance = 13, yaw = 25, pitch = 4, fov = 38 }

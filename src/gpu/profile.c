@@ -148,8 +148,9 @@ static void choose_lattice(gpu_profile *p, bool software, bool int64) {
     p->lbm_software_step = software && int64;
 }
 
-static void choose_pyro(gpu_profile *p, bool software) {
+static void choose_pyro(gpu_profile *p, bool software, bool int64) {
     p->pyro_half = !software;
+    p->pyro_wide_words = software && int64;
 }
 
 // ---- limits -----------------------------------------------------------------------------------
@@ -232,7 +233,7 @@ gpu_profile vk_profile_find(const gpu_info *info, VkDriverId driver, const char 
     choose_points(&p, software);
     choose_flow(&p, software);
     choose_lattice(&p, software, info->int64);
-    choose_pyro(&p, software);
+    choose_pyro(&p, software, info->int64);
     fit_limits(&p);
     return p;
 }
@@ -247,7 +248,7 @@ static void find_of_none(void) {
     choose_points(&of_none, false);
     choose_flow(&of_none, false);
     choose_lattice(&of_none, false, false);
-    choose_pyro(&of_none, false);
+    choose_pyro(&of_none, false, false);
     fit_limits(&of_none);
     if (vk_small_device_wanted()) vk_profile_make_small(&of_none);
 }

@@ -58,6 +58,7 @@ static void define_all(pyro *p) {
     for (int i = 0; i < 3; i++) define(p, sizes[i], p->desc.size[i]);
     for (int i = 0; i < 6; i++) define(p, faces[i], p->desc.faces[i]);
     define(p, "PYRO_HALF", p->desc.precision == PYRO_F16);
+    define(p, "PYRO_WIDE", p->wide);
     define(p, "PYRO_CORRECTS", p->desc.advection == PYRO_MACCORMACK);
     define(p, "PYRO_CONFINES", p->desc.confinement);
     define(p, "PYRO_CLOSED", is_closed(&p->desc));
@@ -112,6 +113,7 @@ static bool is_used(const pyro_desc *desc, pyro_kernel which) {
 static bool pyro_compile_kernels(pyro *p, const gpu_profile *device, shader_library *library,
                                  const shader_reader *reader) {
     if (p->chooses_precision) p->desc.precision = device->pyro_half ? PYRO_F16 : PYRO_F32;
+    p->wide = device->pyro_wide_words && p->desc.precision == PYRO_F32;
     define_all(p);
     for (int i = 0; i < PYRO_KERNELS; i++) {
         shader_define defines[PYRO_MAX_DEFINES + 1];
@@ -232,6 +234,10 @@ kernel *pyro_use(pyro *p, pyro_kernel which) {
     kernel *k = &p->kernels[which];
     pyro_bind(p, k, k->places);
     return k;
+}
+
+void pyro_stage(const pyro *p, gpu *g, const char *name) {
+    if (p->desc.timed) gpu_pass_next(g, name);
 }
 
 bool pyro_run(const pyro *p, gpu *g, kernel *k) {

@@ -37,6 +37,7 @@ typedef struct pyro_desc { // structure: what shaders are compiled for
     pyro_precision precision; // of velocities and the gas; auto: by the device
     bool confinement;         // numbers may have some
     uint32_t cycles;          // of multigrid, per step; 0: 2
+    bool timed;               // stages of a step have GPU times of their own
 } pyro_desc;
 
 typedef struct pyro_numbers { // parameters of a step; they may change with each step

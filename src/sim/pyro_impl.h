@@ -83,7 +83,7 @@ enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 struct pyro {
     arena *memory;
     pyro_desc desc;
-    bool chooses_precision;
+    bool chooses_precision, wide; // what is stored are words of 64 bits
     shader_define defines[PYRO_MAX_DEFINES];
     size_t define_count;
     pyro_level levels[PYRO_MAX_LEVELS];
@@ -101,6 +101,7 @@ gpu_buffer *pyro_pair(const pyro *p, pyro_memory pair, uint32_t which); // the c
 // A kernel with the buffers bound that are always the same.
 kernel *pyro_use(pyro *p, pyro_kernel which);
 bool pyro_run(const pyro *p, gpu *g, kernel *k); // a thread for each cell
+void pyro_stage(const pyro *p, gpu *g, const char *name); // begins, for GPU times
 
 // pyro_numbers.c
 void pyro_set_gas(kernel *k, const pyro_numbers *n); // what all that reads the gas is told

@@ -88,6 +88,7 @@ static kernel *use_level(pyro *p, pyro_kernel finest, pyro_kernel coarse, uint32
 }
 
 static bool pressure_smooth(pyro *p, gpu *g, uint32_t level) {
+    pyro_stage(p, g, level == 0 ? "pyro.smooth" : "pyro.coarse");
     const uint32_t *size = p->levels[level].size;
     for (int colour = 0; colour < 2; colour++) {
         kernel *k = use_level(p, PYRO_K_SMOOTH_FINEST, PYRO_K_SMOOTH, level);
@@ -99,12 +100,14 @@ static bool pressure_smooth(pyro *p, gpu *g, uint32_t level) {
 
 static bool pressure_restrict(pyro *p, gpu *g, uint32_t level) {
     const uint32_t *size = p->levels[level + 1].size;
+    if (level == 0) pyro_stage(p, g, "pyro.restrict");
     kernel *k = use_level(p, PYRO_K_RESTRICT_FINEST, PYRO_K_RESTRICT, level);
     return kernel_run(k, g, size[0], size[1], size[2]);
 }
 
 static bool pressure_prolong(pyro *p, gpu *g, uint32_t level) {
     const uint32_t *size = p->levels[level].size;
+    if (level == 0) pyro_stage(p, g, "pyro.prolong");
     kernel *k = use_level(p, PYRO_K_PROLONG_FINEST, PYRO_K_PROLONG, level);
     return kernel_run(k, g, (size[0] + 1) / 2, size[1], size[2]);
 }
@@ -129,10 +132,12 @@ static bool pressure_cycle(pyro *p, gpu *g) {
 }
 
 bool pyro_project(pyro *p, gpu *g, const pyro_numbers *n) {
+    pyro_stage(p, g, "pyro.divergence");
     kernel *divergence = pyro_use(p, PYRO_K_DIVERGENCE);
     kernel_set(divergence, N_inflow, n->inflow, sizeof n->inflow);
     if (!pyro_run(p, g, divergence)) return false;
     for (uint32_t i = 0; i < p->desc.cycles; i++)
         if (!pressure_cycle(p, g)) return false;
+    pyro_stage(p, g, "pyro.project");
     return pyro_run(p, g, pyro_use(p, PYRO_K_PROJECT));
 }

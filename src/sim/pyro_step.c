@@ -53,10 +53,12 @@ static bool corrects(const pyro *p) {
 
 static bool gas_advance(pyro *p, gpu *g, const pyro_numbers *n) {
     if (corrects(p)) {
+        pyro_stage(p, g, "pyro.gas_predict");
         kernel *first = pyro_use(p, PYRO_K_GAS_PREDICT);
         set_carrying(first, n);
         if (!pyro_run(p, g, first)) return false;
     }
+    pyro_stage(p, g, "pyro.gas");
     kernel *k = pyro_use(p, PYRO_K_GAS);
     set_carrying(k, n);
     pyro_set_burning(k, n);
@@ -67,6 +69,7 @@ static bool gas_advance(pyro *p, gpu *g, const pyro_numbers *n) {
 // Of the velocity before the step: where vorticity is confined. The gas's prediction is not needed
 // any more, and vorticity stands in its place.
 static bool curl_find(pyro *p, gpu *g, const pyro_numbers *n) {
+    pyro_stage(p, g, "pyro.confine");
     for (pyro_kernel i = PYRO_K_VORTICITY; i <= PYRO_K_CURL; i++) {
         kernel *k = pyro_use(p, i);
         set_carrying(k, n);
@@ -79,10 +82,12 @@ static bool curl_find(pyro *p, gpu *g, const pyro_numbers *n) {
 static bool velocity_advance(pyro *p, gpu *g, const pyro_numbers *n) {
     if (p->desc.confinement && !curl_find(p, g, n)) return false;
     if (corrects(p)) {
+        pyro_stage(p, g, "pyro.velocity_predict");
         kernel *first = pyro_use(p, PYRO_K_VELOCITY_PREDICT);
         set_carrying(first, n);
         if (!pyro_run(p, g, first)) return false;
     }
+    pyro_stage(p, g, "pyro.velocity");
     kernel *k = pyro_use(p, PYRO_K_VELOCITY);
     const float most = MOST_CELLS_A_STEP * n->cell / n->dt;
     set_carrying(k, n);

@@ -8,7 +8,6 @@ uniform int sweeps;
 uniform float relaxation;
 layout(std430) coherent buffer PyroCoarsePressure { float coarse_pressure[]; };
 layout(std430) readonly buffer PyroCoarseRight { float coarse_right[]; };
-LEVEL_AROUND(pressure_around, coarse_pressure)
 
 shared float sums[256];
 
@@ -40,11 +39,12 @@ void main() {
         for (int i = int(gl_LocalInvocationIndex); i < count; i += 256) {
             ivec3 c = ivec3(i % size.x, i / size.x % size.y, i / (size.x * size.y));
             if (((c.x + c.y + c.z + half_) & 1) != 0) continue;
-            vec2 around = pressure_around(c);
+            level_near n = level_near_of(c);
             int at = level_first + i;
-            float own = coarse_pressure[at];
-            if (around.y > 0.0)
-                coarse_pressure[at] = own + relaxation * ((around.x - coarse_right[at] + mean) / around.y - own);
+            float own = coarse_pressure[at], around;
+            LEVEL_SUM(coarse_pressure, n, around)
+            if (n.all > 0.0)
+                coarse_pressure[at] = own + relaxation * ((around - coarse_right[at] + mean) / n.all - own);
         }
         memoryBarrierBuffer();
         barrier();

@@ -10,30 +10,28 @@ layout(std430) writeonly buffer PyroCurl { PYRO_FOUR curl[]; };
 layout(std430) writeonly buffer PyroVorticity { PYRO_FOUR vorticity[]; };
 #endif
 
-vec3 around(ivec3 c, const int axis) { // difference of velocities two cells apart
-    ivec3 low = c, high = c;
-    low[axis] = pyro_into(axis, c[axis] - 1);
-    high[axis] = pyro_into(axis, c[axis] + 1);
-    return 0.5 * (pyro_velocity_cell(high) - pyro_velocity_cell(low));
+vec3 at(ivec3 c) {
+    return pyro_velocity_cell(pyro_near_of(pyro_into(c)));
+}
+
+vec3 around(ivec3 c, ivec3 way) { // difference of velocities two cells apart
+    return 0.5 * (at(c + way) - at(c - way));
 }
 
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
-    int at = pyro_at(c);
+    int here = pyro_at(c);
 #ifdef PYRO_CURL_LAST
-    vec3 towards;
-    for (int axis = 0; axis < 3; axis++) {
-        ivec3 low = c, high = c;
-        low[axis] = pyro_into(axis, c[axis] - 1);
-        high[axis] = pyro_into(axis, c[axis] + 1);
-        towards[axis] = pyro_load(vorticity[pyro_at(high)], 3) - pyro_load(vorticity[pyro_at(low)], 3);
-    }
+    ivec3 p = pyro_places(c), low = pyro_places(pyro_into(c - 1)), high = pyro_places(pyro_into(c + 1));
+    vec3 towards = vec3(PYRO_W(vorticity[high.x + p.y + p.z]) - PYRO_W(vorticity[low.x + p.y + p.z]),
+                        PYRO_W(vorticity[p.x + high.y + p.z]) - PYRO_W(vorticity[p.x + low.y + p.z]),
+                        PYRO_W(vorticity[p.x + p.y + high.z]) - PYRO_W(vorticity[p.x + p.y + low.z]));
     float length_ = length(towards);
-    vec3 force = length_ > 1e-6 ? cross(towards / length_, pyro_load(vorticity[at]).xyz) : vec3(0.0);
-    curl[at] = pyro_store(vec4(force, 0.0));
+    vec3 force = length_ > 1e-6 ? cross(towards / length_, pyro_load(vorticity[here]).xyz) : vec3(0.0);
+    curl[here] = pyro_store(vec4(force, 0.0));
 #else
-    vec3 x = around(c, 0), y = around(c, 1), z = around(c, 2);
+    vec3 x = around(c, ivec3(1, 0, 0)), y = around(c, ivec3(0, 1, 0)), z = around(c, ivec3(0, 0, 1));
     vec3 w = vec3(y.z - z.y, z.x - x.z, x.y - y.x);
-    vorticity[at] = pyro_store(vec4(w, length(w)));
+    vorticity[here] = pyro_store(vec4(w, length(w)));
 #endif
 }

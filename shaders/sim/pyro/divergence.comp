@@ -5,15 +5,11 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 
 layout(std430) readonly buffer PyroVelocityTo { PYRO_FOUR velocity_to[]; };
 layout(std430) buffer PyroRight { float right[]; };
-PYRO_FACE(face_to, velocity_to)
 
 void main() {
-    ivec3 c = ivec3(gl_GlobalInvocationID);
-    float out_ = 0.0;
-    for (int axis = 0; axis < 3; axis++) {
-        ivec3 above = c;
-        above[axis]++;
-        out_ += face_to(axis, above) - face_to(axis, c);
-    }
-    right[pyro_at(c)] = out_ - right[pyro_at(c)];
+    pyro_near n = pyro_near_of(ivec3(gl_GlobalInvocationID));
+    int at = n.cell.x + n.cell.y + n.cell.z;
+    vec3 low, high;
+    PYRO_FACES(velocity_to, n, low, high)
+    right[at] = dot(high - low, vec3(1.0)) - right[at];
 }

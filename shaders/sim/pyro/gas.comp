@@ -20,12 +20,12 @@ layout(std430) readonly buffer PyroGasHat { PYRO_FOUR gas_hat[]; };
 // The eight values around a place.
 #define GAS_EIGHT(from, s, v)                                                                      \
     {                                                                                              \
-        int a_ = s.low[1] + s.low[2], b_ = s.high[1] + s.low[2];                                   \
-        int c_ = s.low[1] + s.high[2], d_ = s.high[1] + s.high[2];                                 \
-        v[0] = pyro_load(from[a_ + s.low[0]]), v[1] = pyro_load(from[a_ + s.high[0]]);                       \
-        v[2] = pyro_load(from[b_ + s.low[0]]), v[3] = pyro_load(from[b_ + s.high[0]]);                       \
-        v[4] = pyro_load(from[c_ + s.low[0]]), v[5] = pyro_load(from[c_ + s.high[0]]);                       \
-        v[6] = pyro_load(from[d_ + s.low[0]]), v[7] = pyro_load(from[d_ + s.high[0]]);                       \
+        int a_ = s.low.y + s.low.z, b_ = s.high.y + s.low.z;                                       \
+        int c_ = s.low.y + s.high.z, d_ = s.high.y + s.high.z;                                     \
+        v[0] = pyro_load(from[a_ + s.low.x]), v[1] = pyro_load(from[a_ + s.high.x]);               \
+        v[2] = pyro_load(from[b_ + s.low.x]), v[3] = pyro_load(from[b_ + s.high.x]);               \
+        v[4] = pyro_load(from[c_ + s.low.x]), v[5] = pyro_load(from[c_ + s.high.x]);               \
+        v[6] = pyro_load(from[d_ + s.low.x]), v[7] = pyro_load(from[d_ + s.high.x]);               \
     }
 
 vec4 gas_mix(vec4 v[8], vec3 t) {
@@ -36,13 +36,10 @@ vec4 gas_mix(vec4 v[8], vec3 t) {
 // What comes through a face is clean air.
 vec4 gas_back(vec3 from, out vec4 least, out vec4 most) {
     vec4 v[8];
-    pyro_span s = pyro_span_at(pyro_into(from), 3);
+    pyro_span s = pyro_span_at(pyro_into(from), ivec3(0));
     GAS_EIGHT(gas, s, v)
-    least = most = v[0];
-    for (int i = 1; i < 8; i++) {
-        least = min(least, v[i]);
-        most = max(most, v[i]);
-    }
+    least = min(min(min(v[0], v[1]), min(v[2], v[3])), min(min(v[4], v[5]), min(v[6], v[7])));
+    most = max(max(max(v[0], v[1]), max(v[2], v[3])), max(max(v[4], v[5]), max(v[6], v[7])));
     return pyro_is_beyond(from) ? vec4(0.0) : gas_mix(v, s.t);
 }
 
@@ -50,20 +47,20 @@ vec4 gas_back(vec3 from, out vec4 least, out vec4 most) {
 void main() {
     vec4 least, most;
     ivec3 c = ivec3(gl_GlobalInvocationID);
-    vec3 from = pyro_middle(3, c) - reach * pyro_velocity_cell(c);
+    vec3 from = vec3(c) + 0.5 - reach * pyro_velocity_cell(pyro_near_of(c));
     gas_hat[pyro_at(c)] = pyro_store(gas_back(from, least, most));
 }
 #else
 vec4 carried(ivec3 c, int at) {
     vec4 least, most;
-    vec3 p = pyro_middle(3, c), way = reach * pyro_velocity_cell(c);
+    vec3 p = vec3(c) + 0.5, way = reach * pyro_velocity_cell(pyro_near_of(c));
     vec4 first = gas_back(p - way, least, most);
 #if PYRO_CORRECTS
-    if (pyro_is_beyond(p - way) || pyro_is_beyond(p + way)) return first;
     vec4 v[8];
-    pyro_span s = pyro_span_at(pyro_into(p + way), 3);
+    pyro_span s = pyro_span_at(pyro_into(p + way), ivec3(0));
     GAS_EIGHT(gas_hat, s, v)
-    return clamp(first + 0.5 * (pyro_load(gas[at]) - gas_mix(v, s.t)), least, most);
+    vec4 value = clamp(first + 0.5 * (pyro_load(gas[at]) - gas_mix(v, s.t)), least, most);
+    return pyro_is_beyond(p - way) || pyro_is_beyond(p + way) ? first : value;
 #else
     return first;
 #endif

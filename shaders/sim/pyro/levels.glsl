@@ -10,40 +10,60 @@ uniform vec3 weights; // of differences along each axis: by the square of the di
 
 #ifdef PYRO_FINEST
 #define LEVEL_SIZE PYRO_SIZE
-int level_at(ivec3 c) {
-    return pyro_at(c);
+#define LEVEL_FIRST 0
+ivec3 level_places(ivec3 i) {
+    return pyro_places(i);
 }
 #else
 uniform vec3 level_size;
 uniform int level_first;
 #define LEVEL_SIZE ivec3(level_size)
-int level_at(ivec3 c) {
-    return level_first + c.x + LEVEL_SIZE.x * (c.y + LEVEL_SIZE.y * c.z);
+#define LEVEL_FIRST level_first
+ivec3 level_places(ivec3 i) {
+    return i * ivec3(1, LEVEL_SIZE.x, LEVEL_SIZE.x * LEVEL_SIZE.y);
 }
 #endif
 
-// The sum of the neighbours of a cell, each by its weight, and of the weights. Outside an open face
-// pressure is that of the surroundings, 0, half a cell away.
-#define LEVEL_AROUND(name, from)                                                                   \
-    vec2 name(ivec3 c) {                                                                           \
-        vec2 sum = vec2(0.0);                                                                      \
-        for (int axis = 0; axis < 3; axis++)                                                       \
-            for (int side = 0; side < 2; side++) {                                                 \
-                ivec3 n = c;                                                                       \
-                n[axis] += 2 * side - 1;                                                           \
-                int face = side == 0 ? PYRO_LOW[axis] : PYRO_HIGH[axis];                           \
-                float w = weights[axis];                                                           \
-                bool outside = n[axis] < 0 || n[axis] >= LEVEL_SIZE[axis];                         \
-                if (outside && face == PYRO_PERIODIC) {                                            \
-                    n[axis] = side == 0 ? LEVEL_SIZE[axis] - 1 : 0;                                \
-                    outside = false;                                                               \
-                }                                                                                  \
-                if (outside) {                                                                     \
-                    sum.y += face == PYRO_OPEN ? 2.0 * w : 0.0;                                    \
-                } else {                                                                           \
-                    sum += w * vec2(from[level_at(n)], 1.0);                                       \
-                }                                                                                  \
-            }                                                                                      \
-        return sum;                                                                                \
+int level_at(ivec3 c) {
+    ivec3 p = level_places(c);
+    return LEVEL_FIRST + p.x + p.y + p.z;
+}
+
+const vec3 LEVEL_OPEN_LOW = vec3(PYRO_LOW_X == PYRO_OPEN, PYRO_LOW_Y == PYRO_OPEN, PYRO_LOW_Z == PYRO_OPEN);
+const vec3 LEVEL_OPEN_HIGH = vec3(PYRO_HIGH_X == PYRO_OPEN, PYRO_HIGH_Y == PYRO_OPEN, PYRO_HIGH_Z == PYRO_OPEN);
+
+// The neighbours of a cell, as places, and the weight of each: 0 where there is none.
+struct level_near {
+    ivec3 cell, below, above;
+    vec3 low, high;
+    float all; // the sum of the weights, and what stands for pressure outside open faces
+};
+
+// Outside an open face pressure is that of the surroundings, 0, half a cell away.
+level_near level_near_of(ivec3 c) {
+    level_near n;
+    ivec3 last = LEVEL_SIZE - 1;
+    bvec3 first = both(equal(c, ivec3(0)), not(PYRO_AROUND));
+    bvec3 end = both(equal(c, last), not(PYRO_AROUND));
+    n.cell = level_places(c);
+    n.below = level_places(mix(max(c - 1, ivec3(0)), last, both(equal(c, ivec3(0)), PYRO_AROUND)));
+    n.above = level_places(mix(min(c + 1, last), ivec3(0), both(equal(c, last), PYRO_AROUND)));
+    n.low = mix(weights, vec3(0.0), first);
+    n.high = mix(weights, vec3(0.0), end);
+    vec3 outside = 2.0 * weights * (LEVEL_OPEN_LOW * vec3(first) + LEVEL_OPEN_HIGH * vec3(end));
+    n.all = dot(n.low + n.high + outside, vec3(1.0));
+    return n;
+}
+
+// The sum of the neighbours, each by its weight.
+#define LEVEL_SUM(from, n, sum)                                                                    \
+    {                                                                                              \
+        int xy_ = LEVEL_FIRST + n.cell.x + n.cell.y, z_ = LEVEL_FIRST + n.cell.z;                  \
+        sum = n.low.x * from[z_ + n.cell.y + n.below.x] + n.high.x * from[z_ + n.cell.y + n.above.x] + \
+              n.low.y * from[z_ + n.cell.x + n.below.y] + n.high.y * from[z_ + n.cell.x + n.above.y] + \
+              n.low.z * from[xy_ + n.below.z] + n.high.z * from[xy_ + n.above.z];                  \
     }
+int level_at(level_near n) {
+    return LEVEL_FIRST + n.cell.x + n.cell.y + n.cell.z;
+}
 #endif

@@ -18,5 +18,5 @@ void main() {
     float air = PYRO_AIR / pyro_temperature(g); // kg/m^3
     vec4 s = vec4(pyro_temperature(g), air * g.PYRO_FUEL, air * g.PYRO_SOOT, air * g.PYRO_BURNT);
     imageStore(scalars, c, clamp(s, -MOST, MOST));
-    imageStore(flow, c, clamp(vec4(pyro_velocity_cell(c), pressure_unit * pressure[at]), -MOST, MOST));
+    imageStore(flow, c, clamp(vec4(pyro_velocity_cell(pyro_near_of(c)), pressure_unit * pressure[at]), -MOST, MOST));
 }

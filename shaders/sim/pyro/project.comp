@@ -7,14 +7,12 @@ layout(std430) buffer PyroVelocityTo { PYRO_FOUR velocity_to[]; };
 
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
-    int at = pyro_at(c);
-    float own = pressure[at];
-    vec3 push = vec3(0.0);
-    for (int axis = 0; axis < 3; axis++) {
-        ivec3 below = c;
-        below[axis] = pyro_into(axis, c[axis] - 1);
-        bool stays = c[axis] == 0 && PYRO_LOW[axis] != PYRO_PERIODIC;
-        push[axis] = stays ? 0.0 : own - pressure[pyro_at(below)];
-    }
+    ivec3 here = pyro_places(c), below = pyro_places(pyro_into(c - 1));
+    int at = here.x + here.y + here.z;
+    vec3 low = vec3(pressure[below.x + here.y + here.z], pressure[here.x + below.y + here.z],
+                    pressure[here.x + here.y + below.z]);
+    // Velocities of the first faces stay as they are.
+    bvec3 stays = both(equal(c, ivec3(0)), not(PYRO_AROUND));
+    vec3 push = mix(pressure[at] - low, vec3(0.0), stays);
     velocity_to[at] = pyro_store(pyro_load(velocity_to[at]) - vec4(push, 0.0));
 }

@@ -1,6 +1,6 @@
 // Adds the pressure of a coarser level, linearly between its cells, to the cells of colour 1: those
 // of colour 0 come first in the sweep that follows, and are computed from these alone.
-layout(local_size_x = 4, local_size_y = 8, local_size_z = 8) in;
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
 #include "sim/pyro/state.glsl"
 #include "sim/pyro/levels.glsl"
 
@@ -15,30 +15,24 @@ const float OVER = 1.06;
 
 // Beyond an open face pressure has the other sign, so that it is 0 there; at a wall it is the same.
 float coarse(ivec3 c) {
-    float sign_ = 1.0;
-    ivec3 size = ivec3(coarse_size);
-    for (int axis = 0; axis < 3; axis++) {
-        bool low = c[axis] < 0, high = c[axis] >= size[axis];
-        if (!low && !high) continue;
-        int face = low ? PYRO_LOW[axis] : PYRO_HIGH[axis];
-        if (face == PYRO_OPEN) sign_ = -sign_;
-        c[axis] = face == PYRO_PERIODIC ? (low ? size[axis] - 1 : 0) : (low ? 0 : size[axis] - 1);
-    }
-    return sign_ * coarse_pressure[coarse_first + c.x + size.x * (c.y + size.y * c.z)];
+    ivec3 size = ivec3(coarse_size), last = size - 1;
+    bvec3 low = lessThan(c, ivec3(0)), high = greaterThan(c, last);
+    vec3 turn = 1.0 - 2.0 * (LEVEL_OPEN_LOW * vec3(low) + LEVEL_OPEN_HIGH * vec3(high));
+    ivec3 into = mix(clamp(c, ivec3(0), last), mix(mix(c, last, low), ivec3(0), high), PYRO_AROUND);
+    return turn.x * turn.y * turn.z * coarse_pressure[coarse_first + into.x + size.x * (into.y + size.y * into.z)];
 }
 
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
     c.x = 2 * c.x + ((c.y + c.z + 1) & 1);
+#ifndef PYRO_FINEST
     if (any(greaterThanEqual(c, LEVEL_SIZE))) return;
-    ivec3 near = c / ivec3(coarser), other = ivec3(0);
-    for (int axis = 0; axis < 3; axis++) // the neighbour on the side where the cell lies
-        if (coarser[axis] > 1.0) other[axis] = (c[axis] & 1) == 0 ? -1 : 1;
-    float sum = 0.0;
-    for (int i = 0; i < 8; i++) {
-        ivec3 far = ivec3(i & 1, i >> 1 & 1, i >> 2);
-        vec3 w = mix(vec3(0.75), vec3(0.25), vec3(far));
-        sum += w.x * w.y * w.z * coarse(near + far * other);
-    }
+#endif
+    // The neighbour on the side where the cell lies, along axes that are halved.
+    ivec3 halved = ivec3(coarser) - 1, a = c / ivec3(coarser), b = a + halved * (2 * (c & 1) - 1);
+    float sum = 0.421875 * coarse(a) +
+                0.140625 * (coarse(ivec3(b.x, a.yz)) + coarse(ivec3(a.x, b.y, a.z)) + coarse(ivec3(a.xy, b.z))) +
+                0.046875 * (coarse(ivec3(b.xy, a.z)) + coarse(ivec3(b.x, a.y, b.z)) + coarse(ivec3(a.x, b.yz))) +
+                0.015625 * coarse(b);
     pressure[level_at(c)] += OVER * sum;
 }

@@ -20,7 +20,6 @@ layout(std430) readonly buffer PyroGas { PYRO_FOUR gas[]; };
 layout(std430) readonly buffer PyroPressure { float pressure[]; };
 layout(std430) readonly buffer PyroRight { float right[]; };
 layout(std430) writeonly buffer PyroReport { vec4 report[]; };
-LEVEL_AROUND(pressure_around, pressure)
 #endif
 
 // The greatest speed squared, divergence that is not wanted, temperature, and 0; sums of fuel, what
@@ -64,9 +63,11 @@ void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
     int at = pyro_at(c);
     vec4 raw = pyro_load(gas[at]), g = pyro_clean(raw);
-    vec3 v = pyro_velocity_cell(c);
-    vec2 around = pressure_around(c);
-    float left = abs(right[at] - (around.x - around.y * pressure[at])), square = dot(v, v);
+    vec3 v = pyro_velocity_cell(pyro_near_of(c));
+    level_near n = level_near_of(c);
+    float around;
+    LEVEL_SUM(pressure, n, around)
+    float left = abs(right[at] - (around - n.all * pressure[at])), square = dot(v, v);
     float air = mass / pyro_temperature(g); // kg
     bool bad = raw != g || pyro_clean(square) != square || pyro_clean(left) != left;
     vec4 sum = air * g.yzwx;

@@ -10,21 +10,23 @@ layout(std430) readonly buffer PyroPressure { float pressure[]; };
 layout(std430) readonly buffer PyroRight { float right[]; };
 layout(std430) buffer PyroCoarsePressure { float coarse_pressure[]; };
 layout(std430) buffer PyroCoarseRight { float coarse_right[]; };
-LEVEL_AROUND(pressure_around, pressure)
+
+float left_of(ivec3 c) {
+    level_near n = level_near_of(c);
+    float around;
+    LEVEL_SUM(pressure, n, around)
+    int at = level_at(n);
+    return right[at] - (around - n.all * pressure[at]);
+}
 
 void main() {
     ivec3 to = ivec3(gl_GlobalInvocationID), size = ivec3(coarse_size), n = ivec3(coarser);
     if (any(greaterThanEqual(to, size))) return;
     float sum = 0.0;
-    for (int z = 0; z < n.z; z++)
-        for (int y = 0; y < n.y; y++)
-            for (int x = 0; x < n.x; x++) {
-                ivec3 c = to * n + ivec3(x, y, z);
-                if (((c.x + c.y + c.z) & 1) != 0) continue;
-                vec2 around = pressure_around(c);
-                int at = level_at(c);
-                sum += right[at] - (around.x - around.y * pressure[at]);
-            }
+    for (int i = 0; i < n.x * n.y * n.z; i++) {
+        ivec3 c = to * n + ivec3(i % n.x, i / n.x % n.y, i / (n.x * n.y));
+        if (((c.x + c.y + c.z) & 1) == 0) sum += left_of(c);
+    }
     int at = coarse_first + to.x + size.x * (to.y + size.y * to.z);
     coarse_right[at] = sum / float(n.x * n.y * n.z);
     coarse_pressure[at] = 0.0;

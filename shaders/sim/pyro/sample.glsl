@@ -1,50 +1,69 @@
-// Values between cells. Positions are in cells from the box's lowest corner; they lie in the box.
+// Values between cells, and velocities around a cell. Positions are in cells from the box's lowest
+// corner. All is written out by axis: software drivers keep what is indexed by a variable in memory.
 #ifndef SIM_PYRO_SAMPLE_GLSL
 #define SIM_PYRO_SAMPLE_GLSL
 
 uniform vec3 inflow; // m/s, across faces that are PYRO_INFLOW
 
+const bvec3 PYRO_PASSES_LOW = bvec3(PYRO_LOW_X == PYRO_OPEN || PYRO_LOW_X == PYRO_INFLOW,
+                                    PYRO_LOW_Y == PYRO_OPEN || PYRO_LOW_Y == PYRO_INFLOW,
+                                    PYRO_LOW_Z == PYRO_OPEN || PYRO_LOW_Z == PYRO_INFLOW);
+const bvec3 PYRO_PASSES_HIGH = bvec3(PYRO_HIGH_X == PYRO_OPEN || PYRO_HIGH_X == PYRO_INFLOW,
+                                     PYRO_HIGH_Y == PYRO_OPEN || PYRO_HIGH_Y == PYRO_INFLOW,
+                                     PYRO_HIGH_Z == PYRO_OPEN || PYRO_HIGH_Z == PYRO_INFLOW);
+// At the last face of an axis the velocity is known.
+const bvec3 PYRO_ENDS = bvec3(PYRO_HIGH_X == PYRO_WALL || PYRO_HIGH_X == PYRO_INFLOW,
+                              PYRO_HIGH_Y == PYRO_WALL || PYRO_HIGH_Y == PYRO_INFLOW,
+                              PYRO_HIGH_Z == PYRO_WALL || PYRO_HIGH_Z == PYRO_INFLOW);
+const vec3 PYRO_END_FLOWS = vec3(PYRO_HIGH_X == PYRO_INFLOW, PYRO_HIGH_Y == PYRO_INFLOW,
+                                 PYRO_HIGH_Z == PYRO_INFLOW);
+// The first face of each axis whose velocity is stored.
+const ivec3 PYRO_FIRST = ivec3(PYRO_LOW_X == PYRO_OPEN, PYRO_LOW_Y == PYRO_OPEN, PYRO_LOW_Z == PYRO_OPEN);
+
+// Whether a place is beyond a face that gas can pass.
+bool pyro_is_beyond(vec3 p) {
+    return any(both(lessThan(p, vec3(0.0)), PYRO_PASSES_LOW)) ||
+           any(both(greaterThan(p, vec3(PYRO_SIZE)), PYRO_PASSES_HIGH));
+}
+
+// Into the box: around, or the nearest place in it.
+vec3 pyro_into(vec3 p) {
+    vec3 size = vec3(PYRO_SIZE);
+    return mix(clamp(p, vec3(0.0), size), p - size * floor(p / size), PYRO_AROUND);
+}
+
 // Two coordinates along each axis as places, and the weight of the higher one.
 struct pyro_span {
-    int low[3], high[3];
+    ivec3 low, high;
     vec3 t;
-    bool wall; // the higher one is the last face of the axis, whose velocity is known
+    bvec3 ends; // the higher one is the last face of the axis, whose velocity is known
 };
 
-// `face`: the axis along which values lie on faces; 3: in the middle of cells along all.
-pyro_span pyro_span_at(vec3 p, const int face) {
+// Of a place in the box. `face`: 1 along the axis on whose faces values lie.
+pyro_span pyro_span_at(vec3 p, ivec3 face) {
+    vec3 at = p - 0.5 + 0.5 * vec3(face), low = floor(at);
+    ivec3 i = ivec3(low), j = i + 1, last = PYRO_SIZE - 1, first = face * PYRO_FIRST;
     pyro_span s;
-    s.wall = false;
-    for (int axis = 0; axis < 3; axis++) {
-        float at = axis == face ? p[axis] : p[axis] - 0.5, low = floor(at);
-        int i = int(low), j = i + 1, last = PYRO_SIZE[axis] - 1;
-        s.t[axis] = at - low;
-        if (PYRO_AROUND[axis]) {
-            i = pyro_into(axis, i);
-            j = pyro_into(axis, j);
-        } else if (axis == face) {
-            if (PYRO_HIGH[axis] != PYRO_OPEN && j > last) s.wall = true;
-            i = clamp(i, PYRO_LOW[axis] == PYRO_OPEN ? 1 : 0, last);
-            j = clamp(j, PYRO_LOW[axis] == PYRO_OPEN ? 1 : 0, last);
-        } else {
-            i = clamp(i, 0, last);
-            j = clamp(j, 0, last);
-        }
-        s.low[axis] = pyro_place(axis, i);
-        s.high[axis] = pyro_place(axis, j);
-    }
+    s.t = at - low;
+    s.ends = both(both(greaterThan(j, last), PYRO_ENDS), bvec3(face));
+    s.low = pyro_places(mix(clamp(i, first, last), pyro_around(i), PYRO_AROUND));
+    s.high = pyro_places(mix(clamp(j, first, last), pyro_around(j), PYRO_AROUND));
     return s;
 }
 
-// The eight values of one component of an array: those that are low along x first.
-#define PYRO_EIGHT(from, axis, s, low4, high4)                                                     \
+// The eight values of a component of an array: those that are low along x first.
+#define PYRO_EIGHT(from, component, s, low4, high4)                                                \
     {                                                                                              \
-        int a_ = s.low[1] + s.low[2], b_ = s.high[1] + s.low[2];                                   \
-        int c_ = s.low[1] + s.high[2], d_ = s.high[1] + s.high[2];                                 \
-        low4 = vec4(pyro_load(from[a_ + s.low[0]], axis), pyro_load(from[b_ + s.low[0]], axis),    \
-                    pyro_load(from[c_ + s.low[0]], axis), pyro_load(from[d_ + s.low[0]], axis));   \
-        high4 = vec4(pyro_load(from[a_ + s.high[0]], axis), pyro_load(from[b_ + s.high[0]], axis), \
-                     pyro_load(from[c_ + s.high[0]], axis), pyro_load(from[d_ + s.high[0]], axis));\
+        int a_ = s.low.y + s.low.z, b_ = s.high.y + s.low.z;                                       \
+        int c_ = s.low.y + s.high.z, d_ = s.high.y + s.high.z;                                     \
+        low4 = vec4(PYRO_##component(from[a_ + s.low.x]), PYRO_##component(from[b_ + s.low.x]),    \
+                    PYRO_##component(from[c_ + s.low.x]), PYRO_##component(from[d_ + s.low.x]));   \
+        high4 = vec4(PYRO_##component(from[a_ + s.high.x]), PYRO_##component(from[b_ + s.high.x]), \
+                     PYRO_##component(from[c_ + s.high.x]), PYRO_##component(from[d_ + s.high.x]));\
+        vec3 end_ = inflow * PYRO_END_FLOWS;                                                       \
+        if (s.ends.x) high4 = vec4(end_.x);                                                        \
+        if (s.ends.y) low4.yw = high4.yw = vec2(end_.y);                                           \
+        if (s.ends.z) low4.zw = high4.zw = vec2(end_.z);                                           \
     }
 
 float pyro_mix(vec4 low, vec4 high, vec3 t) {
@@ -53,50 +72,34 @@ float pyro_mix(vec4 low, vec4 high, vec3 t) {
     return mix(y.x, y.y, t.z);
 }
 
-// Velocities at the last face of an axis are known.
-void pyro_close(const int axis, pyro_span s, inout vec4 low, inout vec4 high) {
-    if (!s.wall) return;
-    float v = PYRO_HIGH[axis] == PYRO_INFLOW ? inflow[axis] : 0.0;
-    if (axis == 0) high = vec4(v);
-    if (axis == 1) low.yw = high.yw = vec2(v);
-    if (axis == 2) low.zw = high.zw = vec2(v);
+// ---- around a cell ----------------------------------------------------------------------------
+
+// Places of a cell and of that before it, of the faces at its two ends.
+struct pyro_near {
+    ivec3 cell, below, face, next;
+    bvec3 ends; // the face at the higher end is the last of the axis, whose velocity is known
+};
+
+pyro_near pyro_near_of(ivec3 c) {
+    ivec3 last = PYRO_SIZE - 1;
+    pyro_near n;
+    n.cell = pyro_places(c);
+    n.below = pyro_places(mix(max(c - 1, ivec3(0)), pyro_around(c - 1), PYRO_AROUND));
+    n.face = pyro_places(mix(max(c, PYRO_FIRST), c, PYRO_AROUND));
+    n.next = pyro_places(mix(clamp(c + 1, PYRO_FIRST, last), pyro_around(c + 1), PYRO_AROUND));
+    n.ends = both(greaterThan(c + 1, last), PYRO_ENDS);
+    return n;
 }
 
-// ---- velocities -------------------------------------------------------------------------------
-
-// Component `axis` across a face, whose other coordinates are those of cells in the box.
-#define PYRO_FACE(name, from)                                                                     \
-    float name(const int axis, ivec3 f) {                                                          \
-        int last = PYRO_SIZE[axis] - 1;                                                            \
-        if (PYRO_AROUND[axis]) {                                                                   \
-            if (f[axis] > last) f[axis] = 0;                                                       \
-        } else {                                                                                   \
-            if (PYRO_HIGH[axis] == PYRO_OPEN) {                                                    \
-                f[axis] = min(f[axis], last);                                                      \
-            } else if (f[axis] > last) {                                                           \
-                return PYRO_HIGH[axis] == PYRO_INFLOW ? inflow[axis] : 0.0;                        \
-            }                                                                                      \
-            if (PYRO_LOW[axis] == PYRO_OPEN) f[axis] = max(f[axis], 1);                            \
-        }                                                                                          \
-        return pyro_load(from[pyro_at(f)], axis);                                        \
+// Velocities across the faces of a cell at its lower ends, and at its higher ones.
+#define PYRO_FACES(from, n, low3, high3)                                                           \
+    {                                                                                              \
+        low3 = vec3(PYRO_X(from[n.face.x + n.cell.y + n.cell.z]),                                  \
+                    PYRO_Y(from[n.cell.x + n.face.y + n.cell.z]),                                  \
+                    PYRO_Z(from[n.cell.x + n.cell.y + n.face.z]));                                 \
+        high3 = vec3(PYRO_X(from[n.next.x + n.cell.y + n.cell.z]),                                 \
+                     PYRO_Y(from[n.cell.x + n.next.y + n.cell.z]),                                 \
+                     PYRO_Z(from[n.cell.x + n.cell.y + n.next.z]));                                \
+        high3 = mix(high3, inflow * PYRO_END_FLOWS, n.ends);                                       \
     }
-
-// Whether a place that is not in the box is beyond a face that air can pass.
-bool pyro_is_beyond(vec3 p) {
-    for (int axis = 0; axis < 3; axis++) {
-        if (PYRO_AROUND[axis]) continue;
-        if (p[axis] < 0.0 && PYRO_LOW[axis] != PYRO_WALL) return true;
-        if (p[axis] > float(PYRO_SIZE[axis]) && PYRO_HIGH[axis] != PYRO_WALL) return true;
-    }
-    return false;
-}
-
-// Into the box: around, or the nearest place in it.
-vec3 pyro_into(vec3 p) {
-    vec3 size = vec3(PYRO_SIZE);
-    for (int axis = 0; axis < 3; axis++)
-        p[axis] = PYRO_AROUND[axis] ? p[axis] - size[axis] * floor(p[axis] / size[axis])
-                                    : clamp(p[axis], 0.0, size[axis]);
-    return p;
-}
 #endif

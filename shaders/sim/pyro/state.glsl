@@ -10,26 +10,45 @@
 // of the face one cell inside. The fourth number of a velocity is 0.
 #ifndef SIM_PYRO_STATE_GLSL
 #define SIM_PYRO_STATE_GLSL
+#if PYRO_WIDE
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#endif
 
-// Four numbers of a cell as they are stored, in full or half precision.
+// Four numbers of a cell as they are stored, in full or half precision; one of them.
 #if PYRO_HALF
 #define PYRO_FOUR uvec2
+#define PYRO_X(stored) unpackHalf2x16((stored).x).x
+#define PYRO_Y(stored) unpackHalf2x16((stored).x).y
+#define PYRO_Z(stored) unpackHalf2x16((stored).y).x
+#define PYRO_W(stored) unpackHalf2x16((stored).y).y
 vec4 pyro_load(uvec2 stored) {
     return vec4(unpackHalf2x16(stored.x), unpackHalf2x16(stored.y));
-}
-float pyro_load(uvec2 stored, const int which) {
-    return unpackHalf2x16(which < 2 ? stored.x : stored.y)[which & 1];
 }
 uvec2 pyro_store(vec4 v) {
     return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
 }
+#elif PYRO_WIDE
+// A software driver makes a loop of each load: 16 bytes are two words of 64 bits, not four of 32.
+#define PYRO_FOUR u64vec2
+#define PYRO_X(stored) uintBitsToFloat(unpackUint2x32((stored).x).x)
+#define PYRO_Y(stored) uintBitsToFloat(unpackUint2x32((stored).x).y)
+#define PYRO_Z(stored) uintBitsToFloat(unpackUint2x32((stored).y).x)
+#define PYRO_W(stored) uintBitsToFloat(unpackUint2x32((stored).y).y)
+vec4 pyro_load(u64vec2 stored) {
+    return uintBitsToFloat(uvec4(unpackUint2x32(stored.x), unpackUint2x32(stored.y)));
+}
+u64vec2 pyro_store(vec4 v) {
+    uvec4 words = floatBitsToUint(v);
+    return u64vec2(packUint2x32(words.xy), packUint2x32(words.zw));
+}
 #else
 #define PYRO_FOUR vec4
+#define PYRO_X(stored) (stored).x
+#define PYRO_Y(stored) (stored).y
+#define PYRO_Z(stored) (stored).z
+#define PYRO_W(stored) (stored).w
 vec4 pyro_load(vec4 stored) {
     return stored;
-}
-float pyro_load(vec4 stored, const int which) {
-    return stored[which];
 }
 vec4 pyro_store(vec4 v) {
     return v;
@@ -51,27 +70,26 @@ const bvec3 PYRO_AROUND = bvec3(PYRO_LOW_X == PYRO_PERIODIC, PYRO_LOW_Y == PYRO_
 
 // ---- where things are -------------------------------------------------------------------------
 
-int pyro_place(const int axis, int i) {
-    const int bricks[3] = int[3](512, 64 * PYRO_NX, 8 * PYRO_NX * PYRO_NY);
-    return (i >> 3) * bricks[axis] + ((i & 7) << (3 * axis));
+ivec3 pyro_places(ivec3 i) { // what coordinates along each axis give
+    return (i >> 3) * ivec3(512, 64 * PYRO_NX, 8 * PYRO_NX * PYRO_NY) + ((i & 7) << ivec3(0, 3, 6));
+}
+
+bvec3 both(bvec3 a, bvec3 b) {
+    return bvec3(a.x && b.x, a.y && b.y, a.z && b.z);
 }
 
 int pyro_at(ivec3 cell) {
-    return pyro_place(0, cell.x) + pyro_place(1, cell.y) + pyro_place(2, cell.z);
+    ivec3 p = pyro_places(cell);
+    return p.x + p.y + p.z;
 }
 
-bool pyro_inside(ivec3 cell) {
-    return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, PYRO_SIZE));
+ivec3 pyro_around(ivec3 i) { // back into the box from less than its size outside
+    return i + mix(ivec3(0), PYRO_SIZE, lessThan(i, ivec3(0))) -
+           mix(ivec3(0), PYRO_SIZE, greaterThanEqual(i, PYRO_SIZE));
 }
 
-// A coordinate of a cell, brought into the box.
-int pyro_into(const int axis, int i) {
-    if (PYRO_AROUND[axis]) return i < 0 ? i + PYRO_SIZE[axis] : i >= PYRO_SIZE[axis] ? i - PYRO_SIZE[axis] : i;
-    return clamp(i, 0, PYRO_SIZE[axis] - 1);
-}
-
-ivec3 pyro_into(ivec3 cell) {
-    return ivec3(pyro_into(0, cell.x), pyro_into(1, cell.y), pyro_into(2, cell.z));
+ivec3 pyro_into(ivec3 cell) { // or the nearest cell
+    return mix(clamp(cell, ivec3(0), PYRO_SIZE - 1), pyro_around(cell), PYRO_AROUND);
 }
 
 // ---- numbers ----------------------------------------------------------------------------------

@@ -23,44 +23,57 @@ layout(std430) readonly buffer PyroCurl { PYRO_FOUR curl[]; };
 #endif
 #endif
 
-float pyro_back(const int axis, ivec3 c, vec3 from, out float least, out float most) {
-    pyro_span s = pyro_span_at(pyro_into(from), axis);
-    vec4 low, high;
-    PYRO_EIGHT(velocity, axis, s, low, high)
-    pyro_close(axis, s, low, high);
-    vec4 a = min(low, high), b = max(low, high);
-    least = min(min(a.x, a.y), min(a.z, a.w));
-    most = max(max(b.x, b.y), max(b.z, b.w));
-    return pyro_mix(low, high, s.t);
-}
+// What a component was where the gas was, with the least and the most of what is around.
+#define BACK(name, component, face)                                                                \
+    vec3 name(vec3 from) {                                                                         \
+        pyro_span s = pyro_span_at(pyro_into(from), face);                                         \
+        vec4 low, high;                                                                            \
+        PYRO_EIGHT(velocity, component, s, low, high)                                              \
+        vec4 a = min(low, high), b = max(low, high);                                               \
+        return vec3(pyro_mix(low, high, s.t), min(min(a.x, a.y), min(a.z, a.w)),                   \
+                    max(max(b.x, b.y), max(b.z, b.w)));                                            \
+    }
+BACK(back_x, X, ivec3(1, 0, 0))
+BACK(back_y, Y, ivec3(0, 1, 0))
+BACK(back_z, Z, ivec3(0, 0, 1))
 
 #ifdef PYRO_PREDICT
-float carried(const int axis, ivec3 c) {
-    float least, most;
-    vec3 from = pyro_middle(axis, c) - reach * pyro_velocity_face(axis, c);
-    return pyro_back(axis, c, from, least, most);
-}
-
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
-    velocity_hat[pyro_at(c)] = pyro_store(vec4(carried(0, c), carried(1, c), carried(2, c), 0.0));
+    pyro_near n = pyro_near_of(c);
+    vec3 p = vec3(c) + 0.5, v;
+    v.x = back_x(p - vec3(0.5, 0.0, 0.0) - reach * pyro_velocity_x(n)).x;
+    v.y = back_y(p - vec3(0.0, 0.5, 0.0) - reach * pyro_velocity_y(n)).x;
+    v.z = back_z(p - vec3(0.0, 0.0, 0.5) - reach * pyro_velocity_z(n)).x;
+    velocity_hat[pyro_at(c)] = pyro_store(vec4(v, 0.0));
 }
 #else
-float carried(const int axis, ivec3 c) {
-    float least, most;
-    vec3 p = pyro_middle(axis, c), way = reach * pyro_velocity_face(axis, c);
-    float first = pyro_back(axis, c, p - way, least, most);
 #if PYRO_CORRECTS
-    if (pyro_is_beyond(p - way) || pyro_is_beyond(p + way)) return first;
-    pyro_span s = pyro_span_at(pyro_into(p + way), axis);
-    vec4 low, high;
-    PYRO_EIGHT(velocity_hat, axis, s, low, high)
-    pyro_close(axis, s, low, high);
-    first += 0.5 * (pyro_face(axis, c) - pyro_mix(low, high, s.t));
-    return clamp(first, least, most);
+// Half of what tracing there and back changes is taken away, within what is around.
+#define CARRIED(name, component, face, back, own)                                                  \
+    float name(vec3 p, vec3 way, float own) {                                                      \
+        vec3 first = back(p - way);                                                                \
+        vec4 low, high;                                                                            \
+        pyro_span s = pyro_span_at(pyro_into(p + way), face);                                      \
+        PYRO_EIGHT(velocity_hat, component, s, low, high)                                          \
+        float value = clamp(first.x + 0.5 * (own - pyro_mix(low, high, s.t)), first.y, first.z);   \
+        return pyro_is_beyond(p - way) || pyro_is_beyond(p + way) ? first.x : value;               \
+    }
 #else
-    return first;
+#define CARRIED(name, component, face, back, own)                                                  \
+    float name(vec3 p, vec3 way, float own) {                                                      \
+        return back(p - way).x;                                                                    \
+    }
 #endif
+CARRIED(carried_x, X, ivec3(1, 0, 0), back_x, own)
+CARRIED(carried_y, Y, ivec3(0, 1, 0), back_y, own)
+CARRIED(carried_z, Z, ivec3(0, 0, 1), back_z, own)
+
+vec3 carried(ivec3 c, pyro_near n) {
+    vec3 p = vec3(c) + 0.5, x = pyro_velocity_x(n), y = pyro_velocity_y(n), z = pyro_velocity_z(n);
+    return vec3(carried_x(p - vec3(0.5, 0.0, 0.0), reach * x, x.x),
+                carried_y(p - vec3(0.0, 0.5, 0.0), reach * y, y.y),
+                carried_z(p - vec3(0.0, 0.0, 0.5), reach * z, z.z));
 }
 
 // Upwards acceleration of a cell, m/s^2: lighter gas rises, and moves what it pushes aside, too.
@@ -69,28 +82,26 @@ float buoyancy(int at) {
     return gravity * 2.0 * (1.0 - density) / (1.0 + density);
 }
 
-float limit(float v) {
-    return clamp(pyro_clean(v), -max_speed, max_speed);
+vec3 limit(vec3 v) {
+    return clamp(pyro_clean(vec4(v, 0.0)).xyz, -max_speed, max_speed);
 }
 
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
-    int at = pyro_at(c);
-    vec3 v = vec3(carried(0, c), carried(1, c), carried(2, c)) + dt * acceleration;
-    v.z += 0.5 * dt * (buoyancy(at) + buoyancy(pyro_at(ivec3(c.xy, pyro_into(2, c.z - 1)))));
+    pyro_near n = pyro_near_of(c);
+    int at = n.cell.x + n.cell.y + n.cell.z;
+    vec3 v = carried(c, n) + dt * acceleration;
+    v.z += 0.5 * dt * (buoyancy(at) + buoyancy(n.cell.x + n.cell.y + n.below.z));
 #if PYRO_CONFINES
-    vec3 here = pyro_load(curl[at]).xyz;
-    for (int axis = 0; axis < 3; axis++) {
-        ivec3 below = c;
-        below[axis] = pyro_into(axis, c[axis] - 1);
-        v[axis] += confinement * 0.5 * (here[axis] + pyro_load(curl[pyro_at(below)], axis));
-    }
+    vec3 below = vec3(PYRO_X(curl[n.below.x + n.cell.y + n.cell.z]),
+                      PYRO_Y(curl[n.cell.x + n.below.y + n.cell.z]),
+                      PYRO_Z(curl[n.cell.x + n.cell.y + n.below.z]));
+    v += confinement * 0.5 * (pyro_load(curl[at]).xyz + below);
 #endif
-    for (int axis = 0; axis < 3; axis++) {
-        v[axis] = limit(v[axis]);
-        if (c[axis] == 0 && PYRO_LOW[axis] == PYRO_WALL) v[axis] = 0.0;
-        if (c[axis] == 0 && PYRO_LOW[axis] == PYRO_INFLOW) v[axis] = inflow[axis];
-    }
+    v = limit(v);
+    bvec3 first = equal(c, ivec3(0));
+    v = mix(v, vec3(0.0), both(first, equal(PYRO_LOW, ivec3(PYRO_WALL))));
+    v = mix(v, inflow, both(first, equal(PYRO_LOW, ivec3(PYRO_INFLOW))));
     velocity_to[at] = pyro_store(vec4(v, 0.0));
 }
 #endif

@@ -1,0 +1,224 @@
+// Burning gas against theory: how much fuel burns, how warm it becomes, how far it expands, what is
+// kept, and how fast warm gas rises.
+#include "pyro_test.h"
+
+static const double pi = 3.14159265358979;
+
+// ---- a cell that burns ------------------------------------------------------------------------
+
+typedef struct sums {
+    double fuel, burnt, soot, heat; // by the mass of the air around: heat in K
+    double hottest;
+} sums;
+
+// By mass: a cell that is warm has less.
+static void add(pyro_world *w, const int c[3], void *data) {
+    sums *s = data;
+    const float *g = w->gas[pyro_cell_at(w, c)];
+    const double ambient = (double)w->numbers.ambient, t = ambient + (double)g[0], mass = ambient / t;
+    s->fuel += mass * (double)g[1];
+    s->burnt += mass * (double)g[2];
+    s->soot += mass * (double)g[3];
+    s->heat += mass * (double)g[0];
+    s->hottest = fmax(s->hottest, t);
+}
+
+static sums sum_up(pyro_world *w) {
+    sums s = {0};
+    pyro_transfer(w, false);
+    pyro_for_each(w, add, &s);
+    return s;
+}
+
+typedef struct even {
+    float warmth, fuel;
+} even;
+
+static void fill(pyro_world *w, const int c[3], void *data) {
+    const even *e = data;
+    w->gas[pyro_cell_at(w, c)][0] = e->warmth;
+    w->gas[pyro_cell_at(w, c)][1] = e->fuel;
+}
+
+// Gas that is the same everywhere, in a box that is around: nothing moves, all burns.
+static sums burn_evenly(gpu *g, even e, float burn_time, float dt, int steps) {
+    pyro_world w;
+    pyro_open(&w, g, &(pyro_desc){.size = {16, 16, 16}, .faces = {3, 3, 3, 3, 3, 3}});
+    w.numbers.burn_time = burn_time;
+    w.numbers.soot_yield = 0.05f;
+    w.numbers.dt = dt;
+    w.numbers.gravity = 0;
+    pyro_for_each(&w, fill, &e);
+    pyro_transfer(&w, true);
+    pyro_run_steps(&w, steps);
+    sums s = sum_up(&w);
+    const float *one = w.gas[100];
+    const double t = (double)w.numbers.ambient + (double)one[0];
+    s = (sums){(double)one[1], (double)one[2], (double)one[3], (double)one[0], t};
+    pyro_close(&w);
+    return s;
+}
+
+static void fuel_burns_as_far_as_oxygen_goes(void **state) {
+    // Poor: all fuel burns. Rich: as much as 0.232 kg of oxygen in 1 kg of air take.
+    const sums poor = burn_evenly(*state, (even){500, 0.02f}, 0, 0.01f, 1);
+    const sums rich = burn_evenly(*state, (even){500, 0.5f}, 0, 0.01f, 1);
+    const sums cold = burn_evenly(*state, (even){200, 0.02f}, 0, 0.01f, 10);
+    print_message("poor: %.5f burnt, %.1f K; rich: %.5f burnt, %.1f K\n", poor.burnt, poor.hottest,
+                  rich.burnt, rich.hottest);
+    assert_true(fabs(poor.burnt - 0.02) < 1e-6 && fabs(poor.fuel) < 1e-6);
+    assert_true(fabs(poor.soot - 0.05 * 0.02) < 1e-7);
+    assert_true(fabs(poor.hottest - (800 + 3e7 * 0.02 / 1150 / 1.02)) < 0.5);
+    assert_true(fabs(rich.burnt - 0.232 / 3.5) < 1e-6);
+    assert_true(fabs(rich.hottest - (800 + 3e7 * rich.burnt / 1150 / 1.5)) < 0.5);
+    assert_true(cold.burnt == 0);
+}
+
+static void fuel_burns_at_the_rate_at_which_it_mixes(void **state) {
+    // What is left after a time t is exp(-t / burn_time), whatever the steps.
+    const sums coarse = burn_evenly(*state, (even){500, 0.02f}, 0.1f, 0.02f, 5);
+    const sums fine = burn_evenly(*state, (even){500, 0.02f}, 0.1f, 0.005f, 20);
+    print_message("left after a burn time: %.5f and %.5f\n", coarse.fuel / 0.02, fine.fuel / 0.02);
+    assert_true(fabs(coarse.fuel / 0.02 - exp(-1)) < 1e-4);
+    assert_true(fabs(fine.fuel / 0.02 - exp(-1)) < 1e-4);
+}
+
+static void hot_gas_cools_by_the_fourth_power(void **state) {
+    pyro_world w;
+    pyro_open(&w, *state, &(pyro_desc){.size = {16, 16, 16}, .faces = {3, 3, 3, 3, 3, 3}});
+    w.numbers.cooling = 400;
+    w.numbers.gravity = 0;
+    w.numbers.dt = 0.02f;
+    even e = {1700, 0};
+    pyro_for_each(&w, fill, &e);
+    pyro_transfer(&w, true);
+    pyro_run_steps(&w, 50);
+    pyro_transfer(&w, false);
+    double t = 2000;
+    for (int i = 0; i < 100000; i++) t -= 1e-5 * 400 * (pow(t, 4) - pow(300, 4)) / pow(1500, 4);
+    print_message("after 1 s: %.1f K, theory %.1f K\n", 300 + (double)w.gas[5][0], t);
+    assert_true(fabs(300 + (double)w.gas[5][0] - t) < 0.005 * t);
+    pyro_close(&w);
+}
+
+// ---- expansion --------------------------------------------------------------------------------
+
+typedef struct ball {
+    double radius; // cells
+    float warmth, fuel;
+} ball;
+
+static void fill_ball(pyro_world *w, const int c[3], void *data) {
+    const ball *b = data;
+    double r2 = 0;
+    for (int i = 0; i < 3; i++) r2 += pow(c[i] + 0.5 - w->desc.size[i] / 2.0, 2);
+    // The part of the cell that is within, about.
+    const float in = (float)fmin(1, fmax(0, b->radius - sqrt(r2) + 0.5));
+    w->gas[pyro_cell_at(w, c)][0] = b->warmth * in;
+    w->gas[pyro_cell_at(w, c)][1] = b->fuel * in;
+}
+
+// What flows out of a box within the grid, m^3/s.
+static double outflow(pyro_world *w, int margin) {
+    const int *n = (const int *)w->desc.size;
+    double sum = 0;
+    for (int axis = 0; axis < 3; axis++)
+        for (int i = margin; i < n[(axis + 1) % 3] - margin; i++)
+            for (int k = margin; k < n[(axis + 2) % 3] - margin; k++) {
+                int c[3];
+                c[(axis + 1) % 3] = i, c[(axis + 2) % 3] = k;
+                c[axis] = margin;
+                sum -= (double)*pyro_face_at(w, axis, c);
+                c[axis] = n[axis] - margin;
+                sum += (double)*pyro_face_at(w, axis, c);
+            }
+    return sum * pow((double)w->numbers.cell, 2);
+}
+
+// What burns at a known power makes so much room: div u = power / (density x heat capacity x
+// temperature), the same for all gas at this pressure.
+static void heat_makes_room(void **state) {
+    pyro_world w;
+    pyro_open(&w, *state, &(pyro_desc){.size = {48, 48, 48}, .cycles = 6});
+    w.numbers.gravity = 0;
+    w.numbers.dt = 1e-4f; // so short that nothing moves
+    w.numbers.burn_time = 0.1f;
+    ball b = {12, 600, 0.02f};
+    pyro_for_each(&w, fill_ball, &b);
+    pyro_transfer(&w, true);
+    pyro_run_steps(&w, 1);
+    const pyro_report r = pyro_look_at(&w);
+    pyro_transfer(&w, false);
+    const double flow = outflow(&w, 2);
+    // The report's power is of the state after the step: all but the same.
+    const double wanted = (double)r.power / (353 * 1150) / 1.02; // fuel is warmed, too
+    print_message("%.1f kW make %.4f m^3/s; theory %.4f\n", (double)r.power / 1e3, flow, wanted);
+    assert_true(fabs(flow / wanted - 1) < 0.01);
+    pyro_close(&w);
+}
+
+// A ball that burns in still air and pushes it away: fuel and heat are where they were, or burnt.
+static void a_ball_keeps_what_it_has(void **state) {
+    pyro_world w;
+    pyro_open(&w, *state, &(pyro_desc){.size = {64, 64, 64}, .advection = PYRO_MACCORMACK});
+    w.numbers.gravity = 0;
+    w.numbers.burn_time = 0.05f;
+    w.numbers.dt = 0.004f;
+    ball b = {10, 400, 0.03f};
+    pyro_for_each(&w, fill_ball, &b);
+    pyro_transfer(&w, true);
+    const sums before = sum_up(&w);
+    pyro_run_steps(&w, 60); // 5 burn times
+    const sums after = sum_up(&w);
+    double hot = 0;
+    for (size_t i = 0; i < w.cells; i++) hot += (double)w.gas[i][0] / (300 + (double)w.gas[i][0]);
+    const double mass = before.fuel, burnt = after.burnt + after.fuel;
+    print_message("fuel and burnt: %.2f of %.2f; hottest %.0f K\n", burnt, mass, after.hottest);
+    assert_true(fabs(burnt / mass - 1) < 0.02);
+    // Each kg of burnt fuel warms by heat / capacity, less what it is mixed with.
+    const double wanted = before.heat + 3e7 * after.burnt / 1150 / 1.03;
+    print_message("heat %.0f of %.0f K cells\n", after.heat, wanted);
+    assert_true(fabs(after.heat / wanted - 1) < 0.02);
+    pyro_close(&w);
+}
+
+// ---- warm gas rises ---------------------------------------------------------------------------
+
+static void columns(pyro_world *w, const int c[3], void *data) {
+    const float *warmth = data;
+    w->gas[pyro_cell_at(w, c)][0] = *warmth * (float)cos(2 * pi * (c[0] + 0.5) / w->desc.size[0]);
+}
+
+// Columns that are warm and cold by turns: g dT / T.
+static void a_warm_column_rises_by_its_warmth(void **state) {
+    pyro_world w;
+    pyro_open(&w, *state, &(pyro_desc){.size = {32, 16, 32}, .faces = {3, 3, 3, 3, 3, 3}});
+    w.numbers.gravity = 9.81f;
+    w.numbers.dt = 0.01f;
+    float warmth = 3;
+    pyro_for_each(&w, columns, &warmth);
+    pyro_transfer(&w, true);
+    pyro_run_steps(&w, 10);
+    pyro_transfer(&w, false);
+    double rise = 0;
+    for (int x = 0; x < 32; x++) {
+        const int c[3] = {x, 5, 9};
+        rise += 2 * (double)*pyro_face_at(&w, 2, c) * cos(2 * pi * (x + 0.5) / 32) / 32;
+    }
+    const double wanted = 9.81 * 3 / 300 * 0.1;
+    print_message("rises at %.5f m/s, theory %.5f\n", rise, wanted);
+    assert_true(fabs(rise / wanted - 1) < 0.02);
+    pyro_close(&w);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fuel_burns_as_far_as_oxygen_goes),
+        cmocka_unit_test(fuel_burns_at_the_rate_at_which_it_mixes),
+        cmocka_unit_test(hot_gas_cools_by_the_fourth_power),
+        cmocka_unit_test(heat_makes_room),
+        cmocka_unit_test(a_ball_keeps_what_it_has),
+        cmocka_unit_test(a_warm_column_rises_by_its_warmth),
+    };
+    return gpu_test_run(tests, COUNT_OF(tests));
+}
