@@ -7,32 +7,39 @@
 local fx = effect { name = "pyro burst", fps = 24, frames = 96 }
 
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
-local fuel    = param { "fuel", 2, min = 0, max = 10, unit = "kg/m^3", help = "of the cloud" }
+local fuel    = param { "fuel", 0.25, min = 0, max = 5, unit = "kg/m^3", help = "of the cloud" }
 local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides; soot hides 8700" }
-local glow    = param { "glow", 1.5, min = 0, max = 50, help = "factor of the fire's light" }
+local glow    = param { "glow", 3, min = 0, max = 50, help = "factor of the fire's light" }
 
 local cells = ({ draft = {64, 64, 80}, shot = {128, 128, 160}, film = {256, 256, 320} })[quality:get()]
 local h = 8 / cells[1]
 
-local fire = pyro { size = cells, voxel_size = h, fuel = "petrol", speed = 14, vorticity = 4 }
+local fire = pyro { size = cells, voxel_size = h, fuel = "petrol", speed = 20, burn_time = 0.05, vorticity = 6 }
 
-local lumps = worley { frequency = 2.5, octaves = 2, seed = 3 }
+-- The petrol is a mist when it is lit: rich in the middle of each lump, poor between them, and whirling.
+local lumps = worley { frequency = 1.3, octaves = 3, seed = 3 }:remap(0.1, 0.7, 0, 1)
+local whirl = curl { frequency = 0.8, octaves = 3, seed = 5 }
 fire:source {
-  shape = sphere { position = {0, 0, 0.5}, radius = 0.5 },
-  fuel = fuel * (0.4 + 1.2 * lumps), temperature = 1200, velocity = {0, 0, 6}, during = {0, 0.02},
+  shape = sphere { position = {0, 0, 0.75}, radius = 0.9 },
+  fuel = fuel * (0.2 + 1.6 * lumps), temperature = 900,
+  velocity = whirl * 6 + vec(0, 0, 5), during = {0, 0.02},
 }
 
 fx.camera = orbit { target = {0, 0, 2.6}, distance = 13, yaw = 25, pitch = 4, fov = 38 }
 fx.sun    = sun { azimuth = 215, elevation = 30, color = {1, 0.92, 0.8}, strength = 3 }
 fx.sky    = sky { zenith = {0.06, 0.12, 0.30}, horizon = {0.30, 0.38, 0.48}, strength = 0.6 }
 
-local light = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
-local hot   = smoothstep(900, 1300, fire.temperature)
+-- What absorbs light gives it off, too: soot glows by its temperature, and so does a flame's blue edge a
+-- little.
+local light  = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
+local flame  = smoothstep(900, 1500, fire.temperature)
+local cover  = fire.soot * smoke + flame * 1.5
 local lit = lighting {
-  density  = fire.soot * smoke + hot * 0.5,
-  emission = light(fire.temperature) * hot * glow,
-  albedo   = {0.30, 0.28, 0.27},
+  density    = cover,
+  emission   = light(fire.temperature) * cover * glow,
+  albedo     = 0.2,
   anisotropy = 0.2,
+  sampling   = "cubic",
 }
 
 local scene  = geometry { mesh { "data/ground.obj" } }

@@ -61,6 +61,7 @@ static void define_all(pyro *p) {
     define(p, "PYRO_WIDE", p->wide);
     define(p, "PYRO_CORRECTS", p->desc.advection == PYRO_MACCORMACK);
     define(p, "PYRO_CONFINES", p->desc.confinement);
+    define(p, "PYRO_SOLIDS", p->desc.solids);
     define(p, "PYRO_CLOSED", is_closed(&p->desc));
 }
 
@@ -79,6 +80,10 @@ static const char *const shaders[PYRO_KERNELS] = {
     [PYRO_K_CURL] = "sim/pyro/curl.comp",
     [PYRO_K_VELOCITY_PREDICT] = "sim/pyro/velocity.comp",
     [PYRO_K_VELOCITY] = "sim/pyro/velocity.comp",
+    [PYRO_K_SOLIDS] = "sim/pyro/solids.comp",
+    [PYRO_K_SOLIDS_FINEST] = "sim/pyro/solids.comp",
+    [PYRO_K_SOLIDS_COARSE] = "sim/pyro/solids.comp",
+    [PYRO_K_OBSTRUCT] = "sim/pyro/obstruct.comp",
     [PYRO_K_DIVERGENCE] = "sim/pyro/divergence.comp",
     [PYRO_K_SMOOTH_FINEST] = "sim/pyro/smooth.comp",
     [PYRO_K_SMOOTH] = "sim/pyro/smooth.comp",
@@ -95,18 +100,21 @@ static const char *const shaders[PYRO_KERNELS] = {
 
 const kernel_table pyro_kernel_table = {{names, COUNT_OF(names)}, shaders, COUNT_OF(shaders)};
 
-// The additional define of a kernel; NULL: none.
-static const char *const more_defines[PYRO_KERNELS] = {
-    [PYRO_K_GAS_PREDICT] = "PYRO_PREDICT",      [PYRO_K_CURL] = "PYRO_CURL_LAST",
-    [PYRO_K_VELOCITY_PREDICT] = "PYRO_PREDICT", [PYRO_K_SMOOTH_FINEST] = "PYRO_FINEST",
-    [PYRO_K_RESTRICT_FINEST] = "PYRO_FINEST",   [PYRO_K_PROLONG_FINEST] = "PYRO_FINEST",
-    [PYRO_K_REPORT_LAST] = "LAST",
+// The additional defines of a kernel; NULL: none.
+static const char *const more_defines[PYRO_KERNELS][2] = {
+    [PYRO_K_GAS_PREDICT] = {"PYRO_PREDICT"},      [PYRO_K_CURL] = {"PYRO_CURL_LAST"},
+    [PYRO_K_VELOCITY_PREDICT] = {"PYRO_PREDICT"}, [PYRO_K_SMOOTH_FINEST] = {"PYRO_FINEST"},
+    [PYRO_K_RESTRICT_FINEST] = {"PYRO_FINEST"},   [PYRO_K_PROLONG_FINEST] = {"PYRO_FINEST"},
+    [PYRO_K_REPORT_LAST] = {"LAST"},
+    [PYRO_K_SOLIDS_FINEST] = {"COARSE", "PYRO_FINEST"},
+    [PYRO_K_SOLIDS_COARSE] = {"COARSE"},
 };
 
 static bool is_used(const pyro_desc *desc, pyro_kernel which) {
     if (which == PYRO_K_GAS_PREDICT || which == PYRO_K_VELOCITY_PREDICT)
         return desc->advection == PYRO_MACCORMACK;
     if (which == PYRO_K_VORTICITY || which == PYRO_K_CURL) return desc->confinement;
+    if (which >= PYRO_K_SOLIDS && which <= PYRO_K_OBSTRUCT) return desc->solids;
     return true;
 }
 
@@ -116,10 +124,11 @@ static bool pyro_compile_kernels(pyro *p, const gpu_profile *device, shader_libr
     p->wide = device->pyro_wide_words && p->desc.precision == PYRO_F32;
     define_all(p);
     for (int i = 0; i < PYRO_KERNELS; i++) {
-        shader_define defines[PYRO_MAX_DEFINES + 1];
+        shader_define defines[PYRO_MAX_DEFINES + 2];
         size_t count = pyro_defines(p, defines);
         if (!is_used(&p->desc, (pyro_kernel)i)) continue;
-        if (more_defines[i]) defines[count++] = (shader_define){more_defines[i], "1"};
+        for (int k = 0; k < 2; k++)
+            if (more_defines[i][k]) defines[count++] = (shader_define){more_defines[i][k], "1"};
         const kernel_source source = {
             .label = shaders[i],
             .stages = {{.name = shaders[i],
@@ -162,6 +171,8 @@ static void find_sizes(const pyro *p, uint64_t out[PYRO_MEM_COUNT]) {
     if (p->desc.confinement) out[PYRO_MEM_CURL] = 4 * cells * real;
     out[PYRO_MEM_PRESSURE] = out[PYRO_MEM_RIGHT] = 4 * cells;
     out[PYRO_MEM_COARSE_PRESSURE] = out[PYRO_MEM_COARSE_RIGHT] = 4 * pyro_coarse_cells(p);
+    if (p->desc.solids) out[PYRO_MEM_OPENINGS] = 4 * cells;
+    if (p->desc.solids) out[PYRO_MEM_COARSE_OPENINGS] = 4 * pyro_coarse_cells(p);
     out[PYRO_MEM_REPORT] = cells / 256 * 32;
 }
 
@@ -169,6 +180,7 @@ static const char *const memory_labels[PYRO_MEM_COUNT] = {
     "velocity of burning gas", "velocity of burning gas", "burning gas", "burning gas",
     "velocity traced back",    "gas traced back",         "vorticity",   "pressure of burning gas",
     "divergence",              "coarse pressure",         "coarse divergence",
+    "openings between solids", "openings between solids",
     "report of burning gas"};
 
 bool pyro_allocate(pyro *p, gpu *g) {
@@ -224,6 +236,8 @@ void pyro_bind(const pyro *p, kernel *k, const kernel_place *places) {
         [N_PyroCurl] = p->buffers[PYRO_MEM_CURL],
         [N_PyroCoarsePressure] = p->buffers[PYRO_MEM_COARSE_PRESSURE],
         [N_PyroCoarseRight] = p->buffers[PYRO_MEM_COARSE_RIGHT],
+        [N_PyroOpenings] = p->buffers[PYRO_MEM_OPENINGS],
+        [N_PyroCoarseOpenings] = p->buffers[PYRO_MEM_COARSE_OPENINGS],
         [N_PyroReport] = p->buffers[PYRO_MEM_REPORT],
     };
     for (int i = 0; i < PYRO_OWN; i++)

@@ -36,6 +36,7 @@ typedef struct pyro_desc { // structure: what shaders are compiled for
     pyro_advection advection;
     pyro_precision precision; // of velocities and the gas; auto: by the device
     bool confinement;         // numbers may have some
+    bool solids;              // pyro_set_solids is called before each step
     uint32_t cycles;          // of multigrid, per step; 0: 2
     bool timed;               // stages of a step have GPU times of their own
 } pyro_desc;
@@ -83,6 +84,15 @@ bool pyro_keep(pyro *p, gpu *g, const pyro_numbers *numbers);
 // which is done for the last step of a frame, and sometimes for the last two.
 bool pyro_step(pyro *p, gpu *g, const pyro_numbers *numbers, bool keep);
 uint64_t pyro_steps(const pyro *p); // since pyro_reset
+
+typedef struct pyro_solids {
+    gpu_buffer *ids;     // an uint for each cell, x fastest: its solid, from 1; 0: gas
+    gpu_buffer *motions; // struct voxel_motion of shared.h by id (m, m/s)
+    float corner[3];     // of the box, m
+    bool changed;        // ids are other than in the last step
+} pyro_solids;
+// Inside a frame. The buffers are read until the next call.
+bool pyro_set_solids(pyro *p, gpu *g, const pyro_solids *solids);
 
 // Returns the state that was kept last (0) or the one kept before it (1) as a 3D image of half
 // floats. NULL: there is none.

@@ -20,6 +20,8 @@ typedef enum pyro_memory {
     PYRO_MEM_RIGHT,
     PYRO_MEM_COARSE_PRESSURE, // of all levels but the finest
     PYRO_MEM_COARSE_RIGHT,
+    PYRO_MEM_OPENINGS, // with solids
+    PYRO_MEM_COARSE_OPENINGS,
     PYRO_MEM_REPORT,
     PYRO_MEM_COUNT
 } pyro_memory;
@@ -50,6 +52,10 @@ typedef enum pyro_kernel {
     PYRO_K_CURL,
     PYRO_K_VELOCITY_PREDICT,
     PYRO_K_VELOCITY,
+    PYRO_K_SOLIDS,
+    PYRO_K_SOLIDS_FINEST, // from the finest level to the next
+    PYRO_K_SOLIDS_COARSE,
+    PYRO_K_OBSTRUCT,
     PYRO_K_DIVERGENCE,
     PYRO_K_SMOOTH_FINEST,
     PYRO_K_SMOOTH,
@@ -69,7 +75,8 @@ typedef enum pyro_kernel {
 #define PYRO_OWN_NAMES(NAME)                                                                       \
     NAME(PyroGas), NAME(PyroVelocity), NAME(PyroPressure), NAME(PyroRight), NAME(PyroGasTo),       \
         NAME(PyroVelocityTo), NAME(PyroGasHat), NAME(PyroVelocityHat), NAME(PyroCurl),             \
-        NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroReport)
+        NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroOpenings),                     \
+        NAME(PyroCoarseOpenings), NAME(PyroReport)
 #define PYRO_NAMES(NAME)                                                                           \
     PYRO_OWN_NAMES(NAME), NAME(PyroVorticity), NAME(scalars), NAME(flow), NAME(result), NAME(dt),  \
         NAME(cell), NAME(reach), NAME(ambient), NAME(lightness), NAME(inflow), NAME(gravity),      \
@@ -77,7 +84,8 @@ typedef enum pyro_kernel {
         NAME(oxygen_need), NAME(heat), NAME(soot_yield), NAME(soot_share), NAME(soot_heat), NAME(soot_kept),        \
         NAME(cooling), NAME(expansion), NAME(weights), NAME(level_size), NAME(level_first),        \
         NAME(colour), NAME(coarse_size), NAME(coarser), NAME(coarse_first), NAME(sweeps),          \
-        NAME(relaxation), NAME(pressure_unit), NAME(groups), NAME(mass)
+        NAME(relaxation), NAME(pressure_unit), NAME(groups), NAME(mass),          \
+        NAME(SolidIds), NAME(SolidMotions), NAME(box_min)
 enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 
 struct pyro {
@@ -94,6 +102,8 @@ struct pyro {
     uint32_t current;                // of pairs that are the state's
     uint64_t kept, steps;
     pyro_reporter reporter;
+    pyro_solids solids;
+    bool solids_known; // openings are those of `solids`
 };
 
 uint64_t pyro_cells(const pyro *p);
@@ -113,6 +123,9 @@ uint64_t pyro_coarse_cells(const pyro *p);
 // Of the next velocity, whose expansion is in PyroRight.
 bool pyro_project(pyro *p, gpu *g, const pyro_numbers *numbers);
 void pyro_set_level(const pyro *p, kernel *k, uint32_t level);
+
+// pyro_solids.c
+bool pyro_obstruct(pyro *p, gpu *g, const pyro_numbers *numbers); // the next state
 
 // pyro_report.c
 bool pyro_report_allocate(pyro *p, gpu *g);

@@ -83,6 +83,8 @@ static kernel *use_level(pyro *p, pyro_kernel finest, pyro_kernel coarse, uint32
     if (level > 0) {
         kernel_bind_buffer(k, N_PyroPressure, p->buffers[PYRO_MEM_COARSE_PRESSURE]);
         kernel_bind_buffer(k, N_PyroRight, p->buffers[PYRO_MEM_COARSE_RIGHT]);
+        if (p->desc.solids)
+            kernel_bind_buffer(k, N_PyroOpenings, p->buffers[PYRO_MEM_COARSE_OPENINGS]);
     }
     return k;
 }
@@ -116,6 +118,8 @@ static bool pressure_end(pyro *p, gpu *g) {
     const uint32_t last = p->level_count - 1;
     kernel *k = pyro_use(p, PYRO_K_COARSEST);
     pyro_set_level(p, k, last);
+    if (p->desc.solids)
+        kernel_bind_buffer(k, N_PyroOpenings, p->buffers[PYRO_MEM_COARSE_OPENINGS]);
     kernel_set_int(k, N_sweeps, (int32_t)coarsest_sweeps(&p->levels[last]));
     kernel_set_float(k, N_relaxation, coarsest_relaxation(&p->levels[last]));
     return kernel_run(k, g, k->binaries[0].local_size[0], 1, 1);

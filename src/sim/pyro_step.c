@@ -109,7 +109,7 @@ static bool check_numbers(const pyro_numbers *n) {
 
 bool pyro_step(pyro *p, gpu *g, const pyro_numbers *n, bool keep) {
     if (!check_numbers(n) || !gas_advance(p, g, n) || !velocity_advance(p, g, n) ||
-        !pyro_project(p, g, n))
+        !pyro_obstruct(p, g, n) || !pyro_project(p, g, n))
         return false;
     p->current ^= 1;
     p->steps++;

@@ -55,6 +55,26 @@ level_near level_near_of(ivec3 c) {
     return n;
 }
 
+// Solids close faces, in part where the level is coarse.
+#if PYRO_SOLIDS
+#define LEVEL_OPENINGS layout(std430) readonly buffer PyroOpenings { uint openings[]; };
+#define LEVEL_CLOSE(n)                                                                             \
+    {                                                                                              \
+        int xy_ = LEVEL_FIRST + n.cell.x + n.cell.y, z_ = LEVEL_FIRST + n.cell.z;                  \
+        vec3 low_ = unpackUnorm4x8(openings[xy_ + n.cell.z]).xyz;                                  \
+        vec3 high_ = vec3(unpackUnorm4x8(openings[z_ + n.cell.y + n.above.x]).x,                   \
+                          unpackUnorm4x8(openings[z_ + n.cell.x + n.above.y]).y,                   \
+                          unpackUnorm4x8(openings[xy_ + n.above.z]).z);                            \
+        n.all -= dot(n.low * (1.0 - low_) + n.high * (1.0 - high_), vec3(1.0));                    \
+        n.low *= low_;                                                                             \
+        n.high *= high_;                                                                           \
+        if (low_ + high_ == vec3(0.0)) n.all = 0.0;                                                \
+    }
+#else
+#define LEVEL_OPENINGS
+#define LEVEL_CLOSE(n)
+#endif
+
 // The sum of the neighbours, each by its weight.
 #define LEVEL_SUM(from, n, sum)                                                                    \
     {                                                                                              \

@@ -4,6 +4,9 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 
 layout(std430) readonly buffer PyroPressure { float pressure[]; };
 layout(std430) buffer PyroVelocityTo { PYRO_FOUR velocity_to[]; };
+#if PYRO_SOLIDS
+layout(std430) readonly buffer PyroOpenings { uint openings[]; };
+#endif
 
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
@@ -13,6 +16,9 @@ void main() {
                     pressure[here.x + here.y + below.z]);
     // Velocities of the first faces stay as they are.
     bvec3 stays = both(equal(c, ivec3(0)), not(PYRO_AROUND));
+#if PYRO_SOLIDS
+    stays = bvec3(vec3(stays) + 1.0 - ceil(unpackUnorm4x8(openings[at]).xyz));
+#endif
     vec3 push = mix(pressure[at] - low, vec3(0.0), stays);
     velocity_to[at] = pyro_store(pyro_load(velocity_to[at]) - vec4(push, 0.0));
 }

@@ -20,6 +20,7 @@ layout(std430) readonly buffer PyroGas { PYRO_FOUR gas[]; };
 layout(std430) readonly buffer PyroPressure { float pressure[]; };
 layout(std430) readonly buffer PyroRight { float right[]; };
 layout(std430) writeonly buffer PyroReport { vec4 report[]; };
+LEVEL_OPENINGS
 #endif
 
 // The greatest speed squared, divergence that is not wanted, temperature, and 0; sums of fuel, what
@@ -65,6 +66,7 @@ void main() {
     vec4 raw = pyro_load(gas[at]), g = pyro_clean(raw);
     vec3 v = pyro_velocity_cell(pyro_near_of(c));
     level_near n = level_near_of(c);
+    LEVEL_CLOSE(n)
     float around;
     LEVEL_SUM(pressure, n, around)
     float left = abs(right[at] - (around - n.all * pressure[at])), square = dot(v, v);

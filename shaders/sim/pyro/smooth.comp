@@ -6,6 +6,7 @@ layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
 uniform int colour;
 layout(std430) buffer PyroPressure { float pressure[]; };
 layout(std430) readonly buffer PyroRight { float right[]; };
+LEVEL_OPENINGS
 
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
@@ -14,6 +15,7 @@ void main() {
     if (any(greaterThanEqual(c, LEVEL_SIZE))) return;
 #endif
     level_near n = level_near_of(c);
+    LEVEL_CLOSE(n)
     float sum;
     LEVEL_SUM(pressure, n, sum)
     int at = level_at(n);

@@ -66,7 +66,7 @@ typedef struct air_kind {
     bool (*evaluate)(air *a);                 // its numbers, before all else of a step
     bool (*reset)(air *a);                    // the state at the beginning
     bool (*step)(air *a, bool keep);          // after bodies and sources
-    bool (*move_solids)(air *a, bool changed); // NULL: there are none
+    bool (*move_solids)(air *a, bool changed); // cells are of other bodies than before
     // Binds and sets what the kernel that gives the air a source's values takes of the solver, and
     // says how many threads it has for the cells of the source's box.
     bool (*give)(const air *a, pass *source, kernel *k, uint32_t threads[3]);

@@ -23,6 +23,7 @@ static bool pyro_air_complete(pass *p) {
         .advection = (pyro_advection)pass_option(p, N_advection),
         .precision = (pyro_precision)pass_option(p, N_precision),
         .confinement = has_confinement(p),
+        .solids = a->air.solids.count > 0,
     };
     for (int i = 0; i < 3; i++) d.size[i] = a->air.desc.size[i];
     for (int i = 0; i < 6; i++) d.faces[i] = (pyro_face)pass_option(p, N_boundary_left + i);

@@ -62,6 +62,15 @@ static bool pyro_air_step(air *a, bool keep) {
     return pyro_step(p->solver, a->pass->host->device, &p->numbers, keep);
 }
 
+static bool pyro_air_move_solids(air *a, bool changed) {
+    const float3 corner = a->grid.box.min;
+    return pyro_set_solids(pyro_of(a)->solver, a->pass->host->device,
+                           &(pyro_solids){.ids = voxels_ids(a->solids.cells),
+                                          .motions = voxels_motions(a->solids.cells),
+                                          .corner = {corner.x, corner.y, corner.z},
+                                          .changed = changed});
+}
+
 static bool pyro_air_exchange(air *a, air *other) {
     pyro *mine = pyro_of(a)->solver, *its = pyro_of(other)->solver;
     return mine && its && pyro_exchange(mine, its);
@@ -124,6 +133,7 @@ const air_kind pyro_kind = {
     .evaluate = pyro_air_evaluate,
     .reset = pyro_air_reset,
     .step = pyro_air_step,
+    .move_solids = pyro_air_move_solids,
     .give = pyro_air_give,
     .source_defines = pyro_air_source_defines,
     .exchange = pyro_air_exchange,
