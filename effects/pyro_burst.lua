@@ -1,22 +1,25 @@
--- A petrol bomb: a cloud of burning petrol is thrown up from the ground, rolls, mushrooms, and leaves
+-- A petrol bomb: a mist of burning petrol is thrown up from the ground, rolls, mushrooms, and leaves
 -- black smoke with fire inside. Nothing is played back: fuel burns where it is hot and finds air, what
--- burns expands and rises.
+-- burns expands and rises, and soot glows until it has cooled.
 --
---   roil render effects/pyro_burst.lua --frames 20 -o burst.png
+--   roil render effects/pyro_burst.lua --frames 24 -o burst.png
+--   roil render effects/pyro_burst.lua --frames 24 --set quality=film -o film.png    -- on a graphics card
 
 local fx = effect { name = "pyro burst", fps = 24, frames = 96 }
 
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
-local fuel    = param { "fuel", 0.25, min = 0, max = 5, unit = "kg/m^3", help = "of the cloud" }
-local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides; soot hides 8700" }
-local glow    = param { "glow", 3, min = 0, max = 50, help = "factor of the fire's light" }
+local fuel    = param { "fuel", 0.22, min = 0, max = 5, unit = "kg/m^3", help = "of the mist; air burns 0.08" }
+local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides; that of a real fire is 8700" }
+local glow    = param { "glow", 2.2, min = 0, max = 50, help = "factor of the fire's light" }
 
+-- A box of 9 x 9 x 11 m. Two cores bear the draft, a graphics card the film.
 local cells = ({ draft = {64, 64, 80}, shot = {128, 128, 160}, film = {256, 256, 320} })[quality:get()]
-local h = 8 / cells[1]
+local fire = pyro {
+  size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 20,
+  burn_time = 0.03, cooling = 1500, soot_burn_time = 2, vorticity = 6,
+}
 
-local fire = pyro { size = cells, voxel_size = h, fuel = "petrol", speed = 20, burn_time = 0.05, vorticity = 6 }
-
--- The petrol is a mist when it is lit: rich in the middle of each lump, poor between them, and whirling.
+-- The mist when it is lit: rich in the middle of each lump, poor between them, and whirling.
 local lumps = worley { frequency = 1.3, octaves = 3, seed = 3 }:remap(0.1, 0.7, 0, 1)
 local whirl = curl { frequency = 0.8, octaves = 3, seed = 5 }
 fire:source {
@@ -25,26 +28,25 @@ fire:source {
   velocity = whirl * 6 + vec(0, 0, 5), during = {0, 0.02},
 }
 
-fx.camera = orbit { target = {0, 0, 2.6}, distance = 13, yaw = 25, pitch = 4, fov = 38 }
-fx.sun    = sun { azimuth = 215, elevation = 30, color = {1, 0.92, 0.8}, strength = 3 }
-fx.sky    = sky { zenith = {0.06, 0.12, 0.30}, horizon = {0.30, 0.38, 0.48}, strength = 0.6 }
+fx.camera = orbit { target = {0, 0, 4}, distance = 19, yaw = 25, pitch = 4, fov = 38 }
+fx.sun    = sun { azimuth = 215, elevation = 30, color = {1, 0.92, 0.8}, strength = 6 }
+fx.sky    = sky { zenith = {0.08, 0.16, 0.36}, horizon = {0.34, 0.42, 0.52}, strength = 0.7 }
 
--- What absorbs light gives it off, too: soot glows by its temperature, and so does a flame's blue edge a
--- little.
-local light  = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
-local flame  = smoothstep(900, 1500, fire.temperature)
-local cover  = fire.soot * smoke + flame * 1.5
+-- What absorbs light gives it off, too: soot by its temperature, and the flame itself a little.
+local light = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
+local flame = smoothstep(1000, 1500, fire.temperature)
+local cover = fire.soot * smoke + flame * 1.5
 local lit = lighting {
   density    = cover,
-  emission   = light(fire.temperature) * cover * glow,
-  albedo     = 0.2,
-  anisotropy = 0.2,
+  emission   = light(fire.temperature) * cover * flame * glow,
+  albedo     = 0.3,
+  anisotropy = 0.3,
   sampling   = "cubic",
 }
 
 local scene  = geometry { mesh { "data/ground.obj" } }
 local solid  = shade { from = {scene, lit}, haze = 0.002 }
-local volume = march { from = {lit, scene}, steps = 160, jitter = 0.5 }
+local volume = march { from = {lit, scene}, steps = 192, jitter = 0.5 }
 
 local picture = over { volume, solid, from = {volume, scene} }
 local blooms  = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }

@@ -1,5 +1,6 @@
 // Simulated air: lbm { size = {64, 64, 96}, voxel_size = 0.05 } and pyro { ... }, which burns, have
-// fields by name (air.density). air:source { } adds smoke or fuel, air:collider { } adds an obstacle.
+// fields by name (air.density). air:source { } adds smoke or fuel, air:collider { } adds an
+// obstacle.
 #include "base/memory.h"
 #include "pass/air/air.h"
 #include "script/binding.h"
@@ -45,7 +46,7 @@ static void read_size(lua_State *L, const air_type *type, pass_air_desc *desc) {
         desc->size[i] = (uint32_t)size[i];
         if (desc->size[i] % type->multiple[i] != 0)
             vm_error(L, "%s: 'size' has %c = %d; a multiple of %d is needed", who, "xyz"[i],
-                     (int)desc->size[i], (int)type->multiple[i]);
+                     (int)desc -> size[i], (int)type -> multiple[i]);
     }
 }
 
@@ -90,8 +91,10 @@ static void set_boundary(lua_State *L, pass *p) {
     const char *who = lua_pushfstring(L, "%s: boundary", type_of(L)->name);
     value_check_keys(L, table, who, faces, COUNT_OF(faces));
     if (lua_rawlen(L, table) > 0)
-        vm_error(L, "%s: a value has no name; name the face, as in { top = \"open\", "
-                    "sides = \"open\", bottom = \"wall\" }", who);
+        vm_error(L,
+                 "%s: a value has no name; name the face, as in { top = \"open\", "
+                 "sides = \"open\", bottom = \"wall\" }",
+                 who);
     lua_pop(L, 1);
     if (value_get(L, table, "sides") != LUA_TNIL)
         for (size_t i = 0; i < 4; i++) set_face(L, p, faces[i], "sides");
@@ -226,7 +229,8 @@ static void refuse_name(lua_State *L, const pass *air, const char *name) {
     size_t count;
     const pass_fluid_field *fields = pass_air_fields(air, &count);
     if (near && !pass_fluid_nearest(fields, count, name))
-        vm_error(L, "%s: no method or field '%s'; did you mean '%s'?", type_of(L)->name, name, near);
+        vm_error(L, "%s: no method or field '%s'; did you mean '%s'?", type_of(L)->name, name,
+                 near);
     script_raise(L);
 }
 

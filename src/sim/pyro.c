@@ -12,9 +12,10 @@ static bool pyro_check(const pyro_desc *desc) {
     for (int i = 0; i < 3; i++) {
         const uint32_t n = desc->size[i];
         if (n < PYRO_LEAST_SIZE || n > PYRO_MOST_SIZE || n % PYRO_BRICK != 0)
-            return err_set("a box of %u x %u x %u cells; multiples of %d from %d to %d are accepted",
-                           desc->size[0], desc->size[1], desc->size[2], PYRO_BRICK,
-                           PYRO_LEAST_SIZE, PYRO_MOST_SIZE);
+            return err_set(
+                "a box of %u x %u x %u cells; multiples of %d from %d to %d are accepted",
+                desc->size[0], desc->size[1], desc->size[2], PYRO_BRICK, PYRO_LEAST_SIZE,
+                PYRO_MOST_SIZE);
         if ((desc->faces[2 * i] == PYRO_PERIODIC) != (desc->faces[2 * i + 1] == PYRO_PERIODIC))
             return err_set("one face along %c is periodic and the other is not", "xyz"[i]);
     }
@@ -102,9 +103,12 @@ const kernel_table pyro_kernel_table = {{names, COUNT_OF(names)}, shaders, COUNT
 
 // The additional defines of a kernel; NULL: none.
 static const char *const more_defines[PYRO_KERNELS][2] = {
-    [PYRO_K_GAS_PREDICT] = {"PYRO_PREDICT"},      [PYRO_K_CURL] = {"PYRO_CURL_LAST"},
-    [PYRO_K_VELOCITY_PREDICT] = {"PYRO_PREDICT"}, [PYRO_K_SMOOTH_FINEST] = {"PYRO_FINEST"},
-    [PYRO_K_RESTRICT_FINEST] = {"PYRO_FINEST"},   [PYRO_K_PROLONG_FINEST] = {"PYRO_FINEST"},
+    [PYRO_K_GAS_PREDICT] = {"PYRO_PREDICT"},
+    [PYRO_K_CURL] = {"PYRO_CURL_LAST"},
+    [PYRO_K_VELOCITY_PREDICT] = {"PYRO_PREDICT"},
+    [PYRO_K_SMOOTH_FINEST] = {"PYRO_FINEST"},
+    [PYRO_K_RESTRICT_FINEST] = {"PYRO_FINEST"},
+    [PYRO_K_PROLONG_FINEST] = {"PYRO_FINEST"},
     [PYRO_K_REPORT_LAST] = {"LAST"},
     [PYRO_K_SOLIDS_FINEST] = {"COARSE", "PYRO_FINEST"},
     [PYRO_K_SOLIDS_COARSE] = {"COARSE"},
@@ -176,12 +180,20 @@ static void find_sizes(const pyro *p, uint64_t out[PYRO_MEM_COUNT]) {
     out[PYRO_MEM_REPORT] = cells / 256 * 32;
 }
 
-static const char *const memory_labels[PYRO_MEM_COUNT] = {
-    "velocity of burning gas", "velocity of burning gas", "burning gas", "burning gas",
-    "velocity traced back",    "gas traced back",         "vorticity",   "pressure of burning gas",
-    "divergence",              "coarse pressure",         "coarse divergence",
-    "openings between solids", "openings between solids",
-    "report of burning gas"};
+static const char *const memory_labels[PYRO_MEM_COUNT] = {"velocity of burning gas",
+                                                          "velocity of burning gas",
+                                                          "burning gas",
+                                                          "burning gas",
+                                                          "velocity traced back",
+                                                          "gas traced back",
+                                                          "vorticity",
+                                                          "pressure of burning gas",
+                                                          "divergence",
+                                                          "coarse pressure",
+                                                          "coarse divergence",
+                                                          "openings between solids",
+                                                          "openings between solids",
+                                                          "report of burning gas"};
 
 bool pyro_allocate(pyro *p, gpu *g) {
     uint64_t sizes[PYRO_MEM_COUNT];

@@ -1,14 +1,14 @@
-// A solver of gas that burns, on the device: fuel burns where it is hot and finds oxygen, what burns
-// becomes warmer and expands, what is warm rises, and soot and radiation take their part. Low Mach
-// number: no sound, no shock.
+// A solver of gas that burns, on the device: fuel burns where it is hot and finds oxygen, what
+// burns becomes warmer and expands, what is warm rises, and soot and radiation take their part. Low
+// Mach number: no sound, no shock.
 //
-// The gas is in a box of cells. Velocities are staggered (Harlow and Welch 1965), all else is in the
-// middle of cells. A step (pyro_step) carries what the gas holds (Selle et al. 2008), burns it,
+// The gas is in a box of cells. Velocities are staggered (Harlow and Welch 1965), all else is in
+// the middle of cells. A step (pyro_step) carries what the gas holds (Selle et al. 2008), burns it,
 // carries the velocity and pushes it, then makes it as divergent as the expansion wants (Chorin
 // 1968; pressure by multigrid, a fixed number of cycles that begin with the last step's pressure).
 //
-// Units: metres, seconds, kelvin, kilograms. Fuel, what has burnt, and soot are by mass of air where
-// they are carried, so that gas that expands takes them along; pyro_image has kg/m^3.
+// Units: metres, seconds, kelvin, kilograms. Fuel, what has burnt, and soot are by mass of air
+// where they are carried, so that gas that expands takes them along; pyro_image has kg/m^3.
 //
 // Order of calls: pyro_create, pyro_compile (optional), pyro_build, pyro_allocate; then in frames
 // pyro_reset, and pyro_step.
@@ -18,7 +18,8 @@
 
 typedef struct pyro pyro;
 
-// Open air; a wall that air slips along; a face through which air comes in; around to the other side.
+// Open air; a wall that air slips along; a face through which air comes in; around to the other
+// side.
 typedef enum pyro_face { PYRO_OPEN, PYRO_WALL, PYRO_INFLOW, PYRO_PERIODIC } pyro_face;
 typedef enum pyro_advection { PYRO_SEMI_LAGRANGIAN, PYRO_MACCORMACK } pyro_advection;
 typedef enum pyro_precision { PYRO_F32, PYRO_F16, PYRO_AUTO } pyro_precision;
@@ -108,8 +109,8 @@ typedef struct pyro_report { // a report on the state after a step
     uint64_t step;           // pyro_steps at that time
     uint32_t bad;            // cells that hold what is no number
     float speed;             // greatest, m/s
-    float residual;          // greatest divergence that is not wanted, times the side of a cell, m/s
-    float hottest;           // K
+    float residual; // greatest divergence that is not wanted, times the side of a cell, m/s
+    float hottest;  // K
     float fuel, burnt, soot; // sums over all cells of the air's mass times what it holds, kg
     float power;             // heat that burning gives, W, radiation left out
 } pyro_report;

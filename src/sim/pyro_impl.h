@@ -11,8 +11,8 @@ enum {
 };
 
 typedef enum pyro_memory {
-    PYRO_MEM_VELOCITY,                       // two: of the state, and the next
-    PYRO_MEM_GAS = PYRO_MEM_VELOCITY + 2,    // two
+    PYRO_MEM_VELOCITY,                        // two: of the state, and the next
+    PYRO_MEM_GAS = PYRO_MEM_VELOCITY + 2,     // two
     PYRO_MEM_VELOCITY_HAT = PYRO_MEM_GAS + 2, // with MacCormack; also where confinement is made
     PYRO_MEM_GAS_HAT,
     PYRO_MEM_CURL, // with confinement
@@ -75,16 +75,16 @@ typedef enum pyro_kernel {
 #define PYRO_OWN_NAMES(NAME)                                                                       \
     NAME(PyroGas), NAME(PyroVelocity), NAME(PyroPressure), NAME(PyroRight), NAME(PyroGasTo),       \
         NAME(PyroVelocityTo), NAME(PyroGasHat), NAME(PyroVelocityHat), NAME(PyroCurl),             \
-        NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroOpenings),                     \
+        NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroOpenings),                       \
         NAME(PyroCoarseOpenings), NAME(PyroReport)
 #define PYRO_NAMES(NAME)                                                                           \
     PYRO_OWN_NAMES(NAME), NAME(PyroVorticity), NAME(scalars), NAME(flow), NAME(result), NAME(dt),  \
         NAME(cell), NAME(reach), NAME(ambient), NAME(lightness), NAME(inflow), NAME(gravity),      \
         NAME(acceleration), NAME(confinement), NAME(max_speed), NAME(ignition), NAME(burn_share),  \
-        NAME(oxygen_need), NAME(heat), NAME(soot_yield), NAME(soot_share), NAME(soot_heat), NAME(soot_kept),        \
-        NAME(cooling), NAME(expansion), NAME(weights), NAME(level_size), NAME(level_first),        \
-        NAME(colour), NAME(coarse_size), NAME(coarser), NAME(coarse_first), NAME(sweeps),          \
-        NAME(relaxation), NAME(pressure_unit), NAME(groups), NAME(mass),          \
+        NAME(oxygen_need), NAME(heat), NAME(soot_yield), NAME(soot_share), NAME(soot_heat),        \
+        NAME(soot_kept), NAME(cooling), NAME(expansion), NAME(weights), NAME(level_size),          \
+        NAME(level_first), NAME(colour), NAME(coarse_size), NAME(coarser), NAME(coarse_first),     \
+        NAME(sweeps), NAME(relaxation), NAME(pressure_unit), NAME(groups), NAME(mass),             \
         NAME(SolidIds), NAME(SolidMotions), NAME(box_min)
 enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 
@@ -107,10 +107,11 @@ struct pyro {
 };
 
 uint64_t pyro_cells(const pyro *p);
-gpu_buffer *pyro_pair(const pyro *p, pyro_memory pair, uint32_t which); // the current one (0), the other
+gpu_buffer *pyro_pair(const pyro *p, pyro_memory pair,
+                      uint32_t which); // the current one (0), the other
 // A kernel with the buffers bound that are always the same.
 kernel *pyro_use(pyro *p, pyro_kernel which);
-bool pyro_run(const pyro *p, gpu *g, kernel *k); // a thread for each cell
+bool pyro_run(const pyro *p, gpu *g, kernel *k);          // a thread for each cell
 void pyro_stage(const pyro *p, gpu *g, const char *name); // begins, for GPU times
 
 // pyro_numbers.c

@@ -48,9 +48,10 @@ bool pyro_find_levels(pyro *p) {
     }
     const uint64_t cells = (uint64_t)l->size[0] * l->size[1] * l->size[2];
     return cells <= PYRO_COARSEST ||
-           err_set("a box of %u x %u x %u cells cannot be halved often enough; take multiples of 16 "
-                   "or 32",
-                   p->desc.size[0], p->desc.size[1], p->desc.size[2]);
+           err_set(
+               "a box of %u x %u x %u cells cannot be halved often enough; take multiples of 16 "
+               "or 32",
+               p->desc.size[0], p->desc.size[1], p->desc.size[2]);
 }
 
 uint64_t pyro_coarse_cells(const pyro *p) {
@@ -118,8 +119,7 @@ static bool pressure_end(pyro *p, gpu *g) {
     const uint32_t last = p->level_count - 1;
     kernel *k = pyro_use(p, PYRO_K_COARSEST);
     pyro_set_level(p, k, last);
-    if (p->desc.solids)
-        kernel_bind_buffer(k, N_PyroOpenings, p->buffers[PYRO_MEM_COARSE_OPENINGS]);
+    if (p->desc.solids) kernel_bind_buffer(k, N_PyroOpenings, p->buffers[PYRO_MEM_COARSE_OPENINGS]);
     kernel_set_int(k, N_sweeps, (int32_t)coarsest_sweeps(&p->levels[last]));
     kernel_set_float(k, N_relaxation, coarsest_relaxation(&p->levels[last]));
     return kernel_run(k, g, k->binaries[0].local_size[0], 1, 1);
@@ -139,6 +139,7 @@ bool pyro_project(pyro *p, gpu *g, const pyro_numbers *n) {
     pyro_stage(p, g, "pyro.divergence");
     kernel *divergence = pyro_use(p, PYRO_K_DIVERGENCE);
     kernel_set(divergence, N_inflow, n->inflow, sizeof n->inflow);
+    kernel_set_float(divergence, N_reach, n->dt / n->cell);
     if (!pyro_run(p, g, divergence)) return false;
     for (uint32_t i = 0; i < p->desc.cycles; i++)
         if (!pressure_cycle(p, g)) return false;

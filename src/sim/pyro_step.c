@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-static const float air_molar_mass = 28.97f; // kg/kmol
+static const float air_molar_mass = 28.97f;  // kg/kmol
 static const float air_heat_capacity = 1150; // J/(kg K), between the surroundings and a flame
 static const float soot_heat = 32.8e6f;      // of combustion, J/kg
 static const float least_oxygen = 1e-4f;     // that fuel takes, by mass: powder brings its own

@@ -73,7 +73,8 @@ static bool load_image(const sim_state *s, gpu *g, size_t which, size_t i, arena
     void *bytes = mem_alloc(size);
     const checkpoint_part part = image_part(s, which, i, memory, label, bytes);
     if (!*image) *image = gpu_image_create(g, &s->image_descs[i]);
-    bool done = *image && checkpoint_load(c, g, &part) && gpu_image_write(g, *image, 0, bytes, size);
+    bool done =
+        *image && checkpoint_load(c, g, &part) && gpu_image_write(g, *image, 0, bytes, size);
     mem_free(bytes);
     return done;
 }

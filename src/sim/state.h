@@ -1,6 +1,6 @@
 // The whole state of a solver in a checkpoint, from which it continues as if it had never stopped:
-// buffers as they are in memory, the images of the last two kept states, and a clock. Its inputs are
-// not included: whoever fills them must fill them again.
+// buffers as they are in memory, the images of the last two kept states, and a clock. Its inputs
+// are not included: whoever fills them must fill them again.
 #pragma once
 #include "sim/checkpoint.h"
 

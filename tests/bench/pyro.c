@@ -1,10 +1,11 @@
 // How fast the bare solver of burning gas in src/sim steps: no fields, no pictures.
 //
-//   bench_pyro [-d DEVICE] [-n STEPS] [-s X[,Y,Z]] [-a semi|mac] [-h f32|f16] [-c CYCLES] [-v] [-k] [-t]
+//   bench_pyro [-d DEVICE] [-n STEPS] [-s X[,Y,Z]] [-a semi|mac] [-h f32|f16] [-c CYCLES] [-v] [-k]
+//   [-t]
 //
-// A ball of hot fuel burns in the middle of the lower half. -v: with confinement; -k: a look of each
-// step is kept; -t: the stages of a step are timed apart. Prints milliseconds a step by the device's
-// clock, million cells a second by that, and by the processor time of this process.
+// A ball of hot fuel burns in the middle of the lower half. -v: with confinement; -k: a look of
+// each step is kept; -t: the stages of a step are timed apart. Prints milliseconds a step by the
+// device's clock, million cells a second by that, and by the processor time of this process.
 #include "sim/pyro.h"
 #include "base/error.h"
 #include "base/memory.h"

@@ -1,4 +1,5 @@
-// Burning gas for tests: made, set to a state by the host, stepped, and read back in full precision.
+// Burning gas for tests: made, set to a state by the host, stepped, and read back in full
+// precision.
 #pragma once
 #include "gpu_test.h"
 #include "sim/pyro.h"
@@ -14,8 +15,8 @@ typedef struct pyro_world {
     pyro_numbers numbers;
     size_t cells;
     float (*velocity)[4]; // of the faces at the lower ends of each cell
-    float (*gas)[4];  // warmth, fuel, burnt, soot
-    float *pressure;  // m/s
+    float (*gas)[4];      // warmth, fuel, burnt, soot
+    float *pressure;      // m/s
 } pyro_world;
 
 static inline void pyro_open(pyro_world *w, gpu *device, const pyro_desc *desc) {

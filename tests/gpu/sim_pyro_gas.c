@@ -15,7 +15,8 @@ typedef struct sums {
 static void add(pyro_world *w, const int c[3], void *data) {
     sums *s = data;
     const float *g = w->gas[pyro_cell_at(w, c)];
-    const double ambient = (double)w->numbers.ambient, t = ambient + (double)g[0], mass = ambient / t;
+    const double ambient = (double)w->numbers.ambient, t = ambient + (double)g[0],
+                 mass = ambient / t;
     s->fuel += mass * (double)g[1];
     s->burnt += mass * (double)g[2];
     s->soot += mass * (double)g[3];

@@ -1,4 +1,5 @@
-// The projection of burning gas: what divergence is left after a step, and how fast cycles shrink it.
+// The projection of burning gas: what divergence is left after a step, and how fast cycles shrink
+// it.
 #include "pyro_test.h"
 
 static float noise(uint32_t *seed) {

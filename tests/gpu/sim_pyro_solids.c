@@ -1,4 +1,5 @@
-// Solids in burning gas: nothing passes them, what comes in goes around them, and what moves pushes.
+// Solids in burning gas: nothing passes them, what comes in goes around them, and what moves
+// pushes.
 #include "pyro_test.h"
 #include "shared.h"
 
@@ -61,8 +62,7 @@ static double flux(pyro_world *w, int x) {
     double sum = 0;
     int c[3] = {x, 0, 0};
     for (c[2] = 0; c[2] < (int)w->desc.size[2]; c[2]++)
-        for (c[1] = 0; c[1] < (int)w->desc.size[1]; c[1]++)
-            sum += (double)*pyro_face_at(w, 0, c);
+        for (c[1] = 0; c[1] < (int)w->desc.size[1]; c[1]++) sum += (double)*pyro_face_at(w, 0, c);
     return sum;
 }
 
@@ -92,15 +92,16 @@ static void what_comes_in_goes_around(void **state) {
             most = fmax(most, u);
         }
     const double slit = flux(&s.w, 31) / 1024, behind = flux(&s.w, 60) / 1024;
-    print_message("in 1, through the slit %.4f, behind %.4f; fastest %.2f m/s, through the plate %g\n",
-                  slit, behind, most, through);
+    print_message(
+        "in 1, through the slit %.4f, behind %.4f; fastest %.2f m/s, through the plate %g\n", slit,
+        behind, most, through);
     assert_true(fabs(slit - 1) < 2e-3 && fabs(behind - 1) < 2e-3);
     assert_true(through == 0 && most > 3.5 && most < 6);
     close_world(&s);
 }
 
-// A piston that fills the duct pushes as much as it sweeps. Coarse levels see past it, so cycles find
-// that slowly: 27 % are wrong after 4 steps, 7 % after 8, 0.1 % after 20.
+// A piston that fills the duct pushes as much as it sweeps. Coarse levels see past it, so cycles
+// find that slowly: 27 % are wrong after 4 steps, 7 % after 8, 0.1 % after 20.
 static void what_moves_pushes(void **state) {
     solid_world s;
     pyro_desc tube = duct;

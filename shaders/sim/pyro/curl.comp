@@ -28,6 +28,8 @@ void main() {
                         PYRO_W(vorticity[p.x + p.y + high.z]) - PYRO_W(vorticity[p.x + p.y + low.z]));
     float length_ = length(towards);
     vec3 force = length_ > 1e-6 ? cross(towards / length_, pyro_load(vorticity[here]).xyz) : vec3(0.0);
+    // Not beside faces, through which eddies shall leave.
+    if (any(lessThan(c, ivec3(2))) || any(greaterThanEqual(c, PYRO_SIZE - 2))) force = vec3(0.0);
     curl[here] = pyro_store(vec4(force, 0.0));
 #else
     vec3 x = around(c, ivec3(1, 0, 0)), y = around(c, ivec3(0, 1, 0)), z = around(c, ivec3(0, 0, 1));

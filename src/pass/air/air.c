@@ -143,7 +143,8 @@ bool pass_air_check(const pass *p) {
 bool air_add_part(pass *p, bool (*record)(pass *p)) {
     const air *a = air_of(p);
     graph_image writes[PASS_FLUID_MOST_NAMES / 4];
-    for (size_t i = 0; i < a->kind->output_count; i++) writes[i] = *pass_image(p, a->kind->outputs[i]);
+    for (size_t i = 0; i < a->kind->output_count; i++)
+        writes[i] = *pass_image(p, a->kind->outputs[i]);
     return pass_add_part(p, &(pass_part){
                                 .name = "step",
                                 .writes = writes,

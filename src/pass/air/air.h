@@ -1,12 +1,12 @@
 // Simulated air as a grid that fields sample: the pass types `lbm` (sim/lbm.h) and `pyro`
-// (sim/pyro.h). Their uniforms and options are those of shaders/pass/air/lbm.comp and pyro.comp; their
-// sources are passes of the types `lbm_source` and `pyro_source`, which they run themselves.
+// (sim/pyro.h). Their uniforms and options are those of shaders/pass/air/lbm.comp and pyro.comp;
+// their sources are passes of the types `lbm_source` and `pyro_source`, which they run themselves.
 //
-// Time: a step of the solver is a fixed part of a second. The state stands ahead of the time that is
-// drawn, so that the states before and after it are mixed: what is drawn, and how often, never changes
-// what is simulated. Uniforms and meshes are evaluated at the time of each step, fields of sources and
-// the force at times of their own (air_turn); grids that fields sample, and what `update` sets, are
-// those of the frame.
+// Time: a step of the solver is a fixed part of a second. The state stands ahead of the time that
+// is drawn, so that the states before and after it are mixed: what is drawn, and how often, never
+// changes what is simulated. Uniforms and meshes are evaluated at the time of each step, fields of
+// sources and the force at times of their own (air_turn); grids that fields sample, and what
+// `update` sets, are those of the frame.
 #pragma once
 #include "pass/fluid.h"
 #include "pass/pass.h"

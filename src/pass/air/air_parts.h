@@ -56,16 +56,16 @@ typedef struct air_kind {
     size_t field_count;
     const int *outputs; // names of the images that it writes, four channels each
     size_t output_count;
-    size_t periodic; // the word of a face that is
+    size_t periodic;              // the word of a face that is
     bool (*check)(const pass *p); // whether its other options go together; may be NULL
-    int64_t late;                             // of its clock (pass/steps.h)
-    double dearer;                            // updates of a lattice that one of a cell is worth
-    const int *source_fields;                 // names of what sources may give
+    int64_t late;                 // of its clock (pass/steps.h)
+    double dearer;                // updates of a lattice that one of a cell is worth
+    const int *source_fields;     // names of what sources may give
     size_t source_field_count;
-    uint64_t (*steps)(const air *a);          // that the solver has done
-    bool (*evaluate)(air *a);                 // its numbers, before all else of a step
-    bool (*reset)(air *a);                    // the state at the beginning
-    bool (*step)(air *a, bool keep);          // after bodies and sources
+    uint64_t (*steps)(const air *a);           // that the solver has done
+    bool (*evaluate)(air *a);                  // its numbers, before all else of a step
+    bool (*reset)(air *a);                     // the state at the beginning
+    bool (*step)(air *a, bool keep);           // after bodies and sources
     bool (*move_solids)(air *a, bool changed); // cells are of other bodies than before
     // Binds and sets what the kernel that gives the air a source's values takes of the solver, and
     // says how many threads it has for the cells of the source's box.
@@ -92,11 +92,11 @@ struct air {
     air_force force;
     const char *labels[AIR_LABELS]; // of times
 
-    bool fresh;            // begins anew with the next record
-    bool stopped;          // on trouble
-    char trouble[512];     // what it says; "": nothing
-    bool reported;         // the kind has a report of it
-    uint64_t shown_steps;  // of the grid's content
+    bool fresh;           // begins anew with the next record
+    bool stopped;         // on trouble
+    char trouble[512];    // what it says; "": nothing
+    bool reported;        // the kind has a report of it
+    uint64_t shown_steps; // of the grid's content
     double shown_blend;
     uint64_t last_steps; // that the last record took
 };
@@ -122,8 +122,8 @@ void air_describe(const air *a, struct strbuf *out); // for checkpoints: time an
 
 // air_time.c
 double air_step_time(const air *a, uint64_t step); // of the state before it
-// What is dear to find, the force and what sources hold, is found anew so many times a second of the
-// simulation, whatever is drawn: in which turn the next step lies, and from when to when it is.
+// What is dear to find, the force and what sources hold, is found anew so many times a second of
+// the simulation, whatever is drawn: in which turn the next step lies, and from when to when it is.
 uint64_t air_turn(const air *a, double *begin, double *end);
 int64_t air_left(const pass *p, double time);
 int64_t air_most(const pass *p);
@@ -172,15 +172,15 @@ bool air_source_defines(pass *p, size_t index, pass_defines *out);
 void air_source_list_memory(const pass *p, budget_list *out);
 bool air_source_update(pass *p);
 void air_source_destroy(pass *p);
-bool air_run_source(pass *source);         // before a step
-void air_forget_source(pass *source);      // its values are found anew
+bool air_run_source(pass *source);           // before a step
+void air_forget_source(pass *source);        // its values are found anew
 bool air_source_is_away(const pass *source); // it ran, and was never in the air's box
 
 // air_source_box.c
 // With a cell around, since a sheet has no size.
 bool air_mesh_box(const air *a, const scene_mesh *mesh, const field_context *context, box3 *out);
-// From the host's time to `end`. `most`, which may be NULL: the cells that a box of that size has at
-// most, wherever in the air it is.
+// From the host's time to `end`. `most`, which may be NULL: the cells that a box of that size has
+// at most, wherever in the air it is.
 bool air_source_cells(const air *a, const pass *p, double end, air_cells *out, uint64_t *most);
 
 // air_bodies.c
@@ -191,5 +191,5 @@ bool air_check_bodies(air *a);
 bool air_build_bodies(air *a);
 bool air_allocate_bodies(air *a);
 void air_list_bodies(const air *a, budget_list *out); // their memory
-bool air_move_bodies(air *a); // to the host's time, which is that of a step
+bool air_move_bodies(air *a);                         // to the host's time, which is that of a step
 void air_destroy_bodies(air *a);

@@ -1,8 +1,7 @@
-// Sources of simulated air: passes of the types `lbm_source` and `pyro_source`, which the air's pass
-// runs. Their
-// fields become values of the cells of their box so many times a second of the simulation
-// (air_turn), which is what costs; before each step the values are given to the air, where
-// meshes are then.
+// Sources of simulated air: passes of the types `lbm_source` and `pyro_source`, which the air's
+// pass runs. Their fields become values of the cells of their box so many times a second of the
+// simulation (air_turn), which is what costs; before each step the values are given to the air,
+// where meshes are then.
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/str.h"
@@ -20,11 +19,13 @@ static bool check_gives(const air *a, const pass *p) {
     for (size_t i = 0; i < a->kind->source_field_count; i++) {
         const int name = a->kind->source_fields[i];
         given = given || pass_given_field(p, name);
-        strbuf_add(&names, "%s%s", i == 0 ? "" : i + 1 < a->kind->source_field_count ? ", " : " or ",
+        strbuf_add(&names, "%s%s",
+                   i == 0                                ? ""
+                   : i + 1 < a->kind->source_field_count ? ", "
+                                                         : " or ",
                    air_names[name]);
     }
-    if (!given)
-        err_set("%s: it gives the air nothing; say its %s", p->label, strbuf_text(&names));
+    if (!given) err_set("%s: it gives the air nothing; say its %s", p->label, strbuf_text(&names));
     strbuf_free(&names);
     return given;
 }
@@ -55,8 +56,7 @@ bool pass_air_add_source(pass *p, pass *source) {
     *s = (air_source){.air = a, .turn = UINT64_MAX};
     voxels_rule rule = (voxels_rule)pass_option(source, N_rule);
     air_meshes *meshes = source->mesh_count ? air_add_giver(a) : NULL;
-    for (size_t i = 0; i < source->mesh_count; i++)
-        air_add_body(meshes, source->meshes[i], rule);
+    for (size_t i = 0; i < source->mesh_count; i++) air_add_body(meshes, source->meshes[i], rule);
     if (meshes) s->giver = a->giver_count;
     if (a->source_count < 32) s->note = UINT32_C(1) << a->source_count;
     source->runs_in = p;
@@ -66,7 +66,8 @@ bool pass_air_add_source(pass *p, pass *source) {
     for (size_t i = 0; i < a->kind->source_field_count && fine; i++) {
         const int name = a->kind->source_fields[i];
         int components;
-        fine = !pass_given_field(source, name) || pass_air_use(p, air_names[name], &components) >= 0;
+        fine =
+            !pass_given_field(source, name) || pass_air_use(p, air_names[name], &components) >= 0;
     }
     return fine;
 }

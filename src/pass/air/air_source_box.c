@@ -2,8 +2,7 @@
 #include "pass/air/air_parts.h"
 #include <math.h>
 
-bool air_mesh_box(const air *a, const scene_mesh *mesh, const field_context *context,
-                  box3 *out) {
+bool air_mesh_box(const air *a, const scene_mesh *mesh, const field_context *context, box3 *out) {
     const float corners[2][3] = {
         {mesh->data.box.min.x, mesh->data.box.min.y, mesh->data.box.min.z},
         {mesh->data.box.max.x, mesh->data.box.max.y, mesh->data.box.max.z}};

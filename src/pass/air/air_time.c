@@ -65,7 +65,8 @@ void air_restart(pass *p) {
 int64_t air_most(const pass *p) {
     const air *a = air_of(p);
     double cells = (double)a->desc.size[0] * a->desc.size[1] * a->desc.size[2];
-    return pass_steps_most(cells * a->kind->dearer, gpu_get_profile(p->host->device), p->host->brief);
+    return pass_steps_most(cells * a->kind->dearer, gpu_get_profile(p->host->device),
+                           p->host->brief);
 }
 
 // `apart`: what a step consists of is timed by itself.

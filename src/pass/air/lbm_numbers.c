@@ -15,8 +15,7 @@ static float tau(const lbm_air *a, double diffusivity, double square) {
 static bool add_force(const pass *p, const lbm_air *a, float out[3]) {
     float force[3];
     if (!air_constant_force(p, force)) return false;
-    for (int i = 0; i < 3; i++)
-        out[i] = (float)sim_acceleration(&a->air.units, (double)force[i]);
+    for (int i = 0; i < 3; i++) out[i] = (float)sim_acceleration(&a->air.units, (double)force[i]);
     return true;
 }
 

@@ -5,14 +5,14 @@
 #include "sim/lbm_guard.h"
 
 typedef struct lbm_air {
-    air air; // first
+    air air;          // first
     lbm_body *moving; // colliders, as they go on
     lbm *solver;      // after pass_complete
     lbm_guard *guard;
     lbm_numbers numbers; // of the step being recorded
-    bool stops;        // on trouble
-    lbm_report report; // the newest
-    double held;       // seconds at which it was first held back; NAN: never
+    bool stops;          // on trouble
+    lbm_report report;   // the newest
+    double held;         // seconds at which it was first held back; NAN: never
 } lbm_air;
 
 static inline lbm_air *lbm_air_of(const pass *p) {

@@ -78,7 +78,8 @@ static bool tell_report(lbm_air *a, const sim_flow *flow) {
     else if (is_held_back(a))
         tell_held_back(a, "is");
     else
-        return sim_advise_speed(&a->air.units, flow, measured(a), a->air.trouble, sizeof a->air.trouble);
+        return sim_advise_speed(&a->air.units, flow, measured(a), a->air.trouble,
+                                sizeof a->air.trouble);
     return true;
 }
 
@@ -106,7 +107,8 @@ static void tell_buried(lbm_air *a) {
 
 static void tell(lbm_air *a) {
     sim_flow flow = lbm_air_flow(a->air.pass);
-    if (!tell_report(a, &flow) && !sim_advise(&a->air.units, &flow, a->air.trouble, sizeof a->air.trouble) &&
+    if (!tell_report(a, &flow) &&
+        !sim_advise(&a->air.units, &flow, a->air.trouble, sizeof a->air.trouble) &&
         !tell_was_held_back(a))
         tell_absent(a);
     if (!a->air.trouble[0]) tell_buried(a);

@@ -1,4 +1,5 @@
-// What `lbm` does of what all air does (air_kind): its steps, what moves in it, and what it is given.
+// What `lbm` does of what all air does (air_kind): its steps, what moves in it, and what it is
+// given.
 #include "base/memory.h"
 #include "pass/air/lbm_parts.h"
 #include <math.h>

@@ -7,7 +7,8 @@ field_grid *pass_pyro_open(pass *p, const pass_air_desc *desc) {
     if (!air_check_desc(p, desc)) return NULL;
     pyro_air *a = p->state = arena_alloc(p->host->memory, sizeof *a);
     *a = (pyro_air){0};
-    const double step = desc->time_step > 0 ? desc->time_step : courant * desc->voxel_size / desc->speed;
+    const double step =
+        desc->time_step > 0 ? desc->time_step : courant * desc->voxel_size / desc->speed;
     return air_open(&a->air, &pyro_kind, p, desc, (sim_units){desc->voxel_size, step});
 }
 
@@ -28,8 +29,9 @@ static bool pyro_air_complete(pass *p) {
     for (int i = 0; i < 3; i++) d.size[i] = a->air.desc.size[i];
     for (int i = 0; i < 6; i++) d.faces[i] = (pyro_face)pass_option(p, N_boundary_left + i);
     if (air_force_varies(p))
-        return err_set("%s: 'force' varies in space; a force that is the same everywhere is accepted",
-                       p->label);
+        return err_set(
+            "%s: 'force' varies in space; a force that is the same everywhere is accepted",
+            p->label);
     a->fuel = &sim_fuels[pass_option(p, N_fuel)];
     a->solver = pyro_create(p->host->memory, &d);
     if (!a->solver || !air_make_bodies(&a->air)) return err_prefix("%s: ", p->label);
@@ -97,7 +99,8 @@ static bool pyro_air_rehearse(pass *p) {
 
 // The images of the last two states.
 static void bind_looks(const pyro_air *a, kernel *k) {
-    static const int names[PYRO_LOOKS][2] = {{N_gas_now, N_gas_before}, {N_flow_now, N_flow_before}};
+    static const int names[PYRO_LOOKS][2] = {{N_gas_now, N_gas_before},
+                                             {N_flow_now, N_flow_before}};
     for (int look = 0; look < PYRO_LOOKS; look++) {
         gpu_image *now = pyro_image(a->solver, (pyro_look)look, 0);
         gpu_image *before = pyro_image(a->solver, (pyro_look)look, 1);

@@ -30,8 +30,7 @@ static bool tell_report(pyro_air *a) {
         snprintf(out, size, "gas at %.3g m/s crosses %.2g cells a step, and detail is lost: set %s",
                  (double)a->report.speed, courant(a), change);
     else if (a->report.residual > worst_residual * a->report.speed && courant(a) > 0.5)
-        snprintf(out, size,
-                 "%.2g %% of the flow out of a cell is left to the next step: set %s",
+        snprintf(out, size, "%.2g %% of the flow out of a cell is left to the next step: set %s",
                  100 * (double)(a->report.residual / a->report.speed), change);
     else
         return false;
@@ -95,8 +94,7 @@ static bool pyro_air_load(pass *p, checkpoint *from) {
     strbuf more = {0};
     air_describe(&a->air, &more);
     air_restart(p);
-    a->air.fresh =
-        !pyro_state_load(a->solver, p->host->device, p->label, strbuf_text(&more), from);
+    a->air.fresh = !pyro_state_load(a->solver, p->host->device, p->label, strbuf_text(&more), from);
     strbuf_free(&more);
     return !a->air.fresh;
 }

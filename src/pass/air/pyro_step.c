@@ -12,10 +12,18 @@ bool pyro_air_numbers(const pass *p, pyro_numbers *out) {
     const pyro_air *a = pyro_air_of(p);
     const sim_fuel *fuel = a->fuel;
     float v[AIR_NAME_COUNT][4];
-    static const int names[] = {N_gravity,    N_ambient_temperature, N_ignition_temperature,
-                                N_burn_time,  N_heat_of_combustion,  N_soot_yield,
-                                N_soot_burn_time, N_cooling,         N_expansion,
-                                N_vorticity,  N_dissolve_rate,       N_wind};
+    static const int names[] = {N_gravity,
+                                N_ambient_temperature,
+                                N_ignition_temperature,
+                                N_burn_time,
+                                N_heat_of_combustion,
+                                N_soot_yield,
+                                N_soot_burn_time,
+                                N_cooling,
+                                N_expansion,
+                                N_vorticity,
+                                N_dissolve_rate,
+                                N_wind};
     for (size_t i = 0; i < COUNT_OF(names); i++)
         if (!pass_evaluate_now(p, names[i], v[names[i]])) return false;
     const float ignition = v[N_ignition_temperature][0], heat = v[N_heat_of_combustion][0];
@@ -113,9 +121,8 @@ const pass_type pyro_source_type = {
 };
 
 static const pass_fluid_field fields[] = {
-    {"temperature", 0, 1}, {"fuel", 1, 1},       {"soot", 2, 1},
-    {"velocity", 4, 3},    {"pressure", 7, 1},   {"burn", 8, 1},
-    {"divergence", 9, 1},  {"vorticity", 10, 1},
+    {"temperature", 0, 1}, {"fuel", 1, 1}, {"soot", 2, 1},       {"velocity", 4, 3},
+    {"pressure", 7, 1},    {"burn", 8, 1}, {"divergence", 9, 1}, {"vorticity", 10, 1},
 };
 static const int outputs[] = {N_scalars, N_velocity, N_rates};
 static const int given[] = {N_fuel, N_temperature, N_soot, N_velocity};

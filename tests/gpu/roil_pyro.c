@@ -1,0 +1,176 @@
+// Gas that burns through the public interface: what it gives by name, how it keeps time, how it
+// goes on from a checkpoint and over a reload, and what it tells.
+#include "base/memory.h"
+#include "roil_test.h"
+
+enum { SIDE = 24 };
+
+// A ball that moves on past the end of its source.
+static const char WALL[] = "v -0.1 -0.5 -0.5\nv 0.1 -0.5 -0.5\nv -0.1 0.5 -0.5\nv 0.1 0.5 -0.5\n"
+                           "v -0.1 -0.5 0.5\nv 0.1 -0.5 0.5\nv -0.1 0.5 0.5\nv 0.1 0.5 0.5\n"
+                           "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+
+// %s: keys of the gas, of its source, more of the file, what is shown.
+static const char SCRIPT[] =
+    "local fx = effect { name = 'fire', fps = 60, frames = 100 }\n"
+    "fx.camera = orbit { target = {0, 0, 1}, distance = 5 }\n"
+    "local fire = pyro { size = {16, 16, 24}, voxel_size = 0.1, time_step = 1 / 90, %s }\n"
+    "fire:source { shape = sphere { position = {0, 0, 0.5}, radius = 0.4 }, fuel = 0.2,\n"
+    "              temperature = 900, %s }\n"
+    "%s\n"
+    "local shown = %s\n"
+    "fx.output = final { march { density = fire.soot * 2000, emission = shown, steps = 16 } "
+    "}.color\n"
+    "return fx\n";
+
+typedef uint8_t picture[SIDE * SIDE * 4];
+
+static const char HEAT[] = "fire.temperature * 0.001";
+static const char BRIEF[] = "during = {0, 0.05}";
+static const char COLLIDER[] =
+    "fire:collider { mesh { 'wall.obj', position = curve { {0, {-0.6, 0, "
+    "1}}, {0.3, {0.5, 0, 1}} } } }";
+
+static void write_script(char text[2048], const char *keys, const char *source, const char *more,
+                         const char *shown) {
+    char path[512];
+    snprintf(text, 2048, SCRIPT, keys, source, more, shown);
+    write_text("wall.obj", WALL, path);
+}
+
+static roil_effect *open(roil *r, const char *keys, const char *source, const char *more,
+                         const char *shown) {
+    char text[2048];
+    write_script(text, keys, source, more, shown);
+    roil_effect *e = load_text(r, "fire.lua", text);
+    ok(roil_prepare(e, SIDE, SIDE));
+    return e;
+}
+
+static void draw(roil_effect *e, int first, int last, picture out) {
+    for (int frame = first; frame <= last; frame++) ok(roil_render(e, frame));
+    ok(roil_read(e, false, out));
+}
+
+static int brightest(const picture p) {
+    int most = 0;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        if (p[4 * i] > most) most = p[4 * i];
+    return most;
+}
+
+static double readout(roil_effect *e, const char *name) {
+    roil_readout all[32];
+    const size_t count = roil_readouts(e, all, 32);
+    for (size_t i = 0; i < count && i < 32; i++)
+        if (strcmp(all[i].name, name) == 0) return all[i].value;
+    fail_msg("no readout '%s'", name);
+    return 0;
+}
+
+// ---- fields -----------------------------------------------------------------------------------
+
+static void it_gives_fields_by_name(void **state) {
+    static const char *const fields[] = {"fire.temperature * 0.001", "fire.fuel",
+                                         "fire.soot * 100",          "fire.burn",
+                                         "fire.velocity * 0.1",      "vec(fire.pressure)",
+                                         "fire.divergence * 0.01",   "fire.vorticity * 0.01"};
+    for (size_t i = 0; i < COUNT_OF(fields); i++) {
+        picture shown;
+        roil_effect *e = open(*state, "burn_time = 0.02", "rate = 60", "", fields[i]);
+        draw(e, 1, 6, shown);
+        if (brightest(shown) < 8) fail_msg("%s is nowhere", fields[i]);
+        roil_unload(e);
+    }
+}
+
+static void what_is_wrong_is_said(void **state) {
+    static const struct {
+        const char *keys, *source, *more, *shown, *message;
+    } rows[] = {
+        {"", "", "", "fire.sot", "no field 'sot'; did you mean 'soot'?"},
+        {"", "", "", "fire.sorce", "no method or field 'sorce'; did you mean 'source'?"},
+        {"fuel = 'petroll'", "", "", "0", "petrol"},
+        {"boundary = { left = 'periodic' }", "", "", "0", "'boundary_left' is periodic"},
+        {"force = curl { frequency = 1 }", "", "", "0", "'force' varies in space"},
+        {"burn_tme = 1", "", "", "0", "did you mean 'burn_time'?"},
+        {"", "denisty = 1", "", "0", "'denisty'"},
+        {"", "velocity = vec(0, 0, fire.temperature)", "", "0",
+         "reads the air that it is given to"},
+        {"size = {20, 16, 16}", "", "", "0", "a multiple of 8 is needed"},
+    };
+    for (size_t i = 0; i < COUNT_OF(rows); i++) {
+        char text[2048], path[512];
+        write_script(text, rows[i].keys, rows[i].source, rows[i].more, rows[i].shown);
+        write_text("wrong.lua", text, path);
+        roil_effect *e = roil_load(*state, path, NULL, 0);
+        expect_error(e && roil_prepare(e, SIDE, SIDE), rows[i].message);
+        if (e) roil_unload(e);
+    }
+}
+
+// ---- time -------------------------------------------------------------------------------------
+
+static void a_jump_is_as_good_as_every_frame(void **state) {
+    picture each, jump;
+    roil_effect *a = open(*state, "", BRIEF, COLLIDER, HEAT),
+                *b = open(*state, "", BRIEF, COLLIDER, HEAT);
+    draw(a, 1, 9, each);
+    draw(b, 9, 9, jump);
+    assert_true(brightest(each) > 40);
+    assert_memory_equal(each, jump, sizeof each);
+    roil_unload(a);
+    roil_unload(b);
+}
+
+// What is in the box after a source has given is what it gave, burnt or not.
+static void a_source_gives_while_it_is_told_to(void **state) {
+    picture p;
+    roil_effect *e = open(*state, "boundary = 'wall'", "during = {0.05, 0.06}", "", HEAT);
+    draw(e, 1, 2, p); // until 1/60 s
+    assert_true(readout(e, "fuel") + readout(e, "fuel burnt") == 0);
+    draw(e, 3, 12, p);
+    const double given = readout(e, "fuel") + readout(e, "fuel burnt");
+    draw(e, 13, 20, p);
+    const double kept = readout(e, "fuel") + readout(e, "fuel burnt");
+    print_message("%.4f kg given, %.4f kg kept\n", given, kept);
+    assert_true(given > 0.01 && fabs(kept / given - 1) < 0.05);
+    roil_unload(e);
+}
+
+static const char *in_folder(const char *name) {
+    static char paths[4][512];
+    static int turn;
+    char *out = paths[turn++ % 4];
+    snprintf(out, sizeof paths[0], "%s/%s", test_folder, name);
+    return out;
+}
+
+static void a_restored_run_is_the_one_that_never_stopped(void **state) {
+    picture through, again;
+    roil_effect *e = open(*state, "vorticity = 2", "", COLLIDER, HEAT);
+    draw(e, 1, 4, through);
+    ok(roil_checkpoint(e, in_folder("middle")));
+    draw(e, 5, 8, through);
+    roil_unload(e);
+    e = open(*state, "vorticity = 2", "", COLLIDER, HEAT);
+    ok(roil_restore(e, in_folder("middle"), NULL));
+    draw(e, 5, 8, again);
+    assert_memory_equal(through, again, sizeof again);
+    roil_unload(e);
+    e = open(*state, "boundary = 'wall'", "", "", HEAT);
+    expect_error(roil_restore(e, in_folder("middle"), NULL),
+                 "left = open, the effect has left = wall");
+    roil_unload(e);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_gives_fields_by_name),
+        cmocka_unit_test(what_is_wrong_is_said),
+        cmocka_unit_test(a_jump_is_as_good_as_every_frame),
+        cmocka_unit_test(a_source_gives_while_it_is_told_to),
+        cmocka_unit_test(a_restored_run_is_the_one_that_never_stopped),
+    };
+    return test_run(tests);
+}
