@@ -6,9 +6,9 @@
 local fx = effect { name = "pyro pool", fps = 24, frames = 144 }
 
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
-local width   = param { "width", 1, min = 0.2, max = 2, unit = "m", help = "of the pan" }
+local width   = param { "width", 0.7, min = 0.2, max = 2, unit = "m", help = "of the pan" }
 local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides" }
-local glow    = param { "glow", 2.5, min = 0, max = 50, help = "factor of the fire's light" }
+local glow    = param { "glow", 1.8, min = 0, max = 50, help = "factor of the fire's light" }
 
 local cells = ({ draft = {48, 48, 80}, shot = {96, 96, 160}, film = {192, 192, 320} })[quality:get()]
 local fire = pyro {

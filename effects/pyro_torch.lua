@@ -8,12 +8,12 @@ local fx = effect { name = "pyro torch", fps = 24, frames = 96 }
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
 local jet     = param { "jet", 24, min = 0, max = 40, unit = "m/s", help = "speed of the jet" }
 local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides" }
-local glow    = param { "glow", 2.5, min = 0, max = 50, help = "factor of the fire's light" }
+local glow    = param { "glow", 1.4, min = 0, max = 50, help = "factor of the fire's light" }
 
 local cells = ({ draft = {80, 56, 64}, shot = {160, 112, 128}, film = {320, 224, 256} })[quality:get()]
 local fire = pyro {
   size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 24,
-  burn_time = 0.05, cooling = 900, vorticity = 3,
+  burn_time = 0.05, cooling = 1800, vorticity = 3,
 }
 
 local flicker = perlin { frequency = 1, speed = 6, octaves = 2 }

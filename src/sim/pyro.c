@@ -27,7 +27,7 @@ pyro *pyro_create(arena *memory, const pyro_desc *desc) {
     pyro *p = arena_alloc(memory, sizeof *p);
     *p = (pyro){.memory = memory, .desc = *desc};
     p->chooses_precision = desc->precision == PYRO_AUTO;
-    if (p->desc.cycles == 0) p->desc.cycles = PYRO_CYCLES;
+    if (p->desc.cycles == 0) p->desc.cycles = desc->solids ? PYRO_SOLID_CYCLES : PYRO_CYCLES;
     return pyro_find_levels(p) ? p : NULL;
 }
 

@@ -38,7 +38,7 @@ typedef struct pyro_desc { // structure: what shaders are compiled for
     pyro_precision precision; // of velocities and the gas; auto: by the device
     bool confinement;         // numbers may have some
     bool solids;              // pyro_set_solids is called before each step
-    uint32_t cycles;          // of multigrid, per step; 0: 2
+    uint32_t cycles;          // of multigrid, per step; 0: 2, with solids 4
     bool timed;               // stages of a step have GPU times of their own
 } pyro_desc;
 

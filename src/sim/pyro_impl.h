@@ -6,6 +6,7 @@
 
 enum {
     PYRO_CYCLES = 2,
+    PYRO_SOLID_CYCLES = 4, // coarse levels see solids in part
     PYRO_MAX_LEVELS = 10,
     PYRO_COARSEST = 8192, // cells at most of the level that one group solves
 };

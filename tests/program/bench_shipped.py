@@ -10,7 +10,7 @@ SWEEPS = sorted(name for name in os.listdir(FOLDER) if name.endswith(".lua"))
 
 class Shipped(Case):
     def test_they_run_small(self):
-        self.assertEqual(len(SWEEPS), 18)
+        self.assertEqual(len(SWEEPS), 19)
         for name in SWEEPS:
             self.succeeds("bench", os.path.join(FOLDER, name), "-o", name, "--shard", "1/1000", "--size", "96x54",
                           "--frames", "30", "--warmup", "0", "--repeats", "1", "--settle", "0", "--no-reference")

@@ -35,7 +35,7 @@ def list_effects():
 
 def latest_frame(name):
     with open(os.path.join(EFFECTS, name), encoding="utf-8") as script:
-        return SIMULATED if re.search(r"\b(lbm|slices) *\{", script.read()) else LATEST
+        return SIMULATED if re.search(r"\b(lbm|pyro|slices) *\{", script.read()) else LATEST
 
 
 def find_pictures():

@@ -16,6 +16,7 @@
 #include "scene/voxels.h"
 #include "sim/flow.h"
 #include "sim/lbm_guard.h"
+#include "sim/pyro.h"
 
 enum { MOST_FILES = 256 };
 
@@ -56,6 +57,7 @@ static void solvers_say_what_their_shaders_declare(void **state) {
     shader_library *library = *state;
     check(library, "flow", &flow_kernel_table);
     check(library, "lbm", &lbm_kernel_table);
+    check(library, "pyro", &pyro_kernel_table);
     check(library, "lbm_guard", &lbm_guard_kernel_table);
     check(library, "voxels", &voxels_kernel_table);
     check(library, "view", &view_kernel_table);

@@ -1,0 +1,32 @@
+-- A step of burning gas by size, advection, precision and confinement.
+--
+--   roil bench scripts/bench/pyro.lua -o out/pyro
+--   roil bench scripts/bench/pyro.lua -o out/pyro --size 96x54 --frames 8 --only cells=64
+--
+-- Times of `pyro.step` are of one step, with its source and what is kept for drawing; the bare solver:
+-- tests/bench/pyro.c.
+
+return sweep {
+  name = "pyro", title = "Gas that burns",
+  notes = { "One step a frame in a box over ground; the picture is small, so that the step is what is measured." },
+  effect = "effects/pyro.lua", size = {320, 180}, frames = "40-59", warmup = 4, limit = 60,
+  axes = {
+    axis { "cells", 32, 64, 96, 128, 192, 256 },
+    axis { "advection",
+      { name = "maccormack", ["pyro.advection"] = "maccormack" },
+      { name = "semi_lagrangian", ["pyro.advection"] = "semi_lagrangian" },
+    },
+    axis { "precision",
+      { name = "f16", ["pyro.precision"] = "f16" },
+      { name = "f32", ["pyro.precision"] = "f32" },
+    },
+    axis { "vorticity",
+      { name = "none" },
+      { name = "confined", ["pyro.vorticity"] = 4 },
+    },
+  },
+  -- Sizes are measured for what most effects have, all else at one size.
+  skip = function(row)
+    return row.cells ~= 128 and (row.advection ~= "maccormack" or row.vorticity ~= "none")
+  end,
+}
