@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/jobs.h"
 #include "base/memory.h"
+#include "base/worker.h"
 #include "effect/recipe.h"
 #include "media/exr.h"
 #include "media/png.h"
@@ -12,7 +13,6 @@
 #include "roil/roil_impl.h"
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 // ---- reading back -----------------------------------------------------------------------------
 
@@ -343,8 +343,7 @@ struct roil_writer {
 };
 
 roil_writer *roil_writer_create(void) {
-    long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    size_t threads = cores < 1 ? 1 : cores > MAX_THREADS ? MAX_THREADS : (size_t)cores;
+    size_t threads = worker_cores() > MAX_THREADS ? MAX_THREADS : worker_cores();
     roil_writer *w = mem_alloc(sizeof *w);
     roil_srgb_fine_table(); // filled before several threads read it
     w->files = jobs_create(threads, threads + QUEUED);
