@@ -55,6 +55,17 @@ int64_t file_modified_ns(const char *path);      // 0 when it does not exist
 int64_t file_changed_ns(const char *path);       // the same, including renames and links
 int64_t file_clock_ns(void);                     // the clock of these time stamps, now
 
+// Tells whether a file is still the one that was read, without reading it.
+typedef struct file_stamp {
+    uint64_t device, inode, size;
+    int64_t modified, changed; // ns
+    bool known;                // false: it was missing, or changed while it was read
+} file_stamp;
+// Stamps a file that was read. `begin`: file_clock_ns() before.
+file_stamp file_stamp_of(const char *path, int64_t begin);
+bool file_stamp_holds(const file_stamp *stamp,
+                      const char *path); // it was neither written nor replaced
+
 // Lists the matches of a pattern with wildcards (*, ?, [..]) in its last component, sorted by
 // bytes. A file of exactly that name is the only match. False only on errors; no match gives a
 // count of 0. Matches may be symbolic links: call path_confine for those that must stay inside a
