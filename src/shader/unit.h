@@ -35,14 +35,16 @@ typedef struct library_file { // the file that a name stands for
 int library_find(const shader_library *library, library_root root, const char *folder,
                  const char *name, arena *memory, library_file *out);
 
-// A memo remembers which files were found (or not: `found` 0) and read since the last memo_forget.
-// Results are copied to `memory`. memo_find returns false for a name that is not known. memo_read
-// reads a file that is not known; false with a message when that fails. Any thread.
+// A memo remembers which files were found (or not: `found` 0) and read. What is older than the last
+// memo_forget holds when the file system says so at its next use. Results are copied to `memory`.
+// memo_find returns false for a name that is not known; `label` is the name below its root as
+// given. memo_read reads a file that is not known; false with a message when that fails. Any
+// thread.
 library_memo *memo_create(void);
 void memo_destroy(library_memo *m); // NULL is allowed
 void memo_forget(library_memo *m);
-bool memo_find(library_memo *m, library_root root, const char *name, arena *memory, int *found,
-               library_file *out);
+bool memo_find(library_memo *m, library_root root, const char *name, const char *label,
+               arena *memory, int *found, library_file *out);
 void memo_keep(library_memo *m, library_root root, const char *name, int found,
                const library_file *file);
 bool memo_read(library_memo *m, const char *root, const char *path, arena *memory, char **text,

@@ -210,6 +210,10 @@ static void a_library_remembers_what_would_be_the_same(void **state) {
     place_compile(p, &desc, &again);
     assert_int_equal(compiles(p), 4);
     assert_non_null(strstr(again.files[1], p->effect));
+    assert_int_equal(unlink(again.files[1]), 0); // the first file again
+    shader_library_forget(p->library);
+    place_compile(p, &desc, &again);
+    assert_non_null(strstr(again.files[1], p->program));
 }
 
 static void failures_are_not_cached(void **state) {
