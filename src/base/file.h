@@ -89,6 +89,7 @@ bool path_confine(char out[PATH_CAP], const char *root, const char *name);
 
 // False, with a message, unless the existing file `path`, symbolic links followed, lies in `root`.
 bool path_require_inside(const char *root, const char *path);
+bool path_require_all_inside(const char *root, const char *const *paths, size_t count);
 
 // Splits `path`, symbolic links followed, into the real path of `root` and the rest ("" for the
 // root itself). False with a message unless it lies inside. It need not exist.

@@ -110,11 +110,18 @@ bool path_confine(char out[PATH_CAP], const char *root, const char *name) {
     return lies_inside(real_root, out) || path_refuse(name, real_root);
 }
 
-bool path_require_inside(const char *root, const char *path) {
+bool path_require_all_inside(const char *root, const char *const *paths, size_t count) {
     char real_root[PATH_MAX], real[PATH_MAX];
     if (!real_folder(real_root, root)) return false;
-    if (!find_real(path, real)) return err_set("%s: %s", path, strerror(errno));
-    return lies_inside(real_root, real) || path_refuse(path, real_root);
+    for (size_t i = 0; i < count; i++) {
+        if (!find_real(paths[i], real)) return err_set("%s: %s", paths[i], strerror(errno));
+        if (!lies_inside(real_root, real)) return path_refuse(paths[i], real_root);
+    }
+    return true;
+}
+
+bool path_require_inside(const char *root, const char *path) {
+    return path_require_all_inside(root, &path, 1);
 }
 
 bool path_split_inside(char real_root[PATH_CAP], char rest[PATH_CAP], const char *root,
