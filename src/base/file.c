@@ -75,7 +75,7 @@ static bool write_in_place(const char *path, const void *data, size_t size) {
 }
 
 // The umask can only be read by setting it, which two threads must not do at once.
-unsigned file_mode(void) {
+static unsigned file_mode(void) {
     static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
     pthread_mutex_lock(&mutex);
     mode_t mask = umask(0);
@@ -149,7 +149,7 @@ bool file_draft_begin(file_draft *d, const char *path) {
     return begin_in(d, folder, path, false);
 }
 
-bool file_draft_begin_inside(file_draft *d, const char *root, const char *path) {
+static bool file_draft_begin_inside(file_draft *d, const char *root, const char *path) {
     return begin_in(d, file_open_folder_inside(root, path), path, true);
 }
 
@@ -228,11 +228,6 @@ bool file_is_folder(const char *path) {
 
 static int64_t nanoseconds(struct timespec time) {
     return (int64_t)time.tv_sec * 1000000000 + time.tv_nsec;
-}
-
-int64_t file_modified_ns(const char *path) {
-    struct stat info;
-    return stat(path, &info) == 0 ? nanoseconds(info.st_mtim) : 0;
 }
 
 bool file_make_folders(const char *path) {

@@ -28,9 +28,6 @@ void file_draft_patch(file_draft *d, uint64_t at, const void *data, size_t size)
 bool file_draft_end(file_draft *d);
 void file_draft_drop(file_draft *d); // instead of file_draft_end: leaves nothing
 
-// Returns the permissions of a new file: 0666 without the process's umask. Any thread.
-unsigned file_mode(void);
-
 // The functions with `root` are for names that come from a file and not from the user. Such names
 // must not lead out of the folder `root`. `path` is as open() takes it. Symbolic links are followed
 // as long as they stay inside; their target is then opened folder by folder without following any
@@ -45,13 +42,11 @@ bool file_read_inside(const char *root, const char *path, size_t max, void **dat
 int file_open_folder_inside(const char *root, const char *path);
 // Write a file. Missing folders are created. A symbolic link at `path` itself is refused.
 bool file_write_inside(const char *root, const char *path, const void *data, size_t size);
-bool file_draft_begin_inside(file_draft *d, const char *root, const char *path);
 
 bool file_exists(const char *path);
 bool file_is_folder(const char *path);
 bool file_make_folders(const char *path);        // like mkdir -p
 bool file_make_parent_folders(const char *path); // folders above the last component
-int64_t file_modified_ns(const char *path);      // 0 when it does not exist
 int64_t file_changed_ns(const char *path);       // the same, including renames and links
 int64_t file_clock_ns(void);                     // the clock of these time stamps, now
 

@@ -87,16 +87,6 @@ static linear_image expand_all(const raw_image *raw) {
     return (linear_image){pixels, raw->width, raw->height};
 }
 
-float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height) {
-    raw_image raw = {0};
-    if (!read_raw(e, image, &raw)) return NULL;
-    linear_image linear = expand_all(&raw);
-    free_raw(&raw);
-    *width = raw.width;
-    *height = raw.height;
-    return linear.pixels;
-}
-
 // ---- display encoding -------------------------------------------------------------------------
 
 static float srgb_encode(float linear) {        // IEC 61966-2-1

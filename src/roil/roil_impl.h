@@ -37,8 +37,6 @@ struct roil_effect {
 // change, such as the period. (roil/lua.c)
 void roil_add_lua(const roil_effect *e, const effect_control *c, bool whole, strbuf *out);
 void roil_add_lua_key(const char *name, strbuf *out); // "name = ", in brackets where it must be
-// Reads an image of the graph as RGBA floats, rows from the top; free with mem_free.
-float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height);
 graph_image roil_find_image(roil_effect *e, const char *name); // zero with a message
 // Tables from linear values to sRGB codes, indexed by the square root: entry i is the code of
 // (i / ROIL_SRGB_STEPS)^2. Values of the fine table have 8 fractional bits. The first call fills
