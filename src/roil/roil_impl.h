@@ -48,6 +48,9 @@ const uint16_t *roil_srgb_fine_table(void);
 uint8_t roil_dither_noise(size_t x, size_t y, int channel);
 
 time_limit roil_time_limit(const roil *r); // a new limit for a load
+// What an effect is created with, by the options of `r`; the other members are zero.
+effect_desc roil_effect_desc(const roil *r, const char *file, const effect_setting *settings,
+                             size_t count);
 
 void roil_free_view(roil *r);
 void roil_free_templates(roil_effect *e); // after the effect itself
