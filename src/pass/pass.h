@@ -99,6 +99,13 @@ typedef struct pass_defines { // of a kernel that is being compiled
     size_t count;
 } pass_defines;
 
+enum { PASS_BUFFERS = 16 };
+typedef struct pass_buffer { // of a type's state
+    gpu_buffer **at;
+    const char *label;
+    uint64_t size; // bytes; 0: it is not needed
+} pass_buffer;
+
 typedef struct pass_type {
     const char *name;   // "march"
     const char *shader; // "pass/march/march.comp"
@@ -122,9 +129,12 @@ typedef struct pass_type {
     bool (*foresees)(const pass *p, size_t index);
     // Of a kernel that draws: what to. Its formats, depth, culling and blending.
     void (*target)(const pass *p, size_t index, gpu_graphics_desc *out);
-    bool (*update)(pass *p);   // numbers of a frame that the host computes, by pass_set
-    bool (*check)(pass *p);    // compile all that build would, without a device
-    bool (*build)(pass *p);    // instead of one pipeline; see pass_build
+    bool (*update)(pass *p); // numbers of a frame that the host computes, by pass_set
+    bool (*check)(pass *p);  // compile all that build would, without a device
+    bool (*build)(pass *p);  // instead of one pipeline; see pass_build
+    // Buffers of its state whose sizes are known once the graph is compiled: pass_allocate makes
+    // those that are not there, pass_list_memory counts them, and they go with the pass.
+    size_t (*buffers)(const pass *p, pass_buffer out[PASS_BUFFERS]);
     bool (*allocate)(pass *p); // besides what every pass needs; see pass_allocate
     void (*list_memory)(const pass *p, budget_list *out); // see pass_list_memory
     bool (*rehearse)(pass *p);                            // besides what every pass evaluates

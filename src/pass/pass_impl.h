@@ -54,6 +54,8 @@ struct pass {
     gpu_image **unread;  // one per entry of `face`: what an optional output is while unread
     field_grid *baked;   // bake only: the grid it fills
     void *state;         // of the type's hooks
+    gpu_buffer **buffers[PASS_BUFFERS]; // in it, since pass_allocate
+    size_t buffer_count;
     bool completed;
     const struct pass_name *names; // what the type's names are in `face`
     int density;                   // of that name, in face->fields; -1: none
