@@ -22,6 +22,8 @@ int cmd_live(int argc, const char **argv);
 // One line "roil: message" on stderr; returns the status.
 int app_fail(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 int app_fail_input(void); // the same with roil_error()
+// Ends `r` (NULL: none). Returns `status`, or that of a failure if validation layers complained.
+int app_close(roil *r, int status);
 
 // Prints text that may come from a file, without what a terminal would obey (str_make_printable).
 void app_print(FILE *out, const char *format, ...) __attribute__((format(printf, 2, 3)));

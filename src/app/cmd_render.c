@@ -7,7 +7,6 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
-#include <inttypes.h>
 #include <popt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -388,12 +387,7 @@ static int render_run(job *j) {
     }
     app_stats_destroy(stats);
     roil_unload(e);
-    uint64_t complaints = r ? roil_validation_messages(r) : 0;
-    if (status == APP_DONE && complaints)
-        status =
-            app_fail(APP_BAD_INPUT, "%" PRIu64 " messages of the validation layers", complaints);
-    roil_destroy(r);
-    return status;
+    return app_close(r, status);
 }
 
 int cmd_render(int argc, const char **argv) {

@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/str.h"
-#include <inttypes.h>
 #include <popt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -173,12 +172,7 @@ static int export_frames(job *j) {
     else if (!export_all(j, e))
         status = app_fail_input();
     roil_unload(e);
-    uint64_t complaints = r ? roil_validation_messages(r) : 0;
-    if (status == APP_DONE && complaints)
-        status =
-            app_fail(APP_BAD_INPUT, "%" PRIu64 " messages of the validation layers", complaints);
-    roil_destroy(r);
-    return status;
+    return app_close(r, status);
 }
 
 int export_vdb(int argc, const char **argv) {

@@ -5,6 +5,7 @@
 #include "base/str.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <jansson.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -36,6 +37,15 @@ int app_fail(int status, const char *format, ...) {
     va_end(args);
     str_make_printable(text);
     fprintf(stderr, "roil: %s\n", text);
+    return status;
+}
+
+int app_close(roil *r, int status) {
+    uint64_t complaints = r ? roil_validation_messages(r) : 0;
+    if (status == APP_DONE && complaints)
+        status =
+            app_fail(APP_BAD_INPUT, "%" PRIu64 " messages of the validation layers", complaints);
+    roil_destroy(r);
     return status;
 }
 

@@ -50,7 +50,6 @@ void panel_row(live *l, const roil_control *c);
 // Draws the label of an editor's row; the caller draws the second cell.
 void panel_label(const char *label);
 void panel_reset(live *l, const char *name); // NULL: all controls
-void panel_copy_lua(live *l, const char *name);
 // Draws the buttons that reset a palette or a curve, and copy it.
 void panel_shape_buttons(live *l, const char *name);
 void panel_table_begin(const char *id); // begins a table of rows; end it with ui_table_end

@@ -29,7 +29,7 @@ void panel_reset(live *l, const char *name) {
     live_reset(l, name);
 }
 
-void panel_copy_lua(live *l, const char *name) {
+static void panel_copy_lua(live *l, const char *name) {
     char *text = roil_control_lua(l->effect, name);
     if (text) {
         ui_copy(text);

@@ -36,7 +36,3 @@ track_ticks track_ticks_of(const track *t, float least) {
     bool fits = between >= 1 && between * pixels >= (double)BETWEEN_PIXELS;
     return (track_ticks){step, fits ? between : 0};
 }
-
-bool track_near(const track *t, double frame, float x, float reach) {
-    return fabsf(track_x(t, frame) - x) <= reach;
-}

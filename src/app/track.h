@@ -15,5 +15,3 @@ typedef struct track_ticks {
 } track_ticks;
 // Chooses steps of 1, 2 or 5 times a power of ten, so that ticks are at least `least` pixels apart.
 track_ticks track_ticks_of(const track *t, float least);
-
-bool track_near(const track *t, double frame, float x, float reach); // within `reach` pixels

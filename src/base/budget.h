@@ -29,12 +29,13 @@ typedef struct budget_list { // zero: empty
 } budget_list;
 
 void budget_list_add(budget_list *list, const char *label, uint64_t bytes); // `label` is copied
-// Whether it is asked for the first time about this object, so that what is shared counts once.
+// Returns whether it is asked for the first time about this object, so that what is shared counts
+// once.
 bool budget_list_first(budget_list *list, const void *owner);
 void budget_list_free(budget_list *list); // empty afterwards
 
-// What may be taken of each budget: "60%" of what there is of it, or an amount as "8G" or "512M".
-// NULL: 60 %. Of the whole process, from now on; false with a message when it is none of these.
+// Sets what may be taken of each budget of the process from now on: "60%" of what there is of it,
+// or an amount as "8G" or "512M". NULL: 60 %. False with a message when it is none of these.
 bool budget_set_share(const char *text);
 
 // Returns the host's budget: the memory of the machine, or less where the process's control group

@@ -1,22 +1,17 @@
 #include "base/content_cache.h"
+#include "base/file.h"
 #include "base/hash.h"
 #include "base/memory.h"
 #include <pthread.h>
 #include <string.h>
-#include <sys/stat.h>
-
-typedef struct stamp { // of a file; it changes when the file is written or replaced
-    const char *path;
-    struct stat info;
-} stamp;
 
 typedef struct entry {
     content_cache_item item; // first: an item's address is its entry's
     const char *key;
     uint64_t hash;
-    stamp *stamps;
-    size_t stamp_count, holders;
-    bool stale; // the files may have changed while they were read
+    const char **files;
+    file_stamp *stamps;
+    size_t file_count, holders;
     struct entry *next;
 } entry;
 
@@ -39,19 +34,9 @@ void content_cache_destroy(content_cache *c) {
     mem_free(c);
 }
 
-static bool is_same(const struct stat *a, const struct stat *b) {
-    return a->st_dev == b->st_dev && a->st_ino == b->st_ino && a->st_size == b->st_size &&
-           a->st_mtim.tv_sec == b->st_mtim.tv_sec && a->st_mtim.tv_nsec == b->st_mtim.tv_nsec &&
-           a->st_ctim.tv_sec == b->st_ctim.tv_sec && a->st_ctim.tv_nsec == b->st_ctim.tv_nsec;
-}
-
 static bool is_current(const entry *e) {
-    if (e->stale) return false;
-    for (size_t i = 0; i < e->stamp_count; i++) {
-        struct stat info;
-        if (stat(e->stamps[i].path, &info) != 0 || !is_same(&info, &e->stamps[i].info))
-            return false;
-    }
+    for (size_t i = 0; i < e->file_count; i++)
+        if (!file_stamp_holds(&e->stamps[i], e->files[i])) return false;
     return true;
 }
 
@@ -68,11 +53,11 @@ content_cache_item *content_cache_take(content_cache *c, const char *key) {
 
 static void stamp_files(entry *e, const char *const *files, size_t count, int64_t begin) {
     e->stamps = arena_alloc(&e->item.memory, count * sizeof *e->stamps);
-    e->stamp_count = count;
+    e->files = arena_alloc(&e->item.memory, count * sizeof *e->files);
+    e->file_count = count;
     for (size_t i = 0; i < count; i++) {
-        stamp *at = &e->stamps[i];
-        at->path = arena_string(&e->item.memory, files[i]);
-        if (stat(files[i], &at->info) != 0 || file_changed_ns(files[i]) >= begin) e->stale = true;
+        e->files[i] = arena_string(&e->item.memory, files[i]);
+        e->stamps[i] = file_stamp_of(files[i], begin);
     }
 }
 

@@ -75,7 +75,7 @@ static bool write_in_place(const char *path, const void *data, size_t size) {
 }
 
 // The umask can only be read by setting it, which two threads must not do at once.
-unsigned file_mode(void) {
+static unsigned file_mode(void) {
     static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
     pthread_mutex_lock(&mutex);
     mode_t mask = umask(0);
@@ -149,7 +149,7 @@ bool file_draft_begin(file_draft *d, const char *path) {
     return begin_in(d, folder, path, false);
 }
 
-bool file_draft_begin_inside(file_draft *d, const char *root, const char *path) {
+static bool file_draft_begin_inside(file_draft *d, const char *root, const char *path) {
     return begin_in(d, file_open_folder_inside(root, path), path, true);
 }
 
@@ -226,10 +226,8 @@ bool file_is_folder(const char *path) {
     return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
 }
 
-int64_t file_modified_ns(const char *path) {
-    struct stat info;
-    if (stat(path, &info) != 0) return 0;
-    return (int64_t)info.st_mtim.tv_sec * 1000000000 + info.st_mtim.tv_nsec;
+static int64_t nanoseconds(struct timespec time) {
+    return (int64_t)time.tv_sec * 1000000000 + time.tv_nsec;
 }
 
 bool file_make_folders(const char *path) {
@@ -257,14 +255,32 @@ bool file_make_parent_folders(const char *path) {
 
 int64_t file_changed_ns(const char *path) {
     struct stat info;
-    if (stat(path, &info) != 0) return 0;
-    return (int64_t)info.st_ctim.tv_sec * 1000000000 + info.st_ctim.tv_nsec;
+    return stat(path, &info) == 0 ? nanoseconds(info.st_ctim) : 0;
+}
+
+file_stamp file_stamp_of(const char *path, int64_t begin) {
+    struct stat info;
+    if (stat(path, &info) != 0) return (file_stamp){0};
+    const int64_t changed = nanoseconds(info.st_ctim);
+    return (file_stamp){.device = info.st_dev,
+                        .inode = info.st_ino,
+                        .size = (uint64_t)info.st_size,
+                        .modified = nanoseconds(info.st_mtim),
+                        .changed = changed,
+                        .known = changed < begin};
+}
+
+bool file_stamp_holds(const file_stamp *stamp, const char *path) {
+    const file_stamp now = file_stamp_of(path, INT64_MAX);
+    return stamp->known && now.known && now.device == stamp->device && now.inode == stamp->inode &&
+           now.size == stamp->size && now.modified == stamp->modified &&
+           now.changed == stamp->changed;
 }
 
 int64_t file_clock_ns(void) {
     struct timespec now;
     clock_gettime(CLOCK_REALTIME_COARSE, &now);
-    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+    return nanoseconds(now);
 }
 
 static void list_add(file_list *list, size_t *capacity, const char *folder, size_t folder_length,

@@ -28,9 +28,6 @@ void file_draft_patch(file_draft *d, uint64_t at, const void *data, size_t size)
 bool file_draft_end(file_draft *d);
 void file_draft_drop(file_draft *d); // instead of file_draft_end: leaves nothing
 
-// Returns the permissions of a new file: 0666 without the process's umask. Any thread.
-unsigned file_mode(void);
-
 // The functions with `root` are for names that come from a file and not from the user. Such names
 // must not lead out of the folder `root`. `path` is as open() takes it. Symbolic links are followed
 // as long as they stay inside; their target is then opened folder by folder without following any
@@ -45,15 +42,24 @@ bool file_read_inside(const char *root, const char *path, size_t max, void **dat
 int file_open_folder_inside(const char *root, const char *path);
 // Write a file. Missing folders are created. A symbolic link at `path` itself is refused.
 bool file_write_inside(const char *root, const char *path, const void *data, size_t size);
-bool file_draft_begin_inside(file_draft *d, const char *root, const char *path);
 
 bool file_exists(const char *path);
 bool file_is_folder(const char *path);
 bool file_make_folders(const char *path);        // like mkdir -p
 bool file_make_parent_folders(const char *path); // folders above the last component
-int64_t file_modified_ns(const char *path);      // 0 when it does not exist
 int64_t file_changed_ns(const char *path);       // the same, including renames and links
 int64_t file_clock_ns(void);                     // the clock of these time stamps, now
+
+// Tells whether a file is still the one that was read, without reading it.
+typedef struct file_stamp {
+    uint64_t device, inode, size;
+    int64_t modified, changed; // ns
+    bool known;                // false: it was missing, or changed while it was read
+} file_stamp;
+// Stamps a file that was read. `begin`: file_clock_ns() before.
+file_stamp file_stamp_of(const char *path, int64_t begin);
+bool file_stamp_holds(const file_stamp *stamp,
+                      const char *path); // it was neither written nor replaced
 
 // Lists the matches of a pattern with wildcards (*, ?, [..]) in its last component, sorted by
 // bytes. A file of exactly that name is the only match. False only on errors; no match gives a
@@ -78,6 +84,7 @@ bool path_confine(char out[PATH_CAP], const char *root, const char *name);
 
 // False, with a message, unless the existing file `path`, symbolic links followed, lies in `root`.
 bool path_require_inside(const char *root, const char *path);
+bool path_require_all_inside(const char *root, const char *const *paths, size_t count);
 
 // Splits `path`, symbolic links followed, into the real path of `root` and the rest ("" for the
 // root itself). False with a message unless it lies inside. It need not exist.

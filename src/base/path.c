@@ -3,11 +3,14 @@
 #include "base/file.h"
 #include "base/str.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
+#include <linux/openat2.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 bool path_too_long(const char *path) {
@@ -39,14 +42,34 @@ const char *path_extension(const char *path) {
     return dot && dot != name ? dot + 1 : "";
 }
 
-// Returns realpath of the longest existing part of `path`; the rest, which holds no "..", is kept
-// as it is. A broken link is refused, because nobody can say where it will lead once its target
-// exists.
+static bool is_normal(const char *path) {
+    bool normal = path[0] == '/' && path[1];
+    for (const char *slash = path; normal && slash; slash = strchr(slash + 1, '/')) {
+        size_t length = strcspn(slash + 1, "/");
+        normal = length && strncmp(slash + 1, "..", length) != 0;
+    }
+    return normal;
+}
+
+// realpath() by one question in most cases, where it asks about each folder above: a path without
+// "." and ".." in which the kernel meets no link is its own real path, or does not exist.
+static bool find_real(const char *path, char out[PATH_MAX]) {
+    const struct open_how how = {.flags = O_PATH | O_CLOEXEC, .resolve = RESOLVE_NO_SYMLINKS};
+    if (!is_normal(path)) return realpath(path, out) != NULL;
+    int file = (int)syscall(SYS_openat2, AT_FDCWD, path, &how, sizeof how);
+    if (file < 0) return errno != ENOENT && realpath(path, out) != NULL;
+    close(file);
+    return str_copy(out, PATH_MAX, path);
+}
+
+// Returns the real path of the longest existing part of `path`; the rest, which holds no "..", is
+// kept as it is. A broken link is refused, because nobody can say where it will lead once its
+// target exists.
 static bool path_resolve(char out[PATH_CAP], const char *path) {
     char head[PATH_CAP], real[PATH_MAX];
     if (!str_copy(head, sizeof head, path)) return path_too_long(path);
     const char *rest = "";
-    while (!realpath(head, real)) {
+    while (!find_real(head, real)) {
         if (errno != ENOENT && errno != ENOTDIR) return err_set("%s: %s", path, strerror(errno));
         struct stat link;
         if (errno == ENOENT && lstat(head, &link) == 0) return err_set("%s: broken link", path);
@@ -60,7 +83,7 @@ static bool path_resolve(char out[PATH_CAP], const char *path) {
 }
 
 static bool real_folder(char out[PATH_MAX], const char *root) {
-    return realpath(root, out) || err_set("%s: %s", root, strerror(errno));
+    return find_real(root, out) || err_set("%s: %s", root, strerror(errno));
 }
 
 static bool lies_inside(const char *real_root, const char *real) {
@@ -87,11 +110,18 @@ bool path_confine(char out[PATH_CAP], const char *root, const char *name) {
     return lies_inside(real_root, out) || path_refuse(name, real_root);
 }
 
-bool path_require_inside(const char *root, const char *path) {
+bool path_require_all_inside(const char *root, const char *const *paths, size_t count) {
     char real_root[PATH_MAX], real[PATH_MAX];
     if (!real_folder(real_root, root)) return false;
-    if (!realpath(path, real)) return err_set("%s: %s", path, strerror(errno));
-    return lies_inside(real_root, real) || path_refuse(path, real_root);
+    for (size_t i = 0; i < count; i++) {
+        if (!find_real(paths[i], real)) return err_set("%s: %s", paths[i], strerror(errno));
+        if (!lies_inside(real_root, real)) return path_refuse(paths[i], real_root);
+    }
+    return true;
+}
+
+bool path_require_inside(const char *root, const char *path) {
+    return path_require_all_inside(root, &path, 1);
 }
 
 bool path_split_inside(char real_root[PATH_CAP], char rest[PATH_CAP], const char *root,

@@ -103,8 +103,22 @@ static size_t distance(const char *a, const char *b) {
     return above[m];
 }
 
+// Finds the name that scripts give now to what they called `word` before a rename.
+static const char *find_renamed(const char *word, const char *const *candidates, size_t count) {
+    static const char was[] = "lamp", is[] = "point_light"; // a part of several names
+    const char *at = strstr(word, was);
+    char name[WORD_CAP];
+    if (!at || snprintf(name, sizeof name, "%.*s%s%s", (int)(at - word), word, is,
+                        at + strlen(was)) >= WORD_CAP)
+        return NULL;
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(candidates[i], name) == 0) return candidates[i];
+    return NULL;
+}
+
 const char *str_nearest(const char *word, const char *const *candidates, size_t count) {
-    const char *nearest = NULL;
+    const char *nearest = find_renamed(word, candidates, count);
+    if (nearest) return nearest;
     size_t length = strlen(word), best = (length + 2) / 3; // further away is another word
     if (best > 3) best = 3;
     for (size_t i = 0; i < count; i++) {

@@ -16,8 +16,8 @@ void strbuf_add_float(strbuf *s, float value); // the shortest number that reads
 void strbuf_free(strbuf *s);
 const char *strbuf_text(const strbuf *s); // "" when empty
 
-// Returns the candidate nearest to `word` by edit distance (a transposition counts as one edit), or
-// NULL when none is near enough for a likely typing error.
+// Returns the candidate that `word` was renamed to, else the nearest by edit distance (a
+// transposition counts as one edit), or NULL when none is near enough for a likely typing error.
 const char *str_nearest(const char *word, const char *const *candidates, size_t count);
 
 // Replaces what a terminal would obey by '?': control characters other than line breaks and tabs,

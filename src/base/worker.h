@@ -2,6 +2,9 @@
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
+
+uint32_t worker_cores(void); // of the machine, at least 1; the system is asked once
 
 typedef struct worker worker;
 typedef struct worker_job {

@@ -6,10 +6,21 @@
 #include "base/time_limit.h"
 #include "base/worker.h"
 #include <pthread.h>
+#include <stdatomic.h>
 #include <string.h>
 #include <unistd.h>
 
 enum { MAX_THREADS = 8 };
+
+uint32_t worker_cores(void) {
+    static atomic_uint known;
+    uint32_t cores = atomic_load(&known);
+    if (cores) return cores;
+    long online = sysconf(_SC_NPROCESSORS_ONLN);
+    cores = online > 0 ? (uint32_t)online : 1;
+    atomic_store(&known, cores);
+    return cores;
+}
 
 typedef struct loop {
     bool (*run)(void *user, size_t index);
@@ -58,10 +69,9 @@ bool worker_each(size_t count, bool (*run)(void *user, size_t index), void *user
     loop l = {
         .run = run, .user = user, .count = count, .budget = time_limit_now(), .failed = count};
     pthread_mutex_init(&l.lock, NULL);
-    long cores = sysconf(_SC_NPROCESSORS_ONLN);
     pthread_t threads[MAX_THREADS];
     size_t started = 0; // fewer than wanted do as well
-    while (started + 1 < count && started < MAX_THREADS && (long)started + 1 < cores &&
+    while (started + 1 < count && started < MAX_THREADS && started + 1 < worker_cores() &&
            pthread_create(&threads[started], NULL, help, &l) == 0)
         started++;
     loop_work(&l);

@@ -2,13 +2,13 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include "base/worker.h"
 #include "bench/sweep.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/utsname.h>
 #include <time.h>
-#include <unistd.h>
 
 enum { FILE_MAX = 1 << 20, SHOWN_DIGITS = 7 };
 
@@ -90,7 +90,7 @@ void bench_describe_machine(bench_results *r) {
     struct tm utc;
     if (gmtime_r(&now, &utc)) strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", &utc);
     r->cpu = line_of("/proc/cpuinfo", "model name", &r->memory);
-    r->cores = (uint32_t)sysconf(_SC_NPROCESSORS_ONLN);
+    r->cores = worker_cores();
     r->os = system_name(&r->memory);
     r->date = arena_string(&r->memory, date);
 }

@@ -241,7 +241,7 @@ static bool control_take(effect *e, control *c, const char *text) {
     return true;
 }
 
-bool effect_set_control(effect *e, control *c, const char *text) {
+static bool effect_set_control(effect *e, control *c, const char *text) {
     bool same = strcmp(text, c->face.initial) == 0;
     if (same && !is_structure(c)) {
         effect_reset_control(e, c);

@@ -68,8 +68,7 @@ control *effect_control_of(effect *e, const char *name); // NULL without a messa
 control *effect_add_control(effect *e, const control *own);
 // Applies what the command line says about a control that was declared just now.
 bool effect_apply_to(effect *e, control *c);
-bool effect_set_control(effect *e, control *c, const char *text); // structure too
-void effect_reset_control(effect *e, control *c);                 // but for structure
+void effect_reset_control(effect *e, control *c); // but for structure
 
 // Names a control "GROUP.NAME" by its description, and adds it.
 control *effect_add_member(effect *e, const char *group, const value_desc *desc, control own);

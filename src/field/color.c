@@ -65,9 +65,7 @@ void palette_blackbody(float kelvin, float out[3]) {
     double xyz[3] = {0, 0, 0};
     pthread_once(&sampled, find_samples);
     for (const sample *s = samples; s < samples + SAMPLES; s++) {
-        double x = second / (s->nm * t);
-        // Relative to exp(-second / (780 t)), so that 500 K does not fall below the least double.
-        double radiance = s->scale * exp(second / (780 * t) - x) / -expm1(-x);
+        double radiance = s->scale / (exp(second / (s->nm * t)) - 1); // the exponent is 0.9 to 76
         for (int i = 0; i < 3; i++) xyz[i] += radiance * s->xyz[i];
     }
     double rgb[3] = {

@@ -33,10 +33,8 @@ static bool list_files(sequence_data *s) {
     else if (!ok)
         err_set("%s: %zu files; at most %d are accepted", pattern, list.count, SEQUENCE_MAX_FRAMES);
     const char **files = arena_alloc(&s->memory, (list.count + 1) * sizeof *files);
-    for (size_t i = 0; ok && i < list.count; i++) {
-        files[i] = arena_string(&s->memory, list.paths[i]);
-        ok = !s->desc.root || path_require_inside(s->desc.root, files[i]);
-    }
+    for (size_t i = 0; i < list.count; i++) files[i] = arena_string(&s->memory, list.paths[i]);
+    if (ok && s->desc.root) ok = path_require_all_inside(s->desc.root, files, list.count);
     s->files = files;
     s->file_count = list.count;
     file_list_free(&list);

@@ -9,7 +9,7 @@
 
 static_assert((int)FIELD_GRID_IMAGES == (int)TEXELS_IMAGES, "a frame has the images of a grid");
 
-texels_shape sequence_shape(const sequence_data *s) {
+static texels_shape sequence_shape(const sequence_data *s) {
     texels_shape shape = {.y_up = s->desc.y_up, .width = s->width};
     memcpy(shape.size, s->file_size, sizeof shape.size);
     return shape;
@@ -30,7 +30,10 @@ uint64_t sequence_brick_count(const sequence_data *s) {
     return vdb_brick_count(&shape);
 }
 
-box3 sequence_active_box(const sequence_data *grid, const uint32_t from[3], const uint32_t to[3]) {
+// Returns the world box of the voxels that are not zero (`from` inclusive, `to` exclusive, in the
+// grid's axes), as far as linear filtering spreads them.
+static box3 sequence_active_box(const sequence_data *grid, const uint32_t from[3],
+                                const uint32_t to[3]) {
     if (from[0] >= to[0]) return box3_empty();
     const float min[3] = {grid->box.min.x, grid->box.min.y, grid->box.min.z};
     const float max[3] = {grid->box.max.x, grid->box.max.y, grid->box.max.z};

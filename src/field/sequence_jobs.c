@@ -8,14 +8,13 @@
 #include "base/str.h"
 #include "field/sequence_parts.h"
 #include <string.h>
-#include <unistd.h>
 
 enum { MOST_THREADS = 12 };
 
 void sequence_jobs_start(sequence_data *s) {
     sequence_jobs *j = &s->cache.jobs;
-    long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    j->threads = cores > 2 ? (uint32_t)cores - 2 : 1;
+    const uint32_t cores = worker_cores();
+    j->threads = cores > 2 ? cores - 2 : 1;
     if (j->threads > MOST_THREADS) j->threads = MOST_THREADS;
     // A dense frame is decoded by way of floats, twice its bytes: not many at once.
     const uint64_t most = (uint64_t)2 << 30,

@@ -162,15 +162,9 @@ double sequence_position(const sequence_data *s, double time); // in frames sinc
 // nothing to see then.
 bool sequence_frames_at(const sequence_data *s, double position, uint32_t frames[2], float *blend);
 
-texels_shape sequence_shape(const sequence_data *s);
 int sequence_image_channels(const sequence_data *s, int image); // 0..4
 int sequence_texel_width(const sequence_data *s, int image);    // components of the texture
 uint64_t sequence_brick_count(const sequence_data *s);          // of the box
-// On the device, index included.
-uint64_t sequence_image_bytes(const sequence_data *s, const sequence_texels *texels, int image);
-// World box of the voxels that are not zero (low inclusive, high exclusive, in the grid's axes), as
-// far as linear filtering spreads them.
-box3 sequence_active_box(const sequence_data *s, const uint32_t low[3], const uint32_t high[3]);
 
 // Any thread. False with a message; nothing is then left to free.
 bool sequence_decode(const sequence_data *s, uint32_t frame, sequence_texels *out);

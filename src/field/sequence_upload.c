@@ -26,10 +26,6 @@ static uint64_t values_bytes(const sequence_data *s, const sequence_texels *texe
     return count * SIDE * SIDE * SIDE * texel_bytes(s, image);
 }
 
-uint64_t sequence_image_bytes(const sequence_data *s, const sequence_texels *texels, int image) {
-    return values_bytes(s, texels, image) + index_bytes(s);
-}
-
 // ---- textures ---------------------------------------------------------------------------------
 
 static bool fits(const gpu_image *image, uint32_t width, uint32_t least, uint32_t most) {

@@ -61,32 +61,6 @@ bool gpu_image_copy_to_buffer(gpu *g, gpu_image *image, gpu_buffer *buffer, uint
     return true;
 }
 
-bool gpu_image_copy(gpu *g, gpu_image *from, gpu_image *to) {
-    const gpu_image_desc *a = &from->desc, *b = &to->desc;
-    if (a->width != b->width || a->height != b->height || a->depth != b->depth ||
-        a->format != b->format || from == to) {
-        return err_set("image '%s' (%ux%ux%u %s) cannot be copied to '%s' (%ux%ux%u %s); another "
-                       "image of the same size and format is accepted",
-                       a->label, a->width, a->height, a->depth, gpu_format_name(a->format),
-                       b->label, b->width, b->height, b->depth, gpu_format_name(b->format));
-    }
-    VkCommandBuffer commands = vk_commands(g);
-    if (!commands) return false;
-    vk_uses_begin(g);
-    vk_use_image(g, from, 0, 1, vk_image_from);
-    vk_use_image(g, to, 0, 1, vk_image_to);
-    vk_uses_flush(g, commands);
-    VkExtent3D extent;
-    uint64_t bytes;
-    vk_image_extent(from, 0, &extent, &bytes);
-    VkImageCopy region = {.srcSubresource = {.aspectMask = from->aspect, .layerCount = 1},
-                          .dstSubresource = {.aspectMask = to->aspect, .layerCount = 1},
-                          .extent = extent};
-    vkCmdCopyImage(commands, from->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to->handle,
-                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
-    return true;
-}
-
 static bool copy_bytes(gpu *g, gpu_buffer *from, uint64_t offset, gpu_buffer *to, uint64_t size) {
     VkCommandBuffer commands = vk_commands(g);
     if (!commands) return false;

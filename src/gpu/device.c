@@ -21,8 +21,9 @@ void vk_features_read(VkPhysicalDevice physical, vk_features *out) {
     vkGetPhysicalDeviceFeatures2(physical, &out->core);
 }
 
-VkDevice vk_device_create(const vk_choice *choice, const gpu_limits *limits, uint32_t family,
-                          int copies, bool presents) {
+// `copies`: a second family to have a queue of; -1: none.
+static VkDevice vk_device_create(const vk_choice *choice, const gpu_limits *limits, uint32_t family,
+                                 int copies, bool presents) {
     vk_features has, want = {0};
     vk_features_read(choice->physical, &has);
     chain(&want);

@@ -3,9 +3,9 @@
 // Mesa's lavapipe (22.3) deals a dispatch out before it begins: each core takes a run of its
 // groups, as many as the others, and waits for the slowest. The upper half of a picture is not as
 // dear as the lower one, so there a dispatch goes in slices, whose halves are more alike.
+#include "base/worker.h"
 #include "gpu/vk.h"
 #include <string.h>
-#include <unistd.h>
 
 enum { MOST_SLICES = 16, GROUPS_A_CORE = 8 }; // of a slice, at least
 
@@ -35,8 +35,7 @@ static bool count_groups(gpu *g, const gpu_dispatch_desc *desc, uint32_t groups[
 
 static uint32_t count_slices(const vk_built *built, const uint32_t groups[3], uint32_t along) {
     if (!built->sliced) return 1;
-    long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    uint64_t least = GROUPS_A_CORE * (uint64_t)(cores > 0 ? cores : 1);
+    uint64_t least = GROUPS_A_CORE * (uint64_t)worker_cores();
     uint64_t most = (uint64_t)groups[0] * groups[1] * groups[2] / least;
     most = most < MOST_SLICES ? most : MOST_SLICES;
     most = most < groups[along] / 2 ? most : groups[along] / 2;

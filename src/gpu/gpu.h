@@ -335,5 +335,4 @@ void gpu_image_clear(gpu *g, gpu_image *image, const float color[4]); // inside 
 void gpu_buffer_fill(gpu *g, gpu_buffer *buffer, uint32_t word);      // inside a frame
 // Copies mip 0, tightly packed, to `offset` of the buffer.
 bool gpu_image_copy_to_buffer(gpu *g, gpu_image *image, gpu_buffer *buffer, uint64_t offset);
-bool gpu_image_copy(gpu *g, gpu_image *from, gpu_image *to); // same size and format, mip 0
 bool gpu_buffer_copy(gpu *g, gpu_buffer *from, gpu_buffer *to, uint64_t size); // from the beginning

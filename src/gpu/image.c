@@ -4,7 +4,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-uint32_t vk_mip_size(uint32_t size, uint32_t mip) {
+static uint32_t vk_mip_size(uint32_t size, uint32_t mip) {
     uint32_t half = size >> mip;
     return half ? half : 1;
 }

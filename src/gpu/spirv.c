@@ -95,7 +95,8 @@ bool spirv_constant(const spirv_module *m, uint32_t id, uint32_t *value) {
     return true;
 }
 
-uint32_t spirv_storage_size(const spirv_module *m, SpvStorageClass storage) {
+// Returns the bytes of all variables of a storage class, in or out of functions; saturates.
+static uint32_t spirv_storage_size(const spirv_module *m, SpvStorageClass storage) {
     uint32_t sum = 0;
     for (uint32_t id = 0; id < m->bound; id++) {
         const uint32_t *variable = spirv_find(m, id, SpvOpVariable);

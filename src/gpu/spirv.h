@@ -44,8 +44,6 @@ void spirv_module_free(spirv_module *m);
 const uint32_t *spirv_find(const spirv_module *m, uint32_t id, SpvOp op);
 // Value of an integer constant of 32 bits.
 bool spirv_constant(const spirv_module *m, uint32_t id, uint32_t *value);
-// Bytes of all variables of a storage class, in or out of functions; saturates.
-uint32_t spirv_storage_size(const spirv_module *m, SpvStorageClass storage);
 // Bytes that a work group shares, of a whole module; false: it is none.
 bool spirv_shared_bytes(const uint32_t *words, size_t count, uint32_t *out);
 

@@ -65,9 +65,6 @@ typedef struct vk_features {
     VkPhysicalDeviceVulkan13Features v13;
 } vk_features;
 void vk_features_read(VkPhysicalDevice physical, vk_features *out);
-// `copies`: a second family to have a queue of; -1: none.
-VkDevice vk_device_create(const vk_choice *choice, const gpu_limits *limits, uint32_t family,
-                          int copies, bool presents);
 
 // True for VK_SUCCESS; else false with "what: why", and notes a lost device.
 bool vk_check(gpu *g, VkResult result, const char *what, ...) PRINTF_LIKE(3, 4);
@@ -189,7 +186,6 @@ void vk_built_close(gpu *g);             // the same for all that are idle
 
 gpu_buffer *vk_buffer_create(gpu *g, uint64_t size, VkBufferUsageFlags usage, vk_memory_kind kind,
                              const char *label);
-uint32_t vk_mip_size(uint32_t size, uint32_t mip);
 // Texels and bytes of one level.
 void vk_image_extent(const gpu_image *image, uint32_t mip, VkExtent3D *extent, uint64_t *bytes);
 VkClearColorValue vk_clear_color(const gpu_image *image, const float color[4]);

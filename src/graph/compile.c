@@ -40,7 +40,9 @@ static uint32_t source(const graph *g, uint32_t index) {
     return image->of == NONE ? image->writer : g->images[image->of].writer;
 }
 
-bool graph_link(graph *g) {
+// Finds the writer of each image; false, with a message that names the image, where there is none
+// or a second.
+static bool graph_link(graph *g) {
     if (!find_writers(g)) return false;
     for (size_t p = 0; p < g->pass_count; p++)
         for (size_t i = 0; i < g->passes[p].read_count; i++) {
@@ -152,7 +154,8 @@ static bool report_cycle(const graph *g, sorting *s) {
     return false;
 }
 
-bool graph_sort(graph *g) {
+// Fills `order` with all passes; false, with a message, when they wait for each other.
+static bool graph_sort(graph *g) {
     sorting s = {0};
     sorting_begin(&s, g);
     g->order = mem_resize(g->order, (g->pass_count + 1) * sizeof *g->order);
@@ -205,7 +208,8 @@ static void mark_needed(graph *g) {
     }
 }
 
-void graph_cull(graph *g) {
+// Marks the passes that an output needs, and drops the others from `order`.
+static void graph_cull(graph *g) {
     marking m = {.stack = mem_alloc(g->pass_count * sizeof *m.stack)};
     for (size_t p = 0; p < g->pass_count; p++) g->passes[p].live = false;
     for (size_t i = 0; i < g->image_count; i++)

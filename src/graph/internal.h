@@ -67,9 +67,6 @@ struct graph {
     slot_list kept;  // memory of earlier plans that graph_allocate may take over
 };
 
-bool graph_link(graph *g);          // finds every writer; names images with none or two
-bool graph_sort(graph *g);          // fills `order` with all passes; names a cycle
-void graph_cull(graph *g);          // marks live passes, drops the others from `order`
 void graph_plan_memory(graph *g);   // lifetimes -> slots
 void graph_retire_memory(graph *g); // moves the memory of the current plan to `kept`
 void graph_free_kept(graph *g, gpu *device);

@@ -183,6 +183,24 @@ static bool make_counters(pass *p) {
     return p->counters != NULL;
 }
 
+static size_t list_buffers(const pass *p, pass_buffer out[PASS_BUFFERS]) {
+    return p->type && p->type->buffers ? p->type->buffers(p, out) : 0;
+}
+
+static bool make_buffers(pass *p) {
+    pass_buffer buffers[PASS_BUFFERS];
+    const size_t count = list_buffers(p, buffers);
+    for (p->buffer_count = 0; p->buffer_count < count;) {
+        const pass_buffer *b = &buffers[p->buffer_count];
+        p->buffers[p->buffer_count++] = b->at;
+        if (*b->at || !b->size) continue;
+        *b->at = gpu_buffer_create(p->host->device,
+                                   &(gpu_buffer_desc){.label = b->label, .size = b->size});
+        if (!*b->at) return err_prefix("%s: ", p->label);
+    }
+    return true;
+}
+
 bool pass_build(pass *p) {
     return p->runs_in || pass_build_part(p);
 }
@@ -203,6 +221,10 @@ bool pass_build_part(pass *p) {
 void pass_list_memory(const pass *p, budget_list *out) {
     size_t count;
     const pass_provider *const *rows = pass_providers(&count);
+    pass_buffer buffers[PASS_BUFFERS];
+    const size_t buffer_count = list_buffers(p, buffers);
+    for (const pass_buffer *b = buffers; b < buffers + buffer_count; b++)
+        if (!*b->at) budget_list_add(out, b->label, b->size);
     if (p->type && p->type->list_memory) p->type->list_memory(p, out);
     for (size_t i = 0; i < count; i++)
         if (rows[i]->list_memory) rows[i]->list_memory(p, out);
@@ -211,8 +233,8 @@ void pass_list_memory(const pass *p, budget_list *out) {
 
 static bool allocate(pass *p) {
     if (p->type && p->type->allocate && !p->type->allocate(p)) return false;
-    return make_palettes(p) && make_blanks(p) && make_unread(p) && make_blue_noise(p->host) &&
-           make_counters(p);
+    return make_buffers(p) && make_palettes(p) && make_blanks(p) && make_unread(p) &&
+           make_blue_noise(p->host) && make_counters(p);
 }
 
 bool pass_allocate(pass *p) {
@@ -236,6 +258,7 @@ bool pass_check(pass *p) {
 
 void pass_destroy(pass *p) {
     gpu *device = p->host->device;
+    for (size_t i = 0; i < p->buffer_count; i++) gpu_buffer_destroy(device, *p->buffers[i]);
     if (p->type && p->type->destroy) p->type->destroy(p);
     for (size_t i = 0; i < p->palette_count; i++)
         if (p->palettes[i].image) gpu_image_destroy(device, p->palettes[i].image);

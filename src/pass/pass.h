@@ -47,7 +47,7 @@ typedef struct pass_host { // what all passes of one effect share
     char warning[512]; // the first: a uniform beyond its range, lengths that do not fit; "": none
 } pass_host;
 
-// Passes whose fields sample that image of `grid` run after the pass that writes `image`.
+// Makes passes whose fields sample that image of `grid` run after the pass that writes `image`.
 void pass_host_add_grid_image(pass_host *host, const field_grid *grid, int index,
                               graph_image image);
 void pass_host_free(pass_host *host);
@@ -60,21 +60,21 @@ typedef struct pass_readout { // what a pass can tell of itself
     double value;
 } pass_readout;
 
-// Of a type whose work goes on from frame to frame in steps of its own. `record` brings it toward
-// the time of the frame, by as many steps as one submit may take.
+// A type has one when its work goes on from frame to frame in steps of its own. `record` brings it
+// toward the time of the frame, by as many steps as one submit may take.
 typedef struct pass_simulation {
     int64_t (*left)(const pass *p, double time); // steps until it shows `time`; below 0: it is past
     int64_t (*most)(const pass *p);              // steps of one submit
     double (*reached)(const pass *p); // the latest time that it shows; -INFINITY: none yet
     void (*restart)(pass *p);         // begins anew with the next record
-    // A reload: exchanges the states of both, before the new one is allocated; a second time undoes
-    // it. False: they do not match. NULL: its grid does so.
+    // Called in a reload, before the new pass is allocated: exchanges the states of both. A second
+    // call undoes it. False: they do not match. NULL: its grid does so.
     bool (*exchange)(pass *p, pass *other);
-    // Its state in a checkpoint (sim/checkpoint.h). After pass_allocate; a state that does not load
-    // leaves it to begin anew.
+    // Write and read its state in a checkpoint (sim/checkpoint.h), after pass_allocate. When a
+    // state does not load, the pass begins anew.
     void (*save)(const pass *p, struct checkpoint_list *out);
     bool (*load)(pass *p, struct checkpoint *from);
-    // At most `capacity`; returns the count. After pass_allocate.
+    // Fills in at most `capacity` and returns the count. Called after pass_allocate.
     size_t (*readouts)(const pass *p, pass_readout *out, size_t capacity);
     double (*work)(const pass *p);         // how much the last record brought a step on
     const char *work_name;                 // of what; NULL: "cell updates"
@@ -99,11 +99,18 @@ typedef struct pass_defines { // of a kernel that is being compiled
     size_t count;
 } pass_defines;
 
+enum { PASS_BUFFERS = 16 };
+typedef struct pass_buffer { // of a type's state
+    gpu_buffer **at;
+    const char *label;
+    uint64_t size; // bytes; 0: it is not needed
+} pass_buffer;
+
 typedef struct pass_type {
     const char *name;   // "march"
     const char *shader; // "pass/march/march.comp"
-    // Its work: the first kernel is the one that user shaders have. NULL: it has hooks of its own.
-    // A count of 0: the device runs nothing.
+    // What it runs. The first kernel is the one that user shaders have. NULL: hooks do its work. A
+    // count of 0: the device runs nothing.
     const pass_kernel *kernels;
     size_t kernel_count;
     kernel_names names; // that its hooks use: of uniforms, options, fields, images and slots
@@ -115,16 +122,19 @@ typedef struct pass_type {
     // Optional hooks.
     bool (*declare)(pass *p);  // instead of one image per output
     bool (*complete)(pass *p); // see pass_complete
-    // What a kernel is compiled with besides; false: it is left out, until pass_make_kernel.
+    // Adds what a kernel is compiled with. False: it is left out until pass_make_kernel.
     bool (*defines)(pass *p, size_t index, pass_defines *out);
-    // Whether frames may need a kernel, as far as that is known before the first. One that they may
-    // not is compiled by pass_check alone, and built by pass_make_late. NULL: they need all.
+    // Returns whether frames may need a kernel, as far as that is known before the first. Other
+    // kernels are compiled by pass_check alone, and built by pass_make_late. NULL: they need all.
     bool (*foresees)(const pass *p, size_t index);
-    // Of a kernel that draws: what to. Its formats, depth, culling and blending.
+    // Says what a kernel that draws draws to: formats, depth, culling and blending.
     void (*target)(const pass *p, size_t index, gpu_graphics_desc *out);
-    bool (*update)(pass *p);   // numbers of a frame that the host computes, by pass_set
-    bool (*check)(pass *p);    // compile all that build would, without a device
-    bool (*build)(pass *p);    // instead of one pipeline; see pass_build
+    bool (*update)(pass *p); // numbers of a frame that the host computes, by pass_set
+    bool (*check)(pass *p);  // compile all that build would, without a device
+    bool (*build)(pass *p);  // instead of one pipeline; see pass_build
+    // Buffers of its state whose sizes are known once the graph is compiled: pass_allocate makes
+    // those that are not there, pass_list_memory counts them, and they go with the pass.
+    size_t (*buffers)(const pass *p, pass_buffer out[PASS_BUFFERS]);
     bool (*allocate)(pass *p); // besides what every pass needs; see pass_allocate
     void (*list_memory)(const pass *p, budget_list *out); // see pass_list_memory
     bool (*rehearse)(pass *p);                            // besides what every pass evaluates
@@ -135,22 +145,23 @@ typedef struct pass_type {
 const pass_type *const *pass_types(size_t *count);
 const pass_type *pass_type_find(const char *name); // NULL with a message that suggests
 
-// An instance of a built-in type, or of a shader file in the effect's folder (type NULL). `label`
-// must be unique in the effect.
+// Creates an instance of a built-in type, or of a shader file in the effect's folder (type NULL).
+// `label` must be unique in the effect. NULL with a message.
 pass *pass_create(pass_host *host, const pass_type *type, const char *shader, const char *label);
-// From now on it stands for a pass of the type `other`: what only that one has may be set and is
-// ignored, and its resolution stays 1.
+// Makes it stand for a pass of the type `other`: what only that type has may be set and is ignored,
+// and its resolution stays 1.
 bool pass_stand_for(pass *p, const pass_type *other);
 bool pass_ignores(const pass *p, const char *name);
 void pass_destroy(pass *p);
-// Where it is made, for messages: "file:line: ", or "", as it is at first.
+// Sets where the script made it, for messages: "file:line: ", or "", which it is at first.
 void pass_set_place(pass *p, const char *place);
 const char *pass_label(const pass *p);
 const pass *pass_runner(const pass *p);        // the pass that it is a part of, else itself
 bool pass_is(const pass *p, const char *type); // of the built-in type "march"
 const shader_interface *pass_interface(const pass *p);
 
-// False with a message that names the pass and suggests the nearest right name.
+// Set what the script says. False with a message that names the pass and suggests the nearest right
+// name.
 bool pass_set_uniform(pass *p, const char *name, const field *value); // must not vary in space
 bool pass_set_option(pass *p, const char *name, const char *word);
 bool pass_set_field(pass *p, const char *name, const field *value);
@@ -163,19 +174,19 @@ bool pass_add_mesh(pass *p, scene_mesh *mesh); // of types that take them
 size_t pass_meshes(const pass *p, scene_mesh *const **out);
 bool pass_add_instances(pass *p, scene_instances *instances); // of types that take meshes
 size_t pass_instances(const pass *p, scene_instances *const **out);
-// What `p` says nothing about it takes from `source`, a pass declared before, where both have
-// something of that name and type: images that it reads and `source` writes; fields, options and
-// uniforms, the latter as they are in each frame. Several sources: the first that has it.
+// Lets `p` take from `source`, a pass declared before, what it says nothing about itself, where
+// both have something of that name and type: images that `p` reads and `source` writes; fields,
+// options, and uniforms as they are in each frame. Of several sources the first that has it counts.
 void pass_add_source(pass *p, pass *source);
-// The same of uniforms alone, for a pass that has been declared; twice does no harm.
+// Does the same for uniforms alone, after pass_declare. A second call does no harm.
 void pass_add_uniforms_of(pass *p, pass *source);
 void pass_set_bake(pass *p, field_grid *grid); // bake only: the grid it fills
-// What `name` may be set as, for the generic setter of Lua and --set.
+// Tells what `name` may be set as, for the generic setter of Lua and --set.
 typedef enum pass_key { PASS_UNKNOWN, PASS_UNIFORM, PASS_OPTION, PASS_FIELD, PASS_IMAGE } pass_key;
 pass_key pass_find_key(const pass *p, const char *name, size_t *index);
 
 bool pass_declare(pass *p); // checks that what is required is there; adds images and passes
-// When all is declared, before check and build; again: does nothing.
+// Called when all is declared, before check and build. A second call does nothing.
 bool pass_complete(pass *p);
 const pass_simulation *pass_get_simulation(const pass *p); // NULL: it does not simulate
 bool pass_draws_meshes(const pass *p);
@@ -184,20 +195,21 @@ bool pass_traces_levels(const pass *p); // its rays meet meshes as they are simp
 // side.
 bool pass_check(pass *p);
 bool pass_build(pass *p); // shaders and pipelines: needs a device, but any thread may do it
-// After pass_build: adds what it lacks of the device's memory, for pass_allocate and for frames. Of
-// its own only: the graph has its images, and the scene what `budget_list_first` is asked about.
-// Left out is what takes some texels, and what frames alone decide and are refused with the same
-// message: masks of a body and values of a source that grow beyond what they are at first, and what
-// a kernel reads that is built late (pass_make_late): ranges of grids, lists of shafts.
+// After pass_build: adds what the pass lacks of the device's memory, for pass_allocate and for
+// frames. It counts its own memory only: the graph counts images, and the scene what
+// `budget_list_first` is asked about. It leaves out what takes some texels, and what frames alone
+// decide and are refused with the same message: masks of a body and values of a source that grow
+// beyond what they are at first, and what a kernel reads that is built late (pass_make_late):
+// ranges of grids, lists of shafts.
 void pass_list_memory(const pass *p, budget_list *out);
-// After pass_build, on the device's thread: what the pass itself keeps on the device.
+// After pass_build, on the device's thread: allocates what the pass itself keeps on the device.
 bool pass_allocate(pass *p);
 // After pass_build: evaluates the numbers of a frame as recording it would. Any thread.
 bool pass_rehearse(pass *p);
 graph_image pass_output(const pass *p, const char *name);   // after pass_declare; zero when unknown
 const field *pass_get_uniform(const pass *p, size_t index); // NULL: not set
-// What a uniform is while it is not set: as `*declared` of this pass or of a source has it, whose
-// default counts when the result is NULL.
+// Returns what a uniform is while it is not set. `*declared` is its declaration, in this pass or in
+// a source; the default there counts when the result is NULL.
 const field *pass_inherited_uniform(const pass *p, size_t index, const value_desc **declared);
 const field **pass_uniform_slot(pass *p, size_t index);    // where it is held, to be set unchecked
 bool pass_refuse_uniform(const pass *p, const char *name); // the message for a name not known
@@ -205,7 +217,8 @@ const field *pass_get_field(const pass *p, size_t index);  // NULL: not given
 size_t pass_get_option(const pass *p, size_t index);       // index of the chosen word
 float pass_get_scale(const pass *p);
 bool pass_is_scaled(const pass *p); // whether the scale means anything
-// Counter totals of a frame, after it finished: one value per counter of the interface.
+// Reads the totals of a frame's counters after it finished: one value per counter of the interface.
 bool pass_read_counters(pass *p, uint64_t *out);
-// Whether it is a `reference`, and samples a pixel that its picture holds after its last frame.
+// Returns whether it is a `reference`, and in `out` how many samples a pixel its picture holds
+// after its last frame.
 bool pass_samples(const pass *p, uint32_t *out);

@@ -54,6 +54,8 @@ struct pass {
     gpu_image **unread;  // one per entry of `face`: what an optional output is while unread
     field_grid *baked;   // bake only: the grid it fills
     void *state;         // of the type's hooks
+    gpu_buffer **buffers[PASS_BUFFERS]; // in it, since pass_allocate
+    size_t buffer_count;
     bool completed;
     const struct pass_name *names; // what the type's names are in `face`
     int density;                   // of that name, in face->fields; -1: none
@@ -67,38 +69,38 @@ struct pass {
 // Puts the line that made it before the message, unless one stands there. Always returns false.
 bool pass_locate_error(const pass *p);
 
-// Of a pass that runs in another.
+// Do what pass_check and pass_build do, for a pass that runs in another.
 bool pass_check_part(pass *p);
 bool pass_build_part(pass *p);
 
 // ---- kernels ----------------------------------------------------------------------------------
 
-// To a kernel's defines.
+// Add to a kernel's defines.
 void pass_define(pass_defines *out, const char *name, const char *value);
 void pass_define_number(pass *p, pass_defines *out, const char *name, uint32_t value);
 void pass_define_flag(pass_defines *out, const char *name, bool value); // 1 or 0
 
-// Kernel `index` of the type's list, with all bound that the pass itself knows: blocks, textures of
-// fields, images, and what providers have. The type binds the rest by the numbers of its names.
-// NULL with a message.
+// Returns kernel `index` of the type's list and binds all that the pass itself knows: blocks,
+// textures of fields, images, and what providers have. The type binds the rest by the numbers of
+// its names. All numbers are 0 before pass_prepare. NULL with a message.
 kernel *pass_use(pass *p, size_t index);
 kernel *pass_get_kernel(pass *p, size_t index); // with what was bound last
-// The same of kernel `index` of a provider that the pass uses; its names are the provider's.
+// Does the same for kernel `index` of a provider that the pass uses. Its names are the provider's.
 kernel *pass_use_provided(pass *p, const pass_provider *provider, size_t index);
 bool pass_dispatch(pass *p, size_t index, uint32_t x, uint32_t y, uint32_t z); // and runs it
-// Inside or outside a frame: compiles and builds it as the type's hooks want it now, if it is not,
-// or `again` all the same.
+// Compiles and builds a kernel as the type's hooks want it now, inside or outside a frame, if that
+// was not done yet or if `again` is set.
 bool pass_make_kernel(pass *p, size_t index, bool again);
-// The same after pass_prepare: it has the numbers of the frame then.
+// Does the same after pass_prepare, and gives the kernel the numbers of the frame.
 bool pass_make_late(pass *p, size_t index, bool again);
 bool pass_has_kernel(const pass *p, size_t index); // it is built
-// Whether it reads more than numbers, fields and images: blocks of the frame, or what a provider
-// has. Once it is compiled.
+// Returns whether a kernel, once it is compiled, reads more than numbers, fields and images: blocks
+// of the frame, or what a provider has.
 bool pass_reads_frame(const pass *p, size_t index);
-// Whether a kernel that is compiled reads that texture of the fields.
+// Returns whether a kernel that is compiled reads that texture of the fields.
 bool pass_reads_texture(const pass *p, size_t texture);
 
-// Where the names of the type's solver are in a kernel.
+// Returns where the names of the type's solver are in a kernel.
 const kernel_place *pass_solver_places(const pass *p, size_t index);
 
 // Numbers go to all kernels that have a uniform of that name, and names are numbers:
@@ -108,13 +110,13 @@ void pass_set_float(pass *p, int name, float value);
 void pass_set_int(pass *p, int name, int32_t value);
 void pass_set_box(pass *p, box3 box); // uniforms box_min and box_max; an empty box is a point
 
-// Uniforms of the interface as of now, by the context's time: pass_prepare does, once a frame.
+// Evaluates the uniforms of the interface at the context's time. pass_prepare does so once a frame.
 bool pass_evaluate_values(pass *p);
 const float *pass_vector(const pass *p, int name); // as evaluated last: 4 components
 float pass_value(const pass *p, int name);
-// One as of the context's time, whatever was evaluated last. False when a script's function failed.
+// Evaluates one at the context's time. False when a script's function failed.
 bool pass_evaluate_now(const pass *p, int name, float out[4]);
-// What else a type's names may be. A name that the shader does not declare as such is a bug.
+// Return what else a type's names may be. A name that the shader does not declare as such is a bug.
 size_t pass_option(const pass *p, int name); // index of the word that it has
 bool pass_option_is(const pass *p, int name, const char *word);
 uint32_t pass_option_number(const pass *p, int name);   // of words that are numbers
@@ -140,8 +142,8 @@ struct pass_provider {
     void (*target)(const pass *p, size_t index, gpu_graphics_desc *out);
     void (*list_memory)(const pass *p, budget_list *out); // see pass_list_memory
     bool (*prepare)(pass *p);                             // in a frame, before the pass's work
-    // Of the uniforms, 32 bits each, once a frame for all kernels; false: it has none for this
-    // pass.
+    // Fills in the uniforms, 32 bits each, once a frame for all kernels. False: it has none for
+    // this pass.
     bool (*values)(const pass *p, uint32_t out[PASS_PROVIDER_VALUES]);
     bool (*bind)(pass *p, int slot, gpu_binding *out); // false: it has none for this pass
     void (*destroy)(pass *p);
@@ -149,7 +151,7 @@ struct pass_provider {
 const pass_provider *const *pass_providers(size_t *count);
 extern const pass_provider pass_particles_provider, pass_point_lights_provider;
 
-// Of build.c and kernels.c.
+// The rest of this part is for the core alone.
 typedef struct pass_name { // what a type's name is in the interface; -1: not that
     int16_t uniform, option, field, image;
 } pass_name;
@@ -161,40 +163,40 @@ bool pass_compile_kernels(pass *p);
 bool pass_build_kernels(pass *p);
 void pass_destroy_kernels(pass *p);
 void pass_copy_values(pass *p); // of uniforms into all kernels
-// What a texture of the fields, or an image of the interface, is now.
+// Find what a texture of the fields, or an image of the interface, is now.
 bool pass_bind_texture(pass *p, size_t index, gpu_binding *out);
 bool pass_bind_image(pass *p, size_t index, gpu_binding *out);
 
 // ---- help for hooks ---------------------------------------------------------------------------
 
-// The word that an option has now; "": the pass has no such option.
+// Returns the word that an option has now; "": the pass has no such option.
 const char *pass_word(const pass *p, const char *option);
 bool pass_has_word(const pass *p, const char *option, const char *word);
 
-// For the define MOST_THREADS of a shader that would have large groups: 512, or the next smaller
-// power of two that the device allows.
+// Returns the define MOST_THREADS of a shader that would have large groups: 512, or the next
+// smaller power of two that the device allows.
 const char *pass_most_threads(const pass *p);
 
-// Of what simulates: whether its images are looked at in this frame, by the picture or by something
-// else that simulates.
+// Returns whether the images of a pass that simulates are looked at in this frame, by the picture
+// or by something else that simulates.
 bool pass_is_watched(const pass *p);
 bool pass_has_content(const pass *p); // all its images have, that are there
 bool pass_clear_outputs(pass *p);     // to 0; always true
 
-// An image of a grid that fields sample, as it is now; NULL: there is none just now. A second set
-// is the first when it is not blended.
+// Returns an image of a grid that fields sample, as it is now; NULL: there is none just now. A
+// second set is the first when it is not blended.
 gpu_image *pass_field_image(const pass *p, const field_texture *texture);
 bool pass_prepare(pass *p); // uniforms, field numbers, palettes and counters of this frame
 bool pass_run(pass *p);     // one dispatch or full-screen draw over the first output
 bool pass_record(pass *p);  // both
-// That image of a grid; zero: it is not of the graph.
+// Returns that image of a grid; zero: it is not of the graph.
 graph_image pass_grid_image(const pass_host *host, const field_grid *grid, int index);
 pass *pass_writer(const pass_host *host, graph_image image); // NULL: of no pass declared before
 int pass_find_image(const pass *p, const char *name);        // index in face->images, -1: none
 size_t pass_image_index(const pass *p, const char *name);    // the same; aborts where there is none
-// An image of its own that it draws to, at the pass's scale.
+// Adds an image that the pass alone draws to, at its scale.
 graph_image pass_add_target(pass *p, const char *name, gpu_format format);
-// An output of a size of its own: all of `desc` but its format, and its name unless it is given.
+// Adds an output of a size of its own. `desc` counts but for its format; its name may be NULL.
 bool pass_add_output(pass *p, int name, graph_image_desc desc);
 bool pass_declare_images(pass *p); // histories, and the other outputs at the pass's scale
 // The same, with images of its own that it writes besides.

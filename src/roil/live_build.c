@@ -138,21 +138,10 @@ static order take_order(roil_live *l) {
 static effect *builder_load(roil_live *l, const order *o, file_set *files) {
     const roil *r = l->owner;
     const char *const *read;
-    effect *e = effect_create(&(effect_desc){
-        .device = r->device,
-        .file = l->file,
-        .shader_root = r->shaders,
-        .cache_dir = r->cache,
-        .counters = r->counters,
-        .interaction = r->interaction,
-        .reference = r->reference,
-        .never_waits = r->never_waits,
-        .seconds = r->seconds,
-        .settings = o->settings,
-        .setting_count = o->setting_count,
-        .library = l->library,
-        .contents = l->contents,
-    });
+    effect_desc desc = roil_effect_desc(r, l->file, o->settings, o->setting_count);
+    desc.library = l->library;
+    desc.contents = l->contents;
+    effect *e = effect_create(&desc);
     bool done = e && script_load(e, r->scripts) && effect_check_settings(e) && effect_compile(e) &&
                 effect_rehearse(e, o->framed ? o->frame : effect_first_frame(e));
     if (e) add_files(files, read, effect_files(e, &read));

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/jobs.h"
 #include "base/memory.h"
+#include "base/worker.h"
 #include "effect/recipe.h"
 #include "media/exr.h"
 #include "media/png.h"
@@ -12,7 +13,6 @@
 #include "roil/roil_impl.h"
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 // ---- reading back -----------------------------------------------------------------------------
 
@@ -85,16 +85,6 @@ static linear_image expand_all(const raw_image *raw) {
     for (size_t i = 0; i < count; i++)
         expand_texel(raw->texels + i * texel, raw->format, pixels + i * 4);
     return (linear_image){pixels, raw->width, raw->height};
-}
-
-float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height) {
-    raw_image raw = {0};
-    if (!read_raw(e, image, &raw)) return NULL;
-    linear_image linear = expand_all(&raw);
-    free_raw(&raw);
-    *width = raw.width;
-    *height = raw.height;
-    return linear.pixels;
 }
 
 // ---- display encoding -------------------------------------------------------------------------
@@ -343,8 +333,7 @@ struct roil_writer {
 };
 
 roil_writer *roil_writer_create(void) {
-    long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    size_t threads = cores < 1 ? 1 : cores > MAX_THREADS ? MAX_THREADS : (size_t)cores;
+    size_t threads = worker_cores() > MAX_THREADS ? MAX_THREADS : worker_cores();
     roil_writer *w = mem_alloc(sizeof *w);
     roil_srgb_fine_table(); // filled before several threads read it
     w->files = jobs_create(threads, threads + QUEUED);

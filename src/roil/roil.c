@@ -178,17 +178,11 @@ roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, 
     return roil_load_inside(r, NULL, file, settings, count);
 }
 
-roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
-                              const roil_setting *settings, size_t count) {
-    effect_setting *own = mem_alloc(count * sizeof *own);
-    for (size_t i = 0; i < count; i++)
-        own[i] = (effect_setting){.name = settings[i].name, .text = settings[i].value};
-    roil_effect *e = mem_alloc(sizeof *e);
-    e->owner = r;
-    e->effect = effect_create(&(effect_desc){
+effect_desc roil_effect_desc(const roil *r, const char *file, const effect_setting *settings,
+                             size_t count) {
+    return (effect_desc){
         .device = r->device,
         .file = file,
-        .inside = folder,
         .shader_root = r->shaders,
         .cache_dir = r->cache,
         .counters = r->counters,
@@ -196,9 +190,21 @@ roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
         .reference = r->reference,
         .never_waits = r->never_waits,
         .seconds = r->seconds,
-        .settings = own,
+        .settings = settings,
         .setting_count = count,
-    });
+    };
+}
+
+roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
+                              const roil_setting *settings, size_t count) {
+    effect_setting *own = mem_alloc(count * sizeof *own);
+    for (size_t i = 0; i < count; i++)
+        own[i] = (effect_setting){.name = settings[i].name, .text = settings[i].value};
+    roil_effect *e = mem_alloc(sizeof *e);
+    e->owner = r;
+    effect_desc desc = roil_effect_desc(r, file, own, count);
+    desc.inside = folder;
+    e->effect = effect_create(&desc);
     mem_free(own);
     time_limit time = roil_time_limit(r), *before = time_limit_enter(&time);
     bool done = e->effect && script_load(e->effect, r->scripts) && effect_check_settings(e->effect);

@@ -37,8 +37,6 @@ struct roil_effect {
 // change, such as the period. (roil/lua.c)
 void roil_add_lua(const roil_effect *e, const effect_control *c, bool whole, strbuf *out);
 void roil_add_lua_key(const char *name, strbuf *out); // "name = ", in brackets where it must be
-// Reads an image of the graph as RGBA floats, rows from the top; free with mem_free.
-float *roil_read_image(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height);
 graph_image roil_find_image(roil_effect *e, const char *name); // zero with a message
 // Tables from linear values to sRGB codes, indexed by the square root: entry i is the code of
 // (i / ROIL_SRGB_STEPS)^2. Values of the fine table have 8 fractional bits. The first call fills
@@ -50,6 +48,9 @@ const uint16_t *roil_srgb_fine_table(void);
 uint8_t roil_dither_noise(size_t x, size_t y, int channel);
 
 time_limit roil_time_limit(const roil *r); // a new limit for a load
+// What an effect is created with, by the options of `r`; the other members are zero.
+effect_desc roil_effect_desc(const roil *r, const char *file, const effect_setting *settings,
+                             size_t count);
 
 void roil_free_view(roil *r);
 void roil_free_templates(roil_effect *e); // after the effect itself

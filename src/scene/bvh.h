@@ -16,7 +16,8 @@ scene_bvh *scene_bvh_create(scene_mesh *const *meshes, size_t count,
 void scene_bvh_destroy(scene_bvh *b, gpu *g);
 void scene_bvh_list_memory(const scene_bvh *b, budget_list *out); // of scene_bvh_allocate
 bool scene_bvh_allocate(scene_bvh *b, gpu *g); // trees to the device; again: does nothing
-// Places all as of now, on the host; then, inside a frame and once a frame, on the device.
+// Place everything as it stands now: the first on the host, the second on the device too, inside a
+// frame and once a frame.
 bool scene_bvh_place(scene_bvh *b, const field_context *context);
 bool scene_bvh_update(scene_bvh *b, gpu *g, const field_context *context);
 
@@ -39,7 +40,7 @@ bool scene_pick(const scene_bvh *b, const float origin[3], const float direction
 bool scene_bvh_surfaces_fit(const scene_mesh *mesh, gpu *g);
 void scene_bvh_list_surfaces(const scene_bvh *b, budget_list *out); // memory of the next
 bool scene_bvh_allocate_surfaces(scene_bvh *b, gpu *g);             // again: does nothing
-// Another one when something has moved or looks different.
+// Returns a number that changes when something has moved or looks different.
 uint64_t scene_bvh_version(const scene_bvh *b);
 bool scene_bvh_glows(const scene_bvh *b);     // materials may emit light
 bool scene_bvh_has_holes(const scene_bvh *b); // textures are transparent in places

@@ -29,11 +29,7 @@ arena *script_memory(lua_State *L);
 void script_require_loading(lua_State *L, const char *what);
 // Raises the current error message.
 _Noreturn void script_raise(lua_State *L);
-// Calls a function of time, for effect_hooks and field_context. `user` is the script.
-bool script_call(void *user, int function, double time, float out[4]);
-// Call the script from outside, within the limit of the frame or the load. Like vm_call and
-// vm_protect.
-bool script_enter(script *s, int args, int results);
+// Calls the script from outside, within the limit of the frame or the load. Like vm_protect.
 bool script_protect(script *s, lua_CFunction run, void *argument);
 field_context script_context(lua_State *L); // for time 0, with the parameters' current values
 
@@ -55,8 +51,6 @@ typedef struct field_object {
 void field_push(lua_State *L, const field *node); // NULL: raises the current error
 void field_push_param(lua_State *L, const field *node, int param);
 const effect_param *field_param_of(lua_State *L, int index); // NULL when it is no parameter
-
-void image_push(lua_State *L, graph_image image);
 
 typedef struct camera_object {
     scene_camera camera;

@@ -29,7 +29,7 @@ typedef struct pass_call {
 
 // ---- images -----------------------------------------------------------------------------------
 
-void image_push(lua_State *L, graph_image image) {
+static void image_push(lua_State *L, graph_image image) {
     image_object *object = object_new(L, "image", sizeof *object);
     object->image = image;
 }

@@ -2,6 +2,7 @@
 // repetitions in a pattern take the n-th power of the text's length. This matcher has the same
 // semantics and charges every step. Recursion is bounded by MAX_DEPTH, as in Lua.
 #include "script/match.h"
+#include "base/memory.h"
 #include <ctype.h>
 #include <string.h>
 
@@ -37,42 +38,14 @@ static const char *item_end(matcher *m, const char *p) {
 }
 
 static bool in_class(int c, int class) {
-    bool result;
-    switch (tolower(class)) {
-    case 'a':
-        result = isalpha(c);
-        break;
-    case 'c':
-        result = iscntrl(c);
-        break;
-    case 'd':
-        result = isdigit(c);
-        break;
-    case 'g':
-        result = isgraph(c);
-        break;
-    case 'l':
-        result = islower(c);
-        break;
-    case 'p':
-        result = ispunct(c);
-        break;
-    case 's':
-        result = isspace(c);
-        break;
-    case 'u':
-        result = isupper(c);
-        break;
-    case 'w':
-        result = isalnum(c);
-        break;
-    case 'x':
-        result = isxdigit(c);
-        break;
-    default:
-        return class == c;
-    }
-    return isupper(class) ? !result : result;
+    static const struct {
+        int letter;
+        int (*holds)(int c);
+    } classes[] = {{'a', isalpha}, {'c', iscntrl}, {'d', isdigit}, {'g', isgraph}, {'l', islower},
+                   {'p', ispunct}, {'s', isspace}, {'u', isupper}, {'w', isalnum}, {'x', isxdigit}};
+    for (size_t i = 0; i < COUNT_OF(classes); i++)
+        if (classes[i].letter == tolower(class)) return !classes[i].holds(c) == !!isupper(class);
+    return class == c;
 }
 
 // `p` at the '[', `last` at the ']'.

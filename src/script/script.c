@@ -41,7 +41,7 @@ static void script_renew(void *user) {
         (time_limit){.what = "frame", .limit = effect_seconds(s->effect) / TIME_LIMIT_FRAMES};
 }
 
-bool script_enter(script *s, int args, int results) {
+static bool script_enter(script *s, int args, int results) {
     time_limit *before = time_limit_enter(&s->frame);
     bool done = vm_call(s->vm, args, results, s->limits.frame);
     time_limit_leave(before);
@@ -72,7 +72,7 @@ static bool read_result(lua_State *L, double time, float out[4]) {
     return true;
 }
 
-bool script_call(void *user, int function, double time, float out[4]) {
+static bool script_call(void *user, int function, double time, float out[4]) {
     script *s = user;
     lua_State *L = vm_lua(s->vm);
     if (!lua_checkstack(L, 8)) return err_set("the script's stack is full");

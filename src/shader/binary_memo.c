@@ -1,6 +1,7 @@
-// What a library compiled before, with all that it was made of: an entry is good as long as every
-// name leads to the file that it led to, and every file holds the text that it held. So a build
-// after an edit asks for each file once, and expands, hashes and reflects only what has changed.
+// The interfaces and binaries of a library, with all that each was made of: an entry is good as
+// long as every name leads to the file that it led to, and every file holds the text that it held.
+// So a build after an edit asks for each file once, and expands, hashes and reflects only what has
+// changed.
 #include "base/hash.h"
 #include "base/memory.h"
 #include "shader/unit.h"
@@ -18,7 +19,8 @@ typedef struct entry {
     hash128 key;
     uint64_t used;
     arena memory;
-    shader_binary binary;
+    shader_binary binary;              // of a compile
+    const shader_interface *interface; // of a file's annotations; else NULL
     made_of *files;
     size_t file_count;
     unit_include *includes;
@@ -71,6 +73,12 @@ static hash128 key_of(const shader_compile_desc *desc) {
     return h;
 }
 
+static hash128 interface_key(const char *name) {
+    hash128 h = {0};
+    hash_text(&h, name);
+    return h;
+}
+
 static bool is_equal(hash128 a, hash128 b) {
     return a.low == b.low && a.high == b.high;
 }
@@ -92,6 +100,51 @@ static shader_binary copy_binary(const shader_binary *from, arena *memory) {
     const char **files = arena_alloc(memory, from->file_count * sizeof *files);
     for (size_t i = 0; i < from->file_count; i++) files[i] = arena_string(memory, from->files[i]);
     out.files = files;
+    return out;
+}
+
+static const value_desc *copy_values(const value_desc *from, size_t count, arena *memory) {
+    value_desc *out = arena_copy(memory, from, count * sizeof *out);
+    for (value_desc *d = out; d < out + count; d++) {
+        const char **words = arena_copy(memory, d->words, d->word_count * sizeof *words);
+        for (size_t i = 0; i < d->word_count; i++) words[i] = arena_string(memory, words[i]);
+        d->words = words;
+        d->name = arena_string(memory, d->name);
+        d->unit = arena_string(memory, d->unit);
+        d->help = arena_string(memory, d->help);
+    }
+    return out;
+}
+
+static const shader_interface *copy_interface(const shader_interface *from, arena *memory) {
+    shader_interface *out = arena_copy(memory, from, sizeof *out);
+    shader_field *fields = arena_copy(memory, from->fields, from->field_count * sizeof *fields);
+    for (shader_field *f = fields; f < fields + from->field_count; f++) {
+        f->name = arena_string(memory, f->name);
+        f->glsl_type = arena_string(memory, f->glsl_type);
+        f->after = arena_string(memory, f->after);
+        f->help = arena_string(memory, f->help);
+    }
+    shader_image *images = arena_copy(memory, from->images, from->image_count * sizeof *images);
+    for (shader_image *m = images; m < images + from->image_count; m++) {
+        m->name = arena_string(memory, m->name);
+        m->glsl_name = arena_string(memory, m->glsl_name);
+        if (m->history_of) m->history_of = arena_string(memory, m->history_of);
+        m->help = arena_string(memory, m->help);
+    }
+    shader_counter *counters =
+        arena_copy(memory, from->counters, from->counter_count * sizeof *counters);
+    for (shader_counter *c = counters; c < counters + from->counter_count; c++) {
+        c->name = arena_string(memory, c->name);
+        c->help = arena_string(memory, c->help);
+    }
+    out->path = arena_string(memory, from->path);
+    out->summary = arena_string(memory, from->summary);
+    out->uniforms = copy_values(from->uniforms, from->uniform_count, memory);
+    out->options = copy_values(from->options, from->option_count, memory);
+    out->fields = fields;
+    out->images = images;
+    out->counters = counters;
     return out;
 }
 
@@ -150,21 +203,38 @@ static entry *find(binary_memo *m, hash128 key) {
     return NULL;
 }
 
+// With the lock held.
+static entry *find_good(const shader_library *library, hash128 key) {
+    entry *e = find(library->binaries, key);
+    if (!e || !holds(library, e)) return NULL;
+    e->used = ++library->binaries->uses;
+    return e;
+}
+
 bool binary_memo_find(const shader_library *library, const shader_compile_desc *desc, arena *memory,
                       shader_binary *out) {
     binary_memo *m = library->binaries;
     const hash128 key = key_of(desc);
     pthread_mutex_lock(&m->lock);
-    entry *e = find(m, key);
-    const bool found = e && holds(library, e);
-    if (found) {
-        e->used = ++m->uses;
-        *out = copy_binary(&e->binary, memory);
-    }
+    const entry *e = find_good(library, key);
+    const bool found = e != NULL;
+    if (found) *out = copy_binary(&e->binary, memory);
     pthread_mutex_unlock(&m->lock);
     for (size_t i = 0; found && desc->reader && i < out->file_count; i++)
         desc->reader->read(desc->reader->user, out->files[i]);
     return found;
+}
+
+const shader_interface *interface_memo_find(const shader_library *library, const char *name,
+                                            arena *memory, const shader_reader *reader) {
+    binary_memo *m = library->binaries;
+    pthread_mutex_lock(&m->lock);
+    const entry *e = find_good(library, interface_key(name));
+    const shader_interface *out = e ? copy_interface(e->interface, memory) : NULL;
+    for (size_t i = 0; e && reader && i < e->file_count; i++)
+        reader->read(reader->user, e->files[i].where.path);
+    pthread_mutex_unlock(&m->lock);
+    return out;
 }
 
 static entry *make_room(binary_memo *m) {
@@ -179,22 +249,33 @@ static entry *make_room(binary_memo *m) {
     return oldest;
 }
 
-void binary_memo_keep(const shader_library *library, const shader_compile_desc *desc,
-                      const shader_unit *unit, const shader_binary *binary) {
+static void keep_made(const shader_library *library, const shader_unit *unit, entry *made) {
     binary_memo *m = library->binaries;
-    entry made = {.key = key_of(desc)};
-    if (!copy_files(library, unit, &made)) {
-        arena_free(&made.memory);
+    if (!copy_files(library, unit, made)) {
+        arena_free(&made->memory);
         return;
     }
-    made.binary = copy_binary(binary, &made.memory);
     pthread_mutex_lock(&m->lock);
-    entry *place = find(m, made.key);
+    entry *place = find(m, made->key);
     if (place)
         arena_free(&place->memory);
     else
         place = make_room(m);
-    made.used = ++m->uses;
-    *place = made;
+    made->used = ++m->uses;
+    *place = *made;
     pthread_mutex_unlock(&m->lock);
+}
+
+void binary_memo_keep(const shader_library *library, const shader_compile_desc *desc,
+                      const shader_unit *unit, const shader_binary *binary) {
+    entry made = {.key = key_of(desc)};
+    made.binary = copy_binary(binary, &made.memory);
+    keep_made(library, unit, &made);
+}
+
+void interface_memo_keep(const shader_library *library, const char *name, const shader_unit *unit,
+                         const shader_interface *interface) {
+    entry made = {.key = interface_key(name)};
+    made.interface = copy_interface(interface, &made.memory);
+    keep_made(library, unit, &made);
 }

@@ -174,6 +174,7 @@ static bool add_file(loader *l, int file, int depth);
 
 static bool add_name(loader *l, place at, const char *name, int depth) {
     const shader_text *text = find_text(l, name);
+    if (!text && l->desc->without_fields && strcmp(name, UNIT_FIELDS) == 0) return true;
     unit_file file = {.includer = at.file};
     if (text) {
         char *copy = arena_string(&l->unit->memory, text->name);
@@ -184,7 +185,6 @@ static bool add_name(loader *l, place at, const char *name, int depth) {
     } else {
         int found = find_file(l, at, name, &file.where);
         if (found < 0) return fail(l, at, err_get());
-        if (!found && l->desc->without_fields && strcmp(name, UNIT_FIELDS) == 0) return true;
         if (!found) return fail_missing(l, at, name);
     }
     if (file.where.path) tell(l, file.where.path);

@@ -238,8 +238,12 @@ const shader_interface *shader_interface_load(shader_library *library, arena *me
                                               const char *name, const shader_reader *report) {
     shader_unit unit;
     unit_desc desc = {.name = name, .without_fields = true, .reader = report};
+    const shader_interface *interface =
+        library->binaries ? interface_memo_find(library, name, memory, report) : NULL;
+    if (interface) return interface;
     if (!unit_load(library, &desc, &unit)) return NULL;
-    const shader_interface *interface = unit_annotations(&unit, memory, NULL);
+    interface = unit_annotations(&unit, memory, NULL);
+    if (interface && library->binaries) interface_memo_keep(library, name, &unit, interface);
     unit_free(&unit);
     return interface;
 }

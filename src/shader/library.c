@@ -84,12 +84,11 @@ static bool normalise(char out[PATH_CAP], const char *name) {
     return true;
 }
 
-static int find_file(const char *top, const char *normal, library_root root, arena *memory,
-                     library_file *out) {
-    char path[PATH_CAP], label[PATH_CAP];
+static int find_file(const char *top, const char *normal, const char *label, library_root root,
+                     arena *memory, library_file *out) {
+    char path[PATH_CAP];
     if (!path_confine(path, top, normal)) return -1;
     if (!file_exists(path) || file_is_folder(path)) return 0;
-    if (!path_join(label, top, normal)) return -1;
     *out = (library_file){.root = root,
                           .name = arena_string(memory, normal),
                           .path = arena_string(memory, path),
@@ -100,7 +99,7 @@ static int find_file(const char *top, const char *normal, library_root root, are
 int library_find(const shader_library *library, library_root root, const char *folder,
                  const char *name, arena *memory, library_file *out) {
     const char *top = library->roots[root];
-    char joined[PATH_CAP], normal[PATH_CAP];
+    char joined[PATH_CAP], normal[PATH_CAP], label[PATH_CAP];
     if (!top) return 0;
     if (name[0] == '/') {
         err_set("\"%s\" must be relative to the file that includes it or to a folder of shaders",
@@ -113,9 +112,11 @@ int library_find(const shader_library *library, library_root root, const char *f
         return -1;
     }
     if (!normal[0]) return 0;
+    if (!path_join(label, top, normal)) return -1;
     int found;
-    if (library->memo && memo_find(library->memo, root, normal, memory, &found, out)) return found;
-    found = find_file(top, normal, root, memory, out);
+    if (library->memo && memo_find(library->memo, root, normal, label, memory, &found, out))
+        return found;
+    found = find_file(top, normal, label, root, memory, out);
     if (library->memo && found >= 0) memo_keep(library->memo, root, normal, found, out);
     return found;
 }

@@ -35,14 +35,16 @@ typedef struct library_file { // the file that a name stands for
 int library_find(const shader_library *library, library_root root, const char *folder,
                  const char *name, arena *memory, library_file *out);
 
-// A memo remembers which files were found (or not: `found` 0) and read since the last memo_forget.
-// Results are copied to `memory`. memo_find returns false for a name that is not known. memo_read
-// reads a file that is not known; false with a message when that fails. Any thread.
+// A memo remembers which files were found (or not: `found` 0) and read. What is older than the last
+// memo_forget holds when the file system says so at its next use. Results are copied to `memory`.
+// memo_find returns false for a name that is not known; `label` is the name below its root as
+// given. memo_read reads a file that is not known; false with a message when that fails. Any
+// thread.
 library_memo *memo_create(void);
 void memo_destroy(library_memo *m); // NULL is allowed
 void memo_forget(library_memo *m);
-bool memo_find(library_memo *m, library_root root, const char *name, arena *memory, int *found,
-               library_file *out);
+bool memo_find(library_memo *m, library_root root, const char *name, const char *label,
+               arena *memory, int *found, library_file *out);
 void memo_keep(library_memo *m, library_root root, const char *name, int found,
                const library_file *file);
 bool memo_read(library_memo *m, const char *root, const char *path, arena *memory, char **text,
@@ -104,7 +106,7 @@ typedef struct unit_desc {
     const char *name;
     const shader_text *texts; // searched before folders; the name itself may be one of them
     size_t text_count;
-    bool without_fields;         // a missing UNIT_FIELDS is an empty file
+    bool without_fields;         // UNIT_FIELDS is an empty file
     const shader_reader *reader; // may be NULL
 } unit_desc;
 
@@ -197,16 +199,20 @@ bool spirv_reflect(spirv *code, shader_stage stage, arena *memory, shader_binary
 void spirv_clean(spirv *code, const uint32_t local_size[3], const uint32_t *live,
                  size_t live_count);
 
-// What was compiled before and what it was made of, for a library that remembers: an edit of a
-// number compiles nothing anew, and expanding and reflecting 38 shaders took most of such a reload.
-// Any thread. binary_memo_find is true, with a copy in `memory`, when every name would lead to the
-// same text again.
+// What was compiled or read of annotations before, and what it was made of, for a library that
+// remembers: an edit of a number compiles nothing anew, and expanding and reflecting 38 shaders
+// took most of such a reload. Any thread. binary_memo_find is true, and interface_memo_find not
+// NULL, with a copy in `memory`, when every name would lead to the same text again.
 binary_memo *binary_memo_create(void);
 void binary_memo_destroy(binary_memo *m); // NULL is fine
 bool binary_memo_find(const shader_library *library, const shader_compile_desc *desc, arena *memory,
                       shader_binary *out);
 void binary_memo_keep(const shader_library *library, const shader_compile_desc *desc,
                       const shader_unit *unit, const shader_binary *binary);
+const shader_interface *interface_memo_find(const shader_library *library, const char *name,
+                                            arena *memory, const shader_reader *reader);
+void interface_memo_keep(const shader_library *library, const char *name, const shader_unit *unit,
+                         const shader_interface *interface);
 
 bool cache_load(const shader_library *library, hash128 key, spirv *out);
 void cache_store(const shader_library *library, hash128 key, const spirv *code);

@@ -57,12 +57,6 @@ static void ticks_are_round_and_far_apart(void **state) {
     }
 }
 
-static void nearness_is_counted_in_pixels(void **state) {
-    (void)state;
-    assert_true(track_near(&bar, 51, 306, 6));
-    assert_false(track_near(&bar, 51, 307, 6));
-}
-
 // ---- image --------------------------------------------------------------------------------------
 
 static const float wide[2] = {400, 200}, view_size[2] = {800, 800};
@@ -169,7 +163,6 @@ int main(void) {
         cmocka_unit_test(what_is_beside_the_bar_is_its_end),
         cmocka_unit_test(a_bar_of_one_frame_or_no_width),
         cmocka_unit_test(ticks_are_round_and_far_apart),
-        cmocka_unit_test(nearness_is_counted_in_pixels),
         cmocka_unit_test(fit_shows_all_of_it),
         cmocka_unit_test(a_pan_moves_with_the_hand),
         cmocka_unit_test(zoom_keeps_what_is_under_the_pointer),

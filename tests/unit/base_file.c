@@ -195,11 +195,24 @@ static void folders_are_made_on_demand(void **state) {
 
 static void change_of_a_file_is_seen(void **state) {
     path_text path = in(*state, "a");
-    assert_int_equal(file_modified_ns(path.text), 0);
+    const int64_t before = file_clock_ns(), later = before + 1000000000;
+    assert_int_equal(file_changed_ns(path.text), 0);
     put(*state, "a", "1");
-    struct timespec times[2] = {{1000, 7}, {1000, 7}};
+    assert_true(file_changed_ns(path.text) >= before);
+    file_stamp stamp = file_stamp_of(path.text, later);
+    assert_true(file_stamp_holds(&stamp, path.text));
+    struct timespec times[2] = {{1000, 7}, {1000, 7}}; // written to, and as long as before
     assert_int_equal(utimensat(AT_FDCWD, path.text, times, 0), 0);
-    assert_int_equal(file_modified_ns(path.text), INT64_C(1000000000007));
+    assert_false(file_stamp_holds(&stamp, path.text));
+    stamp = file_stamp_of(path.text, before); // it changed while it was read
+    assert_false(file_stamp_holds(&stamp, path.text));
+    stamp = file_stamp_of(path.text, later);
+    put(*state, "a", "1"); // another file of that name
+    assert_false(file_stamp_holds(&stamp, path.text));
+    assert_int_equal(unlink(path.text), 0);
+    assert_false(file_stamp_holds(&stamp, path.text));
+    stamp = file_stamp_of(path.text, later);
+    assert_false(file_stamp_holds(&stamp, path.text));
 }
 
 static void assert_matches(const char *folder, const char *pattern, const char *expected) {

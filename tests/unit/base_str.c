@@ -47,6 +47,10 @@ static void nearest_name_does_not_guess_wildly(void **state) {
     assert_null(nearest(""));
     assert_null(nearest("colour"));
     assert_null(nearest("absorption"));
+    const char *const renamed[] = {"point_lights", "shade.point_lights_by"};
+    assert_string_equal(str_nearest("lamps", renamed, 2), "point_lights");
+    assert_string_equal(str_nearest("shade.lamps_by", renamed, 2), "shade.point_lights_by");
+    assert_null(str_nearest("lamp_shadows", renamed, 2));
     const char *const add = "add";
     assert_null(str_nearest("vdb", &add, 1)); // one letter of three is no likeness
     assert_null(str_nearest("density", NULL, 0));

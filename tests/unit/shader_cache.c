@@ -210,6 +210,44 @@ static void a_library_remembers_what_would_be_the_same(void **state) {
     place_compile(p, &desc, &again);
     assert_int_equal(compiles(p), 4);
     assert_non_null(strstr(again.files[1], p->effect));
+    assert_int_equal(unlink(again.files[1]), 0); // the first file again
+    shader_library_forget(p->library);
+    place_compile(p, &desc, &again);
+    assert_non_null(strstr(again.files[1], p->program));
+}
+
+static void a_library_remembers_annotations(void **state) {
+    place *p = *state;
+    int told = 0;
+    const shader_reader reader = {count_file, &told};
+    shader_library_destroy(p->library);
+    p->library = shader_library_create(&(shader_library_desc){
+        .shader_root = p->program, .effect_root = p->effect, .remembers = true});
+    place_write(p, "program/lib/x.glsl", "uniform float gain; //= 2 [0, 4] m : x\n");
+    place_write(p, "program/a.comp",
+                "// A pass.\n#include \"lib/x.glsl\"\n//@ option mode = soft {soft, hard} : y\n"
+                "//@ field vec3 tint = 1 : z\n//@ counter hits : w\n"
+                "uniform sampler2D last; //= input optional : v\nvoid main() {}\n");
+    for (int i = 1; i < 4; i++) {
+        arena memory = {0};
+        const shader_interface *face =
+            shader_interface_load(p->library, &memory, "a.comp", &reader);
+        if (!face) fail_msg("%s", err_get());
+        assert_int_equal(told, 2 * i);
+        assert_string_equal(face->summary, "A pass.");
+        assert_string_equal(face->uniforms[0].name, "gain");
+        assert_string_equal(face->uniforms[0].unit, "m");
+        assert_string_equal(face->options[0].words[1], "hard");
+        assert_string_equal(face->fields[0].glsl_type, "vec3");
+        assert_string_equal(face->images[0].help, "v");
+        assert_null(face->images[0].history_of);
+        assert_string_equal(face->counters[0].name, "hits");
+        arena_free(&memory); // what is remembered is a copy
+        shader_library_forget(p->library);
+    }
+    place_write(p, "program/lib/x.glsl", "uniform float bias; //= 2 [0, 4] m : x\n");
+    const shader_interface *face = shader_interface_load(p->library, &p->memory, "a.comp", NULL);
+    assert_string_equal(face->uniforms[0].name, "bias");
 }
 
 static void failures_are_not_cached(void **state) {
@@ -246,6 +284,7 @@ int main(void) {
         PLACE_TEST(an_unwritable_cache_is_no_error),
         PLACE_TEST(a_cache_that_others_can_write_to_is_not_used),
         PLACE_TEST(a_library_remembers_what_would_be_the_same),
+        PLACE_TEST(a_library_remembers_annotations),
         PLACE_TEST(failures_are_not_cached),
         PLACE_TEST(a_missing_folder_of_shaders_is_an_error),
     };

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "pass/pass_impl.h"
 #include "shared.h"
+#include <assert.h>
 #include <math.h>
 
 enum {
@@ -243,12 +244,6 @@ static bool lighting_defines(pass *p, size_t index, pass_defines *out) {
     return true;
 }
 
-static void lighting_destroy(pass *p) {
-    lighting_state *s = p->state;
-    for (int i = 0; s && i < LEVELS * BUFFERS; i++)
-        gpu_buffer_destroy(p->host->device, s->buffers[i / BUFFERS][i % BUFFERS]);
-}
-
 // ---- in a frame -------------------------------------------------------------------------------
 
 static bool lighting_update(pass *p) {
@@ -350,32 +345,19 @@ static uint32_t fine_sweeps(pass *p) {
     return (uint32_t)fminf(asked, ceilf(logf(0.005f) / (2 * logf(0.5f * most))));
 }
 
-static uint64_t buffer_bytes(const lighting_state *s, uint32_t level, int buffer) {
-    const uint64_t n = s->glow_size >> level;
-    return n * n * n * buffers[buffer].bytes;
-}
+static_assert((int)LEVELS * BUFFERS <= PASS_BUFFERS, "the core keeps no more");
 
-static void lighting_list_memory(const pass *p, budget_list *out) {
-    const lighting_state *s = p->state;
-    const bool glows = graph_is_read(p->host->graph, *pass_image(p, N_glow));
-    for (uint32_t level = 0; level < LEVELS && glows; level++)
-        for (int i = 0; i < BUFFERS; i++)
-            if (!s->buffers[level][i])
-                budget_list_add(out, names[buffers[i].name], buffer_bytes(s, level, i));
-}
-
-static bool make_buffers(pass *p) {
+// Of the light from all sides, which may have no reader.
+static size_t lighting_buffers(const pass *p, pass_buffer out[PASS_BUFFERS]) {
     lighting_state *s = p->state;
+    const bool glows = graph_is_read(p->host->graph, *pass_image(p, N_glow));
     for (uint32_t level = 0; level < LEVELS; level++) {
-        for (int i = 0; i < BUFFERS; i++) {
-            if (s->buffers[level][i]) continue;
-            gpu_buffer_desc desc = {.label = names[buffers[i].name],
-                                    .size = buffer_bytes(s, level, i)};
-            s->buffers[level][i] = gpu_buffer_create(p->host->device, &desc);
-            if (!s->buffers[level][i]) return false;
-        }
+        const uint64_t n = glows ? s->glow_size >> level : 0;
+        for (int i = 0; i < BUFFERS; i++)
+            *out++ = (pass_buffer){&s->buffers[level][i], names[buffers[i].name],
+                                   n * n * n * buffers[i].bytes};
     }
-    return true;
+    return LEVELS * BUFFERS;
 }
 
 // On the coarser level sweeps are hastened (lighting/level.glsl).
@@ -393,7 +375,7 @@ static bool correct(pass *p) {
 static bool record_glow(pass *p) {
     const lighting_state *s = p->state;
     uint32_t sweeps = fine_sweeps(p);
-    if (!make_buffers(p) || !dispatch_voxels(p, STAGE_FIRST) ||
+    if (!dispatch_voxels(p, STAGE_FIRST) ||
         !dispatch(p, STAGE_AROUND, WAYS * LOOKS / LOOK_PARTS * s->rays_apart, LOOK_PARTS, 1))
         return false;
     for (uint32_t i = 0; i < sweeps || i == 0; i++) {
@@ -413,6 +395,5 @@ const pass_type lighting_type = {
     .declare = lighting_declare,
     .defines = lighting_defines,
     .update = lighting_update,
-    .list_memory = lighting_list_memory,
-    .destroy = lighting_destroy,
+    .buffers = lighting_buffers,
 };

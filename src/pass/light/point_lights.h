@@ -27,6 +27,3 @@ typedef enum point_lights_way {
     POINT_LIGHTS_TILES,
     POINT_LIGHTS_VOLUMES
 } point_lights_way;
-
-uint32_t pass_point_lights_count(const pass *p); // that it reads; 0: it reads none
-point_lights_way pass_point_lights_way(const pass *p);

@@ -55,11 +55,7 @@ static bool find_point_lights(pass *p) {
     return true;
 }
 
-uint32_t pass_point_lights_count(const pass *p) {
-    return p->point_lights ? p->point_lights->count : 0;
-}
-
-point_lights_way pass_point_lights_way(const pass *p) {
+static point_lights_way pass_point_lights_way(const pass *p) {
     return p->point_lights ? p->point_lights->way : POINT_LIGHTS_ALL;
 }
 

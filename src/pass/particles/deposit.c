@@ -86,27 +86,11 @@ static bool deposit_declare(pass *p) {
     return pass_add_to_graph(p);
 }
 
-static uint64_t sums_bytes(const deposit_state *s) {
-    return 4ull * s->grid.size[0] * s->grid.size[1] * s->grid.size[2];
-}
-
-static void deposit_list_memory(const pass *p, budget_list *out) {
-    const deposit_state *s = state_of(p);
-    if (!s->sums) budget_list_add(out, "sums of particles", sums_bytes(s));
-}
-
-static bool deposit_allocate(pass *p) {
-    deposit_state *s = state_of(p);
-    if (!s->sums)
-        s->sums =
-            gpu_buffer_create(p->host->device, &(gpu_buffer_desc){.label = "sums of particles",
-                                                                  .size = sums_bytes(s)});
-    return s->sums || err_prefix("%s: ", p->label);
-}
-
-static void deposit_destroy(pass *p) {
-    const deposit_state *s = state_of(p);
-    if (s) gpu_buffer_destroy(p->host->device, s->sums);
+static size_t deposit_buffers(const pass *p, pass_buffer out[PASS_BUFFERS]) {
+    deposit_state *s = p->state;
+    const uint32_t *n = s->grid.size;
+    out[0] = (pass_buffer){&s->sums, "sums of particles", 4ull * n[0] * n[1] * n[2]};
+    return 1;
 }
 
 // ---- a frame ----------------------------------------------------------------------------------
@@ -151,9 +135,7 @@ const pass_type deposit_type = {
     .names = {names, COUNT_OF(names)},
     .unscaled = true,
     .declare = deposit_declare,
-    .allocate = deposit_allocate,
-    .list_memory = deposit_list_memory,
     .update = deposit_update,
     .record = deposit_record,
-    .destroy = deposit_destroy,
+    .buffers = deposit_buffers,
 };

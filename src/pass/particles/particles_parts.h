@@ -115,8 +115,7 @@ double particles_reached(const particles_state *s); // seconds
 extern const pass_simulation particles_simulation;
 bool particles_rates_of(const pass *p, particles_rates *out); // as of the host's time
 bool particles_find_places(const pass *p); // where the shape and the mesh are then
-int64_t particles_left(const pass *p, double time);
-bool particles_advance(pass *p); // to the host's time, as far as one submit goes
+bool particles_advance(pass *p);           // to the host's time, as far as one submit goes
 
 // particles_lost.c
 bool particles_make_lost(pass *p, particles_state *s);

@@ -15,7 +15,7 @@ double particles_reached(const particles_state *s) {
     return (double)s->clock.steps * s->desc.time_step - s->desc.warm_up;
 }
 
-int64_t particles_left(const pass *p, double time) {
+static int64_t particles_left(const pass *p, double time) {
     const particles_state *s = particles_of(p);
     double steps = ceil((time + s->desc.warm_up) / s->desc.time_step - rounding);
     return (int64_t)fmax(steps, 0) - (s->fresh ? 0 : (int64_t)s->clock.steps);

@@ -49,7 +49,7 @@ static void find_picture(pass *p) {
     s->same_size = desc->scale == p->scale;
 }
 
-graph_image bloom_add_image(pass *p, const char *name, uint32_t mips) {
+static graph_image bloom_add_image(pass *p, const char *name, uint32_t mips) {
     return graph_add_image(p->host->graph,
                            &(graph_image_desc){
                                .name = arena_format(p->host->memory, "%s.%s", p->label, name),

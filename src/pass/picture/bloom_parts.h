@@ -28,6 +28,4 @@ typedef struct bloom_state {
     graph_image across;  // of mode gaussian: blurred across, not yet down
 } bloom_state;
 
-// An image of the pass at its scale.
-graph_image bloom_add_image(pass *p, const char *name, uint32_t mips);
 bool bloom_record_gaussian(pass *p); // after pass_prepare

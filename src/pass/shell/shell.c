@@ -42,39 +42,11 @@ static bool shell_defines(pass *p, size_t index, pass_defines *out) {
 }
 
 // For as many shells as there may ever be, so that frames take none.
-static void list_buffers(shell_state *s, gpu_buffer **buffers[2], gpu_buffer_desc out[2]) {
-    buffers[0] = &s->records;
-    buffers[1] = &s->vertices;
-    out[0] =
-        (gpu_buffer_desc){.label = "records of shells", .size = PASS_SHELL_MOST * SHELL_RECORD};
-    out[1] = (gpu_buffer_desc){.label = "vertices of shells", .size = shell_vertices_bytes(s)};
-}
-
-static void shell_list_memory(const pass *p, budget_list *out) {
-    gpu_buffer **buffers[2];
-    gpu_buffer_desc descs[2];
-    list_buffers(p->state, buffers, descs);
-    for (int i = 0; i < 2; i++)
-        if (!*buffers[i]) budget_list_add(out, descs[i].label, descs[i].size);
-}
-
-static bool shell_allocate(pass *p) {
-    gpu_buffer **buffers[2];
-    gpu_buffer_desc descs[2];
-    list_buffers(shell_state_of(p), buffers, descs);
-    for (int i = 0; i < 2; i++) {
-        if (*buffers[i] || descs[i].size == 0) continue;
-        *buffers[i] = gpu_buffer_create(p->host->device, &descs[i]);
-        if (!*buffers[i]) return err_prefix("%s: ", p->label);
-    }
-    return true;
-}
-
-static void shell_destroy(pass *p) {
-    const shell_state *s = p->state;
-    if (!s) return;
-    gpu_buffer_destroy(p->host->device, s->records);
-    gpu_buffer_destroy(p->host->device, s->vertices);
+static size_t shell_buffers(const pass *p, pass_buffer out[PASS_BUFFERS]) {
+    shell_state *s = p->state;
+    out[0] = (pass_buffer){&s->records, "records of shells", PASS_SHELL_MOST * SHELL_RECORD};
+    out[1] = (pass_buffer){&s->vertices, "vertices of shells", shell_vertices_bytes(s)};
+    return 2;
 }
 
 // ---- a frame ----------------------------------------------------------------------------------
@@ -170,9 +142,7 @@ const pass_type shell_type = {
     .declare = shell_declare,
     .defines = shell_defines,
     .target = shell_target,
-    .allocate = shell_allocate,
-    .list_memory = shell_list_memory,
     .update = shell_update,
     .record = shell_record,
-    .destroy = shell_destroy,
+    .buffers = shell_buffers,
 };
