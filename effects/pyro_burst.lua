@@ -32,13 +32,18 @@ fx.camera = orbit { target = {0, 0, 4}, distance = 19, yaw = 25, pitch = 4, fov 
 fx.sun    = sun { azimuth = 215, elevation = 30, color = {1, 0.92, 0.8}, strength = 6 }
 fx.sky    = sky { zenith = {0.08, 0.16, 0.36}, horizon = {0.34, 0.42, 0.52}, strength = 0.7 }
 
+-- What is finer than a cell: lumps that the gas carries along, hotter and colder than it is as a whole.
+local ripple = worley { frequency = 1.8, octaves = 3, persistence = 0.6, seed = 8 }
+               :tile():advect(fire.velocity, { period = 0.5, mean = 0.48 })
+local kelvin = fire.temperature * (0.82 + 0.5 * ripple)
+
 -- What absorbs light gives it off, too: soot by its temperature, and the flame itself a little.
 local light = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
-local flame = smoothstep(1000, 1500, fire.temperature)
-local cover = fire.soot * smoke + flame * 1.5
+local flame = smoothstep(1000, 1500, kelvin)
+local cover = (fire.soot * smoke + flame * 1.5) * (0.4 + 1.2 * ripple)
 local lit = lighting {
   density    = cover,
-  emission   = light(fire.temperature) * cover * flame * glow,
+  emission   = light(kelvin) * cover * flame * glow,
   albedo     = 0.3,
   anisotropy = 0.3,
   sampling   = "cubic",
