@@ -41,13 +41,19 @@ static bool is_near(float got, float low, float high) {
     return got >= low - slack && got <= high + slack;
 }
 
+static bool has_numbers(const field *node, float3 p) { // on all of the way
+    float v[4];
+    uint32_t seed = 0;
+    bool numbers = false;
+    return field_eval_disturbed(node, &moving, p, 0, &seed, v, &numbers) && numbers;
+}
+
 // Steps, noise of noise and points that are moved far carry a rounding far.
 static verdict compare(const field *node, float3 p, int component, float got, uint32_t *seed) {
     float v[4], low = INFINITY, high = -INFINITY;
-    bool numbers;
     if (!host_value(node, p, v)) fail_msg("%s", err_get());
     if (is_near(got, v[component], v[component])) return SAME;
-    field_eval_disturbed(node, &moving, p, 0, seed, v, &numbers);
+    bool numbers = has_numbers(node, p);
     for (int i = 0; numbers && i < SAMPLES; i++) {
         float3 j = random_point(seed, JITTER);
         j = (float3){p.x + j.x, p.y + j.y, p.z + j.z};
@@ -96,7 +102,7 @@ static void check_graph(gpu *device, uint32_t seed, tally *t) {
         bool holds = (v >= got[i][1] - slack || got[i][1] <= -1e30f) &&
                      (v <= got[i][2] + slack || got[i][2] >= 1e30f);
         verdict a = compare(roots[0].node, p, 0, v, &random), b = SAME;
-        if (!holds && !isnan(v) && a != NO_NUMBER)
+        if (!holds && !isnan(v) && has_numbers(roots[0].node, p))
             blame(roots[0].node, seed, "out of its range", points[i], got[i]);
         if (v != 0) b = compare(roots[1].node, p, 1, got[i][3], &random);
         if (a == APART || b == APART) worst = i;
