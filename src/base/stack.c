@@ -13,7 +13,11 @@ bool run_on_large_stack(void *(*run)(void *), void *user) {
     bool started = pthread_attr_setstacksize(&attributes, size) == 0 &&
                    pthread_create(&thread, &attributes, run, user) == 0;
     pthread_attr_destroy(&attributes);
-    if (!started) return err_set("no thread with a large stack: too little memory");
+    if (!started)
+        return err_set(
+            "no thread with a stack of %zu MiB can be made: there is too little memory, or "
+            "there are too many processes",
+            size >> 20);
     pthread_join(thread, NULL);
     return true;
 }

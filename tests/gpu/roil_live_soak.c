@@ -2,6 +2,8 @@
 // and memory on the device and of the host stays as it is after the first two hundred.
 #include "roil_live_test.h"
 
+#include <malloc.h>
+
 enum { WARM = 200, ROUNDS = 1000, VALIDATED = 50 };
 
 static uint64_t seed = 12345;
@@ -99,6 +101,7 @@ typedef struct memory {
 
 static memory memory_now(roil *r) {
     unsigned long pages = 0, resident = 0;
+    malloc_trim(0); // the more threads run at once, the more free memory the allocator keeps
     FILE *file = fopen("/proc/self/statm", "r");
     assert_non_null(file);
     assert_int_equal(fscanf(file, "%lu %lu", &pages, &resident), 2);
@@ -163,7 +166,7 @@ static void soak_for(roil *r, int warm, int rounds) {
            after.host);
     assert_int_equal(before.device, after.device);
 #ifndef __SANITIZE_ADDRESS__                   // which keeps what was freed
-    assert_true(after.host < before.host + 8); // MB that the allocator may keep
+    assert_true(after.host < before.host + 8); // MB: between blocks in use the allocator keeps some
 #endif
     assert_true(counts.reloads > (uint64_t)rounds / 4 && counts.failures > (uint64_t)rounds / 4);
     end(&k.s);

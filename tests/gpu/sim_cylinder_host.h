@@ -70,7 +70,7 @@ static inline void host_collide(host_tunnel *t, int x, int y) {
 
 // What arrives at a cell; adds what a solid is given.
 static inline void host_stream(host_tunnel *t, int x, int y, double given[2]) {
-    double edge[2], inner[2];
+    double edge[2] = {0}, inner[2] = {0}; // at the outflow
     if (x == t->wide - 1) host_momentum(t, x, y, edge), host_momentum(t, x - 1, y, inner);
     for (int i = 0; i < 9; i++) {
         const int a = x - host_x[i], b = y - host_y[i], j = host_back[i];

@@ -5,6 +5,7 @@ and leaves neither a draft nor a temporary folder behind.
 `../fault/fault.c` makes the calls fail.
 
     faults.py                                            a sample, in each run of the tests
+    faults.py 2/3                                        the second third of the scenarios, as ctest does
     faults.py --all [--step 1] [--only draw/vulkan]      each call of each scenario, or each STEP-th
     faults.py --all --paths [--jobs 2]                   the first of each path
     faults.py --case 'draw/vulkan 120 once'              one of them
@@ -220,16 +221,17 @@ def choose(count, step):
 
 class Faults(Case):
     step, paths, jobs, only, case = 0, False, 1, "", None
+    part, parts = 1, 1
 
     def cases(self, stage):
         """Scenario, class, call (a number, or a path) and ways of failing."""
         if self.case:
             place, call, how = self.case.rsplit(" ", 2)
             return [(*place.split("/"), call, [how])]
-        found = [] if self.step else list(FOUND)
+        found = list(FOUND) if not self.step and self.part == 1 else []
         if self.paths:
             stage.rehearse("load")
-        for name in SCENARIOS:
+        for name in list(SCENARIOS)[self.part - 1::self.parts]:
             for kind in CLASSES:
                 if not f"{name}/{kind}".startswith(self.only):
                     continue
@@ -290,8 +292,10 @@ if __name__ == "__main__":
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--only", default="")
     parser.add_argument("--case")
+    parser.add_argument("part", nargs="?", default="1/1")
     given, rest = parser.parse_known_args()
     Faults.step, Faults.paths, Faults.jobs = given.step if given.all else 0, given.all and given.paths, given.jobs
     Faults.only, Faults.case = given.only, given.case
+    Faults.part, Faults.parts = map(int, given.part.split("/"))
     sys.argv[1:] = rest
     main()
