@@ -16,7 +16,7 @@ local glow    = param { "glow", 2.2, min = 0, max = 50, help = "factor of the fi
 local cells = ({ draft = {64, 64, 80}, shot = {128, 128, 160}, film = {256, 256, 320} })[quality:get()]
 local fire = pyro {
   size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 20,
-  burn_time = 0.03, cooling = 1500, soot_burn_time = 2, vorticity = 6,
+  burn_time = 0.03, cooling = 2200, soot_burn_time = 2, vorticity = 6,
 }
 
 -- The mist when it is lit: rich in the middle of each lump, poor between them, and whirling.
@@ -35,7 +35,7 @@ fx.sky    = sky { zenith = {0.08, 0.16, 0.36}, horizon = {0.34, 0.42, 0.52}, str
 -- What is finer than a cell: lumps that the gas carries along, hotter and colder than it is as a whole.
 local ripple = worley { frequency = 1.8, octaves = 3, persistence = 0.6, seed = 8 }
                :tile():advect(fire.velocity, { period = 0.5, mean = 0.48 })
-local kelvin = fire.temperature * (0.82 + 0.5 * ripple)
+local kelvin = fire.temperature * (0.82 + 0.42 * ripple)
 
 -- What absorbs light gives it off, too: soot by its temperature, and the flame itself a little.
 local light = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }

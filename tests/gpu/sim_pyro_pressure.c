@@ -66,6 +66,9 @@ static void cycles_shrink_what_is_left(void **state) {
         print_message("%s: waves %.1e %.1e %.1e %.1e; noise %.1e %.1e %.1e %.1e\n", rows[i].name,
                       even[0], even[1], even[2], even[3], uneven[0], uneven[1], uneven[2],
                       uneven[3]);
+        // In the second cycle, when all waves have been met; later rounding has its part.
+        assert_true(even[0] < 0.2 && even[1] < 0.2 * even[0] && even[3] < 1.5e-3);
+        assert_true(uneven[1] < 0.2 * uneven[0] && uneven[2] < 0.2 * uneven[1] && uneven[3] < 4e-3);
     }
 }
 

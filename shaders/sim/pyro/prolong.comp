@@ -25,9 +25,7 @@ float coarse(ivec3 c) {
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
     c.x = 2 * c.x + ((c.y + c.z + 1) & 1);
-#ifndef PYRO_FINEST
-    if (any(greaterThanEqual(c, LEVEL_SIZE))) return;
-#endif
+    if (any(greaterThanEqual(c, LEVEL_SIZE))) return; // a group has 16 cells along x
     // The neighbour on the side where the cell lies, along axes that are halved.
     ivec3 halved = ivec3(coarser) - 1, a = c / ivec3(coarser), b = a + halved * (2 * (c & 1) - 1);
     float sum = 0.421875 * coarse(a) +

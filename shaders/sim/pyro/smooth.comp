@@ -11,9 +11,7 @@ LEVEL_OPENINGS
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
     c.x = 2 * c.x + ((c.y + c.z + colour) & 1);
-#ifndef PYRO_FINEST
-    if (any(greaterThanEqual(c, LEVEL_SIZE))) return;
-#endif
+    if (any(greaterThanEqual(c, LEVEL_SIZE))) return; // a group has 16 cells along x
     level_near n = level_near_of(c);
     LEVEL_CLOSE(n)
     float sum;
