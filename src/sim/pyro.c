@@ -62,6 +62,7 @@ static void define_all(pyro *p) {
     define(p, "PYRO_WIDE", p->wide);
     define(p, "PYRO_CORRECTS", p->desc.advection == PYRO_MACCORMACK);
     define(p, "PYRO_CONFINES", p->desc.confinement);
+    define(p, "PYRO_FORCE", p->desc.force);
     define(p, "PYRO_SOLIDS", p->desc.solids);
     define(p, "PYRO_CLOSED", is_closed(&p->desc));
 }
@@ -275,6 +276,10 @@ size_t pyro_buffers(const pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]) {
     out[1] = pyro_pair(p, PYRO_MEM_GAS, 0);
     out[2] = p->buffers[PYRO_MEM_PRESSURE];
     return PYRO_STATE_BUFFERS;
+}
+
+void pyro_set_force(pyro *p, gpu_image *force) {
+    p->force = force;
 }
 
 uint64_t pyro_steps(const pyro *p) {

@@ -37,6 +37,7 @@ typedef struct pyro_desc { // structure: what shaders are compiled for
     pyro_advection advection;
     pyro_precision precision; // of velocities and the gas; auto: by the device
     bool confinement;         // numbers may have some
+    bool force;               // pyro_set_force is called before the first step
     bool solids;              // pyro_set_solids is called before each step
     uint32_t cycles;          // of multigrid, per step; 0: 2, with solids 4
     bool timed;               // stages of a step have GPU times of their own
@@ -85,6 +86,9 @@ bool pyro_keep(pyro *p, gpu *g, const pyro_numbers *numbers);
 // which is done for the last step of a frame, and sometimes for the last two.
 bool pyro_step(pyro *p, gpu *g, const pyro_numbers *numbers, bool keep);
 uint64_t pyro_steps(const pyro *p); // since pyro_reset
+
+// An image of the whole box, of accelerations in m/s^2, which steps sample from now on.
+void pyro_set_force(pyro *p, gpu_image *force);
 
 typedef struct pyro_solids {
     gpu_buffer *ids;     // an uint for each cell, x fastest: its solid, from 1; 0: gas

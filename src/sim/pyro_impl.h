@@ -86,7 +86,7 @@ typedef enum pyro_kernel {
         NAME(soot_kept), NAME(cooling), NAME(expansion), NAME(weights), NAME(level_size),          \
         NAME(level_first), NAME(colour), NAME(coarse_size), NAME(coarser), NAME(coarse_first),     \
         NAME(sweeps), NAME(relaxation), NAME(pressure_unit), NAME(groups), NAME(mass),             \
-        NAME(SolidIds), NAME(SolidMotions), NAME(box_min)
+        NAME(SolidIds), NAME(SolidMotions), NAME(box_min), NAME(force)
 enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 
 struct pyro {
@@ -103,6 +103,7 @@ struct pyro {
     uint32_t current;                // of pairs that are the state's
     uint64_t kept, steps;
     pyro_reporter reporter;
+    gpu_image *force;
     pyro_solids solids;
     bool solids_known; // openings are those of `solids`
 };

@@ -98,6 +98,7 @@ static bool velocity_advance(pyro *p, gpu *g, const pyro_numbers *n) {
     kernel_set_float(k, N_confinement, n->confinement * n->dt);
     kernel_set_float(k, N_max_speed, n->max_speed > 0 && n->max_speed < most ? n->max_speed : most);
     kernel_bind_buffer(k, N_PyroGas, pyro_pair(p, PYRO_MEM_GAS, 1));
+    if (p->force) kernel_bind_image(k, N_force, p->force);
     return pyro_run(p, g, k);
 }
 

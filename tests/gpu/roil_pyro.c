@@ -92,7 +92,6 @@ static void what_is_wrong_is_said(void **state) {
         {"", "", "", "fire.sorce", "no method or field 'sorce'; did you mean 'source'?"},
         {"fuel = 'petroll'", "", "", "0", "petrol"},
         {"boundary = { left = 'periodic' }", "", "", "0", "'boundary_left' is periodic"},
-        {"force = curl { frequency = 1 }", "", "", "0", "'force' varies in space"},
         {"burn_tme = 1", "", "", "0", "did you mean 'burn_time'?"},
         {"", "denisty = 1", "", "0", "'denisty'"},
         {"", "velocity = vec(0, 0, fire.temperature)", "", "0",
@@ -107,6 +106,24 @@ static void what_is_wrong_is_said(void **state) {
         expect_error(e && roil_prepare(e, SIDE, SIDE), rows[i].message);
         if (e) roil_unload(e);
     }
+}
+
+// A force that is the same everywhere and one that is a field of the same value do the same; one
+// that varies does not.
+static void it_is_pushed_by_a_field(void **state) {
+    picture even, field, varied;
+    static const char *const keys[] = {"force = {4, 0, 0}",
+                                       "force = vec(4, 0, 0) + perlin { frequency = 1 } * 0.001",
+                                       "force = curl { frequency = 1.5 } * 20"};
+    picture *const shown[] = {&even, &field, &varied};
+    for (int i = 0; i < 3; i++) {
+        roil_effect *e = open(*state, keys[i], BRIEF, "", "vec(length(fire.velocity)) * 0.2");
+        draw(e, 1, 6, *shown[i]);
+        roil_unload(e);
+    }
+    assert_true(brightest(even) > 20);
+    for (size_t i = 0; i < sizeof even; i++) assert_true(abs(even[i] - field[i]) <= 2);
+    assert_memory_not_equal(even, varied, sizeof even);
 }
 
 // ---- time -------------------------------------------------------------------------------------
@@ -168,6 +185,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_gives_fields_by_name),
         cmocka_unit_test(what_is_wrong_is_said),
+        cmocka_unit_test(it_is_pushed_by_a_field),
         cmocka_unit_test(a_jump_is_as_good_as_every_frame),
         cmocka_unit_test(a_source_gives_while_it_is_told_to),
         cmocka_unit_test(a_restored_run_is_the_one_that_never_stopped),

@@ -2,7 +2,7 @@
 // Here the last stage, what a step left as grids: two states of the gas, mixed for the time of the
 // frame.
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
-//@ option fuel = petrol {petrol, kerosene, propane, methane, ethanol, wood, dust, black_powder} : what its heat, oxygen, soot and ignition are those of; `roil info pyro` has the table
+//@ option fuel = petrol {petrol, kerosene, propane, methane, ethanol, wood, dust, black_powder} : whose heat, oxygen, soot and temperature of ignition it has (effects/README.md has the table)
 //@ option advection = maccormack {semi_lagrangian, maccormack} : how the gas carries things; maccormack keeps detail, semi_lagrangian takes half the time
 //@ option precision = auto {f32, f16, auto} : of what is stored; auto is f16 on graphics cards, which takes half the memory
 //@ option boundary_left = open {open, wall, inflow, periodic} : face at -x
@@ -11,7 +11,7 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 //@ option boundary_back = open {open, wall, inflow, periodic} : face at +y
 //@ option boundary_bottom = wall {open, wall, inflow, periodic} : face at -z
 //@ option boundary_top = open {open, wall, inflow, periodic} : face at +z
-//@ field vec3 force = {0, 0, 0} : acceleration of the gas (m/s^2); the same everywhere
+//@ field vec3 force = {0, 0, 0} : acceleration of the gas (m/s^2), sampled at every second cell: a curl that moves makes it restless
 uniform float gravity;              //= 9.81 [-1e3, 1e3] m/s^2 : by which light gas rises
 uniform float ambient_temperature;  //= 293 [50, 2000] K : of the air around
 uniform float ignition_temperature; //= 0 [0, 5000] K : above which fuel burns; 0: that of the fuel

@@ -18,6 +18,9 @@ layout(std430) writeonly buffer PyroVelocityTo { PYRO_FOUR velocity_to[]; };
 #if PYRO_CORRECTS
 layout(std430) readonly buffer PyroVelocityHat { PYRO_FOUR velocity_hat[]; };
 #endif
+#if PYRO_FORCE
+uniform sampler3D force; // m/s^2
+#endif
 #if PYRO_CONFINES
 layout(std430) readonly buffer PyroCurl { PYRO_FOUR curl[]; };
 #endif
@@ -92,6 +95,9 @@ void main() {
     int at = n.cell.x + n.cell.y + n.cell.z;
     vec3 v = carried(c, n) + dt * acceleration;
     v.z += 0.5 * dt * (buoyancy(at) + buoyancy(n.cell.x + n.cell.y + n.below.z));
+#if PYRO_FORCE
+    v += dt * textureLod(force, (vec3(c) + 0.25) / vec3(PYRO_SIZE), 0.0).xyz; // amid the three faces
+#endif
 #if PYRO_CONFINES
     vec3 below = vec3(PYRO_X(curl[n.below.x + n.cell.y + n.cell.z]),
                       PYRO_Y(curl[n.cell.x + n.below.y + n.cell.z]),

@@ -24,14 +24,11 @@ static bool pyro_air_complete(pass *p) {
         .advection = (pyro_advection)pass_option(p, N_advection),
         .precision = (pyro_precision)pass_option(p, N_precision),
         .confinement = has_confinement(p),
+        .force = air_force_varies(p),
         .solids = a->air.solids.count > 0,
     };
     for (int i = 0; i < 3; i++) d.size[i] = a->air.desc.size[i];
     for (int i = 0; i < 6; i++) d.faces[i] = (pyro_face)pass_option(p, N_boundary_left + i);
-    if (air_force_varies(p))
-        return err_set(
-            "%s: 'force' varies in space; a force that is the same everywhere is accepted",
-            p->label);
     a->fuel = &sim_fuels[pass_option(p, N_fuel)];
     a->solver = pyro_create(p->host->memory, &d);
     if (!a->solver || !air_make_bodies(&a->air)) return err_prefix("%s: ", p->label);
@@ -61,7 +58,8 @@ static bool pyro_air_build(pass *p) {
 
 static bool pyro_air_allocate(pass *p) {
     pyro_air *a = pyro_air_of(p);
-    return (pyro_allocate(a->solver, p->host->device) && air_allocate_bodies(&a->air)) ||
+    return (pyro_allocate(a->solver, p->host->device) && air_allocate_bodies(&a->air) &&
+            air_allocate_force(&a->air)) ||
            err_prefix("%s: ", p->label);
 }
 
@@ -69,6 +67,7 @@ static void pyro_air_list_memory(const pass *p, budget_list *out) {
     const pyro_air *a = pyro_air_of(p);
     pyro_list_memory(a->solver, out);
     air_list_bodies(&a->air, out);
+    air_list_force(&a->air, out);
 }
 
 static void pyro_air_destroy(pass *p) {

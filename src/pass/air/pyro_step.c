@@ -79,6 +79,11 @@ static bool pyro_air_move_solids(air *a, bool changed) {
                                           .changed = changed});
 }
 
+static bool pyro_air_take_force(air *a) {
+    pyro_set_force(pyro_of(a)->solver, a->force.image);
+    return true;
+}
+
 static bool pyro_air_exchange(air *a, air *other) {
     pyro *mine = pyro_of(a)->solver, *its = pyro_of(other)->solver;
     return mine && its && pyro_exchange(mine, its);
@@ -144,4 +149,5 @@ const air_kind pyro_kind = {
     .give = pyro_air_give,
     .source_defines = pyro_air_source_defines,
     .exchange = pyro_air_exchange,
+    .take_force = pyro_air_take_force,
 };
