@@ -12,7 +12,7 @@ local glow    = param { "glow", 1.8, min = 0, max = 50, help = "factor of the fi
 
 local cells = ({ draft = {48, 48, 80}, shot = {96, 96, 160}, film = {192, 192, 320} })[quality:get()]
 local fire = pyro {
-  size = cells, voxel_size = 4.8 / cells[1], fuel = "petrol", speed = 9, warm_up = 2,
+  size = cells, voxel_size = 4.8 / cells[1], fuel = "petrol", speed = 9, warm_up = 1.5,
   burn_time = 0.06, cooling = 700, vorticity = 2,
 }
 

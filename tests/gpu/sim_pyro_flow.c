@@ -6,8 +6,8 @@ static const double pi = 3.14159265358979;
 
 // ---- a vortex ring ----------------------------------------------------------------------------
 
-enum { SIDE = 64, LONG = 96 };
-static const double ring_radius = 14, core = 3; // cells
+enum { SIDE = 48, LONG = 72 };
+static const double ring_radius = 11, core = 2.5; // cells
 
 // The vector potential of a thin core is along the ring. Velocities are its curl, by differences of
 // its values on edges, so that they have no divergence: A is found by adding up parts of the ring.
@@ -86,12 +86,12 @@ static double height(pyro_world *w) {
 // Cells of a step that moves gas in the core by about half a cell.
 static double speed_of_ring(gpu *g, pyro_advection advection) {
     pyro_world w;
-    enum { SETTLE = 20, STEPS = 60 };
+    enum { SETTLE = 10, STEPS = 40 };
     pyro_open(&w, g, &(pyro_desc){.size = {SIDE, SIDE, LONG}, .advection = advection});
     w.numbers.gravity = 0;
     w.numbers.cell = 1;
     w.numbers.dt = 10;
-    ring r = {.z = 30};
+    ring r = {.z = 26};
     pyro_for_each(&w, stir_ring, &r);
     pyro_transfer(&w, true);
     pyro_run_steps(&w, SETTLE);
