@@ -27,12 +27,14 @@ class Workshop:
         self.own = os.path.join(self.build, "mutants", "build")
         shutil.rmtree(self.source, ignore_errors=True)
         os.makedirs(self.source)
+        # Files are new, so that what an earlier run built of a changed one is built again.
         for name in COPIED:
             path, copy = os.path.join(TOP, name), os.path.join(self.source, name)
             if os.path.isdir(path):
-                shutil.copytree(path, copy, ignore=shutil.ignore_patterns("__pycache__", "golden"))
+                shutil.copytree(path, copy, ignore=shutil.ignore_patterns("__pycache__", "golden"),
+                                copy_function=shutil.copy)
             else:
-                shutil.copy2(path, copy)
+                shutil.copy(path, copy)
         self.configured = False
 
     def make(self, program):
