@@ -7,12 +7,13 @@ local fx = effect { name = "pyro pool", fps = 24, frames = 144 }
 
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
 local width   = param { "width", 0.7, min = 0.2, max = 2, unit = "m", help = "of the pan" }
+local burning = param { "burning", 1.5, min = 0, max = 10, unit = "s", help = "before the first frame" }
 local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides" }
 local glow    = param { "glow", 1.8, min = 0, max = 50, help = "factor of the fire's light" }
 
 local cells = ({ draft = {48, 48, 80}, shot = {96, 96, 160}, film = {192, 192, 320} })[quality:get()]
 local fire = pyro {
-  size = cells, voxel_size = 4.8 / cells[1], fuel = "petrol", speed = 9, warm_up = 1.5,
+  size = cells, voxel_size = 4.8 / cells[1], fuel = "petrol", speed = 9, warm_up = burning:get(),
   burn_time = 0.06, cooling = 700, vorticity = 2,
 }
 
