@@ -62,7 +62,6 @@ vec4 pyro_store(vec4 v) {
 #define PYRO_PERIODIC 3
 
 const ivec3 PYRO_SIZE = ivec3(PYRO_NX, PYRO_NY, PYRO_NZ);
-const int PYRO_CELLS = PYRO_NX * PYRO_NY * PYRO_NZ;
 const ivec3 PYRO_LOW = ivec3(PYRO_LOW_X, PYRO_LOW_Y, PYRO_LOW_Z);
 const ivec3 PYRO_HIGH = ivec3(PYRO_HIGH_X, PYRO_HIGH_Y, PYRO_HIGH_Z);
 const bvec3 PYRO_AROUND = bvec3(PYRO_LOW_X == PYRO_PERIODIC, PYRO_LOW_Y == PYRO_PERIODIC,

@@ -30,8 +30,9 @@ static bool tell_report(pyro_air *a) {
         snprintf(out, size, "gas at %.3g m/s crosses %.2g cells a step, and detail is lost: set %s",
                  (double)a->report.speed, courant(a), change);
     else if (a->report.residual > worst_residual * a->report.speed && courant(a) > 0.5)
-        snprintf(out, size, "%.2g %% of the flow out of a cell is left to the next step: set %s",
-                 100 * (double)(a->report.residual / a->report.speed), change);
+        snprintf(out, size, "%.2g %% of the flow out of a cell is left to the next step: set %s%s",
+                 100 * (double)(a->report.residual / a->report.speed), change,
+                 a->air.solids.count ? ", or take colliders thicker than a few cells" : "");
     else
         return false;
     return true;
