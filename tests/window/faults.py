@@ -33,7 +33,7 @@ class Faults(Case):
         os.kill(live.process.pid, signal.SIGSEGV)
         live.expect("roil: the process crashed and restarts")
         live.expect("live: the process crashed while it drew this")
-        live.expect("live: shown")
+        live.expect("live: took over")  # the file as it was when it crashed
         with open(f"/proc/{live.process.pid}/cmdline", encoding="utf-8") as f:
             self.assertIn("thickness=9", f.read())
         mark = live.mark()
