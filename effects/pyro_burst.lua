@@ -17,6 +17,7 @@ local cells = ({ draft = {64, 64, 80}, shot = {128, 128, 160}, film = {256, 256,
 local fire = pyro {
   size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 20,
   burn_time = 0.03, cooling = 2200, soot_burn_time = 2, vorticity = 6,
+  velocity_cells = "half",
 }
 
 -- The mist when it is lit: rich in the middle of each lump, poor between them, and whirling.

@@ -1,6 +1,7 @@
 // What the gas carries in a step, warmth, fuel, what has burnt, and soot: it moves, burns and cools.
 // Its expansion goes to the pressure's right-hand side. As velocity.comp, in one dispatch or two.
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
+#define PYRO_ON_GAS
 #include "sim/pyro/state.glsl"
 #include "sim/pyro/trace.glsl"
 
@@ -9,12 +10,33 @@ layout(std430) readonly buffer PyroGas { PYRO_FOUR gas[]; };
 layout(std430) writeonly buffer PyroGasHat { PYRO_FOUR gas_hat[]; };
 #else
 #include "sim/pyro/burn.glsl"
-uniform float cell; // m
+uniform float cell; // of the velocity, m
 layout(std430) writeonly buffer PyroGasTo { PYRO_FOUR gas_to[]; };
 layout(std430) writeonly buffer PyroRight { float right[]; }; // m/s: expansion across a cell
 #if PYRO_CORRECTS
 layout(std430) readonly buffer PyroGasHat { PYRO_FOUR gas_hat[]; };
 #endif
+#endif
+
+// ---- where gas comes from ---------------------------------------------------------------------
+
+#if PYRO_RATIO == 2
+uniform sampler3D carrier; // velocity in the middle of its own cells, m/s
+
+vec3 velocity_at(vec3 p) {
+    return textureLod(carrier, p / vec3(PYRO_SIZE), 0.0).xyz;
+}
+
+// The way of a step that ends, or, with -1, begins in the middle of a cell, in cells: by the velocity
+// in its middle (Runge and Kutta's second order), since it may be several cells long.
+vec3 way_of(ivec3 c, float turn) {
+    vec3 p = vec3(c) + 0.5;
+    return reach * velocity_at(p - 0.5 * turn * reach * velocity_at(p));
+}
+#else
+vec3 way_of(ivec3 c, float turn) {
+    return reach * pyro_velocity_cell(pyro_near_of(c));
+}
 #endif
 
 // The eight values around a place.
@@ -47,31 +69,56 @@ vec4 gas_back(vec3 from, out vec4 least, out vec4 most) {
 void main() {
     vec4 least, most;
     ivec3 c = ivec3(gl_GlobalInvocationID);
-    vec3 from = vec3(c) + 0.5 - reach * pyro_velocity_cell(pyro_near_of(c));
+    vec3 from = vec3(c) + 0.5 - way_of(c, 1.0);
     gas_hat[pyro_at(c)] = pyro_store(gas_back(from, least, most));
 }
 #else
 vec4 carried(ivec3 c, int at) {
     vec4 least, most;
-    vec3 p = vec3(c) + 0.5, way = reach * pyro_velocity_cell(pyro_near_of(c));
+    vec3 p = vec3(c) + 0.5, way = way_of(c, 1.0);
     vec4 first = gas_back(p - way, least, most);
 #if PYRO_CORRECTS
     vec4 v[8];
-    pyro_span s = pyro_span_at(pyro_into(p + way), ivec3(0));
+    vec3 on = p + (PYRO_RATIO == 2 ? way_of(c, -1.0) : way);
+    pyro_span s = pyro_span_at(pyro_into(on), ivec3(0));
     GAS_EIGHT(gas_hat, s, v)
     vec4 value = clamp(first + 0.5 * (pyro_load(gas[at]) - gas_mix(v, s.t)), least, most);
-    return pyro_is_beyond(p - way) || pyro_is_beyond(p + way) ? first : value;
+    return pyro_is_beyond(p - way) || pyro_is_beyond(on) ? first : value;
 #else
     return first;
 #endif
 }
 
+#if PYRO_RATIO == 2
+layout(std430) writeonly buffer PyroDensity { float densities[]; }; // by that of the surroundings
+shared vec2 parts[256];
+
+// Expansion and density of a cell of the velocity: the mean of eight. The group has 4 x 4 x 2 of them.
+void hand_on(float grown, float density) {
+    uint i = gl_LocalInvocationIndex;
+    parts[i] = vec2(cell * pyro_clean(grown), density);
+    barrier();
+    if (i >= 32u) return;
+    uint first = 2u * (i & 3u) + 16u * ((i >> 2) & 3u) + 128u * (i >> 4); // of the eight
+    vec2 sum = parts[first] + parts[first + 1u] + parts[first + 8u] + parts[first + 9u];
+    sum += parts[first + 64u] + parts[first + 65u] + parts[first + 72u] + parts[first + 73u];
+    ivec3 to = ivec3(gl_WorkGroupID) * ivec3(4, 4, 2) + ivec3(i & 3u, (i >> 2) & 3u, i >> 4);
+    int at = pyro_flow_at(to);
+    right[at] = 0.125 * sum.x;
+    densities[at] = 0.125 * sum.y;
+}
+#endif
+
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
     int at = pyro_at(c);
-    vec4 g = pyro_clean(carried(c, at));
+    vec4 g = pyro_unpack(pyro_clean(carried(c, at)));
     float grown = pyro_burn(g); // expansion, 1/s
-    gas_to[at] = pyro_store(g);
+    gas_to[at] = pyro_store(pyro_pack(g));
+#if PYRO_RATIO == 2
+    hand_on(grown, pyro_density(g));
+#else
     right[at] = cell * pyro_clean(grown);
+#endif
 }
 #endif

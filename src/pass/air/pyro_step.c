@@ -100,7 +100,8 @@ static bool pyro_air_give(const air *a, pass *source, kernel *k, uint32_t thread
     const kernel_place *places = pass_solver_places(source, AIR_GIVE);
     kernel_set_float(k, N_ambient, p->numbers.ambient);
     pyro_bind(p->solver, k, places);
-    for (int i = 0; i < 3; i++) threads[i]++; // the faces behind the last cells
+    // From the beginning of a cell of velocity to the faces behind the last one.
+    for (int i = 0; i < 3; i++) threads[i] += 2 * pyro_ratio(pyro_get_desc(p->solver)) - 1;
     return true;
 }
 
