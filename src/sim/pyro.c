@@ -88,6 +88,7 @@ static void define_all(pyro *p) {
     define(p, "PYRO_HALF", p->desc.precision == PYRO_F16);
     define(p, "PYRO_WIDE", p->wide);
     define(p, "PYRO_CORRECTS", p->desc.advection == PYRO_MACCORMACK);
+    define(p, "PYRO_PREMIXED", p->desc.premixed);
     define(p, "PYRO_CONFINES", p->desc.confinement);
     define(p, "PYRO_FORCE", p->desc.force);
     define(p, "PYRO_SOLIDS", p->desc.solids);

@@ -38,6 +38,7 @@ typedef struct pyro_desc { // structure: what shaders are compiled for
     pyro_precision precision; // of velocities and the gas; auto: by the device
     bool half_velocity; // velocity and pressure have half as many cells along each axis, which
                         // are multiples of 16 then, and no face is periodic
+    bool premixed;      // fuel burns where a flame passes, not where it is hot
     bool confinement;   // numbers may have some
     bool force;         // pyro_set_force is called before the first step
     bool solids;        // pyro_set_solids is called before each step
@@ -55,6 +56,7 @@ typedef struct pyro_numbers { // parameters of a step; they may change with each
     float confinement;        // acceleration by 1 m/s of difference across a cell, 1/s
     float max_speed;          // limit of each component, m/s; 0: 16 cells per step
     float ignition;           // temperature above which fuel burns, K
+    float flame_speed;        // of a flame into mixture at rest, m/s, with pyro_desc.premixed
     float burn_time;          // that fuel and oxygen in a cell take to mix, s; 0: at once
     float heat;               // of combustion, less what the flame radiates, J/kg
     float oxygen;             // kg that 1 kg of fuel takes

@@ -104,7 +104,7 @@ typedef enum pyro_kernel {
         NAME(level_first), NAME(colour), NAME(coarse_size), NAME(coarser), NAME(coarse_first),     \
         NAME(sweeps), NAME(relaxation), NAME(pressure_unit), NAME(groups), NAME(mass),             \
         NAME(SolidIds), NAME(SolidMotions), NAME(box_min), NAME(force), NAME(begins), NAME(place), \
-        NAME(first), NAME(carrier)
+        NAME(first), NAME(carrier), NAME(flame_reach)
 enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 
 struct pyro {

@@ -29,6 +29,7 @@ void pyro_set_burning(kernel *k, const pyro_numbers *n) {
     pyro_set_gas(k, n);
     kernel_set_float(k, N_dt, n->dt);
     kernel_set_float(k, N_ignition, n->ignition);
+    kernel_set_float(k, N_flame_reach, n->flame_speed * n->dt / n->cell);
     kernel_set_float(k, N_burn_share, share(n->dt, n->burn_time, 1));
     kernel_set_float(k, N_oxygen_need, fmaxf(n->oxygen, least_oxygen));
     kernel_set_float(k, N_heat, n->heat / air_heat_capacity);

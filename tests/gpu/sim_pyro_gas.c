@@ -200,6 +200,68 @@ static void a_ball_keeps_what_it_has_with_half_the_velocity(void **state) {
     check_balance(*state, true, 0.05);
 }
 
+// ---- a premixed flame --------------------------------------------------------------------------
+
+typedef struct mixture {
+    float fuel, warmth; // of the mixture; of what has burnt
+    double length;      // of that, cells from the closed end
+} mixture;
+
+static void fill_mixture(pyro_world *w, const int c[3], void *data) {
+    const mixture *m = data;
+    const float burnt = (float)fmin(1, fmax(0, (m->length - c[0]) / 2));
+    float *g = w->gas[pyro_cell_at(w, c)];
+    g[0] = m->warmth * burnt;
+    g[1] = m->fuel * (1 - burnt);
+    g[2] = m->fuel * burnt;
+}
+
+// How far it has burnt, from the mass of burnt fuel, in cells.
+static double burnt_length(pyro_world *w, const mixture *m) {
+    const double ambient = (double)w->numbers.ambient, t = ambient + (double)m->warmth;
+    const double section = (double)w->desc.size[1] * w->desc.size[2];
+    return sum_up(w).burnt / ((double)m->fuel * ambient / t) / section;
+}
+
+// A flame leaves the closed end of a tube. What has burnt takes `lighter` times as much room, so
+// the front moves so much faster than the flame does into mixture.
+static void check_flame(gpu *g, bool half) {
+    pyro_world w;
+    const pyro_desc tube = {
+        .size = {96, 16, 16},
+        .faces = {PYRO_WALL, PYRO_OPEN, PYRO_WALL, PYRO_WALL, PYRO_WALL, PYRO_WALL},
+        .advection = PYRO_MACCORMACK,
+        .premixed = true,
+        .half_velocity = half,
+    };
+    pyro_open(&w, g, &tube);
+    w.numbers.gravity = 0;
+    w.numbers.flame_speed = 1;
+    w.numbers.dt = 0.005f;
+    mixture m = {.fuel = 0.03f, .length = 12};
+    m.warmth = w.numbers.heat * m.fuel / 1150 / (1 + m.fuel);
+    pyro_for_each(&w, fill_mixture, &m);
+    pyro_transfer(&w, true);
+    pyro_run_steps(&w, 20);
+    const double begin = burnt_length(&w, &m);
+    pyro_run_steps(&w, 80);
+    const double end = burnt_length(&w, &m);
+    const double lighter = 1 + (double)(m.warmth / w.numbers.ambient);
+    const double seen = (end - begin) * 0.05 / (80 * 0.005);
+    print_message("a flame of 1 m/s from %.1f to %.1f cells: %.3f m/s; theory %.3f\n", begin, end,
+                  seen, lighter);
+    assert_true(fabs(seen / lighter - 1) < 0.03);
+    pyro_close(&w);
+}
+
+static void a_flame_moves_into_mixture_at_its_speed(void **state) {
+    check_flame(*state, false);
+}
+
+static void and_so_with_half_the_velocity(void **state) {
+    check_flame(*state, true);
+}
+
 // ---- warm gas rises ---------------------------------------------------------------------------
 
 static void columns(pyro_world *w, const int c[3], void *data) {
@@ -238,6 +300,8 @@ int main(void) {
         cmocka_unit_test(heat_makes_room_for_half_the_velocity),
         cmocka_unit_test(a_ball_keeps_what_it_has),
         cmocka_unit_test(a_ball_keeps_what_it_has_with_half_the_velocity),
+        cmocka_unit_test(a_flame_moves_into_mixture_at_its_speed),
+        cmocka_unit_test(and_so_with_half_the_velocity),
         cmocka_unit_test(a_warm_column_rises_by_its_warmth),
     };
     return gpu_test_run(tests, COUNT_OF(tests));

@@ -89,6 +89,44 @@ vec4 carried(ivec3 c, int at) {
 #endif
 }
 
+#if PYRO_PREMIXED
+float progress_mix(float v[8], vec3 t) {
+    vec4 x = mix(vec4(v[0], v[2], v[4], v[6]), vec4(v[1], v[3], v[5], v[7]), t.x);
+    vec2 y = mix(x.xz, x.yw, t.y);
+    return mix(y.x, y.y, t.z);
+}
+
+#define PROGRESS_EIGHT(p, name, part)                                                              \
+    float name[8];                                                                                 \
+    vec3 part;                                                                                     \
+    {                                                                                              \
+        vec4 v_[8];                                                                                \
+        pyro_span s_ = pyro_span_at(pyro_into(p), ivec3(0));                                       \
+        GAS_EIGHT(gas, s_, v_)                                                                     \
+        part = s_.t;                                                                               \
+        name[0] = pyro_progress(v_[0]), name[1] = pyro_progress(v_[1]);                            \
+        name[2] = pyro_progress(v_[2]), name[3] = pyro_progress(v_[3]);                            \
+        name[4] = pyro_progress(v_[4]), name[5] = pyro_progress(v_[5]);                            \
+        name[6] = pyro_progress(v_[6]), name[7] = pyro_progress(v_[7]);                            \
+    }
+
+// The progress that the flame brings in this step: that of gas behind, less that of gas here. Gas that is `lighter` than
+// the mixture before the flame flows away behind it: through such gas it moves faster, and as much air
+// passes it.
+float flame(ivec3 c, float lighter) {
+    vec3 from = vec3(c) + 0.5 - way_of(c, 1.0);
+    PROGRESS_EIGHT(from, here, t)
+    vec3 slope;
+    slope.x = here[1] - here[0] + here[3] - here[2] + here[5] - here[4] + here[7] - here[6];
+    slope.y = here[2] - here[0] + here[3] - here[1] + here[6] - here[4] + here[7] - here[5];
+    slope.z = here[4] - here[0] + here[5] - here[1] + here[6] - here[2] + here[7] - here[3];
+    float steep = length(slope);
+    if (steep < 1e-4) return 0.0;
+    PROGRESS_EIGHT(from + slope / steep * (flame_reach * lighter), behind, u)
+    return progress_mix(behind, u) - progress_mix(here, t);
+}
+#endif
+
 #if PYRO_RATIO == 2
 layout(std430) writeonly buffer PyroDensity { float densities[]; }; // by that of the surroundings
 shared vec2 parts[256];
@@ -113,7 +151,11 @@ void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
     int at = pyro_at(c);
     vec4 g = pyro_unpack(pyro_clean(carried(c, at)));
-    float grown = pyro_burn(g); // expansion, 1/s
+    float brought = 0.0;
+#if PYRO_PREMIXED
+    brought = flame(c, pyro_temperature(g) / ambient);
+#endif
+    float grown = pyro_burn(g, brought); // expansion, 1/s
     gas_to[at] = pyro_store(pyro_pack(g));
 #if PYRO_RATIO == 2
     hand_on(grown, pyro_density(g));

@@ -26,6 +26,21 @@ layout(std430) readonly buffer PyroRight { float right[]; };
 #include "sim/pyro/burn.glsl"
 uniform float mass; // kg of the air of a cell, times its temperature
 layout(std430) readonly buffer PyroGas { PYRO_FOUR gas[]; };
+
+// The progress that a flame brings in a step: by its slope.
+float brought_to(ivec3 c, vec4 g) {
+#if PYRO_PREMIXED
+    vec3 slope;
+    for (int axis = 0; axis < 3; axis++) {
+        ivec3 step_ = ivec3(axis == 0, axis == 1, axis == 2);
+        slope[axis] = pyro_progress(pyro_load(gas[pyro_at(pyro_into(c + step_))])) -
+                      pyro_progress(pyro_load(gas[pyro_at(pyro_into(c - step_))]));
+    }
+    return 0.5 * length(slope) * flame_reach * pyro_temperature(g) / ambient;
+#else
+    return 0.0;
+#endif
+}
 #endif
 #endif
 
@@ -87,7 +102,7 @@ Record record_of(ivec3 c) {
     vec4 packed = pyro_load(gas[pyro_at(c)]), g = pyro_unpack(packed);
     if (packed != pyro_clean(packed)) return Record(vec4(0.0), vec4(0.0), 1.0);
     float air = mass / pyro_temperature(g); // kg
-    return Record(vec4(0.0, 0.0, pyro_temperature(g), 0.0), air * vec4(g.yzw, pyro_burning(g)), 0.0);
+    return Record(vec4(0.0, 0.0, pyro_temperature(g), 0.0), air * vec4(g.yzw, pyro_burning(g, brought_to(c, g))), 0.0);
 }
 #endif
 

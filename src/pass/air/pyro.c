@@ -24,6 +24,7 @@ static bool pyro_air_complete(pass *p) {
         .advection = (pyro_advection)pass_option(p, N_advection),
         .precision = (pyro_precision)pass_option(p, N_precision),
         .half_velocity = pass_option(p, N_velocity_cells) == 1,
+        .premixed = pass_option(p, N_combustion) == 1,
         .confinement = has_confinement(p),
         .force = air_force_varies(p),
         .solids = a->air.solids.count > 0,
@@ -87,6 +88,7 @@ static bool pyro_air_update(pass *p) {
     air_set_frame(p, &a->air);
     pass_set_float(p, N_cell_size, n.cell);
     pass_set_float(p, N_burn_power, n.heat / 1e6f / (n.burn_time > n.dt ? n.burn_time : n.dt));
+    pass_set_float(p, N_flame_power, n.heat / 1e6f * n.flame_speed / n.ambient);
     pass_set_float(p, N_oxygen_need, n.oxygen > 1e-4f ? n.oxygen : 1e-4f);
     pass_set_float(p, N_burns_above, n.ignition);
     return true;

@@ -7,6 +7,7 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #define AIR_NX uint(PYRO_NX)
 #define AIR_NY uint(PYRO_NY)
 #include "pass/air/source.glsl"
+uniform float burns_above; // K
 layout(std430) buffer PyroGas { PYRO_FOUR gas[]; };
 layout(std430) buffer PyroVelocity { PYRO_FOUR velocity[]; };
 
@@ -34,6 +35,12 @@ void give_gas(uvec3 cell, int at) {
 #if HAS_FUEL
     g.PYRO_FUEL = mix(g.PYRO_FUEL, a.x / air, share);
     g.PYRO_BURNT = mix(g.PYRO_BURNT, 0.0, share);
+#endif
+#if PYRO_PREMIXED && HAS_TEMPERATURE
+    if (a.y > burns_above) { // a spark
+        g.PYRO_BURNT += share * g.PYRO_FUEL;
+        g.PYRO_FUEL -= share * g.PYRO_FUEL;
+    }
 #endif
 #if HAS_SOOT
     g.PYRO_SOOT = mix(g.PYRO_SOOT, b.x / air, share);
