@@ -218,6 +218,7 @@ static void find_sizes(const pyro *p, uint64_t out[PYRO_MEM_COUNT]) {
     for (int i = 0; i < 2; i++) {
         out[PYRO_MEM_VELOCITY + i] = four * flow;
         out[PYRO_MEM_GAS + i] = four * gas;
+        out[PYRO_MEM_ACTIVE + i] = gas / PYRO_CELLS_A_GROUP * 4;
     }
     if (corrects) out[PYRO_MEM_VELOCITY_HAT] = four * flow;
     if (corrects || p->desc.confinement) out[PYRO_MEM_GAS_HAT] = four * gas;
@@ -237,6 +238,8 @@ static const char *const memory_labels[PYRO_MEM_COUNT] = {"velocity of burning g
                                                           "velocity of burning gas",
                                                           "burning gas",
                                                           "burning gas",
+                                                          "places of burning gas",
+                                                          "places of burning gas",
                                                           "velocity traced back",
                                                           "gas traced back",
                                                           "vorticity",
@@ -319,6 +322,8 @@ void pyro_bind(const pyro *p, kernel *k, const kernel_place *places) {
         [N_PyroDirection] = p->buffers[PYRO_MEM_DIRECTION],
         [N_PyroChange] = p->buffers[PYRO_MEM_CHANGE],
         [N_PyroSums] = p->buffers[PYRO_MEM_SUMS],
+        [N_PyroActive] = pyro_pair(p, PYRO_MEM_ACTIVE, 0),
+        [N_PyroActiveTo] = pyro_pair(p, PYRO_MEM_ACTIVE, 1),
         [N_PyroDensity] = p->buffers[PYRO_MEM_DENSITY],
         [N_PyroReport] = p->buffers[PYRO_MEM_REPORT],
     };
@@ -346,7 +351,8 @@ bool pyro_run_gas(const pyro *p, gpu *g, kernel *k) {
     return kernel_run(k, g, p->desc.size[0], p->desc.size[1], p->desc.size[2]);
 }
 
-size_t pyro_buffers(const pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]) {
+size_t pyro_buffers(pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]) {
+    p->active_known = false;
     out[0] = pyro_pair(p, PYRO_MEM_VELOCITY, 0);
     out[1] = pyro_pair(p, PYRO_MEM_GAS, 0);
     out[2] = p->buffers[PYRO_MEM_PRESSURE];
@@ -362,8 +368,9 @@ uint64_t pyro_steps(const pyro *p) {
 }
 
 static void swap_state(pyro *a, pyro *b) {
-    static const pyro_memory state[] = {PYRO_MEM_VELOCITY, PYRO_MEM_VELOCITY + 1, PYRO_MEM_GAS,
-                                        PYRO_MEM_GAS + 1, PYRO_MEM_PRESSURE};
+    static const pyro_memory state[] = {
+        PYRO_MEM_VELOCITY, PYRO_MEM_VELOCITY + 1, PYRO_MEM_GAS,     PYRO_MEM_GAS + 1,
+        PYRO_MEM_ACTIVE,   PYRO_MEM_ACTIVE + 1,   PYRO_MEM_PRESSURE};
     const pyro was = *a;
     for (size_t i = 0; i < COUNT_OF(state); i++) {
         a->buffers[state[i]] = b->buffers[state[i]];
@@ -373,6 +380,7 @@ static void swap_state(pyro *a, pyro *b) {
     memcpy(b->looks, was.looks, sizeof b->looks);
     a->current = b->current, b->current = was.current;
     a->kept = b->kept, b->kept = was.kept;
+    a->active_known = b->active_known, b->active_known = was.active_known;
     a->steps = b->steps, b->steps = was.steps;
 }
 

@@ -54,7 +54,7 @@ typedef struct pyro_numbers { // parameters of a step; they may change with each
     float acceleration[3];    // m/s^2
     float inflow[3];          // velocity across faces that are PYRO_INFLOW, m/s
     float confinement;        // acceleration by 1 m/s of difference across a cell, 1/s
-    float max_speed;          // limit of each component, m/s; 0: 16 cells per step
+    float max_speed;          // limit of each component, m/s; 0: 7 cells of the gas per step
     float ignition;           // temperature above which fuel burns, K
     float flame_speed;        // of a flame into mixture at rest, m/s, with pyro_desc.premixed
     float burn_time;          // that fuel and oxygen in a cell take to mix, s; 0: at once
@@ -138,9 +138,10 @@ size_t pyro_defines(const pyro *p, shader_define out[PYRO_MAX_DEFINES]);
 void pyro_bind(const pyro *p, kernel *k, const kernel_place *places);
 extern const kernel_table pyro_kernel_table;
 
-// Returns the buffers of the state, without the count of steps.
+// Returns the buffers of the state, without the count of steps. The caller may change what they
+// hold.
 enum { PYRO_STATE_BUFFERS = 3 };
-size_t pyro_buffers(const pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]);
+size_t pyro_buffers(pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]);
 
 // Exchanges the states, images and counts of steps of two solvers. False when their cells or
 // precisions differ.

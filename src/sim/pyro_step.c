@@ -12,7 +12,7 @@ static const float soot_heat = 32.8e6f;      // of combustion, J/kg
 static const float least_oxygen = 1e-4f;     // that fuel takes, by mass: powder brings its own
 static const float cooling_at = 1500;        // K, at which `cooling` is given
 
-enum { MOST_CELLS_A_STEP = 16 };
+enum { MOST_CELLS_A_STEP = 7 }; // of the gas: gas.comp looks for it so far
 
 static float share(float dt, float time, float at_zero) {
     return time > 0 ? 1 - expf(-dt / time) : at_zero;
@@ -65,6 +65,7 @@ static bool look_at_flow(pyro *p, gpu *g, const pyro_numbers *n, gpu_image *to) 
 static kernel *use_gas(pyro *p, pyro_kernel which, const pyro_numbers *n) {
     kernel *k = pyro_use(p, which);
     set_carrying(k, n, n->cell);
+    kernel_set_int(k, N_everywhere, !p->active_known);
     if (p->carrier)
         kernel_bind(k, N_carrier, (gpu_binding){.image = p->carrier, .sampler = GPU_LINEAR_CLAMP});
     return k;
@@ -107,7 +108,7 @@ static bool velocity_advance(pyro *p, gpu *g, const pyro_numbers *n) {
     }
     pyro_stage(p, g, "pyro.velocity");
     kernel *k = pyro_use(p, PYRO_K_VELOCITY);
-    const float most = MOST_CELLS_A_STEP * pyro_flow_cell(p, n) / n->dt;
+    const float most = MOST_CELLS_A_STEP * n->cell / n->dt;
     set_carrying(k, n, pyro_flow_cell(p, n));
     pyro_set_gas(k, n);
     kernel_set_float(k, N_dt, n->dt);
@@ -131,11 +132,13 @@ bool pyro_step(pyro *p, gpu *g, const pyro_numbers *n, bool keep) {
         !pyro_obstruct(p, g, n) || !pyro_project(p, g, n))
         return false;
     p->current ^= 1;
+    p->active_known = true;
     p->steps++;
     return !keep || pyro_keep(p, g, n);
 }
 
 bool pyro_reset(pyro *p, gpu *g, const pyro_numbers *n) {
+    p->active_known = false;
     p->kept = p->steps = 0;
     p->current = 0;
     memset(p->reporter.places, 0, sizeof p->reporter.places);

@@ -18,6 +18,45 @@ layout(std430) readonly buffer PyroGasHat { PYRO_FOUR gas_hat[]; };
 #endif
 #endif
 
+// ---- where there is gas -------------------------------------------------------------------------
+
+// Half bricks, as many cells as a group has, that hold more than clean air. Another one, and all within
+// eight cells around it, is left as it is: nothing comes farther in a step.
+uniform int everywhere; // 1: it is not known where
+layout(std430) readonly buffer PyroActive { uint present[]; };
+shared uint busy;
+
+const ivec3 HALF_BRICKS = PYRO_SIZE / ivec3(8, 8, 4);
+
+bool is_near_gas() {
+    uint i = gl_LocalInvocationIndex;
+    if (i == 0u) busy = uint(everywhere);
+    barrier();
+    if (i < 45u) {
+        ivec3 to = ivec3(gl_WorkGroupID) + ivec3(i % 3u, i / 3u % 3u, i / 9u) - ivec3(1, 1, 2);
+        to = mix(clamp(to, ivec3(0), HALF_BRICKS - 1), (to + HALF_BRICKS) % HALF_BRICKS, PYRO_AROUND);
+        if (present[to.x + HALF_BRICKS.x * (to.y + HALF_BRICKS.y * to.z)] != 0u) busy = 1u;
+    }
+    barrier();
+    return busy != 0u;
+}
+
+#ifndef PYRO_PREDICT
+layout(std430) writeonly buffer PyroActiveTo { uint present_to[]; };
+shared uint holds;
+
+// What a group's cells hold, or clean air where that is next to nothing in all of them.
+vec4 settle(vec4 packed) {
+    if (gl_LocalInvocationIndex == 0u) holds = 0u;
+    barrier();
+    if (any(greaterThan(abs(packed), vec4(1e-5)))) holds = 1u;
+    barrier();
+    uint group = (gl_WorkGroupID.z * gl_NumWorkGroups.y + gl_WorkGroupID.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (gl_LocalInvocationIndex == 0u) present_to[group] = holds;
+    return holds != 0u ? packed : vec4(0.0);
+}
+#endif
+
 // ---- where gas comes from ---------------------------------------------------------------------
 
 #if PYRO_RATIO == 2
@@ -67,10 +106,10 @@ vec4 gas_back(vec3 from, out vec4 least, out vec4 most) {
 
 #ifdef PYRO_PREDICT
 void main() {
-    vec4 least, most;
+    vec4 least, most, value = vec4(0.0);
     ivec3 c = ivec3(gl_GlobalInvocationID);
-    vec3 from = vec3(c) + 0.5 - way_of(c, 1.0);
-    gas_hat[pyro_at(c)] = pyro_store(gas_back(from, least, most));
+    if (is_near_gas()) value = gas_back(vec3(c) + 0.5 - way_of(c, 1.0), least, most);
+    gas_hat[pyro_at(c)] = pyro_store(value);
 }
 #else
 vec4 carried(ivec3 c, int at) {
@@ -150,13 +189,16 @@ void hand_on(float grown, float density) {
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
     int at = pyro_at(c);
-    vec4 g = pyro_unpack(pyro_clean(carried(c, at)));
-    float brought = 0.0;
+    vec4 g = vec4(0.0);
+    float grown = 0.0, brought = 0.0; // expansion, 1/s
+    if (is_near_gas()) {
+        g = pyro_unpack(pyro_clean(carried(c, at)));
 #if PYRO_PREMIXED
-    brought = flame(c, pyro_temperature(g) / ambient);
+        brought = flame(c, pyro_temperature(g) / ambient);
 #endif
-    float grown = pyro_burn(g, brought); // expansion, 1/s
-    gas_to[at] = pyro_store(pyro_pack(g));
+        grown = pyro_burn(g, brought);
+    }
+    gas_to[at] = pyro_store(settle(pyro_pack(g)));
 #if PYRO_RATIO == 2
     hand_on(grown, pyro_density(g));
 #else

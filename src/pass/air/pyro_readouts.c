@@ -8,7 +8,7 @@
 #include <math.h>
 
 static const float worst_residual = 0.05f; // of the greatest speed
-static const double most_courant = 5;      // cells of the velocity a step
+static const double most_courant = 3;      // cells of the velocity a step
 
 static double courant(const pyro_air *a) {
     const double cell = a->air.units.cell * pyro_ratio(pyro_get_desc(a->solver));

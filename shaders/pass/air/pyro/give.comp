@@ -9,6 +9,7 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #include "pass/air/source.glsl"
 uniform float burns_above; // K
 layout(std430) buffer PyroGas { PYRO_FOUR gas[]; };
+layout(std430) buffer PyroActive { uint present[]; }; // half bricks that hold more than clean air
 layout(std430) buffer PyroVelocity { PYRO_FOUR velocity[]; };
 
 // The velocity that a cell is given, and 1 where it is.
@@ -46,6 +47,8 @@ void give_gas(uvec3 cell, int at) {
     g.PYRO_SOOT = mix(g.PYRO_SOOT, b.x / air, share);
 #endif
     gas[at] = pyro_store(pyro_pack(g));
+    uvec3 place = cell / uvec3(8, 8, 4);
+    present[place.x + uint(PYRO_NX / 8) * (place.y + uint(PYRO_NY / 8) * place.z)] = 1u;
 }
 
 // A cell of the velocity: the mean of those of the gas in it that are given some.
