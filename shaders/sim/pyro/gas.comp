@@ -66,17 +66,22 @@ vec3 velocity_at(vec3 p) {
     return textureLod(carrier, p / vec3(PYRO_SIZE), 0.0).xyz;
 }
 
-// The way of a step that ends, or, with -1, begins in the middle of a cell, in cells: by the velocity
-// in its middle (Runge and Kutta's second order), since it may be several cells long.
-vec3 way_of(ivec3 c, float turn) {
+// By the velocity in the middle of the way (Runge and Kutta's second order), since it may be several
+// cells long.
+vec3 step_of(ivec3 c, float turn) {
     vec3 p = vec3(c) + 0.5;
     return reach * velocity_at(p - 0.5 * turn * reach * velocity_at(p));
 }
 #else
-vec3 way_of(ivec3 c, float turn) {
+vec3 step_of(ivec3 c, float turn) {
     return reach * pyro_velocity_cell(pyro_near_of(c));
 }
 #endif
+
+// The way of a step that ends, or, with -1, begins in the middle of a cell, in cells.
+vec3 way_of(ivec3 c, float turn) {
+    return clamp(step_of(c, turn), -7.0, 7.0); // is_near_gas looks so far
+}
 
 // The eight values around a place.
 #define GAS_EIGHT(from, s, v)                                                                      \
