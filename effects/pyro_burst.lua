@@ -8,14 +8,14 @@
 local fx = effect { name = "pyro burst", fps = 24, frames = 96 }
 
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
-local fuel    = param { "fuel", 0.22, min = 0, max = 5, unit = "kg/m^3", help = "of the mist; air burns 0.08" }
+local fuel    = param { "fuel", 0.13, min = 0, max = 5, unit = "kg/m^3", help = "of the mist; air burns 0.08, and what is more burns black" }
 local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides; that of a real fire is 8700" }
-local glow    = param { "glow", 2.2, min = 0, max = 50, help = "factor of the fire's light" }
+local glow    = param { "glow", 3, min = 0, max = 50, help = "factor of the fire's light" }
 
--- A box of 9 x 9 x 11 m. Two cores bear the draft, a graphics card the film.
-local cells = ({ draft = {64, 64, 80}, shot = {128, 128, 160}, film = {256, 256, 320} })[quality:get()]
+-- A box of 9 x 9 x 12.6 m. Two cores bear the draft, a graphics card the film.
+local cells = ({ draft = {80, 80, 112}, shot = {160, 160, 224}, film = {256, 256, 352} })[quality:get()]
 local fire = pyro {
-  size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 20,
+  size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 20, velocity_cells = "half",
   burn_time = 0.03, cooling = 2200, soot_burn_time = 2, vorticity = 6,
 }
 
@@ -23,12 +23,12 @@ local fire = pyro {
 local lumps = worley { frequency = 1.3, octaves = 3, seed = 3 }:remap(0.1, 0.7, 0, 1)
 local whirl = curl { frequency = 0.8, octaves = 3, seed = 5 }
 fire:source {
-  shape = sphere { position = {0, 0, 0.75}, radius = 0.9 },
+  shape = sphere { position = {0, 0, 1}, radius = 1.15 },
   fuel = fuel * (0.2 + 1.6 * lumps), temperature = 900,
   velocity = whirl * 6 + vec(0, 0, 5), during = {0, 0.02},
 }
 
-fx.camera = orbit { target = {0, 0, 4}, distance = 19, yaw = 25, pitch = 4, fov = 38 }
+fx.camera = orbit { target = {0, 0, 4}, distance = 18, yaw = 25, pitch = 4, fov = 38 }
 fx.sun    = sun { azimuth = 215, elevation = 30, color = {1, 0.92, 0.8}, strength = 6 }
 fx.sky    = sky { zenith = {0.08, 0.16, 0.36}, horizon = {0.34, 0.42, 0.52}, strength = 0.7 }
 
@@ -49,11 +49,22 @@ local lit = lighting {
   sampling   = "cubic",
 }
 
+-- Burning drops fly off, fall, bounce and go out.
+local drops = particles {
+  count = 700, rate = function(t) return t < 0.06 and 12000 or 0 end, lifetime = {0.5, 2.2}, seed = 6,
+  position = {0, 0, 1}, radius = 0.7, speed = {0, 0, 11}, spread = 85, variation = 0.8,
+  gravity = 9.81, drag = 0.7, collide = position.z, bounce = 0.3, friction = 0.5,
+}
+
 local scene  = geometry { mesh { "data/ground.obj" } }
 local solid  = shade { from = {scene, lit}, haze = 0.002 }
 local volume = march { from = {lit, scene}, steps = 192, jitter = 0.5 }
 
-local picture = over { volume, solid, from = {volume, scene} }
+local sparks = splats {
+  from = {drops, scene, lit}, density = cover, size = over_age { {0, 0.02}, {1, 0.006} }, streak = 0.03,
+  color = light(1900 - 700 * particle_age).rgb, brightness = 12,
+}
+local picture = over { sparks, over { volume, solid, from = {volume, scene} }, from = {sparks, scene} }
 local blooms  = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }
 local shown   = final { source = picture, bloom = blooms, bloom_intensity = 0.3, tonemap = "aces" }
 

@@ -10,10 +10,10 @@ local gas     = param { "gas", 0.1, min = 0, max = 2, unit = "kg/m^3", help = "t
 local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides" }
 local glow    = param { "glow", 1.4, min = 0, max = 50, help = "factor of the fire's light" }
 
-local cells = ({ draft = {40, 40, 56}, shot = {96, 96, 128}, film = {192, 192, 256} })[quality:get()]
+local cells = ({ draft = {64, 64, 80}, shot = {128, 128, 160}, film = {192, 192, 256} })[quality:get()]
 local fire = pyro {
   size = cells, voxel_size = 2 / cells[1], fuel = "wood", speed = 6, warm_up = 1,
-  burn_time = 0.05, cooling = 800, vorticity = 3,
+  velocity_cells = "half", burn_time = 0.05, cooling = 800, vorticity = 3,
   force = curl { frequency = 1.2, octaves = 2, speed = 1.5, seed = 2 } * 2, -- a breath of wind
 }
 

@@ -6,15 +6,15 @@
 local fx = effect { name = "pyro pool", fps = 24, frames = 144 }
 
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
-local width   = param { "width", 0.7, min = 0.2, max = 2, unit = "m", help = "of the pan" }
-local burning = param { "burning", 1.5, min = 0, max = 10, unit = "s", help = "before the first frame" }
+local width   = param { "width", 0.9, min = 0.2, max = 2, unit = "m", help = "of the pan" }
+local burning = param { "burning", 2.5, min = 0, max = 10, unit = "s", help = "before the first frame" }
 local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides" }
 local glow    = param { "glow", 1.8, min = 0, max = 50, help = "factor of the fire's light" }
 
-local cells = ({ draft = {48, 48, 80}, shot = {96, 96, 160}, film = {192, 192, 320} })[quality:get()]
+local cells = ({ draft = {64, 64, 96}, shot = {128, 128, 192}, film = {192, 192, 320} })[quality:get()]
 local fire = pyro {
   size = cells, voxel_size = 4.8 / cells[1], fuel = "petrol", speed = 9, warm_up = burning:get(),
-  burn_time = 0.06, cooling = 700, vorticity = 2,
+  velocity_cells = "half", burn_time = 0.06, cooling = 700, vorticity = 4,
 }
 
 -- Vapour rises slowly from the pan, hot enough to go on burning.
@@ -22,7 +22,7 @@ local disc = sphere { position = {0, 0, 0}, radius = width / 2 } * box { positio
 local flicker = perlin { frequency = 3, speed = 2, octaves = 2 }
 fire:source {
   shape = disc,
-  fuel = 0.3, temperature = 650, velocity = vec(0, 0, 0.1 + 0.1 * flicker), rate = 4,
+  fuel = 0.5, temperature = 620, velocity = vec(0, 0, 0.1 + 0.1 * flicker), rate = 4,
 }
 
 fx.camera = orbit { target = {0, 0, 2.4}, distance = 10, yaw = 20, pitch = 4, fov = 36 }

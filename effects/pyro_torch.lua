@@ -10,10 +10,10 @@ local jet     = param { "jet", 24, min = 0, max = 40, unit = "m/s", help = "spee
 local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides" }
 local glow    = param { "glow", 1.4, min = 0, max = 50, help = "factor of the fire's light" }
 
-local cells = ({ draft = {80, 56, 64}, shot = {160, 112, 128}, film = {320, 224, 256} })[quality:get()]
+local cells = ({ draft = {96, 64, 80}, shot = {192, 128, 160}, film = {320, 224, 256} })[quality:get()]
 local fire = pyro {
-  size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 24,
-  burn_time = 0.05, cooling = 1800, vorticity = 3,
+  size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 24, velocity_cells = "half",
+  burn_time = 0.05, cooling = 1800, vorticity = 3, soot_yield = 0.02,
 }
 
 local flicker = perlin { frequency = 1, speed = 6, octaves = 2 }

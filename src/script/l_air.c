@@ -62,6 +62,7 @@ static void read_desc(lua_State *L, const air_type *type, pass_air_desc *desc) {
     desc->speed = value_get_number(L, 1, who, "speed", type->speed);
     desc->time_step = value_get_number(L, 1, who, "time_step", 0);
     desc->warm_up = value_get_number(L, 1, who, "warm_up", 0);
+    desc->time_scale = value_get_number(L, 1, who, "time_scale", 1);
 }
 
 // Sets a face from the word at the top of the stack, which the author gave as `key`.
@@ -117,7 +118,7 @@ static int l_air(lua_State *L) {
     air_object *object = object_new(L, who, sizeof *object);
     int result = lua_gettop(L);
     pass *p = pass_make(L, who, who, 1, script_object_find(who)->keys);
-    pass_air_desc desc = {{0}, 0, {0, 0, 0}, 0, 0, 0};
+    pass_air_desc desc = {.voxel_size = 0};
     read_desc(L, type, &desc); // after keys that are not known, which may be those that are missing
     if (value_get(L, 1, "boundary") != LUA_TNIL) set_boundary(L, p);
     object->pass = p;
@@ -222,8 +223,25 @@ static int l_collider(lua_State *L) {
     return 0;
 }
 
+// What is said in another place than one may look for it.
+static const char *place_of(const char *name) {
+    static const char *const places[][2] = {
+        {"spark", "hot gas for a while lights fuel: air:source { shape = ..., temperature = 1500, "
+                  "during = {0, 0.05} }"},
+        {"force", "it is a key, of a field: { force = curl { ... }, ... }"},
+        {"wind", "it is a key, of m/s: { wind = {2, 0, 0}, boundary = { left = \"inflow\" }, ... }"},
+        {"smoke", "it is 'soot' in pyro and 'density' in lbm"},
+        {"emitter", "air:source { ... } gives the air what it holds"},
+    };
+    for (size_t i = 0; i < COUNT_OF(places); i++)
+        if (strcmp(places[i][0], name) == 0) return places[i][1];
+    return NULL;
+}
+
 // Suggests a field with a similar name.
 static void refuse_name(lua_State *L, const pass *air, const char *name) {
+    if (place_of(name))
+        vm_error(L, "%s: no method or field '%s'; %s", type_of(L)->name, name, place_of(name));
     static const char *const own[] = {"source", "collider", "box", "time_step"};
     const char *near = str_nearest(name, own, COUNT_OF(own));
     size_t count;

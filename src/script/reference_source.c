@@ -29,18 +29,20 @@
     KEY("speed", "4 m/s", "that the air is expected to stay below: a step is the shorter for it"), \
     KEY("time_step", "0 s", "that a step takes; 0: by the speed"),                                 \
     KEY("warm_up", "0 s", "that are simulated before the first frame"),                            \
+    KEY("time_scale", "1", "seconds that are simulated in one of the effect: 12 is time lapse, 0.2 slow motion"), \
     KEY("boundary", "{ sides = \"open\", bottom = \"wall\", top = \"open\" }",                     \
         "a word for all faces, or one each for left, right, front, back, bottom, top; sides are "  \
         "the first four"),                                                                         \
     KEY("name", "\"lbm\"", "for --set NAME.key=value and statistics; numbered when taken"))
 
 #define PYRO_KEYS KEYS(                                                                            \
-    KEY("size", "{x, y, z} cells", "of the box: multiples of 8 from 16 to 1024; required"),        \
+    KEY("size", "{x, y, z} cells", "of the box: multiples of 8 from 16 to 1024, of 16 with velocity_cells = \"half\"; required"),        \
     KEY("voxel_size", "m", "edge of a cell; required"),                                            \
     KEY("position", "0, 0, 0 m", "middle of the lowest face"),                                     \
     KEY("speed", "12 m/s", "that the gas is expected to reach: a step is the shorter for it"),     \
-    KEY("time_step", "0 s", "that a step takes; 0: in which the speed crosses 1.5 cells"),         \
+    KEY("time_step", "0 s", "that a step takes; 0: in which the speed crosses 1.5 cells of the velocity"),         \
     KEY("warm_up", "0 s", "that are simulated before the first frame"),                            \
+    KEY("time_scale", "1", "seconds that are simulated in one of the effect: 12 is time lapse, 0.2 slow motion"), \
     KEY("boundary", "{ sides = \"open\", bottom = \"wall\", top = \"open\" }",                     \
         "a word for all faces, or one each for left, right, front, back, bottom, top; sides are "  \
         "the first four"),                                                                         \

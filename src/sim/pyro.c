@@ -16,6 +16,14 @@ static bool pyro_check(const pyro_desc *desc) {
                 "a box of %u x %u x %u cells; multiples of %d from %d to %d are accepted",
                 desc->size[0], desc->size[1], desc->size[2], PYRO_BRICK, PYRO_LEAST_SIZE,
                 PYRO_MOST_SIZE);
+        if (desc->half_velocity && n % (2 * PYRO_BRICK) != 0)
+            return err_set("a box of %u x %u x %u cells; multiples of %d are accepted where the "
+                           "velocity has half as many",
+                           desc->size[0], desc->size[1], desc->size[2], 2 * PYRO_BRICK);
+        if (desc->half_velocity && desc->faces[2 * i] == PYRO_PERIODIC)
+            return err_set("faces along %c are periodic; not where the velocity has half as many "
+                           "cells",
+                           "xyz"[i]);
         if ((desc->faces[2 * i] == PYRO_PERIODIC) != (desc->faces[2 * i + 1] == PYRO_PERIODIC))
             return err_set("one face along %c is periodic and the other is not", "xyz"[i]);
     }
@@ -39,32 +47,52 @@ uint64_t pyro_cells(const pyro *p) {
     return (uint64_t)p->desc.size[0] * p->desc.size[1] * p->desc.size[2];
 }
 
+uint32_t pyro_ratio(const pyro_desc *desc) {
+    return desc->half_velocity ? 2 : 1;
+}
+
+void pyro_flow_size(const pyro_desc *desc, uint32_t out[3]) {
+    for (int i = 0; i < 3; i++) out[i] = desc->size[i] / pyro_ratio(desc);
+}
+
+uint64_t pyro_flow_cells(const pyro *p) {
+    uint32_t n[3];
+    pyro_flow_size(&p->desc, n);
+    return (uint64_t)n[0] * n[1] * n[2];
+}
+
+float pyro_flow_cell(const pyro *p, const pyro_numbers *n) {
+    return n->cell * (float)pyro_ratio(&p->desc);
+}
+
 // ---- shaders ----------------------------------------------------------------------------------
 
 static void define(pyro *p, const char *name, uint32_t value) {
     p->defines[p->define_count++] = (shader_define){name, arena_format(p->memory, "%u", value)};
 }
 
-static bool is_closed(const pyro_desc *desc) {
+bool pyro_is_closed(const pyro_desc *desc) {
     for (int i = 0; i < 6; i++)
         if (desc->faces[i] == PYRO_OPEN) return false;
     return true;
 }
 
 static void define_all(pyro *p) {
-    static const char *const sizes[3] = {"PYRO_NX", "PYRO_NY", "PYRO_NZ"};
+    static const char *const sizes[3] = {"PYRO_GAS_NX", "PYRO_GAS_NY", "PYRO_GAS_NZ"};
     static const char *const faces[6] = {"PYRO_LOW_X",  "PYRO_HIGH_X", "PYRO_LOW_Y",
                                          "PYRO_HIGH_Y", "PYRO_LOW_Z",  "PYRO_HIGH_Z"};
     p->define_count = 0;
     for (int i = 0; i < 3; i++) define(p, sizes[i], p->desc.size[i]);
     for (int i = 0; i < 6; i++) define(p, faces[i], p->desc.faces[i]);
+    define(p, "PYRO_RATIO", pyro_ratio(&p->desc));
     define(p, "PYRO_HALF", p->desc.precision == PYRO_F16);
     define(p, "PYRO_WIDE", p->wide);
     define(p, "PYRO_CORRECTS", p->desc.advection == PYRO_MACCORMACK);
+    define(p, "PYRO_PREMIXED", p->desc.premixed);
     define(p, "PYRO_CONFINES", p->desc.confinement);
     define(p, "PYRO_FORCE", p->desc.force);
     define(p, "PYRO_SOLIDS", p->desc.solids);
-    define(p, "PYRO_CLOSED", is_closed(&p->desc));
+    define(p, "PYRO_CLOSED", pyro_is_closed(&p->desc));
 }
 
 size_t pyro_defines(const pyro *p, shader_define out[PYRO_MAX_DEFINES]) {
@@ -76,6 +104,7 @@ static const char *const names[] = {PYRO_NAMES(KERNEL_NAME_TEXT)};
 
 static const char *const shaders[PYRO_KERNELS] = {
     [PYRO_K_RESET] = "sim/pyro/reset.comp",
+    [PYRO_K_RESET_FLOW] = "sim/pyro/reset.comp",
     [PYRO_K_GAS_PREDICT] = "sim/pyro/gas.comp",
     [PYRO_K_GAS] = "sim/pyro/gas.comp",
     [PYRO_K_VORTICITY] = "sim/pyro/curl.comp",
@@ -86,6 +115,7 @@ static const char *const shaders[PYRO_KERNELS] = {
     [PYRO_K_SOLIDS_FINEST] = "sim/pyro/solids.comp",
     [PYRO_K_SOLIDS_COARSE] = "sim/pyro/solids.comp",
     [PYRO_K_OBSTRUCT] = "sim/pyro/obstruct.comp",
+    [PYRO_K_FILL] = "sim/pyro/fill.comp",
     [PYRO_K_DIVERGENCE] = "sim/pyro/divergence.comp",
     [PYRO_K_SMOOTH_FINEST] = "sim/pyro/smooth.comp",
     [PYRO_K_SMOOTH] = "sim/pyro/smooth.comp",
@@ -94,9 +124,17 @@ static const char *const shaders[PYRO_KERNELS] = {
     [PYRO_K_COARSEST] = "sim/pyro/coarsest.comp",
     [PYRO_K_PROLONG] = "sim/pyro/prolong.comp",
     [PYRO_K_PROLONG_FINEST] = "sim/pyro/prolong.comp",
+    [PYRO_K_RESIDUAL] = "sim/pyro/conjugate.comp",
+    [PYRO_K_ACROSS] = "sim/pyro/conjugate.comp",
+    [PYRO_K_TURN] = "sim/pyro/conjugate.comp",
+    [PYRO_K_APPLY] = "sim/pyro/conjugate.comp",
+    [PYRO_K_MOVE] = "sim/pyro/conjugate.comp",
+    [PYRO_K_SUM] = "sim/pyro/sum.comp",
     [PYRO_K_PROJECT] = "sim/pyro/project.comp",
     [PYRO_K_LOOK] = "sim/pyro/look.comp",
+    [PYRO_K_LOOK_FLOW] = "sim/pyro/look.comp",
     [PYRO_K_REPORT] = "sim/pyro/report.comp",
+    [PYRO_K_REPORT_FLOW] = "sim/pyro/report.comp",
     [PYRO_K_REPORT_LAST] = "sim/pyro/report.comp",
 };
 
@@ -104,13 +142,21 @@ const kernel_table pyro_kernel_table = {{names, COUNT_OF(names)}, shaders, COUNT
 
 // The additional defines of a kernel; NULL: none.
 static const char *const more_defines[PYRO_KERNELS][2] = {
+    [PYRO_K_RESET_FLOW] = {"FLOW"},
     [PYRO_K_GAS_PREDICT] = {"PYRO_PREDICT"},
     [PYRO_K_CURL] = {"PYRO_CURL_LAST"},
     [PYRO_K_VELOCITY_PREDICT] = {"PYRO_PREDICT"},
     [PYRO_K_SMOOTH_FINEST] = {"PYRO_FINEST"},
     [PYRO_K_RESTRICT_FINEST] = {"PYRO_FINEST"},
     [PYRO_K_PROLONG_FINEST] = {"PYRO_FINEST"},
+    [PYRO_K_LOOK_FLOW] = {"FLOW"},
+    [PYRO_K_REPORT_FLOW] = {"FLOW"},
     [PYRO_K_REPORT_LAST] = {"LAST"},
+    [PYRO_K_RESIDUAL] = {"RESIDUAL"},
+    [PYRO_K_ACROSS] = {"ACROSS"},
+    [PYRO_K_TURN] = {"TURN"},
+    [PYRO_K_APPLY] = {"APPLY"},
+    [PYRO_K_MOVE] = {"MOVE"},
     [PYRO_K_SOLIDS_FINEST] = {"COARSE", "PYRO_FINEST"},
     [PYRO_K_SOLIDS_COARSE] = {"COARSE"},
 };
@@ -119,7 +165,8 @@ static bool is_used(const pyro_desc *desc, pyro_kernel which) {
     if (which == PYRO_K_GAS_PREDICT || which == PYRO_K_VELOCITY_PREDICT)
         return desc->advection == PYRO_MACCORMACK;
     if (which == PYRO_K_VORTICITY || which == PYRO_K_CURL) return desc->confinement;
-    if (which >= PYRO_K_SOLIDS && which <= PYRO_K_OBSTRUCT) return desc->solids;
+    if (which >= PYRO_K_SOLIDS && which <= PYRO_K_FILL) return desc->solids;
+    if (which >= PYRO_K_RESIDUAL && which <= PYRO_K_SUM) return desc->solids;
     return true;
 }
 
@@ -164,36 +211,49 @@ bool pyro_build(pyro *p, gpu *g, shader_library *library, const shader_reader *r
 
 // Returns the bytes of each buffer; 0: it is not needed.
 static void find_sizes(const pyro *p, uint64_t out[PYRO_MEM_COUNT]) {
-    const uint64_t cells = pyro_cells(p), real = p->desc.precision == PYRO_F16 ? 2 : 4;
+    const uint64_t gas = pyro_cells(p), flow = pyro_flow_cells(p);
+    const uint64_t four = p->desc.precision == PYRO_F16 ? 8 : 16;
     const bool corrects = p->desc.advection == PYRO_MACCORMACK;
     memset(out, 0, PYRO_MEM_COUNT * sizeof *out);
     for (int i = 0; i < 2; i++) {
-        out[PYRO_MEM_VELOCITY + i] = 4 * cells * real;
-        out[PYRO_MEM_GAS + i] = 4 * cells * real;
+        out[PYRO_MEM_VELOCITY + i] = four * flow;
+        out[PYRO_MEM_GAS + i] = four * gas;
+        out[PYRO_MEM_ACTIVE + i] = gas / PYRO_CELLS_A_GROUP * 4;
     }
-    if (corrects) out[PYRO_MEM_VELOCITY_HAT] = 4 * cells * real;
-    if (corrects || p->desc.confinement) out[PYRO_MEM_GAS_HAT] = 4 * cells * real;
-    if (p->desc.confinement) out[PYRO_MEM_CURL] = 4 * cells * real;
-    out[PYRO_MEM_PRESSURE] = out[PYRO_MEM_RIGHT] = 4 * cells;
+    if (corrects) out[PYRO_MEM_VELOCITY_HAT] = four * flow;
+    if (corrects || p->desc.confinement) out[PYRO_MEM_GAS_HAT] = four * gas;
+    if (p->desc.confinement) out[PYRO_MEM_CURL] = four * flow;
+    if (p->desc.half_velocity) out[PYRO_MEM_DENSITY] = 4 * flow;
+    out[PYRO_MEM_PRESSURE] = out[PYRO_MEM_RIGHT] = 4 * flow;
     out[PYRO_MEM_COARSE_PRESSURE] = out[PYRO_MEM_COARSE_RIGHT] = 4 * pyro_coarse_cells(p);
-    if (p->desc.solids) out[PYRO_MEM_OPENINGS] = 4 * cells;
-    if (p->desc.solids) out[PYRO_MEM_COARSE_OPENINGS] = 4 * pyro_coarse_cells(p);
-    out[PYRO_MEM_REPORT] = cells / 256 * 32;
+    out[PYRO_MEM_REPORT] = (gas + flow) / PYRO_CELLS_A_GROUP * 32;
+    if (!p->desc.solids) return;
+    out[PYRO_MEM_OPENINGS] = 4 * flow;
+    out[PYRO_MEM_COARSE_OPENINGS] = 4 * pyro_coarse_cells(p);
+    for (pyro_memory i = PYRO_MEM_FOUND; i <= PYRO_MEM_CHANGE; i++) out[i] = 4 * flow;
+    out[PYRO_MEM_SUMS] = 64;
 }
 
 static const char *const memory_labels[PYRO_MEM_COUNT] = {"velocity of burning gas",
                                                           "velocity of burning gas",
                                                           "burning gas",
                                                           "burning gas",
+                                                          "places of burning gas",
+                                                          "places of burning gas",
                                                           "velocity traced back",
                                                           "gas traced back",
                                                           "vorticity",
+                                                          "density of burning gas",
                                                           "pressure of burning gas",
                                                           "divergence",
                                                           "coarse pressure",
                                                           "coarse divergence",
                                                           "openings between solids",
                                                           "openings between solids",
+                                                          "conjugate gradients",
+                                                          "conjugate gradients",
+                                                          "conjugate gradients",
+                                                          "conjugate gradients",
                                                           "report of burning gas"};
 
 bool pyro_allocate(pyro *p, gpu *g) {
@@ -205,7 +265,9 @@ bool pyro_allocate(pyro *p, gpu *g) {
             gpu_buffer_create(g, &(gpu_buffer_desc){.label = memory_labels[i], .size = sizes[i]});
         if (!p->buffers[i]) return false;
     }
-    return pyro_report_allocate(p, g);
+    const gpu_image_desc carrier = pyro_describe_image(p, PYRO_FLOW);
+    if (p->desc.half_velocity && !p->carrier) p->carrier = gpu_image_create(g, &carrier);
+    return (p->carrier || !p->desc.half_velocity) && pyro_report_allocate(p, g);
 }
 
 void pyro_list_memory(const pyro *p, budget_list *out) {
@@ -213,6 +275,9 @@ void pyro_list_memory(const pyro *p, budget_list *out) {
     find_sizes(p, sizes);
     for (int i = 0; i < PYRO_MEM_COUNT; i++)
         if (!p->buffers[i] && sizes[i]) budget_list_add(out, memory_labels[i], sizes[i]);
+    const gpu_image_desc carrier = pyro_describe_image(p, PYRO_FLOW);
+    if (p->desc.half_velocity && !p->carrier)
+        budget_list_add(out, carrier.label, gpu_image_bytes(&carrier));
     for (int i = 0; i < 2 * PYRO_LOOKS; i++) {
         const gpu_image_desc desc = pyro_describe_image(p, (pyro_look)(i % PYRO_LOOKS));
         if (!p->looks[i / PYRO_LOOKS][i % PYRO_LOOKS])
@@ -225,6 +290,8 @@ void pyro_destroy(pyro *p, gpu *g) {
     for (int i = 0; i < PYRO_MEM_COUNT; i++) gpu_buffer_destroy(g, p->buffers[i]);
     for (int i = 0; i < 2 * PYRO_LOOKS; i++)
         gpu_image_destroy(g, p->looks[i / PYRO_LOOKS][i % PYRO_LOOKS]);
+    gpu_image_destroy(g, p->carrier);
+    p->carrier = NULL;
     pyro_report_destroy(p, g);
     memset(p->buffers, 0, sizeof p->buffers);
     memset(p->looks, 0, sizeof p->looks);
@@ -251,6 +318,13 @@ void pyro_bind(const pyro *p, kernel *k, const kernel_place *places) {
         [N_PyroCoarseRight] = p->buffers[PYRO_MEM_COARSE_RIGHT],
         [N_PyroOpenings] = p->buffers[PYRO_MEM_OPENINGS],
         [N_PyroCoarseOpenings] = p->buffers[PYRO_MEM_COARSE_OPENINGS],
+        [N_PyroFound] = p->buffers[PYRO_MEM_FOUND],
+        [N_PyroDirection] = p->buffers[PYRO_MEM_DIRECTION],
+        [N_PyroChange] = p->buffers[PYRO_MEM_CHANGE],
+        [N_PyroSums] = p->buffers[PYRO_MEM_SUMS],
+        [N_PyroActive] = pyro_pair(p, PYRO_MEM_ACTIVE, 0),
+        [N_PyroActiveTo] = pyro_pair(p, PYRO_MEM_ACTIVE, 1),
+        [N_PyroDensity] = p->buffers[PYRO_MEM_DENSITY],
         [N_PyroReport] = p->buffers[PYRO_MEM_REPORT],
     };
     for (int i = 0; i < PYRO_OWN; i++)
@@ -268,10 +342,17 @@ void pyro_stage(const pyro *p, gpu *g, const char *name) {
 }
 
 bool pyro_run(const pyro *p, gpu *g, kernel *k) {
+    uint32_t n[3];
+    pyro_flow_size(&p->desc, n);
+    return kernel_run(k, g, n[0], n[1], n[2]);
+}
+
+bool pyro_run_gas(const pyro *p, gpu *g, kernel *k) {
     return kernel_run(k, g, p->desc.size[0], p->desc.size[1], p->desc.size[2]);
 }
 
-size_t pyro_buffers(const pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]) {
+size_t pyro_buffers(pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]) {
+    p->active_known = false;
     out[0] = pyro_pair(p, PYRO_MEM_VELOCITY, 0);
     out[1] = pyro_pair(p, PYRO_MEM_GAS, 0);
     out[2] = p->buffers[PYRO_MEM_PRESSURE];
@@ -287,8 +368,9 @@ uint64_t pyro_steps(const pyro *p) {
 }
 
 static void swap_state(pyro *a, pyro *b) {
-    static const pyro_memory state[] = {PYRO_MEM_VELOCITY, PYRO_MEM_VELOCITY + 1, PYRO_MEM_GAS,
-                                        PYRO_MEM_GAS + 1, PYRO_MEM_PRESSURE};
+    static const pyro_memory state[] = {
+        PYRO_MEM_VELOCITY, PYRO_MEM_VELOCITY + 1, PYRO_MEM_GAS,     PYRO_MEM_GAS + 1,
+        PYRO_MEM_ACTIVE,   PYRO_MEM_ACTIVE + 1,   PYRO_MEM_PRESSURE};
     const pyro was = *a;
     for (size_t i = 0; i < COUNT_OF(state); i++) {
         a->buffers[state[i]] = b->buffers[state[i]];
@@ -298,12 +380,13 @@ static void swap_state(pyro *a, pyro *b) {
     memcpy(b->looks, was.looks, sizeof b->looks);
     a->current = b->current, b->current = was.current;
     a->kept = b->kept, b->kept = was.kept;
+    a->active_known = b->active_known, b->active_known = was.active_known;
     a->steps = b->steps, b->steps = was.steps;
 }
 
 bool pyro_exchange(pyro *a, pyro *b) {
     if (memcmp(a->desc.size, b->desc.size, sizeof a->desc.size) != 0 ||
-        a->desc.precision != b->desc.precision)
+        a->desc.precision != b->desc.precision || a->desc.half_velocity != b->desc.half_velocity)
         return false;
     swap_state(a, b);
     return true;

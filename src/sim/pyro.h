@@ -32,27 +32,31 @@ enum {
 };
 
 typedef struct pyro_desc { // structure: what shaders are compiled for
-    uint32_t size[3];      // cells, multiples of PYRO_BRICK
+    uint32_t size[3];      // cells of the gas, multiples of PYRO_BRICK
     pyro_face faces[6];    // -x +x -y +y -z +z; opposite ones are both periodic or neither is
     pyro_advection advection;
     pyro_precision precision; // of velocities and the gas; auto: by the device
-    bool confinement;         // numbers may have some
-    bool force;               // pyro_set_force is called before the first step
-    bool solids;              // pyro_set_solids is called before each step
-    uint32_t cycles;          // of multigrid, per step; 0: 2, with solids 4
-    bool timed;               // stages of a step have GPU times of their own
+    bool half_velocity; // velocity and pressure have half as many cells along each axis, which
+                        // are multiples of 16 then, and no face is periodic
+    bool premixed;      // fuel burns where a flame passes, not where it is hot
+    bool confinement;   // numbers may have some
+    bool force;         // pyro_set_force is called before the first step
+    bool solids;        // pyro_set_solids is called before each step
+    uint32_t cycles;    // of multigrid, per step; 0: 2, with solids 3
+    bool timed;         // stages of a step have GPU times of their own
 } pyro_desc;
 
 typedef struct pyro_numbers { // parameters of a step; they may change with each step
     float dt;                 // s
-    float cell;               // side of a cell, m
+    float cell;               // side of a cell of the gas, m
     float ambient;            // temperature of the surroundings, K
     float gravity;            // m/s^2, downwards along z
     float acceleration[3];    // m/s^2
     float inflow[3];          // velocity across faces that are PYRO_INFLOW, m/s
     float confinement;        // acceleration by 1 m/s of difference across a cell, 1/s
-    float max_speed;          // limit of each component, m/s; 0: 16 cells per step
+    float max_speed;          // limit of each component, m/s; 0: 7 cells of the gas per step
     float ignition;           // temperature above which fuel burns, K
+    float flame_speed;        // of a flame into mixture at rest, m/s, with pyro_desc.premixed
     float burn_time;          // that fuel and oxygen in a cell take to mix, s; 0: at once
     float heat;               // of combustion, less what the flame radiates, J/kg
     float oxygen;             // kg that 1 kg of fuel takes
@@ -99,6 +103,9 @@ typedef struct pyro_solids {
 // Inside a frame. The buffers are read until the next call.
 bool pyro_set_solids(pyro *p, gpu *g, const pyro_solids *solids);
 
+// Returns how many cells of the gas lie along the side of one of the velocity: 1 or 2.
+uint32_t pyro_ratio(const pyro_desc *desc);
+
 // Returns the state that was kept last (0) or the one kept before it (1) as a 3D image of half
 // floats. NULL: there is none.
 typedef enum pyro_look {
@@ -113,7 +120,7 @@ typedef struct pyro_report { // a report on the state after a step
     uint64_t step;           // pyro_steps at that time
     uint32_t bad;            // cells that hold what is no number
     float speed;             // greatest, m/s
-    float residual; // greatest divergence that is not wanted, times the side of a cell, m/s
+    float residual; // greatest divergence that is not wanted, times the side of its cell, m/s
     float hottest;  // K
     float fuel, burnt, soot; // sums over all cells of the air's mass times what it holds, kg
     float power;             // heat that burning gives, W, radiation left out
@@ -131,9 +138,10 @@ size_t pyro_defines(const pyro *p, shader_define out[PYRO_MAX_DEFINES]);
 void pyro_bind(const pyro *p, kernel *k, const kernel_place *places);
 extern const kernel_table pyro_kernel_table;
 
-// Returns the buffers of the state, without the count of steps.
+// Returns the buffers of the state, without the count of steps. The caller may change what they
+// hold.
 enum { PYRO_STATE_BUFFERS = 3 };
-size_t pyro_buffers(const pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]);
+size_t pyro_buffers(pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]);
 
 // Exchanges the states, images and counts of steps of two solvers. False when their cells or
 // precisions differ.

@@ -6,23 +6,30 @@
 
 enum {
     PYRO_CYCLES = 2,
-    PYRO_SOLID_CYCLES = 4, // coarse levels see solids in part
+    PYRO_SOLID_CYCLES = 3,    // coarse levels see solids in part
+    PYRO_CELLS_A_GROUP = 256, // of kernels that sum
     PYRO_MAX_LEVELS = 10,
     PYRO_COARSEST = 8192, // cells at most of the level that one group solves
 };
 
 typedef enum pyro_memory {
-    PYRO_MEM_VELOCITY,                        // two: of the state, and the next
-    PYRO_MEM_GAS = PYRO_MEM_VELOCITY + 2,     // two
-    PYRO_MEM_VELOCITY_HAT = PYRO_MEM_GAS + 2, // with MacCormack; also where confinement is made
+    PYRO_MEM_VELOCITY,                           // two: of the state, and the next
+    PYRO_MEM_GAS = PYRO_MEM_VELOCITY + 2,        // two
+    PYRO_MEM_ACTIVE = PYRO_MEM_GAS + 2,          // two: which half bricks hold more than clean air
+    PYRO_MEM_VELOCITY_HAT = PYRO_MEM_ACTIVE + 2, // with MacCormack
     PYRO_MEM_GAS_HAT,
-    PYRO_MEM_CURL, // with confinement
+    PYRO_MEM_CURL,    // with confinement
+    PYRO_MEM_DENSITY, // of the gas in cells of the velocity, where these are larger
     PYRO_MEM_PRESSURE,
     PYRO_MEM_RIGHT,
     PYRO_MEM_COARSE_PRESSURE, // of all levels but the finest
     PYRO_MEM_COARSE_RIGHT,
     PYRO_MEM_OPENINGS, // with solids
     PYRO_MEM_COARSE_OPENINGS,
+    PYRO_MEM_FOUND, // with conjugate gradients, of which these are the vectors
+    PYRO_MEM_DIRECTION,
+    PYRO_MEM_CHANGE,
+    PYRO_MEM_SUMS,
     PYRO_MEM_REPORT,
     PYRO_MEM_COUNT
 } pyro_memory;
@@ -46,7 +53,8 @@ typedef struct pyro_reporter {
 } pyro_reporter;
 
 typedef enum pyro_kernel {
-    PYRO_K_RESET,
+    PYRO_K_RESET, // of the gas
+    PYRO_K_RESET_FLOW,
     PYRO_K_GAS_PREDICT,
     PYRO_K_GAS,
     PYRO_K_VORTICITY,
@@ -57,6 +65,7 @@ typedef enum pyro_kernel {
     PYRO_K_SOLIDS_FINEST, // from the finest level to the next
     PYRO_K_SOLIDS_COARSE,
     PYRO_K_OBSTRUCT,
+    PYRO_K_FILL,
     PYRO_K_DIVERGENCE,
     PYRO_K_SMOOTH_FINEST,
     PYRO_K_SMOOTH,
@@ -65,9 +74,17 @@ typedef enum pyro_kernel {
     PYRO_K_COARSEST,
     PYRO_K_PROLONG,
     PYRO_K_PROLONG_FINEST,
+    PYRO_K_RESIDUAL, // of conjugate gradients
+    PYRO_K_ACROSS,
+    PYRO_K_TURN,
+    PYRO_K_APPLY,
+    PYRO_K_MOVE,
+    PYRO_K_SUM,
     PYRO_K_PROJECT,
-    PYRO_K_LOOK,
+    PYRO_K_LOOK, // at the gas
+    PYRO_K_LOOK_FLOW,
     PYRO_K_REPORT,
+    PYRO_K_REPORT_FLOW,
     PYRO_K_REPORT_LAST,
     PYRO_KERNELS
 } pyro_kernel;
@@ -77,7 +94,8 @@ typedef enum pyro_kernel {
     NAME(PyroGas), NAME(PyroVelocity), NAME(PyroPressure), NAME(PyroRight), NAME(PyroGasTo),       \
         NAME(PyroVelocityTo), NAME(PyroGasHat), NAME(PyroVelocityHat), NAME(PyroCurl),             \
         NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroOpenings),                       \
-        NAME(PyroCoarseOpenings), NAME(PyroReport)
+        NAME(PyroCoarseOpenings), NAME(PyroFound), NAME(PyroDirection), NAME(PyroChange),          \
+        NAME(PyroSums), NAME(PyroDensity), NAME(PyroActive), NAME(PyroActiveTo), NAME(PyroReport)
 #define PYRO_NAMES(NAME)                                                                           \
     PYRO_OWN_NAMES(NAME), NAME(PyroVorticity), NAME(scalars), NAME(flow), NAME(result), NAME(dt),  \
         NAME(cell), NAME(reach), NAME(ambient), NAME(lightness), NAME(inflow), NAME(gravity),      \
@@ -86,7 +104,8 @@ typedef enum pyro_kernel {
         NAME(soot_kept), NAME(cooling), NAME(expansion), NAME(weights), NAME(level_size),          \
         NAME(level_first), NAME(colour), NAME(coarse_size), NAME(coarser), NAME(coarse_first),     \
         NAME(sweeps), NAME(relaxation), NAME(pressure_unit), NAME(groups), NAME(mass),             \
-        NAME(SolidIds), NAME(SolidMotions), NAME(box_min), NAME(force)
+        NAME(SolidIds), NAME(SolidMotions), NAME(box_min), NAME(force), NAME(begins), NAME(place), \
+        NAME(first), NAME(carrier), NAME(flame_reach), NAME(everywhere)
 enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 
 struct pyro {
@@ -103,17 +122,24 @@ struct pyro {
     uint32_t current;                // of pairs that are the state's
     uint64_t kept, steps;
     pyro_reporter reporter;
+    gpu_image *carrier; // velocity that carries the gas, where its cells are larger
     gpu_image *force;
     pyro_solids solids;
     bool solids_known; // openings are those of `solids`
+    bool active_known; // where there is gas; false: the host may have set it
 };
 
-uint64_t pyro_cells(const pyro *p);
+uint64_t pyro_cells(const pyro *p);      // of the gas
+uint64_t pyro_flow_cells(const pyro *p); // of the velocity
+void pyro_flow_size(const pyro_desc *desc, uint32_t out[3]);
+float pyro_flow_cell(const pyro *p, const pyro_numbers *n); // its side, m
+bool pyro_is_closed(const pyro_desc *desc);                 // no face is open
 gpu_buffer *pyro_pair(const pyro *p, pyro_memory pair,
                       uint32_t which); // the current one (0), the other
 // A kernel with the buffers bound that are always the same.
 kernel *pyro_use(pyro *p, pyro_kernel which);
-bool pyro_run(const pyro *p, gpu *g, kernel *k);          // a thread for each cell
+bool pyro_run(const pyro *p, gpu *g, kernel *k);          // a thread for each cell of the velocity
+bool pyro_run_gas(const pyro *p, gpu *g, kernel *k);      // of the gas
 void pyro_stage(const pyro *p, gpu *g, const char *name); // begins, for GPU times
 
 // pyro_numbers.c

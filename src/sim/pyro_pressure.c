@@ -38,7 +38,7 @@ bool pyro_find_levels(pyro *p) {
     pyro_level *l = p->levels;
     uint32_t first = 0;
     *l = (pyro_level){.weights = {1, 1, 1}};
-    for (int i = 0; i < 3; i++) l->size[i] = p->desc.size[i];
+    pyro_flow_size(&p->desc, l->size);
     p->level_count = 1;
     for (pyro_level next; p->level_count < PYRO_MAX_LEVELS && level_coarsen(l, &next); l++) {
         for (int i = 0; i < 3; i++) l->coarser[i] = l->size[i] / next.size[i];
@@ -81,6 +81,8 @@ void pyro_set_level(const pyro *p, kernel *k, uint32_t level) {
 static kernel *use_level(pyro *p, pyro_kernel finest, pyro_kernel coarse, uint32_t level) {
     kernel *k = pyro_use(p, level == 0 ? finest : coarse);
     pyro_set_level(p, k, level);
+    if (level == 0 && p->desc.solids) // a step of conjugate gradients
+        kernel_bind_buffer(k, N_PyroPressure, p->buffers[PYRO_MEM_FOUND]);
     if (level > 0) {
         kernel_bind_buffer(k, N_PyroPressure, p->buffers[PYRO_MEM_COARSE_PRESSURE]);
         kernel_bind_buffer(k, N_PyroRight, p->buffers[PYRO_MEM_COARSE_RIGHT]);
@@ -135,14 +137,43 @@ static bool pressure_cycle(pyro *p, gpu *g) {
     return true;
 }
 
+// ---- conjugate gradients ----------------------------------------------------------------------
+
+// Runs one of their parts, and sums what its groups have summed.
+static bool conjugate_run(pyro *p, gpu *g, pyro_kernel part, bool begins) {
+    enum { NONE = -1 };
+    const int places[PYRO_KERNELS] = {[PYRO_K_RESIDUAL] = pyro_is_closed(&p->desc) ? 0 : NONE,
+                                      [PYRO_K_ACROSS] = 1,
+                                      [PYRO_K_TURN] = NONE,
+                                      [PYRO_K_APPLY] = 2,
+                                      [PYRO_K_MOVE] = NONE};
+    const float weights[3] = {1, 1, 1};
+    kernel *k = pyro_use(p, part);
+    kernel_set(k, N_weights, weights, sizeof weights);
+    kernel_set_int(k, N_begins, begins);
+    if (!pyro_run(p, g, k)) return false;
+    if (places[part] == NONE) return true;
+    k = pyro_use(p, PYRO_K_SUM);
+    kernel_set_int(k, N_place, places[part]);
+    kernel_set_int(k, N_groups, (int32_t)(pyro_flow_cells(p) / PYRO_CELLS_A_GROUP));
+    return kernel_run(k, g, PYRO_CELLS_A_GROUP, 1, 1);
+}
+
+static bool conjugate_step(pyro *p, gpu *g, bool begins) {
+    return pressure_cycle(p, g) && (begins || conjugate_run(p, g, PYRO_K_ACROSS, false)) &&
+           conjugate_run(p, g, PYRO_K_TURN, begins) && conjugate_run(p, g, PYRO_K_APPLY, false) &&
+           conjugate_run(p, g, PYRO_K_MOVE, false);
+}
+
 bool pyro_project(pyro *p, gpu *g, const pyro_numbers *n) {
     pyro_stage(p, g, "pyro.divergence");
     kernel *divergence = pyro_use(p, PYRO_K_DIVERGENCE);
     kernel_set(divergence, N_inflow, n->inflow, sizeof n->inflow);
-    kernel_set_float(divergence, N_reach, n->dt / n->cell);
+    kernel_set_float(divergence, N_reach, n->dt / pyro_flow_cell(p, n));
     if (!pyro_run(p, g, divergence)) return false;
+    if (p->desc.solids && !conjugate_run(p, g, PYRO_K_RESIDUAL, false)) return false;
     for (uint32_t i = 0; i < p->desc.cycles; i++)
-        if (!pressure_cycle(p, g)) return false;
+        if (!(p->desc.solids ? conjugate_step(p, g, i == 0) : pressure_cycle(p, g))) return false;
     pyro_stage(p, g, "pyro.project");
     return pyro_run(p, g, pyro_use(p, PYRO_K_PROJECT));
 }

@@ -1,9 +1,7 @@
-// Two dispatches per frame, and a copy of their result to one of as many places as frames can be in
-// flight (as in flow_report.c).
+// Three dispatches per frame, and a copy of their result to one of as many places as frames can be
+// in flight (as in flow_report.c).
 #include "sim/pyro_impl.h"
 #include <string.h>
-
-enum { CELLS_A_GROUP = 256 };
 
 bool pyro_report_allocate(pyro *p, gpu *g) {
     pyro_reporter *r = &p->reporter;
@@ -30,15 +28,21 @@ bool pyro_watch(pyro *p, gpu *g, const pyro_numbers *n) {
     pyro_reporter *r = &p->reporter;
     const uint32_t place = r->next;
     const float weights[3] = {1, 1, 1};
+    const int32_t gas_groups = (int32_t)(pyro_cells(p) / PYRO_CELLS_A_GROUP);
+    const int32_t flow_groups = (int32_t)(pyro_flow_cells(p) / PYRO_CELLS_A_GROUP);
     if (p->steps == 0) return true;
-    kernel *each = pyro_use(p, PYRO_K_REPORT), *last = pyro_use(p, PYRO_K_REPORT_LAST);
-    pyro_set_burning(each, n);
-    kernel_set(each, N_inflow, n->inflow, sizeof n->inflow);
-    kernel_set(each, N_weights, weights, sizeof weights);
-    kernel_set_float(each, N_mass, 353 * n->cell * n->cell * n->cell);
+    kernel *gas = pyro_use(p, PYRO_K_REPORT), *flow = pyro_use(p, PYRO_K_REPORT_FLOW);
+    kernel *last = pyro_use(p, PYRO_K_REPORT_LAST);
+    pyro_set_burning(gas, n);
+    kernel_set_float(gas, N_mass, 353 * n->cell * n->cell * n->cell);
+    kernel_set_int(gas, N_first, 0);
+    kernel_set(flow, N_inflow, n->inflow, sizeof n->inflow);
+    kernel_set(flow, N_weights, weights, sizeof weights);
+    kernel_set_int(flow, N_first, gas_groups);
     kernel_bind_image(last, N_result, r->result);
-    kernel_set_int(last, N_groups, (int32_t)(pyro_cells(p) / CELLS_A_GROUP));
-    if (!pyro_run(p, g, each) || !kernel_run(last, g, CELLS_A_GROUP, 1, 1) ||
+    kernel_set_int(last, N_groups, gas_groups + flow_groups);
+    if (!pyro_run_gas(p, g, gas) || !pyro_run(p, g, flow) ||
+        !kernel_run(last, g, PYRO_CELLS_A_GROUP, 1, 1) ||
         !gpu_image_copy_to_buffer(g, r->result, r->found,
                                   place * PYRO_REPORT_WORDS * sizeof(float)))
         return false;

@@ -26,9 +26,11 @@ bool pyro_obstruct(pyro *p, gpu *g, const pyro_numbers *n) {
     if (!p->desc.solids) return true;
     if (!p->solids.ids) return err_set("solids are wanted, and none were given");
     kernel *k = pyro_use(p, PYRO_K_OBSTRUCT);
-    kernel_set_float(k, N_cell, n->cell);
+    kernel_set_float(k, N_cell, pyro_flow_cell(p, n));
     kernel_set(k, N_box_min, p->solids.corner, sizeof p->solids.corner);
     kernel_bind_buffer(k, N_SolidIds, p->solids.ids);
     kernel_bind_buffer(k, N_SolidMotions, p->solids.motions);
-    return pyro_run(p, g, k);
+    kernel *fill = pyro_use(p, PYRO_K_FILL);
+    kernel_bind_buffer(fill, N_SolidIds, p->solids.ids);
+    return pyro_run(p, g, k) && pyro_run_gas(p, g, fill);
 }

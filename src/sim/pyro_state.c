@@ -9,6 +9,7 @@ static void pyro_describe(const pyro_desc *desc, const char *more, strbuf *out) 
     static const char *const precisions[] = {"f32", "f16"};
     strbuf_add(out, "size = %u x %u x %u\n", desc->size[0], desc->size[1], desc->size[2]);
     strbuf_add(out, "precision = %s\n", precisions[desc->precision]);
+    strbuf_add(out, "velocity = %s\n", desc->half_velocity ? "half" : "full");
     for (int i = 0; i < 6; i++) strbuf_add(out, "%s = %s\n", faces[i], kinds[desc->faces[i]]);
     strbuf_add(out, "%s", more);
 }

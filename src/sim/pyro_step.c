@@ -12,7 +12,7 @@ static const float soot_heat = 32.8e6f;      // of combustion, J/kg
 static const float least_oxygen = 1e-4f;     // that fuel takes, by mass: powder brings its own
 static const float cooling_at = 1500;        // K, at which `cooling` is given
 
-enum { MOST_CELLS_A_STEP = 16 };
+enum { MOST_CELLS_A_STEP = 7 }; // of the gas: gas.comp looks for it so far
 
 static float share(float dt, float time, float at_zero) {
     return time > 0 ? 1 - expf(-dt / time) : at_zero;
@@ -29,6 +29,7 @@ void pyro_set_burning(kernel *k, const pyro_numbers *n) {
     pyro_set_gas(k, n);
     kernel_set_float(k, N_dt, n->dt);
     kernel_set_float(k, N_ignition, n->ignition);
+    kernel_set_float(k, N_flame_reach, n->flame_speed * n->dt / n->cell);
     kernel_set_float(k, N_burn_share, share(n->dt, n->burn_time, 1));
     kernel_set_float(k, N_oxygen_need, fmaxf(n->oxygen, least_oxygen));
     kernel_set_float(k, N_heat, n->heat / air_heat_capacity);
@@ -40,8 +41,9 @@ void pyro_set_burning(kernel *k, const pyro_numbers *n) {
     kernel_set_float(k, N_expansion, n->expansion);
 }
 
-static void set_carrying(kernel *k, const pyro_numbers *n) {
-    kernel_set_float(k, N_reach, n->dt / n->cell);
+// Of a kernel whose cells have this side.
+static void set_carrying(kernel *k, const pyro_numbers *n, float cell) {
+    kernel_set_float(k, N_reach, n->dt / cell);
     kernel_set(k, N_inflow, n->inflow, sizeof n->inflow);
 }
 
@@ -51,19 +53,36 @@ static bool corrects(const pyro *p) {
     return p->desc.advection == PYRO_MACCORMACK;
 }
 
+static bool look_at_flow(pyro *p, gpu *g, const pyro_numbers *n, gpu_image *to) {
+    kernel *k = pyro_use(p, PYRO_K_LOOK_FLOW);
+    const float density = 353 / n->ambient, cell = pyro_flow_cell(p, n); // of the surroundings
+    kernel_bind_image(k, N_flow, to);
+    set_carrying(k, n, cell);
+    kernel_set_float(k, N_pressure_unit, density * cell / n->dt);
+    return pyro_run(p, g, k);
+}
+
+static kernel *use_gas(pyro *p, pyro_kernel which, const pyro_numbers *n) {
+    kernel *k = pyro_use(p, which);
+    set_carrying(k, n, n->cell);
+    kernel_set_int(k, N_everywhere, !p->active_known);
+    if (p->carrier)
+        kernel_bind(k, N_carrier, (gpu_binding){.image = p->carrier, .sampler = GPU_LINEAR_CLAMP});
+    return k;
+}
+
 static bool gas_advance(pyro *p, gpu *g, const pyro_numbers *n) {
+    pyro_stage(p, g, "pyro.carrier");
+    if (p->carrier && !look_at_flow(p, g, n, p->carrier)) return false;
     if (corrects(p)) {
         pyro_stage(p, g, "pyro.gas_predict");
-        kernel *first = pyro_use(p, PYRO_K_GAS_PREDICT);
-        set_carrying(first, n);
-        if (!pyro_run(p, g, first)) return false;
+        if (!pyro_run_gas(p, g, use_gas(p, PYRO_K_GAS_PREDICT, n))) return false;
     }
     pyro_stage(p, g, "pyro.gas");
-    kernel *k = pyro_use(p, PYRO_K_GAS);
-    set_carrying(k, n);
+    kernel *k = use_gas(p, PYRO_K_GAS, n);
     pyro_set_burning(k, n);
-    kernel_set_float(k, N_cell, n->cell);
-    return pyro_run(p, g, k);
+    kernel_set_float(k, N_cell, pyro_flow_cell(p, n));
+    return pyro_run_gas(p, g, k);
 }
 
 // Of the velocity before the step: where vorticity is confined. The gas's prediction is not needed
@@ -72,7 +91,7 @@ static bool curl_find(pyro *p, gpu *g, const pyro_numbers *n) {
     pyro_stage(p, g, "pyro.confine");
     for (pyro_kernel i = PYRO_K_VORTICITY; i <= PYRO_K_CURL; i++) {
         kernel *k = pyro_use(p, i);
-        set_carrying(k, n);
+        set_carrying(k, n, pyro_flow_cell(p, n));
         kernel_bind_buffer(k, N_PyroVorticity, p->buffers[PYRO_MEM_GAS_HAT]);
         if (!pyro_run(p, g, k)) return false;
     }
@@ -84,13 +103,13 @@ static bool velocity_advance(pyro *p, gpu *g, const pyro_numbers *n) {
     if (corrects(p)) {
         pyro_stage(p, g, "pyro.velocity_predict");
         kernel *first = pyro_use(p, PYRO_K_VELOCITY_PREDICT);
-        set_carrying(first, n);
+        set_carrying(first, n, pyro_flow_cell(p, n));
         if (!pyro_run(p, g, first)) return false;
     }
     pyro_stage(p, g, "pyro.velocity");
     kernel *k = pyro_use(p, PYRO_K_VELOCITY);
     const float most = MOST_CELLS_A_STEP * n->cell / n->dt;
-    set_carrying(k, n);
+    set_carrying(k, n, pyro_flow_cell(p, n));
     pyro_set_gas(k, n);
     kernel_set_float(k, N_dt, n->dt);
     kernel_set_float(k, N_gravity, n->gravity);
@@ -113,20 +132,23 @@ bool pyro_step(pyro *p, gpu *g, const pyro_numbers *n, bool keep) {
         !pyro_obstruct(p, g, n) || !pyro_project(p, g, n))
         return false;
     p->current ^= 1;
+    p->active_known = true;
     p->steps++;
     return !keep || pyro_keep(p, g, n);
 }
 
 bool pyro_reset(pyro *p, gpu *g, const pyro_numbers *n) {
+    p->active_known = false;
     p->kept = p->steps = 0;
     p->current = 0;
     memset(p->reporter.places, 0, sizeof p->reporter.places);
     for (int which = 0; which < 2; which++) {
-        kernel *k = pyro_use(p, PYRO_K_RESET);
-        kernel_set(k, N_inflow, n->inflow, sizeof n->inflow);
-        kernel_bind_buffer(k, N_PyroGasTo, p->buffers[PYRO_MEM_GAS + which]);
-        kernel_bind_buffer(k, N_PyroVelocityTo, p->buffers[PYRO_MEM_VELOCITY + which]);
-        if (!pyro_run(p, g, k)) return false;
+        kernel *gas = pyro_use(p, PYRO_K_RESET);
+        kernel_bind_buffer(gas, N_PyroGasTo, p->buffers[PYRO_MEM_GAS + which]);
+        kernel *flow = pyro_use(p, PYRO_K_RESET_FLOW);
+        kernel_set(flow, N_inflow, n->inflow, sizeof n->inflow);
+        kernel_bind_buffer(flow, N_PyroVelocityTo, p->buffers[PYRO_MEM_VELOCITY + which]);
+        if (!pyro_run_gas(p, g, gas) || !pyro_run(p, g, flow)) return false;
     }
     return true;
 }
@@ -138,28 +160,27 @@ gpu_image *pyro_image(const pyro *p, pyro_look look, int which) {
 }
 
 gpu_image_desc pyro_describe_image(const pyro *p, pyro_look look) {
+    uint32_t n[3];
+    pyro_flow_size(&p->desc, n);
+    if (look == PYRO_GAS) memcpy(n, p->desc.size, sizeof n);
     return (gpu_image_desc){.label = look == PYRO_GAS ? "burning gas" : "its flow",
                             .format = GPU_RGBA16F,
-                            .width = p->desc.size[0],
-                            .height = p->desc.size[1],
-                            .depth = p->desc.size[2],
+                            .width = n[0],
+                            .height = n[1],
+                            .depth = n[2],
                             .use = GPU_USE_SAMPLED | GPU_USE_STORAGE};
 }
 
 bool pyro_keep(pyro *p, gpu *g, const pyro_numbers *n) {
-    static const int names[PYRO_LOOKS] = {[PYRO_GAS] = N_scalars, [PYRO_FLOW] = N_flow};
-    kernel *k = pyro_use(p, PYRO_K_LOOK);
+    gpu_image **images = p->looks[p->kept % 2];
     for (pyro_look i = 0; i < PYRO_LOOKS; i++) {
-        gpu_image **image = &p->looks[p->kept % 2][i];
         const gpu_image_desc desc = pyro_describe_image(p, i);
-        if (!*image) *image = gpu_image_create(g, &desc);
-        if (!*image) return false;
-        kernel_bind_image(k, names[i], *image);
+        if (!images[i]) images[i] = gpu_image_create(g, &desc);
+        if (!images[i]) return false;
     }
-    set_carrying(k, n);
+    kernel *k = pyro_use(p, PYRO_K_LOOK);
+    kernel_bind_image(k, N_scalars, images[PYRO_GAS]);
     pyro_set_gas(k, n);
-    const float density = 353 / n->ambient; // of the surroundings, kg/m^3
-    kernel_set_float(k, N_pressure_unit, density * n->cell / n->dt);
     p->kept++;
-    return pyro_run(p, g, k);
+    return pyro_run_gas(p, g, k) && look_at_flow(p, g, n, images[PYRO_FLOW]);
 }

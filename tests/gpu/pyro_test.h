@@ -78,29 +78,53 @@ static inline pyro_report pyro_look_at(pyro_world *w) {
     return report;
 }
 
+// As shaders/sim/pyro/state.glsl packs it, and back.
+static inline void pyro_pack_gas(pyro_world *w, bool pack) {
+    const float ambient = w->numbers.ambient;
+    for (size_t i = 0; i < w->cells; i++) {
+        float *g = w->gas[i], air = pack ? ambient / (ambient + g[0]) : 1 - g[0];
+        g[0] = pack ? 1 - air : ambient / air - ambient;
+        for (int k = 1; k < 4; k++) g[k] = pack ? air * g[k] : g[k] / air;
+    }
+}
+
 static inline void pyro_transfer(pyro_world *w, bool write) {
     gpu_buffer *buffers[PYRO_STATE_BUFFERS];
     void *const bytes[PYRO_STATE_BUFFERS] = {w->velocity, w->gas, w->pressure};
     pyro_buffers(w->solver, buffers);
     gpu_test_ok(gpu_idle(w->device));
+    if (write) pyro_pack_gas(w, true);
     for (int i = 0; i < PYRO_STATE_BUFFERS; i++) {
         const size_t size = gpu_buffer_size(buffers[i]);
         gpu_test_ok(write ? gpu_buffer_write(w->device, buffers[i], 0, bytes[i], size)
                           : gpu_buffer_read(w->device, buffers[i], 0, bytes[i], size));
     }
+    pyro_pack_gas(w, false);
 }
 
-// Where a cell lies in memory.
-static inline size_t pyro_cell_at(const pyro_world *w, const int c[3]) {
-    const size_t bricks[3] = {w->desc.size[0] / 8, w->desc.size[1] / 8, w->desc.size[2] / 8};
+static inline size_t pyro_place(const uint32_t size[3], const int c[3]) {
+    const size_t bricks[3] = {size[0] / 8, size[1] / 8, size[2] / 8};
     const size_t b[3] = {(size_t)c[0] / 8, (size_t)c[1] / 8, (size_t)c[2] / 8};
     const size_t brick = b[0] + bricks[0] * (b[1] + bricks[1] * b[2]);
     return 512 * brick + (size_t)(c[0] % 8 + 8 * (c[1] % 8) + 64 * (c[2] % 8));
 }
 
-// Component `axis` of the face at the lower end of a cell.
+// Where a cell of the gas lies in memory.
+static inline size_t pyro_cell_at(const pyro_world *w, const int c[3]) {
+    return pyro_place(w->desc.size, c);
+}
+
+// Cells of the velocity along an axis.
+static inline int pyro_flow_cells_along(const pyro_world *w, int axis) {
+    return (int)(w->desc.size[axis] / pyro_ratio(&w->desc));
+}
+
+// Component `axis` of the face at the lower end of a cell of the velocity.
 static inline float *pyro_face_at(pyro_world *w, int axis, const int c[3]) {
-    return &w->velocity[pyro_cell_at(w, c)][axis];
+    const uint32_t n[3] = {(uint32_t)pyro_flow_cells_along(w, 0),
+                           (uint32_t)pyro_flow_cells_along(w, 1),
+                           (uint32_t)pyro_flow_cells_along(w, 2)};
+    return &w->velocity[pyro_place(n, c)][axis];
 }
 
 // Calls `each` for all cells.

@@ -3,7 +3,9 @@
 // frame.
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 //@ option fuel = petrol {petrol, kerosene, propane, methane, ethanol, wood, dust, black_powder} : whose heat, oxygen, soot and temperature of ignition it has (effects/README.md has the table)
+//@ option combustion = mixing {mixing, premixed} : fuel burns where it is hot and meets air (fires), or where a flame passes that moves into mixture on its own (clouds of dust or gas); premixed, what a source gives above the temperature of ignition lights it
 //@ option advection = maccormack {semi_lagrangian, maccormack} : how the gas carries things; maccormack keeps detail, semi_lagrangian takes half the time
+//@ option velocity_cells = full {full, half} : as many as the gas, or half as many along each axis: a step takes a third of the time and may be twice as long; eddies are coarser, and what they carry is as fine
 //@ option precision = auto {f32, f16, auto} : of what is stored; auto is f16 on graphics cards, which takes half the memory
 //@ option boundary_left = open {open, wall, inflow, periodic} : face at -x
 //@ option boundary_right = open {open, wall, inflow, periodic} : face at +x
@@ -15,6 +17,7 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 uniform float gravity;              //= 9.81 [-1e3, 1e3] m/s^2 : by which light gas rises
 uniform float ambient_temperature;  //= 293 [50, 2000] K : of the air around
 uniform float ignition_temperature; //= 0 [0, 5000] K : above which fuel burns; 0: that of the fuel
+uniform float flame_speed;          //= 3 [0, 1e3] m/s : of a premixed flame into mixture at rest: 0.4 in calm gas, some metres a second in dust or where it is restless
 uniform float burn_time;            //= 0.1 [0, 1e3] s : that fuel and air within a cell take to mix: shorter burns fiercer
 uniform float heat_of_combustion;   //= 0 [0, 1000] MJ/kg : that 1 kg of fuel gives; 0: that of the fuel, less what its flame radiates
 uniform float soot_yield;           //= -1 [-1, 1] kg/kg : of 1 kg of fuel; below 0: that of the fuel
@@ -31,6 +34,7 @@ uniform float blend;       // of the two states
 uniform float burn_power;  // MW of 1 kg of fuel that can burn
 uniform float oxygen_need; // kg of 1 kg of fuel
 uniform float burns_above; // K
+uniform float flame_power; // MW of 1 kg of fuel by 1 K, and by 1/m of the slope of a premixed flame
 writeonly uniform image3D scalars;  //= output rgba16f optional : temperature (K), fuel, soot, fuel that has burnt (kg/m^3)
 writeonly uniform image3D velocity; //= output rgba16f optional : m/s; pressure beyond that of the air around (Pa)
 writeonly uniform image3D rates;    //= output rgba16f optional : heat of burning (MW/m^3), divergence (1/s), vorticity (1/s)
@@ -43,16 +47,36 @@ vec4 mixed(sampler3D before, sampler3D now, ivec3 at) {
     return mix(texelFetch(before, at, 0), texelFetch(now, at, 0), blend);
 }
 
-float burning(vec4 gas) {
+#if COMBUSTION == COMBUSTION_PREMIXED
+float progress(ivec3 at) {
+    vec4 gas = mixed(gas_before, gas_now, clamp(at, ivec3(0), ivec3(size) - 1));
+    return gas.w / max(gas.y + gas.w, 1e-5);
+}
+
+float burning(vec4 gas, ivec3 at) {
+    vec3 slope = vec3(progress(at + ivec3(1, 0, 0)) - progress(at - ivec3(1, 0, 0)),
+                      progress(at + ivec3(0, 1, 0)) - progress(at - ivec3(0, 1, 0)),
+                      progress(at + ivec3(0, 0, 1)) - progress(at - ivec3(0, 0, 1)));
+    return flame_power * gas.x * (gas.y + gas.w) * length(slope) / (2.0 * cell_size);
+}
+#else
+float burning(vec4 gas, ivec3 at) {
     float oxygen = max(AIR / gas.x * AIR_OXYGEN - oxygen_need * gas.w, 0.0);
     return gas.x > burns_above ? burn_power * min(gas.y, oxygen / oxygen_need) : 0.0;
+}
+#endif
+
+// It may have larger cells.
+vec4 flow_at(ivec3 at) {
+    vec3 p = (vec3(at) + 0.5) / size;
+    return mix(textureLod(flow_before, p, 0.0), textureLod(flow_now, p, 0.0), blend);
 }
 
 vec3 around(ivec3 at, int axis) {
     ivec3 low = at, high = at;
     low[axis] = max(at[axis] - 1, 0);
     high[axis] = min(at[axis] + 1, int(size[axis]) - 1);
-    vec3 change = mixed(flow_before, flow_now, high).xyz - mixed(flow_before, flow_now, low).xyz;
+    vec3 change = flow_at(high).xyz - flow_at(low).xyz;
     return change / (float(high[axis] - low[axis]) * cell_size);
 }
 
@@ -61,12 +85,12 @@ void main() {
     if (any(greaterThanEqual(at, ivec3(size)))) return;
     vec4 gas = mixed(gas_before, gas_now, at);
     if (imageSize(scalars).x > 1) imageStore(scalars, at, gas);
-    if (imageSize(velocity).x > 1) imageStore(velocity, at, mixed(flow_before, flow_now, at));
+    if (imageSize(velocity).x > 1) imageStore(velocity, at, flow_at(at));
     if (imageSize(rates).x <= 1) return;
     vec3 x = around(at, 0), y = around(at, 1), z = around(at, 2);
     vec3 curl = vec3(y.z - z.y, z.x - x.z, x.y - y.x);
     float ratio = gas.x / 1500.0, around_ = ambient_temperature / gas.x;
     float lost = cooling * ratio * ratio * ratio * ratio * (1.0 - around_ * around_ * around_ * around_) / gas.x;
-    float heat = burning(gas);
+    float heat = burning(gas, at);
     imageStore(rates, at, vec4(heat, expansion * (heat / AIR_ENERGY - lost), length(curl), 0.0));
 }

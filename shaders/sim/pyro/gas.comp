@@ -1,6 +1,7 @@
 // What the gas carries in a step, warmth, fuel, what has burnt, and soot: it moves, burns and cools.
 // Its expansion goes to the pressure's right-hand side. As velocity.comp, in one dispatch or two.
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
+#define PYRO_ON_GAS
 #include "sim/pyro/state.glsl"
 #include "sim/pyro/trace.glsl"
 
@@ -9,12 +10,72 @@ layout(std430) readonly buffer PyroGas { PYRO_FOUR gas[]; };
 layout(std430) writeonly buffer PyroGasHat { PYRO_FOUR gas_hat[]; };
 #else
 #include "sim/pyro/burn.glsl"
-uniform float cell; // m
+uniform float cell; // of the velocity, m
 layout(std430) writeonly buffer PyroGasTo { PYRO_FOUR gas_to[]; };
 layout(std430) writeonly buffer PyroRight { float right[]; }; // m/s: expansion across a cell
 #if PYRO_CORRECTS
 layout(std430) readonly buffer PyroGasHat { PYRO_FOUR gas_hat[]; };
 #endif
+#endif
+
+// ---- where there is gas -------------------------------------------------------------------------
+
+// Half bricks, as many cells as a group has, that hold more than clean air. Another one, and all within
+// eight cells around it, is left as it is: nothing comes farther in a step.
+uniform int everywhere; // 1: it is not known where
+layout(std430) readonly buffer PyroActive { uint present[]; };
+shared uint busy;
+
+const ivec3 HALF_BRICKS = PYRO_SIZE / ivec3(8, 8, 4);
+
+bool is_near_gas() {
+    uint i = gl_LocalInvocationIndex;
+    if (i == 0u) busy = uint(everywhere);
+    barrier();
+    if (i < 45u) {
+        ivec3 to = ivec3(gl_WorkGroupID) + ivec3(i % 3u, i / 3u % 3u, i / 9u) - ivec3(1, 1, 2);
+        to = mix(clamp(to, ivec3(0), HALF_BRICKS - 1), (to + HALF_BRICKS) % HALF_BRICKS, PYRO_AROUND);
+        if (present[to.x + HALF_BRICKS.x * (to.y + HALF_BRICKS.y * to.z)] != 0u) busy = 1u;
+    }
+    barrier();
+    return busy != 0u;
+}
+
+#ifndef PYRO_PREDICT
+layout(std430) writeonly buffer PyroActiveTo { uint present_to[]; };
+shared uint holds;
+
+// What a group's cells hold, or clean air where that is next to nothing in all of them.
+vec4 settle(vec4 packed) {
+    if (gl_LocalInvocationIndex == 0u) holds = 0u;
+    barrier();
+    if (any(greaterThan(abs(packed), vec4(1e-5)))) holds = 1u;
+    barrier();
+    uint group = (gl_WorkGroupID.z * gl_NumWorkGroups.y + gl_WorkGroupID.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (gl_LocalInvocationIndex == 0u) present_to[group] = holds;
+    return holds != 0u ? packed : vec4(0.0);
+}
+#endif
+
+// ---- where gas comes from ---------------------------------------------------------------------
+
+#if PYRO_RATIO == 2
+uniform sampler3D carrier; // velocity in the middle of its own cells, m/s
+
+vec3 velocity_at(vec3 p) {
+    return textureLod(carrier, p / vec3(PYRO_SIZE), 0.0).xyz;
+}
+
+// The way of a step that ends, or, with -1, begins in the middle of a cell, in cells: by the velocity
+// in its middle (Runge and Kutta's second order), since it may be several cells long.
+vec3 way_of(ivec3 c, float turn) {
+    vec3 p = vec3(c) + 0.5;
+    return reach * velocity_at(p - 0.5 * turn * reach * velocity_at(p));
+}
+#else
+vec3 way_of(ivec3 c, float turn) {
+    return reach * pyro_velocity_cell(pyro_near_of(c));
+}
 #endif
 
 // The eight values around a place.
@@ -45,33 +106,103 @@ vec4 gas_back(vec3 from, out vec4 least, out vec4 most) {
 
 #ifdef PYRO_PREDICT
 void main() {
-    vec4 least, most;
+    vec4 least, most, value = vec4(0.0);
     ivec3 c = ivec3(gl_GlobalInvocationID);
-    vec3 from = vec3(c) + 0.5 - reach * pyro_velocity_cell(pyro_near_of(c));
-    gas_hat[pyro_at(c)] = pyro_store(gas_back(from, least, most));
+    if (is_near_gas()) value = gas_back(vec3(c) + 0.5 - way_of(c, 1.0), least, most);
+    gas_hat[pyro_at(c)] = pyro_store(value);
 }
 #else
 vec4 carried(ivec3 c, int at) {
     vec4 least, most;
-    vec3 p = vec3(c) + 0.5, way = reach * pyro_velocity_cell(pyro_near_of(c));
+    vec3 p = vec3(c) + 0.5, way = way_of(c, 1.0);
     vec4 first = gas_back(p - way, least, most);
 #if PYRO_CORRECTS
     vec4 v[8];
-    pyro_span s = pyro_span_at(pyro_into(p + way), ivec3(0));
+    vec3 on = p + (PYRO_RATIO == 2 ? way_of(c, -1.0) : way);
+    pyro_span s = pyro_span_at(pyro_into(on), ivec3(0));
     GAS_EIGHT(gas_hat, s, v)
     vec4 value = clamp(first + 0.5 * (pyro_load(gas[at]) - gas_mix(v, s.t)), least, most);
-    return pyro_is_beyond(p - way) || pyro_is_beyond(p + way) ? first : value;
+    return pyro_is_beyond(p - way) || pyro_is_beyond(on) ? first : value;
 #else
     return first;
 #endif
 }
 
+#if PYRO_PREMIXED
+float progress_mix(float v[8], vec3 t) {
+    vec4 x = mix(vec4(v[0], v[2], v[4], v[6]), vec4(v[1], v[3], v[5], v[7]), t.x);
+    vec2 y = mix(x.xz, x.yw, t.y);
+    return mix(y.x, y.y, t.z);
+}
+
+#define PROGRESS_EIGHT(p, name, part)                                                              \
+    float name[8];                                                                                 \
+    vec3 part;                                                                                     \
+    {                                                                                              \
+        vec4 v_[8];                                                                                \
+        pyro_span s_ = pyro_span_at(pyro_into(p), ivec3(0));                                       \
+        GAS_EIGHT(gas, s_, v_)                                                                     \
+        part = s_.t;                                                                               \
+        name[0] = pyro_progress(v_[0]), name[1] = pyro_progress(v_[1]);                            \
+        name[2] = pyro_progress(v_[2]), name[3] = pyro_progress(v_[3]);                            \
+        name[4] = pyro_progress(v_[4]), name[5] = pyro_progress(v_[5]);                            \
+        name[6] = pyro_progress(v_[6]), name[7] = pyro_progress(v_[7]);                            \
+    }
+
+// The progress that the flame brings in this step: that of gas behind, less that of gas here. Gas that is `lighter` than
+// the mixture before the flame flows away behind it: through such gas it moves faster, and as much air
+// passes it.
+float flame(ivec3 c, float lighter) {
+    vec3 from = vec3(c) + 0.5 - way_of(c, 1.0);
+    PROGRESS_EIGHT(from, here, t)
+    vec3 slope;
+    slope.x = here[1] - here[0] + here[3] - here[2] + here[5] - here[4] + here[7] - here[6];
+    slope.y = here[2] - here[0] + here[3] - here[1] + here[6] - here[4] + here[7] - here[5];
+    slope.z = here[4] - here[0] + here[5] - here[1] + here[6] - here[2] + here[7] - here[3];
+    float steep = length(slope);
+    if (steep < 1e-4) return 0.0;
+    PROGRESS_EIGHT(from + slope / steep * (flame_reach * lighter), behind, u)
+    return progress_mix(behind, u) - progress_mix(here, t);
+}
+#endif
+
+#if PYRO_RATIO == 2
+layout(std430) writeonly buffer PyroDensity { float densities[]; }; // by that of the surroundings
+shared vec2 parts[256];
+
+// Expansion and density of a cell of the velocity: the mean of eight. The group has 4 x 4 x 2 of them.
+void hand_on(float grown, float density) {
+    uint i = gl_LocalInvocationIndex;
+    parts[i] = vec2(cell * pyro_clean(grown), density);
+    barrier();
+    if (i >= 32u) return;
+    uint first = 2u * (i & 3u) + 16u * ((i >> 2) & 3u) + 128u * (i >> 4); // of the eight
+    vec2 sum = parts[first] + parts[first + 1u] + parts[first + 8u] + parts[first + 9u];
+    sum += parts[first + 64u] + parts[first + 65u] + parts[first + 72u] + parts[first + 73u];
+    ivec3 to = ivec3(gl_WorkGroupID) * ivec3(4, 4, 2) + ivec3(i & 3u, (i >> 2) & 3u, i >> 4);
+    int at = pyro_flow_at(to);
+    right[at] = 0.125 * sum.x;
+    densities[at] = 0.125 * sum.y;
+}
+#endif
+
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
     int at = pyro_at(c);
-    vec4 g = pyro_clean(carried(c, at));
-    float grown = pyro_burn(g); // expansion, 1/s
-    gas_to[at] = pyro_store(g);
+    vec4 g = vec4(0.0);
+    float grown = 0.0, brought = 0.0; // expansion, 1/s
+    if (is_near_gas()) {
+        g = pyro_unpack(pyro_clean(carried(c, at)));
+#if PYRO_PREMIXED
+        brought = flame(c, pyro_temperature(g) / ambient);
+#endif
+        grown = pyro_burn(g, brought);
+    }
+    gas_to[at] = pyro_store(settle(pyro_pack(g)));
+#if PYRO_RATIO == 2
+    hand_on(grown, pyro_density(g));
+#else
     right[at] = cell * pyro_clean(grown);
+#endif
 }
 #endif

@@ -1,9 +1,12 @@
-// What a state comes to, for the host to read some frames later. Twice: each group its cells, and,
-// with LAST, one group all of that.
+// What a state comes to, for the host to read some frames later: each group its cells of the gas, or,
+// with FLOW, of its velocity; then, with LAST, one group all of that.
 #ifdef LAST
 layout(local_size_x = 256) in;
 #else
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
+#ifndef FLOW
+#define PYRO_ON_GAS
+#endif
 #endif
 #include "sim/pyro/state.glsl"
 #ifdef LAST
@@ -11,16 +14,34 @@ uniform int groups; // that found something
 layout(std430) readonly buffer PyroReport { vec4 report[]; };
 layout(r32ui) writeonly uniform uimage2D result;
 #else
+layout(std430) writeonly buffer PyroReport { vec4 report[]; };
+uniform int first; // of its records
+#ifdef FLOW
 #define PYRO_FINEST
 #include "sim/pyro/levels.glsl"
 #include "sim/pyro/trace.glsl"
+layout(std430) readonly buffer PyroPressure { float pressure[]; };
+layout(std430) readonly buffer PyroRight { float right[]; };
+#else
 #include "sim/pyro/burn.glsl"
 uniform float mass; // kg of the air of a cell, times its temperature
 layout(std430) readonly buffer PyroGas { PYRO_FOUR gas[]; };
-layout(std430) readonly buffer PyroPressure { float pressure[]; };
-layout(std430) readonly buffer PyroRight { float right[]; };
-layout(std430) writeonly buffer PyroReport { vec4 report[]; };
-LEVEL_OPENINGS
+
+// The progress that a flame brings in a step: by its slope.
+float brought_to(ivec3 c, vec4 g) {
+#if PYRO_PREMIXED
+    vec3 slope;
+    for (int axis = 0; axis < 3; axis++) {
+        ivec3 step_ = ivec3(axis == 0, axis == 1, axis == 2);
+        slope[axis] = pyro_progress(pyro_load(gas[pyro_at(pyro_into(c + step_))])) -
+                      pyro_progress(pyro_load(gas[pyro_at(pyro_into(c - step_))]));
+    }
+    return 0.5 * length(slope) * flame_reach * pyro_temperature(g) / ambient;
+#else
+    return 0.0;
+#endif
+}
+#endif
 #endif
 
 // The greatest speed squared, divergence that is not wanted, temperature, and 0; sums of fuel, what
@@ -60,26 +81,36 @@ void main() {
     for (int i = 0; i < 8; i++) imageStore(result, ivec2(i, 0), uvec4(floatBitsToUint(words[i])));
 }
 #else
-void main() {
-    ivec3 c = ivec3(gl_GlobalInvocationID);
+#ifdef FLOW
+Record record_of(ivec3 c) {
     int at = pyro_at(c);
-    vec4 raw = pyro_load(gas[at]), g = pyro_clean(raw);
     vec3 v = pyro_velocity_cell(pyro_near_of(c));
+#if PYRO_SOLIDS // conjugate gradients have it
+    float left = abs(right[at]);
+#else
     level_near n = level_near_of(c);
-    LEVEL_CLOSE(n)
     float around;
     LEVEL_SUM(pressure, n, around)
-    float left = abs(right[at] - (around - n.all * pressure[at])), square = dot(v, v);
+    float left = abs(right[at] - (around - n.all * pressure[at]));
+#endif
+    float square = dot(v, v);
+    if (pyro_clean(square) != square || pyro_clean(left) != left) return Record(vec4(0.0), vec4(0.0), 1.0);
+    return Record(vec4(square, left, 0.0, 0.0), vec4(0.0), 0.0);
+}
+#else
+Record record_of(ivec3 c) {
+    vec4 packed = pyro_load(gas[pyro_at(c)]), g = pyro_unpack(packed);
+    if (packed != pyro_clean(packed)) return Record(vec4(0.0), vec4(0.0), 1.0);
     float air = mass / pyro_temperature(g); // kg
-    bool bad = raw != g || pyro_clean(square) != square || pyro_clean(left) != left;
-    vec4 sum = air * g.yzwx;
-    sum.w = air * pyro_burning(g);
-    Record r = Record(vec4(square, left, pyro_temperature(g), 0.0), sum, 0.0);
-    if (bad) r = Record(vec4(0.0), vec4(0.0), 1.0);
-    r = over_group(r);
+    return Record(vec4(0.0, 0.0, pyro_temperature(g), 0.0), air * vec4(g.yzw, pyro_burning(g, brought_to(c, g))), 0.0);
+}
+#endif
+
+void main() {
+    Record r = over_group(record_of(ivec3(gl_GlobalInvocationID)));
     uint group = (gl_WorkGroupID.z * gl_NumWorkGroups.y + gl_WorkGroupID.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     if (gl_LocalInvocationIndex > 0u) return;
-    report[2u * group] = vec4(r.most.xyz, r.bad);
-    report[2u * group + 1u] = r.sum;
+    report[2u * (uint(first) + group)] = vec4(r.most.xyz, r.bad);
+    report[2u * (uint(first) + group) + 1u] = r.sum;
 }
 #endif

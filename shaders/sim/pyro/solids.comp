@@ -23,12 +23,11 @@ void main() {
         packUnorm4x8(sum / float(n.x * n.y * n.z));
 }
 #else
-layout(std430) readonly buffer SolidIds { uint ids[]; }; // x fastest; 0: gas
+#include "sim/pyro/bodies.glsl"
 layout(std430) writeonly buffer PyroOpenings { uint openings[]; };
 
 bool is_gas(ivec3 c) {
-    c = pyro_into(c);
-    return ids[c.x + PYRO_NX * (c.y + PYRO_NY * c.z)] == 0u;
+    return pyro_body_at(pyro_into(c)) == 0u;
 }
 
 void main() {

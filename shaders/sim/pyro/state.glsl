@@ -1,6 +1,10 @@
 // The state of a combustion solver (src/sim/pyro.h), for its own shaders and those of others:
 // pyro_defines and pyro_bind in src/sim/pyro.h give what this needs.
 //
+// The gas has PYRO_GAS_NX by PYRO_GAS_NY by PYRO_GAS_NZ cells. Velocity and pressure have as many, or
+// half as many along each axis (PYRO_RATIO 2). A shader works on the cells of velocity, or says
+// PYRO_ON_GAS before it includes this, and works on those of the gas: PYRO_SIZE and pyro_at are theirs.
+//
 // Cells lie in bricks of 8^3, bricks along x, then y, then z: what is near in space is near in
 // memory. Places are separable: that of a cell is the sum of what its three coordinates give.
 //
@@ -55,7 +59,15 @@ vec4 pyro_store(vec4 v) {
 }
 #endif
 
-// PYRO_NX, PYRO_NY, PYRO_NZ: cells, multiples of 8; PYRO_LOW_X to PYRO_HIGH_Z: faces, one of
+#ifdef PYRO_ON_GAS
+#define PYRO_SIDE 1 // of a cell, in cells of the gas
+#else
+#define PYRO_SIDE PYRO_RATIO
+#endif
+#define PYRO_NX (PYRO_GAS_NX / PYRO_SIDE) // multiples of 8
+#define PYRO_NY (PYRO_GAS_NY / PYRO_SIDE)
+#define PYRO_NZ (PYRO_GAS_NZ / PYRO_SIDE)
+// PYRO_LOW_X to PYRO_HIGH_Z: faces, one of
 #define PYRO_OPEN 0
 #define PYRO_WALL 1
 #define PYRO_INFLOW 2
@@ -72,6 +84,14 @@ const bvec3 PYRO_AROUND = bvec3(PYRO_LOW_X == PYRO_PERIODIC, PYRO_LOW_Y == PYRO_
 ivec3 pyro_places(ivec3 i) { // what coordinates along each axis give
     return (i >> 3) * ivec3(512, 64 * PYRO_NX, 8 * PYRO_NX * PYRO_NY) + ((i & 7) << ivec3(0, 3, 6));
 }
+
+#ifdef PYRO_ON_GAS
+int pyro_flow_at(ivec3 i) { // of a cell of the velocity
+    const int nx = PYRO_GAS_NX / PYRO_RATIO, ny = PYRO_GAS_NY / PYRO_RATIO;
+    ivec3 p = (i >> 3) * ivec3(512, 64 * nx, 8 * nx * ny) + ((i & 7) << ivec3(0, 3, 6));
+    return p.x + p.y + p.z;
+}
+#endif
 
 bvec3 both(bvec3 a, bvec3 b) {
     return bvec3(a.x && b.x, a.y && b.y, a.z && b.z);
@@ -104,8 +124,8 @@ vec4 pyro_clean(vec4 v) {
 
 // ---- the gas ----------------------------------------------------------------------------------
 
-// What a cell holds: kelvin above the surroundings, and by mass of air the fuel, the fuel that has
-// burnt, and soot.
+// What a cell holds, once unpacked: kelvin above the surroundings, and by mass of air the fuel, the
+// fuel that has burnt, and soot.
 #define PYRO_WARMTH x
 #define PYRO_FUEL y
 #define PYRO_BURNT z
@@ -117,6 +137,18 @@ const float PYRO_AIR = 353.0; // density of air times its temperature, kg K/m^3,
 
 float pyro_temperature(vec4 gas) {
     return max(ambient + gas.PYRO_WARMTH, 1.0);
+}
+
+// It is packed by volume: how much less air there is than in the surroundings, as a share of theirs, and
+// what is in it by mass of theirs. Between cells these are linear, so that mass and heat are kept where
+// hot gas meets cold; kelvin are not.
+vec4 pyro_unpack(vec4 packed) {
+    float air = max(1.0 - packed.x, 0.01);
+    return vec4(ambient / air - ambient, packed.yzw / air);
+}
+vec4 pyro_pack(vec4 gas) {
+    float air = ambient / pyro_temperature(gas);
+    return vec4(1.0 - air, air * gas.yzw);
 }
 
 // Density by that of the surroundings: an ideal gas of air and vapour.

@@ -13,7 +13,11 @@ uniform float gravity;      // m/s^2, downwards along z
 uniform vec3 acceleration;  // m/s^2
 uniform float confinement;  // m/s of a step, by 1 m/s of difference across a cell
 uniform float max_speed;    // m/s
+#if PYRO_RATIO == 2
+layout(std430) readonly buffer PyroDensity { float densities[]; }; // by that of the surroundings
+#else
 layout(std430) readonly buffer PyroGas { PYRO_FOUR gas[]; }; // as it is after the step
+#endif
 layout(std430) writeonly buffer PyroVelocityTo { PYRO_FOUR velocity_to[]; };
 #if PYRO_CORRECTS
 layout(std430) readonly buffer PyroVelocityHat { PYRO_FOUR velocity_hat[]; };
@@ -81,7 +85,11 @@ vec3 carried(ivec3 c, pyro_near n) {
 
 // Upwards acceleration of a cell, m/s^2: lighter gas rises, and moves what it pushes aside, too.
 float buoyancy(int at) {
-    float density = pyro_density(pyro_load(gas[at]));
+#if PYRO_RATIO == 2
+    float density = densities[at];
+#else
+    float density = pyro_density(pyro_unpack(pyro_load(gas[at])));
+#endif
     return gravity * 2.0 * (1.0 - density) / (1.0 + density);
 }
 

@@ -18,7 +18,8 @@ bool air_defines(pass *p, size_t index, pass_defines *out) {
 
 static bool same_place(const air *a, const air *b) {
     return a->kind == b->kind && memcmp(&a->grid.box, &b->grid.box, sizeof a->grid.box) == 0 &&
-           a->units.step == b->units.step && a->desc.warm_up == b->desc.warm_up;
+           a->units.step == b->units.step && a->desc.warm_up == b->desc.warm_up &&
+           a->desc.time_scale == b->desc.time_scale;
 }
 
 static bool exchange_grids(field_grid *grid, field_grid *other) {
@@ -65,6 +66,9 @@ bool air_check_desc(const pass *p, const pass_air_desc *d) {
                        p->label, d->time_step);
     if (!(d->warm_up >= 0 && d->warm_up <= 86400))
         return err_set("%s: 'warm_up' is %g s; accepted: 0 to 86400", p->label, d->warm_up);
+    if (!(d->time_scale >= 1e-3 && d->time_scale <= 1e3))
+        return err_set("%s: 'time_scale' is %g; accepted: 0.001 to 1000, above 1 is time lapse",
+                       p->label, d->time_scale);
     return true;
 }
 
@@ -177,6 +181,7 @@ void air_describe(const air *a, strbuf *out) {
     strbuf_add(out, "position = %g, %g, %g\n", (double)at[0], (double)at[1], (double)at[2]);
     strbuf_add(out, "time_step = %.9g\n", a->units.step);
     strbuf_add(out, "warm_up = %.9g\n", a->desc.warm_up);
+    strbuf_add(out, "time_scale = %.9g\n", a->desc.time_scale);
 }
 
 void air_destroy(pass *p) {

@@ -19,6 +19,7 @@ typedef struct pass_air_desc {
     double speed;      // m/s that the air is expected to stay below
     double time_step;  // seconds; 0: by the speed
     double warm_up;    // seconds that are simulated before time 0
+    double time_scale; // seconds that are simulated in one of the effect's: 1
 } pass_air_desc;
 
 // Before pass_declare; then the grid is the effect's. NULL with a message.

@@ -63,7 +63,7 @@ static bool place(air *a, air_meshes *m, uint64_t step, voxels_change *change) {
     const pass_host *host = a->pass->host;
     field_context then = *host->context;
     then.time = air_step_time(a, step);
-    double passed = isnan(m->updated) ? 0 : then.time - m->updated;
+    double passed = isnan(m->updated) ? 0 : (then.time - m->updated) * a->desc.time_scale;
     m->updated = then.time;
     m->met = m->met || is_inside(a, m, &then);
     return voxels_update(m->cells, host->device, &then, passed, change);

@@ -46,7 +46,8 @@ enum { AIR_STEP, AIR_VOXELS, AIR_SOURCES, AIR_FIELDS, AIR_LABELS };
         NAME(heat_of_combustion), NAME(soot_yield), NAME(soot_burn_time), NAME(cooling),           \
         NAME(expansion), NAME(vorticity), NAME(soot), NAME(during), NAME(gas_now),                 \
         NAME(gas_before), NAME(flow_now), NAME(flow_before), NAME(burn_power), NAME(oxygen_need),  \
-        NAME(burns_above), NAME(rates), NAME(ambient)
+        NAME(burns_above), NAME(rates), NAME(ambient), NAME(velocity_cells), NAME(combustion),     \
+        NAME(flame_speed), NAME(flame_power)
 enum { AIR_NAMES(KERNEL_NAME_ID), AIR_NAME_COUNT };
 extern const char *const air_names[AIR_NAME_COUNT];
 
@@ -121,6 +122,7 @@ bool air_rehearse_sources(const air *a);
 void air_describe(const air *a, struct strbuf *out); // for checkpoints: time and place
 
 // air_time.c
+double air_step_seconds(const air *a);               // of the effect's time that a step takes
 double air_step_time(const air *a, uint64_t step); // of the state before it
 // What is dear to find, the force and what sources hold, is found anew so many times a second of
 // the simulation, whatever is drawn: in which turn the next step lies, and from when to when it is.

@@ -216,7 +216,7 @@ static bool gives_now(pass *p, const air_source *s, bool *gives) {
     float during[4];
     const double time = p->host->context->time;
     if (!pass_evaluate_now(p, N_during, during)) return false;
-    *gives = time + s->air->units.step > (double)during[0] && time < (double)during[1];
+    *gives = time + air_step_seconds(s->air) > (double)during[0] && time < (double)during[1];
     return true;
 }
 

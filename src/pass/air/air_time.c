@@ -10,8 +10,14 @@ enum { FEW_TIMED = 4, MOST_TIMED = GPU_MAX_PASSES / 4 };
 
 enum { TURNS = 96 }; // a second
 
+double air_step_seconds(const air *a) {
+    return a->units.step / a->desc.time_scale;
+}
+
 static pass_steps clock_of(const air *a) {
-    return (pass_steps){.step = a->units.step, .warm_up = a->desc.warm_up, .late = a->kind->late};
+    return (pass_steps){.step = air_step_seconds(a),
+                        .warm_up = a->desc.warm_up / a->desc.time_scale,
+                        .late = a->kind->late};
 }
 
 double air_step_time(const air *a, uint64_t step) {

@@ -3,12 +3,12 @@
 #include "pass/air/pyro_parts.h"
 
 field_grid *pass_pyro_open(pass *p, const pass_air_desc *desc) {
-    static const double courant = 1.5; // cells a step of the expected speed
+    static const double courant = 1.5; // cells of the velocity a step, by the expected speed
     if (!air_check_desc(p, desc)) return NULL;
     pyro_air *a = p->state = arena_alloc(p->host->memory, sizeof *a);
     *a = (pyro_air){0};
-    const double step =
-        desc->time_step > 0 ? desc->time_step : courant * desc->voxel_size / desc->speed;
+    const double cell = desc->voxel_size * (pass_option(p, N_velocity_cells) == 1 ? 2 : 1);
+    const double step = desc->time_step > 0 ? desc->time_step : courant * cell / desc->speed;
     return air_open(&a->air, &pyro_kind, p, desc, (sim_units){desc->voxel_size, step});
 }
 
@@ -23,6 +23,8 @@ static bool pyro_air_complete(pass *p) {
     pyro_desc d = {
         .advection = (pyro_advection)pass_option(p, N_advection),
         .precision = (pyro_precision)pass_option(p, N_precision),
+        .half_velocity = pass_option(p, N_velocity_cells) == 1,
+        .premixed = pass_option(p, N_combustion) == 1,
         .confinement = has_confinement(p),
         .force = air_force_varies(p),
         .solids = a->air.solids.count > 0,
@@ -86,6 +88,7 @@ static bool pyro_air_update(pass *p) {
     air_set_frame(p, &a->air);
     pass_set_float(p, N_cell_size, n.cell);
     pass_set_float(p, N_burn_power, n.heat / 1e6f / (n.burn_time > n.dt ? n.burn_time : n.dt));
+    pass_set_float(p, N_flame_power, n.heat / 1e6f * n.flame_speed / n.ambient);
     pass_set_float(p, N_oxygen_need, n.oxygen > 1e-4f ? n.oxygen : 1e-4f);
     pass_set_float(p, N_burns_above, n.ignition);
     return true;
@@ -106,7 +109,7 @@ static void bind_looks(const pyro_air *a, kernel *k) {
         gpu_image *both[2] = {now, before ? before : now};
         for (int i = 0; i < 2; i++)
             kernel_bind(k, names[look][i],
-                        (gpu_binding){.image = both[i], .sampler = GPU_NEAREST_CLAMP});
+                        (gpu_binding){.image = both[i], .sampler = GPU_LINEAR_CLAMP});
     }
 }
 

@@ -8,10 +8,11 @@
 #include <math.h>
 
 static const float worst_residual = 0.05f; // of the greatest speed
-static const double most_courant = 5;      // cells a step
+static const double most_courant = 3;      // cells of the velocity a step
 
 static double courant(const pyro_air *a) {
-    return (double)a->report.speed * a->air.units.step / a->air.units.cell;
+    const double cell = a->air.units.cell * pyro_ratio(pyro_get_desc(a->solver));
+    return (double)a->report.speed * a->air.units.step / cell;
 }
 
 // What the report shows that is wrong; false: nothing.

@@ -12,17 +12,10 @@ bool pyro_air_numbers(const pass *p, pyro_numbers *out) {
     const pyro_air *a = pyro_air_of(p);
     const sim_fuel *fuel = a->fuel;
     float v[AIR_NAME_COUNT][4];
-    static const int names[] = {N_gravity,
-                                N_ambient_temperature,
-                                N_ignition_temperature,
-                                N_burn_time,
-                                N_heat_of_combustion,
-                                N_soot_yield,
-                                N_soot_burn_time,
-                                N_cooling,
-                                N_expansion,
-                                N_vorticity,
-                                N_dissolve_rate,
+    static const int names[] = {N_gravity,     N_ambient_temperature, N_ignition_temperature,
+                                N_flame_speed, N_burn_time,           N_heat_of_combustion,
+                                N_soot_yield,  N_soot_burn_time,      N_cooling,
+                                N_expansion,   N_vorticity,           N_dissolve_rate,
                                 N_wind};
     for (size_t i = 0; i < COUNT_OF(names); i++)
         if (!pass_evaluate_now(p, names[i], v[names[i]])) return false;
@@ -36,6 +29,7 @@ bool pyro_air_numbers(const pass *p, pyro_numbers *out) {
         .inflow = {v[N_wind][0], v[N_wind][1], v[N_wind][2]},
         .confinement = v[N_vorticity][0],
         .ignition = ignition > 0 ? ignition : (float)fuel->ignition,
+        .flame_speed = v[N_flame_speed][0],
         .burn_time = v[N_burn_time][0],
         .heat = heat > 0 ? heat * 1e6f : (float)(fuel->heat * (1 - fuel->radiated)),
         .oxygen = (float)fuel->oxygen,
@@ -99,8 +93,10 @@ static bool pyro_air_give(const air *a, pass *source, kernel *k, uint32_t thread
     const pyro_air *p = pyro_of(a);
     const kernel_place *places = pass_solver_places(source, AIR_GIVE);
     kernel_set_float(k, N_ambient, p->numbers.ambient);
+    kernel_set_float(k, N_burns_above, p->numbers.ignition);
     pyro_bind(p->solver, k, places);
-    for (int i = 0; i < 3; i++) threads[i]++; // the faces behind the last cells
+    // From the beginning of a cell of velocity to the faces behind the last one.
+    for (int i = 0; i < 3; i++) threads[i] += 2 * pyro_ratio(pyro_get_desc(p->solver)) - 1;
     return true;
 }
 

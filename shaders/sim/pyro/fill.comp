@@ -1,0 +1,26 @@
+// Cells within solids hold what the gas around them does, so that none of it is lost where gas is traced
+// back into them.
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
+#define PYRO_ON_GAS
+#include "sim/pyro/state.glsl"
+#include "sim/pyro/bodies.glsl"
+
+layout(std430) buffer PyroGasTo { PYRO_FOUR gas_to[]; };
+
+vec4 around(ivec3 c) {
+    vec4 sum = vec4(0.0);
+    float count = 0.0;
+    for (int i = 0; i < 6; i++) {
+        ivec3 step_ = ivec3(i >> 1 == 0, i >> 1 == 1, i >> 1 == 2) * (2 * (i & 1) - 1);
+        ivec3 other = pyro_into(c + step_);
+        if (pyro_body_at(other) != 0u) continue;
+        sum += pyro_load(gas_to[pyro_at(other)]);
+        count++;
+    }
+    return sum / max(count, 1.0);
+}
+
+void main() {
+    ivec3 c = ivec3(gl_GlobalInvocationID);
+    if (pyro_body_at(c) != 0u) gas_to[pyro_at(c)] = pyro_store(around(c));
+}
