@@ -80,6 +80,15 @@ bool pass_gives(const pass *p, int name) {
     return p->uniforms[index] || pass_inherited_uniform(p, index, &declared);
 }
 
+bool pass_may_be(const pass *p, int name, float limit, bool above) {
+    const size_t index = known(p, name, p->names[name].uniform, "uniform");
+    const value_desc *declared = &p->face->uniforms[index];
+    const field *node = p->uniforms[index];
+    if (!node) node = pass_inherited_uniform(p, index, &declared);
+    if (node && !field_is_constant(node)) return true; // it moves
+    return ((node ? node->value[0] : declared->value[0]) > limit) == above;
+}
+
 graph_image *pass_image(const pass *p, int name) {
     return &p->images[known(p, name, p->names[name].image, "image")];
 }

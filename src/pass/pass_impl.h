@@ -122,6 +122,9 @@ bool pass_option_is(const pass *p, int name, const char *word);
 uint32_t pass_option_number(const pass *p, int name);   // of words that are numbers
 const field *pass_given_field(const pass *p, int name); // NULL: not given
 bool pass_gives(const pass *p, int name); // it, or a source, says what that uniform is
+// Whether a number can be above `limit`, or can be no more than that, as far as that is known
+// before a frame: passes are built side by side, where no Lua may run.
+bool pass_may_be(const pass *p, int name, float limit, bool above);
 graph_image *pass_image(const pass *p, int name);
 gpu_image *pass_get_image(const pass *p, int name); // on the device, in a frame; may be NULL
 

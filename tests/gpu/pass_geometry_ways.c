@@ -11,24 +11,38 @@ typedef struct limits { // of what is shown: 0: none
     float distance, lod;
 } limits;
 
-static seen look(gpu *device, const char *mode, scene_mesh *(*make)(pass_world *w), limits most) {
+static void set_limits(pass_world *w, pass *p, limits most) {
+    gpu_test_ok(pass_set_uniform(p, "max_distance", number(w, most.distance)));
+    gpu_test_ok(pass_set_uniform(p, "lod", number(w, most.lod)));
+}
+
+// `before`: limits of a frame before the one that is seen; NULL: there is none.
+static seen look_after(gpu *device, const char *mode, scene_mesh *(*make)(pass_world *w),
+                       const limits *before, limits most) {
     pass_world w;
     world_open(&w, device);
     scene_mesh *mesh = make(&w);
     pass *p = world_add(&w, "geometry", NULL, "geometry");
     gpu_test_ok(pass_set_option(p, "mode", mode));
-    gpu_test_ok(pass_set_uniform(p, "max_distance", number(&w, most.distance)));
-    gpu_test_ok(pass_set_uniform(p, "lod", number(&w, most.lod)));
+    set_limits(&w, p, before ? *before : most);
     for (size_t i = 0; i < w.instances_count; i++)
         gpu_test_ok(pass_add_instances(p, w.instances[i]));
     gpu_test_ok((w.instances_count > 0 || pass_add_mesh(p, mesh)) && pass_declare(p));
     graph_add_output(w.host.graph, pass_output(p, "depth"));
     graph_add_output(w.host.graph, pass_output(p, "normal"));
     world_render(&w, WIDTH, HEIGHT, pass_output(p, "albedo"));
+    if (before) {
+        set_limits(&w, p, most);
+        world_frame(&w, WIDTH, HEIGHT, 2);
+    }
     seen s = {world_read(&w, pass_output(p, "albedo")), world_read(&w, pass_output(p, "normal")),
               world_read_depth(&w, pass_output(p, "depth"))};
     world_close(&w);
     return s;
+}
+
+static seen look(gpu *device, const char *mode, scene_mesh *(*make)(pass_world *w), limits most) {
+    return look_after(device, mode, make, NULL, most);
 }
 
 static void release(seen *s) {
@@ -219,6 +233,21 @@ static void rays_meet_levels_that_are_drawn(void **state) {
     release(&some);
 }
 
+// Rays with limits have a kernel of their own, which is built when the first limit is set.
+static void rays_follow_limits_that_are_set_later(void **state) {
+    static const limits each[] = {{0}, {.lod = 6}, {.distance = 8}};
+    for (size_t i = 0; i < COUNT_OF(each); i++) {
+        seen now = look(*state, "rays", make_simplified, each[i]);
+        for (size_t k = 0; k < COUNT_OF(each); k++) {
+            seen later = look_after(*state, "rays", make_simplified, &each[k], each[i]);
+            assert_memory_equal(now.depth, later.depth, PIXELS * sizeof *now.depth);
+            assert_memory_equal(now.normal, later.normal, 4 * PIXELS * sizeof *now.normal);
+            release(&later);
+        }
+        release(&now);
+    }
+}
+
 static float lit(gpu *device, const char *mode, float lod) {
     pass_world w;
     world_open(&w, device);
@@ -303,6 +332,7 @@ int main(void) {
         cmocka_unit_test(rays_show_what_is_drawn_of_instances),
         cmocka_unit_test(what_is_far_is_left_out_of_both),
         cmocka_unit_test(rays_meet_levels_that_are_drawn),
+        cmocka_unit_test(rays_follow_limits_that_are_set_later),
         cmocka_unit_test(simplified_meshes_stand_in_no_light_of_their_own),
         cmocka_unit_test(no_ray_slips_through_between_triangles),
     };

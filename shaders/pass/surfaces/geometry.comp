@@ -21,10 +21,22 @@ bool is_shown(uint mesh) {
     return (shown[mesh >> 5] >> (mesh & 31u) & 1u) != 0u;
 }
 
+// Looking at distances takes a ray a tenth more instructions even where none is asked for, so that
+// there is a kernel for when max_distance or lod are above 0, and one without.
+#if BY_DISTANCE
 bool is_too_far(bvh_instance item) {
     if (max_distance == 0.0 || (placed[item.what.x >> 5] >> (item.what.x & 31u) & 1u) == 0u) return false;
     return distance(0.5 * (item.low + item.high), frame.eye.xyz) > max_distance;
 }
+
+// What the root of the item's tree has below it. The ray is in the space of its mesh.
+uint below_root(bvh_ray ray, uint item) {
+    return surface_level(ray, item, float(imageSize(depth).y) / (2.0 * frame.lens.y), lod);
+}
+#else
+bool is_too_far(bvh_instance item) { return false; }
+uint below_root(bvh_ray ray, uint item) { return bvh_instances[item].below; }
+#endif
 
 // One of what is placed.
 void meet(uint item, int outer_top, inout bvh_ray ray, inout surface_hit hit) {
@@ -33,8 +45,7 @@ void meet(uint item, int outer_top, inout bvh_ray ray, inout surface_hit hit) {
     bvh_ray inner = bvh_to_mesh(ray, item);
     int before = hit.triangle;
     hit.triangle = -1;
-    float pixels = float(imageSize(depth).y) / (2.0 * frame.lens.y);
-    surface_find(inner, item, surface_level(inner, item, pixels, lod), outer_top, holes, hit);
+    surface_find(inner, item, below_root(inner, item), outer_top, holes, hit);
     if (hit.triangle < 0) {
         hit.triangle = before;
         return;

@@ -9,6 +9,7 @@
 enum { WITH_SURFACE = 1, WITH_EMISSION = 2, VARIANTS = 4 };
 enum {
     GEOMETRY_RAYS,
+    GEOMETRY_RAYS_FAR, // rays that choose by distance: what is left out, levels of detail
     GEOMETRY_DRAWN,
     GEOMETRY_CHOOSE = GEOMETRY_DRAWN + VARIANTS,
     GEOMETRY_KERNELS = GEOMETRY_CHOOSE + DRAWN_STEPS
@@ -85,11 +86,12 @@ static bool is_variant(size_t index) {
 static bool geometry_defines(pass *p, size_t index, pass_defines *out) {
     const geometry_state *s = p->state;
     const size_t variant = index - GEOMETRY_DRAWN;
+    if (index < GEOMETRY_DRAWN) pass_define_flag(out, "BY_DISTANCE", index == GEOMETRY_RAYS_FAR);
     if (is_variant(index)) {
         pass_define_flag(out, "WITH_SURFACE", variant & WITH_SURFACE);
         pass_define_flag(out, "WITH_EMISSION", variant & WITH_EMISSION);
     }
-    return s->rays == (index == GEOMETRY_RAYS);
+    return s->rays == (index < GEOMETRY_DRAWN);
 }
 
 static size_t variant_of(bool surface, bool emission) {
@@ -98,6 +100,10 @@ static size_t variant_of(bool surface, bool emission) {
 
 static bool geometry_foresees(const pass *p, size_t index) {
     const graph *g = p->host->graph;
+    if (index == GEOMETRY_RAYS)
+        return pass_may_be(p, N_lod, 0, false) && pass_may_be(p, N_max_distance, 0, false);
+    if (index == GEOMETRY_RAYS_FAR)
+        return pass_may_be(p, N_lod, 0, true) || pass_may_be(p, N_max_distance, 0, true);
     return !is_variant(index) || index == variant_of(graph_is_read(g, *pass_image(p, N_surface)),
                                                      graph_is_read(g, *pass_image(p, N_emission)));
 }
@@ -147,9 +153,18 @@ static bool geometry_update(pass *p) {
     return true;
 }
 
+static bool trace(pass *p) {
+    uint32_t size[3];
+    graph_get_size(p->host->graph, *pass_image(p, N_depth), size);
+    if (!pass_prepare(p)) return false;
+    const bool far = pass_value(p, N_lod) > 0 || pass_value(p, N_max_distance) > 0;
+    const size_t index = far ? GEOMETRY_RAYS_FAR : GEOMETRY_RAYS;
+    return pass_make_late(p, index, false) && pass_dispatch(p, index, size[0], size[1], 1);
+}
+
 static bool geometry_record(pass *p) {
     const geometry_state *s = p->state;
-    if (s->rays) return pass_record(p);
+    if (s->rays) return trace(p);
     gpu_image *surface = pass_get_image(p, N_surface), *emission = pass_get_image(p, N_emission);
     const size_t index = variant_of(surface, emission);
     gpu_draw_desc target = {
