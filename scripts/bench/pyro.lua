@@ -1,4 +1,4 @@
--- A step of burning gas by size, advection, precision and confinement.
+-- A step of burning gas by size, cells of its velocity, advection, precision and confinement.
 --
 --   roil bench scripts/bench/pyro.lua -o out/pyro
 --   roil bench scripts/bench/pyro.lua -o out/pyro --size 96x54 --frames 8 --only cells=64
@@ -12,6 +12,10 @@ return sweep {
   effect = "effects/pyro.lua", size = {320, 180}, frames = "40-59", warmup = 4, limit = 60,
   axes = {
     axis { "cells", 32, 64, 96, 128, 192, 256 },
+    axis { "velocity",
+      { name = "full", ["pyro.velocity_cells"] = "full" },
+      { name = "half", ["pyro.velocity_cells"] = "half" },
+    },
     axis { "advection",
       { name = "maccormack", ["pyro.advection"] = "maccormack" },
       { name = "semi_lagrangian", ["pyro.advection"] = "semi_lagrangian" },
@@ -27,6 +31,7 @@ return sweep {
   },
   -- Sizes are measured for what most effects have, all else at one size.
   skip = function(row)
-    return row.cells ~= 128 and (row.advection ~= "maccormack" or row.vorticity ~= "none")
+    local as_most = row.advection == "maccormack" and row.vorticity == "none"
+    return not as_most and (row.cells ~= 128 or row.velocity ~= "full")
   end,
 }
