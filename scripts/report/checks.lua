@@ -71,8 +71,9 @@ local function verdict(holds)
   return h.td { class = not holds and "state" or nil, holds and "holds" or "missed" }
 end
 
+-- `check`: a cell that names it, in the table of all.
 local function row_of(f, check)
-  return h.tr { check and h.th { scope = "row", h.a { href = "#" .. check.name, check.title } }, h.th { scope = "row", f.name },
+  return h.tr { check, h.th { scope = "row", f.name },
     h.td { class = "n", short(f.seen) }, h.td { class = "n", short(f.wanted) },
     h.td { class = "n", short(f.low), " to ", short(f.high) }, h.td(f.unit), verdict(f.holds) }
 end
@@ -111,8 +112,8 @@ end
 return function(results)
   local rows, sections, missed = {}, {}, 0
   for i, check in ipairs(results.checks) do
-    for _, f in ipairs(check.figures) do
-      rows[#rows + 1] = row_of(f, check)
+    for k, f in ipairs(check.figures) do
+      rows[#rows + 1] = row_of(f, h.th { k == 1 and h.a { href = "#" .. check.name, check.title } })
       if not f.holds then missed = missed + 1 end
     end
     sections[i] = section(check)
