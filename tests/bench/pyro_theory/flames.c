@@ -99,12 +99,17 @@ static void look_at_fire(theory_check *c, const plots *p, const char *name, cons
                 puffs * d->last);
 }
 
+// As high as the highest power.
 static void draw_expected(theory_check *c, const plots *p) {
+    double most = 0;
+    for (size_t i = 0; i < p->puffs->count; i++)
+        for (size_t k = 0; k < p->puffs->series[i].count; k++)
+            most = fmax(most, p->puffs->series[i].points[k][1]);
     theory_series *puffs = theory_add_series(c, p->puffs, "1.5", 2);
     theory_series *flame = theory_add_series(c, p->flame, "Heskestad", 1);
     puffs->expected = flame->expected = flame->marks = true;
     theory_add(puffs, 1.5, 0);
-    theory_add(puffs, 1.5, 0.3);
+    theory_add(puffs, 1.5, most);
     theory_add(flame, 1, 0.5);
 }
 
@@ -118,7 +123,6 @@ static plots add_plots(theory_check *c, bool axis) {
     p.flame = theory_add_plot(c, "Share of time with a flame", "height by Heskestad's", "share");
     p.puffs = theory_add_plot(c, "Puffs: speed on the axis", "f sqrt(D)", "power");
     p.heat = burner_plot_heat(c);
-    draw_expected(c, &p);
     return p;
 }
 
@@ -199,6 +203,7 @@ void theory_flames(const theory_order *order, theory_check *c) {
         compare_axis(c, &p, fires[i].name, &d, &s, &r);
         look_at_fire(c, &p, fires[i].name, &d, &s);
     }
+    draw_expected(c, &p);
     for (int k = 0; k < REGIONS; k++) {
         char text[128];
         snprintf(text, sizeof text, "warmth by McCaffrey's, %s", regions[k].name);
@@ -235,4 +240,5 @@ void theory_pool(const theory_order *order, theory_check *c) {
     const plots p = add_plots(c, false);
     const burner_seen s = burner_run(order, c, &d);
     look_at_fire(c, &p, "1.57 MW", &d, &s);
+    draw_expected(c, &p);
 }

@@ -120,7 +120,7 @@ void theory_rings(const theory_order *order, theory_check *c) {
     c->name = "rings";
     c->title = "Two vortex rings leapfrog";
     c->source =
-        "thin rings that carry each other (Dyson, Phil. Trans. A 184, 1893; Saffman, Vortex "
+        "Thin rings that carry each other (Dyson, Phil. Trans. A 184, 1893; Saffman, Vortex "
         "Dynamics, section 10.2), of the same softened threads";
     const uint32_t wide = theory_cells(order, 40), high = theory_cells(order, 96);
     const double u = wide / 40.0; // cells by those of the coarse size
@@ -167,7 +167,7 @@ void theory_rings(const theory_order *order, theory_check *c) {
     pyro_close(&w);
     double a[8], b[8];
     const size_t passes = crossings(known, a), seen_passes = crossings(seen, b);
-    theory_note(c, "radius %.0f cells, core %.1f, a radius apart", 8 * u, 1.8 * u);
+    theory_note(c, "Radius %.0f cells, core %.1f, a radius apart", 8 * u, 1.8 * u);
     theory_near(c, "time of the first pass", seen_passes > 0 ? b[0] : (double)NAN, a[0], 0.10,
                 "radius^2 / circulation");
     theory_between(c, "passes before they merge", (double)seen_passes, 1, (double)passes, "");
