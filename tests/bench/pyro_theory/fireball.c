@@ -39,6 +39,42 @@ static double diameter(pyro_world *w) {
     return sqrt(4 * area / pi) * (double)w->numbers.cell;
 }
 
+// ---- room -------------------------------------------------------------------------------------
+
+// What flows out of the box, a cell within its faces, m^3/s. Its ground is a wall.
+static double outflow(pyro_world *w) {
+    const int *n = (const int *)w->desc.size;
+    double sum = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+        for (int i = a == 2 ? 0 : 1; i < n[a] - 1; i++)
+            for (int k = b == 2 ? 0 : 1; k < n[b] - 1; k++) {
+                int c[3];
+                c[a] = i, c[b] = k;
+                c[axis] = n[axis] - 1;
+                sum += (double)*pyro_face_at(w, axis, c);
+                c[axis] = 1;
+                if (axis < 2) sum -= (double)*pyro_face_at(w, axis, c);
+            }
+    }
+    return sum * pow((double)w->numbers.cell, 2);
+}
+
+// What burning makes by theory, div u = d ln T / dt of gas that a flame warms with the fuel in it
+// (Rehm and Baum 1978), of the state as it is, m^3/s.
+static double room(const pyro_world *w) {
+    const pyro_numbers *n = &w->numbers;
+    const double share = 1 - exp(-(double)n->dt / (double)n->burn_time), need = (double)n->oxygen;
+    double sum = 0;
+    for (size_t i = 0; i < w->cells; i++) {
+        const double t = ambient + (double)w->gas[i][0], fuel = (double)w->gas[i][1];
+        const double burnt = (double)w->gas[i][2], left = fmax(0.232 - need * burnt, 0) / need;
+        const double now = share * fmin(fmax(fuel, 0), left);
+        sum += log(1 + (double)n->heat / 1150 * now / (1 + fuel + burnt) / t);
+    }
+    return sum * pow((double)n->cell, 3) / (double)n->dt;
+}
+
 void theory_fireball(const theory_order *order, theory_check *c) {
     c->name = "fireball";
     c->title = "A fireball";
@@ -76,12 +112,16 @@ void theory_fireball(const theory_order *order, theory_check *c) {
     theory_series *law = theory_add_series(c, size, "5.8 M^1/3 by 0.45 M^1/3", 3);
     law->expected = true;
     theory_add(law, 0, wanted), theory_add(law, time, wanted), theory_add(law, time, 0);
-    double most = 0, ends = NAN, sum = 0;
+    double most = 0, ends = NAN, sum = 0, made = 0, out = 0;
     for (int i = 1; i <= LOOKS; i++) {
-        theory_step(c, &w, between);
+        theory_step(c, &w, between - 1);
+        pyro_transfer(&w, false);
+        made += room(&w); // in the step that comes
+        theory_step(c, &w, 1);
         const pyro_report r = pyro_look_at(&w);
         const double t = i * between * dt;
         pyro_transfer(&w, false);
+        out += outflow(&w);
         const double d = diameter(&w);
         theory_add(seen, t, d);
         theory_add(burnt, t, (double)r.burnt);
@@ -100,4 +140,6 @@ void theory_fireball(const theory_order *order, theory_check *c) {
     theory_near(c, "duration", ends, time, 0.25, "s");
     theory_near(c, "most fuel that there was, burnt and left, by what was given", sum / given, 1,
                 0.02, "");
+    // What mixes within the step burns in it, too: some hundredths more than the state before has.
+    theory_near(c, "room that burning makes: what flows out, by theory", out / made, 1, 0.10, "");
 }
