@@ -166,7 +166,7 @@ static bool is_used(const pyro_desc *desc, pyro_kernel which) {
         return desc->advection == PYRO_MACCORMACK;
     if (which == PYRO_K_VORTICITY || which == PYRO_K_CURL) return desc->confinement;
     if (which >= PYRO_K_SOLIDS && which <= PYRO_K_FILL) return desc->solids;
-    if (which >= PYRO_K_RESIDUAL && which <= PYRO_K_SUM) return desc->solids;
+    if (which >= PYRO_K_RESIDUAL && which <= PYRO_K_MOVE) return desc->solids;
     return true;
 }
 
@@ -227,11 +227,11 @@ static void find_sizes(const pyro *p, uint64_t out[PYRO_MEM_COUNT]) {
     out[PYRO_MEM_PRESSURE] = out[PYRO_MEM_RIGHT] = 4 * flow;
     out[PYRO_MEM_COARSE_PRESSURE] = out[PYRO_MEM_COARSE_RIGHT] = 4 * pyro_coarse_cells(p);
     out[PYRO_MEM_REPORT] = (gas + flow) / PYRO_CELLS_A_GROUP * 32;
+    out[PYRO_MEM_SUMS] = PYRO_SUMS * 16;
     if (!p->desc.solids) return;
     out[PYRO_MEM_OPENINGS] = 4 * flow;
     out[PYRO_MEM_COARSE_OPENINGS] = 4 * pyro_coarse_cells(p);
     for (pyro_memory i = PYRO_MEM_FOUND; i <= PYRO_MEM_CHANGE; i++) out[i] = 4 * flow;
-    out[PYRO_MEM_SUMS] = 64;
 }
 
 static const char *const memory_labels[PYRO_MEM_COUNT] = {"velocity of burning gas",
@@ -253,7 +253,7 @@ static const char *const memory_labels[PYRO_MEM_COUNT] = {"velocity of burning g
                                                           "conjugate gradients",
                                                           "conjugate gradients",
                                                           "conjugate gradients",
-                                                          "conjugate gradients",
+                                                          "sums over burning gas",
                                                           "report of burning gas"};
 
 bool pyro_allocate(pyro *p, gpu *g) {
@@ -356,6 +356,7 @@ size_t pyro_buffers(pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]) {
     out[0] = pyro_pair(p, PYRO_MEM_VELOCITY, 0);
     out[1] = pyro_pair(p, PYRO_MEM_GAS, 0);
     out[2] = p->buffers[PYRO_MEM_PRESSURE];
+    out[3] = p->buffers[PYRO_MEM_SUMS];
     return PYRO_STATE_BUFFERS;
 }
 

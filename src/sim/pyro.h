@@ -140,7 +140,7 @@ extern const kernel_table pyro_kernel_table;
 
 // Returns the buffers of the state, without the count of steps. The caller may change what they
 // hold.
-enum { PYRO_STATE_BUFFERS = 3 };
+enum { PYRO_STATE_BUFFERS = 4 };
 size_t pyro_buffers(pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]);
 
 // Exchanges the states, images and counts of steps of two solvers. False when their cells or

@@ -29,7 +29,7 @@ typedef enum pyro_memory {
     PYRO_MEM_FOUND, // with conjugate gradients, of which these are the vectors
     PYRO_MEM_DIRECTION,
     PYRO_MEM_CHANGE,
-    PYRO_MEM_SUMS,
+    PYRO_MEM_SUMS, // with corrections or solids
     PYRO_MEM_REPORT,
     PYRO_MEM_COUNT
 } pyro_memory;
@@ -41,6 +41,7 @@ typedef struct pyro_level {
     float weights[3];    // of differences along each axis
 } pyro_level;
 
+enum { PYRO_SUMS = 6, PYRO_CORRECTIONS = 4 }; // places of sums; of those of corrections
 enum { PYRO_REPORT_PLACES = GPU_FRAMES_IN_FLIGHT + 1, PYRO_REPORT_WORDS = 8 };
 
 typedef struct pyro_reporter {
@@ -79,7 +80,7 @@ typedef enum pyro_kernel {
     PYRO_K_TURN,
     PYRO_K_APPLY,
     PYRO_K_MOVE,
-    PYRO_K_SUM,
+    PYRO_K_SUM, // also of corrections of the gas
     PYRO_K_PROJECT,
     PYRO_K_LOOK, // at the gas
     PYRO_K_LOOK_FLOW,
@@ -105,7 +106,8 @@ typedef enum pyro_kernel {
         NAME(level_first), NAME(colour), NAME(coarse_size), NAME(coarser), NAME(coarse_first),     \
         NAME(sweeps), NAME(relaxation), NAME(pressure_unit), NAME(groups), NAME(mass),             \
         NAME(SolidIds), NAME(SolidMotions), NAME(box_min), NAME(force), NAME(begins), NAME(place), \
-        NAME(first), NAME(carrier), NAME(flame_reach), NAME(everywhere)
+        NAME(first), NAME(carrier), NAME(flame_reach), NAME(everywhere), NAME(balances),           \
+        NAME(vectors)
 enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 
 struct pyro {
@@ -152,6 +154,9 @@ uint64_t pyro_coarse_cells(const pyro *p);
 // Of the next velocity, whose expansion is in PyroRight.
 bool pyro_project(pyro *p, gpu *g, const pyro_numbers *numbers);
 void pyro_set_level(const pyro *p, kernel *k, uint32_t level);
+
+// Adds up what `groups` groups have written to PyroReport, `vectors` of four numbers each.
+bool pyro_sum(pyro *p, gpu *g, uint64_t groups, int vectors, int place);
 
 // pyro_solids.c
 bool pyro_obstruct(pyro *p, gpu *g, const pyro_numbers *numbers); // the next state

@@ -137,6 +137,14 @@ static bool pressure_cycle(pyro *p, gpu *g) {
     return true;
 }
 
+bool pyro_sum(pyro *p, gpu *g, uint64_t groups, int vectors, int place) {
+    kernel *k = pyro_use(p, PYRO_K_SUM);
+    kernel_set_int(k, N_groups, (int32_t)groups);
+    kernel_set_int(k, N_vectors, vectors);
+    kernel_set_int(k, N_place, place);
+    return kernel_run(k, g, PYRO_CELLS_A_GROUP, 1, 1);
+}
+
 // ---- conjugate gradients ----------------------------------------------------------------------
 
 // Runs one of their parts, and sums what its groups have summed.
@@ -152,11 +160,8 @@ static bool conjugate_run(pyro *p, gpu *g, pyro_kernel part, bool begins) {
     kernel_set(k, N_weights, weights, sizeof weights);
     kernel_set_int(k, N_begins, begins);
     if (!pyro_run(p, g, k)) return false;
-    if (places[part] == NONE) return true;
-    k = pyro_use(p, PYRO_K_SUM);
-    kernel_set_int(k, N_place, places[part]);
-    kernel_set_int(k, N_groups, (int32_t)(pyro_flow_cells(p) / PYRO_CELLS_A_GROUP));
-    return kernel_run(k, g, PYRO_CELLS_A_GROUP, 1, 1);
+    return places[part] == NONE ||
+           pyro_sum(p, g, pyro_flow_cells(p) / PYRO_CELLS_A_GROUP, 1, places[part]);
 }
 
 static bool conjugate_step(pyro *p, gpu *g, bool begins) {

@@ -82,7 +82,10 @@ static bool gas_advance(pyro *p, gpu *g, const pyro_numbers *n) {
     kernel *k = use_gas(p, PYRO_K_GAS, n);
     pyro_set_burning(k, n);
     kernel_set_float(k, N_cell, pyro_flow_cell(p, n));
-    return pyro_run_gas(p, g, k);
+    kernel_set_int(k, N_balances, p->steps > 0);
+    return pyro_run_gas(p, g, k) &&
+           (!corrects(p) ||
+            pyro_sum(p, g, pyro_cells(p) / PYRO_CELLS_A_GROUP, 2, PYRO_CORRECTIONS));
 }
 
 // Of the velocity before the step: where vorticity is confined. The gas's prediction is not needed

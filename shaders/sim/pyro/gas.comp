@@ -62,8 +62,13 @@ vec4 settle(vec4 packed) {
 #if PYRO_RATIO == 2
 uniform sampler3D carrier; // velocity in the middle of its own cells, m/s
 
+const bvec3 WALL_LOW = equal(PYRO_LOW, ivec3(PYRO_WALL)), WALL_HIGH = equal(PYRO_HIGH, ivec3(PYRO_WALL));
+
+// Before the first middle at a wall, what flows across it falls to 0.
 vec3 velocity_at(vec3 p) {
-    return textureLod(carrier, p / vec3(PYRO_SIZE), 0.0).xyz;
+    vec3 low = mix(vec3(1.0), clamp(p, 0.0, 1.0), WALL_LOW);
+    vec3 high = mix(vec3(1.0), clamp(vec3(PYRO_SIZE) - p, 0.0, 1.0), WALL_HIGH);
+    return low * high * textureLod(carrier, p / vec3(PYRO_SIZE), 0.0).xyz;
 }
 
 // By the velocity in the middle of the way (Runge and Kutta's second order), since it may be several
@@ -117,17 +122,63 @@ void main() {
     gas_hat[pyro_at(c)] = pyro_store(value);
 }
 #else
+#if PYRO_CORRECTS
+// MacCormack's corrections take from some cells what they add to others. Clamps spoil that: edges lag
+// behind the flow, and a plume that draws air in had three times the heat that it was given. So what is
+// more of them is scaled by what was less in the last step, over all cells.
+uniform int balances; // 0: there is no last step
+layout(std430) readonly buffer PyroSums { vec4 sums[]; }; // from 4: of what is added, of what is taken
+layout(std430) writeonly buffer PyroReport { vec4 report[]; };
+shared vec4 added[256], taken[256];
+
+vec4 correction = vec4(0.0); // of this cell, before it is scaled
+
+vec4 balance(vec4 own) {
+    vec4 more = sums[4], less = sums[5];
+    vec4 up = mix(vec4(1.0), less / max(more, 1e-30), greaterThan(more, less));
+    vec4 down = mix(vec4(1.0), more / max(less, 1e-30), greaterThan(less, more));
+    correction = own;
+    return balances == 0 ? own : own * mix(down, up, greaterThan(own, vec4(0.0)));
+}
+
+void add_up_corrections() {
+    uint i = gl_LocalInvocationIndex;
+    added[i] = max(correction, 0.0);
+    taken[i] = max(-correction, 0.0);
+    // In few rounds, since each barrier is dear in software.
+    for (uint n = 16u; n > 0u; n /= 16u) {
+        barrier();
+        vec4 more = vec4(0.0), less = vec4(0.0);
+        for (uint k = 0u; k < 16u && i < n; k++) more += added[i + k * n], less += taken[i + k * n];
+        barrier();
+        if (i < n) added[i] = more, taken[i] = less;
+    }
+    uint group = (gl_WorkGroupID.z * gl_NumWorkGroups.y + gl_WorkGroupID.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (i == 0u) report[2u * group] = added[0], report[2u * group + 1u] = taken[0];
+}
+#endif
+
+// What a cell at a wall keeps. Traces take it that gas comes through the wall or rests there: by half of
+// what flows through the cell's other end more comes out of it than it had. Cells further in balance.
+float kept_at_wall(ivec3 c, vec3 way) {
+    bvec3 low = both(equal(c, ivec3(0)), equal(PYRO_LOW, ivec3(PYRO_WALL)));
+    bvec3 high = both(equal(c, PYRO_SIZE - 1), equal(PYRO_HIGH, ivec3(PYRO_WALL)));
+    return max(1.0 - dot(abs(way), vec3(low) + vec3(high)), 0.0);
+}
+
 vec4 carried(ivec3 c, int at) {
     vec4 least, most;
     vec3 p = vec3(c) + 0.5, way = way_of(c, 1.0);
     vec4 first = gas_back(p - way, least, most);
+    float kept = kept_at_wall(c, way);
+    if (kept < 1.0) return kept * first;
 #if PYRO_CORRECTS
     vec4 v[8];
     vec3 on = p + (PYRO_RATIO == 2 ? way_of(c, -1.0) : way);
     pyro_span s = pyro_span_at(pyro_into(on), ivec3(0));
     GAS_EIGHT(gas_hat, s, v)
-    vec4 value = clamp(first + 0.5 * (pyro_load(gas[at]) - gas_mix(v, s.t)), least, most);
-    return pyro_is_beyond(p - way) || pyro_is_beyond(on) ? first : value;
+    if (pyro_is_beyond(p - way) || pyro_is_beyond(on)) return first;
+    return first + balance(clamp(first + 0.5 * (pyro_load(gas[at]) - gas_mix(v, s.t)), least, most) - first);
 #else
     return first;
 #endif
@@ -204,6 +255,9 @@ void main() {
         grown = pyro_burn(g, brought);
     }
     gas_to[at] = pyro_store(settle(pyro_pack(g)));
+#if PYRO_CORRECTS
+    add_up_corrections();
+#endif
 #if PYRO_RATIO == 2
     hand_on(grown, pyro_density(g));
 #else
