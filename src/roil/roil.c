@@ -9,6 +9,7 @@
 #include "effect/events.h"
 #include "roil/roil_impl.h"
 #include "script/script.h"
+#include "shader/shader.h"
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -78,12 +79,20 @@ static bool open_device(roil *r, const roil_desc *desc) {
     return r->device != NULL;
 }
 
+// Returns whether the compiler should get ready beside the device. That takes it 100 ms of
+// processor time, for nothing if all shaders are in the cache. If some are not, the first of them
+// waits for it. In a window files will be edited, and the first edit should not wait.
+static bool will_compile(const roil *r, const roil_desc *desc) {
+    char cache[PATH_CAP];
+    bool cached = r->cache && path_join(cache, r->cache, "spirv");
+    return desc->window || !cached || !shader_cache_holds_any(cache);
+}
+
 roil *roil_create(const roil_desc *desc) {
     char home[PATH_CAP], cache[PATH_CAP];
     if ((desc->memory && !budget_set_share(desc->memory)) || !find_home(home, desc->home))
         return NULL;
     if (desc->reader && !isolate_set_reader(desc->reader)) return NULL;
-    isolate_warm_up("glsl");
     roil *r = mem_alloc(sizeof *r);
     r->home = mem_copy(home, strlen(home) + 1);
     r->shaders = joined(home, "shaders");
@@ -97,6 +106,7 @@ roil *roil_create(const roil_desc *desc) {
     r->seconds = desc->time_limit > 0 ? desc->time_limit : TIME_LIMIT_LOAD_SECONDS;
     // Without a place for it (no home folder, a read-only one) roil works, only slower.
     if (!desc->no_cache && path_cache_folder(cache, "")) r->cache = joined(cache, "");
+    if (will_compile(r, desc)) isolate_warm_up("glsl");
     if (desc->no_device || open_device(r, desc)) return r;
     roil_destroy(r);
     return NULL;

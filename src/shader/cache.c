@@ -70,3 +70,12 @@ void cache_store(const shader_library *library, hash128 key, const spirv *code) 
         log_write(LOG_DEBUG, "shader not cached: %s", err_get());
     strbuf_free(&file);
 }
+
+bool shader_cache_holds_any(const char *cache_dir) {
+    char pattern[PATH_CAP];
+    file_list found;
+    if (!path_join(pattern, cache_dir, "*.spv") || !file_glob(pattern, &found)) return false;
+    bool any = found.count > 0;
+    file_list_free(&found);
+    return any;
+}

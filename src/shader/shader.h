@@ -97,6 +97,7 @@ void shader_library_destroy(shader_library *library);
 void shader_library_forget(shader_library *library); // files may have changed
 // glslang runs since the library was created (cache hits do not count).
 uint64_t shader_library_compiles(const shader_library *library);
+bool shader_cache_holds_any(const char *cache_dir); // compiled shaders, of any effect or version
 
 // Called with the path of every file that is read, and of every missing file that was looked for,
 // so that a reload can watch them. Paths are absolute if the library's folders are.
