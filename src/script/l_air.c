@@ -229,7 +229,8 @@ static const char *place_of(const char *name) {
         {"spark", "hot gas for a while lights fuel: air:source { shape = ..., temperature = 1500, "
                   "during = {0, 0.05} }"},
         {"force", "it is a key, of a field: { force = curl { ... }, ... }"},
-        {"wind", "it is a key, of m/s: { wind = {2, 0, 0}, boundary = { left = \"inflow\" }, ... }"},
+        {"wind",
+         "it is a key, of m/s: { wind = {2, 0, 0}, boundary = { left = \"inflow\" }, ... }"},
         {"smoke", "it is 'soot' in pyro and 'density' in lbm"},
         {"emitter", "air:source { ... } gives the air what it holds"},
     };

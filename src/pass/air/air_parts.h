@@ -122,7 +122,7 @@ bool air_rehearse_sources(const air *a);
 void air_describe(const air *a, struct strbuf *out); // for checkpoints: time and place
 
 // air_time.c
-double air_step_seconds(const air *a);               // of the effect's time that a step takes
+double air_step_seconds(const air *a);             // of the effect's time that a step takes
 double air_step_time(const air *a, uint64_t step); // of the state before it
 // What is dear to find, the force and what sources hold, is found anew so many times a second of
 // the simulation, whatever is drawn: in which turn the next step lies, and from when to when it is.
