@@ -148,7 +148,7 @@ static void field_of_a_parameter_has_its_current_value(void **state) {
     const field *wind = field_param(effect_memory(s->e), 3, 4);
     float out[4];
     for (int i = 0; i < 40; i++) { // values may move when parameters are added
-        char name[16];
+        char name[32];
         snprintf(name, sizeof name, "more_%d", i);
         effect_param more = examples[0];
         more.desc.name = arena_string(effect_memory(s->e), name);

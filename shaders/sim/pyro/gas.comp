@@ -205,9 +205,9 @@ float progress_mix(float v[8], vec3 t) {
         name[6] = pyro_progress(v_[6]), name[7] = pyro_progress(v_[7]);                            \
     }
 
-// The progress that the flame brings in this step: that of gas behind, less that of gas here. Gas that is `lighter` than
-// the mixture before the flame flows away behind it: through such gas it moves faster, and as much air
-// passes it.
+// The progress that the flame brings in this step: that of gas behind, less that of gas here. Gas that is
+// `lighter` than the mixture before the flame flows away behind it: through such gas it moves faster, and as
+// much air passes it.
 float flame(ivec3 c, float lighter) {
     vec3 from = vec3(c) + 0.5 - way_of(c, 1.0);
     PROGRESS_EIGHT(from, here, t)
