@@ -218,8 +218,8 @@ static void find_sizes(const pyro *p, uint64_t out[PYRO_MEM_COUNT]) {
     for (int i = 0; i < 2; i++) {
         out[PYRO_MEM_VELOCITY + i] = four * flow;
         out[PYRO_MEM_GAS + i] = four * gas;
-        out[PYRO_MEM_ACTIVE + i] = gas / PYRO_CELLS_A_GROUP * 4;
     }
+    out[PYRO_MEM_ACTIVE] = gas / PYRO_CELLS_A_GROUP * 2 * sizeof(uint32_t);
     if (corrects) out[PYRO_MEM_VELOCITY_HAT] = four * flow;
     if (corrects || p->desc.confinement) out[PYRO_MEM_GAS_HAT] = four * gas;
     if (p->desc.confinement) out[PYRO_MEM_CURL] = four * flow;
@@ -238,7 +238,6 @@ static const char *const memory_labels[PYRO_MEM_COUNT] = {"velocity of burning g
                                                           "velocity of burning gas",
                                                           "burning gas",
                                                           "burning gas",
-                                                          "places of burning gas",
                                                           "places of burning gas",
                                                           "velocity traced back",
                                                           "gas traced back",
@@ -322,13 +321,16 @@ void pyro_bind(const pyro *p, kernel *k, const kernel_place *places) {
         [N_PyroDirection] = p->buffers[PYRO_MEM_DIRECTION],
         [N_PyroChange] = p->buffers[PYRO_MEM_CHANGE],
         [N_PyroSums] = p->buffers[PYRO_MEM_SUMS],
-        [N_PyroActive] = pyro_pair(p, PYRO_MEM_ACTIVE, 0),
-        [N_PyroActiveTo] = pyro_pair(p, PYRO_MEM_ACTIVE, 1),
+        [N_PyroActive] = p->buffers[PYRO_MEM_ACTIVE],
         [N_PyroDensity] = p->buffers[PYRO_MEM_DENSITY],
         [N_PyroReport] = p->buffers[PYRO_MEM_REPORT],
     };
     for (int i = 0; i < PYRO_OWN; i++)
         if (own[i]) kernel_bind_at(k, &places[i], (gpu_binding){.buffer = own[i]});
+}
+
+int32_t pyro_present_from(const pyro *p) {
+    return p->current ? (int32_t)(pyro_cells(p) / PYRO_CELLS_A_GROUP) : 0;
 }
 
 kernel *pyro_use(pyro *p, pyro_kernel which) {
@@ -369,9 +371,9 @@ uint64_t pyro_steps(const pyro *p) {
 }
 
 static void swap_state(pyro *a, pyro *b) {
-    static const pyro_memory state[] = {
-        PYRO_MEM_VELOCITY, PYRO_MEM_VELOCITY + 1, PYRO_MEM_GAS,     PYRO_MEM_GAS + 1,
-        PYRO_MEM_ACTIVE,   PYRO_MEM_ACTIVE + 1,   PYRO_MEM_PRESSURE};
+    static const pyro_memory state[] = {PYRO_MEM_VELOCITY, PYRO_MEM_VELOCITY + 1, PYRO_MEM_GAS,
+                                        PYRO_MEM_GAS + 1,  PYRO_MEM_ACTIVE,       PYRO_MEM_PRESSURE,
+                                        PYRO_MEM_SUMS};
     const pyro was = *a;
     for (size_t i = 0; i < COUNT_OF(state); i++) {
         a->buffers[state[i]] = b->buffers[state[i]];

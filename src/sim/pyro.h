@@ -136,6 +136,8 @@ size_t pyro_defines(const pyro *p, shader_define out[PYRO_MAX_DEFINES]);
 // Binds the state's buffers (PyroGas, PyroVelocity, PyroPressure, PyroRight) to the slots of a
 // kernel. `places` comes from kernel_find with the names of pyro_kernel_table.
 void pyro_bind(const pyro *p, kernel *k, const kernel_place *places);
+// Returns where the marks of the state begin in PyroActive, for present_from.
+int32_t pyro_present_from(const pyro *p);
 extern const kernel_table pyro_kernel_table;
 
 // Returns the buffers of the state, without the count of steps. The caller may change what they

@@ -13,10 +13,11 @@ enum {
 };
 
 typedef enum pyro_memory {
-    PYRO_MEM_VELOCITY,                           // two: of the state, and the next
-    PYRO_MEM_GAS = PYRO_MEM_VELOCITY + 2,        // two
-    PYRO_MEM_ACTIVE = PYRO_MEM_GAS + 2,          // two: which half bricks hold more than clean air
-    PYRO_MEM_VELOCITY_HAT = PYRO_MEM_ACTIVE + 2, // with MacCormack
+    PYRO_MEM_VELOCITY,                    // two: of the state, and the next
+    PYRO_MEM_GAS = PYRO_MEM_VELOCITY + 2, // two
+    PYRO_MEM_ACTIVE =
+        PYRO_MEM_GAS + 2,  // which half bricks hold more than clean air, of both states
+    PYRO_MEM_VELOCITY_HAT, // with MacCormack
     PYRO_MEM_GAS_HAT,
     PYRO_MEM_CURL,    // with confinement
     PYRO_MEM_DENSITY, // of the gas in cells of the velocity, where these are larger
@@ -96,7 +97,7 @@ typedef enum pyro_kernel {
         NAME(PyroVelocityTo), NAME(PyroGasHat), NAME(PyroVelocityHat), NAME(PyroCurl),             \
         NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroOpenings),                       \
         NAME(PyroCoarseOpenings), NAME(PyroFound), NAME(PyroDirection), NAME(PyroChange),          \
-        NAME(PyroSums), NAME(PyroDensity), NAME(PyroActive), NAME(PyroActiveTo), NAME(PyroReport)
+        NAME(PyroSums), NAME(PyroDensity), NAME(PyroActive), NAME(PyroReport)
 #define PYRO_NAMES(NAME)                                                                           \
     PYRO_OWN_NAMES(NAME), NAME(PyroVorticity), NAME(scalars), NAME(flow), NAME(result), NAME(dt),  \
         NAME(cell), NAME(reach), NAME(ambient), NAME(lightness), NAME(inflow), NAME(gravity),      \
@@ -106,8 +107,8 @@ typedef enum pyro_kernel {
         NAME(level_first), NAME(colour), NAME(coarse_size), NAME(coarser), NAME(coarse_first),     \
         NAME(sweeps), NAME(relaxation), NAME(pressure_unit), NAME(groups), NAME(mass),             \
         NAME(SolidIds), NAME(SolidMotions), NAME(box_min), NAME(force), NAME(begins), NAME(place), \
-        NAME(first), NAME(carrier), NAME(flame_reach), NAME(everywhere), NAME(balances),           \
-        NAME(vectors)
+        NAME(first), NAME(carrier), NAME(flame_reach), NAME(everywhere), NAME(present_from),       \
+        NAME(present_to), NAME(balances), NAME(vectors)
 enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 
 struct pyro {

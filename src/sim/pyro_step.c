@@ -65,7 +65,10 @@ static bool look_at_flow(pyro *p, gpu *g, const pyro_numbers *n, gpu_image *to) 
 static kernel *use_gas(pyro *p, pyro_kernel which, const pyro_numbers *n) {
     kernel *k = pyro_use(p, which);
     set_carrying(k, n, n->cell);
+    const int32_t groups = (int32_t)(pyro_cells(p) / PYRO_CELLS_A_GROUP);
     kernel_set_int(k, N_everywhere, !p->active_known);
+    kernel_set_int(k, N_present_from, pyro_present_from(p));
+    kernel_set_int(k, N_present_to, groups - pyro_present_from(p));
     if (p->carrier)
         kernel_bind(k, N_carrier, (gpu_binding){.image = p->carrier, .sampler = GPU_LINEAR_CLAMP});
     return k;

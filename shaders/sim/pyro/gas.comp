@@ -23,7 +23,8 @@ layout(std430) readonly buffer PyroGasHat { PYRO_FOUR gas_hat[]; };
 // Half bricks, as many cells as a group has, that hold more than clean air. Another one, and all within
 // eight cells around it, is left as it is: nothing comes farther in a step.
 uniform int everywhere; // 1: it is not known where
-layout(std430) readonly buffer PyroActive { uint present[]; };
+uniform int present_from, present_to; // where the marks of this state, and of the next one, begin
+layout(std430) buffer PyroActive { uint present[]; };
 shared uint busy;
 
 const ivec3 HALF_BRICKS = PYRO_SIZE / ivec3(8, 8, 4);
@@ -35,14 +36,13 @@ bool is_near_gas() {
     if (i < 45u) {
         ivec3 to = ivec3(gl_WorkGroupID) + ivec3(i % 3u, i / 3u % 3u, i / 9u) - ivec3(1, 1, 2);
         to = mix(clamp(to, ivec3(0), HALF_BRICKS - 1), (to + HALF_BRICKS) % HALF_BRICKS, PYRO_AROUND);
-        if (present[to.x + HALF_BRICKS.x * (to.y + HALF_BRICKS.y * to.z)] != 0u) busy = 1u;
+        if (present[present_from + to.x + HALF_BRICKS.x * (to.y + HALF_BRICKS.y * to.z)] != 0u) busy = 1u;
     }
     barrier();
     return busy != 0u;
 }
 
 #ifndef PYRO_PREDICT
-layout(std430) writeonly buffer PyroActiveTo { uint present_to[]; };
 shared uint holds;
 
 // What a group's cells hold, or clean air where that is next to nothing in all of them.
@@ -51,8 +51,8 @@ vec4 settle(vec4 packed) {
     barrier();
     if (any(greaterThan(abs(packed), vec4(1e-5)))) holds = 1u;
     barrier();
-    uint group = (gl_WorkGroupID.z * gl_NumWorkGroups.y + gl_WorkGroupID.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    if (gl_LocalInvocationIndex == 0u) present_to[group] = holds;
+    uint group = uint(present_to) + (gl_WorkGroupID.z * gl_NumWorkGroups.y + gl_WorkGroupID.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (gl_LocalInvocationIndex == 0u) present[group] = holds;
     return holds != 0u ? packed : vec4(0.0);
 }
 #endif

@@ -47,7 +47,7 @@ enum { AIR_STEP, AIR_VOXELS, AIR_SOURCES, AIR_FIELDS, AIR_LABELS };
         NAME(expansion), NAME(vorticity), NAME(soot), NAME(during), NAME(gas_now),                 \
         NAME(gas_before), NAME(flow_now), NAME(flow_before), NAME(burn_power), NAME(oxygen_need),  \
         NAME(burns_above), NAME(rates), NAME(ambient), NAME(velocity_cells), NAME(combustion),     \
-        NAME(flame_speed), NAME(flame_power)
+        NAME(flame_speed), NAME(flame_power), NAME(present_from)
 enum { AIR_NAMES(KERNEL_NAME_ID), AIR_NAME_COUNT };
 extern const char *const air_names[AIR_NAME_COUNT];
 

@@ -93,6 +93,7 @@ static bool pyro_air_give(const air *a, pass *source, kernel *k, uint32_t thread
     const pyro_air *p = pyro_of(a);
     const kernel_place *places = pass_solver_places(source, AIR_GIVE);
     kernel_set_float(k, N_ambient, p->numbers.ambient);
+    kernel_set_int(k, N_present_from, pyro_present_from(p->solver));
     kernel_set_float(k, N_burns_above, p->numbers.ignition);
     pyro_bind(p->solver, k, places);
     // From the beginning of a cell of velocity to the faces behind the last one.

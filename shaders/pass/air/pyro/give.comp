@@ -9,6 +9,7 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #include "pass/air/source.glsl"
 uniform float burns_above; // K
 layout(std430) buffer PyroGas { PYRO_FOUR gas[]; };
+uniform int present_from; // where the marks of this state begin
 layout(std430) buffer PyroActive { uint present[]; }; // half bricks that hold more than clean air
 layout(std430) buffer PyroVelocity { PYRO_FOUR velocity[]; };
 
@@ -48,7 +49,7 @@ void give_gas(uvec3 cell, int at) {
 #endif
     gas[at] = pyro_store(pyro_pack(g));
     uvec3 place = cell / uvec3(8, 8, 4);
-    present[place.x + uint(PYRO_NX / 8) * (place.y + uint(PYRO_NY / 8) * place.z)] = 1u;
+    present[uint(present_from) + place.x + uint(PYRO_NX / 8) * (place.y + uint(PYRO_NY / 8) * place.z)] = 1u;
 }
 
 // A cell of the velocity: the mean of those of the gas in it that are given some.
