@@ -3,7 +3,7 @@
 // (all of it is mostly more than there is). So the bound is above 0 wherever the density may be, and
 // no feature is passed unseen, however small. Of a density whose range is not known points of half
 // the neighbours count, too, so that it does not end with the cell.
-layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 #define WITH_RANGES
 #include "lib/medium.glsl"
 #include "lib/majorant.glsl"

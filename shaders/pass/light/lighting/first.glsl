@@ -2,14 +2,15 @@
 // its mean over all directions and its first moment. And the medium as the sweeps want it, of both
 // levels.
 #if defined(STAGE_FIRST)
-layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+const ivec3 BLOCK = ivec3(8, 4, 2); // voxels of a group
+layout(local_size_x = BLOCK.x, local_size_y = BLOCK.y, local_size_z = BLOCK.z) in;
 layout(std430) writeonly buffer First { vec4 first[]; };         // moments of this light
 layout(std430) writeonly buffer Scattered { vec4 scattered[]; }; // of all light that is scattered
 layout(std430) writeonly buffer Part { float part[]; };          // of the light that is taken: that is scattered
 layout(std430) writeonly buffer Medium { uint medium_slices[]; };
 layout(std430) writeonly buffer CoarsePart { float coarse_part[]; };
 layout(std430) writeonly buffer CoarseMedium { uint coarse_medium_slices[]; };
-shared vec4 block[4][4][4]; // part, density
+shared vec4 block[BLOCK.z][BLOCK.y][BLOCK.x]; // part, density
 
 // Mean of what is left of a light within a voxel, weighted by the density: a voxel of thick smoke
 // may take all of it, of which a look at its centre would tell nothing. Along a line that takes
@@ -62,7 +63,7 @@ float thin() {
 // poreux", 1967).
 void tell_coarse(ivec3 within) {
     const int size = LEVEL_SIZE / 2, voxels = VOXELS / 8;
-    ivec3 voxel = ivec3(gl_WorkGroupID) * 2 + within;
+    ivec3 voxel = ivec3(gl_WorkGroupID) * (BLOCK / 2) + within;
     vec3 parts = vec3(0.0);
     float sum = 0.0, logs = 0.0, gap = thin();
     for (int i = 0; i < 8; i++) {
@@ -100,6 +101,6 @@ void main() {
     }
     block[within.z][within.y][within.x] = vec4(parts, medium.a);
     barrier();
-    if (all(lessThan(within, ivec3(2)))) tell_coarse(within);
+    if (all(lessThan(within, BLOCK / 2))) tell_coarse(within);
 }
 #endif

@@ -1,8 +1,8 @@
 // The medium on a grid over its box, each voxel the mean of eight points, which have a thread each.
 #if defined(STAGE_MEDIUM)
-layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-shared vec4 found[4][4][4];  // emission, density
-shared vec3 dyed[4][4][4];   // scattering, times the density
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+shared vec4 found[2][4][8];  // emission, density
+shared vec3 dyed[2][4][8];   // scattering, times the density
 
 void look(ivec3 within) {
     vec3 p = mix(box_min, box_max, (vec3(gl_GlobalInvocationID) + 0.5) / float(2 * GLOW_SIZE));
