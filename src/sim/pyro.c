@@ -105,7 +105,9 @@ static const char *const names[] = {PYRO_NAMES(KERNEL_NAME_TEXT)};
 static const char *const shaders[PYRO_KERNELS] = {
     [PYRO_K_RESET] = "sim/pyro/reset.comp",
     [PYRO_K_RESET_FLOW] = "sim/pyro/reset.comp",
-    [PYRO_K_GAS_PREDICT] = "sim/pyro/gas.comp",
+    [PYRO_K_CARRIER] = "sim/pyro/carrier.comp",
+    [PYRO_K_CARRY_X] = "sim/pyro/carry.comp",
+    [PYRO_K_CARRY_Y] = "sim/pyro/carry.comp",
     [PYRO_K_GAS] = "sim/pyro/gas.comp",
     [PYRO_K_VORTICITY] = "sim/pyro/curl.comp",
     [PYRO_K_CURL] = "sim/pyro/curl.comp",
@@ -143,7 +145,7 @@ const kernel_table pyro_kernel_table = {{names, COUNT_OF(names)}, shaders, COUNT
 // The additional defines of a kernel; NULL: none.
 static const char *const more_defines[PYRO_KERNELS][2] = {
     [PYRO_K_RESET_FLOW] = {"FLOW"},
-    [PYRO_K_GAS_PREDICT] = {"PYRO_PREDICT"},
+    [PYRO_K_CARRY_Y] = {"CARRY_Y"},
     [PYRO_K_CURL] = {"PYRO_CURL_LAST"},
     [PYRO_K_VELOCITY_PREDICT] = {"PYRO_PREDICT"},
     [PYRO_K_SMOOTH_FINEST] = {"PYRO_FINEST"},
@@ -162,11 +164,11 @@ static const char *const more_defines[PYRO_KERNELS][2] = {
 };
 
 static bool is_used(const pyro_desc *desc, pyro_kernel which) {
-    if (which == PYRO_K_GAS_PREDICT || which == PYRO_K_VELOCITY_PREDICT)
-        return desc->advection == PYRO_MACCORMACK;
+    if (which == PYRO_K_CARRIER) return desc->half_velocity;
+    if (which == PYRO_K_VELOCITY_PREDICT) return desc->advection == PYRO_MACCORMACK;
     if (which == PYRO_K_VORTICITY || which == PYRO_K_CURL) return desc->confinement;
     if (which >= PYRO_K_SOLIDS && which <= PYRO_K_FILL) return desc->solids;
-    if (which >= PYRO_K_RESIDUAL && which <= PYRO_K_MOVE) return desc->solids;
+    if (which >= PYRO_K_RESIDUAL && which <= PYRO_K_SUM) return desc->solids;
     return true;
 }
 
@@ -213,22 +215,22 @@ bool pyro_build(pyro *p, gpu *g, shader_library *library, const shader_reader *r
 static void find_sizes(const pyro *p, uint64_t out[PYRO_MEM_COUNT]) {
     const uint64_t gas = pyro_cells(p), flow = pyro_flow_cells(p);
     const uint64_t four = p->desc.precision == PYRO_F16 ? 8 : 16;
-    const bool corrects = p->desc.advection == PYRO_MACCORMACK;
     memset(out, 0, PYRO_MEM_COUNT * sizeof *out);
     for (int i = 0; i < 2; i++) {
         out[PYRO_MEM_VELOCITY + i] = four * flow;
         out[PYRO_MEM_GAS + i] = four * gas;
     }
     out[PYRO_MEM_ACTIVE] = gas / PYRO_CELLS_A_GROUP * 2 * sizeof(uint32_t);
-    if (corrects) out[PYRO_MEM_VELOCITY_HAT] = four * flow;
-    if (corrects || p->desc.confinement) out[PYRO_MEM_GAS_HAT] = four * gas;
+    if (p->desc.advection == PYRO_MACCORMACK) out[PYRO_MEM_VELOCITY_HAT] = four * flow;
+    out[PYRO_MEM_GAS_BETWEEN] = four * gas;
+    if (p->desc.half_velocity) out[PYRO_MEM_CARRIER] = four * gas;
     if (p->desc.confinement) out[PYRO_MEM_CURL] = four * flow;
     if (p->desc.half_velocity) out[PYRO_MEM_DENSITY] = 4 * flow;
     out[PYRO_MEM_PRESSURE] = out[PYRO_MEM_RIGHT] = 4 * flow;
     out[PYRO_MEM_COARSE_PRESSURE] = out[PYRO_MEM_COARSE_RIGHT] = 4 * pyro_coarse_cells(p);
     out[PYRO_MEM_REPORT] = (gas + flow) / PYRO_CELLS_A_GROUP * 32;
-    out[PYRO_MEM_SUMS] = PYRO_SUMS * 16;
     if (!p->desc.solids) return;
+    out[PYRO_MEM_SUMS] = PYRO_SUMS * 16;
     out[PYRO_MEM_OPENINGS] = 4 * flow;
     out[PYRO_MEM_COARSE_OPENINGS] = 4 * pyro_coarse_cells(p);
     for (pyro_memory i = PYRO_MEM_FOUND; i <= PYRO_MEM_CHANGE; i++) out[i] = 4 * flow;
@@ -240,7 +242,8 @@ static const char *const memory_labels[PYRO_MEM_COUNT] = {"velocity of burning g
                                                           "burning gas",
                                                           "places of burning gas",
                                                           "velocity traced back",
-                                                          "gas traced back",
+                                                          "gas between sweeps",
+                                                          "velocity that carries the gas",
                                                           "vorticity",
                                                           "density of burning gas",
                                                           "pressure of burning gas",
@@ -264,9 +267,7 @@ bool pyro_allocate(pyro *p, gpu *g) {
             gpu_buffer_create(g, &(gpu_buffer_desc){.label = memory_labels[i], .size = sizes[i]});
         if (!p->buffers[i]) return false;
     }
-    const gpu_image_desc carrier = pyro_describe_image(p, PYRO_FLOW);
-    if (p->desc.half_velocity && !p->carrier) p->carrier = gpu_image_create(g, &carrier);
-    return (p->carrier || !p->desc.half_velocity) && pyro_report_allocate(p, g);
+    return pyro_report_allocate(p, g);
 }
 
 void pyro_list_memory(const pyro *p, budget_list *out) {
@@ -274,9 +275,6 @@ void pyro_list_memory(const pyro *p, budget_list *out) {
     find_sizes(p, sizes);
     for (int i = 0; i < PYRO_MEM_COUNT; i++)
         if (!p->buffers[i] && sizes[i]) budget_list_add(out, memory_labels[i], sizes[i]);
-    const gpu_image_desc carrier = pyro_describe_image(p, PYRO_FLOW);
-    if (p->desc.half_velocity && !p->carrier)
-        budget_list_add(out, carrier.label, gpu_image_bytes(&carrier));
     for (int i = 0; i < 2 * PYRO_LOOKS; i++) {
         const gpu_image_desc desc = pyro_describe_image(p, (pyro_look)(i % PYRO_LOOKS));
         if (!p->looks[i / PYRO_LOOKS][i % PYRO_LOOKS])
@@ -289,8 +287,6 @@ void pyro_destroy(pyro *p, gpu *g) {
     for (int i = 0; i < PYRO_MEM_COUNT; i++) gpu_buffer_destroy(g, p->buffers[i]);
     for (int i = 0; i < 2 * PYRO_LOOKS; i++)
         gpu_image_destroy(g, p->looks[i / PYRO_LOOKS][i % PYRO_LOOKS]);
-    gpu_image_destroy(g, p->carrier);
-    p->carrier = NULL;
     pyro_report_destroy(p, g);
     memset(p->buffers, 0, sizeof p->buffers);
     memset(p->looks, 0, sizeof p->looks);
@@ -310,7 +306,8 @@ void pyro_bind(const pyro *p, kernel *k, const kernel_place *places) {
         [N_PyroRight] = p->buffers[PYRO_MEM_RIGHT],
         [N_PyroGasTo] = pyro_pair(p, PYRO_MEM_GAS, 1),
         [N_PyroVelocityTo] = pyro_pair(p, PYRO_MEM_VELOCITY, 1),
-        [N_PyroGasHat] = p->buffers[PYRO_MEM_GAS_HAT],
+        [N_PyroCarrier] = p->desc.half_velocity ? p->buffers[PYRO_MEM_CARRIER]
+                                                : pyro_pair(p, PYRO_MEM_VELOCITY, 0),
         [N_PyroVelocityHat] = p->buffers[PYRO_MEM_VELOCITY_HAT],
         [N_PyroCurl] = p->buffers[PYRO_MEM_CURL],
         [N_PyroCoarsePressure] = p->buffers[PYRO_MEM_COARSE_PRESSURE],
@@ -353,12 +350,16 @@ bool pyro_run_gas(const pyro *p, gpu *g, kernel *k) {
     return kernel_run(k, g, p->desc.size[0], p->desc.size[1], p->desc.size[2]);
 }
 
+bool pyro_run_half_bricks(const pyro *p, gpu *g, kernel *k) {
+    const uint32_t *n = p->desc.size;
+    return kernel_run(k, g, n[0] / 8 * k->binaries[0].local_size[0], n[1] / 8, n[2] / 4);
+}
+
 size_t pyro_buffers(pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]) {
     p->active_known = false;
     out[0] = pyro_pair(p, PYRO_MEM_VELOCITY, 0);
     out[1] = pyro_pair(p, PYRO_MEM_GAS, 0);
     out[2] = p->buffers[PYRO_MEM_PRESSURE];
-    out[3] = p->buffers[PYRO_MEM_SUMS];
     return PYRO_STATE_BUFFERS;
 }
 
@@ -371,9 +372,9 @@ uint64_t pyro_steps(const pyro *p) {
 }
 
 static void swap_state(pyro *a, pyro *b) {
-    static const pyro_memory state[] = {PYRO_MEM_VELOCITY, PYRO_MEM_VELOCITY + 1, PYRO_MEM_GAS,
-                                        PYRO_MEM_GAS + 1,  PYRO_MEM_ACTIVE,       PYRO_MEM_PRESSURE,
-                                        PYRO_MEM_SUMS};
+    static const pyro_memory state[] = {PYRO_MEM_VELOCITY, PYRO_MEM_VELOCITY + 1,
+                                        PYRO_MEM_GAS,      PYRO_MEM_GAS + 1,
+                                        PYRO_MEM_ACTIVE,   PYRO_MEM_PRESSURE};
     const pyro was = *a;
     for (size_t i = 0; i < COUNT_OF(state); i++) {
         a->buffers[state[i]] = b->buffers[state[i]];

@@ -3,12 +3,13 @@
 // Mach number: no sound, no shock.
 //
 // The gas is in a box of cells. Velocities are staggered (Harlow and Welch 1965), all else is in
-// the middle of cells. A step (pyro_step) carries what the gas holds (Selle et al. 2008), burns it,
-// carries the velocity and pushes it, then makes it as divergent as the expansion wants (Chorin
-// 1968; pressure by multigrid, a fixed number of cycles that begin with the last step's pressure).
+// the middle of cells. A step (pyro_step) carries what the gas holds (by volumes that move: Colella
+// and Woodward 1984, Easter 1993), burns it, carries the velocity (Selle et al. 2008) and pushes
+// it, then makes it as divergent as the expansion wants (Chorin 1968; pressure by multigrid, a
+// fixed number of cycles that begin with the last step's pressure).
 //
 // Units: metres, seconds, kelvin, kilograms. Fuel, what has burnt, and soot are by mass of air
-// where they are carried, so that gas that expands takes them along; pyro_image has kg/m^3.
+// where they burn, and by volume where they are carried; pyro_image has kg/m^3.
 //
 // Order of calls: pyro_create, pyro_compile (optional), pyro_build, pyro_allocate; then in frames
 // pyro_reset, and pyro_step.
@@ -21,6 +22,7 @@ typedef struct pyro pyro;
 // Open air; a wall that air slips along; a face through which air comes in; around to the other
 // side.
 typedef enum pyro_face { PYRO_OPEN, PYRO_WALL, PYRO_INFLOW, PYRO_PERIODIC } pyro_face;
+// Of the velocity. The gas is carried by parabolas with MacCormack's, else by what cells hold.
 typedef enum pyro_advection { PYRO_SEMI_LAGRANGIAN, PYRO_MACCORMACK } pyro_advection;
 typedef enum pyro_precision { PYRO_F32, PYRO_F16, PYRO_AUTO } pyro_precision;
 
@@ -142,7 +144,7 @@ extern const kernel_table pyro_kernel_table;
 
 // Returns the buffers of the state, without the count of steps. The caller may change what they
 // hold.
-enum { PYRO_STATE_BUFFERS = 4 };
+enum { PYRO_STATE_BUFFERS = 3 };
 size_t pyro_buffers(pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]);
 
 // Exchanges the states, images and counts of steps of two solvers. False when their cells or

@@ -18,9 +18,10 @@ typedef enum pyro_memory {
     PYRO_MEM_ACTIVE =
         PYRO_MEM_GAS + 2,  // which half bricks hold more than clean air, of both states
     PYRO_MEM_VELOCITY_HAT, // with MacCormack
-    PYRO_MEM_GAS_HAT,
-    PYRO_MEM_CURL,    // with confinement
-    PYRO_MEM_DENSITY, // of the gas in cells of the velocity, where these are larger
+    PYRO_MEM_GAS_BETWEEN,  // two sweeps; and vorticity, with confinement
+    PYRO_MEM_CARRIER,      // where cells of the velocity are larger
+    PYRO_MEM_CURL,         // with confinement
+    PYRO_MEM_DENSITY,      // of the gas in cells of the velocity, where these are larger
     PYRO_MEM_PRESSURE,
     PYRO_MEM_RIGHT,
     PYRO_MEM_COARSE_PRESSURE, // of all levels but the finest
@@ -30,7 +31,7 @@ typedef enum pyro_memory {
     PYRO_MEM_FOUND, // with conjugate gradients, of which these are the vectors
     PYRO_MEM_DIRECTION,
     PYRO_MEM_CHANGE,
-    PYRO_MEM_SUMS, // with corrections or solids
+    PYRO_MEM_SUMS,
     PYRO_MEM_REPORT,
     PYRO_MEM_COUNT
 } pyro_memory;
@@ -42,7 +43,7 @@ typedef struct pyro_level {
     float weights[3];    // of differences along each axis
 } pyro_level;
 
-enum { PYRO_SUMS = 6, PYRO_CORRECTIONS = 4 }; // places of sums; of those of corrections
+enum { PYRO_SUMS = 3 }; // of conjugate gradients
 enum { PYRO_REPORT_PLACES = GPU_FRAMES_IN_FLIGHT + 1, PYRO_REPORT_WORDS = 8 };
 
 typedef struct pyro_reporter {
@@ -57,8 +58,10 @@ typedef struct pyro_reporter {
 typedef enum pyro_kernel {
     PYRO_K_RESET, // of the gas
     PYRO_K_RESET_FLOW,
-    PYRO_K_GAS_PREDICT,
-    PYRO_K_GAS,
+    PYRO_K_CARRIER,
+    PYRO_K_CARRY_X,
+    PYRO_K_CARRY_Y,
+    PYRO_K_GAS, // carried along z, burnt
     PYRO_K_VORTICITY,
     PYRO_K_CURL,
     PYRO_K_VELOCITY_PREDICT,
@@ -81,7 +84,7 @@ typedef enum pyro_kernel {
     PYRO_K_TURN,
     PYRO_K_APPLY,
     PYRO_K_MOVE,
-    PYRO_K_SUM, // also of corrections of the gas
+    PYRO_K_SUM,
     PYRO_K_PROJECT,
     PYRO_K_LOOK, // at the gas
     PYRO_K_LOOK_FLOW,
@@ -94,21 +97,21 @@ typedef enum pyro_kernel {
 // Buffers that are always the same come first: pyro_use binds them.
 #define PYRO_OWN_NAMES(NAME)                                                                       \
     NAME(PyroGas), NAME(PyroVelocity), NAME(PyroPressure), NAME(PyroRight), NAME(PyroGasTo),       \
-        NAME(PyroVelocityTo), NAME(PyroGasHat), NAME(PyroVelocityHat), NAME(PyroCurl),             \
+        NAME(PyroVelocityTo), NAME(PyroCarrier), NAME(PyroVelocityHat), NAME(PyroCurl),            \
         NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroOpenings),                       \
         NAME(PyroCoarseOpenings), NAME(PyroFound), NAME(PyroDirection), NAME(PyroChange),          \
         NAME(PyroSums), NAME(PyroDensity), NAME(PyroActive), NAME(PyroReport)
 #define PYRO_NAMES(NAME)                                                                           \
-    PYRO_OWN_NAMES(NAME), NAME(PyroVorticity), NAME(scalars), NAME(flow), NAME(result), NAME(dt),  \
-        NAME(cell), NAME(reach), NAME(ambient), NAME(lightness), NAME(inflow), NAME(gravity),      \
-        NAME(acceleration), NAME(confinement), NAME(max_speed), NAME(ignition), NAME(burn_share),  \
-        NAME(oxygen_need), NAME(heat), NAME(soot_yield), NAME(soot_share), NAME(soot_heat),        \
-        NAME(soot_kept), NAME(cooling), NAME(expansion), NAME(weights), NAME(level_size),          \
-        NAME(level_first), NAME(colour), NAME(coarse_size), NAME(coarser), NAME(coarse_first),     \
-        NAME(sweeps), NAME(relaxation), NAME(pressure_unit), NAME(groups), NAME(mass),             \
-        NAME(SolidIds), NAME(SolidMotions), NAME(box_min), NAME(force), NAME(begins), NAME(place), \
-        NAME(first), NAME(carrier), NAME(flame_reach), NAME(everywhere), NAME(present_from),       \
-        NAME(present_to), NAME(balances), NAME(vectors)
+    PYRO_OWN_NAMES(NAME), NAME(PyroGasFrom), NAME(PyroGasInto), NAME(PyroVorticity),               \
+        NAME(scalars), NAME(flow), NAME(result), NAME(dt), NAME(cell), NAME(reach), NAME(ambient), \
+        NAME(lightness), NAME(inflow), NAME(gravity), NAME(acceleration), NAME(confinement),       \
+        NAME(max_speed), NAME(ignition), NAME(burn_share), NAME(oxygen_need), NAME(heat),          \
+        NAME(soot_yield), NAME(soot_share), NAME(soot_heat), NAME(soot_kept), NAME(cooling),       \
+        NAME(expansion), NAME(weights), NAME(level_size), NAME(level_first), NAME(colour),         \
+        NAME(coarse_size), NAME(coarser), NAME(coarse_first), NAME(sweeps), NAME(relaxation),      \
+        NAME(pressure_unit), NAME(groups), NAME(mass), NAME(SolidIds), NAME(SolidMotions),         \
+        NAME(box_min), NAME(force), NAME(begins), NAME(place), NAME(first), NAME(flame_reach),     \
+        NAME(everywhere), NAME(present_from), NAME(present_to)
 enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 
 struct pyro {
@@ -125,7 +128,6 @@ struct pyro {
     uint32_t current;                // of pairs that are the state's
     uint64_t kept, steps;
     pyro_reporter reporter;
-    gpu_image *carrier; // velocity that carries the gas, where its cells are larger
     gpu_image *force;
     pyro_solids solids;
     bool solids_known; // openings are those of `solids`
@@ -141,8 +143,10 @@ gpu_buffer *pyro_pair(const pyro *p, pyro_memory pair,
                       uint32_t which); // the current one (0), the other
 // A kernel with the buffers bound that are always the same.
 kernel *pyro_use(pyro *p, pyro_kernel which);
-bool pyro_run(const pyro *p, gpu *g, kernel *k);          // a thread for each cell of the velocity
-bool pyro_run_gas(const pyro *p, gpu *g, kernel *k);      // of the gas
+bool pyro_run(const pyro *p, gpu *g, kernel *k);     // a thread for each cell of the velocity
+bool pyro_run_gas(const pyro *p, gpu *g, kernel *k); // of the gas
+// A group for each 8 x 8 x 4 cells of the gas.
+bool pyro_run_half_bricks(const pyro *p, gpu *g, kernel *k);
 void pyro_stage(const pyro *p, gpu *g, const char *name); // begins, for GPU times
 
 // pyro_numbers.c
@@ -155,9 +159,6 @@ uint64_t pyro_coarse_cells(const pyro *p);
 // Of the next velocity, whose expansion is in PyroRight.
 bool pyro_project(pyro *p, gpu *g, const pyro_numbers *numbers);
 void pyro_set_level(const pyro *p, kernel *k, uint32_t level);
-
-// Adds up what `groups` groups have written to PyroReport, `vectors` of four numbers each.
-bool pyro_sum(pyro *p, gpu *g, uint64_t groups, int vectors, int place);
 
 // pyro_solids.c
 bool pyro_obstruct(pyro *p, gpu *g, const pyro_numbers *numbers); // the next state

@@ -137,10 +137,10 @@ static bool pressure_cycle(pyro *p, gpu *g) {
     return true;
 }
 
-bool pyro_sum(pyro *p, gpu *g, uint64_t groups, int vectors, int place) {
+// Adds up what the groups of a kernel have written to PyroReport.
+static bool sum_up(pyro *p, gpu *g, int place) {
     kernel *k = pyro_use(p, PYRO_K_SUM);
-    kernel_set_int(k, N_groups, (int32_t)groups);
-    kernel_set_int(k, N_vectors, vectors);
+    kernel_set_int(k, N_groups, (int32_t)(pyro_flow_cells(p) / PYRO_CELLS_A_GROUP));
     kernel_set_int(k, N_place, place);
     return kernel_run(k, g, PYRO_CELLS_A_GROUP, 1, 1);
 }
@@ -160,8 +160,7 @@ static bool conjugate_run(pyro *p, gpu *g, pyro_kernel part, bool begins) {
     kernel_set(k, N_weights, weights, sizeof weights);
     kernel_set_int(k, N_begins, begins);
     if (!pyro_run(p, g, k)) return false;
-    return places[part] == NONE ||
-           pyro_sum(p, g, pyro_flow_cells(p) / PYRO_CELLS_A_GROUP, 1, places[part]);
+    return places[part] == NONE || sum_up(p, g, places[part]);
 }
 
 static bool conjugate_step(pyro *p, gpu *g, bool begins) {

@@ -26,7 +26,7 @@ static sim_state state_of(pyro *p, const char *lines) {
                    .kept = &p->kept,
                    .buffer_count = PYRO_STATE_BUFFERS,
                    .image_count = PYRO_LOOKS,
-                   .buffer_names = {"velocity", "gas", "pressure", "sums"},
+                   .buffer_names = {"velocity", "gas", "pressure"},
                    .image_names = {"gas", "flow"},
                    .reset = state_reset,
                    .solver = p};

@@ -12,7 +12,7 @@ static const float soot_heat = 32.8e6f;      // of combustion, J/kg
 static const float least_oxygen = 1e-4f;     // that fuel takes, by mass: powder brings its own
 static const float cooling_at = 1500;        // K, at which `cooling` is given
 
-enum { MOST_CELLS_A_STEP = 7 }; // of the gas: gas.comp looks for it so far
+enum { MOST_CELLS_A_STEP = 7 }; // of the gas: shaders/sim/pyro/present.glsl looks so far
 
 static float share(float dt, float time, float at_zero) {
     return time > 0 ? 1 - expf(-dt / time) : at_zero;
@@ -62,43 +62,54 @@ static bool look_at_flow(pyro *p, gpu *g, const pyro_numbers *n, gpu_image *to) 
     return pyro_run(p, g, k);
 }
 
-static kernel *use_gas(pyro *p, pyro_kernel which, const pyro_numbers *n) {
+// A kernel of groups that look where there is gas.
+static kernel *use_carrying(pyro *p, pyro_kernel which, const pyro_numbers *n, gpu_buffer *from) {
     kernel *k = pyro_use(p, which);
     set_carrying(k, n, n->cell);
-    const int32_t groups = (int32_t)(pyro_cells(p) / PYRO_CELLS_A_GROUP);
     kernel_set_int(k, N_everywhere, !p->active_known);
     kernel_set_int(k, N_present_from, pyro_present_from(p));
-    kernel_set_int(k, N_present_to, groups - pyro_present_from(p));
-    if (p->carrier)
-        kernel_bind(k, N_carrier, (gpu_binding){.image = p->carrier, .sampler = GPU_LINEAR_CLAMP});
+    kernel_bind_buffer(k, N_PyroGasFrom, from);
     return k;
 }
 
-static bool gas_advance(pyro *p, gpu *g, const pyro_numbers *n) {
-    pyro_stage(p, g, "pyro.carrier");
-    if (p->carrier && !look_at_flow(p, g, n, p->carrier)) return false;
-    if (corrects(p)) {
-        pyro_stage(p, g, "pyro.gas_predict");
-        if (!pyro_run_gas(p, g, use_gas(p, PYRO_K_GAS_PREDICT, n))) return false;
+// From the state to the next one, to what is between, and back.
+static bool gas_carry(pyro *p, gpu *g, const pyro_numbers *n) {
+    gpu_buffer *next = pyro_pair(p, PYRO_MEM_GAS, 1), *between = p->buffers[PYRO_MEM_GAS_BETWEEN];
+    if (p->desc.half_velocity) {
+        pyro_stage(p, g, "pyro.carrier");
+        kernel *k = pyro_use(p, PYRO_K_CARRIER);
+        set_carrying(k, n, pyro_flow_cell(p, n));
+        if (!pyro_run(p, g, k)) return false;
     }
-    pyro_stage(p, g, "pyro.gas");
-    kernel *k = use_gas(p, PYRO_K_GAS, n);
-    pyro_set_burning(k, n);
-    kernel_set_float(k, N_cell, pyro_flow_cell(p, n));
-    kernel_set_int(k, N_balances, p->steps > 0);
-    return pyro_run_gas(p, g, k) &&
-           (!corrects(p) ||
-            pyro_sum(p, g, pyro_cells(p) / PYRO_CELLS_A_GROUP, 2, PYRO_CORRECTIONS));
+    pyro_stage(p, g, "pyro.carry_x");
+    kernel *x = use_carrying(p, PYRO_K_CARRY_X, n, pyro_pair(p, PYRO_MEM_GAS, 0));
+    kernel_bind_buffer(x, N_PyroGasInto, next);
+    if (!pyro_run_half_bricks(p, g, x)) return false;
+    pyro_stage(p, g, "pyro.carry_y");
+    kernel *y = use_carrying(p, PYRO_K_CARRY_Y, n, next);
+    kernel_bind_buffer(y, N_PyroGasInto, between);
+    return pyro_run_half_bricks(p, g, y);
 }
 
-// Of the velocity before the step: where vorticity is confined. The gas's prediction is not needed
-// any more, and vorticity stands in its place.
+static bool gas_advance(pyro *p, gpu *g, const pyro_numbers *n) {
+    if (!gas_carry(p, g, n)) return false;
+    pyro_stage(p, g, "pyro.gas");
+    kernel *k = use_carrying(p, PYRO_K_GAS, n, p->buffers[PYRO_MEM_GAS_BETWEEN]);
+    const int32_t groups = (int32_t)(pyro_cells(p) / PYRO_CELLS_A_GROUP);
+    pyro_set_burning(k, n);
+    kernel_set_float(k, N_cell, pyro_flow_cell(p, n));
+    kernel_set_int(k, N_present_to, groups - pyro_present_from(p));
+    return pyro_run_half_bricks(p, g, k);
+}
+
+// Of the velocity before the step: where vorticity is confined. What was between sweeps is not
+// needed any more, and vorticity stands in its place.
 static bool curl_find(pyro *p, gpu *g, const pyro_numbers *n) {
     pyro_stage(p, g, "pyro.confine");
     for (pyro_kernel i = PYRO_K_VORTICITY; i <= PYRO_K_CURL; i++) {
         kernel *k = pyro_use(p, i);
         set_carrying(k, n, pyro_flow_cell(p, n));
-        kernel_bind_buffer(k, N_PyroVorticity, p->buffers[PYRO_MEM_GAS_HAT]);
+        kernel_bind_buffer(k, N_PyroVorticity, p->buffers[PYRO_MEM_GAS_BETWEEN]);
         if (!pyro_run(p, g, k)) return false;
     }
     return true;

@@ -17,7 +17,6 @@ typedef struct pyro_world {
     float (*velocity)[4]; // of the faces at the lower ends of each cell
     float (*gas)[4];      // warmth, fuel, burnt, soot
     float *pressure;      // m/s
-    float sums[64];
 } pyro_world;
 
 static inline void pyro_open(pyro_world *w, gpu *device, const pyro_desc *desc) {
@@ -91,7 +90,7 @@ static inline void pyro_pack_gas(pyro_world *w, bool pack) {
 
 static inline void pyro_transfer(pyro_world *w, bool write) {
     gpu_buffer *buffers[PYRO_STATE_BUFFERS];
-    void *const bytes[PYRO_STATE_BUFFERS] = {w->velocity, w->gas, w->pressure, w->sums};
+    void *const bytes[PYRO_STATE_BUFFERS] = {w->velocity, w->gas, w->pressure};
     pyro_buffers(w->solver, buffers);
     gpu_test_ok(gpu_idle(w->device));
     if (write) pyro_pack_gas(w, true);

@@ -48,7 +48,7 @@ float pyro_progress(vec4 gas) {
     return clamp(gas.PYRO_BURNT / max(gas.PYRO_FUEL + gas.PYRO_BURNT, 1e-5), 0.0, 1.0);
 }
 
-// Changes what a cell holds. Returns its expansion, 1/s.
+// Changes what a cell holds. Returns how much more room its gas takes, as a share of what it took.
 float pyro_burn(inout vec4 gas, float brought) {
     gas.yzw = max(gas.yzw, vec3(0.0));
     float before = pyro_temperature(gas), burnt = pyro_burnt_in_step(gas, brought);
@@ -65,6 +65,6 @@ float pyro_burn(inout vec4 gas, float brought) {
     float cold = min(ambient / hot, 1.0);
     float after = hot - lost * (1.0 - cold * cold * cold * cold);
     gas.PYRO_WARMTH += after - before;
-    return expansion * log(after / before) / dt;
+    return expansion * (after / before - 1.0);
 }
 #endif

@@ -81,17 +81,24 @@ const bvec3 PYRO_AROUND = bvec3(PYRO_LOW_X == PYRO_PERIODIC, PYRO_LOW_Y == PYRO_
 
 // ---- where things are -------------------------------------------------------------------------
 
-ivec3 pyro_places(ivec3 i) { // what coordinates along each axis give
-    return (i >> 3) * ivec3(512, 64 * PYRO_NX, 8 * PYRO_NX * PYRO_NY) + ((i & 7) << ivec3(0, 3, 6));
+// What coordinates along each axis give, where there are so many cells along x and y.
+ivec3 pyro_places_in(ivec3 i, int nx, int ny) {
+    return (i >> 3) * ivec3(512, 64 * nx, 8 * nx * ny) + ((i & 7) << ivec3(0, 3, 6));
 }
 
-#ifdef PYRO_ON_GAS
-int pyro_flow_at(ivec3 i) { // of a cell of the velocity
-    const int nx = PYRO_GAS_NX / PYRO_RATIO, ny = PYRO_GAS_NY / PYRO_RATIO;
-    ivec3 p = (i >> 3) * ivec3(512, 64 * nx, 8 * nx * ny) + ((i & 7) << ivec3(0, 3, 6));
+ivec3 pyro_places(ivec3 i) {
+    return pyro_places_in(i, PYRO_NX, PYRO_NY);
+}
+
+int pyro_gas_at(ivec3 i) { // of a cell of the gas
+    ivec3 p = pyro_places_in(i, PYRO_GAS_NX, PYRO_GAS_NY);
     return p.x + p.y + p.z;
 }
-#endif
+
+int pyro_flow_at(ivec3 i) { // of a cell of the velocity
+    ivec3 p = pyro_places_in(i, PYRO_GAS_NX / PYRO_RATIO, PYRO_GAS_NY / PYRO_RATIO);
+    return p.x + p.y + p.z;
+}
 
 bvec3 both(bvec3 a, bvec3 b) {
     return bvec3(a.x && b.x, a.y && b.y, a.z && b.z);

@@ -60,8 +60,8 @@ static double outflow(pyro_world *w) {
     return sum * pow((double)w->numbers.cell, 2);
 }
 
-// What burning makes by theory, div u = d ln T / dt of gas that a flame warms with the fuel in it
-// (Rehm and Baum 1978), of the state as it is, m^3/s.
+// The room that burning makes by theory, of the state as it is, m^3/s: at one pressure gas takes as
+// much more of it as a flame warms it, with the fuel in it (Rehm and Baum 1978).
 static double room(const pyro_world *w) {
     const pyro_numbers *n = &w->numbers;
     const double share = 1 - exp(-(double)n->dt / (double)n->burn_time), need = (double)n->oxygen;
@@ -70,7 +70,7 @@ static double room(const pyro_world *w) {
         const double t = ambient + (double)w->gas[i][0], fuel = (double)w->gas[i][1];
         const double burnt = (double)w->gas[i][2], left = fmax(0.232 - need * burnt, 0) / need;
         const double now = share * fmin(fmax(fuel, 0), left);
-        sum += log(1 + (double)n->heat / 1150 * now / (1 + fuel + burnt) / t);
+        sum += (double)n->heat / 1150 * now / (1 + fuel + burnt) / t;
     }
     return sum * pow((double)n->cell, 3) / (double)n->dt;
 }
