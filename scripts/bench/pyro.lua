@@ -17,8 +17,8 @@ return sweep {
       { name = "half", ["pyro.velocity_cells"] = "half" },
     },
     axis { "advection",
-      { name = "maccormack", ["pyro.advection"] = "maccormack" },
-      { name = "semi_lagrangian", ["pyro.advection"] = "semi_lagrangian" },
+      { name = "parabolic", ["pyro.advection"] = "parabolic" },
+      { name = "upwind", ["pyro.advection"] = "upwind" },
     },
     axis { "precision",
       { name = "f16", ["pyro.precision"] = "f16" },
@@ -31,7 +31,7 @@ return sweep {
   },
   -- Sizes are measured for what most effects have, all else at one size.
   skip = function(row)
-    local as_most = row.advection == "maccormack" and row.vorticity == "none"
+    local as_most = row.advection == "parabolic" and row.vorticity == "none"
     return not as_most and (row.cells ~= 128 or row.velocity ~= "full")
   end,
 }

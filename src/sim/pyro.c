@@ -87,7 +87,7 @@ static void define_all(pyro *p) {
     define(p, "PYRO_RATIO", pyro_ratio(&p->desc));
     define(p, "PYRO_HALF", p->desc.precision == PYRO_F16);
     define(p, "PYRO_WIDE", p->wide);
-    define(p, "PYRO_CORRECTS", p->desc.advection == PYRO_MACCORMACK);
+    define(p, "PYRO_PARABOLIC", p->desc.advection == PYRO_PARABOLIC);
     define(p, "PYRO_PREMIXED", p->desc.premixed);
     define(p, "PYRO_CONFINES", p->desc.confinement);
     define(p, "PYRO_FORCE", p->desc.force);
@@ -105,13 +105,15 @@ static const char *const names[] = {PYRO_NAMES(KERNEL_NAME_TEXT)};
 static const char *const shaders[PYRO_KERNELS] = {
     [PYRO_K_RESET] = "sim/pyro/reset.comp",
     [PYRO_K_RESET_FLOW] = "sim/pyro/reset.comp",
+    [PYRO_K_SPREAD] = "sim/pyro/spread.comp",
     [PYRO_K_CARRIER] = "sim/pyro/carrier.comp",
     [PYRO_K_CARRY_X] = "sim/pyro/carry.comp",
     [PYRO_K_CARRY_Y] = "sim/pyro/carry.comp",
     [PYRO_K_GAS] = "sim/pyro/gas.comp",
     [PYRO_K_VORTICITY] = "sim/pyro/curl.comp",
     [PYRO_K_CURL] = "sim/pyro/curl.comp",
-    [PYRO_K_VELOCITY_PREDICT] = "sim/pyro/velocity.comp",
+    [PYRO_K_VELOCITY_X] = "sim/pyro/velocity.comp",
+    [PYRO_K_VELOCITY_Y] = "sim/pyro/velocity.comp",
     [PYRO_K_VELOCITY] = "sim/pyro/velocity.comp",
     [PYRO_K_SOLIDS] = "sim/pyro/solids.comp",
     [PYRO_K_SOLIDS_FINEST] = "sim/pyro/solids.comp",
@@ -147,7 +149,8 @@ static const char *const more_defines[PYRO_KERNELS][2] = {
     [PYRO_K_RESET_FLOW] = {"FLOW"},
     [PYRO_K_CARRY_Y] = {"CARRY_Y"},
     [PYRO_K_CURL] = {"PYRO_CURL_LAST"},
-    [PYRO_K_VELOCITY_PREDICT] = {"PYRO_PREDICT"},
+    [PYRO_K_VELOCITY_X] = {"CARRY_X"},
+    [PYRO_K_VELOCITY_Y] = {"CARRY_Y"},
     [PYRO_K_SMOOTH_FINEST] = {"PYRO_FINEST"},
     [PYRO_K_RESTRICT_FINEST] = {"PYRO_FINEST"},
     [PYRO_K_PROLONG_FINEST] = {"PYRO_FINEST"},
@@ -165,7 +168,6 @@ static const char *const more_defines[PYRO_KERNELS][2] = {
 
 static bool is_used(const pyro_desc *desc, pyro_kernel which) {
     if (which == PYRO_K_CARRIER) return desc->half_velocity;
-    if (which == PYRO_K_VELOCITY_PREDICT) return desc->advection == PYRO_MACCORMACK;
     if (which == PYRO_K_VORTICITY || which == PYRO_K_CURL) return desc->confinement;
     if (which >= PYRO_K_SOLIDS && which <= PYRO_K_FILL) return desc->solids;
     if (which >= PYRO_K_RESIDUAL && which <= PYRO_K_SUM) return desc->solids;
@@ -221,12 +223,12 @@ static void find_sizes(const pyro *p, uint64_t out[PYRO_MEM_COUNT]) {
         out[PYRO_MEM_GAS + i] = four * gas;
     }
     out[PYRO_MEM_ACTIVE] = gas / PYRO_CELLS_A_GROUP * 2 * sizeof(uint32_t);
-    if (p->desc.advection == PYRO_MACCORMACK) out[PYRO_MEM_VELOCITY_HAT] = four * flow;
+    out[PYRO_MEM_VELOCITY_BETWEEN] = four * flow;
     out[PYRO_MEM_GAS_BETWEEN] = four * gas;
     if (p->desc.half_velocity) out[PYRO_MEM_CARRIER] = four * gas;
     if (p->desc.confinement) out[PYRO_MEM_CURL] = four * flow;
     if (p->desc.half_velocity) out[PYRO_MEM_DENSITY] = 4 * flow;
-    out[PYRO_MEM_PRESSURE] = out[PYRO_MEM_RIGHT] = 4 * flow;
+    out[PYRO_MEM_PRESSURE] = out[PYRO_MEM_RIGHT] = out[PYRO_MEM_SPREAD] = 4 * flow;
     out[PYRO_MEM_COARSE_PRESSURE] = out[PYRO_MEM_COARSE_RIGHT] = 4 * pyro_coarse_cells(p);
     out[PYRO_MEM_REPORT] = (gas + flow) / PYRO_CELLS_A_GROUP * 32;
     if (!p->desc.solids) return;
@@ -241,9 +243,10 @@ static const char *const memory_labels[PYRO_MEM_COUNT] = {"velocity of burning g
                                                           "burning gas",
                                                           "burning gas",
                                                           "places of burning gas",
-                                                          "velocity traced back",
+                                                          "velocity between sweeps",
                                                           "gas between sweeps",
                                                           "velocity that carries the gas",
+                                                          "volumes between sweeps",
                                                           "vorticity",
                                                           "density of burning gas",
                                                           "pressure of burning gas",
@@ -308,7 +311,7 @@ void pyro_bind(const pyro *p, kernel *k, const kernel_place *places) {
         [N_PyroVelocityTo] = pyro_pair(p, PYRO_MEM_VELOCITY, 1),
         [N_PyroCarrier] = p->desc.half_velocity ? p->buffers[PYRO_MEM_CARRIER]
                                                 : pyro_pair(p, PYRO_MEM_VELOCITY, 0),
-        [N_PyroVelocityHat] = p->buffers[PYRO_MEM_VELOCITY_HAT],
+        [N_PyroSpread] = p->buffers[PYRO_MEM_SPREAD],
         [N_PyroCurl] = p->buffers[PYRO_MEM_CURL],
         [N_PyroCoarsePressure] = p->buffers[PYRO_MEM_COARSE_PRESSURE],
         [N_PyroCoarseRight] = p->buffers[PYRO_MEM_COARSE_RIGHT],
@@ -350,9 +353,18 @@ bool pyro_run_gas(const pyro *p, gpu *g, kernel *k) {
     return kernel_run(k, g, p->desc.size[0], p->desc.size[1], p->desc.size[2]);
 }
 
-bool pyro_run_half_bricks(const pyro *p, gpu *g, kernel *k) {
-    const uint32_t *n = p->desc.size;
+static bool run_half_bricks(gpu *g, kernel *k, const uint32_t n[3]) {
     return kernel_run(k, g, n[0] / 8 * k->binaries[0].local_size[0], n[1] / 8, n[2] / 4);
+}
+
+bool pyro_run_half_bricks(const pyro *p, gpu *g, kernel *k) {
+    uint32_t n[3];
+    pyro_flow_size(&p->desc, n);
+    return run_half_bricks(g, k, n);
+}
+
+bool pyro_run_half_bricks_of_gas(const pyro *p, gpu *g, kernel *k) {
+    return run_half_bricks(g, k, p->desc.size);
 }
 
 size_t pyro_buffers(pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]) {

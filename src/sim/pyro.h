@@ -4,9 +4,9 @@
 //
 // The gas is in a box of cells. Velocities are staggered (Harlow and Welch 1965), all else is in
 // the middle of cells. A step (pyro_step) carries what the gas holds (by volumes that move: Colella
-// and Woodward 1984, Easter 1993), burns it, carries the velocity (Selle et al. 2008) and pushes
-// it, then makes it as divergent as the expansion wants (Chorin 1968; pressure by multigrid, a
-// fixed number of cycles that begin with the last step's pressure).
+// and Woodward 1984, Easter 1993), burns it, carries the velocity in the same way and pushes it,
+// then makes it as divergent as the expansion wants (Chorin 1968; pressure by multigrid, a fixed
+// number of cycles that begin with the last step's pressure).
 //
 // Units: metres, seconds, kelvin, kilograms. Fuel, what has burnt, and soot are by mass of air
 // where they burn, and by volume where they are carried; pyro_image has kg/m^3.
@@ -22,8 +22,11 @@ typedef struct pyro pyro;
 // Open air; a wall that air slips along; a face through which air comes in; around to the other
 // side.
 typedef enum pyro_face { PYRO_OPEN, PYRO_WALL, PYRO_INFLOW, PYRO_PERIODIC } pyro_face;
-// Of the velocity. The gas is carried by parabolas with MacCormack's, else by what cells hold.
-typedef enum pyro_advection { PYRO_SEMI_LAGRANGIAN, PYRO_MACCORMACK } pyro_advection;
+// What is taken to lie within a cell, of which a part flows into the next one.
+typedef enum pyro_advection {
+    PYRO_UPWIND,   // the same all over
+    PYRO_PARABOLIC // a parabola
+} pyro_advection;
 typedef enum pyro_precision { PYRO_F32, PYRO_F16, PYRO_AUTO } pyro_precision;
 
 enum {

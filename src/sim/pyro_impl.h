@@ -16,12 +16,13 @@ typedef enum pyro_memory {
     PYRO_MEM_VELOCITY,                    // two: of the state, and the next
     PYRO_MEM_GAS = PYRO_MEM_VELOCITY + 2, // two
     PYRO_MEM_ACTIVE =
-        PYRO_MEM_GAS + 2,  // which half bricks hold more than clean air, of both states
-    PYRO_MEM_VELOCITY_HAT, // with MacCormack
-    PYRO_MEM_GAS_BETWEEN,  // two sweeps; and vorticity, with confinement
-    PYRO_MEM_CARRIER,      // where cells of the velocity are larger
-    PYRO_MEM_CURL,         // with confinement
-    PYRO_MEM_DENSITY,      // of the gas in cells of the velocity, where these are larger
+        PYRO_MEM_GAS + 2,      // which half bricks hold more than clean air, of both states
+    PYRO_MEM_VELOCITY_BETWEEN, // two sweeps
+    PYRO_MEM_GAS_BETWEEN,      // and vorticity, with confinement
+    PYRO_MEM_CARRIER,          // where cells of the velocity are larger
+    PYRO_MEM_SPREAD,           // of volumes, along y and z
+    PYRO_MEM_CURL,             // with confinement
+    PYRO_MEM_DENSITY,          // of the gas in cells of the velocity, where these are larger
     PYRO_MEM_PRESSURE,
     PYRO_MEM_RIGHT,
     PYRO_MEM_COARSE_PRESSURE, // of all levels but the finest
@@ -58,14 +59,16 @@ typedef struct pyro_reporter {
 typedef enum pyro_kernel {
     PYRO_K_RESET, // of the gas
     PYRO_K_RESET_FLOW,
+    PYRO_K_SPREAD,
     PYRO_K_CARRIER,
     PYRO_K_CARRY_X,
     PYRO_K_CARRY_Y,
     PYRO_K_GAS, // carried along z, burnt
     PYRO_K_VORTICITY,
     PYRO_K_CURL,
-    PYRO_K_VELOCITY_PREDICT,
-    PYRO_K_VELOCITY,
+    PYRO_K_VELOCITY_X,
+    PYRO_K_VELOCITY_Y,
+    PYRO_K_VELOCITY, // carried along z, pushed
     PYRO_K_SOLIDS,
     PYRO_K_SOLIDS_FINEST, // from the finest level to the next
     PYRO_K_SOLIDS_COARSE,
@@ -97,21 +100,22 @@ typedef enum pyro_kernel {
 // Buffers that are always the same come first: pyro_use binds them.
 #define PYRO_OWN_NAMES(NAME)                                                                       \
     NAME(PyroGas), NAME(PyroVelocity), NAME(PyroPressure), NAME(PyroRight), NAME(PyroGasTo),       \
-        NAME(PyroVelocityTo), NAME(PyroCarrier), NAME(PyroVelocityHat), NAME(PyroCurl),            \
+        NAME(PyroVelocityTo), NAME(PyroCarrier), NAME(PyroSpread), NAME(PyroCurl),                 \
         NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroOpenings),                       \
         NAME(PyroCoarseOpenings), NAME(PyroFound), NAME(PyroDirection), NAME(PyroChange),          \
         NAME(PyroSums), NAME(PyroDensity), NAME(PyroActive), NAME(PyroReport)
 #define PYRO_NAMES(NAME)                                                                           \
-    PYRO_OWN_NAMES(NAME), NAME(PyroGasFrom), NAME(PyroGasInto), NAME(PyroVorticity),               \
-        NAME(scalars), NAME(flow), NAME(result), NAME(dt), NAME(cell), NAME(reach), NAME(ambient), \
-        NAME(lightness), NAME(inflow), NAME(gravity), NAME(acceleration), NAME(confinement),       \
-        NAME(max_speed), NAME(ignition), NAME(burn_share), NAME(oxygen_need), NAME(heat),          \
-        NAME(soot_yield), NAME(soot_share), NAME(soot_heat), NAME(soot_kept), NAME(cooling),       \
-        NAME(expansion), NAME(weights), NAME(level_size), NAME(level_first), NAME(colour),         \
-        NAME(coarse_size), NAME(coarser), NAME(coarse_first), NAME(sweeps), NAME(relaxation),      \
-        NAME(pressure_unit), NAME(groups), NAME(mass), NAME(SolidIds), NAME(SolidMotions),         \
-        NAME(box_min), NAME(force), NAME(begins), NAME(place), NAME(first), NAME(flame_reach),     \
-        NAME(everywhere), NAME(present_from), NAME(present_to)
+    PYRO_OWN_NAMES(NAME), NAME(PyroGasFrom), NAME(PyroGasInto), NAME(PyroFlowFrom),                \
+        NAME(PyroFlowInto), NAME(PyroVorticity), NAME(scalars), NAME(flow), NAME(result),          \
+        NAME(dt), NAME(cell), NAME(reach), NAME(ambient), NAME(lightness), NAME(inflow),           \
+        NAME(gravity), NAME(acceleration), NAME(confinement), NAME(max_speed), NAME(ignition),     \
+        NAME(burn_share), NAME(oxygen_need), NAME(heat), NAME(soot_yield), NAME(soot_share),       \
+        NAME(soot_heat), NAME(soot_kept), NAME(cooling), NAME(expansion), NAME(weights),           \
+        NAME(level_size), NAME(level_first), NAME(colour), NAME(coarse_size), NAME(coarser),       \
+        NAME(coarse_first), NAME(sweeps), NAME(relaxation), NAME(pressure_unit), NAME(groups),     \
+        NAME(mass), NAME(SolidIds), NAME(SolidMotions), NAME(box_min), NAME(force), NAME(begins),  \
+        NAME(place), NAME(first), NAME(flame_reach), NAME(everywhere), NAME(present_from),         \
+        NAME(present_to)
 enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 
 struct pyro {
@@ -146,8 +150,9 @@ kernel *pyro_use(pyro *p, pyro_kernel which);
 bool pyro_run(const pyro *p, gpu *g, kernel *k);     // a thread for each cell of the velocity
 bool pyro_run_gas(const pyro *p, gpu *g, kernel *k); // of the gas
 // A group for each 8 x 8 x 4 cells of the gas.
-bool pyro_run_half_bricks(const pyro *p, gpu *g, kernel *k);
-void pyro_stage(const pyro *p, gpu *g, const char *name); // begins, for GPU times
+bool pyro_run_half_bricks_of_gas(const pyro *p, gpu *g, kernel *k);
+bool pyro_run_half_bricks(const pyro *p, gpu *g, kernel *k); // of the velocity
+void pyro_stage(const pyro *p, gpu *g, const char *name);    // begins, for GPU times
 
 // pyro_numbers.c
 void pyro_set_gas(kernel *k, const pyro_numbers *n); // what all that reads the gas is told

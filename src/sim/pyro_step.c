@@ -41,23 +41,23 @@ void pyro_set_burning(kernel *k, const pyro_numbers *n) {
     kernel_set_float(k, N_expansion, n->expansion);
 }
 
-// Of a kernel whose cells have this side.
-static void set_carrying(kernel *k, const pyro_numbers *n, float cell) {
-    kernel_set_float(k, N_reach, n->dt / cell);
+static void set_inflow(kernel *k, const pyro_numbers *n) {
     kernel_set(k, N_inflow, n->inflow, sizeof n->inflow);
 }
 
-// ---- a step -----------------------------------------------------------------------------------
-
-static bool corrects(const pyro *p) {
-    return p->desc.advection == PYRO_MACCORMACK;
+// Of a kernel whose cells have this side.
+static void set_carrying(kernel *k, const pyro_numbers *n, float cell) {
+    kernel_set_float(k, N_reach, n->dt / cell);
+    set_inflow(k, n);
 }
+
+// ---- a step -----------------------------------------------------------------------------------
 
 static bool look_at_flow(pyro *p, gpu *g, const pyro_numbers *n, gpu_image *to) {
     kernel *k = pyro_use(p, PYRO_K_LOOK_FLOW);
     const float density = 353 / n->ambient, cell = pyro_flow_cell(p, n); // of the surroundings
     kernel_bind_image(k, N_flow, to);
-    set_carrying(k, n, cell);
+    set_inflow(k, n);
     kernel_set_float(k, N_pressure_unit, density * cell / n->dt);
     return pyro_run(p, g, k);
 }
@@ -72,23 +72,29 @@ static kernel *use_carrying(pyro *p, pyro_kernel which, const pyro_numbers *n, g
     return k;
 }
 
+// Velocities that carry the gas, and what volumes are between sweeps.
+static bool find_volumes(pyro *p, gpu *g, const pyro_numbers *n) {
+    pyro_stage(p, g, "pyro.volumes");
+    kernel *spread = pyro_use(p, PYRO_K_SPREAD);
+    set_inflow(spread, n);
+    if (!pyro_run(p, g, spread)) return false;
+    if (!p->desc.half_velocity) return true;
+    kernel *carrier = pyro_use(p, PYRO_K_CARRIER);
+    set_inflow(carrier, n);
+    return pyro_run(p, g, carrier);
+}
+
 // From the state to the next one, to what is between, and back.
 static bool gas_carry(pyro *p, gpu *g, const pyro_numbers *n) {
     gpu_buffer *next = pyro_pair(p, PYRO_MEM_GAS, 1), *between = p->buffers[PYRO_MEM_GAS_BETWEEN];
-    if (p->desc.half_velocity) {
-        pyro_stage(p, g, "pyro.carrier");
-        kernel *k = pyro_use(p, PYRO_K_CARRIER);
-        set_carrying(k, n, pyro_flow_cell(p, n));
-        if (!pyro_run(p, g, k)) return false;
-    }
     pyro_stage(p, g, "pyro.carry_x");
     kernel *x = use_carrying(p, PYRO_K_CARRY_X, n, pyro_pair(p, PYRO_MEM_GAS, 0));
     kernel_bind_buffer(x, N_PyroGasInto, next);
-    if (!pyro_run_half_bricks(p, g, x)) return false;
+    if (!pyro_run_half_bricks_of_gas(p, g, x)) return false;
     pyro_stage(p, g, "pyro.carry_y");
     kernel *y = use_carrying(p, PYRO_K_CARRY_Y, n, next);
     kernel_bind_buffer(y, N_PyroGasInto, between);
-    return pyro_run_half_bricks(p, g, y);
+    return pyro_run_half_bricks_of_gas(p, g, y);
 }
 
 static bool gas_advance(pyro *p, gpu *g, const pyro_numbers *n) {
@@ -99,7 +105,7 @@ static bool gas_advance(pyro *p, gpu *g, const pyro_numbers *n) {
     pyro_set_burning(k, n);
     kernel_set_float(k, N_cell, pyro_flow_cell(p, n));
     kernel_set_int(k, N_present_to, groups - pyro_present_from(p));
-    return pyro_run_half_bricks(p, g, k);
+    return pyro_run_half_bricks_of_gas(p, g, k);
 }
 
 // Of the velocity before the step: where vorticity is confined. What was between sweeps is not
@@ -108,25 +114,42 @@ static bool curl_find(pyro *p, gpu *g, const pyro_numbers *n) {
     pyro_stage(p, g, "pyro.confine");
     for (pyro_kernel i = PYRO_K_VORTICITY; i <= PYRO_K_CURL; i++) {
         kernel *k = pyro_use(p, i);
-        set_carrying(k, n, pyro_flow_cell(p, n));
+        set_inflow(k, n);
         kernel_bind_buffer(k, N_PyroVorticity, p->buffers[PYRO_MEM_GAS_BETWEEN]);
         if (!pyro_run(p, g, k)) return false;
     }
     return true;
 }
 
+static kernel *use_stirring(pyro *p, pyro_kernel which, const pyro_numbers *n, gpu_buffer *from,
+                            gpu_buffer *into) {
+    kernel *k = pyro_use(p, which);
+    set_carrying(k, n, pyro_flow_cell(p, n));
+    kernel_bind_buffer(k, N_PyroCarrier, pyro_pair(p, PYRO_MEM_VELOCITY, 0));
+    kernel_bind_buffer(k, N_PyroFlowFrom, from);
+    kernel_bind_buffer(k, N_PyroFlowInto, into);
+    return k;
+}
+
+static bool flow_carry(pyro *p, gpu *g, const pyro_numbers *n) {
+    gpu_buffer *own = pyro_pair(p, PYRO_MEM_VELOCITY, 0),
+               *next = pyro_pair(p, PYRO_MEM_VELOCITY, 1);
+    pyro_stage(p, g, "pyro.velocity_x");
+    kernel *x = use_stirring(p, PYRO_K_VELOCITY_X, n, own, next);
+    if (!pyro_run_half_bricks(p, g, x)) return false;
+    pyro_stage(p, g, "pyro.velocity_y");
+    kernel *y = use_stirring(p, PYRO_K_VELOCITY_Y, n, next, p->buffers[PYRO_MEM_VELOCITY_BETWEEN]);
+    return pyro_run_half_bricks(p, g, y);
+}
+
 static bool velocity_advance(pyro *p, gpu *g, const pyro_numbers *n) {
     if (p->desc.confinement && !curl_find(p, g, n)) return false;
-    if (corrects(p)) {
-        pyro_stage(p, g, "pyro.velocity_predict");
-        kernel *first = pyro_use(p, PYRO_K_VELOCITY_PREDICT);
-        set_carrying(first, n, pyro_flow_cell(p, n));
-        if (!pyro_run(p, g, first)) return false;
-    }
+    gpu_buffer *next = pyro_pair(p, PYRO_MEM_VELOCITY, 1);
+    gpu_buffer *between = p->buffers[PYRO_MEM_VELOCITY_BETWEEN];
+    if (!flow_carry(p, g, n)) return false;
     pyro_stage(p, g, "pyro.velocity");
-    kernel *k = pyro_use(p, PYRO_K_VELOCITY);
+    kernel *k = use_stirring(p, PYRO_K_VELOCITY, n, between, next);
     const float most = MOST_CELLS_A_STEP * n->cell / n->dt;
-    set_carrying(k, n, pyro_flow_cell(p, n));
     pyro_set_gas(k, n);
     kernel_set_float(k, N_dt, n->dt);
     kernel_set_float(k, N_gravity, n->gravity);
@@ -135,7 +158,7 @@ static bool velocity_advance(pyro *p, gpu *g, const pyro_numbers *n) {
     kernel_set_float(k, N_max_speed, n->max_speed > 0 && n->max_speed < most ? n->max_speed : most);
     kernel_bind_buffer(k, N_PyroGas, pyro_pair(p, PYRO_MEM_GAS, 1));
     if (p->force) kernel_bind_image(k, N_force, p->force);
-    return pyro_run(p, g, k);
+    return pyro_run_half_bricks(p, g, k);
 }
 
 static bool check_numbers(const pyro_numbers *n) {
@@ -145,8 +168,8 @@ static bool check_numbers(const pyro_numbers *n) {
 }
 
 bool pyro_step(pyro *p, gpu *g, const pyro_numbers *n, bool keep) {
-    if (!check_numbers(n) || !gas_advance(p, g, n) || !velocity_advance(p, g, n) ||
-        !pyro_obstruct(p, g, n) || !pyro_project(p, g, n))
+    if (!check_numbers(n) || !find_volumes(p, g, n) || !gas_advance(p, g, n) ||
+        !velocity_advance(p, g, n) || !pyro_obstruct(p, g, n) || !pyro_project(p, g, n))
         return false;
     p->current ^= 1;
     p->active_known = true;

@@ -38,14 +38,14 @@ static bool parse(int argc, char **argv, bench *b) {
     *b = (bench){.steps = 40,
                  .desc = {.size = {64, 64, 64},
                           .faces = {[4] = PYRO_WALL},
-                          .advection = PYRO_MACCORMACK,
+                          .advection = PYRO_PARABOLIC,
                           .precision = PYRO_AUTO}};
     for (int c; (c = getopt(argc, argv, "d:n:s:a:h:c:lvkt")) != -1;) {
         uint32_t *s = b->desc.size;
         if (c == 'd') b->device = optarg;
         if (c == 'n') b->steps = atoi(optarg);
         if (c == 's' && sscanf(optarg, "%u,%u,%u", &s[0], &s[1], &s[2]) == 1) s[1] = s[2] = s[0];
-        if (c == 'a') b->desc.advection = optarg[0] == 'm' ? PYRO_MACCORMACK : PYRO_SEMI_LAGRANGIAN;
+        if (c == 'a') b->desc.advection = optarg[0] == 'p' ? PYRO_PARABOLIC : PYRO_UPWIND;
         if (c == 'h') b->desc.precision = strcmp(optarg, "f16") == 0 ? PYRO_F16 : PYRO_F32;
         if (c == 'c') b->desc.cycles = (uint32_t)atoi(optarg);
         if (c == 'l') b->desc.half_velocity = true;
@@ -141,7 +141,7 @@ static int measure(bench *b, pyro *p, gpu *g) {
     printf("%ux%ux%u %s %s %u cycles%s%s%s: %.3f ms a step, %.2f million cells a second, %.2f a "
            "processor second, residual %.1e of %.2f m/s, %.0f K\n",
            d->size[0], d->size[1], d->size[2],
-           d->advection == PYRO_MACCORMACK ? "maccormack" : "semi-lagrangian",
+           d->advection == PYRO_PARABOLIC ? "parabolic" : "upwind",
            d->precision == PYRO_F16 ? "f16" : "f32", d->cycles,
            d->half_velocity ? ", half the velocity" : "", d->confinement ? ", confinement" : "",
            b->keep ? ", kept" : "", milliseconds / b->steps, cells / milliseconds,

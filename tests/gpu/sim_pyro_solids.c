@@ -69,7 +69,7 @@ static double flux(pyro_world *w, int x) {
 static const pyro_desc duct = {
     .size = {64, 32, 32},
     .faces = {PYRO_INFLOW, PYRO_OPEN, PYRO_WALL, PYRO_WALL, PYRO_WALL, PYRO_WALL},
-    .advection = PYRO_MACCORMACK,
+    .advection = PYRO_PARABOLIC,
 };
 
 // A plate that leaves a slit: all that comes in goes through it.

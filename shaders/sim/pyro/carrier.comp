@@ -5,7 +5,7 @@
 // section 2.2).
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #include "sim/pyro/state.glsl"
-#include "sim/pyro/sample.glsl"
+#include "sim/pyro/faces.glsl"
 
 layout(std430) readonly buffer PyroVelocity { PYRO_FOUR velocity[]; };
 layout(std430) writeonly buffer PyroCarrier { PYRO_FOUR carrier[]; };
@@ -36,14 +36,17 @@ void main() {
     vec3 y0 = PLANE(Y, y, n.face.y, z, x, false, 0.0), y1 = PLANE(Y, y, n.next.y, z, x, n.ends.y, end_flow.y);
     vec3 z0 = PLANE(Z, z, n.face.z, x, y, false, 0.0), z1 = PLANE(Z, z, n.next.z, x, y, n.ends.z, end_flow.z);
     vec3 more = 0.5 * vec3(y1.z - y0.z + z1.y - z0.y, x1.y - x0.y + z1.z - z0.z, x1.z - x0.z + y1.y - y0.y);
+    vec3 y2 = y1, z2 = z1; // of the cell above
     x1 = 0.5 * (x0 + x1) + vec3(more.x, 0.0, 0.0);
     y1 = 0.5 * (y0 + y1) + vec3(more.y, 0.0, 0.0);
     z1 = 0.5 * (z0 + z1) + vec3(more.z, 0.0, 0.0);
     for (int i = 0; i < 8; i++) {
         ivec3 part = ivec3(i & 1, (i >> 1) & 1, i >> 2);
         vec3 side = vec3(2 * part - 1);
-        vec4 v = vec4(dot(part.x == 0 ? x0 : x1, vec3(1.0, side.yz)), dot(part.y == 0 ? y0 : y1, vec3(1.0, side.zx)),
-                      dot(part.z == 0 ? z0 : z1, vec3(1.0, side.xy)), 0.0);
-        carrier[pyro_gas_at(2 * c + part)] = pyro_store(v);
+        vec3 v = vec3(dot(part.x == 0 ? x0 : x1, vec3(1.0, side.yz)), dot(part.y == 0 ? y0 : y1, vec3(1.0, side.zx)),
+                      dot(part.z == 0 ? z0 : z1, vec3(1.0, side.xy)));
+        float spread = dot(part.y == 0 ? y1 : y2, vec3(1.0, side.zx)) - v.y +
+                       dot(part.z == 0 ? z1 : z2, vec3(1.0, side.xy)) - v.z; // along y and z
+        carrier[pyro_gas_at(2 * c + part)] = pyro_store(vec4(v, spread));
     }
 }

@@ -2,7 +2,7 @@
 // vorticity, crossed with vorticity, times the side of a cell.
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #include "sim/pyro/state.glsl"
-#include "sim/pyro/trace.glsl"
+#include "sim/pyro/velocity.glsl"
 #ifdef PYRO_CURL_LAST
 layout(std430) readonly buffer PyroVorticity { PYRO_FOUR vorticity[]; };
 layout(std430) writeonly buffer PyroCurl { PYRO_FOUR curl[]; };

@@ -1,7 +1,7 @@
 // What flows out of each cell, less its expansion: the pressure's right-hand side.
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #include "sim/pyro/state.glsl"
-#include "sim/pyro/sample.glsl"
+#include "sim/pyro/faces.glsl"
 
 uniform float reach; // cells in a step, by 1 m/s
 layout(std430) readonly buffer PyroVelocityTo { PYRO_FOUR velocity_to[]; };

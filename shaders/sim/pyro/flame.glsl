@@ -4,6 +4,28 @@
 
 layout(std430) readonly buffer PyroGas { PYRO_FOUR gas[]; }; // before the step
 
+// Into the box: around, or the nearest place in it. Positions are in cells from its lowest corner.
+vec3 pyro_into(vec3 p) {
+    vec3 size = vec3(PYRO_SIZE);
+    return mix(clamp(p, vec3(0.0), size), p - size * floor(p / size), PYRO_AROUND);
+}
+
+// Two coordinates along each axis as places, and the weight of the higher one.
+struct pyro_span {
+    ivec3 low, high;
+    vec3 t;
+};
+
+pyro_span pyro_span_at(vec3 p) { // a place in the box
+    vec3 at = p - 0.5, low = floor(at);
+    ivec3 i = ivec3(low), j = i + 1, last = PYRO_SIZE - 1;
+    pyro_span s;
+    s.t = at - low;
+    s.low = pyro_places(mix(clamp(i, ivec3(0), last), pyro_around(i), PYRO_AROUND));
+    s.high = pyro_places(mix(clamp(j, ivec3(0), last), pyro_around(j), PYRO_AROUND));
+    return s;
+}
+
 float progress_mix(float v[8], vec3 t) {
     vec4 x = mix(vec4(v[0], v[2], v[4], v[6]), vec4(v[1], v[3], v[5], v[7]), t.x);
     vec2 y = mix(x.xz, x.yw, t.y);
@@ -15,7 +37,7 @@ float progress_mix(float v[8], vec3 t) {
     float v[8];                                                                                    \
     vec3 part;                                                                                     \
     {                                                                                              \
-        pyro_span s_ = pyro_span_at(pyro_into(p), ivec3(0));                                       \
+        pyro_span s_ = pyro_span_at(pyro_into(p));                                                 \
         int a_ = s_.low.y + s_.low.z, b_ = s_.high.y + s_.low.z;                                   \
         int c_ = s_.low.y + s_.high.z, d_ = s_.high.y + s_.high.z;                                 \
         part = s_.t;                                                                               \

@@ -2,68 +2,9 @@
 // in a step is what lies within the way of its gas: some whole cells, and of the next one a part, in which
 // values are a parabola (Colella and Woodward 1984; with whole cells, Leonard, Lock and MacVean 1996). So
 // steps may be as long as they like, and what leaves a cell comes into another: nothing is lost.
-//
-// A sweep alone is not what the gas does as a whole: a cell whose gas flows in along x and out along y
-// holds more of it between the two. These volumes are carried as well (Easter 1993): a cell begins with 1,
-// and as much more as its expansion makes of its gas, and ends with 1.
-//
-// Define SWEEP as SWEEP_X, SWEEP_Y or SWEEP_Z before this is included.
 #ifndef SIM_PYRO_FLUX_GLSL
 #define SIM_PYRO_FLUX_GLSL
-#include "sim/pyro/sample.glsl"
-
-uniform float reach; // cells in a step, by 1 m/s
-layout(std430) readonly buffer PyroCarrier { PYRO_FOUR carrier[]; }; // m/s across the faces of cells
-
-const float FARTHEST = 7.0;     // cells in a step: is_near_gas looks so far
-const float LEAST_VOLUME = 0.1; // between sweeps
-const int MOST_CELLS = 16;      // from which gas crosses a face
-
-// The way of the gas across the lower face of a cell along an axis, in cells. `c` may be beyond the last
-// one by 1 along it.
-#define WAY(name, axis, component)                                                                 \
-    float name(ivec3 c) {                                                                          \
-        bool known = c.axis == PYRO_SIZE.axis && PYRO_ENDS.axis;                                   \
-        if (PYRO_AROUND.axis) c.axis = c.axis == PYRO_SIZE.axis ? 0 : c.axis;                      \
-        else c.axis = clamp(c.axis, PYRO_FIRST.axis, PYRO_SIZE.axis - 1);                          \
-        float v = known ? inflow.axis * PYRO_END_FLOWS.axis : PYRO_##component(carrier[pyro_at(c)]);\
-        return clamp(reach * v, -FARTHEST, FARTHEST);                                              \
-    }
-WAY(way_x, x, X)
-WAY(way_y, y, Y)
-WAY(way_z, z, Z)
-
-// How much volume leaves a cell along an axis.
-float spread_x(ivec3 c) {
-    return way_x(c + ivec3(1, 0, 0)) - way_x(c);
-}
-float spread_y(ivec3 c) {
-    return way_y(c + ivec3(0, 1, 0)) - way_y(c);
-}
-float spread_z(ivec3 c) {
-    return way_z(c + ivec3(0, 0, 1)) - way_z(c);
-}
-
-#define SWEEP_X 0
-#define SWEEP_Y 1
-#define SWEEP_Z 2
-// The volume of a cell after the sweep along an axis, of which that along z is the last.
-#if SWEEP == SWEEP_X
-#define ALONG x
-#define WAY_ALONG way_x
-#define SPREAD_ALONG spread_x
-#define VOLUME_AFTER(c) (1.0 + spread_y(c) + spread_z(c))
-#elif SWEEP == SWEEP_Y
-#define ALONG y
-#define WAY_ALONG way_y
-#define SPREAD_ALONG spread_y
-#define VOLUME_AFTER(c) (1.0 + spread_z(c))
-#else
-#define ALONG z
-#define WAY_ALONG way_z
-#define SPREAD_ALONG spread_z
-#define VOLUME_AFTER(c) 1.0
-#endif
+#include "sim/pyro/volumes.glsl"
 
 layout(std430) readonly buffer PyroGasFrom { PYRO_FOUR gas_from[]; }; // before the sweep
 
@@ -71,18 +12,11 @@ layout(std430) readonly buffer PyroGasFrom { PYRO_FOUR gas_from[]; }; // before 
 bool is_outside(int i) {
     return (i < 0 && PYRO_PASSES_LOW.ALONG) || (i >= PYRO_SIZE.ALONG && PYRO_PASSES_HIGH.ALONG);
 }
-ivec3 cell_along(ivec3 c, int i) {
-    const int n = PYRO_SIZE.ALONG;
-    if (PYRO_AROUND.ALONG) i += i < 0 ? n : i >= n ? -n : 0;
-    c.ALONG = clamp(i, 0, n - 1);
-    return c;
-}
 vec4 gas_along(ivec3 c, int i) {
     return is_outside(i) ? vec4(0.0) : pyro_load(gas_from[pyro_at(cell_along(c, i))]);
 }
 float volume_along(ivec3 c, int i) { // before the sweep
-    c = cell_along(c, i);
-    return is_outside(i) ? 1.0 : max(VOLUME_AFTER(c) + SPREAD_ALONG(c), LEAST_VOLUME);
+    return is_outside(i) ? 1.0 : volume_of(cell_along(c, i));
 }
 
 // The value between two cells of four.
@@ -104,7 +38,7 @@ vec4 flux_along(ivec3 c, int i, float way, float volume) {
         volume = volume_along(c, at);
     }
     vec4 own = gas_along(c, at);
-#if PYRO_CORRECTS
+#if PYRO_PARABOLIC
     float part = min(rest / volume, 1.0);
     vec4 behind = gas_along(c, at + up), before = gas_along(c, at - up);
     vec4 first = value_between(before, own, behind, gas_along(c, at + 2 * up)); // at the far end
@@ -125,11 +59,14 @@ vec4 flux_along(ivec3 c, int i, float way, float volume) {
 // What a cell holds after a sweep in which so much comes and goes. Where a step is so long that a sweep
 // takes all of a cell's gas and more, it has no volume between sweeps: there values are kept in bounds
 // instead, and balance is lost.
-vec4 after_sweep(vec4 gas, float volume, float way, vec4 comes, float next_way, vec4 goes) {
-    float before = volume + next_way - way;
+vec4 after_sweep(vec4 gas, float before, float way, vec4 comes, float next_way, vec4 goes) {
+    float volume = before + way - next_way;
+#if SWEEP == SWEEP_Z
+    volume = 1.0;
+#endif
     if (volume < LEAST_VOLUME) return gas;
     vec4 held = (gas * before + comes - goes) / volume;
-    if (before < LEAST_VOLUME) {
+    if (before <= LEAST_VOLUME) {
         vec4 from_below = way > 0.0 ? comes / way : gas, from_above = next_way < 0.0 ? goes / next_way : gas;
         held = clamp(held, min(gas, min(from_below, from_above)), max(gas, max(from_below, from_above)));
     }
@@ -157,7 +94,7 @@ vec4 sweep_next(inout sweep_state s, ivec3 c) {
     above.ALONG++;
     float way = WAY_ALONG(above), next = volume_along(c, above.ALONG);
     vec4 goes = flux_along(c, above.ALONG, way, way > 0.0 ? s.volume : next);
-    vec4 held = after_sweep(pyro_load(gas_from[pyro_at(c)]), VOLUME_AFTER(c), s.way, s.comes, way, goes);
+    vec4 held = after_sweep(pyro_load(gas_from[pyro_at(c)]), s.volume, s.way, s.comes, way, goes);
     s.way = way;
     s.comes = goes;
     s.volume = next;

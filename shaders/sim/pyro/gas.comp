@@ -48,18 +48,22 @@ uint sibling(uint thread, uint i) {
     return (thread & ~9u) + (i & 1u) + 8u * ((i >> 1) & 1u);
 }
 
-vec4 shared_out(uint z, uint thread) {
-    float mean = 0.0, own = grew[z][thread], more = 0.0;
-    for (uint i = 0u; i < 8u; i++) mean += 0.125 * grew[(z & 2u) + (i >> 2)][sibling(thread, i)];
-    if (own >= mean) return cells[z][thread];
+// Of the two of a thread's cells at `z` and above it.
+void share_out(uint z, uint thread, out vec4 low, out vec4 high) {
+    float mean = 0.0, more = 0.0;
+    for (uint i = 0u; i < 8u; i++) mean += 0.125 * grew[z + (i >> 2)][sibling(thread, i)];
     vec4 given = vec4(0.0);
     for (uint i = 0u; i < 8u; i++) {
-        uint at = sibling(thread, i), level = (z & 2u) + (i >> 2);
+        uint at = sibling(thread, i), level = z + (i >> 2);
         float gives = max(grew[level][at] - mean, 0.0);
         more += gives;
         given += gives * cells[level][at];
     }
-    return (cells[z][thread] * (1.0 + own) + (mean - own) * given / max(more, 1e-12)) / (1.0 + mean);
+    given /= max(more, 1e-12);
+    vec2 own = vec2(grew[z][thread], grew[z + 1u][thread]);
+    vec2 takes = max(mean - own, 0.0), keeps = 1.0 + mean - takes; // it gives of what it is
+    low = (cells[z][thread] * keeps.x + takes.x * given) / (1.0 + mean);
+    high = (cells[z + 1u][thread] * keeps.y + takes.y * given) / (1.0 + mean);
 }
 
 // Expansion and density of a cell of the velocity: the mean of eight. The group has 4 x 4 x 2 of them.
@@ -76,11 +80,13 @@ void hand_on() {
 void keep_all(ivec3 first) {
     uint thread = gl_LocalInvocationIndex;
     barrier();
-    for (uint z = 0u; z < 4u; z++) {
-        vec4 packed = grows != 0u ? shared_out(z, thread) : cells[z][thread];
-        keep(first + ivec3(0, 0, z), packed);
-        vec2 own = vec2(grew[z][thread], pyro_density(pyro_unpack(packed)));
-        parts[z >> 1][thread] = (z & 1u) == 0u ? own : parts[z >> 1][thread] + own;
+    for (uint z = 0u; z < 4u; z += 2u) {
+        vec4 low = cells[z][thread], high = cells[z + 1u][thread];
+        if (grows != 0u) share_out(z, thread, low, high);
+        keep(first + ivec3(0, 0, z), low);
+        keep(first + ivec3(0, 0, z + 1u), high);
+        parts[z >> 1][thread] = vec2(grew[z][thread] + grew[z + 1u][thread],
+                                     pyro_density(pyro_unpack(low)) + pyro_density(pyro_unpack(high)));
     }
     settle(first);
     hand_on();

@@ -20,7 +20,7 @@ void main() {
     imageStore(scalars, c, clamp(s, -MOST, MOST));
 }
 #else
-#include "sim/pyro/trace.glsl"
+#include "sim/pyro/velocity.glsl"
 uniform float pressure_unit; // Pa by 1 m/s
 layout(std430) readonly buffer PyroPressure { float pressure[]; };
 layout(rgba16f) writeonly uniform image3D flow; // m/s; Pa

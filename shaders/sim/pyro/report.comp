@@ -19,7 +19,7 @@ uniform int first; // of its records
 #ifdef FLOW
 #define PYRO_FINEST
 #include "sim/pyro/levels.glsl"
-#include "sim/pyro/trace.glsl"
+#include "sim/pyro/velocity.glsl"
 layout(std430) readonly buffer PyroPressure { float pressure[]; };
 layout(std430) readonly buffer PyroRight { float right[]; };
 #else

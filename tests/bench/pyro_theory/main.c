@@ -1,6 +1,6 @@
 // Burning gas against theory and published data: one page.
 //
-//   bench_pyro_theory [-o FOLDER] [-f FINE] [-a semi|mac] [-d DEVICE] [-r] [CHECK...]
+//   bench_pyro_theory [-o FOLDER] [-f FINE] [-a parabolic|upwind] [-d DEVICE] [-r] [CHECK...]
 //
 // Writes results.json and report.html to the folder (out/pyro_theory), and prints each figure with
 // its bounds. CHECK: those alone, of plume, flames, pool, fireball, vortex, rings, and tests: what
@@ -43,12 +43,12 @@ static bool parse(int argc, char **argv, options *o) {
     *o = (options){.folder = "out/pyro_theory",
                    .source = getenv("ROIL_SOURCE_DIR"),
                    .fine = 1,
-                   .advection = PYRO_MACCORMACK};
+                   .advection = PYRO_PARABOLIC};
     for (int c; (c = getopt(argc, argv, "o:f:d:a:r")) != -1;) {
         if (c == 'o') o->folder = optarg;
         if (c == 'f') o->fine = atof(optarg);
         if (c == 'd') o->device = optarg;
-        if (c == 'a') o->advection = optarg[0] == 's' ? PYRO_SEMI_LAGRANGIAN : PYRO_MACCORMACK;
+        if (c == 'a') o->advection = optarg[0] == 'u' ? PYRO_UPWIND : PYRO_PARABOLIC;
         if (c == 'r') o->again = true;
         if (c == '?') return false;
     }

@@ -70,9 +70,9 @@ void theory_vortex(const theory_order *order, theory_check *c) {
     for (int scheme = 0; scheme < 2; scheme++)
         for (uint32_t n = most / 2; n <= most; n += most / 2) {
             if (n < PYRO_LEAST_SIZE) continue;
-            const pyro_advection a = scheme ? PYRO_MACCORMACK : PYRO_SEMI_LAGRANGIAN;
+            const pyro_advection a = scheme ? PYRO_PARABOLIC : PYRO_UPWIND;
             char name[64];
-            snprintf(name, sizeof name, "%s %u", scheme ? "MacCormack" : "semi-Lagr.", 2 * n);
+            snprintf(name, sizeof name, "%s %u", scheme ? "parabolic" : "upwind", 2 * n);
             const history h = run(order, c, a, n);
             theory_series *e = theory_add_series(c, kept, name, LOOKS + 1);
             theory_series *d = theory_add_series(c, lost, name, LOOKS + 1);
@@ -85,8 +85,7 @@ void theory_vortex(const theory_order *order, theory_check *c) {
     known->expected = known->marks = true;
     theory_add(known, 9, 0.0126);
     theory_note(c,
-                "Lines are named by the cells across the whole vortex. Figures are of the finest "
-                "MacCormack");
+                "Lines are named by the cells across the whole vortex. Figures are of the finest");
     // While all is smooth nothing is lost but by viscosity: 2 x 0.375 / 1600 a unit of time and
     // little more until t = 2.
     theory_near(c, "energy at t = 2", finest.energy[8] / 0.125, 1, 0.02, "of that at first");
