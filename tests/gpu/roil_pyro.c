@@ -181,6 +181,42 @@ static void a_restored_run_is_the_one_that_never_stopped(void **state) {
     roil_unload(e);
 }
 
+static bool count_call(void *user, double done, double whole) {
+    (void)done, (void)whole;
+    ++*(int *)user;
+    return true;
+}
+
+// Loads the file anew. Returns how often the gas said that it is catching up.
+static int reload(roil_live *live, const char *keys, const char *shown, double frame) {
+    char text[2048], path[512];
+    int calls = 0;
+    write_script(text, keys, BRIEF, "", shown);
+    write_text("live.lua", text, path);
+    roil_live_wait(live);
+    assert_true(roil_live_update(live, SIDE, SIDE, frame));
+    if (roil_live_message(live)) fail_msg("%s", roil_live_message(live));
+    roil_on_progress(roil_live_effect(live), count_call, &calls);
+    ok(roil_advance(roil_live_effect(live), frame));
+    return calls;
+}
+
+static void a_reload_goes_on_with_the_gas(void **state) {
+    char path[512];
+    write_text("live.lua", "", path);
+    roil_live *live = roil_live_create(*state, &(roil_live_desc){.file = path});
+    ok(live);
+    reload(live, "", HEAT, 1);
+    for (int frame = 2; frame <= 6; frame++) ok(roil_advance(roil_live_effect(live), frame));
+    const double steps = readout(roil_live_effect(live), "steps");
+    const double fuel = readout(roil_live_effect(live), "fuel burnt");
+    assert_true(fuel > 0);
+    assert_int_equal(reload(live, "cooling = 500", "fire.temperature * 0.0005", 7), 0);
+    assert_true(readout(roil_live_effect(live), "steps") > steps);
+    assert_true(reload(live, "warm_up = 0.05", HEAT, 8) > 0); // anew
+    roil_live_destroy(live);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_gives_fields_by_name),
@@ -189,6 +225,7 @@ int main(void) {
         cmocka_unit_test(a_jump_is_as_good_as_every_frame),
         cmocka_unit_test(a_source_gives_while_it_is_told_to),
         cmocka_unit_test(a_restored_run_is_the_one_that_never_stopped),
+        cmocka_unit_test(a_reload_goes_on_with_the_gas),
     };
     return test_run(tests);
 }

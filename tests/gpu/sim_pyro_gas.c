@@ -169,11 +169,13 @@ static void heat_makes_room_for_half_the_velocity(void **state) {
 }
 
 // A ball that burns in still air and pushes it away: fuel and heat are where they were, or burnt.
-static void check_balance(gpu *g, bool half, bool lumpy) {
+static void check_balance(gpu *g, bool half, bool lumpy, pyro_precision precision) {
     pyro_world w;
-    pyro_open(
-        &w, g,
-        &(pyro_desc){.size = {48, 48, 48}, .advection = PYRO_PARABOLIC, .half_velocity = half});
+    pyro_open(&w, g,
+              &(pyro_desc){.size = {48, 48, 48},
+                           .advection = PYRO_PARABOLIC,
+                           .precision = precision,
+                           .half_velocity = half});
     w.numbers.gravity = 0;
     w.numbers.burn_time = 0.05f;
     w.numbers.dt = 0.004f;
@@ -194,12 +196,13 @@ static void check_balance(gpu *g, bool half, bool lumpy) {
 }
 
 static void a_ball_keeps_what_it_has(void **state) {
-    check_balance(*state, false, false);
+    check_balance(*state, false, false, PYRO_F32);
+    check_balance(*state, false, false, PYRO_F16);
 }
 
 static void a_ball_keeps_what_it_has_with_half_the_velocity(void **state) {
-    check_balance(*state, true, false);
-    check_balance(*state, true, true);
+    check_balance(*state, true, false, PYRO_F16);
+    check_balance(*state, true, true, PYRO_F32);
 }
 
 // ---- what moves -------------------------------------------------------------------------------
