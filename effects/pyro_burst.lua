@@ -10,6 +10,7 @@ local fx = effect { name = "pyro burst", fps = 24, frames = 96 }
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
 local fuel    = param { "fuel", 0.13, min = 0, max = 5, unit = "kg/m^3", help = "of the mist; air burns 0.08, and what is more burns black" }
 local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides; that of a real fire is 8700" }
+local dust    = param { "dust", 0.0012, min = 0, max = 0.01, unit = "kg/m^3", help = "of the layer that is torn from the ground" }
 local glow    = param { "glow", 3, min = 0, max = 50, help = "factor of the fire's light" }
 
 -- A box of 9 x 9 x 12.6 m. Two cores bear the draft, a graphics card the film.
@@ -28,6 +29,13 @@ fire:source {
   velocity = whirl * 6 + vec(0, 0, 5), during = {0, 0.02},
 }
 
+-- Dust that the push of the fire tears from the ground: a thin layer that flies outwards.
+local outwards = position * vec(1, 1, 0)
+fire:source {
+  shape = box { position = {0, 0, 0.15}, size = {6, 6, 0.3} },
+  soot = dust * lumps * smoothstep(3, 1, length(outwards)), velocity = (outwards * 3 + vec(0, 0, 2.5)) * smoothstep(3, 1.8, length(outwards)), during = {0.03, 0.1},
+}
+
 fx.camera = orbit { target = {0, 0, 4}, distance = 18, yaw = 25, pitch = 4, fov = 38 }
 fx.sun    = sun { azimuth = 215, elevation = 30, color = {1, 0.92, 0.8}, strength = 6 }
 fx.sky    = sky { zenith = {0.08, 0.16, 0.36}, horizon = {0.34, 0.42, 0.52}, strength = 0.7 }
@@ -41,10 +49,12 @@ local kelvin = fire.temperature * (0.82 + 0.42 * ripple)
 local light = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
 local flame = smoothstep(1000, 1500, kelvin)
 local cover = (fire.soot * smoke + flame * 1.5) * (0.4 + 1.2 * ripple)
+local low = smoothstep(1.4, 0.4, position.z + 0.6 * ripple) * smoothstep(700, 400, fire.temperature)
 local lit = lighting {
   density    = cover,
   emission   = light(kelvin) * cover * flame * glow,
-  albedo     = 0.3,
+  albedo     = 0.75,
+  tint       = mix(vec(0.4, 0.4, 0.4), vec(0.95, 0.8, 0.63), low), -- what is low and cool is dust
   anisotropy = 0.3,
   sampling   = "cubic",
 }
@@ -56,8 +66,11 @@ local drops = particles {
   gravity = 9.81, drag = 0.7, collide = position.z, bounce = 0.3, friction = 0.5,
 }
 
+-- The ground is burnt where fire lay on it.
 local scene  = geometry { mesh { "data/ground.obj" } }
-local solid  = shade { from = {scene, lit}, haze = 0.002 }
+local burnt  = smoothstep(2.2, 0.5, length(outwards) + 0.9 * lumps) * curve { {0.05, 0}, {0.6, 1} }
+local colors = shader { "burnt_ground.comp", albedo = scene.albedo, depth = scene.depth, burnt = burnt, lift = 0 }
+local solid  = shade { albedo = colors.color, from = {scene, lit}, haze = 0.002 }
 local volume = march { from = {lit, scene}, steps = 192, jitter = 0.5 }
 
 local sparks = splats {
