@@ -37,7 +37,7 @@ vec3 ways_at(ivec3 c, int i) {
     return 0.5 * (own + other);
 }
 
-// Their volumes before the sweep, and after it.
+// Their volumes before the sweep.
 vec3 volumes_at(ivec3 c, int i) {
     c = cell_along(c, i);
     return 0.5 * (volume_of(c) + vec3(volume_of(cell_below(c, ivec3(1, 0, 0))), volume_of(cell_below(c, ivec3(0, 1, 0))),
