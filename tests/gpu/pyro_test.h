@@ -151,3 +151,30 @@ static inline void pyro_for_each(pyro_world *w, pyro_visit *each, void *data) {
         for (c[1] = 0; c[1] < (int)w->desc.size[1]; c[1]++)
             for (c[0] = 0; c[0] < (int)w->desc.size[0]; c[0]++) each(w, c, data);
 }
+
+// ---- sums over all cells --------------------------------------------------------------------
+
+typedef struct pyro_sums {
+    double fuel, burnt, soot, heat; // by the mass of the air around: heat in K
+    double hottest;
+} pyro_sums;
+
+// By mass: a cell that is warm has less.
+static inline void pyro_add(pyro_world *w, const int c[3], void *data) {
+    pyro_sums *s = data;
+    const float *g = w->gas[pyro_cell_at(w, c)];
+    const double ambient = (double)w->numbers.ambient, t = ambient + (double)g[0],
+                 mass = ambient / t;
+    s->fuel += mass * (double)g[1];
+    s->burnt += mass * (double)g[2];
+    s->soot += mass * (double)g[3];
+    s->heat += mass * (double)g[0];
+    s->hottest = fmax(s->hottest, t);
+}
+
+static inline pyro_sums pyro_sum_up(pyro_world *w) {
+    pyro_sums s = {0};
+    pyro_transfer(w, false);
+    pyro_for_each(w, pyro_add, &s);
+    return s;
+}
