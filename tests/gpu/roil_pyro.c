@@ -181,24 +181,11 @@ static void a_restored_run_is_the_one_that_never_stopped(void **state) {
     roil_unload(e);
 }
 
-static bool count_call(void *user, double done, double whole) {
-    (void)done, (void)whole;
-    ++*(int *)user;
-    return true;
-}
-
-// Loads the file anew. Returns how often the gas said that it is catching up.
 static int reload(roil_live *live, const char *keys, const char *shown, double frame) {
     char text[2048], path[512];
-    int calls = 0;
     write_script(text, keys, BRIEF, "", shown);
     write_text("live.lua", text, path);
-    roil_live_wait(live);
-    assert_true(roil_live_update(live, SIDE, SIDE, frame));
-    if (roil_live_message(live)) fail_msg("%s", roil_live_message(live));
-    roil_on_progress(roil_live_effect(live), count_call, &calls);
-    ok(roil_advance(roil_live_effect(live), frame));
-    return calls;
+    return test_reload(live, SIDE, SIDE, frame);
 }
 
 static void a_reload_goes_on_with_the_gas(void **state) {

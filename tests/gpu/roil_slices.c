@@ -371,23 +371,11 @@ static void it_tells_of_itself(void **state) {
 
 // ---- going on ---------------------------------------------------------------------------------
 
-static bool count_call(void *user, double done, double whole) {
-    (void)done, (void)whole;
-    ++*(int *)user;
-    return true;
-}
-
 static int reload(roil_live *live, const char *keys, const char *shown, double frame) {
     char text[2048], path[512];
-    int calls = 0;
     script(text, 24, keys, INFLOW, shown);
     write_text("slices.lua", text, path);
-    roil_live_wait(live);
-    assert_true(roil_live_update(live, SIDE, SIDE, frame));
-    if (roil_live_message(live)) fail_msg("%s", roil_live_message(live));
-    roil_on_progress(roil_live_effect(live), count_call, &calls);
-    ok(roil_advance(roil_live_effect(live), frame));
-    return calls;
+    return test_reload(live, SIDE, SIDE, frame);
 }
 
 static void a_reload_goes_on_where_the_flow_is_the_same(void **state) {

@@ -70,6 +70,24 @@ static inline void expect_pixel(const uint8_t *pixels, uint32_t width, uint32_t 
              blue);
 }
 
+static inline bool test_count_call(void *user, double done, double whole) {
+    (void)done, (void)whole;
+    ++*(int *)user;
+    return true;
+}
+
+// Loads a changed file and draws a frame. Returns how often a simulation said that it is catching
+// up.
+static inline int test_reload(roil_live *live, uint32_t width, uint32_t height, double frame) {
+    int calls = 0;
+    roil_live_wait(live);
+    assert_true(roil_live_update(live, width, height, frame));
+    if (roil_live_message(live)) fail_msg("%s", roil_live_message(live));
+    roil_on_progress(roil_live_effect(live), test_count_call, &calls);
+    ok(roil_advance(roil_live_effect(live), frame));
+    return calls;
+}
+
 static inline float srgb_exact(float linear) { // IEC 61966-2-1
     linear = linear > 0 ? fminf(linear, 1) : 0;
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
