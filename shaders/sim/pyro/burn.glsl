@@ -65,6 +65,6 @@ float pyro_burn(inout vec4 gas, float brought) {
     float cold = min(ambient / hot, 1.0);
     float after = hot - lost * (1.0 - cold * cold * cold * cold);
     gas.PYRO_WARMTH += after - before;
-    return expansion * (after / before - 1.0);
+    return expansion * ((after - before) / before); // exactly 0 where nothing happens
 }
 #endif

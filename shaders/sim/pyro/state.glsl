@@ -148,14 +148,14 @@ float pyro_temperature(vec4 gas) {
 
 // It is packed by volume: how much less air there is than in the surroundings, as a share of theirs, and
 // what is in it by mass of theirs. Between cells these are linear, so that mass and heat are kept where
-// hot gas meets cold; kelvin are not.
+// hot gas meets cold; kelvin are not. Clean air is exactly 0, however a device rounds its divisions.
 vec4 pyro_unpack(vec4 packed) {
     float air = max(1.0 - packed.x, 0.01);
-    return vec4(ambient / air - ambient, packed.yzw / air);
+    return vec4(ambient * (1.0 - air), packed.yzw) / air;
 }
 vec4 pyro_pack(vec4 gas) {
-    float air = ambient / pyro_temperature(gas);
-    return vec4(1.0 - air, air * gas.yzw);
+    float warm = pyro_temperature(gas), air = ambient / warm;
+    return vec4((warm - ambient) / warm, air * gas.yzw);
 }
 
 // Density by that of the surroundings: an ideal gas of air and vapour.
