@@ -19,6 +19,7 @@ return sweep {
     axis { "advection",
       { name = "parabolic", ["pyro.advection"] = "parabolic" },
       { name = "upwind", ["pyro.advection"] = "upwind" },
+      { name = "reflection", ["pyro.advection"] = "reflection" },
     },
     axis { "precision",
       { name = "f16", ["pyro.precision"] = "f16" },
@@ -31,7 +32,7 @@ return sweep {
   },
   -- Sizes are measured for what most effects have, all else at one size.
   skip = function(row)
-    local as_most = row.advection == "parabolic" and row.vorticity == "none"
+    local as_most = row.advection ~= "upwind" and row.vorticity == "none"
     return not as_most and (row.cells ~= 128 or row.velocity ~= "full")
   end,
 }

@@ -8,6 +8,8 @@
 
 // ---- structure --------------------------------------------------------------------------------
 
+const char *const pyro_advection_names[PYRO_ADVECTIONS] = {"upwind", "parabolic", "reflection"};
+
 static bool pyro_check(const pyro_desc *desc) {
     for (int i = 0; i < 3; i++) {
         const uint32_t n = desc->size[i];
@@ -87,7 +89,8 @@ static void define_all(pyro *p) {
     define(p, "PYRO_RATIO", pyro_ratio(&p->desc));
     define(p, "PYRO_HALF", p->desc.precision == PYRO_F16);
     define(p, "PYRO_WIDE", p->wide);
-    define(p, "PYRO_PARABOLIC", p->desc.advection == PYRO_PARABOLIC);
+    define(p, "PYRO_PARABOLIC", p->desc.advection != PYRO_UPWIND);
+    define(p, "PYRO_REFLECTS", p->desc.advection == PYRO_REFLECTION);
     define(p, "PYRO_PREMIXED", p->desc.premixed);
     define(p, "PYRO_CONFINES", p->desc.confinement);
     define(p, "PYRO_FORCE", p->desc.force);
@@ -135,6 +138,7 @@ static const char *const shaders[PYRO_KERNELS] = {
     [PYRO_K_MOVE] = "sim/pyro/conjugate.comp",
     [PYRO_K_SUM] = "sim/pyro/sum.comp",
     [PYRO_K_PROJECT] = "sim/pyro/project.comp",
+    [PYRO_K_REFLECT] = "sim/pyro/project.comp",
     [PYRO_K_LOOK] = "sim/pyro/look.comp",
     [PYRO_K_LOOK_FLOW] = "sim/pyro/look.comp",
     [PYRO_K_REPORT] = "sim/pyro/report.comp",
@@ -154,6 +158,7 @@ static const char *const more_defines[PYRO_KERNELS][2] = {
     [PYRO_K_SMOOTH_FINEST] = {"PYRO_FINEST"},
     [PYRO_K_RESTRICT_FINEST] = {"PYRO_FINEST"},
     [PYRO_K_PROLONG_FINEST] = {"PYRO_FINEST"},
+    [PYRO_K_REFLECT] = {"REFLECT"},
     [PYRO_K_LOOK_FLOW] = {"FLOW"},
     [PYRO_K_REPORT_FLOW] = {"FLOW"},
     [PYRO_K_REPORT_LAST] = {"LAST"},
@@ -169,6 +174,7 @@ static const char *const more_defines[PYRO_KERNELS][2] = {
 static bool is_used(const pyro_desc *desc, pyro_kernel which) {
     if (which == PYRO_K_CARRIER) return desc->half_velocity;
     if (which == PYRO_K_VORTICITY || which == PYRO_K_CURL) return desc->confinement;
+    if (which == PYRO_K_REFLECT) return desc->advection == PYRO_REFLECTION;
     if (which >= PYRO_K_SOLIDS && which <= PYRO_K_FILL) return desc->solids;
     if (which >= PYRO_K_RESIDUAL && which <= PYRO_K_SUM) return desc->solids;
     return true;
@@ -229,6 +235,8 @@ static void find_sizes(const pyro *p, uint64_t out[PYRO_MEM_COUNT]) {
     if (p->desc.confinement) out[PYRO_MEM_CURL] = four * flow;
     if (p->desc.half_velocity) out[PYRO_MEM_DENSITY] = 4 * flow;
     out[PYRO_MEM_PRESSURE] = out[PYRO_MEM_RIGHT] = out[PYRO_MEM_SPREAD] = 4 * flow;
+    if (p->desc.advection == PYRO_REFLECTION)
+        out[PYRO_MEM_EXPANSION] = out[PYRO_MEM_MORE_PRESSURE] = 4 * flow;
     out[PYRO_MEM_COARSE_PRESSURE] = out[PYRO_MEM_COARSE_RIGHT] = 4 * pyro_coarse_cells(p);
     out[PYRO_MEM_REPORT] = (gas + flow) / PYRO_CELLS_A_GROUP * 32;
     if (!p->desc.solids) return;
@@ -251,6 +259,8 @@ static const char *const memory_labels[PYRO_MEM_COUNT] = {"velocity of burning g
                                                           "density of burning gas",
                                                           "pressure of burning gas",
                                                           "divergence",
+                                                          "expansion of burning gas",
+                                                          "pressure of burning gas",
                                                           "coarse pressure",
                                                           "coarse divergence",
                                                           "openings between solids",
@@ -302,11 +312,13 @@ gpu_buffer *pyro_pair(const pyro *p, pyro_memory pair, uint32_t which) {
 // ---- what is bound ----------------------------------------------------------------------------
 
 void pyro_bind(const pyro *p, kernel *k, const kernel_place *places) {
+    const bool reflects = p->desc.advection == PYRO_REFLECTION;
     gpu_buffer *const own[PYRO_OWN] = {
         [N_PyroGas] = pyro_pair(p, PYRO_MEM_GAS, 0),
         [N_PyroVelocity] = pyro_pair(p, PYRO_MEM_VELOCITY, 0),
-        [N_PyroPressure] = p->buffers[PYRO_MEM_PRESSURE],
+        [N_PyroPressure] = p->buffers[p->finds_more ? PYRO_MEM_MORE_PRESSURE : PYRO_MEM_PRESSURE],
         [N_PyroRight] = p->buffers[PYRO_MEM_RIGHT],
+        [N_PyroExpansion] = p->buffers[reflects ? PYRO_MEM_EXPANSION : PYRO_MEM_RIGHT],
         [N_PyroGasTo] = pyro_pair(p, PYRO_MEM_GAS, 1),
         [N_PyroVelocityTo] = pyro_pair(p, PYRO_MEM_VELOCITY, 1),
         [N_PyroCarrier] = p->desc.half_velocity ? p->buffers[PYRO_MEM_CARRIER]

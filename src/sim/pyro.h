@@ -24,9 +24,13 @@ typedef struct pyro pyro;
 typedef enum pyro_face { PYRO_OPEN, PYRO_WALL, PYRO_INFLOW, PYRO_PERIODIC } pyro_face;
 // What is taken to lie within a cell, of which a part flows into the next one.
 typedef enum pyro_advection {
-    PYRO_UPWIND,   // the same all over
-    PYRO_PARABOLIC // a parabola
+    PYRO_UPWIND,    // the same all over
+    PYRO_PARABOLIC, // a parabola
+    PYRO_REFLECTION // the same; and the velocity goes half a step, is reflected by its projection,
+                    // and goes the other half (Zehnder, Narain and Thomaszewski 2018)
 } pyro_advection;
+enum { PYRO_ADVECTIONS = 3 };
+extern const char *const pyro_advection_names[PYRO_ADVECTIONS]; // as scripts have them
 typedef enum pyro_precision { PYRO_F32, PYRO_F16, PYRO_AUTO } pyro_precision;
 
 enum {

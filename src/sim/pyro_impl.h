@@ -25,6 +25,8 @@ typedef enum pyro_memory {
     PYRO_MEM_DENSITY,          // of the gas in cells of the velocity, where these are larger
     PYRO_MEM_PRESSURE,
     PYRO_MEM_RIGHT,
+    PYRO_MEM_EXPANSION,       // with reflection; else it is in RIGHT until the projection
+    PYRO_MEM_MORE_PRESSURE,   // with reflection: what the second projection adds
     PYRO_MEM_COARSE_PRESSURE, // of all levels but the finest
     PYRO_MEM_COARSE_RIGHT,
     PYRO_MEM_OPENINGS, // with solids
@@ -89,6 +91,7 @@ typedef enum pyro_kernel {
     PYRO_K_MOVE,
     PYRO_K_SUM,
     PYRO_K_PROJECT,
+    PYRO_K_REFLECT,
     PYRO_K_LOOK, // at the gas
     PYRO_K_LOOK_FLOW,
     PYRO_K_REPORT,
@@ -99,23 +102,23 @@ typedef enum pyro_kernel {
 
 // Buffers that are always the same come first: pyro_use binds them.
 #define PYRO_OWN_NAMES(NAME)                                                                       \
-    NAME(PyroGas), NAME(PyroVelocity), NAME(PyroPressure), NAME(PyroRight), NAME(PyroGasTo),       \
-        NAME(PyroVelocityTo), NAME(PyroCarrier), NAME(PyroSpread), NAME(PyroCurl),                 \
-        NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroOpenings),                       \
+    NAME(PyroGas), NAME(PyroVelocity), NAME(PyroPressure), NAME(PyroRight), NAME(PyroExpansion),   \
+        NAME(PyroGasTo), NAME(PyroVelocityTo), NAME(PyroCarrier), NAME(PyroSpread),                \
+        NAME(PyroCurl), NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroOpenings),       \
         NAME(PyroCoarseOpenings), NAME(PyroFound), NAME(PyroDirection), NAME(PyroChange),          \
         NAME(PyroSums), NAME(PyroDensity), NAME(PyroActive), NAME(PyroReport)
 #define PYRO_NAMES(NAME)                                                                           \
     PYRO_OWN_NAMES(NAME), NAME(PyroGasFrom), NAME(PyroGasInto), NAME(PyroFlowFrom),                \
-        NAME(PyroFlowInto), NAME(PyroVorticity), NAME(scalars), NAME(flow), NAME(result),          \
-        NAME(dt), NAME(cell), NAME(reach), NAME(ambient), NAME(lightness), NAME(inflow),           \
-        NAME(gravity), NAME(acceleration), NAME(confinement), NAME(max_speed), NAME(ignition),     \
-        NAME(burn_share), NAME(oxygen_need), NAME(heat), NAME(soot_yield), NAME(soot_share),       \
-        NAME(soot_heat), NAME(soot_kept), NAME(cooling), NAME(expansion), NAME(weights),           \
-        NAME(level_size), NAME(level_first), NAME(colour), NAME(coarse_size), NAME(coarser),       \
-        NAME(coarse_first), NAME(sweeps), NAME(relaxation), NAME(pressure_unit), NAME(groups),     \
-        NAME(mass), NAME(SolidIds), NAME(SolidMotions), NAME(box_min), NAME(force), NAME(begins),  \
-        NAME(place), NAME(first), NAME(flame_reach), NAME(everywhere), NAME(present_from),         \
-        NAME(present_to)
+        NAME(PyroFlowInto), NAME(PyroOtherPressure), NAME(PyroVorticity), NAME(scalars),           \
+        NAME(flow), NAME(result), NAME(dt), NAME(cell), NAME(reach), NAME(ambient),                \
+        NAME(lightness), NAME(inflow), NAME(gravity), NAME(acceleration), NAME(confinement),       \
+        NAME(max_speed), NAME(ignition), NAME(burn_share), NAME(oxygen_need), NAME(heat),          \
+        NAME(soot_yield), NAME(soot_share), NAME(soot_heat), NAME(soot_kept), NAME(cooling),       \
+        NAME(expansion), NAME(weights), NAME(level_size), NAME(level_first), NAME(colour),         \
+        NAME(coarse_size), NAME(coarser), NAME(coarse_first), NAME(sweeps), NAME(relaxation),      \
+        NAME(pressure_unit), NAME(groups), NAME(mass), NAME(SolidIds), NAME(SolidMotions),         \
+        NAME(box_min), NAME(force), NAME(begins), NAME(place), NAME(first), NAME(flame_reach),     \
+        NAME(everywhere), NAME(present_from), NAME(present_to)
 enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 
 struct pyro {
@@ -134,6 +137,7 @@ struct pyro {
     pyro_reporter reporter;
     gpu_image *force;
     pyro_solids solids;
+    bool finds_more;   // the projection finds what is to be added to the pressure
     bool solids_known; // openings are those of `solids`
     bool active_known; // where there is gas; false: the host may have set it
 };
@@ -163,6 +167,11 @@ bool pyro_find_levels(pyro *p); // false with a message
 uint64_t pyro_coarse_cells(const pyro *p);
 // Of the next velocity, whose expansion is in PyroRight.
 bool pyro_project(pyro *p, gpu *g, const pyro_numbers *numbers);
+// After half a step: the state's velocity becomes that of its middle, and the next one what lies as
+// far beyond that as it lay before it.
+bool pyro_project_half(pyro *p, gpu *g, const pyro_numbers *half);
+// After the other half. The pressure that the first half found is in the next velocity already.
+bool pyro_project_again(pyro *p, gpu *g, const pyro_numbers *half);
 void pyro_set_level(const pyro *p, kernel *k, uint32_t level);
 
 // pyro_solids.c

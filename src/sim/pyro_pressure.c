@@ -169,15 +169,38 @@ static bool conjugate_step(pyro *p, gpu *g, bool begins) {
            conjugate_run(p, g, PYRO_K_MOVE, false);
 }
 
-bool pyro_project(pyro *p, gpu *g, const pyro_numbers *n) {
+// Finds the pressure of the next velocity. `draws`: air that is drawn in through open faces is held
+// back by its own pressure.
+static bool pressure_find(pyro *p, gpu *g, const pyro_numbers *n, bool draws) {
     pyro_stage(p, g, "pyro.divergence");
     kernel *divergence = pyro_use(p, PYRO_K_DIVERGENCE);
     kernel_set(divergence, N_inflow, n->inflow, sizeof n->inflow);
-    kernel_set_float(divergence, N_reach, n->dt / pyro_flow_cell(p, n));
+    kernel_set_float(divergence, N_reach, draws ? n->dt / pyro_flow_cell(p, n) : 0);
     if (!pyro_run(p, g, divergence)) return false;
     if (p->desc.solids && !conjugate_run(p, g, PYRO_K_RESIDUAL, false)) return false;
     for (uint32_t i = 0; i < p->desc.cycles; i++)
         if (!(p->desc.solids ? conjugate_step(p, g, i == 0) : pressure_cycle(p, g))) return false;
     pyro_stage(p, g, "pyro.project");
-    return pyro_run(p, g, pyro_use(p, PYRO_K_PROJECT));
+    return true;
+}
+
+bool pyro_project(pyro *p, gpu *g, const pyro_numbers *n) {
+    return pressure_find(p, g, n, true) && pyro_run(p, g, pyro_use(p, PYRO_K_PROJECT));
+}
+
+bool pyro_project_half(pyro *p, gpu *g, const pyro_numbers *n) {
+    if (!pressure_find(p, g, n, true)) return false;
+    kernel *k = pyro_use(p, PYRO_K_REFLECT);
+    kernel_bind_buffer(k, N_PyroFlowInto, pyro_pair(p, PYRO_MEM_VELOCITY, 0));
+    kernel_bind_buffer(k, N_PyroOtherPressure, p->buffers[PYRO_MEM_MORE_PRESSURE]);
+    return pyro_run(p, g, k);
+}
+
+bool pyro_project_again(pyro *p, gpu *g, const pyro_numbers *n) {
+    p->finds_more = true;
+    bool done = pressure_find(p, g, n, false);
+    kernel *k = pyro_use(p, PYRO_K_PROJECT);
+    p->finds_more = false;
+    kernel_bind_buffer(k, N_PyroOtherPressure, p->buffers[PYRO_MEM_PRESSURE]);
+    return done && pyro_run(p, g, k);
 }

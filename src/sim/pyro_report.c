@@ -39,6 +39,8 @@ bool pyro_watch(pyro *p, gpu *g, const pyro_numbers *n) {
     kernel_set(flow, N_inflow, n->inflow, sizeof n->inflow);
     kernel_set(flow, N_weights, weights, sizeof weights);
     kernel_set_int(flow, N_first, gas_groups);
+    if (p->desc.advection == PYRO_REFLECTION) // of which the right-hand side is
+        kernel_bind_buffer(flow, N_PyroPressure, p->buffers[PYRO_MEM_MORE_PRESSURE]);
     kernel_bind_image(last, N_result, r->result);
     kernel_set_int(last, N_groups, gas_groups + flow_groups);
     if (!pyro_run_gas(p, g, gas) || !pyro_run(p, g, flow) ||

@@ -58,7 +58,8 @@ static bool look_at_flow(pyro *p, gpu *g, const pyro_numbers *n, gpu_image *to) 
     const float density = 353 / n->ambient, cell = pyro_flow_cell(p, n); // of the surroundings
     kernel_bind_image(k, N_flow, to);
     set_inflow(k, n);
-    kernel_set_float(k, N_pressure_unit, density * cell / n->dt);
+    const float halves = p->desc.advection == PYRO_REFLECTION ? 2 : 1; // pressure is of half a step
+    kernel_set_float(k, N_pressure_unit, halves * density * cell / n->dt);
     return pyro_run(p, g, k);
 }
 
@@ -72,12 +73,17 @@ static kernel *use_carrying(pyro *p, pyro_kernel which, const pyro_numbers *n, g
     return k;
 }
 
-// Velocities that carry the gas, and what volumes are between sweeps.
-static bool find_volumes(pyro *p, gpu *g, const pyro_numbers *n) {
+// What volumes are between sweeps.
+static bool spread_find(pyro *p, gpu *g, const pyro_numbers *n) {
     pyro_stage(p, g, "pyro.volumes");
     kernel *spread = pyro_use(p, PYRO_K_SPREAD);
     set_inflow(spread, n);
-    if (!pyro_run(p, g, spread)) return false;
+    return pyro_run(p, g, spread);
+}
+
+// The same, and the velocities that carry the gas.
+static bool find_volumes(pyro *p, gpu *g, const pyro_numbers *n) {
+    if (!spread_find(p, g, n)) return false;
     if (!p->desc.half_velocity) return true;
     kernel *carrier = pyro_use(p, PYRO_K_CARRIER);
     set_inflow(carrier, n);
@@ -131,34 +137,59 @@ static kernel *use_stirring(pyro *p, pyro_kernel which, const pyro_numbers *n, g
     return k;
 }
 
-static bool flow_carry(pyro *p, gpu *g, const pyro_numbers *n) {
-    gpu_buffer *own = pyro_pair(p, PYRO_MEM_VELOCITY, 0),
-               *next = pyro_pair(p, PYRO_MEM_VELOCITY, 1);
-    pyro_stage(p, g, "pyro.velocity_x");
-    kernel *x = use_stirring(p, PYRO_K_VELOCITY_X, n, own, next);
-    if (!pyro_run_half_bricks(p, g, x)) return false;
-    pyro_stage(p, g, "pyro.velocity_y");
-    kernel *y = use_stirring(p, PYRO_K_VELOCITY_Y, n, next, p->buffers[PYRO_MEM_VELOCITY_BETWEEN]);
-    return pyro_run_half_bricks(p, g, y);
-}
-
-static bool velocity_advance(pyro *p, gpu *g, const pyro_numbers *n) {
-    if (p->desc.confinement && !curl_find(p, g, n)) return false;
-    gpu_buffer *next = pyro_pair(p, PYRO_MEM_VELOCITY, 1);
-    gpu_buffer *between = p->buffers[PYRO_MEM_VELOCITY_BETWEEN];
-    if (!flow_carry(p, g, n)) return false;
-    pyro_stage(p, g, "pyro.velocity");
-    kernel *k = use_stirring(p, PYRO_K_VELOCITY, n, between, next);
-    const float most = MOST_CELLS_A_STEP * n->cell / n->dt;
+static void set_forces(const pyro *p, kernel *k, const pyro_numbers *n) {
     pyro_set_gas(k, n);
     kernel_set_float(k, N_dt, n->dt);
     kernel_set_float(k, N_gravity, n->gravity);
     kernel_set(k, N_acceleration, n->acceleration, sizeof n->acceleration);
     kernel_set_float(k, N_confinement, n->confinement * n->dt);
-    kernel_set_float(k, N_max_speed, n->max_speed > 0 && n->max_speed < most ? n->max_speed : most);
+    kernel_set_float(k, N_max_speed, n->max_speed);
     kernel_bind_buffer(k, N_PyroGas, pyro_pair(p, PYRO_MEM_GAS, 1));
     if (p->force) kernel_bind_image(k, N_force, p->force);
-    return pyro_run_half_bricks(p, g, k);
+}
+
+// Carries a velocity by that of the state, and pushes it. `path`: where it is, and
+// where it lies after each sweep.
+static bool flow_advance(pyro *p, gpu *g, const pyro_numbers *n, gpu_buffer *const path[4]) {
+    static const pyro_kernel sweeps[] = {PYRO_K_VELOCITY_X, PYRO_K_VELOCITY_Y, PYRO_K_VELOCITY};
+    static const char *const stages[] = {"pyro.velocity_x", "pyro.velocity_y", "pyro.velocity"};
+    for (int i = 0; i < 3; i++) {
+        pyro_stage(p, g, stages[i]);
+        kernel *k = use_stirring(p, sweeps[i], n, path[i], path[i + 1]);
+        if (i == 2) set_forces(p, k, n);
+        if (!pyro_run_half_bricks(p, g, k)) return false;
+    }
+    return pyro_obstruct(p, g, n);
+}
+
+// What the gas did to its velocity in half a step is reflected by what the projection did, so that
+// the other half begins beyond it: what one projection takes from the energy the next one gives
+// back.
+static bool velocity_reflect(pyro *p, gpu *g, const pyro_numbers *n) {
+    gpu_buffer *own = pyro_pair(p, PYRO_MEM_VELOCITY, 0),
+               *next = pyro_pair(p, PYRO_MEM_VELOCITY, 1);
+    gpu_buffer *between = p->buffers[PYRO_MEM_VELOCITY_BETWEEN];
+    pyro_numbers half = *n;
+    half.dt /= 2;
+    if (!flow_advance(p, g, &half, (gpu_buffer *[]){own, next, between, next}) ||
+        !pyro_project_half(p, g, &half) || !spread_find(p, g, n))
+        return false;
+    p->buffers[PYRO_MEM_VELOCITY_BETWEEN] = next; // the three sweeps end in the other buffer
+    p->buffers[PYRO_MEM_VELOCITY + (p->current ^ 1)] = between;
+    return flow_advance(p, g, &half, (gpu_buffer *[]){next, between, next, between}) &&
+           pyro_project_again(p, g, &half);
+}
+
+static bool velocity_advance(pyro *p, gpu *g, const pyro_numbers *numbers) {
+    pyro_numbers n = *numbers;
+    const float most = MOST_CELLS_A_STEP * n.cell / n.dt;
+    n.max_speed = n.max_speed > 0 && n.max_speed < most ? n.max_speed : most;
+    if (p->desc.confinement && !curl_find(p, g, &n)) return false;
+    if (p->desc.advection == PYRO_REFLECTION) return velocity_reflect(p, g, &n);
+    gpu_buffer *next = pyro_pair(p, PYRO_MEM_VELOCITY, 1);
+    gpu_buffer *const path[] = {pyro_pair(p, PYRO_MEM_VELOCITY, 0), next,
+                                p->buffers[PYRO_MEM_VELOCITY_BETWEEN], next};
+    return flow_advance(p, g, &n, path) && pyro_project(p, g, &n);
 }
 
 static bool check_numbers(const pyro_numbers *n) {
@@ -169,7 +200,7 @@ static bool check_numbers(const pyro_numbers *n) {
 
 bool pyro_step(pyro *p, gpu *g, const pyro_numbers *n, bool keep) {
     if (!check_numbers(n) || !find_volumes(p, g, n) || !gas_advance(p, g, n) ||
-        !velocity_advance(p, g, n) || !pyro_obstruct(p, g, n) || !pyro_project(p, g, n))
+        !velocity_advance(p, g, n))
         return false;
     p->current ^= 1;
     p->active_known = true;

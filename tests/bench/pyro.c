@@ -1,6 +1,7 @@
 // How fast the bare solver of burning gas in src/sim steps: no fields, no pictures.
 //
-//   bench_pyro [-d DEVICE] [-n STEPS] [-s X[,Y,Z]] [-a semi|mac] [-h f32|f16] [-c CYCLES] [-l] [-v]
+//   bench_pyro [-d DEVICE] [-n STEPS] [-s X[,Y,Z]] [-a upwind|parabolic|reflection] [-h f32|f16]
+//   [-c CYCLES] [-l] [-v]
 //   [-k] [-t]
 //
 // A ball of hot fuel burns in the middle of the lower half. -l: the velocity has half as many cells
@@ -45,7 +46,8 @@ static bool parse(int argc, char **argv, bench *b) {
         if (c == 'd') b->device = optarg;
         if (c == 'n') b->steps = atoi(optarg);
         if (c == 's' && sscanf(optarg, "%u,%u,%u", &s[0], &s[1], &s[2]) == 1) s[1] = s[2] = s[0];
-        if (c == 'a') b->desc.advection = optarg[0] == 'p' ? PYRO_PARABOLIC : PYRO_UPWIND;
+        for (int i = 0; c == 'a' && i < PYRO_ADVECTIONS; i++)
+            if (strcmp(optarg, pyro_advection_names[i]) == 0) b->desc.advection = (pyro_advection)i;
         if (c == 'h') b->desc.precision = strcmp(optarg, "f16") == 0 ? PYRO_F16 : PYRO_F32;
         if (c == 'c') b->desc.cycles = (uint32_t)atoi(optarg);
         if (c == 'l') b->desc.half_velocity = true;
@@ -140,8 +142,7 @@ static int measure(bench *b, pyro *p, gpu *g) {
     const double cells = 1e-3 * d->size[0] * d->size[1] * d->size[2] * b->steps; // thousands
     printf("%ux%ux%u %s %s %u cycles%s%s%s: %.3f ms a step, %.2f million cells a second, %.2f a "
            "processor second, residual %.1e of %.2f m/s, %.0f K\n",
-           d->size[0], d->size[1], d->size[2],
-           d->advection == PYRO_PARABOLIC ? "parabolic" : "upwind",
+           d->size[0], d->size[1], d->size[2], pyro_advection_names[d->advection],
            d->precision == PYRO_F16 ? "f16" : "f32", d->cycles,
            d->half_velocity ? ", half the velocity" : "", d->confinement ? ", confinement" : "",
            b->keep ? ", kept" : "", milliseconds / b->steps, cells / milliseconds,

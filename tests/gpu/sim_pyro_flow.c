@@ -152,8 +152,11 @@ static double kept(gpu *g, pyro_advection advection) {
 
 static void parabolas_keep_more_energy(void **state) {
     const double even = kept(*state, PYRO_UPWIND), bent = kept(*state, PYRO_PARABOLIC);
-    print_message("energy kept: upwind %.3f, by parabolas %.3f\n", even, bent);
+    const double reflected = kept(*state, PYRO_REFLECTION);
+    print_message("energy kept: upwind %.3f, by parabolas %.3f, with reflection %.4f\n", even, bent,
+                  reflected);
     assert_true(bent > 0.9 && bent < 1.001 && even < 0.75);
+    assert_true(reflected > 0.985 && reflected < 1.001);
 }
 
 // ---- momentum ---------------------------------------------------------------------------------
@@ -174,12 +177,12 @@ static void sum_velocities(pyro_world *w, double out[3]) {
         for (int k = 0; k < 3; k++) out[k] += (double)w->velocity[i][k] / (double)w->cells;
 }
 
-static void momentum_stays(void **state) {
+static void check_momentum(gpu *g, pyro_advection advection) {
     pyro_world w;
-    pyro_open(&w, *state,
+    pyro_open(&w, g,
               &(pyro_desc){.size = {32, 32, 32},
                            .faces = {3, 3, 3, 3, 3, 3},
-                           .advection = PYRO_PARABOLIC,
+                           .advection = advection,
                            .cycles = 6});
     w.numbers.gravity = 0;
     w.numbers.cell = 1;
@@ -195,6 +198,10 @@ static void momentum_stays(void **state) {
         assert_true(fabs(after[k] - before[k]) < 2e-4);
     }
     pyro_close(&w);
+}
+
+static void momentum_stays(void **state) {
+    for (pyro_advection a = PYRO_PARABOLIC; a <= PYRO_REFLECTION; a++) check_momentum(*state, a);
 }
 
 int main(void) {

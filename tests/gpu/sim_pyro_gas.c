@@ -115,9 +115,12 @@ static double outflow(pyro_world *w, int margin) {
 
 // What burns at a known power makes so much room: div u = power / (density x heat capacity x
 // temperature), the same for all gas at this pressure.
-static void check_room(gpu *g, bool half) {
+static void check_room(gpu *g, pyro_advection advection, bool half) {
     pyro_world w;
-    pyro_open(&w, g, &(pyro_desc){.size = {48, 48, 48}, .cycles = 6, .half_velocity = half});
+    pyro_open(
+        &w, g,
+        &(pyro_desc){
+            .size = {48, 48, 48}, .advection = advection, .cycles = 6, .half_velocity = half});
     w.numbers.gravity = 0;
     w.numbers.dt = 1e-4f; // so short that nothing moves
     w.numbers.burn_time = 0.1f;
@@ -136,11 +139,11 @@ static void check_room(gpu *g, bool half) {
 }
 
 static void heat_makes_room(void **state) {
-    check_room(*state, false);
+    for (pyro_advection a = PYRO_UPWIND; a <= PYRO_REFLECTION; a++) check_room(*state, a, false);
 }
 
 static void heat_makes_room_for_half_the_velocity(void **state) {
-    check_room(*state, true);
+    check_room(*state, PYRO_REFLECTION, true);
 }
 
 // A ball that burns in still air and pushes it away: fuel and heat are where they were, or burnt.
@@ -304,7 +307,10 @@ static void check_columns(gpu *g, const pyro_desc *desc) {
 }
 
 static void a_warm_column_rises_by_its_warmth(void **state) {
-    check_columns(*state, &(pyro_desc){.size = {32, 16, 32}, .faces = {3, 3, 3, 3, 3, 3}});
+    for (pyro_advection a = PYRO_UPWIND; a <= PYRO_REFLECTION; a++)
+        check_columns(
+            *state,
+            &(pyro_desc){.size = {32, 16, 32}, .faces = {3, 3, 3, 3, 3, 3}, .advection = a});
 }
 
 static void and_with_half_the_velocity(void **state) {

@@ -5,7 +5,8 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 
 uniform float reach; // cells in a step, by 1 m/s
 layout(std430) readonly buffer PyroVelocityTo { PYRO_FOUR velocity_to[]; };
-layout(std430) buffer PyroRight { float right[]; };
+layout(std430) readonly buffer PyroExpansion { float expands[]; }; // may be PyroRight itself
+layout(std430) writeonly buffer PyroRight { float right[]; };
 
 // Air that is drawn in through an open face comes from rest: its pressure there is below that of the
 // surroundings by rho u^2 / 2, which keeps it from coming ever faster (as FDS does). Where it flows out
@@ -23,5 +24,5 @@ void main() {
     int at = n.cell.x + n.cell.y + n.cell.z;
     vec3 low, high;
     PYRO_FACES(velocity_to, n, low, high)
-    right[at] = dot(high - low, vec3(1.0)) - right[at] + drawn(c, low, high);
+    right[at] = dot(high - low, vec3(1.0)) - expands[at] + drawn(c, low, high);
 }

@@ -14,7 +14,7 @@ layout(local_size_x = 64) in;
 uniform float cell;     // of the velocity, m
 uniform int present_to; // where the marks of the next state begin
 layout(std430) writeonly buffer PyroGasTo { PYRO_FOUR gas_to[]; };
-layout(std430) writeonly buffer PyroRight { float right[]; }; // m/s: expansion across a cell
+layout(std430) writeonly buffer PyroExpansion { float expands[]; }; // m/s, across a cell
 #if PYRO_RATIO == 2
 layout(std430) writeonly buffer PyroDensity { float densities[]; }; // by that of the surroundings
 #endif
@@ -73,7 +73,7 @@ void hand_on() {
     vec2 sum = vec2(0.0);
     for (uint k = 0u; k < 4u; k++) sum += parts[z][sibling(thread, k)];
     int at = pyro_flow_at(ivec3(gl_WorkGroupID) * ivec3(4, 4, 2) + ivec3(i & 3u, (i >> 2) & 3u, z));
-    right[at] = cell / dt * 0.125 * sum.x;
+    expands[at] = cell / dt * 0.125 * sum.x;
     densities[at] = 0.125 * sum.y;
 }
 
@@ -122,7 +122,7 @@ void main() {
         if (abs(grown) > 1e-6) grows = 1u;
 #else
         keep(c, pyro_pack(g));
-        right[pyro_at(c)] = cell / dt * grown;
+        expands[pyro_at(c)] = cell / dt * grown;
 #endif
         c.z++;
     }

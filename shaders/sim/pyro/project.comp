@@ -1,8 +1,15 @@
-// The end of a step: velocities less the differences of pressure.
+// The end of a step: velocities less the differences of pressure. With REFLECT, the middle of a step: that
+// is where the state is then, and the other half begins as far beyond it.
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #include "sim/pyro/state.glsl"
 
 layout(std430) readonly buffer PyroPressure { float pressure[]; };
+#if PYRO_REFLECTS
+layout(std430) buffer PyroOtherPressure { float other_pressure[]; }; // of the second projection; of the first
+#endif
+#ifdef REFLECT
+layout(std430) writeonly buffer PyroFlowInto { PYRO_FOUR flow_into[]; };
+#endif
 layout(std430) buffer PyroVelocityTo { PYRO_FOUR velocity_to[]; };
 #if PYRO_SOLIDS
 layout(std430) readonly buffer PyroOpenings { uint openings[]; };
@@ -20,5 +27,13 @@ void main() {
     stays = bvec3(vec3(stays) + 1.0 - ceil(unpackUnorm4x8(openings[at]).xyz));
 #endif
     vec3 push = mix(pressure[at] - low, vec3(0.0), stays);
-    velocity_to[at] = pyro_store(pyro_load(velocity_to[at]) - vec4(push, 0.0));
+    vec4 v = pyro_load(velocity_to[at]);
+#ifdef REFLECT
+    flow_into[at] = pyro_store(v - vec4(push, 0.0));
+    push *= 2.0;
+    other_pressure[at] = 0.0;
+#elif PYRO_REFLECTS
+    other_pressure[at] += pressure[at]; // with which the next step begins
+#endif
+    velocity_to[at] = pyro_store(v - vec4(push, 0.0));
 }

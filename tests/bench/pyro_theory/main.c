@@ -1,6 +1,7 @@
 // Burning gas against theory and published data: one page.
 //
-//   bench_pyro_theory [-o FOLDER] [-f FINE] [-a parabolic|upwind] [-d DEVICE] [-r] [CHECK...]
+//   bench_pyro_theory [-o FOLDER] [-f FINE] [-a upwind|parabolic|reflection] [-d DEVICE] [-r]
+//   [CHECK...]
 //
 // Writes results.json and report.html to the folder (out/pyro_theory), and prints each figure with
 // its bounds. CHECK: those alone, of plume, flames, pool, fireball, vortex, rings, and tests: what
@@ -48,7 +49,8 @@ static bool parse(int argc, char **argv, options *o) {
         if (c == 'o') o->folder = optarg;
         if (c == 'f') o->fine = atof(optarg);
         if (c == 'd') o->device = optarg;
-        if (c == 'a') o->advection = optarg[0] == 'u' ? PYRO_UPWIND : PYRO_PARABOLIC;
+        for (int i = 0; c == 'a' && i < PYRO_ADVECTIONS; i++)
+            if (strcmp(optarg, pyro_advection_names[i]) == 0) o->advection = (pyro_advection)i;
         if (c == 'r') o->again = true;
         if (c == '?') return false;
     }

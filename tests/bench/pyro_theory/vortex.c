@@ -67,12 +67,11 @@ void theory_vortex(const theory_order *order, theory_check *c) {
     theory_plot *lost = theory_add_plot(c, "Dissipation", "time", "-dE/dt");
     const uint32_t most = theory_cells(order, 32);
     history finest = {.peak = 0};
-    for (int scheme = 0; scheme < 2; scheme++)
+    for (pyro_advection a = PYRO_UPWIND; a <= PYRO_REFLECTION; a++)
         for (uint32_t n = most / 2; n <= most; n += most / 2) {
             if (n < PYRO_LEAST_SIZE) continue;
-            const pyro_advection a = scheme ? PYRO_PARABOLIC : PYRO_UPWIND;
             char name[64];
-            snprintf(name, sizeof name, "%s %u", scheme ? "parabolic" : "upwind", 2 * n);
+            snprintf(name, sizeof name, "%s %u", pyro_advection_names[a], 2 * n);
             const history h = run(order, c, a, n);
             theory_series *e = theory_add_series(c, kept, name, LOOKS + 1);
             theory_series *d = theory_add_series(c, lost, name, LOOKS + 1);
