@@ -37,7 +37,8 @@ pyro *pyro_create(arena *memory, const pyro_desc *desc) {
     pyro *p = arena_alloc(memory, sizeof *p);
     *p = (pyro){.memory = memory, .desc = *desc};
     p->chooses_precision = desc->precision == PYRO_AUTO;
-    if (p->desc.cycles == 0) p->desc.cycles = desc->solids ? PYRO_SOLID_CYCLES : PYRO_CYCLES;
+    if (p->desc.cycles == 0)
+        p->desc.cycles = pyro_is_weighed(p) ? PYRO_CONJUGATE_CYCLES : PYRO_CYCLES;
     return pyro_find_levels(p) ? p : NULL;
 }
 
@@ -73,6 +74,10 @@ static void define(pyro *p, const char *name, uint32_t value) {
     p->defines[p->define_count++] = (shader_define){name, arena_format(p->memory, "%u", value)};
 }
 
+bool pyro_is_weighed(const pyro *p) {
+    return p->desc.solids || p->desc.variable_density;
+}
+
 bool pyro_is_closed(const pyro_desc *desc) {
     for (int i = 0; i < 6; i++)
         if (desc->faces[i] == PYRO_OPEN) return false;
@@ -95,6 +100,8 @@ static void define_all(pyro *p) {
     define(p, "PYRO_CONFINES", p->desc.confinement);
     define(p, "PYRO_FORCE", p->desc.force);
     define(p, "PYRO_SOLIDS", p->desc.solids);
+    define(p, "PYRO_VARIABLE", p->desc.variable_density);
+    define(p, "PYRO_WEIGHED", pyro_is_weighed(p));
     define(p, "PYRO_CLOSED", pyro_is_closed(&p->desc));
 }
 
@@ -118,9 +125,9 @@ static const char *const shaders[PYRO_KERNELS] = {
     [PYRO_K_VELOCITY_X] = "sim/pyro/velocity.comp",
     [PYRO_K_VELOCITY_Y] = "sim/pyro/velocity.comp",
     [PYRO_K_VELOCITY] = "sim/pyro/velocity.comp",
-    [PYRO_K_SOLIDS] = "sim/pyro/solids.comp",
-    [PYRO_K_SOLIDS_FINEST] = "sim/pyro/solids.comp",
-    [PYRO_K_SOLIDS_COARSE] = "sim/pyro/solids.comp",
+    [PYRO_K_COEFFICIENTS] = "sim/pyro/coefficients.comp",
+    [PYRO_K_COEFFICIENTS_NEXT] = "sim/pyro/coefficients.comp",
+    [PYRO_K_COEFFICIENTS_COARSE] = "sim/pyro/coefficients.comp",
     [PYRO_K_OBSTRUCT] = "sim/pyro/obstruct.comp",
     [PYRO_K_FILL] = "sim/pyro/fill.comp",
     [PYRO_K_DIVERGENCE] = "sim/pyro/divergence.comp",
@@ -167,16 +174,18 @@ static const char *const more_defines[PYRO_KERNELS][2] = {
     [PYRO_K_TURN] = {"TURN"},
     [PYRO_K_APPLY] = {"APPLY"},
     [PYRO_K_MOVE] = {"MOVE"},
-    [PYRO_K_SOLIDS_FINEST] = {"COARSE", "PYRO_FINEST"},
-    [PYRO_K_SOLIDS_COARSE] = {"COARSE"},
+    [PYRO_K_COEFFICIENTS_NEXT] = {"COARSE", "PYRO_FINEST"},
+    [PYRO_K_COEFFICIENTS_COARSE] = {"COARSE"},
 };
 
 static bool is_used(const pyro_desc *desc, pyro_kernel which) {
     if (which == PYRO_K_CARRIER) return desc->half_velocity;
     if (which == PYRO_K_VORTICITY || which == PYRO_K_CURL) return desc->confinement;
     if (which == PYRO_K_REFLECT) return desc->advection == PYRO_REFLECTION;
-    if (which >= PYRO_K_SOLIDS && which <= PYRO_K_FILL) return desc->solids;
-    if (which >= PYRO_K_RESIDUAL && which <= PYRO_K_SUM) return desc->solids;
+    if (which == PYRO_K_OBSTRUCT || which == PYRO_K_FILL) return desc->solids;
+    const bool weighed = desc->solids || desc->variable_density;
+    if (which >= PYRO_K_COEFFICIENTS && which <= PYRO_K_COEFFICIENTS_COARSE) return weighed;
+    if (which >= PYRO_K_RESIDUAL && which <= PYRO_K_SUM) return weighed;
     return true;
 }
 
@@ -239,10 +248,11 @@ static void find_sizes(const pyro *p, uint64_t out[PYRO_MEM_COUNT]) {
         out[PYRO_MEM_EXPANSION] = out[PYRO_MEM_MORE_PRESSURE] = 4 * flow;
     out[PYRO_MEM_COARSE_PRESSURE] = out[PYRO_MEM_COARSE_RIGHT] = 4 * pyro_coarse_cells(p);
     out[PYRO_MEM_REPORT] = (gas + flow) / PYRO_CELLS_A_GROUP * 32;
-    if (!p->desc.solids) return;
+    if (!pyro_is_weighed(p)) return;
     out[PYRO_MEM_SUMS] = PYRO_SUMS * 16;
-    out[PYRO_MEM_OPENINGS] = 4 * flow;
-    out[PYRO_MEM_COARSE_OPENINGS] = 4 * pyro_coarse_cells(p);
+    const uint64_t faces = p->desc.variable_density ? 8 : 4;
+    out[PYRO_MEM_COEFFICIENTS] = faces * flow;
+    out[PYRO_MEM_COARSE_COEFFICIENTS] = faces * pyro_coarse_cells(p);
     for (pyro_memory i = PYRO_MEM_FOUND; i <= PYRO_MEM_CHANGE; i++) out[i] = 4 * flow;
 }
 
@@ -263,8 +273,8 @@ static const char *const memory_labels[PYRO_MEM_COUNT] = {"velocity of burning g
                                                           "pressure of burning gas",
                                                           "coarse pressure",
                                                           "coarse divergence",
-                                                          "openings between solids",
-                                                          "openings between solids",
+                                                          "coefficients of pressure",
+                                                          "coefficients of pressure",
                                                           "conjugate gradients",
                                                           "conjugate gradients",
                                                           "conjugate gradients",
@@ -327,8 +337,8 @@ void pyro_bind(const pyro *p, kernel *k, const kernel_place *places) {
         [N_PyroCurl] = p->buffers[PYRO_MEM_CURL],
         [N_PyroCoarsePressure] = p->buffers[PYRO_MEM_COARSE_PRESSURE],
         [N_PyroCoarseRight] = p->buffers[PYRO_MEM_COARSE_RIGHT],
-        [N_PyroOpenings] = p->buffers[PYRO_MEM_OPENINGS],
-        [N_PyroCoarseOpenings] = p->buffers[PYRO_MEM_COARSE_OPENINGS],
+        [N_PyroCoefficients] = p->buffers[PYRO_MEM_COEFFICIENTS],
+        [N_PyroCoarseCoefficients] = p->buffers[PYRO_MEM_COARSE_COEFFICIENTS],
         [N_PyroFound] = p->buffers[PYRO_MEM_FOUND],
         [N_PyroDirection] = p->buffers[PYRO_MEM_DIRECTION],
         [N_PyroChange] = p->buffers[PYRO_MEM_CHANGE],

@@ -45,14 +45,15 @@ typedef struct pyro_desc { // structure: what shaders are compiled for
     pyro_face faces[6];    // -x +x -y +y -z +z; opposite ones are both periodic or neither is
     pyro_advection advection;
     pyro_precision precision; // of velocities and the gas; auto: by the device
-    bool half_velocity; // velocity and pressure have half as many cells along each axis, which
-                        // are multiples of 16 then, and no face is periodic
-    bool premixed;      // fuel burns where a flame passes, not where it is hot
-    bool confinement;   // numbers may have some
-    bool force;         // pyro_set_force is called before the first step
-    bool solids;        // pyro_set_solids is called before each step
-    uint32_t cycles;    // of multigrid, per step; 0: 2, with solids 3
-    bool timed;         // stages of a step have GPU times of their own
+    bool half_velocity;    // velocity and pressure have half as many cells along each axis, which
+                           // are multiples of 16 then, and no face is periodic
+    bool premixed;         // fuel burns where a flame passes, not where it is hot
+    bool confinement;      // numbers may have some
+    bool force;            // pyro_set_force is called before the first step
+    bool variable_density; // pressure moves light gas farther than heavy gas
+    bool solids;           // pyro_set_solids is called before each step
+    uint32_t cycles;       // of multigrid, per step; 0: 2, with solids or variable density 3
+    bool timed;            // stages of a step have GPU times of their own
 } pyro_desc;
 
 typedef struct pyro_numbers { // parameters of a step; they may change with each step
@@ -109,8 +110,8 @@ typedef struct pyro_solids {
     float corner[3];     // of the box, m
     bool changed;        // ids are other than in the last step
 } pyro_solids;
-// Inside a frame. The buffers are read until the next call.
-bool pyro_set_solids(pyro *p, gpu *g, const pyro_solids *solids);
+// The buffers are read until the next call.
+void pyro_set_solids(pyro *p, const pyro_solids *solids);
 
 // Returns how many cells of the gas lie along the side of one of the velocity: 1 or 2.
 uint32_t pyro_ratio(const pyro_desc *desc);

@@ -6,8 +6,8 @@
 
 enum {
     PYRO_CYCLES = 2,
-    PYRO_SOLID_CYCLES = 3,    // coarse levels see solids in part
-    PYRO_CELLS_A_GROUP = 256, // of kernels that sum
+    PYRO_CONJUGATE_CYCLES = 3, // coarse levels see solids, and thin flames, in part
+    PYRO_CELLS_A_GROUP = 256,  // of kernels that sum
     PYRO_MAX_LEVELS = 10,
     PYRO_COARSEST = 8192, // cells at most of the level that one group solves
 };
@@ -29,8 +29,8 @@ typedef enum pyro_memory {
     PYRO_MEM_MORE_PRESSURE,   // with reflection: what the second projection adds
     PYRO_MEM_COARSE_PRESSURE, // of all levels but the finest
     PYRO_MEM_COARSE_RIGHT,
-    PYRO_MEM_OPENINGS, // with solids
-    PYRO_MEM_COARSE_OPENINGS,
+    PYRO_MEM_COEFFICIENTS, // with solids
+    PYRO_MEM_COARSE_COEFFICIENTS,
     PYRO_MEM_FOUND, // with conjugate gradients, of which these are the vectors
     PYRO_MEM_DIRECTION,
     PYRO_MEM_CHANGE,
@@ -71,9 +71,9 @@ typedef enum pyro_kernel {
     PYRO_K_VELOCITY_X,
     PYRO_K_VELOCITY_Y,
     PYRO_K_VELOCITY, // carried along z, pushed
-    PYRO_K_SOLIDS,
-    PYRO_K_SOLIDS_FINEST, // from the finest level to the next
-    PYRO_K_SOLIDS_COARSE,
+    PYRO_K_COEFFICIENTS,
+    PYRO_K_COEFFICIENTS_NEXT, // from the finest level to the next
+    PYRO_K_COEFFICIENTS_COARSE,
     PYRO_K_OBSTRUCT,
     PYRO_K_FILL,
     PYRO_K_DIVERGENCE,
@@ -104,8 +104,8 @@ typedef enum pyro_kernel {
 #define PYRO_OWN_NAMES(NAME)                                                                       \
     NAME(PyroGas), NAME(PyroVelocity), NAME(PyroPressure), NAME(PyroRight), NAME(PyroExpansion),   \
         NAME(PyroGasTo), NAME(PyroVelocityTo), NAME(PyroCarrier), NAME(PyroSpread),                \
-        NAME(PyroCurl), NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroOpenings),       \
-        NAME(PyroCoarseOpenings), NAME(PyroFound), NAME(PyroDirection), NAME(PyroChange),          \
+        NAME(PyroCurl), NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroCoefficients),   \
+        NAME(PyroCoarseCoefficients), NAME(PyroFound), NAME(PyroDirection), NAME(PyroChange),      \
         NAME(PyroSums), NAME(PyroDensity), NAME(PyroActive), NAME(PyroReport)
 #define PYRO_NAMES(NAME)                                                                           \
     PYRO_OWN_NAMES(NAME), NAME(PyroGasFrom), NAME(PyroGasInto), NAME(PyroFlowFrom),                \
@@ -137,16 +137,18 @@ struct pyro {
     pyro_reporter reporter;
     gpu_image *force;
     pyro_solids solids;
-    bool finds_more;   // the projection finds what is to be added to the pressure
-    bool solids_known; // openings are those of `solids`
-    bool active_known; // where there is gas; false: the host may have set it
+    bool finds_more;         // the projection finds what is to be added to the pressure
+    bool coefficients_known; // they are those of `solids`
+    bool active_known;       // where there is gas; false: the host may have set it
 };
 
 uint64_t pyro_cells(const pyro *p);      // of the gas
 uint64_t pyro_flow_cells(const pyro *p); // of the velocity
 void pyro_flow_size(const pyro_desc *desc, uint32_t out[3]);
 float pyro_flow_cell(const pyro *p, const pyro_numbers *n); // its side, m
-bool pyro_is_closed(const pyro_desc *desc);                 // no face is open
+// Faces differ in how easily gas crosses them: conjugate gradients find the pressure.
+bool pyro_is_weighed(const pyro *p);
+bool pyro_is_closed(const pyro_desc *desc); // no face is open
 gpu_buffer *pyro_pair(const pyro *p, pyro_memory pair,
                       uint32_t which); // the current one (0), the other
 // A kernel with the buffers bound that are always the same.
@@ -175,6 +177,8 @@ bool pyro_project_again(pyro *p, gpu *g, const pyro_numbers *half);
 void pyro_set_level(const pyro *p, kernel *k, uint32_t level);
 
 // pyro_solids.c
+// Of pressure, from the gas after the step and the solids.
+bool pyro_find_coefficients(pyro *p, gpu *g, const pyro_numbers *numbers);
 bool pyro_obstruct(pyro *p, gpu *g, const pyro_numbers *numbers); // the next state
 
 // pyro_report.c

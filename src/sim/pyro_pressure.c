@@ -75,19 +75,39 @@ void pyro_set_level(const pyro *p, kernel *k, uint32_t level) {
     kernel_set_int(k, N_coarse_first, (int32_t)l[1].first);
 }
 
+// ---- coefficients of faces ------------------------------------------------------------------
+
+bool pyro_find_coefficients(pyro *p, gpu *g, const pyro_numbers *n) {
+    if (p->desc.solids && !p->solids.ids) return err_set("solids are wanted, and none were given");
+    pyro_stage(p, g, "pyro.coefficients");
+    kernel *k = pyro_use(p, PYRO_K_COEFFICIENTS);
+    pyro_set_gas(k, n);
+    if (p->desc.solids) kernel_bind_buffer(k, N_SolidIds, p->solids.ids);
+    if (!pyro_run(p, g, k)) return false;
+    for (uint32_t level = 0; level + 1 < p->level_count; level++) {
+        const uint32_t *size = p->levels[level + 1].size;
+        k = pyro_use(p, level == 0 ? PYRO_K_COEFFICIENTS_NEXT : PYRO_K_COEFFICIENTS_COARSE);
+        pyro_set_level(p, k, level);
+        if (level > 0)
+            kernel_bind_buffer(k, N_PyroCoefficients, p->buffers[PYRO_MEM_COARSE_COEFFICIENTS]);
+        if (!kernel_run(k, g, size[0], size[1], size[2])) return false;
+    }
+    return p->coefficients_known = true;
+}
+
 // ---- a cycle ----------------------------------------------------------------------------------
 
 // A kernel of a level: the finest has its own, whose pressure lies in bricks.
 static kernel *use_level(pyro *p, pyro_kernel finest, pyro_kernel coarse, uint32_t level) {
     kernel *k = pyro_use(p, level == 0 ? finest : coarse);
     pyro_set_level(p, k, level);
-    if (level == 0 && p->desc.solids) // a step of conjugate gradients
+    if (level == 0 && pyro_is_weighed(p)) // a step of conjugate gradients
         kernel_bind_buffer(k, N_PyroPressure, p->buffers[PYRO_MEM_FOUND]);
     if (level > 0) {
         kernel_bind_buffer(k, N_PyroPressure, p->buffers[PYRO_MEM_COARSE_PRESSURE]);
         kernel_bind_buffer(k, N_PyroRight, p->buffers[PYRO_MEM_COARSE_RIGHT]);
-        if (p->desc.solids)
-            kernel_bind_buffer(k, N_PyroOpenings, p->buffers[PYRO_MEM_COARSE_OPENINGS]);
+        if (pyro_is_weighed(p))
+            kernel_bind_buffer(k, N_PyroCoefficients, p->buffers[PYRO_MEM_COARSE_COEFFICIENTS]);
     }
     return k;
 }
@@ -121,7 +141,8 @@ static bool pressure_end(pyro *p, gpu *g) {
     const uint32_t last = p->level_count - 1;
     kernel *k = pyro_use(p, PYRO_K_COARSEST);
     pyro_set_level(p, k, last);
-    if (p->desc.solids) kernel_bind_buffer(k, N_PyroOpenings, p->buffers[PYRO_MEM_COARSE_OPENINGS]);
+    if (pyro_is_weighed(p))
+        kernel_bind_buffer(k, N_PyroCoefficients, p->buffers[PYRO_MEM_COARSE_COEFFICIENTS]);
     kernel_set_int(k, N_sweeps, (int32_t)coarsest_sweeps(&p->levels[last]));
     kernel_set_float(k, N_relaxation, coarsest_relaxation(&p->levels[last]));
     return kernel_run(k, g, k->binaries[0].local_size[0], 1, 1);
@@ -156,6 +177,7 @@ static bool conjugate_run(pyro *p, gpu *g, pyro_kernel part, bool begins) {
                                       [PYRO_K_APPLY] = 2,
                                       [PYRO_K_MOVE] = NONE};
     const float weights[3] = {1, 1, 1};
+    pyro_stage(p, g, "pyro.conjugate");
     kernel *k = pyro_use(p, part);
     kernel_set(k, N_weights, weights, sizeof weights);
     kernel_set_int(k, N_begins, begins);
@@ -177,9 +199,10 @@ static bool pressure_find(pyro *p, gpu *g, const pyro_numbers *n, bool draws) {
     kernel_set(divergence, N_inflow, n->inflow, sizeof n->inflow);
     kernel_set_float(divergence, N_reach, draws ? n->dt / pyro_flow_cell(p, n) : 0);
     if (!pyro_run(p, g, divergence)) return false;
-    if (p->desc.solids && !conjugate_run(p, g, PYRO_K_RESIDUAL, false)) return false;
+    if (pyro_is_weighed(p) && !conjugate_run(p, g, PYRO_K_RESIDUAL, false)) return false;
     for (uint32_t i = 0; i < p->desc.cycles; i++)
-        if (!(p->desc.solids ? conjugate_step(p, g, i == 0) : pressure_cycle(p, g))) return false;
+        if (!(pyro_is_weighed(p) ? conjugate_step(p, g, i == 0) : pressure_cycle(p, g)))
+            return false;
     pyro_stage(p, g, "pyro.project");
     return true;
 }

@@ -144,7 +144,6 @@ static void set_forces(const pyro *p, kernel *k, const pyro_numbers *n) {
     kernel_set(k, N_acceleration, n->acceleration, sizeof n->acceleration);
     kernel_set_float(k, N_confinement, n->confinement * n->dt);
     kernel_set_float(k, N_max_speed, n->max_speed);
-    kernel_bind_buffer(k, N_PyroGas, pyro_pair(p, PYRO_MEM_GAS, 1));
     if (p->force) kernel_bind_image(k, N_force, p->force);
 }
 
@@ -185,6 +184,7 @@ static bool velocity_advance(pyro *p, gpu *g, const pyro_numbers *numbers) {
     const float most = MOST_CELLS_A_STEP * n.cell / n.dt;
     n.max_speed = n.max_speed > 0 && n.max_speed < most ? n.max_speed : most;
     if (p->desc.confinement && !curl_find(p, g, &n)) return false;
+    if (p->desc.variable_density && !pyro_find_coefficients(p, g, &n)) return false;
     if (p->desc.advection == PYRO_REFLECTION) return velocity_reflect(p, g, &n);
     gpu_buffer *next = pyro_pair(p, PYRO_MEM_VELOCITY, 1);
     gpu_buffer *const path[] = {pyro_pair(p, PYRO_MEM_VELOCITY, 0), next,
@@ -199,8 +199,9 @@ static bool check_numbers(const pyro_numbers *n) {
 }
 
 bool pyro_step(pyro *p, gpu *g, const pyro_numbers *n, bool keep) {
-    if (!check_numbers(n) || !find_volumes(p, g, n) || !gas_advance(p, g, n) ||
-        !velocity_advance(p, g, n))
+    if (!check_numbers(n) ||
+        (pyro_is_weighed(p) && !p->coefficients_known && !pyro_find_coefficients(p, g, n)) ||
+        !find_volumes(p, g, n) || !gas_advance(p, g, n) || !velocity_advance(p, g, n))
         return false;
     p->current ^= 1;
     p->active_known = true;

@@ -1,11 +1,12 @@
 // How fast the bare solver of burning gas in src/sim steps: no fields, no pictures.
 //
 //   bench_pyro [-d DEVICE] [-n STEPS] [-s X[,Y,Z]] [-a upwind|parabolic|reflection] [-h f32|f16]
-//   [-c CYCLES] [-l] [-v]
+//   [-c CYCLES] [-l] [-v] [-V]
 //   [-k] [-t]
 //
 // A ball of hot fuel burns in the middle of the lower half. -l: the velocity has half as many cells
-// along each axis; -v: with confinement; -k: a look of
+// along each axis; -v: with confinement; -V: of
+// variable density; -k: a look of
 // each step is kept; -t: the stages of a step are timed apart. Prints milliseconds a step by the
 // device's clock, million cells a second by that, and by the processor time of this process.
 #include "sim/pyro.h"
@@ -41,7 +42,7 @@ static bool parse(int argc, char **argv, bench *b) {
                           .faces = {[4] = PYRO_WALL},
                           .advection = PYRO_PARABOLIC,
                           .precision = PYRO_AUTO}};
-    for (int c; (c = getopt(argc, argv, "d:n:s:a:h:c:lvkt")) != -1;) {
+    for (int c; (c = getopt(argc, argv, "d:n:s:a:h:c:lvktV")) != -1;) {
         uint32_t *s = b->desc.size;
         if (c == 'd') b->device = optarg;
         if (c == 'n') b->steps = atoi(optarg);
@@ -52,6 +53,7 @@ static bool parse(int argc, char **argv, bench *b) {
         if (c == 'c') b->desc.cycles = (uint32_t)atoi(optarg);
         if (c == 'l') b->desc.half_velocity = true;
         if (c == 'v') b->desc.confinement = true;
+        if (c == 'V') b->desc.variable_density = true;
         if (c == 'k') b->keep = true;
         if (c == 't') b->desc.timed = true;
         if (c == '?') return false;
@@ -140,13 +142,14 @@ static int measure(bench *b, pyro *p, gpu *g) {
     if (milliseconds <= 0 || !look(b, p, g, &r)) return fail("step");
     const pyro_desc *d = pyro_get_desc(p);
     const double cells = 1e-3 * d->size[0] * d->size[1] * d->size[2] * b->steps; // thousands
-    printf("%ux%ux%u %s %s %u cycles%s%s%s: %.3f ms a step, %.2f million cells a second, %.2f a "
+    printf("%ux%ux%u %s %s %u cycles%s%s%s%s: %.3f ms a step, %.2f million cells a second, %.2f a "
            "processor second, residual %.1e of %.2f m/s, %.0f K\n",
            d->size[0], d->size[1], d->size[2], pyro_advection_names[d->advection],
            d->precision == PYRO_F16 ? "f16" : "f32", d->cycles,
            d->half_velocity ? ", half the velocity" : "", d->confinement ? ", confinement" : "",
-           b->keep ? ", kept" : "", milliseconds / b->steps, cells / milliseconds,
-           cells / processor, (double)r.residual, (double)r.speed, (double)r.hottest);
+           d->variable_density ? ", variable density" : "", b->keep ? ", kept" : "",
+           milliseconds / b->steps, cells / milliseconds, cells / processor, (double)r.residual,
+           (double)r.speed, (double)r.hottest);
     for (int i = 0; i < b->stage_count && d->timed; i++)
         printf("  %-24s %8.3f ms\n", b->stages[i].label, b->stages[i].milliseconds / b->steps);
     return 0;

@@ -319,6 +319,71 @@ static void and_with_half_the_velocity(void **state) {
                                        .half_velocity = true});
 }
 
+// ---- light gas among heavy gas ------------------------------------------------------------------
+
+static void hot_columns(pyro_world *w, const int c[3], void *data) {
+    const float *warmth = data;
+    w->gas[pyro_cell_at(w, c)][0] =
+        *warmth * (float)(0.5 + 0.5 * cos(2 * pi * (c[0] + 0.5) / w->desc.size[0]));
+}
+
+// Hot columns, up to three times as light, that are as high as the box is around: g (1 / r - 1).
+static void a_hot_column_rises_by_its_density(void **state) {
+    pyro_world w;
+    float warmth = 600;
+    pyro_open(
+        &w, *state,
+        &(pyro_desc){.size = {32, 16, 32}, .faces = {3, 3, 3, 3, 3, 3}, .variable_density = true});
+    w.numbers.gravity = 9.81f;
+    w.numbers.dt = 1e-3f;
+    pyro_for_each(&w, hot_columns, &warmth);
+    pyro_transfer(&w, true);
+    pyro_run_steps(&w, 10);
+    pyro_transfer(&w, false);
+    double worst = 0;
+    for (int x = 0; x < 32; x++) {
+        const int c[3] = {x, 5, 9};
+        const double wanted = 9.81 * (double)w.gas[pyro_cell_at(&w, c)][0] / 300 * 0.01;
+        worst = fmax(worst, fabs((double)*pyro_face_at(&w, 2, c) - wanted));
+    }
+    print_message("hot columns rise by up to 0.1962 m/s, wrong by %.1e\n", worst);
+    assert_true(worst < 5e-4);
+    pyro_close(&w);
+}
+
+static void light_half(pyro_world *w, const int c[3], void *data) {
+    (void)data;
+    if (c[0] >= 16) return;
+    w->gas[pyro_cell_at(w, c)][0] = 900;
+    *pyro_face_at(w, 0, c) = 0.1f;
+}
+
+// Half of a tube that is around holds gas a quarter as dense, which moves. Pressure makes all of it
+// move alike, by the momentum that there was: each face has the mean mass of two cells.
+static void light_gas_pushes_little(void **state) {
+    pyro_world w;
+    pyro_open(&w, *state,
+              &(pyro_desc){.size = {32, 16, 16},
+                           .faces = {3, 3, 3, 3, 3, 3},
+                           .variable_density = true,
+                           .cycles = 8});
+    w.numbers.gravity = 0;
+    w.numbers.dt = 1e-3f;
+    pyro_for_each(&w, light_half, NULL);
+    pyro_transfer(&w, true);
+    pyro_run_steps(&w, 3);
+    pyro_transfer(&w, false);
+    const double momentum = 0.1 * (15 * 0.25 + 0.625), mass = 15 * 0.25 + 15 + 2 * 0.625;
+    double worst = 0;
+    for (int x = 0; x < 32; x++)
+        worst = fmax(worst,
+                     fabs((double)*pyro_face_at(&w, 0, (int[3]){x, 5, 9}) * mass / momentum - 1));
+    print_message("half of a tube is light and moves: all move at %.4f, wrong by %.1e of it\n",
+                  momentum / mass, worst);
+    assert_true(worst < 0.003);
+    pyro_close(&w);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fuel_burns_as_far_as_oxygen_goes),
@@ -333,6 +398,8 @@ int main(void) {
         cmocka_unit_test(and_so_it_does_with_half_the_velocity),
         cmocka_unit_test(a_warm_column_rises_by_its_warmth),
         cmocka_unit_test(and_with_half_the_velocity),
+        cmocka_unit_test(a_hot_column_rises_by_its_density),
+        cmocka_unit_test(light_gas_pushes_little),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }

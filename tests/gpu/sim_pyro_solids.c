@@ -42,8 +42,7 @@ static void open_world(solid_world *s, gpu *g, const pyro_desc *desc, const bloc
 static void run(solid_world *s, int steps) {
     for (int i = 0; i < steps; i++) {
         gpu_test_ok(gpu_frame_begin(s->w.device));
-        gpu_test_ok(pyro_set_solids(s->w.solver, s->w.device,
-                                    &(pyro_solids){.ids = s->ids, .motions = s->motions}));
+        pyro_set_solids(s->w.solver, &(pyro_solids){.ids = s->ids, .motions = s->motions});
         gpu_test_ok(pyro_step(s->w.solver, s->w.device, &s->w.numbers, false));
         gpu_test_ok(gpu_frame_end(s->w.device));
     }

@@ -5,6 +5,7 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 //@ option fuel = petrol {petrol, kerosene, propane, methane, ethanol, wood, dust, black_powder} : whose heat, oxygen, soot and temperature of ignition it has (effects/README.md has the table)
 //@ option combustion = mixing {mixing, premixed} : fuel burns where it is hot and meets air (fires), or where a flame passes that moves into mixture on its own (clouds of dust or gas); premixed, what a source gives above the temperature of ignition lights it
 //@ option advection = parabolic {upwind, parabolic, reflection} : what is taken to lie within a cell, of which a part flows into the next one: a parabola keeps detail, upwind is even and takes two thirds of the time; with reflection the velocity goes two halves of a step, and eddies last longer
+//@ option density = constant {constant, variable} : what the pressure moves; variable is as gases are: light gas is moved farther than heavy gas, flames rise faster and draw in more air; a step takes longer
 //@ option velocity_cells = full {full, half} : as many as the gas, or half as many along each axis: a step takes a third of the time and may be twice as long; eddies are coarser, and what they carry is as fine
 //@ option precision = auto {f32, f16, auto} : of what is stored; auto is f16 on graphics cards, which takes half the memory
 //@ option boundary_left = open {open, wall, inflow, periodic} : face at -x

@@ -10,10 +10,10 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 layout(std430) readonly buffer PyroVelocity { PYRO_FOUR velocity[]; };
 layout(std430) writeonly buffer PyroCarrier { PYRO_FOUR carrier[]; };
 #if PYRO_SOLIDS
-layout(std430) readonly buffer PyroOpenings { uint openings[]; };
-#define PYRO_OPENING(at, axis) unpackUnorm4x8(openings[at]).axis
+layout(std430) readonly buffer PyroCoefficients { PYRO_COEFFICIENTS coefficients[]; };
+#define IS_OPEN(at, axis) float(pyro_coefficients(coefficients[at]).axis > 0.0)
 #else
-#define PYRO_OPENING(at, axis) 1.0
+#define IS_OPEN(at, axis) 1.0
 #endif
 
 // Across the large face at a place along `axis`, and by how much more across its small faces that are
@@ -21,7 +21,7 @@ layout(std430) readonly buffer PyroOpenings { uint openings[]; };
 #define PLANE(component, axis, at, axis1, axis2, known, end_flow)                                  \
     known ? vec3(end_flow, 0.0, 0.0)                                                               \
           : vec3(PYRO_##component(velocity[at + n.cell.axis1 + n.cell.axis2]),                     \
-                 PYRO_OPENING(at + n.cell.axis1 + n.cell.axis2, axis) * 0.125 *                    \
+                 IS_OPEN(at + n.cell.axis1 + n.cell.axis2, axis) * 0.125 *                    \
                      vec2(PYRO_##component(velocity[at + above.axis1 + n.cell.axis2]) -            \
                               PYRO_##component(velocity[at + n.below.axis1 + n.cell.axis2]),       \
                           PYRO_##component(velocity[at + n.cell.axis1 + above.axis2]) -            \

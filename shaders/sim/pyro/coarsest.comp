@@ -8,7 +8,7 @@ uniform int sweeps;
 uniform float relaxation;
 layout(std430) coherent buffer PyroCoarsePressure { float coarse_pressure[]; };
 layout(std430) readonly buffer PyroCoarseRight { float coarse_right[]; };
-LEVEL_OPENINGS
+LEVEL_COEFFICIENTS
 
 shared float sums[256];
 
@@ -41,7 +41,7 @@ void main() {
             ivec3 c = ivec3(i % size.x, i / size.x % size.y, i / (size.x * size.y));
             if (((c.x + c.y + c.z + half_) & 1) != 0) continue;
             level_near n = level_near_of(c);
-            LEVEL_CLOSE(n)
+            LEVEL_WEIGH(n)
             int at = level_first + i;
             float own = coarse_pressure[at], around;
             LEVEL_SUM(coarse_pressure, n, around)

@@ -20,7 +20,7 @@ layout(std430) buffer PyroChange { float change[]; };       // of what is left, 
 layout(std430) writeonly buffer PyroReport { vec4 report[]; };
 layout(std430) readonly buffer PyroSums { vec4 sums[]; };   // of RESIDUAL, ACROSS, APPLY
 uniform int begins;                                         // 1: there is no last direction
-LEVEL_OPENINGS
+LEVEL_COEFFICIENTS
 
 shared vec2 parts[256];
 
@@ -43,7 +43,7 @@ void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
 #if defined(RESIDUAL) || defined(APPLY) || (defined(TURN) && PYRO_CLOSED)
     level_near n = level_near_of(c);
-    LEVEL_CLOSE(n)
+    LEVEL_WEIGH(n)
     int at = level_at(n);
 #else
     int at = pyro_at(c);

@@ -36,7 +36,8 @@ const vec3 LEVEL_OPEN_HIGH = vec3(PYRO_HIGH_X == PYRO_OPEN, PYRO_HIGH_Y == PYRO_
 struct level_near {
     ivec3 cell, below, above;
     vec3 low, high;
-    float all; // the sum of the weights, and what stands for pressure outside open faces
+    vec3 outside_low, outside_high; // weights of pressure outside open faces
+    float all;                      // the sum of all weights
 };
 
 // Outside an open face pressure is that of the surroundings, 0, half a cell away.
@@ -50,29 +51,37 @@ level_near level_near_of(ivec3 c) {
     n.above = level_places(mix(min(c + 1, last), ivec3(0), both(equal(c, last), PYRO_AROUND)));
     n.low = mix(weights, vec3(0.0), first);
     n.high = mix(weights, vec3(0.0), end);
-    vec3 outside = 2.0 * weights * (LEVEL_OPEN_LOW * vec3(first) + LEVEL_OPEN_HIGH * vec3(end));
-    n.all = dot(n.low + n.high + outside, vec3(1.0));
+    n.outside_low = 2.0 * weights * LEVEL_OPEN_LOW * vec3(first);
+    n.outside_high = 2.0 * weights * LEVEL_OPEN_HIGH * vec3(end);
+    n.all = dot(n.low + n.high + n.outside_low + n.outside_high, vec3(1.0));
     return n;
 }
 
-// Solids close faces, in part where the level is coarse.
-#if PYRO_SOLIDS
-#define LEVEL_OPENINGS layout(std430) readonly buffer PyroOpenings { uint openings[]; };
-#define LEVEL_CLOSE(n)                                                                             \
+// Solids close faces, in part where the level is coarse; light gas crosses them more easily.
+#if PYRO_WEIGHED
+#define LEVEL_COEFFICIENTS layout(std430) readonly buffer PyroCoefficients { PYRO_COEFFICIENTS coefficients[]; };
+#if PYRO_VARIABLE
+#define LEVEL_WEIGH_OUTSIDE(n, low_, high_)                                                        \
+    n.all -= dot(n.outside_low * (1.0 - low_) + n.outside_high * (1.0 - high_), vec3(1.0));
+#else
+#define LEVEL_WEIGH_OUTSIDE(n, low_, high_)
+#endif
+#define LEVEL_WEIGH(n)                                                                             \
     {                                                                                              \
         int xy_ = LEVEL_FIRST + n.cell.x + n.cell.y, z_ = LEVEL_FIRST + n.cell.z;                  \
-        vec3 low_ = unpackUnorm4x8(openings[xy_ + n.cell.z]).xyz;                                  \
-        vec3 high_ = vec3(unpackUnorm4x8(openings[z_ + n.cell.y + n.above.x]).x,                   \
-                          unpackUnorm4x8(openings[z_ + n.cell.x + n.above.y]).y,                   \
-                          unpackUnorm4x8(openings[xy_ + n.above.z]).z);                            \
+        vec3 low_ = pyro_coefficients(coefficients[xy_ + n.cell.z]).xyz;                                           \
+        vec3 high_ = vec3(pyro_coefficients(coefficients[z_ + n.cell.y + n.above.x]).x,                            \
+                          pyro_coefficients(coefficients[z_ + n.cell.x + n.above.y]).y,                            \
+                          pyro_coefficients(coefficients[xy_ + n.above.z]).z);                                     \
         n.all -= dot(n.low * (1.0 - low_) + n.high * (1.0 - high_), vec3(1.0));                    \
+        LEVEL_WEIGH_OUTSIDE(n, low_, high_)                                                        \
         n.low *= low_;                                                                             \
         n.high *= high_;                                                                           \
         if (low_ + high_ == vec3(0.0)) n.all = 0.0;                                                \
     }
 #else
-#define LEVEL_OPENINGS
-#define LEVEL_CLOSE(n)
+#define LEVEL_COEFFICIENTS
+#define LEVEL_WEIGH(n)
 #endif
 
 // The sum of the neighbours, each by its weight.

@@ -6,7 +6,7 @@ layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
 
 uniform vec3 box_min;
 uniform float cell; // of the velocity, m
-layout(std430) readonly buffer PyroOpenings { uint openings[]; };
+layout(std430) readonly buffer PyroCoefficients { PYRO_COEFFICIENTS coefficients[]; };
 layout(std430) readonly buffer SolidMotions { voxel_motion motions[]; }; // by id
 layout(std430) buffer PyroVelocityTo { PYRO_FOUR velocity_to[]; };
 
@@ -28,8 +28,8 @@ vec3 motion_between(ivec3 c, ivec3 step_) {
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
     int at = pyro_at(c);
-    vec4 open_ = unpackUnorm4x8(openings[at]);
-    if (open_ == vec4(1.0)) return;
+    vec4 open_ = pyro_coefficients(coefficients[at]);
+    if (all(greaterThan(open_, vec4(0.0)))) return;
     vec4 v = pyro_load(velocity_to[at]);
     if (open_.x == 0.0) v.x = motion_between(c, ivec3(1, 0, 0)).x;
     if (open_.y == 0.0) v.y = motion_between(c, ivec3(0, 1, 0)).y;

@@ -11,8 +11,8 @@ layout(std430) buffer PyroOtherPressure { float other_pressure[]; }; // of the s
 layout(std430) writeonly buffer PyroFlowInto { PYRO_FOUR flow_into[]; };
 #endif
 layout(std430) buffer PyroVelocityTo { PYRO_FOUR velocity_to[]; };
-#if PYRO_SOLIDS
-layout(std430) readonly buffer PyroOpenings { uint openings[]; };
+#if PYRO_WEIGHED
+layout(std430) readonly buffer PyroCoefficients { PYRO_COEFFICIENTS coefficients[]; };
 #endif
 
 void main() {
@@ -23,10 +23,11 @@ void main() {
                     pressure[here.x + here.y + below.z]);
     // Velocities of the first faces stay as they are.
     bvec3 stays = both(equal(c, ivec3(0)), not(PYRO_AROUND));
-#if PYRO_SOLIDS
-    stays = bvec3(vec3(stays) + 1.0 - ceil(unpackUnorm4x8(openings[at]).xyz));
+    vec3 push = pressure[at] - low;
+#if PYRO_WEIGHED
+    push *= pyro_coefficients(coefficients[at]).xyz;
 #endif
-    vec3 push = mix(pressure[at] - low, vec3(0.0), stays);
+    push = mix(push, vec3(0.0), stays);
     vec4 v = pyro_load(velocity_to[at]);
 #ifdef REFLECT
     flow_into[at] = pyro_store(v - vec4(push, 0.0));

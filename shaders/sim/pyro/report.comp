@@ -85,7 +85,7 @@ void main() {
 Record record_of(ivec3 c) {
     int at = pyro_at(c);
     vec3 v = pyro_velocity_cell(pyro_near_of(c));
-#if PYRO_SOLIDS // conjugate gradients have it
+#if PYRO_WEIGHED // conjugate gradients have it
     float left = abs(right[at]);
 #else
     level_near n = level_near_of(c);

@@ -10,11 +10,11 @@ layout(std430) readonly buffer PyroPressure { float pressure[]; };
 layout(std430) readonly buffer PyroRight { float right[]; };
 layout(std430) buffer PyroCoarsePressure { float coarse_pressure[]; };
 layout(std430) buffer PyroCoarseRight { float coarse_right[]; };
-LEVEL_OPENINGS
+LEVEL_COEFFICIENTS
 
 float left_of(ivec3 c) {
     level_near n = level_near_of(c);
-    LEVEL_CLOSE(n)
+    LEVEL_WEIGH(n)
     float around;
     LEVEL_SUM(pressure, n, around)
     int at = level_at(n);

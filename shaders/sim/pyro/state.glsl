@@ -129,6 +129,29 @@ vec4 pyro_clean(vec4 v) {
     return vec4(pyro_clean(v.x), pyro_clean(v.y), pyro_clean(v.z), pyro_clean(v.w));
 }
 
+// ---- faces between cells -----------------------------------------------------------------------
+
+// How easily gas moves across the lower faces of a cell: 0 where a solid closes one, else 1, or, where
+// pressure moves light gas farther than heavy gas (PYRO_VARIABLE), the density of the surroundings by that
+// of the gas. The fourth number is 0 within solids.
+#if PYRO_VARIABLE
+#define PYRO_COEFFICIENTS uvec2
+vec4 pyro_coefficients(uvec2 stored) {
+    return vec4(unpackHalf2x16(stored.x), unpackHalf2x16(stored.y));
+}
+uvec2 pyro_store_coefficients(vec4 v) {
+    return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
+}
+#else
+#define PYRO_COEFFICIENTS uint
+vec4 pyro_coefficients(uint stored) {
+    return unpackUnorm4x8(stored);
+}
+uint pyro_store_coefficients(vec4 v) {
+    return packUnorm4x8(v);
+}
+#endif
+
 // ---- the gas ----------------------------------------------------------------------------------
 
 // What a cell holds, once unpacked: kelvin above the surroundings, and by mass of air the fuel, the

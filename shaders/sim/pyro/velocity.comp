@@ -19,11 +19,7 @@ uniform float gravity;      // m/s^2, downwards along z
 uniform vec3 acceleration;  // m/s^2
 uniform float confinement;  // m/s of a step, by 1 m/s of difference across a cell
 uniform float max_speed;    // m/s
-#if PYRO_RATIO == 2
-layout(std430) readonly buffer PyroDensity { float densities[]; }; // by that of the surroundings
-#else
-layout(std430) readonly buffer PyroGas { PYRO_FOUR gas[]; }; // as it is after the step
-#endif
+#include "sim/pyro/density.glsl"
 #if PYRO_FORCE
 uniform sampler3D force; // m/s^2
 #endif
@@ -31,14 +27,15 @@ uniform sampler3D force; // m/s^2
 layout(std430) readonly buffer PyroCurl { PYRO_FOUR curl[]; };
 #endif
 
-// Upwards acceleration of a cell, m/s^2: lighter gas rises, and moves what it pushes aside, too.
-float buoyancy(int at) {
-#if PYRO_RATIO == 2
-    float density = densities[at];
+// Upwards acceleration between two cells, m/s^2. Where pressure does not know of densities, lighter gas moves
+// what it pushes aside as if that were as light.
+float buoyancy(int low, int high) {
+    float a = pyro_density_of(low), b = pyro_density_of(high);
+#if PYRO_VARIABLE
+    return gravity * (2.0 - a - b) / (a + b);
 #else
-    float density = pyro_density(pyro_unpack(pyro_load(gas[at])));
+    return gravity * ((1.0 - a) / (1.0 + a) + (1.0 - b) / (1.0 + b));
 #endif
-    return gravity * 2.0 * (1.0 - density) / (1.0 + density);
 }
 
 vec3 limit(vec3 v) {
@@ -50,7 +47,7 @@ vec3 pushed(ivec3 c, vec3 v) {
     pyro_near n = pyro_near_of(c);
     int at = n.cell.x + n.cell.y + n.cell.z;
     v += dt * acceleration;
-    v.z += 0.5 * dt * (buoyancy(at) + buoyancy(n.cell.x + n.cell.y + n.below.z));
+    v.z += dt * buoyancy(n.cell.x + n.cell.y + n.below.z, at);
 #if PYRO_FORCE
     v += dt * textureLod(force, (vec3(c) + 0.25) / vec3(PYRO_SIZE), 0.0).xyz; // amid the three faces
 #endif

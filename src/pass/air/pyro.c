@@ -24,6 +24,7 @@ static bool pyro_air_complete(pass *p) {
         .advection = (pyro_advection)pass_option(p, N_advection),
         .precision = (pyro_precision)pass_option(p, N_precision),
         .half_velocity = pass_option(p, N_velocity_cells) == 1,
+        .variable_density = pass_option(p, N_density) == 1,
         .premixed = pass_option(p, N_combustion) == 1,
         .confinement = has_confinement(p),
         .force = air_force_varies(p),

@@ -66,11 +66,11 @@ static bool pyro_air_step(air *a, bool keep) {
 
 static bool pyro_air_move_solids(air *a, bool changed) {
     const float3 corner = a->grid.box.min;
-    return pyro_set_solids(pyro_of(a)->solver, a->pass->host->device,
-                           &(pyro_solids){.ids = voxels_ids(a->solids.cells),
-                                          .motions = voxels_motions(a->solids.cells),
-                                          .corner = {corner.x, corner.y, corner.z},
-                                          .changed = changed});
+    pyro_set_solids(pyro_of(a)->solver, &(pyro_solids){.ids = voxels_ids(a->solids.cells),
+                                                       .motions = voxels_motions(a->solids.cells),
+                                                       .corner = {corner.x, corner.y, corner.z},
+                                                       .changed = changed});
+    return true;
 }
 
 static bool pyro_air_take_force(air *a) {

@@ -1,12 +1,13 @@
 // Burning gas against theory and published data: one page.
 //
-//   bench_pyro_theory [-o FOLDER] [-f FINE] [-a upwind|parabolic|reflection] [-d DEVICE] [-r]
+//   bench_pyro_theory [-o FOLDER] [-f FINE] [-a upwind|parabolic|reflection] [-V] [-d DEVICE] [-r]
 //   [CHECK...]
 //
 // Writes results.json and report.html to the folder (out/pyro_theory), and prints each figure with
 // its bounds. CHECK: those alone, of plume, flames, pool, fireball, vortex, rings, and tests: what
 // the tests of the solver print, those that are built. -f: cells along a side by those of the
-// coarse size, which takes ten minutes of a processor; 4 is for a graphics card. -r: the page is
+// coarse size, which takes ten minutes of a processor; 4 is for a graphics card. -V: variable
+// density. -r: the page is
 // written again, and nothing measured. Needs ROIL_SOURCE_DIR, or to run in the root of the source.
 // The exit status is 1 when a bound is missed, 2 when something else is wrong.
 #include "base/file.h"
@@ -35,6 +36,7 @@ typedef struct options {
     char programs[4096]; // folder of the tests
     double fine;
     pyro_advection advection;
+    bool variable_density;
     bool again;
     char **names;
     int name_count;
@@ -45,12 +47,13 @@ static bool parse(int argc, char **argv, options *o) {
                    .source = getenv("ROIL_SOURCE_DIR"),
                    .fine = 1,
                    .advection = PYRO_PARABOLIC};
-    for (int c; (c = getopt(argc, argv, "o:f:d:a:r")) != -1;) {
+    for (int c; (c = getopt(argc, argv, "o:f:d:a:rV")) != -1;) {
         if (c == 'o') o->folder = optarg;
         if (c == 'f') o->fine = atof(optarg);
         if (c == 'd') o->device = optarg;
         for (int i = 0; c == 'a' && i < PYRO_ADVECTIONS; i++)
             if (strcmp(optarg, pyro_advection_names[i]) == 0) o->advection = (pyro_advection)i;
+        if (c == 'V') o->variable_density = true;
         if (c == 'r') o->again = true;
         if (c == '?') return false;
     }
@@ -116,7 +119,7 @@ static int run_all(const options *o, gpu *g) {
     json_t *results = begin(o, g);
     int missed = 0;
     snprintf(shaders, sizeof shaders, "%s/tests/bench/pyro_theory", o->source);
-    const theory_order order = {g, shaders, o->fine, o->advection};
+    const theory_order order = {g, shaders, o->fine, o->advection, o->variable_density};
     for (size_t i = 0; i < COUNT_OF(entries); i++) {
         if (!is_wanted(o, entries[i].name)) continue;
         theory_check c = {0};

@@ -75,6 +75,7 @@ void theory_open(const theory_order *order, theory_check *c, pyro_world *w, cons
                  double cell) {
     pyro_desc own = *desc;
     own.advection = order->advection;
+    own.variable_density = order->variable_density;
     pyro_open(w, order->device, &own);
     w->numbers.cell = (float)cell;
     theory_note(c, "%u x %u x %u cells of %.3g m", own.size[0], own.size[1], own.size[2], cell);

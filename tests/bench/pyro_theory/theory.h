@@ -43,6 +43,7 @@ typedef struct theory_order {
     const char *shaders; // folder of burner.comp
     double fine;         // cells along a side, by those of the coarse size
     pyro_advection advection;
+    bool variable_density;
 } theory_order;
 
 typedef void theory_run(const theory_order *order, theory_check *out);

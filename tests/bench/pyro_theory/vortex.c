@@ -35,7 +35,8 @@ static history run(const theory_order *order, theory_check *c, pyro_advection ad
     history h = {.peak = 0};
     pyro_world w;
     pyro_desc desc = {.size = {cells, cells, cells}, .faces = {1, 1, 1, 1, 1, 1}};
-    const theory_order mine = {order->device, order->shaders, order->fine, advection};
+    const theory_order mine = {order->device, order->shaders, order->fine, advection,
+                               order->variable_density};
     theory_open(&mine, c, &w, &desc, pi / cells);
     c->note_count--; // the size is in the name of its line
     // A step moves the fastest air by two thirds of a cell.
