@@ -16,7 +16,7 @@ local glow    = param { "glow", 3, min = 0, max = 50, help = "factor of the fire
 -- A box of 9 x 9 x 12.6 m. Two cores bear the draft, a graphics card the film.
 local cells = ({ draft = {80, 80, 112}, shot = {160, 160, 224}, film = {256, 256, 352} })[quality:get()]
 local fire = pyro {
-  size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 20, velocity_cells = "half",
+  size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 20, velocity_cells = "half", density = "variable",
   burn_time = 0.03, cooling = 2200, soot_burn_time = 2, vorticity = 6,
 }
 

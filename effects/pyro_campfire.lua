@@ -14,7 +14,7 @@ local glow    = param { "glow", 1.4, min = 0, max = 50, help = "factor of the fi
 local cells = ({ draft = {64, 64, 80}, shot = {128, 128, 160}, film = {192, 192, 256} })[quality:get()]
 local fire = pyro {
   size = cells, voxel_size = 2 / cells[1], fuel = "wood", speed = 6, warm_up = burning:get(),
-  velocity_cells = "half", burn_time = 0.05, cooling = 800, vorticity = 3,
+  velocity_cells = "half", density = "variable", burn_time = 0.05, cooling = 800, vorticity = 3,
   force = curl { frequency = 1.2, octaves = 2, speed = 1.5, seed = 2 } * 2, -- a breath of wind
 }
 

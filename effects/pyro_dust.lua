@@ -16,7 +16,7 @@ local glow    = param { "glow", 1.6, min = 0, max = 50, help = "factor of the fi
 local cells = ({ draft = {80, 160, 64}, shot = {160, 320, 128}, film = {240, 480, 192} })[quality:get()]
 local fire = pyro {
   size = cells, voxel_size = 10 / cells[1], position = {0, -5.5, 0}, fuel = "dust", speed = 30,
-  velocity_cells = "half", combustion = "premixed", flame_speed = flame,
+  velocity_cells = "half", density = "variable", combustion = "premixed", flame_speed = flame,
   cooling = 1300, soot_yield = 0.05, soot_burn_time = 0, vorticity = 8,
 }
 

@@ -14,7 +14,7 @@ local glow    = param { "glow", 2, min = 0, max = 50, help = "factor of the fire
 local cells = ({ draft = {96, 96, 128}, shot = {192, 192, 256}, film = {320, 320, 416} })[quality:get()]
 local fire = pyro {
   size = cells, voxel_size = 1500 / cells[1], fuel = "dust", speed = 110, time_scale = 12,
-  velocity_cells = "half", cooling = 60, soot_burn_time = 0, vorticity = 0.06,
+  velocity_cells = "half", density = "variable", cooling = 60, soot_burn_time = 0, vorticity = 0.06,
 }
 
 -- The ball, rough at its edge, and the dust of the ground around it, which is drawn into the stem.

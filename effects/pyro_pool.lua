@@ -14,7 +14,7 @@ local glow    = param { "glow", 1.8, min = 0, max = 50, help = "factor of the fi
 local cells = ({ draft = {64, 64, 96}, shot = {128, 128, 192}, film = {192, 192, 320} })[quality:get()]
 local fire = pyro {
   size = cells, voxel_size = 4.8 / cells[1], fuel = "petrol", speed = 9, warm_up = burning:get(),
-  velocity_cells = "half", burn_time = 0.06, cooling = 700, vorticity = 4,
+  velocity_cells = "half", density = "variable", burn_time = 0.06, cooling = 700, vorticity = 4,
 }
 
 -- Vapour rises slowly from the pan, hot enough to go on burning.

@@ -12,7 +12,7 @@ local glow    = param { "glow", 1.4, min = 0, max = 50, help = "factor of the fi
 
 local cells = ({ draft = {96, 64, 80}, shot = {192, 128, 160}, film = {320, 224, 256} })[quality:get()]
 local fire = pyro {
-  size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 24, velocity_cells = "half",
+  size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 24, velocity_cells = "half", density = "variable",
   burn_time = 0.05, cooling = 1800, vorticity = 3, soot_yield = 0.02,
 }
 
