@@ -92,6 +92,10 @@ static int by_name(const void *a, const void *b) {
 
 int value_get(lua_State *L, int table, const char *key) {
     table = lua_absindex(L, table);
+    if (!lua_istable(L, table)) { // what takes a table may look before it has refused another value
+        lua_pushnil(L);
+        return LUA_TNIL;
+    }
     lua_pushstring(L, key);
     return lua_rawget(L, table);
 }

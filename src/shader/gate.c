@@ -307,7 +307,8 @@ static bool is_plain(const gate *g, uint32_t type) {
 }
 
 static bool judge_pointer(const gate *g, const uint32_t *w, uint32_t length) {
-    if (length != 4 || !HAS(storages, w[2]))
+    if (length != 4) return err_set("SPIR-V: a pointer of %u words, not 4", length);
+    if (!HAS(storages, w[2]))
         return err_set("storage class %u of SPIR-V: not accepted in shaders", w[2]);
     bool opaque = w[2] == SpvStorageClassUniformConstant || w[2] == SpvStorageClassImage;
     return opaque || is_plain(g, w[3]) || err_set("SPIR-V: a pointer to no number");

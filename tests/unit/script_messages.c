@@ -255,11 +255,61 @@ static void smoke_without_an_end_is_refused_where_it_is_said(void **state) {
 #undef ENDLESS
 }
 
+// Whatever a script calls with whatever it likes: it may fail, with a message.
+static void nothing_that_can_be_called_crashes(void **state) {
+    (void)state;
+    const char *text =
+        "local fx = effect { name = 'test' }\n"
+        "local wrong = { 'a', 1, true, print, {}, {1, 2}, {name = 1}, {[1] = node}, {{}}, fx,\n"
+        "                sphere {}, setmetatable({}, {__index = 1}), math.huge, '' }\n"
+        "local box = { size = {16, 16, 16}, voxel_size = 0.1 }\n"
+        "local objects = { lbm(box), pyro(box), slices {}, particles { count = 8, rate = 1 },\n"
+        "                  geometry {}, fx, sphere "
+        "{},\n"
+        "                  curve { {0, 1} }, param { 'p', 1 } }\n"
+        "local methods = { 'source', 'collider', 'force', 'inflow', 'obstacle', 'templates', "
+        "'slice',\n"
+        "  'emit', 'burst', 'draw', 'tile', 'warp', 'remap', 'bake', 'advect', 'get', 'at', "
+        "'bind',\n"
+        "  'moved', 'turned', 'scaled', 'repeated', 'mirrored', 'spin', 'fps', 'snapshot', 'on' }\n"
+        "local tried, failed = 0, 0\n"
+        "local function try(call, ...)\n"
+        "  tried = tried + 1\n"
+        "  if not pcall(call, ...) then failed = failed + 1 end\n"
+        "end\n"
+        "local calls = {}\n"
+        "for name, call in pairs(_G) do\n"
+        "  if name ~= 'pcall' and name ~= 'xpcall' then calls[#calls + 1] = call end\n"
+        "end\n"
+        "for _, call in ipairs(calls) do\n"
+        "  try(call)\n"
+        "  for _, value in ipairs(wrong) do try(call, value) try(call, {}, value) try(call, value, "
+        "value) end\n"
+        "end\n"
+        "for _, object in ipairs(objects) do\n"
+        "  for _, method in ipairs(methods) do\n"
+        "    for _, value in ipairs(wrong) do\n"
+        "      try(function() object[method](object, value) end)\n"
+        "      try(function() object[method](value, object) end)\n"
+        "    end\n"
+        "  end\n"
+        "end\n"
+        "error(('tried %d, failed %d'):format(tried, failed), 0)\n";
+    assert_null(helper_load(text));
+    int tried = 0, failed = 0;
+    const char *said = strstr(err_get(), "tried ");
+    if (!said || sscanf(said, "tried %d, failed %d", &tried, &failed) != 2)
+        fail_msg("the script ended early: %s", err_get());
+    print_message("tried %d calls, %d failed\n", tried, failed);
+    assert_true(tried > 5000 && failed > 3000);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(misspelt_names_get_the_nearest_right_one),
         cmocka_unit_test(values_of_the_wrong_kind_are_named),
         cmocka_unit_test(declarations_are_checked),
+        cmocka_unit_test(nothing_that_can_be_called_crashes),
         cmocka_unit_test(a_file_must_be_a_whole_effect),
         cmocka_unit_test(endless_expressions_are_limited),
         cmocka_unit_test(the_prelude_is_never_blamed),
