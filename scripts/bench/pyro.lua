@@ -1,4 +1,4 @@
--- A step of burning gas by size, cells of its velocity, advection, precision and confinement.
+-- A step of burning gas by size, cells of its velocity, advection, density, precision and confinement.
 --
 --   roil bench scripts/bench/pyro.lua -o out/pyro
 --   roil bench scripts/bench/pyro.lua -o out/pyro --size 96x54 --frames 8 --only cells=64
@@ -25,14 +25,21 @@ return sweep {
       { name = "f16", ["pyro.precision"] = "f16" },
       { name = "f32", ["pyro.precision"] = "f32" },
     },
+    axis { "density",
+      { name = "constant", ["pyro.density"] = "constant" },
+      { name = "variable", ["pyro.density"] = "variable" },
+    },
     axis { "vorticity",
       { name = "none" },
       { name = "confined", ["pyro.vorticity"] = 4 },
     },
   },
-  -- Sizes are measured for what most effects have, all else at one size.
+  -- Sizes are measured for what most effects have; each other thing alone at one size.
   skip = function(row)
-    local as_most = row.advection ~= "upwind" and row.vorticity == "none"
-    return not as_most and (row.cells ~= 128 or row.velocity ~= "full")
+    local others = 0
+    for name, most in pairs { advection = "parabolic", density = "constant", vorticity = "none" } do
+      if row[name] ~= most then others = others + 1 end
+    end
+    return others > 1 or (others == 1 and row.cells ~= 128)
   end,
 }
