@@ -65,8 +65,9 @@ typedef struct gpu_profile {
                              // processor's wide registers are filled
 
     // ---- gas that burns (src/sim/pyro.h) ----
-    bool pyro_half;       // its state is in half precision by default
-    bool pyro_wide_words; // in full precision it lies in words of 64 bits
+    bool pyro_half;         // its state is in half precision by default
+    bool pyro_side_by_side; // threads that are neighbours along x share what flows between them
+    bool pyro_wide_words;   // in full precision it lies in words of 64 bits
 } gpu_profile;
 
 // NULL: of no device in particular, for what is compiled to be checked. Any thread.

@@ -94,6 +94,7 @@ static void define_all(pyro *p) {
     define(p, "PYRO_RATIO", pyro_ratio(&p->desc));
     define(p, "PYRO_HALF", p->desc.precision == PYRO_F16);
     define(p, "PYRO_WIDE", p->wide);
+    define(p, "PYRO_SIDE_BY_SIDE", p->side_by_side);
     define(p, "PYRO_PARABOLIC", p->desc.advection != PYRO_UPWIND);
     define(p, "PYRO_REFLECTS", p->desc.advection == PYRO_REFLECTION);
     define(p, "PYRO_PREMIXED", p->desc.premixed);
@@ -192,6 +193,7 @@ static bool is_used(const pyro_desc *desc, pyro_kernel which) {
 static bool pyro_compile_kernels(pyro *p, const gpu_profile *device, shader_library *library,
                                  const shader_reader *reader) {
     if (p->chooses_precision) p->desc.precision = device->pyro_half ? PYRO_F16 : PYRO_F32;
+    p->side_by_side = device->pyro_side_by_side;
     p->wide = device->pyro_wide_words && p->desc.precision == PYRO_F32;
     define_all(p);
     for (int i = 0; i < PYRO_KERNELS; i++) {

@@ -125,6 +125,7 @@ struct pyro {
     arena *memory;
     pyro_desc desc;
     bool chooses_precision, wide; // what is stored are words of 64 bits
+    bool side_by_side;            // gpu_profile's pyro_side_by_side
     shader_define defines[PYRO_MAX_DEFINES];
     size_t define_count;
     pyro_level levels[PYRO_MAX_LEVELS];

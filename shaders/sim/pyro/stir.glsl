@@ -90,14 +90,20 @@ stir_state stir_begin(ivec3 c) {
     return s;
 }
 
+// A velocity after the sweep, when so much comes into its volumes, and goes.
+vec3 after_stir(ivec3 c, vec3 volumes, vec3 ways, vec3 comes, vec3 next_ways, vec3 goes) {
+    int i = c.ALONG;
+    vec3 own = vec3(value_x(c, i), value_y(c, i), value_z(c, i)), after = volumes + ways - next_ways;
+    vec3 held = (own * volumes + comes - goes) / max(after, vec3(LEAST_VOLUME));
+    return mix(own, held, greaterThanEqual(after, vec3(LEAST_VOLUME)));
+}
+
 // The velocity at the next faces after the sweep.
 vec3 stir_next(inout stir_state s, ivec3 c) {
     int i = c.ALONG;
     vec3 ways = ways_at(c, i + 1), next = volumes_at(c, i + 1);
-    vec3 goes = fluxes_at(c, i + 1, ways, s.volumes, next), after = s.volumes + s.ways - ways;
-    vec3 own = vec3(value_x(c, i), value_y(c, i), value_z(c, i));
-    vec3 held = (own * s.volumes + s.comes - goes) / max(after, vec3(LEAST_VOLUME));
-    held = mix(own, held, greaterThanEqual(after, vec3(LEAST_VOLUME)));
+    vec3 goes = fluxes_at(c, i + 1, ways, s.volumes, next);
+    vec3 held = after_stir(c, s.volumes, s.ways, s.comes, ways, goes);
     s = stir_state(ways, goes, next);
     return held;
 }

@@ -8,7 +8,11 @@
 #define SWEEP SWEEP_Z
 #define PUSHES
 #endif
+#if PYRO_SIDE_BY_SIDE && defined(CARRY_X)
+layout(local_size_x = 96) in;
+#else
 layout(local_size_x = 64) in; // of a half brick of 8 x 8 x 4 cells
+#endif
 #include "sim/pyro/state.glsl"
 #include "sim/pyro/stir.glsl"
 
@@ -65,6 +69,26 @@ vec3 pushed(ivec3 c, vec3 v) {
 }
 #endif
 
+#if PYRO_SIDE_BY_SIDE && defined(CARRY_X)
+#include "sim/pyro/lines.glsl"
+shared vec3 crossing[LINE_FACES], ways[LINE_FACES];
+
+void main() {
+    ivec3 first = ivec3(gl_WorkGroupID) * ivec3(8, 8, 4);
+    for (int k = int(gl_LocalInvocationIndex); k < LINE_FACES; k += int(gl_WorkGroupSize.x)) {
+        ivec3 c = first + line_face(k);
+        ways[k] = ways_at(c, c.x);
+        crossing[k] = fluxes_at(c, c.x, ways[k], volumes_at(c, c.x - 1), volumes_at(c, c.x));
+    }
+    barrier();
+    for (int k = int(gl_LocalInvocationIndex); k < LINE_CELLS; k += int(gl_WorkGroupSize.x)) {
+        ivec3 c = first + line_cell(k);
+        int face = line_face_below(k);
+        vec3 v = after_stir(c, volumes_at(c, c.x), ways[face], crossing[face], ways[face + 1], crossing[face + 1]);
+        flow_into[pyro_at(c)] = pyro_store(vec4(v, 0.0));
+    }
+}
+#else
 void main() {
     ivec3 c = ivec3(gl_WorkGroupID) * ivec3(8, 8, 4);
     int i = int(gl_LocalInvocationIndex);
@@ -85,3 +109,4 @@ void main() {
         c.ALONG++;
     }
 }
+#endif
