@@ -26,9 +26,10 @@ static inline gpu_image *probe_texture(gpu *g, const field_texture *texture, dou
 }
 
 // Compiles the text around `fields` and runs it; `expression` is GLSL for a vec4, of the point p.
-static inline void probe_program(gpu *g, const field_program *fields, const char *expression,
-                                 const shader_define *define, const field_context *context,
-                                 const float (*points)[4], size_t count, float (*out)[4]) {
+// False with a message: it is not accepted.
+static inline bool probe_try(gpu *g, const field_program *fields, const char *expression,
+                             const shader_define *define, const field_context *context,
+                             const float (*points)[4], size_t count, float (*out)[4]) {
     arena memory = {0};
     char root[PATH_CAP], data[PATH_CAP];
     path_join(root, getenv("ROIL_SOURCE_DIR") ? getenv("ROIL_SOURCE_DIR") : "..", "shaders");
@@ -46,7 +47,11 @@ static inline void probe_program(gpu *g, const field_program *fields, const char
                                 .texts = &text,
                                 .text_count = 1};
     shader_binary binary;
-    if (!shader_compile(library, &memory, &desc, &binary)) fail_msg("%s\n%s", err_get(), text.text);
+    if (!shader_compile(library, &memory, &desc, &binary)) {
+        shader_library_destroy(library);
+        arena_free(&memory);
+        return false;
+    }
 
     gpu_slot slots[GPU_MAX_SLOTS];
     for (size_t i = 0; i < binary.slot_count; i++) slots[i] = binary.slots[i].slot;
@@ -106,6 +111,15 @@ static inline void probe_program(gpu *g, const field_program *fields, const char
     mem_free(block);
     shader_library_destroy(library);
     arena_free(&memory);
+    return true;
+}
+
+// What is accepted.
+static inline void probe_program(gpu *g, const field_program *fields, const char *expression,
+                                 const shader_define *define, const field_context *context,
+                                 const float (*points)[4], size_t count, float (*out)[4]) {
+    if (!probe_try(g, fields, expression, define, context, points, count, out))
+        fail_msg("%s\n%s", err_get(), field_program_text(fields));
 }
 
 static inline void probe(gpu *g, const field *node, const field_context *context,
