@@ -44,6 +44,18 @@ vec3 volumes_at(ivec3 c, int i) {
                                       volume_of(cell_below(c, ivec3(0, 0, 1)))));
 }
 
+// The mean of what leaves a volume, `part` of it, where values are a parabola through it and its neighbours,
+// of which those before lie where it goes.
+#define PARABOLA(type)                                                                             \
+    type parabola(type part, type before2, type before, type own, type behind, type behind2) {     \
+        type first = 7.0 / 12.0 * (own + behind) - 1.0 / 12.0 * (before + behind2);                \
+        type last = 7.0 / 12.0 * (own + before) - 1.0 / 12.0 * (behind + before2);                 \
+        type rise = last - first, bow = 6.0 * own - 3.0 * (first + last);                          \
+        return last - 0.5 * part * (rise - (1.0 - 2.0 / 3.0 * part) * bow);                        \
+    }
+PARABOLA(float)
+PARABOLA(vec3)
+
 // What crosses the lower end of a volume `i` when it moves by `way`, upwards. `volume`: of that from which
 // it comes.
 #define FLUX(name, value, part_of)                                                                 \
@@ -57,21 +69,40 @@ vec3 volumes_at(ivec3 c, int i) {
             volume = volumes_at(c, at).part_of;                                                    \
         }                                                                                          \
         float own = value(c, at), part = min(rest / volume, 1.0);                                  \
-        if (PYRO_PARABOLIC == 1) {                                                                 \
-            float behind = value(c, at + up), before = value(c, at - up);                          \
-            float first = 7.0 / 12.0 * (own + behind) - 1.0 / 12.0 * (before + value(c, at + 2 * up));\
-            float last = 7.0 / 12.0 * (own + before) - 1.0 / 12.0 * (behind + value(c, at - 2 * up));\
-            float rise = last - first, bow = 6.0 * own - 3.0 * (first + last);                     \
-            own = last - 0.5 * part * (rise - (1.0 - 2.0 / 3.0 * part) * bow);                     \
-        }                                                                                          \
+        if (PYRO_PARABOLIC == 1)                                                                   \
+            own = parabola(part, value(c, at - 2 * up), value(c, at - up), own, value(c, at + up), value(c, at + 2 * up));\
         return (way > 0.0 ? 1.0 : -1.0) * (sum + rest * own);                                      \
     }
 FLUX(flux_x, value_x, x)
 FLUX(flux_y, value_y, y)
 FLUX(flux_z, value_z, z)
 
+#if PYRO_SIDE_BY_SIDE
+// All components at the face `i` of the line of `c`.
+vec3 values_at(ivec3 c, int i) {
+    vec3 v = pyro_load(flow_from[pyro_at(cell_along(c, i))]).xyz;
+    if (!PYRO_AROUND.ALONG && (i < PYRO_FIRST.ALONG || i >= PYRO_SIZE.ALONG))
+        v.ALONG = SWEEP == SWEEP_X ? value_x(c, i) : SWEEP == SWEEP_Y ? value_y(c, i) : value_z(c, i);
+    return v;
+}
+
+// What crosses when all components come from the same volume, and from a part of it: nearly everywhere.
+vec3 fluxes_from(ivec3 c, int i, vec3 ways, vec3 volumes) {
+    int up = ways.x > 0.0 ? -1 : 1, at = ways.x > 0.0 ? i - 1 : i;
+    vec3 own = values_at(c, at), part = abs(ways) / volumes;
+    if (PYRO_PARABOLIC == 1)
+        own = parabola(part, values_at(c, at - 2 * up), values_at(c, at - up), own, values_at(c, at + up),
+                       values_at(c, at + 2 * up));
+    return ways * own;
+}
+#endif
+
 vec3 fluxes_at(ivec3 c, int i, vec3 ways, vec3 volumes_below, vec3 volumes) {
     vec3 from = mix(volumes, volumes_below, greaterThan(ways, vec3(0.0)));
+#if PYRO_SIDE_BY_SIDE
+    bvec3 upwards = greaterThan(ways, vec3(0.0));
+    if ((all(upwards) || !any(upwards)) && all(lessThan(abs(ways), from))) return fluxes_from(c, i, ways, from);
+#endif
     return vec3(flux_x(c, i, ways.x, from.x), flux_y(c, i, ways.y, from.y), flux_z(c, i, ways.z, from.z));
 }
 
