@@ -13,7 +13,7 @@ enum { COUNT = 320, SAMPLES = 16 };
 #define JITTER 2e-5f // the side of the cube around a point in which it is rounded
 
 static int seconds = 8;
-static uint32_t first_seed = 1;
+static uint32_t first_seed = 1, last_seed;
 
 static const field_context moving = {.time = 1.3};
 static const shader_define with_ranges = {"WITH_RANGES", "1"};
@@ -137,7 +137,7 @@ static void random_graphs_are_the_same_on_the_device(void **state) {
     tally t = {0};
     double end = now() + seconds;
     for (uint32_t seed = first_seed; now() < end; seed++) {
-        check_graph(*state, seed, &t);
+        check_graph(*state, last_seed = seed, &t);
     }
     print_message("%llu graphs, %llu too large; values: %llu the same, %llu rounded, %llu of no "
                   "numbers, %llu "
@@ -155,5 +155,7 @@ int main(int count, char **words) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_graphs_are_the_same_on_the_device),
     };
-    return gpu_test_run(tests, COUNT_OF(tests));
+    const int failed = gpu_test_run(tests, COUNT_OF(tests));
+    if (failed) printf("the last graph was that of seed %u\n", last_seed);
+    return failed;
 }
