@@ -29,7 +29,7 @@ typedef enum pyro_memory {
     PYRO_MEM_MORE_PRESSURE,   // with reflection: what the second projection adds
     PYRO_MEM_COARSE_PRESSURE, // of all levels but the finest
     PYRO_MEM_COARSE_RIGHT,
-    PYRO_MEM_COEFFICIENTS, // with solids
+    PYRO_MEM_COEFFICIENTS, // of faces, with solids or variable density
     PYRO_MEM_COARSE_COEFFICIENTS,
     PYRO_MEM_FOUND, // with conjugate gradients, of which these are the vectors
     PYRO_MEM_DIRECTION,
@@ -139,7 +139,7 @@ struct pyro {
     gpu_image *force;
     pyro_solids solids;
     bool finds_more;         // the projection finds what is to be added to the pressure
-    bool coefficients_known; // they are those of `solids`
+    bool coefficients_known; // they are those of `solids`; by density, of the last step
     bool active_known;       // where there is gas; false: the host may have set it
 };
 
@@ -161,7 +161,7 @@ bool pyro_run_half_bricks_of_gas(const pyro *p, gpu *g, kernel *k);
 bool pyro_run_half_bricks(const pyro *p, gpu *g, kernel *k); // of the velocity
 void pyro_stage(const pyro *p, gpu *g, const char *name);    // begins, for GPU times
 
-// pyro_numbers.c
+// pyro_step.c
 void pyro_set_gas(kernel *k, const pyro_numbers *n); // what all that reads the gas is told
 void pyro_set_burning(kernel *k, const pyro_numbers *n);
 

@@ -1,5 +1,4 @@
-// Cells within solids hold what the gas around them does, so that none of it is lost where gas is traced
-// back into them.
+// Cells within solids hold what the gas around them does, so that parabolas beside them bend as if it went on.
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
 #define PYRO_ON_GAS
 #include "sim/pyro/state.glsl"
