@@ -149,6 +149,7 @@ struct pass_provider {
     // this pass.
     bool (*values)(const pass *p, uint32_t out[PASS_PROVIDER_VALUES]);
     bool (*bind)(pass *p, int slot, gpu_binding *out); // false: it has none for this pass
+    uint32_t (*count)(const pass *p); // of what there is of it in this frame, for threads
     void (*destroy)(pass *p);
 };
 const pass_provider *const *pass_providers(size_t *count);

@@ -162,7 +162,8 @@ const script_object reference_sources[] = {
         KEY("source { }", "{ shape = field, density = 1, velocity = {0, 0, 2} }",
             "where the air is given smoke, heat and speed: where the shape is above 0.5, or within "
             "meshes, which come first and may move, each by its own position or all by motion = "
-            "curve { ... }; `roil info passes lbm_source` lists the rest"),
+            "curve { ... }, or near particles, as in particles = debris, radius = 0.15; "
+            "`roil info passes lbm_source` lists the rest"),
         KEY("collider { }", "{ mesh { \"data/ball.obj\" } }",
             "meshes or instances, any number, which may move, that the air flows around; motion = curve { ... } is the position of "
             "meshes that say none; rule = \"solid\" leaves gaps narrower than two cells open, as of `voxels`"),
@@ -181,8 +182,8 @@ const script_object reference_sources[] = {
      .keys = PYRO_KEYS,
      .members = KEYS(
         KEY("source { }", "{ shape = field, fuel = 2, temperature = 900, during = {0, 0.15} }",
-            "where the gas is given fuel, heat, soot and speed: where the shape is above 0.5, or within "
-            "meshes, as of `lbm`; `roil info passes pyro_source` lists the rest"),
+            "where the gas is given fuel, heat, soot and speed: where the shape is above 0.5, within "
+            "meshes, or near particles, as of `lbm`; `roil info passes pyro_source` lists the rest"),
         KEY("temperature", "field K", "0 outside the box"),
         KEY("fuel", "field kg/m^3", "that has not burnt"),
         KEY("soot", "field kg/m^3", "black smoke; 1 kg hides 8700 m^2"),

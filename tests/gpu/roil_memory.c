@@ -23,6 +23,7 @@ static const char air[] =
     "local air = lbm { size = {64, 64, 64}, voxel_size = 0.03, speed = 2, boundary = 'open',\n"
     "                  force = position * 0.1 }\n"
     "air:source { mesh { 'crate.obj', scale = 0.4 }, density = 1 }\n"
+    "air:source { particles = particles { count = 64, rate = 60, lifetime = 1 }, density = 1 }\n"
     "air:collider { mesh { 'crate.obj', scale = 0.4 } }\n"
     "fx.output = final { march { density = air.density * 30, steps = 4 } }.color\n"
     "return fx\n";
@@ -156,7 +157,7 @@ static void air_asks_for_its_state(void **state) {
                  (const char *const[]){"lattice", "lattice's moments", "waves at open faces",
                                        "kinds of cells", "elements at faces", "force",
                                        "ids of cells", "masks of bodies", "values of a source",
-                                       NULL});
+                                       "particles of a source", NULL});
 }
 
 static void slices_ask_for_their_state(void **state) {

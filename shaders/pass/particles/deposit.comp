@@ -29,7 +29,7 @@ layout(local_size_x = 256) in;
 
 // Square metres that it takes light from: a spot as `splats` draws it, (1 - r^2)^2.
 float taken_by(particle p) {
-    particle_said = particle_facts(p.age / p.lifetime, p.quantity, particle_random(p.id, 64u), p.velocity);
+    particle_say(p);
     float radius = 0.5 * max(field_size(p.position), 0.0);
     return 3.14159265 / 3.0 * radius * radius * clamp(field_opacity(p.position), 0.0, 1.0) * amount;
 }

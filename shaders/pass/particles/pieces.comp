@@ -76,7 +76,7 @@ triangle triangle_of(uint number) {
     uint slot = number / uint(TRIANGLES);
     t.seen = false;
     if (slot >= particle_used || !particle_read(slot, p)) return t;
-    particle_said = particle_facts(p.age / p.lifetime, p.quantity, particle_random(p.id, 64u), p.velocity);
+    particle_say(p);
     float size = field_size(p.position);
     if (!(size > 0.0 && size < 1e6)) return t;
     bvh_triangle own = piece_triangles[number % uint(TRIANGLES)];

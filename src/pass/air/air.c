@@ -149,8 +149,12 @@ bool air_add_part(pass *p, bool (*record)(pass *p)) {
     graph_image writes[PASS_FLUID_MOST_NAMES / 4];
     for (size_t i = 0; i < a->kind->output_count; i++)
         writes[i] = *pass_image(p, a->kind->outputs[i]);
+    graph_image *reads = arena_alloc(p->host->memory, a->source_count * sizeof *reads);
+    for (size_t i = 0; i < a->source_count; i++) reads[i] = air_source_reads(a->sources[i]);
     return pass_add_part(p, &(pass_part){
                                 .name = "step",
+                                .reads = reads,
+                                .read_count = a->source_count,
                                 .writes = writes,
                                 .write_count = a->kind->output_count,
                                 .fields = true,

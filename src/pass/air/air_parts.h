@@ -47,7 +47,8 @@ enum { AIR_STEP, AIR_VOXELS, AIR_SOURCES, AIR_FIELDS, AIR_LABELS };
         NAME(expansion), NAME(vorticity), NAME(soot), NAME(during), NAME(gas_now),                 \
         NAME(gas_before), NAME(flow_now), NAME(flow_before), NAME(burn_power), NAME(oxygen_need),  \
         NAME(burns_above), NAME(rates), NAME(ambient), NAME(velocity_cells), NAME(combustion),     \
-        NAME(flame_speed), NAME(flame_power), NAME(present_from)
+        NAME(flame_speed), NAME(flame_power), NAME(present_from), NAME(particles), NAME(radius),   \
+        NAME(step_seconds), NAME(time_scale), NAME(SourceMarks)
 enum { AIR_NAMES(KERNEL_NAME_ID), AIR_NAME_COUNT };
 extern const char *const air_names[AIR_NAME_COUNT];
 
@@ -160,23 +161,27 @@ typedef struct air_source {
     air_cells cells;     // of its box in this turn
     uint64_t most;       // cells that the box has, wherever it is
     gpu_buffer *values;  // of as many; NULL: none yet
+    gpu_buffer *marks;   // of particles that are near; NULL: none yet, or none needed
     unsigned char *last; // the numbers that they were found with
     air_cells last_cells;
-    bool known; // these two
-    bool met;   // it has been in the air's box
+    bool known;   // these two
+    bool met;     // it has been in the air's box
+    bool coupled; // the air carries its particles
 } air_source;
 static inline air_source *air_source_of(const pass *source) {
     return source->state;
 }
-enum { AIR_EVALUATE, AIR_GIVE, AIR_SOURCE_KERNELS };
+enum { AIR_EVALUATE, AIR_GIVE, AIR_MARK, AIR_SOURCE_KERNELS };
 bool air_source_declare(pass *p);
 bool air_source_defines(pass *p, size_t index, pass_defines *out);
 void air_source_list_memory(const pass *p, budget_list *out);
 bool air_source_update(pass *p);
 void air_source_destroy(pass *p);
-bool air_run_source(pass *source);           // before a step
-void air_forget_source(pass *source);        // its values are found anew
-bool air_source_is_away(const pass *source); // it ran, and was never in the air's box
+bool air_run_source(pass *source);                // before a step
+void air_forget_source(pass *source);             // its values are found anew
+bool air_source_waits(const pass *source);        // its particles have not come to the host's time
+graph_image air_source_reads(const pass *source); // zero: nothing but what its fields sample
+bool air_source_is_away(const pass *source);      // it ran, and was never in the air's box
 
 // air_source_box.c
 // With a cell around, since a sheet has no size.

@@ -1,7 +1,8 @@
 // Sources of simulated air: passes of the types `lbm_source` and `pyro_source`, which the air's
 // pass runs. Their fields become values of the cells of their box so many times a second of the
 // simulation (air_turn), which is what costs; before each step the values are given to the air,
-// where meshes are then.
+// where meshes are then. Near particles, which move on, they are found for each step
+// (shaders/pass/air/source_particles.glsl).
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/str.h"
@@ -9,8 +10,14 @@
 #include <string.h>
 
 bool air_source_declare(pass *p) {
-    return pass_given_field(p, N_shape) || p->mesh_count ||
-           err_set("%s: it has no place; give it a mesh, or shape = sphere { ... }", p->label);
+    if (pass_given_field(p, N_radius) && !p->particles)
+        return err_set("%s: 'radius' is of particles, and it has none; say whose, as in particles "
+                       "= sparks",
+                       p->label);
+    return pass_given_field(p, N_shape) || p->mesh_count || p->particles ||
+           err_set("%s: it has no place; give it a mesh, shape = sphere { ... } or particles = "
+                   "sparks",
+                   p->label);
 }
 
 static bool check_gives(const air *a, const pass *p) {
@@ -37,6 +44,12 @@ static bool samples(const air *a, const field *given) {
     return false;
 }
 
+static bool carries(const air *a, const pass *particles) {
+    for (size_t i = 0; particles && i < particles->face->field_count; i++)
+        if (particles->fields[i] && samples(a, particles->fields[i])) return true;
+    return false;
+}
+
 static bool reads_itself(const air *a, const pass *source) {
     for (size_t i = 0; i < source->face->field_count; i++) {
         const field *given = source->fields[i];
@@ -53,7 +66,7 @@ bool pass_air_add_source(pass *p, pass *source) {
     air *a = air_of(p);
     if (!check_gives(a, source) || reads_itself(a, source)) return false;
     air_source *s = source->state = arena_alloc(p->host->memory, sizeof *s);
-    *s = (air_source){.air = a, .turn = UINT64_MAX};
+    *s = (air_source){.air = a, .turn = UINT64_MAX, .coupled = carries(a, source->particles)};
     voxels_rule rule = (voxels_rule)pass_option(source, N_rule);
     air_meshes *meshes = source->mesh_count ? air_add_giver(a) : NULL;
     for (size_t i = 0; i < source->mesh_count; i++) air_add_body(meshes, source->meshes[i], rule);
@@ -72,10 +85,38 @@ bool pass_air_add_source(pass *p, pass *source) {
     return fine;
 }
 
+// ---- particles --------------------------------------------------------------------------------
+// They come to the time of a frame before the air does, which looks back from there. Particles that
+// the air carries cannot: they come after it, and it looks ahead from the frame before.
+
+graph_image air_source_reads(const pass *source) {
+    const air_source *s = source->state;
+    if (!source->particles) return (graph_image){0};
+    const graph_image image = source->images[pass_find_image(source, "particles")];
+    return s->coupled ? graph_add_history(source->host->graph, image) : image;
+}
+
+bool air_source_waits(const pass *source) {
+    const air_source *s = source->state;
+    const pass *particles = source->particles;
+    return particles && !s->coupled &&
+           pass_get_simulation(particles)->left(particles, source->host->context->time) > 0;
+}
+
+static bool mark(pass *p, const air_source *s) {
+    const uint32_t count = pass_particles_provider.count(p);
+    if (!p->particles) return true;
+    gpu_buffer_fill(p->host->device, s->marks, 0);
+    kernel *k = count ? pass_use(p, AIR_MARK) : NULL;
+    if (k) kernel_bind_buffer(k, N_SourceMarks, s->marks);
+    return !count || (k && kernel_run_each(k, p->host->device, count));
+}
+
 // ---- building ---------------------------------------------------------------------------------
 
 bool air_source_defines(pass *p, size_t index, pass_defines *out) {
     const air_source *s = p->state;
+    if (index == AIR_MARK) return p->particles;
     if (index == AIR_EVALUATE) return true;
     out->count += s->air->kind->source_defines(s->air, out->items + out->count);
     pass_define_flag(out, "MESHES", s->giver);
@@ -84,7 +125,9 @@ bool air_source_defines(pass *p, size_t index, pass_defines *out) {
 
 void air_source_destroy(pass *p) {
     air_source *s = p->state;
-    if (s) gpu_buffer_destroy(p->host->device, s->values);
+    if (!s) return;
+    gpu_buffer_destroy(p->host->device, s->values);
+    gpu_buffer_destroy(p->host->device, s->marks);
 }
 
 void air_forget_source(pass *source) {
@@ -105,16 +148,24 @@ bool air_source_update(pass *p) {
     pass_set_float(p, N_cell_size, (float)s->air->units.cell);
     pass_set(p, N_first, s->cells.first, sizeof s->cells.first);
     pass_set(p, N_count, s->cells.count, sizeof s->cells.count);
+    pass_set_float(p, N_step_seconds, (float)air_step_seconds(s->air));
+    pass_set_float(p, N_time_scale, (float)s->air->desc.time_scale);
     return true;
 }
 
-enum { SOURCE_VALUE = 16 }; // bytes of a cell
-static const char values_label[] = "values of a source";
+enum { SOURCE_VALUE = 16, SOURCE_MARK = 4 }; // bytes of a cell
+static const char values_label[] = "values of a source", marks_label[] = "particles of a source";
 
 // As much as wherever the box may move, so that frames seldom take any. One that grows gets more.
-static uint64_t values_bytes(const pass *p, uint64_t cells) {
+static uint64_t bytes_of(const pass *p, uint64_t each, uint64_t cells) {
     const uint64_t most = gpu_get_info(p->host->device)->max_storage_range;
-    return SOURCE_VALUE * cells < most ? SOURCE_VALUE * cells : most;
+    return each * cells < most ? each * cells : most;
+}
+
+static bool make_buffer(pass *p, const char *label, uint64_t size, gpu_buffer **out) {
+    if (*out) gpu_buffer_destroy(p->host->device, *out);
+    *out = gpu_buffer_create(p->host->device, &(gpu_buffer_desc){.label = label, .size = size});
+    return *out != NULL;
 }
 
 static bool make_values(pass *p, air_source *s) {
@@ -127,18 +178,16 @@ static bool make_values(pass *p, air_source *s) {
                        "most; give 'shape' an end, as by the product with a box",
                        (double)n[0], (double)n[1], (double)n[2],
                        (unsigned long long)(most / SOURCE_VALUE));
-    if (s->values) gpu_buffer_destroy(p->host->device, s->values);
-    s->values =
-        gpu_buffer_create(p->host->device, &(gpu_buffer_desc){.label = values_label,
-                                                              .size = values_bytes(p, s->most)});
     s->known = false;
-    return s->values != NULL;
+    return make_buffer(p, values_label, bytes_of(p, SOURCE_VALUE, s->most), &s->values) &&
+           (!p->particles ||
+            make_buffer(p, marks_label, bytes_of(p, SOURCE_MARK, s->most), &s->marks));
 }
 
 // Values that depend on numbers only, and these are as they were, are known already.
 static bool are_known(const pass *p, const air_source *s) {
     const field_texture *textures;
-    return s->known && field_program_textures(p->program, &textures) == 0 &&
+    return s->known && !p->particles && field_program_textures(p->program, &textures) == 0 &&
            memcmp(s->last, p->numbers, field_program_block_size(p->program)) == 0 &&
            memcmp(&s->last_cells, &s->cells, sizeof s->cells) == 0;
 }
@@ -150,8 +199,10 @@ static bool find_values(pass *p, air_source *s) {
     if (!s->last) s->last = arena_alloc(p->host->memory, size + 16);
     memcpy(s->last, p->numbers, size);
     s->last_cells = s->cells;
+    if (!mark(p, s)) return false;
     kernel *k = pass_use(p, AIR_EVALUATE);
     if (k) kernel_bind_buffer(k, N_SourceValues, s->values);
+    if (k && s->marks) kernel_bind_buffer(k, N_SourceMarks, s->marks);
     const float *n = s->cells.count;
     s->known = k && kernel_run(k, p->host->device, (uint32_t)n[0], (uint32_t)n[1], (uint32_t)n[2]);
     return s->known;
@@ -168,15 +219,23 @@ void air_source_list_memory(const pass *p, budget_list *out) {
     uint64_t most;
     air_turn(s->air, &first.time, &end);
     host->context = &first;
-    if (!s->values && air_source_cells(s->air, p, end, &cells, &most))
-        budget_list_add(out, values_label, values_bytes(p, most));
+    if (!s->values && air_source_cells(s->air, p, end, &cells, &most)) {
+        budget_list_add(out, values_label, bytes_of(p, SOURCE_VALUE, most));
+        if (p->particles) budget_list_add(out, marks_label, bytes_of(p, SOURCE_MARK, most));
+    }
     host->context = now;
 }
 
-// As of the beginning of the turn, whenever in it that is.
+// As of the beginning of the turn, whenever in it that is. Particles move on with each step, and
+// are as in the middle of it.
 static bool begin_turn(pass *p, air_source *s) {
     double begin, end;
     uint64_t turn = air_turn(s->air, &begin, &end);
+    if (p->particles) {
+        turn = s->air->kind->steps(s->air);
+        end = air_step_time(s->air, turn + 1);
+        begin = 0.5 * (air_step_time(s->air, turn) + end);
+    }
     if (turn == s->turn) return true;
     pass_host *host = p->host;
     const field_context *now = host->context;
@@ -211,10 +270,13 @@ static bool source_give(pass *p, air_source *s) {
            kernel_run(k, p->host->device, threads[0], threads[1], threads[2]);
 }
 
-// Whether it gives in a step that begins at the host's time.
+// Whether it gives in a step that begins at the host's time. While the air warms up there are no
+// particles: they are those of the frames from 0 on.
 static bool gives_now(pass *p, const air_source *s, bool *gives) {
     float during[4];
     const double time = p->host->context->time;
+    *gives = false;
+    if (p->particles && time < 0) return true;
     if (!pass_evaluate_now(p, N_during, during)) return false;
     *gives = time + air_step_seconds(s->air) > (double)during[0] && time < (double)during[1];
     return true;

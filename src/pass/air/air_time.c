@@ -98,9 +98,16 @@ static void name_parts(const pass *p, const air *a) {
     gpu_pass_next(p->host->device, a->labels[AIR_STEP]);
 }
 
+// For particles of sources, as where a submit was too short: so that who is faster changes nothing.
+static bool waits(const air *a) {
+    for (size_t i = 0; i < a->source_count; i++)
+        if (air_source_waits(a->sources[i])) return true;
+    return false;
+}
+
 bool air_advance(pass *p) {
     air *a = air_of(p);
-    int64_t left = air_left(p, p->host->context->time), most = air_most(p);
+    int64_t left = waits(a) ? 0 : air_left(p, p->host->context->time), most = air_most(p);
     if (left > most) left = most;
     const field_context *frame = p->host->context;
     field_context now = *frame;

@@ -93,6 +93,8 @@ static bool lbm_air_give(const air *a, pass *source, kernel *k, uint32_t threads
 }
 
 static const pass_kernel source_kernels[AIR_SOURCE_KERNELS] = {
+    [AIR_EVALUATE] = {.define = "STAGE_EVALUATE"},
+    [AIR_MARK] = {.define = "STAGE_MARK"},
     [AIR_GIVE] = {.shader = "pass/air/lbm/give.comp", .without_fields = true},
 };
 

@@ -102,6 +102,8 @@ static bool pyro_air_give(const air *a, pass *source, kernel *k, uint32_t thread
 }
 
 static const pass_kernel source_kernels[AIR_SOURCE_KERNELS] = {
+    [AIR_EVALUATE] = {.define = "STAGE_EVALUATE"},
+    [AIR_MARK] = {.define = "STAGE_MARK"},
     [AIR_GIVE] = {.shader = "pass/air/pyro/give.comp", .without_fields = true},
 };
 

@@ -212,6 +212,7 @@ const pass_type particles_type = {
 static bool find_particles(pass *p) {
     int input = pass_find_image(p, "particles");
     if (input < 0 || p->face->images[input].output) return true;
+    if (p->face->images[input].optional && !p->images[input].id) return true;
     p->particles = p->images[input].id ? pass_writer(p->host, p->images[input]) : NULL;
     if (p->particles && p->particles->type == &particles_type) return true;
     return err_set("%s: 'particles' is missing: a pass particles { }, as in particles = sparks or "
@@ -262,15 +263,19 @@ static bool find_values(const pass *p, uint32_t out[PASS_PROVIDER_VALUES]) {
     const pass_host *host = particles->host;
     float seed[4] = {0};
     pass_evaluate_now(particles, N_seed, seed);
-    const float back =
-        (float)fmin(fmax(particles_reached(s) - host->context->time, 0), s->desc.time_step);
+    double back = particles_reached(s) - host->context->time;
+    if (!p->runs_in) back = fmin(fmax(back, 0), s->desc.time_step); // else it has steps of its own
     out[N_particle_count] = s->desc.count;
     out[N_particle_used] = pass_particles_used(particles);
     out[N_particle_next] = (uint32_t)(s->clock.born % s->desc.count);
     out[N_particle_round] = (uint32_t)(s->clock.born - out[N_particle_next]);
     out[N_particle_seed] = (uint32_t)lrintf(seed[0]) + host->frame->size.v[3] * 2654435761u;
-    memcpy(&out[N_particle_back], &back, sizeof back);
+    memcpy(&out[N_particle_back], &(float){(float)back}, sizeof(float));
     return true;
+}
+
+static uint32_t count_of(const pass *p) {
+    return source_of(p) ? pass_particles_used(source_of(p)) : 0;
 }
 
 static bool bind_buffer(pass *p, int slot, gpu_binding *out) {
@@ -294,4 +299,5 @@ const pass_provider pass_particles_provider = {
     .defines = defines_of,
     .values = find_values,
     .bind = bind_buffer,
+    .count = count_of,
 };

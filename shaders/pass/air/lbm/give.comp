@@ -122,7 +122,7 @@ void push(inout lbm_element q[LBM_Q], Held h, out lbm_vec u) {
 }
 
 void push_air(lbm_place place) {
-    const bool pushes = HAS_VELOCITY == 1 || HAS_PRESSURE == 1 || MESHES == 1 && velocity_factor != 0.0;
+    const bool pushes = HAS_VELOCITY == 1 || HAS_PRESSURE == 1 || (MESHES == 1 || HAS_PARTICLES == 1) && velocity_factor != 0.0;
     lbm_access all_[LBM_Q];
     lbm_element q[LBM_Q];
     lbm_load_air(place, all_);

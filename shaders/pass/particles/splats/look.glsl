@@ -96,7 +96,7 @@ looks look_at(uint slot) {
     if (slot >= particle_used || !particle_read(slot, p)) return l;
     vec3 seen = place_seen(p.position);
     if (!(seen.z >= frame.lens.z && seen.z <= frame.lens.w)) return l; // of no number, too
-    particle_said = particle_facts(p.age / p.lifetime, p.quantity, particle_random(p.id, 64u), p.velocity);
+    particle_say(p);
     float meter = 0.5 * picture.y / (frame.lens.y * seen.z); // in pixels
     float radius = 0.5 * positive(field_size(p.position), 1e6) * meter;
     float opacity = positive(field_opacity(p.position), BLEND == BLEND_ADDITIVE ? MOST : 1.0);
