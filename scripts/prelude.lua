@@ -101,6 +101,34 @@ function layers(settings)
   return noise:warp(vec(across + 0.5, up + 0.5, 0) + 16 * shift - position)
 end
 
+-- blast { position = {0, 0, 1}, time = 0.2, charge = 1 }: a burst as an event. Its fields are made when
+-- they are asked for.
+local blast_keys = { position = true, time = true, charge = true }
+
+function blast(settings)
+  local function wrong(what)
+    error("blast takes position, time and charge, as in blast { position = {0, 0, 1}, time = 0.2, charge = 1 }; " .. what, 3)
+  end
+  if type(settings) ~= "table" then wrong("got a " .. type(settings)) end
+  for key in pairs(settings) do
+    if not blast_keys[key] then wrong(type(key) == "string" and "'" .. key .. "' is none of them" or "a value has no name") end
+  end
+  local place, charge, start = settings.position, settings.charge, settings.time or 0
+  if type(start) ~= "number" and type(start) ~= "userdata" then wrong("'time' is seconds, a parameter or a field; got a " .. type(start)) end
+  local make = {
+    pressure = function() return blast_pressure { position = place, charge = charge, age = time - start } end,
+    velocity = function() return blast_velocity { position = place, charge = charge, age = time - start } end,
+    arrival = function() return start + blast_arrival { position = place, charge = charge } end,
+  }
+  return setmetatable({}, {
+    __index = function(_, name)
+      if not make[name] then error("blast: no field '" .. tostring(name) .. "'; it has pressure, velocity and arrival", 2) end
+      return make[name]()
+    end,
+    __newindex = function(_, name) error("blast." .. tostring(name) .. " cannot be set; say it in blast { }", 2) end,
+  })
+end
+
 -- lobes = { {weight, g}, ... } of the passes that scatter light: a blend of lobes.
 local function value_at(value, t)
   if type(value) == "function" then return value(t) end

@@ -24,6 +24,9 @@
 #define SHAPE(NAME)                                                                                \
     .group = "shape", .components = 1, .include = "lib/shape.glsl", .function = NAME,              \
     .spatial = true, .cost = 12
+#define BLAST(NAME, COMPONENTS)                                                                    \
+    .group = "blast", .components = COMPONENTS, .include = "lib/blast.glsl", .function = NAME,     \
+    .spatial = true, .cost = 200
 #define NOISE(NAME) .group = "noise", .include = "lib/noise.glsl", .function = NAME, .spatial = true
 #define PARTICLE(NAME, COMPONENTS)                                                                 \
     .group = "source", .include = "lib/particle.glsl", .function = "particle_said_" NAME,          \
@@ -50,6 +53,11 @@
     { ARG("a", ANY, .help = "first"), ARG("b", ANY, .help = "second") }
 
 // clang-format off
+#define BLAST_PLACE ARG("position", VECTOR("m"), .help = "where it bursts")
+#define BLAST_AGE ARG("age", SCALAR("s"), .help = "since it burst; below 0: it has not")
+#define BLAST_CHARGE                                                                               \
+    ARG("charge", SCALAR("kg"), .value = {1}, .min = 1e-6f, .max = 1e12f,                          \
+        .help = "TNT that is as strong, in free air; on the ground a burst is as one of 1.8 times the charge")
 #define OCTAVE_ARGS(OCTAVES)                                                                       \
     STILL("frequency", SCALAR("1/m"), .value = {1}, .min = 1e-6f, .max = 1e6f,                     \
           .help = "lattice cells a metre, of the first octave"),                                   \
@@ -234,6 +242,18 @@ const field_kind field_kinds[] = {
                  ARG("radius", SCALAR(""), .value = {0.1f}, .min = 0, .max = 1e6f, .help = "to the edge"),
                  ARG("falloff", SCALAR(""), .min = 0, .max = 1e6f, .help = "depth at which it is 1; 0: a hard edge")},
         .eval = eval_disc, RANGE(disc), .bounds = bounds_disc},
+
+    // ---- bursts
+    {"blast_pressure", BLAST("blast_pressure", 1),
+        .summary = "what a burst of TNT adds to the pressure of free air (Pa): a front, then a pulse that ends in suction. "
+                   "Of the front and its impulse, Kinney and Graham 1985; of the pulse, Friedlander 1946",
+        .args = {BLAST_PLACE, BLAST_AGE, BLAST_CHARGE}, .eval = eval_blast_pressure, RANGE(blast_pressure)},
+    {"blast_velocity", BLAST("blast_velocity", 3),
+        .summary = "how fast the air moves behind the front of such a burst (m/s), outwards and then back: by Rankine and Hugoniot "
+                   "from its pressure",
+        .args = {BLAST_PLACE, BLAST_AGE, BLAST_CHARGE}, .eval = eval_blast_velocity, RANGE(blast_velocity)},
+    {"blast_arrival", BLAST("blast_arrival", 1), .summary = "how long after such a burst its front arrives (s)",
+        .args = {BLAST_PLACE, BLAST_CHARGE}, .eval = eval_blast_arrival, RANGE(blast_arrival)},
 
     // ---- noise; arguments and options in the order of the GLSL functions
     {"perlin", LATTICE_NOISE("noise_perlin", 200), .eval = eval_perlin, RANGE(perlin),

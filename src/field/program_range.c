@@ -370,7 +370,7 @@ static void add_fetch(const program_grid *grid, size_t g, int image, strbuf *out
 }
 
 static void add_libraries(const field_program *p, strbuf *out) {
-    static const char *const groups[] = {"shape", "noise"};
+    static const char *const groups[] = {"shape", "noise", "blast"};
     strbuf_add(out, "#include \"lib/range_operator.glsl\"\n#include \"lib/range_grid.glsl\"\n");
     for (size_t g = 0; g < COUNT_OF(groups); g++) {
         bool used = false;

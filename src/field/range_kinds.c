@@ -1,5 +1,5 @@
-// Ranges of kinds: the twin of shaders/lib/range_operator.glsl, range_shape.glsl and, by
-// noise_range.c, of range_noise.glsl. The reasons are given there.
+// Ranges of kinds: the twin of shaders/lib/range_operator.glsl, range_shape.glsl,
+// range_blast.glsl and, by noise_range.c, of range_noise.glsl. The reasons are given there.
 #include "field/kinds.h"
 #include "field/noise.h"
 #include <math.h>
@@ -356,4 +356,41 @@ intervals ranges_disc(const field *node, const field_context *context, const int
     (void)node, (void)context;
     intervals q = {{range_sub(at->c[0], args[0].c[0]), range_sub(at->c[1], args[1].c[0])}};
     return densities(range_sub(length(&q, 3), args[2].c[0]), args[3].c[0]);
+}
+
+// ---- bursts -----------------------------------------------------------------------------------
+
+static const float inexact = 1e-4f;
+
+static float greatest_peak(const intervals *at, const intervals *args) {
+    intervals q = difference(at, &args[0]);
+    const float scale = blast_scale(fminf(args[2].c[0].high, most));
+    const float near = length(&q, 3).low / scale;
+    if (args[1].c[0].high < scale * blast_front(near) * (1 - inexact)) return -1;
+    return blast_excess(near) * (1 + inexact);
+}
+
+intervals ranges_blast_pressure(const field *node, const field_context *context,
+                                const intervals *at, const intervals *args) {
+    (void)node, (void)context;
+    const float ambient = 101325, suction = 0.1353353f, peak = ambient * greatest_peak(at, args);
+    return alone(peak < 0 ? (interval){0, 0} : range_make(-suction * peak, peak));
+}
+
+intervals ranges_blast_velocity(const field *node, const field_context *context,
+                                const intervals *at, const intervals *args) {
+    (void)node, (void)context;
+    const float peak = greatest_peak(at, args), fast = peak < 0 ? 0 : blast_speed(peak);
+    return all_in(-fast, fast);
+}
+
+intervals ranges_blast_arrival(const field *node, const field_context *context, const intervals *at,
+                               const intervals *args) {
+    (void)node, (void)context;
+    intervals q = difference(at, &args[0]);
+    const interval away = length(&q, 3), charge = args[1].c[0];
+    const float large = blast_scale(fminf(charge.high, most)), small = blast_scale(charge.low);
+    return alone(range_make(
+        large * blast_front(away.low / large) * (1 - inexact),
+        away.high > most ? end : small * blast_front(away.high / small) * (1 + inexact)));
 }

@@ -245,8 +245,8 @@ static void print_group(strbuf *out, const char *group) {
 }
 
 char *roil_info_fields(const char *name) {
-    static const char *const groups[] = {"value",    "source", "noise", "shape",
-                                         "operator", "scene",  "effect"};
+    static const char *const groups[] = {"value", "source",   "noise", "shape",
+                                         "blast", "operator", "scene", "effect"};
     strbuf out = {0};
     if (name) {
         const field_kind *kind = find_kind(name);

@@ -60,6 +60,17 @@ static const script_object reference_words[] = {
         KEY("dimensions", "3", "2: a picture that is wrapped around the origin, as published; scales are rounded"),
         KEY("shift", "shell_shift", "0..1 in x, y and z: moves it"))},
 
+    {"blast", "blast", "local burst = blast { position = {0, 0, 1}, time = 0.2, charge = 2 }",
+     "a burst as an event: what it does to the air around, as fields of the distance from it and of time, that throw "
+     "particles, tear up dust and bend what is near. It is in free air and meets nothing; the gas of `pyro` does not know it",
+     .keys = KEYS(
+        KEY("position", "0, 0, 0 m", "where it bursts"), KEY("time", "0 s", "when"),
+        KEY("charge", "1 kg", "TNT that is as strong; on the ground a burst is as one of 1.8 times the charge in free air")),
+     .members = KEYS(
+        KEY("pressure", "field Pa", "beyond that of the air: a front, then a pulse that ends in suction; 0 before it arrives"),
+        KEY("velocity", "field m/s", "of the air behind the front: outwards, then back"),
+        KEY("arrival", "field s", "time at which the front arrives"))},
+
     // ---- the effect
     {"effect", "effect", "local fx = effect { name = \"explosion\", fps = 24, frames = 100 }",
      "declares the effect, once in a file. What it shows is assigned to its members",

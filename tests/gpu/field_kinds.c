@@ -113,6 +113,23 @@ static void shapes_agree(void **state) {
           1e-4f);
 }
 
+// Two are long past, one has not begun, and of one the front is among the points.
+static void bursts_agree(void **state) {
+    static const float ages[] = {-1, 0.004f, 0.05f, 3};
+    for (size_t i = 0; i < COUNT_OF(ages); i++) {
+        field *age = number(ages[i]), *place = vector(0.2f, 0, -0.3f);
+        field *pressure = row("blast_pressure", SET("position", place), SET("age", age),
+                              SET("charge", number(0.5f)));
+        agree(state, make("mul", pressure, number(1e-5f)), 1e-4f); // of an atmosphere
+        agree(state,
+              row("blast_velocity", SET("position", place), SET("age", age),
+                  SET("charge", number(20))),
+              1e-3f);
+    }
+    agree(state, row("blast_arrival", SET("charge", number(3))), 1e-5f);
+    agree(state, row("blast_arrival", SET("charge", number(1e6f))), 1e-6f);
+}
+
 static void operators_agree(void **state) {
     field *p = make("position", NULL), *x = need_field(field_swizzle(build_memory(), p, "x"));
     field *y = need_field(field_swizzle(build_memory(), p, "y"));
@@ -176,11 +193,11 @@ static void advected_fields_agree(void **state) {
 
 int main(void) {
     static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lattice_noises_agree),  cmocka_unit_test(simplex_agrees),
-        cmocka_unit_test(worley_agrees),         cmocka_unit_test(the_papers_worley_agrees),
-        cmocka_unit_test(curls_agree),           cmocka_unit_test(shapes_agree),
-        cmocka_unit_test(operators_agree),       cmocka_unit_test(moved_fields_agree),
-        cmocka_unit_test(advected_fields_agree),
+        cmocka_unit_test(lattice_noises_agree), cmocka_unit_test(simplex_agrees),
+        cmocka_unit_test(worley_agrees),        cmocka_unit_test(the_papers_worley_agrees),
+        cmocka_unit_test(curls_agree),          cmocka_unit_test(shapes_agree),
+        cmocka_unit_test(bursts_agree),         cmocka_unit_test(operators_agree),
+        cmocka_unit_test(moved_fields_agree),   cmocka_unit_test(advected_fields_agree),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }

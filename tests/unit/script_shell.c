@@ -33,6 +33,19 @@ static void mistakes_are_named(void **state) {
     refused("explosions { {1} }:latest(1, 65)", "number 65; accepted: 1 to 64");
 }
 
+static void blasts_name_mistakes(void **state) {
+    (void)state;
+    refused("blast(3)", "blast takes position, time and charge");
+    refused("blast { chrge = 1 }", "'chrge' is none of them");
+    refused("blast { 3 }", "a value has no name");
+    refused("blast { time = 'now' }", "'time' is seconds");
+    refused("local p = blast { }.presure",
+            "no field 'presure'; it has pressure, velocity and arrival");
+    refused("local p = blast { charge = -1 }.pressure", "charge");
+    refused("local p = blast { position = 'here' }.velocity", "position");
+    refused("blast_pressure { chrge = 1 }", "did you mean 'charge'?");
+}
+
 static void layers_name_mistakes(void **state) {
     (void)state;
     refused("layers(3)", "layers takes 1 to 64 pairs");
@@ -173,6 +186,7 @@ static void the_explosion_compiles_in_every_form(void **state) {
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(mistakes_are_named),
+        cmocka_unit_test(blasts_name_mistakes),
         cmocka_unit_test(layers_name_mistakes),
         cmocka_unit_test(a_list_tells_what_it_holds),
         cmocka_unit_test(what_came_is_forgotten_when_time_goes_back),
