@@ -118,11 +118,12 @@ function blast(settings)
   local make = {
     pressure = function() return blast_pressure { position = place, charge = charge, age = time - start } end,
     velocity = function() return blast_velocity { position = place, charge = charge, age = time - start } end,
+    impulse = function() return blast_impulse { position = place, charge = charge } end,
     arrival = function() return start + blast_arrival { position = place, charge = charge } end,
   }
   return setmetatable({}, {
     __index = function(_, name)
-      if not make[name] then error("blast: no field '" .. tostring(name) .. "'; it has pressure, velocity and arrival", 2) end
+      if not make[name] then error("blast: no field '" .. tostring(name) .. "'; it has pressure, velocity, impulse and arrival", 2) end
       return make[name]()
     end,
     __newindex = function(_, name) error("blast." .. tostring(name) .. " cannot be set; say it in blast { }", 2) end,

@@ -64,6 +64,11 @@ vec3 blast_velocity(vec3 p, vec3 position, float age, float charge) {
     return blast_speed(excess) * blast_pulse(z, age / scale, excess) / max(away, 1e-20) * (p - position);
 }
 
+float blast_impulse(vec3 p, vec3 position, float charge) {
+    float scale = blast_scale(charge);
+    return scale * blast_impulse(length(p - position) / scale);
+}
+
 float blast_arrival(vec3 p, vec3 position, float charge) {
     float scale = blast_scale(charge);
     return scale * blast_front(length(p - position) / scale);

@@ -252,6 +252,10 @@ const field_kind field_kinds[] = {
         .summary = "how fast the air moves behind the front of such a burst (m/s), outwards and then back: by Rankine and Hugoniot "
                    "from its pressure",
         .args = {BLAST_PLACE, BLAST_AGE, BLAST_CHARGE}, .eval = eval_blast_velocity, RANGE(blast_velocity)},
+    {"blast_impulse", BLAST("blast_impulse", 1),
+        .summary = "overpressure of such a burst added up until it becomes suction (Pa s): what is thrown goes at that times its "
+                   "area by its mass",
+        .args = {BLAST_PLACE, BLAST_CHARGE}, .eval = eval_blast_impulse, RANGE(blast_impulse)},
     {"blast_arrival", BLAST("blast_arrival", 1), .summary = "how long after such a burst its front arrives (s)",
         .args = {BLAST_PLACE, BLAST_CHARGE}, .eval = eval_blast_arrival, RANGE(blast_arrival)},
 

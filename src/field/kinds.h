@@ -39,7 +39,7 @@ kind_eval eval_constant, eval_palette, eval_swizzle, eval_position, eval_add, ev
     eval_length, eval_dot, eval_atan, eval_vec, eval_zero, eval_instance_state,
     eval_instance_random, eval_instance_index, eval_instance_glow;
 kind_eval eval_sphere, eval_box, eval_capsule, eval_torus, eval_disc;
-kind_eval eval_blast_pressure, eval_blast_velocity, eval_blast_arrival;
+kind_eval eval_blast_pressure, eval_blast_velocity, eval_blast_impulse, eval_blast_arrival;
 kind_eval eval_perlin, eval_simplex, eval_value, eval_worley, eval_curl;
 
 kind_ranges ranges_grid, ranges_palette, ranges_unknown, ranges_swizzle, ranges_position,
@@ -48,17 +48,19 @@ kind_ranges ranges_grid, ranges_palette, ranges_unknown, ranges_swizzle, ranges_
     ranges_sqrt, ranges_exp, ranges_sin, ranges_floor, ranges_fract, ranges_length, ranges_dot,
     ranges_atan, ranges_vec, ranges_share, ranges_way;
 kind_ranges ranges_sphere, ranges_box, ranges_capsule, ranges_torus, ranges_disc;
-kind_ranges ranges_blast_pressure, ranges_blast_velocity, ranges_blast_arrival;
+kind_ranges ranges_blast_pressure, ranges_blast_velocity, ranges_blast_impulse,
+    ranges_blast_arrival;
 kind_ranges ranges_perlin, ranges_simplex, ranges_value, ranges_worley, ranges_curl;
 
 kind_bounds bounds_mul, bounds_div, bounds_mix, bounds_min, bounds_dot, bounds_warp,
     bounds_transform, bounds_sphere, bounds_box, bounds_capsule, bounds_torus, bounds_disc;
 
 // Of the front of a burst at a distance for 1 kg, for its ranges (kinds_blast.c): what it has more
-// than the ambient pressure, as a part of it; how fast the air behind it goes then (m/s); when it
-// arrives (s). By blast_scale() distances and times are those for 1 kg.
+// than the ambient pressure, as a part of it; how fast the air behind it goes then (m/s); its
+// impulse (Pa s); when it arrives (s). By blast_scale() distances and times are those for 1 kg.
 float blast_excess(float z);
 float blast_speed(float excess);
+float blast_impulse(float z);
 float blast_front(float z);
 float blast_scale(float charge);
 

@@ -12,7 +12,7 @@ float blast_excess(float z) {
     return 808 * (1 + a * a) / (sqrtf(1 + b * b) * sqrtf(1 + c * c) * sqrtf(1 + d * d));
 }
 
-static float impulse(float z) {
+float blast_impulse(float z) {
     const float near = clampf(z, surface, farthest), a = near / 0.23f, b = near / 1.55f;
     return 6.7f * sqrtf(1 + a * a * a * a) / (near * near * powf(1 + b * b * b, 1.0f / 3));
 }
@@ -44,7 +44,8 @@ float blast_scale(float charge) {
 
 static float pulse(float z, float age, float excess) {
     const float after = age - blast_front(z);
-    const float lasts = 2.7182818f * impulse(z) / (ambient * excess), t = fminf(after / lasts, 80);
+    const float lasts = 2.7182818f * blast_impulse(z) / (ambient * excess),
+                t = fminf(after / lasts, 80);
     return after >= 0 ? (1 - t) * expf(-t) : 0;
 }
 
@@ -72,6 +73,14 @@ void eval_blast_velocity(const field *node, const field_context *context, float3
     const float excess = blast_excess(z);
     const float fast = blast_speed(excess) * pulse(z, a[1][0] / scale, excess);
     for (int i = 0; i < 3; i++) out[i] = fast / fmaxf(away, 1e-20f) * way[i];
+}
+
+void eval_blast_impulse(const field *node, const field_context *context, float3 p,
+                        const float (*a)[4], float out[4]) {
+    (void)node, (void)context;
+    float way[3];
+    const float scale = blast_scale(a[1][0]);
+    out[0] = scale * blast_impulse(away_from(a[0], p, way) / scale);
 }
 
 void eval_blast_arrival(const field *node, const field_context *context, float3 p,

@@ -384,6 +384,16 @@ intervals ranges_blast_velocity(const field *node, const field_context *context,
     return all_in(-fast, fast);
 }
 
+intervals ranges_blast_impulse(const field *node, const field_context *context, const intervals *at,
+                               const intervals *args) {
+    (void)node, (void)context;
+    intervals q = difference(at, &args[0]);
+    const interval away = length(&q, 3), charge = args[1].c[0];
+    const float large = blast_scale(fminf(charge.high, most)), small = blast_scale(charge.low);
+    return alone(range_make(small * blast_impulse(away.high / small) * (1 - inexact),
+                            large * blast_impulse(away.low / large) * (1 + inexact)));
+}
+
 intervals ranges_blast_arrival(const field *node, const field_context *context, const intervals *at,
                                const intervals *args) {
     (void)node, (void)context;

@@ -69,6 +69,9 @@ static const script_object reference_words[] = {
      .members = KEYS(
         KEY("pressure", "field Pa", "beyond that of the air: a front, then a pulse that ends in suction; 0 before it arrives"),
         KEY("velocity", "field m/s", "of the air behind the front: outwards, then back"),
+        KEY("impulse", "field Pa s",
+            "of the overpressure: what is thrown goes at that times its area by its mass, so that steps need not be as "
+            "short as the pulse: a few milliseconds for 1 kg"),
         KEY("arrival", "field s", "time at which the front arrives"))},
 
     // ---- the effect

@@ -126,6 +126,7 @@ static void bursts_agree(void **state) {
                   SET("charge", number(20))),
               1e-3f);
     }
+    agree(state, row("blast_impulse", SET("charge", number(3))), 1e-4f);
     agree(state, row("blast_arrival", SET("charge", number(3))), 1e-5f);
     agree(state, row("blast_arrival", SET("charge", number(1e6f))), 1e-6f);
 }

@@ -9,7 +9,7 @@ static const double ambient = 101325, sound = 340.3;
 // On the axis of x, `away` metres from a burst at {1, 2, 3}.
 static void burst(const char *kind, double charge, double age, double away, float out[4]) {
     field *node = row(kind, SET("position", vector(1, 2, 3)), SET("charge", number((float)charge)));
-    if (strcmp(kind, "blast_arrival") != 0)
+    if (strcmp(kind, "blast_arrival") != 0 && strcmp(kind, "blast_impulse") != 0)
         node = row(kind, SET("position", vector(1, 2, 3)), SET("charge", number((float)charge)),
                    SET("age", number((float)age)));
     const field_context context = {.time = 0};
@@ -90,6 +90,9 @@ static void pulses_have_their_impulse(void **state) {
             if (p > 0) sum += p * step;
             least = fmin(least, p);
         }
+        float impulse[4];
+        burst("blast_impulse", 27, 0, 3 * r, impulse);
+        assert_true(fabs((double)impulse[0] / rows[i][1] / 3 - 1) < 0.0012);
         print_message("%4g m: impulse %.4f, suction %.4f\n", r, sum / rows[i][1],
                       -least / peak(1, r));
         assert_true(fabs(sum / rows[i][1] - 1) < 0.0012);

@@ -40,7 +40,7 @@ static void blasts_name_mistakes(void **state) {
     refused("blast { 3 }", "a value has no name");
     refused("blast { time = 'now' }", "'time' is seconds");
     refused("local p = blast { }.presure",
-            "no field 'presure'; it has pressure, velocity and arrival");
+            "no field 'presure'; it has pressure, velocity, impulse and arrival");
     refused("local p = blast { charge = -1 }.pressure", "charge");
     refused("local p = blast { position = 'here' }.velocity", "position");
     refused("blast_pressure { chrge = 1 }", "did you mean 'charge'?");
