@@ -11,6 +11,7 @@ local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, h
 local fuel    = param { "fuel", 0.13, min = 0, max = 5, unit = "kg/m^3", help = "of the mist; air burns 0.08, and what is more burns black" }
 local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides; that of a real fire is 8700" }
 local dust    = param { "dust", 0.0012, min = 0, max = 0.01, unit = "kg/m^3", help = "of the layer that is torn from the ground" }
+local charge  = param { "charge", 0.25, min = 0.001, max = 10, unit = "kg", help = "TNT that bursts the bottle: it throws debris and tears up dust" }
 local glow    = param { "glow", 3, min = 0, max = 50, help = "factor of the fire's light" }
 
 -- A box of 9 x 9 x 12.6 m. Two cores bear the draft, a graphics card the film.
@@ -29,11 +30,28 @@ fire:source {
   velocity = whirl * 6 + vec(0, 0, 5), during = {0, 0.02},
 }
 
--- Dust that the push of the fire tears from the ground: a thin layer that flies outwards.
+-- The blast does more the nearer it is: its impulse tears dust from the ground, a thin layer that flies
+-- outwards, and throws debris.
+local burst = blast { position = {0, 0, 0.8}, charge = charge }
 local outwards = position * vec(1, 1, 0)
+local torn = smoothstep(18, 45, burst.impulse)
 fire:source {
-  shape = box { position = {0, 0, 0.15}, size = {6, 6, 0.3} },
-  soot = dust * lumps * smoothstep(3, 1, length(outwards)), velocity = (outwards * 3 + vec(0, 0, 2.5)) * smoothstep(3, 1.8, length(outwards)), during = {0.03, 0.1},
+  shape = box { position = {0, 0, 0.15}, size = {8, 8, 0.3} } * step(0.01, torn),
+  soot = dust * lumps * torn, during = {0.03, 0.1},
+  velocity = (outwards / max(length(outwards), 0.2) * 0.13 + vec(0, 0, 0.06)) * burst.impulse * torn,
+}
+
+-- Debris burns as it flies, and drags fire and smoke behind it until it has cooled.
+local way = position - vec(0, 0, 0.3)
+local debris = particles {
+  count = 14, burst = 14, lifetime = {0.6, 1.5}, seed = 11, position = {0, 0, 0.9}, radius = 0.5,
+  speed = way / max(length(way), 0.1) * burst.impulse * 0.15, variation = 0.5,
+  gravity = 9.81, drag = 0.2, collide = position.z, clearance = 0.05, bounce = 0.3, friction = 0.6,
+}
+local heat = 1 - particle_age
+fire:source {
+  particles = debris, radius = 0.13 * heat * smoothstep(4.3, 3, length(outwards)), rate = 80, velocity_factor = 0.2,
+  fuel = 0.1 * heat, temperature = 500 + 1000 * heat, soot = 0.0003 * heat,
 }
 
 fx.camera = orbit { target = {0, 0, 4}, distance = 18, yaw = 25, pitch = 4, fov = 38 }
@@ -66,22 +84,38 @@ local drops = particles {
   gravity = 9.81, drag = 0.7, collide = position.z, bounce = 0.3, friction = 0.5,
 }
 
+-- Sparks come off where it burns, and go where the gas goes.
+local embers = particles {
+  count = 3000, rate = curve { {0.05, 0}, {0.1, 3000}, {0.8, 1500}, {1.3, 0} }, lifetime = {0.3, 1.1}, seed = 2,
+  above = {fire.burn * box { position = {0, 0, 2.5}, size = {5, 5, 5} }, 0.5},
+  velocity = fire.velocity, inherit = 1, gravity = 3, drag = 5,
+}
+
 -- The ground is burnt where fire lay on it.
 local scene  = geometry { mesh { "data/ground.obj" } }
 local burnt  = smoothstep(2.2, 0.5, length(outwards) + 0.9 * lumps) * curve { {0.05, 0}, {0.6, 1} }
 local colors = shader { "burnt_ground.comp", albedo = scene.albedo, depth = scene.depth, burnt = burnt, lift = 0 }
-local solid  = shade { albedo = colors.color, from = {scene, lit}, haze = 0.002 }
-local volume = march { from = {lit, scene}, steps = 192, jitter = 0.5 }
+local chunks = pieces {
+  debris, mesh { "data/shard.obj" }, scene_albedo = colors.color, from = scene,
+  size = 0.25 + 0.3 * particle_random, angle = 900 * (particle_random - 0.5) * particle_age,
+}
+local solid  = shade { from = {chunks, scene, lit}, haze = 0.002 }
+local volume = march { from = {lit, chunks}, steps = 192, jitter = 0.5 }
 
 local sparks = splats {
   from = {drops, scene, lit}, density = cover, size = over_age { {0, 0.02}, {1, 0.006} }, streak = 0.03,
   color = light(1900 - 700 * particle_age).rgb, brightness = 12,
 }
-local picture = over { sparks, over { volume, solid, from = {volume, scene} }, from = {sparks, scene} }
+local glowing = splats {
+  from = {embers, chunks, lit}, density = cover, size = over_age { {0, 0.016}, {1, 0.006} }, streak = 0.02,
+  color = light(2000 - 800 * particle_age).rgb, brightness = 8,
+}
+local picture = over { sparks, over { volume, solid, from = {volume, chunks} }, from = {sparks, chunks} }
+picture = over { glowing, picture, from = {glowing, chunks} }
 local blooms  = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }
 local shown   = final { source = picture, bloom = blooms, bloom_intensity = 0.3, tonemap = "aces" }
 
 fx.output = shown.color
 fx.linear = shown.linear
-fx.depth  = scene.depth
+fx.depth  = chunks.depth
 return fx
