@@ -219,6 +219,19 @@ static void mark_structural(script *s, const field *node) {
             effect_mark_structural(s->effect, i);
 }
 
+enum { FIELD_COST = 50, NODE_COST = 10 }; // in instructions of the script
+
+// f:get { x, y, z }: where the value of a field that varies in space is asked for.
+static float3 read_place(lua_State *L, const field *node) {
+    float at[4];
+    if (lua_isnoneornil(L, 2))
+        vm_error(L, "get: this field varies in space; say where, as in get { 0, 0, 1 }");
+    if (value_numbers(L, 2, at) != 3 || !isfinite(at[0] + at[1] + at[2]))
+        vm_error(L, "get: the place is three numbers (m), as in get { 0, 0, 1 }");
+    vm_charge(L, FIELD_COST + (uint64_t)NODE_COST * node->size);
+    return (float3){at[0], at[1], at[2]};
+}
+
 // Returns the value of now; at time 0 while the file loads. A parameter of words returns its word.
 static int l_get(lua_State *L) {
     const field_object *object = self(L);
@@ -233,11 +246,11 @@ static int l_get(lua_State *L) {
         lua_pushboolean(L, param->value[0] != 0);
         return 1;
     }
-    if (!param && !object->node->uniform)
-        vm_error(L, "get: this field varies in space; it has no single value");
+    float3 place = {0, 0, 0};
+    if (!param && !object->node->uniform) place = read_place(L, object->node);
     field_context context = script_context(L);
     float value[4] = {0};
-    if (!field_eval(object->node, &context, (float3){0}, value)) script_raise(L);
+    if (!field_eval(object->node, &context, place, value)) script_raise(L);
     if (object->node->components == 1) {
         lua_pushnumber(L, (double)value[0]);
         return 1;

@@ -27,7 +27,7 @@ static void special_rows_stand_where_the_code_expects_them(void **state) {
 
 static void every_row_is_complete(void **state) {
     (void)state;
-    static const char *const groups[] = {"value", "source", "noise", "shape", "operator"};
+    static const char *const groups[] = {"value", "source", "noise", "shape", "blast", "operator"};
     for (const field_kind *kind = field_kinds; kind->name; kind++) {
         bool known = false;
         for (size_t i = 0; i < COUNT_OF(groups); i++)

@@ -46,6 +46,28 @@ static void blasts_name_mistakes(void **state) {
     refused("blast_pressure { chrge = 1 }", "did you mean 'charge'?");
 }
 
+// What a script can ask of a field that varies in space: a place.
+static void a_blast_is_asked_at_a_place(void **state) {
+    (void)state;
+    effect *e =
+        helper_load("local fx = effect { }\n"
+                    "local burst = blast { position = {1, 0, 0}, time = -0.012, charge = 8 }\n"
+                    "local push = burst.impulse:get { 3, 0, 0 }\n"
+                    "assert(math.abs(push / 234.4 - 1) < 0.001, push)\n"
+                    "local v = burst.velocity:get { 1, 7, 0 }\n"
+                    "assert(#v == 3 and v[1] == 0 and v[2] > 10 and v[3] == 0, v[2])\n"
+                    "assert(burst.pressure:get { 21, 0, 0 } == 0)\n"
+                    "local late = burst.arrival:get { 21, 0, 0 }\n"
+                    "assert(late > 0.03 and late < 0.036, late)\n"
+                    "fx.output = final { geometry { } }.color\n"
+                    "return fx\n");
+    if (!e) fail_msg("%s", err_get());
+    effect_destroy(e);
+    refused("local p = blast { }.impulse:get()", "say where, as in get { 0, 0, 1 }");
+    refused("local p = blast { }.impulse:get { 1, 2 }", "the place is three numbers");
+    refused("local p = blast { }.impulse:get { 1, 2, 0 / 0 }", "the place is three numbers");
+}
+
 static void layers_name_mistakes(void **state) {
     (void)state;
     refused("layers(3)", "layers takes 1 to 64 pairs");
@@ -187,6 +209,7 @@ int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(mistakes_are_named),
         cmocka_unit_test(blasts_name_mistakes),
+        cmocka_unit_test(a_blast_is_asked_at_a_place),
         cmocka_unit_test(layers_name_mistakes),
         cmocka_unit_test(a_list_tells_what_it_holds),
         cmocka_unit_test(what_came_is_forgotten_when_time_goes_back),
