@@ -45,7 +45,7 @@ static void mistakes_are_named(void **state) {
     refused(AIR "}\nlocal a = air.timestep", "did you mean 'time_step'?");
     refused(AIR "}\nair:source { densty = 1 }",
             "source: unknown key 'densty'; did you mean 'density'?");
-    refused(AIR "}\nair:source { density = 1 }", "it has no place; give it a mesh, or shape");
+    refused(AIR "}\nair:source { density = 1 }", "it has no place; give it a mesh, shape = sphere");
     refused(AIR "}\nair.source { density = 1 }", "mind the ':'");
     refused(AIR "}\nair:collider { }", "collider takes meshes");
     refused(AIR "}\nair:collider { rule = 'thin' }", "unknown value of 'rule' 'thin'");
