@@ -184,6 +184,9 @@ const char *pass_most_threads(const pass *p);
 // Returns whether the images of a pass that simulates are looked at in this frame, by the picture
 // or by something else that simulates.
 bool pass_is_watched(const pass *p);
+// Whether what simulates has to wait: a field samples air that has not come to the frame yet. So
+// who is faster changes nothing.
+bool pass_waits(const pass *p);
 bool pass_has_content(const pass *p); // all its images have, that are there
 bool pass_clear_outputs(pass *p);     // to 0; always true
 

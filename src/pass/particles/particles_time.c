@@ -108,31 +108,9 @@ static bool step(pass *p, particles_state *s) {
     return done;
 }
 
-// Air that a field samples and that has not come to the frame yet, as where a submit was too short:
-// then they wait, so that who is faster changes nothing.
-static bool waits_for(const pass *p, const field_grid *grid) {
-    for (int k = 0; k < FIELD_GRID_IMAGES; k++) {
-        graph_image image = pass_grid_image(p->host, grid, k);
-        const pass *writer = image.id ? pass_writer(p->host, image) : NULL;
-        const pass_simulation *simulation = writer ? pass_get_simulation(writer) : NULL;
-        if (simulation && simulation->left(writer, p->host->context->time) > 0) return true;
-    }
-    return false;
-}
-
-static bool waits(const pass *p) {
-    for (size_t i = 0; i < p->face->field_count; i++) {
-        const field_grid *grids[64];
-        size_t count = p->fields[i] ? field_grids(p->fields[i], grids, COUNT_OF(grids)) : 0;
-        for (size_t g = 0; g < count && g < COUNT_OF(grids); g++)
-            if (waits_for(p, grids[g])) return true;
-    }
-    return false;
-}
-
 bool particles_advance(pass *p) {
     particles_state *s = particles_of(p);
-    int64_t left = waits(p) ? 0 : particles_left(p, p->host->context->time),
+    int64_t left = pass_waits(p) ? 0 : particles_left(p, p->host->context->time),
             limit = particles_most(p);
     if (s->fresh && !particles_find_places(p)) return false; // told before the first birth
     if (!particles_sum_shares(p) || !particles_write_shares(p)) return false;
