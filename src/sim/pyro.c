@@ -100,6 +100,7 @@ static void define_all(pyro *p) {
     define(p, "PYRO_PREMIXED", p->desc.premixed);
     define(p, "PYRO_CONFINES", p->desc.confinement);
     define(p, "PYRO_FORCE", p->desc.force);
+    define(p, "PYRO_GUIDED", p->desc.guide);
     define(p, "PYRO_SOLIDS", p->desc.solids);
     define(p, "PYRO_VARIABLE", p->desc.variable_density);
     define(p, "PYRO_WEIGHED", pyro_is_weighed(p));
@@ -123,6 +124,7 @@ static const char *const shaders[PYRO_KERNELS] = {
     [PYRO_K_GAS] = "sim/pyro/gas.comp",
     [PYRO_K_VORTICITY] = "sim/pyro/curl.comp",
     [PYRO_K_CURL] = "sim/pyro/curl.comp",
+    [PYRO_K_GUIDE] = "sim/pyro/guide.comp",
     [PYRO_K_VELOCITY_X] = "sim/pyro/velocity.comp",
     [PYRO_K_VELOCITY_Y] = "sim/pyro/velocity.comp",
     [PYRO_K_VELOCITY] = "sim/pyro/velocity.comp",
@@ -182,6 +184,7 @@ static const char *const more_defines[PYRO_KERNELS][2] = {
 static bool is_used(const pyro_desc *desc, pyro_kernel which) {
     if (which == PYRO_K_CARRIER) return desc->half_velocity;
     if (which == PYRO_K_VORTICITY || which == PYRO_K_CURL) return desc->confinement;
+    if (which == PYRO_K_GUIDE) return desc->guide;
     if (which == PYRO_K_REFLECT) return desc->advection == PYRO_REFLECTION;
     if (which == PYRO_K_OBSTRUCT || which == PYRO_K_FILL) return desc->solids;
     const bool weighed = desc->solids || desc->variable_density;
@@ -292,7 +295,7 @@ bool pyro_allocate(pyro *p, gpu *g) {
             gpu_buffer_create(g, &(gpu_buffer_desc){.label = memory_labels[i], .size = sizes[i]});
         if (!p->buffers[i]) return false;
     }
-    return pyro_report_allocate(p, g);
+    return pyro_allocate_guide(p, g) && pyro_report_allocate(p, g);
 }
 
 void pyro_list_memory(const pyro *p, budget_list *out) {
@@ -300,6 +303,7 @@ void pyro_list_memory(const pyro *p, budget_list *out) {
     find_sizes(p, sizes);
     for (int i = 0; i < PYRO_MEM_COUNT; i++)
         if (!p->buffers[i] && sizes[i]) budget_list_add(out, memory_labels[i], sizes[i]);
+    pyro_list_guide(p, out);
     for (int i = 0; i < 2 * PYRO_LOOKS; i++) {
         const gpu_image_desc desc = pyro_describe_image(p, (pyro_look)(i % PYRO_LOOKS));
         if (!p->looks[i / PYRO_LOOKS][i % PYRO_LOOKS])
@@ -312,6 +316,8 @@ void pyro_destroy(pyro *p, gpu *g) {
     for (int i = 0; i < PYRO_MEM_COUNT; i++) gpu_buffer_destroy(g, p->buffers[i]);
     for (int i = 0; i < 2 * PYRO_LOOKS; i++)
         gpu_image_destroy(g, p->looks[i / PYRO_LOOKS][i % PYRO_LOOKS]);
+    gpu_image_destroy(g, p->pull);
+    p->pull = NULL;
     pyro_report_destroy(p, g);
     memset(p->buffers, 0, sizeof p->buffers);
     memset(p->looks, 0, sizeof p->looks);

@@ -50,6 +50,7 @@ typedef struct pyro_desc { // structure: what shaders are compiled for
     bool premixed;         // fuel burns where a flame passes, not where it is hot
     bool confinement;      // numbers may have some
     bool force;            // pyro_set_force is called before the first step
+    bool guide;            // pyro_set_guide is called before the first step
     bool variable_density; // pressure moves light gas farther than heavy gas
     bool solids;           // pyro_set_solids is called before each step
     uint32_t cycles;       // of multigrid, per step; 0: 2, with solids or variable density 3
@@ -62,6 +63,8 @@ typedef struct pyro_numbers { // parameters of a step; they may change with each
     float ambient;            // temperature of the surroundings, K
     float gravity;            // m/s^2, downwards along z
     float acceleration[3];    // m/s^2
+    float guide_rate;         // at which large eddies become those of the guide, 1/s
+    float guide_size;         // side of the cells that tell large eddies from small ones, m
     float inflow[3];          // velocity across faces that are PYRO_INFLOW, m/s
     float confinement;        // acceleration by 1 m/s of difference across a cell, 1/s
     float max_speed;          // limit of each component, m/s; 0: 7 cells of the gas per step
@@ -103,6 +106,16 @@ uint64_t pyro_steps(const pyro *p); // since pyro_reset
 
 // An image of the whole box, of accelerations in m/s^2, which steps sample from now on.
 void pyro_set_force(pyro *p, gpu_image *force);
+
+// A guide: what the velocity shall be on the scale of cells of `guide_size`. The difference between
+// it and the mean velocity of such a cell is taken back at `guide_rate`, linearly between cells;
+// eddies that are smaller stay free (Thuerey, Keiser, Pauly and Ruede 2006; for weather von Storch,
+// Langenberg and Feser 2000). Cells are those of the level of multigrid that comes nearest.
+void pyro_find_guide_cells(const pyro *p, const pyro_numbers *numbers, uint32_t out[3]);
+void pyro_find_most_guide_cells(const pyro *p, uint32_t out[3]); // for any numbers
+// An image of as many texels as that, of velocities in m/s, of which steps read the first ones: as
+// many as there are cells along each axis.
+void pyro_set_guide(pyro *p, gpu_image *guide);
 
 typedef struct pyro_solids {
     gpu_buffer *ids;     // an uint for each cell, x fastest: its solid, from 1; 0: gas

@@ -68,6 +68,7 @@ typedef enum pyro_kernel {
     PYRO_K_GAS, // carried along z, burnt
     PYRO_K_VORTICITY,
     PYRO_K_CURL,
+    PYRO_K_GUIDE,
     PYRO_K_VELOCITY_X,
     PYRO_K_VELOCITY_Y,
     PYRO_K_VELOCITY, // carried along z, pushed
@@ -118,7 +119,8 @@ typedef enum pyro_kernel {
         NAME(coarse_size), NAME(coarser), NAME(coarse_first), NAME(sweeps), NAME(relaxation),      \
         NAME(pressure_unit), NAME(groups), NAME(mass), NAME(SolidIds), NAME(SolidMotions),         \
         NAME(box_min), NAME(force), NAME(begins), NAME(place), NAME(first), NAME(flame_reach),     \
-        NAME(everywhere), NAME(present_from), NAME(present_to)
+        NAME(everywhere), NAME(present_from), NAME(present_to), NAME(guide), NAME(pull),           \
+        NAME(guide_cells), NAME(guide_share)
 enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 
 struct pyro {
@@ -136,7 +138,8 @@ struct pyro {
     uint32_t current;                // of pairs that are the state's
     uint64_t kept, steps;
     pyro_reporter reporter;
-    gpu_image *force;
+    gpu_image *force, *guide;
+    gpu_image *pull; // what the guide adds to the velocity
     pyro_solids solids;
     bool finds_more;         // the projection finds what is to be added to the pressure
     bool coefficients_known; // they are those of `solids`; by density, of the last step
@@ -176,6 +179,13 @@ bool pyro_project_half(pyro *p, gpu *g, const pyro_numbers *half);
 // After the other half. The pressure that the first half found is in the next velocity already.
 bool pyro_project_again(pyro *p, gpu *g, const pyro_numbers *half);
 void pyro_set_level(const pyro *p, kernel *k, uint32_t level);
+
+// pyro_guide.c
+bool pyro_allocate_guide(pyro *p, gpu *g);
+void pyro_list_guide(const pyro *p, budget_list *out);
+// What the guide adds to the velocity of the state in this step, in `pull`.
+bool pyro_find_pull(pyro *p, gpu *g, const pyro_numbers *numbers);
+void pyro_set_pull(const pyro *p, kernel *k, const pyro_numbers *numbers); // of who adds it
 
 // pyro_solids.c
 // Of pressure, from the gas after the step and the solids.

@@ -145,6 +145,7 @@ static void set_forces(const pyro *p, kernel *k, const pyro_numbers *n) {
     kernel_set_float(k, N_confinement, n->confinement * n->dt);
     kernel_set_float(k, N_max_speed, n->max_speed);
     if (p->force) kernel_bind_image(k, N_force, p->force);
+    if (p->desc.guide) pyro_set_pull(p, k, n);
 }
 
 // Carries a velocity by that of the state, and pushes it. `path`: where it is, and
@@ -184,6 +185,7 @@ static bool velocity_advance(pyro *p, gpu *g, const pyro_numbers *numbers) {
     const float most = MOST_CELLS_A_STEP * n.cell / n.dt;
     n.max_speed = n.max_speed > 0 && n.max_speed < most ? n.max_speed : most;
     if (p->desc.confinement && !curl_find(p, g, &n)) return false;
+    if (p->desc.guide && !pyro_find_pull(p, g, &n)) return false;
     if (p->desc.variable_density && !pyro_find_coefficients(p, g, &n)) return false;
     if (p->desc.advection == PYRO_REFLECTION) return velocity_reflect(p, g, &n);
     gpu_buffer *next = pyro_pair(p, PYRO_MEM_VELOCITY, 1);

@@ -2,11 +2,11 @@
 //
 //   bench_pyro [-d DEVICE] [-n STEPS] [-s X[,Y,Z]] [-a upwind|parabolic|reflection] [-h f32|f16]
 //   [-c CYCLES] [-l] [-v] [-V]
-//   [-k] [-t]
+//   [-g] [-k] [-t]
 //
 // A ball of hot fuel burns in the middle of the lower half. -l: the velocity has half as many cells
 // along each axis; -v: with confinement; -V: of
-// variable density; -k: a look of
+// variable density; -g: with a guide of cells four times as large; -k: a look of
 // each step is kept; -t: the stages of a step are timed apart. Prints milliseconds a step by the
 // device's clock, million cells a second by that, and by the processor time of this process.
 #include "sim/pyro.h"
@@ -25,6 +25,7 @@ typedef struct bench {
     const char *device;
     int steps;
     bool keep;
+    gpu_image *guide;
     pyro_desc desc;
     pyro_numbers numbers;
     gpu_pass_time stages[STAGES];
@@ -42,7 +43,7 @@ static bool parse(int argc, char **argv, bench *b) {
                           .faces = {[4] = PYRO_WALL},
                           .advection = PYRO_PARABOLIC,
                           .precision = PYRO_AUTO}};
-    for (int c; (c = getopt(argc, argv, "d:n:s:a:h:c:lvktV")) != -1;) {
+    for (int c; (c = getopt(argc, argv, "d:n:s:a:h:c:lvktVg")) != -1;) {
         uint32_t *s = b->desc.size;
         if (c == 'd') b->device = optarg;
         if (c == 'n') b->steps = atoi(optarg);
@@ -54,6 +55,7 @@ static bool parse(int argc, char **argv, bench *b) {
         if (c == 'l') b->desc.half_velocity = true;
         if (c == 'v') b->desc.confinement = true;
         if (c == 'V') b->desc.variable_density = true;
+        if (c == 'g') b->desc.guide = true;
         if (c == 'k') b->keep = true;
         if (c == 't') b->desc.timed = true;
         if (c == '?') return false;
@@ -132,7 +134,25 @@ static bool look(const bench *b, pyro *p, gpu *g, pyro_report *out) {
            pyro_read(p, g, out);
 }
 
+// Air at rest.
+static bool make_guide(bench *b, pyro *p, gpu *g) {
+    uint32_t n[3];
+    if (!b->desc.guide) return true;
+    pyro_find_most_guide_cells(p, n);
+    b->guide = gpu_image_create(g, &(gpu_image_desc){.label = "guide",
+                                                     .format = GPU_RGBA16F,
+                                                     .width = n[0],
+                                                     .height = n[1],
+                                                     .depth = n[2],
+                                                     .use = GPU_USE_SAMPLED | GPU_USE_STORAGE});
+    if (!b->guide || !gpu_frame_begin(g)) return false;
+    gpu_image_clear(g, b->guide, (const float[4]){0});
+    pyro_set_guide(p, b->guide);
+    return gpu_frame_end(g);
+}
+
 static int measure(bench *b, pyro *p, gpu *g) {
+    if (!make_guide(b, p, g)) return fail("guide");
     if (!begin(b, p, g) || run(b, p, g, 2 * BATCH) < 0) return fail("step");
     b->stage_count = 0;
     memset(b->stages, 0, sizeof b->stages);
@@ -142,14 +162,15 @@ static int measure(bench *b, pyro *p, gpu *g) {
     if (milliseconds <= 0 || !look(b, p, g, &r)) return fail("step");
     const pyro_desc *d = pyro_get_desc(p);
     const double cells = 1e-3 * d->size[0] * d->size[1] * d->size[2] * b->steps; // thousands
-    printf("%ux%ux%u %s %s %u cycles%s%s%s%s: %.3f ms a step, %.2f million cells a second, %.2f a "
-           "processor second, residual %.1e of %.2f m/s, %.0f K\n",
-           d->size[0], d->size[1], d->size[2], pyro_advection_names[d->advection],
-           d->precision == PYRO_F16 ? "f16" : "f32", d->cycles,
-           d->half_velocity ? ", half the velocity" : "", d->confinement ? ", confinement" : "",
-           d->variable_density ? ", variable density" : "", b->keep ? ", kept" : "",
-           milliseconds / b->steps, cells / milliseconds, cells / processor, (double)r.residual,
-           (double)r.speed, (double)r.hottest);
+    printf(
+        "%ux%ux%u %s %s %u cycles%s%s%s%s%s: %.3f ms a step, %.2f million cells a second, %.2f a "
+        "processor second, residual %.1e of %.2f m/s, %.0f K\n",
+        d->size[0], d->size[1], d->size[2], pyro_advection_names[d->advection],
+        d->precision == PYRO_F16 ? "f16" : "f32", d->cycles,
+        d->half_velocity ? ", half the velocity" : "", d->confinement ? ", confinement" : "",
+        d->variable_density ? ", variable density" : "", d->guide ? ", guided" : "",
+        b->keep ? ", kept" : "", milliseconds / b->steps, cells / milliseconds, cells / processor,
+        (double)r.residual, (double)r.speed, (double)r.hottest);
     for (int i = 0; i < b->stage_count && d->timed; i++)
         printf("  %-24s %8.3f ms\n", b->stages[i].label, b->stages[i].milliseconds / b->steps);
     return 0;
@@ -171,6 +192,8 @@ int main(int argc, char **argv) {
                                .soot_yield = 0.06f,
                                .soot_burn_time = 1,
                                .cooling = 400,
+                               .guide_rate = 20,
+                               .guide_size = 16 / (float)b.desc.size[0],
                                .expansion = 1};
     const char *source = getenv("ROIL_SOURCE_DIR");
     arena memory = {0};
@@ -183,6 +206,7 @@ int main(int argc, char **argv) {
                            ? measure(&b, p, g)
                            : fail("pyro");
     if (p) pyro_destroy(p, g);
+    gpu_image_destroy(g, b.guide);
     shader_library_destroy(library);
     gpu_destroy(g);
     arena_free(&memory);

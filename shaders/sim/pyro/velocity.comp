@@ -27,6 +27,14 @@ uniform float max_speed;    // m/s
 #if PYRO_FORCE
 uniform sampler3D force; // m/s^2
 #endif
+#if PYRO_GUIDED
+uniform sampler3D pull;   // m/s, in its first texels, as many as
+uniform vec3 guide_cells; // in the box along each axis
+vec3 pull_at(vec3 p) { // linear between its cells; `p` in cells of the velocity
+    vec3 at = clamp(p / vec3(PYRO_SIZE) * guide_cells, vec3(0.5), guide_cells - 0.5);
+    return textureLod(pull, at / vec3(textureSize(pull, 0)), 0.0).xyz;
+}
+#endif
 #if PYRO_CONFINES
 layout(std430) readonly buffer PyroCurl { PYRO_FOUR curl[]; };
 #endif
@@ -54,6 +62,10 @@ vec3 pushed(ivec3 c, vec3 v) {
     v.z += dt * buoyancy(n.cell.x + n.cell.y + n.below.z, at);
 #if PYRO_FORCE
     v += dt * textureLod(force, (vec3(c) + 0.25) / vec3(PYRO_SIZE), 0.0).xyz; // amid the three faces
+#endif
+#if PYRO_GUIDED
+    v += vec3(pull_at(vec3(c) + vec3(0.0, 0.5, 0.5)).x, pull_at(vec3(c) + vec3(0.5, 0.0, 0.5)).y,
+              pull_at(vec3(c) + vec3(0.5, 0.5, 0.0)).z);
 #endif
 #if PYRO_CONFINES
     vec3 below = vec3(PYRO_X(curl[n.below.x + n.cell.y + n.cell.z]),
