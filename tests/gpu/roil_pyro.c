@@ -31,6 +31,14 @@ static const char COLLIDER[] =
     "fire:collider { mesh { 'wall.obj', position = curve { {0, {-0.6, 0, "
     "1}}, {0.3, {0.5, 0, 1}} } } }";
 
+// A coarser run in the same box, whose wind its guide is.
+static const char GUIDED[] =
+    "guide = (function() local c = pyro { size = {16, 16, 16}, voxel_size = 0.15, time_step = 1 / "
+    "60, wind = {2, 0, 0},\n"
+    "boundary = { left = 'inflow' } }\n"
+    "c:source { shape = sphere { position = {0, 0, 0.5}, radius = 0.4 }, temperature = 900 }\n"
+    "return c.velocity end)(), guide_rate = 50";
+
 static void write_script(char text[2048], const char *keys, const char *source, const char *more,
                          const char *shown) {
     char path[512];
@@ -96,6 +104,8 @@ static void what_is_wrong_is_said(void **state) {
         {"", "denisty = 1", "", "0", "'denisty'"},
         {"", "velocity = vec(0, 0, fire.temperature)", "", "0",
          "reads the air that it is given to"},
+        {"guide = {1, 0, 0}", "", "", "0", "'guide_size' is missing: 'guide' reads no grid"},
+        {"guide_rate = -1", "", "", "0", "'guide_rate'"},
         {"size = {20, 16, 16}", "", "", "0", "a multiple of 8 is needed"},
     };
     for (size_t i = 0; i < COUNT_OF(rows); i++) {
@@ -126,12 +136,24 @@ static void it_is_pushed_by_a_field(void **state) {
     assert_memory_not_equal(even, varied, sizeof even);
 }
 
+static void a_coarser_run_guides_it(void **state) {
+    picture alone, guided;
+    picture *const shown[] = {&alone, &guided};
+    for (int i = 0; i < 2; i++) {
+        roil_effect *e = open(*state, i ? GUIDED : "", BRIEF, "", "vec(fire.velocity.x) * 0.2");
+        draw(e, 1, 12, *shown[i]);
+        roil_unload(e);
+    }
+    print_message("along x: %d alone, %d guided\n", brightest(alone), brightest(guided));
+    assert_true(brightest(guided) > brightest(alone) + 40);
+}
+
 // ---- time -------------------------------------------------------------------------------------
 
 static void a_jump_is_as_good_as_every_frame(void **state) {
     picture each, jump;
-    roil_effect *a = open(*state, "", BRIEF, COLLIDER, HEAT),
-                *b = open(*state, "", BRIEF, COLLIDER, HEAT);
+    roil_effect *a = open(*state, GUIDED, BRIEF, COLLIDER, HEAT),
+                *b = open(*state, GUIDED, BRIEF, COLLIDER, HEAT);
     draw(a, 1, 9, each);
     draw(b, 9, 9, jump);
     assert_true(brightest(each) > 40);
@@ -165,17 +187,20 @@ static const char *in_folder(const char *name) {
 
 static void a_restored_run_is_the_one_that_never_stopped(void **state) {
     picture through, again;
-    roil_effect *e = open(*state, "vorticity = 2", "", COLLIDER, HEAT);
+    char keys[512];
+    snprintf(keys, sizeof keys, "vorticity = 2, %s", GUIDED);
+    roil_effect *e = open(*state, keys, "", COLLIDER, HEAT);
     draw(e, 1, 4, through);
     ok(roil_checkpoint(e, in_folder("middle")));
     draw(e, 5, 8, through);
     roil_unload(e);
-    e = open(*state, "vorticity = 2", "", COLLIDER, HEAT);
+    e = open(*state, keys, "", COLLIDER, HEAT);
     ok(roil_restore(e, in_folder("middle"), NULL));
     draw(e, 5, 8, again);
     assert_memory_equal(through, again, sizeof again);
     roil_unload(e);
-    e = open(*state, "boundary = 'wall'", "", "", HEAT);
+    snprintf(keys, sizeof keys, "boundary = 'wall', %s", GUIDED);
+    e = open(*state, keys, "", "", HEAT);
     expect_error(roil_restore(e, in_folder("middle"), NULL),
                  "left = open, the effect has left = wall");
     roil_unload(e);
@@ -209,6 +234,7 @@ int main(void) {
         cmocka_unit_test(it_gives_fields_by_name),
         cmocka_unit_test(what_is_wrong_is_said),
         cmocka_unit_test(it_is_pushed_by_a_field),
+        cmocka_unit_test(a_coarser_run_guides_it),
         cmocka_unit_test(a_jump_is_as_good_as_every_frame),
         cmocka_unit_test(a_source_gives_while_it_is_told_to),
         cmocka_unit_test(a_restored_run_is_the_one_that_never_stopped),

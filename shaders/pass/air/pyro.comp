@@ -14,6 +14,7 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 //@ option boundary_back = open {open, wall, inflow, periodic} : face at +y
 //@ option boundary_bottom = wall {open, wall, inflow, periodic} : face at -z
 //@ option boundary_top = open {open, wall, inflow, periodic} : face at +z
+//@ field vec3 guide = {0, 0, 0} : velocity that large eddies shall have (m/s), as that of a coarser run: fine.guide = coarse.velocity; small eddies stay free
 //@ field vec3 force = {0, 0, 0} : acceleration of the gas (m/s^2), sampled at every second cell: a curl that moves makes it restless
 uniform float gravity;              //= 9.81 [-1e3, 1e3] m/s^2 : by which light gas rises
 uniform float ambient_temperature;  //= 293 [50, 2000] K : of the air around
@@ -27,6 +28,8 @@ uniform float cooling;              //= 400 [0, 1e6] K/s : by which gas of 1500 
 uniform float expansion;            //= 1 [0, 10] : how much gas expands where it becomes warmer; 1: as gases do
 uniform float vorticity;            //= 0 [0, 1000] 1/s : how much eddies are kept from fading (Fedkiw et al. 2001)
 uniform float dissolve_rate;        //= 0 [0, 100] 1/s : share of the soot that goes
+uniform float guide_rate;           //= 20 [0, 1e4] 1/s : at which the guide holds large eddies; 0: it does not
+uniform float guide_size;           //= 0 [0, 1e6] m : what is smaller than this is a small eddy; 0: the cells of what the guide reads
 uniform vec3 wind;                  //= {0, 0, 0} [-inf, inf] m/s : of the air at first, and of faces that are inflow
 uniform sampler3D gas_now, gas_before, flow_now, flow_before;
 uniform vec3 size;         // cells

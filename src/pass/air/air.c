@@ -7,11 +7,14 @@
 #include <string.h>
 
 const char *const air_names[AIR_NAME_COUNT] = {AIR_NAMES(KERNEL_NAME_TEXT)};
-const pass_kernel air_kernels[AIR_KERNELS] = {[AIR_FORCE] = {.shader = "pass/air/lbm/force.comp"}};
+const pass_kernel air_kernels[AIR_KERNELS] = {
+    [AIR_FORCE] = {.shader = "pass/air/lbm/force.comp"},
+    [AIR_GUIDE] = {.shader = "pass/air/lbm/force.comp", .define = "GUIDE"},
+};
 
 bool air_defines(pass *p, size_t index, pass_defines *out) {
     (void)out;
-    return index != AIR_FORCE || air_force_varies(p);
+    return index == AIR_FORCE ? air_force_varies(p) : index == AIR_GUIDE ? air_is_guided(p) : true;
 }
 
 // ---- the grid ---------------------------------------------------------------------------------
@@ -90,6 +93,7 @@ field_grid *air_open(air *a, const air_kind *kind, pass *p, const pass_air_desc 
         .units = units,
         .solids = {.updated = (double)NAN},
         .force = {.turn = UINT64_MAX},
+        .guide = {.turn = UINT64_MAX},
         .fresh = true,
         .shown_steps = UINT64_MAX,
     };

@@ -1,6 +1,6 @@
-// The force field of simulated air, as an image that steps sample: evaluated anew so many times a
-// second of the simulation, whatever is drawn. A force that is the same everywhere needs none of
-// this (air_constant_force).
+// The force field of simulated air, and its guide, as images that steps sample: evaluated anew so
+// many times a second of the simulation, whatever is drawn. A force that is the same everywhere
+// needs none of this (air_constant_force).
 #include "pass/air/air_parts.h"
 #include <math.h>
 
@@ -24,61 +24,91 @@ bool air_constant_force(const pass *p, float out[3]) {
     return true;
 }
 
-static gpu_image_desc describe(const air *a) {
-    const uint32_t *n = a->desc.size;
+bool air_is_guided(const pass *p) {
+    return air_of(p)->kind->guide_cells && pass_given_field(p, N_guide);
+}
+
+// ---- images -----------------------------------------------------------------------------------
+
+static air_baked *baked_by(air *a, int which) {
+    return which == AIR_FORCE ? &a->force : &a->guide;
+}
+
+static gpu_image_desc describe(const air *a, int which) {
+    uint32_t n[3];
+    for (int i = 0; i < 3; i++) n[i] = (a->desc.size[i] + COARSER - 1) / COARSER;
+    if (which == AIR_GUIDE) a->kind->guide_cells(a, true, n);
     return (gpu_image_desc){
-        .label = "force",
+        .label = which == AIR_FORCE ? "force" : "guide",
         .format = GPU_RGBA16F,
-        .width = (n[0] + COARSER - 1) / COARSER,
-        .height = (n[1] + COARSER - 1) / COARSER,
-        .depth = (n[2] + COARSER - 1) / COARSER,
+        .width = n[0],
+        .height = n[1],
+        .depth = n[2],
         .use = GPU_USE_SAMPLED | GPU_USE_STORAGE,
     };
 }
 
-static bool lacks_image(const air *a) {
-    return !a->force.image && pass_has_kernel(a->pass, AIR_FORCE);
+static bool lacks_image(const air *a, int which) {
+    return !baked_by((air *)a, which)->image && pass_has_kernel(a->pass, which);
 }
 
 void air_list_force(const air *a, budget_list *out) {
-    const gpu_image_desc desc = describe(a);
-    if (lacks_image(a)) budget_list_add(out, desc.label, gpu_image_bytes(&desc));
+    for (int i = AIR_FORCE; i <= AIR_GUIDE; i++) {
+        if (!lacks_image(a, i)) continue;
+        const gpu_image_desc desc = describe(a, i);
+        budget_list_add(out, desc.label, gpu_image_bytes(&desc));
+    }
 }
 
 bool air_allocate_force(air *a) {
-    const gpu_image_desc desc = describe(a);
-    air_force *f = &a->force;
-    if (!lacks_image(a)) return true;
-    f->image = gpu_image_create(a->pass->host->device, &desc);
-    if (!f->image) return false;
+    for (int i = AIR_FORCE; i <= AIR_GUIDE; i++) {
+        if (!lacks_image(a, i)) continue;
+        const gpu_image_desc desc = describe(a, i);
+        baked_by(a, i)->image = gpu_image_create(a->pass->host->device, &desc);
+        if (!baked_by(a, i)->image) return false;
+    }
     return a->kind->take_force(a);
 }
 
 void air_destroy_force(air *a) {
-    gpu_image_destroy(a->pass->host->device, a->force.image);
+    for (int i = AIR_FORCE; i <= AIR_GUIDE; i++)
+        gpu_image_destroy(a->pass->host->device, baked_by(a, i)->image);
 }
 
-static bool bake(pass *p, air_force *f) {
-    const gpu_image_desc *size = gpu_image_get_desc(f->image);
-    kernel *k = pass_prepare(p) ? pass_use(p, AIR_FORCE) : NULL;
+// ---- what lies in them ------------------------------------------------------------------------
+
+static bool bake(air *a, int which) {
+    pass *p = a->pass;
+    gpu_image *image = baked_by(a, which)->image;
+    const gpu_image_desc *size = gpu_image_get_desc(image);
+    uint32_t n[3] = {size->width, size->height, size->depth};
+    if (which == AIR_GUIDE) a->kind->guide_cells(a, false, n);
+    const float cells[3] = {(float)n[0], (float)n[1], (float)n[2]};
+    kernel *k = pass_prepare(p) ? pass_use(p, which) : NULL;
     if (!k) return false;
-    kernel_bind_image(k, N_acceleration, f->image);
-    return kernel_run(k, p->host->device, size->width, size->height, size->depth);
+    kernel_bind_image(k, N_acceleration, image);
+    kernel_set(k, N_count, cells, sizeof cells);
+    return kernel_run(k, p->host->device, n[0], n[1], n[2]);
 }
 
-bool air_push(air *a) {
+static bool push(air *a, int which) {
+    air_baked *b = baked_by(a, which);
     double begin, end;
-    if (!a->force.image) return true;
+    if (!b->image) return true;
     uint64_t turn = air_turn(a, &begin, &end);
-    if (turn == a->force.turn) return true;
-    a->force.turn = turn;
+    if (turn == b->turn) return true;
+    b->turn = turn;
     // As of the turn's first step, also where a state is taken over in the middle of one.
     pass_host *host = a->pass->host;
     const field_context *now = host->context;
     field_context first = *now;
     first.time = begin;
     host->context = &first;
-    bool done = bake(a->pass, &a->force);
+    bool done = bake(a, which);
     host->context = now;
     return done;
+}
+
+bool air_push(air *a) {
+    return push(a, AIR_FORCE) && push(a, AIR_GUIDE);
 }

@@ -19,12 +19,17 @@ typedef struct air_meshes { // bodies as cells; zero: none
     bool met;       // one of them has been in the air's box
 } air_meshes;
 
-typedef struct air_force { // that varies in space; zero: it does not
+typedef struct air_baked { // a field that steps sample; without an image: there is none
     gpu_image *image;
     uint64_t turn; // in which it was baked; UINT64_MAX: never
-} air_force;
+} air_baked;
 
-enum { AIR_SHOW, AIR_FORCE, AIR_KERNELS }; // of the passes; those of steps are the solvers'
+enum {
+    AIR_SHOW,
+    AIR_FORCE,
+    AIR_GUIDE,
+    AIR_KERNELS
+}; // of the passes; those of steps are the solvers'
 enum { AIR_STEP, AIR_VOXELS, AIR_SOURCES, AIR_FIELDS, AIR_LABELS };
 
 // Of all types of the family. Options of faces in the order of lbm_desc.faces and pyro_desc.faces;
@@ -48,7 +53,8 @@ enum { AIR_STEP, AIR_VOXELS, AIR_SOURCES, AIR_FIELDS, AIR_LABELS };
         NAME(gas_before), NAME(flow_now), NAME(flow_before), NAME(burn_power), NAME(oxygen_need),  \
         NAME(burns_above), NAME(rates), NAME(ambient), NAME(velocity_cells), NAME(combustion),     \
         NAME(flame_speed), NAME(flame_power), NAME(present_from), NAME(particles), NAME(radius),   \
-        NAME(step_seconds), NAME(time_scale), NAME(SourceMarks)
+        NAME(step_seconds), NAME(time_scale), NAME(SourceMarks), NAME(guide), NAME(guide_rate),    \
+        NAME(guide_size)
 enum { AIR_NAMES(KERNEL_NAME_ID), AIR_NAME_COUNT };
 extern const char *const air_names[AIR_NAME_COUNT];
 
@@ -75,7 +81,10 @@ typedef struct air_kind {
     size_t (*source_defines)(const air *a, shader_define *out);
     bool (*exchange)(air *a, air *other); // the solvers' states
     void (*restart)(air *a);              // NULL: nothing more is to forget
-    bool (*take_force)(air *a);           // its image is there
+    bool (*take_force)(air *a);           // its image is there, and the guide's
+    // Cells of the guide along each axis, for any numbers or by those of the step. NULL: it has
+    // none.
+    void (*guide_cells)(const air *a, bool most, uint32_t out[3]);
 } air_kind;
 
 struct air {
@@ -90,8 +99,8 @@ struct air {
     size_t source_count, source_capacity;
     air_meshes *givers; // of each source that has some: where two meet, both give
     size_t giver_count, giver_capacity;
-    air_meshes solids; // of colliders
-    air_force force;
+    air_meshes solids;              // of colliders
+    air_baked force, guide;         // the force when it varies in space
     const char *labels[AIR_LABELS]; // of times
 
     bool fresh;           // begins anew with the next record
@@ -143,10 +152,12 @@ bool air_tell_absent(air *a); // as trouble: what was never in the air's box; fa
 
 // air_force.c
 bool air_force_varies(const pass *p);
+bool air_is_guided(const pass *p);
 bool air_constant_force(const pass *p, float out[3]); // m/s^2; 0 where it varies
-bool air_allocate_force(air *a);
-void air_list_force(const air *a, budget_list *out); // its memory
-bool air_push(air *a); // the force as of the host's time, which is that of a step
+bool air_allocate_force(air *a);                      // and the guide
+void air_list_force(const air *a, budget_list *out);  // its memory
+// Force and guide as of the host's time, which is that of a step.
+bool air_push(air *a);
 void air_destroy_force(air *a);
 
 // air_source.c

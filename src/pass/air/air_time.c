@@ -62,7 +62,7 @@ void air_restart(pass *p) {
     a->trouble[0] = '\0';
     a->solids.updated = (double)NAN;
     for (size_t i = 0; i < a->giver_count; i++) a->givers[i].updated = (double)NAN;
-    a->force.turn = UINT64_MAX;
+    a->force.turn = a->guide.turn = UINT64_MAX;
     for (size_t i = 0; i < a->source_count; i++) air_forget_source(a->sources[i]);
     a->shown_steps = UINT64_MAX;
     if (a->kind->restart) a->kind->restart(a);
@@ -98,11 +98,13 @@ static void name_parts(const pass *p, const air *a) {
     gpu_pass_next(p->host->device, a->labels[AIR_STEP]);
 }
 
-// For particles of sources, as where a submit was too short: so that who is faster changes nothing.
+// For other air that this one reads, and for particles of sources, as where a submit was too short:
+// so that who is faster changes nothing.
 static bool waits(const air *a) {
-    for (size_t i = 0; i < a->source_count; i++)
-        if (air_source_waits(a->sources[i])) return true;
-    return false;
+    bool waits = pass_waits(a->pass);
+    for (size_t i = 0; i < a->source_count && !waits; i++)
+        waits = pass_waits(a->sources[i]) || air_source_waits(a->sources[i]);
+    return waits;
 }
 
 bool air_advance(pass *p) {
@@ -112,6 +114,7 @@ bool air_advance(pass *p) {
     const field_context *frame = p->host->context;
     field_context now = *frame;
     p->host->context = &now;
+    a->guide.turn = UINT64_MAX; // what it reads is that of the frame
     bool fine = true, apart = left <= (p->host->counters ? MOST_TIMED : FEW_TIMED);
     name_parts(p, a);
     for (int64_t i = 0; i < left && fine; i++) {

@@ -1,6 +1,8 @@
 // Life of the pass type `pyro`: gas that burns, as a grid.
 #include "base/error.h"
+#include "base/memory.h"
 #include "pass/air/pyro_parts.h"
+#include <math.h>
 
 field_grid *pass_pyro_open(pass *p, const pass_air_desc *desc) {
     static const double courant = 1.5; // cells of the velocity a step, by the expected speed
@@ -18,6 +20,34 @@ static bool has_confinement(const pass *p) {
     return given && (!field_is_constant(given) || given->value[0] > 0);
 }
 
+// The side of a grid's cells, m; of those of the velocity where it is burning gas.
+static float cell_of(const pass_host *host, const field_grid *grid) {
+    const graph_image image = pass_grid_image(host, grid, 0);
+    const pass *writer = image.id ? pass_writer(host, image) : NULL;
+    const bool larger =
+        writer && writer->type == &pyro_type && pass_option(writer, N_velocity_cells) == 1;
+    return (larger ? 2 : 1) * (grid->box.max.x - grid->box.min.x) / (float)grid->size[0];
+}
+
+// The side of the largest cells that a field reads, m; 0: it reads no grid.
+static float largest_cell(const pass_host *host, const field *f) {
+    const field_grid *grids[64];
+    const size_t count = field_grids(f, grids, COUNT_OF(grids));
+    float most = 0;
+    for (size_t i = 0; i < count && i < COUNT_OF(grids); i++)
+        most = fmaxf(most, cell_of(host, grids[i]));
+    return most;
+}
+
+static bool find_guide_cell(pass *p, pyro_air *a) {
+    const field *size = p->uniforms[p->names[N_guide_size].uniform];
+    const bool given = size && (!field_is_constant(size) || size->value[0] > 0);
+    a->guide_cell = largest_cell(p->host, pass_given_field(p, N_guide));
+    return given || a->guide_cell > 0 ||
+           err_set("%s: 'guide_size' is missing: 'guide' reads no grid whose cells it could be",
+                   p->label);
+}
+
 static bool pyro_air_complete(pass *p) {
     pyro_air *a = pyro_air_of(p);
     pyro_desc d = {
@@ -28,10 +58,12 @@ static bool pyro_air_complete(pass *p) {
         .premixed = pass_option(p, N_combustion) == 1,
         .confinement = has_confinement(p),
         .force = air_force_varies(p),
+        .guide = air_is_guided(p),
         .solids = a->air.solids.count > 0,
     };
     for (int i = 0; i < 3; i++) d.size[i] = a->air.desc.size[i];
     for (int i = 0; i < 6; i++) d.faces[i] = (pyro_face)pass_option(p, N_boundary_left + i);
+    if (d.guide && !find_guide_cell(p, a)) return false;
     a->fuel = &sim_fuels[pass_option(p, N_fuel)];
     a->solver = pyro_create(p->host->memory, &d);
     if (!a->solver || !air_make_bodies(&a->air)) return err_prefix("%s: ", p->label);

@@ -8,6 +8,7 @@ typedef struct pyro_air {
     air air;      // first
     pyro *solver; // after pass_complete
     const sim_fuel *fuel;
+    float guide_cell;     // the largest side of a cell that its guide reads, m; 0: it reads none
     pyro_numbers numbers; // of the step being recorded
     pyro_report report;   // the newest
 } pyro_air;
@@ -15,6 +16,8 @@ typedef struct pyro_air {
 static inline pyro_air *pyro_air_of(const pass *p) {
     return p->state;
 }
+
+extern const pass_type pyro_type;
 
 // pyro_step.c
 extern const air_kind pyro_kind;

@@ -16,11 +16,11 @@ bool pyro_air_numbers(const pass *p, pyro_numbers *out) {
                                 N_flame_speed, N_burn_time,           N_heat_of_combustion,
                                 N_soot_yield,  N_soot_burn_time,      N_cooling,
                                 N_expansion,   N_vorticity,           N_dissolve_rate,
-                                N_wind};
+                                N_wind,        N_guide_rate,          N_guide_size};
     for (size_t i = 0; i < COUNT_OF(names); i++)
         if (!pass_evaluate_now(p, names[i], v[names[i]])) return false;
     const float ignition = v[N_ignition_temperature][0], heat = v[N_heat_of_combustion][0];
-    const float soot = v[N_soot_yield][0];
+    const float soot = v[N_soot_yield][0], guide = v[N_guide_size][0];
     *out = (pyro_numbers){
         .dt = (float)a->air.units.step,
         .cell = (float)a->air.units.cell,
@@ -28,6 +28,8 @@ bool pyro_air_numbers(const pass *p, pyro_numbers *out) {
         .gravity = v[N_gravity][0],
         .inflow = {v[N_wind][0], v[N_wind][1], v[N_wind][2]},
         .confinement = v[N_vorticity][0],
+        .guide_rate = v[N_guide_rate][0],
+        .guide_size = guide > 0 ? guide : a->guide_cell,
         .ignition = ignition > 0 ? ignition : (float)fuel->ignition,
         .flame_speed = v[N_flame_speed][0],
         .burn_time = v[N_burn_time][0],
@@ -75,7 +77,16 @@ static bool pyro_air_move_solids(air *a, bool changed) {
 
 static bool pyro_air_take_force(air *a) {
     pyro_set_force(pyro_of(a)->solver, a->force.image);
+    pyro_set_guide(pyro_of(a)->solver, a->guide.image);
     return true;
+}
+
+static void pyro_air_guide_cells(const air *a, bool most, uint32_t out[3]) {
+    const pyro_air *p = (const pyro_air *)a;
+    if (most)
+        pyro_find_most_guide_cells(p->solver, out);
+    else
+        pyro_find_guide_cells(p->solver, &p->numbers, out);
 }
 
 static bool pyro_air_exchange(air *a, air *other) {
@@ -149,4 +160,5 @@ const air_kind pyro_kind = {
     .source_defines = pyro_air_source_defines,
     .exchange = pyro_air_exchange,
     .take_force = pyro_air_take_force,
+    .guide_cells = pyro_air_guide_cells,
 };
