@@ -97,6 +97,7 @@ static void define_all(pyro *p) {
     define(p, "PYRO_SIDE_BY_SIDE", p->side_by_side);
     define(p, "PYRO_PARABOLIC", p->desc.advection != PYRO_UPWIND);
     define(p, "PYRO_REFLECTS", p->desc.advection == PYRO_REFLECTION);
+    define(p, "PYRO_SMOKE", p->desc.smoke);
     define(p, "PYRO_PREMIXED", p->desc.premixed);
     define(p, "PYRO_CONFINES", p->desc.confinement);
     define(p, "PYRO_FORCE", p->desc.force);
@@ -245,6 +246,8 @@ static void find_sizes(const pyro *p, uint64_t out[PYRO_MEM_COUNT]) {
     out[PYRO_MEM_ACTIVE] = gas / PYRO_CELLS_A_GROUP * 2 * sizeof(uint32_t);
     out[PYRO_MEM_VELOCITY_BETWEEN] = four * flow;
     out[PYRO_MEM_GAS_BETWEEN] = four * gas;
+    for (int i = PYRO_MEM_SMOKE; i <= PYRO_MEM_SMOKE_BETWEEN && p->desc.smoke; i++)
+        out[i] = 4 * gas;
     if (p->desc.half_velocity) out[PYRO_MEM_CARRIER] = four * gas;
     if (p->desc.confinement) out[PYRO_MEM_CURL] = four * flow;
     if (p->desc.half_velocity) out[PYRO_MEM_DENSITY] = 4 * flow;
@@ -268,6 +271,9 @@ static const char *const memory_labels[PYRO_MEM_COUNT] = {"velocity of burning g
                                                           "places of burning gas",
                                                           "velocity between sweeps",
                                                           "gas between sweeps",
+                                                          "smoke of burning gas",
+                                                          "smoke of burning gas",
+                                                          "smoke between sweeps",
                                                           "velocity that carries the gas",
                                                           "volumes between sweeps",
                                                           "vorticity",
@@ -306,7 +312,8 @@ void pyro_list_memory(const pyro *p, budget_list *out) {
     pyro_list_guide(p, out);
     for (int i = 0; i < 2 * PYRO_LOOKS; i++) {
         const gpu_image_desc desc = pyro_describe_image(p, (pyro_look)(i % PYRO_LOOKS));
-        if (!p->looks[i / PYRO_LOOKS][i % PYRO_LOOKS])
+        if (pyro_has_look(p, (pyro_look)(i % PYRO_LOOKS)) &&
+            !p->looks[i / PYRO_LOOKS][i % PYRO_LOOKS])
             budget_list_add(out, desc.label, gpu_image_bytes(&desc));
     }
 }
@@ -353,6 +360,8 @@ void pyro_bind(const pyro *p, kernel *k, const kernel_place *places) {
         [N_PyroSums] = p->buffers[PYRO_MEM_SUMS],
         [N_PyroActive] = p->buffers[PYRO_MEM_ACTIVE],
         [N_PyroDensity] = p->buffers[PYRO_MEM_DENSITY],
+        [N_PyroSmoke] = pyro_pair(p, PYRO_MEM_SMOKE, 0),
+        [N_PyroSmokeTo] = pyro_pair(p, PYRO_MEM_SMOKE, 1),
         [N_PyroReport] = p->buffers[PYRO_MEM_REPORT],
     };
     for (int i = 0; i < PYRO_OWN; i++)
@@ -402,7 +411,8 @@ size_t pyro_buffers(pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]) {
     out[0] = pyro_pair(p, PYRO_MEM_VELOCITY, 0);
     out[1] = pyro_pair(p, PYRO_MEM_GAS, 0);
     out[2] = p->buffers[PYRO_MEM_PRESSURE];
-    return PYRO_STATE_BUFFERS;
+    out[3] = pyro_pair(p, PYRO_MEM_SMOKE, 0);
+    return p->desc.smoke ? 4 : 3;
 }
 
 void pyro_set_force(pyro *p, gpu_image *force) {
@@ -414,9 +424,9 @@ uint64_t pyro_steps(const pyro *p) {
 }
 
 static void swap_state(pyro *a, pyro *b) {
-    static const pyro_memory state[] = {PYRO_MEM_VELOCITY, PYRO_MEM_VELOCITY + 1,
-                                        PYRO_MEM_GAS,      PYRO_MEM_GAS + 1,
-                                        PYRO_MEM_ACTIVE,   PYRO_MEM_PRESSURE};
+    static const pyro_memory state[] = {PYRO_MEM_VELOCITY, PYRO_MEM_VELOCITY + 1, PYRO_MEM_GAS,
+                                        PYRO_MEM_GAS + 1,  PYRO_MEM_ACTIVE,       PYRO_MEM_PRESSURE,
+                                        PYRO_MEM_SMOKE,    PYRO_MEM_SMOKE + 1};
     const pyro was = *a;
     for (size_t i = 0; i < COUNT_OF(state); i++) {
         a->buffers[state[i]] = b->buffers[state[i]];
@@ -432,7 +442,8 @@ static void swap_state(pyro *a, pyro *b) {
 
 bool pyro_exchange(pyro *a, pyro *b) {
     if (memcmp(a->desc.size, b->desc.size, sizeof a->desc.size) != 0 ||
-        a->desc.precision != b->desc.precision || a->desc.half_velocity != b->desc.half_velocity)
+        a->desc.precision != b->desc.precision || a->desc.half_velocity != b->desc.half_velocity ||
+        a->desc.smoke != b->desc.smoke)
         return false;
     swap_state(a, b);
     return true;

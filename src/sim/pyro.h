@@ -47,6 +47,7 @@ typedef struct pyro_desc { // structure: what shaders are compiled for
     pyro_precision precision; // of velocities and the gas; auto: by the device
     bool half_velocity;    // velocity and pressure have half as many cells along each axis, which
                            // are multiples of 16 then, and no face is periodic
+    bool smoke;            // the gas carries some that does not glow or burn
     bool premixed;         // fuel burns where a flame passes, not where it is hot
     bool confinement;      // numbers may have some
     bool force;            // pyro_set_force is called before the first step
@@ -77,6 +78,8 @@ typedef struct pyro_numbers { // parameters of a step; they may change with each
     float soot_yield;         // kg of 1 kg of fuel
     float soot_burn_time;     // of soot in hot fresh air, s; 0: soot does not burn
     float dissolve;           // share of the soot that goes, 1/s
+    float smoke_yield;        // kg of 1 kg of fuel, with pyro_desc.smoke
+    float smoke_dissolve;     // share of the smoke that goes, 1/s
     float cooling;            // by which gas of 1500 K cools at first, K/s; as T^4
     float expansion;          // share of what gases do; 1
 } pyro_numbers;
@@ -132,8 +135,9 @@ uint32_t pyro_ratio(const pyro_desc *desc);
 // Returns the state that was kept last (0) or the one kept before it (1) as a 3D image of half
 // floats. NULL: there is none.
 typedef enum pyro_look {
-    PYRO_GAS,  // temperature (K), and density (kg/m^3) of fuel, soot, fuel that has burnt
-    PYRO_FLOW, // velocity in the middle of cells (m/s), pressure (Pa)
+    PYRO_GAS,   // temperature (K), and density (kg/m^3) of fuel, soot, fuel that has burnt
+    PYRO_FLOW,  // velocity in the middle of cells (m/s), pressure (Pa)
+    PYRO_SMOKE, // kg/m^3, with pyro_desc.smoke
     PYRO_LOOKS
 } pyro_look;
 gpu_image *pyro_image(const pyro *p, pyro_look look, int which);
@@ -156,16 +160,17 @@ bool pyro_read(const pyro *p, gpu *g, pyro_report *out);
 
 // Returns the defines for a shader that includes sim/pyro/state.glsl; after pyro_build.
 size_t pyro_defines(const pyro *p, shader_define out[PYRO_MAX_DEFINES]);
-// Binds the state's buffers (PyroGas, PyroVelocity, PyroPressure, PyroRight) to the slots of a
-// kernel. `places` comes from kernel_find with the names of pyro_kernel_table.
+// Binds the state's buffers (PyroGas, PyroVelocity, PyroPressure, PyroRight, PyroSmoke) to the
+// slots of a kernel. `places` comes from kernel_find with the names of pyro_kernel_table.
 void pyro_bind(const pyro *p, kernel *k, const kernel_place *places);
 // Returns where the marks of the state begin in PyroActive, for present_from.
 int32_t pyro_present_from(const pyro *p);
 extern const kernel_table pyro_kernel_table;
 
-// Returns the buffers of the state, without the count of steps. The caller may change what they
-// hold.
-enum { PYRO_STATE_BUFFERS = 3 };
+// Returns the buffers of the state, without the count of steps: velocity, gas, pressure, and with
+// pyro_desc.smoke that, of floats: kg by those of the air of the surroundings. The caller may
+// change what they hold.
+enum { PYRO_STATE_BUFFERS = 4 }; // at most
 size_t pyro_buffers(pyro *p, gpu_buffer *out[PYRO_STATE_BUFFERS]);
 
 // Exchanges the states, images and counts of steps of two solvers. False when their cells or

@@ -19,10 +19,12 @@ typedef enum pyro_memory {
         PYRO_MEM_GAS + 2,      // which half bricks hold more than clean air, of both states
     PYRO_MEM_VELOCITY_BETWEEN, // two sweeps
     PYRO_MEM_GAS_BETWEEN,      // and vorticity, with confinement
-    PYRO_MEM_CARRIER,          // where cells of the velocity are larger
-    PYRO_MEM_SPREAD,           // of volumes, along y and z
-    PYRO_MEM_CURL,             // with confinement
-    PYRO_MEM_DENSITY,          // of the gas in cells of the velocity, where these are larger
+    PYRO_MEM_SMOKE,            // two
+    PYRO_MEM_SMOKE_BETWEEN = PYRO_MEM_SMOKE + 2,
+    PYRO_MEM_CARRIER, // where cells of the velocity are larger
+    PYRO_MEM_SPREAD,  // of volumes, along y and z
+    PYRO_MEM_CURL,    // with confinement
+    PYRO_MEM_DENSITY, // of the gas in cells of the velocity, where these are larger
     PYRO_MEM_PRESSURE,
     PYRO_MEM_RIGHT,
     PYRO_MEM_EXPANSION,       // with reflection; else it is in RIGHT until the projection
@@ -107,7 +109,8 @@ typedef enum pyro_kernel {
         NAME(PyroGasTo), NAME(PyroVelocityTo), NAME(PyroCarrier), NAME(PyroSpread),                \
         NAME(PyroCurl), NAME(PyroCoarsePressure), NAME(PyroCoarseRight), NAME(PyroCoefficients),   \
         NAME(PyroCoarseCoefficients), NAME(PyroFound), NAME(PyroDirection), NAME(PyroChange),      \
-        NAME(PyroSums), NAME(PyroDensity), NAME(PyroActive), NAME(PyroReport)
+        NAME(PyroSums), NAME(PyroDensity), NAME(PyroActive), NAME(PyroSmoke), NAME(PyroSmokeTo),   \
+        NAME(PyroReport)
 #define PYRO_NAMES(NAME)                                                                           \
     PYRO_OWN_NAMES(NAME), NAME(PyroGasFrom), NAME(PyroGasInto), NAME(PyroFlowFrom),                \
         NAME(PyroFlowInto), NAME(PyroOtherPressure), NAME(PyroVorticity), NAME(scalars),           \
@@ -120,7 +123,8 @@ typedef enum pyro_kernel {
         NAME(pressure_unit), NAME(groups), NAME(mass), NAME(SolidIds), NAME(SolidMotions),         \
         NAME(box_min), NAME(force), NAME(begins), NAME(place), NAME(first), NAME(flame_reach),     \
         NAME(everywhere), NAME(present_from), NAME(present_to), NAME(guide), NAME(pull),           \
-        NAME(guide_cells), NAME(guide_share)
+        NAME(guide_cells), NAME(guide_share), NAME(PyroSmokeFrom), NAME(PyroSmokeInto),            \
+        NAME(smokes), NAME(smoke_yield), NAME(smoke_kept)
 enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 
 struct pyro {
@@ -159,6 +163,7 @@ gpu_buffer *pyro_pair(const pyro *p, pyro_memory pair,
 kernel *pyro_use(pyro *p, pyro_kernel which);
 bool pyro_run(const pyro *p, gpu *g, kernel *k);     // a thread for each cell of the velocity
 bool pyro_run_gas(const pyro *p, gpu *g, kernel *k); // of the gas
+bool pyro_has_look(const pyro *p, pyro_look look);
 // A group for each 8 x 8 x 4 cells of the gas.
 bool pyro_run_half_bricks_of_gas(const pyro *p, gpu *g, kernel *k);
 bool pyro_run_half_bricks(const pyro *p, gpu *g, kernel *k); // of the velocity

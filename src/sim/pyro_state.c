@@ -10,6 +10,7 @@ static void pyro_describe(const pyro_desc *desc, const char *more, strbuf *out) 
     strbuf_add(out, "size = %u x %u x %u\n", desc->size[0], desc->size[1], desc->size[2]);
     strbuf_add(out, "precision = %s\n", precisions[desc->precision]);
     strbuf_add(out, "velocity = %s\n", desc->half_velocity ? "half" : "full");
+    if (desc->smoke) strbuf_add(out, "smoke = yes\n");
     for (int i = 0; i < 6; i++) strbuf_add(out, "%s = %s\n", faces[i], kinds[desc->faces[i]]);
     strbuf_add(out, "%s", more);
 }
@@ -24,14 +25,13 @@ static sim_state state_of(pyro *p, const char *lines) {
                    .lines = lines,
                    .steps = &p->steps,
                    .kept = &p->kept,
-                   .buffer_count = PYRO_STATE_BUFFERS,
-                   .image_count = PYRO_LOOKS,
-                   .buffer_names = {"velocity", "gas", "pressure"},
-                   .image_names = {"gas", "flow"},
+                   .buffer_names = {"velocity", "gas", "pressure", "smoke"},
+                   .image_names = {"gas", "flow", "smoke"},
                    .reset = state_reset,
                    .solver = p};
-    pyro_buffers(p, s.buffers);
-    for (pyro_look i = 0; i < PYRO_LOOKS; i++) {
+    s.buffer_count = pyro_buffers(p, s.buffers);
+    for (pyro_look i = 0; i < PYRO_LOOKS && pyro_has_look(p, i); i++) {
+        s.image_count++;
         s.image_descs[i] = pyro_describe_image(p, i);
         for (int which = 0; which < 2; which++) s.images[which][i] = &p->looks[which][i];
     }

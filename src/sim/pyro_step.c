@@ -36,6 +36,8 @@ void pyro_set_burning(kernel *k, const pyro_numbers *n) {
     kernel_set_float(k, N_soot_yield, n->soot_yield);
     kernel_set_float(k, N_soot_share, share(n->dt, n->soot_burn_time, 0));
     kernel_set_float(k, N_soot_kept, expf(-n->dissolve * n->dt));
+    kernel_set_float(k, N_smoke_yield, n->smoke_yield);
+    kernel_set_float(k, N_smoke_kept, expf(-n->smoke_dissolve * n->dt));
     kernel_set_float(k, N_soot_heat, soot_heat / air_heat_capacity);
     kernel_set_float(k, N_cooling, 3 * n->cooling * n->dt / powf(cooling_at, 4));
     kernel_set_float(k, N_expansion, n->expansion);
@@ -63,13 +65,26 @@ static bool look_at_flow(pyro *p, gpu *g, const pyro_numbers *n, gpu_image *to) 
     return pyro_run(p, g, k);
 }
 
+// The gas, and its smoke, is in the state, goes to the next one, or lies between sweeps.
+typedef enum place { IS, GOES, BETWEEN } place;
+
+static void bind_gas(const pyro *p, kernel *k, int gas, int smoke, place at) {
+    const bool between = at == BETWEEN;
+    kernel_bind_buffer(k, gas,
+                       between ? p->buffers[PYRO_MEM_GAS_BETWEEN]
+                               : pyro_pair(p, PYRO_MEM_GAS, (uint32_t)at));
+    kernel_bind_buffer(k, smoke,
+                       between ? p->buffers[PYRO_MEM_SMOKE_BETWEEN]
+                               : pyro_pair(p, PYRO_MEM_SMOKE, (uint32_t)at));
+}
+
 // A kernel of groups that look where there is gas.
-static kernel *use_carrying(pyro *p, pyro_kernel which, const pyro_numbers *n, gpu_buffer *from) {
+static kernel *use_carrying(pyro *p, pyro_kernel which, const pyro_numbers *n, place from) {
     kernel *k = pyro_use(p, which);
     set_carrying(k, n, n->cell);
     kernel_set_int(k, N_everywhere, !p->active_known);
     kernel_set_int(k, N_present_from, pyro_present_from(p));
-    kernel_bind_buffer(k, N_PyroGasFrom, from);
+    bind_gas(p, k, N_PyroGasFrom, N_PyroSmokeFrom, from);
     return k;
 }
 
@@ -92,21 +107,20 @@ static bool find_volumes(pyro *p, gpu *g, const pyro_numbers *n) {
 
 // From the state to the next one, to what is between, and back.
 static bool gas_carry(pyro *p, gpu *g, const pyro_numbers *n) {
-    gpu_buffer *next = pyro_pair(p, PYRO_MEM_GAS, 1), *between = p->buffers[PYRO_MEM_GAS_BETWEEN];
     pyro_stage(p, g, "pyro.carry_x");
-    kernel *x = use_carrying(p, PYRO_K_CARRY_X, n, pyro_pair(p, PYRO_MEM_GAS, 0));
-    kernel_bind_buffer(x, N_PyroGasInto, next);
+    kernel *x = use_carrying(p, PYRO_K_CARRY_X, n, IS);
+    bind_gas(p, x, N_PyroGasInto, N_PyroSmokeInto, GOES);
     if (!pyro_run_half_bricks_of_gas(p, g, x)) return false;
     pyro_stage(p, g, "pyro.carry_y");
-    kernel *y = use_carrying(p, PYRO_K_CARRY_Y, n, next);
-    kernel_bind_buffer(y, N_PyroGasInto, between);
+    kernel *y = use_carrying(p, PYRO_K_CARRY_Y, n, GOES);
+    bind_gas(p, y, N_PyroGasInto, N_PyroSmokeInto, BETWEEN);
     return pyro_run_half_bricks_of_gas(p, g, y);
 }
 
 static bool gas_advance(pyro *p, gpu *g, const pyro_numbers *n) {
     if (!gas_carry(p, g, n)) return false;
     pyro_stage(p, g, "pyro.gas");
-    kernel *k = use_carrying(p, PYRO_K_GAS, n, p->buffers[PYRO_MEM_GAS_BETWEEN]);
+    kernel *k = use_carrying(p, PYRO_K_GAS, n, BETWEEN);
     const int32_t groups = (int32_t)(pyro_cells(p) / PYRO_CELLS_A_GROUP);
     pyro_set_burning(k, n);
     kernel_set_float(k, N_cell, pyro_flow_cell(p, n));
@@ -218,7 +232,7 @@ bool pyro_reset(pyro *p, gpu *g, const pyro_numbers *n) {
     memset(p->reporter.places, 0, sizeof p->reporter.places);
     for (int which = 0; which < 2; which++) {
         kernel *gas = pyro_use(p, PYRO_K_RESET);
-        kernel_bind_buffer(gas, N_PyroGasTo, p->buffers[PYRO_MEM_GAS + which]);
+        bind_gas(p, gas, N_PyroGasTo, N_PyroSmokeTo, (place)which);
         kernel *flow = pyro_use(p, PYRO_K_RESET_FLOW);
         kernel_set(flow, N_inflow, n->inflow, sizeof n->inflow);
         kernel_bind_buffer(flow, N_PyroVelocityTo, p->buffers[PYRO_MEM_VELOCITY + which]);
@@ -233,12 +247,17 @@ gpu_image *pyro_image(const pyro *p, pyro_look look, int which) {
     return p->kept > (uint64_t)which ? p->looks[(p->kept + 1 + (uint64_t)which) % 2][look] : NULL;
 }
 
+bool pyro_has_look(const pyro *p, pyro_look look) {
+    return look != PYRO_SMOKE || p->desc.smoke;
+}
+
 gpu_image_desc pyro_describe_image(const pyro *p, pyro_look look) {
+    static const char *const labels[PYRO_LOOKS] = {"burning gas", "its flow", "its smoke"};
     uint32_t n[3];
     pyro_flow_size(&p->desc, n);
-    if (look == PYRO_GAS) memcpy(n, p->desc.size, sizeof n);
-    return (gpu_image_desc){.label = look == PYRO_GAS ? "burning gas" : "its flow",
-                            .format = GPU_RGBA16F,
+    if (look != PYRO_FLOW) memcpy(n, p->desc.size, sizeof n);
+    return (gpu_image_desc){.label = labels[look],
+                            .format = look == PYRO_SMOKE ? GPU_R16F : GPU_RGBA16F,
                             .width = n[0],
                             .height = n[1],
                             .depth = n[2],
@@ -247,13 +266,14 @@ gpu_image_desc pyro_describe_image(const pyro *p, pyro_look look) {
 
 bool pyro_keep(pyro *p, gpu *g, const pyro_numbers *n) {
     gpu_image **images = p->looks[p->kept % 2];
-    for (pyro_look i = 0; i < PYRO_LOOKS; i++) {
+    for (pyro_look i = 0; i < PYRO_LOOKS && pyro_has_look(p, i); i++) {
         const gpu_image_desc desc = pyro_describe_image(p, i);
         if (!images[i]) images[i] = gpu_image_create(g, &desc);
         if (!images[i]) return false;
     }
     kernel *k = pyro_use(p, PYRO_K_LOOK);
     kernel_bind_image(k, N_scalars, images[PYRO_GAS]);
+    kernel_bind_image(k, N_smokes, images[PYRO_SMOKE]);
     pyro_set_gas(k, n);
     p->kept++;
     return pyro_run_gas(p, g, k) && look_at_flow(p, g, n, images[PYRO_FLOW]);

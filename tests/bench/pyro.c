@@ -2,11 +2,11 @@
 //
 //   bench_pyro [-d DEVICE] [-n STEPS] [-s X[,Y,Z]] [-a upwind|parabolic|reflection] [-h f32|f16]
 //   [-c CYCLES] [-l] [-v] [-V]
-//   [-g] [-k] [-t]
+//   [-g] [-k] [-o] [-t]
 //
 // A ball of hot fuel burns in the middle of the lower half. -l: the velocity has half as many cells
 // along each axis; -v: with confinement; -V: of
-// variable density; -g: with a guide of cells four times as large; -k: a look of
+// variable density; -o: with smoke; -g: with a guide of cells four times as large; -k: a look of
 // each step is kept; -t: the stages of a step are timed apart. Prints milliseconds a step by the
 // device's clock, million cells a second by that, and by the processor time of this process.
 #include "sim/pyro.h"
@@ -43,7 +43,7 @@ static bool parse(int argc, char **argv, bench *b) {
                           .faces = {[4] = PYRO_WALL},
                           .advection = PYRO_PARABOLIC,
                           .precision = PYRO_AUTO}};
-    for (int c; (c = getopt(argc, argv, "d:n:s:a:h:c:lvktVg")) != -1;) {
+    for (int c; (c = getopt(argc, argv, "d:n:s:a:h:c:lvktVgo")) != -1;) {
         uint32_t *s = b->desc.size;
         if (c == 'd') b->device = optarg;
         if (c == 'n') b->steps = atoi(optarg);
@@ -56,6 +56,7 @@ static bool parse(int argc, char **argv, bench *b) {
         if (c == 'v') b->desc.confinement = true;
         if (c == 'V') b->desc.variable_density = true;
         if (c == 'g') b->desc.guide = true;
+        if (c == 'o') b->desc.smoke = true;
         if (c == 'k') b->keep = true;
         if (c == 't') b->desc.timed = true;
         if (c == '?') return false;
@@ -163,14 +164,15 @@ static int measure(bench *b, pyro *p, gpu *g) {
     const pyro_desc *d = pyro_get_desc(p);
     const double cells = 1e-3 * d->size[0] * d->size[1] * d->size[2] * b->steps; // thousands
     printf(
-        "%ux%ux%u %s %s %u cycles%s%s%s%s%s: %.3f ms a step, %.2f million cells a second, %.2f a "
+        "%ux%ux%u %s %s %u cycles%s%s%s%s%s%s: %.3f ms a step, %.2f million cells a second, %.2f a "
         "processor second, residual %.1e of %.2f m/s, %.0f K\n",
         d->size[0], d->size[1], d->size[2], pyro_advection_names[d->advection],
         d->precision == PYRO_F16 ? "f16" : "f32", d->cycles,
         d->half_velocity ? ", half the velocity" : "", d->confinement ? ", confinement" : "",
         d->variable_density ? ", variable density" : "", d->guide ? ", guided" : "",
-        b->keep ? ", kept" : "", milliseconds / b->steps, cells / milliseconds, cells / processor,
-        (double)r.residual, (double)r.speed, (double)r.hottest);
+        d->smoke ? ", smoke" : "", b->keep ? ", kept" : "", milliseconds / b->steps,
+        cells / milliseconds, cells / processor, (double)r.residual, (double)r.speed,
+        (double)r.hottest);
     for (int i = 0; i < b->stage_count && d->timed; i++)
         printf("  %-24s %8.3f ms\n", b->stages[i].label, b->stages[i].milliseconds / b->steps);
     return 0;

@@ -18,6 +18,7 @@ typedef struct pyro_world {
     float (*velocity)[4]; // of the faces at the lower ends of each cell
     float (*gas)[4];      // warmth, fuel, burnt, soot
     float *pressure;      // m/s
+    float *smoke;         // kg by those of the air of the surroundings, with desc.smoke
 } pyro_world;
 
 static inline void pyro_open(pyro_world *w, gpu *device, const pyro_desc *desc) {
@@ -41,6 +42,8 @@ static inline void pyro_open(pyro_world *w, gpu *device, const pyro_desc *desc) 
     w->velocity = mem_alloc(w->cells * sizeof *w->velocity);
     w->gas = mem_alloc(w->cells * sizeof *w->gas);
     w->pressure = mem_alloc(w->cells * sizeof *w->pressure);
+    w->smoke = mem_alloc(w->cells * sizeof *w->smoke);
+    memset(w->smoke, 0, w->cells * sizeof *w->smoke);
     memset(w->velocity, 0, w->cells * sizeof *w->velocity);
     memset(w->gas, 0, w->cells * sizeof *w->gas);
     memset(w->pressure, 0, w->cells * sizeof *w->pressure);
@@ -56,6 +59,7 @@ static inline void pyro_close(pyro_world *w) {
     mem_free(w->velocity);
     mem_free(w->gas);
     mem_free(w->pressure);
+    mem_free(w->smoke);
 }
 
 static inline void pyro_run_steps(pyro_world *w, int steps) {
@@ -102,13 +106,13 @@ static inline void pyro_transfer_halves(pyro_world *w, gpu_buffer *buffer, float
 
 static inline void pyro_transfer(pyro_world *w, bool write) {
     gpu_buffer *buffers[PYRO_STATE_BUFFERS];
-    void *const bytes[PYRO_STATE_BUFFERS] = {w->velocity, w->gas, w->pressure};
-    pyro_buffers(w->solver, buffers);
+    void *const bytes[PYRO_STATE_BUFFERS] = {w->velocity, w->gas, w->pressure, w->smoke};
+    const size_t count = pyro_buffers(w->solver, buffers);
     gpu_test_ok(gpu_idle(w->device));
     if (write) pyro_pack_gas(w, true);
-    for (int i = 0; i < PYRO_STATE_BUFFERS; i++) {
+    for (size_t i = 0; i < count; i++) {
         const size_t size = gpu_buffer_size(buffers[i]);
-        if (w->desc.precision == PYRO_F16 && bytes[i] != w->pressure) {
+        if (w->desc.precision == PYRO_F16 && i < 2) {
             pyro_transfer_halves(w, buffers[i], bytes[i], write);
             continue;
         }

@@ -16,6 +16,10 @@ uniform float soot_yield;  // kg of 1 kg of burnt fuel
 uniform float soot_share;  // of the soot that burns in this step where it is hot and in fresh air
 uniform float soot_heat;   // as `heat`
 uniform float soot_kept;   // share of the soot that does not dissolve in this step
+#if PYRO_SMOKE
+uniform float smoke_yield; // kg of 1 kg of burnt fuel
+uniform float smoke_kept;  // as `soot_kept`
+#endif
 uniform float cooling;     // of the third power of the temperature's inverse in this step, 1/K^3
 uniform float expansion;   // 1: as gases do
 

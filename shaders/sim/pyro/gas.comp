@@ -19,6 +19,10 @@ layout(std430) writeonly buffer PyroExpansion { float expands[]; }; // m/s, acro
 layout(std430) writeonly buffer PyroDensity { float densities[]; }; // by that of the surroundings
 #endif
 
+#if PYRO_SMOKE
+layout(std430) writeonly buffer PyroSmokeTo { float smoke_to[]; };
+#endif
+
 const float NOTHING = 1e-5; // next to
 shared uint holds;
 
@@ -27,13 +31,35 @@ void settle(ivec3 first) {
     barrier();
     if (gl_LocalInvocationIndex == 0u) present[present_to + half_brick_at(ivec3(gl_WorkGroupID))] = holds;
     if (holds != 0u) return;
-    for (int i = 0; i < 4; i++) gas_to[pyro_at(first + ivec3(0, 0, i))] = pyro_store(vec4(0.0));
+    for (int i = 0; i < 4; i++) {
+        int at = pyro_at(first + ivec3(0, 0, i));
+        gas_to[at] = pyro_store(vec4(0.0));
+#if PYRO_SMOKE
+        smoke_to[at] = 0.0;
+#endif
+    }
 }
 
 void keep(ivec3 c, vec4 packed) {
     if (any(greaterThan(abs(packed), vec4(NOTHING)))) holds = 1u;
     gas_to[pyro_at(c)] = pyro_store(packed);
 }
+
+#if PYRO_SMOKE
+void keep_smoke(ivec3 c, float packed) {
+    if (packed > NOTHING) holds = 1u;
+    smoke_to[pyro_at(c)] = packed;
+}
+
+// Smoke goes by volume, too, when it is packed. Of a cell whose gas was `before`, packed, and is `gas` after
+// it has burnt.
+float smoke_after_burning(float smoke, vec4 before, vec4 gas) {
+    vec4 was = pyro_unpack(before);
+    float made = smoke_yield * (gas.PYRO_BURNT - max(was.PYRO_BURNT, 0.0));
+    float by_mass = smoke_kept * (max(smoke, 0.0) * pyro_temperature(was) / ambient + made);
+    return by_mass * ambient / pyro_temperature(gas);
+}
+#endif
 
 #if PYRO_RATIO == 2
 // ---- cells of a larger cell of the velocity ----------------------------------------------------
@@ -43,27 +69,35 @@ shared vec4 cells[4][64]; // by z, then y, then x: what they hold, packed
 shared float grew[4][64]; // their expansion
 shared vec2 parts[2][64]; // of two cells along z each: sums of expansion and density
 shared uint grows;
+#if PYRO_SMOKE
+shared float smokes[4][64];
+#endif
 
 uint sibling(uint thread, uint i) {
     return (thread & ~9u) + (i & 1u) + 8u * ((i >> 1) & 1u);
 }
 
 // Of the two of a thread's cells at `z` and above it.
-void share_out(uint z, uint thread, out vec4 low, out vec4 high) {
+void share_out(uint z, uint thread, inout vec4 low, inout vec4 high, inout vec2 smoke) {
     float mean = 0.0, more = 0.0;
     for (uint i = 0u; i < 8u; i++) mean += 0.125 * grew[z + (i >> 2)][sibling(thread, i)];
     vec4 given = vec4(0.0);
+    float smoke_given = 0.0;
     for (uint i = 0u; i < 8u; i++) {
         uint at = sibling(thread, i), level = z + (i >> 2);
         float gives = max(grew[level][at] - mean, 0.0);
         more += gives;
         given += gives * cells[level][at];
+#if PYRO_SMOKE
+        smoke_given += gives * smokes[level][at];
+#endif
     }
     given /= max(more, 1e-12);
     vec2 own = vec2(grew[z][thread], grew[z + 1u][thread]);
     vec2 takes = max(mean - own, 0.0), keeps = 1.0 + mean - takes; // it gives of what it is
-    low = (cells[z][thread] * keeps.x + takes.x * given) / (1.0 + mean);
-    high = (cells[z + 1u][thread] * keeps.y + takes.y * given) / (1.0 + mean);
+    low = (low * keeps.x + takes.x * given) / (1.0 + mean);
+    high = (high * keeps.y + takes.y * given) / (1.0 + mean);
+    smoke = (smoke * keeps + takes * smoke_given / max(more, 1e-12)) / (1.0 + mean);
 }
 
 // Expansion and density of a cell of the velocity: the mean of eight. The group has 4 x 4 x 2 of them.
@@ -82,9 +116,17 @@ void keep_all(ivec3 first) {
     barrier();
     for (uint z = 0u; z < 4u; z += 2u) {
         vec4 low = cells[z][thread], high = cells[z + 1u][thread];
-        if (grows != 0u) share_out(z, thread, low, high);
+        vec2 smoke = vec2(0.0);
+#if PYRO_SMOKE
+        smoke = vec2(smokes[z][thread], smokes[z + 1u][thread]);
+#endif
+        if (grows != 0u) share_out(z, thread, low, high, smoke);
         keep(first + ivec3(0, 0, z), low);
         keep(first + ivec3(0, 0, z + 1u), high);
+#if PYRO_SMOKE
+        keep_smoke(first + ivec3(0, 0, z), smoke.x);
+        keep_smoke(first + ivec3(0, 0, z + 1u), smoke.y);
+#endif
         parts[z >> 1][thread] = vec2(grew[z][thread] + grew[z + 1u][thread],
                                      pyro_density(pyro_unpack(low)) + pyro_density(pyro_unpack(high)));
     }
@@ -101,27 +143,42 @@ void main() {
     if (gl_LocalInvocationIndex == 0u) grows = 0u;
 #endif
     bool near = is_near_gas();
-    sweep_state s;
-    if (near) s = sweep_begin(c);
+    gas_sweep s;
+    if (near) s = gas_begin(c);
+#if PYRO_SMOKE
+    smoke_sweep smokes_;
+    if (near) smokes_ = smoke_begin(c);
+#endif
     for (int i = 0; i < 4; i++) {
         vec4 g = vec4(0.0);
         float grown = 0.0, brought = 0.0; // expansion in this step; progress
+        float smoke = 0.0;
         if (near) {
             float low_way = s.way;
-            g = pyro_unpack(sweep_next(s, c));
+            vec4 packed = gas_next(s, c);
+            g = pyro_unpack(packed);
 #if PYRO_PREMIXED
             vec3 mean = 0.5 * vec3(way_x(c) + way_x(c + ivec3(1, 0, 0)), way_y(c) + way_y(c + ivec3(0, 1, 0)),
                                    low_way + s.way);
             brought = flame(vec3(c) + 0.5 - mean, pyro_temperature(g) / ambient);
 #endif
             grown = pyro_clean(pyro_burn(g, brought));
+#if PYRO_SMOKE
+            smoke = pyro_clean(smoke_after_burning(smoke_next(smokes_, c), packed, g));
+#endif
         }
 #if PYRO_RATIO == 2
         cells[i][gl_LocalInvocationIndex] = pyro_pack(g);
         grew[i][gl_LocalInvocationIndex] = grown;
+#if PYRO_SMOKE
+        smokes[i][gl_LocalInvocationIndex] = smoke;
+#endif
         if (abs(grown) > 1e-6) grows = 1u;
 #else
         keep(c, pyro_pack(g));
+#if PYRO_SMOKE
+        keep_smoke(c, smoke);
+#endif
         expands[pyro_at(c)] = cell / dt * grown;
 #endif
         c.z++;

@@ -11,6 +11,10 @@ const float MOST = 65000.0;
 #ifndef FLOW
 layout(std430) readonly buffer PyroGas { PYRO_FOUR gas[]; };
 layout(rgba16f) writeonly uniform image3D scalars; // K, and kg/m^3 of fuel, soot, what has burnt
+#if PYRO_SMOKE
+layout(std430) readonly buffer PyroSmoke { float smoke[]; };
+layout(r16f) writeonly uniform image3D smokes; // kg/m^3
+#endif
 
 void main() {
     ivec3 c = ivec3(gl_GlobalInvocationID);
@@ -18,6 +22,9 @@ void main() {
     float air = PYRO_AIR / pyro_temperature(g); // kg/m^3
     vec4 s = vec4(pyro_temperature(g), air * g.PYRO_FUEL, air * g.PYRO_SOOT, air * g.PYRO_BURNT);
     imageStore(scalars, c, clamp(s, -MOST, MOST));
+#if PYRO_SMOKE
+    imageStore(smokes, c, vec4(PYRO_AIR / ambient * smoke[pyro_at(c)]));
+#endif
 }
 #else
 #include "sim/pyro/velocity.glsl"

@@ -8,8 +8,16 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #ifndef FLOW
 layout(std430) writeonly buffer PyroGasTo { PYRO_FOUR gas_to[]; };
 
+#if PYRO_SMOKE
+layout(std430) writeonly buffer PyroSmokeTo { float smoke_to[]; };
+#endif
+
 void main() {
-    gas_to[pyro_at(ivec3(gl_GlobalInvocationID))] = pyro_store(vec4(0.0));
+    int at = pyro_at(ivec3(gl_GlobalInvocationID));
+    gas_to[at] = pyro_store(vec4(0.0));
+#if PYRO_SMOKE
+    smoke_to[at] = 0.0;
+#endif
 }
 #else
 uniform vec3 inflow; // m/s
