@@ -231,7 +231,7 @@ static const char *place_of(const char *name) {
         {"force", "it is a key, of a field: { force = curl { ... }, ... }"},
         {"wind",
          "it is a key, of m/s: { wind = {2, 0, 0}, boundary = { left = \"inflow\" }, ... }"},
-        {"smoke", "it is 'soot' in pyro and 'density' in lbm"},
+        {"smoke", "it is 'density' in lbm"},
         {"emitter", "air:source { ... } gives the air what it holds"},
     };
     for (size_t i = 0; i < COUNT_OF(places); i++)

@@ -82,14 +82,35 @@ static void it_gives_fields_by_name(void **state) {
     static const char *const fields[] = {"fire.temperature * 0.001", "fire.fuel",
                                          "fire.soot * 100",          "fire.burn",
                                          "fire.velocity * 0.1",      "vec(fire.pressure)",
-                                         "fire.divergence * 0.01",   "fire.vorticity * 0.01"};
+                                         "fire.divergence * 0.01",   "fire.vorticity * 0.01",
+                                         "fire.smoke * 100"};
     for (size_t i = 0; i < COUNT_OF(fields); i++) {
         picture shown;
-        roil_effect *e = open(*state, "burn_time = 0.02", "rate = 60", "", fields[i]);
+        roil_effect *e =
+            open(*state, "burn_time = 0.02, smoke_yield = 0.1", "rate = 60", "", fields[i]);
         draw(e, 1, 6, shown);
         if (brightest(shown) < 8) fail_msg("%s is nowhere", fields[i]);
         roil_unload(e);
     }
+}
+
+// As much as it is given, in air as cold as that around, and it makes nothing else. What is seen
+// has a trace of soot.
+static void smoke_neither_glows_nor_burns(void **state) {
+    static const char SMOKE[] = "fire:source { shape = sphere { position = {0, 0, 1.4}, radius = "
+                                "0.5 }, smoke = 0.4, soot = 1e-6 }";
+    static const char *const fields[] = {"fire.smoke", "smoothstep(0.1, 0.3, fire.smoke) * 0.4"};
+    int seen[2];
+    for (int i = 0; i < 2; i++) {
+        picture shown;
+        roil_effect *e = open(*state, "", "during = {-2, -1}", SMOKE, fields[i]);
+        draw(e, 1, 6, shown);
+        seen[i] = brightest(shown);
+        assert_true(readout(e, "soot") < 1e-6 && fabs(readout(e, "hottest") - 293) < 0.1);
+        roil_unload(e);
+    }
+    print_message("smoke of 0.4 kg/m^3 is seen as %d, not %d\n", seen[0], seen[1]);
+    assert_true(seen[1] > 60 && abs(seen[0] - seen[1]) <= 6);
 }
 
 static void what_is_wrong_is_said(void **state) {
@@ -105,6 +126,8 @@ static void what_is_wrong_is_said(void **state) {
         {"", "velocity = vec(0, 0, fire.temperature)", "", "0",
          "reads the air that it is given to"},
         {"guide = {1, 0, 0}", "", "", "0", "'guide_size' is missing: 'guide' reads no grid"},
+        {"", "smok = 1", "", "0", "did you mean 'smoke'?"},
+        {"smoke_yield = -1", "", "", "0", "'smoke_yield'"},
         {"guide_rate = -1", "", "", "0", "'guide_rate'"},
         {"size = {20, 16, 16}", "", "", "0", "a multiple of 8 is needed"},
     };
@@ -188,7 +211,7 @@ static const char *in_folder(const char *name) {
 static void a_restored_run_is_the_one_that_never_stopped(void **state) {
     picture through, again;
     char keys[512];
-    snprintf(keys, sizeof keys, "vorticity = 2, %s", GUIDED);
+    snprintf(keys, sizeof keys, "vorticity = 2, smoke_yield = 0.1, %s", GUIDED);
     roil_effect *e = open(*state, keys, "", COLLIDER, HEAT);
     draw(e, 1, 4, through);
     ok(roil_checkpoint(e, in_folder("middle")));
@@ -199,7 +222,7 @@ static void a_restored_run_is_the_one_that_never_stopped(void **state) {
     draw(e, 5, 8, again);
     assert_memory_equal(through, again, sizeof again);
     roil_unload(e);
-    snprintf(keys, sizeof keys, "boundary = 'wall', %s", GUIDED);
+    snprintf(keys, sizeof keys, "boundary = 'wall', smoke_yield = 0.1, %s", GUIDED);
     e = open(*state, keys, "", "", HEAT);
     expect_error(roil_restore(e, in_folder("middle"), NULL),
                  "left = open, the effect has left = wall");
@@ -232,6 +255,7 @@ static void a_reload_goes_on_with_the_gas(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_gives_fields_by_name),
+        cmocka_unit_test(smoke_neither_glows_nor_burns),
         cmocka_unit_test(what_is_wrong_is_said),
         cmocka_unit_test(it_is_pushed_by_a_field),
         cmocka_unit_test(a_coarser_run_guides_it),

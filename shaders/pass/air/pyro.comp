@@ -28,10 +28,15 @@ uniform float cooling;              //= 400 [0, 1e6] K/s : by which gas of 1500 
 uniform float expansion;            //= 1 [0, 10] : how much gas expands where it becomes warmer; 1: as gases do
 uniform float vorticity;            //= 0 [0, 1000] 1/s : how much eddies are kept from fading (Fedkiw et al. 2001)
 uniform float dissolve_rate;        //= 0 [0, 100] 1/s : share of the soot that goes
+uniform float smoke_yield;          //= 0 [0, 10] kg/kg : of 1 kg of fuel: smoke that does not glow or burn, as of damp wood
+uniform float smoke_dissolve_rate;  //= 0 [0, 100] 1/s : share of the smoke that goes
 uniform float guide_rate;           //= 20 [0, 1e4] 1/s : at which the guide holds large eddies; 0: it does not
 uniform float guide_size;           //= 0 [0, 1e6] m : what is smaller than this is a small eddy; 0: the cells of what the guide reads
 uniform vec3 wind;                  //= {0, 0, 0} [-inf, inf] m/s : of the air at first, and of faces that are inflow
 uniform sampler3D gas_now, gas_before, flow_now, flow_before;
+#if SMOKES
+uniform sampler3D smoke_now, smoke_before;
+#endif
 uniform vec3 size;         // cells
 uniform float cell_size;   // m
 uniform float blend;       // of the two states
@@ -41,7 +46,7 @@ uniform float burns_above; // K
 uniform float flame_power; // MW of 1 kg of fuel by 1 K, and by 1/m of the slope of a premixed flame
 writeonly uniform image3D scalars;  //= output rgba16f optional : temperature (K), fuel, soot, fuel that has burnt (kg/m^3)
 writeonly uniform image3D velocity; //= output rgba16f optional : m/s; pressure beyond that of the air around (Pa)
-writeonly uniform image3D rates;    //= output rgba16f optional : heat of burning (MW/m^3), divergence (1/s), vorticity (1/s)
+writeonly uniform image3D rates;    //= output rgba16f optional : heat of burning (MW/m^3), divergence (1/s), vorticity (1/s), smoke (kg/m^3)
 
 const float AIR = 353.0;            // density of air times its temperature, kg K/m^3
 const float AIR_OXYGEN = 0.232;     // by mass
@@ -95,6 +100,9 @@ void main() {
     vec3 curl = vec3(y.z - z.y, z.x - x.z, x.y - y.x);
     float ratio = gas.x / 1500.0, around_ = ambient_temperature / gas.x;
     float lost = cooling * ratio * ratio * ratio * ratio * (1.0 - around_ * around_ * around_ * around_) / gas.x;
-    float heat = burning(gas, at);
-    imageStore(rates, at, vec4(heat, expansion * (heat / AIR_ENERGY - lost), length(curl), 0.0));
+    float heat = burning(gas, at), smoke = 0.0;
+#if SMOKES
+    smoke = mixed(smoke_before, smoke_now, at).x;
+#endif
+    imageStore(rates, at, vec4(heat, expansion * (heat / AIR_ENERGY - lost), length(curl), smoke));
 }

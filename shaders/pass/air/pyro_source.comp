@@ -6,6 +6,7 @@
 //@ field float fuel = 0 : vapour or mist of fuel (kg/m^3): 2 is a rich cloud that burns as it mixes, air burns 0.07 of petrol
 //@ field float temperature = 0 : kelvin; fuel lights above its temperature of ignition
 //@ field float soot = 0 : black smoke (kg/m^3): 0.001 hides what is a few metres behind it
+//@ field float smoke = 0 : smoke that does not glow or burn (kg/m^3): steam, dust
 //@ field vec3 velocity = {0, 0, 0} : of the gas there (m/s)
 uniform float rate;            //= 0 [0, 1e4] 1/s : how fast the gas takes on these values; 0: at once
 uniform vec2 during;           //= {-1e6, 1e6} [-1e6, 1e6] s : from when to when it gives
@@ -15,7 +16,7 @@ uniform vec3 box_min;    // corner of the box (m)
 uniform float cell_size; // m
 uniform vec3 first;      // cells of the source's box: of the first corner,
 uniform vec3 count;      // and how many
-// Halves: fuel and temperature, soot and 1 within the shape, velocity.
+// Halves: fuel and temperature, soot and 1 within the shape, velocity and smoke.
 layout(std430) writeonly buffer SourceValues { uvec4 source_values[]; };
 
 #include "source_particles.glsl"
@@ -37,11 +38,11 @@ void main() {
     uvec4 values = uvec4(0u);
     vec3 moves;
     if (source_is_near(cell, moves) && (HAS_SHAPE == 0 || field_shape(p) > 0.5)) {
-        vec4 gas = numbers_of(vec4(field_fuel(p), field_temperature(p), field_soot(p), 0.0), vec4(0.0),
-                              vec4(1e3, 1e4, 1e3, 0.0));
+        vec4 gas = numbers_of(vec4(field_fuel(p), field_temperature(p), field_soot(p), field_smoke(p)), vec4(0.0),
+                              vec4(1e3, 1e4, 1e3, 1e3));
         vec4 flow = numbers_of(vec4(field_velocity(p) + moves, 0.0), vec4(-1e4), vec4(1e4));
         values = uvec4(packHalf2x16(gas.xy), packHalf2x16(vec2(gas.z, 1.0)), packHalf2x16(flow.xy),
-                       packHalf2x16(flow.zw));
+                       packHalf2x16(vec2(flow.z, gas.w)));
     }
     source_values[cell] = values;
 }

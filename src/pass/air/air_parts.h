@@ -54,7 +54,8 @@ enum { AIR_STEP, AIR_VOXELS, AIR_SOURCES, AIR_FIELDS, AIR_LABELS };
         NAME(burns_above), NAME(rates), NAME(ambient), NAME(velocity_cells), NAME(combustion),     \
         NAME(flame_speed), NAME(flame_power), NAME(present_from), NAME(particles), NAME(radius),   \
         NAME(step_seconds), NAME(time_scale), NAME(SourceMarks), NAME(guide), NAME(guide_rate),    \
-        NAME(guide_size)
+        NAME(guide_size), NAME(smoke), NAME(smoke_yield), NAME(smoke_dissolve_rate),               \
+        NAME(smoke_now), NAME(smoke_before)
 enum { AIR_NAMES(KERNEL_NAME_ID), AIR_NAME_COUNT };
 extern const char *const air_names[AIR_NAME_COUNT];
 

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "pass/air/pyro_parts.h"
 #include <math.h>
+#include <string.h>
 
 field_grid *pass_pyro_open(pass *p, const pass_air_desc *desc) {
     static const double courant = 1.5; // cells of the velocity a step, by the expected speed
@@ -48,6 +49,15 @@ static bool find_guide_cell(pass *p, pyro_air *a) {
                    p->label);
 }
 
+// A source gives some, a field wants it, or fuel makes it.
+static bool has_smoke(const pass *p) {
+    const air *a = air_of(p);
+    bool used = pass_may_be(p, N_smoke_yield, 0, true);
+    for (size_t i = 0; i < a->kind->field_count && !used; i++)
+        used = a->used[i] && strcmp(a->kind->fields[i].name, "smoke") == 0;
+    return used;
+}
+
 static bool pyro_air_complete(pass *p) {
     pyro_air *a = pyro_air_of(p);
     pyro_desc d = {
@@ -55,6 +65,7 @@ static bool pyro_air_complete(pass *p) {
         .precision = (pyro_precision)pass_option(p, N_precision),
         .half_velocity = pass_option(p, N_velocity_cells) == 1,
         .variable_density = pass_option(p, N_density) == 1,
+        .smoke = has_smoke(p),
         .premixed = pass_option(p, N_combustion) == 1,
         .confinement = has_confinement(p),
         .force = air_force_varies(p),
@@ -68,6 +79,11 @@ static bool pyro_air_complete(pass *p) {
     a->solver = pyro_create(p->host->memory, &d);
     if (!a->solver || !air_make_bodies(&a->air)) return err_prefix("%s: ", p->label);
     return air_add_part(p, p->type->record);
+}
+
+static bool pyro_air_defines(pass *p, size_t index, pass_defines *out) {
+    pass_define_flag(out, "SMOKES", pyro_get_desc(pyro_air_of(p)->solver)->smoke);
+    return air_defines(p, index, out);
 }
 
 // ---- building ---------------------------------------------------------------------------------
@@ -134,8 +150,8 @@ static bool pyro_air_rehearse(pass *p) {
 
 // The images of the last two states.
 static void bind_looks(const pyro_air *a, kernel *k) {
-    static const int names[PYRO_LOOKS][2] = {{N_gas_now, N_gas_before},
-                                             {N_flow_now, N_flow_before}};
+    static const int names[PYRO_LOOKS][2] = {
+        {N_gas_now, N_gas_before}, {N_flow_now, N_flow_before}, {N_smoke_now, N_smoke_before}};
     for (int look = 0; look < PYRO_LOOKS; look++) {
         gpu_image *now = pyro_image(a->solver, (pyro_look)look, 0);
         gpu_image *before = pyro_image(a->solver, (pyro_look)look, 1);
@@ -178,7 +194,7 @@ const pass_type pyro_type = {
     .simulation = &pyro_simulation,
     .declare = air_declare,
     .complete = pyro_air_complete,
-    .defines = air_defines,
+    .defines = pyro_air_defines,
     .check = pyro_air_check,
     .build = pyro_air_build,
     .allocate = pyro_air_allocate,

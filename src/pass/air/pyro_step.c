@@ -16,7 +16,8 @@ bool pyro_air_numbers(const pass *p, pyro_numbers *out) {
                                 N_flame_speed, N_burn_time,           N_heat_of_combustion,
                                 N_soot_yield,  N_soot_burn_time,      N_cooling,
                                 N_expansion,   N_vorticity,           N_dissolve_rate,
-                                N_wind,        N_guide_rate,          N_guide_size};
+                                N_wind,        N_guide_rate,          N_guide_size,
+                                N_smoke_yield, N_smoke_dissolve_rate};
     for (size_t i = 0; i < COUNT_OF(names); i++)
         if (!pass_evaluate_now(p, names[i], v[names[i]])) return false;
     const float ignition = v[N_ignition_temperature][0], heat = v[N_heat_of_combustion][0];
@@ -39,6 +40,8 @@ bool pyro_air_numbers(const pass *p, pyro_numbers *out) {
         .soot_yield = soot >= 0 ? soot : (float)fuel->soot,
         .soot_burn_time = v[N_soot_burn_time][0],
         .dissolve = v[N_dissolve_rate][0],
+        .smoke_yield = v[N_smoke_yield][0],
+        .smoke_dissolve = v[N_smoke_dissolve_rate][0],
         .cooling = v[N_cooling][0],
         .expansion = v[N_expansion][0],
     };
@@ -136,11 +139,12 @@ const pass_type pyro_source_type = {
 };
 
 static const pass_fluid_field fields[] = {
-    {"temperature", 0, 1}, {"fuel", 1, 1}, {"soot", 2, 1},       {"velocity", 4, 3},
-    {"pressure", 7, 1},    {"burn", 8, 1}, {"divergence", 9, 1}, {"vorticity", 10, 1},
+    {"temperature", 0, 1}, {"fuel", 1, 1},       {"soot", 2, 1},
+    {"velocity", 4, 3},    {"pressure", 7, 1},   {"burn", 8, 1},
+    {"divergence", 9, 1},  {"vorticity", 10, 1}, {"smoke", 11, 1},
 };
 static const int outputs[] = {N_scalars, N_velocity, N_rates};
-static const int given[] = {N_fuel, N_temperature, N_soot, N_velocity};
+static const int given[] = {N_fuel, N_temperature, N_soot, N_smoke, N_velocity};
 
 const air_kind pyro_kind = {
     .fields = fields,

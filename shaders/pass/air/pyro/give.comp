@@ -9,6 +9,9 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 #include "pass/air/source.glsl"
 uniform float burns_above; // K
 layout(std430) buffer PyroGas { PYRO_FOUR gas[]; };
+#if PYRO_SMOKE
+layout(std430) buffer PyroSmoke { float smokes[]; };
+#endif
 uniform int present_from; // where the marks of this state begin
 layout(std430) buffer PyroActive { uint present[]; }; // half bricks that hold more than clean air
 layout(std430) buffer PyroVelocity { PYRO_FOUR velocity[]; };
@@ -29,11 +32,18 @@ void give_gas(uvec3 cell, int at) {
     uvec4 values = values_at(cell);
     vec2 a = unpackHalf2x16(values.x), b = unpackHalf2x16(values.y);
     if (b.y == 0.0) return;
-    vec4 g = pyro_unpack(pyro_load(gas[at]));
+    vec4 g = pyro_unpack(pyro_load(gas[at])), was = g;
 #if HAS_TEMPERATURE
     g.PYRO_WARMTH = mix(g.PYRO_WARMTH, a.y - ambient, share);
 #endif
     float air = PYRO_AIR / pyro_temperature(g); // kg/m^3
+#if PYRO_SMOKE
+    float smoke = smokes[at] * pyro_temperature(was) / ambient; // by mass
+#if HAS_SMOKE
+    smoke = mix(smoke, unpackHalf2x16(values.w).y / air, share);
+#endif
+    smokes[at] = smoke * ambient / pyro_temperature(g);
+#endif
 #if HAS_FUEL
     g.PYRO_FUEL = mix(g.PYRO_FUEL, a.x / air, share);
     g.PYRO_BURNT = mix(g.PYRO_BURNT, 0.0, share);
