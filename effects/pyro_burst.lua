@@ -10,7 +10,8 @@ local fx = effect { name = "pyro burst", fps = 24, frames = 96 }
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
 local fuel    = param { "fuel", 0.13, min = 0, max = 5, unit = "kg/m^3", help = "of the mist; air burns 0.08, and what is more burns black" }
 local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides; that of a real fire is 8700" }
-local dust    = param { "dust", 0.0012, min = 0, max = 0.01, unit = "kg/m^3", help = "of the layer that is torn from the ground" }
+local dust    = param { "dust", 0.012, min = 0, max = 0.1, unit = "kg/m^3", help = "of the layer that is torn from the ground" }
+local haze    = param { "haze", 870, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of dust hides" }
 local charge  = param { "charge", 0.25, min = 0.001, max = 10, unit = "kg", help = "TNT that bursts the bottle: it throws debris and tears up dust" }
 local glow    = param { "glow", 3, min = 0, max = 50, help = "factor of the fire's light" }
 
@@ -37,7 +38,7 @@ local outwards = position * vec(1, 1, 0)
 local torn = smoothstep(18, 45, burst.impulse)
 fire:source {
   shape = box { position = {0, 0, 0.15}, size = {8, 8, 0.3} } * step(0.01, torn),
-  soot = dust * lumps * torn, during = {0.03, 0.1},
+  smoke = dust * lumps * torn, during = {0.03, 0.1},
   velocity = (outwards / max(length(outwards), 0.2) * 0.13 + vec(0, 0, 0.06)) * burst.impulse * torn,
 }
 
@@ -67,13 +68,14 @@ local kelvin = fire.temperature * (0.82 + 0.42 * ripple)
 -- What absorbs light gives it off, too: soot by its temperature, and the flame itself a little.
 local light = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
 local flame = smoothstep(1000, 1500, kelvin)
-local cover = (fire.soot * smoke + flame * 1.5) * (0.4 + 1.2 * ripple)
-local low = smoothstep(1.4, 0.4, position.z + 0.6 * ripple) * smoothstep(700, 400, fire.temperature)
+local burns = (fire.soot * smoke + flame * 1.5) * (0.4 + 1.2 * ripple)
+local flies = fire.smoke * haze * (0.4 + 1.2 * ripple) -- dust
+local cover = burns + flies
 local lit = lighting {
   density    = cover,
-  emission   = light(kelvin) * cover * flame * glow,
+  emission   = light(kelvin) * burns * flame * glow,
   albedo     = 0.75,
-  tint       = mix(vec(0.4, 0.4, 0.4), vec(0.95, 0.8, 0.63), low), -- what is low and cool is dust
+  tint       = mix(vec(0.4, 0.4, 0.4), vec(0.95, 0.8, 0.63), flies / max(cover, 0.001)),
   anisotropy = 0.3,
   sampling   = "cubic",
 }
