@@ -100,6 +100,7 @@ static void define_all(pyro *p) {
     define(p, "PYRO_SMOKE", p->desc.smoke);
     define(p, "PYRO_PREMIXED", p->desc.premixed);
     define(p, "PYRO_CONFINES", p->desc.confinement);
+    define(p, "PYRO_TURBULENT", p->desc.turbulence);
     define(p, "PYRO_FORCE", p->desc.force);
     define(p, "PYRO_GUIDED", p->desc.guide);
     define(p, "PYRO_SOLIDS", p->desc.solids);
@@ -125,6 +126,7 @@ static const char *const shaders[PYRO_KERNELS] = {
     [PYRO_K_GAS] = "sim/pyro/gas.comp",
     [PYRO_K_VORTICITY] = "sim/pyro/curl.comp",
     [PYRO_K_CURL] = "sim/pyro/curl.comp",
+    [PYRO_K_TURBULENCE] = "sim/pyro/turbulence.comp",
     [PYRO_K_GUIDE] = "sim/pyro/guide.comp",
     [PYRO_K_VELOCITY_X] = "sim/pyro/velocity.comp",
     [PYRO_K_VELOCITY_Y] = "sim/pyro/velocity.comp",
@@ -185,6 +187,7 @@ static const char *const more_defines[PYRO_KERNELS][2] = {
 static bool is_used(const pyro_desc *desc, pyro_kernel which) {
     if (which == PYRO_K_CARRIER) return desc->half_velocity;
     if (which == PYRO_K_VORTICITY || which == PYRO_K_CURL) return desc->confinement;
+    if (which == PYRO_K_TURBULENCE) return desc->turbulence;
     if (which == PYRO_K_GUIDE) return desc->guide;
     if (which == PYRO_K_REFLECT) return desc->advection == PYRO_REFLECTION;
     if (which == PYRO_K_OBSTRUCT || which == PYRO_K_FILL) return desc->solids;

@@ -37,7 +37,7 @@ enum {
     PYRO_LEAST_SIZE = 16,
     PYRO_MOST_SIZE = 1024,
     PYRO_BRICK = 8,
-    PYRO_MAX_DEFINES = 24,
+    PYRO_MAX_DEFINES = 32,
 };
 
 typedef struct pyro_desc { // structure: what shaders are compiled for
@@ -50,6 +50,7 @@ typedef struct pyro_desc { // structure: what shaders are compiled for
     bool smoke;            // the gas carries some that does not glow or burn
     bool premixed;         // fuel burns where a flame passes, not where it is hot
     bool confinement;      // numbers may have some
+    bool turbulence;       // numbers may have some
     bool force;            // pyro_set_force is called before the first step
     bool guide;            // pyro_set_guide is called before the first step
     bool variable_density; // pressure moves light gas farther than heavy gas
@@ -68,6 +69,7 @@ typedef struct pyro_numbers { // parameters of a step; they may change with each
     float guide_size;         // side of the cells that tell large eddies from small ones, m
     float inflow[3];          // velocity across faces that are PYRO_INFLOW, m/s
     float confinement;        // acceleration by 1 m/s of difference across a cell, 1/s
+    float turbulence;         // how much eddies below the cells push: 1 by their own shear
     float max_speed;          // limit of each component, m/s; 0: 7 cells of the gas per step
     float ignition;           // temperature above which fuel burns, K
     float flame_speed;        // of a flame into mixture at rest, m/s, with pyro_desc.premixed

@@ -18,7 +18,7 @@ typedef enum pyro_memory {
     PYRO_MEM_ACTIVE =
         PYRO_MEM_GAS + 2,      // which half bricks hold more than clean air, of both states
     PYRO_MEM_VELOCITY_BETWEEN, // two sweeps
-    PYRO_MEM_GAS_BETWEEN,      // and vorticity, with confinement
+    PYRO_MEM_GAS_BETWEEN,      // and vorticity, and the potential of turbulence
     PYRO_MEM_SMOKE,            // two
     PYRO_MEM_SMOKE_BETWEEN = PYRO_MEM_SMOKE + 2,
     PYRO_MEM_CARRIER, // where cells of the velocity are larger
@@ -70,6 +70,7 @@ typedef enum pyro_kernel {
     PYRO_K_GAS, // carried along z, burnt
     PYRO_K_VORTICITY,
     PYRO_K_CURL,
+    PYRO_K_TURBULENCE,
     PYRO_K_GUIDE,
     PYRO_K_VELOCITY_X,
     PYRO_K_VELOCITY_Y,
@@ -124,7 +125,8 @@ typedef enum pyro_kernel {
         NAME(box_min), NAME(force), NAME(begins), NAME(place), NAME(first), NAME(flame_reach),     \
         NAME(everywhere), NAME(present_from), NAME(present_to), NAME(guide), NAME(pull),           \
         NAME(guide_cells), NAME(guide_share), NAME(PyroSmokeFrom), NAME(PyroSmokeInto),            \
-        NAME(smokes), NAME(smoke_yield), NAME(smoke_kept)
+        NAME(smokes), NAME(smoke_yield), NAME(smoke_kept), NAME(PyroPotential), NAME(kick),        \
+        NAME(turn)
 enum { PYRO_NAMES(KERNEL_NAME_ID), PYRO_OWN = N_PyroReport + 1 };
 
 struct pyro {

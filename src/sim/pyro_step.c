@@ -141,6 +141,18 @@ static bool curl_find(pyro *p, gpu *g, const pyro_numbers *n) {
     return true;
 }
 
+// The same, and what was vorticity is not needed any more.
+static bool turbulence_find(pyro *p, gpu *g, const pyro_numbers *n) {
+    const float halves = p->desc.advection == PYRO_REFLECTION ? 2 : 1; // each of which pushes
+    pyro_stage(p, g, "pyro.turbulence");
+    kernel *k = pyro_use(p, PYRO_K_TURBULENCE);
+    set_carrying(k, n, pyro_flow_cell(p, n));
+    kernel_set_float(k, N_kick, n->turbulence / halves);
+    kernel_set_int(k, N_turn, (int32_t)(p->steps & INT32_MAX));
+    kernel_bind_buffer(k, N_PyroPotential, p->buffers[PYRO_MEM_GAS_BETWEEN]);
+    return pyro_run(p, g, k);
+}
+
 static kernel *use_stirring(pyro *p, pyro_kernel which, const pyro_numbers *n, gpu_buffer *from,
                             gpu_buffer *into) {
     kernel *k = pyro_use(p, which);
@@ -160,6 +172,7 @@ static void set_forces(const pyro *p, kernel *k, const pyro_numbers *n) {
     kernel_set_float(k, N_max_speed, n->max_speed);
     if (p->force) kernel_bind_image(k, N_force, p->force);
     if (p->desc.guide) pyro_set_pull(p, k, n);
+    kernel_bind_buffer(k, N_PyroPotential, p->buffers[PYRO_MEM_GAS_BETWEEN]);
 }
 
 // Carries a velocity by that of the state, and pushes it. `path`: where it is, and
@@ -199,6 +212,7 @@ static bool velocity_advance(pyro *p, gpu *g, const pyro_numbers *numbers) {
     const float most = MOST_CELLS_A_STEP * n.cell / n.dt;
     n.max_speed = n.max_speed > 0 && n.max_speed < most ? n.max_speed : most;
     if (p->desc.confinement && !curl_find(p, g, &n)) return false;
+    if (p->desc.turbulence && !turbulence_find(p, g, &n)) return false;
     if (p->desc.guide && !pyro_find_pull(p, g, &n)) return false;
     if (p->desc.variable_density && !pyro_find_coefficients(p, g, &n)) return false;
     if (p->desc.advection == PYRO_REFLECTION) return velocity_reflect(p, g, &n);

@@ -2,13 +2,14 @@
 //
 //   bench_pyro [-d DEVICE] [-n STEPS] [-s X[,Y,Z]] [-a upwind|parabolic|reflection] [-h f32|f16]
 //   [-c CYCLES] [-l] [-v] [-V]
-//   [-g] [-k] [-o] [-t]
+//   [-g] [-k] [-o] [-r] [-t]
 //
 // A ball of hot fuel burns in the middle of the lower half. -l: the velocity has half as many cells
 // along each axis; -v: with confinement; -V: of
-// variable density; -o: with smoke; -g: with a guide of cells four times as large; -k: a look of
-// each step is kept; -t: the stages of a step are timed apart. Prints milliseconds a step by the
-// device's clock, million cells a second by that, and by the processor time of this process.
+// variable density; -o: with smoke; -r: with turbulence; -g: with a guide of cells four times as
+// large; -k: a look of each step is kept; -t: the stages of a step are timed apart. Prints
+// milliseconds a step by the device's clock, million cells a second by that, and by the processor
+// time of this process.
 #include "sim/pyro.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -43,7 +44,7 @@ static bool parse(int argc, char **argv, bench *b) {
                           .faces = {[4] = PYRO_WALL},
                           .advection = PYRO_PARABOLIC,
                           .precision = PYRO_AUTO}};
-    for (int c; (c = getopt(argc, argv, "d:n:s:a:h:c:lvktVgo")) != -1;) {
+    for (int c; (c = getopt(argc, argv, "d:n:s:a:h:c:lvktVgor")) != -1;) {
         uint32_t *s = b->desc.size;
         if (c == 'd') b->device = optarg;
         if (c == 'n') b->steps = atoi(optarg);
@@ -57,6 +58,7 @@ static bool parse(int argc, char **argv, bench *b) {
         if (c == 'V') b->desc.variable_density = true;
         if (c == 'g') b->desc.guide = true;
         if (c == 'o') b->desc.smoke = true;
+        if (c == 'r') b->desc.turbulence = true;
         if (c == 'k') b->keep = true;
         if (c == 't') b->desc.timed = true;
         if (c == '?') return false;
@@ -163,16 +165,16 @@ static int measure(bench *b, pyro *p, gpu *g) {
     if (milliseconds <= 0 || !look(b, p, g, &r)) return fail("step");
     const pyro_desc *d = pyro_get_desc(p);
     const double cells = 1e-3 * d->size[0] * d->size[1] * d->size[2] * b->steps; // thousands
-    printf(
-        "%ux%ux%u %s %s %u cycles%s%s%s%s%s%s: %.3f ms a step, %.2f million cells a second, %.2f a "
-        "processor second, residual %.1e of %.2f m/s, %.0f K\n",
-        d->size[0], d->size[1], d->size[2], pyro_advection_names[d->advection],
-        d->precision == PYRO_F16 ? "f16" : "f32", d->cycles,
-        d->half_velocity ? ", half the velocity" : "", d->confinement ? ", confinement" : "",
-        d->variable_density ? ", variable density" : "", d->guide ? ", guided" : "",
-        d->smoke ? ", smoke" : "", b->keep ? ", kept" : "", milliseconds / b->steps,
-        cells / milliseconds, cells / processor, (double)r.residual, (double)r.speed,
-        (double)r.hottest);
+    printf("%ux%ux%u %s %s %u cycles%s%s%s%s%s%s%s: %.3f ms a step, %.2f million cells a second, "
+           "%.2f a "
+           "processor second, residual %.1e of %.2f m/s, %.0f K\n",
+           d->size[0], d->size[1], d->size[2], pyro_advection_names[d->advection],
+           d->precision == PYRO_F16 ? "f16" : "f32", d->cycles,
+           d->half_velocity ? ", half the velocity" : "", d->confinement ? ", confinement" : "",
+           d->variable_density ? ", variable density" : "", d->guide ? ", guided" : "",
+           d->smoke ? ", smoke" : "", d->turbulence ? ", turbulence" : "", b->keep ? ", kept" : "",
+           milliseconds / b->steps, cells / milliseconds, cells / processor, (double)r.residual,
+           (double)r.speed, (double)r.hottest);
     for (int i = 0; i < b->stage_count && d->timed; i++)
         printf("  %-24s %8.3f ms\n", b->stages[i].label, b->stages[i].milliseconds / b->steps);
     return 0;
@@ -195,6 +197,7 @@ int main(int argc, char **argv) {
                                .soot_burn_time = 1,
                                .cooling = 400,
                                .guide_rate = 20,
+                               .turbulence = 0.3f,
                                .guide_size = 16 / (float)b.desc.size[0],
                                .expansion = 1};
     const char *source = getenv("ROIL_SOURCE_DIR");

@@ -204,11 +204,108 @@ static void momentum_stays(void **state) {
     for (pyro_advection a = PYRO_PARABOLIC; a <= PYRO_REFLECTION; a++) check_momentum(*state, a);
 }
 
+// ---- turbulence below the cells ---------------------------------------------------------------
+
+static void shear(pyro_world *w, const int c[3], void *data) {
+    *pyro_face_at(w, 0, c) = (float)(*(const double *)data * sin(2 * pi / 32 * (c[1] + 0.5)));
+}
+
+// What one step adds to gas that goes along x, so fast, by where it is along y: the velocity's.
+static void open_sheared(pyro_world *w, gpu *g, double speed, float turbulence,
+                         pyro_advection advection) {
+    pyro_open(w, g,
+              &(pyro_desc){.size = {32, 32, 32},
+                           .faces = {3, 3, 3, 3, 3, 3},
+                           .advection = advection,
+                           .cycles = 6,
+                           .turbulence = true});
+    w->numbers.gravity = 0;
+    w->numbers.cell = 0.1f;
+    w->numbers.dt = 0.05f;
+    w->numbers.turbulence = turbulence;
+    pyro_for_each(w, shear, &speed);
+    pyro_transfer(w, true);
+    pyro_run_steps(w, 1);
+}
+
+// The mean square of each component is that of h |S| sqrt(|S| dt), of which h |S| is the difference
+// of velocities across a cell: as the cosine's cube 4 / (3 pi) of its greatest.
+static void check_turbulence(gpu *g, pyro_advection advection) {
+    const double speed = 1, amount = 0.3;
+    pyro_world still, pushed;
+    open_sheared(&still, g, speed, 0, advection);
+    open_sheared(&pushed, g, speed, (float)amount, advection);
+    pyro_transfer(&still, false);
+    pyro_transfer(&pushed, false);
+    const double across = speed * sin(4 * pi / 32) / 2, reach = 0.05 / 0.1;
+    const double wanted = amount * amount * pow(across, 3) * reach * 4 / (3 * pi);
+    for (int k = 0; k < 3; k++) {
+        double sum = 0;
+        for (size_t i = 0; i < still.cells; i++)
+            sum += pow((double)(pushed.velocity[i][k] - still.velocity[i][k]), 2);
+        const double seen_ = sum / (double)still.cells;
+        print_message("turbulence along %c: %.4g m/s, theory %.4g\n", "xyz"[k], sqrt(seen_),
+                      sqrt(wanted));
+        assert_true(fabs(sqrt(seen_ / wanted) - 1) < 0.06);
+    }
+    const pyro_report r = pyro_look_at(&pushed);
+    print_message("divergence %.2g m/s\n", (double)r.residual);
+    assert_true((double)r.residual < 2e-8);
+    pyro_close(&still);
+    pyro_close(&pushed);
+}
+
+static void turbulence_is_by_shear(void **state) {
+    for (pyro_advection a = PYRO_PARABOLIC; a <= PYRO_REFLECTION; a++) check_turbulence(*state, a);
+}
+
+// Energy that a swirl has after a while, when turbulence is as rough as it may be.
+static double stirred(gpu *g, pyro_advection advection, float turbulence) {
+    pyro_world w;
+    pyro_open(&w, g,
+              &(pyro_desc){.size = {32, 32, 32},
+                           .faces = {3, 3, 3, 3, 3, 3},
+                           .advection = advection,
+                           .turbulence = true});
+    w.numbers.gravity = 0;
+    w.numbers.cell = 1;
+    w.numbers.dt = 0.5f;
+    w.numbers.turbulence = turbulence;
+    pyro_for_each(&w, swirl, NULL);
+    pyro_transfer(&w, true);
+    const double before = energy(&w);
+    pyro_run_steps(&w, 100);
+    const double after = energy(&w) / before;
+    pyro_close(&w);
+    return after;
+}
+
+static void turbulence_does_not_feed_itself(void **state) {
+    for (pyro_advection a = PYRO_PARABOLIC; a <= PYRO_REFLECTION; a++) {
+        const double left = stirred(*state, a, 1);
+        print_message("%s: with turbulence of 1 %.3f of the energy is left\n",
+                      pyro_advection_names[a], left);
+        assert_true(left < 1);
+    }
+}
+
+static void even_flow_has_none(void **state) {
+    pyro_world w;
+    open_sheared(&w, *state, 0, 1, PYRO_PARABOLIC);
+    pyro_transfer(&w, false);
+    for (size_t i = 0; i < w.cells; i++)
+        for (int k = 0; k < 3; k++) assert_true(w.velocity[i][k] == 0);
+    pyro_close(&w);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ring_moves_by_its_circulation),
         cmocka_unit_test(parabolas_keep_more_energy),
         cmocka_unit_test(momentum_stays),
+        cmocka_unit_test(turbulence_is_by_shear),
+        cmocka_unit_test(even_flow_has_none),
+        cmocka_unit_test(turbulence_does_not_feed_itself),
     };
     return gpu_test_run(tests, COUNT_OF(tests));
 }

@@ -35,6 +35,16 @@ vec3 pull_at(vec3 p) { // linear between its cells; `p` in cells of the velocity
     return textureLod(pull, at / vec3(textureSize(pull, 0)), 0.0).xyz;
 }
 #endif
+#if PYRO_TURBULENT
+layout(std430) readonly buffer PyroPotential { PYRO_FOUR potential[]; }; // turbulence.comp writes it
+vec3 turbulence_at(pyro_near n) { // its curl at the lower faces of a cell
+    vec3 own = pyro_load(potential[n.cell.x + n.cell.y + n.cell.z]).xyz;
+    vec3 x = pyro_load(potential[n.next.x + n.cell.y + n.cell.z]).xyz - own;
+    vec3 y = pyro_load(potential[n.cell.x + n.next.y + n.cell.z]).xyz - own;
+    vec3 z = pyro_load(potential[n.cell.x + n.cell.y + n.next.z]).xyz - own;
+    return vec3(y.z - z.y, z.x - x.z, x.y - y.x);
+}
+#endif
 #if PYRO_CONFINES
 layout(std430) readonly buffer PyroCurl { PYRO_FOUR curl[]; };
 #endif
@@ -62,6 +72,9 @@ vec3 pushed(ivec3 c, vec3 v) {
     v.z += dt * buoyancy(n.cell.x + n.cell.y + n.below.z, at);
 #if PYRO_FORCE
     v += dt * textureLod(force, (vec3(c) + 0.25) / vec3(PYRO_SIZE), 0.0).xyz; // amid the three faces
+#endif
+#if PYRO_TURBULENT
+    v += turbulence_at(n);
 #endif
 #if PYRO_GUIDED
     v += vec3(pull_at(vec3(c) + vec3(0.0, 0.5, 0.5)).x, pull_at(vec3(c) + vec3(0.5, 0.0, 0.5)).y,
