@@ -1,4 +1,5 @@
--- A step of burning gas by size, cells of its velocity, advection, density, precision and confinement.
+-- A step of burning gas by size, cells of its velocity, advection, density, precision, confinement, and what
+-- else it carries or is pushed by.
 --
 --   roil bench scripts/bench/pyro.lua -o out/pyro
 --   roil bench scripts/bench/pyro.lua -o out/pyro --size 96x54 --frames 8 --only cells=64
@@ -33,11 +34,16 @@ return sweep {
       { name = "none" },
       { name = "confined", ["pyro.vorticity"] = 4 },
     },
+    axis { "more",
+      { name = "nothing" },
+      { name = "smoke", ["pyro.smoke_yield"] = 0.1 },
+      { name = "turbulence", ["pyro.turbulence"] = 0.3 },
+    },
   },
   -- Sizes are measured for what most effects have; each other thing alone at one size.
   skip = function(row)
     local others = 0
-    for name, most in pairs { advection = "parabolic", density = "constant", vorticity = "none" } do
+    for name, most in pairs { advection = "parabolic", density = "constant", vorticity = "none", more = "nothing" } do
       if row[name] ~= most then others = others + 1 end
     end
     return others > 1 or (others == 1 and row.cells ~= 128)

@@ -128,6 +128,7 @@ static void what_is_wrong_is_said(void **state) {
         {"guide = {1, 0, 0}", "", "", "0", "'guide_size' is missing: 'guide' reads no grid"},
         {"", "smok = 1", "", "0", "did you mean 'smoke'?"},
         {"smoke_yield = -1", "", "", "0", "'smoke_yield'"},
+        {"turbulence = 2", "", "", "0", "'turbulence'"},
         {"guide_rate = -1", "", "", "0", "'guide_rate'"},
         {"size = {20, 16, 16}", "", "", "0", "a multiple of 8 is needed"},
     };

@@ -27,6 +27,7 @@ uniform float soot_burn_time;       //= 1 [0, 1e3] s : that soot in hot fresh ai
 uniform float cooling;              //= 400 [0, 1e6] K/s : by which gas of 1500 K cools at first; by the fourth power of its temperature
 uniform float expansion;            //= 1 [0, 10] : how much gas expands where it becomes warmer; 1: as gases do
 uniform float vorticity;            //= 0 [0, 1000] 1/s : how much eddies are kept from fading (Fedkiw et al. 2001)
+uniform float turbulence;           //= 0 [0, 1] : how much eddies below the cells push those that cells can hold, where gas is sheared: 0.3 is felt, 1 is rough
 uniform float dissolve_rate;        //= 0 [0, 100] 1/s : share of the soot that goes
 uniform float smoke_yield;          //= 0 [0, 10] kg/kg : of 1 kg of fuel: smoke that does not glow or burn, as of damp wood
 uniform float smoke_dissolve_rate;  //= 0 [0, 100] 1/s : share of the smoke that goes

@@ -55,7 +55,7 @@ enum { AIR_STEP, AIR_VOXELS, AIR_SOURCES, AIR_FIELDS, AIR_LABELS };
         NAME(flame_speed), NAME(flame_power), NAME(present_from), NAME(particles), NAME(radius),   \
         NAME(step_seconds), NAME(time_scale), NAME(SourceMarks), NAME(guide), NAME(guide_rate),    \
         NAME(guide_size), NAME(smoke), NAME(smoke_yield), NAME(smoke_dissolve_rate),               \
-        NAME(smoke_now), NAME(smoke_before)
+        NAME(smoke_now), NAME(smoke_before), NAME(turbulence)
 enum { AIR_NAMES(KERNEL_NAME_ID), AIR_NAME_COUNT };
 extern const char *const air_names[AIR_NAME_COUNT];
 

@@ -15,12 +15,6 @@ field_grid *pass_pyro_open(pass *p, const pass_air_desc *desc) {
     return air_open(&a->air, &pyro_kind, p, desc, (sim_units){desc->voxel_size, step});
 }
 
-// A constant that is 0 leaves confinement out.
-static bool has_confinement(const pass *p) {
-    const field *given = p->uniforms[p->names[N_vorticity].uniform];
-    return given && (!field_is_constant(given) || given->value[0] > 0);
-}
-
 // The side of a grid's cells, m; of those of the velocity where it is burning gas.
 static float cell_of(const pass_host *host, const field_grid *grid) {
     const graph_image image = pass_grid_image(host, grid, 0);
@@ -67,7 +61,8 @@ static bool pyro_air_complete(pass *p) {
         .variable_density = pass_option(p, N_density) == 1,
         .smoke = has_smoke(p),
         .premixed = pass_option(p, N_combustion) == 1,
-        .confinement = has_confinement(p),
+        .confinement = pass_may_be(p, N_vorticity, 0, true), // a constant 0 leaves it out
+        .turbulence = pass_may_be(p, N_turbulence, 0, true),
         .force = air_force_varies(p),
         .guide = air_is_guided(p),
         .solids = a->air.solids.count > 0,

@@ -17,7 +17,7 @@ bool pyro_air_numbers(const pass *p, pyro_numbers *out) {
                                 N_soot_yield,  N_soot_burn_time,      N_cooling,
                                 N_expansion,   N_vorticity,           N_dissolve_rate,
                                 N_wind,        N_guide_rate,          N_guide_size,
-                                N_smoke_yield, N_smoke_dissolve_rate};
+                                N_smoke_yield, N_smoke_dissolve_rate, N_turbulence};
     for (size_t i = 0; i < COUNT_OF(names); i++)
         if (!pass_evaluate_now(p, names[i], v[names[i]])) return false;
     const float ignition = v[N_ignition_temperature][0], heat = v[N_heat_of_combustion][0];
@@ -29,6 +29,7 @@ bool pyro_air_numbers(const pass *p, pyro_numbers *out) {
         .gravity = v[N_gravity][0],
         .inflow = {v[N_wind][0], v[N_wind][1], v[N_wind][2]},
         .confinement = v[N_vorticity][0],
+        .turbulence = v[N_turbulence][0],
         .guide_rate = v[N_guide_rate][0],
         .guide_size = guide > 0 ? guide : a->guide_cell,
         .ignition = ignition > 0 ? ignition : (float)fuel->ignition,
