@@ -13,48 +13,53 @@ local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", he
 local dust    = param { "dust", 0.012, min = 0, max = 0.1, unit = "kg/m^3", help = "of the layer that is torn from the ground" }
 local haze    = param { "haze", 870, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of dust hides" }
 local charge  = param { "charge", 0.25, min = 0.001, max = 10, unit = "kg", help = "TNT that bursts the bottle: it throws debris and tears up dust" }
+local guided  = param { "guided", false, help = "whether shot and film have the large eddies of the draft, which runs beside them" }
 local glow    = param { "glow", 3, min = 0, max = 50, help = "factor of the fire's light" }
-
--- A box of 9 x 9 x 12.6 m. Two cores bear the draft, a graphics card the film.
-local cells = ({ draft = {80, 80, 112}, shot = {160, 160, 224}, film = {256, 256, 352} })[quality:get()]
-local fire = pyro {
-  size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 20, velocity_cells = "half", density = "variable",
-  burn_time = 0.03, cooling = 2200, soot_burn_time = 2, vorticity = 6,
-}
 
 -- The mist when it is lit: rich in the middle of each lump, poor between them, and whirling.
 local lumps = worley { frequency = 1.3, octaves = 3, seed = 3 }:remap(0.1, 0.7, 0, 1)
 local whirl = curl { frequency = 0.8, octaves = 3, seed = 5 }
-fire:source {
-  shape = sphere { position = {0, 0, 1}, radius = 1.15 },
-  fuel = fuel * (0.2 + 1.6 * lumps), temperature = 900,
-  velocity = whirl * 6 + vec(0, 0, 5), during = {0, 0.02},
-}
 
 -- The blast does more the nearer it is: its impulse tears dust from the ground, a thin layer that flies
 -- outwards, and throws debris.
 local burst = blast { position = {0, 0, 0.8}, charge = charge }
 local outwards = position * vec(1, 1, 0)
 local torn = smoothstep(18, 45, burst.impulse)
-fire:source {
-  shape = box { position = {0, 0, 0.15}, size = {8, 8, 0.3} } * step(0.01, torn),
-  smoke = dust * lumps * torn, during = {0.03, 0.1},
-  velocity = (outwards / max(length(outwards), 0.2) * 0.13 + vec(0, 0, 0.06)) * burst.impulse * torn,
-}
-
--- Debris burns as it flies, and drags fire and smoke behind it until it has cooled.
 local way = position - vec(0, 0, 0.3)
 local debris = particles {
   count = 14, burst = 14, lifetime = {0.6, 1.5}, seed = 11, position = {0, 0, 0.9}, radius = 0.5,
   speed = way / max(length(way), 0.1) * burst.impulse * 0.15, variation = 0.5,
   gravity = 9.81, drag = 0.2, collide = position.z, clearance = 0.05, bounce = 0.3, friction = 0.6,
 }
-local heat = 1 - particle_age
-fire:source {
-  particles = debris, shape = box { position = {0, 0, 3.5}, size = {9, 9, 7} }, -- no cells above are asked
-  radius = 0.13 * heat * smoothstep(4.3, 3, length(outwards)), rate = 80, velocity_factor = 0.2,
-  fuel = 0.1 * heat, temperature = 500 + 1000 * heat, soot = 0.0003 * heat,
-}
+
+-- A box of 9 x 9 x 12.6 m. Two cores bear the draft, a graphics card the film.
+local sizes = { draft = {80, 80, 112}, shot = {160, 160, 224}, film = {256, 256, 352} }
+local function burn(cells, guide)
+  local fire = pyro {
+    size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 20, velocity_cells = "half", density = "variable",
+    burn_time = 0.03, cooling = 2200, soot_burn_time = 2, vorticity = 6, guide = guide,
+  }
+  fire:source {
+    shape = sphere { position = {0, 0, 1}, radius = 1.15 },
+    fuel = fuel * (0.2 + 1.6 * lumps), temperature = 900,
+    velocity = whirl * 6 + vec(0, 0, 5), during = {0, 0.02},
+  }
+  fire:source {
+    shape = box { position = {0, 0, 0.15}, size = {8, 8, 0.3} } * step(0.01, torn),
+    smoke = dust * lumps * torn, during = {0.03, 0.1},
+    velocity = (outwards / max(length(outwards), 0.2) * 0.13 + vec(0, 0, 0.06)) * burst.impulse * torn,
+  }
+  -- Debris burns as it flies, and drags fire and smoke behind it until it has cooled.
+  local heat = 1 - particle_age
+  fire:source {
+    particles = debris, shape = box { position = {0, 0, 3.5}, size = {9, 9, 7} }, -- no cells above are asked
+    radius = 0.13 * heat * smoothstep(4.3, 3, length(outwards)), rate = 80, velocity_factor = 0.2,
+    fuel = 0.1 * heat, temperature = 500 + 1000 * heat, soot = 0.0003 * heat,
+  }
+  return fire
+end
+local draft = guided:get() and quality:get() ~= "draft" and burn(sizes.draft)
+local fire = burn(sizes[quality:get()], draft and draft.velocity or nil)
 
 fx.camera = orbit { target = {0, 0, 4}, distance = 18, yaw = 25, pitch = 4, fov = 38 }
 fx.sun    = sun { azimuth = 215, elevation = 30, color = {1, 0.92, 0.8}, strength = 6 }

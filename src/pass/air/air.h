@@ -5,8 +5,8 @@
 // Time: a step of the solver is a fixed part of a second. The state stands ahead of the time that
 // is drawn, so that the states before and after it are mixed: what is drawn, and how often, never
 // changes what is simulated. Uniforms and meshes are evaluated at the time of each step, fields of
-// sources and the force at times of their own (air_turn); grids that fields sample, and what
-// `update` sets, are those of the frame.
+// sources, the force and the guide at times of their own (air_turn); grids that fields sample, and
+// what `update` sets, are those of the frame.
 #pragma once
 #include "pass/fluid.h"
 #include "pass/pass.h"

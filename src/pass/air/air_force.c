@@ -49,7 +49,8 @@ static gpu_image_desc describe(const air *a, int which) {
 }
 
 static bool lacks_image(const air *a, int which) {
-    return !baked_by((air *)a, which)->image && pass_has_kernel(a->pass, which);
+    const air_baked *b = which == AIR_FORCE ? &a->force : &a->guide;
+    return !b->image && pass_has_kernel(a->pass, which);
 }
 
 void air_list_force(const air *a, budget_list *out) {
