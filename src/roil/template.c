@@ -22,7 +22,7 @@ struct template_file { // one that was read
     int64_t changed;
     bool square;
     picture image; // as large as the flow takes it
-    float rgba[4 * SLICES_TILE * SLICES_TILE];
+    float rgba[4 * TEMPLATE_TILE * TEMPLATE_TILE];
 };
 
 // ---- names ------------------------------------------------------------------------------------
@@ -138,12 +138,12 @@ void roil_free_templates(roil_effect *e) {
 // Makes the tile that the flow takes; read as a picture again, it gives the same tile.
 static void take_tile(template_file *t, const picture *read) {
     t->square = read->width == read->height;
-    slices_tile(read, t->rgba);
-    for (int i = 0; i < SLICES_TILE * SLICES_TILE; i++) {
+    template_tile(read, t->rgba);
+    for (int i = 0; i < TEMPLATE_TILE * TEMPLATE_TILE; i++) {
         float *texel = t->rgba + 4 * i;
         for (int c = 0; c < 3 && texel[3] > 0; c++) texel[c] /= texel[3];
     }
-    t->image = (picture){SLICES_TILE, SLICES_TILE, 0, t->rgba};
+    t->image = (picture){TEMPLATE_TILE, TEMPLATE_TILE, 0, t->rgba};
 }
 
 static const template_file *read_template(roil_effect *e, const char *file) {
@@ -199,8 +199,8 @@ bool roil_template_icon(roil_effect *e, const char *file, bool velocity, uint32_
     if (!t->square) return err_set("%s is no template: it is not square", file);
     for (uint32_t y = 0; y < side; y++)
         for (uint32_t x = 0; x < side; x++) {
-            uint32_t i = x * SLICES_TILE / side, j = y * SLICES_TILE / side;
-            color_of(t->rgba + 4 * (j * SLICES_TILE + i), velocity, out + 4 * (y * side + x));
+            uint32_t i = x * TEMPLATE_TILE / side, j = y * TEMPLATE_TILE / side;
+            color_of(t->rgba + 4 * (j * TEMPLATE_TILE + i), velocity, out + 4 * (y * side + x));
         }
     return true;
 }

@@ -13,7 +13,7 @@ static picture library(templates_world *t, const char *name) {
     char path[4200];
     snprintf(path, sizeof path, "%s/effects/templates/%s.exr", root, name);
     gpu_test_ok(picture_read(path, root, 4096, &t->w.memory, &out));
-    assert_int_equal(out.width, SLICES_TILE);
+    assert_int_equal(out.width, TEMPLATE_TILE);
     return out;
 }
 
@@ -211,10 +211,10 @@ static void what_flows_is_captured_as_a_picture(void **state) {
     assert_false(slices_capture(t.f.pass, 1, place, 0.375f, &t.w.memory, &seen, scale));
     gpu_test_ok(slices_capture(t.f.pass, 0, place, 0.375f, &t.w.memory, &seen, scale));
     print_message("captured %.3f m/s, %.4f m^2/s^2\n", (double)scale[0], (double)scale[1]);
-    const int middle = SLICES_TILE / 2, quarter = SLICES_TILE / 4;
-    const float *right = seen.rgba + 4 * (middle * SLICES_TILE + middle + quarter);
-    const float *above = seen.rgba + 4 * (quarter * SLICES_TILE + middle);
-    const float *core = seen.rgba + 4 * (middle * SLICES_TILE + middle);
+    const int middle = TEMPLATE_TILE / 2, quarter = TEMPLATE_TILE / 4;
+    const float *right = seen.rgba + 4 * (middle * TEMPLATE_TILE + middle + quarter);
+    const float *above = seen.rgba + 4 * (quarter * TEMPLATE_TILE + middle);
+    const float *core = seen.rgba + 4 * (middle * TEMPLATE_TILE + middle);
     assert_true(right[1] > 0.5f && fabsf(right[0]) < 0.2f);
     assert_true(above[0] < -0.5f && fabsf(above[1]) < 0.2f);
     assert_true(core[2] < -0.5f && core[3] > 0.99f && hypotf(core[0], core[1]) < 0.2f);

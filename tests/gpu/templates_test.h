@@ -13,7 +13,7 @@ typedef struct templates_world {
     slices_flow f;
     flow_desc desc;
     flow_numbers numbers;
-    pass *groups[SLICES_TEMPLATES_GROUPS];
+    pass *groups[TEMPLATE_GROUPS];
     uint32_t group_count, total;
 } templates_world;
 

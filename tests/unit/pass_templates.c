@@ -1,7 +1,7 @@
 // Pictures of templates as tiles.
 #include "base/arena.h"
 #include "base/memory.h"
-#include "pass/slices/slices_templates.h"
+#include "pass/templates.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,12 +10,12 @@
 
 #include <cmocka.h>
 
-enum { TEXELS = SLICES_TILE * SLICES_TILE };
+enum { TEXELS = TEMPLATE_TILE * TEMPLATE_TILE };
 
 static float tile[4 * TEXELS];
 
 static const float *texel(int x, int y) { // rows from the top
-    return tile + 4 * (y * SLICES_TILE + x);
+    return tile + 4 * (y * TEMPLATE_TILE + x);
 }
 
 // `alpha` below 1 stands for a picture that has its own.
@@ -33,7 +33,7 @@ static void values_are_times_alpha_whatever_the_size(void **state) {
     static float rgba[4 * 200 * 200];
     for (size_t k = 0; k < COUNT_OF(sides); k++) {
         picture p = even(rgba, sides[k], 0, -2, 0.5f);
-        slices_tile(&p, tile);
+        template_tile(&p, tile);
         for (int i = 0; i < TEXELS; i++) {
             assert_true(fabsf(tile[4 * i + 2] + 1) < 1e-5f);
             assert_true(fabsf(tile[4 * i + 3] - 0.5f) < 1e-5f);
@@ -51,7 +51,7 @@ static void png_has_its_nothing_at_128(void **state) {
     float rgba[4];
     for (size_t k = 0; k < COUNT_OF(rows); k++) {
         picture p = even(rgba, 1, rows[k].bits, rows[k].value, 0.5f);
-        slices_tile(&p, tile);
+        template_tile(&p, tile);
         assert_true(fabsf(2 * texel(30, 30)[0] - rows[k].expected) < 1e-5f);
     }
 }
@@ -60,7 +60,7 @@ static void without_alpha_the_border_fades(void **state) {
     (void)state;
     float rgba[4 * 9];
     picture p = even(rgba, 3, 0, 1, 1);
-    slices_tile(&p, tile);
+    template_tile(&p, tile);
     assert_true(texel(32, 32)[3] > 0.997f);
     assert_true(texel(0, 32)[3] < 0.005f && texel(0, 32)[3] > 0.003f);
     assert_true(texel(0, 0)[3] < 3e-5f);
@@ -76,7 +76,7 @@ static void large_pictures_keep_their_edges_and_means(void **state) {
     picture p = even(rgba, SIDE, 0, 0, 0.5f);
     for (int y = 0; y < SIDE; y++)
         for (int x = SIDE / 2; x < SIDE; x++) rgba[4 * (y * SIDE + x)] = 1;
-    slices_tile(&p, tile);
+    template_tile(&p, tile);
     double sum = 0;
     for (int i = 0; i < TEXELS; i++) sum += (double)tile[4 * i] / TEXELS;
     assert_true(fabs(sum - 0.25) < 1e-5);
@@ -88,7 +88,7 @@ static void levels_are_means(void **state) {
     static const float from[4 * 16] = {
         1, 2, 3, 4, 3, 2, 1, 0, [16] = 4, 4, 4, 4, [20] = 8, 8, 8, 8};
     float half[4 * 4];
-    slices_tile_half(from, 4, half);
+    template_tile_half(from, 4, half);
     assert_true(half[0] == 4 && half[1] == 4 && half[2] == 4 && half[3] == 4);
     assert_true(half[4] == 0 && half[15] == 0);
 }
@@ -97,7 +97,7 @@ static void what_is_beyond_halves_stays_finite(void **state) {
     (void)state;
     float rgba[4];
     picture p = even(rgba, 1, 0, -1e30f, 0.99f);
-    slices_tile(&p, tile);
+    template_tile(&p, tile);
     assert_true(texel(32, 32)[0] >= -65504 && texel(32, 32)[0] < -1e4f);
 }
 

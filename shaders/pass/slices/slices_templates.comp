@@ -12,11 +12,8 @@ layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 uniform float strength;     //= 1 [-1e6, 1e6] : what a picture's 1 means: m^2/s^2 of pressure over the density of air, or m/s^2 of force
 uniform float size_min;     //= 0.05 [1e-3, 10] widths : of a slice: side of the smallest template
 uniform float size_max;     //= 0.1 [1e-3, 10] widths : of the largest; sizes between are as likely
-uniform float lifetime_min; //= 0.1 [1e-3, 1e4] s : of the shortest life
-uniform float lifetime_max; //= 0.4 [1e-3, 1e4] s : of the longest; those between are as likely
-uniform float fade;         //= 0.25 [0, 0.5] : share of its life in which a template comes, and in which it goes
+#include "lib/template_life.glsl"
 uniform float blend;        //= 0.02 [0, 1] : of the alpha of pressure: how firmly it is held, as in a slice of 128 cells across with 60 steps a second; more of them hold it no firmer. 0.002 nudges what flows, 0.1 blows it apart
-uniform float amount;       //= 1 [0, 1] : share of the templates that act
 uniform float angle;        //= 0 [-inf, inf] degrees : that templates are turned by besides, anticlockwise
 uniform float spread;       //= 0 [0, 180] degrees : by which each may be turned more or less
 uniform float center_x;     //= 0.5 [-100, 100] widths : of `align = "radial"`
@@ -27,37 +24,14 @@ uniform int seed;           //= 0 [0, 16777215] : of what is random, besides tha
 #define FLOW_STATE
 #include "sim/flow/state.glsl"
 #include "fields.glsl"
-#include "lib/random.glsl"
 #define TEMPLATES_USE
 #include "pass/slices/templates.glsl"
-uniform uint key;     // of what is random
-uniform uint first;   // of this group in each slice
-uniform uint count;   // of this group
-uniform float tile;   // of its picture
-uniform float time_step;  // s
 uniform vec2 box_min; // where the region may be (widths)
 uniform vec2 box_max;
 
 const int TRIES = 32, TOGETHER = 4; // places a step, and at once
 const int RING = 12, RINGS = 10; // points of a circle that a contour is looked for with; circles
 const float TURN = 6.28318530718;
-
-// ---- chance -----------------------------------------------------------------------------------
-
-uint chance; // of this template in this life
-
-void begin_chance(uint slice, uint which, float life) {
-    chance = random_hash(uint(life) + random_hash(which + random_hash(slice + random_hash(key))));
-}
-
-float share_of(uint number) { // [0, 1)
-    return float(number >> 8) * (1.0 / 16777216.0);
-}
-
-float next_chance() { // [0, 1)
-    chance = random_hash(chance);
-    return share_of(chance);
-}
 
 // ---- the flow ---------------------------------------------------------------------------------
 
@@ -168,10 +142,7 @@ bool find_place(int slice, out vec2 found) {
 
 // The next life: how long, how large, and where. False: there is no place for it now.
 bool begin_life(int slice, uint which, inout vec4 life, inout vec4 place) {
-    life.z += 1.0;
-    begin_chance(uint(slice), which, life.z);
-    life.y = mix(lifetime_min, max(lifetime_min, lifetime_max), next_chance());
-    life.w = mix(size_min, max(size_min, size_max), next_chance());
+    template_begin(life, uint(slice), which, size_min, size_max);
     float half_side = 0.5 * life.w * float(FLOW_NX);
     vec2 at;
     if (!find_place(slice, at)) return false;
@@ -180,18 +151,10 @@ bool begin_life(int slice, uint which, inout vec4 life, inout vec4 place) {
     return true;
 }
 
-float envelope(float age) { // of 0 to 1
-    if (fade <= 0.0) return 1.0;
-    return smoothstep(0.0, fade, age) * smoothstep(0.0, fade, 1.0 - age);
-}
-
 void mark_tiles(vec2 at, float reach, int slice, uint which) {
-    ivec2 low = max(ivec2(floor((at - reach) / float(TEMPLATES_TILE))), ivec2(0));
-    ivec2 high = min(ivec2(floor((at + reach) / float(TEMPLATES_TILE))), TEMPLATES_TILES - 1);
-    for (int y = low.y; y <= high.y; y++)
-        for (int x = low.x; x <= high.x; x++)
-            atomicOr(template_masks[template_mask_at(parity, slice, ivec2(x, y)) + (which >> 5)],
-                     1u << (which & 31u));
+    ivec2 low = ivec2(floor((at - reach) / float(TEMPLATES_TILE)));
+    ivec2 high = ivec2(floor((at + reach) / float(TEMPLATES_TILE)));
+    template_mark(ivec3(low, slice), ivec3(high, slice), which);
 }
 
 void main() {
@@ -200,20 +163,16 @@ void main() {
     if (i >= count || slice >= FLOW_SLICES) return;
     vec4 life = templates[template_at(2u, slice, which)];
     vec4 place = templates[template_at(3u, slice, which)];
-    bool began = life.z > 0.0, waits = began && place.w == 0.0;
-    life.x += time_step;
-    if (!began || waits || life.x >= life.y) {
+    bool waits;
+    if (template_ends(life, place.w > 0.0, waits)) {
         float over = life.x - life.y;
         place.w = 0.0;
-        if (begin_life(slice, which, life, place)) {
-            // Those of the first step are in the midst of their lives.
-            life.x = !began ? life.y * next_chance() : waits ? 0.0 : min(over, 0.5 * life.y);
-        }
+        if (begin_life(slice, which, life, place)) life.x = template_age(life, waits, over);
     }
-    bool acts = place.w > 0.0 && float(i) < amount * float(count);
+    bool acts = place.w > 0.0 && template_acts(i);
     float half_side = max(0.5 * life.w * float(FLOW_NX), 1.5); // what is finer than cells is not seen
     float factor = strength * (acts ? scale_at(place.yz, half_side, slice) : 0.0);
-    float now = envelope(life.x / life.y), turn = place.x + radians(angle);
+    float now = template_envelope(life), turn = place.x + radians(angle);
     bool pushes = KIND == KIND_VELOCITY;
     if (factor != 0.0) {
         float reach = half_side * (abs(cos(turn)) + abs(sin(turn))); // of the turned square

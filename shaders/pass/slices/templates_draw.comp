@@ -18,7 +18,7 @@ uniform uint alone;      // nobody else has written sources in this step
 uniform vec4 hand[3 * HAND];
 uniform uint hand_count;
 #endif
-uniform sampler2D TemplateImages; // tiles below each other: values times alpha, alpha
+#include "lib/template_pictures.glsl"
 
 // Mixing in each iteration adds 4 alpha / (1 - alpha) (p - pressure) to the equation of the pressure,
 // for each square of a cell's side: alpha is made such that it is as much for a square of a width.
@@ -31,27 +31,18 @@ float alpha_here(float alpha) {
 
 #define EACH_CELL for (int c = 0; c < TEMPLATES_CELLS; c++)
 
-// `at`: from the middle, in halves of the side; the upper edge is at +1.
-vec4 tile_at(vec2 at, float tile, float level) {
-    vec2 size = vec2(textureSize(TemplateImages, 0)); // one tile wide
-    float inside = 1.0 - exp2(level) / size.x;
-    at = clamp(at, -inside, inside);
-    return textureLod(TemplateImages,
-                      vec2(0.5 + 0.5 * at.x, (tile + 0.5 - 0.5 * at.y) * size.x / size.y), level);
-}
-
 flow_template pressed[TEMPLATES_CELLS];
 vec2 pushed[TEMPLATES_CELLS];
 
 // `place`, `look`: rows 0 and 1 of an instance.
 void add(vec4 place, vec4 look, ivec2 low) {
-    float level = log2(float(textureSize(TemplateImages, 0).x) * 0.5 / place.z);
+    float level = template_level(place.z);
     bool pushes = look.w < 0.0;
     EACH_CELL {
         vec2 d = (vec2(low) + vec2(0.5, float(c) + 0.5) - place.xy) / place.z;
         vec2 at = vec2(look.x * d.x + look.y * d.y, look.x * d.y - look.y * d.x);
         if (max(abs(at.x), abs(at.y)) > 1.0) continue;
-        vec4 held = tile_at(at, pushes ? -1.0 - look.w : look.w, max(level, 0.0));
+        vec4 held = template_picture(at, pushes ? -1.0 - look.w : look.w, level);
         if (pushes) {
             vec2 v = place.w * look.z * held.xy;
             pushed[c] += vec2(look.x * v.x - look.y * v.y, look.y * v.x + look.x * v.y);
@@ -63,8 +54,8 @@ void add(vec4 place, vec4 look, ivec2 low) {
 }
 
 void add_groups(ivec2 low, int slice) {
-    ivec2 tile = low / TEMPLATES_TILE;
-    uint now = template_mask_at(parity, slice, tile), last = template_mask_at(1u - parity, slice, tile);
+    ivec3 tile = ivec3(low / TEMPLATES_TILE, slice);
+    uint now = template_mask_at(parity, tile);
     vec4 place = vec4(0.0), look = vec4(0.0);
     for (int w = 0; w < TEMPLATES_WORDS; w++) {
         uint bits = template_masks[now + uint(w)];
@@ -76,9 +67,9 @@ void add_groups(ivec2 low, int slice) {
             place = next;
             look = next_look;
         }
-        if (low == tile * TEMPLATES_TILE) template_masks[last + uint(w)] = 0u; // for the next step
     }
     if (place.z > 0.0) add(place, look, low);
+    if (low == tile.xy * TEMPLATES_TILE) template_clear(tile);
 }
 
 void main() {

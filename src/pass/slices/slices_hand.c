@@ -16,10 +16,11 @@ void slices_take_hand(pass *p) {
 }
 
 // Without a picture: upwards everywhere.
-void slices_hand_tile(const slices_templates *t, uint32_t slot, float out[SLICES_TILE_VALUES]) {
+void slices_hand_tile(const void *templates, uint32_t slot, float *out) {
+    const slices_templates *t = templates;
     static const float up[4] = {0, 1, 0, 1};
     const picture push = {1, 1, 0, up}, *image = t->hand.images[slot];
-    slices_tile(image ? image : &push, out);
+    template_tile(image ? image : &push, out);
 }
 
 static uint32_t find_slot(const template_hand *h) {
@@ -31,13 +32,14 @@ static uint32_t find_slot(const template_hand *h) {
 
 bool slices_put(pass *p, const slices_hand *hand) {
     slices_templates *t = slices_templates_of(slices_of(p));
-    if (!t || !t->hand.taken || !t->tiles)
+    if (!t || !t->hand.taken || !t->set.tiles)
         return err_set("%s: it takes no templates by hand", p->label);
     template_hand *h = &t->hand;
     uint32_t slot = find_slot(h);
     if (h->images[slot] != hand->image) {
         h->images[slot] = hand->image;
-        slices_hand_tile(t, slot, t->tiles + (size_t)(t->group_count + slot) * SLICES_TILE_VALUES);
+        slices_hand_tile(t, slot,
+                         t->set.tiles + (size_t)(t->set.group_count + slot) * TEMPLATE_TILE_VALUES);
         t->repainted = true;
     }
     h->at[slot] = *hand;
@@ -69,7 +71,7 @@ void slices_hand_set(slices_flow *f, kernel *k) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < SLICES_HAND_MOST; i++) {
         if (t->hand.left[i] <= 0) continue;
-        fill_one(f, &t->hand.at[i], t->group_count + i, values + 4 * VALUES * count++);
+        fill_one(f, &t->hand.at[i], t->set.group_count + i, values + 4 * VALUES * count++);
         t->hand.left[i] = fmax(t->hand.left[i] - f->clock.step, 0);
     }
     kernel_set(k, N_hand, values, sizeof values);
@@ -129,11 +131,11 @@ typedef struct square { // of a slice, in cells
 } square;
 
 static void take(const look *velocity, const look *scalars, const square *s, float *rgba) {
-    for (int y = 0; y < SLICES_TILE; y++) // rows from the top
-        for (int x = 0; x < SLICES_TILE; x++) {
-            float at[2] = {s->low[0] + s->side * ((float)x + 0.5f) / SLICES_TILE,
-                           s->low[1] + s->side * (1 - ((float)y + 0.5f) / SLICES_TILE)};
-            float *texel = rgba + 4 * (y * SLICES_TILE + x);
+    for (int y = 0; y < TEMPLATE_TILE; y++) // rows from the top
+        for (int x = 0; x < TEMPLATE_TILE; x++) {
+            float at[2] = {s->low[0] + s->side * ((float)x + 0.5f) / TEMPLATE_TILE,
+                           s->low[1] + s->side * (1 - ((float)y + 0.5f) / TEMPLATE_TILE)};
+            float *texel = rgba + 4 * (y * TEMPLATE_TILE + x);
             texel[0] = sample(velocity, at[0], at[1], 0);
             texel[1] = sample(velocity, at[0], at[1], 1);
             texel[2] = sample(scalars, at[0], at[1], 3);
@@ -145,22 +147,22 @@ static void take(const look *velocity, const look *scalars, const square *s, flo
 static void level_pressure(float *rgba) {
     double sum = 0;
     int count = 0;
-    for (int i = 0; i < SLICES_TILE * SLICES_TILE; i++) {
-        int x = i % SLICES_TILE, y = i / SLICES_TILE;
-        if (x > 0 && x < SLICES_TILE - 1 && y > 0 && y < SLICES_TILE - 1) continue;
+    for (int i = 0; i < TEMPLATE_TILE * TEMPLATE_TILE; i++) {
+        int x = i % TEMPLATE_TILE, y = i / TEMPLATE_TILE;
+        if (x > 0 && x < TEMPLATE_TILE - 1 && y > 0 && y < TEMPLATE_TILE - 1) continue;
         sum += (double)rgba[4 * i + 2];
         count++;
     }
-    for (int i = 0; i < SLICES_TILE * SLICES_TILE; i++) rgba[4 * i + 2] -= (float)(sum / count);
+    for (int i = 0; i < TEMPLATE_TILE * TEMPLATE_TILE; i++) rgba[4 * i + 2] -= (float)(sum / count);
 }
 
 static void normalize(float *rgba, float scale[2]) {
     scale[0] = scale[1] = 0;
-    for (int i = 0; i < SLICES_TILE * SLICES_TILE; i++) {
+    for (int i = 0; i < TEMPLATE_TILE * TEMPLATE_TILE; i++) {
         scale[0] = fmaxf(scale[0], hypotf(rgba[4 * i], rgba[4 * i + 1]));
         scale[1] = fmaxf(scale[1], fabsf(rgba[4 * i + 2]));
     }
-    for (int i = 0; i < SLICES_TILE * SLICES_TILE; i++) {
+    for (int i = 0; i < TEMPLATE_TILE * TEMPLATE_TILE; i++) {
         for (int c = 0; c < 2 && scale[0] > 0; c++) rgba[4 * i + c] /= scale[0];
         if (scale[1] > 0) rgba[4 * i + 2] /= scale[1];
     }
@@ -180,12 +182,12 @@ bool slices_capture(const pass *p, uint32_t slice, const float place[2], float s
         const look scalars = {{f->desc.size[0], f->desc.size[1]}, 4, others + 4 * layer * slice};
         const square s = {{(place[0] - size / 2) * cells, (place[1] - size / 2) * cells},
                           size * cells};
-        float *rgba = arena_alloc(memory, SLICES_TILE_VALUES * sizeof *rgba);
+        float *rgba = arena_alloc(memory, TEMPLATE_TILE_VALUES * sizeof *rgba);
         take(&velocity, &scalars, &s, rgba);
         level_pressure(rgba);
         normalize(rgba, scale);
-        *out = (picture){SLICES_TILE, SLICES_TILE, 0, rgba};
-        slices_tile_fade(rgba);
+        *out = (picture){TEMPLATE_TILE, TEMPLATE_TILE, 0, rgba};
+        template_tile_fade(rgba);
     }
     mem_free(velocities);
     mem_free(others);

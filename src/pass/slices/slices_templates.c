@@ -18,44 +18,28 @@ slices_templates *slices_templates_make(slices_flow *f) {
 
 gpu_buffer *slices_templates_buffer(const pass *p) {
     const slices_templates *t = slices_templates_of(slices_of(p));
-    return t && t->total ? t->instances : NULL;
+    return t && t->set.total ? t->set.instances : NULL;
 }
 
 // ---- declaring --------------------------------------------------------------------------------
 
-static bool pushes(const pass *group) {
-    return pass_option(group, N_kind) == 1;
-}
-
-static bool has_kind(const pass *p, bool pushing) {
+static bool has_kind(const pass *p, size_t kind) {
     const slices_templates *t = slices_templates_of(slices_of(p));
-    for (uint32_t i = 0; t && i < t->group_count; i++)
-        if (pushes(t->groups[i]->pass) == pushing) return true;
-    return t && t->hand.taken;
+    return t && (t->hand.taken || template_set_has(&t->set, N_kind, kind));
 }
 
 bool slices_has_pressing(const pass *p) {
-    return has_kind(p, false);
+    return has_kind(p, 0);
 }
 
 bool slices_has_pushing(const pass *p) {
-    return has_kind(p, true);
+    return has_kind(p, 1);
 }
 
 bool slices_add_templates(pass *p, pass *group, const picture *image, uint32_t count) {
     slices_flow *f = slices_of(p);
-    slices_templates *t = slices_templates_make(f);
-    if (t->group_count == SLICES_TEMPLATES_GROUPS)
-        return err_set("%s: a flow has at most %d groups of templates", group->label,
-                       SLICES_TEMPLATES_GROUPS);
-    if (count < 1 || count > SLICES_TEMPLATES_MOST - t->total)
-        return err_set("%s: 'count' is %u; a flow has 1 to %d templates in each slice, and %u are "
-                       "in other groups",
-                       group->label, count, SLICES_TEMPLATES_MOST, t->total);
-    template_group *g = group->state = arena_alloc(p->host->memory, sizeof *g);
-    *g = (template_group){group, f, image, t->group_count, t->total, count};
-    t->groups[t->group_count++] = g;
-    t->total += count;
+    if (!template_set_add(&slices_templates_make(f)->set, f, group, image, count, " in each slice"))
+        return false;
     slices_add_part(f, group);
     return true;
 }
@@ -65,19 +49,18 @@ bool slices_add_templates(pass *p, pass *group, const picture *image, uint32_t c
 // Cells along a side: 16, or as many as leave at most 32 tiles along each side of a slice.
 static uint32_t tile_side(const slices_flow *f) {
     const uint32_t *size = f->desc.size, most = size[0] > size[1] ? size[0] : size[1];
-    return 16 * ((most + 511) / 512);
+    return template_tile_side(most, 16);
 }
 
 static uint64_t mask_bytes(const slices_flow *f) {
     const uint32_t *size = f->desc.size, side = tile_side(f);
-    const uint64_t words = (slices_templates_of(f)->total + 31) / 32;
     const uint64_t tiles = (uint64_t)((size[0] + side - 1) / side) * ((size[1] + side - 1) / side);
-    return 2 * 4 * tiles * (words ? words : 1) * f->desc.count;
+    return template_mask_bytes(&slices_templates_of(f)->set, tiles * f->desc.count);
 }
 
 void slices_templates_define(const slices_flow *f, pass_defines *out) {
     out->count += flow_defines(f->solver, out->items + out->count);
-    pass_define_number(f->pass, out, "TEMPLATES_TOTAL", slices_templates_of(f)->total);
+    pass_define_number(f->pass, out, "TEMPLATES_TOTAL", slices_templates_of(f)->set.total);
     pass_define_number(f->pass, out, "TEMPLATES_TILE", tile_side(f));
 }
 
@@ -86,7 +69,7 @@ void slices_templates_define(const slices_flow *f, pass_defines *out) {
 static bool defines_of_group(pass *p, size_t index, pass_defines *out) {
     const template_group *g = p->state;
     (void)index;
-    slices_templates_define(g->flow, out);
+    slices_templates_define(g->owner, out);
     return true;
 }
 
@@ -98,7 +81,8 @@ static bool declare_group(pass *p) {
 // Where the region may be, in widths of a slice.
 static bool region_box(const pass *p, float low[2], float high[2]) {
     const template_group *g = p->state;
-    const uint32_t *size = g->flow->desc.size;
+    const slices_flow *f = g->owner;
+    const uint32_t *size = f->desc.size;
     box3 box = box3_infinite();
     const field *region = pass_given_field(p, N_region);
     if (region && !field_bounds(region, p->host->context, &box)) return false;
@@ -110,15 +94,16 @@ static bool region_box(const pass *p, float low[2], float high[2]) {
 
 static bool update_group(pass *p) {
     const template_group *g = p->state;
-    const uint32_t seeds[3] = {slices_seed(g->flow), (uint32_t)pass_value(p, N_seed), g->index};
+    const slices_flow *f = g->owner;
+    const uint32_t seeds[3] = {slices_seed(f), (uint32_t)pass_value(p, N_seed), g->index};
     float low[2], high[2];
     if (!region_box(p, low, high)) return false;
     pass_set_int(p, N_key, (int32_t)(uint32_t)hash64(seeds, sizeof seeds));
     pass_set_int(p, N_first, (int32_t)g->first);
     pass_set_int(p, N_count, (int32_t)g->count);
-    pass_set_int(p, N_parity, (int32_t)slices_templates_of(g->flow)->parity);
+    pass_set_int(p, N_parity, (int32_t)slices_templates_of(f)->set.parity);
     pass_set_float(p, N_tile, (float)g->index);
-    pass_set_float(p, N_time_step, (float)g->flow->clock.step);
+    pass_set_float(p, N_time_step, (float)f->clock.step);
     pass_set(p, N_box_min, low, sizeof low);
     pass_set(p, N_box_max, high, sizeof high);
     return true;
@@ -126,94 +111,64 @@ static bool update_group(pass *p) {
 
 // ---- building: of all -------------------------------------------------------------------------
 
-static bool each_group(const slices_templates *t, bool (*call)(pass *group)) {
-    for (uint32_t i = 0; i < t->group_count; i++)
-        if (!call(t->groups[i]->pass)) return false;
-    return true;
-}
-
 static bool templates_check(slices_flow *f) {
-    return each_group(slices_templates_of(f), pass_check_part);
+    return template_set_each(&slices_templates_of(f)->set, pass_check_part);
 }
 
 static bool templates_build(slices_flow *f) {
-    return each_group(slices_templates_of(f), pass_build_part);
+    return template_set_each(&slices_templates_of(f)->set, pass_build_part);
 }
 
 static uint64_t instance_bytes(const slices_flow *f) {
-    const uint64_t total = slices_templates_of(f)->total;
-    return 16 * ROWS * (total ? total : 1) * f->desc.count; // there are none but by hand
+    return template_instance_bytes(&slices_templates_of(f)->set, ROWS, f->desc.count);
 }
 
 static void templates_list_memory(const slices_flow *f, budget_list *out) {
-    const slices_templates *t = slices_templates_of(f);
-    if (!t->masks) budget_list_add(out, "tiles of templates", mask_bytes(f));
-    if (!t->instances) budget_list_add(out, "templates", instance_bytes(f));
+    template_set_list_memory(&slices_templates_of(f)->set, instance_bytes(f), mask_bytes(f), out);
 }
 
 static bool templates_allocate(slices_flow *f) {
-    slices_templates *t = slices_templates_of(f);
-    gpu *device = f->pass->host->device;
-    if (!slices_templates_make_images(f)) return false;
-    if (!t->masks)
-        t->masks = gpu_buffer_create(
-            device, &(gpu_buffer_desc){.label = "tiles of templates", .size = mask_bytes(f)});
-    t->unmarked = true;
-    if (!t->masks || t->instances) return t->masks != NULL;
-    t->instances = gpu_buffer_create(
-        device, &(gpu_buffer_desc){.label = "templates", .size = instance_bytes(f)});
-    t->fresh = true;
-    return t->instances != NULL;
+    return slices_templates_make_images(f) &&
+           template_set_allocate(&slices_templates_of(f)->set, f->pass->host->device,
+                                 instance_bytes(f), mask_bytes(f));
 }
 
 static void templates_destroy(slices_flow *f) {
     slices_templates *t = slices_templates_of(f);
-    slices_templates_destroy_draw(f);
-    gpu_buffer_destroy(f->pass->host->device, t->instances);
-    gpu_buffer_destroy(f->pass->host->device, t->masks);
+    template_set_destroy(&t->set, f->pass->host->device);
     *t = (slices_templates){0};
 }
 
 // ---- a step -----------------------------------------------------------------------------------
 
-static bool run_group(const template_group *g) {
-    pass *p = g->pass;
-    kernel *k = pass_prepare(p) ? slices_templates_use(g->flow, p, 0) : NULL;
-    return (k && kernel_run(k, p->host->device, g->count, g->flow->desc.count, 1)) ||
+static bool run_group(pass *p) {
+    const template_group *g = p->state;
+    const slices_flow *f = g->owner;
+    kernel *k = pass_prepare(p) ? slices_templates_use(f, p, 0) : NULL;
+    return (k && kernel_run(k, p->host->device, g->count, f->desc.count, 1)) ||
            err_prefix("%s: ", p->label);
 }
 
 static bool templates_run(slices_flow *f) {
-    slices_templates *t = slices_templates_of(f);
-    if (t->fresh) gpu_buffer_fill(f->pass->host->device, t->instances, 0);
-    if (t->unmarked) gpu_buffer_fill(f->pass->host->device, t->masks, 0);
-    t->fresh = t->unmarked = false;
-    t->parity = 1 - t->parity;
-    for (uint32_t i = 0; i < t->group_count; i++)
-        if (!run_group(t->groups[i])) return false;
-    return slices_templates_draw(f);
+    template_set *t = &slices_templates_of(f)->set;
+    template_set_begin(t, f->pass->host->device);
+    return template_set_each(t, run_group) && slices_templates_draw(f);
 }
 
 static void templates_restart(slices_flow *f) {
-    slices_templates_of(f)->fresh = true;
+    slices_templates_of(f)->set.fresh = true;
 }
 
 static void templates_loaded(slices_flow *f) {
-    slices_templates_of(f)->fresh = false;
+    slices_templates_of(f)->set.fresh = false;
 }
 
 static void templates_exchange(slices_flow *f, slices_flow *other) {
-    slices_templates *a = slices_templates_of(f), *b = slices_templates_of(other), own = *a;
-    bool same = a->total == b->total && a->group_count == b->group_count;
-    for (uint32_t i = 0; i < a->group_count && same; i++)
-        same = a->groups[i]->count == b->groups[i]->count;
-    if (!same) return;
-    a->instances = b->instances, a->fresh = b->fresh;
-    b->instances = own.instances, b->fresh = own.fresh;
+    template_set_exchange(&slices_templates_of(f)->set, &slices_templates_of(other)->set);
 }
 
 static bool templates_rehearse(slices_flow *f) {
-    return each_group(slices_templates_of(f), pass_rehearse);
+    return template_set_each(&slices_templates_of(f)->set, pass_rehearse);
 }
 
 static const slices_extra hooks = {

@@ -1,22 +1,8 @@
-// Templates of a flow: pictures of pressure or velocity that are put into it for a while, again and
-// again (Krueger and Westermann 2005, 3). A group is a pass of the type `slices_templates`; all
+// Templates of slices (pass/templates.h): a group is a pass of the type `slices_templates`; all
 // groups of a flow, in all of its slices, are drawn by one dispatch before each step of the solver.
-//
-// Picture: red and green are velocity to the right and up, blue is pressure, alpha how much of it
-// is put there. EXR holds them as they are; in a PNG 128 of 255 (32768 of 65535) is 0. Where alpha
-// is 1 everywhere, which is a file without it, the border fades as a Gaussian, from 1 in the middle
-// to 0.004.
 #pragma once
 #include "base/str.h"
-#include "media/picture.h"
-#include "pass/pass.h"
-
-enum {
-    SLICES_TILE = 64,             // texels a side of a picture as it is on the device
-    SLICES_TILE_LEVELS = 4,       // 64 to 8
-    SLICES_TEMPLATES_GROUPS = 16, // of a flow
-    SLICES_TEMPLATES_MOST = 4096, // of all groups, in each slice
-};
+#include "pass/templates.h"
 
 // A group of `count` templates in each slice of `p`, a pass `slices`; both are declared. The
 // picture lives as long as the effect.
@@ -52,7 +38,7 @@ void slices_take_hand(pass *p);
 // with a message: the flow was not made ready for it.
 bool slices_put(pass *p, const slices_hand *hand);
 // What the flow is like in a square of a slice after the last kept step, as a picture of
-// SLICES_TILE pixels a side: velocity, pressure less its mean along the border, and alpha that
+// TEMPLATE_TILE pixels a side: velocity, pressure less its mean along the border, and alpha that
 // fades as those of the library do. Both kinds reach from -1 to 1; `scale`: what 1 stands for, m/s
 // and m^2/s^2. Not in a frame: waits for the device. False with a message.
 bool slices_capture(const pass *p, uint32_t slice, const float place[2], float size, arena *memory,
@@ -62,13 +48,6 @@ bool slices_capture(const pass *p, uint32_t slice, const float place[2], float s
 void slices_hand_line(const slices_hand *hand, const char *variable, const char *file, strbuf *out);
 
 // ---- on the device ----------------------------------------------------------------------------
-
-// A picture as a tile: rows from the top, red, green and blue times alpha, alpha.
-void slices_tile(const picture *from, float out[SLICES_TILE * SLICES_TILE * 4]);
-// Gives it alpha that fades to the border, as that of the library's pictures.
-void slices_tile_fade(float rgba[SLICES_TILE * SLICES_TILE * 4]);
-// The next level of a tile, of half the size.
-void slices_tile_half(const float *from, uint32_t side, float *out);
 
 // Of the instances on the device; shaders/pass/slices/templates.glsl says how they lie there. NULL:
 // not allocated, or there are none but by hand.

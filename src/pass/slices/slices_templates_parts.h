@@ -3,15 +3,6 @@
 #include "pass/slices/slices_parts.h"
 #include "pass/slices/slices_templates.h"
 
-typedef struct template_group {
-    pass *pass;
-    slices_flow *flow;
-    const picture *image;
-    uint32_t index, first, count; // in each slice
-} template_group;
-
-enum { SLICES_TILE_VALUES = 4 * SLICES_TILE * SLICES_TILE };
-
 typedef struct template_hand { // templates that are put by hand; zero: none may be
     bool taken;                // they may
     slices_hand at[SLICES_HAND_MOST];
@@ -20,17 +11,9 @@ typedef struct template_hand { // templates that are put by hand; zero: none may
 } template_hand;
 
 typedef struct slices_templates {
-    template_group *groups[SLICES_TEMPLATES_GROUPS];
-    uint32_t group_count, total; // templates in each slice
+    template_set set; // its tiles are those of groups, then those by hand
     template_hand hand;
-    float *tiles;      // of groups, then those by hand; NULL: none yet
-    gpu_image *images; // these, below each other
-    bool repainted;    // tiles are others than those of the image
-    gpu_buffer *instances;
-    gpu_buffer *masks; // of tiles: which reach there
-    uint32_t parity;   // half of the masks, that the next step writes
-    bool fresh;        // instances begin anew with the next step
-    bool unmarked;     // masks hold nothing that is known
+    bool repainted; // tiles are others than those of the image
 } slices_templates;
 
 static inline slices_templates *slices_templates_of(const slices_flow *f) {
@@ -44,11 +27,10 @@ void slices_templates_define(const slices_flow *f, pass_defines *out); // of all
 void slices_templates_define_draw(const slices_flow *f, pass_defines *out);
 bool slices_templates_make_images(slices_flow *f);
 bool slices_templates_draw(slices_flow *f);
-void slices_templates_destroy_draw(slices_flow *f);
 // A kernel of the pass, with the solver's and the templates' buffers bound, too.
 kernel *slices_templates_use(const slices_flow *f, pass *p, size_t index);
 
 // slices_hand.c
-void slices_hand_tile(const slices_templates *t, uint32_t slot, float out[SLICES_TILE_VALUES]);
+void slices_hand_tile(const void *templates, uint32_t slot, float *out); // of slices_templates
 // Tells the kernel that draws what is put by hand in this step, and ages it.
 void slices_hand_set(slices_flow *f, kernel *k);

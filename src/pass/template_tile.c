@@ -2,7 +2,7 @@
 // sampled between texels and on coarser levels.
 #include "base/maths.h"
 #include "base/memory.h"
-#include "pass/slices/slices_templates.h"
+#include "pass/templates.h"
 #include <math.h>
 
 static const float border = 0.3f;      // standard deviation of alpha, in halves of a side
@@ -22,7 +22,8 @@ static bool has_alpha(const picture *from) {
 }
 
 static float gaussian_at(uint32_t x, uint32_t y) { // of a tile
-    float u = 2 * ((float)x + 0.5f) / SLICES_TILE - 1, v = 2 * ((float)y + 0.5f) / SLICES_TILE - 1;
+    float u = 2 * ((float)x + 0.5f) / TEMPLATE_TILE - 1,
+          v = 2 * ((float)y + 0.5f) / TEMPLATE_TILE - 1;
     return expf(-0.5f * (u * u + v * v) / (border * border));
 }
 
@@ -52,12 +53,12 @@ static void add_texel(const picture *from, uint32_t x, uint32_t y, float weight,
     sum[3] += alpha;
 }
 
-void slices_tile(const picture *from, float out[SLICES_TILE * SLICES_TILE * 4]) {
+void template_tile(const picture *from, float out[TEMPLATE_TILE * TEMPLATE_TILE * 4]) {
     bool alpha = has_alpha(from);
-    for (uint32_t y = 0; y < SLICES_TILE; y++) {
-        line_share rows = share_of(y, from->height, SLICES_TILE);
-        for (uint32_t x = 0; x < SLICES_TILE; x++, out += 4) {
-            line_share columns = share_of(x, from->width, SLICES_TILE);
+    for (uint32_t y = 0; y < TEMPLATE_TILE; y++) {
+        line_share rows = share_of(y, from->height, TEMPLATE_TILE);
+        for (uint32_t x = 0; x < TEMPLATE_TILE; x++, out += 4) {
+            line_share columns = share_of(x, from->width, TEMPLATE_TILE);
             float sum[4] = {0}, all = 0;
             for (uint32_t j = 0; j < rows.count; j++)
                 for (uint32_t i = 0; i < columns.count; i++) {
@@ -71,12 +72,12 @@ void slices_tile(const picture *from, float out[SLICES_TILE * SLICES_TILE * 4]) 
     }
 }
 
-void slices_tile_fade(float rgba[SLICES_TILE * SLICES_TILE * 4]) {
-    for (uint32_t i = 0; i < SLICES_TILE * SLICES_TILE; i++)
-        rgba[4 * i + 3] = gaussian_at(i % SLICES_TILE, i / SLICES_TILE);
+void template_tile_fade(float rgba[TEMPLATE_TILE * TEMPLATE_TILE * 4]) {
+    for (uint32_t i = 0; i < TEMPLATE_TILE * TEMPLATE_TILE; i++)
+        rgba[4 * i + 3] = gaussian_at(i % TEMPLATE_TILE, i / TEMPLATE_TILE);
 }
 
-void slices_tile_half(const float *from, uint32_t side, float *out) {
+void template_tile_half(const float *from, uint32_t side, float *out) {
     uint32_t half = side / 2;
     for (uint32_t y = 0; y < half; y++)
         for (uint32_t x = 0; x < half; x++)
