@@ -11,6 +11,7 @@ extern const pass_type deposit_type;
 extern const pass_type forward_type;
 extern const pass_type geometry_type;
 extern const pass_type lbm_source_type;
+extern const pass_type lbm_templates_type;
 extern const pass_type lbm_type;
 extern const pass_type lighting_type;
 extern const pass_type march_type;
@@ -20,6 +21,7 @@ extern const pass_type picture_type;
 extern const pass_type pieces_type;
 extern const pass_type point_lights_type;
 extern const pass_type pyro_source_type;
+extern const pass_type pyro_templates_type;
 extern const pass_type pyro_type;
 extern const pass_type reference_type;
 extern const pass_type shell_type;
@@ -98,7 +100,9 @@ static const pass_type *const types[] = {
     &slices_obstacle_type,
     &lbm_type,
     &lbm_source_type,
+    &lbm_templates_type,
     &pyro_source_type,
+    &pyro_templates_type,
     &pyro_type,
 };
 

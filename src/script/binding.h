@@ -157,6 +157,11 @@ size_t value_lights(lua_State *L, int index, const char *who, scene_light **out)
 // A pass of a built-in type by the table at `table`, not declared yet. Keys among `own` are left to
 // the caller. script.unsound is `who` until the caller has declared it.
 pass *pass_make(lua_State *L, const char *type, const char *who, int table, const value_desc *own);
+// A group of templates by the table at 2 (l_templates.c): pass_make, with its picture and count,
+// and its size and lifetime, which are among `own`.
+pass *templates_make(lua_State *L, const char *type, const value_desc *own,
+                     const struct picture **image, uint32_t *count);
+extern const char templates_example[]; // of keys
 // What stands for a pass that is declared: `from` takes it, and its outputs are images by name.
 void pass_push(lua_State *L, pass *p);
 

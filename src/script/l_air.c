@@ -10,15 +10,15 @@
 enum { BODY_COST = 4 << 10 }; // bytes of host memory charged for a mesh in the air
 
 typedef struct air_type {
-    const char *name, *source; // of the passes
+    const char *name, *source, *templates; // of the passes
     field_grid *(*open)(pass *p, const pass_air_desc *desc);
     uint32_t least, multiple[3]; // of cells along an axis, and by axis
     double speed;                // default, m/s
 } air_type;
 
 static const air_type air_types[] = {
-    {"lbm", "lbm_source", pass_lbm_open, 4, {4, 1, 8}, 4},
-    {"pyro", "pyro_source", pass_pyro_open, 16, {8, 8, 8}, 12},
+    {"lbm", "lbm_source", "lbm_templates", pass_lbm_open, 4, {4, 1, 8}, 4},
+    {"pyro", "pyro_source", "pyro_templates", pass_pyro_open, 16, {8, 8, 8}, 12},
 };
 
 // Functions of a type have it as their first upvalue.
@@ -135,11 +135,10 @@ static int l_air(lua_State *L) {
 
 // ---- methods ----------------------------------------------------------------------------------
 
-static const air_object *self(lua_State *L, const char *method) {
+static const air_object *self(lua_State *L, const char *method, const char *example) {
     const air_object *object = object_test(L, 1, type_of(L)->name);
     if (!object || lua_gettop(L) != 2 || !value_is_plain_table(L, 2))
-        vm_error(L, "%s takes a table, as in air:%s { mesh { \"data/ball.obj\" } }: mind the ':'",
-                 method, method);
+        vm_error(L, "%s takes a table, as in air:%s { %s }: mind the ':'", method, method, example);
     script_require_loading(L, method);
     return object;
 }
@@ -176,7 +175,7 @@ static void move_meshes(lua_State *L, const char *who) {
 }
 
 static int l_source(lua_State *L) {
-    const air_object *air = self(L, "source");
+    const air_object *air = self(L, "source", "mesh { \"data/ball.obj\" }");
     static const value_desc own[] = {{.name = "motion"}, {.name = NULL}};
     script *s = script_of(L);
     const char *unsound = s->unsound;
@@ -184,6 +183,21 @@ static int l_source(lua_State *L) {
     move_meshes(L, "source");
     vm_charge_memory(L, lua_rawlen(L, 2) * BODY_COST);
     if (!pass_declare(source) || !pass_air_add_source(air->pass, source)) script_raise(L);
+    s->unsound = unsound;
+    return 0;
+}
+
+static int l_templates(lua_State *L) {
+    static const value_desc own[] = {
+        {.name = "count"}, {.name = "size"}, {.name = "lifetime"}, {.name = NULL}};
+    const air_object *air = self(L, "templates", templates_example);
+    script *s = script_of(L);
+    const char *unsound = s->unsound;
+    const struct picture *image;
+    uint32_t count;
+    pass *group = templates_make(L, type_of(L)->templates, own, &image, &count);
+    if (!pass_declare(group) || !pass_air_add_templates(air->pass, group, image, count))
+        script_raise(L);
     s->unsound = unsound;
     return 0;
 }
@@ -203,7 +217,7 @@ static void add_collider(lua_State *L, pass *air, voxels_rule rule) {
 }
 
 static int l_collider(lua_State *L) {
-    const air_object *air = self(L, "collider");
+    const air_object *air = self(L, "collider", "mesh { \"data/ball.obj\" }");
     static const char *const keys[] = {"rule", "motion"};
     static const char *const rules[] = {"auto", "solid", "shell"};
     value_check_keys(L, 2, "collider", keys, COUNT_OF(keys));
@@ -243,7 +257,7 @@ static const char *place_of(const char *name) {
 static void refuse_name(lua_State *L, const pass *air, const char *name) {
     if (place_of(name))
         vm_error(L, "%s: no method or field '%s'; %s", type_of(L)->name, name, place_of(name));
-    static const char *const own[] = {"source", "collider", "box", "time_step"};
+    static const char *const own[] = {"source", "collider", "templates", "box", "time_step"};
     const char *near = str_nearest(name, own, COUNT_OF(own));
     size_t count;
     const pass_fluid_field *fields = pass_air_fields(air, &count);
@@ -258,7 +272,7 @@ static void push_method(lua_State *L, lua_CFunction method) {
     lua_pushcclosure(L, method, 1);
 }
 
-// air.box, air.time_step, air:source, air:collider; every other name is a field.
+// air.box, air.time_step, air:source, air:collider, air:templates; every other name is a field.
 static int l_index(lua_State *L) {
     const air_object *air = luaL_checkudata(L, 1, type_of(L)->name);
     const char *name = luaL_checkstring(L, 2);
@@ -266,6 +280,8 @@ static int l_index(lua_State *L) {
         push_method(L, l_source);
     } else if (strcmp(name, "collider") == 0) {
         push_method(L, l_collider);
+    } else if (strcmp(name, "templates") == 0) {
+        push_method(L, l_templates);
     } else if (strcmp(name, "time_step") == 0) {
         lua_pushnumber(L, air->time_step);
     } else if (strcmp(name, "box") == 0) {

@@ -167,6 +167,10 @@ const script_object reference_sources[] = {
         KEY("collider { }", "{ mesh { \"data/ball.obj\" } }",
             "meshes or instances, any number, which may move, that the air flows around; motion = curve { ... } is the position of "
             "meshes that say none; rule = \"solid\" leaves gaps narrower than two cells open, as of `voxels`"),
+        KEY("templates { }", "{ image \"templates/source.exr\", count = 40, size = {0.2, 0.6}, lifetime = {0.1, 0.5} }",
+            "pictures of pressure or velocity that are put into the air for a while, again and again: "
+            "`count` at a time, 20 if not given; `size` (m) and `lifetime` (s) are one number, or "
+            "{least, most}; `roil info passes lbm_templates` lists the rest"),
         KEY("density", "field", "of smoke"),
         KEY("temperature", "field", "0 is that of the air around"),
         KEY("dye", "field", "a second colour of smoke"),
@@ -184,6 +188,10 @@ const script_object reference_sources[] = {
         KEY("source { }", "{ shape = field, fuel = 2, temperature = 900, during = {0, 0.15} }",
             "where the gas is given fuel, heat, soot and speed: where the shape is above 0.5, within "
             "meshes, or near particles, as of `lbm`; `roil info passes pyro_source` lists the rest"),
+        KEY("templates { }", "{ image \"templates/source.exr\", count = 40, size = {0.2, 0.6}, lifetime = {0.1, 0.5} }",
+            "pictures of pressure or velocity that are put into the gas for a while, again and again: "
+            "`count` at a time, 20 if not given; `size` (m) and `lifetime` (s) are one number, or "
+            "{least, most}; `roil info passes pyro_templates` lists the rest"),
         KEY("temperature", "field K", "0 outside the box"),
         KEY("fuel", "field kg/m^3", "that has not burnt"),
         KEY("soot", "field kg/m^3", "black smoke; 1 kg hides 8700 m^2"),

@@ -132,6 +132,7 @@ static void define_all(lbm *l) {
     define(l, "LBM_WEIGHTS_ONLY", desc->forcing == LBM_WEIGHTS_ONLY);
     define(l, "LBM_SUBGRID", desc->subgrid);
     define(l, "LBM_FORCE", desc->force);
+    define(l, "LBM_OUTFLOW", desc->outflow);
     lbm_walls_define(l, define);
     l->defines[l->define_count++] = (shader_define){
         "LBM_EACH_BUFFER", arena_format(l->memory, "LBM_BUFFERS_%u", l->layout.buffers)};
@@ -221,9 +222,10 @@ void lbm_bind(const lbm *l, kernel *k, const kernel_place *places) {
     if (l->force) kernel_bind_at(k, &places[N_force], (gpu_binding){.image = l->force});
 }
 
-void lbm_set_force(lbm *l, gpu_image *image, float scale) {
+void lbm_set_force(lbm *l, gpu_image *image, float scale, float outflow) {
     l->force = image;
     l->force_scale = scale;
+    l->outflow_scale = outflow;
 }
 
 static bool same_structure(const lbm_desc *a, const lbm_desc *b) {

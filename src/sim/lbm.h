@@ -52,6 +52,7 @@ typedef struct lbm_desc { // structure: what shaders are compiled for
     uint32_t scalars;  // smoke, temperature, second species: in this order
     bool subgrid;      // Smagorinsky
     bool force;        // an image gives a force that varies in space: lbm_set_force
+    bool outflow;      // and how much air comes from nowhere
     bool bodies;       // there are solids, which may move
     // Layout of the state in memory. 0: chosen by the device.
     uint32_t lanes;  // cells of an element, 4; or 2, with LBM_F16
@@ -118,8 +119,10 @@ typedef struct lbm_bodies {
 bool lbm_set_bodies(lbm *l, gpu *g, const lbm_numbers *numbers, const lbm_bodies *bodies);
 
 // With desc.force: acceleration is `scale` times the first three channels of a 3D image over the
-// whole lattice, sampled linearly. It must be set before the first step.
-void lbm_set_force(lbm *l, gpu_image *image, float scale);
+// whole lattice, sampled linearly. With desc.outflow, so much of the air that is there comes
+// besides in a step as `outflow` times the fourth channel, or goes, with what it carries. It must
+// be set before the first step.
+void lbm_set_force(lbm *l, gpu_image *image, float scale, float outflow);
 
 // Return the defines for a shader that includes sim/lbm/state.glsl, and the value of its uniform
 // "lbm_parity"; after lbm_build.

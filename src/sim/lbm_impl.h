@@ -16,7 +16,7 @@
         NAME(lbm_face_velocity), NAME(lbm_face_scalar), NAME(lbm_moved), NAME(lbm_body_speed),     \
         NAME(any_moves), NAME(ambient), NAME(stage), NAME(tau), NAME(scalar_tau),                  \
         NAME(smagorinsky), NAME(acceleration), NAME(buoyancy), NAME(decay), NAME(max_speed),       \
-        NAME(force_scale), NAME(skin_layers), NAME(skin_count)
+        NAME(force_scale), NAME(outflow_scale), NAME(skin_layers), NAME(skin_count)
 enum { LBM_NAMES(KERNEL_NAME_ID), LBM_OWN = N_LbmState0 + LBM_MAX_BUFFERS };
 
 typedef struct lbm_kernel {
@@ -113,6 +113,6 @@ struct lbm {
     uint64_t kept;
     lbm_walls walls;
     gpu_image *force;
-    float force_scale;
+    float force_scale, outflow_scale;
     uint64_t steps;
 };

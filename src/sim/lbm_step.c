@@ -132,6 +132,7 @@ static void set_numbers(const lbm *l, lbm_kernel *k, const lbm_numbers *n) {
     kernel_set(&k->base, N_decay, n->decay, sizeof n->decay);
     kernel_set(&k->base, N_max_speed, &most, sizeof most);
     kernel_set(&k->base, N_force_scale, &l->force_scale, sizeof l->force_scale);
+    kernel_set(&k->base, N_outflow_scale, &l->outflow_scale, sizeof l->outflow_scale);
     kernel_set(&k->base, N_skin_layers, &l->stepper.skin_layers, sizeof l->stepper.skin_layers);
     kernel_set(&k->base, N_skin_count, &l->stepper.skin_count, sizeof l->stepper.skin_count);
     lbm_walls_set(l, k, n);

@@ -103,6 +103,7 @@ static void define_all(pyro *p) {
     define(p, "PYRO_TURBULENT", p->desc.turbulence);
     define(p, "PYRO_FORCE", p->desc.force);
     define(p, "PYRO_GUIDED", p->desc.guide);
+    define(p, "PYRO_OUTFLOW", p->desc.outflow);
     define(p, "PYRO_SOLIDS", p->desc.solids);
     define(p, "PYRO_VARIABLE", p->desc.variable_density);
     define(p, "PYRO_WEIGHED", pyro_is_weighed(p));

@@ -52,6 +52,7 @@ typedef struct pyro_desc { // structure: what shaders are compiled for
     bool confinement;      // numbers may have some
     bool turbulence;       // numbers may have some
     bool force;            // pyro_set_force is called before the first step
+    bool outflow;          // its image says how much gas comes from nowhere, too
     bool guide;            // pyro_set_guide is called before the first step
     bool variable_density; // pressure moves light gas farther than heavy gas
     bool solids;           // pyro_set_solids is called before each step
@@ -109,7 +110,9 @@ bool pyro_keep(pyro *p, gpu *g, const pyro_numbers *numbers);
 bool pyro_step(pyro *p, gpu *g, const pyro_numbers *numbers, bool keep);
 uint64_t pyro_steps(const pyro *p); // since pyro_reset
 
-// An image of the whole box, of accelerations in m/s^2, which steps sample from now on.
+// An image of the whole box, of accelerations in m/s^2, which steps sample from now on. With
+// pyro_desc.outflow its fourth channel is how much gas comes out of a place in a second, as a
+// multiple of its volume (1/s): more of the gas that is there. Below 0 it goes.
 void pyro_set_force(pyro *p, gpu_image *force);
 
 // A guide: what the velocity shall be on the scale of cells of `guide_size`. The difference between

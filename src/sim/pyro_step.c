@@ -125,6 +125,7 @@ static bool gas_advance(pyro *p, gpu *g, const pyro_numbers *n) {
     pyro_set_burning(k, n);
     kernel_set_float(k, N_cell, pyro_flow_cell(p, n));
     kernel_set_int(k, N_present_to, groups - pyro_present_from(p));
+    if (p->desc.outflow) kernel_bind_image(k, N_force, p->force);
     return pyro_run_half_bricks_of_gas(p, g, k);
 }
 

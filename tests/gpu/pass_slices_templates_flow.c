@@ -1,4 +1,5 @@
 // What a flow makes of templates: sources and sinks, vortices, and eddies as large as they are.
+#include "library_test.h"
 #include "templates_test.h"
 
 enum { SIDE = 64 };
@@ -7,20 +8,8 @@ static const flow_desc box = {.size = {SIDE, SIDE},
                               .solver = FLOW_MULTIGRID,
                               .faces = {FLOW_OPEN, FLOW_OPEN, FLOW_OPEN, FLOW_OPEN}};
 
-static picture library(templates_world *t, const char *name) {
-    const char *root = getenv("ROIL_SOURCE_DIR");
-    picture out;
-    char path[4200];
-    snprintf(path, sizeof path, "%s/effects/templates/%s.exr", root, name);
-    gpu_test_ok(picture_read(path, root, 4096, &t->w.memory, &out));
-    assert_int_equal(out.width, TEMPLATE_TILE);
-    return out;
-}
-
 static pass *add_library(templates_world *t, const char *name, const char *kind, uint32_t count) {
-    picture *image = arena_alloc(&t->w.memory, sizeof *image);
-    *image = library(t, name);
-    pass *p = templates_add(t, image, count);
+    pass *p = templates_add(t, library_picture(&t->w.memory, name), count);
     gpu_test_ok(pass_set_option(p, "kind", kind));
     return p;
 }

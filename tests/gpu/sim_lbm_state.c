@@ -182,7 +182,7 @@ static void a_force_comes_from_an_image(void **state) {
                                                                     .use = GPU_USE_SAMPLED});
     const float below_and_above[8] = {0, 2, 0, 0, 0, -2, 0, 0};
     gpu_test_ok(gpu_image_write(w.device, image, 0, below_and_above, sizeof below_and_above));
-    lbm_set_force(w.lattice, image, 1e-3f);
+    lbm_set_force(w.lattice, image, 1e-3f, 0);
     sim_reset(&w);
     step_kept(&w);
     assert_true(fabsf(look(&w, 0, sim_index(&w, 5, 5, 1)).u[1] - 1e-3f) < 2e-6f);

@@ -37,6 +37,10 @@ uniform vec3 decay;
 #if LBM_FORCE
 uniform sampler3D force; //= input : acceleration, times force_scale
 uniform float force_scale;
+#if LBM_OUTFLOW
+uniform float outflow_scale; // of the fourth channel: what comes out of a place in a step, by what is there
+lbm_float grows;             // of the element
+#endif
 #endif
 #if LBM_KEEP
 layout(std430) writeonly buffer LbmMoments { uvec4 moments[]; };
@@ -67,18 +71,41 @@ lbm_access all_air[LBM_Q], all_carried[HELD][LBM_SCALAR_Q];
 lbm_float value[3]; // of scalars
 
 #if LBM_FORCE
+#if LBM_OUTFLOW
+#define FIND_OUTFLOW(lane) grows[lane] = outflow_scale * more.w;
+#else
+#define FIND_OUTFLOW(lane)
+#endif
 void add_force(inout lbm_vec a) {
 #define ADD(lane)                                                                                  \
     {                                                                                              \
         vec3 cell = vec3(at.xy, at.z + LBM_LAYERS * uint(lane)) + 0.5;                             \
         vec3 p = cell / vec3(LBM_NX, LBM_NY, LBM_LAYERS * LBM_LANES);                              \
-        vec3 more = force_scale * textureLod(force, p, 0.0).xyz;                                   \
-        a.x[lane] += more.x;                                                                       \
-        a.y[lane] += more.y;                                                                       \
-        a.z[lane] += more.z;                                                                       \
+        vec4 more = textureLod(force, p, 0.0);                                                     \
+        a.x[lane] += force_scale * more.x;                                                         \
+        a.y[lane] += force_scale * more.y;                                                         \
+        a.z[lane] += force_scale * more.z;                                                         \
+        FIND_OUTFLOW(lane)                                                                         \
     }
     LBM_EACH_LANE(ADD)
 #undef ADD
+}
+#endif
+
+#if LBM_OUTFLOW
+// More of the same air comes, as fast as it is, with what it carries; or it goes. Populations are less their
+// weights.
+void grow_air() {
+    lbm_float k = 1.0 + grows;
+    air[0] = lbm_pack(LBM_AIR_SCALE, k * lbm_unpack(air[0], LBM_AIR_SCALE) + LBM_REST * grows);
+#define GROW(i, x, y, z)                                                                           \
+    {                                                                                              \
+        lbm_float more = LBM_WEIGHT(x, y, z) * grows;                                              \
+        air[i] = lbm_pack(LBM_AIR_SCALE, k * lbm_unpack(air[i], LBM_AIR_SCALE) + more);            \
+        air[i + 1] = lbm_pack(LBM_AIR_SCALE, k * lbm_unpack(air[i + 1], LBM_AIR_SCALE) + more);    \
+    }
+    LBM_PAIRS(GROW)
+#undef GROW
 }
 #endif
 
@@ -209,6 +236,9 @@ void collide_air(out lbm_vec u, out lbm_float eddies) {
 #if LBM_ROUTES
     if (site.reached != 0u) lbm_end_routes(air, 1.0 + a.excess, a.u);
 #endif
+#if LBM_OUTFLOW
+    grow_air();
+#endif
     u = a.u;
 }
 
@@ -220,6 +250,13 @@ void collide_scalar(const int s, const int held, lbm_vec u, lbm_float eddies) {
                        1.0 - decay[s], ambient[s], g);
 #if LBM_ROUTES
     if (site.reached != 0u) lbm_route_scalar(value[s], site.reached, 1.0 - decay[s], ambient[s], g);
+#endif
+#if LBM_OUTFLOW
+#if ALONE // the air of all elements went before
+    lbm_vec none = lbm_vec_all(vec3(0.0));
+    add_force(none);
+#endif
+    for (int i = 0; i < LBM_SCALAR_Q; i++) g[i] *= 1.0 + grows;
 #endif
     lbm_pack_scalar(g, LBM_SCALAR_SCALE, carried[held]);
 }

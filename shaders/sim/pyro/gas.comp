@@ -23,6 +23,15 @@ layout(std430) writeonly buffer PyroDensity { float densities[]; }; // by that o
 layout(std430) writeonly buffer PyroSmokeTo { float smoke_to[]; };
 #endif
 
+#if PYRO_OUTFLOW
+uniform sampler3D force; // its fourth: how much gas comes out of a place in a second, by its volume
+float outflow_at(ivec3 c, vec3 size) { // m/s, across a cell of the velocity
+    return cell * textureLod(force, (vec3(c) + 0.5) / size, 0.0).w;
+}
+#else
+#define outflow_at(c, size) 0.0
+#endif
+
 const float NOTHING = 1e-5; // next to
 shared uint holds;
 
@@ -106,8 +115,9 @@ void hand_on() {
     if (i >= 32u) return;
     vec2 sum = vec2(0.0);
     for (uint k = 0u; k < 4u; k++) sum += parts[z][sibling(thread, k)];
-    int at = pyro_flow_at(ivec3(gl_WorkGroupID) * ivec3(4, 4, 2) + ivec3(i & 3u, (i >> 2) & 3u, z));
-    expands[at] = cell / dt * 0.125 * sum.x;
+    ivec3 c = ivec3(gl_WorkGroupID) * ivec3(4, 4, 2) + ivec3(i & 3u, (i >> 2) & 3u, z);
+    int at = pyro_flow_at(c);
+    expands[at] = cell / dt * 0.125 * sum.x + outflow_at(c, vec3(PYRO_SIZE / PYRO_RATIO));
     densities[at] = 0.125 * sum.y;
 }
 
@@ -179,7 +189,7 @@ void main() {
 #if PYRO_SMOKE
         keep_smoke(c, smoke);
 #endif
-        expands[pyro_at(c)] = cell / dt * grown;
+        expands[pyro_at(c)] = cell / dt * grown + outflow_at(c, vec3(PYRO_SIZE));
 #endif
         c.z++;
     }

@@ -10,11 +10,15 @@ const char *const air_names[AIR_NAME_COUNT] = {AIR_NAMES(KERNEL_NAME_TEXT)};
 const pass_kernel air_kernels[AIR_KERNELS] = {
     [AIR_FORCE] = {.shader = "pass/air/lbm/force.comp"},
     [AIR_GUIDE] = {.shader = "pass/air/lbm/force.comp", .define = "GUIDE"},
+    [AIR_TEMPLATES] = {.shader = "pass/air/templates_draw.comp", .without_fields = true},
 };
 
 bool air_defines(pass *p, size_t index, pass_defines *out) {
-    (void)out;
-    return index == AIR_FORCE ? air_force_varies(p) : index == AIR_GUIDE ? air_is_guided(p) : true;
+    if (index == AIR_FORCE) return air_force_varies(p);
+    if (index == AIR_GUIDE) return air_is_guided(p);
+    if (index != AIR_TEMPLATES) return true;
+    if (air_has_templates(air_of(p))) air_define_templates(air_of(p), out);
+    return air_has_templates(air_of(p));
 }
 
 // ---- the grid ---------------------------------------------------------------------------------
@@ -28,6 +32,7 @@ static bool same_place(const air *a, const air *b) {
 static bool exchange_grids(field_grid *grid, field_grid *other) {
     air *a = (air *)grid, *b = (air *)other;
     if (a->stopped || b->stopped || !same_place(a, b) || !a->kind->exchange(a, b)) return false;
+    air_exchange_templates(a, b);
     bool fresh = a->fresh;
     a->fresh = b->fresh;
     b->fresh = fresh;
@@ -150,6 +155,11 @@ bool pass_air_check(const pass *p) {
 
 bool air_add_part(pass *p, bool (*record)(pass *p)) {
     const air *a = air_of(p);
+    const template_set *t = &a->templates.set;
+    const size_t count = a->source_count + t->group_count;
+    pass **with = arena_alloc(p->host->memory, (count + 1) * sizeof *with);
+    for (size_t i = 0; i < count; i++)
+        with[i] = i < a->source_count ? a->sources[i] : t->groups[i - a->source_count]->pass;
     graph_image writes[PASS_FLUID_MOST_NAMES / 4];
     for (size_t i = 0; i < a->kind->output_count; i++)
         writes[i] = *pass_image(p, a->kind->outputs[i]);
@@ -162,8 +172,8 @@ bool air_add_part(pass *p, bool (*record)(pass *p)) {
                                 .writes = writes,
                                 .write_count = a->kind->output_count,
                                 .fields = true,
-                                .with = a->sources,
-                                .with_count = a->source_count,
+                                .with = with,
+                                .with_count = count,
                                 .simulates = true,
                                 .record = record,
                             });
@@ -174,13 +184,15 @@ bool air_add_part(pass *p, bool (*record)(pass *p)) {
 bool air_each_source(const air *a, bool (*call)(pass *source)) {
     for (size_t i = 0; i < a->source_count; i++)
         if (!call(a->sources[i])) return false;
-    return true;
+    return template_set_each(&a->templates.set, call);
+}
+
+static bool rehearse(pass *source) {
+    return pass_rehearse(source) || err_prefix("%s: ", source->label);
 }
 
 bool air_rehearse_sources(const air *a) {
-    for (size_t i = 0; i < a->source_count; i++)
-        if (!pass_rehearse(a->sources[i])) return err_prefix("%s: ", a->sources[i]->label);
-    return true;
+    return air_each_source(a, rehearse);
 }
 
 void air_describe(const air *a, strbuf *out) {
@@ -195,6 +207,7 @@ void air_describe(const air *a, strbuf *out) {
 void air_destroy(pass *p) {
     air *a = air_of(p);
     air_destroy_force(a);
+    air_destroy_templates(a);
     air_destroy_bodies(a);
     mem_free(a->sources);
 }

@@ -9,7 +9,7 @@
 // what `update` sets, are those of the frame.
 #pragma once
 #include "pass/fluid.h"
-#include "pass/pass.h"
+#include "pass/templates.h"
 #include "scene/voxels.h"
 
 typedef struct pass_air_desc {
@@ -31,4 +31,7 @@ const pass_fluid_field *pass_air_fields(const pass *p, size_t *count);
 // Before pass_complete: a field of that name is wanted. Its first channel; -1 with a message.
 int pass_air_use(pass *p, const char *name, int *components);
 bool pass_air_add_source(pass *p, pass *source); // declared before, of the type that goes with it
+// A group of `count` templates, declared before, of the type that goes with it; the picture lives
+// as long as the effect (pass/templates.h).
+bool pass_air_add_templates(pass *p, pass *group, const picture *image, uint32_t count);
 void pass_air_add_collider(pass *p, scene_mesh *mesh, voxels_rule rule);

@@ -4,8 +4,6 @@
 #include "pass/air/air_parts.h"
 #include <math.h>
 
-enum { COARSER = 2 }; // cells of the lattice along a side of one of the image's
-
 bool air_force_varies(const pass *p) {
     const field *force = pass_given_field(p, N_force);
     return force && !force->uniform;
@@ -36,7 +34,7 @@ static air_baked *baked_by(air *a, int which) {
 
 static gpu_image_desc describe(const air *a, int which) {
     uint32_t n[3];
-    for (int i = 0; i < 3; i++) n[i] = (a->desc.size[i] + COARSER - 1) / COARSER;
+    for (int i = 0; i < 3; i++) n[i] = (a->desc.size[i] + AIR_COARSER - 1) / AIR_COARSER;
     if (which == AIR_GUIDE) a->kind->guide_cells(a, true, n);
     return (gpu_image_desc){
         .label = which == AIR_FORCE ? "force" : "guide",
@@ -46,6 +44,12 @@ static gpu_image_desc describe(const air *a, int which) {
         .depth = n[2],
         .use = GPU_USE_SAMPLED | GPU_USE_STORAGE,
     };
+}
+
+gpu_image_desc air_describe_force(const air *a, const char *label) {
+    gpu_image_desc desc = describe(a, AIR_FORCE);
+    desc.label = label;
+    return desc;
 }
 
 static bool lacks_image(const air *a, int which) {
@@ -68,7 +72,8 @@ bool air_allocate_force(air *a) {
         baked_by(a, i)->image = gpu_image_create(a->pass->host->device, &desc);
         if (!baked_by(a, i)->image) return false;
     }
-    return a->kind->take_force(a);
+    a->kind->take_force(a, a->templates.image ? a->templates.image : a->force.image);
+    return true;
 }
 
 void air_destroy_force(air *a) {

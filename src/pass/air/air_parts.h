@@ -4,6 +4,7 @@
 #include "pass/air/air.h"
 #include "pass/pass_impl.h"
 #include "pass/steps.h"
+#include "pass/templates.h"
 #include "scene/voxels.h"
 #include "sim/units.h"
 
@@ -24,10 +25,17 @@ typedef struct air_baked { // a field that steps sample; without an image: there
     uint64_t turn; // in which it was baked; UINT64_MAX: never
 } air_baked;
 
+typedef struct air_templates { // zero: none
+    template_set set;
+    gpu_image *image; // what they do, with the force
+} air_templates;
+
+enum { AIR_COARSER = 2 }; // cells along a side of one of the images of forces and templates
 enum {
     AIR_SHOW,
     AIR_FORCE,
     AIR_GUIDE,
+    AIR_TEMPLATES,
     AIR_KERNELS
 }; // of the passes; those of steps are the solvers'
 enum { AIR_STEP, AIR_VOXELS, AIR_SOURCES, AIR_FIELDS, AIR_LABELS };
@@ -55,7 +63,10 @@ enum { AIR_STEP, AIR_VOXELS, AIR_SOURCES, AIR_FIELDS, AIR_LABELS };
         NAME(flame_speed), NAME(flame_power), NAME(present_from), NAME(particles), NAME(radius),   \
         NAME(step_seconds), NAME(time_scale), NAME(SourceMarks), NAME(guide), NAME(guide_rate),    \
         NAME(guide_size), NAME(smoke), NAME(smoke_yield), NAME(smoke_dissolve_rate),               \
-        NAME(smoke_now), NAME(smoke_before), NAME(turbulence)
+        NAME(smoke_now), NAME(smoke_before), NAME(turbulence), NAME(kind), NAME(align),            \
+        NAME(region), NAME(direction), NAME(seed), NAME(key), NAME(parity), NAME(tile),            \
+        NAME(time_step), NAME(corner), NAME(own_force), NAME(Templates), NAME(TemplateMasks),      \
+        NAME(TemplateImages)
 enum { AIR_NAMES(KERNEL_NAME_ID), AIR_NAME_COUNT };
 extern const char *const air_names[AIR_NAME_COUNT];
 
@@ -76,13 +87,16 @@ typedef struct air_kind {
     bool (*reset)(air *a);                     // the state at the beginning
     bool (*step)(air *a, bool keep);           // after bodies and sources
     bool (*move_solids)(air *a, bool changed); // cells are of other bodies than before
-    // Binds and sets what the kernel that gives the air a source's values takes of the solver, and
+    // Binds and sets what a kernel that reads the air's state takes of the solver.
+    void (*bind)(const air *a, const pass *p, size_t index, kernel *k);
+    // Sets what else the kernel that gives the air a source's values takes of the solver, and
     // says how many threads it has for the cells of the source's box.
     bool (*give)(const air *a, pass *source, kernel *k, uint32_t threads[3]);
     size_t (*source_defines)(const air *a, shader_define *out);
     bool (*exchange)(air *a, air *other); // the solvers' states
     void (*restart)(air *a);              // NULL: nothing more is to forget
-    bool (*take_force)(air *a);           // its image is there, and the guide's
+    // The image of the force, or what templates make of it, NULL without; and the guide's is there.
+    void (*take_force)(air *a, gpu_image *image);
     // Cells of the guide along each axis, for any numbers or by those of the step. NULL: it has
     // none.
     void (*guide_cells)(const air *a, bool most, uint32_t out[3]);
@@ -100,8 +114,9 @@ struct air {
     size_t source_count, source_capacity;
     air_meshes *givers; // of each source that has some: where two meet, both give
     size_t giver_count, giver_capacity;
-    air_meshes solids;              // of colliders
-    air_baked force, guide;         // the force when it varies in space
+    air_meshes solids;      // of colliders
+    air_baked force, guide; // the force when it varies in space
+    air_templates templates;
     const char *labels[AIR_LABELS]; // of times
 
     bool fresh;           // begins anew with the next record
@@ -155,11 +170,28 @@ bool air_tell_absent(air *a); // as trouble: what was never in the air's box; fa
 bool air_force_varies(const pass *p);
 bool air_is_guided(const pass *p);
 bool air_constant_force(const pass *p, float out[3]); // m/s^2; 0 where it varies
-bool air_allocate_force(air *a);                      // and the guide
-void air_list_force(const air *a, budget_list *out);  // its memory
+gpu_image_desc air_describe_force(const air *a, const char *label);
+bool air_allocate_force(air *a);                     // and the guide; after the templates' image
+void air_list_force(const air *a, budget_list *out); // its memory
 // Force and guide as of the host's time, which is that of a step.
 bool air_push(air *a);
 void air_destroy_force(air *a);
+
+// air_templates.c
+bool air_has_templates(const air *a);
+bool air_has_outflow(const air *a); // templates of pressure
+bool air_allocate_templates(air *a);
+void air_list_templates(const air *a, budget_list *out); // their memory
+bool air_run_templates(air *a);                          // before a step
+void air_exchange_templates(air *a, air *other);
+void air_destroy_templates(air *a);
+void air_save_templates(const air *a, struct checkpoint_list *out);
+bool air_load_templates(air *a, struct checkpoint *from);
+void air_define_templates(const air *a, pass_defines *out); // of the kernel that draws them
+bool air_templates_defines(pass *p, size_t index, pass_defines *out); // hooks of a group
+bool air_templates_declare(pass *p);
+bool air_templates_update(pass *p);
+extern const pass_kernel air_templates_kernel;
 
 // air_source.c
 typedef struct air_cells { // whole numbers
@@ -184,6 +216,9 @@ static inline air_source *air_source_of(const pass *source) {
     return source->state;
 }
 enum { AIR_EVALUATE, AIR_GIVE, AIR_MARK, AIR_SOURCE_KERNELS };
+// Whether a field of the pass samples the air, with a message: what it holds is known when a step
+// is done, and the pass runs before.
+bool air_is_read_by(const air *a, const pass *p);
 bool air_source_declare(pass *p);
 bool air_source_defines(pass *p, size_t index, pass_defines *out);
 void air_source_list_memory(const pass *p, budget_list *out);

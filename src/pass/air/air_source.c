@@ -37,7 +37,6 @@ static bool check_gives(const air *a, const pass *p) {
     return given;
 }
 
-// What the air holds is known when a step is done, and a source gives before it.
 static bool samples(const air *a, const field *given) {
     for (size_t i = 0; i < a->kind->output_count; i++)
         if (field_samples(given, &a->grid, (int)i)) return true;
@@ -50,13 +49,13 @@ static bool carries(const air *a, const pass *particles) {
     return false;
 }
 
-static bool reads_itself(const air *a, const pass *source) {
-    for (size_t i = 0; i < source->face->field_count; i++) {
-        const field *given = source->fields[i];
+bool air_is_read_by(const air *a, const pass *p) {
+    for (size_t i = 0; i < p->face->field_count; i++) {
+        const field *given = p->fields[i];
         if (given && (samples(a, given)))
             return err_set("%s: '%s' reads the air that it is given to; fields of other air, of "
                            "files and of shapes are accepted",
-                           source->label, source->face->fields[i].name),
+                           p->label, p->face->fields[i].name),
                    true;
     }
     return false;
@@ -64,7 +63,7 @@ static bool reads_itself(const air *a, const pass *source) {
 
 bool pass_air_add_source(pass *p, pass *source) {
     air *a = air_of(p);
-    if (!check_gives(a, source) || reads_itself(a, source)) return false;
+    if (!check_gives(a, source) || air_is_read_by(a, source)) return false;
     air_source *s = source->state = arena_alloc(p->host->memory, sizeof *s);
     *s = (air_source){.air = a, .turn = UINT64_MAX, .coupled = carries(a, source->particles)};
     voxels_rule rule = (voxels_rule)pass_option(source, N_rule);
@@ -266,6 +265,7 @@ static bool source_give(pass *p, air_source *s) {
     if (meshes) kernel_bind_buffer(k, N_SourceMotions, voxels_motions(meshes));
     uint32_t threads[3];
     for (int i = 0; i < 3; i++) threads[i] = (uint32_t)s->cells.count[i];
+    a->kind->bind(a, p, AIR_GIVE, k);
     return a->kind->give(a, p, k, threads) &&
            kernel_run(k, p->host->device, threads[0], threads[1], threads[2]);
 }

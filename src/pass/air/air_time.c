@@ -63,6 +63,7 @@ void air_restart(pass *p) {
     a->solids.updated = (double)NAN;
     for (size_t i = 0; i < a->giver_count; i++) a->givers[i].updated = (double)NAN;
     a->force.turn = a->guide.turn = UINT64_MAX;
+    a->templates.set.fresh = true;
     for (size_t i = 0; i < a->source_count; i++) air_forget_source(a->sources[i]);
     a->shown_steps = UINT64_MAX;
     if (a->kind->restart) a->kind->restart(a);
@@ -87,6 +88,7 @@ static bool step(pass *p, air *a, bool keep, bool apart) {
     if (!air_push(a)) return false;
     for (size_t i = 0; i < a->source_count; i++)
         if (!air_run_source(a->sources[i])) return false;
+    if (!air_run_templates(a)) return false;
     if (apart) gpu_pass_next(device, a->labels[AIR_STEP]);
     return a->kind->step(a, keep);
 }

@@ -45,7 +45,8 @@ static lbm_desc structure_of(const pass *p, const lbm_air *a) {
         .precision = (lbm_precision)pass_option(p, N_precision),
         .scalars = count_scalars(a),
         .subgrid = has_subgrid(p),
-        .force = air_force_varies(p),
+        .force = air_force_varies(p) || air_has_templates(&a->air),
+        .outflow = air_has_outflow(&a->air),
         .bodies = a->air.solids.count > 0,
     };
     memcpy(d.size, a->air.desc.size, sizeof d.size);

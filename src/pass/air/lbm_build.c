@@ -26,7 +26,7 @@ bool lbm_air_allocate(pass *p) {
     lbm_air *a = lbm_air_of(p);
     return (lbm_allocate(a->solver, p->host->device) &&
             lbm_guard_allocate(a->guard, p->host->device) && air_allocate_bodies(&a->air) &&
-            air_allocate_force(&a->air)) ||
+            air_allocate_templates(&a->air) && air_allocate_force(&a->air)) ||
            err_prefix("%s: ", p->label);
 }
 
@@ -35,6 +35,7 @@ void lbm_air_list_memory(const pass *p, budget_list *out) {
     lbm_list_memory(a->solver, out);
     air_list_bodies(&a->air, out);
     air_list_force(&a->air, out);
+    air_list_templates(&a->air, out);
 }
 
 void lbm_air_destroy(pass *p) {

@@ -8,6 +8,7 @@ void lbm_air_save(const pass *p, checkpoint_list *out) {
     strbuf more = {0};
     air_describe(&a->air, &more);
     lbm_state_list(a->solver, p->label, strbuf_text(&more), out);
+    air_save_templates(&a->air, out);
     strbuf_free(&more);
 }
 
@@ -16,7 +17,9 @@ bool lbm_air_load(pass *p, checkpoint *from) {
     strbuf more = {0};
     air_describe(&a->air, &more);
     air_restart(p);
-    a->air.fresh = !lbm_state_load(a->solver, p->host->device, p->label, strbuf_text(&more), from);
+    a->air.fresh =
+        !lbm_state_load(a->solver, p->host->device, p->label, strbuf_text(&more), from) ||
+        !air_load_templates(&a->air, from);
     strbuf_free(&more);
     return !a->air.fresh;
 }

@@ -36,9 +36,9 @@ static bool lbm_air_exchange(air *a, air *other) {
     return mine && its && lbm_exchange(mine, its);
 }
 
-static bool lbm_air_take_force(air *a) {
-    lbm_set_force(lbm_of(a)->solver, a->force.image, (float)sim_acceleration(&a->units, 1));
-    return true;
+static void lbm_air_take_force(air *a, gpu_image *image) {
+    lbm_set_force(lbm_of(a)->solver, image, (float)sim_acceleration(&a->units, 1),
+                  (float)a->units.step);
 }
 
 // ---- bodies -----------------------------------------------------------------------------------
@@ -78,6 +78,12 @@ static size_t lbm_air_source_defines(const air *a, shader_define *out) {
     return lbm_defines(lbm_of(a)->solver, out);
 }
 
+static void lbm_air_bind(const air *a, const pass *p, size_t index, kernel *k) {
+    const lbm *solver = lbm_of(a)->solver;
+    kernel_set_int(k, N_lbm_parity, (int32_t)lbm_parity(solver));
+    lbm_bind(solver, k, pass_solver_places(p, index));
+}
+
 static bool lbm_air_give(const air *a, pass *source, kernel *k, uint32_t threads[3]) {
     const lbm_air *l = lbm_of(a);
     const uint32_t depth = lbm_depth(l->solver);
@@ -85,8 +91,6 @@ static bool lbm_air_give(const air *a, pass *source, kernel *k, uint32_t threads
     kernel_set_float(k, N_clamp_speed, lbm_air_clamp_speed(l));
     kernel_set_float(k, N_pascal, (float)(1 / lbm_air_pascals(l)));
     kernel_set_int(k, N_note, (int32_t)air_source_of(source)->note);
-    kernel_set_int(k, N_lbm_parity, (int32_t)lbm_parity(l->solver));
-    lbm_bind(l->solver, k, pass_solver_places(source, AIR_GIVE));
     kernel_bind_buffer(k, N_SourceNotes, lbm_guard_notes(l->guard));
     if (threads[2] > depth) threads[2] = depth;
     return true;
@@ -115,6 +119,20 @@ const pass_type lbm_source_type = {
     .destroy = air_source_destroy,
 };
 
+const pass_type lbm_templates_type = {
+    .name = "lbm_templates",
+    .constructed = true,
+    .shader = "pass/air/lbm_templates.comp",
+    .kernels = &air_templates_kernel,
+    .kernel_count = 1,
+    .names = {air_names, AIR_NAME_COUNT},
+    .solver = &lbm_kernel_table,
+    .unscaled = true,
+    .declare = air_templates_declare,
+    .defines = air_templates_defines,
+    .update = air_templates_update,
+};
+
 static const int outputs[] = {N_scalars, N_velocity};
 static const int given[] = {N_density, N_temperature, N_dye, N_velocity, N_pressure};
 
@@ -134,6 +152,7 @@ const air_kind lbm_kind = {
     .reset = lbm_air_reset,
     .step = lbm_air_step,
     .move_solids = lbm_air_move_solids,
+    .bind = lbm_air_bind,
     .give = lbm_air_give,
     .source_defines = lbm_air_source_defines,
     .exchange = lbm_air_exchange,

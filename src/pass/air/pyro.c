@@ -63,7 +63,8 @@ static bool pyro_air_complete(pass *p) {
         .premixed = pass_option(p, N_combustion) == 1,
         .confinement = pass_may_be(p, N_vorticity, 0, true), // a constant 0 leaves it out
         .turbulence = pass_may_be(p, N_turbulence, 0, true),
-        .force = air_force_varies(p),
+        .force = air_force_varies(p) || air_has_templates(&a->air),
+        .outflow = air_has_outflow(&a->air),
         .guide = air_is_guided(p),
         .solids = a->air.solids.count > 0,
     };
@@ -105,7 +106,7 @@ static bool pyro_air_build(pass *p) {
 static bool pyro_air_allocate(pass *p) {
     pyro_air *a = pyro_air_of(p);
     return (pyro_allocate(a->solver, p->host->device) && air_allocate_bodies(&a->air) &&
-            air_allocate_force(&a->air)) ||
+            air_allocate_templates(&a->air) && air_allocate_force(&a->air)) ||
            err_prefix("%s: ", p->label);
 }
 
@@ -114,6 +115,7 @@ static void pyro_air_list_memory(const pass *p, budget_list *out) {
     pyro_list_memory(a->solver, out);
     air_list_bodies(&a->air, out);
     air_list_force(&a->air, out);
+    air_list_templates(&a->air, out);
 }
 
 static void pyro_air_destroy(pass *p) {

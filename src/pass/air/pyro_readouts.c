@@ -88,6 +88,7 @@ static void pyro_air_save(const pass *p, checkpoint_list *out) {
     // What could not be read is missed when it is loaded.
     if (!pyro_state_list(a->solver, p->host->device, p->label, strbuf_text(&more), out))
         log_write(LOG_WARNING, "%s: %s", p->label, err_get());
+    air_save_templates(&a->air, out);
     strbuf_free(&more);
 }
 
@@ -96,7 +97,9 @@ static bool pyro_air_load(pass *p, checkpoint *from) {
     strbuf more = {0};
     air_describe(&a->air, &more);
     air_restart(p);
-    a->air.fresh = !pyro_state_load(a->solver, p->host->device, p->label, strbuf_text(&more), from);
+    a->air.fresh =
+        !pyro_state_load(a->solver, p->host->device, p->label, strbuf_text(&more), from) ||
+        !air_load_templates(&a->air, from);
     strbuf_free(&more);
     return !a->air.fresh;
 }

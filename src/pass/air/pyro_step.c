@@ -79,10 +79,9 @@ static bool pyro_air_move_solids(air *a, bool changed) {
     return true;
 }
 
-static bool pyro_air_take_force(air *a) {
-    pyro_set_force(pyro_of(a)->solver, a->force.image);
+static void pyro_air_take_force(air *a, gpu_image *image) {
+    pyro_set_force(pyro_of(a)->solver, image);
     pyro_set_guide(pyro_of(a)->solver, a->guide.image);
-    return true;
 }
 
 static void pyro_air_guide_cells(const air *a, bool most, uint32_t out[3]) {
@@ -104,13 +103,17 @@ static size_t pyro_air_source_defines(const air *a, shader_define *out) {
     return pyro_defines(pyro_of(a)->solver, out);
 }
 
+static void pyro_air_bind(const air *a, const pass *p, size_t index, kernel *k) {
+    const pyro_air *own = pyro_of(a);
+    kernel_set_float(k, N_ambient, own->numbers.ambient);
+    pyro_bind(own->solver, k, pass_solver_places(p, index));
+}
+
 static bool pyro_air_give(const air *a, pass *source, kernel *k, uint32_t threads[3]) {
     const pyro_air *p = pyro_of(a);
-    const kernel_place *places = pass_solver_places(source, AIR_GIVE);
-    kernel_set_float(k, N_ambient, p->numbers.ambient);
+    (void)source;
     kernel_set_int(k, N_present_from, pyro_present_from(p->solver));
     kernel_set_float(k, N_burns_above, p->numbers.ignition);
-    pyro_bind(p->solver, k, places);
     // From the beginning of a cell of velocity to the faces behind the last one.
     for (int i = 0; i < 3; i++) threads[i] += 2 * pyro_ratio(pyro_get_desc(p->solver)) - 1;
     return true;
@@ -139,6 +142,20 @@ const pass_type pyro_source_type = {
     .destroy = air_source_destroy,
 };
 
+const pass_type pyro_templates_type = {
+    .name = "pyro_templates",
+    .constructed = true,
+    .shader = "pass/air/pyro_templates.comp",
+    .kernels = &air_templates_kernel,
+    .kernel_count = 1,
+    .names = {air_names, AIR_NAME_COUNT},
+    .solver = &pyro_kernel_table,
+    .unscaled = true,
+    .declare = air_templates_declare,
+    .defines = air_templates_defines,
+    .update = air_templates_update,
+};
+
 static const pass_fluid_field fields[] = {
     {"temperature", 0, 1}, {"fuel", 1, 1},       {"soot", 2, 1},
     {"velocity", 4, 3},    {"pressure", 7, 1},   {"burn", 8, 1},
@@ -161,6 +178,7 @@ const air_kind pyro_kind = {
     .reset = pyro_air_reset,
     .step = pyro_air_step,
     .move_solids = pyro_air_move_solids,
+    .bind = pyro_air_bind,
     .give = pyro_air_give,
     .source_defines = pyro_air_source_defines,
     .exchange = pyro_air_exchange,

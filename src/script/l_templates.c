@@ -1,14 +1,11 @@
 // flow:templates { image "templates/source.exr", kind = "pressure", count = 40, ... }: pictures
-// that are put into the flow of slices for a while, again and again.
+// that are put into the flow of slices, or into simulated air, for a while, again and again.
 #include "base/memory.h"
 #include "pass/slices/slices_templates.h"
 #include "script/binding.h"
 #include <string.h>
 
-static const char example[] = "image \"templates/source.exr\", count = 40";
-
-static const value_desc own[] = {
-    {.name = "count"}, {.name = "size"}, {.name = "lifetime"}, {.name = "center"}, {.name = NULL}};
+const char templates_example[] = "image \"templates/source.exr\", count = 40";
 
 // Reads {a, b}, each a number that may change over time, for two uniforms; or one number for both,
 // if `single`.
@@ -40,7 +37,7 @@ static const picture *take_image(lua_State *L) {
     const picture_object *image = value_picture(L, -1);
     if (!image)
         vm_error(L, "templates: its picture comes first, as in flow:templates { %s }; got %s",
-                 example, object_kind(L, -1));
+                 templates_example, object_kind(L, -1));
     const picture *result = image->picture; // of the effect, not of the script
     lua_pop(L, 1);
     lua_createtable(L, 0, 8);
@@ -58,15 +55,28 @@ static const picture *take_image(lua_State *L) {
     return result;
 }
 
-int l_slices_templates(lua_State *L) {
-    const slices_object *flow = slices_self(L, "templates", example);
-    script *s = script_of(L);
-    const char *unsound = s->unsound;
-    const picture *image = take_image(L);
-    uint32_t count = value_get_count(L, 2, "templates", "count", 20);
-    pass *group = pass_make(L, "slices_templates", "templates", 2, own);
+pass *templates_make(lua_State *L, const char *type, const value_desc *own, const picture **image,
+                     uint32_t *count) {
+    *image = take_image(L);
+    *count = value_get_count(L, 2, "templates", "count", 20);
+    pass *group = pass_make(L, type, "templates", 2, own);
     set_pair(L, group, "size", "size_min", "size_max", true);
     set_pair(L, group, "lifetime", "lifetime_min", "lifetime_max", true);
+    return group;
+}
+
+int l_slices_templates(lua_State *L) {
+    static const value_desc own[] = {{.name = "count"},
+                                     {.name = "size"},
+                                     {.name = "lifetime"},
+                                     {.name = "center"},
+                                     {.name = NULL}};
+    const slices_object *flow = slices_self(L, "templates", templates_example);
+    script *s = script_of(L);
+    const char *unsound = s->unsound;
+    const picture *image;
+    uint32_t count;
+    pass *group = templates_make(L, "slices_templates", own, &image, &count);
     set_pair(L, group, "center", "center_x", "center_y", false);
     if (!pass_declare(group) || !slices_add_templates(flow->pass, group, image, count))
         script_raise(L);
