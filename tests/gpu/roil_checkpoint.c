@@ -28,6 +28,12 @@ static const char COLLIDER[] =
     "air:collider { mesh { 'beam.obj', position = curve { {0, {-0.5, 0, 1}}, {0.05, {-0.2, 0, 1}}, "
     "{0.2, {0.5, 0, 1}} } } }";
 
+static const char STIRRED[] =
+    "air:collider { mesh { 'beam.obj', position = curve { {0, {-0.5, 0, 1}}, {0.05, {-0.2, 0, 1}}, "
+    "{0.2, {0.5, 0, 1}} } } }\n"
+    "air:templates { image 'source.exr', size = {0.3, 0.8}, lifetime = {0.03, 0.1}, strength = 5,\n"
+    "                within = 'density', above = 0.1, scale_by = 'density' }";
+
 static const char STILL[] =
     "local fx = effect { name = 'still' }\n"
     "fx.output = final { march { density = sphere { radius = 1 }, steps = 4 } }.color\n"
@@ -39,6 +45,7 @@ static roil_effect *open(roil *r, const char *cell, const char *force, const cha
     char text[2048], path[512];
     snprintf(text, sizeof text, AIR, cell, force, collider);
     write_text("beam.obj", BEAM, path);
+    copy_template("source.exr");
     roil_effect *e = load_text(r, "air.lua", text);
     ok(roil_prepare(e, SIDE, SIDE));
     return e;
@@ -70,13 +77,13 @@ static void assert_same_file(const char *a, const char *b) {
 
 static void a_restored_run_is_the_one_that_never_stopped(void **state) {
     picture through, again;
-    roil_effect *e = open(*state, "0.1", FORCE, COLLIDER);
+    roil_effect *e = open(*state, "0.1", FORCE, STIRRED);
     draw(e, 1, 4, through);
     ok(roil_checkpoint(e, in_folder("middle")));
     draw(e, 5, 8, through);
     ok(roil_checkpoint(e, in_folder("end")));
     roil_unload(e);
-    e = open(*state, "0.1", FORCE, COLLIDER);
+    e = open(*state, "0.1", FORCE, STIRRED);
     double last = 0;
     ok(roil_restore(e, in_folder("middle"), &last));
     assert_float_equal(last, 4, 0);

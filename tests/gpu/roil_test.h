@@ -47,6 +47,14 @@ static inline void write_text(const char *name, const char *text, char path[512]
     assert_int_equal(fclose(file), 0);
 }
 
+// Copies a picture of the library of templates into the test's folder.
+static inline void copy_template(const char *name) {
+    char command[1024];
+    snprintf(command, sizeof command, "cp '%s/effects/templates/%s' '%s/'",
+             getenv("ROIL_SOURCE_DIR"), name, test_folder);
+    assert_int_equal(system(command), 0);
+}
+
 static inline roil_effect *load_text(roil *r, const char *name, const char *text) {
     char path[512];
     write_text(name, text, path);
