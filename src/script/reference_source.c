@@ -198,7 +198,7 @@ const script_object reference_sources[] = {
         KEY("burn", "field MW/m^3", "heat of burning"),
         KEY("velocity", "field m/s", "three components"),
         KEY("pressure", "field Pa", "beyond that of the air around"),
-        KEY("divergence", "field 1/s", "how fast the gas expands"),
+        KEY("divergence", "field 1/s", "how fast the gas expands, or comes out of templates"),
         KEY("vorticity", "field 1/s", "how fast it turns"),
         KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "in which it is simulated"),
         KEY("time_step", "number s", "that a step takes"))},

@@ -124,6 +124,22 @@ static void smoke_neither_glows_nor_burns(void **state) {
     assert_true(seen[1] > 60 && abs(seen[0] - seen[1]) <= 6);
 }
 
+// The divergence is what templates let out, too: here nothing else expands.
+static void templates_show_in_the_divergence(void **state) {
+    picture shown[2];
+    static const char *const strengths[] = {"strength = 0", "strength = 60"};
+    for (int k = 0; k < 2; k++) {
+        char more[256];
+        snprintf(more, sizeof more,
+                 "fire:templates { image 'source.exr', count = 8, size = 1, %s }", strengths[k]);
+        roil_effect *e = open(*state, "expansion = 0", BRIEF, more, "fire.divergence * 0.1");
+        draw(e, 1, 6, shown[k]);
+        roil_unload(e);
+    }
+    print_message("%d, %d\n", brightest(shown[0]), brightest(shown[1]));
+    assert_true(brightest(shown[1]) > brightest(shown[0]) + 20);
+}
+
 static void what_is_wrong_is_said(void **state) {
     static const struct {
         const char *keys, *source, *more, *shown, *message;
@@ -272,6 +288,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_gives_fields_by_name),
         cmocka_unit_test(smoke_neither_glows_nor_burns),
+        cmocka_unit_test(templates_show_in_the_divergence),
         cmocka_unit_test(what_is_wrong_is_said),
         cmocka_unit_test(it_is_pushed_by_a_field),
         cmocka_unit_test(a_coarser_run_guides_it),

@@ -38,6 +38,9 @@ uniform sampler3D gas_now, gas_before, flow_now, flow_before;
 #if SMOKES
 uniform sampler3D smoke_now, smoke_before;
 #endif
+#if HAS_OUTFLOW
+uniform sampler3D outflow; // its fourth: what templates let out (1/s)
+#endif
 uniform vec3 size;         // cells
 uniform float cell_size;   // m
 uniform float blend;       // of the two states
@@ -101,9 +104,12 @@ void main() {
     vec3 curl = vec3(y.z - z.y, z.x - x.z, x.y - y.x);
     float ratio = gas.x / 1500.0, around_ = ambient_temperature / gas.x;
     float lost = cooling * ratio * ratio * ratio * ratio * (1.0 - around_ * around_ * around_ * around_) / gas.x;
-    float heat = burning(gas, at), smoke = 0.0;
+    float heat = burning(gas, at), smoke = 0.0, grows = expansion * (heat / AIR_ENERGY - lost);
 #if SMOKES
     smoke = mixed(smoke_before, smoke_now, at).x;
 #endif
-    imageStore(rates, at, vec4(heat, expansion * (heat / AIR_ENERGY - lost), length(curl), smoke));
+#if HAS_OUTFLOW
+    grows += textureLod(outflow, (vec3(at) + 0.5) / size, 0.0).w;
+#endif
+    imageStore(rates, at, vec4(heat, grows, length(curl), smoke));
 }

@@ -12,7 +12,7 @@
 //@ field float region = 1 : where templates are put, as share of the places in the box that are tried (m)
 //@ field vec3 direction = {0, 0, 1} : of `align = "direction"`; where it is 0 they look any way
 uniform float strength; //= 1 [-1e6, 1e6] : what a picture's 1 means: of pressure, how much gas comes out of a place in a second, as a multiple of its volume (1/s); of velocity, m/s^2
-uniform float size_min; //= 0.2 [1e-4, 1e6] m : side of the smallest template; below six cells it is as one of six
+uniform float size_min; //= 0.2 [1e-4, 1e6] m : side of the smallest template; below eight cells it is as one of eight
 uniform float size_max; //= 0.5 [1e-4, 1e6] m : of the largest; sizes between are as likely
 #include "lib/template_life.glsl"
 uniform float angle;  //= 0 [-inf, inf] degrees : that templates are turned by besides, anticlockwise as one sees the picture
@@ -171,7 +171,7 @@ void main() {
         }
     }
     bool acts = place.w > 0.0 && template_acts(i);
-    float half_side = max(0.5 * life.w / cell_size, 1.5 * AIR_COARSER); // what is finer is not seen
+    float half_side = max(0.5 * life.w / cell_size, 2.0 * AIR_COARSER); // what is finer is not seen
     float factor = acts ? strength * template_envelope(life) * scale_at(place.xyz, half_side) : 0.0;
     vec3 middle = place.xyz / AIR_COARSER;
     half_side /= AIR_COARSER;

@@ -16,6 +16,7 @@ const pass_kernel air_kernels[AIR_KERNELS] = {
 bool air_defines(pass *p, size_t index, pass_defines *out) {
     if (index == AIR_FORCE) return air_force_varies(p);
     if (index == AIR_GUIDE) return air_is_guided(p);
+    if (index == AIR_SHOW) pass_define_flag(out, "HAS_OUTFLOW", air_has_outflow(air_of(p)));
     if (index != AIR_TEMPLATES) return true;
     if (air_has_templates(air_of(p))) air_define_templates(air_of(p), out);
     return air_has_templates(air_of(p));

@@ -65,8 +65,8 @@ enum { AIR_STEP, AIR_VOXELS, AIR_SOURCES, AIR_FIELDS, AIR_LABELS };
         NAME(guide_size), NAME(smoke), NAME(smoke_yield), NAME(smoke_dissolve_rate),               \
         NAME(smoke_now), NAME(smoke_before), NAME(turbulence), NAME(kind), NAME(align),            \
         NAME(region), NAME(direction), NAME(seed), NAME(key), NAME(parity), NAME(tile),            \
-        NAME(time_step), NAME(corner), NAME(own_force), NAME(Templates), NAME(TemplateMasks),      \
-        NAME(TemplateImages)
+        NAME(time_step), NAME(corner), NAME(own_force), NAME(outflow), NAME(Templates),            \
+        NAME(TemplateMasks), NAME(TemplateImages)
 enum { AIR_NAMES(KERNEL_NAME_ID), AIR_NAME_COUNT };
 extern const char *const air_names[AIR_NAME_COUNT];
 

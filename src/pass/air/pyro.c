@@ -166,6 +166,7 @@ static bool show(pass *p, pyro_air *a) {
     if (!k) return false;
     const uint32_t *n = a->air.desc.size;
     bind_looks(a, k);
+    if (air_has_outflow(&a->air)) kernel_bind_image(k, N_outflow, a->air.templates.image);
     return kernel_run(k, p->host->device, n[0], n[1], n[2]);
 }
 
